@@ -1,0 +1,112 @@
+# This file is part of the MPM package for LAMMPS, distributed under the GNU
+# General Public License, version 2; see the file LICENSE.
+#
+# The package's sources and how they are compiled, used by every way to build:
+# overlay on a cached LAMMPS, LAMMPS's own build (mpm_inject.cmake), plugin.
+
+get_filename_component(MPM_ROOT "${CMAKE_CURRENT_LIST_DIR}/.." ABSOLUTE)
+set(MPM_DIR ${MPM_ROOT}/src/MPM)
+
+file(GLOB MPM_SOURCES CONFIGURE_DEPENDS ${MPM_DIR}/*.cpp)
+file(GLOB MPM_ISA_SOURCES CONFIGURE_DEPENDS ${MPM_DIR}/mpm_*_isa.cpp)
+if(MPM_ISA_SOURCES)
+  list(REMOVE_ITEM MPM_SOURCES ${MPM_ISA_SOURCES})
+endif()
+file(GLOB MPM_PLUGIN_SOURCES CONFIGURE_DEPENDS ${MPM_DIR}/plugin/*.cpp)
+file(GLOB MPM_HEADERS CONFIGURE_DEPENDS ${MPM_DIR}/*.h)
+
+# Style headers by kind, as in LAMMPS's StyleHeaderUtils.cmake:
+# MPM_STYLE_KINDS names LAMMPS's style_KIND.h, MPM_STYLE_<KIND> our headers.
+set(MPM_STYLE_KINDS atom command compute dump fix pair region)
+foreach(kind ${MPM_STYLE_KINDS})
+  set(MPM_STYLE_${kind})
+  string(TOUPPER ${kind} class)
+  foreach(header ${MPM_HEADERS})
+    file(STRINGS ${header} is_style LIMIT_COUNT 1 REGEX "^#if.*[ (]${class}_CLASS")
+    if(is_style)
+      list(APPEND MPM_STYLE_${kind} ${header})
+    endif()
+  endforeach()
+endforeach()
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${MPM_HEADERS})
+
+# text with one #include per header of a kind
+function(mpm_style_includes kind out)
+  set(text)
+  foreach(header ${MPM_STYLE_${kind}})
+    get_filename_component(name ${header} NAME)
+    string(APPEND text "#include \"${name}\"\n")
+  endforeach()
+  set(${out} "${text}" PARENT_SCOPE)
+endfunction()
+
+# write only when different, so that nothing is recompiled without need
+function(mpm_write file text)
+  if(EXISTS ${file})
+    file(READ ${file} old)
+    if("${old}" STREQUAL "${text}")
+      return()
+    endif()
+  endif()
+  file(WRITE ${file} "${text}")
+endfunction()
+
+# add "MPM" to the packages that 'lmp -h' lists as installed
+function(mpm_installed_packages lammps_styles dir)
+  file(READ ${lammps_styles}/lmpinstalledpkgs.h text)
+  string(REPLACE "  NULL\n" "  \"MPM\",\n  NULL\n" text "${text}")
+  mpm_write(${dir}/lmpinstalledpkgs.h "${text}")
+endfunction()
+
+# Eigen is header-only
+find_path(EIGEN3_INCLUDE_DIR Eigen/Core PATH_SUFFIXES eigen3 REQUIRED)
+
+# Instruction sets for the hot kernels mpm_*_isa.cpp: compiled once per set with
+# MPM_ISA = base, v3, v4; MPM_HAVE_V3, MPM_HAVE_V4 tell the dispatcher which exist.
+# Functions there must be in namespaces named by MPM_ISA or have internal linkage:
+# a shared inline function compiled for v4 could end up in the baseline's place.
+include(CheckCXXCompilerFlag)
+set(MPM_ISA_FLAGS_base)
+set(MPM_ISA_FLAGS_v3 -march=x86-64-v3)
+set(MPM_ISA_FLAGS_v4 -march=x86-64-v4 -mprefer-vector-width=512)
+set(MPM_ISA_SETS base)
+set(MPM_ISA_DEFINITIONS)
+foreach(isa v3 v4)
+  string(TOUPPER ${isa} ISA)
+  string(REPLACE ";" " " flags "${MPM_ISA_FLAGS_${isa}}")
+  set(CMAKE_REQUIRED_QUIET ON)
+  check_cxx_compiler_flag("${flags}" MPM_COMPILER_HAS_${ISA})
+  if(MPM_COMPILER_HAS_${ISA})
+    list(APPEND MPM_ISA_SETS ${isa})
+    list(APPEND MPM_ISA_DEFINITIONS MPM_HAVE_${ISA})
+  endif()
+endforeach()
+set(MPM_ISA_OPTIONS -O3 -ffp-contract=fast -fno-math-errno -fno-trapping-math -fopenmp-simd)
+
+function(mpm_object_library name)
+  add_library(${name} OBJECT ${ARGN})
+  target_compile_features(${name} PRIVATE cxx_std_17)
+  set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_EXTENSIONS OFF)
+  target_compile_options(${name} PRIVATE $<$<NOT:$<CONFIG:Debug>>:-O3> -Wall -Wextra)
+  target_include_directories(${name} PRIVATE ${MPM_DIR})
+  target_include_directories(${name} SYSTEM PRIVATE ${EIGEN3_INCLUDE_DIR}
+    "$<FILTER:${MPM_LAMMPS_INCLUDES},EXCLUDE,^/usr/include$>")
+  target_compile_definitions(${name} PRIVATE ${MPM_LAMMPS_DEFINITIONS} ${MPM_ISA_DEFINITIONS})
+endfunction()
+
+# Object libraries for the whole package; the global property MPM_OBJECTS lists
+# them for use as sources.  Before: MPM_LAMMPS_INCLUDES, MPM_LAMMPS_DEFINITIONS
+# = how LAMMPS is compiled.
+function(mpm_add_objects)
+  mpm_object_library(mpm_objects ${MPM_SOURCES})
+  set(objects $<TARGET_OBJECTS:mpm_objects>)
+  if(MPM_ISA_SOURCES)
+    foreach(isa ${MPM_ISA_SETS})
+      mpm_object_library(mpm_isa_${isa} ${MPM_ISA_SOURCES})
+      target_compile_definitions(mpm_isa_${isa} PRIVATE MPM_ISA=${isa})
+      target_compile_options(mpm_isa_${isa} PRIVATE ${MPM_ISA_OPTIONS} ${MPM_ISA_FLAGS_${isa}})
+      list(APPEND objects $<TARGET_OBJECTS:mpm_isa_${isa}>)
+    endforeach()
+  endif()
+  set_property(GLOBAL PROPERTY MPM_OBJECTS ${objects})
+endfunction()

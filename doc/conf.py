@@ -1,0 +1,69 @@
+# This file is part of the MPM package for LAMMPS, distributed under the GNU
+# General Public License, version 2; see the file LICENSE.
+"""Sphinx set-up of the manual:  python3 -m sphinx -W -b html doc build/doc
+
+The pages in doc/src are written as pages of the LAMMPS manual and can be moved
+there as they are.  Until then, a reference to a page that is not one of ours
+becomes a link to the LAMMPS manual on the web."""
+
+import os
+
+from docutils import nodes
+from pygments.lexer import RegexLexer
+from pygments.token import Comment, Keyword, Name, Number, String, Text
+
+project = "MPM package for LAMMPS"
+author = "the authors of the MPM package"
+copyright = "distributed under the GNU General Public License, version 2"
+
+extensions = ["sphinx.ext.mathjax"]
+root_doc = "src/index"
+html_theme = "alabaster"
+html_theme_options = {"fixed_sidebar": True, "page_width": "1100px", "sidebar_width": "240px"}
+html_show_sourcelink = False
+html_copy_source = False
+
+LAMMPS_MANUAL = "https://docs.lammps.org"
+
+
+class LammpsLexer(RegexLexer):
+    """Highlighting of LAMMPS input (in the manual of LAMMPS: its own lexer)."""
+
+    name = "LAMMPS"
+    aliases = ["LAMMPS"]
+    tokens = {
+        "root": [
+            (r"^\s*[a-z][a-z_]*", Keyword, "line"),
+            (r"#.*", Comment),
+            (r"\s+", Text),
+            (r".", Text),
+        ],
+        "line": [
+            (r"&[ \t]*\n", Text),
+            (r"\n", Text, "#pop"),
+            (r"#.*", Comment),
+            (r"\$\{[^}]*\}|\$\([^)]*\)|\$[a-z]", Name.Variable),
+            (r"\"[^\"]*\"", String),
+            (r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?(?![\w/*])", Number),
+            (r"[^\s#$\"]+", Text),
+            (r"\s+", Text),
+            (r".", Text),
+        ],
+    }
+
+
+def link_to_lammps_manual(app, env, node, contnode):
+    """References to pages of the LAMMPS manual, such as :doc:`fix nve <fix_nve>`."""
+    if node.get("refdomain") != "std" or node.get("reftype") != "doc":
+        return None
+    page = os.path.basename(node["reftarget"])
+    if "mpm" in page.lower():
+        return None    # would be ours: let Sphinx complain
+    link = nodes.reference("", "", internal=False, refuri="%s/%s.html" % (LAMMPS_MANUAL, page))
+    link += contnode
+    return link
+
+
+def setup(app):
+    app.add_lexer("LAMMPS", LammpsLexer)
+    app.connect("missing-reference", link_to_lammps_manual)

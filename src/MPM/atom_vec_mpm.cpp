@@ -1,0 +1,238 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "atom_vec_mpm.h"
+
+#include "atom.h"
+#include "atom_vec_hybrid.h"
+#include "error.h"
+#include "math_const.h"
+#include "mpm_points.h"
+
+#include <algorithm>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+
+// names for compute property/atom; tensor components start at F11 and stress11
+
+enum { VOLUME0, VOLUME, JACOBIAN, DENSITY, F11, STRESS11 = F11 + 9 };
+
+static constexpr struct {
+  const char *name;
+  int index;
+} properties[] = {
+    {"mpm_volume0", VOLUME0},        {"mpm_volume", VOLUME},
+    {"mpm_J", JACOBIAN},             {"mpm_density", DENSITY},
+    {"mpm_F11", F11},                {"mpm_F12", F11 + 1},
+    {"mpm_F13", F11 + 2},            {"mpm_F21", F11 + 3},
+    {"mpm_F22", F11 + 4},            {"mpm_F23", F11 + 5},
+    {"mpm_F31", F11 + 6},            {"mpm_F32", F11 + 7},
+    {"mpm_F33", F11 + 8},            {"mpm_stress11", STRESS11},
+    {"mpm_stress22", STRESS11 + 1},  {"mpm_stress33", STRESS11 + 2},
+    {"mpm_stress12", STRESS11 + 3},  {"mpm_stress13", STRESS11 + 4},
+    {"mpm_stress23", STRESS11 + 5},  {"mpm_stress21", STRESS11 + 3},
+    {"mpm_stress31", STRESS11 + 4},  {"mpm_stress32", STRESS11 + 5},
+};
+
+/* ---------------------------------------------------------------------- */
+
+AtomVecMPM::AtomVecMPM(LAMMPS *lmp) :
+    AtomVec(lmp), rmass(nullptr), vfrac(nullptr), radius(nullptr), after_sphere(false),
+    rmass_one(0.0)
+{
+  molecular = Atom::ATOMIC;
+  mass_type = PER_ATOM;
+  atom->rmass_flag = atom->vfrac_flag = 1;
+  points = MPMPoints::get(atom, true);
+
+  // border: ghost points need nothing of this style (a sphere style sends radius and mass)
+  // data_vel: must not have more columns than comm_vel, write_data relies on it
+
+  fields_grow = {"rmass", "vfrac", "mpm_vol", "mpm_F", "mpm_stress"};
+  fields_copy = {"rmass", "vfrac", "mpm_vol", "mpm_F", "mpm_stress"};
+  fields_exchange = {"rmass", "vfrac", "mpm_vol", "mpm_F", "mpm_stress"};
+  fields_restart = {"rmass", "vfrac", "mpm_vol", "mpm_F", "mpm_stress"};
+  fields_create = {"rmass", "vfrac", "mpm_vol", "mpm_F", "mpm_stress"};
+  fields_data_atom = {"id", "type", "rmass", "vfrac", "x"};
+  fields_data_vel = {"id", "v"};
+}
+
+/* ---------------------------------------------------------------------- */
+
+void AtomVecMPM::process_args(int narg, char **arg)
+{
+  if (narg > 0)
+    error->all(FLERR, "Atom style mpm takes no arguments, found: {}{}", arg[0],
+               " (in atom_style hybrid this can be an unknown style)");
+  setup_fields();
+}
+
+/* ----------------------------------------------------------------------
+   set local copies of the arrays, also when this is a sub-style of hybrid
+------------------------------------------------------------------------- */
+
+void AtomVecMPM::grow_pointers()
+{
+  rmass = atom->rmass;
+  vfrac = atom->vfrac;
+  radius = atom->radius;
+  check_companions();
+}
+
+/* ----------------------------------------------------------------------
+   other sub-styles of hybrid that use mass or volume in their own way:
+   only spheres are fine, when they come first
+------------------------------------------------------------------------- */
+
+void AtomVecMPM::check_companions()
+{
+  after_sphere = false;
+  auto *hybrid = dynamic_cast<AtomVecHybrid *>(atom->avec);
+  if (!hybrid) return;
+
+  bool passed = false;
+  for (int k = 0; k < hybrid->nstyles; k++) {
+    const std::string style = hybrid->keywords[k];
+    const auto &fields = hybrid->styles[k]->fields_data_atom;
+    const bool clash = std::count(fields.begin(), fields.end(), "rmass") +
+        std::count(fields.begin(), fields.end(), "vfrac");
+    if (hybrid->styles[k] == this) {
+      passed = true;
+    } else if (style == "sphere" || style == "bpm/sphere") {
+      if (passed)
+        error->all(FLERR, "Atom style mpm must come after {} in atom_style hybrid", style);
+      after_sphere = true;
+    } else if (clash) {
+      error->all(FLERR, "Atom style mpm cannot be combined with atom style {}, which uses the "
+                 "mass or volume of atoms in another way", style);
+    }
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+double AtomVecMPM::sphere_volume(double r) const
+{
+  return r > 0.0 ? MathConst::MY_4PI3 * r * r * r : 1.0;
+}
+
+/* ----------------------------------------------------------------------
+   a new atom is no material point until it is given a volume
+   (all fields are zero here, those of sub-styles before this one are set)
+------------------------------------------------------------------------- */
+
+void AtomVecMPM::create_atom_post(int ilocal)
+{
+  if (!after_sphere) rmass[ilocal] = 1.0;
+  double *F = points->F[ilocal];
+  F[0] = F[4] = F[8] = 1.0;
+}
+
+/* ----------------------------------------------------------------------
+   density and volume from the data file to mass
+------------------------------------------------------------------------- */
+
+void AtomVecMPM::data_atom_post(int ilocal)
+{
+  const double volume = vfrac[ilocal];
+  if (!(volume >= 0.0))
+    error->one(FLERR, "Invalid volume {} of atom {} in Atoms section of data file: it must be > 0 "
+               "for a material point and 0 for other atoms", volume, atom->tag[ilocal]);
+
+  if (volume > 0.0) {
+    double density = rmass[ilocal];
+    if (after_sphere) density /= sphere_volume(radius[ilocal]);
+    if (!(density >= 0.0))
+      error->one(FLERR, "Invalid density {} of atom {} in Atoms section of data file: it must be "
+                 "> 0, or 0 for a material point whose mass will come from fix mpm/material",
+                 density, atom->tag[ilocal]);
+    rmass[ilocal] = density * volume;
+  } else if (!after_sphere && !(rmass[ilocal] > 0.0)) {
+    error->one(FLERR, "Invalid mass {} of atom {} in Atoms section of data file: an atom without "
+               "volume is no material point, and its density column is its mass, which must be > 0",
+               rmass[ilocal], atom->tag[ilocal]);
+  }
+
+  points->vol[ilocal] = volume;
+  double *F = points->F[ilocal], *stress = points->stress[ilocal];
+  for (int k = 0; k < 9; k++) F[k] = (k % 4 == 0) ? 1.0 : 0.0;
+  for (int k = 0; k < 6; k++) stress[k] = 0.0;
+}
+
+/* ----------------------------------------------------------------------
+   mass to density for AtomVec::pack_data()
+   after a sphere style, rmass is mass / (volume of the sphere), and radius the diameter
+------------------------------------------------------------------------- */
+
+void AtomVecMPM::pack_data_pre(int ilocal)
+{
+  rmass_one = rmass[ilocal];
+  if (!(vfrac[ilocal] > 0.0)) return;
+
+  if (after_sphere) {
+    if (rmass_one == 0.0)
+      error->one(FLERR, "Material point {} has no mass yet, and atom style sphere cannot read such "
+                 "atoms from a data file: define fix mpm/material before write_data",
+                 atom->tag[ilocal]);
+    rmass[ilocal] = rmass_one * sphere_volume(0.5 * radius[ilocal]) / vfrac[ilocal];
+  } else {
+    rmass[ilocal] = rmass_one / vfrac[ilocal];
+  }
+}
+
+/* ----------------------------------------------------------------------
+   undo pack_data_pre(); a sphere style has restored rmass already
+------------------------------------------------------------------------- */
+
+void AtomVecMPM::pack_data_post(int ilocal)
+{
+  if (!after_sphere) rmass[ilocal] = rmass_one;
+}
+
+/* ----------------------------------------------------------------------
+   index of a property for compute property/atom, -1: unknown
+------------------------------------------------------------------------- */
+
+int AtomVecMPM::property_atom(const std::string &name)
+{
+  for (const auto &property : properties)
+    if (name == property.name) return property.index;
+  return -1;
+}
+
+/* ----------------------------------------------------------------------
+   pack a property of the atoms of a group, 0 for those that are no material points
+------------------------------------------------------------------------- */
+
+void AtomVecMPM::pack_property_atom(int index, double *buf, int nvalues, int groupbit)
+{
+  const int *mask = atom->mask;
+  const int nlocal = atom->nlocal;
+
+  for (int i = 0; i < nlocal; i++) {
+    double value = 0.0;
+    if ((mask[i] & groupbit) && vfrac[i] > 0.0) {
+      const double *F = points->F[i];
+      if (index == VOLUME0)
+        value = vfrac[i];
+      else if (index == VOLUME)
+        value = points->vol[i];
+      else if (index == JACOBIAN)
+        value = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
+            F[2] * (F[3] * F[7] - F[4] * F[6]);
+      else if (index == DENSITY)
+        value = points->vol[i] > 0.0 ? rmass[i] / points->vol[i] : 0.0;
+      else if (index >= STRESS11)
+        value = points->stress[i][index - STRESS11];
+      else
+        value = F[index - F11];
+    }
+    buf[(bigint) i * nvalues] = value;
+  }
+}

@@ -1,0 +1,54 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifdef ATOM_CLASS
+// clang-format off
+AtomStyle(mpm,AtomVecMPM);
+// clang-format on
+#else
+
+#ifndef LMP_ATOM_VEC_MPM_H
+#define LMP_ATOM_VEC_MPM_H
+
+#include "atom_vec.h"
+
+namespace LAMMPS_NS {
+struct MPMPoints;
+
+/** Material points: mass, initial and current volume, deformation gradient and Cauchy stress.
+ *
+ *  Atoms with initial volume 0 are no material points (grains, MD atoms, ...) and keep the mass
+ *  that their own style gives them. The data file has a mass density and the initial volume;
+ *  in a hybrid with a sphere style that density column is shared.
+ */
+class AtomVecMPM : public AtomVec {
+ public:
+  AtomVecMPM(class LAMMPS *);
+  void process_args(int, char **) override;
+
+  void grow_pointers() override;
+  void create_atom_post(int) override;
+  void data_atom_post(int) override;
+  void pack_data_pre(int) override;
+  void pack_data_post(int) override;
+  int property_atom(const std::string &) override;
+  void pack_property_atom(int, double *, int, int) override;
+
+ private:
+  MPMPoints *points;      // never owned: several styles and Atoms may refer to the same arrays
+  double *rmass, *vfrac, *radius;
+  bool after_sphere;      // a sphere style converts density to mass before this style does
+  double rmass_one;
+
+  void check_companions();
+  double sphere_volume(double r) const;
+};
+
+}    // namespace LAMMPS_NS
+#endif
+#endif

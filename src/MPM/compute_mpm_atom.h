@@ -1,0 +1,66 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifdef COMPUTE_CLASS
+// clang-format off
+ComputeStyle(mpm/atom,ComputeMPMAtom);
+// clang-format on
+#else
+
+#ifndef LMP_COMPUTE_MPM_ATOM_H
+#define LMP_COMPUTE_MPM_ATOM_H
+
+#include "compute.h"
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+struct MPMPoints;
+
+/** Quantities of material points by name: one column for each name, 0 for other atoms.
+ *
+ *  The names are those of the table in compute_mpm_atom.cpp and the history variables of the
+ *  materials. A name that is not in the table is taken for a history variable until init(),
+ *  because materials may be defined later than this compute.
+ */
+class ComputeMPMAtom : public Compute {
+ public:
+  ComputeMPMAtom(class LAMMPS *, int, char **);
+  ~ComputeMPMAtom() override;
+  void init() override;
+  void compute_peratom() override;
+  double memory_usage() override;
+
+  /** True for a name of the table, or a wildcard such as stress or stress/<star>. */
+  static bool known(const std::string &name);
+
+  /** The names that a wildcard (stress/<star>) stands for, or the name itself. */
+  static std::vector<std::string> expand(const std::string &name);
+
+  struct Quantity;
+
+ private:
+  struct Column {
+    std::string name;
+    const Quantity *quantity;    // null: history variable
+  };
+
+  MPMPoints *points;
+  std::vector<Column> columns;
+  int nmax;
+
+  double *column(int);
+  bool is_point(int) const;
+  std::string known_names() const;
+  void history_column(const std::string &, double *, int);
+};
+
+}    // namespace LAMMPS_NS
+#endif
+#endif

@@ -1,0 +1,147 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "compute_mpm_energy.h"
+
+#include "atom.h"
+#include "error.h"
+#include "fix_mpm.h"
+#include "fix_mpm_material.h"
+#include "group.h"
+#include "modify.h"
+#include "mpm_material.h"
+#include "mpm_point_batches.h"
+#include "update.h"
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+/* ---------------------------------------------------------------------- */
+
+ComputeMPMEnergy::ComputeMPMEnergy(LAMMPS *lmp, int narg, char **arg) :
+    Compute(lmp, narg, arg), started(false)
+{
+  if (narg > 3) error->all(FLERR, 3, "Unknown compute mpm/energy argument: {}", arg[3]);
+  if (igroup != 0)
+    error->all(FLERR, 1, "Compute mpm/energy requires group all, since work cannot be told apart "
+               "by group; for the stored energy of a group use compute mpm/atom energy with "
+               "compute reduce");
+
+  scalar_flag = vector_flag = 1;
+  extscalar = extvector = 1;
+  size_vector = NENTRY;
+  vector = new double[NENTRY]();
+}
+
+/* ---------------------------------------------------------------------- */
+
+ComputeMPMEnergy::~ComputeMPMEnergy()
+{
+  delete[] vector;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void ComputeMPMEnergy::init()
+{
+  auto fields = modify->get_fix_by_style("^mpm$");
+  if (fields.empty())
+    error->all(FLERR, Error::NOLASTLINE, "Compute {} of style mpm/energy requires a fix mpm", id);
+  for (auto *field : fields) dynamic_cast<FixMPM *>(field)->ledger_on = true;
+}
+
+/* ----------------------------------------------------------------------
+   the ledger starts with the first run after the definition
+------------------------------------------------------------------------- */
+
+void ComputeMPMEnergy::setup()
+{
+  if (started) return;
+  started = true;
+  start = evaluate();
+}
+
+/* ---------------------------------------------------------------------- */
+
+ComputeMPMEnergy::Sums ComputeMPMEnergy::evaluate() const
+{
+  Sums mine = {};
+
+  for (auto *fix : modify->get_fix_by_style("^mpm$")) {
+    const auto *field = dynamic_cast<FixMPM *>(fix);
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!field->is_point(i)) continue;
+      const double *v = atom->v[i];
+      mine.kinetic += 0.5 * atom->rmass[i] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    }
+    mine.external += field->ledger.external;
+    mine.boundary += field->ledger.boundary;
+    mine.contact += field->ledger.contact;
+    mine.transfer += field->ledger.transfer;
+    mine.internal += field->ledger.internal;
+  }
+
+  for (auto *fix : modify->get_fix_by_style("^mpm/material$")) {
+    const auto *material = dynamic_cast<FixMPMMaterial *>(fix);
+    mine.plastic += material->work[Work::PLASTIC];
+    mine.viscous += material->work[Work::VISCOUS];
+    mine.heat += material->work[Work::HEAT];
+  }
+
+  visit_point_batches(lmp, groupbit,
+                      [&](const Batch &batch, const int *, const FixMPMMaterial &material) {
+    double w[BATCH];
+    material.material->stored_energy(batch, w);
+    for (int k = 0; k < batch.n; k++) mine.stored += batch.vol0[k] * w[k];
+  });
+
+  Sums all;
+  static_assert(sizeof(Sums) == 10 * sizeof(double), "Sums holds doubles only");
+  MPI_Allreduce(&mine, &all, 10, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double ComputeMPMEnergy::compute_scalar()
+{
+  if (invoked_vector != update->ntimestep) compute_vector();
+  invoked_scalar = update->ntimestep;
+  scalar = vector[KINETIC] + vector[STORED] + vector[PLASTIC] + vector[VISCOUS];
+  return scalar;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void ComputeMPMEnergy::compute_vector()
+{
+  invoked_vector = update->ntimestep;
+  const Sums now = evaluate();
+  if (!started) {
+    started = true;
+    start = now;
+  }
+
+  vector[KINETIC] = now.kinetic;
+  vector[STORED] = now.stored;
+  vector[PLASTIC] = now.plastic;
+  vector[VISCOUS] = now.viscous;
+  vector[HEAT] = now.heat;
+  vector[EXTERNAL] = now.external - start.external;
+  vector[BOUNDARY] = now.boundary - start.boundary;
+  vector[CONTACT] = now.contact - start.contact;
+  vector[TRANSFER] = now.transfer - start.transfer;
+
+  // the law's account of the energy that internal forces took, against that energy
+
+  const double taken = now.stored + now.plastic + now.viscous - start.stored - start.plastic -
+      start.viscous;
+  vector[INTEGRATION] = taken - (now.internal - start.internal);
+  vector[RESIDUAL] = now.total() - start.total();
+  for (int k = EXTERNAL; k < RESIDUAL; k++) vector[RESIDUAL] -= vector[k];
+}

@@ -1,0 +1,70 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifdef COMPUTE_CLASS
+// clang-format off
+ComputeStyle(mpm/energy,ComputeMPMEnergy);
+// clang-format on
+#else
+
+#ifndef LMP_COMPUTE_MPM_ENERGY_H
+#define LMP_COMPUTE_MPM_ENERGY_H
+
+#include "compute.h"
+
+namespace LAMMPS_NS {
+
+/** Energy ledger of all material points.
+ *
+ *  The balance is (kinetic + stored + plastic + viscous) - (the same at the start) =
+ *  external + boundary + contact + transfer + integration + residual. Internal work is what the
+ *  internal forces take from the kinetic energy; what of it is neither stored nor dissipated by
+ *  the law is the error of time integration. The residual closes the balance of the stages of
+ *  fix mpm and must be round-off.
+ */
+class ComputeMPMEnergy : public Compute {
+ public:
+  ComputeMPMEnergy(class LAMMPS *, int, char **);
+  ~ComputeMPMEnergy() override;
+  void init() override;
+  void setup() override;
+  double compute_scalar() override;
+  void compute_vector() override;
+
+ private:
+  enum Entry {
+    KINETIC,        // of the points
+    STORED,         // sum of V0 times stored energy
+    PLASTIC,        // plastic work
+    VISCOUS,        // viscous work, also of artificial viscosity
+    HEAT,           // part of plastic and viscous work that became heat
+    EXTERNAL,       // work of atom->f
+    BOUNDARY,       // work of boundaries
+    CONTACT,        // work between fields
+    TRANSFER,       // kinetic energy gained by transfers
+    INTEGRATION,    // energy gained by time integration of the laws
+    RESIDUAL,       // what the balance misses
+    NENTRY
+  };
+
+  /** What the entries are computed from, summed over ranks. */
+  struct Sums {
+    double kinetic, stored, plastic, viscous, heat;
+    double external, boundary, contact, transfer, internal;
+    double total() const { return kinetic + stored + plastic + viscous; }
+  };
+
+  bool started;
+  Sums start;    // at the start of the ledger
+
+  Sums evaluate() const;
+};
+
+}    // namespace LAMMPS_NS
+#endif
+#endif

@@ -1,0 +1,576 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "create_points.h"
+
+#include "atom.h"
+#include "atom_vec.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix_mpm.h"
+#include "irregular.h"
+#include "modify.h"
+#include "mpm_points.h"
+#include "region.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+using namespace LAMMPS_NS;
+
+static constexpr double TOLERANCE = 1.0e-6;         // in spacings, for positions that coincide
+static constexpr double INFINITE = 1.0e19;          // bounds of regions beyond it are INF
+static constexpr double MAX_INDEX = 1.0e15;         // of a lattice site
+static constexpr double MAX_SITES = 9.0e18;         // to look at
+static constexpr bigint MAX_COUNT = 200000000;      // sites per rank looked at outside the box
+static constexpr bigint SHARE = 1 << 18;            // sites a rank looks at before points are sent
+static constexpr int MAX_PPC = 1000;
+
+static const char axis_name[] = "xyz";
+
+/* ---------------------------------------------------------------------- */
+
+CreatePoints::CreatePoints(LAMMPS *lmp) :
+    Command(lmp), type(0), seed(0), region(nullptr), fix(nullptr), jitter(0.0), diameter(0.0),
+    allow_overlap(false), ignore_outside(false), points(nullptr), volume(0.0)
+{
+}
+
+/* ---------------------------------------------------------------------- */
+
+void CreatePoints::command(int narg, char **arg)
+{
+  if (domain->box_exist == 0)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Create_points command before the simulation box is defined: use create_box or "
+               "read_data first");
+  if (!atom->style_match("mpm"))
+    error->all(FLERR, Error::NOLASTLINE,
+               "Create_points needs atom_style mpm, alone or in atom_style hybrid, but the atom "
+               "style is {}", atom->atom_style);
+  if (domain->triclinic)
+    error->all(FLERR, Error::NOLASTLINE, "Create_points needs an orthogonal simulation box");
+  if (modify->nfix_restart_peratom)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Cannot create_points after reading a restart file with per-atom info of fixes: "
+               "define these fixes and use run 0 first");
+
+  points = MPMPoints::get(atom);
+  parse(narg, arg);
+  find_ranges();
+  check_outside();
+  check_overlap();
+
+  MPI_Barrier(world);
+  const double start = platform::walltime();
+
+  // as at the beginning of Comm::exchange(): new points overwrite ghosts
+
+  if (atom->map_style != Atom::MAP_NONE) atom->map_clear();
+  atom->nghost = 0;
+  atom->avec->clear_bonus();
+
+  const bigint natoms_previous = atom->natoms;
+  const int nlocal_previous = atom->nlocal;
+  const bigint npoints = make_points();
+
+  atom->data_fix_compute_variable(nlocal_previous, atom->nlocal);
+
+  bigint nblocal = atom->nlocal;
+  MPI_Allreduce(&nblocal, &atom->natoms, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (atom->natoms < 0 || atom->natoms >= MAXBIGINT)
+    error->all(FLERR, Error::NOLASTLINE, "Too many total atoms");
+  if (npoints == 0)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Create_points made no points: no site of the lattice with spacing {:.8g} is inside "
+               "the region and the box; use a finer spacing or check the region",
+               *std::max_element(spacing, spacing + domain->dimension));
+  if (atom->natoms != natoms_previous + npoints)
+    error->all(FLERR, Error::NOLASTLINE, "Create_points made {} points at {} sites",
+               atom->natoms - natoms_previous, npoints);
+  atom->tag_check();
+
+  if (atom->map_style != Atom::MAP_NONE) {
+    atom->map_init();
+    atom->map_set();
+  }
+
+  MPI_Barrier(world);
+  if (comm->me == 0) {
+    const bool flat = domain->dimension == 2;
+    utils::logmesg(lmp, "Created {} material points of type {}\n", npoints, type);
+    utils::logmesg(lmp, "  spacing = {:.8g} {:.8g}{}\n", spacing[0], spacing[1],
+                   flat ? "" : fmt::format(" {:.8g}", spacing[2]));
+    utils::logmesg(lmp, "  volume = {:.8g} per point, {:.8g} in total{}\n", volume,
+                   npoints * volume, flat ? " (per unit thickness)" : "");
+    utils::logmesg(lmp, "  create_points CPU = {:.3f} seconds\n", platform::walltime() - start);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   settings, lattice of sites
+------------------------------------------------------------------------- */
+
+void CreatePoints::parse(int narg, char **arg)
+{
+  const int dim = domain->dimension;
+  int ppc[3] = {2, 2, 2};
+  bool use_ppc = false, use_spacing = false;
+
+  int iarg = 0;
+  if (narg < 2) utils::missing_cmd_args(FLERR, "create_points", error);
+  type = utils::expand_type_int(FLERR, arg[0], Atom::ATOM, lmp);
+  if (type < 1 || type > atom->ntypes)
+    error->all(FLERR, iarg, "Invalid atom type {} in create_points command, the box has {} type{}",
+               arg[0], atom->ntypes, atom->ntypes > 1 ? "s" : "");
+
+  iarg = 2;
+  if (strcmp(arg[1], "region") == 0) {
+    if (narg < 3) utils::missing_cmd_args(FLERR, "create_points region", error);
+    region = domain->get_region_by_id(arg[2]);
+    if (!region) error->all(FLERR, 2, "Create_points region {} does not exist", arg[2]);
+    region->init();
+    region->prematch();
+    iarg = 3;
+  } else if (strcmp(arg[1], "box") != 0) {
+    error->all(FLERR, 1, "Unknown create_points option {}: expected region or box", arg[1]);
+  }
+
+  // ppc and spacing: one number, or one for each axis
+
+  auto count_numbers = [&](const char *keyword) {
+    int n = 0;
+    while (iarg + 1 + n < narg && utils::is_double(arg[iarg + 1 + n])) n++;
+    if (iarg + 1 == narg)
+      utils::missing_cmd_args(FLERR, fmt::format("create_points {}", keyword), error);
+    if (n != 1 && n != dim)
+      error->all(FLERR, iarg, "Create_points {} expects 1 or {} numbers in a {}d simulation, not "
+                 "{}", keyword, dim, dim, n);
+    return n;
+  };
+
+  while (iarg < narg) {
+    const std::string keyword = arg[iarg];
+    if (keyword == "ppc") {
+      const int n = count_numbers("ppc");
+      for (int d = 0; d < dim; d++) {
+        const int k = iarg + 1 + (n == 1 ? 0 : d);
+        ppc[d] = utils::inumeric(FLERR, arg[k], false, lmp);
+        if (ppc[d] < 1 || ppc[d] > MAX_PPC)
+          error->all(FLERR, k, "Create_points ppc {} is out of range: it is the number of points "
+                     "along each axis of a cell, 1 to {}", arg[k], MAX_PPC);
+      }
+      use_ppc = true;
+      iarg += 1 + n;
+    } else if (keyword == "spacing") {
+      const int n = count_numbers("spacing");
+      for (int d = 0; d < dim; d++) {
+        const int k = iarg + 1 + (n == 1 ? 0 : d);
+        spacing[d] = utils::numeric(FLERR, arg[k], false, lmp);
+        if (!(spacing[d] > 0.0 && std::isfinite(spacing[d])))
+          error->all(FLERR, k, "Create_points spacing {} must be > 0", arg[k]);
+      }
+      use_spacing = true;
+      iarg += 1 + n;
+    } else if (keyword == "fix") {
+      if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "create_points fix", error);
+      auto *ifix = modify->get_fix_by_id(arg[iarg + 1]);
+      if (!ifix) error->all(FLERR, iarg + 1, "Create_points fix {} does not exist", arg[iarg + 1]);
+      fix = dynamic_cast<FixMPM *>(ifix);
+      if (!fix)
+        error->all(FLERR, iarg + 1, "Create_points fix {} is a fix {}, not a fix mpm",
+                   arg[iarg + 1], ifix->style);
+      iarg += 2;
+    } else if (keyword == "jitter") {
+      if (iarg + 3 > narg) utils::missing_cmd_args(FLERR, "create_points jitter", error);
+      jitter = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
+      if (!(jitter >= 0.0 && jitter <= 0.5))
+        error->all(FLERR, iarg + 1, "Create_points jitter {} must be from 0 to 0.5 (times the "
+                   "spacing, along each axis)", arg[iarg + 1]);
+      seed = utils::inumeric(FLERR, arg[iarg + 2], false, lmp);
+      if (seed <= 0)
+        error->all(FLERR, iarg + 2, "Create_points jitter seed {} must be > 0", arg[iarg + 2]);
+      iarg += 3;
+    } else if (keyword == "overlap") {
+      if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "create_points overlap", error);
+      allow_overlap = utils::logical(FLERR, arg[iarg + 1], false, lmp);
+      iarg += 2;
+    } else if (keyword == "outside") {
+      if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "create_points outside", error);
+      if (strcmp(arg[iarg + 1], "ignore") == 0)
+        ignore_outside = true;
+      else if (strcmp(arg[iarg + 1], "error") == 0)
+        ignore_outside = false;
+      else
+        error->all(FLERR, iarg + 1, "Unknown create_points outside option {}: expected error or "
+                   "ignore", arg[iarg + 1]);
+      iarg += 2;
+    } else if (keyword == "diameter") {
+      if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "create_points diameter", error);
+      if (!atom->radius_flag)
+        error->all(FLERR, iarg, "Create_points diameter needs atom_style hybrid sphere mpm");
+      diameter = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
+      if (!(diameter > 0.0 && std::isfinite(diameter)))
+        error->all(FLERR, iarg + 1, "Create_points diameter {} must be > 0", arg[iarg + 1]);
+      iarg += 2;
+    } else {
+      error->all(FLERR, iarg, "Unknown create_points keyword: {}", arg[iarg]);
+    }
+  }
+
+  // lattice of sites
+
+  if (use_ppc && use_spacing)
+    error->all(FLERR, Error::NOPOINTER, "Create_points takes either ppc or spacing, not both");
+  find_lattice();
+  if (fix) {
+    for (int d = 0; d < dim; d++) {
+      origin[d] = fix->lattice.origin[d];
+      if (!use_spacing) spacing[d] = fix->lattice.h / ppc[d];
+    }
+  } else {
+    if (!use_spacing)
+      error->all(FLERR, Error::NOPOINTER, "Create_points ppc refers to the lattice of a fix mpm, "
+                 "but there is none: define fix mpm first, or use create_points spacing");
+    for (int d = 0; d < dim; d++) origin[d] = domain->boxlo[d];
+  }
+
+  // 2d: one site at z = 0, volumes per unit thickness
+
+  if (dim == 2) {
+    spacing[2] = 1.0;
+    origin[2] = -0.5;
+  }
+  volume = spacing[0] * spacing[1] * spacing[2];
+  if (diameter == 0.0) diameter = dim == 3 ? cbrt(volume) : sqrt(volume);
+  if (!std::isnormal(volume))
+    error->all(FLERR, Error::NOPOINTER, "Create_points spacing gives points of volume {}", volume);
+
+  for (int d = 0; d < dim; d++) {
+    if (fix && comm->me == 0 && spacing[d] > fix->lattice.h * (1.0 + TOLERANCE))
+      error->warning(FLERR, "Create_points spacing {:.8g} along {} is wider than the cells of fix "
+                     "{} ({:.8g}): there will be cells without points inside the body", spacing[d],
+                     axis_name[d], fix->id, fix->lattice.h);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   the fix mpm whose lattice is meant when the input does not say so
+------------------------------------------------------------------------- */
+
+void CreatePoints::find_lattice()
+{
+  if (fix) return;
+  for (auto *ifix : modify->get_fix_by_style("^mpm$")) {
+    auto *other = dynamic_cast<FixMPM *>(ifix);
+    if (!other) continue;
+    if (!fix) fix = other;
+    bool same = other->lattice.h == fix->lattice.h;
+    for (int d = 0; d < domain->dimension; d++)
+      same = same && other->lattice.origin[d] == fix->lattice.origin[d];
+    if (!same)
+      error->all(FLERR, Error::NOPOINTER, "Fixes mpm {} and {} have different lattices: say with "
+                 "create_points keyword fix which one is meant", fix->id, other->id);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   sites in the box and sites that can be in the region
+   the box is half open: a point on an upper face would belong to no rank
+   on a periodic axis exactly one image of each site is in the range, also when rounding
+   decides on which side of the box a site is (positions are wrapped later)
+------------------------------------------------------------------------- */
+
+void CreatePoints::find_ranges()
+{
+  const double inf = 10.0 * INFINITE;
+  double lo[3] = {-inf, -inf, -inf}, hi[3] = {inf, inf, inf};
+  if (region && region->bboxflag && !region->dynamic && !region->varshape) {
+    const double region_lo[3] = {region->extent_xlo, region->extent_ylo, region->extent_zlo};
+    const double region_hi[3] = {region->extent_xhi, region->extent_yhi, region->extent_zhi};
+    std::copy_n(region_lo, 3, lo);
+    std::copy_n(region_hi, 3, hi);
+  }
+
+  for (int d = 0; d < 3; d++) {
+    if (d == domain->dimension) {
+      box[d] = search[d] = {0, 1};
+      break;
+    }
+    const double boxlo = domain->boxlo[d], boxhi = domain->boxhi[d];
+    const bool periodic = domain->periodicity[d];
+
+    // site number, rounded up; a site within the tolerance below counts as being there
+
+    auto first_from = [&](double x) {
+      const double s = (x - origin[d]) / spacing[d] - 0.5;
+      if (!(fabs(s) < MAX_INDEX))
+        error->all(FLERR, Error::NOLASTLINE, "Create_points spacing {:.8g} is too fine for this "
+                   "box or region", spacing[d]);
+      return (bigint) ceil(s - TOLERANCE);
+    };
+
+    bigint first = first_from(boxlo), end = first_from(boxhi);
+    if (periodic) {
+      const double nsite = domain->prd[d] / spacing[d];
+      if (fabs(nsite - round(nsite)) < TOLERANCE * 10.0) {
+        end = first + (bigint) round(nsite);
+      } else if (lo[d] < position(d, first) && hi[d] > position(d, end - 1) && comm->me == 0) {
+        error->warning(FLERR, "Create_points spacing {:.8g} does not divide the length {:.8g} of "
+                       "the box along periodic axis {}: points across the boundary are not at this "
+                       "spacing", spacing[d], domain->prd[d], axis_name[d]);
+      }
+    } else {
+      while (position(d, first) < boxlo) first++;
+      while (end > first && position(d, end - 1) >= boxhi) end--;
+      while (position(d, end) < boxhi) end++;
+    }
+    box[d] = {first, std::max(end - first, (bigint) 0)};
+
+    search[d] = box[d];
+    if (lo[d] > -INFINITE) first = first_from(lo[d]);
+    if (hi[d] < INFINITE) end = first_from(hi[d] + 2.0 * TOLERANCE * spacing[d]);
+    search[d] = {first, std::max(end - first, (bigint) 0)};
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool CreatePoints::in_box(const bigint *s) const
+{
+  return box[0].contains(s[0]) && box[1].contains(s[1]) && box[2].contains(s[2]);
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool CreatePoints::in_region(const bigint *s) const
+{
+  return !region || region->match(position(0, s[0]), position(1, s[1]), position(2, s[2]));
+}
+
+/* ----------------------------------------------------------------------
+   visit the sites first to last-1 of a range, x fastest
+------------------------------------------------------------------------- */
+
+template <class F>
+void CreatePoints::for_sites(const Range *range, bigint first, bigint last, F &&visit) const
+{
+  if (first >= last) return;
+  bigint k[3] = {first % range[0].n, first / range[0].n % range[1].n,
+                 first / range[0].n / range[1].n};
+  for (bigint n = first; n < last; n++) {
+    const bigint s[3] = {range[0].first + k[0], range[1].first + k[1], range[2].first + k[2]};
+    visit(s);
+    if (++k[0] == range[0].n) {
+      k[0] = 0;
+      if (++k[1] == range[1].n) {
+        k[1] = 0;
+        k[2]++;
+      }
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   refuse, or report, parts of the region outside the box
+------------------------------------------------------------------------- */
+
+void CreatePoints::check_outside()
+{
+  bool exceeds = false;
+  double nsearch = 1.0;
+  for (int d = 0; d < domain->dimension; d++) {
+    exceeds = exceeds || search[d].first < box[d].first ||
+        search[d].first + search[d].n > box[d].first + box[d].n;
+    nsearch *= search[d].n;
+  }
+  if (!exceeds || nsearch == 0.0) return;
+
+  std::string count = "an unknown number of";
+  if (nsearch / comm->nprocs < MAX_COUNT) {
+    const bigint n = search[0].n * search[1].n * search[2].n;
+    bigint mine = 0, all = 0;
+    for_sites(search, n * comm->me / comm->nprocs, n * (comm->me + 1) / comm->nprocs,
+              [&](const bigint *s) { mine += !in_box(s) && in_region(s); });
+    MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+    if (all == 0) return;
+    count = std::to_string(all);
+  }
+
+  if (!ignore_outside)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Create_points region {} reaches beyond the simulation box: {} points would be "
+               "outside; enlarge the box, cut the region, or use create_points keyword outside "
+               "ignore", region->id, count);
+  if (comm->me == 0)
+    utils::logmesg(lmp, "Create_points leaves out {} points of region {} outside the box\n", count,
+                   region->id);
+}
+
+/* ----------------------------------------------------------------------
+   refuse, or report, new points close to material points that exist
+   an existing point is closer than half a spacing along all axes to one site only,
+   that of the cell of the site lattice it is in: no need to look at other points
+------------------------------------------------------------------------- */
+
+void CreatePoints::check_overlap()
+{
+  const int dim = domain->dimension;
+  double **x = atom->x;
+  bigint mine[2] = {0, -MAXTAGINT}, all[2];
+
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->vfrac[i] > 0.0)) continue;
+    bigint s[3] = {0, 0, 0};
+    for (int d = 0; d < dim; d++) {
+      s[d] = (bigint) floor((x[i][d] - origin[d]) / spacing[d]);
+      if (domain->periodicity[d] && box[d].n > 0) {
+        if (s[d] < box[d].first) s[d] += box[d].n;
+        if (s[d] >= box[d].first + box[d].n) s[d] -= box[d].n;
+      }
+    }
+    if (!in_box(s) || !in_region(s)) continue;
+    mine[0]++;
+    mine[1] = std::max(mine[1], -(bigint) atom->tag[i]);
+  }
+  MPI_Allreduce(&mine[0], &all[0], 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  MPI_Allreduce(&mine[1], &all[1], 1, MPI_LMP_BIGINT, MPI_MAX, world);
+  if (all[0] == 0) return;
+
+  const auto message = fmt::format("{} existing material point{} (the first has ID {}) closer than "
+                                   "half a spacing to new points", all[0],
+                                   all[0] > 1 ? "s are" : " is", -all[1]);
+  if (!allow_overlap)
+    error->all(FLERR, Error::NOLASTLINE, "Create_points refuses overlapping bodies: {}; change the "
+               "region, delete the old points first, or use create_points keyword overlap yes",
+               message);
+  if (comm->me == 0) error->warning(FLERR, "Create_points makes overlapping bodies: {}", message);
+}
+
+/* ----------------------------------------------------------------------
+   position of the point of a site: the site's, displaced by jitter, inside the box
+------------------------------------------------------------------------- */
+
+void CreatePoints::point_position(const bigint *s, double *x) const
+{
+  // one of 2^64 numbers from the site and the seed alone (splitmix64)
+
+  auto mix = [](uint64_t h) {
+    h += 0x9e3779b97f4a7c15u;
+    h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9u;
+    h = (h ^ (h >> 27)) * 0x94d049bb133111ebu;
+    return h ^ (h >> 31);
+  };
+
+  for (int d = 0; d < 3; d++) {
+    x[d] = position(d, s[d]);
+    if (jitter == 0.0 || d >= domain->dimension) continue;
+    uint64_t h = mix((uint64_t) seed * 4 + d);
+    for (int k = 0; k < 3; k++) h = mix(h ^ (uint64_t) s[k]);
+    const double u = (h >> 11) * 0x1.0p-53;
+    const double move = (2.0 * u - 1.0) * jitter * spacing[d];
+    for (double xnew : {x[d] + move, x[d] - move})
+      if (domain->periodicity[d] || (xnew >= domain->boxlo[d] && xnew < domain->boxhi[d])) {
+        x[d] = xnew;
+        break;
+      }
+  }
+  domain->remap(x);
+}
+
+/* ----------------------------------------------------------------------
+   look at all sites once, in the order of their numbers, and make the points
+   IDs follow that order; returns the number of points
+------------------------------------------------------------------------- */
+
+bigint CreatePoints::make_points()
+{
+  Range range[3];
+  double nsite = 1.0;
+  for (int d = 0; d < 3; d++) {
+    const bigint first = std::max(search[d].first, box[d].first);
+    const bigint end = std::min(search[d].first + search[d].n, box[d].first + box[d].n);
+    range[d] = {first, std::max(end - first, (bigint) 0)};
+    nsite *= range[d].n;
+  }
+  if (nsite > MAX_SITES)
+    error->all(FLERR, Error::NOLASTLINE, "Create_points would have to look at {:.3g} sites: use a "
+               "wider spacing or a region with a bounding box", nsite);
+  const bigint n = range[0].n * range[1].n * range[2].n;
+
+  tagint mytag = 0, maxtag = 0;
+  for (int i = 0; i < atom->nlocal; i++) mytag = std::max(mytag, atom->tag[i]);
+  MPI_Allreduce(&mytag, &maxtag, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+
+  Irregular irregular(lmp);
+  if (comm->nprocs > 1) comm->coord2proc_setup();
+  std::vector<Site> made, received;
+  std::vector<int> owner;
+  bigint npoints = 0;
+
+  for (bigint base = 0; base < n; base += SHARE * comm->nprocs) {
+
+    // my share of the next sites
+
+    made.clear();
+    const bigint first = std::min(base + SHARE * comm->me, n);
+    for_sites(range, first, std::min(first + SHARE, n), [&](const bigint *s) {
+      if (!in_region(s)) return;
+      made.emplace_back();
+      point_position(s, made.back().x);
+    });
+
+    // IDs
+
+    bigint nmade = made.size(), before = 0, all = 0;
+    MPI_Scan(&nmade, &before, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+    MPI_Allreduce(&nmade, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+    before += npoints - nmade;
+    npoints += all;
+    if (atom->tag_enable && maxtag + npoints >= MAXTAGINT)
+      error->all(FLERR, Error::NOLASTLINE, "New atom IDs exceed the maximum allowed ID {}",
+                 MAXTAGINT);
+    for (bigint k = 0; k < nmade; k++)
+      made[k].tag = atom->tag_enable ? maxtag + before + k + 1 : 0;
+
+    // to their owners, in the order of their IDs
+
+    if (comm->nprocs == 1) {
+      for (const auto &site : made) make_point(site);
+    } else {
+      owner.resize(nmade);
+      int unused[3];
+      for (bigint k = 0; k < nmade; k++)
+        owner[k] = comm->coord2proc(made[k].x, unused[0], unused[1], unused[2]);
+      received.resize(irregular.create_data(nmade, owner.data(), 1));
+      irregular.exchange_data((char *) made.data(), sizeof(Site), (char *) received.data());
+      irregular.destroy_data();
+      for (const auto &site : received) make_point(site);
+    }
+  }
+  return npoints;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void CreatePoints::make_point(const Site &site)
+{
+  double x[3] = {site.x[0], site.x[1], site.x[2]};
+  atom->avec->create_atom(type, x);
+
+  const int i = atom->nlocal - 1;
+  atom->tag[i] = site.tag;
+  atom->vfrac[i] = volume;
+  atom->rmass[i] = 0.0;    // not known yet, see fix mpm/material
+  if (atom->radius_flag) atom->radius[i] = 0.5 * diameter;
+  points->vol[i] = volume;
+}

@@ -1,0 +1,77 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifdef COMMAND_CLASS
+// clang-format off
+CommandStyle(create_points,CreatePoints);
+// clang-format on
+#else
+
+#ifndef LMP_CREATE_POINTS_H
+#define LMP_CREATE_POINTS_H
+
+#include "command.h"
+
+namespace LAMMPS_NS {
+
+/** Fills a region with material points on a regular lattice of sites.
+ *
+ *  Sites are at origin + (s + 1/2) spacing for integer s. Their numbering, the test against the
+ *  region, the jitter and the IDs are functions of the site alone; ranks take equal shares of the
+ *  sites of a bounding box in turn and send the points to their owners. So every site is looked at
+ *  exactly once, and the points do not depend on the number of ranks or the layout.
+ */
+class CreatePoints : public Command {
+ public:
+  CreatePoints(class LAMMPS *);
+  void command(int, char **) override;
+
+ private:
+  struct Site {    // a point to be made
+    double x[3];
+    tagint tag;
+  };
+  struct Range {    // consecutive sites along an axis
+    bigint first, n;
+    bool contains(bigint s) const { return s >= first && s < first + n; }
+  };
+
+  // settings
+
+  int type, seed;
+  class Region *region;    // null: the whole box
+  class FixMPM *fix;       // whose lattice the sites refer to; null: none
+  double spacing[3], origin[3];
+  double jitter, diameter;
+  bool allow_overlap, ignore_outside;
+
+  // derived
+
+  struct MPMPoints *points;
+  double volume;          // of a point
+  Range box[3];           // sites in the simulation box
+  Range search[3];        // sites that can be in the region, also outside the box
+
+  void parse(int, char **);
+  void find_lattice();
+  void find_ranges();
+  void check_outside();
+  void check_overlap();
+  bigint make_points();
+  void make_point(const Site &);
+
+  double position(int d, bigint s) const { return origin[d] + (s + 0.5) * spacing[d]; }
+  bool in_box(const bigint *s) const;
+  bool in_region(const bigint *s) const;
+  void point_position(const bigint *s, double *x) const;
+  template <class F> void for_sites(const Range *range, bigint first, bigint last, F &&visit) const;
+};
+
+}    // namespace LAMMPS_NS
+#endif
+#endif

@@ -1,0 +1,246 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "dump_mpm_grid_vtk.h"
+
+#include "error.h"
+#include "fix_mpm.h"
+#include "modify.h"
+#include "mpm_vtk.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+static const struct {
+  const char *name;
+  int ncomponent;
+} node_fields[] = {{"mass", 1}, {"velocity", 3}, {"momentum", 3}, {"index", 3}};
+
+/* ----------------------------------------------------------------------
+   dump ID all mpm/grid/vtk N file.*.vtu FIXID field ...
+------------------------------------------------------------------------- */
+
+DumpMPMGridVTK::DumpMPMGridVTK(LAMMPS *lmp, int narg, char **arg) :
+    Dump(lmp, narg, arg), field(nullptr), single(false)
+{
+  if (narg < 7) utils::missing_cmd_args(FLERR, "dump mpm/grid/vtk", error);
+  if (igroup != 0)
+    error->all(FLERR, 1, "Dump mpm/grid/vtk requires group all: the fix mpm selects the nodes");
+  if (utils::inumeric(FLERR, arg[3], false, lmp) <= 0)
+    error->all(FLERR, 3, "Illegal dump mpm/grid/vtk command: output frequency must be > 0");
+
+  const bool series = strcmp(id, "WRITE_DUMP") != 0;
+  const auto wrong = VTKFile::name_error(filename, "vtu", series);
+  if (!wrong.empty()) error->all(FLERR, 4, "Dump mpm/grid/vtk {}", wrong);
+  if (series) collection.reset(new VTKCollection(VTKCollection::list_name(filename, id)));
+
+  fix_id = arg[5];
+  find_field();
+
+  for (int iarg = 6; iarg < narg; iarg++) {
+    int k = 0;
+    while (k <= NODE_INDEX && strcmp(arg[iarg], node_fields[k].name) != 0) k++;
+    if (k > NODE_INDEX)
+      error->all(FLERR, iarg, "Unknown dump mpm/grid/vtk field {}: must be one of mass velocity "
+                 "momentum index", arg[iarg]);
+    if (std::find(fields.begin(), fields.end(), (Field) k) == fields.end())
+      fields.push_back((Field) k);
+  }
+
+  buffer_allow = buffer_flag = 0;
+  binary = 1;
+  size_one = NCOLUMN;
+}
+
+/* ---------------------------------------------------------------------- */
+
+DumpMPMGridVTK::~DumpMPMGridVTK() = default;
+
+/* ---------------------------------------------------------------------- */
+
+FixMPM *DumpMPMGridVTK::find_field() const
+{
+  auto *fix = modify->get_fix_by_id(fix_id);
+  if (!fix)
+    error->all(FLERR, Error::NOLASTLINE, "Dump mpm/grid/vtk {} fix ID {} does not exist", id,
+               fix_id);
+  auto *found = dynamic_cast<FixMPM *>(fix);
+  if (!found)
+    error->all(FLERR, Error::NOLASTLINE, "Dump mpm/grid/vtk {} fix {} is of style {}, not mpm", id,
+               fix_id, fix->style);
+  return found;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DumpMPMGridVTK::init_style()
+{
+  field = find_field();
+  if (sort_flag)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Dump mpm/grid/vtk {} sorts nodes by index: remove dump_modify sort", id);
+  write_header_flag = 1;
+  if (multifile == 0) openfile();
+}
+
+/* ---------------------------------------------------------------------- */
+
+int DumpMPMGridVTK::modify_param(int narg, char **arg)
+{
+  if (strcmp(arg[0], "precision") != 0) return 0;
+  if (narg < 2) utils::missing_cmd_args(FLERR, "dump_modify precision", error);
+  single = strcmp(arg[1], "single") == 0;
+  if (!single && strcmp(arg[1], "double") != 0)
+    error->all(FLERR, "Unknown dump_modify precision {}: must be single or double", arg[1]);
+  return 2;
+}
+
+/* ----------------------------------------------------------------------
+   visit(block, number in block, record) for all nodes with mass that this process owns
+------------------------------------------------------------------------- */
+
+template <typename Visitor> void DumpMPMGridVTK::visit_nodes(Visitor visit) const
+{
+  auto *grid = field->grid;
+  if (grid->nreal == 0) return;
+  for (std::size_t slot = 0; slot < grid->blocks.size(); slot++) {
+    const auto &block = grid->blocks[slot];
+    for (int n = 0; n < NODES_PER_BLOCK; n++) {
+      if (!(block.owned >> n & 1)) continue;
+      const double *record = grid->record((int) slot, n);
+      if (record[3] > 0.0) visit(block, n, record);
+    }
+  }
+}
+
+int DumpMPMGridVTK::count()
+{
+  int nnode = 0;
+  visit_nodes([&](const Grid::Block &, int, const double *) { nnode++; });
+  return nnode;
+}
+
+void DumpMPMGridVTK::pack(tagint *)
+{
+  double *row = buf;
+  visit_nodes([&](const Grid::Block &block, int n, const double *record) {
+    int index[3];
+    field->grid->node_index(block, n, index);
+    for (int d = 0; d < 3; d++) {
+      row[INDEX + d] = index[d];
+      row[VELOCITY + d] = record[d];
+    }
+    row[MASS] = record[3];
+    row += NCOLUMN;
+  });
+}
+
+/* ----------------------------------------------------------------------
+   the process that writes collects all rows, since cells need the nodes of all processes
+------------------------------------------------------------------------- */
+
+void DumpMPMGridVTK::write_header(bigint nnode)
+{
+  rows.clear();
+  rows.reserve(nnode * NCOLUMN);
+}
+
+void DumpMPMGridVTK::write_data(int n, double *more)
+{
+  rows.insert(rows.end(), more, more + (bigint) n * NCOLUMN);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DumpMPMGridVTK::write_footer()
+{
+  const int dim = field->lattice.dim;
+  const bigint nnode = (bigint) rows.size() / NCOLUMN;
+  auto row = [&](bigint i) { return &rows[i * NCOLUMN]; };
+  auto before = [](const double *a, const double *b) {
+    return std::lexicographical_compare(a, a + 3, b, b + 3);
+  };
+
+  std::vector<const double *> node(nnode);
+  for (bigint i = 0; i < nnode; i++) node[i] = row(i);
+  std::sort(node.begin(), node.end(), before);
+
+  // cells: a node and those one step up in all directions, in the order of VTK
+
+  static const int corner[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
+                                   {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+  const int ncorner = dim == 3 ? 8 : 4;
+  std::vector<double> connectivity, offsets;
+  for (bigint i = 0; i < nnode; i++) {
+    double cell[8];
+    int k = 0;
+    for (; k < ncorner; k++) {
+      const double index[3] = {node[i][0] + corner[k][0], node[i][1] + corner[k][1],
+                               node[i][2] + corner[k][2]};
+      const auto found = std::lower_bound(node.begin() + i, node.end(), index, before);
+      if (found == node.end() || before(index, *found)) break;
+      cell[k] = (double) (found - node.begin());
+    }
+    if (k < ncorner) continue;
+    connectivity.insert(connectivity.end(), cell, cell + ncorner);
+    offsets.push_back((double) connectivity.size());
+  }
+  const bigint ncell = (bigint) offsets.size();
+
+  const auto real = single ? VTKFile::FLOAT32 : VTKFile::FLOAT64;
+  VTKFile vtk("UnstructuredGrid");
+  for (Field f : fields)
+    vtk.add("PointData", node_fields[f].name, f == NODE_INDEX ? VTKFile::INT64 : real,
+            node_fields[f].ncomponent, nnode);
+  const int points = vtk.add("Points", "Points", real, 3, nnode);
+  const int cells = vtk.add("Cells", "connectivity", VTKFile::INT64, 1, ncell * ncorner);
+  vtk.add("Cells", "offsets", VTKFile::INT64, 1, ncell);
+  vtk.add("Cells", "types", VTKFile::UINT8, 1, ncell);
+  vtk.begin(fp, fmt::format("NumberOfPoints=\"{}\" NumberOfCells=\"{}\"", nnode, ncell),
+            compute_time(), update->ntimestep);
+
+  std::vector<double> values;
+  for (std::size_t k = 0; k < fields.size(); k++) {
+    values.clear();
+    for (const double *n : node)
+      for (int d = 0; d < node_fields[fields[k]].ncomponent; d++) {
+        switch (fields[k]) {
+          case NODE_MASS: values.push_back(n[MASS]); break;
+          case NODE_VELOCITY: values.push_back(n[VELOCITY + d]); break;
+          case NODE_MOMENTUM: values.push_back(n[MASS] * n[VELOCITY + d]); break;
+          case NODE_INDEX: values.push_back(n[INDEX + d]); break;
+        }
+      }
+    vtk.write((int) k, 0, nnode, values.data());
+  }
+
+  values.clear();
+  for (const double *n : node) {
+    const int index[3] = {(int) n[0], (int) n[1], (int) n[2]};
+    double x[3];
+    field->node_position(index, x);
+    values.insert(values.end(), x, x + 3);
+  }
+  vtk.write(points, 0, nnode, values.data());
+
+  static constexpr double VTK_QUAD = 9, VTK_HEXAHEDRON = 12;
+  vtk.write(cells, 0, ncell * ncorner, connectivity.data());
+  vtk.write(cells + 1, 0, ncell, offsets.data());
+  values.assign(ncell, dim == 3 ? VTK_HEXAHEDRON : VTK_QUAD);
+  vtk.write(cells + 2, 0, ncell, values.data());
+  fflush(fp);
+
+  if (!collection) return;
+  const auto wrong = collection->add(utils::star_subst(filename, update->ntimestep, padflag),
+                                     compute_time(), maxfiles, append_flag);
+  if (!wrong.empty()) error->one(FLERR, Error::NOLASTLINE, "Dump {} {}", id, wrong);
+}

@@ -1,0 +1,280 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "dump_mpm_vtk.h"
+
+#include "compute.h"
+#include "compute_mpm_atom.h"
+#include "error.h"
+#include "memory.h"
+#include "modify.h"
+#include "mpm_vtk.h"
+#include "update.h"
+
+#include <cstring>
+#include <map>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+// fields with several components: as attributes of dump custom or names of compute mpm/atom
+
+static const std::map<std::string, std::vector<std::string>> composed = {
+    {"velocity", {"vx", "vy", "vz"}},
+    {"force", {"fx", "fy", "fz"}},
+    {"omega", {"omegax", "omegay", "omegaz"}},
+    {"torque", {"tqx", "tqy", "tqz"}},
+    {"image", {"ix", "iy", "iz"}},
+    {"stress", {"stress/xx", "stress/xy", "stress/xz", "stress/xy", "stress/yy", "stress/yz",
+                "stress/xz", "stress/yz", "stress/zz"}},
+    {"F", {"F/xx", "F/xy", "F/xz", "F/yx", "F/yy", "F/yz", "F/zx", "F/zy", "F/zz"}},
+    {"principal", {"principal/1", "principal/2", "principal/3"}},
+};
+
+// numbers that dump custom knows and compute mpm/atom does not
+
+static const std::vector<std::string> attributes = {
+    "mol", "proc",  "procp1", "x",  "y",   "z",   "xs",     "ys",       "zs",     "xu",     "yu",
+    "zu",  "xsu",   "ysu",    "zsu", "ix", "iy",  "iz",     "vx",       "vy",     "vz",     "fx",
+    "fy",  "fz",    "q",      "mux", "muy", "muz", "mu",    "radius",   "diameter", "omegax",
+    "omegay", "omegaz", "angmomx", "angmomy", "angmomz", "tqx", "tqy", "tqz"};
+
+static const std::vector<std::string> integers = {"id",     "type", "mol", "proc",
+                                                  "procp1", "ix",   "iy",  "iz"};
+
+static bool contains(const std::vector<std::string> &list, const std::string &word)
+{
+  for (const auto &item : list)
+    if (item == word) return true;
+  return false;
+}
+
+static const char PREFIX[] = "quantity:";    // marks a name of compute mpm/atom
+
+/* ---------------------------------------------------------------------- */
+
+DumpMPMVTK::Request::Request(LAMMPS *lmp_in, int narg, char **arg) : lmp(lmp_in)
+{
+  auto *error = lmp->error;
+  if (narg < 5) utils::missing_cmd_args(FLERR, "dump mpm/vtk", error);
+
+  const auto wrong = VTKFile::name_error(arg[4], "vtp", strcmp(arg[0], "WRITE_DUMP") != 0);
+  if (!wrong.empty()) error->all(FLERR, 4, "Dump mpm/vtk {}", wrong);
+
+  for (int iarg = 0; iarg < 5; iarg++) words.emplace_back(arg[iarg]);
+  fields.push_back({"id", {column("id")}, true});
+  fields.push_back({"type", {column("type")}, true});
+  position = {"Points", {column("x"), column("y"), column("z")}, false};
+
+  for (int iarg = 5; iarg < narg; iarg++) {
+    const std::string name = arg[iarg];
+    if (utils::strmatch(name, "^[cfvid]2?_")) {
+
+      // as in dump custom; a wildcard makes one field with many components
+
+      char **expanded;
+      const int n = utils::expand_args(FLERR, 1, &arg[iarg], 1, expanded, lmp);
+      Field field = {name.substr(0, name.find("[*]")), {}, utils::strmatch(name, "^i2?_")};
+      for (int k = 0; k < n; k++) field.columns.push_back(column(expanded[k]));
+      if (expanded != &arg[iarg]) {
+        for (int k = 0; k < n; k++) delete[] expanded[k];
+        lmp->memory->sfree(expanded);
+      }
+      fields.push_back(field);
+    } else {
+      for (const auto &word : ComputeMPMAtom::expand(name)) add_field(word, iarg);
+    }
+  }
+
+  // the names of compute mpm/atom become columns of an internal compute
+
+  std::string names;
+  int ncolumn = 0;
+  for (const auto &word : words)
+    if (utils::strmatch(word, "^quantity:")) {
+      names += " " + word.substr(strlen(PREFIX));
+      ncolumn++;
+    }
+  if (ncolumn > 0) {
+    int n = 1;
+    while (lmp->modify->get_compute_by_id(fmt::format("MPM_VTK_{}", n))) n++;
+    compute = fmt::format("MPM_VTK_{}", n);
+    lmp->modify->add_compute(fmt::format("{} {} mpm/atom{}", compute, arg[1], names));
+    int k = 0;
+    for (auto &word : words)
+      if (utils::strmatch(word, "^quantity:"))
+        word = ncolumn == 1 ? fmt::format("c_{}", compute) :
+                              fmt::format("c_{}[{}]", compute, ++k);
+  }
+
+  for (auto &word : words) args.push_back(const_cast<char *>(word.c_str()));
+}
+
+DumpMPMVTK::Request::~Request()
+{
+  if (!compute.empty()) lmp->modify->delete_compute(compute);
+}
+
+/** Number of the column of an attribute, made when there is none. */
+int DumpMPMVTK::Request::column(const std::string &word)
+{
+  for (std::size_t k = 5; k < words.size(); k++)
+    if (words[k] == word) return (int) k - 5;
+  words.push_back(word);
+  return (int) words.size() - 6;
+}
+
+/** A field by its name; a name that nothing else knows may be a history variable, which the
+ *  internal compute finds out when all materials are known. */
+void DumpMPMVTK::Request::add_field(const std::string &name, int iarg)
+{
+  for (const auto &field : fields)
+    if (field.name == name) return;
+  if (name == "element" || name == "typelabel")
+    lmp->error->all(FLERR, iarg, "Dump mpm/vtk writes numbers only: use type instead of {}", name);
+
+  auto source = [](const std::string &word) {
+    return contains(attributes, word) ? word : PREFIX + word;
+  };
+  Field field = {name, {}, contains(integers, name) || name == "image"};
+  const auto parts = composed.find(name);
+  if (parts == composed.end())
+    field.columns.push_back(column(source(name)));
+  else
+    for (const auto &part : parts->second) field.columns.push_back(column(source(part)));
+  fields.push_back(field);
+}
+
+/* ---------------------------------------------------------------------- */
+
+DumpMPMVTK::DumpMPMVTK(LAMMPS *lmp, int narg, char **arg) :
+    DumpMPMVTK(lmp, Request(lmp, narg, arg))
+{
+}
+
+DumpMPMVTK::DumpMPMVTK(LAMMPS *lmp, Request &&request) :
+    DumpCustom(lmp, (int) request.args.size(), request.args.data()),
+    fields(std::move(request.fields)), position(std::move(request.position)), single(false),
+    nwritten(0)
+{
+  compute_id = std::move(request.compute);
+  request.compute.clear();
+
+  // rows of numbers are gathered, not text
+
+  buffer_allow = buffer_flag = 0;
+  binary = 1;
+
+  if (strcmp(id, "WRITE_DUMP") != 0)
+    collection.reset(new VTKCollection(VTKCollection::list_name(filename, id)));
+}
+
+/* ---------------------------------------------------------------------- */
+
+DumpMPMVTK::~DumpMPMVTK()
+{
+  if (!compute_id.empty() && modify && modify->get_compute_by_id(compute_id))
+    modify->delete_compute(compute_id);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DumpMPMVTK::init_style()
+{
+  // a dump that is made between runs may use the internal compute at once
+
+  if (!compute_id.empty() && update->first_update) {
+    auto *quantities = modify->get_compute_by_id(compute_id);
+    if (quantities && !quantities->is_initialized()) {
+      quantities->init();
+      quantities->init_flags();
+    }
+  }
+
+  write_header_flag = 1;
+  DumpCustom::init_style();
+}
+
+/* ---------------------------------------------------------------------- */
+
+int DumpMPMVTK::modify_param(int narg, char **arg)
+{
+  if (strcmp(arg[0], "precision") == 0) {
+    if (narg < 2) utils::missing_cmd_args(FLERR, "dump_modify precision", error);
+    single = strcmp(arg[1], "single") == 0;
+    if (!single && strcmp(arg[1], "double") != 0)
+      error->all(FLERR, "Unknown dump_modify precision {}: must be single or double", arg[1]);
+    return 2;
+  }
+  return DumpCustom::modify_param(narg, arg);
+}
+
+/* ----------------------------------------------------------------------
+   only called by the process that writes
+------------------------------------------------------------------------- */
+
+void DumpMPMVTK::write_header(bigint npoint)
+{
+  vtk.reset(new VTKFile("PolyData"));
+  const auto real = single ? VTKFile::FLOAT32 : VTKFile::FLOAT64;
+  for (const auto &field : fields)
+    vtk->add("PointData", field.name, field.integer ? VTKFile::INT64 : real,
+             (int) field.columns.size(), npoint);
+  vtk->add("Points", position.name, real, 3, npoint);
+  vtk->add("Verts", "connectivity", VTKFile::INT64, 1, npoint);
+  vtk->add("Verts", "offsets", VTKFile::INT64, 1, npoint);
+  vtk->begin(fp, fmt::format("NumberOfPoints=\"{0}\" NumberOfVerts=\"{0}\" NumberOfLines=\"0\" "
+                             "NumberOfStrips=\"0\" NumberOfPolys=\"0\"", npoint),
+             compute_time(), update->ntimestep);
+  nwritten = 0;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DumpMPMVTK::write_field(const Field &field, int array, int n, const double *rows)
+{
+  const int ncomponent = (int) field.columns.size();
+  values.resize((std::size_t) n * ncomponent);
+  double *value = values.data();
+  for (int i = 0; i < n; i++)
+    for (int column : field.columns) *value++ = rows[(bigint) i * size_one + column];
+  vtk->write(array, nwritten, n, values.data());
+}
+
+/* ----------------------------------------------------------------------
+   rows of the next process
+------------------------------------------------------------------------- */
+
+void DumpMPMVTK::write_data(int n, double *rows)
+{
+  int array = 0;
+  for (const auto &field : fields) write_field(field, array++, n, rows);
+  write_field(position, array++, n, rows);
+
+  // every point is a cell of one vertex: its number, and the end of its list of vertices
+
+  values.resize(n);
+  for (int i = 0; i < n; i++) values[i] = (double) (nwritten + i);
+  vtk->write(array++, nwritten, n, values.data());
+  for (int i = 0; i < n; i++) values[i] += 1.0;
+  vtk->write(array, nwritten, n, values.data());
+
+  nwritten += n;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DumpMPMVTK::write_footer()
+{
+  vtk.reset();
+  fflush(fp);
+  if (!collection) return;
+  const auto wrong = collection->add(utils::star_subst(filename, update->ntimestep, padflag),
+                                     compute_time(), maxfiles, append_flag);
+  if (!wrong.empty()) error->one(FLERR, Error::NOLASTLINE, "Dump {} {}", id, wrong);
+}

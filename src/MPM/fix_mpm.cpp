@@ -1,0 +1,439 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "fix_mpm.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix_mpm_material.h"
+#include "memory.h"
+#include "modify.h"
+#include "mpm_batch.h"
+#include "mpm_halo.h"
+#include "mpm_node_action.h"
+#include "mpm_points.h"
+#include "neighbor.h"
+#include "output.h"
+#include "update.h"
+
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using namespace MPM_NS;
+
+/* ----------------------------------------------------------------------
+   fix ID group mpm H keyword value ...
+------------------------------------------------------------------------- */
+
+FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), shape(QUADRATIC), transfer(APIC), flip(0.0), scheme(USL), policy(ERROR),
+    dt_check(true), grid(nullptr), C(nullptr), ledger_on(false), points(nullptr), halo(nullptr),
+    kernels(nullptr), batch_kernels(nullptr), driver(false), topology_valid(false),
+    watch_drift(false), drifted(0), want_sort(false), switches(0), switches_sorted(0),
+    tile(nullptr), tile_load(nullptr), batch(nullptr), kinetic_points(0.0), nbad_total(0),
+    next_dt_check(0), clock(0.0)
+{
+  points = MPMPoints::get(atom);
+  if (!points)
+    error->all(FLERR, "Fix mpm requires material points: use atom_style mpm, or hybrid with mpm");
+  if (!domain->box_exist)
+    error->all(FLERR, "Fix mpm needs the simulation box: define it with create_box before");
+
+  process_options(narg, arg);
+
+  time_integrate = 1;
+  dynamic_group_allow = 0;
+  scalar_flag = vector_flag = 1;
+  size_vector = 6;
+  global_freq = 1;
+  extscalar = 1;
+  extvector = 0;
+  memset(&report, 0, sizeof(Report));
+  memset(&ledger, 0, sizeof(MPMLedger));
+
+  if (policy == DELETE) {
+    force_reneighbor = 1;
+    next_reneighbor = -1;
+  }
+  if (transfer == APIC) {
+    FixMPM::grow_arrays(atom->nmax);
+    atom->add_callback(Atom::GROW);
+    atom->add_callback(Atom::RESTART);
+    restart_peratom = 1;
+    create_attribute = 1;
+    maxexchange = 9;
+    for (int i = 0; i < atom->nlocal; i++) FixMPM::set_arrays(i);
+  }
+
+  grid = new Grid(lattice);
+  halo = new MPMHalo(lmp);
+  batch = new Batch;
+  tile = (double *) memory->smalloc(MAX_TILE_NODES * 8 * sizeof(double), "mpm:tile");
+  tile_load = (double *) memory->smalloc(MAX_TILE_NODES * 8 * sizeof(double), "mpm:tile");
+  memset(tile, 0, MAX_TILE_NODES * 8 * sizeof(double));
+  memset(tile_load, 0, MAX_TILE_NODES * 8 * sizeof(double));
+}
+
+/* ---------------------------------------------------------------------- */
+
+FixMPM::~FixMPM()
+{
+  if (transfer == APIC && modify) {
+    atom->delete_callback(id, Atom::GROW);
+    atom->delete_callback(id, Atom::RESTART);
+  }
+  memory->destroy(C);
+  memory->sfree(tile);
+  memory->sfree(tile_load);
+  delete grid;
+  delete halo;
+  delete batch;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPM::process_options(int narg, char **arg)
+{
+  if (narg < 4) utils::missing_cmd_args(FLERR, "fix mpm", error);
+
+  lattice.dim = domain->dimension;
+  lattice.h = utils::numeric(FLERR, arg[3], false, lmp);
+  if (!(lattice.h > 0.0) || !std::isfinite(lattice.h))
+    error->all(FLERR, 3, "Fix mpm node spacing must be positive: {}", arg[3]);
+  for (int d = 0; d < 3; d++) lattice.origin[d] = domain->boxlo[d];
+  if (lattice.dim == 2) lattice.origin[2] = 0.0;
+
+  int iarg = 4;
+  while (iarg < narg) {
+    const std::string keyword = arg[iarg];
+    auto need = [&](int n) {
+      if (iarg + n >= narg) utils::missing_cmd_args(FLERR, "fix mpm " + keyword, error);
+    };
+    auto choose = [&](const std::vector<std::string> &names) {
+      need(1);
+      for (std::size_t k = 0; k < names.size(); k++)
+        if (names[k] == arg[iarg + 1]) return (int) k;
+      error->all(FLERR, iarg + 1, "Unknown fix mpm {} {}: must be one of {}", keyword,
+                 arg[iarg + 1], utils::join(names, " "));
+      return -1;
+    };
+    if (keyword == "shape") {
+      shape = (Shape) (1 + choose({"linear", "quadratic", "cubic"}));
+      iarg += 2;
+    } else if (keyword == "transfer") {
+      transfer = (Transfer) choose({"pic", "flip", "apic"});
+      if (transfer == FLIP) {
+        need(2);
+        flip = utils::numeric(FLERR, arg[iarg + 2], false, lmp);
+        if (!(flip >= 0.0 && flip <= 1.0))
+          error->all(FLERR, iarg + 2, "Fix mpm transfer flip share must be within 0 and 1: {}",
+                     arg[iarg + 2]);
+        iarg++;
+      }
+      iarg += 2;
+    } else if (keyword == "scheme") {
+      scheme = (Scheme) choose({"usl", "usf", "musl"});
+      iarg += 2;
+    } else if (keyword == "origin") {
+      need(lattice.dim);
+      for (int d = 0; d < lattice.dim; d++)
+        lattice.origin[d] = utils::numeric(FLERR, arg[iarg + 1 + d], false, lmp);
+      iarg += 1 + lattice.dim;
+    } else if (keyword == "bad") {
+      policy = (Policy) choose({"error", "warn", "delete"});
+      iarg += 2;
+    } else if (keyword == "dtcheck") {
+      need(1);
+      dt_check = utils::logical(FLERR, arg[iarg + 1], false, lmp);
+      iarg += 2;
+    } else if (keyword == "kernels") {
+      static const char *const name[] = {"", "reference", "baseline", "avx2", "avx512"};
+      isa = name[choose({"auto", "reference", "baseline", "avx2", "avx512"})];
+      iarg += 2;
+    } else
+      error->all(FLERR, iarg, "Unknown fix mpm keyword: {}", keyword);
+  }
+
+  check_box();
+}
+
+/* ----------------------------------------------------------------------
+   the lattice must fit the box: called again in init(), since boundary and box may have changed
+------------------------------------------------------------------------- */
+
+void FixMPM::check_box()
+{
+  if (domain->triclinic) error->all(FLERR, "Fix mpm requires an orthogonal box");
+  for (int d = 0; d < lattice.dim; d++) {
+    const char axis = 'x' + d;
+    if (domain->boundary[d][0] > 1 || domain->boundary[d][1] > 1)
+      error->all(FLERR, "Fix mpm requires periodic or fixed boundaries (p or f), "
+                 "but axis {} is shrink-wrapped", axis);
+    const double length = domain->prd[d];
+    if (lattice.h > length * (1.0 + 1.0e-10))
+      error->all(FLERR, "Fix mpm node spacing {} is larger than the box length {} along {}",
+                 lattice.h, length, axis);
+    lattice.periodic[d] = domain->periodicity[d] != 0;
+    lattice.ncell[d] = MAX(1, (int) std::lround(length / lattice.h));
+    if (lattice.periodic[d] && fabs(lattice.ncell[d] * lattice.h - length) > 1.0e-10 * length)
+      error->all(FLERR, "Length {} of the box along periodic axis {} must be a multiple of the "
+                 "node spacing {}: the nearest valid spacing is {:.16g}",
+                 length, axis, lattice.h, length / lattice.ncell[d]);
+  }
+  if (lattice.dim == 2) {
+    lattice.periodic[2] = false;
+    lattice.ncell[2] = 1;
+  }
+  if (grid) grid->lattice = lattice;
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixMPM::setmask()
+{
+  return INITIAL_INTEGRATE | PRE_EXCHANGE | PRE_NEIGHBOR;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPM::init()
+{
+  if (utils::strmatch(update->integrate_style, "^respa"))
+    error->all(FLERR, "Fix mpm requires run_style verlet");
+  if (domain->box_change_size || domain->box_change_shape)
+    error->all(FLERR, "Fix mpm requires a box of constant size and shape: remove the fix that "
+               "changes it");
+  check_box();
+
+  ledger_on = false;    // compute mpm/energy asks for it in its init(), after this
+
+  // all fields step together, driven by the first one
+
+  auto all = modify->get_fix_by_style("^mpm$");
+  driver = all[0] == this;
+  fields.clear();
+  actions.clear();
+  if (driver) {
+    for (auto *ifix : all) fields.push_back(dynamic_cast<FixMPM *>(ifix));
+    for (auto *ifix : modify->get_fix_list())
+      if (auto *action = dynamic_cast<MPMNodeAction *>(ifix)) actions.push_back(action);
+    for (auto *field : fields)
+      if (field->scheme != scheme)
+        error->all(FLERR, "All fix mpm instances must have the same scheme: {} and {} differ", id,
+                   field->id);
+    for (auto *action : actions) action->init_action();
+  }
+
+  materials.clear();
+  for (auto *ifix : modify->get_fix_by_style("^mpm/material$"))
+    materials.push_back(dynamic_cast<FixMPMMaterial *>(ifix));
+  if (materials.empty())
+    error->all(FLERR, "Fix mpm found no material: define one with fix mpm/material");
+
+  kernels = MPMKernels::select(isa.empty() ? nullptr : isa.c_str());
+  batch_kernels = BatchKernels::select(isa.empty() ? nullptr : isa.c_str());
+  if (!kernels || !batch_kernels)
+    error->all(FLERR, "Fix mpm kernels {} cannot run on this CPU or were not compiled", isa);
+
+  // points are kept in order of blocks and cells here
+
+  atom->sortfreq = 0;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPM::setup_pre_neighbor()
+{
+  // the ledger needs forces and old velocities on the nodes, USF sums forces alone
+
+  const bool split = ledger_on || scheme == USF;
+  kernel = kernels->transfer(lattice.dim, shape, transfer, split);
+  batch->h = lattice.h;
+
+  // points drift at most half a skin between rebuilds when LAMMPS checks distances each step;
+  // a tile has room for a drift of one cell
+
+  watch_drift = neighbor->skin > 2.0 * lattice.h || neighbor->delay > 0 || neighbor->every > 1 ||
+      !neighbor->dist_check;
+
+  check_integrators();
+  check_points();
+  sort_points();
+  topology_valid = false;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPM::setup(int)
+{
+  memset(&report, 0, sizeof(Report));
+  halo->bytes_sent = 0;
+  report.dt_min = report.dt_max = update->dt;
+  if (update->dt <= 0.0)
+    error->all(FLERR, "Fix mpm requires a positive time step: {}", update->dt);
+  if (ledger_on) kinetic_points = point_kinetic_energy();
+  next_dt_check = update->ntimestep;
+  if (update->nsteps > 0) check_dt();
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPM::pre_exchange()
+{
+  check_inside_box();
+}
+
+/* ----------------------------------------------------------------------
+   after exchange and borders: restore the order of points when it has decayed.
+   At steps with a restart file the order must not depend on history, so that a run that
+   continues from the file sums in the same order.
+------------------------------------------------------------------------- */
+
+void FixMPM::pre_neighbor()
+{
+  int flag = want_sort, flag_all;
+  MPI_Allreduce(&flag, &flag_all, 1, MPI_INT, MPI_MAX, world);
+  if (flag_all || restart_step()) sort_points();
+  topology_valid = false;
+}
+
+bool FixMPM::restart_step() const
+{
+  return output->restart_flag && output->next_restart == update->ntimestep;
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool FixMPM::is_point(int i) const
+{
+  return (atom->mask[i] & groupbit) && atom->vfrac[i] > 0.0;
+}
+
+FixMPMMaterial *FixMPM::material_of(int i) const
+{
+  for (auto *material : materials)
+    if (atom->mask[i] & material->groupbit) return material;
+  return nullptr;
+}
+
+int FixMPM::npoints_local() const
+{
+  int n = 0;
+  for (int i = 0; i < atom->nlocal; i++) n += is_point(i);
+  return n;
+}
+
+/* ---------------------------------------------------------------------- */
+
+PointRows FixMPM::rows() const
+{
+  PointRows r;
+  r.x = &atom->x[0][0];
+  r.v = &atom->v[0][0];
+  r.f = &atom->f[0][0];
+  r.C = C ? &C[0][0] : nullptr;
+  r.stress = &points->stress[0][0];
+  r.vol = points->vol;
+  r.mass = atom->rmass;
+  r.xnew = scheme == MUSL ? const_cast<double *>(xnew.data()) : r.x;
+  return r;
+}
+
+TransferStep FixMPM::step_data() const
+{
+  TransferStep s;
+  s.h = lattice.h;
+  s.inv_h = 1.0 / lattice.h;
+  for (int d = 0; d < 3; d++) s.origin[d] = lattice.origin[d];
+  s.dt = update->dt;
+  s.flip = flip;
+  return s;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPM::load_state(Batch &b, const int *list, int n, const FixMPMMaterial *material,
+                        std::vector<double> &history) const
+{
+  b.n = n;
+  b.dt = update->dt;
+  b.h = lattice.h;
+  history.resize((std::size_t) MAX(1, material->nhistory) * BATCH);
+  b.history = reinterpret_cast<double(*)[BATCH]>(history.data());
+  for (int p = 0; p < n; p++) {
+    const int i = list[p];
+    const double *F = points->F[i];
+    for (int c = 0; c < 9; c++) b.F[c][p] = F[c];
+    for (int c = 0; c < 6; c++) b.stress[c][p] = points->stress[i][c];
+    b.J[p] = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
+        F[2] * (F[3] * F[7] - F[4] * F[6]);
+    b.mass[p] = atom->rmass[i];
+    b.vol0[p] = atom->vfrac[i];
+    for (int k = 0; k < material->nhistory; k++) b.history[k][p] = material->history[i][k];
+  }
+}
+
+/* ----------------------------------------------------------------------
+   affine matrix of APIC: per-atom array that migrates and restarts with the atom
+------------------------------------------------------------------------- */
+
+void FixMPM::grow_arrays(int nmax)
+{
+  memory->grow(C, nmax, 9, "mpm:C");
+}
+
+void FixMPM::copy_arrays(int i, int j, int)
+{
+  memcpy(C[j], C[i], 9 * sizeof(double));
+}
+
+void FixMPM::set_arrays(int i)
+{
+  memset(C[i], 0, 9 * sizeof(double));
+}
+
+int FixMPM::pack_exchange(int i, double *buf)
+{
+  memcpy(buf, C[i], 9 * sizeof(double));
+  return 9;
+}
+
+int FixMPM::unpack_exchange(int i, double *buf)
+{
+  memcpy(C[i], buf, 9 * sizeof(double));
+  return 9;
+}
+
+int FixMPM::pack_restart(int i, double *buf)
+{
+  buf[0] = 10;
+  memcpy(buf + 1, C[i], 9 * sizeof(double));
+  return 10;
+}
+
+void FixMPM::unpack_restart(int i, int nth)
+{
+  double **extra = atom->extra;
+  int m = 0;
+  for (int k = 0; k < nth; k++) m += static_cast<int>(extra[i][m]);
+  memcpy(C[i], extra[i] + m + 1, 9 * sizeof(double));
+}
+
+int FixMPM::size_restart(int)
+{
+  return 10;
+}
+
+int FixMPM::maxsize_restart()
+{
+  return 10;
+}

@@ -1,0 +1,206 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(mpm,FixMPM);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_MPM_H
+#define LMP_FIX_MPM_H
+
+#include "fix.h"
+#include "mpm_grid.h"
+#include "mpm_kernels.h"
+
+#include <string>
+#include <vector>
+
+namespace MPM_NS {
+struct Batch;
+struct BatchKernels;
+}    // namespace MPM_NS
+
+namespace LAMMPS_NS {
+class FixMPMMaterial;
+class MPMHalo;
+class MPMNodeAction;
+struct MPMPoints;
+
+/** Energy spent or gained since the first step with a ledger, this rank's share [energy]. */
+struct MPMLedger {
+  double external;     ///< work of atom->f (gravity, contact by pair styles, walls, ...)
+  double boundary;     ///< work of node actions of kind boundary
+  double contact;      ///< work of node actions between fields
+  double internal;     ///< work of the internal forces on the nodes, minus sign: done by the body
+  double transfer;     ///< kinetic energy gained (mostly lost: negative) by P2G and G2P
+};
+
+/** One velocity field on one lattice, and the cycle that moves the material points of its group.
+ *
+ *  The whole step happens in initial_integrate(): there atom->f is complete whatever the order of
+ *  fixes, and all state is on one time level at output. The first instance drives all of them.
+ */
+class FixMPM : public Fix {
+ public:
+  enum Scheme { USL, USF, MUSL };
+  enum Policy { ERROR, WARN, DELETE };
+
+  FixMPM(class LAMMPS *, int, char **);
+  ~FixMPM() override;
+  int setmask() override;
+  void init() override;
+  void setup_pre_neighbor() override;
+  void setup(int) override;
+  void initial_integrate(int) override;
+  void pre_exchange() override;
+  void pre_neighbor() override;
+  void post_run() override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+  double memory_usage() override;
+  void grow_arrays(int) override;
+  void copy_arrays(int, int, int) override;
+  void set_arrays(int) override;
+  int pack_exchange(int, double *) override;
+  int unpack_exchange(int, double *) override;
+  int pack_restart(int, double *) override;
+  void unpack_restart(int, int) override;
+  int size_restart(int) override;
+  int maxsize_restart() override;
+
+  // settings
+
+  MPM_NS::Lattice lattice;
+  MPM_NS::Shape shape;
+  MPM_NS::Transfer transfer;
+  double flip;         ///< FLIP share, 0 for PIC
+  Scheme scheme;
+  Policy policy;       ///< what to do with a point that goes bad
+  bool dt_check;       ///< stop when the time step is above the stable limit
+
+  // state of the step, for node actions and output
+
+  MPM_NS::Grid *grid;                           ///< node records: velocity and mass after the solve
+  std::vector<FixMPMMaterial *> materials;      ///< all of them, set in init()
+  double **C;                                   ///< [n][9] affine matrix, column-major; null: not APIC
+  bool ledger_on;                               ///< set by compute mpm/energy in its init()
+  MPMLedger ledger;
+
+  /** True when atom i is a material point of this field. */
+  bool is_point(int i) const;
+  /** Material of a point of this field (null: none). */
+  FixMPMMaterial *material_of(int i) const;
+  /** Number of points of this field on this rank. */
+  int npoints_local() const;
+
+  /** Load the present state of the n <= BATCH points in list, all of one material, into a batch
+   *  (for wave speed and stored energy). history: room for nhistory*BATCH reals. */
+  void load_state(MPM_NS::Batch &, const int *list, int n, const FixMPMMaterial *,
+                  std::vector<double> &history) const;
+
+  /** Smallest over this rank's points of h/(c + |v|); the point's tag goes to id. */
+  double stable_dt_local(tagint &id, double &wave_speed) const;
+
+  /** Position of a node. */
+  void node_position(const int index[3], double x[3]) const
+  {
+    for (int d = 0; d < 3; d++)
+      x[d] = d < lattice.dim ? lattice.origin[d] + index[d] * lattice.h : 0.0;
+  }
+
+ private:
+  struct Run {    // consecutive points of one block and material
+    int first, last, slot;
+    FixMPMMaterial *material;
+  };
+  struct ActiveBlock {    // a block with points: its runs, and the box of base nodes of the step
+    int slot, first_run, last_run;
+    int box[6];
+  };
+  struct Report {    // of the present run
+    double t_topology, t_p2g, t_halo, t_nodes, t_g2p, t_sort;
+    bigint steps, point_steps, topologies, sorts;
+    double dt_min, dt_max;
+  };
+
+  MPMPoints *points;
+  MPMHalo *halo;
+  MPM_NS::TransferKernels kernel;
+  const MPM_NS::MPMKernels *kernels;
+  const MPM_NS::BatchKernels *batch_kernels;
+  std::string isa;                         // wanted instruction set, empty: the best
+  std::vector<MPMNodeAction *> actions;    // only in the driving instance
+  std::vector<FixMPM *> fields;            // only in the driving instance: all fields
+  bool driver;
+
+  std::vector<Run> runs;              // grouped by block
+  std::vector<ActiveBlock> active;    // blocks with points
+  bool topology_valid;
+  bool watch_drift;      // rebuilds of neighbor lists do not bound the drift: check every step
+  int drifted;           // a point has left the range of its tile
+  bool want_sort;        // order of points has decayed since the last sort
+  bigint switches;       // neighbours in memory that are in different cells, now
+  bigint switches_sorted;    // and right after the last sort
+  double *tile, *tile_load;
+  std::vector<double> xnew;              // MUSL: position at the end of the step
+  std::vector<double> history_batch;     // history variables of a batch
+  std::vector<double> external_nodes;    // ledger: nodal external forces
+  std::vector<double> zero_volume;
+  MPM_NS::Batch *batch;
+  Report report;
+  double kinetic_points;                   // ledger: at the end of the last step
+  std::vector<tagint> bad_points;          // of this step, policies warn and delete
+  bigint nbad_total, next_dt_check;
+  double clock;
+
+  // stages of the step
+  void update_topology();
+  void points_to_grid();
+  void stress_first();
+  void solve();
+  void grid_to_points();
+  void map_back();
+  void stress_last();
+  void bookkeeping();
+
+  // their parts
+  void act_on_nodes(bool count);
+  void map_to_nodes(MPM_NS::P2G);
+  void sum_halo(int lane, int nlane);
+  void gradient_and_material();
+  void material_update(const Run &, int first, int n, const double *L);
+  void lap(double &timer);
+
+  void process_options(int, char **);
+  void check_box();
+  bool restart_step() const;
+  void check_integrators();
+  void check_points();
+  void check_inside_box();
+  void check_dt();
+  void point_is_bad(int i, const std::string &what);
+  void handle_bad_points();
+  void delete_points(const std::vector<tagint> &);
+  std::string point_state(int i) const;
+  int find_local(tagint) const;
+
+  bool base_node(const double *x, int base[3], double t[3]) const;
+  void sort_points();
+  double nodal_kinetic_energy(int lane) const;
+  double point_kinetic_energy() const;
+  double external_work();
+  double bytes_per_point() const;
+  MPM_NS::PointRows rows() const;
+  MPM_NS::TransferStep step_data() const;
+};
+
+}    // namespace LAMMPS_NS
+#endif
+#endif

@@ -1,0 +1,973 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+/* ----------------------------------------------------------------------
+   Mirror planes. B-splines of order 2 and 3 reach beyond the wall, so that holding the nodes up to
+   the wall does not hold the material at the wall: with quadratic splines its velocity there would
+   be 1/8 of that of the first free node. Instead the nodes k0 - j beyond the plane k0 are images
+   of the nodes k0 + j: a component that the wall prescribes is odd about the wall,
+     v(k0) = V,   v(k0 + j) = V + w,   v(k0 - j) = V - w,   w = (m1 w1 - m2 w2) / (m1 + m2)
+   with w1, w2 the velocities relative to V that the momentum equation gave. This is the projection,
+   in the norm of the kinetic energy, onto the velocity fields that are exactly V at the wall; of
+   these, it leaves uniform and linear ones alone. Its impulse on the body is
+     -m(k0) w(k0) - sum_j 2 m1 m2/(m1 + m2) (w1 + w2),
+   which for an unconstrained component is minus the mean velocity at the wall times a mass. Stick
+   prescribes all components, slip the normal one. The tangential components of slip are left to
+   the momentum equation, not made even: an even field has no shear at the wall, but a body that
+   slides with friction, or was thrown with a shear flow, has.
+
+   A column of nodes along the normal decides alone: a separating wall lets go of it when the
+   impulse would pull; friction scales the tangential projection so that its impulse is at most
+   mu times the normal one (return mapping of Coulomb's law).
+
+   FLIP. Points change their velocity by the sum of N (v_new - v_old). Old velocities stay as they
+   are, also in the planes. With sum_p m_p N = m_i, the momentum of the points then changes exactly
+   by the external impulse plus the impulse of the wall, a body that arrives is stopped when it
+   arrives, and a separating wall sees where points are going. Had the old velocities been
+   projected, too, then points next to the wall would never lose the velocity with which they
+   arrived (the projection of that velocity is zero before and after), and walls would hold on to
+   bodies that bounce. The price: in the layer of one cell next to the wall the prescribed
+   component is updated as in PIC, which costs a fraction O(h^2/L^2) of the energy of a vibration
+   of wavelength L per period. PIC and APIC do not use old velocities.
+
+   Rotation. The velocity given to a node at x is the chord ((R(dt) - I)(x - o))/dt and not the
+   tangent omega x (x - o): positions are updated by x += dt v, so that the tangent would carry
+   every point outward by a factor sqrt(1 + (omega dt)^2) per step, and the chord puts it back on
+   its circle exactly, since splines reproduce linear fields.
+------------------------------------------------------------------------- */
+
+#include "fix_mpm_boundary.h"
+
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix_mpm.h"
+#include "force.h"
+#include "group.h"
+#include "input.h"
+#include "math_extra.h"
+#include "modify.h"
+#include "region.h"
+#include "update.h"
+#include "variable.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+static const char *const FACE_NAME[6] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
+static constexpr double ON_SURFACE = 1.0e-6;    // in node spacings
+static constexpr double FAR = 1.0e8;            // in node spacings
+
+static int face_index(const std::string &name)
+{
+  for (int f = 0; f < 6; f++)
+    if (name == FACE_NAME[f]) return f;
+  return -1;
+}
+
+namespace {
+/** Center and unit axis of a region's rotation, which are protected members. */
+struct RegionMotion : public Region {
+  static const double *point_of(const Region *r) { return r->*(&RegionMotion::point); }
+  static const double *axis_of(const Region *r) { return r->*(&RegionMotion::runit); }
+};
+}    // namespace
+
+/* ----------------------------------------------------------------------
+   fix ID all mpm/boundary faces|region REG  stick|slip|separate  keyword values
+------------------------------------------------------------------------- */
+
+FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), region(nullptr), kind(STICK), friction(0.0), rotating(false),
+    motion_step(-1), work(0.0), dt_last(0.0), reaction_known(true), counting(false), gained(0.0)
+{
+  if (igroup != 0)
+    error->all(FLERR, 1, "Fix mpm/boundary acts on nodes, which have no group: use group all, and "
+               "keyword field to act on one of several fields");
+
+  // where
+
+  if (narg < 5) utils::missing_cmd_args(FLERR, "fix mpm/boundary", error);
+  int iarg = 3;
+  if (strcmp(arg[iarg], "region") == 0) {
+    region_id = arg[iarg + 1];
+    iarg += 2;
+  } else {
+    while (iarg < narg && face_index(arg[iarg]) >= 0) {
+      const int face = face_index(arg[iarg]);
+      if (std::count(face_list.begin(), face_list.end(), face))
+        error->all(FLERR, iarg, "Fix mpm/boundary face {} is given twice", arg[iarg]);
+      if (face >= 4 && domain->dimension == 2)
+        error->all(FLERR, iarg, "Fix mpm/boundary face {} does not exist in 2d", arg[iarg]);
+      if (domain->periodicity[face / 2])
+        error->all(FLERR, iarg, "Fix mpm/boundary face {} belongs to a periodic axis: "
+                   "use boundary f there", arg[iarg]);
+      face_list.push_back(face);
+      iarg++;
+    }
+    if (face_list.empty())
+      error->all(FLERR, iarg, "Unknown fix mpm/boundary wall {}: must be region or one or more of "
+                 "xlo xhi ylo yhi zlo zhi", arg[iarg]);
+  }
+
+  // what
+
+  if (iarg >= narg) utils::missing_cmd_args(FLERR, "fix mpm/boundary", error);
+  const std::string kind_name = arg[iarg];
+  if (kind_name == "stick")
+    kind = STICK;
+  else if (kind_name == "slip")
+    kind = SLIP;
+  else if (kind_name == "separate")
+    kind = SEPARATE;
+  else
+    error->all(FLERR, iarg, "Unknown fix mpm/boundary kind {}: must be stick, slip or separate",
+               kind_name);
+  iarg++;
+
+  // keywords
+
+  for (int d = 0; d < 3; d++) {
+    velocity[d] = {0.0, true, "", -1};
+    constrained[d] = true;
+    center[d] = axis[d] = 0.0;
+    impulse[d] = reaction[d] = 0.0;
+  }
+  rate = {0.0, true, "", -1};
+  bool moving = false;
+
+  while (iarg < narg) {
+    const std::string keyword = arg[iarg];
+    auto need = [&](int n) {
+      if (iarg + n >= narg) utils::missing_cmd_args(FLERR, "fix mpm/boundary " + keyword, error);
+    };
+    if (keyword == "friction") {
+      need(1);
+      if (kind == STICK)
+        error->all(FLERR, iarg, "Fix mpm/boundary friction needs kind slip or separate");
+      friction = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
+      if (!(friction >= 0.0))
+        error->all(FLERR, iarg + 1, "Fix mpm/boundary friction must not be negative: {}",
+                   arg[iarg + 1]);
+      iarg += 2;
+    } else if (keyword == "velocity") {
+      need(3);
+      for (int d = 0; d < 3; d++) {
+        velocity[d] = parse_value(arg[iarg + 1 + d], iarg + 1 + d, kind == STICK);
+        constrained[d] = velocity[d].given;
+      }
+      if (!constrained[0] && !constrained[1] && !constrained[2])
+        error->all(FLERR, iarg + 1, "Fix mpm/boundary velocity leaves all components free");
+      moving = true;
+      iarg += 4;
+    } else if (keyword == "rotate") {
+      need(7);
+      for (int d = 0; d < 3; d++) {
+        center[d] = utils::numeric(FLERR, arg[iarg + 1 + d], false, lmp);
+        axis[d] = utils::numeric(FLERR, arg[iarg + 4 + d], false, lmp);
+      }
+      const double length = MathExtra::len3(axis);
+      if (!(length > 0.0))
+        error->all(FLERR, iarg + 4, "Fix mpm/boundary rotate needs an axis of non-zero length");
+      if (domain->dimension == 2 && (axis[0] != 0.0 || axis[1] != 0.0))
+        error->all(FLERR, iarg + 4, "Fix mpm/boundary rotate needs an axis along z in 2d");
+      for (double &a : axis) a /= length;
+      rate = parse_value(arg[iarg + 7], iarg + 7, false);
+      rotating = moving = true;
+      iarg += 8;
+    } else if (keyword == "field") {
+      need(1);
+      field_id = arg[iarg + 1];
+      iarg += 2;
+    } else
+      error->all(FLERR, iarg, "Unknown fix mpm/boundary keyword: {}", keyword);
+  }
+  if (rotating && !(constrained[0] && constrained[1] && constrained[2]))
+    error->all(FLERR, "Fix mpm/boundary rotate prescribes all components of the velocity");
+
+  if (!region_id.empty()) {
+    region = domain->get_region_by_id(region_id);
+    if (!region)
+      error->all(FLERR, 4, "Region {} for fix mpm/boundary does not exist: define it before",
+                 region_id);
+    if (moving && region->dynamic)
+      error->all(FLERR, "Fix mpm/boundary takes the velocity of region {} from its own motion: "
+                 "drop velocity and rotate, or the motion of the region", region_id);
+  }
+
+  scalar_flag = vector_flag = 1;
+  size_vector = 3;
+  global_freq = 1;
+  extscalar = extvector = 1;
+  restart_global = 1;
+  dynamic_group_allow = 0;
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixMPMBoundary::setmask()
+{
+  return 0;    // called by fix mpm
+}
+
+/* ---------------------------------------------------------------------- */
+
+FixMPMBoundary::Value FixMPMBoundary::parse_value(const char *text, int iarg, bool null_allowed)
+{
+  Value v = {0.0, true, "", -1};
+  if (strcmp(text, "NULL") == 0) {
+    if (!null_allowed)
+      error->all(FLERR, iarg, "Fix mpm/boundary allows NULL only as velocity with kind stick");
+    v.given = false;
+  } else if (utils::strmatch(text, "^v_")) {
+    v.variable = text + 2;
+  } else {
+    v.value = utils::numeric(FLERR, text, false, lmp);
+  }
+  return v;
+}
+
+void FixMPMBoundary::check_variable(Value &v, const char *what)
+{
+  if (v.variable.empty()) return;
+  v.index = input->variable->find(v.variable.c_str());
+  if (v.index < 0)
+    error->all(FLERR, Error::NOLASTLINE, "Variable {} for fix mpm/boundary {} does not exist",
+               v.variable, what);
+  if (!input->variable->equalstyle(v.index))
+    error->all(FLERR, Error::NOLASTLINE, "Variable {} for fix mpm/boundary {} is not equal-style",
+               v.variable, what);
+}
+
+double FixMPMBoundary::evaluate(const Value &v) const
+{
+  return v.variable.empty() ? v.value : input->variable->compute_equal(v.index);
+}
+
+bool FixMPMBoundary::region_moves() const
+{
+  return region && region->dynamic_check();
+}
+
+bool FixMPMBoundary::acts_on(const FixMPM &field) const
+{
+  return field_id.empty() || field_id == field.id;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMBoundary::init()
+{
+  // fields, in the order of their definition
+
+  const auto fields = modify->get_fix_by_style("^mpm$");
+  if (fields.empty())
+    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/boundary needs a fix mpm to act on");
+  bool found = false;
+  for (auto *ifix : fields) found = found || acts_on(*dynamic_cast<FixMPM *>(ifix));
+  if (!found)
+    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/boundary field {} is not the ID of a fix mpm",
+               field_id);
+  nodes.clear();    // made again with the topology
+
+  for (int d = 0; d < 3; d++) check_variable(velocity[d], "velocity");
+  check_variable(rate, "rotate");
+
+  if (!region_id.empty()) {
+    region = domain->get_region_by_id(region_id);
+    if (!region)
+      error->all(FLERR, Error::NOLASTLINE, "Region {} for fix mpm/boundary does not exist",
+                 region_id);
+    if (region->openflag)
+      error->all(FLERR, Error::NOLASTLINE, "Fix mpm/boundary cannot use region {}: open faces have "
+                 "no inside", region_id);
+    if (region->dynamic_check() && region->nregion > 1)
+      error->all(FLERR, Error::NOLASTLINE, "Fix mpm/boundary cannot use region {}: a union or "
+                 "intersection must not move; use one fix mpm/boundary for each member", region_id);
+  }
+
+  // one master of each face
+
+  for (int face : face_list) {
+    if (domain->periodicity[face / 2])
+      error->all(FLERR, Error::NOLASTLINE, "Fix mpm/boundary face {} belongs to a periodic axis: "
+                 "use boundary f there", FACE_NAME[face]);
+    for (auto *ifix : modify->get_fix_by_style("^mpm/boundary$")) {
+      auto *other = dynamic_cast<FixMPMBoundary *>(ifix);
+      if (other == this) continue;
+      if (!field_id.empty() && !other->field_id.empty() && field_id != other->field_id) continue;
+      if (std::count(other->face_list.begin(), other->face_list.end(), face))
+        error->all(FLERR, Error::NOLASTLINE, "Face {} belongs to fix mpm/boundary {} and {}: remove "
+                   "one, or give them different fields", FACE_NAME[face], id, other->id);
+
+      // opposite face
+
+      if (std::count(other->face_list.begin(), other->face_list.end(), face ^ 1))
+        for (auto *jfix : fields) {
+          auto &field = *dynamic_cast<FixMPM *>(jfix);
+          if (!acts_on(field) || !other->acts_on(field)) continue;
+          if (narrow({face_on_lattice(field, face), face_on_lattice(field, face ^ 1)}, face / 2))
+            error->all(FLERR, Error::NOLASTLINE, "Faces {} and {} are less than 3 cells apart: "
+                       "they must be in the same fix mpm/boundary", FACE_NAME[face],
+                       FACE_NAME[face ^ 1]);
+        }
+    }
+    for (auto *jfix : fields) {
+      auto &field = *dynamic_cast<FixMPM *>(jfix);
+      if (acts_on(field) && (kind == SEPARATE || friction > 0.0) &&
+          narrow(faces_on_lattice(field), face / 2))
+        error->all(FLERR, Error::NOLASTLINE, "Fix mpm/boundary separate and friction need at least "
+                   "3 cells between opposite faces");
+    }
+  }
+  motion_step = -1;
+}
+
+/* ----------------------------------------------------------------------
+   regions: their state at the start of the first step
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::setup(int)
+{
+  if (!region_moves()) return;
+  modify->clearstep_compute();
+  region->prematch();
+  modify->addstep_compute(update->ntimestep + 1);
+}
+
+/* ----------------------------------------------------------------------
+   faces of the box in terms of nodes
+------------------------------------------------------------------------- */
+
+FixMPMBoundary::Face FixMPMBoundary::face_on_lattice(const FixMPM &field, int face) const
+{
+  Face f;
+  f.axis = face / 2;
+  f.inward = face % 2 ? -1 : 1;
+  const double x = face % 2 ? domain->boxhi[f.axis] : domain->boxlo[f.axis];
+  const double k = (x - field.lattice.origin[f.axis]) / field.lattice.h;
+  f.plane = (int) std::lround(k);
+  f.aligned = fabs(k - f.plane) < ON_SURFACE;
+  if (!f.aligned) f.plane = (int) (f.inward > 0 ? std::floor(k) : std::ceil(k));
+  return f;
+}
+
+std::vector<FixMPMBoundary::Face> FixMPMBoundary::faces_on_lattice(const FixMPM &field) const
+{
+  std::vector<Face> faces;
+  for (int face : face_list) faces.push_back(face_on_lattice(field, face));
+  return faces;
+}
+
+/* ----------------------------------------------------------------------
+   true when the planes of both faces of an axis have images inside that are the same nodes
+------------------------------------------------------------------------- */
+
+bool FixMPMBoundary::narrow(const std::vector<Face> &faces, int axis) const
+{
+  const Face *lo = nullptr, *hi = nullptr;
+  for (const auto &f : faces)
+    if (f.axis == axis && f.aligned) (f.inward > 0 ? lo : hi) = &f;
+  return lo && hi && hi->plane - lo->plane < 3;
+}
+
+/* ----------------------------------------------------------------------
+   a rank that has nodes near a mirror plane needs the plane and the images
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::extend_topology(FixMPM &field)
+{
+  if (!acts_on(field) || face_list.empty()) return;
+  Grid &grid = *field.grid;
+  const auto faces = faces_on_lattice(field);
+
+  // blocks that are added are looked at, too: images of images at edges, and narrow channels
+
+  for (std::size_t ib = 0; ib < grid.blocks.size(); ib++)
+    for (const auto &face : faces) {
+      if (!face.aligned) continue;
+      int b[3] = {grid.blocks[ib].b[0], grid.blocks[ib].b[1], grid.blocks[ib].b[2]};
+      const int first = std::max(b[face.axis] * grid.side, face.plane - DEPTH);
+      const int last = std::min(b[face.axis] * grid.side + grid.side - 1, face.plane + DEPTH);
+      if (first > last) continue;
+      const int image_first = 2 * face.plane - last, image_last = 2 * face.plane - first;
+      for (int k : {image_first, image_last, face.plane}) {
+        b[face.axis] = k >> grid.shift_bits;
+        grid.activate(b);
+      }
+    }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMBoundary::topology_changed(FixMPM &field)
+{
+  if (!acts_on(field)) return;
+  FieldNodes *mine = nullptr;
+  for (auto &n : nodes)
+    if (n.field == &field) mine = &n;
+  if (!mine) {
+    nodes.emplace_back();
+    mine = &nodes.back();
+    mine->field = &field;
+  }
+  mine->faces = faces_on_lattice(field);
+  mine->columns.clear();
+  mine->members.clear();
+  mine->orbits.clear();
+  mine->singles.clear();
+  if (!region)
+    list_face_nodes(*mine);
+  else if (!region_moves())
+    list_region_nodes(*mine);
+}
+
+/* ----------------------------------------------------------------------
+   columns through the planes, and single nodes deep behind a plane or behind an unaligned face
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::list_face_nodes(FieldNodes &list)
+{
+  const Grid &grid = *list.field->grid;
+  for (std::size_t ib = 0; ib < grid.blocks.size(); ib++) {
+    const auto &block = grid.blocks[ib];
+    for (std::size_t f = 0; f < list.faces.size(); f++) {
+      const Face &face = list.faces[f];
+      const int last = face.aligned ? face.plane - face.inward * (DEPTH + 1) : face.plane;
+      const int lo = block.b[face.axis] * grid.side, hi = lo + grid.side - 1;
+      const bool beyond = face.inward > 0 ? lo <= last : hi >= last;
+      const bool plane = face.aligned && face.plane >= lo && face.plane <= hi &&
+          !narrow(list.faces, face.axis);
+      if (!beyond && !plane) continue;
+      for (int n = 0; n < NODES_PER_BLOCK; n++) {
+        if (block.alias >> n & 1) continue;
+        int index[3];
+        grid.node_index(block, n, index);
+        if (plane && index[face.axis] == face.plane) list_column(list, f, index);
+        if (beyond && (last - index[face.axis]) * face.inward >= 0) {
+          Single s = {(int64_t) ib * NODES_PER_BLOCK + n, {0.0, 0.0, 0.0}, 0.0, 0.0,
+                      (bool) (block.owned >> n & 1)};
+          s.normal[face.axis] = face.inward;
+          list.singles.push_back(s);
+        }
+      }
+    }
+  }
+  for (int d = 0; d < 3; d++)
+    if (narrow(list.faces, d)) list_orbits(list, d);
+}
+
+void FixMPMBoundary::list_column(FieldNodes &list, int f, const int *index)
+{
+  const Grid &grid = *list.field->grid;
+  const Face &face = list.faces[f];
+  auto owned = [&](int64_t node) {
+    return (int) (grid.blocks[node / NODES_PER_BLOCK].owned >> (node % NODES_PER_BLOCK) & 1);
+  };
+  Column column;
+  column.face = f;
+  column.plane = grid.locate(index);
+  column.owned = owned(column.plane);
+  for (int j = 0; j < DEPTH; j++) {
+    int k[3] = {index[0], index[1], index[2]};
+    k[face.axis] = face.plane + face.inward * (j + 1);
+    column.inside[j] = grid.locate(k);
+    k[face.axis] = face.plane - face.inward * (j + 1);
+    column.image[j] = grid.locate(k);
+    if (column.inside[j] < 0 || column.image[j] < 0) {
+      column.inside[j] = column.image[j] = -1;    // both out of reach of points
+      continue;
+    }
+    column.owned |= owned(column.inside[j]) << (1 + j);
+    column.owned |= owned(column.image[j]) << (1 + DEPTH + j);
+  }
+  list.columns.push_back(column);
+}
+
+/* ----------------------------------------------------------------------
+   two mirrors less than 3 cells apart: nodes and all their images, folded into the channel
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::list_orbits(FieldNodes &list, int axis)
+{
+  const Grid &grid = *list.field->grid;
+  int lo = 0, hi = 0;
+  for (const auto &f : list.faces)
+    if (f.axis == axis) (f.inward > 0 ? lo : hi) = f.plane;
+
+  for (std::size_t ib = 0; ib < grid.blocks.size(); ib++) {
+    const auto &block = grid.blocks[ib];
+    for (int n = 0; n < NODES_PER_BLOCK; n++) {
+      if (block.alias >> n & 1) continue;
+      int index[3];
+      grid.node_index(block, n, index);
+      const int inside = index[axis];
+      if (inside < lo || inside > hi) continue;
+      Orbit orbit = {(int) list.members.size(), 0, axis, inside == lo || inside == hi};
+      for (int k = lo - DEPTH; k <= hi + DEPTH; k++) {
+        int folded = k, sign = 1;
+        while (folded < lo || folded > hi) {
+          folded = 2 * (folded < lo ? lo : hi) - folded;
+          sign = -sign;
+        }
+        if (folded != inside) continue;
+        index[axis] = k;
+        const int64_t node = grid.locate(index);
+        if (node < 0) continue;
+        const bool owned =
+            grid.blocks[node / NODES_PER_BLOCK].owned >> (node % NODES_PER_BLOCK) & 1;
+        list.members.push_back({node, sign, owned});
+      }
+      orbit.last = (int) list.members.size();
+      list.orbits.push_back(orbit);
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   signed distance of x from the surface of the region, negative inside; FAR: not known
+------------------------------------------------------------------------- */
+
+double FixMPMBoundary::surface_distance(const double *x) const
+{
+  const double far = FAR * nodes.front().field->lattice.h;
+  const bool inside = region->match(x[0], x[1], x[2]);
+  const int interior = region->interior;
+  if (!inside) region->interior = !interior;    // Region::surface() answers for one side only
+  const int n = region->surface(x[0], x[1], x[2], far);
+  region->interior = interior;
+  double distance = far;
+  for (int i = 0; i < n; i++) {
+    const auto &c = region->contact[i];
+    if (domain->dimension == 2 && fabs(c.delz) > 0.5 * c.r) continue;
+    distance = std::min(distance, c.r);
+  }
+  return inside && distance < far ? -distance : distance;
+}
+
+/* ----------------------------------------------------------------------
+   direction out of the region: gradient of the distance, from differences (one-sided where the
+   region does not answer). Not defined at centers and where it is not known: false
+------------------------------------------------------------------------- */
+
+bool FixMPMBoundary::surface_normal(const double *x, double step, int dim, double *normal) const
+{
+  const double far = FAR * nodes.front().field->lattice.h;
+  const double here = surface_distance(x);
+  normal[0] = normal[1] = normal[2] = 0.0;
+  for (int d = 0; d < dim; d++) {
+    double y[3] = {x[0], x[1], x[2]};
+    y[d] = x[d] + step;
+    const double up = surface_distance(y);
+    y[d] = x[d] - step;
+    const double down = surface_distance(y);
+    if (up < far && down < far)
+      normal[d] = up - down;
+    else if (up < far && here < far)
+      normal[d] = 2.0 * (up - here);
+    else if (down < far && here < far)
+      normal[d] = 2.0 * (here - down);
+  }
+  const double length = MathExtra::len3(normal);
+  if (!(length > 0.2 * step)) {
+    normal[0] = normal[1] = normal[2] = 0.0;
+    return false;
+  }
+  for (int d = 0; d < 3; d++) normal[d] /= length;
+  return true;
+}
+
+/* ----------------------------------------------------------------------
+   nodes inside the region or on its surface, for the state of the region that it has now
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::list_region_nodes(FieldNodes &list)
+{
+  const FixMPM &field = *list.field;
+  const Grid &grid = *field.grid;
+  const int dim = field.lattice.dim;
+  const double h = field.lattice.h;
+  const bool moves = region_moves();
+  const bool box_known = region->bboxflag && !moves;
+  const double lo[3] = {region->extent_xlo, region->extent_ylo, region->extent_zlo};
+  const double hi[3] = {region->extent_xhi, region->extent_yhi, region->extent_zhi};
+  const double radius = 0.5 * (grid.side - 1) * h * sqrt((double) dim);
+
+  list.singles.clear();
+  if (!moves) region->prematch();
+  for (std::size_t ib = 0; ib < grid.blocks.size(); ib++) {
+    const auto &block = grid.blocks[ib];
+
+    // most blocks are out of reach
+
+    double first[3], last[3], mid[3];
+    int index[3];
+    grid.node_index(block, 0, index);
+    field.node_position(index, first);
+    grid.node_index(block, NODES_PER_BLOCK - 1, index);
+    field.node_position(index, last);
+    bool near = true;
+    for (int d = 0; d < 3; d++) {
+      mid[d] = 0.5 * (first[d] + last[d]);
+      if (box_known && (last[d] < lo[d] - ON_SURFACE * h || first[d] > hi[d] + ON_SURFACE * h))
+        near = false;
+    }
+    if (near && region->nregion == 1) {
+      const double distance = surface_distance(mid);
+      near = distance <= radius + h || distance >= FAR * h;
+    }
+    if (!near) continue;
+
+    for (int n = 0; n < NODES_PER_BLOCK; n++) {
+      if (block.alias >> n & 1) continue;
+      double x[3];
+      grid.node_index(block, n, index);
+      field.node_position(index, x);
+      bool inside = region->match(x[0], x[1], x[2]);
+      if (!inside) {
+        region->interior ^= 1;
+        inside = region->surface(x[0], x[1], x[2], ON_SURFACE * h) > 0;
+        region->interior ^= 1;
+      }
+      if (!inside) continue;
+      Single s = {(int64_t) ib * NODES_PER_BLOCK + n, {0.0, 0.0, 0.0}, 0.0, 0.0,
+                  (bool) (block.owned >> n & 1)};
+      if (kind != STICK || region->varshape) surface_normal(x, 1.0e-4 * h, dim, s.normal);
+      if (region->varshape) s.distance = surface_distance(x);
+      list.singles.push_back(s);
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   (R - I)/dt for a rotation about a unit axis
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::set_rotation(double angle, const double *u, double dt)
+{
+  const double s = sin(angle) / dt, half = sin(0.5 * angle);
+  const double c = 2.0 * half * half / dt;    // (1 - cos)/dt
+  const double K[3][3] = {{0.0, -u[2], u[1]}, {u[2], 0.0, -u[0]}, {-u[1], u[0], 0.0}};
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      wall.gradient[i][j] = s * K[i][j] + c * (u[i] * u[j] - (i == j ? 1.0 : 0.0));
+}
+
+/* ----------------------------------------------------------------------
+   how the wall moves during this step, and the nodes inside a moving region.
+   Regions: nodes are found with the position at the start of the step, to which positions of
+   points belong; the motion is that to the end of the step.
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::update_motion(double dt)
+{
+  if (motion_step == update->ntimestep) return;
+  motion_step = update->ntimestep;
+
+  memset(&wall, 0, sizeof(Wall));
+  wall.uniform = true;
+  const bool variables = region_moves() || !velocity[0].variable.empty() ||
+      !velocity[1].variable.empty() || !velocity[2].variable.empty() || !rate.variable.empty();
+  double old[4] = {0.0, 0.0, 0.0, 0.0};
+  if (region_moves()) {
+    for (auto &list : nodes) list_region_nodes(list);
+    old[0] = region->dx;
+    old[1] = region->dy;
+    old[2] = region->dz;
+    old[3] = region->theta;
+  }
+
+  if (variables) modify->clearstep_compute();
+  if (region_moves()) region->prematch();
+  for (int d = 0; d < 3; d++) wall.shift[d] = evaluate(velocity[d]);
+  const double omega = rotating ? evaluate(rate) : 0.0;
+  if (variables) modify->addstep_compute(update->ntimestep + 1);
+
+  if (rotating) {
+    wall.uniform = false;
+    for (int d = 0; d < 3; d++) wall.origin[d] = center[d];
+    set_rotation(omega * dt, axis, dt);
+  }
+  if (region_moves()) {
+    const double now[3] = {region->dx, region->dy, region->dz};
+    for (int d = 0; d < 3; d++) wall.shift[d] = (now[d] - old[d]) / dt;
+    if (region->rotateflag) {
+      wall.uniform = false;
+      for (int d = 0; d < 3; d++) wall.origin[d] = RegionMotion::point_of(region)[d] + old[d];
+      set_rotation(region->theta - old[3], RegionMotion::axis_of(region), dt);
+    }
+    if (region->varshape)
+      for (auto &list : nodes)
+        for (auto &s : list.singles) {
+          const FixMPM &field = *list.field;
+          int index[3];
+          double x[3];
+          field.grid->node_index(field.grid->blocks[s.node / NODES_PER_BLOCK],
+                                 s.node % NODES_PER_BLOCK, index);
+          field.node_position(index, x);
+          const double distance = surface_distance(x), far = FAR * field.lattice.h;
+          s.growth = 0.0;
+          if (distance >= far || s.distance >= far) continue;
+
+          // the normal speed of the surface in place of that of the rigid motion
+
+          double v[3];
+          wall_velocity(field, s.node, v);
+          s.growth = (s.distance - distance) / dt - MathExtra::dot3(v, s.normal);
+        }
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMBoundary::wall_velocity(const FixMPM &field, int64_t node, double *v) const
+{
+  for (int d = 0; d < 3; d++) v[d] = wall.shift[d];
+  if (wall.uniform) return;
+  const Grid &grid = *field.grid;
+  int index[3];
+  double x[3];
+  grid.node_index(grid.blocks[node / NODES_PER_BLOCK], node % NODES_PER_BLOCK, index);
+  field.node_position(index, x);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) v[i] += wall.gradient[i][j] * (x[j] - wall.origin[j]);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMBoundary::act(double dt, bool count)
+{
+  update_motion(dt);
+  counting = count;
+  if (count) {
+    impulse[0] = impulse[1] = impulse[2] = 0.0;
+    dt_last = dt;
+    reaction_known = false;
+  }
+  for (const auto &list : nodes) {
+    gained = 0.0;
+    for (const auto &column : list.columns) act_on_column(list, column);
+    for (const auto &orbit : list.orbits) act_on_orbit(list, orbit);
+    for (const auto &single : list.singles) act_on_single(list, single);
+    if (count) {
+      gained *= force->mvv2e;
+      work += gained;
+      if (list.field->ledger_on) list.field->ledger.boundary += gained;
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   velocity of a node, and what it does to momentum and kinetic energy
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::set_velocity(double *record, const double *v, int dim, bool owned)
+{
+  if (counting && owned) {
+    double twice = 0.0;
+    for (int d = 0; d < dim; d++) {
+      const double change = v[d] - record[d];
+      impulse[d] += record[3] * change;
+      twice += change * (v[d] + record[d]);
+    }
+    gained += 0.5 * record[3] * twice;
+  }
+  for (int d = 0; d < dim; d++) record[d] = v[d];
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMBoundary::act_on_column(const FieldNodes &list, const Column &column)
+{
+  Grid &grid = *list.field->grid;
+  const Face &face = list.faces[column.face];
+  const int dim = grid.lattice.dim, a = face.axis;
+  auto record = [&](int64_t node) { return grid.nodes() + node * grid.nreal; };
+
+  double V[3];
+  wall_velocity(*list.field, column.plane, V);
+  double *plane = record(column.plane);
+
+  // impulse that would bring all components to the velocity of the wall
+
+  double to_stick[3] = {0.0, 0.0, 0.0};
+  for (int d = 0; d < dim; d++) to_stick[d] = -plane[3] * (plane[d] - V[d]);
+  for (int j = 0; j < DEPTH; j++) {
+    if (column.inside[j] < 0) continue;
+    const double *in = record(column.inside[j]), *out = record(column.image[j]);
+    if (in[3] <= 0.0 || out[3] <= 0.0) continue;
+    const double mass = 2.0 * in[3] * out[3] / (in[3] + out[3]);
+    for (int d = 0; d < dim; d++) to_stick[d] -= mass * (in[d] + out[d] - 2.0 * V[d]);
+  }
+  const double push = face.inward * to_stick[a];
+  if (kind == SEPARATE && push <= 0.0) return;
+
+  // share of the projection that each component gets
+
+  double share[3] = {0.0, 0.0, 0.0};
+  if (kind == STICK) {
+    for (int d = 0; d < dim; d++) share[d] = constrained[d] ? 1.0 : 0.0;
+  } else {
+    share[a] = 1.0;
+    if (friction > 0.0 && push > 0.0) {
+      double needed = 0.0;
+      for (int d = 0; d < dim; d++)
+        if (d != a) needed += to_stick[d] * to_stick[d];
+      needed = sqrt(needed);
+      const double limit = friction * push;
+      for (int d = 0; d < dim; d++)
+        if (d != a) share[d] = needed > limit ? limit / needed : 1.0;
+    }
+  }
+
+  double v[3];
+  for (int d = 0; d < dim; d++) v[d] = share[d] == 1.0 ? V[d] : plane[d] + share[d] * (V[d] - plane[d]);
+  set_velocity(plane, v, dim, column.owned & 1);
+
+  for (int j = 0; j < DEPTH; j++) {
+    if (column.inside[j] < 0) continue;
+    double *in = record(column.inside[j]), *out = record(column.image[j]);
+    if (in[3] <= 0.0 || out[3] <= 0.0) continue;
+    double v_in[3], v_out[3];
+    for (int d = 0; d < dim; d++) {
+      const double w = (in[3] * (in[d] - V[d]) - out[3] * (out[d] - V[d])) / (in[3] + out[3]);
+      if (share[d] == 1.0) {
+        v_in[d] = V[d] + w;
+        v_out[d] = V[d] - w;
+      } else {
+        v_in[d] = in[d] + share[d] * (V[d] + w - in[d]);
+        v_out[d] = out[d] + share[d] * (V[d] - w - out[d]);
+      }
+    }
+    set_velocity(in, v_in, dim, column.owned >> (1 + j) & 1);
+    set_velocity(out, v_out, dim, column.owned >> (1 + DEPTH + j) & 1);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMBoundary::act_on_orbit(const FieldNodes &list, const Orbit &orbit)
+{
+  Grid &grid = *list.field->grid;
+  const int dim = grid.lattice.dim;
+  double V[3];
+  wall_velocity(*list.field, list.members[orbit.first].node, V);
+
+  double mass = 0.0, w[3] = {0.0, 0.0, 0.0};
+  for (int k = orbit.first; k < orbit.last; k++) {
+    const Member &member = list.members[k];
+    const double *r = grid.nodes() + member.node * grid.nreal;
+    mass += r[3];
+    for (int d = 0; d < dim; d++) w[d] += member.sign * r[3] * (r[d] - V[d]);
+  }
+  if (mass <= 0.0) return;
+  for (int d = 0; d < dim; d++) w[d] = orbit.fixed ? 0.0 : w[d] / mass;
+
+  for (int k = orbit.first; k < orbit.last; k++) {
+    const Member &member = list.members[k];
+    double *r = grid.nodes() + member.node * grid.nreal;
+    double v[3];
+    for (int d = 0; d < dim; d++) {
+      const bool prescribed = kind == STICK ? constrained[d] : d == orbit.axis;
+      v[d] = prescribed ? V[d] + member.sign * w[d] : r[d];
+    }
+    set_velocity(r, v, dim, member.owned);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMBoundary::act_on_single(const FieldNodes &list, const Single &single)
+{
+  Grid &grid = *list.field->grid;
+  const int dim = grid.lattice.dim;
+  double *r = grid.nodes() + single.node * grid.nreal;
+  if (r[3] <= 0.0) return;
+
+  const double *n = single.normal;
+  double V[3], v[3];
+  wall_velocity(*list.field, single.node, V);
+  for (int d = 0; d < dim; d++) V[d] += single.growth * n[d];
+
+  if (kind == STICK || (n[0] == 0.0 && n[1] == 0.0 && n[2] == 0.0)) {
+    for (int d = 0; d < dim; d++) v[d] = constrained[d] ? V[d] : r[d];
+  } else {
+    double normal = 0.0;    // speed of the node away from the wall
+    for (int d = 0; d < dim; d++) normal += (r[d] - V[d]) * n[d];
+    if (kind == SEPARATE && normal >= 0.0) return;
+    double slide[3], length = 0.0, keep = 1.0;
+    for (int d = 0; d < dim; d++) {
+      slide[d] = r[d] - V[d] - normal * n[d];
+      length += slide[d] * slide[d];
+    }
+    if (friction > 0.0 && normal < 0.0) {
+      length = sqrt(length);
+      keep = length > -friction * normal ? 1.0 + friction * normal / length : 0.0;
+    }
+    for (int d = 0; d < dim; d++) v[d] = V[d] + keep * slide[d];
+  }
+  set_velocity(r, v, dim, single.owned);
+}
+
+/* ----------------------------------------------------------------------
+   work of the wall on the body so far
+------------------------------------------------------------------------- */
+
+double FixMPMBoundary::compute_scalar()
+{
+  double all;
+  MPI_Allreduce(&work, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+/* ----------------------------------------------------------------------
+   force of the body on the wall in the last step (sign as of fix wall)
+------------------------------------------------------------------------- */
+
+double FixMPMBoundary::compute_vector(int i)
+{
+  if (!reaction_known) {
+    MPI_Allreduce(impulse, reaction, 3, MPI_DOUBLE, MPI_SUM, world);
+    for (double &r : reaction) r /= -dt_last * force->ftm2v;
+    reaction_known = true;
+  }
+  return reaction[i];
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMBoundary::write_restart(FILE *fp)
+{
+  const double total = FixMPMBoundary::compute_scalar();
+  if (comm->me) return;
+  const int size = sizeof(double);
+  fwrite(&size, sizeof(int), 1, fp);
+  fwrite(&total, sizeof(double), 1, fp);
+}
+
+void FixMPMBoundary::restart(char *buf)
+{
+  double total;
+  memcpy(&total, buf, sizeof(double));
+  work = comm->me == 0 ? total : 0.0;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixMPMBoundary::memory_usage()
+{
+  double bytes = 0.0;
+  for (const auto &list : nodes)
+    bytes += list.columns.capacity() * sizeof(Column) + list.members.capacity() * sizeof(Member) +
+        list.orbits.capacity() * sizeof(Orbit) + list.singles.capacity() * sizeof(Single);
+  return bytes;
+}

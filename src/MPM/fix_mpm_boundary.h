@@ -1,0 +1,149 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(mpm/boundary,FixMPMBoundary);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_MPM_BOUNDARY_H
+#define LMP_FIX_MPM_BOUNDARY_H
+
+#include "fix.h"
+#include "mpm_node_action.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+class FixMPM;
+class Region;
+
+/** Walls that act on the nodes of the fields: faces of the box, or a region.
+ *
+ *  A face in a plane of nodes mirrors: nodes beyond it are images of nodes inside. All other walls
+ *  act on the nodes at or beyond their surface one by one.
+ */
+class FixMPMBoundary : public Fix, public MPMNodeAction {
+ public:
+  FixMPMBoundary(class LAMMPS *, int, char **);
+  int setmask() override;
+  void init() override;
+  void setup(int) override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+  double memory_usage() override;
+
+  void extend_topology(FixMPM &) override;
+  void topology_changed(FixMPM &) override;
+  void act(double dt, bool count) override;
+
+ private:
+  static constexpr int DEPTH = 3;    // nodes on either side of a mirror plane that are paired
+
+  enum Kind { STICK, SLIP, SEPARATE };
+
+  struct Face {    // a face of the box on the lattice of a field
+    int axis;
+    int inward;      // direction from the face into the box along the axis: 1 or -1
+    bool aligned;    // in a plane of nodes
+    int plane;       // aligned: index of that plane, else of the last node at or beyond the face
+  };
+  struct Column {    // nodes along the normal of an aligned face
+    int64_t plane, inside[DEPTH], image[DEPTH];
+    int face;        // index into faces
+    int owned;       // bit 0: plane, 1...: inside, 1 + DEPTH ...: images
+  };
+  struct Member {    // node of an orbit: all nodes that two close mirrors make images of each other
+    int64_t node;
+    int sign;
+    bool owned;
+  };
+  struct Orbit {
+    int first, last;    // range in members
+    int axis;
+    bool fixed;         // contains a node in a plane
+  };
+  struct Single {    // a node on its own
+    int64_t node;
+    double normal[3];    // from the wall to the body; zero: not known
+    double growth;       // regions that change their shape: speed of the surface along the normal
+    double distance;     // from the surface at the start of the step, for growth
+    bool owned;
+  };
+  struct FieldNodes {
+    FixMPM *field;
+    std::vector<Face> faces;
+    std::vector<Column> columns;
+    std::vector<Member> members;
+    std::vector<Orbit> orbits;
+    std::vector<Single> singles;
+  };
+  struct Value {    // number or equal-style variable; NULL: not given
+    double value;
+    bool given;
+    std::string variable;
+    int index;
+  };
+  struct Wall {    // its motion in this step: velocity shift + gradient (x - origin)
+    double shift[3], gradient[3][3], origin[3];
+    bool uniform;
+  };
+
+  std::vector<int> face_list;    // 2 * axis + (0: lo, 1: hi)
+  std::string region_id, field_id;
+  Region *region;
+  Kind kind;
+  double friction;
+  Value velocity[3], rate;
+  bool rotating;
+  double center[3], axis[3];
+  bool constrained[3];           // stick: components that are prescribed
+
+  std::vector<FieldNodes> nodes;
+  Wall wall;
+  bigint motion_step;            // step for which the motion of the wall is known
+  double impulse[3], work;       // this rank's share: of the last step on the body; since the start
+  double dt_last;
+  bool reaction_known;
+  double reaction[3];
+
+  // sums of one act(), see tally()
+  bool counting;
+  double gained;
+
+  Value parse_value(const char *, int iarg, bool null_allowed);
+  void check_variable(Value &, const char *what);
+  double evaluate(const Value &) const;
+  bool region_moves() const;
+  bool acts_on(const FixMPM &) const;
+  Face face_on_lattice(const FixMPM &, int face) const;
+  std::vector<Face> faces_on_lattice(const FixMPM &) const;
+  void list_face_nodes(FieldNodes &);
+  void list_column(FieldNodes &, int face, const int *index);
+  void list_orbits(FieldNodes &, int axis);
+  void list_region_nodes(FieldNodes &);
+  bool narrow(const std::vector<Face> &, int axis) const;
+  double surface_distance(const double *x) const;
+  bool surface_normal(const double *x, double step, int dim, double *normal) const;
+  void update_motion(double dt);
+  void set_rotation(double angle, const double *unit, double dt);
+  void wall_velocity(const FixMPM &, int64_t node, double *v) const;
+  void set_velocity(double *record, const double *v, int dim, bool owned);
+  void act_on_column(const FieldNodes &, const Column &);
+  void act_on_orbit(const FieldNodes &, const Orbit &);
+  void act_on_single(const FieldNodes &, const Single &);
+};
+
+}    // namespace LAMMPS_NS
+#endif
+#endif

@@ -1,0 +1,267 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+
+// Checks of fix mpm: what may go wrong with points and time step, and what is done about it.
+
+#include "fix_mpm.h"
+
+#include "atom.h"
+#include "atom_vec.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix_mpm_material.h"
+#include "group.h"
+#include "modify.h"
+#include "mpm_material.h"
+#include "mpm_points.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+static constexpr int DT_CHECK_EVERY = 20;    // steps between checks of the time step
+
+/* ----------------------------------------------------------------------
+   a point must have one integrator
+------------------------------------------------------------------------- */
+
+void FixMPM::check_integrators()
+{
+  for (auto *other : modify->get_fix_list()) {
+    if (other == this || !other->time_integrate) continue;
+    bigint n = 0, all;
+    for (int i = 0; i < atom->nlocal; i++)
+      if (is_point(i) && (atom->mask[i] & other->groupbit)) n++;
+    MPI_Allreduce(&n, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+    if (all)
+      error->all(FLERR, "{} material points of fix {} (style mpm) are also integrated by fix {} "
+                 "(style {}): give the fixes disjoint groups", all, id, other->id, other->style);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   each point must have one material, positive volume and mass, and a finite state
+------------------------------------------------------------------------- */
+
+void FixMPM::check_points()
+{
+  enum { POINT, NONE, SEVERAL, MASS, STATE, NKINDS };
+  bigint count[NKINDS] = {0}, all[NKINDS];
+  tagint example[NKINDS] = {0}, example_all[NKINDS];
+  auto note = [&](int kind, int i) {
+    count[kind]++;
+    example[kind] = std::max(example[kind], atom->tag[i]);
+  };
+
+  for (auto *material : materials) material->assign_mass();
+
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!is_point(i)) continue;
+    note(POINT, i);
+    int n = 0;
+    for (auto *material : materials) n += (atom->mask[i] & material->groupbit) != 0;
+    if (n == 0) note(NONE, i);
+    if (n > 1) note(SEVERAL, i);
+    if (n == 1 && !(atom->rmass[i] > 0.0 && std::isfinite(atom->rmass[i]))) note(MASS, i);
+
+    const double *F = points->F[i], *v = atom->v[i], *x = atom->x[i];
+    const double J = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
+        F[2] * (F[3] * F[7] - F[4] * F[6]);
+    if (!(points->vol[i] > 0.0)) points->vol[i] = atom->vfrac[i] * J;
+    double sum = J;
+    for (int d = 0; d < 3; d++) sum += fabs(x[d]) + fabs(v[d]);
+    for (int c = 0; c < 6; c++) sum += fabs(points->stress[i][c]);
+    if (!std::isfinite(sum) || !(J > 0.0)) note(STATE, i);
+  }
+  MPI_Allreduce(count, all, NKINDS, MPI_LMP_BIGINT, MPI_SUM, world);
+  MPI_Allreduce(example, example_all, NKINDS, MPI_LMP_TAGINT, MPI_MAX, world);
+
+  if (all[POINT] == 0)
+    error->all(FLERR, "Fix mpm {} has no material points: its group {} has no atoms with a volume; "
+               "make points with create_points, or give atoms a volume with set ... volume", id,
+               group->names[igroup]);
+  if (all[NONE])
+    error->all(FLERR, "{} material points have no material, for instance point {}: "
+               "define a fix mpm/material for their group", all[NONE], example_all[NONE]);
+  if (all[SEVERAL])
+    error->all(FLERR, "{} material points have more than one material, for instance point {}: "
+               "the groups of the mpm/material fixes must be disjoint", all[SEVERAL],
+               example_all[SEVERAL]);
+  if (all[MASS])
+    error->all(FLERR, "{} material points have no positive mass, for instance point {}: "
+               "check the density of their material or their set mass", all[MASS],
+               example_all[MASS]);
+  if (all[STATE])
+    error->all(FLERR, "{} material points have a position, velocity, deformation or stress that is "
+               "not finite or is inverted, for instance point {}", all[STATE], example_all[STATE]);
+}
+
+/* ----------------------------------------------------------------------
+   points outside fixed faces would silently be lost by the exchange that follows
+------------------------------------------------------------------------- */
+
+void FixMPM::check_inside_box()
+{
+  std::vector<tagint> out;
+  double **x = atom->x;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!is_point(i)) continue;
+    bool inside = true;
+    for (int d = 0; d < 3; d++)
+      inside = inside &&
+          (domain->periodicity[d] || (x[i][d] >= domain->boxlo[d] && x[i][d] < domain->boxhi[d]));
+    if (inside) continue;
+    if (policy == DELETE)
+      out.push_back(atom->tag[i]);
+    else
+      error->one(FLERR, "{} has left the box through a fixed face; enlarge the box, put a "
+                 "fix mpm/boundary there, or let it go with fix mpm ... bad delete",
+                 point_state(i));
+  }
+  if (policy == DELETE) {
+    out.insert(out.end(), bad_points.begin(), bad_points.end());
+    delete_points(out);
+    bad_points.clear();
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::string FixMPM::point_state(int i) const
+{
+  const double *x = atom->x[i], *v = atom->v[i];
+  return fmt::format("Material point {} at {:.6g} {:.6g} {:.6g} with velocity {:.6g} {:.6g} {:.6g} "
+                     "and J = {:.6g}", atom->tag[i], x[0], x[1], x[2], v[0], v[1], v[2],
+                     points->vol[i] / atom->vfrac[i]);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPM::point_is_bad(int i, const std::string &what)
+{
+  if (policy == ERROR)
+    error->one(FLERR, "{} {} at step {}: try a smaller time step (fix mpm/dt), more points per "
+               "cell, or a smoother shape function; fix mpm ... bad warn|delete goes on",
+               point_state(i), what, update->ntimestep);
+  if (policy == WARN && nbad_total + (bigint) bad_points.size() < 10)
+    error->warning(FLERR, "{} {} at step {}: it keeps its previous deformation", point_state(i),
+                   what, update->ntimestep);
+  bad_points.push_back(atom->tag[i]);
+}
+
+/* ----------------------------------------------------------------------
+   policies warn and delete: count; points to delete go at the next exchange, made to happen now
+------------------------------------------------------------------------- */
+
+void FixMPM::handle_bad_points()
+{
+  bigint n = bad_points.size(), all;
+  MPI_Allreduce(&n, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (all == 0) return;
+  nbad_total += all;
+  if (policy == DELETE)
+    next_reneighbor = update->ntimestep;
+  else
+    bad_points.clear();
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPM::delete_points(const std::vector<tagint> &list)
+{
+  std::vector<tagint> sorted(list);
+  std::sort(sorted.begin(), sorted.end());
+  double lost[4] = {0.0, 0.0, 0.0, 0.0}, lost_all[4];
+  bigint n = 0, all;
+  for (int i = atom->nlocal - 1; i >= 0 && !sorted.empty(); i--) {
+    if (!std::binary_search(sorted.begin(), sorted.end(), atom->tag[i])) continue;
+    lost[0] += atom->rmass[i];
+    for (int d = 0; d < 3; d++) lost[1 + d] += atom->rmass[i] * atom->v[i][d];
+    atom->avec->copy(atom->nlocal - 1, i, 1);
+    atom->nlocal--;
+    n++;
+  }
+  MPI_Allreduce(&n, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (all == 0) return;
+  MPI_Allreduce(lost, lost_all, 4, MPI_DOUBLE, MPI_SUM, world);
+  atom->natoms -= all;
+  if (comm->me == 0)
+    error->warning(FLERR, "Fix mpm {} deleted {} points of mass {:.6g} and momentum {:.6g} {:.6g} "
+                   "{:.6g} at step {}", id, all, lost_all[0], lost_all[1], lost_all[2], lost_all[3],
+                   update->ntimestep);
+}
+
+/* ----------------------------------------------------------------------
+   smallest h/(c + |v|) over this rank's points
+------------------------------------------------------------------------- */
+
+double FixMPM::stable_dt_local(tagint &id_min, double &wave_speed) const
+{
+  Batch &b = *batch;
+  double smallest = std::numeric_limits<double>::max(), c[BATCH];
+  std::vector<double> history;
+  id_min = 0;
+  wave_speed = 0.0;
+  for (auto *material : materials) {
+    int list[BATCH], n = 0;
+    auto evaluate = [&]() {
+      load_state(b, list, n, material, history);
+      material->material->wave_speed(b, c);
+      for (int p = 0; p < n; p++) {
+        const double *v = atom->v[list[p]];
+        const double speed = c[p] + sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+        const double dt = lattice.h / speed;
+        if (!(dt >= smallest)) {    // NaN must not pass unseen
+          smallest = dt;
+          id_min = atom->tag[list[p]];
+          wave_speed = c[p];
+        }
+      }
+      n = 0;
+    };
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!is_point(i) || !(atom->mask[i] & material->groupbit)) continue;
+      list[n++] = i;
+      if (n == BATCH) evaluate();
+    }
+    if (n) evaluate();
+  }
+  batch->history = reinterpret_cast<double(*)[BATCH]>(
+      const_cast<double *>(history_batch.data()));
+  return smallest;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPM::check_dt()
+{
+  next_dt_check = update->ntimestep + DT_CHECK_EVERY;
+  if (!dt_check) return;
+  tagint tag;
+  double c;
+  const double limit = stable_dt_local(tag, c);
+  if (!(update->dt <= limit)) {
+    const int i = find_local(tag);
+    error->one(FLERR, "Time step {:.6g} is above the limit h/(c+|v|) = {:.6g} at step {}: {}, wave "
+               "speed {:.6g}; use timestep, fix mpm/dt, or fix mpm ... dtcheck no", update->dt,
+               limit, update->ntimestep, point_state(i), c);
+  }
+}
+
+int FixMPM::find_local(tagint tag) const
+{
+  int i = 0;
+  while (i < atom->nlocal - 1 && atom->tag[i] != tag) i++;
+  return i;
+}

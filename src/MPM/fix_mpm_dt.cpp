@@ -1,0 +1,224 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "fix_mpm_dt.h"
+
+#include "comm.h"
+#include "error.h"
+#include "fix_mpm.h"
+#include "force.h"
+#include "integrate.h"
+#include "modify.h"
+#include "output.h"
+#include "pair.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+
+static constexpr double NO_POINTS = std::numeric_limits<double>::max();
+
+/* ----------------------------------------------------------------------
+   fix ID all mpm/dt FRACTION keyword value ...
+------------------------------------------------------------------------- */
+
+FixMPMDt::FixMPMDt(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), grow(1.05), dt_min(0.0), dt_max(0.0), limit({0.0, 0.0, 0.0}), nchanges(0),
+    continues(false), dt_left(0.0), limit_left(0.0)
+{
+  if (igroup != 0)
+    error->all(FLERR, 1, "Fix mpm/dt looks at the points of all fix mpm: use group all");
+  if (narg < 4) utils::missing_cmd_args(FLERR, "fix mpm/dt", error);
+  fraction = utils::numeric(FLERR, arg[3], false, lmp);
+  if (!(fraction > 0.0 && fraction <= 2.0))
+    error->all(FLERR, 3, "Fix mpm/dt fraction of h/(c+|v|) must be above 0 and at most 2, "
+               "for instance 0.5: {}", arg[3]);
+
+  nevery = 10;
+  int iarg = 4;
+  while (iarg < narg) {
+    const std::string keyword = arg[iarg];
+    if (keyword != "every" && keyword != "grow" && keyword != "min" && keyword != "max")
+      error->all(FLERR, iarg, "Unknown fix mpm/dt keyword: {}", keyword);
+    if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, "fix mpm/dt " + keyword, error);
+    if (keyword == "every") {
+      nevery = utils::inumeric(FLERR, arg[iarg + 1], false, lmp);
+      if (nevery <= 0)
+        error->all(FLERR, iarg + 1, "Fix mpm/dt every must be positive: {}", arg[iarg + 1]);
+    } else {
+      const double value = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
+      if (keyword == "grow") {
+        if (!(value >= 1.0))
+          error->all(FLERR, iarg + 1, "Fix mpm/dt grow is a factor of at least 1: {}",
+                     arg[iarg + 1]);
+        grow = value;
+      } else {
+        if (!(value > 0.0))
+          error->all(FLERR, iarg + 1, "Fix mpm/dt {} must be positive: {}", keyword, arg[iarg + 1]);
+        (keyword == "min" ? dt_min : dt_max) = value;
+      }
+    }
+    iarg += 2;
+  }
+  if (dt_min > 0.0 && dt_max > 0.0 && dt_min > dt_max)
+    error->all(FLERR, "Fix mpm/dt min {} is above max {}", dt_min, dt_max);
+
+  time_depend = 1;    // as in fix dt/reset: the elapsed time must not lose its step
+  scalar_flag = vector_flag = 1;
+  size_vector = 3;
+  global_freq = 1;
+  extscalar = extvector = 0;
+  restart_global = 1;
+  dynamic_group_allow = 1;
+}
+
+/* ----------------------------------------------------------------------
+   PRE_FORCE for setup_pre_force(): before the setup() of fix mpm, which checks the time step
+------------------------------------------------------------------------- */
+
+int FixMPMDt::setmask()
+{
+  return PRE_FORCE | END_OF_STEP | POST_RUN;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMDt::init()
+{
+  if (modify->get_fix_by_style("^mpm$").empty())
+    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/dt needs a fix mpm");
+  for (auto *ifix : modify->get_fix_list()) {
+    if (ifix == this) continue;
+    const std::string other = ifix->style;
+    if (other == "dt/reset" || other == "mpm/dt" || other == "smd/adjust_dt")
+      error->all(FLERR, Error::NOLASTLINE, "Fix {} {} and fix {} {} both set the time step: "
+                 "remove one", style, id, other, ifix->id);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   the smallest h/(c + |v|) of all points of all fields, known to all ranks
+------------------------------------------------------------------------- */
+
+FixMPMDt::Limit FixMPMDt::find_limit() const
+{
+  Limit mine = {NO_POINTS, 0.0, 0.0};
+  for (auto *ifix : modify->get_fix_by_style("^mpm$")) {
+    tagint tag = 0;
+    double speed = 0.0;
+    double dt = dynamic_cast<FixMPM *>(ifix)->stable_dt_local(tag, speed);
+    if (!(dt > 0.0)) dt = 0.0;    // also NaN
+    if (dt < mine.dt) mine = {dt, speed, (double) tag};
+  }
+  struct {
+    double dt;
+    int rank;
+  } local = {mine.dt, comm->me}, first;
+  MPI_Allreduce(&local, &first, 1, MPI_DOUBLE_INT, MPI_MINLOC, world);
+  MPI_Bcast(&mine, 3, MPI_DOUBLE, first.rank, world);
+  return mine;
+}
+
+/* ----------------------------------------------------------------------
+   start of a run: the time step is set at once, without limit to its growth.
+   When the state is the one that the last run or the restart file left, then the time step is kept,
+   so that a run in two parts takes the same steps as one without a break.
+------------------------------------------------------------------------- */
+
+void FixMPMDt::setup_pre_force(int)
+{
+  limit = find_limit();
+  if (continues && update->dt == dt_left && fabs(limit.dt - limit_left) <= 1.0e-9 * limit_left) {
+    update->dt_default = 0;
+    return;
+  }
+  if (limit.dt < NO_POINTS) set_dt(fraction * limit.dt);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMDt::end_of_step()
+{
+  limit = find_limit();
+  if (limit.dt < NO_POINTS) set_dt(std::min(fraction * limit.dt, grow * update->dt));
+}
+
+/* ----------------------------------------------------------------------
+   change the time step and tell everybody, as fix dt/reset does
+------------------------------------------------------------------------- */
+
+void FixMPMDt::set_dt(double dt)
+{
+  if (dt_max > 0.0) dt = std::min(dt, dt_max);
+  const auto tag = (tagint) limit.tag;
+  if (limit.dt == 0.0)
+    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/dt: point {} has no valid wave speed or velocity "
+               "at step {}", tag, update->ntimestep);
+  if (dt < dt_min)
+    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/dt: time step {:.6g} needed by point {} (wave "
+               "speed {:.6g}) at step {} is below min {:.6g}; see what happened to that point, or "
+               "lower min", dt, tag, limit.speed, update->ntimestep, dt_min);
+  if (dt == update->dt) return;
+
+  update->update_time();
+  update->dt = dt;
+  update->dt_default = 0;
+  if (utils::strmatch(update->integrate_style, "^respa")) update->integrate->reset_dt();
+  if (force->pair) force->pair->reset_dt();
+  for (auto *ifix : modify->get_fix_list()) ifix->reset_dt();
+  output->reset_dt();
+  nchanges++;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMDt::post_run()
+{
+  dt_left = update->dt;
+  limit_left = find_limit().dt;
+  continues = true;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixMPMDt::compute_scalar()
+{
+  return update->dt;
+}
+
+double FixMPMDt::compute_vector(int i)
+{
+  if (i == 0) return limit.tag;
+  return i == 1 ? limit.speed : (double) nchanges;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMDt::write_restart(FILE *fp)
+{
+  const double state[3] = {update->dt, find_limit().dt, (double) nchanges};
+  if (comm->me) return;
+  const int size = sizeof(state);
+  fwrite(&size, sizeof(int), 1, fp);
+  fwrite(state, sizeof(double), 3, fp);
+}
+
+void FixMPMDt::restart(char *buf)
+{
+  double state[3];
+  memcpy(state, buf, sizeof(state));
+  dt_left = state[0];
+  limit_left = state[1];
+  nchanges = (bigint) state[2];
+  continues = true;
+}

@@ -1,0 +1,58 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(mpm/dt,FixMPMDt);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_MPM_DT_H
+#define LMP_FIX_MPM_DT_H
+
+#include "fix.h"
+
+namespace LAMMPS_NS {
+
+/** Time step as a fraction of the smallest h/(c + |v|) over all material points. */
+class FixMPMDt : public Fix {
+ public:
+  FixMPMDt(class LAMMPS *, int, char **);
+  int setmask() override;
+  void init() override;
+  void setup_pre_force(int) override;
+  void end_of_step() override;
+  void post_run() override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+
+ private:
+  double fraction, grow, dt_min, dt_max;    // dt_min, dt_max: 0 = none
+
+  /** The point that limits the time step. */
+  struct Limit {
+    double dt;       // its h/(c + |v|); 0: it has no valid wave speed
+    double speed;    // its wave speed
+    double tag;
+  };
+  Limit limit;
+  bigint nchanges;
+
+  // what the last run left, to see whether anything was changed since
+  bool continues;
+  double dt_left, limit_left;
+
+  Limit find_limit() const;
+  void set_dt(double);
+};
+
+}    // namespace LAMMPS_NS
+#endif
+#endif

@@ -1,0 +1,317 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "fix_mpm_material.h"
+
+#include "mpm_material.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "memory.h"
+#include "update.h"
+
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+static constexpr int RESTART_VERSION = 1;
+
+/* ---------------------------------------------------------------------- */
+
+FixMPMMaterial::FixMPMMaterial(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), material(nullptr), nhistory(0), history(nullptr), work()
+{
+  static_assert(NWORK <= sizeof(work) / sizeof(double), "room for all kinds of work");
+  if (narg < 4) utils::missing_cmd_args(FLERR, "fix mpm/material", error);
+  if (!atom->rmass || !atom->vfrac)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/material needs material points: use atom_style mpm, alone or in a hybrid");
+
+  if (strcmp(arg[3], "file") == 0)
+    read_file(narg, arg);
+  else
+    create(narg, arg);
+
+  restart_global = 1;
+  nhistory = material->history().size();
+  if (nhistory > 0) {
+    restart_peratom = 1;
+    create_attribute = 1;
+    maxexchange = nhistory;
+    FixMPMMaterial::grow_arrays(atom->nmax);
+    atom->add_callback(Atom::GROW);
+    atom->add_callback(Atom::RESTART);
+    for (int i = 0; i < atom->nlocal; i++) FixMPMMaterial::set_arrays(i);
+  }
+
+  if (comm->me == 0) utils::logmesg(lmp, "Material {}: {}\n", id, material->describe());
+  assign_mass();
+}
+
+/* ---------------------------------------------------------------------- */
+
+FixMPMMaterial::~FixMPMMaterial()
+{
+  if (nhistory > 0) {
+    atom->delete_callback(id, Atom::GROW);
+    atom->delete_callback(id, Atom::RESTART);
+  }
+  memory->destroy(history);
+  delete material;
+}
+
+/* ----------------------------------------------------------------------
+   definition in the input: fix ID group mpm/material density RHO ...
+------------------------------------------------------------------------- */
+
+void FixMPMMaterial::create(int narg, char **arg)
+{
+  for (int iarg = 3; iarg < narg; iarg++)
+    if (strcmp(arg[iarg], "file") == 0)
+      error->all(FLERR, iarg,
+                 "Fix mpm/material: a material is either given in the input or read with 'file', "
+                 "which must then be the only keyword");
+  try {
+    material = Material::create(std::vector<std::string>(arg + 3, arg + narg)).release();
+  } catch (const MaterialError &e) {
+    error->all(FLERR, MIN(e.word + 3, narg - 1), "Fix mpm/material: {}", e.what());
+  }
+}
+
+/* ----------------------------------------------------------------------
+   definition in a file with the header of a LAMMPS potential file:
+   rank 0 reads words and their line numbers, all ranks parse
+------------------------------------------------------------------------- */
+
+void FixMPMMaterial::read_file(int narg, char **arg)
+{
+  if (narg < 5) utils::missing_cmd_args(FLERR, "fix mpm/material file", error);
+  if (narg > 5)
+    error->all(FLERR, 5,
+               "Fix mpm/material: '{}' after the file name: keywords in the input cannot change a "
+               "material file; copy the file instead",
+               arg[5]);
+  const std::string name = arg[4];
+
+  std::string text, problem;
+  std::vector<int> lines;
+  if (comm->me == 0) problem = read_words(name, text, lines);
+
+  const auto broadcast = [this](std::string &s) {
+    int size = s.size();
+    MPI_Bcast(&size, 1, MPI_INT, 0, world);
+    s.resize(size);
+    if (size) MPI_Bcast(&s[0], size, MPI_CHAR, 0, world);
+  };
+  broadcast(problem);
+  if (!problem.empty()) error->all(FLERR, 4, "Fix mpm/material: {}", problem);
+  broadcast(text);
+  int nwords = lines.size();
+  MPI_Bcast(&nwords, 1, MPI_INT, 0, world);
+  lines.resize(nwords);
+  MPI_Bcast(lines.data(), nwords, MPI_INT, 0, world);
+
+  try {
+    material = Material::create(utils::split_words(text)).release();
+  } catch (const MaterialError &e) {
+    const int line = lines.empty() ? 1 : lines[MIN(e.word, nwords - 1)];
+    error->all(FLERR, 4, "Fix mpm/material: file {} line {}: {}", name, line, e.what());
+  }
+}
+
+/* ----------------------------------------------------------------------
+   words of a file after its header, and the line of each; returns what is wrong, or nothing
+------------------------------------------------------------------------- */
+
+std::string FixMPMMaterial::read_words(const std::string &name, std::string &text,
+                                       std::vector<int> &lines)
+{
+  const std::string path = utils::get_potential_file_path(name);
+  if (path.empty())
+    return fmt::format("cannot read file {}: it is neither here nor in a folder of the environment "
+                       "variable LAMMPS_POTENTIALS",
+                       name);
+  const std::string units = utils::get_potential_units(path, "material");
+  if (units.empty())
+    return fmt::format("the first line of file {} must give its units, such as 'UNITS: si'", name);
+  if (units != update->unit_style)
+    return fmt::format("file {} is in {} units but the input uses {} units: convert the file or use "
+                       "units {}",
+                       name, units, update->unit_style, units);
+  utils::logmesg(lmp, "Reading material file {} with DATE: {}\n", name,
+                 utils::get_potential_date(path, "material"));
+
+  FILE *fp = fopen(path.c_str(), "r");
+  if (!fp) return fmt::format("cannot read file {}: {}", path, utils::getsyserror());
+  char buffer[1024];
+  for (int line = 1; utils::fgets_trunc(buffer, sizeof(buffer), fp); line++) {
+    if (line == 1) continue;
+    for (const auto &word : utils::split_words(utils::trim_comment(buffer))) {
+      text += word + " ";
+      lines.push_back(line);
+    }
+  }
+  fclose(fp);
+  return "";
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixMPMMaterial::setmask()
+{
+  return 0;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMMaterial::init()
+{
+  assign_mass();
+}
+
+/* ----------------------------------------------------------------------
+   mass of the points that have none yet; masses that were set or read stay
+------------------------------------------------------------------------- */
+
+void FixMPMMaterial::assign_mass()
+{
+  const double density = material->density();
+  const double *const vfrac = atom->vfrac;
+  double *const rmass = atom->rmass;
+  for (int i = 0; i < atom->nlocal; i++)
+    if ((atom->mask[i] & groupbit) && vfrac[i] > 0.0 && !(rmass[i] > 0.0))
+      rmass[i] = density * vfrac[i];
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixMPMMaterial::find_history(const std::string &name) const
+{
+  const auto &variables = material->history();
+  for (int k = 0; k < nhistory; k++)
+    if (variables[k].name == name) return k;
+  return -1;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixMPMMaterial::memory_usage()
+{
+  return (double) atom->nmax * nhistory * sizeof(double);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMMaterial::grow_arrays(int nmax)
+{
+  memory->grow(history, nmax, nhistory, "mpm/material:history");
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMMaterial::copy_arrays(int i, int j, int /*delflag*/)
+{
+  memcpy(history[j], history[i], nhistory * sizeof(double));
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMMaterial::set_arrays(int i)
+{
+  const auto &variables = material->history();
+  for (int k = 0; k < nhistory; k++) history[i][k] = variables[k].initial;
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixMPMMaterial::pack_exchange(int i, double *buf)
+{
+  memcpy(buf, history[i], nhistory * sizeof(double));
+  return nhistory;
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixMPMMaterial::unpack_exchange(int i, double *buf)
+{
+  memcpy(history[i], buf, nhistory * sizeof(double));
+  return nhistory;
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixMPMMaterial::pack_restart(int i, double *buf)
+{
+  buf[0] = nhistory + 1;
+  memcpy(buf + 1, history[i], nhistory * sizeof(double));
+  return nhistory + 1;
+}
+
+/* ----------------------------------------------------------------------
+   the values of the nth fix are behind those of n others, each with its length first
+------------------------------------------------------------------------- */
+
+void FixMPMMaterial::unpack_restart(int i, int nth)
+{
+  const double *extra = atom->extra[i];
+  for (int k = 0; k < nth; k++) extra += static_cast<int>(*extra);
+  if (static_cast<int>(*extra) != nhistory + 1)
+    error->one(FLERR, Error::NOLASTLINE,
+               "Fix mpm/material {}: the restart file has {} history variables, this material has {}",
+               id, static_cast<int>(*extra) - 1, nhistory);
+  memcpy(history[i], extra + 1, nhistory * sizeof(double));
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixMPMMaterial::size_restart(int /*i*/)
+{
+  return nhistory + 1;
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixMPMMaterial::maxsize_restart()
+{
+  return nhistory + 1;
+}
+
+/* ----------------------------------------------------------------------
+   work so far, summed over ranks
+------------------------------------------------------------------------- */
+
+void FixMPMMaterial::write_restart(FILE *fp)
+{
+  double list[2 + NWORK];
+  list[0] = RESTART_VERSION;
+  list[1] = NWORK;
+  MPI_Reduce(work, list + 2, NWORK, MPI_DOUBLE, MPI_SUM, 0, world);
+  if (comm->me == 0) {
+    const int size = sizeof(list);
+    fwrite(&size, sizeof(int), 1, fp);
+    fwrite(list, 1, size, fp);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   rank 0 goes on with the total
+------------------------------------------------------------------------- */
+
+void FixMPMMaterial::restart(char *buf)
+{
+  double list[2 + NWORK];
+  memcpy(list, buf, 2 * sizeof(double));
+  if (list[0] != RESTART_VERSION || list[1] != NWORK)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/material {}: the restart file was written by another version of this package",
+               id);
+  memcpy(list, buf, sizeof(list));
+  for (int k = 0; k < NWORK; k++) work[k] = comm->me == 0 ? list[2 + k] : 0.0;
+}

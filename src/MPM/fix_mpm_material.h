@@ -1,0 +1,65 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(mpm/material,FixMPMMaterial);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_MPM_MATERIAL_H
+#define LMP_FIX_MPM_MATERIAL_H
+
+#include "fix.h"
+
+namespace MPM_NS {
+class Material;
+}
+
+namespace LAMMPS_NS {
+
+/** Gives the points of a group a constitutive model, their mass, and their history variables. */
+class FixMPMMaterial : public Fix {
+ public:
+  FixMPMMaterial(class LAMMPS *, int, char **);
+  ~FixMPMMaterial() override;
+  int setmask() override;
+  void init() override;
+  double memory_usage() override;
+  void grow_arrays(int) override;
+  void copy_arrays(int, int, int) override;
+  void set_arrays(int) override;
+  int pack_exchange(int, double *) override;
+  int unpack_exchange(int, double *) override;
+  int pack_restart(int, double *) override;
+  void unpack_restart(int, int) override;
+  int size_restart(int) override;
+  int maxsize_restart() override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+
+  MPM_NS::Material *material;    ///< owned
+  int nhistory;                  ///< columns of history
+  double **history;              ///< [n][nhistory] or null when the law has none
+  double work[8];                ///< energy of each MPM_NS::Work kind so far, this rank's share
+
+  /** mass = density * initial volume for the points of the group that have no mass yet. */
+  void assign_mass();
+
+  /** Index of a history variable, -1 when the law has none of this name. */
+  int find_history(const std::string &) const;
+
+ private:
+  void create(int, char **);
+  void read_file(int, char **);
+  std::string read_words(const std::string &, std::string &, std::vector<int> &);
+};
+
+}    // namespace LAMMPS_NS
+#endif
+#endif

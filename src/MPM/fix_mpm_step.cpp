@@ -1,0 +1,324 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+
+// The step of fix mpm: its stages and what they share.
+
+#include "fix_mpm.h"
+
+#include "atom.h"
+#include "fix_mpm_material.h"
+#include "mpm_batch.h"
+#include "mpm_halo.h"
+#include "mpm_node_action.h"
+#include "mpm_points.h"
+#include "platform.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+/* ----------------------------------------------------------------------
+   one step of all fields, driven by the first instance
+------------------------------------------------------------------------- */
+
+void FixMPM::initial_integrate(int /*vflag*/)
+{
+  if (!driver) return;
+
+  for (auto *field : fields) field->update_topology();
+  for (auto *field : fields) field->points_to_grid();
+
+  if (scheme == USF) {
+    act_on_nodes(false);
+    for (auto *field : fields) field->stress_first();
+  }
+
+  for (auto *field : fields) field->solve();
+  act_on_nodes(true);
+  for (auto *field : fields) field->grid_to_points();
+
+  if (scheme == MUSL) {
+    for (auto *field : fields) field->map_back();
+    act_on_nodes(false);
+    for (auto *field : fields) field->stress_last();
+  }
+
+  for (auto *field : fields) field->bookkeeping();
+}
+
+/* ----------------------------------------------------------------------
+   mass, momentum and force of the nodes (USF: mass and momentum only), summed over ranks
+------------------------------------------------------------------------- */
+
+void FixMPM::points_to_grid()
+{
+  clock = platform::walltime();
+  grid->zero();
+  map_to_nodes(scheme == USF ? kernel.p2g_momentum : kernel.p2g);
+  lap(report.t_p2g);
+  sum_halo(0, scheme == USF ? 4 : kernel.nreal);
+
+  if (scheme == USF) {
+    kernels->solve_nodes(grid->nodes(), grid->nnodes(), kernel.nreal, 0.0);
+    lap(report.t_nodes);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   USF: stress from the velocity of the start of the step, then the forces
+------------------------------------------------------------------------- */
+
+void FixMPM::stress_first()
+{
+  clock = platform::walltime();
+  grid->copy_aliases();
+  gradient_and_material();
+  lap(report.t_g2p);
+
+  // back to momentum, free of what boundaries did; room for the force
+
+  double *record = grid->nodes();
+  for (int64_t n = grid->nnodes(); n > 0; n--, record += 8) {
+    for (int d = 0; d < 3; d++) {
+      record[d] = record[3] * record[4 + d];
+      record[4 + d] = 0.0;
+    }
+    record[7] = 0.0;
+  }
+  lap(report.t_nodes);
+  map_to_nodes(kernel.p2g_force);
+  lap(report.t_p2g);
+  sum_halo(4, 4);
+}
+
+/* ----------------------------------------------------------------------
+   momentum equation on the nodes
+------------------------------------------------------------------------- */
+
+void FixMPM::solve()
+{
+  clock = platform::walltime();
+  double kinetic_old = 0.0, external = 0.0;
+  if (ledger_on) external = external_work();
+  kernels->solve_nodes(grid->nodes(), grid->nnodes(), kernel.nreal, update->dt);
+  if (ledger_on) {
+    kinetic_old = nodal_kinetic_energy(4);
+    const double kinetic = nodal_kinetic_energy(0);
+    ledger.transfer += kinetic_old - kinetic_points;
+    ledger.external += external;
+    ledger.internal += external - (kinetic - kinetic_old);
+    kinetic_points = kinetic;    // the boundaries' share is taken from here in bookkeeping()
+  }
+  lap(report.t_nodes);
+}
+
+/* ----------------------------------------------------------------------
+   velocity and position of the points, and with USL their stress
+------------------------------------------------------------------------- */
+
+void FixMPM::grid_to_points()
+{
+  clock = platform::walltime();
+  if (ledger_on) kinetic_points = nodal_kinetic_energy(0);
+  grid->copy_aliases();
+  if (scheme == MUSL) xnew.resize(3 * (std::size_t) atom->nlocal);
+
+  const PointRows r = rows();
+  const TransferStep s = step_data();
+  double L[9 * BATCH];
+  for (const auto &a : active) {
+    const auto &block = grid->blocks[a.slot];
+    int base[3];
+    for (int d = 0; d < 3; d++) base[d] = grid->side * block.b[d] - 1;
+    kernel.load(tile_load, grid->nodes(), block.slot, a.box);
+    for (int k = a.first_run; k < a.last_run; k++)
+      for (int i = runs[k].first; i < runs[k].last; i += BATCH) {
+        const int last = std::min(i + BATCH, runs[k].last);
+        drifted |= kernel.g2p(r, s, i, last, base, tile_load, kernel.affine ? nullptr : L);
+        if (scheme == USL)
+          material_update(runs[k], i, last - i, kernel.affine ? &C[i][0] : L);
+      }
+  }
+  lap(report.t_g2p);
+}
+
+/* ----------------------------------------------------------------------
+   MUSL: the velocity of the points once more to the nodes, at the old positions.
+   An affine matrix is that of this step, never the old one.
+------------------------------------------------------------------------- */
+
+void FixMPM::map_back()
+{
+  clock = platform::walltime();
+  grid->zero();
+  map_to_nodes(kernel.p2g_momentum);
+  lap(report.t_p2g);
+  sum_halo(0, 4);
+  kernels->solve_nodes(grid->nodes(), grid->nnodes(), kernel.nreal, 0.0);
+  lap(report.t_nodes);
+}
+
+/* ----------------------------------------------------------------------
+   MUSL: stress from the mapped-back velocity, then move the points
+------------------------------------------------------------------------- */
+
+void FixMPM::stress_last()
+{
+  clock = platform::walltime();
+  grid->copy_aliases();
+  gradient_and_material();
+  for (const auto &run : runs)
+    memcpy(&atom->x[run.first][0], &xnew[3 * (std::size_t) run.first],
+           3 * sizeof(double) * (run.last - run.first));
+  lap(report.t_g2p);
+}
+
+/* ----------------------------------------------------------------------
+   velocity gradient of the nodes' velocities at the points, and the material update
+------------------------------------------------------------------------- */
+
+void FixMPM::gradient_and_material()
+{
+  const PointRows r = rows();
+  const TransferStep s = step_data();
+  double L[9 * BATCH];
+  for (const auto &a : active) {
+    const auto &block = grid->blocks[a.slot];
+    int base[3];
+    for (int d = 0; d < 3; d++) base[d] = grid->side * block.b[d] - 1;
+    kernel.load(tile_load, grid->nodes(), block.slot, a.box);
+    for (int k = a.first_run; k < a.last_run; k++)
+      for (int i = runs[k].first; i < runs[k].last; i += BATCH) {
+        const int last = std::min(i + BATCH, runs[k].last);
+        kernel.g2p_gradient(r, s, i, last, base, tile_load, L);
+        material_update(runs[k], i, last - i, L);
+      }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   strain and stress of up to BATCH consecutive points of one material
+------------------------------------------------------------------------- */
+
+void FixMPM::material_update(const Run &run, int first, int n, const double *L)
+{
+  Batch &b = *batch;
+  FixMPMMaterial *material = run.material;
+  batch_kernels->load(b, n, update->dt, L, &points->F[first][0], &points->stress[first][0]);
+  memcpy(b.mass, atom->rmass + first, n * sizeof(double));
+  memcpy(b.vol0, atom->vfrac + first, n * sizeof(double));
+  for (double &w : b.work) w = 0.0;
+
+  const int nhistory = material->nhistory;
+  if (nhistory) {
+    const double *h = &material->history[first][0];
+    for (int p = 0; p < n; p++)
+      for (int k = 0; k < nhistory; k++) b.history[k][p] = h[nhistory * p + k];
+  }
+
+  material->material->update(b);
+
+  const int bad =
+      batch_kernels->store(b, &points->F[first][0], &points->stress[first][0], points->vol + first);
+  if (nhistory) {
+    double *h = &material->history[first][0];
+    for (int p = 0; p < n; p++) {
+      if (bad && !(b.J[p] > 0.0)) continue;
+      for (int k = 0; k < nhistory; k++) h[nhistory * p + k] = b.history[k][p];
+    }
+  }
+  for (int k = 0; k < NWORK; k++) material->work[k] += b.work[k];
+
+  if (bad)
+    for (int p = 0; p < n; p++)
+      if (!(b.J[p] > 0.0))
+        point_is_bad(first + p, fmt::format("has a deformation gradient of determinant {}", b.J[p]));
+}
+
+/* ----------------------------------------------------------------------
+   what is left: drift, bad points, checks, counters
+------------------------------------------------------------------------- */
+
+void FixMPM::bookkeeping()
+{
+  clock = platform::walltime();
+  if (ledger_on) {
+    const double kinetic = point_kinetic_energy();
+    ledger.transfer += kinetic - kinetic_points;
+    kinetic_points = kinetic;
+  }
+
+  if (watch_drift) {
+    int all;
+    MPI_Allreduce(&drifted, &all, 1, MPI_INT, MPI_BOR, world);
+    if (all) topology_valid = false;
+    drifted = 0;
+  }
+  if (policy != ERROR) handle_bad_points();
+  if (dt_check && update->ntimestep >= next_dt_check) check_dt();
+
+  report.steps++;
+  for (const auto &run : runs) report.point_steps += run.last - run.first;
+  report.dt_min = std::min(report.dt_min, update->dt);
+  report.dt_max = std::max(report.dt_max, update->dt);
+  lap(report.t_topology);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPM::act_on_nodes(bool count)
+{
+  if (actions.empty()) return;
+  const double start = platform::walltime();
+  for (auto *action : actions) action->act(update->dt, count);
+  report.t_nodes += platform::walltime() - start;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPM::map_to_nodes(P2G p2g)
+{
+  const PointRows r = rows();
+  const TransferStep s = step_data();
+  for (auto &a : active) {
+    const auto &block = grid->blocks[a.slot];
+    int base[3];
+    for (int d = 0; d < 3; d++) {
+      base[d] = grid->side * block.b[d] - 1;
+      a.box[d] = 127;
+      a.box[3 + d] = -127;
+    }
+    for (int k = a.first_run; k < a.last_run; k++)
+      p2g(r, s, runs[k].first, runs[k].last, base, tile, a.box);
+    kernel.flush(tile, grid->nodes(), block.slot, a.box);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   add what periodic images and other ranks hold of a node
+------------------------------------------------------------------------- */
+
+void FixMPM::sum_halo(int lane, int nlane)
+{
+  grid->fold_aliases(grid->nodes(), kernel.nreal, lane, nlane);
+  halo->sum(grid->nodes(), kernel.nreal, lane, nlane);
+  lap(report.t_halo);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPM::lap(double &timer)
+{
+  const double now = platform::walltime();
+  timer += now - clock;
+  clock = now;
+}

@@ -1,0 +1,262 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+
+// Topology of fix mpm: which blocks have points, and the order of points in memory.
+
+#include "fix_mpm.h"
+
+#include "atom.h"
+#include "atom_vec.h"
+#include "comm.h"
+#include "error.h"
+#include "fix_mpm_material.h"
+#include "modify.h"
+#include "mpm_batch.h"
+#include "mpm_halo.h"
+#include "mpm_node_action.h"
+#include "neighbor.h"
+#include "platform.h"
+
+#include <algorithm>
+#include <array>
+#include <climits>
+#include <cmath>
+#include <map>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+// base node of a point relative to its cell, in cells
+static constexpr double BASE_SHIFT[4] = {0.0, 0.0, 0.5, 1.0};
+
+/* ----------------------------------------------------------------------
+   base node of a position and its coordinate t in cells; false: not a usable position
+------------------------------------------------------------------------- */
+
+bool FixMPM::base_node(const double *x, int base[3], double t[3]) const
+{
+  base[2] = 0;
+  t[2] = 0.0;
+  for (int d = 0; d < lattice.dim; d++) {
+    t[d] = (x[d] - lattice.origin[d]) / lattice.h - BASE_SHIFT[shape];
+    if (!(fabs(t[d]) < 4.0e6)) return false;
+    base[d] = (int) std::floor(t[d]);
+  }
+  return true;
+}
+
+/* ----------------------------------------------------------------------
+   stage 1: when points have migrated, were sorted or have drifted: runs of points of one block,
+   blocks within reach, and which of them other ranks have, too
+------------------------------------------------------------------------- */
+
+void FixMPM::update_topology()
+{
+  if (topology_valid) return;
+  clock = platform::walltime();
+
+  grid->clear();
+  runs.clear();
+  active.clear();
+  switches = 0;
+
+  // runs, and the range of base coordinates of each block
+
+  struct Range {
+    double lo[3], hi[3];
+  };
+  std::vector<Range> ranges;
+  int last_base[3] = {INT_MAX, INT_MAX, INT_MAX}, last_block[3] = {INT_MAX, INT_MAX, INT_MAX};
+  const int nlocal = atom->nlocal;
+  for (int i = 0; i < nlocal; i++) {
+    if (!is_point(i)) continue;
+    int base[3], b[3];
+    double t[3];
+    if (!base_node(atom->x[i], base, t)) {
+      point_is_bad(i, "is far out of reach of the lattice");
+      continue;
+    }
+    for (int d = 0; d < 3; d++) b[d] = base[d] >> grid->shift_bits;
+    if (base[0] != last_base[0] || base[1] != last_base[1] || base[2] != last_base[2]) switches++;
+    FixMPMMaterial *material = material_of(i);
+    const bool same_block =
+        b[0] == last_block[0] && b[1] == last_block[1] && b[2] == last_block[2];
+    if (same_block && runs.back().last == i && runs.back().material == material) {
+      runs.back().last++;
+    } else {
+      const int slot = same_block ? runs.back().slot : grid->activate(b);
+      if (slot == (int) ranges.size()) {
+        Range r;
+        for (int d = 0; d < 3; d++) {
+          r.lo[d] = t[d];
+          r.hi[d] = t[d];
+        }
+        ranges.push_back(r);
+      }
+      runs.push_back({i, i + 1, slot, material});
+    }
+    Range &r = ranges[runs.back().slot];
+    for (int d = 0; d < 3; d++) {
+      r.lo[d] = std::min(r.lo[d], t[d]);
+      r.hi[d] = std::max(r.hi[d], t[d]);
+      last_base[d] = base[d];
+      last_block[d] = b[d];
+    }
+  }
+  std::stable_sort(runs.begin(), runs.end(),
+                   [](const Run &a, const Run &b) { return a.slot < b.slot; });
+
+  for (int k = 0, end; k < (int) runs.size(); k = end) {
+    ActiveBlock a;
+    for (end = k; end < (int) runs.size() && runs[end].slot == runs[k].slot;) end++;
+    a.slot = runs[k].slot;
+    a.first_run = k;
+    a.last_run = end;
+    active.push_back(a);
+  }
+
+  // blocks that the points can reach before the next update
+
+  const double drift = watch_drift ? 1.0 : std::min(1.0, 0.5 * neighbor->skin / lattice.h);
+  const int nactive = active.size();
+  for (int k = 0; k < nactive; k++) {
+    const Range &r = ranges[k];
+    int b[3], lo[3] = {0, 0, 0}, hi[3] = {0, 0, 0};
+    for (int d = 0; d < 3; d++) b[d] = grid->blocks[k].b[d];
+    for (int d = 0; d < lattice.dim; d++) {
+      const int first = b[d] * grid->side;
+      if ((int) std::floor(r.lo[d] - drift) < first) lo[d] = -1;
+      if ((int) std::floor(r.hi[d] + drift) + shape >= first + grid->side) hi[d] = 1;
+    }
+    for (int dx = lo[0]; dx <= hi[0]; dx++)
+      for (int dy = lo[1]; dy <= hi[1]; dy++)
+        for (int dz = lo[2]; dz <= hi[2]; dz++) {
+          const int neighbor_block[3] = {b[0] + dx, b[1] + dy, b[2] + dz};
+          grid->activate(neighbor_block);
+        }
+  }
+
+  auto *master = dynamic_cast<FixMPM *>(modify->get_fix_by_style("^mpm$")[0]);
+  for (auto *action : master->actions) action->extend_topology(*this);
+  grid->close_periodic();
+  grid->finish();
+  grid->allocate(kernel.nreal);
+  halo->setup(*grid);
+  for (auto *action : master->actions) action->topology_changed(*this);
+
+  topology_valid = true;
+  drifted = 0;
+  int nhistory = 1;
+  for (auto *material : materials) nhistory = std::max(nhistory, material->nhistory);
+  history_batch.resize((std::size_t) nhistory * BATCH);
+  batch->history = reinterpret_cast<double(*)[BATCH]>(history_batch.data());
+  report.topologies++;
+
+  if (switches_sorted < 0) switches_sorted = switches;
+  want_sort = switches > 1.3 * switches_sorted + 100;
+  lap(report.t_topology);
+}
+
+/* ----------------------------------------------------------------------
+   order the points by block, material, cell and tag, the data itself moved; other atoms follow.
+   Tags make the order, and with it all sums, independent of what happened before.
+------------------------------------------------------------------------- */
+
+void FixMPM::sort_points()
+{
+  const double start = platform::walltime();
+  const int nlocal = atom->nlocal;
+
+  std::map<std::array<int, 3>, int> rank_of_block;    // ordered: gives the order of blocks
+  std::vector<std::array<int, 3>> block(nlocal);
+  std::vector<int> cell(nlocal, -1);
+  const int mask = grid->side - 1;
+  std::array<int, 3> last = {INT_MAX, INT_MAX, INT_MAX};
+  for (int i = 0; i < nlocal; i++) {
+    int base[3];
+    double t[3];
+    if (!is_point(i) || !base_node(atom->x[i], base, t)) continue;
+    for (int d = 0; d < 3; d++) block[i][d] = base[d] >> grid->shift_bits;
+    if (lattice.dim == 3)
+      cell[i] = (((base[0] & mask) << 2 | (base[1] & mask)) << 2) | (base[2] & mask);
+    else
+      cell[i] = (base[0] & mask) << 3 | (base[1] & mask);
+    if (block[i] != last) {
+      rank_of_block[block[i]] = 0;
+      last = block[i];
+    }
+  }
+  int nblocks = 0;
+  for (auto &entry : rank_of_block) entry.second = nblocks++;
+
+  // counting sort by (block, material, cell); atoms that are no points come last
+
+  const int nmaterials = MAX(1, (int) materials.size());
+  const int64_t nkeys = (int64_t) nblocks * nmaterials * NODES_PER_BLOCK;
+  std::vector<int> start_of_key(nkeys + 2, 0), key(nlocal);
+  last = {INT_MAX, INT_MAX, INT_MAX};
+  int rank = 0;
+  for (int i = 0; i < nlocal; i++) {
+    if (cell[i] < 0) {
+      key[i] = (int) nkeys;
+    } else {
+      if (block[i] != last) {
+        rank = rank_of_block[block[i]];
+        last = block[i];
+      }
+      int m = 0;
+      if (nmaterials > 1) {
+        auto *material = material_of(i);
+        while (materials[m] != material) m++;
+      }
+      key[i] = (rank * nmaterials + m) * NODES_PER_BLOCK + cell[i];
+    }
+    start_of_key[key[i] + 1]++;
+  }
+  for (int64_t k = 0; k <= nkeys; k++) start_of_key[k + 1] += start_of_key[k];
+  std::vector<int> permute(nlocal), next(start_of_key.begin(), start_of_key.end() - 1);
+  for (int i = 0; i < nlocal; i++) permute[next[key[i]]++] = i;
+  const tagint *tag = atom->tag;
+  for (int64_t k = 0; k < nkeys; k++)
+    if (start_of_key[k + 1] - start_of_key[k] > 1)
+      std::sort(permute.begin() + start_of_key[k], permute.begin() + start_of_key[k + 1],
+                [tag](int i, int j) { return tag[i] < tag[j]; });
+
+  // move the atoms, cycle by cycle, through the free place at the end
+
+  if (nlocal == atom->nmax) atom->avec->grow(0);
+  std::vector<int> &current = next;
+  current.resize(nlocal);
+  bigint moved = 0;
+  for (int i = 0; i < nlocal; i++) current[i] = i;
+  for (int i = 0; i < nlocal; i++) {
+    if (current[i] == permute[i]) continue;
+    atom->avec->copy(i, nlocal, 0);
+    int empty = i;
+    while (permute[empty] != i) {
+      atom->avec->copy(permute[empty], empty, 0);
+      empty = current[empty] = permute[empty];
+      moved++;
+    }
+    atom->avec->copy(nlocal, empty, 0);
+    current[empty] = permute[empty];
+  }
+
+  // ghosts refer to the old order
+
+  bigint nghost = atom->nghost + (moved && atom->map_style != Atom::MAP_NONE), nghost_all;
+  MPI_Allreduce(&nghost, &nghost_all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (nghost_all) comm->borders();
+
+  switches_sorted = -1;    // to be counted with the next topology
+  want_sort = false;
+  topology_valid = false;
+  report.sorts++;
+  report.t_sort += platform::walltime() - start;
+}

@@ -1,0 +1,185 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "mpm_halo.h"
+
+#include "comm.h"
+#include "memory.h"
+#include "mpm_grid.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+static constexpr int RVOUS = 1;    // 0 for irregular, 1 for all2all
+static constexpr int HALO_TAG = 4711;
+
+namespace {
+struct KeyOfRank {    // to the rendezvous: this rank has this block active
+  uint64_t key;
+  int rank;
+};
+struct Sharer {    // back: this other rank has the block, too
+  uint64_t key;
+  int rank, pad;
+};
+}    // namespace
+
+/* ---------------------------------------------------------------------- */
+
+MPMHalo::MPMHalo(LAMMPS *lmp) : Pointers(lmp), bytes_sent(0) {}
+
+/* ----------------------------------------------------------------------
+   at the rendezvous rank of a set of keys: tell each sharer of a block about all others
+------------------------------------------------------------------------- */
+
+static int match_keys(int n, char *inbuf, int &flag, int *&proclist, char *&outbuf, void *ptr)
+{
+  auto *memory = (Memory *) ptr;
+  auto *in = (KeyOfRank *) inbuf;
+  std::sort(in, in + n, [](const KeyOfRank &a, const KeyOfRank &b) {
+    return a.key < b.key || (a.key == b.key && a.rank < b.rank);
+  });
+
+  int nout = 0;
+  for (int i = 0, j; i < n; i = j) {
+    for (j = i; j < n && in[j].key == in[i].key;) j++;
+    nout += (j - i) * (j - i - 1);
+  }
+  memory->create(proclist, nout, "mpm/halo:proclist");
+  auto *out = (Sharer *) memory->smalloc((bigint) nout * sizeof(Sharer), "mpm/halo:out");
+  nout = 0;
+  for (int i = 0, j; i < n; i = j) {
+    for (j = i; j < n && in[j].key == in[i].key;) j++;
+    for (int to = i; to < j; to++)
+      for (int other = i; other < j; other++) {
+        if (to == other) continue;
+        proclist[nout] = in[to].rank;
+        out[nout].key = in[i].key;
+        out[nout].rank = in[other].rank;
+        out[nout++].pad = 0;
+      }
+  }
+  outbuf = (char *) out;
+  flag = 2;    // output lists are new
+  return nout;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMHalo::setup(Grid &grid)
+{
+  ranks.clear();
+  slots.clear();
+  shared.clear();
+  first.assign(1, 0);
+  contributions.clear();
+  if (comm->nprocs == 1) return;
+
+  // all canonical blocks go to the rank that their key hashes to
+
+  const int nblocks = grid.blocks.size();
+  std::vector<KeyOfRank> mine;
+  std::vector<int> procs;
+  for (int s = 0; s < nblocks; s++) {
+    const auto &block = grid.blocks[s];
+    if (block.alias == ~uint64_t(0)) continue;
+    KeyOfRank k;
+    k.key = Grid::block_key(block);
+    k.rank = comm->me;
+    mine.push_back(k);
+    procs.push_back((int) ((k.key * UINT64_C(0x9E3779B97F4A7C15) >> 33) % comm->nprocs));
+  }
+  char *outbuf = nullptr;
+  const int n = comm->rendezvous(RVOUS, mine.size(), (char *) mine.data(), sizeof(KeyOfRank), 0,
+                                 procs.data(), match_keys, 0, outbuf, sizeof(Sharer), memory, 0);
+  auto *sharer = (Sharer *) outbuf;
+
+  // blocks in order of (rank, key): both sides of a pair list them alike
+
+  std::sort(sharer, sharer + n, [](const Sharer &a, const Sharer &b) {
+    return a.rank < b.rank || (a.rank == b.rank && a.key < b.key);
+  });
+  std::vector<std::vector<Contribution>> of_slot(nblocks);
+  for (int i = 0; i < n; i++) {
+    if (ranks.empty() || ranks.back() != sharer[i].rank) {
+      ranks.push_back(sharer[i].rank);
+      slots.emplace_back();
+    }
+    const int b[3] = {Grid::key_coordinate(sharer[i].key, 0),
+                      Grid::key_coordinate(sharer[i].key, 1),
+                      Grid::key_coordinate(sharer[i].key, 2)};
+    const int slot = grid.find(b);
+    of_slot[slot].push_back({(int) ranks.size() - 1, (int) slots.back().size()});
+    slots.back().push_back(slot);
+  }
+  memory->sfree(outbuf);
+
+  for (int s = 0; s < nblocks; s++) {
+    if (of_slot[s].empty()) continue;
+    shared.push_back(s);
+    bool me_done = false;
+    for (const auto &c : of_slot[s]) {    // ascending by rank
+      if (!me_done && ranks[c.from] > comm->me) {
+        contributions.push_back({-1, 0});
+        me_done = true;
+      }
+      contributions.push_back(c);
+    }
+    if (!me_done) contributions.push_back({-1, 0});
+    first.push_back(contributions.size());
+    if (ranks[of_slot[s][0].from] < comm->me) grid.blocks[s].owned = 0;
+  }
+  send.resize(ranks.size());
+  recv.resize(ranks.size());
+  requests.resize(2 * ranks.size());
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMHalo::sum(double *nodes, int nreal, int lane, int nlane)
+{
+  if (ranks.empty()) return;
+
+  const int block_reals = NODES_PER_BLOCK * nlane;
+  const int nranks = ranks.size();
+  for (int r = 0; r < nranks; r++) {
+    const int count = slots[r].size() * block_reals;
+    recv[r].resize(count);
+    send[r].resize(count);
+    MPI_Irecv(recv[r].data(), count, MPI_DOUBLE, ranks[r], HALO_TAG, world, &requests[r]);
+  }
+  for (int r = 0; r < nranks; r++) {
+    double *buf = send[r].data();
+    for (int slot : slots[r]) {
+      const double *record = nodes + (int64_t) slot * NODES_PER_BLOCK * nreal + lane;
+      for (int k = 0; k < NODES_PER_BLOCK; k++, record += nreal)
+        for (int l = 0; l < nlane; l++) *buf++ = record[l];
+    }
+    MPI_Isend(send[r].data(), (int) send[r].size(), MPI_DOUBLE, ranks[r], HALO_TAG, world,
+              &requests[nranks + r]);
+    bytes_sent += (bigint) send[r].size() * sizeof(double);
+  }
+  MPI_Waitall(nranks, requests.data(), MPI_STATUSES_IGNORE);
+
+  for (std::size_t is = 0; is < shared.size(); is++) {
+    double *record = nodes + (int64_t) shared[is] * NODES_PER_BLOCK * nreal + lane;
+    const Contribution *begin = &contributions[first[is]];
+    const Contribution *end = begin + (first[is + 1] - first[is]);
+    for (int k = 0; k < NODES_PER_BLOCK; k++, record += nreal)
+      for (int l = 0; l < nlane; l++) {
+        double sum = 0.0;
+        for (const Contribution *c = begin; c != end; c++)
+          sum += c->from < 0 ? record[l] :
+                               recv[c->from][(int64_t) c->offset * block_reals + k * nlane + l];
+        record[l] = sum;
+      }
+  }
+  MPI_Waitall(nranks, requests.data() + nranks, MPI_STATUSES_IGNORE);
+}

@@ -1,0 +1,136 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_KERNELS_H
+#define LMP_MPM_KERNELS_H
+
+// Interface of the hot kernels. mpm_kernels_isa.cpp is compiled once for each instruction set;
+// every compilation fills one MPMKernels table and MPMKernels::select() picks one at run time.
+// Nothing here knows about LAMMPS.
+
+namespace MPM_NS {
+
+enum Shape { LINEAR = 1, QUADRATIC = 2, CUBIC = 3 };    ///< order of the B-spline
+enum Transfer { PIC, FLIP, APIC };
+
+constexpr int BATCH = 64;    ///< points handed to a constitutive law at a time
+
+/** Side of a block of nodes: 64 nodes in 2d and in 3d. */
+constexpr int block_side(int dim)
+{
+  return dim == 3 ? 4 : 8;
+}
+
+/** Nodes along a side of a tile: a block of base nodes, one more on each side, and the stencil. */
+constexpr int tile_side(int dim, int order)
+{
+  return block_side(dim) + 2 + order;
+}
+
+/** Index of a node in a tile, in nodes; odd strides keep rows out of each other's cache sets. */
+constexpr int tile_stride_y(int dim, int order)
+{
+  return dim == 3 ? (tile_side(dim, order) | 1) : 1;
+}
+constexpr int tile_stride_x(int dim, int order)
+{
+  return dim == 3 ? tile_stride_y(dim, order) * tile_side(dim, order) + (order == 1 ? 1 : 0) :
+                    (tile_side(dim, order) | 1);
+}
+/** Nodes to allocate for a tile. */
+constexpr int tile_nodes(int dim, int order)
+{
+  return tile_stride_x(dim, order) * tile_side(dim, order) + 8;
+}
+
+/** Largest number of nodes in a tile over all kernels (cubic, 3d: 11 * 9 * 9 with padding). */
+constexpr int MAX_TILE_NODES = 1024;
+
+/** State of points as contiguous rows; pointers are to the first row of the rank. */
+struct PointRows {
+  double *x;               ///< [n][3] position
+  double *v;               ///< [n][3] velocity
+  const double *f;         ///< [n][3] external force (gravity, contact, walls, ...)
+  double *C;               ///< [n][9] affine velocity matrix, column-major: C[3*j+i] = d v_i / d x_j
+  const double *stress;    ///< [n][6] Cauchy stress xx yy zz xy xz yz
+  const double *vol;       ///< [n] current volume
+  const double *mass;      ///< [n]
+  double *xnew;            ///< [n][3] where G2P puts the new position (x itself, unless MUSL)
+};
+
+/** What a transfer needs to know about the lattice and the step. */
+struct TransferStep {
+  double h;            ///< node spacing
+  double inv_h;
+  double origin[3];    ///< position of node (0,0,0)
+  double dt;
+  double flip;         ///< FLIP share of the velocity update (0: PIC, 1: FLIP)
+};
+
+/** Transfers between the points [first,last) of one block and its tile.
+ *
+ *  base: node index of tile entry (0,0,0), which is the block's first base node minus one per axis.
+ *  A base node of a point is floor((x - origin)/h - s), s = 0, 1/2, 1 for linear, quadratic, cubic.
+ *  In 2d, z is ignored, and tiles and base have two axes (base[2] unused).
+ *
+ *  Tile entry layout, 8-byte reals:
+ *   merged (4 reals): on P2G px py pz m, momentum including dt * force; on G2P vx vy vz m.
+ *   split  (8 reals): on P2G px py pz m | fx fy fz 0; on G2P vx vy vz m | vx_old vy_old vz_old 0.
+ *
+ *  box: [6] lowest and highest tile index of base nodes (x,y,z low; x,y,z high); widened, not reset.
+ */
+using P2G = void (*)(const PointRows &, const TransferStep &, int first, int last, const int base[3],
+                     double *tile, int box[6]);
+
+/** G2P returns 0, or non-zero when a point's new position has left the range of its tile.
+ *  L: [last-first][9] column-major velocity gradient with respect to the positions in x;
+ *  kernels that store C write the same matrix there and leave L alone when it is null. */
+using G2P = int (*)(const PointRows &, const TransferStep &, int first, int last, const int base[3],
+                    const double *tile, double *L);
+
+/** Moves the box of a tile between tile and node array, all reals of an entry.
+ *  flush: adds the tile to the nodes and clears that part of the tile; load: fills it from the nodes.
+ *  nodes: [nblocks][64][nreal], node index in a block (ix*4+iy)*4+iz in 3d, ix*8+iy in 2d.
+ *  slot: [27] block index of the neighbours at [9*(bx+1)+3*(by+1)+(bz+1)], b = -1,0,1 (2d: bz = 0);
+ *  those that the box and its stencil touch must be valid.
+ *  box: as filled by P2G; the stencil (order nodes upward) is added here. */
+using TileIO = void (*)(double *tile, double *nodes, const int slot[27], const int box[6]);
+
+/** All kernels of one dimension, shape and transfer. A null pointer: not in this combination. */
+struct TransferKernels {
+  int nreal;           ///< reals of a tile entry and node record: 4 merged, 8 split
+  bool affine;         ///< uses C
+  bool mls;            ///< stress and velocity gradient through the affine matrix (quadratic, cubic)
+  P2G p2g;             ///< mass, momentum and force (internal and external)
+  P2G p2g_momentum;    ///< mass and momentum only, force reals untouched
+  P2G p2g_force;       ///< force only (split: the force reals; merged: dt * force on the momentum)
+  G2P g2p;             ///< velocity, position, C, velocity gradient
+  G2P g2p_gradient;    ///< velocity gradient only, into L; points untouched, always returns 0
+  TileIO flush;        ///< tile -> nodes, all reals
+  TileIO load;         ///< nodes -> tile
+};
+
+/** Kernel table of one instruction set. */
+struct MPMKernels {
+  const char *isa;    ///< "reference", "baseline", "AVX2" or "AVX-512"
+
+  /** Kernels for dimension 2 or 3; split: keep force and old velocity apart (FLIP, energy ledger).
+   *  FLIP and PIC are always split. Linear APIC takes C as the gradient of the velocity. */
+  TransferKernels (*transfer)(int dim, Shape, Transfer, bool split);
+
+  /** v = p/m on n nodes, and the momentum equation.
+   *  merged: (p,m) -> (p/m, m).  split: (p,m|f) -> ((p + dt f)/m, m | p/m).
+   *  A node without mass gets velocity 0. */
+  void (*solve_nodes)(double *nodes, int nnodes, int nreal, double dt);
+
+  /** The table for this CPU, or the one that the name asks for (null when it cannot run here). */
+  static const MPMKernels *select(const char *name = nullptr);
+};
+
+}    // namespace MPM_NS
+#endif

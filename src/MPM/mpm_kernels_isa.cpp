@@ -1,0 +1,993 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// The fast kernels, compiled once for each instruction set with MPM_ISA = base, v3 or v4
+// (x86-64 levels). Nothing but the table may be visible outside, see mpm_vector.h.
+//
+// What a transfer does is written plainly in mpm_kernels_reference.cpp; this file does the same
+// in fewer operations:
+//  - A point's contribution to a node is a product over axes, plus one term per axis (affine part
+//    or stress gradient). Summed axis by axis this costs two multiply-adds per node and vector,
+//    see Scatter. The way back sums z rows first, then y, then x, see Gather.
+//  - Vectors hold the four reals of a node (x, y, z, mass), for one or two points side by side.
+//    Two points that share the base node are added up before they go to the tile.
+//  - Points are prepared (loaded, weighted) in stages of several, then scattered or gathered: the
+//    long latency of the preparation of one point hides behind the others.
+
+#include "mpm_kernels.h"
+
+#define MPM_CONCAT_(a, b) a##b
+#define MPM_CONCAT(a, b) MPM_CONCAT_(a, b)
+#if !defined(MPM_ISA)
+#define MPM_ISA base
+#endif
+
+namespace MPM_NS {
+const MPMKernels *mpm_kernels_reference();
+const MPMKernels *MPM_CONCAT(mpm_kernels_, MPM_ISA)();
+}    // namespace MPM_NS
+
+#if !defined(__has_builtin)
+#define __has_builtin(x) 0
+#endif
+#if !__has_builtin(__builtin_shufflevector)
+
+// no vector extensions: the plain loops serve
+
+const MPM_NS::MPMKernels *MPM_NS::MPM_CONCAT(mpm_kernels_, MPM_ISA)()
+{
+  return mpm_kernels_reference();
+}
+
+#else
+
+#include "mpm_shape.h"
+#include "mpm_vector.h"
+
+#include <cstdint>
+
+using namespace MPM_NS;
+
+namespace {
+
+#define MPM_NAME_base "baseline"
+#define MPM_NAME_v3 "AVX2"
+#define MPM_NAME_v4 "AVX-512"
+
+constexpr int PREFETCH = 32;    ///< distance of prefetches, in points
+
+/** Points side by side in a vector of P2G and G2P, and points of a stage. */
+#ifndef MPM_TUNE_P
+#define MPM_TUNE_P (REGISTER == 8 ? 2 : 1)
+#define MPM_TUNE_W (REGISTER == 8 ? 1 : 1)
+#define MPM_TUNE_G (REGISTER == 8 ? 2 : 1)
+#define MPM_TUNE_SP 16
+#define MPM_TUNE_SG 8
+#endif
+constexpr int P2G_POINTS = MPM_TUNE_P;
+constexpr int G2P_POINTS = MPM_TUNE_G;
+constexpr int P2G_STAGE = MPM_TUNE_SP;
+constexpr int G2P_STAGE = MPM_TUNE_SG;
+
+/** Brings the rows [first,last) of an array into the cache, to be written when WRITE is 1. */
+template <int WIDTH, int WRITE = 0>
+MPM_INLINE void prefetch(const double *rows, long first, long last)
+{
+  uintptr_t line = reinterpret_cast<uintptr_t>(rows + WIDTH * first) & ~uintptr_t(63);
+  const uintptr_t end = reinterpret_cast<uintptr_t>(rows + WIDTH * last);
+  for (; line < end; line += 64) __builtin_prefetch(reinterpret_cast<const void *>(line), WRITE);
+}
+
+/** Four reals of each of L consecutive rows, starting at column COLUMN. */
+template <int L, int WIDTH> MPM_INLINE Vec<4 * L> load_rows(const double *column, long row)
+{
+  if constexpr (L == 1)
+    return Vec<4>::load(column + WIDTH * row);
+  else
+    return join(Vec<4>::load(column + WIDTH * row), Vec<4>::load(column + WIDTH * (row + 1)));
+}
+
+/** One number for each of L consecutive points, in all four lanes. */
+template <int L> MPM_INLINE Vec<4 * L> load_numbers(const double *number, long row)
+{
+  if constexpr (L == 1)
+    return Vec<4>::all(number[row]);
+  else
+    return join(Vec<4>::all(number[row]), Vec<4>::all(number[row + 1]));
+}
+
+/** Where points are in a tile; lanes that are no axis stay zero. */
+template <int DIM, int ORDER, int L> struct Frame {
+  Vec<4 * L> origin, inv_h, low;
+
+  MPM_INLINE Frame(const TransferStep &step, const int *base)
+  {
+    alignas(64) double o[4 * L] = {}, i[4 * L] = {}, b[4 * L] = {};
+    for (int l = 0; l < L; l++)
+      for (int a = 0; a < DIM; a++) {
+        o[4 * l + a] = step.origin[a];
+        i[4 * l + a] = step.inv_h;
+        b[4 * l + a] = BSpline<ORDER>::shift + base[a];
+      }
+    origin = Vec<4 * L>::load(o);
+    inv_h = Vec<4 * L>::load(i);
+    low = Vec<4 * L>::load(b);
+  }
+
+  /** Position in units of h from tile node 0, less the shift: its whole part is the base node. */
+  MPM_INLINE Vec<4 * L> position(Vec<4 * L> x) const { return (x - origin) * inv_h - low; }
+
+  /** Base nodes' places in the tile, in nodes; returns the fractions. */
+  MPM_INLINE Vec<4 * L> locate(Vec<4 * L> t, int *place) const
+  {
+    constexpr int sx = tile_stride_x(DIM, ORDER), sy = tile_stride_y(DIM, ORDER);
+    int index[4 * L];
+    const Vec<4 * L> whole = truncate(t, index);
+    MPM_UNROLL
+    for (int l = 0; l < L; l++)
+      place[l] = index[4 * l] * sx + index[4 * l + 1] * sy + index[4 * l + 2];
+    return t - whole;
+  }
+};
+
+/** Weights of L points along the axes, in memory: [node][point][axis]. */
+template <int ORDER, int L> struct AxisWeights {
+  static constexpr int S = ORDER + 1;
+  alignas(32) double w[S][4 * L];
+
+  MPM_INLINE void set(const Vec<4 * L> *weight)
+  {
+    MPM_UNROLL
+    for (int k = 0; k < S; k++) weight[k].store(w[k]);
+  }
+
+  /** Weights along axis A in all lanes of the point, WIDTH lanes for each point. */
+  template <int A, int WIDTH> MPM_INLINE void get(Vec<WIDTH * L> *weight) const
+  {
+    MPM_UNROLL
+    for (int k = 0; k < S; k++) {
+      if constexpr (L == 1)
+        weight[k] = Vec<WIDTH>::all(w[k][A]);
+      else if constexpr (WIDTH == 4)
+        weight[k] = broadcast<A>(Vec<4 * L>::load(w[k]));
+      else
+        weight[k] = join(Vec<WIDTH>::all(w[k][A]), Vec<WIDTH>::all(w[k][4 + A]));
+    }
+  }
+};
+
+/** Copies of the last points of a range, with room behind the rows: vectors of four reals read and
+ *  write past a row of three or nine. */
+struct LastPoints {
+  double x[8], v[8], f[8], C[20], stress[12], vol[2], mass[2], xnew[8], L[20];
+  PointRows rows{x, v, f, C, stress, vol, mass, xnew};
+
+  template <int WIDTH>
+  static MPM_INLINE void load(double *to, const double *from, long first, long last)
+  {
+    for (long i = 0; i < WIDTH * (last - first); i++) to[i] = from[WIDTH * first + i];
+  }
+  template <int WIDTH>
+  static MPM_INLINE void store(const double *from, double *to, long first, long last)
+  {
+    for (long i = 0; i < WIDTH * (last - first); i++) to[WIDTH * first + i] = from[i];
+  }
+};
+
+// ---------------------------------------------------------------------- points to nodes
+
+/** Contributions of L points to their nodes, WIDTH reals per node:
+ *
+ *   node(i,j,k) = wx_i wy_j wz_k (q + i Ax + j Ay + k Az)
+ *                 + gx_i wy_j wz_k Sx + wx_i gy_j wz_k Sy + wx_i wy_j gz_k Sz
+ *
+ *  with weights w, gradients g and node numbers i, j, k from the base node; A is there if AFFINE,
+ *  S if GRADIENT. With K_a[n] = n w_a[n] A_a + g_a[n] S_a along each axis a this is
+ *
+ *   X_i = wx_i q + Kx_i,   XY_ij = wy_j X_i + wx_i Ky_j,   node = wz_k XY_ij + wx_i wy_j Kz_k.
+ */
+template <int DIM, int ORDER, int WIDTH, int L, bool AFFINE, bool GRADIENT> struct Scatter {
+  using V = Vec<WIDTH * L>;
+  using Weights = AxisWeights<ORDER, L>;
+  static constexpr int N = ORDER + 1;
+
+  V q;
+  V A[DIM];
+  V S[DIM];
+
+  /** Node n along an axis has a term K. */
+  static constexpr bool has_K(int n) { return GRADIENT || (AFFINE && n > 0); }
+
+  /** Weights along axis AXIS, and K. */
+  template <int AXIS>
+  MPM_INLINE void along(const Weights &weights, const Weights &gradients, V *w, V *K) const
+  {
+    weights.template get<AXIS, WIDTH>(w);
+    V g[N];
+    if constexpr (GRADIENT && ORDER > 1) gradients.template get<AXIS, WIDTH>(g);
+    MPM_UNROLL
+    for (int n = 0; n < N; n++) {
+      if constexpr (GRADIENT && ORDER == 1)
+        K[n] = n ? S[AXIS] : -S[AXIS];
+      else if constexpr (GRADIENT)
+        K[n] = g[n] * S[AXIS];
+      if constexpr (AFFINE && GRADIENT)
+        if (n) K[n] += double(n) * A[AXIS] * w[n];
+      if constexpr (AFFINE && !GRADIENT)
+        if (n) K[n] = double(n) * A[AXIS] * w[n];
+    }
+  }
+
+  /** Adds a row of nodes along the last axis, w_n row + factor K_n; SAME: points share the nodes. */
+  template <bool SAME, int NREAL>
+  static MPM_INLINE void add_row(double *const *base, long offset, V row, V factor, const V *w,
+                                 const V *K)
+  {
+    MPM_UNROLL
+    for (int n = 0; n < N; n++) {
+      double *node = base[0] + offset + NREAL * n;
+      if constexpr (L == 1) {
+        V sum = V::load(node) + w[n] * row;
+        if (has_K(n)) sum += factor * K[n];
+        sum.store(node);
+      } else {
+        V sum = w[n] * row;
+        if (has_K(n)) sum += factor * K[n];
+        if constexpr (SAME) {
+          (Vec<WIDTH>::load(node) + (half<0>(sum) + half<1>(sum))).store(node);
+        } else {
+          (Vec<WIDTH>::load(node) + half<0>(sum)).store(node);
+          node = base[1] + offset + NREAL * n;
+          (Vec<WIDTH>::load(node) + half<1>(sum)).store(node);
+        }
+      }
+    }
+  }
+
+  /** Adds to all nodes; base: the record of each point's base node. */
+  template <bool SAME, int NREAL>
+  MPM_INLINE void add(const Weights &weights, const Weights &gradients, double *const *base) const
+  {
+    constexpr int sx = NREAL * tile_stride_x(DIM, ORDER), sy = NREAL * tile_stride_y(DIM, ORDER);
+    V wx[N], wy[N], Kx[N], Ky[N];
+    along<0>(weights, gradients, wx, Kx);
+    along<1>(weights, gradients, wy, Ky);
+    V wz[N], Kz[N];
+    if constexpr (DIM == 3) along<2>(weights, gradients, wz, Kz);
+
+    MPM_UNROLL
+    for (int i = 0; i < N; i++) {
+      V X = wx[i] * q;
+      if (has_K(i)) X += Kx[i];
+      if constexpr (DIM == 2) {
+        add_row<SAME, NREAL>(base, sx * i, X, wx[i], wy, Ky);
+      } else {
+        MPM_UNROLL
+        for (int j = 0; j < N; j++) {
+          V XY = wy[j] * X;
+          if (has_K(j)) XY += wx[i] * Ky[j];
+          add_row<SAME, NREAL>(base, sx * i + sy * j, XY, wx[i] * wy[j], wz, Kz);
+        }
+      }
+    }
+  }
+};
+
+enum Parts { MOMENTUM = 1, FORCE = 2, ALL = 3 };
+
+/** P2G of what PARTS says; AFFINE: APIC. */
+template <int DIM, int ORDER, bool AFFINE, int NREAL, int PARTS> struct PointsToNodes {
+  static constexpr bool momentum = PARTS & MOMENTUM;
+  static constexpr bool force = PARTS & FORCE;
+  static constexpr bool mls = AFFINE && ORDER > 1;          // stress as an affine term
+  static constexpr bool gradient = force && !mls;           // stress with gradients
+  static constexpr bool both = NREAL == 8 && PARTS == ALL;  // momentum and force apart in a record,
+  static constexpr bool wide = both && REGISTER == 8;       // filled at once: a vector holds both
+  static constexpr int POINTS = wide ? MPM_TUNE_W : P2G_POINTS;
+  static constexpr int N = ORDER + 1;
+
+  /** L points ready to be scattered. */
+  template <int L> struct Prepared {
+    // all of it, or the momentum if it is filled apart from the force
+    Scatter<DIM, ORDER, wide ? 8 : 4, L, (AFFINE && momentum) || (mls && force),
+            gradient && !(both && !wide)>
+        main;
+    Scatter<DIM, ORDER, 4, L, mls, !mls> apart;
+    AxisWeights<ORDER, L> weights, gradients;
+    int place[L];
+  };
+
+  /** Columns of the stress tensor; lanes that are no axis are arbitrary. */
+  template <int L>
+  static MPM_INLINE void stress_columns(const double *stress, long p, Vec<4 * L> *column)
+  {
+    const Vec<4 * L> a = load_rows<L, 6>(stress, p);    // xx yy zz xy
+    if constexpr (DIM == 2) {
+      column[0] = shuffle<0, 3, 3, 3>(a, a);
+      column[1] = shuffle<3, 1, 1, 1>(a, a);
+    } else {
+      const Vec<4 * L> b = load_rows<L, 6>(stress + 2, p);        // zz xy xz yz
+      column[0] = shuffle<0, 5, 6, 7>(a, b);                      // xx xy xz
+      column[1] = shuffle<4, 1, 6, 7>(a, shuffle<1, 1, 3, 3>(b, b));    // xy yy yz
+      column[2] = shuffle<2, 3, 0, 0>(b, b);                      // xz yz zz
+    }
+  }
+
+  /** Momentum and force of each point side by side. */
+  template <int N4> static MPM_INLINE Vec<2 * N4> side_by_side(Vec<N4> m, Vec<N4> f)
+  {
+    if constexpr (N4 == 4)
+      return join(m, f);
+    else
+      return join(join(half<0>(m), half<0>(f)), join(half<1>(m), half<1>(f)));
+  }
+
+  /** Momentum and mass: value at the point and affine matrix per node spacing. */
+  template <int L>
+  static MPM_INLINE void momentum_terms(const PointRows &points, long p, double h, Vec<4 * L> &q,
+                                        Vec<4 * L> *A)
+  {
+    const Vec<4 * L> mass = load_numbers<L>(points.mass, p);
+    q = blend<DIM>(load_rows<L, 3>(points.v, p), repeat<4 * L>(0.0, 0.0, 0.0, 1.0)) * mass;
+    if constexpr (AFFINE) {
+      MPM_UNROLL
+      for (int a = 0; a < DIM; a++) A[a] = (h * mass) * load_rows<L, 9>(points.C + 3 * a, p);
+    }
+  }
+
+  /** Force times scale: external, and columns of -stress that an affine or gradient term takes. */
+  template <int L>
+  static MPM_INLINE void force_terms(const PointRows &points, long p, double inv_h, double scale,
+                                     Vec<4 * L> &q, Vec<4 * L> *A)
+  {
+    q = scale * blend<DIM>(load_rows<L, 3>(points.f, p), Vec<4 * L>{});
+    const double factor = -scale * inv_h * (mls ? BSpline<ORDER>::inv_moment : 1.0);
+    const Vec<4 * L> volume = load_numbers<L>(points.vol, p) * factor;
+    stress_columns<L>(points.stress, p, A);
+    MPM_UNROLL
+    for (int a = 0; a < DIM; a++) A[a] = volume * A[a];
+  }
+
+  /** Clears the lanes that are no axis. */
+  template <int N4> static MPM_INLINE void clear_lanes(Vec<N4> *A)
+  {
+    MPM_UNROLL
+    for (int a = 0; a < DIM; a++) A[a] = blend<DIM>(A[a], Vec<N4>{});
+  }
+
+  /** Moves the origin of an affine field from the point to its base node. */
+  template <int N4>
+  static MPM_INLINE void to_base_node(Vec<N4> &q, const Vec<N4> *A, Vec<N4> fraction)
+  {
+    const Vec<N4> distance = fraction + BSpline<ORDER>::shift;
+    q -= broadcast<0>(distance) * A[0] + broadcast<1>(distance) * A[1];
+    if constexpr (DIM == 3) q -= broadcast<2>(distance) * A[2];
+  }
+
+  template <int L>
+  static MPM_INLINE void prepare(const PointRows &points, long p, const TransferStep &step,
+                                 const Frame<DIM, ORDER, L> &frame, Prepared<L> &out,
+                                 Vec<4 * L> &lowest, Vec<4 * L> &highest)
+  {
+    using P = Vec<4 * L>;
+
+    const P t = frame.position(load_rows<L, 3>(points.x, p));
+    lowest = min(lowest, t);
+    highest = max(highest, t);
+    const P fraction = frame.locate(t, out.place);
+    P w[N];
+    BSpline<ORDER>::weights(fraction, w);
+    out.weights.set(w);
+    if constexpr (gradient && ORDER > 1) {
+      BSpline<ORDER>::gradients(fraction, w);
+      out.gradients.set(w);
+    }
+
+    // the terms Am and Af are affine, but Af is a gradient term if it is no mls
+    P qm, qf, Am[DIM], Af[DIM];
+    if constexpr (momentum) momentum_terms<L>(points, p, step.h, qm, Am);
+    if constexpr (force)
+      force_terms<L>(points, p, step.inv_h, NREAL == 4 ? step.dt : 1.0, qf, Af);
+
+    if constexpr (both) {
+      if constexpr (AFFINE) {
+        clear_lanes(Am);
+        to_base_node(qm, Am, fraction);
+      }
+      clear_lanes(Af);
+      if constexpr (mls) to_base_node(qf, Af, fraction);
+      if constexpr (wide) {
+        out.main.q = side_by_side(qm, qf);
+        MPM_UNROLL
+        for (int a = 0; a < DIM; a++) {
+          if constexpr (AFFINE) out.main.A[a] = side_by_side(Am[a], mls ? Af[a] : P{});
+          if constexpr (!mls) out.main.S[a] = side_by_side(P{}, Af[a]);
+        }
+      } else {
+        out.main.q = qm;
+        out.apart.q = qf;
+        MPM_UNROLL
+        for (int a = 0; a < DIM; a++) {
+          if constexpr (AFFINE) out.main.A[a] = Am[a];
+          (mls ? out.apart.A[a] : out.apart.S[a]) = Af[a];
+        }
+      }
+    } else {
+      if constexpr (mls && momentum && force) {
+        MPM_UNROLL
+        for (int a = 0; a < DIM; a++) Am[a] += Af[a];
+      }
+      P q = momentum ? qm : qf;
+      if constexpr (momentum && force) q += qf;
+      if constexpr (AFFINE && (momentum || mls)) {
+        P *A = momentum ? Am : Af;
+        clear_lanes(A);
+        to_base_node(q, A, fraction);
+        MPM_UNROLL
+        for (int a = 0; a < DIM; a++) out.main.A[a] = A[a];
+      }
+      if constexpr (gradient) {
+        clear_lanes(Af);
+        MPM_UNROLL
+        for (int a = 0; a < DIM; a++) out.main.S[a] = Af[a];
+      }
+      out.main.q = q;
+    }
+  }
+
+  template <bool SAME, int L>
+  static MPM_INLINE void scatter(const Prepared<L> &in, double *const *base)
+  {
+    in.main.template add<SAME, NREAL>(in.weights, in.gradients, base);
+    if constexpr (both && !wide) {
+      double *forces[L];
+      MPM_UNROLL
+      for (int l = 0; l < L; l++) forces[l] = base[l] + 4;
+      in.apart.template add<SAME, NREAL>(in.weights, in.gradients, forces);
+    }
+  }
+
+  /** Points [first,last), L at a time. */
+  template <int L>
+  static __attribute__((noinline)) void range(const PointRows &rows, const TransferStep &transfer,
+                                              long first, long last, const int *base, double *tile,
+                                              int *box)
+  {
+    // copies, so that the compiler knows that no store changes them
+    const PointRows points = rows;
+    const TransferStep step = transfer;
+    const Frame<DIM, ORDER, L> frame(step, base);
+    double *const entry = tile + (NREAL == 8 && PARTS == FORCE ? 4 : 0);
+    Vec<4 * L> lowest = Vec<4 * L>::all(1.0e6), highest = Vec<4 * L>::all(-1.0e6);
+    constexpr int STAGE = P2G_STAGE / L;
+    Prepared<L> stage[STAGE];
+
+    for (long p = first; p < last;) {
+      const long n = (last - p) / L < STAGE ? (last - p) / L : STAGE;
+      const long ahead = p + PREFETCH, end = ahead + n * L;
+      prefetch<3>(points.x, ahead, end);
+      if (momentum) {
+        prefetch<3>(points.v, ahead, end);
+        prefetch<1>(points.mass, ahead, end);
+        if (AFFINE) prefetch<9>(points.C, ahead, end);
+      }
+      if (force) {
+        prefetch<3>(points.f, ahead, end);
+        prefetch<6>(points.stress, ahead, end);
+        prefetch<1>(points.vol, ahead, end);
+      }
+      for (long i = 0; i < n; i++, p += L)
+        prepare<L>(points, p, step, frame, stage[i], lowest, highest);
+      for (long i = 0; i < n; i++) {
+        const Prepared<L> &in = stage[i];
+        double *node[L];
+        MPM_UNROLL
+        for (int l = 0; l < L; l++) node[l] = entry + NREAL * in.place[l];
+        if (L == 1 || __builtin_expect(node[0] == node[L - 1], 1)) {
+          scatter<true>(in, node);
+        } else {
+          // barrier: otherwise GCC moves what both branches have in common above them, and spills
+          asm volatile("" ::: "memory");
+          scatter<false>(in, node);
+        }
+      }
+    }
+
+    for (int l = 0; l < L; l++)
+      for (int a = 0; a < DIM; a++) {
+        const int low = static_cast<int>(lowest.lane(4 * l + a));
+        const int high = static_cast<int>(highest.lane(4 * l + a));
+        if (low < box[a]) box[a] = low;
+        if (high > box[3 + a]) box[3 + a] = high;
+      }
+  }
+
+  static void p2g(const PointRows &points, const TransferStep &step, int first, int last,
+                  const int base[3], double *tile, int box[6])
+  {
+    if (first >= last) return;
+    const int rest = first + (last - first - 1) / POINTS * POINTS;
+    if (rest > first) range<POINTS>(points, step, first, rest, base, tile, box);
+
+    LastPoints copy;
+    copy.load<3>(copy.x, points.x, rest, last);
+    if (momentum) {
+      copy.load<3>(copy.v, points.v, rest, last);
+      copy.load<1>(copy.mass, points.mass, rest, last);
+      if (AFFINE) copy.load<9>(copy.C, points.C, rest, last);
+    }
+    if (force) {
+      copy.load<3>(copy.f, points.f, rest, last);
+      copy.load<6>(copy.stress, points.stress, rest, last);
+      copy.load<1>(copy.vol, points.vol, rest, last);
+    }
+    if (last - rest == POINTS)
+      range<POINTS>(copy.rows, step, 0, POINTS, base, tile, box);
+    else
+      range<1>(copy.rows, step, 0, 1, base, tile, box);
+  }
+};
+
+// ---------------------------------------------------------------------- nodes to points
+
+/** Sums of weight times node vector for L points. GRADIENT: with the derivatives along each axis,
+ *  by the gradients or, if MLS, as first moments with node numbers (from the base node). */
+template <int DIM, int ORDER, int NREAL, int L, bool MLS, bool GRADIENT> struct Gather {
+  using V = Vec<4 * L>;
+  using Weights = AxisWeights<ORDER, L>;
+  static constexpr int N = ORDER + 1;
+
+  V value, derivative[DIM];
+
+  /** Node vector of each point; SAME: points share the node. */
+  template <bool SAME> static MPM_INLINE V node(const double *const *base, long offset)
+  {
+    const Vec<4> first = Vec<4>::load(base[0] + offset);
+    if constexpr (L == 1)
+      return first;
+    else
+      return join(first, SAME ? first : Vec<4>::load(base[1] + offset));
+  }
+
+  static MPM_INLINE void accumulate(bool first, V &sum, V a, V b)
+  {
+    if (first)
+      sum = a * b;
+    else
+      sum += a * b;
+  }
+
+  /** Sums a row of nodes along the last axis. */
+  template <bool SAME>
+  static MPM_INLINE void row(const double *const *base, long offset, const V *w, const V *d,
+                             V &value, V &derivative)
+  {
+    MPM_UNROLL
+    for (int n = 0; n < N; n++) {
+      const V a = node<SAME>(base, offset + NREAL * n);
+      accumulate(n == 0, value, w[n], a);
+      if (GRADIENT && !(MLS && n == 0)) accumulate(n == MLS, derivative, d[n], a);
+    }
+  }
+
+  /** Weights along AXIS and what takes their place in derivatives. */
+  template <int AXIS>
+  static MPM_INLINE void along(const Weights &weights, const Weights &gradients, V *w, V *d)
+  {
+    weights.template get<AXIS, 4>(w);
+    if constexpr (MLS) {
+      MPM_UNROLL
+      for (int n = 1; n < N; n++) d[n] = n == 1 ? w[n] : double(n) * w[n];
+    } else if constexpr (GRADIENT) {
+      gradients.template get<AXIS, 4>(d);
+    }
+  }
+
+  template <bool SAME>
+  MPM_INLINE void sum(const Weights &weights, const Weights &gradients, const double *const *base)
+  {
+    constexpr int sx = NREAL * tile_stride_x(DIM, ORDER), sy = NREAL * tile_stride_y(DIM, ORDER);
+    V wx[N], wy[N], wz[N], dx[N], dy[N], dz[N];
+    along<0>(weights, gradients, wx, dx);
+    along<1>(weights, gradients, wy, dy);
+    if constexpr (DIM == 3) along<2>(weights, gradients, wz, dz);
+
+    MPM_UNROLL
+    for (int i = 0; i < N; i++) {
+      V plane, plane_y, plane_z;
+      if constexpr (DIM == 2) {
+        row<SAME>(base, sx * i, wy, dy, plane, plane_y);
+      } else {
+        MPM_UNROLL
+        for (int j = 0; j < N; j++) {
+          V line, line_z;
+          row<SAME>(base, sx * i + sy * j, wz, dz, line, line_z);
+          accumulate(j == 0, plane, wy[j], line);
+          if (GRADIENT) {
+            if (!(MLS && j == 0)) accumulate(j == MLS, plane_y, dy[j], line);
+            accumulate(j == 0, plane_z, wy[j], line_z);
+          }
+        }
+      }
+      accumulate(i == 0, value, wx[i], plane);
+      if (GRADIENT) {
+        if (!(MLS && i == 0)) accumulate(i == MLS, derivative[0], dx[i], plane);
+        accumulate(i == 0, derivative[1], wx[i], plane_y);
+        if constexpr (DIM == 3) accumulate(i == 0, derivative[2], wx[i], plane_z);
+      }
+    }
+  }
+
+  /** The same for linear functions with the fraction f: interpolation takes fewer operations. */
+  template <bool SAME> MPM_INLINE void interpolate(V f, const double *const *base)
+  {
+    constexpr int sx = NREAL * tile_stride_x(DIM, ORDER), sy = NREAL * tile_stride_y(DIM, ORDER);
+    const V fx = broadcast<0>(f), fy = broadcast<1>(f), fz = broadcast<2>(f);
+    V plane[2], plane_y[2], plane_z[2];
+    MPM_UNROLL
+    for (int i = 0; i < 2; i++) {
+      V line[2], line_z[2];
+      MPM_UNROLL
+      for (int j = 0; j < 2; j++) {
+        line[j] = node<SAME>(base, sx * i + sy * j);
+        if constexpr (DIM == 3) {
+          line_z[j] = node<SAME>(base, sx * i + sy * j + NREAL) - line[j];
+          line[j] += fz * line_z[j];
+        }
+      }
+      plane_y[i] = line[1] - line[0];
+      plane[i] = line[0] + fy * plane_y[i];
+      if constexpr (DIM == 3) plane_z[i] = line_z[0] + fy * (line_z[1] - line_z[0]);
+    }
+    derivative[0] = plane[1] - plane[0];
+    value = plane[0] + fx * derivative[0];
+    derivative[1] = plane_y[0] + fx * (plane_y[1] - plane_y[0]);
+    if constexpr (DIM == 3) derivative[2] = plane_z[0] + fx * (plane_z[1] - plane_z[0]);
+  }
+};
+
+/** G2P and velocity gradient. */
+template <int DIM, int ORDER, Transfer TRANSFER, int NREAL> struct NodesToPoints {
+  static constexpr bool mls = TRANSFER == APIC && ORDER > 1;    // gradient from first moments
+  static constexpr int POINTS = G2P_POINTS;
+  static constexpr int N = ORDER + 1;
+
+  /** L points ready to be gathered. */
+  template <int L> struct Prepared {
+    alignas(64) double x[4 * L], fraction[4 * L];
+    AxisWeights<ORDER, L> weights, gradients;
+    int place[L];
+  };
+
+  template <bool GRADIENT, int L>
+  static MPM_INLINE void prepare(const PointRows &points, long p,
+                                 const Frame<DIM, ORDER, L> &frame, Prepared<L> &out)
+  {
+    const Vec<4 *L> x = load_rows<L, 3>(points.x, p);
+    const Vec<4 *L> fraction = frame.locate(frame.position(x), out.place);
+    x.store(out.x);
+    fraction.store(out.fraction);
+    if constexpr (ORDER > 1) {
+      Vec<4 * L> w[N];
+      BSpline<ORDER>::weights(fraction, w);
+      out.weights.set(w);
+      if constexpr (GRADIENT && !mls) {
+        BSpline<ORDER>::gradients(fraction, w);
+        out.gradients.set(w);
+      }
+    }
+  }
+
+  /** Value and derivatives of the node vector at OFFSET in the records. */
+  template <bool SAME, bool GRADIENT, int OFFSET, int L>
+  static MPM_INLINE void gather(const Prepared<L> &in, const double *const *node,
+                                Vec<4 * L> &value, Vec<4 * L> *derivative)
+  {
+    const double *base[L];
+    MPM_UNROLL
+    for (int l = 0; l < L; l++) base[l] = node[l] + OFFSET;
+    Gather<DIM, ORDER, NREAL, L, mls && GRADIENT, GRADIENT> field;
+    if constexpr (ORDER == 1)
+      field.template interpolate<SAME>(Vec<4 * L>::load(in.fraction), base);
+    else
+      field.template sum<SAME>(in.weights, in.gradients, base);
+    value = field.value;
+    if constexpr (GRADIENT) {
+      MPM_UNROLL
+      for (int a = 0; a < DIM; a++) derivative[a] = field.derivative[a];
+    }
+  }
+
+  /** Stores the first K reals of each point's four in rows of three. */
+  template <int K, int L> static MPM_INLINE void store_rows(double *rows, long p, Vec<4 * L> a)
+  {
+    if constexpr (L == 1) {
+      store_lanes<K>(rows + 3 * p, a);
+    } else {
+      store_lanes<K>(rows + 3 * p, half<0>(a));
+      store_lanes<K>(rows + 3 * (p + 1), half<1>(a));
+    }
+  }
+
+  /** Stores the columns of matrices in rows of nine, from the first row to the last: each column
+   *  but the last of all also writes one real behind it, which the next column overwrites. */
+  template <int L> static MPM_INLINE void store_columns(double *rows, long p, const Vec<4 * L> *column)
+  {
+    MPM_UNROLL
+    for (int a = 0; a < 3; a++) {
+      const Vec<4 * L> c = a < DIM ? column[a < DIM ? a : 0] : Vec<4 * L>{};
+      if constexpr (L == 1)
+        c.store(rows + 9 * p + 3 * a);
+      else
+        half<0>(c).store(rows + 9 * p + 3 * a);
+    }
+    if constexpr (L == 2) {
+      MPM_UNROLL
+      for (int a = 0; a < 3; a++) {
+        const Vec<4 * L> c = a < DIM ? column[a < DIM ? a : 0] : Vec<4 * L>{};
+        half<1>(c).store(rows + 9 * (p + 1) + 3 * a);
+      }
+    }
+  }
+
+  /** Points [first,last), L at a time. UPDATE: velocity, position and C; GRADIENT: the velocity
+   *  gradient, which goes to C and to the rows L of which the first is for the point first. */
+  template <int L, bool UPDATE, bool GRADIENT>
+  static __attribute__((noinline)) int range(const PointRows &rows, const TransferStep &transfer,
+                                             long first, long last, const int *base,
+                                             const double *tile, double *gradients)
+  {
+    using P = Vec<4 * L>;
+    // copies, so that the compiler knows that no store changes them
+    const PointRows points = rows;
+    const TransferStep step = transfer;
+    const Frame<DIM, ORDER, L> frame(step, base);
+    P outside = {};
+    constexpr int STAGE = G2P_STAGE / L;
+    Prepared<L> stage[STAGE];
+
+    for (long p = first; p < last;) {
+      const long n = (last - p) / L < STAGE ? (last - p) / L : STAGE;
+      const long ahead = p + PREFETCH, end = ahead + n * L;
+      if (UPDATE) {
+        prefetch<3, 1>(points.x, ahead, end);
+        prefetch<3, 1>(points.v, ahead, end);
+        if (TRANSFER == APIC) prefetch<9, 1>(points.C, ahead, end);
+      } else {
+        prefetch<3>(points.x, ahead, end);
+      }
+      if (GRADIENT) {
+        // the constitutive law comes next
+        prefetch<6, 1>(points.stress, ahead, end);
+        prefetch<1, 1>(points.vol, ahead, end);
+      }
+      for (long i = 0; i < n; i++) prepare<GRADIENT, L>(points, p + L * i, frame, stage[i]);
+      for (long i = 0; i < n; i++, p += L) {
+        const Prepared<L> &in = stage[i];
+        const double *node[L];
+        MPM_UNROLL
+        for (int l = 0; l < L; l++) node[l] = tile + NREAL * in.place[l];
+        P v, D[DIM], v_old;
+        if (L == 1 || __builtin_expect(node[0] == node[L - 1], 1)) {
+          gather<true, GRADIENT, 0>(in, node, v, D);
+          if constexpr (UPDATE && TRANSFER == FLIP) gather<true, false, 4>(in, node, v_old, D);
+        } else {
+          // barrier: otherwise GCC moves what both branches have in common above them, and spills
+          asm volatile("" ::: "memory");
+          gather<false, GRADIENT, 0>(in, node, v, D);
+          if constexpr (UPDATE && TRANSFER == FLIP) gather<false, false, 4>(in, node, v_old, D);
+        }
+
+        if constexpr (GRADIENT) {
+          const double factor = mls ? BSpline<ORDER>::inv_moment * step.inv_h : step.inv_h;
+          if constexpr (mls) {
+            // moments about the point instead of the base node
+            const P distance = P::load(in.fraction) + BSpline<ORDER>::shift;
+            D[0] -= broadcast<0>(distance) * v;
+            D[1] -= broadcast<1>(distance) * v;
+            if constexpr (DIM == 3) D[2] -= broadcast<2>(distance) * v;
+          }
+          MPM_UNROLL
+          for (int a = 0; a < DIM; a++) {
+            D[a] = factor * D[a];
+            if (DIM == 2) D[a] = blend<2>(D[a], P{});
+          }
+          if (UPDATE && TRANSFER == APIC) store_columns<L>(points.C, p, D);
+          if (TRANSFER != APIC || gradients) store_columns<L>(gradients, p - first, D);
+        }
+
+        if constexpr (UPDATE) {
+          if constexpr (DIM == 2) v = blend<2>(v, P{});
+          const P x = P::load(in.x) + step.dt * v;
+          outside = flag_outside(outside, frame.position(x), block_side(DIM) + 2);
+          store_rows<3, L>(points.xnew, p, x);
+          if constexpr (TRANSFER == FLIP)
+            v += step.flip * (load_rows<L, 3>(points.v, p) - v_old);
+          store_rows<DIM, L>(points.v, p, v);
+        }
+      }
+    }
+
+    bool left = false;
+    for (int l = 0; l < L; l++)
+      for (int a = 0; a < DIM; a++) left = left || outside.lane(4 * l + a) != 0.0;
+    return left;
+  }
+
+  template <bool UPDATE, bool GRADIENT>
+  static int all(const PointRows &points, const TransferStep &step, int first, int last,
+                 const int *base, const double *tile, double *gradients)
+  {
+    if (first >= last) return 0;
+    const int rest = first + (last - first - 1) / POINTS * POINTS;
+    int left = 0;
+    if (rest > first)
+      left = range<POINTS, UPDATE, GRADIENT>(points, step, first, rest, base, tile, gradients);
+
+    LastPoints copy;
+    copy.load<3>(copy.x, points.x, rest, last);
+    if (UPDATE) copy.load<3>(copy.v, points.v, rest, last);
+    if (last - rest == POINTS)
+      left |= range<POINTS, UPDATE, GRADIENT>(copy.rows, step, 0, POINTS, base, tile, copy.L);
+    else
+      left |= range<1, UPDATE, GRADIENT>(copy.rows, step, 0, 1, base, tile, copy.L);
+    if (UPDATE) {
+      copy.store<3>(copy.xnew, points.xnew, rest, last);
+      copy.store<3>(copy.v, points.v, rest, last);
+      if (TRANSFER == APIC) copy.store<9>(copy.C, points.C, rest, last);
+    }
+    if (GRADIENT && gradients) copy.store<9>(copy.L, gradients, rest - first, last - first);
+    return left;
+  }
+
+  static int g2p(const PointRows &points, const TransferStep &step, int first, int last,
+                 const int base[3], const double *tile, double *L)
+  {
+    if (TRANSFER == APIC || L) return all<true, true>(points, step, first, last, base, tile, L);
+    if constexpr (TRANSFER != APIC)
+      return all<true, false>(points, step, first, last, base, tile, L);
+    return 0;
+  }
+
+  static int g2p_gradient(const PointRows &points, const TransferStep &step, int first, int last,
+                          const int base[3], const double *tile, double *L)
+  {
+    all<false, true>(points, step, first, last, base, tile, L);
+    return 0;
+  }
+};
+
+// ---------------------------------------------------------------------- nodes
+
+/** Adds N reals of the tile to nodes and clears them, or loads them. */
+template <int N, bool LOAD> MPM_INLINE void move_reals(double *tile, double *nodes)
+{
+  MPM_UNROLL
+  for (int i = 0; i < N; i += 4) {
+    if constexpr (LOAD) {
+      Vec<4>::load(nodes + i).store(tile + i);
+    } else {
+      (Vec<4>::load(nodes + i) + Vec<4>::load(tile + i)).store(nodes + i);
+      Vec<4>{}.store(tile + i);
+    }
+  }
+}
+
+/** Flush or load, a row of nodes along the last axis at a time. A row has one node in the block
+ *  before, all of its own block and ORDER + 1 nodes in the block after; each of these parts is moved
+ *  whole if the box touches it. */
+template <int DIM, int ORDER, int NREAL, bool LOAD>
+void tile_io(double *tile, double *nodes, const int slot[27], const int box[6])
+{
+  constexpr int side = block_side(DIM), last = DIM - 1, after = ORDER + 1;
+  constexpr int sx = tile_stride_x(DIM, ORDER), sy = tile_stride_y(DIM, ORDER);
+  const bool touches_before = box[last] == 0;
+  const bool touches_own = box[last] <= side;
+  const bool touches_after = box[3 + last] + ORDER > side;
+
+  const int ylow = DIM == 3 ? box[1] : 0;
+  const int yhigh = DIM == 3 ? box[4] + ORDER : 0;
+  for (int i = box[0]; i <= box[3] + ORDER; i++)
+    for (int j = ylow; j <= yhigh; j++) {
+      // tile node 0 is the last node of the block before
+      const int x = i + side - 1, y = j + side - 1;
+      double *row = tile + NREAL * (DIM == 3 ? i * sx + j * sy : i * sx);
+      const int *block = slot + (DIM == 3 ? 9 * (x / side) + 3 * (y / side) : 9 * (x / side));
+      const int index = DIM == 3 ? (x % side * side + y % side) * side : x % side * side;
+      // in 3d slots of a row are neighbours, in 2d three apart, the middle one of three in z
+      constexpr int next = DIM == 3 ? 1 : 3, middle = DIM == 3 ? 0 : 1;
+      if (touches_before)
+        move_reals<NREAL, LOAD>(row, nodes + (64L * block[middle] + index + side - 1) * NREAL);
+      if (touches_own)
+        move_reals<side * NREAL, LOAD>(row + NREAL,
+                                       nodes + (64L * block[next + middle] + index) * NREAL);
+      if (touches_after)
+        move_reals<after * NREAL, LOAD>(row + NREAL * (side + 1),
+                                        nodes + (64L * block[2 * next + middle] + index) * NREAL);
+    }
+}
+
+void solve_nodes(double *nodes, int nnodes, int nreal, double dt)
+{
+  double *const end = nodes + static_cast<long>(nreal) * nnodes;
+  for (double *node = nodes; node < end; node += nreal) {
+    const Vec<4> p = Vec<4>::load(node);
+    const double m = node[3];
+    const double inv_m = m > 0.0 ? 1.0 / m : 0.0;
+    const Vec<4> v = inv_m * p;
+    if (nreal == 4) {
+      v.store(node);
+    } else {
+      const Vec<4> vnew = v + (dt * inv_m) * Vec<4>::load(node + 4);
+      vnew.store(node);
+      blend<3>(v, Vec<4>{}).store(node + 4);
+    }
+    node[3] = m;
+  }
+}
+
+// ---------------------------------------------------------------------- table
+
+template <int DIM, int ORDER, Transfer TRANSFER, int NREAL> TransferKernels kernels()
+{
+  constexpr bool affine = TRANSFER == APIC;
+  using G2P = NodesToPoints<DIM, ORDER, TRANSFER, NREAL>;
+  TransferKernels k;
+  k.nreal = NREAL;
+  k.affine = affine;
+  k.mls = affine && ORDER > 1;
+  k.p2g = PointsToNodes<DIM, ORDER, affine, NREAL, ALL>::p2g;
+  k.p2g_momentum = PointsToNodes<DIM, ORDER, affine, NREAL, MOMENTUM>::p2g;
+  k.p2g_force = PointsToNodes<DIM, ORDER, affine, NREAL, FORCE>::p2g;
+  k.g2p = G2P::g2p;
+  k.g2p_gradient = G2P::g2p_gradient;
+  k.flush = tile_io<DIM, ORDER, NREAL, false>;
+  k.load = tile_io<DIM, ORDER, NREAL, true>;
+  return k;
+}
+
+template <int DIM, int ORDER> TransferKernels choose(Transfer transfer, bool split)
+{
+  switch (transfer) {
+    case PIC:
+      return kernels<DIM, ORDER, PIC, 8>();
+    case FLIP:
+      return kernels<DIM, ORDER, FLIP, 8>();
+    case APIC:
+      return split ? kernels<DIM, ORDER, APIC, 8>() : kernels<DIM, ORDER, APIC, 4>();
+  }
+  return TransferKernels();
+}
+
+template <int DIM> TransferKernels choose(Shape shape, Transfer transfer, bool split)
+{
+  switch (shape) {
+    case LINEAR:
+      return choose<DIM, 1>(transfer, split);
+    case QUADRATIC:
+      return choose<DIM, 2>(transfer, split);
+    case CUBIC:
+      return choose<DIM, 3>(transfer, split);
+  }
+  return TransferKernels();
+}
+
+TransferKernels transfer(int dim, Shape shape, Transfer transfer, bool split)
+{
+  return dim == 3 ? choose<3>(shape, transfer, split) : choose<2>(shape, transfer, split);
+}
+
+}    // namespace
+
+const MPMKernels *MPM_NS::MPM_CONCAT(mpm_kernels_, MPM_ISA)()
+{
+  static const MPMKernels table = {MPM_CONCAT(MPM_NAME_, MPM_ISA), transfer, solve_nodes};
+  return &table;
+}
+
+#endif

@@ -1,0 +1,314 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// Kernels in plain scalar loops: the statement of what a transfer is. The tests compare every
+// instruction set with them, and they run where nothing else does.
+
+#include "mpm_kernels.h"
+
+#include "mpm_shape.h"
+
+#include <cmath>
+
+namespace MPM_NS {
+const MPMKernels *mpm_kernels_reference();
+}
+
+using namespace MPM_NS;
+
+namespace {
+
+/** Node of a tile as one point sees it. */
+struct Node {
+  int index;         ///< in the tile, in nodes
+  double w;          ///< weight
+  double grad[3];    ///< gradient of the weight
+  double d[3];       ///< position of the node minus that of the point
+};
+
+/** Position in units of h from tile node 0, less the shift: its floor is the base node. */
+template <int ORDER>
+double tile_position(double x, const TransferStep &step, const int *base, int axis)
+{
+  return (x - step.origin[axis]) * step.inv_h - (BSpline<ORDER>::shift + base[axis]);
+}
+
+/** Nodes, weights and gradients of the point at x. */
+template <int DIM, int ORDER> struct Stencil {
+  static constexpr int count = DIM == 3 ? (ORDER + 1) * (ORDER + 1) * (ORDER + 1) :
+                                          (ORDER + 1) * (ORDER + 1);
+  int base[3] = {0, 0, 0};    ///< tile index of the base node
+  Node node[count];
+
+  Stencil(const double *x, const TransferStep &step, const int *tilebase)
+  {
+    constexpr int nz = DIM == 3 ? ORDER + 1 : 1;
+    // in 2d the z axis has a single node of weight one at distance zero
+    double w[3][4] = {{1.0}, {1.0}, {1.0}}, dw[3][4] = {}, d[3][4] = {};
+    for (int a = 0; a < DIM; a++) {
+      const double t = tile_position<ORDER>(x[a], step, tilebase, a);
+      base[a] = static_cast<int>(std::floor(t));
+      const double f = t - base[a];
+      BSpline<ORDER>::weights(f, w[a]);
+      BSpline<ORDER>::gradients(f, dw[a]);
+      for (int i = 0; i <= ORDER; i++) {
+        dw[a][i] *= step.inv_h;
+        d[a][i] = (i - BSpline<ORDER>::shift - f) * step.h;
+      }
+    }
+    int n = 0;
+    for (int i = 0; i <= ORDER; i++)
+      for (int j = 0; j <= ORDER; j++)
+        for (int k = 0; k < nz; k++, n++) {
+          node[n].index = (base[0] + i) * tile_stride_x(DIM, ORDER) +
+              (base[1] + j) * tile_stride_y(DIM, ORDER) + (DIM == 3 ? base[2] + k : 0);
+          node[n].w = w[0][i] * w[1][j] * w[2][k];
+          node[n].grad[0] = dw[0][i] * w[1][j] * w[2][k];
+          node[n].grad[1] = w[0][i] * dw[1][j] * w[2][k];
+          node[n].grad[2] = w[0][i] * w[1][j] * dw[2][k];
+          node[n].d[0] = d[0][i];
+          node[n].d[1] = d[1][j];
+          node[n].d[2] = d[2][k];
+        }
+  }
+};
+
+/** Symmetric stress (xx yy zz xy xz yz) times a vector. */
+template <int DIM> void stress_times(const double *s, const double *a, double *b)
+{
+  b[0] = s[0] * a[0] + s[3] * a[1];
+  b[1] = s[3] * a[0] + s[1] * a[1];
+  b[2] = 0.0;
+  if (DIM == 3) {
+    b[0] += s[4] * a[2];
+    b[1] += s[5] * a[2];
+    b[2] = s[4] * a[0] + s[5] * a[1] + s[2] * a[2];
+  }
+}
+
+enum Parts { MOMENTUM = 1, FORCE = 2, ALL = 3 };
+
+/** Points to nodes; PARTS says what is transferred. */
+template <int DIM, int ORDER, Transfer TRANSFER, int NREAL, int PARTS>
+void p2g(const PointRows &points, const TransferStep &step, int first, int last, const int base[3],
+         double *tile, int box[6])
+{
+  constexpr bool affine = TRANSFER == APIC;
+  constexpr bool mls = affine && ORDER > 1;
+  const double inv_moment = BSpline<ORDER>::inv_moment * step.inv_h * step.inv_h;
+
+  for (int p = first; p < last; p++) {
+    const Stencil<DIM, ORDER> stencil(points.x + 3 * p, step, base);
+    for (int a = 0; a < DIM; a++) {
+      if (stencil.base[a] < box[a]) box[a] = stencil.base[a];
+      if (stencil.base[a] > box[3 + a]) box[3 + a] = stencil.base[a];
+    }
+    for (const Node &node : stencil.node) {
+      double *real = tile + NREAL * node.index;
+      if (PARTS & MOMENTUM) {
+        const double wm = node.w * points.mass[p];
+        for (int i = 0; i < DIM; i++) {
+          double v = points.v[3 * p + i];
+          if (affine)
+            for (int j = 0; j < DIM; j++) v += points.C[9 * p + 3 * j + i] * node.d[j];
+          real[i] += wm * v;
+        }
+        real[3] += wm;
+      }
+      if (PARTS & FORCE) {
+        double internal[3];
+        stress_times<DIM>(points.stress + 6 * p, mls ? node.d : node.grad, internal);
+        const double scale = mls ? -points.vol[p] * inv_moment * node.w : -points.vol[p];
+        for (int i = 0; i < DIM; i++) {
+          const double f = scale * internal[i] + node.w * points.f[3 * p + i];
+          if (NREAL == 8)
+            real[4 + i] += f;
+          else
+            real[i] += step.dt * f;
+        }
+      }
+    }
+  }
+}
+
+/** Velocity gradient at a point: the affine matrix for quadratic and cubic APIC. */
+template <int DIM, int ORDER, Transfer TRANSFER, int NREAL>
+void velocity_gradient(const Stencil<DIM, ORDER> &stencil, const TransferStep &step,
+                       const double *tile, double *L)
+{
+  constexpr bool mls = TRANSFER == APIC && ORDER > 1;
+  const double inv_moment = BSpline<ORDER>::inv_moment * step.inv_h * step.inv_h;
+  for (int i = 0; i < 9; i++) L[i] = 0.0;
+  for (const Node &node : stencil.node) {
+    const double *v = tile + NREAL * node.index;
+    for (int j = 0; j < DIM; j++) {
+      const double g = mls ? inv_moment * node.w * node.d[j] : node.grad[j];
+      for (int i = 0; i < DIM; i++) L[3 * j + i] += v[i] * g;
+    }
+  }
+}
+
+/** Nodes to points: velocity, position, affine matrix, velocity gradient. */
+template <int DIM, int ORDER, Transfer TRANSFER, int NREAL>
+int g2p(const PointRows &points, const TransferStep &step, int first, int last, const int base[3],
+        const double *tile, double *L)
+{
+  int left = 0;
+  for (int p = first; p < last; p++) {
+    const Stencil<DIM, ORDER> stencil(points.x + 3 * p, step, base);
+    double v[3] = {0.0, 0.0, 0.0}, v_old[3] = {0.0, 0.0, 0.0};
+    for (const Node &node : stencil.node) {
+      const double *real = tile + NREAL * node.index;
+      for (int i = 0; i < DIM; i++) {
+        v[i] += node.w * real[i];
+        if (TRANSFER == FLIP) v_old[i] += node.w * real[4 + i];
+      }
+    }
+    double grad[9];
+    velocity_gradient<DIM, ORDER, TRANSFER, NREAL>(stencil, step, tile, grad);
+    if (TRANSFER == APIC)
+      for (int i = 0; i < 9; i++) points.C[9 * p + i] = grad[i];
+    if (L)
+      for (int i = 0; i < 9; i++) L[9 * (p - first) + i] = grad[i];
+
+    points.xnew[3 * p + 2] = points.x[3 * p + 2];
+    for (int i = 0; i < DIM; i++) {
+      double &vp = points.v[3 * p + i];
+      vp = TRANSFER == FLIP ? step.flip * (vp + v[i] - v_old[i]) + (1.0 - step.flip) * v[i] : v[i];
+      points.xnew[3 * p + i] = points.x[3 * p + i] + step.dt * v[i];
+      const double t = tile_position<ORDER>(points.xnew[3 * p + i], step, base, i);
+      if (!(t >= 0.0 && t < block_side(DIM) + 2)) left = 1;    // also when t is not a number
+    }
+  }
+  return left;
+}
+
+template <int DIM, int ORDER, Transfer TRANSFER, int NREAL>
+int g2p_gradient(const PointRows &points, const TransferStep &step, int first, int last,
+                 const int base[3], const double *tile, double *L)
+{
+  for (int p = first; p < last; p++) {
+    const Stencil<DIM, ORDER> stencil(points.x + 3 * p, step, base);
+    velocity_gradient<DIM, ORDER, TRANSFER, NREAL>(stencil, step, tile, L + 9 * (p - first));
+  }
+  return 0;
+}
+
+/** Calls action(index in tile, block slot, index in block) for the nodes of the box. */
+template <int DIM, int ORDER, class Action> void for_box(const int *box, Action action)
+{
+  constexpr int side = block_side(DIM);
+  int n[3] = {0, 0, 0};
+  const int zlo = DIM == 3 ? box[2] : 0;
+  const int zhi = DIM == 3 ? box[5] + ORDER : 0;
+  for (n[0] = box[0]; n[0] <= box[3] + ORDER; n[0]++)
+    for (n[1] = box[1]; n[1] <= box[4] + ORDER; n[1]++)
+      for (n[2] = zlo; n[2] <= zhi; n[2]++) {
+        int slot = 0, index = 0, tile = 0;
+        for (int a = 0; a < 3; a++) {
+          // tile node 0 is the last node of the block before
+          const int shifted = a < DIM ? n[a] + side - 1 : side;
+          slot = 3 * slot + shifted / side;
+          if (a < DIM) index = side * index + shifted % side;
+        }
+        tile = n[0] * tile_stride_x(DIM, ORDER) + n[1] * tile_stride_y(DIM, ORDER) + n[2];
+        action(tile, slot, index);
+      }
+}
+
+template <int DIM, int ORDER, int NREAL>
+void flush(double *tile, double *nodes, const int slot[27], const int box[6])
+{
+  for_box<DIM, ORDER>(box, [=](int t, int s, int n) {
+    for (int i = 0; i < NREAL; i++) {
+      nodes[(64 * static_cast<long>(slot[s]) + n) * NREAL + i] += tile[NREAL * t + i];
+      tile[NREAL * t + i] = 0.0;
+    }
+  });
+}
+
+template <int DIM, int ORDER, int NREAL>
+void load(double *tile, double *nodes, const int slot[27], const int box[6])
+{
+  for_box<DIM, ORDER>(box, [=](int t, int s, int n) {
+    for (int i = 0; i < NREAL; i++)
+      tile[NREAL * t + i] = nodes[(64 * static_cast<long>(slot[s]) + n) * NREAL + i];
+  });
+}
+
+void solve_nodes(double *nodes, int nnodes, int nreal, double dt)
+{
+  for (int n = 0; n < nnodes; n++) {
+    double *node = nodes + static_cast<long>(nreal) * n;
+    const double m = node[3];
+    for (int i = 0; i < 3; i++) {
+      const double v = m > 0.0 ? node[i] / m : 0.0;
+      if (nreal == 8) {
+        node[i] = m > 0.0 ? (node[i] + dt * node[4 + i]) / m : 0.0;
+        node[4 + i] = v;
+      } else {
+        node[i] = v;
+      }
+    }
+  }
+}
+
+template <int DIM, int ORDER, Transfer TRANSFER, int NREAL> TransferKernels kernels()
+{
+  TransferKernels k;
+  k.nreal = NREAL;
+  k.affine = TRANSFER == APIC;
+  k.mls = k.affine && ORDER > 1;
+  k.p2g = p2g<DIM, ORDER, TRANSFER, NREAL, ALL>;
+  k.p2g_momentum = p2g<DIM, ORDER, TRANSFER, NREAL, MOMENTUM>;
+  k.p2g_force = p2g<DIM, ORDER, TRANSFER, NREAL, FORCE>;
+  k.g2p = g2p<DIM, ORDER, TRANSFER, NREAL>;
+  k.g2p_gradient = g2p_gradient<DIM, ORDER, TRANSFER, NREAL>;
+  k.flush = flush<DIM, ORDER, NREAL>;
+  k.load = load<DIM, ORDER, NREAL>;
+  return k;
+}
+
+template <int DIM, int ORDER> TransferKernels choose(Transfer transfer, bool split)
+{
+  switch (transfer) {
+    case PIC:
+      return kernels<DIM, ORDER, PIC, 8>();
+    case FLIP:
+      return kernels<DIM, ORDER, FLIP, 8>();
+    case APIC:
+      return split ? kernels<DIM, ORDER, APIC, 8>() : kernels<DIM, ORDER, APIC, 4>();
+  }
+  return TransferKernels();
+}
+
+template <int DIM> TransferKernels choose(Shape shape, Transfer transfer, bool split)
+{
+  switch (shape) {
+    case LINEAR:
+      return choose<DIM, 1>(transfer, split);
+    case QUADRATIC:
+      return choose<DIM, 2>(transfer, split);
+    case CUBIC:
+      return choose<DIM, 3>(transfer, split);
+  }
+  return TransferKernels();
+}
+
+TransferKernels transfer(int dim, Shape shape, Transfer transfer, bool split)
+{
+  return dim == 3 ? choose<3>(shape, transfer, split) : choose<2>(shape, transfer, split);
+}
+
+}    // namespace
+
+const MPMKernels *MPM_NS::mpm_kernels_reference()
+{
+  static const MPMKernels table = {"reference", transfer, solve_nodes};
+  return &table;
+}

@@ -1,0 +1,91 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_MATERIAL_H
+#define LMP_MPM_MATERIAL_H
+
+// Constitutive models: a batch of points in, stress and history out. Nothing here knows about
+// grids, and only the parser knows about LAMMPS (for its error messages).
+
+#include "mpm_kernels.h"
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace MPM_NS {
+
+/** Kinds of work that a law reports, in energy summed over the points of a batch. */
+enum Work { PLASTIC, VISCOUS, HEAT, NWORK };
+
+/** Up to BATCH points of one material in structure-of-arrays form.
+ *
+ *  Kinematics: A = dt * grad v with respect to the positions at the start of the step, so that the
+ *  points' own motion x + dt v gives exactly F_new = (I + A) F_old. The velocity gradient of the
+ *  middle of the step is G/dt with G = A (I + A/2)^-1; I + A is its Cayley transform, a rotation
+ *  when G is skew. Rate-form laws use G (sym: strain increment, skew: incremental rotation).
+ */
+struct Batch {
+  int n;                                  ///< points in use, 1..BATCH
+  double dt;                              ///< time step
+  double h;                               ///< node spacing, the length of artificial viscosity
+  alignas(64) double A[9][BATCH];         ///< dt * velocity gradient, row-major
+  alignas(64) double F[9][BATCH];         ///< deformation gradient at the end of the step
+  alignas(64) double J[BATCH];            ///< det F at the end of the step
+  alignas(64) double Jold[BATCH];         ///< det F at the start of the step
+  alignas(64) double stress[6][BATCH];    ///< Cauchy stress; in: start, out: end of the step
+  alignas(64) double mass[BATCH];
+  alignas(64) double vol0[BATCH];         ///< initial volume
+  double (*history)[BATCH];               ///< [nhistory][BATCH]; in: start, out: end of the step
+  double work[NWORK];                     ///< out: energy of each kind spent in this batch and step
+};
+
+/** A history variable of a material: name as used by compute mpm/atom, and initial value. */
+struct HistoryVariable {
+  std::string name;
+  double initial;
+};
+
+/** What is wrong with the definition of a material, and which of its words is to blame. */
+struct MaterialError : std::runtime_error {
+  int word;    ///< index of the word, or the number of words when something is missing at the end
+  MaterialError(int word, const std::string &message) : std::runtime_error(message), word(word) {}
+};
+
+/** A constitutive model with its parameters; stateless, all state is in the batch. */
+class Material {
+ public:
+  virtual ~Material() = default;
+
+  /** A material from the words of its definition, "density RHO <parts>" (see mpm_material.cpp for
+   *  the grammar); throws MaterialError. isa: as for LawTable::select(). */
+  static std::unique_ptr<Material> create(const std::vector<std::string> &words,
+                                          const char *isa = nullptr);
+
+  virtual double density() const = 0;    ///< reference density
+  virtual const std::vector<HistoryVariable> &history() const = 0;
+
+  /** Stress and history at the end of the step (hot: one call per batch). */
+  virtual void update(Batch &) const = 0;
+
+  /** c[n]: speed of the fastest (longitudinal) wave at the present state, raised by a viscosity such
+   *  that h/c is the stable time step; n, h and current F, J, stress, history in the batch, A and
+   *  Jold are not set. */
+  virtual void wave_speed(const Batch &, double *c) const = 0;
+
+  /** w[n]: energy stored per reference volume in the present state (elastic, and of the equation
+   *  of state); A and Jold are not set. */
+  virtual void stored_energy(const Batch &, double *w) const = 0;
+
+  /** One-line description for the log: names and values of the parts. */
+  virtual std::string describe() const = 0;
+};
+
+}    // namespace MPM_NS
+#endif

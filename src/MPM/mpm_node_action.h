@@ -1,0 +1,37 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_NODE_ACTION_H
+#define LMP_MPM_NODE_ACTION_H
+
+namespace LAMMPS_NS {
+
+/** What acts on the nodes of the fields after the momentum equation: boundaries, contact, ...
+ *  Fixes that derive from this are called by fix mpm in the order of their definition. */
+class MPMNodeAction {
+ public:
+  /** Collective, at the start of a run: check and prepare; called by fix mpm in its init(). */
+  virtual void init_action() {}
+
+  /** Activate further blocks that the action needs next to those in reach of points. */
+  virtual void extend_topology(class FixMPM &) {}
+
+  /** The blocks of the field are new: lists of nodes must be made again. */
+  virtual void topology_changed(class FixMPM &) {}
+
+  /** Change the velocities of the nodes of the fields. count: also add to reactions and work
+   *  (false for the extra velocity fields of MUSL and USF that only serve the velocity gradient).
+   */
+  virtual void act(double dt, bool count) = 0;
+
+ protected:
+  ~MPMNodeAction() = default;    // owned and deleted as a Fix, whose destructor may throw
+};
+
+}    // namespace LAMMPS_NS
+#endif

@@ -1,0 +1,29 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_POINT_BATCHES_H
+#define LMP_MPM_POINT_BATCHES_H
+
+#include <functional>
+
+namespace MPM_NS {
+struct Batch;
+}
+
+namespace LAMMPS_NS {
+class FixMPMMaterial;
+
+/** What is done with a batch of points: their state, local indices, and material. */
+using BatchVisitor = std::function<void(const MPM_NS::Batch &, const int *, const FixMPMMaterial &)>;
+
+/** Hand over the present state of all material points of a group that belong to a fix mpm, in
+ *  batches of one field and one material. For output: nothing of the points is changed. */
+void visit_point_batches(class LAMMPS *, int groupbit, const BatchVisitor &);
+
+}    // namespace LAMMPS_NS
+#endif

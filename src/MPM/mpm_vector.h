@@ -1,0 +1,273 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_VECTOR_H
+#define LMP_MPM_VECTOR_H
+
+// Short vectors of double precision numbers on the vector extensions of GCC and Clang, for files
+// that are compiled once for each instruction set. All names are local to the including file, and
+// every function is inlined: no code made for one CPU can serve another.
+//
+// A vector that is wider than the registers is two halves. (GCC can split wide vectors itself, but
+// its shuffles of them are slower than scalar code.)
+
+#define MPM_INLINE inline __attribute__((always_inline))
+#if defined(__clang__)
+#define MPM_UNROLL _Pragma("unroll")
+#else
+#define MPM_UNROLL _Pragma("GCC unroll 8")
+#endif
+
+namespace {
+
+/** Reals of a vector register. */
+#if defined(__AVX512F__) && defined(__AVX512VL__) && defined(__AVX512DQ__)
+constexpr int REGISTER = 8;
+#elif defined(__AVX__)
+constexpr int REGISTER = 4;
+#else
+constexpr int REGISTER = 2;
+#endif
+
+template <int N> struct Raw;
+template <> struct Raw<2> {
+  typedef double Reals __attribute__((vector_size(16)));
+  typedef int Ints __attribute__((vector_size(8)));
+};
+template <> struct Raw<4> {
+  typedef double Reals __attribute__((vector_size(32)));
+  typedef int Ints __attribute__((vector_size(16)));
+};
+template <> struct Raw<8> {
+  typedef double Reals __attribute__((vector_size(64)));
+  typedef int Ints __attribute__((vector_size(32)));
+};
+
+template <int N, bool FITS = (N <= REGISTER)> struct Vec;
+
+/** N reals in one register. */
+template <int N> struct Vec<N, true> {
+  using Reals = typename Raw<N>::Reals;
+  Reals r;
+
+  static MPM_INLINE Vec load(const double *p)
+  {
+    Vec a;
+    __builtin_memcpy(&a.r, p, sizeof(Reals));
+    return a;
+  }
+  MPM_INLINE void store(double *p) const { __builtin_memcpy(p, &r, sizeof(Reals)); }
+  static MPM_INLINE Vec all(double s)
+  {
+    if constexpr (N == 2)
+      return {Reals{s, s}};
+    else if constexpr (N == 4)
+      return {Reals{s, s, s, s}};
+    else
+      return {Reals{s, s, s, s, s, s, s, s}};
+  }
+  MPM_INLINE double lane(int i) const { return r[i]; }
+};
+
+/** N reals as two halves. */
+template <int N> struct Vec<N, false> {
+  Vec<N / 2> lo, hi;
+
+  static MPM_INLINE Vec load(const double *p)
+  {
+    return {Vec<N / 2>::load(p), Vec<N / 2>::load(p + N / 2)};
+  }
+  MPM_INLINE void store(double *p) const
+  {
+    lo.store(p);
+    hi.store(p + N / 2);
+  }
+  static MPM_INLINE Vec all(double s)
+  {
+    const Vec<N / 2> half = Vec<N / 2>::all(s);
+    return {half, half};
+  }
+  MPM_INLINE double lane(int i) const { return i < N / 2 ? lo.lane(i) : hi.lane(i - N / 2); }
+};
+
+template <int N> MPM_INLINE Vec<N> operator+(Vec<N> a, Vec<N> b)
+{
+  if constexpr (N <= REGISTER)
+    return {a.r + b.r};
+  else
+    return {a.lo + b.lo, a.hi + b.hi};
+}
+template <int N> MPM_INLINE Vec<N> operator-(Vec<N> a, Vec<N> b)
+{
+  if constexpr (N <= REGISTER)
+    return {a.r - b.r};
+  else
+    return {a.lo - b.lo, a.hi - b.hi};
+}
+template <int N> MPM_INLINE Vec<N> operator-(Vec<N> a)
+{
+  if constexpr (N <= REGISTER)
+    return {-a.r};
+  else
+    return {-a.lo, -a.hi};
+}
+template <int N> MPM_INLINE Vec<N> operator*(Vec<N> a, Vec<N> b)
+{
+  if constexpr (N <= REGISTER)
+    return {a.r * b.r};
+  else
+    return {a.lo * b.lo, a.hi * b.hi};
+}
+template <int N> MPM_INLINE Vec<N> operator+(double s, Vec<N> a)
+{
+  return Vec<N>::all(s) + a;
+}
+template <int N> MPM_INLINE Vec<N> operator-(double s, Vec<N> a)
+{
+  return Vec<N>::all(s) - a;
+}
+template <int N> MPM_INLINE Vec<N> operator*(double s, Vec<N> a)
+{
+  return Vec<N>::all(s) * a;
+}
+template <int N> MPM_INLINE Vec<N> operator+(Vec<N> a, double s)
+{
+  return a + Vec<N>::all(s);
+}
+template <int N> MPM_INLINE Vec<N> operator-(Vec<N> a, double s)
+{
+  return a - Vec<N>::all(s);
+}
+template <int N> MPM_INLINE Vec<N> operator*(Vec<N> a, double s)
+{
+  return a * Vec<N>::all(s);
+}
+template <int N> MPM_INLINE void operator+=(Vec<N> &a, Vec<N> b)
+{
+  a = a + b;
+}
+template <int N> MPM_INLINE void operator-=(Vec<N> &a, Vec<N> b)
+{
+  a = a - b;
+}
+
+template <int N> MPM_INLINE Vec<N> min(Vec<N> a, Vec<N> b)
+{
+  if constexpr (N <= REGISTER)
+    return {a.r < b.r ? a.r : b.r};
+  else
+    return {min(a.lo, b.lo), min(a.hi, b.hi)};
+}
+template <int N> MPM_INLINE Vec<N> max(Vec<N> a, Vec<N> b)
+{
+  if constexpr (N <= REGISTER)
+    return {a.r > b.r ? a.r : b.r};
+  else
+    return {max(a.lo, b.lo), max(a.hi, b.hi)};
+}
+
+/** flag, with 1 where a is not in [0,limit); not a number is never inside. */
+template <int N> MPM_INLINE Vec<N> flag_outside(Vec<N> flag, Vec<N> a, double limit)
+{
+  if constexpr (N <= REGISTER)
+    return {(a.r >= 0.0) & (a.r < limit) ? flag.r : Vec<N>::all(1.0).r};
+  else
+    return {flag_outside(flag.lo, a.lo, limit), flag_outside(flag.hi, a.hi, limit)};
+}
+
+/** Cuts off the fraction; the whole numbers also go to index[N]. */
+template <int N> MPM_INLINE Vec<N> truncate(Vec<N> a, int *index)
+{
+  if constexpr (N <= REGISTER) {
+    const auto whole = __builtin_convertvector(a.r, typename Raw<N>::Ints);
+    __builtin_memcpy(index, &whole, sizeof(whole));
+    return {__builtin_convertvector(whole, typename Raw<N>::Reals)};
+  } else {
+    return {truncate(a.lo, index), truncate(a.hi, index + N / 2)};
+  }
+}
+
+/** Concatenation. */
+template <int N> MPM_INLINE Vec<2 * N> join(Vec<N> a, Vec<N> b)
+{
+  if constexpr (2 * N > REGISTER)
+    return {a, b};
+  else if constexpr (N == 2)
+    return {__builtin_shufflevector(a.r, b.r, 0, 1, 2, 3)};
+  else
+    return {__builtin_shufflevector(a.r, b.r, 0, 1, 2, 3, 4, 5, 6, 7)};
+}
+
+/** The same four reals in each group of four. */
+template <int N> MPM_INLINE Vec<N> repeat(double a, double b, double c, double d)
+{
+  const double four[4] = {a, b, c, d};
+  if constexpr (N == 4)
+    return Vec<4>::load(four);
+  else
+    return join(Vec<4>::load(four), Vec<4>::load(four));
+}
+
+/** First (H = 0) or second (H = 1) half. */
+template <int H, int N> MPM_INLINE Vec<N / 2> half(Vec<N> a)
+{
+  if constexpr (N > REGISTER)
+    return H ? a.hi : a.lo;
+  else if constexpr (N == 4)
+    return {__builtin_shufflevector(a.r, a.r, 2 * H, 2 * H + 1)};
+  else
+    return {__builtin_shufflevector(a.r, a.r, 4 * H, 4 * H + 1, 4 * H + 2, 4 * H + 3)};
+}
+
+/** Lanes I and J of the eight lanes of a and b. */
+template <int I, int J> MPM_INLINE Vec<2> pick(Vec<4> a, Vec<4> b)
+{
+  const Vec<2> u = half<(I >> 1) & 1>(I < 4 ? a : b);
+  const Vec<2> w = half<(J >> 1) & 1>(J < 4 ? a : b);
+  return {__builtin_shufflevector(u.r, w.r, I & 1, 2 + (J & 1))};
+}
+
+/** In each group of four lanes: lanes I, J, K, L of the eight lanes of a (0-3) and b (4-7). */
+template <int I, int J, int K, int L, int N> MPM_INLINE Vec<N> shuffle(Vec<N> a, Vec<N> b)
+{
+  if constexpr (N > REGISTER && N > 4) {
+    return {shuffle<I, J, K, L>(a.lo, b.lo), shuffle<I, J, K, L>(a.hi, b.hi)};
+  } else if constexpr (N > REGISTER) {
+    return {pick<I, J>(a, b), pick<K, L>(a, b)};
+  } else if constexpr (N == 4) {
+    return {__builtin_shufflevector(a.r, b.r, I, J, K, L)};
+  } else {
+    // in a vector of eight, b starts at lane 8
+    constexpr int i = I < 4 ? I : I + 4, j = J < 4 ? J : J + 4;
+    constexpr int k = K < 4 ? K : K + 4, l = L < 4 ? L : L + 4;
+    return {__builtin_shufflevector(a.r, b.r, i, j, k, l, i + 4, j + 4, k + 4, l + 4)};
+  }
+}
+
+/** Lane I of each group of four in all lanes of the group. */
+template <int I, int N> MPM_INLINE Vec<N> broadcast(Vec<N> a)
+{
+  return shuffle<I, I, I, I>(a, a);
+}
+
+/** The first K lanes of each group of four from a, the others from b. */
+template <int K, int N> MPM_INLINE Vec<N> blend(Vec<N> a, Vec<N> b)
+{
+  return shuffle<0, 1, (K > 2 ? 2 : 6), 7>(a, b);
+}
+
+/** Stores the first K lanes. GCC 12 miscompiles stores of single lanes of a long vector in a row
+ *  (SLP vectoriser), so pairs of lanes go out as vectors. */
+template <int K> MPM_INLINE void store_lanes(double *p, Vec<4> a)
+{
+  half<0>(a).store(p);
+  if constexpr (K > 2) p[2] = a.lane(2);
+}
+
+}    // namespace
+#endif

@@ -1,0 +1,87 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_VTK_H
+#define LMP_MPM_VTK_H
+
+// VTK XML files for the dump styles. Nothing here knows about points or grids.
+
+#include <cstdint>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+namespace MPM_NS {
+
+/** One VTK XML file whose data are raw bytes in an appended section, at places that are known
+ *  when the header is written: the values may come in any order and in pieces. */
+class VTKFile {
+ public:
+  enum Type { INT64, INT32, UINT8, FLOAT64, FLOAT32 };
+
+  /** kind: of data set, PolyData or UnstructuredGrid. */
+  explicit VTKFile(const std::string &kind) : kind(kind), fp(nullptr), start(0) {}
+
+  /** What is wrong with the name of a dump file and how to mend it; empty: nothing.
+   *  series: one file per snapshot, with a * for the time step. */
+  static std::string name_error(const std::string &name, const std::string &extension,
+                                bool series);
+
+  /** An array of a section (PointData, Points, Verts, Cells) for ntuple tuples; its number. */
+  int add(const std::string &section, const std::string &name, Type type, int ncomponent,
+          int64_t ntuple);
+
+  /** Write all but the values. piece: attributes of the piece such as NumberOfPoints="8". */
+  void begin(FILE *fp, const std::string &piece, double time, int64_t step);
+
+  /** Write n tuples of an array from the given tuple on, converted to the type of the array. */
+  void write(int array, int64_t first, int64_t n, const double *values);
+
+ private:
+  struct Array {
+    std::string section, name;
+    Type type;
+    int ncomponent;
+    int64_t ntuple;
+    int64_t offset;    // of the length that precedes the values, in the appended data
+    int64_t bytes;     // of the values
+  };
+  std::string kind;
+  std::vector<Array> arrays;
+  FILE *fp;
+  int64_t start;    // of the appended data in the file
+  std::vector<char> buffer;
+};
+
+/** ParaView's list of the files of a series with their times (.pvd), valid after each step. */
+class VTKCollection {
+ public:
+  /** Name of the list for files name.*.ext: name.pvd, or fallback.pvd when nothing is left. */
+  static std::string list_name(const std::string &pattern, const std::string &fallback);
+
+  explicit VTKCollection(const std::string &list) : list(list), is_read(false) {}
+
+  /** Add a file (path as opened, in the directory of the list) and write the list; only the last
+   *  keep entries stay (0 or less: all). A file that is listed already gets the new time.
+   *  append: continue a list that exists before the first call. An error text, empty: none. */
+  std::string add(const std::string &file, double time, int keep, bool append);
+
+ private:
+  struct Entry {
+    std::string file;
+    double time;
+  };
+  std::string list;
+  std::vector<Entry> entries;
+  bool is_read;
+
+  void read();
+};
+
+}    // namespace MPM_NS
+#endif

@@ -1,0 +1,160 @@
+// clang-format off
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+/* ----------------------------------------------------------------------
+   Entry point of mpmplugin.so.  The styles come from the lists mpm_style_*.h
+   that CMake writes from the headers of this package, so a new style needs no
+   change here.
+------------------------------------------------------------------------- */
+
+#include "lammpsplugin.h"
+
+#include "atom.h"
+#include "command.h"
+#include "compute.h"
+#include "dump.h"
+#include "error.h"
+#include "fix.h"
+#include "input.h"
+#include "lammps.h"
+#include "output.h"
+#include "pair.h"
+#include "region.h"
+#include "version.h"
+
+// the classes
+
+#include "mpm_style_atom.h"
+#include "mpm_style_command.h"
+#include "mpm_style_compute.h"
+#include "mpm_style_dump.h"
+#include "mpm_style_fix.h"
+#include "mpm_style_pair.h"
+#include "mpm_style_region.h"
+
+#include <cstring>
+
+namespace LAMMPS_NS {
+Command *mpm_replicate_creator(LAMMPS *);
+}
+
+using namespace LAMMPS_NS;
+
+namespace {
+
+// creators as LAMMPS's maps store them
+
+template <class Base, class T> Base *create1(LAMMPS *lmp)
+{
+  return new T(lmp);
+}
+
+template <class Base, class T> Base *create3(LAMMPS *lmp, int narg, char **arg)
+{
+  return new T(lmp, narg, arg);
+}
+
+// registration through the plugin API, which knows some kinds of styles only
+
+struct Registrar {
+  void *lmp, *handle;
+  lammpsplugin_regfunc regfunc;
+
+  lammpsplugin_t entry(const char *style, const char *name) const
+  {
+    lammpsplugin_t plugin = {};
+    plugin.version = LAMMPS_VERSION;
+    plugin.style = style;
+    plugin.name = name;
+    plugin.info = "material point method";
+    plugin.author = "the authors of the MPM package";
+    plugin.handle = handle;
+    return plugin;
+  }
+
+  template <class Base> void add(const char *style, const char *name, Base *(*creator)(LAMMPS *)) const
+  {
+    auto plugin = entry(style, name);
+    plugin.creator.v1 = (lammpsplugin_factory1 *) creator;
+    (*regfunc)(&plugin, lmp);
+  }
+
+  template <class Base>
+  void add(const char *style, const char *name, Base *(*creator)(LAMMPS *, int, char **)) const
+  {
+    auto plugin = entry(style, name);
+    plugin.creator.v2 = (lammpsplugin_factory2 *) creator;
+    (*regfunc)(&plugin, lmp);
+  }
+};
+}    // namespace
+
+/* ----------------------------------------------------------------------
+   called at every 'plugin load' and, with LAMMPS_PLUGIN_PATH, at the start
+   and at every 'clear'
+------------------------------------------------------------------------- */
+
+extern "C" void lammpsplugin_init(void *ptr, void *handle, void *regfunc)
+{
+  auto *lmp = (LAMMPS *) ptr;
+
+  if (strcmp(lmp->version, LAMMPS_VERSION) != 0)
+    lmp->error->all(FLERR, "mpmplugin was compiled for LAMMPS {}, but this is LAMMPS {}: "
+                    "compile it again with the sources of this version", LAMMPS_VERSION, lmp->version);
+
+  const Registrar registrar{ptr, handle, (lammpsplugin_regfunc) regfunc};
+
+  // kinds that the API does not know: straight into the public maps
+
+#define ATOM_CLASS
+#define AtomStyle(key, Class) (*lmp->atom->avec_map)[#key] = &create1<AtomVec, Class>
+#include "mpm_style_atom.h"
+#undef AtomStyle
+#undef ATOM_CLASS
+
+#define DUMP_CLASS
+#define DumpStyle(key, Class) (*lmp->output->dump_map)[#key] = &create3<Dump, Class>
+#include "mpm_style_dump.h"
+#undef DumpStyle
+#undef DUMP_CLASS
+
+  // commands directly, too: they outlive 'clear', after which the API would warn of overriding
+  // them, and 'plugin unload' would remove LAMMPS's own replicate together with ours
+
+  (*lmp->input->command_map)["replicate"] = &mpm_replicate_creator;
+
+#define COMMAND_CLASS
+#define CommandStyle(key, Class) (*lmp->input->command_map)[#key] = &create1<Command, Class>
+#include "mpm_style_command.h"
+#undef CommandStyle
+#undef COMMAND_CLASS
+
+#define COMPUTE_CLASS
+#define ComputeStyle(key, Class) registrar.add("compute", #key, &create3<Compute, Class>)
+#include "mpm_style_compute.h"
+#undef ComputeStyle
+#undef COMPUTE_CLASS
+
+#define FIX_CLASS
+#define FixStyle(key, Class) registrar.add("fix", #key, &create3<Fix, Class>)
+#include "mpm_style_fix.h"
+#undef FixStyle
+#undef FIX_CLASS
+
+#define PAIR_CLASS
+#define PairStyle(key, Class) registrar.add("pair", #key, &create1<Pair, Class>)
+#include "mpm_style_pair.h"
+#undef PairStyle
+#undef PAIR_CLASS
+
+#define REGION_CLASS
+#define RegionStyle(key, Class) registrar.add("region", #key, &create3<Region, Class>)
+#include "mpm_style_region.h"
+#undef RegionStyle
+#undef REGION_CLASS
+}

@@ -1,0 +1,53 @@
+# This file is part of the MPM package for LAMMPS, distributed under the GNU
+# General Public License, version 2; see the file LICENSE.
+"""Count test cases in a folder of results: ctest.xml and one json file of
+GoogleTest per test.  Prints "N passed, N failed"; fails if any failed or none ran."""
+
+import json
+import os
+import sys
+import xml.etree.ElementTree as xml
+
+
+def cases(path):
+    """passed, failed, skipped cases of one GoogleTest report"""
+    with open(path) as file:
+        report = json.load(file)
+    count = [0, 0, 0]
+    for suite in report["testsuites"]:
+        for case in suite["testsuite"]:
+            if case.get("failures"):
+                count[1] += 1
+            elif case.get("result") == "SKIPPED" or case.get("status") == "NOTRUN":
+                count[2] += 1
+            else:
+                count[0] += 1
+    return count
+
+
+def main(folder):
+    total = [0, 0, 0]
+    try:
+        tests = xml.parse(os.path.join(folder, "ctest.xml")).getroot().iter("testcase")
+    except (OSError, xml.ParseError) as error:
+        print("no result of ctest:", error)
+        tests, total[1] = [], 1
+    for test in tests:
+        ok = test.get("status") == "run"
+        try:
+            count = cases(os.path.join(folder, test.get("name") + ".json"))
+        except (OSError, ValueError, KeyError):
+            count = [1, 0, 0] if ok else [0, 1, 0]
+        if not ok and count[1] == 0:    # e.g. crashed at the end, or on another process
+            count[1] = 1
+        total = [a + b for a, b in zip(total, count)]
+    if sum(total) == 0:
+        print("no tests were run")
+        total[1] = 1
+    if total[2]:
+        print(total[2], "skipped")
+    print("%d passed, %d failed" % (total[0], total[1]))
+    return 1 if total[1] else 0
+
+
+sys.exit(main(sys.argv[1]))

@@ -1,0 +1,282 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+
+#ifndef MPM_LAMMPS_TEST_H
+#define MPM_LAMMPS_TEST_H
+
+// A LAMMPS instance for tests, on any communicator: one rank may run its own serial reference
+// next to a parallel run.
+
+#include "atom.h"
+#include "comm.h"
+#include "compute.h"
+#include "domain.h"
+#include "fix.h"
+#include "fix_external.h"
+#include "fix_mpm.h"
+#include "fix_mpm_material.h"
+#include "force.h"
+#include "input.h"
+#include "lammps.h"
+#include "modify.h"
+#include "mpm_batch.h"
+#include "mpm_material.h"
+#include "mpm_point_batches.h"
+#include "mpm_points.h"
+#include "update.h"
+#include "variable.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <functional>
+#include <mpi.h>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace MPM_TEST {
+
+using namespace LAMMPS_NS;
+
+class Run {
+ public:
+  LAMMPS *lmp;
+
+  explicit Run(MPI_Comm comm = MPI_COMM_WORLD)
+  {
+    const char *args[] = {"mpm_test", "-log", "none", "-screen", "none", "-nocite"};
+    lmp = new LAMMPS(6, const_cast<char **>(args), comm);
+  }
+  ~Run() { delete lmp; }
+  Run(const Run &) = delete;
+  Run &operator=(const Run &) = delete;
+
+  /** Execute lines of input; && is not understood, & continues a line as in a script. */
+  void commands(const std::string &text) { lmp->input->commands_string(text); }
+
+  double *fix_vector(const std::string &id, int n)
+  {
+    values.resize(n);
+    auto *fix = lmp->modify->get_fix_by_id(id);
+    for (int k = 0; k < n; k++) values[k] = fix->compute_vector(k);
+    return values.data();
+  }
+  double variable(const std::string &name)
+  {
+    return lmp->input->variable->compute_equal(lmp->input->variable->find(name.c_str()));
+  }
+  /** Evaluate an equal-style formula, in a run 0 so that computes are current. */
+  double evaluate(const std::string &formula)
+  {
+    return lmp->input->variable->compute_equal(formula);
+  }
+
+  /** State of one point, gathered on all ranks, in order of tags. */
+  struct State {
+    double tag, type, x[3], v[3], F[9], stress[6], vol, mass;
+  };
+  std::vector<State> gather()
+  {
+    auto *atom = lmp->atom;
+    auto *points = MPMPoints::get(atom);
+    std::vector<State> mine(atom->nlocal);
+    for (int i = 0; i < atom->nlocal; i++) {
+      State &s = mine[i];
+      s.tag = atom->tag[i];
+      s.type = atom->type[i];
+      double x[3] = {atom->x[i][0], atom->x[i][1], atom->x[i][2]};
+      imageint image = atom->image[i];
+      lmp->domain->remap(x, image);
+      lmp->domain->unmap(x, image, s.x);
+      for (int d = 0; d < 3; d++) s.v[d] = atom->v[i][d];
+      for (int c = 0; c < 9; c++) s.F[c] = points->F[i][c];
+      for (int c = 0; c < 6; c++) s.stress[c] = points->stress[i][c];
+      s.vol = points->vol[i];
+      s.mass = atom->rmass[i];
+    }
+    int nprocs;
+    MPI_Comm_size(lmp->world, &nprocs);
+    std::vector<int> counts(nprocs), displs(nprocs, 0);
+    const int reals = sizeof(State) / sizeof(double);
+    int n = mine.size() * reals;
+    MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, lmp->world);
+    for (int p = 1; p < nprocs; p++) displs[p] = displs[p - 1] + counts[p - 1];
+    std::vector<State> all((displs.back() + counts.back()) / reals);
+    MPI_Allgatherv(mine.data(), n, MPI_DOUBLE, all.data(), counts.data(), displs.data(),
+                   MPI_DOUBLE, lmp->world);
+    std::sort(all.begin(), all.end(), [](const State &a, const State &b) { return a.tag < b.tag; });
+    return all;
+  }
+
+  // what follows is for one rank
+
+  /** Call f after the forces of each step, also of step 0: positions, velocities and stress are of
+   *  that time, and what f writes to force[i], which is zero before, acts in the step that follows.
+   *  To be called once, when the box exists. */
+  void each_step(std::function<void(double **force)> f)
+  {
+    callback = f;
+    commands("fix each_step all external pf/callback 1 1\n");
+    dynamic_cast<FixExternal *>(lmp->modify->get_fix_by_id("each_step"))
+        ->set_callback(
+            [](void *self, bigint, int n, tagint *, double **, double **force) {
+              if (n) std::fill(force[0], force[0] + 3 * n, 0.0);
+              static_cast<Run *>(self)->callback(force);
+            },
+            this);
+  }
+
+  double time() const
+  {
+    return lmp->update->atime + (lmp->update->ntimestep - lmp->update->atimestep) * lmp->update->dt;
+  }
+  int n() const { return lmp->atom->nlocal; }
+  double **x() { return lmp->atom->x; }
+  double **v() { return lmp->atom->v; }
+  double *mass() { return lmp->atom->rmass; }
+  MPMPoints &points() { return *MPMPoints::get(lmp->atom); }
+  FixMPM *field(const std::string &id = "grid")
+  {
+    return dynamic_cast<FixMPM *>(lmp->modify->get_fix_by_id(id));
+  }
+
+  /** Take the present positions as the reference: reference(i) is then that of local atom i. */
+  void set_reference()
+  {
+    auto *atom = lmp->atom;
+    references.resize(atom->nlocal + 1);
+    for (int i = 0; i < atom->nlocal; i++)
+      references[atom->tag[i]] = {atom->x[i][0], atom->x[i][1], atom->x[i][2]};
+  }
+  const double *reference(int i) const { return references[lmp->atom->tag[i]].data(); }
+
+  /** Set the velocity of all atoms to f(position, velocity). */
+  void set_velocity(std::function<void(const double *x, double *v)> f)
+  {
+    for (int i = 0; i < n(); i++) f(x()[i], v()[i]);
+  }
+
+  /** Conserved quantities of all atoms, or of those of one type. The angular momentum about the
+   *  origin has the part of the affine matrices of APIC (quadratic and cubic) and of spins. */
+  struct Sums {
+    double mass, x[3], p[3], L[3], kinetic;    ///< x: centre of mass
+  };
+  Sums sums(int type = 0)
+  {
+    auto *atom = lmp->atom;
+    long double s[11] = {0.0};
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (type && atom->type[i] != type) continue;
+      double r[3];
+      lmp->domain->unmap(atom->x[i], atom->image[i], r);
+      const double m = atom->rmass[i], *u = atom->v[i];
+      s[0] += m;
+      for (int d = 0; d < 3; d++) {
+        const int e = (d + 1) % 3, f = (d + 2) % 3;
+        s[1 + d] += (long double) m * r[d];
+        s[4 + d] += (long double) m * u[d];
+        s[7 + d] += (long double) m * ((long double) r[e] * u[f] - (long double) r[f] * u[e]);
+        s[10] += 0.5L * m * u[d] * u[d];
+        if (atom->omega && atom->radius && atom->vfrac[i] == 0.0)
+          s[7 + d] += 0.4L * m * atom->radius[i] * atom->radius[i] * atom->omega[i][d];
+      }
+    }
+    for (auto *ifix : lmp->modify->get_fix_by_style("^mpm$")) {
+      auto *fix = dynamic_cast<FixMPM *>(ifix);
+      if (!fix->C || fix->shape == MPM_NS::LINEAR) continue;
+      const double h = fix->lattice.h;
+      const double inertia = h * h / (fix->shape == MPM_NS::QUADRATIC ? 4.0 : 3.0);
+      for (int i = 0; i < atom->nlocal; i++) {
+        if (!fix->is_point(i) || (type && atom->type[i] != type)) continue;
+        const double *C = fix->C[i];    // C[3*j+i] = d v_i / d x_j
+        for (int d = 0; d < 3; d++) {
+          const int e = (d + 1) % 3, f = (d + 2) % 3;
+          s[7 + d] += (long double) atom->rmass[i] * inertia * (C[3 * e + f] - C[3 * f + e]);
+        }
+      }
+    }
+    Sums out;
+    out.mass = s[0];
+    for (int d = 0; d < 3; d++) {
+      out.x[d] = s[1 + d] / s[0];
+      out.p[d] = s[4 + d];
+      out.L[d] = s[7 + d];
+    }
+    out.kinetic = s[10];
+    return out;
+  }
+
+  /** Energy that the material points store. */
+  double stored_energy()
+  {
+    double sum = 0.0;
+    visit_point_batches(lmp, 1,
+                        [&](const MPM_NS::Batch &b, const int *, const FixMPMMaterial &material) {
+                          double w[MPM_NS::BATCH];
+                          material.material->stored_energy(b, w);
+                          for (int k = 0; k < b.n; k++) sum += b.vol0[k] * w[k];
+                        });
+    return sum;
+  }
+
+ private:
+  std::vector<double> values;
+  std::vector<std::array<double, 3>> references;
+  std::function<void(double **)> callback;
+};
+
+/** Text with the arguments of printf in it. */
+template <class... Args> std::string strprintf(const char *text, Args... args)
+{
+  std::vector<char> buffer(snprintf(nullptr, 0, text, args...) + 1);
+  snprintf(buffer.data(), buffer.size(), text, args...);
+  return buffer.data();
+}
+
+/** Scene with its words in capitals, MPM_<name>, replaced. */
+inline std::string replaced(std::string scene, const std::string &word, const std::string &text)
+{
+  for (std::size_t at; (at = scene.find(word)) != std::string::npos;)
+    scene.replace(at, word.size(), text);
+  return scene;
+}
+
+/** Show a measured number in the output of the test. */
+inline double measured(const std::string &what, double value)
+{
+  printf("[ MEASURED ] %s: %.6g\n", what.c_str(), value);
+  fflush(stdout);
+  return value;
+}
+
+/** Largest difference of two sets of states, each quantity relative to its largest magnitude. */
+inline double difference(const std::vector<Run::State> &a, const std::vector<Run::State> &b)
+{
+  if (a.size() != b.size() || a.empty()) return 1.0e300;
+  const int reals = sizeof(Run::State) / sizeof(double);
+  const int first[] = {0, 1, 2, 5, 8, 17, 23, 24}, last[] = {1, 2, 5, 8, 17, 23, 24, reals};
+  double worst = 0.0;
+  for (int g = 0; g < 8; g++) {
+    double scale = 1.0e-300, diff = 0.0;
+    for (std::size_t k = 0; k < a.size(); k++) {
+      const double *p = &a[k].tag, *q = &b[k].tag;
+      for (int r = first[g]; r < last[g]; r++) {
+        scale = std::max(scale, std::max(std::abs(p[r]), std::abs(q[r])));
+        diff = std::max(diff, std::abs(p[r] - q[r]));
+        if (!(p[r] == p[r]) || !(q[r] == q[r])) return 1.0e300;
+      }
+    }
+    worst = std::max(worst, diff / scale);
+  }
+  return worst;
+}
+
+}    // namespace MPM_TEST
+#endif

@@ -1,0 +1,1151 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// labels: unit input
+// mpi: 1 2 4
+
+// Atom style mpm (what a point carries, and that it survives whatever LAMMPS does to atoms)
+// and the command create_points.
+
+#include "atom.h"
+#include "atom_vec.h"
+#include "comm.h"
+#include "compute.h"
+#include "domain.h"
+#include "exceptions.h"
+#include "input.h"
+#include "lammps.h"
+#include "modify.h"
+#include "mpm_points.h"
+#include "variable.h"
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <mpi.h>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+using namespace LAMMPS_NS;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+static int nranks(MPI_Comm comm = MPI_COMM_WORLD)
+{
+  int n;
+  MPI_Comm_size(comm, &n);
+  return n;
+}
+
+static int my_rank()
+{
+  int me;
+  MPI_Comm_rank(MPI_COMM_WORLD, &me);
+  return me;
+}
+
+// name of a scratch file of this test program with this number of ranks
+
+static std::string scratch(const std::string &suffix)
+{
+  return "test_atom_style." + std::to_string(nranks()) + "." + suffix;
+}
+
+static void remove_scratch(const std::string &suffix)
+{
+  MPI_Barrier(MPI_COMM_WORLD);
+  if (my_rank() == 0) remove(scratch(suffix).c_str());
+  MPI_Barrier(MPI_COMM_WORLD);
+}
+
+static void write_scratch(const std::string &suffix, const std::string &text)
+{
+  if (my_rank() == 0) {
+    FILE *fp = fopen(scratch(suffix).c_str(), "w");
+    fputs(text.c_str(), fp);
+    fclose(fp);
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+}
+
+// everything an atom carries, bit by bit
+
+struct Point {
+  double tag, type, mask, x[3], v[3], mass, volume0, volume, radius, F[9], stress[6];
+
+  static constexpr int REALS = 28;
+  const double *reals() const { return &tag; }
+  bool operator==(const Point &other) const
+  {
+    return std::equal(reals(), reals() + REALS, other.reals());
+  }
+};
+static_assert(sizeof(Point) == Point::REALS * sizeof(double), "");
+
+// a LAMMPS instance on some ranks
+
+class Scene {
+ public:
+  LAMMPS *lmp;
+
+  explicit Scene(MPI_Comm comm = MPI_COMM_WORLD)
+  {
+    const char *args[] = {"test_atom_style", "-log", "none", "-screen", "none", "-nocite"};
+    lmp = new LAMMPS(6, const_cast<char **>(args), comm);
+  }
+  ~Scene() { delete lmp; }
+  Scene(const Scene &) = delete;
+  Scene &operator=(const Scene &) = delete;
+
+  void commands(const std::string &lines)
+  {
+    std::istringstream input(lines);
+    for (std::string line; std::getline(input, line);) lmp->input->one(line);
+  }
+  double evaluate(const std::string &formula)
+  {
+    return lmp->input->variable->compute_equal(formula);
+  }
+
+  Atom *atom() { return lmp->atom; }
+  MPMPoints *points() { return MPMPoints::get(lmp->atom); }
+
+  /** All atoms of all ranks in order of their IDs; unwrap: positions without periodic wrapping. */
+  std::vector<Point> atoms()
+  {
+    std::vector<Point> mine(atom()->nlocal);
+    for (int i = 0; i < atom()->nlocal; i++) {
+      Point &p = mine[i];
+      p.tag = atom()->tag[i];
+      p.type = atom()->type[i];
+      p.mask = atom()->mask[i];
+      p.mass = atom()->rmass[i];
+      p.volume0 = atom()->vfrac[i];
+      p.volume = points()->vol[i];
+      p.radius = atom()->radius_flag ? atom()->radius[i] : 0.0;
+      std::copy_n(atom()->x[i], 3, p.x);
+      std::copy_n(atom()->v[i], 3, p.v);
+      std::copy_n(points()->F[i], 9, p.F);
+      std::copy_n(points()->stress[i], 6, p.stress);
+    }
+    const int n = nranks(lmp->world);
+    int reals = mine.size() * Point::REALS;
+    std::vector<int> counts(n), displs(n, 0);
+    MPI_Allgather(&reals, 1, MPI_INT, counts.data(), 1, MPI_INT, lmp->world);
+    for (int p = 1; p < n; p++) displs[p] = displs[p - 1] + counts[p - 1];
+    std::vector<Point> all((displs.back() + counts.back()) / Point::REALS);
+    MPI_Allgatherv(mine.data(), reals, MPI_DOUBLE, all.data(), counts.data(), displs.data(),
+                   MPI_DOUBLE, lmp->world);
+    std::sort(all.begin(), all.end(),
+              [](const Point &a, const Point &b) { return a.tag < b.tag; });
+    return all;
+  }
+
+  /** Odd values, a function of the ID, in all that atom style mpm owns. */
+  void fill()
+  {
+    for (int i = 0; i < atom()->nlocal; i++) {
+      const double s = 1.0 / (3.0 + atom()->tag[i]);
+      atom()->rmass[i] = 1.0 + s;
+      atom()->vfrac[i] = 2.0 + s * s;
+      points()->vol[i] = 0.3 - 0.1 * s;
+      for (int c = 0; c < 9; c++) points()->F[i][c] = (c % 4 == 0) + s * (c + 1) / 7.0;
+      for (int c = 0; c < 6; c++) points()->stress[i][c] = -1.0e9 * s * (c + 1);
+    }
+  }
+
+  std::string error(const std::string &lines)
+  {
+    try {
+      commands(lines);
+    } catch (LAMMPSException &e) {
+      return e.what();
+    }
+    return "no error";
+  }
+};
+
+static double total_volume(const std::vector<Point> &points)
+{
+  double sum = 0.0;
+  for (const auto &p : points) sum += p.volume0;
+  return sum;
+}
+
+// a box and the lattice of a fix mpm; the fix itself needs a material before a run, so tests that
+// run something remove it
+
+static const char *const box3d = R"(
+units si
+boundary f f f
+atom_style mpm
+region box block 0 1 0 1 0 1
+create_box 3 box
+fix grid all mpm 0.1
+)";
+
+static const char *const box2d = R"(
+units si
+dimension 2
+boundary f f p
+atom_style mpm
+region box block 0 1 0 1 -0.5 0.5
+create_box 3 box
+)";
+
+// ---------------------------------------------------------------- sampling of regions
+
+TEST(CreatePoints, BlockOfCells)
+{
+  Scene scene;
+  scene.commands(box3d);
+  scene.commands("region r block 0.2 0.8 0.2 0.5 0 0.1\ncreate_points 2 region r ppc 2");
+  auto points = scene.atoms();
+  ASSERT_EQ(points.size(), 12 * 6 * 2);
+  EXPECT_EQ(scene.atom()->natoms, 144);
+  EXPECT_NEAR(total_volume(points), 0.6 * 0.3 * 0.1, 1.0e-15);
+  for (std::size_t k = 0; k < points.size(); k++) {
+    const auto &p = points[k];
+
+    // IDs count along x, then y, then z
+    EXPECT_EQ(p.tag, k + 1);
+    EXPECT_NEAR(p.x[0], 0.225 + 0.05 * (k % 12), 1.0e-15);
+    EXPECT_NEAR(p.x[1], 0.225 + 0.05 * (k / 12 % 6), 1.0e-15);
+    EXPECT_NEAR(p.x[2], 0.025 + 0.05 * (k / 72), 1.0e-15);
+
+    EXPECT_EQ(p.type, 2);
+    EXPECT_EQ(p.mask, 1);
+    EXPECT_DOUBLE_EQ(p.volume0, 1.25e-4);
+    EXPECT_EQ(p.volume, p.volume0);
+    EXPECT_EQ(p.mass, 0.0);
+    for (int c = 0; c < 9; c++) EXPECT_EQ(p.F[c], c % 4 == 0 ? 1.0 : 0.0);
+    for (double s : p.stress) EXPECT_EQ(s, 0.0);
+    for (double v : p.v) EXPECT_EQ(v, 0.0);
+  }
+}
+
+TEST(CreatePoints, PointsPerCell)
+{
+  Scene scene;
+  scene.commands(box3d);
+  scene.commands("create_points 1 box ppc 1 2 3");
+  auto points = scene.atoms();
+  ASSERT_EQ(points.size(), 10 * 20 * 30);
+  EXPECT_NEAR(total_volume(points), 1.0, 1.0e-12);
+  EXPECT_NEAR(points[0].x[0], 0.05, 1.0e-15);
+  EXPECT_NEAR(points[0].x[1], 0.025, 1.0e-15);
+  EXPECT_NEAR(points[0].x[2], 0.1 / 6.0, 1.0e-15);
+
+  Scene implied;
+  implied.commands(box3d);
+  implied.commands("create_points 1 box");
+  EXPECT_EQ(implied.atoms().size(), 8000u);    // 2 along each axis
+}
+
+TEST(CreatePoints, ExplicitSpacing)
+{
+  Scene scene;
+  scene.commands(box3d);
+  scene.commands("unfix grid\nregion r block 0.25 0.75 0.2 0.7 0.25 0.75\n"
+                 "create_points 1 region r spacing 0.05 0.1 0.25");
+  auto points = scene.atoms();
+  ASSERT_EQ(points.size(), 10 * 5 * 2);
+  for (const auto &p : points) EXPECT_DOUBLE_EQ(p.volume0, 0.05 * 0.1 * 0.25);
+
+  // with a fix mpm, from its origin
+  Scene shifted;
+  shifted.commands(box3d);
+  shifted.commands("unfix grid\nfix grid all mpm 0.1 origin 0.03 0 0\n"
+                   "region r block 0.2 0.8 0.2 0.3 0.2 0.3\ncreate_points 1 region r spacing 0.1");
+  points = shifted.atoms();
+  ASSERT_EQ(points.size(), 6u);
+  EXPECT_NEAR(points[0].x[0], 0.28, 1.0e-15);
+}
+
+TEST(CreatePoints, WhichLattice)
+{
+  Scene scene;
+  scene.commands(box3d);
+  scene.commands("fix fine all mpm 0.05\nregion r block 0.2 0.3 0.2 0.3 0.2 0.3");
+  EXPECT_THAT(scene.error("create_points 1 region r ppc 1"),
+              HasSubstr("Fixes mpm grid and fine have different lattices"));
+  scene.commands("create_points 1 region r ppc 1 fix fine");
+  EXPECT_EQ(scene.atoms().size(), 8u);
+
+  Scene same;
+  same.commands(box3d);
+  same.commands("fix second all mpm 0.1\nregion r block 0.2 0.3 0.2 0.3 0.2 0.3\n"
+                "create_points 1 region r ppc 1");
+  EXPECT_EQ(same.atoms().size(), 1u);
+}
+
+// numbers of points and error of the area from benchmark L1: +3.45 %, +0.97 %, +0.34 %
+
+TEST(CreatePoints, Disk2d)
+{
+  const double h[] = {0.05, 0.025, 0.0125}, excess[] = {0.0345, 0.0097, 0.0034};
+  const unsigned count[] = {208, 812, 3228};
+  for (int k = 0; k < 3; k++) {
+    Scene scene;
+    scene.commands(box2d);
+    scene.commands(fmt::format("fix grid all mpm {}\nregion r cylinder z 0.5 0.5 0.2 INF INF\n"
+                               "create_points 1 region r ppc 2", h[k]));
+    auto points = scene.atoms();
+    EXPECT_EQ(points.size(), count[k]);
+    EXPECT_NEAR(total_volume(points) / (M_PI * 0.04) - 1.0, excess[k], 1.0e-4);
+    double centroid[2] = {0.0, 0.0};
+    for (const auto &p : points) {
+      EXPECT_EQ(p.x[2], 0.0);
+      EXPECT_DOUBLE_EQ(p.volume0, h[k] * h[k] / 4.0);    // per unit thickness
+      for (int d = 0; d < 2; d++) centroid[d] += p.x[d] / points.size();
+    }
+    EXPECT_NEAR(centroid[0], 0.5, 1.0e-14);
+    EXPECT_NEAR(centroid[1], 0.5, 1.0e-14);
+  }
+
+  Scene scene;
+  scene.commands(box2d);
+  scene.commands("fix grid all mpm 0.1\nregion r block 0 1 0 0.5 INF INF\n"
+                 "create_points 1 region r ppc 3 2");
+  EXPECT_EQ(scene.atoms().size(), 30 * 10);
+}
+
+// error of the volume is of first order in h or better: at most one half of a layer of points
+
+TEST(CreatePoints, CurvedBodies)
+{
+  struct {
+    const char *region;
+    double volume, surface;
+  } bodies[] = {
+      {"region r sphere 0.5 0.5 0.5 0.4", 4.0 / 3.0 * M_PI * 0.064, 4.0 * M_PI * 0.16},
+      {"region r cylinder x 0.51 0.48 0.31 0.1 0.9", M_PI * 0.31 * 0.31 * 0.8, 2.0 * M_PI * 0.31},
+      {"region b block 0.1 0.9 0.1 0.9 0.1 0.9\nregion c cylinder z 0.9 0.9 0.5 INF INF side out\n"
+       "region r intersect 2 b c", 0.512 - M_PI * 0.25 * 0.25 * 0.8, 4.0},
+  };
+  for (const auto &body : bodies)
+    for (double h : {0.1, 0.05, 0.025}) {
+      Scene scene;
+      scene.commands(box3d);
+      scene.commands("unfix grid\nfix grid all mpm " + std::to_string(h) + "\n" + body.region +
+                     "\ncreate_points 1 region r ppc 2");
+      EXPECT_NEAR(total_volume(scene.atoms()), body.volume, body.surface * h * h) << body.region;
+    }
+}
+
+TEST(CreatePoints, ReportsWhatItMade)
+{
+  Scene scene;
+  scene.commands(box2d);
+  scene.commands("fix grid all mpm 0.05\nregion r cylinder z 0.5 0.5 0.2 INF INF");
+  if (my_rank() == 0) scene.lmp->logfile = fopen(scratch("log").c_str(), "w");
+  scene.commands("create_points 2 region r ppc 2");
+  if (my_rank() == 0) {
+    fclose(scene.lmp->logfile);
+    scene.lmp->logfile = nullptr;
+    std::string text;
+    char line[256];
+    FILE *fp = fopen(scratch("log").c_str(), "r");
+    while (fgets(line, 256, fp)) text += line;
+    fclose(fp);
+    EXPECT_THAT(text, HasSubstr("Created 208 material points of type 2\n"));
+    EXPECT_THAT(text, HasSubstr("spacing = 0.025 0.025\n"));
+    EXPECT_THAT(text, HasSubstr("volume = 0.000625 per point, 0.13 in total (per unit thickness)"));
+    EXPECT_THAT(text, HasSubstr("create_points CPU = "));
+  }
+  remove_scratch("log");
+}
+
+// ---------------------------------------------------------------- the same on any number of ranks
+
+// two far spheres in one bounding box of more sites than a rank looks at in one go, with jitter
+
+static const char *const far_spheres = R"(
+region one sphere 0.13 0.13 0.13 0.1
+region two sphere 0.87 0.87 0.8 0.07
+region r union 2 one two
+create_points 1 region r ppc 3 jitter 0.4 98765
+)";
+
+TEST(CreatePoints, AnyNumberOfRanks)
+{
+  Scene serial(MPI_COMM_SELF);
+  serial.commands(box3d);
+  serial.commands("unfix grid\nfix grid all mpm 0.02");
+  serial.commands(far_spheres);
+  const auto expected = serial.atoms();
+  EXPECT_NEAR(expected.size(), 4.0 / 3.0 * M_PI * (1.0e-3 + 3.43e-4) / 8.0e-6 * 27.0, 300);
+
+  for (const char *layout : {"", "processors 1 1 *", "processors 1 * 1", "processors * 1 1",
+                             "comm_style tiled"}) {
+    Scene parallel;
+    parallel.commands(layout);
+    parallel.commands(box3d);
+    parallel.commands("unfix grid\nfix grid all mpm 0.02");
+    parallel.commands(far_spheres);
+    const auto points = parallel.atoms();
+    ASSERT_EQ(points.size(), expected.size()) << layout;
+    EXPECT_TRUE(points == expected) << layout;
+
+    // every rank has what is in its part of the box, bounds included once
+    const auto *domain = parallel.lmp->domain;
+    for (int i = 0; i < parallel.atom()->nlocal; i++)
+      for (int d = 0; d < 3; d++) {
+        EXPECT_GE(parallel.atom()->x[i][d], domain->sublo[d]);
+        EXPECT_LT(parallel.atom()->x[i][d], domain->subhi[d]);
+      }
+  }
+}
+
+// a box cut in unequal parts by balancing what is there already
+
+TEST(CreatePoints, BalancedBox)
+{
+  auto build = [](Scene &scene, const std::string &balance) {
+    scene.commands(balance.find("rcb") != std::string::npos ? "comm_style tiled" : "");
+    scene.commands(box3d);
+    scene.commands("region c block 0 0.3 0 0.2 0 0.1\ncreate_points 1 region c ppc 2");
+    scene.commands("region r block 0.1 1 0.2 1 0 1");
+    scene.commands(balance);
+    scene.commands("create_points 2 region r ppc 2");
+    return scene.atoms();
+  };
+  Scene serial(MPI_COMM_SELF), rcb, shift;
+  const auto expected = build(serial, "");
+  ASSERT_EQ(expected.size(), 48u + 18 * 16 * 20);
+  EXPECT_EQ(expected.back().tag, 48 + 18 * 16 * 20);
+  EXPECT_TRUE(build(rcb, "balance 1.0 rcb") == expected);
+  EXPECT_TRUE(build(shift, "balance 1.0 shift xyz 20 1.01") == expected);
+}
+
+// sites on the faces between ranks and on the faces of the box
+
+TEST(CreatePoints, SitesOnFaces)
+{
+  for (const char *boundary : {"f f f", "p p p"}) {
+    Scene scene;
+    scene.commands(std::string("units si\natom_style mpm\nboundary ") + boundary +
+                   "\nregion box block 0 1 0 1 0 1\ncreate_box 1 box\n"
+                   "fix grid all mpm 0.125 origin 0.0625 -0.0625 0.0625\n"
+                   "create_points 1 box ppc 1\nunfix grid");
+    auto points = scene.atoms();
+    ASSERT_EQ(points.size(), 512u) << boundary;
+    EXPECT_EQ(total_volume(points), 1.0);
+    std::set<std::array<double, 3>> places;
+    for (const auto &p : points) places.insert({p.x[0], p.x[1], p.x[2]});
+    EXPECT_EQ(places.size(), 512u);
+    for (const auto &p : points)
+      for (double x : p.x) EXPECT_EQ(8.0 * x, std::floor(8.0 * x));
+
+    // nothing is lost when LAMMPS sends atoms to their ranks
+    scene.commands("set type 1 mass 1.0\nfix n all nve\nrun 2");
+    EXPECT_EQ(scene.atoms().size(), 512u);
+  }
+
+  // the upper faces of a fixed box are outside
+  Scene scene;
+  scene.commands(box3d);
+  scene.commands("unfix grid\nfix grid all mpm 0.125 origin 0.0625 0.0625 0.0625\n"
+                 "region r block 0 1 0 1 0 1");
+  EXPECT_THAT(scene.error("create_points 1 region r ppc 1"),
+              HasSubstr(std::to_string(9 * 9 * 9 - 512) + " points would be outside"));
+}
+
+// origins that put sites on a periodic face up to rounding: one of the two images, always
+
+TEST(CreatePoints, PeriodicFaceRounding)
+{
+  for (double origin : {-0.05, 0.05, 0.15, 0.35, 1.0 / 3.0, 0.45 + 1.0e-17, -7.65}) {
+    Scene scene;
+    scene.commands("units si\natom_style mpm\nregion box block 0 1.3 0 0.7 0 0.1\n"
+                   "create_box 1 box");
+    scene.commands(fmt::format("fix grid all mpm 0.1 origin {0:.17g} {0:.17g} {0:.17g}\n"
+                               "create_points 1 box ppc 1", origin));
+    auto points = scene.atoms();
+    EXPECT_EQ(points.size(), 13u * 7u) << origin;
+    for (std::size_t i = 0; i < points.size(); i++) {
+      for (int d = 0; d < 3; d++) {
+        EXPECT_GE(points[i].x[d], 0.0);
+        EXPECT_LT(points[i].x[d], scene.lmp->domain->boxhi[d]);
+      }
+      for (std::size_t j = 0; j < i; j++) {
+        double r2 = 0.0;
+        for (int d = 0; d < 3; d++) {
+          const double length = scene.lmp->domain->prd[d];
+          const double dx = points[i].x[d] - points[j].x[d];
+          r2 += std::pow(dx - length * std::round(dx / length), 2);
+        }
+        EXPECT_GT(r2, 0.0099);
+      }
+    }
+  }
+}
+
+// ---------------------------------------------------------------- jitter
+
+static std::vector<Point> jittered(const std::string &options, MPI_Comm comm = MPI_COMM_WORLD)
+{
+  Scene scene(comm);
+  scene.commands(box3d);
+  scene.commands("create_points 1 box ppc 2 " + options);
+  return scene.atoms();
+}
+
+TEST(CreatePoints, Jitter)
+{
+  const auto regular = jittered("");
+  for (double fraction : {0.1, 0.5}) {
+    const auto option = fmt::format("jitter {} ", fraction);
+    const auto points = jittered(option + "4711");
+    ASSERT_EQ(points.size(), regular.size());
+    EXPECT_TRUE(points == jittered(option + "4711"));
+    EXPECT_TRUE(points == jittered(option + "4711", MPI_COMM_SELF));
+    EXPECT_FALSE(points == jittered(option + "4712"));
+
+    double mean[3] = {0, 0, 0}, square[3] = {0, 0, 0}, mixed = 0.0;
+    const double reach = fraction * 0.05;
+    for (std::size_t k = 0; k < points.size(); k++) {
+      double u[3];
+      EXPECT_EQ(points[k].volume0, regular[k].volume0);
+      for (int d = 0; d < 3; d++) {
+        u[d] = (points[k].x[d] - regular[k].x[d]) / reach;
+        ASSERT_LE(fabs(u[d]), 1.0 + 1.0e-12);
+        ASSERT_GE(points[k].x[d], 0.0);
+        ASSERT_LT(points[k].x[d], 1.0);
+        mean[d] += u[d] / points.size();
+        square[d] += u[d] * u[d] / points.size();
+      }
+      mixed += u[0] * u[1] / points.size();
+    }
+
+    // uniform in [-1,1]: mean 0, variance 1/3, axes independent (5 sigma of 8000 points)
+    for (int d = 0; d < 3; d++) {
+      EXPECT_NEAR(mean[d], 0.0, 5.0 * std::sqrt(1.0 / 3.0 / 8000));
+      EXPECT_NEAR(square[d], 1.0 / 3.0, 5.0 * std::sqrt(4.0 / 45.0 / 8000));
+    }
+    EXPECT_NEAR(mixed, 0.0, 5.0 / 3.0 / std::sqrt(8000.0));
+  }
+  EXPECT_TRUE(jittered("jitter 0 1") == regular);
+}
+
+// sites near the faces of a fixed box whose cells stick out of it
+
+TEST(CreatePoints, JitterStaysInBox)
+{
+  Scene scene;
+  scene.commands(box3d);
+  scene.commands("unfix grid\nfix grid all mpm 0.1 origin 0.045 0.05 -0.03\n"
+                 "create_points 1 box ppc 1 jitter 0.5 3");
+  auto points = scene.atoms();
+  EXPECT_EQ(points.size(), 1000u);
+  for (const auto &p : points)
+    for (double x : p.x) EXPECT_TRUE(x >= 0.0 && x < 1.0) << x;
+}
+
+// ---------------------------------------------------------------- overlap and outside
+
+TEST(CreatePoints, AbuttingRegions)
+{
+  Scene scene;
+  scene.commands(box3d);
+  scene.commands("region a block 0.1 0.5 0.1 0.6 0.1 0.4\nregion b block 0.5 0.9 0.1 0.6 0.1 0.4\n"
+                 "region ab block 0.1 0.9 0.1 0.6 0.1 0.4\n"
+                 "create_points 1 region a jitter 0.5 1\ncreate_points 2 region b jitter 0.5 1");
+  auto two = scene.atoms();
+  EXPECT_EQ(two.size(), 16u * 10 * 6);
+
+  // the same points as of one body
+  Scene whole;
+  whole.commands(box3d);
+  whole.commands("region ab block 0.1 0.9 0.1 0.6 0.1 0.4\n"
+                 "create_points 1 region ab jitter 0.5 1");
+  std::set<std::array<double, 3>> places, one;
+  for (const auto &p : two) places.insert({p.x[0], p.x[1], p.x[2]});
+  for (const auto &p : whole.atoms()) one.insert({p.x[0], p.x[1], p.x[2]});
+  EXPECT_TRUE(places == one);
+}
+
+TEST(CreatePoints, Overlap)
+{
+  Scene scene;
+  scene.commands(box3d);
+  scene.commands("region a block 0 0.5 0 0.1 0 0.1\nregion b block 0.3 0.8 0 0.1 0 0.1\n"
+                 "create_points 1 region a ppc 2");
+  EXPECT_THAT(scene.error("create_points 2 region b ppc 2"),
+              AllOf(HasSubstr("16 existing material points are (the first has ID 7)"),
+                    HasSubstr("overlap yes")));
+  EXPECT_EQ(scene.atoms().size(), 40u);
+
+  // a face through the sites belongs to both regions
+  scene.commands("region c block 0.475 0.6 0 0.1 0 0.1");
+  EXPECT_THAT(scene.error("create_points 2 region c ppc 2"), HasSubstr("4 existing"));
+
+  // at another spacing, finer and coarser
+  EXPECT_THAT(scene.error("create_points 2 region b ppc 3"), HasSubstr("existing"));
+  EXPECT_THAT(scene.error("create_points 2 region b ppc 1"), HasSubstr("16 existing"));
+
+  scene.commands("create_points 2 region b ppc 2 overlap yes");
+  EXPECT_EQ(scene.atoms().size(), 80u);
+}
+
+TEST(CreatePoints, OverlapAcrossPeriodicFaceAndRanks)
+{
+  Scene scene;
+  scene.commands("units si\natom_style mpm\nregion box block 0 1 0 1 0 1\ncreate_box 2 box\n"
+                 "fix grid all mpm 0.125 origin 0.0625 0.0625 0.0625\n"
+                 "create_points 1 box ppc 1\ndisplace_atoms all move -0.06 0.06 0.06");
+  EXPECT_THAT(scene.error("create_points 2 box ppc 1"), HasSubstr("512 existing"));
+
+  // atoms that are no material points are not in the way
+  Scene atoms;
+  atoms.commands(box3d);
+  atoms.commands("create_atoms 1 single 0.525 0.525 0.525 units box\ncreate_points 2 box");
+  EXPECT_EQ(atoms.atoms().size(), 8001u);
+  EXPECT_EQ(atoms.atoms()[0].volume0, 0.0);
+}
+
+TEST(CreatePoints, OutsideTheBox)
+{
+  Scene scene;
+  scene.commands(box3d);
+  scene.commands("region r block 0.5 1.25 -0.1 0.1 0 0.1\nregion in block INF INF 0.5 0.6 0.5 0.6\n"
+                 "region far sphere 5 5 5 1\nregion huge block 0 1e9 0 1e9 0 1e9\n"
+                 "region near block 0 1.01 0.2 0.3 0.2 0.3");
+  EXPECT_THAT(scene.error("create_points 1 region r ppc 2"),
+              AllOf(HasSubstr("region r reaches beyond the simulation box"),
+                    HasSubstr("80 points would be outside"), HasSubstr("outside ignore")));
+  EXPECT_THAT(scene.error("create_points 1 region far ppc 1"), HasSubstr("would be outside"));
+  EXPECT_THAT(scene.error("create_points 1 region huge ppc 1"),
+              HasSubstr("an unknown number of points would be outside"));
+  EXPECT_EQ(scene.atoms().size(), 0u);
+
+  scene.commands("create_points 1 region r ppc 2 outside ignore");
+  EXPECT_EQ(scene.atoms().size(), 40u);
+  EXPECT_THAT(scene.error("create_points 1 region far ppc 1 outside ignore"),
+              HasSubstr("made no points"));
+
+  // INF is no mistake, nor is a region that is too large by less than half a spacing
+  scene.commands("create_points 1 region in ppc 1");
+  EXPECT_EQ(scene.atoms().size(), 50u);
+  scene.commands("create_points 1 region near ppc 1");
+  EXPECT_EQ(scene.atoms().size(), 60u);
+}
+
+// ---------------------------------------------------------------- bad input
+
+TEST(CreatePoints, BadInput)
+{
+  struct {
+    const char *line, *message;
+  } inputs[] = {
+      {"create_points", "create_points"},
+      {"create_points 1", "create_points"},
+      {"create_points 0 box", "Invalid atom type 0"},
+      {"create_points 4 box", "Invalid atom type 4"},
+      {"create_points one box", "one"},
+      {"create_points 1 sphere", "Unknown create_points option sphere"},
+      {"create_points 1 region", "create_points region"},
+      {"create_points 1 region nowhere", "region nowhere does not exist"},
+      {"create_points 1 region r ppc", "create_points ppc"},
+      {"create_points 1 region r ppc x", "expects 1 or 3 numbers"},
+      {"create_points 1 region r ppc 2 2", "expects 1 or 3 numbers in a 3d simulation, not 2"},
+      {"create_points 1 region r ppc 2 2 2 2", "expects 1 or 3 numbers in a 3d simulation, not 4"},
+      {"create_points 1 region r ppc 0", "ppc 0 is out of range"},
+      {"create_points 1 region r ppc 2 -2 2", "ppc -2 is out of range"},
+      {"create_points 1 region r ppc 2.5", "2.5"},
+      {"create_points 1 region r ppc 1001", "ppc 1001 is out of range"},
+      {"create_points 1 region r spacing", "create_points spacing"},
+      {"create_points 1 region r spacing 0", "spacing 0 must be > 0"},
+      {"create_points 1 region r spacing 0.1 0.1 -0.1", "spacing -0.1 must be > 0"},
+      {"create_points 1 region r spacing 1e-17", "spacing 1e-17 is too fine"},
+      {"create_points 1 region r spacing 1e-200", "Create_points spacing"},
+      {"create_points 1 box spacing 1e-10", "would have to look at 1e+30 sites"},
+      {"create_points 1 region r spacing 0.1 ppc 2", "either ppc or spacing"},
+      {"create_points 1 region r fix", "create_points fix"},
+      {"create_points 1 region r fix nofix", "fix nofix does not exist"},
+      {"create_points 1 region r fix n", "fix n is a fix nve, not a fix mpm"},
+      {"create_points 1 region r jitter 0.1", "create_points jitter"},
+      {"create_points 1 region r jitter 0.6 1", "jitter 0.6 must be from 0 to 0.5"},
+      {"create_points 1 region r jitter -0.1 1", "jitter -0.1 must be"},
+      {"create_points 1 region r jitter 0.1 0", "jitter seed 0 must be > 0"},
+      {"create_points 1 region r overlap", "create_points overlap"},
+      {"create_points 1 region r overlap maybe", "maybe"},
+      {"create_points 1 region r outside", "create_points outside"},
+      {"create_points 1 region r outside in", "Unknown create_points outside option in"},
+      {"create_points 1 region r diameter 0.1", "diameter needs atom_style hybrid sphere mpm"},
+      {"create_points 1 region r pcc 2", "Unknown create_points keyword: pcc"},
+      {"create_points 1 region slit ppc 1", "made no points"},
+  };
+  Scene scene;
+  scene.commands(box3d);
+  scene.commands("fix n all nve\nregion r block 0.2 0.3 0.2 0.3 0.2 0.3\n"
+                 "region slit block 0.41 0.42 0 1 0 1");
+  for (const auto &input : inputs) {
+    const auto message = scene.error(input.line);
+    EXPECT_THAT(message, AllOf(HasSubstr("ERROR"), HasSubstr(input.message))) << input.line;
+    EXPECT_EQ(scene.atom()->natoms, 0) << input.line;
+  }
+
+  // and the instance is still usable
+  scene.commands("create_points 1 region r");
+  EXPECT_EQ(scene.atoms().size(), 8u);
+}
+
+TEST(CreatePoints, BadSetting)
+{
+  Scene early;
+  EXPECT_THAT(early.error("atom_style mpm\ncreate_points 1 box"),
+              HasSubstr("before the simulation box is defined"));
+  Scene atomic;
+  EXPECT_THAT(atomic.error("atom_style mpm\natom_style atomic\nregion box block 0 1 0 1 0 1\n"
+                           "create_box 1 box\ncreate_points 1 box"),
+              AllOf(HasSubstr("needs atom_style mpm"), HasSubstr("atom style is atomic")));
+  Scene tilted;
+  EXPECT_THAT(tilted.error("atom_style mpm\nregion box prism 0 1 0 1 0 1 0.1 0 0\n"
+                           "create_box 1 box\ncreate_points 1 box spacing 0.1"),
+              HasSubstr("orthogonal"));
+  Scene gridless;
+  EXPECT_THAT(gridless.error("atom_style mpm\nregion box block 0 1 0 1 0 1\ncreate_box 1 box\n"
+                             "create_points 1 box ppc 2"),
+              AllOf(HasSubstr("define fix mpm first"), HasSubstr("create_points spacing")));
+  Scene flat;
+  flat.commands(box2d);
+  EXPECT_THAT(flat.error("fix grid all mpm 0.1\ncreate_points 1 box ppc 2 2 2"),
+              HasSubstr("expects 1 or 2 numbers in a 2d simulation, not 3"));
+}
+
+TEST(AtomStyle, BadInput)
+{
+  Scene scene;
+  EXPECT_THAT(scene.error("atom_style mpm 3"), HasSubstr("Atom style mpm takes no arguments"));
+  EXPECT_THAT(scene.error("atom_style hybrid mpm sphere"),
+              HasSubstr("Atom style mpm must come after sphere"));
+  EXPECT_THAT(scene.error("atom_style hybrid ellipsoid mpm"),
+              HasSubstr("cannot be combined with atom style ellipsoid"));
+  EXPECT_THAT(scene.error("atom_style hybrid mpm line"),
+              HasSubstr("cannot be combined with atom style line"));
+  EXPECT_THAT(scene.error("atom_style hybrid mpm unknown"), HasSubstr("unknown"));
+  scene.commands("atom_style mpm\natom_style hybrid sphere mpm\natom_style mpm");
+}
+
+// ---------------------------------------------------------------- what LAMMPS does to atoms
+
+static const char *const moving = R"(
+units lj
+atom_style mpm
+atom_modify map array sort 3 1.0
+region box block 0 4 0 4 0 4
+create_box 2 box
+region r block 0 4 0 2 0 2.5
+create_points 1 region r spacing 0.5
+set type 1 mass 1.0
+)";
+
+TEST(AtomStyle, NewAtoms)
+{
+  Scene scene;
+  scene.commands("units lj\natom_style mpm\nlattice sc 1.0\nregion box block 0 3 0 3 0 3\n"
+                 "create_box 2 box\ncreate_atoms 1 box\nvelocity all create 1.0 87287 loop geom");
+  auto atoms = scene.atoms();
+  ASSERT_EQ(atoms.size(), 27u);
+  for (const auto &p : atoms) {
+    EXPECT_EQ(p.mass, 1.0);
+    EXPECT_EQ(p.volume0, 0.0);
+    EXPECT_EQ(p.volume, 0.0);
+    EXPECT_TRUE(std::isfinite(p.v[0]));
+    for (int c = 0; c < 9; c++) EXPECT_EQ(p.F[c], c % 4 == 0 ? 1.0 : 0.0);
+  }
+
+  // atoms become material points when they are given a volume
+  scene.commands("region left block 0 1.5 0 3 0 3 units box\ngroup left region left\n"
+                 "set group left type 2\nset type 2 volume 0.25\nset type 2 mass 3.0");
+  for (const auto &p : scene.atoms()) {
+    EXPECT_EQ(p.volume0, p.x[0] < 1.5 ? 0.25 : 0.0);
+    EXPECT_EQ(p.mass, p.x[0] < 1.5 ? 3.0 : 1.0);
+  }
+  EXPECT_THAT(scene.error("set type 1 volume -1"), HasSubstr("volume"));
+}
+
+TEST(AtomStyle, MemoryPerPoint)
+{
+  Scene scene(MPI_COMM_SELF);
+  scene.commands(moving);
+
+  // LAMMPS's own 16 + 3*24, ours 3*8 + 72 + 48, and a pointer for each row of x, v, f, F, stress
+  EXPECT_LE(scene.atom()->avec->memory_usage() / scene.atom()->nmax, 232.0 + 40.0);
+  EXPECT_EQ(scene.atom()->avec->comm_x_only, 1);
+  EXPECT_EQ(scene.atom()->avec->comm_f_only, 1);
+}
+
+// points fly through all ranks and are sorted again and again
+
+TEST(AtomStyle, MigrationAndSorting)
+{
+  for (const char *style : {"mpm", "hybrid sphere mpm"}) {
+    Scene scene;
+    std::string lines = moving;
+    lines.replace(lines.find("atom_style mpm"), 14, std::string("atom_style ") + style);
+    scene.commands(lines);
+    scene.commands("velocity all create 20.0 4711 loop all\nset type 1 image 0 0 0");
+    scene.fill();
+    const auto before = scene.atoms();
+    ASSERT_EQ(before.size(), 8u * 4 * 5);
+
+    scene.commands("fix n all nve\ntimestep 0.01\nneighbor 0.2 bin\ncomm_modify cutoff 0.5\n"
+                   "thermo 100");
+    scene.commands("run 300");
+    const auto after = scene.atoms();
+    ASSERT_EQ(after.size(), before.size());
+    int travelled = 0;
+    for (std::size_t k = 0; k < after.size(); k++) {
+      Point p = after[k];
+      for (int d = 0; d < 3; d++) {
+        const double x = before[k].x[d] + 3.0 * before[k].v[d];
+        EXPECT_NEAR(std::remainder(p.x[d] - x, 4.0), 0.0, 1.0e-10);
+        travelled += fabs(x - before[k].x[d]) > 4.0;
+        p.x[d] = before[k].x[d];
+      }
+      ASSERT_TRUE(p == before[k]) << k;
+    }
+    EXPECT_GT(travelled, 300);    // otherwise this does not test much
+  }
+}
+
+TEST(AtomStyle, Restart)
+{
+  for (const char *style : {"mpm", "hybrid sphere mpm", "hybrid atomic mpm"}) {
+    Scene scene;
+    std::string lines = moving;
+    lines.replace(lines.find("atom_style mpm"), 14, std::string("atom_style ") + style);
+    scene.commands("lattice none 1.0");
+    scene.commands(lines);
+    if (scene.atom()->mass) scene.commands("mass * 1.0");
+    scene.commands("create_atoms 2 single 3.3 3.3 3.3 units box\n"
+                   "velocity all create 20.0 4711 loop all");
+    scene.fill();
+    const auto before = scene.atoms();
+    scene.commands("write_restart " + scratch("restart") + " noinit\nclear");
+
+    Scene again;
+    again.commands("read_restart " + scratch("restart"));
+    EXPECT_TRUE(again.atoms() == before) << style;
+
+    // a serial run reads it as well
+    Scene serial(MPI_COMM_SELF);
+    serial.commands("read_restart " + scratch("restart"));
+    EXPECT_TRUE(serial.atoms() == before) << style;
+
+    // more points can be made
+    again.commands("region s block 0 4 2 4 0 1\ncreate_points 1 region s spacing 0.5");
+    EXPECT_EQ(again.atoms().size(), before.size() + 8 * 4 * 2);
+    EXPECT_TRUE(again.atoms()[0] == before[0]);
+    remove_scratch("restart");
+  }
+}
+
+TEST(AtomStyle, Replicate)
+{
+  Scene scene;
+  scene.commands(moving);
+  scene.fill();
+  const auto before = scene.atoms();
+  scene.commands("replicate 2 1 3");
+  const auto after = scene.atoms();
+  ASSERT_EQ(after.size(), 6 * before.size());
+  for (const auto &p : after) {
+    const auto &q = before[((int) p.tag - 1) % before.size()];
+    EXPECT_EQ(p.mass, q.mass);
+    EXPECT_EQ(p.volume0, q.volume0);
+    EXPECT_EQ(p.volume, q.volume);
+    for (int c = 0; c < 9; c++) EXPECT_EQ(p.F[c], q.F[c]);
+    for (int c = 0; c < 6; c++) EXPECT_EQ(p.stress[c], q.stress[c]);
+    for (int d = 0; d < 3; d++) EXPECT_NEAR(std::remainder(p.x[d] - q.x[d], 4.0), 0.0, 1.0e-12);
+  }
+
+  // the new instance of Atom takes more points
+  scene.commands("region s block 0 8 2 4 0 1\ncreate_points 2 region s spacing 0.5");
+  EXPECT_EQ(scene.atoms().size(), after.size() + 16 * 4 * 2);
+}
+
+TEST(AtomStyle, DeleteAtoms)
+{
+  Scene scene;
+  scene.commands(moving);
+  scene.fill();
+  const auto before = scene.atoms();
+  scene.commands("region cut sphere 2 1 1 0.9\ngroup cut region cut\n"
+                 "delete_atoms group cut compress no");
+  const auto after = scene.atoms();
+  std::vector<Point> expected;
+  for (const auto &p : before)
+    if (std::hypot(p.x[0] - 2, std::hypot(p.x[1] - 1, p.x[2] - 1)) > 0.9) expected.push_back(p);
+  EXPECT_LT(after.size(), before.size());
+  EXPECT_TRUE(after == expected);
+
+  // new IDs follow the largest one
+  scene.commands("create_points 2 region cut spacing 0.5");
+  EXPECT_EQ(scene.atoms().size(), before.size());
+  EXPECT_EQ(scene.atoms().back().tag, before.size() + before.size() - after.size());
+}
+
+TEST(AtomStyle, Clear)
+{
+  Scene scene;
+  scene.commands(moving);
+  scene.fill();
+  scene.commands("clear");
+  scene.commands(moving);
+  const auto points = scene.atoms();
+  EXPECT_EQ(points.size(), 160u);
+  for (const auto &p : points) {
+    EXPECT_EQ(p.volume, 0.125);
+    EXPECT_EQ(p.F[1], 0.0);
+    EXPECT_EQ(p.F[8], 1.0);
+  }
+}
+
+// fixes and computes are told about new points
+
+TEST(AtomStyle, NewPointsInComputes)
+{
+  Scene scene;
+  scene.commands(moving);
+  scene.commands("compute moved all displace/atom\ncompute far all reduce max c_moved[4]\n"
+                 "region s block 0 4 2 4 0 1\ncreate_points 2 region s spacing 0.5\n"
+                 "set type 2 mass 1.0\nfix n all nve\nthermo_style custom step c_far\nrun 0");
+  EXPECT_EQ(scene.evaluate("c_far"), 0.0);
+}
+
+TEST(AtomStyle, PropertyAtom)
+{
+  Scene scene;
+  scene.commands("lattice none 1.0");
+  scene.commands(moving);
+  scene.fill();
+  scene.commands("create_atoms 2 single 3.3 3.3 3.3 units box\n"
+                 "compute p all property/atom mpm_volume0 mpm_volume mpm_J mpm_density mpm_F12 "
+                 "mpm_F31 mpm_F33 mpm_stress11 mpm_stress22 mpm_stress33 mpm_stress12 "
+                 "mpm_stress13 mpm_stress23 mpm_stress32\nfix n all nve\nrun 0");
+  auto *compute = scene.lmp->modify->get_compute_by_id("p");
+  compute->compute_peratom();
+  for (int i = 0; i < scene.atom()->nlocal; i++) {
+    const double *a = compute->array_atom[i];
+    if (scene.atom()->type[i] == 2) {
+      for (int c = 0; c < 14; c++) EXPECT_EQ(a[c], 0.0);
+      continue;
+    }
+    const double *F = scene.points()->F[i], *s = scene.points()->stress[i];
+    EXPECT_EQ(a[0], scene.atom()->vfrac[i]);
+    EXPECT_EQ(a[1], scene.points()->vol[i]);
+    const double J = F[0] * F[4] * F[8] + F[1] * F[5] * F[6] + F[2] * F[3] * F[7] -
+        F[2] * F[4] * F[6] - F[1] * F[3] * F[8] - F[0] * F[5] * F[7];
+    EXPECT_NEAR(a[2], J, 1.0e-14);
+    EXPECT_DOUBLE_EQ(a[3], scene.atom()->rmass[i] / scene.points()->vol[i]);
+    EXPECT_EQ(a[4], F[1]);
+    EXPECT_EQ(a[5], F[6]);
+    EXPECT_EQ(a[6], F[8]);
+    for (int c = 0; c < 6; c++) EXPECT_EQ(a[7 + c], s[c]);
+    EXPECT_EQ(a[13], s[5]);
+  }
+  EXPECT_THAT(scene.error("compute q all property/atom mpm_F14"), HasSubstr("mpm_F14"));
+}
+
+// ---------------------------------------------------------------- data files
+
+static const char *const header = R"(LAMMPS data file
+
+4 atoms
+2 atom types
+
+0 1 xlo xhi
+0 1 ylo yhi
+0 1 zlo zhi
+
+)";
+
+static void expect_close(double value, double expected)
+{
+  EXPECT_NEAR(value, expected, 4.0e-15 * fabs(expected));
+}
+
+static void round_trip(Scene &scene)
+{
+  const auto before = scene.atoms();
+  scene.commands("write_data " + scratch("data") + " noinit\n");
+  Scene again;
+  again.commands("units si");
+  again.commands(std::string("atom_style ") +
+                 (scene.atom()->radius_flag ? "hybrid sphere mpm" :
+                  scene.atom()->mass        ? "hybrid atomic mpm" :
+                                              "mpm"));
+  again.commands("read_data " + scratch("data"));
+  const auto after = again.atoms();
+  ASSERT_EQ(after.size(), before.size());
+  for (std::size_t k = 0; k < after.size(); k++) {
+    EXPECT_EQ(after[k].tag, before[k].tag);
+    EXPECT_EQ(after[k].type, before[k].type);
+    EXPECT_EQ(after[k].volume, after[k].volume0);
+    expect_close(after[k].mass, before[k].mass);
+    expect_close(after[k].volume0, before[k].volume0);
+    expect_close(after[k].radius, before[k].radius);
+    for (int d = 0; d < 3; d++) EXPECT_EQ(after[k].x[d], before[k].x[d]);
+    for (int d = 0; d < 3; d++) EXPECT_EQ(after[k].v[d], before[k].v[d]);
+    for (int c = 0; c < 9; c++) EXPECT_EQ(after[k].F[c], c % 4 == 0 ? 1.0 : 0.0);
+    for (double s : after[k].stress) EXPECT_EQ(s, 0.0);
+  }
+
+  // writing has not changed anything
+  EXPECT_TRUE(scene.atoms() == before);
+  remove_scratch("data");
+}
+
+// id type density volume x y z; without volume: mass in place of density
+
+TEST(DataFile, Columns)
+{
+  write_scratch("in", std::string(header) + "Atoms # mpm\n\n1 1 8960 1e-6 .1 .1 .1\n"
+                "2 1 0 1e-6 .2 .1 .1\n3 2 0.5 0 .9 .9 .9\n4 2 2 3 .5 .9 .4 0 1 0\n");
+  Scene scene;
+  scene.commands("units si\natom_style mpm");
+  EXPECT_THAT(scene.error("read_data " + scratch("in")), HasSubstr("Incorrect format"));
+  write_scratch("in", std::string(header) + "Atoms # mpm\n\n1 1 8960 1e-6 .1 .1 .1\n"
+                "2 1 0 1e-6 .2 .1 .1\n3 2 0.5 0 .9 .9 .9\n4 2 2 3 .5 .9 .4\n");
+  Scene good;
+  good.commands("units si\natom_style mpm\nread_data " + scratch("in"));
+  auto p = good.atoms();
+  ASSERT_EQ(p.size(), 4u);
+  EXPECT_DOUBLE_EQ(p[0].mass, 8.96e-3);
+  EXPECT_EQ(p[0].volume0, 1.0e-6);
+  EXPECT_EQ(p[0].volume, 1.0e-6);
+  EXPECT_EQ(p[1].mass, 0.0);
+  EXPECT_EQ(p[2].mass, 0.5);
+  EXPECT_EQ(p[2].volume, 0.0);
+  EXPECT_EQ(p[3].mass, 6.0);
+  for (const auto &point : p)
+    for (int c = 0; c < 9; c++) EXPECT_EQ(point.F[c], c % 4 == 0 ? 1.0 : 0.0);
+  remove_scratch("in");
+  round_trip(good);
+}
+
+// id type x y z diameter density volume
+
+TEST(DataFile, ColumnsWithSpheres)
+{
+  write_scratch("in", std::string(header) + "Atoms # hybrid\n\n1 1 .1 .1 .1 0.02 8960 1e-6\n"
+                "2 1 .2 .1 .1 0 100 1e-6\n3 2 .9 .9 .9 0.2 2500 0\n4 2 .5 .9 .4 0 2 0\n");
+  Scene scene;
+  scene.commands("units si\natom_style hybrid sphere mpm\nread_data " + scratch("in"));
+  auto p = scene.atoms();
+  ASSERT_EQ(p.size(), 4u);
+  EXPECT_DOUBLE_EQ(p[0].mass, 8.96e-3);
+  EXPECT_EQ(p[0].radius, 0.01);
+  EXPECT_DOUBLE_EQ(p[1].mass, 1.0e-4);
+  EXPECT_DOUBLE_EQ(p[2].mass, 2500 * 4.0 / 3.0 * M_PI * 1.0e-3);
+  EXPECT_EQ(p[2].volume0, 0.0);
+  EXPECT_EQ(p[3].mass, 2.0);
+  remove_scratch("in");
+  round_trip(scene);
+}
+
+TEST(DataFile, RoundTrip)
+{
+  for (const char *style : {"mpm", "hybrid sphere mpm", "hybrid atomic mpm"}) {
+    Scene scene;
+    std::string lines = moving;
+    lines.replace(lines.find("atom_style mpm"), 14, std::string("atom_style ") + style);
+    scene.commands("lattice none 1.0");
+    scene.commands(lines);
+    if (scene.atom()->mass) scene.commands("mass * 1.0");
+    scene.commands("create_atoms 2 single 3.3 3.3 3.3 units box\n"
+                   "velocity all create 20.0 4711 loop all");
+    if (scene.atom()->radius_flag) scene.commands("set type 2 diameter 0.3");
+    scene.fill();
+    for (int i = 0; i < scene.atom()->nlocal; i++)
+      if (scene.atom()->type[i] == 2) scene.atom()->vfrac[i] = 0.0;
+    round_trip(scene);
+  }
+}
+
+// points without mass yet: can be stored by atom style mpm alone
+
+TEST(DataFile, PointsWithoutMass)
+{
+  Scene scene;
+  scene.commands(box3d);
+  scene.commands("region r block 0.2 0.8 0.2 0.8 0.2 0.8\ncreate_points 2 region r jitter 0.3 5");
+  round_trip(scene);
+}
+
+// errors on the rank that owns the atom: in serial
+
+TEST(DataFile, BadInput)
+{
+  struct {
+    const char *style, *atom, *message;
+  } inputs[] = {
+      {"mpm", "1 1 1000 -1e-6 .1 .1 .1", "Invalid volume -1e-06 of atom 1"},
+      {"mpm", "1 1 -1000 1e-6 .1 .1 .1", "Invalid density -1000 of atom 1"},
+      {"mpm", "1 1 0 0 .1 .1 .1", "Invalid mass 0 of atom 1"},
+      {"mpm", "1 1 -2 0 .1 .1 .1", "Invalid mass -2 of atom 1"},
+      {"mpm", "1 1 1000 nan .1 .1 .1", "nan"},
+      {"mpm", "1 1 1000 .1 .1 .1", "Incorrect format"},
+      {"hybrid sphere mpm", "1 1 .1 .1 .1 0.1 1000 -1", "Invalid volume -1 of atom 1"},
+      {"hybrid sphere mpm", "1 1 .1 .1 .1 0.1 -1000 1", "Invalid density"},
+      {"hybrid sphere mpm", "1 1 .1 .1 .1 0.1 0 1", "Invalid density"},
+  };
+  const auto file = scratch("bad" + std::to_string(my_rank()));
+  for (const auto &input : inputs) {
+    FILE *fp = fopen(file.c_str(), "w");
+    std::string text = header;
+    text.replace(text.find("4 atoms"), 7, "1 atoms");
+    fputs((text + "Atoms\n\n" + input.atom + "\n").c_str(), fp);
+    fclose(fp);
+    Scene scene(MPI_COMM_SELF);
+    EXPECT_THAT(scene.error(std::string("units si\natom_style ") + input.style + "\nread_data " +
+                            file), HasSubstr(input.message)) << input.atom;
+  }
+  remove(file.c_str());
+
+  // atom style sphere would refuse to read this file
+  Scene scene(MPI_COMM_SELF);
+  std::string lines = box3d;
+  lines.replace(lines.find("atom_style mpm"), 14, "atom_style hybrid sphere mpm");
+  scene.commands(lines);
+  scene.commands("region r block 0.2 0.8 0.2 0.8 0.2 0.8\ncreate_points 2 region r diameter 0.02");
+  for (const auto &p : scene.atoms()) EXPECT_EQ(p.radius, 0.01);
+  EXPECT_THAT(scene.error("write_data " + file + " noinit"),
+              HasSubstr("has no mass yet"));
+  remove(file.c_str());
+}
+
+TEST(AtomStyle, GrainsNextToPoints)
+{
+  Scene scene;
+  std::string lines = moving;
+  lines.replace(lines.find("atom_style mpm"), 14, "atom_style hybrid sphere mpm");
+  scene.commands("lattice none 1.0");
+  scene.commands(lines);
+  scene.commands("create_atoms 2 single 3.3 3.3 3.3 units box\nset type 2 diameter 0.4\n"
+                 "set type 2 density 2.0");
+  for (const auto &p : scene.atoms()) {
+    if (p.type == 2) {
+      EXPECT_EQ(p.volume0, 0.0);
+      EXPECT_EQ(p.radius, 0.2);
+      EXPECT_DOUBLE_EQ(p.mass, 2.0 * 4.0 / 3.0 * M_PI * 0.008);
+    } else {
+      EXPECT_EQ(p.volume0, 0.125);
+      EXPECT_DOUBLE_EQ(p.radius, 0.25);    // of a sphere as wide as the point
+    }
+  }
+}

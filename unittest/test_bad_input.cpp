@@ -1,0 +1,491 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+
+// labels: input
+// timeout: 300
+
+// Every mistake in an input gives an error that says what is wrong, and no crash and no endless
+// loop. A case is the good scene with one thing changed, in a LAMMPS instance of its own; a scene
+// that would run forever is killed by an alarm.
+
+#include "mpm_lammps.h"
+
+#include "exceptions.h"
+
+#include "gtest/gtest.h"
+
+#include <cstdio>
+#include <fstream>
+#include <regex>
+#include <sstream>
+#include <unistd.h>
+
+using namespace MPM_TEST;
+
+static constexpr unsigned SECONDS_PER_CASE = 60;
+
+static const std::string good_scene = R"(
+units lj
+boundary f f f
+atom_style mpm
+neighbor 0.3 bin
+region box block 0 8 0 8 0 8
+create_box 2 box
+fix grid all mpm 1.0
+region body block 2 5 2 5 2 5
+create_points 1 region body ppc 2
+fix soft all mpm/material density 1.0 neohookean 10.0 0.3
+velocity all set 0.1 0 0
+timestep 0.01
+thermo 5
+run 10
+)";
+
+/** What LAMMPS says to an input: the text of its error, or nothing. */
+static std::string error_of(const std::string &input)
+{
+  alarm(SECONDS_PER_CASE);
+  std::string text;
+  try {
+    Run run;
+    run.commands(input);
+  } catch (LAMMPSException &e) {
+    text = e.what();
+  }
+  alarm(0);
+  return text;
+}
+
+static bool contains(const std::string &text, const std::string &pattern)
+{
+  return std::regex_search(text, std::regex(pattern));
+}
+
+static std::string replaced(std::string text, const std::string &from, const std::string &to)
+{
+  const auto at = text.find(from);
+  if (at == std::string::npos) return "no '" + from + "' in the scene";
+  return text.replace(at, from.size(), to);
+}
+
+/** The scene with this before its run. */
+static std::string before_run(const std::string &lines, const std::string &run = "run 10\n")
+{
+  return replaced(good_scene, "run 10\n", lines + "\n" + run);
+}
+
+static std::string file_text(const std::string &name)
+{
+  std::ifstream file(name);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+/** A file that is removed at the end of a test. */
+struct TemporaryFile {
+  const std::string name;
+  TemporaryFile(const std::string &name, const std::string &text) : name(name)
+  {
+    std::ofstream(name) << text;
+  }
+  ~TemporaryFile() { remove(name.c_str()); }
+};
+
+/** One mistake: this part of the good scene becomes that, and the error matches a pattern. */
+struct Mistake {
+  const char *name, *from, *to, *error;
+};
+
+static void PrintTo(const Mistake &mistake, std::ostream *out)
+{
+  *out << mistake.to;
+}
+
+class BadInput : public ::testing::TestWithParam<Mistake> {};
+
+TEST_P(BadInput, IsExplained)
+{
+  const Mistake &m = GetParam();
+  const std::string text = error_of(replaced(good_scene, m.from, m.to));
+  EXPECT_FALSE(text.empty()) << "no error";
+  EXPECT_TRUE(contains(text, m.error)) << "expected: " << m.error << "\nfound: " << text;
+}
+
+static std::string case_name(const ::testing::TestParamInfo<Mistake> &info)
+{
+  return info.param.name;
+}
+
+TEST(GoodInput, Runs)
+{
+  EXPECT_EQ(error_of(good_scene), "");
+  EXPECT_EQ(error_of(before_run("")), "");
+}
+
+// what stands in the scene and is replaced
+
+static const char *const FIX = "fix grid all mpm 1.0\n";
+static const char *const BOUNDARY = "boundary f f f\n";
+static const char *const STYLE = "atom_style mpm\n";
+static const char *const BOX = "region box block 0 8 0 8 0 8\ncreate_box 2 box\n";
+static const char *const POINTS = "create_points 1 region body ppc 2\n";
+static const char *const MATERIAL = "fix soft all mpm/material density 1.0 neohookean 10.0 0.3\n";
+static const char *const TIMESTEP = "timestep 0.01\n";
+static const char *const RUN = "run 10\n";
+
+static const Mistake keywords[] = {
+    {"HMissing", FIX, "fix grid all mpm\n", "Illegal fix mpm command: missing argument"},
+    {"HText", FIX, "fix grid all mpm coarse\n", "[Ee]xpected floating.point.*coarse"},
+    {"HZero", FIX, "fix grid all mpm 0\n", "node spacing must be positive: 0"},
+    {"HNegative", FIX, "fix grid all mpm -1.0\n", "node spacing must be positive: -1"},
+    {"HNan", FIX, "fix grid all mpm nan\n", "nan"},
+    {"HInfinite", FIX, "fix grid all mpm 1e999\n", "positive|out of range"},
+    {"HLargerThanBox", FIX, "fix grid all mpm 8.5\n",
+     "spacing 8\\.5 is larger than the box length 8 along x"},
+    {"HTiny", FIX, "fix grid all mpm 1e-12\n", "spacing 1e-12 is too small for the box length 8"},
+    {"KeywordTypo", FIX, "fix grid all mpm 1.0 shap linear\n", "Unknown fix mpm keyword: shap"},
+    {"KeywordExtra", FIX, "fix grid all mpm 1.0 shape linear 3\n", "Unknown fix mpm keyword: 3"},
+    {"ShapeMissing", FIX, "fix grid all mpm 1.0 shape\n",
+     "Illegal fix mpm shape command: missing argument"},
+    {"ShapeUnknown", FIX, "fix grid all mpm 1.0 shape quintic\n",
+     "Unknown fix mpm shape quintic: must be one of linear quadratic cubic"},
+    {"TransferMissing", FIX, "fix grid all mpm 1.0 transfer\n",
+     "Illegal fix mpm transfer command: missing argument"},
+    {"TransferUnknown", FIX, "fix grid all mpm 1.0 transfer xflip\n",
+     "Unknown fix mpm transfer xflip: must be one of pic flip apic"},
+    {"FlipShareMissing", FIX, "fix grid all mpm 1.0 transfer flip\n",
+     "Illegal fix mpm transfer command: missing argument"},
+    {"FlipShareText", FIX, "fix grid all mpm 1.0 transfer flip shape linear\n",
+     "[Ee]xpected floating.point.*shape"},
+    {"FlipShareTooLarge", FIX, "fix grid all mpm 1.0 transfer flip 1.5\n",
+     "flip share must be within 0 and 1: 1\\.5"},
+    {"FlipShareNegative", FIX, "fix grid all mpm 1.0 transfer flip -0.1\n",
+     "flip share must be within 0 and 1: -0\\.1"},
+    {"SchemeMissing", FIX, "fix grid all mpm 1.0 scheme\n",
+     "Illegal fix mpm scheme command: missing argument"},
+    {"SchemeUnknown", FIX, "fix grid all mpm 1.0 scheme verlet\n",
+     "Unknown fix mpm scheme verlet: must be one of usl usf musl"},
+    {"OriginMissing", FIX, "fix grid all mpm 1.0 origin 0 0\n",
+     "Illegal fix mpm origin command: missing argument"},
+    {"OriginText", FIX, "fix grid all mpm 1.0 origin 0 0 middle\n",
+     "[Ee]xpected floating.point.*middle"},
+    {"OriginFarAway", FIX, "fix grid all mpm 1.0 origin 1e30 0 0\n", "origin 1e\\+?30 .*far"},
+    {"PolicyMissing", FIX, "fix grid all mpm 1.0 bad\n",
+     "Illegal fix mpm bad command: missing argument"},
+    {"PolicyUnknown", FIX, "fix grid all mpm 1.0 bad ignore\n",
+     "Unknown fix mpm bad ignore: must be one of error warn delete"},
+    {"DtcheckMissing", FIX, "fix grid all mpm 1.0 dtcheck\n",
+     "Illegal fix mpm dtcheck command: missing argument"},
+    {"DtcheckNoBoolean", FIX, "fix grid all mpm 1.0 dtcheck maybe\n", "[Ee]xpected boolean.*maybe"},
+    {"KernelsMissing", FIX, "fix grid all mpm 1.0 kernels\n",
+     "Illegal fix mpm kernels command: missing argument"},
+    {"KernelsUnknown", FIX, "fix grid all mpm 1.0 kernels sse9\n",
+     "Unknown fix mpm kernels sse9: must be one of auto reference baseline avx2 avx512"},
+    {"GroupUnknown", FIX, "fix grid nobody mpm 1.0\n", "group ID.*nobody"},
+    {"GroupDynamic", FIX, "group moving dynamic all every 10\nfix grid moving mpm 1.0\n",
+     "dynamic group"},
+};
+INSTANTIATE_TEST_SUITE_P(Keywords, BadInput, ::testing::ValuesIn(keywords), case_name);
+
+static const Mistake boxes[] = {
+    {"NoBox", BOX, "region box block 0 8 0 8 0 8\n", "define it with create_box"},
+    {"PeriodicLengthNoMultiple", FIX,
+     "change_box all boundary p f f\nfix grid all mpm 0.3\n",
+     "Length 8 of the box along periodic axis x must be a multiple of the node spacing 0\\.3: "
+     "the nearest valid spacing is 0\\.29629629629629"},
+    {"ShrinkWrapped", BOUNDARY, "boundary f s f\n",
+     "periodic or fixed boundaries \\(p or f\\), but axis y is shrink-wrapped"},
+    {"ShrinkWrappedWithMinimum", BOUNDARY, "boundary f f fm\n", "but axis z is shrink-wrapped"},
+    {"Triclinic", BOX, "region box prism 0 8 0 8 0 8 1 0 0\ncreate_box 2 box\n",
+     "requires an orthogonal box"},
+    {"WrongAtomStyle", STYLE, "atom_style atomic\n", "use atom_style mpm, or hybrid with mpm"},
+    {"HybridWithoutMpm", STYLE, "atom_style hybrid sphere\n",
+     "use atom_style mpm, or hybrid with mpm"},
+    {"AtomStyleWithArgument", STYLE, "atom_style mpm 3\n", "takes no arguments, found: 3"},
+    {"MpmBeforeSphere", STYLE, "atom_style hybrid mpm sphere\n", "mpm must come after sphere"},
+    {"TriclinicLater", RUN, "run 1\nchange_box all triclinic\nrun 1\n",
+     "requires an orthogonal box"},
+    {"ShrinkWrappedLater", RUN, "run 1\nchange_box all boundary f f s\nrun 1\n",
+     "but axis z is shrink-wrapped"},
+    {"PeriodicLater", RUN,
+     "run 1\nchange_box all x final 0 8.4\nchange_box all boundary p f f\nrun 1\n",
+     "Length 8\\.4 of the box along periodic axis x must be a multiple"},
+    {"BoxDeforms", RUN, "fix d all deform 1 x scale 1.1\nrun 10\n",
+     "box of constant size and shape: remove the fix"},
+    {"Barostat", RUN,
+     "group none empty\nfix b none nph iso 1.0 1.0 1.0\nrun 10\n",
+     "box of constant size and shape: remove the fix"},
+    {"Respa", RUN, "run_style respa 2 2\nrun 10\n", "requires run_style verlet"},
+    {"Minimize", RUN, "minimize 0 0 10 10\n", "[Ff]ix mpm.*minimiz"},
+};
+INSTANTIATE_TEST_SUITE_P(Boxes, BadInput, ::testing::ValuesIn(boxes), case_name);
+
+static const Mistake definitions[] = {
+    {"NoMaterial", MATERIAL, "", "found no material: define one with fix mpm/material"},
+    {"MaterialRemoved", RUN, "run 1\nunfix soft\nrun 1\n", "found no material"},
+    {"NoMaterialForSome", MATERIAL,
+     "group half id <= 100\nfix soft half mpm/material density 1.0 linear 10.0 0.3\n",
+     "116 material points have no material, for instance point [0-9]+: "
+     "define a fix mpm/material for their group"},
+    {"TwoMaterials", RUN,
+     "group half id <= 100\nfix hard half mpm/material density 1.0 linear 99.0 0.3\nrun 10\n",
+     "100 material points have more than one material, for instance point [0-9]+: .*disjoint"},
+    {"DensityZero", MATERIAL, "fix soft all mpm/material density 0 linear 10.0 0.3\n",
+     "RHO = 0 .*out of range: 0 < VALUE"},
+    {"DensityNegative", MATERIAL, "fix soft all mpm/material density -1 linear 10.0 0.3\n",
+     "RHO = -1 .*out of range: 0 < VALUE"},
+    {"DensityMissing", MATERIAL, "fix soft all mpm/material linear 10.0 0.3\n",
+     "density is missing: add 'density RHO'"},
+    {"ParameterMissing", MATERIAL, "fix soft all mpm/material density 1.0 linear 10.0\n",
+     "linear: NU is missing \\(Poisson's ratio\\)"},
+    {"ParameterOutOfRange", MATERIAL, "fix soft all mpm/material density 1.0 linear 10.0 0.5\n",
+     "NU = 0\\.5 .*out of range: -1 < VALUE < 0\\.5"},
+    {"LawUnknown", MATERIAL, "fix soft all mpm/material density 1.0 ogden 10.0 0.3\n",
+     "unknown keyword 'ogden': expected density, "},
+    {"MaterialFileMissing", MATERIAL, "fix soft all mpm/material file nothing.mpm\n",
+     "cannot read file nothing\\.mpm: .*LAMMPS_POTENTIALS"},
+    {"MassNotFinite", RUN, "variable big atom 1e308*10\nset group all mass v_big\nrun 10\n",
+     "216 material points have no positive mass, for instance point [0-9]+: "
+     "check the density of their material or their set mass"},
+    {"FixNveOnPoints", RUN, "fix move all nve\nrun 10\n",
+     "216 material points of fix grid \\(style mpm\\) are also integrated by fix move \\(style "
+     "nve\\): give the fixes disjoint groups"},
+    {"RigidPoints", RUN, "fix move all rigid single\nrun 10\n",
+     "also integrated by fix move \\(style rigid\\): give the fixes disjoint groups"},
+    {"TwoFixMpmOnPoints", RUN, "fix more all mpm 1.0\nrun 10\n",
+     "also integrated by fix (more|grid) \\(style mpm\\): give the fixes disjoint groups"},
+    {"SchemesDiffer", POINTS,
+     "create_points 1 region body ppc 2 fix grid\ngroup one type 1\nunfix grid\n"
+     "region other block 6 7 6 7 6 7\nfix a one mpm 1.0\n"
+     "create_points 2 region other ppc 2\ngroup two type 2\nfix b two mpm 1.0 scheme musl\n",
+     "must have the same scheme: a and b differ"},
+    {"NoPoints", POINTS, "", "no material points.* make points with create_points"},
+    {"GroupWithoutPoints", RUN, "group none empty\nfix more none mpm 1.0\nrun 10\n",
+     "Fix mpm more has no material points: its group none .* make points with create_points"},
+    {"AtomsAreNoPoints", POINTS, "create_atoms 1 random 10 4711 body\n",
+     "no material points.*set \\.\\.\\. volume"},
+};
+INSTANTIATE_TEST_SUITE_P(Definitions, BadInput, ::testing::ValuesIn(definitions), case_name);
+
+static const Mistake steps[] = {
+    {"TimeStepZero", TIMESTEP, "timestep 0.0\n", "positive time step: 0"},
+    {"TimeStepNegative", TIMESTEP, "timestep -0.01\n", "positive time step: -0\\.01"},
+    {"TimeStepTooLarge", TIMESTEP, "timestep 0.3\n",
+     "Time step 0\\.3 is above the limit h/\\(c\\+\\|v\\|\\) = 0\\.265[0-9]* at step 0: "
+     "Material point [0-9]+ at .*wave speed 3\\.66[0-9]*; use timestep, fix mpm/dt"},
+    {"TimeStepTooLargeLater", RUN,
+     "change_box all boundary p p p\ntimestep 0.1\nfix kick all addforce 1.0 0 0\nrun 100\n",
+     "Time step 0\\.1 is above the limit .* at step 20: Material point [0-9]+ at .*velocity 16"},
+    {"VelocityNotFinite", RUN, "variable big atom 1e308*10\nvelocity all set v_big 0 0\nrun 10\n",
+     "216 material points have a position, velocity, .* not finite .* for instance point [0-9]+"},
+    {"ForceNotFinite", RUN, "variable big equal 1e308*10\nfix kick all addforce v_big 0 0\nrun 10\n",
+     "Material point [0-9]+ at .*velocity .*J = .* at step 1"},
+    {"PointOutsideAtStart", RUN, "set atom 7 x 9.5\nrun 10\n",
+     "Material point 7 at 9\\.5 .*with velocity .*J = 1 has left the box.* fixed face; enlarge the "
+     "box, put a fix mpm/boundary there, or let it go with fix mpm \\.\\.\\. bad delete"},
+    {"PointLeavesTheBox", RUN, "velocity all set 3 0 0\nrun 200\n",
+     "Material point [0-9]+ at 8\\.0.* with velocity 3 .* and J = .* has left the box"},
+    {"PointInverted", RUN,
+     "fix grid all mpm 1.0 dtcheck no\nvelocity all ramp vx 5 -5 x 2 5\ntimestep 0.5\nrun 10\n",
+     "Material point [0-9]+ at .*has a deformation gradient of determinant -.* at step 1: try a "
+     "smaller time step \\(fix mpm/dt\\)"},
+};
+INSTANTIATE_TEST_SUITE_P(Steps, BadInput, ::testing::ValuesIn(steps), case_name);
+
+static const Mistake companions[] = {
+    {"PointsBeforeFix", FIX, "", "define fix mpm first, or use create_points spacing"},
+    {"PointsTypeUnknown", POINTS, "create_points 3 region body ppc 2\n", "Invalid atom type 3"},
+    {"PointsRegionUnknown", POINTS, "create_points 1 region bodi ppc 2\n", "region bodi does not exist"},
+    {"PointsPpcZero", POINTS, "create_points 1 region body ppc 0\n", "ppc 0 is out of range"},
+    {"PointsOutside", POINTS, "region far block 6 9 2 5 2 5\ncreate_points 1 region far ppc 2\n",
+     "reaches beyond the simulation box: [0-9]+ points.*outside ignore"},
+    {"PointsOverlap", RUN, "create_points 2 region body ppc 2\nrun 10\n",
+     "refuses overlapping bodies: .*overlap yes"},
+    {"BoundaryWithoutFix", RUN, "fix wall all mpm/boundary zlo slip\nunfix grid\nrun 10\n",
+     "mpm/boundary needs a fix mpm"},
+    {"BoundaryKindUnknown", RUN, "fix wall all mpm/boundary zlo rough\nrun 10\n",
+     "Unknown fix mpm/boundary kind rough: must be stick, slip or separate"},
+    {"BoundaryFaceUnknown", RUN, "fix wall all mpm/boundary top slip\nrun 10\n",
+     "Unknown fix mpm/boundary wall top: must be region or one or more of xlo"},
+    {"BoundaryOnPeriodicFace", RUN,
+     "change_box all boundary p p p\nfix wall all mpm/boundary zlo slip\nrun 10\n",
+     "face zlo belongs to a periodic axis: use boundary f"},
+    {"DtFractionZero", RUN, "fix dt all mpm/dt 0\nrun 10\n", "must be above 0 and at most 2"},
+    {"DtFractionTooLarge", RUN, "fix dt all mpm/dt 3\nrun 10\n", "must be above 0 and at most 2"},
+    {"DtTwice", RUN, "fix d1 all mpm/dt 0.5\nfix d2 all mpm/dt 0.5\nrun 10\n",
+     "both set the time step: remove one"},
+    {"DtBelowMinimum", RUN, "fix dt all mpm/dt 0.5 min 0.2\nrun 10\n",
+     "time step 0\\.13[0-9]* needed by point [0-9]+ .*below min 0\\.2"},
+    {"ComputeQuantityUnknown", RUN, "compute p all mpm/atom presure\nrun 10\n",
+     "Unknown quantity presure in compute p.*known are:.* pressure"},
+    {"ComputeEnergyOfGroup", RUN, "group some type 1\ncompute e some mpm/energy\nrun 10\n",
+     "requires group all"},
+    {"ThermoColumnUnknown", RUN, "compute e all mpm/energy\nthermo_style custom step c_e[99]\nrun 10\n",
+     "c_e.*99|Thermo compute vector is accessed out-of-range"},
+    {"DumpWithoutWildcard", RUN, "dump d all mpm/vtk 5 points.vtp pressure\nrun 10\n",
+     "one file per snapshot: put a \\* into the file name"},
+    {"DumpOfUnknownFix", RUN, "dump d all mpm/grid/vtk 5 nodes.*.vtu grud mass\nrun 10\n",
+     "fix ID grud does not exist"},
+};
+INSTANTIATE_TEST_SUITE_P(Companions, BadInput, ::testing::ValuesIn(companions), case_name);
+
+// material files
+
+TEST(MaterialFile, UnitsMustBeThoseOfTheInput)
+{
+  TemporaryFile file("bad_units.mpm", "# DATE: 2026-07-04 UNITS: si CONTRIBUTOR: nobody\n"
+                                      "density 1.0 linear 10.0 0.3\n");
+  const std::string text =
+      error_of(replaced(good_scene, MATERIAL, "fix soft all mpm/material file bad_units.mpm\n"));
+  EXPECT_TRUE(contains(text, "bad_units\\.mpm is in si units but the input uses lj units: convert "
+                             "the file or use units si")) << text;
+}
+
+TEST(MaterialFile, MustGiveItsUnits)
+{
+  TemporaryFile file("no_units.mpm", "# a material\ndensity 1.0 linear 10.0 0.3\n");
+  const std::string text =
+      error_of(replaced(good_scene, MATERIAL, "fix soft all mpm/material file no_units.mpm\n"));
+  EXPECT_TRUE(contains(text, "first line of file no_units\\.mpm must give its units")) << text;
+}
+
+TEST(MaterialFile, ErrorsNameTheLine)
+{
+  TemporaryFile file("bad_line.mpm", "# DATE: 2026-07-04 UNITS: lj CONTRIBUTOR: nobody\n"
+                                     "density 1.0\n\nlinear 10.0 0.7\n");
+  const std::string text =
+      error_of(replaced(good_scene, MATERIAL, "fix soft all mpm/material file bad_line.mpm\n"));
+  EXPECT_TRUE(contains(text, "file bad_line\\.mpm line 4: .*NU = 0\\.7")) << text;
+}
+
+TEST(MaterialFile, EmptyFile)
+{
+  TemporaryFile file("empty.mpm", "# DATE: 2026-07-04 UNITS: lj CONTRIBUTOR: nobody\n");
+  const std::string text =
+      error_of(replaced(good_scene, MATERIAL, "fix soft all mpm/material file empty.mpm\n"));
+  EXPECT_TRUE(contains(text, "density is missing")) << text;
+}
+
+TEST(DataFile, VolumeMustNotBeNegative)
+{
+  TemporaryFile file("bad.data", "negative volume\n\n1 atoms\n2 atom types\n0 8 xlo xhi\n"
+                                 "0 8 ylo yhi\n0 8 zlo zhi\n\nAtoms # mpm\n\n1 1 1.0 -0.1 1 1 1\n");
+  const std::string text = error_of(replaced(good_scene, BOX, "read_data bad.data\n"));
+  EXPECT_TRUE(contains(text, "Invalid volume -0\\.1 of atom 1 in Atoms section")) << text;
+}
+
+// policies for points that go bad
+
+class Policy : public ::testing::Test {
+ protected:
+  static std::string scene(const std::string &policy)
+  {
+    return replaced(good_scene, "mpm 1.0", "mpm 1.0 dtcheck no bad " + policy);
+  }
+  static std::string compressing(const std::string &policy)
+  {
+    return replaced(scene(policy), RUN,
+                    "velocity all ramp vx 5 -5 x 2 5\ntimestep 0.5\nlog policy.log\n"
+                    "run 1\nlog none\n");
+  }
+  ~Policy() override { remove("policy.log"); }
+};
+
+TEST_F(Policy, WarnGoesOnAndCounts)
+{
+  Run run;
+  run.commands(compressing("warn"));
+  const std::string log = file_text("policy.log");
+  EXPECT_TRUE(contains(log, "WARNING: Material point [0-9]+ at .*has a deformation gradient of "
+                            "determinant -.* at step 1: it keeps its previous deformation")) << log;
+  std::smatch found;
+  ASSERT_TRUE(std::regex_search(log, found, std::regex("([0-9]+) bad point updates so far "
+                                                       "\\(policy warn\\)"))) << log;
+  const auto points = run.gather();
+  ASSERT_EQ(points.size(), 216u);
+  int kept = 0;
+  for (const auto &p : points) {
+    const double *F = p.F;
+    const double J = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
+        F[2] * (F[3] * F[7] - F[4] * F[6]);
+    EXPECT_GT(J, 0.0);
+    EXPECT_GT(p.vol, 0.0);
+    kept += J == 1.0 && F[0] == 1.0;
+  }
+  EXPECT_EQ(kept, std::stoi(found[1]));
+  EXPECT_GT(kept, 0);
+}
+
+TEST_F(Policy, DeleteReportsMassAndMomentum)
+{
+  Run warned;
+  warned.commands(compressing("warn"));
+  double lost_momentum = 0.0;
+  int lost = 0;
+  for (const auto &p : warned.gather())
+    if (p.F[0] == 1.0) {    // kept: the point was bad
+      lost++;
+      lost_momentum += p.mass * p.v[0];
+    }
+  ASSERT_GT(lost, 0);
+  ASSERT_LT(lost, 216);
+
+  Run run;
+  run.commands(compressing("delete"));
+  const std::string log = file_text("policy.log");
+  EXPECT_EQ(run.gather().size(), 216u - lost);
+  EXPECT_EQ(run.lmp->atom->natoms, 216 - lost);
+  std::smatch found;
+  ASSERT_TRUE(std::regex_search(log, found, std::regex(
+      "WARNING: Fix mpm grid deleted ([0-9]+) points of mass ([^ ]+) and momentum ([^ ]+) ([^ ]+) "
+      "([^ ]+) at step 1"))) << log;
+  EXPECT_EQ(std::stoi(found[1]), lost);
+  EXPECT_NEAR(std::stod(found[2]), lost * 0.125, 1.0e-9);
+  EXPECT_NEAR(std::stod(found[3]), lost_momentum, 1.0e-5);
+  run.commands("timestep 0.001\nrun 10\n");    // and the run can go on
+}
+
+TEST_F(Policy, DeleteLetsPointsLeaveTheBox)
+{
+  Run run;
+  run.commands(replaced(replaced(scene("delete"), "velocity all set 0.1", "velocity all set 3"),
+                        RUN, "log policy.log\nrun 150\nlog none\n"));
+  const std::string log = file_text("policy.log");
+  double mass = 0.0, left = 0.0;
+  const std::regex line("deleted ([0-9]+) points of mass ([^ ]+) and momentum ([^ ]+) ");
+  for (std::sregex_iterator k(log.begin(), log.end(), line), end; k != end; ++k) {
+    mass += std::stod((*k)[2]);
+    EXPECT_NEAR(std::stod((*k)[3]), 3.0 * std::stod((*k)[2]), 1.0e-4);
+  }
+  for (const auto &p : run.gather()) {
+    left += p.mass;
+    EXPECT_LT(p.x[0], 8.0);
+  }
+  EXPECT_GT(mass, 5.0);
+  EXPECT_NEAR(mass + left, 27.0, 1.0e-4);
+}
+
+TEST_F(Policy, WarnDoesNotLetPointsLeaveTheBox)
+{
+  const std::string text = error_of(
+      replaced(scene("warn"), RUN, "velocity all set 3 0 0\nrun 200\n"));
+  EXPECT_TRUE(contains(text, "has left the box")) << text;
+}
+
+// an error leaves LAMMPS usable: scripts in Python catch it and go on
+
+TEST(AfterAnError, TheInstanceCanGoOn)
+{
+  Run run;
+  run.commands(replaced(good_scene, RUN, ""));
+  EXPECT_THROW(run.commands("timestep 5.0\nrun 1\n"), LAMMPSException);
+  run.commands("timestep 0.01\nrun 10\n");
+  for (const auto &p : run.gather()) EXPECT_NEAR(p.v[0], 0.1, 1.0e-12);
+}

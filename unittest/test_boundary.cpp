@@ -1,0 +1,1048 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// labels: physics mpi
+// mpi: 1 2 4
+// timeout: 300
+
+// Walls: velocity at the wall, momentum and work, friction, separation, motion, regions.
+
+#include "mpm_lammps.h"
+
+#include "fix_mpm.h"
+
+#include "gtest/gtest.h"
+
+#include <cmath>
+#include <cstdio>
+#include <functional>
+
+using namespace MPM_TEST;
+using Sim = MPM_TEST::Run;    // tests have a function Run
+
+namespace {
+
+FixMPM *field_of(Sim &run, const std::string &id = "grid")
+{
+  return dynamic_cast<FixMPM *>(run.lmp->modify->get_fix_by_id(id));
+}
+
+/** Velocity, and with APIC its gradient, of all points. g[i][j] = d v_i / d x_j. */
+void set_field(Sim &run, const std::function<void(const double *x, double *v, double g[3][3])> &field)
+{
+  auto *atom = run.lmp->atom;
+  double **C = field_of(run)->C;
+  for (int i = 0; i < atom->nlocal; i++) {
+    double v[3] = {0.0, 0.0, 0.0}, g[3][3] = {{0.0}};
+    field(atom->x[i], v, g);
+    for (int a = 0; a < 3; a++) {
+      atom->v[i][a] = v[a];
+      if (C)
+        for (int b = 0; b < 3; b++) C[i][3 * b + a] = g[a][b];
+    }
+  }
+}
+
+/** Reproducible numbers within -1 and 1 that depend on the tag only. */
+double noise(double tag, int k)
+{
+  double x = std::sin(12.9898 * tag + 78.233 * k) * 43758.5453;
+  return 2.0 * (x - std::floor(x)) - 1.0;
+}
+
+void momentum(Sim &run, double p[3])
+{
+  p[0] = p[1] = p[2] = 0.0;
+  for (auto &s : run.gather())
+    for (int d = 0; d < 3; d++) p[d] += s.mass * s.v[d];
+}
+
+std::string error_of(const std::string &text)
+{
+  Sim run;
+  try {
+    run.commands(text);
+  } catch (std::exception &e) {
+    return e.what();
+  }
+  return "";
+}
+
+}    // namespace
+
+/* ----------------------------------------------------------------------
+   velocity at the wall
+------------------------------------------------------------------------- */
+
+struct WallCase {
+  const char *shape, *wall;
+  bool stick;
+  double V[3];
+};
+
+class WallVelocity : public ::testing::TestWithParam<WallCase> {
+ protected:
+  std::string scene(const WallCase &c)
+  {
+    return std::string(R"(
+units lj
+boundary p f p
+atom_style mpm
+neighbor 0.3 bin
+region box block 0 6 0 12 0 6
+create_box 1 box
+fix grid all mpm 1.0 shape )") + c.shape + R"( transfer apic
+region body block 0 6 0 4 0 6
+create_points 1 region body ppc 2
+displace_atoms all random 0.1 0.1 0.1 872631
+fix m all mpm/material density 1.0 neohookean 10.0 0.3
+fix w all mpm/boundary ylo )" + c.wall + R"(
+timestep 0.01
+run 0
+)";
+  }
+};
+
+TEST_P(WallVelocity, ExactAtTheWall)
+{
+  // whatever the velocities of the points: one that is on the wall moves with the wall
+  const auto &c = GetParam();
+  Sim run;
+  run.commands(scene(c));
+  set_field(run, [&](const double *x, double *v, double g[3][3]) {
+    for (int a = 0; a < 3; a++) {
+      v[a] = std::sin(3.0 * x[0] + a) + std::cos(2.0 * x[1] - x[2] * a);
+      for (int b = 0; b < 3; b++) g[a][b] = std::sin(x[b] + a);
+    }
+  });
+  auto *atom = run.lmp->atom;
+  std::vector<tagint> chosen;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->tag[i] % 7 == 0 && atom->x[i][1] < 0.5) {
+      atom->x[i][1] = 0.0;
+      chosen.push_back(atom->tag[i]);
+    }
+  run.commands("run 1\n");
+  int n = 0;
+  for (auto &s : run.gather())
+    if (std::count(chosen.begin(), chosen.end(), (tagint) s.tag)) {
+      n++;
+      EXPECT_NEAR(s.v[1], c.V[1], 1.0e-14);
+      if (c.stick) {
+        EXPECT_NEAR(s.v[0], c.V[0], 1.0e-14);
+        EXPECT_NEAR(s.v[2], c.V[2], 1.0e-14);
+      }
+    }
+  int all;
+  MPI_Allreduce(&n, &all, 1, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
+  EXPECT_GT(all, 5);
+}
+
+TEST_P(WallVelocity, LinearFieldsArePreserved)
+{
+  const auto &c = GetParam();
+  Sim run;
+  run.commands(scene(c));
+  auto field = [&](const double *x, double *v, double g[3][3]) {
+    // stick: zero at the wall and linear in the distance. slip: so is the normal component,
+    // the others have any gradient across the wall
+    const double across[3] = {0.7, -0.4, 0.25};
+    for (int a = 0; a < 3; a++) {
+      v[a] = c.V[a] + across[a] * x[1];
+      g[a][1] = across[a];
+    }
+    if (!c.stick) {
+      v[0] += 0.31;
+      v[2] -= 0.17;
+    }
+  };
+  set_field(run, field);
+  std::vector<MPM_TEST::Run::State> before = run.gather();
+  run.commands("run 1\n");
+  auto after = run.gather();
+  ASSERT_EQ(before.size(), after.size());
+  for (std::size_t k = 0; k < after.size(); k++)
+    for (int d = 0; d < 3; d++) {
+      EXPECT_NEAR(after[k].v[d], before[k].v[d], 1.0e-13);
+      EXPECT_NEAR(after[k].x[d], before[k].x[d] + 0.01 * before[k].v[d], 1.0e-13);
+    }
+  auto *atom = run.lmp->atom;
+  double **C = field_of(run)->C;
+  for (int i = 0; i < atom->nlocal; i++) {
+    EXPECT_NEAR(C[i][3], 0.7, 1.0e-12);
+    EXPECT_NEAR(C[i][4], -0.4, 1.0e-12);
+    EXPECT_NEAR(C[i][5], 0.25, 1.0e-12);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, WallVelocity,
+    ::testing::Values(WallCase{"linear", "stick", true, {0, 0, 0}},
+                      WallCase{"quadratic", "stick", true, {0, 0, 0}},
+                      WallCase{"cubic", "stick", true, {0, 0, 0}},
+                      WallCase{"linear", "slip", false, {0, 0, 0}},
+                      WallCase{"quadratic", "slip", false, {0, 0, 0}},
+                      WallCase{"cubic", "slip", false, {0, 0, 0}},
+                      WallCase{"quadratic", "stick velocity 0.3 0.2 -0.1", true, {0.3, 0.2, -0.1}},
+                      WallCase{"cubic", "stick velocity 0.3 0.2 -0.1", true, {0.3, 0.2, -0.1}},
+                      WallCase{"quadratic", "slip velocity 0 0.2 0", false, {0, 0.2, 0}},
+                      WallCase{"quadratic", "slip friction 1e9 velocity 0.3 0.2 0", false, {0.3, 0.2, 0}}));
+
+// a wall that prescribes one component is a slip wall, and stick is friction without end
+
+TEST(WallKinds, Equivalences)
+{
+  const std::string scene = R"(
+units lj
+boundary f f f
+atom_style mpm
+neighbor 0.3 bin
+region box block 0 6 0 6 0 6
+create_box 1 box
+fix grid all mpm 1.0
+region body block 1 5 0 3 1 4
+create_points 1 region body ppc 2
+fix m all mpm/material density 1.0 neohookean 10.0 0.3
+fix w all mpm/boundary ylo WALL
+fix g all gravity 0.2 vector 1 -2 0.5
+timestep 0.05
+run 100
+)";
+  auto result = [&](const std::string &wall) {
+    Sim run;
+    run.commands(replaced(scene, "WALL", wall));
+    return run.gather();
+  };
+  auto slip = result("slip"), stick = result("stick");
+  EXPECT_LT(difference(slip, result("stick velocity NULL 0 NULL")), 1.0e-15);
+  EXPECT_GT(difference(slip, stick), 0.01);
+}
+
+/* ----------------------------------------------------------------------
+   momentum and work
+------------------------------------------------------------------------- */
+
+class Balance : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(Balance, ReactionIsTheChangeOfMomentum)
+{
+  const std::string param = GetParam();
+  const std::size_t bar = param.find('|');
+  const std::string options = param.substr(0, bar), walls = param.substr(bar + 1);
+  Sim run;
+  run.commands(replaced(replaced(R"(
+units lj
+boundary f f f
+atom_style mpm
+neighbor 0.3 bin
+region box block 0 8 0 8 0 8
+create_box 1 box
+fix grid all mpm 1.0 OPTIONS
+region body block 0.5 5 0 3.5 2 6
+create_points 1 region body ppc 2
+fix m all mpm/material density 1.5 neohookean 10.0 0.3
+region ball sphere 6 2 4 2
+WALLS
+fix g all gravity 0.3 vector 1 -2 0.5
+velocity all set -0.3 -0.2 0.1
+velocity all ramp vx -0.2 0.2 y 0 4 sum yes
+timestep 0.03
+compute e all mpm/energy
+thermo_style custom step c_e
+run 0
+)", "WALLS", walls), "OPTIONS", options));
+
+  double p[3], expected[3];
+  momentum(run, expected);
+  double mass = 0.0;
+  for (auto &s : run.gather()) mass += s.mass;
+  const double g[3] = {1.0, -2.0, 0.5}, length = std::sqrt(5.25);
+  double largest = 0.0;
+  for (int step = 0; step < 40; step++) {
+    run.commands("run 1\n");
+    double *force = run.fix_vector("w", 3);
+    for (int d = 0; d < 3; d++) {
+      expected[d] += 0.03 * (mass * 0.3 * g[d] / length - force[d]);
+      largest = std::max(largest, std::abs(force[d]));
+    }
+  }
+  momentum(run, p);
+  for (int d = 0; d < 3; d++) EXPECT_NEAR(p[d], expected[d], 1.0e-12 * mass);
+  EXPECT_GT(largest, 1.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Options, Balance,
+    ::testing::Values("transfer apic|fix w all mpm/boundary xlo ylo stick",
+                      "transfer apic|fix w all mpm/boundary ylo slip friction 0.2",
+                      "transfer apic|fix w all mpm/boundary xlo ylo separate friction 0.2",
+                      "transfer flip 1.0|fix w all mpm/boundary xlo ylo slip",
+                      "transfer flip 0.9 scheme musl|fix w all mpm/boundary xlo ylo stick velocity 0.1 0.2 0",
+                      "transfer pic shape linear|fix w all mpm/boundary xlo ylo separate",
+                      "shape cubic scheme musl|fix w all mpm/boundary xlo ylo separate friction 0.5",
+                      "transfer flip 1.0 scheme usf|fix w all mpm/boundary ylo stick",
+                      "origin 0.3 0.3 0.3|fix w all mpm/boundary xlo ylo separate friction 0.3",
+                      "transfer apic|fix w all mpm/boundary region ball stick",
+                      "transfer apic|fix w all mpm/boundary region ball slip friction 0.1",
+                      "transfer flip 1.0|fix w all mpm/boundary region ball separate"));
+
+TEST(Work, IsTheKineticEnergyTaken)
+{
+  // uniform motion into a wall: all that happens in the first step is the projection
+  Sim run;
+  run.commands(R"(
+units lj
+boundary p f p
+atom_style mpm
+neighbor 0.3 bin
+region box block 0 4 0 8 0 4
+create_box 1 box
+fix grid all mpm 1.0
+region body block 0 4 0 4 0 4
+create_points 1 region body ppc 2
+fix m all mpm/material density 1.0 neohookean 10.0 0.3
+fix w all mpm/boundary ylo slip
+velocity all set 0 -0.5 0
+timestep 0.01
+compute e all mpm/energy
+thermo_style custom step c_e c_e[*]
+run 1
+)");
+  // nodes at distance j h: mass over area, quadratic splines and points at 1/4, 3/4, ...
+  // image 1/64, plane 1/2 - 1/64... by symmetry image + inside is one full node
+  const double image = 0.5 * (0.25 * 0.25) * 0.5, plane = 0.5, inside = 1.0 - image, area = 16.0;
+  const double w = (inside * -0.5 - image * -0.5) / (inside + image);
+  const double expected = area * (-0.5 * plane * 0.25 + 0.5 * (inside + image) * (w * w - 0.25));
+  auto *fix = run.lmp->modify->get_fix_by_id("w");
+  EXPECT_NEAR(fix->compute_scalar(), expected, 1.0e-12);
+  double p = area * (plane * 0.5 + 2.0 * inside * image / (inside + image));    // V = 0
+  EXPECT_NEAR(fix->compute_vector(1), -p / 0.01, 1.0e-9 * p / 0.01);
+  EXPECT_EQ(fix->compute_vector(0), 0.0);
+
+  // the work goes on after a restart
+  const double before = fix->compute_scalar();
+  run.commands("write_restart boundary_test.restart\n");
+  run.commands("clear\n");
+  run.commands(R"(
+read_restart boundary_test.restart
+fix grid all mpm 1.0
+fix m all mpm/material density 1.0 neohookean 10.0 0.3
+fix w all mpm/boundary ylo slip
+run 0
+)");
+  EXPECT_NEAR(run.lmp->modify->get_fix_by_id("w")->compute_scalar(), before, 1.0e-15);
+  MPI_Barrier(MPI_COMM_WORLD);
+  std::remove("boundary_test.restart");
+}
+
+/* ----------------------------------------------------------------------
+   friction: benchmark F2, block on an inclined plane
+------------------------------------------------------------------------- */
+
+class Incline : public ::testing::TestWithParam<std::pair<double, double>> {
+ protected:
+  std::string scene(double mu, const std::string &kind)
+  {
+    return replaced(replaced(R"(
+units si
+dimension 2
+boundary f f p
+atom_style mpm
+neighbor 0.02 bin
+region box block 0 4.5 0 1 -0.1 0.1
+create_box 1 box
+fix grid all mpm 0.05
+region body block 0.5 1.0 0 0.25 -0.1 0.1
+create_points 1 region body ppc 2
+fix m all mpm/material density 1000 neohookean 4.2e6 0.4
+fix w all mpm/boundary ylo KIND friction MU
+variable g equal 9.81*min(1,time/0.05)
+fix g all gravity v_g vector 0.5 -0.86602540378443865 0
+fix step all mpm/dt 0.4
+variable x equal xcm(all,x)
+variable v equal vcm(all,x)
+)", "MU", std::to_string(mu)), "KIND", kind);
+  }
+};
+
+TEST_P(Incline, Acceleration)
+{
+  for (const char *kind : {"separate", "slip"}) {
+    Sim run;
+    run.commands(scene(GetParam().first, kind) + "run 0\n");
+    run.commands("run 2000\n");
+    const double v0 = run.variable("v"), t0 = run.evaluate("time");
+    run.commands("run 6000\n");
+    const double v1 = run.variable("v"), t1 = run.evaluate("time");
+    const double a = (v1 - v0) / (t1 - t0);
+    RecordProperty(kind, std::to_string(a));
+    if (run.lmp->comm->me == 0)
+      printf("  friction %g %s: a = %.5f, exact %.5f\n", GetParam().first, kind, a,
+             GetParam().second);
+    EXPECT_NEAR(a, GetParam().second, 0.005 * GetParam().second);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Friction, Incline,
+                         ::testing::Values(std::make_pair(0.1, 4.05543),
+                                           std::make_pair(0.3, 2.35629)));
+
+class InclineStick : public Incline {};
+
+TEST_P(InclineStick, DoesNotCreep)
+{
+  Sim run;
+  run.commands(scene(GetParam().first, "separate") + "run 0\n");
+  const double x0 = run.variable("x");
+  run.commands("run 3000\n");
+  const double x1 = run.variable("x"), t1 = run.evaluate("time");
+  run.commands("run 3000\n");
+  const double x2 = run.variable("x"), t2 = run.evaluate("time");
+  if (run.lmp->comm->me == 0)
+    printf("  friction %g: shift %.3g, creep %.3g in %.3g s\n", GetParam().first, x1 - x0, x2 - x1,
+           t2 - t1);
+  EXPECT_LT(std::abs(x2 - x1), 5.0e-4 * (t2 - t1));
+}
+
+INSTANTIATE_TEST_SUITE_P(Friction, InclineStick,
+                         ::testing::Values(std::make_pair(0.65, 0.0), std::make_pair(2.0, 0.0)));
+
+/* ----------------------------------------------------------------------
+   separation
+------------------------------------------------------------------------- */
+
+class Separate : public ::testing::TestWithParam<std::string> {
+ protected:
+  std::string scene(const std::string &wall, double v)
+  {
+    return replaced(R"(
+units si
+dimension 2
+boundary f f p
+atom_style mpm
+neighbor 0.02 bin
+region box block 0 1 0 1.5 -0.1 0.1
+create_box 1 box
+fix grid all mpm 0.05 OPTIONS
+region body block 0.3 0.7 0.1 0.5 -0.1 0.1
+create_points 1 region body ppc 2
+fix m all mpm/material density 1000 neohookean 1e6 0.3
+)", "OPTIONS", GetParam()) + wall + R"(
+timestep 2e-4
+variable v equal vcm(all,y)
+velocity all set 0 )" + std::to_string(v) + " 0\n";
+  }
+};
+
+TEST_P(Separate, ABodyThatLeavesFeelsNothing)
+{
+  auto place = replaced(scene("WALL", 1.0), "0.1 0.5 -0.1", "0.0 0.4 -0.1");
+  Sim with, without;
+  with.commands(replaced(place, "WALL", "fix w all mpm/boundary ylo separate friction 0.5") +
+                "velocity all ramp vy 0.0 0.2 y 0 0.4 sum yes\nrun 100\n");
+  without.commands(replaced(place, "WALL", "") +
+                   "velocity all ramp vy 0.0 0.2 y 0 0.4 sum yes\nrun 100\n");
+  EXPECT_LT(difference(with.gather(), without.gather()), 1.0e-13);
+  EXPECT_EQ(with.lmp->modify->get_fix_by_id("w")->compute_scalar(), 0.0);
+}
+
+TEST_P(Separate, AThrownBodyRebounds)
+{
+  Sim run;
+  run.commands(scene("fix w all mpm/boundary ylo separate", -2.0) + "run 0\n");
+  run.commands("run 1200\n");
+  const double v = run.variable("v");
+  const double *force = run.fix_vector("w", 3);
+  EXPECT_EQ(force[1], 0.0);
+  run.commands("run 200\n");
+  EXPECT_NEAR(run.variable("v"), v, 1.0e-12);    // nothing holds it
+  if (run.lmp->comm->me == 0) printf("  %s: rebounds with %.3f of 2\n", GetParam().c_str(), v);
+  EXPECT_GT(v, GetParam() == "transfer pic" ? 0.5 : 1.2);
+}
+
+INSTANTIATE_TEST_SUITE_P(Transfer, Separate,
+                         ::testing::Values("transfer apic", "transfer flip 1.0", "transfer flip 0.98",
+                                           "transfer flip 1.0 scheme musl", "transfer pic",
+                                           "shape cubic transfer apic", "shape linear transfer flip 1.0 scheme musl"));
+
+/* ----------------------------------------------------------------------
+   benchmark G3: elastic column under gravity that is switched on
+------------------------------------------------------------------------- */
+
+class Column : public ::testing::TestWithParam<std::string> {};
+
+static std::string column_scene(const std::string &options, const std::string &walls, double width)
+{
+  // M = E (1 - nu)/((1 + nu)(1 - 2 nu)) = 1.346154e6, c = 36.69 m/s
+  return replaced(replaced(replaced(R"(
+units si
+dimension 2
+boundary BOUNDARY f p
+atom_style mpm
+neighbor 0.02 bin
+region box block 0 WIDTH 0 1.25 -0.1 0.1
+create_box 1 box
+fix grid all mpm 0.05 OPTIONS
+region body block 0 WIDTH 0 1 -0.1 0.1
+create_points 1 region body ppc 2
+fix m all mpm/material density 1000 neohookean 1e6 0.3
+)" + walls + R"(
+fix g all gravity 1.0 vector 0 -1 0
+region top block INF INF 0.975 1.0 INF INF
+group top region top
+variable y equal xcm(top,y)
+variable yc equal xcm(all,y)
+timestep 4e-4
+)", "OPTIONS", options), "WIDTH", std::to_string(width)), "BOUNDARY",
+                  walls.find("xlo") == std::string::npos ? "p" : "f");
+}
+
+TEST_P(Column, SettlementAndPeriod)
+{
+  Sim run;
+  run.commands(column_scene(GetParam(), "fix w all mpm/boundary xlo xhi ylo slip", 0.2) + "run 0\n");
+  const double M = 1.0e6 * 0.7 / (1.3 * 0.4), c = std::sqrt(M / 1000.0);
+  const double period = 4.0 / c, y0 = run.variable("y"), x0 = run.variable("yc");
+  const double settlement = 1000.0 / (2.0 * M), weight = 1000.0 * 0.2 * 0.2;
+
+  // displacement of the center: zero to twice its mean, in phase with the first harmonic
+  double lowest = 0.0, at = 0.0, force_sum = 0.0;
+  int n = 0;
+  const int steps = (int) std::lround(2.0 * period / 4.0e-4);
+  double mean = 0.0;
+  for (int k = 0; k < steps; k += 4) {
+    run.commands("run 4\n");
+    const double y = run.variable("y") - y0;
+    mean += y;
+    n++;
+    if (k < 0.75 * period / 4.0e-4 && y < lowest) {
+      lowest = y;
+      at = run.evaluate("time");
+    }
+    force_sum += run.fix_vector("w", 3)[1];
+  }
+  mean /= n;
+  if (run.lmp->comm->me == 0)
+    printf("  %s: mean %.5g (exact %.5g), largest %.5g, half period %.4f (exact %.4f), "
+           "mean force %.4f of the weight\n", GetParam().c_str(), -mean, settlement, -lowest, at,
+           0.5 * period, -force_sum / n / weight);
+  EXPECT_NEAR(-mean, settlement, 0.01 * settlement);
+  EXPECT_NEAR(-lowest, 2.0 * settlement, 0.03 * settlement);
+  EXPECT_NEAR(at, 0.5 * period, 0.02 * period);
+  EXPECT_NEAR(-force_sum / n, weight, 0.02 * weight);
+  (void) x0;
+}
+
+INSTANTIATE_TEST_SUITE_P(Options, Column,
+                         ::testing::Values("transfer apic", "transfer flip 1.0",
+                                           "transfer apic shape cubic", "transfer flip 1.0 scheme musl",
+                                           "transfer flip 1.0 shape linear"));
+
+TEST(Channel, NarrowOnesAreExact)
+{
+  // one, two, three cells between slip walls: each is the same column
+  auto result = [](double width, const std::string &walls) {
+    Sim run;
+    run.commands(column_scene("", walls, width) + "run 300\n");
+    auto all = run.gather();
+    std::vector<double> y;
+    double sideways = 0.0;
+    for (auto &s : all) {
+      if (std::abs(s.x[0] - 0.0125) < 1.0e-4 || walls.find("xlo") == std::string::npos)
+        y.push_back(s.x[1]);
+      sideways = std::max(sideways, std::abs(s.v[0]));
+    }
+    EXPECT_LT(sideways, 1.0e-13);
+    std::sort(y.begin(), y.end());
+    return y;
+  };
+  const std::string walls = "fix w all mpm/boundary xlo xhi ylo slip";
+  auto wide = result(0.2, walls);
+  EXPECT_GT(wide.size(), 20u);
+  for (double width : {0.05, 0.10, 0.15}) {
+    auto narrow = result(width, walls);
+    ASSERT_EQ(narrow.size(), wide.size() * (width == 0.05 ? 1 : 1));
+    for (std::size_t k = 0; k < wide.size(); k++) EXPECT_NEAR(narrow[k], wide[k], 1.0e-13);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   motion
+------------------------------------------------------------------------- */
+
+TEST(Rotation, AFullTurnKeepsTheRadius)
+{
+  // all nodes in reach of the body belong to the wall
+  Sim run;
+  run.commands(R"(
+units lj
+boundary f f f
+atom_style mpm
+neighbor 0.5 bin
+region box block 0 10 0 10 0 10
+create_box 1 box
+fix grid all mpm 1.0
+region body sphere 6.5 5 5 1.4
+create_points 1 region body ppc 2
+fix m all mpm/material density 1.0 neohookean 10.0 0.3
+region all block INF INF INF INF INF INF
+variable rate equal 2*PI/4.0
+fix w all mpm/boundary region all stick rotate 5 5 5 1 2 2 v_rate
+timestep 0.02
+run 0
+)");
+  auto before = run.gather();
+  run.commands("run 200\n");
+  auto after = run.gather();
+  ASSERT_EQ(before.size(), after.size());
+  double drift = 0.0, off = 0.0;
+  for (std::size_t k = 0; k < after.size(); k++) {
+    double r0 = 0.0, r1 = 0.0;
+    for (int d = 0; d < 3; d++) {
+      r0 += (before[k].x[d] - 5.0) * (before[k].x[d] - 5.0);
+      r1 += (after[k].x[d] - 5.0) * (after[k].x[d] - 5.0);
+      off = std::max(off, std::abs(after[k].x[d] - before[k].x[d]));
+    }
+    drift = std::max(drift, std::abs(std::sqrt(r1) - std::sqrt(r0)));
+  }
+  if (run.lmp->comm->me == 0) printf("  drift of the radius %.2g, of the position %.2g\n", drift, off);
+  EXPECT_LT(drift, 1.0e-10);
+  EXPECT_LT(off, 1.0e-10);
+}
+
+TEST(Rotation, RegionThatTurnsAndMoves)
+{
+  // the body sits in the region, which takes it around and along
+  Sim run;
+  run.commands(R"(
+units lj
+dimension 2
+boundary f f p
+atom_style mpm
+neighbor 0.5 bin
+region box block 0 20 0 20 -0.5 0.5
+create_box 1 box
+fix grid all mpm 1.0
+region body block 5 8 9 11 -0.5 0.5
+create_points 1 region body ppc 2
+fix m all mpm/material density 1.0 neohookean 10.0 0.3
+variable angle equal 2*PI*time/4.0
+variable shift equal 0.5*time
+region grip block 3 10 7 13 INF INF move v_shift NULL NULL rotate v_angle 10 10 0 0 0 1
+fix w all mpm/boundary region grip stick
+timestep 0.02
+run 0
+)");
+  auto before = run.gather();
+  run.commands("run 120\n");
+  run.commands("run 80\n");
+  auto after = run.gather();
+  ASSERT_EQ(before.size(), after.size());
+  double off = 0.0;
+  for (std::size_t k = 0; k < after.size(); k++)
+    for (int d = 0; d < 2; d++)
+      off = std::max(off, std::abs(after[k].x[d] - before[k].x[d] - (d == 0 ? 2.0 : 0.0)));
+  if (run.lmp->comm->me == 0) printf("  off by %.2g after one turn\n", off);
+  EXPECT_LT(off, 1.0e-10);
+}
+
+TEST(Motion, PistonOfChangingShape)
+{
+  // a block region whose lower face comes down at speed 0.1 pushes the body through an empty box
+  Sim run;
+  run.commands(R"(
+units lj
+dimension 2
+boundary f f p
+atom_style mpm
+neighbor 0.5 bin
+region box block 0 8 0 20 -0.5 0.5
+create_box 1 box
+fix grid all mpm 1.0
+region body block 2 6 10 14 -0.5 0.5
+create_points 1 region body ppc 2
+fix m all mpm/material density 1.0 neohookean 50.0 0.3
+variable face equal 14-0.1*time
+region piston block INF INF v_face INF INF INF
+fix w all mpm/boundary region piston slip
+timestep 0.02
+variable v equal vcm(all,y)
+run 0
+)");
+  run.commands("run 1500\n");
+  const double v = run.variable("v");
+  if (run.lmp->comm->me == 0) printf("  mean velocity %.4f\n", v);
+  EXPECT_NEAR(v, -0.1, 0.01);
+  EXPECT_LT(run.lmp->modify->get_fix_by_id("w")->compute_scalar(), 0.6);    // about m v^2/2 .. m v^2
+  EXPECT_GT(run.lmp->modify->get_fix_by_id("w")->compute_scalar(), 0.05);
+}
+
+/* ----------------------------------------------------------------------
+   regions: velocity of the nodes inside, against the known normal
+------------------------------------------------------------------------- */
+
+TEST(Regions, SlipNormals)
+{
+  struct Case {
+    const char *region;
+    std::function<int(const double *, double *)> normal;    // 1: inside with normal, 0: outside
+  };
+  const Case cases[] = {
+      {"sphere 5.1 4.9 5.2 2.3",
+       [](const double *x, double *n) {
+         const double c[3] = {5.1, 4.9, 5.2};
+         double r = 0.0;
+         for (int d = 0; d < 3; d++) {
+           n[d] = x[d] - c[d];
+           r += n[d] * n[d];
+         }
+         r = std::sqrt(r);
+         for (int d = 0; d < 3; d++) n[d] /= r;
+         return (int) (r <= 2.3);
+       }},
+      {"block 2.2 7.9 3 5.4 1.8 8.3",
+       [](const double *x, double *n) {
+         // the nearest face is that below or above, except near the others
+         n[0] = n[2] = 0.0;
+         n[1] = x[1] - 3.0 < 5.4 - x[1] ? -1.0 : 1.0;
+         const double depth = std::min(x[1] - 3.0, 5.4 - x[1]);
+         const bool inside = x[0] >= 2.2 && x[0] <= 7.9 && x[1] >= 3.0 && x[1] <= 5.4 &&
+             x[2] >= 1.8 && x[2] <= 8.3;
+         const bool near_edge = x[0] - 2.2 < depth + 0.01 || 7.9 - x[0] < depth + 0.01 ||
+             x[2] - 1.8 < depth + 0.01 || 8.3 - x[2] < depth + 0.01;
+         return inside ? (near_edge ? 2 : 1) : 0;
+       }},
+      {"sphere 5 5 5 3.2 side out",
+       [](const double *x, double *n) {
+         double r = 0.0;
+         for (int d = 0; d < 3; d++) {
+           n[d] = 5.0 - x[d];
+           r += n[d] * n[d];
+         }
+         r = std::sqrt(r);
+         for (int d = 0; d < 3; d++) n[d] /= r;
+         return (int) (r > 3.2);
+       }},
+      {"cylinder y 5.3 4.8 2.1 INF INF", [](const double *x, double *n) {
+         n[0] = x[0] - 5.3;
+         n[1] = 0.0;
+         n[2] = x[2] - 4.8;
+         const double r = std::sqrt(n[0] * n[0] + n[2] * n[2]);
+         n[0] /= r;
+         n[2] /= r;
+         return (int) (r <= 2.1);
+       }}};
+  for (const auto &c : cases) {
+    Sim run;
+    run.commands(R"(
+units lj
+boundary f f f
+atom_style mpm
+neighbor 0.3 bin
+region box block 0 10 0 10 0 10
+create_box 1 box
+fix grid all mpm 1.0
+region body block 2 8 2 8 2 8
+create_points 1 region body ppc 2
+fix m all mpm/material density 1.0 neohookean 10.0 0.3
+velocity all set 0.3 -0.2 0.15
+timestep 0.01
+)" + std::string("region obstacle ") + c.region + R"(
+fix w all mpm/boundary region obstacle slip
+run 1
+)");
+    auto *field = field_of(run);
+    int checked = 0;
+    for (std::size_t b = 0; b < field->grid->blocks.size(); b++)
+      for (int n = 0; n < 64; n++) {
+        int index[3];
+        double x[3], normal[3];
+        field->grid->node_index(field->grid->blocks[b], n, index);
+        field->node_position(index, x);
+        const double *r = field->grid->record(b, n);
+        if (r[3] <= 0.0) continue;
+        const int inside = c.normal(x, normal);
+        const double v0[3] = {0.3, -0.2, 0.15};
+        if (inside == 0) {
+          for (int d = 0; d < 3; d++) EXPECT_NEAR(r[d], v0[d], 1.0e-12) << c.region;
+        } else if (inside == 1) {
+          double vn = 0.0;
+          for (int d = 0; d < 3; d++) vn += v0[d] * normal[d];
+          for (int d = 0; d < 3; d++)
+            EXPECT_NEAR(r[d], v0[d] - vn * normal[d], 1.0e-7) << c.region << " at " << x[0] << " "
+                                                              << x[1] << " " << x[2];
+          checked++;
+        }
+      }
+    int all;
+    MPI_Allreduce(&checked, &all, 1, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
+    EXPECT_GT(all, 20) << c.region;
+  }
+}
+
+TEST(Regions, NoTrailBehindAMovingBody)
+{
+  // pitfall 16: a stick region passes next to a body and must release all nodes it has left
+  const std::string scene = R"(
+units lj
+dimension 2
+boundary f f p
+atom_style mpm
+neighbor 0.5 bin
+region box block 0 20 0 20 -0.5 0.5
+create_box 1 box
+fix grid all mpm 1.0
+region body block 8 12 8 12 -0.5 0.5
+create_points 1 region body ppc 2
+fix m all mpm/material density 1.0 neohookean 10.0 0.3
+variable shift equal 2.0*time
+region pass block 6 14 6 14 INF INF move v_shift NULL NULL
+fix w all mpm/boundary region pass stick velocity NULL NULL NULL
+timestep 0.05
+)";
+  Sim run;
+  run.commands(replaced(scene, " velocity NULL NULL NULL", "") + "run 0\n");
+  run.commands("run 250\n");    // the region is out of the box now, and the body was thrown after it
+  auto *field = field_of(run);
+  int held = 0, all;
+  for (std::size_t b = 0; b < field->grid->blocks.size(); b++)
+    for (int n = 0; n < 64; n++) {
+      const double *r = field->grid->record(b, n);
+      if (r[3] > 0.0 && r[0] == 0.0) held++;
+    }
+  MPI_Allreduce(&held, &all, 1, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
+  EXPECT_EQ(all, 0);
+}
+
+/* ----------------------------------------------------------------------
+   several fields
+------------------------------------------------------------------------- */
+
+TEST(Fields, KeywordField)
+{
+  Sim run;
+  run.commands(R"(
+units lj
+dimension 2
+boundary f f p
+atom_style mpm
+neighbor 0.5 bin
+region box block 0 20 0 10 -0.5 0.5
+create_box 2 box
+region one block 2 6 0 4 -0.5 0.5
+region two block 12 16 0 4 -0.5 0.5
+lattice none 1
+fix dummy all mpm 1.0
+create_points 1 region one ppc 2
+create_points 2 region two ppc 2
+unfix dummy
+group one type 1
+group two type 2
+fix f1 one mpm 1.0
+fix f2 two mpm 1.0
+fix m all mpm/material density 1.0 neohookean 100.0 0.3
+fix w all mpm/boundary ylo slip field f1
+velocity all set 0 -0.1 0
+timestep 0.01
+run 1
+)");
+  double v1 = 0.0, v2 = 0.0;
+  for (auto &s : run.gather()) (s.type == 1 ? v1 : v2) += s.mass * s.v[1];
+  EXPECT_NEAR(v2, -1.6, 1.0e-12);
+  EXPECT_GT(v1, -1.5);
+}
+
+/* ----------------------------------------------------------------------
+   time step
+------------------------------------------------------------------------- */
+
+static const char *const dt_scene = R"(
+units lj
+boundary p p p
+atom_style mpm
+neighbor 0.3 bin
+region box block 0 8 0 8 0 8
+create_box 1 box
+fix grid all mpm 1.0
+region one sphere 2.6 3.0 3.2 1.9
+region two block 4.8 7.3 2.0 5.0 2.5 5.5
+create_points 1 region one ppc 2
+create_points 1 region two ppc 2
+region one2 sphere 2.6 3.0 3.2 2.5
+group one region one2
+fix m all mpm/material density 1.0 neohookean 10.0 0.3
+velocity all set -0.5 0.1 0.3
+velocity one set 0.6 0.35 -0.4
+)";
+
+TEST(TimeStep, Limit)
+{
+  Sim run;
+  run.commands(std::string(dt_scene) + "timestep 1e9\nfix step all mpm/dt 0.5 every 1\nrun 0\n");
+  const double c = std::sqrt(10.0 * 0.7 / (1.3 * 0.4)), v = std::sqrt(0.36 + 0.1225 + 0.16);
+  EXPECT_NEAR(run.lmp->update->dt, 0.5 / (c + v), 1.0e-9);
+  auto *fix = run.lmp->modify->get_fix_by_id("step");
+  EXPECT_NEAR(fix->compute_scalar(), run.lmp->update->dt, 0.0);
+  EXPECT_NEAR(fix->compute_vector(1), c, 1.0e-9);
+  EXPECT_GE(fix->compute_vector(0), 1.0);
+  EXPECT_EQ(fix->compute_vector(2), 1.0);
+
+  // time adds up
+  double t = 0.0;
+  for (int k = 0; k < 20; k++) {
+    t += run.lmp->update->dt;
+    run.commands("run 1\n");
+    EXPECT_NEAR(run.evaluate("time"), t, 1.0e-12);
+  }
+  EXPECT_GT(fix->compute_vector(2), 10.0);
+}
+
+TEST(TimeStep, GrowthMaxAndMin)
+{
+  Sim run;
+  run.commands(std::string(dt_scene) + "fix step all mpm/dt 0.5 every 2 grow 1.02\nrun 0\n");
+  const double dt0 = run.lmp->update->dt;
+  // ten times softer: h/c grows by sqrt(10), the time step 2% at every second step
+  run.commands("run 3\n");    // 1 2 3
+  run.commands("fix soft all ave/time 1 1 1 f_step\nvariable limit equal f_step\n");
+  EXPECT_LE(run.lmp->update->dt, 1.05 * dt0);
+  run.commands("run 40\n");
+  EXPECT_GT(run.lmp->update->dt, 0.5 * dt0);
+
+  Sim capped;
+  capped.commands(std::string(dt_scene) + "fix step all mpm/dt 0.5 max 0.01\nrun 20\n");
+  EXPECT_EQ(capped.lmp->update->dt, 0.01);
+
+  EXPECT_NE(error_of(std::string(dt_scene) + "fix step all mpm/dt 0.5 min 1.0\nrun 1\n")
+                .find("is below min"), std::string::npos);
+}
+
+TEST(TimeStep, RestartTakesTheSameSteps)
+{
+  for (const char *every : {"every 10", "every 7", "every 1"}) {
+    const std::string step = std::string("fix step all mpm/dt 0.4 ") + every + "\n";
+    Sim whole, parts;
+    whole.commands(std::string(dt_scene) + step + "run 60\n");
+    parts.commands(std::string(dt_scene) + step + "run 33\nwrite_restart dt_test.restart\n");
+    const double dt33 = parts.lmp->update->dt;
+    parts.commands("clear\n");
+    parts.commands(R"(
+read_restart dt_test.restart
+fix grid all mpm 1.0
+fix m all mpm/material density 1.0 neohookean 10.0 0.3
+)" + step + "run 0\n");
+    EXPECT_EQ(parts.lmp->update->dt, dt33);
+    parts.commands("run 27\n");
+    EXPECT_NEAR(parts.lmp->update->dt, whole.lmp->update->dt, 1.0e-12);
+    EXPECT_NEAR(parts.evaluate("time"), whole.evaluate("time"), 1.0e-12);
+    EXPECT_LT(difference(whole.gather(), parts.gather()), 1.0e-11);
+    MPI_Barrier(MPI_COMM_WORLD);
+    std::remove("dt_test.restart");
+  }
+}
+
+TEST(TimeStep, ChangedStateIsANewStart)
+{
+  Sim run;
+  run.commands(std::string(dt_scene) + "fix step all mpm/dt 0.5\nrun 5\n");
+  const double before = run.lmp->update->dt;
+  run.commands("velocity all set 40 0 0\nrun 0\n");
+  EXPECT_LT(run.lmp->update->dt, 0.2 * before);
+  run.commands("velocity all set 0 0 0\nrun 0\n");
+  EXPECT_GT(run.lmp->update->dt, 0.9 * before);
+}
+
+/* ----------------------------------------------------------------------
+   bad input
+------------------------------------------------------------------------- */
+
+TEST(BadInput, IsRefusedWithTheReason)
+{
+  const std::string scene = R"(
+units lj
+dimension DIM
+boundary p f p
+atom_style mpm
+region box block 0 8 0 8 -0.5 0.5
+create_box 1 box
+fix grid all mpm 1.0
+create_points 1 box ppc 2
+fix m all mpm/material density 1.0 neohookean 10.0 0.3
+variable ok equal 1
+variable text string x
+variable t equal time
+region ball sphere 0 0 0 1
+region moving sphere 0 0 0 1 move v_t NULL NULL
+region open block 0 1 0 1 INF INF open 1
+group none empty
+timestep 0.001
+)";
+  const char *const bad[][2] = {
+      {"fix w none mpm/boundary ylo slip", "use group all"},
+      {"fix w all mpm/boundary", "Missing argument|ecessary"},
+      {"fix w all mpm/boundary ylo", "issing"},
+      {"fix w all mpm/boundary top slip", "must be region or one or more of"},
+      {"fix w all mpm/boundary ylo ylo slip", "twice"},
+      {"fix w all mpm/boundary ylo glue", "must be stick, slip or separate"},
+      {"fix w all mpm/boundary xlo slip", "periodic"},
+      {"fix w all mpm/boundary zlo slip", "2d"},
+      {"fix w all mpm/boundary ylo slip friction -0.1", "must not be negative"},
+      {"fix w all mpm/boundary ylo slip friction nan", "must not be negative|"},
+      {"fix w all mpm/boundary ylo slip friction", "issing"},
+      {"fix w all mpm/boundary ylo stick friction 0.1", "needs kind slip or separate"},
+      {"fix w all mpm/boundary ylo slip velocity NULL 0 0", "NULL"},
+      {"fix w all mpm/boundary ylo stick velocity NULL NULL NULL", "all components free"},
+      {"fix w all mpm/boundary ylo stick velocity 0 0", "issing"},
+      {"fix w all mpm/boundary ylo stick velocity 0 v_no 0\nrun 0", "does not exist"},
+      {"fix w all mpm/boundary ylo stick velocity 0 v_text 0\nrun 0", "not equal-style"},
+      {"fix w all mpm/boundary ylo stick rotate 0 0 0 0 0 0 1", "non-zero length"},
+      {"fix w all mpm/boundary ylo stick rotate 0 0 0 1 0 0 1", "along z in 2d"},
+      {"fix w all mpm/boundary ylo stick rotate 0 0 0 0 0 1", "issing"},
+      {"fix w all mpm/boundary ylo stick colour red", "Unknown fix mpm/boundary keyword"},
+      {"fix w all mpm/boundary ylo slip field none\nrun 0", "not the ID of a fix mpm"},
+      {"fix w all mpm/boundary region none slip", "does not exist"},
+      {"fix w all mpm/boundary region moving slip velocity 1 0 0", "its own motion"},
+      {"fix w all mpm/boundary region open slip\nrun 0", "open faces"},
+      {"fix w all mpm/boundary ylo slip\nfix w2 all mpm/boundary ylo stick\nrun 0", "belongs to"},
+      {"unfix grid\nfix w all mpm/boundary ylo slip\nrun 0", "needs a fix mpm"},
+      {"fix s all mpm/dt", "issing"},
+      {"fix s all mpm/dt 0", "above 0 and at most 2"},
+      {"fix s all mpm/dt -1", "above 0 and at most 2"},
+      {"fix s all mpm/dt 2.1", "above 0 and at most 2"},
+      {"fix s none mpm/dt 0.5", "use group all"},
+      {"fix s all mpm/dt 0.5 every 0", "must be positive"},
+      {"fix s all mpm/dt 0.5 grow 0.9", "at least 1"},
+      {"fix s all mpm/dt 0.5 max -1", "must be positive"},
+      {"fix s all mpm/dt 0.5 min 2 max 1", "above max"},
+      {"fix s all mpm/dt 0.5 often 2", "Unknown fix mpm/dt keyword"},
+      {"fix s all mpm/dt 0.5\nfix s2 all mpm/dt 0.4\nrun 0", "both set the time step"},
+      {"fix s all mpm/dt 0.5\nfix s2 all dt/reset 1 NULL NULL 1\nrun 0", "both set the time step"},
+      {"unfix grid\nfix s all mpm/dt 0.5\nrun 0", "needs a fix mpm"}};
+  for (const auto &b : bad) {
+    const std::string message = error_of(replaced(scene, "DIM", "2") + b[0] + "\n"), wanted = b[1];
+    bool found = false;
+    for (std::size_t at = 0, end; at <= wanted.size(); at = end + 1) {
+      end = std::min(wanted.find('|', at), wanted.size());
+      found = found || message.find(wanted.substr(at, end - at)) != std::string::npos;
+    }
+    EXPECT_TRUE(found && !message.empty()) << b[0] << "\n gives: " << message;
+  }
+}
+
+TEST(BadInput, NarrowChannels)
+{
+  const std::string scene = "units lj\ndimension 2\nboundary f f p\natom_style mpm\n"
+                            "region box block 0 2 0 8 -0.5 0.5\ncreate_box 1 box\nfix grid all mpm 1.0\n"
+                            "create_points 1 box ppc 2\n"
+                            "fix m all mpm/material density 1.0 neohookean 10.0 0.3\ntimestep 0.001\n";
+  EXPECT_NE(error_of(scene + "fix w all mpm/boundary xlo slip\nfix v all mpm/boundary xhi slip\nrun 0\n")
+                .find("less than 3 cells"), std::string::npos);
+  EXPECT_NE(error_of(scene + "fix w all mpm/boundary xlo xhi separate\nrun 0\n")
+                .find("at least 3 cells"), std::string::npos);
+  EXPECT_EQ(error_of(scene + "fix w all mpm/boundary xlo xhi slip\nrun 1\n"), "");
+}

@@ -1,0 +1,61 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+/* ----------------------------------------------------------------------
+   main() of all tests, with one or more MPI processes.  Process 0 reports;
+   the others report failures only.  Any failure makes all processes fail.
+   -v: show the output of LAMMPS
+------------------------------------------------------------------------- */
+
+#include <mpi.h>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+
+#include <cstdio>
+#include <cstring>
+
+// used by LAMMPS's test fixture
+bool verbose = false;
+
+class ReportFailures : public ::testing::EmptyTestEventListener {
+  int rank;
+
+  void OnTestPartResult(const ::testing::TestPartResult &result) override
+  {
+    if (!result.failed()) return;
+    fprintf(stderr, "process %d: %s:%d: %s\n", rank, result.file_name() ? result.file_name() : "?",
+            result.line_number(), result.message());
+    fflush(stderr);
+  }
+
+ public:
+  explicit ReportFailures(int rank) : rank(rank) {}
+};
+
+int main(int argc, char **argv)
+{
+  MPI_Init(&argc, &argv);
+  int rank;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+
+  ::testing::InitGoogleMock(&argc, argv);
+  for (int i = 1; i < argc; i++)
+    if (strcmp(argv[i], "-v") == 0) verbose = true;
+
+  if (rank > 0) {
+    ::testing::GTEST_FLAG(output) = "";
+    auto &listeners = ::testing::UnitTest::GetInstance()->listeners();
+    delete listeners.Release(listeners.default_result_printer());
+    listeners.Append(new ReportFailures(rank));
+  }
+
+  int failed = RUN_ALL_TESTS();
+  MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
+  MPI_Finalize();
+  return failed;
+}

@@ -1,0 +1,659 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// labels: unit output
+// mpi: 1 2
+
+// Output styles: compute mpm/atom, compute mpm/energy, dump mpm/vtk, dump mpm/grid/vtk.
+
+#include "mpm_lammps.h"
+
+#include "fix_mpm.h"
+#include "fix_mpm_material.h"
+#include "mpm_material.h"
+#include "mpm_vtk.h"
+#include "output.h"
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+using State = MPM_TEST::Run::State;
+using Lammps = MPM_TEST::Run;
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+using ::testing::HasSubstr;
+
+// ---------------------------------------------------------------- helpers
+
+static int my_rank()
+{
+  int rank;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  return rank;
+}
+
+/** File names for this number of processes, since tests of both may run at the same time. */
+static std::string name(const std::string &text)
+{
+  int nprocs;
+  MPI_Comm_size(MPI_COMM_WORLD, &nprocs);
+  return "mpm_output_np" + std::to_string(nprocs) + "_" + text;
+}
+
+/** The message of the error that a command gives on all processes, empty: none. */
+static std::string error_of(Lammps &run, const std::string &command)
+{
+  try {
+    run.commands(command);
+  } catch (std::exception &e) {
+    return e.what();
+  }
+  return "";
+}
+
+static std::string contents(const std::string &file)
+{
+  std::ifstream in(file, std::ios::binary);
+  std::stringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+/** Reads what VTKFile writes: attributes and appended arrays, as doubles. */
+class VTKReader {
+ public:
+  struct Array {
+    std::string type;
+    int ncomponent;
+    std::vector<double> value;
+  };
+  std::map<std::string, Array> array;
+  std::string header;
+
+  explicit VTKReader(const std::string &file)
+  {
+    const std::string text = contents(file);
+    const std::string mark = "<AppendedData encoding=\"raw\">\n_";
+    const auto appended = text.find(mark);
+    if (appended == std::string::npos) {
+      ADD_FAILURE() << file << " has no appended data";
+      return;
+    }
+    header = text.substr(0, appended);
+    const std::size_t start = appended + mark.size();
+    std::size_t end = start;
+    for (auto at = header.find("<DataArray"); at != std::string::npos;
+         at = header.find("<DataArray", at + 1)) {
+      const std::string tag = header.substr(at, header.find('>', at) - at);
+      if (attribute(tag, "format") != "appended") continue;
+      Array a;
+      a.type = attribute(tag, "type");
+      a.ncomponent = std::stoi(attribute(tag, "NumberOfComponents"));
+      std::size_t offset = start + std::stoul(attribute(tag, "offset"));
+      EXPECT_EQ(offset, end) << "arrays follow each other";
+      uint64_t bytes;
+      memcpy(&bytes, &text[offset], 8);
+      offset += 8;
+      end = offset + bytes;
+      if (a.type == "Float64") read<double>(text, offset, bytes, a.value);
+      else if (a.type == "Float32") read<float>(text, offset, bytes, a.value);
+      else if (a.type == "Int64") read<int64_t>(text, offset, bytes, a.value);
+      else if (a.type == "UInt8") read<uint8_t>(text, offset, bytes, a.value);
+      else ADD_FAILURE() << "unknown type " << a.type;
+      array[attribute(tag, "Name")] = a;
+    }
+    EXPECT_EQ(text.substr(end), "\n</AppendedData>\n</VTKFile>\n");
+  }
+
+  long number(const std::string &key) const { return std::stol(attribute(header, key)); }
+  double time() const
+  {
+    const auto at = header.find("Name=\"TimeValue\"");
+    return std::stod(header.substr(header.find('>', at) + 1));
+  }
+  const std::vector<double> &operator[](const std::string &key)
+  {
+    EXPECT_EQ(array.count(key), 1u) << key;
+    return array[key].value;
+  }
+
+ private:
+  static std::string attribute(const std::string &tag, const std::string &key)
+  {
+    const auto at = tag.find(" " + key + "=\"");
+    if (at == std::string::npos) return "";
+    const auto from = at + key.size() + 3;
+    return tag.substr(from, tag.find('"', from) - from);
+  }
+  template <typename T>
+  static void read(const std::string &text, std::size_t at, uint64_t bytes, std::vector<double> &v)
+  {
+    for (uint64_t k = 0; k < bytes; k += sizeof(T)) {
+      T value;
+      memcpy(&value, &text[at + k], sizeof(T));
+      v.push_back((double) value);
+    }
+  }
+};
+
+// ---------------------------------------------------------------- points with a state set by hand
+
+/** Points 1 and 2 of a neo-Hookean material, 3 and 4 of an elastic-plastic one; atom 5 is not a
+ *  material point. With two processes each has some of them. */
+class ByHand : public ::testing::Test {
+ protected:
+  Lammps run;
+  std::vector<State> state;
+
+  static constexpr double E = 10.0, NU = 0.25, RHO1 = 1.0, RHO2 = 2.0;
+
+  void SetUp() override
+  {
+    run.commands("units lj\nboundary f f f\natom_style mpm\nneighbor 0.3 bin\n"
+                 "region box block 0 8 0 8 0 8\ncreate_box 3 box\n"
+                 "create_atoms 1 single 1.3 2.2 3.1\n"
+                 "create_atoms 1 single 6.2 2.5 3.6\n"
+                 "create_atoms 2 single 2.7 4.4 3.3\n"
+                 "create_atoms 2 single 6.9 4.1 3.8\n"
+                 "create_atoms 3 single 3.5 6.0 6.0\n"
+                 "set type 1*2 volume 0.125\n"
+                 "group points type 1 2\ngroup one type 1\ngroup two type 2\n"
+                 "fix grid points mpm 1.0\n"
+                 "fix m1 one mpm/material density 1.0 neohookean 10.0 0.25\n"
+                 "fix m2 two mpm/material density 2.0 eos linear 20.0 "
+                 "strength j2 5.0 0.05 hardening linear 0.5\n"
+                 "timestep 1.0e-6\nthermo 1000\n");
+  }
+
+  /** Give all points a state that differs in all components. */
+  void set_state()
+  {
+    auto *atom = run.lmp->atom;
+    auto *points = MPMPoints::get(atom);
+    auto *plastic = dynamic_cast<FixMPMMaterial *>(run.lmp->modify->get_fix_by_id("m2"));
+    const int eplastic = plastic->find_history("eplastic");
+    ASSERT_GE(eplastic, 0);
+    for (int i = 0; i < atom->nlocal; i++) {
+      const double t = atom->tag[i];
+      for (int c = 0; c < 9; c++) points->F[i][c] = (c % 4 == 0) + 0.01 * t * (c - 2);
+      for (int c = 0; c < 6; c++) points->stress[i][c] = t * (c + 1) * (c % 2 ? 1.0 : -1.5);
+      points->vol[i] = 0.125 * (1.0 + 0.1 * t);
+      for (int d = 0; d < 3; d++) atom->v[i][d] = 1.0e-3 * t * (d + 1);
+      if (atom->type[i] == 2) plastic->history[i][eplastic] = 0.5 * t;
+    }
+    state = run.gather();
+  }
+
+  /** Column n (0 for a vector) of a compute, by tag - 1, on all processes. */
+  std::vector<double> column(const std::string &id, int n = 0)
+  {
+    auto *compute = run.lmp->modify->get_compute_by_id(id);
+    compute->compute_peratom();
+    auto *atom = run.lmp->atom;
+    std::vector<double> mine(atom->natoms, 0.0), all(atom->natoms, 0.0);
+    for (int i = 0; i < atom->nlocal; i++)
+      mine[atom->tag[i] - 1] =
+          compute->size_peratom_cols ? compute->array_atom[i][n] : compute->vector_atom[i];
+    MPI_Allreduce(mine.data(), all.data(), (int) all.size(), MPI_DOUBLE, MPI_SUM, run.lmp->world);
+    return all;
+  }
+};
+
+static double det(const double *F)
+{
+  return F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
+      F[2] * (F[3] * F[7] - F[4] * F[6]);
+}
+
+/** Each name alone gives a vector. */
+TEST_F(ByHand, NamesGiveTheQuantities)
+{
+  const std::map<std::string, std::function<double(const State &)>> expected = {
+      {"stress/xx", [](const State &p) { return p.stress[0]; }},
+      {"stress/yy", [](const State &p) { return p.stress[1]; }},
+      {"stress/zz", [](const State &p) { return p.stress[2]; }},
+      {"stress/xy", [](const State &p) { return p.stress[3]; }},
+      {"stress/xz", [](const State &p) { return p.stress[4]; }},
+      {"stress/yz", [](const State &p) { return p.stress[5]; }},
+      {"pressure", [](const State &p) { return -(p.stress[0] + p.stress[1] + p.stress[2]) / 3; }},
+      {"F/xx", [](const State &p) { return p.F[0]; }},
+      {"F/xy", [](const State &p) { return p.F[1]; }},
+      {"F/xz", [](const State &p) { return p.F[2]; }},
+      {"F/yx", [](const State &p) { return p.F[3]; }},
+      {"F/yy", [](const State &p) { return p.F[4]; }},
+      {"F/yz", [](const State &p) { return p.F[5]; }},
+      {"F/zx", [](const State &p) { return p.F[6]; }},
+      {"F/zy", [](const State &p) { return p.F[7]; }},
+      {"F/zz", [](const State &p) { return p.F[8]; }},
+      {"J", [](const State &p) { return det(p.F); }},
+      {"volume", [](const State &p) { return 0.125 * (1.0 + 0.1 * p.tag); }},
+      {"volume0", [](const State &) { return 0.125; }},
+      {"mass", [](const State &p) { return 0.125 * (p.tag < 3 ? RHO1 : RHO2); }},
+      {"density", [](const State &p) { return (p.tag < 3 ? RHO1 : RHO2) / (1.0 + 0.1 * p.tag); }},
+      {"speed", [](const State &p) { return 1.0e-3 * p.tag * sqrt(14.0); }},
+      {"eplastic", [](const State &p) { return p.tag < 3 ? 0.0 : 0.5 * p.tag; }},
+  };
+  for (const auto &item : expected)
+    run.commands("compute q_" + std::to_string(std::distance(expected.begin(),
+                     expected.find(item.first))) + " all mpm/atom " + item.first + "\n");
+  run.commands("run 0\n");
+  set_state();
+  int n = 0;
+  for (const auto &item : expected) {
+    const auto found = column("q_" + std::to_string(n++));
+    for (const auto &p : state) {
+      const double value = p.tag == 5 ? 0.0 : item.second(p);
+      EXPECT_NEAR(found[(int) p.tag - 1], value, 1.0e-14 * (1.0 + fabs(value)))
+          << item.first << " of point " << p.tag;
+    }
+  }
+}
+
+/** Invariants of stress states whose values are known. */
+TEST_F(ByHand, StressInvariants)
+{
+  run.commands("compute q all mpm/atom vonmises triaxiality principal/* pressure\nrun 0\n");
+  set_state();
+  auto *points = MPMPoints::get(run.lmp->atom);
+  // uniaxial, hydrostatic, shear, and diag(1,2,6) turned by atan(3/4) about z
+  const double c = 0.8, s = 0.6;
+  const double stress[4][6] = {{-7, 0, 0, 0, 0, 0},
+                               {3, 3, 3, 0, 0, 0},
+                               {0, 0, 0, 0, 0, 5},
+                               {c * c + 2 * s * s, s * s + 2 * c * c, 6, -c * s, 0, 0}};
+  for (int i = 0; i < run.lmp->atom->nlocal; i++) {
+    const int p = (int) run.lmp->atom->tag[i] - 1;
+    if (p < 4) memcpy(points->stress[i], stress[p], 6 * sizeof(double));
+  }
+
+  const double vonmises[] = {7, 0, 5 * sqrt(3.0), sqrt(21.0)};
+  const double triaxiality[] = {-1.0 / 3.0, 0, 0, 3.0 / sqrt(21.0)};
+  const double principal[3][4] = {{0, 3, 5, 6}, {0, 3, 0, 2}, {-7, 3, -5, 1}};
+  const double pressure[] = {7.0 / 3.0, -3, 0, -3};
+  for (int p = 0; p < 4; p++) {
+    EXPECT_NEAR(column("q", 0)[p], vonmises[p], 1e-14 * 10);
+    EXPECT_NEAR(column("q", 1)[p], triaxiality[p], 1e-14);
+    for (int k = 0; k < 3; k++) EXPECT_NEAR(column("q", 2 + k)[p], principal[k][p], 1e-14 * 10);
+    EXPECT_NEAR(column("q", 5)[p], pressure[p], 1e-14 * 10);
+  }
+}
+
+TEST_F(ByHand, EnergyAndWaveSpeed)
+{
+  run.commands("compute q all mpm/atom energy wavespeed\ncompute one one mpm/atom energy\nrun 0\n");
+  const double mu = E / (2 * (1 + NU)), lambda = E * NU / ((1 + NU) * (1 - 2 * NU));
+  auto speed = column("q", 1);
+  EXPECT_NEAR(speed[0], sqrt((lambda + 2 * mu) / RHO1), 1e-12);
+  EXPECT_NEAR(speed[3], sqrt((20.0 + 4.0 / 3.0 * 5.0) / RHO2), 1e-12);
+  EXPECT_EQ(speed[4], 0.0);
+
+  set_state();
+  const auto energy = column("q", 0), one = column("one");
+  for (int p = 0; p < 2; p++) {
+    const double *F = state[p].F;
+    double trace = 0.0;
+    for (int c = 0; c < 9; c++) trace += F[c] * F[c];
+    const double log_J = log(det(F));
+    const double w = 0.5 * mu * (trace - 3 - 2 * log_J) + 0.5 * lambda * log_J * log_J;
+    EXPECT_NEAR(energy[p], 0.125 * w, 1e-14);
+    EXPECT_EQ(one[p], energy[p]);
+  }
+  EXPECT_GT(energy[2], 0.0);
+  EXPECT_EQ(energy[4], 0.0);
+  EXPECT_EQ(one[2], 0.0) << "not in the group";
+}
+
+/** Wildcards, and what uses per-atom values: reduce, fix ave/atom, fix ave/grid, variables. */
+TEST_F(ByHand, WorksWithOtherCommands)
+{
+  run.commands("compute q all mpm/atom stress/* F/* volume\n"
+               "compute v points mpm/atom volume\n"
+               "compute sum points reduce sum c_q[16] c_v\n"
+               "variable twice atom 2*c_v\n"
+               "compute most points reduce max v_twice\n"
+               "fix mean points ave/atom 1 1 1 c_v c_q[1]\n"
+               "fix cells points ave/grid 1 1 1 2 2 2 c_q[1] c_v norm all\n"
+               "thermo_style custom step c_sum[*] c_most f_mean[1][2]\n"
+               "run 0\n");
+  EXPECT_EQ(run.lmp->modify->get_compute_by_id("q")->size_peratom_cols, 16);
+  run.commands("run 2\n");
+  const double expected = 4 * 0.125;
+  EXPECT_NEAR(run.lmp->modify->get_compute_by_id("sum")->vector[0], expected, 1e-12);
+  EXPECT_NEAR(run.lmp->modify->get_compute_by_id("sum")->vector[1], expected, 1e-12);
+  EXPECT_NEAR(run.lmp->modify->get_compute_by_id("most")->scalar, 0.25, 1e-12);
+}
+
+TEST_F(ByHand, UnknownNamesAreRefused)
+{
+  EXPECT_THAT(error_of(run, "compute q all mpm/atom\n"), HasSubstr("compute mpm/atom"));
+  EXPECT_THAT(error_of(run, "compute q all mpm/atom strain/*\n"), HasSubstr("wildcards are F/*"));
+
+  // a history variable may come with a material that is defined later, so that run tells
+
+  EXPECT_EQ(error_of(run, "compute q all mpm/atom vonmises eplastik\n"), "");
+  const auto text = error_of(run, "run 0\n");
+  EXPECT_THAT(text, HasSubstr("eplastik"));
+  EXPECT_THAT(text, HasSubstr("vonmises"));
+  EXPECT_THAT(text, HasSubstr("eplastic"));
+}
+
+TEST(Output, NeedsMaterialPoints)
+{
+  Lammps run;
+  run.commands("region box block 0 8 0 8 0 8\ncreate_box 1 box\n");
+  EXPECT_THAT(error_of(run, "compute q all mpm/atom vonmises\n"), HasSubstr("atom_style mpm"));
+}
+
+// ---------------------------------------------------------------- dump mpm/vtk
+
+TEST_F(ByHand, PointFile)
+{
+  run.commands("compute c all property/atom vx vy\n"
+               "compute one all mpm/atom vonmises\n"
+               "variable v atom 10*id\n"
+               "run 0\n");
+  set_state();
+  run.commands("write_dump points mpm/vtk " + name("hand.vtp") +
+               " stress F velocity vonmises eplastic volume c_c[*] c_one v_v image stress/xy "
+               "modify sort id\n");
+  MPI_Barrier(MPI_COMM_WORLD);
+  if (my_rank() > 0) return;
+
+  VTKReader file(name("hand.vtp"));
+  EXPECT_THAT(file.header, HasSubstr("<VTKFile type=\"PolyData\""));
+  EXPECT_THAT(file.header, HasSubstr("header_type=\"UInt64\""));
+  EXPECT_EQ(file.number("NumberOfPoints"), 4);
+  EXPECT_EQ(file.number("NumberOfVerts"), 4);
+  EXPECT_EQ(file.array["stress"].ncomponent, 9);
+  EXPECT_EQ(file.array["F"].ncomponent, 9);
+  EXPECT_EQ(file.array["velocity"].ncomponent, 3);
+  EXPECT_EQ(file.array["c_c"].ncomponent, 2);
+  EXPECT_EQ(file.array["id"].type, "Int64");
+  EXPECT_EQ(file.array["type"].type, "Int64");
+  EXPECT_EQ(file.array["image"].type, "Int64");
+  EXPECT_EQ(file.array["stress"].type, "Float64");
+  static const int tensor[] = {0, 3, 4, 3, 1, 5, 4, 5, 2};
+  for (int p = 0; p < 4; p++) {
+    const auto &s = state[p];
+    EXPECT_EQ(file["id"][p], p + 1);
+    EXPECT_EQ(file["type"][p], s.type);
+    EXPECT_EQ(file["connectivity"][p], p);
+    EXPECT_EQ(file["offsets"][p], p + 1);
+    for (int d = 0; d < 3; d++) {
+      EXPECT_EQ(file["Points"][3 * p + d], s.x[d]);
+      EXPECT_EQ(file["velocity"][3 * p + d], s.v[d]);
+      EXPECT_EQ(file["image"][3 * p + d], 0);
+    }
+    for (int c = 0; c < 9; c++) {
+      EXPECT_EQ(file["F"][9 * p + c], s.F[c]);
+      EXPECT_EQ(file["stress"][9 * p + c], s.stress[tensor[c]]);
+    }
+    EXPECT_EQ(file["c_c"][2 * p + 1], s.v[1]);
+    EXPECT_EQ(file["stress/xy"][p], s.stress[3]);
+    EXPECT_EQ(file["volume"][p], s.vol);
+    EXPECT_EQ(file["eplastic"][p], p < 2 ? 0.0 : 0.5 * (p + 1));
+    EXPECT_EQ(file["c_one"][p], file["vonmises"][p]);
+    EXPECT_GT(file["vonmises"][p], 0.0);
+    EXPECT_EQ(file["v_v"][p], 10.0 * (p + 1));
+  }
+  EXPECT_EQ(contents(name("hand.pvd")), "");
+  remove(name("hand.vtp").c_str());
+}
+
+/** Groups, regions, single precision, no points. */
+TEST_F(ByHand, PointFileOptions)
+{
+  run.commands("region low block INF INF INF 3 INF INF\nregion none block 0 0.1 0 0.1 0 0.1\n"
+               "dump a one mpm/vtk 1 " + name("a.*.vtp") + " vonmises\n"
+               "dump_modify a precision single sort id\n"
+               "dump b all mpm/vtk 1 " + name("b.*.vtp") + "\ndump_modify b region low sort id\n"
+               "dump c all mpm/vtk 1 " + name("c.*.vtp") + " J\ndump_modify c region none\n"
+               "run 0\n");
+  if (my_rank() == 0) {
+    VTKReader a(name("a.0.vtp")), b(name("b.0.vtp")), c(name("c.0.vtp"));
+    EXPECT_EQ(a["id"], (std::vector<double>{1, 2}));
+    EXPECT_EQ(a.array["vonmises"].type, "Float32");
+    EXPECT_EQ(a.array["Points"].type, "Float32");
+    EXPECT_EQ(a.array["id"].type, "Int64");
+    EXPECT_EQ((float) a["Points"][0], (float) 1.3);
+    EXPECT_EQ(b["id"], (std::vector<double>{1, 2}));
+    EXPECT_EQ(b["Points"][0], 1.3);
+    EXPECT_EQ(c.number("NumberOfPoints"), 0);
+    EXPECT_EQ(c["J"].size(), 0u);
+    for (const char *which : {"a", "b", "c"}) {
+      remove(name(std::string(which) + ".0.vtp").c_str());
+      remove(name(std::string(which) + ".pvd").c_str());
+    }
+  }
+}
+
+TEST_F(ByHand, DumpErrors)
+{
+  auto dump = [&](const std::string &rest) {
+    return error_of(run, "dump d all mpm/vtk 10 " + rest + "\n");
+  };
+  EXPECT_THAT(dump("file.vtp vonmises"), HasSubstr("put a * into the file name, e.g. file.*.vtp"));
+  EXPECT_THAT(dump("file.*.vtk vonmises"), HasSubstr("must end in .vtp"));
+  EXPECT_THAT(dump("file.%.*.vtp vonmises"), HasSubstr("remove %"));
+  EXPECT_THAT(dump("out*/file.vtp vonmises"), HasSubstr("after the last /"));
+  EXPECT_THAT(dump("file.*.vtp element"), HasSubstr("use type instead"));
+  EXPECT_THAT(dump("file.*.vtp c_nothing"), HasSubstr("nothing"));
+  EXPECT_THAT(dump("file.*.vtp vonmises strain/*"), HasSubstr("strain/*"));
+  EXPECT_EQ(run.lmp->modify->ncompute, 3) << "no compute is left behind (3 are those of thermo)";
+  EXPECT_EQ(dump("file.*.vtp vonmises"), "");
+  EXPECT_EQ(run.lmp->modify->ncompute, 4);
+  EXPECT_THAT(error_of(run, "dump_modify d precision half\n"), HasSubstr("single or double"));
+  run.commands("undump d\n");
+  EXPECT_EQ(run.lmp->modify->ncompute, 3);
+
+  EXPECT_EQ(error_of(run, "dump d all mpm/vtk 1 " + name("x.*.vtp") + " vonmises eplastik\n"), "");
+  EXPECT_THAT(error_of(run, "run 0\n"), HasSubstr("eplastik"));
+}
+
+TEST(Output, CollectionNames)
+{
+  EXPECT_EQ(VTKCollection::list_name("bar.*.vtp", "d"), "bar.pvd");
+  EXPECT_EQ(VTKCollection::list_name("a.b/bar_*.vtp", "d"), "a.b/bar.pvd");
+  EXPECT_EQ(VTKCollection::list_name("out/*.vtp", "d"), "out/d.pvd");
+  EXPECT_EQ(VTKCollection::list_name("*_x.vtp", "d"), "x.pvd");
+  EXPECT_EQ(VTKCollection::list_name("bar.*.left.vtp", "d"), "bar.left.pvd");
+}
+
+// ---------------------------------------------------------------- a moving body
+
+static const std::string scene =
+    "units lj\nboundary p f f\natom_style mpm\nneighbor 0.3 bin\n"
+    "region box block 0 8 0 8 0 8\ncreate_box 1 box\n"
+    "fix grid all mpm 1.0\n"
+    "region body block 2.5 5.5 2 5 1.5 4.5\ncreate_points 1 region body ppc 2\n"
+    "fix m all mpm/material density 1.0 neohookean 50.0 0.3\n"
+    "fix floor all mpm/boundary zlo slip\n"
+    "fix pull all gravity 1.0 vector 0 0 -1\n"
+    "velocity all set 0.7 0.1 -1.5\n"
+    "timestep 0.01\nthermo 1000\n";
+
+/** Times in the list of files are physical, also when the time step changes between runs. */
+TEST(Output, CollectionOfFiles)
+{
+  Lammps run;
+  run.commands(scene + "dump d all mpm/vtk 5 " + name("s.*.vtp") + " vonmises\n"
+               "dump_modify d pad 4\nrun 10\ntimestep 0.005\nrun 10\n");
+  MPI_Barrier(MPI_COMM_WORLD);
+  const std::string expected =
+      "<DataSet timestep=\"0\" file=\"" + name("s.0000.vtp") + "\"/>\n"
+      "<DataSet timestep=\"0.050000000000000003\" file=\"" + name("s.0005.vtp") + "\"/>\n"
+      "<DataSet timestep=\"0.10000000000000001\" file=\"" + name("s.0010.vtp") + "\"/>\n"
+      "<DataSet timestep=\"0.125\" file=\"" + name("s.0015.vtp") + "\"/>\n"
+      "<DataSet timestep=\"0.15000000000000002\" file=\"" + name("s.0020.vtp") + "\"/>\n";
+  if (my_rank() == 0) {
+    EXPECT_THAT(contents(name("s.pvd")), HasSubstr(expected));
+    VTKReader last(name("s.0020.vtp"));
+    EXPECT_NEAR(last.time(), 0.15, 1e-15);
+    EXPECT_EQ(last.number("NumberOfPoints"), 216);
+    EXPECT_EQ(last["Points"].size(), 648u);
+  }
+
+  // a new dump starts a new list, unless it is to append
+
+  run.commands("undump d\ndump d all mpm/vtk 5 " + name("s.*.vtp") + "\n"
+               "dump_modify d append yes pad 4\nrun 5\n");
+  MPI_Barrier(MPI_COMM_WORLD);
+  if (my_rank() == 0) {
+    EXPECT_THAT(contents(name("s.pvd")), HasSubstr(name("s.0015.vtp")));
+  }
+  run.commands("undump d\ndump d all mpm/vtk 5 " + name("s.*.vtp") + "\n"
+               "dump_modify d maxfiles 2 pad 4\nrun 10\n");
+  MPI_Barrier(MPI_COMM_WORLD);
+  if (my_rank() == 0) {
+    const auto list = contents(name("s.pvd"));
+    EXPECT_EQ(list.find("s.0015.vtp"), std::string::npos);
+    EXPECT_EQ(list.find("s.0025.vtp"), std::string::npos);
+    EXPECT_THAT(list, HasSubstr("s.0030.vtp"));
+    EXPECT_THAT(list, HasSubstr("s.0035.vtp"));
+    EXPECT_EQ(contents(name("s.0025.vtp")), "");
+    for (int step = 0; step <= 35; step += 5) {
+      char file[64];
+      snprintf(file, 64, "s.%04d.vtp", step);
+      remove(name(file).c_str());
+    }
+    remove(name("s.pvd").c_str());
+  }
+}
+
+/** Every node once over all processes: mass and momentum are those of the points. */
+TEST(Output, GridFile)
+{
+  Lammps run;
+  run.commands(scene + "unfix pull\nunfix floor\n"
+               "dump g all mpm/grid/vtk 20 " + name("g.*.vtu") + " grid mass velocity momentum index\n"
+               "run 20\n");
+  const auto points = run.gather();
+  MPI_Barrier(MPI_COMM_WORLD);
+  if (my_rank() > 0) return;
+
+  VTKReader file(name("g.20.vtu"));
+  EXPECT_THAT(file.header, HasSubstr("<VTKFile type=\"UnstructuredGrid\""));
+  const long nnode = file.number("NumberOfPoints"), ncell = file.number("NumberOfCells");
+  ASSERT_EQ((long) file["mass"].size(), nnode);
+  ASSERT_EQ((long) file["momentum"].size(), 3 * nnode);
+  ASSERT_EQ((long) file["connectivity"].size(), 8 * ncell);
+  ASSERT_GT(ncell, 27);
+  double mass = 0.0, momentum[3] = {0, 0, 0}, mass_points = 0.0, momentum_points[3] = {0, 0, 0};
+  for (long n = 0; n < nnode; n++) {
+    EXPECT_GT(file["mass"][n], 0.0);
+    mass += file["mass"][n];
+    for (int d = 0; d < 3; d++) {
+      momentum[d] += file["momentum"][3 * n + d];
+      EXPECT_NEAR(file["momentum"][3 * n + d], file["mass"][n] * file["velocity"][3 * n + d], 1e-15);
+      EXPECT_EQ(file["Points"][3 * n + d], file["index"][3 * n + d]);    // origin 0, spacing 1
+    }
+  }
+  for (const auto &p : points) {
+    mass_points += p.mass;
+    for (int d = 0; d < 3; d++) momentum_points[d] += p.mass * p.v[d];
+  }
+  EXPECT_NEAR(mass, mass_points, 1e-12 * mass_points);
+  for (int d = 0; d < 3; d++) EXPECT_NEAR(momentum[d], momentum_points[d], 1e-12 * mass_points);
+
+  // cells are unit cubes with the corners in VTK's order
+
+  static const int corner[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
+                                   {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+  for (long c = 0; c < ncell; c++) {
+    EXPECT_EQ(file["types"][c], 12);
+    EXPECT_EQ(file["offsets"][c], 8 * (c + 1));
+    const long first = (long) file["connectivity"][8 * c];
+    for (int k = 0; k < 8; k++)
+      for (int d = 0; d < 3; d++)
+        EXPECT_EQ(file["index"][3 * (long) file["connectivity"][8 * c + k] + d],
+                  file["index"][3 * first + d] + corner[k][d]);
+  }
+  remove(name("g.0.vtu").c_str());
+  remove(name("g.20.vtu").c_str());
+  remove(name("g.pvd").c_str());
+}
+
+TEST(Output, GridFileErrors)
+{
+  Lammps run;
+  run.commands(scene);
+  auto dump = [&](const std::string &rest) { return error_of(run, "dump g " + rest + "\n"); };
+  EXPECT_THAT(dump("all mpm/grid/vtk 5 g.*.vtu nothing mass"), HasSubstr("nothing"));
+  EXPECT_THAT(dump("all mpm/grid/vtk 5 g.*.vtu floor mass"), HasSubstr("not mpm"));
+  EXPECT_THAT(dump("all mpm/grid/vtk 5 g.*.vtu grid stress"), HasSubstr("momentum"));
+  EXPECT_THAT(dump("all mpm/grid/vtk 5 g.*.vti grid mass"), HasSubstr(".vtu"));
+  EXPECT_THAT(dump("all mpm/grid/vtk 5 g.vtu grid mass"), HasSubstr("*"));
+}
+
+// ---------------------------------------------------------------- compute mpm/energy
+
+struct Entry {
+  enum { KINETIC, STORED, PLASTIC, VISCOUS, HEAT, EXTERNAL, BOUNDARY, CONTACT, TRANSFER,
+         INTEGRATION, RESIDUAL };
+};
+
+TEST(Energy, BalanceCloses)
+{
+  Lammps run;
+  run.commands(scene + "compute e all mpm/energy\nthermo_style custom step c_e c_e[*]\nthermo 10\n"
+               "run 0\n");
+  auto *e = run.lmp->modify->get_compute_by_id("e");
+  const double start = e->compute_scalar();
+  EXPECT_NEAR(start, 0.5 * 27.0 * (0.49 + 0.01 + 2.25), 1e-12);
+  for (int k = Entry::EXTERNAL; k <= Entry::RESIDUAL; k++) EXPECT_EQ(e->vector[k], 0.0);
+
+  double largest_stored = 0.0;
+  for (int k = 0; k < 10; k++) {
+    run.commands("run 20\n");
+    const double total = e->compute_scalar();
+    const double *v = e->vector;
+    EXPECT_EQ(total, v[Entry::KINETIC] + v[Entry::STORED] + v[Entry::PLASTIC] + v[Entry::VISCOUS]);
+    EXPECT_NEAR(v[Entry::RESIDUAL], 0.0, 1e-12 * start);
+    EXPECT_NEAR(total - start, v[Entry::EXTERNAL] + v[Entry::BOUNDARY] + v[Entry::CONTACT] + v[Entry::TRANSFER] +
+                v[Entry::INTEGRATION], 1e-12 * start);
+    EXPECT_EQ(v[Entry::PLASTIC], 0.0);
+    EXPECT_EQ(v[Entry::CONTACT], 0.0);
+    EXPECT_LT(v[Entry::TRANSFER], 0.0);
+    EXPECT_LE(v[Entry::BOUNDARY], 0.0);
+    EXPECT_LT(fabs(v[Entry::INTEGRATION]), 0.05 * start);
+    largest_stored = std::max(largest_stored, v[Entry::STORED]);
+  }
+  EXPECT_GT(largest_stored, 0.05 * start) << "the body hits the floor";
+  EXPECT_LT(e->vector[Entry::BOUNDARY], 0.0);
+}
+
+TEST(Energy, StartsWithTheFirstRunAfterItsDefinition)
+{
+  Lammps run;
+  run.commands(scene + "run 20\ncompute e all mpm/energy\nrun 0\n");
+  auto *e = run.lmp->modify->get_compute_by_id("e");
+  const double start = e->compute_scalar();
+  run.commands("run 20\n");
+  const double total = e->compute_scalar();
+  EXPECT_NEAR(e->vector[Entry::RESIDUAL], 0.0, 1e-12 * start);
+  EXPECT_NEAR(total - start, e->vector[Entry::EXTERNAL] + e->vector[Entry::BOUNDARY] + e->vector[Entry::TRANSFER] +
+              e->vector[Entry::INTEGRATION], 1e-12 * start);
+}
+
+TEST(Energy, Errors)
+{
+  Lammps run;
+  run.commands(scene);
+  run.commands("region left block 0 4 0 8 0 8\ngroup left region left\n");
+  EXPECT_THAT(error_of(run, "compute e left mpm/energy\n"), HasSubstr("group all"));
+  EXPECT_THAT(error_of(run, "compute e all mpm/energy kinetic\n"), HasSubstr("kinetic"));
+  run.commands("compute e all mpm/energy\nunfix grid\n");
+  EXPECT_THAT(error_of(run, "run 0\n"), HasSubstr("requires a fix mpm"));
+}

@@ -1,0 +1,178 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+
+// labels: mpi physics
+// mpi: 1 2 3 4
+// timeout: 300
+
+// Any number of ranks and any decomposition gives the result of one rank to round-off.
+
+#include "mpm_lammps.h"
+
+#include "gtest/gtest.h"
+
+using namespace MPM_TEST;
+
+// two soft bodies cross all rank boundaries of a periodic box, collide and deform
+
+static const char *const scene3d = R"(
+units lj
+boundary p p p
+atom_style mpm
+neighbor 0.3 bin
+region box block 0 8 0 8 0 8
+create_box 2 box
+fix grid all mpm 1.0 MPM_OPTIONS
+region one sphere 2.6 3.0 3.2 1.9
+region two block 4.8 7.3 2.0 5.0 2.5 5.5
+create_points 1 region one ppc 2
+create_points 2 region two ppc 2
+group one type 1
+group two type 2
+fix m1 one mpm/material density 1.0 neohookean 10.0 0.3
+fix m2 two mpm/material density 2.0 linear 20.0 0.2
+velocity one set 0.6 0.35 -0.4
+velocity two set -0.5 0.1 0.3
+timestep 0.05
+thermo 1000
+)";
+
+static const char *const scene2d = R"(
+units lj
+dimension 2
+boundary p f p
+atom_style mpm
+neighbor 0.3 bin
+region box block 0 15 0 11 -0.5 0.5
+create_box 2 box
+fix grid all mpm 0.5 MPM_OPTIONS
+region one cylinder z 3.0 4.0 1.9 INF INF
+region two block 7.0 12.0 2.0 6.0 INF INF
+create_points 1 region one ppc 2
+create_points 2 region two ppc 2
+group one type 1
+group two type 2
+fix m1 one mpm/material density 1.0 neohookean 10.0 0.3
+fix m2 two mpm/material density 2.0 linear 20.0 0.2
+fix floor all mpm/boundary ylo slip
+fix g all gravity 0.05 vector 0 -1 0
+velocity one set 0.6 -0.3 0
+velocity two set -0.5 -0.1 0
+timestep 0.03
+thermo 1000
+)";
+
+static std::string with_options(std::string scene, const std::string &options)
+{
+  return scene.replace(scene.find("MPM_OPTIONS"), 11, options);
+}
+
+class Ranks : public ::testing::TestWithParam<std::string> {
+ protected:
+  void compare(const std::string &scene, const std::string &layout)
+  {
+    Run serial(MPI_COMM_SELF), parallel(MPI_COMM_WORLD);
+    serial.commands(scene + "run 200\n");
+    parallel.commands(scene + layout + "run 200\n");
+    auto a = serial.gather(), b = parallel.gather();
+    EXPECT_GT(a.size(), 100u);
+    EXPECT_LT(difference(a, b), 1.0e-12);
+
+    // the scene does move and deform: the comparison means something
+    double strain = 0.0;
+    for (auto &s : a) strain = std::max(strain, std::abs(s.F[0] - 1.0));
+    EXPECT_GT(strain, 0.01);
+  }
+};
+
+TEST_P(Ranks, Brick3d)
+{
+  compare(with_options(scene3d, GetParam()), "");
+}
+
+TEST_P(Ranks, Rcb3d)
+{
+  compare(with_options(scene3d, GetParam()),
+          "comm_style tiled\nbalance 1.0 rcb\nfix lb all balance 20 1.0 rcb\n");
+}
+
+TEST_P(Ranks, ShiftedBrick2d)
+{
+  compare(with_options(scene2d, GetParam()), "fix lb all balance 20 1.0 shift xy 10 1.05\n");
+}
+
+INSTANTIATE_TEST_SUITE_P(Options, Ranks,
+                         ::testing::Values("transfer apic", "shape linear transfer flip 0.99 scheme musl",
+                                           "shape cubic transfer flip 1.0 scheme usf",
+                                           "shape quadratic transfer apic scheme musl"));
+
+// slabs along one axis: with 4 ranks some have no points at all
+
+TEST(RanksWithoutPoints, Slabs)
+{
+  const std::string scene = R"(
+units lj
+boundary f f f
+atom_style mpm
+neighbor 0.3 bin
+region box block 0 40 0 8 0 8
+PROCESSORS
+create_box 1 box
+fix grid all mpm 1.0
+region one block 1 6 2 6 2 6
+create_points 1 region one ppc 2
+fix m1 all mpm/material density 1.0 neohookean 10.0 0.3
+velocity all set 1.0 0.0 0.0
+velocity all ramp vy -0.2 0.2 x 1 6 sum yes
+timestep 0.05
+)";
+  int nprocs;
+  MPI_Comm_size(MPI_COMM_WORLD, &nprocs);
+  auto layout = [&](const std::string &text) {
+    std::string copy = scene;
+    return copy.replace(copy.find("PROCESSORS"), 10, text);
+  };
+  Run serial(MPI_COMM_SELF), parallel(MPI_COMM_WORLD);
+  serial.commands(layout("") + "run 400\n");
+  parallel.commands(layout("processors " + std::to_string(nprocs) + " 1 1") + "run 400\n");
+  EXPECT_LT(difference(serial.gather(), parallel.gather()), 1.0e-12);
+}
+
+// shifting everything by a fraction of h changes only what theory says: nothing for a periodic
+// box whose lattice is shifted along
+
+TEST(Translation, LatticeAndBodyTogether)
+{
+  auto scene = [](double s) {
+    std::string t = std::to_string(s);
+    return "units lj\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
+           "region box block 0 8 0 8 0 8\ncreate_box 1 box\n"
+           "fix grid all mpm 1.0 origin " + t + " " + t + " " + t + "\n"
+           "region one sphere 4 4 4 1.9\ncreate_points 1 region one ppc 2\n"
+           "displace_atoms all move " + t + " " + t + " " + t + "\n"
+           "fix m1 all mpm/material density 1.0 neohookean 10.0 0.3\n"
+           "velocity all set 0.6 0.35 -0.4\nvelocity all ramp vx -0.5 0.5 y 2 6 sum yes\n"
+           "timestep 0.05\nrun 200\n";
+  };
+  Run a, b;
+  a.commands(scene(0.0));
+  // points of create_points follow the lattice, so that both bodies are the same set of points
+  std::string shifted = scene(0.375);
+  shifted.replace(shifted.find("sphere 4 4 4"), 12, "sphere 4.375 4.375 4.375");
+  shifted.replace(shifted.find("displace_atoms"), shifted.find("\n", shifted.find("displace_atoms")) -
+                  shifted.find("displace_atoms"), "displace_atoms all move 0 0 0");
+  shifted.replace(shifted.find("y 2 6"), 5, "y 2.375 6.375");
+  b.commands(shifted);
+  auto sa = a.gather(), sb = b.gather();
+  ASSERT_EQ(sa.size(), sb.size());
+  for (auto &s : sb)
+    for (double &x : s.x) x -= 0.375;
+  // tags follow positions in both
+  EXPECT_LT(difference(sa, sb), 1.0e-11);
+}

@@ -1,0 +1,328 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+
+// labels: physics
+// mpi: 1 2 4
+// timeout: 300
+
+// Defects seen in other material point codes, each with a test of its name. Mistakes in the input
+// are in test_bad_input.cpp, points on faces and beyond the box in test_atom_style.cpp, dumps in
+// test_output.cpp, restarts in test_restart.cpp.
+
+#include "mpm_lammps.h"
+
+#include "fix_mpm.h"
+#include "mpm_grid.h"
+
+#include "gtest/gtest.h"
+
+#include <cmath>
+#include <map>
+#include <set>
+
+using namespace MPM_TEST;
+
+// a soft body that deforms and spins, crossing the middle of a periodic box
+
+static std::string soft_body(const std::string &options, const std::string &steps = "run 40\n")
+{
+  return "units lj\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
+         "region box block 0 8 0 8 0 8\ncreate_box 1 box\n"
+         "fix grid all mpm 1.0 " + options + "\n"
+         "region body block 2 5 2.5 5 3 5\ncreate_points 1 region body ppc 2\n"
+         "fix soft all mpm/material density 1.0 neohookean 10.0 0.3\n"
+         "velocity all set 0.5 0.2 0.1\nvelocity all ramp vy -0.8 0.8 x 2 5 sum yes\n"
+         "timestep 0.05\nthermo 1000\n" + steps;
+}
+
+static double momentum(const std::vector<Run::State> &points, int axis)
+{
+  double sum = 0.0;
+  for (const auto &p : points) sum += p.mass * p.v[axis];
+  return sum;
+}
+
+// a region larger than the domain changed the box after the grid existed
+
+TEST(Pitfall, RegionLargerThanTheBoxLeavesTheBoxAlone)
+{
+  Run run;
+  run.commands("units lj\nboundary f f f\natom_style mpm\nneighbor 0.3 bin\n"
+               "region box block 0 8 0 8 0 8\ncreate_box 1 box\nfix grid all mpm 1.0\n"
+               "region body block -3 4 2 30 2 4\n"
+               "create_points 1 region body ppc 2 outside ignore\n"
+               "fix soft all mpm/material density 1.0 neohookean 10.0 0.3\ntimestep 0.05\nrun 1\n");
+  for (int d = 0; d < 3; d++) {
+    EXPECT_EQ(run.lmp->domain->boxlo[d], 0.0);
+    EXPECT_EQ(run.lmp->domain->boxhi[d], 8.0);
+  }
+  EXPECT_EQ(run.gather().size(), 8u * 12u * 4u);
+}
+
+// numbers went through single precision
+
+TEST(Pitfall, NumbersKeepDoublePrecision)
+{
+  Run run;
+  run.commands("units lj\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
+               "region box block 0 8 0 8 0 8\ncreate_box 1 box\nfix grid all mpm 0.1\n"
+               "region body block 2 3 2 3 2 3\ncreate_points 1 region body spacing 0.1\n"
+               "fix soft all mpm/material density 0.1 neohookean 10.0 0.3\n"
+               "velocity all set 0.1 0.2 0.3\ntimestep 0.001\nrun 0\n");
+  const auto before = run.gather();
+  ASSERT_EQ(before.size(), 1000u);
+  run.commands("run 100\n");
+  const auto after = run.gather();
+  ASSERT_EQ(after.size(), before.size());
+  for (std::size_t k = 0; k < after.size(); k++) {
+    const int site = (int) after[k].tag - 1;
+    const int cell[3] = {site % 10, site / 10 % 10, site / 100};
+    for (int d = 0; d < 3; d++) {
+      EXPECT_NEAR(before[k].x[d], 2.0 + 0.1 * (cell[d] + 0.5), 4.0e-15);
+      EXPECT_NEAR(after[k].v[d], 0.1 * (d + 1), 1.0e-14);
+      EXPECT_NEAR(after[k].x[d] - before[k].x[d], 0.01 * (d + 1), 1.0e-14);
+    }
+    EXPECT_NEAR(after[k].mass, 1.0e-4, 1.0e-18);
+    EXPECT_NEAR(after[k].vol, 1.0e-3, 1.0e-15);
+  }
+}
+
+// options parsed and ignored: in every combination, each one must make a difference
+
+TEST(Pitfall, NoOptionIsIgnored)
+{
+  std::map<std::string, std::vector<Run::State>> results;
+  for (const char *shape : {"linear", "quadratic", "cubic"})
+    for (const char *transfer : {"pic", "flip 0.5", "flip 1.0", "apic"})
+      for (const char *scheme : {"usl", "usf", "musl"}) {
+        const std::string options =
+            fmt::format("shape {} transfer {} scheme {}", shape, transfer, scheme);
+        Run run;
+        run.commands(soft_body(options, "run 10\n"));
+        results[options] = run.gather();
+        ASSERT_EQ(results[options].size(), 6u * 5u * 4u) << options;
+      }
+  for (auto a = results.begin(); a != results.end(); ++a)
+    for (auto b = std::next(a); b != results.end(); ++b)
+      EXPECT_GT(difference(a->second, b->second), 1.0e-7) << a->first << " and " << b->first;
+}
+
+TEST(Pitfall, OriginIsNotIgnored)
+{
+  Run a, b;
+  a.commands(soft_body("", ""));
+  b.commands(soft_body("", "fix grid all mpm 1.0 origin 0.3 0.1 0.2\n"));
+  a.commands("run 10\n");
+  b.commands("run 10\n");
+  const double diff = difference(a.gather(), b.gather());
+  EXPECT_GT(diff, 1.0e-7);
+  EXPECT_LT(diff, 1.0);
+}
+
+// kernels give the same result to round-off; that the named ones are used is in the log
+
+TEST(Pitfall, KernelsAreThoseThatWereAskedFor)
+{
+  std::vector<Run::State> reference;
+  for (const char *name : {"reference", "baseline", "auto"}) {
+    Run run;
+    run.commands(soft_body(std::string("kernels ") + name, "log kernels.log\nrun 40\nlog none\n"));
+    const auto found = run.gather();
+    if (reference.empty()) reference = found;
+    EXPECT_LT(difference(reference, found), 1.0e-12) << name;
+    if (run.lmp->comm->me) continue;
+    std::string text;
+    char line[1024];
+    FILE *file = fopen("kernels.log", "r");
+    ASSERT_NE(file, nullptr);
+    while (fgets(line, sizeof(line), file)) text += line;
+    fclose(file);
+    remove("kernels.log");
+    if (name != std::string("auto"))
+      EXPECT_NE(text.find(std::string(name) + " kernels"), std::string::npos) << text;
+    EXPECT_NE(text.find(" kernels, "), std::string::npos) << text;
+  }
+}
+
+// points on a rank boundary created on both ranks
+
+TEST(Pitfall, PointsOnRankBoundariesExistOnce)
+{
+  // 12 divides by 1, 2, 3 and 4: rank boundaries go through points in all directions
+  Run run;
+  run.commands("units lj\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
+               "region box block 0 12 0 12 0 12\ncreate_box 1 box\n"
+               "fix grid all mpm 1.0 origin 0.5 0.5 0.5\ncreate_points 1 box ppc 1\n"
+               "fix soft all mpm/material density 2.0 neohookean 10.0 0.3\n"
+               "velocity all set 1.0 1.0 1.0\ntimestep 0.125\nthermo 1000\nrun 0\n");
+  for (int k = 0; k < 3; k++) {
+    const auto points = run.gather();
+    ASSERT_EQ(points.size(), 1728u);
+    std::set<double> tags;
+    double mass = 0.0;
+    for (const auto &p : points) {
+      tags.insert(p.tag);
+      mass += p.mass;
+    }
+    EXPECT_EQ(tags.size(), 1728u);
+    EXPECT_DOUBLE_EQ(mass, 2.0 * 1728.0);
+    EXPECT_EQ(run.lmp->atom->natoms, 1728);
+    run.commands("run 8\n");    // one cell further, on the boundaries again
+  }
+}
+
+// node forces and reactions counted nodes of other ranks, too: 1000 N became 1907 N on 2 ranks
+
+TEST(Pitfall, ReactionsCountEachNodeOnce)
+{
+  const std::string scene =
+      "units lj\nboundary f f f\natom_style mpm\nneighbor 0.3 bin\n"
+      "region box block 0 8 0 8 0 8\ncreate_box 1 box\nfix grid all mpm 1.0\n"
+      "region body block 1 7 1 7 0 4\ncreate_points 1 region body ppc 2\n"
+      "fix soft all mpm/material density 1.0 neohookean 100.0 0.3\n"
+      "fix floor all mpm/boundary zlo slip\nfix g all gravity 1.0 vector 0 0 -1\n"
+      "timestep 0.02\nthermo 1000\n";
+  const double weight = 6.0 * 6.0 * 4.0, dt = 0.02;
+  Run run, serial(MPI_COMM_SELF);
+  run.commands(scene + "run 0\n");
+  serial.commands(scene + "run 0\n");
+  double before = 0.0;
+  for (int step = 1; step <= 5; step++) {
+    run.commands("run 1\n");
+    serial.commands("run 1\n");
+    const double reaction = run.fix_vector("floor", 3)[2];
+    EXPECT_NEAR(reaction, serial.fix_vector("floor", 3)[2], 1.0e-10 * weight);
+
+    // the rest of the momentum balance: weight and reaction are all that acts
+    const double after = momentum(run.gather(), 2);
+    EXPECT_NEAR(std::abs((after - before) / dt + weight), std::abs(reaction), 1.0e-9 * weight);
+    EXPECT_GT(std::abs(reaction), 0.01 * weight);
+    before = after;
+  }
+}
+
+// no contact between points of different ranks
+
+TEST(Pitfall, BodiesOfDifferentRanksCollide)
+{
+  Run run;
+  run.commands("units lj\nboundary f f f\natom_style mpm\nneighbor 0.3 bin\n"
+               "region box block 0 16 0 4 0 4\nprocessors * 1 1\ncreate_box 2 box\n"
+               "fix grid all mpm 1.0\nregion one block 5 7 1 3 1 3\nregion two block 9 11 1 3 1 3\n"
+               "create_points 1 region one ppc 2\ncreate_points 2 region two ppc 2\n"
+               "fix soft all mpm/material density 1.0 neohookean 10.0 0.3\n"
+               "group one type 1\ngroup two type 2\n"
+               "velocity one set 0.5 0 0\nvelocity two set -0.5 0 0\n"
+               "timestep 0.05\nthermo 1000\nrun 200\n");
+  double p[2] = {0.0, 0.0};
+  for (const auto &point : run.gather()) p[(int) point.type - 1] += point.mass * point.v[0];
+  EXPECT_LT(p[0], -0.5);    // was 4: they have bounced
+  EXPECT_GT(p[1], 0.5);
+  EXPECT_NEAR(p[0] + p[1], 0.0, 1.0e-12);
+}
+
+// per-point state that did not migrate: the affine term and history were lost at rank boundaries
+
+TEST(Pitfall, AllStateMigrates)
+{
+  // the body yields while it passes through all ranks, and spins: affine matrix and history matter
+  const std::string scene =
+      "units lj\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
+      "region box block 0 12 0 6 0 6\nprocessors * 1 1\ncreate_box 1 box\nfix grid all mpm 1.0\n"
+      "region body block 1 4 1.5 4 2 4\ncreate_points 1 region body ppc 2\n"
+      "fix metal all mpm/material density 1.0 eos linear 10.0 "
+      "strength j2 5.0 0.2 hardening linear 1.0\n"
+      "velocity all set 1.5 0 0\nvelocity all ramp vy -1.0 1.0 x 1 4 sum yes\n"
+      "velocity all ramp vz 0.5 -0.5 y 1 4 sum yes\n"
+      "compute h all mpm/atom eplastic\ncompute sum all reduce sum c_h\ncompute max all reduce max c_h\n"
+      "timestep 0.05\nthermo 1000\nthermo_style custom step c_sum c_max\nrun 160\n";
+  Run run, serial(MPI_COMM_SELF);
+  run.commands(scene);
+  serial.commands(scene);
+  EXPECT_LT(difference(run.gather(), serial.gather()), 1.0e-12);
+  const double sum = serial.evaluate("c_sum");
+  EXPECT_GT(sum, 1.0);
+  EXPECT_NEAR(run.evaluate("c_sum"), sum, 1.0e-11 * sum);
+  EXPECT_NEAR(run.evaluate("c_max"), serial.evaluate("c_max"), 1.0e-11);
+}
+
+// memory followed the box, not the body
+
+TEST(Pitfall, EmptyCellsCostNoMemory)
+{
+  double bytes[2], blocks[2];
+  for (int k = 0; k < 2; k++) {
+    const int size = k ? 512 : 8;
+    Run run(MPI_COMM_SELF);
+    run.commands(fmt::format(
+        "units lj\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
+        "region box block 0 {0} 0 {0} 0 {0}\ncreate_box 1 box\nfix grid all mpm 1.0\n"
+        "region body block 2 6 2 6 2 6\ncreate_points 1 region body ppc 2\n"
+        "fix soft all mpm/material density 1.0 neohookean 10.0 0.3\n"
+        "velocity all ramp vy -0.1 0.1 x 2 6\ntimestep 0.05\nthermo 1000\nrun 20\n", size));
+    auto *grid = run.lmp->modify->get_fix_by_id("grid");
+    bytes[k] = grid->memory_usage();
+    blocks[k] = grid->compute_vector(1);
+  }
+  EXPECT_EQ(blocks[0], blocks[1]);
+  EXPECT_EQ(bytes[0], bytes[1]);
+  EXPECT_LT(blocks[1], 28);
+}
+
+// ghost exchange in six phases: here two ranks that share blocks send them to each other once for
+// each sum over ranks, and a step of USL has one sum
+
+TEST(Pitfall, SharedNodesTravelOncePerSum)
+{
+  const struct {
+    const char *options;
+    double reals;    // of a node that travel in one step
+  } cases[] = {{"transfer apic", 4}, {"transfer flip 0.99", 8}, {"transfer apic scheme musl", 8},
+               {"transfer apic scheme usf", 8}};
+  for (const auto &c : cases) {
+    Run run;
+    run.commands("units lj\nboundary f f f\natom_style mpm\nneighbor 0.3 bin\n"
+                 "region box block 0 12 0 12 0 12\ncreate_box 1 box\n"
+                 "fix grid all mpm 1.0 " + std::string(c.options) + "\n"
+                 "region body block 2 10 2 10 2 10\ncreate_points 1 region body ppc 2\n"
+                 "fix soft all mpm/material density 1.0 neohookean 10.0 0.3\n"
+                 "timestep 0.05\nthermo 1000\nrun 10\n");
+    auto *fix = dynamic_cast<FixMPM *>(run.lmp->modify->get_fix_by_id("grid"));
+
+    // blocks that several ranks have, counted independently of the code under test
+    std::vector<uint64_t> mine, all;
+    for (const auto &block : fix->grid->blocks)
+      mine.push_back(MPM_NS::Grid::block_key(block));
+    const int nprocs = run.lmp->comm->nprocs;
+    int n = mine.size();
+    std::vector<int> counts(nprocs), displs(nprocs, 0);
+    MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, run.lmp->world);
+    for (int p = 1; p < nprocs; p++) displs[p] = displs[p - 1] + counts[p - 1];
+    all.resize(displs.back() + counts.back());
+    MPI_Allgatherv(mine.data(), n, MPI_DOUBLE, all.data(), counts.data(), displs.data(), MPI_UINT64_T,
+                   run.lmp->world);
+    std::map<uint64_t, double> sharers;
+    for (uint64_t key : all) sharers[key] += 1.0;
+    double messages = 0.0;
+    for (const auto &s : sharers) messages += s.second * (s.second - 1.0);
+    const double bytes = messages * MPM_NS::NODES_PER_BLOCK * c.reals * sizeof(double);
+    EXPECT_EQ(fix->compute_vector(5), bytes) << c.options;
+    EXPECT_EQ(bytes > 0.0, nprocs > 1);
+  }
+}
+
+// order of points in memory and checks for drift: what neigh_modify says must not matter
+
+TEST(Pitfall, RareNeighborListsLoseNoPoint)
+{
+  Run usual, rare;
+  usual.commands(soft_body("", "run 100\n"));
+  rare.commands(soft_body("", "neigh_modify every 10 delay 10 check no\nrun 100\n"));
+  EXPECT_LT(difference(usual.gather(), rare.gather()), 1.0e-12);
+}

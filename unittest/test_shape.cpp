@@ -1,0 +1,202 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// labels: unit
+
+// Identities of the B-splines, at random positions.
+//
+// Tolerance: a weight is computed with a few roundings of numbers that are at most 1, and sums have
+// at most four terms with distances up to 2, so errors are a small multiple of 2.2e-16; 1e-14 leaves
+// a factor of about ten and is far below any mistake in a coefficient.
+
+#include "mpm_shape.h"
+
+#include "gtest/gtest.h"
+
+#include <cmath>
+#include <random>
+
+using namespace MPM_NS;
+
+static constexpr double TOLERANCE = 1.0e-14;
+static constexpr int POSITIONS = 10000;
+
+/** Calls check(position, base node, fraction) at random positions and at the ends of an interval. */
+template <class Spline, class Check> static void at_positions(Check check)
+{
+  std::mt19937 random(4711);
+  std::uniform_real_distribution<double> uniform(-8.0, 8.0);
+  for (int n = 0; n < POSITIONS; n++) {
+    const double x = n == 0 ? Spline::shift : (n == 1 ? std::nextafter(1.0, 0.0) : uniform(random));
+    const double base = std::floor(x - Spline::shift);
+    check(x, base, x - Spline::shift - base);
+  }
+}
+
+/** Value of the B-spline of the order at distance x from its node, from its textbook definition as
+ *  the centred average of the spline one order lower. */
+static double bspline(int order, double x)
+{
+  if (order == 0) return x >= -0.5 && x < 0.5 ? 1.0 : 0.0;
+  const double half = 0.5 * (order + 1);
+  return ((half + x) * bspline(order - 1, x + 0.5) + (half - x) * bspline(order - 1, x - 0.5)) /
+      order;
+}
+
+template <class T> class Shape : public ::testing::Test {
+};
+template <int N> struct Order {
+  static constexpr int value = N;
+};
+using Orders = ::testing::Types<Order<1>, Order<2>, Order<3>>;
+
+struct OrderName {
+  template <class T> static std::string GetName(int)
+  {
+    return T::value == 1 ? "linear" : (T::value == 2 ? "quadratic" : "cubic");
+  }
+};
+TYPED_TEST_SUITE(Shape, Orders, OrderName);
+
+TYPED_TEST(Shape, IsTheBSpline)
+{
+  using Spline = BSpline<TypeParam::value>;
+  at_positions<Spline>([](double x, double base, double f) {
+    double w[4];
+    Spline::weights(f, w);
+    for (int i = 0; i < Spline::nodes; i++)
+      ASSERT_NEAR(w[i], bspline(TypeParam::value, x - (base + i)), TOLERANCE) << "x = " << x;
+  });
+}
+
+TYPED_TEST(Shape, BaseIsTheFirstNodeInReach)
+{
+  using Spline = BSpline<TypeParam::value>;
+  at_positions<Spline>([](double x, double base, double f) {
+    ASSERT_GE(f, 0.0);
+    ASSERT_LT(f, 1.0);
+    double w[4];
+    Spline::weights(f, w);
+    for (int i = 0; i < Spline::nodes; i++) ASSERT_GE(w[i], 0.0) << "x = " << x;
+    ASSERT_LE(x - base, 0.5 * (TypeParam::value + 1) + TOLERANCE);
+  });
+}
+
+TYPED_TEST(Shape, PartitionOfUnity)
+{
+  using Spline = BSpline<TypeParam::value>;
+  at_positions<Spline>([](double x, double, double f) {
+    double w[4], dw[4], sum = 0.0, dsum = 0.0;
+    Spline::weights(f, w);
+    Spline::gradients(f, dw);
+    for (int i = 0; i < Spline::nodes; i++) {
+      sum += w[i];
+      dsum += dw[i];
+    }
+    ASSERT_NEAR(sum, 1.0, TOLERANCE) << "x = " << x;
+    ASSERT_NEAR(dsum, 0.0, TOLERANCE) << "x = " << x;
+  });
+}
+
+TYPED_TEST(Shape, LinearCompleteness)
+{
+  using Spline = BSpline<TypeParam::value>;
+  at_positions<Spline>([](double x, double, double f) {
+    double w[4], dw[4], sum = 0.0, dsum = 0.0;
+    Spline::weights(f, w);
+    Spline::gradients(f, dw);
+    for (int i = 0; i < Spline::nodes; i++) {
+      const double distance = i - Spline::shift - f;
+      sum += w[i] * distance;
+      dsum += dw[i] * distance;
+    }
+    ASSERT_NEAR(sum, 0.0, TOLERANCE) << "x = " << x;
+    ASSERT_NEAR(dsum, 1.0, TOLERANCE) << "x = " << x;
+  });
+}
+
+TYPED_TEST(Shape, SecondMoment)
+{
+  using Spline = BSpline<TypeParam::value>;
+  at_positions<Spline>([](double x, double, double f) {
+    double w[4], moment = 0.0;
+    Spline::weights(f, w);
+    for (int i = 0; i < Spline::nodes; i++) {
+      const double distance = i - Spline::shift - f;
+      moment += w[i] * distance * distance;
+    }
+    // 1/4 for quadratic, 1/3 for cubic; that of the linear function depends on the position
+    const double exact = TypeParam::value == 1 ? f * (1.0 - f) : 1.0 / Spline::inv_moment;
+    ASSERT_NEAR(moment, exact, TOLERANCE) << "x = " << x;
+  });
+  const double exact[] = {0.0, 0.0, 4.0, 3.0};
+  EXPECT_EQ(Spline::inv_moment, exact[TypeParam::value]);
+}
+
+TYPED_TEST(Shape, GradientIsTheDerivative)
+{
+  using Spline = BSpline<TypeParam::value>;
+  at_positions<Spline>([](double x, double, double f) {
+    // Central differences with the step d are exact up to d^2/6 times the third derivative (at most
+    // 3, cubic only) and the rounding error 1e-16 / d.
+    const double d = 1.0e-5;
+    double low[4], high[4], dw[4];
+    Spline::weights(f - d, low);
+    Spline::weights(f + d, high);
+    Spline::gradients(f, dw);
+    for (int i = 0; i < Spline::nodes; i++)
+      ASSERT_NEAR(dw[i], (high[i] - low[i]) / (2.0 * d), 2.0e-10) << "x = " << x;
+  });
+}
+
+TYPED_TEST(Shape, Symmetry)
+{
+  using Spline = BSpline<TypeParam::value>;
+  at_positions<Spline>([](double x, double, double f) {
+    double w[4], mirrored[4], dw[4], dmirrored[4];
+    Spline::weights(f, w);
+    Spline::weights(1.0 - f, mirrored);
+    Spline::gradients(f, dw);
+    Spline::gradients(1.0 - f, dmirrored);
+    for (int i = 0; i < Spline::nodes; i++) {
+      ASSERT_NEAR(w[i], mirrored[Spline::nodes - 1 - i], TOLERANCE) << "x = " << x;
+      ASSERT_NEAR(dw[i], -dmirrored[Spline::nodes - 1 - i], TOLERANCE) << "x = " << x;
+    }
+  });
+}
+
+TYPED_TEST(Shape, ContinuousFromIntervalToInterval)
+{
+  using Spline = BSpline<TypeParam::value>;
+  double left[4], right[4], dleft[4], dright[4];
+  Spline::weights(1.0, left);
+  Spline::weights(0.0, right);
+  Spline::gradients(1.0, dleft);
+  Spline::gradients(0.0, dright);
+  EXPECT_EQ(left[0], 0.0);
+  EXPECT_EQ(right[Spline::nodes - 1], 0.0);
+  for (int i = 1; i < Spline::nodes; i++) {
+    EXPECT_NEAR(left[i], right[i - 1], TOLERANCE);
+    if (TypeParam::value > 1) { EXPECT_NEAR(dleft[i], dright[i - 1], TOLERANCE); }
+  }
+}
+
+TYPED_TEST(Shape, IsConstexpr)
+{
+  using Spline = BSpline<TypeParam::value>;
+  struct Sum {
+    static constexpr double at(double f)
+    {
+      double w[4] = {}, sum = 0.0;
+      Spline::weights(f, w);
+      for (int i = 0; i < Spline::nodes; i++) sum += w[i];
+      return sum;
+    }
+  };
+  static_assert(Sum::at(0.25) > 0.999 && Sum::at(0.25) < 1.001, "weights at compile time");
+}
