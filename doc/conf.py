@@ -57,7 +57,7 @@ def link_to_lammps_manual(app, env, node, contnode):
     if node.get("refdomain") != "std" or node.get("reftype") != "doc":
         return None
     page = os.path.basename(node["reftarget"])
-    if "mpm" in page.lower():
+    if "mpm" in page.lower() or page == "create_points":
         return None    # would be ours: let Sphinx complain
     link = nodes.reference("", "", internal=False, refuri="%s/%s.html" % (LAMMPS_MANUAL, page))
     link += contnode

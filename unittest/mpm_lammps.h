@@ -58,8 +58,21 @@ class Run {
   Run(const Run &) = delete;
   Run &operator=(const Run &) = delete;
 
-  /** Execute lines of input; && is not understood, & continues a line as in a script. */
-  void commands(const std::string &text) { lmp->input->commands_string(text); }
+  /** Execute lines of input; & at the end of a line continues it as in a script. */
+  void commands(const std::string &text)
+  {
+    std::string line;
+    for (std::size_t at = 0, end; at < text.size(); at = end + 1) {
+      end = std::min(text.find('\n', at), text.size());
+      line += text.substr(at, end - at);
+      if (!line.empty() && line.back() == '&') {
+        line.pop_back();
+        continue;
+      }
+      if (!line.empty()) lmp->input->one(line);
+      line.clear();
+    }
+  }
 
   double *fix_vector(const std::string &id, int n)
   {
@@ -231,6 +244,9 @@ class Run {
   std::vector<std::array<double, 3>> references;
   std::function<void(double **)> callback;
 };
+
+/** Name for use inside tests, where ::testing::Test has a member Run. */
+using Scene = Run;
 
 /** Text with the arguments of printf in it. */
 template <class... Args> std::string strprintf(const char *text, Args... args)

@@ -489,7 +489,34 @@ TEST(CreatePoints, PeriodicFaceRounding)
         EXPECT_GT(r2, 0.0099);
       }
     }
+
+    // in a fixed box a site is in or out, and all that are in are made
+    Scene fixed;
+    fixed.commands("units si\nboundary f f f\natom_style mpm\n"
+                   "region box block 0 1.3 0 0.7 0 0.1\ncreate_box 1 box");
+    fixed.commands(fmt::format("fix grid all mpm 0.1 origin {0:.17g} {0:.17g} {0:.17g}\n"
+                               "create_points 1 box ppc 1", origin));
+    points = fixed.atoms();
+    std::size_t expected = 1;
+    for (int d = 0; d < 3; d++) {
+      const double length = fixed.lmp->domain->boxhi[d];
+      std::size_t n = 0;
+      for (int s = -100; s < 200; s++) {
+        const double x = origin + (s + 0.5) * 0.1;
+        n += x >= 0.0 && x < length;
+      }
+      expected *= n;
+      for (const auto &p : points) EXPECT_TRUE(p.x[d] >= 0.0 && p.x[d] < length) << p.x[d];
+    }
+    EXPECT_EQ(points.size(), expected) << origin;
   }
+
+  // a spacing that divides the box up to 5e-7
+  Scene scene;
+  scene.commands("units si\natom_style mpm\nregion box block 0 1.0000005 0 1.0000005 0 1.0000005\n"
+                 "create_box 1 box\nfix grid all mpm 0.10000005 origin 0.05 0.05 0.05\n"
+                 "create_points 1 box spacing 0.1");
+  EXPECT_EQ(scene.atoms().size(), 1000u);
 }
 
 // ---------------------------------------------------------------- jitter
@@ -601,11 +628,15 @@ TEST(CreatePoints, Overlap)
 
 TEST(CreatePoints, OverlapAcrossPeriodicFaceAndRanks)
 {
-  Scene scene;
-  scene.commands("units si\natom_style mpm\nregion box block 0 1 0 1 0 1\ncreate_box 2 box\n"
-                 "fix grid all mpm 0.125 origin 0.0625 0.0625 0.0625\n"
-                 "create_points 1 box ppc 1\ndisplace_atoms all move -0.06 0.06 0.06");
-  EXPECT_THAT(scene.error("create_points 2 box ppc 1"), HasSubstr("512 existing"));
+  // sites on the faces of the box, and sites whose cells are cut by them
+  for (double origin : {0.0625, -0.08, 0.08}) {
+    Scene scene;
+    scene.commands("units si\natom_style mpm\nregion box block 0 1 0 1 0 1\ncreate_box 2 box");
+    scene.commands(fmt::format("fix grid all mpm 0.125 origin {0} {0} {0}\n"
+                               "create_points 1 box ppc 1\ndisplace_atoms all move -0.06 0.06 0.06",
+                               origin));
+    EXPECT_THAT(scene.error("create_points 2 box ppc 1"), HasSubstr("512 existing")) << origin;
+  }
 
   // atoms that are no material points are not in the way
   Scene atoms;
@@ -1136,8 +1167,10 @@ TEST(AtomStyle, GrainsNextToPoints)
   lines.replace(lines.find("atom_style mpm"), 14, "atom_style hybrid sphere mpm");
   scene.commands("lattice none 1.0");
   scene.commands(lines);
-  scene.commands("create_atoms 2 single 3.3 3.3 3.3 units box\nset type 2 diameter 0.4\n"
-                 "set type 2 density 2.0");
+  scene.commands("create_atoms 2 single 3.3 3.3 3.3 units box");
+  for (const auto &p : scene.atoms())
+    if (p.type == 2) EXPECT_DOUBLE_EQ(p.mass, M_PI / 6.0);    // of atom style sphere
+  scene.commands("set type 2 diameter 0.4\nset type 2 density 2.0");
   for (const auto &p : scene.atoms()) {
     if (p.type == 2) {
       EXPECT_EQ(p.volume0, 0.0);

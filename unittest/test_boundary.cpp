@@ -146,6 +146,8 @@ TEST_P(WallVelocity, ExactAtTheWall)
 TEST_P(WallVelocity, LinearFieldsArePreserved)
 {
   const auto &c = GetParam();
+  if (std::string(c.wall).find("friction") != std::string::npos)
+    GTEST_SKIP() << "without a normal impulse there is no friction";
   Sim run;
   run.commands(scene(c));
   auto field = [&](const double *x, double *v, double g[3][3]) {
@@ -265,11 +267,13 @@ run 0
   double largest = 0.0;
   for (int step = 0; step < 40; step++) {
     run.commands("run 1\n");
-    double *force = run.fix_vector("w", 3);
-    for (int d = 0; d < 3; d++) {
-      expected[d] += 0.03 * (mass * 0.3 * g[d] / length - force[d]);
-      largest = std::max(largest, std::abs(force[d]));
-    }
+    for (auto *fix : run.lmp->modify->get_fix_by_style("^mpm/boundary$"))
+      for (int d = 0; d < 3; d++) {
+        expected[d] -= 0.03 * fix->compute_vector(d);
+        if (fix->id == std::string("w"))
+          largest = std::max(largest, std::abs(fix->compute_vector(d)));
+      }
+    for (int d = 0; d < 3; d++) expected[d] += 0.03 * mass * 0.3 * g[d] / length;
   }
   momentum(run, p);
   for (int d = 0; d < 3; d++) EXPECT_NEAR(p[d], expected[d], 1.0e-12 * mass);
@@ -286,16 +290,15 @@ INSTANTIATE_TEST_SUITE_P(
                       "transfer pic shape linear|fix w all mpm/boundary xlo ylo separate",
                       "shape cubic scheme musl|fix w all mpm/boundary xlo ylo separate friction 0.5",
                       "transfer flip 1.0 scheme usf|fix w all mpm/boundary ylo stick",
-                      "origin 0.3 0.3 0.3|fix w all mpm/boundary xlo ylo separate friction 0.3",
-                      "transfer apic|fix w all mpm/boundary region ball stick",
-                      "transfer apic|fix w all mpm/boundary region ball slip friction 0.1",
-                      "transfer flip 1.0|fix w all mpm/boundary region ball separate"));
+                      "|fix w all mpm/boundary xlo ylo separate friction 0.3\nfix w2 all mpm/boundary region ball slip",
+                      "transfer apic|fix w all mpm/boundary region ball stick\nfix w2 all mpm/boundary ylo slip",
+                      "transfer apic|fix w all mpm/boundary region ball slip friction 0.1\nfix w2 all mpm/boundary ylo slip",
+                      "transfer flip 1.0|fix w all mpm/boundary region ball separate\nfix w2 all mpm/boundary ylo slip"));
 
-TEST(Work, IsTheKineticEnergyTaken)
+TEST(Work, LedgerAndRestart)
 {
   // uniform motion into a wall: all that happens in the first step is the projection
-  Sim run;
-  run.commands(R"(
+  const std::string scene = R"(
 units lj
 boundary p f p
 atom_style mpm
@@ -306,38 +309,47 @@ fix grid all mpm 1.0
 region body block 0 4 0 4 0 4
 create_points 1 region body ppc 2
 fix m all mpm/material density 1.0 neohookean 10.0 0.3
-fix w all mpm/boundary ylo slip
+fix w all mpm/boundary ylo slip velocity 0 MPM_V 0
 velocity all set 0 -0.5 0
 timestep 0.01
 compute e all mpm/energy
 thermo_style custom step c_e c_e[*]
 run 1
-)");
-  // nodes at distance j h: mass over area, quadratic splines and points at 1/4, 3/4, ...
-  // image 1/64, plane 1/2 - 1/64... by symmetry image + inside is one full node
+)";
+  // nodes at distance j h: mass over area, quadratic splines and points at 1/4, 3/4, ...;
+  // the image and the first node inside have the mass of one full node
   const double image = 0.5 * (0.25 * 0.25) * 0.5, plane = 0.5, inside = 1.0 - image, area = 16.0;
-  const double w = (inside * -0.5 - image * -0.5) / (inside + image);
-  const double expected = area * (-0.5 * plane * 0.25 + 0.5 * (inside + image) * (w * w - 0.25));
-  auto *fix = run.lmp->modify->get_fix_by_id("w");
-  EXPECT_NEAR(fix->compute_scalar(), expected, 1.0e-12);
-  double p = area * (plane * 0.5 + 2.0 * inside * image / (inside + image));    // V = 0
-  EXPECT_NEAR(fix->compute_vector(1), -p / 0.01, 1.0e-9 * p / 0.01);
-  EXPECT_EQ(fix->compute_vector(0), 0.0);
+  for (double V : {0.0, 0.3}) {
+    Sim run;
+    run.commands(replaced(scene, "MPM_V", std::to_string(V)));
+    const double u = -0.5 - V, w = (inside * u - image * u) / (inside + image);
+    const double v1 = V + w, v2 = V - w;
+    const double kinetic = 0.5 * area * (plane * (V * V - 0.25) + inside * (v1 * v1 - 0.25) +
+                                         image * (v2 * v2 - 0.25));
+    const double p = -area * u * (plane + 4.0 * inside * image / (inside + image));
+    auto *fix = run.lmp->modify->get_fix_by_id("w");
+    double mine = field_of(run)->ledger.boundary, ledger;
+    MPI_Allreduce(&mine, &ledger, 1, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+    EXPECT_NEAR(ledger, kinetic, 1.0e-12);
+    EXPECT_NEAR(fix->compute_vector(1), -p / 0.01, 1.0e-12 * p / 0.01);
+    EXPECT_EQ(fix->compute_vector(0), 0.0);
+    EXPECT_NEAR(fix->compute_scalar(), p * V, 1.0e-12);    // a wall at rest does no work
 
-  // the work goes on after a restart
-  const double before = fix->compute_scalar();
-  run.commands("write_restart boundary_test.restart\n");
-  run.commands("clear\n");
-  run.commands(R"(
+    // the work goes on after a restart
+    const double before = fix->compute_scalar();
+    run.commands("write_restart boundary_test.restart\n");
+    run.commands("clear\n");
+    run.commands(replaced(R"(
 read_restart boundary_test.restart
 fix grid all mpm 1.0
 fix m all mpm/material density 1.0 neohookean 10.0 0.3
-fix w all mpm/boundary ylo slip
+fix w all mpm/boundary ylo slip velocity 0 MPM_V 0
 run 0
-)");
-  EXPECT_NEAR(run.lmp->modify->get_fix_by_id("w")->compute_scalar(), before, 1.0e-15);
-  MPI_Barrier(MPI_COMM_WORLD);
-  std::remove("boundary_test.restart");
+)", "MPM_V", std::to_string(V)));
+    EXPECT_NEAR(run.lmp->modify->get_fix_by_id("w")->compute_scalar(), before, 1.0e-15);
+    MPI_Barrier(MPI_COMM_WORLD);
+    std::remove("boundary_test.restart");
+  }
 }
 
 /* ----------------------------------------------------------------------
@@ -361,7 +373,7 @@ region body block 0.5 1.0 0 0.25 -0.1 0.1
 create_points 1 region body ppc 2
 fix m all mpm/material density 1000 neohookean 4.2e6 0.4
 fix w all mpm/boundary ylo KIND friction MU
-variable g equal 9.81*min(1,time/0.05)
+variable g equal 9.81*((time<0.05)*time/0.05+(time>=0.05))
 fix g all gravity v_g vector 0.5 -0.86602540378443865 0
 fix step all mpm/dt 0.4
 variable x equal xcm(all,x)
@@ -372,20 +384,16 @@ variable v equal vcm(all,x)
 
 TEST_P(Incline, Acceleration)
 {
-  for (const char *kind : {"separate", "slip"}) {
-    Sim run;
-    run.commands(scene(GetParam().first, kind) + "run 0\n");
-    run.commands("run 2000\n");
-    const double v0 = run.variable("v"), t0 = run.evaluate("time");
-    run.commands("run 6000\n");
-    const double v1 = run.variable("v"), t1 = run.evaluate("time");
-    const double a = (v1 - v0) / (t1 - t0);
-    RecordProperty(kind, std::to_string(a));
-    if (run.lmp->comm->me == 0)
-      printf("  friction %g %s: a = %.5f, exact %.5f\n", GetParam().first, kind, a,
-             GetParam().second);
-    EXPECT_NEAR(a, GetParam().second, 0.005 * GetParam().second);
-  }
+  Sim run;
+  run.commands(scene(GetParam().first, "separate") + "run 0\n");
+  run.commands("run 400\n");
+  const double v0 = run.variable("v"), t0 = run.evaluate("time");
+  run.commands("run 4000\n");
+  const double v1 = run.variable("v"), t1 = run.evaluate("time");
+  const double a = (v1 - v0) / (t1 - t0);
+  if (run.lmp->comm->me == 0)
+    printf("  friction %g: a = %.5f, exact %.5f\n", GetParam().first, a, GetParam().second);
+  EXPECT_NEAR(a, GetParam().second, 0.01 * GetParam().second);
 }
 
 INSTANTIATE_TEST_SUITE_P(Friction, Incline,
@@ -508,7 +516,7 @@ TEST_P(Column, SettlementAndPeriod)
   run.commands(column_scene(GetParam(), "fix w all mpm/boundary xlo xhi ylo slip", 0.2) + "run 0\n");
   const double M = 1.0e6 * 0.7 / (1.3 * 0.4), c = std::sqrt(M / 1000.0);
   const double period = 4.0 / c, y0 = run.variable("y"), x0 = run.variable("yc");
-  const double settlement = 1000.0 / (2.0 * M), weight = 1000.0 * 0.2 * 0.2;
+  const double settlement = 1000.0 / (2.0 * M), weight = 1000.0 * 0.2;
 
   // displacement of the center: zero to twice its mean, in phase with the first harmonic
   double lowest = 0.0, at = 0.0, force_sum = 0.0;
@@ -678,8 +686,7 @@ run 0
   const double v = run.variable("v");
   if (run.lmp->comm->me == 0) printf("  mean velocity %.4f\n", v);
   EXPECT_NEAR(v, -0.1, 0.01);
-  EXPECT_LT(run.lmp->modify->get_fix_by_id("w")->compute_scalar(), 0.6);    // about m v^2/2 .. m v^2
-  EXPECT_GT(run.lmp->modify->get_fix_by_id("w")->compute_scalar(), 0.05);
+  EXPECT_NEAR(run.lmp->modify->get_fix_by_id("w")->compute_scalar(), -0.1 * 16.0 * v, 1.0e-6);
 }
 
 /* ----------------------------------------------------------------------
@@ -787,8 +794,9 @@ run 1
 
 TEST(Regions, NoTrailBehindAMovingBody)
 {
-  // pitfall 16: a stick region passes next to a body and must release all nodes it has left
-  const std::string scene = R"(
+  // pitfall 16: a floor moves along under a falling body; nodes that it has left fall freely
+  Sim run;
+  run.commands(R"(
 units lj
 dimension 2
 boundary f f p
@@ -797,26 +805,35 @@ neighbor 0.5 bin
 region box block 0 20 0 20 -0.5 0.5
 create_box 1 box
 fix grid all mpm 1.0
-region body block 8 12 8 12 -0.5 0.5
+region body block 2 18 8 12 -0.5 0.5
 create_points 1 region body ppc 2
 fix m all mpm/material density 1.0 neohookean 10.0 0.3
 variable shift equal 2.0*time
-region pass block 6 14 6 14 INF INF move v_shift NULL NULL
-fix w all mpm/boundary region pass stick velocity NULL NULL NULL
+region pass block 1 6 4 8 INF INF move v_shift NULL NULL
+fix w all mpm/boundary region pass slip
+fix g all gravity 0.1 vector 0 -1 0
 timestep 0.05
-)";
-  Sim run;
-  run.commands(replaced(scene, " velocity NULL NULL NULL", "") + "run 0\n");
-  run.commands("run 250\n");    // the region is out of the box now, and the body was thrown after it
+run 0
+)");
+  run.commands("run 60\n");    // the region covers 7 to 12 now
   auto *field = field_of(run);
-  int held = 0, all;
+  int held = 0, under = 0;
   for (std::size_t b = 0; b < field->grid->blocks.size(); b++)
     for (int n = 0; n < 64; n++) {
+      int index[3];
+      field->grid->node_index(field->grid->blocks[b], n, index);
       const double *r = field->grid->record(b, n);
-      if (r[3] > 0.0 && r[0] == 0.0) held++;
+      if (r[3] <= 0.0) continue;
+      if (index[0] >= 8 && index[0] <= 11 && index[1] == 8) {    // not next to the sides
+        EXPECT_EQ(r[1], 0.0);
+        under++;
+      } else if (r[1] == 0.0 && (index[0] < 7 || index[0] > 11))
+        held++;
     }
-  MPI_Allreduce(&held, &all, 1, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
-  EXPECT_EQ(all, 0);
+  int mine[2] = {held, under}, all[2];
+  MPI_Allreduce(mine, all, 2, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
+  EXPECT_EQ(all[0], 0);
+  EXPECT_GE(all[1], 4);
 }
 
 /* ----------------------------------------------------------------------
@@ -984,7 +1001,7 @@ timestep 0.001
 )";
   const char *const bad[][2] = {
       {"fix w none mpm/boundary ylo slip", "use group all"},
-      {"fix w all mpm/boundary", "Missing argument|ecessary"},
+      {"fix w all mpm/boundary", "issing"},
       {"fix w all mpm/boundary ylo", "issing"},
       {"fix w all mpm/boundary top slip", "must be region or one or more of"},
       {"fix w all mpm/boundary ylo ylo slip", "twice"},
@@ -1032,6 +1049,17 @@ timestep 0.001
     }
     EXPECT_TRUE(found && !message.empty()) << b[0] << "\n gives: " << message;
   }
+}
+
+TEST(BadInput, FacesOffTheLattice)
+{
+  const std::string scene = "units lj\ndimension 2\nboundary f f p\natom_style mpm\n"
+                            "region box block 0 8.3 0 8 -0.5 0.5\ncreate_box 1 box\nfix grid all mpm 1.0\n"
+                            "create_points 1 box ppc 2\n"
+                            "fix m all mpm/material density 1.0 neohookean 10.0 0.3\ntimestep 0.001\n";
+  EXPECT_NE(error_of(scene + "fix w all mpm/boundary xhi slip\nrun 0\n").find("move the face to 8 or 9"),
+            std::string::npos);
+  EXPECT_EQ(error_of(scene + "fix w all mpm/boundary xlo yhi slip\nrun 1\n"), "");
 }
 
 TEST(BadInput, NarrowChannels)

@@ -33,7 +33,7 @@ struct Bar {
   int ppc = 2;
 };
 
-static void setup(Run &run, const Bar &bar)
+static void setup(Scene &run, const Bar &bar)
 {
   run.commands(strprintf("units si\n"
                          "dimension 2\n"
@@ -53,7 +53,7 @@ static void setup(Run &run, const Bar &bar)
   run.set_reference();
 }
 
-static void run_steps(Run &run, double dt, int n)
+static void run_steps(Scene &run, double dt, int n)
 {
   run.commands(strprintf("timestep %.17g\nrun %d\n", dt, n));
 }
@@ -88,7 +88,7 @@ class SinglePoint : public ::testing::TestWithParam<const char *> {
 
   void simulate(double dt)
   {
-    Run run;
+    Scene run;
     setup(run, {1.0, 0.0, 1.0, 0.0, 2.0,
                 std::string("shape linear transfer flip 1.0 scheme ") + GetParam(),
                 "fix wall all mpm/boundary xlo stick\nvelocity all set 0.1 0 0\n", 4.0 * PI * PI,
@@ -145,7 +145,7 @@ TEST_P(VibratingBar, TenPeriods)
 {
   const auto &c = GetParam();
   const double h = 25.0 / c.cells, v0 = 1.0e-3;    // small: the laws are linear there
-  Run run;
+  Scene run;
   setup(run, {h, 0.0, 25.0, 0.0, 25.0 + 4.0 * h, c.options, "fix wall all mpm/boundary xlo stick\n",
               100.0, "linear", c.ppc});
   ASSERT_EQ(run.n(), c.cells * c.ppc);
@@ -203,7 +203,7 @@ class Bars : public ::testing::TestWithParam<const char *> {
   void collide(const Impact &c)
   {
     const double h = 0.01;    // bar 1 from -1 to 0, then bar 2
-    Run run;
+    Scene run;
     setup(run, {h, -1.0, 0.0, -1.5, c.length2 + 0.5, GetParam()});
     run.commands(strprintf("region second block 0 %.17g INF INF INF INF\n"
                            "create_points 2 region second ppc 2 1\n"
@@ -283,7 +283,7 @@ struct Galilean {
 static Galilean galilean_bar(const std::string &options, int cells, double V)
 {
   const double A = 1.0e-4, h = 1.0 / cells, omega = 10.0 * PI;
-  Run run;
+  Scene run;
   setup(run, {h, 0.0, 1.0, -0.5, 6.5, options});
   for (int i = 0; i < run.n(); i++) {
     const double X = run.x()[i][0], strain = -A * PI * sin(PI * X);
@@ -363,7 +363,7 @@ TEST_P(Pulse, WaveSpeed)
   const double modulus = E * (1.0 - c.nu) / ((1.0 + c.nu) * (1.0 - 2.0 * c.nu));
   const double lambda = E * c.nu / ((1.0 + c.nu) * (1.0 - 2.0 * c.nu));
   const double speed = sqrt(modulus);
-  Run run;
+  Scene run;
   run.commands(strprintf("units si\ndimension 2\nboundary f f p\natom_style mpm\n"
                          "neighbor %.17g bin\nregion box block -0.2 3.2 0 %.17g -0.5 0.5\n"
                          "create_box 1 box\nfix grid all mpm %.17g %s\n"

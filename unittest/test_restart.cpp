@@ -21,6 +21,7 @@
 #include <cstring>
 
 using namespace MPM_TEST;
+using Lammps = MPM_TEST::Run;    // tests have a function Run
 
 static const std::string head = "units lj\nboundary p p f\natom_style mpm\nneighbor 0.3 bin\n"
                                 "region box block 0 8 0 8 0 8\ncreate_box 2 box\n";
@@ -64,20 +65,20 @@ class Restart : public ::testing::TestWithParam<std::string> {};
 TEST_P(Restart, ContinuesBitwise)
 {
   const std::string options = GetParam();
-  Run whole;
+  Lammps whole;
   whole.commands(head + "fix grid all mpm 1.0 " + options + "\n" + points + "unfix grid\n" +
                  fixes(options) + start + "restart 100 " + file_name() + "\nrun 200\n");
   auto expected = whole.gather();
   const double time = whole.lmp->update->atime +
       (whole.lmp->update->ntimestep - whole.lmp->update->atimestep) * whole.lmp->update->dt;
 
-  Run again;
+  Lammps again;
   again.commands("read_restart " + file_at(100) + "\nneighbor 0.3 bin\n" + fixes(options) +
                  "run 100\n");
   auto found = again.gather();
   ASSERT_EQ(expected.size(), found.size());
   EXPECT_EQ(again.lmp->update->ntimestep, 200);
-  EXPECT_EQ(0, memcmp(expected.data(), found.data(), found.size() * sizeof(Run::State)));
+  EXPECT_EQ(0, memcmp(expected.data(), found.data(), found.size() * sizeof(MPM_TEST::Run::State)));
   EXPECT_LT(difference(expected, found), 1.0e-300);
   EXPECT_EQ(time, again.lmp->update->atime +
             (again.lmp->update->ntimestep - again.lmp->update->atimestep) * again.lmp->update->dt);
@@ -85,7 +86,7 @@ TEST_P(Restart, ContinuesBitwise)
   // one rank reads the file of many
 
   MPI_Barrier(MPI_COMM_WORLD);
-  Run serial(MPI_COMM_SELF);
+  Lammps serial(MPI_COMM_SELF);
   serial.commands("read_restart " + file_at(100) + "\nneighbor 0.3 bin\n" + fixes(options) +
                   "run 100\n");
   EXPECT_LT(difference(expected, serial.gather()), 1.0e-11);
@@ -100,3 +101,105 @@ INSTANTIATE_TEST_SUITE_P(Options, Restart,
                          ::testing::Values("transfer apic", "shape linear transfer flip 0.99 scheme musl",
                                            "shape cubic transfer apic scheme musl",
                                            "transfer pic scheme usf"));
+
+// the write_restart command between runs, and a file of one rank read by many
+
+class RestartCommand : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(RestartCommand, ContinuesBitwiseAndOnOtherRanks)
+{
+  const std::string options = GetParam();
+  const std::string scene = head + "fix grid all mpm 1.0 " + options + "\n" + points +
+      "unfix grid\n" + fixes(options) + start;
+  int me, nprocs;
+  MPI_Comm_rank(MPI_COMM_WORLD, &me);
+  MPI_Comm_size(MPI_COMM_WORLD, &nprocs);
+  const std::string file = "mpm_command." + std::to_string(nprocs) + ".bin";
+  const std::string serial_file = "mpm_serial." + std::to_string(nprocs) + ".bin";
+  const std::string next = "\nneighbor 0.3 bin\n" + fixes(options) + "run 60\n";
+
+  Lammps whole;
+  whole.commands(scene + "run 70\nwrite_restart " + file + "\nrun 60\n");
+  const auto expected = whole.gather();
+  Lammps again;
+  again.commands("read_restart " + file + next);
+  const auto found = again.gather();
+  ASSERT_EQ(expected.size(), found.size());
+  EXPECT_EQ(0, memcmp(expected.data(), found.data(), found.size() * sizeof(MPM_TEST::Run::State)));
+
+  if (me == 0) {
+    Lammps serial(MPI_COMM_SELF);
+    serial.commands(scene + "run 70\nwrite_restart " + serial_file + "\n");
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  Lammps many;
+  many.commands("read_restart " + serial_file + next);
+  EXPECT_LT(difference(expected, many.gather()), 1.0e-11);
+
+  MPI_Barrier(MPI_COMM_WORLD);
+  if (me == 0)
+    for (const auto &name : {file, serial_file}) EXPECT_EQ(remove(name.c_str()), 0) << name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Options, RestartCommand,
+                         ::testing::Values("transfer apic", "shape cubic transfer flip 1.0 scheme usf"));
+
+// the state is more than positions and velocities: without a part of it the run goes on differently
+
+TEST(RestartState, AffineMatrixAndHistoryAreInTheFile)
+{
+  int nprocs, me;
+  MPI_Comm_rank(MPI_COMM_WORLD, &me);
+  MPI_Comm_size(MPI_COMM_WORLD, &nprocs);
+  const std::string file = "mpm_state." + std::to_string(nprocs) + ".bin";
+  Lammps whole;
+  whole.commands(head + "fix grid all mpm 1.0\n" + points + fixes("") +
+                 "velocity one set 0.6 0.35 -0.4\nvelocity two set -1.5 0.1 -1.0\n"
+                 "compute h two mpm/atom eplastic\ncompute sum two reduce sum c_h\n"
+                 "thermo_style custom step c_sum\nrun 100\nwrite_restart " + file + "\nrun 50\n");
+  const auto expected = whole.gather();
+  const double eplastic = whole.evaluate("c_sum");
+  EXPECT_GT(eplastic, 0.01);
+
+  // fixes of another ID or style do not get their state: that is what the comparison is about
+  for (const bool with_state : {true, false}) {
+    Lammps again;
+    std::string next = fixes("");
+    if (!with_state) next = replaced(replaced(next, "fix m2", "fix other"), "fix grid", "fix lattice");
+    again.commands("read_restart " + file + "\nneighbor 0.3 bin\n" + next +
+                   "compute h two mpm/atom eplastic\ncompute sum two reduce sum c_h\n"
+                   "thermo_style custom step c_sum\nrun 50\n");
+    if (with_state) {
+      EXPECT_EQ(difference(expected, again.gather()), 0.0);
+      EXPECT_DOUBLE_EQ(again.evaluate("c_sum"), eplastic);
+    } else {
+      EXPECT_GT(difference(expected, again.gather()), 1.0e-6);
+      EXPECT_GT(std::abs(again.evaluate("c_sum") - eplastic), 1.0e-6);
+    }
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  if (me == 0) remove(file.c_str());
+}
+
+// time and energies go on where they were
+
+TEST(RestartState, WorkIsInTheFile)
+{
+  int nprocs, me;
+  MPI_Comm_rank(MPI_COMM_WORLD, &me);
+  MPI_Comm_size(MPI_COMM_WORLD, &nprocs);
+  const std::string file = "mpm_work." + std::to_string(nprocs) + ".bin";
+  const std::string watch = "compute e all mpm/energy\nthermo_style custom step c_e[3]\n";
+  Lammps whole;
+  whole.commands(head + "fix grid all mpm 1.0\n" + points + fixes("") + watch +
+                 "velocity one set 0.6 0.35 -0.4\nvelocity two set -1.5 0.1 -1.0\nrun 100\n"
+                 "write_restart " + file + "\nrun 50\n");
+  const double plastic = whole.evaluate("c_e[3]");
+  EXPECT_GT(plastic, 1.0e-3);
+  Lammps again;
+  again.commands("read_restart " + file + "\nneighbor 0.3 bin\n" + fixes("") + watch + "run 50\n");
+  EXPECT_NEAR(again.evaluate("c_e[3]"), plastic, 1.0e-12 * plastic);
+  EXPECT_EQ(again.time(), whole.time());
+  MPI_Barrier(MPI_COMM_WORLD);
+  if (me == 0) remove(file.c_str());
+}

@@ -49,10 +49,8 @@ ComputeMPMEnergy::~ComputeMPMEnergy()
 
 void ComputeMPMEnergy::init()
 {
-  auto fields = modify->get_fix_by_style("^mpm$");
-  if (fields.empty())
+  if (modify->get_fix_by_style("^mpm$").empty())
     error->all(FLERR, Error::NOLASTLINE, "Compute {} of style mpm/energy requires a fix mpm", id);
-  for (auto *field : fields) dynamic_cast<FixMPM *>(field)->ledger_on = true;
 }
 
 /* ----------------------------------------------------------------------

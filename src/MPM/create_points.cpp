@@ -331,7 +331,6 @@ void CreatePoints::find_ranges()
       }
     } else {
       while (position(d, first) < boxlo) first++;
-      while (end > first && position(d, end - 1) >= boxhi) end--;
       while (position(d, end) < boxhi) end++;
     }
     box[d] = {first, std::max(end - first, (bigint) 0)};

@@ -41,7 +41,7 @@ DumpMPMGridVTK::DumpMPMGridVTK(LAMMPS *lmp, int narg, char **arg) :
   const bool series = strcmp(id, "WRITE_DUMP") != 0;
   const auto wrong = VTKFile::name_error(filename, "vtu", series);
   if (!wrong.empty()) error->all(FLERR, 4, "Dump mpm/grid/vtk {}", wrong);
-  if (series) collection.reset(new VTKCollection(VTKCollection::list_name(filename, id)));
+  if (series) collection.reset(new VTKCollection(VTKCollection::list_name(filename, id, ".grid")));
 
   fix_id = arg[5];
   find_field();

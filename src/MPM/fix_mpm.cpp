@@ -10,6 +10,7 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "compute.h"
 #include "domain.h"
 #include "error.h"
 #include "fix_mpm_material.h"
@@ -29,6 +30,9 @@
 using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace MPM_NS;
+
+// node numbers of an axis, and those of blocks, must fit into 21 bits with their sign
+static constexpr double MAX_NODE = 4.0e6;
 
 /* ----------------------------------------------------------------------
    fix ID group mpm H keyword value ...
@@ -182,6 +186,12 @@ void FixMPM::check_box()
     if (lattice.h > length * (1.0 + 1.0e-10))
       error->all(FLERR, "Fix mpm node spacing {} is larger than the box length {} along {}",
                  lattice.h, length, axis);
+    const double far = MAX(fabs(domain->boxlo[d] - lattice.origin[d]),
+                           fabs(domain->boxhi[d] - lattice.origin[d]));
+    if (!(far < MAX_NODE * lattice.h))
+      error->all(FLERR, "Fix mpm node spacing {} is too small for the box length {} along {}, or "
+                 "its origin {} is too far away: there can be {:.0f} nodes between them",
+                 lattice.h, length, axis, lattice.origin[d], MAX_NODE);
     lattice.periodic[d] = domain->periodicity[d] != 0;
     lattice.ncell[d] = MAX(1, (int) std::lround(length / lattice.h));
     if (lattice.periodic[d] && fabs(lattice.ncell[d] * lattice.h - length) > 1.0e-10 * length)
@@ -209,12 +219,15 @@ void FixMPM::init()
 {
   if (utils::strmatch(update->integrate_style, "^respa"))
     error->all(FLERR, "Fix mpm requires run_style verlet");
+  if (update->whichflag == 2)
+    error->all(FLERR, "Fix mpm cannot be used with minimize, which would move material points like "
+               "atoms: minimize before the fix is defined");
+  check_box();
   if (domain->box_change_size || domain->box_change_shape)
     error->all(FLERR, "Fix mpm requires a box of constant size and shape: remove the fix that "
                "changes it");
-  check_box();
 
-  ledger_on = false;    // compute mpm/energy asks for it in its init(), after this
+  ledger_on = !modify->get_compute_by_style("^mpm/energy$").empty();
 
   // all fields step together, driven by the first one
 
@@ -243,6 +256,13 @@ void FixMPM::init()
   batch_kernels = BatchKernels::select(isa.empty() ? nullptr : isa.c_str());
   if (!kernels || !batch_kernels)
     error->all(FLERR, "Fix mpm kernels {} cannot run on this CPU or were not compiled", isa);
+
+  // LAMMPS warns when the groups of two integrators overlap, but atoms of this group that are not
+  // material points may well be moved by others; check_integrators() looks at the points
+
+  time_integrate = 1;
+  for (auto *other : modify->get_fix_list())
+    if (other != this && other->time_integrate) time_integrate = 0;
 
   // points are kept in order of blocks and cells here
 
@@ -286,6 +306,11 @@ void FixMPM::setup(int)
 }
 
 /* ---------------------------------------------------------------------- */
+
+void FixMPM::setup_pre_exchange()
+{
+  check_inside_box();
+}
 
 void FixMPM::pre_exchange()
 {

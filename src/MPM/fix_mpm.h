@@ -56,6 +56,7 @@ class FixMPM : public Fix {
   ~FixMPM() override;
   int setmask() override;
   void init() override;
+  void setup_pre_exchange() override;
   void setup_pre_neighbor() override;
   void setup(int) override;
   void initial_integrate(int) override;
@@ -90,7 +91,7 @@ class FixMPM : public Fix {
   MPM_NS::Grid *grid;                           ///< node records: velocity and mass after the solve
   std::vector<FixMPMMaterial *> materials;      ///< all of them, set in init()
   double **C;                                   ///< [n][9] affine matrix, column-major; null: not APIC
-  bool ledger_on;                               ///< set by compute mpm/energy in its init()
+  bool ledger_on;                               ///< a compute mpm/energy exists; set in init()
   MPMLedger ledger;
 
   /** True when atom i is a material point of this field. */

@@ -88,7 +88,7 @@ struct RegionMotion : public Region {
 
 FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), region(nullptr), kind(STICK), friction(0.0), rotating(false),
-    motion_step(-1), work(0.0), dt_last(0.0), reaction_known(true), counting(false), gained(0.0)
+    motion_step(-1), work(0.0), dt_last(0.0), reaction_known(true), counting(false), kinetic(0.0)
 {
   if (igroup != 0)
     error->all(FLERR, 1, "Fix mpm/boundary acts on nodes, which have no group: use group all, and "
@@ -354,10 +354,14 @@ FixMPMBoundary::Face FixMPMBoundary::face_on_lattice(const FixMPM &field, int fa
   f.axis = face / 2;
   f.inward = face % 2 ? -1 : 1;
   const double x = face % 2 ? domain->boxhi[f.axis] : domain->boxlo[f.axis];
-  const double k = (x - field.lattice.origin[f.axis]) / field.lattice.h;
-  f.plane = (int) std::lround(k);
-  f.aligned = fabs(k - f.plane) < ON_SURFACE;
-  if (!f.aligned) f.plane = (int) (f.inward > 0 ? std::floor(k) : std::ceil(k));
+  const double h = field.lattice.h, origin = field.lattice.origin[f.axis];
+  f.plane = (int) std::lround((x - origin) / h);
+  const double plane_x = origin + f.plane * h;
+  if (fabs(x - plane_x) > ON_SURFACE * h)
+    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/boundary face {} at {} is not in a plane of nodes "
+               "of fix mpm {}: move the face to {} or {}, change spacing or origin of fix mpm, or "
+               "use a region", FACE_NAME[face], x, field.id, plane_x,
+               plane_x + (x > plane_x ? h : -h));
   return f;
 }
 
@@ -376,7 +380,7 @@ bool FixMPMBoundary::narrow(const std::vector<Face> &faces, int axis) const
 {
   const Face *lo = nullptr, *hi = nullptr;
   for (const auto &f : faces)
-    if (f.axis == axis && f.aligned) (f.inward > 0 ? lo : hi) = &f;
+    if (f.axis == axis) (f.inward > 0 ? lo : hi) = &f;
   return lo && hi && hi->plane - lo->plane < 3;
 }
 
@@ -394,7 +398,6 @@ void FixMPMBoundary::extend_topology(FixMPM &field)
 
   for (std::size_t ib = 0; ib < grid.blocks.size(); ib++)
     for (const auto &face : faces) {
-      if (!face.aligned) continue;
       int b[3] = {grid.blocks[ib].b[0], grid.blocks[ib].b[1], grid.blocks[ib].b[2]};
       const int first = std::max(b[face.axis] * grid.side, face.plane - DEPTH);
       const int last = std::min(b[face.axis] * grid.side + grid.side - 1, face.plane + DEPTH);
@@ -432,7 +435,7 @@ void FixMPMBoundary::topology_changed(FixMPM &field)
 }
 
 /* ----------------------------------------------------------------------
-   columns through the planes, and single nodes deep behind a plane or behind an unaligned face
+   columns through the planes, and single nodes deep behind a plane
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::list_face_nodes(FieldNodes &list)
@@ -442,11 +445,10 @@ void FixMPMBoundary::list_face_nodes(FieldNodes &list)
     const auto &block = grid.blocks[ib];
     for (std::size_t f = 0; f < list.faces.size(); f++) {
       const Face &face = list.faces[f];
-      const int last = face.aligned ? face.plane - face.inward * (DEPTH + 1) : face.plane;
+      const int last = face.plane - face.inward * (DEPTH + 1);
       const int lo = block.b[face.axis] * grid.side, hi = lo + grid.side - 1;
       const bool beyond = face.inward > 0 ? lo <= last : hi >= last;
-      const bool plane = face.aligned && face.plane >= lo && face.plane <= hi &&
-          !narrow(list.faces, face.axis);
+      const bool plane = face.plane >= lo && face.plane <= hi && !narrow(list.faces, face.axis);
       if (!beyond && !plane) continue;
       for (int n = 0; n < NODES_PER_BLOCK; n++) {
         if (block.alias >> n & 1) continue;
@@ -754,32 +756,32 @@ void FixMPMBoundary::act(double dt, bool count)
     reaction_known = false;
   }
   for (const auto &list : nodes) {
-    gained = 0.0;
+    kinetic = 0.0;
     for (const auto &column : list.columns) act_on_column(list, column);
     for (const auto &orbit : list.orbits) act_on_orbit(list, orbit);
     for (const auto &single : list.singles) act_on_single(list, single);
-    if (count) {
-      gained *= force->mvv2e;
-      work += gained;
-      if (list.field->ledger_on) list.field->ledger.boundary += gained;
-    }
+    if (count && list.field->ledger_on) list.field->ledger.boundary += kinetic * force->mvv2e;
   }
 }
 
 /* ----------------------------------------------------------------------
-   velocity of a node, and what it does to momentum and kinetic energy
+   velocity of a node, and what it does. Work is impulse times the velocity with which points are
+   then moved, so that a wall at rest works only by friction. The kinetic energy changes by that
+   minus m dv^2/2, most of which is what forces had given to nodes that cannot move.
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::set_velocity(double *record, const double *v, int dim, bool owned)
 {
   if (counting && owned) {
-    double twice = 0.0;
+    double moved = 0.0, lost = 0.0;
     for (int d = 0; d < dim; d++) {
       const double change = v[d] - record[d];
       impulse[d] += record[3] * change;
-      twice += change * (v[d] + record[d]);
+      moved += change * v[d];
+      lost += 0.5 * change * change;
     }
-    gained += 0.5 * record[3] * twice;
+    work += record[3] * moved;
+    kinetic += record[3] * (moved - lost);
   }
   for (int d = 0; d < dim; d++) record[d] = v[d];
 }
@@ -926,7 +928,7 @@ double FixMPMBoundary::compute_scalar()
 {
   double all;
   MPI_Allreduce(&work, &all, 1, MPI_DOUBLE, MPI_SUM, world);
-  return all;
+  return all * force->mvv2e;
 }
 
 /* ----------------------------------------------------------------------
@@ -958,7 +960,7 @@ void FixMPMBoundary::restart(char *buf)
 {
   double total;
   memcpy(&total, buf, sizeof(double));
-  work = comm->me == 0 ? total : 0.0;
+  work = comm->me == 0 ? total / force->mvv2e : 0.0;
 }
 
 /* ---------------------------------------------------------------------- */

@@ -28,8 +28,8 @@ class Region;
 
 /** Walls that act on the nodes of the fields: faces of the box, or a region.
  *
- *  A face in a plane of nodes mirrors: nodes beyond it are images of nodes inside. All other walls
- *  act on the nodes at or beyond their surface one by one.
+ *  A face mirrors: nodes beyond it are images of nodes inside. A region acts on each of the nodes
+ *  inside it.
  */
 class FixMPMBoundary : public Fix, public MPMNodeAction {
  public:
@@ -54,11 +54,10 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
 
   struct Face {    // a face of the box on the lattice of a field
     int axis;
-    int inward;      // direction from the face into the box along the axis: 1 or -1
-    bool aligned;    // in a plane of nodes
-    int plane;       // aligned: index of that plane, else of the last node at or beyond the face
+    int inward;    // direction from the face into the box along the axis: 1 or -1
+    int plane;     // index of its plane of nodes
   };
-  struct Column {    // nodes along the normal of an aligned face
+  struct Column {    // nodes along the normal of a face
     int64_t plane, inside[DEPTH], image[DEPTH];
     int face;        // index into faces
     int owned;       // bit 0: plane, 1...: inside, 1 + DEPTH ...: images
@@ -112,14 +111,13 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
   std::vector<FieldNodes> nodes;
   Wall wall;
   bigint motion_step;            // step for which the motion of the wall is known
-  double impulse[3], work;       // this rank's share: of the last step on the body; since the start
+  double impulse[3], work;       // on the body, this rank's share: of the last step; of all steps
   double dt_last;
   bool reaction_known;
   double reaction[3];
 
-  // sums of one act(), see tally()
   bool counting;
-  double gained;
+  double kinetic;                // gained by the nodes of a field in the present act()
 
   Value parse_value(const char *, int iarg, bool null_allowed);
   void check_variable(Value &, const char *what);

@@ -252,7 +252,11 @@ void FixMPM::sort_points()
 
   bigint nghost = atom->nghost + (moved && atom->map_style != Atom::MAP_NONE), nghost_all;
   MPI_Allreduce(&nghost, &nghost_all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  if (nghost_all) comm->borders();
+  if (nghost_all) {
+    atom->nghost = 0;    // else borders() appends to them
+    atom->avec->clear_bonus();
+    comm->borders();
+  }
 
   switches_sorted = -1;    // to be counted with the next topology
   want_sort = false;

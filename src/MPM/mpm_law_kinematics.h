@@ -132,6 +132,15 @@ MPM_INLINE Sym rotate(const Increment &inc, const Sym &s)
           txx * qzx + txy * qzy + txz * qzz, tyx * qzx + tyy * qzy + tyz * qzz};
 }
 
+/** Jaumann rate over one step: Q (old + rate/2) Q^T + rate/2, where rate belongs to the middle of
+ *  the step. Exact under rotation, and of second order, which Q old Q^T + rate (Hughes & Winget) is
+ *  not as soon as strain and rotation come together. */
+MPM_INLINE Sym jaumann(const Increment &inc, const Sym &old, const Sym &rate)
+{
+  const Sym half = 0.5 * rate;
+  return rotate(inc, old + half) + half;
+}
+
 /** Left Cauchy-Green tensor F F^T. */
 MPM_INLINE Sym left_cauchy_green(const Batch &b, int i)
 {

@@ -14,13 +14,12 @@
 namespace MPM_NS::law {
 namespace {
 
-/** Isotropic hypoelasticity in the Kirchhoff stress tau = J sigma:
+/** Isotropic hypoelasticity: Jaumann rate of the Kirchhoff stress tau = J sigma,
  *
- *    tau = Q tau_old Q^T + 2 mu dev(dE) + K ln(J/J_old) I
+ *    tau^J = 2 mu dev(D) + K tr(D) I,   the integral of tr(D) over a step being ln(J/J_old)
  *
- *  with the incremental rotation Q and strain increment dE = sym(G) of Hughes & Winget (1980), the
- *  discrete Jaumann rate. The rate of tau, not of sigma, makes tau:tau/(4 mu) + ... a stored energy
- *  whose change is the stress power for any path. Small strain: Hooke's law. Initial stress is kept.
+ *  The rate of tau, not of sigma, makes tau_m^2/(2 K) + dev(tau):dev(tau)/(4 mu) a stored energy whose
+ *  change is the stress power on any path. Small strain: Hooke's law. Initial stress is kept.
  */
 struct LawLinear {
   static constexpr const char *name = "linear";
@@ -48,7 +47,8 @@ struct LawLinear {
     for (int i = 0; i < b.n; i++) {
       const Increment inc = increment(b, i);
       const double J = b.J[i], Jold = b.Jold[i];
-      const Sym tau = Jold * rotate(inc, load_stress(b, i)) + 2.0 * law.G * deviator(inc.strain);
+      const Sym tau =
+          jaumann(inc, Jold * load_stress(b, i), 2.0 * law.G * deviator(inc.strain));
       store_stress(b, i, (1.0 / J) * add_diagonal(tau, law.K * log(J / Jold)));
     }
   }

@@ -19,7 +19,8 @@ namespace LAMMPS_NS {
 class FixMPMMaterial;
 
 /** What is done with a batch of points: their state, local indices, and material. */
-using BatchVisitor = std::function<void(const MPM_NS::Batch &, const int *, const FixMPMMaterial &)>;
+using BatchVisitor =
+    std::function<void(const MPM_NS::Batch &, const int *, const FixMPMMaterial &)>;
 
 /** Hand over the present state of all material points of a group that belong to a fix mpm, in
  *  batches of one field and one material. For output: nothing of the points is changed. */

@@ -21,8 +21,8 @@ struct ElasticDeviator {
   /** Cauchy stress deviator at the end of the step if the step is elastic. */
   MPM_INLINE Sym trial(const Batch &b, int i, const Increment &inc) const
   {
-    const Sym old = rotate(inc, deviator(load_stress(b, i)));
-    return (1.0 / b.J[i]) * (b.Jold[i] * old + 2.0 * G * deviator(inc.strain));
+    const Sym old = b.Jold[i] * deviator(load_stress(b, i));
+    return (1.0 / b.J[i]) * jaumann(inc, old, 2.0 * G * deviator(inc.strain));
   }
 };
 

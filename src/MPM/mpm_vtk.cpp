@@ -147,7 +147,8 @@ void VTKFile::write(int array, int64_t first, int64_t n, const double *values)
 
 /* ---------------------------------------------------------------------- */
 
-std::string VTKCollection::list_name(const std::string &pattern, const std::string &fallback)
+std::string VTKCollection::list_name(const std::string &pattern, const std::string &fallback,
+                                     const std::string &suffix)
 {
   const auto slash = pattern.find_last_of("/\\");
   const std::string dir = slash == std::string::npos ? "" : pattern.substr(0, slash + 1);
@@ -159,7 +160,7 @@ std::string VTKCollection::list_name(const std::string &pattern, const std::stri
   if (head.empty())
     while (!tail.empty() && strchr("._-", tail.front())) tail.erase(0, 1);
   name = head + tail;
-  return dir + (name.empty() ? fallback : name) + ".pvd";
+  return dir + (name.empty() ? fallback : name) + suffix + ".pvd";
 }
 
 /** Entries of the list as it is; a file that cannot be read or is no list is ignored. */

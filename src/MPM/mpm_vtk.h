@@ -61,8 +61,10 @@ class VTKFile {
 /** ParaView's list of the files of a series with their times (.pvd), valid after each step. */
 class VTKCollection {
  public:
-  /** Name of the list for files name.*.ext: name.pvd, or fallback.pvd when nothing is left. */
-  static std::string list_name(const std::string &pattern, const std::string &fallback);
+  /** Name of the list for files name.*.ext: name.pvd, or fallback.pvd when nothing is left.
+   *  suffix: goes before .pvd, for lists of different files with the same name. */
+  static std::string list_name(const std::string &pattern, const std::string &fallback,
+                               const std::string &suffix = "");
 
   explicit VTKCollection(const std::string &list) : list(list), is_read(false) {}
 

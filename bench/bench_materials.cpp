@@ -1,0 +1,111 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// Cost of the constitutive laws: time per point of Material::update (yielding points), wave_speed and
+// stored_energy on full batches, for each instruction set that this CPU has.
+
+#include "mpm_kernels.h"
+#include "mpm_material_point.h"
+
+#include <benchmark/benchmark.h>
+
+#include <cstring>
+#include <random>
+#include <sstream>
+
+using namespace MPM_NS;
+
+namespace {
+
+struct Sample {
+  const char *name, *text;
+} samples[] = {
+    {"linear", "density 1000 linear 1e9 0.3"},
+    {"neohookean", "density 1000 neohookean 1e9 0.3"},
+    {"elastic", "density 2700 eos linear 70e9 strength elastic 26e9"},
+    {"j2", "density 8930 eos linear 1e11 strength j2 43e9 157e6 hardening linear 425e6"},
+    {"j2_shock", "density 8930 eos shock 3940 1.49 1.96 strength j2 43e9 157e6 hardening linear 425e6"},
+    {"j2_power", "density 8940 eos linear 1e11 strength j2 44e9 65e6 hardening power 356e6 0.37"},
+    {"johnson_cook", "density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 0.168 "
+                     "0.0089 1 1.1 1540 20 460 0.9"},
+    {"johnson_cook_cold", "density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 "
+                          "0.168 0.0089 1"},
+    {"tait", "density 1000 eos tait 2.2e9 7"},
+    {"water", "density 1000 eos tait 2.2e9 7 cutoff -1e5 viscosity newtonian 1e-3"},
+    {"artificial", "density 1000 eos linear 1e9 viscosity artificial 1.5 0.06"},
+};
+
+enum Task { UPDATE, SPEED, ENERGY };
+
+/** Points in motion: yielding in most laws, all different. */
+void run(benchmark::State &state, const char *text, const char *isa, Task task)
+{
+  std::istringstream in(text);
+  std::vector<std::string> words;
+  for (std::string word; in >> word;) words.push_back(word);
+  const auto material = Material::create(words, isa);
+
+  MaterialPoint p(*material, BATCH, 1e-3);
+  Batch &b = p.batch;
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  b.dt = 1e-7;
+  for (int step = 0; step < 50; step++) {
+    for (int i = 0; i < BATCH; i++) {
+      double F[9];
+      for (int k = 0; k < 9; k++) {
+        // compression and shear, with a part that differs from point to point
+        b.A[k][i] = 1e-3 * ((k == 0 ? -0.3 : k == 1 ? 1.0 : 0.0) + 0.2 * normal(random));
+        F[k] = b.F[k][i];
+      }
+      for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++)
+          for (int k = 0; k < 3; k++) b.F[3 * r + c][i] += b.A[3 * r + k][i] * F[3 * k + c];
+      for (int k = 0; k < 9; k++) F[k] = b.F[k][i];
+      b.Jold[i] = b.J[i];
+      b.J[i] = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
+          F[2] * (F[3] * F[7] - F[4] * F[6]);
+    }
+    if (step < 49) material->update(b);
+  }
+
+  alignas(64) double stress[6][BATCH], out[BATCH];
+  memcpy(stress, b.stress, sizeof(stress));
+  const std::vector<double> history = p.storage;
+  for (auto _ : state) {
+    if (task == UPDATE) {
+      memcpy(b.stress, stress, sizeof(stress));
+      if (!history.empty()) memcpy(b.history, history.data(), history.size() * sizeof(double));
+      material->update(b);
+      benchmark::DoNotOptimize(b.stress[0][0]);
+    } else if (task == SPEED)
+      material->wave_speed(b, out);
+    else
+      material->stored_energy(b, out);
+    benchmark::ClobberMemory();
+  }
+  state.counters["ns/point"] = benchmark::Counter(
+      state.iterations() * BATCH * 1e-9, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+}    // namespace
+
+int main(int argc, char **argv)
+{
+  const char *task_name[] = {"update", "wave_speed", "stored_energy"};
+  for (const char *isa : {"baseline", "avx2", "avx512"}) {
+    if (!MPMKernels::select(isa)) continue;
+    for (const Task task : {UPDATE, SPEED, ENERGY})
+      for (const auto &sample : samples) {
+        const std::string name = std::string(isa) + "/" + task_name[task] + "/" + sample.name;
+        benchmark::RegisterBenchmark(name.c_str(), run, sample.text, isa, task);
+      }
+  }
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+}

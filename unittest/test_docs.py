@@ -1,0 +1,215 @@
+# This file is part of the MPM package for LAMMPS, distributed under the GNU
+# General Public License, version 2; see the file LICENSE.
+#
+# labels: docs
+# timeout: 300
+"""The manual: builds without warnings, is complete, and is true where that can be tested."""
+
+import fnmatch
+import glob
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+
+ROOT = os.environ.get("MPM_ROOT", os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+PAGES = os.path.join(ROOT, "doc", "src")
+SOURCES = os.path.join(ROOT, "src", "MPM")
+
+# macro in a header -> how its page begins and what its title says
+KINDS = {
+    "AtomStyle": ("atom_style_", "atom_style"),
+    "CommandStyle": ("", ""),
+    "ComputeStyle": ("compute_", "compute"),
+    "DumpStyle": ("dump_", "dump"),
+    "FixStyle": ("fix_", "fix"),
+    "PairStyle": ("pair_", "pair_style"),
+    "RegionStyle": ("region_", "region"),
+}
+SECTIONS = ["Syntax", "Examples", "Description", "Restrictions", "Related commands", "Default"]
+
+
+def read(path):
+    with open(path, encoding="utf-8") as file:
+        return file.read()
+
+
+def relative(path):
+    return os.path.relpath(path, ROOT)
+
+
+def styles():
+    """page name without .rst -> title of the page"""
+    found = {}
+    for header in glob.glob(os.path.join(SOURCES, "*.h")):
+        for macro, name in re.findall(r"^(\w+Style)\((\S+?),\s*\w+\)", read(header), re.M):
+            page, title = KINDS[macro]
+            found[page + name.replace("/", "_")] = (title + " " + name).strip()
+    return found
+
+
+def pages():
+    return sorted(glob.glob(os.path.join(PAGES, "*.rst")))
+
+
+def readmes():
+    return [os.path.join(ROOT, "README.md")] + sorted(
+        glob.glob(os.path.join(ROOT, "*", "README.md")) + glob.glob(os.path.join(ROOT, "examples", "*", "README.md")))
+
+
+def find_python():
+    """a Python that has Sphinx, or None"""
+    for python in (sys.executable, "python3", "/usr/bin/python3"):
+        try:
+            if subprocess.run([python, "-c", "import sphinx"], capture_output=True).returncode == 0:
+                return python
+        except OSError:
+            pass
+    return None
+
+
+# ---------------------------------------------------------------- tests: return lists of what is wrong
+
+
+def test_builds_without_warnings():
+    python = find_python()
+    if not python:
+        return None
+    with tempfile.TemporaryDirectory() as folder:
+        run = subprocess.run([python, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html",
+                              os.path.join(ROOT, "doc"), folder], capture_output=True, text=True)
+    return [] if run.returncode == 0 else (run.stderr.strip() or "sphinx failed").splitlines()
+
+
+def test_text_is_ascii():
+    wrong = []
+    for path in pages() + readmes() + [os.path.join(ROOT, "doc", "conf.py")]:
+        if not os.path.exists(path):
+            wrong.append(relative(path) + " is missing")
+            continue
+        for number, line in enumerate(read(path).splitlines(), 1):
+            if not line.isascii():
+                wrong.append("%s:%d: not 7-bit ASCII: %s" % (relative(path), number, ascii(line)))
+    return wrong
+
+
+def test_every_style_has_a_page_and_every_page_a_style():
+    known = styles()
+    have = {os.path.basename(path)[:-4] for path in pages()}
+    wrong = ["%s has no page doc/src/%s.rst" % (known[page], page) for page in sorted(set(known) - have)]
+    for page in sorted(have - set(known)):
+        if page != "index" and not page.startswith(("Howto_", "Developer_")):
+            wrong.append("doc/src/%s.rst is the page of no style" % page)
+    return wrong
+
+
+def test_pages_have_the_order_of_the_lammps_manual():
+    wrong = []
+    for page, style in sorted(styles().items()):
+        path = os.path.join(PAGES, page + ".rst")
+        if not os.path.exists(path):
+            continue
+        text = read(path)
+        if ".. index:: %s\n" % style not in text.split("=====")[0]:
+            wrong.append("%s: does not begin with .. index:: %s" % (relative(path), style))
+        if not re.search(r"^%s command\n=+\n" % re.escape(style), text, re.M):
+            wrong.append("%s: title is not '%s command'" % (relative(path), style))
+        place = 0
+        for section in SECTIONS:
+            found = re.search(r"^%s\n\"{%d}\n" % (section, len(section)), text, re.M)
+            if not found:
+                wrong.append("%s: section '%s' is missing" % (relative(path), section))
+            elif found.start() < place:
+                wrong.append("%s: section '%s' is out of order" % (relative(path), section))
+            else:
+                place = found.start()
+        if "part of the MPM package" not in text:
+            wrong.append("%s: Restrictions do not name the package" % relative(path))
+    return wrong
+
+
+def test_every_source_file_is_in_the_table_of_the_developer_guide():
+    text = read(os.path.join(PAGES, "Developer_mpm.rst"))
+    table = text[text.index("\nFiles\n"):text.index("\nData structures\n")]
+    names = re.findall(r"(?<![\w.])(?:plugin/)?[a-z]\w*\*?(?:\.(?:h|cpp))?(?![\w.])", table)
+    wrong = []
+    for path in sorted(glob.glob(os.path.join(SOURCES, "*.[hc]*")) +
+                       glob.glob(os.path.join(SOURCES, "plugin", "*.cpp"))):
+        name = os.path.relpath(path, SOURCES)
+        if not any(fnmatch.fnmatch(name, n) or fnmatch.fnmatch(name.rsplit(".", 1)[0], n) for n in names):
+            wrong.append("src/MPM/%s is not in the table of files in Developer_mpm.rst" % name)
+    return wrong
+
+
+def test_links_lead_somewhere():
+    """to pages of the LAMMPS manual (where its sources are there), and to files in README.md"""
+    wrong = []
+    for path in readmes():
+        if not os.path.exists(path):
+            continue
+        for target in re.findall(r"\]\(([^)#\s]+)\)", read(path)):
+            if not re.match(r"\w+:", target) and not os.path.exists(os.path.join(os.path.dirname(path), target)):
+                wrong.append("%s: no %s" % (relative(path), target))
+
+    manual = None
+    for cache in glob.glob(os.path.join(os.path.dirname(os.environ.get("MPM_LMP", "")), "CMakeCache.txt")):
+        for key in ("LAMMPS_BUILD_DIR", "LAMMPS_SOURCE_DIR"):
+            found = re.search(r"^%s:\w+=(\S+)" % key, read(cache), re.M)
+            if not found:
+                continue
+            export = os.path.join(found.group(1), "mpm_lammps.cmake")
+            tree = found.group(1)
+            if os.path.exists(export):
+                tree = re.search(r'set\(LAMMPS_DIR "(.*?)"\)', read(export)).group(1)
+            if os.path.isdir(os.path.join(tree, "doc", "src")):
+                manual = os.path.join(tree, "doc", "src")
+    if manual:
+        for path in pages():
+            for target in re.findall(r":doc:`[^`<]*<([^>`]*)>`", read(path)):
+                if not any(os.path.exists(os.path.join(folder, target + ".rst")) for folder in (PAGES, manual)):
+                    wrong.append("%s: no page %s in the LAMMPS manual" % (relative(path), target))
+    return wrong
+
+
+def test_scene_of_the_howto_runs():
+    lmp = os.environ.get("MPM_LMP", os.path.join(ROOT, "build", "lmp"))
+    if not os.path.exists(lmp):
+        return ["no " + lmp]
+    text = read(os.path.join(PAGES, "Howto_mpm.rst"))
+    block = re.search(r"\.\. code-block:: LAMMPS\n\n((?:   .*\n|\n)+)", text).group(1)
+    with tempfile.TemporaryDirectory() as folder:
+        with open(os.path.join(folder, "in.scene"), "w") as file:
+            file.write(re.sub(r"^   ", "", block, flags=re.M))
+        run = subprocess.run([lmp, "-in", "in.scene", "-log", "none"], cwd=folder, capture_output=True, text=True)
+    if run.returncode != 0 or "Loop time" not in run.stdout:
+        return (run.stdout + run.stderr).splitlines()[-10:]
+    return []
+
+
+def main():
+    report, failed = [], 0
+    for name, test in sorted(globals().items()):
+        if not name.startswith("test_"):
+            continue
+        wrong = test()
+        print("%-9s %s" % ("skipped" if wrong is None else "FAILED" if wrong else "passed", name))
+        for line in wrong or []:
+            print("    " + line)
+        failed += bool(wrong)
+        case = {"name": name, "status": "NOTRUN" if wrong is None else "RUN"}
+        if wrong:
+            case["failures"] = [{"failure": "\n".join(wrong)}]
+        report.append(case)
+
+    # for tools/count_tests.py, in the form of GoogleTest
+    output = os.environ.get("GTEST_OUTPUT", "")
+    if output.startswith("json:"):
+        with open(output[5:], "w") as file:
+            json.dump({"testsuites": [{"name": "docs", "testsuite": report}]}, file)
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
