@@ -50,8 +50,8 @@ struct Scene {
   Scene(int dim, int order, int wanted) : dim(dim)
   {
     const int ppc = 2;    // per axis
-    const int cells = dim == 3 ? std::lround(std::cbrt(wanted / 8.0)) :
-                                 std::lround(std::sqrt(wanted / 4.0));
+    const int cells = dim == 3 ? std::lround(std::cbrt(wanted / 8.0))
+                               : std::lround(std::sqrt(wanted / 4.0));
     const int side = block_side(dim);
     const int nside = cells / side + 4;    // blocks along an axis
     std::mt19937 random(1);
@@ -80,8 +80,9 @@ struct Scene {
           p.key = 64 * block + cell;
           points.push_back(p);
         }
-    std::stable_sort(points.begin(), points.end(),
-                     [](const Point &a, const Point &b) { return a.key < b.key; });
+    std::stable_sort(points.begin(), points.end(), [](const Point &a, const Point &b) {
+      return a.key < b.key;
+    });
 
     n = points.size();
     nblocks = dim == 3 ? nside * nside * nside : nside * nside;
@@ -107,8 +108,8 @@ struct Scene {
       }
       for (int s = 0; s < 27; s++) {
         const int d[3] = {s / 9 - 1, s / 3 % 3 - 1, s % 3 - 1};
-        b.slot[s] = dim == 3 ? ((at[0] + d[0]) * nside + at[1] + d[1]) * nside + at[2] + d[2] :
-                               (at[0] + d[0]) * nside + at[1] + d[1];
+        b.slot[s] = dim == 3 ? ((at[0] + d[0]) * nside + at[1] + d[1]) * nside + at[2] + d[2]
+                             : (at[0] + d[0]) * nside + at[1] + d[1];
       }
       blocks.push_back(b);
     }

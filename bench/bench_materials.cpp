@@ -89,8 +89,8 @@ void run(benchmark::State &state, const char *text, const char *isa, Task task)
       material->stored_energy(b, out);
     benchmark::ClobberMemory();
   }
-  state.counters["ns/point"] = benchmark::Counter(
-      state.iterations() * BATCH * 1e-9, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  state.counters["per_point"] = benchmark::Counter(
+      state.iterations() * BATCH, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
 }    // namespace

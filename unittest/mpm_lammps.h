@@ -132,11 +132,12 @@ class Run {
 
   /** Call f after the forces of each step, also of step 0: positions, velocities and stress are of
    *  that time, and what f writes to force[i], which is zero before, acts in the step that follows.
+   *  every: only at multiples of this number (for output, not for forces).
    *  To be called once, when the box exists. */
-  void each_step(std::function<void(double **force)> f)
+  void each_step(std::function<void(double **force)> f, int every = 1)
   {
     callback = f;
-    commands("fix each_step all external pf/callback 1 1\n");
+    commands("fix each_step all external pf/callback " + std::to_string(every) + " 1\n");
     dynamic_cast<FixExternal *>(lmp->modify->get_fix_by_id("each_step"))
         ->set_callback(
             [](void *self, bigint, int n, tagint *, double **, double **force) {

@@ -16,6 +16,7 @@
 
 #include "fix_mpm.h"
 
+#include "gmock/gmock.h"
 #include "gtest/gtest.h"
 
 #include <cmath>
@@ -33,7 +34,8 @@ FixMPM *field_of(Sim &run, const std::string &id = "grid")
 }
 
 /** Velocity, and with APIC its gradient, of all points. g[i][j] = d v_i / d x_j. */
-void set_field(Sim &run, const std::function<void(const double *x, double *v, double g[3][3])> &field)
+void set_field(Sim &run,
+               const std::function<void(const double *x, double *v, double g[3][3])> &field)
 {
   auto *atom = run.lmp->atom;
   double **C = field_of(run)->C;
@@ -96,12 +98,14 @@ atom_style mpm
 neighbor 0.3 bin
 region box block 0 6 0 12 0 6
 create_box 1 box
-fix grid all mpm 1.0 shape )") + c.shape + R"( transfer apic
+fix grid all mpm 1.0 shape )") +
+        c.shape + R"( transfer apic
 region body block 0 6 0 4 0 6
 create_points 1 region body ppc 2
 displace_atoms all random 0.1 0.1 0.1 872631
 fix m all mpm/material density 1.0 neohookean 10.0 0.3
-fix w all mpm/boundary ylo )" + c.wall + R"(
+fix w all mpm/boundary ylo )" +
+        c.wall + R"(
 timestep 0.01
 run 0
 )";
@@ -146,8 +150,8 @@ TEST_P(WallVelocity, ExactAtTheWall)
 TEST_P(WallVelocity, LinearFieldsArePreserved)
 {
   const auto &c = GetParam();
-  if (std::string(c.wall).find("friction") != std::string::npos)
-    GTEST_SKIP() << "without a normal impulse there is no friction";
+  // without a normal impulse there is no friction: then only the normal component is of interest
+  const bool friction = std::string(c.wall).find("friction") != std::string::npos;
   Sim run;
   run.commands(scene(c));
   auto field = [&](const double *x, double *v, double g[3][3]) {
@@ -170,12 +174,13 @@ TEST_P(WallVelocity, LinearFieldsArePreserved)
   ASSERT_EQ(before.size(), after.size());
   for (std::size_t k = 0; k < after.size(); k++)
     for (int d = 0; d < 3; d++) {
+      if (friction && d != 1) continue;
       EXPECT_NEAR(after[k].v[d], before[k].v[d], 1.0e-13);
       EXPECT_NEAR(after[k].x[d], before[k].x[d] + 0.01 * before[k].v[d], 1.0e-13);
     }
   auto *atom = run.lmp->atom;
   double **C = field_of(run)->C;
-  for (int i = 0; i < atom->nlocal; i++) {
+  for (int i = 0; i < atom->nlocal && !friction; i++) {
     EXPECT_NEAR(C[i][3], 0.7, 1.0e-12);
     EXPECT_NEAR(C[i][4], -0.4, 1.0e-12);
     EXPECT_NEAR(C[i][5], 0.25, 1.0e-12);
@@ -184,16 +189,61 @@ TEST_P(WallVelocity, LinearFieldsArePreserved)
 
 INSTANTIATE_TEST_SUITE_P(
     Kinds, WallVelocity,
-    ::testing::Values(WallCase{"linear", "stick", true, {0, 0, 0}},
-                      WallCase{"quadratic", "stick", true, {0, 0, 0}},
-                      WallCase{"cubic", "stick", true, {0, 0, 0}},
-                      WallCase{"linear", "slip", false, {0, 0, 0}},
-                      WallCase{"quadratic", "slip", false, {0, 0, 0}},
-                      WallCase{"cubic", "slip", false, {0, 0, 0}},
-                      WallCase{"quadratic", "stick velocity 0.3 0.2 -0.1", true, {0.3, 0.2, -0.1}},
-                      WallCase{"cubic", "stick velocity 0.3 0.2 -0.1", true, {0.3, 0.2, -0.1}},
-                      WallCase{"quadratic", "slip velocity 0 0.2 0", false, {0, 0.2, 0}},
-                      WallCase{"quadratic", "slip friction 1e9 velocity 0.3 0.2 0", false, {0.3, 0.2, 0}}));
+    ::testing::Values(
+        WallCase{"linear", "stick", true, {0, 0, 0}},
+        WallCase{"quadratic", "stick", true, {0, 0, 0}},
+        WallCase{"cubic", "stick", true, {0, 0, 0}}, WallCase{"linear", "slip", false, {0, 0, 0}},
+        WallCase{"quadratic", "slip", false, {0, 0, 0}},
+        WallCase{"cubic", "slip", false, {0, 0, 0}},
+        WallCase{"quadratic", "stick velocity 0.3 0.2 -0.1", true, {0.3, 0.2, -0.1}},
+        WallCase{"cubic", "stick velocity 0.3 0.2 -0.1", true, {0.3, 0.2, -0.1}},
+        WallCase{"quadratic", "slip velocity 0 0.2 0", false, {0, 0.2, 0}},
+        WallCase{"quadratic", "slip friction 1e9 velocity 0.3 0.2 0", false, {0.3, 0.2, 0}}));
+
+// edges and corners: also there both walls have their velocity
+
+TEST(WallCorners, AreHeld)
+{
+  for (const char *shape : {"quadratic", "cubic"}) {
+    Sim run;
+    run.commands(std::string(R"(
+units lj
+boundary f f f
+atom_style mpm
+neighbor 0.3 bin
+region box block 0 6 0 6 0 6
+create_box 1 box
+fix grid all mpm 1.0 shape )") +
+                 shape + R"(
+region body block 0 4 0 4 0 4
+create_points 1 region body ppc 2
+displace_atoms all random 0.1 0.1 0.1 872631
+fix m all mpm/material density 1.0 neohookean 10.0 0.3
+fix w all mpm/boundary xlo ylo zlo stick
+timestep 0.01
+run 0
+)");
+    set_field(run, [&](const double *x, double *v, double g[3][3]) {
+      for (int a = 0; a < 3; a++) {
+        v[a] = std::sin(3.0 * x[0] + a) + std::cos(2.0 * x[1] - x[2] * a);
+        for (int b = 0; b < 3; b++) g[a][b] = std::sin(x[b] + a);
+      }
+    });
+    auto *atom = run.lmp->atom;
+    for (int i = 0; i < atom->nlocal; i++)
+      for (int d = 0; d < 3; d++)
+        if (((tagint) atom->tag[i] + d) % 3 == 0 && atom->x[i][d] < 0.5) atom->x[i][d] = 0.0;
+    auto before = run.gather();
+    run.commands("run 1\n");
+    auto after = run.gather();
+    double worst = 0.0;
+    for (std::size_t k = 0; k < after.size(); k++)
+      if (before[k].x[0] == 0.0 || before[k].x[1] == 0.0 || before[k].x[2] == 0.0)
+        for (int d = 0; d < 3; d++) worst = std::max(worst, std::abs(after[k].v[d]));
+    if (run.lmp->comm->me == 0) printf("  %s: %.3g\n", shape, worst);
+    EXPECT_LT(worst, 1.0e-14);
+  }
+}
 
 // a wall that prescribes one component is a slip wall, and stick is friction without end
 
@@ -257,7 +307,9 @@ timestep 0.03
 compute e all mpm/energy
 thermo_style custom step c_e
 run 0
-)", "WALLS", walls), "OPTIONS", options));
+)",
+                                 "WALLS", walls),
+                        "OPTIONS", options));
 
   double p[3], expected[3];
   momentum(run, expected);
@@ -282,18 +334,22 @@ run 0
 
 INSTANTIATE_TEST_SUITE_P(
     Options, Balance,
-    ::testing::Values("transfer apic|fix w all mpm/boundary xlo ylo stick",
-                      "transfer apic|fix w all mpm/boundary ylo slip friction 0.2",
-                      "transfer apic|fix w all mpm/boundary xlo ylo separate friction 0.2",
-                      "transfer flip 1.0|fix w all mpm/boundary xlo ylo slip",
-                      "transfer flip 0.9 scheme musl|fix w all mpm/boundary xlo ylo stick velocity 0.1 0.2 0",
-                      "transfer pic shape linear|fix w all mpm/boundary xlo ylo separate",
-                      "shape cubic scheme musl|fix w all mpm/boundary xlo ylo separate friction 0.5",
-                      "transfer flip 1.0 scheme usf|fix w all mpm/boundary ylo stick",
-                      "|fix w all mpm/boundary xlo ylo separate friction 0.3\nfix w2 all mpm/boundary region ball slip",
-                      "transfer apic|fix w all mpm/boundary region ball stick\nfix w2 all mpm/boundary ylo slip",
-                      "transfer apic|fix w all mpm/boundary region ball slip friction 0.1\nfix w2 all mpm/boundary ylo slip",
-                      "transfer flip 1.0|fix w all mpm/boundary region ball separate\nfix w2 all mpm/boundary ylo slip"));
+    ::testing::Values(
+        "transfer apic|fix w all mpm/boundary xlo ylo stick",
+        "transfer apic|fix w all mpm/boundary ylo slip friction 0.2",
+        "transfer apic|fix w all mpm/boundary xlo ylo separate friction 0.2",
+        "transfer flip 1.0|fix w all mpm/boundary xlo ylo slip",
+        "transfer flip 0.9 scheme musl|fix w all mpm/boundary xlo ylo stick velocity 0.1 0.2 0",
+        "transfer pic shape linear|fix w all mpm/boundary xlo ylo separate",
+        "shape cubic scheme musl|fix w all mpm/boundary xlo ylo separate friction 0.5",
+        "transfer flip 1.0 scheme usf|fix w all mpm/boundary ylo stick",
+        "|fix w all mpm/boundary xlo ylo separate friction 0.3\nfix w2 all mpm/boundary region "
+        "ball slip",
+        "transfer apic|fix w all mpm/boundary region ball stick\nfix w2 all mpm/boundary ylo slip",
+        "transfer apic|fix w all mpm/boundary region ball slip friction 0.1\nfix w2 all "
+        "mpm/boundary ylo slip",
+        "transfer flip 1.0|fix w all mpm/boundary region ball separate\nfix w2 all mpm/boundary "
+        "ylo slip"));
 
 TEST(Work, LedgerAndRestart)
 {
@@ -324,8 +380,8 @@ run 1
     run.commands(replaced(scene, "MPM_V", std::to_string(V)));
     const double u = -0.5 - V, w = (inside * u - image * u) / (inside + image);
     const double v1 = V + w, v2 = V - w;
-    const double kinetic = 0.5 * area * (plane * (V * V - 0.25) + inside * (v1 * v1 - 0.25) +
-                                         image * (v2 * v2 - 0.25));
+    const double kinetic = 0.5 * area *
+        (plane * (V * V - 0.25) + inside * (v1 * v1 - 0.25) + image * (v2 * v2 - 0.25));
     const double p = -area * u * (plane + 4.0 * inside * image / (inside + image));
     auto *fix = run.lmp->modify->get_fix_by_id("w");
     double mine = field_of(run)->ledger.boundary, ledger;
@@ -345,7 +401,8 @@ fix grid all mpm 1.0
 fix m all mpm/material density 1.0 neohookean 10.0 0.3
 fix w all mpm/boundary ylo slip velocity 0 MPM_V 0
 run 0
-)", "MPM_V", std::to_string(V)));
+)",
+                          "MPM_V", std::to_string(V)));
     EXPECT_NEAR(run.lmp->modify->get_fix_by_id("w")->compute_scalar(), before, 1.0e-15);
     MPI_Barrier(MPI_COMM_WORLD);
     std::remove("boundary_test.restart");
@@ -378,7 +435,9 @@ fix g all gravity v_g vector 0.5 -0.86602540378443865 0
 fix step all mpm/dt 0.4
 variable x equal xcm(all,x)
 variable v equal vcm(all,x)
-)", "MU", std::to_string(mu)), "KIND", kind);
+)",
+                             "MU", std::to_string(mu)),
+                    "KIND", kind);
   }
 };
 
@@ -440,10 +499,13 @@ fix grid all mpm 0.05 OPTIONS
 region body block 0.3 0.7 0.1 0.5 -0.1 0.1
 create_points 1 region body ppc 2
 fix m all mpm/material density 1000 neohookean 1e6 0.3
-)", "OPTIONS", GetParam()) + wall + R"(
+)",
+                    "OPTIONS", GetParam()) +
+        wall + R"(
 timestep 2e-4
 variable v equal vcm(all,y)
-velocity all set 0 )" + std::to_string(v) + " 0\n";
+velocity all set 0 )" +
+        std::to_string(v) + " 0\n";
   }
 };
 
@@ -474,9 +536,10 @@ TEST_P(Separate, AThrownBodyRebounds)
 }
 
 INSTANTIATE_TEST_SUITE_P(Transfer, Separate,
-                         ::testing::Values("transfer apic", "transfer flip 1.0", "transfer flip 0.98",
-                                           "transfer flip 1.0 scheme musl", "transfer pic",
-                                           "shape cubic transfer apic", "shape linear transfer flip 1.0 scheme musl"));
+                         ::testing::Values("transfer apic", "transfer flip 1.0",
+                                           "transfer flip 0.98", "transfer flip 1.0 scheme musl",
+                                           "transfer pic", "shape cubic transfer apic",
+                                           "shape linear transfer flip 1.0 scheme musl"));
 
 /* ----------------------------------------------------------------------
    benchmark G3: elastic column under gravity that is switched on
@@ -506,14 +569,17 @@ group top region top
 variable y equal xcm(top,y)
 variable yc equal xcm(all,y)
 timestep 4e-4
-)", "OPTIONS", options), "WIDTH", std::to_string(width)), "BOUNDARY",
-                  walls.find("xlo") == std::string::npos ? "p" : "f");
+)",
+                                    "OPTIONS", options),
+                           "WIDTH", std::to_string(width)),
+                  "BOUNDARY", walls.find("xlo") == std::string::npos ? "p" : "f");
 }
 
 TEST_P(Column, SettlementAndPeriod)
 {
   Sim run;
-  run.commands(column_scene(GetParam(), "fix w all mpm/boundary xlo xhi ylo slip", 0.2) + "run 0\n");
+  run.commands(column_scene(GetParam(), "fix w all mpm/boundary xlo xhi ylo slip", 0.2) +
+               "run 0\n");
   const double M = 1.0e6 * 0.7 / (1.3 * 0.4), c = std::sqrt(M / 1000.0);
   const double period = 4.0 / c, y0 = run.variable("y"), x0 = run.variable("yc");
   const double settlement = 1000.0 / (2.0 * M), weight = 1000.0 * 0.2;
@@ -537,8 +603,9 @@ TEST_P(Column, SettlementAndPeriod)
   mean /= n;
   if (run.lmp->comm->me == 0)
     printf("  %s: mean %.5g (exact %.5g), largest %.5g, half period %.4f (exact %.4f), "
-           "mean force %.4f of the weight\n", GetParam().c_str(), -mean, settlement, -lowest, at,
-           0.5 * period, -force_sum / n / weight);
+           "mean force %.4f of the weight\n",
+           GetParam().c_str(), -mean, settlement, -lowest, at, 0.5 * period,
+           -force_sum / n / weight);
   EXPECT_NEAR(-mean, settlement, 0.01 * settlement);
   EXPECT_NEAR(-lowest, 2.0 * settlement, 0.03 * settlement);
   EXPECT_NEAR(at, 0.5 * period, 0.02 * period);
@@ -548,7 +615,8 @@ TEST_P(Column, SettlementAndPeriod)
 
 INSTANTIATE_TEST_SUITE_P(Options, Column,
                          ::testing::Values("transfer apic", "transfer flip 1.0",
-                                           "transfer apic shape cubic", "transfer flip 1.0 scheme musl",
+                                           "transfer apic shape cubic",
+                                           "transfer flip 1.0 scheme musl",
                                            "transfer flip 1.0 shape linear"));
 
 TEST(Channel, NarrowOnesAreExact)
@@ -574,7 +642,7 @@ TEST(Channel, NarrowOnesAreExact)
   EXPECT_GT(wide.size(), 20u);
   for (double width : {0.05, 0.10, 0.15}) {
     auto narrow = result(width, walls);
-    ASSERT_EQ(narrow.size(), wide.size() * (width == 0.05 ? 1 : 1));
+    ASSERT_EQ(narrow.size(), wide.size());
     for (std::size_t k = 0; k < wide.size(); k++) EXPECT_NEAR(narrow[k], wide[k], 1.0e-13);
   }
 }
@@ -618,7 +686,8 @@ run 0
     }
     drift = std::max(drift, std::abs(std::sqrt(r1) - std::sqrt(r0)));
   }
-  if (run.lmp->comm->me == 0) printf("  drift of the radius %.2g, of the position %.2g\n", drift, off);
+  if (run.lmp->comm->me == 0)
+    printf("  drift of the radius %.2g, of the position %.2g\n", drift, off);
   EXPECT_LT(drift, 1.0e-10);
   EXPECT_LT(off, 1.0e-10);
 }
@@ -699,51 +768,51 @@ TEST(Regions, SlipNormals)
     const char *region;
     std::function<int(const double *, double *)> normal;    // 1: inside with normal, 0: outside
   };
-  const Case cases[] = {
-      {"sphere 5.1 4.9 5.2 2.3",
-       [](const double *x, double *n) {
-         const double c[3] = {5.1, 4.9, 5.2};
-         double r = 0.0;
-         for (int d = 0; d < 3; d++) {
-           n[d] = x[d] - c[d];
-           r += n[d] * n[d];
-         }
-         r = std::sqrt(r);
-         for (int d = 0; d < 3; d++) n[d] /= r;
-         return (int) (r <= 2.3);
-       }},
-      {"block 2.2 7.9 3 5.4 1.8 8.3",
-       [](const double *x, double *n) {
-         // the nearest face is that below or above, except near the others
-         n[0] = n[2] = 0.0;
-         n[1] = x[1] - 3.0 < 5.4 - x[1] ? -1.0 : 1.0;
-         const double depth = std::min(x[1] - 3.0, 5.4 - x[1]);
-         const bool inside = x[0] >= 2.2 && x[0] <= 7.9 && x[1] >= 3.0 && x[1] <= 5.4 &&
-             x[2] >= 1.8 && x[2] <= 8.3;
-         const bool near_edge = x[0] - 2.2 < depth + 0.01 || 7.9 - x[0] < depth + 0.01 ||
-             x[2] - 1.8 < depth + 0.01 || 8.3 - x[2] < depth + 0.01;
-         return inside ? (near_edge ? 2 : 1) : 0;
-       }},
-      {"sphere 5 5 5 3.2 side out",
-       [](const double *x, double *n) {
-         double r = 0.0;
-         for (int d = 0; d < 3; d++) {
-           n[d] = 5.0 - x[d];
-           r += n[d] * n[d];
-         }
-         r = std::sqrt(r);
-         for (int d = 0; d < 3; d++) n[d] /= r;
-         return (int) (r > 3.2);
-       }},
-      {"cylinder y 5.3 4.8 2.1 INF INF", [](const double *x, double *n) {
-         n[0] = x[0] - 5.3;
-         n[1] = 0.0;
-         n[2] = x[2] - 4.8;
-         const double r = std::sqrt(n[0] * n[0] + n[2] * n[2]);
-         n[0] /= r;
-         n[2] /= r;
-         return (int) (r <= 2.1);
-       }}};
+  const Case cases[] = {{"sphere 5.1 4.9 5.2 2.3",
+                         [](const double *x, double *n) {
+                           const double c[3] = {5.1, 4.9, 5.2};
+                           double r = 0.0;
+                           for (int d = 0; d < 3; d++) {
+                             n[d] = x[d] - c[d];
+                             r += n[d] * n[d];
+                           }
+                           r = std::sqrt(r);
+                           for (int d = 0; d < 3; d++) n[d] /= r;
+                           return (int) (r <= 2.3);
+                         }},
+                        {"block 2.2 7.9 3 5.4 1.8 8.3",
+                         [](const double *x, double *n) {
+                           // the nearest face is that below or above, except near the others
+                           n[0] = n[2] = 0.0;
+                           n[1] = x[1] - 3.0 < 5.4 - x[1] ? -1.0 : 1.0;
+                           const double depth = std::min(x[1] - 3.0, 5.4 - x[1]);
+                           const bool inside = x[0] >= 2.2 && x[0] <= 7.9 && x[1] >= 3.0 &&
+                               x[1] <= 5.4 && x[2] >= 1.8 && x[2] <= 8.3;
+                           const bool near_edge = x[0] - 2.2 < depth + 0.01 ||
+                               7.9 - x[0] < depth + 0.01 || x[2] - 1.8 < depth + 0.01 ||
+                               8.3 - x[2] < depth + 0.01;
+                           return inside ? (near_edge ? 2 : 1) : 0;
+                         }},
+                        {"sphere 5 5 5 3.2 side out",
+                         [](const double *x, double *n) {
+                           double r = 0.0;
+                           for (int d = 0; d < 3; d++) {
+                             n[d] = 5.0 - x[d];
+                             r += n[d] * n[d];
+                           }
+                           r = std::sqrt(r);
+                           for (int d = 0; d < 3; d++) n[d] /= r;
+                           return (int) (r > 3.2);
+                         }},
+                        {"cylinder y 5.3 4.8 2.1 INF INF", [](const double *x, double *n) {
+                           n[0] = x[0] - 5.3;
+                           n[1] = 0.0;
+                           n[2] = x[2] - 4.8;
+                           const double r = std::sqrt(n[0] * n[0] + n[2] * n[2]);
+                           n[0] /= r;
+                           n[2] /= r;
+                           return (int) (r <= 2.1);
+                         }}};
   for (const auto &c : cases) {
     Sim run;
     run.commands(R"(
@@ -759,7 +828,8 @@ create_points 1 region body ppc 2
 fix m all mpm/material density 1.0 neohookean 10.0 0.3
 velocity all set 0.3 -0.2 0.15
 timestep 0.01
-)" + std::string("region obstacle ") + c.region + R"(
+)" + std::string("region obstacle ") +
+                 c.region + R"(
 fix w all mpm/boundary region obstacle slip
 run 1
 )");
@@ -781,8 +851,8 @@ run 1
           double vn = 0.0;
           for (int d = 0; d < 3; d++) vn += v0[d] * normal[d];
           for (int d = 0; d < 3; d++)
-            EXPECT_NEAR(r[d], v0[d] - vn * normal[d], 1.0e-7) << c.region << " at " << x[0] << " "
-                                                              << x[1] << " " << x[2];
+            EXPECT_NEAR(r[d], v0[d] - vn * normal[d], 1.0e-7)
+                << c.region << " at " << x[0] << " " << x[1] << " " << x[2];
           checked++;
         }
       }
@@ -835,6 +905,93 @@ run 0
   EXPECT_EQ(all[0], 0);
   EXPECT_GE(all[1], 4);
 }
+
+/* ----------------------------------------------------------------------
+   ranks and restart
+------------------------------------------------------------------------- */
+
+class Decomposition : public ::testing::TestWithParam<std::string> {
+ protected:
+  std::string scene(const std::string &walls)
+  {
+    return R"(
+units lj
+boundary f f p
+atom_style mpm
+neighbor 0.3 bin
+region box block 0 12 0 12 0 8
+create_box 1 box
+fix grid all mpm 1.0
+region body block 0 5.5 0 5 1 7
+create_points 1 region body ppc 2
+)" + definitions(walls) +
+        R"(
+velocity all set -0.3 -0.4 0.35
+velocity all ramp vx -0.4 0.4 y 0 5 sum yes
+timestep 0.04
+)";
+  }
+  std::string definitions(const std::string &walls)
+  {
+    return R"(
+fix m all mpm/material density 1.0 neohookean 10.0 0.3
+fix g all gravity 0.2 vector 1 -2 0.5
+variable shift equal -0.3*time
+variable angle equal 0.3*time
+variable speed equal 0.1*sin(3*time)
+region paddle block 5 9 3 8 INF INF move v_shift NULL NULL rotate v_angle 7 5 4 0 0 1
+region knob sphere 3 1 4 1.7
+)" + walls;
+  }
+};
+
+TEST_P(Decomposition, AnyRanksGiveTheSame)
+{
+  Sim serial(MPI_COMM_SELF), brick, tiled;
+  serial.commands(scene(GetParam()) + "run 100\n");
+  brick.commands(scene(GetParam()) + "run 100\n");
+  tiled.commands(scene(GetParam()) +
+                 "comm_style tiled\nbalance 1.0 rcb\nfix lb all balance 20 1.0 rcb\nrun 100\n");
+  auto a = serial.gather();
+  EXPECT_LT(difference(a, brick.gather()), 1.0e-11);
+  EXPECT_LT(difference(a, tiled.gather()), 1.0e-11);
+  for (auto *fix : serial.lmp->modify->get_fix_by_style("^mpm/boundary$")) {
+    double expected[4] = {fix->compute_vector(0), fix->compute_vector(1), fix->compute_vector(2),
+                          fix->compute_scalar()};
+    for (Sim *run : {&brick, &tiled}) {
+      auto *other = run->lmp->modify->get_fix_by_id(fix->id);
+      for (int d = 0; d < 3; d++) EXPECT_NEAR(other->compute_vector(d), expected[d], 1.0e-8);
+      EXPECT_NEAR(other->compute_scalar(), expected[3], 1.0e-9);
+    }
+  }
+}
+
+TEST_P(Decomposition, RestartContinues)
+{
+  Sim whole, parts;
+  whole.commands(scene(GetParam()) + "run 60\n");
+  parts.commands(scene(GetParam()) + "run 33\nwrite_restart walls_test.restart\n");
+  parts.commands("clear\nread_restart walls_test.restart\nfix grid all mpm 1.0\n" +
+                 definitions(GetParam()) + "run 27\n");
+  EXPECT_LT(difference(whole.gather(), parts.gather()), 1.0e-11);
+  for (auto *fix : whole.lmp->modify->get_fix_by_style("^mpm/boundary$"))
+    EXPECT_NEAR(parts.lmp->modify->get_fix_by_id(fix->id)->compute_scalar(), fix->compute_scalar(),
+                1.0e-9);
+  MPI_Barrier(MPI_COMM_WORLD);
+  std::remove("walls_test.restart");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Walls, Decomposition,
+    ::testing::Values(
+        "fix w all mpm/boundary xlo ylo stick\n",
+        "fix w all mpm/boundary ylo separate friction 0.3\nfix x all mpm/boundary xlo slip\n",
+        "fix w all mpm/boundary xlo ylo slip\nfix k all mpm/boundary region knob separate friction "
+        "0.2\n",
+        "fix w all mpm/boundary xlo ylo slip velocity v_speed 0 0\nfix p all mpm/boundary region "
+        "paddle stick\n",
+        "fix w all mpm/boundary xlo ylo stick\nfix p all mpm/boundary region paddle slip friction "
+        "0.2\n"));
 
 /* ----------------------------------------------------------------------
    several fields
@@ -936,7 +1093,8 @@ TEST(TimeStep, GrowthMaxAndMin)
   EXPECT_EQ(capped.lmp->update->dt, 0.01);
 
   EXPECT_NE(error_of(std::string(dt_scene) + "fix step all mpm/dt 0.5 min 1.0\nrun 1\n")
-                .find("is below min"), std::string::npos);
+                .find("is below min"),
+            std::string::npos);
 }
 
 TEST(TimeStep, RestartTakesTheSameSteps)
@@ -1023,6 +1181,11 @@ timestep 0.001
       {"fix w all mpm/boundary ylo stick colour red", "Unknown fix mpm/boundary keyword"},
       {"fix w all mpm/boundary ylo slip field none\nrun 0", "not the ID of a fix mpm"},
       {"fix w all mpm/boundary region none slip", "does not exist"},
+      {"unfix grid\nfix grid all mpm 1.0 scheme usf\nfix w all mpm/boundary ylo separate\nrun 0",
+       "usl or musl"},
+      {"unfix grid\nfix grid all mpm 1.0 scheme usf\nfix w all mpm/boundary ylo slip friction "
+       "0.1\nrun 0",
+       "usl or musl"},
       {"fix w all mpm/boundary region moving slip velocity 1 0 0", "its own motion"},
       {"fix w all mpm/boundary region open slip\nrun 0", "open faces"},
       {"fix w all mpm/boundary ylo slip\nfix w2 all mpm/boundary ylo stick\nrun 0", "belongs to"},
@@ -1053,24 +1216,29 @@ timestep 0.001
 
 TEST(BadInput, FacesOffTheLattice)
 {
-  const std::string scene = "units lj\ndimension 2\nboundary f f p\natom_style mpm\n"
-                            "region box block 0 8.3 0 8 -0.5 0.5\ncreate_box 1 box\nfix grid all mpm 1.0\n"
-                            "create_points 1 box ppc 2\n"
-                            "fix m all mpm/material density 1.0 neohookean 10.0 0.3\ntimestep 0.001\n";
-  EXPECT_NE(error_of(scene + "fix w all mpm/boundary xhi slip\nrun 0\n").find("move the face to 8 or 9"),
-            std::string::npos);
+  const std::string scene =
+      "units lj\ndimension 2\nboundary f f p\natom_style mpm\n"
+      "region box block 0 8.3 0 8 -0.5 0.5\ncreate_box 1 box\nfix grid all mpm 1.0\n"
+      "create_points 1 box ppc 2\n"
+      "fix m all mpm/material density 1.0 neohookean 10.0 0.3\ntimestep 0.001\n";
+  EXPECT_THAT(error_of(scene + "fix w all mpm/boundary xhi slip\nrun 0\n"),
+              ::testing::HasSubstr("move the face to 8 or 9"));
   EXPECT_EQ(error_of(scene + "fix w all mpm/boundary xlo yhi slip\nrun 1\n"), "");
 }
 
 TEST(BadInput, NarrowChannels)
 {
-  const std::string scene = "units lj\ndimension 2\nboundary f f p\natom_style mpm\n"
-                            "region box block 0 2 0 8 -0.5 0.5\ncreate_box 1 box\nfix grid all mpm 1.0\n"
-                            "create_points 1 box ppc 2\n"
-                            "fix m all mpm/material density 1.0 neohookean 10.0 0.3\ntimestep 0.001\n";
-  EXPECT_NE(error_of(scene + "fix w all mpm/boundary xlo slip\nfix v all mpm/boundary xhi slip\nrun 0\n")
-                .find("less than 3 cells"), std::string::npos);
-  EXPECT_NE(error_of(scene + "fix w all mpm/boundary xlo xhi separate\nrun 0\n")
-                .find("at least 3 cells"), std::string::npos);
+  const std::string scene =
+      "units lj\ndimension 2\nboundary f f p\natom_style mpm\n"
+      "region box block 0 2 0 8 -0.5 0.5\ncreate_box 1 box\nfix grid all mpm 1.0\n"
+      "create_points 1 box ppc 2\n"
+      "fix m all mpm/material density 1.0 neohookean 10.0 0.3\ntimestep 0.001\n";
+  EXPECT_NE(
+      error_of(scene + "fix w all mpm/boundary xlo slip\nfix v all mpm/boundary xhi slip\nrun 0\n")
+          .find("less than 3 cells"),
+      std::string::npos);
+  EXPECT_NE(
+      error_of(scene + "fix w all mpm/boundary xlo xhi separate\nrun 0\n").find("at least 3 cells"),
+      std::string::npos);
   EXPECT_EQ(error_of(scene + "fix w all mpm/boundary xlo xhi slip\nrun 1\n"), "");
 }

@@ -173,6 +173,19 @@ def test_links_lead_somewhere():
     return wrong
 
 
+def test_input_in_the_readme_is_that_of_the_example():
+    path = os.path.join(ROOT, "README.md")
+    if not os.path.exists(path):
+        return ["README.md is missing"]
+    text = read(path)
+    section = text[text.index("## A first input"):]
+    section = section[:section.index("\n## ", 3)]
+    example = set(read(os.path.join(ROOT, "examples", "taylor-bar", "in.taylor-bar")).splitlines())
+    return ["not in examples/taylor-bar/in.taylor-bar: " + line
+            for block in re.findall(r"^```\n(.*?)^```", section, re.M | re.S)
+            for line in block.splitlines() if line not in example]
+
+
 def test_scene_of_the_howto_runs():
     lmp = os.environ.get("MPM_LMP", os.path.join(ROOT, "build", "lmp"))
     if not os.path.exists(lmp):

@@ -66,9 +66,9 @@ struct Points {
   Reals x, v, f, C, stress, vol, mass, xnew;
 
   Points(int dim, int order, int first, int count, int behind, bool sorted) :
-      dim(dim), order(order), first(first), last(first + count), n(first + count + behind),
-      base{integer(-40, 40), integer(-40, 40), integer(-40, 40)}, x(3 * n), v(3 * n), f(3 * n),
-      C(9 * n), stress(6 * n), vol(n), mass(n), xnew(3 * n)
+      dim(dim), order(order), first(first), last(first + count),
+      n(first + count + behind), base{integer(-40, 40), integer(-40, 40), integer(-40, 40)},
+      x(3 * n), v(3 * n), f(3 * n), C(9 * n), stress(6 * n), vol(n), mass(n), xnew(3 * n)
   {
     step.h = uniform(0.1, 2.0);
     step.inv_h = 1.0 / step.h;
@@ -327,10 +327,10 @@ TEST_P(Kernels, G2PAgreesWithReference)
       Reals La(9 * count), Lb(9 * count);
       const int left_a = kernels.g2p(a.rows(in_place), a.step, a.first, a.last, a.base, tile.real,
                                      with_L ? La.data() : nullptr);
-      const int left_b = reference.g2p(b.rows(in_place), b.step, b.first, b.last, b.base,
-                                       tile.real, with_L ? Lb.data() : nullptr);
-      const std::string what = std::to_string(count) + " points, variant " +
-          std::to_string(variant);
+      const int left_b = reference.g2p(b.rows(in_place), b.step, b.first, b.last, b.base, tile.real,
+                                       with_L ? Lb.data() : nullptr);
+      const std::string what =
+          std::to_string(count) + " points, variant " + std::to_string(variant);
       ASSERT_LT(difference(a.v, b.v), SAME) << what;
       ASSERT_LT(difference(a.x, b.x), SAME) << what;
       ASSERT_LT(difference(a.xnew, b.xnew), SAME) << what;
@@ -572,8 +572,8 @@ TEST_P(Kernels, PointsThatLeaveTheTileAreReported)
   const int range = block_side(dim) + 2;
   for (int count : {1, 2, 7, 20})
     for (int axis = 0; axis < dim; axis++)
-      for (double target : {-0.01, 0.01, range - 0.01, range + 0.01,
-                            std::numeric_limits<double>::quiet_NaN()}) {
+      for (double target :
+           {-0.01, 0.01, range - 0.01, range + 0.01, std::numeric_limits<double>::quiet_NaN()}) {
         Points points = random_points(count);
         // all start in the middle, but one that ends at the target
         const Reals zero(9, 0.0);
@@ -640,7 +640,9 @@ TEST_P(Kernels, TileMovesItsBox)
     std::vector<int> order_of_slots(27);
     for (int i = 0; i < 27; i++) order_of_slots[i] = i;
     std::shuffle(order_of_slots.begin(), order_of_slots.end(), generator);
-    auto block = [side](int tile_node) { return (tile_node + side - 1) / side; };    // 0, 1, 2
+    auto block = [side](int tile_node) {
+      return (tile_node + side - 1) / side;
+    };    // 0, 1, 2
     int slot[27];
     for (int i = 0; i < 27; i++) {
       const int b[3] = {i / 9, i / 3 % 3, i % 3};
@@ -675,8 +677,7 @@ TEST_P(Kernels, TileMovesItsBox)
       for (int j = 0; j < nodes; j++)
         for (int k = 0; k < depth; k++)
           if (place(i, j, k) >= 0)
-            for (int c = 0; c < nreal; c++)
-              tile.real[tile_place(i, j, k) + c] = uniform(-1.0, 1.0);
+            for (int c = 0; c < nreal; c++) tile.real[tile_place(i, j, k) + c] = uniform(-1.0, 1.0);
     const Reals values = tile.values();
     kernels.flush(tile.real, store.data(), slot, box);
     Reals expected = before;
@@ -762,13 +763,12 @@ TEST_P(Tables, SaysWhatItHas)
           EXPECT_EQ(k.nreal, split || transfer != APIC ? 8 : 4);
           EXPECT_EQ(k.affine, transfer == APIC);
           EXPECT_EQ(k.mls, transfer == APIC && shape != LINEAR);
-          EXPECT_TRUE(k.p2g && k.p2g_momentum && k.p2g_force && k.g2p && k.g2p_gradient && k.flush &&
-                      k.load);
+          EXPECT_TRUE(k.p2g && k.p2g_momentum && k.p2g_force && k.g2p && k.g2p_gradient &&
+                      k.flush && k.load);
         }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Tables,
-                         ::testing::Values("reference", "baseline", "avx2", "avx512"));
+INSTANTIATE_TEST_SUITE_P(All, Tables, ::testing::Values("reference", "baseline", "avx2", "avx512"));
 
 TEST(Select, ByName)
 {

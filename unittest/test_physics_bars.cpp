@@ -17,6 +17,7 @@
 #include "gtest/gtest.h"
 
 #include <cmath>
+#include <map>
 
 using namespace MPM_TEST;
 
@@ -70,16 +71,19 @@ class Crossings {
     t_old = t;
     s_old = s;
   }
+  /** Mean of full periods: crossings of one direction. */
   double period() const
   {
-    if (times.size() < 3) return 0.0;
-    return 2.0 * (times.back() - times.front()) / (times.size() - 1);
+    const int n = ((int) times.size() - 1) / 2;
+    return n > 0 ? (times[2 * n] - times[0]) / n : 0.0;
   }
 };
 
 /* ----------------------------------------------------------------------
    A1: one point in one cell, node 1 fixed: the time integrator alone. v = 0.1 cos(2 pi t) exactly,
    since the log strain e of the law `linear' obeys e' = v, v' = -E e (N2/m2 = 1/M cancels).
+   Node 1 is held by symmetry, with a second point on its other side: a wall would act on the old
+   velocities of FLIP, too (see fix_mpm_boundary.cpp), which is not the time integrator.
 ------------------------------------------------------------------------- */
 
 class SinglePoint : public ::testing::TestWithParam<const char *> {
@@ -89,22 +93,25 @@ class SinglePoint : public ::testing::TestWithParam<const char *> {
   void simulate(double dt)
   {
     Scene run;
-    setup(run, {1.0, 0.0, 1.0, 0.0, 2.0,
+    setup(run, {1.0, -1.0, 1.0, -2.0, 2.0,
                 std::string("shape linear transfer flip 1.0 scheme ") + GetParam(),
-                "fix wall all mpm/boundary xlo stick\nvelocity all set 0.1 0 0\n", 4.0 * PI * PI,
-                "linear", 1});
-    ASSERT_EQ(run.n(), 1);
+                "velocity all set 0.1 0 0\n", 4.0 * PI * PI, "linear", 1});
+    ASSERT_EQ(run.n(), 2);
     ASSERT_DOUBLE_EQ(run.mass()[0], 1.0);
+    for (int i = 0; i < 2; i++) run.v()[i][0] = run.x()[i][0] > 0.0 ? 0.1 : -0.1;
     error_v = energy_max = 0.0;
     energy_min = 1.0e300;
     Crossings crossings;
     run.each_step([&](double **) {
-      const double t = run.time(), v = run.v()[0][0];
-      error_v = std::max(error_v, std::abs(v - 0.1 * cos(2.0 * PI * t)));
-      const double energy = (run.sums().kinetic + run.stored_energy()) / 0.005;
+      const double t = run.time();
+      for (int i = 0; i < 2; i++) {
+        const double v = run.x()[i][0] > 0.0 ? run.v()[i][0] : -run.v()[i][0];
+        error_v = std::max(error_v, std::abs(v - 0.1 * cos(2.0 * PI * t)));
+        if (i == 0) crossings.add(t, v);
+      }
+      const double energy = (run.sums().kinetic + run.stored_energy()) / 0.01;
       energy_min = std::min(energy_min, energy);
       energy_max = std::max(energy_max, energy);
-      crossings.add(t, v);
     });
     run_steps(run, dt, std::lround(10.0 / dt));
     period = crossings.period();
@@ -113,17 +120,29 @@ class SinglePoint : public ::testing::TestWithParam<const char *> {
 
 TEST_P(SinglePoint, TenPeriods)
 {
-  // bounds: 1.3 times what an independent code gives at this time step
   simulate(1.0e-3);
-  const double coarse = measured("A1 max |dv|/v0", error_v / 0.1);
-  EXPECT_LT(coarse, 1.3 * 3.1e-3);
-  EXPECT_GT(measured("A1 min E/E0", energy_min), 1.0 - 1.3 * 0.00313);
-  EXPECT_LT(measured("A1 max E/E0", energy_max), 1.0 + 1.3 * 0.00315);
-  EXPECT_NEAR(measured("A1 period", period), 0.9999984, 1.3 * 1.6e-6);
+  const double coarse = error_v;
+  measured("A1 max |dv|/v0", error_v / 0.1);
+  measured("A1 min E/E0", energy_min);
+  measured("A1 max E/E0", energy_max);
+  measured("A1 period - 1", period - 1.0);
+  if (GetParam() == std::string("usl")) {
+    // the strain follows the node, whose velocity changes by 1/N = 2 times that of the point: this
+    // damps, e' = v - (1/N - 1) dt E e, E/E0 = exp(-(1/N - 1) dt E t)
+    EXPECT_NEAR(energy_min, exp(-1.0e-3 * 4.0 * PI * PI * 10.0), 0.01);
+    EXPECT_LT(energy_max, 1.0 + 1.3 * 0.00315);
+    EXPECT_NEAR(period - 1.0, 0.0, 1.0e-5);
+  } else {
+    // bounds: 1.3 times what an independent code gives at this time step; leap-frog period
+    EXPECT_LT(error_v / 0.1, 1.3 * 3.1e-3);
+    EXPECT_GT(energy_min, 1.0 - 1.3 * 0.00313);
+    EXPECT_LT(energy_max, 1.0 + 1.3 * 0.00315);
+    EXPECT_NEAR(period - 1.0, -pow(2.0 * PI * 1.0e-3, 2) / 24.0, 0.3e-6);
+  }
 
   // first order in dt
   simulate(0.5e-3);
-  EXPECT_NEAR(coarse * 0.1 / error_v, 2.0, 0.05);
+  EXPECT_NEAR(measured("A1 error ratio for dt/2", coarse / error_v), 2.0, 0.12);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scheme, SinglePoint, ::testing::Values("usl", "usf", "musl"));
@@ -132,10 +151,46 @@ INSTANTIATE_TEST_SUITE_P(Scheme, SinglePoint, ::testing::Values("usl", "usf", "m
    A2: first vibration mode of a bar of length 25, fixed at one end. Period 10, energy constant.
 ------------------------------------------------------------------------- */
 
+struct Vibration {
+  double period, energy;    // relative to the exact ones
+};
+
+/** wall: the fixed end is held by a wall; otherwise by symmetry, with a bar twice as long. */
+static Vibration vibrate(const std::string &options, int cells, int ppc, bool wall, double cfl = 0.2)
+{
+  const double h = 25.0 / cells, v0 = 1.0e-3;    // small: the laws are linear there
+  Scene run;
+  setup(run, {h, wall ? 0.0 : -25.0, 25.0, wall ? 0.0 : -25.0 - 4.0 * h, 25.0 + 4.0 * h, options,
+              wall ? "fix wall all mpm/boundary xlo stick\n" : "", 100.0, "linear", ppc});
+  EXPECT_EQ(run.n(), cells * ppc * (wall ? 1 : 2));
+  run.set_velocity([=](const double *x, double *v) { v[0] = v0 * sin(PI * x[0] / 50.0); });
+  if (auto *C = run.field()->C)
+    for (int i = 0; i < run.n(); i++) C[i][0] = v0 * PI / 50.0 * cos(PI * run.x()[i][0] / 50.0);
+  const double start = run.sums().kinetic;
+  EXPECT_NEAR(start / (0.25 * 25.0 * v0 * v0 * h * (wall ? 1.0 : 2.0)), 1.0, 1.0e-3);
+  Crossings crossings;
+  run.each_step([&](double **) {
+    double p = 0.0;
+    for (int i = 0; i < run.n(); i++)
+      if (run.x()[i][0] > 0.0) p += run.mass()[i] * run.v()[i][0];
+    crossings.add(run.time(), p);
+  });
+  const double dt = cfl * h / 10.0;
+  run_steps(run, dt, std::lround(100.0 / dt));
+  Vibration v;
+  v.energy = (run.sums().kinetic + run.stored_energy()) / start;
+  v.period = crossings.period() / 10.0;
+  const std::string name = strprintf("A2 %s, %d cells, ppc %d, cfl %g%s: ", options.c_str(), cells,
+                                     ppc, cfl, wall ? ", wall" : "");
+  measured(name + "E/E0", v.energy);
+  measured(name + "T/T1", v.period);
+  return v;
+}
+
 struct VibrationCase {
   const char *options;
   int cells, ppc;
-  double period, period_tolerance;    // of T/10
+  double period, period_tolerance;    // of T/10; 0: not oscillating
   double energy, energy_tolerance;    // E/E0 after 10 periods
 };
 
@@ -144,30 +199,16 @@ class VibratingBar : public ::testing::TestWithParam<VibrationCase> {};
 TEST_P(VibratingBar, TenPeriods)
 {
   const auto &c = GetParam();
-  const double h = 25.0 / c.cells, v0 = 1.0e-3;    // small: the laws are linear there
-  Scene run;
-  setup(run, {h, 0.0, 25.0, 0.0, 25.0 + 4.0 * h, c.options, "fix wall all mpm/boundary xlo stick\n",
-              100.0, "linear", c.ppc});
-  ASSERT_EQ(run.n(), c.cells * c.ppc);
-  run.set_velocity([=](const double *x, double *v) { v[0] = v0 * sin(PI * x[0] / 50.0); });
-  const double start = run.sums().kinetic;
-  EXPECT_NEAR(start / (0.25 * 25.0 * v0 * v0 * h), 1.0, 1.0e-3);
-  Crossings crossings;
-  run.each_step([&](double **) { crossings.add(run.time(), run.sums().p[0]); });
-  const double dt = 0.2 * h / 10.0;
-  run_steps(run, dt, std::lround(100.0 / dt));
-  const double energy = (run.sums().kinetic + run.stored_energy()) / start;
-  const std::string name = strprintf("A2 %s, %d cells, ppc %d: ", c.options, c.cells, c.ppc);
-  measured(name + "E/E0", energy);
-  EXPECT_NEAR(energy, c.energy, c.energy_tolerance);
+  const auto v = vibrate(c.options, c.cells, c.ppc, false);
+  EXPECT_NEAR(v.energy, c.energy, c.energy_tolerance);
   if (c.period > 0.0) {
-    measured(name + "T/T1", crossings.period() / 10.0);
-    EXPECT_NEAR(crossings.period() / 10.0, c.period, c.period_tolerance);
+    EXPECT_NEAR(v.period, c.period, c.period_tolerance);
   }
 }
 
-// deviations of the linear shape function: an independent code, to 10 % of the period's deviation
-// and 0.002 of the energy; others: the everyday gate of 0.5 % and 1 %
+// linear: an independent code, to 10 % of the period's deviation and 0.002 of the energy (FLIP 0.99:
+// 0.01); others: the everyday gate of 0.5 % and 1 %. APIC pays per step for what the affine field
+// of a point does not hold: energy 0.988 and 0.980 after 3200 steps.
 
 INSTANTIATE_TEST_SUITE_P(
     Options, VibratingBar,
@@ -175,32 +216,62 @@ INSTANTIATE_TEST_SUITE_P(
         VibrationCase{"shape linear transfer flip 1.0 scheme usl", 16, 2, 1.00133, 1.3e-4, .9962, .002},
         VibrationCase{"shape linear transfer flip 1.0 scheme musl", 16, 2, 1.00133, 1.3e-4, .9984, .002},
         VibrationCase{"shape linear transfer flip 0.99 scheme musl", 16, 2, 1.00132, 1.3e-4, .9426, .01},
-        VibrationCase{"shape linear transfer pic", 16, 2, 0.0, 0.0, 0.01, 0.01},
+        VibrationCase{"shape linear transfer pic", 16, 2, 0.0, 0.0, .0031, .002},
         VibrationCase{"shape linear transfer apic", 16, 2, 1.00041, 4e-5, .9995, .002},
         VibrationCase{"shape linear transfer flip 1.0 scheme musl", 13, 1, 1.00245, 2.5e-4, .9965, .002},
         VibrationCase{"shape linear transfer apic", 13, 1, 1.00061, 6e-5, .9991, .002},
         VibrationCase{"shape quadratic transfer flip 1.0 scheme usl", 16, 2, 1.0, .005, 1.0, .01},
         VibrationCase{"shape quadratic transfer flip 1.0 scheme musl", 16, 2, 1.0, .005, 1.0, .01},
-        VibrationCase{"shape quadratic transfer apic", 16, 2, 1.0, .005, 1.0, .01},
-        VibrationCase{"shape quadratic transfer pic", 16, 2, 0.0, 0.0, 0.01, 0.01},
+        VibrationCase{"shape quadratic transfer apic", 16, 2, 1.0, .005, .985, .015},
+        VibrationCase{"shape quadratic transfer pic", 16, 2, 0.0, 0.0, .01, .01},
         VibrationCase{"shape cubic transfer flip 1.0 scheme musl", 16, 2, 1.0, .005, 1.0, .01},
-        VibrationCase{"shape cubic transfer apic", 16, 2, 1.0, .005, 1.0, .01}));
+        VibrationCase{"shape cubic transfer apic", 16, 2, 1.0, .005, .98, .02}));
+
+// a wall in place of the symmetry: nothing changes for APIC
+
+TEST(VibratingBarAtWall, Apic)
+{
+  for (auto *options : {"shape linear transfer apic", "shape quadratic transfer apic",
+                        "shape cubic transfer apic"}) {
+    const auto wall = vibrate(options, 16, 2, true), symmetry = vibrate(options, 16, 2, false);
+    EXPECT_NEAR(wall.energy, symmetry.energy, 1.0e-3);
+    EXPECT_NEAR(wall.period, symmetry.period, 1.0e-4);
+  }
+}
+
+// FLIP is updated as PIC in the layer next to a wall, which costs energy per step: with 16 cells
+// and 3200 steps 0.001 (linear) and 0.023 (quadratic, cubic) of it
+
+TEST(VibratingBarAtWall, Flip)
+{
+  for (auto *shape : {"linear", "quadratic", "cubic"}) {
+    const std::string options = strprintf("shape %s transfer flip 1.0 scheme musl", shape);
+    const auto wall = vibrate(options, 16, 2, true), symmetry = vibrate(options, 16, 2, false);
+    EXPECT_NEAR(wall.energy, symmetry.energy, shape[0] == 'l' ? 0.002 : 0.03);
+    EXPECT_NEAR(wall.period, symmetry.period, 1.0e-3);
+  }
+}
 
 /* ----------------------------------------------------------------------
    A3: impact of two bars, elementary wave theory
 ------------------------------------------------------------------------- */
 
+// The bars touch at a node from the start, and are looked at until they separate: in a single
+// velocity field they would then hold together until there is a cell or two between them, and L v/c
+// is half a cell here (fields of their own, coupled by contact, are another matter).
+
 struct Impact {
-  double length2, E2;         // second bar: length, modulus (density 1)
-  double v1, v2;              // velocities before
-  double v1_after, v2_after;  // of the centres of mass
-  double until;               // time to run
-  double plateau;             // interface stress at t = 0.1, from Z1 Z2 (v1 - v2)/(Z1 + Z2)
+  double length2, E2;           // second bar: length, modulus (density 1)
+  double v1, v2;                // velocities before
+  double v1_after, v2_after;    // of the centres of mass
+  double until;                 // end of contact, or before
+  double plateau;               // interface stress, -Z1 Z2 (v1 - v2)/(Z1 + Z2)
+  bool equal;
 };
 
 class Bars : public ::testing::TestWithParam<const char *> {
  protected:
-  void collide(const Impact &c)
+  static void collide(const Impact &c)
   {
     const double h = 0.01;    // bar 1 from -1 to 0, then bar 2
     Scene run;
@@ -215,106 +286,191 @@ class Bars : public ::testing::TestWithParam<const char *> {
                            "velocity one set %.17g 0 0\n"
                            "velocity two set %.17g 0 0\n",
                            c.length2, c.E2, c.v1, c.v2));
-    double p_start = 0.0, stress = 0.0, lowest = 0.0, drift = 0.0, kinetic_mid = 0.0;
+    const double speed = std::abs(c.v1 - c.v2), v_after[3] = {0.0, c.v1_after, c.v2_after};
+    const double start = run.sums().kinetic;
+    double p_start = 0.0, drift = 0.0, lowest = 0.0, stress = 0.0, worst = 0.0;
+    int samples = 0;
     run.each_step([&](double **) {
       const auto all = run.sums();
       const double t = run.time();
       if (t == 0.0) p_start = all.p[0];
       drift = std::max(drift, std::abs(all.p[0] - p_start));
-      if (t < 0.1 - 1.0e-9) kinetic_mid = all.kinetic;
-      // mean over what the waves have passed by t = 0.09 .. 0.1: 0.1 to 0.5 from the interface
+      // equal bars: KE/KE0 = 1 - ct/L, then ct/L - 1
+      worst = std::max(worst, std::abs(all.kinetic / start - std::abs(1.0 - 10.0 * t)));
+      if (t < 0.06 || t > 0.12) return;
+      // plateau: the waves have passed this region, the reflected ones have not come back
       double sum = 0.0;
       int n = 0;
-      for (int i = 0; i < run.n(); i++) {
-        lowest = std::min(lowest, run.points().stress[i][0]);
-        if (std::abs(run.x()[i][0]) < 0.5) {
+      for (int i = 0; i < run.n(); i++)
+        if (std::abs(run.x()[i][0]) < 0.3) {
           sum += run.points().stress[i][0];
+          lowest = std::min(lowest, run.points().stress[i][0]);
           n++;
         }
-      }
-      if (t < 0.08) stress = sum / n;
-    });
+      stress += sum / n;
+      samples++;
+    }, 10);
     const double dt = 2.0e-4;
     run_steps(run, dt, std::lround(c.until / dt));
     const double scale = std::abs(run.sums(1).mass * c.v1) + std::abs(run.sums(2).mass * c.v2);
-    EXPECT_LT(measured("A3 momentum error", drift / scale), 1.0e-12);
-    const double speed = std::abs(c.v1 - c.v2);
-    EXPECT_NEAR(measured("A3 v1 after / relative speed", run.sums(1).p[0] / run.sums(1).mass / speed),
-                c.v1_after / speed, 0.02);
-    EXPECT_NEAR(measured("A3 v2 after / relative speed", run.sums(2).p[0] / run.sums(2).mass / speed),
-                c.v2_after / speed, 0.02);
-    EXPECT_NEAR(measured("A3 interface stress / exact", stress / c.plateau), 1.0, 0.02);
-    measured("A3 lowest stress / exact", lowest / c.plateau);
-    (void) kinetic_mid;
+    const std::string name = strprintf("A3 %s: ", GetParam());
+    EXPECT_LT(measured(name + "momentum error", drift / scale), 1.0e-12);
+    for (const int type : {1, 2}) {
+      const auto body = run.sums(type);
+      measured(name + strprintf("v%d after (exact %g)", type, v_after[type]), body.p[0] / body.mass);
+      EXPECT_NEAR(body.p[0] / body.mass / speed, v_after[type] / speed,
+                  c.equal || name.find("linear") == std::string::npos ? 0.02 : 0.05);
+    }
+    // linear functions lose 5 % where points cross cells, which they do unless the bars are equal
+    const bool smooth = c.equal || name.find("linear") == std::string::npos;
+    EXPECT_NEAR(measured(name + "interface stress/exact", stress / samples / c.plateau), 1.0,
+                smooth ? 0.02 : 0.06);
+    const double overshoot = measured(name + "extreme stress of a point/exact", lowest / c.plateau);
+    if (c.E2 == 100.0 && smooth) {
+      // FLIP damps nothing: 1.27 is the overshoot of a chain of masses and springs
+      EXPECT_LT(overshoot, name.find("apic") == std::string::npos ? 1.27 : 1.15);
+    }
+    if (c.equal) {
+      // kinetic energy of points: APIC has a part of it, within the width of the fronts, in C
+      EXPECT_LT(measured(name + "error of KE/KE0", worst),
+                name.find("apic") == std::string::npos ? 0.02 : 0.03);
+    }
   }
 };
 
 TEST_P(Bars, Equal)
 {
-  collide({1.0, 100.0, 0.05, -0.05, -0.05, 0.05, 0.25, -0.5});
+  collide({1.0, 100.0, 0.05, -0.05, -0.05, 0.05, 0.2, -0.5, true});
 }
 
 TEST_P(Bars, TwiceAsLong)
 {
-  collide({2.0, 100.0, 0.05, 0.0, 0.0, 0.025, 0.3, -0.25});
+  collide({2.0, 100.0, 0.05, 0.0, 0.0, 0.025, 0.3, -0.25, false});
 }
 
 TEST_P(Bars, OtherImpedance)
 {
-  // Z1 = 10, Z2 = 20, same transit time: both waves return to the interface together and bar 1 is
-  // free of stress with velocity 2 v_i - v1 = -v1/3, bar 2 with 2 v_i - 0 = 2 v1/3
-  collide({2.0, 400.0, 0.06, 0.0, -0.02, 0.04, 0.25, -0.4});
+  // Z1 = 10, Z2 = 20, the waves return at the same time 2 L1/c1 = 2 L2/c2: bar 1 is then free of
+  // stress with velocity 2 v_i - v1 and bar 2 with 2 v_i, v_i = v1/3
+  collide({2.0, 400.0, 0.06, 0.0, -0.02, 0.04, 0.2, -0.4, false});
 }
 
 INSTANTIATE_TEST_SUITE_P(Options, Bars,
                          ::testing::Values("shape linear transfer flip 1.0 scheme musl",
-                                           "shape quadratic transfer apic"));
+                                           "shape quadratic transfer apic",
+                                           "shape quadratic transfer flip 1.0 scheme musl",
+                                           "shape cubic transfer apic"));
 
 /* ----------------------------------------------------------------------
    A4: free-free bar of length 1 in its first mode while it flies through the grid with velocity V.
    The error must not depend on V: linear shape functions fail, smooth ones must not.
-   Returns max over time of the rms displacement error relative to the amplitude's rms, and E/E_exact.
+   u = 0.01 cos(pi X) cos(10 pi t) + V t for a law with P = E (F - 1). The laws here are not linear at
+   strains of 3 %; the truth is a fine total-Lagrangian solution for P = E/2 (F - 1/F), neohookean
+   with Poisson's ratio 0, which the same initial state is handed to.
 ------------------------------------------------------------------------- */
 
+static constexpr double GALILEAN_A = 0.01, GALILEAN_E = 100.0;
+
+/** Displacements of a free bar at times k dt, k = 0 .. steps, by linear finite elements. */
+class FineBar {
+  static constexpr int N = 800;
+  std::vector<std::vector<double>> u;
+
+ public:
+  double energy = 0.0;    // stored at the start, per cross-section
+
+  FineBar(double dt, int steps)
+  {
+    const double H = 1.0 / N;
+    std::vector<double> now(N + 1), v(N + 1, 0.0), f(N + 1);
+    for (int k = 0; k <= N; k++) now[k] = GALILEAN_A * cos(PI * k * H);
+    for (int k = 0; k < N; k++) {
+      const double F = 1.0 + (now[k + 1] - now[k]) / H;
+      energy += H * 0.5 * GALILEAN_E * (0.5 * (F * F - 1.0) - log(F));
+    }
+    const int sub = std::ceil(dt / (0.5 * H / 10.0));
+    const double tau = dt / sub;
+    u.push_back(now);
+    for (int s = 1; s <= steps; s++) {
+      for (int q = 0; q < sub; q++) {
+        std::fill(f.begin(), f.end(), 0.0);
+        for (int k = 0; k < N; k++) {
+          const double F = 1.0 + (now[k + 1] - now[k]) / H;
+          const double P = 0.5 * GALILEAN_E * (F - 1.0 / F);
+          f[k] += P;
+          f[k + 1] -= P;
+        }
+        // the first half step makes it the leap-frog form of velocity Verlet
+        const double step = s == 1 && q == 0 ? 0.5 * tau : tau;
+        for (int k = 0; k <= N; k++) v[k] += step * f[k] / (k == 0 || k == N ? 0.5 * H : H);
+        for (int k = 0; k <= N; k++) now[k] += tau * v[k];
+      }
+      u.push_back(now);
+    }
+  }
+  double displacement(int step, double X) const
+  {
+    const double s = X * N;
+    const int k = std::min((int) s, N - 1);
+    return u[step][k] + (s - k) * (u[step][k + 1] - u[step][k]);
+  }
+};
+
 struct Galilean {
-  double error, energy;
+  double error, energy;    // max over time of the rms error, relative; energy/exact at the end
 };
 
 static Galilean galilean_bar(const std::string &options, int cells, double V)
 {
-  const double A = 1.0e-4, h = 1.0 / cells, omega = 10.0 * PI;
+  // one time step for all V: dissipation per step must not look like an effect of V
+  const double A = GALILEAN_A, h = 1.0 / cells, dt = 0.2 * h / (10.0 + 5.0);
+  const int steps = std::lround(1.0 / dt);
+  static std::map<int, FineBar> exact;
+  if (!exact.count(cells)) exact.emplace(cells, FineBar(dt, steps));
+  const FineBar &fine = exact.at(cells);
+
   Scene run;
-  setup(run, {h, 0.0, 1.0, -0.5, 6.5, options});
+  setup(run, {h, 0.0, 1.0, -0.5, 6.5, options, "", GALILEAN_E, "neohookean"});
   for (int i = 0; i < run.n(); i++) {
-    const double X = run.x()[i][0], strain = -A * PI * sin(PI * X);
+    const double X = run.x()[i][0], F = 1.0 - A * PI * sin(PI * X);
     run.x()[i][0] += A * cos(PI * X);
     run.v()[i][0] = V;
-    run.points().F[i][0] += strain;
-    run.points().vol[i] = run.lmp->atom->vfrac[i] * (1.0 + strain);
-    run.points().stress[i][0] = 100.0 * log(1.0 + strain) / (1.0 + strain);
+    run.points().F[i][0] = F;
+    run.points().vol[i] *= F;
+    run.points().stress[i][0] = 0.5 * GALILEAN_E * (F - 1.0 / F);
+    // the other normal stresses of this law are zero with Poisson's ratio 0
   }
   double worst = 0.0, energy = 0.0;
+  int step = 0;
   run.each_step([&](double **) {
-    const double t = run.time();
     double sum = 0.0;
     for (int i = 0; i < run.n(); i++) {
       const double X = run.reference(i)[0];
-      const double exact = A * cos(PI * X) * cos(omega * t) + V * t;
-      sum += pow(run.x()[i][0] - X - exact, 2);
+      sum += pow(run.x()[i][0] - X - V * run.time() - fine.displacement(step, X), 2);
     }
     worst = std::max(worst, sqrt(sum / run.n()));
     const auto all = run.sums();
     energy = all.kinetic - 0.5 * all.mass * V * V + run.stored_energy();
+    step++;
   });
-  const double dt = 0.2 * h / (10.0 + std::abs(V));
-  run_steps(run, dt, std::lround(1.0 / dt));
+  run_steps(run, dt, steps);
   Galilean g;
   g.error = worst / (A / sqrt(2.0));
-  g.energy = energy / (0.25 * pow(A * omega, 2) * h);
+  g.energy = energy / (fine.energy * h);
   const std::string name = strprintf("A4 %s, %d cells, V = %g: ", options.c_str(), cells, V);
   measured(name + "error", g.error);
   measured(name + "E/E0", g.energy);
   return g;
+}
+
+TEST(FineBar, IsNearTheLinearSolution)
+{
+  FineBar bar(0.05, 20);
+  EXPECT_NEAR(bar.energy, 0.25 * pow(GALILEAN_A * 10.0 * PI, 2), 0.02 * bar.energy);
+  for (const int step : {0, 1, 2, 3, 4}) {
+    const double exact = GALILEAN_A * cos(PI * 0.3) * cos(10.0 * PI * 0.05 * step);
+    EXPECT_NEAR(bar.displacement(step, 0.3), exact, 0.1 * GALILEAN_A);
+  }
 }
 
 class GalileanBar : public ::testing::TestWithParam<const char *> {};
@@ -324,7 +480,7 @@ TEST_P(GalileanBar, ErrorDoesNotDependOnVelocity)
   const auto at_rest = galilean_bar(GetParam(), 40, 0.0);
   const auto slow = galilean_bar(GetParam(), 40, 1.0);
   const auto fast = galilean_bar(GetParam(), 40, 5.0);
-  EXPECT_LT(at_rest.error, 0.08);
+  EXPECT_LT(at_rest.error, 0.06);
   EXPECT_LT(slow.error, 1.15 * at_rest.error);
   EXPECT_LT(fast.error, 1.15 * at_rest.error);
   for (const auto &g : {at_rest, slow, fast}) EXPECT_NEAR(g.energy, 1.0, 0.01);
@@ -338,11 +494,9 @@ INSTANTIATE_TEST_SUITE_P(Options, GalileanBar,
 
 TEST(GalileanBarLinear, ShowsTheDefect)
 {
-  const std::string options = "shape linear transfer flip 1.0 scheme musl";
-  const auto at_rest = galilean_bar(options, 40, 0.0);
-  const auto slow = galilean_bar(options, 40, 1.0);
-  EXPECT_LT(at_rest.error, 0.08);
-  EXPECT_GT(slow.error, 3.0 * at_rest.error);
+  const auto slow = galilean_bar("shape linear transfer flip 1.0 scheme musl", 40, 1.0);
+  const auto smooth = galilean_bar("shape quadratic transfer flip 1.0 scheme musl", 40, 1.0);
+  EXPECT_GT(slow.error, 3.0 * smooth.error);
 }
 
 /* ----------------------------------------------------------------------
@@ -359,7 +513,7 @@ class Pulse : public ::testing::TestWithParam<PulseCase> {};
 TEST_P(Pulse, WaveSpeed)
 {
   const auto &c = GetParam();
-  const double h = 0.01, width = 0.1, A = 1.0e-5, E = 100.0;
+  const double h = 0.01, width = 0.3, A = 1.0e-5, E = 100.0;
   const double modulus = E * (1.0 - c.nu) / ((1.0 + c.nu) * (1.0 - 2.0 * c.nu));
   const double lambda = E * c.nu / ((1.0 + c.nu) * (1.0 - 2.0 * c.nu));
   const double speed = sqrt(modulus);
@@ -372,8 +526,8 @@ TEST_P(Pulse, WaveSpeed)
                          "fix sides all mpm/boundary ylo yhi slip\n",
                          0.4 * h, h, h, c.options, c.law, E, c.nu));
   for (int i = 0; i < run.n(); i++) {
-    const double X = run.x()[i][0], g = exp(-pow((X - 0.8) / width, 2));
-    const double strain = -2.0 * A * (X - 0.8) / (width * width) * g;
+    const double X = run.x()[i][0], g = exp(-pow((X - 0.9) / width, 2));
+    const double strain = -2.0 * A * (X - 0.9) / (width * width) * g;
     run.x()[i][0] += A * g;
     run.v()[i][0] = -speed * strain;
     run.points().F[i][0] += strain;
@@ -394,12 +548,14 @@ TEST_P(Pulse, WaveSpeed)
     if (run.time() == 0.0) start = position;
   });
   const double dt = 0.3 * h / speed;
-  const int n = std::lround(1.4 / speed / dt);
+  const int n = std::lround(1.2 / speed / dt);
   run_steps(run, dt, n);
   const double ratio = (position - start) / (n * dt) / speed;
   measured(strprintf("wave speed / exact, %s, %s, nu = %g", c.options, c.law, c.nu), ratio);
   EXPECT_NEAR(ratio, 1.0, 0.01);
 }
+
+// resolved to 0.3/h = 30 cells: what is left is the dispersion of the shape functions, O(h^2)
 
 INSTANTIATE_TEST_SUITE_P(
     Options, Pulse,

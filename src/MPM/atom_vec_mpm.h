@@ -40,9 +40,9 @@ class AtomVecMPM : public AtomVec {
   void pack_property_atom(int, double *, int, int) override;
 
  private:
-  MPMPoints *points;      // never owned: several styles and Atoms may refer to the same arrays
+  MPMPoints *points;    // never owned: several styles and Atoms may refer to the same arrays
   double *rmass, *vfrac, *radius;
-  bool after_sphere;      // a sphere style converts density to mass before this style does
+  bool after_sphere;    // a sphere style converts density to mass before this style does
   double rmass_one;
 
   void check_companions();

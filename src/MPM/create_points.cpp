@@ -27,12 +27,12 @@
 
 using namespace LAMMPS_NS;
 
-static constexpr double TOLERANCE = 1.0e-6;         // in spacings, for positions that coincide
-static constexpr double INFINITE = 1.0e19;          // bounds of regions beyond it are INF
-static constexpr double MAX_INDEX = 1.0e15;         // of a lattice site
-static constexpr double MAX_SITES = 9.0e18;         // to look at
-static constexpr bigint MAX_COUNT = 200000000;      // sites per rank looked at outside the box
-static constexpr bigint SHARE = 1 << 18;            // sites a rank looks at before points are sent
+static constexpr double TOLERANCE = 1.0e-6;       // in spacings, for positions that coincide
+static constexpr double INFINITE = 1.0e19;        // bounds of regions beyond it are INF
+static constexpr double MAX_INDEX = 1.0e15;       // of a lattice site
+static constexpr double MAX_SITES = 9.0e18;       // to look at
+static constexpr bigint MAX_COUNT = 200000000;    // sites per rank looked at outside the box
+static constexpr bigint SHARE = 1 << 18;          // sites a rank looks at before points are sent
 static constexpr int MAX_PPC = 1000;
 
 static const char axis_name[] = "xyz";
@@ -541,10 +541,10 @@ bigint CreatePoints::make_points()
     for (bigint k = 0; k < nmade; k++)
       made[k].tag = atom->tag_enable ? maxtag + before + k + 1 : 0;
 
-    // to their owners, in the order of their IDs
+    // to their owners, where they arrive in an order that is the same in each run
 
     if (comm->nprocs == 1) {
-      for (const auto &site : made) make_point(site);
+      received.swap(made);
     } else {
       owner.resize(nmade);
       int unused[3];
@@ -553,8 +553,11 @@ bigint CreatePoints::make_points()
       received.resize(irregular.create_data(nmade, owner.data(), 1));
       irregular.exchange_data((char *) made.data(), sizeof(Site), (char *) received.data());
       irregular.destroy_data();
-      for (const auto &site : received) make_point(site);
     }
+
+    const bigint need = (bigint) atom->nlocal + received.size();
+    if (need > atom->nmax) atom->avec->grow(atom->avec->roundup(need));
+    for (const auto &site : received) make_point(site);
   }
   return npoints;
 }

@@ -53,9 +53,9 @@ class CreatePoints : public Command {
   // derived
 
   struct MPMPoints *points;
-  double volume;          // of a point
-  Range box[3];           // sites in the simulation box
-  Range search[3];        // sites that can be in the region, also outside the box
+  double volume;      // of a point
+  Range box[3];       // sites in the simulation box
+  Range search[3];    // sites that can be in the region, also outside the box
 
   void parse(int, char **);
   void find_lattice();

@@ -17,13 +17,19 @@
    these, it leaves uniform and linear ones alone. Its impulse on the body is
      -m(k0) w(k0) - sum_j 2 m1 m2/(m1 + m2) (w1 + w2),
    which for an unconstrained component is minus the mean velocity at the wall times a mass. Stick
-   prescribes all components, slip the normal one. The tangential components of slip are left to
+   prescribes all components, slip the normal one. At edges, a node and its images in all faces of
+   the fix that prescribe a component form an orbit with signs; the projection is the mean over the
+   orbit, and zero when it meets a plane. The same holds in channels of one or two cells, where an
+   image has an image in the face opposite. The tangential components of slip are left to
    the momentum equation, not made even: an even field has no shear at the wall, but a body that
    slides with friction, or was thrown with a shear flow, has.
 
    A column of nodes along the normal decides alone: a separating wall lets go of it when the
    impulse would pull; friction scales the tangential projection so that its impulse is at most
-   mu times the normal one (return mapping of Coulomb's law).
+   mu times the normal one (return mapping of Coulomb's law). With MUSL, the velocity that is mapped
+   back for the gradient follows the decision of the momentum equation: a gradient that lets go
+   where the motion does not, or the reverse, creates energy (a block that bounced had 1.4 times
+   its energy). USF needs the gradient before there is a decision and is refused.
 
    FLIP. Points change their velocity by the sum of N (v_new - v_old). Old velocities stay as they
    are, also in the planes. With sum_p m_p N = m_i, the momentum of the points then changes exactly
@@ -88,10 +94,12 @@ struct RegionMotion : public Region {
 
 FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), region(nullptr), kind(STICK), friction(0.0), rotating(false),
-    motion_step(-1), work(0.0), dt_last(0.0), reaction_known(true), counting(false), kinetic(0.0)
+    motion_step(-1), work(0.0), dt_last(0.0), reaction_known(true), counting(false), decided(false),
+    kinetic(0.0)
 {
   if (igroup != 0)
-    error->all(FLERR, 1, "Fix mpm/boundary acts on nodes, which have no group: use group all, and "
+    error->all(FLERR, 1,
+               "Fix mpm/boundary acts on nodes, which have no group: use group all, and "
                "keyword field to act on one of several fields");
 
   // where
@@ -109,14 +117,18 @@ FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) :
       if (face >= 4 && domain->dimension == 2)
         error->all(FLERR, iarg, "Fix mpm/boundary face {} does not exist in 2d", arg[iarg]);
       if (domain->periodicity[face / 2])
-        error->all(FLERR, iarg, "Fix mpm/boundary face {} belongs to a periodic axis: "
-                   "use boundary f there", arg[iarg]);
+        error->all(FLERR, iarg,
+                   "Fix mpm/boundary face {} belongs to a periodic axis: "
+                   "use boundary f there",
+                   arg[iarg]);
       face_list.push_back(face);
       iarg++;
     }
     if (face_list.empty())
-      error->all(FLERR, iarg, "Unknown fix mpm/boundary wall {}: must be region or one or more of "
-                 "xlo xhi ylo yhi zlo zhi", arg[iarg]);
+      error->all(FLERR, iarg,
+                 "Unknown fix mpm/boundary wall {}: must be region or one or more of "
+                 "xlo xhi ylo yhi zlo zhi",
+                 arg[iarg]);
   }
 
   // what
@@ -200,8 +212,10 @@ FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) :
       error->all(FLERR, 4, "Region {} for fix mpm/boundary does not exist: define it before",
                  region_id);
     if (moving && region->dynamic)
-      error->all(FLERR, "Fix mpm/boundary takes the velocity of region {} from its own motion: "
-                 "drop velocity and rotate, or the motion of the region", region_id);
+      error->all(FLERR,
+                 "Fix mpm/boundary takes the velocity of region {} from its own motion: "
+                 "drop velocity and rotate, or the motion of the region",
+                 region_id);
   }
 
   scalar_flag = vector_flag = 1;
@@ -273,7 +287,17 @@ void FixMPMBoundary::init()
   if (fields.empty())
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/boundary needs a fix mpm to act on");
   bool found = false;
-  for (auto *ifix : fields) found = found || acts_on(*dynamic_cast<FixMPM *>(ifix));
+  for (auto *ifix : fields) {
+    auto *field = dynamic_cast<FixMPM *>(ifix);
+    if (!acts_on(*field)) continue;
+    found = true;
+    if (field->scheme == FixMPM::USF && decides())
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/boundary separate and friction cannot be used "
+                 "with scheme usf of fix mpm {}, which needs the contact before it is known: use "
+                 "usl or musl",
+                 field->id);
+  }
   if (!found)
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/boundary field {} is not the ID of a fix mpm",
                field_id);
@@ -288,26 +312,34 @@ void FixMPMBoundary::init()
       error->all(FLERR, Error::NOLASTLINE, "Region {} for fix mpm/boundary does not exist",
                  region_id);
     if (region->openflag)
-      error->all(FLERR, Error::NOLASTLINE, "Fix mpm/boundary cannot use region {}: open faces have "
-                 "no inside", region_id);
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/boundary cannot use region {}: open faces have "
+                 "no inside",
+                 region_id);
     if (region->dynamic_check() && region->nregion > 1)
-      error->all(FLERR, Error::NOLASTLINE, "Fix mpm/boundary cannot use region {}: a union or "
-                 "intersection must not move; use one fix mpm/boundary for each member", region_id);
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/boundary cannot use region {}: a union or "
+                 "intersection must not move; use one fix mpm/boundary for each member",
+                 region_id);
   }
 
   // one master of each face
 
   for (int face : face_list) {
     if (domain->periodicity[face / 2])
-      error->all(FLERR, Error::NOLASTLINE, "Fix mpm/boundary face {} belongs to a periodic axis: "
-                 "use boundary f there", FACE_NAME[face]);
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/boundary face {} belongs to a periodic axis: "
+                 "use boundary f there",
+                 FACE_NAME[face]);
     for (auto *ifix : modify->get_fix_by_style("^mpm/boundary$")) {
       auto *other = dynamic_cast<FixMPMBoundary *>(ifix);
       if (other == this) continue;
       if (!field_id.empty() && !other->field_id.empty() && field_id != other->field_id) continue;
       if (std::count(other->face_list.begin(), other->face_list.end(), face))
-        error->all(FLERR, Error::NOLASTLINE, "Face {} belongs to fix mpm/boundary {} and {}: remove "
-                   "one, or give them different fields", FACE_NAME[face], id, other->id);
+        error->all(FLERR, Error::NOLASTLINE,
+                   "Face {} belongs to fix mpm/boundary {} and {}: remove "
+                   "one, or give them different fields",
+                   FACE_NAME[face], id, other->id);
 
       // opposite face
 
@@ -316,16 +348,19 @@ void FixMPMBoundary::init()
           auto &field = *dynamic_cast<FixMPM *>(jfix);
           if (!acts_on(field) || !other->acts_on(field)) continue;
           if (narrow({face_on_lattice(field, face), face_on_lattice(field, face ^ 1)}, face / 2))
-            error->all(FLERR, Error::NOLASTLINE, "Faces {} and {} are less than 3 cells apart: "
-                       "they must be in the same fix mpm/boundary", FACE_NAME[face],
-                       FACE_NAME[face ^ 1]);
+            error->all(FLERR, Error::NOLASTLINE,
+                       "Faces {} and {} are less than 3 cells apart: "
+                       "they must be in the same fix mpm/boundary",
+                       FACE_NAME[face], FACE_NAME[face ^ 1]);
         }
     }
     for (auto *jfix : fields) {
       auto &field = *dynamic_cast<FixMPM *>(jfix);
-      if (acts_on(field) && (kind == SEPARATE || friction > 0.0) &&
-          narrow(faces_on_lattice(field), face / 2))
-        error->all(FLERR, Error::NOLASTLINE, "Fix mpm/boundary separate and friction need at least "
+      if (!acts_on(field)) continue;
+      const auto faces = faces_on_lattice(field);
+      if (decides() && narrow(faces, face / 2))
+        error->all(FLERR, Error::NOLASTLINE,
+                   "Fix mpm/boundary separate and friction need at least "
                    "3 cells between opposite faces");
     }
   }
@@ -358,10 +393,11 @@ FixMPMBoundary::Face FixMPMBoundary::face_on_lattice(const FixMPM &field, int fa
   f.plane = (int) std::lround((x - origin) / h);
   const double plane_x = origin + f.plane * h;
   if (fabs(x - plane_x) > ON_SURFACE * h)
-    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/boundary face {} at {} is not in a plane of nodes "
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/boundary face {} at {} is not in a plane of nodes "
                "of fix mpm {}: move the face to {} or {}, change spacing or origin of fix mpm, or "
-               "use a region", FACE_NAME[face], x, field.id, plane_x,
-               plane_x + (x > plane_x ? h : -h));
+               "use a region",
+               FACE_NAME[face], x, field.id, plane_x, plane_x + (x > plane_x ? h : -h));
   return f;
 }
 
@@ -435,7 +471,7 @@ void FixMPMBoundary::topology_changed(FixMPM &field)
 }
 
 /* ----------------------------------------------------------------------
-   columns through the planes, and single nodes deep behind a plane
+   orbits or columns at the faces, and single nodes deep behind them
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::list_face_nodes(FieldNodes &list)
@@ -448,7 +484,7 @@ void FixMPMBoundary::list_face_nodes(FieldNodes &list)
       const int last = face.plane - face.inward * (DEPTH + 1);
       const int lo = block.b[face.axis] * grid.side, hi = lo + grid.side - 1;
       const bool beyond = face.inward > 0 ? lo <= last : hi >= last;
-      const bool plane = face.plane >= lo && face.plane <= hi && !narrow(list.faces, face.axis);
+      const bool plane = decides() && face.plane >= lo && face.plane <= hi;
       if (!beyond && !plane) continue;
       for (int n = 0; n < NODES_PER_BLOCK; n++) {
         if (block.alias >> n & 1) continue;
@@ -456,16 +492,32 @@ void FixMPMBoundary::list_face_nodes(FieldNodes &list)
         grid.node_index(block, n, index);
         if (plane && index[face.axis] == face.plane) list_column(list, f, index);
         if (beyond && (last - index[face.axis]) * face.inward >= 0) {
-          Single s = {(int64_t) ib * NODES_PER_BLOCK + n, {0.0, 0.0, 0.0}, 0.0, 0.0,
-                      (bool) (block.owned >> n & 1)};
+          Single s = {(int64_t) ib * NODES_PER_BLOCK + n,
+                      {0.0, 0.0, 0.0},
+                      0.0,
+                      0.0,
+                      (bool) (block.owned >> n & 1),
+                      FREE};
           s.normal[face.axis] = face.inward;
           list.singles.push_back(s);
         }
       }
     }
   }
-  for (int d = 0; d < 3; d++)
-    if (narrow(list.faces, d)) list_orbits(list, d);
+
+  // stick: a component is odd about all faces; slip: the normal one about its own
+
+  if (kind == STICK) {
+    list_orbits(list, list.faces, constrained);
+  } else if (!decides()) {
+    for (int d = 0; d < grid.lattice.dim; d++) {
+      std::vector<Face> faces;
+      for (const auto &face : list.faces)
+        if (face.axis == d) faces.push_back(face);
+      const bool prescribed[3] = {d == 0, d == 1, d == 2};
+      if (!faces.empty()) list_orbits(list, faces, prescribed);
+    }
+  }
 }
 
 void FixMPMBoundary::list_column(FieldNodes &list, int f, const int *index)
@@ -477,6 +529,7 @@ void FixMPMBoundary::list_column(FieldNodes &list, int f, const int *index)
   };
   Column column;
   column.face = f;
+  column.contact = FREE;
   column.plane = grid.locate(index);
   column.owned = owned(column.plane);
   for (int j = 0; j < DEPTH; j++) {
@@ -496,41 +549,81 @@ void FixMPMBoundary::list_column(FieldNodes &list, int f, const int *index)
 }
 
 /* ----------------------------------------------------------------------
-   two mirrors less than 3 cells apart: nodes and all their images, folded into the channel
+   nodes between the mirrors, each with all the images that it has in them
 ------------------------------------------------------------------------- */
 
-void FixMPMBoundary::list_orbits(FieldNodes &list, int axis)
+void FixMPMBoundary::list_orbits(FieldNodes &list, const std::vector<Face> &faces,
+                                 const bool *prescribed)
 {
   const Grid &grid = *list.field->grid;
-  int lo = 0, hi = 0;
-  for (const auto &f : list.faces)
-    if (f.axis == axis) (f.inward > 0 ? lo : hi) = f.plane;
+  bool has[3][2] = {{false}};
+  int plane[3][2] = {{0}};
+  for (const auto &face : faces) {
+    has[face.axis][face.inward < 0] = true;
+    plane[face.axis][face.inward < 0] = face.plane;
+  }
 
+  struct Image {
+    int index, sign;
+  };
+  std::vector<Image> images[3];
   for (std::size_t ib = 0; ib < grid.blocks.size(); ib++) {
     const auto &block = grid.blocks[ib];
+    bool near = false;
+    for (const auto &face : faces) {
+      const int lo = block.b[face.axis] * grid.side;
+      near = near || (lo <= face.plane + DEPTH && lo + grid.side > face.plane - DEPTH);
+    }
+    if (!near) continue;
     for (int n = 0; n < NODES_PER_BLOCK; n++) {
       if (block.alias >> n & 1) continue;
-      int index[3];
+      int index[3], wall[3];
       grid.node_index(block, n, index);
-      const int inside = index[axis];
-      if (inside < lo || inside > hi) continue;
-      Orbit orbit = {(int) list.members.size(), 0, axis, inside == lo || inside == hi};
-      for (int k = lo - DEPTH; k <= hi + DEPTH; k++) {
-        int folded = k, sign = 1;
-        while (folded < lo || folded > hi) {
-          folded = 2 * (folded < lo ? lo : hi) - folded;
-          sign = -sign;
+      bool inside = true, fixed = false;
+      for (int d = 0; d < 3; d++) {
+        images[d].assign(1, {index[d], 1});
+        wall[d] = index[d];
+        for (int side = 0; side < 2; side++) {
+          if (!has[d][side]) continue;
+          const int depth = (side ? -1 : 1) * (index[d] - plane[d][side]);
+          inside = inside && depth >= 0;
+          fixed = fixed || depth == 0;
+          if (depth <= DEPTH) wall[d] = plane[d][side];
         }
-        if (folded != inside) continue;
-        index[axis] = k;
-        const int64_t node = grid.locate(index);
-        if (node < 0) continue;
-        const bool owned =
-            grid.blocks[node / NODES_PER_BLOCK].owned >> (node % NODES_PER_BLOCK) & 1;
-        list.members.push_back({node, sign, owned});
+        // images of images, too: the list grows
+        for (std::size_t k = 0; inside && k < images[d].size(); k++)
+          for (int side = 0; side < 2; side++) {
+            if (!has[d][side]) continue;
+            const Image image = {2 * plane[d][side] - images[d][k].index, -images[d][k].sign};
+            bool skip = (side ? -1 : 1) * (plane[d][side] - image.index) > DEPTH ||
+                (side ? -1 : 1) * (plane[d][side] - image.index) <= 0;
+            for (const auto &known : images[d]) skip = skip || known.index == image.index;
+            if (!skip) images[d].push_back(image);
+          }
       }
+      if (!inside) continue;
+
+      Orbit orbit;
+      orbit.first = (int) list.members.size();
+      orbit.fixed = fixed;
+      for (int d = 0; d < 3; d++) orbit.prescribed[d] = prescribed[d];
+      for (const auto &x : images[0])
+        for (const auto &y : images[1])
+          for (const auto &z : images[2]) {
+            const int k[3] = {x.index, y.index, z.index};
+            const int64_t node = grid.locate(k);
+            if (node < 0) continue;    // out of reach of points
+            const bool owned =
+                grid.blocks[node / NODES_PER_BLOCK].owned >> (node % NODES_PER_BLOCK) & 1;
+            list.members.push_back({node, x.sign * y.sign * z.sign, owned});
+          }
       orbit.last = (int) list.members.size();
-      list.orbits.push_back(orbit);
+      orbit.wall = grid.locate(wall);
+      if (orbit.wall < 0) orbit.wall = list.members[orbit.first].node;
+      if (fixed || orbit.last > orbit.first + 1)
+        list.orbits.push_back(orbit);
+      else
+        list.members.pop_back();
     }
   }
 }
@@ -641,8 +734,12 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
         region->interior ^= 1;
       }
       if (!inside) continue;
-      Single s = {(int64_t) ib * NODES_PER_BLOCK + n, {0.0, 0.0, 0.0}, 0.0, 0.0,
-                  (bool) (block.owned >> n & 1)};
+      Single s = {(int64_t) ib * NODES_PER_BLOCK + n,
+                  {0.0, 0.0, 0.0},
+                  0.0,
+                  0.0,
+                  (bool) (block.owned >> n & 1),
+                  FREE};
       if (kind != STICK || region->varshape) surface_normal(x, 1.0e-4 * h, dim, s.normal);
       if (region->varshape) s.distance = surface_distance(x);
       list.singles.push_back(s);
@@ -755,11 +852,12 @@ void FixMPMBoundary::act(double dt, bool count)
     dt_last = dt;
     reaction_known = false;
   }
-  for (const auto &list : nodes) {
+  for (auto &list : nodes) {
     kinetic = 0.0;
-    for (const auto &column : list.columns) act_on_column(list, column);
+    decided = !count && list.field->scheme == FixMPM::MUSL;
+    for (auto &column : list.columns) act_on_column(list, column);
     for (const auto &orbit : list.orbits) act_on_orbit(list, orbit);
-    for (const auto &single : list.singles) act_on_single(list, single);
+    for (auto &single : list.singles) act_on_single(list, single);
     if (count && list.field->ledger_on) list.field->ledger.boundary += kinetic * force->mvv2e;
   }
 }
@@ -788,12 +886,14 @@ void FixMPMBoundary::set_velocity(double *record, const double *v, int dim, bool
 
 /* ---------------------------------------------------------------------- */
 
-void FixMPMBoundary::act_on_column(const FieldNodes &list, const Column &column)
+void FixMPMBoundary::act_on_column(const FieldNodes &list, Column &column)
 {
   Grid &grid = *list.field->grid;
   const Face &face = list.faces[column.face];
   const int dim = grid.lattice.dim, a = face.axis;
-  auto record = [&](int64_t node) { return grid.nodes() + node * grid.nreal; };
+  auto record = [&](int64_t node) {
+    return grid.nodes() + node * grid.nreal;
+  };
 
   double V[3];
   wall_velocity(*list.field, column.plane, V);
@@ -810,29 +910,34 @@ void FixMPMBoundary::act_on_column(const FieldNodes &list, const Column &column)
     const double mass = 2.0 * in[3] * out[3] / (in[3] + out[3]);
     for (int d = 0; d < dim; d++) to_stick[d] -= mass * (in[d] + out[d] - 2.0 * V[d]);
   }
-  const double push = face.inward * to_stick[a];
-  if (kind == SEPARATE && push <= 0.0) return;
 
-  // share of the projection that each component gets
+  // share of the projection that the tangential components get
 
-  double share[3] = {0.0, 0.0, 0.0};
-  if (kind == STICK) {
-    for (int d = 0; d < dim; d++) share[d] = constrained[d] ? 1.0 : 0.0;
-  } else {
-    share[a] = 1.0;
-    if (friction > 0.0 && push > 0.0) {
+  double slide = 0.0;
+  if (!decided) {
+    const double push = face.inward * to_stick[a];
+    column.contact = SLIDING;
+    if (kind == SEPARATE && push <= 0.0) {
+      column.contact = FREE;
+    } else if (friction > 0.0 && push > 0.0) {
       double needed = 0.0;
       for (int d = 0; d < dim; d++)
         if (d != a) needed += to_stick[d] * to_stick[d];
       needed = sqrt(needed);
-      const double limit = friction * push;
-      for (int d = 0; d < dim; d++)
-        if (d != a) share[d] = needed > limit ? limit / needed : 1.0;
+      if (needed > friction * push)
+        slide = friction * push / needed;
+      else
+        column.contact = STUCK;
     }
   }
+  if (column.contact == FREE) return;
+  if (column.contact == STUCK) slide = 1.0;
 
+  double share[3];
+  for (int d = 0; d < dim; d++) share[d] = d == a ? 1.0 : slide;
   double v[3];
-  for (int d = 0; d < dim; d++) v[d] = share[d] == 1.0 ? V[d] : plane[d] + share[d] * (V[d] - plane[d]);
+  for (int d = 0; d < dim; d++)
+    v[d] = share[d] == 1.0 ? V[d] : plane[d] + share[d] * (V[d] - plane[d]);
   set_velocity(plane, v, dim, column.owned & 1);
 
   for (int j = 0; j < DEPTH; j++) {
@@ -862,33 +967,33 @@ void FixMPMBoundary::act_on_orbit(const FieldNodes &list, const Orbit &orbit)
   Grid &grid = *list.field->grid;
   const int dim = grid.lattice.dim;
   double V[3];
-  wall_velocity(*list.field, list.members[orbit.first].node, V);
+  wall_velocity(*list.field, orbit.wall, V);
 
   double mass = 0.0, w[3] = {0.0, 0.0, 0.0};
+  int massive = 0;
   for (int k = orbit.first; k < orbit.last; k++) {
     const Member &member = list.members[k];
     const double *r = grid.nodes() + member.node * grid.nreal;
+    if (r[3] <= 0.0) continue;
+    massive++;
     mass += r[3];
     for (int d = 0; d < dim; d++) w[d] += member.sign * r[3] * (r[d] - V[d]);
   }
-  if (mass <= 0.0) return;
+  if (massive == 0 || (massive == 1 && !orbit.fixed)) return;
   for (int d = 0; d < dim; d++) w[d] = orbit.fixed ? 0.0 : w[d] / mass;
 
   for (int k = orbit.first; k < orbit.last; k++) {
     const Member &member = list.members[k];
     double *r = grid.nodes() + member.node * grid.nreal;
     double v[3];
-    for (int d = 0; d < dim; d++) {
-      const bool prescribed = kind == STICK ? constrained[d] : d == orbit.axis;
-      v[d] = prescribed ? V[d] + member.sign * w[d] : r[d];
-    }
+    for (int d = 0; d < dim; d++) v[d] = orbit.prescribed[d] ? V[d] + member.sign * w[d] : r[d];
     set_velocity(r, v, dim, member.owned);
   }
 }
 
 /* ---------------------------------------------------------------------- */
 
-void FixMPMBoundary::act_on_single(const FieldNodes &list, const Single &single)
+void FixMPMBoundary::act_on_single(const FieldNodes &list, Single &single)
 {
   Grid &grid = *list.field->grid;
   const int dim = grid.lattice.dim;
@@ -905,16 +1010,25 @@ void FixMPMBoundary::act_on_single(const FieldNodes &list, const Single &single)
   } else {
     double normal = 0.0;    // speed of the node away from the wall
     for (int d = 0; d < dim; d++) normal += (r[d] - V[d]) * n[d];
-    if (kind == SEPARATE && normal >= 0.0) return;
     double slide[3], length = 0.0, keep = 1.0;
     for (int d = 0; d < dim; d++) {
       slide[d] = r[d] - V[d] - normal * n[d];
       length += slide[d] * slide[d];
     }
-    if (friction > 0.0 && normal < 0.0) {
-      length = sqrt(length);
-      keep = length > -friction * normal ? 1.0 + friction * normal / length : 0.0;
+    if (!decided) {
+      single.contact = SLIDING;
+      if (kind == SEPARATE && normal >= 0.0) {
+        single.contact = FREE;
+      } else if (friction > 0.0 && normal < 0.0) {
+        length = sqrt(length);
+        if (length > -friction * normal)
+          keep = 1.0 + friction * normal / length;
+        else
+          single.contact = STUCK;
+      }
     }
+    if (single.contact == FREE) return;
+    if (single.contact == STUCK) keep = 0.0;
     for (int d = 0; d < dim; d++) v[d] = V[d] + keep * slide[d];
   }
   set_velocity(r, v, dim, single.owned);

@@ -57,20 +57,24 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
     int inward;    // direction from the face into the box along the axis: 1 or -1
     int plane;     // index of its plane of nodes
   };
-  struct Column {    // nodes along the normal of a face
+  enum Contact { FREE, SLIDING, STUCK };    // what a wall does to a column or node
+
+  struct Column {    // nodes along the normal of a face with friction or separation
     int64_t plane, inside[DEPTH], image[DEPTH];
-    int face;        // index into faces
-    int owned;       // bit 0: plane, 1...: inside, 1 + DEPTH ...: images
+    int face;     // index into faces
+    int owned;    // bit 0: plane, 1...: inside, 1 + DEPTH ...: images
+    Contact contact;
   };
-  struct Member {    // node of an orbit: all nodes that two close mirrors make images of each other
+  struct Member {
     int64_t node;
     int sign;
     bool owned;
   };
-  struct Orbit {
-    int first, last;    // range in members
-    int axis;
-    bool fixed;         // contains a node in a plane
+  struct Orbit {           // a node with all its images: in one face, in two at an edge, ...
+    int64_t wall;          // node at the wall whose velocity counts
+    int first, last;       // range in members
+    bool prescribed[3];    // components
+    bool fixed;            // is in a plane
   };
   struct Single {    // a node on its own
     int64_t node;
@@ -78,6 +82,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
     double growth;       // regions that change their shape: speed of the surface along the normal
     double distance;     // from the surface at the start of the step, for growth
     bool owned;
+    Contact contact;
   };
   struct FieldNodes {
     FixMPM *field;
@@ -106,18 +111,19 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
   Value velocity[3], rate;
   bool rotating;
   double center[3], axis[3];
-  bool constrained[3];           // stick: components that are prescribed
+  bool constrained[3];    // stick: components that are prescribed
 
   std::vector<FieldNodes> nodes;
   Wall wall;
-  bigint motion_step;            // step for which the motion of the wall is known
-  double impulse[3], work;       // on the body, this rank's share: of the last step; of all steps
+  bigint motion_step;         // step for which the motion of the wall is known
+  double impulse[3], work;    // on the body, this rank's share: of the last step; of all steps
   double dt_last;
   bool reaction_known;
   double reaction[3];
 
   bool counting;
-  double kinetic;                // gained by the nodes of a field in the present act()
+  bool decided;      // contact was decided before in this step (MUSL)
+  double kinetic;    // gained by the nodes of a field in the present act()
 
   Value parse_value(const char *, int iarg, bool null_allowed);
   void check_variable(Value &, const char *what);
@@ -128,8 +134,9 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
   std::vector<Face> faces_on_lattice(const FixMPM &) const;
   void list_face_nodes(FieldNodes &);
   void list_column(FieldNodes &, int face, const int *index);
-  void list_orbits(FieldNodes &, int axis);
+  void list_orbits(FieldNodes &, const std::vector<Face> &, const bool *prescribed);
   void list_region_nodes(FieldNodes &);
+  bool decides() const { return kind == SEPARATE || friction > 0.0; }
   bool narrow(const std::vector<Face> &, int axis) const;
   double surface_distance(const double *x) const;
   bool surface_normal(const double *x, double step, int dim, double *normal) const;
@@ -137,9 +144,9 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
   void set_rotation(double angle, const double *unit, double dt);
   void wall_velocity(const FixMPM &, int64_t node, double *v) const;
   void set_velocity(double *record, const double *v, int dim, bool owned);
-  void act_on_column(const FieldNodes &, const Column &);
+  void act_on_column(const FieldNodes &, Column &);
   void act_on_orbit(const FieldNodes &, const Orbit &);
-  void act_on_single(const FieldNodes &, const Single &);
+  void act_on_single(const FieldNodes &, Single &);
 };
 
 }    // namespace LAMMPS_NS

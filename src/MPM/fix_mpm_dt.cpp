@@ -41,8 +41,10 @@ FixMPMDt::FixMPMDt(LAMMPS *lmp, int narg, char **arg) :
   if (narg < 4) utils::missing_cmd_args(FLERR, "fix mpm/dt", error);
   fraction = utils::numeric(FLERR, arg[3], false, lmp);
   if (!(fraction > 0.0 && fraction <= 2.0))
-    error->all(FLERR, 3, "Fix mpm/dt fraction of h/(c+|v|) must be above 0 and at most 2, "
-               "for instance 0.5: {}", arg[3]);
+    error->all(FLERR, 3,
+               "Fix mpm/dt fraction of h/(c+|v|) must be above 0 and at most 2, "
+               "for instance 0.5: {}",
+               arg[3]);
 
   nevery = 10;
   int iarg = 4;
@@ -101,8 +103,10 @@ void FixMPMDt::init()
     if (ifix == this) continue;
     const std::string other = ifix->style;
     if (other == "dt/reset" || other == "mpm/dt" || other == "smd/adjust_dt")
-      error->all(FLERR, Error::NOLASTLINE, "Fix {} {} and fix {} {} both set the time step: "
-                 "remove one", style, id, other, ifix->id);
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix {} {} and fix {} {} both set the time step: "
+                 "remove one",
+                 style, id, other, ifix->id);
   }
 }
 
@@ -162,12 +166,16 @@ void FixMPMDt::set_dt(double dt)
   if (dt_max > 0.0) dt = std::min(dt, dt_max);
   const auto tag = (tagint) limit.tag;
   if (limit.dt == 0.0)
-    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/dt: point {} has no valid wave speed or velocity "
-               "at step {}", tag, update->ntimestep);
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/dt: point {} has no valid wave speed or velocity "
+               "at step {}",
+               tag, update->ntimestep);
   if (dt < dt_min)
-    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/dt: time step {:.6g} needed by point {} (wave "
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/dt: time step {:.6g} needed by point {} (wave "
                "speed {:.6g}) at step {} is below min {:.6g}; see what happened to that point, or "
-               "lower min", dt, tag, limit.speed, update->ntimestep, dt_min);
+               "lower min",
+               dt, tag, limit.speed, update->ntimestep, dt_min);
   if (dt == update->dt) return;
 
   update->update_time();

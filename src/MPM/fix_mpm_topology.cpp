@@ -173,57 +173,53 @@ void FixMPM::sort_points()
   const double start = platform::walltime();
   const int nlocal = atom->nlocal;
 
-  std::map<std::array<int, 3>, int> rank_of_block;    // ordered: gives the order of blocks
-  std::vector<std::array<int, 3>> block(nlocal);
-  std::vector<int> cell(nlocal, -1);
+  // key of a point: (block in order of first appearance, material, cell)
+
+  const int nmaterials = MAX(1, (int) materials.size());
+  const int keys_per_block = nmaterials * NODES_PER_BLOCK;
   const int mask = grid->side - 1;
+  std::map<std::array<int, 3>, int> index_of_block;    // ordered: gives the order of blocks
+  std::vector<int> key(nlocal, -1);
   std::array<int, 3> last = {INT_MAX, INT_MAX, INT_MAX};
+  int index = 0;
   for (int i = 0; i < nlocal; i++) {
     int base[3];
     double t[3];
     if (!is_point(i) || !base_node(atom->x[i], base, t)) continue;
-    for (int d = 0; d < 3; d++) block[i][d] = base[d] >> grid->shift_bits;
-    if (lattice.dim == 3)
-      cell[i] = (((base[0] & mask) << 2 | (base[1] & mask)) << 2) | (base[2] & mask);
-    else
-      cell[i] = (base[0] & mask) << 3 | (base[1] & mask);
-    if (block[i] != last) {
-      rank_of_block[block[i]] = 0;
-      last = block[i];
+    std::array<int, 3> block;
+    for (int d = 0; d < 3; d++) block[d] = base[d] >> grid->shift_bits;
+    if (block != last) {
+      index = index_of_block.emplace(block, (int) index_of_block.size()).first->second;
+      last = block;
     }
+    const int cell = lattice.dim == 3 ?
+        ((base[0] & mask) << 2 | (base[1] & mask)) << 2 | (base[2] & mask) :
+        (base[0] & mask) << 3 | (base[1] & mask);
+    int m = 0;
+    if (nmaterials > 1)
+      while (m < nmaterials - 1 && !(atom->mask[i] & materials[m]->groupbit)) m++;
+    key[i] = index * keys_per_block + m * NODES_PER_BLOCK + cell;
   }
+
+  // blocks in order of their coordinates; atoms that are no points come last
+
+  std::vector<int> rank(index_of_block.size());
   int nblocks = 0;
-  for (auto &entry : rank_of_block) entry.second = nblocks++;
-
-  // counting sort by (block, material, cell); atoms that are no points come last
-
-  const int nmaterials = MAX(1, (int) materials.size());
-  const int64_t nkeys = (int64_t) nblocks * nmaterials * NODES_PER_BLOCK;
-  std::vector<int> start_of_key(nkeys + 2, 0), key(nlocal);
-  last = {INT_MAX, INT_MAX, INT_MAX};
-  int rank = 0;
+  for (const auto &entry : index_of_block) rank[entry.second] = nblocks++;
+  const int nkeys = nblocks * keys_per_block;
+  std::vector<int> start_of_key(nkeys + 2, 0);
   for (int i = 0; i < nlocal; i++) {
-    if (cell[i] < 0) {
-      key[i] = (int) nkeys;
-    } else {
-      if (block[i] != last) {
-        rank = rank_of_block[block[i]];
-        last = block[i];
-      }
-      int m = 0;
-      if (nmaterials > 1) {
-        auto *material = material_of(i);
-        while (materials[m] != material) m++;
-      }
-      key[i] = (rank * nmaterials + m) * NODES_PER_BLOCK + cell[i];
-    }
+    if (key[i] < 0)
+      key[i] = nkeys;
+    else
+      key[i] = rank[key[i] / keys_per_block] * keys_per_block + key[i] % keys_per_block;
     start_of_key[key[i] + 1]++;
   }
-  for (int64_t k = 0; k <= nkeys; k++) start_of_key[k + 1] += start_of_key[k];
+  for (int k = 0; k <= nkeys; k++) start_of_key[k + 1] += start_of_key[k];
   std::vector<int> permute(nlocal), next(start_of_key.begin(), start_of_key.end() - 1);
   for (int i = 0; i < nlocal; i++) permute[next[key[i]]++] = i;
   const tagint *tag = atom->tag;
-  for (int64_t k = 0; k < nkeys; k++)
+  for (int k = 0; k < nkeys; k++)
     if (start_of_key[k + 1] - start_of_key[k] > 1)
       std::sort(permute.begin() + start_of_key[k], permute.begin() + start_of_key[k + 1],
                 [tag](int i, int j) { return tag[i] < tag[j]; });
@@ -231,8 +227,7 @@ void FixMPM::sort_points()
   // move the atoms, cycle by cycle, through the free place at the end
 
   if (nlocal == atom->nmax) atom->avec->grow(0);
-  std::vector<int> &current = next;
-  current.resize(nlocal);
+  std::vector<int> &current = key;
   bigint moved = 0;
   for (int i = 0; i < nlocal; i++) current[i] = i;
   for (int i = 0; i < nlocal; i++) {

@@ -37,11 +37,16 @@ struct EosTait : Barotropic<EosTait> {
   }
 
   double K, gamma, pmin;
+  double inv_a, linear;    ///< integral of J^-gamma: power, or logarithm for gamma = 1
   double logJc, Jc, Uc;    ///< start of cavitation, with energy there
 
   explicit EosTait(const LawParameters &p) :
       K(p.value[BULK]), gamma(p.value[GAMMA]), pmin(p.value[CUTOFF])
   {
+    const double a = 1.0 - gamma;
+    const bool one = a < 1e-9 && a > -1e-9;
+    inv_a = one ? 0.0 : 1.0 / a;
+    linear = one ? 1.0 : 0.0;
     logJc = 709.0;
     Jc = Uc = 0.0;
     if (pmin == -UNBOUNDED) return;
@@ -62,9 +67,7 @@ struct EosTait : Barotropic<EosTait> {
   MPM_INLINE double liquid_energy(double J, double x) const
   {
     const double a = 1.0 - gamma;
-    const bool one = a < 1e-7 && a > -1e-7;
-    const double power = one ? x * (1.0 + 0.5 * a * x) : expm1(a * x) / a;
-    return -(K / gamma) * (power - (J - 1.0));
+    return -(K / gamma) * (inv_a * expm1(a * x) + linear * x - (J - 1.0));
   }
   MPM_INLINE double stored(double J) const
   {

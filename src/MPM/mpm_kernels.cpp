@@ -27,30 +27,30 @@ const MPMKernels *mpm_kernels_v4();
 namespace {
 
 #if defined(MPM_HAVE_V3)
-/** CPU and operating system run AVX2 code (x86-64-v3). */
-bool has_v3()
-{
-  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
-      __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
-}
+  /** CPU and operating system run AVX2 code (x86-64-v3). */
+  bool has_v3()
+  {
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+        __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
+  }
 #endif
 
 #if defined(MPM_HAVE_V4)
-/** CPU and operating system run AVX-512 code (x86-64-v4). */
-bool has_v4()
-{
-  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
-      __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2") &&
-      __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
-      __builtin_cpu_supports("avx512cd");
-}
+  /** CPU and operating system run AVX-512 code (x86-64-v4). */
+  bool has_v4()
+  {
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+        __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2") &&
+        __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+        __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
+        __builtin_cpu_supports("avx512cd");
+  }
 #endif
 
-bool same(const char *a, const char *b)
-{
-  return std::strcmp(a, b) == 0;
-}
+  bool same(const char *a, const char *b)
+  {
+    return std::strcmp(a, b) == 0;
+  }
 
 }    // namespace
 

@@ -81,6 +81,7 @@ struct TransferStep {
  *  Tile entry layout, 8-byte reals:
  *   merged (4 reals): on P2G px py pz m, momentum including dt * force; on G2P vx vy vz m.
  *   split  (8 reals): on P2G px py pz m | fx fy fz 0; on G2P vx vy vz m | vx_old vy_old vz_old 0.
+ *  Align tiles to 64 bytes; other addresses work, more slowly.
  *
  *  box: [6] lowest and highest tile index of base nodes (x,y,z low; x,y,z high); widened, not reset.
  */
@@ -89,7 +90,8 @@ using P2G = void (*)(const PointRows &, const TransferStep &, int first, int las
 
 /** G2P returns 0, or non-zero when a point's new position has left the range of its tile.
  *  L: [last-first][9] column-major velocity gradient with respect to the positions in x;
- *  kernels that store C write the same matrix there and leave L alone when it is null. */
+ *  kernels that store C write the same matrix there and leave L alone when it is null; the others
+ *  do not compute it when it is null. */
 using G2P = int (*)(const PointRows &, const TransferStep &, int first, int last, const int base[3],
                     const double *tile, double *L);
 

@@ -49,6 +49,7 @@ const MPM_NS::MPMKernels *MPM_NS::MPM_CONCAT(mpm_kernels_, MPM_ISA)()
 #include "mpm_shape.h"
 #include "mpm_vector.h"
 
+#include <cstddef>
 #include <cstdint>
 
 using namespace MPM_NS;
@@ -59,32 +60,29 @@ namespace {
 #define MPM_NAME_v3 "AVX2"
 #define MPM_NAME_v4 "AVX-512"
 
-constexpr int PREFETCH = 32;    ///< distance of prefetches, in points
+// measured: see bench/bench_kernels.cpp
+constexpr int POINTS = REGISTER == 8 ? 2 : 1;    ///< points side by side in a vector
+constexpr int STAGE = 8;                         ///< points prepared before they are transferred
+constexpr int PREFETCH = 32;                     ///< distance of prefetches, in points
 
-/** Points side by side in a vector of P2G and G2P, and points of a stage. */
-#ifndef MPM_TUNE_P
-#define MPM_TUNE_P (REGISTER == 8 ? 2 : 1)
-#define MPM_TUNE_W (REGISTER == 8 ? 1 : 1)
-#define MPM_TUNE_G (REGISTER == 8 ? 2 : 1)
-#define MPM_TUNE_SP 16
-#define MPM_TUNE_SG 8
-#endif
-constexpr int P2G_POINTS = MPM_TUNE_P;
-constexpr int G2P_POINTS = MPM_TUNE_G;
-constexpr int P2G_STAGE = MPM_TUNE_SP;
-constexpr int G2P_STAGE = MPM_TUNE_SG;
+using Index = std::ptrdiff_t;
 
 /** Brings the rows [first,last) of an array into the cache, to be written when WRITE is 1. */
 template <int WIDTH, int WRITE = 0>
-MPM_INLINE void prefetch(const double *rows, long first, long last)
+MPM_INLINE void prefetch(const double *rows, Index first, Index last)
 {
-  uintptr_t line = reinterpret_cast<uintptr_t>(rows + WIDTH * first) & ~uintptr_t(63);
-  const uintptr_t end = reinterpret_cast<uintptr_t>(rows + WIDTH * last);
-  for (; line < end; line += 64) __builtin_prefetch(reinterpret_cast<const void *>(line), WRITE);
+  // no pointer arithmetic: the rows ahead may not exist, which prefetches do not mind
+  constexpr std::uintptr_t line = 64, row = WIDTH * sizeof(double);
+  const std::uintptr_t start = reinterpret_cast<std::uintptr_t>(rows);
+  for (std::uintptr_t at = (start + row * first) / line * line; at < start + row * last; at += line)
+    __builtin_prefetch(reinterpret_cast<const void *>(at), WRITE);
 }
 
-/** Four reals of each of L consecutive rows, starting at column COLUMN. */
-template <int L, int WIDTH> MPM_INLINE Vec<4 * L> load_rows(const double *column, long row)
+/** Four reals for each of L points: the axes x, y, z, and one more. */
+template <int L> using Quads = Vec<4 * L>;
+
+/** Four reals of each of L consecutive rows, from a column on. */
+template <int L, int WIDTH> MPM_INLINE Quads<L> load_rows(const double *column, Index row)
 {
   if constexpr (L == 1)
     return Vec<4>::load(column + WIDTH * row);
@@ -93,7 +91,7 @@ template <int L, int WIDTH> MPM_INLINE Vec<4 * L> load_rows(const double *column
 }
 
 /** One number for each of L consecutive points, in all four lanes. */
-template <int L> MPM_INLINE Vec<4 * L> load_numbers(const double *number, long row)
+template <int L> MPM_INLINE Quads<L> load_numbers(const double *number, Index row)
 {
   if constexpr (L == 1)
     return Vec<4>::all(number[row]);
@@ -103,7 +101,7 @@ template <int L> MPM_INLINE Vec<4 * L> load_numbers(const double *number, long r
 
 /** Where points are in a tile; lanes that are no axis stay zero. */
 template <int DIM, int ORDER, int L> struct Frame {
-  Vec<4 * L> origin, inv_h, low;
+  Quads<L> origin, inv_h, low;
 
   MPM_INLINE Frame(const TransferStep &step, const int *base)
   {
@@ -114,23 +112,23 @@ template <int DIM, int ORDER, int L> struct Frame {
         i[4 * l + a] = step.inv_h;
         b[4 * l + a] = BSpline<ORDER>::shift + base[a];
       }
-    origin = Vec<4 * L>::load(o);
-    inv_h = Vec<4 * L>::load(i);
-    low = Vec<4 * L>::load(b);
+    origin = Quads<L>::load(o);
+    inv_h = Quads<L>::load(i);
+    low = Quads<L>::load(b);
   }
 
   /** Position in units of h from tile node 0, less the shift: its whole part is the base node. */
-  MPM_INLINE Vec<4 * L> position(Vec<4 * L> x) const { return (x - origin) * inv_h - low; }
+  MPM_INLINE Quads<L> position(Quads<L> x) const { return (x - origin) * inv_h - low; }
 
   /** Base nodes' places in the tile, in nodes; returns the fractions. */
-  MPM_INLINE Vec<4 * L> locate(Vec<4 * L> t, int *place) const
+  MPM_INLINE Quads<L> locate(Quads<L> t, int *place) const
   {
     constexpr int sx = tile_stride_x(DIM, ORDER), sy = tile_stride_y(DIM, ORDER);
     int index[4 * L];
-    const Vec<4 * L> whole = truncate(t, index);
+    const Quads<L> whole = truncate(t, index);
     MPM_UNROLL
     for (int l = 0; l < L; l++)
-      place[l] = index[4 * l] * sx + index[4 * l + 1] * sy + index[4 * l + 2];
+      place[l] = index[4 * l] * sx + index[4 * l + 1] * sy + (DIM == 3 ? index[4 * l + 2] : 0);
     return t - whole;
   }
 };
@@ -140,7 +138,7 @@ template <int ORDER, int L> struct AxisWeights {
   static constexpr int S = ORDER + 1;
   alignas(32) double w[S][4 * L];
 
-  MPM_INLINE void set(const Vec<4 * L> *weight)
+  MPM_INLINE void set(const Quads<L> *weight)
   {
     MPM_UNROLL
     for (int k = 0; k < S; k++) weight[k].store(w[k]);
@@ -154,7 +152,7 @@ template <int ORDER, int L> struct AxisWeights {
       if constexpr (L == 1)
         weight[k] = Vec<WIDTH>::all(w[k][A]);
       else if constexpr (WIDTH == 4)
-        weight[k] = broadcast<A>(Vec<4 * L>::load(w[k]));
+        weight[k] = broadcast<A>(Quads<L>::load(w[k]));
       else
         weight[k] = join(Vec<WIDTH>::all(w[k][A]), Vec<WIDTH>::all(w[k][4 + A]));
     }
@@ -168,14 +166,14 @@ struct LastPoints {
   PointRows rows{x, v, f, C, stress, vol, mass, xnew};
 
   template <int WIDTH>
-  static MPM_INLINE void load(double *to, const double *from, long first, long last)
+  static MPM_INLINE void load(double *to, const double *from, Index first, Index last)
   {
-    for (long i = 0; i < WIDTH * (last - first); i++) to[i] = from[WIDTH * first + i];
+    for (Index i = 0; i < WIDTH * (last - first); i++) to[i] = from[WIDTH * first + i];
   }
   template <int WIDTH>
-  static MPM_INLINE void store(const double *from, double *to, long first, long last)
+  static MPM_INLINE void store(const double *from, double *to, Index first, Index last)
   {
-    for (long i = 0; i < WIDTH * (last - first); i++) to[WIDTH * first + i] = from[i];
+    for (Index i = 0; i < WIDTH * (last - first); i++) to[WIDTH * first + i] = from[i];
   }
 };
 
@@ -225,7 +223,7 @@ template <int DIM, int ORDER, int WIDTH, int L, bool AFFINE, bool GRADIENT> stru
 
   /** Adds a row of nodes along the last axis, w_n row + factor K_n; SAME: points share the nodes. */
   template <bool SAME, int NREAL>
-  static MPM_INLINE void add_row(double *const *base, long offset, V row, V factor, const V *w,
+  static MPM_INLINE void add_row(double *const *base, Index offset, V row, V factor, const V *w,
                                  const V *K)
   {
     MPM_UNROLL
@@ -284,37 +282,38 @@ enum Parts { MOMENTUM = 1, FORCE = 2, ALL = 3 };
 template <int DIM, int ORDER, bool AFFINE, int NREAL, int PARTS> struct PointsToNodes {
   static constexpr bool momentum = PARTS & MOMENTUM;
   static constexpr bool force = PARTS & FORCE;
-  static constexpr bool mls = AFFINE && ORDER > 1;          // stress as an affine term
-  static constexpr bool gradient = force && !mls;           // stress with gradients
-  static constexpr bool both = NREAL == 8 && PARTS == ALL;  // momentum and force apart in a record,
-  static constexpr bool wide = both && REGISTER == 8;       // filled at once: a vector holds both
-  static constexpr int POINTS = wide ? MPM_TUNE_W : P2G_POINTS;
+  static constexpr bool mls = AFFINE && ORDER > 1;    // stress as an affine term
+  static constexpr bool gradient = force && !mls;     // stress with gradients
+
+  // A record of 8 reals has momentum and force apart. One long vector can hold both; else, and for
+  // linear functions where it is faster, the force is scattered after the momentum.
+  static constexpr bool both = NREAL == 8 && PARTS == ALL;
+  static constexpr bool wide = both && REGISTER == 8 && ORDER > 1;
   static constexpr int N = ORDER + 1;
 
   /** L points ready to be scattered. */
   template <int L> struct Prepared {
-    // all of it, or the momentum if it is filled apart from the force
-    Scatter<DIM, ORDER, wide ? 8 : 4, L, (AFFINE && momentum) || (mls && force),
-            gradient && !(both && !wide)>
-        main;
-    Scatter<DIM, ORDER, 4, L, mls, !mls> apart;
+    static constexpr bool affine = (AFFINE && momentum) || (mls && force);
+    static constexpr bool sloped = gradient && (wide || !both);
+    Scatter<DIM, ORDER, wide ? 8 : 4, L, affine, sloped> main;    // all, or all but
+    Scatter<DIM, ORDER, 4, L, mls, !mls> apart;    // the force if it is scattered apart
     AxisWeights<ORDER, L> weights, gradients;
     int place[L];
   };
 
   /** Columns of the stress tensor; lanes that are no axis are arbitrary. */
   template <int L>
-  static MPM_INLINE void stress_columns(const double *stress, long p, Vec<4 * L> *column)
+  static MPM_INLINE void stress_columns(const double *stress, Index p, Quads<L> *column)
   {
-    const Vec<4 * L> a = load_rows<L, 6>(stress, p);    // xx yy zz xy
+    const Quads<L> a = load_rows<L, 6>(stress, p);    // xx yy zz xy
     if constexpr (DIM == 2) {
       column[0] = shuffle<0, 3, 3, 3>(a, a);
       column[1] = shuffle<3, 1, 1, 1>(a, a);
     } else {
-      const Vec<4 * L> b = load_rows<L, 6>(stress + 2, p);        // zz xy xz yz
-      column[0] = shuffle<0, 5, 6, 7>(a, b);                      // xx xy xz
+      const Quads<L> b = load_rows<L, 6>(stress + 2, p);                // zz xy xz yz
+      column[0] = shuffle<0, 5, 6, 7>(a, b);                            // xx xy xz
       column[1] = shuffle<4, 1, 6, 7>(a, shuffle<1, 1, 3, 3>(b, b));    // xy yy yz
-      column[2] = shuffle<2, 3, 0, 0>(b, b);                      // xz yz zz
+      column[2] = shuffle<2, 3, 0, 0>(b, b);                            // xz yz zz
     }
   }
 
@@ -329,10 +328,10 @@ template <int DIM, int ORDER, bool AFFINE, int NREAL, int PARTS> struct PointsTo
 
   /** Momentum and mass: value at the point and affine matrix per node spacing. */
   template <int L>
-  static MPM_INLINE void momentum_terms(const PointRows &points, long p, double h, Vec<4 * L> &q,
-                                        Vec<4 * L> *A)
+  static MPM_INLINE void momentum_terms(const PointRows &points, Index p, double h, Quads<L> &q,
+                                        Quads<L> *A)
   {
-    const Vec<4 * L> mass = load_numbers<L>(points.mass, p);
+    const Quads<L> mass = load_numbers<L>(points.mass, p);
     q = blend<DIM>(load_rows<L, 3>(points.v, p), repeat<4 * L>(0.0, 0.0, 0.0, 1.0)) * mass;
     if constexpr (AFFINE) {
       MPM_UNROLL
@@ -342,12 +341,12 @@ template <int DIM, int ORDER, bool AFFINE, int NREAL, int PARTS> struct PointsTo
 
   /** Force times scale: external, and columns of -stress that an affine or gradient term takes. */
   template <int L>
-  static MPM_INLINE void force_terms(const PointRows &points, long p, double inv_h, double scale,
-                                     Vec<4 * L> &q, Vec<4 * L> *A)
+  static MPM_INLINE void force_terms(const PointRows &points, Index p, double inv_h, double scale,
+                                     Quads<L> &q, Quads<L> *A)
   {
-    q = scale * blend<DIM>(load_rows<L, 3>(points.f, p), Vec<4 * L>{});
+    q = scale * blend<DIM>(load_rows<L, 3>(points.f, p), Quads<L>{});
     const double factor = -scale * inv_h * (mls ? BSpline<ORDER>::inv_moment : 1.0);
-    const Vec<4 * L> volume = load_numbers<L>(points.vol, p) * factor;
+    const Quads<L> volume = load_numbers<L>(points.vol, p) * factor;
     stress_columns<L>(points.stress, p, A);
     MPM_UNROLL
     for (int a = 0; a < DIM; a++) A[a] = volume * A[a];
@@ -369,12 +368,13 @@ template <int DIM, int ORDER, bool AFFINE, int NREAL, int PARTS> struct PointsTo
     if constexpr (DIM == 3) q -= broadcast<2>(distance) * A[2];
   }
 
+  /** Loads L points and computes what scatter needs; notes their extent. */
   template <int L>
-  static MPM_INLINE void prepare(const PointRows &points, long p, const TransferStep &step,
+  static MPM_INLINE void prepare(const PointRows &points, Index p, const TransferStep &step,
                                  const Frame<DIM, ORDER, L> &frame, Prepared<L> &out,
-                                 Vec<4 * L> &lowest, Vec<4 * L> &highest)
+                                 Quads<L> &lowest, Quads<L> &highest)
   {
-    using P = Vec<4 * L>;
+    using P = Quads<L>;
 
     const P t = frame.position(load_rows<L, 3>(points.x, p));
     lowest = min(lowest, t);
@@ -388,11 +388,10 @@ template <int DIM, int ORDER, bool AFFINE, int NREAL, int PARTS> struct PointsTo
       out.gradients.set(w);
     }
 
-    // the terms Am and Af are affine, but Af is a gradient term if it is no mls
+    // Am is an affine term, Af an affine or a gradient term
     P qm, qf, Am[DIM], Af[DIM];
     if constexpr (momentum) momentum_terms<L>(points, p, step.h, qm, Am);
-    if constexpr (force)
-      force_terms<L>(points, p, step.inv_h, NREAL == 4 ? step.dt : 1.0, qf, Af);
+    if constexpr (force) force_terms<L>(points, p, step.inv_h, NREAL == 4 ? step.dt : 1.0, qf, Af);
 
     if constexpr (both) {
       if constexpr (AFFINE) {
@@ -440,6 +439,7 @@ template <int DIM, int ORDER, bool AFFINE, int NREAL, int PARTS> struct PointsTo
     }
   }
 
+  /** Adds to the tile; SAME: the points have one base node. */
   template <bool SAME, int L>
   static MPM_INLINE void scatter(const Prepared<L> &in, double *const *base)
   {
@@ -455,21 +455,21 @@ template <int DIM, int ORDER, bool AFFINE, int NREAL, int PARTS> struct PointsTo
   /** Points [first,last), L at a time. */
   template <int L>
   static __attribute__((noinline)) void range(const PointRows &rows, const TransferStep &transfer,
-                                              long first, long last, const int *base, double *tile,
-                                              int *box)
+                                              Index first, Index last, const int *base,
+                                              double *tile, int *box)
   {
     // copies, so that the compiler knows that no store changes them
     const PointRows points = rows;
     const TransferStep step = transfer;
     const Frame<DIM, ORDER, L> frame(step, base);
     double *const entry = tile + (NREAL == 8 && PARTS == FORCE ? 4 : 0);
-    Vec<4 * L> lowest = Vec<4 * L>::all(1.0e6), highest = Vec<4 * L>::all(-1.0e6);
-    constexpr int STAGE = P2G_STAGE / L;
-    Prepared<L> stage[STAGE];
+    Quads<L> lowest = Quads<L>::all(1.0e6), highest = Quads<L>::all(-1.0e6);
+    constexpr int ENTRIES = STAGE / L;
+    Prepared<L> stage[ENTRIES];
 
-    for (long p = first; p < last;) {
-      const long n = (last - p) / L < STAGE ? (last - p) / L : STAGE;
-      const long ahead = p + PREFETCH, end = ahead + n * L;
+    for (Index p = first; p < last;) {
+      const Index n = (last - p) / L < ENTRIES ? (last - p) / L : ENTRIES;
+      const Index ahead = p + PREFETCH, end = ahead + n * L;
       prefetch<3>(points.x, ahead, end);
       if (momentum) {
         prefetch<3>(points.v, ahead, end);
@@ -481,9 +481,9 @@ template <int DIM, int ORDER, bool AFFINE, int NREAL, int PARTS> struct PointsTo
         prefetch<6>(points.stress, ahead, end);
         prefetch<1>(points.vol, ahead, end);
       }
-      for (long i = 0; i < n; i++, p += L)
+      for (Index i = 0; i < n; i++, p += L)
         prepare<L>(points, p, step, frame, stage[i], lowest, highest);
-      for (long i = 0; i < n; i++) {
+      for (Index i = 0; i < n; i++) {
         const Prepared<L> &in = stage[i];
         double *node[L];
         MPM_UNROLL
@@ -507,6 +507,7 @@ template <int DIM, int ORDER, bool AFFINE, int NREAL, int PARTS> struct PointsTo
       }
   }
 
+  /** All points, the last ones through padded copies. */
   static void p2g(const PointRows &points, const TransferStep &step, int first, int last,
                   const int base[3], double *tile, int box[6])
   {
@@ -538,14 +539,14 @@ template <int DIM, int ORDER, bool AFFINE, int NREAL, int PARTS> struct PointsTo
 /** Sums of weight times node vector for L points. GRADIENT: with the derivatives along each axis,
  *  by the gradients or, if MLS, as first moments with node numbers (from the base node). */
 template <int DIM, int ORDER, int NREAL, int L, bool MLS, bool GRADIENT> struct Gather {
-  using V = Vec<4 * L>;
+  using V = Quads<L>;
   using Weights = AxisWeights<ORDER, L>;
   static constexpr int N = ORDER + 1;
 
   V value, derivative[DIM];
 
   /** Node vector of each point; SAME: points share the node. */
-  template <bool SAME> static MPM_INLINE V node(const double *const *base, long offset)
+  template <bool SAME> static MPM_INLINE V node(const double *const *base, Index offset)
   {
     const Vec<4> first = Vec<4>::load(base[0] + offset);
     if constexpr (L == 1)
@@ -564,7 +565,7 @@ template <int DIM, int ORDER, int NREAL, int L, bool MLS, bool GRADIENT> struct 
 
   /** Sums a row of nodes along the last axis. */
   template <bool SAME>
-  static MPM_INLINE void row(const double *const *base, long offset, const V *w, const V *d,
+  static MPM_INLINE void row(const double *const *base, Index offset, const V *w, const V *d,
                              V &value, V &derivative)
   {
     MPM_UNROLL
@@ -588,6 +589,7 @@ template <int DIM, int ORDER, int NREAL, int L, bool MLS, bool GRADIENT> struct 
     }
   }
 
+  /** Value and derivatives; base: the record of each point's base node. */
   template <bool SAME>
   MPM_INLINE void sum(const Weights &weights, const Weights &gradients, const double *const *base)
   {
@@ -654,7 +656,6 @@ template <int DIM, int ORDER, int NREAL, int L, bool MLS, bool GRADIENT> struct 
 /** G2P and velocity gradient. */
 template <int DIM, int ORDER, Transfer TRANSFER, int NREAL> struct NodesToPoints {
   static constexpr bool mls = TRANSFER == APIC && ORDER > 1;    // gradient from first moments
-  static constexpr int POINTS = G2P_POINTS;
   static constexpr int N = ORDER + 1;
 
   /** L points ready to be gathered. */
@@ -664,16 +665,17 @@ template <int DIM, int ORDER, Transfer TRANSFER, int NREAL> struct NodesToPoints
     int place[L];
   };
 
+  /** Loads L points and computes what gather needs. */
   template <bool GRADIENT, int L>
-  static MPM_INLINE void prepare(const PointRows &points, long p,
+  static MPM_INLINE void prepare(const PointRows &points, Index p,
                                  const Frame<DIM, ORDER, L> &frame, Prepared<L> &out)
   {
-    const Vec<4 *L> x = load_rows<L, 3>(points.x, p);
-    const Vec<4 *L> fraction = frame.locate(frame.position(x), out.place);
+    const Quads<L> x = load_rows<L, 3>(points.x, p);
+    const Quads<L> fraction = frame.locate(frame.position(x), out.place);
     x.store(out.x);
     fraction.store(out.fraction);
     if constexpr (ORDER > 1) {
-      Vec<4 * L> w[N];
+      Quads<L> w[N];
       BSpline<ORDER>::weights(fraction, w);
       out.weights.set(w);
       if constexpr (GRADIENT && !mls) {
@@ -685,15 +687,15 @@ template <int DIM, int ORDER, Transfer TRANSFER, int NREAL> struct NodesToPoints
 
   /** Value and derivatives of the node vector at OFFSET in the records. */
   template <bool SAME, bool GRADIENT, int OFFSET, int L>
-  static MPM_INLINE void gather(const Prepared<L> &in, const double *const *node,
-                                Vec<4 * L> &value, Vec<4 * L> *derivative)
+  static MPM_INLINE void gather(const Prepared<L> &in, const double *const *node, Quads<L> &value,
+                                Quads<L> *derivative)
   {
     const double *base[L];
     MPM_UNROLL
     for (int l = 0; l < L; l++) base[l] = node[l] + OFFSET;
     Gather<DIM, ORDER, NREAL, L, mls && GRADIENT, GRADIENT> field;
     if constexpr (ORDER == 1)
-      field.template interpolate<SAME>(Vec<4 * L>::load(in.fraction), base);
+      field.template interpolate<SAME>(Quads<L>::load(in.fraction), base);
     else
       field.template sum<SAME>(in.weights, in.gradients, base);
     value = field.value;
@@ -704,7 +706,7 @@ template <int DIM, int ORDER, Transfer TRANSFER, int NREAL> struct NodesToPoints
   }
 
   /** Stores the first K reals of each point's four in rows of three. */
-  template <int K, int L> static MPM_INLINE void store_rows(double *rows, long p, Vec<4 * L> a)
+  template <int K, int L> static MPM_INLINE void store_rows(double *rows, Index p, Quads<L> a)
   {
     if constexpr (L == 1) {
       store_lanes<K>(rows + 3 * p, a);
@@ -716,11 +718,12 @@ template <int DIM, int ORDER, Transfer TRANSFER, int NREAL> struct NodesToPoints
 
   /** Stores the columns of matrices in rows of nine, from the first row to the last: each column
    *  but the last of all also writes one real behind it, which the next column overwrites. */
-  template <int L> static MPM_INLINE void store_columns(double *rows, long p, const Vec<4 * L> *column)
+  template <int L>
+  static MPM_INLINE void store_columns(double *rows, Index p, const Quads<L> *column)
   {
     MPM_UNROLL
     for (int a = 0; a < 3; a++) {
-      const Vec<4 * L> c = a < DIM ? column[a < DIM ? a : 0] : Vec<4 * L>{};
+      const Quads<L> c = a < DIM ? column[a < DIM ? a : 0] : Quads<L>{};
       if constexpr (L == 1)
         c.store(rows + 9 * p + 3 * a);
       else
@@ -729,31 +732,32 @@ template <int DIM, int ORDER, Transfer TRANSFER, int NREAL> struct NodesToPoints
     if constexpr (L == 2) {
       MPM_UNROLL
       for (int a = 0; a < 3; a++) {
-        const Vec<4 * L> c = a < DIM ? column[a < DIM ? a : 0] : Vec<4 * L>{};
+        const Quads<L> c = a < DIM ? column[a < DIM ? a : 0] : Quads<L>{};
         half<1>(c).store(rows + 9 * (p + 1) + 3 * a);
       }
     }
   }
 
   /** Points [first,last), L at a time. UPDATE: velocity, position and C; GRADIENT: the velocity
-   *  gradient, which goes to C and to the rows L of which the first is for the point first. */
+   *  gradient, which goes to C and to the rows of gradients, the first of them for point first. */
   template <int L, bool UPDATE, bool GRADIENT>
   static __attribute__((noinline)) int range(const PointRows &rows, const TransferStep &transfer,
-                                             long first, long last, const int *base,
+                                             Index first, Index last, const int *base,
                                              const double *tile, double *gradients)
   {
-    using P = Vec<4 * L>;
+    using P = Quads<L>;
     // copies, so that the compiler knows that no store changes them
     const PointRows points = rows;
     const TransferStep step = transfer;
     const Frame<DIM, ORDER, L> frame(step, base);
     P outside = {};
-    constexpr int STAGE = G2P_STAGE / L;
-    Prepared<L> stage[STAGE];
+    constexpr double range_of_bases = block_side(DIM) + 2;
+    constexpr int ENTRIES = STAGE / L;
+    Prepared<L> stage[ENTRIES];
 
-    for (long p = first; p < last;) {
-      const long n = (last - p) / L < STAGE ? (last - p) / L : STAGE;
-      const long ahead = p + PREFETCH, end = ahead + n * L;
+    for (Index p = first; p < last;) {
+      const Index n = (last - p) / L < ENTRIES ? (last - p) / L : ENTRIES;
+      const Index ahead = p + PREFETCH, end = ahead + n * L;
       if (UPDATE) {
         prefetch<3, 1>(points.x, ahead, end);
         prefetch<3, 1>(points.v, ahead, end);
@@ -766,8 +770,8 @@ template <int DIM, int ORDER, Transfer TRANSFER, int NREAL> struct NodesToPoints
         prefetch<6, 1>(points.stress, ahead, end);
         prefetch<1, 1>(points.vol, ahead, end);
       }
-      for (long i = 0; i < n; i++) prepare<GRADIENT, L>(points, p + L * i, frame, stage[i]);
-      for (long i = 0; i < n; i++, p += L) {
+      for (Index i = 0; i < n; i++) prepare<GRADIENT, L>(points, p + L * i, frame, stage[i]);
+      for (Index i = 0; i < n; i++, p += L) {
         const Prepared<L> &in = stage[i];
         const double *node[L];
         MPM_UNROLL
@@ -804,10 +808,9 @@ template <int DIM, int ORDER, Transfer TRANSFER, int NREAL> struct NodesToPoints
         if constexpr (UPDATE) {
           if constexpr (DIM == 2) v = blend<2>(v, P{});
           const P x = P::load(in.x) + step.dt * v;
-          outside = flag_outside(outside, frame.position(x), block_side(DIM) + 2);
+          outside = flag_outside(outside, frame.position(x), range_of_bases);
           store_rows<3, L>(points.xnew, p, x);
-          if constexpr (TRANSFER == FLIP)
-            v += step.flip * (load_rows<L, 3>(points.v, p) - v_old);
+          if constexpr (TRANSFER == FLIP) v += step.flip * (load_rows<L, 3>(points.v, p) - v_old);
           store_rows<DIM, L>(points.v, p, v);
         }
       }
@@ -819,8 +822,9 @@ template <int DIM, int ORDER, Transfer TRANSFER, int NREAL> struct NodesToPoints
     return left;
   }
 
+  /** All points, the last ones through padded copies. */
   template <bool UPDATE, bool GRADIENT>
-  static int all(const PointRows &points, const TransferStep &step, int first, int last,
+  static int run(const PointRows &points, const TransferStep &step, int first, int last,
                  const int *base, const double *tile, double *gradients)
   {
     if (first >= last) return 0;
@@ -848,16 +852,16 @@ template <int DIM, int ORDER, Transfer TRANSFER, int NREAL> struct NodesToPoints
   static int g2p(const PointRows &points, const TransferStep &step, int first, int last,
                  const int base[3], const double *tile, double *L)
   {
-    if (TRANSFER == APIC || L) return all<true, true>(points, step, first, last, base, tile, L);
+    if (TRANSFER == APIC || L) return run<true, true>(points, step, first, last, base, tile, L);
     if constexpr (TRANSFER != APIC)
-      return all<true, false>(points, step, first, last, base, tile, L);
+      return run<true, false>(points, step, first, last, base, tile, L);
     return 0;
   }
 
   static int g2p_gradient(const PointRows &points, const TransferStep &step, int first, int last,
                           const int base[3], const double *tile, double *L)
   {
-    all<false, true>(points, step, first, last, base, tile, L);
+    run<false, true>(points, step, first, last, base, tile, L);
     return 0;
   }
 };
@@ -902,23 +906,27 @@ void tile_io(double *tile, double *nodes, const int slot[27], const int box[6])
       // in 3d slots of a row are neighbours, in 2d three apart, the middle one of three in z
       constexpr int next = DIM == 3 ? 1 : 3, middle = DIM == 3 ? 0 : 1;
       if (touches_before)
-        move_reals<NREAL, LOAD>(row, nodes + (64L * block[middle] + index + side - 1) * NREAL);
+        move_reals<NREAL, LOAD>(row,
+                                nodes + (Index(64) * block[middle] + index + side - 1) * NREAL);
       if (touches_own)
         move_reals<side * NREAL, LOAD>(row + NREAL,
-                                       nodes + (64L * block[next + middle] + index) * NREAL);
+                                       nodes + (Index(64) * block[next + middle] + index) * NREAL);
       if (touches_after)
         move_reals<after * NREAL, LOAD>(row + NREAL * (side + 1),
-                                        nodes + (64L * block[2 * next + middle] + index) * NREAL);
+                                        nodes +
+                                            (Index(64) * block[2 * next + middle] + index) * NREAL);
     }
 }
 
+constexpr double SMALLEST = 2.3e-308;    ///< the inverse of a smaller mass may overflow
+
 void solve_nodes(double *nodes, int nnodes, int nreal, double dt)
 {
-  double *const end = nodes + static_cast<long>(nreal) * nnodes;
+  double *const end = nodes + static_cast<Index>(nreal) * nnodes;
   for (double *node = nodes; node < end; node += nreal) {
     const Vec<4> p = Vec<4>::load(node);
     const double m = node[3];
-    const double inv_m = m > 0.0 ? 1.0 / m : 0.0;
+    const double inv_m = m > SMALLEST ? 1.0 / m : 0.0;
     const Vec<4> v = inv_m * p;
     if (nreal == 4) {
       v.store(node);

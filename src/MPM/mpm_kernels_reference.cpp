@@ -14,6 +14,8 @@
 #include "mpm_shape.h"
 
 #include <cmath>
+#include <cstddef>
+#include <limits>
 
 namespace MPM_NS {
 const MPMKernels *mpm_kernels_reference();
@@ -40,8 +42,8 @@ double tile_position(double x, const TransferStep &step, const int *base, int ax
 
 /** Nodes, weights and gradients of the point at x. */
 template <int DIM, int ORDER> struct Stencil {
-  static constexpr int count = DIM == 3 ? (ORDER + 1) * (ORDER + 1) * (ORDER + 1) :
-                                          (ORDER + 1) * (ORDER + 1);
+  static constexpr int count = DIM == 3 ? (ORDER + 1) * (ORDER + 1) * (ORDER + 1)
+                                        : (ORDER + 1) * (ORDER + 1);
   int base[3] = {0, 0, 0};    ///< tile index of the base node
   Node node[count];
 
@@ -226,7 +228,7 @@ void flush(double *tile, double *nodes, const int slot[27], const int box[6])
 {
   for_box<DIM, ORDER>(box, [=](int t, int s, int n) {
     for (int i = 0; i < NREAL; i++) {
-      nodes[(64 * static_cast<long>(slot[s]) + n) * NREAL + i] += tile[NREAL * t + i];
+      nodes[(64 * static_cast<std::ptrdiff_t>(slot[s]) + n) * NREAL + i] += tile[NREAL * t + i];
       tile[NREAL * t + i] = 0.0;
     }
   });
@@ -237,19 +239,20 @@ void load(double *tile, double *nodes, const int slot[27], const int box[6])
 {
   for_box<DIM, ORDER>(box, [=](int t, int s, int n) {
     for (int i = 0; i < NREAL; i++)
-      tile[NREAL * t + i] = nodes[(64 * static_cast<long>(slot[s]) + n) * NREAL + i];
+      tile[NREAL * t + i] = nodes[(64 * static_cast<std::ptrdiff_t>(slot[s]) + n) * NREAL + i];
   });
 }
 
 void solve_nodes(double *nodes, int nnodes, int nreal, double dt)
 {
   for (int n = 0; n < nnodes; n++) {
-    double *node = nodes + static_cast<long>(nreal) * n;
+    double *node = nodes + static_cast<std::ptrdiff_t>(nreal) * n;
     const double m = node[3];
+    const bool has_mass = m > std::numeric_limits<double>::min();
     for (int i = 0; i < 3; i++) {
-      const double v = m > 0.0 ? node[i] / m : 0.0;
+      const double v = has_mass ? node[i] / m : 0.0;
       if (nreal == 8) {
-        node[i] = m > 0.0 ? (node[i] + dt * node[4 + i]) / m : 0.0;
+        node[i] = has_mass ? (node[i] + dt * node[4 + i]) / m : 0.0;
         node[4 + i] = v;
       } else {
         node[i] = v;

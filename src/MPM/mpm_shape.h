@@ -25,8 +25,8 @@ namespace MPM_NS {
 template <int ORDER> struct BSpline {
   static_assert(ORDER >= 1 && ORDER <= 3, "B-splines are linear, quadratic or cubic");
 
-  static constexpr int nodes = ORDER + 1;              ///< nodes that a point reaches
-  static constexpr double shift = 0.5 * (ORDER - 1);   ///< distance of base node and its interval
+  static constexpr int nodes = ORDER + 1;               ///< nodes that a point reaches
+  static constexpr double shift = 0.5 * (ORDER - 1);    ///< distance of base node and its interval
 
   /** Inverse of the second moment sum w (x_i - x)^2, which does not depend on the position.
    *  It does for linear functions, for which the affine form is not used (value 0). */

@@ -19,31 +19,26 @@ struct J2Flow {
   double sigmay, H, B, N;
   static constexpr double chi = 1.0;
 
-  struct Start {
-    double yield, eplastic;
-  };
-
   J2Flow(const LawParameters &p, double) :
       sigmay(p.value[1]), H(p.value[2]), B(p.value[3]), N(p.value[4])
   {
   }
-  MPM_INLINE double curve(double e) const { return sigmay + H * e + B * pow(e, N); }
-  MPM_INLINE Start start(History history, int i) const
+  MPM_INLINE double start(History history, int i) const
   {
     const double e = history[0][i];
-    return {curve(e), e};
+    return sigmay + H * e + B * pow(e, N);
   }
-  MPM_INLINE void stress(const Start &s, const ReturnPoint &, double D, double &y, double &dy) const
+  MPM_INLINE void stress(History history, int i, double, const TrialState, double D, double &y,
+                         double &dy) const
   {
-    const double e = s.eplastic + D, hard = B * pow(e, N);
-    y = sigmay + H * e + hard;
-    dy = H + N * hard / e;
+    const double e = history[0][i] + D, power = B * pow(e, N);
+    y = sigmay + H * e + power;
+    dy = H + N * power / max(e, 1e-300);
   }
-  MPM_INLINE double finish(History history, int i, double D, double y, double) const
+  MPM_INLINE double finish(History history, int i, double start, double D, double y, double) const
   {
-    const double e = history[0][i];
-    history[0][i] = e + D;
-    return 0.5 * (curve(e) + y) * D;
+    history[0][i] += D;
+    return 0.5 * (start + y) * D;
   }
 };
 

@@ -26,10 +26,6 @@ template <bool THERMAL> struct JohnsonCookFlow {
   double warm;                        ///< temperature rise per plastic work
   double chi;
 
-  struct Start {
-    double yield, eplastic, T;
-  };
-
   JohnsonCookFlow(const LawParameters &p, double dt) :
       A(p.value[JC_A]), B(p.value[JC_B]), N(p.value[JC_N]), C(p.value[JC_C]),
       inv_rate(1.0 / max(p.value[JC_RATE] * dt, 1e-300)), M(p.value[JC_M]),
@@ -43,11 +39,10 @@ template <bool THERMAL> struct JohnsonCookFlow {
   {
     return min(max((T - Tref) * inv_range, 0.0), 1.0);
   }
-  MPM_INLINE Start start(History history, int i) const
+  MPM_INLINE double start(History history, int i) const
   {
-    const double e = history[0][i], T = THERMAL ? history[1][i] : 0.0;
-    const double hard = A + B * pow(e, N);
-    return {THERMAL ? hard * (1.0 - soft * pow(homologous(T), M)) : hard, e, T};
+    const double hard = A + B * pow(history[0][i], N);
+    return THERMAL ? hard * (1.0 - soft * pow(homologous(history[1][i]), M)) : hard;
   }
 
   /** Factor of the rate, and its derivative with respect to D. */
@@ -58,37 +53,34 @@ template <bool THERMAL> struct JohnsonCookFlow {
     return 1.0 + C * log(max(x, 1.0));
   }
 
-  MPM_INLINE void stress(const Start &s, const ReturnPoint &point, double D, double &y,
-                         double &dy) const
+  MPM_INLINE void stress(History history, int i, double start, const TrialState trial, double D,
+                         double &y, double &dy) const
   {
-    const double e = s.eplastic + D, power = B * pow(e, N);
-    const double hard = A + power, dhard = N * power / e;
+    const double e = history[0][i] + D, power = B * pow(e, N);
+    const double hard = A + power, dhard = N * power / max(e, 1e-300);
     double dfast;
     const double fast = rate(D, dfast);
     y = hard * fast;
     dy = dhard * fast + hard * dfast;
     if (THERMAL) {
-      const double sigma = point.trial - point.stiff * D;    // is Y at the solution
-      const double half = 0.5 * point.J * warm;
-      const double T = s.T + half * (s.yield * fast + sigma) * D;
-      const double dT =
-          half * (s.yield * (fast + dfast * D) + sigma - point.stiff * D);
+      const double sigma = trial.q - trial.stiff * D;    // is Y at the solution
+      const double half = 0.5 * trial.J * warm;
+      const double T = history[1][i] + half * (start * fast + sigma) * D;
+      const double dT = half * (start * (fast + dfast * D) + sigma - trial.stiff * D);
       const double t = homologous(T);
       const double tm = soft * pow(t, M);
-      const double cold = 1.0 - tm;
       const double dcold = t > 0.0 && t < 1.0 ? -M * tm / t * inv_range * dT : 0.0;
-      dy = dy * cold + y * dcold;
-      y = y * cold;
+      dy = dy * (1.0 - tm) + y * dcold;
+      y = y * (1.0 - tm);
     }
   }
 
-  MPM_INLINE double finish(History history, int i, double D, double y, double J) const
+  MPM_INLINE double finish(History history, int i, double start, double D, double y, double J) const
   {
-    const Start s = start(history, i);
     double slope;
-    const double work = 0.5 * (s.yield * rate(D, slope) + y) * D;
-    history[0][i] = s.eplastic + D;
-    if (THERMAL) history[1][i] = s.T + warm * J * work;
+    const double work = 0.5 * (start * rate(D, slope) + y) * D;
+    history[0][i] += D;
+    if (THERMAL) history[1][i] += warm * J * work;
     return work;
   }
 };

@@ -20,18 +20,17 @@ namespace {
  *
  *    r(D) = q - 3 G/J D - Y(D) = 0,   q = trial equivalent stress
  *
- *  Flow has: Flow(parameters, dt); Start start(history, i), what is known at the start of the step,
- *  with the flow stress for D -> 0 in start.yield; linear(D's denominator) or an iteration on
- *  flow(start, point, D) -> Y, dY/dD; finish(...) which stores the history and returns the plastic
- *  work per current volume.
+ *  Flow has: Flow(parameters, dt); start(history, i), the flow stress for D -> 0; stress(history, i,
+ *  start, trial state, D, Y, dY/dD); finish(history, i, start, D, Y, J), which stores the history
+ *  and returns the plastic work per current volume.
  *
  *  Iteration, the whole batch at a time: r is convex in D for power hardening (n < 1), logarithmic
  *  rate dependence, and both together, and concave in log D. So Newton in D from the left and
  *  Newton in 1/D from the right approach the root from their side only, also with infinite slope
  *  at D = 0. A bracket catches all else (thermal softening).
  */
-struct ReturnPoint {
-  double trial;    ///< equivalent stress of the elastic trial state
+struct TrialState {
+  double q;        ///< equivalent stress
   double stiff;    ///< 3 G/J
   double J;        ///< mean volume ratio of the step
 };
@@ -43,7 +42,7 @@ template <class Flow> struct RadialReturn : ShearElasticity {
   {
     const ElasticDeviator elastic{p.value[0]};
     const Flow flow(p, b.dt);
-    alignas(64) double trial[BATCH], D[BATCH], yield[BATCH];
+    alignas(64) double trial[BATCH], stiff[BATCH], start[BATCH], yield[BATCH], D[BATCH];
 
     double yielding = 0.0;
     MPM_SIMD_SUM(yielding)
@@ -52,19 +51,20 @@ template <class Flow> struct RadialReturn : ShearElasticity {
       const Sym s = elastic.trial(b, i, inc);
       store_stress(b, i, s);
       const double q = std::sqrt(1.5 * norm2(s));
-      const double stiff = 3.0 * p.value[0] / b.J[i];
-      const double y = flow.start(history, i).yield;
-      const double excess = (q - y) / stiff;
+      const double modulus = 3.0 * p.value[0] / b.J[i];
+      const double y = flow.start(history, i);
+      const double excess = (q - y) / modulus;
       // first guess: all strain is plastic, when that is possible
       const double strain = std::sqrt((2.0 / 3.0) * norm2(deviator(inc.strain)));
       const double guess = min(excess, max(strain, 1e-3 * excess));
       trial[i] = q;
-      yield[i] = y;
+      stiff[i] = modulus;
+      start[i] = y;
       D[i] = excess > 0.0 ? guess : 0.0;
       yielding += excess > 0.0 ? 1.0 : 0.0;
     }
     if (yielding == 0.0) return;
-    solve(p, b, flow, history, trial, D, yield);
+    solve(b, flow, history, trial, stiff, start, yield, D);
 
     double plastic = 0.0, heated = 0.0;
     MPM_SIMD_SUM(plastic, heated)
@@ -72,7 +72,7 @@ template <class Flow> struct RadialReturn : ShearElasticity {
       const double scale = D[i] > 0.0 ? yield[i] / trial[i] : 1.0;
       store_stress(b, i, scale * load_stress(b, i));
       const double J = 0.5 * (b.J[i] + b.Jold[i]);
-      const double work = J * flow.finish(history, i, D[i], yield[i], J);
+      const double work = J * flow.finish(history, i, start[i], D[i], yield[i], J);
       plastic += work * b.vol0[i];
       heated += flow.chi * work * b.vol0[i];
       heat[i] += flow.chi * work;
@@ -82,38 +82,39 @@ template <class Flow> struct RadialReturn : ShearElasticity {
   }
 
  private:
-  static MPM_INLINE void solve(const LawParameters &p, const Batch &b, const Flow &flow,
-                               History history, const double *trial, double *D, double *yield)
+  static MPM_INLINE void solve(const Batch &b, const Flow &flow, History history,
+                               const double *trial, const double *stiff, const double *start,
+                               double *yield, double *D)
   {
     alignas(64) double low[BATCH], high[BATCH];
     MPM_SIMD
     for (int i = 0; i < b.n; i++) {
       low[i] = 0.0;
-      high[i] = trial[i] * b.J[i] / (3.0 * p.value[0]);
+      high[i] = trial[i] / stiff[i];
     }
     for (int iteration = 0; iteration < MAX_ITERATIONS; iteration++) {
       double busy = 0.0;
       MPM_SIMD_SUM(busy)
       for (int i = 0; i < b.n; i++) {
         const double d = D[i];
-        const ReturnPoint point{trial[i], 3.0 * p.value[0] / b.J[i], 0.5 * (b.J[i] + b.Jold[i])};
+        const TrialState t{trial[i], stiff[i], 0.5 * (b.J[i] + b.Jold[i])};
         double y, dy;
-        flow.stress(flow.start(history, i), point, d, y, dy);
-        const double r = point.trial - point.stiff * d - y;
-        const double slope = -point.stiff - dy;
-        const double size = r > 0.0 ? r : -r;
-        const bool active = d > 0.0;
-        const bool done = size <= 1e-13 * y + 1e-15 * point.trial;
+        flow.stress(history, i, start[i], t, d, y, dy);
+        const double r = t.q - t.stiff * d - y;
+        const double s = t.stiff + dy;    // -dr/dD
         const double lo = r > 0.0 ? d : low[i], hi = r > 0.0 ? high[i] : d;
-        const double x = -r / (d * slope);
-        const double newton = x > 0.0 ? d * (1.0 + x) : d / (1.0 - x);
+        const double newton = d + r * d / (d * s + max(-r, 0.0));
         const double half = 0.5 * (lo + hi);
-        const double next = slope < 0.0 && newton > lo && newton < hi ? newton : half;
+        const double next = s > 0.0 && newton > lo && newton < hi ? newton : half;
+        const bool active = d > 0.0;
+        const bool done = max(r, -r) <= 1e-13 * y + 1e-15 * t.q;
+        const double step = active && !done ? next - d : 0.0;
         low[i] = lo;
         high[i] = hi;
-        yield[i] = active ? y : yield[i];
-        D[i] = active && !done ? next : d;
-        busy += active && !done ? 1.0 : 0.0;
+        yield[i] = y + dy * step;
+        D[i] = d + step;
+        // the error left by a small Newton step is its square: no need to look again
+        busy += step * step > 1e-14 * d * d ? 1.0 : 0.0;
       }
       if (busy == 0.0) return;
     }

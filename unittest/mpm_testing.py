@@ -1,0 +1,113 @@
+# This file is part of the MPM package for LAMMPS, distributed under the GNU
+# General Public License, version 2; see the file LICENSE.
+"""Tests in Python: running LAMMPS, reading its thermo output, and a report like GoogleTest's.
+
+A test file defines functions test_*() and ends with mpm_testing.main(globals()).
+"""
+
+import json
+import os
+import re
+import shlex
+import subprocess
+import sys
+import time
+import traceback
+
+ROOT = os.environ.get("MPM_ROOT", os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+LMP = os.environ.get("MPM_LMP", os.path.join(ROOT, "build", "lmp"))
+
+
+class Skip(Exception):
+    """Raised by a test that cannot run here."""
+
+
+class Result:
+    """Exit code (negative: killed by a signal), output and time of a command."""
+
+    def __init__(self, code, output, seconds):
+        self.code, self.output, self.seconds = code, output, seconds
+
+    def tail(self, lines=25):
+        return "\n".join(self.output.splitlines()[-lines:])
+
+
+def run(command, folder=".", timeout=100, environment=None):
+    env = dict(os.environ)
+    env.update(environment or {})
+    start = time.time()
+    process = subprocess.Popen(command, cwd=folder, env=env, stdin=subprocess.DEVNULL,
+                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    try:
+        output, _ = process.communicate(timeout=timeout)
+        code = process.returncode
+    except subprocess.TimeoutExpired:
+        process.kill()
+        output, _ = process.communicate()
+        code = None
+    return Result(code, output.decode(errors="replace"), time.time() - start)
+
+
+def lammps(folder, text=None, file="in.test", arguments=(), processes=0, executable=LMP, **options):
+    """Run an input, given as text or as a file in folder; processes 0: without mpirun."""
+    if text is not None:
+        with open(os.path.join(folder, file), "w") as out:
+            out.write(text)
+    command = [executable, "-in", file, "-log", "log.lammps", "-nocite"] + list(arguments)
+    if processes:
+        mpiexec = shlex.split(os.environ.get("MPM_MPIEXEC", "mpirun -np"))
+        command = mpiexec + [str(processes)] + command
+    return run(command, folder, **options)
+
+
+def thermo(output):
+    """Tables of thermo output, one for each run: list of (column names, rows of text)."""
+    tables, rows, names = [], None, []
+    for line in output.splitlines():
+        words = line.split()
+        if words[:1] == ["Step"] or (words and "Step" in words and rows is None):
+            names, rows = words, []
+            tables.append((names, rows))
+        elif line.startswith("Loop time"):
+            rows = None
+        elif rows is not None and len(words) == len(names) and re.match(r"-?\d", words[0]):
+            rows.append(words)
+    return tables
+
+
+def warnings(output):
+    return [line for line in output.splitlines() if line.startswith("WARNING")]
+
+
+def main(scope):
+    """Run the tests in order of definition, or those named on the command line."""
+    tests = [(name, f) for name, f in scope.items() if name.startswith("test_") and callable(f)]
+    if sys.argv[1:]:
+        tests = [(name, f) for name, f in tests if name in sys.argv[1:]]
+    cases, failed = [], 0
+    for name, function in tests:
+        case = {"name": name, "status": "RUN", "result": "COMPLETED"}
+        print("[ RUN      ]", name, flush=True)
+        start = time.time()
+        try:
+            function()
+            word = "      OK"
+        except Skip as reason:
+            print(reason)
+            case["result"] = "SKIPPED"
+            word = " SKIPPED"
+        except Exception:
+            text = traceback.format_exc()
+            print(text)
+            case["failures"] = [{"failure": text}]
+            failed += 1
+            word = " FAILED "
+        print("[ %s ] %s (%.1f s)" % (word, name, time.time() - start), flush=True)
+        cases.append(case)
+    where = os.environ.get("GTEST_OUTPUT", "")
+    if where.startswith("json:"):
+        with open(where[5:], "w") as out:
+            json.dump({"testsuites": [{"name": sys.argv[0], "testsuite": cases}]}, out)
+    if not cases:
+        print("no tests")
+    sys.exit(1 if failed or not cases else 0)

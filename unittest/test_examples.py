@@ -1,0 +1,193 @@
+# This file is part of the MPM package for LAMMPS, distributed under the GNU
+# General Public License, version 2; see the file LICENSE.
+#
+# labels: examples
+# timeout: 900
+"""Every example runs to its end without a warning, makes its pictures, and gives the numbers of
+its reference log (log.*.g++.1) where there is one; two processes give the numbers of one."""
+
+import glob
+import math
+import os
+import re
+import shutil
+import struct
+import tempfile
+import zlib
+
+import mpm_testing as mt
+
+EXAMPLES = os.path.join(mt.ROOT, "examples")
+SECONDS = 100    # for one run, on a busy machine
+
+# node spacing times this, where the default one is for a nicer picture
+COARSER = {"taylor-bar": 2.0, "grains-on-block": 2.0, "dam-break": 1.0}
+
+# what LAMMPS says of every run without a pair style, and of every hybrid style
+ALLOWED = ["Communication cutoff is 0.0. No ghost atoms will be generated.",
+           "Per-atom field rmass is used in multiple sub-styles"]
+
+# of the range of a column
+REFERENCE_TOLERANCE = 0.02     # another machine, compiler or version
+PROCESSES_TOLERANCE = 1.0e-4   # printed digits, and what collisions amplify
+
+UNIMPORTANT = ["CPU", "S/CPU", "CPULeft", "Part"]
+
+
+def inputs():
+    return sorted(glob.glob(os.path.join(EXAMPLES, "*", "in.*")))
+
+
+def read(path):
+    with open(path, errors="replace") as file:
+        return re.sub(r"&[ \t]*\n", " ", file.read())
+
+
+def coarse_arguments(path):
+    name = os.path.basename(os.path.dirname(path))
+    factor = COARSER.get(name, 1.0)
+    h = re.search(r"^variable\s+h\s+index\s+(\S+)", read(path), re.M)
+    if factor == 1.0 or not h:
+        return []
+    return ["-v", "h", "%g" % (float(h.group(1)) * factor)]
+
+
+class Example:
+    """One input, run in a temporary copy of its folder."""
+
+    def __init__(self, path, processes=0):
+        self.path, self.text = path, read(path)
+        source = os.path.dirname(path)
+        self.folder = tempfile.mkdtemp(prefix="mpm_example_")
+        for name in os.listdir(source):
+            if not re.search(r"\.(png|vt[pu]|pvd)$|^log\.", name):
+                shutil.copy(os.path.join(source, name), self.folder)
+        arguments = coarse_arguments(path)
+        self.result = mt.lammps(self.folder, file=os.path.basename(path), arguments=arguments,
+                                processes=processes, timeout=SECONDS)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        shutil.rmtree(self.folder)
+
+    def files(self, pattern):
+        pattern = pattern.replace("${outdir}", ".")
+        return sorted(glob.glob(os.path.join(self.folder, pattern)))
+
+
+def picture_colors(path):
+    """Number of different pixels of a PNG, or why it is none."""
+    with open(path, "rb") as file:
+        data = file.read()
+    if data[:8] != b"\x89PNG\r\n\x1a\n":
+        return "no PNG"
+    at, packed, width, height, channels = 8, b"", 0, 0, 0
+    while at + 8 <= len(data):
+        size, kind = struct.unpack(">I4s", data[at:at + 8])
+        chunk = data[at + 8:at + 8 + size]
+        if kind == b"IHDR":
+            width, height, _, color = struct.unpack(">IIBB", chunk[:10])
+            channels = {0: 1, 2: 3, 6: 4}.get(color, 0)
+        elif kind == b"IDAT":
+            packed += chunk
+        at += 12 + size
+    if not channels or not packed:
+        return "no image data"
+    rows = zlib.decompress(packed)
+    stride = width * channels + 1
+    if len(rows) < height * stride:
+        return "truncated"
+    # the filtered bytes of a uniform picture are zero but for its first pixel
+    return len(set(rows[k * stride + 1:(k + 1) * stride] for k in range(height)))
+
+
+def check_run(example):
+    result = example.result
+    assert result.code is not None, "more than %d s: make it coarser in COARSER" % SECONDS
+    assert result.code == 0, result.tail()
+    unexpected = [line for line in mt.warnings(result.output)
+                  if not any(text in line for text in ALLOWED)]
+    assert not unexpected, "\n".join(unexpected)
+    tables = mt.thermo(result.output)
+    assert tables, result.tail()
+    for names, rows in tables:
+        for row in rows:
+            for name, value in zip(names, row):
+                assert math.isfinite(float(value)), "%s = %s" % (name, value)
+
+
+def check_files(example):
+    pictures = re.findall(r"^dump\s+\S+\s+\S+\s+image\s+\d+\s+(\S+)", example.text, re.M)
+    assert pictures, "no dump image in " + example.path
+    for pattern in pictures:
+        files = example.files(pattern)
+        assert len(files) >= 2, "%s: %s" % (pattern, files)
+        for name in files:
+            colors = picture_colors(name)
+            assert isinstance(colors, int) and colors > 10, "%s: %s" % (name, colors)
+    for pattern in re.findall(r"^dump\s+\S+\s+\S+\s+mpm/\S+\s+\d+\s+(\S+)", example.text, re.M):
+        assert len(example.files(pattern)) >= 2, pattern
+    for pattern in re.findall(r"^write_dump\s+\S+\s+\S+\s+(\S+)", example.text, re.M):
+        assert example.files(pattern), pattern
+
+
+def compare(found, expected, tolerance, what):
+    """Last rows of all tables, each column relative to its range of values."""
+    a, b = mt.thermo(found), mt.thermo(expected)
+    assert len(a) == len(b), "%s: %d runs, not %d" % (what, len(a), len(b))
+    for (names, rows), (other_names, other_rows) in zip(a, b):
+        assert names == other_names, "%s: columns %s, not %s" % (what, names, other_names)
+        for k, name in enumerate(names):
+            if name in UNIMPORTANT or name in ("Step", "Time", "Dt"):
+                continue
+            values = [float(row[k]) for row in other_rows]
+            scale = max(max(values) - min(values), 1.0e-3 * max(map(abs, values)), 1.0e-300)
+            difference = abs(float(rows[-1][k]) - values[-1]) / scale
+            assert difference <= tolerance, "%s: column %s ends with %s, not %s: %.2g of its range" \
+                % (what, name, rows[-1][k], other_rows[-1][k], difference)
+
+
+def reference(path):
+    logs = sorted(glob.glob(os.path.join(os.path.dirname(path), "log.*.g++.1")))
+    return logs[-1] if logs else None
+
+
+def points_made(output):
+    return re.findall(r"Created (\d+) (?:material points|atoms)", output)
+
+
+def make_test(path):
+    name = os.path.basename(path)[3:].replace("-", "_")
+
+    def one_process():
+        with Example(path) as example:
+            check_run(example)
+            check_files(example)
+            log = reference(path)
+            if log and points_made(read(log)) == points_made(example.result.output):
+                compare(example.result.output, read(log), REFERENCE_TOLERANCE, log)
+            outputs[path] = example.result
+
+    def two_processes():
+        if path not in outputs:
+            raise mt.Skip("failed with one process")
+        with Example(path, processes=2) as example:
+            check_run(example)
+            compare(example.result.output, outputs[path].output, PROCESSES_TOLERANCE, name)
+
+    return {"test_" + name: one_process, "test_" + name + "_with_two_processes": two_processes}
+
+
+outputs = {}
+
+
+def test_there_are_examples():
+    assert len(inputs()) >= 5, inputs()
+
+
+for _path in inputs():
+    globals().update(make_test(_path))
+
+mt.main(globals())
