@@ -29,12 +29,15 @@ struct Sample {
     {"neohookean", "density 1000 neohookean 1e9 0.3"},
     {"elastic", "density 2700 eos linear 70e9 strength elastic 26e9"},
     {"j2", "density 8930 eos linear 1e11 strength j2 43e9 157e6 hardening linear 425e6"},
-    {"j2_shock", "density 8930 eos shock 3940 1.49 1.96 strength j2 43e9 157e6 hardening linear 425e6"},
+    {"j2_shock",
+     "density 8930 eos shock 3940 1.49 1.96 strength j2 43e9 157e6 hardening linear 425e6"},
     {"j2_power", "density 8940 eos linear 1e11 strength j2 44e9 65e6 hardening power 356e6 0.37"},
-    {"johnson_cook", "density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 0.168 "
-                     "0.0089 1 1.1 1540 20 460 0.9"},
-    {"johnson_cook_cold", "density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 "
-                          "0.168 0.0089 1"},
+    {"johnson_cook",
+     "density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 0.168 "
+     "0.0089 1 1.1 1540 20 460 0.9"},
+    {"johnson_cook_cold",
+     "density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 "
+     "0.168 0.0089 1"},
     {"tait", "density 1000 eos tait 2.2e9 7"},
     {"water", "density 1000 eos tait 2.2e9 7 cutoff -1e5 viscosity newtonian 1e-3"},
     {"artificial", "density 1000 eos linear 1e9 viscosity artificial 1.5 0.06"},

@@ -479,6 +479,53 @@ TEST_P(InclineStick, DoesNotCreep)
 INSTANTIATE_TEST_SUITE_P(Friction, InclineStick,
                          ::testing::Values(std::make_pair(0.65, 0.0), std::make_pair(2.0, 0.0)));
 
+// the same with the plane at an angle to the lattice: a region, and vertical gravity
+
+class InclinedRegion : public Incline {};
+
+TEST_P(InclinedRegion, Acceleration)
+{
+  Sim run;
+  run.commands(replaced(R"(
+units si
+dimension 2
+boundary f f p
+atom_style mpm
+neighbor 0.02 bin
+region box block 0 5 0 4 -0.1 0.1
+create_box 1 box
+fix grid all mpm 0.05
+variable angle equal -PI/6
+variable up equal 3
+region body block 0.5 1.0 0.025 0.275 -0.1 0.1 move NULL v_up NULL rotate v_angle 0 0 0 0 0 1
+create_points 1 region body ppc 2
+region slope plane 0 3 0 -0.5 -0.86602540378443865 0
+fix m all mpm/material density 1000 neohookean 4.2e6 0.4
+fix w all mpm/boundary region slope separate friction MU
+variable g equal 9.81*((time<0.05)*time/0.05+(time>=0.05))
+fix g all gravity v_g vector 0 -1 0
+fix step all mpm/dt 0.4
+variable v equal vcm(all,x)*0.86602540378443865-vcm(all,y)*0.5
+variable d equal xcm(all,x)*0.5+(xcm(all,y)-3)*0.86602540378443865
+run 0
+)",
+                        "MU", std::to_string(GetParam().first)));
+  const double d0 = run.variable("d");
+  run.commands("run 800\n");
+  const double v0 = run.variable("v"), t0 = run.evaluate("time");
+  run.commands("run 3200\n");
+  const double a = (run.variable("v") - v0) / (run.evaluate("time") - t0);
+  if (run.lmp->comm->me == 0)
+    printf("  friction %g: a = %.5f, exact %.5f\n", GetParam().first, a, GetParam().second);
+  EXPECT_NEAR(a, GetParam().second, 0.01 * 4.9);
+  EXPECT_NEAR(run.variable("d"), d0, 0.01);    // sinks in by less than h/5
+}
+
+INSTANTIATE_TEST_SUITE_P(Friction, InclinedRegion,
+                         ::testing::Values(std::make_pair(0.1, 4.05543),
+                                           std::make_pair(0.3, 2.35629),
+                                           std::make_pair(0.65, 0.0)));
+
 /* ----------------------------------------------------------------------
    separation
 ------------------------------------------------------------------------- */

@@ -3,18 +3,20 @@
 #
 # labels: docs
 # timeout: 300
-"""The manual: builds without warnings, is complete, and is true where that can be tested."""
+"""The manual builds without warnings, is complete, and its links lead somewhere. (That its examples
+run is tested in test_docs_examples.py.)"""
 
 import fnmatch
 import glob
-import json
 import os
 import re
 import subprocess
 import sys
 import tempfile
 
-ROOT = os.environ.get("MPM_ROOT", os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+import mpm_testing as mt
+
+ROOT = mt.ROOT
 PAGES = os.path.join(ROOT, "doc", "src")
 SOURCES = os.path.join(ROOT, "src", "MPM")
 
@@ -56,7 +58,8 @@ def pages():
 
 def readmes():
     return [os.path.join(ROOT, "README.md")] + sorted(
-        glob.glob(os.path.join(ROOT, "*", "README.md")) + glob.glob(os.path.join(ROOT, "examples", "*", "README.md")))
+        glob.glob(os.path.join(ROOT, "*", "README.md")) +
+        glob.glob(os.path.join(ROOT, "examples", "*", "README.md")))
 
 
 def find_python():
@@ -70,17 +73,18 @@ def find_python():
     return None
 
 
-# ---------------------------------------------------------------- tests: return lists of what is wrong
+def check(wrong):
+    assert not wrong, "\n" + "\n".join(wrong)
 
 
 def test_builds_without_warnings():
     python = find_python()
     if not python:
-        return None
+        raise mt.Skip("Sphinx is not installed")
     with tempfile.TemporaryDirectory() as folder:
-        run = subprocess.run([python, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html",
-                              os.path.join(ROOT, "doc"), folder], capture_output=True, text=True)
-    return [] if run.returncode == 0 else (run.stderr.strip() or "sphinx failed").splitlines()
+        result = mt.run([python, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html",
+                         os.path.join(ROOT, "doc"), folder])
+    assert result.code == 0, "\n" + result.output
 
 
 def test_text_is_ascii():
@@ -92,17 +96,18 @@ def test_text_is_ascii():
         for number, line in enumerate(read(path).splitlines(), 1):
             if not line.isascii():
                 wrong.append("%s:%d: not 7-bit ASCII: %s" % (relative(path), number, ascii(line)))
-    return wrong
+    check(wrong)
 
 
 def test_every_style_has_a_page_and_every_page_a_style():
     known = styles()
     have = {os.path.basename(path)[:-4] for path in pages()}
-    wrong = ["%s has no page doc/src/%s.rst" % (known[page], page) for page in sorted(set(known) - have)]
+    wrong = ["%s has no page doc/src/%s.rst" % (known[page], page)
+             for page in sorted(set(known) - have)]
     for page in sorted(have - set(known)):
         if page != "index" and not page.startswith(("Howto_", "Developer_")):
             wrong.append("doc/src/%s.rst is the page of no style" % page)
-    return wrong
+    check(wrong)
 
 
 def test_pages_have_the_order_of_the_lammps_manual():
@@ -125,9 +130,11 @@ def test_pages_have_the_order_of_the_lammps_manual():
                 wrong.append("%s: section '%s' is out of order" % (relative(path), section))
             else:
                 place = found.start()
+        if ".. versionadded::" not in text:
+            wrong.append("%s: no versionadded" % relative(path))
         if "part of the MPM package" not in text:
             wrong.append("%s: Restrictions do not name the package" % relative(path))
-    return wrong
+    check(wrong)
 
 
 def test_every_source_file_is_in_the_table_of_the_developer_guide():
@@ -138,9 +145,10 @@ def test_every_source_file_is_in_the_table_of_the_developer_guide():
     for path in sorted(glob.glob(os.path.join(SOURCES, "*.[hc]*")) +
                        glob.glob(os.path.join(SOURCES, "plugin", "*.cpp"))):
         name = os.path.relpath(path, SOURCES)
-        if not any(fnmatch.fnmatch(name, n) or fnmatch.fnmatch(name.rsplit(".", 1)[0], n) for n in names):
+        base = name.rsplit(".", 1)[0]
+        if not any(fnmatch.fnmatch(name, n) or fnmatch.fnmatch(base, n) for n in names):
             wrong.append("src/MPM/%s is not in the table of files in Developer_mpm.rst" % name)
-    return wrong
+    check(wrong)
 
 
 def test_links_lead_somewhere():
@@ -150,11 +158,12 @@ def test_links_lead_somewhere():
         if not os.path.exists(path):
             continue
         for target in re.findall(r"\]\(([^)#\s]+)\)", read(path)):
-            if not re.match(r"\w+:", target) and not os.path.exists(os.path.join(os.path.dirname(path), target)):
+            file = os.path.join(os.path.dirname(path), target)
+            if not re.match(r"\w+:", target) and not os.path.exists(file):
                 wrong.append("%s: no %s" % (relative(path), target))
 
     manual = None
-    for cache in glob.glob(os.path.join(os.path.dirname(os.environ.get("MPM_LMP", "")), "CMakeCache.txt")):
+    for cache in glob.glob(os.path.join(os.path.dirname(mt.LMP), "CMakeCache.txt")):
         for key in ("LAMMPS_BUILD_DIR", "LAMMPS_SOURCE_DIR"):
             found = re.search(r"^%s:\w+=(\S+)" % key, read(cache), re.M)
             if not found:
@@ -168,61 +177,21 @@ def test_links_lead_somewhere():
     if manual:
         for path in pages():
             for target in re.findall(r":doc:`[^`<]*<([^>`]*)>`", read(path)):
-                if not any(os.path.exists(os.path.join(folder, target + ".rst")) for folder in (PAGES, manual)):
+                if not any(os.path.exists(os.path.join(folder, target + ".rst"))
+                           for folder in (PAGES, manual)):
                     wrong.append("%s: no page %s in the LAMMPS manual" % (relative(path), target))
-    return wrong
+    check(wrong)
 
 
 def test_input_in_the_readme_is_that_of_the_example():
     path = os.path.join(ROOT, "README.md")
-    if not os.path.exists(path):
-        return ["README.md is missing"]
     text = read(path)
     section = text[text.index("## A first input"):]
     section = section[:section.index("\n## ", 3)]
     example = set(read(os.path.join(ROOT, "examples", "taylor-bar", "in.taylor-bar")).splitlines())
-    return ["not in examples/taylor-bar/in.taylor-bar: " + line
-            for block in re.findall(r"^```\n(.*?)^```", section, re.M | re.S)
-            for line in block.splitlines() if line not in example]
+    check(["not in examples/taylor-bar/in.taylor-bar: " + line
+           for block in re.findall(r"^```\n(.*?)^```", section, re.M | re.S)
+           for line in block.splitlines() if line not in example])
 
 
-def test_scene_of_the_howto_runs():
-    lmp = os.environ.get("MPM_LMP", os.path.join(ROOT, "build", "lmp"))
-    if not os.path.exists(lmp):
-        return ["no " + lmp]
-    text = read(os.path.join(PAGES, "Howto_mpm.rst"))
-    block = re.search(r"\.\. code-block:: LAMMPS\n\n((?:   .*\n|\n)+)", text).group(1)
-    with tempfile.TemporaryDirectory() as folder:
-        with open(os.path.join(folder, "in.scene"), "w") as file:
-            file.write(re.sub(r"^   ", "", block, flags=re.M))
-        run = subprocess.run([lmp, "-in", "in.scene", "-log", "none"], cwd=folder, capture_output=True, text=True)
-    if run.returncode != 0 or "Loop time" not in run.stdout:
-        return (run.stdout + run.stderr).splitlines()[-10:]
-    return []
-
-
-def main():
-    report, failed = [], 0
-    for name, test in sorted(globals().items()):
-        if not name.startswith("test_"):
-            continue
-        wrong = test()
-        print("%-9s %s" % ("skipped" if wrong is None else "FAILED" if wrong else "passed", name))
-        for line in wrong or []:
-            print("    " + line)
-        failed += bool(wrong)
-        case = {"name": name, "status": "NOTRUN" if wrong is None else "RUN"}
-        if wrong:
-            case["failures"] = [{"failure": "\n".join(wrong)}]
-        report.append(case)
-
-    # for tools/count_tests.py, in the form of GoogleTest
-    output = os.environ.get("GTEST_OUTPUT", "")
-    if output.startswith("json:"):
-        with open(output[5:], "w") as file:
-            json.dump({"testsuites": [{"name": "docs", "testsuite": report}]}, file)
-    return 1 if failed else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+mt.main(globals())

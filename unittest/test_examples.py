@@ -21,7 +21,10 @@ EXAMPLES = os.path.join(mt.ROOT, "examples")
 SECONDS = 100    # for one run, on a busy machine
 
 # node spacing times this, where the default one is for a nicer picture
-COARSER = {"taylor-bar": 2.0, "grains-on-block": 2.0, "dam-break": 1.0}
+COARSER = {"taylor-bar": 2.0}
+
+# steps, where a part of the run will do
+FEWER_STEPS = {"grains-on-block": 1000}
 
 # what LAMMPS says of every run without a pair style, and of every hybrid style
 ALLOWED = ["Communication cutoff is 0.0. No ghost atoms will be generated.",
@@ -62,6 +65,10 @@ class Example:
         for name in os.listdir(source):
             if not re.search(r"\.(png|vt[pu]|pvd)$|^log\.", name):
                 shutil.copy(os.path.join(source, name), self.folder)
+        steps = FEWER_STEPS.get(os.path.basename(source))
+        if steps:
+            with open(os.path.join(self.folder, os.path.basename(path)), "w") as file:
+                file.write(re.sub(r"^run\s.*", "run %d" % steps, self.text, flags=re.M))
         arguments = coarse_arguments(path)
         self.result = mt.lammps(self.folder, file=os.path.basename(path), arguments=arguments,
                                 processes=processes, timeout=SECONDS)
@@ -143,7 +150,10 @@ def compare(found, expected, tolerance, what):
             if name in UNIMPORTANT or name in ("Step", "Time", "Dt"):
                 continue
             values = [float(row[k]) for row in other_rows]
-            scale = max(max(values) - min(values), 1.0e-3 * max(map(abs, values)), 1.0e-300)
+            largest = max(map(abs, values))
+            if largest < 1.0e-14:    # nothing but rounding errors
+                continue
+            scale = max(max(values) - min(values), 1.0e-3 * largest)
             difference = abs(float(rows[-1][k]) - values[-1]) / scale
             assert difference <= tolerance, "%s: column %s ends with %s, not %s: %.2g of its range" \
                 % (what, name, rows[-1][k], other_rows[-1][k], difference)
@@ -166,7 +176,8 @@ def make_test(path):
             check_run(example)
             check_files(example)
             log = reference(path)
-            if log and points_made(read(log)) == points_made(example.result.output):
+            shortened = os.path.basename(os.path.dirname(path)) in FEWER_STEPS
+            if log and not shortened and points_made(read(log)) == points_made(example.result.output):
                 compare(example.result.output, read(log), REFERENCE_TOLERANCE, log)
             outputs[path] = example.result
 

@@ -130,13 +130,16 @@ const Sample samples[] = {
     {"shock+elastic", "density 2703 eos shock 5350 1.34 2 strength elastic 26e9"},
     {"j2", "density 8930 eos shock 3940 1.49 1.96 strength j2 43e9 157e6 hardening linear 425e6"},
     {"j2 power", "density 8940 eos linear 1e11 strength j2 44e9 65e6 hardening power 356e6 0.37"},
-    {"johnson/cook", "density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 0.168 "
-                     "0.0089 1 1.1 1540 20 460 0.9"},
-    {"johnson/cook cold", "density 8940 eos shock 3933 1.5 2 strength johnson/cook 44e9 65e6 356e6 "
-                          "0.37 0.013 1e-3"},
+    {"johnson/cook",
+     "density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 0.168 "
+     "0.0089 1 1.1 1540 20 460 0.9"},
+    {"johnson/cook cold",
+     "density 8940 eos shock 3933 1.5 2 strength johnson/cook 44e9 65e6 356e6 "
+     "0.37 0.013 1e-3"},
     {"tait", "density 1000 eos tait 2.2e9 7 cutoff -1e5 viscosity newtonian 1e-3"},
     {"fluid", "density 1000 eos linear 1e6 viscosity newtonian 1 viscosity artificial 1.5 0.06"},
-    {"viscous rubber", "density 1000 neohookean 1e6 0.3 viscosity newtonian 10 viscosity artificial 2 1"},
+    {"viscous rubber",
+     "density 1000 neohookean 1e6 0.3 viscosity newtonian 10 viscosity artificial 2 1"},
 };
 
 /* ---------------------------------------------------------------------- */
@@ -151,7 +154,8 @@ TEST(Math, FunctionsMatchLibrary)
     EXPECT_NEAR(law::log(z), std::log(z), 4e-16 * std::fabs(std::log(z)));
     EXPECT_NEAR(law::log(y), std::log1p(y - 1.0), 5e-16 * std::fabs(y - 1.0));
     EXPECT_NEAR(law::expm1(y - 1.0), std::expm1(y - 1.0), 5e-16 * std::fabs(y - 1.0));
-    EXPECT_NEAR(law::expm1(0.01 * x), std::expm1(0.01 * x), 1e-15 * std::fabs(std::expm1(0.01 * x)));
+    EXPECT_NEAR(law::expm1(0.01 * x), std::expm1(0.01 * x),
+                1e-15 * std::fabs(std::expm1(0.01 * x)));
     const double f = y - 1.0, exact = f * f * (0.5 - f * (1.0 / 3 - f * (0.25 - f * 0.2)));
     EXPECT_NEAR(law::minus1_minus_log(y), exact, 1e-12 * exact);
     const double w = std::exp(0.03 * x);
@@ -184,8 +188,8 @@ TEST(Objectivity, FullTurnsLeaveStressAlone)
       SCOPED_TRACE(steps);
       MaterialPoint p(start);
       const double angle = 2.0 * M_PI / steps, w = 2.0 * std::tan(0.5 * angle);
-      const Matrix W = {0, -w * axis[2], w * axis[1], w * axis[2], 0, -w * axis[0],
-                        -w * axis[1], w * axis[0], 0};
+      const Matrix W = {
+          0, -w * axis[2], w * axis[1], w * axis[2], 0, -w * axis[0], -w * axis[1], w * axis[0], 0};
       double worst = 0.0;
       for (int i = 1; i <= 10 * steps; i++) {
         p.step(W.data(), 1.0);
@@ -331,7 +335,8 @@ TEST(Elastic, InitialStressIsKept)
 TEST(Elastic, NeoHookeanLargeStretch)
 {
   const auto material = make("density 1000 neohookean 1e6 0.3");
-  const double E = 1e6, nu = 0.3, mu = E / (2 * (1 + nu)), lambda = E * nu / ((1 + nu) * (1 - 2 * nu));
+  const double E = 1e6, nu = 0.3, mu = E / (2 * (1 + nu)),
+               lambda = E * nu / ((1 + nu) * (1 - 2 * nu));
   MaterialPoint p(*material);
   move_to(p, {11, 0, 0, 0, 1, 0, 0, 0, 1});
   EXPECT_NEAR(p.stress(0), 4.321568e6, 1.0);
@@ -405,7 +410,8 @@ TEST(Plastic, OneStepEqualsHundredOnAStraightPath)
 TEST(Plastic, UniaxialStress)
 {
   const double G = 80 * GPa, K = 160 * GPa, sigmay = 300 * MPa, H = 2 * GPa;
-  const auto material = make("density 7800 eos linear 160e9 strength j2 80e9 300e6 hardening linear 2e9");
+  const auto material =
+      make("density 7800 eos linear 160e9 strength j2 80e9 300e6 hardening linear 2e9");
   MaterialPoint p(*material);
   const double strain = 0.02;
   const int n = 400;
@@ -454,13 +460,16 @@ TEST(Plastic, ReturnEndsOnTheYieldSurface)
 {
   std::mt19937 random(2);
   std::normal_distribution<double> normal;
-  for (const auto &law : {std::array<double, 4>{157e6, 425e6, 0, 1}, {65e6, 0, 356e6, 0.37},
-                          {806e6, 0, 614e6, 0.168}, {10e6, 0, 1e9, 0.05}, {0, 0, 1e9, 0.5},
-                          {100e6, 1e9, 300e6, 0.9}, {100e6, 0, 1e9, 2.0}}) {
+  for (const auto &law : {std::array<double, 4>{157e6, 425e6, 0, 1},
+                          {65e6, 0, 356e6, 0.37},
+                          {806e6, 0, 614e6, 0.168},
+                          {10e6, 0, 1e9, 0.05},
+                          {0, 0, 1e9, 0.5},
+                          {100e6, 1e9, 300e6, 0.9},
+                          {100e6, 0, 1e9, 2.0}}) {
     std::ostringstream text;
     text << "density 8000 eos linear 1e11 strength j2 44e9 " << law[0];
-    if (law[1] > 0)
-      text << " hardening linear " << law[1];
+    if (law[1] > 0) text << " hardening linear " << law[1];
     if (law[2] > 0 && law[1] == 0) text << " hardening power " << law[2] << " " << law[3];
     const double B = law[1] == 0 ? law[2] : 0;
     SCOPED_TRACE(text.str());
@@ -487,7 +496,8 @@ TEST(Plastic, ReturnEndsOnTheYieldSurface)
 TEST(Plastic, BarelyBeyondYieldWithInfiniteHardeningSlope)
 {
   const double sigmay = 65e6, B = 356e6, N = 0.37, G = 44e9;
-  const auto material = make("density 8000 eos linear 1e11 strength j2 44e9 65e6 hardening power 356e6 0.37");
+  const auto material =
+      make("density 8000 eos linear 1e11 strength j2 44e9 65e6 hardening power 356e6 0.37");
   for (const double beyond : {1e-14, 1e-10, 1e-6, 1e-3}) {
     MaterialPoint p(*material);
     const double gamma = sigmay * (1 + beyond) / (std::sqrt(3.0) * G);
@@ -582,7 +592,8 @@ TEST(JohnsonCookLaw, ReturnEndsOnTheYieldSurface)
               const double Y = exact(p.history(0), rate, thermal ? p.history(1) : 0.0);
               ASSERT_TRUE(std::isfinite(p.vonmises()));
               if (p.history(0) > e)
-                EXPECT_NEAR(p.vonmises(), Y, 1e-10 * (Y + jc.A)) << "strain " << scale << " dt " << dt;
+                EXPECT_NEAR(p.vonmises(), Y, 1e-10 * (Y + jc.A))
+                    << "strain " << scale << " dt " << dt;
               else
                 EXPECT_LE(p.vonmises(), Y * (1 + 1e-12));
             }
@@ -644,8 +655,9 @@ TEST(JohnsonCookLaw, AdiabaticTensionAndShear)
 
 TEST(JohnsonCookLaw, MeltedMaterialHasNoStrength)
 {
-  const auto material = make("density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 "
-                             "0.168 0.0089 1 1.1 1540 20 460 0.9");
+  const auto material =
+      make("density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 "
+           "0.168 0.0089 1 1.1 1540 20 460 0.9");
   MaterialPoint p(*material);
   p.batch.history[1][0] = 1600;
   const Matrix L = {-0.01, 0.02, 0, 0, 0, 0, 0, 0, 0};
@@ -701,12 +713,10 @@ TEST(EquationOfState, ShockIsentrope)
   MaterialPoint hugoniot = compress(1);
   EXPECT_LT(p.pressure(), 0.99 * hugoniot.pressure());
   double error[2];
-  for (int k = 0; k < 2; k++)
-    error[k] = std::fabs(compress(100 << k).pressure() - p.pressure());
+  for (int k = 0; k < 2; k++) error[k] = std::fabs(compress(100 << k).pressure() - p.pressure());
   EXPECT_NEAR(std::log2(error[0] / error[1]), 2.0, 0.05);
   EXPECT_NEAR(p.stored_energy(), p.power, 1e-6 * p.power);
-  for (int i = 1; i <= 4000; i++)
-    move_to(p, {0.7 + 0.3 * i / 4000, 0, 0, 0, 1, 0, 0, 0, 1});
+  for (int i = 1; i <= 4000; i++) move_to(p, {0.7 + 0.3 * i / 4000, 0, 0, 0, 1, 0, 0, 0, 1});
   EXPECT_NEAR(p.pressure(), 0.0, 1e-6 * hugoniot.pressure());
   EXPECT_NEAR(p.stored_energy(), 0.0, 1e-6 * hugoniot.stored_energy());
 }
@@ -741,8 +751,10 @@ TEST(EquationOfState, TaitWater)
   for (const double J : {0.8, 0.95, 1.0 - 1e-9, 1.0}) {
     MaterialPoint p(*material);
     move_to(p, {J, 0, 0, 0, 1, 0, 0, 0, 1});
-    EXPECT_NEAR(p.pressure(), K / gamma * (std::pow(J, -gamma) - 1), 1e-12 * K + 1e-7 * p.pressure());
-    EXPECT_NEAR(p.wave_speed(), std::sqrt(K / rho * std::pow(J, 1 - gamma)), 1e-10 * p.wave_speed());
+    EXPECT_NEAR(p.pressure(), K / gamma * (std::pow(J, -gamma) - 1),
+                1e-12 * K + 1e-7 * p.pressure());
+    EXPECT_NEAR(p.wave_speed(), std::sqrt(K / rho * std::pow(J, 1 - gamma)),
+                1e-10 * p.wave_speed());
   }
   MaterialPoint p(*material);
   EXPECT_NEAR(p.wave_speed(), 1482, 0.5);
@@ -819,7 +831,8 @@ TEST(Energy, BalanceIsSecondOrder)
 {
   const auto L = [](double t) {
     const double r = 1.0 - std::cos(2 * M_PI * t), c = r * std::cos(M_PI * t);
-    return Matrix{-0.5 * c, 1.8 * c, 0.2 * c, -0.5 * r, 0.2 * c, 0.3 * r, 0.4 * c, 0.1 * r, -0.24 * c};
+    return Matrix{-0.5 * c, 1.8 * c, 0.2 * c, -0.5 * r, 0.2 * c,
+                  0.3 * r,  0.4 * c, 0.1 * r, -0.24 * c};
   };
   for (const auto &sample : samples) {
     if (std::string(sample.name) == "tait") continue;    // kink at cavitation: see below
@@ -833,11 +846,11 @@ TEST(Energy, BalanceIsSecondOrder)
         p.step(L((i + 0.5) / n).data(), 1.0 / n);
         scale = std::max(scale, p.stored_energy() + p.work[PLASTIC]);
       }
-      error[level] =
-          std::fabs(p.stored_energy() + p.work[PLASTIC] + p.work[VISCOUS] - p.power);
+      error[level] = std::fabs(p.stored_energy() + p.work[PLASTIC] + p.work[VISCOUS] - p.power);
     }
     EXPECT_LT(error[2], 1e-5 * scale);
-    EXPECT_GT(std::log2(error[0] / error[2]), 2 * 1.7) << error[0] / scale << " " << error[2] / scale;
+    EXPECT_GT(std::log2(error[0] / error[2]), 2 * 1.7)
+        << error[0] / scale << " " << error[2] / scale;
   }
 }
 
@@ -851,8 +864,9 @@ TEST(Energy, HyperelasticCycle)
   double largest = 0.0;
   for (int i = 1; i <= n; i++) {
     const double a = 2 * M_PI * i / n;
-    move_to(p, {1 + 0.5 * std::sin(a), 1 - std::cos(a), 0, 0.3 * std::sin(a), 1, 0, 0, 0.2 * std::sin(a),
-                1 + 0.2 * std::sin(2 * a)});
+    move_to(p,
+            {1 + 0.5 * std::sin(a), 1 - std::cos(a), 0, 0.3 * std::sin(a), 1, 0, 0,
+             0.2 * std::sin(a), 1 + 0.2 * std::sin(2 * a)});
     largest = std::max(largest, p.stored_energy());
   }
   EXPECT_NEAR(p.stored_energy(), 0.0, 1e-10 * largest);
@@ -917,8 +931,10 @@ TEST(WaveSpeed, IsTheSlopeOfTheStress)
       for (int i = 0; i <= 60; i++)
         for (int j = 0; j < 120; j++) {
           const double theta = M_PI * i / 60, phi = M_PI * j / 60;
-          largest = std::max(largest, speed2(p, {std::sin(theta) * std::cos(phi),
-                                                 std::sin(theta) * std::sin(phi), std::cos(theta)}));
+          largest = std::max(largest,
+                             speed2(p,
+                                    {std::sin(theta) * std::cos(phi),
+                                     std::sin(theta) * std::sin(phi), std::cos(theta)}));
         }
       const double c = p.wave_speed(), fd = std::sqrt(largest);
       EXPECT_GT(c, fd * (1 - 1e-5)) << "J " << p.batch.J[0];
@@ -929,9 +945,9 @@ TEST(WaveSpeed, IsTheSlopeOfTheStress)
 
 TEST(WaveSpeed, UniaxialCompressionIsExact)
 {
-  for (const char *text : {"density 1000 linear 1e6 0.3", "density 1000 eos linear 1e6 strength elastic 3e5",
-                           "density 1000 eos shock 30 1.4 2 strength elastic 3e5",
-                           "density 1000 eos tait 1e6 7"}) {
+  for (const char *text :
+       {"density 1000 linear 1e6 0.3", "density 1000 eos linear 1e6 strength elastic 3e5",
+        "density 1000 eos shock 30 1.4 2 strength elastic 3e5", "density 1000 eos tait 1e6 7"}) {
     const auto material = make(text);
     MaterialPoint p(*material);
     for (int i = 1; i <= 300; i++) {
@@ -1044,7 +1060,8 @@ TEST(InstructionSets, PartlyFilledBatches)
 
 TEST(Definition, DescribesItself)
 {
-  const auto material = make("strength j2 43e9 157e6 hardening linear 425e6 density 8930 eos shock 3940 1.49 1.96");
+  const auto material =
+      make("strength j2 43e9 157e6 hardening linear 425e6 density 8930 eos shock 3940 1.49 1.96");
   EXPECT_EQ(material->describe(),
             "density 8930, eos shock C0=3940 S=1.49 GAMMA0=1.96, strength j2 G=43000000000 "
             "SIGMAY=157000000 H=425000000");
@@ -1108,11 +1125,13 @@ TEST(Definition, BadInputIsRefused)
       {"density 1000 eos tait 1e9 7 cutoff -1 cutoff -1", 8, "given twice"},
       {"density 1000 strength j2 1 1", 3, "add an equation of state, such as 'eos linear K'"},
       {"density 1000 viscosity newtonian 1", 5, "no law"},
-      {"density 1000 eos linear 1 strength foo", 6, "unknown strength 'foo': choose elastic, j2, john"},
+      {"density 1000 eos linear 1 strength foo", 6,
+       "unknown strength 'foo': choose elastic, j2, john"},
       {"density 1000 eos linear 1 strength j2 1", 8, "SIGMAY is missing"},
       {"density 1000 eos linear 1 strength j2 1 -1", 8, "SIGMAY = -1"},
       {"density 1000 eos linear 1 strength j2 1 1 hardening", 10, "followed by linear or power"},
-      {"density 1000 eos linear 1 strength j2 1 1 hardening foo 1", 10, "followed by linear or power"},
+      {"density 1000 eos linear 1 strength j2 1 1 hardening foo 1", 10,
+       "followed by linear or power"},
       {"density 1000 eos linear 1 strength j2 1 1 hardening power 1", 12, "N is missing"},
       {"density 1000 eos linear 1 strength j2 1 1 hardening linear 1 hardening power 1 1", 12,
        "'hardening' is given twice"},

@@ -36,7 +36,8 @@ static std::vector<std::string> all_options()
 
 /** Linear functions let nodes have nearly no mass and the full force, so that velocities of nodes,
  *  and with them velocity gradients (USL) and affine matrices (APIC), can be anything: round-off
- *  grows without bound at any time step. They are sound with FLIP or PIC and USF or MUSL. */
+ *  grows without bound. A ball of E = 1000 in free flight, 3d, time step 0.26 h/c, falls to pieces
+ *  within 500 steps. Linear functions are sound with FLIP or PIC and USF or MUSL. */
 static bool is_sound(const std::string &options)
 {
   if (options.find("linear") == std::string::npos) return true;
@@ -67,7 +68,7 @@ class RigidMotion : public ::testing::TestWithParam<int> {
   static void fly(int dim, const std::string &options, double g)
   {
     SCOPED_TRACE(options);
-    const double E = is_sound(options) ? 1000.0 : 1.0e-3;    // the latter: kinematics alone
+    const double E = is_sound(options) ? 1000.0 : 1.0e-12;    // the latter: kinematics alone
     Scene run;
     run.commands(strprintf(
         "units si\ndimension %d\nboundary %s\natom_style mpm\nneighbor 0.3 bin\n"
@@ -402,11 +403,10 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(LedgerOnOff, SameTrajectory)
 {
-  for (auto *options : {"shape linear transfer apic scheme musl", "shape quadratic transfer apic",
-                        "shape cubic transfer apic", "shape quadratic transfer apic scheme musl"}) {
+  for (auto *options : {"shape quadratic transfer apic", "shape cubic transfer apic",
+                        "shape quadratic transfer apic scheme musl"}) {
     SCOPED_TRACE(options);
-    // into the collision; linear: before round-off has been blown up, see is_sound()
-    const char *go = options[6] == 'l' ? "run 300\n" : "run 1900\n";
+    const char *go = "run 1900\n";    // into the collision
     Scene off, on;
     off.commands(replaced(two_disks, "MPM_OPTIONS", options) + go);
     on.commands(replaced(two_disks, "MPM_OPTIONS", options) + "compute e all mpm/energy\n" + go);
@@ -442,12 +442,13 @@ TEST(Ledger, ClosesToRoundOff)
         "fix m1 one mpm/material density 1.0 linear 100 0.3\n"
         "fix m2 two mpm/material density 2.0 neohookean 200 0.2\n"
         "velocity all set 0.5 -0.7 0\nvelocity two set -0.3 -0.5 0\n"
-        "fix floor all mpm/boundary ylo separate friction 0.3\n"
+        "fix floor all mpm/boundary ylo %s\n"
         "fix left all mpm/boundary xlo stick velocity 0.2 0 0\n"
         "fix g all gravity 0.5 vector 0 -1 0\n"
         "compute e all mpm/energy\nthermo_style custom step c_e c_e[*]\nthermo 1\n"
         "timestep 0.01\n",
-        options.c_str()));
+        options.c_str(),
+        options.find("usf") == std::string::npos ? "separate friction 0.3" : "slip"));
     double worst = 0.0, scale = 0.0;
     auto *compute = run.lmp->modify->get_compute_by_id("e");
     run.commands("run 0 post no\n");
@@ -630,9 +631,9 @@ INSTANTIATE_TEST_SUITE_P(Options, FreeBody,
 
 /* ----------------------------------------------------------------------
    five revolutions: the disk keeps its size, and J agrees with it (pitfall 13). F_new = (1 + dt L) F
-   belongs to x_new = x + dt v: det(1 + dt L) is the change of volume of the points' own motion. An
-   update of F by the exponential of dt L, on the same path, would call a rotation what is a
-   rotation with growth (1 + (omega dt)^2) of areas, and the stress would let the disk grow.
+   belongs to x_new = x + dt v: det(1 + dt L) is the change of volume of the points' own motion. The
+   exponential of dt L is not: for a body that turns by an angle a in a step its determinant is
+   exp(2 cos a - 2) < 1, and the stress would let the disk grow, by 1.2 % of its area per revolution.
    Centrifugal stretch in plane strain, K = (1-2nu)(1+nu) rho omega^2/(8 E (1-nu)):
    u(r) = K ((3-2nu) R^2 - r^2) r, mean J - 1 = 2 u(R)/R = 1.625e-3, and the polar radius of gyration
    grows by K R^2 ((3-2nu) - 2/3) = 1.0060e-3.

@@ -142,9 +142,10 @@ std::string FixMPMMaterial::read_words(const std::string &name, std::string &tex
   if (units.empty())
     return fmt::format("the first line of file {} must give its units, such as 'UNITS: si'", name);
   if (units != update->unit_style)
-    return fmt::format("file {} is in {} units but the input uses {} units: convert the file or use "
-                       "units {}",
-                       name, units, update->unit_style, units);
+    return fmt::format(
+        "file {} is in {} units but the input uses {} units: convert the file or use "
+        "units {}",
+        name, units, update->unit_style, units);
   utils::logmesg(lmp, "Reading material file {} with DATE: {}\n", name,
                  utils::get_potential_date(path, "material"));
 
@@ -263,9 +264,10 @@ void FixMPMMaterial::unpack_restart(int i, int nth)
   const double *extra = atom->extra[i];
   for (int k = 0; k < nth; k++) extra += static_cast<int>(*extra);
   if (static_cast<int>(*extra) != nhistory + 1)
-    error->one(FLERR, Error::NOLASTLINE,
-               "Fix mpm/material {}: the restart file has {} history variables, this material has {}",
-               id, static_cast<int>(*extra) - 1, nhistory);
+    error->one(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/material {}: the restart file has {} history variables, this material has {}", id,
+        static_cast<int>(*extra) - 1, nhistory);
   memcpy(history[i], extra + 1, nhistory * sizeof(double));
 }
 
@@ -309,9 +311,9 @@ void FixMPMMaterial::restart(char *buf)
   double list[2 + NWORK];
   memcpy(list, buf, 2 * sizeof(double));
   if (list[0] != RESTART_VERSION || list[1] != NWORK)
-    error->all(FLERR, Error::NOLASTLINE,
-               "Fix mpm/material {}: the restart file was written by another version of this package",
-               id);
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/material {}: the restart file was written by another version of this package", id);
   memcpy(list, buf, sizeof(list));
   for (int k = 0; k < NWORK; k++) work[k] = comm->me == 0 ? list[2 + k] : 0.0;
 }

@@ -159,7 +159,7 @@ void FixMPM::update_topology()
   report.topologies++;
 
   if (switches_sorted < 0) switches_sorted = switches;
-  want_sort = switches > 1.3 * switches_sorted + 100;
+  want_sort = switches > 1.6 * switches_sorted + 100;
   lap(report.t_topology);
 }
 

@@ -14,40 +14,40 @@
 namespace MPM_NS::law {
 namespace {
 
-MPM_INLINE void subtract_pressure(Batch &b, int i, double p)
-{
-  b.stress[0][i] -= p;
-  b.stress[1][i] -= p;
-  b.stress[2][i] -= p;
-}
+  MPM_INLINE void subtract_pressure(Batch &b, int i, double p)
+  {
+    b.stress[0][i] -= p;
+    b.stress[1][i] -= p;
+    b.stress[2][i] -= p;
+  }
 
-/** Loops of an equation of state p(J) without energy.
+  /** Loops of an equation of state p(J) without energy.
  *
  *  Eos has, with the volume ratio J = density_0 / density: pressure(J), bulk(J) = -J^2 dp/dJ (the
  *  reference density times the square of the sound speed), stored(J) = -integral of p dJ from 1.
  */
-template <class Eos> struct Barotropic {
-  static void update(const LawParameters &p, Batch &b, History, double *)
-  {
-    const Eos eos(p);
-    MPM_SIMD
-    for (int i = 0; i < b.n; i++) subtract_pressure(b, i, eos.pressure(b.J[i]));
-  }
+  template <class Eos> struct Barotropic {
+    static void update(const LawParameters &p, Batch &b, History, double *)
+    {
+      const Eos eos(p);
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) subtract_pressure(b, i, eos.pressure(b.J[i]));
+    }
 
-  static void modulus(const LawParameters &p, const Batch &b, History, double *k)
-  {
-    const Eos eos(p);
-    MPM_SIMD
-    for (int i = 0; i < b.n; i++) k[i] += eos.bulk(b.J[i]);
-  }
+    static void modulus(const LawParameters &p, const Batch &b, History, double *k)
+    {
+      const Eos eos(p);
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) k[i] += eos.bulk(b.J[i]);
+    }
 
-  static void energy(const LawParameters &p, const Batch &b, History, double *w)
-  {
-    const Eos eos(p);
-    MPM_SIMD
-    for (int i = 0; i < b.n; i++) w[i] += eos.stored(b.J[i]);
-  }
-};
+    static void energy(const LawParameters &p, const Batch &b, History, double *w)
+    {
+      const Eos eos(p);
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) w[i] += eos.stored(b.J[i]);
+    }
+  };
 
 }    // namespace
 }    // namespace MPM_NS::law

@@ -14,25 +14,25 @@
 namespace MPM_NS::law {
 namespace {
 
-/** p = K (density/density_0 - 1) = K (1/J - 1): the linear term of the polynomial equation of state
+  /** p = K (density/density_0 - 1) = K (1/J - 1): the linear term of the polynomial equation of state
  *  of hydrocodes. Sound speed sqrt(K/density_0) at any density; tension stays below K. */
-struct EosLinear : Barotropic<EosLinear> {
-  static constexpr const char *name = "linear";
-  static constexpr const char *meaning = "pressure linear in density";
-  static constexpr StressShare share = NO_SHARE;
-  static constexpr Parameter parameters[] = {
-      {"", "K", "pressure", POSITIVE, REQUIRED, "bulk modulus"}};
-  static constexpr const HistoryDeclaration *history = nullptr;
-  static constexpr int nhistory(const double *) { return 0; }
-  static constexpr const char *check(const double *) { return nullptr; }
+  struct EosLinear : Barotropic<EosLinear> {
+    static constexpr const char *name = "linear";
+    static constexpr const char *meaning = "pressure linear in density";
+    static constexpr StressShare share = NO_SHARE;
+    static constexpr Parameter parameters[] = {
+        {"", "K", "pressure", POSITIVE, REQUIRED, "bulk modulus"}};
+    static constexpr const HistoryDeclaration *history = nullptr;
+    static constexpr int nhistory(const double *) { return 0; }
+    static constexpr const char *check(const double *) { return nullptr; }
 
-  double K;
+    double K;
 
-  explicit EosLinear(const LawParameters &p) : K(p.value[0]) {}
-  MPM_INLINE double pressure(double J) const { return K * (1.0 - J) / J; }
-  MPM_INLINE double bulk(double) const { return K; }
-  MPM_INLINE double stored(double J) const { return K * minus1_minus_log(J); }
-};
+    explicit EosLinear(const LawParameters &p) : K(p.value[0]) {}
+    MPM_INLINE double pressure(double J) const { return K * (1.0 - J) / J; }
+    MPM_INLINE double bulk(double) const { return K; }
+    MPM_INLINE double stored(double J) const { return K * minus1_minus_log(J); }
+  };
 
 }    // namespace
 }    // namespace MPM_NS::law

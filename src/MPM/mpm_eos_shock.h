@@ -14,7 +14,7 @@
 namespace MPM_NS::law {
 namespace {
 
-/** Mie-Gruneisen with the shock Hugoniot U_s = C0 + S u_p (M.H. Rice, R.G. McQueen, J.M. Walsh, Solid
+  /** Mie-Gruneisen with the shock Hugoniot U_s = C0 + S u_p (M.H. Rice, R.G. McQueen, J.M. Walsh, Solid
  *  State Physics 6 (1958) 1; M.L. Wilkins, Computer Simulation of Dynamic Phenomena, 1999), with
  *  density * Gruneisen parameter constant. With eta = 1 - J, E the internal energy per reference
  *  volume and K = density_0 C0^2:
@@ -26,77 +26,76 @@ namespace {
  *  E. One step from the reference state to J lands exactly on the Hugoniot. 1 - S eta is kept above
  *  0.05, which is a pressure of hundreds of K.
  */
-struct EosShock {
-  static constexpr const char *name = "shock";
-  static constexpr const char *meaning = "Mie-Gruneisen with linear shock Hugoniot";
-  static constexpr StressShare share = NO_SHARE;
-  enum { C0, S, GAMMA0 };
-  static constexpr Parameter parameters[] = {
-      {"", "C0", "velocity", POSITIVE, REQUIRED, "bulk sound speed at reference density"},
-      {"", "S", "1", NOT_NEGATIVE, REQUIRED, "slope dU_s/du_p of the Hugoniot"},
-      {"", "GAMMA0", "1", NOT_NEGATIVE, REQUIRED, "Gruneisen parameter at reference density"}};
-  static constexpr HistoryDeclaration history[] = {{"energy", -1}, {"heat", -1}};
-  enum { ENERGY, HEATED };    ///< internal energy, and the part of it that was dissipated
-  static constexpr int nhistory(const double *) { return 2; }
-  static constexpr const char *check(const double *) { return nullptr; }
+  struct EosShock {
+    static constexpr const char *name = "shock";
+    static constexpr const char *meaning = "Mie-Gruneisen with linear shock Hugoniot";
+    static constexpr StressShare share = NO_SHARE;
+    enum { C0, S, GAMMA0 };
+    static constexpr Parameter parameters[] = {
+        {"", "C0", "velocity", POSITIVE, REQUIRED, "bulk sound speed at reference density"},
+        {"", "S", "1", NOT_NEGATIVE, REQUIRED, "slope dU_s/du_p of the Hugoniot"},
+        {"", "GAMMA0", "1", NOT_NEGATIVE, REQUIRED, "Gruneisen parameter at reference density"}};
+    static constexpr HistoryDeclaration history[] = {{"energy", -1}, {"heat", -1}};
+    enum { ENERGY, HEATED };    ///< internal energy, and the part of it that was dissipated
+    static constexpr int nhistory(const double *) { return 2; }
+    static constexpr const char *check(const double *) { return nullptr; }
 
-  double K, s, gamma;
+    double K, s, gamma;
 
-  explicit EosShock(const LawParameters &p) :
-      K(p.density * p.value[C0] * p.value[C0]), s(p.value[S]), gamma(p.value[GAMMA0])
-  {
-  }
-
-  MPM_INLINE double gap(double eta) const { return max(1.0 - s * eta, 0.05); }
-
-  /** Pressure at zero internal energy. */
-  MPM_INLINE double cold_pressure(double J) const
-  {
-    const double eta = 1.0 - J, g = gap(eta);
-    return K * eta * (J < 1.0 ? (1.0 - 0.5 * gamma * eta) / (g * g) : 1.0 / J);
-  }
-
-  static void update(const LawParameters &p, Batch &b, History history, double *heat)
-  {
-    const EosShock eos(p);
-    MPM_SIMD
-    for (int i = 0; i < b.n; i++) {
-      const double J = b.J[i], Jold = b.Jold[i], dJ = J - Jold;
-      const double Eold = history[ENERGY][i];
-      const double cold = eos.cold_pressure(J);
-      const double pold = eos.cold_pressure(Jold) + eos.gamma * Eold;
-      const double E =
-          (Eold - 0.5 * (pold + cold) * dJ + heat[i]) / (1.0 + 0.5 * eos.gamma * dJ);
-      subtract_pressure(b, i, cold + eos.gamma * E);
-      history[ENERGY][i] = E;
-      history[HEATED][i] += heat[i];
+    explicit EosShock(const LawParameters &p) :
+        K(p.density * p.value[C0] * p.value[C0]), s(p.value[S]), gamma(p.value[GAMMA0])
+    {
     }
-  }
 
-  /** Isentropic -J^2 dp/dJ = J^2 (-(dp/dJ)_E + GAMMA0 p); at least K/100, as the formula loses
+    MPM_INLINE double gap(double eta) const { return max(1.0 - s * eta, 0.05); }
+
+    /** Pressure at zero internal energy. */
+    MPM_INLINE double cold_pressure(double J) const
+    {
+      const double eta = 1.0 - J, g = gap(eta);
+      return K * eta * (J < 1.0 ? (1.0 - 0.5 * gamma * eta) / (g * g) : 1.0 / J);
+    }
+
+    static void update(const LawParameters &p, Batch &b, History history, double *heat)
+    {
+      const EosShock eos(p);
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const double J = b.J[i], Jold = b.Jold[i], dJ = J - Jold;
+        const double Eold = history[ENERGY][i];
+        const double cold = eos.cold_pressure(J);
+        const double pold = eos.cold_pressure(Jold) + eos.gamma * Eold;
+        const double E = (Eold - 0.5 * (pold + cold) * dJ + heat[i]) / (1.0 + 0.5 * eos.gamma * dJ);
+        subtract_pressure(b, i, cold + eos.gamma * E);
+        history[ENERGY][i] = E;
+        history[HEATED][i] += heat[i];
+      }
+    }
+
+    /** Isentropic -J^2 dp/dJ = J^2 (-(dp/dJ)_E + GAMMA0 p); at least K/100, as the formula loses
    *  its meaning in large tension. */
-  static void modulus(const LawParameters &p, const Batch &b, History history, double *k)
-  {
-    const EosShock eos(p);
-    MPM_SIMD
-    for (int i = 0; i < b.n; i++) {
-      const double J = b.J[i], eta = 1.0 - J, g = eos.gap(eta);
-      const double ph = eos.K * eta / (g * g);
-      const double dph = eos.K * (1.0 + eos.s * eta) / (g * g * g);
-      const double squeezed = dph * (1.0 - 0.5 * eos.gamma * eta) - 0.5 * eos.gamma * ph;
-      const double slope = J < 1.0 ? squeezed : eos.K / (J * J);
-      const double pressure = eos.cold_pressure(J) + eos.gamma * history[ENERGY][i];
-      k[i] += max(J * J * (slope + eos.gamma * pressure), 0.01 * eos.K);
+    static void modulus(const LawParameters &p, const Batch &b, History history, double *k)
+    {
+      const EosShock eos(p);
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const double J = b.J[i], eta = 1.0 - J, g = eos.gap(eta);
+        const double ph = eos.K * eta / (g * g);
+        const double dph = eos.K * (1.0 + eos.s * eta) / (g * g * g);
+        const double squeezed = dph * (1.0 - 0.5 * eos.gamma * eta) - 0.5 * eos.gamma * ph;
+        const double slope = J < 1.0 ? squeezed : eos.K / (J * J);
+        const double pressure = eos.cold_pressure(J) + eos.gamma * history[ENERGY][i];
+        k[i] += max(J * J * (slope + eos.gamma * pressure), 0.01 * eos.K);
+      }
     }
-  }
 
-  /** Internal energy less the dissipated part, which counts as plastic and viscous work. */
-  static void energy(const LawParameters &, const Batch &b, History history, double *w)
-  {
-    MPM_SIMD
-    for (int i = 0; i < b.n; i++) w[i] += history[ENERGY][i] - history[HEATED][i];
-  }
-};
+    /** Internal energy less the dissipated part, which counts as plastic and viscous work. */
+    static void energy(const LawParameters &, const Batch &b, History history, double *w)
+    {
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) w[i] += history[ENERGY][i] - history[HEATED][i];
+    }
+  };
 
 }    // namespace
 }    // namespace MPM_NS::law

@@ -221,7 +221,7 @@ template <int DIM, int ORDER, int WIDTH, int L, bool AFFINE, bool GRADIENT> stru
     }
   }
 
-  /** Adds a row of nodes along the last axis, w_n row + factor K_n; SAME: points share the nodes. */
+  /** Adds a row of nodes along the last axis, w_n row + factor K_n; SAME: points share nodes. */
   template <bool SAME, int NREAL>
   static MPM_INLINE void add_row(double *const *base, Index offset, V row, V factor, const V *w,
                                  const V *K)
@@ -883,8 +883,8 @@ template <int N, bool LOAD> MPM_INLINE void move_reals(double *tile, double *nod
 }
 
 /** Flush or load, a row of nodes along the last axis at a time. A row has one node in the block
- *  before, all of its own block and ORDER + 1 nodes in the block after; each of these parts is moved
- *  whole if the box touches it. */
+ *  before, all of its own block and ORDER + 1 nodes in the block after; each of these parts is
+ *  moved whole if the box touches it. */
 template <int DIM, int ORDER, int NREAL, bool LOAD>
 void tile_io(double *tile, double *nodes, const int slot[27], const int box[6])
 {

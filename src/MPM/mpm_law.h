@@ -54,18 +54,18 @@ constexpr Range POISSON_RATIO{-1.0, 0.5, false};
  *  order. Options that begin with the same word exclude each other.
  */
 struct Parameter {
-  const char *option;     ///< word or words that introduce it, "" when positional
-  const char *name;       ///< as in the manual
-  const char *unit;       ///< kind of unit: pressure, velocity, viscosity, temperature, ..., or 1
+  const char *option;    ///< word or words that introduce it, "" when positional
+  const char *name;      ///< as in the manual
+  const char *unit;      ///< kind of unit: pressure, velocity, viscosity, temperature, ..., or 1
   Range range;
-  double standard;        ///< value when not given, or REQUIRED
+  double standard;    ///< value when not given, or REQUIRED
   const char *meaning;
 };
 
 /** Declaration of one history variable. */
 struct HistoryDeclaration {
-  const char *name;     ///< as used by compute mpm/atom
-  int initial;          ///< index of the parameter that is its initial value, -1: zero
+  const char *name;    ///< as used by compute mpm/atom
+  int initial;         ///< index of the parameter that is its initial value, -1: zero
 };
 
 /** Shares of the stress: which ones a law needs from the last step, which ones a viscosity adds. */
@@ -78,7 +78,8 @@ enum Part { CLOSED, EOS, STRENGTH, VISCOSITY, NPARTS };
 struct LawInfo {
   const char *name;
   const char *meaning;
-  StressShare share;    ///< of the last step's stress that it builds on; of a viscosity: what it adds
+  StressShare
+      share;    ///< of the last step's stress that it builds on; of a viscosity: what it adds
   const Parameter *parameters;
   int nparameters;
   const HistoryDeclaration *history;
@@ -134,7 +135,7 @@ struct LawTable {
   const char *isa;    ///< "baseline", "AVX2" or "AVX-512"
   const LawKernels *closed, *eos, *strength;
   const ViscosityKernels *viscosity;
-  void (*clear_stress)(Batch &);                                   ///< stress of a law with no strength
+  void (*clear_stress)(Batch &);    ///< stress of a law with no strength
   void (*speed)(int n, double density, const double *k, double *c);    ///< c = sqrt(k / density)
 
   /** The table for this CPU, or the one with this name: as MPMKernels::select(). */

@@ -25,12 +25,13 @@
 namespace MPM_NS::law {
 namespace {
 
-template <class... Laws> struct List {};
+  template <class... Laws> struct List {
+  };
 
-using ClosedLaws = List<LawLinear, LawNeoHookean>;
-using EosLaws = List<EosLinear, EosShock, EosTait>;
-using StrengthLaws = List<StrengthElastic, StrengthJ2, StrengthJohnsonCook>;
-using ViscosityLaws = List<ViscosityNewtonian, ViscosityArtificial>;
+  using ClosedLaws = List<LawLinear, LawNeoHookean>;
+  using EosLaws = List<EosLinear, EosShock, EosTait>;
+  using StrengthLaws = List<StrengthElastic, StrengthJ2, StrengthJohnsonCook>;
+  using ViscosityLaws = List<ViscosityNewtonian, ViscosityArtificial>;
 
 }    // namespace
 }    // namespace MPM_NS::law

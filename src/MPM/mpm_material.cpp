@@ -58,8 +58,8 @@ const char *const part_name[NPARTS] = {"", "eos", "strength", "viscosity"};
 /** A law with its parameters in a material. */
 struct UsedLaw {
   const LawInfo *info;
-  int index;      ///< in its list
-  int word;       ///< of its name in the definition
+  int index;    ///< in its list
+  int word;     ///< of its name in the definition
   LawParameters parameters;
   int history;    ///< first row of its history
 };
@@ -130,7 +130,10 @@ class ComposedMaterial : public Material {
   std::vector<HistoryVariable> variables;
   std::string text;
 
-  const UsedLaw &base_law() const { return laws[CLOSED].empty() ? laws[STRENGTH][0] : laws[CLOSED][0]; }
+  const UsedLaw &base_law() const
+  {
+    return laws[CLOSED].empty() ? laws[STRENGTH][0] : laws[CLOSED][0];
+  }
   static History rows(const Batch &b, const UsedLaw &law)
   {
     return b.history ? b.history + law.history : nullptr;
@@ -218,7 +221,9 @@ std::string describe_range(const Range &range)
 
 class Parser {
  public:
-  Parser(const std::vector<std::string> &words, const char *isa) : words(words), next(0), isa(isa) {}
+  Parser(const std::vector<std::string> &words, const char *isa) : words(words), next(0), isa(isa)
+  {
+  }
 
   std::unique_ptr<Material> parse()
   {
@@ -236,14 +241,16 @@ class Parser {
       else if (keyword == "viscosity")
         parse_law(VISCOSITY, next++);
       else
-        fail(here, "unknown keyword '" + keyword + "': expected density, " +
+        fail(here,
+             "unknown keyword '" + keyword + "': expected density, " +
                  join(names(declared_laws(CLOSED)), ", ") + ", eos, strength or viscosity");
     }
     check();
     const LawTable *table = LawTable::select(isa);
     if (!table) {
       const char *name = isa ? isa : getenv("MPM_ISA");
-      fail(0, std::string("MPM_ISA=") + (name ? name : "") +
+      fail(0,
+           std::string("MPM_ISA=") + (name ? name : "") +
                ": not one of reference, baseline, avx2, avx512, or this CPU cannot run it");
     }
     return std::unique_ptr<Material>(new ComposedMaterial(density, used, table));
@@ -277,7 +284,8 @@ class Parser {
     const bool above = range.closed ? value >= range.low : value > range.low;
     const bool below = range.closed ? value <= range.high : value < range.high;
     if (!above || !below)
-      fail(next, full + " = " + word + " (" + meaning + ") is out of range: " + describe_range(range));
+      fail(next,
+           full + " = " + word + " (" + meaning + ") is out of range: " + describe_range(range));
     next++;
     return value;
   }
@@ -302,11 +310,11 @@ class Parser {
       fail(here, std::string("unknown ") + part_name[part] + " '" + words[here] + "': " + choice);
     law.info = &laws[law.index];
     if (part != VISCOSITY && !used[part].empty())
-      fail(here, "'" + title(part, *law.info) + "': the material has '" +
+      fail(here,
+           "'" + title(part, *law.info) + "': the material has '" +
                title(part, *used[part][0].info) + "' already");
     for (const auto &other : used[part])
-      if (other.index == law.index)
-        fail(here, "'" + title(part, *law.info) + "' is given twice");
+      if (other.index == law.index) fail(here, "'" + title(part, *law.info) + "' is given twice");
     parse_parameters(title(part, *law.info), *law.info, law.parameters.value);
     const char *wrong = law.info->check(law.parameters.value);
     if (wrong) fail(here, title(part, *law.info) + ": " + wrong);
@@ -380,23 +388,26 @@ class Parser {
       const std::string name = used[CLOSED][0].info->name;
       for (const Part part : {EOS, STRENGTH})
         if (!used[part].empty())
-          fail(used[part][0].word, "'" + title(part, *used[part][0].info) + "': '" + name +
+          fail(used[part][0].word,
+               "'" + title(part, *used[part][0].info) + "': '" + name +
                    "' is a complete law; use either '" + name + "' or eos and strength");
     } else if (used[EOS].empty()) {
       if (!used[STRENGTH].empty())
-        fail(used[STRENGTH][0].word, "'" + title(STRENGTH, *used[STRENGTH][0].info) +
+        fail(used[STRENGTH][0].word,
+             "'" + title(STRENGTH, *used[STRENGTH][0].info) +
                  "' makes the stress deviator only: add an equation of state, such as "
                  "'eos linear K' with the bulk modulus");
-      fail(end, "no law: add " + join(names(declared_laws(CLOSED)), ", ") +
+      fail(end,
+           "no law: add " + join(names(declared_laws(CLOSED)), ", ") +
                ", or eos with strength or viscosity");
     }
     for (const Part part : {CLOSED, STRENGTH})
       for (const auto &law : used[part])
         for (const auto &viscosity : used[VISCOSITY])
           if (law.info->share & viscosity.info->share)
-            fail(viscosity.word, "'" + title(VISCOSITY, *viscosity.info) +
-                     "' does not go with '" + title(part, *law.info) +
-                     "', which builds on the last step's stress" +
+            fail(viscosity.word,
+                 "'" + title(VISCOSITY, *viscosity.info) + "' does not go with '" +
+                     title(part, *law.info) + "', which builds on the last step's stress" +
                      (part == CLOSED ? ": use eos and strength elastic instead" : ""));
   }
 };
@@ -408,10 +419,9 @@ class Parser {
 const std::vector<LawInfo> &MPM_NS::declared_laws(Part part)
 {
   using namespace law;
-  static const std::vector<LawInfo> laws[NPARTS] = {declarations(ClosedLaws()),
-                                                    declarations(EosLaws()),
-                                                    declarations(StrengthLaws()),
-                                                    declarations(ViscosityLaws())};
+  static const std::vector<LawInfo> laws[NPARTS] = {
+      declarations(ClosedLaws()), declarations(EosLaws()), declarations(StrengthLaws()),
+      declarations(ViscosityLaws())};
   return laws[part];
 }
 

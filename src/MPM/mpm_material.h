@@ -41,9 +41,9 @@ struct Batch {
   alignas(64) double Jold[BATCH];         ///< det F at the start of the step
   alignas(64) double stress[6][BATCH];    ///< Cauchy stress; in: start, out: end of the step
   alignas(64) double mass[BATCH];
-  alignas(64) double vol0[BATCH];         ///< initial volume
-  double (*history)[BATCH];               ///< [nhistory][BATCH]; in: start, out: end of the step
-  double work[NWORK];                     ///< out: energy of each kind spent in this batch and step
+  alignas(64) double vol0[BATCH];    ///< initial volume
+  double (*history)[BATCH];          ///< [nhistory][BATCH]; in: start, out: end of the step
+  double work[NWORK];                ///< out: energy of each kind spent in this batch and step
 };
 
 /** A history variable of a material: name as used by compute mpm/atom, and initial value. */

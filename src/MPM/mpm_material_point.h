@@ -36,8 +36,8 @@ class MaterialPoint {
   Batch batch;
   std::vector<double> storage;    ///< history of the batch
   double time;
-  double power;                   ///< stress power so far, integral of P:dF by the trapezoidal rule
-  double work[NWORK];             ///< so far, per reference volume
+  double power;          ///< stress power so far, integral of P:dF by the trapezoidal rule
+  double work[NWORK];    ///< so far, per reference volume
 
   /** State of the first point. */
   double stress(int k) const { return batch.stress[k][0]; }

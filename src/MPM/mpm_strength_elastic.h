@@ -14,24 +14,24 @@
 namespace MPM_NS::law {
 namespace {
 
-/** Elastic shear without yield. */
-struct StrengthElastic : ShearElasticity {
-  static constexpr const char *name = "elastic";
-  static constexpr const char *meaning = "elastic shear, no yield";
-  static constexpr StressShare share = DEVIATOR;
-  static constexpr Parameter parameters[] = {
-      {"", "G", "pressure", POSITIVE, REQUIRED, "shear modulus"}};
-  static constexpr const HistoryDeclaration *history = nullptr;
-  static constexpr int nhistory(const double *) { return 0; }
-  static constexpr const char *check(const double *) { return nullptr; }
+  /** Elastic shear without yield. */
+  struct StrengthElastic : ShearElasticity {
+    static constexpr const char *name = "elastic";
+    static constexpr const char *meaning = "elastic shear, no yield";
+    static constexpr StressShare share = DEVIATOR;
+    static constexpr Parameter parameters[] = {
+        {"", "G", "pressure", POSITIVE, REQUIRED, "shear modulus"}};
+    static constexpr const HistoryDeclaration *history = nullptr;
+    static constexpr int nhistory(const double *) { return 0; }
+    static constexpr const char *check(const double *) { return nullptr; }
 
-  static void update(const LawParameters &p, Batch &b, History, double *)
-  {
-    const ElasticDeviator elastic{p.value[0]};
-    MPM_SIMD
-    for (int i = 0; i < b.n; i++) store_stress(b, i, elastic.trial(b, i, increment(b, i)));
-  }
-};
+    static void update(const LawParameters &p, Batch &b, History, double *)
+    {
+      const ElasticDeviator elastic{p.value[0]};
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) store_stress(b, i, elastic.trial(b, i, increment(b, i)));
+    }
+  };
 
 }    // namespace
 }    // namespace MPM_NS::law

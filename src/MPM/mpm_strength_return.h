@@ -14,7 +14,7 @@
 namespace MPM_NS::law {
 namespace {
 
-/** Loops of a von Mises strength: radial return to the flow stress at the end of the step
+  /** Loops of a von Mises strength: radial return to the flow stress at the end of the step
  *  (M.L. Wilkins, Methods Comput. Phys. 3 (1964) 211; J.C. Simo, T.J.R. Hughes, Computational
  *  Inelasticity, 1998, ch. 3), with an unknown increment D of the equivalent plastic strain:
  *
@@ -29,97 +29,97 @@ namespace {
  *  Newton in 1/D from the right approach the root from their side only, also with infinite slope
  *  at D = 0. A bracket catches all else (thermal softening).
  */
-struct TrialState {
-  double q;        ///< equivalent stress
-  double stiff;    ///< 3 G/J
-  double J;        ///< mean volume ratio of the step
-};
+  struct TrialState {
+    double q;        ///< equivalent stress
+    double stiff;    ///< 3 G/J
+    double J;        ///< mean volume ratio of the step
+  };
 
-template <class Flow> struct RadialReturn : ShearElasticity {
-  static constexpr int MAX_ITERATIONS = 100;
+  template <class Flow> struct RadialReturn : ShearElasticity {
+    static constexpr int MAX_ITERATIONS = 100;
 
-  static void update(const LawParameters &p, Batch &b, History history, double *heat)
-  {
-    const ElasticDeviator elastic{p.value[0]};
-    const Flow flow(p, b.dt);
-    alignas(64) double trial[BATCH], stiff[BATCH], start[BATCH], yield[BATCH], D[BATCH];
+    static void update(const LawParameters &p, Batch &b, History history, double *heat)
+    {
+      const ElasticDeviator elastic{p.value[0]};
+      const Flow flow(p, b.dt);
+      alignas(64) double trial[BATCH], stiff[BATCH], start[BATCH], yield[BATCH], D[BATCH];
 
-    double yielding = 0.0;
-    MPM_SIMD_SUM(yielding)
-    for (int i = 0; i < b.n; i++) {
-      const Increment inc = increment(b, i);
-      const Sym s = elastic.trial(b, i, inc);
-      store_stress(b, i, s);
-      const double q = std::sqrt(1.5 * norm2(s));
-      const double modulus = 3.0 * p.value[0] / b.J[i];
-      const double y = flow.start(history, i);
-      const double excess = (q - y) / modulus;
-      // first guess: all strain is plastic, when that is possible
-      const double strain = std::sqrt((2.0 / 3.0) * norm2(deviator(inc.strain)));
-      const double guess = min(excess, max(strain, 1e-3 * excess));
-      trial[i] = q;
-      stiff[i] = modulus;
-      start[i] = y;
-      D[i] = excess > 0.0 ? guess : 0.0;
-      yielding += excess > 0.0 ? 1.0 : 0.0;
-    }
-    if (yielding == 0.0) return;
-    solve(b, flow, history, trial, stiff, start, yield, D);
-
-    double plastic = 0.0, heated = 0.0;
-    MPM_SIMD_SUM(plastic, heated)
-    for (int i = 0; i < b.n; i++) {
-      const double scale = D[i] > 0.0 ? yield[i] / trial[i] : 1.0;
-      store_stress(b, i, scale * load_stress(b, i));
-      const double J = 0.5 * (b.J[i] + b.Jold[i]);
-      const double work = J * flow.finish(history, i, start[i], D[i], yield[i], J);
-      plastic += work * b.vol0[i];
-      heated += flow.chi * work * b.vol0[i];
-      heat[i] += flow.chi * work;
-    }
-    b.work[PLASTIC] += plastic;
-    b.work[HEAT] += heated;
-  }
-
- private:
-  static MPM_INLINE void solve(const Batch &b, const Flow &flow, History history,
-                               const double *trial, const double *stiff, const double *start,
-                               double *yield, double *D)
-  {
-    alignas(64) double low[BATCH], high[BATCH];
-    MPM_SIMD
-    for (int i = 0; i < b.n; i++) {
-      low[i] = 0.0;
-      high[i] = trial[i] / stiff[i];
-    }
-    for (int iteration = 0; iteration < MAX_ITERATIONS; iteration++) {
-      double busy = 0.0;
-      MPM_SIMD_SUM(busy)
+      double yielding = 0.0;
+      MPM_SIMD_SUM(yielding)
       for (int i = 0; i < b.n; i++) {
-        const double d = D[i];
-        const TrialState t{trial[i], stiff[i], 0.5 * (b.J[i] + b.Jold[i])};
-        double y, dy;
-        flow.stress(history, i, start[i], t, d, y, dy);
-        const double r = t.q - t.stiff * d - y;
-        const double s = t.stiff + dy;    // -dr/dD
-        const double lo = r > 0.0 ? d : low[i], hi = r > 0.0 ? high[i] : d;
-        const double newton = d + r * d / (d * s + max(-r, 0.0));
-        const double half = 0.5 * (lo + hi);
-        const double next = s > 0.0 && newton > lo && newton < hi ? newton : half;
-        const bool active = d > 0.0;
-        const bool done = max(r, -r) <= 1e-13 * y + 1e-15 * t.q;
-        const double step = active && !done ? next - d : 0.0;
-        low[i] = lo;
-        high[i] = hi;
-        yield[i] = y + dy * step;
-        D[i] = d + step;
-        // the error left by a small Newton step is its square: no need to look again
-        busy += step * step > 1e-14 * d * d ? 1.0 : 0.0;
+        const Increment inc = increment(b, i);
+        const Sym s = elastic.trial(b, i, inc);
+        store_stress(b, i, s);
+        const double q = std::sqrt(1.5 * norm2(s));
+        const double modulus = 3.0 * p.value[0] / b.J[i];
+        const double y = flow.start(history, i);
+        const double excess = (q - y) / modulus;
+        // first guess: all strain is plastic, when that is possible
+        const double strain = std::sqrt((2.0 / 3.0) * norm2(deviator(inc.strain)));
+        const double guess = min(excess, max(strain, 1e-3 * excess));
+        trial[i] = q;
+        stiff[i] = modulus;
+        start[i] = y;
+        D[i] = excess > 0.0 ? guess : 0.0;
+        yielding += excess > 0.0 ? 1.0 : 0.0;
       }
-      if (busy == 0.0) return;
+      if (yielding == 0.0) return;
+      solve(b, flow, history, trial, stiff, start, yield, D);
+
+      double plastic = 0.0, heated = 0.0;
+      MPM_SIMD_SUM(plastic, heated)
+      for (int i = 0; i < b.n; i++) {
+        const double scale = D[i] > 0.0 ? yield[i] / trial[i] : 1.0;
+        store_stress(b, i, scale * load_stress(b, i));
+        const double J = 0.5 * (b.J[i] + b.Jold[i]);
+        const double work = J * flow.finish(history, i, start[i], D[i], yield[i], J);
+        plastic += work * b.vol0[i];
+        heated += flow.chi * work * b.vol0[i];
+        heat[i] += flow.chi * work;
+      }
+      b.work[PLASTIC] += plastic;
+      b.work[HEAT] += heated;
     }
-  }
-};
+
+   private:
+    static MPM_INLINE void solve(const Batch &b, const Flow &flow, History history,
+                                 const double *trial, const double *stiff, const double *start,
+                                 double *yield, double *D)
+    {
+      alignas(64) double low[BATCH], high[BATCH];
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        low[i] = 0.0;
+        high[i] = trial[i] / stiff[i];
+      }
+      for (int iteration = 0; iteration < MAX_ITERATIONS; iteration++) {
+        double busy = 0.0;
+        MPM_SIMD_SUM(busy)
+        for (int i = 0; i < b.n; i++) {
+          const double d = D[i];
+          const TrialState t{trial[i], stiff[i], 0.5 * (b.J[i] + b.Jold[i])};
+          double y, dy;
+          flow.stress(history, i, start[i], t, d, y, dy);
+          const double r = t.q - t.stiff * d - y;
+          const double s = t.stiff + dy;    // -dr/dD
+          const double lo = r > 0.0 ? d : low[i], hi = r > 0.0 ? high[i] : d;
+          const double newton = d + r * d / (d * s + max(-r, 0.0));
+          const double half = 0.5 * (lo + hi);
+          const double next = s > 0.0 && newton > lo && newton < hi ? newton : half;
+          const bool active = d > 0.0;
+          const bool done = max(r, -r) <= 1e-13 * y + 1e-15 * t.q;
+          const double step = active && !done ? next - d : 0.0;
+          low[i] = lo;
+          high[i] = hi;
+          yield[i] = y + dy * step;
+          D[i] = d + step;
+          // the error left by a small Newton step is its square: no need to look again
+          busy += step * step > 1e-14 * d * d ? 1.0 : 0.0;
+        }
+        if (busy == 0.0) return;
+      }
+    }
+  };
 
 }    // namespace
 }    // namespace MPM_NS::law

@@ -1,0 +1,302 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// labels: unit input restart
+// mpi: 1 2
+
+// fix mpm/material: definition in the input and in files, masses, and history variables that move
+// with their points, through restart files and to new points. The laws: test_materials.cpp.
+
+#include "mpm_lammps.h"
+
+#include "exceptions.h"
+
+#include "gtest/gtest.h"
+
+#include <cstdio>
+#include <cstdlib>
+
+using namespace MPM_TEST;
+using Lammps = MPM_TEST::Run;    // tests have a function Run
+
+namespace {
+
+const std::string STEEL = "density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 "
+                          "0.168 0.0089 1 1.1 1540 20 460 0.9";
+
+/** Two blocks of points, types 1 and 2, and no material yet. */
+const std::string scene = R"(
+units si
+boundary p p p
+atom_style mpm
+neighbor 0.3 bin
+region box block 0 8 0 8 0 8
+create_box 2 box
+fix grid all mpm 1.0
+region one block 1 3 1 3 1 3
+region two block 5 7 5 7 5 7
+create_points 1 region one ppc 2
+create_points 2 region two ppc 2
+group one type 1
+group two type 2
+timestep 1.0e-9
+)";
+
+FixMPMMaterial *material(Lammps &run, const std::string &id)
+{
+  return dynamic_cast<FixMPMMaterial *>(run.lmp->modify->get_fix_by_id(id));
+}
+
+/** The message of the error that a definition gives, with what is after "fix m one mpm/material". */
+std::string error_of(const std::string &definition)
+{
+  Lammps run;
+  run.commands(scene);
+  try {
+    run.commands("fix m one mpm/material " + definition + "\n");
+  } catch (LAMMPSException &e) {
+    return e.what();
+  }
+  return "";
+}
+
+bool contains(const std::string &text, const std::string &part)
+{
+  return text.find(part) != std::string::npos;
+}
+
+/** A file that exists during a test; all ranks wait for it. */
+struct TemporaryFile {
+  std::string name;
+  TemporaryFile(const std::string &name, const std::string &text) : name(name)
+  {
+    int rank;
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    if (rank == 0) {
+      FILE *fp = fopen(name.c_str(), "w");
+      fputs(text.c_str(), fp);
+      fclose(fp);
+    }
+    MPI_Barrier(MPI_COMM_WORLD);
+  }
+  ~TemporaryFile()
+  {
+    MPI_Barrier(MPI_COMM_WORLD);
+    remove(name.c_str());
+  }
+};
+
+double sum(double x)
+{
+  double total;
+  MPI_Allreduce(&x, &total, 1, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+  return total;
+}
+
+}    // namespace
+
+/* ---------------------------------------------------------------------- definition */
+
+TEST(MaterialFix, ErrorsNameValueAndRemedy)
+{
+  const struct {
+    const char *definition, *message;
+  } cases[] = {
+      {"", "Illegal fix mpm/material command: missing argument"},
+      {"density -1 linear 1e6 0.3",
+       "density: RHO = -1 (reference density) is out of range: 0 < VALUE"},
+      {"linear 1e6 0.3", "density is missing: add 'density RHO'"},
+      {"density 1000 linear 1e6 0.6", "linear: NU = 0.6 (Poisson's ratio) is out of range"},
+      {"density 1000 lineal 1e6 0.3",
+       "unknown keyword 'lineal': expected density, linear, neohookean"},
+      {"density 1000 eos linear -3",
+       "eos linear: K = -3 (bulk modulus) is out of range: 0 < VALUE"},
+      {"density 1000 eos linear", "eos linear: K is missing (bulk modulus)"},
+      {"density 1000 strength j2 1 1", "add an equation of state, such as 'eos linear K'"},
+      {"density 1000 linear 1 0 neohookean 1 0", "the material has 'linear' already"},
+      {"density 1000 eos gas 1.4", "unknown eos 'gas': choose linear, shock, tait"},
+      {"density 1000 linear 1e6 0.3 file x.mpm", "must then be the only keyword"},
+      {"file", "Illegal fix mpm/material file command: missing argument"},
+      {"file nowhere.mpm", "cannot read file nowhere.mpm: it is neither here nor in"},
+      {"file Cu_OFHC_J2.mpm density 8000", "keywords in the input cannot change a material file"},
+  };
+  for (const auto &c : cases)
+    EXPECT_TRUE(contains(error_of(c.definition), c.message))
+        << c.definition << ": " << error_of(c.definition);
+}
+
+TEST(MaterialFix, NeedsMaterialPoints)
+{
+  Lammps run;
+  run.commands("units si\natom_style atomic\nregion box block 0 8 0 8 0 8\ncreate_box 1 box\n");
+  try {
+    run.commands("fix m all mpm/material density 1000 linear 1e6 0.3\n");
+    FAIL() << "accepted";
+  } catch (LAMMPSException &e) {
+    EXPECT_TRUE(contains(e.what(), "use atom_style mpm")) << e.what();
+  }
+}
+
+TEST(MaterialFix, FilesOfThePackage)
+{
+  for (const char *name : {"Cu_OFHC_J2", "Cu_OFHC_JC", "Steel_4340_JC", "Water_Tait"}) {
+    Lammps run;
+    run.commands(scene);
+    run.commands("fix m one mpm/material file " + std::string(MPM_SOURCE_DIR) + "/potentials/" +
+                 name + ".mpm\n");
+    auto *m = material(run, "m");
+    std::vector<MPM_NS::HistoryVariable> history = m->material->history();
+    EXPECT_EQ(m->nhistory, (int) history.size());
+    EXPECT_EQ(m->find_history("eplastic") >= 0, std::string(name) != "Water_Tait") << name;
+    EXPECT_EQ(m->find_history("unknown"), -1);
+  }
+  // found in the folders of LAMMPS_POTENTIALS, same as in the input
+  setenv("LAMMPS_POTENTIALS", (std::string(MPM_SOURCE_DIR) + "/potentials").c_str(), 1);
+  Lammps run;
+  run.commands(scene);
+  run.commands("fix m one mpm/material file Water_Tait.mpm\n"
+               "fix n two mpm/material density 998.2 eos tait 2.192e9 7 cutoff -9.9e4 &\n"
+               "viscosity newtonian 1.002e-3\n");
+  EXPECT_EQ(material(run, "m")->material->describe(), material(run, "n")->material->describe());
+}
+
+TEST(MaterialFix, BadFiles)
+{
+  const std::string header = "# DATE: 2026-01-01 UNITS: si CONTRIBUTOR: a CITATION: b\n";
+  {
+    TemporaryFile file("wrong_line.mpm", header + "\ndensity 1000 # fine\n\nlinear 1e6 0.7\n");
+    const std::string text = error_of("file wrong_line.mpm");
+    EXPECT_TRUE(contains(text, "file wrong_line.mpm line 5: linear: NU = 0.7")) << text;
+  }
+  {
+    TemporaryFile file("other_units.mpm", "# DATE: 2026-01-01 UNITS: lj\ndensity 1 linear 1 0.3\n");
+    const std::string text = error_of("file other_units.mpm");
+    EXPECT_TRUE(contains(text, "other_units.mpm is in lj units but the input uses si units"))
+        << text;
+  }
+  {
+    TemporaryFile file("no_units.mpm", "density 1000\nlinear 1e6 0.3\n");
+    const std::string text = error_of("file no_units.mpm");
+    EXPECT_TRUE(contains(text, "the first line of file no_units.mpm must give its units")) << text;
+  }
+  {
+    TemporaryFile file("empty.mpm", header);
+    const std::string text = error_of("file empty.mpm");
+    EXPECT_TRUE(contains(text, "file empty.mpm line 1: density is missing")) << text;
+  }
+  {
+    TemporaryFile file("good.mpm", header + "density\n 1000\n\n  linear 1e6\n0.3");
+    EXPECT_EQ(error_of("file good.mpm"), "");
+  }
+}
+
+/* ---------------------------------------------------------------------- mass */
+
+TEST(MaterialFix, MassIsDensityTimesVolumeUnlessSet)
+{
+  Lammps run;
+  run.commands(scene);
+  run.commands("set type 2 mass 7.5\n"
+               "fix a one mpm/material density 1000 linear 1e6 0.3\n"
+               "fix b two mpm/material density 1000 linear 1e6 0.3\n");
+  const auto check = [&]() {
+    auto *atom = run.lmp->atom;
+    for (int i = 0; i < atom->nlocal; i++)
+      EXPECT_EQ(atom->rmass[i], atom->type[i] == 1 ? 1000 * 0.125 : 7.5);
+    EXPECT_EQ(sum(atom->nlocal), run.lmp->atom->natoms);
+  };
+  check();
+  // points that come later get theirs before the run
+  run.commands("region late block 1 3 5 7 1 3\ncreate_points 1 region late ppc 2\n"
+               "group one type 1\nrun 0 post no\n");
+  EXPECT_EQ(run.lmp->atom->natoms, 192);
+  check();
+}
+
+/* ---------------------------------------------------------------------- history */
+
+TEST(MaterialFix, NewPointsStartWithInitialHistory)
+{
+  Lammps run;
+  run.commands(scene);
+  run.commands("fix m all mpm/material " + STEEL + "\nregion late block 1 3 5 7 1 3\n" +
+               "create_points 1 region late ppc 2\nrun 0 post no\n");
+  auto *m = material(run, "m");
+  ASSERT_EQ(m->nhistory, 2);
+  EXPECT_EQ(run.lmp->atom->natoms, 192);
+  for (int i = 0; i < run.n(); i++) {
+    EXPECT_EQ(m->history[i][m->find_history("eplastic")], 0.0);
+    EXPECT_EQ(m->history[i][m->find_history("temperature")], 20.0);
+  }
+}
+
+TEST(MaterialFix, HistoryMovesWithThePoints)
+{
+  Lammps run;
+  run.commands(scene);
+  run.commands("fix a one mpm/material " + STEEL +
+               "\nfix b all mpm/material density 1 eos shock 1 1 1\n" + "atom_modify sort 1 1.0\n");
+  auto *a = material(run, "a"), *b = material(run, "b");
+  run.commands("group half type 1\n");
+  const auto value = [&](int i, int k) {
+    return 1000.0 * k + run.lmp->atom->tag[i];
+  };
+  for (int i = 0; i < run.n(); i++)
+    for (int k = 0; k < 2; k++) {
+      a->history[i][k] = value(i, k);
+      b->history[i][k] = -value(i, k);
+    }
+  const int before = run.n();
+  const auto check = [&]() {
+    for (int i = 0; i < run.n(); i++)
+      for (int k = 0; k < 2; k++) {
+        ASSERT_EQ(a->history[i][k], value(i, k));
+        ASSERT_EQ(b->history[i][k], -value(i, k));
+      }
+  };
+  // to other ranks and to other places in memory, without a change of state: setup only
+  run.commands("unfix grid\n");
+  for (const char *shift : {"3 0 0", "0 3 0", "0 0 3", "-5 2 1"}) {
+    run.commands("displace_atoms all move " + std::string(shift) + "\nrun 0 post no\n");
+    check();
+  }
+  run.commands("group odd id 1:64:2\ndelete_atoms group odd compress no\nrun 0 post no\n");
+  check();
+  EXPECT_GT(before, 0);
+}
+
+TEST(MaterialFix, RestartKeepsHistoryAndWork)
+{
+  const std::string fixes = "group one type 1\ngroup two type 2\nfix grid all mpm 1.0\n"
+                            "fix a one mpm/material " +
+      STEEL + "\nfix b two mpm/material density 1 linear 1 0\n";
+  int nprocs, rank;
+  MPI_Comm_size(MPI_COMM_WORLD, &nprocs);
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  const std::string file = "material." + std::to_string(nprocs) + ".bin";
+  {
+    Lammps run;
+    run.commands(scene + "unfix grid\n" + fixes);
+    auto *a = material(run, "a");
+    EXPECT_EQ(material(run, "b")->history, nullptr);
+    for (int i = 0; i < run.n(); i++)
+      for (int k = 0; k < 2; k++) a->history[i][k] = 0.1 * run.lmp->atom->tag[i] + 1000 * k;
+    for (int k = 0; k < MPM_NS::NWORK; k++) a->work[k] = (k + 1) * (rank + 1);
+    run.commands("run 0 post no\nwrite_restart " + file + "\n");
+  }
+  Lammps run;
+  run.commands("read_restart " + file + "\nneighbor 0.3 bin\n" + fixes + "run 0 post no\n");
+  auto *a = material(run, "a");
+  EXPECT_EQ(sum(run.n()), 128);
+  for (int i = 0; i < run.n(); i++)
+    for (int k = 0; k < 2; k++) ASSERT_EQ(a->history[i][k], 0.1 * run.lmp->atom->tag[i] + 1000 * k);
+  for (int k = 0; k < MPM_NS::NWORK; k++)
+    EXPECT_EQ(sum(a->work[k]), (k + 1) * (nprocs == 1 ? 1 : 3));
+  MPI_Barrier(MPI_COMM_WORLD);
+  if (rank == 0) remove(file.c_str());
+}
