@@ -6,8 +6,8 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Cost of the constitutive laws: time per point of Material::update (yielding points), wave_speed and
-// stored_energy on full batches, for each instruction set that this CPU has.
+// Cost of the constitutive laws: time per point of Material::update (yielding points), wave_speed
+// and stored_energy on full batches, for each instruction set that this CPU has.
 
 #include "mpm_kernels.h"
 #include "mpm_material_point.h"

@@ -52,7 +52,7 @@ FixMPMMaterial *material(Lammps &run, const std::string &id)
   return dynamic_cast<FixMPMMaterial *>(run.lmp->modify->get_fix_by_id(id));
 }
 
-/** The message of the error that a definition gives, with what is after "fix m one mpm/material". */
+/** The error that a definition gives: what follows "fix m one mpm/material". */
 std::string error_of(const std::string &definition)
 {
   Lammps run;
@@ -193,6 +193,10 @@ TEST(MaterialFix, BadFiles)
     TemporaryFile file("good.mpm", header + "density\n 1000\n\n  linear 1e6\n0.3");
     EXPECT_EQ(error_of("file good.mpm"), "");
   }
+  {
+    TemporaryFile file("plain_header.mpm", header.substr(2) + "density 1000 linear 1e6 0.3\n");
+    EXPECT_EQ(error_of("file plain_header.mpm"), "");
+  }
 }
 
 /* ---------------------------------------------------------------------- mass */
@@ -201,9 +205,10 @@ TEST(MaterialFix, MassIsDensityTimesVolumeUnlessSet)
 {
   Lammps run;
   run.commands(scene);
-  run.commands("set type 2 mass 7.5\n"
-               "fix a one mpm/material density 1000 linear 1e6 0.3\n"
-               "fix b two mpm/material density 1000 linear 1e6 0.3\n");
+  run.commands("fix a one mpm/material density 1000 linear 1e6 0.3\n");
+  for (int i = 0; i < run.n(); i++)
+    EXPECT_EQ(run.mass()[i], run.lmp->atom->type[i] == 1 ? 1000 * 0.125 : 0.0);
+  run.commands("set type 2 mass 7.5\nfix b two mpm/material density 1000 linear 1e6 0.3\n");
   const auto check = [&]() {
     auto *atom = run.lmp->atom;
     for (int i = 0; i < atom->nlocal; i++)

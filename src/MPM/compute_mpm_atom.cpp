@@ -12,6 +12,7 @@
 #include "error.h"
 #include "fix_mpm.h"
 #include "fix_mpm_material.h"
+#include "force.h"
 #include "math_eigen.h"
 #include "memory.h"
 #include "modify.h"
@@ -106,13 +107,13 @@ double speed(const Point &p, int)
   return sqrt(p.v[0] * p.v[0] + p.v[1] * p.v[1] + p.v[2] * p.v[2]);
 }
 
-void energy(const Material &material, const Batch &batch, double *value)
+void energy(const Material &material, const Batch &batch, double pressure_to_energy, double *value)
 {
   material.stored_energy(batch, value);
-  for (int k = 0; k < batch.n; k++) value[k] *= batch.vol0[k];
+  for (int k = 0; k < batch.n; k++) value[k] *= batch.vol0[k] * pressure_to_energy;
 }
 
-void wavespeed(const Material &material, const Batch &batch, double *value)
+void wavespeed(const Material &material, const Batch &batch, double, double *value)
 {
   material.wave_speed(batch, value);
 }
@@ -124,7 +125,7 @@ struct ComputeMPMAtom::Quantity {
   const char *name;
   double (*of_point)(const Point &, int component);
   int component;
-  void (*of_batch)(const Material &, const Batch &, double *);
+  void (*of_batch)(const Material &, const Batch &, double pressure_to_energy, double *);
 };
 
 // customize by adding a line: names of the form group/component can be asked for as group/*
@@ -201,8 +202,10 @@ ComputeMPMAtom::ComputeMPMAtom(LAMMPS *lmp, int narg, char **arg) :
     for (const auto &name : expand(arg[iarg])) {
       const auto *quantity = find_quantity(name);
       if (!quantity && name.find('*') != std::string::npos)
-        error->all(FLERR, iarg, "Unknown compute mpm/atom quantities {}: wildcards are F/*, "
-                   "stress/*, and principal/*", name);
+        error->all(FLERR, iarg,
+                   "Unknown compute mpm/atom quantities {}: wildcards are F/*, "
+                   "stress/*, and principal/*",
+                   name);
       columns.push_back({name, quantity});
     }
 
@@ -229,8 +232,8 @@ std::string ComputeMPMAtom::known_names() const
   for (const auto &fix : modify->get_fix_by_style("^mpm/material$"))
     for (const auto &variable : dynamic_cast<FixMPMMaterial *>(fix)->material->history())
       history.insert(variable.name);
-  text += history.empty() ? "; the materials have no history variables" :
-                            "; history variables of the materials:";
+  text += history.empty() ? "; the materials have no history variables"
+                          : "; history variables of the materials:";
   for (const auto &name : history) text += " " + name;
   return text;
 }
@@ -250,8 +253,10 @@ void ComputeMPMAtom::init()
     for (const auto &fix : modify->get_fix_by_style("^mpm/material$"))
       found |= dynamic_cast<FixMPMMaterial *>(fix)->find_history(column.name) >= 0;
     if (!found)
-      error->all(FLERR, Error::NOLASTLINE, "Unknown quantity {} in compute {} of style mpm/atom; "
-                 "known are:{}", column.name, id, known_names());
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Unknown quantity {} in compute {} of style mpm/atom; "
+                 "known are:{}",
+                 column.name, id, known_names());
   }
 }
 
@@ -305,23 +310,25 @@ void ComputeMPMAtom::compute_peratom()
       }
     } else {
       for (int i = 0; i < nlocal; i++) out[(bigint) i * stride] = 0.0;
-      if (quantity) batches = true;
-      else history_column(columns[n].name, out, stride);
+      if (quantity)
+        batches = true;
+      else
+        history_column(columns[n].name, out, stride);
     }
   }
 
   if (batches)
-    visit_point_batches(lmp, groupbit,
-                        [&](const Batch &batch, const int *list, const FixMPMMaterial &material) {
-      double value[BATCH];
-      for (int n = 0; n < stride; n++) {
-        const auto *quantity = columns[n].quantity;
-        if (!quantity || !quantity->of_batch) continue;
-        quantity->of_batch(*material.material, batch, value);
-        double *out = column(n);
-        for (int k = 0; k < batch.n; k++) out[(bigint) list[k] * stride] = value[k];
-      }
-    });
+    visit_point_batches(
+        lmp, groupbit, [&](const Batch &batch, const int *list, const FixMPMMaterial &material) {
+          double value[BATCH];
+          for (int n = 0; n < stride; n++) {
+            const auto *quantity = columns[n].quantity;
+            if (!quantity || !quantity->of_batch) continue;
+            quantity->of_batch(*material.material, batch, 1.0 / force->nktv2p, value);
+            double *out = column(n);
+            for (int k = 0; k < batch.n; k++) out[(bigint) list[k] * stride] = value[k];
+          }
+        });
 }
 
 /** History variable of the points whose material has it; the others keep their value. */

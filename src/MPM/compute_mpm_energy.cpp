@@ -12,6 +12,7 @@
 #include "error.h"
 #include "fix_mpm.h"
 #include "fix_mpm_material.h"
+#include "force.h"
 #include "group.h"
 #include "modify.h"
 #include "mpm_material.h"
@@ -28,7 +29,8 @@ ComputeMPMEnergy::ComputeMPMEnergy(LAMMPS *lmp, int narg, char **arg) :
 {
   if (narg > 3) error->all(FLERR, 3, "Unknown compute mpm/energy argument: {}", arg[3]);
   if (igroup != 0)
-    error->all(FLERR, 1, "Compute mpm/energy requires group all, since work cannot be told apart "
+    error->all(FLERR, 1,
+               "Compute mpm/energy requires group all, since work cannot be told apart "
                "by group; for the stored energy of a group use compute mpm/atom energy with "
                "compute reduce");
 
@@ -93,10 +95,14 @@ ComputeMPMEnergy::Sums ComputeMPMEnergy::evaluate() const
 
   visit_point_batches(lmp, groupbit,
                       [&](const Batch &batch, const int *, const FixMPMMaterial &material) {
-    double w[BATCH];
-    material.material->stored_energy(batch, w);
-    for (int k = 0; k < batch.n; k++) mine.stored += batch.vol0[k] * w[k];
-  });
+                        double w[BATCH];
+                        material.material->stored_energy(batch, w);
+                        for (int k = 0; k < batch.n; k++) mine.stored += batch.vol0[k] * w[k];
+                      });
+
+  mine.kinetic *= force->mvv2e;
+  for (double *energy : {&mine.plastic, &mine.viscous, &mine.heat, &mine.stored})
+    *energy /= force->nktv2p;
 
   Sums all;
   static_assert(sizeof(Sums) == 10 * sizeof(double), "Sums holds doubles only");
@@ -137,8 +143,8 @@ void ComputeMPMEnergy::compute_vector()
 
   // the law's account of the energy that internal forces took, against that energy
 
-  const double taken = now.stored + now.plastic + now.viscous - start.stored - start.plastic -
-      start.viscous;
+  const double taken =
+      now.stored + now.plastic + now.viscous - start.stored - start.plastic - start.viscous;
   vector[INTEGRATION] = taken - (now.internal - start.internal);
   vector[RESIDUAL] = now.total() - start.total();
   for (int k = EXTERNAL; k < RESIDUAL; k++) vector[RESIDUAL] -= vector[k];

@@ -50,8 +50,10 @@ DumpMPMGridVTK::DumpMPMGridVTK(LAMMPS *lmp, int narg, char **arg) :
     int k = 0;
     while (k <= NODE_INDEX && strcmp(arg[iarg], node_fields[k].name) != 0) k++;
     if (k > NODE_INDEX)
-      error->all(FLERR, iarg, "Unknown dump mpm/grid/vtk field {}: must be one of mass velocity "
-                 "momentum index", arg[iarg]);
+      error->all(FLERR, iarg,
+                 "Unknown dump mpm/grid/vtk field {}: must be one of mass velocity "
+                 "momentum index",
+                 arg[iarg]);
     if (std::find(fields.begin(), fields.end(), (Field) k) == fields.end())
       fields.push_back((Field) k);
   }
@@ -125,7 +127,9 @@ template <typename Visitor> void DumpMPMGridVTK::visit_nodes(Visitor visit) cons
 int DumpMPMGridVTK::count()
 {
   int nnode = 0;
-  visit_nodes([&](const Grid::Block &, int, const double *) { nnode++; });
+  visit_nodes([&](const Grid::Block &, int, const double *) {
+    nnode++;
+  });
   return nnode;
 }
 
@@ -165,7 +169,9 @@ void DumpMPMGridVTK::write_footer()
 {
   const int dim = field->lattice.dim;
   const bigint nnode = (bigint) rows.size() / NCOLUMN;
-  auto row = [&](bigint i) { return &rows[i * NCOLUMN]; };
+  auto row = [&](bigint i) {
+    return &rows[i * NCOLUMN];
+  };
   auto before = [](const double *a, const double *b) {
     return std::lexicographical_compare(a, a + 3, b, b + 3);
   };
@@ -214,10 +220,18 @@ void DumpMPMGridVTK::write_footer()
     for (const double *n : node)
       for (int d = 0; d < node_fields[fields[k]].ncomponent; d++) {
         switch (fields[k]) {
-          case NODE_MASS: values.push_back(n[MASS]); break;
-          case NODE_VELOCITY: values.push_back(n[VELOCITY + d]); break;
-          case NODE_MOMENTUM: values.push_back(n[MASS] * n[VELOCITY + d]); break;
-          case NODE_INDEX: values.push_back(n[INDEX + d]); break;
+          case NODE_MASS:
+            values.push_back(n[MASS]);
+            break;
+          case NODE_VELOCITY:
+            values.push_back(n[VELOCITY + d]);
+            break;
+          case NODE_MOMENTUM:
+            values.push_back(n[MASS] * n[VELOCITY + d]);
+            break;
+          case NODE_INDEX:
+            values.push_back(n[INDEX + d]);
+            break;
         }
       }
     vtk.write((int) k, 0, nnode, values.data());

@@ -30,8 +30,9 @@ static const std::map<std::string, std::vector<std::string>> composed = {
     {"omega", {"omegax", "omegay", "omegaz"}},
     {"torque", {"tqx", "tqy", "tqz"}},
     {"image", {"ix", "iy", "iz"}},
-    {"stress", {"stress/xx", "stress/xy", "stress/xz", "stress/xy", "stress/yy", "stress/yz",
-                "stress/xz", "stress/yz", "stress/zz"}},
+    {"stress",
+     {"stress/xx", "stress/xy", "stress/xz", "stress/xy", "stress/yy", "stress/yz", "stress/xz",
+      "stress/yz", "stress/zz"}},
     {"F", {"F/xx", "F/xy", "F/xz", "F/yx", "F/yy", "F/yz", "F/zx", "F/zy", "F/zz"}},
     {"principal", {"principal/1", "principal/2", "principal/3"}},
 };
@@ -39,10 +40,11 @@ static const std::map<std::string, std::vector<std::string>> composed = {
 // numbers that dump custom knows and compute mpm/atom does not
 
 static const std::vector<std::string> attributes = {
-    "mol", "proc",  "procp1", "x",  "y",   "z",   "xs",     "ys",       "zs",     "xu",     "yu",
-    "zu",  "xsu",   "ysu",    "zsu", "ix", "iy",  "iz",     "vx",       "vy",     "vz",     "fx",
-    "fy",  "fz",    "q",      "mux", "muy", "muz", "mu",    "radius",   "diameter", "omegax",
-    "omegay", "omegaz", "angmomx", "angmomy", "angmomz", "tqx", "tqy", "tqz"};
+    "mol",    "proc",   "procp1",  "x",       "y",       "z",      "xs",       "ys",
+    "zs",     "xu",     "yu",      "zu",      "xsu",     "ysu",    "zsu",      "ix",
+    "iy",     "iz",     "vx",      "vy",      "vz",      "fx",     "fy",       "fz",
+    "q",      "mux",    "muy",     "muz",     "mu",      "radius", "diameter", "omegax",
+    "omegay", "omegaz", "angmomx", "angmomy", "angmomz", "tqx",    "tqy",      "tqz"};
 
 static const std::vector<std::string> integers = {"id",     "type", "mol", "proc",
                                                   "procp1", "ix",   "iy",  "iz"};
@@ -108,8 +110,7 @@ DumpMPMVTK::Request::Request(LAMMPS *lmp_in, int narg, char **arg) : lmp(lmp_in)
     int k = 0;
     for (auto &word : words)
       if (utils::strmatch(word, "^quantity:"))
-        word = ncolumn == 1 ? fmt::format("c_{}", compute) :
-                              fmt::format("c_{}[{}]", compute, ++k);
+        word = ncolumn == 1 ? fmt::format("c_{}", compute) : fmt::format("c_{}[{}]", compute, ++k);
   }
 
   for (auto &word : words) args.push_back(const_cast<char *>(word.c_str()));
@@ -152,8 +153,7 @@ void DumpMPMVTK::Request::add_field(const std::string &name, int iarg)
 
 /* ---------------------------------------------------------------------- */
 
-DumpMPMVTK::DumpMPMVTK(LAMMPS *lmp, int narg, char **arg) :
-    DumpMPMVTK(lmp, Request(lmp, narg, arg))
+DumpMPMVTK::DumpMPMVTK(LAMMPS *lmp, int narg, char **arg) : DumpMPMVTK(lmp, Request(lmp, narg, arg))
 {
 }
 
@@ -228,8 +228,10 @@ void DumpMPMVTK::write_header(bigint npoint)
   vtk->add("Points", position.name, real, 3, npoint);
   vtk->add("Verts", "connectivity", VTKFile::INT64, 1, npoint);
   vtk->add("Verts", "offsets", VTKFile::INT64, 1, npoint);
-  vtk->begin(fp, fmt::format("NumberOfPoints=\"{0}\" NumberOfVerts=\"{0}\" NumberOfLines=\"0\" "
-                             "NumberOfStrips=\"0\" NumberOfPolys=\"0\"", npoint),
+  vtk->begin(fp,
+             fmt::format("NumberOfPoints=\"{0}\" NumberOfVerts=\"{0}\" NumberOfLines=\"0\" "
+                         "NumberOfStrips=\"0\" NumberOfPolys=\"0\"",
+                         npoint),
              compute_time(), update->ntimestep);
   nwritten = 0;
 }

@@ -74,7 +74,7 @@ class DumpMPMVTK : public DumpCustom {
   std::vector<Field> fields;
   Field position;
   std::string compute_id;
-  bool single;    // precision of reals
+  bool single;                             // precision of reals
   std::unique_ptr<MPM_NS::VTKFile> vtk;    // arrays: fields, position, connectivity, offsets
   std::unique_ptr<MPM_NS::VTKCollection> collection;
   bigint nwritten;    // points of the present file

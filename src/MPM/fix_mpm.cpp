@@ -14,6 +14,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_mpm_material.h"
+#include "force.h"
 #include "memory.h"
 #include "modify.h"
 #include "mpm_batch.h"
@@ -257,6 +258,11 @@ void FixMPM::init()
   if (!kernels || !batch_kernels)
     error->all(FLERR, "Fix mpm kernels {} cannot run on this CPU or were not compiled", isa);
 
+  for (auto *material : materials)
+    if (!material->material->configure(isa.empty() ? nullptr : isa.c_str(),
+                                       force->mvv2e * force->nktv2p))
+      error->all(FLERR, "Fix mpm kernels {} cannot run on this CPU or were not compiled", isa);
+
   // LAMMPS warns when the groups of two integrators overlap, but atoms of this group that are not
   // material points may well be moved by others; check_integrators() looks at the points
 
@@ -381,6 +387,8 @@ TransferStep FixMPM::step_data() const
   for (int d = 0; d < 3; d++) s.origin[d] = lattice.origin[d];
   s.dt = update->dt;
   s.flip = flip;
+  s.force_scale = force->ftm2v;
+  s.stress_scale = force->ftm2v / force->nktv2p;
   return s;
 }
 

@@ -33,8 +33,8 @@ enum { DENSITY, VELOCITY, CAUCHY, PRESSURE, FRACTION, NAVERAGE };
 static const struct {
   const char *name;
   int ncolumn;    // 0: scalar
-} fields[NAVERAGE] = {{"density", 0}, {"velocity", 3}, {"stress", 6}, {"pressure", 0},
-                      {"fraction", 0}};
+} fields[NAVERAGE] = {
+    {"density", 0}, {"velocity", 3}, {"stress", 6}, {"pressure", 0}, {"fraction", 0}};
 
 /* ----------------------------------------------------------------------
    fix ID group mpm/cells FIXID
@@ -112,9 +112,8 @@ void FixMPMCells::allocate()
   } else {
     grid3d = new Grid3d(lmp, world, ncell[0], ncell[1], ncell[2]);
     grid3d->set_distance(0.5 * skin);
-    grid3d->setup_grid(owned.lo[0], owned.hi[0], owned.lo[1], owned.hi[1], owned.lo[2],
-                       owned.hi[2], all.lo[0], all.hi[0], all.lo[1], all.hi[1], all.lo[2],
-                       all.hi[2]);
+    grid3d->setup_grid(owned.lo[0], owned.hi[0], owned.lo[1], owned.hi[1], owned.lo[2], owned.hi[2],
+                       all.lo[0], all.hi[0], all.lo[1], all.hi[1], all.lo[2], all.hi[2]);
     grid3d->setup_comm(nbuf1, nbuf2);
   }
   memory->create(buf1, nbuf1 * NSUM, "mpm/cells:buf1");
@@ -150,10 +149,14 @@ void FixMPMCells::deallocate()
   for (std::size_t k = 0; k < averages.size(); k++) {
     auto &a = averages[k];
     const bool scalar = fields[k].ncolumn == 0;
-    if (dim == 2 && scalar) memory->destroy2d_offset(a.a2, lo[1], lo[0]);
-    else if (dim == 2) memory->destroy3d_offset_last(a.a3, lo[1], lo[0]);
-    else if (scalar) memory->destroy3d_offset(a.a3, lo[2], lo[1], lo[0]);
-    else memory->destroy4d_offset_last(a.a4, lo[2], lo[1], lo[0]);
+    if (dim == 2 && scalar)
+      memory->destroy2d_offset(a.a2, lo[1], lo[0]);
+    else if (dim == 2)
+      memory->destroy3d_offset_last(a.a3, lo[1], lo[0]);
+    else if (scalar)
+      memory->destroy3d_offset(a.a3, lo[2], lo[1], lo[0]);
+    else
+      memory->destroy4d_offset_last(a.a4, lo[2], lo[1], lo[0]);
   }
   averages.clear();
 }
@@ -194,9 +197,11 @@ void FixMPMCells::sum_points()
     for (int c = 0; c < 6; c++) sum[STRESS + c] += volume * points->stress[i][c];
   }
   if (outside)
-    error->one(FLERR, Error::NOLASTLINE, "Fix {} (style mpm/cells): {} points are more than half "
+    error->one(FLERR, Error::NOLASTLINE,
+               "Fix {} (style mpm/cells): {} points are more than half "
                "the neighbor skin away from the part of their process: use a larger neighbor skin "
-               "or neigh_modify every 1 delay 0 check yes", id, outside);
+               "or neigh_modify every 1 delay 0 check yes",
+               id, outside);
 
   if (dim == 2)
     grid2d->reverse_comm(Grid2d::FIX, this, 0, NSUM, sizeof(double), buf1, buf2, MPI_DOUBLE);

@@ -19,7 +19,7 @@
 #include "fix_mpm_material.h"
 #include "group.h"
 #include "modify.h"
-#include "mpm_material.h"
+#include "mpm_batch.h"
 #include "mpm_points.h"
 #include "update.h"
 
@@ -209,36 +209,43 @@ void FixMPM::delete_points(const std::vector<tagint> &list)
 double FixMPM::stable_dt_local(tagint &id_min, double &wave_speed) const
 {
   Batch &b = *batch;
-  double smallest = std::numeric_limits<double>::max(), c[BATCH];
+  static const double no_gradient[9 * BATCH] = {0.0};
   std::vector<double> history;
+  double c[BATCH], smallest = std::numeric_limits<double>::max();
   id_min = 0;
   wave_speed = 0.0;
-  for (auto *material : materials) {
-    int list[BATCH], n = 0;
-    auto evaluate = [&]() {
-      load_state(b, list, n, material, history);
-      material->material->wave_speed(b, c);
-      for (int p = 0; p < n; p++) {
-        const double *v = atom->v[list[p]];
-        const double speed = c[p] + sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-        const double dt = lattice.h / speed;
-        if (!(dt >= smallest)) {    // NaN must not pass unseen
-          smallest = dt;
-          id_min = atom->tag[list[p]];
-          wave_speed = c[p];
-        }
-      }
-      n = 0;
-    };
-    for (int i = 0; i < atom->nlocal; i++) {
-      if (!is_point(i) || !(atom->mask[i] & material->groupbit)) continue;
-      list[n++] = i;
-      if (n == BATCH) evaluate();
+
+  for (int i = 0, last; i < atom->nlocal; i = last) {
+    last = i + 1;
+    if (!is_point(i)) continue;
+
+    // consecutive points of one material
+
+    const FixMPMMaterial *material = material_of(i);
+    while (last < atom->nlocal && last < i + BATCH && is_point(last) &&
+           material_of(last) == material)
+      last++;
+    const int n = last - i, nhistory = material->nhistory;
+    batch_kernels->load(b, n, 0.0, no_gradient, points->F[i], points->stress[i]);
+    history.resize((std::size_t) std::max(1, nhistory) * BATCH);
+    b.history = reinterpret_cast<double(*)[BATCH]>(history.data());
+    for (int p = 0; p < n; p++) {
+      for (int k = 0; k < nhistory; k++) b.history[k][p] = material->history[i + p][k];
+      b.mass[p] = atom->rmass[i + p];
+      b.vol0[p] = atom->vfrac[i + p];
     }
-    if (n) evaluate();
+    material->material->wave_speed(b, c);
+
+    for (int p = 0; p < n; p++) {
+      const double *v = atom->v[i + p];
+      const double speed = c[p] + sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+      if (speed * smallest <= lattice.h) continue;    // NaN does not pass unseen
+      smallest = lattice.h / speed;
+      id_min = atom->tag[i + p];
+      wave_speed = c[p];
+      if (std::isnan(smallest)) return smallest;
+    }
   }
-  batch->history = reinterpret_cast<double(*)[BATCH]>(
-      const_cast<double *>(history_batch.data()));
   return smallest;
 }
 

@@ -14,6 +14,7 @@
 #include "atom.h"
 #include "comm.h"
 #include "fix_mpm_material.h"
+#include "force.h"
 #include "mpm_halo.h"
 #include "mpm_points.h"
 #include "update.h"
@@ -39,7 +40,7 @@ double FixMPM::nodal_kinetic_energy(int lane) const
       sum += record[3] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
     }
   }
-  return 0.5 * sum;
+  return 0.5 * force->mvv2e * sum;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -53,7 +54,7 @@ double FixMPM::point_kinetic_energy() const
     sum += atom->rmass[i] *
         (v[0] * v[0] + v[1] * v[1] + (lattice.dim == 3 ? v[2] * v[2] : 0.0));
   }
-  return 0.5 * sum;
+  return 0.5 * force->mvv2e * sum;
 }
 
 /* ----------------------------------------------------------------------
@@ -91,7 +92,7 @@ double FixMPM::external_work()
       for (int d = 0; d < 3; d++)
         work += dt * f[d] * (record[d] + 0.5 * dt * record[4 + d]) / record[3];
     }
-  return work;
+  return force->mvv2e * work;    // nodal forces are mass * acceleration
 }
 
 /* ----------------------------------------------------------------------

@@ -143,7 +143,8 @@ void FixMPM::grid_to_points()
     for (int k = a.first_run; k < a.last_run; k++)
       for (int i = runs[k].first; i < runs[k].last; i += BATCH) {
         const int last = std::min(i + BATCH, runs[k].last);
-        drifted |= kernel.g2p(r, s, i, last, base, tile_load, kernel.affine ? nullptr : L);
+        drifted |= kernel.g2p(r, s, i, last, base, tile_load,
+                              kernel.affine || scheme != USL ? nullptr : L);
         if (scheme == USL)
           material_update(runs[k], i, last - i, kernel.affine ? &C[i][0] : L);
       }
@@ -216,6 +217,7 @@ void FixMPM::material_update(const Run &run, int first, int n, const double *L)
   batch_kernels->load(b, n, update->dt, L, &points->F[first][0], &points->stress[first][0]);
   memcpy(b.mass, atom->rmass + first, n * sizeof(double));
   memcpy(b.vol0, atom->vfrac + first, n * sizeof(double));
+  b.history = reinterpret_cast<double(*)[BATCH]>(history_batch.data());
   for (double &w : b.work) w = 0.0;
 
   const int nhistory = material->nhistory;

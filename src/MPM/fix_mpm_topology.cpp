@@ -155,7 +155,6 @@ void FixMPM::update_topology()
   int nhistory = 1;
   for (auto *material : materials) nhistory = std::max(nhistory, material->nhistory);
   history_batch.resize((std::size_t) nhistory * BATCH);
-  batch->history = reinterpret_cast<double(*)[BATCH]>(history_batch.data());
   report.topologies++;
 
   if (switches_sorted < 0) switches_sorted = switches;

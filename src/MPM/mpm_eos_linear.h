@@ -14,8 +14,8 @@
 namespace MPM_NS::law {
 namespace {
 
-  /** p = K (density/density_0 - 1) = K (1/J - 1): the linear term of the polynomial equation of state
- *  of hydrocodes. Sound speed sqrt(K/density_0) at any density; tension stays below K. */
+  /** p = K (density/density_0 - 1) = K (1/J - 1): the linear term of the polynomial equation of
+   *  state of hydrocodes. Sound speed sqrt(K/density_0) at any density; tension stays below K. */
   struct EosLinear : Barotropic<EosLinear> {
     static constexpr const char *name = "linear";
     static constexpr const char *meaning = "pressure linear in density";

@@ -14,18 +14,18 @@
 namespace MPM_NS::law {
 namespace {
 
-  /** Mie-Gruneisen with the shock Hugoniot U_s = C0 + S u_p (M.H. Rice, R.G. McQueen, J.M. Walsh, Solid
- *  State Physics 6 (1958) 1; M.L. Wilkins, Computer Simulation of Dynamic Phenomena, 1999), with
- *  density * Gruneisen parameter constant. With eta = 1 - J, E the internal energy per reference
- *  volume and K = density_0 C0^2:
- *
- *    compression  p = p_H (1 - GAMMA0 eta / 2) + GAMMA0 E,   p_H = K eta / (1 - S eta)^2
- *    tension      p = K (1/J - 1) + GAMMA0 E
- *
- *  Energy: E = E_old - (p_old + p)/2 (J - J_old) + heat, solved together with p, which is linear in
- *  E. One step from the reference state to J lands exactly on the Hugoniot. 1 - S eta is kept above
- *  0.05, which is a pressure of hundreds of K.
- */
+  /** Mie-Gruneisen with the shock Hugoniot U_s = C0 + S u_p (M.H. Rice, R.G. McQueen, J.M. Walsh,
+   *  Solid State Physics 6 (1958) 1; M.L. Wilkins, Computer Simulation of Dynamic Phenomena, 1999),
+   *  with density * Gruneisen parameter constant. With eta = 1 - J, E the internal energy per
+   *  reference volume and K = density_0 C0^2:
+   *
+   *    compression  p = p_H (1 - GAMMA0 eta / 2) + GAMMA0 E,   p_H = K eta / (1 - S eta)^2
+   *    tension      p = K (1/J - 1) + GAMMA0 E
+   *
+   *  Energy: E = E_old - (p_old + p)/2 (J - J_old) + heat, solved together with p, which is linear
+   *  in E. One step from the reference state to J lands exactly on the Hugoniot. 1 - S eta is kept
+   *  above 0.05, which is a pressure of hundreds of K.
+   */
   struct EosShock {
     static constexpr const char *name = "shock";
     static constexpr const char *meaning = "Mie-Gruneisen with linear shock Hugoniot";
@@ -73,7 +73,7 @@ namespace {
     }
 
     /** Isentropic -J^2 dp/dJ = J^2 (-(dp/dJ)_E + GAMMA0 p); at least K/100, as the formula loses
-   *  its meaning in large tension. */
+     *  its meaning in large tension. */
     static void modulus(const LawParameters &p, const Batch &b, History history, double *k)
     {
       const EosShock eos(p);

@@ -15,8 +15,8 @@ namespace MPM_NS::law {
 namespace {
 
   /** Tait-Murnaghan p = K/gamma (J^-gamma - 1), not below the cavitation pressure
- *  (F.D. Murnaghan, Proc. Natl. Acad. Sci. 30 (1944) 244; J.J. Monaghan, J. Comput. Phys. 110 (1994)
- *  399). Density_0 c^2 = K J^(1-gamma), also in the cavitated state: a bound, ready for closure. */
+   *  (F.D. Murnaghan, Proc. Natl. Acad. Sci. 30 (1944) 244; J.J. Monaghan, J. Comput. Phys. 110
+   *  (1994) 399). Density_0 c^2 = K J^(1-gamma), also in the cavitated state: ready for closure. */
   struct EosTait : Barotropic<EosTait> {
     static constexpr const char *name = "tait";
     static constexpr const char *meaning = "Tait-Murnaghan liquid";

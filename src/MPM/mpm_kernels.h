@@ -70,6 +70,8 @@ struct TransferStep {
   double origin[3];    ///< position of node (0,0,0)
   double dt;
   double flip;         ///< FLIP share of the velocity update (0: PIC, 1: FLIP)
+  double force_scale = 1.0;     ///< external force to mass * acceleration (ftm2v of LAMMPS)
+  double stress_scale = 1.0;    ///< stress * area to mass * acceleration (ftm2v / nktv2p)
 };
 
 /** Transfers between the points [first,last) of one block and its tile.

@@ -341,11 +341,12 @@ template <int DIM, int ORDER, bool AFFINE, int NREAL, int PARTS> struct PointsTo
 
   /** Force times scale: external, and columns of -stress that an affine or gradient term takes. */
   template <int L>
-  static MPM_INLINE void force_terms(const PointRows &points, Index p, double inv_h, double scale,
-                                     Quads<L> &q, Quads<L> *A)
+  static MPM_INLINE void force_terms(const PointRows &points, Index p, const TransferStep &step,
+                                     double scale, Quads<L> &q, Quads<L> *A)
   {
-    q = scale * blend<DIM>(load_rows<L, 3>(points.f, p), Quads<L>{});
-    const double factor = -scale * inv_h * (mls ? BSpline<ORDER>::inv_moment : 1.0);
+    q = (scale * step.force_scale) * blend<DIM>(load_rows<L, 3>(points.f, p), Quads<L>{});
+    const double factor =
+        -scale * step.stress_scale * step.inv_h * (mls ? BSpline<ORDER>::inv_moment : 1.0);
     const Quads<L> volume = load_numbers<L>(points.vol, p) * factor;
     stress_columns<L>(points.stress, p, A);
     MPM_UNROLL
@@ -391,7 +392,7 @@ template <int DIM, int ORDER, bool AFFINE, int NREAL, int PARTS> struct PointsTo
     // Am is an affine term, Af an affine or a gradient term
     P qm, qf, Am[DIM], Af[DIM];
     if constexpr (momentum) momentum_terms<L>(points, p, step.h, qm, Am);
-    if constexpr (force) force_terms<L>(points, p, step.inv_h, NREAL == 4 ? step.dt : 1.0, qf, Af);
+    if constexpr (force) force_terms<L>(points, p, step, NREAL == 4 ? step.dt : 1.0, qf, Af);
 
     if constexpr (both) {
       if constexpr (AFFINE) {

@@ -125,9 +125,10 @@ void p2g(const PointRows &points, const TransferStep &step, int first, int last,
       if (PARTS & FORCE) {
         double internal[3];
         stress_times<DIM>(points.stress + 6 * p, mls ? node.d : node.grad, internal);
-        const double scale = mls ? -points.vol[p] * inv_moment * node.w : -points.vol[p];
+        const double scale =
+            -step.stress_scale * points.vol[p] * (mls ? inv_moment * node.w : 1.0);
         for (int i = 0; i < DIM; i++) {
-          const double f = scale * internal[i] + node.w * points.f[3 * p + i];
+          const double f = scale * internal[i] + step.force_scale * node.w * points.f[3 * p + i];
           if (NREAL == 8)
             real[4 + i] += f;
           else

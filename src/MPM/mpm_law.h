@@ -78,8 +78,7 @@ enum Part { CLOSED, EOS, STRENGTH, VISCOSITY, NPARTS };
 struct LawInfo {
   const char *name;
   const char *meaning;
-  StressShare
-      share;    ///< of the last step's stress that it builds on; of a viscosity: what it adds
+  StressShare share;    ///< of the old stress that it builds on; of a viscosity: what it adds
   const Parameter *parameters;
   int nparameters;
   const HistoryDeclaration *history;
@@ -110,7 +109,7 @@ using History = double (*)[BATCH];
  */
 struct LawKernels {
   /** Stress and history at the end of the step; work of the batch is added to batch.work.
-   *  heat[n]: energy dissipated in this step; a strength adds to it, an equation of state takes it. */
+   *  heat[n]: energy dissipated in this step; a strength adds to it, an eos takes it. */
   void (*update)(const LawParameters &, Batch &, History, double *heat);
 
   /** Adds to k[n] this part's share of density * (wave speed)^2, with the reference density:

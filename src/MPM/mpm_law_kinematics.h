@@ -77,7 +77,7 @@ namespace {
   };
 
   /** G = A (I + A/2)^-1. With B = A/2, (I + B)^-1 B = [(1 + tr B) B - B^2 + det B I] / det(I + B)
- *  (Cayley-Hamilton), which keeps full relative precision for small A. */
+   *  (Cayley-Hamilton), which keeps full relative precision for small A. */
   MPM_INLINE Increment increment(const Batch &b, int i)
   {
     const double a = 0.5 * b.A[0][i], c = 0.5 * b.A[1][i], d = 0.5 * b.A[2][i];
@@ -108,7 +108,7 @@ namespace {
   }
 
   /** Q s Q^T with the incremental rotation Q = (I - W/2)^-1 (I + W/2)
- *  (T.J.R. Hughes, J. Winget, Int. J. Numer. Meth. Eng. 15 (1980) 1862). */
+   *  (T.J.R. Hughes, J. Winget, Int. J. Numer. Meth. Eng. 15 (1980) 1862). */
   MPM_INLINE Sym rotate(const Increment &inc, const Sym &s)
   {
     const double x = inc.wx, y = inc.wy, z = inc.wz;
@@ -132,9 +132,9 @@ namespace {
             txx * qzx + txy * qzy + txz * qzz, tyx * qzx + tyy * qzy + tyz * qzz};
   }
 
-  /** Jaumann rate over one step: Q (old + rate/2) Q^T + rate/2, where rate belongs to the middle of
- *  the step. Exact under rotation, and of second order, which Q old Q^T + rate (Hughes & Winget) is
- *  not as soon as strain and rotation come together. */
+  /** Jaumann rate over one step: Q (old + rate/2) Q^T + rate/2, where rate belongs to the middle
+   *  of the step. Exact under rotation, and of second order; Q old Q^T + rate (Hughes & Winget) is
+   *  of first order as soon as strain and rotation come together. */
   MPM_INLINE Sym jaumann(const Increment &inc, const Sym &old, const Sym &rate)
   {
     const Sym half = 0.5 * rate;

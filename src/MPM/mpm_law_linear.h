@@ -15,12 +15,12 @@ namespace MPM_NS::law {
 namespace {
 
   /** Isotropic hypoelasticity: Jaumann rate of the Kirchhoff stress tau = J sigma,
- *
- *    tau^J = 2 mu dev(D) + K tr(D) I,   the integral of tr(D) over a step being ln(J/J_old)
- *
- *  The rate of tau, not of sigma, makes tau_m^2/(2 K) + dev(tau):dev(tau)/(4 mu) a stored energy whose
- *  change is the stress power on any path. Small strain: Hooke's law. Initial stress is kept.
- */
+   *
+   *    tau^J = 2 mu dev(D) + K tr(D) I,   the integral of tr(D) over a step being ln(J/J_old)
+   *
+   *  The rate of tau, not of sigma, makes tau_m^2/(2 K) + dev(tau):dev(tau)/(4 mu) a stored energy
+   *  whose change is the stress power on any path. Small strain: Hooke's law. Old stress is kept.
+   */
   struct LawLinear {
     static constexpr const char *name = "linear";
     static constexpr const char *meaning = "isotropic linear elastic, rate form";

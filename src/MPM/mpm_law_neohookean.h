@@ -15,11 +15,11 @@ namespace MPM_NS::law {
 namespace {
 
   /** Compressible neo-Hookean solid in the logarithmic form (J. Simo, K. Pister, Comput. Methods
- *  Appl. Mech. Eng. 46 (1984) 201; J. Bonet, R. Wood, Nonlinear Continuum Mechanics, eq. 6.27):
- *
- *    w = mu/2 (tr b - 3 - 2 ln J) + lambda/2 ln^2 J
- *    sigma = [mu (b - I) + lambda ln J I] / J
- */
+   *  Appl. Mech. Eng. 46 (1984) 201; J. Bonet, R. Wood, Nonlinear Continuum Mechanics, eq. 6.27):
+   *
+   *    w = mu/2 (tr b - 3 - 2 ln J) + lambda/2 ln^2 J
+   *    sigma = [mu (b - I) + lambda ln J I] / J
+   */
   struct LawNeoHookean {
     static constexpr const char *name = "neohookean";
     static constexpr const char *meaning = "compressible neo-Hookean hyperelastic";
@@ -52,8 +52,8 @@ namespace {
     }
 
     /** Acoustic tensor: J rho c^2 = mu n.b.n + mu + lambda (1 - ln J), largest along the longest
-   *  principal stretch. The largest eigenvalue of b comes from the cubic t^3 - 3 t - 2 cos(3 theta) = 0
-   *  of the scaled deviator by Newton steps from above. */
+     *  principal stretch. The largest eigenvalue of b comes from the cubic of its scaled deviator,
+     *  t^3 - 3 t - 2 cos(3 theta) = 0, by Newton steps from above. */
     static void modulus(const LawParameters &p, const Batch &b, History, double *k)
     {
       const LawNeoHookean law(p);
@@ -74,8 +74,8 @@ namespace {
       }
     }
 
-    /** With H = F - I and det F - 1 = tr H + minors + det H, the terms of first order in H are taken
-   *  out of tr b - 3 - 2 ln J by hand: small strains keep full relative precision. */
+    /** With H = F - I and det F - 1 = tr H + minors + det H, the terms of first order in H are
+     *  taken out of tr b - 3 - 2 ln J by hand: small strains keep full relative precision. */
     static void energy(const LawParameters &p, const Batch &b, History, double *w)
     {
       const LawNeoHookean law(p);

@@ -79,12 +79,23 @@ std::string title(Part part, const LawInfo &info)
 class ComposedMaterial : public Material {
  public:
   ComposedMaterial(double density, std::vector<UsedLaw> used[NPARTS], const LawTable *table) :
-      rho(density), table(table), base(nullptr), eos(nullptr)
+      rho(density), rho_pressure(density), table(table), base(nullptr), eos(nullptr)
   {
     for (int part = 0; part < NPARTS; part++) laws[part] = std::move(used[part]);
     text = "density " + number(rho);
     for (int part = 0; part < NPARTS; part++)
       for (auto &law : laws[part]) add(static_cast<Part>(part), law);
+  }
+
+  bool configure(const char *isa, double pressure_scale) override
+  {
+    const LawTable *wanted = LawTable::select(isa);
+    if (!wanted) return false;
+    table = wanted;
+    rho_pressure = rho * pressure_scale;
+    for (int part = 0; part < NPARTS; part++)
+      for (auto &law : laws[part]) bind(static_cast<Part>(part), law);
+    return true;
   }
 
   double density() const override { return rho; }
@@ -123,6 +134,7 @@ class ComposedMaterial : public Material {
 
  private:
   double rho;
+  double rho_pressure;    ///< density in units of pressure over velocity^2, as the laws need it
   const LawTable *table;
   std::vector<UsedLaw> laws[NPARTS];
   const LawKernels *base;    ///< closed law or strength, or null
@@ -139,15 +151,19 @@ class ComposedMaterial : public Material {
     return b.history ? b.history + law.history : nullptr;
   }
 
+  void bind(Part part, UsedLaw &law)
+  {
+    if (part == CLOSED) base = table->closed + law.index;
+    if (part == STRENGTH) base = table->strength + law.index;
+    if (part == EOS) eos = table->eos + law.index;
+    law.parameters.density = rho_pressure;
+  }
+
   void add(Part part, UsedLaw &law)
   {
     const LawInfo &info = *law.info;
     const double *value = law.parameters.value;
-    if (part == CLOSED) base = table->closed + law.index;
-    if (part == STRENGTH) base = table->strength + law.index;
-    if (part == EOS) eos = table->eos + law.index;
-
-    law.parameters.density = rho;
+    bind(part, law);
     law.history = variables.size();
     for (int k = 0; k < info.nhistory(value); k++) {
       const int initial = info.history[k].initial;
@@ -165,7 +181,7 @@ class ComposedMaterial : public Material {
     double k[BATCH] = {};
     if (base) base->modulus(base_law().parameters, b, rows(b, base_law()), k);
     if (eos) eos->modulus(laws[EOS][0].parameters, b, rows(b, laws[EOS][0]), k);
-    table->speed(b.n, rho, k, c);
+    table->speed(b.n, rho_pressure, k, c);
   }
 };
 

@@ -68,15 +68,20 @@ class Material {
   static std::unique_ptr<Material> create(const std::vector<std::string> &words,
                                           const char *isa = nullptr);
 
+  /** Choose the instruction set (as for LawTable::select(); false: cannot run here) and the unit
+   *  of density * velocity^2 in the unit of pressure: mvv2e * nktv2p of the LAMMPS unit style,
+   *  1 in consistent units and when this is not called. */
+  virtual bool configure(const char *isa, double pressure_scale) = 0;
+
   virtual double density() const = 0;    ///< reference density
   virtual const std::vector<HistoryVariable> &history() const = 0;
 
   /** Stress and history at the end of the step (hot: one call per batch). */
   virtual void update(Batch &) const = 0;
 
-  /** c[n]: speed of the fastest (longitudinal) wave at the present state, raised by a viscosity such
-   *  that h/c is the stable time step; n, h and current F, J, stress, history in the batch, A and
-   *  Jold are not set. */
+  /** c[n]: speed of the fastest (longitudinal) wave at the present state, raised by a viscosity
+   *  such that h/c is the stable time step; n, h and current F, J, stress, history in the batch, A
+   *  and Jold are not set. */
   virtual void wave_speed(const Batch &, double *c) const = 0;
 
   /** w[n]: energy stored per reference volume in the present state (elastic, and of the equation

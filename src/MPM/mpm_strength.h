@@ -14,7 +14,7 @@
 namespace MPM_NS::law {
 namespace {
 
-  /** Elastic deviator that all strengths share: hypoelastic in the Kirchhoff stress, see LawLinear. */
+  /** Elastic deviator that all strengths share: hypoelastic, see LawLinear. */
   struct ElasticDeviator {
     double G;
 

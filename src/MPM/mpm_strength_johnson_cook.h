@@ -17,9 +17,9 @@ namespace {
   enum { JC_G, JC_A, JC_B, JC_N, JC_C, JC_RATE, JC_M, JC_MELT, JC_REF, JC_CP, JC_CHI };
 
   /** Y = (A + B e^N) (1 + C ln max(rate/EPSDOT0, 1)) (1 - T*^M) of plastic strain e, plastic strain
- *  rate and temperature at the end of the step. The plastic work of the step,
- *  (Y_start + Y)/2 D with Y_start at the old e and T and the present rate, heats the point:
- *  density_0 CP dT = CHI work. */
+   *  rate and temperature at the end of the step. The plastic work of the step,
+   *  (Y_start + Y)/2 D with Y_start at the old e and T and the present rate, heats the point:
+   *  density_0 CP dT = CHI work. */
   template <bool THERMAL> struct JohnsonCookFlow {
     double A, B, N, C, inv_rate;
     double M, soft, Tref, inv_range;    ///< soft: 1, or 0 without thermal softening
@@ -87,7 +87,7 @@ namespace {
   };
 
   /** Johnson-Cook flow stress (G.R. Johnson, W.H. Cook, Proc. 7th Int. Symp. Ballistics, The Hague,
- *  1983, p. 541). Rates below EPSDOT0 count as EPSDOT0. */
+   *  1983, p. 541). Rates below EPSDOT0 count as EPSDOT0. */
   struct StrengthJohnsonCook : ShearElasticity {
     static constexpr const char *name = "johnson/cook";
     static constexpr const char *meaning = "Johnson-Cook plasticity with rate and temperature";

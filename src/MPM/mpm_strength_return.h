@@ -14,27 +14,28 @@
 namespace MPM_NS::law {
 namespace {
 
-  /** Loops of a von Mises strength: radial return to the flow stress at the end of the step
- *  (M.L. Wilkins, Methods Comput. Phys. 3 (1964) 211; J.C. Simo, T.J.R. Hughes, Computational
- *  Inelasticity, 1998, ch. 3), with an unknown increment D of the equivalent plastic strain:
- *
- *    r(D) = q - 3 G/J D - Y(D) = 0,   q = trial equivalent stress
- *
- *  Flow has: Flow(parameters, dt); start(history, i), the flow stress for D -> 0; stress(history, i,
- *  start, trial state, D, Y, dY/dD); finish(history, i, start, D, Y, J), which stores the history
- *  and returns the plastic work per current volume.
- *
- *  Iteration, the whole batch at a time: r is convex in D for power hardening (n < 1), logarithmic
- *  rate dependence, and both together, and concave in log D. So Newton in D from the left and
- *  Newton in 1/D from the right approach the root from their side only, also with infinite slope
- *  at D = 0. A bracket catches all else (thermal softening).
- */
+  /** A point after the elastic trial step. */
   struct TrialState {
     double q;        ///< equivalent stress
     double stiff;    ///< 3 G/J
     double J;        ///< mean volume ratio of the step
   };
 
+  /** Loops of a von Mises strength: radial return to the flow stress at the end of the step
+   *  (M.L. Wilkins, Methods Comput. Phys. 3 (1964) 211; J.C. Simo, T.J.R. Hughes, Computational
+   *  Inelasticity, 1998, ch. 3), with an unknown increment D of the equivalent plastic strain:
+   *
+   *    r(D) = q - 3 G/J D - Y(D) = 0,   q = trial equivalent stress
+   *
+   *  Flow has: Flow(parameters, dt); start(history, i), the flow stress for D -> 0;
+   *  stress(history, i, start, trial state, D, Y, dY/dD); finish(history, i, start, D, Y, J), which
+   *  stores the history and returns the plastic work per current volume.
+   *
+   *  Iteration, the whole batch at a time: r is convex in D for power hardening (n < 1),
+   *  logarithmic rate dependence, and both together, and concave in log D. So Newton in D from the
+   *  left and Newton in 1/D from the right approach the root from their side only, also with
+   *  infinite slope at D = 0. A bracket catches all else (thermal softening).
+   */
   template <class Flow> struct RadialReturn : ShearElasticity {
     static constexpr int MAX_ITERATIONS = 100;
 

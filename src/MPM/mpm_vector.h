@@ -175,7 +175,7 @@ template <int N> MPM_INLINE Vec<N> max(Vec<N> a, Vec<N> b)
 template <int N> MPM_INLINE Vec<N> flag_outside(Vec<N> flag, Vec<N> a, double limit)
 {
   if constexpr (N <= REGISTER)
-    return {(a.r >= 0.0) & (a.r < limit) ? flag.r : Vec<N>::all(1.0).r};
+    return {((a.r >= 0.0) & (a.r < limit)) ? flag.r : Vec<N>::all(1.0).r};
   else
     return {flag_outside(flag.lo, a.lo, limit), flag_outside(flag.hi, a.hi, limit)};
 }

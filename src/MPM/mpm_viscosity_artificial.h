@@ -14,12 +14,12 @@
 namespace MPM_NS::law {
 namespace {
 
-  /** Artificial bulk viscosity, in compression only (J. von Neumann, R.D. Richtmyer, J. Appl. Phys. 21
- *  (1950) 232; linear term R. Landshoff, LA-1930, 1955): the pressure rises by
- *
- *    q = density h |tr D| (CQ h |tr D| + CL c),   tr D < 0
- *
- *  with node spacing h, wave speed c. Shocks spread over a few h. */
+  /** Artificial bulk viscosity, in compression only (J. von Neumann, R.D. Richtmyer, J. Appl. Phys.
+   *  21 (1950) 232; linear term R. Landshoff, LA-1930, 1955): the pressure rises by
+   *
+   *    q = density h |tr D| (CQ h |tr D| + CL c),   tr D < 0
+   *
+   *  with node spacing h, wave speed c. Shocks spread over a few h. */
   struct ViscosityArtificial {
     static constexpr const char *name = "artificial";
     static constexpr const char *meaning = "artificial bulk viscosity for shocks";
@@ -51,7 +51,7 @@ namespace {
       b.work[VISCOUS] += viscous;
     }
 
-    /** The linear term; the quadratic one is left to the fraction of the limit that the user runs at. */
+    /** The linear term only: the quadratic one is left to the fraction of the limit that is run. */
     static void raise_speed(const LawParameters &p, const Batch &b, double *c)
     {
       const double xi = p.value[1], factor = std::sqrt(1.0 + xi * xi) + xi;

@@ -14,7 +14,7 @@
 namespace MPM_NS::law {
 namespace {
 
-  /** Newtonian shear viscosity: adds 2 MU dev(D), D the rate of deformation in the middle of the step. */
+  /** Newtonian shear viscosity: adds 2 MU dev(D), D the strain rate half-way in the step. */
   struct ViscosityNewtonian {
     static constexpr const char *name = "newtonian";
     static constexpr const char *meaning = "Newtonian shear viscosity";
@@ -40,8 +40,8 @@ namespace {
       b.work[VISCOUS] += viscous;
     }
 
-    /** Explicit steps with damping: dt = h / (sqrt(c^2 + a^2) + a) with a = 4/3 MU / (density h), the
-   *  central-difference limit (2/omega)(sqrt(1 + xi^2) - xi) with omega = 2 c/h. */
+    /** Explicit steps with damping: dt = h / (sqrt(c^2 + a^2) + a), a = 4/3 MU / (density h), the
+     *  central-difference limit (2/omega)(sqrt(1 + xi^2) - xi) with omega = 2 c/h. */
     static void raise_speed(const LawParameters &p, const Batch &b, double *c)
     {
       const double a0 = (4.0 / 3.0) * p.value[0] / (p.density * b.h);

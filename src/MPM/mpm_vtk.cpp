@@ -34,8 +34,7 @@ static const char *byte_order()
 
 /* ---------------------------------------------------------------------- */
 
-std::string VTKFile::name_error(const std::string &name, const std::string &extension,
-                                bool series)
+std::string VTKFile::name_error(const std::string &name, const std::string &extension, bool series)
 {
   const std::string end = "." + extension;
   if (name.size() <= end.size() || name.compare(name.size() - end.size(), end.size(), end) != 0)
@@ -82,7 +81,8 @@ void VTKFile::begin(FILE *fp_in, const std::string &piece, double time, int64_t 
       "<DataArray type=\"Int64\" Name=\"TimeStep\" NumberOfTuples=\"1\" format=\"ascii\">"
       "{3}</DataArray>\n"
       "</FieldData>\n"
-      "<Piece {4}>\n", kind, byte_order(), time, step, piece);
+      "<Piece {4}>\n",
+      kind, byte_order(), time, step, piece);
 
   std::string section;
   for (const auto &a : arrays) {
@@ -127,19 +127,28 @@ void VTKFile::write(int array, int64_t first, int64_t n, const double *values)
 {
   const Array &a = arrays[array];
   const int bytes = width(a.type);
-  platform::fseek(fp, start + a.offset + (int64_t) sizeof(uint64_t) +
-                  first * a.ncomponent * bytes);
+  platform::fseek(fp, start + a.offset + (int64_t) sizeof(uint64_t) + first * a.ncomponent * bytes);
 
   const int64_t total = n * a.ncomponent;
   buffer.resize(std::min(total, CHUNK) * bytes);
   for (int64_t done = 0; done < total; done += CHUNK) {
     const int64_t count = std::min(total - done, CHUNK);
     switch (a.type) {
-      case INT64: convert<int64_t>(values + done, count, buffer.data()); break;
-      case INT32: convert<int32_t>(values + done, count, buffer.data()); break;
-      case UINT8: convert<uint8_t>(values + done, count, buffer.data()); break;
-      case FLOAT64: convert<double>(values + done, count, buffer.data()); break;
-      case FLOAT32: convert<float>(values + done, count, buffer.data()); break;
+      case INT64:
+        convert<int64_t>(values + done, count, buffer.data());
+        break;
+      case INT32:
+        convert<int32_t>(values + done, count, buffer.data());
+        break;
+      case UINT8:
+        convert<uint8_t>(values + done, count, buffer.data());
+        break;
+      case FLOAT64:
+        convert<double>(values + done, count, buffer.data());
+        break;
+      case FLOAT32:
+        convert<float>(values + done, count, buffer.data());
+        break;
     }
     fwrite(buffer.data(), bytes, count, fp);
   }
@@ -182,10 +191,12 @@ std::string VTKCollection::add(const std::string &path, double time, int keep, b
   is_read = true;
   const std::string file = platform::path_basename(path);
   entries.erase(std::remove_if(entries.begin(), entries.end(),
-                               [&](const Entry &e) { return e.file == file; }), entries.end());
+                               [&](const Entry &e) {
+                                 return e.file == file;
+                               }),
+                entries.end());
   entries.push_back({file, time});
-  if (keep > 0 && (int) entries.size() > keep)
-    entries.erase(entries.begin(), entries.end() - keep);
+  if (keep > 0 && (int) entries.size() > keep) entries.erase(entries.begin(), entries.end() - keep);
 
   std::string text = fmt::format("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" "
                                  "version=\"0.1\" byte_order=\"{}\">\n<Collection>\n",

@@ -29,8 +29,7 @@ class VTKFile {
 
   /** What is wrong with the name of a dump file and how to mend it; empty: nothing.
    *  series: one file per snapshot, with a * for the time step. */
-  static std::string name_error(const std::string &name, const std::string &extension,
-                                bool series);
+  static std::string name_error(const std::string &name, const std::string &extension, bool series);
 
   /** An array of a section (PointData, Points, Verts, Cells) for ntuple tuples; its number. */
   int add(const std::string &section, const std::string &name, Type type, int ncomponent,

@@ -1,0 +1,272 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// labels: physics
+// timeout: 300
+
+// Large elastic deformation: bars and beams under their weight.
+
+#include "mpm_lammps.h"
+
+#include "gtest/gtest.h"
+
+#include <cmath>
+
+using namespace MPM_TEST;
+
+static constexpr double E = 1.0e6, NU = 0.3, RHO = 1050.0;
+static constexpr double LAMBDA = E * NU / ((1.0 + NU) * (1.0 - 2.0 * NU)), MU = 0.5 * E / (1.0 + NU);
+
+/* ----------------------------------------------------------------------
+   D1, static: a bar of length 1 hangs under its weight in uniaxial strain. P(F) = rho g (L - X) with
+   P = mu (F - 1/F) + lambda ln F / F.
+------------------------------------------------------------------------- */
+
+/** Displacements of a hanging bar at depth X below its support. */
+class HangingBar {
+  static constexpr int N = 2000;
+  std::vector<double> u;
+
+ public:
+  explicit HangingBar(double g)
+  {
+    u.assign(N + 1, 0.0);
+    double F = 1.0, before = 0.0;
+    for (int k = 0; k <= N; k++) {
+      const double P = RHO * g * (1.0 - (double) k / N);
+      if (k == 0) F = 1.0 + P / (LAMBDA + 2.0 * MU);
+      for (int it = 0; it < 50; it++) {
+        const double f = MU * (F - 1.0 / F) + LAMBDA * log(F) / F - P;
+        F -= f / (MU * (1.0 + 1.0 / (F * F)) + LAMBDA * (1.0 - log(F)) / (F * F));
+      }
+      if (k > 0) u[k] = u[k - 1] + 0.5 * (F - 1.0 + before) / N;
+      before = F - 1.0;
+    }
+  }
+  double displacement(double X) const
+  {
+    const double s = X * N;
+    const int k = std::min((int) s, N - 1);
+    return u[k] + (s - k) * (u[k + 1] - u[k]);
+  }
+};
+
+TEST(HangingBar, Exact)
+{
+  // closed form by quadrature, another code
+  const double g[] = {9.81, 50.0, 100.0, 250.0, 500.0};
+  const double u[] = {.00384410, .01998056, .04096202, .11052440, .25206885};
+  for (int k = 0; k < 5; k++) EXPECT_NEAR(HangingBar(g[k]).displacement(1.0) / u[k], 1.0, 1.0e-6);
+}
+
+struct HangingCase {
+  const char *options;
+  double g;
+  int cells;
+  double tolerance;    // of the displacements, relative to that of the tip
+};
+
+/** Largest displacement error of the points at rest, relative to the tip's displacement. */
+static double hanging_bar(const HangingCase &c)
+{
+  const double h = 1.0 / c.cells, speed = sqrt((LAMBDA + 2.0 * MU) / RHO);
+  const HangingBar exact(c.g);
+  const double tip = exact.displacement(1.0);
+  Scene run;
+  run.commands(strprintf("units si\ndimension 2\nboundary f f p\natom_style mpm\nneighbor %.17g bin\n"
+                         "region box block 0 %.17g -1.5 0 -0.5 0.5\ncreate_box 1 box\n"
+                         "fix grid all mpm %.17g %s\nregion bar block INF INF -1 0 INF INF\n"
+                         "create_points 1 region bar ppc 2\n"
+                         "fix m all mpm/material density %g neohookean %g %g\n"
+                         "fix sides all mpm/boundary xlo xhi slip\n"
+                         "fix top all mpm/boundary yhi stick\nthermo 1000000\n",
+                         0.4 * h, 4.0 * h, h, c.options, RHO, E, NU));
+  run.set_reference();
+  // load ramped over one period of the first mode, damped critically for that mode
+  const double omega = 0.5 * 3.14159265358979 * speed, ramp = 6.28 / omega;
+  run.each_step([&](double **force) {
+    const double g = c.g * std::min(1.0, run.time() / ramp);
+    for (int i = 0; i < run.n(); i++) {
+      force[i][1] = -run.mass()[i] * g;
+      for (int d = 0; d < 2; d++) force[i][d] -= 2.0 * omega * run.mass()[i] * run.v()[i][d];
+    }
+  });
+  const double dt = 0.2 * h / speed;
+  run.commands(strprintf("timestep %.17g\nrun %ld\n", dt, std::lround((ramp + 20.0 / omega) / dt)));
+  double worst = 0.0, last = 0.0, exact_last = 0.0, sideways = 0.0;
+  for (int i = 0; i < run.n(); i++) {
+    const double *X = run.reference(i);
+    const double u = X[1] - run.x()[i][1], e = exact.displacement(-X[1]);
+    worst = std::max(worst, std::abs(u - e));
+    sideways = std::max(sideways, std::abs(run.x()[i][0] - X[0]));
+    if (u > last) {
+      last = u;
+      exact_last = e;
+    }
+  }
+  const std::string name = strprintf("D1 static %s, g = %g, %d cells: ", c.options, c.g, c.cells);
+  measured(name + "lowest point, relative error", last / exact_last - 1.0);
+  measured(name + "sideways", sideways);
+  return measured(name + "largest error/tip", worst / tip);
+}
+
+class Hanging : public ::testing::TestWithParam<HangingCase> {};
+
+TEST_P(Hanging, Displacement)
+{
+  EXPECT_LT(hanging_bar(GetParam()), GetParam().tolerance);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Options, Hanging,
+    ::testing::Values(HangingCase{"shape quadratic transfer apic", 9.81, 20, .005},
+                      HangingCase{"shape quadratic transfer apic", 50, 20, .005},
+                      HangingCase{"shape quadratic transfer apic", 100, 20, .005},
+                      HangingCase{"shape quadratic transfer apic", 250, 20, .005},
+                      HangingCase{"shape quadratic transfer flip 1.0 scheme musl", 100, 20, .005},
+                      HangingCase{"shape quadratic transfer pic", 100, 20, .005},
+                      HangingCase{"shape linear transfer flip 1.0 scheme musl", 9.81, 20, .005},
+                      HangingCase{"shape linear transfer flip 1.0 scheme musl", 250, 20, .005},
+                      HangingCase{"shape cubic transfer apic", 100, 20, .005},
+                      HangingCase{"shape cubic transfer apic", 250, 20, .005},
+                      HangingCase{"shape quadratic transfer apic", 100, 10, .005},
+                      HangingCase{"shape quadratic transfer apic", 100, 40, .005}));
+
+/* ----------------------------------------------------------------------
+   D2: cantilever 4 m x 1 m, plane strain, gravity 10 applied suddenly. Finite elements (total
+   Lagrangian, 80 x 20): tip (4,0) goes down by 3.3027 at t = 1.048 and back to +.041 at 2.63.
+------------------------------------------------------------------------- */
+
+struct BeamCase {
+  const char *options;
+  double h;
+  double t_end;
+};
+
+class Beam : public ::testing::TestWithParam<BeamCase> {};
+
+TEST_P(Beam, Tip)
+{
+  const auto &c = GetParam();
+  const double h = c.h, speed = sqrt((LAMBDA + 2.0 * MU) / RHO);
+  Scene run;
+  run.commands(strprintf("units si\ndimension 2\nboundary f f p\natom_style mpm\nneighbor %.17g bin\n"
+                         "region box block 0 5 -5 2 -0.5 0.5\ncreate_box 1 box\n"
+                         "fix grid all mpm %.17g %s\nregion beam block 0 4 -0.5 0.5 INF INF\n"
+                         "create_points 1 region beam ppc 2\n"
+                         "fix m all mpm/material density %g neohookean %g %g\n"
+                         "fix clamp all mpm/boundary xlo stick\nfix g all gravity 10 vector 0 -1 0\n"
+                         "thermo 1000000\n",
+                         0.4 * h, h, c.options, RHO, E, NU));
+  run.set_reference();
+  // tip: extrapolated along the axis from the last two pairs of points
+  double lowest = 0.0, t_lowest = 0.0, highest = -1.0e300, t_highest = 0.0;
+  run.each_step([&](double **) {
+    double u[2] = {0.0, 0.0};
+    int count[2] = {0, 0};
+    for (int i = 0; i < run.n(); i++) {
+      const double *X = run.reference(i);
+      if (std::abs(X[1]) > 0.5 * h) continue;
+      const int k = X[0] > 4.0 - 0.5 * h ? 0 : (X[0] > 4.0 - h ? 1 : -1);
+      if (k < 0) continue;
+      u[k] += run.x()[i][1] - X[1];
+      count[k]++;
+    }
+    const double tip = 1.5 * u[0] / count[0] - 0.5 * u[1] / count[1];
+    if (tip < lowest) {
+      lowest = tip;
+      t_lowest = run.time();
+    }
+    if (run.time() > 1.5 && tip > highest) {
+      highest = tip;
+      t_highest = run.time();
+    }
+  }, 5);
+  const double dt = 0.3 * h / speed;
+  run.commands(strprintf("timestep %.17g\nrun %ld\n", dt, std::lround(c.t_end / dt)));
+  const std::string name = strprintf("D2 %s, h = %g: ", c.options, h);
+  measured(name + "lowest tip", lowest);
+  measured(name + "at", t_lowest);
+  if (highest > -1.0e299) {
+    measured(name + "highest tip after", highest);
+    measured(name + "at", t_highest);
+  }
+  EXPECT_NEAR(lowest, -3.3027, 0.02 * 4.0);
+  EXPECT_NEAR(t_lowest, 1.048, 0.02 * 1.048);
+}
+
+INSTANTIATE_TEST_SUITE_P(Options, Beam,
+                         ::testing::Values(BeamCase{"shape quadratic transfer apic", 0.1, 2.8},
+                                           BeamCase{"shape quadratic transfer flip 1.0 scheme musl", 0.1, 2.8},
+                                           BeamCase{"shape cubic transfer apic", 0.1, 2.8},
+                                           BeamCase{"shape linear transfer flip 1.0 scheme musl", 0.1, 2.8},
+                                           BeamCase{"shape quadratic transfer apic", 0.05, 2.8}));
+
+/* ----------------------------------------------------------------------
+   D1, dynamic: a cube of 1 m hung at its top (free to slide), 1000 m/s^2 applied suddenly. Finite
+   elements 40^3: lowest -1.7516 m at t = 0.0884 s of the bottom corner.
+------------------------------------------------------------------------- */
+
+struct BlockCase {
+  const char *options;
+  int cells, ppc;
+};
+
+class Block : public ::testing::TestWithParam<BlockCase> {};
+
+TEST_P(Block, SuddenLoad)
+{
+  const auto &c = GetParam();
+  const double h = 1.0 / c.cells, speed = sqrt((LAMBDA + 2.0 * MU) / RHO);
+  Scene run;
+  // a quarter of the cube, symmetric about x = 0 and y = 0
+  run.commands(strprintf("units si\nboundary f f f\natom_style mpm\nneighbor %.17g bin\n"
+                         "region box block 0 1 0 1 -2.5 0\ncreate_box 1 box\n"
+                         "fix grid all mpm %.17g %s\nregion cube block 0 0.5 0 0.5 -1 0\n"
+                         "create_points 1 region cube ppc %d\n"
+                         "fix m all mpm/material density %g neohookean %g %g\n"
+                         "fix top all mpm/boundary zhi xlo ylo slip\nfix g all gravity 1000 vector 0 0 -1\n"
+                         "fix step all mpm/dt 0.4 every 1\nthermo 1000000\n",
+                         0.4 * h, h, c.options, c.ppc, RHO, E, NU));
+  run.set_reference();
+  double lowest = 0.0, t_lowest = 0.0;
+  run.each_step([&](double **) {
+    // corner: extrapolated from the corner point, half a spacing away, by its F
+    for (int i = 0; i < run.n(); i++) {
+      const double *X = run.reference(i), d = 0.5 * h / c.ppc;
+      if (X[0] < 0.5 - 2.0 * d || X[1] < 0.5 - 2.0 * d || X[2] > -1.0 + 2.0 * d) continue;
+      const double *F = run.points().F[i];
+      const double u = run.x()[i][2] + F[6] * d + F[7] * d - F[8] * d + 1.0;
+      if (u < lowest) {
+        lowest = u;
+        t_lowest = run.time();
+      }
+    }
+  });
+  run.commands("variable t equal time\nfix end all halt 1 v_t > 0.11 error continue\n");
+  (void) speed;
+  run.commands("run 2000\n");
+  const std::string name = strprintf("D1 dynamic %s, %d cells, ppc %d: ", c.options, c.cells, c.ppc);
+  measured(name + "lowest", lowest);
+  measured(name + "at", t_lowest);
+}
+
+INSTANTIATE_TEST_SUITE_P(Options, Block,
+                         ::testing::Values(BlockCase{"shape quadratic transfer apic", 10, 2},
+                         BlockCase{"shape quadratic transfer apic", 10, 3},
+                         BlockCase{"shape quadratic transfer apic", 10, 4},
+                         BlockCase{"shape quadratic transfer flip 1.0 scheme musl", 10, 2},
+                         BlockCase{"shape quadratic transfer flip 1.0 scheme musl", 10, 3},
+                         BlockCase{"shape cubic transfer apic", 10, 2},
+                         BlockCase{"shape cubic transfer apic", 10, 3},
+                         BlockCase{"shape cubic transfer flip 1.0 scheme musl", 10, 2},
+                         BlockCase{"shape linear transfer flip 1.0 scheme musl", 10, 2},
+                         BlockCase{"shape linear transfer flip 1.0 scheme musl", 10, 3},
+                         BlockCase{"shape quadratic transfer apic", 20, 2},
+                         BlockCase{"shape quadratic transfer apic", 20, 3},
+                         BlockCase{"shape cubic transfer apic", 20, 2}));
