@@ -61,7 +61,7 @@ TEST(HangingBar, Exact)
   // closed form by quadrature, another code
   const double g[] = {9.81, 50.0, 100.0, 250.0, 500.0};
   const double u[] = {.00384410, .01998056, .04096202, .11052440, .25206885};
-  for (int k = 0; k < 5; k++) EXPECT_NEAR(HangingBar(g[k]).displacement(1.0) / u[k], 1.0, 1.0e-6);
+  for (int k = 0; k < 5; k++) EXPECT_NEAR(HangingBar(g[k]).displacement(1.0) / u[k], 1.0, 2.0e-6);
 }
 
 struct HangingCase {
@@ -226,7 +226,7 @@ TEST_P(Block, SuddenLoad)
   Scene run;
   // a quarter of the cube, symmetric about x = 0 and y = 0
   run.commands(strprintf("units si\nboundary f f f\natom_style mpm\nneighbor %.17g bin\n"
-                         "region box block 0 1 0 1 -2.5 0\ncreate_box 1 box\n"
+                         "region box block 0 1 0 1 -5 0\ncreate_box 1 box\n"
                          "fix grid all mpm %.17g %s\nregion cube block 0 0.5 0 0.5 -1 0\n"
                          "create_points 1 region cube ppc %d\n"
                          "fix m all mpm/material density %g neohookean %g %g\n"

@@ -4,14 +4,10 @@
 # labels: unit output
 """Files of dump mpm/vtk and dump mpm/grid/vtk, as VTK itself reads them (skipped without python3-vtk9)."""
 
-import json
 import os
-import subprocess
-import sys
 import tempfile
 
-ROOT = os.environ.get("MPM_ROOT", os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-LMP = os.environ.get("MPM_LMP", os.path.join(ROOT, "build", "lmp"))
+import mpm_testing as mt
 
 SCENE = """
 units           lj
@@ -35,30 +31,30 @@ run             20
 """
 
 
-def main():
+def read(reader, path):
+    """data set, its point data, and its time"""
     from vtkmodules.util.numpy_support import vtk_to_numpy
-    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
+    reader.SetFileName(path)
+    reader.Update()
+    data = reader.GetOutput()
+    points = data.GetPointData()
+    arrays = {points.GetArrayName(k): vtk_to_numpy(points.GetArray(k)) for k in range(points.GetNumberOfArrays())}
+    return data, arrays, data.GetFieldData().GetArray("TimeValue").GetTuple1(0)
 
-    def read(reader, name):
-        reader.SetFileName(name)
-        reader.Update()
-        data = reader.GetOutput()
-        arrays = {data.GetPointData().GetArrayName(k): vtk_to_numpy(data.GetPointData().GetArray(k))
-                  for k in range(data.GetPointData().GetNumberOfArrays())}
-        time = data.GetFieldData().GetArray("TimeValue").GetTuple1(0)
-        return data, arrays, time
+
+def test_vtk_reads_the_files():
+    try:
+        from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
+    except ImportError:
+        raise mt.Skip("no python3-vtk9")
 
     with tempfile.TemporaryDirectory() as folder:
-        os.chdir(folder)
-        with open("in.scene", "w") as file:
-            file.write(SCENE)
-        # VTK may come from a place of its own: LAMMPS must not see its libraries
-        env = {key: value for key, value in os.environ.items() if key != "LD_LIBRARY_PATH"}
-        subprocess.run([LMP, "-in", "in.scene", "-log", "none"], check=True, env=env, stdout=subprocess.DEVNULL)
-        with open("s.20.txt") as file:
+        result = mt.lammps(folder, SCENE, environment={"LD_LIBRARY_PATH": ""})    # VTK may have its own
+        assert result.code == 0, result.tail()
+        with open(os.path.join(folder, "s.20.txt")) as file:
             rows = [[float(word) for word in line.split()] for line in file.readlines()[9:]]
 
-        data, arrays, time = read(vtkXMLPolyDataReader(), "s.20.vtp")
+        data, arrays, time = read(vtkXMLPolyDataReader(), os.path.join(folder, "s.20.vtp"))
         assert abs(time - 0.2) < 1e-15
         assert data.GetNumberOfPoints() == data.GetNumberOfVerts() == len(rows) == 216
         assert {key: value.shape[1:] for key, value in arrays.items()} == {
@@ -68,26 +64,10 @@ def main():
             assert data.GetPoint(k) == (x, y, z)
             assert arrays["velocity"][k][0] == vx
 
-        data, arrays, time = read(vtkXMLUnstructuredGridReader(), "s.20.vtu")
+        data, arrays, time = read(vtkXMLUnstructuredGridReader(), os.path.join(folder, "s.20.vtu"))
         assert abs(arrays["mass"].sum() - 27.0) < 1e-12
         assert data.GetNumberOfCells() > 27
         assert all(data.GetCellType(k) == 12 for k in range(data.GetNumberOfCells()))
-        os.chdir(ROOT)
 
 
-if __name__ == "__main__":
-    case = {"name": "vtk_reads_the_files", "status": "RUN"}
-    try:
-        import vtkmodules  # noqa: F401
-        main()
-    except ModuleNotFoundError:
-        case["status"] = "NOTRUN"
-        print("skipped: no python3-vtk9")
-    except Exception as error:
-        case["failures"] = [{"failure": repr(error)}]
-        print("FAILED", repr(error))
-    output = os.environ.get("GTEST_OUTPUT", "")
-    if output.startswith("json:"):
-        with open(output[5:], "w") as file:
-            json.dump({"testsuites": [{"name": "vtk", "testsuite": [case]}]}, file)
-    sys.exit(1 if case.get("failures") else 0)
+mt.main(globals())

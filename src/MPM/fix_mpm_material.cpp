@@ -31,7 +31,7 @@ FixMPMMaterial::FixMPMMaterial(LAMMPS *lmp, int narg, char **arg) :
   static_assert(NWORK <= sizeof(work) / sizeof(double), "room for all kinds of work");
   if (narg < 4) utils::missing_cmd_args(FLERR, "fix mpm/material", error);
   if (!atom->rmass || !atom->vfrac)
-    error->all(FLERR, Error::NOLASTLINE,
+    error->all(FLERR,
                "Fix mpm/material needs material points: use atom_style mpm, alone or in a hybrid");
 
   if (strcmp(arg[3], "file") == 0)
