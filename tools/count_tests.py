@@ -1,6 +1,6 @@
 # This file is part of the MPM package for LAMMPS, distributed under the GNU
 # General Public License, version 2; see the file LICENSE.
-"""Count test cases in a folder of results: ctest.xml and one json file of
+"""Count test cases in folders of results: ctest.xml and one json file of
 GoogleTest per test.  Prints "N passed, N failed"; fails if any failed or none ran."""
 
 import json
@@ -25,29 +25,36 @@ def cases(path):
     return count
 
 
-def main(folder):
+def count(folder):
+    """passed, failed, skipped cases of a folder"""
     total = [0, 0, 0]
     try:
         tests = xml.parse(os.path.join(folder, "ctest.xml")).getroot().iter("testcase")
     except (OSError, xml.ParseError) as error:
         print("no result of ctest:", error)
-        tests, total[1] = [], 1
+        return [0, 1, 0]
     for test in tests:
         ok = test.get("status") == "run"
+        skipped = test.find("skipped") is not None
         try:
-            count = cases(os.path.join(folder, test.get("name") + ".json"))
+            found = cases(os.path.join(folder, test.get("name") + ".json"))
         except (OSError, ValueError, KeyError):
-            count = [1, 0, 0] if ok else [0, 1, 0]
-        if not ok and count[1] == 0:    # e.g. crashed at the end, or on another process
-            count[1] = 1
-        total = [a + b for a, b in zip(total, count)]
+            found = [0, 0, 1] if skipped else [1, 0, 0] if ok else [0, 1, 0]
+        if not ok and not skipped and found[1] == 0:    # e.g. crashed at the end, or on another process
+            found[1] = 1
+        total = [a + b for a, b in zip(total, found)]
     if sum(total) == 0:
-        print("no tests were run")
+        print("no tests were run in", folder)
         total[1] = 1
+    return total
+
+
+def main(folders):
+    total = [sum(column) for column in zip(*map(count, folders))]
     if total[2]:
         print(total[2], "skipped")
     print("%d passed, %d failed" % (total[0], total[1]))
     return 1 if total[1] else 0
 
 
-sys.exit(main(sys.argv[1]))
+sys.exit(main(sys.argv[1:]))

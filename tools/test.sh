@@ -4,6 +4,8 @@
 #
 # Builds as tools/build.sh does and runs all tests:
 #   tools/test.sh [ctest arguments], e.g. -L unit or -R topology
+# Without arguments, and when no LAMMPS is asked for, the tests with label smoke
+# are run with the oldest supported LAMMPS, too.
 # The last line printed is "N passed, N failed"; failed also when nothing ran.
 # Environment: see tools/build.sh
 
@@ -12,13 +14,41 @@ set -u
 # whatever fails before the tests can be counted is one failure
 trap '[ -n "${counted:-}" ] || echo "0 passed, 1 failed"' EXIT
 
+oldest=20250204
+[ $# -gt 0 ] || [ -n "${LAMMPS_SOURCE_DIR:-}${MPM_LAMMPS:-}" ] && oldest=
+
+# run_tests [ctest arguments]: results go to $build/results
+run_tests() {
+  say "testing with LAMMPS $(lammps_version)"
+  rm -rf "$build/results"
+  mkdir -p "$build/results"
+  (cd "$build" && ctest -j "$jobs" --output-on-failure --output-junit results/ctest.xml "$@")
+}
+
+# build the oldest LAMMPS's tests in a tree of their own, and run them
+smoke_tests() (
+  build=$build/lammps-$oldest
+  LAMMPS_SOURCE_DIR=
+  MPM_LAMMPS=$oldest
+  rm -rf "$build/results"
+  setup
+  build_project all smoketests
+  run_tests -L smoke
+)
+
 setup
 build_project all unittests
-say "testing"
-rm -rf "$build/results"
-mkdir -p "$build/results"
-(cd "$build" && ctest -j "$jobs" --output-on-failure --output-junit results/ctest.xml "$@")
-python3 "$repo/tools/count_tests.py" "$build/results"
+run_tests "$@"
+results=("$build/results")
+if [ -n "$oldest" ]; then
+  if (get_sources $oldest); then
+    smoke_tests
+    results+=("$build/lammps-$oldest/results")
+  else
+    say "LAMMPS $oldest cannot be had here: its smoke tests are left out"
+  fi
+fi
+python3 "$repo/tools/count_tests.py" "${results[@]}"
 status=$?
 counted=yes
 exit $status

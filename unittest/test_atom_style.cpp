@@ -6,7 +6,7 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// labels: unit input
+// labels: unit input smoke
 // mpi: 1 2 4
 // timeout: 300
 

@@ -7,7 +7,7 @@
 ------------------------------------------------------------------------- */
 
 
-// labels: input
+// labels: input smoke
 // timeout: 300
 
 // Every mistake in an input gives an error that says what is wrong, and no crash and no endless

@@ -1,7 +1,7 @@
 # This file is part of the MPM package for LAMMPS, distributed under the GNU
 # General Public License, version 2; see the file LICENSE.
 #
-# labels: plugin
+# labels: plugin smoke
 # timeout: 300
 """mpmplugin.so in a stock LAMMPS does what the package does when it is compiled in."""
 

@@ -127,8 +127,10 @@ void FixMPM::process_options(int narg, char **arg)
       need(1);
       for (std::size_t k = 0; k < names.size(); k++)
         if (names[k] == arg[iarg + 1]) return (int) k;
-      error->all(FLERR, iarg + 1, "Unknown fix mpm {} {}: must be one of {}", keyword,
-                 arg[iarg + 1], utils::join(names, " "));
+      std::string known;
+      for (const auto &name : names) known += " " + name;
+      error->all(FLERR, iarg + 1, "Unknown fix mpm {} {}: must be one of{}", keyword,
+                 arg[iarg + 1], known);
       return -1;
     };
     if (keyword == "shape") {

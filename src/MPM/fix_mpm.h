@@ -156,6 +156,7 @@ class FixMPM : public Fix {
   std::vector<double> zero_volume;
   MPM_NS::Batch *batch;
   Report report;
+  double before_actions;                   // ledger: sum of entries before node actions
   double kinetic_points;                   // ledger: at the end of the last step
   std::vector<tagint> bad_points;          // of this step, policies warn and delete
   bigint nbad_total, next_dt_check;

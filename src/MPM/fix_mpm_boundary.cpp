@@ -853,12 +853,16 @@ void FixMPMBoundary::act(double dt, bool count)
     reaction_known = false;
   }
   for (auto &list : nodes) {
-    kinetic = 0.0;
+    kinetic = collided = 0.0;
+    ledger_lanes = list.field->ledger_on;
     decided = !count && list.field->scheme == FixMPM::MUSL;
     for (auto &column : list.columns) act_on_column(list, column);
     for (const auto &orbit : list.orbits) act_on_orbit(list, orbit);
     for (auto &single : list.singles) act_on_single(list, single);
-    if (count && list.field->ledger_on) list.field->ledger.boundary += kinetic * force->mvv2e;
+    if (count && list.field->ledger_on) {
+      list.field->ledger.boundary += kinetic * force->mvv2e;
+      list.field->ledger.transfer += collided * force->mvv2e;
+    }
   }
 }
 
@@ -876,10 +880,11 @@ void FixMPMBoundary::set_velocity(double *record, const double *v, int dim, bool
       const double change = v[d] - record[d];
       impulse[d] += record[3] * change;
       moved += change * v[d];
-      lost += 0.5 * change * change;
+      if (ledger_lanes) lost += 0.5 * change * (v[d] - record[4 + d]);
     }
     work += record[3] * moved;
-    kinetic += record[3] * (moved - lost);
+    kinetic += record[3] * moved;
+    collided -= record[3] * lost;
   }
   for (int d = 0; d < dim; d++) record[d] = v[d];
 }

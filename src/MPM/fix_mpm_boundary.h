@@ -123,6 +123,8 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
 
   bool counting;
   bool decided;      // contact was decided before in this step (MUSL)
+  double collided;       // ledger: kinetic energy lost where nodes cannot keep their velocity
+  bool ledger_lanes;     // records have the old velocity in reals 4..6
   double kinetic;    // gained by the nodes of a field in the present act()
 
   Value parse_value(const char *, int iarg, bool null_allowed);

@@ -16,6 +16,7 @@
 #include "memory.h"
 #include "update.h"
 
+#include <cmath>
 #include <cstring>
 
 using namespace LAMMPS_NS;
@@ -175,6 +176,21 @@ int FixMPMMaterial::setmask()
 void FixMPMMaterial::init()
 {
   assign_mass();
+
+  // a mass that create_atoms left, together with a volume that was set, is easily overlooked
+
+  const double density = material->density();
+  bigint n = 0, all;
+  for (int i = 0; i < atom->nlocal; i++)
+    if ((atom->mask[i] & groupbit) && atom->vfrac[i] > 0.0 &&
+        fabs(atom->rmass[i] - density * atom->vfrac[i]) > 1.0e-3 * density * atom->vfrac[i])
+      n++;
+  MPI_Allreduce(&n, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (all && comm->me == 0)
+    error->warning(FLERR,
+                   "{} material points keep a mass that is not the density of fix mpm/material {} "
+                   "times their volume",
+                   all, id);
 }
 
 /* ----------------------------------------------------------------------

@@ -58,8 +58,8 @@ double FixMPM::point_kinetic_energy() const
 }
 
 /* ----------------------------------------------------------------------
-   work of atom->f in the momentum equation: nodal external forces times the mean of old and new
-   velocity. Called before the solve; the forces alone are mapped once more, with zero volumes.
+   work of atom->f in the momentum equation: nodal external forces times the mean of the old and
+   the final velocity of the node. The forces alone are mapped once more, with zero volumes.
 ------------------------------------------------------------------------- */
 
 double FixMPM::external_work()
@@ -86,11 +86,11 @@ double FixMPM::external_work()
   for (std::size_t b = 0; b < grid->blocks.size(); b++)
     for (int n = 0; n < NODES_PER_BLOCK; n++) {
       if (!(grid->blocks[b].owned >> n & 1)) continue;
-      const double *record = grid->record(b, n);    // p m | f
+      const double *record = grid->record(b, n);    // v m | v old
       const double *f = &external_nodes[(b * NODES_PER_BLOCK + n) * 8 + 4];
       if (record[3] <= 0.0) continue;
       for (int d = 0; d < 3; d++)
-        work += dt * f[d] * (record[d] + 0.5 * dt * record[4 + d]) / record[3];
+        work += dt * f[d] * 0.5 * (record[d] + record[4 + d]);
     }
   return force->mvv2e * work;    // nodal forces are mass * acceleration
 }

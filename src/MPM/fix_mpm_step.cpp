@@ -107,16 +107,12 @@ void FixMPM::stress_first()
 void FixMPM::solve()
 {
   clock = platform::walltime();
-  double kinetic_old = 0.0, external = 0.0;
-  if (ledger_on) external = external_work();
   kernels->solve_nodes(grid->nodes(), grid->nnodes(), kernel.nreal, update->dt);
   if (ledger_on) {
-    kinetic_old = nodal_kinetic_energy(4);
-    const double kinetic = nodal_kinetic_energy(0);
-    ledger.transfer += kinetic_old - kinetic_points;
-    ledger.external += external;
-    ledger.internal += external - (kinetic - kinetic_old);
-    kinetic_points = kinetic;    // the boundaries' share is taken from here in bookkeeping()
+    const double kinetic = nodal_kinetic_energy(4);
+    ledger.transfer += kinetic - kinetic_points;
+    kinetic_points = kinetic;
+    before_actions = ledger.boundary + ledger.contact + ledger.transfer;
   }
   lap(report.t_nodes);
 }
@@ -128,7 +124,13 @@ void FixMPM::solve()
 void FixMPM::grid_to_points()
 {
   clock = platform::walltime();
-  if (ledger_on) kinetic_points = nodal_kinetic_energy(0);
+  if (ledger_on) {
+    const double external = external_work(), kinetic = nodal_kinetic_energy(0);
+    ledger.external += external;
+    ledger.internal += external + ledger.boundary + ledger.contact + ledger.transfer -
+        before_actions - (kinetic - kinetic_points);
+    kinetic_points = kinetic;
+  }
   grid->copy_aliases();
   if (scheme == MUSL) xnew.resize(3 * (std::size_t) atom->nlocal);
 

@@ -1,0 +1,74 @@
+#!/bin/bash
+# This file is part of the MPM package for LAMMPS, distributed under the GNU
+# General Public License, version 2; see the file LICENSE.
+#
+# test_sanitize.sh FOLDER: the unit tests that need no LAMMPS, compiled with the
+# address and undefined behaviour sanitizers, which stop at the first wrong access.
+# Objects stay in FOLDER and are compiled again when a source has changed.
+# CXX, MPM_EIGEN: compiler, folder of Eigen
+
+set -u
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+src=$root/src/MPM
+folder=${1:?usage: test_sanitize.sh FOLDER}
+cxx=${CXX:-c++}
+mkdir -p "$folder" && cd "$folder" || exit 1
+
+flags=(-std=c++17 -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all
+       -fno-omit-frame-pointer -fopenmp-simd -ffp-contract=fast -fno-math-errno -fno-trapping-math
+       -Wall -Wextra -I"$src" -I"$root/unittest" -isystem "${MPM_EIGEN:-/usr/include/eigen3}")
+
+if ! echo 'int main() { return 0; }' | "$cxx" "${flags[@]}" -x c++ - -o probe 2>/dev/null || ! ./probe; then
+  echo "the compiler has no sanitizers here: skipped"
+  exit 77
+fi
+
+# instruction sets that compiler and processor have; avx512 takes too long to compile
+sets=(base)
+definitions=()
+v3=(-march=x86-64-v3)
+if "$cxx" "${v3[@]}" -x c++ -c - -o /dev/null </dev/null 2>/dev/null &&
+   grep -qw avx2 /proc/cpuinfo 2>/dev/null; then
+  sets+=(v3)
+  definitions=(-DMPM_HAVE_V3)
+fi
+
+# compile SOURCE OBJECT FLAGS...: when the object is missing or older than any source or header
+newest=$(ls -t "$src"/mpm_*.h "$src"/mpm_*.cpp "${BASH_SOURCE[0]}" | head -1)
+compile() {
+  local source=$1 object=$2
+  shift 2
+  objects+=("$folder/$object")
+  [ -e "$object" ] && [ "$object" -nt "$newest" ] && [ "$object" -nt "$source" ] && return 0
+  "$cxx" "${flags[@]}" "${definitions[@]}" "$@" -c "$source" -o "$object" ||
+    { rm -f "$object"; echo "cannot compile $source"; exit 1; }
+}
+
+objects=()
+for name in mpm_grid mpm_kernels mpm_kernels_reference mpm_batch mpm_material mpm_material_point; do
+  compile "$src/$name.cpp" "$name.o"
+done
+for isa in "${sets[@]}"; do
+  march=()
+  [ "$isa" = v3 ] && march=("${v3[@]}")
+  compile "$src/mpm_batch_isa.cpp" "batch_$isa.o" -DMPM_ISA="$isa" "${march[@]}"
+  compile "$src/mpm_laws_isa.cpp" "laws_$isa.o" -DMPM_ISA="$isa" "${march[@]}"
+  # the optimizer needs minutes for this one with sanitizers
+  compile "$src/mpm_kernels_isa.cpp" "kernels_$isa.o" -DMPM_ISA="$isa" "${march[@]}" -O0 -g0
+done
+
+library=("${objects[@]}")
+failed=0
+export ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1
+export UBSAN_OPTIONS=print_stacktrace=1
+unset GTEST_OUTPUT
+for name in shape grid kernels materials; do
+  [ -e "$root/unittest/test_$name.cpp" ] || continue
+  objects=()
+  compile "$root/unittest/test_$name.cpp" "test_$name.o" -DMPM_SOURCE_DIR="\"$root\""
+  "$cxx" "${flags[@]}" "test_$name.o" "${library[@]}" -lgmock -lgtest_main -lgtest -lpthread \
+    -o "test_$name" || { echo "cannot link test_$name"; exit 1; }
+  echo "== test_$name"
+  "./test_$name" --gtest_brief=1 --gtest_filter=-*avx512* || failed=1
+done
+exit $failed
