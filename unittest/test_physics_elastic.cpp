@@ -131,11 +131,14 @@ INSTANTIATE_TEST_SUITE_P(
                       HangingCase{"shape quadratic transfer flip 1.0 scheme musl", 100, 20, .005},
                       HangingCase{"shape quadratic transfer pic", 100, 20, .005},
                       HangingCase{"shape linear transfer flip 1.0 scheme musl", 9.81, 20, .005},
-                      HangingCase{"shape linear transfer flip 1.0 scheme musl", 250, 20, .005},
-                      HangingCase{"shape cubic transfer apic", 100, 20, .005},
-                      HangingCase{"shape cubic transfer apic", 250, 20, .005},
-                      HangingCase{"shape quadratic transfer apic", 100, 10, .005},
-                      HangingCase{"shape quadratic transfer apic", 100, 40, .005}));
+                      HangingCase{"shape cubic transfer apic", 250, 20, .005}));
+
+// linear functions: points cross cells, the bar breaks
+
+TEST(HangingLinear, Breaks)
+{
+  EXPECT_GT(hanging_bar({"shape linear transfer flip 1.0 scheme musl", 250, 20, 0.0}), 0.1);
+}
 
 /* ----------------------------------------------------------------------
    D2: cantilever 4 m x 1 m, plane strain, gravity 10 applied suddenly. Finite elements (total
@@ -197,79 +200,54 @@ TEST_P(Beam, Tip)
   EXPECT_NEAR(t_lowest, 1.048, 0.02 * 1.048);
 }
 
-INSTANTIATE_TEST_SUITE_P(Options, Beam,
-                         ::testing::Values(BeamCase{"shape quadratic transfer apic", 0.1, 2, 2.8},
-                                           BeamCase{"shape quadratic transfer apic", 0.1, 3, 2.8},
-                                           BeamCase{"shape quadratic transfer apic", 0.1, 4, 2.8},
-                                           BeamCase{"shape quadratic transfer flip 1.0 scheme musl", 0.1, 3, 2.8},
-                                           BeamCase{"shape quadratic transfer flip 1.0 scheme musl", 0.1, 4, 2.8},
-                                           BeamCase{"shape cubic transfer apic", 0.1, 2, 2.8},
-                                           BeamCase{"shape cubic transfer apic", 0.1, 3, 2.8},
-                                           BeamCase{"shape linear transfer flip 1.0 scheme musl", 0.1, 3, 2.8},
-                                           BeamCase{"shape quadratic transfer apic", 0.2, 3, 2.8},
-                                           BeamCase{"shape quadratic transfer apic", 0.05, 3, 2.8},
-                                           BeamCase{"shape quadratic transfer apic", 0.05, 4, 2.8}));
+// The bar at the clamp stretches to 1.9 locally: 2 points per cell and axis part there (numerical
+// fracture at t = 1), 3 do not.
+
+INSTANTIATE_TEST_SUITE_P(
+    Options, Beam,
+    ::testing::Values(BeamCase{"shape quadratic transfer apic", 0.2, 3, 1.2},
+                      BeamCase{"shape quadratic transfer apic", 0.1, 3, 1.2},
+                      BeamCase{"shape cubic transfer apic", 0.1, 3, 1.2}));
 
 /* ----------------------------------------------------------------------
    D1, dynamic: a cube of 1 m hung at its top (free to slide), 1000 m/s^2 applied suddenly. Finite
-   elements 40^3: lowest -1.7516 m at t = 0.0884 s of the bottom corner.
+   elements 40^3: lowest -1.7516 m at t = 0.0884 s of a bottom corner.
+   Vertical stretch is up to 4.7 at the support. Points part (the cube falls) with 2 and 3 points per
+   cell and axis for quadratic and cubic functions, and hold with 4 to 6.
 ------------------------------------------------------------------------- */
 
-struct BlockCase {
-  const char *options;
-  int cells, ppc;
-};
-
-class Block : public ::testing::TestWithParam<BlockCase> {};
-
-TEST_P(Block, SuddenLoad)
+TEST(Block, SuddenLoad)
 {
-  const auto &c = GetParam();
-  const double h = 1.0 / c.cells, speed = sqrt((LAMBDA + 2.0 * MU) / RHO);
+  const int cells = 10, ppc = 4;
+  const double h = 1.0 / cells;
   Scene run;
   // a quarter of the cube, symmetric about x = 0 and y = 0
   run.commands(strprintf("units si\nboundary f f f\natom_style mpm\nneighbor %.17g bin\n"
-                         "region box block 0 1 0 1 -5 0\ncreate_box 1 box\n"
-                         "fix grid all mpm %.17g %s\nregion cube block 0 0.5 0 0.5 -1 0\n"
+                         "region box block 0 1 0 1 -3 0\ncreate_box 1 box\n"
+                         "fix grid all mpm %.17g\nregion cube block 0 0.5 0 0.5 -1 0\n"
                          "create_points 1 region cube ppc %d\n"
                          "fix m all mpm/material density %g neohookean %g %g\n"
                          "fix top all mpm/boundary zhi xlo ylo slip\nfix g all gravity 1000 vector 0 0 -1\n"
-                         "fix step all mpm/dt 0.4 every 1\nthermo 1000000\n",
-                         0.4 * h, h, c.options, c.ppc, RHO, E, NU));
+                         "fix step all mpm/dt 0.2 every 1\nthermo 1000000\n"
+                         "variable t equal time\nfix end all halt 10 v_t > 0.095 error continue\n",
+                         0.4 * h, h, ppc, RHO, E, NU));
   run.set_reference();
-  double lowest = 0.0, t_lowest = 0.0;
+  double lowest = 0.0, t_lowest = 0.0, stretch = 0.0;
   run.each_step([&](double **) {
-    // corner: extrapolated from the corner point, half a spacing away, by its F
+    const double d = 0.5 * h / ppc;    // the corner is so far from the last point, each way
     for (int i = 0; i < run.n(); i++) {
-      const double *X = run.reference(i), d = 0.5 * h / c.ppc;
+      const double *X = run.reference(i), *F = run.points().F[i];
+      stretch = std::max(stretch, F[8]);
       if (X[0] < 0.5 - 2.0 * d || X[1] < 0.5 - 2.0 * d || X[2] > -1.0 + 2.0 * d) continue;
-      const double *F = run.points().F[i];
       const double u = run.x()[i][2] + F[6] * d + F[7] * d - F[8] * d + 1.0;
       if (u < lowest) {
         lowest = u;
         t_lowest = run.time();
       }
     }
-  });
-  run.commands("variable t equal time\nfix end all halt 1 v_t > 0.11 error continue\n");
-  (void) speed;
-  run.commands("run 2000\n");
-  const std::string name = strprintf("D1 dynamic %s, %d cells, ppc %d: ", c.options, c.cells, c.ppc);
-  measured(name + "lowest", lowest);
-  measured(name + "at", t_lowest);
+  }, 5);
+  run.commands("run 5000\n");
+  measured("D1 dynamic: largest stretch", stretch);
+  EXPECT_NEAR(measured("D1 dynamic: lowest", lowest), -1.7516, 0.02 * 1.7516);
+  EXPECT_NEAR(measured("D1 dynamic: at", t_lowest), 0.0884, 0.02 * 0.0884);
 }
-
-INSTANTIATE_TEST_SUITE_P(Options, Block,
-                         ::testing::Values(BlockCase{"shape quadratic transfer apic", 10, 2},
-                         BlockCase{"shape quadratic transfer apic", 10, 3},
-                         BlockCase{"shape quadratic transfer apic", 10, 4},
-                         BlockCase{"shape quadratic transfer flip 1.0 scheme musl", 10, 2},
-                         BlockCase{"shape quadratic transfer flip 1.0 scheme musl", 10, 3},
-                         BlockCase{"shape cubic transfer apic", 10, 2},
-                         BlockCase{"shape cubic transfer apic", 10, 3},
-                         BlockCase{"shape cubic transfer flip 1.0 scheme musl", 10, 2},
-                         BlockCase{"shape linear transfer flip 1.0 scheme musl", 10, 2},
-                         BlockCase{"shape linear transfer flip 1.0 scheme musl", 10, 3},
-                         BlockCase{"shape quadratic transfer apic", 20, 2},
-                         BlockCase{"shape quadratic transfer apic", 20, 3},
-                         BlockCase{"shape cubic transfer apic", 20, 2}));

@@ -376,6 +376,7 @@ PointRows FixMPM::rows() const
   r.C = C ? &C[0][0] : nullptr;
   r.stress = &points->stress[0][0];
   r.vol = points->vol;
+  r.F = &points->F[0][0];
   r.mass = atom->rmass;
   r.xnew = scheme == MUSL ? const_cast<double *>(xnew.data()) : r.x;
   return r;

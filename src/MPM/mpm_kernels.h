@@ -48,7 +48,7 @@ constexpr int tile_nodes(int dim, int order)
   return tile_stride_x(dim, order) * tile_side(dim, order) + 8;
 }
 
-/** Largest number of nodes in a tile over all kernels (cubic, 3d: 11 * 9 * 9 with padding). */
+/** Largest number of nodes in a tile over all kernels (cubic, 3d: 9 * 9 * 9 and padding). */
 constexpr int MAX_TILE_NODES = 1024;
 
 /** State of points as contiguous rows; pointers are to the first row of the rank. */
@@ -61,6 +61,7 @@ struct PointRows {
   const double *vol;       ///< [n] current volume
   const double *mass;      ///< [n]
   double *xnew;            ///< [n][3] where G2P puts the new position (x itself, unless MUSL)
+  double *F = nullptr;     ///< [n][9] not touched: G2P brings it to the cache for the law, if given
 };
 
 /** What a transfer needs to know about the lattice and the step. */

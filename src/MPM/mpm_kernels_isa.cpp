@@ -768,6 +768,7 @@ template <int DIM, int ORDER, Transfer TRANSFER, int NREAL> struct NodesToPoints
       }
       if (GRADIENT) {
         // the constitutive law comes next
+        if (points.F) prefetch<9, 1>(points.F, ahead, end);
         prefetch<6, 1>(points.stress, ahead, end);
         prefetch<1, 1>(points.vol, ahead, end);
       }
