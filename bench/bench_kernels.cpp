@@ -44,7 +44,7 @@ struct Block {
 /** A square or cube of jittered points, sorted, with its blocks. */
 struct Scene {
   int dim, n, nblocks;
-  std::vector<double> x, v, f, C, stress, vol, mass;
+  std::vector<double> x, v, f, C, F, stress, vol, mass;
   std::vector<Block> blocks;
 
   Scene(int dim, int order, int wanted) : dim(dim)
@@ -86,7 +86,8 @@ struct Scene {
 
     n = points.size();
     nblocks = dim == 3 ? nside * nside * nside : nside * nside;
-    x.resize(3 * n), v.resize(3 * n), f.resize(3 * n), C.resize(9 * n), stress.resize(6 * n);
+    x.resize(3 * n), v.resize(3 * n), f.resize(3 * n), C.resize(9 * n), F.resize(9 * n);
+    stress.resize(6 * n);
     vol.assign(n, std::pow(H / ppc, dim));
     mass.assign(n, 1.0);
     for (int p = 0; p < n; p++)
@@ -117,8 +118,8 @@ struct Scene {
 
   PointRows rows()
   {
-    return {x.data(),      v.data(),   f.data(),    C.data(),
-            stress.data(), vol.data(), mass.data(), x.data()};
+    return {x.data(),   v.data(),    f.data(), C.data(), stress.data(),
+            vol.data(), mass.data(), x.data(), F.data()};
   }
 };
 

@@ -74,6 +74,8 @@ struct Points {
     step.inv_h = 1.0 / step.h;
     step.dt = uniform(0.01, 0.1) * step.h;
     step.flip = uniform(0.0, 1.0);
+    step.force_scale = uniform(0.5, 2.0);
+    step.stress_scale = uniform(0.5, 2.0);
     for (double &o : step.origin) o = uniform(-5.0, 5.0);
 
     fill(v), fill(f), fill(C), fill(stress);
@@ -410,8 +412,8 @@ TEST_P(Kernels, TotalForceIsTheExternalForce)
   const double scale = split ? 1.0 : points.step.dt;
   double force[3] = {0.0, 0.0, 0.0}, size = 0.0;
   for (int p = points.first; p < points.last; p++) {
-    for (int i = 0; i < dim; i++) force[i] += scale * points.f[3 * p + i];
-    size += scale * (1.0 + points.vol[p] * points.step.inv_h);
+    for (int i = 0; i < dim; i++) force[i] += scale * points.step.force_scale * points.f[3 * p + i];
+    size += 2.0 * scale * (1.0 + points.vol[p] * points.step.inv_h);
   }
   for (int i = 0; i < 3; i++)
     EXPECT_NEAR(tile.sum(split ? 4 + i : i), force[i], 1e-13 * size) << "axis " << i;

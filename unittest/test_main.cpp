@@ -22,6 +22,19 @@
 // used by LAMMPS's test fixture
 bool verbose = false;
 
+// an error of LAMMPS on one process only leaves the others waiting for it: end them all
+
+class EndAllProcesses : public ::testing::EmptyTestEventListener {
+  void OnTestPartResult(const ::testing::TestPartResult &result) override
+  {
+    if (!result.failed() || !strstr(result.message(), "C++ exception with description \"ERROR on proc"))
+      return;
+    fprintf(stderr, "%s\n", result.message());
+    fflush(nullptr);
+    MPI_Abort(MPI_COMM_WORLD, 1);
+  }
+};
+
 class ReportFailures : public ::testing::EmptyTestEventListener {
   int rank;
 
@@ -47,6 +60,9 @@ int main(int argc, char **argv)
   for (int i = 1; i < argc; i++)
     if (strcmp(argv[i], "-v") == 0) verbose = true;
 
+  int nprocs;
+  MPI_Comm_size(MPI_COMM_WORLD, &nprocs);
+  if (nprocs > 1) ::testing::UnitTest::GetInstance()->listeners().Append(new EndAllProcesses);
   if (rank > 0) {
     ::testing::GTEST_FLAG(output) = "";
     auto &listeners = ::testing::UnitTest::GetInstance()->listeners();

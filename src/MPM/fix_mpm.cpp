@@ -412,7 +412,6 @@ void FixMPM::load_state(Batch &b, const int *list, int n, const FixMPMMaterial *
     for (int c = 0; c < 6; c++) b.stress[c][p] = points->stress[i][c];
     b.J[p] = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
         F[2] * (F[3] * F[7] - F[4] * F[6]);
-    b.mass[p] = atom->rmass[i];
     b.vol0[p] = atom->vfrac[i];
     for (int k = 0; k < material->nhistory; k++) b.history[k][p] = material->history[i][k];
   }

@@ -44,7 +44,9 @@
    Rotation. The velocity given to a node at x is the chord ((R(dt) - I)(x - o))/dt and not the
    tangent omega x (x - o): positions are updated by x += dt v, so that the tangent would carry
    every point outward by a factor sqrt(1 + (omega dt)^2) per step, and the chord puts it back on
-   its circle exactly, since splines reproduce linear fields.
+   its circle exactly, since splines reproduce linear fields. USF asks for velocities first to learn
+   how the material has got to where it is: then the chord is that of the step that has ended,
+   (I - R^-1)(x - o)/dt, whose matrix is minus the transpose of the other one.
 ------------------------------------------------------------------------- */
 
 #include "fix_mpm_boundary.h"
@@ -762,6 +764,18 @@ void FixMPMBoundary::set_rotation(double angle, const double *u, double dt)
 }
 
 /* ----------------------------------------------------------------------
+   chord of the same rotation before this instant in place of that after it, and back
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::reverse_rotation()
+{
+  double g[3][3];
+  memcpy(g, wall.gradient, sizeof(g));
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) wall.gradient[i][j] = -g[j][i];
+}
+
+/* ----------------------------------------------------------------------
    how the wall moves during this step, and the nodes inside a moving region.
    Regions: nodes are found with the position at the start of the step, to which positions of
    points belong; the motion is that to the end of the step.
@@ -852,6 +866,9 @@ void FixMPMBoundary::act(double dt, bool count)
     dt_last = dt;
     reaction_known = false;
   }
+  const bool before =
+      !count && !wall.uniform && !nodes.empty() && nodes[0].field->scheme == FixMPM::USF;
+  if (before) reverse_rotation();
   for (auto &list : nodes) {
     kinetic = collided = 0.0;
     ledger_lanes = list.field->ledger_on;
@@ -864,6 +881,7 @@ void FixMPMBoundary::act(double dt, bool count)
       list.field->ledger.transfer += collided * force->mvv2e;
     }
   }
+  if (before) reverse_rotation();
 }
 
 /* ----------------------------------------------------------------------

@@ -144,6 +144,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
   bool surface_normal(const double *x, double step, int dim, double *normal) const;
   void update_motion(double dt);
   void set_rotation(double angle, const double *unit, double dt);
+  void reverse_rotation();
   void wall_velocity(const FixMPM &, int64_t node, double *v) const;
   void set_velocity(double *record, const double *v, int dim, bool owned);
   void act_on_column(const FieldNodes &, Column &);

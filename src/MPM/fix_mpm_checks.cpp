@@ -231,7 +231,6 @@ double FixMPM::stable_dt_local(tagint &id_min, double &wave_speed) const
     b.history = reinterpret_cast<double(*)[BATCH]>(history.data());
     for (int p = 0; p < n; p++) {
       for (int k = 0; k < nhistory; k++) b.history[k][p] = material->history[i + p][k];
-      b.mass[p] = atom->rmass[i + p];
       b.vol0[p] = atom->vfrac[i + p];
     }
     material->material->wave_speed(b, c);

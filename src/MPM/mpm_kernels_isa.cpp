@@ -295,8 +295,8 @@ template <int DIM, int ORDER, bool AFFINE, int NREAL, int PARTS> struct PointsTo
   template <int L> struct Prepared {
     static constexpr bool affine = (AFFINE && momentum) || (mls && force);
     static constexpr bool sloped = gradient && (wide || !both);
-    Scatter<DIM, ORDER, wide ? 8 : 4, L, affine, sloped> main;    // all, or all but
-    Scatter<DIM, ORDER, 4, L, mls, !mls> apart;    // the force if it is scattered apart
+    Scatter<DIM, ORDER, wide ? 8 : 4, L, affine, sloped> main;
+    Scatter<DIM, ORDER, 4, L, mls, !mls> apart;    // the force, if it is not in main
     AxisWeights<ORDER, L> weights, gradients;
     int place[L];
   };

@@ -40,7 +40,6 @@ struct Batch {
   alignas(64) double J[BATCH];            ///< det F at the end of the step
   alignas(64) double Jold[BATCH];         ///< det F at the start of the step
   alignas(64) double stress[6][BATCH];    ///< Cauchy stress; in: start, out: end of the step
-  alignas(64) double mass[BATCH];
   alignas(64) double vol0[BATCH];    ///< initial volume
   double (*history)[BATCH];          ///< [nhistory][BATCH]; in: start, out: end of the step
   double work[NWORK];                ///< out: energy of each kind spent in this batch and step

@@ -25,7 +25,6 @@ MaterialPoint::MaterialPoint(const Material &material, int n, double h) :
   for (int i = 0; i < n; i++) {
     for (int k = 0; k < 9; k++) batch.F[k][i] = k % 4 == 0 ? 1.0 : 0.0;
     batch.J[i] = batch.Jold[i] = batch.vol0[i] = 1.0;
-    batch.mass[i] = material.density();
     for (size_t k = 0; k < material.history().size(); k++)
       batch.history[k][i] = material.history()[k].initial;
   }
