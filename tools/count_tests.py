@@ -40,8 +40,8 @@ def count(folder):
             found = cases(os.path.join(folder, test.get("name") + ".json"))
         except (OSError, ValueError, KeyError):
             found = [0, 0, 1] if skipped else [1, 0, 0] if ok else [0, 1, 0]
-        if not ok and not skipped and found[1] == 0:    # e.g. crashed at the end, or on another process
-            found[1] = 1
+        if not ok and not skipped and found[1] == 0:
+            found[1] = 1    # e.g. crashed at the end, or on another process
         total = [a + b for a, b in zip(total, found)]
     if sum(total) == 0:
         print("no tests were run in", folder)

@@ -13,10 +13,11 @@ failed=0
 for source in "$folder"/*.cpp; do
   case $source in *_isa.cpp) continue ;; esac
   grep -q LAMMPS_NS "$source" || continue
-  "$compiler" -std=c++17 -fsyntax-only -Wall -Wextra -Werror=format -Werror=narrowing -I"$folder" "$@" \
-    "$source" || { echo "not with these flags: $source"; failed=1; }
+  "$compiler" -std=c++17 -fsyntax-only -Wall -Wextra -Werror=format -Werror=narrowing \
+    -I"$folder" "$@" "$source" || { echo "not with these flags: $source"; failed=1; }
 done
-if grep -nE 'MPI_INT[^0-9_].*(tag|image)|(tagint|imageint|bigint).*MPI_INT[^0-9_]' "$folder"/*.cpp; then
+types='MPI_INT[^0-9_].*(tag|image)|(tagint|imageint|bigint).*MPI_INT[^0-9_]'
+if grep -nE "$types" "$folder"/*.cpp; then
   echo "IDs, image flags and counts of atoms have other MPI types: MPI_LMP_TAGINT, ..."
   failed=1
 fi

@@ -6,7 +6,6 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-
 // labels: input smoke
 // timeout: 300
 
@@ -177,7 +176,8 @@ static const Mistake keywords[] = {
      "Illegal fix mpm origin command: missing argument"},
     {"OriginText", FIX, "fix grid all mpm 1.0 origin 0 0 middle\n",
      "[Ee]xpected floating.point.*middle"},
-    {"OriginFarAway", FIX, "fix grid all mpm 1.0 origin 1e30 0 0\n", "its origin 1e\\+?30 is too far away"},
+    {"OriginFarAway", FIX, "fix grid all mpm 1.0 origin 1e30 0 0\n",
+     "its origin 1e\\+?30 is too far away"},
     {"PolicyMissing", FIX, "fix grid all mpm 1.0 bad\n",
      "Illegal fix mpm bad command: missing argument"},
     {"PolicyUnknown", FIX, "fix grid all mpm 1.0 bad ignore\n",
@@ -197,8 +197,7 @@ INSTANTIATE_TEST_SUITE_P(Keywords, BadInput, ::testing::ValuesIn(keywords), case
 
 static const Mistake boxes[] = {
     {"NoBox", BOX, "region box block 0 8 0 8 0 8\n", "before simulation box is defined"},
-    {"PeriodicLengthNoMultiple", FIX,
-     "change_box all boundary p f f\nfix grid all mpm 0.3\n",
+    {"PeriodicLengthNoMultiple", FIX, "change_box all boundary p f f\nfix grid all mpm 0.3\n",
      "Length 8 of the box along periodic axis x must be a multiple of the node spacing 0\\.3: "
      "the nearest valid spacing is 0\\.29629629629629"},
     {"ShrinkWrapped", BOUNDARY, "boundary f s f\n",
@@ -287,7 +286,8 @@ static const Mistake steps[] = {
      "Time step 0\\.1 is above the limit .* at step 20: Material point [0-9]+ at .*velocity 16"},
     {"VelocityNotFinite", RUN, "variable big atom 1e308*10\nvelocity all set v_big 0 0\nrun 10\n",
      "216 material points have a position, velocity, .* not finite .* for instance point [0-9]+"},
-    {"ForceNotFinite", RUN, "variable big equal 1e308*10\nfix kick all addforce v_big 0 0\nrun 10\n",
+    {"ForceNotFinite", RUN,
+     "variable big equal 1e308*10\nfix kick all addforce v_big 0 0\nrun 10\n",
      "Material point [0-9]+ at .*velocity .*J = .* at step 1"},
     {"PointOutsideAtStart", RUN, "set atom 7 x 9.5\nrun 10\n",
      "Material point 7 at 9\\.5 .*with velocity .*J = 1 has left the box.* fixed face; enlarge the "
@@ -304,7 +304,8 @@ INSTANTIATE_TEST_SUITE_P(Steps, BadInput, ::testing::ValuesIn(steps), case_name)
 static const Mistake companions[] = {
     {"PointsBeforeFix", FIX, "", "define fix mpm first, or use create_points spacing"},
     {"PointsTypeUnknown", POINTS, "create_points 3 region body ppc 2\n", "Invalid atom type 3"},
-    {"PointsRegionUnknown", POINTS, "create_points 1 region bodi ppc 2\n", "region bodi does not exist"},
+    {"PointsRegionUnknown", POINTS, "create_points 1 region bodi ppc 2\n",
+     "region bodi does not exist"},
     {"PointsPpcZero", POINTS, "create_points 1 region body ppc 0\n", "ppc 0 is out of range"},
     {"PointsOutside", POINTS, "region far block 6 9 2 5 2 5\ncreate_points 1 region far ppc 2\n",
      "reaches beyond the simulation box: [0-9]+ points.*outside ignore"},
@@ -329,7 +330,8 @@ static const Mistake companions[] = {
      "Unknown quantity presure in compute p.*known are:.* pressure"},
     {"ComputeEnergyOfGroup", RUN, "group some type 1\ncompute e some mpm/energy\nrun 10\n",
      "requires group all"},
-    {"ThermoColumnUnknown", RUN, "compute e all mpm/energy\nthermo_style custom step c_e[99]\nrun 10\n",
+    {"ThermoColumnUnknown", RUN,
+     "compute e all mpm/energy\nthermo_style custom step c_e[99]\nrun 10\n",
      "c_e.*99|Thermo compute vector is accessed out-of-range"},
     {"DumpWithoutWildcard", RUN, "dump d all mpm/vtk 5 points.vtp pressure\nrun 10\n",
      "one file per snapshot: put a \\* into the file name"},
@@ -342,12 +344,15 @@ INSTANTIATE_TEST_SUITE_P(Companions, BadInput, ::testing::ValuesIn(companions), 
 
 TEST(MaterialFile, UnitsMustBeThoseOfTheInput)
 {
-  TemporaryFile file("bad_units.mpm", "# DATE: 2026-07-04 UNITS: si CONTRIBUTOR: nobody\n"
-                                      "density 1.0 linear 10.0 0.3\n");
+  TemporaryFile file("bad_units.mpm",
+                     "# DATE: 2026-07-04 UNITS: si CONTRIBUTOR: nobody\n"
+                     "density 1.0 linear 10.0 0.3\n");
   const std::string text =
       error_of(changed(good_scene, MATERIAL, "fix soft all mpm/material file bad_units.mpm\n"));
-  EXPECT_TRUE(contains(text, "bad_units\\.mpm is in si units but the input uses lj units: convert "
-                             "the file or use units si")) << text;
+  EXPECT_TRUE(contains(text,
+                       "bad_units\\.mpm is in si units but the input uses lj units: convert "
+                       "the file or use units si"))
+      << text;
 }
 
 TEST(MaterialFile, MustGiveItsUnits)
@@ -360,8 +365,9 @@ TEST(MaterialFile, MustGiveItsUnits)
 
 TEST(MaterialFile, ErrorsNameTheLine)
 {
-  TemporaryFile file("bad_line.mpm", "# DATE: 2026-07-04 UNITS: lj CONTRIBUTOR: nobody\n"
-                                     "density 1.0\n\nlinear 10.0 0.7\n");
+  TemporaryFile file("bad_line.mpm",
+                     "# DATE: 2026-07-04 UNITS: lj CONTRIBUTOR: nobody\n"
+                     "density 1.0\n\nlinear 10.0 0.7\n");
   const std::string text =
       error_of(changed(good_scene, MATERIAL, "fix soft all mpm/material file bad_line.mpm\n"));
   EXPECT_TRUE(contains(text, "file bad_line\\.mpm line 4: .*NU = 0\\.7")) << text;
@@ -377,8 +383,9 @@ TEST(MaterialFile, EmptyFile)
 
 TEST(DataFile, VolumeMustNotBeNegative)
 {
-  TemporaryFile file("bad.data", "negative volume\n\n1 atoms\n2 atom types\n0 8 xlo xhi\n"
-                                 "0 8 ylo yhi\n0 8 zlo zhi\n\nAtoms # mpm\n\n1 1 1.0 -0.1 1 1 1\n");
+  TemporaryFile file("bad.data",
+                     "negative volume\n\n1 atoms\n2 atom types\n0 8 xlo xhi\n"
+                     "0 8 ylo yhi\n0 8 zlo zhi\n\nAtoms # mpm\n\n1 1 1.0 -0.1 1 1 1\n");
   const std::string text = error_of(changed(good_scene, BOX, "read_data bad.data\n"));
   EXPECT_TRUE(contains(text, "Invalid volume -0\\.1 of atom 1 in Atoms section")) << text;
 }
@@ -394,8 +401,8 @@ class Policy : public ::testing::Test {
   static std::string compressing(const std::string &policy)
   {
     return changed(scene(policy), RUN,
-                    "velocity all ramp vx 5 -5 x 2 5\ntimestep 0.5\nlog policy.log\n"
-                    "run 1\nlog none\n");
+                   "velocity all ramp vx 5 -5 x 2 5\ntimestep 0.5\nlog policy.log\n"
+                   "run 1\nlog none\n");
   }
   ~Policy() override { remove("policy.log"); }
 };
@@ -405,11 +412,15 @@ TEST_F(Policy, WarnGoesOnAndCounts)
   Lammps run;
   run.commands(compressing("warn"));
   const std::string log = file_text("policy.log");
-  EXPECT_TRUE(contains(log, "WARNING: Material point [0-9]+ at .*has a deformation gradient of "
-                            "determinant -.* at step 1: it keeps its previous deformation")) << log;
+  EXPECT_TRUE(contains(log,
+                       "WARNING: Material point [0-9]+ at .*has a deformation gradient of "
+                       "determinant -.* at step 1: it keeps its previous deformation"))
+      << log;
   std::smatch found;
-  ASSERT_TRUE(std::regex_search(log, found, std::regex("([0-9]+) bad point updates so far "
-                                                       "\\(policy warn\\)"))) << log;
+  ASSERT_TRUE(std::regex_search(log, found,
+                                std::regex("([0-9]+) bad point updates so far "
+                                           "\\(policy warn\\)")))
+      << log;
   const auto points = run.gather();
   ASSERT_EQ(points.size(), 216u);
   int kept = 0;
@@ -445,9 +456,11 @@ TEST_F(Policy, DeleteReportsMassAndMomentum)
   EXPECT_EQ(run.gather().size(), 216u - lost);
   EXPECT_EQ(run.lmp->atom->natoms, 216 - lost);
   std::smatch found;
-  ASSERT_TRUE(std::regex_search(log, found, std::regex(
-      "WARNING: Fix mpm grid deleted ([0-9]+) points of mass ([^ ]+) and momentum ([^ ]+) ([^ ]+) "
-      "([^ ]+) at step 1"))) << log;
+  ASSERT_TRUE(std::regex_search(log, found,
+                                std::regex("WARNING: Fix mpm grid deleted ([0-9]+) points of mass "
+                                           "([^ ]+) and momentum ([^ ]+) ([^ ]+) "
+                                           "([^ ]+) at step 1")))
+      << log;
   EXPECT_EQ(std::stoi(found[1]), lost);
   EXPECT_NEAR(std::stod(found[2]), lost * 0.125, 1.0e-9);
   EXPECT_NEAR(std::stod(found[3]), lost_momentum, 1.0e-5);
@@ -457,8 +470,8 @@ TEST_F(Policy, DeleteReportsMassAndMomentum)
 TEST_F(Policy, DeleteLetsPointsLeaveTheBox)
 {
   Lammps run;
-  run.commands(changed(changed(scene("delete"), "velocity all set 0.1", "velocity all set 3"),
-                        RUN, "log policy.log\nrun 150\nlog none\n"));
+  run.commands(changed(changed(scene("delete"), "velocity all set 0.1", "velocity all set 3"), RUN,
+                       "log policy.log\nrun 150\nlog none\n"));
   const std::string log = file_text("policy.log");
   double mass = 0.0, left = 0.0;
   const std::regex line("deleted ([0-9]+) points of mass ([^ ]+) and momentum ([^ ]+) ");
@@ -476,8 +489,8 @@ TEST_F(Policy, DeleteLetsPointsLeaveTheBox)
 
 TEST_F(Policy, WarnDoesNotLetPointsLeaveTheBox)
 {
-  const std::string text = error_of(
-      changed(scene("warn"), RUN, "velocity all set 3 0 0\nrun 200\n"));
+  const std::string text =
+      error_of(changed(scene("warn"), RUN, "velocity all set 3 0 0\nrun 200\n"));
   EXPECT_TRUE(contains(text, "has left the box")) << text;
 }
 

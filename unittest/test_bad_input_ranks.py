@@ -97,7 +97,8 @@ def test_material_missing_for_points_of_one_rank():
 
 
 def test_material_file_that_no_rank_can_read():
-    expect(r"cannot read file nothing\.mpm", "unfix soft\nfix soft all mpm/material file nothing.mpm")
+    expect(r"cannot read file nothing\.mpm",
+           "unfix soft\nfix soft all mpm/material file nothing.mpm")
 
 
 mt.main(globals())

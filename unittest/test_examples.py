@@ -155,8 +155,8 @@ def compare(found, expected, tolerance, what):
                 continue
             scale = max(max(values) - min(values), 1.0e-3 * largest)
             difference = abs(float(rows[-1][k]) - values[-1]) / scale
-            assert difference <= tolerance, "%s: column %s ends with %s, not %s: %.2g of its range" \
-                % (what, name, rows[-1][k], other_rows[-1][k], difference)
+            assert difference <= tolerance, "%s: %s ends with %s, not %s: %.2g of its range" % (
+                what, name, rows[-1][k], other_rows[-1][k], difference)
 
 
 def reference(path):
@@ -177,8 +177,9 @@ def make_test(path):
             check_files(example)
             log = reference(path)
             shortened = os.path.basename(os.path.dirname(path)) in FEWER_STEPS
-            if log and not shortened and points_made(read(log)) == points_made(example.result.output):
-                compare(example.result.output, read(log), REFERENCE_TOLERANCE, log)
+            output = example.result.output
+            if log and not shortened and points_made(read(log)) == points_made(output):
+                compare(output, read(log), REFERENCE_TOLERANCE, log)
             outputs[path] = example.result
 
     def two_processes():

@@ -27,7 +27,8 @@ bool verbose = false;
 class EndAllProcesses : public ::testing::EmptyTestEventListener {
   void OnTestPartResult(const ::testing::TestPartResult &result) override
   {
-    if (!result.failed() || !strstr(result.message(), "C++ exception with description \"ERROR on proc"))
+    if (!result.failed() ||
+        !strstr(result.message(), "C++ exception with description \"ERROR on proc"))
       return;
     fprintf(stderr, "%s\n", result.message());
     fflush(nullptr);

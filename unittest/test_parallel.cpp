@@ -6,7 +6,6 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-
 // labels: mpi physics
 // mpi: 1 2 3 4
 // timeout: 300
@@ -111,7 +110,8 @@ TEST_P(Ranks, ShiftedBrick2d)
 }
 
 INSTANTIATE_TEST_SUITE_P(Options, Ranks,
-                         ::testing::Values("transfer apic", "shape linear transfer flip 0.99 scheme musl",
+                         ::testing::Values("transfer apic",
+                                           "shape linear transfer flip 0.99 scheme musl",
                                            "shape cubic transfer flip 1.0 scheme usf",
                                            "shape quadratic transfer apic scheme musl"));
 
@@ -224,6 +224,49 @@ INSTANTIATE_TEST_SUITE_P(Options, Walls,
                                            "transfer apic scheme musl shape cubic",
                                            "transfer apic scheme usf"));
 
+// two fields with lattices of their own, which know nothing of each other but use the same halo
+
+TEST(TwoFields, DifferentLattices)
+{
+  const std::string scene = R"(
+units lj
+boundary p p f
+atom_style mpm
+neighbor 0.2 bin
+region box block 0 12 0 8 0 8
+create_box 2 box
+fix all_points all mpm 1.0
+region one block 1 5 1 5 1 4
+region two sphere 8.5 5 4 2.4
+create_points 1 region one ppc 2
+create_points 2 region two spacing 0.3
+unfix all_points
+group one type 1
+group two type 2
+fix coarse one mpm 1.0
+fix fine two mpm 0.5 transfer flip 0.99 shape cubic origin 0.1 0.2 0.0
+fix m1 one mpm/material density 1.0 neohookean 10.0 0.3
+fix m2 two mpm/material density 2.0 eos linear 20.0 strength j2 5.0 0.05
+fix floor all mpm/boundary zlo stick field coarse
+fix ground all mpm/boundary zlo slip field fine
+fix step all mpm/dt 0.3
+velocity one set 0.6 0.35 -0.4
+velocity two set -0.5 -0.4 -1.5
+thermo 1000
+)";
+  for (const char *layout : {"", "comm_style tiled\nfix lb all balance 20 1.0 rcb\n"}) {
+    Lammps serial(MPI_COMM_SELF), parallel(MPI_COMM_WORLD);
+    serial.commands(scene + "run 200\n");
+    parallel.commands(scene + layout + "run 200\n");
+    EXPECT_LT(measured("other ranks", difference(serial.gather(), parallel.gather())), 1.0e-12);
+    for (const char *wall : {"floor", "ground"}) {
+      const double reaction = serial.lmp->modify->get_fix_by_id(wall)->compute_vector(2);
+      EXPECT_GT(std::abs(reaction), 1.0e-3) << wall;
+      EXPECT_NEAR(parallel.lmp->modify->get_fix_by_id(wall)->compute_vector(2), reaction, 1.0e-10);
+    }
+  }
+}
+
 // grains of pair style granular that fall on a soft block. LAMMPS sums pair forces in the order of
 // its neighbor lists, and a contact that closes a rounding error earlier is amplified: looser.
 
@@ -261,7 +304,8 @@ TEST(Grains, OnABlock)
   std::string rain;
   for (int k = 0; k < 48; k++)
     rain += strprintf("create_atoms 2 single %.3f %.3f %.3f\n", 1.5 + 2.9 * (k % 4) + 0.2 * sin(k),
-                      1.5 + 2.9 * (k / 4 % 4) + 0.2 * sin(3 * k), 5.4 + 2.4 * (k / 16) + 0.2 * sin(5 * k));
+                      1.5 + 2.9 * (k / 4 % 4) + 0.2 * sin(3 * k),
+                      5.4 + 2.4 * (k / 16) + 0.2 * sin(5 * k));
   const std::string scene = replaced(grains, "MPM_GRAINS\n", rain);
   for (const char *layout : {"", "fix lb all balance 50 1.0 shift xyz 5 1.05\n"}) {
     Lammps serial(MPI_COMM_SELF), parallel(MPI_COMM_WORLD);
@@ -290,20 +334,26 @@ TEST(Translation, LatticeAndBodyTogether)
     std::string t = std::to_string(s);
     return "units lj\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
            "region box block 0 8 0 8 0 8\ncreate_box 1 box\n"
-           "fix grid all mpm 1.0 origin " + t + " " + t + " " + t + "\n"
-           "region one sphere 4 4 4 1.9\ncreate_points 1 region one ppc 2\n"
-           "displace_atoms all move " + t + " " + t + " " + t + "\n"
-           "fix m1 all mpm/material density 1.0 neohookean 10.0 0.3\n"
-           "velocity all set 0.6 0.35 -0.4\nvelocity all ramp vx -0.5 0.5 y 2 6 sum yes\n"
-           "timestep 0.05\nrun 200\n";
+           "fix grid all mpm 1.0 origin " +
+        t + " " + t + " " + t +
+        "\n"
+        "region one sphere 4 4 4 1.9\ncreate_points 1 region one ppc 2\n"
+        "displace_atoms all move " +
+        t + " " + t + " " + t +
+        "\n"
+        "fix m1 all mpm/material density 1.0 neohookean 10.0 0.3\n"
+        "velocity all set 0.6 0.35 -0.4\nvelocity all ramp vx -0.5 0.5 y 2 6 sum yes\n"
+        "timestep 0.05\nrun 200\n";
   };
   Lammps a, b;
   a.commands(scene(0.0));
   // points of create_points follow the lattice, so that both bodies are the same set of points
   std::string shifted = scene(0.375);
   shifted.replace(shifted.find("sphere 4 4 4"), 12, "sphere 4.375 4.375 4.375");
-  shifted.replace(shifted.find("displace_atoms"), shifted.find("\n", shifted.find("displace_atoms")) -
-                  shifted.find("displace_atoms"), "displace_atoms all move 0 0 0");
+  shifted.replace(shifted.find("displace_atoms"),
+                  shifted.find("\n", shifted.find("displace_atoms")) -
+                      shifted.find("displace_atoms"),
+                  "displace_atoms all move 0 0 0");
   shifted.replace(shifted.find("y 2 6"), 5, "y 2.375 6.375");
   b.commands(shifted);
   auto sa = a.gather(), sb = b.gather();

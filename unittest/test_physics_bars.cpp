@@ -381,8 +381,8 @@ INSTANTIATE_TEST_SUITE_P(Options, Bars,
    A4: free-free bar of length 1 in its first mode while it flies through the grid with velocity V.
    The error must not depend on V: linear shape functions fail, smooth ones must not.
    u = 0.01 cos(pi X) cos(10 pi t) + V t for a law with P = E (F - 1). The laws here are not linear
-   at strains of 3 %; the truth is a fine total-Lagrangian solution for P = E/2 (F - 1/F), neohookean
-   with Poisson's ratio 0, which the same initial state is handed to.
+   at strains of 3 %; the truth is a fine total-Lagrangian solution for P = E/2 (F - 1/F), which is
+   neohookean with Poisson's ratio 0, from the same initial state.
 ------------------------------------------------------------------------- */
 
 static constexpr double GALILEAN_A = 0.01, GALILEAN_E = 100.0;

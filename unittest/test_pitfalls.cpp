@@ -6,7 +6,6 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-
 // labels: physics smoke
 // mpi: 1 2 4
 // timeout: 300
@@ -35,11 +34,14 @@ static std::string soft_body(const std::string &options, const std::string &step
 {
   return "units lj\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
          "region box block 0 8 0 8 0 8\ncreate_box 1 box\n"
-         "fix grid all mpm 1.0 " + options + "\n"
-         "region body block 2 5 2.5 5 3 5\ncreate_points 1 region body ppc 2\n"
-         "fix soft all mpm/material density 1.0 neohookean 10.0 0.3\n"
-         "velocity all set 0.5 0.2 0.1\nvelocity all ramp vy -0.8 0.8 x 2 5 sum yes\n"
-         "timestep 0.05\nthermo 1000\n" + steps;
+         "fix grid all mpm 1.0 " +
+      options +
+      "\n"
+      "region body block 2 5 2.5 5 3 5\ncreate_points 1 region body ppc 2\n"
+      "fix soft all mpm/material density 1.0 neohookean 10.0 0.3\n"
+      "velocity all set 0.5 0.2 0.1\nvelocity all ramp vy -0.8 0.8 x 2 5 sum yes\n"
+      "timestep 0.05\nthermo 1000\n" +
+      steps;
 }
 
 static double momentum(const std::vector<MPM_TEST::Run::State> &points, int axis)
@@ -250,7 +252,8 @@ TEST(Pitfall, AllStateMigrates)
       "strength j2 5.0 0.2 hardening linear 1.0\n"
       "velocity all set 1.5 0 0\nvelocity all ramp vy -1.0 1.0 x 1 4 sum yes\n"
       "velocity all ramp vz 0.5 -0.5 y 1 4 sum yes\n"
-      "compute h all mpm/atom eplastic\ncompute sum all reduce sum c_h\ncompute max all reduce max c_h\n"
+      "compute h all mpm/atom eplastic\ncompute sum all reduce sum c_h\ncompute max all reduce max "
+      "c_h\n"
       "timestep 0.05\nthermo 1000\nthermo_style custom step c_sum c_max\nrun 160\n";
   Lammps run, serial(MPI_COMM_SELF);
   run.commands(scene);
@@ -270,12 +273,13 @@ TEST(Pitfall, EmptyCellsCostNoMemory)
   for (int k = 0; k < 2; k++) {
     const int size = k ? 512 : 8;
     Lammps run(MPI_COMM_SELF);
-    run.commands(fmt::format(
-        "units lj\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
-        "region box block 0 {0} 0 {0} 0 {0}\ncreate_box 1 box\nfix grid all mpm 1.0\n"
-        "region body block 2 6 2 6 2 6\ncreate_points 1 region body ppc 2\n"
-        "fix soft all mpm/material density 1.0 neohookean 10.0 0.3\n"
-        "velocity all ramp vy -0.1 0.1 x 2 6\ntimestep 0.05\nthermo 1000\nrun 20\n", size));
+    run.commands(
+        fmt::format("units lj\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
+                    "region box block 0 {0} 0 {0} 0 {0}\ncreate_box 1 box\nfix grid all mpm 1.0\n"
+                    "region body block 2 6 2 6 2 6\ncreate_points 1 region body ppc 2\n"
+                    "fix soft all mpm/material density 1.0 neohookean 10.0 0.3\n"
+                    "velocity all ramp vy -0.1 0.1 x 2 6\ntimestep 0.05\nthermo 1000\nrun 20\n",
+                    size));
     auto *grid = run.lmp->modify->get_fix_by_id("grid");
     bytes[k] = grid->memory_usage();
     blocks[k] = grid->compute_vector(1);
@@ -293,13 +297,17 @@ TEST(Pitfall, SharedNodesTravelOncePerSum)
   const struct {
     const char *options;
     double reals;    // of a node that travel in one step
-  } cases[] = {{"transfer apic", 4}, {"transfer flip 0.99", 8}, {"transfer apic scheme musl", 8},
+  } cases[] = {{"transfer apic", 4},
+               {"transfer flip 0.99", 8},
+               {"transfer apic scheme musl", 8},
                {"transfer apic scheme usf", 8}};
   for (const auto &c : cases) {
     Lammps run;
     run.commands("units lj\nboundary f f f\natom_style mpm\nneighbor 0.3 bin\n"
                  "region box block 0 12 0 12 0 12\ncreate_box 1 box\n"
-                 "fix grid all mpm 1.0 " + std::string(c.options) + "\n"
+                 "fix grid all mpm 1.0 " +
+                 std::string(c.options) +
+                 "\n"
                  "region body block 2 10 2 10 2 10\ncreate_points 1 region body ppc 2\n"
                  "fix soft all mpm/material density 1.0 neohookean 10.0 0.3\n"
                  "timestep 0.05\nthermo 1000\nrun 10\n");
@@ -307,16 +315,15 @@ TEST(Pitfall, SharedNodesTravelOncePerSum)
 
     // blocks that several ranks have, counted independently of the code under test
     std::vector<uint64_t> mine, all;
-    for (const auto &block : fix->grid->blocks)
-      mine.push_back(MPM_NS::Grid::block_key(block));
+    for (const auto &block : fix->grid->blocks) mine.push_back(MPM_NS::Grid::block_key(block));
     const int nprocs = run.lmp->comm->nprocs;
     int n = mine.size();
     std::vector<int> counts(nprocs), displs(nprocs, 0);
     MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, run.lmp->world);
     for (int p = 1; p < nprocs; p++) displs[p] = displs[p - 1] + counts[p - 1];
     all.resize(displs.back() + counts.back());
-    MPI_Allgatherv(mine.data(), n, MPI_DOUBLE, all.data(), counts.data(), displs.data(), MPI_UINT64_T,
-                   run.lmp->world);
+    MPI_Allgatherv(mine.data(), n, MPI_DOUBLE, all.data(), counts.data(), displs.data(),
+                   MPI_UINT64_T, run.lmp->world);
     std::map<uint64_t, double> sharers;
     for (uint64_t key : all) sharers[key] += 1.0;
     double messages = 0.0;

@@ -6,7 +6,6 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-
 // labels: restart smoke
 // mpi: 1 2 3
 // timeout: 300
@@ -38,11 +37,10 @@ static std::string fixes(const std::string &options)
       "thermo 1000\n";
 }
 
-static const std::string points =
-    "region one sphere 2.6 3.0 3.2 1.9\n"
-    "region two block 4.8 7.3 2.0 5.0 2.5 5.5\n"
-    "create_points 1 region one ppc 2\n"
-    "create_points 2 region two ppc 2\n";
+static const std::string points = "region one sphere 2.6 3.0 3.2 1.9\n"
+                                  "region two block 4.8 7.3 2.0 5.0 2.5 5.5\n"
+                                  "create_points 1 region one ppc 2\n"
+                                  "create_points 2 region two ppc 2\n";
 
 static const std::string start = "velocity one set 0.6 0.35 -0.4\n"
                                  "velocity two set -0.5 0.1 -0.3\n";
@@ -80,8 +78,10 @@ TEST_P(Restart, ContinuesBitwise)
   EXPECT_EQ(again.lmp->update->ntimestep, 200);
   EXPECT_EQ(0, memcmp(expected.data(), found.data(), found.size() * sizeof(MPM_TEST::Run::State)));
   EXPECT_LT(difference(expected, found), 1.0e-300);
-  EXPECT_EQ(time, again.lmp->update->atime +
-            (again.lmp->update->ntimestep - again.lmp->update->atimestep) * again.lmp->update->dt);
+  EXPECT_EQ(time,
+            again.lmp->update->atime +
+                (again.lmp->update->ntimestep - again.lmp->update->atimestep) *
+                    again.lmp->update->dt);
 
   // one rank reads the file of many
 
@@ -98,7 +98,8 @@ TEST_P(Restart, ContinuesBitwise)
 }
 
 INSTANTIATE_TEST_SUITE_P(Options, Restart,
-                         ::testing::Values("transfer apic", "shape linear transfer flip 0.99 scheme musl",
+                         ::testing::Values("transfer apic",
+                                           "shape linear transfer flip 0.99 scheme musl",
                                            "shape cubic transfer apic scheme musl",
                                            "transfer pic scheme usf"));
 
@@ -142,7 +143,8 @@ TEST_P(RestartCommand, ContinuesBitwiseAndOnOtherRanks)
 }
 
 INSTANTIATE_TEST_SUITE_P(Options, RestartCommand,
-                         ::testing::Values("transfer apic", "shape cubic transfer flip 1.0 scheme usf"));
+                         ::testing::Values("transfer apic",
+                                           "shape cubic transfer flip 1.0 scheme usf"));
 
 // the state is more than positions and velocities: without a part of it the run goes on differently
 
@@ -156,7 +158,8 @@ TEST(RestartState, AffineMatrixAndHistoryAreInTheFile)
   whole.commands(head + "fix grid all mpm 1.0\n" + points + fixes("") +
                  "velocity one set 0.6 0.35 -0.4\nvelocity two set -1.5 0.1 -1.0\n"
                  "compute h two mpm/atom eplastic\ncompute sum two reduce sum c_h\n"
-                 "thermo_style custom step c_sum\nrun 100\nwrite_restart " + file + "\nrun 50\n");
+                 "thermo_style custom step c_sum\nrun 100\nwrite_restart " +
+                 file + "\nrun 50\n");
   const auto expected = whole.gather();
   const double eplastic = whole.evaluate("c_sum");
   EXPECT_GT(eplastic, 0.01);
@@ -165,7 +168,8 @@ TEST(RestartState, AffineMatrixAndHistoryAreInTheFile)
   for (const bool with_state : {true, false}) {
     Lammps again;
     std::string next = fixes("");
-    if (!with_state) next = replaced(replaced(next, "fix m2", "fix other"), "fix grid", "fix lattice");
+    if (!with_state)
+      next = replaced(replaced(next, "fix m2", "fix other"), "fix grid", "fix lattice");
     again.commands("read_restart " + file + "\nneighbor 0.3 bin\n" + next +
                    "compute h two mpm/atom eplastic\ncompute sum two reduce sum c_h\n"
                    "thermo_style custom step c_sum\nrun 50\n");
@@ -193,7 +197,8 @@ TEST(RestartState, WorkIsInTheFile)
   Lammps whole;
   whole.commands(head + "fix grid all mpm 1.0\n" + points + fixes("") + watch +
                  "velocity one set 0.6 0.35 -0.4\nvelocity two set -1.5 0.1 -1.0\nrun 100\n"
-                 "write_restart " + file + "\nrun 50\n");
+                 "write_restart " +
+                 file + "\nrun 50\n");
   const double plastic = whole.evaluate("c_e[3]");
   EXPECT_GT(plastic, 1.0e-3);
   Lammps again;
@@ -202,52 +207,4 @@ TEST(RestartState, WorkIsInTheFile)
   EXPECT_EQ(again.time(), whole.time());
   MPI_Barrier(MPI_COMM_WORLD);
   if (me == 0) remove(file.c_str());
-}
-
-// grains on a block: contacts have a history, too. LAMMPS sums pair forces in the order of its
-// neighbor lists, which a restart need not keep.
-
-TEST(RestartGrains, GoOn)
-{
-  int nprocs, me;
-  MPI_Comm_rank(MPI_COMM_WORLD, &me);
-  MPI_Comm_size(MPI_COMM_WORLD, &nprocs);
-  const std::string file = "mpm_grains." + std::to_string(nprocs) + ".bin";
-  std::string rain;
-  for (int k = 0; k < 9; k++)
-    rain += strprintf("create_atoms 2 single %d.1 %d.2 4.9\n", 1 + 3 * (k % 3), 1 + 3 * (k / 3));
-  const std::string box = "units lj\nboundary p p f\natom_style hybrid sphere mpm\n"
-                          "neighbor 0.3 multi\ncomm_modify vel yes mode multi\n"
-                          "region box block 0 9 0 9 0 8\ncreate_box 2 box\n";
-  const std::string body = "fix grid all mpm 1.0\nregion body block INF INF INF INF 0 4\n"
-                           "create_points 1 region body ppc 2 diameter 0.5\n" + rain +
-      "set type 2 diameter 1.8 density 2.0\ngroup grains type 2\n"
-      "velocity grains set 0.5 0.2 -1.0\n";
-  const std::string rest = "group body type 1\ngroup grains type 2\n"
-                           "fix soft body mpm/material density 1.0 neohookean 20.0 0.3\n"
-                           "fix floor all mpm/boundary zlo stick\nfix move grains nve/sphere\n"
-                           "pair_style granular\n"
-                           "pair_coeff * * hertz/material 50.0 0.5 0.3 tangential mindlin NULL 0.5 0.4\n"
-                           "neigh_modify exclude type 1 1\ntimestep 0.02\nthermo 1000\n";
-  Lammps whole;
-  whole.commands(box + body + rest + "run 60\nwrite_restart " + file + "\nrun 60\n");
-  const auto expected = whole.gather();
-  Lammps again;
-  again.commands("read_restart " + file + "\nneighbor 0.3 multi\ncomm_modify vel yes mode multi\n"
-                 "fix grid all mpm 1.0\n" + rest + "run 60\n");
-  EXPECT_LT(measured("difference", difference(expected, again.gather())), 1.0e-9);
-  double slowest = 0.0;
-  for (const auto &p : expected)
-    if (p.type == 2.0) slowest = std::max(slowest, p.v[2]);
-  EXPECT_GT(slowest, -0.9);    // contacts have begun
-  MPI_Barrier(MPI_COMM_WORLD);
-  if (me == 0) remove(file.c_str());
-}
-
-TEST(RestartGrainsX, GoOn)
-{
-  Lammps again;
-  FILE *f=fopen("ca.in","r"); char line[1000]; std::string t; while(fgets(line,1000,f)) t+=line; fclose(f);
-  again.commands(t); again.commands("compute kg grains ke\nrun 0\n"); printf("kg %.15g\n",again.evaluate("c_kg"));
-  Lammps b; b.lmp->input->file("ca.in");  b.commands("compute kg grains ke\nrun 0\n"); printf("kg %.15g\n",b.evaluate("c_kg"));
 }

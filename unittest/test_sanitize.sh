@@ -18,7 +18,8 @@ flags=(-std=c++17 -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all
        -fno-omit-frame-pointer -fopenmp-simd -ffp-contract=fast -fno-math-errno -fno-trapping-math
        -Wall -Wextra -I"$src" -I"$root/unittest" -isystem "${MPM_EIGEN:-/usr/include/eigen3}")
 
-if ! echo 'int main() { return 0; }' | "$cxx" "${flags[@]}" -x c++ - -o probe 2>/dev/null || ! ./probe; then
+echo 'int main() { return 0; }' >probe.cpp
+if ! "$cxx" "${flags[@]}" probe.cpp -o probe 2>/dev/null || ! ./probe; then
   echo "the compiler has no sanitizers here: skipped"
   exit 77
 fi
