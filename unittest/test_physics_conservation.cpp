@@ -415,10 +415,10 @@ TEST_P(TwoDisks, Collision)
 // FLIP MUSL: E/E0 0.985 to 1.015, KE/KE0 0.86 to 0.94; others: losses as tabulated, 10 %. The table
 // (hat MUSL 2.407 + .187, bs2 MUSL 2.269 + .328, FLIP 0.99 E/E0 .856, PIC .043, APIC .295) is for a
 // law in the rate of the Cauchy stress. With that law, tried in a copy, this package gives
-// 2.408 + .187, 2.271 + .337, .857, .043, .279. Law `linear' is in the rate of the Kirchhoff stress,
-// which is stiffer at the compression of 15 % of this impact, and gives E/E0 .999, .999, .834, .055,
-// .299, and for quadratic MUSL KE/KE0 = .855. Linear USL is missing: see is_sound(), points pass
-// exactly through nodes here.
+// 2.408 + .187, 2.271 + .337, .857, .043, .279. Law `linear' is in the rate of the Kirchhoff
+// stress, stiffer at the compression of 15 % of this impact, and gives E/E0 .999, .999, .834,
+// .055, .299, and for quadratic MUSL KE/KE0 = .855. Linear USL is missing: see is_sound(), points
+// pass exactly through nodes here.
 
 INSTANTIATE_TEST_SUITE_P(
     Options, TwoDisks,

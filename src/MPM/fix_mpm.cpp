@@ -232,6 +232,13 @@ void FixMPM::init()
 
   ledger_on = !modify->get_compute_by_style("^mpm/energy$").empty();
 
+  // a node that a point barely touches has next to no mass but the full gradient of the function
+
+  if (shape == LINEAR && (scheme == USL || transfer == APIC) && comm->me == 0)
+    error->warning(FLERR, "Fix mpm {}: linear shape functions with scheme usl or transfer apic "
+                   "amplify round-off at nodes of tiny mass: use transfer flip with scheme musl, "
+                   "or quadratic functions", id);
+
   // all fields step together, driven by the first one
 
   auto all = modify->get_fix_by_style("^mpm$");
