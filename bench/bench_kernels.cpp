@@ -6,7 +6,7 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Time per point of the transfer kernels: cold blocks in the order of a simulation, points sorted by
+// Time per point of the transfer kernels: blocks in the order of a simulation, points sorted by
 // block and cell, 8 per cell in 3d and 4 in 2d. Counter ns/point; names are
 //
 //   what/instruction set/dimension/shape/transfer/points

@@ -10,9 +10,9 @@
 
 // Identities of the B-splines, at random positions.
 //
-// Tolerance: a weight is computed with a few roundings of numbers that are at most 1, and sums have
-// at most four terms with distances up to 2, so errors are a small multiple of 2.2e-16; 1e-14 leaves
-// a factor of about ten and is far below any mistake in a coefficient.
+// Tolerance: a weight is computed with a few roundings of numbers that are at most 1, and sums
+// have at most four terms with distances up to 2, so errors are a small multiple of 2.2e-16; 1e-14
+// leaves a factor of about ten and is far below any mistake in a coefficient.
 
 #include "mpm_shape.h"
 
@@ -26,7 +26,7 @@ using namespace MPM_NS;
 static constexpr double TOLERANCE = 1.0e-14;
 static constexpr int POSITIONS = 10000;
 
-/** Calls check(position, base node, fraction) at random positions and at the ends of an interval. */
+/** Calls check(position, base node, fraction) at random positions and at ends of an interval. */
 template <class Spline, class Check> static void at_positions(Check check)
 {
   std::mt19937 random(4711);

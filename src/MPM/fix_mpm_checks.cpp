@@ -226,13 +226,11 @@ double FixMPM::stable_dt_local(tagint &id_min, double &wave_speed) const
            material_of(last) == material)
       last++;
     const int n = last - i, nhistory = material->nhistory;
-    batch_kernels->load(b, n, 0.0, no_gradient, points->F[i], points->stress[i]);
+    batch_kernels->load(b, n, 0.0, no_gradient, points->F[i], points->stress[i], atom->vfrac + i);
     history.resize((std::size_t) std::max(1, nhistory) * BATCH);
     b.history = reinterpret_cast<double(*)[BATCH]>(history.data());
-    for (int p = 0; p < n; p++) {
+    for (int p = 0; p < n; p++)
       for (int k = 0; k < nhistory; k++) b.history[k][p] = material->history[i + p][k];
-      b.vol0[p] = atom->vfrac[i + p];
-    }
     material->material->wave_speed(b, c);
 
     for (int p = 0; p < n; p++) {

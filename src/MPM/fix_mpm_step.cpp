@@ -21,6 +21,7 @@
 #include "update.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 using namespace LAMMPS_NS;
@@ -243,8 +244,8 @@ void FixMPM::material_update(const Run &run, int first, int n, const double *L)
 {
   Batch &b = *batch;
   FixMPMMaterial *material = run.material;
-  batch_kernels->load(b, n, update->dt, L, &points->F[first][0], &points->stress[first][0]);
-  memcpy(b.vol0, atom->vfrac + first, n * sizeof(double));
+  batch_kernels->load(b, n, update->dt, L, &points->F[first][0], &points->stress[first][0],
+                      atom->vfrac + first);
   b.history = reinterpret_cast<double(*)[BATCH]>(history_batch.data());
   for (double &w : b.work) w = 0.0;
 
@@ -287,6 +288,12 @@ void FixMPM::bookkeeping()
     kinetic_points = kinetic;
   }
 
+  if (drifted)    // rare, and the kernels must never see such a position
+    for (const auto &run : runs)
+      for (int i = run.first; i < run.last; i++) {
+        const double *x = atom->x[i];
+        if (!std::isfinite(x[0] + x[1] + x[2])) point_is_bad(i, "has lost its position");
+      }
   if (watch_drift) {
     int all;
     MPI_Allreduce(&drifted, &all, 1, MPI_INT, MPI_BOR, world);

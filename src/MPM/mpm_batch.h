@@ -16,8 +16,9 @@ namespace MPM_NS {
 /** Moves points between LAMMPS rows and a batch; compiled per instruction set. */
 struct BatchKernels {
   /** Kinematics of n points: A = dt L, F <- (I + A) F, J, Jold; stress of the start of the step.
-   *  L: [n][9] column-major velocity gradient, F: [n][9] row-major, stress: [n][6]. */
-  void (*load)(Batch &, int n, double dt, const double *L, const double *F, const double *stress);
+   *  L: [n][9] column-major velocity gradient, F: [n][9] row-major, stress: [n][6], vol0: [n]. */
+  void (*load)(Batch &, int n, double dt, const double *L, const double *F, const double *stress,
+               const double *vol0);
 
   /** Write F, stress and vol = vol0 J. Returns the number of points whose J is not positive
    *  (NaN included); nothing is written for these. */

@@ -57,10 +57,15 @@ template <int WIDTH> MPM_INLINE void columns_to_rows(const Column *column, doubl
 /** row-major position of entry k of a column-major 3x3 matrix */
 constexpr int transposed[9] = {0, 3, 6, 1, 4, 7, 2, 5, 8};
 
-void load(Batch &batch, int n, double dt, const double *L, const double *F, const double *stress)
+void load(Batch &batch, int n, double dt, const double *L, const double *F, const double *stress,
+          const double *vol0)
 {
   batch.n = n;
   batch.dt = dt;
+  // one line of eight points now and then is too little for the prefetcher of the CPU
+  for (int k = 0; k < BATCH; k += 8) __builtin_prefetch(vol0 + BATCH + k);
+  for (int k = 0; k < n; k++) batch.vol0[k] = vol0[k];
+
   alignas(64) double A[9][BATCH];    // column-major
 
   int p = 0;
