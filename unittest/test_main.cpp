@@ -65,9 +65,9 @@ int main(int argc, char **argv)
   MPI_Comm_size(MPI_COMM_WORLD, &nprocs);
   if (nprocs > 1) ::testing::UnitTest::GetInstance()->listeners().Append(new EndAllProcesses);
   if (rank > 0) {
-    ::testing::GTEST_FLAG(output) = "";
     auto &listeners = ::testing::UnitTest::GetInstance()->listeners();
     delete listeners.Release(listeners.default_result_printer());
+    delete listeners.Release(listeners.default_xml_generator());    // one process writes the file
     listeners.Append(new ReportFailures(rank));
   }
 
