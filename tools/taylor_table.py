@@ -54,7 +54,7 @@ def main():
     folder = sys.argv[1] if len(sys.argv) > 1 else "."
     with open(os.path.join(folder, "log.lammps")) as f:
         log = f.read()
-    h = float(re.search(r"^fix +grid all mpm ([0-9.eE+-]+)", log, re.M).group(1))
+    h = 2 * float(re.search(r"^ *spacing = ([0-9.eE+-]+)", log, re.M).group(1))    # ppc 2
     found = measure(read_dump(os.path.join(folder, "final.dump")), h)
 
     print("Taylor bar, OFHC copper, 190 m/s, 80 microseconds, node spacing %.3g mm" % (1e3 * h))
