@@ -279,6 +279,10 @@ void FixMPM::init()
   for (auto *other : modify->get_fix_list())
     if (other != this && other->time_integrate) time_integrate = 0;
 
+  // points need no ghosts; a cutoff that is next to nothing spares LAMMPS's warning about none
+
+  if (!force->pair && comm->cutghostuser == 0.0) comm->cutghostuser = 1.0e-8 * lattice.h;
+
   // points are kept in order of blocks and cells here
 
   atom->sortfreq = 0;
