@@ -343,3 +343,62 @@ TEST(Pitfall, RareNeighborListsLoseNoPoint)
   rare.commands(soft_body("", "neigh_modify every 10 delay 10 check no\nrun 100\n"));
   EXPECT_LT(difference(usual.gather(), rare.gather()), 1.0e-12);
 }
+
+// the adaptive time step went to zero when a body had turned by 90 degrees
+
+class TurnedBody : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(TurnedBody, HasTheTimeStepOfTheBodyAtRest)
+{
+  Lammps run;
+  run.commands("units lj\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
+               "region box block 0 8 0 8 0 8\ncreate_box 1 box\nfix grid all mpm 1.0\n"
+               "region body block 2 5 2.5 5 3 5\ncreate_points 1 region body ppc 2\n"
+               "fix m all mpm/material density 1.0 " + GetParam() + "\ntimestep 0.001\nrun 0\n");
+  auto *field = dynamic_cast<FixMPM *>(run.lmp->modify->get_fix_by_id("grid"));
+  auto *points = MPMPoints::get(run.lmp->atom);
+  tagint tag;
+  double c;
+  const double at_rest = field->stable_dt_local(tag, c);
+  if (run.lmp->atom->nlocal) EXPECT_LT(at_rest, 1.0);
+
+  for (double degrees : {30.0, 90.0, 180.0, 270.0}) {
+    const double a = degrees * M_PI / 180.0;
+    const double R[9] = {cos(a), -sin(a), 0.0, sin(a), cos(a), 0.0, 0.0, 0.0, 1.0};
+    for (int i = 0; i < run.lmp->atom->nlocal; i++)
+      for (int k = 0; k < 9; k++) points->F[i][k] = R[k];
+    EXPECT_NEAR(field->stable_dt_local(tag, c), at_rest, 1.0e-13 * at_rest) << degrees;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Pitfall, TurnedBody,
+                         ::testing::Values("neohookean 10.0 0.3", "linear 10.0 0.3",
+                                           "eos shock 4.0 1.5 2.0 strength j2 4.0 0.1"));
+
+// MUSL with an affine transfer re-used the old affine matrix in the second mapping: the energy of
+// a sheared block doubled in 240 steps. Here that defect shows from a CFL number of 0.5 on.
+
+class MuslApic : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(MuslApic, ShearedBlockGainsNoEnergy)
+{
+  Lammps run;
+  run.commands("units lj\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
+               "region box block 0 16 0 16 0 16\ncreate_box 1 box\n"
+               "fix grid all mpm 1.0 scheme musl transfer apic shape " + GetParam() + "\n"
+               "region body block 5 11 5 11 5 11\ncreate_points 1 region body ppc 2\n"
+               "fix m all mpm/material density 1.0 neohookean 100.0 0.3\n"
+               "velocity all ramp vx -1.0 1.0 y 5 11\ntimestep 0.06\n"
+               "compute e all mpm/energy\nthermo_style custom step c_e\nthermo 1000\nrun 0\n");
+  auto *energy = run.lmp->modify->get_compute_by_id("e");
+  const double start = energy->compute_scalar();
+  double most = start;
+  for (int k = 0; k < 12; k++) {
+    run.commands("run 40 post no\n");
+    most = std::max(most, energy->compute_scalar());
+  }
+  EXPECT_GT(start, 0.0);
+  EXPECT_LT(most, 1.002 * start);
+}
+
+INSTANTIATE_TEST_SUITE_P(Pitfall, MuslApic, ::testing::Values("quadratic", "cubic"));
