@@ -262,15 +262,17 @@ void FixMPM::init()
   if (materials.empty())
     error->all(FLERR, "Fix mpm found no material: define one with fix mpm/material");
 
-  kernels = MPMKernels::select(isa.empty() ? nullptr : isa.c_str());
-  batch_kernels = BatchKernels::select(isa.empty() ? nullptr : isa.c_str());
-  if (!kernels || !batch_kernels)
-    error->all(FLERR, "Fix mpm kernels {} cannot run on this CPU or were not compiled", isa);
+  // the same instruction set for transfers, batches and laws
 
+  const char *wanted = isa.empty() ? nullptr : isa.c_str();
+  kernels = MPMKernels::select(wanted);
+  batch_kernels = BatchKernels::select(wanted);
+  bool can_run = kernels && batch_kernels;
   for (auto *material : materials)
-    if (!material->material->configure(isa.empty() ? nullptr : isa.c_str(),
-                                       force->mvv2e * force->nktv2p))
-      error->all(FLERR, "Fix mpm kernels {} cannot run on this CPU or were not compiled", isa);
+    can_run = can_run && material->material->configure(wanted, force->mvv2e * force->nktv2p);
+  if (!can_run)
+    error->all(FLERR, "Fix mpm kernels {} cannot run on this CPU or were not compiled",
+               wanted ? wanted : "named by the environment variable MPM_ISA");
 
   // LAMMPS warns when the groups of two integrators overlap, but atoms of this group that are not
   // material points may well be moved by others; check_integrators() looks at the points
