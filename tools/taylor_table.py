@@ -7,7 +7,7 @@ usage: taylor_table.py DIR   with final.dump and log.lammps of examples/taylor-b
 
 A point stands for a piece of material of initial size h/2; its deformed half width F e h/4 is
 added at the surface. The width at 0.2 L0 is that of the circle of equal area: volume of the
-points in a slice of thickness h over the thickness.
+points per height there.
 Experiment: Johnson and Holmquist 1988, as used by Sulsky, Zhou and Schreyer 1995.
 """
 import os
@@ -44,8 +44,10 @@ def measure(point, h):
     rim = [outer[sector == k].max() for k in range(48)]
     diameter = 2 * np.mean(rim)
 
-    inside = np.abs(z - 0.2 * L0) < h / 2
-    area = point["c_F[1]"][inside].sum() / h
+    # smooth window of width 4 h: layers of points must not count more or less by where they are
+    distance = np.minimum(np.abs(z - 0.2 * L0) / (2 * h), 1.0)
+    window = 0.5 * (1 + np.cos(np.pi * distance)) / (2 * h)
+    area = (point["c_F[1]"] * window).sum()
     width = np.sqrt(4 * area / np.pi)
     return {"length": 1e3 * length, "diameter": 1e3 * diameter, "width": 1e3 * width}
 
