@@ -34,7 +34,7 @@ struct Sample {
     {"j2_power", "density 8940 eos linear 1e11 strength j2 44e9 65e6 hardening power 356e6 0.37"},
     {"johnson_cook",
      "density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 0.168 "
-     "0.0089 1 1.1 1540 20 460 0.9"},
+     "0.0089 1 1.1 1540 20 thermal adiabatic 460 20 0.9"},
     {"johnson_cook_cold",
      "density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 "
      "0.168 0.0089 1"},

@@ -27,7 +27,7 @@ using Lammps = MPM_TEST::Run;    // tests have a function Run
 namespace {
 
 const std::string STEEL = "density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 "
-                          "0.168 0.0089 1 1.1 1540 20 460 0.9";
+                          "0.168 0.0089 1 1.1 1540 20 thermal adiabatic 460 20 0.9";
 
 /** Two blocks of points, types 1 and 2, and no material yet. */
 const std::string scene = R"(

@@ -9,13 +9,14 @@
 
 // Constitutive laws, point by point and without a grid, against closed forms.
 
+#include "material_testing.h"
 #include "mpm_kernels.h"
 #include "mpm_law.h"
-#include "mpm_material_point.h"
-#include "mpm_math.h"
+#include "mpm_law_spectral.h"
 
 #include "gtest/gtest.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -25,122 +26,9 @@
 #include <vector>
 
 using namespace MPM_NS;
+using namespace material_testing;
 
 namespace {
-
-using Matrix = std::array<double, 9>;
-constexpr Matrix IDENTITY = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-
-std::unique_ptr<Material> make(const std::string &text, const char *isa = nullptr)
-{
-  std::istringstream in(text);
-  std::vector<std::string> words;
-  for (std::string word; in >> word;) words.push_back(word);
-  return Material::create(words, isa);
-}
-
-Matrix operator*(const Matrix &a, const Matrix &b)
-{
-  Matrix c{};
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++)
-      for (int k = 0; k < 3; k++) c[3 * i + j] += a[3 * i + k] * b[3 * k + j];
-  return c;
-}
-
-Matrix transpose(const Matrix &a)
-{
-  return {a[0], a[3], a[6], a[1], a[4], a[7], a[2], a[5], a[8]};
-}
-
-double det(const Matrix &F)
-{
-  return F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
-      F[2] * (F[3] * F[7] - F[4] * F[6]);
-}
-
-Matrix inverse(const Matrix &M)
-{
-  Matrix c = {M[4] * M[8] - M[5] * M[7], M[2] * M[7] - M[1] * M[8], M[1] * M[5] - M[2] * M[4],
-              M[5] * M[6] - M[3] * M[8], M[0] * M[8] - M[2] * M[6], M[2] * M[3] - M[0] * M[5],
-              M[3] * M[7] - M[4] * M[6], M[1] * M[6] - M[0] * M[7], M[0] * M[4] - M[1] * M[3]};
-  for (double &x : c) x /= det(M);
-  return c;
-}
-
-/** Rotation by an angle about a unit axis. */
-Matrix rotation(const std::array<double, 3> &n, double angle)
-{
-  const double c = std::cos(angle), s = std::sin(angle);
-  const Matrix skew = {0, -n[2], n[1], n[2], 0, -n[0], -n[1], n[0], 0};
-  Matrix R{};
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++)
-      R[3 * i + j] = (i == j ? c : 0.0) + (1.0 - c) * n[i] * n[j] + s * skew[3 * i + j];
-  return R;
-}
-
-Matrix stress_of(const MaterialPoint &p)
-{
-  return {p.stress(0), p.stress(3), p.stress(4), p.stress(3), p.stress(1),
-          p.stress(5), p.stress(4), p.stress(5), p.stress(2)};
-}
-
-double size(const Matrix &a)
-{
-  double sum = 0.0;
-  for (const double x : a) sum += x * x;
-  return std::sqrt(sum);
-}
-
-double distance(const Matrix &a, const Matrix &b)
-{
-  Matrix d;
-  for (int k = 0; k < 9; k++) d[k] = a[k] - b[k];
-  return size(d);
-}
-
-/** Moves a point to a new deformation gradient in one step. */
-void move_to(MaterialPoint &p, const Matrix &F, double dt = 1.0)
-{
-  Matrix old;
-  for (int k = 0; k < 9; k++) old[k] = p.batch.F[k][0];
-  Matrix A = F * inverse(old);
-  for (int k = 0; k < 9; k++) A[k] -= IDENTITY[k];
-  p.move(A.data(), dt);
-}
-
-/** Steps with a velocity gradient that depends on time. */
-void follow(MaterialPoint &p, const std::function<Matrix(double)> &L, double time, int n)
-{
-  const double dt = time / n;
-  for (int i = 0; i < n; i++) p.step(L((i + 0.5) * dt).data(), dt);
-}
-
-constexpr double MPa = 1e6, GPa = 1e9;
-
-/** One material of each kind, with names for messages. */
-struct Sample {
-  const char *name, *text;
-};
-const Sample samples[] = {
-    {"linear", "density 1000 linear 1e6 0.3"},
-    {"neohookean", "density 1000 neohookean 1e6 0.3"},
-    {"elastic", "density 2700 eos linear 70e9 strength elastic 26e9"},
-    {"shock+elastic", "density 2703 eos shock 5350 1.34 2 strength elastic 26e9"},
-    {"j2", "density 8930 eos shock 3940 1.49 1.96 strength j2 43e9 157e6 hardening linear 425e6"},
-    {"j2 power", "density 8940 eos linear 1e11 strength j2 44e9 65e6 hardening power 356e6 0.37"},
-    {"johnson/cook",
-     "density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 0.168 "
-     "0.0089 1 1.1 1540 20 460 0.9"},
-    {"johnson/cook cold",
-     "density 8940 eos shock 3933 1.5 2 strength johnson/cook 44e9 65e6 356e6 "
-     "0.37 0.013 1e-3"},
-    {"tait", "density 1000 eos tait 2.2e9 7 cutoff -1e5 viscosity newtonian 1e-3"},
-    {"fluid", "density 1000 eos linear 1e6 viscosity newtonian 1 viscosity artificial 1.5 0.06"},
-    {"viscous rubber",
-     "density 1000 neohookean 1e6 0.3 viscosity newtonian 10 viscosity artificial 2 1"},
-};
 
 /* ---------------------------------------------------------------------- */
 
@@ -166,6 +54,48 @@ TEST(Math, FunctionsMatchLibrary)
   EXPECT_EQ(law::exp(0.0), 1.0);
   EXPECT_EQ(law::pow(0.0, 0.01), 0.0);
   EXPECT_NEAR(law::minus1_minus_log(7.0), 6.0 - std::log(7.0), 1e-14);
+}
+
+// eigenvalues that are far apart, close together, and equal
+TEST(Math, SpectralDecomposition)
+{
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> exponent(-17.0, 2.0);
+  for (int i = 0; i < 20000; i++) {
+    const double value[3] = {1.0, 1.0 + (i % 5 ? std::pow(10.0, exponent(random)) : 0.0),
+                             1.0 + (i % 7 ? std::pow(10.0, exponent(random)) : 0.0)};
+    double axis[3], length = 0.0;
+    for (double &x : axis) {
+      x = normal(random);
+      length += x * x;
+    }
+    for (double &x : axis) x /= std::sqrt(length);
+    const Matrix R = rotation({axis[0], axis[1], axis[2]}, 3.0 * normal(random));
+    const Matrix D = {value[0], 0, 0, 0, value[1], 0, 0, 0, value[2]}, a = R * D * transpose(R);
+    const law::Sym s = {a[0], a[4], a[8], a[1], a[2], a[5]};
+    const law::Spectral found = law::spectral(s);
+    const law::Sym back = law::recompose(found, found.value);
+    const double scale = 4e-15 * std::max(value[1], value[2]);
+    EXPECT_NEAR(back.xx, s.xx, scale);
+    EXPECT_NEAR(back.yy, s.yy, scale);
+    EXPECT_NEAR(back.zz, s.zz, scale);
+    EXPECT_NEAR(back.xy, s.xy, scale);
+    EXPECT_NEAR(back.xz, s.xz, scale);
+    EXPECT_NEAR(back.yz, s.yz, scale);
+    for (int p = 0; p < 3; p++)
+      for (int q = 0; q < 3; q++) {
+        double dot = 0.0;
+        for (int k = 0; k < 3; k++) dot += found.vector[k][p] * found.vector[k][q];
+        EXPECT_NEAR(dot, p == q ? 1.0 : 0.0, 4e-15);
+      }
+    double given[3] = {value[0], value[1], value[2]},
+           got[3] = {found.value[0], found.value[1], found.value[2]};
+    std::sort(given, given + 3);
+    std::sort(got, got + 3);
+    for (int k = 0; k < 3; k++) EXPECT_NEAR(got[k], given[k], scale);
+    if (testing::Test::HasFailure()) FAIL() << "case " << i;
+  }
 }
 
 /* ---------------------------------------------------------------------- kinematics, objectivity */
@@ -527,7 +457,9 @@ std::string text_of(const JohnsonCook &jc, double G, double cp, double chi, bool
   text.precision(17);
   text << "density 7830 eos linear 172e9 strength johnson/cook " << G << " " << jc.A << " " << jc.B
        << " " << jc.N << " " << jc.C << " " << jc.rate0;
-  if (thermal) text << " " << jc.M << " " << jc.melt << " " << jc.ref << " " << cp << " " << chi;
+  if (thermal)
+    text << " " << jc.M << " " << jc.melt << " " << jc.ref << " thermal adiabatic " << cp << " "
+         << jc.ref << " " << chi;
   return text.str();
 }
 
@@ -609,7 +541,7 @@ TEST(JohnsonCookLaw, AdiabaticTensionAndShear)
   std::ostringstream text;
   text.precision(17);
   text << "density 7830 eos linear " << K << " strength johnson/cook " << G
-       << " 806e6 614e6 0.168 0.0089 1 1.1 1540 20 460 0.9";
+       << " 806e6 614e6 0.168 0.0089 1 1.1 1540 20 thermal adiabatic 460 20 0.9";
   const auto material = make(text.str());
 
   // length L0 (1 + 100 t): strain rate 100/(1 + 100 t); t, plastic strain, stress, temperature
@@ -657,7 +589,7 @@ TEST(JohnsonCookLaw, MeltedMaterialHasNoStrength)
 {
   const auto material =
       make("density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 "
-           "0.168 0.0089 1 1.1 1540 20 460 0.9");
+           "0.168 0.0089 1 1.1 1540 20 thermal adiabatic 460 20 0.9");
   MaterialPoint p(*material);
   p.batch.history[1][0] = 1600;
   const Matrix L = {-0.01, 0.02, 0, 0, 0, 0, 0, 0, 0};
@@ -1101,7 +1033,8 @@ TEST(Definition, DescribesItself)
     for (const auto &h : material->history()) found += h.name == name;
     EXPECT_EQ(found, 1) << name;
   }
-  const auto jc = make("density 1 eos linear 1 strength johnson/cook 1 1 1 1 0 1 1 1000 293 1 0.9");
+  const auto jc = make("density 1 eos linear 1 strength johnson/cook 1 1 1 1 0 1 1 1000 293 "
+                       "thermal adiabatic 1 293 0.9");
   EXPECT_EQ(jc->history()[1].name, "temperature");
   EXPECT_EQ(jc->history()[1].initial, 293);
 }
@@ -1165,10 +1098,11 @@ TEST(Definition, BadInputIsRefused)
       {"density 1000 eos linear 1 strength j2 1 1 hardening linear 1 hardening power 1 1", 12,
        "'hardening' is given twice"},
       {"density 1000 eos linear 1 strength johnson/cook 1 1 1 1 0 1 1 1000", 15, "TREF is missing"},
-      {"density 1000 eos linear 1 strength johnson/cook 1 1 1 1 0 1 1 200 300 1 1", 6,
+      {"density 1000 eos linear 1 strength johnson/cook 1 1 1 1 0 1 1 200 300", 6,
        "TMELT must be above TREF"},
-      {"density 1000 eos linear 1 strength johnson/cook 1 1 1 1 0 1 1 900 300 1 1.5", 17,
-       "0 <= VALUE <= 1"},
+      {"density 1000 eos linear 1 strength johnson/cook 1 1 1 1 0 1 1 900 300 thermal adiabatic 1 "
+       "300 1.5",
+       20, "0 <= VALUE <= 1"},
       {"density 1000 eos linear 1 viscosity newtonian 1 viscosity newtonian 1", 9, "given twice"},
       {"density 1000 eos linear 1 viscosity newtonian -1", 7, "MU = -1"},
       {"density 1000 eos linear 1 strength elastic 1 viscosity newtonian 1", 9,

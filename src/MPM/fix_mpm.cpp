@@ -269,7 +269,7 @@ void FixMPM::init()
   batch_kernels = BatchKernels::select(wanted);
   bool can_run = kernels && batch_kernels;
   for (auto *material : materials)
-    can_run = can_run && material->material->configure(wanted, force->mvv2e * force->nktv2p);
+    can_run = can_run && material->material->configure(wanted, force->mvv2e * force->nktv2p, force->nktv2p);
   if (!can_run)
     error->all(FLERR, "Fix mpm kernels {} cannot run on this CPU or were not compiled",
                wanted ? wanted : "named by the environment variable MPM_ISA");

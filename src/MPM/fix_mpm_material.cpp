@@ -242,8 +242,7 @@ void FixMPMMaterial::copy_arrays(int i, int j, int /*delflag*/)
 
 void FixMPMMaterial::set_arrays(int i)
 {
-  const auto &variables = material->history();
-  for (int k = 0; k < nhistory; k++) history[i][k] = variables[k].initial;
+  material->initialize(atom->x[i], history[i]);
 }
 
 /* ---------------------------------------------------------------------- */

@@ -247,7 +247,7 @@ void FixMPM::material_update(const Run &run, int first, int n, const double *L)
   batch_kernels->load(b, n, update->dt, L, &points->F[first][0], &points->stress[first][0],
                       atom->vfrac + first);
   b.history = reinterpret_cast<double(*)[BATCH]>(history_batch.data());
-  for (double &w : b.work) w = 0.0;
+  b.time = update->atime + (update->ntimestep - update->atimestep) * update->dt;
 
   const int nhistory = material->nhistory;
   if (nhistory) {

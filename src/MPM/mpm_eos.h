@@ -26,8 +26,8 @@ namespace {
    *  Eos has, with the volume ratio J = density_0 / density: pressure(J), bulk(J) = -J^2 dp/dJ (the
    *  reference density times the square of the sound speed), stored(J) = -integral of p dJ from 1.
    */
-  template <class Eos> struct Barotropic {
-    static void update(const LawParameters &p, Batch &b, History, double *)
+  template <class Eos> struct Barotropic : LawDefaults {
+    static void update(const LawParameters &p, Batch &b, History)
     {
       const Eos eos(p);
       MPM_SIMD

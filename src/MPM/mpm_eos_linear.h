@@ -19,12 +19,8 @@ namespace {
   struct EosLinear : Barotropic<EosLinear> {
     static constexpr const char *name = "linear";
     static constexpr const char *meaning = "pressure linear in density";
-    static constexpr StressShare share = NO_SHARE;
     static constexpr Parameter parameters[] = {
         {"", "K", "pressure", POSITIVE, REQUIRED, "bulk modulus"}};
-    static constexpr const HistoryDeclaration *history = nullptr;
-    static constexpr int nhistory(const double *) { return 0; }
-    static constexpr const char *check(const double *) { return nullptr; }
 
     double K;
 

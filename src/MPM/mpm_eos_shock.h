@@ -26,19 +26,19 @@ namespace {
    *  in E. One step from the reference state to J lands exactly on the Hugoniot. 1 - S eta is kept
    *  above 0.05, which is a pressure of hundreds of K.
    */
-  struct EosShock {
+  struct EosShock : LawDefaults {
     static constexpr const char *name = "shock";
     static constexpr const char *meaning = "Mie-Gruneisen with linear shock Hugoniot";
-    static constexpr StressShare share = NO_SHARE;
     enum { C0, S, GAMMA0 };
     static constexpr Parameter parameters[] = {
         {"", "C0", "velocity", POSITIVE, REQUIRED, "bulk sound speed at reference density"},
         {"", "S", "1", NOT_NEGATIVE, REQUIRED, "slope dU_s/du_p of the Hugoniot"},
         {"", "GAMMA0", "1", NOT_NEGATIVE, REQUIRED, "Gruneisen parameter at reference density"}};
-    static constexpr HistoryDeclaration history[] = {{"energy", -1}, {"heat", -1}};
-    enum { ENERGY, HEATED };    ///< internal energy, and the part of it that was dissipated
-    static constexpr int nhistory(const double *) { return 2; }
-    static constexpr const char *check(const double *) { return nullptr; }
+    static constexpr HistoryDeclaration history[] = {
+        {"energy", ZERO, "pressure", "internal energy per reference volume"},
+        {"heat", ZERO, "pressure", "part of it that was dissipated"}};
+    enum { ENERGY, HEATED };
+    static constexpr int nhistory(const LawParameters &) { return 2; }
 
     double K, s, gamma;
 
@@ -56,7 +56,7 @@ namespace {
       return K * eta * (J < 1.0 ? (1.0 - 0.5 * gamma * eta) / (g * g) : 1.0 / J);
     }
 
-    static void update(const LawParameters &p, Batch &b, History history, double *heat)
+    static void update(const LawParameters &p, Batch &b, History history)
     {
       const EosShock eos(p);
       MPM_SIMD
@@ -65,10 +65,11 @@ namespace {
         const double Eold = history[ENERGY][i];
         const double cold = eos.cold_pressure(J);
         const double pold = eos.cold_pressure(Jold) + eos.gamma * Eold;
-        const double E = (Eold - 0.5 * (pold + cold) * dJ + heat[i]) / (1.0 + 0.5 * eos.gamma * dJ);
+        const double E =
+            (Eold - 0.5 * (pold + cold) * dJ + b.heat[i]) / (1.0 + 0.5 * eos.gamma * dJ);
         subtract_pressure(b, i, cold + eos.gamma * E);
         history[ENERGY][i] = E;
-        history[HEATED][i] += heat[i];
+        history[HEATED][i] += b.heat[i];
       }
     }
 

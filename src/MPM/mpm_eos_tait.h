@@ -20,7 +20,6 @@ namespace {
   struct EosTait : Barotropic<EosTait> {
     static constexpr const char *name = "tait";
     static constexpr const char *meaning = "Tait-Murnaghan liquid";
-    static constexpr StressShare share = NO_SHARE;
     enum { BULK, GAMMA, CUTOFF };
     static constexpr Parameter parameters[] = {
         {"", "K", "pressure", POSITIVE, REQUIRED, "bulk modulus at reference density"},
@@ -31,11 +30,9 @@ namespace {
          {-UNBOUNDED, 0.0, true},
          -UNBOUNDED,
          "lowest pressure, not positive; the liquid cavitates there"}};
-    static constexpr const HistoryDeclaration *history = nullptr;
-    static constexpr int nhistory(const double *) { return 0; }
-    static constexpr const char *check(const double *v)
+    static constexpr const char *check(const LawParameters &p)
     {
-      return v[CUTOFF] != -UNBOUNDED && v[CUTOFF] <= -v[BULK] / v[GAMMA]
+      return p.value[CUTOFF] != -UNBOUNDED && p.value[CUTOFF] <= -p.value[BULK] / p.value[GAMMA]
           ? "PMIN is never reached: pressure stays above -K/GAMMA; leave cutoff out or raise PMIN"
           : nullptr;
     }

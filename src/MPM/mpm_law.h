@@ -19,6 +19,7 @@
 
 #include "mpm_material.h"
 
+#include <cstddef>
 #include <limits>
 
 #define MPM_INLINE inline __attribute__((always_inline))
@@ -65,14 +66,40 @@ struct Parameter {
 /** Declaration of one history variable. */
 struct HistoryDeclaration {
   const char *name;    ///< as used by compute mpm/atom
-  int initial;         ///< index of the parameter that is its initial value, -1: zero
+  int initial;         ///< index of the parameter that is its initial value, or one of those below
+  const char *unit;    ///< kind of unit, as for parameters
+  const char *meaning;
 };
+enum { ZERO = -1, ONE = -2 };    ///< initial values of history variables
 
 /** Shares of the stress: which ones a law needs from the last step, which ones a viscosity adds. */
 enum StressShare { NO_SHARE = 0, PRESSURE = 1, DEVIATOR = 2, WHOLE_STRESS = 3 };
 
-/** The places that a law can take in a material. */
-enum Part { CLOSED, EOS, STRENGTH, VISCOSITY, NPARTS };
+/** The places that a law can take in a material, in the order of their history variables. */
+enum Part { CLOSED, EOS, STRENGTH, VISCOSITY, DAMAGE, THERMAL, NPARTS };
+
+/** Values of the parameters, as the kernels get them, and what other parts of the material tell. */
+struct LawParameters {
+  static constexpr int MAX = 32, MAX_TERMS = 32, TERM = 3;
+  double density;       ///< reference density, in pressure / velocity^2
+  double value[MAX];    ///< in the order of the declaration
+  int nterms;
+  double term[MAX_TERMS][TERM];    ///< values of the repeated option, in the order they are given
+
+  double heat_density;    ///< reference density, in pressure / (unit of CP * temperature)
+  double chi;             ///< share of the plastic work that becomes heat
+  double warm;        ///< temperature rise per heat of unit reference volume; 0: no thermal part
+  int temperature;    ///< row of the temperature in batch.history, -1: no thermal part
+};
+
+/** Rows of history variables of a batch, beginning with the first one of a law. */
+using History = double (*)[BATCH];
+
+/** Temperature of the points of a batch, or null when the material has no thermal part. */
+inline __attribute__((always_inline)) double *temperature(const LawParameters &p, const Batch &b)
+{
+  return p.temperature < 0 ? nullptr : b.history[p.temperature];
+}
 
 /** Declaration of a law. */
 struct LawInfo {
@@ -81,60 +108,77 @@ struct LawInfo {
   StressShare share;    ///< of the old stress that it builds on; of a viscosity: what it adds
   const Parameter *parameters;
   int nparameters;
+  const char *term;    ///< option that may be given several times, or null
+  const Parameter *term_parameters;
+  int nterm_parameters;
   const HistoryDeclaration *history;
-  /** History variables that a law with these parameters has. */
-  int (*nhistory)(const double *);
+  const HistoryDeclaration *term_history;    ///< one set for each term, names followed by 1, 2, ...
+  int nterm_history;
+  /** History variables that a law with these parameters has, those of the terms not counted. */
+  int (*nhistory)(const LawParameters &);
   /** What is wrong with parameters that are each in their range; null when all is well. */
-  const char *(*check)(const double *);
+  const char *(*check)(const LawParameters &);
+  /** Does a law with these parameters need the temperature, and so a thermal part? */
+  bool (*needs_temperature)(const LawParameters &);
+  /** Of a thermal part: share of the plastic work that becomes heat, and temperature rise per heat
+   *  of unit reference volume. */
+  double (*heat_share)(const LawParameters &);
+  double (*warming)(const LawParameters &);
+  /** History of a new point at x (its values one after the other; in: initial values). Null: keep
+   *  the initial values. */
+  void (*initialize)(const LawParameters &, const double *x, double *history);
 };
 
 /** Declarations of all laws for one place, in the order of the lists in mpm_law_list.h. */
 const std::vector<LawInfo> &declared_laws(Part);
 
-/** Values of the parameters as the kernels get them. */
-struct LawParameters {
-  static constexpr int MAX = 16;
-  double density;       ///< reference density
-  double value[MAX];    ///< in the order of the declaration
-};
-
-/** Rows of history variables of a batch. */
-using History = double (*)[BATCH];
-
-/** Kernels of a closed law, an equation of state, or a strength.
+/** Kernels of a law; those that do not concern it are null.
  *
  *  Energies are per reference volume. The parts of a composed material work on one batch in turn:
- *  a strength makes the deviator of the stress, viscosities add to it, and the equation of state
- *  subtracts the pressure. A closed law makes the whole stress.
+ *  a damage takes back its reduction of the stress (prepare), a strength makes the deviator of the
+ *  stress, viscosities add to it, the equation of state subtracts the pressure, a damage reduces the
+ *  stress, a thermal part turns batch.heat into temperature. A closed law makes the whole stress.
  */
 struct LawKernels {
-  /** Stress and history at the end of the step; work of the batch is added to batch.work.
-   *  heat[n]: energy dissipated in this step; a strength adds to it, an eos takes it. */
-  void (*update)(const LawParameters &, Batch &, History, double *heat);
+  /** Stress and history at the end of the step; work of the batch is added to batch.work, heat of
+   *  the points to batch.heat, increments of the equivalent plastic strain go to batch.plastic. */
+  void (*update)(const LawParameters &, Batch &, History);
 
   /** Adds to k[n] this part's share of density * (wave speed)^2, with the reference density:
    *  J d sigma_nn / d epsilon_nn for a small uniaxial strain on top of the present state. */
   void (*modulus)(const LawParameters &, const Batch &, History, double *k);
 
-  /** Adds to w[n] the stored energy. */
+  /** Adds to w[n] the stored energy; a damage changes what is there. */
   void (*energy)(const LawParameters &, const Batch &, History, double *w);
+
+  /** Of a viscosity: raises c[n] so that h / c[n] is the stable step with this viscosity. */
+  void (*raise_speed)(const LawParameters &, const Batch &, History, double *c);
+
+  /** Of a damage: before the other parts, gives back the stress of the undamaged material. */
+  void (*prepare)(const LawParameters &, Batch &, History);
 };
 
-/** Kernels of a viscosity. */
-struct ViscosityKernels {
-  /** Adds to the stress, to heat[n], and to batch.work. c[n]: wave speed without viscosity. */
-  void (*update)(const LawParameters &, Batch &, const double *c, double *heat);
-
-  /** Raises c[n] so that h / c[n] is the stable step with this viscosity. */
-  void (*raise_speed)(const LawParameters &, const Batch &, double *c);
+/** What a law need not declare or provide; all laws derive from this. */
+struct LawDefaults {
+  static constexpr StressShare share = NO_SHARE;
+  static constexpr const char *term = nullptr;
+  static constexpr std::nullptr_t term_parameters = nullptr;
+  static constexpr std::nullptr_t history = nullptr;
+  static constexpr std::nullptr_t term_history = nullptr;
+  static constexpr int nhistory(const LawParameters &) { return 0; }
+  static constexpr const char *check(const LawParameters &) { return nullptr; }
+  static constexpr bool needs_temperature(const LawParameters &) { return false; }
+  static constexpr std::nullptr_t heat_share = nullptr, warming = nullptr;
+  static constexpr std::nullptr_t initialize = nullptr;
+  static constexpr std::nullptr_t modulus = nullptr, energy = nullptr;
+  static constexpr std::nullptr_t raise_speed = nullptr, prepare = nullptr;
 };
 
-/** Kernels of all laws for one instruction set, in the order of the lists in mpm_law_list.h. */
+/** Kernels of all laws for one instruction set. */
 struct LawTable {
-  const char *isa;    ///< "baseline", "AVX2" or "AVX-512"
-  const LawKernels *closed, *eos, *strength;
-  const ViscosityKernels *viscosity;
-  void (*clear_stress)(Batch &);    ///< stress of a law with no strength
+  const char *isa;                         ///< "baseline", "AVX2" or "AVX-512"
+  std::vector<LawKernels> laws[NPARTS];    ///< in the order of declared_laws()
+  void (*clear_stress)(Batch &);           ///< stress of a law with no strength
   void (*speed)(int n, double density, const double *k, double *c);    ///< c = sqrt(k / density)
 
   /** The table for this CPU, or the one with this name: as MPMKernels::select(). */

@@ -21,7 +21,7 @@ namespace {
    *  The rate of tau, not of sigma, makes tau_m^2/(2 K) + dev(tau):dev(tau)/(4 mu) a stored energy
    *  whose change is the stress power on any path. Small strain: Hooke's law. Old stress is kept.
    */
-  struct LawLinear {
+  struct LawLinear : LawDefaults {
     static constexpr const char *name = "linear";
     static constexpr const char *meaning = "isotropic linear elastic, rate form";
     static constexpr StressShare share = WHOLE_STRESS;
@@ -29,9 +29,6 @@ namespace {
     static constexpr Parameter parameters[] = {
         {"", "E", "pressure", POSITIVE, REQUIRED, "Young's modulus"},
         {"", "NU", "1", POISSON_RATIO, REQUIRED, "Poisson's ratio"}};
-    static constexpr const HistoryDeclaration *history = nullptr;
-    static constexpr int nhistory(const double *) { return 0; }
-    static constexpr const char *check(const double *) { return nullptr; }
 
     double G, K;
 
@@ -41,7 +38,7 @@ namespace {
     {
     }
 
-    static void update(const LawParameters &p, Batch &b, History, double *)
+    static void update(const LawParameters &p, Batch &b, History)
     {
       const LawLinear law(p);
       MPM_SIMD

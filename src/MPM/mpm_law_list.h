@@ -19,19 +19,31 @@
 #include "mpm_strength_elastic.h"
 #include "mpm_strength_j2.h"
 #include "mpm_strength_johnson_cook.h"
+#include "mpm_thermal.h"
 #include "mpm_viscosity_artificial.h"
 #include "mpm_viscosity_newtonian.h"
 
 namespace MPM_NS::law {
 namespace {
 
-  template <class... Laws> struct List {
+  /** Laws for one place in a material that are compiled in one file, mpm_laws_<family>_isa.cpp. */
+  template <Part PART, class... Laws> struct Family {
+    static constexpr Part part = PART;
+    static constexpr int size = sizeof...(Laws);
   };
 
-  using ClosedLaws = List<LawLinear, LawNeoHookean>;
-  using EosLaws = List<EosLinear, EosShock, EosTait>;
-  using StrengthLaws = List<StrengthElastic, StrengthJ2, StrengthJohnsonCook>;
-  using ViscosityLaws = List<ViscosityNewtonian, ViscosityArtificial>;
+  using elastic = Family<CLOSED, LawLinear, LawNeoHookean>;
+  using viscoelastic = Family<CLOSED>;
+  using soil = Family<CLOSED>;
+  using eos = Family<EOS, EosLinear, EosShock, EosTait>;
+  using strength = Family<STRENGTH, StrengthElastic, StrengthJ2, StrengthJohnsonCook>;
+  using viscosity = Family<VISCOSITY, ViscosityNewtonian, ViscosityArtificial>;
+  using damage = Family<DAMAGE>;
+  using thermal = Family<THERMAL, ThermalAdiabatic, ThermalConstant>;
+
+// in the order in which laws are listed in messages
+#define MPM_LAW_FAMILIES(X) \
+  X(elastic) X(viscoelastic) X(soil) X(eos) X(strength) X(viscosity) X(damage) X(thermal)
 
 }    // namespace
 }    // namespace MPM_NS::law

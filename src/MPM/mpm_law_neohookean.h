@@ -20,17 +20,13 @@ namespace {
    *    w = mu/2 (tr b - 3 - 2 ln J) + lambda/2 ln^2 J
    *    sigma = [mu (b - I) + lambda ln J I] / J
    */
-  struct LawNeoHookean {
+  struct LawNeoHookean : LawDefaults {
     static constexpr const char *name = "neohookean";
     static constexpr const char *meaning = "compressible neo-Hookean hyperelastic";
-    static constexpr StressShare share = NO_SHARE;
     enum { E, NU };
     static constexpr Parameter parameters[] = {
         {"", "E", "pressure", POSITIVE, REQUIRED, "Young's modulus at small strain"},
         {"", "NU", "1", POISSON_RATIO, REQUIRED, "Poisson's ratio at small strain"}};
-    static constexpr const HistoryDeclaration *history = nullptr;
-    static constexpr int nhistory(const double *) { return 0; }
-    static constexpr const char *check(const double *) { return nullptr; }
 
     double mu, lambda;
 
@@ -40,7 +36,7 @@ namespace {
     {
     }
 
-    static void update(const LawParameters &p, Batch &b, History, double *)
+    static void update(const LawParameters &p, Batch &b, History)
     {
       const LawNeoHookean law(p);
       MPM_SIMD

@@ -6,23 +6,12 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Kernels of all constitutive laws for one instruction set. The build compiles this file once per
-// set with -DMPM_ISA=base, v3, v4 and the matching -march; see mpm_law.h.
+// What materials need besides their laws, for one instruction set: see mpm_law_kernels.h.
 
-#include "mpm_law_list.h"
+#include "mpm_math.h"
 
 namespace MPM_NS::law {
 namespace {
-
-  template <class Laws> struct Kernels;
-  template <class... Laws> struct Kernels<List<Laws...>> {
-    static constexpr LawKernels table[] = {{Laws::update, Laws::modulus, Laws::energy}...};
-  };
-
-  template <class Laws> struct Viscosities;
-  template <class... Laws> struct Viscosities<List<Laws...>> {
-    static constexpr ViscosityKernels table[] = {{Laws::update, Laws::raise_speed}...};
-  };
 
   void clear_stress(Batch &b)
   {
@@ -47,24 +36,18 @@ namespace {
   constexpr const char *isa = "baseline";
 #endif
 
-  constexpr LawTable laws = {isa,
-                             Kernels<ClosedLaws>::table,
-                             Kernels<EosLaws>::table,
-                             Kernels<StrengthLaws>::table,
-                             Viscosities<ViscosityLaws>::table,
-                             clear_stress,
-                             speed};
-
 }    // namespace
 }    // namespace MPM_NS::law
 
 #define MPM_PASTE(a, b) a##b
-#define MPM_NAME(isa) MPM_PASTE(mpm_laws_, isa)
+#define MPM_NAME(isa) MPM_PASTE(mpm_laws_common_, isa)
 
 namespace MPM_NS {
-const LawTable *MPM_NAME(MPM_ISA)();
-const LawTable *MPM_NAME(MPM_ISA)()
+void MPM_NAME(MPM_ISA)(LawTable &);
+void MPM_NAME(MPM_ISA)(LawTable &table)
 {
-  return &law::laws;
+  table.isa = law::isa;
+  table.clear_stress = law::clear_stress;
+  table.speed = law::speed;
 }
 }    // namespace MPM_NS

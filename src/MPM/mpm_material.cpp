@@ -13,12 +13,14 @@
 //   or an eos:           eos linear | shock | tait ...
 //     with at most one   strength elastic | j2 | johnson/cook ...
 //   any number of        viscosity newtonian | artificial ...
+//   at most one          damage ...
+//   at most one          thermal adiabatic | constant ...
 //
 // in any order. What follows the name of a law is in the declaration of its parameters.
 
 #include "mpm_material.h"
 
-#include "mpm_law_list.h"
+#include "mpm_law_kernels.h"
 
 #include <cmath>
 #include <cstdio>
@@ -31,6 +33,15 @@ namespace {
 
 /* ---------------------------------------------------------------------- declarations */
 
+template <class T, int N> constexpr int count(const T (&)[N])
+{
+  return N;
+}
+constexpr int count(std::nullptr_t)
+{
+  return 0;
+}
+
 template <class Law> LawInfo declaration()
 {
   LawInfo info;
@@ -38,20 +49,31 @@ template <class Law> LawInfo declaration()
   info.meaning = Law::meaning;
   info.share = Law::share;
   info.parameters = Law::parameters;
-  info.nparameters = sizeof(Law::parameters) / sizeof(Parameter);
+  info.nparameters = count(Law::parameters);
+  info.term = Law::term;
+  info.term_parameters = Law::term_parameters;
+  info.nterm_parameters = count(Law::term_parameters);
   info.history = Law::history;
+  info.term_history = Law::term_history;
+  info.nterm_history = count(Law::term_history);
   info.nhistory = Law::nhistory;
   info.check = Law::check;
-  static_assert(sizeof(Law::parameters) / sizeof(Parameter) <= LawParameters::MAX);
+  info.needs_temperature = Law::needs_temperature;
+  info.heat_share = Law::heat_share;
+  info.warming = Law::warming;
+  info.initialize = Law::initialize;
+  static_assert(count(Law::parameters) <= LawParameters::MAX);
+  static_assert(count(Law::term_parameters) <= LawParameters::TERM);
   return info;
 }
 
-template <class... Laws> std::vector<LawInfo> declarations(law::List<Laws...>)
+template <Part PART, class... Laws>
+void declare(law::Family<PART, Laws...>, std::vector<LawInfo> *laws)
 {
-  return {declaration<Laws>()...};
+  (laws[PART].push_back(declaration<Laws>()), ...);
 }
 
-const char *const part_name[NPARTS] = {"", "eos", "strength", "viscosity"};
+const char *const part_name[NPARTS] = {"", "eos", "strength", "viscosity", "damage", "thermal"};
 
 /* ---------------------------------------------------------------------- composition */
 
@@ -61,7 +83,8 @@ struct UsedLaw {
   int index;    ///< in its list
   int word;     ///< of its name in the definition
   LawParameters parameters;
-  int history;    ///< first row of its history
+  int history;                  ///< first row of its history
+  const LawKernels *kernels;    ///< for the instruction set that runs
 };
 
 std::string number(double x)
@@ -79,22 +102,21 @@ std::string title(Part part, const LawInfo &info)
 class ComposedMaterial : public Material {
  public:
   ComposedMaterial(double density, std::vector<UsedLaw> used[NPARTS], const LawTable *table) :
-      rho(density), rho_pressure(density), table(table), base(nullptr), eos(nullptr)
+      rho(density), table(table)
   {
     for (int part = 0; part < NPARTS; part++) laws[part] = std::move(used[part]);
     text = "density " + number(rho);
     for (int part = 0; part < NPARTS; part++)
       for (auto &law : laws[part]) add(static_cast<Part>(part), law);
+    ComposedMaterial::bind(1.0, 1.0);
   }
 
-  bool configure(const char *isa, double pressure_scale) override
+  bool configure(const char *isa, double pressure_scale, double energy_scale) override
   {
     const LawTable *wanted = LawTable::select(isa);
     if (!wanted) return false;
     table = wanted;
-    rho_pressure = rho * pressure_scale;
-    for (int part = 0; part < NPARTS; part++)
-      for (auto &law : laws[part]) bind(static_cast<Part>(part), law);
+    bind(pressure_scale, energy_scale);
     return true;
   }
 
@@ -102,34 +124,46 @@ class ComposedMaterial : public Material {
   const std::vector<HistoryVariable> &history() const override { return variables; }
   std::string describe() const override { return text; }
 
+  void initialize(const double *x, double *history) const override
+  {
+    for (size_t k = 0; k < variables.size(); k++) history[k] = variables[k].initial;
+    for (const auto &part : laws)
+      for (const auto &law : part)
+        if (law.info->initialize) law.info->initialize(law.parameters, x, history + law.history);
+  }
+
   void update(Batch &b) const override
   {
-    double heat[BATCH] = {};
-    alignas(64) double c[BATCH];
+    for (int i = 0; i < b.n; i++) b.heat[i] = b.plastic[i] = 0.0;
     for (double &w : b.work) w = 0.0;
-    if (!laws[VISCOSITY].empty()) plain_speed(b, c);
 
+    const auto run = [&b](const UsedLaw &law) {
+      law.kernels->update(law.parameters, b, rows(b, law));
+    };
+    for (const auto &law : laws[DAMAGE])
+      if (law.kernels->prepare) law.kernels->prepare(law.parameters, b, rows(b, law));
+    if (!laws[VISCOSITY].empty()) plain_speed(b, b.speed);
     if (base)
-      base->update(base_law().parameters, b, rows(b, base_law()), heat);
+      run(*base);
     else
       table->clear_stress(b);
-    for (const auto &law : laws[VISCOSITY])
-      table->viscosity[law.index].update(law.parameters, b, c, heat);
-    if (eos) eos->update(laws[EOS][0].parameters, b, rows(b, laws[EOS][0]), heat);
+    for (const Part part : {VISCOSITY, EOS, DAMAGE, THERMAL})
+      for (const auto &law : laws[part]) run(law);
   }
 
   void wave_speed(const Batch &b, double *c) const override
   {
     plain_speed(b, c);
     for (const auto &law : laws[VISCOSITY])
-      table->viscosity[law.index].raise_speed(law.parameters, b, c);
+      if (law.kernels->raise_speed) law.kernels->raise_speed(law.parameters, b, rows(b, law), c);
   }
 
   void stored_energy(const Batch &b, double *w) const override
   {
     for (int i = 0; i < b.n; i++) w[i] = 0.0;
-    if (base) base->energy(base_law().parameters, b, rows(b, base_law()), w);
-    if (eos) eos->energy(laws[EOS][0].parameters, b, rows(b, laws[EOS][0]), w);
+    for (const auto &part : laws)
+      for (const auto &law : part)
+        if (law.kernels->energy) law.kernels->energy(law.parameters, b, rows(b, law), w);
   }
 
  private:
@@ -137,50 +171,74 @@ class ComposedMaterial : public Material {
   double rho_pressure;    ///< density in units of pressure over velocity^2, as the laws need it
   const LawTable *table;
   std::vector<UsedLaw> laws[NPARTS];
-  const LawKernels *base;    ///< closed law or strength, or null
-  const LawKernels *eos;     ///< or null
+  const UsedLaw *base;    ///< closed law or strength, or null
   std::vector<HistoryVariable> variables;
   std::string text;
 
-  const UsedLaw &base_law() const
-  {
-    return laws[CLOSED].empty() ? laws[STRENGTH][0] : laws[CLOSED][0];
-  }
   static History rows(const Batch &b, const UsedLaw &law)
   {
     return b.history ? b.history + law.history : nullptr;
   }
 
-  void bind(Part part, UsedLaw &law)
+  /** Kernels of all parts, and what they are told of each other. */
+  void bind(double pressure_scale, double energy_scale)
   {
-    if (part == CLOSED) base = table->closed + law.index;
-    if (part == STRENGTH) base = table->strength + law.index;
-    if (part == EOS) eos = table->eos + law.index;
-    law.parameters.density = rho_pressure;
+    rho_pressure = rho * pressure_scale;
+    base = nullptr;
+    for (const Part part : {CLOSED, STRENGTH})
+      if (!laws[part].empty()) base = laws[part].data();
+
+    LawParameters shared;
+    shared.chi = 1.0;
+    shared.warm = 0.0;
+    shared.temperature = -1;
+    for (auto &law : laws[THERMAL]) {
+      law.parameters.heat_density = rho * energy_scale;
+      shared.chi = law.info->heat_share(law.parameters);
+      shared.warm = law.info->warming(law.parameters);
+      shared.temperature = law.history;
+    }
+    for (int part = 0; part < NPARTS; part++)
+      for (auto &law : laws[part]) {
+        law.kernels = &table->laws[part][law.index];
+        law.parameters.density = rho_pressure;
+        law.parameters.heat_density = rho * energy_scale;
+        law.parameters.chi = shared.chi;
+        law.parameters.warm = shared.warm;
+        law.parameters.temperature = shared.temperature;
+      }
   }
 
   void add(Part part, UsedLaw &law)
   {
     const LawInfo &info = *law.info;
-    const double *value = law.parameters.value;
-    bind(part, law);
+    const LawParameters &p = law.parameters;
     law.history = variables.size();
-    for (int k = 0; k < info.nhistory(value); k++) {
-      const int initial = info.history[k].initial;
-      variables.push_back({info.history[k].name, initial < 0 ? 0.0 : value[initial]});
-    }
+    const auto declare = [&](const HistoryDeclaration &h, const std::string &suffix) {
+      const double initial = h.initial == ZERO ? 0.0 : h.initial == ONE ? 1.0 : p.value[h.initial];
+      variables.push_back({h.name + suffix, initial});
+    };
+    for (int k = 0; k < info.nhistory(p); k++) declare(info.history[k], "");
+    for (int term = 0; term < p.nterms; term++)
+      for (int k = 0; k < info.nterm_history; k++)
+        declare(info.term_history[k], std::to_string(term + 1));
 
     text += ", " + title(part, info);
     for (int k = 0; k < info.nparameters; k++)
-      if (value[k] != info.parameters[k].standard)
-        text += std::string(" ") + info.parameters[k].name + "=" + number(value[k]);
+      if (p.value[k] != info.parameters[k].standard)
+        text += std::string(" ") + info.parameters[k].name + "=" + number(p.value[k]);
+    for (int term = 0; term < p.nterms; term++) {
+      text += std::string(" ") + info.term;
+      for (int k = 0; k < info.nterm_parameters; k++) text += " " + number(p.term[term][k]);
+    }
   }
 
   void plain_speed(const Batch &b, double *c) const
   {
     double k[BATCH] = {};
-    if (base) base->modulus(base_law().parameters, b, rows(b, base_law()), k);
-    if (eos) eos->modulus(laws[EOS][0].parameters, b, rows(b, laws[EOS][0]), k);
+    for (const auto &part : laws)
+      for (const auto &law : part)
+        if (law.kernels->modulus) law.kernels->modulus(law.parameters, b, rows(b, law), k);
     table->speed(b.n, rho_pressure, k, c);
   }
 };
@@ -250,16 +308,13 @@ class Parser {
         parse_density(here);
       else if (find(declared_laws(CLOSED), keyword) >= 0)
         parse_law(CLOSED, here);
-      else if (keyword == "eos")
-        parse_law(EOS, next++);
-      else if (keyword == "strength")
-        parse_law(STRENGTH, next++);
-      else if (keyword == "viscosity")
-        parse_law(VISCOSITY, next++);
+      else if (const int part = find_part(keyword))
+        parse_law(static_cast<Part>(part), next++);
       else
         fail(here,
              "unknown keyword '" + keyword + "': expected density, " +
-                 join(names(declared_laws(CLOSED)), ", ") + ", eos, strength or viscosity");
+                 join(names(declared_laws(CLOSED)), ", ") +
+                 ", eos, strength, viscosity, damage or thermal");
     }
     check();
     const LawTable *table = LawTable::select(isa);
@@ -280,6 +335,14 @@ class Parser {
   std::vector<UsedLaw> used[NPARTS];
 
   bool at_end() const { return next >= static_cast<int>(words.size()); }
+
+  /** The part that a keyword introduces, 0 (closed laws have no such keyword): none. */
+  static int find_part(const std::string &keyword)
+  {
+    for (int part = NPARTS - 1; part > 0; part--)
+      if (keyword == part_name[part]) return part;
+    return 0;
+  }
 
   [[noreturn]] static void fail(int word, const std::string &message)
   {
@@ -331,14 +394,16 @@ class Parser {
                title(part, *used[part][0].info) + "' already");
     for (const auto &other : used[part])
       if (other.index == law.index) fail(here, "'" + title(part, *law.info) + "' is given twice");
-    parse_parameters(title(part, *law.info), *law.info, law.parameters.value);
-    const char *wrong = law.info->check(law.parameters.value);
+    parse_parameters(title(part, *law.info), *law.info, law.parameters);
+    const char *wrong = law.info->check(law.parameters);
     if (wrong) fail(here, title(part, *law.info) + ": " + wrong);
     used[part].push_back(law);
   }
 
-  void parse_parameters(const std::string &what, const LawInfo &info, double *value)
+  void parse_parameters(const std::string &what, const LawInfo &info, LawParameters &parameters)
   {
+    double *const value = parameters.value;
+    parameters.nterms = 0;
     for (int k = 0; k < info.nparameters; k++) value[k] = info.parameters[k].standard;
 
     bool tail = true;    // read the positional parameters that have a default?
@@ -354,9 +419,28 @@ class Parser {
     }
 
     std::vector<std::string> given;    // first words of the options so far
-    while (!at_end() && parse_option(what, info, value, given)) {}
+    while (!at_end() &&
+           (parse_term(what, info, parameters) || parse_option(what, info, value, given))) {}
     if (!at_end() && looks_numeric(words[next]))
       fail(next, what + ": too many values, '" + words[next] + "' is not expected");
+  }
+
+  /** Reads the option of the law that may be given several times, false when the next word is not
+   *  that. */
+  bool parse_term(const std::string &what, const LawInfo &info, LawParameters &parameters)
+  {
+    if (!info.term || words[next] != info.term) return false;
+    if (parameters.nterms == LawParameters::MAX_TERMS)
+      fail(next,
+           what + ": more than " + std::to_string(LawParameters::MAX_TERMS) + " of '" + info.term +
+               "'");
+    next++;
+    double *const term = parameters.term[parameters.nterms++];
+    for (int k = 0; k < info.nterm_parameters; k++) {
+      const Parameter &p = info.term_parameters[k];
+      term[k] = parse_number(what + " " + info.term, p.name, p.unit, p.meaning, p.range);
+    }
+    return true;
   }
 
   /** Reads one option of the law, false when the next word is none. */
@@ -417,6 +501,13 @@ class Parser {
            "no law: add " + join(names(declared_laws(CLOSED)), ", ") +
                ", or eos with strength or viscosity");
     }
+    for (const auto &part : used)
+      for (const auto &law : part)
+        if (law.info->needs_temperature(law.parameters) && used[THERMAL].empty())
+          fail(law.word,
+               std::string("'") + law.info->name +
+                   "' with these parameters depends on the temperature: add 'thermal adiabatic' "
+                   "with the specific heat, or 'thermal constant'");
     for (const Part part : {CLOSED, STRENGTH})
       for (const auto &law : used[part])
         for (const auto &viscosity : used[VISCOSITY])
@@ -434,11 +525,16 @@ class Parser {
 
 const std::vector<LawInfo> &MPM_NS::declared_laws(Part part)
 {
-  using namespace law;
-  static const std::vector<LawInfo> laws[NPARTS] = {
-      declarations(ClosedLaws()), declarations(EosLaws()), declarations(StrengthLaws()),
-      declarations(ViscosityLaws())};
-  return laws[part];
+  struct Declared {
+    std::vector<LawInfo> laws[NPARTS];
+    Declared()
+    {
+#define MPM_DECLARE(family) declare(law::family(), laws);
+      MPM_LAW_FAMILIES(MPM_DECLARE)
+    }
+  };
+  static const Declared declared;
+  return declared.laws[part];
 }
 
 std::unique_ptr<Material> Material::create(const std::vector<std::string> &words, const char *isa)
@@ -447,24 +543,74 @@ std::unique_ptr<Material> Material::create(const std::vector<std::string> &words
 }
 
 /* ----------------------------------------------------------------------
-   the transfer kernels decide which instruction set runs
+   one table for each instruction set that the build has
 ------------------------------------------------------------------------- */
 
 namespace MPM_NS {
-const LawTable *mpm_laws_base();
-const LawTable *mpm_laws_v3();
-const LawTable *mpm_laws_v4();
+#define MPM_DECLARE_KERNELS(family)         \
+  FamilyKernels mpm_laws_##family##_base(); \
+  FamilyKernels mpm_laws_##family##_v3();   \
+  FamilyKernels mpm_laws_##family##_v4();
+MPM_LAW_FAMILIES(MPM_DECLARE_KERNELS)
+void mpm_laws_common_base(LawTable &);
+void mpm_laws_common_v3(LawTable &);
+void mpm_laws_common_v4(LawTable &);
 }    // namespace MPM_NS
+
+#define MPM_ADD_KERNELS(family, isa)                                 \
+  {                                                                  \
+    const LawKernels *kernels = mpm_laws_##family##_##isa().kernels; \
+    auto &list = table.laws[law::family::part];                      \
+    list.insert(list.end(), kernels, kernels + law::family::size);   \
+  }
+#define MPM_ADD_BASE(family) MPM_ADD_KERNELS(family, base)
+#define MPM_ADD_V3(family) MPM_ADD_KERNELS(family, v3)
+#define MPM_ADD_V4(family) MPM_ADD_KERNELS(family, v4)
+
+static LawTable make_base()
+{
+  LawTable table;
+  mpm_laws_common_base(table);
+  MPM_LAW_FAMILIES(MPM_ADD_BASE)
+  return table;
+}
+
+#ifdef MPM_HAVE_V3
+static LawTable make_v3()
+{
+  LawTable table;
+  mpm_laws_common_v3(table);
+  MPM_LAW_FAMILIES(MPM_ADD_V3)
+  return table;
+}
+#endif
+
+#ifdef MPM_HAVE_V4
+static LawTable make_v4()
+{
+  LawTable table;
+  mpm_laws_common_v4(table);
+  MPM_LAW_FAMILIES(MPM_ADD_V4)
+  return table;
+}
+#endif
+
+/* ----------------------------------------------------------------------
+   the transfer kernels decide which instruction set runs
+------------------------------------------------------------------------- */
 
 const LawTable *LawTable::select(const char *isa)
 {
   const MPMKernels *chosen = MPMKernels::select(isa);
   if (!chosen) return nullptr;
 #ifdef MPM_HAVE_V4
-  if (strcmp(chosen->isa, "AVX-512") == 0) return mpm_laws_v4();
+  static const LawTable v4 = make_v4();
+  if (strcmp(chosen->isa, "AVX-512") == 0) return &v4;
 #endif
 #ifdef MPM_HAVE_V3
-  if (strcmp(chosen->isa, "AVX2") == 0) return mpm_laws_v3();
+  static const LawTable v3 = make_v3();
+  if (strcmp(chosen->isa, "AVX2") == 0) return &v3;
 #endif
-  return mpm_laws_base();
+  static const LawTable base = make_base();
+  return &base;
 }

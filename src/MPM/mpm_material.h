@@ -43,12 +43,19 @@ struct Batch {
   alignas(64) double vol0[BATCH];    ///< initial volume
   double (*history)[BATCH];          ///< [nhistory][BATCH]; in: start, out: end of the step
   double work[NWORK];                ///< out: energy of each kind spent in this batch and step
+  double time;                       ///< at the end of the step
+
+  // passed from part to part of a material within a step
+
+  alignas(64) double heat[BATCH];       ///< energy turned into heat, per reference volume
+  alignas(64) double plastic[BATCH];    ///< increment of the equivalent plastic strain
+  alignas(64) double speed[BATCH];      ///< wave speed without viscosity, for viscosities only
 };
 
-/** A history variable of a material: name as used by compute mpm/atom, and initial value. */
+/** A history variable of a material. */
 struct HistoryVariable {
-  std::string name;
-  double initial;
+  std::string name;    ///< as used by compute mpm/atom
+  double initial;      ///< value of a new point, before Material::initialize()
 };
 
 /** What is wrong with the definition of a material, and which of its words is to blame. */
@@ -68,12 +75,15 @@ class Material {
                                           const char *isa = nullptr);
 
   /** Choose the instruction set (as for LawTable::select(); false: cannot run here) and the unit
-   *  of density * velocity^2 in the unit of pressure: mvv2e * nktv2p of the LAMMPS unit style,
-   *  1 in consistent units and when this is not called. */
-  virtual bool configure(const char *isa, double pressure_scale) = 0;
+   *  of density * velocity^2 in the unit of pressure, mvv2e * nktv2p of the LAMMPS unit style, and
+   *  that of energy / volume, nktv2p; both 1 in consistent units and when this is not called. */
+  virtual bool configure(const char *isa, double pressure_scale, double energy_scale) = 0;
 
   virtual double density() const = 0;    ///< reference density
   virtual const std::vector<HistoryVariable> &history() const = 0;
+
+  /** All history variables of a new point at x. */
+  virtual void initialize(const double *x, double *history) const = 0;
 
   /** Stress and history at the end of the step (hot: one call per batch). */
   virtual void update(Batch &) const = 0;

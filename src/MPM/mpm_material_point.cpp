@@ -25,9 +25,12 @@ MaterialPoint::MaterialPoint(const Material &material, int n, double h) :
   for (int i = 0; i < n; i++) {
     for (int k = 0; k < 9; k++) batch.F[k][i] = k % 4 == 0 ? 1.0 : 0.0;
     batch.J[i] = batch.Jold[i] = batch.vol0[i] = 1.0;
-    for (size_t k = 0; k < material.history().size(); k++)
-      batch.history[k][i] = material.history()[k].initial;
   }
+  const double x[3] = {0.0, 0.0, 0.0};
+  std::vector<double> initial(material.history().size());
+  material.initialize(x, initial.data());
+  for (std::size_t k = 0; k < initial.size(); k++)
+    for (int i = 0; i < n; i++) batch.history[k][i] = initial[k];
 }
 
 /* ---------------------------------------------------------------------- */
@@ -93,6 +96,7 @@ void MaterialPoint::move(const double *A, double dt)
   first_piola(batch, before);
 
   batch.dt = dt;
+  batch.time = time + dt;
   for (int p = 0; p < batch.n; p++) {
     double F[9];
     for (int k = 0; k < 9; k++) F[k] = batch.F[k][p];

@@ -21,11 +21,8 @@ namespace {
     static constexpr StressShare share = DEVIATOR;
     static constexpr Parameter parameters[] = {
         {"", "G", "pressure", POSITIVE, REQUIRED, "shear modulus"}};
-    static constexpr const HistoryDeclaration *history = nullptr;
-    static constexpr int nhistory(const double *) { return 0; }
-    static constexpr const char *check(const double *) { return nullptr; }
 
-    static void update(const LawParameters &p, Batch &b, History, double *)
+    static void update(const LawParameters &p, Batch &b, History)
     {
       const ElasticDeviator elastic{p.value[0]};
       MPM_SIMD

@@ -14,12 +14,11 @@
 namespace MPM_NS::law {
 namespace {
 
-  /** Flow stress SIGMAY + H e + B e^N of the plastic strain e. All plastic work becomes heat. */
+  /** Flow stress SIGMAY + H e + B e^N of the plastic strain e. */
   struct J2Flow {
     double sigmay, H, B, N;
-    static constexpr double chi = 1.0;
 
-    J2Flow(const LawParameters &p, double) :
+    J2Flow(const LawParameters &p, const Batch &) :
         sigmay(p.value[1]), H(p.value[2]), B(p.value[3]), N(p.value[4])
     {
     }
@@ -54,20 +53,20 @@ namespace {
          "slope of flow stress over plastic strain"},
         {"hardening power", "B", "pressure", NOT_NEGATIVE, 0.0, "hardening B e^N"},
         {"hardening power", "N", "1", POSITIVE, 1.0, "exponent of the plastic strain e"}};
-    static constexpr HistoryDeclaration history[] = {{"eplastic", -1}};
-    static constexpr int nhistory(const double *) { return 1; }
-    static constexpr const char *check(const double *) { return nullptr; }
+    static constexpr HistoryDeclaration history[] = {
+        {"eplastic", ZERO, "1", "equivalent plastic strain"}};
+    static constexpr int nhistory(const LawParameters &) { return 1; }
 
-    static void update(const LawParameters &p, Batch &b, History history, double *heat)
+    static void update(const LawParameters &p, Batch &b, History history)
     {
       if (p.value[3] > 0.0)
-        RadialReturn<J2Flow>::update(p, b, history, heat);
+        RadialReturn<J2Flow>::update(p, b, history);
       else
-        linear(p, b, history, heat);
+        linear(p, b, history);
     }
 
    private:
-    static MPM_INLINE void linear(const LawParameters &p, Batch &b, History history, double *heat)
+    static MPM_INLINE void linear(const LawParameters &p, Batch &b, History history)
     {
       const double G = p.value[0], sigmay = p.value[1], H = p.value[2];
       const ElasticDeviator elastic{G};
@@ -84,11 +83,12 @@ namespace {
         store_stress(b, i, (q > y ? ynew / q : 1.0) * s);
         const double work = 0.5 * (J + b.Jold[i]) * 0.5 * (y + ynew) * D;
         history[0][i] = e + D;
-        heat[i] += work;
+        b.plastic[i] = D;
+        b.heat[i] += p.chi * work;
         plastic += work * b.vol0[i];
       }
       b.work[PLASTIC] += plastic;
-      b.work[HEAT] += plastic;
+      b.work[HEAT] += p.chi * plastic;
     }
   };
 

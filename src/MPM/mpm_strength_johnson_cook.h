@@ -14,24 +14,24 @@
 namespace MPM_NS::law {
 namespace {
 
-  enum { JC_G, JC_A, JC_B, JC_N, JC_C, JC_RATE, JC_M, JC_MELT, JC_REF, JC_CP, JC_CHI };
+  enum { JC_G, JC_A, JC_B, JC_N, JC_C, JC_RATE, JC_M, JC_MELT, JC_REF };
 
   /** Y = (A + B e^N) (1 + C ln max(rate/EPSDOT0, 1)) (1 - T*^M) of plastic strain e, plastic strain
-   *  rate and temperature at the end of the step. The plastic work of the step,
-   *  (Y_start + Y)/2 D with Y_start at the old e and T and the present rate, heats the point:
-   *  density_0 CP dT = CHI work. */
+   *  rate and temperature at the end of the step. The temperature rises by the heat of the plastic
+   *  work of the step, (Y_start + Y)/2 D with Y_start at the old e and T and the present rate; that
+   *  of other heat is of the step before. */
   template <bool THERMAL> struct JohnsonCookFlow {
     double A, B, N, C, inv_rate;
     double M, soft, Tref, inv_range;    ///< soft: 1, or 0 without thermal softening
     double warm;                        ///< temperature rise per plastic work
-    double chi;
+    const double *temperature;
 
-    JohnsonCookFlow(const LawParameters &p, double dt) :
+    JohnsonCookFlow(const LawParameters &p, const Batch &b) :
         A(p.value[JC_A]), B(p.value[JC_B]), N(p.value[JC_N]), C(p.value[JC_C]),
-        inv_rate(1.0 / max(p.value[JC_RATE] * dt, 1e-300)), M(p.value[JC_M]),
+        inv_rate(1.0 / max(p.value[JC_RATE] * b.dt, 1e-300)), M(p.value[JC_M]),
         soft(p.value[JC_M] > 0.0 ? 1.0 : 0.0), Tref(p.value[JC_REF]),
-        inv_range(1.0 / (p.value[JC_MELT] - p.value[JC_REF])),
-        warm(THERMAL ? p.value[JC_CHI] / (p.density * p.value[JC_CP]) : 0.0), chi(p.value[JC_CHI])
+        inv_range(1.0 / (p.value[JC_MELT] - p.value[JC_REF])), warm(p.chi * p.warm),
+        temperature(MPM_NS::temperature(p, b))
     {
     }
 
@@ -42,7 +42,7 @@ namespace {
     MPM_INLINE double start(History history, int i) const
     {
       const double hard = A + B * pow(history[0][i], N);
-      return THERMAL ? hard * (1.0 - soft * pow(homologous(history[1][i]), M)) : hard;
+      return THERMAL ? hard * (1.0 - soft * pow(homologous(temperature[i]), M)) : hard;
     }
 
     /** Factor of the rate, and its derivative with respect to D. */
@@ -65,7 +65,7 @@ namespace {
       if (THERMAL) {
         const double sigma = trial.q - trial.stiff * D;    // is Y at the solution
         const double half = 0.5 * trial.J * warm;
-        const double T = history[1][i] + half * (start * fast + sigma) * D;
+        const double T = temperature[i] + half * (start * fast + sigma) * D;
         const double dT = half * (start * (fast + dfast * D) + sigma - trial.stiff * D);
         const double t = homologous(T);
         const double tm = soft * pow(t, M);
@@ -75,13 +75,11 @@ namespace {
       }
     }
 
-    MPM_INLINE double finish(History history, int i, double start, double D, double y,
-                             double J) const
+    MPM_INLINE double finish(History history, int i, double start, double D, double y, double) const
     {
       double slope;
       const double work = 0.5 * (start * rate(D, slope) + y) * D;
       history[0][i] += D;
-      if (THERMAL) history[1][i] += warm * J * work;
       return work;
     }
   };
@@ -101,28 +99,22 @@ namespace {
         {"", "EPSDOT0", "1/time", POSITIVE, REQUIRED, "reference plastic strain rate"},
         {"", "M", "1", NOT_NEGATIVE, 0.0, "exponent of the temperature, 0: no thermal softening"},
         {"", "TMELT", "temperature", {-UNBOUNDED, UNBOUNDED, false}, 1.0, "melting temperature"},
-        {"",
-         "TREF",
-         "temperature",
-         {-UNBOUNDED, UNBOUNDED, false},
-         0.0,
-         "reference and initial temperature"},
-        {"", "CP", "energy/(mass temperature)", POSITIVE, UNBOUNDED, "specific heat"},
-        {"", "CHI", "1", FRACTION, 1.0, "share of the plastic work that becomes heat"}};
-    static constexpr HistoryDeclaration history[] = {{"eplastic", -1}, {"temperature", JC_REF}};
-    static constexpr bool thermal(const double *v) { return v[JC_CP] != UNBOUNDED; }
-    static constexpr int nhistory(const double *v) { return thermal(v) ? 2 : 1; }
-    static constexpr const char *check(const double *v)
+        {"", "TREF", "temperature", {-UNBOUNDED, UNBOUNDED, false}, 0.0, "reference temperature"}};
+    static constexpr HistoryDeclaration history[] = {
+        {"eplastic", ZERO, "1", "equivalent plastic strain"}};
+    static constexpr int nhistory(const LawParameters &) { return 1; }
+    static constexpr bool needs_temperature(const LawParameters &p) { return p.value[JC_M] > 0.0; }
+    static constexpr const char *check(const LawParameters &p)
     {
-      return v[JC_MELT] > v[JC_REF] ? nullptr : "TMELT must be above TREF";
+      return p.value[JC_MELT] > p.value[JC_REF] ? nullptr : "TMELT must be above TREF";
     }
 
-    static void update(const LawParameters &p, Batch &b, History history, double *heat)
+    static void update(const LawParameters &p, Batch &b, History history)
     {
-      if (thermal(p.value))
-        RadialReturn<JohnsonCookFlow<true>>::update(p, b, history, heat);
+      if (needs_temperature(p))
+        RadialReturn<JohnsonCookFlow<true>>::update(p, b, history);
       else
-        RadialReturn<JohnsonCookFlow<false>>::update(p, b, history, heat);
+        RadialReturn<JohnsonCookFlow<false>>::update(p, b, history);
     }
   };
 

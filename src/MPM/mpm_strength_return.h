@@ -27,7 +27,7 @@ namespace {
    *
    *    r(D) = q - 3 G/J D - Y(D) = 0,   q = trial equivalent stress
    *
-   *  Flow has: Flow(parameters, dt); start(history, i), the flow stress for D -> 0;
+   *  Flow has: Flow(parameters, batch); start(history, i), the flow stress for D -> 0;
    *  stress(history, i, start, trial state, D, Y, dY/dD); finish(history, i, start, D, Y, J), which
    *  stores the history and returns the plastic work per current volume.
    *
@@ -39,10 +39,10 @@ namespace {
   template <class Flow> struct RadialReturn : ShearElasticity {
     static constexpr int MAX_ITERATIONS = 100;
 
-    static void update(const LawParameters &p, Batch &b, History history, double *heat)
+    static void update(const LawParameters &p, Batch &b, History history)
     {
       const ElasticDeviator elastic{p.value[0]};
-      const Flow flow(p, b.dt);
+      const Flow flow(p, b);
       alignas(64) double trial[BATCH], stiff[BATCH], start[BATCH], yield[BATCH], D[BATCH];
 
       double yielding = 0.0;
@@ -67,19 +67,19 @@ namespace {
       if (yielding == 0.0) return;
       solve(b, flow, history, trial, stiff, start, yield, D);
 
-      double plastic = 0.0, heated = 0.0;
-      MPM_SIMD_SUM(plastic, heated)
+      double plastic = 0.0;
+      MPM_SIMD_SUM(plastic)
       for (int i = 0; i < b.n; i++) {
         const double scale = D[i] > 0.0 ? yield[i] / trial[i] : 1.0;
         store_stress(b, i, scale * load_stress(b, i));
         const double J = 0.5 * (b.J[i] + b.Jold[i]);
         const double work = J * flow.finish(history, i, start[i], D[i], yield[i], J);
         plastic += work * b.vol0[i];
-        heated += flow.chi * work * b.vol0[i];
-        heat[i] += flow.chi * work;
+        b.plastic[i] = D[i];
+        b.heat[i] += p.chi * work;
       }
       b.work[PLASTIC] += plastic;
-      b.work[HEAT] += heated;
+      b.work[HEAT] += p.chi * plastic;
     }
 
    private:

@@ -20,18 +20,15 @@ namespace {
    *    q = density h |tr D| (CQ h |tr D| + CL c),   tr D < 0
    *
    *  with node spacing h, wave speed c. Shocks spread over a few h. */
-  struct ViscosityArtificial {
+  struct ViscosityArtificial : LawDefaults {
     static constexpr const char *name = "artificial";
     static constexpr const char *meaning = "artificial bulk viscosity for shocks";
     static constexpr StressShare share = PRESSURE;
     static constexpr Parameter parameters[] = {
         {"", "CQ", "1", NOT_NEGATIVE, REQUIRED, "quadratic coefficient (about 1.5)"},
         {"", "CL", "1", NOT_NEGATIVE, REQUIRED, "linear coefficient (about 0.06)"}};
-    static constexpr const HistoryDeclaration *history = nullptr;
-    static constexpr int nhistory(const double *) { return 0; }
-    static constexpr const char *check(const double *) { return nullptr; }
 
-    static void update(const LawParameters &p, Batch &b, const double *c, double *heat)
+    static void update(const LawParameters &p, Batch &b, History)
     {
       const double inv_dt = b.dt > 0.0 ? 1.0 / b.dt : 0.0;
       const double quadratic = p.value[0] * b.h, linear = p.value[1], scale = p.density * b.h;
@@ -40,19 +37,19 @@ namespace {
       for (int i = 0; i < b.n; i++) {
         const double dJ = b.J[i] - b.Jold[i], sum = b.J[i] + b.Jold[i];
         const double rate = max(-2.0 * dJ / sum * inv_dt, 0.0);
-        const double q = 2.0 * scale / sum * rate * (quadratic * rate + linear * c[i]);
+        const double q = 2.0 * scale / sum * rate * (quadratic * rate + linear * b.speed[i]);
         b.stress[0][i] -= q;
         b.stress[1][i] -= q;
         b.stress[2][i] -= q;
         const double work = -q * dJ;
-        heat[i] += work;
+        b.heat[i] += work;
         viscous += work * b.vol0[i];
       }
       b.work[VISCOUS] += viscous;
     }
 
     /** The linear term only: the quadratic one is left to the fraction of the limit that is run. */
-    static void raise_speed(const LawParameters &p, const Batch &b, double *c)
+    static void raise_speed(const LawParameters &p, const Batch &b, History, double *c)
     {
       const double xi = p.value[1], factor = std::sqrt(1.0 + xi * xi) + xi;
       MPM_SIMD

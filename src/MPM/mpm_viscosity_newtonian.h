@@ -15,17 +15,14 @@ namespace MPM_NS::law {
 namespace {
 
   /** Newtonian shear viscosity: adds 2 MU dev(D), D the strain rate half-way in the step. */
-  struct ViscosityNewtonian {
+  struct ViscosityNewtonian : LawDefaults {
     static constexpr const char *name = "newtonian";
     static constexpr const char *meaning = "Newtonian shear viscosity";
     static constexpr StressShare share = DEVIATOR;
     static constexpr Parameter parameters[] = {
         {"", "MU", "pressure time", NOT_NEGATIVE, REQUIRED, "dynamic viscosity"}};
-    static constexpr const HistoryDeclaration *history = nullptr;
-    static constexpr int nhistory(const double *) { return 0; }
-    static constexpr const char *check(const double *) { return nullptr; }
 
-    static void update(const LawParameters &p, Batch &b, const double *, double *heat)
+    static void update(const LawParameters &p, Batch &b, History)
     {
       const double twomu = b.dt > 0.0 ? 2.0 * p.value[0] / b.dt : 0.0;
       double viscous = 0.0;
@@ -34,7 +31,7 @@ namespace {
         const Sym e = deviator(increment(b, i).strain);
         store_stress(b, i, load_stress(b, i) + twomu * e);
         const double work = 0.5 * (b.J[i] + b.Jold[i]) * twomu * norm2(e);
-        heat[i] += work;
+        b.heat[i] += work;
         viscous += work * b.vol0[i];
       }
       b.work[VISCOUS] += viscous;
@@ -42,7 +39,7 @@ namespace {
 
     /** Explicit steps with damping: dt = h / (sqrt(c^2 + a^2) + a), a = 4/3 MU / (density h), the
      *  central-difference limit (2/omega)(sqrt(1 + xi^2) - xi) with omega = 2 c/h. */
-    static void raise_speed(const LawParameters &p, const Batch &b, double *c)
+    static void raise_speed(const LawParameters &p, const Batch &b, History, double *c)
     {
       const double a0 = (4.0 / 3.0) * p.value[0] / (p.density * b.h);
       MPM_SIMD

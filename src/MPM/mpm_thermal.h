@@ -1,0 +1,69 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_THERMAL_H
+#define LMP_MPM_THERMAL_H
+
+#include "mpm_law_kinematics.h"
+
+namespace MPM_NS::law {
+namespace {
+
+  /** Temperature of a point that exchanges no heat with others:
+   *
+   *    density_0 CP dT = dq - density_0 CP GAMMA T dJ
+   *
+   *  with the heat dq of the step per reference volume: the share CHI of the plastic work
+   *  (G.I. Taylor, H. Quinney, Proc. R. Soc. London A 143 (1934) 307), and all viscous work. The
+   *  second term is the change along an isentrope when density * Gruneisen parameter is constant,
+   *  T ~ exp(GAMMA (1 - J)). Strengths use the temperature of the end of the step. */
+  struct ThermalAdiabatic : LawDefaults {
+    static constexpr const char *name = "adiabatic";
+    static constexpr const char *meaning = "temperature by dissipation, without conduction";
+    enum { CP, T0, CHI, GAMMA };
+    static constexpr Parameter parameters[] = {
+        {"", "CP", "energy/(mass temperature)", POSITIVE, REQUIRED, "specific heat"},
+        {"", "T0", "temperature", {-UNBOUNDED, UNBOUNDED, false}, REQUIRED, "initial temperature"},
+        {"", "CHI", "1", FRACTION, 0.9, "share of the plastic work that becomes heat"},
+        {"gruneisen", "GAMMA", "1", NOT_NEGATIVE, 0.0, "Gruneisen parameter at reference density"}};
+    static constexpr HistoryDeclaration history[] = {
+        {"temperature", T0, "temperature", "temperature"}};
+    static constexpr int nhistory(const LawParameters &) { return 1; }
+    static double heat_share(const LawParameters &p) { return p.value[CHI]; }
+    static double warming(const LawParameters &p) { return 1.0 / (p.heat_density * p.value[CP]); }
+
+    static void update(const LawParameters &p, Batch &b, History history)
+    {
+      const double warm = p.warm, gamma = p.value[GAMMA];
+      double *const T = history[0];
+      if (gamma > 0.0) {
+        MPM_SIMD
+        for (int i = 0; i < b.n; i++) T[i] += T[i] * expm1(-gamma * (b.J[i] - b.Jold[i]));
+      }
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) T[i] += warm * b.heat[i];
+    }
+  };
+
+  /** Temperature that nothing changes. */
+  struct ThermalConstant : LawDefaults {
+    static constexpr const char *name = "constant";
+    static constexpr const char *meaning = "constant temperature";
+    static constexpr Parameter parameters[] = {
+        {"", "T0", "temperature", {-UNBOUNDED, UNBOUNDED, false}, REQUIRED, "temperature"}};
+    static constexpr HistoryDeclaration history[] = {
+        {"temperature", 0, "temperature", "temperature"}};
+    static constexpr int nhistory(const LawParameters &) { return 1; }
+    static double heat_share(const LawParameters &) { return 1.0; }
+    static double warming(const LawParameters &) { return 0.0; }
+    static void update(const LawParameters &, Batch &, History) {}
+  };
+
+}    // namespace
+}    // namespace MPM_NS::law
+#endif

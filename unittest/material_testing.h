@@ -1,0 +1,145 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MATERIAL_TESTING_H
+#define MATERIAL_TESTING_H
+
+// What tests of constitutive laws share: 3x3 matrices, motions of a point, and samples of all laws.
+
+#include "mpm_material_point.h"
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace material_testing {
+
+using MPM_NS::Material;
+using MPM_NS::MaterialPoint;
+
+using Matrix = std::array<double, 9>;
+constexpr Matrix IDENTITY = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+
+std::unique_ptr<Material> make(const std::string &text, const char *isa = nullptr)
+{
+  std::istringstream in(text);
+  std::vector<std::string> words;
+  for (std::string word; in >> word;) words.push_back(word);
+  return Material::create(words, isa);
+}
+
+inline Matrix operator*(const Matrix &a, const Matrix &b)
+{
+  Matrix c{};
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      for (int k = 0; k < 3; k++) c[3 * i + j] += a[3 * i + k] * b[3 * k + j];
+  return c;
+}
+
+inline Matrix transpose(const Matrix &a)
+{
+  return {a[0], a[3], a[6], a[1], a[4], a[7], a[2], a[5], a[8]};
+}
+
+inline double det(const Matrix &F)
+{
+  return F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
+      F[2] * (F[3] * F[7] - F[4] * F[6]);
+}
+
+inline Matrix inverse(const Matrix &M)
+{
+  Matrix c = {M[4] * M[8] - M[5] * M[7], M[2] * M[7] - M[1] * M[8], M[1] * M[5] - M[2] * M[4],
+              M[5] * M[6] - M[3] * M[8], M[0] * M[8] - M[2] * M[6], M[2] * M[3] - M[0] * M[5],
+              M[3] * M[7] - M[4] * M[6], M[1] * M[6] - M[0] * M[7], M[0] * M[4] - M[1] * M[3]};
+  for (double &x : c) x /= det(M);
+  return c;
+}
+
+/** Rotation by an angle about a unit axis. */
+inline Matrix rotation(const std::array<double, 3> &n, double angle)
+{
+  const double c = std::cos(angle), s = std::sin(angle);
+  const Matrix skew = {0, -n[2], n[1], n[2], 0, -n[0], -n[1], n[0], 0};
+  Matrix R{};
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      R[3 * i + j] = (i == j ? c : 0.0) + (1.0 - c) * n[i] * n[j] + s * skew[3 * i + j];
+  return R;
+}
+
+inline Matrix stress_of(const MaterialPoint &p)
+{
+  return {p.stress(0), p.stress(3), p.stress(4), p.stress(3), p.stress(1),
+          p.stress(5), p.stress(4), p.stress(5), p.stress(2)};
+}
+
+inline double size(const Matrix &a)
+{
+  double sum = 0.0;
+  for (const double x : a) sum += x * x;
+  return std::sqrt(sum);
+}
+
+inline double distance(const Matrix &a, const Matrix &b)
+{
+  Matrix d;
+  for (int k = 0; k < 9; k++) d[k] = a[k] - b[k];
+  return size(d);
+}
+
+/** Moves a point to a new deformation gradient in one step. */
+inline void move_to(MaterialPoint &p, const Matrix &F, double dt = 1.0)
+{
+  Matrix old;
+  for (int k = 0; k < 9; k++) old[k] = p.batch.F[k][0];
+  Matrix A = F * inverse(old);
+  for (int k = 0; k < 9; k++) A[k] -= IDENTITY[k];
+  p.move(A.data(), dt);
+}
+
+/** Steps with a velocity gradient that depends on time. */
+inline void follow(MaterialPoint &p, const std::function<Matrix(double)> &L, double time, int n)
+{
+  const double dt = time / n;
+  for (int i = 0; i < n; i++) p.step(L((i + 0.5) * dt).data(), dt);
+}
+
+constexpr double MPa = 1e6, GPa = 1e9;
+
+/** One material of each kind, with names for messages: the tests of properties that all laws have
+ *  (objectivity, energy, wave speed, instruction sets, extremes) go through these. */
+struct Sample {
+  const char *name, *text;
+};
+inline const Sample samples[] = {
+    {"linear", "density 1000 linear 1e6 0.3"},
+    {"neohookean", "density 1000 neohookean 1e6 0.3"},
+    {"elastic", "density 2700 eos linear 70e9 strength elastic 26e9"},
+    {"shock+elastic", "density 2703 eos shock 5350 1.34 2 strength elastic 26e9"},
+    {"j2", "density 8930 eos shock 3940 1.49 1.96 strength j2 43e9 157e6 hardening linear 425e6"},
+    {"j2 power", "density 8940 eos linear 1e11 strength j2 44e9 65e6 hardening power 356e6 0.37"},
+    {"johnson/cook",
+     "density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 0.168 "
+     "0.0089 1 1.1 1540 20 thermal adiabatic 460 20 0.9"},
+    {"johnson/cook cold",
+     "density 8940 eos shock 3933 1.5 2 strength johnson/cook 44e9 65e6 356e6 "
+     "0.37 0.013 1e-3"},
+    {"tait", "density 1000 eos tait 2.2e9 7 cutoff -1e5 viscosity newtonian 1e-3"},
+    {"fluid", "density 1000 eos linear 1e6 viscosity newtonian 1 viscosity artificial 1.5 0.06"},
+    {"viscous rubber",
+     "density 1000 neohookean 1e6 0.3 viscosity newtonian 10 viscosity artificial 2 1"},
+};
+
+}    // namespace material_testing
+#endif
