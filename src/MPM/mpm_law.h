@@ -112,6 +112,7 @@ struct LawInfo {
   const Parameter *term_parameters;
   int nterm_parameters;
   const HistoryDeclaration *history;
+  int ndeclared;                             ///< entries of history
   const HistoryDeclaration *term_history;    ///< one set for each term, names followed by 1, 2, ...
   int nterm_history;
   /** History variables that a law with these parameters has, those of the terms not counted. */

@@ -54,6 +54,7 @@ template <class Law> LawInfo declaration()
   info.term_parameters = Law::term_parameters;
   info.nterm_parameters = count(Law::term_parameters);
   info.history = Law::history;
+  info.ndeclared = count(Law::history);
   info.term_history = Law::term_history;
   info.nterm_history = count(Law::term_history);
   info.nhistory = Law::nhistory;
