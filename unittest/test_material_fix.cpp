@@ -18,8 +18,13 @@
 
 #include "gtest/gtest.h"
 
+#include <Eigen/Dense>
+
+#include <array>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 
 using namespace MPM_TEST;
 using Lammps = MPM_TEST::Run;    // tests have a function Run
@@ -120,6 +125,13 @@ TEST(MaterialFix, ErrorsNameValueAndRemedy)
       {"density 1000 strength j2 1 1", "add an equation of state, such as 'eos linear K'"},
       {"density 1000 linear 1 0 neohookean 1 0", "the material has 'linear' already"},
       {"density 1000 eos gas 1.4", "unknown eos 'gas': choose linear, shock, tait"},
+      {"density 1000 linear 1e6 0.3 range", "range: name of the quantity is missing"},
+      {"density 1000 linear 1e6 0.3 range pressure -1e6", "range pressure: HIGH is missing"},
+      {"density 1000 linear 1e6 0.3 range pressure 1e6 -1e6",
+       "range pressure: LOW must be less than HIGH"},
+      {"density 1000 linear 1e6 0.3 range temperature 0 INF",
+       "this material has no 'temperature': choose pressure, rate, density"},
+      {"density 1000 linear 1e6 0.3 range rate 0 1 range rate 0 2", "'rate' is given twice"},
       {"density 1000 linear 1e6 0.3 file x.mpm", "must then be the only keyword"},
       {"file", "Illegal fix mpm/material file command: missing argument"},
       {"file nowhere.mpm", "cannot read file nowhere.mpm: it is neither here nor in"},
@@ -161,7 +173,7 @@ TEST(MaterialFix, FilesOfThePackage)
   run.commands(scene);
   run.commands("fix m one mpm/material file Water_Tait.mpm\n"
                "fix n two mpm/material density 998.2 eos tait 2.192e9 7 cutoff -9.9e4 &\n"
-               "viscosity newtonian 1.002e-3\n");
+               "viscosity newtonian 1.002e-3 range pressure -INF 2.5e9\n");
   EXPECT_EQ(material(run, "m")->material->describe(), material(run, "n")->material->describe());
 }
 
@@ -197,6 +209,108 @@ TEST(MaterialFix, BadFiles)
     TemporaryFile file("plain_header.mpm", header.substr(2) + "density 1000 linear 1e6 0.3\n");
     EXPECT_EQ(error_of("file plain_header.mpm"), "");
   }
+}
+
+/* ---------------------------------------------------------------------- range of validity */
+
+/** sqrt(2/3 D:D) of the step that took F0 to F1, from the velocity gradient of its middle. */
+double strain_rate(const double *F0, const double *F1, double dt)
+{
+  Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> f0(F0), f1(F1);
+  const Eigen::Matrix3d I = Eigen::Matrix3d::Identity(), A = f1 * f0.inverse() - I;
+  const Eigen::Matrix3d G = A * (I + 0.5 * A).inverse();
+  return std::sqrt(2.0 / 3.0) * (0.5 * (G + G.transpose())).norm() / dt;
+}
+
+// Two blocks, on two ranks when there are two, change their shape. Each warning names the first step, and of the points outside in this
+// step the first one: found here from the state of all points after each step.
+
+TEST(MaterialFix, LeavingARangeWarnsOnce)
+{
+  const double dt = 1.0e-6;
+  const std::string start = scene +
+      "timestep 1.0e-6\ncomm_modify cutoff 1.0\nthermo 100\n"
+      "variable vx atom 1.0e3*(x-2.0)*(x-1.0)\n"
+      "variable vy atom -1.0e3*x*(y-2.0)\n"
+      "velocity all set v_vx v_vy 0\n"
+      "fix a all mpm/material density 1000 eos linear 1e6 &\n"
+      "strength elastic 1e5 ";
+  constexpr int STEPS = 40;
+  enum { PRESSURE, RATE, DENSITY, N };
+  std::vector<std::array<double, N>> reference;    // of all points of all steps
+  int npoints = 0;
+  {
+    Lammps run;
+    run.commands(start + "\nrun 0 post no\n");
+    auto before = run.gather();
+    for (int step = 1; step <= STEPS; step++) {
+      run.commands("run 1 post no\n");
+      const auto after = run.gather();
+      npoints = 0;
+      for (std::size_t i = 0; i < after.size(); i++) {
+        ASSERT_EQ(after[i].tag, ++npoints);
+        const double *s = after[i].stress;
+        reference.push_back({-(s[0] + s[1] + s[2]) / 3, strain_rate(before[i].F, after[i].F, dt),
+                             after[i].mass / after[i].vol});
+      }
+      before = after;
+    }
+  }
+  const auto message = [&](int quantity, double low, double high) -> std::string {
+    static const char *const name[N] = {"pressure", "rate", "density"};
+    for (std::size_t n = 0; n < reference.size(); n++) {
+      const double value = reference[n][quantity];
+      if (value >= low && value <= high) continue;
+      char text[200];
+      snprintf(text, sizeof(text),
+               "Fix mpm/material a: %s %.6g of point %d at step %d is out of the range of this "
+               "material, %.6g to %.6g",
+               name[quantity], value, int(n % npoints + 1), int(n / npoints + 1), low, high);
+      return text;
+    }
+    return "";
+  };
+  const auto warnings = [&](const std::string &ranges) {
+    Lammps run;
+    run.commands("log ranges.log\n" + start + ranges + "\nrun 20 post no\nrun 20 post no\n" +
+                 "log none\n");
+    MPI_Barrier(MPI_COMM_WORLD);
+    std::vector<std::string> lines;
+    std::ifstream file("ranges.log");
+    for (std::string line; std::getline(file, line);)
+      if (contains(line, "out of the range")) lines.push_back(line);
+    MPI_Barrier(MPI_COMM_WORLD);
+    return lines;
+  };
+
+  // limits that are reached in the middle of the run
+  double density = INFINITY, pressure = -INFINITY;
+  for (int n = 0; n < 25 * npoints; n++) {
+    density = std::min(density, reference[n][DENSITY]);
+    pressure = std::max(pressure, reference[n][PRESSURE]);
+  }
+  density = std::round(density);
+  pressure = std::round(pressure) + 0.5;
+  const auto text = [](double x) {
+    return std::to_string(x);
+  };
+
+  EXPECT_EQ(warnings("range rate 0 1e5 range density 100 INF range pressure -1e9 1e9").size(), 0);
+
+  const auto found = warnings("range pressure -INF " + text(pressure) + " range density " +
+                              text(density) + " INF range rate 0 1000");
+  const std::string expected[] = {message(PRESSURE, -INFINITY, pressure),
+                                  message(DENSITY, density, INFINITY), message(RATE, 0.0, 1000.0)};
+  for (const auto &e : expected) {
+    EXPECT_NE(e, "");
+    int hits = 0;
+    for (const auto &line : found) hits += contains(line, e);
+    EXPECT_EQ(hits, 1) << e << "\n" << (found.empty() ? "nothing" : found[0]);
+  }
+  EXPECT_EQ(found.size(), 3);
+  int rank;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  if (rank == 0) remove("ranges.log");
 }
 
 /* ---------------------------------------------------------------------- mass */

@@ -16,6 +16,7 @@
 #include "memory.h"
 #include "update.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -27,7 +28,7 @@ static constexpr int RESTART_VERSION = 1;
 /* ---------------------------------------------------------------------- */
 
 FixMPMMaterial::FixMPMMaterial(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), material(nullptr), nhistory(0), history(nullptr), work()
+    Fix(lmp, narg, arg), material(nullptr), nhistory(0), history(nullptr), work(), watching(false)
 {
   static_assert(NWORK <= sizeof(work) / sizeof(double), "room for all kinds of work");
   if (narg < 4) utils::missing_cmd_args(FLERR, "fix mpm/material", error);
@@ -51,6 +52,9 @@ FixMPMMaterial::FixMPMMaterial(LAMMPS *lmp, int narg, char **arg) :
     atom->add_callback(Atom::RESTART);
     for (int i = 0; i < atom->nlocal; i++) FixMPMMaterial::set_arrays(i);
   }
+
+  exits.assign(material->ranges().size(), {false, MAXBIGINT, 0, 0.0});
+  watching = !exits.empty();
 
   if (comm->me == 0) utils::logmesg(lmp, "Material {}: {}\n", id, material->describe());
   assign_mass();
@@ -168,7 +172,7 @@ std::string FixMPMMaterial::read_words(const std::string &name, std::string &tex
 
 int FixMPMMaterial::setmask()
 {
-  return 0;
+  return watching ? FixConst::PRE_NEIGHBOR : 0;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -191,6 +195,72 @@ void FixMPMMaterial::init()
                    "{} material points keep a mass that is not the density of fix mpm/material {} "
                    "times their volume",
                    all, id);
+}
+
+/* ----------------------------------------------------------------------
+   ranges of validity: each rank notes the first step in which one of its points is outside;
+   ranks compare notes only when they talk to each other anyway
+------------------------------------------------------------------------- */
+
+void FixMPMMaterial::watch_ranges(const Batch &b, int first)
+{
+  double value[BATCH];
+  const auto &ranges = material->ranges();
+  for (std::size_t k = 0; k < ranges.size(); k++) {
+    Exit &e = exits[k];
+    if (e.reported || e.step < update->ntimestep || !material->outside(b, k, value)) continue;
+    for (int i = 0; i < b.n; i++) {
+      const tagint tag = atom->tag[first + i];
+      if (value[i] >= ranges[k].low && value[i] <= ranges[k].high) continue;
+      if (e.step == update->ntimestep && e.tag < tag) continue;
+      e = {false, update->ntimestep, tag, value[i]};
+    }
+  }
+}
+
+void FixMPMMaterial::pre_neighbor()
+{
+  report_exits();
+}
+
+void FixMPMMaterial::post_run()
+{
+  report_exits();
+}
+
+/* ----------------------------------------------------------------------
+   one warning for each range that was left, the same for any number of ranks
+------------------------------------------------------------------------- */
+
+void FixMPMMaterial::report_exits()
+{
+  if (!watching) return;
+  const int n = exits.size();
+  std::vector<bigint> mine(n), step(n), tag(n);
+  for (int k = 0; k < n; k++) mine[k] = exits[k].reported ? MAXBIGINT : exits[k].step;
+  MPI_Allreduce(mine.data(), step.data(), n, MPI_LMP_BIGINT, MPI_MIN, world);
+  if (*std::min_element(step.begin(), step.end()) == MAXBIGINT) return;
+
+  for (int k = 0; k < n; k++) mine[k] = exits[k].step == step[k] ? exits[k].tag : MAXBIGINT;
+  MPI_Allreduce(mine.data(), tag.data(), n, MPI_LMP_BIGINT, MPI_MIN, world);
+  std::vector<double> here(n, 0.0), value(n);
+  for (int k = 0; k < n; k++)
+    if (exits[k].step == step[k] && exits[k].tag == tag[k]) here[k] = exits[k].value;
+  MPI_Allreduce(here.data(), value.data(), n, MPI_DOUBLE, MPI_SUM, world);
+
+  watching = false;
+  for (int k = 0; k < n; k++) {
+    if (step[k] < MAXBIGINT && !exits[k].reported) {
+      exits[k].reported = true;
+      const auto &range = material->ranges()[k];
+      if (comm->me == 0)
+        error->warning(FLERR,
+                       "Fix mpm/material {}: {} {:.6g} of point {} at step {} is out of the range "
+                       "of this material, {:.6g} to {:.6g}; this is said only once",
+                       id, range.quantity, value[k], tag[k], step[k], range.low, range.high);
+    }
+    watching = watching || !exits[k].reported;
+  }
 }
 
 /* ----------------------------------------------------------------------

@@ -19,7 +19,8 @@ FixStyle(mpm/material,FixMPMMaterial);
 
 namespace MPM_NS {
 class Material;
-}
+struct Batch;
+}    // namespace MPM_NS
 
 namespace LAMMPS_NS {
 
@@ -30,6 +31,8 @@ class FixMPMMaterial : public Fix {
   ~FixMPMMaterial() override;
   int setmask() override;
   void init() override;
+  void pre_neighbor() override;
+  void post_run() override;
   double memory_usage() override;
   void grow_arrays(int) override;
   void copy_arrays(int, int, int) override;
@@ -54,7 +57,23 @@ class FixMPMMaterial : public Fix {
   /** Index of a history variable, -1 when the law has none of this name. */
   int find_history(const std::string &) const;
 
+  bool watching;    ///< is there a range of validity whose end was not reported yet?
+
+  /** Notes whether points of an updated batch, whose first one has this local index, have left a
+   *  range of validity. */
+  void watch_ranges(const MPM_NS::Batch &, int first);
+
  private:
+  /** The first time that a point left a range: of all points in that step the one with the smallest
+   *  ID. */
+  struct Exit {
+    bool reported;
+    bigint step;    ///< MAXBIGINT: not yet
+    tagint tag;
+    double value;
+  };
+  std::vector<Exit> exits;    ///< for each range of the material
+  void report_exits();
   void create(int, char **);
   void read_file(int, char **);
   std::string read_words(const std::string &, std::string &, std::vector<int> &);

@@ -257,6 +257,7 @@ void FixMPM::material_update(const Run &run, int first, int n, const double *L)
   }
 
   material->material->update(b);
+  if (material->watching) material->watch_ranges(b, first);
 
   const int bad =
       batch_kernels->store(b, &points->F[first][0], &points->stress[first][0], points->vol + first);

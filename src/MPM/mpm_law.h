@@ -182,6 +182,13 @@ struct LawTable {
   void (*clear_stress)(Batch &);           ///< stress of a law with no strength
   void (*speed)(int n, double density, const double *k, double *c);    ///< c = sqrt(k / density)
 
+  /** Pressure at the end of a step, and equivalent strain rate sqrt(2/3 D:D) in its middle. */
+  void (*pressure)(const Batch &, double *);
+  void (*strain_rate)(const Batch &, double *);
+
+  /** Number of values below low or above high. */
+  int (*outside)(int n, const double *value, double low, double high);
+
   /** The table for this CPU, or the one with this name: as MPMKernels::select(). */
   static const LawTable *select(const char *name = nullptr);
 };

@@ -8,7 +8,7 @@
 
 // What materials need besides their laws, for one instruction set: see mpm_law_kernels.h.
 
-#include "mpm_math.h"
+#include "mpm_law_kinematics.h"
 
 namespace MPM_NS::law {
 namespace {
@@ -26,6 +26,27 @@ namespace {
     const double inv = 1.0 / density;
     MPM_SIMD
     for (int i = 0; i < n; i++) c[i] = std::sqrt(max(k[i] * inv, 0.0));
+  }
+
+  void pressure(const Batch &b, double *p)
+  {
+    MPM_SIMD
+    for (int i = 0; i < b.n; i++) p[i] = (-1.0 / 3.0) * trace(load_stress(b, i));
+  }
+
+  void strain_rate(const Batch &b, double *rate)
+  {
+    const double c = (2.0 / 3.0) / (b.dt * b.dt);
+    MPM_SIMD
+    for (int i = 0; i < b.n; i++) rate[i] = std::sqrt(c * norm2(increment(b, i).strain));
+  }
+
+  int outside(int n, const double *value, double low, double high)
+  {
+    int count = 0;
+    MPM_SIMD_SUM(count)
+    for (int i = 0; i < n; i++) count += value[i] < low || value[i] > high ? 1 : 0;
+    return count;
   }
 
 #if defined(__AVX512F__)
@@ -49,5 +70,8 @@ void MPM_NAME(MPM_ISA)(LawTable &table)
   table.isa = law::isa;
   table.clear_stress = law::clear_stress;
   table.speed = law::speed;
+  table.pressure = law::pressure;
+  table.strain_rate = law::strain_rate;
+  table.outside = law::outside;
 }
 }    // namespace MPM_NS

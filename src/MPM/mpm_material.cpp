@@ -15,6 +15,7 @@
 //   any number of        viscosity newtonian | artificial ...
 //   at most one          damage ...
 //   at most one          thermal adiabatic | constant ...
+//   any number of        range QUANTITY LOW HIGH
 //
 // in any order. What follows the name of a law is in the declaration of its parameters.
 
@@ -22,6 +23,7 @@
 
 #include "mpm_law_kernels.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -100,15 +102,26 @@ std::string title(Part part, const LawInfo &info)
   return std::string(part_name[part]) + (part == CLOSED ? "" : " ") + info.name;
 }
 
+/** A range of validity in a definition. */
+struct UsedRange : ValidRange {
+  int word;    ///< of its quantity in the definition
+  /** How the quantity is found: one of these, or a row of history. */
+  int source;
+  enum { PRESSURE_OF_STRESS = -3, STRAIN_RATE = -2, DENSITY_OF_J = -1 };
+};
+
 class ComposedMaterial : public Material {
  public:
-  ComposedMaterial(double density, std::vector<UsedLaw> used[NPARTS], const LawTable *table) :
-      rho(density), table(table)
+  ComposedMaterial(double density, std::vector<UsedLaw> used[NPARTS],
+                   const std::vector<UsedRange> &ranges, const LawTable *table) :
+      rho(density),
+      table(table)
   {
     for (int part = 0; part < NPARTS; part++) laws[part] = std::move(used[part]);
     text = "density " + number(rho);
     for (int part = 0; part < NPARTS; part++)
       for (auto &law : laws[part]) add(static_cast<Part>(part), law);
+    for (const auto &range : ranges) add(range);
     ComposedMaterial::bind(1.0, 1.0);
   }
 
@@ -152,6 +165,28 @@ class ComposedMaterial : public Material {
       for (const auto &law : laws[part]) run(law);
   }
 
+  const std::vector<ValidRange> &ranges() const override { return valid; }
+
+  int outside(const Batch &b, int k, double *value) const override
+  {
+    const double *v = value;
+    switch (source[k]) {
+      case UsedRange::PRESSURE_OF_STRESS:
+        table->pressure(b, value);
+        break;
+      case UsedRange::STRAIN_RATE:
+        table->strain_rate(b, value);
+        break;
+      case UsedRange::DENSITY_OF_J:
+        for (int i = 0; i < b.n; i++) value[i] = rho / b.J[i];
+        break;
+      default:
+        v = b.history[source[k]];
+        std::copy(v, v + b.n, value);
+    }
+    return table->outside(b.n, v, valid[k].low, valid[k].high);
+  }
+
   void wave_speed(const Batch &b, double *c) const override
   {
     plain_speed(b, c);
@@ -174,6 +209,8 @@ class ComposedMaterial : public Material {
   std::vector<UsedLaw> laws[NPARTS];
   const UsedLaw *base;    ///< closed law or strength, or null
   std::vector<HistoryVariable> variables;
+  std::vector<ValidRange> valid;
+  std::vector<int> source;    ///< of the quantities of these, as in UsedRange
   std::string text;
 
   static History rows(const Batch &b, const UsedLaw &law)
@@ -232,6 +269,28 @@ class ComposedMaterial : public Material {
       text += std::string(" ") + info.term;
       for (int k = 0; k < info.nterm_parameters; k++) text += " " + number(p.term[term][k]);
     }
+  }
+
+  void add(const UsedRange &range)
+  {
+    int from = range.quantity == "pressure" ? UsedRange::PRESSURE_OF_STRESS
+        : range.quantity == "rate"          ? UsedRange::STRAIN_RATE
+        : range.quantity == "density"       ? UsedRange::DENSITY_OF_J
+                                            : static_cast<int>(variables.size());
+    std::string choice = "pressure, rate, density";
+    for (size_t k = 0; k < variables.size(); k++) {
+      choice += ", " + variables[k].name;
+      if (from >= 0 && variables[k].name == range.quantity) from = k;
+    }
+    if (from == static_cast<int>(variables.size()))
+      throw MaterialError(range.word,
+                          "range: this material has no '" + range.quantity + "': choose " + choice);
+    for (const auto &other : valid)
+      if (other.quantity == range.quantity)
+        throw MaterialError(range.word, "range: '" + range.quantity + "' is given twice");
+    valid.push_back(range);
+    source.push_back(from);
+    text += ", range " + range.quantity + " " + number(range.low) + " " + number(range.high);
   }
 
   void plain_speed(const Batch &b, double *c) const
@@ -307,6 +366,8 @@ class Parser {
       const std::string keyword = words[next++];
       if (keyword == "density")
         parse_density(here);
+      else if (keyword == "range")
+        parse_range();
       else if (find(declared_laws(CLOSED), keyword) >= 0)
         parse_law(CLOSED, here);
       else if (const int part = find_part(keyword))
@@ -315,7 +376,7 @@ class Parser {
         fail(here,
              "unknown keyword '" + keyword + "': expected density, " +
                  join(names(declared_laws(CLOSED)), ", ") +
-                 ", eos, strength, viscosity, damage or thermal");
+                 ", eos, strength, viscosity, damage, thermal or range");
     }
     check();
     const LawTable *table = LawTable::select(isa);
@@ -325,7 +386,7 @@ class Parser {
            std::string("MPM_ISA=") + (name ? name : "") +
                ": not one of reference, baseline, avx2, avx512, or this CPU cannot run it");
     }
-    return std::unique_ptr<Material>(new ComposedMaterial(density, used, table));
+    return std::unique_ptr<Material>(new ComposedMaterial(density, used, ranges, table));
   }
 
  private:
@@ -334,6 +395,7 @@ class Parser {
   const char *isa;
   double density = 0.0;
   std::vector<UsedLaw> used[NPARTS];
+  std::vector<UsedRange> ranges;
 
   bool at_end() const { return next >= static_cast<int>(words.size()); }
 
@@ -374,6 +436,27 @@ class Parser {
   {
     if (density > 0.0) fail(here, "density is given twice");
     density = parse_number("density", "RHO", "density", "reference density", POSITIVE);
+  }
+
+  /** range QUANTITY LOW HIGH, where LOW may be -INF and HIGH may be INF */
+  void parse_range()
+  {
+    UsedRange range;
+    range.word = next;
+    if (at_end()) fail(next, "range: name of the quantity is missing");
+    range.quantity = words[next++];
+    const std::string what = "range " + range.quantity;
+    const auto limit = [&](const char *name, const char *infinite, double value) {
+      if (at_end() || words[next] != infinite)
+        return parse_number(what, name, "units of the quantity", "limit of validity, or INF",
+                            {-UNBOUNDED, UNBOUNDED, false});
+      next++;
+      return value;
+    };
+    range.low = limit("LOW", "-INF", -UNBOUNDED);
+    range.high = limit("HIGH", "INF", UNBOUNDED);
+    if (!(range.low < range.high)) fail(next - 1, what + ": LOW must be less than HIGH");
+    ranges.push_back(range);
   }
 
   /** here: word of the law's name; next is behind it. */

@@ -40,10 +40,10 @@ struct Batch {
   alignas(64) double J[BATCH];            ///< det F at the end of the step
   alignas(64) double Jold[BATCH];         ///< det F at the start of the step
   alignas(64) double stress[6][BATCH];    ///< Cauchy stress; in: start, out: end of the step
-  alignas(64) double vol0[BATCH];    ///< initial volume
-  double (*history)[BATCH];          ///< [nhistory][BATCH]; in: start, out: end of the step
-  double work[NWORK];                ///< out: energy of each kind spent in this batch and step
-  double time;                       ///< at the end of the step
+  alignas(64) double vol0[BATCH];         ///< initial volume
+  double (*history)[BATCH];               ///< [nhistory][BATCH]; in: start, out: end of the step
+  double work[NWORK];                     ///< out: energy of each kind spent in this batch and step
+  double time;                            ///< at the end of the step
 
   // passed from part to part of a material within a step
 
@@ -56,6 +56,12 @@ struct Batch {
 struct HistoryVariable {
   std::string name;    ///< as used by compute mpm/atom
   double initial;      ///< value of a new point, before Material::initialize()
+};
+
+/** Values of a quantity for which a material is meant. */
+struct ValidRange {
+  std::string quantity;    ///< pressure, rate, density, or name of a history variable
+  double low, high;
 };
 
 /** What is wrong with the definition of a material, and which of its words is to blame. */
@@ -87,6 +93,12 @@ class Material {
 
   /** Stress and history at the end of the step (hot: one call per batch). */
   virtual void update(Batch &) const = 0;
+
+  /** Ranges of validity. They change nothing; whoever steps the material may look at them. */
+  virtual const std::vector<ValidRange> &ranges() const = 0;
+
+  /** value[n]: the quantity of range k after update(); returns the number of points outside. */
+  virtual int outside(const Batch &, int k, double *value) const = 0;
 
   /** c[n]: speed of the fastest (longitudinal) wave at the present state, raised by a viscosity
    *  such that h/c is the stable time step; n, h and current F, J, stress, history in the batch, A
