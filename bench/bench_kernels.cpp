@@ -44,7 +44,7 @@ struct Block {
 /** A square or cube of jittered points, sorted, with its blocks. */
 struct Scene {
   int dim, n, nblocks;
-  std::vector<double> x, v, f, C, F, stress, vol, mass;
+  std::vector<double> x, v, f, C, F, tau, vol0, mass;
   std::vector<Block> blocks;
 
   Scene(int dim, int order, int wanted) : dim(dim)
@@ -86,13 +86,13 @@ struct Scene {
 
     n = points.size();
     nblocks = dim == 3 ? nside * nside * nside : nside * nside;
-    x.resize(3 * n), v.resize(3 * n), f.resize(3 * n), C.resize(9 * n), F.resize(9 * n);
-    stress.resize(6 * n);
-    vol.assign(n, std::pow(H / ppc, dim));
+    x.resize(3 * n), v.resize(3 * n), f.resize(3 * n), C.resize(dim * dim * n), F.resize(9 * n);
+    tau.resize(6 * n);
+    vol0.assign(n, std::pow(H / ppc, dim));
     mass.assign(n, 1.0);
     for (int p = 0; p < n; p++)
       for (int a = 0; a < 3; a++) x[3 * p + a] = H * points[p].t[a];
-    for (auto *a : {&v, &f, &C, &stress})
+    for (auto *a : {&v, &f, &C, &tau})
       for (double &b : *a) b = 1e-6 * jitter(random);
 
     for (int p = 0; p < n;) {
@@ -118,8 +118,8 @@ struct Scene {
 
   PointRows rows()
   {
-    return {x.data(),   v.data(),    f.data(), C.data(), stress.data(),
-            vol.data(), mass.data(), x.data(), F.data()};
+    return {x.data(),    v.data(),    f.data(), C.data(), tau.data(),
+            vol0.data(), mass.data(), x.data(), F.data(), n - 1};
   }
 };
 

@@ -110,8 +110,8 @@ class Run {
       lmp->domain->unmap(x, image, s.x);
       for (int d = 0; d < 3; d++) s.v[d] = atom->v[i][d];
       for (int c = 0; c < 9; c++) s.F[c] = points->F[i][c];
-      for (int c = 0; c < 6; c++) s.stress[c] = points->stress[i][c];
-      s.vol = points->vol[i];
+      points->cauchy(i, s.stress);
+      s.vol = points->jacobian(i) * atom->vfrac[i];
       s.mass = atom->rmass[i];
     }
     int nprocs;
@@ -209,10 +209,11 @@ class Run {
       const double inertia = h * h / (fix->shape == MPM_NS::QUADRATIC ? 4.0 : 3.0);
       for (int i = 0; i < atom->nlocal; i++) {
         if (!fix->is_point(i) || (type && atom->type[i] != type)) continue;
-        const double *C = fix->C[i];    // C[3*j+i] = d v_i / d x_j
-        for (int d = 0; d < 3; d++) {
+        const double *C = fix->C[i];    // C[dim*j+i] = d v_i / d x_j
+        const int dim = fix->lattice.dim;
+        for (int d = dim == 3 ? 0 : 2; d < 3; d++) {
           const int e = (d + 1) % 3, f = (d + 2) % 3;
-          s[7 + d] += (long double) atom->rmass[i] * inertia * (C[3 * e + f] - C[3 * f + e]);
+          s[7 + d] += (long double) atom->rmass[i] * inertia * (C[dim * e + f] - C[dim * f + e]);
         }
       }
     }

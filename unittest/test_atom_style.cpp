@@ -133,12 +133,12 @@ class Scene {
       p.mask = atom()->mask[i];
       p.mass = atom()->rmass[i];
       p.volume0 = atom()->vfrac[i];
-      p.volume = points()->vol[i];
+      p.volume = p.volume0 * points()->jacobian(i);
       p.radius = atom()->radius_flag ? atom()->radius[i] : 0.0;
       std::copy_n(atom()->x[i], 3, p.x);
       std::copy_n(atom()->v[i], 3, p.v);
       std::copy_n(points()->F[i], 9, p.F);
-      std::copy_n(points()->stress[i], 6, p.stress);
+      std::copy_n(points()->tau[i], 6, p.stress);
     }
     const int n = nranks(lmp->world);
     int reals = mine.size() * Point::REALS;
@@ -160,9 +160,8 @@ class Scene {
       const double s = 1.0 / (3.0 + atom()->tag[i]);
       atom()->rmass[i] = 1.0 + s;
       atom()->vfrac[i] = 2.0 + s * s;
-      points()->vol[i] = 0.3 - 0.1 * s;
       for (int c = 0; c < 9; c++) points()->F[i][c] = (c % 4 == 0) + s * (c + 1) / 7.0;
-      for (int c = 0; c < 6; c++) points()->stress[i][c] = -1.0e9 * s * (c + 1);
+      for (int c = 0; c < 6; c++) points()->tau[i][c] = -1.0e9 * s * (c + 1);
     }
   }
 
@@ -817,8 +816,8 @@ TEST(AtomStyle, MemoryPerPoint)
   Scene scene(MPI_COMM_SELF);
   scene.commands(moving);
 
-  // LAMMPS's own 16 + 3*24, ours 3*8 + 72 + 48, and a pointer for each row of x, v, f, F, stress
-  EXPECT_LE(scene.atom()->avec->memory_usage() / scene.atom()->nmax, 232.0 + 40.0);
+  // LAMMPS's own 16 + 3*24, ours 2*8 + 72 + 48, and a pointer for each row of x, v, f, F, tau
+  EXPECT_LE(scene.atom()->avec->memory_usage() / scene.atom()->nmax, 224.0 + 40.0);
   EXPECT_EQ(scene.atom()->avec->comm_x_only, 1);
   EXPECT_EQ(scene.atom()->avec->comm_f_only, 1);
 }
@@ -980,18 +979,18 @@ TEST(AtomStyle, PropertyAtom)
       for (int c = 0; c < 14; c++) EXPECT_EQ(a[c], 0.0);
       continue;
     }
-    const double *F = scene.points()->F[i], *s = scene.points()->stress[i];
+    const double *F = scene.points()->F[i], *tau = scene.points()->tau[i];
     EXPECT_EQ(a[0], scene.atom()->vfrac[i]);
-    EXPECT_EQ(a[1], scene.points()->vol[i]);
     const double J = F[0] * F[4] * F[8] + F[1] * F[5] * F[6] + F[2] * F[3] * F[7] -
         F[2] * F[4] * F[6] - F[1] * F[3] * F[8] - F[0] * F[5] * F[7];
     EXPECT_NEAR(a[2], J, 1.0e-14);
-    EXPECT_DOUBLE_EQ(a[3], scene.atom()->rmass[i] / scene.points()->vol[i]);
+    EXPECT_DOUBLE_EQ(a[1], scene.atom()->vfrac[i] * a[2]);
+    EXPECT_DOUBLE_EQ(a[3], scene.atom()->rmass[i] / a[1]);
     EXPECT_EQ(a[4], F[1]);
     EXPECT_EQ(a[5], F[6]);
     EXPECT_EQ(a[6], F[8]);
-    for (int c = 0; c < 6; c++) EXPECT_EQ(a[7 + c], s[c]);
-    EXPECT_EQ(a[13], s[5]);
+    for (int c = 0; c < 6; c++) EXPECT_NEAR(a[7 + c], tau[c] / J, 1.0e-14 * fabs(a[7 + c]));
+    EXPECT_EQ(a[13], a[12]);
   }
   EXPECT_THAT(scene.error("compute q all property/atom mpm_F14"), HasSubstr("mpm_F14"));
 }

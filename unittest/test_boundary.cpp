@@ -39,14 +39,14 @@ void set_field(Sim &run,
 {
   auto *atom = run.lmp->atom;
   double **C = field_of(run)->C;
+  const int dim = run.lmp->domain->dimension;
   for (int i = 0; i < atom->nlocal; i++) {
     double v[3] = {0.0, 0.0, 0.0}, g[3][3] = {{0.0}};
     field(atom->x[i], v, g);
-    for (int a = 0; a < 3; a++) {
-      atom->v[i][a] = v[a];
-      if (C)
-        for (int b = 0; b < 3; b++) C[i][3 * b + a] = g[a][b];
-    }
+    for (int a = 0; a < 3; a++) atom->v[i][a] = v[a];
+    if (C)
+      for (int a = 0; a < dim; a++)
+        for (int b = 0; b < dim; b++) C[i][dim * b + a] = g[a][b];
   }
 }
 

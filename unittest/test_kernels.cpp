@@ -12,16 +12,19 @@
 // Transfer kernels of every instruction set: agreement with the reference, and what a transfer must
 // do whatever the implementation (conservation, exact fields, rows left alone).
 
+#include "mpm_batch.h"
 #include "mpm_kernels.h"
 #include "mpm_shape.h"
 
 #include "gtest/gtest.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <random>
 #include <string>
 #include <vector>
@@ -61,14 +64,17 @@ double difference(const Reals &a, const Reals &b)
 /** Points of which the rows [first,last) lie in the tile of a block; arrays are not padded. */
 struct Points {
   int dim, order, first, last, n;
+  int nC;         // reals of a matrix C
+  int guarded;    // as in PointRows: the last row exists, no more
   TransferStep step;
   int base[3];
-  Reals x, v, f, C, stress, vol, mass, xnew;
+  Reals x, v, f, C, tau, vol0, mass, xnew;
 
   Points(int dim, int order, int first, int count, int behind, bool sorted) :
-      dim(dim), order(order), first(first), last(first + count),
-      n(first + count + behind), base{integer(-40, 40), integer(-40, 40), integer(-40, 40)},
-      x(3 * n), v(3 * n), f(3 * n), C(9 * n), stress(6 * n), vol(n), mass(n), xnew(3 * n)
+      dim(dim), order(order), first(first), last(first + count), n(first + count + behind),
+      nC(dim * dim),
+      guarded(integer(0, 1) * (n - 1)), base{integer(-40, 40), integer(-40, 40), integer(-40, 40)},
+      x(3 * n), v(3 * n), f(3 * n), C(nC * n), tau(6 * n), vol0(n), mass(n), xnew(3 * n)
   {
     step.h = uniform(0.1, 2.0);
     step.inv_h = 1.0 / step.h;
@@ -78,8 +84,8 @@ struct Points {
     step.stress_scale = uniform(0.5, 2.0);
     for (double &o : step.origin) o = uniform(-5.0, 5.0);
 
-    fill(v), fill(f), fill(C), fill(stress);
-    for (double &a : vol) a = uniform(0.5, 1.5) * step.h * step.h * step.h;
+    fill(v), fill(f), fill(C), fill(tau);
+    for (double &a : vol0) a = uniform(0.5, 1.5) * step.h * step.h * step.h;
     for (double &a : mass) a = uniform(0.5, 1.5);
 
     // everywhere in the range of base nodes of a tile
@@ -104,8 +110,9 @@ struct Points {
   /** in_place: new positions replace the old ones. */
   PointRows rows(bool in_place = true)
   {
-    return {x.data(),      v.data(),   f.data(),    C.data(),
-            stress.data(), vol.data(), mass.data(), in_place ? x.data() : xnew.data()};
+    return {x.data(),   v.data(),    f.data(),    C.data(),
+            tau.data(), vol0.data(), mass.data(), in_place ? x.data() : xnew.data(),
+            nullptr,    guarded};
   }
 
   /** Position of a tile node. */
@@ -326,7 +333,7 @@ TEST_P(Kernels, G2PAgreesWithReference)
       const bool in_place = variant != 1, with_L = variant != 2;
       Points a = random_points(count), b = a;
       const Tile tile = random_field();
-      Reals La(9 * count), Lb(9 * count);
+      Reals La(a.nC * count), Lb(a.nC * count);
       const int left_a = kernels.g2p(a.rows(in_place), a.step, a.first, a.last, a.base, tile.real,
                                      with_L ? La.data() : nullptr);
       const int left_b = reference.g2p(b.rows(in_place), b.step, b.first, b.last, b.base, tile.real,
@@ -347,7 +354,7 @@ TEST_P(Kernels, GradientAgreesWithReferenceAndG2P)
   for (int count : {1, 2, 3, 8, 61, 64}) {
     Points a = random_points(count), before = a;
     const Tile tile = random_field();
-    Reals La(9 * count), Lb(9 * count), Lc(9 * count);
+    Reals La(a.nC * count), Lb(a.nC * count), Lc(a.nC * count);
     ASSERT_EQ(kernels.g2p_gradient(a.rows(), a.step, a.first, a.last, a.base, tile.real, La.data()),
               0);
     reference.g2p_gradient(a.rows(), a.step, a.first, a.last, a.base, tile.real, Lb.data());
@@ -363,12 +370,14 @@ TEST_P(Kernels, GradientAgreesWithReferenceAndG2P)
 
 TEST_P(Kernels, OtherRowsAreLeftAlone)
 {
-  for (int count : {1, 2, 3, 16, 17}) {
+  for (int trial = 0; trial < 10; trial++) {
+    const int count = std::array<int, 5>{1, 2, 3, 16, 17}[trial / 2];
     Points points(dim, order, 3, count, 2, false);
+    points.guarded = trial % 2 * (points.n - 1);
     const Points before = points;
     const Tile tile = random_field();
     // room behind the rows of L stands for the memory of somebody else
-    Reals L(9 * count + 9, 3.25);
+    Reals L(points.nC * (count + 1), 3.25);
     kernels.g2p(points.rows(false), points.step, points.first, points.last, points.base, tile.real,
                 L.data());
     auto check = [&](const Reals &now, const Reals &then, int width, const char *what) {
@@ -379,9 +388,9 @@ TEST_P(Kernels, OtherRowsAreLeftAlone)
     };
     check(points.v, before.v, 3, "v");
     check(points.xnew, before.xnew, 3, "xnew");
-    check(points.C, before.C, 9, "C");
+    check(points.C, before.C, points.nC, "C");
     EXPECT_EQ(points.x, before.x);
-    for (int i = 9 * count; i < 9 * count + 9; i++) ASSERT_EQ(L[i], 3.25);
+    for (int i = points.nC * count; i < points.nC * (count + 1); i++) ASSERT_EQ(L[i], 3.25);
   }
 }
 
@@ -413,7 +422,7 @@ TEST_P(Kernels, TotalForceIsTheExternalForce)
   double force[3] = {0.0, 0.0, 0.0}, size = 0.0;
   for (int p = points.first; p < points.last; p++) {
     for (int i = 0; i < dim; i++) force[i] += scale * points.step.force_scale * points.f[3 * p + i];
-    size += 2.0 * scale * (1.0 + points.vol[p] * points.step.inv_h);
+    size += 2.0 * scale * (1.0 + points.vol0[p] * points.step.inv_h);
   }
   for (int i = 0; i < 3; i++)
     EXPECT_NEAR(tile.sum(split ? 4 + i : i), force[i], 1e-13 * size) << "axis " << i;
@@ -437,7 +446,8 @@ TEST_P(Kernels, AngularMomentumIsConserved)
       nodes += x[i] * tile.real[nreal * n + j] - x[j] * tile.real[nreal * n + i];
     }
     for (int p = points.first; p < points.last; p++) {
-      const double *x = &points.x[3 * p], *v = &points.v[3 * p], *C = &points.C[9 * p];
+      const double *x = &points.x[3 * p], *v = &points.v[3 * p];
+      const double *C = &points.C[points.nC * p];
       expected += points.mass[p] * (x[i] * v[j] - x[j] * v[i]);
       if (!kernels.affine) continue;
       double moment[3];    // sum of w (x_i - x)^2 along each axis
@@ -447,7 +457,7 @@ TEST_P(Kernels, AngularMomentumIsConserved)
         moment[a] = order == 1 ? f * (1.0 - f) : (order == 2 ? 0.25 : 1.0 / 3.0);
         moment[a] *= points.step.h * points.step.h;
       }
-      expected += points.mass[p] * (C[3 * i + j] * moment[i] - C[3 * j + i] * moment[j]);
+      expected += points.mass[p] * (C[dim * i + j] * moment[i] - C[dim * j + i] * moment[j]);
     }
     EXPECT_NEAR(nodes, expected, 1e-13 * reach * 101) << "axis " << k;
   }
@@ -492,7 +502,7 @@ TEST_P(Kernels, ConstantAndLinearFieldsAreExact)
       for (int i : {2, 5, 6, 7, 8}) B[i] = D[i] = 0.0;
     const Tile tile = linear_field(points, a.data(), B.data(), b.data(), D.data());
     const Points before = points;
-    Reals L(9 * 64);
+    Reals L(points.nC * 64);
     kernels.g2p(points.rows(), points.step, points.first, points.last, points.base, tile.real,
                 L.data());
     for (int p = points.first; p < points.last; p++) {
@@ -507,12 +517,14 @@ TEST_P(Kernels, ConstantAndLinearFieldsAreExact)
           v = points.step.flip * (before.v[3 * p + i] + v - v_old) + (1.0 - points.step.flip) * v;
         EXPECT_NEAR(points.v[3 * p + i], v, 1e-12 * size);
       }
-      for (int i = 0; i < 9; i++) {
-        // velocities of size 100 h divided by h
-        EXPECT_NEAR(L[9 * (p - points.first) + i], B[i], 1e-12 * (200.0 + 10.0 / points.step.h));
-        EXPECT_EQ(points.C[9 * p + i],
-                  kernels.affine ? L[9 * (p - points.first) + i] : before.C[9 * p + i]);
-      }
+      for (int j = 0; j < dim; j++)
+        for (int i = 0; i < dim; i++) {
+          const int k = dim * j + i;
+          const double Lk = L[points.nC * (p - points.first) + k];
+          // velocities of size 100 h divided by h
+          EXPECT_NEAR(Lk, B[3 * j + i], 1e-12 * (200.0 + 10.0 / points.step.h));
+          EXPECT_EQ(points.C[points.nC * p + k], kernels.affine ? Lk : before.C[points.nC * p + k]);
+        }
     }
   }
 }
@@ -531,7 +543,8 @@ TEST_P(Kernels, AffineFieldSurvivesTheRoundTrip)
     const double *x = &points.x[3 * p];
     for (int i = 0; i < 3; i++)
       points.v[3 * p + i] = a[i] + B[i] * x[0] + B[3 + i] * x[1] + B[6 + i] * x[2];
-    for (int i = 0; i < 9; i++) points.C[9 * p + i] = B[i];
+    for (int j = 0; j < dim; j++)
+      for (int i = 0; i < dim; i++) points.C[dim * (dim * p + j) + i] = B[3 * j + i];
   }
   Tile tile(dim, order, nreal);
   Box box;
@@ -559,7 +572,7 @@ TEST_P(Kernels, SplitEqualsMerged)
   merged.p2g(b.rows(), b.step, b.first, b.last, b.base, tile_b.real, box.b);
   table->solve_nodes(tile_a.real, tile_a.nodes, 8, a.step.dt);
   table->solve_nodes(tile_b.real, tile_b.nodes, 4, b.step.dt);
-  Reals La(9 * 150), Lb(9 * 150);
+  Reals La(a.nC * 150), Lb(a.nC * 150);
   kernels.g2p(a.rows(), a.step, a.first, a.last, a.base, tile_a.real, La.data());
   merged.g2p(b.rows(), b.step, b.first, b.last, b.base, tile_b.real, Lb.data());
   // velocities of nodes with tiny mass lose digits and count little
@@ -595,7 +608,7 @@ TEST_P(Kernels, PointsThatLeaveTheTileAreReported)
           points.x[3 * p + axis] = x - points.step.dt * a[axis];
         const Tile tile = linear_field(points, a.data(), zero.data(), a.data(), zero.data());
         EXPECT_EQ(kernels.g2p(points.rows(), points.step, points.first, points.last, points.base,
-                              tile.real, Reals(9 * count).data()) != 0,
+                              tile.real, Reals(points.nC * count).data()) != 0,
                   outside)
             << "target " << target;
       }
@@ -614,16 +627,11 @@ TEST_P(Kernels, TwoDimensionsLeaveZAlone)
   for (double pz : tile.column(2)) ASSERT_EQ(pz, 0.0);
 
   const Tile field = random_field();
-  Reals L(9 * 33, 1.0);
   kernels.g2p(points.rows(false), points.step, points.first, points.last, points.base, field.real,
-              L.data());
+              nullptr);
   for (int p = points.first; p < points.last; p++) {
     EXPECT_EQ(points.v[3 * p + 2], before.v[3 * p + 2]);
     EXPECT_EQ(points.xnew[3 * p + 2], before.x[3 * p + 2]);
-    for (int i : {2, 5, 6, 7, 8}) {
-      EXPECT_EQ(L[9 * (p - points.first) + i], 0.0);
-      EXPECT_EQ(points.C[9 * p + i], kernels.affine ? 0.0 : before.C[9 * p + i]);
-    }
   }
 }
 
@@ -715,6 +723,74 @@ class Tables : public ::testing::TestWithParam<const char *> {
     if (!table) GTEST_SKIP() << "the CPU does not have it, or the compiler does not know it";
   }
 };
+
+/** Rows to a batch: F <- (I + dt L) F, and Kirchhoff to Cauchy stress with the old volume. Back with
+ *  the new volume, but not for points that are inverted. */
+TEST_P(Tables, BatchesAgreeWithMatrixAlgebra)
+{
+  for (int dim : {2, 3})
+    for (int n : {1, 2, 3, 4, 5, 7, 8, 9, 31, 63, 64}) {
+      const auto *kernels = BatchKernels::select(dim, GetParam());
+      ASSERT_NE(kernels, nullptr);
+      const int nL = dim * dim;
+      const double dt = 0.1;
+      Reals L(nL * n), F(9 * n, 0.0), tau(6 * n, 0.0), vol0(n);
+      fill(L), fill(vol0);
+      for (int p = 0; p < n; p++) {
+        for (int i = 0; i < dim; i++)
+          for (int j = 0; j < dim; j++) F[9 * p + 3 * i + j] = (i == j) + uniform(-0.3, 0.3);
+        if (dim == 2) F[9 * p + 8] = uniform(0.5, 2.0);
+        for (int c = 0; c < (dim == 2 ? 4 : 6); c++) tau[6 * p + c] = uniform(-1.0, 1.0);
+      }
+      const int inverted = n > 8 ? integer(0, n - 1) : -1;
+      if (inverted >= 0) L[nL * inverted] = -1000.0;
+
+      auto det = [](const double *f) {
+        return f[0] * (f[4] * f[8] - f[5] * f[7]) - f[1] * (f[3] * f[8] - f[5] * f[6]) +
+            f[2] * (f[3] * f[7] - f[4] * f[6]);
+      };
+      auto b = std::make_unique<Batch>();
+      kernels->load(*b, n, dt, L.data(), F.data(), tau.data(), vol0.data());
+      EXPECT_EQ(b->n, n);
+      EXPECT_EQ(b->dt, dt);
+      std::vector<std::array<double, 9>> expected(n);
+      for (int p = 0; p < n; p++) {
+        double A[9] = {0.0};
+        for (int i = 0; i < dim; i++)
+          for (int j = 0; j < dim; j++) A[3 * i + j] = dt * L[nL * p + dim * j + i];
+        const double *f = &F[9 * p];
+        for (int i = 0; i < 3; i++)
+          for (int j = 0; j < 3; j++) {
+            double &g = expected[p][3 * i + j];
+            g = f[3 * i + j];
+            for (int k = 0; k < 3; k++) g += A[3 * i + k] * f[3 * k + j];
+          }
+        const double size = p == inverted ? 1.0e3 : 1.0;
+        for (int c = 0; c < 9; c++) {
+          EXPECT_NEAR(b->A[c][p], A[c], 1e-15 * size);
+          EXPECT_NEAR(b->F[c][p], expected[p][c], 1e-14 * size);
+        }
+        EXPECT_NEAR(b->Jold[p], det(f), 1e-14);
+        EXPECT_NEAR(b->J[p], det(expected[p].data()), 1e-13 * size);
+        EXPECT_EQ(b->vol0[p], vol0[p]);
+        for (int c = 0; c < 6; c++)
+          EXPECT_NEAR(b->stress[c][p], tau[6 * p + c] / det(f), 1e-14 / det(f));
+      }
+
+      for (int p = 0; p < n; p++)
+        for (int c = 0; c < (dim == 2 ? 4 : 6); c++) b->stress[c][p] = uniform(-1.0, 1.0);
+      const bool bad = inverted >= 0 && !(b->J[inverted] > 0.0);
+      const Reals F_before = F, tau_before = tau;
+      EXPECT_EQ(kernels->store(*b, F.data(), tau.data()), bad);
+      for (int p = 0; p < n; p++) {
+        const bool kept = bad && p == inverted;
+        for (int c = 0; c < 9; c++)
+          EXPECT_EQ(F[9 * p + c], kept ? F_before[9 * p + c] : b->F[c][p]);
+        for (int c = 0; c < 6; c++)
+          EXPECT_EQ(tau[6 * p + c], kept ? tau_before[6 * p + c] : b->J[p] * b->stress[c][p]);
+      }
+    }
+}
 
 TEST_P(Tables, SolveNodesMerged)
 {

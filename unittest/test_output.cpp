@@ -191,8 +191,7 @@ class ByHand : public ::testing::Test {
     for (int i = 0; i < atom->nlocal; i++) {
       const double t = atom->tag[i];
       for (int c = 0; c < 9; c++) points->F[i][c] = (c % 4 == 0) + 0.01 * t * (c - 2);
-      for (int c = 0; c < 6; c++) points->stress[i][c] = t * (c + 1) * (c % 2 ? 1.0 : -1.5);
-      points->vol[i] = 0.125 * (1.0 + 0.1 * t);
+      for (int c = 0; c < 6; c++) points->tau[i][c] = t * (c + 1) * (c % 2 ? 1.0 : -1.5);
       for (int d = 0; d < 3; d++) atom->v[i][d] = 1.0e-3 * t * (d + 1);
       if (atom->type[i] == 2) plastic->history[i][eplastic] = 0.5 * t;
     }
@@ -241,10 +240,10 @@ TEST_F(ByHand, NamesGiveTheQuantities)
       {"F/zy", [](const State &p) { return p.F[7]; }},
       {"F/zz", [](const State &p) { return p.F[8]; }},
       {"J", [](const State &p) { return det(p.F); }},
-      {"volume", [](const State &p) { return 0.125 * (1.0 + 0.1 * p.tag); }},
+      {"volume", [](const State &p) { return 0.125 * det(p.F); }},
       {"volume0", [](const State &) { return 0.125; }},
       {"mass", [](const State &p) { return 0.125 * (p.tag < 3 ? RHO1 : RHO2); }},
-      {"density", [](const State &p) { return (p.tag < 3 ? RHO1 : RHO2) / (1.0 + 0.1 * p.tag); }},
+      {"density", [](const State &p) { return (p.tag < 3 ? RHO1 : RHO2) / det(p.F); }},
       {"speed", [](const State &p) { return 1.0e-3 * p.tag * sqrt(14.0); }},
       {"eplastic", [](const State &p) { return p.tag < 3 ? 0.0 : 0.5 * p.tag; }},
   };
@@ -278,7 +277,8 @@ TEST_F(ByHand, StressInvariants)
                                {c * c + 2 * s * s, s * s + 2 * c * c, 6, -c * s, 0, 0}};
   for (int i = 0; i < run.lmp->atom->nlocal; i++) {
     const int p = (int) run.lmp->atom->tag[i] - 1;
-    if (p < 4) memcpy(points->stress[i], stress[p], 6 * sizeof(double));
+    if (p < 4)
+      for (int k = 0; k < 6; k++) points->tau[i][k] = points->jacobian(i) * stress[p][k];
   }
 
   const double vonmises[] = {7, 0, 5 * sqrt(3.0), sqrt(21.0)};

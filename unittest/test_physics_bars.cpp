@@ -317,8 +317,8 @@ class Bars : public ::testing::TestWithParam<const char *> {
           int n = 0;
           for (int i = 0; i < run.n(); i++)
             if (std::abs(run.x()[i][0]) < 0.3) {
-              sum += run.points().stress[i][0];
-              lowest = std::min(lowest, run.points().stress[i][0]);
+              sum += run.points().tau[i][0] / run.points().jacobian(i);
+              lowest = std::min(lowest, run.points().tau[i][0] / run.points().jacobian(i));
               n++;
             }
           stress += sum / n;
@@ -452,8 +452,7 @@ static Galilean galilean_bar(const std::string &options, int cells, double V)
     run.x()[i][0] += A * cos(PI * X);
     run.v()[i][0] = V;
     run.points().F[i][0] = F;
-    run.points().vol[i] *= F;
-    run.points().stress[i][0] = 0.5 * GALILEAN_E * (F - 1.0 / F);
+    run.points().tau[i][0] = 0.5 * GALILEAN_E * (F * F - 1.0);
     // the other normal stresses of this law are zero with Poisson's ratio 0
   }
   double worst = 0.0, energy = 0.0;
@@ -552,9 +551,9 @@ TEST_P(Pulse, WaveSpeed)
     run.x()[i][0] += A * g;
     run.v()[i][0] = -speed * strain;
     run.points().F[i][0] += strain;
-    run.points().vol[i] = run.lmp->atom->vfrac[i] * (1.0 + strain);
-    run.points().stress[i][0] = modulus * strain;
-    run.points().stress[i][1] = run.points().stress[i][2] = lambda * strain;
+    const double J = 1.0 + strain;
+    run.points().tau[i][0] = J * modulus * strain;
+    run.points().tau[i][1] = run.points().tau[i][2] = J * lambda * strain;
   }
   // centre of the kinetic energy
   double position = 0.0, start = 0.0, energy = 0.0;

@@ -51,7 +51,7 @@ static double largest_stress(Scene &run)
 {
   double s = 0.0;
   for (int i = 0; i < run.n(); i++)
-    for (int c = 0; c < 6; c++) s = std::max(s, std::abs(run.points().stress[i][c]));
+    for (int c = 0; c < 6; c++) s = std::max(s, std::abs(run.points().tau[i][c]));
   return s;
 }
 
@@ -225,7 +225,7 @@ TEST_P(StressedPatch, InteriorStaysUniform)
   if (auto *C = run.field()->C)
     for (int i = 0; i < run.n(); i++) {
       C[i][0] = rate;
-      C[i][4] = -0.5 * rate;
+      C[i][3] = -0.5 * rate;
     }
   run.commands("run 10\n");
   // waves come in from the free surface, c t = 1.2, with numerical precursors
@@ -291,11 +291,11 @@ TEST_P(DrivenRotation, TenTurns)
   double norm0 = 0.0;
   for (int k = 0; k < 6; k++) norm0 += (k < 3 ? 1.0 : 2.0) * s0[k] * s0[k];
   for (int i = 0; i < run.n(); i++)
-    for (int k = 0; k < 6; k++) run.points().stress[i][k] = s0[k];
+    for (int k = 0; k < 6; k++) run.points().tau[i][k] = s0[k];
   double error_J = 0.0, error_invariants = 0.0, turned = 0.0;
   run.each_step([&](double **) {
     for (int i = 0; i < run.n(); i++) {
-      const double *s = run.points().stress[i];
+      const double *s = run.points().tau[i];
       double norm = 0.0;
       for (int k = 0; k < 6; k++) norm += (k < 3 ? 1.0 : 2.0) * s[k] * s[k];
       error_J = std::max(error_J, std::abs(det(run.points().F[i]) - 1.0));
@@ -310,7 +310,7 @@ TEST_P(DrivenRotation, TenTurns)
     for (int d = 0; d < 3; d++)
       error_x = std::max(error_x, std::abs(run.x()[i][d] - run.reference(i)[d]));
     for (int k = 0; k < 6; k++)
-      error_s = std::max(error_s, std::abs(run.points().stress[i][k] - s0[k]));
+      error_s = std::max(error_s, std::abs(run.points().tau[i][k] - s0[k]));
   }
   EXPECT_GT(turned, 1.0);
   EXPECT_LT(measured("driven rotation, |J - 1|", error_J), 1.0e-11);
@@ -573,7 +573,7 @@ static void setup_spin(Scene &run, const std::string &options, const std::string
   if (auto *C = run.field()->C)
     for (int i = 0; i < run.n(); i++) {
       C[i][1] = SPIN_OMEGA;
-      C[i][3] = -SPIN_OMEGA;
+      C[i][2] = -SPIN_OMEGA;
     }
 }
 

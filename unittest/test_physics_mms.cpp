@@ -111,7 +111,7 @@ static double mms_error(int dim, int ne, double G, const std::string &options, b
     s.at(run.reference(i), 0.0, u, run.v()[i], F, b);
     if (!C) continue;
     for (int d = 0; d < dim; d++)
-      C[i][4 * d] = G * PI * PI * c * cos(PI * run.reference(i)[d]) * (d ? -1.0 : 1.0);
+      C[i][3 * d] = G * PI * PI * c * cos(PI * run.reference(i)[d]) * (d ? -1.0 : 1.0);
   }
   double worst = 0.0;
   run.each_step([&](double **force) {

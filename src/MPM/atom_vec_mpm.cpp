@@ -54,11 +54,11 @@ AtomVecMPM::AtomVecMPM(LAMMPS *lmp) :
   // border: ghost points need nothing of this style (a sphere style sends radius and mass)
   // data_vel: must not have more columns than comm_vel, write_data relies on it
 
-  fields_grow = {"rmass", "vfrac", "mpm_vol", "mpm_F", "mpm_stress"};
-  fields_copy = {"rmass", "vfrac", "mpm_vol", "mpm_F", "mpm_stress"};
-  fields_exchange = {"rmass", "vfrac", "mpm_vol", "mpm_F", "mpm_stress"};
-  fields_restart = {"rmass", "vfrac", "mpm_vol", "mpm_F", "mpm_stress"};
-  fields_create = {"rmass", "vfrac", "mpm_vol", "mpm_F", "mpm_stress"};
+  fields_grow = {"rmass", "vfrac", "mpm_F", "mpm_tau"};
+  fields_copy = {"rmass", "vfrac", "mpm_F", "mpm_tau"};
+  fields_exchange = {"rmass", "vfrac", "mpm_F", "mpm_tau"};
+  fields_restart = {"rmass", "vfrac", "mpm_F", "mpm_tau"};
+  fields_create = {"rmass", "vfrac", "mpm_F", "mpm_tau"};
   fields_data_atom = {"id", "type", "rmass", "vfrac", "x"};
   fields_data_vel = {"id", "v"};
 }
@@ -159,10 +159,9 @@ void AtomVecMPM::data_atom_post(int ilocal)
                rmass[ilocal], atom->tag[ilocal]);
   }
 
-  points->vol[ilocal] = volume;
-  double *F = points->F[ilocal], *stress = points->stress[ilocal];
+  double *F = points->F[ilocal], *tau = points->tau[ilocal];
   for (int k = 0; k < 9; k++) F[k] = (k % 4 == 0) ? 1.0 : 0.0;
-  for (int k = 0; k < 6; k++) stress[k] = 0.0;
+  for (int k = 0; k < 6; k++) tau[k] = 0.0;
 }
 
 /* ----------------------------------------------------------------------
@@ -218,20 +217,19 @@ void AtomVecMPM::pack_property_atom(int index, double *buf, int nvalues, int gro
   for (int i = 0; i < nlocal; i++) {
     double value = 0.0;
     if ((mask[i] & groupbit) && vfrac[i] > 0.0) {
-      const double *F = points->F[i];
+      const double J = points->jacobian(i);
       if (index == VOLUME0)
         value = vfrac[i];
       else if (index == VOLUME)
-        value = points->vol[i];
+        value = J * vfrac[i];
       else if (index == JACOBIAN)
-        value = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
-            F[2] * (F[3] * F[7] - F[4] * F[6]);
+        value = J;
       else if (index == DENSITY)
-        value = points->vol[i] > 0.0 ? rmass[i] / points->vol[i] : 0.0;
+        value = rmass[i] / (J * vfrac[i]);
       else if (index >= STRESS11)
-        value = points->stress[i][index - STRESS11];
+        value = points->tau[i][index - STRESS11] / J;
       else
-        value = F[index - F11];
+        value = points->F[i][index - F11];
     }
     buf[(bigint) i * nvalues] = value;
   }

@@ -20,7 +20,7 @@ AtomStyle(mpm,AtomVecMPM);
 namespace LAMMPS_NS {
 struct MPMPoints;
 
-/** Material points: mass, initial and current volume, deformation gradient and Cauchy stress.
+/** Material points: mass, initial volume, deformation gradient and stress.
  *
  *  Atoms with initial volume 0 are no material points (grains, MD atoms, ...) and keep the mass
  *  that their own style gives them. The data file has a mass density and the initial volume;

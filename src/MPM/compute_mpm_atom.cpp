@@ -32,7 +32,7 @@ namespace {
 /** State of one point, as its quantities need it. */
 struct Point {
   const double *F;         // row-major
-  const double *stress;    // xx yy zz xy xz yz
+  const double *stress;    // Cauchy, xx yy zz xy xz yz
   const double *v;
   double mass, volume, volume0;
 };
@@ -44,9 +44,7 @@ double deformation(const Point &p, int component)
 
 double jacobian(const Point &p, int)
 {
-  const double *F = p.F;
-  return F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
-      F[2] * (F[3] * F[7] - F[4] * F[6]);
+  return MPMPoints::det(p.F);
 }
 
 double stress(const Point &p, int component)
@@ -301,8 +299,14 @@ void ComputeMPMAtom::compute_peratom()
       for (int i = 0; i < nlocal; i++) {
         double &value = out[(bigint) i * stride];
         if (is_point(i)) {
-          const Point p = {points->F[i],   points->stress[i], atom->v[i],
-                           atom->rmass[i], points->vol[i],    atom->vfrac[i]};
+          double stress[6];
+          points->cauchy(i, stress);
+          const Point p = {points->F[i],
+                           stress,
+                           atom->v[i],
+                           atom->rmass[i],
+                           points->jacobian(i) * atom->vfrac[i],
+                           atom->vfrac[i]};
           value = quantity->of_point(p, quantity->component);
         } else {
           value = 0.0;

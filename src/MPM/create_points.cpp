@@ -41,7 +41,7 @@ static const char axis_name[] = "xyz";
 
 CreatePoints::CreatePoints(LAMMPS *lmp) :
     Command(lmp), type(0), seed(0), region(nullptr), fix(nullptr), jitter(0.0), diameter(0.0),
-    allow_overlap(false), ignore_outside(false), points(nullptr), volume(0.0)
+    allow_overlap(false), ignore_outside(false), volume(0.0)
 {
 }
 
@@ -64,7 +64,6 @@ void CreatePoints::command(int narg, char **arg)
                "Cannot create_points after reading a restart file with per-atom info of fixes: "
                "define these fixes and use run 0 first");
 
-  points = MPMPoints::get(atom);
   parse(narg, arg);
   find_ranges();
   check_outside();
@@ -574,5 +573,4 @@ void CreatePoints::make_point(const Site &site)
   atom->vfrac[i] = volume;
   atom->rmass[i] = 0.0;    // not known yet, see fix mpm/material
   if (atom->radius_flag) atom->radius[i] = 0.5 * diameter;
-  points->vol[i] = volume;
 }

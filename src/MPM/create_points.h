@@ -52,7 +52,6 @@ class CreatePoints : public Command {
 
   // derived
 
-  struct MPMPoints *points;
   double volume;      // of a point
   Range box[3];       // sites in the simulation box
   Range search[3];    // sites that can be in the region, also outside the box

@@ -75,13 +75,13 @@ FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) :
     atom->add_callback(Atom::RESTART);
     restart_peratom = 1;
     create_attribute = 1;
-    maxexchange = 9;
+    maxexchange = affine_size();
     for (int i = 0; i < atom->nlocal; i++) FixMPM::set_arrays(i);
   }
 
   grid = new Grid(lattice);
   halo = new MPMHalo(lmp);
-  batch = new Batch;
+  batch = new Batch();    // zero, see mpm_batch.h
   tile = (double *) memory->smalloc(MAX_TILE_NODES * 8 * sizeof(double), "mpm:tile");
   tile_load = (double *) memory->smalloc(MAX_TILE_NODES * 8 * sizeof(double), "mpm:tile");
   memset(tile, 0, MAX_TILE_NODES * 8 * sizeof(double));
@@ -266,7 +266,7 @@ void FixMPM::init()
 
   const char *wanted = isa.empty() ? nullptr : isa.c_str();
   kernels = MPMKernels::select(wanted);
-  batch_kernels = BatchKernels::select(wanted);
+  batch_kernels = BatchKernels::select(lattice.dim, wanted);
   bool can_run = kernels && batch_kernels;
   for (auto *material : materials)
     can_run = can_run && material->material->configure(wanted, force->mvv2e * force->nktv2p, force->nktv2p);
@@ -387,10 +387,11 @@ PointRows FixMPM::rows() const
   r.v = &atom->v[0][0];
   r.f = &atom->f[0][0];
   r.C = C ? &C[0][0] : nullptr;
-  r.stress = &points->stress[0][0];
-  r.vol = points->vol;
+  r.tau = &points->tau[0][0];
+  r.vol0 = atom->vfrac;
   r.F = &points->F[0][0];
   r.mass = atom->rmass;
+  r.guarded = atom->nmax - 1;
   r.xnew = scheme == MUSL ? const_cast<double *>(xnew.data()) : r.x;
   return r;
 }
@@ -422,9 +423,8 @@ void FixMPM::load_state(Batch &b, const int *list, int n, const FixMPMMaterial *
     const int i = list[p];
     const double *F = points->F[i];
     for (int c = 0; c < 9; c++) b.F[c][p] = F[c];
-    for (int c = 0; c < 6; c++) b.stress[c][p] = points->stress[i][c];
-    b.J[p] = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
-        F[2] * (F[3] * F[7] - F[4] * F[6]);
+    b.J[p] = points->jacobian(i);
+    for (int c = 0; c < 6; c++) b.stress[c][p] = points->tau[i][c] / b.J[p];
     b.vol0[p] = atom->vfrac[i];
     for (int k = 0; k < material->nhistory; k++) b.history[k][p] = material->history[i][k];
   }
@@ -436,36 +436,36 @@ void FixMPM::load_state(Batch &b, const int *list, int n, const FixMPMMaterial *
 
 void FixMPM::grow_arrays(int nmax)
 {
-  memory->grow(C, nmax, 9, "mpm:C");
+  memory->grow(C, nmax, affine_size(), "mpm:C");
 }
 
 void FixMPM::copy_arrays(int i, int j, int)
 {
-  memcpy(C[j], C[i], 9 * sizeof(double));
+  memcpy(C[j], C[i], affine_size() * sizeof(double));
 }
 
 void FixMPM::set_arrays(int i)
 {
-  memset(C[i], 0, 9 * sizeof(double));
+  memset(C[i], 0, affine_size() * sizeof(double));
 }
 
 int FixMPM::pack_exchange(int i, double *buf)
 {
-  memcpy(buf, C[i], 9 * sizeof(double));
-  return 9;
+  memcpy(buf, C[i], affine_size() * sizeof(double));
+  return affine_size();
 }
 
 int FixMPM::unpack_exchange(int i, double *buf)
 {
-  memcpy(C[i], buf, 9 * sizeof(double));
-  return 9;
+  memcpy(C[i], buf, affine_size() * sizeof(double));
+  return affine_size();
 }
 
 int FixMPM::pack_restart(int i, double *buf)
 {
-  buf[0] = 10;
-  memcpy(buf + 1, C[i], 9 * sizeof(double));
-  return 10;
+  buf[0] = 1 + affine_size();
+  memcpy(buf + 1, C[i], affine_size() * sizeof(double));
+  return 1 + affine_size();
 }
 
 void FixMPM::unpack_restart(int i, int nth)
@@ -473,15 +473,15 @@ void FixMPM::unpack_restart(int i, int nth)
   double **extra = atom->extra;
   int m = 0;
   for (int k = 0; k < nth; k++) m += static_cast<int>(extra[i][m]);
-  memcpy(C[i], extra[i] + m + 1, 9 * sizeof(double));
+  memcpy(C[i], extra[i] + m + 1, affine_size() * sizeof(double));
 }
 
 int FixMPM::size_restart(int)
 {
-  return 10;
+  return 1 + affine_size();
 }
 
 int FixMPM::maxsize_restart()
 {
-  return 10;
+  return 1 + affine_size();
 }

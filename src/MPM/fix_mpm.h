@@ -90,7 +90,7 @@ class FixMPM : public Fix {
 
   MPM_NS::Grid *grid;                           ///< node records: velocity and mass after the solve
   std::vector<FixMPMMaterial *> materials;      ///< all of them, set in init()
-  double **C;                                   ///< [n][9] affine matrix, column-major; null: not APIC
+  double **C;    ///< [n][dim*dim] affine, column-major; null: not APIC
   bool ledger_on;                               ///< a compute mpm/energy exists; set in init()
   MPMLedger ledger;
 
@@ -130,6 +130,8 @@ class FixMPM : public Fix {
     bigint steps, point_steps, topologies, sorts;
     double dt_min, dt_max;
   };
+
+  int affine_size() const { return lattice.dim * lattice.dim; }
 
   MPMPoints *points;
   MPMHalo *halo;
@@ -177,7 +179,7 @@ class FixMPM : public Fix {
   void map_to_nodes(MPM_NS::P2G);
   void sum_halo(int lane, int nlane);
   void gradient_and_material();
-  void material_update(const Run &, int first, int n, const double *L);
+  void material_update(const MPM_NS::PointRows &, const Run &, int first, int n, const double *L);
   void lap(double &timer);
 
   void process_options(int, char **);

@@ -190,11 +190,11 @@ void FixMPMCells::sum_points()
       continue;
     }
     double *sum = &sums[all.index(cell[0], cell[1], cell[2]) * NSUM];
-    const double mass = atom->rmass[i], volume = points->vol[i];
+    const double mass = atom->rmass[i], vol0 = atom->vfrac[i];
     sum[MASS] += mass;
     for (int d = 0; d < 3; d++) sum[MOMENTUM + d] += mass * atom->v[i][d];
-    sum[VOLUME] += volume;
-    for (int c = 0; c < 6; c++) sum[STRESS + c] += volume * points->stress[i][c];
+    sum[VOLUME] += vol0 * points->jacobian(i);
+    for (int c = 0; c < 6; c++) sum[STRESS + c] += vol0 * points->tau[i][c];
   }
   if (outside)
     error->one(FLERR, Error::NOLASTLINE,

@@ -75,13 +75,10 @@ void FixMPM::check_points()
     if (n > 1) note(SEVERAL, i);
     if (n == 1 && !(atom->rmass[i] > 0.0 && std::isfinite(atom->rmass[i]))) note(MASS, i);
 
-    const double *F = points->F[i], *v = atom->v[i], *x = atom->x[i];
-    const double J = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
-        F[2] * (F[3] * F[7] - F[4] * F[6]);
-    if (!(points->vol[i] > 0.0)) points->vol[i] = atom->vfrac[i] * J;
+    const double J = points->jacobian(i), *v = atom->v[i], *x = atom->x[i];
     double sum = J;
     for (int d = 0; d < 3; d++) sum += fabs(x[d]) + fabs(v[d]);
-    for (int c = 0; c < 6; c++) sum += fabs(points->stress[i][c]);
+    for (int c = 0; c < 6; c++) sum += fabs(points->tau[i][c]);
     if (!std::isfinite(sum) || !(J > 0.0)) note(STATE, i);
   }
   MPI_Allreduce(count, all, NKINDS, MPI_LMP_BIGINT, MPI_SUM, world);
@@ -142,8 +139,8 @@ std::string FixMPM::point_state(int i) const
 {
   const double *x = atom->x[i], *v = atom->v[i];
   return fmt::format("Material point {} at {:.6g} {:.6g} {:.6g} with velocity {:.6g} {:.6g} {:.6g} "
-                     "and J = {:.6g}", atom->tag[i], x[0], x[1], x[2], v[0], v[1], v[2],
-                     points->vol[i] / atom->vfrac[i]);
+                     "and J = {:.6g}",
+                     atom->tag[i], x[0], x[1], x[2], v[0], v[1], v[2], points->jacobian(i));
 }
 
 /* ---------------------------------------------------------------------- */
@@ -226,7 +223,7 @@ double FixMPM::stable_dt_local(tagint &id_min, double &wave_speed) const
            material_of(last) == material)
       last++;
     const int n = last - i, nhistory = material->nhistory;
-    batch_kernels->load(b, n, 0.0, no_gradient, points->F[i], points->stress[i], atom->vfrac + i);
+    batch_kernels->load(b, n, 0.0, no_gradient, points->F[i], points->tau[i], atom->vfrac + i);
     history.resize((std::size_t) std::max(1, nhistory) * BATCH);
     b.history = reinterpret_cast<double(*)[BATCH]>(history.data());
     for (int p = 0; p < n; p++)

@@ -69,7 +69,7 @@ double FixMPM::external_work()
   external_nodes.assign(nnodes * 8, 0.0);
   zero_volume.assign(atom->nlocal, 0.0);
   PointRows r = rows();
-  r.vol = zero_volume.data();
+  r.vol0 = zero_volume.data();
   const TransferStep s = step_data();
   for (auto &a : active) {
     const auto &block = grid->blocks[a.slot];
@@ -131,8 +131,8 @@ double FixMPM::compute_vector(int k)
 double FixMPM::bytes_per_point() const
 {
   double bytes = 9 * sizeof(double) + sizeof(tagint) + 2 * sizeof(int) + sizeof(imageint);
-  bytes += (1 + 1 + 1 + 9 + 6) * sizeof(double);    // mass, V0, volume, F, stress
-  if (C) bytes += 9 * sizeof(double);
+  bytes += (1 + 1 + 9 + 6) * sizeof(double);    // mass, V0, F, stress
+  if (C) bytes += affine_size() * sizeof(double);
   int nhistory = 0;
   for (auto *material : materials) nhistory += material->nhistory;
   return bytes + nhistory * sizeof(double);
@@ -183,7 +183,7 @@ void FixMPM::post_run()
 double FixMPM::memory_usage()
 {
   double bytes = grid->memory_usage();
-  if (C) bytes += 9.0 * atom->nmax * sizeof(double);
+  if (C) bytes += (double) affine_size() * atom->nmax * sizeof(double);
   bytes += runs.capacity() * sizeof(Run) + active.capacity() * sizeof(ActiveBlock);
   bytes += (xnew.capacity() + external_nodes.capacity() + zero_volume.capacity()) * sizeof(double);
   return bytes + 2.0 * MAX_TILE_NODES * 8 * sizeof(double);

@@ -149,7 +149,8 @@ void FixMPM::grid_to_points()
         drifted |= kernel.g2p(r, s, i, last, base, tile_load,
                               kernel.affine || scheme != USL ? nullptr : L);
         if (scheme == USL)
-          material_update(runs[k], i, last - i, kernel.affine ? &C[i][0] : L);
+          material_update(r, runs[k], i, last - i,
+                          kernel.affine ? r.C + (bigint) affine_size() * i : L);
       }
   }
   lap(report.t_g2p);
@@ -193,8 +194,19 @@ void FixMPM::stress_last()
    by 2 a^2 in area and shrink in answer to that, by 2.4 % per revolution of 3300 steps.
 ------------------------------------------------------------------------- */
 
-static void refer_to_start(int n, double dt, double *gradients)
+static void refer_to_start(int dim, int n, double dt, double *gradients)
 {
+  if (dim == 2) {    // by Cayley-Hamilton
+    for (double *L = gradients; n > 0; n--, L += 4) {
+      const double shift = dt * (L[0] * L[3] - L[1] * L[2]);
+      const double inv = 1.0 / (1.0 - dt * (L[0] + L[3]) + dt * shift);
+      L[0] = inv * (L[0] - shift);
+      L[1] = inv * L[1];
+      L[2] = inv * L[2];
+      L[3] = inv * (L[3] - shift);
+    }
+    return;
+  }
   for (double *L = gradients; n > 0; n--, L += 9) {    // 3x3, order of storage does not matter
     double M[9], inv[9], LM[9];
     for (int c = 0; c < 9; c++) M[c] = (c % 4 == 0 ? 1.0 : 0.0) - dt * L[c];
@@ -230,8 +242,8 @@ void FixMPM::gradient_and_material()
       for (int i = runs[k].first; i < runs[k].last; i += BATCH) {
         const int last = std::min(i + BATCH, runs[k].last);
         kernel.g2p_gradient(r, s, i, last, base, tile_load, L);
-        if (scheme == USF) refer_to_start(last - i, update->dt, L);
-        material_update(runs[k], i, last - i, L);
+        if (scheme == USF) refer_to_start(lattice.dim, last - i, update->dt, L);
+        material_update(r, runs[k], i, last - i, L);
       }
   }
 }
@@ -240,18 +252,19 @@ void FixMPM::gradient_and_material()
    strain and stress of up to BATCH consecutive points of one material
 ------------------------------------------------------------------------- */
 
-void FixMPM::material_update(const Run &run, int first, int n, const double *L)
+void FixMPM::material_update(const PointRows &r, const Run &run, int first, int n, const double *L)
 {
+  // not through row pointers: one of them per batch is always a cache miss
   Batch &b = *batch;
   FixMPMMaterial *material = run.material;
-  batch_kernels->load(b, n, update->dt, L, &points->F[first][0], &points->stress[first][0],
-                      atom->vfrac + first);
+  double *F = r.F + 9 * (bigint) first, *tau = r.tau + 6 * (bigint) first;
+  batch_kernels->load(b, n, update->dt, L, F, tau, r.vol0 + first);
   b.history = reinterpret_cast<double(*)[BATCH]>(history_batch.data());
   b.time = update->atime + (update->ntimestep - update->atimestep) * update->dt;
 
   const int nhistory = material->nhistory;
   if (nhistory) {
-    const double *h = &material->history[first][0];
+    const double *h = &material->history[0][0] + nhistory * (bigint) first;
     for (int p = 0; p < n; p++)
       for (int k = 0; k < nhistory; k++) b.history[k][p] = h[nhistory * p + k];
   }
@@ -259,10 +272,9 @@ void FixMPM::material_update(const Run &run, int first, int n, const double *L)
   material->material->update(b);
   if (material->watching) material->watch_ranges(b, first);
 
-  const int bad =
-      batch_kernels->store(b, &points->F[first][0], &points->stress[first][0], points->vol + first);
+  const int bad = batch_kernels->store(b, F, tau);
   if (nhistory) {
-    double *h = &material->history[first][0];
+    double *h = &material->history[0][0] + nhistory * (bigint) first;
     for (int p = 0; p < n; p++) {
       if (bad && !(b.J[p] > 0.0)) continue;
       for (int k = 0; k < nhistory; k++) h[nhistory * p + k] = b.history[k][p];

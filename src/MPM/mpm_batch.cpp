@@ -11,23 +11,23 @@
 #include <cstring>
 
 namespace MPM_NS {
-const BatchKernels *mpm_batch_base();
-const BatchKernels *mpm_batch_v3();
-const BatchKernels *mpm_batch_v4();
+const BatchKernels *mpm_batch_base(int dim);
+const BatchKernels *mpm_batch_v3(int dim);
+const BatchKernels *mpm_batch_v4(int dim);
 }    // namespace MPM_NS
 
 using namespace MPM_NS;
 
-const BatchKernels *BatchKernels::select(const char *isa)
+const BatchKernels *BatchKernels::select(int dim, const char *isa)
 {
   // the transfer kernels decide which instruction set runs
   const MPMKernels *chosen = MPMKernels::select(isa);
   if (!chosen) return nullptr;
 #ifdef MPM_HAVE_V4
-  if (strcmp(chosen->isa, "AVX-512") == 0) return mpm_batch_v4();
+  if (strcmp(chosen->isa, "AVX-512") == 0) return mpm_batch_v4(dim);
 #endif
 #ifdef MPM_HAVE_V3
-  if (strcmp(chosen->isa, "AVX2") == 0) return mpm_batch_v3();
+  if (strcmp(chosen->isa, "AVX2") == 0) return mpm_batch_v3(dim);
 #endif
-  return mpm_batch_base();
+  return mpm_batch_base(dim);
 }

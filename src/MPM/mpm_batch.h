@@ -16,15 +16,17 @@ namespace MPM_NS {
 /** Moves points between LAMMPS rows and a batch; compiled per instruction set. */
 struct BatchKernels {
   /** Kinematics of n points: A = dt L, F <- (I + A) F, J, Jold; stress of the start of the step.
-   *  L: [n][9] column-major velocity gradient, F: [n][9] row-major, stress: [n][6], vol0: [n]. */
-  void (*load)(Batch &, int n, double dt, const double *L, const double *F, const double *stress,
+   *  L: [n][dim*dim] column-major velocity gradient, F: [n][9] row-major, tau: [n][6] Kirchhoff
+   *  stress, vol0: [n].  In 2d (plane strain) the entries of A and F that are always zero are left
+   *  alone: the batch must have been zero when it was made. */
+  void (*load)(Batch &, int n, double dt, const double *L, const double *F, const double *tau,
                const double *vol0);
 
-  /** Write F, stress and vol = vol0 J. Returns the number of points whose J is not positive
-   *  (NaN included); nothing is written for these. */
-  int (*store)(const Batch &, double *F, double *stress, double *vol);
+  /** Write F and tau (2d: only what can change). Returns the number of points whose J is not
+   *  positive (NaN included); nothing is written for these. */
+  int (*store)(const Batch &, double *F, double *tau);
 
-  static const BatchKernels *select(const char *isa = nullptr);
+  static const BatchKernels *select(int dim, const char *isa = nullptr);
 };
 
 }    // namespace MPM_NS

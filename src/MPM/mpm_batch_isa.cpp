@@ -54,10 +54,49 @@ template <int WIDTH> MPM_INLINE void columns_to_rows(const Column *column, doubl
   for (int k = 0; k < 4; k++) r[k].store(row + WIDTH * (p + k));
 }
 
-/** row-major position of entry k of a column-major 3x3 matrix */
-constexpr int transposed[9] = {0, 3, 6, 1, 4, 7, 2, 5, 8};
+/** Columns of F in plane strain that change: the 2x2 block. */
+constexpr int planar[4] = {0, 1, 3, 4};
 
-void load(Batch &batch, int n, double dt, const double *L, const double *F, const double *stress,
+/** The rows of the points p..p+3 as columns; A: column-major. */
+template <int DIM>
+MPM_INLINE void load_four(Batch &batch, Column *A, int p, double dt, const double *L,
+                          const double *F, const double *tau)
+{
+  rows_to_columns<DIM * DIM>(L, A, p, dt);
+  rows_to_columns<6>(tau, batch.stress, p, 1.0);
+  if constexpr (DIM == 3) {
+    rows_to_columns<9>(L + 4, A + 4, p, dt);
+    rows_to_columns<9>(F, batch.F, p, 1.0);
+    rows_to_columns<9>(F + 4, batch.F + 4, p, 1.0);
+    for (int k = p; k < p + 4; k++) {
+      A[8][k] = dt * L[9 * k + 8];
+      batch.F[8][k] = F[9 * k + 8];
+      batch.stress[4][k] = tau[6 * k + 4];
+      batch.stress[5][k] = tau[6 * k + 5];
+    }
+  } else {
+    Vec<4> r[4];
+    for (int k = 0; k < 4; k++) {
+      const double *row = F + 9 * (p + k);
+      r[k] = shuffle<0, 1, 4, 5>(Vec<4>::load(row), Vec<4>::load(row + 3));
+      batch.F[8][p + k] = row[8];
+    }
+    transpose(r);
+    for (int c = 0; c < 4; c++) r[c].store(batch.F[planar[c]] + p);
+  }
+}
+
+template <int DIM>
+MPM_INLINE void load_one(Batch &batch, Column *A, int p, double dt, const double *L,
+                         const double *F, const double *tau)
+{
+  for (int c = 0; c < DIM * DIM; c++) A[c][p] = dt * L[DIM * DIM * p + c];
+  for (int c = 0; c < 9; c++) batch.F[c][p] = F[9 * p + c];
+  for (int c = 0; c < 6; c++) batch.stress[c][p] = tau[6 * p + c];
+}
+
+template <int DIM>
+void load(Batch &batch, int n, double dt, const double *L, const double *F, const double *tau,
           const double *vol0)
 {
   batch.n = n;
@@ -66,77 +105,108 @@ void load(Batch &batch, int n, double dt, const double *L, const double *F, cons
   for (int k = 0; k < BATCH; k += 8) __builtin_prefetch(vol0 + BATCH + k);
   for (int k = 0; k < n; k++) batch.vol0[k] = vol0[k];
 
-  alignas(64) double A[9][BATCH];    // column-major
+  alignas(64) double A[DIM * DIM][BATCH];
 
   int p = 0;
-  for (; p + 4 <= n; p += 4) {
-    rows_to_columns<9>(L, A, p, dt);
-    rows_to_columns<9>(L + 4, A + 4, p, dt);
-    rows_to_columns<9>(F, batch.F, p, 1.0);
-    rows_to_columns<9>(F + 4, batch.F + 4, p, 1.0);
-    rows_to_columns<6>(stress, batch.stress, p, 1.0);
-    for (int k = p; k < p + 4; k++) {
-      A[8][k] = dt * L[9 * k + 8];
-      batch.F[8][k] = F[9 * k + 8];
-      batch.stress[4][k] = stress[6 * k + 4];
-      batch.stress[5][k] = stress[6 * k + 5];
-    }
-  }
-  for (; p < n; p++) {
-    for (int c = 0; c < 9; c++) {
-      A[c][p] = dt * L[9 * p + c];
-      batch.F[c][p] = F[9 * p + c];
-    }
-    for (int c = 0; c < 6; c++) batch.stress[c][p] = stress[6 * p + c];
-  }
+  for (; p + 4 <= n; p += 4) load_four<DIM>(batch, A, p, dt, L, F, tau);
+  for (; p < n; p++) load_one<DIM>(batch, A, p, dt, L, F, tau);
 
+  if constexpr (DIM == 3) {
 #pragma omp simd
-  for (int q = 0; q < n; q++) {
-    double a[9], f[9], g[9];
-    for (int c = 0; c < 9; c++) {
-      a[c] = A[transposed[c]][q];
-      f[c] = batch.F[c][q];
+    for (int q = 0; q < n; q++) {
+      double a[9], f[9], g[9];
+      for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+          a[3 * i + j] = A[3 * j + i][q];
+          f[3 * i + j] = batch.F[3 * i + j][q];
+        }
+      const double Jold = f[0] * (f[4] * f[8] - f[5] * f[7]) - f[1] * (f[3] * f[8] - f[5] * f[6]) +
+          f[2] * (f[3] * f[7] - f[4] * f[6]);
+      for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+          g[3 * i + j] =
+              f[3 * i + j] + a[3 * i] * f[j] + a[3 * i + 1] * f[3 + j] + a[3 * i + 2] * f[6 + j];
+      for (int c = 0; c < 9; c++) {
+        batch.A[c][q] = a[c];
+        batch.F[c][q] = g[c];
+      }
+      batch.Jold[q] = Jold;
+      batch.J[q] = g[0] * (g[4] * g[8] - g[5] * g[7]) - g[1] * (g[3] * g[8] - g[5] * g[6]) +
+          g[2] * (g[3] * g[7] - g[4] * g[6]);
+      const double inv = 1.0 / Jold;
+      for (int c = 0; c < 6; c++) batch.stress[c][q] *= inv;
     }
-    batch.Jold[q] = f[0] * (f[4] * f[8] - f[5] * f[7]) - f[1] * (f[3] * f[8] - f[5] * f[6]) +
-        f[2] * (f[3] * f[7] - f[4] * f[6]);
-    for (int i = 0; i < 3; i++)
-      for (int j = 0; j < 3; j++)
-        g[3 * i + j] =
-            f[3 * i + j] + a[3 * i] * f[j] + a[3 * i + 1] * f[3 + j] + a[3 * i + 2] * f[6 + j];
-    for (int c = 0; c < 9; c++) {
-      batch.A[c][q] = a[c];
-      batch.F[c][q] = g[c];
+  } else {
+#pragma omp simd
+    for (int q = 0; q < n; q++) {
+      const double xx = A[0][q], yx = A[1][q], xy = A[2][q], yy = A[3][q];
+      const double Fxx = batch.F[0][q], Fxy = batch.F[1][q], Fyx = batch.F[3][q],
+                   Fyy = batch.F[4][q], Fzz = batch.F[8][q];
+      const double gxx = Fxx + xx * Fxx + xy * Fyx, gxy = Fxy + xx * Fxy + xy * Fyy;
+      const double gyx = Fyx + yx * Fxx + yy * Fyx, gyy = Fyy + yx * Fxy + yy * Fyy;
+      const double Jold = Fzz * (Fxx * Fyy - Fxy * Fyx);
+      batch.A[0][q] = xx;
+      batch.A[1][q] = xy;
+      batch.A[3][q] = yx;
+      batch.A[4][q] = yy;
+      batch.F[0][q] = gxx;
+      batch.F[1][q] = gxy;
+      batch.F[3][q] = gyx;
+      batch.F[4][q] = gyy;
+      batch.Jold[q] = Jold;
+      batch.J[q] = Fzz * (gxx * gyy - gxy * gyx);
+      const double inv = 1.0 / Jold;
+      for (int c = 0; c < 4; c++) batch.stress[c][q] *= inv;
+      batch.stress[4][q] = batch.stress[5][q] = 0.0;
     }
-    batch.J[q] = g[0] * (g[4] * g[8] - g[5] * g[7]) - g[1] * (g[3] * g[8] - g[5] * g[6]) +
-        g[2] * (g[3] * g[7] - g[4] * g[6]);
   }
 }
 
-int store(const Batch &batch, double *F, double *stress, double *vol)
+/** Writes the points p..p+3; tau: columns. */
+template <int DIM>
+MPM_INLINE void store_four(const Batch &batch, const Column *tau_columns, int p, double *F,
+                           double *tau)
 {
-  const int n = batch.n;
-  int bad = 0;
-  for (int p = 0; p < n; p++) bad += !(batch.J[p] > 0.0);
-
-  int p = 0;
-  if (bad == 0) {
-    for (; p + 4 <= n; p += 4) {
-      columns_to_rows<9>(batch.F, F, p);
-      columns_to_rows<9>(batch.F + 4, F + 4, p);
-      columns_to_rows<6>(batch.stress, stress, p);
-      for (int k = p; k < p + 4; k++) {
-        F[9 * k + 8] = batch.F[8][k];
-        stress[6 * k + 4] = batch.stress[4][k];
-        stress[6 * k + 5] = batch.stress[5][k];
-        vol[k] = batch.vol0[k] * batch.J[k];
-      }
+  columns_to_rows<6>(tau_columns, tau, p);
+  if constexpr (DIM == 3) {
+    columns_to_rows<9>(batch.F, F, p);
+    columns_to_rows<9>(batch.F + 4, F + 4, p);
+    for (int k = p; k < p + 4; k++) {
+      F[9 * k + 8] = batch.F[8][k];
+      tau[6 * k + 4] = tau_columns[4][k];
+      tau[6 * k + 5] = tau_columns[5][k];
+    }
+  } else {
+    Vec<4> r[4];
+    for (int c = 0; c < 4; c++) r[c] = Vec<4>::load(batch.F[planar[c]] + p);
+    transpose(r);
+    for (int k = 0; k < 4; k++) {
+      double *row = F + 9 * (p + k);
+      half<0>(r[k]).store(row);
+      half<1>(r[k]).store(row + 3);
     }
   }
+}
+
+template <int DIM> int store(const Batch &batch, double *F, double *tau)
+{
+  constexpr int NTAU = DIM == 3 ? 6 : 4;
+  alignas(64) double tau_columns[NTAU][BATCH];
+  const int n = batch.n;
+  int bad = 0;
+#pragma omp simd reduction(+ : bad)
+  for (int p = 0; p < n; p++) {
+    bad += !(batch.J[p] > 0.0);
+    for (int c = 0; c < NTAU; c++) tau_columns[c][p] = batch.J[p] * batch.stress[c][p];
+  }
+
+  int p = 0;
+  if (bad == 0)
+    for (; p + 4 <= n; p += 4) store_four<DIM>(batch, tau_columns, p, F, tau);
   for (; p < n; p++) {
     if (bad && !(batch.J[p] > 0.0)) continue;
     for (int c = 0; c < 9; c++) F[9 * p + c] = batch.F[c][p];
-    for (int c = 0; c < 6; c++) stress[6 * p + c] = batch.stress[c][p];
-    vol[p] = batch.vol0[p] * batch.J[p];
+    for (int c = 0; c < NTAU; c++) tau[6 * p + c] = tau_columns[c][p];
   }
   return bad;
 }
@@ -144,11 +214,11 @@ int store(const Batch &batch, double *F, double *stress, double *vol)
 }    // namespace
 
 namespace MPM_NS {
-const BatchKernels *MPM_CONCAT(mpm_batch_, MPM_ISA)();
+const BatchKernels *MPM_CONCAT(mpm_batch_, MPM_ISA)(int dim);
 }
 
-const BatchKernels *MPM_NS::MPM_CONCAT(mpm_batch_, MPM_ISA)()
+const BatchKernels *MPM_NS::MPM_CONCAT(mpm_batch_, MPM_ISA)(int dim)
 {
-  static const BatchKernels kernels = {load, store};
-  return &kernels;
+  static const BatchKernels solid = {load<3>, store<3>}, plane = {load<2>, store<2>};
+  return dim == 3 ? &solid : &plane;
 }

@@ -56,12 +56,13 @@ struct PointRows {
   double *x;               ///< [n][3] position
   double *v;               ///< [n][3] velocity
   const double *f;         ///< [n][3] external force (gravity, contact, walls, ...)
-  double *C;               ///< [n][9] affine velocity matrix, column-major: C[3*j+i] = d v_i / d x_j
-  const double *stress;    ///< [n][6] Cauchy stress xx yy zz xy xz yz
-  const double *vol;       ///< [n] current volume
+  double *C;               ///< [n][dim*dim] affine matrix, column-major: C[dim*j+i] = d v_i / d x_j
+  double *tau;             ///< [n][6] Kirchhoff stress J sigma, xx yy zz xy xz yz
+  const double *vol0;      ///< [n] initial volume: V sigma = V0 tau
   const double *mass;      ///< [n]
   double *xnew;            ///< [n][3] where G2P puts the new position (x itself, unless MUSL)
   double *F = nullptr;     ///< [n][9] not touched: G2P brings it to the cache for the law, if given
+  int guarded = 0;         ///< behind the rows before this one there is memory that may be read
 };
 
 /** What a transfer needs to know about the lattice and the step. */
@@ -92,7 +93,7 @@ using P2G = void (*)(const PointRows &, const TransferStep &, int first, int las
                      double *tile, int box[6]);
 
 /** G2P returns 0, or non-zero when a point's new position has left the range of its tile.
- *  L: [last-first][9] column-major velocity gradient with respect to the positions in x;
+ *  L: [last-first][dim*dim] column-major velocity gradient with respect to the positions in x;
  *  kernels that store C write the same matrix there and leave L alone when it is null; the others
  *  do not compute it when it is null. */
 using G2P = int (*)(const PointRows &, const TransferStep &, int first, int last, const int base[3],

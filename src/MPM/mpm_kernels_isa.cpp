@@ -67,15 +67,17 @@ constexpr int PREFETCH = 32;                     ///< distance of prefetches, in
 
 using Index = std::ptrdiff_t;
 
-/** Brings the rows [first,last) of an array into the cache, to be written when WRITE is 1. */
-template <int WIDTH, int WRITE = 0>
-MPM_INLINE void prefetch(const double *rows, Index first, Index last)
+/** Brings STAGE rows from the given one on into the cache, to be written when WRITE is 1. STAGE
+ *  rows are a whole number of lines, so that no line is left out between one call and the next. */
+template <int WIDTH, int WRITE = 0> MPM_INLINE void prefetch(const double *rows, Index first)
 {
   // no pointer arithmetic: the rows ahead may not exist, which prefetches do not mind
-  constexpr std::uintptr_t line = 64, row = WIDTH * sizeof(double);
-  const std::uintptr_t start = reinterpret_cast<std::uintptr_t>(rows);
-  for (std::uintptr_t at = (start + row * first) / line * line; at < start + row * last; at += line)
-    __builtin_prefetch(reinterpret_cast<const void *>(at), WRITE);
+  static_assert(STAGE * sizeof(double) == 64);
+  const std::uintptr_t start =
+      reinterpret_cast<std::uintptr_t>(rows) + WIDTH * sizeof(double) * first;
+  MPM_UNROLL
+  for (int k = 0; k < WIDTH; k++)
+    __builtin_prefetch(reinterpret_cast<const void *>(start + 64 * k), WRITE);
 }
 
 /** Four reals for each of L points: the axes x, y, z, and one more. */
@@ -84,8 +86,8 @@ template <int L> using Quads = Vec<4 * L>;
 /** Four reals of each of L consecutive rows, from a column on. */
 template <int L, int WIDTH> MPM_INLINE Quads<L> load_rows(const double *column, Index row)
 {
-  if constexpr (L == 1)
-    return Vec<4>::load(column + WIDTH * row);
+  if constexpr (L == 1 || WIDTH == 4)
+    return Quads<L>::load(column + WIDTH * row);
   else
     return join(Vec<4>::load(column + WIDTH * row), Vec<4>::load(column + WIDTH * (row + 1)));
 }
@@ -162,8 +164,8 @@ template <int ORDER, int L> struct AxisWeights {
 /** Copies of the last points of a range, with room behind the rows: vectors of four reals read and
  *  write past a row of three or nine. */
 struct LastPoints {
-  double x[8], v[8], f[8], C[20], stress[12], vol[2], mass[2], xnew[8], L[20];
-  PointRows rows{x, v, f, C, stress, vol, mass, xnew};
+  double x[8], v[8], f[8], C[20], tau[12], vol0[2], mass[2], xnew[8], L[20];
+  PointRows rows{x, v, f, C, tau, vol0, mass, xnew};
 
   template <int WIDTH>
   static MPM_INLINE void load(double *to, const double *from, Index first, Index last)
@@ -303,14 +305,14 @@ template <int DIM, int ORDER, bool AFFINE, int NREAL, int PARTS> struct PointsTo
 
   /** Columns of the stress tensor; lanes that are no axis are arbitrary. */
   template <int L>
-  static MPM_INLINE void stress_columns(const double *stress, Index p, Quads<L> *column)
+  static MPM_INLINE void stress_columns(const double *tau, Index p, Quads<L> *column)
   {
-    const Quads<L> a = load_rows<L, 6>(stress, p);    // xx yy zz xy
+    const Quads<L> a = load_rows<L, 6>(tau, p);    // xx yy zz xy
     if constexpr (DIM == 2) {
       column[0] = shuffle<0, 3, 3, 3>(a, a);
       column[1] = shuffle<3, 1, 1, 1>(a, a);
     } else {
-      const Quads<L> b = load_rows<L, 6>(stress + 2, p);                // zz xy xz yz
+      const Quads<L> b = load_rows<L, 6>(tau + 2, p);                   // zz xy xz yz
       column[0] = shuffle<0, 5, 6, 7>(a, b);                            // xx xy xz
       column[1] = shuffle<4, 1, 6, 7>(a, shuffle<1, 1, 3, 3>(b, b));    // xy yy yz
       column[2] = shuffle<2, 3, 0, 0>(b, b);                            // xz yz zz
@@ -334,8 +336,14 @@ template <int DIM, int ORDER, bool AFFINE, int NREAL, int PARTS> struct PointsTo
     const Quads<L> mass = load_numbers<L>(points.mass, p);
     q = blend<DIM>(load_rows<L, 3>(points.v, p), repeat<4 * L>(0.0, 0.0, 0.0, 1.0)) * mass;
     if constexpr (AFFINE) {
-      MPM_UNROLL
-      for (int a = 0; a < DIM; a++) A[a] = (h * mass) * load_rows<L, 9>(points.C + 3 * a, p);
+      if constexpr (DIM == 2) {
+        const Quads<L> C = (h * mass) * load_rows<L, 4>(points.C, p);
+        A[0] = C;
+        A[1] = shuffle<2, 3, 2, 3>(C, C);
+      } else {
+        MPM_UNROLL
+        for (int a = 0; a < 3; a++) A[a] = (h * mass) * load_rows<L, 9>(points.C + 3 * a, p);
+      }
     }
   }
 
@@ -347,8 +355,8 @@ template <int DIM, int ORDER, bool AFFINE, int NREAL, int PARTS> struct PointsTo
     q = (scale * step.force_scale) * blend<DIM>(load_rows<L, 3>(points.f, p), Quads<L>{});
     const double factor =
         -scale * step.stress_scale * step.inv_h * (mls ? BSpline<ORDER>::inv_moment : 1.0);
-    const Quads<L> volume = load_numbers<L>(points.vol, p) * factor;
-    stress_columns<L>(points.stress, p, A);
+    const Quads<L> volume = load_numbers<L>(points.vol0, p) * factor;
+    stress_columns<L>(points.tau, p, A);
     MPM_UNROLL
     for (int a = 0; a < DIM; a++) A[a] = volume * A[a];
   }
@@ -470,17 +478,17 @@ template <int DIM, int ORDER, bool AFFINE, int NREAL, int PARTS> struct PointsTo
 
     for (Index p = first; p < last;) {
       const Index n = (last - p) / L < ENTRIES ? (last - p) / L : ENTRIES;
-      const Index ahead = p + PREFETCH, end = ahead + n * L;
-      prefetch<3>(points.x, ahead, end);
+      const Index ahead = p + PREFETCH;
+      prefetch<3>(points.x, ahead);
       if (momentum) {
-        prefetch<3>(points.v, ahead, end);
-        prefetch<1>(points.mass, ahead, end);
-        if (AFFINE) prefetch<9>(points.C, ahead, end);
+        prefetch<3>(points.v, ahead);
+        prefetch<1>(points.mass, ahead);
+        if (AFFINE) prefetch<DIM * DIM>(points.C, ahead);
       }
       if (force) {
-        prefetch<3>(points.f, ahead, end);
-        prefetch<6>(points.stress, ahead, end);
-        prefetch<1>(points.vol, ahead, end);
+        prefetch<3>(points.f, ahead);
+        prefetch<6>(points.tau, ahead);
+        prefetch<1>(points.vol0, ahead);
       }
       for (Index i = 0; i < n; i++, p += L)
         prepare<L>(points, p, step, frame, stage[i], lowest, highest);
@@ -508,25 +516,30 @@ template <int DIM, int ORDER, bool AFFINE, int NREAL, int PARTS> struct PointsTo
       }
   }
 
-  /** All points, the last ones through padded copies. */
+  /** All points; the last of all through padded copies. */
   static void p2g(const PointRows &points, const TransferStep &step, int first, int last,
                   const int base[3], double *tile, int box[6])
   {
     if (first >= last) return;
-    const int rest = first + (last - first - 1) / POINTS * POINTS;
+    const bool guarded = last <= points.guarded;
+    const int rest = first + (last - first - !guarded) / POINTS * POINTS;
     if (rest > first) range<POINTS>(points, step, first, rest, base, tile, box);
+    if (guarded) {
+      if (rest < last) range<1>(points, step, rest, last, base, tile, box);
+      return;
+    }
 
     LastPoints copy;
     copy.load<3>(copy.x, points.x, rest, last);
     if (momentum) {
       copy.load<3>(copy.v, points.v, rest, last);
       copy.load<1>(copy.mass, points.mass, rest, last);
-      if (AFFINE) copy.load<9>(copy.C, points.C, rest, last);
+      if (AFFINE) copy.template load<DIM * DIM>(copy.C, points.C, rest, last);
     }
     if (force) {
       copy.load<3>(copy.f, points.f, rest, last);
-      copy.load<6>(copy.stress, points.stress, rest, last);
-      copy.load<1>(copy.vol, points.vol, rest, last);
+      copy.load<6>(copy.tau, points.tau, rest, last);
+      copy.load<1>(copy.vol0, points.vol0, rest, last);
     }
     if (last - rest == POINTS)
       range<POINTS>(copy.rows, step, 0, POINTS, base, tile, box);
@@ -717,25 +730,23 @@ template <int DIM, int ORDER, Transfer TRANSFER, int NREAL> struct NodesToPoints
     }
   }
 
-  /** Stores the columns of matrices in rows of nine, from the first row to the last: each column
-   *  but the last of all also writes one real behind it, which the next column overwrites. */
+  /** Stores the columns of matrices in rows of nine (2d: four), from the first row to the last. In
+   *  3d a column also writes one real behind it, which the next one overwrites; not so the last. */
   template <int L>
   static MPM_INLINE void store_columns(double *rows, Index p, const Quads<L> *column)
   {
-    MPM_UNROLL
-    for (int a = 0; a < 3; a++) {
-      const Quads<L> c = a < DIM ? column[a < DIM ? a : 0] : Quads<L>{};
-      if constexpr (L == 1)
-        c.store(rows + 9 * p + 3 * a);
-      else
-        half<0>(c).store(rows + 9 * p + 3 * a);
-    }
-    if constexpr (L == 2) {
+    if constexpr (DIM == 2) {
+      shuffle<0, 1, 4, 5>(column[0], column[1]).store(rows + 4 * p);
+    } else if constexpr (L == 1) {
+      column[0].store(rows + 9 * p);
+      column[1].store(rows + 9 * p + 3);
+      store_lanes<3>(rows + 9 * p + 6, column[2]);
+    } else {
       MPM_UNROLL
-      for (int a = 0; a < 3; a++) {
-        const Quads<L> c = a < DIM ? column[a < DIM ? a : 0] : Quads<L>{};
-        half<1>(c).store(rows + 9 * (p + 1) + 3 * a);
-      }
+      for (int a = 0; a < 3; a++) half<0>(column[a]).store(rows + 9 * p + 3 * a);
+      half<1>(column[0]).store(rows + 9 * p + 9);
+      half<1>(column[1]).store(rows + 9 * p + 12);
+      store_lanes<3>(rows + 9 * p + 15, half<1>(column[2]));
     }
   }
 
@@ -758,19 +769,19 @@ template <int DIM, int ORDER, Transfer TRANSFER, int NREAL> struct NodesToPoints
 
     for (Index p = first; p < last;) {
       const Index n = (last - p) / L < ENTRIES ? (last - p) / L : ENTRIES;
-      const Index ahead = p + PREFETCH, end = ahead + n * L;
+      const Index ahead = p + PREFETCH;
       if (UPDATE) {
-        prefetch<3, 1>(points.x, ahead, end);
-        prefetch<3, 1>(points.v, ahead, end);
-        if (TRANSFER == APIC) prefetch<9, 1>(points.C, ahead, end);
+        prefetch<3, 1>(points.x, ahead);
+        prefetch<3, 1>(points.v, ahead);
+        if (TRANSFER == APIC) prefetch<DIM * DIM, 1>(points.C, ahead);
       } else {
-        prefetch<3>(points.x, ahead, end);
+        prefetch<3>(points.x, ahead);
       }
       if (GRADIENT) {
         // the constitutive law comes next
-        if (points.F) prefetch<9, 1>(points.F, ahead, end);
-        prefetch<6, 1>(points.stress, ahead, end);
-        prefetch<1, 1>(points.vol, ahead, end);
+        if (points.F) prefetch<9, 1>(points.F, ahead);
+        prefetch<6, 1>(points.tau, ahead);
+        prefetch<1>(points.vol0, ahead);
       }
       for (Index i = 0; i < n; i++) prepare<GRADIENT, L>(points, p + L * i, frame, stage[i]);
       for (Index i = 0; i < n; i++, p += L) {
@@ -799,10 +810,7 @@ template <int DIM, int ORDER, Transfer TRANSFER, int NREAL> struct NodesToPoints
             if constexpr (DIM == 3) D[2] -= broadcast<2>(distance) * v;
           }
           MPM_UNROLL
-          for (int a = 0; a < DIM; a++) {
-            D[a] = factor * D[a];
-            if (DIM == 2) D[a] = blend<2>(D[a], P{});
-          }
+          for (int a = 0; a < DIM; a++) D[a] = factor * D[a];
           if (UPDATE && TRANSFER == APIC) store_columns<L>(points.C, p, D);
           if (TRANSFER != APIC || gradients) store_columns<L>(gradients, p - first, D);
         }
@@ -824,16 +832,24 @@ template <int DIM, int ORDER, Transfer TRANSFER, int NREAL> struct NodesToPoints
     return left;
   }
 
-  /** All points, the last ones through padded copies. */
+  /** All points; the last of all through padded copies. */
   template <bool UPDATE, bool GRADIENT>
   static int run(const PointRows &points, const TransferStep &step, int first, int last,
                  const int *base, const double *tile, double *gradients)
   {
     if (first >= last) return 0;
-    const int rest = first + (last - first - 1) / POINTS * POINTS;
+    const bool guarded = last <= points.guarded;
+    const int rest = first + (last - first - !guarded) / POINTS * POINTS;
     int left = 0;
     if (rest > first)
       left = range<POINTS, UPDATE, GRADIENT>(points, step, first, rest, base, tile, gradients);
+    if (guarded) {
+      if (rest < last)
+        left |= range<1, UPDATE, GRADIENT>(points, step, rest, last, base, tile,
+                                           gradients ? gradients + DIM * DIM * (rest - first)
+                                                     : nullptr);
+      return left;
+    }
 
     LastPoints copy;
     copy.load<3>(copy.x, points.x, rest, last);
@@ -845,9 +861,10 @@ template <int DIM, int ORDER, Transfer TRANSFER, int NREAL> struct NodesToPoints
     if (UPDATE) {
       copy.store<3>(copy.xnew, points.xnew, rest, last);
       copy.store<3>(copy.v, points.v, rest, last);
-      if (TRANSFER == APIC) copy.store<9>(copy.C, points.C, rest, last);
+      if (TRANSFER == APIC) copy.template store<DIM * DIM>(copy.C, points.C, rest, last);
     }
-    if (GRADIENT && gradients) copy.store<9>(copy.L, gradients, rest - first, last - first);
+    if (GRADIENT && gradients)
+      copy.template store<DIM * DIM>(copy.L, gradients, rest - first, last - first);
     return left;
   }
 

@@ -80,7 +80,7 @@ template <int DIM, int ORDER> struct Stencil {
   }
 };
 
-/** Symmetric stress (xx yy zz xy xz yz) times a vector. */
+/** Symmetric tensor (xx yy zz xy xz yz) times a vector. */
 template <int DIM> void stress_times(const double *s, const double *a, double *b)
 {
   b[0] = s[0] * a[0] + s[3] * a[1];
@@ -117,16 +117,16 @@ void p2g(const PointRows &points, const TransferStep &step, int first, int last,
         for (int i = 0; i < DIM; i++) {
           double v = points.v[3 * p + i];
           if (affine)
-            for (int j = 0; j < DIM; j++) v += points.C[9 * p + 3 * j + i] * node.d[j];
+            for (int j = 0; j < DIM; j++) v += points.C[DIM * (DIM * p + j) + i] * node.d[j];
           real[i] += wm * v;
         }
         real[3] += wm;
       }
       if (PARTS & FORCE) {
         double internal[3];
-        stress_times<DIM>(points.stress + 6 * p, mls ? node.d : node.grad, internal);
+        stress_times<DIM>(points.tau + 6 * p, mls ? node.d : node.grad, internal);
         const double scale =
-            -step.stress_scale * points.vol[p] * (mls ? inv_moment * node.w : 1.0);
+            -step.stress_scale * points.vol0[p] * (mls ? inv_moment * node.w : 1.0);
         for (int i = 0; i < DIM; i++) {
           const double f = scale * internal[i] + step.force_scale * node.w * points.f[3 * p + i];
           if (NREAL == 8)
@@ -146,12 +146,12 @@ void velocity_gradient(const Stencil<DIM, ORDER> &stencil, const TransferStep &s
 {
   constexpr bool mls = TRANSFER == APIC && ORDER > 1;
   const double inv_moment = BSpline<ORDER>::inv_moment * step.inv_h * step.inv_h;
-  for (int i = 0; i < 9; i++) L[i] = 0.0;
+  for (int i = 0; i < DIM * DIM; i++) L[i] = 0.0;
   for (const Node &node : stencil.node) {
     const double *v = tile + NREAL * node.index;
     for (int j = 0; j < DIM; j++) {
       const double g = mls ? inv_moment * node.w * node.d[j] : node.grad[j];
-      for (int i = 0; i < DIM; i++) L[3 * j + i] += v[i] * g;
+      for (int i = 0; i < DIM; i++) L[DIM * j + i] += v[i] * g;
     }
   }
 }
@@ -172,12 +172,12 @@ int g2p(const PointRows &points, const TransferStep &step, int first, int last, 
         if (TRANSFER == FLIP) v_old[i] += node.w * real[4 + i];
       }
     }
-    double grad[9];
+    double grad[DIM * DIM];
     velocity_gradient<DIM, ORDER, TRANSFER, NREAL>(stencil, step, tile, grad);
     if (TRANSFER == APIC)
-      for (int i = 0; i < 9; i++) points.C[9 * p + i] = grad[i];
+      for (int i = 0; i < DIM * DIM; i++) points.C[DIM * DIM * p + i] = grad[i];
     if (L)
-      for (int i = 0; i < 9; i++) L[9 * (p - first) + i] = grad[i];
+      for (int i = 0; i < DIM * DIM; i++) L[DIM * DIM * (p - first) + i] = grad[i];
 
     points.xnew[3 * p + 2] = points.x[3 * p + 2];
     for (int i = 0; i < DIM; i++) {
@@ -197,7 +197,8 @@ int g2p_gradient(const PointRows &points, const TransferStep &step, int first, i
 {
   for (int p = first; p < last; p++) {
     const Stencil<DIM, ORDER> stencil(points.x + 3 * p, step, base);
-    velocity_gradient<DIM, ORDER, TRANSFER, NREAL>(stencil, step, tile, L + 9 * (p - first));
+    velocity_gradient<DIM, ORDER, TRANSFER, NREAL>(stencil, step, tile,
+                                                   L + DIM * DIM * (p - first));
   }
   return 0;
 }

@@ -17,14 +17,13 @@ using namespace LAMMPS_NS;
 MPMPoints *MPMPoints::get(Atom *atom, bool create)
 {
   for (auto &field : atom->peratom)
-    if (field.name == "mpm_vol") return reinterpret_cast<MPMPoints *>(field.address);
+    if (field.name == "mpm_F") return reinterpret_cast<MPMPoints *>(field.address);
   if (!create) return nullptr;
 
   static std::list<MPMPoints> pool;    // addresses stay valid, and stay reachable for leak checkers
   pool.emplace_back();
   auto *points = &pool.back();
-  atom->add_peratom("mpm_vol", &points->vol, Atom::DOUBLE, 0);
   atom->add_peratom("mpm_F", &points->F, Atom::DOUBLE, 9);
-  atom->add_peratom("mpm_stress", &points->stress, Atom::DOUBLE, 6);
+  atom->add_peratom("mpm_tau", &points->tau, Atom::DOUBLE, 6);
   return points;
 }

@@ -19,9 +19,24 @@ class Atom;
  *  Initial volume is atom->vfrac (0: the atom is not a material point), mass is atom->rmass.
  */
 struct MPMPoints {
-  double *vol = nullptr;         ///< [n] current volume, V0 det F (must stay the first member)
-  double **F = nullptr;          ///< [n][9] deformation gradient, row-major
-  double **stress = nullptr;     ///< [n][6] Cauchy stress, tension positive, xx yy zz xy xz yz
+  double **F = nullptr;      ///< [n][9] deformation gradient, row-major (must stay first)
+  double **tau = nullptr;    ///< [n][6] Kirchhoff stress J sigma, tension > 0, xx yy zz xy xz yz
+
+  /** Volume over initial volume, J = det F. */
+  double jacobian(int i) const { return det(F[i]); }
+
+  /** The Cauchy stress, which is what laws and users see. */
+  void cauchy(int i, double sigma[6]) const
+  {
+    const double J = jacobian(i);
+    for (int c = 0; c < 6; c++) sigma[c] = tau[i][c] / J;
+  }
+
+  static double det(const double *F)
+  {
+    return F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
+        F[2] * (F[3] * F[7] - F[4] * F[6]);
+  }
 
   /** State of the points of this Atom object; with create = true it is made when absent. */
   static MPMPoints *get(Atom *atom, bool create = false);
