@@ -129,6 +129,19 @@ inline const Sample samples[] = {
     {"shock+elastic", "density 2703 eos shock 5350 1.34 2 strength elastic 26e9"},
     {"j2", "density 8930 eos shock 3940 1.49 1.96 strength j2 43e9 157e6 hardening linear 425e6"},
     {"j2 power", "density 8940 eos linear 1e11 strength j2 44e9 65e6 hardening power 356e6 0.37"},
+    {"j2 voce", "density 7800 eos linear 160e9 strength j2 80e9 300e6 hardening voce 2e8 15 1e8"},
+    {"j2 swift", "density 7800 eos linear 160e9 strength j2 80e9 300e6 hardening swift 0.002 0.2"},
+    {"j2 table", "density 7800 eos linear 160e9 strength j2 80e9 300e6 point 0.1 4e8 point 1 6e8"},
+    {"j2 kinematic", "density 7800 eos linear 160e9 strength j2 80e9 300e6 kinematic 20e9 0"},
+    {"j2 recovery",
+     "density 7800 eos shock 3940 1.49 1.96 strength j2 80e9 300e6 hardening linear 1e9 "
+     "kinematic 20e9 100"},
+    {"j2 cowper/symonds",
+     "density 7800 eos linear 160e9 strength j2 80e9 300e6 hardening power 5e8 0.3 "
+     "rate cowper/symonds 40.4 5"},
+    {"j2 perzyna",
+     "density 7800 eos linear 160e9 strength j2 80e9 300e6 rate perzyna 1e8 1 4 "
+     "kinematic 20e9 100"},
     {"johnson/cook",
      "density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 0.168 "
      "0.0089 1 1.1 1540 20 thermal adiabatic 460 20 0.9"},

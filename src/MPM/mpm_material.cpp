@@ -539,7 +539,7 @@ class Parser {
       const auto option = split(info.parameters[k].option);
       if (option[0] != words[here]) continue;
       if (option.size() == 1) {
-        match = k;
+        if (match < 0) match = k;
       } else {
         if (choices.empty() || choices.back() != option[1]) choices.push_back(option[1]);
         if (here + 1 < static_cast<int>(words.size()) && option[1] == words[here + 1] && match < 0)

@@ -21,13 +21,15 @@ namespace {
    *  work of the step, (Y_start + Y)/2 D with Y_start at the old e and T and the present rate; that
    *  of other heat is of the step before. */
   template <bool THERMAL> struct JohnsonCookFlow {
-    double A, B, N, C, inv_rate;
+    static constexpr bool smooth = true;    // kinks are too small to matter
+    static constexpr bool overstress = false;
+    double G, A, B, N, C, inv_rate;
     double M, soft, Tref, inv_range;    ///< soft: 1, or 0 without thermal softening
     double warm;                        ///< temperature rise per plastic work
     const double *temperature;
 
     JohnsonCookFlow(const LawParameters &p, const Batch &b) :
-        A(p.value[JC_A]), B(p.value[JC_B]), N(p.value[JC_N]), C(p.value[JC_C]),
+        G(p.value[JC_G]), A(p.value[JC_A]), B(p.value[JC_B]), N(p.value[JC_N]), C(p.value[JC_C]),
         inv_rate(1.0 / max(p.value[JC_RATE] * b.dt, 1e-300)), M(p.value[JC_M]),
         soft(p.value[JC_M] > 0.0 ? 1.0 : 0.0), Tref(p.value[JC_REF]),
         inv_range(1.0 / (p.value[JC_MELT] - p.value[JC_REF])), warm(p.chi * p.warm),
@@ -35,6 +37,7 @@ namespace {
     {
     }
 
+    MPM_INLINE double shear(int) const { return G; }
     MPM_INLINE double homologous(double T) const
     {
       return min(max((T - Tref) * inv_range, 0.0), 1.0);

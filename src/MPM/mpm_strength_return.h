@@ -21,38 +21,88 @@ namespace {
     double J;        ///< mean volume ratio of the step
   };
 
+  /** Von Mises equivalent of a deviator. */
+  MPM_INLINE double equivalent(const Sym &s)
+  {
+    return std::sqrt(1.5 * norm2(s));
+  }
+
+  /** Solves r(D) = q - stiff D - Y(D) = 0 for the points with D > 0, which is the first guess; most:
+   *  upper bound of D. Iteration, the whole batch at a time: r is convex in D for power hardening
+   *  (n < 1), logarithmic or power rate dependence, and both together, and concave in log D. So
+   *  Newton in D from the left and Newton in log D from the right approach the root from their side
+   *  only, also with infinite slope at D = 0 and when D is smaller than any strain that is ever
+   *  seen (small exponents). A bracket catches all else (thermal softening). */
+  template <class Flow>
+  MPM_INLINE void solve_return(const Batch &b, const Flow &flow, History history,
+                               const double *trial, const double *stiff, const double *start,
+                               const double *most, double *yield, double *D)
+  {
+    constexpr int MAX_ITERATIONS = 100;
+    alignas(64) double low[BATCH], high[BATCH];
+    MPM_SIMD
+    for (int i = 0; i < b.n; i++) {
+      low[i] = 0.0;
+      high[i] = most[i];
+    }
+    for (int iteration = 0; iteration < MAX_ITERATIONS; iteration++) {
+      double busy = 0.0;
+      MPM_SIMD_SUM(busy)
+      for (int i = 0; i < b.n; i++) {
+        const double d = D[i];
+        const TrialState t{trial[i], stiff[i], 0.5 * (b.J[i] + b.Jold[i])};
+        double y, dy;
+        flow.stress(history, i, start[i], t, d, y, dy);
+        const double r = t.q - t.stiff * d - y;
+        const double s = t.stiff + dy;    // -dr/dD
+        const double lo = r > 0.0 ? d : low[i], hi = r > 0.0 ? high[i] : d;
+        const double newton = r > 0.0 ? d + r / s : d * exp(r / (d * s));
+        const double half = 0.5 * (lo + hi);
+        const double next = s > 0.0 && newton > lo && newton < hi ? newton : half;
+        const bool active = d > 0.0;
+        const bool done = d <= 1e-300 || max(r, -r) <= 1e-13 * y + 1e-15 * t.q;
+        const double step = active && !done ? next - d : 0.0;
+        low[i] = lo;
+        high[i] = hi;
+        yield[i] = min(y + dy * step, t.q);
+        D[i] = d + step;
+        // the error left by a small Newton step is its square: no need to look again
+        busy += step * step > (Flow::smooth ? 1e-14 * d * d : 0.0) ? 1.0 : 0.0;
+      }
+      if (busy == 0.0) return;
+    }
+  }
+
   /** Loops of a von Mises strength: radial return to the flow stress at the end of the step
    *  (M.L. Wilkins, Methods Comput. Phys. 3 (1964) 211; J.C. Simo, T.J.R. Hughes, Computational
    *  Inelasticity, 1998, ch. 3), with an unknown increment D of the equivalent plastic strain:
    *
    *    r(D) = q - 3 G/J D - Y(D) = 0,   q = trial equivalent stress
    *
-   *  Flow has: Flow(parameters, batch); start(history, i), the flow stress for D -> 0;
-   *  stress(history, i, start, trial state, D, Y, dY/dD); finish(history, i, start, D, Y, J), which
-   *  stores the history and returns the plastic work per current volume.
-   *
-   *  Iteration, the whole batch at a time: r is convex in D for power hardening (n < 1),
-   *  logarithmic rate dependence, and both together, and concave in log D. So Newton in D from the
-   *  left and Newton in 1/D from the right approach the root from their side only, also with
-   *  infinite slope at D = 0. A bracket catches all else (thermal softening).
+   *  Flow has: Flow(parameters, batch); smooth, false when Y(D) has kinks; shear(i), the shear
+   *  modulus of the step; start(history, i), the flow stress for D -> 0; stress(history, i, begin,
+   *  trial state, D, Y, dY/dD); finish(history, i, begin, D, Y, J), which stores the history and
+   *  returns the plastic work per current volume. begin is the stress at which plastic flow begins
+   *  in this step: that of start(), or with overstress = true that of the last step when it is
+   *  larger.
    */
   template <class Flow> struct RadialReturn : ShearElasticity {
-    static constexpr int MAX_ITERATIONS = 100;
-
     static void update(const LawParameters &p, Batch &b, History history)
     {
-      const ElasticDeviator elastic{p.value[0]};
       const Flow flow(p, b);
       alignas(64) double trial[BATCH], stiff[BATCH], start[BATCH], yield[BATCH], D[BATCH];
+      alignas(64) double most[BATCH];
 
       double yielding = 0.0;
       MPM_SIMD_SUM(yielding)
       for (int i = 0; i < b.n; i++) {
         const Increment inc = increment(b, i);
-        const Sym s = elastic.trial(b, i, inc);
+        const double G = flow.shear(i);
+        const double last = Flow::overstress ? equivalent(deviator(load_stress(b, i))) : 0.0;
+        const Sym s = ElasticDeviator{G}.trial(b, i, inc);
         store_stress(b, i, s);
-        const double q = std::sqrt(1.5 * norm2(s));
-        const double modulus = 3.0 * p.value[0] / b.J[i];
+        const double q = equivalent(s);
+        const double modulus = 3.0 * G / b.J[i];
         const double y = flow.start(history, i);
         const double excess = (q - y) / modulus;
         // first guess: all strain is plastic, when that is possible
@@ -60,12 +110,13 @@ namespace {
         const double guess = min(excess, max(strain, 1e-3 * excess));
         trial[i] = q;
         stiff[i] = modulus;
-        start[i] = y;
+        most[i] = q / modulus;
+        start[i] = max(y, last);
         D[i] = excess > 0.0 ? guess : 0.0;
         yielding += excess > 0.0 ? 1.0 : 0.0;
       }
       if (yielding == 0.0) return;
-      solve(b, flow, history, trial, stiff, start, yield, D);
+      solve_return(b, flow, history, trial, stiff, start, most, yield, D);
 
       double plastic = 0.0;
       MPM_SIMD_SUM(plastic)
@@ -80,45 +131,6 @@ namespace {
       }
       b.work[PLASTIC] += plastic;
       b.work[HEAT] += p.chi * plastic;
-    }
-
-   private:
-    static MPM_INLINE void solve(const Batch &b, const Flow &flow, History history,
-                                 const double *trial, const double *stiff, const double *start,
-                                 double *yield, double *D)
-    {
-      alignas(64) double low[BATCH], high[BATCH];
-      MPM_SIMD
-      for (int i = 0; i < b.n; i++) {
-        low[i] = 0.0;
-        high[i] = trial[i] / stiff[i];
-      }
-      for (int iteration = 0; iteration < MAX_ITERATIONS; iteration++) {
-        double busy = 0.0;
-        MPM_SIMD_SUM(busy)
-        for (int i = 0; i < b.n; i++) {
-          const double d = D[i];
-          const TrialState t{trial[i], stiff[i], 0.5 * (b.J[i] + b.Jold[i])};
-          double y, dy;
-          flow.stress(history, i, start[i], t, d, y, dy);
-          const double r = t.q - t.stiff * d - y;
-          const double s = t.stiff + dy;    // -dr/dD
-          const double lo = r > 0.0 ? d : low[i], hi = r > 0.0 ? high[i] : d;
-          const double newton = d + r * d / (d * s + max(-r, 0.0));
-          const double half = 0.5 * (lo + hi);
-          const double next = s > 0.0 && newton > lo && newton < hi ? newton : half;
-          const bool active = d > 0.0;
-          const bool done = max(r, -r) <= 1e-13 * y + 1e-15 * t.q;
-          const double step = active && !done ? next - d : 0.0;
-          low[i] = lo;
-          high[i] = hi;
-          yield[i] = y + dy * step;
-          D[i] = d + step;
-          // the error left by a small Newton step is its square: no need to look again
-          busy += step * step > 1e-14 * d * d ? 1.0 : 0.0;
-        }
-        if (busy == 0.0) return;
-      }
     }
   };
 

@@ -1,0 +1,510 @@
+// labels: unit physics
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// Strengths and thermal parts, point by point, against closed forms and ordinary differential
+// equations that are solved here.
+
+#include "material_testing.h"
+
+#include "gtest/gtest.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <random>
+#include <sstream>
+#include <string>
+#include <vector>
+
+using namespace MPM_NS;
+using namespace material_testing;
+
+namespace {
+
+const double ROOT3 = std::sqrt(3.0);
+
+/** n steps of pure shear, together an equivalent strain; the stress is along one direction. */
+void shear(MaterialPoint &p, double strain, double time, int n = 1)
+{
+  const double g = 0.5 * ROOT3 * strain / time;
+  const Matrix L = {0, g, 0, g, 0, 0, 0, 0, 0};
+  for (int i = 0; i < n; i++) p.step(L.data(), time / n);
+}
+
+/** Equivalent stress in pure shear, with sign. */
+double shear_stress(const MaterialPoint &p)
+{
+  return ROOT3 * p.stress(3);
+}
+
+/** Integrates dy/dt = f(t, y) by the classical method of Runge and Kutta. */
+using State = std::vector<double>;
+State runge_kutta(const std::function<State(double, const State &)> &f, State y, double time, int n)
+{
+  const double h = time / n;
+  const auto shifted = [](const State &y, double h, const State &k) {
+    State z = y;
+    for (size_t i = 0; i < y.size(); i++) z[i] += h * k[i];
+    return z;
+  };
+  for (int i = 0; i < n; i++) {
+    const double t = i * h;
+    const State a = f(t, y), b = f(t + h / 2, shifted(y, h / 2, a)),
+                c = f(t + h / 2, shifted(y, h / 2, b)), d = f(t + h, shifted(y, h, c));
+    for (size_t k = 0; k < y.size(); k++) y[k] += h / 6 * (a[k] + 2 * b[k] + 2 * c[k] + d[k]);
+  }
+  return y;
+}
+
+std::string text_of(const std::string &before, const std::vector<double> &values)
+{
+  std::ostringstream text;
+  text.precision(17);
+  text << before;
+  for (const double x : values) text << " " << x;
+  return text.str();
+}
+
+/* ---------------------------------------------------------------------- j2: hardening */
+
+const std::string J2 = "density 7800 eos linear 160e9 strength j2 80e9 300e6 ";
+constexpr double G = 80e9, SIGMAY = 300e6;
+
+struct HardeningCase {
+  const char *text;
+  std::function<double(double)> Y;
+};
+
+double table(double e)
+{
+  const double E[] = {0, 0.01, 0.1, 0.3, 1e30}, S[] = {300e6, 420e6, 500e6, 480e6, 480e6};
+  int k = 0;
+  while (e > E[k + 1]) k++;
+  return S[k] + (S[k + 1] - S[k]) * (e - E[k]) / (E[k + 1] - E[k]);
+}
+
+const HardeningCase hardenings[] = {{"",
+                                     [](double) {
+                                       return SIGMAY;
+                                     }},
+                                    {"hardening linear 2e9",
+                                     [](double e) {
+                                       return SIGMAY + 2e9 * e;
+                                     }},
+                                    {"hardening power 5e8 0.3",
+                                     [](double e) {
+                                       return SIGMAY + 5e8 * std::pow(e, 0.3);
+                                     }},
+                                    {"hardening voce 2e8 15 1e8",
+                                     [](double e) {
+                                       return SIGMAY + 2e8 * (1 - std::exp(-15 * e)) + 1e8 * e;
+                                     }},
+                                    {"hardening voce 0 15 1e8",
+                                     [](double e) {
+                                       return SIGMAY + 1e8 * e;
+                                     }},
+                                    {"hardening swift 0.002 0.2",
+                                     [](double e) {
+                                       return SIGMAY * std::pow(1 + e / 0.002, 0.2);
+                                     }},
+                                    {"point 0.01 420e6 point 0.1 500e6 point 0.3 480e6", table}};
+
+TEST(J2Hardening, ReturnEndsOnTheYieldSurface)
+{
+  std::mt19937 random(2);
+  std::normal_distribution<double> normal;
+  for (const auto &h : hardenings) {
+    SCOPED_TRACE(h.text);
+    const auto material = make(J2 + h.text);
+    for (const double scale : {1e-6, 1e-3, 1e-2, 0.1, 1.0})
+      for (int repeat = 0; repeat < 20; repeat++) {
+        MaterialPoint p(*material);
+        for (int i = 0; i < 4; i++) {
+          Matrix L;
+          for (double &x : L) x = 0.4 * scale * normal(random);
+          p.step(L.data(), 1.0);
+          const double Y = h.Y(p.history(0));
+          if (p.batch.work[PLASTIC] > 0)
+            EXPECT_NEAR(p.vonmises() / Y, 1.0, 1e-10) << "strain " << scale;
+          else
+            EXPECT_LE(p.vonmises(), Y * (1 + 1e-12));
+          EXPECT_EQ(p.batch.plastic[0] > 0, p.batch.work[PLASTIC] > 0);
+        }
+      }
+  }
+}
+
+// one step or many on a straight path; stress, plastic strain and plastic work in closed form
+TEST(J2Hardening, StraightPath)
+{
+  for (const auto &h : hardenings) {
+    SCOPED_TRACE(h.text);
+    const auto material = make(J2 + h.text);
+    for (const double strain : {0.01, 0.1, 1.0}) {
+      MaterialPoint one(*material), many(*material);
+      shear(one, strain, 1.0);
+      shear(many, strain, 1.0, 2000);
+      const double e = one.history(0), Y = h.Y(e);
+      EXPECT_NEAR(e, strain - Y / (3 * G), 1e-10 * strain);
+      EXPECT_NEAR(shear_stress(one), Y, 1e-10 * Y);
+      EXPECT_NEAR(shear_stress(many), Y, 1e-9 * Y);
+      double work = 0.0;    // integral of Y
+      const int n = 20000;
+      for (int i = 0; i < n; i++) work += h.Y((i + 0.5) * e / n) * e / n;
+      EXPECT_NEAR(many.work[PLASTIC], work, 1e-4 * work);
+      EXPECT_NEAR(many.stored_energy() + many.work[PLASTIC], many.power, 1e-4 * work);
+    }
+  }
+}
+
+// Considere: a bar in tension carries most when the slope of the flow stress equals it; values of
+// Weldox 460 E without change of volume
+TEST(J2Hardening, ConsidereLoad)
+{
+  const double E = 211e9, nu = 0.33;
+  const auto material =
+      make(text_of("density 7750 eos linear", {E / (3 * (1 - 2 * nu))}) +
+           text_of(" strength j2", {E / (2 * (1 + nu)), 499e6}) + " hardening power 382e6 0.458");
+  MaterialPoint p(*material);
+  double load = 0.0, at = 0.0, e = 0.0, J = 0.0;
+  for (int i = 0; i < 3000; i++) {
+    p.step_uniaxial_stress(1.0, 5e-5);
+    const double nominal = p.stress(0) * p.batch.J[0] / p.batch.F[0][0];
+    if (nominal > load) {
+      load = nominal;
+      at = p.batch.F[0][0] - 1.0;
+      e = p.history(0);
+      J = p.batch.J[0];
+    }
+  }
+  EXPECT_NEAR(e, 0.09444, 5e-4);
+  EXPECT_NEAR(load, 570.3e6 * J, 0.1e6);
+  EXPECT_NEAR(at, 0.1023, 3e-4);
+}
+
+TEST(J2Hardening, BadInputIsRefused)
+{
+  struct {
+    const char *text, *message;
+  } bad[] = {{"hardening voce 1e8 1", "HVOCE is missing"},
+             {"hardening swift 0 0.2", "out of range"},
+             {"point 0.1 5e8 hardening linear 1e9", "points of the flow stress do not go with"},
+             {"point 0.1 5e8 point 0.1 6e8", "must increase"},
+             {"point 0 3e8", "out of range"},
+             {"point 0.001 1e8", "must not fall faster than G/2"},
+             {"rate perzyna 1e8 1 0.5", "out of range"},
+             {"rate perzyna 1e8 1 1 rate cowper/symonds 40 5", "'rate' is given twice"},
+             {"kinematic 0 1", "out of range"}};
+  for (const auto &b : bad) {
+    try {
+      make(J2 + b.text);
+      ADD_FAILURE() << "accepted: " << b.text;
+    } catch (const MaterialError &e) {
+      EXPECT_NE(std::string(e.what()).find(b.message), std::string::npos) << e.what();
+    }
+  }
+}
+
+/* ---------------------------------------------------------------------- j2: back stress */
+
+// Bauschinger effect: forward, backward, forward again, in closed form, in any number of steps.
+// Back stress from x0 at plastic strain 0, forward: x = c - (c - x0) exp(-gamma e), c = C/gamma
+TEST(J2Kinematic, LoopInClosedForm)
+{
+  const double C = 20e9;
+  for (const double gamma : {0.0, 50.0, 300.0})
+    for (const char *isotropic : {"", "hardening linear 1e9"}) {
+      const double H = *isotropic ? 1e9 : 0.0;
+      const auto material = make(text_of(J2 + isotropic + " kinematic", {C, gamma}));
+      ASSERT_EQ(material->history().size(), 7u);
+      for (const int n : {1, 7, 200}) {
+        MaterialPoint p(*material);
+        double x = 0.0, total = 0.0, e = 0.0;
+        for (const double amount : {0.02, -0.05, 0.04, -0.3}) {
+          SCOPED_TRACE(text_of("gamma, H, n, strain", {gamma, H, double(n), amount}));
+          const double sign = amount > 0 ? 1 : -1;
+          shear(p, amount, 1.0, n);
+          total += amount;
+          const double de = p.history(0) - e;
+          e = p.history(0);
+          x = gamma > 0 ? sign * C / gamma - (sign * C / gamma - x) * std::exp(-gamma * de)
+                        : x + sign * C * de;
+          const double stress = x + sign * (SIGMAY + H * e);
+          EXPECT_NEAR(shear_stress(p), stress, 1e-10 * SIGMAY);
+          EXPECT_NEAR(ROOT3 * p.history(4), x, 1e-10 * C * 0.1);    // backxy
+          EXPECT_GE(p.batch.work[PLASTIC], 0.0);
+        }
+        // plastic strain with sign is what remains of the total
+        if (gamma == 0.0 && H == 0.0) {
+          EXPECT_NEAR(x / C, total - shear_stress(p) / (3 * G), 1e-10);
+        }
+      }
+    }
+}
+
+// the reverse yield stress of linear kinematic hardening is 2 SIGMAY below
+TEST(J2Kinematic, ReverseYieldInTension)
+{
+  const auto material = make(J2 + "kinematic 5e9 0");
+  MaterialPoint p(*material);
+  for (int i = 0; i < 500; i++) p.step_uniaxial_stress(1.0, 1e-4);
+  const double top = p.stress(0), e = p.history(0);
+  EXPECT_NEAR(top, SIGMAY + 5e9 * e / p.batch.J[0], 1e-6 * top);
+  double reverse = 0.0;
+  for (int i = 0; i < 2000 && p.history(0) == e; i++) {
+    p.step_uniaxial_stress(-1.0, 5e-6);
+    reverse = p.stress(0);
+  }
+  EXPECT_NEAR(reverse, top - 2 * SIGMAY, 0.005 * SIGMAY);
+}
+
+// stabilized cycle of plastic strain amplitude a: stress amplitude SIGMAY + C/gamma tanh(gamma a)
+TEST(J2Kinematic, StabilizedCycle)
+{
+  const double C = 40e9, gamma = 200;
+  const auto material = make(text_of(J2 + "kinematic", {C, gamma}));
+  MaterialPoint p(*material);
+  const double strain = 0.01;
+  double e = 0.0, range = 0.0, top = 0.0;
+  for (int half = 0; half < 40; half++) {
+    shear(p, (half == 0 ? 1 : half % 2 ? -2 : 2) * strain, 1.0, 20);
+    range = p.history(0) - e;
+    e = p.history(0);
+    top = std::fabs(shear_stress(p));
+  }
+  const double expected = SIGMAY + C / gamma * std::tanh(0.5 * gamma * range);
+  EXPECT_NEAR(top, expected, 1e-9 * expected);
+  EXPECT_NEAR(range, 2 * strain - 2 * top / (3 * G), 1e-10);
+}
+
+// the back stress turns with the point: reversed loading after any rotation is the same
+TEST(J2Kinematic, TurnsWithThePoint)
+{
+  const auto material = make(J2 + "hardening voce 1e8 20 0 kinematic 20e9 100");
+  const std::array<double, 3> axis = {0.48, 0.6, 0.64};
+  double error[3];
+  for (int level = 0; level < 3; level++) {
+    const int n = 100 << level;
+    MaterialPoint plain(*material), turned(*material);
+    const auto F = [](double t) {
+      return Matrix{1, 0.1 * std::sin(2 * M_PI * t), 0, 0, 1 + 0.02 * t, 0, 0, 0, 1};
+    };
+    double worst = 0.0;
+    for (int i = 1; i <= n; i++) {
+      const double t = 1.0 * i / n;
+      move_to(plain, F(t));
+      const Matrix R = rotation(axis, 4.0 * M_PI * t);
+      move_to(turned, R * F(t));
+      worst = std::max(worst, distance(stress_of(turned), R * stress_of(plain) * transpose(R)));
+    }
+    error[level] = worst / SIGMAY;
+  }
+  EXPECT_LT(error[2], 2e-3);
+  EXPECT_GT(std::log2(error[0] / error[1]), 0.8);
+  EXPECT_GT(std::log2(error[1] / error[2]), 0.8);
+
+  // a rotation alone, between loading and unloading: exact
+  MaterialPoint a(*material), b(*material);
+  const Matrix L = {0.1, 0.4, 0, -0.1, -0.2, 0.1, 0, 0.2, 0.1};
+  a.step(L.data(), 0.1);
+  b.step(L.data(), 0.1);
+  const double angle = 2 * M_PI / 7;
+  const Matrix R = rotation(axis, angle);
+  const double w = 2.0 * std::tan(0.5 * angle);
+  const Matrix W = {
+      0, -w * axis[2], w * axis[1], w * axis[2], 0, -w * axis[0], -w * axis[1], w * axis[0], 0};
+  b.step(W.data(), 1.0);
+  Matrix back = L;
+  for (double &x : back) x = -x;
+  a.step(back.data(), 0.15);
+  back = R * back * transpose(R);
+  b.step(back.data(), 0.15);
+  EXPECT_LT(distance(stress_of(b), R * stress_of(a) * transpose(R)), 1e-12 * SIGMAY);
+}
+
+// xi = s - X/J is on the yield surface after any step
+TEST(J2Kinematic, ReturnEndsOnTheYieldSurface)
+{
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  for (const auto &h : hardenings)
+    for (const double gamma : {0.0, 10.0, 1000.0}) {
+      const auto material = make(J2 + h.text + text_of(" kinematic", {30e9, gamma}));
+      for (const double scale : {1e-6, 1e-3, 1e-2, 0.1, 1.0})
+        for (int repeat = 0; repeat < 10; repeat++) {
+          MaterialPoint p(*material);
+          for (int i = 0; i < 4; i++) {
+            Matrix L;
+            for (double &x : L) x = 0.4 * scale * normal(random);
+            p.step(L.data(), 1.0);
+            double xi2 = 0.0;
+            for (int k = 0; k < 6; k++) {
+              const double s = p.stress(k) + (k < 3 ? p.pressure() : 0.0);
+              const double d = s - p.history(1 + k) / p.batch.J[0];
+              xi2 += (k < 3 ? 1.5 : 3.0) * d * d;
+            }
+            const double Y = h.Y(p.history(0)), q = std::sqrt(xi2);
+            ASSERT_TRUE(std::isfinite(q));
+            const double sum = std::max(p.vonmises(), Y);    // digits of s and X
+            if (p.batch.plastic[0] > 0)
+              EXPECT_NEAR(q, Y, 1e-10 * sum) << h.text << " " << gamma << " strain " << scale;
+            else
+              EXPECT_LE(q, Y + 1e-12 * sum);
+            EXPECT_GE(p.batch.work[PLASTIC], 0.0);
+          }
+        }
+    }
+}
+
+/* ---------------------------------------------------------------------- j2: rate */
+
+struct RateCase {
+  const char *text;
+  std::function<double(double, double)> stress;    // of Y and the plastic strain rate
+};
+const RateCase rates[] = {{"rate cowper/symonds 40.4 5",
+                           [](double Y, double r) {
+                             return Y * (1 + std::pow(r / 40.4, 0.2));
+                           }},
+                          {"rate cowper/symonds 6500 1",
+                           [](double Y, double r) {
+                             return Y * (1 + r / 6500);
+                           }},
+                          {"rate perzyna 2e8 10 4",
+                           [](double Y, double r) {
+                             return Y + 2e8 * std::pow(r / 10, 0.25);
+                           }},
+                          {"rate perzyna 1e3 10 1",
+                           [](double Y, double r) {
+                             return Y + 1e3 * r / 10;
+                           }},
+                          {"rate perzyna 5e7 1e-3 40", [](double Y, double r) {
+                             return Y + 5e7 * std::pow(r / 1e-3, 0.025);
+                           }}};
+
+// steady flow of a perfectly plastic material, where the plastic strain rate is the strain rate
+TEST(J2Rate, SteadyOverstress)
+{
+  for (const auto &c : rates) {
+    SCOPED_TRACE(c.text);
+    const auto material = make(J2 + c.text);
+    for (double rate = 1e-6; rate < 3e8; rate *= 100) {
+      const double expected = c.stress(SIGMAY, rate);
+      if (expected > G) continue;
+      MaterialPoint p(*material);
+      const double strain = 3 * (0.1 + expected / (3 * G));
+      shear(p, 10 * strain, 10 * strain / rate, 200);
+      EXPECT_NEAR(shear_stress(p), expected, 1e-8 * expected) << "rate " << rate;
+    }
+  }
+}
+
+TEST(J2Rate, ReturnEndsOnTheYieldSurface)
+{
+  std::mt19937 random(4);
+  std::normal_distribution<double> normal;
+  for (const auto &c : rates)
+    for (const auto &h : hardenings) {
+      const std::string text = J2 + h.text + " " + c.text;
+      SCOPED_TRACE(text);
+      const auto material = make(text);
+      for (const double scale : {1e-4, 1e-2, 0.1, 1.0})
+        for (const double rate : {1e-6, 1.0, 1e4, 1e8}) {
+          MaterialPoint p(*material);
+          for (int i = 0; i < 3; i++) {
+            Matrix L;
+            for (double &x : L) x = 0.4 * rate * normal(random);
+            const double e = p.history(0), dt = scale / rate;
+            p.step(L.data(), dt);
+            ASSERT_TRUE(std::isfinite(p.vonmises()));
+            const double Y = c.stress(h.Y(p.history(0)), p.batch.plastic[0] / dt);
+            EXPECT_NEAR(p.history(0) - e, p.batch.plastic[0], 1e-12);
+            if (p.batch.plastic[0] > 0)
+              EXPECT_NEAR(p.vonmises() / Y, 1.0, 1e-10) << "strain " << scale << " rate " << rate;
+            else
+              EXPECT_LE(p.vonmises(), Y * (1 + 1e-12));
+          }
+        }
+    }
+}
+
+// transient under changing strain rate against the differential equation; first order in dt
+TEST(J2Rate, AgainstDifferentialEquation)
+{
+  const double rate = 50.0, time = 0.01 / rate;
+  const auto speed = [=](double t) {
+    return rate * (1 + 0.9 * std::sin(20 * t / time));
+  };
+  struct {
+    const char *text;
+    std::function<double(double, double)> flow;    // plastic strain rate of q and e
+  } cases[] = {{"hardening linear 5e9 rate cowper/symonds 1000 1",
+                [](double q, double e) {
+                  return 1000 * std::max(q / (SIGMAY + 5e9 * e) - 1, 0.0);
+                }},
+               {"hardening voce 2e8 200 0 rate perzyna 2e8 10 2", [](double q, double e) {
+                  const double Y = SIGMAY + 2e8 * (1 - std::exp(-200 * e));
+                  return 10 * std::pow(std::max(q - Y, 0.0) / 2e8, 2);
+                }}};
+  for (const auto &c : cases) {
+    SCOPED_TRACE(c.text);
+    const State exact = runge_kutta(
+        [&](double t, const State &y) {
+          const double r = c.flow(y[0], y[1]);
+          return State{3 * G * (speed(t) - r), r};
+        },
+        {0.0, 0.0}, time, 200000);
+    const auto material = make(J2 + c.text);
+    double error[3];
+    for (int level = 0; level < 3; level++) {
+      const int n = 400 << level;
+      MaterialPoint p(*material);
+      for (int i = 0; i < n; i++) shear(p, speed((i + 0.5) * time / n) * time / n, time / n);
+      error[level] = std::fabs(shear_stress(p) / exact[0] - 1.0);
+      if (level == 2) EXPECT_NEAR(p.history(0), exact[1], 0.01 * exact[1]);
+    }
+    EXPECT_LT(error[2], 2e-3);
+    EXPECT_NEAR(std::log2(error[0] / error[1]), 1.0, 0.15);
+    EXPECT_NEAR(std::log2(error[1] / error[2]), 1.0, 0.15);
+  }
+}
+
+// relaxation at constant strain: linear overstress decays like exp(-3 G RATE t/S)
+TEST(J2Rate, Relaxation)
+{
+  const double S = 1e8, rate = 10;
+  const auto material = make(text_of(J2 + "rate perzyna", {S, rate, 1}));
+  MaterialPoint p(*material);
+  shear(p, 0.01, 1e-9);    // too fast for plastic strain
+  const double start = shear_stress(p);
+  EXPECT_GT(start, 5 * SIGMAY);
+  const double tau = S / (3 * G * rate);
+  const Matrix still{};
+  const int n = 4000;
+  for (int i = 0; i < n; i++) p.step(still.data(), 3 * tau / n);
+  EXPECT_NEAR(shear_stress(p) - SIGMAY, (start - SIGMAY) * std::exp(-3.0), 3e-3 * SIGMAY);
+}
+
+// the rate-independent limit is exact: no overstress is left when it is slow, or S is small
+TEST(J2Rate, RateIndependentLimit)
+{
+  for (const char *text : {"hardening power 5e8 0.3 rate cowper/symonds 1e40 1",
+                           "hardening power 5e8 0.3 rate perzyna 1e-30 1 3"}) {
+    const auto slow = make(J2 + text), plain = make(J2 + "hardening power 5e8 0.3");
+    MaterialPoint p(*slow), q(*plain);
+    for (const double strain : {0.01, -0.5, 0.1}) {
+      shear(p, strain, 1.0, 3);
+      shear(q, strain, 1.0, 3);
+      EXPECT_NEAR(shear_stress(p), shear_stress(q), 1e-12 * SIGMAY);
+      EXPECT_NEAR(p.history(0), q.history(0), 1e-12);
+    }
+  }
+}
+
+}    // namespace
