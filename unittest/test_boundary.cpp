@@ -736,6 +736,124 @@ run 0
   EXPECT_LT(off, 1.0e-10);
 }
 
+// FLIP: material at a wall gains what the wall gains
+
+TEST(Motion, FlipFollowsTheWalls)
+{
+  for (const char *kind : {"stick", "slip", "slip friction 0.3"}) {
+    Sim run;
+    run.commands(replaced(R"(
+units lj
+boundary p p f
+atom_style mpm
+neighbor 0.5 bin
+region box block 0 4 0 4 0 6
+create_box 1 box
+fix grid all mpm 1.0 transfer flip 1.0
+region body block 0 4 0 4 0 4
+create_points 1 region body ppc 2
+fix m all mpm/material density 1.0 neohookean 1e-9 0.3
+variable v equal 0.003+0.002*cos(3*time)
+fix w all mpm/boundary zlo KIND velocity 0 0 v_v
+timestep 0.02
+run 0
+)",
+                          "KIND", kind));
+    // on the wall, points have its velocity when they had it at the start; what is near moves more
+    auto velocity = [](double t) {
+      return 0.003 + 0.002 * cos(3.0 * t);
+    };
+    set_field(run, [](const double *x, double *v, double[3][3]) {
+      v[0] = v[1] = 0.0;
+      v[2] = 0.005 + 0.015 * x[2];
+    });
+    auto *atom = run.lmp->atom;
+    std::vector<tagint> chosen;
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (atom->x[i][2] > 0.5) continue;
+      atom->x[i][2] = 0.0;
+      atom->v[i][2] = velocity(0.02);
+      chosen.push_back(atom->tag[i]);
+    }
+    run.commands("run 50\n");
+    double worst = 0.0;
+    int n = 0, all;
+    for (auto &s : run.gather()) {
+      if (!std::count(chosen.begin(), chosen.end(), (tagint) s.tag)) continue;
+      n++;
+      worst = std::max(worst, std::abs(s.v[2] - velocity(run.evaluate("time"))));
+    }
+    MPI_Allreduce(&n, &all, 1, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
+    EXPECT_EQ(all, 64);
+    // the velocity has changed by 0.004, the wall has moved by 0.003
+    EXPECT_LT(measured(std::string("FLIP on the wall, difference to its velocity, ") + kind, worst),
+              1.0e-4);
+  }
+}
+
+// FLIP: a block that is thrown at a wall returns with its speed (0.59 of it with an update as in PIC
+// at the wall)
+
+TEST(Rebound, FlipKeepsTheEnergy)
+{
+  for (const char *kind : {"stick", "slip", "slip friction 0.1"}) {
+    Sim run;
+    run.commands(replaced(R"(
+units si
+dimension 2
+boundary p f p
+atom_style mpm
+neighbor 0.02 bin
+region box block 0 0.2 0 1 -0.1 0.1
+create_box 1 box
+fix grid all mpm 0.05 transfer flip 1.0 scheme musl
+region body block INF INF 0.1 0.4 INF INF
+create_points 1 region body ppc 2
+fix m all mpm/material density 1000 neohookean 1e6 0.3
+fix w all mpm/boundary ylo KIND
+velocity all set 0 -1 0
+timestep 2e-4
+variable v equal vcm(all,y)
+run 1000
+)",
+                          "KIND", kind));
+    EXPECT_GT(measured(std::string("rebound, ") + kind, run.variable("v")), 0.9);
+    EXPECT_LT(run.variable("v"), 1.0);
+  }
+}
+
+// FLIP: points lose the velocity with which they arrive at a wall for good. With all of the old
+// velocity constrained, 3/4 of the energy of this fall were left when the water should have calmed
+// down, and it splashed higher than it came from.
+
+TEST(Arrival, WaterFallsAndCalmsDown)
+{
+  Sim run;
+  run.commands(R"(
+units si
+dimension 2
+boundary f f p
+atom_style mpm
+neighbor 0.02 bin
+region box block 0 2 0 12 -0.1 0.1
+create_box 1 box
+fix grid all mpm 0.05 transfer flip 1.0 scheme musl
+region body block 0 0.5 0.5 1.0 -0.1 0.1
+create_points 1 region body ppc 2
+fix m all mpm/material density 1000 eos tait 1e5 7 viscosity newtonian 1.0
+fix w all mpm/boundary xlo xhi ylo slip
+fix g all gravity 9.81 vector 0 -1 0
+timestep 5e-4
+compute e all mpm/energy
+thermo_style custom step c_e
+thermo 8000
+run 8000
+)");
+  const double fall = 250.0 * 9.81 * 0.65;    // to a depth of 0.1
+  auto *compute = run.lmp->modify->get_compute_by_id("e");
+  EXPECT_LT(measured("energy left of the fall", compute->compute_scalar() / fall), 0.5);
+}
+
 TEST(Rotation, RegionThatTurnsAndMoves)
 {
   // the body sits in the region, which takes it around and along
@@ -954,9 +1072,11 @@ run 0
    ranks and restart
 ------------------------------------------------------------------------- */
 
+/** Parameter: options of fix mpm | walls */
 class Decomposition : public ::testing::TestWithParam<std::string> {
  protected:
-  std::string scene(const std::string &walls)
+  static std::string options(const std::string &param) { return param.substr(0, param.find('|')); }
+  std::string scene(const std::string &param)
   {
     return R"(
 units lj
@@ -965,17 +1085,18 @@ atom_style mpm
 neighbor 0.3 bin
 region box block 0 12 0 12 0 8
 create_box 1 box
-fix grid all mpm 1.0
+fix grid all mpm 1.0 )" +
+        options(param) + R"(
 region body block 0 5.5 0 5 1 7
 create_points 1 region body ppc 2
-)" + definitions(walls) +
+)" + definitions(param) +
         R"(
 velocity all set -0.3 -0.4 0.35
 velocity all ramp vx -0.4 0.4 y 0 5 sum yes
 timestep 0.04
 )";
   }
-  std::string definitions(const std::string &walls)
+  std::string definitions(const std::string &param)
   {
     return R"(
 fix m all mpm/material density 1.0 neohookean 10.0 0.3
@@ -985,7 +1106,7 @@ variable angle equal 0.3*time
 variable speed equal 0.1*sin(3*time)
 region paddle block 5 9 3 8 INF INF move v_shift NULL NULL rotate v_angle 7 5 4 0 0 1
 region knob sphere 3 1 4 1.7
-)" + walls;
+)" + param.substr(param.find('|') + 1);
   }
 };
 
@@ -1015,8 +1136,8 @@ TEST_P(Decomposition, RestartContinues)
   Sim whole, parts;
   whole.commands(scene(GetParam()) + "run 60\n");
   parts.commands(scene(GetParam()) + "run 33\nwrite_restart walls_test.restart\n");
-  parts.commands("clear\nread_restart walls_test.restart\nfix grid all mpm 1.0\n" +
-                 definitions(GetParam()) + "run 27\n");
+  parts.commands("clear\nread_restart walls_test.restart\nfix grid all mpm 1.0 " +
+                 options(GetParam()) + "\n" + definitions(GetParam()) + "run 27\n");
   EXPECT_LT(difference(whole.gather(), parts.gather()), 1.0e-11);
   for (auto *fix : whole.lmp->modify->get_fix_by_style("^mpm/boundary$"))
     EXPECT_NEAR(parts.lmp->modify->get_fix_by_id(fix->id)->compute_scalar(), fix->compute_scalar(),
@@ -1028,14 +1149,20 @@ TEST_P(Decomposition, RestartContinues)
 INSTANTIATE_TEST_SUITE_P(
     Walls, Decomposition,
     ::testing::Values(
-        "fix w all mpm/boundary xlo ylo stick\n",
-        "fix w all mpm/boundary ylo separate friction 0.3\nfix x all mpm/boundary xlo slip\n",
-        "fix w all mpm/boundary xlo ylo slip\nfix k all mpm/boundary region knob separate friction "
+        "|fix w all mpm/boundary xlo ylo stick\n",
+        "|fix w all mpm/boundary ylo separate friction 0.3\nfix x all mpm/boundary xlo slip\n",
+        "|fix w all mpm/boundary xlo ylo slip\nfix k all mpm/boundary region knob separate "
+        "friction "
         "0.2\n",
-        "fix w all mpm/boundary xlo ylo slip velocity v_speed 0 0\nfix p all mpm/boundary region "
+        "|fix w all mpm/boundary xlo ylo slip velocity v_speed 0 0\nfix p all mpm/boundary region "
         "paddle stick\n",
-        "fix w all mpm/boundary xlo ylo stick\nfix p all mpm/boundary region paddle slip friction "
-        "0.2\n"));
+        "|fix w all mpm/boundary xlo ylo stick\nfix p all mpm/boundary region paddle slip friction "
+        "0.2\n",
+        "transfer flip 1.0 scheme musl|fix w all mpm/boundary xlo ylo stick velocity v_speed 0 0 "
+        "rotate 1 2 0 0 0 1 v_speed\n",
+        "|fix w all mpm/boundary xlo ylo separate friction 0.3\n",
+        "transfer flip 0.95|fix w all mpm/boundary xlo ylo slip friction 0.2 velocity v_speed 0 "
+        "0\n"));
 
 /* ----------------------------------------------------------------------
    several fields

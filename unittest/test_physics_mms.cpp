@@ -154,14 +154,14 @@ TEST_P(Interval, Error)
   const auto &row = GetParam();
   int ne = row.first;
   for (const double expected : row.errors) {
-    const double error = mms_error(1, ne, row.G, row.options, false);
+    const double error = mms_error(1, ne, row.G, row.options, true);
     EXPECT_NEAR(error / expected, 1.0, row.tolerance) << row.options << ", " << ne << " cells";
     ne *= 2;
   }
 }
 
-// Errors of an independent code, to 3 % or 10 %. Linear functions: its fixed nodes are the same
-// thing as symmetry. They converge until points cross cells, G = 0.05, and diverge then.
+// Errors of an independent code, to 3 % or 10 %. Linear functions converge until points cross cells,
+// G = 0.05, and diverge then.
 // Quadratic: it has open knot vectors at the ends, which matters for less than 16 and 8 cells.
 
 INSTANTIATE_TEST_SUITE_P(Table, Interval,
@@ -255,9 +255,7 @@ TEST(OrderLinear, DivergesWithCellCrossing)
   EXPECT_GT(mms_error(2, 16, .05, options, true), 0.5 * mms_error(2, 8, .05, options, true));
 }
 
-// A mirror wall is the same thing as symmetry for APIC. FLIP is updated as PIC in the layer next to
-// a wall (see fix_mpm_boundary.cpp): 15 %, 12 % more error in one dimension, 8 and 16 cells, and
-// 26 %, 15 % in two.
+// a mirror wall is the same thing as symmetry
 
 TEST(Walls, AgainstSymmetry)
 {
@@ -267,7 +265,6 @@ TEST(Walls, AgainstSymmetry)
                             "shape quadratic transfer flip 1.0 scheme musl"}) {
         const double wall = mms_error(dim, ne, 1e-4, options, true);
         const double symmetry = mms_error(dim, ne, 1e-4, options, false);
-        const bool apic = std::string(options).find("apic") != std::string::npos;
-        EXPECT_NEAR(wall / symmetry, 1.0, apic ? 1.0e-3 : 2.6 / ne) << options << " " << ne;
+        EXPECT_NEAR(wall / symmetry, 1.0, 1.0e-3) << options << " " << ne;
       }
 }

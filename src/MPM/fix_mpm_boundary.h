@@ -72,6 +72,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
   };
   struct Orbit {           // a node with all its images: in one face, in two at an edge, ...
     int64_t wall;          // node at the wall whose velocity counts
+    int64_t inner;         // first node inside, -1: out of reach of points, or held by a wall, too
     int first, last;       // range in members
     bool prescribed[3];    // components
     bool fixed;            // is in a plane
@@ -102,6 +103,10 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
     double shift[3], gradient[3][3], origin[3];
     bool uniform;
   };
+  struct Saved {    // in restart files
+    double work, shift[3];
+    bool acted;
+  };
 
   std::vector<int> face_list;    // 2 * axis + (0: lo, 1: hi)
   std::string region_id, field_id;
@@ -114,7 +119,9 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
   bool constrained[3];    // stick: components that are prescribed
 
   std::vector<FieldNodes> nodes;
-  Wall wall;
+  Wall wall;                  // in this step
+  double before[3];           // its velocity in the last step, when it does not turn
+  bool acted;                 // there was a last step
   bigint motion_step;         // step for which the motion of the wall is known
   double impulse[3], work;    // on the body, this rank's share: of the last step; of all steps
   double dt_last;
@@ -122,10 +129,11 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
   double reaction[3];
 
   bool counting;
-  bool decided;      // contact was decided before in this step (MUSL)
-  double collided;       // ledger: kinetic energy lost where nodes cannot keep their velocity
-  bool ledger_lanes;     // records have the old velocity in reals 4..6
-  double kinetic;    // gained by the nodes of a field in the present act()
+  bool decided;         // contact was decided before in this step (MUSL)
+  double collided;      // ledger: kinetic energy lost where nodes cannot keep their velocity
+  bool ledger_lanes;    // records have the old velocity in reals 4..6
+  double old_share;     // FLIP share when old velocities are constrained, too; otherwise 0
+  double kinetic;       // gained by the nodes of a field in the present act()
 
   Value parse_value(const char *, int iarg, bool null_allowed);
   void check_variable(Value &, const char *what);
@@ -144,9 +152,9 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
   bool surface_normal(const double *x, double step, int dim, double *normal) const;
   void update_motion(double dt);
   void set_rotation(double angle, const double *unit, double dt);
-  void reverse_rotation();
+  static void end_of_step(Wall &, double dt);
   void wall_velocity(const FixMPM &, int64_t node, double *v) const;
-  void set_velocity(double *record, const double *v, int dim, bool owned);
+  void set_velocity(double *record, const double *v, const double *old, int dim, bool owned);
   void act_on_column(const FieldNodes &, Column &);
   void act_on_orbit(const FieldNodes &, const Orbit &);
   void act_on_single(const FieldNodes &, Single &);

@@ -109,12 +109,7 @@ void FixMPM::solve()
 {
   clock = platform::walltime();
   kernels->solve_nodes(grid->nodes(), grid->nnodes(), kernel.nreal, update->dt);
-  if (ledger_on) {
-    const double kinetic = nodal_kinetic_energy(4);
-    ledger.transfer += kinetic - kinetic_points;
-    kinetic_points = kinetic;
-    before_actions = ledger.boundary + ledger.contact + ledger.transfer;
-  }
+  if (ledger_on) before_actions = ledger.boundary + ledger.contact + ledger.transfer;
   lap(report.t_nodes);
 }
 
@@ -126,10 +121,14 @@ void FixMPM::grid_to_points()
 {
   clock = platform::walltime();
   if (ledger_on) {
-    const double external = external_work(), kinetic = nodal_kinetic_energy(0);
+    // node actions may have changed old velocities, too
+
+    const double external = external_work();
+    const double old = nodal_kinetic_energy(4), kinetic = nodal_kinetic_energy(0);
     ledger.external += external;
     ledger.internal += external + ledger.boundary + ledger.contact + ledger.transfer -
-        before_actions - (kinetic - kinetic_points);
+        before_actions - (kinetic - old);
+    ledger.transfer += old - kinetic_points;
     kinetic_points = kinetic;
   }
   grid->copy_aliases();

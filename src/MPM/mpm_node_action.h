@@ -24,7 +24,8 @@ class MPMNodeAction {
   /** The blocks of the field are new: lists of nodes must be made again. */
   virtual void topology_changed(class FixMPM &) {}
 
-  /** Change the velocities of the nodes of the fields. count: also add to reactions and work
+  /** Change the velocities of the nodes of the fields, and the old ones of FLIP where material is
+   *  held for good (see fix_mpm_boundary.cpp). count: also add to reactions and work
    *  (false for the extra velocity fields of MUSL and USF that only serve the velocity gradient).
    */
   virtual void act(double dt, bool count) = 0;
