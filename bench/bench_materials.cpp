@@ -40,6 +40,7 @@ struct Sample {
      "0.168 0.0089 1"},
     {"tait", "density 1000 eos tait 2.2e9 7"},
     {"water", "density 1000 eos tait 2.2e9 7 cutoff -1e5 viscosity newtonian 1e-3"},
+    {"drucker_prager", "density 1600 drucker/prager 1e8 0.3 30 dilatancy 5"},
     {"artificial", "density 1000 eos linear 1e9 viscosity artificial 1.5 0.06"},
 };
 

@@ -150,6 +150,9 @@ inline const Sample samples[] = {
      "0.37 0.013 1e-3"},
     {"tait", "density 1000 eos tait 2.2e9 7 cutoff -1e5 viscosity newtonian 1e-3"},
     {"fluid", "density 1000 eos linear 1e6 viscosity newtonian 1 viscosity artificial 1.5 0.06"},
+    {"drucker/prager", "density 1600 drucker/prager 1e6 0.3 30"},
+    {"drucker/prager cohesion",
+     "density 1600 drucker/prager 1e6 0.3 35 cohesion 2e4 dilatancy 10 tension 5e3 plane"},
     {"viscous rubber",
      "density 1000 neohookean 1e6 0.3 viscosity newtonian 10 viscosity artificial 2 1"},
 };

@@ -65,6 +65,7 @@ std::string allowed(const Range &range)
 
 std::string unit(const char *kind)
 {
+  if (strcmp(kind, FLAG) == 0) return "no value";
   return strcmp(kind, "1") == 0 ? "unitless" : std::string(kind) + " units";
 }
 
@@ -99,13 +100,14 @@ std::string parameters(const Parameter *p, int n)
   std::vector<std::vector<std::string>> rows = {
       row("keyword", {"value", "units", "range", "meaning"}, "default")};
   for (int k = 0; k < n; k++) {
-    const bool optional = !std::isnan(p[k].standard);
-    rows.push_back(
-        row(*p[k].option ? "*" + plain(p[k].option) + "*" : "",
-            {plain(p[k].name), plain(unit(p[k].unit)), allowed(p[k].range), plain(p[k].meaning)},
-            !optional                       ? "required"
-                : std::isinf(p[k].standard) ? "none"
-                                            : number(p[k].standard)));
+    const bool optional = !std::isnan(p[k].standard), flag = strcmp(p[k].unit, FLAG) == 0;
+    rows.push_back(row(*p[k].option ? "*" + plain(p[k].option) + "*" : "",
+                       {flag ? "" : plain(p[k].name), plain(unit(p[k].unit)),
+                        flag ? "" : allowed(p[k].range), plain(p[k].meaning)},
+                       flag                            ? "off"
+                           : !optional                 ? "required"
+                           : std::isinf(p[k].standard) ? "none"
+                                                       : number(p[k].standard)));
   }
   return table(rows);
 }
@@ -224,7 +226,7 @@ TEST(LawTables, DeclarationsAreComplete)
 {
   const std::set<std::string> words = {"1",     "pressure", "density", "velocity",    "energy",
                                        "mass",  "time",     "length",  "temperature", "angle",
-                                       "force", "volume",   "degrees"};
+                                       "force", "volume",   "degrees", FLAG};
   const auto known = [&](const std::string &unit) {    // products, quotients, powers of these
     std::string word;
     for (const char c : unit + " ") {

@@ -42,6 +42,9 @@ TEST(Math, FunctionsMatchLibrary)
     EXPECT_NEAR(law::log(z), std::log(z), 4e-16 * std::fabs(std::log(z)));
     EXPECT_NEAR(law::log(y), std::log1p(y - 1.0), 5e-16 * std::fabs(y - 1.0));
     EXPECT_NEAR(law::expm1(y - 1.0), std::expm1(y - 1.0), 5e-16 * std::fabs(y - 1.0));
+    EXPECT_NEAR(law::log1p(y - 1.0), std::log1p(y - 1.0), 5e-16 * std::fabs(y - 1.0));
+    const double tiny = std::exp(0.1 * x - 35.0);
+    EXPECT_NEAR(law::log1p(tiny), std::log1p(tiny), 8e-16 * std::fabs(std::log1p(tiny)));
     EXPECT_NEAR(law::expm1(0.01 * x), std::expm1(0.01 * x),
                 1e-15 * std::fabs(std::expm1(0.01 * x)));
     const double f = y - 1.0, exact = f * f * (0.5 - f * (1.0 / 3 - f * (0.25 - f * 0.2)));
@@ -128,9 +131,12 @@ TEST(Objectivity, FullTurnsLeaveStressAlone)
         const Matrix R = rotation(axis, i * angle);
         worst = std::max(worst, distance(stress_of(p), R * stress_of(still) * transpose(R)));
       }
-      EXPECT_LT(worst, 1e-10 * size(before));
-      EXPECT_NEAR(p.vonmises(), still.vonmises(), 1e-10 * size(before));
-      EXPECT_NEAR(p.pressure(), still.pressure(), 1e-10 * size(before));
+      // and what the round-off of J in the motion itself, the same in all steps, makes of stress
+      const double c = start.wave_speed(), drift = std::fabs(p.batch.J[0] - start.batch.J[0]);
+      const double tolerance = 1e-10 * size(before) + 2.0 * drift * c * c * material->density();
+      EXPECT_LT(worst, tolerance);
+      EXPECT_NEAR(p.vonmises(), still.vonmises(), tolerance);
+      EXPECT_NEAR(p.pressure(), still.pressure(), tolerance);
       EXPECT_NEAR(p.batch.J[0], start.batch.J[0], 1e-11);
       for (size_t k = 0; k < material->history().size(); k++)
         EXPECT_NEAR(p.history(k), still.history(k), 1e-10 * (1.0 + size(before)));
@@ -1060,7 +1066,7 @@ TEST(Definition, BadInputIsRefused)
     const char *message;
   } bad[] = {
       {"", 0, "density is missing"},
-      {"density 1000", 2, "no law: add linear, neohookean, or eos"},
+      {"density 1000", 2, "no law: add linear, neohookean, .*or eos"},
       {"density", 1, "density: RHO is missing"},
       {"density -1 linear 1e6 0.3", 1, "RHO = -1 .* out of range: 0 < VALUE"},
       {"density 0 linear 1e6 0.3", 1, "out of range"},

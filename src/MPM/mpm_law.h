@@ -47,6 +47,7 @@ constexpr Range POSITIVE{0.0, UNBOUNDED, false};
 constexpr Range NOT_NEGATIVE{0.0, UNBOUNDED, true};
 constexpr Range FRACTION{0.0, 1.0, true};
 constexpr Range POISSON_RATIO{-1.0, 0.5, false};
+constexpr const char *FLAG = "flag";    ///< unit of an option without a value: 1 when given
 
 /** Declaration of one parameter.
  *

@@ -14,6 +14,7 @@
 #include "mpm_eos_linear.h"
 #include "mpm_eos_shock.h"
 #include "mpm_eos_tait.h"
+#include "mpm_law_drucker_prager.h"
 #include "mpm_law_linear.h"
 #include "mpm_law_neohookean.h"
 #include "mpm_strength_elastic.h"
@@ -34,7 +35,7 @@ namespace {
 
   using elastic = Family<CLOSED, LawLinear, LawNeoHookean>;
   using viscoelastic = Family<CLOSED>;
-  using soil = Family<CLOSED>;
+  using soil = Family<CLOSED, LawDruckerPrager>;
   using eos = Family<EOS, EosLinear, EosShock, EosTait>;
   using strength = Family<STRENGTH, StrengthElastic, StrengthJ2, StrengthJohnsonCook>;
   using viscosity = Family<VISCOSITY, ViscosityNewtonian, ViscosityArtificial>;

@@ -49,6 +49,8 @@ namespace {
   {
     double xx = a.xx, yy = a.yy, zz = a.zz, xy = a.xy, xz = a.xz, yz = a.yz;
     Spectral s = {{0.0, 0.0, 0.0}, {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
+    // loops over points vectorize only when no inner loop is left
+#pragma GCC unroll 4
     for (int sweep = 0; sweep < 4; sweep++) {
       jacobi_rotation(xx, yy, xy, xz, yz, s, 0, 1);
       jacobi_rotation(xx, zz, xz, xy, yz, s, 0, 2);

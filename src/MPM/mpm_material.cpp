@@ -557,7 +557,9 @@ class Parser {
     next += split(option).size();
     for (int k = match; k < info.nparameters; k++) {
       const Parameter &p = info.parameters[k];
-      if (!strcmp(p.option, option))
+      if (!strcmp(p.option, option) && !strcmp(p.unit, FLAG))
+        value[k] = 1.0;
+      else if (!strcmp(p.option, option))
         value[k] = parse_number(what + " " + option, p.name, p.unit, p.meaning, p.range);
     }
     return true;

@@ -80,6 +80,13 @@ namespace {
     return p.k * 0.69314718055994530942 + (2.0 * p.s + p.tail);
   }
 
+  /** log(1 + x) without cancellation near x = 0. */
+  MPM_INLINE double log1p(double x)
+  {
+    const double u = 1.0 + x;
+    return log(u) + (x - (u - 1.0)) / u;
+  }
+
   /** x - 1 - log(x) without cancellation near x = 1. */
   MPM_INLINE double minus1_minus_log(double x)
   {
