@@ -66,6 +66,7 @@ std::string allowed(const Range &range)
 std::string unit(const char *kind)
 {
   if (strcmp(kind, FLAG) == 0) return "no value";
+  if (strcmp(kind, "degrees") == 0) return kind;
   return strcmp(kind, "1") == 0 ? "unitless" : std::string(kind) + " units";
 }
 

@@ -28,22 +28,6 @@ namespace {
   }
   constexpr int ELASTIC_STRAIN_ROWS = 6;
 
-  MPM_INLINE Sym load_rows(History history, int i)
-  {
-    return {history[0][i], history[1][i], history[2][i],
-            history[3][i], history[4][i], history[5][i]};
-  }
-
-  MPM_INLINE void store_rows(History history, int i, const Sym &s)
-  {
-    history[0][i] = s.xx;
-    history[1][i] = s.yy;
-    history[2][i] = s.zz;
-    history[3][i] = s.xy;
-    history[4][i] = s.xz;
-    history[5][i] = s.yz;
-  }
-
   /** f b f^T - I for b = I + c, with f = I + A of this step: f c f^T + A + A^T + A A^T. */
   MPM_INLINE Sym push_forward_strain(const Batch &b, int i, const Sym &c)
   {

@@ -70,6 +70,21 @@ namespace {
     b.stress[5][i] = s.yz;
   }
 
+  MPM_INLINE Sym load_rows(History rows, int i)
+  {
+    return {rows[0][i], rows[1][i], rows[2][i], rows[3][i], rows[4][i], rows[5][i]};
+  }
+
+  MPM_INLINE void store_rows(History rows, int i, const Sym &s)
+  {
+    rows[0][i] = s.xx;
+    rows[1][i] = s.yy;
+    rows[2][i] = s.zz;
+    rows[3][i] = s.xy;
+    rows[4][i] = s.xz;
+    rows[5][i] = s.yz;
+  }
+
   /** Middle-of-the-step motion: G = dt * velocity gradient of the configuration half-way. */
   struct Increment {
     Sym strain;           ///< symmetric part of G
