@@ -9,7 +9,7 @@
 #ifndef LMP_MPM_LAW_DRUCKER_PRAGER_H
 #define LMP_MPM_LAW_DRUCKER_PRAGER_H
 
-#include "mpm_elastoplastic.h"
+#include "mpm_law_elastoplastic.h"
 
 namespace MPM_NS::law {
 namespace {

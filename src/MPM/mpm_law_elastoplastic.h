@@ -6,8 +6,8 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-#ifndef LMP_MPM_ELASTOPLASTIC_H
-#define LMP_MPM_ELASTOPLASTIC_H
+#ifndef LMP_MPM_LAW_ELASTOPLASTIC_H
+#define LMP_MPM_LAW_ELASTOPLASTIC_H
 
 // Finite-strain elastoplasticity with return mapping in principal logarithmic strains: what the
 // laws of soil, rock and snow share.
