@@ -125,6 +125,11 @@ def check_run(example):
 
 
 def check_files(example):
+    tables = re.findall(r"^mpm_point\s+(\S+)", example.text, re.M)
+    for name in tables:
+        assert example.files(name), name
+    if tables:
+        return
     pictures = re.findall(r"^dump\s+\S+\s+\S+\s+image\s+\d+\s+(\S+)", example.text, re.M)
     assert pictures, "no dump image in " + example.path
     for pattern in pictures:

@@ -9,6 +9,7 @@
 #include "fix_mpm_material.h"
 
 #include "mpm_material.h"
+#include "mpm_material_input.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -36,10 +37,7 @@ FixMPMMaterial::FixMPMMaterial(LAMMPS *lmp, int narg, char **arg) :
     error->all(FLERR,
                "Fix mpm/material needs material points: use atom_style mpm, alone or in a hybrid");
 
-  if (strcmp(arg[3], "file") == 0)
-    read_file(narg, arg);
-  else
-    create(narg, arg);
+  material = read_material(lmp, "Fix mpm/material", 3, narg, arg).release();
 
   restart_global = 1;
   nhistory = material->history().size();
@@ -70,102 +68,6 @@ FixMPMMaterial::~FixMPMMaterial()
   }
   memory->destroy(history);
   delete material;
-}
-
-/* ----------------------------------------------------------------------
-   definition in the input: fix ID group mpm/material density RHO ...
-------------------------------------------------------------------------- */
-
-void FixMPMMaterial::create(int narg, char **arg)
-{
-  for (int iarg = 3; iarg < narg; iarg++)
-    if (strcmp(arg[iarg], "file") == 0)
-      error->all(FLERR, iarg,
-                 "Fix mpm/material: a material is either given in the input or read with 'file', "
-                 "which must then be the only keyword");
-  try {
-    material = Material::create(std::vector<std::string>(arg + 3, arg + narg)).release();
-  } catch (const MaterialError &e) {
-    error->all(FLERR, MIN(e.word + 3, narg - 1), "Fix mpm/material: {}", e.what());
-  }
-}
-
-/* ----------------------------------------------------------------------
-   definition in a file with the header of a LAMMPS potential file:
-   rank 0 reads words and their line numbers, all ranks parse
-------------------------------------------------------------------------- */
-
-void FixMPMMaterial::read_file(int narg, char **arg)
-{
-  if (narg < 5) utils::missing_cmd_args(FLERR, "fix mpm/material file", error);
-  if (narg > 5)
-    error->all(FLERR, 5,
-               "Fix mpm/material: '{}' after the file name: keywords in the input cannot change a "
-               "material file; copy the file instead",
-               arg[5]);
-  const std::string name = arg[4];
-
-  std::string text, problem;
-  std::vector<int> lines;
-  if (comm->me == 0) problem = read_words(name, text, lines);
-
-  const auto broadcast = [this](std::string &s) {
-    int size = s.size();
-    MPI_Bcast(&size, 1, MPI_INT, 0, world);
-    s.resize(size);
-    if (size) MPI_Bcast(&s[0], size, MPI_CHAR, 0, world);
-  };
-  broadcast(problem);
-  if (!problem.empty()) error->all(FLERR, 4, "Fix mpm/material: {}", problem);
-  broadcast(text);
-  int nwords = lines.size();
-  MPI_Bcast(&nwords, 1, MPI_INT, 0, world);
-  lines.resize(nwords);
-  MPI_Bcast(lines.data(), nwords, MPI_INT, 0, world);
-
-  try {
-    material = Material::create(utils::split_words(text)).release();
-  } catch (const MaterialError &e) {
-    const int line = lines.empty() ? 1 : lines[MIN(e.word, nwords - 1)];
-    error->all(FLERR, 4, "Fix mpm/material: file {} line {}: {}", name, line, e.what());
-  }
-}
-
-/* ----------------------------------------------------------------------
-   words of a file after its header, and the line of each; returns what is wrong, or nothing
-------------------------------------------------------------------------- */
-
-std::string FixMPMMaterial::read_words(const std::string &name, std::string &text,
-                                       std::vector<int> &lines)
-{
-  const std::string path = utils::get_potential_file_path(name);
-  if (path.empty())
-    return fmt::format("cannot read file {}: it is neither here nor in a folder of the environment "
-                       "variable LAMMPS_POTENTIALS",
-                       name);
-  const std::string units = utils::get_potential_units(path, "material");
-  if (units.empty())
-    return fmt::format("the first line of file {} must give its units, such as 'UNITS: si'", name);
-  if (units != update->unit_style)
-    return fmt::format(
-        "file {} is in {} units but the input uses {} units: convert the file or use "
-        "units {}",
-        name, units, update->unit_style, units);
-  utils::logmesg(lmp, "Reading material file {} with DATE: {}\n", name,
-                 utils::get_potential_date(path, "material"));
-
-  FILE *fp = fopen(path.c_str(), "r");
-  if (!fp) return fmt::format("cannot read file {}: {}", path, utils::getsyserror());
-  char buffer[1024];
-  for (int line = 1; utils::fgets_trunc(buffer, sizeof(buffer), fp); line++) {
-    if (line == 1) continue;
-    for (const auto &word : utils::split_words(utils::trim_comment(buffer))) {
-      text += word + " ";
-      lines.push_back(line);
-    }
-  }
-  fclose(fp);
-  return "";
 }
 
 /* ---------------------------------------------------------------------- */

@@ -74,9 +74,6 @@ class FixMPMMaterial : public Fix {
   };
   std::vector<Exit> exits;    ///< for each range of the material
   void report_exits();
-  void create(int, char **);
-  void read_file(int, char **);
-  std::string read_words(const std::string &, std::string &, std::vector<int> &);
 };
 
 }    // namespace LAMMPS_NS

@@ -8,8 +8,12 @@
 
 #include "mpm_material_point.h"
 
+#include <Eigen/Dense>
+
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <stdexcept>
 
 using namespace MPM_NS;
 
@@ -17,7 +21,7 @@ using namespace MPM_NS;
 
 MaterialPoint::MaterialPoint(const Material &material, int n, double h) :
     material(material), batch(), storage(material.history().size() * BATCH), time(0.0), power(0.0),
-    work()
+    work(), rotation{1, 0, 0, 0, 1, 0, 0, 0, 1}, guess()
 {
   batch.n = n;
   batch.h = h;
@@ -40,6 +44,8 @@ MaterialPoint::MaterialPoint(const MaterialPoint &other) :
     power(other.power)
 {
   memcpy(work, other.work, sizeof(work));
+  memcpy(rotation, other.rotation, sizeof(rotation));
+  memcpy(guess, other.guess, sizeof(guess));
   batch.history = reinterpret_cast<double(*)[BATCH]>(storage.data());
 }
 
@@ -119,34 +125,207 @@ void MaterialPoint::move(const double *A, double dt)
 }
 
 /* ----------------------------------------------------------------------
-   lateral strain rate by the secant method
+   mixed control
 ------------------------------------------------------------------------- */
+
+namespace {
+
+constexpr int VOIGT[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+
+using Matrix3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+/** exp(X) - I with full relative precision for small X: Taylor series, then doubling of X by
+ *  exp(2 X) - I = E (E + 2 I). */
+Matrix3 exp_minus_identity(Matrix3 X)
+{
+  int doublings = 0;
+  for (double size = X.norm(); size > 0.1; size *= 0.5) doublings++;
+  X *= std::ldexp(1.0, -doublings);
+  Matrix3 term = X, E = X;
+  for (int k = 2; k < 14; k++) {
+    term = term * X / k;
+    E += term;
+  }
+  for (int k = 0; k < doublings; k++) E = E * E + 2.0 * E;
+  return E;
+}
+
+Matrix3 stress_matrix(const Batch &b, int i)
+{
+  Matrix3 s;
+  for (int k = 0; k < 6; k++)
+    s(VOIGT[k][0], VOIGT[k][1]) = s(VOIGT[k][1], VOIGT[k][0]) = b.stress[k][i];
+  return s;
+}
+
+/** One step tried with several motions at once: each point of a batch makes another one. */
+class Trial {
+ public:
+  Trial(const MaterialPoint &p, const MixedControl &control, double dt, const double *rotation) :
+      p(p), control(control), dt(dt), R0(p.rotation), R1(rotation)
+  {
+    for (int k = 0; k < 6; k++)
+      if (control.stress_given[k]) free[n++] = k;
+    history.resize(p.storage.size());
+    b.history = reinterpret_cast<double(*)[BATCH]>(history.data());
+  }
+
+  int n = 0;      ///< number of unknowns
+  int free[6];    ///< their components
+
+  /** A of the step, F_new = (I + A) F, for these strain increments. */
+  Matrix3 motion(const double *x) const
+  {
+    Matrix3 X = Eigen::Map<const Matrix3>(control.L) * dt;
+    for (int j = 0; j < n; j++) {
+      const int a = VOIGT[free[j]][0], c = VOIGT[free[j]][1];
+      X(a, c) += x[j];
+      if (a != c) X(c, a) += x[j];
+    }
+    const Matrix3 E = exp_minus_identity(X);
+    // R1 (I + E) R0^T - I, without loss of digits where the frame does not rotate
+    return R1 * E * R0.transpose() + (R1 - R0) * R0.transpose();
+  }
+
+  /** r[m][j]: excess of the stress of unknown j when motion m, of count, has increments x[m]. */
+  void evaluate(int count, const double (*x)[6], double (*r)[6])
+  {
+    const Batch &start = p.batch;
+    b.n = count;
+    b.dt = dt;
+    b.h = start.h;
+    b.time = p.time + dt;
+    for (int m = 0; m < count; m++) {
+      const Matrix3 A = motion(x[m]);
+      Matrix3 F;
+      for (int k = 0; k < 9; k++) F(k / 3, k % 3) = start.F[k][0];
+      F += (A * F).eval();
+      for (int k = 0; k < 9; k++) {
+        b.A[k][m] = A(k / 3, k % 3);
+        b.F[k][m] = F(k / 3, k % 3);
+      }
+      b.J[m] = F.determinant();
+      b.Jold[m] = start.J[0];
+      b.vol0[m] = 1.0;
+      for (int k = 0; k < 6; k++) b.stress[k][m] = start.stress[k][0];
+      for (std::size_t k = 0; k < history.size() / BATCH; k++)
+        b.history[k][m] = start.history[k][0];
+    }
+    p.material.update(b);
+    scale = 0.0;
+    for (int m = 0; m < count; m++) {
+      const Matrix3 s = R1.transpose() * stress_matrix(b, m) * R1;
+      if (m == 0) scale = s.cwiseAbs().maxCoeff();
+      for (int j = 0; j < n; j++)
+        r[m][j] = s(VOIGT[free[j]][0], VOIGT[free[j]][1]) - control.stress[free[j]];
+    }
+  }
+
+  double scale;    ///< largest component of the stress of the first motion
+
+ private:
+  const MaterialPoint &p;
+  const MixedControl &control;
+  double dt;
+  Eigen::Map<const Matrix3> R0, R1;
+  std::vector<double> history;
+  Batch b = {};
+};
+
+double norm(int n, const double *r)
+{
+  double sum = 0.0;
+  for (int j = 0; j < n; j++) sum += r[j] * r[j];
+  return std::isfinite(sum) ? std::sqrt(sum) : INFINITY;
+}
+
+}    // namespace
+
+/* ----------------------------------------------------------------------
+   Newton iteration for the unknown strain increments with a numerical tangent; steps that do not
+   help are shortened, all lengths tried at once
+------------------------------------------------------------------------- */
+
+int MaterialPoint::step(const MixedControl &control, double dt, const double *new_rotation)
+{
+  static constexpr int MAX_ITERATIONS = 60, LENGTHS = 12;
+  double R1[9];
+  memcpy(R1, new_rotation ? new_rotation : rotation, sizeof(R1));
+  Trial trial(*this, control, dt, R1);
+  const int n = trial.n;
+
+  double x[6] = {}, known = 0.0;
+  for (int j = 0; j < n; j++) x[j] = dt * guess[trial.free[j]];
+  for (double l : control.L) known = std::max(known, dt * std::fabs(l));
+
+  int iterations = 0;
+  for (bool done = n == 0; !done; iterations++) {
+    // residual, and its derivatives by differences
+    double xs[LENGTHS][6], rs[LENGTHS][6], largest = known;
+    for (int j = 0; j < n; j++) largest = std::max(largest, std::fabs(x[j]));
+    const double delta = std::max(1e-6 * largest, 1e-9);
+    for (int m = 0; m <= n; m++) {
+      std::copy(x, x + n, xs[m]);
+      if (m > 0) xs[m][m - 1] += delta;
+    }
+    trial.evaluate(n + 1, xs, rs);
+    double r[6];
+    std::copy(rs[0], rs[0] + n, r);
+    const double size = norm(n, r);
+    if (!(size < INFINITY)) throw std::runtime_error("the stress is not finite");
+    Eigen::MatrixXd tangent(n, n);
+    Eigen::VectorXd rhs(n);
+    for (int j = 0; j < n; j++) {
+      rhs[j] = -r[j];
+      for (int m = 0; m < n; m++) tangent(j, m) = (rs[m + 1][j] - r[j]) / delta;
+    }
+    // what rounding leaves: of the stress, of the motion, and of F, which is about 1
+    double scale = trial.scale;
+    for (int j = 0; j < n; j++) scale = std::max(scale, std::fabs(control.stress[trial.free[j]]));
+    const double modulus = tangent.cwiseAbs().maxCoeff();
+    scale += largest * modulus;
+    if (size <= 1e-15 * scale) break;
+
+    const Eigen::VectorXd dx = tangent.completeOrthogonalDecomposition().solve(rhs);
+    for (int m = 0; m < LENGTHS; m++)
+      for (int j = 0; j < n; j++) xs[m][j] = x[j] + std::ldexp(dx[j], -m);
+    trial.evaluate(LENGTHS, xs, rs);
+    int best = 0;
+    for (int m = 1; m < LENGTHS; m++)
+      if (norm(n, rs[m]) < norm(n, rs[best])) best = m;
+    const double next = norm(n, rs[best]);
+    if (next < size) std::copy(xs[best], xs[best] + n, x);
+    done = next > 0.5 * size && size <= 1e-10 * scale + 1e-14 * modulus;    // only rounding is left
+    if (!done && (next >= size || iterations == MAX_ITERATIONS))
+      throw std::runtime_error("no motion gives the prescribed stress (off by " +
+                               std::to_string(size / scale) + " of the stress)");
+  }
+
+  for (int j = 0; j < n; j++) guess[trial.free[j]] = x[j] / dt;
+  const Matrix3 A = trial.motion(x);
+  memcpy(rotation, R1, sizeof(R1));
+  move(A.data(), dt);
+  return iterations;
+}
 
 void MaterialPoint::step_uniaxial_stress(double rate, double dt)
 {
-  const auto gradient = [rate](double lateral, double *L) {
-    for (int k = 0; k < 9; k++) L[k] = 0.0;
-    L[0] = rate;
-    L[4] = L[8] = lateral;
-  };
-  double L[9];
-  const auto residual = [&](double lateral) {
-    MaterialPoint trial(*this);
-    gradient(lateral, L);
-    trial.step(L, dt);
-    return trial.stress(1);
-  };
-  double r0 = -0.25 * rate, r1 = -0.45 * rate, f0 = residual(r0), f1 = residual(r1);
-  const double scale = std::fabs(f1 - f0);
-  for (int it = 0; it < 100 && f1 != f0 && std::fabs(f1) > 1e-15 * scale; it++) {
-    const double r2 = r1 - f1 * (r1 - r0) / (f1 - f0);
-    r0 = r1;
-    f0 = f1;
-    r1 = r2;
-    f1 = residual(r1);
-  }
-  gradient(r1, L);
-  step(L, dt);
+  MixedControl control;
+  control.L[0] = rate;
+  control.stress_given[1] = control.stress_given[2] = true;
+  step(control, dt);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MaterialPoint::frame_state(double *F, double *stress) const
+{
+  const Eigen::Map<const Matrix3> R(rotation);
+  Eigen::Map<Matrix3> f(F);
+  for (int k = 0; k < 9; k++) f(k / 3, k % 3) = batch.F[k][0];
+  f = (R.transpose() * f).eval();
+  const Matrix3 s = R.transpose() * stress_matrix(batch, 0) * R;
+  for (int k = 0; k < 6; k++) stress[k] = s(VOIGT[k][0], VOIGT[k][1]);
 }
 
 /* ---------------------------------------------------------------------- */

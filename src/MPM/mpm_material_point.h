@@ -15,6 +15,18 @@
 
 namespace MPM_NS {
 
+/** Motion of a step of which some components are found from the stress.
+ *
+ *  L is the velocity gradient, constant during the step: F_new = exp(dt L) F. For each component k
+ *  of the symmetric part (order of the stress) with stress_given[k], a rate of deformation is added
+ *  to L such that the Cauchy stress at the end of the step has the value stress[k].
+ */
+struct MixedControl {
+  double L[9] = {};    ///< row-major
+  bool stress_given[6] = {};
+  double stress[6] = {};
+};
+
 /** A batch of equal points that all follow the same velocity gradient. */
 class MaterialPoint {
  public:
@@ -29,6 +41,11 @@ class MaterialPoint {
   /** One step of the motion F_new = (I + A) F. */
   void move(const double *A, double dt);
 
+  /** One step of a motion that is known in part; throws std::runtime_error when no motion gives the
+   *  stress. rotation: of the frame in which control, strain(), and stress are meant, at the end of
+   *  the step (row-major; null: as before, at first none). Returns the number of iterations. */
+  int step(const MixedControl &, double dt, const double *rotation = nullptr);
+
   /** One step with strain rate along x and free lateral surfaces (sigma_yy = sigma_zz = 0). */
   void step_uniaxial_stress(double rate, double dt);
 
@@ -38,6 +55,10 @@ class MaterialPoint {
   double time;
   double power;          ///< stress power so far, integral of P:dF by the trapezoidal rule
   double work[NWORK];    ///< so far, per reference volume
+  double rotation[9];    ///< of the frame in which motion is controlled, see step()
+
+  /** Deformation gradient and Cauchy stress in the frame in which motion is controlled. */
+  void frame_state(double *F, double *stress) const;
 
   /** State of the first point. */
   double stress(int k) const { return batch.stress[k][0]; }
@@ -46,6 +67,9 @@ class MaterialPoint {
   double vonmises() const;
   double wave_speed() const;
   double stored_energy() const;
+
+ private:
+  double guess[6];    ///< rate of deformation found in the last step with mixed control
 };
 
 }    // namespace MPM_NS

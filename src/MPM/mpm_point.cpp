@@ -1,0 +1,519 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "mpm_point.h"
+
+#include "mpm_law.h"
+#include "mpm_material_input.h"
+#include "mpm_material_point.h"
+
+#include "comm.h"
+#include "error.h"
+#include "force.h"
+#include "input.h"
+#include "math_const.h"
+#include "update.h"
+#include "variable.h"
+
+#include "fmt/format.h"
+
+#include <Eigen/Dense>
+
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+static constexpr int CONSOLIDATION_STEPS = 100;
+static constexpr double NOT_GIVEN = -1.0;
+static const char *const component_name[6] = {"xx", "yy", "zz", "xy", "xz", "yz"};
+static const char *const path_name[] = {"uniaxial/stress", "uniaxial/strain", "shear", "biaxial",
+                                        "triaxial",        "volumetric",      "shock", "mixed"};
+
+/* ---------------------------------------------------------------------- */
+
+MPMPoint::MPMPoint(LAMMPS *lmp) :
+    Command(lmp), path(MIXED), rate(0.0), pressure(0.0), duration(NOT_GIVEN), strain(NOT_GIVEN),
+    amplitude(NOT_GIVEN), cycles(0.0), temperature(NAN), length(1.0), nsteps(1000),
+    every(0), axis{}, turns(0.0), component(), spin(), fp(nullptr), iterations(0)
+{
+}
+
+MPMPoint::~MPMPoint()
+{
+  if (fp) fclose(fp);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMPoint::command(int narg, char **arg)
+{
+  parse(narg, arg);
+  if (comm->me == 0)
+    utils::logmesg(lmp, "Material point, path {}: {}\n", path_name[path], material->describe());
+
+  // all ranks do the same, rank 0 writes
+  material->configure(nullptr, force->mvv2e * force->nktv2p, force->nktv2p);
+  range_left.assign(material->ranges().size(), false);
+  MaterialPoint point(*material, 1, length);
+  set_temperature(point);
+  open_table();
+  if (path == SHOCK)
+    run_shock(point);
+  else
+    run_path(point);
+
+  if (fp) {
+    const bool failed = ferror(fp) != 0;
+    if (fclose(fp) != 0 || failed)
+      error->one(FLERR, "Cannot write to table {}: {}", file, utils::getsyserror());
+    fp = nullptr;
+  }
+  if (comm->me == 0 && iterations)
+    utils::logmesg(lmp, "  {:.1f} iterations per step\n", double(iterations) / nsteps);
+}
+
+/* ----------------------------------------------------------------------
+   mpm_point FILE PATH values keyword values ... material definition
+------------------------------------------------------------------------- */
+
+void MPMPoint::parse(int narg, char **arg)
+{
+  if (narg < 2) utils::missing_cmd_args(FLERR, "mpm_point", error);
+  if (strcmp(arg[0], "NULL") != 0) file = arg[0];
+  int iarg = parse_path(narg, arg);
+
+  const auto need = [&](int n) {
+    if (iarg + n >= narg)
+      utils::missing_cmd_args(FLERR, std::string("mpm_point ") + arg[iarg], error);
+  };
+  const auto number = [&](int k) {
+    return utils::numeric(FLERR, arg[iarg + k], false, lmp);
+  };
+  const auto positive = [&](int k) {
+    const double x = number(k);
+    if (!(x > 0.0)) error->all(FLERR, iarg + k, "Mpm_point {} must be positive", arg[iarg]);
+    return x;
+  };
+
+  while (iarg < narg && strcmp(arg[iarg], "material") != 0) {
+    const std::string key = arg[iarg];
+    int k = 0;
+    while (k < 6 && key != component_name[k]) k++;
+    if (k < 6) {
+      need(2);
+      const std::string kind = arg[iarg + 1];
+      if (kind != "rate" && kind != "stress")
+        error->all(FLERR, iarg + 1, "Mpm_point {} must be followed by rate or stress, not {}", key,
+                   kind);
+      if (component[k].kind != Component::AS_PATH)
+        error->all(FLERR, iarg, "Mpm_point: component {} is given twice", key);
+      component[k].kind = kind == "rate" ? Component::RATE : Component::STRESS;
+      component[k].value = parse_value(iarg + 2, arg);
+      iarg += 3;
+    } else if (key == "spin") {
+      need(3);
+      for (int d = 0; d < 3; d++) spin[d] = parse_value(iarg + 1 + d, arg);
+      iarg += 4;
+    } else if (key == "rotate") {
+      need(4);
+      double norm = 0.0;
+      for (int d = 0; d < 3; d++) {
+        axis[d] = number(1 + d);
+        norm += axis[d] * axis[d];
+      }
+      if (!(norm > 0.0)) error->all(FLERR, iarg + 1, "Mpm_point rotate: the axis is zero");
+      for (double &a : axis) a /= sqrt(norm);
+      turns = number(4);
+      iarg += 5;
+    } else if (key == "cycle") {
+      need(2);
+      amplitude = positive(1);
+      cycles = positive(2);
+      iarg += 3;
+    } else if (key == "clock") {
+      need(1);
+      clock = arg[iarg + 1];
+      const int ivar = input->variable->find(clock.c_str());
+      if (ivar < 0 || !input->variable->internalstyle(ivar))
+        error->all(FLERR, iarg + 1,
+                   "Mpm_point clock: {} is no internal-style variable: define it with "
+                   "'variable {} internal 0'",
+                   clock, clock);
+      iarg += 2;
+    } else if (key == "temperature") {
+      need(1);
+      temperature = number(1);
+      iarg += 2;
+    } else if (key == "steps" || key == "every") {
+      need(1);
+      const bigint n = utils::bnumeric(FLERR, arg[iarg + 1], false, lmp);
+      if (n < 1) error->all(FLERR, iarg + 1, "Mpm_point {} must be positive", key);
+      (key == "steps" ? nsteps : every) = n;
+      iarg += 2;
+    } else if (key == "time" || key == "strain" || key == "length") {
+      need(1);
+      (key == "time" ? duration : key == "strain" ? strain : length) = positive(1);
+      iarg += 2;
+    } else {
+      error->all(FLERR, iarg,
+                 "Unknown mpm_point keyword: {} (the definition of the material comes last, after "
+                 "the word material)",
+                 key);
+    }
+  }
+  if (iarg >= narg)
+    error->all(FLERR,
+               "Mpm_point: the material is missing: end the command with 'material density "
+               "...' or 'material file NAME'");
+
+  // what does not go together
+
+  const bool mixed = path == MIXED;
+  const int given = (duration > 0.0) + (strain > 0.0) + (amplitude > 0.0);
+  if (given != 1)
+    error->all(FLERR, "Mpm_point {} needs {} of the keywords {}", path_name[path],
+               given ? "only one" : "one", mixed ? "time" : "time, strain and cycle");
+  if (mixed && duration < 0.0)
+    error->all(FLERR,
+               "Mpm_point mixed has no strain of its own: use time instead of strain and "
+               "cycle");
+  if (path == SHOCK) {
+    if (amplitude > 0.0 || turns != 0.0)
+      error->all(FLERR,
+                 "Mpm_point shock goes from the initial state to each of its states in one "
+                 "step: cycle and rotate do not go with it");
+    for (auto &c : component)
+      if (c.kind != Component::AS_PATH)
+        error->all(FLERR,
+                   "Mpm_point shock is uniaxial compression: no component can be changed; "
+                   "use uniaxial/strain");
+  }
+  if (amplitude > 0.0) duration = 4.0 * amplitude * cycles / fabs(rate);
+  if (strain > 0.0) duration = strain / fabs(rate);
+  if (every == 0) every = std::max<bigint>(1, nsteps / 1000);
+
+  material = read_material(lmp, "Mpm_point", iarg + 1, narg, arg);
+}
+
+/* ---------------------------------------------------------------------- */
+
+int MPMPoint::parse_path(int narg, char **arg)
+{
+  int k = 0;
+  while (k < NPATHS && strcmp(arg[1], path_name[k]) != 0) k++;
+  if (k == NPATHS) {
+    std::string all;
+    for (const char *name : path_name) all += fmt::format("{}{}", all.empty() ? "" : ", ", name);
+    error->all(FLERR, 1, "Unknown mpm_point path {}: choose one of {}", arg[1], all);
+  }
+  path = static_cast<Path>(k);
+  if (path == MIXED) return 2;
+  const int nvalues = path == TRIAXIAL ? 2 : 1;
+  if (narg < 2 + nvalues) utils::missing_cmd_args(FLERR, std::string("mpm_point ") + arg[1], error);
+  rate = utils::numeric(FLERR, arg[2], false, lmp);
+  if (rate == 0.0 || (path == SHOCK && rate > 0.0))
+    error->all(FLERR, 2, "Mpm_point {}: the rate must be {}", arg[1],
+               path == SHOCK ? "negative (compression)" : "different from zero");
+  if (path == TRIAXIAL) {
+    pressure = utils::numeric(FLERR, arg[3], false, lmp);
+    if (!(pressure >= 0.0))
+      error->all(FLERR, 3, "Mpm_point triaxial: the confining pressure must not be negative");
+  }
+  return 2 + nvalues;
+}
+
+/* ----------------------------------------------------------------------
+   a number or v_name
+------------------------------------------------------------------------- */
+
+MPMPoint::Value MPMPoint::parse_value(int iarg, char **arg)
+{
+  Value v{0.0, ""};
+  if (!utils::strmatch(arg[iarg], "^v_")) {
+    v.number = utils::numeric(FLERR, arg[iarg], false, lmp);
+    return v;
+  }
+  v.variable = arg[iarg] + 2;
+  const int ivar = input->variable->find(v.variable.c_str());
+  if (ivar < 0) error->all(FLERR, iarg, "Variable {} for mpm_point does not exist", v.variable);
+  if (!input->variable->equalstyle(ivar))
+    error->all(FLERR, iarg, "Variable {} for mpm_point is not equal-style", v.variable);
+  return v;
+}
+
+double MPMPoint::evaluate(const Value &v, double time)
+{
+  if (v.variable.empty()) return v.number;
+  if (!clock.empty()) input->variable->internal_set(input->variable->find(clock.c_str()), time);
+  return input->variable->compute_equal(input->variable->find(v.variable.c_str()));
+}
+
+/* ----------------------------------------------------------------------
+   strain along the path: steady, or to and fro between amplitude and -amplitude
+------------------------------------------------------------------------- */
+
+double MPMPoint::path_strain(double time) const
+{
+  if (amplitude < 0.0) return rate * time;
+  const double phase = fmod(fabs(rate) * time / amplitude, 4.0);    // quarters of a cycle
+  const double s = phase < 1.0 ? phase : phase < 3.0 ? 2.0 - phase : phase - 4.0;
+  return rate > 0.0 ? amplitude * s : -amplitude * s;
+}
+
+/* ----------------------------------------------------------------------
+   what is prescribed in a step from t0 to t1; before the start of a triaxial test: isotropic, with
+   this share of the confining pressure at the end of the step
+------------------------------------------------------------------------- */
+
+MixedControl MPMPoint::control(double t0, double t1, bool started, double share)
+{
+  MixedControl c;
+  const double r = path == MIXED ? 0.0 : (path_strain(t1) - path_strain(t0)) / (t1 - t0);
+  const auto free = [&c](int k, double stress) {
+    c.stress_given[k] = true;
+    c.stress[k] = stress;
+  };
+  switch (path) {
+    case UNIAXIAL_STRESS:
+      c.L[0] = r;
+      free(1, 0.0);
+      free(2, 0.0);
+      break;
+    case BIAXIAL:
+      c.L[0] = c.L[4] = r;
+      free(2, 0.0);
+      break;
+    case TRIAXIAL:
+      if (started)
+        c.L[0] = r;
+      else
+        free(0, -share * pressure);
+      free(1, -share * pressure);
+      free(2, -share * pressure);
+      break;
+    case SHEAR:
+      c.L[1] = r;
+      break;
+    case VOLUMETRIC:
+      c.L[0] = c.L[4] = c.L[8] = r / 3.0;
+      break;
+    default:
+      c.L[0] = r;    // uniaxial strain
+  }
+
+  static constexpr int place[6][2] = {{0, 0}, {4, 4}, {8, 8}, {1, 3}, {2, 6}, {5, 7}};
+  const double middle = 0.5 * (t0 + t1);
+  for (int k = 0; k < 6; k++) {
+    if (component[k].kind == Component::AS_PATH) continue;
+    const bool is_rate = component[k].kind == Component::RATE;
+    const double value = evaluate(component[k].value, is_rate ? middle : t1);
+    for (const int p : place[k]) c.L[p] = is_rate ? value : 0.0;
+    c.stress_given[k] = !is_rate;
+    c.stress[k] = is_rate ? 0.0 : value;
+  }
+  const double x = evaluate(spin[0], middle), y = evaluate(spin[1], middle),
+               z = evaluate(spin[2], middle);
+  c.L[1] -= z;
+  c.L[3] += z;
+  c.L[2] += y;
+  c.L[6] -= y;
+  c.L[5] -= x;
+  c.L[7] += x;
+  return c;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMPoint::run_path(MaterialPoint &point)
+{
+  const double dt = duration / nsteps;
+  const int before = path == TRIAXIAL && pressure > 0.0 ? CONSOLIDATION_STEPS : 0;
+  const Eigen::Vector3d n = turns == 0.0 ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d(axis);
+  point.time = -before * dt;
+  write(point, -before);
+  for (bigint step = 1 - before; step <= nsteps; step++) {
+    const bool started = step > 0;
+    const double t1 = step * dt, share = started ? 1.0 : double(step + before) / before;
+    const double angle = started ? MathConst::MY_2PI * turns * step / nsteps : 0.0;
+    const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rotation =
+        Eigen::AngleAxisd(angle, n).toRotationMatrix();
+    try {
+      const MixedControl c = control(t1 - dt, t1, started, share);
+      iterations += point.step(c, dt, turns == 0.0 ? nullptr : rotation.data());
+    } catch (const std::runtime_error &e) {
+      error->all(FLERR,
+                 "Mpm_point: step {} at time {:.6g}: {}; is the stress beyond the strength, or the "
+                 "step too large?",
+                 step, t1, e.what());
+    }
+    point.time = t1;    // free of the rounding of sums
+    check(point, step);
+    write(point, step);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   states behind shocks of growing strength: each is reached from the initial state in one step,
+   for which the work of the mean stress is the jump condition of energy (Rankine, Hugoniot)
+------------------------------------------------------------------------- */
+
+void MPMPoint::run_shock(MaterialPoint &initial)
+{
+  write(initial, 0);
+  for (bigint step = 1; step <= nsteps; step++) {
+    const double t = duration * step / nsteps;
+    MaterialPoint point(initial);
+    const double A[9] = {expm1(rate * t)};
+    point.move(A, t);
+    check(point, step);
+    write(point, step);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMPoint::set_temperature(MaterialPoint &point)
+{
+  if (std::isnan(temperature)) return;
+  const auto &variables = material->history();
+  for (std::size_t k = 0; k < variables.size(); k++)
+    if (variables[k].name == "temperature") {
+      point.batch.history[k][0] = temperature;
+      return;
+    }
+  error->all(FLERR,
+             "Mpm_point temperature: the material has none: add 'thermal adiabatic' or "
+             "'thermal constant'");
+}
+
+/* ----------------------------------------------------------------------
+   is the state sound, and in the ranges of validity?
+------------------------------------------------------------------------- */
+
+void MPMPoint::check(const MaterialPoint &point, bigint step)
+{
+  double sum = point.batch.J[0];
+  for (int k = 0; k < 6; k++) sum += point.stress(k);
+  if (!std::isfinite(sum) || !(point.batch.J[0] > 0.0))
+    error->all(FLERR, "Mpm_point: step {} at time {:.6g}: the state is not finite; use more steps",
+               step, point.time);
+
+  for (std::size_t k = 0; k < range_left.size(); k++) {
+    double value[BATCH];
+    if (range_left[k] || !material->outside(point.batch, k, value)) continue;
+    range_left[k] = true;
+    const auto &range = material->ranges()[k];
+    if (comm->me == 0)
+      error->warning(FLERR,
+                     "Mpm_point: {} {:.6g} at step {} is out of the range of this material, {:.6g} "
+                     "to {:.6g}; this is said only once",
+                     range.quantity, value[0], step, range.low, range.high);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   table: comment lines with what it is, names of the columns, one row per output
+------------------------------------------------------------------------- */
+
+void MPMPoint::open_table()
+{
+  if (comm->me != 0 || file.empty()) return;
+  fp = fopen(file.c_str(), "w");
+  if (!fp) error->one(FLERR, "Cannot write table {}: {}", file, utils::getsyserror());
+  utils::print(fp, "# mpm_point, path {}, units {}\n# {}\n", path_name[path], update->unit_style,
+               material->describe());
+}
+
+/** All that is known of a point, in the order of the columns. */
+std::vector<std::pair<std::string, double>> MPMPoint::row(const MaterialPoint &point, bigint step)
+{
+  std::vector<std::pair<std::string, double>> row = {{"step", step}, {"time", point.time}};
+  const auto add = [&row](const std::string &name, double value) {
+    row.emplace_back(name, value + 0.0);    // no -0
+  };
+
+  double F[9], stress[6];
+  point.frame_state(F, stress);
+  const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> f(F);
+  for (int k = 0; k < 9; k++) add(fmt::format("F{}{}", "xyz"[k / 3], "xyz"[k % 3]), F[k]);
+  add("J", point.batch.J[0]);
+
+  // logarithmic strain (ln b)/2
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> b(f * f.transpose());
+  const Eigen::Matrix3d &axes = b.eigenvectors();
+  const Eigen::Vector3d e = 0.5 * b.eigenvalues().array().log();
+  const Eigen::Matrix3d E = axes * e.asDiagonal() * axes.transpose();
+  static constexpr int place[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+  for (int k = 0; k < 6; k++)
+    add(std::string("e") + component_name[k], E(place[k][0], place[k][1]));
+  for (int k = 0; k < 6; k++) add(std::string("s") + component_name[k], stress[k]);
+
+  Eigen::Matrix3d s;
+  for (int k = 0; k < 6; k++) s(place[k][0], place[k][1]) = s(place[k][1], place[k][0]) = stress[k];
+  const double mises = point.vonmises();
+  s -= Eigen::Matrix3d::Identity() * (s.trace() / 3.0);
+  add("pressure", point.pressure());
+  add("vonmises", mises);
+  add("lode", mises > 0.0 ? 13.5 * s.determinant() / (mises * mises * mises) : 0.0);
+
+  add("stored", point.stored_energy());
+  add("work", point.power);
+  add("plastic", point.work[PLASTIC]);
+  add("viscous", point.work[VISCOUS]);
+  add("heat", point.work[HEAT]);
+  add("wavespeed", point.wave_speed());
+  if (path == SHOCK) {
+    // jump conditions of mass, momentum, and energy with the stress along the shock's normal
+    const double P = -stress[0], eta = 1.0 - point.batch.J[0];
+    const double density = material->density() * force->mvv2e * force->nktv2p;
+    add("us", eta > 0.0 ? sqrt(P / (density * eta)) : point.wave_speed());
+    add("up", sqrt(std::max(0.0, P * eta) / density));
+    add("jump", 0.5 * P * eta);
+  }
+  for (std::size_t k = 0; k < material->history().size(); k++)
+    add(material->history()[k].name, point.history(k));
+  return row;
+}
+
+void MPMPoint::write(const MaterialPoint &point, bigint step)
+{
+  if (comm->me != 0) return;
+  const bool first = step == (path == TRIAXIAL && pressure > 0.0 ? -CONSOLIDATION_STEPS : 0);
+  const bool in_table = fp && (step % every == 0 || step == nsteps || first);
+  const bool in_log = first || step == nsteps || step % std::max<bigint>(1, nsteps / 10) == 0;
+  if (!in_table && !in_log) return;
+
+  const auto columns = row(point, step);
+  const auto line = [](const std::vector<std::string> &words) {
+    return utils::join_words(words, " ") + "\n";
+  };
+  if (in_table) {
+    std::vector<std::string> words;
+    for (const auto &c : columns) words.push_back(c.first);
+    if (first) utils::print(fp, "{}", line(words));
+    words.clear();
+    for (const auto &c : columns) words.push_back(fmt::format("{:.15g}", c.second));
+    utils::print(fp, "{}", line(words));
+  }
+  if (in_log) {
+    std::string names = "   Step          Time     ",
+                values = fmt::format("{:10d}   {:<14.8g}", step, point.time);
+    static const char *const shown[] = {"exx",      "exy",    "sxx", "sxy", "pressure",
+                                        "vonmises", "stored", "us",  "up"};
+    for (const auto &c : columns)
+      for (const char *name : shown)
+        if (c.first == name) {
+          names += fmt::format(" {:^14}", name);
+          values += fmt::format(" {:<14.8g}", c.second);
+        }
+    if (first) utils::logmesg(lmp, "{}\n", names);
+    utils::logmesg(lmp, "{}\n", values);
+  }
+}
