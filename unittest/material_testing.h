@@ -155,6 +155,17 @@ inline const Sample samples[] = {
      "density 1600 drucker/prager 1e6 0.3 35 cohesion 2e4 dilatancy 10 tension 5e3 plane"},
     {"viscous rubber",
      "density 1000 neohookean 1e6 0.3 viscosity newtonian 10 viscosity artificial 2 1"},
+    {"shock cutoff", "density 8930 eos shock 3940 1.49 1.96 cutoff -1e9"},
+    {"shock spall", "density 8930 eos shock 3940 1.49 1.96 spall -1e9 strength elastic 43e9"},
+    {"polynomial", "density 2700 eos polynomial 7e10 8e10 5e10 2 1.5 6e10 1e10 energy 1e9"},
+    {"ideal gas", "density 1.2 eos ideal/gas 1.4 pressure 1e5"},
+    {"stiffened gas", "density 1000 eos stiffened/gas 4.4 6e8 pressure 1e5 cutoff -1e6"},
+    {"jwl", "density 1630 eos jwl 371.2e9 3.231e9 4.15 0.95 0.3 7.0e9 6930"},
+    {"jwl burning", "density 1630 eos jwl 371.2e9 3.231e9 4.15 0.95 0.3 7.0e9 69 detonate 0 0 0 0"},
+    {"bulk viscosity", "density 1000 eos linear 1e6 viscosity newtonian 1 bulk 2"},
+    {"bingham", "density 1000 eos linear 1e6 viscosity bingham 1 2 10"},
+    {"herschel/bulkley", "density 1000 eos linear 1e6 viscosity herschel/bulkley 1 0.5 2 10"},
+    {"power", "density 1000 eos tait 1e6 7 viscosity power 2 0.5 0.1 10"},
 };
 
 }    // namespace material_testing

@@ -783,11 +783,12 @@ TEST(Energy, BalanceIsSecondOrder)
     for (int level = 0; level < 3; level++) {
       MaterialPoint p(*material, 1, 0.01);
       const int n = 1000 << level;
+      const double start = p.stored_energy();
       for (int i = 0; i < n; i++) {
         p.step(there_and_back((i + 0.5) / n).data(), 1.0 / n);
-        const double energy = p.stored_energy() + p.work[PLASTIC] + p.work[VISCOUS];
+        const double energy = p.stored_energy() - start + p.work[PLASTIC] + p.work[VISCOUS];
         error[level] = std::max(error[level], std::fabs(energy - p.power));
-        scale = std::max(scale, energy);
+        scale = std::max(scale, std::fabs(energy));
       }
     }
     EXPECT_LT(error[2], 1e-5 * scale);
@@ -942,7 +943,9 @@ TEST(WaveSpeed, FiniteAtExtremes)
       EXPECT_TRUE(std::isfinite(p.vonmises())) << sample.name << " " << stretch;
       EXPECT_TRUE(std::isfinite(p.pressure())) << sample.name << " " << stretch;
       EXPECT_TRUE(std::isfinite(p.stored_energy())) << sample.name << " " << stretch;
-      EXPECT_GE(p.wave_speed(), stretch < 1 ? 0.99 * c0 : 0.0) << sample.name << " " << stretch;
+      // most stiffen, but detonation products squeezed to 1/20 are softer than at 1/3
+      const double least = stretch < 0.1 ? 0.5 : stretch < 1.0 ? 0.99 : 0.0;
+      EXPECT_GE(p.wave_speed(), least * c0) << sample.name << " " << stretch;
     }
   }
 }

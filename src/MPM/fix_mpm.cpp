@@ -308,8 +308,36 @@ void FixMPM::setup_pre_neighbor()
 
   check_integrators();
   check_points();
+  give_initial_stress();
   sort_points();
   topology_valid = false;
+}
+
+double FixMPM::current_time() const
+{
+  return update->atime + (update->ntimestep - update->atimestep) * update->dt;
+}
+
+/* ----------------------------------------------------------------------
+   points without any stress get the pressure of their equation of state, so that the first step
+   begins with that of a gas; for points that have come to zero stress this changes nothing
+------------------------------------------------------------------------- */
+
+void FixMPM::give_initial_stress()
+{
+  std::vector<double> history;
+  for (int i = 0; i < atom->nlocal; i++) {
+    double *s = points->stress[i];
+    if (!is_point(i) || s[0] != 0.0 || s[1] != 0.0 || s[2] != 0.0 || s[3] != 0.0 || s[4] != 0.0 ||
+        s[5] != 0.0)
+      continue;
+    const auto *material = material_of(i);
+    if (!material) continue;
+    load_state(*batch, &i, 1, material, history);
+    batch->time = current_time();
+    material->material->initial_stress(*batch);
+    for (int c = 0; c < 6; c++) s[c] = batch->stress[c][0];
+  }
 }
 
 /* ---------------------------------------------------------------------- */

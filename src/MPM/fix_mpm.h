@@ -196,7 +196,9 @@ class FixMPM : public Fix {
   int find_local(tagint) const;
 
   bool base_node(const double *x, int base[3], double t[3]) const;
+  void give_initial_stress();
   void sort_points();
+  double current_time() const;    ///< during a step: its end
   double nodal_kinetic_energy(int lane) const;
   double point_kinetic_energy() const;
   double external_work();

@@ -14,6 +14,7 @@
 #include "atom.h"
 #include "comm.h"
 #include "error.h"
+#include "force.h"
 #include "memory.h"
 #include "update.h"
 
@@ -38,6 +39,9 @@ FixMPMMaterial::FixMPMMaterial(LAMMPS *lmp, int narg, char **arg) :
                "Fix mpm/material needs material points: use atom_style mpm, alone or in a hybrid");
 
   material = read_material(lmp, "Fix mpm/material", 3, narg, arg).release();
+
+  // initial values of history depend on units
+  material->configure(nullptr, force->mvv2e * force->nktv2p, force->nktv2p);
 
   restart_global = 1;
   nhistory = material->history().size();

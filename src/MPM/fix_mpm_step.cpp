@@ -259,7 +259,7 @@ void FixMPM::material_update(const PointRows &r, const Run &run, int first, int 
   double *F = r.F + 9 * (bigint) first, *tau = r.tau + 6 * (bigint) first;
   batch_kernels->load(b, n, update->dt, L, F, tau, r.vol0 + first);
   b.history = reinterpret_cast<double(*)[BATCH]>(history_batch.data());
-  b.time = update->atime + (update->ntimestep - update->atimestep) * update->dt;
+  b.time = current_time();
 
   const int nhistory = material->nhistory;
   if (nhistory) {

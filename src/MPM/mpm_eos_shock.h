@@ -22,82 +22,60 @@ namespace {
    *    compression  p = p_H (1 - GAMMA0 eta / 2) + GAMMA0 E,   p_H = K eta / (1 - S eta)^2
    *    tension      p = K (1/J - 1) + GAMMA0 E
    *
-   *  Energy: E = E_old - (p_old + p)/2 (J - J_old) + heat, solved together with p, which is linear
-   *  in E. One step from the reference state to J lands exactly on the Hugoniot. 1 - S eta is kept
-   *  above 0.05, which is a pressure of hundreds of K.
-   */
-  struct EosShock : LawDefaults {
+   *  1 - S eta is kept above 0.05, which is a pressure of hundreds of K. */
+  struct EosShock : LinearInEnergy<EosShock> {
     static constexpr const char *name = "shock";
     static constexpr const char *meaning = "Mie-Gruneisen with linear shock Hugoniot";
-    enum { C0, S, GAMMA0 };
+    enum { C0, S, GAMMA0, CUTOFF, SPALL };
     static constexpr Parameter parameters[] = {
         {"", "C0", "velocity", POSITIVE, REQUIRED, "bulk sound speed at reference density"},
         {"", "S", "1", NOT_NEGATIVE, REQUIRED, "slope dU_s/du_p of the Hugoniot"},
-        {"", "GAMMA0", "1", NOT_NEGATIVE, REQUIRED, "Gruneisen parameter at reference density"}};
+        {"", "GAMMA0", "1", NOT_NEGATIVE, REQUIRED, "Gruneisen parameter at reference density"},
+        {"cutoff", "PMIN", "pressure", TENSION, -UNBOUNDED, "lowest pressure, not positive"},
+        {"spall", "PSPALL", "pressure", TENSION, -UNBOUNDED,
+         "pressure, not positive, below which the material breaks and bears no tension any more"}};
     static constexpr HistoryDeclaration history[] = {
         {"energy", ZERO, "pressure", "internal energy per reference volume"},
-        {"heat", ZERO, "pressure", "part of it that was dissipated"}};
-    enum { ENERGY, HEATED };
-    static constexpr int nhistory(const LawParameters &) { return 2; }
+        {"heat", ZERO, "pressure", "part of it that was dissipated"},
+        {"spalled", ZERO, "1", "1 when the material has broken"}};
+    static constexpr int nhistory(const LawParameters &p)
+    {
+      return p.value[SPALL] > -UNBOUNDED ? 3 : 2;
+    }
+    static constexpr const char *check(const LawParameters &p)
+    {
+      return Tension::check(p.value[CUTOFF], p.value[SPALL]);
+    }
 
-    double K, s, gamma;
+    double K, s, gamma0, least;
+    Tension tension;
 
     explicit EosShock(const LawParameters &p) :
-        K(p.density * p.value[C0] * p.value[C0]), s(p.value[S]), gamma(p.value[GAMMA0])
+        K(p.density * p.value[C0] * p.value[C0]), s(p.value[S]), gamma0(p.value[GAMMA0]),
+        least(0.01 * K), tension(p.value[CUTOFF], p.value[SPALL])
     {
     }
 
     MPM_INLINE double gap(double eta) const { return max(1.0 - s * eta, 0.05); }
+    MPM_INLINE double gamma(double) const { return gamma0; }
 
-    /** Pressure at zero internal energy. */
-    MPM_INLINE double cold_pressure(double J) const
+    MPM_INLINE double cold(double J) const
     {
       const double eta = 1.0 - J, g = gap(eta);
-      return K * eta * (J < 1.0 ? (1.0 - 0.5 * gamma * eta) / (g * g) : 1.0 / J);
+      return K * eta * (J < 1.0 ? (1.0 - 0.5 * gamma0 * eta) / (g * g) : 1.0 / J);
     }
 
-    static void update(const LawParameters &p, Batch &b, History history)
+    MPM_INLINE double slope(double J, double) const
     {
-      const EosShock eos(p);
-      MPM_SIMD
-      for (int i = 0; i < b.n; i++) {
-        const double J = b.J[i], Jold = b.Jold[i], dJ = J - Jold;
-        const double Eold = history[ENERGY][i];
-        const double cold = eos.cold_pressure(J);
-        const double pold = eos.cold_pressure(Jold) + eos.gamma * Eold;
-        const double E =
-            (Eold - 0.5 * (pold + cold) * dJ + b.heat[i]) / (1.0 + 0.5 * eos.gamma * dJ);
-        subtract_pressure(b, i, cold + eos.gamma * E);
-        history[ENERGY][i] = E;
-        history[HEATED][i] += b.heat[i];
-      }
-    }
-
-    /** Isentropic -J^2 dp/dJ = J^2 (-(dp/dJ)_E + GAMMA0 p); at least K/100, as the formula loses
-     *  its meaning in large tension. */
-    static void modulus(const LawParameters &p, const Batch &b, History history, double *k)
-    {
-      const EosShock eos(p);
-      MPM_SIMD
-      for (int i = 0; i < b.n; i++) {
-        const double J = b.J[i], eta = 1.0 - J, g = eos.gap(eta);
-        const double ph = eos.K * eta / (g * g);
-        const double dph = eos.K * (1.0 + eos.s * eta) / (g * g * g);
-        const double squeezed = dph * (1.0 - 0.5 * eos.gamma * eta) - 0.5 * eos.gamma * ph;
-        const double slope = J < 1.0 ? squeezed : eos.K / (J * J);
-        const double pressure = eos.cold_pressure(J) + eos.gamma * history[ENERGY][i];
-        k[i] += max(J * J * (slope + eos.gamma * pressure), 0.01 * eos.K);
-      }
-    }
-
-    /** Internal energy less the dissipated part, which counts as plastic and viscous work. */
-    static void energy(const LawParameters &, const Batch &b, History history, double *w)
-    {
-      MPM_SIMD
-      for (int i = 0; i < b.n; i++) w[i] += history[ENERGY][i] - history[HEATED][i];
+      const double eta = 1.0 - J, g = gap(eta);
+      const double ph = K * eta / (g * g);
+      const double dph = K * (1.0 + s * eta) / (g * g * g);
+      const double squeezed = dph * (1.0 - 0.5 * gamma0 * eta) - 0.5 * gamma0 * ph;
+      return J < 1.0 ? squeezed : K / (J * J);
     }
   };
 
 }    // namespace
 }    // namespace MPM_NS::law
+
 #endif

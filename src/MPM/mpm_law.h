@@ -81,7 +81,7 @@ enum Part { CLOSED, EOS, STRENGTH, VISCOSITY, DAMAGE, THERMAL, NPARTS };
 
 /** Values of the parameters, as the kernels get them, and what other parts of the material tell. */
 struct LawParameters {
-  static constexpr int MAX = 32, MAX_TERMS = 32, TERM = 3;
+  static constexpr int MAX = 32, MAX_TERMS = 32, TERM = 4;
   double density;       ///< reference density, in pressure / velocity^2
   double value[MAX];    ///< in the order of the declaration
   int nterms;

@@ -11,7 +11,10 @@
 
 // All constitutive laws. A new law is one header and one entry here.
 
+#include "mpm_eos_gas.h"
+#include "mpm_eos_jwl.h"
 #include "mpm_eos_linear.h"
+#include "mpm_eos_polynomial.h"
 #include "mpm_eos_shock.h"
 #include "mpm_eos_tait.h"
 #include "mpm_law_drucker_prager.h"
@@ -23,6 +26,8 @@
 #include "mpm_thermal.h"
 #include "mpm_viscosity_artificial.h"
 #include "mpm_viscosity_newtonian.h"
+#include "mpm_viscosity_power.h"
+#include "mpm_viscosity_yield.h"
 
 namespace MPM_NS::law {
 namespace {
@@ -36,9 +41,11 @@ namespace {
   using elastic = Family<CLOSED, LawLinear, LawNeoHookean>;
   using viscoelastic = Family<CLOSED>;
   using soil = Family<CLOSED, LawDruckerPrager>;
-  using eos = Family<EOS, EosLinear, EosShock, EosTait>;
+  using eos = Family<EOS, EosLinear, EosShock, EosTait, EosPolynomial, EosIdealGas, EosStiffenedGas,
+                     EosJWL>;
   using strength = Family<STRENGTH, StrengthElastic, StrengthJ2, StrengthJohnsonCook>;
-  using viscosity = Family<VISCOSITY, ViscosityNewtonian, ViscosityArtificial>;
+  using viscosity = Family<VISCOSITY, ViscosityNewtonian, ViscosityArtificial, ViscosityBingham,
+                           ViscosityHerschelBulkley, ViscosityPower>;
   using damage = Family<DAMAGE>;
   using thermal = Family<THERMAL, ThermalAdiabatic, ThermalConstant>;
 

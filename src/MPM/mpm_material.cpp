@@ -146,6 +146,18 @@ class ComposedMaterial : public Material {
         if (law.info->initialize) law.info->initialize(law.parameters, x, history + law.history);
   }
 
+  void initial_stress(Batch &b) const override
+  {
+    b.dt = 0.0;
+    for (int i = 0; i < b.n; i++) {
+      b.heat[i] = b.plastic[i] = 0.0;
+      b.Jold[i] = b.J[i];
+      for (auto &row : b.A) row[i] = 0.0;
+    }
+    table->clear_stress(b);
+    for (const auto &law : laws[EOS]) law.kernels->update(law.parameters, b, rows(b, law));
+  }
+
   void update(Batch &b) const override
   {
     for (int i = 0; i < b.n; i++) b.heat[i] = b.plastic[i] = 0.0;

@@ -91,6 +91,11 @@ class Material {
   /** All history variables of a new point at x. */
   virtual void initialize(const double *x, double *history) const = 0;
 
+  /** Stress of points that have none yet: the pressure of the equation of state in the present
+   *  state, such as that of a gas. n, h, time and current F, J, history in the batch; sets stress,
+   *  and A, dt, and Jold as for no motion. */
+  virtual void initial_stress(Batch &) const = 0;
+
   /** Stress and history at the end of the step (hot: one call per batch). */
   virtual void update(Batch &) const = 0;
 

@@ -35,6 +35,7 @@ MaterialPoint::MaterialPoint(const Material &material, int n, double h) :
   material.initialize(x, initial.data());
   for (std::size_t k = 0; k < initial.size(); k++)
     for (int i = 0; i < n; i++) batch.history[k][i] = initial[k];
+  material.initial_stress(batch);
 }
 
 /* ---------------------------------------------------------------------- */
