@@ -42,6 +42,17 @@ struct Sample {
     {"water", "density 1000 eos tait 2.2e9 7 cutoff -1e5 viscosity newtonian 1e-3"},
     {"drucker_prager", "density 1600 drucker/prager 1e8 0.3 30 dilatancy 5"},
     {"artificial", "density 1000 eos linear 1e9 viscosity artificial 1.5 0.06"},
+    {"eos_linear", "density 1000 eos linear 1e9"},
+    {"eos_shock", "density 8930 eos shock 3940 1.49 1.96"},
+    {"eos_shock_spall", "density 8930 eos shock 3940 1.49 1.96 spall -1e9"},
+    {"polynomial", "density 2700 eos polynomial 7e10 8e10 5e10 2 1.5"},
+    {"ideal_gas", "density 1.2 eos ideal/gas 1.4 pressure 1e5"},
+    {"stiffened_gas", "density 1000 eos stiffened/gas 4.4 6e8 pressure 1e5"},
+    {"jwl", "density 1630 eos jwl 371.2e9 3.231e9 4.15 0.95 0.3 7.0e9 6930 detonate 0 0 0 0"},
+    {"newtonian", "density 1000 eos linear 1e9 viscosity newtonian 1 bulk 1"},
+    {"bingham", "density 1000 eos linear 1e9 viscosity bingham 1 20 1e3"},
+    {"herschel_bulkley", "density 1000 eos linear 1e9 viscosity herschel/bulkley 1 0.5 20 1e3"},
+    {"power", "density 1000 eos linear 1e9 viscosity power 1 0.5 0.01 1e3"},
 };
 
 enum Task { UPDATE, SPEED, ENERGY };

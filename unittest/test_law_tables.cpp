@@ -117,6 +117,7 @@ std::string initial(const LawInfo &info, const HistoryDeclaration &h)
 {
   if (h.initial == ZERO) return "0";
   if (h.initial == ONE) return "1";
+  if (h.initial == INITIALIZED) return "see above";
   return plain(info.parameters[h.initial].name);
 }
 
@@ -225,9 +226,9 @@ TEST(LawTables, AreUpToDate)
 
 TEST(LawTables, DeclarationsAreComplete)
 {
-  const std::set<std::string> words = {"1",     "pressure", "density", "velocity",    "energy",
-                                       "mass",  "time",     "length",  "temperature", "angle",
-                                       "force", "volume",   "degrees", FLAG};
+  const std::set<std::string> words = {
+      "1",      "pressure",    "density", "velocity", "energy", "mass",    "time", FLAG,
+      "length", "temperature", "angle",   "force",    "volume", "degrees", "N"};
   const auto known = [&](const std::string &unit) {    // products, quotients, powers of these
     std::string word;
     for (const char c : unit + " ") {

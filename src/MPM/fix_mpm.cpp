@@ -327,7 +327,7 @@ void FixMPM::give_initial_stress()
 {
   std::vector<double> history;
   for (int i = 0; i < atom->nlocal; i++) {
-    double *s = points->stress[i];
+    double *s = points->tau[i];
     if (!is_point(i) || s[0] != 0.0 || s[1] != 0.0 || s[2] != 0.0 || s[3] != 0.0 || s[4] != 0.0 ||
         s[5] != 0.0)
       continue;
@@ -336,7 +336,7 @@ void FixMPM::give_initial_stress()
     load_state(*batch, &i, 1, material, history);
     batch->time = current_time();
     material->material->initial_stress(*batch);
-    for (int c = 0; c < 6; c++) s[c] = batch->stress[c][0];
+    for (int c = 0; c < 6; c++) s[c] = batch->J[0] * batch->stress[c][0];
   }
 }
 

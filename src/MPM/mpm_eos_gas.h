@@ -82,7 +82,7 @@ namespace {
         {"pressure", "P0", "pressure", POSITIVE, 0.0, "initial pressure"},
         {"energy", "E0", "energy/mass", POSITIVE, 0.0, "initial internal energy per mass"}};
     static constexpr HistoryDeclaration history[] = {
-        {"energy", ZERO, "pressure", "internal energy per reference volume"},
+        {"energy", INITIALIZED, "pressure", "internal energy per reference volume"},
         {"heat", ZERO, "pressure", "part of it that was dissipated"}};
     static constexpr int nhistory(const LawParameters &) { return 2; }
     static constexpr const char *check(const LawParameters &p)
@@ -121,7 +121,7 @@ namespace {
         {"pressure", "P0", "pressure", NOT_NEGATIVE, 0.0, "initial pressure"},
         {"cutoff", "PMIN", "pressure", TENSION, -UNBOUNDED, "lowest pressure, not positive"}};
     static constexpr HistoryDeclaration history[] = {
-        {"energy", ZERO, "pressure", "internal energy per reference volume"},
+        {"energy", INITIALIZED, "pressure", "internal energy per reference volume"},
         {"heat", ZERO, "pressure", "part of it that was dissipated"}};
     static constexpr int nhistory(const LawParameters &) { return 2; }
     static constexpr const char *check(const LawParameters &p)

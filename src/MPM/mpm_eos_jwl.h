@@ -41,15 +41,15 @@ namespace {
         {"width", "WIDTH", "1", POSITIVE, 3.0, "width of the burn in node spacings"}};
     static constexpr const char *term = "detonate";
     static constexpr Parameter term_parameters[] = {
-        {"detonate", "X", "distance", ANY, REQUIRED, "detonation point"},
-        {"detonate", "Y", "distance", ANY, REQUIRED, "detonation point"},
-        {"detonate", "Z", "distance", ANY, REQUIRED, "detonation point"},
+        {"detonate", "X", "length", ANY, REQUIRED, "detonation point"},
+        {"detonate", "Y", "length", ANY, REQUIRED, "detonation point"},
+        {"detonate", "Z", "length", ANY, REQUIRED, "detonation point"},
         {"detonate", "T", "time", ANY, REQUIRED, "time of its detonation"}};
     static constexpr HistoryDeclaration history[] = {
         {"energy", E0, "pressure", "internal energy per reference volume"},
         {"heat", ZERO, "pressure", "part of it that was dissipated"},
-        {"burn", ONE, "1", "burn fraction"},
-        {"lighting", ZERO, "time", "time at which the detonation arrives"}};
+        {"burn", INITIALIZED, "1", "burn fraction"},
+        {"lighting", INITIALIZED, "time", "time at which the detonation arrives"}};
     enum { ENERGY, HEATED, BURN, LIGHTING };
     static constexpr int nhistory(const LawParameters &) { return 4; }
     static void initialize(const LawParameters &p, const double *x, double *history)

@@ -71,7 +71,8 @@ struct HistoryDeclaration {
   const char *unit;    ///< kind of unit, as for parameters
   const char *meaning;
 };
-enum { ZERO = -1, ONE = -2 };    ///< initial values of history variables
+/** Initial values of history variables; INITIALIZED: by initialize(). */
+enum { ZERO = -1, ONE = -2, INITIALIZED = -3 };
 
 /** Shares of the stress: which ones a law needs from the last step, which ones a viscosity adds. */
 enum StressShare { NO_SHARE = 0, PRESSURE = 1, DEVIATOR = 2, WHOLE_STRESS = 3 };

@@ -265,7 +265,7 @@ class ComposedMaterial : public Material {
     const LawParameters &p = law.parameters;
     law.history = variables.size();
     const auto declare = [&](const HistoryDeclaration &h, const std::string &suffix) {
-      const double initial = h.initial == ZERO ? 0.0 : h.initial == ONE ? 1.0 : p.value[h.initial];
+      const double initial = h.initial >= 0 ? p.value[h.initial] : h.initial == ONE ? 1.0 : 0.0;
       variables.push_back({h.name + suffix, initial});
     };
     for (int k = 0; k < info.nhistory(p); k++) declare(info.history[k], "");

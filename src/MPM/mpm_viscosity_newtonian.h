@@ -30,8 +30,9 @@ namespace {
       double viscous = 0.0;
       MPM_SIMD_SUM(viscous)
       for (int i = 0; i < b.n; i++) {
-        const Sym strain = increment(b, i).strain, e = deviator(strain);
-        const double tr = trace(strain);
+        const Increment inc = increment(b, i);
+        const Sym e = deviator(inc.strain);
+        const double tr = trace(inc.strain);
         store_stress(b, i, add_diagonal(load_stress(b, i) + twomu * e, zeta * tr));
         const double work = 0.5 * (b.J[i] + b.Jold[i]) * (twomu * norm2(e) + zeta * tr * tr);
         b.heat[i] += work;
