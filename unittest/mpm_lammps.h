@@ -178,7 +178,8 @@ class Run {
   }
 
   /** Conserved quantities of all atoms, or of those of one type. The angular momentum about the
-   *  origin has the part of the affine matrices of APIC (quadratic and cubic) and of spins. */
+   *  origin has the part of spins, and that of the affine matrices of APIC (quadratic and cubic),
+   *  which are not numbers before the first run. */
   struct Sums {
     double mass, x[3], p[3], L[3], kinetic;    ///< x: centre of mass
   };

@@ -166,8 +166,6 @@ static Vibration vibrate(const std::string &options, int cells, int ppc, bool wa
   run.set_velocity([=](const double *x, double *v) {
     v[0] = v0 * sin(PI * x[0] / 50.0);
   });
-  if (auto *C = run.field()->C)
-    for (int i = 0; i < run.n(); i++) C[i][0] = v0 * PI / 50.0 * cos(PI * run.x()[i][0] / 50.0);
   const double start = run.sums().kinetic;
   EXPECT_NEAR(start / (0.25 * 25.0 * v0 * v0 * h * (wall ? 1.0 : 2.0)), 1.0, 1.0e-3);
   Crossings crossings;

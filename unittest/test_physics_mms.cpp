@@ -110,8 +110,11 @@ static double mms_error(int dim, int ne, double G, const std::string &options, b
     double u[2], F[2], b[2];
     s.at(run.reference(i), 0.0, u, run.v()[i], F, b);
     if (!C) continue;
-    for (int d = 0; d < dim; d++)
-      C[i][3 * d] = G * PI * PI * c * cos(PI * run.reference(i)[d]) * (d ? -1.0 : 1.0);
+    for (int d = 0; d < 2; d++)
+      for (int e = 0; e < 2; e++)
+        C[i][2 * e + d] = d == e && d < dim
+            ? G * PI * PI * c * cos(PI * run.reference(i)[d]) * (d ? -1.0 : 1.0)
+            : 0.0;
   }
   double worst = 0.0;
   run.each_step([&](double **force) {

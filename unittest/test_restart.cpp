@@ -196,15 +196,63 @@ TEST(RestartState, WorkIsInTheFile)
   const std::string watch = "compute e all mpm/energy\nthermo_style custom step c_e[3]\n";
   Lammps whole;
   whole.commands(head + "fix grid all mpm 1.0\n" + points + fixes("") + watch +
+                 "fix g all gravity 0.3 vector 0 0 -1\n"
                  "velocity one set 0.6 0.35 -0.4\nvelocity two set -1.5 0.1 -1.0\nrun 100\n"
                  "write_restart " +
                  file + "\nrun 50\n");
   const double plastic = whole.evaluate("c_e[3]");
   EXPECT_GT(plastic, 1.0e-3);
   Lammps again;
-  again.commands("read_restart " + file + "\nneighbor 0.3 bin\n" + fixes("") + watch + "run 50\n");
+  again.commands("read_restart " + file + "\nneighbor 0.3 bin\n" + fixes("") +
+                 "fix g all gravity 0.3 vector 0 0 -1\n" + watch + "run 50\n");
   EXPECT_NEAR(again.evaluate("c_e[3]"), plastic, 1.0e-12 * plastic);
   EXPECT_EQ(again.time(), whole.time());
+
+  // the ledger: kinetic ... external, boundary, contact, transfer, integration; and it closes
+  auto *expected = whole.lmp->modify->get_compute_by_id("e");
+  auto *found = again.lmp->modify->get_compute_by_id("e");
+  for (auto *compute : {expected, found}) compute->compute_vector();
+  const double scale = expected->vector[0];
+  EXPECT_GT(std::abs(expected->vector[5]), 1.0e-3 * scale);
+  EXPECT_LT(expected->vector[8], -1.0e-3 * scale);
+  for (int k = 0; k < 10; k++) EXPECT_NEAR(found->vector[k], expected->vector[k], 1.0e-11 * scale);
+  EXPECT_LT(std::abs(found->vector[10]), 1.0e-11 * scale);
+
+  // a ledger that is defined later starts where it is defined
+  again.commands("compute late all mpm/energy\nthermo_style custom step c_e c_late\nrun 1\n");
+  auto *late = again.lmp->modify->get_compute_by_id("late");
+  late->compute_vector();
+  EXPECT_LT(std::abs(late->vector[8]), 0.1 * std::abs(expected->vector[8]));
+  EXPECT_LT(std::abs(late->vector[10]), 1.0e-11 * scale);
+  MPI_Barrier(MPI_COMM_WORLD);
+  if (me == 0) remove(file.c_str());
+}
+
+// velocities that are changed between runs change the affine matrices, also after a restart file,
+// and on any number of ranks; otherwise both continue
+
+TEST(RestartState, NewVelocitiesAreSeen)
+{
+  int nprocs, me;
+  MPI_Comm_rank(MPI_COMM_WORLD, &me);
+  MPI_Comm_size(MPI_COMM_WORLD, &nprocs);
+  const std::string file = "mpm_fit." + std::to_string(nprocs) + ".bin";
+  const std::string spin = "velocity all ramp vx -0.5 0.5 y 1 6\n";
+  const std::string begin =
+      head + "fix grid all mpm 1.0\n" + points + fixes("") + start + "run 50\n";
+  Lammps whole, serial(MPI_COMM_SELF), without;
+  whole.commands(begin + "write_restart " + file + "\n" + spin + "run 20\n");
+  serial.commands(begin + spin + "run 20\n");
+  without.commands(begin + "run 20\n");
+  const auto expected = whole.gather();
+  EXPECT_LT(difference(expected, serial.gather()), 1.0e-11);
+  EXPECT_GT(difference(expected, without.gather()), 1.0e-3);
+  for (const bool before_fixes : {true, false}) {
+    Lammps again;
+    again.commands("read_restart " + file + "\nneighbor 0.3 bin\n" +
+                   (before_fixes ? spin + fixes("") : fixes("") + spin) + "run 20\n");
+    EXPECT_LT(difference(expected, again.gather()), 1.0e-11);
+  }
   MPI_Barrier(MPI_COMM_WORLD);
   if (me == 0) remove(file.c_str());
 }

@@ -19,6 +19,8 @@
 #include "mpm_point_batches.h"
 #include "update.h"
 
+#include <cstring>
+
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
@@ -56,14 +58,33 @@ void ComputeMPMEnergy::init()
 }
 
 /* ----------------------------------------------------------------------
-   the ledger starts with the first run after the definition
+   the ledger starts with the first run after the definition, or goes on from a restart file
 ------------------------------------------------------------------------- */
 
 void ComputeMPMEnergy::setup()
 {
+  begin();
+}
+
+void ComputeMPMEnergy::begin()
+{
   if (started) return;
   started = true;
   start = evaluate();
+  for (auto *fix : modify->get_fix_by_style("^mpm$")) {
+    const auto &restored = dynamic_cast<FixMPM *>(fix)->ledger_start;
+    if (restored.size() * sizeof(double) != sizeof(Sums)) continue;
+    memcpy(&start, restored.data(), sizeof(Sums));
+    return;
+  }
+}
+
+std::vector<double> ComputeMPMEnergy::start_sums() const
+{
+  if (!started) return {};
+  std::vector<double> sums(sizeof(Sums) / sizeof(double));
+  memcpy(sums.data(), &start, sizeof(Sums));
+  return sums;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -125,11 +146,8 @@ double ComputeMPMEnergy::compute_scalar()
 void ComputeMPMEnergy::compute_vector()
 {
   invoked_vector = update->ntimestep;
+  begin();
   const Sums now = evaluate();
-  if (!started) {
-    started = true;
-    start = now;
-  }
 
   vector[KINETIC] = now.kinetic;
   vector[STORED] = now.stored;

@@ -17,6 +17,8 @@ ComputeStyle(mpm/energy,ComputeMPMEnergy);
 
 #include "compute.h"
 
+#include <vector>
+
 namespace LAMMPS_NS {
 
 /** Energy ledger of all material points.
@@ -35,6 +37,9 @@ class ComputeMPMEnergy : public Compute {
   void setup() override;
   double compute_scalar() override;
   void compute_vector() override;
+
+  /** What the ledger started from, for restart files; empty before it has started. */
+  std::vector<double> start_sums() const;
 
  private:
   enum Entry {
@@ -63,6 +68,7 @@ class ComputeMPMEnergy : public Compute {
   Sums start;    // at the start of the ledger
 
   Sums evaluate() const;
+  void begin();
 };
 
 }    // namespace LAMMPS_NS

@@ -10,7 +10,7 @@
 
 #include "atom.h"
 #include "comm.h"
-#include "compute.h"
+#include "compute_mpm_energy.h"
 #include "domain.h"
 #include "error.h"
 #include "fix_mpm_material.h"
@@ -45,7 +45,7 @@ FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) :
     kernels(nullptr), batch_kernels(nullptr), driver(false), topology_valid(false),
     watch_drift(false), drifted(0), want_sort(false), switches(0), switches_sorted(0),
     tile(nullptr), tile_load(nullptr), batch(nullptr), kinetic_points(0.0), nbad_total(0),
-    next_dt_check(0), clock(0.0)
+    next_dt_check(0), clock(0.0), running(false), velocities(0), velocities_known(false)
 {
   points = MPMPoints::get(atom);
   if (!points)
@@ -62,6 +62,7 @@ FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) :
   global_freq = 1;
   extscalar = 1;
   extvector = 0;
+  restart_global = 1;
   memset(&report, 0, sizeof(Report));
   memset(&ledger, 0, sizeof(MPMLedger));
 
@@ -230,6 +231,7 @@ void FixMPM::init()
     error->all(FLERR, "Fix mpm requires a box of constant size and shape: remove the fix that "
                "changes it");
 
+  running = false;
   ledger_on = !modify->get_compute_by_style("^mpm/energy$").empty();
 
   // a node that a point barely touches has next to no mass but the full gradient of the function
@@ -349,6 +351,8 @@ void FixMPM::setup(int)
   report.dt_min = report.dt_max = update->dt;
   if (update->dt <= 0.0)
     error->all(FLERR, "Fix mpm requires a positive time step: {}", update->dt);
+  running = true;
+  fit_affine();
   if (ledger_on) kinetic_points = point_kinetic_energy();
   next_dt_check = update->ntimestep;
   if (update->nsteps > 0) check_dt();
@@ -358,6 +362,7 @@ void FixMPM::setup(int)
 
 void FixMPM::setup_pre_exchange()
 {
+  check_velocities();
   check_inside_box();
 }
 
@@ -475,6 +480,7 @@ void FixMPM::copy_arrays(int i, int j, int)
 void FixMPM::set_arrays(int i)
 {
   memset(C[i], 0, affine_size() * sizeof(double));
+  if (!running) C[i][0] = NAN;    // not known, for fit_affine()
 }
 
 int FixMPM::pack_exchange(int i, double *buf)
@@ -512,4 +518,47 @@ int FixMPM::size_restart(int)
 int FixMPM::maxsize_restart()
 {
   return 1 + affine_size();
+}
+
+/* ----------------------------------------------------------------------
+   totals of the ledger, and which velocities the affine matrices belong to
+------------------------------------------------------------------------- */
+
+namespace {
+struct Saved {
+  double ledger[5];
+  uint64_t velocities;
+  int velocities_known, nstart;    // nstart reals follow
+};
+}    // namespace
+
+void FixMPM::write_restart(FILE *fp)
+{
+  if (running) remember_velocities();
+  Saved saved;
+  memset(&saved, 0, sizeof(Saved));
+  saved.velocities = velocities;
+  saved.velocities_known = velocities_known;
+  static_assert(sizeof(MPMLedger) == sizeof(saved.ledger), "MPMLedger holds 5 doubles");
+  MPI_Reduce(&ledger, saved.ledger, 5, MPI_DOUBLE, MPI_SUM, 0, world);
+  std::vector<double> start = ledger_start;
+  for (auto *compute : modify->get_compute_by_style("^mpm/energy$"))
+    if (start.empty()) start = dynamic_cast<ComputeMPMEnergy *>(compute)->start_sums();
+  saved.nstart = (int) start.size();
+  if (comm->me) return;
+  const int size = (int) (sizeof(Saved) + start.size() * sizeof(double));
+  fwrite(&size, sizeof(int), 1, fp);
+  fwrite(&saved, sizeof(Saved), 1, fp);
+  fwrite(start.data(), sizeof(double), start.size(), fp);
+}
+
+void FixMPM::restart(char *buf)
+{
+  Saved saved;
+  memcpy(&saved, buf, sizeof(Saved));
+  if (comm->me == 0) memcpy(&ledger, saved.ledger, sizeof(saved.ledger));
+  velocities = saved.velocities;
+  velocities_known = saved.velocities_known != 0;
+  ledger_start.resize(saved.nstart);
+  memcpy(ledger_start.data(), buf + sizeof(Saved), saved.nstart * sizeof(double));
 }

@@ -19,6 +19,7 @@ FixStyle(mpm,FixMPM);
 #include "mpm_grid.h"
 #include "mpm_kernels.h"
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -75,6 +76,8 @@ class FixMPM : public Fix {
   void unpack_restart(int, int) override;
   int size_restart(int) override;
   int maxsize_restart() override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
 
   // settings
 
@@ -93,6 +96,7 @@ class FixMPM : public Fix {
   double **C;    ///< [n][dim*dim] affine, column-major; null: not APIC
   bool ledger_on;                               ///< a compute mpm/energy exists; set in init()
   MPMLedger ledger;
+  std::vector<double> ledger_start;    ///< of compute mpm/energy, until the end of the next run
 
   /** True when atom i is a material point of this field. */
   bool is_point(int i) const;
@@ -163,6 +167,9 @@ class FixMPM : public Fix {
   std::vector<tagint> bad_points;          // of this step, policies warn and delete
   bigint nbad_total, next_dt_check;
   double clock;
+  bool running;                            // between setup() and post_run()
+  uint64_t velocities;                     // hash of those that C belongs to, between runs
+  bool velocities_known;
 
   // stages of the step
   void update_topology();
@@ -182,6 +189,10 @@ class FixMPM : public Fix {
   void material_update(const MPM_NS::PointRows &, const Run &, int first, int n, const double *L);
   void lap(double &timer);
 
+  uint64_t velocity_hash() const;
+  void remember_velocities();
+  void check_velocities();
+  void fit_affine();
   void process_options(int, char **);
   void check_box();
   bool restart_step() const;

@@ -142,6 +142,9 @@ double FixMPM::bytes_per_point() const
 
 void FixMPM::post_run()
 {
+  running = false;
+  ledger_start.clear();
+  remember_velocities();
   if (report.steps == 0) return;
 
   enum { TOPOLOGY, SORT, P2GRID, HALO, NODES, G2POINTS, NTIMES };

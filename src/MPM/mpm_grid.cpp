@@ -142,10 +142,10 @@ void Grid::fold_aliases(double *nodes, int nreals, int lane, int nlane) const
   }
 }
 
-void Grid::copy_aliases()
+void Grid::copy_aliases(double *nodes, int nreals) const
 {
   for (std::size_t k = 0; k < alias_node.size(); k++)
-    memcpy(node + alias_node[k] * nreal, node + alias_of[k] * nreal, nreal * sizeof(double));
+    memcpy(nodes + alias_node[k] * nreals, nodes + alias_of[k] * nreals, nreals * sizeof(double));
 }
 
 int64_t Grid::memory_usage() const

@@ -78,7 +78,9 @@ class Grid {
 
   /** Add reals [lane, lane+nlane) of the images to their canonical node. */
   void fold_aliases(double *nodes, int nreal, int lane, int nlane) const;
-  void copy_aliases();    ///< canonical node to its images, all reals
+  /** Canonical node to its images, all reals. */
+  void copy_aliases(double *nodes, int nreal) const;
+  void copy_aliases() { copy_aliases(node, nreal); }
 
   /** Global node index of node n of a block. */
   void node_index(const Block &block, int n, int index[3]) const

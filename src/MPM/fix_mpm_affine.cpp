@@ -1,0 +1,195 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// First values of the affine matrices of APIC, from the velocities of the points.
+//
+// A point that has not moved yet has no affine matrix, and those of points whose velocities were
+// changed by a command between runs belong to the motion before. With zero in their place, the first
+// step would take a part of the energy of a rotation (2 % for a disk of 10 cells). The matrix of a
+// point is the slope of the velocities around it, by least squares weighted with mass and shape
+// functions: with the mean at node i, <.>_i = sum_p m_p N_i(x_p) . / m_i,
+//   C = [sum_i N_i m_i <(v - <v>_i) (x - <x>_i)>_i] [sum_i N_i m_i <(x - <x>_i) (x - <x>_i)>_i]^+.
+// It is exact for fields that vary linearly, also at the surface of a body. Directions in which the
+// points around have no extent get no slope (pseudo-inverse).
+
+#include "fix_mpm.h"
+
+#include "atom.h"
+#include "math_eigen.h"
+#include "mpm_halo.h"
+#include "mpm_shape.h"
+#include "update.h"
+
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+// mean square distance of points around a node, in node spacings squared, that allows for a slope
+static constexpr double MIN_EXTENT = 1.0e-4;
+
+namespace {
+
+/** Weights of the nodes from the base node on, along one axis, for the fraction f of an interval. */
+void shape_weights(Shape shape, double f, double *w)
+{
+  if (shape == LINEAR)
+    BSpline<1>::weights(f, w);
+  else if (shape == QUADRATIC)
+    BSpline<2>::weights(f, w);
+  else
+    BSpline<3>::weights(f, w);
+}
+
+uint64_t mixed(uint64_t z)
+{
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
+  return z ^ (z >> 31);
+}
+
+}    // namespace
+
+/* ----------------------------------------------------------------------
+   a number that tells whether points have other velocities than before, whatever rank has them
+------------------------------------------------------------------------- */
+
+uint64_t FixMPM::velocity_hash() const
+{
+  uint64_t mine = 0, all;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!is_point(i) || std::isnan(C[i][0])) continue;
+    uint64_t h = 0x9e3779b97f4a7c15ULL;
+    for (int d = 0; d < 3; d++) {
+      const double v = atom->v[i][d] + 0.0;    // no negative zero
+      uint64_t bits;
+      memcpy(&bits, &v, sizeof(bits));
+      h = mixed(h + bits);
+    }
+    mine += h;
+  }
+  MPI_Allreduce(&mine, &all, 1, MPI_UINT64_T, MPI_SUM, world);
+  return all;
+}
+
+/* ----------------------------------------------------------------------
+   between runs: are the velocities still those that the affine matrices belong to?
+------------------------------------------------------------------------- */
+
+void FixMPM::remember_velocities()
+{
+  if (!C) return;
+  velocities = velocity_hash();
+  velocities_known = true;
+}
+
+void FixMPM::check_velocities()
+{
+  if (!C || !velocities_known || velocity_hash() == velocities) return;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (is_point(i)) C[i][0] = NAN;
+}
+
+/* ----------------------------------------------------------------------
+   affine matrices of points that have none
+------------------------------------------------------------------------- */
+
+void FixMPM::fit_affine()
+{
+  if (!C) return;
+  int mine = 0, all;
+  for (int i = 0; i < atom->nlocal; i++) mine |= is_point(i) && std::isnan(C[i][0]);
+  MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MAX, world);
+  if (!all) return;
+
+  update_topology();
+  const int dim = lattice.dim;
+  enum { M = 0, X = 1, V = 4, VX = 7, XX = 16, NREAL = 22 };    // sums of mass times ...
+  std::vector<double> sums(grid->nnodes() * NREAL, 0.0);
+
+  // all nodes of a point: f(record, weight, position relative to the node in node spacings)
+
+  auto visit = [&](const Grid::Block &block, int i, auto f) {
+    int base[3];
+    double t[3], w[3][4] = {{0.0}, {0.0}, {1.0}};
+    base_node(atom->x[i], base, t);
+    for (int d = 0; d < dim; d++) shape_weights(shape, t[d] - base[d], w[d]);
+    int k[3];
+    for (k[0] = 0; k[0] <= shape; k[0]++)
+      for (k[1] = 0; k[1] <= shape; k[1]++)
+        for (k[2] = 0; k[2] <= (dim == 3 ? (int) shape : 0); k[2]++) {
+          int side[3] = {1, 1, 1}, in[3] = {0, 0, 0};
+          double r[3] = {0.0, 0.0, 0.0};
+          for (int d = 0; d < dim; d++) {
+            const int node = base[d] + k[d];
+            side[d] = (node >> grid->shift_bits) - block.b[d] + 1;
+            in[d] = node & (grid->side - 1);
+            r[d] = t[d] - node + 0.5 * (shape - 1);
+          }
+          const int slot = block.slot[9 * side[0] + 3 * side[1] + side[2]];
+          const int n = dim == 3 ? (in[0] * 4 + in[1]) * 4 + in[2] : in[0] * 8 + in[1];
+          f(&sums[((int64_t) slot * NODES_PER_BLOCK + n) * NREAL],
+            w[0][k[0]] * w[1][k[1]] * w[2][k[2]], r);
+        }
+  };
+
+  for (const auto &run : runs)
+    for (int i = run.first; i < run.last; i++)
+      visit(grid->blocks[run.slot], i, [&](double *s, double weight, const double *r) {
+        const double m = weight * atom->rmass[i], *v = atom->v[i];
+        s[M] += m;
+        for (int a = 0, k = 0; a < dim; a++) {
+          s[X + a] += m * r[a];
+          s[V + a] += m * v[a];
+          for (int b = 0; b < dim; b++) s[VX + 3 * a + b] += m * v[a] * r[b];
+          for (int b = 0; b <= a; b++) s[XX + k++] += m * r[a] * r[b];
+        }
+      });
+  grid->fold_aliases(sums.data(), NREAL, 0, NREAL);
+  halo->sum(sums.data(), NREAL, 0, NREAL);
+  grid->copy_aliases(sums.data(), NREAL);
+
+  // about the means
+
+  for (double *s = sums.data(); s < sums.data() + sums.size(); s += NREAL) {
+    if (s[M] <= 0.0) continue;
+    for (int a = 0, k = 0; a < dim; a++) {
+      for (int b = 0; b < dim; b++) s[VX + 3 * a + b] -= s[V + a] * s[X + b] / s[M];
+      for (int b = 0; b <= a; b++) s[XX + k++] -= s[X + a] * s[X + b] / s[M];
+    }
+  }
+
+  for (const auto &run : runs)
+    for (int i = run.first; i < run.last; i++) {
+      if (!std::isnan(C[i][0])) continue;
+      double mass = 0.0, vx[3][3] = {{0.0}}, xx[3][3] = {{0.0}};
+      visit(grid->blocks[run.slot], i, [&](const double *s, double weight, const double *) {
+        mass += weight * s[M];
+        for (int a = 0, k = 0; a < dim; a++) {
+          for (int b = 0; b < dim; b++) vx[a][b] += weight * s[VX + 3 * a + b];
+          for (int b = 0; b <= a; b++) xx[a][b] += weight * s[XX + k++];
+        }
+      });
+      for (int a = 0; a < 3; a++)
+        for (int b = 0; b < a; b++) xx[b][a] = xx[a][b];
+      double extent[3], axis[3][3];
+      MathEigen::jacobi3(xx, extent, axis);
+      for (int a = 0; a < dim; a++)
+        for (int b = 0; b < dim; b++) {
+          double slope = 0.0;
+          for (int e = 0; e < 3; e++) {    // axis[.][e]: eigenvector e
+            if (!(extent[e] > MIN_EXTENT * mass)) continue;
+            double along = 0.0;
+            for (int c = 0; c < dim; c++) along += vx[a][c] * axis[c][e];
+            slope += along * axis[b][e] / extent[e];
+          }
+          C[i][dim * b + a] = slope / lattice.h;
+        }
+    }
+}
