@@ -113,6 +113,17 @@ class FixMPM : public Fix {
   /** Smallest over this rank's points of h/(c + |v|); the point's tag goes to id. */
   double stable_dt_local(tagint &id, double &wave_speed) const;
 
+  /** The blocks of this field are to be found anew in this step. */
+  bool topology_stale() const { return !topology_valid; }
+  void renew_topology() { topology_valid = false; }
+
+  enum Content { OF_MASS, OF_VOLUME };
+  /** At the nodes of blocks that are marked in near (and others): sum_p w_p grad N(x_p) with the
+   *  mass or volume w of the points, [node][3]. */
+  void map_gradient(Content, const std::vector<char> &near, std::vector<double> &gradient);
+  /** At the same nodes: sum_p V_p N(x_p) as share of the volume h^dim of a node, [node]. */
+  void map_volume(const std::vector<char> &near, std::vector<double> &share);
+
   /** Position of a node. */
   void node_position(const int index[3], double x[3]) const
   {
@@ -159,7 +170,9 @@ class FixMPM : public Fix {
   std::vector<double> xnew;              // MUSL: position at the end of the step
   std::vector<double> history_batch;     // history variables of a batch
   std::vector<double> external_nodes;    // ledger: nodal external forces
+  std::vector<double> nodes_apart;       // sums that node actions ask for
   std::vector<double> zero_volume;
+  std::vector<double> minus_identity;    // stress -I of all points, for map_gradient()
   MPM_NS::Batch *batch;
   Report report;
   double before_actions;                   // ledger: sum of entries before node actions
@@ -172,7 +185,9 @@ class FixMPM : public Fix {
   bool velocities_known;
 
   // stages of the step
-  void update_topology();
+  void update_topology();    // of all fields
+  void find_blocks();
+  void finish_topology();
   void points_to_grid();
   void stress_first();
   void solve();
@@ -184,6 +199,8 @@ class FixMPM : public Fix {
   // their parts
   void act_on_nodes(bool count);
   void map_to_nodes(MPM_NS::P2G);
+  void map_some(const MPM_NS::PointRows &, const MPM_NS::TransferStep &, MPM_NS::P2G,
+                const std::vector<char> &near, std::vector<double> &nodes, int lane, int nlane);
   void sum_halo(int lane, int nlane);
   void gradient_and_material();
   void material_update(const MPM_NS::PointRows &, const Run &, int first, int n, const double *L);

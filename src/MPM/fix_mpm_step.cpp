@@ -35,7 +35,7 @@ void FixMPM::initial_integrate(int /*vflag*/)
 {
   if (!driver) return;
 
-  for (auto *field : fields) field->update_topology();
+  update_topology();
   for (auto *field : fields) field->points_to_grid();
 
   if (scheme == USF) {
@@ -350,6 +350,68 @@ void FixMPM::map_to_nodes(P2G p2g)
       p2g(r, s, runs[k].first, runs[k].last, base, tile, a.box);
     kernel.flush(tile, grid->nodes(), block.slot, a.box);
   }
+}
+
+/* ----------------------------------------------------------------------
+   a sum over points at the nodes of some blocks, in nodes that are not those of the step
+------------------------------------------------------------------------- */
+
+void FixMPM::map_some(const PointRows &r, const TransferStep &s, P2G p2g,
+                      const std::vector<char> &near, std::vector<double> &nodes, int lane,
+                      int nlane)
+{
+  nodes.assign(grid->nnodes() * kernel.nreal, 0.0);
+  for (auto &a : active) {
+    const auto &block = grid->blocks[a.slot];
+    bool wanted = false;
+    for (const int slot : block.slot) wanted = wanted || (slot >= 0 && near[slot]);
+    if (!wanted) continue;
+    int base[3], box[6] = {127, 127, 127, -127, -127, -127};
+    for (int d = 0; d < 3; d++) base[d] = grid->side * block.b[d] - 1;
+    for (int k = a.first_run; k < a.last_run; k++)
+      p2g(r, s, runs[k].first, runs[k].last, base, tile, box);
+    kernel.flush(tile, nodes.data(), block.slot, box);
+  }
+  grid->fold_aliases(nodes.data(), kernel.nreal, lane, nlane);
+  halo->sum(nodes.data(), kernel.nreal, lane, nlane);
+}
+
+/* ----------------------------------------------------------------------
+   the internal force of a stress -I with weights in place of volumes
+------------------------------------------------------------------------- */
+
+void FixMPM::map_gradient(Content content, const std::vector<char> &near,
+                          std::vector<double> &gradient)
+{
+  minus_identity.resize(6 * (std::size_t) atom->nlocal);
+  for (std::size_t i = 0; i < minus_identity.size(); i++) minus_identity[i] = i % 6 < 3 ? -1.0 : 0.0;
+  PointRows r = rows();
+  r.stress = minus_identity.data();
+  if (content == OF_MASS) r.vol = atom->rmass;
+  TransferStep s = step_data();
+  s.dt = 1.0;
+  s.force_scale = 0.0;
+  s.stress_scale = 1.0;
+
+  const int lane = kernel.nreal == 8 ? 4 : 0;
+  map_some(r, s, kernel.p2g_force, near, nodes_apart, lane, 3);
+  gradient.resize(3 * grid->nnodes());
+  for (int64_t n = 0; n < grid->nnodes(); n++)
+    for (int d = 0; d < 3; d++) gradient[3 * n + d] = nodes_apart[n * kernel.nreal + lane + d];
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPM::map_volume(const std::vector<char> &near, std::vector<double> &share)
+{
+  PointRows r = rows();
+  r.mass = points->vol;
+  map_some(r, step_data(), kernel.p2g_momentum, near, nodes_apart, 3, 1);
+  const double inverse = 1.0 / (lattice.dim == 3 ? lattice.h * lattice.h * lattice.h :
+                                                   lattice.h * lattice.h);
+  share.resize(grid->nnodes());
+  for (int64_t n = 0; n < grid->nnodes(); n++)
+    share[n] = inverse * nodes_apart[n * kernel.nreal + 3];
 }
 
 /* ----------------------------------------------------------------------

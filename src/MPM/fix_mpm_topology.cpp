@@ -52,11 +52,22 @@ bool FixMPM::base_node(const double *x, int base[3], double t[3]) const
 }
 
 /* ----------------------------------------------------------------------
-   stage 1: when points have migrated, were sorted or have drifted: runs of points of one block,
-   blocks within reach, and which of them other ranks have, too
+   stage 1, for all fields that need it: when points have migrated, were sorted or have drifted
 ------------------------------------------------------------------------- */
 
 void FixMPM::update_topology()
+{
+  for (auto *action : actions) action->couple_topology();
+  for (auto *field : fields) field->find_blocks();
+  for (auto *action : actions) action->blocks_found();
+  for (auto *field : fields) field->finish_topology();
+}
+
+/* ----------------------------------------------------------------------
+   runs of points of one block, and blocks within reach
+------------------------------------------------------------------------- */
+
+void FixMPM::find_blocks()
 {
   if (topology_valid) return;
   clock = platform::walltime();
@@ -141,6 +152,17 @@ void FixMPM::update_topology()
           grid->activate(neighbor_block);
         }
   }
+  lap(report.t_topology);
+}
+
+/* ----------------------------------------------------------------------
+   blocks that node actions need, and which of all other ranks have, too
+------------------------------------------------------------------------- */
+
+void FixMPM::finish_topology()
+{
+  if (topology_valid) return;
+  clock = platform::walltime();
 
   auto *master = dynamic_cast<FixMPM *>(modify->get_fix_by_style("^mpm$")[0]);
   for (auto *action : master->actions) action->extend_topology(*this);

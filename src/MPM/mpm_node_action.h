@@ -18,6 +18,13 @@ class MPMNodeAction {
   /** Collective, at the start of a run: check and prepare; called by fix mpm in its init(). */
   virtual void init_action() {}
 
+  /** Each step before fields renew their blocks: renew_topology() of fields that must do so because
+   *  another one does. */
+  virtual void couple_topology() {}
+
+  /** The fields that renew their blocks have found those in reach of points, others not yet. */
+  virtual void blocks_found() {}
+
   /** Activate further blocks that the action needs next to those in reach of points. */
   virtual void extend_topology(class FixMPM &) {}
 

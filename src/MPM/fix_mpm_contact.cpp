@@ -1,0 +1,680 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+/* ----------------------------------------------------------------------
+   Each body has its own velocity field. Where two of them have mass at a node, their velocities
+   after the momentum equation tell whether they approach each other along the normal of the
+   interface. If so, equal and opposite impulses take the approach away, and in the plane of the
+   interface as much of the sliding as the law of friction allows:
+
+     n from a to b,  m = m_a m_b/(m_a + m_b),  u = v_a - v_b
+     J_n = max(0, m u.n),   J_t = m (u - (u.n) n) scaled down to at most mu J_n
+
+   (S.G. Bardenhagen, J.U. Brackbill, D. Sulsky, Comput. Methods Appl. Mech. Eng. 187 (2000) 529;
+   with a normal that both bodies share: J.A. Nairn, CMES 92 (2013) 271.) Momentum is conserved to
+   round-off as impulses come in pairs. With more than two bodies at a node all pairs are treated
+   alike: projected Jacobi iterations on the impulses of all pairs, so that the order in which the
+   bodies are named has no influence.
+
+   Normals. The sum over the points of a body at the node, sum_p V_p grad N, points out of it and
+   its length is the area of the interface that belongs to the node. Of the gradients of two bodies
+   the difference is taken, either as they are (the body with more volume, or mass, at the node has
+   more weight) or after each was made a unit vector (colinear).
+
+   Gap. Shape functions reach one or two cells beyond a body, so that bodies would feel each other
+   at that distance, and the mass that a wall sends beyond the end of a block that slides on it
+   would stand in its way. The volumes of all bodies at a node, as a share of the volume that belongs
+   to a node, add up to one where they touch, whatever the position of the interface relative to the
+   nodes, and to less while there is a gap or beyond the end of one of them.
+------------------------------------------------------------------------- */
+
+#include "fix_mpm_contact.h"
+
+#include "comm.h"
+#include "error.h"
+#include "fix_mpm.h"
+#include "force.h"
+#include "math_extra.h"
+#include "modify.h"
+#include "update.h"
+
+#include <algorithm>
+#include <climits>
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+static constexpr int MAX_ITERATIONS = 200;     // of impulses where three or more bodies meet
+static constexpr double CONVERGED = 1.0e-12;   // relative change of the impulses
+
+/* ----------------------------------------------------------------------
+   fix ID all mpm/contact FIELD FIELD ...  law ... normal ... gap ...
+------------------------------------------------------------------------- */
+
+FixMPMContact::FixMPMContact(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), law(FRICTIONLESS), normal_by(COLINEAR), kinetic_friction(0.0),
+    static_friction(0.0), normal_strength(0.0), shear_strength(0.0), release_work(0.0), gap(true),
+    full(1.0), lists_valid(false), may_touch(false), dt_last(0.0), force_now(), count_now(),
+    friction_work(), array(), array_step(-1)
+{
+  if (igroup != 0)
+    error->all(FLERR, 1,
+               "Fix mpm/contact acts on nodes, which have no group: use group all; the bodies are "
+               "the fields that are named");
+
+  int iarg = 3;
+  const auto is_keyword = [](const std::string &word) {
+    return word == "law" || word == "normal" || word == "gap";
+  };
+  while (iarg < narg && !is_keyword(arg[iarg])) {
+    if (std::count(names.begin(), names.end(), arg[iarg]))
+      error->all(FLERR, iarg, "Fix mpm/contact field {} is named twice", arg[iarg]);
+    names.emplace_back(arg[iarg++]);
+  }
+  if (names.size() < 2)
+    error->all(FLERR, MIN(3, narg - 1),
+               "Fix mpm/contact needs the IDs of two or more fix mpm, one for each body");
+  if (names.size() > MAX_FIELDS)
+    error->all(FLERR, 3 + MAX_FIELDS, "Fix mpm/contact takes at most {} bodies: use several",
+               MAX_FIELDS);
+
+  const auto number = [&](int i, const char *what, double low) {
+    const double value = utils::numeric(FLERR, arg[i], false, lmp);
+    if (!(value >= low) || !std::isfinite(value))
+      error->all(FLERR, i, "Fix mpm/contact {} must not be below {}: {}", what, low, arg[i]);
+    return value;
+  };
+  const auto is_number = [&](int i) {
+    return i < narg && (utils::is_double(arg[i]) || utils::strmatch(arg[i], "^v_"));
+  };
+
+  while (iarg < narg) {
+    const std::string keyword = arg[iarg];
+    const auto need = [&](int n) {
+      if (iarg + n >= narg) utils::missing_cmd_args(FLERR, "fix mpm/contact " + keyword, error);
+    };
+    need(1);
+    const std::string choice = arg[iarg + 1];
+    if (keyword == "law") {
+      if (choice == "frictionless") {
+        law = FRICTIONLESS;
+        iarg += 2;
+      } else if (choice == "stick") {
+        law = STICK;
+        iarg += 2;
+      } else if (choice == "coulomb") {
+        need(2);
+        law = COULOMB;
+        kinetic_friction = static_friction = number(iarg + 2, "coefficient of friction", 0.0);
+        iarg += 3;
+        if (is_number(iarg)) {
+          static_friction = number(iarg, "coefficient of static friction", kinetic_friction);
+          iarg++;
+        }
+      } else if (choice == "adhesive") {
+        need(4);
+        law = ADHESIVE;
+        normal_strength = number(iarg + 2, "adhesive normal strength", 0.0);
+        shear_strength = number(iarg + 3, "adhesive shear strength", 0.0);
+        release_work = number(iarg + 4, "adhesive work of release", 0.0);
+        if (normal_strength == 0.0 || release_work == 0.0)
+          error->all(FLERR, iarg + 2,
+                     "Fix mpm/contact law adhesive needs a positive normal strength and work of "
+                     "release: use frictionless or coulomb for bodies that do not adhere");
+        iarg += 5;
+        if (is_number(iarg)) {
+          kinetic_friction = static_friction = number(iarg, "coefficient of friction", 0.0);
+          iarg++;
+        }
+      } else
+        error->all(FLERR, iarg + 1,
+                   "Unknown fix mpm/contact law {}: must be frictionless, coulomb, stick or "
+                   "adhesive",
+                   choice);
+    } else if (keyword == "normal") {
+      if (choice == "mass")
+        normal_by = MASS;
+      else if (choice == "volume")
+        normal_by = VOLUME;
+      else if (choice == "colinear")
+        normal_by = COLINEAR;
+      else
+        error->all(FLERR, iarg + 1,
+                   "Unknown fix mpm/contact normal {}: must be mass, volume or colinear", choice);
+      iarg += 2;
+    } else if (keyword == "gap") {
+      if (choice == "no") {
+        gap = false;
+        iarg += 2;
+      } else if (choice == "yes") {
+        gap = true;
+        iarg += 2;
+        if (is_number(iarg)) {
+          full = number(iarg, "share of volume at contact", 0.5);
+          if (full > 1.0)
+            error->all(FLERR, iarg, "Fix mpm/contact share of volume at contact is above one: {}",
+                       arg[iarg]);
+          iarg++;
+        }
+      } else
+        error->all(FLERR, iarg + 1, "Unknown fix mpm/contact gap {}: must be yes or no", choice);
+    } else
+      error->all(FLERR, iarg, "Unknown fix mpm/contact keyword: {}", keyword);
+  }
+  if (law == ADHESIVE) {
+    if (!gap)
+      error->all(FLERR, Error::NOPOINTER,
+                 "Fix mpm/contact law adhesive must know how far bodies are apart: drop gap no");
+    if (normal_by == MASS)
+      error->all(FLERR, Error::NOPOINTER,
+                 "Fix mpm/contact law adhesive needs the area of the interface: use normal volume "
+                 "or colinear");
+  }
+
+  scalar_flag = array_flag = 1;
+  size_array_rows = (int) (names.size() * (names.size() - 1) / 2);
+  size_array_cols = 5;
+  global_freq = 1;
+  extscalar = extarray = 1;
+  restart_global = 1;
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixMPMContact::setmask()
+{
+  return 0;    // called by fix mpm
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMContact::init()
+{
+  fields.clear();
+  for (const auto &name : names) {
+    auto *field = dynamic_cast<FixMPM *>(modify->get_fix_by_id(name));
+    if (!field)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/contact {}: {} is not the ID of a fix mpm: define one fix mpm for each "
+                 "body",
+                 id, name);
+    fields.push_back(field);
+  }
+  const FixMPM &first = *fields[0];
+  for (const auto *field : fields) {
+    bool same = field->lattice.h == first.lattice.h && field->shape == first.shape;
+    for (int d = 0; d < 3; d++) same = same && field->lattice.origin[d] == first.lattice.origin[d];
+    if (!same)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/contact {}: fields {} and {} must have the same lattice (node spacing "
+                 "and origin) and shape function; bodies on different lattices meet through a pair "
+                 "style",
+                 id, first.id, field->id);
+    if (field->scheme == FixMPM::USF)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/contact cannot be used with scheme usf of fix mpm {}, which needs the "
+                 "contact before it is known: use usl or musl",
+                 field->id);
+  }
+  for (auto *other : modify->get_fix_by_style("^mpm/contact$")) {
+    if (other == this) continue;
+    int shared = 0;
+    for (const auto &name : names) {
+      const auto &theirs = dynamic_cast<FixMPMContact *>(other)->names;
+      shared += std::count(theirs.begin(), theirs.end(), name);
+    }
+    if (shared > 1)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/contact {} and {} have two bodies in common: contact between them would "
+                 "be counted twice",
+                 id, other->id);
+  }
+  if (law == ADHESIVE && 2.0 * release_work / normal_strength > first.lattice.h)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/contact {}: adhesion ends at a gap of 2 * work / strength = {}, which is "
+               "more than the node spacing {}: raise the strength or the node spacing",
+               id, 2.0 * release_work / normal_strength, first.lattice.h);
+
+  reach.assign(fields.size(), Blocks());
+  extent.assign(fields.size(), std::array<int, 6>());
+  gradient.assign(fields.size(), std::vector<double>());
+  share.assign(fields.size(), std::vector<double>());
+  near.assign(fields.size(), std::vector<char>());
+  lists_valid = false;
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixMPMContact::index_of(const FixMPM &field) const
+{
+  for (std::size_t k = 0; k < fields.size(); k++)
+    if (fields[k] == &field) return (int) k;
+  return -1;
+}
+
+/** Row of the output for fields a < b: (0,1), (0,2), ..., (1,2), ... */
+int FixMPMContact::pair_index(int a, int b) const
+{
+  const int n = (int) fields.size();
+  return a * n - a * (a + 1) / 2 + b - a - 1;
+}
+
+/* ----------------------------------------------------------------------
+   each field has blocks for the sake of the others: all are renewed together
+------------------------------------------------------------------------- */
+
+void FixMPMContact::couple_topology()
+{
+  bool stale = false;
+  for (const auto *field : fields) stale = stale || field->topology_stale();
+  if (stale)
+    for (auto *field : fields) field->renew_topology();
+}
+
+/* ----------------------------------------------------------------------
+   blocks in reach of each body, and the range that they take up over all ranks
+------------------------------------------------------------------------- */
+
+void FixMPMContact::blocks_found()
+{
+  bool stale = false;
+  for (const auto *field : fields) stale = stale || field->topology_stale();
+  if (!stale) return;
+  lists_valid = false;
+
+  for (std::size_t k = 0; k < fields.size(); k++) {
+    const Grid &grid = *fields[k]->grid;
+    const Lattice &lattice = grid.lattice;
+    reach[k].clear();
+    int range[6];    // low, and minus high
+    for (int &r : range) r = INT_MAX;
+    for (const auto &block : grid.blocks) {
+      // an image on a periodic axis belongs to one or two canonical blocks
+      int first[3], last[3];
+      for (int d = 0; d < 3; d++) {
+        first[d] = last[d] = block.b[d];
+        if (d >= lattice.dim || !lattice.periodic[d]) continue;
+        first[d] = lattice.wrap(d, block.b[d] * grid.side) >> grid.shift_bits;
+        last[d] = lattice.wrap(d, block.b[d] * grid.side + grid.side - 1) >> grid.shift_bits;
+      }
+      for (int corner = 0; corner < 8; corner++) {
+        std::array<int, 3> b;
+        for (int d = 0; d < 3; d++) b[d] = corner >> d & 1 ? last[d] : first[d];
+        reach[k].push_back(b);
+      }
+    }
+    std::sort(reach[k].begin(), reach[k].end());
+    reach[k].erase(std::unique(reach[k].begin(), reach[k].end()), reach[k].end());
+    for (const auto &b : reach[k])
+      for (int d = 0; d < 3; d++) {
+        range[d] = std::min(range[d], b[d]);
+        range[3 + d] = std::min(range[3 + d], -b[d]);
+      }
+    MPI_Allreduce(range, extent[k].data(), 6, MPI_INT, MPI_MIN, world);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   a rank must know the mass of all bodies at the nodes of any of them, where bodies may meet
+------------------------------------------------------------------------- */
+
+void FixMPMContact::extend_topology(FixMPM &field)
+{
+  const int k = index_of(field);
+  if (k < 0) return;
+  for (std::size_t j = 0; j < fields.size(); j++) {
+    if ((int) j == k) continue;
+    for (const auto &b : reach[j]) {
+      bool inside = true;
+      for (int d = 0; d < 3; d++)
+        inside = inside && b[d] >= extent[k][d] && b[d] <= -extent[k][3 + d];
+      if (inside) field.grid->activate(b.data());
+    }
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMContact::topology_changed(FixMPM &field)
+{
+  if (index_of(field) >= 0) lists_valid = false;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMContact::list_common_blocks()
+{
+  common.clear();
+  const int n = (int) fields.size();
+  for (int k = 0; k < n; k++) near[k].assign(fields[k]->grid->blocks.size(), 0);
+  for (int k = 0; k < n; k++) {
+    const Grid &grid = *fields[k]->grid;
+    for (const auto &block : grid.blocks) {
+      Common c;
+      int count = 0;
+      bool listed = false;
+      for (int j = 0; j < n; j++) {
+        c.slot[j] = fields[j]->grid->find(block.b);
+        if (c.slot[j] < 0) continue;
+        count++;
+        listed = listed || j < k;
+      }
+      if (listed || count < 2) continue;
+      c.canonical = ~block.alias;
+      c.owned = block.owned;
+      common.push_back(c);
+      for (int j = 0; j < n; j++)
+        if (c.slot[j] >= 0) near[j][c.slot[j]] = 1;
+    }
+  }
+  int any = !common.empty(), all;
+  MPI_Allreduce(&any, &all, 1, MPI_INT, MPI_MAX, world);
+  may_touch = all;
+  lists_valid = true;
+}
+
+/* ----------------------------------------------------------------------
+   gradients and volumes of the bodies at the nodes; false when no node has two bodies
+------------------------------------------------------------------------- */
+
+bool FixMPMContact::map_bodies()
+{
+  int any = 0, all;
+  for (std::size_t c = 0; c < common.size() && !any; c++)
+    for (int n = 0; n < NODES_PER_BLOCK && !any; n++) {
+      int massive = 0;
+      for (std::size_t k = 0; k < fields.size(); k++)
+        if (common[c].slot[k] >= 0) massive += fields[k]->grid->record(common[c].slot[k], n)[3] > 0.0;
+      any = massive > 1 && (common[c].canonical >> n & 1);
+    }
+  MPI_Allreduce(&any, &all, 1, MPI_INT, MPI_MAX, world);
+  if (!all) return false;
+
+  for (std::size_t k = 0; k < fields.size(); k++) {
+    fields[k]->map_gradient(normal_by == MASS ? FixMPM::OF_MASS : FixMPM::OF_VOLUME, near[k],
+                            gradient[k]);
+    if (gap) fields[k]->map_volume(near[k], share[k]);
+  }
+  return true;
+}
+
+/* ----------------------------------------------------------------------
+   normal of a pair, and whether it is near enough
+------------------------------------------------------------------------- */
+
+bool FixMPMContact::make_pair(const Common &c, int n, int a, int b, double volume_share,
+                              Pair &pair)
+{
+  const int dim = fields[a]->lattice.dim;
+  const double h = fields[a]->lattice.h;
+  const double *ga = &gradient[a][3 * ((int64_t) c.slot[a] * NODES_PER_BLOCK + n)];
+  const double *gb = &gradient[b][3 * ((int64_t) c.slot[b] * NODES_PER_BLOCK + n)];
+  const double la = MathExtra::len3(ga), lb = MathExtra::len3(gb);
+  if (la == 0.0 && lb == 0.0) return false;
+  const double wa = normal_by == COLINEAR ? (la > 0.0 ? 1.0 / la : 0.0) : 1.0;
+  const double wb = normal_by == COLINEAR ? (lb > 0.0 ? 1.0 / lb : 0.0) : 1.0;
+  for (int d = 0; d < 3; d++) pair.n[d] = d < dim ? wa * ga[d] - wb * gb[d] : 0.0;
+  const double length = MathExtra::len3(pair.n);
+  if (!(length > 1.0e-10 * (wa * la + wb * lb))) return false;
+  for (double &x : pair.n) x /= length;
+
+  pair.a = a;
+  pair.b = b;
+  pair.ra = fields[a]->grid->record(c.slot[a], n);
+  pair.rb = fields[b]->grid->record(c.slot[b], n);
+  pair.area = 0.5 * (la + lb);
+  pair.fade = 0.0;
+  pair.state = OPEN;
+  pair.normal = pair.tangential[0] = pair.tangential[1] = pair.tangential[2] = 0.0;
+  if (law == ADHESIVE && pair.area > 0.0) {
+    const double cell = dim == 3 ? h * h * h : h * h;
+    const double opening = std::max(0.0, full - volume_share) * cell / pair.area;
+    pair.fade = std::max(0.0, 1.0 - opening * normal_strength / (2.0 * release_work));
+  }
+  return !gap || volume_share >= full || pair.fade > 0.0;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMContact::find_contacts()
+{
+  nodes.clear();
+  pairs.clear();
+  const int nfields = (int) fields.size();
+  for (const auto &c : common)
+    for (int n = 0; n < NODES_PER_BLOCK; n++) {
+      if (!(c.canonical >> n & 1)) continue;
+      Node node;
+      int massive = 0;
+      double volume_share = 0.0;
+      for (int k = 0; k < nfields; k++) {
+        node.record[k] = nullptr;
+        if (c.slot[k] < 0) continue;
+        double *record = fields[k]->grid->record(c.slot[k], n);
+        if (!(record[3] > 0.0)) continue;
+        node.record[k] = record;
+        if (gap) volume_share += share[k][(int64_t) c.slot[k] * NODES_PER_BLOCK + n];
+        massive++;
+      }
+      if (massive < 2) continue;
+      node.first = (int) pairs.size();
+      node.owned = c.owned >> n & 1;
+      Pair pair;
+      for (int a = 0; a < nfields; a++)
+        for (int b = a + 1; b < nfields; b++)
+          if (node.record[a] && node.record[b] && make_pair(c, n, a, b, volume_share, pair))
+            pairs.push_back(pair);
+      node.last = (int) pairs.size();
+      if (node.last > node.first) nodes.push_back(node);
+    }
+}
+
+/* ----------------------------------------------------------------------
+   one iteration of a pair: the impulse that its present velocities ask for, within the limits of
+   the law. m: effective mass, divided by the number of bodies that one body may meet.
+   decided (MUSL, second field of velocities): the state of the pair stays
+------------------------------------------------------------------------- */
+
+void FixMPMContact::apply(Pair &pair, double m, double &largest, double dt, bool decided)
+{
+  const int dim = fields[pair.a]->lattice.dim;
+  double u[3] = {0.0, 0.0, 0.0}, un = 0.0;
+  for (int d = 0; d < dim; d++) {
+    u[d] = pair.ra[d] - pair.rb[d];
+    un += u[d] * pair.n[d];
+  }
+
+  double normal = pair.normal + m * un, t[3] = {0.0, 0.0, 0.0}, length = 0.0;
+  for (int d = 0; d < dim; d++) {
+    t[d] = pair.tangential[d] + m * (u[d] - un * pair.n[d]);
+    length += t[d] * t[d];
+  }
+  length = sqrt(length);
+
+  double keep;
+  if (decided) {
+    keep = pair.state == STUCK ? 1.0 : 0.0;
+    if (pair.state == OPEN) normal = 0.0;
+  } else {
+    const double unit = force->ftm2v / force->nktv2p * pair.area * pair.fade * dt;
+    normal = std::max(normal, law == ADHESIVE ? -normal_strength * unit : 0.0);
+    const double push = std::max(normal, 0.0), bond = shear_strength * unit;
+    keep = 1.0;
+    if (law == STICK)
+      keep = push > 0.0 ? 1.0 : 0.0;
+    else if (length > static_friction * push + bond)
+      keep = (kinetic_friction * push + bond) / length;
+    pair.state = normal == 0.0 && keep == 0.0 ? OPEN : (keep == 1.0 ? STUCK : SLIDING);
+  }
+
+  double change = fabs(normal - pair.normal);
+  pair.normal = normal;
+  for (int d = 0; d < dim; d++) {
+    change += fabs(keep * t[d] - pair.tangential[d]);
+    pair.tangential[d] = keep * t[d];
+  }
+  largest = std::max(largest, change / (fabs(normal) + length + 1.0e-300));
+}
+
+/* ----------------------------------------------------------------------
+   velocities of the bodies at a node. Impulses of all pairs follow from the same velocities, so
+   that their order does not matter; two bodies need one iteration
+------------------------------------------------------------------------- */
+
+void FixMPMContact::resolve(Node &node, double dt, bool decided)
+{
+  const int nfields = (int) fields.size(), dim = fields[0]->lattice.dim;
+  double start[MAX_FIELDS][3];
+  int bodies = 0;
+  for (int k = 0; k < nfields; k++)
+    if (node.record[k]) {
+      bodies++;
+      for (int d = 0; d < dim; d++) start[k][d] = node.record[k][d];
+    }
+
+  for (int p = node.first; p < node.last; p++)
+    pairs[p].normal = pairs[p].tangential[0] = pairs[p].tangential[1] = pairs[p].tangential[2] = 0.0;
+  for (int it = 0; it < (bodies == 2 ? 1 : MAX_ITERATIONS); it++) {
+    double largest = 0.0;
+    for (int p = node.first; p < node.last; p++) {
+      Pair &pair = pairs[p];
+      const double m = pair.ra[3] * pair.rb[3] / (pair.ra[3] + pair.rb[3]);
+      apply(pair, m / (bodies - 1), largest, dt, decided);
+    }
+    for (int k = 0; k < nfields; k++)
+      if (node.record[k])
+        for (int d = 0; d < dim; d++) node.record[k][d] = start[k][d];
+    for (int p = node.first; p < node.last; p++) {
+      const Pair &pair = pairs[p];
+      for (int d = 0; d < dim; d++) {
+        const double impulse = pair.normal * pair.n[d] + pair.tangential[d];
+        pair.ra[d] -= impulse / pair.ra[3];
+        pair.rb[d] += impulse / pair.rb[3];
+      }
+    }
+    if (largest < CONVERGED) break;
+  }
+  if (!decided && node.owned) account(node, start);
+}
+
+/* ----------------------------------------------------------------------
+   forces between bodies, work of the friction, and the ledgers of the fields: work is impulse times
+   the velocity with which points are then moved; what nodes cannot keep of what forces gave them
+   counts as transfer, as at walls
+------------------------------------------------------------------------- */
+
+void FixMPMContact::account(const Node &node, const double start[][3])
+{
+  const int dim = fields[0]->lattice.dim;
+  for (int p = node.first; p < node.last; p++) {
+    const Pair &pair = pairs[p];
+    if (pair.state == OPEN) continue;
+    const int row = pair_index(pair.a, pair.b);
+    count_now[row] += 1.0;
+    for (int d = 0; d < dim; d++) {
+      const double impulse = pair.normal * pair.n[d] + pair.tangential[d];
+      force_now[row][d] += impulse;
+      friction_work[row] += pair.tangential[d] * (pair.rb[d] - pair.ra[d]);
+    }
+  }
+  for (std::size_t k = 0; k < fields.size(); k++) {
+    const double *record = node.record[k];
+    if (!record || !fields[k]->ledger_on) continue;
+    double moved = 0.0, lost = 0.0;
+    for (int d = 0; d < dim; d++) {
+      const double change = record[d] - start[k][d];
+      moved += change * record[d];
+      lost += 0.5 * change * (record[d] - record[4 + d]);
+    }
+    fields[k]->ledger.contact += record[3] * moved * force->mvv2e;
+    fields[k]->ledger.transfer -= record[3] * lost * force->mvv2e;
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMContact::act(double dt, bool count)
+{
+  if (!lists_valid) list_common_blocks();
+  if (count) {
+    memset(force_now, 0, sizeof(force_now));
+    memset(count_now, 0, sizeof(count_now));
+    dt_last = dt;
+    nodes.clear();
+    pairs.clear();
+    if (may_touch && map_bodies()) find_contacts();
+  }
+  for (auto &node : nodes) resolve(node, dt, !count);
+}
+
+/* ----------------------------------------------------------------------
+   work of friction so far
+------------------------------------------------------------------------- */
+
+double FixMPMContact::compute_scalar()
+{
+  double mine = 0.0, all;
+  for (const double w : friction_work) mine += w;
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all * force->mvv2e;
+}
+
+/* ----------------------------------------------------------------------
+   rows: pairs of bodies; columns: force on the second by the first in the last step, nodes in
+   contact, work of friction so far
+------------------------------------------------------------------------- */
+
+double FixMPMContact::compute_array(int row, int column)
+{
+  if (array_step != update->ntimestep) {
+    array_step = update->ntimestep;
+    double mine[MAX_PAIRS][5];
+    for (int p = 0; p < size_array_rows; p++) {
+      for (int d = 0; d < 3; d++)
+        mine[p][d] = dt_last > 0.0 ? force_now[p][d] / (dt_last * force->ftm2v) : 0.0;
+      mine[p][3] = count_now[p];
+      mine[p][4] = friction_work[p] * force->mvv2e;
+    }
+    MPI_Allreduce(mine, array, 5 * size_array_rows, MPI_DOUBLE, MPI_SUM, world);
+  }
+  return array[row][column];
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMContact::write_restart(FILE *fp)
+{
+  std::vector<double> total(size_array_rows);
+  MPI_Reduce(friction_work, total.data(), size_array_rows, MPI_DOUBLE, MPI_SUM, 0, world);
+  if (comm->me) return;
+  const int size = (int) (size_array_rows * sizeof(double));
+  fwrite(&size, sizeof(int), 1, fp);
+  fwrite(total.data(), 1, size, fp);
+}
+
+/* ----------------------------------------------------------------------
+   rank 0 goes on with the totals
+------------------------------------------------------------------------- */
+
+void FixMPMContact::restart(char *buf)
+{
+  if (comm->me == 0) memcpy(friction_work, buf, size_array_rows * sizeof(double));
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixMPMContact::memory_usage()
+{
+  double bytes = pairs.capacity() * sizeof(Pair) + nodes.capacity() * sizeof(Node) +
+      common.capacity() * sizeof(Common);
+  for (std::size_t k = 0; k < gradient.size(); k++)
+    bytes += (gradient[k].capacity() + share[k].capacity()) * sizeof(double);
+  return bytes;
+}

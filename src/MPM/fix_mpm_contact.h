@@ -1,0 +1,114 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(mpm/contact,FixMPMContact);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_MPM_CONTACT_H
+#define LMP_FIX_MPM_CONTACT_H
+
+#include "fix.h"
+#include "mpm_node_action.h"
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+class FixMPM;
+
+/** Contact between bodies that are fields (fix mpm) on one lattice, at the nodes they share. */
+class FixMPMContact : public Fix, public MPMNodeAction {
+ public:
+  FixMPMContact(class LAMMPS *, int, char **);
+  int setmask() override;
+  void init() override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+  double compute_scalar() override;
+  double compute_array(int, int) override;
+  double memory_usage() override;
+
+  void couple_topology() override;
+  void blocks_found() override;
+  void extend_topology(FixMPM &) override;
+  void topology_changed(FixMPM &) override;
+  void act(double dt, bool count) override;
+
+  static constexpr int MAX_FIELDS = 8;
+
+ private:
+  static constexpr int MAX_PAIRS = MAX_FIELDS * (MAX_FIELDS - 1) / 2;
+
+  enum Law { FRICTIONLESS, COULOMB, STICK, ADHESIVE };
+  enum Normal { MASS, VOLUME, COLINEAR };
+  enum State : char { OPEN, SLIDING, STUCK };
+
+  struct Common {    // a block of nodes that several fields have
+    int slot[MAX_FIELDS];    // -1: the field does not have it
+    uint64_t canonical, owned;
+  };
+  struct Pair {    // two bodies at one node
+    int a, b;          // places in fields
+    double *ra, *rb;   // node records
+    double n[3];       // unit normal from a to b
+    double area;       // of the interface at the node
+    double fade;       // share of the adhesive strength that is left at this gap
+    State state;
+    double normal, tangential[3];    // impulses on b so far, along n and in the plane
+  };
+  struct Node {    // a node where bodies are in contact
+    int first, last;    // range in pairs
+    bool owned;
+    double *record[MAX_FIELDS];    // null: the body is not here
+  };
+  using Blocks = std::vector<std::array<int, 3>>;
+
+  std::vector<std::string> names;
+  Law law;
+  Normal normal_by;
+  double kinetic_friction, static_friction;
+  double normal_strength, shear_strength, release_work;
+  bool gap;
+  double full;    // with gap: volume share of a node at which bodies touch
+
+  std::vector<FixMPM *> fields;
+  std::vector<Blocks> reach;    // [field] blocks in reach of its points, canonical
+  std::vector<std::array<int, 6>> extent;    // [field] their range over all ranks
+  std::vector<Common> common;
+  std::vector<std::vector<char>> near;    // [field][slot] a block that another body may share
+  bool lists_valid, may_touch;
+
+  std::vector<std::vector<double>> gradient;    // [field] of the volume (or mass) at the nodes
+  std::vector<std::vector<double>> share;       // [field] volume at the nodes / node volume
+  std::vector<Node> nodes;
+  std::vector<Pair> pairs;
+
+  double dt_last;
+  double force_now[MAX_PAIRS][3], count_now[MAX_PAIRS], friction_work[MAX_PAIRS];
+  double array[MAX_PAIRS][5];
+  bigint array_step;
+
+  int index_of(const FixMPM &) const;
+  int pair_index(int a, int b) const;
+  void list_common_blocks();
+  bool map_bodies();
+  void find_contacts();
+  bool make_pair(const Common &, int n, int a, int b, double volume_share, Pair &);
+  void resolve(Node &, double dt, bool decided);
+  void apply(Pair &, double m, double &largest, double dt, bool decided);
+  void account(const Node &, const double start[][3]);
+};
+
+}    // namespace LAMMPS_NS
+#endif
+#endif
