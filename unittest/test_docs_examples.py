@@ -40,6 +40,7 @@ REGIONS = {"bar": "block 0.01 0.04 0.01 0.04 0.01 0.04", "ball": "sphere 0.06 0.
 VARIABLES = {"down": "equal 1.0e-3", "damage": "atom id"}
 COMPUTES = {"mine": "all property/atom vx vy"}
 FIXES = {"fine": "all mpm 0.01"}
+BODIES = ["left", "right", "plane", "disk", "block", "pad", "disc"]    # each with a fix mpm
 
 
 def blocks(path):
@@ -122,6 +123,14 @@ def scene_for(lines):
         for name, rest in FIXES.items():
             if re.search(r"\bfix %s\b" % name, text):
                 grid = "fix %s %s\n" % (name, rest)
+    if "mpm/contact" in text:
+        named = [word for word in text.split() if word in BODIES]
+        grid = "".join("group %s type %d\nfix %s %s mpm 0.01\n" % (name, k + 1, name, name)
+                       for k, name in enumerate(named))
+        for k in range(1, len(named)):
+            before += ("region body%d block 0.06 0.08 %g %g 0.06 0.08\n"
+                       "create_points %d region body%d ppc 2\ngroup %s type %d\n" %
+                       (k, 0.03 * k - 0.02, 0.03 * k, k + 1, k, named[k], k + 1))
     material = "" if "mpm/material" in text or own_field and grid == "" else MATERIAL
     points = "" if makes_points else POINTS + "".join("group %s type 1\n" % g for g in GROUPS)
     scene = head + grid + points + material + before

@@ -170,9 +170,9 @@ class FixMPM : public Fix {
   std::vector<double> xnew;              // MUSL: position at the end of the step
   std::vector<double> history_batch;     // history variables of a batch
   std::vector<double> external_nodes;    // ledger: nodal external forces
-  std::vector<double> nodes_apart;       // sums that node actions ask for
+  std::vector<double> nodes_apart;       // sums that node actions ask for,
+  std::vector<double> rows_apart;        // and rows of the points for them
   std::vector<double> zero_volume;
-  std::vector<double> minus_identity;    // stress -I of all points, for map_gradient()
   MPM_NS::Batch *batch;
   Report report;
   double before_actions;                   // ledger: sum of entries before node actions
@@ -199,8 +199,9 @@ class FixMPM : public Fix {
   // their parts
   void act_on_nodes(bool count);
   void map_to_nodes(MPM_NS::P2G);
+  template <class Weigh>
   void map_some(const MPM_NS::PointRows &, const MPM_NS::TransferStep &, MPM_NS::P2G,
-                const std::vector<char> &near, std::vector<double> &nodes, int lane, int nlane);
+                const std::vector<char> &near, int lane, int nlane, const Weigh &);
   void sum_halo(int lane, int nlane);
   void gradient_and_material();
   void material_update(const MPM_NS::PointRows &, const Run &, int first, int n, const double *L);

@@ -51,8 +51,8 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr int MAX_ITERATIONS = 200;     // of impulses where three or more bodies meet
-static constexpr double CONVERGED = 1.0e-12;   // relative change of the impulses
+static constexpr int MAX_ITERATIONS = 200;      // of impulses where three or more bodies meet
+static constexpr double CONVERGED = 1.0e-12;    // relative change of the impulses
 
 /* ----------------------------------------------------------------------
    fix ID all mpm/contact FIELD FIELD ...  law ... normal ... gap ...
@@ -97,6 +97,8 @@ FixMPMContact::FixMPMContact(LAMMPS *lmp, int narg, char **arg) :
 
   while (iarg < narg) {
     const std::string keyword = arg[iarg];
+    if (!is_keyword(keyword))
+      error->all(FLERR, iarg, "Unknown fix mpm/contact keyword: {}", keyword);
     const auto need = [&](int n) {
       if (iarg + n >= narg) utils::missing_cmd_args(FLERR, "fix mpm/contact " + keyword, error);
     };
@@ -149,7 +151,7 @@ FixMPMContact::FixMPMContact(LAMMPS *lmp, int narg, char **arg) :
         error->all(FLERR, iarg + 1,
                    "Unknown fix mpm/contact normal {}: must be mass, volume or colinear", choice);
       iarg += 2;
-    } else if (keyword == "gap") {
+    } else {    // gap
       if (choice == "no") {
         gap = false;
         iarg += 2;
@@ -165,8 +167,7 @@ FixMPMContact::FixMPMContact(LAMMPS *lmp, int narg, char **arg) :
         }
       } else
         error->all(FLERR, iarg + 1, "Unknown fix mpm/contact gap {}: must be yes or no", choice);
-    } else
-      error->all(FLERR, iarg, "Unknown fix mpm/contact keyword: {}", keyword);
+    }
   }
   if (law == ADHESIVE) {
     if (!gap)
@@ -247,6 +248,7 @@ void FixMPMContact::init()
   gradient.assign(fields.size(), std::vector<double>());
   share.assign(fields.size(), std::vector<double>());
   near.assign(fields.size(), std::vector<char>());
+  images.assign(fields.size(), std::vector<int>());
   lists_valid = false;
 }
 
@@ -353,9 +355,11 @@ void FixMPMContact::list_common_blocks()
 {
   common.clear();
   const int n = (int) fields.size();
-  for (int k = 0; k < n; k++) near[k].assign(fields[k]->grid->blocks.size(), 0);
   for (int k = 0; k < n; k++) {
     const Grid &grid = *fields[k]->grid;
+    images[k].clear();
+    for (std::size_t slot = 0; slot < grid.blocks.size(); slot++)
+      if (grid.blocks[slot].alias) images[k].push_back((int) slot);
     for (const auto &block : grid.blocks) {
       Common c;
       int count = 0;
@@ -370,8 +374,6 @@ void FixMPMContact::list_common_blocks()
       c.canonical = ~block.alias;
       c.owned = block.owned;
       common.push_back(c);
-      for (int j = 0; j < n; j++)
-        if (c.slot[j] >= 0) near[j][c.slot[j]] = 1;
     }
   }
   int any = !common.empty(), all;
@@ -381,19 +383,52 @@ void FixMPMContact::list_common_blocks()
 }
 
 /* ----------------------------------------------------------------------
+   a block whose nodes are wanted, and those that hold periodic images of its nodes
+------------------------------------------------------------------------- */
+
+void FixMPMContact::mark_near(int k, int slot)
+{
+  near[k][slot] = 1;
+  const Grid &grid = *fields[k]->grid;
+  const Lattice &lattice = grid.lattice;
+  if (!lattice.periodic[0] && !lattice.periodic[1] && !lattice.periodic[2]) return;
+  for (const int image : images[k])
+    for (int corner = 0; corner < 8 && !near[k][image]; corner++) {
+      bool same = true;
+      for (int d = 0; d < 3; d++) {
+        const int b = grid.blocks[image].b[d];
+        const int node = b * grid.side + (corner >> d & 1 ? grid.side - 1 : 0);
+        const int wanted = grid.blocks[slot].b[d];
+        same = same &&
+            (d >= lattice.dim ? b == wanted : lattice.wrap(d, node) >> grid.shift_bits == wanted);
+      }
+      if (same) near[k][image] = 1;
+    }
+}
+
+/* ----------------------------------------------------------------------
    gradients and volumes of the bodies at the nodes; false when no node has two bodies
 ------------------------------------------------------------------------- */
 
 bool FixMPMContact::map_bodies()
 {
+  const int nfields = (int) fields.size();
+  for (int k = 0; k < nfields; k++) near[k].assign(fields[k]->grid->blocks.size(), 0);
   int any = 0, all;
-  for (std::size_t c = 0; c < common.size() && !any; c++)
-    for (int n = 0; n < NODES_PER_BLOCK && !any; n++) {
+  for (const auto &c : common) {
+    bool meet = false;
+    for (int n = 0; n < NODES_PER_BLOCK && !meet; n++) {
+      if (!(c.canonical >> n & 1)) continue;
       int massive = 0;
-      for (std::size_t k = 0; k < fields.size(); k++)
-        if (common[c].slot[k] >= 0) massive += fields[k]->grid->record(common[c].slot[k], n)[3] > 0.0;
-      any = massive > 1 && (common[c].canonical >> n & 1);
+      for (int k = 0; k < nfields; k++)
+        massive += c.slot[k] >= 0 && fields[k]->grid->record(c.slot[k], n)[3] > 0.0;
+      meet = massive > 1;
     }
+    if (!meet) continue;
+    any = 1;
+    for (int k = 0; k < nfields; k++)
+      if (c.slot[k] >= 0) mark_near(k, c.slot[k]);
+  }
   MPI_Allreduce(&any, &all, 1, MPI_INT, MPI_MAX, world);
   if (!all) return false;
 
@@ -409,8 +444,7 @@ bool FixMPMContact::map_bodies()
    normal of a pair, and whether it is near enough
 ------------------------------------------------------------------------- */
 
-bool FixMPMContact::make_pair(const Common &c, int n, int a, int b, double volume_share,
-                              Pair &pair)
+bool FixMPMContact::make_pair(const Common &c, int n, int a, int b, double volume_share, Pair &pair)
 {
   const int dim = fields[a]->lattice.dim;
   const double h = fields[a]->lattice.h;
@@ -540,7 +574,8 @@ void FixMPMContact::resolve(Node &node, double dt, bool decided)
     }
 
   for (int p = node.first; p < node.last; p++)
-    pairs[p].normal = pairs[p].tangential[0] = pairs[p].tangential[1] = pairs[p].tangential[2] = 0.0;
+    pairs[p].normal = pairs[p].tangential[0] = pairs[p].tangential[1] = pairs[p].tangential[2] =
+        0.0;
   for (int it = 0; it < (bodies == 2 ? 1 : MAX_ITERATIONS); it++) {
     double largest = 0.0;
     for (int p = node.first; p < node.last; p++) {

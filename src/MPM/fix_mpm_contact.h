@@ -53,20 +53,20 @@ class FixMPMContact : public Fix, public MPMNodeAction {
   enum Normal { MASS, VOLUME, COLINEAR };
   enum State : char { OPEN, SLIDING, STUCK };
 
-  struct Common {    // a block of nodes that several fields have
+  struct Common {            // a block of nodes that several fields have
     int slot[MAX_FIELDS];    // -1: the field does not have it
     uint64_t canonical, owned;
   };
-  struct Pair {    // two bodies at one node
-    int a, b;          // places in fields
-    double *ra, *rb;   // node records
-    double n[3];       // unit normal from a to b
-    double area;       // of the interface at the node
-    double fade;       // share of the adhesive strength that is left at this gap
+  struct Pair {         // two bodies at one node
+    int a, b;           // places in fields
+    double *ra, *rb;    // node records
+    double n[3];        // unit normal from a to b
+    double area;        // of the interface at the node
+    double fade;        // share of the adhesive strength that is left at this gap
     State state;
     double normal, tangential[3];    // impulses on b so far, along n and in the plane
   };
-  struct Node {    // a node where bodies are in contact
+  struct Node {         // a node where bodies are in contact
     int first, last;    // range in pairs
     bool owned;
     double *record[MAX_FIELDS];    // null: the body is not here
@@ -82,10 +82,11 @@ class FixMPMContact : public Fix, public MPMNodeAction {
   double full;    // with gap: volume share of a node at which bodies touch
 
   std::vector<FixMPM *> fields;
-  std::vector<Blocks> reach;    // [field] blocks in reach of its points, canonical
+  std::vector<Blocks> reach;                 // [field] blocks in reach of its points, canonical
   std::vector<std::array<int, 6>> extent;    // [field] their range over all ranks
   std::vector<Common> common;
-  std::vector<std::vector<char>> near;    // [field][slot] a block that another body may share
+  std::vector<std::vector<char>> near;     // [field][slot] a block where bodies share nodes
+  std::vector<std::vector<int>> images;    // [field] blocks with periodic images
   bool lists_valid, may_touch;
 
   std::vector<std::vector<double>> gradient;    // [field] of the volume (or mass) at the nodes
@@ -101,6 +102,7 @@ class FixMPMContact : public Fix, public MPMNodeAction {
   int index_of(const FixMPM &) const;
   int pair_index(int a, int b) const;
   void list_common_blocks();
+  void mark_near(int k, int slot);
   bool map_bodies();
   void find_contacts();
   bool make_pair(const Common &, int n, int a, int b, double volume_share, Pair &);

@@ -353,14 +353,15 @@ void FixMPM::map_to_nodes(P2G p2g)
 }
 
 /* ----------------------------------------------------------------------
-   a sum over points at the nodes of some blocks, in nodes that are not those of the step
+   a sum over points at the nodes of some blocks, in nodes that are not those of the step.
+   weigh(first, last) sets what the kernel reads of these points
 ------------------------------------------------------------------------- */
 
+template <class Weigh>
 void FixMPM::map_some(const PointRows &r, const TransferStep &s, P2G p2g,
-                      const std::vector<char> &near, std::vector<double> &nodes, int lane,
-                      int nlane)
+                      const std::vector<char> &near, int lane, int nlane, const Weigh &weigh)
 {
-  nodes.assign(grid->nnodes() * kernel.nreal, 0.0);
+  nodes_apart.assign(grid->nnodes() * kernel.nreal, 0.0);
   for (auto &a : active) {
     const auto &block = grid->blocks[a.slot];
     bool wanted = false;
@@ -368,33 +369,38 @@ void FixMPM::map_some(const PointRows &r, const TransferStep &s, P2G p2g,
     if (!wanted) continue;
     int base[3], box[6] = {127, 127, 127, -127, -127, -127};
     for (int d = 0; d < 3; d++) base[d] = grid->side * block.b[d] - 1;
-    for (int k = a.first_run; k < a.last_run; k++)
+    for (int k = a.first_run; k < a.last_run; k++) {
+      for (int i = runs[k].first; i < runs[k].last; i++) weigh(i);
       p2g(r, s, runs[k].first, runs[k].last, base, tile, box);
-    kernel.flush(tile, nodes.data(), block.slot, box);
+    }
+    kernel.flush(tile, nodes_apart.data(), block.slot, box);
   }
-  grid->fold_aliases(nodes.data(), kernel.nreal, lane, nlane);
-  halo->sum(nodes.data(), kernel.nreal, lane, nlane);
+  grid->fold_aliases(nodes_apart.data(), kernel.nreal, lane, nlane);
+  halo->sum(nodes_apart.data(), kernel.nreal, lane, nlane);
 }
 
 /* ----------------------------------------------------------------------
-   the internal force of a stress -I with weights in place of volumes
+   the internal force of the Cauchy stress -I is the gradient of the volume
 ------------------------------------------------------------------------- */
 
 void FixMPM::map_gradient(Content content, const std::vector<char> &near,
                           std::vector<double> &gradient)
 {
-  minus_identity.resize(6 * (std::size_t) atom->nlocal);
-  for (std::size_t i = 0; i < minus_identity.size(); i++) minus_identity[i] = i % 6 < 3 ? -1.0 : 0.0;
+  rows_apart.resize(6 * (std::size_t) atom->nmax);
   PointRows r = rows();
-  r.stress = minus_identity.data();
-  if (content == OF_MASS) r.vol = atom->rmass;
+  r.tau = rows_apart.data();
   TransferStep s = step_data();
   s.dt = 1.0;
   s.force_scale = 0.0;
   s.stress_scale = 1.0;
 
   const int lane = kernel.nreal == 8 ? 4 : 0;
-  map_some(r, s, kernel.p2g_force, near, nodes_apart, lane, 3);
+  map_some(r, s, kernel.p2g_force, near, lane, 3, [&](int i) {
+    double *const tau = r.tau + 6 * (std::size_t) i;
+    const double weight =
+        content == OF_MASS ? atom->rmass[i] / atom->vfrac[i] : points->jacobian(i);
+    for (int k = 0; k < 6; k++) tau[k] = k < 3 ? -weight : 0.0;
+  });
   gradient.resize(3 * grid->nnodes());
   for (int64_t n = 0; n < grid->nnodes(); n++)
     for (int d = 0; d < 3; d++) gradient[3 * n + d] = nodes_apart[n * kernel.nreal + lane + d];
@@ -404,11 +410,12 @@ void FixMPM::map_gradient(Content content, const std::vector<char> &near,
 
 void FixMPM::map_volume(const std::vector<char> &near, std::vector<double> &share)
 {
+  rows_apart.resize(6 * (std::size_t) atom->nmax);
   PointRows r = rows();
-  r.mass = points->vol;
-  map_some(r, step_data(), kernel.p2g_momentum, near, nodes_apart, 3, 1);
-  const double inverse = 1.0 / (lattice.dim == 3 ? lattice.h * lattice.h * lattice.h :
-                                                   lattice.h * lattice.h);
+  r.mass = rows_apart.data();
+  map_some(r, step_data(), kernel.p2g_momentum, near, 3, 1,
+           [&](int i) { rows_apart[i] = atom->vfrac[i] * points->jacobian(i); });
+  const double h = lattice.h, inverse = 1.0 / (lattice.dim == 3 ? h * h * h : h * h);
   share.resize(grid->nnodes());
   for (int64_t n = 0; n < grid->nnodes(); n++)
     share[n] = inverse * nodes_apart[n * kernel.nreal + 3];

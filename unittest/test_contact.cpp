@@ -1,0 +1,440 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// labels: physics mpi input restart
+// mpi: 1 3
+// timeout: 300
+
+// Contact between bodies on one lattice.
+
+#include "mpm_lammps.h"
+
+#include "gtest/gtest.h"
+
+#include <cmath>
+
+using namespace MPM_TEST;
+using Lammps = MPM_TEST::Run;    // tests have a function Run
+
+// ---------------------------------------------------------------------- head-on impact of two bars
+
+/** Bars of length 1 at a distance of 2.5 node spacings, each with speed 0.05; c = 10. */
+static const char *const bars = R"(
+units si
+dimension 2
+boundary f p p
+atom_style mpm
+region box block -0.3 2.6 0 0.08 -0.05 0.05
+create_box 2 box
+region b1 block 0 1 0 0.08 -0.05 0.05
+region b2 block 1.05 2.05 0 0.08 -0.05 0.05
+group one type 1
+group two type 2
+fix F1 one mpm 0.02 OPTIONS
+fix F2 two mpm 0.02 OPTIONS
+create_points 1 region b1 spacing 0.01
+create_points 2 region b2 spacing 0.01
+group one type 1
+group two type 2
+fix m1 one mpm/material density 1 linear 100 0
+fix m2 two mpm/material density RHO2 linear E2 0
+velocity one set 0.05 0 0
+velocity two set -0.05 0 0
+fix c all mpm/contact F1 F2 CONTACT
+timestep 2e-4
+compute e all mpm/energy
+variable gap equal (bound(two,xmin)-bound(one,xmax)-0.01)/0.02
+variable v1 equal vcm(one,x)
+variable v2 equal vcm(two,x)
+variable p equal v_v1*mass(one)+v_v2*mass(two)
+thermo 100000
+)";
+
+static std::string two_bars(const std::string &options, const std::string &contact,
+                            const std::string &rho2 = "1", const std::string &E2 = "100")
+{
+  std::string text = replaced(bars, "OPTIONS", options);
+  text = replaced(replaced(text, "RHO2", rho2), "E2", E2);
+  return replaced(text, "CONTACT", contact);
+}
+
+// A3(a): interface stress rho c v, contact for 2 L/c, rebound with the same speed; momentum exact
+TEST(Contact, EqualBars)
+{
+  for (const char *options : {"transfer flip 1.0 scheme musl", "transfer apic",
+                              "shape cubic transfer flip 1.0"}) {
+    SCOPED_TRACE(options);
+    Lammps run;
+    run.commands(two_bars(options, ""));
+    double first = -1.0, last = 0.0, mean = 0.0, worst = 0.0, touch = 0.0;
+    int n = 0;
+    for (int k = 0; k < 100; k++) {
+      run.commands("run 50 post no\n");
+      const double t = run.evaluate("time"), f = run.evaluate("f_c[1][1]") / 0.08;
+      worst = std::max(worst, std::fabs(run.evaluate("v_p")));
+      if (f > 0.05) {
+        if (first < 0.0) {
+          first = t;
+          touch = run.evaluate("v_gap");
+        }
+        last = t;
+        if (t > 0.53 && t < 0.67) {
+          mean += f;
+          n++;
+        }
+      }
+    }
+    EXPECT_LT(worst, 1e-13 * 0.08 * 0.05);
+    EXPECT_NEAR(first, 0.5, 0.011);
+    EXPECT_LT(std::fabs(touch), 0.05);         // contact begins where the bars touch
+    EXPECT_NEAR(last - first, 0.2, 0.025);
+    EXPECT_NEAR(mean / n, 0.5, 0.02 * 0.5);
+    const double speed = options == std::string("transfer apic") ? 0.042 : 0.046;
+    EXPECT_LT(run.evaluate("v_v1"), -speed);
+    EXPECT_NEAR(run.evaluate("v_v1"), -run.evaluate("v_v2"), 1e-13);
+    EXPECT_GT(run.evaluate("v_gap"), 1.0);     // they let go of each other
+    EXPECT_EQ(run.evaluate("f_c[1][4]"), 0.0);
+  }
+}
+
+// without the gap rule bodies feel each other more than a node spacing apart
+TEST(Contact, WithoutTheGapRuleContactIsEarly)
+{
+  Lammps run;
+  run.commands(two_bars("transfer flip 1.0 scheme musl", "gap no"));
+  double touch = 0.0;
+  for (int k = 0; k < 150 && touch == 0.0; k++) {
+    run.commands("run 20 post no\n");
+    if (run.evaluate("f_c[1][1]") / 0.08 > 0.05) touch = run.evaluate("v_gap");
+  }
+  EXPECT_GT(touch, 1.0);
+  EXPECT_LT(touch, 2.5);
+}
+
+// A3(c): Z = 10 and 40: stress Z1 Z2/(Z1 + Z2) (v1 - v2), interface velocity (Z1 v1 + Z2 v2)/(Z1 + Z2)
+TEST(Contact, DifferentImpedances)
+{
+  Lammps run;
+  run.commands(two_bars("transfer flip 1.0 scheme musl", "", "4", "400"));
+  double mean = 0.0;
+  int n = 0;
+  for (int k = 0; k < 66; k++) {
+    run.commands("run 50 post no\n");
+    const double t = run.evaluate("time");
+    if (t > 0.54 && t < 0.66) {
+      mean += run.evaluate("f_c[1][1]") / 0.08;
+      n++;
+    }
+  }
+  ASSERT_GT(n, 5);
+  EXPECT_NEAR(mean / n, 10.0 * 40.0 / 50.0 * 0.1, 0.02 * 0.8);
+}
+
+// ---------------------------------------------------------------------- friction
+
+/** A block or a disk on a plane, gravity tilted by 30 degrees; F2 of the literature. */
+static const char *const incline = R"(
+units si
+dimension 2
+boundary f f p
+atom_style mpm
+region box block 0 3 0 2 -0.05 0.05
+create_box 2 box
+region plane block 0 3 0 0.5 -0.05 0.05
+region body BODY
+group plane type 1
+group body type 2
+fix F1 plane mpm SPACING transfer TRANSFER
+fix F2 body mpm SPACING transfer TRANSFER
+create_points 1 region plane ppc 2
+create_points 2 region body ppc 2
+group plane type 1
+group body type 2
+fix m1 plane mpm/material density 1000 neohookean 4.2e7 0.4
+fix m2 body mpm/material density 1000 neohookean 4.2e6 0.4
+fix floor all mpm/boundary ylo stick field F1
+fix sides all mpm/boundary xlo xhi slip field F1
+fix c all mpm/contact F1 F2 law coulomb FRICTION
+fix g body gravity 9.81 vector 0.5 -0.8660254037844386 0
+fix dt all mpm/dt 0.5
+compute e all mpm/energy
+variable x equal xcm(body,x)
+variable v equal vcm(body,x)
+thermo 100000
+)";
+
+static std::string on_incline(const std::string &body, const std::string &spacing,
+                              const std::string &transfer, double mu)
+{
+  std::string text = replaced(replaced(incline, "BODY", body), "SPACING", spacing);
+  return replaced(replaced(text, "TRANSFER", transfer), "FRICTION", std::to_string(mu));
+}
+
+TEST(Friction, BlockSlidesOrSticks)
+{
+  const double g = 9.81, sine = 0.5, cosine = std::sqrt(0.75);
+  for (const char *transfer : {"apic", "flip 1.0"})
+    for (const double mu : {0.0, 0.1, 0.3, 0.7}) {
+      SCOPED_TRACE(std::string(transfer) + " " + std::to_string(mu));
+      Lammps run;
+      run.commands(on_incline("block 0.5 1.5 0.5 1.0 -0.05 0.05", "0.1", transfer, mu));
+      run.commands("run 750\n");
+      const double before = run.evaluate("v_x");
+      run.commands("run 750\n");
+      const double t = run.evaluate("time"), x = run.evaluate("v_x"), v = run.evaluate("v_v");
+      const double a = std::max(0.0, g * (sine - mu * cosine));
+      if (a > 0.0) {
+        EXPECT_NEAR(x - 1.0, 0.5 * a * t * t, 0.02 * 0.5 * a * t * t + 0.002);    // and settling
+        EXPECT_NEAR(v, a * t, 0.02 * a * t);
+      } else {
+        EXPECT_NEAR(x, before, 5e-4);
+        EXPECT_NEAR(v, 0.0, 0.01);
+      }
+      // the work of friction, and the entry of the ledger, is friction times the way
+      const double normal = 1000 * 0.5 * g * cosine, way = x - 1.0;
+      if (a > 0.0) EXPECT_NEAR(run.evaluate("f_c"), -mu * normal * way, 0.05 * normal * way);
+    }
+}
+
+TEST(Friction, DiskRollsOrSlips)
+{
+  const double g = 9.81, sine = 0.5, cosine = std::sqrt(0.75);
+  for (const double mu : {0.1, 0.3}) {
+    SCOPED_TRACE(mu);
+    Lammps run;
+    run.commands(on_incline("cylinder z 0.7 1.0 0.5 -0.05 0.05", "0.05", "apic", mu));
+    run.commands("run 4000\n");
+    const double t = run.evaluate("time");
+    const bool rolls = std::tan(M_PI / 6) <= 3 * mu;
+    const double a = rolls ? 2.0 / 3.0 * g * sine : g * (sine - mu * cosine);
+    EXPECT_NEAR((run.evaluate("v_x") - 0.7) / (0.5 * a * t * t), 1.0, 0.02);
+  }
+}
+
+// ---------------------------------------------------------------------- three bodies at a node
+
+static const char *const corner = R"(
+units lj
+dimension 2
+boundary p p p
+atom_style mpm
+region box block 0 16 0 16 -0.5 0.5
+create_box 3 box
+region b1 block 2 8 2 8 -0.5 0.5
+region b2 block 8 14 2 8 -0.5 0.5
+region b3 block 5 11 8 14 -0.5 0.5
+group one type 1
+group two type 2
+group three type 3
+fix F1 one mpm 1.0
+fix F2 two mpm 1.0
+fix F3 three mpm 1.0
+create_points 1 region b1 ppc 2
+create_points 2 region b2 ppc 2
+create_points 3 region b3 ppc 2
+group one type 1
+group two type 2
+group three type 3
+fix m all mpm/material density 1 neohookean 100 0.3
+velocity one set 0.3 0.1 0
+velocity two set -0.2 0.2 0
+velocity three set 0.1 -0.5 0
+fix c all mpm/contact FIELDS law coulomb 0.4
+timestep 0.01
+variable px equal vcm(all,x)*mass(all)
+variable py equal vcm(all,y)*mass(all)
+thermo 1000
+)";
+
+TEST(ManyBodies, OrderOfNamesDoesNotMatter)
+{
+  std::vector<Lammps::State> reference;
+  for (const char *names : {"F1 F2 F3", "F3 F1 F2", "F2 F3 F1"}) {
+    Lammps run;
+    run.commands(replaced(corner, "FIELDS", names));
+    run.commands("run 0\n");
+    const double px = run.evaluate("v_px"), py = run.evaluate("v_py");
+    run.commands("run 200\n");
+    EXPECT_NEAR(run.evaluate("v_px"), px, 1e-11);
+    EXPECT_NEAR(run.evaluate("v_py"), py, 1e-11);
+    const auto state = run.gather();
+    if (reference.empty()) reference = state;
+    for (std::size_t i = 0; i < state.size(); i++)
+      for (int d = 0; d < 2; d++) {
+        EXPECT_NEAR(state[i].x[d], reference[i].x[d], 1e-10);
+        EXPECT_NEAR(state[i].v[d], reference[i].v[d], 1e-10);
+      }
+  }
+}
+
+// ---------------------------------------------------------------------- ranks, periodic faces, restart
+
+static const char *const disks = R"(
+units lj
+dimension 2
+boundary p p p
+atom_style mpm
+neighbor 0.3 bin
+region box block 0 24 0 12 -0.5 0.5
+create_box 2 box
+region one cylinder z 3.1 6.2 2.5 INF INF
+region two cylinder z 20.9 5.3 2.5 INF INF
+group one type 1
+group two type 2
+fix F1 one mpm 0.5
+fix F2 two mpm 0.5
+create_points 1 region one ppc 2
+create_points 2 region two ppc 2
+group one type 1
+group two type 2
+fix m all mpm/material density 1 neohookean 50 0.3
+fix c all mpm/contact F1 F2 law coulomb 0.3
+velocity one set -0.5 0.02 0
+velocity two set 0.5 0 0
+timestep 0.01
+thermo 1000
+)";
+
+TEST(Parallel, RanksAgreeAcrossAPeriodicFace)
+{
+  MPI_Comm self;
+  int me;
+  MPI_Comm_rank(MPI_COMM_WORLD, &me);
+  MPI_Comm_split(MPI_COMM_WORLD, me, 0, &self);
+  std::vector<Lammps::State> one, all;
+  double slowed = 0.0;
+  {
+    Lammps run(self);
+    run.commands(disks);
+    run.commands("run 300\n");
+    one = run.gather();
+    run.commands("variable v equal vcm(one,x)\n");
+    slowed = run.evaluate("v_v");
+  }
+  {
+    Lammps run;
+    run.commands(disks);
+    run.commands("run 300\n");
+    all = run.gather();
+  }
+  EXPECT_GT(slowed, -0.25);    // they have met through the face
+  ASSERT_EQ(one.size(), all.size());
+  for (std::size_t i = 0; i < one.size(); i++)
+    for (int d = 0; d < 2; d++) {
+      EXPECT_NEAR(one[i].x[d], all[i].x[d], 1e-11);
+      EXPECT_NEAR(one[i].v[d], all[i].v[d], 1e-11);
+    }
+  MPI_Comm_free(&self);
+}
+
+TEST(Restart, ContinuesExactly)
+{
+  std::vector<Lammps::State> straight, again;
+  double work[2];
+  {
+    Lammps run;
+    run.commands(disks);
+    run.commands("run 120\nwrite_restart contact.restart\nrun 120\n");
+    straight = run.gather();
+    work[0] = run.evaluate("f_c");
+  }
+  {
+    Lammps run;
+    run.commands("read_restart contact.restart\nneighbor 0.3 bin\n");
+    const std::string text = disks;
+    run.commands("fix F1 one mpm 0.5\nfix F2 two mpm 0.5\n"
+                 "fix m all mpm/material density 1 neohookean 50 0.3\n"
+                 "fix c all mpm/contact F1 F2 law coulomb 0.3\nthermo 1000\nrun 120\n");
+    again = run.gather();
+    work[1] = run.evaluate("f_c");
+  }
+  ASSERT_EQ(straight.size(), again.size());
+  for (std::size_t i = 0; i < straight.size(); i++)
+    for (int d = 0; d < 2; d++) {
+      EXPECT_EQ(straight[i].x[d], again[i].x[d]);
+      EXPECT_EQ(straight[i].v[d], again[i].v[d]);
+    }
+  EXPECT_NE(work[0], 0.0);
+  EXPECT_NEAR(work[0], work[1], 1e-12 * std::fabs(work[0]));
+}
+
+// ---------------------------------------------------------------------- adhesion
+
+// a bar is drawn off another one that is held: the pull reaches strength times area, the work is
+// the work of release times area
+TEST(Adhesion, StrengthAndWork)
+{
+  Lammps run;
+  std::string text = two_bars("transfer apic", "law adhesive 0.02 1.0 2e-4 gap yes");
+  text = replaced(text, "b2 block 1.05 2.05", "b2 block 1.0 2.0");
+  text = replaced(text, "velocity one set 0.05 0 0", "region left block -1 0.1 0 0.08 -0.05 0.05\n"
+                        "fix hold all mpm/boundary region left stick field F1");
+  text = replaced(text, "velocity two set -0.05 0 0", "region right block 1.9 3 0 0.08 -0.05 0.05\n"
+                        "fix pull all mpm/boundary region right stick velocity 0.02 0 0 field F2\n"
+                        "velocity two set 0.02 0 0");
+  run.commands(text);
+  double largest = 0.0, after = 0.0, work = 0.0;
+  for (int k = 0; k < 300; k++) {
+    run.commands("run 20 post no\n");
+    const double f = -run.evaluate("f_c[1][1]") / 0.08;
+    work += f * 20 * 2e-4 * 0.02;
+    largest = std::max(largest, f);
+    after = f;
+  }
+  EXPECT_NEAR(largest, 0.02, 0.05 * 0.02);
+  EXPECT_EQ(after, 0.0);
+  EXPECT_NEAR(work, 2e-4, 0.15 * 2e-4);
+}
+
+// ---------------------------------------------------------------------- input that cannot work
+
+TEST(BadInput, IsRefused)
+{
+  const std::string scene = replaced(disks, "fix c all mpm/contact F1 F2 law coulomb 0.3\n", "");
+  const struct {
+    const char *line, *message;
+  } cases[] = {
+      {"fix c all mpm/contact F1", "needs the IDs of two or more"},
+      {"fix c all mpm/contact F1 F1", "named twice"},
+      {"fix c all mpm/contact F1 F9", "F9 is not the ID of a fix mpm"},
+      {"fix c all mpm/contact F1 m", "is not the ID of a fix mpm"},
+      {"fix c one mpm/contact F1 F2", "use group all"},
+      {"fix c all mpm/contact F1 F2 law glue", "Unknown fix mpm/contact law glue"},
+      {"fix c all mpm/contact F1 F2 law", "Illegal fix mpm/contact law"},
+      {"fix c all mpm/contact F1 F2 law coulomb", "Illegal fix mpm/contact law"},
+      {"fix c all mpm/contact F1 F2 law coulomb -0.1", "must not be below 0"},
+      {"fix c all mpm/contact F1 F2 law coulomb 0.3 0.2", "must not be below 0.3"},
+      {"fix c all mpm/contact F1 F2 law adhesive 1 1 0", "positive normal strength"},
+      {"fix c all mpm/contact F1 F2 law adhesive 1 1 0.1 gap no", "how far bodies are apart"},
+      {"fix c all mpm/contact F1 F2 law adhesive 1 1 0.1 normal mass", "area of the interface"},
+      {"fix c all mpm/contact F1 F2 law adhesive 1 1 10", "more than the node spacing"},
+      {"fix c all mpm/contact F1 F2 normal up", "Unknown fix mpm/contact normal up"},
+      {"fix c all mpm/contact F1 F2 gap maybe", "must be yes or no"},
+      {"fix c all mpm/contact F1 F2 gap yes 1.5", "above one"},
+      {"fix c all mpm/contact F1 F2 friction 0.3", "friction is not the ID"},
+      {"fix c all mpm/contact F1 F2 law stick fast", "Unknown fix mpm/contact keyword: fast"},
+      {"fix c all mpm/contact F1 F2\nfix d all mpm/contact F2 F1", "counted twice"},
+      {"unfix F2\nfix F2 two mpm 0.25\nfix c all mpm/contact F1 F2", "must have the same lattice"},
+      {"unfix F2\nfix F2 two mpm 0.5 shape cubic\nfix c all mpm/contact F1 F2",
+       "must have the same lattice"},
+      {"unfix F1\nunfix F2\nfix F1 one mpm 0.5 scheme usf transfer flip 1.0\n"
+       "fix F2 two mpm 0.5 scheme usf transfer flip 1.0\nfix c all mpm/contact F1 F2",
+       "cannot be used with scheme usf"},
+  };
+  for (const auto &bad : cases) {
+    SCOPED_TRACE(bad.line);
+    Lammps run;
+    run.commands(scene);
+    try {
+      run.commands(std::string(bad.line) + "\nrun 1\n");
+      ADD_FAILURE() << "no error";
+    } catch (const std::exception &e) {
+      EXPECT_NE(std::string(e.what()).find(bad.message), std::string::npos) << e.what();
+    }
+  }
+}
