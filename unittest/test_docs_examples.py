@@ -127,10 +127,10 @@ def scene_for(lines):
         named = [word for word in text.split() if word in BODIES]
         grid = "".join("group %s type %d\nfix %s %s mpm 0.01\n" % (name, k + 1, name, name)
                        for k, name in enumerate(named))
-        for k in range(1, len(named)):
+        for k in range(len(named)):
             before += ("region body%d block 0.06 0.08 %g %g 0.06 0.08\n"
                        "create_points %d region body%d ppc 2\ngroup %s type %d\n" %
-                       (k, 0.03 * k - 0.02, 0.03 * k, k + 1, k, named[k], k + 1))
+                       (k, 0.03 * k + 0.01, 0.03 * k + 0.03, k + 1, k, named[k], k + 1))
     material = "" if "mpm/material" in text or own_field and grid == "" else MATERIAL
     points = "" if makes_points else POINTS + "".join("group %s type 1\n" % g for g in GROUPS)
     scene = head + grid + points + material + before
