@@ -32,12 +32,29 @@ struct Sample {
     {"j2_shock",
      "density 8930 eos shock 3940 1.49 1.96 strength j2 43e9 157e6 hardening linear 425e6"},
     {"j2_power", "density 8940 eos linear 1e11 strength j2 44e9 65e6 hardening power 356e6 0.37"},
+    {"j2_voce", "density 8940 eos linear 1e11 strength j2 44e9 65e6 hardening voce 2e8 15 1e8"},
+    {"j2_table",
+     "density 8940 eos linear 1e11 strength j2 44e9 65e6 point 0.01 1e8 point 0.1 2e8 point 1 4e8"},
+    {"j2_kinematic",
+     "density 8940 eos linear 1e11 strength j2 44e9 65e6 hardening linear 1e8 kinematic 2e10 100"},
+    {"j2_cowper_symonds",
+     "density 8940 eos linear 1e11 strength j2 44e9 65e6 hardening power 356e6 0.37 "
+     "rate cowper/symonds 40 5"},
     {"johnson_cook",
      "density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 0.168 "
      "0.0089 1 1.1 1540 20 thermal adiabatic 460 20 0.9"},
     {"johnson_cook_cold",
      "density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 "
      "0.168 0.0089 1"},
+    {"zerilli_armstrong_bcc",
+     "density 7870 eos linear 165e9 strength zerilli/armstrong 80e9 65e6 form bcc 1033e6 0.00698 "
+     "0.000415 266e6 0.289 thermal adiabatic 450 300 0.9"},
+    {"zerilli_armstrong_fcc",
+     "density 8930 eos linear 137e9 strength zerilli/armstrong 47e9 65e6 form fcc 890e6 0.0028 "
+     "0.000115 melt 1356 thermal adiabatic 385 300 0.9"},
+    {"steinberg",
+     "density 8930 eos linear 137e9 strength steinberg 47.7e9 0.12e9 36 0.45 0.64e9 2.83e-11 "
+     "3.77e-4 melt 1790 1.5 2.02 thermal adiabatic 385 300 0.9 gruneisen 2.02"},
     {"tait", "density 1000 eos tait 2.2e9 7"},
     {"water", "density 1000 eos tait 2.2e9 7 cutoff -1e5 viscosity newtonian 1e-3"},
     {"drucker_prager", "density 1600 drucker/prager 1e8 0.3 30 dilatancy 5"},

@@ -148,6 +148,18 @@ inline const Sample samples[] = {
     {"johnson/cook cold",
      "density 8940 eos shock 3933 1.5 2 strength johnson/cook 44e9 65e6 356e6 "
      "0.37 0.013 1e-3"},
+    {"zerilli/armstrong bcc",
+     "density 7870 eos linear 165e9 strength zerilli/armstrong 80e9 65e6 form bcc 1033e6 0.00698 "
+     "0.000415 266e6 0.289 thermal adiabatic 450 300 0.9"},
+    {"zerilli/armstrong fcc",
+     "density 8930 eos shock 3940 1.49 1.96 strength zerilli/armstrong 47e9 65e6 form fcc 890e6 "
+     "0.0028 0.000115 melt 1356 thermal adiabatic 385 300 0.9"},
+    {"steinberg",
+     "density 8930 eos shock 3940 1.489 2.02 strength steinberg 47.7e9 0.12e9 36 0.45 0.64e9 "
+     "2.83e-11 3.77e-4 melt 1790 1.5 2.02 thermal adiabatic 385 300 0.9 gruneisen 2.02"},
+    {"steinberg cold",
+     "density 8930 eos linear 137e9 strength steinberg 47.7e9 0.12e9 36 0.45 0.64e9 2.83e-11 0 "
+     "prestrain 0.01"},
     {"tait", "density 1000 eos tait 2.2e9 7 cutoff -1e5 viscosity newtonian 1e-3"},
     {"fluid", "density 1000 eos linear 1e6 viscosity newtonian 1 viscosity artificial 1.5 0.06"},
     {"drucker/prager", "density 1600 drucker/prager 1e6 0.3 30"},

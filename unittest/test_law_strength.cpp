@@ -89,31 +89,36 @@ double table(double e)
   return S[k] + (S[k + 1] - S[k]) * (e - E[k]) / (E[k + 1] - E[k]);
 }
 
-const HardeningCase hardenings[] = {{"",
-                                     [](double) {
-                                       return SIGMAY;
-                                     }},
-                                    {"hardening linear 2e9",
-                                     [](double e) {
-                                       return SIGMAY + 2e9 * e;
-                                     }},
-                                    {"hardening power 5e8 0.3",
-                                     [](double e) {
-                                       return SIGMAY + 5e8 * std::pow(e, 0.3);
-                                     }},
-                                    {"hardening voce 2e8 15 1e8",
-                                     [](double e) {
-                                       return SIGMAY + 2e8 * (1 - std::exp(-15 * e)) + 1e8 * e;
-                                     }},
-                                    {"hardening voce 0 15 1e8",
-                                     [](double e) {
-                                       return SIGMAY + 1e8 * e;
-                                     }},
-                                    {"hardening swift 0.002 0.2",
-                                     [](double e) {
-                                       return SIGMAY * std::pow(1 + e / 0.002, 0.2);
-                                     }},
-                                    {"point 0.01 420e6 point 0.1 500e6 point 0.3 480e6", table}};
+const HardeningCase hardenings[] = {
+    {"",
+     [](double) {
+       return SIGMAY;
+     }},
+    {"hardening linear 2e9",
+     [](double e) {
+       return SIGMAY + 2e9 * e;
+     }},
+    {"hardening power 5e8 0.3",
+     [](double e) {
+       return SIGMAY + 5e8 * std::pow(e, 0.3);
+     }},
+    {"hardening voce 2e8 15 1e8",
+     [](double e) {
+       return SIGMAY + 2e8 * (1 - std::exp(-15 * e)) + 1e8 * e;
+     }},
+    {"hardening voce 0 15 1e8",
+     [](double e) {
+       return SIGMAY + 1e8 * e;
+     }},
+    {"hardening swift 0.002 0.2",
+     [](double e) {
+       return SIGMAY * std::pow(1 + e / 0.002, 0.2);
+     }},
+    {"point 0.01 420e6 point 0.1 500e6 point 0.3 480e6", table},
+    {"point 0.01 420e6 point 0.02 428888888.88888889 point 0.03 437777777.77777778 "
+     "point 0.04 446666666.66666667 point 0.05 455555555.55555556 point 0.06 464444444.44444444 "
+     "point 0.07 473333333.33333333 point 0.08 482222222.22222222 point 0.1 500e6 point 0.3 480e6",
+     table}};
 
 TEST(J2Hardening, ReturnEndsOnTheYieldSurface)
 {
@@ -505,6 +510,271 @@ TEST(J2Rate, RateIndependentLimit)
       EXPECT_NEAR(p.history(0), q.history(0), 1e-12);
     }
   }
+}
+
+/* ---------------------------------------------------------------------- Zerilli-Armstrong */
+
+struct ZerilliArmstrong {
+  const char *form;
+  double C0, C1, C2, C3, C4, C5, N;
+  double operator()(double e, double rate, double T) const
+  {
+    const double x = T > 0 ? T * (C4 * std::log(rate) - C3) : 0.0;
+    return C0 + (C1 + C2 * std::sqrt(e)) * std::exp(std::min(x, 0.0)) + C5 * std::pow(e, N);
+  }
+  std::string text(double cp, double T0, double chi) const
+  {
+    const std::string law = "density 7870 eos linear 165e9 strength zerilli/armstrong 80e9";
+    const std::string end = text_of(" thermal adiabatic", {cp, T0, chi});
+    if (C1 > 0) return text_of(law, {C0}) + text_of(" form bcc", {C1, C3, C4, C5, N}) + end;
+    return text_of(law, {C0}) + text_of(" form fcc", {C2, C3, C4}) + end;
+  }
+};
+const ZerilliArmstrong iron = {"bcc", 65e6, 1033e6, 0, 0.00698, 0.000415, 266e6, 0.289};
+const ZerilliArmstrong copper = {"fcc", 65e6, 0, 890e6, 0.0028, 0.000115, 0, 1};
+
+// one step that must end at a known plastic strain, rate and temperature
+TEST(ZerilliArmstrongLaw, FlowStress)
+{
+  const double e[] = {0.1, 0.1, 0.3, 0.3}, rate[] = {1, 1e3, 1e4, 1e4}, T[] = {300, 300, 300, 600};
+  const struct {
+    const ZerilliArmstrong &law;
+    double known[4];    // MPa
+  } sets[] = {{iron, {328.9944, 502.4732, 653.4106, 408.1691}},
+              {copper, {186.5018, 219.1994, 354.1634, 236.5283}}};
+  for (const auto &set : sets)
+    for (int k = 0; k < 4; k++) {
+      const double Y = set.law(e[k], rate[k], T[k]), D = 1e-3;
+      EXPECT_NEAR(Y, set.known[k] * MPa, 1e-3 * MPa);
+      const auto material = make(set.law.text(450, T[k], 0.0));
+      MaterialPoint p(*material);
+      p.batch.history[0][0] = e[k] - D;
+      shear(p, D + Y / (3 * 80e9), D / rate[k]);
+      EXPECT_NEAR(shear_stress(p), Y, 1e-8 * Y);
+      EXPECT_NEAR(p.history(0), e[k], 1e-11);
+    }
+}
+
+TEST(ZerilliArmstrongLaw, ReturnEndsOnTheYieldSurface)
+{
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  for (const auto &law : {iron, copper})
+    for (const double T : {0.0, 1.0, 77.0, 300.0, 1000.0, 4000.0}) {
+      const auto material = make(law.text(450, T, 0.9));
+      for (const double scale : {1e-4, 1e-2, 0.1, 1.0})
+        for (const double rate : {1e-6, 1.0, 1e4, 1e8}) {
+          MaterialPoint p(*material);
+          for (int i = 0; i < 3; i++) {
+            Matrix L;
+            for (double &x : L) x = 0.4 * rate * normal(random);
+            const double dt = scale / rate;
+            p.step(L.data(), dt);
+            ASSERT_TRUE(std::isfinite(p.vonmises()) && std::isfinite(p.history(1)));
+            const double r = p.batch.plastic[0] / dt, Y = law(p.history(0), r, p.history(1));
+            if (r > 0)
+              EXPECT_NEAR(p.vonmises() / Y, 1.0, 1e-10)
+                  << law.form << " T " << T << " strain " << scale << " rate " << rate;
+            EXPECT_GE(p.history(1), T);
+          }
+        }
+    }
+}
+
+// adiabatic shear against the differential equation, first order in dt
+TEST(ZerilliArmstrongLaw, AgainstDifferentialEquation)
+{
+  const double G = 80e9, rate = 1e3, time = 0.3 / rate, chi = 0.9, cp = 450, rho = 7870;
+  const auto flow = [](double q, double e, double T) {
+    const double thermal = q - iron.C0 - iron.C5 * std::pow(e, iron.N);
+    if (thermal <= 0) return 0.0;
+    return std::exp((std::log(thermal / iron.C1) / T + iron.C3) / iron.C4);
+  };
+  const State exact = runge_kutta(
+      [&](double, const State &y) {
+        const double r = flow(y[0], std::max(y[1], 0.0), y[2]);
+        return State{3 * G * (rate - r), r, chi * y[0] * r / (rho * cp)};
+      },
+      {0.0, 0.0, 300.0}, time, 200000);
+  const auto material = make(iron.text(cp, 300, chi));
+  double error[3];
+  for (int level = 0; level < 3; level++) {
+    MaterialPoint p(*material);
+    shear(p, 0.3, time, 100 << level);
+    error[level] = std::fabs(shear_stress(p) / exact[0] - 1.0);
+    EXPECT_NEAR(p.history(1) - 300, exact[2] - 300, 0.01 * (exact[2] - 300));
+    EXPECT_NEAR(p.history(0), exact[1], 1e-3 * exact[1]);
+    EXPECT_NEAR(p.work[HEAT], rho * cp * (p.history(1) - 300), 1e-10 * p.work[HEAT]);
+  }
+  EXPECT_LT(error[2], 1e-3);
+  EXPECT_GT(std::log2(error[0] / error[2]), 2 * 0.85);
+}
+
+TEST(ZerilliArmstrongLaw, BadInputIsRefused)
+{
+  for (const char *text : {"", "form bcc 0 1 1 0 1", "form hcp 1"})
+    EXPECT_THROW(make(std::string("density 1 eos linear 1 thermal constant 300 strength "
+                                  "zerilli/armstrong 1 1 ") +
+                      text),
+                 MaterialError)
+        << text;
+  EXPECT_THROW(make("density 1 eos linear 1 strength zerilli/armstrong 1 1 form fcc 1 1 1"),
+               MaterialError);
+}
+
+/* ---------------------------------------------------------------------- Steinberg */
+
+const double SCG_G0 = 47.7e9, SCG_A = 2.83e-11, SCG_B = 3.77e-4;
+const std::string SCG = "density 8930 eos linear 137e9 strength steinberg 47.7e9 0.12e9 36 0.45 "
+                        "0.64e9 2.83e-11 3.77e-4 melt 1790 1.5 2.02 thermal adiabatic 385 300 0 ";
+
+double scg_factor(double P, double J, double T)
+{
+  return std::max(1 + SCG_A * P * std::cbrt(J) - SCG_B * (T - 300), 0.01);
+}
+double scg_yield(double e)
+{
+  return std::min(0.12e9 * std::pow(1 + 36 * e, 0.45), 0.64e9);
+}
+double scg_melt(double J)
+{
+  return 1790 * std::exp(2 * 1.5 * (1 - J)) * std::pow(1 / J, 2 * (2.02 - 1.5 - 1.0 / 3));
+}
+
+// shear at constant volume and temperature: modulus, flow stress and wave speed at any pressure
+TEST(SteinbergLaw, ModulusAndFlowStress)
+{
+  const auto material = make(SCG);
+  for (const double J : {0.12, 0.3, 0.7, 0.95, 1.0, 1.02})
+    for (const double T : {0.0, 300.0, 1000.0, 1500.0}) {
+      SCOPED_TRACE(text_of("J, T", {J, T}));
+      MaterialPoint p(*material);
+      const double a = std::cbrt(J);
+      p.batch.history[2][0] = T;
+      move_to(p, {a, 0, 0, 0, a, 0, 0, 0, a});
+      const double P = p.pressure(), f = scg_factor(P, J, T), G = SCG_G0 * f;
+      EXPECT_NEAR(P, 137e9 * (1 / J - 1), 1e-9 * 137e9);
+      EXPECT_NEAR(p.wave_speed(), std::sqrt((137e9 + 4.0 / 3 * G) / 8930), 1e-9 * p.wave_speed());
+      const Matrix small = {0, 1e-6, 0, 1e-6, 0, 0, 0, 0, 0};
+      MaterialPoint q(p);
+      q.step(small.data(), 1.0);
+      EXPECT_NEAR(q.stress(3), 2e-6 * G / J, 1e-9 * G);
+      for (int i = 0; i < 5; i++) {
+        shear(p, i ? 0.2 : 0.02, 1.0);
+        const double Y = f * scg_yield(p.history(0));
+        EXPECT_NEAR(shear_stress(p), Y, 1e-10 * Y);
+      }
+      EXPECT_EQ(p.history(2), T);    // no heat
+      EXPECT_NEAR(p.stored_energy() - 137e9 * (J - 1 - std::log(J)),
+                  std::pow(J * p.vonmises(), 2) / (6 * G), 1e-6 * 137e9 * 1e-6);
+    }
+  EXPECT_GT(137e9 * (1 / 0.12 - 1), 1e12);    // TPa are reached
+}
+
+TEST(SteinbergLaw, Melting)
+{
+  const auto material = make(SCG);
+  for (const double J : {0.5, 0.8, 1.0}) {
+    const double a = std::cbrt(J), melt = scg_melt(J);
+    EXPECT_GT(melt, J < 1 ? 1791 : 1789);
+    for (const double T : {melt - 0.01, melt + 0.01, 5 * melt}) {
+      MaterialPoint p(*material);
+      move_to(p, {a, 0, 0, 0, a, 0, 0, 0, a});
+      shear(p, 0.02, 1.0);
+      EXPECT_GT(p.vonmises(), 0.12e9);
+      p.batch.history[2][0] = T;
+      for (int i = 0; i < 3; i++) shear(p, 0.02, 1.0);
+      ASSERT_TRUE(std::isfinite(p.history(0)));
+      if (T < melt)
+        EXPECT_GT(p.vonmises(), 1e6);
+      else
+        EXPECT_LT(p.vonmises(), 1e-3);
+      EXPECT_LT(p.history(0), 1.0);
+    }
+  }
+}
+
+// shock and release with yielding, melting and heat: energy of second order, all finite
+TEST(SteinbergLaw, EnergyOnAPathThroughHighPressure)
+{
+  const auto material =
+      make("density 8930 eos shock 3940 1.489 2.02 strength steinberg 47.7e9 0.12e9 36 0.45 0.64e9 "
+           "2.83e-11 3.77e-4 thermal adiabatic 385 300 0.9 gruneisen 2.02");
+  double error[3], scale = 0;
+  for (int level = 0; level < 3; level++) {
+    MaterialPoint p(*material);
+    const int n = 2000 << level;
+    error[level] = 0;
+    for (int i = 1; i <= n; i++) {
+      const double s = std::sin(M_PI * i / n);
+      move_to(p, {1 - 0.4 * s, 0.3 * s * s, 0, 0, 1, 0, 0, 0, 1 - 0.05 * s});
+      const double energy = p.stored_energy() + p.work[PLASTIC];
+      error[level] = std::max(error[level], std::fabs(energy - p.power));
+      scale = std::max(scale, energy);
+    }
+  }
+  EXPECT_LT(error[2], 1e-6 * scale);
+  EXPECT_GT(std::log2(error[0] / error[2]), 2 * 1.7);
+}
+
+TEST(SteinbergLaw, BadInputIsRefused)
+{
+  const std::string start = "density 1 eos linear 1 strength steinberg ";
+  EXPECT_NO_THROW(make(start + "1 1 1 1 1 0 0"));
+  EXPECT_THROW(make(start + "1 2 1 1 1 0 0"), MaterialError);               // YMAX < Y0
+  EXPECT_THROW(make(start + "1 1 1 1 1 0 1e-3"), MaterialError);            // no temperature
+  EXPECT_THROW(make(start + "1 1 1 1 1 0 0 melt 1 1 1"), MaterialError);    // nor here
+  EXPECT_NO_THROW(make(start + "1 1 1 1 1 0 1e-3 tref 0 thermal constant 300"));
+}
+
+/* ---------------------------------------------------------------------- thermal parts */
+
+TEST(Thermal, PlasticWorkHeats)
+{
+  const double rho = 7800, cp = 460, chi = 0.85;
+  const auto material = make(text_of(J2 + "thermal adiabatic", {cp, 293, chi}));
+  const auto constant = make(J2 + "thermal constant 293");
+  MaterialPoint p(*material), q(*constant);
+  shear(p, 0.5, 1.0, 50);
+  shear(q, 0.5, 1.0, 50);
+  const double e = 0.5 - SIGMAY / (3 * G);
+  EXPECT_NEAR(p.history(1), 293 + chi * SIGMAY * e / (rho * cp), 1e-9 * 293);
+  EXPECT_NEAR(p.work[HEAT], chi * p.work[PLASTIC], 1e-12 * p.work[PLASTIC]);
+  EXPECT_EQ(q.history(1), 293);
+  EXPECT_EQ(q.work[HEAT], q.work[PLASTIC]);
+}
+
+// T = T0 exp(gamma (1 - J)) along an isentrope, in one step or many; small strain:
+// dT = -gamma T0 eps_v, with gamma = 3 alpha K/(rho cp) the elastic cooling -0.570963 K of A7
+TEST(Thermal, IsentropicCompression)
+{
+  const double K = 70e9 / (3 * (1 - 2 * 0.33)), gamma = 3 * 23e-6 * K / (2700 * 900);
+  const auto material = make(text_of("density 2700 eos linear", {K}) +
+                             text_of(" thermal adiabatic 900 293 0.9 gruneisen", {gamma}));
+  MaterialPoint p(*material);
+  move_to(p, {1 + 1e-3, 0, 0, 0, 1, 0, 0, 0, 1});
+  EXPECT_NEAR(p.history(0) - 293, -0.570963, 1e-3);
+  for (const int n : {1, 100})
+    for (const double J : {0.2, 0.7, 1.3, 5.0}) {
+      MaterialPoint q(*material);
+      for (int i = 1; i <= n; i++) move_to(q, {1 + (J - 1) * i / n, 0, 0, 0, 1, 0, 0, 0, 1});
+      const double expected = 293 * std::exp(gamma * (1 - J));
+      EXPECT_NEAR(q.history(0), expected, 1e-12 * 293);
+    }
+}
+
+// all viscous work becomes heat, whatever CHI
+TEST(Thermal, ViscousWorkHeats)
+{
+  const auto material = make("density 1000 eos linear 1e9 viscosity newtonian 1000 "
+                             "thermal adiabatic 4000 300 0.9");
+  MaterialPoint p(*material);
+  const double rate = 1e3, time = 1e-3;
+  const Matrix L = {0, 0.5 * rate, 0, 0.5 * rate, 0, 0, 0, 0, 0};
+  for (int i = 0; i < 10; i++) p.step(L.data(), time / 10);
+  const double heat = 1000 * rate * rate * time;    // mu (2 D12)^2
+  EXPECT_NEAR(p.work[VISCOUS], heat, 1e-9 * heat);
+  EXPECT_NEAR(p.history(0) - 300, heat / (1000 * 4000), 1e-9);
 }
 
 }    // namespace

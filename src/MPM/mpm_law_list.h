@@ -23,6 +23,8 @@
 #include "mpm_strength_elastic.h"
 #include "mpm_strength_j2.h"
 #include "mpm_strength_johnson_cook.h"
+#include "mpm_strength_steinberg.h"
+#include "mpm_strength_zerilli_armstrong.h"
 #include "mpm_thermal.h"
 #include "mpm_viscosity_artificial.h"
 #include "mpm_viscosity_newtonian.h"
@@ -43,7 +45,8 @@ namespace {
   using soil = Family<CLOSED, LawDruckerPrager>;
   using eos = Family<EOS, EosLinear, EosShock, EosTait, EosPolynomial, EosIdealGas, EosStiffenedGas,
                      EosJWL>;
-  using strength = Family<STRENGTH, StrengthElastic, StrengthJ2, StrengthJohnsonCook>;
+  using strength = Family<STRENGTH, StrengthElastic, StrengthJ2, StrengthJohnsonCook,
+                          StrengthSteinberg, StrengthZerilliArmstrong>;
   using viscosity = Family<VISCOSITY, ViscosityNewtonian, ViscosityArtificial, ViscosityBingham,
                            ViscosityHerschelBulkley, ViscosityPower>;
   using damage = Family<DAMAGE>;

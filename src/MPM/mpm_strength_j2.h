@@ -34,9 +34,41 @@ namespace {
     J2_BACK_GAMMA
   };
 
-  /** Flow stress at rest over the plastic strain e; the numbers are the constants of the class. */
-  template <int KIND> struct J2Hardening;
-  enum { HARDENING_POWER, HARDENING_VOCE, HARDENING_TABLE };
+  /** Flow stress at rest over the plastic strain e: kinds, or the size of a table. */
+  enum { HARDENING_POWER, HARDENING_VOCE, SHORT_TABLE = 8, LONG_TABLE = LawParameters::MAX_TERMS };
+
+  /** Straight lines between the points, from SIGMAY at e = 0; constant behind the last one. SIZE:
+   *  room for points, as only loops of fixed length vectorise inside of others. */
+  template <int SIZE> struct J2Hardening {
+    double sigmay;
+    double from[SIZE], length[SIZE], slopes[SIZE];
+
+    explicit J2Hardening(const LawParameters &p) : sigmay(p.value[J2_SIGMAY])
+    {
+      double e = 0.0, y = sigmay;
+      for (int k = 0; k < SIZE; k++) {
+        from[k] = e;
+        length[k] = slopes[k] = 0.0;
+        if (k >= p.nterms) continue;
+        length[k] = p.term[k][0] - e;
+        slopes[k] = (p.term[k][1] - y) / length[k];
+        e = p.term[k][0];
+        y = p.term[k][1];
+      }
+    }
+    MPM_INLINE double operator()(double e, double &slope) const
+    {
+      double y = sigmay, dy = 0.0;
+#pragma GCC unroll 32
+      for (int k = 0; k < SIZE; k++) {
+        const double x = e - from[k];
+        y += slopes[k] * min(max(x, 0.0), length[k]);
+        dy = x >= 0.0 && x < length[k] ? slopes[k] : dy;
+      }
+      slope = dy;
+      return y;
+    }
+  };
 
   /** SIGMAY + H e + B e^N (P. Ludwik, Elemente der technologischen Mechanik, 1909), or
    *  SIGMAY (1 + e/E0)^N (H.W. Swift, J. Mech. Phys. Solids 1 (1952) 1). */
@@ -78,44 +110,13 @@ namespace {
     }
   };
 
-  /** Straight lines between the points, from SIGMAY at e = 0; constant behind the last one. */
-  template <> struct J2Hardening<HARDENING_TABLE> {
-    double sigmay;
-    int n;
-    double from[LawParameters::MAX_TERMS], length[LawParameters::MAX_TERMS],
-        slopes[LawParameters::MAX_TERMS];
-
-    explicit J2Hardening(const LawParameters &p) : sigmay(p.value[J2_SIGMAY]), n(p.nterms)
-    {
-      double e = 0.0, y = sigmay;
-      for (int k = 0; k < n; k++) {
-        from[k] = e;
-        length[k] = p.term[k][0] - e;
-        slopes[k] = (p.term[k][1] - y) / length[k];
-        e = p.term[k][0];
-        y = p.term[k][1];
-      }
-    }
-    MPM_INLINE double operator()(double e, double &slope) const
-    {
-      double y = sigmay, dy = 0.0;
-      for (int k = 0; k < n; k++) {
-        const double x = e - from[k];
-        y += slopes[k] * min(max(x, 0.0), length[k]);
-        dy = x >= 0.0 && x < length[k] ? slopes[k] : dy;
-      }
-      slope = dy;
-      return y;
-    }
-  };
-
   /** Flow stress of hardening and plastic strain rate r, at the end of the step:
    *
    *    Y (1 + (r/RATE)^(1/P))      G.R. Cowper, P.S. Symonds, Brown Univ. Tech. Rep. 28 (1957)
    *    Y + S (r/RATE)^(1/M)        P. Perzyna, Adv. Appl. Mech. 9 (1966) 243
    */
   template <int KIND, bool RATE> struct J2Flow {
-    static constexpr bool smooth = KIND != HARDENING_TABLE, overstress = RATE;
+    static constexpr bool smooth = KIND < SHORT_TABLE, goes_on = RATE;
     J2Hardening<KIND> hardening;
     double G;
     double inv_rate, exponent, factor, drag;    ///< factor and drag times (r/RATE)^exponent
@@ -221,8 +222,10 @@ namespace {
 
     static void update(const LawParameters &p, Batch &b, History history)
     {
-      if (p.nterms > 0)
-        choose<HARDENING_TABLE>(p, b, history);
+      if (p.nterms > SHORT_TABLE)
+        choose<LONG_TABLE>(p, b, history);
+      else if (p.nterms > 0)
+        choose<SHORT_TABLE>(p, b, history);
       else if (voce(p) || p.value[J2_VOCE_H] > 0.0)
         choose<HARDENING_VOCE>(p, b, history);
       else if (power(p) || rate(p) || kinematic(p))

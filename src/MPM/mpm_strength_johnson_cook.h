@@ -22,7 +22,7 @@ namespace {
    *  of other heat is of the step before. */
   template <bool THERMAL> struct JohnsonCookFlow {
     static constexpr bool smooth = true;    // kinks are too small to matter
-    static constexpr bool overstress = false;
+    static constexpr bool goes_on = false;
     double G, A, B, N, C, inv_rate;
     double M, soft, Tref, inv_range;    ///< soft: 1, or 0 without thermal softening
     double warm;                        ///< temperature rise per plastic work

@@ -83,7 +83,7 @@ namespace {
         const Increment inc = increment(b, i);
         const double G = flow.shear(i), inv_J = 1.0 / b.J[i];
         const Sym before = deviator(load_stress(b, i)) + (-1.0 / b.Jold[i]) * load_rows(back, i);
-        const double last = Flow::overstress ? equivalent(before) : 0.0;
+        const double last = Flow::goes_on ? equivalent(before) : 0.0;
         const Sym s = ElasticDeviator{G}.trial(b, i, inc);
         const Sym X = rotate(inc, load_rows(back, i)), x = inv_J * X, xi = s + (-1.0) * x;
         store_stress(b, i, s);
@@ -100,7 +100,7 @@ namespace {
         const double guess = min(excess, max(strain, 1e-3 * excess));
         most[i] = (q + std::sqrt(square)) / modulus;
         stiff[i] = modulus;
-        start[i] = max(y, last);
+        start[i] = last > 0.5 * y ? last : y;
         D[i] = excess > 0.0 ? guess : 0.0;
         yielding += excess > 0.0 ? 1.0 : 0.0;
       }

@@ -83,8 +83,8 @@ namespace {
    *  modulus of the step; start(history, i), the flow stress for D -> 0; stress(history, i, begin,
    *  trial state, D, Y, dY/dD); finish(history, i, begin, D, Y, J), which stores the history and
    *  returns the plastic work per current volume. begin is the stress at which plastic flow begins
-   *  in this step: that of start(), or with overstress = true that of the last step when it is
-   *  larger.
+   *  in this step: that of start(), or with goes_on = true that of the last step, unless it was far
+   *  below.
    */
   template <class Flow> struct RadialReturn : ShearElasticity {
     static void update(const LawParameters &p, Batch &b, History history)
@@ -98,7 +98,7 @@ namespace {
       for (int i = 0; i < b.n; i++) {
         const Increment inc = increment(b, i);
         const double G = flow.shear(i);
-        const double last = Flow::overstress ? equivalent(deviator(load_stress(b, i))) : 0.0;
+        const double last = Flow::goes_on ? equivalent(deviator(load_stress(b, i))) : 0.0;
         const Sym s = ElasticDeviator{G}.trial(b, i, inc);
         store_stress(b, i, s);
         const double q = equivalent(s);
@@ -111,7 +111,7 @@ namespace {
         trial[i] = q;
         stiff[i] = modulus;
         most[i] = q / modulus;
-        start[i] = max(y, last);
+        start[i] = last > 0.5 * y ? last : y;
         D[i] = excess > 0.0 ? guess : 0.0;
         yielding += excess > 0.0 ? 1.0 : 0.0;
       }
