@@ -29,6 +29,12 @@ struct Sample {
     {"neohookean", "density 1000 neohookean 1e9 0.3"},
     {"elastic", "density 2700 eos linear 70e9 strength elastic 26e9"},
     {"j2", "density 8930 eos linear 1e11 strength j2 43e9 157e6 hardening linear 425e6"},
+    {"j2_adiabatic",
+     "density 8930 eos linear 1e11 strength j2 43e9 157e6 hardening linear 425e6 "
+     "thermal adiabatic 385 300 0.9"},
+    {"j2_gruneisen",
+     "density 8930 eos linear 1e11 strength j2 43e9 157e6 hardening linear 425e6 "
+     "thermal adiabatic 385 300 0.9 gruneisen 2"},
     {"j2_shock",
      "density 8930 eos shock 3940 1.49 1.96 strength j2 43e9 157e6 hardening linear 425e6"},
     {"j2_power", "density 8940 eos linear 1e11 strength j2 44e9 65e6 hardening power 356e6 0.37"},
