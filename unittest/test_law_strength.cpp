@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <functional>
 #include <random>
 #include <sstream>
@@ -775,6 +776,63 @@ TEST(Thermal, ViscousWorkHeats)
   const double heat = 1000 * rate * rate * time;    // mu (2 D12)^2
   EXPECT_NEAR(p.work[VISCOUS], heat, 1e-9 * heat);
   EXPECT_NEAR(p.history(0) - 300, heat / (1000 * 4000), 1e-9);
+}
+
+/* ---------------------------------------------------------------------- material files */
+
+/** The definition in a file of the folder potentials. */
+std::string definition(const std::string &name)
+{
+  std::ifstream file(std::string(MPM_SOURCE_DIR) + "/potentials/" + name + ".mpm");
+  EXPECT_TRUE(file.good()) << name;
+  std::string text, line;
+  while (std::getline(file, line)) text += line.substr(0, line.find('#')) + " ";
+  return text;
+}
+
+/** Flow stress in MPa after shear at a rate, from the temperature of the file. */
+double flow_stress(const std::string &name, double strain, double rate)
+{
+  const auto material = make(definition(name));
+  MaterialPoint p(*material);
+  shear(p, strain, strain / rate, 200);
+  return shear_stress(p) / MPa;
+}
+
+// fits of different laws by different people to the same metal agree where both were fitted
+TEST(MaterialFiles, FitsOfTheSameMetalAgree)
+{
+  struct {
+    const char *one, *other;
+    double strain, rate, tolerance;
+  } pairs[] = {{"Cu_OFHC_JC", "Cu_OFHC_ZA", 0.2, 1e3, 0.15},
+               {"Iron_Armco_JC", "Iron_Armco_ZA", 0.2, 1e3, 0.2},
+               {"Iron_Armco_JC", "Steel_1006_JC", 0.2, 1e3, 0.2},
+               {"Al_6061_T6_JC", "Al_6061_T6_SCG", 0.1, 1e5, 0.2},
+               {"W_alloy_JC", "W_alloy_SCG", 0.1, 1e5, 0.25},
+               {"Cu_OFHC_JC", "Cu_OFHC_SCG", 0.3, 1e5, 0.35}};
+  for (const auto &p : pairs) {
+    const double a = flow_stress(p.one, p.strain, p.rate),
+                 b = flow_stress(p.other, p.strain, p.rate);
+    EXPECT_NEAR(a / b, 1.0, p.tolerance) << p.one << " " << a << " " << p.other << " " << b;
+  }
+}
+
+// longitudinal wave speeds of handbooks, m/s
+TEST(MaterialFiles, WaveSpeeds)
+{
+  struct {
+    const char *name;
+    double speed;
+  } known[] = {{"Al_1100_O_SCG", 6420},   {"Al_2024_T351_JC", 6370}, {"Al_6061_T6_JC", 6400},
+               {"Al_7075_T651_JC", 6350}, {"Cu_OFHC_JC", 4760},      {"Cu_OFHC_SCG", 4760},
+               {"Iron_Armco_JC", 5950},   {"Steel_1006_JC", 5940},   {"Steel_4340_JC", 5850},
+               {"Ta_SCG", 4160},          {"Ti_6Al4V_JC", 6130},     {"W_alloy_SCG", 5180},
+               {"Weldox_460E_JC", 6140}};
+  for (const auto &k : known) {
+    const auto material = make(definition(k.name));
+    EXPECT_NEAR(MaterialPoint(*material).wave_speed(), k.speed, 0.02 * k.speed) << k.name;
+  }
 }
 
 }    // namespace

@@ -24,6 +24,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 
 using namespace MPM_TEST;
@@ -156,17 +157,24 @@ TEST(MaterialFix, NeedsMaterialPoints)
 
 TEST(MaterialFix, FilesOfThePackage)
 {
-  for (const char *name : {"Cu_OFHC_J2", "Cu_OFHC_JC", "Steel_4340_JC", "Water_Tait"}) {
+  int files = 0;
+  for (const auto &entry :
+       std::filesystem::directory_iterator(std::string(MPM_SOURCE_DIR) + "/potentials")) {
+    SCOPED_TRACE(entry.path().string());
+    ASSERT_EQ(entry.path().extension(), ".mpm");
+    files++;
     Lammps run;
     run.commands(scene);
-    run.commands("fix m one mpm/material file " + std::string(MPM_SOURCE_DIR) + "/potentials/" +
-                 name + ".mpm\n");
+    run.commands("fix m one mpm/material file " + entry.path().string() + "\n");
     auto *m = material(run, "m");
     std::vector<MPM_NS::HistoryVariable> history = m->material->history();
     EXPECT_EQ(m->nhistory, (int) history.size());
-    EXPECT_EQ(m->find_history("eplastic") >= 0, std::string(name) != "Water_Tait") << name;
+    if (contains(m->material->describe(), "strength ")) {
+      EXPECT_GE(m->find_history("eplastic"), 0);
+    }
     EXPECT_EQ(m->find_history("unknown"), -1);
   }
+  EXPECT_GE(files, 19);
   // found in the folders of LAMMPS_POTENTIALS, same as in the input
   setenv("LAMMPS_POTENTIALS", (std::string(MPM_SOURCE_DIR) + "/potentials").c_str(), 1);
   Lammps run;
