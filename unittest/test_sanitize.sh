@@ -46,7 +46,8 @@ compile() {
 }
 
 objects=()
-for name in mpm_grid mpm_kernels mpm_kernels_reference mpm_batch mpm_material mpm_material_point; do
+for name in mpm_grid mpm_kernels mpm_kernels_reference mpm_batch mpm_material mpm_material_point \
+  mpm_law_registry; do
   compile "$src/$name.cpp" "$name.o"
 done
 for isa in "${sets[@]}"; do

@@ -20,6 +20,7 @@
 #include "mpm_material.h"
 
 #include <cstddef>
+#include <deque>
 #include <limits>
 
 #define MPM_INLINE inline __attribute__((always_inline))
@@ -132,8 +133,10 @@ struct LawInfo {
   void (*initialize)(const LawParameters &, const double *x, double *history);
 };
 
-/** Declarations of all laws for one place, in the order of the lists in mpm_law_list.h. */
-const std::vector<LawInfo> &declared_laws(Part);
+/** Declarations of all laws for one place: in the order of the lists in mpm_law_list.h, then those
+ *  of plugins. They stay where they are when others are added. */
+using LawList = std::deque<LawInfo>;
+const LawList &declared_laws(Part);
 
 /** Kernels of a law; those that do not concern it are null.
  *
@@ -179,9 +182,9 @@ struct LawDefaults {
 
 /** Kernels of all laws for one instruction set. */
 struct LawTable {
-  const char *isa;                         ///< "baseline", "AVX2" or "AVX-512"
-  std::vector<LawKernels> laws[NPARTS];    ///< in the order of declared_laws()
-  void (*clear_stress)(Batch &);           ///< stress of a law with no strength
+  const char *isa;                            ///< "baseline", "AVX2" or "AVX-512"
+  std::vector<LawKernels> builtin[NPARTS];    ///< in the order of the lists in mpm_law_list.h
+  void (*clear_stress)(Batch &);              ///< stress of a law with no strength
   void (*speed)(int n, double density, const double *k, double *c);    ///< c = sqrt(k / density)
 
   /** Pressure at the end of a step, and equivalent strain rate sqrt(2/3 D:D) in its middle. */
@@ -193,7 +196,28 @@ struct LawTable {
 
   /** The table for this CPU, or the one with this name: as MPMKernels::select(). */
   static const LawTable *select(const char *name = nullptr);
+
+  /** Kernels of a law by its index in declared_laws(). */
+  const LawKernels &kernels(Part, int index) const;
 };
+
+/** What a plugin with laws must have in common with the package. */
+struct LawVersion {
+  int interface;    ///< raised with each change of what laws and package expect of each other
+  int batch, info, kernels, parameters;
+};
+constexpr LawVersion law_version{1, sizeof(Batch), sizeof(LawInfo), sizeof(LawKernels),
+                                 sizeof(LawParameters)};
+
+/** A law of a plugin. */
+struct PluginLaw {
+  Part part;
+  LawInfo info;
+  LawKernels kernels;
+};
+
+/** Adds laws to declared_laws(); returns what is wrong, or nothing. */
+std::string add_laws(const LawVersion &, const PluginLaw *, int n);
 
 }    // namespace MPM_NS
 #endif

@@ -12,6 +12,7 @@
 // What the files mpm_laws_<family>_isa.cpp share: each compiles the kernels of one family of laws,
 // once for each instruction set (MPM_ISA: base, v3, v4, with the matching -march).
 
+#include "mpm_law_declare.h"
 #include "mpm_law_list.h"
 
 namespace MPM_NS {
@@ -27,9 +28,7 @@ namespace law {
     template <class Laws> struct KernelTable;
     template <Part PART, class... Laws> struct KernelTable<Family<PART, Laws...>> {
       // one more, as there is no empty array
-      static constexpr LawKernels table[] = {
-          {Laws::update, Laws::modulus, Laws::energy, Laws::raise_speed, Laws::prepare}...,
-          LawKernels{}};
+      static constexpr LawKernels table[] = {kernels<Laws>()..., LawKernels{}};
     };
 
   }    // namespace

@@ -21,7 +21,7 @@
 
 #include "mpm_material.h"
 
-#include "mpm_law_kernels.h"
+#include "mpm_law.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,49 +32,6 @@
 using namespace MPM_NS;
 
 namespace {
-
-/* ---------------------------------------------------------------------- declarations */
-
-template <class T, int N> constexpr int count(const T (&)[N])
-{
-  return N;
-}
-constexpr int count(std::nullptr_t)
-{
-  return 0;
-}
-
-template <class Law> LawInfo declaration()
-{
-  LawInfo info;
-  info.name = Law::name;
-  info.meaning = Law::meaning;
-  info.share = Law::share;
-  info.parameters = Law::parameters;
-  info.nparameters = count(Law::parameters);
-  info.term = Law::term;
-  info.term_parameters = Law::term_parameters;
-  info.nterm_parameters = count(Law::term_parameters);
-  info.history = Law::history;
-  info.ndeclared = count(Law::history);
-  info.term_history = Law::term_history;
-  info.nterm_history = count(Law::term_history);
-  info.nhistory = Law::nhistory;
-  info.check = Law::check;
-  info.needs_temperature = Law::needs_temperature;
-  info.heat_share = Law::heat_share;
-  info.warming = Law::warming;
-  info.initialize = Law::initialize;
-  static_assert(count(Law::parameters) <= LawParameters::MAX);
-  static_assert(count(Law::term_parameters) <= LawParameters::TERM);
-  return info;
-}
-
-template <Part PART, class... Laws>
-void declare(law::Family<PART, Laws...>, std::vector<LawInfo> *laws)
-{
-  (laws[PART].push_back(declaration<Laws>()), ...);
-}
 
 const char *const part_name[NPARTS] = {"", "eos", "strength", "viscosity", "damage", "thermal"};
 
@@ -250,7 +207,7 @@ class ComposedMaterial : public Material {
     }
     for (int part = 0; part < NPARTS; part++)
       for (auto &law : laws[part]) {
-        law.kernels = &table->laws[part][law.index];
+        law.kernels = &table->kernels(static_cast<Part>(part), law.index);
         law.parameters.density = rho_pressure;
         law.parameters.heat_density = rho * energy_scale;
         law.parameters.chi = shared.chi;
@@ -342,14 +299,14 @@ std::string join(const std::vector<std::string> &words, const char *between)
   return text;
 }
 
-std::vector<std::string> names(const std::vector<LawInfo> &laws)
+std::vector<std::string> names(const LawList &laws)
 {
   std::vector<std::string> list;
   for (const auto &info : laws) list.emplace_back(info.name);
   return list;
 }
 
-int find(const std::vector<LawInfo> &laws, const std::string &name)
+int find(const LawList &laws, const std::string &name)
 {
   for (size_t k = 0; k < laws.size(); k++)
     if (name == laws[k].name) return k;
@@ -621,94 +578,7 @@ class Parser {
 
 /* ---------------------------------------------------------------------- */
 
-const std::vector<LawInfo> &MPM_NS::declared_laws(Part part)
-{
-  struct Declared {
-    std::vector<LawInfo> laws[NPARTS];
-    Declared()
-    {
-#define MPM_DECLARE(family) declare(law::family(), laws);
-      MPM_LAW_FAMILIES(MPM_DECLARE)
-    }
-  };
-  static const Declared declared;
-  return declared.laws[part];
-}
-
 std::unique_ptr<Material> Material::create(const std::vector<std::string> &words, const char *isa)
 {
   return Parser(words, isa).parse();
-}
-
-/* ----------------------------------------------------------------------
-   one table for each instruction set that the build has
-------------------------------------------------------------------------- */
-
-namespace MPM_NS {
-#define MPM_DECLARE_KERNELS(family)         \
-  FamilyKernels mpm_laws_##family##_base(); \
-  FamilyKernels mpm_laws_##family##_v3();   \
-  FamilyKernels mpm_laws_##family##_v4();
-MPM_LAW_FAMILIES(MPM_DECLARE_KERNELS)
-void mpm_laws_common_base(LawTable &);
-void mpm_laws_common_v3(LawTable &);
-void mpm_laws_common_v4(LawTable &);
-}    // namespace MPM_NS
-
-#define MPM_ADD_KERNELS(family, isa)                                 \
-  {                                                                  \
-    const LawKernels *kernels = mpm_laws_##family##_##isa().kernels; \
-    auto &list = table.laws[law::family::part];                      \
-    list.insert(list.end(), kernels, kernels + law::family::size);   \
-  }
-#define MPM_ADD_BASE(family) MPM_ADD_KERNELS(family, base)
-#define MPM_ADD_V3(family) MPM_ADD_KERNELS(family, v3)
-#define MPM_ADD_V4(family) MPM_ADD_KERNELS(family, v4)
-
-static LawTable make_base()
-{
-  LawTable table;
-  mpm_laws_common_base(table);
-  MPM_LAW_FAMILIES(MPM_ADD_BASE)
-  return table;
-}
-
-#ifdef MPM_HAVE_V3
-static LawTable make_v3()
-{
-  LawTable table;
-  mpm_laws_common_v3(table);
-  MPM_LAW_FAMILIES(MPM_ADD_V3)
-  return table;
-}
-#endif
-
-#ifdef MPM_HAVE_V4
-static LawTable make_v4()
-{
-  LawTable table;
-  mpm_laws_common_v4(table);
-  MPM_LAW_FAMILIES(MPM_ADD_V4)
-  return table;
-}
-#endif
-
-/* ----------------------------------------------------------------------
-   the transfer kernels decide which instruction set runs
-------------------------------------------------------------------------- */
-
-const LawTable *LawTable::select(const char *isa)
-{
-  const MPMKernels *chosen = MPMKernels::select(isa);
-  if (!chosen) return nullptr;
-#ifdef MPM_HAVE_V4
-  static const LawTable v4 = make_v4();
-  if (strcmp(chosen->isa, "AVX-512") == 0) return &v4;
-#endif
-#ifdef MPM_HAVE_V3
-  static const LawTable v3 = make_v3();
-  if (strcmp(chosen->isa, "AVX2") == 0) return &v3;
-#endif
-  static const LawTable base = make_base();
-  return &base;
 }

@@ -8,6 +8,8 @@
 
 #include "mpm_material_input.h"
 
+#include "mpm_law_plugin.h"
+
 #include "comm.h"
 #include "error.h"
 #include "lammps.h"
@@ -122,4 +124,16 @@ std::unique_ptr<Material> MPM_NS::read_material(LAMMPS *lmp, const std::string &
   } catch (const MaterialError &e) {
     lmp->error->all(FLERR, std::min(e.word + first, narg - 1), "{}: {}", caller, e.what());
   }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPM_NS::register_laws(void *ptr, const LawVersion &version, const PluginLaw *laws, int n)
+{
+  auto *lmp = static_cast<LAMMPS *>(ptr);
+  const std::string problem = add_laws(version, laws, n);
+  if (!problem.empty()) lmp->error->all(FLERR, "Plugin with laws for the MPM package: {}", problem);
+  for (int k = 0; k < n && lmp->comm->me == 0; k++)
+    utils::logmesg(lmp, "Law for fix mpm/material: {}, {}\n", laws[k].info.name,
+                   laws[k].info.meaning);
 }
