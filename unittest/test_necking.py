@@ -1,0 +1,60 @@
+# This file is part of the MPM package for LAMMPS, distributed under the GNU
+# General Public License, version 2; see the file LICENSE.
+#
+# labels: physics examples
+# timeout: 300
+"""The tension test of examples/necking against Considere's construction and finite elements."""
+
+import os
+import re
+import tempfile
+
+import numpy as np
+
+import mpm_testing as mt
+
+BAR = os.path.join(mt.ROOT, "examples", "necking", "in.necking")
+
+# d(A + B e^n)/de = A + B e^n at e = 0.09444 for A = 499, B = 382 MPa, n = 0.458: true stress
+# 628.6 MPa, engineering strain 0.1023 with the elastic part, and that stress / (1 + strain)
+STRENGTH, STRAIN = 570.3, 0.1023
+
+
+def test_strength_and_necking():
+    with open(BAR) as file:    # without pictures
+        text = "\n".join(line for line in file.read().split("\n")
+                         if not re.match(r"(dump|dump_modify) +pic|  +(box no|amap)", line))
+    with tempfile.TemporaryDirectory() as folder:
+        result = mt.lammps(folder, text, timeout=200)
+        assert result.code == 0, result.tail()
+        rows = np.loadtxt(os.path.join(folder, "curve.txt"))
+    strain, grip, middle = rows[:, 1], rows[:, 2], rows[:, 3]
+    smooth = np.convolve(0.5 * (grip + middle), np.full(9, 1.0 / 9.0), "same")[4:-4]
+    k = smooth.argmax()
+    strength, at = smooth[k], strain[4 + k]
+    print("tensile strength %.1f MPa at %.4f; by Considere %.1f MPa at %.4f" %
+          (strength, at, STRENGTH, STRAIN))
+    assert abs(strength / STRENGTH - 1) < 0.015
+    assert abs(at - STRAIN) < 0.02
+
+    # grip and middle carry the same force: slow enough
+    plastic = strain > 0.02
+    difference = np.abs(grip - middle)[plastic].max() / STRENGTH
+    print("largest difference of the forces %.1f %%" % (100 * difference))
+    assert difference < 0.02
+
+    # the bar hardens as in uniaxial tension before the neck: s = (A + B e^n)/(1 + strain)
+    for x in (0.04, 0.06, 0.08):
+        e = np.log(1 + x) - 0.003
+        expected = (499 + 382 * e**0.458) / (1 + x)
+        found = np.interp(x, strain[4:-4], smooth)
+        print("strain %.2f: %.1f MPa, uniaxial %.1f MPa" % (x, found, expected))
+        assert abs(found / expected - 1) < 0.015
+
+    # after it the force falls, between square and round bars of finite elements (501 and 560 MPa)
+    late = np.interp(0.16, strain[4:-4], smooth)
+    print("strain 0.16: %.1f MPa" % late)
+    assert 500.9 < late < 559.7
+
+
+mt.main(globals())
