@@ -165,6 +165,19 @@ inline const Sample samples[] = {
     {"drucker/prager", "density 1600 drucker/prager 1e6 0.3 30"},
     {"drucker/prager cohesion",
      "density 1600 drucker/prager 1e6 0.3 35 cohesion 2e4 dilatancy 10 tension 5e3 plane"},
+    {"johnson/cook damage",
+     "density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 0.168 0.0089 1 1.1 "
+     "1540 20 thermal adiabatic 460 20 0.9 damage johnson/cook 0.1 0.5 -1.5 rate -0.01 1 "
+     "temperature 0.6 1540 20 soften from 0.1 after friction 0.3"},
+    {"energy of damage",
+     "density 2703 eos shock 5350 1.34 2 strength j2 26e9 0.3e9 "
+     "damage cockcroft/latham 2e7 soften energy 6e6 viscosity artificial 1.5 0.06"},
+    {"rankine",
+     "density 2400 eos linear 2e10 strength elastic 1.5e10 damage rankine 1e7 soften energy 1e8 "
+     "weibull 5 1 7"},
+    {"grady/kipp",
+     "density 2700 eos linear 2e10 strength elastic 1.5e10 "
+     "damage grady/kipp 1e4 3 0.1 4e10 after none"},
     {"viscous rubber",
      "density 1000 neohookean 1e6 0.3 viscosity newtonian 10 viscosity artificial 2 1"},
     {"shock cutoff", "density 8930 eos shock 3940 1.49 1.96 cutoff -1e9"},

@@ -108,6 +108,7 @@ TEST(Objectivity, FullTurnsLeaveStressAlone)
   const std::array<double, 3> axis = {0.48, 0.6, 0.64};
   for (const auto &sample : samples) {
     if (std::string(sample.text).find("viscosity") != std::string::npos) continue;
+    if (std::string(sample.text).find("grady") != std::string::npos) continue;    // cracks grow
     SCOPED_TRACE(sample.name);
     const auto material = make(sample.text);
     MaterialPoint start(*material);
@@ -757,6 +758,7 @@ TEST(Viscosity, NeverGivesEnergy)
       p.step(L.data(), 1.0);
       EXPECT_GE(p.batch.work[VISCOUS], 0.0) << sample.name;
       EXPECT_GE(p.batch.work[PLASTIC], 0.0) << sample.name;
+      EXPECT_GE(p.batch.work[FRACTURE], 0.0) << sample.name;
       EXPECT_GE(p.batch.work[HEAT], 0.0) << sample.name;
       EXPECT_LE(p.batch.work[HEAT], p.batch.work[PLASTIC]) << sample.name;
     }
@@ -786,7 +788,8 @@ TEST(Energy, BalanceIsSecondOrder)
       const double start = p.stored_energy();
       for (int i = 0; i < n; i++) {
         p.step(there_and_back((i + 0.5) / n).data(), 1.0 / n);
-        const double energy = p.stored_energy() - start + p.work[PLASTIC] + p.work[VISCOUS];
+        const double energy = p.stored_energy() - start + p.work[PLASTIC] + p.work[VISCOUS] +
+            p.work[FRACTURE];
         error[level] = std::max(error[level], std::fabs(energy - p.power));
         scale = std::max(scale, std::fabs(energy));
       }

@@ -105,6 +105,8 @@ ComputeMPMEnergy::Sums ComputeMPMEnergy::evaluate() const
     mine.contact += field->ledger.contact;
     mine.transfer += field->ledger.transfer;
     mine.internal += field->ledger.internal;
+    mine.deleted_kinetic += field->ledger.deleted_kinetic;
+    mine.deleted_stored += field->ledger.deleted_stored;
   }
 
   for (auto *fix : modify->get_fix_by_style("^mpm/material$")) {
@@ -112,6 +114,7 @@ ComputeMPMEnergy::Sums ComputeMPMEnergy::evaluate() const
     mine.plastic += material->work[Work::PLASTIC];
     mine.viscous += material->work[Work::VISCOUS];
     mine.heat += material->work[Work::HEAT];
+    mine.fracture += material->work[Work::FRACTURE];
   }
 
   visit_point_batches(lmp, groupbit,
@@ -122,12 +125,11 @@ ComputeMPMEnergy::Sums ComputeMPMEnergy::evaluate() const
                       });
 
   mine.kinetic *= force->mvv2e;
-  for (double *energy : {&mine.plastic, &mine.viscous, &mine.heat, &mine.stored})
+  for (double *energy : {&mine.plastic, &mine.viscous, &mine.heat, &mine.fracture, &mine.stored})
     *energy /= force->nktv2p;
 
   Sums all;
-  static_assert(sizeof(Sums) == 10 * sizeof(double), "Sums holds doubles only");
-  MPI_Allreduce(&mine, &all, 10, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(&mine, &all, sizeof(Sums) / sizeof(double), MPI_DOUBLE, MPI_SUM, world);
   return all;
 }
 
@@ -137,7 +139,7 @@ double ComputeMPMEnergy::compute_scalar()
 {
   if (invoked_vector != update->ntimestep) compute_vector();
   invoked_scalar = update->ntimestep;
-  scalar = vector[KINETIC] + vector[STORED] + vector[PLASTIC] + vector[VISCOUS];
+  scalar = vector[KINETIC] + vector[STORED] + vector[PLASTIC] + vector[VISCOUS] + vector[FRACTURE];
   return scalar;
 }
 
@@ -154,6 +156,7 @@ void ComputeMPMEnergy::compute_vector()
   vector[PLASTIC] = now.plastic;
   vector[VISCOUS] = now.viscous;
   vector[HEAT] = now.heat;
+  vector[FRACTURE] = now.fracture;
   vector[EXTERNAL] = now.external - start.external;
   vector[BOUNDARY] = now.boundary - start.boundary;
   vector[CONTACT] = now.contact - start.contact;
@@ -161,9 +164,9 @@ void ComputeMPMEnergy::compute_vector()
 
   // the law's account of the energy that internal forces took, against that energy
 
-  const double taken =
-      now.stored + now.plastic + now.viscous - start.stored - start.plastic - start.viscous;
-  vector[INTEGRATION] = taken - (now.internal - start.internal);
-  vector[RESIDUAL] = now.total() - start.total();
+  const double stored = now.deleted_stored - start.deleted_stored;
+  vector[DELETED] = now.deleted_kinetic - start.deleted_kinetic + stored;
+  vector[INTEGRATION] = now.taken() - start.taken() - stored - (now.internal - start.internal);
+  vector[RESIDUAL] = now.total() - start.total() - vector[DELETED];
   for (int k = EXTERNAL; k < RESIDUAL; k++) vector[RESIDUAL] -= vector[k];
 }

@@ -23,8 +23,8 @@ namespace LAMMPS_NS {
 
 /** Energy ledger of all material points.
  *
- *  The balance is (kinetic + stored + plastic + viscous) - (the same at the start) =
- *  external + boundary + contact + transfer + integration + residual. Internal work is what the
+ *  The balance is (kinetic + stored + plastic + viscous + fracture) - (the same at the start) =
+ *  external + boundary + contact + transfer + integration + deleted + residual. Internal work is what the
  *  internal forces take from the kinetic energy; what of it is neither stored nor dissipated by
  *  the law is the error of time integration. The residual closes the balance of the stages of
  *  fix mpm and must be round-off.
@@ -54,14 +54,19 @@ class ComputeMPMEnergy : public Compute {
     TRANSFER,       // kinetic energy gained by transfers
     INTEGRATION,    // energy gained by time integration of the laws
     RESIDUAL,       // what the balance misses
+    FRACTURE,       // work spent on damage
+    DELETED,        // energy of points that were deleted, negative
     NENTRY
   };
 
   /** What the entries are computed from, summed over ranks. */
   struct Sums {
-    double kinetic, stored, plastic, viscous, heat;
+    double kinetic, stored, plastic, viscous, heat, fracture;
     double external, boundary, contact, transfer, internal;
-    double total() const { return kinetic + stored + plastic + viscous; }
+    double deleted_kinetic, deleted_stored;
+    /** What the points store, or have spent. */
+    double taken() const { return stored + plastic + viscous + fracture; }
+    double total() const { return kinetic + taken(); }
   };
 
   bool started;

@@ -41,7 +41,7 @@ static constexpr double MAX_NODE = 4.0e6;
 
 FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), shape(QUADRATIC), transfer(APIC), flip(0.0), scheme(USL), policy(ERROR),
-    dt_check(true), grid(nullptr), C(nullptr), ledger_on(false), points(nullptr), halo(nullptr),
+    delete_failed(false), dt_check(true), grid(nullptr), C(nullptr), ledger_on(false), points(nullptr), halo(nullptr),
     kernels(nullptr), batch_kernels(nullptr), driver(false), topology_valid(false),
     watch_drift(false), drifted(0), want_sort(false), switches(0), switches_sorted(0),
     tile(nullptr), tile_load(nullptr), batch(nullptr), kinetic_points(0.0), nbad_total(0),
@@ -58,15 +58,16 @@ FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) :
   time_integrate = 1;
   dynamic_group_allow = 0;
   scalar_flag = vector_flag = 1;
-  size_vector = 6;
+  size_vector = 11;
   global_freq = 1;
   extscalar = 1;
   extvector = 0;
   restart_global = 1;
   memset(&report, 0, sizeof(Report));
   memset(&ledger, 0, sizeof(MPMLedger));
+  memset(&deleted, 0, sizeof(deleted));
 
-  if (policy == DELETE) {
+  if (may_delete()) {
     force_reneighbor = 1;
     next_reneighbor = -1;
   }
@@ -158,6 +159,9 @@ void FixMPM::process_options(int narg, char **arg)
       iarg += 1 + lattice.dim;
     } else if (keyword == "bad") {
       policy = (Policy) choose({"error", "warn", "delete"});
+      iarg += 2;
+    } else if (keyword == "failed") {
+      delete_failed = choose({"keep", "delete"}) == 1;
       iarg += 2;
     } else if (keyword == "dtcheck") {
       need(1);

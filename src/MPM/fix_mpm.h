@@ -41,6 +41,7 @@ struct MPMLedger {
   double contact;      ///< work of node actions between fields
   double internal;     ///< work of the internal forces on the nodes, minus sign: done by the body
   double transfer;     ///< kinetic energy gained (mostly lost: negative) by P2G and G2P
+  double deleted_kinetic, deleted_stored;    ///< energy of points that were deleted
 };
 
 /** One velocity field on one lattice, and the cycle that moves the material points of its group.
@@ -87,6 +88,7 @@ class FixMPM : public Fix {
   double flip;         ///< FLIP share, 0 for PIC
   Scheme scheme;
   Policy policy;       ///< what to do with a point that goes bad
+  bool delete_failed;  ///< remove points whose damage is 1
   bool dt_check;       ///< stop when the time step is above the stable limit
 
   // state of the step, for node actions and output
@@ -178,6 +180,10 @@ class FixMPM : public Fix {
   double before_actions;                   // ledger: sum of entries before node actions
   double kinetic_points;                   // ledger: at the end of the last step
   std::vector<tagint> bad_points;          // of this step, policies warn and delete
+  std::vector<tagint> failed_points;       // of this step, to be deleted
+  struct {
+    double points, mass, momentum[3];
+  } deleted;                               // so far, on all ranks
   bigint nbad_total, next_dt_check;
   double clock;
   bool running;                            // between setup() and post_run()
@@ -220,7 +226,8 @@ class FixMPM : public Fix {
   void check_dt();
   void point_is_bad(int i, const std::string &what);
   void handle_bad_points();
-  void delete_points(const std::vector<tagint> &);
+  bool may_delete() const { return policy == DELETE || delete_failed; }
+  void delete_points(const std::vector<tagint> &, bool warn);
   std::string point_state(int i) const;
   int find_local(tagint) const;
 

@@ -17,6 +17,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_mpm_material.h"
+#include "force.h"
 #include "group.h"
 #include "modify.h"
 #include "mpm_batch.h"
@@ -128,8 +129,12 @@ void FixMPM::check_inside_box()
   }
   if (policy == DELETE) {
     out.insert(out.end(), bad_points.begin(), bad_points.end());
-    delete_points(out);
+    delete_points(out, true);
     bad_points.clear();
+  }
+  if (delete_failed) {
+    delete_points(failed_points, false);
+    failed_points.clear();
   }
 }
 
@@ -158,44 +163,55 @@ void FixMPM::point_is_bad(int i, const std::string &what)
 }
 
 /* ----------------------------------------------------------------------
-   policies warn and delete: count; points to delete go at the next exchange, made to happen now
+   policies warn and delete: count; points to delete, also those that have failed, go at the next
+   exchange, made to happen now
 ------------------------------------------------------------------------- */
 
 void FixMPM::handle_bad_points()
 {
-  bigint n = bad_points.size(), all;
-  MPI_Allreduce(&n, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  if (all == 0) return;
-  nbad_total += all;
-  if (policy == DELETE)
-    next_reneighbor = update->ntimestep;
-  else
-    bad_points.clear();
+  bigint n[2] = {(bigint) bad_points.size(), (bigint) failed_points.size()}, all[2];
+  MPI_Allreduce(n, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
+  nbad_total += all[0];
+  if (policy != DELETE) bad_points.clear();
+  if ((all[0] && policy == DELETE) || all[1]) next_reneighbor = update->ntimestep;
 }
 
 /* ---------------------------------------------------------------------- */
 
-void FixMPM::delete_points(const std::vector<tagint> &list)
+void FixMPM::delete_points(const std::vector<tagint> &list, bool warn)
 {
   std::vector<tagint> sorted(list);
   std::sort(sorted.begin(), sorted.end());
-  double lost[4] = {0.0, 0.0, 0.0, 0.0}, lost_all[4];
-  bigint n = 0, all;
+  double lost[5] = {0.0}, all[5];    // points, mass, momentum
+  std::vector<double> history;
   for (int i = atom->nlocal - 1; i >= 0 && !sorted.empty(); i--) {
     if (!std::binary_search(sorted.begin(), sorted.end(), atom->tag[i])) continue;
-    lost[0] += atom->rmass[i];
-    for (int d = 0; d < 3; d++) lost[1 + d] += atom->rmass[i] * atom->v[i][d];
+    const double *v = atom->v[i], m = atom->rmass[i];
+    lost[0]++;
+    lost[1] += m;
+    for (int d = 0; d < 3; d++) lost[2 + d] += m * v[d];
+    if (ledger_on) {
+      const double kinetic = 0.5 * force->mvv2e * m * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+      const FixMPMMaterial *material = material_of(i);
+      double w[BATCH];
+      load_state(*batch, &i, 1, material, history);
+      material->material->stored_energy(*batch, w);
+      ledger.deleted_kinetic -= kinetic;
+      ledger.deleted_stored -= atom->vfrac[i] * w[0] / force->nktv2p;
+      kinetic_points -= kinetic;
+    }
     atom->avec->copy(atom->nlocal - 1, i, 1);
     atom->nlocal--;
-    n++;
   }
-  MPI_Allreduce(&n, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  if (all == 0) return;
-  MPI_Allreduce(lost, lost_all, 4, MPI_DOUBLE, MPI_SUM, world);
-  atom->natoms -= all;
-  if (comm->me == 0)
-    error->warning(FLERR, "Fix mpm {} deleted {} points of mass {:.6g} and momentum {:.6g} {:.6g} "
-                   "{:.6g} at step {}", id, all, lost_all[0], lost_all[1], lost_all[2], lost_all[3],
+  MPI_Allreduce(lost, all, 5, MPI_DOUBLE, MPI_SUM, world);
+  if (all[0] == 0.0) return;
+  atom->natoms -= (bigint) all[0];
+  deleted.points += all[0];
+  deleted.mass += all[1];
+  for (int d = 0; d < 3; d++) deleted.momentum[d] += all[2 + d];
+  if (warn && comm->me == 0)
+    error->warning(FLERR, "Fix mpm {} deleted {:.0f} points of mass {:.6g} and momentum {:.6g} "
+                   "{:.6g} {:.6g} at step {}", id, all[0], all[1], all[2], all[3], all[4],
                    update->ntimestep);
 }
 

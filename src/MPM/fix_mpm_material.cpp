@@ -45,6 +45,7 @@ FixMPMMaterial::FixMPMMaterial(LAMMPS *lmp, int narg, char **arg) :
 
   restart_global = 1;
   nhistory = material->history().size();
+  damage = find_history("damage");
   if (nhistory > 0) {
     restart_peratom = 1;
     create_attribute = 1;

@@ -97,7 +97,8 @@ double FixMPM::external_work()
 
 /* ----------------------------------------------------------------------
    scalar: number of points; vector: blocks with points, active blocks, points per block,
-   updates of the topology and sorts in this run, halo bytes sent per step
+   updates of the topology and sorts in this run, halo bytes sent per step; points, mass and
+   momentum deleted so far
 ------------------------------------------------------------------------- */
 
 double FixMPM::compute_scalar()
@@ -109,6 +110,9 @@ double FixMPM::compute_scalar()
 
 double FixMPM::compute_vector(int k)
 {
+  if (k == 6) return deleted.points;
+  if (k == 7) return deleted.mass;
+  if (k > 7) return deleted.momentum[k - 8];
   double mine[4] = {(double) active.size(), (double) grid->blocks.size(), 0.0,
                     (double) halo->bytes_sent / std::max((bigint) 1, report.steps)};
   for (const auto &run : runs) mine[2] += run.last - run.first;
@@ -176,6 +180,10 @@ void FixMPM::post_run()
                  t_max[NODES] * scale, t_max[G2POINTS] * scale, bytes_per_point(), sum[1], sum[2],
                  npoints / std::max(1.0, sum[1]), report.topologies, report.sorts, sum[3],
                  report.dt_min, report.dt_max);
+  if (deleted.points > 0.0)
+    utils::logmesg(lmp, "  {:.0f} points deleted so far, mass {:.10g}, momentum {:.10g} {:.10g} "
+                   "{:.10g}\n", deleted.points, deleted.mass, deleted.momentum[0],
+                   deleted.momentum[1], deleted.momentum[2]);
   if (nbad_total)
     utils::logmesg(lmp, "  {} bad point updates so far (policy {})\n", nbad_total,
                    policy == WARN ? "warn" : "delete");

@@ -280,6 +280,9 @@ void FixMPM::material_update(const PointRows &r, const Run &run, int first, int 
     }
   }
   for (int k = 0; k < NWORK; k++) material->work[k] += b.work[k];
+  if (delete_failed && material->damage >= 0)
+    for (int p = 0; p < n; p++)
+      if (b.history[material->damage][p] >= 1.0) failed_points.push_back(atom->tag[first + p]);
 
   if (bad)
     for (int p = 0; p < n; p++)
@@ -312,7 +315,7 @@ void FixMPM::bookkeeping()
     if (all) topology_valid = false;
     drifted = 0;
   }
-  if (policy != ERROR) handle_bad_points();
+  if (policy != ERROR || delete_failed) handle_bad_points();
   if (dt_check && update->ntimestep >= next_dt_check) check_dt();
 
   report.steps++;

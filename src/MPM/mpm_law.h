@@ -144,6 +144,7 @@ const LawList &declared_laws(Part);
  *  a damage takes back its reduction of the stress (prepare), a strength makes the deviator of the
  *  stress, viscosities add to it, the equation of state subtracts the pressure, a damage reduces the
  *  stress, a thermal part turns batch.heat into temperature. A closed law makes the whole stress.
+ *  The other parts know nothing of a damage: it corrects their accounts of plastic work and heat.
  */
 struct LawKernels {
   /** Stress and history at the end of the step; work of the batch is added to batch.work, heat of
@@ -154,13 +155,15 @@ struct LawKernels {
    *  J d sigma_nn / d epsilon_nn for a small uniaxial strain on top of the present state. */
   void (*modulus)(const LawParameters &, const Batch &, History, double *k);
 
-  /** Adds to w[n] the stored energy; a damage changes what is there. */
+  /** Adds to w[n] the stored energy; a damage, whose strength is not asked, finds the energy of the
+   *  equation of state there and makes it that of the damaged material. */
   void (*energy)(const LawParameters &, const Batch &, History, double *w);
 
   /** Of a viscosity: raises c[n] so that h / c[n] is the stable step with this viscosity. */
   void (*raise_speed)(const LawParameters &, const Batch &, History, double *c);
 
-  /** Of a damage: before the other parts, gives back the stress of the undamaged material. */
+  /** Of a damage: before the other parts, gives back the stress of the undamaged material, and
+   *  tells in batch.kept what share of its deviator there was. */
   void (*prepare)(const LawParameters &, Batch &, History);
 };
 
@@ -186,6 +189,8 @@ struct LawTable {
   std::vector<LawKernels> builtin[NPARTS];    ///< in the order of the lists in mpm_law_list.h
   void (*clear_stress)(Batch &);              ///< stress of a law with no strength
   void (*speed)(int n, double density, const double *k, double *c);    ///< c = sqrt(k / density)
+
+  void (*mean_stress)(const Batch &, double *);    ///< a third of the trace
 
   /** Pressure at the end of a step, and equivalent strain rate sqrt(2/3 D:D) in its middle. */
   void (*pressure)(const Batch &, double *);

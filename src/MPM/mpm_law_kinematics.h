@@ -166,6 +166,22 @@ namespace {
             xx * yx + xy * yy + xz * yz, xx * zx + xy * zy + xz * zz, yx * zx + yy * zy + yz * zz};
   }
 
+  /** Largest eigenvalue of a deviator, to round-off (1e-8 of its norm next to the state in which it
+   *  is double). Scaled by r = sqrt(d:d/6), eigenvalues solve t^3 - 3 t - 2 c = 0 with
+   *  c = det(d)/(2 r^3). The root of largest magnitude comes from Newton steps; for c < 0 that is
+   *  the smallest eigenvalue, and the largest follows from a quadratic. */
+  MPM_INLINE double largest_eigenvalue(const Sym &d)
+  {
+    const double r = std::sqrt((1.0 / 6.0) * norm2(d)), r3 = r * r * r;
+    const double det = d.xx * (d.yy * d.zz - d.yz * d.yz) - d.xy * (d.xy * d.zz - d.yz * d.xz) +
+        d.xz * (d.xy * d.yz - d.yy * d.xz);
+    const double c = max(-1.0, min(1.0, r3 > 0.0 ? 0.5 * det / r3 : 0.0));
+    const double a = c < 0.0 ? -c : c;
+    double t = std::sqrt(3.0 + a);
+    for (int it = 0; it < 3; it++) t -= (t * (t * t - 3.0) - 2.0 * a) / (3.0 * (t * t - 1.0));
+    return r * (c < 0.0 ? 0.5 * (t + std::sqrt(max(12.0 - 3.0 * t * t, 0.0))) : t);
+  }
+
   /** Upper bound of the largest eigenvalue of a deviator, exact when the other two are equal. */
   MPM_INLINE double eigenvalue_bound(const Sym &dev)
   {

@@ -11,6 +11,10 @@
 
 // All constitutive laws. A new law is one header and one entry here.
 
+#include "mpm_damage_cockcroft_latham.h"
+#include "mpm_damage_grady_kipp.h"
+#include "mpm_damage_johnson_cook.h"
+#include "mpm_damage_rankine.h"
 #include "mpm_eos_gas.h"
 #include "mpm_eos_jwl.h"
 #include "mpm_eos_linear.h"
@@ -49,7 +53,8 @@ namespace {
                           StrengthSteinberg, StrengthZerilliArmstrong>;
   using viscosity = Family<VISCOSITY, ViscosityNewtonian, ViscosityArtificial, ViscosityBingham,
                            ViscosityHerschelBulkley, ViscosityPower>;
-  using damage = Family<DAMAGE>;
+  using damage =
+      Family<DAMAGE, DamageJohnsonCook, DamageCockcroftLatham, DamageRankine, DamageGradyKipp>;
   using thermal = Family<THERMAL, ThermalAdiabatic, ThermalConstant>;
 
 // in the order in which laws are listed in messages

@@ -48,25 +48,15 @@ namespace {
     }
 
     /** Acoustic tensor: J rho c^2 = mu n.b.n + mu + lambda (1 - ln J), largest along the longest
-     *  principal stretch. The largest eigenvalue of b comes from the cubic of its scaled deviator,
-     *  t^3 - 3 t - 2 cos(3 theta) = 0, by Newton steps from above. */
+     *  principal stretch. */
     static void modulus(const LawParameters &p, const Batch &b, History, double *k)
     {
       const LawNeoHookean law(p);
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
         const Sym bb = left_cauchy_green(b, i);
-        const double mean = (1.0 / 3.0) * trace(bb);
-        const Sym d = add_diagonal(bb, -mean);
-        const double r = std::sqrt((1.0 / 6.0) * norm2(d));
-        const double det = d.xx * (d.yy * d.zz - d.yz * d.yz) - d.xy * (d.xy * d.zz - d.yz * d.xz) +
-            d.xz * (d.xy * d.yz - d.yy * d.xz);
-        const double r3 = r * r * r;
-        const double c3 = max(-1.0, min(1.0, r3 > 0.0 ? 0.5 * det / r3 : 0.0));
-        double t = std::sqrt(3.0 + c3);
-        for (int it = 0; it < 4; it++)
-          t -= (t * (t * t - 3.0) - 2.0 * c3) / (3.0 * (t * t - 1.0) + 1e-9);
-        k[i] += law.mu * (mean + r * t + 1.0) + law.lambda * (1.0 - log(b.J[i]));
+        const double longest = (1.0 / 3.0) * trace(bb) + largest_eigenvalue(deviator(bb));
+        k[i] += law.mu * (longest + 1.0) + law.lambda * (1.0 - log(b.J[i]));
       }
     }
 

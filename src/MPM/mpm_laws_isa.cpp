@@ -28,10 +28,17 @@ namespace {
     for (int i = 0; i < n; i++) c[i] = std::sqrt(max(k[i] * inv, 0.0));
   }
 
-  void pressure(const Batch &b, double *p)
+  void mean_stress(const Batch &b, double *mean)
   {
     MPM_SIMD
-    for (int i = 0; i < b.n; i++) p[i] = (-1.0 / 3.0) * trace(load_stress(b, i));
+    for (int i = 0; i < b.n; i++) mean[i] = (1.0 / 3.0) * trace(load_stress(b, i));
+  }
+
+  void pressure(const Batch &b, double *p)
+  {
+    mean_stress(b, p);
+    MPM_SIMD
+    for (int i = 0; i < b.n; i++) p[i] = -p[i];
   }
 
   void strain_rate(const Batch &b, double *rate)
@@ -70,6 +77,7 @@ void MPM_NAME(MPM_ISA)(LawTable &table)
   table.isa = law::isa;
   table.clear_stress = law::clear_stress;
   table.speed = law::speed;
+  table.mean_stress = law::mean_stress;
   table.pressure = law::pressure;
   table.strain_rate = law::strain_rate;
   table.outside = law::outside;

@@ -123,15 +123,21 @@ class ComposedMaterial : public Material {
     const auto run = [&b](const UsedLaw &law) {
       law.kernels->update(law.parameters, b, rows(b, law));
     };
-    for (const auto &law : laws[DAMAGE])
-      if (law.kernels->prepare) law.kernels->prepare(law.parameters, b, rows(b, law));
+    if (damage) damage->kernels->prepare(damage->parameters, b, rows(b, *damage));
     if (!laws[VISCOSITY].empty()) plain_speed(b, b.speed);
     if (base)
       run(*base);
     else
       table->clear_stress(b);
-    for (const Part part : {VISCOSITY, EOS, DAMAGE, THERMAL})
-      for (const auto &law : laws[part]) run(law);
+    if (damage) account_of_strength(b);
+    for (const auto &law : laws[VISCOSITY]) run(law);
+    if (damage) table->mean_stress(b, b.viscous_mean);
+    for (const auto &law : laws[EOS]) run(law);
+    if (damage) {
+      add_energy(EOS, b, b.volume_energy);
+      run(*damage);
+    }
+    for (const auto &law : laws[THERMAL]) run(law);
   }
 
   const std::vector<ValidRange> &ranges() const override { return valid; }
@@ -166,9 +172,8 @@ class ComposedMaterial : public Material {
   void stored_energy(const Batch &b, double *w) const override
   {
     for (int i = 0; i < b.n; i++) w[i] = 0.0;
-    for (const auto &part : laws)
-      for (const auto &law : part)
-        if (law.kernels->energy) law.kernels->energy(law.parameters, b, rows(b, law), w);
+    for (int part = 0; part < NPARTS; part++)
+      if (!damage || part != STRENGTH) add_energy(static_cast<Part>(part), b, w);
   }
 
  private:
@@ -176,7 +181,8 @@ class ComposedMaterial : public Material {
   double rho_pressure;    ///< density in units of pressure over velocity^2, as the laws need it
   const LawTable *table;
   std::vector<UsedLaw> laws[NPARTS];
-  const UsedLaw *base;    ///< closed law or strength, or null
+  const UsedLaw *base;      ///< closed law or strength, or null
+  const UsedLaw *damage;    ///< or null
   std::vector<HistoryVariable> variables;
   std::vector<ValidRange> valid;
   std::vector<int> source;    ///< of the quantities of these, as in UsedRange
@@ -194,6 +200,7 @@ class ComposedMaterial : public Material {
     base = nullptr;
     for (const Part part : {CLOSED, STRENGTH})
       if (!laws[part].empty()) base = laws[part].data();
+    damage = laws[DAMAGE].empty() ? nullptr : laws[DAMAGE].data();
 
     LawParameters shared;
     shared.chi = 1.0;
@@ -213,7 +220,30 @@ class ComposedMaterial : public Material {
         law.parameters.chi = shared.chi;
         law.parameters.warm = shared.warm;
         law.parameters.temperature = shared.temperature;
+        // with a damage all plastic work goes to batch.heat, for account_of_strength()
+        if (damage && part == STRENGTH) {
+          law.parameters.chi = 1.0;
+          law.parameters.warm *= shared.chi;
+        }
       }
+  }
+
+  /** Energy stored by one part, added to w. */
+  void add_energy(Part part, const Batch &b, double *w) const
+  {
+    for (const auto &law : laws[part])
+      if (law.kernels->energy) law.kernels->energy(law.parameters, b, rows(b, law), w);
+  }
+
+  /** What the strength has done, for a damage; heat that the equation of state shall have. */
+  void account_of_strength(Batch &b) const
+  {
+    for (int i = 0; i < b.n; i++) {
+      b.plastic_work[i] = b.heat[i];
+      b.heat[i] *= damage->parameters.chi * b.kept[i];
+      b.shear_energy[i] = b.volume_energy[i] = 0.0;
+    }
+    add_energy(STRENGTH, b, b.shear_energy);
   }
 
   void add(Part part, UsedLaw &law)
@@ -233,7 +263,9 @@ class ComposedMaterial : public Material {
     text += ", " + title(part, info);
     for (int k = 0; k < info.nparameters; k++)
       if (p.value[k] != info.parameters[k].standard)
-        text += std::string(" ") + info.parameters[k].name + "=" + number(p.value[k]);
+        text += !strcmp(info.parameters[k].unit, FLAG)
+            ? std::string(" ") + info.parameters[k].option
+            : std::string(" ") + info.parameters[k].name + "=" + number(p.value[k]);
     for (int term = 0; term < p.nterms; term++) {
       text += std::string(" ") + info.term;
       for (int k = 0; k < info.nterm_parameters; k++) text += " " + number(p.term[term][k]);
@@ -541,7 +573,7 @@ class Parser {
     if (density <= 0.0) fail(end, "density is missing: add 'density RHO'");
     if (!used[CLOSED].empty()) {
       const std::string name = used[CLOSED][0].info->name;
-      for (const Part part : {EOS, STRENGTH})
+      for (const Part part : {EOS, STRENGTH, DAMAGE})
         if (!used[part].empty())
           fail(used[part][0].word,
                "'" + title(part, *used[part][0].info) + "': '" + name +
@@ -556,6 +588,10 @@ class Parser {
            "no law: add " + join(names(declared_laws(CLOSED)), ", ") +
                ", or eos with strength or viscosity");
     }
+    if (!used[DAMAGE].empty() && used[STRENGTH].empty())
+      fail(used[DAMAGE][0].word,
+           "'" + title(DAMAGE, *used[DAMAGE][0].info) +
+               "' reduces the stress of a solid: add a strength, such as 'strength elastic G'");
     for (const auto &part : used)
       for (const auto &law : part)
         if (law.info->needs_temperature(law.parameters) && used[THERMAL].empty())

@@ -22,7 +22,13 @@
 namespace MPM_NS {
 
 /** Kinds of work that a law reports, in energy summed over the points of a batch. */
-enum Work { PLASTIC, VISCOUS, HEAT, NWORK };
+enum Work {
+  PLASTIC,     ///< plastic work
+  VISCOUS,     ///< work of viscous stress
+  HEAT,        ///< part of these two that became heat
+  FRACTURE,    ///< work spent on damage, and on friction between fragments
+  NWORK
+};
 
 /** Up to BATCH points of one material in structure-of-arrays form.
  *
@@ -50,6 +56,14 @@ struct Batch {
   alignas(64) double heat[BATCH];       ///< energy turned into heat, per reference volume
   alignas(64) double plastic[BATCH];    ///< increment of the equivalent plastic strain
   alignas(64) double speed[BATCH];      ///< wave speed without viscosity, for viscosities only
+
+  // the same, for a damage only; energies are per reference volume, of the undamaged material
+
+  alignas(64) double kept[BATCH];             ///< share of the stress deviator at the start
+  alignas(64) double plastic_work[BATCH];     ///< of the step
+  alignas(64) double viscous_mean[BATCH];     ///< mean stress of the viscosities
+  alignas(64) double shear_energy[BATCH];     ///< stored by the strength
+  alignas(64) double volume_energy[BATCH];    ///< stored by the equation of state
 };
 
 /** A history variable of a material. */
