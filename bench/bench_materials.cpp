@@ -61,6 +61,19 @@ struct Sample {
     {"steinberg",
      "density 8930 eos linear 137e9 strength steinberg 47.7e9 0.12e9 36 0.45 0.64e9 2.83e-11 "
      "3.77e-4 melt 1790 1.5 2.02 thermal adiabatic 385 300 0.9 gruneisen 2.02"},
+    {"johnson_cook_damage",
+     "density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 0.168 0.0089 1 1.1 "
+     "1540 20 thermal adiabatic 460 20 0.9 damage johnson/cook 0.05 3.44 -2.12 rate 0.002 1 "
+     "temperature 0.61 1540 20 soften from 0"},
+    {"cockcroft_latham",
+     "density 8930 eos linear 1e11 strength j2 43e9 157e6 hardening linear 425e6 "
+     "damage cockcroft/latham 1e9"},
+    {"rankine", "density 2700 eos linear 70e9 strength elastic 26e9 damage rankine 1e9"},
+    {"rankine_weibull",
+     "density 2700 eos linear 70e9 strength elastic 26e9 "
+     "damage rankine 1e9 soften energy 1e6 weibull 8 1 1"},
+    {"grady_kipp",
+     "density 2700 eos linear 70e9 strength elastic 26e9 damage grady/kipp 1e20 8 1000 7e10"},
     {"tait", "density 1000 eos tait 2.2e9 7"},
     {"water", "density 1000 eos tait 2.2e9 7 cutoff -1e5 viscosity newtonian 1e-3"},
     {"drucker_prager", "density 1600 drucker/prager 1e8 0.3 30 dilatancy 5"},

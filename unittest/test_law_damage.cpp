@@ -311,7 +311,9 @@ TEST(RankineDamage, TensileStrength)
   double last = 0.0;
   for (int i = 0; i < 1200 && value(p, "damage") < 1.0; i++) {
     last = p.stress(0);
-    p.step_uniaxial_stress(1e-7, 1.0);
+    const double e = 1e-7, lateral = -NU_CONCRETE * e;
+    const Matrix L = {e, 0, 0, 0, lateral, 0, 0, 0, lateral};    // uniaxial stress
+    p.step(L.data(), 1.0);
   }
   EXPECT_NEAR(last, 3e6, E_CONCRETE * 1.01e-7);
   EXPECT_NEAR(p.stress(0), 0.0, 1.0);

@@ -525,12 +525,12 @@ int FixMPM::maxsize_restart()
 }
 
 /* ----------------------------------------------------------------------
-   totals of the ledger, and which velocities the affine matrices belong to
+   totals of the ledger, what was deleted, and which velocities the affine matrices belong to
 ------------------------------------------------------------------------- */
 
 namespace {
 struct Saved {
-  double ledger[5];
+  double ledger[7], deleted[5];
   uint64_t velocities;
   int velocities_known, nstart;    // nstart reals follow
 };
@@ -543,8 +543,10 @@ void FixMPM::write_restart(FILE *fp)
   memset(&saved, 0, sizeof(Saved));
   saved.velocities = velocities;
   saved.velocities_known = velocities_known;
-  static_assert(sizeof(MPMLedger) == sizeof(saved.ledger), "MPMLedger holds 5 doubles");
-  MPI_Reduce(&ledger, saved.ledger, 5, MPI_DOUBLE, MPI_SUM, 0, world);
+  static_assert(sizeof(MPMLedger) == sizeof(saved.ledger), "MPMLedger holds 7 doubles");
+  static_assert(sizeof(deleted) == sizeof(saved.deleted), "deleted holds 5 doubles");
+  memcpy(saved.deleted, &deleted, sizeof(deleted));
+  MPI_Reduce(&ledger, saved.ledger, 7, MPI_DOUBLE, MPI_SUM, 0, world);
   std::vector<double> start = ledger_start;
   for (auto *compute : modify->get_compute_by_style("^mpm/energy$"))
     if (start.empty()) start = dynamic_cast<ComputeMPMEnergy *>(compute)->start_sums();
@@ -561,6 +563,7 @@ void FixMPM::restart(char *buf)
   Saved saved;
   memcpy(&saved, buf, sizeof(Saved));
   if (comm->me == 0) memcpy(&ledger, saved.ledger, sizeof(saved.ledger));
+  memcpy(&deleted, saved.deleted, sizeof(deleted));
   velocities = saved.velocities;
   velocities_known = saved.velocities_known != 0;
   ledger_start.resize(saved.nstart);

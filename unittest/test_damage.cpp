@@ -1,0 +1,206 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// labels: physics restart
+// mpi: 1 4
+// timeout: 200
+
+// Bodies that break: what is deleted is told, history goes with the points, cracks cost energy.
+
+#include "mpm_lammps.h"
+
+#include "gtest/gtest.h"
+
+#include <cmath>
+#include <cstring>
+
+using namespace MPM_TEST;
+
+namespace {
+
+/** Column of a history variable of the only material, by tag, gathered on all ranks. */
+std::vector<double> history(Scene &run, const std::string &name)
+{
+  auto *material =
+      dynamic_cast<FixMPMMaterial *>(run.lmp->modify->get_fix_by_style("^mpm/material$")[0]);
+  const int column = material->find_history(name);
+  EXPECT_GE(column, 0) << name;
+  std::vector<double> mine(run.lmp->atom->map_tag_max + 1, 0.0), all(mine.size());
+  for (int i = 0; i < run.n(); i++) mine[run.lmp->atom->tag[i]] = material->history[i][column];
+  MPI_Allreduce(mine.data(), all.data(), mine.size(), MPI_DOUBLE, MPI_SUM, run.lmp->world);
+  return all;
+}
+
+const std::string head = "units lj\ndimension 2\nboundary f f p\natom_style mpm\n"
+                         "atom_modify map array\nneighbor 0.3 bin\n"
+                         "region box block 0 24 0 12 -0.5 0.5\ncreate_box 1 box\n";
+
+/** A plate that is torn apart while it flies and turns. */
+std::string plate(const std::string &options, const std::string &damage)
+{
+  return head + "fix grid all mpm 1.0 " + options + "\nregion plate block 6 18 4 8 INF INF\n" +
+      "create_points 1 region plate ppc 2\n" +
+      "fix m all mpm/material density 1.0 eos linear 100.0 strength elastic 60.0 " + damage +
+      "\nvelocity all ramp vx -1.5 2.0 x 6 18\nvelocity all ramp vy -0.3 0.3 x 6 18 sum yes\n"
+      "fix step all mpm/dt 0.3\nthermo 1000\n";
+}
+
+const std::string brittle = "damage rankine 6.0 weibull 6 0.25 77 ";
+
+/* ---------------------------------------------------------------------- */
+
+TEST(Deletion, MassAndMomentumAreTold)
+{
+  for (const std::string scheme : {"usl", "musl", "usf"}) {
+    SCOPED_TRACE(scheme);
+    Scene run;
+    run.commands(plate("failed delete scheme " + scheme, brittle) +
+                 "compute e all mpm/energy\nthermo_style custom step c_e\nrun 0\n");
+    const auto start = run.gather();
+    double before[4] = {}, after[4] = {};
+    for (const auto &s : start) {
+      before[0] += s.mass;
+      for (int d = 0; d < 3; d++) before[1 + d] += s.mass * s.v[d];
+    }
+    const double start_energy = run.lmp->modify->get_compute_by_id("e")->compute_scalar();
+    run.commands("run 150\n");
+    const auto end = run.gather();
+    for (const auto &s : end) {
+      after[0] += s.mass;
+      for (int d = 0; d < 3; d++) after[1 + d] += s.mass * s.v[d];
+    }
+    const double *told = run.fix_vector("grid", 11) + 6;
+    EXPECT_EQ(told[0], start.size() - end.size());
+    EXPECT_GT(told[0], 8);
+    EXPECT_LT(told[0], 0.8 * start.size());
+    EXPECT_NEAR(told[1], before[0] - after[0], 1e-12 * before[0]);
+    for (int d = 0; d < 3; d++) EXPECT_NEAR(told[2 + d], before[1 + d] - after[1 + d], 1e-11);
+    EXPECT_EQ(run.lmp->atom->natoms, end.size());
+    for (const double D : history(run, "damage")) EXPECT_LT(D, 1.0);
+
+    // the ledger knows what has gone
+    auto *e = run.lmp->modify->get_compute_by_id("e");
+    e->compute_vector();
+    EXPECT_LT(e->vector[12], 0.0);
+    EXPECT_NEAR(e->vector[10], 0.0, 1e-12 * e->vector[0]);
+    EXPECT_GT(e->vector[11], 0.0);
+    EXPECT_LT(std::fabs(e->vector[9]), 0.03 * start_energy) << "integration";
+  }
+}
+
+TEST(Deletion, IsOff)
+{
+  Scene run;
+  run.commands(plate("", brittle) + "run 150\n");
+  EXPECT_EQ(run.fix_vector("grid", 11)[6], 0.0);
+  const auto D = history(run, "damage");
+  EXPECT_EQ(D.size(), run.gather().size() + 1);
+  int failed = 0;
+  for (const double d : D) failed += d == 1.0;
+  EXPECT_GT(failed, 8);
+}
+
+/* ---------------------------------------------------------------------- */
+
+// strengths are a matter of position and seed; a run on many ranks is that on one
+TEST(DamageOnRanks, SameAsSerial)
+{
+  for (const std::string option : {"", "failed delete"}) {
+    SCOPED_TRACE(option);
+    Scene many, serial(MPI_COMM_SELF);
+    for (Scene *run : {&many, &serial}) run->commands(plate(option, brittle + "soften energy 3.0"));
+    EXPECT_EQ(history(many, "random"), history(serial, "random"));
+    for (Scene *run : {&many, &serial}) run->commands("run 120\n");
+    const auto a = many.gather(), b = serial.gather();
+    ASSERT_EQ(a.size(), b.size());
+    EXPECT_LT(difference(a, b), 1e-9);
+    const auto D = history(many, "damage"), E = history(serial, "damage");
+    double largest = 0.0, error = 0.0;
+    for (size_t k = 0; k < D.size(); k++) {
+      largest = std::max(largest, D[k]);
+      error = std::max(error, std::fabs(D[k] - E[k]));
+    }
+    EXPECT_GT(largest, 0.5);
+    EXPECT_LT(error, 1e-9);
+    for (int k = 6; k < 11; k++)
+      EXPECT_NEAR(many.fix_vector("grid", 11)[k], serial.fix_vector("grid", 11)[k], 1e-9);
+  }
+}
+
+TEST(DamageRestart, ContinuesBitwise)
+{
+  const std::string laws[] = {brittle + "soften energy 3.0 after friction 0.3",
+                              "damage grady/kipp 1e5 3 2.0 150.0", "damage rankine 6.0 after none"};
+  int me, nprocs;
+  MPI_Comm_rank(MPI_COMM_WORLD, &me);
+  MPI_Comm_size(MPI_COMM_WORLD, &nprocs);
+  const std::string file = "mpm_damage." + std::to_string(nprocs) + ".bin";
+  for (const auto &law : laws) {
+    SCOPED_TRACE(law);
+    Scene whole, again;
+    whole.commands(plate("", law) + "run 80\nwrite_restart " + file + "\nrun 60\n");
+    again.commands("read_restart " + file + "\nneighbor 0.3 bin\nfix grid all mpm 1.0\n" +
+                   "fix m all mpm/material density 1.0 eos linear 100.0 strength elastic 60.0 " +
+                   law + "\nfix step all mpm/dt 0.3\nthermo 1000\nrun 60\n");
+    const auto a = whole.gather(), b = again.gather();
+    ASSERT_EQ(a.size(), b.size());
+    EXPECT_EQ(0, memcmp(a.data(), b.data(), a.size() * sizeof(Scene::State)));
+    auto *material = dynamic_cast<FixMPMMaterial *>(whole.lmp->modify->get_fix_by_id("m"));
+    for (const auto &variable : material->material->history())
+      EXPECT_EQ(history(whole, variable.name), history(again, variable.name)) << variable.name;
+    double largest = 0.0;
+    for (const double d : history(whole, "damage")) largest = std::max(largest, d);
+    EXPECT_GT(largest, 0.0);
+    MPI_Barrier(MPI_COMM_WORLD);
+    if (me == 0) remove(file.c_str());
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+/** Energy per area of a crack over GC, in a bar that is pulled until it breaks at one row of cells
+ *  that is a little weaker than the rest. */
+double crack_energy(const std::string &options, double h, const std::string &rest)
+{
+  const double GC = 0.004;
+  Scene run(MPI_COMM_SELF);
+  run.commands(strprintf(
+      "units lj\ndimension 2\nboundary f p p\natom_style mpm\nneighbor %g bin\n"
+      "region box block -6 6 0 %g -0.5 0.5\ncreate_box 2 box\n"
+      "fix grid all mpm %g %s\nregion bar block -4 4 INF INF INF INF\n"
+      "region left block -6 -3.5 INF INF INF INF\nregion right block 3.5 6 INF INF INF INF\n"
+      "region weak block 0 %g INF INF INF INF\n"
+      "create_points 1 region bar ppc 2\nset region weak type 2\n"
+      "group strong type 1\ngroup weak type 2\n"
+      "fix m1 strong mpm/material density 1.0 eos linear 100.0 strength elastic 60.0 %s\n"
+      "fix m2 weak mpm/material density 1.0 eos linear 100.0 strength elastic 60.0 "
+      "damage rankine 0.3 soften energy %g\n"
+      "fix l all mpm/boundary region left stick velocity -0.004 NULL NULL\n"
+      "fix r all mpm/boundary region right stick velocity 0.004 NULL NULL\n"
+      "velocity all ramp vx -0.004 0.004 x -3.5 3.5\n"
+      "compute e all mpm/energy\nthermo_style custom step time c_e[12]\n"
+      "fix step all mpm/dt 0.5\nrun %d\n",
+      0.5 * h, 2 * h, h, options.c_str(), h, rest.c_str(), GC, (int) (30.0 / (0.5 * h / 13.5))));
+  auto *e = run.lmp->modify->get_compute_by_id("e");
+  e->compute_vector();
+  return e->vector[11] / (2 * h * GC);
+}
+
+TEST(Crack, EnergyDoesNotDependOnTheSpacing)
+{
+  const std::string all = "damage rankine 0.315 soften energy 0.004";
+  for (const double h : {0.5, 0.25, 0.125}) {
+    SCOPED_TRACE(h);
+    // only one row of cells can break
+    EXPECT_NEAR(crack_energy("", h, ""), 1.0, 1e-3);
+    // all can: the strain must localize by itself
+    EXPECT_NEAR(crack_energy("shape linear transfer flip 1 scheme musl", h, all), 1.05, 0.02);
+  }
+}
+
+}    // namespace
