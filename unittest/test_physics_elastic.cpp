@@ -229,11 +229,14 @@ INSTANTIATE_TEST_SUITE_P(Options, Beam,
    elements 40^3: lowest -1.7516 m at t = 0.0884 s of a bottom corner.
    Vertical stretch is up to 4.7 at the support. Points part (the cube falls) with 2 and 3 points
    per cell and axis for quadratic and cubic functions, and hold with 4 to 6.
+   The minimum is late by 2.9 % with 10 cells, 1.3 % with 14 and 0.7 % with 20. This comes from the
+   free sides, where the cube contracts to 3 cells per half: in uniaxial strain, between slipping
+   sides, the time is right to 0.3 % with 10 cells.
 ------------------------------------------------------------------------- */
 
 TEST(Block, SuddenLoad)
 {
-  const int cells = 10, ppc = 4;
+  const int cells = 14, ppc = 4;
   const double h = 1.0 / cells;
   Scene run;
   // a quarter of the cube, symmetric about x = 0 and y = 0
@@ -267,6 +270,5 @@ TEST(Block, SuddenLoad)
   run.commands("run 5000\n");
   measured("D1 dynamic: largest stretch", stretch);
   EXPECT_NEAR(measured("D1 dynamic: lowest", lowest), -1.7516, 0.02 * 1.7516);
-  // flat minimum, at 10 cells 2.9 % late; 20 cells, cubic: -1.7475 at 0.0890
-  EXPECT_NEAR(measured("D1 dynamic: at", t_lowest), 0.0884, 0.035 * 0.0884);
+  EXPECT_NEAR(measured("D1 dynamic: at", t_lowest), 0.0884, 0.02 * 0.0884);
 }

@@ -217,6 +217,7 @@ class FixMPM : public Fix {
   void remember_velocities();
   void check_velocities();
   void fit_affine();
+  void add_torques();
   void process_options(int, char **);
   void check_box();
   bool restart_step() const;

@@ -6,8 +6,9 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// First values of the affine matrices of APIC, from the velocities of the points.
+// Affine matrices of APIC apart from the transfers: torques on points, and first values.
 //
+// First values come from the velocities of the points.
 // A point that has not moved yet has no affine matrix, and those of points whose velocities were
 // changed by a command between runs belong to the motion before. With zero in their place, the first
 // step would take a part of the energy of a rotation (2 % for a disk of 10 cells). The matrix of a
@@ -20,6 +21,7 @@
 #include "fix_mpm.h"
 
 #include "atom.h"
+#include "force.h"
 #include "math_eigen.h"
 #include "mpm_halo.h"
 #include "mpm_shape.h"
@@ -191,5 +193,27 @@ void FixMPM::fit_affine()
           }
           C[i][dim * b + a] = slope / lattice.h;
         }
+    }
+}
+
+/* ----------------------------------------------------------------------
+   torques that pair styles exert on points (tangential forces act on the surface of a point) change
+   the angular momentum of its affine field, m D (C - C^T), D = h^2/4 or h^2/3
+------------------------------------------------------------------------- */
+
+void FixMPM::add_torques()
+{
+  if (!C || shape == LINEAR || !atom->torque_flag) return;
+  const int dim = lattice.dim;
+  const double inv_moment = (shape == QUADRATIC ? 4.0 : 3.0) / (lattice.h * lattice.h);
+  for (const auto &run : runs)
+    for (int i = run.first; i < run.last; i++) {
+      const double *torque = atom->torque[i];
+      const double scale = 0.5 * update->dt * force->ftm2v * inv_moment / atom->rmass[i];
+      for (int d = dim == 3 ? 0 : 2; d < 3; d++) {
+        const int e = (d + 1) % 3, f = (d + 2) % 3;
+        C[i][dim * e + f] += scale * torque[d];
+        C[i][dim * f + e] -= scale * torque[d];
+      }
     }
 }

@@ -63,6 +63,7 @@ void FixMPM::initial_integrate(int /*vflag*/)
 void FixMPM::points_to_grid()
 {
   clock = platform::walltime();
+  add_torques();
   grid->zero();
   map_to_nodes(scheme == USF ? kernel.p2g_momentum : kernel.p2g);
   lap(report.t_p2g);
