@@ -689,6 +689,9 @@ TEST_P(Kernels, TileMovesItsBox)
           if (place(i, j, k) >= 0)
             for (int c = 0; c < nreal; c++) tile.real[tile_place(i, j, k) + c] = uniform(-1.0, 1.0);
     const Reals values = tile.values();
+    kernels.prefetch(tile.real, store.data(), slot, box);
+    ASSERT_EQ(store, before);
+    ASSERT_EQ(tile.values(), values);
     kernels.flush(tile.real, store.data(), slot, box);
     Reals expected = before;
     for (int i = 0; i < nodes; i++)

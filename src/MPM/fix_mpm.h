@@ -138,7 +138,8 @@ class FixMPM : public Fix {
     int first, last, slot;
     FixMPMMaterial *material;
   };
-  struct ActiveBlock {    // a block with points: its runs, and the box of base nodes of the step
+  struct
+      ActiveBlock {    // a block with points: its runs, and the box of base nodes of the last P2G
     int slot, first_run, last_run;
     int box[6];
   };
@@ -208,6 +209,7 @@ class FixMPM : public Fix {
   template <class Weigh>
   void map_some(const MPM_NS::PointRows &, const MPM_NS::TransferStep &, MPM_NS::P2G,
                 const std::vector<char> &near, int lane, int nlane, const Weigh &);
+  void load_tile(const ActiveBlock &, int base[3]);
   void sum_halo(int lane, int nlane);
   void gradient_and_material();
   void material_update(const MPM_NS::PointRows &, const Run &, int first, int n, const double *L);

@@ -139,10 +139,8 @@ void FixMPM::grid_to_points()
   const TransferStep s = step_data();
   double L[9 * BATCH];
   for (const auto &a : active) {
-    const auto &block = grid->blocks[a.slot];
     int base[3];
-    for (int d = 0; d < 3; d++) base[d] = grid->side * block.b[d] - 1;
-    kernel.load(tile_load, grid->nodes(), block.slot, a.box);
+    load_tile(a, base);
     for (int k = a.first_run; k < a.last_run; k++)
       for (int i = runs[k].first; i < runs[k].last; i += BATCH) {
         const int last = std::min(i + BATCH, runs[k].last);
@@ -234,10 +232,8 @@ void FixMPM::gradient_and_material()
   const TransferStep s = step_data();
   double L[9 * BATCH];
   for (const auto &a : active) {
-    const auto &block = grid->blocks[a.slot];
     int base[3];
-    for (int d = 0; d < 3; d++) base[d] = grid->side * block.b[d] - 1;
-    kernel.load(tile_load, grid->nodes(), block.slot, a.box);
+    load_tile(a, base);
     for (int k = a.first_run; k < a.last_run; k++)
       for (int i = runs[k].first; i < runs[k].last; i += BATCH) {
         const int last = std::min(i + BATCH, runs[k].last);
@@ -344,6 +340,7 @@ void FixMPM::map_to_nodes(P2G p2g)
   const TransferStep s = step_data();
   for (auto &a : active) {
     const auto &block = grid->blocks[a.slot];
+    kernel.prefetch(tile, grid->nodes(), block.slot, a.box);    // that of the step before
     int base[3];
     for (int d = 0; d < 3; d++) {
       base[d] = grid->side * block.b[d] - 1;
@@ -423,6 +420,21 @@ void FixMPM::map_volume(const std::vector<char> &near, std::vector<double> &shar
   share.resize(grid->nnodes());
   for (int64_t n = 0; n < grid->nnodes(); n++)
     share[n] = inverse * nodes_apart[n * kernel.nreal + 3];
+}
+
+/* ----------------------------------------------------------------------
+   nodes of a block to the tile, and those of the next block towards the cache: in a large run
+   they are not there, and nothing else would hide that
+------------------------------------------------------------------------- */
+
+void FixMPM::load_tile(const ActiveBlock &a, int base[3])
+{
+  const auto &block = grid->blocks[a.slot];
+  for (int d = 0; d < 3; d++) base[d] = grid->side * block.b[d] - 1;
+  kernel.load(tile_load, grid->nodes(), block.slot, a.box);
+  const ActiveBlock *next = &a + 1;
+  if (next < active.data() + active.size())
+    kernel.prefetch(tile_load, grid->nodes(), grid->blocks[next->slot].slot, next->box);
 }
 
 /* ----------------------------------------------------------------------

@@ -129,6 +129,10 @@ void FixMPM::find_blocks()
     a.slot = runs[k].slot;
     a.first_run = k;
     a.last_run = end;
+    for (int d = 0; d < 3; d++) {
+      a.box[d] = 127;
+      a.box[3 + d] = -127;
+    }
     active.push_back(a);
   }
 

@@ -101,8 +101,6 @@ void load(Batch &batch, int n, double dt, const double *L, const double *F, cons
 {
   batch.n = n;
   batch.dt = dt;
-  // one line of eight points now and then is too little for the prefetcher of the CPU
-  for (int k = 0; k < BATCH; k += 8) __builtin_prefetch(vol0 + BATCH + k);
   for (int k = 0; k < n; k++) batch.vol0[k] = vol0[k];
 
   alignas(64) double A[DIM * DIM][BATCH];

@@ -119,6 +119,7 @@ struct TransferKernels {
   G2P g2p_gradient;    ///< velocity gradient only, into L; points untouched, always returns 0
   TileIO flush;        ///< tile -> nodes, all reals
   TileIO load;         ///< nodes -> tile
+  TileIO prefetch;     ///< nodes of the box into the cache, for a flush or load some time later
 };
 
 /** Kernel table of one instruction set. */

@@ -63,7 +63,7 @@ namespace {
 // measured: see bench/bench_kernels.cpp
 constexpr int POINTS = REGISTER == 8 ? 2 : 1;    ///< points side by side in a vector
 constexpr int STAGE = 8;                         ///< points prepared before they are transferred
-constexpr int PREFETCH = 32;                     ///< distance of prefetches, in points
+constexpr int AHEAD = 32;                        ///< distance of prefetches, in points
 
 using Index = std::ptrdiff_t;
 
@@ -478,7 +478,7 @@ template <int DIM, int ORDER, bool AFFINE, int NREAL, int PARTS> struct PointsTo
 
     for (Index p = first; p < last;) {
       const Index n = (last - p) / L < ENTRIES ? (last - p) / L : ENTRIES;
-      const Index ahead = p + PREFETCH;
+      const Index ahead = p + AHEAD;
       prefetch<3>(points.x, ahead);
       if (momentum) {
         prefetch<3>(points.v, ahead);
@@ -769,7 +769,7 @@ template <int DIM, int ORDER, Transfer TRANSFER, int NREAL> struct NodesToPoints
 
     for (Index p = first; p < last;) {
       const Index n = (last - p) / L < ENTRIES ? (last - p) / L : ENTRIES;
-      const Index ahead = p + PREFETCH;
+      const Index ahead = p + AHEAD;
       if (UPDATE) {
         prefetch<3, 1>(points.x, ahead);
         prefetch<3, 1>(points.v, ahead);
@@ -887,12 +887,21 @@ template <int DIM, int ORDER, Transfer TRANSFER, int NREAL> struct NodesToPoints
 
 // ---------------------------------------------------------------------- nodes
 
-/** Adds N reals of the tile to nodes and clears them, or loads them. */
-template <int N, bool LOAD> MPM_INLINE void move_reals(double *tile, double *nodes)
+enum TileMove { FLUSH, LOAD, PREFETCH };
+
+/** Adds N reals of the tile to nodes and clears them, loads them, or brings the nodes near. */
+template <int N, TileMove MOVE> MPM_INLINE void move_reals(double *tile, double *nodes)
 {
+  if constexpr (MOVE == PREFETCH) {
+    // to the second-level cache: the first has no room for another tile yet
+    constexpr int line = 8;
+    MPM_UNROLL
+    for (int i = 0; i < N; i += line) __builtin_prefetch(nodes + i, 1, 2);
+    return;
+  }
   MPM_UNROLL
   for (int i = 0; i < N; i += 4) {
-    if constexpr (LOAD) {
+    if constexpr (MOVE == LOAD) {
       Vec<4>::load(nodes + i).store(tile + i);
     } else {
       (Vec<4>::load(nodes + i) + Vec<4>::load(tile + i)).store(nodes + i);
@@ -901,10 +910,10 @@ template <int N, bool LOAD> MPM_INLINE void move_reals(double *tile, double *nod
   }
 }
 
-/** Flush or load, a row of nodes along the last axis at a time. A row has one node in the block
+/** Flush, load or prefetch, a row of nodes along the last axis at a time. A row has one node in the block
  *  before, all of its own block and ORDER + 1 nodes in the block after; each of these parts is
  *  moved whole if the box touches it. */
-template <int DIM, int ORDER, int NREAL, bool LOAD>
+template <int DIM, int ORDER, int NREAL, TileMove MOVE>
 void tile_io(double *tile, double *nodes, const int slot[27], const int box[6])
 {
   constexpr int side = block_side(DIM), last = DIM - 1, after = ORDER + 1;
@@ -925,13 +934,13 @@ void tile_io(double *tile, double *nodes, const int slot[27], const int box[6])
       // in 3d slots of a row are neighbours, in 2d three apart, the middle one of three in z
       constexpr int next = DIM == 3 ? 1 : 3, middle = DIM == 3 ? 0 : 1;
       if (touches_before)
-        move_reals<NREAL, LOAD>(row,
+        move_reals<NREAL, MOVE>(row,
                                 nodes + (Index(64) * block[middle] + index + side - 1) * NREAL);
       if (touches_own)
-        move_reals<side * NREAL, LOAD>(row + NREAL,
+        move_reals<side * NREAL, MOVE>(row + NREAL,
                                        nodes + (Index(64) * block[next + middle] + index) * NREAL);
       if (touches_after)
-        move_reals<after * NREAL, LOAD>(row + NREAL * (side + 1),
+        move_reals<after * NREAL, MOVE>(row + NREAL * (side + 1),
                                         nodes +
                                             (Index(64) * block[2 * next + middle] + index) * NREAL);
     }
@@ -973,8 +982,9 @@ template <int DIM, int ORDER, Transfer TRANSFER, int NREAL> TransferKernels kern
   k.p2g_force = PointsToNodes<DIM, ORDER, affine, NREAL, FORCE>::p2g;
   k.g2p = G2P::g2p;
   k.g2p_gradient = G2P::g2p_gradient;
-  k.flush = tile_io<DIM, ORDER, NREAL, false>;
-  k.load = tile_io<DIM, ORDER, NREAL, true>;
+  k.flush = tile_io<DIM, ORDER, NREAL, FLUSH>;
+  k.load = tile_io<DIM, ORDER, NREAL, LOAD>;
+  k.prefetch = tile_io<DIM, ORDER, NREAL, PREFETCH>;
   return k;
 }
 

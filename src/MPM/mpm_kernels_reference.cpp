@@ -276,6 +276,8 @@ template <int DIM, int ORDER, Transfer TRANSFER, int NREAL> TransferKernels kern
   k.g2p_gradient = g2p_gradient<DIM, ORDER, TRANSFER, NREAL>;
   k.flush = flush<DIM, ORDER, NREAL>;
   k.load = load<DIM, ORDER, NREAL>;
+  k.prefetch = [](double *, double *, const int *, const int *) {
+  };
   return k;
 }
 
