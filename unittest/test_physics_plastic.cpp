@@ -196,3 +196,43 @@ TEST(Tube, InternalPressure)
     EXPECT_LT(error[1], 0.7 * error[0]);
   }
 }
+
+/* ----------------------------------------------------------------------
+   E4: Taylor bar of the steel 42CrMo4 (O. Pantale, DynELA), 32.4 mm long, radius 3.2 mm, 287 m/s,
+   80 microseconds, Johnson-Cook with heating; a quarter of it. Axisymmetric finite elements (own, 16 x
+   160, frictionless): length 26.525 mm, diameter 11.237 mm, plastic strain 1.884, 608 C; DynELA and
+   Abaqus in 3d: 26.52 to 26.55, 11.18 to 11.22, 1.84, 597.
+------------------------------------------------------------------------- */
+
+TEST(TaylorBar, SteelThatHeats)
+{
+  const double h = 0.0004, d = 0.25 * h;    // d: half the spacing of points
+  Scene run;
+  run.commands(strprintf("units si\nboundary f f f\natom_style mpm\nneighbor %.17g bin\n"
+                         "region box block 0 %.17g 0 %.17g 0 %.17g\ncreate_box 1 box\n"
+                         "fix grid all mpm %.17g\nregion bar cylinder z 0 0 0.0032 0 0.0324\n"
+                         "create_points 1 region bar ppc 2 outside ignore\n"
+                         "fix steel all mpm/material density 7830 eos linear 172.41667e9 "
+                         "strength johnson/cook 79.5769e9 806e6 614e6 0.168 0.0089 1 1.1 1540 20 "
+                         "thermal adiabatic 460 20 0.9\n"
+                         "velocity all set 0 0 -287\nfix anvil all mpm/boundary zlo xlo ylo slip\n"
+                         "fix step all mpm/dt 0.5\nvariable t equal time\n"
+                         "fix end all halt 1 v_t > 8.0e-5 error continue\n"
+                         "compute p all mpm/atom eplastic temperature\nthermo 1000000\nrun 20000\n",
+                         0.5 * h, 19 * h, 19 * h, 86 * h, h));
+  EXPECT_NEAR(run.time(), 8.0e-5, 1.0e-7);
+  auto *history = run.lmp->modify->get_compute_by_id("p");
+  history->compute_peratom();
+  double top = 0.0, foot = 0.0, eplastic = 0.0, temperature = 0.0;
+  for (int i = 0; i < run.n(); i++) {
+    const double *x = run.x()[i];
+    top = std::max(top, x[2]);
+    foot = std::max(foot, sqrt(x[0] * x[0] + x[1] * x[1]));
+    eplastic = std::max(eplastic, history->array_atom[i][0]);
+    temperature = std::max(temperature, history->array_atom[i][1]);
+  }
+  EXPECT_NEAR(measured("E4 length", 1.0e3 * (top + d)), 26.525, 0.005 * 26.525);
+  EXPECT_NEAR(measured("E4 diameter", 2.0e3 * (foot + d)), 11.237, 0.03 * 11.237);
+  EXPECT_NEAR(measured("E4 plastic strain", eplastic), 1.86, 0.05 * 1.86);
+  EXPECT_NEAR(measured("E4 temperature", temperature), 600.0, 0.05 * 600.0);
+}
