@@ -21,7 +21,7 @@ EXAMPLES = os.path.join(mt.ROOT, "examples")
 SECONDS = 100    # for one run, on a busy machine
 
 # node spacing times this, where the default one is for a nicer picture
-COARSER = {"taylor-bar": 2.0}
+COARSER = {"taylor-bar": 2.0, "spall": 2.0}
 
 # steps, where a part of the run will do
 FEWER_STEPS = {"grains-on-block": 1000}
