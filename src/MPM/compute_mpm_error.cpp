@@ -1,0 +1,230 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "compute_mpm_error.h"
+
+#include "arg_info.h"
+#include "atom.h"
+#include "domain.h"
+#include "error.h"
+#include "fix.h"
+#include "input.h"
+#include "modify.h"
+#include "update.h"
+#include "variable.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+
+/* ----------------------------------------------------------------------
+   compute ID group mpm/error  value exact  value exact ...
+------------------------------------------------------------------------- */
+
+ComputeMPMError::ComputeMPMError(LAMMPS *lmp, int narg, char **arg) : Compute(lmp, narg, arg)
+{
+  if (narg < 5) utils::missing_cmd_args(FLERR, "compute mpm/error", error);
+  if (!atom->rmass || !atom->vfrac)
+    error->all(FLERR,
+               "Compute mpm/error needs material points: use atom_style mpm, alone or in a hybrid");
+  if ((narg - 3) % 2)
+    error->all(
+        FLERR, narg - 1,
+        "Compute mpm/error: value {} has no exact solution next to it: values and atom-style "
+        "variables come in pairs",
+        arg[narg - 1]);
+  for (int iarg = 3; iarg < narg; iarg += 2) {
+    values.push_back(parse(arg[iarg], iarg, false));
+    exact.push_back(parse(arg[iarg + 1], iarg + 1, true));
+  }
+
+  scalar_flag = vector_flag = 1;
+  size_vector = NVALUES;
+  extscalar = extvector = 0;
+  norms.assign(NVALUES, 0.0);
+  vector = norms.data();
+}
+
+/* ---------------------------------------------------------------------- */
+
+ComputeMPMError::Value ComputeMPMError::parse(const char *text, int iarg, bool is_exact)
+{
+  Value value = {VARIABLE, 0, "", -1, iarg};
+  if (!is_exact) {
+    static const char *const coordinate[] = {"x", "y", "z"};
+    static const char *const velocity[] = {"vx", "vy", "vz"};
+    for (int d = 0; d < 3; d++) {
+      value.component = d;
+      value.source = POSITION;
+      if (strcmp(text, coordinate[d]) == 0) return value;
+      value.source = VELOCITY;
+      if (strcmp(text, velocity[d]) == 0) return value;
+    }
+  }
+  const ArgInfo info(
+      text, is_exact ? ArgInfo::VARIABLE : ArgInfo::COMPUTE | ArgInfo::FIX | ArgInfo::VARIABLE);
+  if (info.get_type() == ArgInfo::UNKNOWN || info.get_type() == ArgInfo::NONE ||
+      info.get_dim() > 1 || (info.get_type() == ArgInfo::VARIABLE && info.get_dim() > 0)) {
+    if (is_exact)
+      error->all(FLERR, iarg,
+                 "Compute mpm/error: exact solution {} must be an atom-style variable, v_NAME",
+                 text);
+    error->all(FLERR, iarg,
+               "Compute mpm/error: value {} must be x, y, z, vx, vy, vz, or a per-atom c_ID, "
+               "c_ID[i], f_ID, f_ID[i] or v_NAME",
+               text);
+  }
+  value.source = info.get_type() == ArgInfo::COMPUTE ? COMPUTE
+      : info.get_type() == ArgInfo::FIX              ? FIX
+                                                     : VARIABLE;
+  value.id = info.get_name();
+  value.component = info.get_index1();
+  check(value);
+  return value;
+}
+
+/* ----------------------------------------------------------------------
+   does what a value refers to exist, and is it per atom?
+------------------------------------------------------------------------- */
+
+void ComputeMPMError::check(Value &value)
+{
+  const auto check_column = [&](const char *what, bool peratom, int columns) {
+    if (!peratom)
+      error->all(FLERR, value.iarg, "Compute mpm/error: {} {} is not per atom", what, value.id);
+    if (value.component == 0 && columns > 0)
+      error->all(FLERR, value.iarg, "Compute mpm/error: {} {} has {} columns: choose one with [i]",
+                 what, value.id, columns);
+    if (value.component > columns)
+      error->all(FLERR, value.iarg, "Compute mpm/error: {} {} has no column {}", what, value.id,
+                 value.component);
+  };
+  if (value.source == COMPUTE) {
+    auto *compute = modify->get_compute_by_id(value.id);
+    if (!compute)
+      error->all(FLERR, value.iarg, "Compute mpm/error: compute {} does not exist", value.id);
+    check_column("compute", compute->peratom_flag, compute->size_peratom_cols);
+  } else if (value.source == FIX) {
+    auto *fix = modify->get_fix_by_id(value.id);
+    if (!fix) error->all(FLERR, value.iarg, "Compute mpm/error: fix {} does not exist", value.id);
+    check_column("fix", fix->peratom_flag, fix->size_peratom_cols);
+  } else if (value.source == VARIABLE) {
+    value.variable = input->variable->find(value.id.c_str());
+    if (value.variable < 0)
+      error->all(FLERR, value.iarg, "Compute mpm/error: variable {} does not exist", value.id);
+    if (!input->variable->atomstyle(value.variable))
+      error->all(FLERR, value.iarg, "Compute mpm/error: variable {} is not atom-style", value.id);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void ComputeMPMError::init()
+{
+  for (auto &value : values) check(value);
+  for (auto &value : exact) check(value);
+}
+
+/* ----------------------------------------------------------------------
+   a quantity of all atoms of this rank
+------------------------------------------------------------------------- */
+
+void ComputeMPMError::get(const Value &value, std::vector<double> &out)
+{
+  const int nlocal = atom->nlocal;
+  out.resize(nlocal);
+  if (nlocal == 0 && value.source != COMPUTE && value.source != VARIABLE) return;
+
+  if (value.source == POSITION) {
+    for (int i = 0; i < nlocal; i++) {
+      double unwrapped[3];
+      domain->unmap(atom->x[i], atom->image[i], unwrapped);
+      out[i] = unwrapped[value.component];
+    }
+  } else if (value.source == VELOCITY) {
+    for (int i = 0; i < nlocal; i++) out[i] = atom->v[i][value.component];
+  } else if (value.source == VARIABLE) {
+    double unused;
+    input->variable->compute_atom(value.variable, igroup, nlocal ? out.data() : &unused, 1, 0);
+  } else {
+    double *vector_atom, **array_atom;
+    if (value.source == COMPUTE) {
+      auto *compute = modify->get_compute_by_id(value.id);
+      if (!(compute->invoked_flag & Compute::INVOKED_PERATOM)) {
+        compute->compute_peratom();
+        compute->invoked_flag |= Compute::INVOKED_PERATOM;
+      }
+      vector_atom = compute->vector_atom;
+      array_atom = compute->array_atom;
+    } else {
+      auto *fix = modify->get_fix_by_id(value.id);
+      if (update->ntimestep % fix->peratom_freq)
+        error->all(FLERR, Error::NOLASTLINE,
+                   "Compute mpm/error: fix {} is not computed at this time", value.id);
+      vector_atom = fix->vector_atom;
+      array_atom = fix->array_atom;
+    }
+    for (int i = 0; i < nlocal; i++)
+      out[i] = value.component ? array_atom[i][value.component - 1] : vector_atom[i];
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void ComputeMPMError::compute_vector()
+{
+  invoked_vector = update->ntimestep;
+  const int nlocal = atom->nlocal;
+  difference2.assign(nlocal, 0.0);
+  exact2.assign(nlocal, 0.0);
+  for (std::size_t k = 0; k < values.size(); k++) {
+    get(values[k], computed);
+    get(exact[k], wanted);
+    for (int i = 0; i < nlocal; i++) {
+      difference2[i] += (computed[i] - wanted[i]) * (computed[i] - wanted[i]);
+      exact2[i] += wanted[i] * wanted[i];
+    }
+  }
+
+  double mine[3] = {0.0, 0.0, 0.0}, sum[3], largest = 0.0, all;
+  for (int i = 0; i < nlocal; i++) {
+    if (!(atom->mask[i] & groupbit) || !(atom->vfrac[i] > 0.0)) continue;
+    mine[0] += atom->vfrac[i];
+    mine[1] += atom->vfrac[i] * difference2[i];
+    mine[2] += atom->vfrac[i] * exact2[i];
+    if (!(difference2[i] <= largest)) largest = difference2[i];
+  }
+  MPI_Allreduce(mine, sum, 3, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(&largest, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+  const double volume = sum[0] > 0.0 ? sum[0] : 1.0;
+  vector[L2] = sqrt(sum[1] / volume);
+  vector[LARGEST] = sqrt(all);
+  vector[EXACT] = sqrt(sum[2] / volume);
+  for (const int k : {L2, LARGEST})    // written so that NaN stays
+    if (!(norms[k] <= norms[L2_SO_FAR + k])) norms[L2_SO_FAR + k] = norms[k];
+  scalar = vector[L2];
+}
+
+/* ---------------------------------------------------------------------- */
+
+double ComputeMPMError::compute_scalar()
+{
+  if (invoked_vector != update->ntimestep) compute_vector();
+  invoked_scalar = update->ntimestep;
+  return scalar;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double ComputeMPMError::memory_usage()
+{
+  return (computed.capacity() + wanted.capacity() + difference2.capacity() + exact2.capacity()) *
+      sizeof(double);
+}

@@ -1,0 +1,119 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// labels: physics input
+// mpi: 1 2
+// timeout: 300
+
+// compute mpm/error
+
+#include "mpm_lammps.h"
+
+#include "gtest/gtest.h"
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+using namespace MPM_TEST;
+using Lammps = MPM_TEST::Run;    // tests have a function Run
+
+static const char *const block = R"(
+units lj
+boundary p p p
+atom_style mpm
+region box block 0 4 0 4 0 4
+create_box 1 box
+fix grid all mpm 1.0
+region part block 1 3 0 4 0 4
+create_points 1 region part ppc 2
+fix m all mpm/material density 1 neohookean 10 0.3
+velocity all set 0.3 -0.4 0
+timestep 0.01
+variable one atom 0.3+0.0*x
+variable two atom -0.4+0.1*(x>2)
+variable right atom 1.5*x
+variable number equal 3
+compute s all mpm/atom stress/*
+compute d all displace/atom
+)";
+
+TEST(ErrorNorms, AreThoseOfTheDefinition)
+{
+  Lammps run;
+  run.commands(std::string(block) + "compute e all mpm/error vx v_one vy v_two\n"
+                                    "compute x all mpm/error x v_right\nthermo_style custom step c_e "
+                                    "c_e[1] c_e[2] c_e[3] c_e[4] c_e[5] c_x\nrun 0\n");
+  EXPECT_NEAR(run.evaluate("c_e"), 0.1 * std::sqrt(0.5), 1e-14);    // half of the points are off
+  EXPECT_NEAR(run.evaluate("c_e[2]"), 0.1, 1e-14);
+  EXPECT_NEAR(run.evaluate("c_e[3]"), std::sqrt(0.09 + 0.5 * (0.16 + 0.09)), 1e-14);
+  // x from 1.25 to 2.75 in four layers: 0.5 * rms of x
+  const double rms = std::sqrt((1.25 * 1.25 + 1.75 * 1.75 + 2.25 * 2.25 + 2.75 * 2.75) / 4);
+  EXPECT_NEAR(run.evaluate("c_x"), 0.5 * rms, 1e-13);
+
+  // the largest so far stays when the error becomes smaller
+  run.commands("velocity all set NULL -0.35 NULL\nrun 0\n");
+  EXPECT_NEAR(run.evaluate("c_e"), 0.05, 1e-14);
+  EXPECT_NEAR(run.evaluate("c_e[4]"), 0.1 * std::sqrt(0.5), 1e-14);
+  EXPECT_NEAR(run.evaluate("c_e[5]"), 0.1, 1e-14);
+}
+
+/** The example, n cells across the ring: largest error of the positions. */
+static double vortex(int n)
+{
+  std::ifstream file(std::string(MPM_ROOT) + "/examples/vortex/in.vortex");
+  std::stringstream text;
+  text << file.rdbuf();
+  EXPECT_GT(text.str().size(), 100u);
+  Lammps run;
+  run.commands("variable n index " + std::to_string(n) + "\n");
+  std::string line;
+  while (std::getline(text, line))
+    if (line.rfind("dump", 0) != 0) run.commands(line + "\n");
+  return measured("vortex, n = " + std::to_string(n), run.evaluate("c_u[4]"));
+}
+
+// B2: 1.94e-2 and 6.83e-3 with 5 and 10 cells by another code, second order in the end. With the
+// sign of (g' s)^2 that is found in several codes, the error does not become smaller than 5e-3.
+TEST(ErrorNorms, GeneralizedVortex)
+{
+  const double coarse = vortex(5), fine = vortex(8);
+  EXPECT_NEAR(coarse, 1.94e-2, 0.1 * 1.94e-2);
+  EXPECT_GT(std::log(coarse / fine) / std::log(8.0 / 5.0), 1.4);
+}
+
+TEST(BadInput, IsRefused)
+{
+  const struct {
+    const char *line, *message;
+  } cases[] = {
+      {"compute e all mpm/error", "Illegal compute mpm/error"},
+      {"compute e all mpm/error vx", "Illegal compute mpm/error"},
+      {"compute e all mpm/error vx v_one vy", "come in pairs"},
+      {"compute e all mpm/error velocity v_one", "must be x, y, z, vx"},
+      {"compute e all mpm/error vx 1.0", "must be an atom-style variable"},
+      {"compute e all mpm/error vx v_none", "variable none does not exist"},
+      {"compute e all mpm/error vx v_number", "variable number is not atom-style"},
+      {"compute e all mpm/error c_none v_one", "compute none does not exist"},
+      {"compute e all mpm/error c_s v_one", "has 6 columns: choose one"},
+      {"compute e all mpm/error c_s[7] v_one", "has no column 7"},
+      {"compute e all mpm/error c_thermo_temp v_one", "is not per atom"},
+      {"compute e all mpm/error f_m v_one", "is not per atom"},
+  };
+  for (const auto &bad : cases) {
+    SCOPED_TRACE(bad.line);
+    Lammps run;
+    run.commands(block);
+    try {
+      run.commands(std::string(bad.line) + "\n");
+      ADD_FAILURE() << "no error";
+    } catch (const std::exception &e) {
+      EXPECT_NE(std::string(e.what()).find(bad.message), std::string::npos) << e.what();
+    }
+  }
+}
