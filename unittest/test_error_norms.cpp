@@ -66,7 +66,7 @@ TEST(ErrorNorms, AreThoseOfTheDefinition)
 /** The example, n cells across the ring: largest error of the positions. */
 static double vortex(int n)
 {
-  std::ifstream file(std::string(MPM_ROOT) + "/examples/vortex/in.vortex");
+  std::ifstream file(std::string(MPM_SOURCE_DIR) + "/examples/vortex/in.vortex");
   std::stringstream text;
   text << file.rdbuf();
   EXPECT_GT(text.str().size(), 100u);

@@ -24,7 +24,7 @@ SECONDS = 100    # for one run, on a busy machine
 COARSER = {"taylor-bar": 2.0, "spall": 2.0}
 
 # steps, where a part of the run will do
-FEWER_STEPS = {"grains-on-block": 1000}
+FEWER_STEPS = {"grains-on-block": 1000, "vortex": 100}
 
 # has its own test, as it must be built first
 BUILT_FIRST = ["own-material"]
