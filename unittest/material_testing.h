@@ -178,6 +178,10 @@ inline const Sample samples[] = {
     {"grady/kipp",
      "density 2700 eos linear 2e10 strength elastic 1.5e10 "
      "damage grady/kipp 1e4 3 0.1 4e10 after none"},
+    {"mui", "density 1500 mui 1e6 0.3 0.38 0.64 0.3 1e-3"},
+    {"snow", "density 400 snow 1.4e5 0.2 0.025 0.0075 5"},
+    {"camclay", "density 1900 camclay 5e6 0.9 0.2 0.04 0 1e5 1.5e5"},
+    {"nacc", "density 250 nacc 1e6 0.3 1.85 0.3 3 -0.05"},
     {"viscous rubber",
      "density 1000 neohookean 1e6 0.3 viscosity newtonian 10 viscosity artificial 2 1"},
     {"shock cutoff", "density 8930 eos shock 3940 1.49 1.96 cutoff -1e9"},

@@ -46,6 +46,16 @@ namespace {
     return 0.5 * log1p(max(value, -1.0 + 1e-15));
   }
 
+  /** det(I + c) - 1 */
+  MPM_INLINE double elastic_volume(const Sym &c)
+  {
+    const double minors =
+        (c.xx * c.yy - c.xy * c.xy) + (c.xx * c.zz - c.xz * c.xz) + (c.yy * c.zz - c.yz * c.yz);
+    const double det = c.xx * (c.yy * c.zz - c.yz * c.yz) - c.xy * (c.xy * c.zz - c.yz * c.xz) +
+        c.xz * (c.xy * c.yz - c.yy * c.xz);
+    return trace(c) + minors + det;
+  }
+
   /** n . s . n for axis a of a spectral decomposition. */
   MPM_INLINE double along(const Spectral &axes, int a, const Sym &s)
   {

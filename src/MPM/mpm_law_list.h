@@ -21,9 +21,13 @@
 #include "mpm_eos_polynomial.h"
 #include "mpm_eos_shock.h"
 #include "mpm_eos_tait.h"
+#include "mpm_law_camclay.h"
 #include "mpm_law_drucker_prager.h"
 #include "mpm_law_linear.h"
+#include "mpm_law_mui.h"
+#include "mpm_law_nacc.h"
 #include "mpm_law_neohookean.h"
+#include "mpm_law_snow.h"
 #include "mpm_strength_elastic.h"
 #include "mpm_strength_j2.h"
 #include "mpm_strength_johnson_cook.h"
@@ -46,7 +50,7 @@ namespace {
 
   using elastic = Family<CLOSED, LawLinear, LawNeoHookean>;
   using viscoelastic = Family<CLOSED>;
-  using soil = Family<CLOSED, LawDruckerPrager>;
+  using soil = Family<CLOSED, LawDruckerPrager, LawCamClay, LawNacc, LawMuI, LawSnow>;
   using eos = Family<EOS, EosLinear, EosShock, EosTait, EosPolynomial, EosIdealGas, EosStiffenedGas,
                      EosJWL>;
   using strength = Family<STRENGTH, StrengthElastic, StrengthJ2, StrengthJohnsonCook,
