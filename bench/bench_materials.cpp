@@ -77,6 +77,8 @@ struct Sample {
     {"tait", "density 1000 eos tait 2.2e9 7"},
     {"water", "density 1000 eos tait 2.2e9 7 cutoff -1e5 viscosity newtonian 1e-3"},
     {"drucker_prager", "density 1600 drucker/prager 1e8 0.3 30 dilatancy 5"},
+    {"mohr_coulomb", "density 1900 mohr/coulomb 1e8 0.3 30 1e4 dilatancy 10"},
+    {"mohr_coulomb_soft", "density 1900 mohr/coulomb 1e8 0.3 30 3e4 residual 1e4 20 5"},
     {"mui", "density 1500 mui 1e8 0.3 0.38 0.64 0.3 1e-3"},
     {"camclay", "density 1900 camclay 5e6 0.9 0.2 0.04 0 1e5 1.5e5"},
     {"nacc", "density 250 nacc 1e6 0.3 1.85 0.3 3 -0.05"},

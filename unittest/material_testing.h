@@ -178,6 +178,8 @@ inline const Sample samples[] = {
     {"grady/kipp",
      "density 2700 eos linear 2e10 strength elastic 1.5e10 "
      "damage grady/kipp 1e4 3 0.1 4e10 after none"},
+    {"mohr/coulomb", "density 1900 mohr/coulomb 1e6 0.3 30 1e4 dilatancy 10"},
+    {"mohr/coulomb soft", "density 1900 mohr/coulomb 1e6 0.3 30 3e4 residual 1e4 20 5"},
     {"mui", "density 1500 mui 1e6 0.3 0.38 0.64 0.3 1e-3"},
     {"snow", "density 400 snow 1.4e5 0.2 0.025 0.0075 5"},
     {"camclay", "density 1900 camclay 5e6 0.9 0.2 0.04 0 1e5 1.5e5"},

@@ -113,6 +113,9 @@ double shear(const MaterialPoint &p)
 const char *const all[] = {
     "density 1600 drucker/prager 1e6 0.3 30",
     "density 1600 drucker/prager 1e6 0.3 35 cohesion 2e4 dilatancy 10 tension 5e3 plane",
+    "density 1900 mohr/coulomb 1e6 0.3 30 1e4 dilatancy 10",
+    "density 1900 mohr/coulomb 1e6 0.3 30 3e4 residual 1e4 20 20",
+    "density 1900 mohr/coulomb 1e6 0.3 0 1e4",
     "density 1500 mui 1e6 0.3 0.38 0.64 0.3 1e-3",
     "density 400 snow 1.4e5 0.2 0.025 0.0075 5",
     "density 1900 camclay 5e6 0.9 0.2 0.04 0 1e5 1.5e5",

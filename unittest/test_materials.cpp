@@ -47,6 +47,8 @@ TEST(Math, FunctionsMatchLibrary)
     EXPECT_NEAR(law::log1p(tiny), std::log1p(tiny), 8e-16 * std::fabs(std::log1p(tiny)));
     EXPECT_NEAR(law::expm1(0.01 * x), std::expm1(0.01 * x),
                 1e-15 * std::fabs(std::expm1(0.01 * x)));
+    const double angle = M_PI / 600.0 * x;
+    EXPECT_NEAR(law::sin(angle), std::sin(angle), 3e-16 * std::fabs(std::sin(angle)));
     const double f = y - 1.0, exact = f * f * (0.5 - f * (1.0 / 3 - f * (0.25 - f * 0.2)));
     EXPECT_NEAR(law::minus1_minus_log(y), exact, 1e-12 * exact);
     const double w = std::exp(0.03 * x);

@@ -64,36 +64,33 @@ namespace {
     MPM_INLINE double pressure(double v) const { return P0 * exp(growth(v)); }
     MPM_INLINE double volume_energy(double v) const { return P0 / inv_kappa * expm1(growth(v)); }
 
-    /** Logarithms, and their difference. */
-    struct State {
-      double p, pc;
-    };
-
-    MPM_INLINE State begin(History history, int i, double v) const
+    /** Logarithms of p and pc. */
+    MPM_INLINE CriticalTrial begin(History history, int i, double v) const
     {
       return {logP0 - v * inv_kappa, log(max(history[1][i], 1e-250))};
     }
 
-    MPM_INLINE Compressed compress(const State s, double x) const
+    MPM_INLINE Compressed compress(const CriticalTrial &s, double x) const
     {
       const double p = exp(max(min(s.p - x * inv_kappa, LARGEST), -LARGEST));
-      const double pc = exp(max(min(s.pc + x * inv_plastic, LARGEST), -LARGEST));
+      const double pc = exp(max(min(s.hard + x * inv_plastic, LARGEST), -LARGEST));
       return {p, -inv_kappa * p, pc, inv_plastic * pc};
     }
 
     /** p = pc/2 where x (1/kappa + 1/(lambda - kappa)) = ln(2 p/pc) */
-    MPM_INLINE bool bracket(const State s, double, double, double &start, double &end) const
+    MPM_INLINE bool bracket(const CriticalTrial &s, double, double, double &start,
+                            double &end) const
     {
       start = 0.0;
-      end = swell * (s.p - s.pc + 0.69314718055994530942);
+      end = swell * (s.p - s.hard + 0.69314718055994530942);
       return true;
     }
 
-    MPM_INLINE void finish(History history, int i, const State s, double x, double D) const
+    MPM_INLINE void finish(History history, int i, const CriticalTrial &s, double x, double D) const
     {
       history[0][i] += D;
       history[1][i] = x == 0.0 ? history[1][i]
-                               : exp(max(min(s.pc + x * inv_plastic, LARGEST), -LARGEST));
+                               : exp(max(min(s.hard + x * inv_plastic, LARGEST), -LARGEST));
     }
 
     static void modulus(const LawParameters &p, const Batch &b, History history, double *k)

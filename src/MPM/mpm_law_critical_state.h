@@ -13,6 +13,11 @@
 namespace MPM_NS::law {
 namespace {
 
+  /** Before plastic flow: pressure and hardening variable, or functions of these. */
+  struct CriticalTrial {
+    double p, hard;
+  };
+
   /** What pressure and size of the yield surface become with plastic compression. */
   struct Compressed {
     double p, dp;      ///< pressure after plastic volume strain x (compression), and derivative
@@ -32,9 +37,9 @@ namespace {
    *  the value that makes u = 0; 1 - 1/sqrt(s^2 + u^2) is nearly linear in x, and Newton's
    *  iteration within a bracket, a batch at a time, finds the root.
    *
-   *  Law has: Base; G, M_b, beta; begin(history, i, volume), which gives a State; compress(state, x);
-   *  bracket(state, sign of u, p_m, start, end) of x, false when no strength is left at the end;
-   *  finish(history, i, state, x, increment of shear). */
+   *  Law has: Base; G, M_b, beta; begin(history, i, volume); compress(trial, x);
+   *  bracket(trial, sign of u, p_m, start, end) of x, false when no strength is left at the end;
+   *  finish(history, i, trial, x, increment of shear). */
   template <class Law, class Base> struct CriticalStateReturn : Base {
     using Base::Base;
     static constexpr int MAX_ITERATIONS = 100;
@@ -44,11 +49,13 @@ namespace {
       const Law &law = static_cast<const Law &>(*this);
       const double G = law.G, Mb = law.Mb, beta = law.beta, c = 3.0 * G / Mb;
       const double center = 0.5 * (1.0 - beta), half_axis = 0.5 * (1.0 + beta);
-      alignas(64) double x[BATCH], from[BATCH], to[BATCH], sign[BATCH];
+      alignas(64) double x[BATCH], from[BATCH], to[BATCH], sign[BATCH], p[BATCH], hard[BATCH];
       double yielding = 0.0;
       MPM_SIMD_SUM(yielding)
       for (int i = 0; i < b.n; i++) {
-        const typename Law::State state = law.begin(history, i, t.volume[i]);
+        const CriticalTrial state = law.begin(history, i, t.volume[i]);
+        p[i] = state.p;
+        hard[i] = state.hard;
         const Compressed k = law.compress(state, 0.0);
         const double a = half_axis * k.p0, q = 3.0 * G * t.shear[i];
         const double up = k.p + beta * k.p0, down = k.p0 - k.p;    // a (1 + u), a (1 - u)
@@ -69,7 +76,7 @@ namespace {
         double busy = 0.0;
         MPM_SIMD_SUM(busy)
         for (int i = 0; i < b.n; i++) {
-          const typename Law::State state = law.begin(history, i, t.volume[i]);
+          const CriticalTrial state = {p[i], hard[i]};
           const Compressed k = law.compress(state, x[i]);
           const double a = max(half_axis * k.p0, 1e-100), inv = 1.0 / a;
           const double q = 3.0 * G * t.shear[i];
@@ -103,7 +110,7 @@ namespace {
       }
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
-        const typename Law::State state = law.begin(history, i, t.volume[i]);
+        const CriticalTrial state = {p[i], hard[i]};
         const Compressed k = law.compress(state, x[i]);
         const double yield = Mb * std::sqrt(max((k.p + beta * k.p0) * (k.p0 - k.p), 0.0));
         const double shear = min(yield / (3.0 * G), t.shear[i]);

@@ -24,6 +24,7 @@
 #include "mpm_law_camclay.h"
 #include "mpm_law_drucker_prager.h"
 #include "mpm_law_linear.h"
+#include "mpm_law_mohr_coulomb.h"
 #include "mpm_law_mui.h"
 #include "mpm_law_nacc.h"
 #include "mpm_law_neohookean.h"
@@ -50,7 +51,7 @@ namespace {
 
   using elastic = Family<CLOSED, LawLinear, LawNeoHookean>;
   using viscoelastic = Family<CLOSED>;
-  using soil = Family<CLOSED, LawDruckerPrager, LawCamClay, LawNacc, LawMuI, LawSnow>;
+  using soil = Family<CLOSED, LawDruckerPrager, LawMohrCoulomb, LawCamClay, LawNacc, LawMuI, LawSnow>;
   using eos = Family<EOS, EosLinear, EosShock, EosTait, EosPolynomial, EosIdealGas, EosStiffenedGas,
                      EosJWL>;
   using strength = Family<STRENGTH, StrengthElastic, StrengthJ2, StrengthJohnsonCook,

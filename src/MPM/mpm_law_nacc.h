@@ -48,37 +48,33 @@ namespace {
     {
     }
 
-    struct State {
-      double p, alpha;
-    };
-
-    MPM_INLINE State begin(History history, int i, double v) const
+    MPM_INLINE CriticalTrial begin(History history, int i, double v) const
     {
       return {-K * v, history[1][i]};
     }
 
-    MPM_INLINE Compressed compress(const State s, double x) const
+    MPM_INLINE Compressed compress(const CriticalTrial &s, double x) const
     {
-      const double z = min(xi * max(x - s.alpha, 0.0), 200.0);
+      const double z = min(xi * max(x - s.hard, 0.0), 200.0);
       const double grow = expm1(z), shrink = -grow / (1.0 + grow);    // exp(z) - 1, exp(-z) - 1
       return {s.p - K * x, -K, 0.5 * K * (grow - shrink),
               z > 0.0 ? 0.5 * K * xi * (2.0 + grow + shrink) : 0.0};
     }
 
     /** The pressure vanishes at x = p/K, the strength at x = alpha. */
-    MPM_INLINE bool bracket(const State s, double sign, double center, double &start,
+    MPM_INLINE bool bracket(const CriticalTrial &s, double sign, double center, double &start,
                             double &end) const
     {
-      const bool strong = s.p > K * s.alpha;
-      start = sign > 0.0 && strong ? max(s.alpha, 0.0) : 0.0;
-      end = sign > 0.0 || !strong ? s.p / K : max((s.p - center) / K, s.alpha);
+      const bool strong = s.p > K * s.hard;
+      start = sign > 0.0 && strong ? max(s.hard, 0.0) : 0.0;
+      end = sign > 0.0 || !strong ? s.p / K : max((s.p - center) / K, s.hard);
       return strong;
     }
 
-    MPM_INLINE void finish(History history, int i, const State s, double x, double D) const
+    MPM_INLINE void finish(History history, int i, const CriticalTrial &s, double x, double D) const
     {
       history[0][i] += D;
-      history[1][i] = s.alpha - x;
+      history[1][i] = s.hard - x;
     }
   };
 

@@ -137,6 +137,23 @@ namespace {
     return p.scale * p.rest + (p.scale - 1.0);
   }
 
+  /** Sine for |x| <= pi/2, by its Taylor series. */
+  MPM_INLINE double sin(double x)
+  {
+    const double z = -x * x;
+    double h = 1.0 / 51090942171709440000.0;
+    h = h * z + 1.0 / 121645100408832000.0;
+    h = h * z + 1.0 / 355687428096000.0;
+    h = h * z + 1.0 / 1307674368000.0;
+    h = h * z + 1.0 / 6227020800.0;
+    h = h * z + 1.0 / 39916800.0;
+    h = h * z + 1.0 / 362880.0;
+    h = h * z + 1.0 / 5040.0;
+    h = h * z + 1.0 / 120.0;
+    h = h * z + 1.0 / 6.0;
+    return x + x * z * h;
+  }
+
   /** x^y for x >= 0 and y > 0. */
   MPM_INLINE double pow(double x, double y)
   {

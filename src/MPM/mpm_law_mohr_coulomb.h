@@ -1,0 +1,266 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+#ifndef LMP_MPM_LAW_MOHR_COULOMB_H
+#define LMP_MPM_LAW_MOHR_COULOMB_H
+
+#include "mpm_law_elastoplastic.h"
+
+namespace MPM_NS::law {
+namespace {
+
+  enum { MC_E, MC_NU, MC_PHI, MC_COHESION, MC_PSI, MC_RESIDUAL_C, MC_RESIDUAL_PHI, MC_RATE };
+
+  /** Principal Kirchhoff stresses, largest first. */
+  struct Ordered {
+    double s1, s2, s3;
+  };
+
+  /** Strength at some plastic strain. */
+  struct Friction {
+    double sin_phi, c_cos_phi;
+  };
+
+  /** Mohr-Coulomb surface s1 - s3 + (s1 + s3) sin(phi) = 2 c cos(phi), with non-associated flow, and
+   *  the return to it (E.A. de Souza Neto, D. Peric, D.R.J. Owen, Computational Methods for
+   *  Plasticity, 2008, boxes 8.4 to 8.7): to the plane, one of the two edges, or the apex. */
+  struct MohrCoulombSurface {
+    double K, G, sin_psi;
+
+    MPM_INLINE double excess(const Ordered &s, const Friction &f) const
+    {
+      return s.s1 - s.s3 + (s.s1 + s.s3) * f.sin_phi - 2.0 * f.c_cos_phi;
+    }
+
+    MPM_INLINE double apex(const Friction &f) const { return f.c_cos_phi / max(f.sin_phi, 1e-12); }
+
+    /** at_apex: 1 or 0. The trial state is outside. */
+    MPM_INLINE Ordered project(const Ordered &t, const Friction &f, double &at_apex) const
+    {
+      const double sp = f.sin_phi, st = sin_psi, ss = sp * st;
+      // change of the three stresses per multiplier of the main plane; of the other two planes it is
+      // the same with stresses exchanged
+      const double d1 = -2.0 * G * (1.0 + (1.0 / 3.0) * st) - 2.0 * K * st;
+      const double d2 = ((4.0 / 3.0) * G - 2.0 * K) * st;
+      const double d3 = 2.0 * G * (1.0 - (1.0 / 3.0) * st) - 2.0 * K * st;
+      const double a = 4.0 * G * (1.0 + (1.0 / 3.0) * ss) + 4.0 * K * ss;
+      const double main = excess(t, f);
+
+      const double m = main / a;
+      const double p1 = t.s1 + d1 * m, p2 = t.s2 + d2 * m, p3 = t.s3 + d3 * m;
+      const bool plane = p1 >= p2 && p2 >= p3;
+
+      // right: s2 = s3, with the plane of s1 and s2; left: s1 = s2, with that of s2 and s3
+      const bool right = (1.0 - st) * t.s1 - 2.0 * t.s2 + (1.0 + st) * t.s3 > 0.0;
+      const double other = right ? excess({t.s1, t.s3, t.s2}, f) : excess({t.s2, t.s1, t.s3}, f);
+      const double b = right ? 2.0 * G * (1.0 + sp + st - (1.0 / 3.0) * ss) + 4.0 * K * ss
+                             : 2.0 * G * (1.0 - sp - st - (1.0 / 3.0) * ss) + 4.0 * K * ss;
+      const double det = 1.0 / ((a - b) * (a + b));
+      const double ma = (a * main - b * other) * det, mb = (a * other - b * main) * det;
+      const double e1 = t.s1 + d1 * ma + (right ? d1 : d2) * mb;
+      const double e2 = t.s2 + d2 * ma + (right ? d3 : d1) * mb;
+      const double e3 = t.s3 + d3 * ma + (right ? d2 : d3) * mb;
+      const double pair = 0.5 * (e2 + (right ? e3 : e1));    // equal but for round-off
+      const bool edge = right ? e1 >= pair : pair >= e3;
+
+      const double tip = apex(f);
+      at_apex = plane || edge ? 0.0 : 1.0;
+      Ordered r;
+      r.s1 = plane ? p1 : edge ? (right ? e1 : pair) : tip;
+      r.s2 = plane ? p2 : edge ? pair : tip;
+      r.s3 = plane ? p3 : edge ? (right ? pair : e3) : tip;
+      return r;
+    }
+
+    /** Equivalent plastic strain of a return, sqrt(2/3 e:e) of its deviator. */
+    MPM_INLINE double strain(const Ordered &t, const Ordered &r) const
+    {
+      const double a = t.s1 - r.s1, b = t.s2 - r.s2, c = t.s3 - r.s3;
+      const double ab = a - b, bc = b - c, ca = c - a;
+      return std::sqrt((2.0 / 9.0) * (ab * ab + bc * bc + ca * ca)) / (2.0 * G);
+    }
+  };
+
+  /** Elastic-plastic solid with the Mohr-Coulomb surface in Kirchhoff stress, see
+   *  MohrCoulombSurface, and Hencky elasticity. Cohesion and friction angle may soften with the
+   *  equivalent plastic strain e (A. Yerro, E.E. Alonso, N.M. Pinyol, Comput. Geotech. 74 (2016) 26):
+   *
+   *    c = CR + (C - CR) exp(-RATE e),  phi = PHIR + (PHI - PHIR) exp(-RATE e)
+   *
+   *  at the end of the step: the increment of e that a return makes, as a function of that with which
+   *  the strength is taken, has a fixed point, found within a bracket by the secant method (Illinois
+   *  variant), a batch at a time. Volume strain at the apex is kept as "gap", see close_gap(). */
+  struct LawMohrCoulomb : PrincipalReturn<LawMohrCoulomb>, HenckyModuli {
+    static constexpr const char *name = "mohr/coulomb";
+    static constexpr const char *meaning = "Mohr-Coulomb plasticity with softening: soil, rock";
+    static constexpr Parameter parameters[] = {
+        {"", "E", "pressure", POSITIVE, REQUIRED, "Young's modulus"},
+        {"", "NU", "1", POISSON_RATIO, REQUIRED, "Poisson's ratio"},
+        {"", "PHI", "degrees", {0.0, 80.0, true}, REQUIRED, "friction angle"},
+        {"", "C", "pressure", NOT_NEGATIVE, REQUIRED, "cohesion"},
+        {"dilatancy", "PSI", "degrees", {0.0, 80.0, true}, 0.0, "dilatancy angle"},
+        {"residual", "CR", "pressure", NOT_NEGATIVE, 0.0, "residual cohesion"},
+        {"residual", "PHIR", "degrees", {0.0, 80.0, true}, 0.0, "residual friction angle"},
+        {"residual", "RATE", "1", NOT_NEGATIVE, 0.0, "softening per plastic strain"}};
+    static constexpr HistoryDeclaration history[] = {
+        MPM_ELASTIC_STRAIN_HISTORY,
+        {"eplastic", ZERO, "1", "equivalent plastic strain"},
+        {"gap", ZERO, "1", "logarithmic volume strain between separated parts"}};
+    static constexpr int nhistory(const LawParameters &) { return ELASTIC_STRAIN_ROWS + 2; }
+    static constexpr const char *check(const LawParameters &p)
+    {
+      const bool soft = p.value[MC_RATE] > 0.0;
+      if (p.value[MC_PSI] > p.value[MC_PHI] || (soft && p.value[MC_PSI] > p.value[MC_RESIDUAL_PHI]))
+        return "PSI must not exceed PHI and PHIR, or flow makes energy";
+      if (soft &&
+          (p.value[MC_RESIDUAL_C] > p.value[MC_COHESION] ||
+           p.value[MC_RESIDUAL_PHI] > p.value[MC_PHI]))
+        return "CR and PHIR must not exceed C and PHI";
+      return nullptr;
+    }
+
+    double phi, c, cr, phir, rate, sin_phi, c_cos_phi;
+    MohrCoulombSurface surface;
+
+    LawMohrCoulomb(const LawParameters &p, const Batch &) :
+        HenckyModuli(p.value[MC_E], p.value[MC_NU]), phi(p.value[MC_PHI] * DEGREES),
+        c(p.value[MC_COHESION]), cr(p.value[MC_RESIDUAL_C]),
+        phir(p.value[MC_RESIDUAL_PHI] * DEGREES), rate(p.value[MC_RATE]), sin_phi(std::sin(phi)),
+        c_cos_phi(c * std::cos(phi)), surface{K, G, std::sin(p.value[MC_PSI] * DEGREES)}
+    {
+    }
+
+    template <bool SOFT> MPM_INLINE Friction strength(double e) const
+    {
+      if (!SOFT) return {sin_phi, c_cos_phi};
+      const double left = exp(-rate * e), s = sin(phir + (phi - phir) * left);
+      return {s, (cr + (c - cr) * left) * std::sqrt((1.0 - s) * (1.0 + s))};
+    }
+
+    MPM_INLINE void map(Batch &b, History history, PrincipalStates &s) const
+    {
+      if (rate > 0.0)
+        return_to_surface<true>(b, history, s);
+      else
+        return_to_surface<false>(b, history, s);
+    }
+
+    template <bool SOFT>
+    MPM_INLINE void return_to_surface(Batch &b, History history, PrincipalStates &s) const
+    {
+      alignas(64) double s1[BATCH], s2[BATCH], s3[BATCH], D[BATCH], yields[BATCH];
+      double yielding = 0.0;
+      MPM_SIMD_SUM(yielding)
+      for (int i = 0; i < b.n; i++) {
+        double gap = history[1][i];
+        const double v = s.strain[0][i] + s.strain[1][i] + s.strain[2][i];
+        const double shift = (1.0 / 3.0) * (close_gap(v, gap) - v);
+        history[1][i] = gap;
+        const double pv = (K - (2.0 / 3.0) * G) * (v + 3.0 * shift);
+        for (int a = 0; a < 3; a++) {
+          s.strain[a][i] += shift;
+          s.tau[a][i] = pv + 2.0 * G * s.strain[a][i];
+        }
+        const double x = s.tau[0][i], y = s.tau[1][i], z = s.tau[2][i];
+        s1[i] = max(max(x, y), z);
+        s3[i] = min(min(x, y), z);
+        s2[i] = max(min(x, y), min(max(x, y), z));
+        const Friction f = strength<SOFT>(history[0][i]);
+        const bool plastic = surface.excess({s1[i], s2[i], s3[i]}, f) > 0.0;
+        yields[i] = plastic ? 1.0 : 0.0;
+        D[i] = 0.0;
+        yielding += yields[i];
+      }
+      if (SOFT && yielding > 0.0) soften(b, history, s1, s2, s3, yields, D);
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const Ordered t = {s1[i], s2[i], s3[i]};
+        const Friction f = strength<SOFT>(history[0][i] + D[i]);
+        double at_apex;
+        const Ordered r = surface.project(t, f, at_apex);
+        const double plastic = yields[i];
+        // stresses go back to their axes: equal trial stresses stay equal
+        double by_old = 0.0, by_new = 0.0;
+        const double p_old = s.before[0][i] + s.before[1][i] + s.before[2][i];
+        const double mean = (1.0 / 3.0) * (t.s1 - r.s1 + t.s2 - r.s2 + t.s3 - r.s3);
+        for (int a = 0; a < 3; a++) {
+          const double x = s.tau[a][i];
+          const double change = x == t.s1 ? r.s1 - t.s1 : x == t.s3 ? r.s3 - t.s3 : r.s2 - t.s2;
+          const double tau = x + plastic * change;
+          const double flow = plastic * ((-change - mean) / (2.0 * G) + mean / (3.0 * K));
+          by_old += ((K - (2.0 / 3.0) * G) * p_old + 2.0 * G * s.before[a][i]) * flow;
+          by_new += tau * flow;
+          s.strain[a][i] -= flow;
+          s.tau[a][i] = tau;
+        }
+        const double made = plastic * surface.strain(t, r);
+        s.work[i] = plastic_work(by_old, by_new);
+        b.plastic[i] = made;
+        history[0][i] += made;
+        history[1][i] += plastic * at_apex * max(mean, 0.0) / K;
+      }
+    }
+
+    /** Increment of the plastic strain with which the strength is that at the end of the step. */
+    MPM_INLINE void soften(const Batch &b, History history, const double *s1, const double *s2,
+                           const double *s3, const double *yields, double *D) const
+    {
+      constexpr int MAX_ITERATIONS = 60;
+      alignas(64) double low[BATCH], high[BATCH], r_low[BATCH], r_high[BATCH], side[BATCH];
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        // returned - D at both ends: not negative; not positive, when there is no strength in shear
+        low[i] = r_low[i] = 0.0;
+        high[i] = yields[i] * surface.strain({s1[i], s2[i], s3[i]}, {0.0, 0.0, 0.0});
+        r_high[i] = -high[i];
+        side[i] = 0.0;
+      }
+      for (int iteration = 0; iteration < MAX_ITERATIONS; iteration++) {
+        double busy = 0.0;
+        MPM_SIMD_SUM(busy)
+        for (int i = 0; i < b.n; i++) {
+          const Ordered t = {s1[i], s2[i], s3[i]};
+          const double gap = r_low[i] - r_high[i], width = high[i] - low[i];
+          const double secant = low[i] + width * r_low[i] / max(gap, 1e-300);
+          // first D = 0, then a step of the fixed-point iteration, which is close
+          const double d = iteration > 1 ? secant : min(r_low[i], high[i]);
+          double at_apex;
+          const double r =
+              surface.strain(t, surface.project(t, strength<true>(history[0][i] + d), at_apex)) - d;
+          const bool active = width > 1e-14 * high[i] && yields[i] > 0.0;
+          const bool up = r > 0.0;
+          r_high[i] = active ? (up ? (side[i] > 0.0 ? 0.5 : 1.0) * r_high[i] : r) : r_high[i];
+          r_low[i] = active ? (up ? r : (side[i] < 0.0 ? 0.5 : 1.0) * r_low[i]) : r_low[i];
+          low[i] = active && up ? d : low[i];
+          high[i] = active && !up ? d : high[i];
+          side[i] = up ? 1.0 : -1.0;
+          D[i] = active ? d : D[i];
+          const bool done = max(r, -r) <= 1e-13 * d;
+          low[i] = active && done ? high[i] : low[i];
+          busy += active && !done ? 1.0 : 0.0;
+        }
+        if (busy == 0.0) return;
+      }
+    }
+
+    MPM_INLINE double stored(History, int, const double e[3]) const
+    {
+      const double v = e[0] + e[1] + e[2];
+      return 0.5 * (K - (2.0 / 3.0) * G) * v * v + G * (e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
+    }
+
+    static void modulus(const LawParameters &p, const Batch &b, History, double *k)
+    {
+      const HenckyModuli m(p.value[MC_E], p.value[MC_NU]);
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) k[i] += hencky_modulus(m.K, m.G, b.J[i], load_stress(b, i));
+    }
+  };
+
+}    // namespace
+}    // namespace MPM_NS::law
+#endif
