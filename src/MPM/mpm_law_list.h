@@ -51,7 +51,8 @@ namespace {
 
   using elastic = Family<CLOSED, LawLinear, LawNeoHookean>;
   using viscoelastic = Family<CLOSED>;
-  using soil = Family<CLOSED, LawDruckerPrager, LawMohrCoulomb, LawCamClay, LawNacc, LawMuI, LawSnow>;
+  using soil =
+      Family<CLOSED, LawDruckerPrager, LawMohrCoulomb, LawCamClay, LawNacc, LawMuI, LawSnow>;
   using eos = Family<EOS, EosLinear, EosShock, EosTait, EosPolynomial, EosIdealGas, EosStiffenedGas,
                      EosJWL>;
   using strength = Family<STRENGTH, StrengthElastic, StrengthJ2, StrengthJohnsonCook,

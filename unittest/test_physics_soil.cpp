@@ -1,0 +1,172 @@
+// labels: physics
+// timeout: 300
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// Soil in motion: slopes, flow of grains on an incline, collapse of a column.
+
+#include "mpm_lammps.h"
+
+#include "gtest/gtest.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace MPM_TEST;
+
+namespace {
+
+constexpr double DEG = M_PI / 180.0, g = 9.81;
+
+/** A layer on a rough plane with an angle, periodic along it; gravity comes within a time, so that
+ *  the layer settles without bouncing. */
+std::string layer(double depth, double h, int cells, double angle, double ramp,
+                  const std::string &material, const std::string &velocity)
+{
+  return strprintf("units si\ndimension 2\nboundary p f p\natom_style mpm\nneighbor %.17g bin\n"
+                   "region box block 0 %.17g 0 %.17g -0.1 0.1\ncreate_box 1 box\n"
+                   "fix grid all mpm %.17g\nregion layer block INF INF 0 %.17g INF INF\n"
+                   "create_points 1 region layer ppc 2\n",
+                   0.5 * h, cells * h, depth + 4.0 * h, h, depth) +
+      "fix soil all mpm/material " + material + "\n" + velocity +
+      strprintf("fix floor all mpm/boundary ylo stick\n"
+                "variable g equal %.17g*(1-(time<%.17g)*(1-time/%.17g))\n"
+                "fix g all gravity v_g vector %.17g %.17g 0\nfix step all mpm/dt 0.4\n"
+                "variable t equal time\nthermo 1000000\n",
+                g, ramp, ramp, std::sin(angle), -std::cos(angle));
+}
+
+/* ----------------------------------------------------------------------
+   G2: flow with mu(I) on an incline, u(y) = 2/3 I_theta/d sqrt(fraction g cos) (h^1.5 - (h-y)^1.5)
+   (L.E. Silbert et al., Phys. Rev. E 64 (2001) 051302; P. Jop et al., J. Fluid Mech. 541 (2005) 167)
+------------------------------------------------------------------------- */
+
+struct Incline {
+  double surface, rms;    ///< velocity at the surface, and error of the profile, over the exact u_s
+  double fastest;
+};
+
+Incline flow(double degrees, int cells, double start, double time)
+{
+  const double depth = 0.01, d = 5.0e-4, fraction = 0.6, I0 = 0.279;
+  const double mus = std::tan(20.9 * DEG), mu2 = std::tan(32.76 * DEG), a = degrees * DEG;
+  const double I = I0 * (std::tan(a) - mus) / (mu2 - std::tan(a));
+  const auto exact = [&](double y) {
+    return 2.0 / 3.0 * I / d * std::sqrt(fraction * g * std::cos(a)) *
+        (std::pow(depth, 1.5) - std::pow(std::max(depth - y, 0.0), 1.5));
+  };
+  const double us = exact(depth);
+  Scene run;
+  run.commands(layer(depth, depth / cells, 4, a, 0.02,
+                     strprintf("density 1500 mui 1.5e5 0.3 %.17g %.17g %.17g %.17g fraction 0.6",
+                               mus, mu2, I0, d),
+                     strprintf("variable u atom %.17g*(1-(1-y/%.17g)^1.5)\n"
+                               "velocity all set v_u 0 0\n",
+                               start, depth)) +
+               strprintf("fix end all halt 10 v_t > %.17g error continue\nrun 1000000\n", time));
+  Incline result{0.0, 0.0, 0.0};
+  double n = 0.0, top = 0.0;
+  for (int i = 0; i < run.n(); i++) {
+    const double y = run.x()[i][1], u = run.v()[i][0];
+    result.rms += (u - exact(y)) * (u - exact(y)) / run.n() / (us * us);
+    result.fastest = std::max(result.fastest, std::abs(u));
+    if (y > 0.9 * depth) {    // there the profile is flat
+      top += u / exact(y);
+      n++;
+    }
+  }
+  result.rms = std::sqrt(result.rms);
+  result.surface = top / n;
+  return result;
+}
+
+TEST(GranularFlow, BagnoldProfile)
+{
+  const Incline at24 = flow(24.0, 20, 0.22, 1.2);
+  EXPECT_NEAR(measured("G2 surface velocity at 24 degrees", at24.surface), 1.0, 0.03);
+  EXPECT_LT(measured("G2 rms of the profile", at24.rms), 0.03);
+}
+
+TEST(GranularFlow, StopsBelowTheStaticAngle)
+{
+  EXPECT_LT(measured("G2 velocity at 20 degrees", flow(20.0, 10, 0.05, 0.6).fastest), 1e-4);
+}
+
+/* ----------------------------------------------------------------------
+   G3: infinite slope without cohesion. Where flow keeps the volume, a plane strain layer slides
+   with tan = sin(phi) (E.H. Davis, in: Soil Mechanics, Butterworths, 1968, p. 341): coaxial flow
+------------------------------------------------------------------------- */
+
+TEST(InfiniteSlope, SlidesWhenTooSteep)
+{
+  const double depth = 0.5, h = 0.05, phi = 30.0 * DEG;
+  for (const char *law : {"drucker/prager 1e7 0.3 30 plane", "mohr/coulomb 1e7 0.3 30 0"})
+    for (const double angle : {24.0 * DEG, 32.0 * DEG}) {
+      SCOPED_TRACE(law);
+      Scene run;
+      run.commands(layer(depth, h, 4, angle, 0.3, std::string("density 1600 ") + law, ""));
+      const auto speed = [&]() {
+        double u = 0.0, n = 0.0;
+        for (int i = 0; i < run.n(); i++)
+          if (run.x()[i][1] > 0.5 * depth) {
+            u += run.v()[i][0];
+            n++;
+          }
+        return u / n;
+      };
+      run.commands("fix end all halt 10 v_t > 0.5 error continue\nrun 100000\nunfix end\n");
+      const double t0 = run.time(), u0 = speed();
+      run.commands("fix end all halt 10 v_t > 0.8 error continue\nrun 100000\n");
+      const double a = (speed() - u0) / (run.time() - t0);
+      const double exact = g * (std::sin(angle) - std::cos(angle) * std::sin(phi));
+      if (exact > 0.0)
+        EXPECT_NEAR(measured("G3 acceleration of a slope", a / exact), 1.0, 0.03);
+      else
+        EXPECT_LT(measured("G3 velocity of a stable slope", std::abs(speed())), 0.01);
+    }
+}
+
+/* ----------------------------------------------------------------------
+   G1: run-out of a planar column, (L - L0)/L0 = 1.2 a for a < 2.3 (G. Lube et al., Phys. Rev. E 72
+   (2005) 041301)
+------------------------------------------------------------------------- */
+
+TEST(ColumnCollapse, RunOut)
+{
+  const double L0 = 0.1, h = 0.00625;
+  for (const char *law : {"drucker/prager 1e6 0.3 30 plane", "mui 1e6 0.3 0.5 0.8 0.3 1e-3"})
+    for (const double a : {1.0}) {
+      Scene run;
+      run.commands(strprintf(
+          "units si\ndimension 2\nboundary f f p\natom_style mpm\nneighbor %.17g bin\n"
+          "region box block 0 %.17g 0 %.17g -0.1 0.1\ncreate_box 1 box\n"
+          "fix grid all mpm %.17g\nregion column block 0 %.17g 0 %.17g INF INF\n"
+          "create_points 1 region column ppc 2\n"
+          "fix sand all mpm/material density 1600 %s\n"
+          "fix wall all mpm/boundary xlo slip\nfix floor all mpm/boundary ylo stick\n"
+          "fix g all gravity 9.81 vector 0 -1 0\nfix step all mpm/dt 0.4\n"
+          "variable t equal time\nfix end all halt 10 v_t > %.17g error continue\n"
+          "thermo 1000000\nrun 1000000\n",
+          0.5 * h, 0.5, 0.15, h, L0, a * L0, law, 3.0 * std::sqrt(2.0 * a * L0 / g) + 0.3));
+      std::vector<double> x;
+      double fastest = 0.0, volume = 0.0;
+      for (int i = 0; i < run.n(); i++) {
+        x.push_back(run.x()[i][0]);
+        fastest = std::max(fastest, std::abs(run.v()[i][0]));
+        volume += run.points().jacobian(i) * run.lmp->atom->vfrac[i];
+      }
+      std::sort(x.begin(), x.end());
+      const double front = x[x.size() * 99 / 100];
+      measured("G1 farthest point", (x.back() - L0) / (a * L0));
+      EXPECT_NEAR(measured("G1 run-out over aspect ratio", (front - L0) / (a * L0)), 1.2, 0.25);
+      EXPECT_LT(measured("G1 speed at the end", fastest), 0.1);
+      measured("G1 volume", volume / (0.2 * a * L0 * L0));
+    }
+}
+
+}    // namespace
