@@ -98,36 +98,36 @@ TEST(GranularFlow, StopsBelowTheStaticAngle)
 }
 
 /* ----------------------------------------------------------------------
-   G3: infinite slope without cohesion. Where flow keeps the volume, a plane strain layer slides
-   with tan = sin(phi) (E.H. Davis, in: Soil Mechanics, Butterworths, 1968, p. 341): coaxial flow
+   G3: infinite slope without cohesion. Where flow keeps the volume, the strength on a plane of
+   sliding is tan = sin(phi) (E.H. Davis, in: Soil Mechanics, Butterworths, 1968, p. 341): coaxial
+   flow. No acceleration is compared: velocity profiles that are discontinuous get smooth.
 ------------------------------------------------------------------------- */
 
 TEST(InfiniteSlope, SlidesWhenTooSteep)
 {
   const double depth = 0.5, h = 0.05, phi = 30.0 * DEG;
   for (const char *law : {"drucker/prager 1e7 0.3 30 plane", "mohr/coulomb 1e7 0.3 30 0"})
-    for (const double angle : {24.0 * DEG, 32.0 * DEG}) {
+    for (const double angle : {26.0 * DEG, 32.0 * DEG}) {
       SCOPED_TRACE(law);
       Scene run;
       run.commands(layer(depth, h, 4, angle, 0.3, std::string("density 1600 ") + law, ""));
-      const auto speed = [&]() {
-        double u = 0.0, n = 0.0;
-        for (int i = 0; i < run.n(); i++)
-          if (run.x()[i][1] > 0.5 * depth) {
-            u += run.v()[i][0];
-            n++;
-          }
-        return u / n;
-      };
-      run.commands("fix end all halt 10 v_t > 0.5 error continue\nrun 100000\nunfix end\n");
-      const double t0 = run.time(), u0 = speed();
       run.commands("fix end all halt 10 v_t > 0.8 error continue\nrun 100000\n");
-      const double a = (speed() - u0) / (run.time() - t0);
-      const double exact = g * (std::sin(angle) - std::cos(angle) * std::sin(phi));
-      if (exact > 0.0)
-        EXPECT_NEAR(measured("G3 acceleration of a slope", a / exact), 1.0, 0.03);
-      else
-        EXPECT_LT(measured("G3 velocity of a stable slope", std::abs(speed())), 0.01);
+      double ratio = 0.0, speed = 0.0, n = 0.0;
+      for (int i = 0; i < run.n(); i++) {
+        double s[6];
+        run.points().cauchy(i, s);
+        ratio += std::abs(s[3] / s[1]);
+        speed = std::max(speed, std::abs(run.v()[i][0]));
+        n++;
+      }
+      ratio /= n;
+      if (std::tan(angle) > std::sin(phi)) {
+        EXPECT_NEAR(measured("G3 friction of a sliding slope", ratio), std::sin(phi), 2e-3);
+        EXPECT_GT(measured("G3 velocity of a sliding slope", speed), 0.4);
+      } else {
+        EXPECT_NEAR(measured("G3 friction of a slope at rest", ratio), std::tan(angle), 5e-3);
+        EXPECT_LT(measured("G3 velocity of a slope at rest", speed), 2e-3);
+      }
     }
 }
 
@@ -165,7 +165,7 @@ TEST(ColumnCollapse, RunOut)
       measured("G1 farthest point", (x.back() - L0) / (a * L0));
       EXPECT_NEAR(measured("G1 run-out over aspect ratio", (front - L0) / (a * L0)), 1.2, 0.25);
       EXPECT_LT(measured("G1 speed at the end", fastest), 0.1);
-      measured("G1 volume", volume / (0.2 * a * L0 * L0));
+      measured("G1 volume", volume / (a * L0 * L0));
     }
 }
 
