@@ -27,6 +27,8 @@
 #include "mpm_shape.h"
 #include "update.h"
 
+#include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <cstring>
 
@@ -109,6 +111,24 @@ void FixMPM::fit_affine()
   for (int i = 0; i < atom->nlocal; i++) mine |= is_point(i) && std::isnan(C[i][0]);
   MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MAX, world);
   if (!all) return;
+
+  // at rest, or all with one velocity: spares the sums below, which are the peak of memory
+
+  double range[6], range_all[6];    // largest velocity, and largest with the opposite sign
+  for (double &r : range) r = -DBL_MAX;
+  for (int i = 0; i < atom->nlocal; i++)
+    for (int d = 0; d < 3 && is_point(i); d++) {
+      range[d] = std::max(range[d], atom->v[i][d]);
+      range[3 + d] = std::max(range[3 + d], -atom->v[i][d]);
+    }
+  MPI_Allreduce(range, range_all, 6, MPI_DOUBLE, MPI_MAX, world);
+  bool uniform = true;
+  for (int d = 0; d < lattice.dim; d++) uniform = uniform && range_all[d] == -range_all[3 + d];
+  if (uniform) {
+    for (int i = 0; i < atom->nlocal; i++)
+      if (is_point(i) && std::isnan(C[i][0])) memset(C[i], 0, affine_size() * sizeof(double));
+    return;
+  }
 
   update_topology();
   const int dim = lattice.dim;
