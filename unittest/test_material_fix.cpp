@@ -133,10 +133,10 @@ TEST(MaterialFix, ErrorsNameValueAndRemedy)
       {"density 1000 linear 1e6 0.3 range temperature 0 INF",
        "this material has no 'temperature': choose pressure, rate, density"},
       {"density 1000 linear 1e6 0.3 range rate 0 1 range rate 0 2", "'rate' is given twice"},
-      {"density 1000 linear 1e6 0.3 file x.mpm", "must then be the only keyword"},
+      {"density 1000 linear 1e6 0.3 file x.mpm", "the 'file' of a material must come first"},
       {"file", "Illegal fix mpm/material file command: missing argument"},
       {"file nowhere.mpm", "cannot read file nowhere.mpm: it is neither here nor in"},
-      {"file Cu_OFHC_J2.mpm density 8000", "keywords in the input cannot change a material file"},
+      {"file Cu_OFHC_J2.mpm density 8000", "after file Cu_OFHC_J2.mpm: density is given twice"},
   };
   for (const auto &c : cases)
     EXPECT_TRUE(contains(error_of(c.definition), c.message))
@@ -174,7 +174,7 @@ TEST(MaterialFix, FilesOfThePackage)
     }
     EXPECT_EQ(m->find_history("unknown"), -1);
   }
-  EXPECT_GE(files, 19);
+  EXPECT_GE(files, 28);
   // found in the folders of LAMMPS_POTENTIALS, same as in the input
   setenv("LAMMPS_POTENTIALS", (std::string(MPM_SOURCE_DIR) + "/potentials").c_str(), 1);
   Lammps run;
@@ -212,6 +212,17 @@ TEST(MaterialFix, BadFiles)
   {
     TemporaryFile file("good.mpm", header + "density\n 1000\n\n  linear 1e6\n0.3");
     EXPECT_EQ(error_of("file good.mpm"), "");
+    // parts of the input are added to those of the file
+    EXPECT_EQ(error_of("file good.mpm thermal constant 300"), "");
+    const std::string text = error_of("file good.mpm thermal constant hot");
+    EXPECT_TRUE(contains(text, "after file good.mpm: thermal constant: T0 must be a number"))
+        << text;
+  }
+  {
+    // and options to the last part in the file
+    TemporaryFile file("gas.mpm", header + "density 1.2\neos ideal/gas 1.4\n");
+    EXPECT_TRUE(contains(error_of("file gas.mpm"), "file gas.mpm line 3: eos ideal/gas: give"));
+    EXPECT_EQ(error_of("file gas.mpm pressure 1e5 viscosity artificial 2 1"), "");
   }
   {
     TemporaryFile file("plain_header.mpm", header.substr(2) + "density 1000 linear 1e6 0.3\n");

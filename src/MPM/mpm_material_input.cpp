@@ -63,7 +63,8 @@ static std::string read_words(LAMMPS *lmp, const std::string &name, std::string 
 
 /* ----------------------------------------------------------------------
    definition in a file with the header of a LAMMPS potential file:
-   rank 0 reads words and their line numbers, all ranks parse
+   rank 0 reads words and their line numbers, all ranks parse. What follows the file name in the
+   input continues the definition: more parts, or options of the last part in the file.
 ------------------------------------------------------------------------- */
 
 static std::unique_ptr<Material> read_file(LAMMPS *lmp, const std::string &caller, int first,
@@ -72,11 +73,6 @@ static std::unique_ptr<Material> read_file(LAMMPS *lmp, const std::string &calle
   const int iarg = first + 1;
   Error *const error = lmp->error;
   if (iarg >= narg) utils::missing_cmd_args(FLERR, utils::lowercase(caller) + " file", error);
-  if (iarg + 1 < narg)
-    error->all(FLERR, iarg + 1,
-               "{}: '{}' after the file name: keywords in the input cannot change a material file; "
-               "copy the file instead",
-               caller, arg[iarg + 1]);
   const std::string name = arg[iarg];
 
   std::string text, problem;
@@ -97,9 +93,14 @@ static std::unique_ptr<Material> read_file(LAMMPS *lmp, const std::string &calle
   lines.resize(nwords);
   MPI_Bcast(lines.data(), nwords, MPI_INT, 0, lmp->world);
 
+  std::vector<std::string> words = utils::split_words(text);
+  words.insert(words.end(), arg + iarg + 1, arg + narg);
   try {
-    return Material::create(utils::split_words(text));
+    return Material::create(words);
   } catch (const MaterialError &e) {
+    if (e.word >= nwords && iarg + 1 < narg)
+      error->all(FLERR, std::min(iarg + 1 + e.word - nwords, narg - 1), "{}: after file {}: {}",
+                 caller, name, e.what());
     const int line = lines.empty() ? 1 : lines[std::min(e.word, nwords - 1)];
     error->all(FLERR, iarg, "{}: file {} line {}: {}", caller, name, line, e.what());
   }
@@ -116,8 +117,8 @@ std::unique_ptr<Material> MPM_NS::read_material(LAMMPS *lmp, const std::string &
   for (int iarg = first; iarg < narg; iarg++)
     if (strcmp(arg[iarg], "file") == 0)
       lmp->error->all(FLERR, iarg,
-                      "{}: a material is either given in the input or read with 'file', which must "
-                      "then be the only keyword",
+                      "{}: the 'file' of a material must come first; what follows its name can add "
+                      "to it",
                       caller);
   try {
     return Material::create(std::vector<std::string>(arg + first, arg + narg));

@@ -20,7 +20,7 @@ class LAMMPS;
 namespace MPM_NS {
 
 /** The material that the words arg[first], ... to the last one define: "density RHO <parts>" or
- *  "file NAME"; errors name the word, or file and line. caller: for messages, as "Fix mpm/material".
+ *  "file NAME <more parts>"; errors name the word, or file and line. caller: for messages, as "Fix mpm/material".
  *  To be called by all ranks. */
 std::unique_ptr<Material> read_material(LAMMPS_NS::LAMMPS *, const std::string &caller, int first,
                                         int narg, char **arg);
