@@ -728,6 +728,98 @@ TEST(SteinbergLaw, BadInputIsRefused)
   EXPECT_NO_THROW(make(start + "1 1 1 1 1 0 1e-3 tref 0 thermal constant 300"));
 }
 
+/* ---------------------------------------------------------------------- all strengths */
+
+// tension with free sides: the equivalent stress is the axial one, and the flow stress of the strain,
+// rate, temperature (and pressure of the step before) there; small strain by hand
+TEST(Strengths, UniaxialStress)
+{
+  const double rate = 2e3;
+  struct {
+    std::string text;
+    int temperature;                                                    // its row in the history
+    std::function<double(double, double, double, double, double)> Y;    // e, rate, T, P, J
+  } cases[] = {{J2 + "hardening swift 0.002 0.2 rate cowper/symonds 40.4 5", -1,
+                [](double e, double r, double, double, double) {
+                  return SIGMAY * std::pow(1 + e / 0.002, 0.2) * (1 + std::pow(r / 40.4, 0.2));
+                }},
+               {iron.text(450, 200, 0.9), 1,
+                [](double e, double r, double T, double, double) {
+                  return iron(e, r, T);
+                }},
+               {copper.text(450, 500, 0.9), 1,
+                [](double e, double r, double T, double, double) {
+                  return copper(e, r, T);
+                }},
+               {SCG, 2, [](double e, double, double T, double P, double J) {
+                  return scg_yield(e) * scg_factor(P, J, T);
+                }}};
+  for (const auto &c : cases) {
+    SCOPED_TRACE(c.text);
+    const auto material = make(c.text);
+    for (const double sign : {1.0, -1.0}) {
+      MaterialPoint p(*material);
+      const int n = 400;
+      for (int i = 0; i < n; i++) {
+        const double P = p.pressure(), J = p.batch.J[0];
+        p.step_uniaxial_stress(sign * rate, 0.3 / rate / n);
+        const double T = c.temperature < 0 ? 0.0 : p.history(c.temperature);
+        const double r = p.batch.plastic[0] * n / 0.3 * rate;
+        if (r < 0.5 * rate) continue;
+        const double Y = c.Y(p.history(0), r, T, P, J);
+        ASSERT_NEAR(sign * p.stress(0), Y, 1e-6 * Y) << "step " << i;
+        ASSERT_NEAR(p.stress(1), 0.0, 1e-6 * Y);
+      }
+      EXPECT_GT(p.history(0), 0.28);
+    }
+  }
+}
+
+// uniaxial strain: the deviator is at the flow stress, the pressure that of the equation of state
+TEST(Strengths, UniaxialStrain)
+{
+  const auto material = make(J2 + "hardening voce 2e8 15 1e8 kinematic 20e9 0");
+  MaterialPoint p(*material);
+  for (int i = 1; i <= 200; i++) move_to(p, {1 - 0.001 * i, 0, 0, 0, 1, 0, 0, 0, 1});
+  const double e = p.history(0), J = 0.8;
+  EXPECT_NEAR(p.batch.J[0], J, 1e-12);
+  // the back stress is linear in e, and J times the Cauchy stress
+  const double Y = SIGMAY + 2e8 * (1 - std::exp(-15 * e)) + 1e8 * e + 20e9 * e / J;
+  EXPECT_NEAR(p.pressure(), 160e9 * (1 / J - 1), 1e-10 * 160e9);
+  EXPECT_NEAR(p.stress(1) - p.stress(0), Y, 1e-10 * Y);
+  EXPECT_NEAR(-2.0 / 3 * std::log(J), e + (p.stress(1) - p.stress(0)) * J / (3 * G), 2e-4 * e);
+}
+
+// shear with a superposed rotation of two turns: rate forms are objective for small steps
+TEST(Strengths, RotationOnTopOfShear)
+{
+  const std::array<double, 3> axis = {0.48, 0.6, 0.64};
+  for (const auto &sample : samples) {
+    const std::string text = sample.text;
+    if (text.find("strength") == std::string::npos) continue;
+    SCOPED_TRACE(sample.name);
+    const auto material = make(text);
+    double error[2];
+    for (int level = 0; level < 2; level++) {
+      const int n = 400 << (2 * level);
+      MaterialPoint plain(*material), turned(*material);
+      double worst = 0.0, scale = 0.0;
+      for (int i = 1; i <= n; i++) {
+        const double t = 1.0 * i / n;
+        const Matrix F = {1, 0.1 * t, 0, 0, 1 - 0.01 * t, 0, 0, 0, 1};
+        move_to(plain, F, 1.0 / n);
+        const Matrix R = rotation(axis, 4.0 * M_PI * t);
+        move_to(turned, R * F, 1.0 / n);
+        worst = std::max(worst, distance(stress_of(turned), R * stress_of(plain) * transpose(R)));
+        scale = std::max(scale, size(stress_of(plain)));
+      }
+      error[level] = worst / scale;
+    }
+    EXPECT_LT(error[1], 1e-3);
+    EXPECT_GT(std::log2(error[0] / error[1]), 2 * 0.8) << error[0] << " " << error[1];
+  }
+}
+
 /* ---------------------------------------------------------------------- thermal parts */
 
 TEST(Thermal, PlasticWorkHeats)
