@@ -125,6 +125,16 @@ struct Sample {
 inline const Sample samples[] = {
     {"linear", "density 1000 linear 1e6 0.3"},
     {"neohookean", "density 1000 neohookean 1e6 0.3"},
+    {"neohookean/split", "density 1000 neohookean/split 1e6 0.3"},
+    {"stvenant/kirchhoff", "density 1000 stvenant/kirchhoff 1e6 0.3"},
+    {"hencky", "density 1000 hencky 1e6 0.3"},
+    {"mooney/rivlin", "density 1000 mooney/rivlin 0.3e6 0.1e6 2e6"},
+    {"ogden", "density 1000 ogden 2e6 term 0.63e6 1.3 term 0.0012e6 5 term -0.01e6 -2"},
+    {"transversely/isotropic",
+     "density 1580 transversely/isotropic 126e9 11e9 0.28 0.4 6.6e9 axis 1 2 -0.5"},
+    {"orthotropic",
+     "density 600 orthotropic 11e9 0.9e9 0.5e9 0.4 0.45 0.5 0.7e9 0.65e9 0.05e9 "
+     "axes 1 2 0 0 1 1 angle 20"},
     {"elastic", "density 2700 eos linear 70e9 strength elastic 26e9"},
     {"shock+elastic", "density 2703 eos shock 5350 1.34 2 strength elastic 26e9"},
     {"j2", "density 8930 eos shock 3940 1.49 1.96 strength j2 43e9 157e6 hardening linear 425e6"},
@@ -197,6 +207,15 @@ inline const Sample samples[] = {
     {"bingham", "density 1000 eos linear 1e6 viscosity bingham 1 2 10"},
     {"herschel/bulkley", "density 1000 eos linear 1e6 viscosity herschel/bulkley 1 0.5 2 10"},
     {"power", "density 1000 eos tait 1e6 7 viscosity power 2 0.5 0.1 10"},
+    {"damped linear",
+     "density 1000 linear 1e6 0.3 viscosity kelvin/voigt 10 bulk 20 viscosity artificial 2 1"},
+    {"damped metal",
+     "density 8930 eos linear 1e11 strength j2 43e9 157e6 hardening linear 425e6 "
+     "viscosity newtonian 1e3"},
+    {"maxwell rubber",
+     "density 1000 hencky 1e6 0.3 viscosity maxwell term 2e5 0.1 term 1e5 0.01 term 1e5 1e-5"},
+    {"maxwell linear", "density 1000 linear 1e6 0.3 viscosity maxwell term 2e5 0.1"},
+    {"maxwell fluid", "density 1000 eos tait 1e6 7 viscosity maxwell term 2e5 0.1"},
 };
 
 }    // namespace material_testing

@@ -199,8 +199,6 @@ TEST(Definition, BadInputIsRefused)
       {"density 1 eos linear 1 viscosity power 1 1 2 1", "must not be below MUMIN"},
       {"density 1 eos linear 1 viscosity herschel/bulkley 1 0 0 1", "N = 0"},
       {"density 1 eos linear 1 viscosity newtonian 1 bulk -1", "ZETA = -1"},
-      {"density 1 eos linear 1 strength elastic 1 viscosity bingham 0 1 1", "does not go with"},
-      {"density 1 linear 1 0 viscosity power 1 1 0 1", "use eos and strength elastic"},
   };
   for (const auto &b : bad) {
     try {

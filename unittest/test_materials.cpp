@@ -41,6 +41,12 @@ TEST(Math, FunctionsMatchLibrary)
     EXPECT_NEAR(law::exp(x), z, 4e-16 * z);
     EXPECT_NEAR(law::log(z), std::log(z), 4e-16 * std::fabs(std::log(z)));
     EXPECT_NEAR(law::log(y), std::log1p(y - 1.0), 5e-16 * std::fabs(y - 1.0));
+    const double t = 1e-7 * (y - 1.0);
+    EXPECT_NEAR(law::log1p(t), std::log1p(t), 5e-16 * std::fabs(t));
+    EXPECT_NEAR(law::log1p(z), std::log1p(z), 5e-16 * std::fabs(std::log1p(z)));
+    EXPECT_NEAR(law::expm1_minus(t), 0.5 * t * t * (1.0 + t / 3.0), 5e-16 * t * t);
+    EXPECT_NEAR(law::expm1_minus(0.01 * x), std::expm1(0.01 * x) - 0.01 * x,
+                2e-15 * std::fabs(std::expm1(0.01 * x)));
     EXPECT_NEAR(law::expm1(y - 1.0), std::expm1(y - 1.0), 5e-16 * std::fabs(y - 1.0));
     EXPECT_NEAR(law::log1p(y - 1.0), std::log1p(y - 1.0), 5e-16 * std::fabs(y - 1.0));
     const double tiny = std::exp(0.1 * x - 35.0);
@@ -949,8 +955,9 @@ TEST(WaveSpeed, FiniteAtExtremes)
       EXPECT_TRUE(std::isfinite(p.vonmises())) << sample.name << " " << stretch;
       EXPECT_TRUE(std::isfinite(p.pressure())) << sample.name << " " << stretch;
       EXPECT_TRUE(std::isfinite(p.stored_energy())) << sample.name << " " << stretch;
-      // most stiffen, but detonation products squeezed to 1/20 are softer than at 1/3
-      const double least = stretch < 0.1 ? 0.5 : stretch < 1.0 ? 0.99 : 0.0;
+      // most stiffen, but detonation products squeezed to 1/20 are softer than at 1/3, and some
+      // hyperelastic laws soften a little
+      const double least = stretch < 0.1 ? 0.5 : stretch < 1.0 ? 0.88 : 0.0;
       EXPECT_GE(p.wave_speed(), least * c0) << sample.name << " " << stretch;
     }
   }
@@ -1092,7 +1099,6 @@ TEST(Definition, BadInputIsRefused)
       {"density 1000 linear 1e6 0.3 linear 1e6 0.3", 5, "the material has 'linear' already"},
       {"density 1000 linear 1e6 0.3 neohookean 1e6 0.3", 5, "the material has 'linear' already"},
       {"density 1000 linear 1e6 0.3 eos linear 1", 6, "'linear' is a complete law"},
-      {"density 1000 linear 1e6 0.3 viscosity newtonian 1", 6, "use eos and strength elastic"},
       {"density 1000 eos", 3, "eos: name is missing, choose linear, shock, tait"},
       {"density 1000 eos foo 1", 3, "unknown eos 'foo': choose linear, shock, tait"},
       {"density 1000 eos linear 0", 4, "K = 0 .* out of range"},
@@ -1122,8 +1128,17 @@ TEST(Definition, BadInputIsRefused)
        20, "0 <= VALUE <= 1"},
       {"density 1000 eos linear 1 viscosity newtonian 1 viscosity newtonian 1", 9, "given twice"},
       {"density 1000 eos linear 1 viscosity newtonian -1", 7, "MU = -1"},
-      {"density 1000 eos linear 1 strength elastic 1 viscosity newtonian 1", 9,
-       "'viscosity newtonian' does not go with 'strength elastic'"},
+      {"density 1 ogden 1", 2, "no term: add 'term MU ALPHA'"},
+      {"density 1 ogden 1 term 1", 6, "ogden term: ALPHA is missing"},
+      {"density 1 ogden 1 term 1 -2", 2, "same sign"},
+      {"density 1 ogden 1 term 1 0", 2, "same sign"},
+      {"density 1 linear 1 0 viscosity maxwell", 6, "no element: add 'term G TAU'"},
+      {"density 1 linear 1 0 viscosity maxwell term 1 0", 9, "TAU = 0"},
+      {"density 1 orthotropic 1 1 1 0.9 0.9 0.9 1 1 1", 2, "energy is not positive"},
+      {"density 1 orthotropic 1 1 1 0 0 0 1 1 1 axes 1 0 0 2 0 0", 2, "not parallel"},
+      {"density 1 orthotropic 1 1 1 0 0 0 1 1 1 axes 1 0 0 2", 17, "A2Y is missing"},
+      {"density 1 transversely/isotropic 1 1 0.6 0.4 1", 2, "NUT must be above 2 NUA.2 ET/EA"},
+      {"density 1 transversely/isotropic 1 1 0.3 0.3 1 axis 0 0 0", 2, "must not be zero"},
   };
   for (const auto &b : bad) {
     try {
@@ -1142,6 +1157,8 @@ TEST(Definition, EveryCombinationThatIsAllowed)
 {
   for (const char *text :
        {"density 1000 eos linear 1", "linear 1 0 density 1000", "neohookean 1 -0.5 density 1",
+        "density 1 linear 1 0 viscosity newtonian 1 viscosity artificial 1 1",
+        "density 1 eos linear 1 strength elastic 1 viscosity newtonian 1",
         "density 1 eos linear 1 strength elastic 1 viscosity artificial 0 0",
         "density 1 viscosity newtonian 0 viscosity artificial 1 1 eos tait 1 7",
         "density 1 neohookean 1 0.3 viscosity newtonian 1 viscosity artificial 1 1",

@@ -75,7 +75,8 @@ struct HistoryDeclaration {
 /** Initial values of history variables; INITIALIZED: by initialize(). */
 enum { ZERO = -1, ONE = -2, INITIALIZED = -3 };
 
-/** Shares of the stress: which ones a law needs from the last step, which ones a viscosity adds. */
+/** Shares of the stress: which ones a law needs from the last step, which ones a viscosity adds. When
+ *  these overlap, the material keeps what viscosities add apart and out of the law's sight. */
 enum StressShare { NO_SHARE = 0, PRESSURE = 1, DEVIATOR = 2, WHOLE_STRESS = 3 };
 
 /** The places that a law can take in a material, in the order of their history variables. */
@@ -120,6 +121,7 @@ struct LawInfo {
   int nterm_history;
   /** History variables that a law with these parameters has, those of the terms not counted. */
   int (*nhistory)(const LawParameters &);
+  bool uses_speed;    ///< of a viscosity: does update() read batch.speed?
   /** What is wrong with parameters that are each in their range; null when all is well. */
   const char *(*check)(const LawParameters &);
   /** Does a law with these parameters need the temperature, and so a thermal part? */
@@ -170,6 +172,7 @@ struct LawKernels {
 /** What a law need not declare or provide; all laws derive from this. */
 struct LawDefaults {
   static constexpr StressShare share = NO_SHARE;
+  static constexpr bool uses_speed = true;
   static constexpr const char *term = nullptr;
   static constexpr std::nullptr_t term_parameters = nullptr;
   static constexpr std::nullptr_t history = nullptr;

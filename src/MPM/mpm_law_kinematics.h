@@ -166,6 +166,31 @@ namespace {
             xx * yx + xy * yy + xz * yz, xx * zx + xy * zy + xz * zz, yx * zx + yy * zy + yz * zz};
   }
 
+  /** M s M^T with a row-major matrix M. */
+  MPM_INLINE Sym congruence(const double *M, const Sym &s)
+  {
+    const double txx = M[0] * s.xx + M[1] * s.xy + M[2] * s.xz;
+    const double txy = M[0] * s.xy + M[1] * s.yy + M[2] * s.yz;
+    const double txz = M[0] * s.xz + M[1] * s.yz + M[2] * s.zz;
+    const double tyx = M[3] * s.xx + M[4] * s.xy + M[5] * s.xz;
+    const double tyy = M[3] * s.xy + M[4] * s.yy + M[5] * s.yz;
+    const double tyz = M[3] * s.xz + M[4] * s.yz + M[5] * s.zz;
+    const double tzx = M[6] * s.xx + M[7] * s.xy + M[8] * s.xz;
+    const double tzy = M[6] * s.xy + M[7] * s.yy + M[8] * s.yz;
+    const double tzz = M[6] * s.xz + M[7] * s.yz + M[8] * s.zz;
+    return {txx * M[0] + txy * M[1] + txz * M[2], tyx * M[3] + tyy * M[4] + tyz * M[5],
+            tzx * M[6] + tzy * M[7] + tzz * M[8], txx * M[3] + txy * M[4] + txz * M[5],
+            txx * M[6] + txy * M[7] + txz * M[8], tyx * M[6] + tyy * M[7] + tyz * M[8]};
+  }
+
+  /** a a */
+  MPM_INLINE Sym square(const Sym &a)
+  {
+    return {a.xx * a.xx + a.xy * a.xy + a.xz * a.xz, a.xy * a.xy + a.yy * a.yy + a.yz * a.yz,
+            a.xz * a.xz + a.yz * a.yz + a.zz * a.zz, a.xx * a.xy + a.xy * a.yy + a.xz * a.yz,
+            a.xx * a.xz + a.xy * a.yz + a.xz * a.zz, a.xy * a.xz + a.yy * a.yz + a.yz * a.zz};
+  }
+
   /** Largest eigenvalue of a deviator, to round-off (1e-8 of its norm next to the state in which it
    *  is double). Scaled by r = sqrt(d:d/6), eigenvalues solve t^3 - 3 t - 2 c = 0 with
    *  c = det(d)/(2 r^3). The root of largest magnitude comes from Newton steps; for c < 0 that is
@@ -180,6 +205,12 @@ namespace {
     double t = std::sqrt(3.0 + a);
     for (int it = 0; it < 3; it++) t -= (t * (t * t - 3.0) - 2.0 * a) / (3.0 * (t * t - 1.0));
     return r * (c < 0.0 ? 0.5 * (t + std::sqrt(max(12.0 - 3.0 * t * t, 0.0))) : t);
+  }
+
+  /** Largest eigenvalue of any symmetric tensor. */
+  MPM_INLINE double largest_principal(const Sym &a)
+  {
+    return (1.0 / 3.0) * trace(a) + largest_eigenvalue(deviator(a));
   }
 
   /** Upper bound of the largest eigenvalue of a deviator, exact when the other two are equal. */

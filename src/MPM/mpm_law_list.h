@@ -23,12 +23,18 @@
 #include "mpm_eos_tait.h"
 #include "mpm_law_camclay.h"
 #include "mpm_law_drucker_prager.h"
+#include "mpm_law_hencky.h"
 #include "mpm_law_linear.h"
 #include "mpm_law_mohr_coulomb.h"
+#include "mpm_law_mooney_rivlin.h"
 #include "mpm_law_mui.h"
 #include "mpm_law_nacc.h"
 #include "mpm_law_neohookean.h"
+#include "mpm_law_neohookean_split.h"
+#include "mpm_law_ogden.h"
+#include "mpm_law_orthotropic.h"
 #include "mpm_law_snow.h"
+#include "mpm_law_stvenant_kirchhoff.h"
 #include "mpm_strength_elastic.h"
 #include "mpm_strength_j2.h"
 #include "mpm_strength_johnson_cook.h"
@@ -36,6 +42,8 @@
 #include "mpm_strength_zerilli_armstrong.h"
 #include "mpm_thermal.h"
 #include "mpm_viscosity_artificial.h"
+#include "mpm_viscosity_kelvin_voigt.h"
+#include "mpm_viscosity_maxwell.h"
 #include "mpm_viscosity_newtonian.h"
 #include "mpm_viscosity_power.h"
 #include "mpm_viscosity_yield.h"
@@ -49,8 +57,10 @@ namespace {
     static constexpr int size = sizeof...(Laws);
   };
 
-  using elastic = Family<CLOSED, LawLinear, LawNeoHookean>;
-  using viscoelastic = Family<CLOSED>;
+  using elastic =
+      Family<CLOSED, LawLinear, LawNeoHookean, LawNeoHookeanSplit, LawStVenantKirchhoff, LawHencky,
+             LawMooneyRivlin, LawOgden, LawTransverselyIsotropic, LawOrthotropic>;
+  using viscoelastic = Family<VISCOSITY, ViscosityKelvinVoigt, ViscosityMaxwell>;
   using soil =
       Family<CLOSED, LawDruckerPrager, LawMohrCoulomb, LawCamClay, LawNacc, LawMuI, LawSnow>;
   using eos = Family<EOS, EosLinear, EosShock, EosTait, EosPolynomial, EosIdealGas, EosStiffenedGas,

@@ -53,11 +53,9 @@ namespace {
     {
       const LawNeoHookean law(p);
       MPM_SIMD
-      for (int i = 0; i < b.n; i++) {
-        const Sym bb = left_cauchy_green(b, i);
-        const double longest = (1.0 / 3.0) * trace(bb) + largest_eigenvalue(deviator(bb));
-        k[i] += law.mu * (longest + 1.0) + law.lambda * (1.0 - log(b.J[i]));
-      }
+      for (int i = 0; i < b.n; i++)
+        k[i] += law.mu * (largest_principal(left_cauchy_green(b, i)) + 1.0) +
+            law.lambda * (1.0 - log(b.J[i]));
     }
 
     /** With H = F - I and det F - 1 = tr H + minors + det H, the terms of first order in H are

@@ -21,6 +21,13 @@ namespace {
     double vector[3][3];
   };
 
+  MPM_INLINE void rotate_pair(double &v, double &w, double c, double n)
+  {
+    const double old = v;
+    v = c * v - n * w;
+    w = n * old + c * w;
+  }
+
   /** One Jacobi rotation that makes the entry pq zero; r is the third index. */
   MPM_INLINE void jacobi_rotation(double &pp, double &qq, double &pq, double &pr, double &qr,
                                   Spectral &s, int p, int q)
@@ -32,14 +39,10 @@ namespace {
     pp -= t * pq;
     qq += t * pq;
     pq = 0.0;
-    const double a = pr, b = qr;
-    pr = c * a - n * b;
-    qr = n * a + c * b;
-    for (int k = 0; k < 3; k++) {
-      const double v = s.vector[k][p], w = s.vector[k][q];
-      s.vector[k][p] = c * v - n * w;
-      s.vector[k][q] = n * v + c * w;
-    }
+    rotate_pair(pr, qr, c, n);
+    rotate_pair(s.vector[0][p], s.vector[0][q], c, n);
+    rotate_pair(s.vector[1][p], s.vector[1][q], c, n);
+    rotate_pair(s.vector[2][p], s.vector[2][q], c, n);
   }
 
   /** Decomposition by cyclic Jacobi rotations (G.H. Golub, C.F. Van Loan, Matrix Computations,
@@ -62,19 +65,24 @@ namespace {
     return s;
   }
 
+  /** r += v n x n, n = (x, y, z) */
+  MPM_INLINE void add_dyad(Sym &r, double x, double y, double z, double v)
+  {
+    r.xx += v * x * x;
+    r.yy += v * y * y;
+    r.zz += v * z * z;
+    r.xy += v * x * y;
+    r.xz += v * x * z;
+    r.yz += v * y * z;
+  }
+
   /** The symmetric tensor with the same eigenvectors and other eigenvalues. */
   MPM_INLINE Sym recompose(const Spectral &s, const double value[3])
   {
     Sym r = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-    for (int a = 0; a < 3; a++) {
-      const double x = s.vector[0][a], y = s.vector[1][a], z = s.vector[2][a], v = value[a];
-      r.xx += v * x * x;
-      r.yy += v * y * y;
-      r.zz += v * z * z;
-      r.xy += v * x * y;
-      r.xz += v * x * z;
-      r.yz += v * y * z;
-    }
+    add_dyad(r, s.vector[0][0], s.vector[1][0], s.vector[2][0], value[0]);
+    add_dyad(r, s.vector[0][1], s.vector[1][1], s.vector[2][1], value[1]);
+    add_dyad(r, s.vector[0][2], s.vector[1][2], s.vector[2][2], value[2]);
     return r;
   }
 
@@ -82,21 +90,10 @@ namespace {
    *  trial state) follows the motion; exact and objective. */
   MPM_INLINE Sym push_forward(const Batch &batch, int i, const Sym &b)
   {
-    const double fxx = 1.0 + batch.A[0][i], fxy = batch.A[1][i], fxz = batch.A[2][i];
-    const double fyx = batch.A[3][i], fyy = 1.0 + batch.A[4][i], fyz = batch.A[5][i];
-    const double fzx = batch.A[6][i], fzy = batch.A[7][i], fzz = 1.0 + batch.A[8][i];
-    const double txx = fxx * b.xx + fxy * b.xy + fxz * b.xz;
-    const double txy = fxx * b.xy + fxy * b.yy + fxz * b.yz;
-    const double txz = fxx * b.xz + fxy * b.yz + fxz * b.zz;
-    const double tyx = fyx * b.xx + fyy * b.xy + fyz * b.xz;
-    const double tyy = fyx * b.xy + fyy * b.yy + fyz * b.yz;
-    const double tyz = fyx * b.xz + fyy * b.yz + fyz * b.zz;
-    const double tzx = fzx * b.xx + fzy * b.xy + fzz * b.xz;
-    const double tzy = fzx * b.xy + fzy * b.yy + fzz * b.yz;
-    const double tzz = fzx * b.xz + fzy * b.yz + fzz * b.zz;
-    return {txx * fxx + txy * fxy + txz * fxz, tyx * fyx + tyy * fyy + tyz * fyz,
-            tzx * fzx + tzy * fzy + tzz * fzz, txx * fyx + txy * fyy + txz * fyz,
-            txx * fzx + txy * fzy + txz * fzz, tyx * fzx + tyy * fzy + tyz * fzz};
+    const double f[9] = {1.0 + batch.A[0][i], batch.A[1][i],       batch.A[2][i],
+                         batch.A[3][i],       1.0 + batch.A[4][i], batch.A[5][i],
+                         batch.A[6][i],       batch.A[7][i],       1.0 + batch.A[8][i]};
+    return congruence(f, b);
   }
 
 }    // namespace

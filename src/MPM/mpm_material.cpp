@@ -9,10 +9,10 @@
 // Composition of materials, and the parser of their definition:
 //
 //   density RHO
-//   one closed law:      linear ... | neohookean ...
+//   one closed law:      linear ... | neohookean ... | ogden ...
 //   or an eos:           eos linear | shock | tait ...
 //     with at most one   strength elastic | j2 | johnson/cook ...
-//   any number of        viscosity newtonian | artificial ...
+//   any number of        viscosity newtonian | artificial | maxwell ...
 //   at most one          damage ...
 //   at most one          thermal adiabatic | constant ...
 //   any number of        range QUANTITY LOW HIGH
@@ -67,6 +67,16 @@ struct UsedRange : ValidRange {
   enum { PRESSURE_OF_STRESS = -3, STRAIN_RATE = -2, DENSITY_OF_J = -1 };
 };
 
+/** Does a viscosity add to that share of the stress on which a law builds in the next step? */
+bool shares_stress(const std::vector<UsedLaw> (&laws)[NPARTS])
+{
+  for (const Part part : {CLOSED, STRENGTH})
+    for (const auto &law : laws[part])
+      for (const auto &viscosity : laws[VISCOSITY])
+        if (law.info->share & viscosity.info->share) return true;
+  return false;
+}
+
 class ComposedMaterial : public Material {
  public:
   ComposedMaterial(double density, std::vector<UsedLaw> used[NPARTS],
@@ -79,6 +89,12 @@ class ComposedMaterial : public Material {
     for (int part = 0; part < NPARTS; part++)
       for (auto &law : laws[part]) add(static_cast<Part>(part), law);
     for (const auto &range : ranges) add(range);
+    viscous = -1;
+    if (shares_stress(laws)) {
+      viscous = variables.size();
+      for (const char *name : {"xx", "yy", "zz", "xy", "xz", "yz"})
+        variables.push_back({std::string("viscous_") + name, 0.0});
+    }
     ComposedMaterial::bind(1.0, 1.0);
   }
 
@@ -124,13 +140,20 @@ class ComposedMaterial : public Material {
       law.kernels->update(law.parameters, b, rows(b, law));
     };
     if (damage) damage->kernels->prepare(damage->parameters, b, rows(b, *damage));
-    if (!laws[VISCOSITY].empty()) plain_speed(b, b.speed);
+    if (viscous >= 0) take_viscous_stress(b);
+    for (const auto &law : laws[VISCOSITY])
+      if (law.info->uses_speed) {
+        plain_speed(b, b.speed);
+        break;
+      }
     if (base)
       run(*base);
     else
       table->clear_stress(b);
     if (damage) account_of_strength(b);
+    if (viscous >= 0) begin_viscous_stress(b);
     for (const auto &law : laws[VISCOSITY]) run(law);
+    if (viscous >= 0) end_viscous_stress(b);
     if (damage) table->mean_stress(b, b.viscous_mean);
     for (const auto &law : laws[EOS]) run(law);
     if (damage) {
@@ -162,15 +185,19 @@ class ComposedMaterial : public Material {
     return table->outside(b.n, v, valid[k].low, valid[k].high);
   }
 
-  void wave_speed(const Batch &b, double *c) const override
+  void wave_speed(const Batch &state, double *c) const override
   {
+    Batch copy;
+    const Batch &b = without_viscous_stress(state, copy);
     plain_speed(b, c);
     for (const auto &law : laws[VISCOSITY])
       if (law.kernels->raise_speed) law.kernels->raise_speed(law.parameters, b, rows(b, law), c);
   }
 
-  void stored_energy(const Batch &b, double *w) const override
+  void stored_energy(const Batch &state, double *w) const override
   {
+    Batch copy;
+    const Batch &b = without_viscous_stress(state, copy);
     for (int i = 0; i < b.n; i++) w[i] = 0.0;
     for (int part = 0; part < NPARTS; part++)
       if (!damage || part != STRENGTH) add_energy(static_cast<Part>(part), b, w);
@@ -183,10 +210,40 @@ class ComposedMaterial : public Material {
   std::vector<UsedLaw> laws[NPARTS];
   const UsedLaw *base;      ///< closed law or strength, or null
   const UsedLaw *damage;    ///< or null
+  /** First of six history variables with what viscosities added to the stress in the last step, for
+   *  a closed law or strength that builds on that stress and must not see it; -1 when not needed. */
+  int viscous;
   std::vector<HistoryVariable> variables;
   std::vector<ValidRange> valid;
   std::vector<int> source;    ///< of the quantities of these, as in UsedRange
   std::string text;
+
+  void take_viscous_stress(Batch &b) const
+  {
+    for (int k = 0; k < 6; k++)
+      for (int i = 0; i < b.n; i++) b.stress[k][i] -= b.history[viscous + k][i];
+  }
+
+  // around the viscosities: stress after them minus stress before them
+  void begin_viscous_stress(Batch &b) const
+  {
+    for (int k = 0; k < 6; k++)
+      for (int i = 0; i < b.n; i++) b.history[viscous + k][i] = -b.stress[k][i];
+  }
+
+  void end_viscous_stress(Batch &b) const
+  {
+    for (int k = 0; k < 6; k++)
+      for (int i = 0; i < b.n; i++) b.history[viscous + k][i] += b.stress[k][i];
+  }
+
+  const Batch &without_viscous_stress(const Batch &b, Batch &copy) const
+  {
+    if (viscous < 0) return b;
+    copy = b;
+    take_viscous_stress(copy);
+    return copy;
+  }
 
   static History rows(const Batch &b, const UsedLaw &law)
   {
@@ -599,14 +656,12 @@ class Parser {
                std::string("'") + law.info->name +
                    "' with these parameters depends on the temperature: add 'thermal adiabatic' "
                    "with the specific heat, or 'thermal constant'");
-    for (const Part part : {CLOSED, STRENGTH})
-      for (const auto &law : used[part])
-        for (const auto &viscosity : used[VISCOSITY])
-          if (law.info->share & viscosity.info->share)
-            fail(viscosity.word,
-                 "'" + title(VISCOSITY, *viscosity.info) + "' does not go with '" +
-                     title(part, *law.info) + "', which builds on the last step's stress" +
-                     (part == CLOSED ? ": use eos and strength elastic instead" : ""));
+    if (!used[DAMAGE].empty() && shares_stress(used))
+      fail(used[DAMAGE][0].word,
+           "'" + title(DAMAGE, *used[DAMAGE][0].info) +
+               "' does not go with a viscosity that adds to the stress on which a strength or law "
+               "builds in the next step: leave out the viscosity, or use viscosity artificial with "
+               "eos and strength");
   }
 };
 

@@ -95,9 +95,9 @@ namespace {
     return p.k == 0.0 ? near : (x - 1.0) - (p.k * 0.69314718055994530942 + (2.0 * p.s + p.tail));
   }
 
-  /** exp(x) = scale (1 + rest); x is clamped to [-708, 708]. */
+  /** exp(x) = scale (1 + rest), rest = r + tail; x is clamped to [-708, 708]. */
   struct ExpParts {
-    double scale, rest;
+    double scale, rest, tail;
   };
 
   MPM_INLINE ExpParts exp_parts(double x)
@@ -119,7 +119,8 @@ namespace {
     h = h * r + 5.0000000000000010e-1;
     ExpParts p;
     p.scale = from_bits((to_bits(t) << 52) + 0x3ff0000000000000);
-    p.rest = r + r * r * h;
+    p.tail = r * r * h;
+    p.rest = r + p.tail;
     return p;
   }
 
@@ -135,6 +136,13 @@ namespace {
   {
     const ExpParts p = exp_parts(x);
     return p.scale * p.rest + (p.scale - 1.0);
+  }
+
+  /** exp(x) - 1 - x without cancellation near x = 0. */
+  MPM_INLINE double expm1_minus(double x)
+  {
+    const ExpParts p = exp_parts(x);
+    return p.scale == 1.0 ? p.tail : p.scale * p.rest + (p.scale - 1.0) - x;
   }
 
   /** Sine for |x| <= pi/2, by its Taylor series. */

@@ -33,6 +33,7 @@ namespace {
    *  apparent viscosity of the last step, which the stable time step needs, and for output. */
   template <class Fluid> struct GeneralizedNewtonian : LawDefaults {
     static constexpr StressShare share = DEVIATOR;
+    static constexpr bool uses_speed = false;
     static constexpr int nhistory(const LawParameters &) { return 1; }
 
     static void update(const LawParameters &p, Batch &b, History history)
@@ -42,7 +43,8 @@ namespace {
       double viscous = 0.0;
       MPM_SIMD_SUM(viscous)
       for (int i = 0; i < b.n; i++) {
-        const Sym D = inv_dt * deviator(increment(b, i).strain);
+        const Increment inc = increment(b, i);
+        const Sym D = inv_dt * deviator(inc.strain);
         const double D2 = norm2(D);
         const double eta = fluid.apparent(std::sqrt(2.0 * D2));
         store_stress(b, i, load_stress(b, i) + 2.0 * eta * D);

@@ -19,6 +19,7 @@ namespace {
     static constexpr const char *name = "newtonian";
     static constexpr const char *meaning = "Newtonian viscosity";
     static constexpr StressShare share = WHOLE_STRESS;
+    static constexpr bool uses_speed = false;
     static constexpr Parameter parameters[] = {
         {"", "MU", "pressure time", NOT_NEGATIVE, REQUIRED, "dynamic viscosity"},
         {"bulk", "ZETA", "pressure time", NOT_NEGATIVE, 0.0, "bulk viscosity"}};
