@@ -217,6 +217,54 @@ TEST(Gas, RestsFromTheFirstStep)
   }
 }
 
+// but a stress that points have is left alone
+TEST(Gas, InitialStressOfPointsStays)
+{
+  Scene run;
+  run.commands("units si\nboundary p p p\natom_style mpm\nneighbor 0.1 bin\n"
+               "region box block 0 4 0 4 0 4\ncreate_box 1 box\nfix grid all mpm 1\n"
+               "create_points 1 box ppc 1\n"
+               "fix air all mpm/material density 1.2 eos ideal/gas 1.4 pressure 1e5\n"
+               "timestep 1e-4\n");
+  for (int i = 0; i < run.n(); i += 2) run.points().tau[i][3] = 7.0;
+  run.commands("run 0\n");
+  int kept = 0;
+  for (int i = 0; i < run.n(); i++) {
+    const double *tau = run.points().tau[i];
+    kept += tau[3] == 7.0;
+    EXPECT_EQ(tau[0], tau[3] == 7.0 ? 0.0 : -1e5);
+  }
+  EXPECT_EQ(kept, run.n() / 2);
+}
+
+// a detonation goes on after a restart: times of arrival belong to where the points were made
+TEST(Detonation, GoesOnAfterRestart)
+{
+  const std::string fixes =
+      "fix grid all mpm 0.01\n"
+      "fix tnt all mpm/material density 1630 eos jwl 371.2e9 3.231e9 4.15 0.95 0.30 7.0e9 6930 "
+      "detonate 0 0 0 0 viscosity artificial 1.5 0.06\n";
+  const auto run_on = "timestep 1e-7\nrun 60\n";
+  Scene whole, first, second;
+  for (Scene *run : {&whole, &first}) {
+    run->commands("units si\ndimension 2\nboundary f p p\natom_style mpm\nneighbor 0.004 bin\n"
+                  "region box block -0.4 0.4 0 0.02 -0.5 0.5\ncreate_box 1 box\n"
+                  "region tnt block -0.1 0.1 INF INF INF INF\n");
+    run->commands(fixes.substr(0, fixes.find('\n') + 1) + "create_points 1 region tnt ppc 2\n" +
+                  fixes.substr(fixes.find('\n') + 1));
+    run->commands(run_on);
+  }
+  first.commands("write_restart detonation.bin\n");
+  second.commands("read_restart detonation.bin\n" + fixes + run_on);
+  remove("detonation.bin");
+  whole.commands("run 60\n");
+  EXPECT_LT(measured("difference after restart", difference(second.gather(), whole.gather())),
+            1e-12);
+  double fastest = 0.0;
+  for (const auto &s : whole.gather()) fastest = std::max(fastest, s.v[0]);
+  EXPECT_GT(fastest, 500.0);
+}
+
 // energy per mass in units in which velocity^2 is not its unit
 TEST(Gas, InitialEnergyInMetalUnits)
 {

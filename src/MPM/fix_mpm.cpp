@@ -332,18 +332,29 @@ double FixMPM::current_time() const
 void FixMPM::give_initial_stress()
 {
   std::vector<double> history;
+  std::vector<int> list;
+  const FixMPMMaterial *material = nullptr;
+  const auto flush = [&]() {
+    if (list.empty()) return;
+    load_state(*batch, list.data(), list.size(), material, history);
+    batch->time = current_time();
+    material->material->initial_stress(*batch);
+    for (std::size_t k = 0; k < list.size(); k++)
+      for (int c = 0; c < 6; c++) points->tau[list[k]][c] = batch->J[k] * batch->stress[c][k];
+    list.clear();
+  };
+
   for (int i = 0; i < atom->nlocal; i++) {
-    double *s = points->tau[i];
+    const double *s = points->tau[i];
     if (!is_point(i) || s[0] != 0.0 || s[1] != 0.0 || s[2] != 0.0 || s[3] != 0.0 || s[4] != 0.0 ||
         s[5] != 0.0)
       continue;
-    const auto *material = material_of(i);
-    if (!material) continue;
-    load_state(*batch, &i, 1, material, history);
-    batch->time = current_time();
-    material->material->initial_stress(*batch);
-    for (int c = 0; c < 6; c++) s[c] = batch->J[0] * batch->stress[c][0];
+    const auto *mine = material_of(i);
+    if (mine != material || list.size() == BATCH) flush();
+    material = mine;
+    if (mine) list.push_back(i);
   }
+  flush();
 }
 
 /* ---------------------------------------------------------------------- */
