@@ -126,6 +126,10 @@ class FixMPM : public Fix {
   /** At the same nodes: sum_p V_p N(x_p) as share of the volume h^dim of a node, [node]. */
   void map_volume(const std::vector<char> &near, std::vector<double> &share);
 
+  /** Nodes along one axis that a position reaches (in node spacings from the origin): their number,
+   *  the first one, and the weights. */
+  int shape_weights(double t, int &first, double w[4]) const;
+
   /** Position of a node. */
   void node_position(const int index[3], double x[3]) const
   {

@@ -40,17 +40,6 @@ static constexpr double MIN_EXTENT = 1.0e-4;
 
 namespace {
 
-/** Weights of the nodes from the base node on, along one axis, for the fraction f of an interval. */
-void shape_weights(Shape shape, double f, double *w)
-{
-  if (shape == LINEAR)
-    BSpline<1>::weights(f, w);
-  else if (shape == QUADRATIC)
-    BSpline<2>::weights(f, w);
-  else
-    BSpline<3>::weights(f, w);
-}
-
 uint64_t mixed(uint64_t z)
 {
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
@@ -59,6 +48,21 @@ uint64_t mixed(uint64_t z)
 }
 
 }    // namespace
+
+/* ---------------------------------------------------------------------- */
+
+int FixMPM::shape_weights(double t, int &first, double w[4]) const
+{
+  const double s = t - 0.5 * (shape - 1);
+  first = (int) std::floor(s);
+  if (shape == LINEAR)
+    BSpline<1>::weights(s - first, w);
+  else if (shape == QUADRATIC)
+    BSpline<2>::weights(s - first, w);
+  else
+    BSpline<3>::weights(s - first, w);
+  return shape + 1;
+}
 
 /* ----------------------------------------------------------------------
    a number that tells whether points have other velocities than before, whatever rank has them
@@ -140,8 +144,10 @@ void FixMPM::fit_affine()
   auto visit = [&](const Grid::Block &block, int i, auto f) {
     int base[3];
     double t[3], w[3][4] = {{0.0}, {0.0}, {1.0}};
-    base_node(atom->x[i], base, t);
-    for (int d = 0; d < dim; d++) shape_weights(shape, t[d] - base[d], w[d]);
+    for (int d = 0; d < dim; d++) {
+      t[d] = (atom->x[i][d] - lattice.origin[d]) / lattice.h;
+      shape_weights(t[d], base[d], w[d]);
+    }
     int k[3];
     for (k[0] = 0; k[0] <= shape; k[0]++)
       for (k[1] = 0; k[1] <= shape; k[1]++)
@@ -152,7 +158,7 @@ void FixMPM::fit_affine()
             const int node = base[d] + k[d];
             side[d] = (node >> grid->shift_bits) - block.b[d] + 1;
             in[d] = node & (grid->side - 1);
-            r[d] = t[d] - node + 0.5 * (shape - 1);
+            r[d] = t[d] - node;
           }
           const int slot = block.slot[9 * side[0] + 3 * side[1] + side[2]];
           const int n = dim == 3 ? (in[0] * 4 + in[1]) * 4 + in[2] : in[0] * 8 + in[1];

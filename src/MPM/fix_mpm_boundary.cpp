@@ -7,7 +7,7 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Mirror planes. B-splines of order 2 and 3 reach beyond the wall, so that holding the nodes up to
+   Mirror planes (for faces between planes of nodes see fix_mpm_boundary_cut.cpp). B-splines of order 2 and 3 reach beyond the wall, so that holding the nodes up to
    the wall does not hold the material at the wall: with quadratic splines its velocity there would
    be 1/8 of that of the first free node. Instead the nodes k0 - j beyond the plane k0 are images
    of the nodes k0 + j: a component that the wall prescribes is odd about the wall,
@@ -364,8 +364,8 @@ void FixMPMBoundary::init()
           if (!acts_on(field) || !other->acts_on(field)) continue;
           if (narrow({face_on_lattice(field, face), face_on_lattice(field, face ^ 1)}, face / 2))
             error->all(FLERR, Error::NOLASTLINE,
-                       "Faces {} and {} are less than 3 cells apart: "
-                       "they must be in the same fix mpm/boundary",
+                       "Faces {} and {} are less than 3 cells apart, or 5 when they are "
+                       "not in planes of nodes: they must be in the same fix mpm/boundary",
                        FACE_NAME[face], FACE_NAME[face ^ 1]);
         }
     }
@@ -376,7 +376,13 @@ void FixMPMBoundary::init()
       if (decides() && narrow(faces, face / 2))
         error->all(FLERR, Error::NOLASTLINE,
                    "Fix mpm/boundary separate and friction need at least "
-                   "3 cells between opposite faces");
+                   "3 cells between opposite faces, or 5 when they are not in planes of nodes");
+      for (const auto &f : faces)
+        if (f.cut && f.axis == face / 2 && narrow(faces, f.axis))
+          error->all(FLERR, Error::NOLASTLINE,
+                     "Fix mpm/boundary faces that are not in planes of nodes of fix mpm {} must be "
+                     "at least 5 cells apart: change its spacing or origin",
+                     field.id);
     }
   }
   motion_step = -1;
@@ -407,12 +413,9 @@ FixMPMBoundary::Face FixMPMBoundary::face_on_lattice(const FixMPM &field, int fa
   const double h = field.lattice.h, origin = field.lattice.origin[f.axis];
   f.plane = (int) std::lround((x - origin) / h);
   const double plane_x = origin + f.plane * h;
-  if (fabs(x - plane_x) > ON_SURFACE * h)
-    error->all(FLERR, Error::NOLASTLINE,
-               "Fix mpm/boundary face {} at {} is not in a plane of nodes "
-               "of fix mpm {}: move the face to {} or {}, change spacing or origin of fix mpm, or "
-               "use a region",
-               FACE_NAME[face], x, field.id, plane_x, plane_x + (x > plane_x ? h : -h));
+  f.cut = false;
+  f.first = f.nweight = 0;
+  if (fabs(x - plane_x) > ON_SURFACE * h) cut_weights(field, x, f);
   return f;
 }
 
@@ -432,7 +435,8 @@ bool FixMPMBoundary::narrow(const std::vector<Face> &faces, int axis) const
   const Face *lo = nullptr, *hi = nullptr;
   for (const auto &f : faces)
     if (f.axis == axis) (f.inward > 0 ? lo : hi) = &f;
-  return lo && hi && hi->plane - lo->plane < 3;
+  if (!lo || !hi) return false;
+  return hi->plane - lo->plane < (lo->cut || hi->cut ? 5 : 3);
 }
 
 /* ----------------------------------------------------------------------
@@ -450,6 +454,15 @@ void FixMPMBoundary::extend_topology(FixMPM &field)
   for (std::size_t ib = 0; ib < grid.blocks.size(); ib++)
     for (const auto &face : faces) {
       int b[3] = {grid.blocks[ib].b[0], grid.blocks[ib].b[1], grid.blocks[ib].b[2]};
+      if (face.cut) {
+        const int lo = b[face.axis] * grid.side, end = face.first + face.nweight - 1;
+        if (lo > end || lo + grid.side <= face.first) continue;
+        for (int k : {face.first, end}) {
+          b[face.axis] = k >> grid.shift_bits;
+          grid.activate(b);
+        }
+        continue;
+      }
       const int first = std::max(b[face.axis] * grid.side, face.plane - DEPTH);
       const int last = std::min(b[face.axis] * grid.side + grid.side - 1, face.plane + DEPTH);
       if (first > last) continue;
@@ -476,6 +489,7 @@ void FixMPMBoundary::topology_changed(FixMPM &field)
   }
   mine->faces = faces_on_lattice(field);
   mine->columns.clear();
+  mine->cuts.clear();
   mine->members.clear();
   mine->orbits.clear();
   mine->singles.clear();
@@ -498,13 +512,15 @@ void FixMPMBoundary::list_face_nodes(FieldNodes &list)
       const Face &face = list.faces[f];
       const int last = face.plane - face.inward * (DEPTH + 1);
       const int lo = block.b[face.axis] * grid.side, hi = lo + grid.side - 1;
-      const bool beyond = face.inward > 0 ? lo <= last : hi >= last;
-      const bool plane = decides() && face.plane >= lo && face.plane <= hi;
-      if (!beyond && !plane) continue;
+      const bool cut = face.cut && face.first >= lo && face.first <= hi;
+      const bool beyond = !face.cut && (face.inward > 0 ? lo <= last : hi >= last);
+      const bool plane = !face.cut && decides() && face.plane >= lo && face.plane <= hi;
+      if (!beyond && !plane && !cut) continue;
       for (int n = 0; n < NODES_PER_BLOCK; n++) {
         if (block.alias >> n & 1) continue;
         int index[3];
         grid.node_index(block, n, index);
+        if (cut && index[face.axis] == face.first) list_cut(list, f, index);
         if (plane && index[face.axis] == face.plane) list_column(list, f, index);
         if (beyond && (last - index[face.axis]) * face.inward >= 0) {
           Single s = {(int64_t) ib * NODES_PER_BLOCK + n,
@@ -525,15 +541,21 @@ void FixMPMBoundary::list_face_nodes(FieldNodes &list)
   std::stable_sort(list.columns.begin(), list.columns.end(), [](const Column &a, const Column &b) {
     return a.face < b.face;
   });
+  std::stable_sort(list.cuts.begin(), list.cuts.end(), [](const Cut &a, const Cut &b) {
+    return a.face < b.face;
+  });
 
   // stick: a component is odd about all faces; slip: the normal one about its own
 
+  std::vector<Face> mirrors;
+  for (const auto &face : list.faces)
+    if (!face.cut) mirrors.push_back(face);
   if (kind == STICK) {
-    list_orbits(list, list.faces, constrained);
+    if (!mirrors.empty()) list_orbits(list, mirrors, constrained);
   } else if (!decides()) {
     for (int d = 0; d < grid.lattice.dim; d++) {
       std::vector<Face> faces;
-      for (const auto &face : list.faces)
+      for (const auto &face : mirrors)
         if (face.axis == d) faces.push_back(face);
       const bool prescribed[3] = {d == 0, d == 1, d == 2};
       if (!faces.empty()) list_orbits(list, faces, prescribed);
@@ -903,6 +925,7 @@ void FixMPMBoundary::act(double dt, bool count)
     ledger_lanes = field.ledger_on;
     old_share = count && wall.uniform && field.transfer == FLIP ? field.flip : 0.0;
     decided = !count && field.scheme == FixMPM::MUSL;
+    act_on_cuts(list);
     for (auto &column : list.columns) act_on_column(list, column);
     for (const auto &orbit : list.orbits) act_on_orbit(list, orbit);
     for (auto &single : list.singles) act_on_single(list, single);
@@ -1211,7 +1234,8 @@ double FixMPMBoundary::memory_usage()
 {
   double bytes = 0.0;
   for (const auto &list : nodes)
-    bytes += list.columns.capacity() * sizeof(Column) + list.members.capacity() * sizeof(Member) +
-        list.orbits.capacity() * sizeof(Orbit) + list.singles.capacity() * sizeof(Single);
+    bytes += list.columns.capacity() * sizeof(Column) + list.cuts.capacity() * sizeof(Cut) +
+        list.members.capacity() * sizeof(Member) + list.orbits.capacity() * sizeof(Orbit) +
+        list.singles.capacity() * sizeof(Single);
   return bytes;
 }

@@ -55,7 +55,10 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
   struct Face {    // a face of the box on the lattice of a field
     int axis;
     int inward;    // direction from the face into the box along the axis: 1 or -1
-    int plane;     // index of its plane of nodes
+    int plane;     // index of its plane of nodes, or the nearest one
+    bool cut;      // lies between planes: nweight nodes from first on make the velocity there
+    int first, nweight;
+    double weight[4];
   };
   enum Contact { FREE, SLIDING, STUCK };    // what a wall does to a column or node
 
@@ -63,6 +66,12 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
     int64_t plane, inside[DEPTH], image[DEPTH];
     int face;     // index into faces
     int owned;    // bit 0: plane, 1...: inside, 1 + DEPTH ...: images
+    Contact contact;
+  };
+  struct Cut {    // nodes along the normal of a face that cuts cells
+    int face;     // index into faces
+    int64_t node[4];
+    int owned;    // bits
     Contact contact;
   };
   struct Member {
@@ -89,6 +98,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
     FixMPM *field;
     std::vector<Face> faces;
     std::vector<Column> columns;
+    std::vector<Cut> cuts;
     std::vector<Member> members;
     std::vector<Orbit> orbits;
     std::vector<Single> singles;
@@ -148,6 +158,10 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
   void list_region_nodes(FieldNodes &);
   bool decides() const { return kind == SEPARATE || friction > 0.0; }
   bool narrow(const std::vector<Face> &, int axis) const;
+  static void cut_weights(const FixMPM &, double x, Face &);
+  void list_cut(FieldNodes &, int face, const int *index);
+  void act_on_cuts(FieldNodes &);
+  void act_on_cut(const FieldNodes &, Cut &, bool last);
   double surface_distance(const double *x) const;
   bool surface_normal(const double *x, double step, int dim, double *normal) const;
   void update_motion(double dt);

@@ -1,0 +1,203 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// Faces of the box that cut cells: they lie between planes of nodes, so that nodes have no mirror
+// images. The velocity at the face, at the lateral position of a line of nodes along the normal, is
+// sum_i a_i v_i, a_i = N_i(face), and the material at the face has the velocity V of the wall when
+//   sum_i a_i (v_i - V_i) = 0
+// for each line. A node that only points right at the face reach could alone do that, with a large
+// velocity that other points do not feel, and the body would creep into the wall. Therefore the three
+// outermost nodes must also have no curvature, b = (1, -2, 1):
+//   sum_i b_i (v_i - V_i) = 0,
+// as the mirror images do at a plane. The change of velocities of least kinetic energy that does both,
+//   v_i += (lambda a_i + mu b_i)/m_i,
+// leaves alone what varies linearly from V at the face. Its impulse is lambda sum_i a_i. A wall acts
+// when points are in reach of its outermost node, but for nodes that reach less than 0.5 (linear), 0.2
+// or 0.3 of a cell into the box (MIN_WEIGHT). Where no point reaches a linear function's outer node,
+// the two next ones are extrapolated to it. Friction, separation and the old velocities of FLIP are as
+// at mirror planes.
+
+#include "fix_mpm_boundary.h"
+
+#include "fix_mpm.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+// of linear, quadratic and cubic functions
+static constexpr double MIN_WEIGHT[4] = {0.0, 0.5, 0.02, 0.0045};
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMBoundary::cut_weights(const FixMPM &field, double x, Face &face)
+{
+  face.cut = true;
+  face.nweight = field.shape_weights((x - field.lattice.origin[face.axis]) / field.lattice.h,
+                                     face.first, face.weight);
+  if (field.shape != LINEAR) return;
+  face.nweight = 3;    // and the next node inside
+  face.weight[2] = 0.0;
+  if (face.inward > 0) return;
+  face.first--;
+  face.weight[2] = face.weight[1];
+  face.weight[1] = face.weight[0];
+  face.weight[0] = 0.0;
+}
+
+/* ----------------------------------------------------------------------
+   the line of nodes along the normal that has this node, the first of the line
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::list_cut(FieldNodes &list, int f, const int *index)
+{
+  const Grid &grid = *list.field->grid;
+  const Face &face = list.faces[f];
+  Cut cut;
+  cut.face = f;
+  cut.contact = FREE;
+  cut.owned = 0;
+  int k[3] = {index[0], index[1], index[2]};
+  for (int j = 0; j < face.nweight; j++) {
+    k[face.axis] = face.first + j;
+    cut.node[j] = grid.locate(k);
+    if (cut.node[j] < 0) return;    // not all in reach of points: nor is the face
+    const auto &block = grid.blocks[cut.node[j] / NODES_PER_BLOCK];
+    cut.owned |= (int) (block.owned >> (cut.node[j] % NODES_PER_BLOCK) & 1) << j;
+  }
+  list.cuts.push_back(cut);
+}
+
+/* ----------------------------------------------------------------------
+   At edges, tangential components of one face are normal ones of another: these come last, so that
+   no material gets out.
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::act_on_cuts(FieldNodes &list)
+{
+  for (auto &cut : list.cuts) act_on_cut(list, cut, false);
+  if (kind == STICK || friction > 0.0)
+    for (auto &cut : list.cuts) act_on_cut(list, cut, true);
+}
+
+void FixMPMBoundary::act_on_cut(const FieldNodes &list, Cut &cut, bool last)
+{
+  Grid &grid = *list.field->grid;
+  const Face &face = list.faces[cut.face];
+  const int dim = grid.lattice.dim, a = face.axis, n = face.nweight;
+  const bool hold = old_share > 0.0 && (kind == STICK || (kind == SLIP && !last));
+  if (last && kind != STICK && cut.contact == FREE) return;
+
+  // nodes from outside to inside, those with points
+
+  const double least = MIN_WEIGHT[list.field->shape];
+  double *r[4], A[4], B[4] = {0.0, 0.0, 0.0, 0.0}, V[4][3], total = 0.0;
+  int owned[4], m = 0;
+  bool reached = false;
+  double extrapolated = 0.0;
+  for (int j = 0; j < n; j++) {
+    const int k = face.inward > 0 ? j : n - 1 - j;
+    double *record = grid.nodes() + cut.node[k] * grid.nreal;
+    if (record[3] <= 0.0) {
+      if (!reached && face.weight[k] >= least) return;
+      if (list.field->shape == LINEAR && j == 0) extrapolated = face.weight[k];
+      continue;
+    }
+    reached = reached || face.weight[k] >= least;
+    r[m] = record;
+    A[m] = face.weight[k];
+    total += A[m];
+    owned[m] = cut.owned >> k & 1;
+    wall_velocity(*list.field, cut.node[k], V[m]);
+    m++;
+  }
+  if (!reached) return;
+  if (extrapolated > 0.0 && m == 2) {
+    A[0] += 2.0 * extrapolated;
+    A[1] -= extrapolated;
+    total += extrapolated;
+  }
+  if (m == n) {
+    B[0] = B[2] = 1.0;
+    B[1] = -2.0;
+  }
+  double AA = 0.0, AB = 0.0, BB = 0.0;
+  for (int k = 0; k < m; k++) {
+    AA += A[k] * A[k] / r[k][3];
+    AB += A[k] * B[k] / r[k][3];
+    BB += B[k] * B[k] / r[k][3];
+  }
+
+  // of old velocities as much is consistent with the wall as the innermost node has, see
+  // fix_mpm_boundary.cpp
+
+  double lambda[3], mu[3], lambda_old[3] = {0.0, 0.0, 0.0}, mu_old[3] = {0.0, 0.0, 0.0};
+  auto project = [&](auto velocity, double &l, double &u) {
+    double a_sum = 0.0, b_sum = 0.0;
+    for (int k = 0; k < m; k++) {
+      a_sum -= A[k] * velocity(k);
+      b_sum -= B[k] * velocity(k);
+    }
+    const double det = AA * BB - AB * AB;
+    l = BB > 0.0 ? (BB * a_sum - AB * b_sum) / det : a_sum / AA;
+    u = BB > 0.0 ? (AA * b_sum - AB * a_sum) / det : 0.0;
+  };
+  for (int d = 0; d < dim; d++) {
+    project(
+        [&](int k) {
+          return r[k][d] - V[k][d];
+        },
+        lambda[d], mu[d]);
+    if (!hold || !(kind == STICK ? constrained[d] && (d == a) == last : d == a)) continue;
+    const double limit = fabs(r[m - 1][4 + d] - before[d]);
+    project(
+        [&](int k) {
+          return std::max(-limit, std::min(r[k][4 + d] - before[d], limit));
+        },
+        lambda_old[d], mu_old[d]);
+  }
+
+  double share[3] = {0.0, 0.0, 0.0};
+  if (kind == STICK) {
+    for (int d = 0; d < dim; d++) share[d] = constrained[d] && (d == a) == last ? 1.0 : 0.0;
+  } else if (last) {
+    share[a] = 1.0;
+  } else {
+    const double push = face.inward * total * (lambda[a] - old_share * lambda_old[a]);
+    double slide = 0.0;
+    if (!decided) {
+      cut.contact = SLIDING;
+      if (kind == SEPARATE && push <= 0.0) {
+        cut.contact = FREE;
+      } else if (friction > 0.0 && push > 0.0) {
+        double needed = 0.0;
+        for (int d = 0; d < dim; d++)
+          if (d != a) needed += lambda[d] * lambda[d];
+        needed = total * sqrt(needed);
+        if (needed > friction * push)
+          slide = friction * push / needed;
+        else
+          cut.contact = STUCK;
+      }
+    }
+    if (cut.contact == FREE) return;
+    if (cut.contact == STUCK) slide = 1.0;
+    for (int d = 0; d < dim; d++) share[d] = d == a ? 1.0 : slide;
+  }
+
+  for (int k = 0; k < m; k++) {
+    double v[3], old[3];
+    for (int d = 0; d < dim; d++) {
+      v[d] = r[k][d] + share[d] * (lambda[d] * A[k] + mu[d] * B[k]) / r[k][3];
+      if (hold) old[d] = r[k][4 + d] + (lambda_old[d] * A[k] + mu_old[d] * B[k]) / r[k][3];
+    }
+    set_velocity(r[k], v, hold ? old : nullptr, dim, owned[k]);
+  }
+}
