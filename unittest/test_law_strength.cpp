@@ -856,6 +856,41 @@ TEST(Thermal, IsentropicCompression)
     }
 }
 
+// at the melting temperature heat goes into the molten fraction, on cooling back
+TEST(Thermal, HeatOfFusion)
+{
+  const double rho = 7800, cp = 500, latent = 1e4, melt = 320, gamma = 2;
+  const auto material = make(text_of(J2 + "thermal adiabatic", {cp, 300, 1}) +
+                             text_of(" melt", {melt, latent}) + text_of(" gruneisen", {gamma}));
+  ASSERT_EQ(material->history().size(), 3u);
+  MaterialPoint p(*material);
+  const auto expect = [&](double all) {    // temperature if there were no fusion
+    const double fraction = std::min(std::max((all - melt) * cp / latent, 0.0), 1.0);
+    EXPECT_NEAR(p.history(2), fraction, 1e-9);
+    EXPECT_NEAR(p.history(1), all - fraction * latent / cp, 1e-6);
+  };
+  for (const double strain : {0.2, 0.1, 0.1, 0.1, 0.2}) {
+    shear(p, strain, 1.0, 20);
+    expect(300 + SIGMAY * p.history(0) / (rho * cp));
+  }
+  EXPECT_EQ(p.history(2), 1.0);
+  // expansion cools until some of it is solid again: T falls to melt, then the fraction falls
+  double all = p.history(1) + latent / cp, T = p.history(1), fraction = 1.0;
+  const Matrix A = {1e-3, 0, 0, 0, 1e-3, 0, 0, 0, 1e-3};
+  for (int i = 0; i < 12; i++) {
+    const double J = p.batch.J[0];
+    p.move(A.data(), 1.0);
+    all += T * std::expm1(-gamma * (p.batch.J[0] - J));
+    fraction = std::min(std::max((all - melt) * cp / latent, 0.0), 1.0);
+    T = all - fraction * latent / cp;
+    EXPECT_NEAR(p.history(2), fraction, 1e-6);
+    EXPECT_NEAR(p.history(1), T, 1e-3);
+  }
+  EXPECT_LT(fraction, 0.9);
+  EXPECT_GT(fraction, 0.0);
+  EXPECT_THROW(make("density 1 eos linear 1 thermal adiabatic 1 500 melt 400 1"), MaterialError);
+}
+
 // all viscous work becomes heat, whatever CHI
 TEST(Thermal, ViscousWorkHeats)
 {

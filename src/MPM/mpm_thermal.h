@@ -21,19 +21,34 @@ namespace {
    *  with the heat dq of the step per reference volume: the share CHI of the plastic work
    *  (G.I. Taylor, H. Quinney, Proc. R. Soc. London A 143 (1934) 307), and all viscous work. The
    *  second term is the change along an isentrope when density * Gruneisen parameter is constant,
-   *  T ~ exp(GAMMA (1 - J)). Strengths use the temperature of the end of the step. */
+   *  T ~ exp(GAMMA (1 - J)). Strengths use the temperature of the end of the step. With melting the
+   *  temperature stays at TMELT until the molten fraction f, LATENT df = CP dT, has gone from 0 to 1,
+   *  and on cooling back to 0. */
   struct ThermalAdiabatic : LawDefaults {
     static constexpr const char *name = "adiabatic";
     static constexpr const char *meaning = "temperature by dissipation, without conduction";
-    enum { CP, T0, CHI, GAMMA };
+    enum { CP, T0, CHI, GAMMA, TMELT, LATENT };
     static constexpr Parameter parameters[] = {
         {"", "CP", "energy/(mass temperature)", POSITIVE, REQUIRED, "specific heat"},
         {"", "T0", "temperature", {-UNBOUNDED, UNBOUNDED, false}, REQUIRED, "initial temperature"},
         {"", "CHI", "1", FRACTION, 0.9, "share of the plastic work that becomes heat"},
-        {"gruneisen", "GAMMA", "1", NOT_NEGATIVE, 0.0, "Gruneisen parameter at reference density"}};
+        {"gruneisen", "GAMMA", "1", NOT_NEGATIVE, 0.0, "Gruneisen parameter at reference density"},
+        {"melt",
+         "TMELT",
+         "temperature",
+         {-UNBOUNDED, UNBOUNDED, false},
+         0.0,
+         "melting temperature"},
+        {"melt", "LATENT", "energy/mass", POSITIVE, 0.0, "heat of fusion, 0: none"}};
     static constexpr HistoryDeclaration history[] = {
-        {"temperature", T0, "temperature", "temperature"}};
-    static constexpr int nhistory(const LawParameters &) { return 1; }
+        {"temperature", T0, "temperature", "temperature"},
+        {"molten", ZERO, "1", "molten fraction"}};
+    static constexpr int nhistory(const LawParameters &p) { return p.value[LATENT] > 0.0 ? 2 : 1; }
+    static constexpr const char *check(const LawParameters &p)
+    {
+      return p.value[LATENT] > 0.0 && p.value[T0] > p.value[TMELT] ? "T0 must not be above TMELT"
+                                                                   : nullptr;
+    }
     static double heat_share(const LawParameters &p) { return p.value[CHI]; }
     static double warming(const LawParameters &p) { return 1.0 / (p.heat_density * p.value[CP]); }
 
@@ -47,6 +62,21 @@ namespace {
       }
       MPM_SIMD
       for (int i = 0; i < b.n; i++) T[i] += warm * b.heat[i];
+      if (nhistory(p) > 1) melt(p.value[TMELT], p.value[LATENT] / p.value[CP], b, T, history[1]);
+    }
+
+   private:
+    /** range: the latent heat as a difference of temperatures. */
+    static MPM_INLINE void melt(double melting, double range, const Batch &b, double *T,
+                                double *molten)
+    {
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const double all = T[i] + range * molten[i];    // had it not melted
+        const double latent = min(max(all - melting, 0.0), range);
+        molten[i] = latent / range;
+        T[i] = all - latent;
+      }
     }
   };
 
