@@ -52,7 +52,8 @@ separate_arguments(link)
 # everything but main(): for lmp, tests and benchmarks
 add_library(lammps_mpm INTERFACE)
 target_sources(lammps_mpm INTERFACE $<TARGET_OBJECTS:lammps_styles> ${MPM_OBJECTS})
-target_link_libraries(lammps_mpm INTERFACE ${LAMMPS_BUILD_DIR}/liblammps.a ${link})
+target_link_libraries(lammps_mpm INTERFACE ${LAMMPS_BUILD_DIR}/liblammps.a ${link}
+  ${MPM_LIBRARIES})
 
 add_executable(lmp ${LAMMPS_DIR}/src/main.cpp)
 target_link_libraries(lmp PRIVATE lammps_mpm)

@@ -18,6 +18,7 @@ get_property(MPM_OBJECTS GLOBAL PROPERTY MPM_OBJECTS)
 add_library(mpmplugin MODULE $<TARGET_OBJECTS:mpm_plugin_objects> ${MPM_OBJECTS})
 set_target_properties(mpmplugin PROPERTIES PREFIX "" SUFFIX ".so" LINKER_LANGUAGE CXX
   LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
+target_link_libraries(mpmplugin PRIVATE ${MPM_LIBRARIES})
 if(APPLE)
   target_link_options(mpmplugin PRIVATE -undefined dynamic_lookup)
 else()

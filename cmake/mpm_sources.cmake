@@ -61,6 +61,16 @@ endfunction()
 # Eigen is header-only
 find_path(EIGEN3_INCLUDE_DIR Eigen/Core PATH_SUFFIXES eigen3 REQUIRED)
 
+# FFTW, for random fields of parameters; without it they are refused
+find_path(FFTW3_INCLUDE_DIR fftw3.h)
+find_library(FFTW3_LIBRARY fftw3)
+set(MPM_LIBRARIES)
+set(MPM_FEATURES)
+if(FFTW3_INCLUDE_DIR AND FFTW3_LIBRARY)
+  set(MPM_LIBRARIES ${FFTW3_LIBRARY})
+  set(MPM_FEATURES MPM_FFTW)
+endif()
+
 # Instruction sets for the hot kernels mpm_*_isa.cpp: compiled once per set with
 # MPM_ISA = base, v3, v4; MPM_HAVE_V3, MPM_HAVE_V4 tell the dispatcher which exist.
 # Functions there must be in namespaces named by MPM_ISA or have internal linkage:
@@ -92,6 +102,10 @@ function(mpm_object_library name)
   target_include_directories(${name} SYSTEM PRIVATE ${EIGEN3_INCLUDE_DIR}
     "$<FILTER:${MPM_LAMMPS_INCLUDES},EXCLUDE,^/usr/include$>")
   target_compile_definitions(${name} PRIVATE ${MPM_LAMMPS_DEFINITIONS} ${MPM_ISA_DEFINITIONS})
+  if(MPM_FEATURES)
+    target_include_directories(${name} SYSTEM PRIVATE
+      "$<FILTER:${FFTW3_INCLUDE_DIR},EXCLUDE,^/usr/include$>")
+  endif()
 endfunction()
 
 # Object libraries for the whole package; the global property MPM_OBJECTS lists
@@ -99,6 +113,7 @@ endfunction()
 # = how LAMMPS is compiled.
 function(mpm_add_objects)
   mpm_object_library(mpm_objects ${MPM_SOURCES})
+  target_compile_definitions(mpm_objects PRIVATE ${MPM_FEATURES})
   set(objects $<TARGET_OBJECTS:mpm_objects>)
   if(MPM_ISA_SOURCES)
     foreach(isa ${MPM_ISA_SETS})

@@ -47,7 +47,7 @@ compile() {
 
 objects=()
 for name in mpm_grid mpm_kernels mpm_kernels_reference mpm_batch mpm_material mpm_material_point \
-  mpm_law_registry; do
+  mpm_law_registry mpm_random_field; do
   compile "$src/$name.cpp" "$name.o"
 done
 for isa in "${sets[@]}"; do

@@ -86,6 +86,7 @@ int FixMPMMaterial::setmask()
 
 void FixMPMMaterial::init()
 {
+  material->initialized();
   assign_mass();
 
   // a mass that create_atoms left, together with a volume that was set, is easily overlooked
@@ -219,7 +220,11 @@ void FixMPMMaterial::copy_arrays(int i, int j, int /*delflag*/)
 
 void FixMPMMaterial::set_arrays(int i)
 {
-  material->initialize(atom->x[i], history[i]);
+  try {
+    material->initialize(atom->x[i], history[i]);
+  } catch (const std::runtime_error &e) {
+    error->one(FLERR, Error::NOLASTLINE, "Fix mpm/material {}: {}", id, e.what());
+  }
 }
 
 /* ---------------------------------------------------------------------- */

@@ -16,18 +16,21 @@
 //   at most one          damage ...
 //   at most one          thermal adiabatic | constant ...
 //   any number of        range QUANTITY LOW HIGH
+//   any number of        random PARAMETER lognormal | normal COV LENGTH SEED
 //
 // in any order. What follows the name of a law is in the declaration of its parameters.
 
 #include "mpm_material.h"
 
 #include "mpm_law.h"
+#include "mpm_random_field.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
 
 using namespace MPM_NS;
 
@@ -37,6 +40,33 @@ const char *const part_name[NPARTS] = {"", "eos", "strength", "viscosity", "dama
 
 /* ---------------------------------------------------------------------- composition */
 
+/** A parameter that differs from point to point: its value is the mean times a factor, which is a
+ *  history variable. */
+struct RandomParameter {
+  int parameter;    ///< in the declaration of its law
+  int row;          ///< of the factor in the history of the material
+  bool lognormal;
+  double variation;    ///< standard deviation over mean
+  std::shared_ptr<const RandomField> field;
+
+  /** Factor with mean 1 from a standard normal deviate. */
+  double factor(double g) const
+  {
+    if (!lognormal) return 1.0 + variation * g;
+    const double s2 = std::log1p(variation * variation);
+    return std::exp(std::sqrt(s2) * g - 0.5 * s2);
+  }
+};
+
+/** A random parameter in a definition. */
+struct UsedRandom {
+  int word;    ///< of the name in the definition
+  std::string name;
+  bool lognormal;
+  double variation, length;
+  long seed;
+};
+
 /** A law with its parameters in a material. */
 struct UsedLaw {
   const LawInfo *info;
@@ -45,7 +75,14 @@ struct UsedLaw {
   LawParameters parameters;
   int history;                  ///< first row of its history
   const LawKernels *kernels;    ///< for the instruction set that runs
+  std::vector<RandomParameter> random;
 };
+
+bool in_range(const Range &range, double value)
+{
+  return range.closed ? value >= range.low && value <= range.high
+                      : value > range.low && value < range.high;
+}
 
 std::string number(double x)
 {
@@ -80,7 +117,8 @@ bool shares_stress(const std::vector<UsedLaw> (&laws)[NPARTS])
 class ComposedMaterial : public Material {
  public:
   ComposedMaterial(double density, std::vector<UsedLaw> used[NPARTS],
-                   const std::vector<UsedRange> &ranges, const LawTable *table) :
+                   const std::vector<UsedRange> &ranges, const std::vector<UsedRandom> &random,
+                   const LawTable *table) :
       rho(density),
       table(table)
   {
@@ -88,6 +126,7 @@ class ComposedMaterial : public Material {
     text = "density " + number(rho);
     for (int part = 0; part < NPARTS; part++)
       for (auto &law : laws[part]) add(static_cast<Part>(part), law);
+    for (const auto &r : random) add(r);
     for (const auto &range : ranges) add(range);
     viscous = -1;
     if (shares_stress(laws)) {
@@ -116,7 +155,18 @@ class ComposedMaterial : public Material {
     for (size_t k = 0; k < variables.size(); k++) history[k] = variables[k].initial;
     for (const auto &part : laws)
       for (const auto &law : part)
-        if (law.info->initialize) law.info->initialize(law.parameters, x, history + law.history);
+        if (law.random.empty()) {
+          if (law.info->initialize) law.info->initialize(law.parameters, x, history + law.history);
+        } else {
+          initialize_random(law, x, history);
+        }
+  }
+
+  void initialized() const override
+  {
+    for (const auto &part : laws)
+      for (const auto &law : part)
+        for (const auto &r : law.random) r.field->release();
   }
 
   void initial_stress(Batch &b) const override
@@ -128,7 +178,7 @@ class ComposedMaterial : public Material {
       for (auto &row : b.A) row[i] = 0.0;
     }
     table->clear_stress(b);
-    for (const auto &law : laws[EOS]) law.kernels->update(law.parameters, b, rows(b, law));
+    for (const auto &law : laws[EOS]) call(law.kernels->update, law, b);
   }
 
   void update(Batch &b) const override
@@ -137,9 +187,9 @@ class ComposedMaterial : public Material {
     for (double &w : b.work) w = 0.0;
 
     const auto run = [&b](const UsedLaw &law) {
-      law.kernels->update(law.parameters, b, rows(b, law));
+      call(law.kernels->update, law, b);
     };
-    if (damage) damage->kernels->prepare(damage->parameters, b, rows(b, *damage));
+    if (damage) call(damage->kernels->prepare, *damage, b);
     if (viscous >= 0) take_viscous_stress(b);
     for (const auto &law : laws[VISCOSITY])
       if (law.info->uses_speed) {
@@ -191,7 +241,7 @@ class ComposedMaterial : public Material {
     const Batch &b = without_viscous_stress(state, copy);
     plain_speed(b, c);
     for (const auto &law : laws[VISCOSITY])
-      if (law.kernels->raise_speed) law.kernels->raise_speed(law.parameters, b, rows(b, law), c);
+      if (law.kernels->raise_speed) call(law.kernels->raise_speed, law, b, c);
   }
 
   void stored_energy(const Batch &state, double *w) const override
@@ -250,6 +300,95 @@ class ComposedMaterial : public Material {
     return b.history ? b.history + law.history : nullptr;
   }
 
+  /** The rows of a batch but A, F, stress, and history. */
+  static constexpr double (Batch::*single_rows[])[BATCH] = {&Batch::J,
+                                                            &Batch::Jold,
+                                                            &Batch::vol0,
+                                                            &Batch::heat,
+                                                            &Batch::plastic,
+                                                            &Batch::speed,
+                                                            &Batch::kept,
+                                                            &Batch::plastic_work,
+                                                            &Batch::viscous_mean,
+                                                            &Batch::shear_energy,
+                                                            &Batch::volume_energy};
+  static_assert(sizeof(Batch) < (9 + 9 + 6 + std::size(single_rows) + 1) * BATCH * sizeof(double),
+                "all rows are listed");
+
+  /** A kernel that changes a batch. */
+  static void call(void (*kernel)(const LawParameters &, Batch &, History), const UsedLaw &law,
+                   Batch &b)
+  {
+    if (law.random.empty()) {
+      kernel(law.parameters, b, rows(b, law));
+      return;
+    }
+    one_by_one(law, b, [&](const LawParameters &p, Batch &one, History history, int i) {
+      kernel(p, one, history);
+      for (int k = 0; k < 6; k++) b.stress[k][i] = one.stress[k][0];
+      for (const auto row : single_rows) (b.*row)[i] = (one.*row)[0];
+      for (int k = 0; k < NWORK; k++) b.work[k] += one.work[k];
+    });
+  }
+
+  /** A kernel that adds to values of the points. */
+  static void call(void (*kernel)(const LawParameters &, const Batch &, History, double *),
+                   const UsedLaw &law, const Batch &b, double *value)
+  {
+    if (law.random.empty())
+      kernel(law.parameters, b, rows(b, law), value);
+    else
+      one_by_one(law, b, [&](const LawParameters &p, const Batch &one, History history, int i) {
+        kernel(p, one, history, value + i);
+      });
+  }
+
+  /** Calls work for each point in a batch of its own, with its own parameters. The history is not
+   *  copied: its rows are those of the batch, beginning with the point. */
+  template <class Work> static void one_by_one(const UsedLaw &law, const Batch &b, Work work)
+  {
+    Batch one;
+    one.n = 1;
+    one.dt = b.dt;
+    one.h = b.h;
+    one.time = b.time;
+    LawParameters p = law.parameters;
+    for (int i = 0; i < b.n; i++) {
+      for (const auto &r : law.random)
+        p.value[r.parameter] = law.parameters.value[r.parameter] * b.history[r.row][i];
+      for (int k = 0; k < 9; k++) one.A[k][0] = b.A[k][i];
+      for (int k = 0; k < 9; k++) one.F[k][0] = b.F[k][i];
+      for (int k = 0; k < 6; k++) one.stress[k][0] = b.stress[k][i];
+      for (double &w : one.work) w = 0.0;
+      for (const auto row : single_rows) (one.*row)[0] = (b.*row)[i];
+      one.history = reinterpret_cast<History>(&b.history[0][i]);
+      work(p, one, one.history + law.history, i);
+    }
+  }
+
+  /** Factors of a new point, and the history of its law, which may depend on the parameters. */
+  static void initialize_random(const UsedLaw &law, const double *x, double *history)
+  {
+    LawParameters p = law.parameters;
+    for (const auto &r : law.random) {
+      const double factor = history[r.row] = r.factor(r.field->value(x));
+      const Parameter &declared = law.info->parameters[r.parameter];
+      p.value[r.parameter] *= factor;
+      if (!in_range(declared.range, p.value[r.parameter]))
+        throw std::runtime_error(std::string("random ") + declared.name + " is " +
+                                 number(p.value[r.parameter]) +
+                                 " at a point, which is out of range: use lognormal, or a smaller "
+                                 "coefficient of variation");
+    }
+    if (const char *wrong = law.info->check(p))
+      throw std::runtime_error(std::string("with the random parameters of a point, ") +
+                               law.info->name + ": " + wrong);
+    for (int k = 0; k < law.info->nhistory(p); k++)
+      if (law.info->history[k].initial >= 0)
+        history[law.history + k] = p.value[law.info->history[k].initial];
+    if (law.info->initialize) law.info->initialize(p, x, history + law.history);
+  }
+
   /** Kernels of all parts, and what they are told of each other. */
   void bind(double pressure_scale, double energy_scale)
   {
@@ -289,7 +428,7 @@ class ComposedMaterial : public Material {
   void add_energy(Part part, const Batch &b, double *w) const
   {
     for (const auto &law : laws[part])
-      if (law.kernels->energy) law.kernels->energy(law.parameters, b, rows(b, law), w);
+      if (law.kernels->energy) call(law.kernels->energy, law, b, w);
   }
 
   /** What the strength has done, for a damage; heat that the equation of state shall have. */
@@ -329,6 +468,51 @@ class ComposedMaterial : public Material {
     }
   }
 
+  /** NAME or LAW.NAME, where LAW is the name of the part or of the closed law. */
+  void add(const UsedRandom &random)
+  {
+    const std::string what = "random " + random.name;
+    UsedLaw *owner = nullptr;
+    int parameter = -1;
+    std::string choice;
+    for (int part = 0; part < NPARTS; part++)
+      for (auto &law : laws[part])
+        for (int k = 0; k < law.info->nparameters && part != THERMAL; k++) {
+          const std::string name = law.info->parameters[k].name;
+          const std::string full =
+              std::string(part == CLOSED ? law.info->name : part_name[part]) + "." + name;
+          choice += (choice.empty() ? "" : ", ") + full;
+          if (random.name != name && random.name != full) continue;
+          if (owner)
+            throw MaterialError(random.word,
+                                what +
+                                    ": several laws of this material have it: "
+                                    "choose " +
+                                    choice);
+          owner = &law;
+          parameter = k;
+        }
+    if (!owner)
+      throw MaterialError(random.word, what + ": no such parameter: choose one of " + choice);
+    const double mean = owner->parameters.value[parameter];
+    if (mean == 0.0 || !std::isfinite(mean))
+      throw MaterialError(random.word,
+                          what + ": its value is " + number(mean) +
+                              ", which a factor does not change: give it another one");
+    for (const auto &other : owner->random)
+      if (other.parameter == parameter) throw MaterialError(random.word, what + ": is given twice");
+    RandomParameter r;
+    r.parameter = parameter;
+    r.row = variables.size();
+    r.lognormal = random.lognormal;
+    r.variation = random.variation;
+    r.field = std::make_shared<const RandomField>(random.length, random.seed);
+    owner->random.push_back(r);
+    variables.push_back({"random/" + random.name, 1.0});
+    text += ", " + what + (random.lognormal ? " lognormal " : " normal ") +
+        number(random.variation) + " " + number(random.length) + " " + std::to_string(random.seed);
+  }
+
   void add(const UsedRange &range)
   {
     int from = range.quantity == "pressure" ? UsedRange::PRESSURE_OF_STRESS
@@ -356,7 +540,7 @@ class ComposedMaterial : public Material {
     double k[BATCH] = {};
     for (const auto &part : laws)
       for (const auto &law : part)
-        if (law.kernels->modulus) law.kernels->modulus(law.parameters, b, rows(b, law), k);
+        if (law.kernels->modulus) call(law.kernels->modulus, law, b, k);
     table->speed(b.n, rho_pressure, k, c);
   }
 };
@@ -426,6 +610,8 @@ class Parser {
         parse_density(here);
       else if (keyword == "range")
         parse_range();
+      else if (keyword == "random")
+        parse_random(here);
       else if (find(declared_laws(CLOSED), keyword) >= 0)
         parse_law(CLOSED, here);
       else if (const int part = find_part(keyword))
@@ -434,7 +620,7 @@ class Parser {
         fail(here,
              "unknown keyword '" + keyword + "': expected density, " +
                  join(names(declared_laws(CLOSED)), ", ") +
-                 ", eos, strength, viscosity, damage, thermal or range");
+                 ", eos, strength, viscosity, damage, thermal, range or random");
     }
     check();
     const LawTable *table = LawTable::select(isa);
@@ -444,7 +630,7 @@ class Parser {
            std::string("MPM_ISA=") + (name ? name : "") +
                ": not one of reference, baseline, avx2, avx512, or this CPU cannot run it");
     }
-    return std::unique_ptr<Material>(new ComposedMaterial(density, used, ranges, table));
+    return std::unique_ptr<Material>(new ComposedMaterial(density, used, ranges, random, table));
   }
 
  private:
@@ -454,6 +640,7 @@ class Parser {
   double density = 0.0;
   std::vector<UsedLaw> used[NPARTS];
   std::vector<UsedRange> ranges;
+  std::vector<UsedRandom> random;
 
   bool at_end() const { return next >= static_cast<int>(words.size()); }
 
@@ -481,9 +668,7 @@ class Parser {
     const double value = strtod(word.c_str(), &end);
     if (word.empty() || *end != '\0' || !std::isfinite(value))
       fail(next, full + " must be a number (" + meaning + ", " + unit + "), not '" + word + "'");
-    const bool above = range.closed ? value >= range.low : value > range.low;
-    const bool below = range.closed ? value <= range.high : value < range.high;
-    if (!above || !below)
+    if (!in_range(range, value))
       fail(next,
            full + " = " + word + " (" + meaning + ") is out of range: " + describe_range(range));
     next++;
@@ -515,6 +700,29 @@ class Parser {
     range.high = limit("HIGH", "INF", UNBOUNDED);
     if (!(range.low < range.high)) fail(next - 1, what + ": LOW must be less than HIGH");
     ranges.push_back(range);
+  }
+
+  /** random PARAMETER lognormal | normal COV LENGTH SEED */
+  void parse_random(int here)
+  {
+    if (!RandomField::available())
+      fail(
+          here,
+          "random: this program was built without FFTW; install it (libfftw3-dev) and build again");
+    UsedRandom r;
+    r.word = next;
+    if (at_end()) fail(next, "random: name of the parameter is missing");
+    r.name = words[next++];
+    const std::string what = "random " + r.name;
+    if (at_end() || (words[next] != "lognormal" && words[next] != "normal"))
+      fail(next, what + ": the distribution must be lognormal or normal");
+    r.lognormal = words[next++] == "lognormal";
+    r.variation = parse_number(what, "COV", "1", "coefficient of variation", POSITIVE);
+    r.length = parse_number(what, "LENGTH", "length", "correlation length", POSITIVE);
+    const double seed = parse_number(what, "SEED", "1", "seed", {1.0, 2147483647.0, true});
+    r.seed = static_cast<long>(seed);
+    if (r.seed != seed) fail(next - 1, what + ": SEED must be an integer");
+    random.push_back(r);
   }
 
   /** here: word of the law's name; next is behind it. */

@@ -102,8 +102,11 @@ class Material {
   virtual double density() const = 0;    ///< reference density
   virtual const std::vector<HistoryVariable> &history() const = 0;
 
-  /** All history variables of a new point at x. */
+  /** All history variables of a new point at x; throws std::runtime_error when it cannot be. */
   virtual void initialize(const double *x, double *history) const = 0;
+
+  /** Many points were initialized: what is only needed for that may be freed. */
+  virtual void initialized() const = 0;
 
   /** Stress of points that have none yet: the pressure of the equation of state in the present
    *  state, such as that of a gas. n, h, time and current F, J, history in the batch; sets stress,

@@ -1,0 +1,326 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// labels: unit physics restart
+// mpi: 1 2
+
+// Random fields: moments, correlation, and that they depend on nothing but position, length, and
+// seed; materials with random parameters, point by point, and through the fix.
+
+#include "material_testing.h"
+#include "mpm_lammps.h"
+#include "mpm_random_field.h"
+
+#include "exceptions.h"
+
+#include "gtest/gtest.h"
+
+#include <cstdio>
+
+using namespace material_testing;
+using MPM_NS::RandomField;
+using Lammps = MPM_TEST::Run;
+
+namespace {
+
+/** Needs FFTW: where the build lacks it, only the error is tested. */
+class Random : public ::testing::Test {
+  void SetUp() override
+  {
+    if (!RandomField::available()) GTEST_SKIP() << "built without FFTW";
+  }
+};
+
+const std::string STEEL =
+    "density 7800 eos linear 160e9 strength j2 80e9 300e6 hardening linear 2e9 ";
+
+std::string error_of(const std::string &text)
+{
+  try {
+    make(text);
+  } catch (const MPM_NS::MaterialError &e) {
+    return e.what();
+  }
+  return "";
+}
+
+}    // namespace
+
+TEST(RandomDefinition, Errors)
+{
+  if (!RandomField::available()) {
+    EXPECT_NE(error_of(STEEL + "random SIGMAY normal 0.1 1 1").find("without FFTW"),
+              std::string::npos);
+    return;
+  }
+  const char *cases[][2] = {
+      {"random", "random: name of the parameter is missing"},
+      {"random SIGMA normal 0.1 1 1",
+       "random SIGMA: no such parameter: choose one of eos.K, strength.G, strength.SIGMAY"},
+      {"random SIGMAY weibull 0.1 1 1", "the distribution must be lognormal or normal"},
+      {"random SIGMAY normal -0.1 1 1", "COV = -0.1 (coefficient of variation) is out of range"},
+      {"random SIGMAY normal 0.1 0 1", "LENGTH = 0 (correlation length) is out of range"},
+      {"random SIGMAY normal 0.1 1", "random SIGMAY: SEED is missing"},
+      {"random SIGMAY normal 0.1 1 1.5", "SEED must be an integer"},
+      {"random SIGMAY normal 0.1 1 1 random strength.SIGMAY normal 0.1 1 2", "is given twice"},
+      {"random strength.H normal 0.1 1 1 random K normal 0.1 1 1 random eos.K normal 0.1 1 1",
+       "random eos.K: is given twice"},
+      {"random B normal 0.1 1 1", "its value is 0, which a factor does not change"},
+      {"viscosity artificial 1.5 0.06 thermal constant 300 random T0 normal 0.1 1 1",
+       "no such parameter"},
+  };
+  for (const auto &c : cases) {
+    const std::string error = error_of(STEEL + c[0]);
+    EXPECT_NE(error.find(c[1]), std::string::npos) << c[0] << "\n" << error;
+  }
+  // the same name in two laws
+  const std::string error =
+      error_of("density 1 eos linear 1e9 viscosity newtonian 1 viscosity artificial 1 1 "
+               "random viscosity.MU normal 0.1 1 1 random CQ normal 0.1 1 1");
+  EXPECT_EQ(error, "");
+}
+
+// points far apart: mean, variance, and distribution; pairs at a distance: correlation
+
+TEST_F(Random, MomentsAndCorrelation)
+{
+  const double length = 0.1;
+  const RandomField field(length, 7);
+  const int side = 11;    // a value each 2.1 lengths, where the correlation is 0.012
+  double mean = 0.0, square = 0.0, fourth = 0.0, n = side * side * side;
+  int inside = 0;
+  const double distance[] = {0.25, 0.5, 1.0, 1.5};
+  double pair[4][2] = {};
+  for (int i = 0; i < side; i++)
+    for (int j = 0; j < side; j++)
+      for (int k = 0; k < side; k++) {
+        const double x[3] = {2.1 * length * i - 1.5, 2.1 * length * j + 0.77, 2.1 * length * k};
+        const double f = field.value(x);
+        mean += f / n;
+        square += f * f / n;
+        fourth += f * f * f * f / n;
+        inside += std::fabs(f) < 1.0;
+        for (int d = 0; d < 4; d++) {
+          const double along[3] = {x[0] + length * distance[d], x[1], x[2]};
+          const double a = length * distance[d] / std::sqrt(3.0);
+          const double across[3] = {x[0] + a, x[1] - a, x[2] + a};
+          pair[d][0] += f * field.value(along) / n;
+          pair[d][1] += f * field.value(across) / n;
+        }
+      }
+  // of 1331 values nearly independent of each other: four standard errors
+  const double e = 4.0 / std::sqrt(n);
+  EXPECT_NEAR(mean, 0.0, e);
+  EXPECT_NEAR(square, 1.0, 1.5 * e);
+  EXPECT_NEAR(fourth, 3.0, 10.0 * e);
+  EXPECT_NEAR(inside / n, 0.6827, 0.5 * e);
+  for (int d = 0; d < 4; d++)
+    for (double c : pair[d]) EXPECT_NEAR(c, std::exp(-distance[d] * distance[d]), 1.5 * e);
+}
+
+// the variance is the same on the nodes of the lattice and between them, to what splines can do
+
+TEST_F(Random, IsSmoothAndTheSameFromAnywhere)
+{
+  const RandomField a(1.0, 99), b(1.0, 99), c(1.0, 100);
+  std::vector<std::array<double, 3>> points;
+  for (int n = 0; n < 200; n++)
+    points.push_back(
+        {11.0 * std::sin(n * 1.3), 10.0 * std::sin(n * 2.1), 6.0 + 5.0 * std::cos(n * 0.7)});
+  std::vector<double> values;
+  for (const auto &x : points) values.push_back(a.value(x.data()));
+  double same = 0.0, other = 0.0;
+  for (int n = 199; n >= 0; n--) {    // in another order
+    EXPECT_EQ(b.value(points[n].data()), values[n]);
+    if (n == 100) b.release();
+    if (n % 20) continue;
+    const double f = c.value(points[n].data());
+    same += values[n] * values[n];
+    other += f * values[n];
+  }
+  EXPECT_LT(std::fabs(other), 0.8 * same);    // another seed, another field
+
+  // across the face between two tiles, of 12 lengths: smooth, with the slope of both sides
+  for (const double y : {0.3, 5.7, 11.9}) {
+    const auto f = [&](double x) {
+      const double p[3] = {x, y, 0.4 * y};
+      return a.value(p);
+    };
+    const double h = 1e-3;
+    EXPECT_NEAR(f(12.0 - 1e-12), f(12.0 + 1e-12), 1e-8);
+    EXPECT_NEAR(f(12.0 + h) - f(12.0), f(12.0) - f(12.0 - h), 10 * h * h);
+    EXPECT_NE(f(12.0 + h), f(12.0 - h));
+  }
+}
+
+// factors have mean 1 and the coefficient of variation that was asked for
+
+TEST_F(Random, FactorsOfAMaterial)
+{
+  for (const char *kind : {"lognormal", "normal"}) {
+    const auto material = make(STEEL + "random strength.SIGMAY " + kind + " 0.2 0.1 7");
+    ASSERT_EQ(material->history().size(), 2);
+    EXPECT_EQ(material->history()[1].name, "random/strength.SIGMAY");
+    double mean = 0.0, square = 0.0, lowest = 1.0;
+    const int side = 11;
+    const double n = side * side * side;
+    for (int i = 0; i < side * side * side; i++) {
+      const double x[3] = {0.21 * (i % side), 0.21 * (i / side % side), 0.21 * (i / side / side)};
+      double history[2];
+      material->initialize(x, history);
+      mean += history[1] / n;
+      square += history[1] * history[1] / n;
+      lowest = std::min(lowest, history[1]);
+    }
+    EXPECT_NEAR(mean, 1.0, 4 * 0.2 / std::sqrt(n)) << kind;
+    EXPECT_NEAR(std::sqrt(square - mean * mean), 0.2, 5 * 0.2 / std::sqrt(n)) << kind;
+    EXPECT_GT(lowest, kind[0] == 'l' ? 0.4 : 0.0) << kind;
+  }
+  // a value that its law cannot have
+  const auto wild = make(STEEL + "random strength.G normal 2.0 0.1 7");
+  const auto many = [&]() {
+    for (int i = 0; i < 100; i++) {
+      const double x[3] = {0.3 * i, 0.0, 0.0};
+      double history[2];
+      wild->initialize(x, history);
+    }
+  };
+  EXPECT_THROW(many(), std::runtime_error);
+}
+
+// each point of a batch is as with a material that has its value for all
+
+TEST_F(Random, EveryPointHasItsOwnMaterial)
+{
+  const struct {
+    const char *law, *value, *name;
+    double mean;
+  } cases[] = {
+      {"density 7830 eos shock 4570 1.49 1.93 strength johnson/cook 79.6e9 806e6 VALUE 0.168 "
+       "0.0089 "
+       "1 1.1 1540 20 thermal adiabatic 460 20 0.9 viscosity artificial 1.5 0.06",
+       "614e6", "B", 614e6},
+      {"density 1000 neohookean VALUE 0.3 viscosity artificial 1.5 0.06", "1e6", "neohookean.E",
+       1e6, 0},
+      {"density 1000 eos tait VALUE 7 viscosity newtonian 1e-3", "2.2e9", "K", 2.2e9},
+      {"density 7850 eos linear 1.6e11 strength j2 8e10 VALUE hardening linear 1e9 "
+       "damage cockcroft/latham 2e7 soften energy 6e6 viscosity artificial 1.5 0.06",
+       "3e8", "SIGMAY", 3e8},
+      {"density 7850 eos linear 1.6e11 strength j2 8e10 3e8 hardening linear 1e9 "
+       "damage cockcroft/latham VALUE soften energy 6e6 viscosity artificial 1.5 0.06",
+       "2e7", "damage.WCRIT", 2e7},
+  };
+  for (const auto &c : cases) {
+    const auto definition = [&](const std::string &value) {
+      std::string text = c.law;
+      return text.replace(text.find("VALUE"), 5, value);
+    };
+    const auto random = make(definition(c.value) + " random " + c.name + " lognormal 0.3 1.0 5");
+    const int row = random->history().size() - 1;
+    ASSERT_EQ(random->history()[row].name, std::string("random/") + c.name);
+    MaterialPoint all(*random, 5);
+    const double factor[5] = {0.5, 0.9, 1.0, 1.3, 2.0};
+    for (int i = 0; i < 5; i++) all.batch.history[row][i] = factor[i];
+    const auto motion = [](double t) -> Matrix {
+      return {-0.3 * std::cos(t), 0.4, 0, 0.1, 0.2, -0.3, 0, 0, 0.1};
+    };
+    follow(all, motion, 0.5, 20);
+    double c0[MPM_NS::BATCH], w0[MPM_NS::BATCH], work[MPM_NS::NWORK] = {};
+    random->wave_speed(all.batch, c0);
+    random->stored_energy(all.batch, w0);
+    for (int i = 0; i < 5; i++) {
+      char value[40];
+      snprintf(value, sizeof(value), "%.17g", c.mean * factor[i]);
+      const auto plain = make(definition(value));
+      MaterialPoint p(*plain);
+      follow(p, motion, 0.5, 20);
+      for (int k = 0; k < 6; k++)
+        EXPECT_NEAR(all.batch.stress[k][i], p.stress(k), 1e-11 * (c.mean + std::fabs(p.stress(k))));
+      for (int k = 0; k < row; k++)
+        EXPECT_NEAR(all.batch.history[k][i], p.history(k), 1e-10 * std::fabs(p.history(k)));
+      EXPECT_NEAR(c0[i], p.wave_speed(), 1e-11 * p.wave_speed());
+      EXPECT_NEAR(w0[i], p.stored_energy(), 1e-10 * std::fabs(p.stored_energy()));
+      EXPECT_EQ(all.batch.history[row][i], factor[i]);
+      for (int k = 0; k < MPM_NS::NWORK; k++) work[k] += p.work[k] / 5;
+    }
+    for (int k = 0; k < MPM_NS::NWORK; k++)
+      EXPECT_NEAR(all.work[k], work[k], 1e-10 * std::fabs(work[k]));
+  }
+}
+
+/* ---------------------------------------------------------------------- through the fix */
+
+// factors are those of the field at the places where points are made, on any number of ranks; they
+// stay with their points, also through a restart file
+
+TEST_F(Random, FixAndRestart)
+{
+  const std::string scene = "units si\nboundary f f f\natom_style mpm\nneighbor 0.3 bin\n"
+                            "region box block 0 8 0 8 0 8\ncreate_box 1 box\n"
+                            "fix grid all mpm 1.0\n"
+                            "region body block 1 7 1 7 1 7\n"
+                            "create_points 1 region body ppc 2\n";
+  const std::string material =
+      "fix m all mpm/material density 7800 eos linear 160e9 strength j2 80e9 "
+      "300e6 random SIGMAY lognormal 0.3 1.5 11\n";
+  const RandomField field(1.5, 11);
+  const auto expected = [&](const double *x) {
+    const double s2 = std::log(1.09);
+    return std::exp(std::sqrt(s2) * field.value(x) - 0.5 * s2);
+  };
+  int nprocs, rank;
+  MPI_Comm_size(MPI_COMM_WORLD, &nprocs);
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  const std::string file = "random." + std::to_string(nprocs) + ".bin";
+  const auto row = [](Lammps &run, int i) {
+    auto *fix = dynamic_cast<LAMMPS_NS::FixMPMMaterial *>(run.lmp->modify->get_fix_by_id("m"));
+    return fix->history[i][fix->find_history("random/SIGMAY")];
+  };
+  const auto gather = [&](Lammps &run) {
+    std::vector<double> mine(20000, 0.0), all(20000);
+    for (int i = 0; i < run.lmp->atom->nlocal; i++) mine[run.lmp->atom->tag[i]] = row(run, i);
+    MPI_Allreduce(mine.data(), all.data(), 20000, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+    return all;
+  };
+  std::vector<double> before;
+  {
+    Lammps run;
+    run.commands(scene + material);
+    double low = 10, high = 0;
+    for (int i = 0; i < run.lmp->atom->nlocal; i++) {
+      ASSERT_NEAR(row(run, i), expected(run.lmp->atom->x[i]), 1e-14);
+      low = std::min(low, row(run, i));
+      high = std::max(high, row(run, i));
+    }
+    EXPECT_LT(low, 0.75);
+    EXPECT_GT(high, 1.25);
+    before = gather(run);
+    // yield along x: the weak points flow first, and much
+    run.commands("timestep 1e-5\nvariable v atom 10*(x-4)\nvelocity all set v_v 0 0\nrun 20\n"
+                 "compute c all mpm/atom random/SIGMAY eplastic\n"
+                 "compute max all reduce max c_c[1] c_c[2]\nthermo_style custom step c_max[*]\n"
+                 "run 0\nwrite_restart " +
+                 file + "\n");
+    EXPECT_EQ(gather(run), before);
+    EXPECT_DOUBLE_EQ(run.evaluate("c_max[1]"), *std::max_element(before.begin(), before.end()));
+  }
+  {
+    Lammps run;
+    run.commands("read_restart " + file + "\nneighbor 0.3 bin\nfix grid all mpm 1.0\n" + material +
+                 "run 0\n");
+    EXPECT_EQ(gather(run), before);
+    // points that come later are in the same field
+    const LAMMPS_NS::bigint n = run.lmp->atom->natoms;
+    run.commands("region late block 2 4 2 4 7.2 8\ncreate_points 1 region late ppc 2\n");
+    EXPECT_GT(run.lmp->atom->natoms, n);
+    for (int i = 0; i < run.lmp->atom->nlocal; i++)
+      if (run.lmp->atom->tag[i] > n) ASSERT_NEAR(row(run, i), expected(run.lmp->atom->x[i]), 1e-14);
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  if (rank == 0) remove(file.c_str());
+}
