@@ -206,14 +206,14 @@ TEST_F(Random, EveryPointHasItsOwnMaterial)
        "1 1.1 1540 20 thermal adiabatic 460 20 0.9 viscosity artificial 1.5 0.06",
        "614e6", "B", 614e6},
       {"density 1000 neohookean VALUE 0.3 viscosity artificial 1.5 0.06", "1e6", "neohookean.E",
-       1e6, 0},
+       1e6},
       {"density 1000 eos tait VALUE 7 viscosity newtonian 1e-3", "2.2e9", "K", 2.2e9},
       {"density 7850 eos linear 1.6e11 strength j2 8e10 VALUE hardening linear 1e9 "
        "damage cockcroft/latham 2e7 soften energy 6e6 viscosity artificial 1.5 0.06",
        "3e8", "SIGMAY", 3e8},
       {"density 7850 eos linear 1.6e11 strength j2 8e10 3e8 hardening linear 1e9 "
        "damage cockcroft/latham VALUE soften energy 6e6 viscosity artificial 1.5 0.06",
-       "2e7", "damage.WCRIT", 2e7},
+       "2e7", "damage.WC", 2e7},
   };
   for (const auto &c : cases) {
     const auto definition = [&](const std::string &value) {
