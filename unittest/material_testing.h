@@ -15,9 +15,11 @@
 
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <functional>
 #include <memory>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -35,6 +37,16 @@ std::unique_ptr<Material> make(const std::string &text, const char *isa = nullpt
   std::vector<std::string> words;
   for (std::string word; in >> word;) words.push_back(word);
   return Material::create(words, isa);
+}
+
+/** The definition in a file of the folder potentials. */
+inline std::string definition(const std::string &name)
+{
+  std::ifstream file(std::string(MPM_SOURCE_DIR) + "/potentials/" + name + ".mpm");
+  if (!file) throw std::runtime_error("no material file " + name);
+  std::string text;
+  for (std::string line; std::getline(file, line);) text += line.substr(0, line.find('#')) + " ";
+  return text;
 }
 
 inline Matrix operator*(const Matrix &a, const Matrix &b)

@@ -778,4 +778,69 @@ TEST(SoilLaws, FirstOrderOnACurvedPath)
   }
 }
 
+/* ---------------------------------------------------------------------- material files */
+
+// what the numbers in the files were made from comes out again
+TEST(SoilFiles, GiveThePublishedStrength)
+{
+  const auto uniaxial = [](const char *name, double strain) {
+    const auto material = make(definition(name));
+    MaterialPoint p(*material);
+    for (int i = 0; i < 200; i++) p.step_uniaxial_stress(strain / 200, 1.0);
+    return p.stress(0) * p.batch.J[0];
+  };
+  EXPECT_NEAR(uniaxial("Concrete_C30_MC", -0.005), -38 * MPa, 0.01 * MPa);
+  EXPECT_NEAR(uniaxial("Concrete_C30_MC", 0.001), 2.9 * MPa, 0.01 * MPa);
+  EXPECT_NEAR(uniaxial("Sandstone_Berea_MC", -0.02), -90.18 * MPa, 0.02 * MPa);
+
+  // undrained strength ratio q/(2 p0) = M/2 (1/2)^(1 - kappa/lambda) of normally consolidated clay
+  struct {
+    const char *name;
+    double M, lambda, kappa;
+  } clays[] = {{"Clay_Weald_CC", 0.95, 0.093, 0.035}, {"Clay_London_CC", 0.888, 0.161, 0.062}};
+  for (const auto &k : clays) {
+    const auto material = make(definition(k.name));
+    MaterialPoint p(*material);
+    const double a = 1e-3, lateral = 1 / std::sqrt(1 - a) - 1;
+    const Matrix A = {-a, 0, 0, 0, lateral, 0, 0, 0, lateral};
+    for (int i = 0; i < 600; i++) p.move(A.data(), 1.0);
+    const double q = k.M * 1e5 * std::pow(0.5, 1 - k.kappa / k.lambda);
+    EXPECT_NEAR(p.vonmises(), q, 2e-3 * q) << k.name;
+  }
+
+  const auto sand = make(definition("Sand_dry_DP"));
+  MaterialPoint p(*sand);
+  consolidate(p, 1e3);
+  for (int i = 0; i < 40; i++) step_lateral(p, -1e-3, -1e3, 1.0);
+  EXPECT_NEAR(-p.stress(0), 1e3 * std::pow(std::tan((45 + 35 / 2.0) * DEG), 2), 1e-3);
+}
+
+TEST(SoilLaws, BadDefinitionsAreRefused)
+{
+  const std::pair<const char *, const char *> bad[] = {
+      {"drucker/prager 1 0 30 dilatancy 31", "PSI must not exceed PHI"},
+      {"drucker/prager 1 0 90", "out of range"},
+      {"drucker/prager 1 0 30 plane 1", "too many values"},
+      {"drucker/prager 1 0 30 plane plane", "given twice"},
+      {"mohr/coulomb 1 0 30", "C is missing"},
+      {"mohr/coulomb 1 0 30 1 residual 2 20 1", "CR and PHIR must not exceed"},
+      {"mohr/coulomb 1 0 30 1 residual 0.5", "PHIR is missing"},
+      {"mohr/coulomb 1 0 30 1 dilatancy 25 residual 0.5 20 1", "PSI must not exceed"},
+      {"mui 1 0 0.5 0.4 0.3 1", "MU2 must not be below"},
+      {"camclay 1 1 0.1 0.1 1 1 1", "LAMBDA must be above"},
+      {"camclay 1 1 0.2 0.1 1 2 1", "PC must not be below"},
+      {"nacc 1 0 1 1.5 1 0", "out of range"},
+      {"nacc 1 0 1 1 1 0.1", "out of range"},
+      {"snow 1 0 1 0 1", "out of range"},
+  };
+  for (const auto &[text, message] : bad) {
+    try {
+      make(std::string("density 1 ") + text);
+      ADD_FAILURE() << "accepted: " << text;
+    } catch (const MaterialError &e) {
+      EXPECT_NE(std::string(e.what()).find(message), std::string::npos) << text << ": " << e.what();
+    }
+  }
+}
+
 }    // namespace

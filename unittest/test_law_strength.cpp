@@ -16,7 +16,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <functional>
 #include <random>
 #include <sstream>
@@ -906,16 +905,6 @@ TEST(Thermal, ViscousWorkHeats)
 }
 
 /* ---------------------------------------------------------------------- material files */
-
-/** The definition in a file of the folder potentials. */
-std::string definition(const std::string &name)
-{
-  std::ifstream file(std::string(MPM_SOURCE_DIR) + "/potentials/" + name + ".mpm");
-  EXPECT_TRUE(file.good()) << name;
-  std::string text, line;
-  while (std::getline(file, line)) text += line.substr(0, line.find('#')) + " ";
-  return text;
-}
 
 /** Flow stress in MPa after shear at a rate, from the temperature of the file. */
 double flow_stress(const std::string &name, double strain, double rate)
