@@ -1128,6 +1128,8 @@ TEST(Definition, BadInputIsRefused)
        20, "0 <= VALUE <= 1"},
       {"density 1000 eos linear 1 viscosity newtonian 1 viscosity newtonian 1", 9, "given twice"},
       {"density 1000 eos linear 1 viscosity newtonian -1", 7, "MU = -1"},
+      {"density 1 eos linear 1 strength j2 1 1 viscosity newtonian 1 damage cockcroft/latham 1", 13,
+       "does not go with a viscosity that adds to the stress"},
       {"density 1 ogden 1", 2, "no term: add 'term MU ALPHA'"},
       {"density 1 ogden 1 term 1", 6, "ogden term: ALPHA is missing"},
       {"density 1 ogden 1 term 1 -2", 2, "same sign"},
