@@ -723,6 +723,24 @@ TEST(MuI, SteadyShear)
   }
 }
 
+// the inertial number does not depend on units: mm, ms, g/cm3, MPa
+TEST(MuI, OtherUnits)
+{
+  const auto si = make("density 1500 mui 1e6 0.3 0.38 0.64 0.3 5e-4");
+  const auto small = make("density 1.5 mui 1 0.3 0.38 0.64 0.3 0.5");
+  ASSERT_TRUE(small->configure(nullptr, 1e-3, 1e-3));
+  MaterialPoint p(*si), q(*small);
+  for (int i = 0; i < 500; i++) {
+    const Matrix A = {-1e-6, 1e-3, 0, 0, -1e-6, 0, 0, 0, 0};
+    p.move(A.data(), 1e-5);
+    q.move(A.data(), 1e-2);
+  }
+  EXPECT_GT(value(p, "inertial"), 0.05);
+  EXPECT_NEAR(value(q, "inertial"), value(p, "inertial"), 1e-9);
+  EXPECT_NEAR(1e6 * q.stress(3), p.stress(3), 1e-9 * p.stress(3));
+  EXPECT_NEAR(q.wave_speed(), p.wave_speed(), 1e-9 * p.wave_speed());
+}
+
 /* ---------------------------------------------------------------------- snow */
 
 TEST(Snow, HardensInCompressionAndFallsApartInTension)
