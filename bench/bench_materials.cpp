@@ -72,6 +72,9 @@ struct Sample {
     {"steinberg",
      "density 8930 eos linear 137e9 strength steinberg 47.7e9 0.12e9 36 0.45 0.64e9 2.83e-11 "
      "3.77e-4 melt 1790 1.5 2.02 thermal adiabatic 385 300 0.9 gruneisen 2.02"},
+    {"gurson",
+     "density 7800 gurson 200e9 0.3 400e6 0.02 hardening 0.01 0.1 nucleation 0.04 0.1 0.05 "
+     "coalescence 0.15 0.25"},
     {"johnson_cook_damage",
      "density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 0.168 0.0089 1 1.1 "
      "1540 20 thermal adiabatic 460 20 0.9 damage johnson/cook 0.05 3.44 -2.12 rate 0.002 1 "

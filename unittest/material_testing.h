@@ -190,6 +190,9 @@ inline const Sample samples[] = {
     {"drucker/prager", "density 1600 drucker/prager 1e6 0.3 30"},
     {"drucker/prager cohesion",
      "density 1600 drucker/prager 1e6 0.3 35 cohesion 2e4 dilatancy 10 tension 5e3 plane"},
+    {"gurson",
+     "density 7800 gurson 200e9 0.3 400e6 0.02 hardening 0.01 0.1 nucleation 0.04 0.1 0.05 "
+     "coalescence 0.15 0.25"},
     {"johnson/cook damage",
      "density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 0.168 0.0089 1 1.1 "
      "1540 20 thermal adiabatic 460 20 0.9 damage johnson/cook 0.1 0.5 -1.5 rate -0.01 1 "

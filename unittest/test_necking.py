@@ -20,16 +20,28 @@ BAR = os.path.join(mt.ROOT, "examples", "necking", "in.necking")
 STRENGTH, STRAIN = 570.3, 0.1023
 
 
-def test_strength_and_necking():
+def pull(*changes):
+    """Strain, force at the grip, and force in the middle (MPa of the initial section)."""
     with open(BAR) as file:    # without pictures
         text = "\n".join(line for line in file.read().split("\n")
                          if not re.match(r"(dump|dump_modify) +pic|  +(box no|amap)", line))
+    for old, new in changes:
+        assert old in text, old
+        text = text.replace(old, new)
     with tempfile.TemporaryDirectory() as folder:
         result = mt.lammps(folder, text, timeout=200)
         assert result.code == 0, result.tail()
         rows = np.loadtxt(os.path.join(folder, "curve.txt"))
-    strain, grip, middle = rows[:, 1], rows[:, 2], rows[:, 3]
-    smooth = np.convolve(0.5 * (grip + middle), np.full(9, 1.0 / 9.0), "same")[4:-4]
+    return rows[:, 1], rows[:, 2], rows[:, 3]
+
+
+def smoothed(grip, middle):
+    return np.convolve(0.5 * (grip + middle), np.full(9, 1.0 / 9.0), "same")[4:-4]
+
+
+def test_strength_and_necking():
+    strain, grip, middle = pull()
+    smooth = smoothed(grip, middle)
     k = smooth.argmax()
     strength, at = smooth[k], strain[4 + k]
     print("tensile strength %.1f MPa at %.4f; by Considere %.1f MPa at %.4f" %
@@ -55,6 +67,25 @@ def test_strength_and_necking():
     late = np.interp(0.16, strain[4:-4], smooth)
     print("strain 0.16: %.1f MPa" % late)
     assert 500.9 < late < 559.7
+
+
+
+def test_failure():
+    """With Johnson-Cook failure the bar breaks: the force has dropped by half at a strain of 0.192 in
+    finite elements of a square bar (0.248 for a round one)."""
+    strain, grip, middle = pull(
+        ("hardening power 382e6 0.458",
+         "hardening power 382e6 0.458 damage johnson/cook 0.636 1.936 -2.969 soften from 0.3"),
+        ("> 0.22", "> 0.25"), ("run             15000", "run             20000"))
+    smooth, strain = smoothed(grip, middle), strain[4:-4]
+    k = smooth.argmax()
+    half = strain[k:][smooth[k:] < 0.5 * smooth[k]]
+    assert len(half), "the bar does not break"
+    print("strength %.1f MPa, half of it is left at strain %.4f; at the end %.1f MPa" %
+          (smooth[k], half[0], smooth[-1]))
+    assert abs(smooth[k] / STRENGTH - 1) < 0.015
+    assert abs(half[0] / 0.192 - 1) < 0.15
+    assert abs(smooth[-1]) < 0.05 * STRENGTH
 
 
 mt.main(globals())

@@ -326,7 +326,8 @@ double FixMPM::current_time() const
 
 /* ----------------------------------------------------------------------
    points without any stress get the pressure of their equation of state, so that the first step
-   begins with that of a gas; for points that have come to zero stress this changes nothing
+   begins with that of a gas; for points that have come to zero stress this changes nothing;
+   points that have failed keep it
 ------------------------------------------------------------------------- */
 
 void FixMPM::give_initial_stress()
@@ -352,7 +353,8 @@ void FixMPM::give_initial_stress()
     const auto *mine = material_of(i);
     if (mine != material || list.size() == BATCH) flush();
     material = mine;
-    if (mine) list.push_back(i);
+    const bool failed = mine && mine->damage >= 0 && mine->history[i][mine->damage] >= 1.0;
+    if (mine && !failed) list.push_back(i);
   }
   flush();
 }

@@ -23,6 +23,7 @@
 #include "mpm_eos_tait.h"
 #include "mpm_law_camclay.h"
 #include "mpm_law_drucker_prager.h"
+#include "mpm_law_gurson.h"
 #include "mpm_law_hencky.h"
 #include "mpm_law_linear.h"
 #include "mpm_law_mohr_coulomb.h"
@@ -63,6 +64,7 @@ namespace {
   using viscoelastic = Family<VISCOSITY, ViscosityKelvinVoigt, ViscosityMaxwell>;
   using soil =
       Family<CLOSED, LawDruckerPrager, LawMohrCoulomb, LawCamClay, LawNacc, LawMuI, LawSnow>;
+  using porous = Family<CLOSED, LawGurson>;
   using eos = Family<EOS, EosLinear, EosShock, EosTait, EosPolynomial, EosIdealGas, EosStiffenedGas,
                      EosJWL>;
   using strength = Family<STRENGTH, StrengthElastic, StrengthJ2, StrengthJohnsonCook,
@@ -75,7 +77,7 @@ namespace {
 
 // in the order in which laws are listed in messages
 #define MPM_LAW_FAMILIES(X) \
-  X(elastic) X(viscoelastic) X(soil) X(eos) X(strength) X(viscosity) X(damage) X(thermal)
+  X(elastic) X(viscoelastic) X(soil) X(porous) X(eos) X(strength) X(viscosity) X(damage) X(thermal)
 
 }    // namespace
 }    // namespace MPM_NS::law
