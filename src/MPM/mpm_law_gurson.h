@@ -42,7 +42,7 @@ namespace {
    *  with associated flow, v: plastic volume strain. Elasticity: Hencky, in Kirchhoff stress.
    *
    *  Return mapping (N. Aravas, Int. J. Numer. Meth. Eng. 24 (1987) 1395), implicit in all variables:
-   *  for given y and nucleation the unknown is z = log f, from which follow v (1 - f = (1 - f0)
+   *  for given y and nucleation the unknown is z = log(f/f0), from which follow v (1 - f = (1 - f0)
    *  exp(-v)), m, and two values of q, by the yield surface and by the direction of flow. Their
    *  difference S changes sign between no volume flow and no mean stress: bracketed first, then
    *  followed by chords while y and nucleation are found by secants of the strain of the matrix.
@@ -138,8 +138,9 @@ namespace {
     MPM_INLINE Guess guess(double z, double mt, double qt, double f0, double y) const
     {
       Guess g;
-      g.f = exp(z);
-      const double v = log1p((g.f - f0) / (1.0 - g.f)), vmax = mt / K;
+      const double grown = f0 * expm1(z);
+      g.f = f0 + grown;
+      const double v = log1p(grown / (1.0 - g.f)), vmax = mt / K;
       g.v = mt > 0.0 ? min(max(v, 0.0), vmax) : max(min(v, 0.0), vmax);
       g.m = mt - K * g.v;
       const Surface s = surface(g.f, g.m, y);
@@ -168,7 +169,7 @@ namespace {
         s.volume[i] = volume;
         f0[i] = max(history[POROSITY][i], LEAST);
         y[i] = b.J[i] * flow_stress(history[EPLASTIC][i]);
-        z[i] = log(f0[i]);
+        z[i] = 0.0;
         more[i] = chord[i] = 0.0;
         const bool yields = !failed && qt[i] * qt[i] > y[i] * y[i] * surface(f0[i], mt[i], y[i]).q2;
         active[i] = yields ? 1.0 : 0.0;
@@ -183,49 +184,52 @@ namespace {
       }
       if (yielding == 0.0) return;
 
-      alignas(64) double last[BATCH], missed[BATCH],
-          end[BATCH];    // end: of the bracket, no mean stress
-      bracket(b, mt, qt, f0, y, active, z, chord, end);
+      alignas(64) double last[BATCH], missed[BATCH], end[BATCH], open[BATCH];
+      bracket(b, mt, qt, f0, y, active, z, chord, end, CLOSE);
+      for (int i = 0; i < b.n; i++) {
+        open[i] = active[i];    // a point that is done stays as it is, whatever the others need
+        last[i] = missed[i] = 0.0;
+      }
       double busy = 1.0;
       for (int iteration = 0; iteration < 30 && busy > 0.0; iteration++) {
         busy = 0.0;
         MPM_SIMD_SUM(busy)
         for (int i = 0; i < b.n; i++) {
+          const double low = min(0.0, end[i]), high = max(0.0, end[i]);
           const double first = iteration > 0 ? guess(z[i], mt[i], qt[i], f0[i], y[i]).S : 0.0;
-          const double start = log(f0[i]), low = min(start, end[i]), high = max(start, end[i]);
           const double zi = min(max(z[i] - first * chord[i], low), high);
           const Guess g = guess(zi, mt[i], qt[i], f0[i], y[i]);
-
           const double fall = g.S - first;
-          const double slope = fall != 0.0 && max(first, -first) > 1e-9 * y[i] ? (zi - z[i]) / fall
+          const double slope = max(first, -first) > 1e-9 * y[i] && fall != 0.0 ? (zi - z[i]) / fall
                                                                                : chord[i];
-          chord[i] = slope * chord[i] > 0.0 ? slope : chord[i];
+          const double way = slope * chord[i] > 0.0 ? slope : chord[i], rest = g.S * way;
 
           // increment of the matrix strain by the plastic work, less the one that y stands for
           const double D = (qt[i] - g.q) / (3.0 * G);
           const double work = max((g.m * g.v + g.q * D) / ((1.0 - g.f) * y[i]), 0.0);
-          const double r = more[i] - work, way = more[i] - last[i];
-          const double secant = iteration > 0 && way != 0.0 ? (r - missed[i]) / way : 1.0;
+          const double r = more[i] - work, change = more[i] - last[i];
+          const double secant = iteration > 0 && change != 0.0 ? (r - missed[i]) / change : 1.0;
           const double next = max(more[i] - r / (secant > 0.3 ? secant : 1.0), 0.0);
-          const double rest = g.S * chord[i];    // of the way to S = 0
-          const bool go = active[i] > 0.0 &&
+          const bool here = open[i] > 0.0;
+          const bool go = here &&
               (max(r, -r) > 1e-12 * (more[i] + 1e-6) ||
-               max(rest, -rest) > 1e-11 * (high - low) + 4e-15 * max(-zi, 1.0));
+               max(rest, -rest) > 1e-11 * (high - low) + 1e-15);
 
           const double e = history[EPLASTIC][i], old = max(history[POROSITY][i], LEAST);
-          const double born = mt[i] > 0.0 ? nucleated(e, next) : 0.0, f = min(old + born, 0.999);
+          const double born = mt[i] > 0.0 ? nucleated(e, next) : 0.0;
           last[i] = more[i];
           missed[i] = r;
+          z[i] = go ? min(max(zi - rest, low), high) : here ? zi : z[i];
           more[i] = go ? next : more[i];
           y[i] = go ? b.J[i] * flow_stress(e + next) : y[i];
-          const double shift = log(f / f0[i]), moved = min(max(zi - g.S * chord[i], low), high);
-          z[i] = go ? moved + shift : zi;
-          end[i] += go ? shift : 0.0;
-          f0[i] = go ? f : f0[i];
-          busy += go ? 1.0 : 0.0;
+          f0[i] = go ? min(old + born, 0.999) : f0[i];
+          chord[i] = way;
+          open[i] = go ? 1.0 : 0.0;
+          busy += open[i];
         }
       }
-      if (busy > 0.0) bracket(b, mt, qt, f0, y, active, z, chord, end);
+      // large steps: in what is left y and nucleation stay as they are
+      if (busy > 0.0) bracket(b, mt, qt, f0, y, open, z, chord, end, 1e-13);
 
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
@@ -245,25 +249,26 @@ namespace {
     }
 
    private:
-    /** z at which S vanishes, between no volume flow (S < 0) and no mean stress (S > 0), to CLOSE,
-     *  and the inverse slope there: false position (Illinois method) with bisections. */
+    /** z at which S vanishes, between no volume flow (S < 0) and no mean stress (S > 0), until
+     *  |S| < close y, and the inverse slope there: false position (Illinois method) with bisections. */
     MPM_INLINE void bracket(const Batch &b, const double *mt, const double *qt, const double *f0,
                             const double *y, const double *active, double *z, double *chord,
-                            double *end) const
+                            double *end, double close) const
     {
-      alignas(64) double za[BATCH], zb[BATCH], Sa[BATCH], Sb[BATCH], side[BATCH];
+      alignas(64) double za[BATCH], zb[BATCH], Sa[BATCH], Sb[BATCH], side[BATCH], open[BATCH];
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
-        const double far = -expm1(-mt[i] / K) + f0[i] * exp(-mt[i] / K);    // all volume flows
-        za[i] = log(f0[i]);
-        zb[i] = log(min(max(far, 1e-300), 1.0 - 1e-9));
+        const double far = -expm1(-mt[i] / K) / f0[i] + exp(-mt[i] / K);    // all volume flows
+        za[i] = 0.0;
+        zb[i] = log(min(max(far, 1e-280), (1.0 - 1e-9) / f0[i]));
         end[i] = zb[i];
         Sa[i] = guess(za[i], mt[i], qt[i], f0[i], y[i]).S;
         Sb[i] = guess(zb[i], mt[i], qt[i], f0[i], y[i]).S;
-        z[i] = za[i];
+        z[i] = active[i] > 0.0 ? za[i] : z[i];
         side[i] = 0.0;
+        open[i] = active[i];
       }
-      for (int iteration = 0; iteration < 40; iteration++) {
+      for (int iteration = 0; iteration < 60; iteration++) {
         double busy = 0.0;
         const bool halve = iteration % 4 == 3;
         MPM_SIMD_SUM(busy)
@@ -272,22 +277,24 @@ namespace {
           const double t = halve || !(cut > 0.0 && cut < 1.0) ? 0.5 : cut;
           const double next = za[i] + t * (zb[i] - za[i]);
           const double S = guess(next, mt[i], qt[i], f0[i], y[i]).S;
-          const bool go = active[i] > 0.0 && max(S, -S) > CLOSE * y[i] &&
-              max(zb[i] - za[i], za[i] - zb[i]) > 1e-10;
-          const bool low = S < 0.0, again = low == (side[i] < 0.0);
-          Sa[i] = low ? S : again ? 0.5 * Sa[i] : Sa[i];
-          Sb[i] = low ? (again ? 0.5 * Sb[i] : Sb[i]) : S;
+          const bool here = open[i] > 0.0, low = S < 0.0;
+          const double repeat = (low ? -1.0 : 1.0) == side[i] ? 0.5 : 1.0;
+          const bool go =
+              here && max(S, -S) > close * y[i] && max(zb[i] - za[i], za[i] - zb[i]) > 1e-14;
+          Sa[i] = low ? S : repeat * Sa[i];
+          Sb[i] = low ? repeat * Sb[i] : S;
           za[i] = low ? next : za[i];
           zb[i] = low ? zb[i] : next;
           side[i] = low ? -1.0 : 1.0;
-          z[i] = active[i] > 0.0 ? next : z[i];
-          busy += go ? 1.0 : 0.0;
+          z[i] = here ? next : z[i];
+          open[i] = go ? 1.0 : 0.0;
+          busy += open[i];
         }
         if (busy == 0.0) break;
       }
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
-        const double d = 1e-7, up = z[i] + (zb[i] > za[i] ? d : -d);
+        const double d = 1e-6 * end[i], up = z[i] + d;
         const double S = guess(z[i], mt[i], qt[i], f0[i], y[i]).S;
         const double S1 = guess(up, mt[i], qt[i], f0[i], y[i]).S;
         chord[i] = S1 != S ? (up - z[i]) / (S1 - S) : 0.0;
