@@ -40,7 +40,8 @@ static constexpr double MAX_NODE = 4.0e6;
 ------------------------------------------------------------------------- */
 
 FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), shape(QUADRATIC), transfer(APIC), flip(0.0), scheme(USL), policy(ERROR),
+    Fix(lmp, narg, arg), shape(QUADRATIC), transfer(APIC), flip(0.0),
+    refinement(LUMPED), order(1), scheme(USL), policy(ERROR),
     delete_failed(false), dt_check(true), grid(nullptr), C(nullptr), ledger_on(false), points(nullptr), halo(nullptr),
     kernels(nullptr), batch_kernels(nullptr), driver(false), topology_valid(false),
     watch_drift(false), drifted(0), want_sort(false), switches(0), switches_sorted(0),
@@ -139,8 +140,18 @@ void FixMPM::process_options(int narg, char **arg)
       shape = (Shape) (1 + choose({"linear", "quadratic", "cubic"}));
       iarg += 2;
     } else if (keyword == "transfer") {
-      transfer = (Transfer) choose({"pic", "flip", "apic"});
-      if (transfer == FLIP) {
+      const int kind = choose({"pic", "flip", "apic", "xpic", "fmpm"});
+      transfer = kind < 3 ? (Transfer) kind : FLIP;
+      refinement = kind < 3 ? LUMPED : (kind == 3 ? XPIC : FMPM);
+      if (refinement != LUMPED) {
+        need(2);
+        order = utils::inumeric(FLERR, arg[iarg + 2], false, lmp);
+        if (order < 1 || order > 100)
+          error->all(FLERR, iarg + 2, "Fix mpm transfer {} order must be within 1 and 100: {}",
+                     arg[iarg + 1], arg[iarg + 2]);
+        flip = refinement == XPIC ? 1.0 : 0.0;
+        iarg++;
+      } else if (transfer == FLIP) {
         need(2);
         flip = utils::numeric(FLERR, arg[iarg + 2], false, lmp);
         if (!(flip >= 0.0 && flip <= 1.0))
@@ -150,7 +161,7 @@ void FixMPM::process_options(int narg, char **arg)
       }
       iarg += 2;
     } else if (keyword == "scheme") {
-      scheme = (Scheme) choose({"usl", "usf", "musl"});
+      scheme = (Scheme) choose({"usl", "usf", "musl", "usavg"});
       iarg += 2;
     } else if (keyword == "origin") {
       need(lattice.dim);
@@ -300,9 +311,9 @@ void FixMPM::init()
 
 void FixMPM::setup_pre_neighbor()
 {
-  // the ledger needs forces and old velocities on the nodes, USF sums forces alone
+  // the ledger needs forces and old velocities on the nodes, USF and USAVG sum forces alone
 
-  const bool split = ledger_on || scheme == USF;
+  const bool split = ledger_on || stress_before();
   kernel = kernels->transfer(lattice.dim, shape, transfer, split);
   batch->h = lattice.h;
 
@@ -442,7 +453,7 @@ PointRows FixMPM::rows() const
   r.F = &points->F[0][0];
   r.mass = atom->rmass;
   r.guarded = atom->nmax - 1;
-  r.xnew = scheme == MUSL ? const_cast<double *>(xnew.data()) : r.x;
+  r.xnew = stress_after() ? const_cast<double *>(xnew.data()) : r.x;
   return r;
 }
 

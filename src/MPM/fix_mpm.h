@@ -18,6 +18,7 @@ FixStyle(mpm,FixMPM);
 #include "fix.h"
 #include "mpm_grid.h"
 #include "mpm_kernels.h"
+#include "mpm_node_action.h"
 
 #include <cstdint>
 #include <string>
@@ -31,7 +32,6 @@ struct BatchKernels;
 namespace LAMMPS_NS {
 class FixMPMMaterial;
 class MPMHalo;
-class MPMNodeAction;
 struct MPMPoints;
 
 /** Energy spent or gained since the first step with a ledger, this rank's share [energy]. */
@@ -51,7 +51,8 @@ struct MPMLedger {
  */
 class FixMPM : public Fix {
  public:
-  enum Scheme { USL, USF, MUSL };
+  enum Scheme { USL, USF, MUSL, USAVG };
+  enum Refinement { LUMPED, XPIC, FMPM };
   enum Policy { ERROR, WARN, DELETE };
 
   FixMPM(class LAMMPS *, int, char **);
@@ -86,6 +87,8 @@ class FixMPM : public Fix {
   MPM_NS::Shape shape;
   MPM_NS::Transfer transfer;
   double flip;         ///< FLIP share, 0 for PIC
+  Refinement refinement;    ///< of the velocities of the nodes, with transfer FLIP inside
+  int order;                ///< terms of the inverse of the mass matrix, 1: lumped
   Scheme scheme;
   Policy policy;       ///< what to do with a point that goes bad
   bool delete_failed;  ///< remove points whose damage is 1
@@ -99,6 +102,10 @@ class FixMPM : public Fix {
   bool ledger_on;                               ///< a compute mpm/energy exists; set in init()
   MPMLedger ledger;
   std::vector<double> ledger_start;    ///< of compute mpm/energy, until the end of the next run
+
+  /** Does the scheme update stress at the start, at the end of the step, or (neither) in between? */
+  bool stress_before() const { return scheme == USF || scheme == USAVG; }
+  bool stress_after() const { return scheme == MUSL || scheme == USAVG; }
 
   /** True when atom i is a material point of this field. */
   bool is_point(int i) const;
@@ -175,6 +182,7 @@ class FixMPM : public Fix {
   bigint switches_sorted;    // and right after the last sort
   double *tile, *tile_load;
   std::vector<double> xnew;              // MUSL: position at the end of the step
+  std::vector<double> v_apart, refined;    // XPIC, FMPM: velocities of points and nodes
   std::vector<double> history_batch;     // history variables of a batch
   std::vector<double> external_nodes;    // ledger: nodal external forces
   std::vector<double> nodes_apart;       // sums that node actions ask for,
@@ -202,21 +210,23 @@ class FixMPM : public Fix {
   void points_to_grid();
   void stress_first();
   void solve();
+  void refine_velocities();
   void grid_to_points();
   void map_back();
   void stress_last();
   void bookkeeping();
 
   // their parts
-  void act_on_nodes(bool count);
+  void act_on_nodes(MPMNodeAction::Stage);
   void map_to_nodes(MPM_NS::P2G);
   template <class Weigh>
   void map_some(const MPM_NS::PointRows &, const MPM_NS::TransferStep &, MPM_NS::P2G,
                 const std::vector<char> &near, int lane, int nlane, const Weigh &);
   void load_tile(const ActiveBlock &, int base[3]);
   void sum_halo(int lane, int nlane);
-  void gradient_and_material();
-  void material_update(const MPM_NS::PointRows &, const Run &, int first, int n, const double *L);
+  void gradient_and_material(double dt, double shift);
+  void material_update(const MPM_NS::PointRows &, const Run &, int first, int n, const double *L,
+                       double dt);
   void lap(double &timer);
 
   uint64_t velocity_hash() const;

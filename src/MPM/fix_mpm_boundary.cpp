@@ -306,10 +306,10 @@ void FixMPMBoundary::init()
     auto *field = dynamic_cast<FixMPM *>(ifix);
     if (!acts_on(*field)) continue;
     found = true;
-    if (field->scheme == FixMPM::USF && decides())
+    if (field->stress_before() && decides())
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/boundary separate and friction cannot be used "
-                 "with scheme usf of fix mpm {}, which needs the contact before it is known: use "
+                 "with scheme usf or usavg of fix mpm {}, which need the contact before it is known: use "
                  "usl or musl",
                  field->id);
   }
@@ -906,8 +906,9 @@ void FixMPMBoundary::wall_velocity(const FixMPM &field, int64_t node, double *v)
 
 /* ---------------------------------------------------------------------- */
 
-void FixMPMBoundary::act(double dt, bool count)
+void FixMPMBoundary::act(double dt, Stage stage)
 {
+  const bool count = stage == STEP;
   update_motion(dt);
   counting = count;
   if (count) {
@@ -915,8 +916,7 @@ void FixMPMBoundary::act(double dt, bool count)
     dt_last = dt;
     reaction_known = false;
   }
-  const bool at_end =
-      !count && !wall.uniform && !nodes.empty() && nodes[0].field->scheme == FixMPM::USF;
+  const bool at_end = stage == START && !wall.uniform;
   const Wall now = wall;
   if (at_end) end_of_step(wall, dt);
   for (auto &list : nodes) {
@@ -924,7 +924,7 @@ void FixMPMBoundary::act(double dt, bool count)
     kinetic = collided = 0.0;
     ledger_lanes = field.ledger_on;
     old_share = count && wall.uniform && field.transfer == FLIP ? field.flip : 0.0;
-    decided = !count && field.scheme == FixMPM::MUSL;
+    decided = stage == MAPPED_BACK || stage == AGAIN;
     act_on_cuts(list);
     for (auto &column : list.columns) act_on_column(list, column);
     for (const auto &orbit : list.orbits) act_on_orbit(list, orbit);

@@ -45,7 +45,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
 
   void extend_topology(FixMPM &) override;
   void topology_changed(FixMPM &) override;
-  void act(double dt, bool count) override;
+  void act(double dt, Stage) override;
 
  private:
   static constexpr int DEPTH = 3;    // nodes on either side of a mirror plane that are paired

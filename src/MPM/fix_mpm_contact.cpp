@@ -218,9 +218,9 @@ void FixMPMContact::init()
                  "and origin) and shape function; bodies on different lattices meet through a pair "
                  "style",
                  id, first.id, field->id);
-    if (field->scheme == FixMPM::USF)
+    if (field->stress_before())
       error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/contact cannot be used with scheme usf of fix mpm {}, which needs the "
+                 "Fix mpm/contact cannot be used with scheme usf or usavg of fix mpm {}, which need the "
                  "contact before it is known: use usl or musl",
                  field->id);
   }
@@ -635,8 +635,9 @@ void FixMPMContact::account(const Node &node, const double start[][3])
 
 /* ---------------------------------------------------------------------- */
 
-void FixMPMContact::act(double dt, bool count)
+void FixMPMContact::act(double dt, Stage stage)
 {
+  const bool count = stage == STEP;
   if (!lists_valid) list_common_blocks();
   if (count) {
     memset(force_now, 0, sizeof(force_now));

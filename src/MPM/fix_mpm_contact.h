@@ -42,7 +42,7 @@ class FixMPMContact : public Fix, public MPMNodeAction {
   void blocks_found() override;
   void extend_topology(FixMPM &) override;
   void topology_changed(FixMPM &) override;
-  void act(double dt, bool count) override;
+  void act(double dt, Stage) override;
 
   static constexpr int MAX_FIELDS = 8;
 

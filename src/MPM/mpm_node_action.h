@@ -31,11 +31,16 @@ class MPMNodeAction {
   /** The blocks of the field are new: lists of nodes must be made again. */
   virtual void topology_changed(class FixMPM &) {}
 
-  /** Change the velocities of the nodes of the fields, and the old ones of FLIP where material is
-   *  held for good (see fix_mpm_boundary.cpp). count: also add to reactions and work
-   *  (false for the extra velocity fields of MUSL and USF that only serve the velocity gradient).
+  /** Which velocities the nodes have: those after the momentum equation (STEP), which move points
+   *  and count for reactions and work; or others, for which nothing is counted: of the start of the
+   *  step (START: USF, USAVG) or the new ones of the points mapped back (MAPPED_BACK: MUSL, USAVG),
+   *  which only serve the velocity gradient, or those of STEP that were changed since (AGAIN: FMPM).
    */
-  virtual void act(double dt, bool count) = 0;
+  enum Stage { START, STEP, AGAIN, MAPPED_BACK };
+
+  /** Change the velocities of the nodes of the fields, and in STEP the old ones of FLIP where
+   *  material is held for good (see fix_mpm_boundary.cpp). */
+  virtual void act(double dt, Stage) = 0;
 
  protected:
   ~MPMNodeAction() = default;    // owned and deleted as a Fix, whose destructor may throw
