@@ -249,6 +249,11 @@ void FixMPM::init()
   running = false;
   ledger_on = !modify->get_compute_by_style("^mpm/energy$").empty();
 
+  if (refinement == FMPM && scheme != USL)
+    error->all(FLERR, "Fix mpm {}: transfer fmpm moves points with refined velocities, which the "
+               "gradients of scheme usf, musl and usavg do not follow: use scheme usl, or transfer "
+               "xpic", id);
+
   // a node that a point barely touches has next to no mass but the full gradient of the function
 
   if (shape == LINEAR && (scheme == USL || transfer == APIC) && comm->me == 0)

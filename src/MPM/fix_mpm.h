@@ -182,7 +182,7 @@ class FixMPM : public Fix {
   bigint switches_sorted;    // and right after the last sort
   double *tile, *tile_load;
   std::vector<double> xnew;              // MUSL: position at the end of the step
-  std::vector<double> v_apart, refined;    // XPIC, FMPM: velocities of points and nodes
+  std::vector<double> v_apart, lumped;    // XPIC, FMPM: velocities of points and nodes
   std::vector<double> history_batch;     // history variables of a batch
   std::vector<double> external_nodes;    // ledger: nodal external forces
   std::vector<double> nodes_apart;       // sums that node actions ask for,
@@ -210,7 +210,10 @@ class FixMPM : public Fix {
   void points_to_grid();
   void stress_first();
   void solve();
-  void refine_velocities();
+  void refine_velocities();    // of all fields
+  void filter_old_velocities();
+  void save_velocities(int lane);
+  void add_term(int lane);
   void grid_to_points();
   void map_back();
   void stress_last();

@@ -45,12 +45,7 @@ void FixMPM::initial_integrate(int /*vflag*/)
 
   for (auto *field : fields) field->solve();
   act_on_nodes(MPMNodeAction::STEP);
-  bool again = false;
-  for (auto *field : fields) {
-    if (field->refinement != LUMPED) field->refine_velocities();
-    again = again || field->refinement == FMPM;
-  }
-  if (again) act_on_nodes(MPMNodeAction::AGAIN);
+  refine_velocities();
   for (auto *field : fields) field->grid_to_points();
 
   if (stress_after()) {

@@ -1,0 +1,251 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// labels: physics mpi restart input
+// mpi: 1 3
+// timeout: 300
+
+// Transfers that refine nodal velocities (XPIC, FMPM), and the scheme that averages (USAVG).
+
+#include "mpm_lammps.h"
+
+#include "gtest/gtest.h"
+
+#include <cmath>
+
+using namespace MPM_TEST;
+using Lammps = MPM_TEST::Run;    // tests have a function Run
+
+/** C2: a free disk of 20 cells across that spins once; ratios of angular momentum and energy. */
+static const char *const disk = R"(
+units si
+dimension 2
+boundary f f p
+atom_style mpm
+neighbor 0.01 bin
+region box block -0.45 0.45 -0.45 0.45 -0.1 0.1
+create_box 1 box
+fix g all mpm 0.025 origin 0.00925 0.00925 OPTIONS
+region d cylinder z 0 0 0.25 INF INF
+create_points 1 region d spacing 0.0125
+fix m all mpm/material density 1000 neohookean 1e6 0.3
+variable vx atom -10*y
+variable vy atom 10*x
+velocity all set v_vx v_vy 0
+timestep $(0.6283185307/3300)
+compute e all mpm/energy
+variable lz atom mass*(x*vy-y*vx)
+compute L all reduce sum v_lz
+variable px equal vcm(all,x)*mass(all)
+variable py equal vcm(all,y)*mass(all)
+thermo 100000
+thermo_style custom step c_L c_e[1] c_e[2] v_px
+)";
+
+struct Spin {
+  double L, E, drift;
+};
+
+static Spin spin(const std::string &options, int steps)
+{
+  Lammps run;
+  run.commands(replaced(disk, "OPTIONS", options));
+  run.commands("run 0\n");
+  const double L = run.evaluate("c_L"), E = run.evaluate("c_e[1]");
+  const double px = run.evaluate("v_px"), py = run.evaluate("v_py");
+  run.commands("run " + std::to_string(steps) + "\n");
+  const double scale = 1000 * M_PI * 0.0625 * 2.5;
+  return {run.evaluate("c_L") / L, (run.evaluate("c_e[1]") + run.evaluate("c_e[2]")) / E,
+          std::max(std::fabs(run.evaluate("v_px") - px), std::fabs(run.evaluate("v_py") - py)) /
+              scale};
+}
+
+TEST(Refined, FirstOrderIsPic)
+{
+  std::vector<Lammps::State> reference;
+  for (const char *transfer : {"pic", "xpic 1", "fmpm 1"}) {
+    Lammps run;
+    run.commands(replaced(disk, "OPTIONS", std::string("transfer ") + transfer));
+    run.commands("run 100\n");
+    const auto state = run.gather();
+    if (reference.empty()) reference = state;
+    for (std::size_t i = 0; i < state.size(); i++)
+      for (int d = 0; d < 2; d++) {
+        EXPECT_NEAR(state[i].x[d], reference[i].x[d], 1e-13);
+        EXPECT_NEAR(state[i].v[d], reference[i].v[d], 1e-11);
+      }
+  }
+}
+
+// with the order, less of what the nodes resolve is lost: 0, 17, 59 % and 0, 32, 90 % of the angular
+// momentum are left after a turn with orders 1, 2, 5
+TEST(Refined, OrderReducesTheLoss)
+{
+  for (const char *transfer : {"transfer xpic ", "transfer fmpm "}) {
+    double last = 0.0;
+    for (const char *order : {"1", "2", "5"}) {
+      const Spin s = spin(std::string(transfer) + order, 800);
+      measured(std::string(transfer) + order + ", L", s.L);
+      EXPECT_LT(s.drift, 1e-13);
+      EXPECT_GE(s.L, last);
+      EXPECT_LT(s.L, 1.0);
+      EXPECT_LT(s.E, 1.0);
+      last = s.L + 0.1;
+    }
+    EXPECT_GT(last, 0.95);
+  }
+}
+
+// velocities that the nodes do not see stay with FLIP and disappear with XPIC and FMPM
+TEST(Refined, NoiseIsRemoved)
+{
+  const auto noise_left = [](const std::string &options) {
+    Lammps run;
+    run.commands(R"(
+units lj
+dimension 2
+boundary p p p
+atom_style mpm
+region box block 0 8 0 8 -0.5 0.5
+create_box 1 box
+fix g all mpm 1.0 )" + options + R"(
+create_points 1 region box ppc 2
+fix m all mpm/material density 1 neohookean 1e-12 0.3
+variable v atom 0.1*(2*((floor(2*x)+floor(2*y))%2)-1)
+velocity all set v_v 0 0
+variable e atom vx*vx
+compute e all reduce ave v_e
+thermo_style custom step c_e
+timestep 0.01
+run 50
+)");
+    return run.evaluate("c_e") / 0.01;
+  };
+  EXPECT_GT(noise_left("transfer flip 1.0"), 0.95);
+  EXPECT_LT(noise_left("transfer xpic 3"), 1e-3);
+  EXPECT_LT(noise_left("transfer fmpm 3"), 1e-3);
+}
+
+TEST(Refined, WallsHold)
+{
+  for (const char *transfer : {"xpic 3", "fmpm 3"}) {
+    SCOPED_TRACE(transfer);
+    Lammps run;
+    run.commands(std::string(R"(
+units lj
+dimension 2
+boundary p f p
+atom_style mpm
+region box block 0 4 0 12 -0.5 0.5
+create_box 1 box
+fix g all mpm 1.0 transfer )") + transfer + R"(
+region column block 0 4 0 8 -0.5 0.5
+create_points 1 region column ppc 2
+fix m all mpm/material density 1 neohookean 100 0.3
+fix w all mpm/boundary ylo stick
+fix f all gravity 0.5 vector 0 -1 0
+thermo 1000
+timestep 0.01
+fix mean all ave/time 1 1000 1000 f_w[2]
+run 4000
+)");
+    // the wall carries the weight of the column, and does not put energy into its vibration
+    EXPECT_NEAR(run.evaluate("f_mean"), -0.5 * 32, 0.1 * 0.5 * 32);
+    EXPECT_GT(run.evaluate("bound(all,ymin)"), 0.2);
+    EXPECT_LT(run.evaluate("bound(all,ymax)"), 7.8);
+  }
+}
+
+// stress half of a step with either gradient: energy of a spinning disk is kept better than by
+// the others (1.00027 with MUSL, .983 with USL), angular momentum as by them (.988)
+TEST(Usavg, SpinningDisk)
+{
+  const Spin s = spin("transfer flip 1.0 scheme usavg", 3300);
+  measured("USAVG, L", s.L);
+  measured("USAVG, E", s.E);
+  EXPECT_GT(s.L, 0.98);
+  EXPECT_NEAR(s.E, 1.0, 1e-4);
+  EXPECT_LT(s.drift, 1e-13);
+}
+
+static const char *const cloud = R"(
+units lj
+boundary p p p
+atom_style mpm
+neighbor 0.3 bin
+region box block 0 8 0 8 0 8
+create_box 2 box
+fix grid all mpm 1.0 OPTIONS
+region one sphere 2.6 3.0 3.2 1.9
+region two block 4.8 7.3 2.0 5.0 2.5 5.5
+create_points 1 region one ppc 2
+create_points 2 region two ppc 2
+group one type 1
+group two type 2
+fix m1 one mpm/material density 1.0 neohookean 10.0 0.3
+fix m2 two mpm/material density 2.0 linear 20.0 0.2
+velocity one set 0.6 0.35 -0.4
+velocity two set -0.5 0.1 0.3
+timestep 0.05
+thermo 1000
+)";
+
+TEST(Parallel, RanksAgree)
+{
+  MPI_Comm self;
+  int me;
+  MPI_Comm_rank(MPI_COMM_WORLD, &me);
+  MPI_Comm_split(MPI_COMM_WORLD, me, 0, &self);
+  for (const char *options : {"transfer xpic 3", "transfer fmpm 3", "transfer flip 1.0 scheme usavg",
+                              "transfer apic scheme usavg shape cubic"}) {
+    SCOPED_TRACE(options);
+    std::vector<Lammps::State> one, all;
+    {
+      Lammps run(self);
+      run.commands(replaced(cloud, "OPTIONS", options) + "run 100\n");
+      one = run.gather();
+    }
+    {
+      Lammps run;
+      run.commands(replaced(cloud, "OPTIONS", options) + "run 100\n");
+      all = run.gather();
+    }
+    ASSERT_EQ(one.size(), all.size());
+    for (std::size_t i = 0; i < one.size(); i++)
+      for (int d = 0; d < 3; d++) {
+        EXPECT_NEAR(one[i].x[d], all[i].x[d], 1e-12);
+        EXPECT_NEAR(one[i].v[d], all[i].v[d], 1e-12);
+      }
+  }
+  MPI_Comm_free(&self);
+}
+
+TEST(BadInput, IsRefused)
+{
+  const struct {
+    const char *options, *message;
+  } cases[] = {
+      {"transfer xpic", "Illegal fix mpm transfer"},
+      {"transfer xpic 0", "order must be within 1 and 100"},
+      {"transfer fmpm 101", "order must be within 1 and 100"},
+      {"transfer fmpm 2.5", "Expected integer"},
+      {"transfer fmpm 2 scheme musl", "use scheme usl, or transfer xpic"},
+      {"transfer fmpm 2 scheme usavg", "use scheme usl, or transfer xpic"},
+      {"scheme average", "must be one of usl usf musl usavg"},
+  };
+  for (const auto &bad : cases) {
+    SCOPED_TRACE(bad.options);
+    Lammps run;
+    try {
+      run.commands(replaced(cloud, "OPTIONS", bad.options) + "run 1\n");
+      ADD_FAILURE() << "no error";
+    } catch (const std::exception &e) {
+      EXPECT_NE(std::string(e.what()).find(bad.message), std::string::npos) << e.what();
+    }
+  }
+}
