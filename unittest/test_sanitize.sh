@@ -54,7 +54,10 @@ for isa in "${sets[@]}"; do
   march=()
   [ "$isa" = v3 ] && march=("${v3[@]}")
   compile "$src/mpm_batch_isa.cpp" "batch_$isa.o" -DMPM_ISA="$isa" "${march[@]}"
-  compile "$src/mpm_laws_isa.cpp" "laws_$isa.o" -DMPM_ISA="$isa" "${march[@]}"
+  for laws in "$src"/mpm_laws*_isa.cpp; do
+    name=$(basename "$laws" .cpp)
+    compile "$laws" "${name}_$isa.o" -DMPM_ISA="$isa" "${march[@]}" -g0
+  done
   # the optimizer needs minutes for this one with sanitizers
   compile "$src/mpm_kernels_isa.cpp" "kernels_$isa.o" -DMPM_ISA="$isa" "${march[@]}" -O0 -g0
 done
