@@ -212,6 +212,16 @@ class Run {
         if (!fix->is_point(i) || (type && atom->type[i] != type)) continue;
         const double *C = fix->C[i];    // C[dim*j+i] = d v_i / d x_j
         const int dim = fix->lattice.dim;
+        double CF[9];    // total frame: the velocity C (X - X_p) is at F (X - X_p)
+        if (fix->total) {
+          const double *F = MPMPoints::get(atom)->F[i];
+          for (int a = 0; a < dim; a++)
+            for (int b = 0; b < dim; b++) {
+              CF[dim * b + a] = 0.0;
+              for (int k = 0; k < dim; k++) CF[dim * b + a] += C[dim * k + a] * F[3 * b + k];
+            }
+          C = CF;
+        }
         for (int d = dim == 3 ? 0 : 2; d < 3; d++) {
           const int e = (d + 1) % 3, f = (d + 2) % 3;
           s[7 + d] += (long double) atom->rmass[i] * inertia * (C[dim * e + f] - C[dim * f + e]);

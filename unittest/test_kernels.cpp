@@ -296,6 +296,65 @@ TEST_P(Kernels, P2GBoxIsThatOfTheBaseNodesAndOnlyWidens)
   }
 }
 
+// total frame: stress is a full matrix, and places on the lattice are not the positions that move
+
+TEST_P(Kernels, TotalFrame)
+{
+  const Case &c = GetParam();
+  const TransferKernels total = table->transfer_total(dim, c.shape, c.transfer, c.split);
+  const TransferKernels plain =
+      MPMKernels::select("reference")->transfer_total(dim, c.shape, c.transfer, c.split);
+  for (int count : {1, 2, 3, 8, 17, 64, 101})
+    for (bool symmetric : {true, false}) {
+      Points points = random_points(count);
+      Reals P(points.nC * points.n), from(3 * points.n);
+      fill(P), fill(from);
+      if (symmetric) {
+        // the updated frame is the case P = tau, from = x
+        from = points.x;
+        constexpr int place[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+        for (int p = 0; p < points.n; p++)
+          for (int i = 0; i < dim; i++)
+            for (int j = 0; j < dim; j++)
+              P[points.nC * p + dim * j + i] = points.tau[6 * p + place[i][j]];
+      }
+      const TransferKernels &other = symmetric ? reference : plain;
+      PointRows rows = points.rows(false);
+      rows.P = P.data();
+      rows.from = from.data();
+      const P2G mine[] = {total.p2g, total.p2g_force}, theirs[] = {other.p2g, other.p2g_force};
+      for (int which : {0, 1}) {
+        Tile a(dim, order, nreal), b(dim, order, nreal);
+        Box box_a, box_b;
+        mine[which](rows, points.step, points.first, points.last, points.base, a.real, box_a.b);
+        theirs[which](rows, points.step, points.first, points.last, points.base, b.real, box_b.b);
+        for (int r = 0; r < nreal; r++)
+          ASSERT_LT(difference(a.column(r), b.column(r)), SAME) << count << " points, real " << r;
+        for (int i = 0; i < 6; i++) ASSERT_EQ(box_a.b[i], box_b.b[i]);
+      }
+
+      // far away from the tile is as good as anywhere, but not nowhere
+      const Tile field = random_field();
+      Reals L(points.nC * count), L_other(L);
+      Points before = points;
+      EXPECT_EQ(total.g2p(rows, points.step, points.first, points.last, points.base, field.real,
+                          L.data()),
+                0);
+      PointRows expected = before.rows(false);
+      expected.from = from.data();
+      other.g2p(expected, points.step, points.first, points.last, points.base, field.real,
+                L_other.data());
+      EXPECT_LT(difference(points.xnew, before.xnew), SAME);
+      EXPECT_LT(difference(points.v, before.v), SAME);
+      EXPECT_LT(difference(points.C, before.C), SAME);
+      EXPECT_LT(difference(L, L_other), SAME);
+      from[3 * (points.last - 1)] = std::numeric_limits<double>::quiet_NaN();
+      EXPECT_NE(total.g2p(rows, points.step, points.first, points.last, points.base, field.real,
+                          L.data()),
+                0);
+    }
+}
+
 TEST_P(Kernels, NoPointsNoChange)
 {
   Points points = random_points(3);

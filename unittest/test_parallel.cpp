@@ -115,6 +115,26 @@ INSTANTIATE_TEST_SUITE_P(Options, Ranks,
                                            "shape cubic transfer flip 1.0 scheme usf",
                                            "shape quadratic transfer apic scheme musl"));
 
+// in the total frame, the two bodies are one, and neighbors on the lattice come to be far apart
+
+class TotalRanks : public Ranks {};
+
+TEST_P(TotalRanks, Bricks)
+{
+  compare(with_options(scene3d, GetParam()) + "timestep 0.02\nrun 200\n", "");
+}
+
+TEST_P(TotalRanks, Rcb)
+{
+  compare(with_options(scene3d, GetParam()) + "timestep 0.02\nrun 200\n",
+          "comm_style tiled\nbalance 1.0 rcb\nfix lb all balance 20 1.0 rcb\n");
+}
+
+INSTANTIATE_TEST_SUITE_P(Options, TotalRanks,
+                         ::testing::Values("frame total transfer apic",
+                                           "frame total shape linear transfer flip 1.0 scheme musl",
+                                           "frame total shape cubic transfer flip 0.9 scheme usf"));
+
 // slabs along one axis: with 4 ranks some have no points at all
 
 TEST(RanksWithoutPoints, Slabs)

@@ -45,6 +45,9 @@ static const std::string points = "region one sphere 2.6 3.0 3.2 1.9\n"
 static const std::string start = "velocity one set 0.6 0.35 -0.4\n"
                                  "velocity two set -0.5 0.1 -0.3\n";
 
+// a body of the total frame would fall through a floor that it does not touch at first
+static const std::string start_level = "velocity one set 0.6 0.35 0\nvelocity two set -0.5 0.1 0\n";
+
 static std::string file_name()
 {
   int nprocs;
@@ -65,7 +68,9 @@ TEST_P(Restart, ContinuesBitwise)
   const std::string options = GetParam();
   Lammps whole;
   whole.commands(head + "fix grid all mpm 1.0 " + options + "\n" + points + "unfix grid\n" +
-                 fixes(options) + start + "restart 100 " + file_name() + "\nrun 200\n");
+                 fixes(options) +
+                 (options.find("total") == std::string::npos ? start : start_level) +
+                 "restart 100 " + file_name() + "\nrun 200\n");
   auto expected = whole.gather();
   const double time = whole.lmp->update->atime +
       (whole.lmp->update->ntimestep - whole.lmp->update->atimestep) * whole.lmp->update->dt;
@@ -101,7 +106,8 @@ INSTANTIATE_TEST_SUITE_P(Options, Restart,
                          ::testing::Values("transfer apic",
                                            "shape linear transfer flip 0.99 scheme musl",
                                            "shape cubic transfer apic scheme musl",
-                                           "transfer pic scheme usf"));
+                                           "transfer pic scheme usf", "frame total transfer apic",
+                                           "frame total transfer flip 0.99 scheme musl"));
 
 // the write_restart command between runs, and a file of one rank read by many
 

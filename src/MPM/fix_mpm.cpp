@@ -41,8 +41,8 @@ static constexpr double MAX_NODE = 4.0e6;
 
 FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), shape(QUADRATIC), transfer(APIC), flip(0.0),
-    refinement(LUMPED), order(1), scheme(USL), policy(ERROR),
-    delete_failed(false), dt_check(true), grid(nullptr), C(nullptr), ledger_on(false), points(nullptr), halo(nullptr),
+    refinement(LUMPED), order(1), total(false), scheme(USL), policy(ERROR),
+    delete_failed(false), dt_check(true), grid(nullptr), C(nullptr), X(nullptr), ledger_on(false), points(nullptr), halo(nullptr),
     kernels(nullptr), batch_kernels(nullptr), driver(false), topology_valid(false),
     watch_drift(false), drifted(0), want_sort(false), switches(0), switches_sorted(0),
     tile(nullptr), tile_load(nullptr), batch(nullptr), kinetic_points(0.0), nbad_total(0),
@@ -72,13 +72,13 @@ FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) :
     force_reneighbor = 1;
     next_reneighbor = -1;
   }
-  if (transfer == APIC) {
+  if (transfer == APIC || total) {
     FixMPM::grow_arrays(atom->nmax);
     atom->add_callback(Atom::GROW);
     atom->add_callback(Atom::RESTART);
     restart_peratom = 1;
     create_attribute = 1;
-    maxexchange = affine_size();
+    maxexchange = own_size();
     for (int i = 0; i < atom->nlocal; i++) FixMPM::set_arrays(i);
   }
 
@@ -95,11 +95,12 @@ FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) :
 
 FixMPM::~FixMPM()
 {
-  if (transfer == APIC && modify) {
+  if ((C || X) && modify) {
     atom->delete_callback(id, Atom::GROW);
     atom->delete_callback(id, Atom::RESTART);
   }
   memory->destroy(C);
+  memory->destroy(X);
   memory->sfree(tile);
   memory->sfree(tile_load);
   delete grid;
@@ -162,6 +163,9 @@ void FixMPM::process_options(int narg, char **arg)
       iarg += 2;
     } else if (keyword == "scheme") {
       scheme = (Scheme) choose({"usl", "usf", "musl", "usavg"});
+      iarg += 2;
+    } else if (keyword == "frame") {
+      total = choose({"updated", "total"}) == 1;
       iarg += 2;
     } else if (keyword == "origin") {
       need(lattice.dim);
@@ -254,9 +258,10 @@ void FixMPM::init()
                "gradients of scheme usf, musl and usavg do not follow: use scheme usl, or transfer "
                "xpic", id);
 
-  // a node that a point barely touches has next to no mass but the full gradient of the function
+  // a node that a point barely touches has next to no mass but the full gradient of the function;
+  // in the total frame, points do not move through cells
 
-  if (shape == LINEAR && (scheme == USL || transfer == APIC) && comm->me == 0)
+  if (!total && shape == LINEAR && (scheme == USL || transfer == APIC) && comm->me == 0)
     error->warning(FLERR, "Fix mpm {}: linear shape functions with scheme usl or transfer apic "
                    "amplify round-off at nodes of tiny mass: use transfer flip with scheme musl, "
                    "or quadratic functions", id);
@@ -319,17 +324,20 @@ void FixMPM::setup_pre_neighbor()
   // the ledger needs forces and old velocities on the nodes, USF and USAVG sum forces alone
 
   const bool split = ledger_on || stress_before();
-  kernel = kernels->transfer(lattice.dim, shape, transfer, split);
+  const auto choose = total ? kernels->transfer_total : kernels->transfer;
+  kernel = choose(lattice.dim, shape, transfer, split);
   batch->h = lattice.h;
 
   // points drift at most half a skin between rebuilds when LAMMPS checks distances each step;
   // a tile has room for a drift of one cell
 
-  watch_drift = neighbor->skin > 2.0 * lattice.h || neighbor->delay > 0 || neighbor->every > 1 ||
-      !neighbor->dist_check;
+  watch_drift = !total &&
+      (neighbor->skin > 2.0 * lattice.h || neighbor->delay > 0 || neighbor->every > 1 ||
+       !neighbor->dist_check);
 
   check_integrators();
   check_points();
+  set_reference();
   give_initial_stress();
   sort_points();
   topology_valid = false;
@@ -430,6 +438,11 @@ bool FixMPM::is_point(int i) const
   return (atom->mask[i] & groupbit) && atom->vfrac[i] > 0.0;
 }
 
+const double *FixMPM::place(int i) const
+{
+  return X ? X[i] : atom->x[i];
+}
+
 FixMPMMaterial *FixMPM::material_of(int i) const
 {
   for (auto *material : materials)
@@ -449,7 +462,8 @@ int FixMPM::npoints_local() const
 PointRows FixMPM::rows() const
 {
   PointRows r;
-  r.x = &atom->x[0][0];
+  r.x = X ? &X[0][0] : &atom->x[0][0];
+  r.from = &atom->x[0][0];
   r.v = &atom->v[0][0];
   r.f = &atom->f[0][0];
   r.C = C ? &C[0][0] : nullptr;
@@ -458,7 +472,7 @@ PointRows FixMPM::rows() const
   r.F = &points->F[0][0];
   r.mass = atom->rmass;
   r.guarded = atom->nmax - 1;
-  r.xnew = stress_after() ? const_cast<double *>(xnew.data()) : r.x;
+  r.xnew = stress_after() ? const_cast<double *>(xnew.data()) : &atom->x[0][0];
   return r;
 }
 
@@ -497,42 +511,76 @@ void FixMPM::load_state(Batch &b, const int *list, int n, const FixMPMMaterial *
 }
 
 /* ----------------------------------------------------------------------
-   affine matrix of APIC: per-atom array that migrates and restarts with the atom
+   total frame: the reference position of a point is where it is at the start of its first run,
+   so that commands which place or displace points can be used before
+------------------------------------------------------------------------- */
+
+void FixMPM::set_reference()
+{
+  if (!X) return;
+  tagint deformed = 0, deformed_all;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!is_point(i) || !std::isnan(X[i][0])) continue;
+    memcpy(X[i], atom->x[i], 3 * sizeof(double));
+    for (int c = 0; c < 9; c++)
+      if (fabs(points->F[i][c] - (c % 4 == 0)) > 1.0e-12)
+        deformed = std::max(deformed, atom->tag[i]);
+  }
+  MPI_Allreduce(&deformed, &deformed_all, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  if (deformed_all)
+    error->all(FLERR, "Fix mpm {} frame total: points have no reference position but are deformed "
+               "already, for instance point {}: use frame total from the first run on, and the "
+               "same fix ID after read_restart", id, deformed_all);
+}
+
+/* ----------------------------------------------------------------------
+   affine matrix of APIC and reference position: per-atom arrays that migrate and restart with the
+   atom
 ------------------------------------------------------------------------- */
 
 void FixMPM::grow_arrays(int nmax)
 {
-  memory->grow(C, nmax, affine_size(), "mpm:C");
+  if (transfer == APIC) memory->grow(C, nmax, affine_size(), "mpm:C");
+  if (total) memory->grow(X, nmax, 3, "mpm:X");
 }
 
 void FixMPM::copy_arrays(int i, int j, int)
 {
-  memcpy(C[j], C[i], affine_size() * sizeof(double));
+  if (C) memcpy(C[j], C[i], affine_size() * sizeof(double));
+  if (X) memcpy(X[j], X[i], 3 * sizeof(double));
 }
 
 void FixMPM::set_arrays(int i)
 {
-  memset(C[i], 0, affine_size() * sizeof(double));
-  if (!running) C[i][0] = NAN;    // not known, for fit_affine()
+  if (C) {
+    memset(C[i], 0, affine_size() * sizeof(double));
+    if (!running) C[i][0] = NAN;    // not known, for fit_affine()
+  }
+  if (X) {
+    memcpy(X[i], atom->x[i], 3 * sizeof(double));
+    if (!running) X[i][0] = NAN;    // not known, for set_reference()
+  }
 }
 
 int FixMPM::pack_exchange(int i, double *buf)
 {
-  memcpy(buf, C[i], affine_size() * sizeof(double));
-  return affine_size();
+  if (C) memcpy(buf, C[i], affine_size() * sizeof(double));
+  if (X) memcpy(buf + own_size() - 3, X[i], 3 * sizeof(double));
+  return own_size();
 }
 
 int FixMPM::unpack_exchange(int i, double *buf)
 {
-  memcpy(C[i], buf, affine_size() * sizeof(double));
-  return affine_size();
+  if (C) memcpy(C[i], buf, affine_size() * sizeof(double));
+  if (X) memcpy(X[i], buf + own_size() - 3, 3 * sizeof(double));
+  return own_size();
 }
 
 int FixMPM::pack_restart(int i, double *buf)
 {
-  buf[0] = 1 + affine_size();
-  memcpy(buf + 1, C[i], affine_size() * sizeof(double));
-  return 1 + affine_size();
+  buf[0] = 1 + own_size();
+  pack_exchange(i, buf + 1);
+  return 1 + own_size();
 }
 
 void FixMPM::unpack_restart(int i, int nth)
@@ -540,17 +588,21 @@ void FixMPM::unpack_restart(int i, int nth)
   double **extra = atom->extra;
   int m = 0;
   for (int k = 0; k < nth; k++) m += static_cast<int>(extra[i][m]);
-  memcpy(C[i], extra[i] + m + 1, affine_size() * sizeof(double));
+  if (static_cast<int>(extra[i][m]) != 1 + own_size())
+    error->one(FLERR, "The restart file has {} numbers per point for fix mpm {}, not {}: give the "
+               "fix the transfer and frame with which the file was written",
+               static_cast<int>(extra[i][m]) - 1, id, own_size());
+  unpack_exchange(i, extra[i] + m + 1);
 }
 
 int FixMPM::size_restart(int)
 {
-  return 1 + affine_size();
+  return 1 + own_size();
 }
 
 int FixMPM::maxsize_restart()
 {
-  return 1 + affine_size();
+  return 1 + own_size();
 }
 
 /* ----------------------------------------------------------------------

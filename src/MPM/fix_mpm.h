@@ -89,6 +89,7 @@ class FixMPM : public Fix {
   double flip;         ///< FLIP share, 0 for PIC
   Refinement refinement;    ///< of the velocities of the nodes, with transfer FLIP inside
   int order;                ///< terms of the inverse of the mass matrix, 1: lumped
+  bool total;          ///< nodes are places of the reference configuration (total Lagrangian)
   Scheme scheme;
   Policy policy;       ///< what to do with a point that goes bad
   bool delete_failed;  ///< remove points whose damage is 1
@@ -99,6 +100,7 @@ class FixMPM : public Fix {
   MPM_NS::Grid *grid;                           ///< node records: velocity and mass after the solve
   std::vector<FixMPMMaterial *> materials;      ///< all of them, set in init()
   double **C;    ///< [n][dim*dim] affine, column-major; null: not APIC
+  double **X;    ///< [n][3] reference position, NAN before it is known; null: updated frame
   bool ledger_on;                               ///< a compute mpm/energy exists; set in init()
   MPMLedger ledger;
   std::vector<double> ledger_start;    ///< of compute mpm/energy, until the end of the next run
@@ -109,6 +111,8 @@ class FixMPM : public Fix {
 
   /** True when atom i is a material point of this field. */
   bool is_point(int i) const;
+  /** Where a point is on the lattice. */
+  const double *place(int i) const;
   /** Material of a point of this field (null: none). */
   FixMPMMaterial *material_of(int i) const;
   /** Number of points of this field on this rank. */
@@ -161,6 +165,8 @@ class FixMPM : public Fix {
   };
 
   int affine_size() const { return lattice.dim * lattice.dim; }
+  /** Reals that each point has of this fix. */
+  int own_size() const { return (C ? affine_size() : 0) + (X ? 3 : 0); }
 
   MPMPoints *points;
   MPMHalo *halo;
@@ -222,6 +228,8 @@ class FixMPM : public Fix {
   // their parts
   void act_on_nodes(MPMNodeAction::Stage);
   void map_to_nodes(MPM_NS::P2G);
+  void map_run(MPM_NS::P2G, const MPM_NS::PointRows &, const MPM_NS::TransferStep &, const Run &,
+               const int base[3], int box[6]);
   template <class Weigh>
   void map_some(const MPM_NS::PointRows &, const MPM_NS::TransferStep &, MPM_NS::P2G,
                 const std::vector<char> &near, int lane, int nlane, const Weigh &);
@@ -235,6 +243,7 @@ class FixMPM : public Fix {
   uint64_t velocity_hash() const;
   void remember_velocities();
   void check_velocities();
+  void set_reference();
   void fit_affine();
   void add_torques();
   void process_options(int, char **);

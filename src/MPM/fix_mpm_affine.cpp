@@ -23,7 +23,9 @@
 #include "atom.h"
 #include "force.h"
 #include "math_eigen.h"
+#include "math_extra.h"
 #include "mpm_halo.h"
+#include "mpm_points.h"
 #include "mpm_shape.h"
 #include "update.h"
 
@@ -144,8 +146,9 @@ void FixMPM::fit_affine()
   auto visit = [&](const Grid::Block &block, int i, auto f) {
     int base[3];
     double t[3], w[3][4] = {{0.0}, {0.0}, {1.0}};
+    const double *x = place(i);
     for (int d = 0; d < dim; d++) {
-      t[d] = (atom->x[i][d] - lattice.origin[d]) / lattice.h;
+      t[d] = (x[d] - lattice.origin[d]) / lattice.h;
       shape_weights(t[d], base[d], w[d]);
     }
     int k[3];
@@ -224,7 +227,8 @@ void FixMPM::fit_affine()
 
 /* ----------------------------------------------------------------------
    torques that pair styles exert on points (tangential forces act on the surface of a point) change
-   the angular momentum of its affine field, m D (C - C^T), D = h^2/4 or h^2/3
+   the angular momentum of its affine field, m D (C - C^T), D = h^2/4 or h^2/3; in the total frame
+   m D (C F^T - F C^T)
 ------------------------------------------------------------------------- */
 
 void FixMPM::add_torques()
@@ -235,11 +239,26 @@ void FixMPM::add_torques()
   for (const auto &run : runs)
     for (int i = run.first; i < run.last; i++) {
       const double *torque = atom->torque[i];
+      double W[9] = {0.0};    // what a gradient in space would change by, row-major
       const double scale = 0.5 * update->dt * force->ftm2v * inv_moment / atom->rmass[i];
       for (int d = dim == 3 ? 0 : 2; d < 3; d++) {
         const int e = (d + 1) % 3, f = (d + 2) % 3;
-        C[i][dim * e + f] += scale * torque[d];
-        C[i][dim * f + e] -= scale * torque[d];
+        W[3 * f + e] = scale * torque[d];
+        W[3 * e + f] = -scale * torque[d];
       }
+      if (total) {
+        // the velocity C (X - X_p) is at F (X - X_p): the part of C F^T is the same as without F
+        double inverse[3][3], F[3][3];
+        memcpy(F, points->F[i], 9 * sizeof(double));
+        MathExtra::invert3(F, inverse);
+        double G[9];
+        for (int a = 0; a < 3; a++)
+          for (int b = 0; b < 3; b++)
+            G[3 * a + b] = W[3 * a] * inverse[b][0] + W[3 * a + 1] * inverse[b][1] +
+                W[3 * a + 2] * inverse[b][2];
+        memcpy(W, G, sizeof(W));
+      }
+      for (int a = 0; a < dim; a++)
+        for (int b = 0; b < dim; b++) C[i][dim * b + a] += W[3 * a + b];
     }
 }

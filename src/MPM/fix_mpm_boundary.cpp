@@ -306,6 +306,13 @@ void FixMPMBoundary::init()
     auto *field = dynamic_cast<FixMPM *>(ifix);
     if (!acts_on(*field)) continue;
     found = true;
+    if (field->total && (kind == SEPARATE || rotating || region_moves()))
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/boundary {} cannot be used with frame total of fix mpm {}, whose nodes "
+                 "keep to the same material wherever it goes: use {}",
+                 kind == SEPARATE ? "separate" : rotating ? "rotate" : "with a moving region",
+                 field->id,
+                 kind == SEPARATE ? "fix wall/gran or a pair style" : "stick velocity with variables");
     if (field->stress_before() && decides())
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/boundary separate and friction cannot be used "

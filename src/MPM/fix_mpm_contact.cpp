@@ -218,6 +218,11 @@ void FixMPMContact::init()
                  "and origin) and shape function; bodies on different lattices meet through a pair "
                  "style",
                  id, first.id, field->id);
+    if (field->total)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/contact cannot be used with frame total of fix mpm {}, whose nodes are not "
+                 "where the body is: let bodies meet through a pair style",
+                 field->id);
     if (field->stress_before())
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/contact cannot be used with scheme usf or usavg of fix mpm {}, which need the "

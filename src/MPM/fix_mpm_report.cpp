@@ -76,7 +76,7 @@ double FixMPM::external_work()
     int base[3], box[6] = {127, 127, 127, -127, -127, -127};
     for (int d = 0; d < 3; d++) base[d] = grid->side * block.b[d] - 1;
     for (int k = a.first_run; k < a.last_run; k++)
-      kernel.p2g_force(r, s, runs[k].first, runs[k].last, base, tile, box);
+      map_run(kernel.p2g_force, r, s, runs[k], base, box);
     kernel.flush(tile, external_nodes.data(), block.slot, box);
   }
   grid->fold_aliases(external_nodes.data(), 8, 4, 3);
@@ -136,7 +136,7 @@ double FixMPM::bytes_per_point() const
 {
   double bytes = 9 * sizeof(double) + sizeof(tagint) + 2 * sizeof(int) + sizeof(imageint);
   bytes += (1 + 1 + 9 + 6) * sizeof(double);    // mass, V0, F, stress
-  if (C) bytes += affine_size() * sizeof(double);
+  bytes += own_size() * sizeof(double);
   int nhistory = 0;
   for (auto *material : materials) nhistory += material->nhistory;
   return bytes + nhistory * sizeof(double);
@@ -194,7 +194,7 @@ void FixMPM::post_run()
 double FixMPM::memory_usage()
 {
   double bytes = grid->memory_usage();
-  if (C) bytes += (double) affine_size() * atom->nmax * sizeof(double);
+  bytes += (double) own_size() * atom->nmax * sizeof(double);
   bytes += runs.capacity() * sizeof(Run) + active.capacity() * sizeof(ActiveBlock);
   bytes += (xnew.capacity() + external_nodes.capacity() + zero_volume.capacity()) * sizeof(double);
   return bytes + 2.0 * MAX_TILE_NODES * 8 * sizeof(double);

@@ -250,7 +250,7 @@ void FixMPM::gradient_and_material(double dt, double shift)
       for (int i = runs[k].first; i < runs[k].last; i += BATCH) {
         const int last = std::min(i + BATCH, runs[k].last);
         kernel.g2p_gradient(r, s, i, last, base, tile_load, L);
-        if (shift != 0.0) shift_gradient(lattice.dim, last - i, shift, L);
+        if (shift != 0.0 && !total) shift_gradient(lattice.dim, last - i, shift, L);
         material_update(r, runs[k], i, last - i, L, dt);
       }
   }
@@ -267,7 +267,8 @@ void FixMPM::material_update(const PointRows &r, const Run &run, int first, int 
   Batch &b = *batch;
   FixMPMMaterial *material = run.material;
   double *F = r.F + 9 * (bigint) first, *tau = r.tau + 6 * (bigint) first;
-  batch_kernels->load(b, n, dt, L, F, tau, r.vol0 + first);
+  const auto load = total ? batch_kernels->load_total : batch_kernels->load;
+  load(b, n, dt, L, F, tau, r.vol0 + first);
   b.history = reinterpret_cast<double(*)[BATCH]>(history_batch.data());
   b.time = current_time();
 
@@ -360,9 +361,37 @@ void FixMPM::map_to_nodes(P2G p2g)
       a.box[d] = 127;
       a.box[3 + d] = -127;
     }
-    for (int k = a.first_run; k < a.last_run; k++)
-      p2g(r, s, runs[k].first, runs[k].last, base, tile, a.box);
+    for (int k = a.first_run; k < a.last_run; k++) map_run(p2g, r, s, runs[k], base, a.box);
     kernel.flush(tile, grid->nodes(), block.slot, a.box);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   points of a run to the tile. In the total frame their first Piola-Kirchhoff stress is made here,
+   a batch at a time: to read F and tau costs less than to write and read another matrix
+------------------------------------------------------------------------- */
+
+void FixMPM::map_run(P2G p2g, const PointRows &r, const TransferStep &s, const Run &run,
+                     const int base[3], int box[6])
+{
+  if (!total || p2g == kernel.p2g_momentum) {
+    p2g(r, s, run.first, run.last, base, tile, box);
+    return;
+  }
+  double P[9 * BATCH + 8];
+  for (bigint i = run.first; i < run.last; i += BATCH) {
+    const int n = (int) std::min<bigint>(BATCH, run.last - i);
+    batch_kernels->first_piola(n, r.F + 9 * i, r.tau + 6 * i, P);
+    PointRows b = r;    // as if the batch were all
+    b.x += 3 * i;
+    b.v += 3 * i;
+    b.f += 3 * i;
+    if (b.C) b.C += affine_size() * i;
+    b.vol0 += i;
+    b.mass += i;
+    b.guarded -= (int) i;
+    b.P = P;
+    p2g(b, s, 0, n, base, tile, box);
   }
 }
 

@@ -89,7 +89,7 @@ void FixMPM::find_blocks()
     if (!is_point(i)) continue;
     int base[3], b[3];
     double t[3];
-    if (!base_node(atom->x[i], base, t)) {
+    if (!base_node(place(i), base, t)) {
       point_is_bad(i, "is far out of reach of the lattice");
       continue;
     }
@@ -138,7 +138,9 @@ void FixMPM::find_blocks()
 
   // blocks that the points can reach before the next update
 
-  const double drift = watch_drift ? 1.0 : std::min(1.0, 0.5 * neighbor->skin / lattice.h);
+  const double drift = total ? 0.0 :
+      watch_drift            ? 1.0 :
+                               std::min(1.0, 0.5 * neighbor->skin / lattice.h);
   const int nactive = active.size();
   for (int k = 0; k < nactive; k++) {
     const Range &r = ranges[k];
@@ -210,7 +212,7 @@ void FixMPM::sort_points()
   for (int i = 0; i < nlocal; i++) {
     int base[3];
     double t[3];
-    if (!is_point(i) || !base_node(atom->x[i], base, t)) continue;
+    if (!is_point(i) || !base_node(place(i), base, t)) continue;
     std::array<int, 3> block;
     for (int d = 0; d < 3; d++) block[d] = base[d] >> grid->shift_bits;
     if (block != last) {

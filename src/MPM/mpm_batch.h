@@ -22,6 +22,14 @@ struct BatchKernels {
   void (*load)(Batch &, int n, double dt, const double *L, const double *F, const double *tau,
                const double *vol0);
 
+  /** The same in the total frame, where L is the gradient with respect to the reference position:
+   *  F <- F + dt L, and A = dt L F_old^-1. */
+  void (*load_total)(Batch &, int n, double dt, const double *L, const double *F, const double *tau,
+                     const double *vol0);
+
+  /** P: [n][dim*dim] first Piola-Kirchhoff stress tau F^-T, column-major; F, tau as in load. */
+  void (*first_piola)(int n, const double *F, const double *tau, double *P);
+
   /** Write F and tau (2d: only what can change). Returns the number of points whose J is not
    *  positive (NaN included); nothing is written for these. */
   int (*store)(const Batch &, double *F, double *tau);

@@ -86,6 +86,20 @@ MPM_INLINE void load_four(Batch &batch, Column *A, int p, double dt, const doubl
   }
 }
 
+/** Cofactors of a row-major matrix: f c^T = det f. */
+MPM_INLINE void cofactors(const double *f, double *c)
+{
+  c[0] = f[4] * f[8] - f[5] * f[7];
+  c[1] = f[5] * f[6] - f[3] * f[8];
+  c[2] = f[3] * f[7] - f[4] * f[6];
+  c[3] = f[2] * f[7] - f[1] * f[8];
+  c[4] = f[0] * f[8] - f[2] * f[6];
+  c[5] = f[1] * f[6] - f[0] * f[7];
+  c[6] = f[1] * f[5] - f[2] * f[4];
+  c[7] = f[2] * f[3] - f[0] * f[5];
+  c[8] = f[0] * f[4] - f[1] * f[3];
+}
+
 template <int DIM>
 MPM_INLINE void load_one(Batch &batch, Column *A, int p, double dt, const double *L,
                          const double *F, const double *tau)
@@ -95,7 +109,7 @@ MPM_INLINE void load_one(Batch &batch, Column *A, int p, double dt, const double
   for (int c = 0; c < 6; c++) batch.stress[c][p] = tau[6 * p + c];
 }
 
-template <int DIM>
+template <int DIM, bool TOTAL>
 void load(Batch &batch, int n, double dt, const double *L, const double *F, const double *tau,
           const double *vol0)
 {
@@ -120,10 +134,22 @@ void load(Batch &batch, int n, double dt, const double *L, const double *F, cons
         }
       const double Jold = f[0] * (f[4] * f[8] - f[5] * f[7]) - f[1] * (f[3] * f[8] - f[5] * f[6]) +
           f[2] * (f[3] * f[7] - f[4] * f[6]);
-      for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-          g[3 * i + j] =
-              f[3 * i + j] + a[3 * i] * f[j] + a[3 * i + 1] * f[3 + j] + a[3 * i + 2] * f[6 + j];
+      if constexpr (TOTAL) {
+        double c[9];
+        cofactors(f, c);
+        for (int k = 0; k < 9; k++) g[k] = f[k] + a[k];
+        const double scale = 1.0 / Jold;
+        for (int i = 0; i < 3; i++) {
+          const double x = scale * a[3 * i], y = scale * a[3 * i + 1], z = scale * a[3 * i + 2];
+          for (int j = 0; j < 3; j++)
+            a[3 * i + j] = x * c[3 * j] + y * c[3 * j + 1] + z * c[3 * j + 2];
+        }
+      } else {
+        for (int i = 0; i < 3; i++)
+          for (int j = 0; j < 3; j++)
+            g[3 * i + j] =
+                f[3 * i + j] + a[3 * i] * f[j] + a[3 * i + 1] * f[3 + j] + a[3 * i + 2] * f[6 + j];
+      }
       for (int c = 0; c < 9; c++) {
         batch.A[c][q] = a[c];
         batch.F[c][q] = g[c];
@@ -137,12 +163,28 @@ void load(Batch &batch, int n, double dt, const double *L, const double *F, cons
   } else {
 #pragma omp simd
     for (int q = 0; q < n; q++) {
-      const double xx = A[0][q], yx = A[1][q], xy = A[2][q], yy = A[3][q];
+      double xx = A[0][q], yx = A[1][q], xy = A[2][q], yy = A[3][q];
       const double Fxx = batch.F[0][q], Fxy = batch.F[1][q], Fyx = batch.F[3][q],
                    Fyy = batch.F[4][q], Fzz = batch.F[8][q];
-      const double gxx = Fxx + xx * Fxx + xy * Fyx, gxy = Fxy + xx * Fxy + xy * Fyy;
-      const double gyx = Fyx + yx * Fxx + yy * Fyx, gyy = Fyy + yx * Fxy + yy * Fyy;
+      double gxx, gxy, gyx, gyy;
       const double Jold = Fzz * (Fxx * Fyy - Fxy * Fyx);
+      if constexpr (TOTAL) {
+        gxx = Fxx + xx;
+        gxy = Fxy + xy;
+        gyx = Fyx + yx;
+        gyy = Fyy + yy;
+        const double scale = Fzz / Jold;    // inverse of the determinant in the plane
+        const double x = scale * (xx * Fyy - xy * Fyx), y = scale * (yx * Fyy - yy * Fyx);
+        xy = scale * (xy * Fxx - xx * Fxy);
+        yy = scale * (yy * Fxx - yx * Fxy);
+        xx = x;
+        yx = y;
+      } else {
+        gxx = Fxx + xx * Fxx + xy * Fyx;
+        gxy = Fxy + xx * Fxy + xy * Fyy;
+        gyx = Fyx + yx * Fxx + yy * Fyx;
+        gyy = Fyy + yx * Fxy + yy * Fyy;
+      }
       batch.A[0][q] = xx;
       batch.A[1][q] = xy;
       batch.A[3][q] = yx;
@@ -209,6 +251,32 @@ template <int DIM> int store(const Batch &batch, double *F, double *tau)
   return bad;
 }
 
+/** P = tau F^-T = tau cof(F)/J, rows in and out. */
+template <int DIM> void first_piola(int n, const double *F, const double *tau, double *P)
+{
+#pragma omp simd
+  for (int p = 0; p < n; p++) {
+    const double *f = F + 9 * p, *s = tau + 6 * p;
+    double *out = P + DIM * DIM * p;
+    if constexpr (DIM == 3) {
+      double c[9];
+      cofactors(f, c);
+      const double inv = 1.0 / (f[0] * c[0] + f[1] * c[1] + f[2] * c[2]);
+      for (int j = 0; j < 3; j++) {
+        out[3 * j] = inv * (s[0] * c[j] + s[3] * c[3 + j] + s[4] * c[6 + j]);
+        out[3 * j + 1] = inv * (s[3] * c[j] + s[1] * c[3 + j] + s[5] * c[6 + j]);
+        out[3 * j + 2] = inv * (s[4] * c[j] + s[5] * c[3 + j] + s[2] * c[6 + j]);
+      }
+    } else {
+      const double inv = 1.0 / (f[0] * f[4] - f[1] * f[3]);
+      out[0] = inv * (s[0] * f[4] - s[3] * f[1]);
+      out[1] = inv * (s[3] * f[4] - s[1] * f[1]);
+      out[2] = inv * (s[3] * f[0] - s[0] * f[3]);
+      out[3] = inv * (s[1] * f[0] - s[3] * f[3]);
+    }
+  }
+}
+
 }    // namespace
 
 namespace MPM_NS {
@@ -217,6 +285,7 @@ const BatchKernels *MPM_CONCAT(mpm_batch_, MPM_ISA)(int dim);
 
 const BatchKernels *MPM_NS::MPM_CONCAT(mpm_batch_, MPM_ISA)(int dim)
 {
-  static const BatchKernels solid = {load<3>, store<3>}, plane = {load<2>, store<2>};
+  static const BatchKernels solid = {load<3, false>, load<3, true>, first_piola<3>, store<3>},
+                            plane = {load<2, false>, load<2, true>, first_piola<2>, store<2>};
   return dim == 3 ? &solid : &plane;
 }

@@ -53,7 +53,7 @@ constexpr int MAX_TILE_NODES = 1024;
 
 /** State of points as contiguous rows; pointers are to the first row of the rank. */
 struct PointRows {
-  double *x;               ///< [n][3] position
+  double *x;               ///< [n][3] position (total frame: reference position)
   double *v;               ///< [n][3] velocity
   const double *f;         ///< [n][3] external force (gravity, contact, walls, ...)
   double *C;               ///< [n][dim*dim] affine matrix, column-major: C[dim*j+i] = d v_i / d x_j
@@ -63,6 +63,9 @@ struct PointRows {
   double *xnew;            ///< [n][3] where G2P puts the new position (x itself, unless MUSL)
   double *F = nullptr;     ///< [n][9] not touched: G2P brings it to the cache for the law, if given
   int guarded = 0;         ///< behind the rows before this one there is memory that may be read
+  const double *from = nullptr;    ///< [n][3] total frame: the position that G2P adds dt v to
+  const double *P = nullptr;       ///< [n][dim*dim] total frame: first Piola-Kirchhoff stress, the
+                                   ///< place of tau, column-major: P[dim*j+i] = P_ij
 };
 
 /** What a transfer needs to know about the lattice and the step. */
@@ -129,6 +132,11 @@ struct MPMKernels {
   /** Kernels for dimension 2 or 3; split: keep force and old velocity apart (FLIP, energy ledger).
    *  FLIP and PIC are always split. Linear APIC takes C as the gradient of the velocity. */
   TransferKernels (*transfer)(int dim, Shape, Transfer, bool split);
+
+  /** The same in the total frame: nodes are places of the reference configuration. C and L are
+   *  gradients with respect to the reference position, internal forces are -V0 P grad N, and G2P
+   *  moves a point from its row of from. G2P returns non-zero for positions that are not finite. */
+  TransferKernels (*transfer_total)(int dim, Shape, Transfer, bool split);
 
   /** v = p/m on n nodes, and the momentum equation.
    *  merged: (p,m) -> (p/m, m).  split: (p,m|f) -> ((p + dt f)/m, m | p/m).

@@ -164,8 +164,8 @@ template <int ORDER, int L> struct AxisWeights {
 /** Copies of the last points of a range, with room behind the rows: vectors of four reals read and
  *  write past a row of three or nine. */
 struct LastPoints {
-  double x[8], v[8], f[8], C[20], tau[12], vol0[2], mass[2], xnew[8], L[20];
-  PointRows rows{x, v, f, C, tau, vol0, mass, xnew};
+  double x[8], v[8], f[8], C[20], tau[12], vol0[2], mass[2], xnew[8], L[20], from[8], P[20];
+  PointRows rows{x, v, f, C, tau, vol0, mass, xnew, nullptr, 0, from, P};
 
   template <int WIDTH>
   static MPM_INLINE void load(double *to, const double *from, Index first, Index last)
@@ -280,8 +280,8 @@ template <int DIM, int ORDER, int WIDTH, int L, bool AFFINE, bool GRADIENT> stru
 
 enum Parts { MOMENTUM = 1, FORCE = 2, ALL = 3 };
 
-/** P2G of what PARTS says; AFFINE: APIC. */
-template <int DIM, int ORDER, bool AFFINE, int NREAL, int PARTS> struct PointsToNodes {
+/** P2G of what PARTS says; AFFINE: APIC; TOTAL: first Piola-Kirchhoff instead of Kirchhoff stress. */
+template <int DIM, int ORDER, bool AFFINE, int NREAL, int PARTS, bool TOTAL> struct PointsToNodes {
   static constexpr bool momentum = PARTS & MOMENTUM;
   static constexpr bool force = PARTS & FORCE;
   static constexpr bool mls = AFFINE && ORDER > 1;    // stress as an affine term
@@ -302,6 +302,19 @@ template <int DIM, int ORDER, bool AFFINE, int NREAL, int PARTS> struct PointsTo
     AxisWeights<ORDER, L> weights, gradients;
     int place[L];
   };
+
+  /** Columns of a full matrix; lanes that are no axis are arbitrary. */
+  template <int L>
+  static MPM_INLINE void matrix_columns(const double *matrix, Index p, Quads<L> *column)
+  {
+    if constexpr (DIM == 2) {
+      column[0] = load_rows<L, 4>(matrix, p);
+      column[1] = shuffle<2, 3, 2, 3>(column[0], column[0]);
+    } else {
+      MPM_UNROLL
+      for (int a = 0; a < 3; a++) column[a] = load_rows<L, 9>(matrix + 3 * a, p);
+    }
+  }
 
   /** Columns of the stress tensor; lanes that are no axis are arbitrary. */
   template <int L>
@@ -356,7 +369,10 @@ template <int DIM, int ORDER, bool AFFINE, int NREAL, int PARTS> struct PointsTo
     const double factor =
         -scale * step.stress_scale * step.inv_h * (mls ? BSpline<ORDER>::inv_moment : 1.0);
     const Quads<L> volume = load_numbers<L>(points.vol0, p) * factor;
-    stress_columns<L>(points.tau, p, A);
+    if constexpr (TOTAL)
+      matrix_columns<L>(points.P, p, A);
+    else
+      stress_columns<L>(points.tau, p, A);
     MPM_UNROLL
     for (int a = 0; a < DIM; a++) A[a] = volume * A[a];
   }
@@ -487,7 +503,7 @@ template <int DIM, int ORDER, bool AFFINE, int NREAL, int PARTS> struct PointsTo
       }
       if (force) {
         prefetch<3>(points.f, ahead);
-        prefetch<6>(points.tau, ahead);
+        if (!TOTAL) prefetch<6>(points.tau, ahead);    // P has just been made
         prefetch<1>(points.vol0, ahead);
       }
       for (Index i = 0; i < n; i++, p += L)
@@ -538,7 +554,10 @@ template <int DIM, int ORDER, bool AFFINE, int NREAL, int PARTS> struct PointsTo
     }
     if (force) {
       copy.load<3>(copy.f, points.f, rest, last);
-      copy.load<6>(copy.tau, points.tau, rest, last);
+      if (TOTAL)
+        copy.template load<DIM * DIM>(copy.P, points.P, rest, last);
+      else
+        copy.load<6>(copy.tau, points.tau, rest, last);
       copy.load<1>(copy.vol0, points.vol0, rest, last);
     }
     if (last - rest == POINTS)
@@ -667,8 +686,8 @@ template <int DIM, int ORDER, int NREAL, int L, bool MLS, bool GRADIENT> struct 
   }
 };
 
-/** G2P and velocity gradient. */
-template <int DIM, int ORDER, Transfer TRANSFER, int NREAL> struct NodesToPoints {
+/** G2P and velocity gradient; TOTAL: places on the lattice are not the positions that change. */
+template <int DIM, int ORDER, Transfer TRANSFER, int NREAL, bool TOTAL> struct NodesToPoints {
   static constexpr bool mls = TRANSFER == APIC && ORDER > 1;    // gradient from first moments
   static constexpr int N = ORDER + 1;
 
@@ -680,13 +699,16 @@ template <int DIM, int ORDER, Transfer TRANSFER, int NREAL> struct NodesToPoints
   };
 
   /** Loads L points and computes what gather needs. */
-  template <bool GRADIENT, int L>
+  template <bool UPDATE, bool GRADIENT, int L>
   static MPM_INLINE void prepare(const PointRows &points, Index p,
                                  const Frame<DIM, ORDER, L> &frame, Prepared<L> &out)
   {
     const Quads<L> x = load_rows<L, 3>(points.x, p);
     const Quads<L> fraction = frame.locate(frame.position(x), out.place);
-    x.store(out.x);
+    if constexpr (TOTAL && UPDATE)
+      load_rows<L, 3>(points.from, p).store(out.x);
+    else
+      x.store(out.x);
     fraction.store(out.fraction);
     if constexpr (ORDER > 1) {
       Quads<L> w[N];
@@ -772,6 +794,7 @@ template <int DIM, int ORDER, Transfer TRANSFER, int NREAL> struct NodesToPoints
       const Index ahead = p + AHEAD;
       if (UPDATE) {
         prefetch<3, 1>(points.x, ahead);
+        if (TOTAL) prefetch<3, 1>(points.from, ahead);
         prefetch<3, 1>(points.v, ahead);
         if (TRANSFER == APIC) prefetch<DIM * DIM, 1>(points.C, ahead);
       } else {
@@ -783,7 +806,7 @@ template <int DIM, int ORDER, Transfer TRANSFER, int NREAL> struct NodesToPoints
         prefetch<6, 1>(points.tau, ahead);
         prefetch<1>(points.vol0, ahead);
       }
-      for (Index i = 0; i < n; i++) prepare<GRADIENT, L>(points, p + L * i, frame, stage[i]);
+      for (Index i = 0; i < n; i++) prepare<UPDATE, GRADIENT, L>(points, p + L * i, frame, stage[i]);
       for (Index i = 0; i < n; i++, p += L) {
         const Prepared<L> &in = stage[i];
         const double *node[L];
@@ -818,7 +841,7 @@ template <int DIM, int ORDER, Transfer TRANSFER, int NREAL> struct NodesToPoints
         if constexpr (UPDATE) {
           if constexpr (DIM == 2) v = blend<2>(v, P{});
           const P x = P::load(in.x) + step.dt * v;
-          outside = flag_outside(outside, frame.position(x), range_of_bases);
+          outside = flag_outside(outside, TOTAL ? x - x : frame.position(x), range_of_bases);
           store_rows<3, L>(points.xnew, p, x);
           if constexpr (TRANSFER == FLIP) v += step.flip * (load_rows<L, 3>(points.v, p) - v_old);
           store_rows<DIM, L>(points.v, p, v);
@@ -854,6 +877,7 @@ template <int DIM, int ORDER, Transfer TRANSFER, int NREAL> struct NodesToPoints
     LastPoints copy;
     copy.load<3>(copy.x, points.x, rest, last);
     if (UPDATE) copy.load<3>(copy.v, points.v, rest, last);
+    if (UPDATE && TOTAL) copy.load<3>(copy.from, points.from, rest, last);
     if (last - rest == POINTS)
       left |= range<POINTS, UPDATE, GRADIENT>(copy.rows, step, 0, POINTS, base, tile, copy.L);
     else
@@ -969,61 +993,65 @@ void solve_nodes(double *nodes, int nnodes, int nreal, double dt)
 
 // ---------------------------------------------------------------------- table
 
-template <int DIM, int ORDER, Transfer TRANSFER, int NREAL> TransferKernels kernels()
+template <int DIM, int ORDER, Transfer TRANSFER, int NREAL, bool TOTAL> TransferKernels kernels()
 {
   constexpr bool affine = TRANSFER == APIC;
-  using G2P = NodesToPoints<DIM, ORDER, TRANSFER, NREAL>;
+  using G2P = NodesToPoints<DIM, ORDER, TRANSFER, NREAL, TOTAL>;
   TransferKernels k;
   k.nreal = NREAL;
   k.affine = affine;
   k.mls = affine && ORDER > 1;
-  k.p2g = PointsToNodes<DIM, ORDER, affine, NREAL, ALL>::p2g;
-  k.p2g_momentum = PointsToNodes<DIM, ORDER, affine, NREAL, MOMENTUM>::p2g;
-  k.p2g_force = PointsToNodes<DIM, ORDER, affine, NREAL, FORCE>::p2g;
+  k.p2g = PointsToNodes<DIM, ORDER, affine, NREAL, ALL, TOTAL>::p2g;
+  k.p2g_momentum = PointsToNodes<DIM, ORDER, affine, NREAL, MOMENTUM, false>::p2g;
+  k.p2g_force = PointsToNodes<DIM, ORDER, affine, NREAL, FORCE, TOTAL>::p2g;
   k.g2p = G2P::g2p;
-  k.g2p_gradient = G2P::g2p_gradient;
+  k.g2p_gradient = NodesToPoints<DIM, ORDER, TRANSFER, NREAL, false>::g2p_gradient;
   k.flush = tile_io<DIM, ORDER, NREAL, FLUSH>;
   k.load = tile_io<DIM, ORDER, NREAL, LOAD>;
   k.prefetch = tile_io<DIM, ORDER, NREAL, PREFETCH>;
   return k;
 }
 
-template <int DIM, int ORDER> TransferKernels choose(Transfer transfer, bool split)
+template <bool TOTAL, int DIM, int ORDER> TransferKernels choose(Transfer transfer, bool split)
 {
   switch (transfer) {
     case PIC:
-      return kernels<DIM, ORDER, PIC, 8>();
+      return kernels<DIM, ORDER, PIC, 8, TOTAL>();
     case FLIP:
-      return kernels<DIM, ORDER, FLIP, 8>();
+      return kernels<DIM, ORDER, FLIP, 8, TOTAL>();
     case APIC:
-      return split ? kernels<DIM, ORDER, APIC, 8>() : kernels<DIM, ORDER, APIC, 4>();
+      return split ? kernels<DIM, ORDER, APIC, 8, TOTAL>() : kernels<DIM, ORDER, APIC, 4, TOTAL>();
   }
   return TransferKernels();
 }
 
-template <int DIM> TransferKernels choose(Shape shape, Transfer transfer, bool split)
+template <bool TOTAL, int DIM>
+TransferKernels choose(Shape shape, Transfer transfer, bool split)
 {
   switch (shape) {
     case LINEAR:
-      return choose<DIM, 1>(transfer, split);
+      return choose<TOTAL, DIM, 1>(transfer, split);
     case QUADRATIC:
-      return choose<DIM, 2>(transfer, split);
+      return choose<TOTAL, DIM, 2>(transfer, split);
     case CUBIC:
-      return choose<DIM, 3>(transfer, split);
+      return choose<TOTAL, DIM, 3>(transfer, split);
   }
   return TransferKernels();
 }
 
+template <bool TOTAL>
 TransferKernels transfer(int dim, Shape shape, Transfer transfer, bool split)
 {
-  return dim == 3 ? choose<3>(shape, transfer, split) : choose<2>(shape, transfer, split);
+  return dim == 3 ? choose<TOTAL, 3>(shape, transfer, split) :
+                    choose<TOTAL, 2>(shape, transfer, split);
 }
 
 }    // namespace
 
 const MPMKernels *MPM_NS::MPM_CONCAT(mpm_kernels_, MPM_ISA)()
 {
-  static const MPMKernels table = {MPM_CONCAT(MPM_NAME_, MPM_ISA), transfer, solve_nodes};
+  static const MPMKernels table = {MPM_CONCAT(MPM_NAME_, MPM_ISA), transfer<false>,
+                                   transfer<true>, solve_nodes};
   return &table;
 }
 

@@ -80,6 +80,15 @@ template <int DIM, int ORDER> struct Stencil {
   }
 };
 
+/** Full matrix, column-major, times a vector. */
+template <int DIM> void matrix_times(const double *m, const double *a, double *b)
+{
+  for (int i = 0; i < DIM; i++) {
+    b[i] = 0.0;
+    for (int j = 0; j < DIM; j++) b[i] += m[DIM * j + i] * a[j];
+  }
+}
+
 /** Symmetric tensor (xx yy zz xy xz yz) times a vector. */
 template <int DIM> void stress_times(const double *s, const double *a, double *b)
 {
@@ -96,7 +105,7 @@ template <int DIM> void stress_times(const double *s, const double *a, double *b
 enum Parts { MOMENTUM = 1, FORCE = 2, ALL = 3 };
 
 /** Points to nodes; PARTS says what is transferred. */
-template <int DIM, int ORDER, Transfer TRANSFER, int NREAL, int PARTS>
+template <int DIM, int ORDER, Transfer TRANSFER, int NREAL, int PARTS, bool TOTAL>
 void p2g(const PointRows &points, const TransferStep &step, int first, int last, const int base[3],
          double *tile, int box[6])
 {
@@ -124,7 +133,11 @@ void p2g(const PointRows &points, const TransferStep &step, int first, int last,
       }
       if (PARTS & FORCE) {
         double internal[3];
-        stress_times<DIM>(points.tau + 6 * p, mls ? node.d : node.grad, internal);
+        const double *a = mls ? node.d : node.grad;
+        if (TOTAL)
+          matrix_times<DIM>(points.P + DIM * DIM * p, a, internal);
+        else
+          stress_times<DIM>(points.tau + 6 * p, a, internal);
         const double scale =
             -step.stress_scale * points.vol0[p] * (mls ? inv_moment * node.w : 1.0);
         for (int i = 0; i < DIM; i++) {
@@ -157,7 +170,7 @@ void velocity_gradient(const Stencil<DIM, ORDER> &stencil, const TransferStep &s
 }
 
 /** Nodes to points: velocity, position, affine matrix, velocity gradient. */
-template <int DIM, int ORDER, Transfer TRANSFER, int NREAL>
+template <int DIM, int ORDER, Transfer TRANSFER, int NREAL, bool TOTAL>
 int g2p(const PointRows &points, const TransferStep &step, int first, int last, const int base[3],
         const double *tile, double *L)
 {
@@ -179,12 +192,14 @@ int g2p(const PointRows &points, const TransferStep &step, int first, int last, 
     if (L)
       for (int i = 0; i < DIM * DIM; i++) L[DIM * DIM * (p - first) + i] = grad[i];
 
-    points.xnew[3 * p + 2] = points.x[3 * p + 2];
+    const double *from = TOTAL ? points.from : points.x;
+    points.xnew[3 * p + 2] = from[3 * p + 2];
     for (int i = 0; i < DIM; i++) {
       double &vp = points.v[3 * p + i];
       vp = TRANSFER == FLIP ? step.flip * (vp + v[i] - v_old[i]) + (1.0 - step.flip) * v[i] : v[i];
-      points.xnew[3 * p + i] = points.x[3 * p + i] + step.dt * v[i];
-      const double t = tile_position<ORDER>(points.xnew[3 * p + i], step, base, i);
+      const double xnew = from[3 * p + i] + step.dt * v[i];
+      points.xnew[3 * p + i] = xnew;
+      const double t = TOTAL ? xnew - xnew : tile_position<ORDER>(xnew, step, base, i);
       if (!(t >= 0.0 && t < block_side(DIM) + 2)) left = 1;    // also when t is not a number
     }
   }
@@ -263,16 +278,16 @@ void solve_nodes(double *nodes, int nnodes, int nreal, double dt)
   }
 }
 
-template <int DIM, int ORDER, Transfer TRANSFER, int NREAL> TransferKernels kernels()
+template <int DIM, int ORDER, Transfer TRANSFER, int NREAL, bool TOTAL> TransferKernels kernels()
 {
   TransferKernels k;
   k.nreal = NREAL;
   k.affine = TRANSFER == APIC;
   k.mls = k.affine && ORDER > 1;
-  k.p2g = p2g<DIM, ORDER, TRANSFER, NREAL, ALL>;
-  k.p2g_momentum = p2g<DIM, ORDER, TRANSFER, NREAL, MOMENTUM>;
-  k.p2g_force = p2g<DIM, ORDER, TRANSFER, NREAL, FORCE>;
-  k.g2p = g2p<DIM, ORDER, TRANSFER, NREAL>;
+  k.p2g = p2g<DIM, ORDER, TRANSFER, NREAL, ALL, TOTAL>;
+  k.p2g_momentum = p2g<DIM, ORDER, TRANSFER, NREAL, MOMENTUM, false>;
+  k.p2g_force = p2g<DIM, ORDER, TRANSFER, NREAL, FORCE, TOTAL>;
+  k.g2p = g2p<DIM, ORDER, TRANSFER, NREAL, TOTAL>;
   k.g2p_gradient = g2p_gradient<DIM, ORDER, TRANSFER, NREAL>;
   k.flush = flush<DIM, ORDER, NREAL>;
   k.load = load<DIM, ORDER, NREAL>;
@@ -281,41 +296,45 @@ template <int DIM, int ORDER, Transfer TRANSFER, int NREAL> TransferKernels kern
   return k;
 }
 
-template <int DIM, int ORDER> TransferKernels choose(Transfer transfer, bool split)
+template <bool TOTAL, int DIM, int ORDER> TransferKernels choose(Transfer transfer, bool split)
 {
   switch (transfer) {
     case PIC:
-      return kernels<DIM, ORDER, PIC, 8>();
+      return kernels<DIM, ORDER, PIC, 8, TOTAL>();
     case FLIP:
-      return kernels<DIM, ORDER, FLIP, 8>();
+      return kernels<DIM, ORDER, FLIP, 8, TOTAL>();
     case APIC:
-      return split ? kernels<DIM, ORDER, APIC, 8>() : kernels<DIM, ORDER, APIC, 4>();
+      return split ? kernels<DIM, ORDER, APIC, 8, TOTAL>() : kernels<DIM, ORDER, APIC, 4, TOTAL>();
   }
   return TransferKernels();
 }
 
-template <int DIM> TransferKernels choose(Shape shape, Transfer transfer, bool split)
+template <bool TOTAL, int DIM>
+TransferKernels choose(Shape shape, Transfer transfer, bool split)
 {
   switch (shape) {
     case LINEAR:
-      return choose<DIM, 1>(transfer, split);
+      return choose<TOTAL, DIM, 1>(transfer, split);
     case QUADRATIC:
-      return choose<DIM, 2>(transfer, split);
+      return choose<TOTAL, DIM, 2>(transfer, split);
     case CUBIC:
-      return choose<DIM, 3>(transfer, split);
+      return choose<TOTAL, DIM, 3>(transfer, split);
   }
   return TransferKernels();
 }
 
+template <bool TOTAL>
 TransferKernels transfer(int dim, Shape shape, Transfer transfer, bool split)
 {
-  return dim == 3 ? choose<3>(shape, transfer, split) : choose<2>(shape, transfer, split);
+  return dim == 3 ? choose<TOTAL, 3>(shape, transfer, split) :
+                    choose<TOTAL, 2>(shape, transfer, split);
 }
 
 }    // namespace
 
 const MPMKernels *MPM_NS::mpm_kernels_reference()
 {
-  static const MPMKernels table = {"reference", transfer, solve_nodes};
+  static const MPMKernels table = {"reference", transfer<false>,
+                                   transfer<true>, solve_nodes};
   return &table;
 }
