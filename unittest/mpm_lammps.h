@@ -6,7 +6,6 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-
 #ifndef MPM_LAMMPS_TEST_H
 #define MPM_LAMMPS_TEST_H
 
@@ -32,9 +31,13 @@
 #include "update.h"
 #include "variable.h"
 
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <cstring>
 #include <functional>
 #include <mpi.h>
 #include <stdexcept>
@@ -45,18 +48,95 @@ namespace MPM_TEST {
 
 using namespace LAMMPS_NS;
 
-class Run {
+inline int nranks(MPI_Comm comm = MPI_COMM_WORLD)
+{
+  int n;
+  MPI_Comm_size(comm, &n);
+  return n;
+}
+
+inline int rank(MPI_Comm comm = MPI_COMM_WORLD)
+{
+  int me;
+  MPI_Comm_rank(comm, &me);
+  return me;
+}
+
+/** The rows of all ranks, one rank after the other. */
+template <class T> std::vector<T> all_rows(const std::vector<T> &mine, MPI_Comm comm)
+{
+  int bytes = mine.size() * sizeof(T);
+  std::vector<int> counts(nranks(comm)), displs(counts.size(), 0);
+  MPI_Allgather(&bytes, 1, MPI_INT, counts.data(), 1, MPI_INT, comm);
+  for (std::size_t p = 1; p < counts.size(); p++) displs[p] = displs[p - 1] + counts[p - 1];
+  std::vector<T> all((displs.back() + counts.back()) / sizeof(T));
+  MPI_Allgatherv(mine.data(), bytes, MPI_BYTE, all.data(), counts.data(), displs.data(), MPI_BYTE,
+                 comm);
+  return all;
+}
+
+/** The same in order of their tags. */
+template <class T> std::vector<T> all_by_tag(const std::vector<T> &mine, MPI_Comm comm)
+{
+  auto all = all_rows(mine, comm);
+  std::sort(all.begin(), all.end(), [](const T &a, const T &b) {
+    return a.tag < b.tag;
+  });
+  return all;
+}
+
+/** A file that exists during a test at the most; all ranks wait when it is made and removed. Its
+ *  name has the source of the test and the number of ranks in front, since tests may run at the
+ *  same time. */
+struct ScratchFile {
+  const std::string name;
+
+  explicit ScratchFile(const std::string &base, MPI_Comm comm = MPI_COMM_WORLD) :
+      name(source() + ".np" + std::to_string(nranks()) + "." + base), comm(comm)
+  {
+  }
+  ScratchFile(const std::string &base, const std::string &text, MPI_Comm comm = MPI_COMM_WORLD) :
+      ScratchFile(base, comm)
+  {
+    if (rank(comm) == 0) {
+      FILE *fp = fopen(name.c_str(), "w");
+      fputs(text.c_str(), fp);
+      fclose(fp);
+    }
+    MPI_Barrier(comm);
+  }
+  ~ScratchFile()
+  {
+    MPI_Barrier(comm);
+    if (rank(comm) == 0) remove(name.c_str());
+    MPI_Barrier(comm);
+  }
+  ScratchFile(const ScratchFile &) = delete;
+  ScratchFile &operator=(const ScratchFile &) = delete;
+
+ private:
+  MPI_Comm comm;
+  static std::string source()
+  {
+    const std::string file = ::testing::UnitTest::GetInstance()->current_test_info()->file();
+    const auto start = file.rfind('/') + 1;    // 0 where there is none
+    return file.substr(start, file.rfind('.') - start);
+  }
+};
+
+/** A LAMMPS instance: what a test drives. (Not named Run, which is a member of ::testing::Test.) */
+class Scene {
  public:
   LAMMPS *lmp;
 
-  explicit Run(MPI_Comm comm = MPI_COMM_WORLD)
+  explicit Scene(MPI_Comm comm = MPI_COMM_WORLD)
   {
     const char *args[] = {"mpm_test", "-log", "none", "-screen", "none", "-nocite"};
     lmp = new LAMMPS(6, const_cast<char **>(args), comm);
   }
-  ~Run() { delete lmp; }
-  Run(const Run &) = delete;
-  Run &operator=(const Run &) = delete;
+  ~Scene() { delete lmp; }
+  Scene(const Scene &) = delete;
+  Scene &operator=(const Scene &) = delete;
 
   /** Execute lines of input; & at the end of a line continues it as in a script. */
   void commands(const std::string &text)
@@ -72,6 +152,17 @@ class Run {
       if (!line.empty()) lmp->input->one(line);
       line.clear();
     }
+  }
+
+  /** The message of the error that lines of input give on all ranks, or nothing. */
+  std::string error(const std::string &text)
+  {
+    try {
+      commands(text);
+    } catch (const std::exception &e) {
+      return e.what();
+    }
+    return "";
   }
 
   double *fix_vector(const std::string &id, int n)
@@ -114,18 +205,7 @@ class Run {
       s.vol = points->jacobian(i) * atom->vfrac[i];
       s.mass = atom->rmass[i];
     }
-    int nprocs;
-    MPI_Comm_size(lmp->world, &nprocs);
-    std::vector<int> counts(nprocs), displs(nprocs, 0);
-    const int reals = sizeof(State) / sizeof(double);
-    int n = mine.size() * reals;
-    MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, lmp->world);
-    for (int p = 1; p < nprocs; p++) displs[p] = displs[p - 1] + counts[p - 1];
-    std::vector<State> all((displs.back() + counts.back()) / reals);
-    MPI_Allgatherv(mine.data(), n, MPI_DOUBLE, all.data(), counts.data(), displs.data(),
-                   MPI_DOUBLE, lmp->world);
-    std::sort(all.begin(), all.end(), [](const State &a, const State &b) { return a.tag < b.tag; });
-    return all;
+    return all_by_tag(mine, lmp->world);
   }
 
   // what follows is for one rank
@@ -142,7 +222,7 @@ class Run {
         ->set_callback(
             [](void *self, bigint, int n, tagint *, double **, double **force) {
               if (n) std::fill(force[0], force[0] + 3 * n, 0.0);
-              static_cast<Run *>(self)->callback(force);
+              static_cast<Scene *>(self)->callback(force);
             },
             this);
   }
@@ -258,9 +338,6 @@ class Run {
   std::function<void(double **)> callback;
 };
 
-/** Name for use inside tests, where ::testing::Test has a member Run. */
-using Scene = Run;
-
 /** Text with the arguments of printf in it. */
 template <class... Args> std::string strprintf(const char *text, Args... args)
 {
@@ -272,7 +349,7 @@ template <class... Args> std::string strprintf(const char *text, Args... args)
 /** Scene with its words in capitals, MPM_<name>, replaced. */
 inline std::string replaced(std::string scene, const std::string &word, const std::string &text)
 {
-  for (std::size_t at; (at = scene.find(word)) != std::string::npos;)
+  for (std::size_t at = 0; (at = scene.find(word, at)) != std::string::npos; at += text.size())
     scene.replace(at, word.size(), text);
   return scene;
 }
@@ -286,10 +363,10 @@ inline double measured(const std::string &what, double value)
 }
 
 /** Largest difference of two sets of states, each quantity relative to its largest magnitude. */
-inline double difference(const std::vector<Run::State> &a, const std::vector<Run::State> &b)
+inline double difference(const std::vector<Scene::State> &a, const std::vector<Scene::State> &b)
 {
   if (a.size() != b.size() || a.empty()) return 1.0e300;
-  const int reals = sizeof(Run::State) / sizeof(double);
+  const int reals = sizeof(Scene::State) / sizeof(double);
   const int first[] = {0, 1, 2, 5, 8, 17, 23, 24}, last[] = {1, 2, 5, 8, 17, 23, 24, reals};
   double worst = 0.0;
   for (int g = 0; g < 8; g++) {
@@ -305,6 +382,68 @@ inline double difference(const std::vector<Run::State> &a, const std::vector<Run
     worst = std::max(worst, diff / scale);
   }
   return worst;
+}
+
+/** The same to the last bit. */
+inline bool identical(const std::vector<Scene::State> &a, const std::vector<Scene::State> &b)
+{
+  return a.size() == b.size() && !memcmp(a.data(), b.data(), a.size() * sizeof(Scene::State));
+}
+
+/** A scene on one rank, and the same on all of them, there with a layout of the ranks. */
+struct OnRanks {
+  Scene serial{MPI_COMM_SELF}, parallel;
+
+  OnRanks(const std::string &scene, const std::string &run, const std::string &layout = "")
+  {
+    serial.commands(scene + run);
+    // the number of ranks along axes must be given before there is a box
+    if (layout.find("processors") == 0)
+      parallel.commands(layout + scene + run);
+    else
+      parallel.commands(scene + layout + run);
+  }
+  double difference() { return MPM_TEST::difference(serial.gather(), parallel.gather()); }
+};
+
+/** A scene that writes a restart file on its way, and one that goes on from this file. */
+struct Continued {
+  Scene whole, again;
+
+  /** scene ... run before, write_restart, run after; and read_restart, next ..., run after */
+  Continued(const std::string &scene, int before, const std::string &next, int after)
+  {
+    const ScratchFile file("restart");
+    const std::string last = "run " + std::to_string(after) + "\n";
+    whole.commands(scene + "run " + std::to_string(before) + "\nwrite_restart " + file.name + "\n" +
+                   last);
+    again.commands("read_restart " + file.name + "\n" + next + last);
+  }
+};
+
+/** The message of the error that an input gives, or nothing. */
+inline std::string error_of(const std::string &input)
+{
+  Scene scene;
+  return scene.error(input);
+}
+
+/** Mistakes in the input, each with words of its message. */
+struct Mistake {
+  std::string lines, message;
+};
+
+/** Each of these lines is refused after a scene that is fine, each in an instance of its own. */
+inline void expect_refused(const std::string &scene, const std::vector<Mistake> &mistakes,
+                           const std::string &run = "")
+{
+  for (const auto &mistake : mistakes) {
+    Scene instance;
+    instance.commands(scene);
+    const auto found = instance.error(mistake.lines + "\n" + run);
+    EXPECT_THAT(found, ::testing::HasSubstr(mistake.message)) << mistake.lines;
+    EXPECT_NE(found, "") << mistake.lines;
+  }
 }
 
 }    // namespace MPM_TEST

@@ -13,72 +13,17 @@
 // Atom style mpm (what a point carries, and that it survives whatever LAMMPS does to atoms)
 // and the command create_points.
 
-#include "atom.h"
+#include "mpm_lammps.h"
+
 #include "atom_vec.h"
-#include "comm.h"
-#include "compute.h"
-#include "domain.h"
-#include "exceptions.h"
-#include "input.h"
-#include "lammps.h"
-#include "modify.h"
-#include "mpm_points.h"
-#include "variable.h"
 
-#include "gmock/gmock.h"
-#include "gtest/gtest.h"
-
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <mpi.h>
 #include <set>
-#include <sstream>
-#include <string>
-#include <vector>
 
-using namespace LAMMPS_NS;
+using namespace MPM_TEST;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-
-static int nranks(MPI_Comm comm = MPI_COMM_WORLD)
-{
-  int n;
-  MPI_Comm_size(comm, &n);
-  return n;
-}
-
-static int my_rank()
-{
-  int me;
-  MPI_Comm_rank(MPI_COMM_WORLD, &me);
-  return me;
-}
-
-// name of a scratch file of this test program with this number of ranks
-
-static std::string scratch(const std::string &suffix)
-{
-  return "test_atom_style." + std::to_string(nranks()) + "." + suffix;
-}
-
-static void remove_scratch(const std::string &suffix)
-{
-  MPI_Barrier(MPI_COMM_WORLD);
-  if (my_rank() == 0) remove(scratch(suffix).c_str());
-  MPI_Barrier(MPI_COMM_WORLD);
-}
-
-static void write_scratch(const std::string &suffix, const std::string &text)
-{
-  if (my_rank() == 0) {
-    FILE *fp = fopen(scratch(suffix).c_str(), "w");
-    fputs(text.c_str(), fp);
-    fclose(fp);
-  }
-  MPI_Barrier(MPI_COMM_WORLD);
-}
 
 // everything an atom carries, bit by bit
 
@@ -94,87 +39,40 @@ struct Point {
 };
 static_assert(sizeof(Point) == Point::REALS * sizeof(double), "");
 
-// a LAMMPS instance on some ranks
-
-class Scene {
- public:
-  LAMMPS *lmp;
-
-  explicit Scene(MPI_Comm comm = MPI_COMM_WORLD)
-  {
-    const char *args[] = {"test_atom_style", "-log", "none", "-screen", "none", "-nocite"};
-    lmp = new LAMMPS(6, const_cast<char **>(args), comm);
+/** All atoms of all ranks in order of their IDs. */
+static std::vector<Point> atoms(Scene &scene)
+{
+  auto *atom = scene.lmp->atom;
+  std::vector<Point> mine(atom->nlocal);
+  for (int i = 0; i < atom->nlocal; i++) {
+    Point &p = mine[i];
+    p.tag = atom->tag[i];
+    p.type = atom->type[i];
+    p.mask = atom->mask[i];
+    p.mass = atom->rmass[i];
+    p.volume0 = atom->vfrac[i];
+    p.volume = p.volume0 * scene.points().jacobian(i);
+    p.radius = atom->radius_flag ? atom->radius[i] : 0.0;
+    std::copy_n(atom->x[i], 3, p.x);
+    std::copy_n(atom->v[i], 3, p.v);
+    std::copy_n(scene.points().F[i], 9, p.F);
+    std::copy_n(scene.points().tau[i], 6, p.stress);
   }
-  ~Scene() { delete lmp; }
-  Scene(const Scene &) = delete;
-  Scene &operator=(const Scene &) = delete;
+  return all_by_tag(mine, scene.lmp->world);
+}
 
-  void commands(const std::string &lines)
-  {
-    std::istringstream input(lines);
-    for (std::string line; std::getline(input, line);) lmp->input->one(line);
+/** Odd values, a function of the ID, in all that atom style mpm owns. */
+static void fill(Scene &scene)
+{
+  auto *atom = scene.lmp->atom;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double s = 1.0 / (3.0 + atom->tag[i]);
+    atom->rmass[i] = 1.0 + s;
+    atom->vfrac[i] = 2.0 + s * s;
+    for (int c = 0; c < 9; c++) scene.points().F[i][c] = (c % 4 == 0) + s * (c + 1) / 7.0;
+    for (int c = 0; c < 6; c++) scene.points().tau[i][c] = -1.0e9 * s * (c + 1);
   }
-  double evaluate(const std::string &formula)
-  {
-    return lmp->input->variable->compute_equal(formula);
-  }
-
-  Atom *atom() { return lmp->atom; }
-  MPMPoints *points() { return MPMPoints::get(lmp->atom); }
-
-  /** All atoms of all ranks in order of their IDs; unwrap: positions without periodic wrapping. */
-  std::vector<Point> atoms()
-  {
-    std::vector<Point> mine(atom()->nlocal);
-    for (int i = 0; i < atom()->nlocal; i++) {
-      Point &p = mine[i];
-      p.tag = atom()->tag[i];
-      p.type = atom()->type[i];
-      p.mask = atom()->mask[i];
-      p.mass = atom()->rmass[i];
-      p.volume0 = atom()->vfrac[i];
-      p.volume = p.volume0 * points()->jacobian(i);
-      p.radius = atom()->radius_flag ? atom()->radius[i] : 0.0;
-      std::copy_n(atom()->x[i], 3, p.x);
-      std::copy_n(atom()->v[i], 3, p.v);
-      std::copy_n(points()->F[i], 9, p.F);
-      std::copy_n(points()->tau[i], 6, p.stress);
-    }
-    const int n = nranks(lmp->world);
-    int reals = mine.size() * Point::REALS;
-    std::vector<int> counts(n), displs(n, 0);
-    MPI_Allgather(&reals, 1, MPI_INT, counts.data(), 1, MPI_INT, lmp->world);
-    for (int p = 1; p < n; p++) displs[p] = displs[p - 1] + counts[p - 1];
-    std::vector<Point> all((displs.back() + counts.back()) / Point::REALS);
-    MPI_Allgatherv(mine.data(), reals, MPI_DOUBLE, all.data(), counts.data(), displs.data(),
-                   MPI_DOUBLE, lmp->world);
-    std::sort(all.begin(), all.end(),
-              [](const Point &a, const Point &b) { return a.tag < b.tag; });
-    return all;
-  }
-
-  /** Odd values, a function of the ID, in all that atom style mpm owns. */
-  void fill()
-  {
-    for (int i = 0; i < atom()->nlocal; i++) {
-      const double s = 1.0 / (3.0 + atom()->tag[i]);
-      atom()->rmass[i] = 1.0 + s;
-      atom()->vfrac[i] = 2.0 + s * s;
-      for (int c = 0; c < 9; c++) points()->F[i][c] = (c % 4 == 0) + s * (c + 1) / 7.0;
-      for (int c = 0; c < 6; c++) points()->tau[i][c] = -1.0e9 * s * (c + 1);
-    }
-  }
-
-  std::string error(const std::string &lines)
-  {
-    try {
-      commands(lines);
-    } catch (LAMMPSException &e) {
-      return e.what();
-    }
-    return "no error";
-  }
-};
+}
 
 static double total_volume(const std::vector<Point> &points)
 {
@@ -211,9 +109,9 @@ TEST(CreatePoints, BlockOfCells)
   Scene scene;
   scene.commands(box3d);
   scene.commands("region r block 0.2 0.8 0.2 0.5 0 0.1\ncreate_points 2 region r ppc 2");
-  auto points = scene.atoms();
+  auto points = atoms(scene);
   ASSERT_EQ(points.size(), 12 * 6 * 2);
-  EXPECT_EQ(scene.atom()->natoms, 144);
+  EXPECT_EQ(scene.lmp->atom->natoms, 144);
   EXPECT_NEAR(total_volume(points), 0.6 * 0.3 * 0.1, 1.0e-15);
   for (std::size_t k = 0; k < points.size(); k++) {
     const auto &p = points[k];
@@ -240,7 +138,7 @@ TEST(CreatePoints, PointsPerCell)
   Scene scene;
   scene.commands(box3d);
   scene.commands("create_points 1 box ppc 1 2 3");
-  auto points = scene.atoms();
+  auto points = atoms(scene);
   ASSERT_EQ(points.size(), 10 * 20 * 30);
   EXPECT_NEAR(total_volume(points), 1.0, 1.0e-12);
   EXPECT_NEAR(points[0].x[0], 0.05, 1.0e-15);
@@ -250,7 +148,7 @@ TEST(CreatePoints, PointsPerCell)
   Scene implied;
   implied.commands(box3d);
   implied.commands("create_points 1 box");
-  EXPECT_EQ(implied.atoms().size(), 8000u);    // 2 along each axis
+  EXPECT_EQ(atoms(implied).size(), 8000u);    // 2 along each axis
 }
 
 TEST(CreatePoints, ExplicitSpacing)
@@ -259,7 +157,7 @@ TEST(CreatePoints, ExplicitSpacing)
   scene.commands(box3d);
   scene.commands("unfix grid\nregion r block 0.25 0.75 0.2 0.7 0.25 0.75\n"
                  "create_points 1 region r spacing 0.05 0.1 0.25");
-  auto points = scene.atoms();
+  auto points = atoms(scene);
   ASSERT_EQ(points.size(), 10 * 5 * 2);
   for (const auto &p : points) EXPECT_DOUBLE_EQ(p.volume0, 0.05 * 0.1 * 0.25);
 
@@ -268,7 +166,7 @@ TEST(CreatePoints, ExplicitSpacing)
   shifted.commands(box3d);
   shifted.commands("unfix grid\nfix grid all mpm 0.1 origin 0.03 0 0\n"
                    "region r block 0.2 0.8 0.2 0.3 0.2 0.3\ncreate_points 1 region r spacing 0.1");
-  points = shifted.atoms();
+  points = atoms(shifted);
   ASSERT_EQ(points.size(), 6u);
   EXPECT_NEAR(points[0].x[0], 0.28, 1.0e-15);
 }
@@ -281,13 +179,13 @@ TEST(CreatePoints, WhichLattice)
   EXPECT_THAT(scene.error("create_points 1 region r ppc 1"),
               HasSubstr("Fixes mpm grid and fine have different lattices"));
   scene.commands("create_points 1 region r ppc 1 fix fine");
-  EXPECT_EQ(scene.atoms().size(), 8u);
+  EXPECT_EQ(atoms(scene).size(), 8u);
 
   Scene same;
   same.commands(box3d);
   same.commands("fix second all mpm 0.1\nregion r block 0.2 0.3 0.2 0.3 0.2 0.3\n"
                 "create_points 1 region r ppc 1");
-  EXPECT_EQ(same.atoms().size(), 1u);
+  EXPECT_EQ(atoms(same).size(), 1u);
 }
 
 // numbers of points and error of the area from benchmark L1: +3.45 %, +0.97 %, +0.34 %
@@ -300,8 +198,9 @@ TEST(CreatePoints, Disk2d)
     Scene scene;
     scene.commands(box2d);
     scene.commands(fmt::format("fix grid all mpm {}\nregion r cylinder z 0.5 0.5 0.2 INF INF\n"
-                               "create_points 1 region r ppc 2", h[k]));
-    auto points = scene.atoms();
+                               "create_points 1 region r ppc 2",
+                               h[k]));
+    auto points = atoms(scene);
     EXPECT_EQ(points.size(), count[k]);
     EXPECT_NEAR(total_volume(points) / (M_PI * 0.04) - 1.0, excess[k], 1.0e-4);
     double centroid[2] = {0.0, 0.0};
@@ -318,7 +217,7 @@ TEST(CreatePoints, Disk2d)
   scene.commands(box2d);
   scene.commands("fix grid all mpm 0.1\nregion r block 0 1 0 0.5 INF INF\n"
                  "create_points 1 region r ppc 3 2");
-  EXPECT_EQ(scene.atoms().size(), 30 * 10);
+  EXPECT_EQ(atoms(scene).size(), 30 * 10);
 }
 
 // error of the volume is of first order in h or better: at most one half of a layer of points
@@ -332,7 +231,8 @@ TEST(CreatePoints, CurvedBodies)
       {"region r sphere 0.5 0.5 0.5 0.4", 4.0 / 3.0 * M_PI * 0.064, 4.0 * M_PI * 0.16},
       {"region r cylinder x 0.51 0.48 0.31 0.1 0.9", M_PI * 0.31 * 0.31 * 0.8, 2.0 * M_PI * 0.31},
       {"region b block 0.1 0.9 0.1 0.9 0.1 0.9\nregion c cylinder z 0.9 0.9 0.5 INF INF side out\n"
-       "region r intersect 2 b c", 0.512 - M_PI * 0.25 * 0.25 * 0.8, 4.0},
+       "region r intersect 2 b c",
+       0.512 - M_PI * 0.25 * 0.25 * 0.8, 4.0},
   };
   for (const auto &body : bodies)
     for (double h : {0.1, 0.05, 0.025}) {
@@ -341,7 +241,7 @@ TEST(CreatePoints, CurvedBodies)
       scene.commands("unfix grid\nfix grid all mpm " + std::to_string(h) + "\n" + body.region +
                      "\ncreate_points 1 region r ppc 2");
       double mine = 0.0, volume = 0.0;
-      for (int i = 0; i < scene.atom()->nlocal; i++) mine += scene.atom()->vfrac[i];
+      for (int i = 0; i < scene.lmp->atom->nlocal; i++) mine += scene.lmp->atom->vfrac[i];
       MPI_Allreduce(&mine, &volume, 1, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
       EXPECT_NEAR(volume, body.volume, body.surface * h * h) << body.region;
     }
@@ -352,14 +252,15 @@ TEST(CreatePoints, ReportsWhatItMade)
   Scene scene;
   scene.commands(box2d);
   scene.commands("fix grid all mpm 0.05\nregion r cylinder z 0.5 0.5 0.2 INF INF");
-  if (my_rank() == 0) scene.lmp->logfile = fopen(scratch("log").c_str(), "w");
+  const ScratchFile log("log");
+  if (rank() == 0) scene.lmp->logfile = fopen(log.name.c_str(), "w");
   scene.commands("create_points 2 region r ppc 2");
-  if (my_rank() == 0) {
+  if (rank() == 0) {
     fclose(scene.lmp->logfile);
     scene.lmp->logfile = nullptr;
     std::string text;
     char line[256];
-    FILE *fp = fopen(scratch("log").c_str(), "r");
+    FILE *fp = fopen(log.name.c_str(), "r");
     while (fgets(line, 256, fp)) text += line;
     fclose(fp);
     EXPECT_THAT(text, HasSubstr("Created 208 material points of type 2\n"));
@@ -367,7 +268,6 @@ TEST(CreatePoints, ReportsWhatItMade)
     EXPECT_THAT(text, HasSubstr("volume = 0.000625 per point, 0.13 in total (per unit thickness)"));
     EXPECT_THAT(text, HasSubstr("create_points CPU = "));
   }
-  remove_scratch("log");
 }
 
 // ---------------------------------------------------------------- the same on any number of ranks
@@ -387,26 +287,26 @@ TEST(CreatePoints, AnyNumberOfRanks)
   serial.commands(box3d);
   serial.commands("unfix grid\nfix grid all mpm 0.02");
   serial.commands(far_spheres);
-  const auto expected = serial.atoms();
+  const auto expected = atoms(serial);
   EXPECT_NEAR(expected.size(), 4.0 / 3.0 * M_PI * (1.0e-3 + 3.43e-4) / 8.0e-6 * 27.0, 300);
 
-  for (const char *layout : {"", "processors 1 1 *", "processors 1 * 1", "processors * 1 1",
-                             "comm_style tiled"}) {
+  for (const char *layout :
+       {"", "processors 1 1 *", "processors 1 * 1", "processors * 1 1", "comm_style tiled"}) {
     Scene parallel;
     parallel.commands(layout);
     parallel.commands(box3d);
     parallel.commands("unfix grid\nfix grid all mpm 0.02");
     parallel.commands(far_spheres);
-    const auto points = parallel.atoms();
+    const auto points = atoms(parallel);
     ASSERT_EQ(points.size(), expected.size()) << layout;
     EXPECT_TRUE(points == expected) << layout;
 
     // every rank has what is in its part of the box, bounds included once
     const auto *domain = parallel.lmp->domain;
-    for (int i = 0; i < parallel.atom()->nlocal; i++)
+    for (int i = 0; i < parallel.lmp->atom->nlocal; i++)
       for (int d = 0; d < 3; d++) {
-        EXPECT_GE(parallel.atom()->x[i][d], domain->sublo[d]);
-        EXPECT_LT(parallel.atom()->x[i][d], domain->subhi[d]);
+        EXPECT_GE(parallel.lmp->atom->x[i][d], domain->sublo[d]);
+        EXPECT_LT(parallel.lmp->atom->x[i][d], domain->subhi[d]);
       }
   }
 }
@@ -422,7 +322,7 @@ TEST(CreatePoints, BalancedBox)
     scene.commands("region r block 0.1 1 0.2 1 0 1");
     scene.commands("unfix grid\n" + balance + "\nfix grid all mpm 0.1");
     scene.commands("create_points 2 region r ppc 2");
-    return scene.atoms();
+    return atoms(scene);
   };
   Scene serial(MPI_COMM_SELF), rcb, shift;
   const auto expected = build(serial, "");
@@ -442,7 +342,7 @@ TEST(CreatePoints, SitesOnFaces)
                    "\nregion box block 0 1 0 1 0 1\ncreate_box 1 box\n"
                    "fix grid all mpm 0.125 origin 0.0625 -0.0625 0.0625\n"
                    "create_points 1 box ppc 1\nunfix grid");
-    auto points = scene.atoms();
+    auto points = atoms(scene);
     ASSERT_EQ(points.size(), 512u) << boundary;
     EXPECT_EQ(total_volume(points), 1.0);
     std::set<std::array<double, 3>> places;
@@ -453,7 +353,7 @@ TEST(CreatePoints, SitesOnFaces)
 
     // nothing is lost when LAMMPS sends atoms to their ranks
     scene.commands("set type 1 mass 1.0\nfix n all nve\nrun 2");
-    EXPECT_EQ(scene.atoms().size(), 512u);
+    EXPECT_EQ(atoms(scene).size(), 512u);
   }
 
   // the upper faces of a fixed box are outside
@@ -474,8 +374,9 @@ TEST(CreatePoints, PeriodicFaceRounding)
     scene.commands("units si\natom_style mpm\nregion box block 0 1.3 0 0.7 0 0.1\n"
                    "create_box 1 box");
     scene.commands(fmt::format("fix grid all mpm 0.1 origin {0:.17g} {0:.17g} {0:.17g}\n"
-                               "create_points 1 box ppc 1", origin));
-    auto points = scene.atoms();
+                               "create_points 1 box ppc 1",
+                               origin));
+    auto points = atoms(scene);
     EXPECT_EQ(points.size(), 13u * 7u) << origin;
     for (std::size_t i = 0; i < points.size(); i++) {
       for (int d = 0; d < 3; d++) {
@@ -498,8 +399,9 @@ TEST(CreatePoints, PeriodicFaceRounding)
     fixed.commands("units si\nboundary f f f\natom_style mpm\n"
                    "region box block 0 1.3 0 0.7 0 0.1\ncreate_box 1 box");
     fixed.commands(fmt::format("fix grid all mpm 0.1 origin {0:.17g} {0:.17g} {0:.17g}\n"
-                               "create_points 1 box ppc 1", origin));
-    points = fixed.atoms();
+                               "create_points 1 box ppc 1",
+                               origin));
+    points = atoms(fixed);
     std::size_t expected = 1;
     for (int d = 0; d < 3; d++) {
       const double length = fixed.lmp->domain->boxhi[d];
@@ -519,7 +421,7 @@ TEST(CreatePoints, PeriodicFaceRounding)
   scene.commands("units si\natom_style mpm\nregion box block 0 1.0000005 0 1.0000005 0 1.0000005\n"
                  "create_box 1 box\nfix grid all mpm 0.10000005 origin 0.05 0.05 0.05\n"
                  "create_points 1 box spacing 0.1");
-  EXPECT_EQ(scene.atoms().size(), 1000u);
+  EXPECT_EQ(atoms(scene).size(), 1000u);
 }
 
 // ---------------------------------------------------------------- jitter
@@ -529,7 +431,7 @@ static std::vector<Point> jittered(const std::string &options, MPI_Comm comm = M
   Scene scene(comm);
   scene.commands(box3d);
   scene.commands("create_points 1 box ppc 2 " + options);
-  return scene.atoms();
+  return atoms(scene);
 }
 
 TEST(CreatePoints, Jitter)
@@ -577,7 +479,7 @@ TEST(CreatePoints, JitterStaysInBox)
   scene.commands(box3d);
   scene.commands("unfix grid\nfix grid all mpm 0.1 origin 0.045 0.05 -0.03\n"
                  "create_points 1 box ppc 1 jitter 0.5 3");
-  auto points = scene.atoms();
+  auto points = atoms(scene);
   EXPECT_EQ(points.size(), 1000u);
   for (const auto &p : points)
     for (double x : p.x) EXPECT_TRUE(x >= 0.0 && x < 1.0) << x;
@@ -592,7 +494,7 @@ TEST(CreatePoints, AbuttingRegions)
   scene.commands("region a block 0.1 0.5 0.1 0.6 0.1 0.4\nregion b block 0.5 0.9 0.1 0.6 0.1 0.4\n"
                  "region ab block 0.1 0.9 0.1 0.6 0.1 0.4\n"
                  "create_points 1 region a jitter 0.5 1\ncreate_points 2 region b jitter 0.5 1");
-  auto two = scene.atoms();
+  auto two = atoms(scene);
   EXPECT_EQ(two.size(), 16u * 10 * 6);
 
   // the same points as of one body
@@ -602,7 +504,7 @@ TEST(CreatePoints, AbuttingRegions)
                  "create_points 1 region ab jitter 0.5 1");
   std::set<std::array<double, 3>> places, one;
   for (const auto &p : two) places.insert({p.x[0], p.x[1], p.x[2]});
-  for (const auto &p : whole.atoms()) one.insert({p.x[0], p.x[1], p.x[2]});
+  for (const auto &p : atoms(whole)) one.insert({p.x[0], p.x[1], p.x[2]});
   EXPECT_TRUE(places == one);
 }
 
@@ -615,7 +517,7 @@ TEST(CreatePoints, Overlap)
   EXPECT_THAT(scene.error("create_points 2 region b ppc 2"),
               AllOf(HasSubstr("16 existing material points are (the first has ID 7)"),
                     HasSubstr("overlap yes")));
-  EXPECT_EQ(scene.atoms().size(), 40u);
+  EXPECT_EQ(atoms(scene).size(), 40u);
 
   // a face through the sites belongs to both regions
   scene.commands("region c block 0.475 0.6 0 0.1 0 0.1");
@@ -626,7 +528,7 @@ TEST(CreatePoints, Overlap)
   EXPECT_THAT(scene.error("create_points 2 region b ppc 1"), HasSubstr("16 existing"));
 
   scene.commands("create_points 2 region b ppc 2 overlap yes");
-  EXPECT_EQ(scene.atoms().size(), 80u);
+  EXPECT_EQ(atoms(scene).size(), 80u);
 }
 
 TEST(CreatePoints, OverlapAcrossPeriodicFaceAndRanks)
@@ -642,11 +544,11 @@ TEST(CreatePoints, OverlapAcrossPeriodicFaceAndRanks)
   }
 
   // atoms that are no material points are not in the way
-  Scene atoms;
-  atoms.commands(box3d);
-  atoms.commands("create_atoms 1 single 0.525 0.525 0.525 units box\ncreate_points 2 box");
-  EXPECT_EQ(atoms.atoms().size(), 8001u);
-  EXPECT_EQ(atoms.atoms()[0].volume0, 0.0);
+  Scene mixed;
+  mixed.commands(box3d);
+  mixed.commands("create_atoms 1 single 0.525 0.525 0.525 units box\ncreate_points 2 box");
+  EXPECT_EQ(atoms(mixed).size(), 8001u);
+  EXPECT_EQ(atoms(mixed)[0].volume0, 0.0);
 }
 
 TEST(CreatePoints, OutsideTheBox)
@@ -662,18 +564,18 @@ TEST(CreatePoints, OutsideTheBox)
   EXPECT_THAT(scene.error("create_points 1 region far ppc 1"), HasSubstr("would be outside"));
   EXPECT_THAT(scene.error("create_points 1 region huge ppc 1"),
               HasSubstr("an unknown number of points would be outside"));
-  EXPECT_EQ(scene.atoms().size(), 0u);
+  EXPECT_EQ(atoms(scene).size(), 0u);
 
   scene.commands("create_points 1 region r ppc 2 outside ignore");
-  EXPECT_EQ(scene.atoms().size(), 40u);
+  EXPECT_EQ(atoms(scene).size(), 40u);
   EXPECT_THAT(scene.error("create_points 1 region far ppc 1 outside ignore"),
               HasSubstr("made no points"));
 
   // INF is no mistake, nor is a region that is too large by less than half a spacing
   scene.commands("create_points 1 region in ppc 1");
-  EXPECT_EQ(scene.atoms().size(), 50u);
+  EXPECT_EQ(atoms(scene).size(), 50u);
   scene.commands("create_points 1 region near ppc 1");
-  EXPECT_EQ(scene.atoms().size(), 60u);
+  EXPECT_EQ(atoms(scene).size(), 60u);
 }
 
 // ---------------------------------------------------------------- bad input
@@ -728,12 +630,12 @@ TEST(CreatePoints, BadInput)
   for (const auto &input : inputs) {
     const auto message = scene.error(input.line);
     EXPECT_THAT(message, AllOf(HasSubstr("ERROR"), HasSubstr(input.message))) << input.line;
-    EXPECT_EQ(scene.atom()->natoms, 0) << input.line;
+    EXPECT_EQ(scene.lmp->atom->natoms, 0) << input.line;
   }
 
   // and the instance is still usable
   scene.commands("create_points 1 region r");
-  EXPECT_EQ(scene.atoms().size(), 8u);
+  EXPECT_EQ(atoms(scene).size(), 8u);
 }
 
 TEST(CreatePoints, BadSetting)
@@ -791,9 +693,9 @@ TEST(AtomStyle, NewAtoms)
   Scene scene;
   scene.commands("units lj\natom_style mpm\nlattice sc 1.0\nregion box block 0 3 0 3 0 3\n"
                  "create_box 2 box\ncreate_atoms 1 box\nvelocity all create 1.0 87287 loop geom");
-  auto atoms = scene.atoms();
-  ASSERT_EQ(atoms.size(), 27u);
-  for (const auto &p : atoms) {
+  auto made = atoms(scene);
+  ASSERT_EQ(made.size(), 27u);
+  for (const auto &p : made) {
     EXPECT_EQ(p.mass, 1.0);
     EXPECT_EQ(p.volume0, 0.0);
     EXPECT_EQ(p.volume, 0.0);
@@ -804,7 +706,7 @@ TEST(AtomStyle, NewAtoms)
   // atoms become material points when they are given a volume
   scene.commands("region left block 0 1.5 0 3 0 3 units box\ngroup left region left\n"
                  "set group left type 2\nset type 2 volume 0.25\nset type 2 mass 3.0");
-  for (const auto &p : scene.atoms()) {
+  for (const auto &p : atoms(scene)) {
     EXPECT_EQ(p.volume0, p.x[0] < 1.5 ? 0.25 : 0.0);
     EXPECT_EQ(p.mass, p.x[0] < 1.5 ? 3.0 : 1.0);
   }
@@ -817,9 +719,9 @@ TEST(AtomStyle, MemoryPerPoint)
   scene.commands(moving);
 
   // LAMMPS's own 16 + 3*24, ours 2*8 + 72 + 48, and a pointer for each row of x, v, f, F, tau
-  EXPECT_LE(scene.atom()->avec->memory_usage() / scene.atom()->nmax, 224.0 + 40.0);
-  EXPECT_EQ(scene.atom()->avec->comm_x_only, 1);
-  EXPECT_EQ(scene.atom()->avec->comm_f_only, 1);
+  EXPECT_LE(scene.lmp->atom->avec->memory_usage() / scene.lmp->atom->nmax, 224.0 + 40.0);
+  EXPECT_EQ(scene.lmp->atom->avec->comm_x_only, 1);
+  EXPECT_EQ(scene.lmp->atom->avec->comm_f_only, 1);
 }
 
 // points fly through all ranks and are sorted again and again
@@ -828,18 +730,17 @@ TEST(AtomStyle, MigrationAndSorting)
 {
   for (const char *style : {"mpm", "hybrid sphere mpm"}) {
     Scene scene;
-    std::string lines = moving;
-    lines.replace(lines.find("atom_style mpm"), 14, std::string("atom_style ") + style);
+    const auto lines = replaced(moving, "atom_style mpm", std::string("atom_style ") + style);
     scene.commands(lines);
     scene.commands("velocity all create 20.0 4711 loop all\nset type 1 image 0 0 0");
-    scene.fill();
-    const auto before = scene.atoms();
+    fill(scene);
+    const auto before = atoms(scene);
     ASSERT_EQ(before.size(), 8u * 4 * 5);
 
     scene.commands("fix n all nve\ntimestep 0.01\nneighbor 0.2 bin\ncomm_modify cutoff 0.5\n"
                    "thermo 100");
     scene.commands("run 300");
-    const auto after = scene.atoms();
+    const auto after = atoms(scene);
     ASSERT_EQ(after.size(), before.size());
     int travelled = 0;
     for (std::size_t k = 0; k < after.size(); k++) {
@@ -860,31 +761,30 @@ TEST(AtomStyle, Restart)
 {
   for (const char *style : {"mpm", "hybrid sphere mpm", "hybrid atomic mpm"}) {
     Scene scene;
-    std::string lines = moving;
-    lines.replace(lines.find("atom_style mpm"), 14, std::string("atom_style ") + style);
+    const auto lines = replaced(moving, "atom_style mpm", std::string("atom_style ") + style);
     scene.commands("lattice none 1.0");
     scene.commands(lines);
-    if (scene.atom()->mass) scene.commands("mass * 1.0");
+    if (scene.lmp->atom->mass) scene.commands("mass * 1.0");
     scene.commands("create_atoms 2 single 3.3 3.3 3.3 units box\n"
                    "velocity all create 20.0 4711 loop all");
-    scene.fill();
-    const auto before = scene.atoms();
-    scene.commands("write_restart " + scratch("restart") + " noinit\nclear");
+    fill(scene);
+    const auto before = atoms(scene);
+    const ScratchFile file("restart");
+    scene.commands("write_restart " + file.name + " noinit\nclear");
 
     Scene again;
-    again.commands("read_restart " + scratch("restart"));
-    EXPECT_TRUE(again.atoms() == before) << style;
+    again.commands("read_restart " + file.name);
+    EXPECT_TRUE(atoms(again) == before) << style;
 
     // a serial run reads it as well
     Scene serial(MPI_COMM_SELF);
-    serial.commands("read_restart " + scratch("restart"));
-    EXPECT_TRUE(serial.atoms() == before) << style;
+    serial.commands("read_restart " + file.name);
+    EXPECT_TRUE(atoms(serial) == before) << style;
 
     // more points can be made
     again.commands("region s block 0 4 2 4 0 1\ncreate_points 1 region s spacing 0.5");
-    EXPECT_EQ(again.atoms().size(), before.size() + 8 * 4 * 2);
-    EXPECT_TRUE(again.atoms()[0] == before[0]);
-    remove_scratch("restart");
+    EXPECT_EQ(atoms(again).size(), before.size() + 8 * 4 * 2);
+    EXPECT_TRUE(atoms(again)[0] == before[0]);
   }
 }
 
@@ -892,10 +792,10 @@ TEST(AtomStyle, Replicate)
 {
   Scene scene;
   scene.commands(moving);
-  scene.fill();
-  const auto before = scene.atoms();
+  fill(scene);
+  const auto before = atoms(scene);
   scene.commands("replicate 2 1 3");
-  const auto after = scene.atoms();
+  const auto after = atoms(scene);
   ASSERT_EQ(after.size(), 6 * before.size());
   for (const auto &p : after) {
     const auto &q = before[((int) p.tag - 1) % before.size()];
@@ -909,18 +809,18 @@ TEST(AtomStyle, Replicate)
 
   // the new instance of Atom takes more points
   scene.commands("region s block 0 8 2 4 0 1\ncreate_points 2 region s spacing 0.5");
-  EXPECT_EQ(scene.atoms().size(), after.size() + 16 * 4 * 2);
+  EXPECT_EQ(atoms(scene).size(), after.size() + 16 * 4 * 2);
 }
 
 TEST(AtomStyle, DeleteAtoms)
 {
   Scene scene;
   scene.commands(moving);
-  scene.fill();
-  const auto before = scene.atoms();
+  fill(scene);
+  const auto before = atoms(scene);
   scene.commands("region cut sphere 2 1 1 0.9\ngroup cut region cut\n"
                  "delete_atoms group cut compress no");
-  const auto after = scene.atoms();
+  const auto after = atoms(scene);
   std::vector<Point> expected;
   for (const auto &p : before)
     if (std::hypot(p.x[0] - 2, std::hypot(p.x[1] - 1, p.x[2] - 1)) > 0.9) expected.push_back(p);
@@ -929,18 +829,18 @@ TEST(AtomStyle, DeleteAtoms)
 
   // new IDs follow the largest one
   scene.commands("create_points 2 region cut spacing 0.5");
-  EXPECT_EQ(scene.atoms().size(), before.size());
-  EXPECT_EQ(scene.atoms().back().tag, before.size() + before.size() - after.size());
+  EXPECT_EQ(atoms(scene).size(), before.size());
+  EXPECT_EQ(atoms(scene).back().tag, before.size() + before.size() - after.size());
 }
 
 TEST(AtomStyle, Clear)
 {
   Scene scene;
   scene.commands(moving);
-  scene.fill();
+  fill(scene);
   scene.commands("clear");
   scene.commands(moving);
-  const auto points = scene.atoms();
+  const auto points = atoms(scene);
   EXPECT_EQ(points.size(), 160u);
   for (const auto &p : points) {
     EXPECT_EQ(p.volume, 0.125);
@@ -966,26 +866,26 @@ TEST(AtomStyle, PropertyAtom)
   Scene scene;
   scene.commands("lattice none 1.0");
   scene.commands(moving);
-  scene.fill();
+  fill(scene);
   scene.commands("create_atoms 2 single 3.3 3.3 3.3 units box\n"
                  "compute p all property/atom mpm_volume0 mpm_volume mpm_J mpm_density mpm_F12 "
                  "mpm_F31 mpm_F33 mpm_stress11 mpm_stress22 mpm_stress33 mpm_stress12 "
                  "mpm_stress13 mpm_stress23 mpm_stress32\nfix n all nve\nrun 0");
   auto *compute = scene.lmp->modify->get_compute_by_id("p");
   compute->compute_peratom();
-  for (int i = 0; i < scene.atom()->nlocal; i++) {
+  for (int i = 0; i < scene.lmp->atom->nlocal; i++) {
     const double *a = compute->array_atom[i];
-    if (scene.atom()->type[i] == 2) {
+    if (scene.lmp->atom->type[i] == 2) {
       for (int c = 0; c < 14; c++) EXPECT_EQ(a[c], 0.0);
       continue;
     }
-    const double *F = scene.points()->F[i], *tau = scene.points()->tau[i];
-    EXPECT_EQ(a[0], scene.atom()->vfrac[i]);
+    const double *F = scene.points().F[i], *tau = scene.points().tau[i];
+    EXPECT_EQ(a[0], scene.lmp->atom->vfrac[i]);
     const double J = F[0] * F[4] * F[8] + F[1] * F[5] * F[6] + F[2] * F[3] * F[7] -
         F[2] * F[4] * F[6] - F[1] * F[3] * F[8] - F[0] * F[5] * F[7];
     EXPECT_NEAR(a[2], J, 1.0e-14);
-    EXPECT_DOUBLE_EQ(a[1], scene.atom()->vfrac[i] * a[2]);
-    EXPECT_DOUBLE_EQ(a[3], scene.atom()->rmass[i] / a[1]);
+    EXPECT_DOUBLE_EQ(a[1], scene.lmp->atom->vfrac[i] * a[2]);
+    EXPECT_DOUBLE_EQ(a[3], scene.lmp->atom->rmass[i] / a[1]);
     EXPECT_EQ(a[4], F[1]);
     EXPECT_EQ(a[5], F[6]);
     EXPECT_EQ(a[6], F[8]);
@@ -1015,16 +915,17 @@ static void expect_close(double value, double expected)
 
 static void round_trip(Scene &scene)
 {
-  const auto before = scene.atoms();
-  scene.commands("write_data " + scratch("data") + " noinit\n");
+  const auto before = atoms(scene);
+  const ScratchFile file("data");
+  scene.commands("write_data " + file.name + " noinit\n");
   Scene again;
   again.commands("units si");
   again.commands(std::string("atom_style ") +
-                 (scene.atom()->radius_flag ? "hybrid sphere mpm" :
-                  scene.atom()->mass        ? "hybrid atomic mpm" :
-                                              "mpm"));
-  again.commands("read_data " + scratch("data"));
-  const auto after = again.atoms();
+                 (scene.lmp->atom->radius_flag ? "hybrid sphere mpm"
+                      : scene.lmp->atom->mass  ? "hybrid atomic mpm"
+                                               : "mpm"));
+  again.commands("read_data " + file.name);
+  const auto after = atoms(again);
   ASSERT_EQ(after.size(), before.size());
   for (std::size_t k = 0; k < after.size(); k++) {
     EXPECT_EQ(after[k].tag, before[k].tag);
@@ -1040,24 +941,27 @@ static void round_trip(Scene &scene)
   }
 
   // writing has not changed anything
-  EXPECT_TRUE(scene.atoms() == before);
-  remove_scratch("data");
+  EXPECT_TRUE(atoms(scene) == before);
 }
 
 // id type density volume x y z; without volume: mass in place of density
 
 TEST(DataFile, Columns)
 {
-  write_scratch("in", std::string(header) + "Atoms # mpm\n\n1 1 8960 1e-6 .1 .1 .1\n"
-                "2 1 0 1e-6 .2 .1 .1\n3 2 0.5 0 .9 .9 .9\n4 2 2 3 .5 .9 .4 0 1 0\n");
+  const ScratchFile bad("bad",
+                        std::string(header) +
+                            "Atoms # mpm\n\n1 1 8960 1e-6 .1 .1 .1\n"
+                            "2 1 0 1e-6 .2 .1 .1\n3 2 0.5 0 .9 .9 .9\n4 2 2 3 .5 .9 .4 0 1 0\n");
   Scene scene;
   scene.commands("units si\natom_style mpm");
-  EXPECT_THAT(scene.error("read_data " + scratch("in")), HasSubstr("Incorrect format"));
-  write_scratch("in", std::string(header) + "Atoms # mpm\n\n1 1 8960 1e-6 .1 .1 .1\n"
-                "2 1 0 1e-6 .2 .1 .1\n3 2 0.5 0 .9 .9 .9\n4 2 2 3 .5 .9 .4\n");
+  EXPECT_THAT(scene.error("read_data " + bad.name), HasSubstr("Incorrect format"));
+  const ScratchFile in("good",
+                       std::string(header) +
+                           "Atoms # mpm\n\n1 1 8960 1e-6 .1 .1 .1\n"
+                           "2 1 0 1e-6 .2 .1 .1\n3 2 0.5 0 .9 .9 .9\n4 2 2 3 .5 .9 .4\n");
   Scene good;
-  good.commands("units si\natom_style mpm\nread_data " + scratch("in"));
-  auto p = good.atoms();
+  good.commands("units si\natom_style mpm\nread_data " + in.name);
+  auto p = atoms(good);
   ASSERT_EQ(p.size(), 4u);
   EXPECT_DOUBLE_EQ(p[0].mass, 8.96e-3);
   EXPECT_EQ(p[0].volume0, 1.0e-6);
@@ -1068,7 +972,6 @@ TEST(DataFile, Columns)
   EXPECT_EQ(p[3].mass, 6.0);
   for (const auto &point : p)
     for (int c = 0; c < 9; c++) EXPECT_EQ(point.F[c], c % 4 == 0 ? 1.0 : 0.0);
-  remove_scratch("in");
   round_trip(good);
 }
 
@@ -1076,11 +979,14 @@ TEST(DataFile, Columns)
 
 TEST(DataFile, ColumnsWithSpheres)
 {
-  write_scratch("in", std::string(header) + "Atoms # hybrid\n\n1 1 .1 .1 .1 0.02 8960 1e-6\n"
-                "2 1 .2 .1 .1 0 100 1e-6\n3 2 .9 .9 .9 0.2 2500 0\n4 2 .5 .9 .4 0 2 0\n");
+  const ScratchFile in(
+      "in",
+      std::string(header) +
+          "Atoms # hybrid\n\n1 1 .1 .1 .1 0.02 8960 1e-6\n"
+          "2 1 .2 .1 .1 0 100 1e-6\n3 2 .9 .9 .9 0.2 2500 0\n4 2 .5 .9 .4 0 2 0\n");
   Scene scene;
-  scene.commands("units si\natom_style hybrid sphere mpm\nread_data " + scratch("in"));
-  auto p = scene.atoms();
+  scene.commands("units si\natom_style hybrid sphere mpm\nread_data " + in.name);
+  auto p = atoms(scene);
   ASSERT_EQ(p.size(), 4u);
   EXPECT_DOUBLE_EQ(p[0].mass, 8.96e-3);
   EXPECT_EQ(p[0].radius, 0.01);
@@ -1088,7 +994,6 @@ TEST(DataFile, ColumnsWithSpheres)
   EXPECT_DOUBLE_EQ(p[2].mass, 2500 * 4.0 / 3.0 * M_PI * 1.0e-3);
   EXPECT_EQ(p[2].volume0, 0.0);
   EXPECT_EQ(p[3].mass, 2.0);
-  remove_scratch("in");
   round_trip(scene);
 }
 
@@ -1096,17 +1001,16 @@ TEST(DataFile, RoundTrip)
 {
   for (const char *style : {"mpm", "hybrid sphere mpm", "hybrid atomic mpm"}) {
     Scene scene;
-    std::string lines = moving;
-    lines.replace(lines.find("atom_style mpm"), 14, std::string("atom_style ") + style);
+    const auto lines = replaced(moving, "atom_style mpm", std::string("atom_style ") + style);
     scene.commands("lattice none 1.0");
     scene.commands(lines);
-    if (scene.atom()->mass) scene.commands("mass * 1.0");
+    if (scene.lmp->atom->mass) scene.commands("mass * 1.0");
     scene.commands("create_atoms 2 single 3.3 3.3 3.3 units box\n"
                    "velocity all create 20.0 4711 loop all");
-    if (scene.atom()->radius_flag) scene.commands("set type 2 diameter 0.3");
-    scene.fill();
-    for (int i = 0; i < scene.atom()->nlocal; i++)
-      if (scene.atom()->type[i] == 2) scene.atom()->vfrac[i] = 0.0;
+    if (scene.lmp->atom->radius_flag) scene.commands("set type 2 diameter 0.3");
+    fill(scene);
+    for (int i = 0; i < scene.lmp->atom->nlocal; i++)
+      if (scene.lmp->atom->type[i] == 2) scene.lmp->atom->vfrac[i] = 0.0;
     round_trip(scene);
   }
 }
@@ -1138,43 +1042,39 @@ TEST(DataFile, BadInput)
       {"hybrid sphere mpm", "1 1 .1 .1 .1 0.1 -1000 1", "Invalid density"},
       {"hybrid sphere mpm", "1 1 .1 .1 .1 0.1 0 1", "Invalid density"},
   };
-  const auto file = scratch("bad" + std::to_string(my_rank()));
+  const auto name = "bad" + std::to_string(rank());
   for (const auto &input : inputs) {
-    FILE *fp = fopen(file.c_str(), "w");
-    std::string text = header;
-    text.replace(text.find("4 atoms"), 7, "1 atoms");
-    fputs((text + "Atoms\n\n" + input.atom + "\n").c_str(), fp);
-    fclose(fp);
+    const ScratchFile file(name,
+                           replaced(header, "4 atoms", "1 atoms") + "Atoms\n\n" + input.atom + "\n",
+                           MPI_COMM_SELF);
     Scene scene(MPI_COMM_SELF);
     EXPECT_THAT(scene.error(std::string("units si\natom_style ") + input.style + "\nread_data " +
-                            file), HasSubstr(input.message)) << input.atom;
+                            file.name),
+                HasSubstr(input.message))
+        << input.atom;
   }
-  remove(file.c_str());
 
   // atom style sphere would refuse to read this file
   Scene scene(MPI_COMM_SELF);
-  std::string lines = box3d;
-  lines.replace(lines.find("atom_style mpm"), 14, "atom_style hybrid sphere mpm");
+  const auto lines = replaced(box3d, "atom_style mpm", "atom_style hybrid sphere mpm");
   scene.commands(lines);
   scene.commands("region r block 0.2 0.8 0.2 0.8 0.2 0.8\ncreate_points 2 region r diameter 0.02");
-  for (const auto &p : scene.atoms()) EXPECT_EQ(p.radius, 0.01);
-  EXPECT_THAT(scene.error("write_data " + file + " noinit"),
-              HasSubstr("has no mass yet"));
-  remove(file.c_str());
+  for (const auto &p : atoms(scene)) EXPECT_EQ(p.radius, 0.01);
+  const ScratchFile file(name, MPI_COMM_SELF);
+  EXPECT_THAT(scene.error("write_data " + file.name + " noinit"), HasSubstr("has no mass yet"));
 }
 
 TEST(AtomStyle, GrainsNextToPoints)
 {
   Scene scene;
-  std::string lines = moving;
-  lines.replace(lines.find("atom_style mpm"), 14, "atom_style hybrid sphere mpm");
+  const auto lines = replaced(moving, "atom_style mpm", "atom_style hybrid sphere mpm");
   scene.commands("lattice none 1.0");
   scene.commands(lines);
   scene.commands("create_atoms 2 single 3.3 3.3 3.3 units box");
-  for (const auto &p : scene.atoms())
+  for (const auto &p : atoms(scene))
     if (p.type == 2) EXPECT_DOUBLE_EQ(p.mass, M_PI / 6.0);    // of atom style sphere
   scene.commands("set type 2 diameter 0.4\nset type 2 density 2.0");
-  for (const auto &p : scene.atoms()) {
+  for (const auto &p : atoms(scene)) {
     if (p.type == 2) {
       EXPECT_EQ(p.volume0, 0.0);
       EXPECT_EQ(p.radius, 0.2);

@@ -19,7 +19,6 @@
 #include <cmath>
 
 using namespace MPM_TEST;
-using Lammps = MPM_TEST::Run;    // tests have a function Run
 
 // ---------------------------------------------------------------------- head-on impact of two bars
 
@@ -66,10 +65,10 @@ static std::string two_bars(const std::string &options, const std::string &conta
 // A3(a): interface stress rho c v, contact for 2 L/c, rebound with the same speed; momentum exact
 TEST(Contact, EqualBars)
 {
-  for (const char *options : {"transfer flip 1.0 scheme musl", "transfer apic",
-                              "shape cubic transfer flip 1.0"}) {
+  for (const char *options :
+       {"transfer flip 1.0 scheme musl", "transfer apic", "shape cubic transfer flip 1.0"}) {
     SCOPED_TRACE(options);
-    Lammps run;
+    Scene run;
     run.commands(two_bars(options, ""));
     double first = -1.0, last = 0.0, mean = 0.0, worst = 0.0, touch = 0.0;
     int n = 0;
@@ -91,13 +90,13 @@ TEST(Contact, EqualBars)
     }
     EXPECT_LT(worst, 1e-13 * 0.08 * 0.05);
     EXPECT_NEAR(first, 0.5, 0.011);
-    EXPECT_LT(std::fabs(touch), 0.05);         // contact begins where the bars touch
+    EXPECT_LT(std::fabs(touch), 0.05);    // contact begins where the bars touch
     EXPECT_NEAR(last - first, 0.2, 0.025);
     EXPECT_NEAR(mean / n, 0.5, 0.02 * 0.5);
     const double speed = options == std::string("transfer apic") ? 0.042 : 0.046;
     EXPECT_LT(run.evaluate("v_v1"), -speed);
     EXPECT_NEAR(run.evaluate("v_v1"), -run.evaluate("v_v2"), 1e-13);
-    EXPECT_GT(run.evaluate("v_gap"), 1.0);     // they let go of each other
+    EXPECT_GT(run.evaluate("v_gap"), 1.0);    // they let go of each other
     EXPECT_EQ(run.evaluate("f_c[1][4]"), 0.0);
   }
 }
@@ -105,7 +104,7 @@ TEST(Contact, EqualBars)
 // without the gap rule bodies feel each other more than a node spacing apart
 TEST(Contact, WithoutTheGapRuleContactIsEarly)
 {
-  Lammps run;
+  Scene run;
   run.commands(two_bars("transfer flip 1.0 scheme musl", "gap no"));
   double touch = 0.0;
   for (int k = 0; k < 150 && touch == 0.0; k++) {
@@ -119,7 +118,7 @@ TEST(Contact, WithoutTheGapRuleContactIsEarly)
 // A3(c): Z = 10 and 40: stress Z1 Z2/(Z1 + Z2) (v1 - v2), interface velocity (Z1 v1 + Z2 v2)/(Z1 + Z2)
 TEST(Contact, DifferentImpedances)
 {
-  Lammps run;
+  Scene run;
   run.commands(two_bars("transfer flip 1.0 scheme musl", "", "4", "400"));
   double mean = 0.0;
   int n = 0;
@@ -181,7 +180,7 @@ TEST(Friction, BlockSlidesOrSticks)
   for (const char *transfer : {"apic", "flip 1.0"})
     for (const double mu : {0.0, 0.1, 0.3, 0.7}) {
       SCOPED_TRACE(std::string(transfer) + " " + std::to_string(mu));
-      Lammps run;
+      Scene run;
       run.commands(on_incline("block 0.5 1.5 0.5 1.0 -0.05 0.05", "0.1", transfer, mu));
       run.commands("run 750\n");
       const double before = run.evaluate("v_x");
@@ -206,7 +205,7 @@ TEST(Friction, DiskRollsOrSlips)
   const double g = 9.81, sine = 0.5, cosine = std::sqrt(0.75);
   for (const double mu : {0.1, 0.3}) {
     SCOPED_TRACE(mu);
-    Lammps run;
+    Scene run;
     run.commands(on_incline("cylinder z 0.7 1.0 0.5 -0.05 0.05", "0.05", "apic", mu));
     run.commands("run 4000\n");
     const double t = run.evaluate("time");
@@ -253,9 +252,9 @@ thermo 1000
 
 TEST(ManyBodies, OrderOfNamesDoesNotMatter)
 {
-  std::vector<Lammps::State> reference;
+  std::vector<Scene::State> reference;
   for (const char *names : {"F1 F2 F3", "F3 F1 F2", "F2 F3 F1"}) {
-    Lammps run;
+    Scene run;
     run.commands(replaced(corner, "FIELDS", names));
     run.commands("run 0\n");
     const double px = run.evaluate("v_px"), py = run.evaluate("v_py");
@@ -302,65 +301,23 @@ thermo 1000
 
 TEST(Parallel, RanksAgreeAcrossAPeriodicFace)
 {
-  MPI_Comm self;
-  int me;
-  MPI_Comm_rank(MPI_COMM_WORLD, &me);
-  MPI_Comm_split(MPI_COMM_WORLD, me, 0, &self);
-  std::vector<Lammps::State> one, all;
-  double slowed = 0.0;
-  {
-    Lammps run(self);
-    run.commands(disks);
-    run.commands("run 300\n");
-    one = run.gather();
-    run.commands("variable v equal vcm(one,x)\n");
-    slowed = run.evaluate("v_v");
-  }
-  {
-    Lammps run;
-    run.commands(disks);
-    run.commands("run 300\n");
-    all = run.gather();
-  }
-  EXPECT_GT(slowed, -0.25);    // they have met through the face
-  ASSERT_EQ(one.size(), all.size());
-  for (std::size_t i = 0; i < one.size(); i++)
-    for (int d = 0; d < 2; d++) {
-      EXPECT_NEAR(one[i].x[d], all[i].x[d], 1e-11);
-      EXPECT_NEAR(one[i].v[d], all[i].v[d], 1e-11);
-    }
-  MPI_Comm_free(&self);
+  OnRanks run(disks, "run 300\n");
+  run.serial.commands("variable v equal vcm(one,x)\n");
+  EXPECT_GT(run.serial.evaluate("v_v"), -0.25);    // they have met through the face
+  EXPECT_LT(run.difference(), 1e-11);
 }
 
 TEST(Restart, ContinuesExactly)
 {
-  std::vector<Lammps::State> straight, again;
-  double work[2];
-  {
-    Lammps run;
-    run.commands(disks);
-    run.commands("run 120\nwrite_restart contact.restart\nrun 120\n");
-    straight = run.gather();
-    work[0] = run.evaluate("f_c");
-  }
-  {
-    Lammps run;
-    run.commands("read_restart contact.restart\nneighbor 0.3 bin\n");
-    const std::string text = disks;
-    run.commands("fix F1 one mpm 0.5\nfix F2 two mpm 0.5\n"
-                 "fix m all mpm/material density 1 neohookean 50 0.3\n"
-                 "fix c all mpm/contact F1 F2 law coulomb 0.3\nthermo 1000\nrun 120\n");
-    again = run.gather();
-    work[1] = run.evaluate("f_c");
-  }
-  ASSERT_EQ(straight.size(), again.size());
-  for (std::size_t i = 0; i < straight.size(); i++)
-    for (int d = 0; d < 2; d++) {
-      EXPECT_EQ(straight[i].x[d], again[i].x[d]);
-      EXPECT_EQ(straight[i].v[d], again[i].v[d]);
-    }
-  EXPECT_NE(work[0], 0.0);
-  EXPECT_NEAR(work[0], work[1], 1e-12 * std::fabs(work[0]));
+  Continued run(disks, 120,
+                "neighbor 0.3 bin\nfix F1 one mpm 0.5\nfix F2 two mpm 0.5\n"
+                "fix m all mpm/material density 1 neohookean 50 0.3\n"
+                "fix c all mpm/contact F1 F2 law coulomb 0.3\nthermo 1000\n",
+                120);
+  EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
+  const double work = run.whole.evaluate("f_c");
+  EXPECT_NE(work, 0.0);
+  EXPECT_NEAR(run.again.evaluate("f_c"), work, 1e-12 * std::fabs(work));
 }
 
 // ---------------------------------------------------------------------- adhesion
@@ -369,14 +326,16 @@ TEST(Restart, ContinuesExactly)
 // the work of release times area
 TEST(Adhesion, StrengthAndWork)
 {
-  Lammps run;
+  Scene run;
   std::string text = two_bars("transfer apic", "law adhesive 0.02 1.0 2e-4 gap yes");
   text = replaced(text, "b2 block 1.05 2.05", "b2 block 1.0 2.0");
-  text = replaced(text, "velocity one set 0.05 0 0", "region left block -1 0.1 0 0.08 -0.05 0.05\n"
-                        "fix hold all mpm/boundary region left stick field F1");
-  text = replaced(text, "velocity two set -0.05 0 0", "region right block 1.9 3 0 0.08 -0.05 0.05\n"
-                        "fix pull all mpm/boundary region right stick velocity 0.02 0 0 field F2\n"
-                        "velocity two set 0.02 0 0");
+  text = replaced(text, "velocity one set 0.05 0 0",
+                  "region left block -1 0.1 0 0.08 -0.05 0.05\n"
+                  "fix hold all mpm/boundary region left stick field F1");
+  text = replaced(text, "velocity two set -0.05 0 0",
+                  "region right block 1.9 3 0 0.08 -0.05 0.05\n"
+                  "fix pull all mpm/boundary region right stick velocity 0.02 0 0 field F2\n"
+                  "velocity two set 0.02 0 0");
   run.commands(text);
   double largest = 0.0, after = 0.0, work = 0.0;
   for (int k = 0; k < 300; k++) {
@@ -396,45 +355,36 @@ TEST(Adhesion, StrengthAndWork)
 TEST(BadInput, IsRefused)
 {
   const std::string scene = replaced(disks, "fix c all mpm/contact F1 F2 law coulomb 0.3\n", "");
-  const struct {
-    const char *line, *message;
-  } cases[] = {
-      {"fix c all mpm/contact F1", "needs the IDs of two or more"},
-      {"fix c all mpm/contact F1 F1", "named twice"},
-      {"fix c all mpm/contact F1 F9", "F9 is not the ID of a fix mpm"},
-      {"fix c all mpm/contact F1 m", "is not the ID of a fix mpm"},
-      {"fix c one mpm/contact F1 F2", "use group all"},
-      {"fix c all mpm/contact F1 F2 law glue", "Unknown fix mpm/contact law glue"},
-      {"fix c all mpm/contact F1 F2 law", "Illegal fix mpm/contact law"},
-      {"fix c all mpm/contact F1 F2 law coulomb", "Illegal fix mpm/contact law"},
-      {"fix c all mpm/contact F1 F2 law coulomb -0.1", "must not be below 0"},
-      {"fix c all mpm/contact F1 F2 law coulomb 0.3 0.2", "must not be below 0.3"},
-      {"fix c all mpm/contact F1 F2 law adhesive 1 1 0", "positive normal strength"},
-      {"fix c all mpm/contact F1 F2 law adhesive 1 1 0.1 gap no", "how far bodies are apart"},
-      {"fix c all mpm/contact F1 F2 law adhesive 1 1 0.1 normal mass", "area of the interface"},
-      {"fix c all mpm/contact F1 F2 law adhesive 1 1 10", "more than the node spacing"},
-      {"fix c all mpm/contact F1 F2 normal up", "Unknown fix mpm/contact normal up"},
-      {"fix c all mpm/contact F1 F2 gap maybe", "must be yes or no"},
-      {"fix c all mpm/contact F1 F2 gap yes 1.5", "above one"},
-      {"fix c all mpm/contact F1 F2 friction 0.3", "friction is not the ID"},
-      {"fix c all mpm/contact F1 F2 law stick fast", "Unknown fix mpm/contact keyword: fast"},
-      {"fix c all mpm/contact F1 F2\nfix d all mpm/contact F2 F1", "counted twice"},
-      {"unfix F2\nfix F2 two mpm 0.25\nfix c all mpm/contact F1 F2", "must have the same lattice"},
-      {"unfix F2\nfix F2 two mpm 0.5 shape cubic\nfix c all mpm/contact F1 F2",
-       "must have the same lattice"},
-      {"unfix F1\nunfix F2\nfix F1 one mpm 0.5 scheme usf transfer flip 1.0\n"
-       "fix F2 two mpm 0.5 scheme usf transfer flip 1.0\nfix c all mpm/contact F1 F2",
-       "cannot be used with scheme usf"},
-  };
-  for (const auto &bad : cases) {
-    SCOPED_TRACE(bad.line);
-    Lammps run;
-    run.commands(scene);
-    try {
-      run.commands(std::string(bad.line) + "\nrun 1\n");
-      ADD_FAILURE() << "no error";
-    } catch (const std::exception &e) {
-      EXPECT_NE(std::string(e.what()).find(bad.message), std::string::npos) << e.what();
-    }
-  }
+  expect_refused(
+      scene,
+      {
+          {"fix c all mpm/contact F1", "needs the IDs of two or more"},
+          {"fix c all mpm/contact F1 F1", "named twice"},
+          {"fix c all mpm/contact F1 F9", "F9 is not the ID of a fix mpm"},
+          {"fix c all mpm/contact F1 m", "is not the ID of a fix mpm"},
+          {"fix c one mpm/contact F1 F2", "use group all"},
+          {"fix c all mpm/contact F1 F2 law glue", "Unknown fix mpm/contact law glue"},
+          {"fix c all mpm/contact F1 F2 law", "Illegal fix mpm/contact law"},
+          {"fix c all mpm/contact F1 F2 law coulomb", "Illegal fix mpm/contact law"},
+          {"fix c all mpm/contact F1 F2 law coulomb -0.1", "must not be below 0"},
+          {"fix c all mpm/contact F1 F2 law coulomb 0.3 0.2", "must not be below 0.3"},
+          {"fix c all mpm/contact F1 F2 law adhesive 1 1 0", "positive normal strength"},
+          {"fix c all mpm/contact F1 F2 law adhesive 1 1 0.1 gap no", "how far bodies are apart"},
+          {"fix c all mpm/contact F1 F2 law adhesive 1 1 0.1 normal mass", "area of the interface"},
+          {"fix c all mpm/contact F1 F2 law adhesive 1 1 10", "more than the node spacing"},
+          {"fix c all mpm/contact F1 F2 normal up", "Unknown fix mpm/contact normal up"},
+          {"fix c all mpm/contact F1 F2 gap maybe", "must be yes or no"},
+          {"fix c all mpm/contact F1 F2 gap yes 1.5", "above one"},
+          {"fix c all mpm/contact F1 F2 friction 0.3", "friction is not the ID"},
+          {"fix c all mpm/contact F1 F2 law stick fast", "Unknown fix mpm/contact keyword: fast"},
+          {"fix c all mpm/contact F1 F2\nfix d all mpm/contact F2 F1", "counted twice"},
+          {"unfix F2\nfix F2 two mpm 0.25\nfix c all mpm/contact F1 F2",
+           "must have the same lattice"},
+          {"unfix F2\nfix F2 two mpm 0.5 shape cubic\nfix c all mpm/contact F1 F2",
+           "must have the same lattice"},
+          {"unfix F1\nunfix F2\nfix F1 one mpm 0.5 scheme usf transfer flip 1.0\n"
+           "fix F2 two mpm 0.5 scheme usf transfer flip 1.0\nfix c all mpm/contact F1 F2",
+           "cannot be used with scheme usf"},
+      },
+      "run 1\n");
 }

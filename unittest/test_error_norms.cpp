@@ -21,7 +21,6 @@
 #include <sstream>
 
 using namespace MPM_TEST;
-using Lammps = MPM_TEST::Run;    // tests have a function Run
 
 static const char *const block = R"(
 units lj
@@ -45,10 +44,11 @@ compute d all displace/atom
 
 TEST(ErrorNorms, AreThoseOfTheDefinition)
 {
-  Lammps run;
-  run.commands(std::string(block) + "compute e all mpm/error vx v_one vy v_two\n"
-                                    "compute x all mpm/error x v_right\nthermo_style custom step c_e "
-                                    "c_e[1] c_e[2] c_e[3] c_e[4] c_e[5] c_x\nrun 0\n");
+  Scene run;
+  run.commands(std::string(block) +
+               "compute e all mpm/error vx v_one vy v_two\n"
+               "compute x all mpm/error x v_right\nthermo_style custom step c_e "
+               "c_e[1] c_e[2] c_e[3] c_e[4] c_e[5] c_x\nrun 0\n");
   EXPECT_NEAR(run.evaluate("c_e"), 0.1 * std::sqrt(0.5), 1e-14);    // half of the points are off
   EXPECT_NEAR(run.evaluate("c_e[2]"), 0.1, 1e-14);
   EXPECT_NEAR(run.evaluate("c_e[3]"), std::sqrt(0.09 + 0.5 * (0.16 + 0.09)), 1e-14);
@@ -70,7 +70,7 @@ static double vortex(int n, const std::string &settings = "", double angle = 0.1
   std::stringstream text;
   text << file.rdbuf();
   EXPECT_GT(text.str().size(), 100u);
-  Lammps run;
+  Scene run;
   run.commands("variable n index " + std::to_string(n) + "\nvariable G index " +
                std::to_string(angle) + "\n");
   if (!settings.empty()) run.commands("variable options index \"" + settings + "\"\n");
@@ -102,31 +102,19 @@ TEST(ErrorNorms, LargeVortexInTotalFrame)
 
 TEST(BadInput, IsRefused)
 {
-  const struct {
-    const char *line, *message;
-  } cases[] = {
-      {"compute e all mpm/error", "Illegal compute mpm/error"},
-      {"compute e all mpm/error vx", "Illegal compute mpm/error"},
-      {"compute e all mpm/error vx v_one vy", "come in pairs"},
-      {"compute e all mpm/error velocity v_one", "must be x, y, z, vx"},
-      {"compute e all mpm/error vx 1.0", "must be an atom-style variable"},
-      {"compute e all mpm/error vx v_none", "variable none does not exist"},
-      {"compute e all mpm/error vx v_number", "variable number is not atom-style"},
-      {"compute e all mpm/error c_none v_one", "compute none does not exist"},
-      {"compute e all mpm/error c_s v_one", "has 6 columns: choose one"},
-      {"compute e all mpm/error c_s[7] v_one", "has no column 7"},
-      {"compute e all mpm/error c_thermo_temp v_one", "is not per atom"},
-      {"compute e all mpm/error f_m v_one", "is not per atom"},
-  };
-  for (const auto &bad : cases) {
-    SCOPED_TRACE(bad.line);
-    Lammps run;
-    run.commands(block);
-    try {
-      run.commands(std::string(bad.line) + "\n");
-      ADD_FAILURE() << "no error";
-    } catch (const std::exception &e) {
-      EXPECT_NE(std::string(e.what()).find(bad.message), std::string::npos) << e.what();
-    }
-  }
+  expect_refused(block,
+                 {
+                     {"compute e all mpm/error", "Illegal compute mpm/error"},
+                     {"compute e all mpm/error vx", "Illegal compute mpm/error"},
+                     {"compute e all mpm/error vx v_one vy", "come in pairs"},
+                     {"compute e all mpm/error velocity v_one", "must be x, y, z, vx"},
+                     {"compute e all mpm/error vx 1.0", "must be an atom-style variable"},
+                     {"compute e all mpm/error vx v_none", "variable none does not exist"},
+                     {"compute e all mpm/error vx v_number", "variable number is not atom-style"},
+                     {"compute e all mpm/error c_none v_one", "compute none does not exist"},
+                     {"compute e all mpm/error c_s v_one", "has 6 columns: choose one"},
+                     {"compute e all mpm/error c_s[7] v_one", "has no column 7"},
+                     {"compute e all mpm/error c_thermo_temp v_one", "is not per atom"},
+                     {"compute e all mpm/error f_m v_one", "is not per atom"},
+                 });
 }

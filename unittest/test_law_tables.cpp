@@ -226,9 +226,9 @@ TEST(LawTables, AreUpToDate)
 
 TEST(LawTables, DeclarationsAreComplete)
 {
-  const std::set<std::string> words = {
-      "1",      "pressure",    "density", "velocity", "energy", "mass",    "time", FLAG,
-      "length", "temperature", "angle",   "force",    "volume", "degrees", "N"};
+  const std::set<std::string> words = {"1",     "pressure", "density", "velocity", "energy",
+                                       "mass",  "time",     FLAG,      "length",   "temperature",
+                                       "angle", "force",    "volume",  "degrees",  "N"};
   const auto known = [&](const std::string &unit) {    // products, quotients, powers of these
     std::string word;
     for (const char c : unit + " ") {

@@ -797,8 +797,8 @@ TEST(Energy, BalanceIsSecondOrder)
       const double start = p.stored_energy();
       for (int i = 0; i < n; i++) {
         p.step(there_and_back((i + 0.5) / n).data(), 1.0 / n);
-        const double energy = p.stored_energy() - start + p.work[PLASTIC] + p.work[VISCOUS] +
-            p.work[FRACTURE];
+        const double energy =
+            p.stored_energy() - start + p.work[PLASTIC] + p.work[VISCOUS] + p.work[FRACTURE];
         error[level] = std::max(error[level], std::fabs(energy - p.power));
         scale = std::max(scale, std::fabs(energy));
       }

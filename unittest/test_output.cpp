@@ -32,38 +32,18 @@
 #include <map>
 #include <sstream>
 
-using State = MPM_TEST::Run::State;
-using Lammps = MPM_TEST::Run;
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+using namespace MPM_TEST;
+using State = Scene::State;
 using ::testing::HasSubstr;
 
 // ---------------------------------------------------------------- helpers
 
-static int my_rank()
-{
-  int rank;
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  return rank;
-}
-
 /** File names for this number of processes, since tests of both may run at the same time. */
 static std::string name(const std::string &text)
 {
-  int nprocs;
-  MPI_Comm_size(MPI_COMM_WORLD, &nprocs);
-  return "mpm_output_np" + std::to_string(nprocs) + "_" + text;
-}
-
-/** The message of the error that a command gives on all processes, empty: none. */
-static std::string error_of(Lammps &run, const std::string &command)
-{
-  try {
-    run.commands(command);
-  } catch (std::exception &e) {
-    return e.what();
-  }
-  return "";
+  return "mpm_output_np" + std::to_string(nranks()) + "_" + text;
 }
 
 static std::string contents(const std::string &file)
@@ -110,11 +90,16 @@ class VTKReader {
       memcpy(&bytes, &text[offset], 8);
       offset += 8;
       end = offset + bytes;
-      if (a.type == "Float64") read<double>(text, offset, bytes, a.value);
-      else if (a.type == "Float32") read<float>(text, offset, bytes, a.value);
-      else if (a.type == "Int64") read<int64_t>(text, offset, bytes, a.value);
-      else if (a.type == "UInt8") read<uint8_t>(text, offset, bytes, a.value);
-      else ADD_FAILURE() << "unknown type " << a.type;
+      if (a.type == "Float64")
+        read<double>(text, offset, bytes, a.value);
+      else if (a.type == "Float32")
+        read<float>(text, offset, bytes, a.value);
+      else if (a.type == "Int64")
+        read<int64_t>(text, offset, bytes, a.value);
+      else if (a.type == "UInt8")
+        read<uint8_t>(text, offset, bytes, a.value);
+      else
+        ADD_FAILURE() << "unknown type " << a.type;
       array[attribute(tag, "Name")] = a;
     }
     EXPECT_EQ(text.substr(end), "\n</AppendedData>\n</VTKFile>\n");
@@ -157,7 +142,7 @@ class VTKReader {
  *  material point. With two processes each has some of them. */
 class ByHand : public ::testing::Test {
  protected:
-  Lammps run;
+  Scene run;
   std::vector<State> state;
 
   static constexpr double E = 10.0, NU = 0.25, RHO1 = 1.0, RHO2 = 2.0;
@@ -206,8 +191,8 @@ class ByHand : public ::testing::Test {
     auto *atom = run.lmp->atom;
     std::vector<double> mine(atom->natoms, 0.0), all(atom->natoms, 0.0);
     for (int i = 0; i < atom->nlocal; i++)
-      mine[atom->tag[i] - 1] =
-          compute->size_peratom_cols ? compute->array_atom[i][n] : compute->vector_atom[i];
+      mine[atom->tag[i] - 1] = compute->size_peratom_cols ? compute->array_atom[i][n]
+                                                          : compute->vector_atom[i];
     MPI_Allreduce(mine.data(), all.data(), (int) all.size(), MPI_DOUBLE, MPI_SUM, run.lmp->world);
     return all;
   }
@@ -223,33 +208,103 @@ static double det(const double *F)
 TEST_F(ByHand, NamesGiveTheQuantities)
 {
   const std::map<std::string, std::function<double(const State &)>> expected = {
-      {"stress/xx", [](const State &p) { return p.stress[0]; }},
-      {"stress/yy", [](const State &p) { return p.stress[1]; }},
-      {"stress/zz", [](const State &p) { return p.stress[2]; }},
-      {"stress/xy", [](const State &p) { return p.stress[3]; }},
-      {"stress/xz", [](const State &p) { return p.stress[4]; }},
-      {"stress/yz", [](const State &p) { return p.stress[5]; }},
-      {"pressure", [](const State &p) { return -(p.stress[0] + p.stress[1] + p.stress[2]) / 3; }},
-      {"F/xx", [](const State &p) { return p.F[0]; }},
-      {"F/xy", [](const State &p) { return p.F[1]; }},
-      {"F/xz", [](const State &p) { return p.F[2]; }},
-      {"F/yx", [](const State &p) { return p.F[3]; }},
-      {"F/yy", [](const State &p) { return p.F[4]; }},
-      {"F/yz", [](const State &p) { return p.F[5]; }},
-      {"F/zx", [](const State &p) { return p.F[6]; }},
-      {"F/zy", [](const State &p) { return p.F[7]; }},
-      {"F/zz", [](const State &p) { return p.F[8]; }},
-      {"J", [](const State &p) { return det(p.F); }},
-      {"volume", [](const State &p) { return 0.125 * det(p.F); }},
-      {"volume0", [](const State &) { return 0.125; }},
-      {"mass", [](const State &p) { return 0.125 * (p.tag < 3 ? RHO1 : RHO2); }},
-      {"density", [](const State &p) { return (p.tag < 3 ? RHO1 : RHO2) / det(p.F); }},
-      {"speed", [](const State &p) { return 1.0e-3 * p.tag * sqrt(14.0); }},
-      {"eplastic", [](const State &p) { return p.tag < 3 ? 0.0 : 0.5 * p.tag; }},
+      {"stress/xx",
+       [](const State &p) {
+         return p.stress[0];
+       }},
+      {"stress/yy",
+       [](const State &p) {
+         return p.stress[1];
+       }},
+      {"stress/zz",
+       [](const State &p) {
+         return p.stress[2];
+       }},
+      {"stress/xy",
+       [](const State &p) {
+         return p.stress[3];
+       }},
+      {"stress/xz",
+       [](const State &p) {
+         return p.stress[4];
+       }},
+      {"stress/yz",
+       [](const State &p) {
+         return p.stress[5];
+       }},
+      {"pressure",
+       [](const State &p) {
+         return -(p.stress[0] + p.stress[1] + p.stress[2]) / 3;
+       }},
+      {"F/xx",
+       [](const State &p) {
+         return p.F[0];
+       }},
+      {"F/xy",
+       [](const State &p) {
+         return p.F[1];
+       }},
+      {"F/xz",
+       [](const State &p) {
+         return p.F[2];
+       }},
+      {"F/yx",
+       [](const State &p) {
+         return p.F[3];
+       }},
+      {"F/yy",
+       [](const State &p) {
+         return p.F[4];
+       }},
+      {"F/yz",
+       [](const State &p) {
+         return p.F[5];
+       }},
+      {"F/zx",
+       [](const State &p) {
+         return p.F[6];
+       }},
+      {"F/zy",
+       [](const State &p) {
+         return p.F[7];
+       }},
+      {"F/zz",
+       [](const State &p) {
+         return p.F[8];
+       }},
+      {"J",
+       [](const State &p) {
+         return det(p.F);
+       }},
+      {"volume",
+       [](const State &p) {
+         return 0.125 * det(p.F);
+       }},
+      {"volume0",
+       [](const State &) {
+         return 0.125;
+       }},
+      {"mass",
+       [](const State &p) {
+         return 0.125 * (p.tag < 3 ? RHO1 : RHO2);
+       }},
+      {"density",
+       [](const State &p) {
+         return (p.tag < 3 ? RHO1 : RHO2) / det(p.F);
+       }},
+      {"speed",
+       [](const State &p) {
+         return 1.0e-3 * p.tag * sqrt(14.0);
+       }},
+      {"eplastic",
+       [](const State &p) {
+         return p.tag < 3 ? 0.0 : 0.5 * p.tag;
+       }},
   };
   for (const auto &item : expected)
-    run.commands("compute q_" + std::to_string(std::distance(expected.begin(),
-                     expected.find(item.first))) + " all mpm/atom " + item.first + "\n");
+    run.commands("compute q_" +
+                 std::to_string(std::distance(expected.begin(), expected.find(item.first))) +
+                 " all mpm/atom " + item.first + "\n");
   run.commands("run 0\n");
   set_state();
   int n = 0;
@@ -340,13 +395,13 @@ TEST_F(ByHand, WorksWithOtherCommands)
 
 TEST_F(ByHand, UnknownNamesAreRefused)
 {
-  EXPECT_THAT(error_of(run, "compute q all mpm/atom\n"), HasSubstr("compute mpm/atom"));
-  EXPECT_THAT(error_of(run, "compute q all mpm/atom strain/*\n"), HasSubstr("wildcards are F/*"));
+  EXPECT_THAT(run.error("compute q all mpm/atom\n"), HasSubstr("compute mpm/atom"));
+  EXPECT_THAT(run.error("compute q all mpm/atom strain/*\n"), HasSubstr("wildcards are F/*"));
 
   // a history variable may come with a material that is defined later, so that run tells
 
-  EXPECT_EQ(error_of(run, "compute q all mpm/atom vonmises eplastik\n"), "");
-  const auto text = error_of(run, "run 0\n");
+  EXPECT_EQ(run.error("compute q all mpm/atom vonmises eplastik\n"), "");
+  const auto text = run.error("run 0\n");
   EXPECT_THAT(text, HasSubstr("eplastik"));
   EXPECT_THAT(text, HasSubstr("vonmises"));
   EXPECT_THAT(text, HasSubstr("eplastic"));
@@ -354,9 +409,9 @@ TEST_F(ByHand, UnknownNamesAreRefused)
 
 TEST(Output, NeedsMaterialPoints)
 {
-  Lammps run;
+  Scene run;
   run.commands("region box block 0 8 0 8 0 8\ncreate_box 1 box\n");
-  EXPECT_THAT(error_of(run, "compute q all mpm/atom vonmises\n"), HasSubstr("atom_style mpm"));
+  EXPECT_THAT(run.error("compute q all mpm/atom vonmises\n"), HasSubstr("atom_style mpm"));
 }
 
 // ---------------------------------------------------------------- dump mpm/vtk
@@ -372,7 +427,7 @@ TEST_F(ByHand, PointFile)
                " stress F velocity vonmises eplastic volume c_c[*] c_one v_v image stress/xy "
                "modify sort id\n");
   MPI_Barrier(MPI_COMM_WORLD);
-  if (my_rank() > 0) return;
+  if (rank() > 0) return;
 
   VTKReader file(name("hand.vtp"));
   EXPECT_THAT(file.header, HasSubstr("<VTKFile type=\"PolyData\""));
@@ -419,12 +474,18 @@ TEST_F(ByHand, PointFile)
 TEST_F(ByHand, PointFileOptions)
 {
   run.commands("region low block INF INF INF 3 INF INF\nregion empty block 0 0.1 0 0.1 0 0.1\n"
-               "dump a one mpm/vtk 1 " + name("a.*.vtp") + " vonmises\n"
+               "dump a one mpm/vtk 1 " +
+               name("a.*.vtp") +
+               " vonmises\n"
                "dump_modify a precision single sort id\n"
-               "dump b all mpm/vtk 1 " + name("b.*.vtp") + "\ndump_modify b region low sort id\n"
-               "dump c all mpm/vtk 1 " + name("c.*.vtp") + " J\ndump_modify c region empty\n"
+               "dump b all mpm/vtk 1 " +
+               name("b.*.vtp") +
+               "\ndump_modify b region low sort id\n"
+               "dump c all mpm/vtk 1 " +
+               name("c.*.vtp") +
+               " J\ndump_modify c region empty\n"
                "run 0\n");
-  if (my_rank() == 0) {
+  if (rank() == 0) {
     VTKReader a(name("a.0.vtp")), b(name("b.0.vtp")), c(name("c.0.vtp"));
     EXPECT_EQ(a["id"], (std::vector<double>{1, 2}));
     EXPECT_EQ(a.array["vonmises"].type, "Float32");
@@ -445,7 +506,7 @@ TEST_F(ByHand, PointFileOptions)
 TEST_F(ByHand, DumpErrors)
 {
   auto dump = [&](const std::string &rest) {
-    return error_of(run, "dump d all mpm/vtk 10 " + rest + "\n");
+    return run.error("dump d all mpm/vtk 10 " + rest + "\n");
   };
   EXPECT_THAT(dump("file.vtp vonmises"), HasSubstr("put a * into the file name, e.g. file.*.vtp"));
   EXPECT_THAT(dump("file.*.vtk vonmises"), HasSubstr("must end in .vtp"));
@@ -457,12 +518,12 @@ TEST_F(ByHand, DumpErrors)
   EXPECT_EQ(run.lmp->modify->ncompute, 3) << "no compute is left behind (3 are those of thermo)";
   EXPECT_EQ(dump("file.*.vtp vonmises"), "");
   EXPECT_EQ(run.lmp->modify->ncompute, 4);
-  EXPECT_THAT(error_of(run, "dump_modify d precision half\n"), HasSubstr("single or double"));
+  EXPECT_THAT(run.error("dump_modify d precision half\n"), HasSubstr("single or double"));
   run.commands("undump d\n");
   EXPECT_EQ(run.lmp->modify->ncompute, 3);
 
-  EXPECT_EQ(error_of(run, "dump d all mpm/vtk 1 " + name("x.*.vtp") + " vonmises eplastik\n"), "");
-  EXPECT_THAT(error_of(run, "run 0\n"), HasSubstr("eplastik"));
+  EXPECT_EQ(run.error("dump d all mpm/vtk 1 " + name("x.*.vtp") + " vonmises eplastik\n"), "");
+  EXPECT_THAT(run.error("run 0\n"), HasSubstr("eplastik"));
 }
 
 TEST(Output, CollectionNames)
@@ -491,17 +552,25 @@ static const std::string scene =
 /** Times in the list of files are physical, also when the time step changes between runs. */
 TEST(Output, CollectionOfFiles)
 {
-  Lammps run;
-  run.commands(scene + "dump d all mpm/vtk 5 " + name("s.*.vtp") + " vonmises\n"
+  Scene run;
+  run.commands(scene + "dump d all mpm/vtk 5 " + name("s.*.vtp") +
+               " vonmises\n"
                "dump_modify d pad 4\nrun 10\ntimestep 0.005\nrun 10\n");
   MPI_Barrier(MPI_COMM_WORLD);
-  const std::string expected =
-      "<DataSet timestep=\"0\" file=\"" + name("s.0000.vtp") + "\"/>\n"
-      "<DataSet timestep=\"0.050000000000000003\" file=\"" + name("s.0005.vtp") + "\"/>\n"
-      "<DataSet timestep=\"0.10000000000000001\" file=\"" + name("s.0010.vtp") + "\"/>\n"
-      "<DataSet timestep=\"0.125\" file=\"" + name("s.0015.vtp") + "\"/>\n"
-      "<DataSet timestep=\"0.15000000000000002\" file=\"" + name("s.0020.vtp") + "\"/>\n";
-  if (my_rank() == 0) {
+  const std::string expected = "<DataSet timestep=\"0\" file=\"" + name("s.0000.vtp") +
+      "\"/>\n"
+      "<DataSet timestep=\"0.050000000000000003\" file=\"" +
+      name("s.0005.vtp") +
+      "\"/>\n"
+      "<DataSet timestep=\"0.10000000000000001\" file=\"" +
+      name("s.0010.vtp") +
+      "\"/>\n"
+      "<DataSet timestep=\"0.125\" file=\"" +
+      name("s.0015.vtp") +
+      "\"/>\n"
+      "<DataSet timestep=\"0.15000000000000002\" file=\"" +
+      name("s.0020.vtp") + "\"/>\n";
+  if (rank() == 0) {
     EXPECT_THAT(contents(name("s.pvd")), HasSubstr(expected));
     VTKReader last(name("s.0020.vtp"));
     EXPECT_NEAR(last.time(), 0.15, 1e-15);
@@ -511,16 +580,16 @@ TEST(Output, CollectionOfFiles)
 
   // a new dump starts a new list, unless it is to append
 
-  run.commands("undump d\ndump d all mpm/vtk 5 " + name("s.*.vtp") + "\n"
+  run.commands("undump d\ndump d all mpm/vtk 5 " + name("s.*.vtp") +
+               "\n"
                "dump_modify d append yes pad 4\nrun 5\n");
   MPI_Barrier(MPI_COMM_WORLD);
-  if (my_rank() == 0) {
-    EXPECT_THAT(contents(name("s.pvd")), HasSubstr(name("s.0015.vtp")));
-  }
-  run.commands("undump d\ndump d all mpm/vtk 5 " + name("s.*.vtp") + "\n"
+  if (rank() == 0) { EXPECT_THAT(contents(name("s.pvd")), HasSubstr(name("s.0015.vtp"))); }
+  run.commands("undump d\ndump d all mpm/vtk 5 " + name("s.*.vtp") +
+               "\n"
                "dump_modify d maxfiles 2 pad 4\nrun 10\n");
   MPI_Barrier(MPI_COMM_WORLD);
-  if (my_rank() == 0) {
+  if (rank() == 0) {
     const auto list = contents(name("s.pvd"));
     EXPECT_EQ(list.find("s.0015.vtp"), std::string::npos);
     EXPECT_EQ(list.find("s.0025.vtp"), std::string::npos);
@@ -539,13 +608,14 @@ TEST(Output, CollectionOfFiles)
 /** Every node once over all processes: mass and momentum are those of the points. */
 TEST(Output, GridFile)
 {
-  Lammps run;
-  run.commands(scene + "unfix pull\nunfix floor\n"
-               "dump g all mpm/grid/vtk 20 " + name("g.*.vtu") +
-               " grid mass velocity momentum index\nrun 20\n");
+  Scene run;
+  run.commands(scene +
+               "unfix pull\nunfix floor\n"
+               "dump g all mpm/grid/vtk 20 " +
+               name("g.*.vtu") + " grid mass velocity momentum index\nrun 20\n");
   const auto points = run.gather();
   MPI_Barrier(MPI_COMM_WORLD);
-  if (my_rank() > 0) return;
+  if (rank() > 0) return;
 
   VTKReader file(name("g.20.vtu"));
   EXPECT_THAT(file.header, HasSubstr("<VTKFile type=\"UnstructuredGrid\""));
@@ -593,9 +663,11 @@ TEST(Output, GridFile)
 
 TEST(Output, GridFileErrors)
 {
-  Lammps run;
+  Scene run;
   run.commands(scene);
-  auto dump = [&](const std::string &rest) { return error_of(run, "dump g " + rest + "\n"); };
+  auto dump = [&](const std::string &rest) {
+    return run.error("dump g " + rest + "\n");
+  };
   EXPECT_THAT(dump("all mpm/grid/vtk 5 g.*.vtu nothing mass"), HasSubstr("nothing"));
   EXPECT_THAT(dump("all mpm/grid/vtk 5 g.*.vtu floor mass"), HasSubstr("not mpm"));
   EXPECT_THAT(dump("all mpm/grid/vtk 5 g.*.vtu grid stress"), HasSubstr("momentum"));
@@ -617,14 +689,18 @@ static const std::string scene_2d =
 /** Averages in cells by hand, also through fix ave/grid, which has a grid of its own. */
 static void check_cells(const std::string &input, int dim, const int *n)
 {
-  Lammps run;
+  Scene run;
   std::string size;
   for (int d = 0; d < 3; d++) size += " " + std::to_string(n[d]);
   const std::string list = " f_cells:cell:density f_cells:cell:velocity[*] f_cells:cell:stress[*]"
                            " f_cells:cell:pressure f_cells:cell:fraction ";
-  run.commands(input + "fix cells all mpm/cells grid\n"
-               "fix mean all ave/grid 1 1 20" + size + list + "\n"
-               "dump cells all grid 20 " + name("cells.*.grid") + list + "\nrun 20\n");
+  run.commands(input +
+               "fix cells all mpm/cells grid\n"
+               "fix mean all ave/grid 1 1 20" +
+               size + list +
+               "\n"
+               "dump cells all grid 20 " +
+               name("cells.*.grid") + list + "\nrun 20\n");
   auto *lmp = run.lmp;
   auto *cells = lmp->modify->get_fix_by_id("cells");
   auto *mean = lmp->modify->get_fix_by_id("mean");
@@ -687,11 +763,12 @@ static void check_cells(const std::string &input, int dim, const int *n)
         }
         for (int k = 0; k < 5; k++)
           for (int c = 0; c < std::max(1, ncolumn[k]); c++) {
-            const double found = ncolumn[k] == 0 ?
-                (dim == 2 ? ((double **) data[k])[y][x] : ((double ***) data[k])[z][y][x]) :
-                (dim == 2 ? ((double ***) data[k])[y][x][c] : ((double ****) data[k])[z][y][x][c]);
-            const double averaged = dim == 2 ? ((double ***) all)[y][x][column[k] + c] :
-                                               ((double ****) all)[z][y][x][column[k] + c];
+            const double found = ncolumn[k] == 0
+                ? (dim == 2 ? ((double **) data[k])[y][x] : ((double ***) data[k])[z][y][x])
+                : (dim == 2 ? ((double ***) data[k])[y][x][c]
+                            : ((double ****) data[k])[z][y][x][c]);
+            const double averaged = dim == 2 ? ((double ***) all)[y][x][column[k] + c]
+                                             : ((double ****) all)[z][y][x][column[k] + c];
             EXPECT_NEAR(found, expected[column[k] + c], 1e-12) << names[k];
             EXPECT_EQ(found, averaged) << names[k];
           }
@@ -699,8 +776,9 @@ static void check_cells(const std::string &input, int dim, const int *n)
   MPI_Allreduce(MPI_IN_PLACE, &filled, 1, MPI_INT, MPI_SUM, lmp->world);
   EXPECT_GT(filled, 20);
   MPI_Barrier(lmp->world);
-  if (my_rank() == 0) {
-    EXPECT_THAT(contents(name("cells.20.grid")), HasSubstr("ITEM: GRID CELLS f_cells:cell:density"));
+  if (rank() == 0) {
+    EXPECT_THAT(contents(name("cells.20.grid")),
+                HasSubstr("ITEM: GRID CELLS f_cells:cell:density"));
     for (const char *step : {"0", "20"})
       remove(name(std::string("cells.") + step + ".grid").c_str());
   }
@@ -727,11 +805,11 @@ TEST(Output, CellAveragesWithBalancing)
 
 TEST(Output, CellErrors)
 {
-  Lammps run;
+  Scene run;
   run.commands(scene);
-  EXPECT_THAT(error_of(run, "fix cells all mpm/cells\n"), HasSubstr("mpm/cells"));
-  EXPECT_THAT(error_of(run, "fix cells all mpm/cells floor\n"), HasSubstr("needs a fix mpm"));
-  EXPECT_THAT(error_of(run, "fix cells all mpm/cells grid density\n"), HasSubstr("density"));
+  EXPECT_THAT(run.error("fix cells all mpm/cells\n"), HasSubstr("mpm/cells"));
+  EXPECT_THAT(run.error("fix cells all mpm/cells floor\n"), HasSubstr("needs a fix mpm"));
+  EXPECT_THAT(run.error("fix cells all mpm/cells grid density\n"), HasSubstr("density"));
 }
 
 // ---------------------------------------------------------------- compute mpm/energy
@@ -742,14 +820,26 @@ struct Entry {
   {
     return v[EXTERNAL] + v[BOUNDARY] + v[CONTACT] + v[TRANSFER] + v[INTEGRATION];
   }
-  enum { KINETIC, STORED, PLASTIC, VISCOUS, HEAT, EXTERNAL, BOUNDARY, CONTACT, TRANSFER,
-         INTEGRATION, RESIDUAL };
+  enum {
+    KINETIC,
+    STORED,
+    PLASTIC,
+    VISCOUS,
+    HEAT,
+    EXTERNAL,
+    BOUNDARY,
+    CONTACT,
+    TRANSFER,
+    INTEGRATION,
+    RESIDUAL
+  };
 };
 
 TEST(Energy, BalanceCloses)
 {
-  Lammps run;
-  run.commands(scene + "compute e all mpm/energy\nthermo_style custom step c_e c_e[*]\nthermo 10\n"
+  Scene run;
+  run.commands(scene +
+               "compute e all mpm/energy\nthermo_style custom step c_e c_e[*]\nthermo 10\n"
                "run 0\n");
   auto *e = run.lmp->modify->get_compute_by_id("e");
   const double start = e->compute_scalar();
@@ -778,12 +868,13 @@ TEST(Energy, IntegrationErrorVanishesWithTheTimeStep)
 {
   double error[2];
   for (int k = 0; k < 2; k++) {
-    Lammps run;
+    Scene run;
     const int refine = k ? 4 : 1;
-    run.commands(scene + "unfix floor\nunfix pull\nvelocity all ramp vz 2 -2 z 1.5 4.5\n"
+    run.commands(scene +
+                 "unfix floor\nunfix pull\nvelocity all ramp vz 2 -2 z 1.5 4.5\n"
                  "compute e all mpm/energy\nthermo_style custom step c_e\n"
-                 "timestep " + std::to_string(0.004 / refine) + "\nrun " +
-                 std::to_string(60 * refine) + "\n");
+                 "timestep " +
+                 std::to_string(0.004 / refine) + "\nrun " + std::to_string(60 * refine) + "\n");
     auto *e = run.lmp->modify->get_compute_by_id("e");
     e->compute_vector();
     EXPECT_GT(e->vector[Entry::STORED], 5.0);
@@ -795,7 +886,7 @@ TEST(Energy, IntegrationErrorVanishesWithTheTimeStep)
 
 TEST(Energy, StartsWithTheFirstRunAfterItsDefinition)
 {
-  Lammps run;
+  Scene run;
   run.commands(scene + "run 20\ncompute e all mpm/energy\nrun 0\n");
   auto *e = run.lmp->modify->get_compute_by_id("e");
   const double start = e->compute_scalar();
@@ -807,11 +898,11 @@ TEST(Energy, StartsWithTheFirstRunAfterItsDefinition)
 
 TEST(Energy, Errors)
 {
-  Lammps run;
+  Scene run;
   run.commands(scene);
   run.commands("region left block 0 4 0 8 0 8\ngroup left region left\n");
-  EXPECT_THAT(error_of(run, "compute e left mpm/energy\n"), HasSubstr("group all"));
-  EXPECT_THAT(error_of(run, "compute e all mpm/energy kinetic\n"), HasSubstr("kinetic"));
+  EXPECT_THAT(run.error("compute e left mpm/energy\n"), HasSubstr("group all"));
+  EXPECT_THAT(run.error("compute e all mpm/energy kinetic\n"), HasSubstr("kinetic"));
   run.commands("compute e all mpm/energy\nunfix grid\n");
-  EXPECT_THAT(error_of(run, "run 0\n"), HasSubstr("requires a fix mpm"));
+  EXPECT_THAT(run.error("run 0\n"), HasSubstr("requires a fix mpm"));
 }

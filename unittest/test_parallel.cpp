@@ -19,7 +19,6 @@
 #include <cmath>
 
 using namespace MPM_TEST;
-using Lammps = MPM_TEST::Run;    // tests have a function Run
 
 // two soft bodies cross all rank boundaries of a periodic box, collide and deform
 
@@ -70,21 +69,14 @@ timestep 0.03
 thermo 1000
 )";
 
-static std::string with_options(std::string scene, const std::string &options)
-{
-  return scene.replace(scene.find("MPM_OPTIONS"), 11, options);
-}
-
 class Ranks : public ::testing::TestWithParam<std::string> {
  protected:
   void compare(const std::string &scene, const std::string &layout)
   {
-    Lammps serial(MPI_COMM_SELF), parallel(MPI_COMM_WORLD);
-    serial.commands(scene + "run 200\n");
-    parallel.commands(scene + layout + "run 200\n");
-    auto a = serial.gather(), b = parallel.gather();
+    OnRanks run(scene, "run 200\n", layout);
+    const auto a = run.serial.gather();
     EXPECT_GT(a.size(), 100u);
-    EXPECT_LT(measured("other ranks", difference(a, b)), 1.0e-12);
+    EXPECT_LT(measured("other ranks", run.difference()), 1.0e-12);
 
     // the scene does move and deform: the comparison means something
     double strain = 0.0;
@@ -95,18 +87,19 @@ class Ranks : public ::testing::TestWithParam<std::string> {
 
 TEST_P(Ranks, Brick3d)
 {
-  compare(with_options(scene3d, GetParam()), "");
+  compare(replaced(scene3d, "MPM_OPTIONS", GetParam()), "");
 }
 
 TEST_P(Ranks, Rcb3d)
 {
-  compare(with_options(scene3d, GetParam()),
+  compare(replaced(scene3d, "MPM_OPTIONS", GetParam()),
           "comm_style tiled\nbalance 1.0 rcb\nfix lb all balance 20 1.0 rcb\n");
 }
 
 TEST_P(Ranks, ShiftedBrick2d)
 {
-  compare(with_options(scene2d, GetParam()), "fix lb all balance 20 1.0 shift xy 10 1.05\n");
+  compare(replaced(scene2d, "MPM_OPTIONS", GetParam()),
+          "fix lb all balance 20 1.0 shift xy 10 1.05\n");
 }
 
 INSTANTIATE_TEST_SUITE_P(Options, Ranks,
@@ -121,12 +114,12 @@ class TotalRanks : public Ranks {};
 
 TEST_P(TotalRanks, Bricks)
 {
-  compare(with_options(scene3d, GetParam()) + "timestep 0.02\nrun 200\n", "");
+  compare(replaced(scene3d, "MPM_OPTIONS", GetParam()) + "timestep 0.02\nrun 200\n", "");
 }
 
 TEST_P(TotalRanks, Rcb)
 {
-  compare(with_options(scene3d, GetParam()) + "timestep 0.02\nrun 200\n",
+  compare(replaced(scene3d, "MPM_OPTIONS", GetParam()) + "timestep 0.02\nrun 200\n",
           "comm_style tiled\nbalance 1.0 rcb\nfix lb all balance 20 1.0 rcb\n");
 }
 
@@ -145,7 +138,6 @@ boundary f f f
 atom_style mpm
 neighbor 0.3 bin
 region box block 0 40 0 8 0 8
-PROCESSORS
 create_box 1 box
 fix grid all mpm 1.0
 region one block 1 6 2 6 2 6
@@ -155,16 +147,8 @@ velocity all set 1.0 0.0 0.0
 velocity all ramp vy -0.8 0.8 x 1 6 sum yes
 timestep 0.05
 )";
-  int nprocs;
-  MPI_Comm_size(MPI_COMM_WORLD, &nprocs);
-  auto layout = [&](const std::string &text) {
-    std::string copy = scene;
-    return copy.replace(copy.find("PROCESSORS"), 10, text);
-  };
-  Lammps serial(MPI_COMM_SELF), parallel(MPI_COMM_WORLD);
-  serial.commands(layout("") + "run 400\n");
-  parallel.commands(layout("processors " + std::to_string(nprocs) + " 1 1") + "run 400\n");
-  EXPECT_LT(measured("other ranks", difference(serial.gather(), parallel.gather())), 1.0e-12);
+  OnRanks run(scene, "run 400\n", "processors " + std::to_string(nranks()) + " 1 1\n");
+  EXPECT_LT(measured("other ranks", run.difference()), 1.0e-12);
 }
 
 // walls of all kinds, plasticity, variable time step and energies: what they add up must not
@@ -200,17 +184,13 @@ class Walls : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(Walls, ReactionsAndEnergiesAgree)
 {
-  std::string scene = with_options(walls, GetParam());
+  std::string scene = replaced(walls, "MPM_OPTIONS", GetParam());
   if (GetParam().find("usf") != std::string::npos)    // which refuses these
     scene = replaced(replaced(scene, "slip friction 0.3", "slip"), "separate friction 0.2", "slip");
   for (const char *layout : {"", "comm_style tiled\nbalance 1.0 rcb\n", "processors 1 * 1\n"}) {
-    Lammps serial(MPI_COMM_SELF), parallel(MPI_COMM_WORLD);
-    serial.commands(scene + "run 200\n");
-    if (std::string(layout).find("processors") == 0)
-      parallel.commands(layout + scene + "run 200\n");
-    else
-      parallel.commands(scene + layout + "run 200\n");
-    EXPECT_LT(measured("other ranks", difference(serial.gather(), parallel.gather())), 1.0e-12);
+    OnRanks run(scene, "run 200\n", layout);
+    auto &serial = run.serial, &parallel = run.parallel;
+    EXPECT_LT(measured("other ranks", run.difference()), 1.0e-12);
     EXPECT_NEAR(parallel.time(), serial.time(), 1.0e-12 * serial.time());
     EXPECT_GT(serial.evaluate("c_yield"), 0.1);
     EXPECT_NEAR(parallel.evaluate("c_yield"), serial.evaluate("c_yield"), 1.0e-11);
@@ -275,14 +255,12 @@ velocity two set -0.5 -0.4 -1.5
 thermo 1000
 )";
   for (const char *layout : {"", "comm_style tiled\nfix lb all balance 20 1.0 rcb\n"}) {
-    Lammps serial(MPI_COMM_SELF), parallel(MPI_COMM_WORLD);
-    serial.commands(scene + "run 200\n");
-    parallel.commands(scene + layout + "run 200\n");
-    EXPECT_LT(measured("other ranks", difference(serial.gather(), parallel.gather())), 1.0e-12);
+    OnRanks run(scene, "run 200\n", layout);
+    EXPECT_LT(measured("other ranks", run.difference()), 1.0e-12);
     for (const char *wall : {"floor", "ground"}) {
-      const double reaction = serial.lmp->modify->get_fix_by_id(wall)->compute_vector(2);
+      const double reaction = run.serial.fix_vector(wall, 3)[2];
       EXPECT_GT(std::abs(reaction), 1.0e-3) << wall;
-      EXPECT_NEAR(parallel.lmp->modify->get_fix_by_id(wall)->compute_vector(2), reaction, 1.0e-10);
+      EXPECT_NEAR(run.parallel.fix_vector(wall, 3)[2], reaction, 1.0e-10);
     }
   }
 }
@@ -328,15 +306,12 @@ TEST(Grains, OnABlock)
                       5.4 + 2.4 * (k / 16) + 0.2 * sin(5 * k));
   const std::string scene = replaced(grains, "MPM_GRAINS\n", rain);
   for (const char *layout : {"", "fix lb all balance 50 1.0 shift xyz 5 1.05\n"}) {
-    Lammps serial(MPI_COMM_SELF), parallel(MPI_COMM_WORLD);
-    serial.commands(scene + "run 200\n");
-    parallel.commands(scene + layout + "run 200\n");
-    const auto a = serial.gather(), b = parallel.gather();
-    EXPECT_LT(measured("grains on other ranks", difference(a, b)), 1.0e-9);
+    OnRanks run(scene, "run 200\n", layout);
+    EXPECT_LT(measured("grains on other ranks", run.difference()), 1.0e-9);
 
     // grains and points have met: a block that is left alone stays at rest sideways
     double speed = 0.0, ngrains = 0.0;
-    for (const auto &s : a) {
+    for (const auto &s : run.serial.gather()) {
       if (s.type == 1.0) speed = std::max(speed, std::abs(s.v[0]));
       if (s.type == 2.0) ngrains++;
     }
@@ -365,7 +340,7 @@ TEST(Translation, LatticeAndBodyTogether)
         "velocity all set 0.6 0.35 -0.4\nvelocity all ramp vx -0.5 0.5 y 2 6 sum yes\n"
         "timestep 0.05\nrun 200\n";
   };
-  Lammps a, b;
+  Scene a, b;
   a.commands(scene(0.0));
   // points of create_points follow the lattice, so that both bodies are the same set of points
   std::string shifted = scene(0.375);

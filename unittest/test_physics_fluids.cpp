@@ -254,9 +254,9 @@ TEST(Detonation, GoesOnAfterRestart)
                   fixes.substr(fixes.find('\n') + 1));
     run->commands(run_on);
   }
-  first.commands("write_restart detonation.bin\n");
-  second.commands("read_restart detonation.bin\n" + fixes + run_on);
-  remove("detonation.bin");
+  const ScratchFile file("restart");
+  first.commands("write_restart " + file.name + "\n");
+  second.commands("read_restart " + file.name + "\n" + fixes + run_on);
   whole.commands("run 60\n");
   EXPECT_LT(measured("difference after restart", difference(second.gather(), whole.gather())),
             1e-12);

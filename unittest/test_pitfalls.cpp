@@ -16,7 +16,6 @@
 
 #include "mpm_lammps.h"
 
-#include "fix_mpm.h"
 #include "mpm_grid.h"
 
 #include "gtest/gtest.h"
@@ -26,7 +25,6 @@
 #include <set>
 
 using namespace MPM_TEST;
-using Lammps = MPM_TEST::Run;    // tests have a function Run
 
 // a soft body that deforms and spins, crossing the middle of a periodic box
 
@@ -44,7 +42,7 @@ static std::string soft_body(const std::string &options, const std::string &step
       steps;
 }
 
-static double momentum(const std::vector<MPM_TEST::Run::State> &points, int axis)
+static double momentum(const std::vector<Scene::State> &points, int axis)
 {
   double sum = 0.0;
   for (const auto &p : points) sum += p.mass * p.v[axis];
@@ -55,7 +53,7 @@ static double momentum(const std::vector<MPM_TEST::Run::State> &points, int axis
 
 TEST(Pitfall, RegionLargerThanTheBoxLeavesTheBoxAlone)
 {
-  Lammps run;
+  Scene run;
   run.commands("units lj\nboundary f f f\natom_style mpm\nneighbor 0.3 bin\n"
                "region box block 0 8 0 8 0 8\ncreate_box 1 box\nfix grid all mpm 1.0\n"
                "region body block -3 4 2 30 2 4\n"
@@ -72,7 +70,7 @@ TEST(Pitfall, RegionLargerThanTheBoxLeavesTheBoxAlone)
 
 TEST(Pitfall, NumbersKeepDoublePrecision)
 {
-  Lammps run;
+  Scene run;
   run.commands("units lj\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
                "region box block 0 8 0 8 0 8\ncreate_box 1 box\nfix grid all mpm 0.1\n"
                "region body block 2 3 2 3 2 3\ncreate_points 1 region body spacing 0.1\n"
@@ -109,13 +107,13 @@ TEST(Pitfall, NumbersKeepDoublePrecision)
 
 TEST(Pitfall, NoOptionIsIgnored)
 {
-  std::map<std::string, std::vector<MPM_TEST::Run::State>> results;
+  std::map<std::string, std::vector<Scene::State>> results;
   for (const char *shape : {"linear", "quadratic", "cubic"})
     for (const char *transfer : {"pic", "flip 0.5", "flip 1.0", "apic"})
       for (const char *scheme : {"usl", "usf", "musl"}) {
         const std::string options =
             fmt::format("shape {} transfer {} scheme {}", shape, transfer, scheme);
-        Lammps run;
+        Scene run;
         run.commands(soft_body(options, "run 10\n"));
         results[options] = run.gather();
         ASSERT_EQ(results[options].size(), 6u * 5u * 4u) << options;
@@ -127,7 +125,7 @@ TEST(Pitfall, NoOptionIsIgnored)
 
 TEST(Pitfall, OriginIsNotIgnored)
 {
-  Lammps a, b;
+  Scene a, b;
   a.commands(soft_body("", ""));
   b.commands(soft_body("", "fix grid all mpm 1.0 origin 0.3 0.1 0.2\n"));
   a.commands("run 10\n");
@@ -141,9 +139,9 @@ TEST(Pitfall, OriginIsNotIgnored)
 
 TEST(Pitfall, KernelsAreThoseThatWereAskedFor)
 {
-  std::vector<MPM_TEST::Run::State> reference;
+  std::vector<Scene::State> reference;
   for (const char *name : {"reference", "baseline", "auto"}) {
-    Lammps run;
+    Scene run;
     run.commands(soft_body(std::string("kernels ") + name, "log kernels.log\nrun 40\nlog none\n"));
     const auto found = run.gather();
     if (reference.empty()) reference = found;
@@ -167,7 +165,7 @@ TEST(Pitfall, KernelsAreThoseThatWereAskedFor)
 TEST(Pitfall, PointsOnRankBoundariesExistOnce)
 {
   // 12 divides by 1, 2, 3 and 4: rank boundaries go through points in all directions
-  Lammps run;
+  Scene run;
   run.commands("units lj\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
                "region box block 0 12 0 12 0 12\ncreate_box 1 box\n"
                "fix grid all mpm 1.0 origin 0.5 0.5 0.5\ncreate_points 1 box ppc 1\n"
@@ -201,9 +199,8 @@ TEST(Pitfall, ReactionsCountEachNodeOnce)
       "fix floor all mpm/boundary zlo slip\nfix g all gravity 1.0 vector 0 0 -1\n"
       "timestep 0.02\nthermo 1000\n";
   const double weight = 6.0 * 6.0 * 4.0, dt = 0.02;
-  Lammps run, serial(MPI_COMM_SELF);
-  run.commands(scene + "run 0\n");
-  serial.commands(scene + "run 0\n");
+  OnRanks both(scene, "run 0\n");
+  auto &run = both.parallel, &serial = both.serial;
   double before = 0.0;
   for (int step = 1; step <= 5; step++) {
     run.commands("run 1\n");
@@ -223,7 +220,7 @@ TEST(Pitfall, ReactionsCountEachNodeOnce)
 
 TEST(Pitfall, BodiesOfDifferentRanksCollide)
 {
-  Lammps run;
+  Scene run;
   run.commands("units lj\nboundary f f f\natom_style mpm\nneighbor 0.3 bin\n"
                "region box block 0 16 0 4 0 4\nprocessors * 1 1\ncreate_box 2 box\n"
                "fix grid all mpm 1.0\nregion one block 5 7 1 3 1 3\nregion two block 9 11 1 3 1 3\n"
@@ -254,11 +251,10 @@ TEST(Pitfall, AllStateMigrates)
       "velocity all ramp vz 0.5 -0.5 y 1 4 sum yes\n"
       "compute h all mpm/atom eplastic\ncompute sum all reduce sum c_h\ncompute max all reduce max "
       "c_h\n"
-      "timestep 0.05\nthermo 1000\nthermo_style custom step c_sum c_max\nrun 160\n";
-  Lammps run, serial(MPI_COMM_SELF);
-  run.commands(scene);
-  serial.commands(scene);
-  EXPECT_LT(difference(run.gather(), serial.gather()), 1.0e-12);
+      "timestep 0.05\nthermo 1000\nthermo_style custom step c_sum c_max\n";
+  OnRanks both(scene, "run 160\n");
+  auto &run = both.parallel, &serial = both.serial;
+  EXPECT_LT(both.difference(), 1.0e-12);
   const double sum = serial.evaluate("c_sum");
   EXPECT_GT(sum, 1.0);
   EXPECT_NEAR(run.evaluate("c_sum"), sum, 1.0e-11 * sum);
@@ -272,7 +268,7 @@ TEST(Pitfall, EmptyCellsCostNoMemory)
   double bytes[2], blocks[2];
   for (int k = 0; k < 2; k++) {
     const int size = k ? 512 : 8;
-    Lammps run(MPI_COMM_SELF);
+    Scene run(MPI_COMM_SELF);
     run.commands(
         fmt::format("units lj\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
                     "region box block 0 {0} 0 {0} 0 {0}\ncreate_box 1 box\nfix grid all mpm 1.0\n"
@@ -302,7 +298,7 @@ TEST(Pitfall, SharedNodesTravelOncePerSum)
                {"transfer apic scheme musl", 8},
                {"transfer apic scheme usf", 8}};
   for (const auto &c : cases) {
-    Lammps run;
+    Scene run;
     run.commands("units lj\nboundary f f f\natom_style mpm\nneighbor 0.3 bin\n"
                  "region box block 0 12 0 12 0 12\ncreate_box 1 box\n"
                  "fix grid all mpm 1.0 " +
@@ -311,26 +307,18 @@ TEST(Pitfall, SharedNodesTravelOncePerSum)
                  "region body block 2 10 2 10 2 10\ncreate_points 1 region body ppc 2\n"
                  "fix soft all mpm/material density 1.0 neohookean 10.0 0.3\n"
                  "timestep 0.05\nthermo 1000\nrun 10\n");
-    auto *fix = dynamic_cast<FixMPM *>(run.lmp->modify->get_fix_by_id("grid"));
+    auto *fix = run.field();
 
     // blocks that several ranks have, counted independently of the code under test
-    std::vector<uint64_t> mine, all;
+    std::vector<uint64_t> mine;
     for (const auto &block : fix->grid->blocks) mine.push_back(MPM_NS::Grid::block_key(block));
-    const int nprocs = run.lmp->comm->nprocs;
-    int n = mine.size();
-    std::vector<int> counts(nprocs), displs(nprocs, 0);
-    MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, run.lmp->world);
-    for (int p = 1; p < nprocs; p++) displs[p] = displs[p - 1] + counts[p - 1];
-    all.resize(displs.back() + counts.back());
-    MPI_Allgatherv(mine.data(), n, MPI_DOUBLE, all.data(), counts.data(), displs.data(),
-                   MPI_UINT64_T, run.lmp->world);
     std::map<uint64_t, double> sharers;
-    for (uint64_t key : all) sharers[key] += 1.0;
+    for (uint64_t key : all_rows(mine, run.lmp->world)) sharers[key] += 1.0;
     double messages = 0.0;
     for (const auto &s : sharers) messages += s.second * (s.second - 1.0);
     const double bytes = messages * MPM_NS::NODES_PER_BLOCK * c.reals * sizeof(double);
     EXPECT_EQ(fix->compute_vector(5), bytes) << c.options;
-    EXPECT_EQ(bytes > 0.0, nprocs > 1);
+    EXPECT_EQ(bytes > 0.0, nranks() > 1);
   }
 }
 
@@ -338,7 +326,7 @@ TEST(Pitfall, SharedNodesTravelOncePerSum)
 
 TEST(Pitfall, RareNeighborListsLoseNoPoint)
 {
-  Lammps usual, rare;
+  Scene usual, rare;
   usual.commands(soft_body("", "run 100\n"));
   rare.commands(soft_body("", "neigh_modify every 10 delay 10 check no\nrun 100\n"));
   EXPECT_LT(difference(usual.gather(), rare.gather()), 1.0e-12);
@@ -350,12 +338,13 @@ class TurnedBody : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(TurnedBody, HasTheTimeStepOfTheBodyAtRest)
 {
-  Lammps run;
+  Scene run;
   run.commands("units lj\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
                "region box block 0 8 0 8 0 8\ncreate_box 1 box\nfix grid all mpm 1.0\n"
                "region body block 2 5 2.5 5 3 5\ncreate_points 1 region body ppc 2\n"
-               "fix m all mpm/material density 1.0 " + GetParam() + "\ntimestep 0.001\nrun 0\n");
-  auto *field = dynamic_cast<FixMPM *>(run.lmp->modify->get_fix_by_id("grid"));
+               "fix m all mpm/material density 1.0 " +
+               GetParam() + "\ntimestep 0.001\nrun 0\n");
+  auto *field = run.field();
   auto *points = MPMPoints::get(run.lmp->atom);
   tagint tag;
   double c;
@@ -382,10 +371,12 @@ class MuslApic : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(MuslApic, ShearedBlockGainsNoEnergy)
 {
-  Lammps run;
+  Scene run;
   run.commands("units lj\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
                "region box block 0 16 0 16 0 16\ncreate_box 1 box\n"
-               "fix grid all mpm 1.0 scheme musl transfer apic shape " + GetParam() + "\n"
+               "fix grid all mpm 1.0 scheme musl transfer apic shape " +
+               GetParam() +
+               "\n"
                "region body block 5 11 5 11 5 11\ncreate_points 1 region body ppc 2\n"
                "fix m all mpm/material density 1.0 neohookean 100.0 0.3\n"
                "velocity all ramp vx -1.0 1.0 y 5 11\ntimestep 0.06\n"

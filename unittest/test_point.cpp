@@ -15,8 +15,6 @@
 #include "material_testing.h"
 #include "mpm_lammps.h"
 
-#include "exceptions.h"
-
 #include "gtest/gtest.h"
 
 #include <cstdio>
@@ -26,7 +24,7 @@
 
 using namespace material_testing;
 using MPM_NS::MixedControl;
-using Lammps = MPM_TEST::Run;
+using MPM_TEST::Scene;
 
 namespace {
 
@@ -89,29 +87,14 @@ std::map<std::string, std::vector<double>> read_table(const std::string &name)
 std::map<std::string, std::vector<double>> drive(const std::string &path,
                                                  const std::string &before = "units si\n")
 {
-  MPI_Barrier(MPI_COMM_WORLD);
+  const MPM_TEST::ScratchFile file("table");
   {
-    Lammps run;
-    run.commands(before + "mpm_point point.table " + path + "\n");
+    Scene run;
+    run.commands(before + "mpm_point " + file.name + " " + path + "\n");
   }
   MPI_Barrier(MPI_COMM_WORLD);
-  auto table = read_table("point.table");
-  MPI_Barrier(MPI_COMM_WORLD);
-  int rank;
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  if (rank == 0) remove("point.table");
+  auto table = read_table(file.name);
   return table;
-}
-
-std::string error_of(const std::string &commands)
-{
-  Lammps run;
-  try {
-    run.commands("units si\nvariable atomic atom id\n" + commands + "\n");
-  } catch (LAMMPS_NS::LAMMPSException &e) {
-    return e.what();
-  }
-  return "";
 }
 
 }    // namespace
@@ -396,9 +379,7 @@ TEST(Point, Units)
 TEST(Point, ErrorsNameTheRemedy)
 {
   const std::string rubber = " material " + RUBBER;
-  const struct {
-    std::string command, message;
-  } cases[] = {
+  const MPM_TEST::Mistake cases[] = {
       {"mpm_point", "Illegal mpm_point command: missing argument"},
       {"mpm_point NULL tension 1 time 1" + rubber,
        "Unknown mpm_point path tension: choose one of uniaxial/stress, uniaxial/strain, shear"},
@@ -435,11 +416,9 @@ TEST(Point, ErrorsNameTheRemedy)
        "eos linear 160e9 strength j2 80e9 300e6",
        "no motion gives the prescribed stress"},
   };
-  int nprocs;
-  MPI_Comm_size(MPI_COMM_WORLD, &nprocs);
   for (const auto &c : cases) {
-    if (nprocs > 1 && c.command.find("no/such") != std::string::npos) continue;    // on rank 0 only
-    const std::string error = error_of(c.command);
-    EXPECT_NE(error.find(c.message), std::string::npos) << c.command << "\n" << error;
+    if (MPM_TEST::nranks() > 1 && c.lines.find("no/such") != std::string::npos)
+      continue;    // rank 0
+    MPM_TEST::expect_refused("units si\nvariable atomic atom id\n", {c});
   }
 }

@@ -16,15 +16,13 @@
 #include "mpm_lammps.h"
 #include "mpm_random_field.h"
 
-#include "exceptions.h"
-
 #include "gtest/gtest.h"
 
 #include <cstdio>
 
 using namespace material_testing;
 using MPM_NS::RandomField;
-using Lammps = MPM_TEST::Run;
+using MPM_TEST::Scene;
 
 namespace {
 
@@ -273,15 +271,12 @@ TEST_F(Random, FixAndRestart)
     const double s2 = std::log(1.09);
     return std::exp(std::sqrt(s2) * field.value(x) - 0.5 * s2);
   };
-  int nprocs, rank;
-  MPI_Comm_size(MPI_COMM_WORLD, &nprocs);
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  const std::string file = "random." + std::to_string(nprocs) + ".bin";
-  const auto row = [](Lammps &run, int i) {
+  const MPM_TEST::ScratchFile file("restart");
+  const auto row = [](Scene &run, int i) {
     auto *fix = dynamic_cast<LAMMPS_NS::FixMPMMaterial *>(run.lmp->modify->get_fix_by_id("m"));
     return fix->history[i][fix->find_history("random/SIGMAY")];
   };
-  const auto gather = [&](Lammps &run) {
+  const auto gather = [&](Scene &run) {
     std::vector<double> mine(20000, 0.0), all(20000);
     for (int i = 0; i < run.lmp->atom->nlocal; i++) mine[run.lmp->atom->tag[i]] = row(run, i);
     MPI_Allreduce(mine.data(), all.data(), 20000, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
@@ -289,7 +284,7 @@ TEST_F(Random, FixAndRestart)
   };
   std::vector<double> before;
   {
-    Lammps run;
+    Scene run;
     run.commands(scene + material);
     double low = 10, high = 0;
     for (int i = 0; i < run.lmp->atom->nlocal; i++) {
@@ -305,14 +300,14 @@ TEST_F(Random, FixAndRestart)
                  "compute c all mpm/atom random/SIGMAY eplastic\n"
                  "compute max all reduce max c_c[1] c_c[2]\nthermo_style custom step c_max[*]\n"
                  "run 0\nwrite_restart " +
-                 file + "\n");
+                 file.name + "\n");
     EXPECT_EQ(gather(run), before);
     EXPECT_DOUBLE_EQ(run.evaluate("c_max[1]"), *std::max_element(before.begin(), before.end()));
   }
   {
-    Lammps run;
-    run.commands("read_restart " + file + "\nneighbor 0.3 bin\nfix grid all mpm 1.0\n" + material +
-                 "run 0\n");
+    Scene run;
+    run.commands("read_restart " + file.name + "\nneighbor 0.3 bin\nfix grid all mpm 1.0\n" +
+                 material + "run 0\n");
     EXPECT_EQ(gather(run), before);
     // points that come later are in the same field
     const LAMMPS_NS::bigint n = run.lmp->atom->natoms;
@@ -321,6 +316,4 @@ TEST_F(Random, FixAndRestart)
     for (int i = 0; i < run.lmp->atom->nlocal; i++)
       if (run.lmp->atom->tag[i] > n) ASSERT_NEAR(row(run, i), expected(run.lmp->atom->x[i]), 1e-14);
   }
-  MPI_Barrier(MPI_COMM_WORLD);
-  if (rank == 0) remove(file.c_str());
 }

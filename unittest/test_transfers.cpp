@@ -19,7 +19,6 @@
 #include <cmath>
 
 using namespace MPM_TEST;
-using Lammps = MPM_TEST::Run;    // tests have a function Run
 
 /** C2: a free disk of 20 cells across that spins once; ratios of angular momentum and energy. */
 static const char *const disk = R"(
@@ -53,7 +52,7 @@ struct Spin {
 
 static Spin spin(const std::string &options, int steps)
 {
-  Lammps run;
+  Scene run;
   run.commands(replaced(disk, "OPTIONS", options));
   run.commands("run 0\n");
   const double L = run.evaluate("c_L"), E = run.evaluate("c_e[1]");
@@ -67,9 +66,9 @@ static Spin spin(const std::string &options, int steps)
 
 TEST(Refined, FirstOrderIsPic)
 {
-  std::vector<Lammps::State> reference;
+  std::vector<Scene::State> reference;
   for (const char *transfer : {"pic", "xpic 1", "fmpm 1"}) {
-    Lammps run;
+    Scene run;
     run.commands(replaced(disk, "OPTIONS", std::string("transfer ") + transfer));
     run.commands("run 100\n");
     const auto state = run.gather();
@@ -105,7 +104,7 @@ TEST(Refined, OrderReducesTheLoss)
 TEST(Refined, NoiseIsRemoved)
 {
   const auto noise_left = [](const std::string &options) {
-    Lammps run;
+    Scene run;
     run.commands(R"(
 units lj
 dimension 2
@@ -113,7 +112,8 @@ boundary p p p
 atom_style mpm
 region box block 0 8 0 8 -0.5 0.5
 create_box 1 box
-fix g all mpm 1.0 )" + options + R"(
+fix g all mpm 1.0 )" +
+                 options + R"(
 create_points 1 region box ppc 2
 fix m all mpm/material density 1 neohookean 1e-12 0.3
 variable v atom 0.1*(2*((floor(2*x)+floor(2*y))%2)-1)
@@ -135,7 +135,7 @@ TEST(Refined, WallsHold)
 {
   for (const char *transfer : {"xpic 3", "fmpm 3"}) {
     SCOPED_TRACE(transfer);
-    Lammps run;
+    Scene run;
     run.commands(std::string(R"(
 units lj
 dimension 2
@@ -143,7 +143,8 @@ boundary p f p
 atom_style mpm
 region box block 0 4 0 12 -0.5 0.5
 create_box 1 box
-fix g all mpm 1.0 transfer )") + transfer + R"(
+fix g all mpm 1.0 transfer )") +
+                 transfer + R"(
 region column block 0 4 0 8 -0.5 0.5
 create_points 1 region column ppc 2
 fix m all mpm/material density 1 neohookean 100 0.3
@@ -197,39 +198,18 @@ thermo 1000
 
 TEST(Parallel, RanksAgree)
 {
-  MPI_Comm self;
-  int me;
-  MPI_Comm_rank(MPI_COMM_WORLD, &me);
-  MPI_Comm_split(MPI_COMM_WORLD, me, 0, &self);
-  for (const char *options : {"transfer xpic 3", "transfer fmpm 3", "transfer flip 1.0 scheme usavg",
-                              "transfer apic scheme usavg shape cubic"}) {
+  for (const char *options :
+       {"transfer xpic 3", "transfer fmpm 3", "transfer flip 1.0 scheme usavg",
+        "transfer apic scheme usavg shape cubic"}) {
     SCOPED_TRACE(options);
-    std::vector<Lammps::State> one, all;
-    {
-      Lammps run(self);
-      run.commands(replaced(cloud, "OPTIONS", options) + "run 100\n");
-      one = run.gather();
-    }
-    {
-      Lammps run;
-      run.commands(replaced(cloud, "OPTIONS", options) + "run 100\n");
-      all = run.gather();
-    }
-    ASSERT_EQ(one.size(), all.size());
-    for (std::size_t i = 0; i < one.size(); i++)
-      for (int d = 0; d < 3; d++) {
-        EXPECT_NEAR(one[i].x[d], all[i].x[d], 1e-12);
-        EXPECT_NEAR(one[i].v[d], all[i].v[d], 1e-12);
-      }
+    OnRanks run(replaced(cloud, "OPTIONS", options), "run 100\n");
+    EXPECT_LT(run.difference(), 1e-12);
   }
-  MPI_Comm_free(&self);
 }
 
 TEST(BadInput, IsRefused)
 {
-  const struct {
-    const char *options, *message;
-  } cases[] = {
+  const Mistake cases[] = {
       {"transfer xpic", "Illegal fix mpm transfer"},
       {"transfer xpic 0", "order must be within 1 and 100"},
       {"transfer fmpm 101", "order must be within 1 and 100"},
@@ -238,14 +218,7 @@ TEST(BadInput, IsRefused)
       {"transfer fmpm 2 scheme usavg", "use scheme usl, or transfer xpic"},
       {"scheme average", "must be one of usl usf musl usavg"},
   };
-  for (const auto &bad : cases) {
-    SCOPED_TRACE(bad.options);
-    Lammps run;
-    try {
-      run.commands(replaced(cloud, "OPTIONS", bad.options) + "run 1\n");
-      ADD_FAILURE() << "no error";
-    } catch (const std::exception &e) {
-      EXPECT_NE(std::string(e.what()).find(bad.message), std::string::npos) << e.what();
-    }
-  }
+  for (const auto &bad : cases)
+    EXPECT_THAT(error_of(replaced(cloud, "OPTIONS", bad.lines) + "run 1\n"),
+                ::testing::HasSubstr(bad.message));
 }

@@ -6,7 +6,6 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-
 // labels: unit smoke
 
 // All unit styles: the same numbers for lengths, times and masses, with moduli and accelerations
@@ -21,18 +20,20 @@
 using namespace MPM_TEST;
 
 struct Result {
-  std::vector<Run::State> states;
+  std::vector<Scene::State> states;
   double kinetic, total, wavespeed, scale;    // scale: mvv2e of the unit style
-  double inconsistency;                        // of mvv2e and 1/ftm2v
+  double inconsistency;                       // of mvv2e and 1/ftm2v
 };
 
 static Result simulate(const std::string &units, const std::string &material)
 {
-  Run run;
+  Scene run;
   run.commands("units " + units + "\n");
   auto *force = run.lmp->force;
   const double pressure = force->mvv2e * force->nktv2p;
-  auto text = [](double value) { return fmt::format("{:.17g}", value); };
+  auto text = [](double value) {
+    return fmt::format("{:.17g}", value);
+  };
   std::string law = material;
   for (const char *name : {"P1", "P2", "P3"}) {
     const auto at = law.find(name);
@@ -43,9 +44,13 @@ static Result simulate(const std::string &units, const std::string &material)
   run.commands("boundary f f f\natom_style mpm\nneighbor 0.3 bin\ntimestep 0.02\n"
                "region box block 0 8 0 8 0 8\ncreate_box 1 box\nfix grid all mpm 1.0\n"
                "region one block 2 6 2 6 0 4\ncreate_points 1 region one ppc 2\n"
-               "fix m all mpm/material density 1.5 " + law + "\n"
+               "fix m all mpm/material density 1.5 " +
+               law +
+               "\n"
                "fix floor all mpm/boundary zlo separate friction 0.3\n"
-               "fix g all gravity " + text(0.5 / force->ftm2v) + " vector 0.2 0 -1\n"
+               "fix g all gravity " +
+               text(0.5 / force->ftm2v) +
+               " vector 0.2 0 -1\n"
                "velocity all set 0.3 0.1 -0.5\n"
                "compute e all mpm/energy\ncompute c all mpm/atom wavespeed energy\n"
                "compute cmax all reduce max c_c[1]\ncompute sum all reduce sum c_c[2]\n"
