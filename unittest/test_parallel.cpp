@@ -106,7 +106,10 @@ INSTANTIATE_TEST_SUITE_P(Options, Ranks,
                          ::testing::Values("transfer apic",
                                            "shape linear transfer flip 0.99 scheme musl",
                                            "shape cubic transfer flip 1.0 scheme usf",
-                                           "shape quadratic transfer apic scheme musl"));
+                                           "shape quadratic transfer apic scheme musl",
+                                           "locking fbar",
+                                           "transfer flip 1.0 scheme usavg locking fbar",
+                                           "shape cubic locking pressure"));
 
 // in the total frame, the two bodies are one, and neighbors on the lattice come to be far apart
 
@@ -126,7 +129,8 @@ TEST_P(TotalRanks, Rcb)
 INSTANTIATE_TEST_SUITE_P(Options, TotalRanks,
                          ::testing::Values("frame total transfer apic",
                                            "frame total shape linear transfer flip 1.0 scheme musl",
-                                           "frame total shape cubic transfer flip 0.9 scheme usf"));
+                                           "frame total shape cubic transfer flip 0.9 scheme usf",
+                                           "frame total locking both"));
 
 // slabs along one axis: with 4 ranks some have no points at all
 

@@ -77,7 +77,8 @@ INSTANTIATE_TEST_SUITE_P(Options, Restart,
                                            "shape linear transfer flip 0.99 scheme musl",
                                            "shape cubic transfer apic scheme musl",
                                            "transfer pic scheme usf", "frame total transfer apic",
-                                           "frame total transfer flip 0.99 scheme musl"));
+                                           "frame total transfer flip 0.99 scheme musl",
+                                           "locking fbar", "scheme musl locking pressure"));
 
 // the write_restart command between runs, and a file of one rank read by many
 

@@ -41,7 +41,7 @@ static constexpr double MAX_NODE = 4.0e6;
 
 FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), shape(QUADRATIC), transfer(APIC), flip(0.0),
-    refinement(LUMPED), order(1), total(false), scheme(USL), policy(ERROR),
+    refinement(LUMPED), order(1), total(false), scheme(USL), locking(NO_CURE), policy(ERROR),
     delete_failed(false), dt_check(true), grid(nullptr), C(nullptr), X(nullptr), ledger_on(false), points(nullptr), halo(nullptr),
     kernels(nullptr), batch_kernels(nullptr), driver(false), topology_valid(false),
     watch_drift(false), drifted(0), want_sort(false), switches(0), switches_sorted(0),
@@ -166,6 +166,9 @@ void FixMPM::process_options(int narg, char **arg)
       iarg += 2;
     } else if (keyword == "frame") {
       total = choose({"updated", "total"}) == 1;
+      iarg += 2;
+    } else if (keyword == "locking") {
+      locking = (Locking) choose({"none", "fbar", "pressure", "both"});
       iarg += 2;
     } else if (keyword == "origin") {
       need(lattice.dim);
@@ -472,7 +475,7 @@ PointRows FixMPM::rows() const
   r.F = &points->F[0][0];
   r.mass = atom->rmass;
   r.guarded = atom->nmax - 1;
-  r.xnew = stress_after() ? const_cast<double *>(xnew.data()) : &atom->x[0][0];
+  r.xnew = moves_late() ? const_cast<double *>(xnew.data()) : &atom->x[0][0];
   return r;
 }
 

@@ -53,6 +53,7 @@ class FixMPM : public Fix {
  public:
   enum Scheme { USL, USF, MUSL, USAVG };
   enum Refinement { LUMPED, XPIC, FMPM };
+  enum Locking { NO_CURE, FBAR, PRESSURE, BOTH };    ///< cure for volumetric locking
   enum Policy { ERROR, WARN, DELETE };
 
   FixMPM(class LAMMPS *, int, char **);
@@ -91,6 +92,7 @@ class FixMPM : public Fix {
   int order;                ///< terms of the inverse of the mass matrix, 1: lumped
   bool total;          ///< nodes are places of the reference configuration (total Lagrangian)
   Scheme scheme;
+  Locking locking;     ///< what is averaged against volumetric locking
   Policy policy;       ///< what to do with a point that goes bad
   bool delete_failed;  ///< remove points whose damage is 1
   bool dt_check;       ///< stop when the time step is above the stable limit
@@ -108,6 +110,11 @@ class FixMPM : public Fix {
   /** Does the scheme update stress at the start, at the end of the step, or (neither) in between? */
   bool stress_before() const { return scheme == USF || scheme == USAVG; }
   bool stress_after() const { return scheme == MUSL || scheme == USAVG; }
+  /** What does the cure for locking average: changes of volume, pressures in the force? */
+  bool averages_strain() const { return locking == FBAR || locking == BOTH; }
+  bool averages_stress() const { return locking == PRESSURE || locking == BOTH; }
+  /** Are the old positions needed after G2P? */
+  bool moves_late() const { return stress_after() || (averages_strain() && !stress_before()); }
 
   /** True when atom i is a material point of this field. */
   bool is_point(int i) const;
@@ -187,8 +194,10 @@ class FixMPM : public Fix {
   bigint switches;       // neighbours in memory that are in different cells, now
   bigint switches_sorted;    // and right after the last sort
   double *tile, *tile_load;
-  std::vector<double> xnew;              // MUSL: position at the end of the step
+  std::vector<double> xnew;              // when points move late: position at the end of the step
   std::vector<double> v_apart, lumped;    // XPIC, FMPM: velocities of points and nodes
+  std::vector<double> gradients;         // F-bar: velocity gradients of the points
+  std::vector<double> tau_averaged;      // stress with averaged pressure
   std::vector<double> history_batch;     // history variables of a batch
   std::vector<double> external_nodes;    // ledger: nodal external forces
   std::vector<double> nodes_apart;       // sums that node actions ask for,
@@ -233,6 +242,11 @@ class FixMPM : public Fix {
   template <class Weigh>
   void map_some(const MPM_NS::PointRows &, const MPM_NS::TransferStep &, MPM_NS::P2G,
                 const std::vector<char> &near, int lane, int nlane, const Weigh &);
+  void average_around_points();
+  double volume_change(int i, const double *L, double dt) const;
+  void averaged_material(const double *L, double dt);
+  void average_pressure();
+  void move_points();
   void load_tile(const ActiveBlock &, int base[3]);
   void sum_halo(int lane, int nlane);
   void gradient_and_material(double dt, double shift);

@@ -196,6 +196,8 @@ double FixMPM::memory_usage()
   double bytes = grid->memory_usage();
   bytes += (double) own_size() * atom->nmax * sizeof(double);
   bytes += runs.capacity() * sizeof(Run) + active.capacity() * sizeof(ActiveBlock);
-  bytes += (xnew.capacity() + external_nodes.capacity() + zero_volume.capacity()) * sizeof(double);
+  bytes += (xnew.capacity() + external_nodes.capacity() + zero_volume.capacity() +
+            v_apart.capacity() + rows_apart.capacity() + nodes_apart.capacity() +
+            gradients.capacity() + tau_averaged.capacity()) * sizeof(double);
   return bytes + 2.0 * MAX_TILE_NODES * 8 * sizeof(double);
 }

@@ -65,6 +65,7 @@ void FixMPM::points_to_grid()
 {
   clock = platform::walltime();
   add_torques();
+  if (averages_stress() && !stress_before()) average_pressure();
   grid->zero();
   map_to_nodes(stress_before() ? kernel.p2g_momentum : kernel.p2g);
   lap(report.t_p2g);
@@ -101,6 +102,7 @@ void FixMPM::stress_first()
     record[7] = 0.0;
   }
   lap(report.t_nodes);
+  if (averages_stress()) average_pressure();
   map_to_nodes(kernel.p2g_force);
   lap(report.t_p2g);
   sum_halo(4, 4);
@@ -137,7 +139,9 @@ void FixMPM::grid_to_points()
     kinetic_points = kinetic;
   }
   grid->copy_aliases();
-  if (stress_after()) xnew.resize(3 * (std::size_t) atom->nlocal);
+  if (moves_late()) xnew.resize(3 * (std::size_t) atom->nlocal);
+  const bool fbar = averages_strain() && scheme == USL;
+  if (fbar && !kernel.affine) gradients.resize(affine_size() * (std::size_t) atom->nmax);
 
   const PointRows r = rows();
   const TransferStep s = step_data();
@@ -148,14 +152,30 @@ void FixMPM::grid_to_points()
     for (int k = a.first_run; k < a.last_run; k++)
       for (int i = runs[k].first; i < runs[k].last; i += BATCH) {
         const int last = std::min(i + BATCH, runs[k].last);
+        double *const out = fbar ? gradients.data() + affine_size() * (bigint) i : L;
         drifted |= kernel.g2p(r, s, i, last, base, tile_load,
-                              kernel.affine || scheme != USL ? nullptr : L);
-        if (scheme == USL)
+                              kernel.affine || scheme != USL ? nullptr : out);
+        if (scheme == USL && !fbar)
           material_update(r, runs[k], i, last - i,
                           kernel.affine ? r.C + (bigint) affine_size() * i : L, update->dt);
       }
   }
+  if (fbar) {
+    averaged_material(kernel.affine ? r.C : gradients.data(), update->dt);
+    move_points();
+  }
   lap(report.t_g2p);
+}
+
+/* ----------------------------------------------------------------------
+   positions of the end of the step, where they had to wait
+------------------------------------------------------------------------- */
+
+void FixMPM::move_points()
+{
+  for (const auto &run : runs)
+    memcpy(&atom->x[run.first][0], &xnew[3 * (std::size_t) run.first],
+           3 * sizeof(double) * (run.last - run.first));
 }
 
 /* ----------------------------------------------------------------------
@@ -186,9 +206,7 @@ void FixMPM::stress_last()
     gradient_and_material(0.5 * update->dt, -0.25 * update->dt);
   else
     gradient_and_material(update->dt, 0.0);
-  for (const auto &run : runs)
-    memcpy(&atom->x[run.first][0], &xnew[3 * (std::size_t) run.first],
-           3 * sizeof(double) * (run.last - run.first));
+  move_points();
   lap(report.t_g2p);
 }
 
@@ -242,18 +260,22 @@ void FixMPM::gradient_and_material(double dt, double shift)
 {
   const PointRows r = rows();
   const TransferStep s = step_data();
-  double L[9 * BATCH];
+  const bool fbar = averages_strain();
+  if (fbar) gradients.resize(affine_size() * (std::size_t) atom->nmax);
+  double batch_gradients[9 * BATCH];
   for (const auto &a : active) {
     int base[3];
     load_tile(a, base);
     for (int k = a.first_run; k < a.last_run; k++)
       for (int i = runs[k].first; i < runs[k].last; i += BATCH) {
         const int last = std::min(i + BATCH, runs[k].last);
+        double *const L = fbar ? gradients.data() + affine_size() * (bigint) i : batch_gradients;
         kernel.g2p_gradient(r, s, i, last, base, tile_load, L);
         if (shift != 0.0 && !total) shift_gradient(lattice.dim, last - i, shift, L);
-        material_update(r, runs[k], i, last - i, L, dt);
+        if (!fbar) material_update(r, runs[k], i, last - i, L, dt);
       }
   }
+  if (fbar) averaged_material(gradients.data(), dt);
 }
 
 /* ----------------------------------------------------------------------
@@ -350,7 +372,8 @@ void FixMPM::act_on_nodes(MPMNodeAction::Stage stage)
 
 void FixMPM::map_to_nodes(P2G p2g)
 {
-  const PointRows r = rows();
+  PointRows r = rows();
+  if (averages_stress()) r.tau = tau_averaged.data();
   const TransferStep s = step_data();
   for (auto &a : active) {
     const auto &block = grid->blocks[a.slot];

@@ -1,0 +1,342 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// labels: physics
+// timeout: 300
+
+// Volumetric locking and its cures: keyword locking of fix mpm.
+
+#include "mpm_lammps.h"
+
+#include "gtest/gtest.h"
+
+#include <cmath>
+
+using namespace MPM_TEST;
+
+/* ----------------------------------------------------------------------
+   Cook's membrane: corners (0,0), (48,44), (48,60), (0,44), clamped on the left, a shear force
+   F = 100 on the right edge; neo-Hookean, plane strain. Displacements of the middle of the right
+   edge by finite elements of order 2 with pressures of order 1, converged: E = 240.565, nu = .4999:
+   6.953; E = 70, nu = 1/3: 19.337.
+------------------------------------------------------------------------- */
+
+struct Cook {
+  double u;         // displacement of (48,52)
+  double ripple;    // rms of pressure minus its mean over the points of a cell, by rms of pressure
+};
+
+static Cook cook(const char *options, double h, double nu)
+{
+  const double E = nu > 0.4 ? 240.565 : 70.0;
+  const double lambda = E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), mu = 0.5 * E / (1.0 + nu);
+  const double dt = 0.5 * h / sqrt(lambda + 2.0 * mu), F = 100.0;
+  const double u_expected = nu > 0.4 ? 7.0 : 19.0;
+  const double omega = sqrt(F / u_expected / 400.0), ramp = 4.0 / omega, end = 12.0 / omega;
+  Scene run;
+  run.commands(strprintf(
+      "units si\ndimension 2\nboundary f f p\natom_style mpm\nneighbor %.17g bin\n"
+      "region box block 0 60 0 90 -0.5 0.5\ncreate_box 1 box\n"
+      "fix grid all mpm %.17g %s dtcheck no\n"
+      "region lower plane 0 0 0 -44 48 0\nregion upper plane 0 44 0 16 -48 0\n"
+      "region span block 0 48 0 60 INF INF\nregion plate intersect 3 span lower upper\n"
+      "create_points 1 region plate ppc 2\n"
+      "fix m all mpm/material density 1 neohookean %.17g %.17g\n"
+      "fix clamp all mpm/boundary xlo stick\nthermo 1000000\n",
+      0.4 * h, h, options, E, nu));
+  run.set_reference();
+  double edge = 0.0;
+  for (int i = 0; i < run.n(); i++)
+    if (run.reference(i)[0] > 48.0 - 0.5 * h) edge += run.mass()[i];
+  run.each_step([&](double **force) {
+    const double f = F * std::min(1.0, run.time() / ramp) / edge;
+    for (int i = 0; i < run.n(); i++) {
+      const double m = run.mass()[i];
+      for (int d = 0; d < 2; d++) force[i][d] = -1.6 * omega * m * run.v()[i][d];
+      if (run.reference(i)[0] > 48.0 - 0.5 * h) force[i][1] += m * f;
+    }
+  });
+  run.commands(strprintf("timestep %.17g\nrun %ld\n", dt, std::lround(end / dt)));
+
+  // the last two columns of points, next to y = 52, extrapolated
+
+  double u[2] = {0.0, 0.0}, n[2] = {0.0, 0.0};
+  for (int i = 0; i < run.n(); i++) {
+    const double *X = run.reference(i);
+    if (std::abs(X[1] - 52.0) > 0.5 * h || X[0] < 48.0 - h) continue;
+    const int k = X[0] < 48.0 - 0.5 * h;
+    u[k] += run.x()[i][1] - X[1];
+    n[k]++;
+  }
+  Cook out;
+  out.u = 1.5 * u[0] / n[0] - 0.5 * u[1] / n[1];
+
+  // pressures in the cells that the points began in, away from the singular corners
+
+  std::vector<std::array<double, 3>> cells(100 * 100);
+  for (auto &cell : cells) cell = {0.0, 0.0, 0.0};
+  double square = 0.0;
+  for (int i = 0; i < run.n(); i++) {
+    const double *X = run.reference(i);
+    if (X[0] < 8.0 || X[0] > 40.0) continue;
+    double s[6];
+    run.points().cauchy(i, s);
+    const double p = -(s[0] + s[1] + s[2]) / 3.0;
+    auto &cell = cells[100 * (int) (X[0] / h) + (int) (X[1] / h)];
+    cell[0] += 1.0;
+    cell[1] += p;
+    cell[2] += p * p;
+    square += p * p;
+  }
+  double scatter = 0.0;
+  for (const auto &cell : cells)
+    if (cell[0] > 1.0) scatter += cell[2] - cell[1] * cell[1] / cell[0];
+  out.ripple = sqrt(scatter / square);
+  const std::string name = strprintf("Cook, nu = %g, h = %g, %s: ", nu, h, options);
+  measured(name + "displacement/reference", out.u / (nu > 0.4 ? 6.953 : 19.337));
+  measured(name + "pressure ripple", out.ripple);
+  return out;
+}
+
+TEST(CookMembrane, LocksWithoutCure)
+{
+  const Cook without = cook("", 2.0, 0.4999), with = cook("locking fbar", 2.0, 0.4999);
+  EXPECT_LT(without.u / 6.953, 0.91);
+  EXPECT_NEAR(with.u / 6.953, 1.0, 0.04);
+  EXPECT_LT(with.ripple, 0.6 * without.ripple);
+}
+
+// both cures have the same stiffness, as long as the bulk modulus is uniform
+
+TEST(CookMembrane, PressureAgrees)
+{
+  const Cook fbar = cook("locking fbar", 4.0, 0.4999),
+             pressure = cook("locking pressure", 4.0, 0.4999);
+  EXPECT_NEAR(pressure.u / fbar.u, 1.0, 0.005);
+  EXPECT_NEAR(fbar.u / 6.953, 1.0, 0.08);
+}
+
+TEST(CookMembrane, CompressibleStays)
+{
+  EXPECT_NEAR(cook("", 2.0, 1.0 / 3.0).u / 19.337, 1.0, 0.02);
+  EXPECT_NEAR(cook("locking fbar", 2.0, 1.0 / 3.0).u / 19.337, 1.0, 0.03);
+  EXPECT_NEAR(cook("locking pressure", 2.0, 1.0 / 3.0).u / 19.337, 1.0, 0.03);
+}
+
+/* ----------------------------------------------------------------------
+   A body whose velocity is linear in position deforms uniformly in a step, averaged or not.
+------------------------------------------------------------------------- */
+
+class Uniform : public ::testing::TestWithParam<const char *> {};
+
+TEST_P(Uniform, StretchIsExact)
+{
+  for (int dim : {2, 3}) {
+    Scene run;
+    run.commands(strprintf("units lj\ndimension %d\nboundary f f p\natom_style mpm\n"
+                           "region box block -5 5 -5 5 %s\ncreate_box 2 box\n"
+                           "fix grid all mpm 0.5 %s\n"
+                           "region body block -1.1 1.2 -1.3 1 %s\ncreate_points 1 region body ppc 2\n"
+                           "region half block 0.1 INF INF INF INF INF\n"
+                           "set region half type 2\ngroup one type 1\ngroup two type 2\n"
+                           "fix m1 one mpm/material density 1 neohookean 1e-14 0.3\n"
+                           "fix m2 two mpm/material density 1 linear 1e-14 0.3\n"
+                           "timestep 0.2\nthermo 1000\n",
+                           dim, dim == 2 ? "-0.5 0.5" : "-5 5", GetParam(),
+                           dim == 2 ? "INF INF" : "-1 1"));
+    const double G[3][3] = {{0.3, 0.1, -0.2}, {0.4, -0.2, 0.1}, {0.1, -0.3, 0.5}};
+    for (int step = 0; step < 5; step++) {
+      run.set_velocity([&](const double *x, double *v) {
+        for (int i = 0; i < dim; i++) {
+          v[i] = 0.0;
+          for (int j = 0; j < dim; j++) v[i] += G[i][j] * x[j];
+        }
+      });
+      run.commands("run 1\n");
+    }
+    double worst = 0.0, change = 0.0;
+    for (int i = 0; i < run.n(); i++)
+      for (int c = 0; c < 9; c++)
+        worst = std::max(worst, std::abs(run.points().F[i][c] - run.points().F[0][c]));
+    for (int i = 0; i < run.n(); i++)
+      change = std::max(change, std::abs(run.points().jacobian(i) - 1.0));
+    EXPECT_GT(change, 0.05);
+    EXPECT_LT(measured(strprintf("%dd: spread of F", dim), worst), 1.0e-12);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Options, Uniform,
+                         ::testing::Values("locking fbar", "locking pressure", "locking both",
+                                           "locking fbar shape cubic",
+                                           "locking fbar scheme musl",
+                                           "locking fbar scheme usf",
+                                           "locking fbar frame total"));
+
+/* ----------------------------------------------------------------------
+   In a step, averages change volumes of points, but not their sum; the next step with and without
+   averages after some steps with them.
+------------------------------------------------------------------------- */
+
+class Volume : public ::testing::TestWithParam<const char *> {};
+
+TEST_P(Volume, SumIsThatOfTheMotion)
+{
+  for (int dim : {2, 3}) {
+    double volume[2], largest[2];
+    for (int averaged : {0, 1}) {
+      Scene run;
+      run.commands(strprintf("units si\ndimension %d\nboundary f f p\natom_style mpm\n"
+                             "region box block -5 5 -5 5 %s\ncreate_box 1 box\n"
+                             "fix grid all mpm 0.5 %s\nregion body block -1 1 -1 1 %s\n"
+                             "create_points 1 region body ppc 2\n"
+                             "fix m all mpm/material density 1 neohookean 1e-10 0.3\n"
+                             "timestep 0.05\nthermo 1000\n",
+                             dim, dim == 2 ? "-0.5 0.5" : "-5 5", GetParam(),
+                             dim == 2 ? "INF INF" : "-1 1"));
+      run.set_velocity([&](const double *x, double *v) {
+        v[0] = sin(x[0] + 2.0 * x[1]);
+        v[1] = sin(x[1] - x[0]) * cos(x[1]);
+        v[2] = dim == 3 ? cos(x[0]) * sin(x[2] + x[1]) : 0.0;
+      });
+      run.commands("run 4\n");
+      if (!averaged) run.field()->locking = FixMPM::NO_CURE;
+      run.commands("run 1\n");
+      volume[averaged] = largest[averaged] = 0.0;
+      for (int i = 0; i < run.n(); i++) {
+        const double J = run.points().jacobian(i);
+        volume[averaged] += J / run.n();
+        largest[averaged] = std::max(largest[averaged], J);
+      }
+    }
+    EXPECT_GT(std::abs(volume[1] - 1.0), 0.01);
+    EXPECT_GT(std::abs(largest[1] - largest[0]), 0.001);
+    EXPECT_NEAR(volume[1], volume[0], 1.0e-13);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Options, Volume,
+                         ::testing::Values("locking fbar", "locking fbar transfer flip 1.0 scheme musl",
+                                           "locking fbar frame total"));
+
+/* ----------------------------------------------------------------------
+   Free oscillation of a bar in uniaxial strain, fixed at one end: v = v0 sin(k X) cos(w t) with
+   w = k sqrt((lambda + 2 mu)/rho), k = pi/2. There is nothing to cure, so averages only lower the
+   frequency, by (kh)^2/8 of the part of the bulk modulus in lambda + 2 mu.
+------------------------------------------------------------------------- */
+
+class Bar : public ::testing::TestWithParam<const char *> {};
+
+TEST_P(Bar, ConfinedOscillation)
+{
+  const double h = 0.05, E = 1.0, nu = 0.4999, k = 0.5 * 3.14159265358979, v0 = 1.0e-2;
+  const double lambda = E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), mu = 0.5 * E / (1.0 + nu);
+  const double speed = sqrt(lambda + 2.0 * mu), omega = k * speed;
+  const int steps = 4000, periods = 8;
+  Scene run;
+  run.commands(strprintf(
+      "units si\ndimension 2\nboundary f f p\natom_style mpm\nneighbor %.17g bin\n"
+      "region box block 0 0.2 0 1.5 -0.5 0.5\ncreate_box 1 box\n"
+      "fix grid all mpm %.17g transfer flip 1.0 scheme musl %s\n"
+      "region bar block INF INF 0 1 INF INF\ncreate_points 1 region bar ppc 2\n"
+      "fix m all mpm/material density 1 neohookean %.17g %.17g\n"
+      "fix sides all mpm/boundary xlo xhi ylo slip\nthermo 1000000\n"
+      "compute e all mpm/energy\ntimestep %.17g\n",
+      0.5 * h, h, GetParam(), E, nu, periods * 4.0 * k / omega / steps));
+  run.set_reference();
+  run.set_velocity([&](const double *x, double *v) { v[1] = v0 * sin(k * x[1]); });
+  run.commands(strprintf("run 0\n"));
+  const double start = run.evaluate("c_e");
+  run.commands(strprintf("run %d\n", steps));
+  double u = 0.0, norm = 0.0;
+  for (int i = 0; i < run.n(); i++) {
+    const double *X = run.reference(i), mode = sin(k * X[1]);
+    u += mode * (run.x()[i][1] - X[1]);
+    norm += mode * mode;
+  }
+  const std::string name = std::string("bar, ") + GetParam() + ": ";
+  const double late = asin(-u / norm * omega / v0) / (periods * 4.0 * k);
+  EXPECT_LT(std::abs(measured(name + "period, relative error", late)), 0.004);
+  EXPECT_LT(std::abs(measured(name + "residual of the ledger", run.evaluate("c_e[11]") / start)),
+            1.0e-12);
+
+  // laws see what points do on their own if only the pressure in the force is averaged
+
+  const double integration = measured(name + "integration", run.evaluate("c_e[10]") / start);
+  if (std::string(GetParam()) == "locking pressure")
+    EXPECT_LT(std::abs(integration), 0.15);
+  else {
+    EXPECT_LT(std::abs(integration), 0.01);
+    EXPECT_NEAR(measured(name + "energy after 8 periods", run.evaluate("c_e") / start), 1.0, 0.01);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Options, Bar,
+                         ::testing::Values("locking none", "locking fbar", "locking pressure",
+                                           "locking both"));
+
+/* ----------------------------------------------------------------------
+   Free oscillation of a block in plane strain, nu = 0.4999. With APIC, the energy that is left
+   after some time tells whether the block moves like one of nu = 0.49, which does not lock yet.
+------------------------------------------------------------------------- */
+
+struct Oscillation {
+  double energy, spread, residual;    // by the energy at the start; of J, from smallest to largest
+};
+
+static Oscillation block(const char *options, double nu)
+{
+  Scene run;
+  run.commands(strprintf(
+      "units si\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.05 bin\n"
+      "region box block -1 1 -1 1 -0.5 0.5\ncreate_box 1 box\nfix grid all mpm 0.1 %s\n"
+      "region bar block -0.5 0.5 -0.5 0.5 INF INF\ncreate_points 1 region bar ppc 2\n"
+      "fix m all mpm/material density 1 neohookean 1 %g\nthermo 1000000\n"
+      "compute e all mpm/energy\ntimestep 0.001\n",
+      options, nu));
+  run.set_velocity([&](const double *x, double *v) {
+    v[0] = 0.1 * x[0];
+    v[1] = -0.1 * x[1];
+  });
+  run.commands("run 0\n");
+  const double start = run.evaluate("c_e");
+  run.commands("run 10000\n");
+  double least = 1.0, most = 1.0;
+  for (int i = 0; i < run.n(); i++) {
+    least = std::min(least, run.points().jacobian(i));
+    most = std::max(most, run.points().jacobian(i));
+  }
+  Oscillation out;
+  const std::string name = strprintf("block, nu = %g, %s: ", nu, options);
+  out.energy = measured(name + "energy left", run.evaluate("c_e") / start);
+  out.spread = measured(name + "spread of J", most - least);
+  out.residual = measured(name + "residual of the ledger", run.evaluate("c_e[11]") / start);
+  return out;
+}
+
+TEST(Block, MovesAsWithoutLocking)
+{
+  const double reference = block("locking none", 0.49).energy;
+  const Oscillation without = block("locking none", 0.4999);
+  EXPECT_GT(without.energy / reference, 2.0);
+  for (const char *cure : {"locking fbar", "locking both"}) {
+    const Oscillation with = block(cure, 0.4999);
+    EXPECT_NEAR(with.energy / reference, 1.0, 0.25);
+    EXPECT_LT(with.spread, 0.3 * without.spread);
+    EXPECT_LT(std::abs(with.residual), 1.0e-12);
+  }
+}
+
+// F-bar with averaged pressure does as much work as the law says, also when points move over the
+// lattice; with F-bar alone a body without any damping gains energy
+
+TEST(Block, EnergyWithoutDamping)
+{
+  const std::string flip = "transfer flip 1.0 scheme musl locking ";
+  EXPECT_NEAR(block((flip + "both").c_str(), 0.4999).energy, 1.0, 0.01);
+  EXPECT_LT(block((flip + "fbar").c_str(), 0.4999).energy, 1.6);
+}
