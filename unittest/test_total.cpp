@@ -345,17 +345,6 @@ TEST(TotalPeriodic, MovingIsAtRest)
 
 // ---------------------------------------------------------------------- what is refused
 
-static std::string error_of(const std::string &input)
-{
-  try {
-    Scene run;
-    run.commands(input);
-  } catch (LAMMPSException &e) {
-    return e.what();
-  }
-  return "";
-}
-
 TEST(TotalInput, IsRefused)
 {
   const std::string head = "units lj\nboundary f f f\natom_style mpm\nneighbor 0.3 bin\n"
