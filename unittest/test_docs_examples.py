@@ -100,7 +100,8 @@ def prerequisites(line, before):
             uses = uses or (words[0] == "dump" and line.split()[1] == words[1])
         if uses and not any(later.split()[:2] == words[:2] for later in [line] + needed):
             needed.insert(0, earlier)
-    return needed
+    styles = [earlier for earlier in before if earlier.startswith("pair_style")]
+    return (styles[-1:] if line.startswith("pair_coeff") else []) + needed
 
 
 def scene_for(lines):
@@ -123,8 +124,9 @@ def scene_for(lines):
         for name, rest in FIXES.items():
             if re.search(r"\bfix %s\b" % name, text):
                 grid = "fix %s %s\n" % (name, rest)
-    if "mpm/contact" in text:
-        named = [word for word in text.split() if word in BODIES]
+    pairs = "pair_style mpm/penalty" in text
+    if "mpm/contact" in text or pairs:
+        named = BODIES[:2] if pairs else [word for word in text.split() if word in BODIES]
         grid = "".join("group %s type %d\nfix %s %s mpm 0.01\n" % (name, k + 1, name, name)
                        for k, name in enumerate(named))
         for k in range(len(named)):
@@ -137,6 +139,8 @@ def scene_for(lines):
     if "write_dump" in text:
         scene += "timestep 1.0e-7\nrun 0\n"
     scene += text + "\n"
+    if pairs and "pair_coeff 1 2" not in text:
+        scene += "pair_coeff 1 2 1.0e6\n"
     if own_field and grid == "":
         scene += MATERIAL
     if "mpm/dt" not in text:

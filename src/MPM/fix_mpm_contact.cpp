@@ -259,6 +259,14 @@ void FixMPMContact::init()
 
 /* ---------------------------------------------------------------------- */
 
+bool FixMPMContact::couples(const std::string &a, const std::string &b) const
+{
+  const auto has = [&](const std::string &name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  return a != b && has(a) && has(b);
+}
+
 int FixMPMContact::index_of(const FixMPM &field) const
 {
   for (std::size_t k = 0; k < fields.size(); k++)

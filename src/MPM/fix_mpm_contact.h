@@ -44,6 +44,9 @@ class FixMPMContact : public Fix, public MPMNodeAction {
   void topology_changed(FixMPM &) override;
   void act(double dt, Stage) override;
 
+  /** Is contact between these two fields (IDs) left to this fix? */
+  bool couples(const std::string &a, const std::string &b) const;
+
   static constexpr int MAX_FIELDS = 8;
 
  private:

@@ -1,0 +1,89 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifdef PAIR_CLASS
+// clang-format off
+PairStyle(mpm/penalty,PairMPMPenalty);
+// clang-format on
+#else
+
+#ifndef LMP_PAIR_MPM_PENALTY_H
+#define LMP_PAIR_MPM_PENALTY_H
+
+#include "pair.h"
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace LAMMPS_NS {
+class FixMPM;
+struct MPMPoints;
+
+/** Contact between points of different fields (fix mpm), whatever their lattices.
+ *
+ *  Points are spheres (2d: disks) as wide as the spacing of points that their present volume
+ *  means. Where two overlap by delta, they repel each other along the line of their centers with
+ *  F = E A delta/(r_i + r_j), A the face of the smaller one: aligned faces feel the pressure
+ *  E delta/spacing, as of a layer of material of modulus E between the outermost points.
+ */
+class PairMPMPenalty : public Pair {
+ public:
+  PairMPMPenalty(class LAMMPS *);
+  ~PairMPMPenalty() override;
+  void compute(int, int) override;
+  void settings(int, char **) override;
+  void coeff(int, char **) override;
+  void init_style() override;
+  double init_one(int, int) override;
+  void write_restart(FILE *) override;
+  void read_restart(FILE *) override;
+  void write_restart_settings(FILE *) override;
+  void read_restart_settings(FILE *) override;
+  int pack_forward_comm(int, int *, double *, int, int *) override;
+  void unpack_forward_comm(int, int, double *) override;
+  double memory_usage() override;
+
+ private:
+  struct Coeff {
+    double modulus;     // pressure units
+    double friction;    // coefficient of Coulomb
+    double slip;        // sliding velocity from which on friction is full
+    double damping;     // share of critical damping of a contact
+    int64_t set;        // given by pair_coeff
+  };
+
+  MPMPoints *points;
+  double growth;    // radii grow to this multiple of their initial value at most
+  std::vector<Coeff> coeffs;    // [ntypes+1][ntypes+1]
+  std::vector<FixMPM *> fields;
+  std::vector<char> coupled;           // [field][field] same field, or left to fix mpm/contact
+  std::vector<char> present;           // [field][type]
+  std::vector<double> largest;         // [type] initial radius of the largest point
+  bool velocities, damped;             // some coefficients need velocities, masses
+  bool look;                           // at what the neighbor list consists of
+  bool warned;                         // that points outgrow their limit
+
+  int nmax;
+  double *radius, *mass;                       // current, [nlocal+nghost]; mass with damping only
+  std::vector<std::pair<int, int>> pairs;      // in reach of each other: of different fields
+  std::vector<int> near;                       // local points in them
+
+  void allocate();
+  void find_pairs();
+  void warn_about_list(double same, double all);
+  int field_of(int i) const;
+  bool meet(int itype, int jtype, int &a, int &b) const;
+  double initial_radius(int i) const;
+  double current_radius(int i);
+  Coeff &coeff_of(int i, int j);
+};
+
+}    // namespace LAMMPS_NS
+#endif
+#endif

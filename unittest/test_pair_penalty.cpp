@@ -1,0 +1,470 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// labels: physics mpi input restart
+// mpi: 1 3
+// timeout: 300
+
+// Contact between fields on different lattices through pair style mpm/penalty.
+
+#include "mpm_lammps.h"
+
+#include "gtest/gtest.h"
+
+#include <cmath>
+
+using namespace MPM_TEST;
+using Lammps = MPM_TEST::Run;    // tests have a function Run
+
+// ---------------------------------------------------------------------- head-on impact of two bars
+
+/** Bars of length 1 at a gap of 0.01, each with speed 0.05, with spacings 0.02 and 0.016. */
+static const char *const bars = R"(
+units si
+dimension 2
+boundary f p p
+atom_style mpm
+neighbor 0.01 bin
+region box block -0.3 2.6 0 0.08 -0.05 0.05
+create_box 2 box
+region b1 block 0 1 0 0.08 -0.05 0.05
+region b2 block 1.01 2.01 0 0.08 -0.05 0.05
+group one type 1
+group two type 2
+fix F1 one mpm 0.02 transfer flip 1.0 scheme musl
+fix F2 two mpm 0.016 origin 1.01 0 transfer flip 1.0 scheme musl
+create_points 1 region b1 ppc 2 fix F1
+create_points 2 region b2 ppc 2 fix F2
+group one type 1
+group two type 2
+fix m1 one mpm/material density 1 linear MODULUS 0
+fix m2 two mpm/material density 1 linear MODULUS 0
+velocity one set 0.05 0 0
+velocity two set -0.05 0 0
+pair_style mpm/penalty
+pair_coeff 1 2 PENALTY
+timestep STEP
+compute e all mpm/energy
+compute pair all pair mpm/penalty
+compute f one reduce sum fx
+variable v1 equal vcm(one,x)
+variable v2 equal vcm(two,x)
+variable p equal v_v1*mass(one)+v_v2*mass(two)
+thermo_style custom step c_e c_pair c_f
+thermo 100000
+)";
+
+static std::string two_bars(const std::string &modulus, const std::string &penalty,
+                            const std::string &step)
+{
+  std::string text = replaced(replaced(bars, "MODULUS", modulus), "PENALTY", penalty);
+  return replaced(text, "STEP", step);
+}
+
+// stress rho c v = 0.5 at the interface for 2 L/c = 0.2, then the bars part with their old speeds
+TEST(Bars, StressAndRebound)
+{
+  Lammps run;
+  run.commands(two_bars("100", "50", "2e-4"));
+  run.commands("run 0\n");
+  const double energy = run.evaluate("c_e");
+  double worst = 0.0, drift = 0.0, before = 0.0, after = 0.0;
+  for (int k = 1; k <= 40; k++) {
+    run.commands("run 50 post no\n");
+    worst = std::max(worst, std::fabs(run.evaluate("v_p")));
+    drift = std::max(drift, std::fabs(run.evaluate("c_e+c_pair") / energy - 1.0));
+    if (k == 14) before = run.evaluate("v_v1");    // t = 0.14
+    if (k == 28) after = run.evaluate("v_v1");
+  }
+  EXPECT_LT(worst, 1e-13 * 0.08 * 0.05);
+  EXPECT_NEAR(measured("interface stress", (before - after) / 0.14), 0.5, 0.02 * 0.5);
+  EXPECT_LT(measured("change of energy", drift), 0.015);
+  EXPECT_LT(measured("speed after", run.evaluate("v_v1")), -0.97 * 0.05);
+  EXPECT_NEAR(run.evaluate("v_v1"), -run.evaluate("v_v2"), 1e-13);
+  EXPECT_EQ(run.evaluate("c_pair"), 0.0);
+  EXPECT_EQ(run.evaluate("c_pair[1]"), 0.0);
+}
+
+// bars that are stiff compared with the contact: all energy goes through the contact
+TEST(Bars, EnergyOfTheContact)
+{
+  Lammps run;
+  run.commands(two_bars("500", "1", "8e-5"));
+  run.commands("run 0\n");
+  const double energy = run.evaluate("c_e");
+  double drift = 0.0, most = 0.0;
+  for (int k = 0; k < 24; k++) {
+    run.commands("run 200 post no\n");
+    drift = std::max(drift, std::fabs(run.evaluate("c_e+c_pair") / energy - 1.0));
+    most = std::max(most, run.evaluate("c_pair") / energy);
+  }
+  EXPECT_GT(measured("largest share of the contact", most), 0.9);
+  EXPECT_LT(measured("change of energy", drift), 1e-3);
+  EXPECT_NEAR(measured("speed after", run.evaluate("v_v1")), -0.05, 5e-3 * 0.05);
+}
+
+// damping takes energy, and says how much: c_pair[2] is its power
+TEST(Bars, DampingDissipates)
+{
+  Lammps run;
+  run.commands("comm_modify vel yes\n" + two_bars("500", "1 damping 3", "8e-5"));
+  run.commands(
+      "fix sum all vector 1 c_pair[2]\nvariable lost equal 8e-5*sum(f_sum)\nrun 0\n");
+  const double energy = run.evaluate("c_e");
+  run.commands("run 4800\n");
+  const double v = run.evaluate("v_v1"), left = run.evaluate("c_e");
+  EXPECT_LT(measured("speed after", v), -0.01);
+  EXPECT_GT(v, -0.045);
+  EXPECT_NEAR(run.evaluate("v_lost"), energy - left, 0.01 * energy);
+}
+
+// ---------------------------------------------------------------------- Hertz
+
+/** Elastic spheres of radius 1, made of shells of points, so that their surfaces are smooth, pressed
+ *  together by their inertia: slow enough that contact is all but static. */
+static void spheres(Lammps &run, int cells)
+{
+  struct Point {
+    int type;
+    double x[3], volume;
+  };
+  std::vector<Point> points;
+  const double pi = 3.14159265358979324;
+  const int shells[2] = {2 * cells, 2 * cells * 9 / 8};
+  for (int b = 0; b < 2; b++)
+    for (int k = 0; k < shells[b]; k++) {
+      const double s = 1.0 / shells[b], r = (k + 0.5) * s;
+      const int n = std::max(4, (int) std::lround(4.0 * pi * (r * r + s * s / 12.0) / (s * s)));
+      const double volume = 4.0 / 3.0 * pi * (std::pow(r + 0.5 * s, 3) - std::pow(r - 0.5 * s, 3)) / n;
+      for (int i = 0; i < n; i++) {    // along a spiral
+        const double z = 1.0 - (2.0 * i + 1.0) / n, phi = i * pi * (3.0 - std::sqrt(5.0)) + k;
+        const double q = r * std::sqrt(1.0 - z * z);
+        points.push_back({b + 1, {q * std::cos(phi), r * z, q * std::sin(phi) + (b ? 1.0 : -1.0)},
+                          volume});
+      }
+    }
+  run.commands(strprintf(R"(
+units si
+boundary f f f
+atom_style mpm
+neighbor %g bin
+region box block -1.3 1.3 -1.3 1.3 -2.3 2.3
+create_box 2 box
+create_atoms 1 random %d 4711 box
+group one type 1
+group two type 2
+)",
+                         0.5 / cells, (int) points.size()));
+  auto *atom = run.lmp->atom;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const Point &p = points[i];
+    for (int d = 0; d < 3; d++) atom->x[i][d] = p.x[d];
+    atom->vfrac[i] = atom->rmass[i] = p.volume;
+    atom->type[i] = p.type;
+  }
+  run.commands(strprintf(R"(
+group one clear
+group two clear
+group one type 1
+group two type 2
+fix F1 one mpm %g transfer flip 1.0 scheme musl
+fix F2 two mpm %g transfer flip 1.0 scheme musl
+fix m all mpm/material density 1 linear 1 0.25
+velocity one set 0 0 0.02
+velocity two set 0 0 -0.02
+pair_style mpm/penalty
+pair_coeff 1 2 1.0
+timestep %g
+compute f two reduce sum fz
+variable delta equal 2-(xcm(two,z)-xcm(one,z))
+thermo_style custom step c_f
+thermo 100000
+)",
+                         1.0 / cells, 1.0 / (cells * 9 / 8), 0.3 / (cells * 9 / 8)));
+}
+
+// F = 4/3 E* sqrt(R*) delta^(3/2). The centers of the spheres are not infinitely far from the
+// contact: at a contact radius of R/4 this makes them stiffer by a tenth and more
+TEST(Hertz, ForceAndIndentation)
+{
+  MPI_Comm self;
+  int me;
+  MPI_Comm_rank(MPI_COMM_WORLD, &me);
+  MPI_Comm_split(MPI_COMM_WORLD, me, 0, &self);
+  if (me == 0)
+    for (const int cells : {6, 8}) {
+      Lammps run(self);
+      spheres(run, cells);
+      const double stiffness = 4.0 / 3.0 * (0.5 / (1.0 - 0.0625)) * std::sqrt(0.5);
+      double sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0, ratio = 0.0;
+      int n = 0;
+      for (double delta = 0.0; delta < 0.1;) {
+        run.commands("run 4 post no\n");
+        delta = run.evaluate("v_delta");
+        if (delta < 0.03) continue;
+        const double f = run.evaluate("c_f");
+        const double x = std::log(delta), y = std::log(f);
+        ratio += f / (stiffness * std::pow(delta, 1.5));
+        sx += x;
+        sy += y;
+        sxx += x * x;
+        sxy += x * y;
+        n++;
+      }
+      EXPECT_NEAR(measured("exponent", (n * sxy - sx * sy) / (n * sxx - sx * sx)), 1.5, 0.1);
+      EXPECT_NEAR(measured("force / Hertz", ratio / n), 1.05, 0.1);
+    }
+  MPI_Comm_free(&self);
+}
+
+// ---------------------------------------------------------------------- friction
+
+/** A block on a plane of other spacing, gravity tilted by 30 degrees. */
+static const char *const incline = R"(
+units si
+dimension 2
+boundary f f p
+atom_style mpm
+neighbor 0.03 bin
+comm_modify vel yes
+region box block 0 3 0 1.4 -0.05 0.05
+create_box 2 box
+region plane block 0 3 0 0.4 -0.05 0.05
+region body block 0.5 1.5 0.4 0.8 -0.05 0.05
+group plane type 1
+group body type 2
+fix F1 plane mpm 0.1
+fix F2 body mpm 0.07 origin 0.5 0.4
+create_points 1 region plane ppc 2 fix F1
+create_points 2 region body ppc 2 fix F2
+group plane type 1
+group body type 2
+fix m1 plane mpm/material density 1000 neohookean 4.2e6 0.4
+fix m2 body mpm/material density 1000 neohookean 4.2e6 0.4
+fix floor all mpm/boundary ylo stick field F1
+fix sides all mpm/boundary xlo xhi slip field F1
+pair_style mpm/penalty
+pair_coeff 1 2 1e6 damping 0.3 FRICTION
+fix g body gravity 9.81 vector 0.5 -0.8660254037844386 0
+fix dt all mpm/dt 0.3
+variable x equal xcm(body,x)
+variable v equal vcm(body,x)
+compute f body reduce sum fx fy
+thermo_style custom step c_f[1] c_f[2]
+thermo 100000
+)";
+
+TEST(Friction, BlockSlidesOrSticks)
+{
+  const double g = 9.81, sine = 0.5, cosine = std::sqrt(0.75), slip = 0.02;
+  for (const double mu : {0.0, 0.1, 0.3, 0.8}) {
+    SCOPED_TRACE(mu);
+    Lammps run;
+    run.commands(replaced(incline, "FRICTION",
+                          mu > 0.0 ? strprintf("friction %g %g", mu, slip) : std::string()));
+    run.commands("run 500\n");
+    const double t0 = run.evaluate("time"), v0 = run.evaluate("v_v"), x0 = run.evaluate("v_x");
+    run.commands("run 1000\n");
+    const double t = run.evaluate("time"), v = run.evaluate("v_v");
+    const double a = std::max(0.0, g * (sine - mu * cosine));
+    if (a > 0.0)
+      EXPECT_NEAR(measured("acceleration", (v - v0) / (t - t0)), a, 0.05 * g * sine);
+    else
+      EXPECT_LT(measured("creep", std::fabs(run.evaluate("v_x") - x0) / (t - t0)), 2.5 * slip);
+  }
+}
+
+// ---------------------------------------------------------------------- ranks, periodic faces, restart
+
+static const char *const disks = R"(
+units lj
+dimension 2
+boundary p p p
+atom_style mpm
+neighbor 0.3 bin
+comm_modify vel yes
+region box block 0 24 0 12 -0.5 0.5
+create_box 2 box
+region one cylinder z 3.1 6.2 2.5 INF INF
+region two cylinder z 20.9 5.3 2.5 INF INF
+group one type 1
+group two type 2
+fix F1 one mpm 0.5
+fix F2 two mpm 0.6
+create_points 1 region one ppc 2 fix F1
+create_points 2 region two ppc 2 fix F2
+group one type 1
+group two type 2
+fix m all mpm/material density 1 neohookean 50 0.3
+pair_style mpm/penalty growth 1.3
+pair_coeff 1 2 50 friction 0.3 0.05 damping 0.1
+velocity one set -0.5 0.02 0
+velocity two set 0.5 0 0
+timestep 0.01
+variable px equal vcm(all,x)*mass(all)
+variable py equal vcm(all,y)*mass(all)
+compute e all pe/atom pair
+compute esum all reduce sum c_e
+thermo_style custom step pe c_esum
+thermo 1000
+)";
+
+TEST(Parallel, RanksAgreeAcrossAPeriodicFace)
+{
+  MPI_Comm self;
+  int me;
+  MPI_Comm_rank(MPI_COMM_WORLD, &me);
+  MPI_Comm_split(MPI_COMM_WORLD, me, 0, &self);
+  std::vector<Lammps::State> one, all;
+  double slowed = 0.0;
+  {
+    Lammps run(self);
+    run.commands(disks);
+    run.commands("run 0\n");
+    const double p[2] = {run.evaluate("v_px"), run.evaluate("v_py")};
+    run.commands("run 250\n");
+    EXPECT_GT(run.evaluate("pe"), 0.0);
+    EXPECT_NEAR(run.evaluate("c_esum"), run.evaluate("pe*atoms"), 1e-12);
+    run.commands("run 50\n");
+    one = run.gather();
+    run.commands("variable v equal vcm(one,x)\n");
+    slowed = run.evaluate("v_v");
+    EXPECT_NEAR(run.evaluate("v_px"), p[0], 1e-12);
+    EXPECT_NEAR(run.evaluate("v_py"), p[1], 1e-12);
+  }
+  for (const char *newton : {"on", "off"}) {
+    Lammps run;
+    run.commands(std::string("newton ") + newton + "\n" + disks);
+    run.commands("run 300\n");
+    all = run.gather();
+    ASSERT_EQ(one.size(), all.size());
+    for (std::size_t i = 0; i < one.size(); i++)
+      for (int d = 0; d < 2; d++) {
+        EXPECT_NEAR(one[i].x[d], all[i].x[d], 1e-10);
+        EXPECT_NEAR(one[i].v[d], all[i].v[d], 1e-10);
+      }
+  }
+  EXPECT_GT(slowed, -0.25);    // they have met through the face
+  MPI_Comm_free(&self);
+}
+
+TEST(Restart, ContinuesExactly)
+{
+  std::vector<Lammps::State> straight, again;
+  {
+    Lammps run;
+    run.commands(disks);
+    run.commands("run 160\nwrite_restart penalty.restart\nrun 80\n");
+    EXPECT_GT(run.evaluate("pe"), 0.0);
+    straight = run.gather();
+  }
+  {
+    Lammps run;
+    run.commands("comm_modify vel yes\nread_restart penalty.restart\nneighbor 0.3 bin\n");
+    run.commands("fix F1 one mpm 0.5\nfix F2 two mpm 0.6\n"
+                 "fix m all mpm/material density 1 neohookean 50 0.3\nthermo 1000\nrun 80\n");
+    again = run.gather();
+  }
+  ASSERT_EQ(straight.size(), again.size());
+  for (std::size_t i = 0; i < straight.size(); i++)
+    for (int d = 0; d < 2; d++) {
+      EXPECT_EQ(straight[i].x[d], again[i].x[d]);
+      EXPECT_EQ(straight[i].v[d], again[i].v[d]);
+    }
+}
+
+// ---------------------------------------------------------------------- who feels whom
+
+// types that two fields share, lists by collection, a hybrid: the contact is the same
+TEST(Lists, ContactDoesNotDependOnThem)
+{
+  std::vector<Lammps::State> reference;
+  const std::string scene = disks;
+  const std::string penalty = "pair_style mpm/penalty growth 1.3\n"
+                              "pair_coeff 1 2 50 friction 0.3 0.05 damping 0.1\n";
+  const std::string variants[] = {
+      scene,
+      replaced(scene, penalty, "set type 2 type 1\npair_style mpm/penalty growth 1.3\n"
+                               "pair_coeff 1 1 50 friction 0.3 0.05 damping 0.1\n"),
+      replaced(scene, "neighbor 0.3 bin", "neighbor 0.3 multi\ncomm_modify mode multi") +
+          "neigh_modify exclude type 1 1 exclude type 2 2\n",
+      replaced(scene, penalty, "pair_style hybrid/overlay zero 1.0 mpm/penalty growth 1.3\n"
+                               "pair_coeff * * zero\n"
+                               "pair_coeff 1 2 mpm/penalty 50 friction 0.3 0.05 damping 0.1\n"),
+  };
+  for (const auto &text : variants) {
+    SCOPED_TRACE(text);
+    Lammps run;
+    run.commands(text + "run 250\n");
+    const auto state = run.gather();
+    if (reference.empty()) reference = state;
+    ASSERT_EQ(state.size(), reference.size());
+    double worst = 0.0;
+    for (std::size_t i = 0; i < state.size(); i++)
+      for (int d = 0; d < 2; d++) worst = std::max(worst, std::fabs(state[i].v[d] - reference[i].v[d]));
+    EXPECT_LT(worst, 1e-10);
+  }
+}
+
+// a body that is one field feels nothing; modulus 0 is no contact; fix mpm/contact has precedence
+TEST(Lists, NoContact)
+{
+  const std::string scene = disks;
+  const std::string same = replaced(scene, "mpm 0.6", "mpm 0.5");
+  const std::string contact = "fix c all mpm/contact F1 F2 law coulomb 0.3\n";
+  for (const auto &text : {replaced(scene, "pair_coeff 1 2 50", "pair_coeff 1 2 0"),
+                           same + contact, same + contact + "pair_coeff 1 1 50\n"}) {
+    Lammps run;
+    run.commands(text + "compute pair all pair mpm/penalty\nrun 200\n");
+    EXPECT_EQ(run.evaluate("c_pair[1]"), 0.0);
+    EXPECT_EQ(run.evaluate("pe"), 0.0);
+  }
+}
+
+// ---------------------------------------------------------------------- input that cannot work
+
+TEST(BadInput, IsRefused)
+{
+  const std::string scene = disks;
+  const struct {
+    const char *line, *message;
+  } cases[] = {
+      {"pair_style mpm/penalty growth", "Illegal pair_style mpm/penalty growth"},
+      {"pair_style mpm/penalty growth 0.9", "must be at least 1"},
+      {"pair_style mpm/penalty stiff 1", "Unknown pair_style mpm/penalty keyword: stiff"},
+      {"pair_style none\npair_style mpm/penalty\npair_coeff 1 1 5", "no pair_coeff for types 1 and 2"},
+      {"pair_style none\npair_style mpm/penalty", "All pair coeffs are not set"},
+      {"pair_coeff 1 2", "Illegal pair_coeff mpm/penalty"},
+      {"pair_coeff 1 2 -5", "modulus must not be negative"},
+      {"pair_coeff 1 2 nan", "nan"},
+      {"pair_coeff 1 2 5 friction 0.3", "Illegal pair_coeff mpm/penalty"},
+      {"pair_coeff 1 2 5 friction -0.3 1", "must not be negative"},
+      {"pair_coeff 1 2 5 friction 0.3 0", "velocity must be positive"},
+      {"pair_coeff 1 2 5 damping -1", "must not be negative"},
+      {"pair_coeff 1 2 5 sticky", "Unknown pair_coeff mpm/penalty keyword: sticky"},
+      {"pair_coeff 1 3 5", "3"},
+      {"comm_modify vel no", "comm_modify vel yes"},
+      {"unfix F2", "only one fix mpm"},
+      {"unfix F1\nunfix F2", "no fix mpm"},
+  };
+  for (const auto &bad : cases) {
+    SCOPED_TRACE(bad.line);
+    Lammps run;
+    run.commands(scene);
+    try {
+      run.commands(std::string(bad.line) + "\nrun 1\n");
+      ADD_FAILURE() << "no error";
+    } catch (const std::exception &e) {
+      EXPECT_NE(std::string(e.what()).find(bad.message), std::string::npos) << e.what();
+    }
+  }
+  Lammps run;
+  EXPECT_THROW(run.commands("region box block 0 1 0 1 0 1\ncreate_box 1 box\n"
+                            "pair_style mpm/penalty\npair_coeff * * 1\nmass 1 1\nrun 0\n"),
+               std::exception);
+}
