@@ -19,7 +19,6 @@
 #include <cmath>
 
 using namespace MPM_TEST;
-using Lammps = MPM_TEST::Run;    // tests have a function Run
 
 // ---------------------------------------------------------------------- head-on impact of two bars
 
@@ -69,7 +68,7 @@ static std::string two_bars(const std::string &modulus, const std::string &penal
 // stress rho c v = 0.5 at the interface for 2 L/c = 0.2, then the bars part with their old speeds
 TEST(Bars, StressAndRebound)
 {
-  Lammps run;
+  Scene run;
   run.commands(two_bars("100", "50", "2e-4"));
   run.commands("run 0\n");
   const double energy = run.evaluate("c_e");
@@ -93,7 +92,7 @@ TEST(Bars, StressAndRebound)
 // bars that are stiff compared with the contact: all energy goes through the contact
 TEST(Bars, EnergyOfTheContact)
 {
-  Lammps run;
+  Scene run;
   run.commands(two_bars("500", "1", "8e-5"));
   run.commands("run 0\n");
   const double energy = run.evaluate("c_e");
@@ -111,7 +110,7 @@ TEST(Bars, EnergyOfTheContact)
 // damping takes energy, and says how much: c_pair[2] is its power
 TEST(Bars, DampingDissipates)
 {
-  Lammps run;
+  Scene run;
   run.commands("comm_modify vel yes\n" + two_bars("500", "1 damping 3", "8e-5"));
   run.commands(
       "fix sum all vector 1 c_pair[2]\nvariable lost equal 8e-5*sum(f_sum)\nrun 0\n");
@@ -127,7 +126,7 @@ TEST(Bars, DampingDissipates)
 
 /** Elastic spheres of radius 1, made of shells of points, so that their surfaces are smooth, pressed
  *  together by their inertia: slow enough that contact is all but static. */
-static void spheres(Lammps &run, int cells)
+static void spheres(Scene &run, int cells)
 {
   struct Point {
     int type;
@@ -198,7 +197,7 @@ TEST(Hertz, ForceAndIndentation)
   MPI_Comm_split(MPI_COMM_WORLD, me, 0, &self);
   if (me == 0)
     for (const int cells : {6, 8}) {
-      Lammps run(self);
+      Scene run(self);
       spheres(run, cells);
       const double stiffness = 4.0 / 3.0 * (0.5 / (1.0 - 0.0625)) * std::sqrt(0.5);
       double sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0, ratio = 0.0;
@@ -264,7 +263,7 @@ TEST(Friction, BlockSlidesOrSticks)
   const double g = 9.81, sine = 0.5, cosine = std::sqrt(0.75), slip = 0.02;
   for (const double mu : {0.0, 0.1, 0.3, 0.8}) {
     SCOPED_TRACE(mu);
-    Lammps run;
+    Scene run;
     run.commands(replaced(incline, "FRICTION",
                           mu > 0.0 ? strprintf("friction %g %g", mu, slip) : std::string()));
     run.commands("run 500\n");
@@ -320,10 +319,10 @@ TEST(Parallel, RanksAgreeAcrossAPeriodicFace)
   int me;
   MPI_Comm_rank(MPI_COMM_WORLD, &me);
   MPI_Comm_split(MPI_COMM_WORLD, me, 0, &self);
-  std::vector<Lammps::State> one, all;
+  std::vector<Scene::State> one, all;
   double slowed = 0.0;
   {
-    Lammps run(self);
+    Scene run(self);
     run.commands(disks);
     run.commands("run 0\n");
     const double p[2] = {run.evaluate("v_px"), run.evaluate("v_py")};
@@ -338,7 +337,7 @@ TEST(Parallel, RanksAgreeAcrossAPeriodicFace)
     EXPECT_NEAR(run.evaluate("v_py"), p[1], 1e-12);
   }
   for (const char *newton : {"on", "off"}) {
-    Lammps run;
+    Scene run;
     run.commands(std::string("newton ") + newton + "\n" + disks);
     run.commands("run 300\n");
     all = run.gather();
@@ -355,16 +354,16 @@ TEST(Parallel, RanksAgreeAcrossAPeriodicFace)
 
 TEST(Restart, ContinuesExactly)
 {
-  std::vector<Lammps::State> straight, again;
+  std::vector<Scene::State> straight, again;
   {
-    Lammps run;
+    Scene run;
     run.commands(disks);
     run.commands("run 160\nwrite_restart penalty.restart\nrun 80\n");
     EXPECT_GT(run.evaluate("pe"), 0.0);
     straight = run.gather();
   }
   {
-    Lammps run;
+    Scene run;
     run.commands("comm_modify vel yes\nread_restart penalty.restart\nneighbor 0.3 bin\n");
     run.commands("fix F1 one mpm 0.5\nfix F2 two mpm 0.6\n"
                  "fix m all mpm/material density 1 neohookean 50 0.3\nthermo 1000\nrun 80\n");
@@ -383,7 +382,7 @@ TEST(Restart, ContinuesExactly)
 // types that two fields share, lists by collection, a hybrid: the contact is the same
 TEST(Lists, ContactDoesNotDependOnThem)
 {
-  std::vector<Lammps::State> reference;
+  std::vector<Scene::State> reference;
   const std::string scene = disks;
   const std::string penalty = "pair_style mpm/penalty growth 1.3\n"
                               "pair_coeff 1 2 50 friction 0.3 0.05 damping 0.1\n";
@@ -399,7 +398,7 @@ TEST(Lists, ContactDoesNotDependOnThem)
   };
   for (const auto &text : variants) {
     SCOPED_TRACE(text);
-    Lammps run;
+    Scene run;
     run.commands(text + "run 250\n");
     const auto state = run.gather();
     if (reference.empty()) reference = state;
@@ -419,7 +418,7 @@ TEST(Lists, NoContact)
   const std::string contact = "fix c all mpm/contact F1 F2 law coulomb 0.3\n";
   for (const auto &text : {replaced(scene, "pair_coeff 1 2 50", "pair_coeff 1 2 0"),
                            same + contact, same + contact + "pair_coeff 1 1 50\n"}) {
-    Lammps run;
+    Scene run;
     run.commands(text + "compute pair all pair mpm/penalty\nrun 200\n");
     EXPECT_EQ(run.evaluate("c_pair[1]"), 0.0);
     EXPECT_EQ(run.evaluate("pe"), 0.0);
@@ -454,7 +453,7 @@ TEST(BadInput, IsRefused)
   };
   for (const auto &bad : cases) {
     SCOPED_TRACE(bad.line);
-    Lammps run;
+    Scene run;
     run.commands(scene);
     try {
       run.commands(std::string(bad.line) + "\nrun 1\n");
@@ -463,7 +462,7 @@ TEST(BadInput, IsRefused)
       EXPECT_NE(std::string(e.what()).find(bad.message), std::string::npos) << e.what();
     }
   }
-  Lammps run;
+  Scene run;
   EXPECT_THROW(run.commands("region box block 0 1 0 1 0 1\ncreate_box 1 box\n"
                             "pair_style mpm/penalty\npair_coeff * * 1\nmass 1 1\nrun 0\n"),
                std::exception);

@@ -119,8 +119,8 @@ void PairMPMPenalty::compute(int eflag, int vflag)
     contacts += share;
     dissipated += share * power;
     if (evflag)
-      ev_tally_xyz(i, j, nlocal, newton_pair, eflag ? 0.5 * stiffness * overlap * overlap : 0.0, 0.0,
-                   force_i[0], force_i[1], force_i[2], d[0], d[1], d[2]);
+      ev_tally_xyz(i, j, nlocal, newton_pair, eflag ? 0.5 * stiffness * overlap * overlap : 0.0,
+                   0.0, force_i[0], force_i[1], force_i[2], d[0], d[1], d[2]);
   }
 
   pvector[0] = contacts;
@@ -152,9 +152,11 @@ void PairMPMPenalty::find_pairs()
     if (field[i] == NOTHING) continue;
     const int t = atom->type[i];
     if (!present[field[i] * (ntypes + 1) + t] || initial_radius(i) > largest[t] * (1.0 + 1e-10))
-      error->one(FLERR, Error::NOLASTLINE, "Pair style mpm/penalty: point {} has changed its type or "
+      error->one(FLERR, Error::NOLASTLINE,
+                 "Pair style mpm/penalty: point {} has changed its type or "
                  "field, or is larger than the points of its type were at the start of the run: "
-                 "begin a new run after such changes", atom->tag[i]);
+                 "begin a new run after such changes",
+                 atom->tag[i]);
   }
 
   pairs.clear();
@@ -191,10 +193,13 @@ void PairMPMPenalty::warn_about_list(double same, double all)
   double mine[2] = {same, all}, sum[2];
   MPI_Allreduce(mine, sum, 2, MPI_DOUBLE, MPI_SUM, world);
   if (comm->me || sum[0] < 0.5 * sum[1] || sum[0] < 1000.0) return;
-  error->warning(FLERR, "Pair style mpm/penalty: {:.0f} of {:.0f} pairs in the neighbor list are of "
-                 "points of one field, which costs much time and memory: give each field atom types "
-                 "of its own, and with neighbor multi or pair hybrid exclude pairs within each field "
-                 "with neigh_modify exclude type I I", sum[0], sum[1]);
+  error->warning(
+      FLERR,
+      "Pair style mpm/penalty: {:.0f} of {:.0f} pairs in the neighbor list are of "
+      "points of one field, which costs much time and memory: give each field atom types "
+      "of its own, and with neighbor multi or pair hybrid exclude pairs within each field "
+      "with neigh_modify exclude type I I",
+      sum[0], sum[1]);
 }
 
 /* ----------------------------------------------------------------------
@@ -227,7 +232,8 @@ double PairMPMPenalty::current_radius(int i)
   if (!(factor <= growth)) {
     factor = growth;
     if (!warned)
-      error->warning(FLERR, "Pair style mpm/penalty: point {} has expanded by J = {:.6g}, its radius "
+      error->warning(FLERR,
+                     "Pair style mpm/penalty: point {} has expanded by J = {:.6g}, its radius "
                      "stays at {} times the initial one (pair_style mpm/penalty growth)",
                      atom->tag[i], J, growth);
     warned = true;
@@ -270,8 +276,7 @@ void PairMPMPenalty::settings(int narg, char **arg)
     const std::string keyword = arg[iarg];
     if (keyword != "growth")
       error->all(FLERR, iarg, "Unknown pair_style mpm/penalty keyword: {}", keyword);
-    if (iarg + 1 >= narg)
-      utils::missing_cmd_args(FLERR, "pair_style mpm/penalty growth", error);
+    if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, "pair_style mpm/penalty growth", error);
     growth = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
     if (!(growth >= 1.0) || !std::isfinite(growth))
       error->all(FLERR, iarg + 1, "Pair_style mpm/penalty growth must be at least 1: {}",
@@ -319,7 +324,8 @@ void PairMPMPenalty::coeff(int narg, char **arg)
       utils::missing_cmd_args(FLERR, std::string("pair_coeff mpm/penalty ") + what, error);
     const double value = utils::numeric(FLERR, arg[iarg], false, lmp);
     if (!(value >= 0.0) || !std::isfinite(value))
-      error->all(FLERR, iarg, "Pair_coeff mpm/penalty {} must not be negative: {}", what, arg[iarg]);
+      error->all(FLERR, iarg, "Pair_coeff mpm/penalty {} must not be negative: {}", what,
+                 arg[iarg]);
     return value;
   };
   c.modulus = number(2, "modulus");
@@ -358,13 +364,16 @@ void PairMPMPenalty::init_style()
 {
   points = MPMPoints::get(atom);
   if (!points)
-    error->all(FLERR, Error::NOLASTLINE, "Pair style mpm/penalty requires material points: use "
+    error->all(FLERR, Error::NOLASTLINE,
+               "Pair style mpm/penalty requires material points: use "
                "atom_style mpm, or hybrid with mpm");
   fields.clear();
   for (auto *fix : modify->get_fix_by_style("^mpm$")) fields.push_back(dynamic_cast<FixMPM *>(fix));
   if (fields.size() < 2)
-    error->all(FLERR, Error::NOLASTLINE, "Pair style mpm/penalty acts between fields, but there {}: "
-               "give each body a fix mpm", fields.empty() ? "is no fix mpm" : "is only one fix mpm");
+    error->all(FLERR, Error::NOLASTLINE,
+               "Pair style mpm/penalty acts between fields, but there {}: "
+               "give each body a fix mpm",
+               fields.empty() ? "is no fix mpm" : "is only one fix mpm");
 
   const std::size_t nfields = fields.size(), n = atom->ntypes + 1;
   coupled.assign(nfields * nfields, 0);
@@ -395,7 +404,8 @@ void PairMPMPenalty::init_style()
     damped = damped || c.damping > 0.0;
   }
   if (velocities && !comm->ghost_velocity)
-    error->all(FLERR, Error::NOLASTLINE, "Pair style mpm/penalty with friction or damping needs the "
+    error->all(FLERR, Error::NOLASTLINE,
+               "Pair style mpm/penalty with friction or damping needs the "
                "velocities of ghost atoms: use comm_modify vel yes");
   comm_forward = damped ? 2 : 1;
   nmax = 0;
@@ -414,7 +424,8 @@ bool PairMPMPenalty::meet(int itype, int jtype, int &a, int &b) const
   const int nfields = (int) fields.size(), n = atom->ntypes + 1;
   for (a = 0; a < nfields; a++)
     for (b = 0; b < nfields; b++)
-      if (!coupled[a * nfields + b] && present[a * n + itype] && present[b * n + jtype]) return true;
+      if (!coupled[a * nfields + b] && present[a * n + itype] && present[b * n + jtype])
+        return true;
   return false;
 }
 
@@ -429,9 +440,12 @@ double PairMPMPenalty::init_one(int i, int j)
   const double reach = growth * (largest[i] + largest[j]);
   if (meet(i, j, a, b)) {
     if (!c.set)
-      error->all(FLERR, Error::NOLASTLINE, "Pair style mpm/penalty has no pair_coeff for types {} and "
-                 "{}, but fields {} and {} have such points: give one, with modulus 0 if they shall "
-                 "not touch", i, j, fields[a]->id, fields[b]->id);
+      error->all(
+          FLERR, Error::NOLASTLINE,
+          "Pair style mpm/penalty has no pair_coeff for types {} and "
+          "{}, but fields {} and {} have such points: give one, with modulus 0 if they shall "
+          "not touch",
+          i, j, fields[a]->id, fields[b]->id);
     if (c.modulus > 0.0) return reach;
   }
 

@@ -59,20 +59,20 @@ class PairMPMPenalty : public Pair {
   };
 
   MPMPoints *points;
-  double growth;    // radii grow to this multiple of their initial value at most
+  double growth;                // radii grow to this multiple of their initial value at most
   std::vector<Coeff> coeffs;    // [ntypes+1][ntypes+1]
   std::vector<FixMPM *> fields;
-  std::vector<char> coupled;           // [field][field] same field, or left to fix mpm/contact
-  std::vector<char> present;           // [field][type]
-  std::vector<double> largest;         // [type] initial radius of the largest point
-  bool velocities, damped;             // some coefficients need velocities, masses
-  bool look;                           // at what the neighbor list consists of
-  bool warned;                         // that points outgrow their limit
+  std::vector<char> coupled;      // [field][field] same field, or left to fix mpm/contact
+  std::vector<char> present;      // [field][type]
+  std::vector<double> largest;    // [type] initial radius of the largest point
+  bool velocities, damped;        // some coefficients need velocities, masses
+  bool look;                      // at what the neighbor list consists of
+  bool warned;                    // that points outgrow their limit
 
   int nmax;
-  double *radius, *mass;                       // current, [nlocal+nghost]; mass with damping only
-  std::vector<std::pair<int, int>> pairs;      // in reach of each other: of different fields
-  std::vector<int> near;                       // local points in them
+  double *radius, *mass;                     // current, [nlocal+nghost]; mass with damping only
+  std::vector<std::pair<int, int>> pairs;    // in reach of each other: of different fields
+  std::vector<int> near;                     // local points in them
 
   void allocate();
   void find_pairs();
