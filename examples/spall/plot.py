@@ -22,7 +22,7 @@ with open("xt.txt") as file:
 figure, axes = plt.subplots(1, 2, figsize=(10, 3.8))
 for number, rows in frames:
     time = np.full(len(rows), np.interp(number, step, us))
-    picture = axes[0].scatter(1e3 * rows[:, 1], time, c=1e-9 * rows[:, 2], s=6, marker="s", cmap="RdBu_r",
+    picture = axes[0].scatter(1e3 * rows[:, 1], time, c=1e-9 * rows[:, 2], s=10, marker="s", cmap="RdBu_r",
                               vmin=-3.3, vmax=3.3, linewidths=0)
 figure.colorbar(picture, ax=axes[0], label="pressure (GPa)")
 axes[0].set(xlabel="x (mm)", ylabel="time (us)")
