@@ -86,19 +86,12 @@ MPM_INLINE void load_four(Batch &batch, Column *A, int p, double dt, const doubl
   }
 }
 
-/** Cofactors of a row-major matrix: f c^T = det f. */
-MPM_INLINE void cofactors(const double *f, double *c)
-{
-  c[0] = f[4] * f[8] - f[5] * f[7];
-  c[1] = f[5] * f[6] - f[3] * f[8];
-  c[2] = f[3] * f[7] - f[4] * f[6];
-  c[3] = f[2] * f[7] - f[1] * f[8];
-  c[4] = f[0] * f[8] - f[2] * f[6];
-  c[5] = f[1] * f[6] - f[0] * f[7];
-  c[6] = f[1] * f[5] - f[2] * f[4];
-  c[7] = f[2] * f[3] - f[0] * f[5];
-  c[8] = f[0] * f[4] - f[1] * f[3];
-}
+// Cofactors of a row-major matrix f: f c^T = det f. No function: in a loop with omp simd, the address
+// of an array must not be taken, or the loop stays scalar.
+#define MPM_COFACTORS(f)                                                                      \
+  {f[4] * f[8] - f[5] * f[7], f[5] * f[6] - f[3] * f[8], f[3] * f[7] - f[4] * f[6],           \
+   f[2] * f[7] - f[1] * f[8], f[0] * f[8] - f[2] * f[6], f[1] * f[6] - f[0] * f[7],           \
+   f[1] * f[5] - f[2] * f[4], f[2] * f[3] - f[0] * f[5], f[0] * f[4] - f[1] * f[3]}
 
 template <int DIM>
 MPM_INLINE void load_one(Batch &batch, Column *A, int p, double dt, const double *L,
@@ -135,15 +128,16 @@ void load(Batch &batch, int n, double dt, const double *L, const double *F, cons
       const double Jold = f[0] * (f[4] * f[8] - f[5] * f[7]) - f[1] * (f[3] * f[8] - f[5] * f[6]) +
           f[2] * (f[3] * f[7] - f[4] * f[6]);
       if constexpr (TOTAL) {
-        double c[9];
-        cofactors(f, c);
-        for (int k = 0; k < 9; k++) g[k] = f[k] + a[k];
+        const double c[9] = MPM_COFACTORS(f);
         const double scale = 1.0 / Jold;
-        for (int i = 0; i < 3; i++) {
-          const double x = scale * a[3 * i], y = scale * a[3 * i + 1], z = scale * a[3 * i + 2];
-          for (int j = 0; j < 3; j++)
-            a[3 * i + j] = x * c[3 * j] + y * c[3 * j + 1] + z * c[3 * j + 2];
-        }
+        double b[9];
+        for (int i = 0; i < 3; i++)
+          for (int j = 0; j < 3; j++) {
+            g[3 * i + j] = f[3 * i + j] + a[3 * i + j];
+            b[3 * i + j] = scale * (a[3 * i] * c[3 * j] + a[3 * i + 1] * c[3 * j + 1] +
+                                    a[3 * i + 2] * c[3 * j + 2]);
+          }
+        for (int k = 0; k < 9; k++) a[k] = b[k];
       } else {
         for (int i = 0; i < 3; i++)
           for (int j = 0; j < 3; j++)
@@ -254,27 +248,63 @@ template <int DIM> int store(const Batch &batch, double *F, double *tau)
 /** P = tau F^-T = tau cof(F)/J, rows in and out. */
 template <int DIM> void first_piola(int n, const double *F, const double *tau, double *P)
 {
-#pragma omp simd
-  for (int p = 0; p < n; p++) {
-    const double *f = F + 9 * p, *s = tau + 6 * p;
-    double *out = P + DIM * DIM * p;
-    if constexpr (DIM == 3) {
-      double c[9];
-      cofactors(f, c);
-      const double inv = 1.0 / (f[0] * c[0] + f[1] * c[1] + f[2] * c[2]);
-      for (int j = 0; j < 3; j++) {
-        out[3 * j] = inv * (s[0] * c[j] + s[3] * c[3 + j] + s[4] * c[6 + j]);
-        out[3 * j + 1] = inv * (s[3] * c[j] + s[1] * c[3 + j] + s[5] * c[6 + j]);
-        out[3 * j + 2] = inv * (s[4] * c[j] + s[5] * c[3 + j] + s[2] * c[6 + j]);
+  constexpr int SIZE = DIM * DIM;
+  alignas(64) double f[9][BATCH], s[6][BATCH], c[SIZE][BATCH];
+
+  int p = 0;
+  for (; p + 4 <= n; p += 4) {
+    rows_to_columns<9>(F, f, p, 1.0);
+    rows_to_columns<9>(F + 4, f + 4, p, 1.0);
+    rows_to_columns<6>(tau, s, p, 1.0);
+    if constexpr (DIM == 3)
+      for (int k = p; k < p + 4; k++) {
+        f[8][k] = F[9 * k + 8];
+        s[4][k] = tau[6 * k + 4];
+        s[5][k] = tau[6 * k + 5];
       }
-    } else {
-      const double inv = 1.0 / (f[0] * f[4] - f[1] * f[3]);
-      out[0] = inv * (s[0] * f[4] - s[3] * f[1]);
-      out[1] = inv * (s[3] * f[4] - s[1] * f[1]);
-      out[2] = inv * (s[3] * f[0] - s[0] * f[3]);
-      out[3] = inv * (s[1] * f[0] - s[3] * f[3]);
+  }
+  for (; p < n; p++) {
+    for (int k = 0; k < 9; k++) f[k][p] = F[9 * p + k];
+    for (int k = 0; k < 6; k++) s[k][p] = tau[6 * p + k];
+  }
+
+  if constexpr (DIM == 3) {
+#pragma omp simd
+    for (int q = 0; q < n; q++) {
+      const double g[9] = {f[0][q], f[1][q], f[2][q], f[3][q], f[4][q],
+                           f[5][q], f[6][q], f[7][q], f[8][q]};
+      const double cof[9] = MPM_COFACTORS(g);
+      const double inv = 1.0 / (g[0] * cof[0] + g[1] * cof[1] + g[2] * cof[2]);
+      const double xx = inv * s[0][q], yy = inv * s[1][q], zz = inv * s[2][q], xy = inv * s[3][q],
+                   xz = inv * s[4][q], yz = inv * s[5][q];
+      for (int j = 0; j < 3; j++) {
+        c[3 * j][q] = xx * cof[j] + xy * cof[3 + j] + xz * cof[6 + j];
+        c[3 * j + 1][q] = xy * cof[j] + yy * cof[3 + j] + yz * cof[6 + j];
+        c[3 * j + 2][q] = xz * cof[j] + yz * cof[3 + j] + zz * cof[6 + j];
+      }
+    }
+  } else {
+#pragma omp simd
+    for (int q = 0; q < n; q++) {
+      const double Fxx = f[0][q], Fxy = f[1][q], Fyx = f[3][q], Fyy = f[4][q];
+      const double inv = 1.0 / (Fxx * Fyy - Fxy * Fyx);
+      const double xx = inv * s[0][q], yy = inv * s[1][q], xy = inv * s[3][q];
+      c[0][q] = xx * Fyy - xy * Fxy;
+      c[1][q] = xy * Fyy - yy * Fxy;
+      c[2][q] = xy * Fxx - xx * Fyx;
+      c[3][q] = yy * Fxx - xy * Fyx;
     }
   }
+
+  for (p = 0; p + 4 <= n; p += 4) {
+    columns_to_rows<SIZE>(c, P, p);
+    if constexpr (DIM == 3) {
+      columns_to_rows<SIZE>(c + 4, P + 4, p);
+      for (int k = p; k < p + 4; k++) P[9 * k + 8] = c[8][k];
+    }
+  }
+  for (; p < n; p++)
+    for (int k = 0; k < SIZE; k++) P[SIZE * p + k] = c[k][p];
 }
 
 }    // namespace
