@@ -39,16 +39,16 @@ static Cook cook(const char *options, double h, double nu)
   const double u_expected = nu > 0.4 ? 7.0 : 19.0;
   const double omega = sqrt(F / u_expected / 400.0), ramp = 4.0 / omega, end = 12.0 / omega;
   Scene run;
-  run.commands(strprintf(
-      "units si\ndimension 2\nboundary f f p\natom_style mpm\nneighbor %.17g bin\n"
-      "region box block 0 60 0 90 -0.5 0.5\ncreate_box 1 box\n"
-      "fix grid all mpm %.17g %s dtcheck no\n"
-      "region lower plane 0 0 0 -44 48 0\nregion upper plane 0 44 0 16 -48 0\n"
-      "region span block 0 48 0 60 INF INF\nregion plate intersect 3 span lower upper\n"
-      "create_points 1 region plate ppc 2\n"
-      "fix m all mpm/material density 1 neohookean %.17g %.17g\n"
-      "fix clamp all mpm/boundary xlo stick\nthermo 1000000\n",
-      0.4 * h, h, options, E, nu));
+  run.commands(
+      strprintf("units si\ndimension 2\nboundary f f p\natom_style mpm\nneighbor %.17g bin\n"
+                "region box block 0 60 0 90 -0.5 0.5\ncreate_box 1 box\n"
+                "fix grid all mpm %.17g %s dtcheck no\n"
+                "region lower plane 0 0 0 -44 48 0\nregion upper plane 0 44 0 16 -48 0\n"
+                "region span block 0 48 0 60 INF INF\nregion plate intersect 3 span lower upper\n"
+                "create_points 1 region plate ppc 2\n"
+                "fix m all mpm/material density 1 neohookean %.17g %.17g\n"
+                "fix clamp all mpm/boundary xlo stick\nthermo 1000000\n",
+                0.4 * h, h, options, E, nu));
   run.set_reference();
   double edge = 0.0;
   for (int i = 0; i < run.n(); i++)
@@ -138,17 +138,17 @@ TEST_P(Uniform, StretchIsExact)
 {
   for (int dim : {2, 3}) {
     Scene run;
-    run.commands(strprintf("units lj\ndimension %d\nboundary f f p\natom_style mpm\n"
-                           "region box block -5 5 -5 5 %s\ncreate_box 2 box\n"
-                           "fix grid all mpm 0.5 %s\n"
-                           "region body block -1.1 1.2 -1.3 1 %s\ncreate_points 1 region body ppc 2\n"
-                           "region half block 0.1 INF INF INF INF INF\n"
-                           "set region half type 2\ngroup one type 1\ngroup two type 2\n"
-                           "fix m1 one mpm/material density 1 neohookean 1e-14 0.3\n"
-                           "fix m2 two mpm/material density 1 linear 1e-14 0.3\n"
-                           "timestep 0.2\nthermo 1000\n",
-                           dim, dim == 2 ? "-0.5 0.5" : "-5 5", GetParam(),
-                           dim == 2 ? "INF INF" : "-1 1"));
+    run.commands(
+        strprintf("units lj\ndimension %d\nboundary f f p\natom_style mpm\n"
+                  "region box block -5 5 -5 5 %s\ncreate_box 2 box\n"
+                  "fix grid all mpm 0.5 %s\n"
+                  "region body block -1.1 1.2 -1.3 1 %s\ncreate_points 1 region body ppc 2\n"
+                  "region half block 0.1 INF INF INF INF INF\n"
+                  "set region half type 2\ngroup one type 1\ngroup two type 2\n"
+                  "fix m1 one mpm/material density 1 neohookean 1e-14 0.3\n"
+                  "fix m2 two mpm/material density 1 linear 1e-14 0.3\n"
+                  "timestep 0.2\nthermo 1000\n",
+                  dim, dim == 2 ? "-0.5 0.5" : "-5 5", GetParam(), dim == 2 ? "INF INF" : "-1 1"));
     const double G[3][3] = {{0.3, 0.1, -0.2}, {0.4, -0.2, 0.1}, {0.1, -0.3, 0.5}};
     for (int step = 0; step < 5; step++) {
       run.set_velocity([&](const double *x, double *v) {
@@ -172,10 +172,8 @@ TEST_P(Uniform, StretchIsExact)
 
 INSTANTIATE_TEST_SUITE_P(Options, Uniform,
                          ::testing::Values("locking fbar", "locking pressure", "locking both",
-                                           "locking fbar shape cubic",
-                                           "locking fbar scheme musl",
-                                           "locking fbar scheme usf",
-                                           "locking fbar frame total"));
+                                           "locking fbar shape cubic", "locking fbar scheme musl",
+                                           "locking fbar scheme usf", "locking fbar frame total"));
 
 /* ----------------------------------------------------------------------
    In a step, averages change volumes of points, but not their sum; the next step with and without
@@ -220,7 +218,8 @@ TEST_P(Volume, SumIsThatOfTheMotion)
 }
 
 INSTANTIATE_TEST_SUITE_P(Options, Volume,
-                         ::testing::Values("locking fbar", "locking fbar transfer flip 1.0 scheme musl",
+                         ::testing::Values("locking fbar",
+                                           "locking fbar transfer flip 1.0 scheme musl",
                                            "locking fbar frame total"));
 
 /* ----------------------------------------------------------------------
@@ -238,17 +237,19 @@ TEST_P(Bar, ConfinedOscillation)
   const double speed = sqrt(lambda + 2.0 * mu), omega = k * speed;
   const int steps = 4000, periods = 8;
   Scene run;
-  run.commands(strprintf(
-      "units si\ndimension 2\nboundary f f p\natom_style mpm\nneighbor %.17g bin\n"
-      "region box block 0 0.2 0 1.5 -0.5 0.5\ncreate_box 1 box\n"
-      "fix grid all mpm %.17g transfer flip 1.0 scheme musl %s\n"
-      "region bar block INF INF 0 1 INF INF\ncreate_points 1 region bar ppc 2\n"
-      "fix m all mpm/material density 1 neohookean %.17g %.17g\n"
-      "fix sides all mpm/boundary xlo xhi ylo slip\nthermo 1000000\n"
-      "compute e all mpm/energy\ntimestep %.17g\n",
-      0.5 * h, h, GetParam(), E, nu, periods * 4.0 * k / omega / steps));
+  run.commands(
+      strprintf("units si\ndimension 2\nboundary f f p\natom_style mpm\nneighbor %.17g bin\n"
+                "region box block 0 0.2 0 1.5 -0.5 0.5\ncreate_box 1 box\n"
+                "fix grid all mpm %.17g transfer flip 1.0 scheme musl %s\n"
+                "region bar block INF INF 0 1 INF INF\ncreate_points 1 region bar ppc 2\n"
+                "fix m all mpm/material density 1 neohookean %.17g %.17g\n"
+                "fix sides all mpm/boundary xlo xhi ylo slip\nthermo 1000000\n"
+                "compute e all mpm/energy\ntimestep %.17g\n",
+                0.5 * h, h, GetParam(), E, nu, periods * 4.0 * k / omega / steps));
   run.set_reference();
-  run.set_velocity([&](const double *x, double *v) { v[1] = v0 * sin(k * x[1]); });
+  run.set_velocity([&](const double *x, double *v) {
+    v[1] = v0 * sin(k * x[1]);
+  });
   run.commands(strprintf("run 0\n"));
   const double start = run.evaluate("c_e");
   run.commands(strprintf("run %d\n", steps));
@@ -291,13 +292,13 @@ struct Oscillation {
 static Oscillation block(const char *options, double nu)
 {
   Scene run;
-  run.commands(strprintf(
-      "units si\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.05 bin\n"
-      "region box block -1 1 -1 1 -0.5 0.5\ncreate_box 1 box\nfix grid all mpm 0.1 %s\n"
-      "region bar block -0.5 0.5 -0.5 0.5 INF INF\ncreate_points 1 region bar ppc 2\n"
-      "fix m all mpm/material density 1 neohookean 1 %g\nthermo 1000000\n"
-      "compute e all mpm/energy\ntimestep 0.001\n",
-      options, nu));
+  run.commands(
+      strprintf("units si\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.05 bin\n"
+                "region box block -1 1 -1 1 -0.5 0.5\ncreate_box 1 box\nfix grid all mpm 0.1 %s\n"
+                "region bar block -0.5 0.5 -0.5 0.5 INF INF\ncreate_points 1 region bar ppc 2\n"
+                "fix m all mpm/material density 1 neohookean 1 %g\nthermo 1000000\n"
+                "compute e all mpm/energy\ntimestep 0.001\n",
+                options, nu));
   run.set_velocity([&](const double *x, double *v) {
     v[0] = 0.1 * x[0];
     v[1] = -0.1 * x[1];

@@ -112,8 +112,7 @@ TEST(Bars, DampingDissipates)
 {
   Scene run;
   run.commands("comm_modify vel yes\n" + two_bars("500", "1 damping 3", "8e-5"));
-  run.commands(
-      "fix sum all vector 1 c_pair[2]\nvariable lost equal 8e-5*sum(f_sum)\nrun 0\n");
+  run.commands("fix sum all vector 1 c_pair[2]\nvariable lost equal 8e-5*sum(f_sum)\nrun 0\n");
   const double energy = run.evaluate("c_e");
   run.commands("run 4800\n");
   const double v = run.evaluate("v_v1"), left = run.evaluate("c_e");
@@ -139,12 +138,13 @@ static void spheres(Scene &run, int cells)
     for (int k = 0; k < shells[b]; k++) {
       const double s = 1.0 / shells[b], r = (k + 0.5) * s;
       const int n = std::max(4, (int) std::lround(4.0 * pi * (r * r + s * s / 12.0) / (s * s)));
-      const double volume = 4.0 / 3.0 * pi * (std::pow(r + 0.5 * s, 3) - std::pow(r - 0.5 * s, 3)) / n;
+      const double volume =
+          4.0 / 3.0 * pi * (std::pow(r + 0.5 * s, 3) - std::pow(r - 0.5 * s, 3)) / n;
       for (int i = 0; i < n; i++) {    // along a spiral
         const double z = 1.0 - (2.0 * i + 1.0) / n, phi = i * pi * (3.0 - std::sqrt(5.0)) + k;
         const double q = r * std::sqrt(1.0 - z * z);
-        points.push_back({b + 1, {q * std::cos(phi), r * z, q * std::sin(phi) + (b ? 1.0 : -1.0)},
-                          volume});
+        points.push_back(
+            {b + 1, {q * std::cos(phi), r * z, q * std::sin(phi) + (b ? 1.0 : -1.0)}, volume});
       }
     }
   run.commands(strprintf(R"(
@@ -388,13 +388,15 @@ TEST(Lists, ContactDoesNotDependOnThem)
                               "pair_coeff 1 2 50 friction 0.3 0.05 damping 0.1\n";
   const std::string variants[] = {
       scene,
-      replaced(scene, penalty, "set type 2 type 1\npair_style mpm/penalty growth 1.3\n"
-                               "pair_coeff 1 1 50 friction 0.3 0.05 damping 0.1\n"),
+      replaced(scene, penalty,
+               "set type 2 type 1\npair_style mpm/penalty growth 1.3\n"
+               "pair_coeff 1 1 50 friction 0.3 0.05 damping 0.1\n"),
       replaced(scene, "neighbor 0.3 bin", "neighbor 0.3 multi\ncomm_modify mode multi") +
           "neigh_modify exclude type 1 1 exclude type 2 2\n",
-      replaced(scene, penalty, "pair_style hybrid/overlay zero 1.0 mpm/penalty growth 1.3\n"
-                               "pair_coeff * * zero\n"
-                               "pair_coeff 1 2 mpm/penalty 50 friction 0.3 0.05 damping 0.1\n"),
+      replaced(scene, penalty,
+               "pair_style hybrid/overlay zero 1.0 mpm/penalty growth 1.3\n"
+               "pair_coeff * * zero\n"
+               "pair_coeff 1 2 mpm/penalty 50 friction 0.3 0.05 damping 0.1\n"),
   };
   for (const auto &text : variants) {
     SCOPED_TRACE(text);
@@ -405,7 +407,8 @@ TEST(Lists, ContactDoesNotDependOnThem)
     ASSERT_EQ(state.size(), reference.size());
     double worst = 0.0;
     for (std::size_t i = 0; i < state.size(); i++)
-      for (int d = 0; d < 2; d++) worst = std::max(worst, std::fabs(state[i].v[d] - reference[i].v[d]));
+      for (int d = 0; d < 2; d++)
+        worst = std::max(worst, std::fabs(state[i].v[d] - reference[i].v[d]));
     EXPECT_LT(worst, 1e-10);
   }
 }
@@ -416,8 +419,8 @@ TEST(Lists, NoContact)
   const std::string scene = disks;
   const std::string same = replaced(scene, "mpm 0.6", "mpm 0.5");
   const std::string contact = "fix c all mpm/contact F1 F2 law coulomb 0.3\n";
-  for (const auto &text : {replaced(scene, "pair_coeff 1 2 50", "pair_coeff 1 2 0"),
-                           same + contact, same + contact + "pair_coeff 1 1 50\n"}) {
+  for (const auto &text : {replaced(scene, "pair_coeff 1 2 50", "pair_coeff 1 2 0"), same + contact,
+                           same + contact + "pair_coeff 1 1 50\n"}) {
     Scene run;
     run.commands(text + "compute pair all pair mpm/penalty\nrun 200\n");
     EXPECT_EQ(run.evaluate("c_pair[1]"), 0.0);
@@ -436,7 +439,8 @@ TEST(BadInput, IsRefused)
       {"pair_style mpm/penalty growth", "Illegal pair_style mpm/penalty growth"},
       {"pair_style mpm/penalty growth 0.9", "must be at least 1"},
       {"pair_style mpm/penalty stiff 1", "Unknown pair_style mpm/penalty keyword: stiff"},
-      {"pair_style none\npair_style mpm/penalty\npair_coeff 1 1 5", "no pair_coeff for types 1 and 2"},
+      {"pair_style none\npair_style mpm/penalty\npair_coeff 1 1 5",
+       "no pair_coeff for types 1 and 2"},
       {"pair_style none\npair_style mpm/penalty", "All pair coeffs are not set"},
       {"pair_coeff 1 2", "Illegal pair_coeff mpm/penalty"},
       {"pair_coeff 1 2 -5", "modulus must not be negative"},

@@ -27,17 +27,28 @@ static constexpr struct {
   const char *name;
   int index;
 } properties[] = {
-    {"mpm_volume0", VOLUME0},        {"mpm_volume", VOLUME},
-    {"mpm_J", JACOBIAN},             {"mpm_density", DENSITY},
-    {"mpm_F11", F11},                {"mpm_F12", F11 + 1},
-    {"mpm_F13", F11 + 2},            {"mpm_F21", F11 + 3},
-    {"mpm_F22", F11 + 4},            {"mpm_F23", F11 + 5},
-    {"mpm_F31", F11 + 6},            {"mpm_F32", F11 + 7},
-    {"mpm_F33", F11 + 8},            {"mpm_stress11", STRESS11},
-    {"mpm_stress22", STRESS11 + 1},  {"mpm_stress33", STRESS11 + 2},
-    {"mpm_stress12", STRESS11 + 3},  {"mpm_stress13", STRESS11 + 4},
-    {"mpm_stress23", STRESS11 + 5},  {"mpm_stress21", STRESS11 + 3},
-    {"mpm_stress31", STRESS11 + 4},  {"mpm_stress32", STRESS11 + 5},
+    {"mpm_volume0", VOLUME0},
+    {"mpm_volume", VOLUME},
+    {"mpm_J", JACOBIAN},
+    {"mpm_density", DENSITY},
+    {"mpm_F11", F11},
+    {"mpm_F12", F11 + 1},
+    {"mpm_F13", F11 + 2},
+    {"mpm_F21", F11 + 3},
+    {"mpm_F22", F11 + 4},
+    {"mpm_F23", F11 + 5},
+    {"mpm_F31", F11 + 6},
+    {"mpm_F32", F11 + 7},
+    {"mpm_F33", F11 + 8},
+    {"mpm_stress11", STRESS11},
+    {"mpm_stress22", STRESS11 + 1},
+    {"mpm_stress33", STRESS11 + 2},
+    {"mpm_stress12", STRESS11 + 3},
+    {"mpm_stress13", STRESS11 + 4},
+    {"mpm_stress23", STRESS11 + 5},
+    {"mpm_stress21", STRESS11 + 3},
+    {"mpm_stress31", STRESS11 + 4},
+    {"mpm_stress32", STRESS11 + 5},
 };
 
 /* ---------------------------------------------------------------------- */
@@ -109,8 +120,10 @@ void AtomVecMPM::check_companions()
         error->all(FLERR, "Atom style mpm must come after {} in atom_style hybrid", style);
       after_sphere = true;
     } else if (clash) {
-      error->all(FLERR, "Atom style mpm cannot be combined with atom style {}, which uses the "
-                 "mass or volume of atoms in another way", style);
+      error->all(FLERR,
+                 "Atom style mpm cannot be combined with atom style {}, which uses the "
+                 "mass or volume of atoms in another way",
+                 style);
     }
   }
 }
@@ -142,19 +155,23 @@ void AtomVecMPM::data_atom_post(int ilocal)
 {
   const double volume = vfrac[ilocal];
   if (!(volume >= 0.0))
-    error->one(FLERR, "Invalid volume {} of atom {} in Atoms section of data file: it must be > 0 "
-               "for a material point and 0 for other atoms", volume, atom->tag[ilocal]);
+    error->one(FLERR,
+               "Invalid volume {} of atom {} in Atoms section of data file: it must be > 0 "
+               "for a material point and 0 for other atoms",
+               volume, atom->tag[ilocal]);
 
   if (volume > 0.0) {
     double density = rmass[ilocal];
     if (after_sphere) density /= sphere_volume(radius[ilocal]);
     if (!(density >= 0.0))
-      error->one(FLERR, "Invalid density {} of atom {} in Atoms section of data file: it must be "
+      error->one(FLERR,
+                 "Invalid density {} of atom {} in Atoms section of data file: it must be "
                  "> 0, or 0 for a material point whose mass will come from fix mpm/material",
                  density, atom->tag[ilocal]);
     rmass[ilocal] = density * volume;
   } else if (!after_sphere && !(rmass[ilocal] > 0.0)) {
-    error->one(FLERR, "Invalid mass {} of atom {} in Atoms section of data file: an atom without "
+    error->one(FLERR,
+               "Invalid mass {} of atom {} in Atoms section of data file: an atom without "
                "volume is no material point, and its density column is its mass, which must be > 0",
                rmass[ilocal], atom->tag[ilocal]);
   }
@@ -176,7 +193,8 @@ void AtomVecMPM::pack_data_pre(int ilocal)
 
   if (after_sphere) {
     if (rmass_one == 0.0)
-      error->one(FLERR, "Material point {} has no mass yet, and atom style sphere cannot read such "
+      error->one(FLERR,
+                 "Material point {} has no mass yet, and atom style sphere cannot read such "
                  "atoms from a data file: define fix mpm/material before write_data",
                  atom->tag[ilocal]);
     rmass[ilocal] = rmass_one * sphere_volume(0.5 * radius[ilocal]) / vfrac[ilocal];

@@ -56,7 +56,8 @@ void CreatePoints::command(int narg, char **arg)
   if (!atom->style_match("mpm"))
     error->all(FLERR, Error::NOLASTLINE,
                "Create_points needs atom_style mpm, alone or in atom_style hybrid, but the atom "
-               "style is {}", atom->atom_style);
+               "style is {}",
+               atom->atom_style);
   if (domain->triclinic)
     error->all(FLERR, Error::NOLASTLINE, "Create_points needs an orthogonal simulation box");
   if (modify->nfix_restart_peratom)
@@ -152,8 +153,10 @@ void CreatePoints::parse(int narg, char **arg)
     if (iarg + 1 == narg)
       utils::missing_cmd_args(FLERR, fmt::format("create_points {}", keyword), error);
     if (n != 1 && n != dim)
-      error->all(FLERR, iarg, "Create_points {} expects 1 or {} numbers in a {}d simulation, not "
-                 "{}", keyword, dim, dim, n);
+      error->all(FLERR, iarg,
+                 "Create_points {} expects 1 or {} numbers in a {}d simulation, not "
+                 "{}",
+                 keyword, dim, dim, n);
     return n;
   };
 
@@ -165,8 +168,10 @@ void CreatePoints::parse(int narg, char **arg)
         const int k = iarg + 1 + (n == 1 ? 0 : d);
         ppc[d] = utils::inumeric(FLERR, arg[k], false, lmp);
         if (ppc[d] < 1 || ppc[d] > MAX_PPC)
-          error->all(FLERR, k, "Create_points ppc {} is out of range: it is the number of points "
-                     "along each axis of a cell, 1 to {}", arg[k], MAX_PPC);
+          error->all(FLERR, k,
+                     "Create_points ppc {} is out of range: it is the number of points "
+                     "along each axis of a cell, 1 to {}",
+                     arg[k], MAX_PPC);
       }
       use_ppc = true;
       iarg += 1 + n;
@@ -193,8 +198,10 @@ void CreatePoints::parse(int narg, char **arg)
       if (iarg + 3 > narg) utils::missing_cmd_args(FLERR, "create_points jitter", error);
       jitter = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
       if (!(jitter >= 0.0 && jitter <= 0.5))
-        error->all(FLERR, iarg + 1, "Create_points jitter {} must be from 0 to 0.5 (times the "
-                   "spacing, along each axis)", arg[iarg + 1]);
+        error->all(FLERR, iarg + 1,
+                   "Create_points jitter {} must be from 0 to 0.5 (times the "
+                   "spacing, along each axis)",
+                   arg[iarg + 1]);
       seed = utils::inumeric(FLERR, arg[iarg + 2], false, lmp);
       if (seed <= 0)
         error->all(FLERR, iarg + 2, "Create_points jitter seed {} must be > 0", arg[iarg + 2]);
@@ -210,8 +217,10 @@ void CreatePoints::parse(int narg, char **arg)
       else if (strcmp(arg[iarg + 1], "error") == 0)
         ignore_outside = false;
       else
-        error->all(FLERR, iarg + 1, "Unknown create_points outside option {}: expected error or "
-                   "ignore", arg[iarg + 1]);
+        error->all(FLERR, iarg + 1,
+                   "Unknown create_points outside option {}: expected error or "
+                   "ignore",
+                   arg[iarg + 1]);
       iarg += 2;
     } else if (keyword == "diameter") {
       if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "create_points diameter", error);
@@ -238,7 +247,8 @@ void CreatePoints::parse(int narg, char **arg)
     }
   } else {
     if (!use_spacing)
-      error->all(FLERR, Error::NOPOINTER, "Create_points ppc refers to the lattice of a fix mpm, "
+      error->all(FLERR, Error::NOPOINTER,
+                 "Create_points ppc refers to the lattice of a fix mpm, "
                  "but there is none: define fix mpm first, or use create_points spacing");
     for (int d = 0; d < dim; d++) origin[d] = domain->boxlo[d];
   }
@@ -256,9 +266,10 @@ void CreatePoints::parse(int narg, char **arg)
 
   for (int d = 0; d < dim; d++) {
     if (fix && comm->me == 0 && spacing[d] > fix->lattice.h * (1.0 + TOLERANCE))
-      error->warning(FLERR, "Create_points spacing {:.8g} along {} is wider than the cells of fix "
-                     "{} ({:.8g}): there will be cells without points inside the body", spacing[d],
-                     axis_name[d], fix->id, fix->lattice.h);
+      error->warning(FLERR,
+                     "Create_points spacing {:.8g} along {} is wider than the cells of fix "
+                     "{} ({:.8g}): there will be cells without points inside the body",
+                     spacing[d], axis_name[d], fix->id, fix->lattice.h);
   }
 }
 
@@ -277,8 +288,10 @@ void CreatePoints::find_lattice()
     for (int d = 0; d < domain->dimension; d++)
       same = same && other->lattice.origin[d] == fix->lattice.origin[d];
     if (!same)
-      error->all(FLERR, Error::NOPOINTER, "Fixes mpm {} and {} have different lattices: say with "
-                 "create_points keyword fix which one is meant", fix->id, other->id);
+      error->all(FLERR, Error::NOPOINTER,
+                 "Fixes mpm {} and {} have different lattices: say with "
+                 "create_points keyword fix which one is meant",
+                 fix->id, other->id);
   }
 }
 
@@ -313,8 +326,10 @@ void CreatePoints::find_ranges()
     auto first_from = [&](double x) {
       const double s = (x - origin[d]) / spacing[d] - 0.5;
       if (!(fabs(s) < MAX_INDEX))
-        error->all(FLERR, Error::NOLASTLINE, "Create_points spacing {:.8g} is too fine for this "
-                   "box or region", spacing[d]);
+        error->all(FLERR, Error::NOLASTLINE,
+                   "Create_points spacing {:.8g} is too fine for this "
+                   "box or region",
+                   spacing[d]);
       return (bigint) ceil(s - TOLERANCE);
     };
 
@@ -324,9 +339,11 @@ void CreatePoints::find_ranges()
       if (fabs(nsite - round(nsite)) < TOLERANCE * 10.0) {
         end = first + (bigint) round(nsite);
       } else if (lo[d] < position(d, first) && hi[d] > position(d, end - 1) && comm->me == 0) {
-        error->warning(FLERR, "Create_points spacing {:.8g} does not divide the length {:.8g} of "
+        error->warning(FLERR,
+                       "Create_points spacing {:.8g} does not divide the length {:.8g} of "
                        "the box along periodic axis {}: points across the boundary are not at this "
-                       "spacing", spacing[d], domain->prd[d], axis_name[d]);
+                       "spacing",
+                       spacing[d], domain->prd[d], axis_name[d]);
       }
     } else {
       while (position(d, first) < boxlo) first++;
@@ -398,7 +415,9 @@ void CreatePoints::check_outside()
     const bigint n = search[0].n * search[1].n * search[2].n;
     bigint mine = 0, all = 0;
     for_sites(search, n * comm->me / comm->nprocs, n * (comm->me + 1) / comm->nprocs,
-              [&](const bigint *s) { mine += !in_box(s) && in_region(s); });
+              [&](const bigint *s) {
+                mine += !in_box(s) && in_region(s);
+              });
     MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
     if (all == 0) return;
     count = std::to_string(all);
@@ -408,7 +427,8 @@ void CreatePoints::check_outside()
     error->all(FLERR, Error::NOLASTLINE,
                "Create_points region {} reaches beyond the simulation box: {} points would be "
                "outside; enlarge the box, cut the region, or use create_points keyword outside "
-               "ignore", region->id, count);
+               "ignore",
+               region->id, count);
   if (comm->me == 0)
     utils::logmesg(lmp, "Create_points leaves out {} points of region {} outside the box\n", count,
                    region->id);
@@ -445,10 +465,11 @@ void CreatePoints::check_overlap()
   if (all[0] == 0) return;
 
   const auto message = fmt::format("{} existing material point{} (the first has ID {}) closer than "
-                                   "half a spacing to new points", all[0],
-                                   all[0] > 1 ? "s are" : " is", -all[1]);
+                                   "half a spacing to new points",
+                                   all[0], all[0] > 1 ? "s are" : " is", -all[1]);
   if (!allow_overlap)
-    error->all(FLERR, Error::NOLASTLINE, "Create_points refuses overlapping bodies: {}; change the "
+    error->all(FLERR, Error::NOLASTLINE,
+               "Create_points refuses overlapping bodies: {}; change the "
                "region, delete the old points first, or use create_points keyword overlap yes",
                message);
   if (comm->me == 0) error->warning(FLERR, "Create_points makes overlapping bodies: {}", message);
@@ -501,8 +522,10 @@ bigint CreatePoints::make_points()
     nsite *= range[d].n;
   }
   if (nsite > MAX_SITES)
-    error->all(FLERR, Error::NOLASTLINE, "Create_points would have to look at {:.3g} sites: use a "
-               "wider spacing or a region with a bounding box", nsite);
+    error->all(FLERR, Error::NOLASTLINE,
+               "Create_points would have to look at {:.3g} sites: use a "
+               "wider spacing or a region with a bounding box",
+               nsite);
   const bigint n = range[0].n * range[1].n * range[2].n;
 
   tagint mytag = 0, maxtag = 0;
@@ -537,8 +560,7 @@ bigint CreatePoints::make_points()
     if (atom->tag_enable && maxtag + npoints >= MAXTAGINT)
       error->all(FLERR, Error::NOLASTLINE, "New atom IDs exceed the maximum allowed ID {}",
                  MAXTAGINT);
-    for (bigint k = 0; k < nmade; k++)
-      made[k].tag = atom->tag_enable ? maxtag + before + k + 1 : 0;
+    for (bigint k = 0; k < nmade; k++) made[k].tag = atom->tag_enable ? maxtag + before + k + 1 : 0;
 
     // to their owners, where they arrive in an order that is the same in each run
 

@@ -15,8 +15,7 @@
 
 using namespace MPM_NS;
 
-Grid::Grid(const Lattice &lattice_in) :
-    lattice(lattice_in), nreal(0), node(nullptr), capacity(0)
+Grid::Grid(const Lattice &lattice_in) : lattice(lattice_in), nreal(0), node(nullptr), capacity(0)
 {
   side = lattice.dim == 3 ? 4 : 8;
   shift_bits = lattice.dim == 3 ? 2 : 3;
@@ -62,9 +61,9 @@ int64_t Grid::locate(const int index[3]) const
   const int slot = find(b);
   if (slot < 0) return -1;
   const int mask = side - 1;
-  const int n = lattice.dim == 3 ?
-      (((index[0] & mask) << 2 | (index[1] & mask)) << 2 | (index[2] & mask)) :
-      ((index[0] & mask) << 3 | (index[1] & mask));
+  const int n = lattice.dim == 3
+      ? (((index[0] & mask) << 2 | (index[1] & mask)) << 2 | (index[2] & mask))
+      : ((index[0] & mask) << 3 | (index[1] & mask));
   return (int64_t) slot * NODES_PER_BLOCK + n;
 }
 
@@ -108,8 +107,8 @@ void Grid::finish()
       for (int dy = -1; dy <= 1; dy++)
         for (int dz = -1; dz <= 1; dz++) {
           const int b[3] = {block.b[0] + dx, block.b[1] + dy, block.b[2] + dz};
-          block.slot[9 * (dx + 1) + 3 * (dy + 1) + dz + 1] =
-              (lattice.dim == 3 || dz == 0) ? find(b) : -1;
+          block.slot[9 * (dx + 1) + 3 * (dy + 1) + dz + 1] = (lattice.dim == 3 || dz == 0) ? find(b)
+                                                                                           : -1;
         }
   }
 }

@@ -22,11 +22,11 @@ constexpr int NODES_PER_BLOCK = 64;
 
 /** Geometry of the computing lattice: node i of axis d sits at origin[d] + i h. */
 struct Lattice {
-  int dim;            ///< 2 or 3
-  double h;           ///< node spacing
+  int dim;     ///< 2 or 3
+  double h;    ///< node spacing
   double origin[3];
   bool periodic[3];
-  int ncell[3];       ///< cells along a periodic axis; unused on others
+  int ncell[3];    ///< cells along a periodic axis; unused on others
 
   /** Node index modulo the period: the canonical node of a set of periodic images. */
   int wrap(int axis, int i) const
@@ -48,28 +48,28 @@ struct Lattice {
 class Grid {
  public:
   struct Block {
-    int b[3];             ///< block coordinates
-    int slot[27];         ///< neighbours at [9*(dx+1)+3*(dy+1)+(dz+1)], -1: not active
-    uint64_t alias;       ///< bit n: node n is a periodic image of a canonical node
-    uint64_t owned;       ///< bit n: canonical, and this rank counts it in sums over nodes
+    int b[3];          ///< block coordinates
+    int slot[27];      ///< neighbours at [9*(dx+1)+3*(dy+1)+(dz+1)], -1: not active
+    uint64_t alias;    ///< bit n: node n is a periodic image of a canonical node
+    uint64_t owned;    ///< bit n: canonical, and this rank counts it in sums over nodes
   };
 
   Lattice lattice;
-  int side, shift_bits;           ///< nodes along a block side, log2 of it
+  int side, shift_bits;    ///< nodes along a block side, log2 of it
   std::vector<Block> blocks;
-  int nreal;                      ///< reals of a node record
+  int nreal;    ///< reals of a node record
 
   explicit Grid(const Lattice &);
   Grid(const Grid &) = delete;
   Grid &operator=(const Grid &) = delete;
   ~Grid();
 
-  void clear();                             ///< forget all blocks
-  int activate(const int b[3]);             ///< slot of a block, made active when it is not
-  int find(const int b[3]) const;           ///< slot or -1
-  void close_periodic();                    ///< activate canonical blocks, list the aliases
-  void finish();                            ///< neighbour tables, owned masks (all canonical)
-  void allocate(int nreal);                 ///< node records for all blocks, zeroed
+  void clear();                      ///< forget all blocks
+  int activate(const int b[3]);      ///< slot of a block, made active when it is not
+  int find(const int b[3]) const;    ///< slot or -1
+  void close_periodic();             ///< activate canonical blocks, list the aliases
+  void finish();                     ///< neighbour tables, owned masks (all canonical)
+  void allocate(int nreal);          ///< node records for all blocks, zeroed
 
   double *nodes() { return node; }
   double *record(int slot, int n) { return node + ((int64_t) slot * NODES_PER_BLOCK + n) * nreal; }

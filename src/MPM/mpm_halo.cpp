@@ -176,8 +176,8 @@ void MPMHalo::sum(double *nodes, int nreal, int lane, int nlane)
       for (int l = 0; l < nlane; l++) {
         double sum = 0.0;
         for (const Contribution *c = begin; c != end; c++)
-          sum += c->from < 0 ? record[l] :
-                               recv[c->from][(int64_t) c->offset * block_reals + k * nlane + l];
+          sum += c->from < 0 ? record[l]
+                             : recv[c->from][(int64_t) c->offset * block_reals + k * nlane + l];
         record[l] = sum;
       }
   }

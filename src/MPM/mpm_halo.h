@@ -35,7 +35,7 @@ class MPMHalo : protected Pointers {
   /** Sum reals [lane, lane+nlane) of all node records of shared blocks. */
   void sum(double *nodes, int nreal, int lane, int nlane);
 
-  bigint bytes_sent;     ///< since the last reset by the caller
+  bigint bytes_sent;    ///< since the last reset by the caller
   int nneighbors() const { return (int) ranks.size(); }
 
  private:
@@ -43,11 +43,11 @@ class MPMHalo : protected Pointers {
     int from;      // index into ranks, -1: this rank
     int offset;    // block position in the buffer of that rank
   };
-  std::vector<int> ranks;                        // other sharers, ascending
-  std::vector<std::vector<int>> slots;           // [rank] blocks shared with it, in order of key
-  std::vector<int> shared;                       // slots that have other sharers
-  std::vector<int> first;                        // [shared+1] range in contributions
-  std::vector<Contribution> contributions;       // ascending by rank within a block
+  std::vector<int> ranks;                     // other sharers, ascending
+  std::vector<std::vector<int>> slots;        // [rank] blocks shared with it, in order of key
+  std::vector<int> shared;                    // slots that have other sharers
+  std::vector<int> first;                     // [shared+1] range in contributions
+  std::vector<Contribution> contributions;    // ascending by rank within a block
   std::vector<std::vector<double>> send, recv;
   std::vector<MPI_Request> requests;
 };
