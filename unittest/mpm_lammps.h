@@ -421,6 +421,29 @@ struct Continued {
   }
 };
 
+/** Two soft bodies that cross all rank boundaries of a periodic box, collide, and deform. */
+inline const char *const two_bodies = R"(
+units lj
+boundary p p p
+atom_style mpm
+neighbor 0.3 bin
+region box block 0 8 0 8 0 8
+create_box 2 box
+fix grid all mpm 1.0 MPM_OPTIONS
+region one sphere 2.6 3.0 3.2 1.9
+region two block 4.8 7.3 2.0 5.0 2.5 5.5
+create_points 1 region one ppc 2
+create_points 2 region two ppc 2
+group one type 1
+group two type 2
+fix m1 one mpm/material density 1.0 neohookean 10.0 0.3
+fix m2 two mpm/material density 2.0 linear 20.0 0.2
+velocity one set 0.6 0.35 -0.4
+velocity two set -0.5 0.1 0.3
+timestep 0.05
+thermo 1000
+)";
+
 /** The message of the error that an input gives, or nothing. */
 inline std::string error_of(const std::string &input)
 {

@@ -325,13 +325,18 @@ INSTANTIATE_TEST_SUITE_P(Companions, BadInput, ::testing::ValuesIn(companions), 
 
 // material files
 
+static std::string answer_to(const ScratchFile &file)
+{
+  return answer(
+      changed(good_scene, MATERIAL, "fix soft all mpm/material file " + file.name + "\n"));
+}
+
 TEST(MaterialFile, UnitsMustBeThoseOfTheInput)
 {
   const ScratchFile file("bad_units.mpm",
                          "# DATE: 2026-07-04 UNITS: si CONTRIBUTOR: nobody\n"
                          "density 1.0 linear 10.0 0.3\n");
-  const std::string text =
-      answer(changed(good_scene, MATERIAL, "fix soft all mpm/material file " + file.name + "\n"));
+  const std::string text = answer_to(file);
   EXPECT_TRUE(contains(text,
                        "bad_units\\.mpm is in si units but the input uses lj units: convert "
                        "the file or use units si"))
@@ -341,8 +346,7 @@ TEST(MaterialFile, UnitsMustBeThoseOfTheInput)
 TEST(MaterialFile, MustGiveItsUnits)
 {
   const ScratchFile file("no_units.mpm", "# a material\ndensity 1.0 linear 10.0 0.3\n");
-  const std::string text =
-      answer(changed(good_scene, MATERIAL, "fix soft all mpm/material file " + file.name + "\n"));
+  const std::string text = answer_to(file);
   EXPECT_TRUE(contains(text, "first line of file .*no_units\\.mpm must give its units")) << text;
 }
 
@@ -351,16 +355,14 @@ TEST(MaterialFile, ErrorsNameTheLine)
   const ScratchFile file("bad_line.mpm",
                          "# DATE: 2026-07-04 UNITS: lj CONTRIBUTOR: nobody\n"
                          "density 1.0\n\nlinear 10.0 0.7\n");
-  const std::string text =
-      answer(changed(good_scene, MATERIAL, "fix soft all mpm/material file " + file.name + "\n"));
+  const std::string text = answer_to(file);
   EXPECT_TRUE(contains(text, "file .*bad_line\\.mpm line 4: .*NU = 0\\.7")) << text;
 }
 
 TEST(MaterialFile, EmptyFile)
 {
   const ScratchFile file("empty.mpm", "# DATE: 2026-07-04 UNITS: lj CONTRIBUTOR: nobody\n");
-  const std::string text =
-      answer(changed(good_scene, MATERIAL, "fix soft all mpm/material file " + file.name + "\n"));
+  const std::string text = answer_to(file);
   EXPECT_TRUE(contains(text, "density is missing")) << text;
 }
 

@@ -20,30 +20,6 @@
 
 using namespace MPM_TEST;
 
-// two soft bodies cross all rank boundaries of a periodic box, collide and deform
-
-static const char *const scene3d = R"(
-units lj
-boundary p p p
-atom_style mpm
-neighbor 0.3 bin
-region box block 0 8 0 8 0 8
-create_box 2 box
-fix grid all mpm 1.0 MPM_OPTIONS
-region one sphere 2.6 3.0 3.2 1.9
-region two block 4.8 7.3 2.0 5.0 2.5 5.5
-create_points 1 region one ppc 2
-create_points 2 region two ppc 2
-group one type 1
-group two type 2
-fix m1 one mpm/material density 1.0 neohookean 10.0 0.3
-fix m2 two mpm/material density 2.0 linear 20.0 0.2
-velocity one set 0.6 0.35 -0.4
-velocity two set -0.5 0.1 0.3
-timestep 0.05
-thermo 1000
-)";
-
 static const char *const scene2d = R"(
 units lj
 dimension 2
@@ -87,12 +63,12 @@ class Ranks : public ::testing::TestWithParam<std::string> {
 
 TEST_P(Ranks, Brick3d)
 {
-  compare(replaced(scene3d, "MPM_OPTIONS", GetParam()), "");
+  compare(replaced(two_bodies, "MPM_OPTIONS", GetParam()), "");
 }
 
 TEST_P(Ranks, Rcb3d)
 {
-  compare(replaced(scene3d, "MPM_OPTIONS", GetParam()),
+  compare(replaced(two_bodies, "MPM_OPTIONS", GetParam()),
           "comm_style tiled\nbalance 1.0 rcb\nfix lb all balance 20 1.0 rcb\n");
 }
 
@@ -117,12 +93,12 @@ class TotalRanks : public Ranks {};
 
 TEST_P(TotalRanks, Bricks)
 {
-  compare(replaced(scene3d, "MPM_OPTIONS", GetParam()) + "timestep 0.02\nrun 200\n", "");
+  compare(replaced(two_bodies, "MPM_OPTIONS", GetParam()) + "timestep 0.02\nrun 200\n", "");
 }
 
 TEST_P(TotalRanks, Rcb)
 {
-  compare(replaced(scene3d, "MPM_OPTIONS", GetParam()) + "timestep 0.02\nrun 200\n",
+  compare(replaced(two_bodies, "MPM_OPTIONS", GetParam()) + "timestep 0.02\nrun 200\n",
           "comm_style tiled\nbalance 1.0 rcb\nfix lb all balance 20 1.0 rcb\n");
 }
 

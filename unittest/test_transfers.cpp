@@ -174,35 +174,13 @@ TEST(Usavg, SpinningDisk)
   EXPECT_LT(s.drift, 1e-13);
 }
 
-static const char *const cloud = R"(
-units lj
-boundary p p p
-atom_style mpm
-neighbor 0.3 bin
-region box block 0 8 0 8 0 8
-create_box 2 box
-fix grid all mpm 1.0 OPTIONS
-region one sphere 2.6 3.0 3.2 1.9
-region two block 4.8 7.3 2.0 5.0 2.5 5.5
-create_points 1 region one ppc 2
-create_points 2 region two ppc 2
-group one type 1
-group two type 2
-fix m1 one mpm/material density 1.0 neohookean 10.0 0.3
-fix m2 two mpm/material density 2.0 linear 20.0 0.2
-velocity one set 0.6 0.35 -0.4
-velocity two set -0.5 0.1 0.3
-timestep 0.05
-thermo 1000
-)";
-
 TEST(Parallel, RanksAgree)
 {
   for (const char *options :
        {"transfer xpic 3", "transfer fmpm 3", "transfer flip 1.0 scheme usavg",
         "transfer apic scheme usavg shape cubic"}) {
     SCOPED_TRACE(options);
-    OnRanks run(replaced(cloud, "OPTIONS", options), "run 100\n");
+    OnRanks run(replaced(two_bodies, "MPM_OPTIONS", options), "run 100\n");
     EXPECT_LT(run.difference(), 1e-12);
   }
 }
@@ -219,6 +197,6 @@ TEST(BadInput, IsRefused)
       {"scheme average", "must be one of usl usf musl usavg"},
   };
   for (const auto &bad : cases)
-    EXPECT_THAT(error_of(replaced(cloud, "OPTIONS", bad.lines) + "run 1\n"),
+    EXPECT_THAT(error_of(replaced(two_bodies, "MPM_OPTIONS", bad.lines) + "run 1\n"),
                 ::testing::HasSubstr(bad.message));
 }
