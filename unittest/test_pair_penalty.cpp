@@ -432,10 +432,7 @@ TEST(Lists, NoContact)
 
 TEST(BadInput, IsRefused)
 {
-  const std::string scene = disks;
-  const struct {
-    const char *line, *message;
-  } cases[] = {
+  const std::vector<Mistake> cases = {
       {"pair_style mpm/penalty growth", "Illegal pair_style mpm/penalty growth"},
       {"pair_style mpm/penalty growth 0.9", "must be at least 1"},
       {"pair_style mpm/penalty stiff 1", "Unknown pair_style mpm/penalty keyword: stiff"},
@@ -455,17 +452,7 @@ TEST(BadInput, IsRefused)
       {"unfix F2", "only one fix mpm"},
       {"unfix F1\nunfix F2", "no fix mpm"},
   };
-  for (const auto &bad : cases) {
-    SCOPED_TRACE(bad.line);
-    Scene run;
-    run.commands(scene);
-    try {
-      run.commands(std::string(bad.line) + "\nrun 1\n");
-      ADD_FAILURE() << "no error";
-    } catch (const std::exception &e) {
-      EXPECT_NE(std::string(e.what()).find(bad.message), std::string::npos) << e.what();
-    }
-  }
+  expect_refused(disks, cases, "run 1\n");
   Scene run;
   EXPECT_THROW(run.commands("region box block 0 1 0 1 0 1\ncreate_box 1 box\n"
                             "pair_style mpm/penalty\npair_coeff * * 1\nmass 1 1\nrun 0\n"),
