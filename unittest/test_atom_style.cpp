@@ -8,7 +8,7 @@
 
 // labels: unit input smoke
 // mpi: 1 2 4
-// timeout: 300
+// timeout: 900
 
 // Atom style mpm (what a point carries, and that it survives whatever LAMMPS does to atoms)
 // and the command create_points.

@@ -7,7 +7,7 @@
 ------------------------------------------------------------------------- */
 
 // labels: input smoke
-// timeout: 300
+// timeout: 900
 
 // Every mistake in an input gives an error that says what is wrong, and no crash and no endless
 // loop. A case is the good scene with one thing changed, in a LAMMPS instance of its own; a scene

@@ -8,7 +8,7 @@
 
 // labels: physics mpi
 // mpi: 1 2 4
-// timeout: 300
+// timeout: 900
 
 // Walls: velocity at the wall, momentum and work, friction, separation, motion, regions.
 

@@ -8,7 +8,7 @@
 
 // labels: physics input
 // mpi: 1 2
-// timeout: 300
+// timeout: 900
 
 // compute mpm/error
 

@@ -7,7 +7,7 @@
 ------------------------------------------------------------------------- */
 
 // labels: unit
-// timeout: 300
+// timeout: 900
 
 // Transfer kernels of every instruction set: agreement with the reference, and what a transfer must
 // do whatever the implementation (conservation, exact fields, rows left alone).

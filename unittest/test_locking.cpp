@@ -7,7 +7,7 @@
 ------------------------------------------------------------------------- */
 
 // labels: physics
-// timeout: 300
+// timeout: 900
 
 // Volumetric locking and its cures: keyword locking of fix mpm.
 

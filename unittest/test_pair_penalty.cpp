@@ -8,7 +8,7 @@
 
 // labels: physics mpi input restart
 // mpi: 1 3
-// timeout: 300
+// timeout: 900
 
 // Contact between fields on different lattices through pair style mpm/penalty.
 

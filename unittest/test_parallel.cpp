@@ -8,7 +8,7 @@
 
 // labels: mpi physics
 // mpi: 1 2 3 4
-// timeout: 300
+// timeout: 900
 
 // Any number of ranks and any decomposition gives the result of one rank to round-off.
 

@@ -7,7 +7,7 @@
 ------------------------------------------------------------------------- */
 
 // labels: physics
-// timeout: 300
+// timeout: 900
 
 // Conservation laws and symmetries: rigid motion, momentum, angular momentum, energy.
 

@@ -7,7 +7,7 @@
 ------------------------------------------------------------------------- */
 
 // labels: physics
-// timeout: 300
+// timeout: 900
 
 // Large elastic deformation: bars and beams under their weight.
 

@@ -7,7 +7,7 @@
 ------------------------------------------------------------------------- */
 
 // labels: physics
-// timeout: 300
+// timeout: 900
 
 // Gases, shocks, detonation, and viscous flow on the lattice, in strips that are one cell wide,
 // against exact solutions.

@@ -7,7 +7,7 @@
 ------------------------------------------------------------------------- */
 
 // labels: physics
-// timeout: 300
+// timeout: 900
 
 // Manufactured solution: axis-aligned displacement in the unit interval and square (M. Steffen,
 // P.C. Wallstedt, J.E. Guilkey, R.M. Kirby, M. Berzins, CMES 31 (2008) 107; P.C. Wallstedt,

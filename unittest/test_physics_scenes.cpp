@@ -7,7 +7,7 @@
 ------------------------------------------------------------------------- */
 
 // labels: physics
-// timeout: 300
+// timeout: 900
 
 // Scenes with several pieces at work: impact, flow, grains on a block.
 

@@ -1,5 +1,5 @@
 // labels: physics
-// timeout: 300
+// timeout: 900
 /* ----------------------------------------------------------------------
    LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
    https://www.lammps.org/

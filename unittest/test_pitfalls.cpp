@@ -8,7 +8,7 @@
 
 // labels: physics smoke
 // mpi: 1 2 4
-// timeout: 300
+// timeout: 900
 
 // Defects seen in other material point codes, each with a test of its name. Mistakes in the input
 // are in test_bad_input.cpp, points on faces and beyond the box in test_atom_style.cpp, dumps in

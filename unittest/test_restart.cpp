@@ -8,7 +8,7 @@
 
 // labels: restart smoke
 // mpi: 1 2 3
-// timeout: 300
+// timeout: 900
 
 // A run continued from a restart file is the uninterrupted run, bit by bit on the same number of
 // ranks, and to round-off on another.

@@ -7,7 +7,7 @@
 ------------------------------------------------------------------------- */
 
 // labels: physics
-// timeout: 300
+// timeout: 900
 
 // fix mpm with frame total: kinematics, exact solutions at large deformation, invariants, limit of
 // the time step, and what is refused. Convergence is in test_physics_mms.cpp and

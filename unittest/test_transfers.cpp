@@ -8,7 +8,7 @@
 
 // labels: physics mpi restart input
 // mpi: 1 3
-// timeout: 300
+// timeout: 900
 
 // Transfers that refine nodal velocities (XPIC, FMPM), and the scheme that averages (USAVG).
 
