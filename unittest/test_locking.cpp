@@ -129,6 +129,38 @@ TEST(CookMembrane, CompressibleStays)
 }
 
 /* ----------------------------------------------------------------------
+   Limit load of a rough rigid punch of half-width 1 on a half-space that flows at constant volume
+   (von Mises, perfectly plastic, plane strain): (2 + pi) sigma_y/sqrt(3) by L. Prandtl. On the
+   lattice, the edge of the punch is half a cell beyond its last node.
+------------------------------------------------------------------------- */
+
+static double punch(const char *options)
+{
+  const double h = 0.1, dt = 0.4 * h / 37.0;
+  Scene run;
+  run.commands(strprintf(
+      "units si\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.04 bin\n"
+      "region box block 0 5 -3 1 -0.5 0.5\ncreate_box 1 box\nfix grid all mpm %g %s\n"
+      "region soil block 0 5 -3 0 INF INF\ncreate_points 1 region soil ppc 2\n"
+      "fix m all mpm/material density 1 eos linear 833.33 strength j2 384.6 1.0\n"
+      "fix sides all mpm/boundary xlo xhi slip\nfix floor all mpm/boundary ylo stick\n"
+      "region punch block -1 1.001 -0.001 1 INF INF\n"
+      "fix punch all mpm/boundary region punch stick velocity 0 -0.04 0\n"
+      "fix slow all viscous %g\nthermo 1000000\ntimestep %.17g\nrun %ld\n",
+      h, options, 0.75 * h * h, dt, std::lround(0.9 / dt)));
+  const double exact = (2.0 + 3.14159265358979) / sqrt(3.0) * (1.0 + 0.5 * h);
+  return measured(std::string("punch, ") + options + ": force/limit load",
+                  std::abs(run.fix_vector("punch", 3)[1]) / exact);
+}
+
+TEST(Punch, LimitLoad)
+{
+  const double without = punch("locking none"), with = punch("locking fbar");
+  EXPECT_NEAR(with, 1.0, 0.08);
+  EXPECT_LT(with, without - 0.03);
+}
+
+/* ----------------------------------------------------------------------
    A body whose velocity is linear in position deforms uniformly in a step, averaged or not.
 ------------------------------------------------------------------------- */
 
