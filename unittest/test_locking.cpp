@@ -35,7 +35,7 @@ static Cook cook(const char *options, double h, double nu)
 {
   const double E = nu > 0.4 ? 240.565 : 70.0;
   const double lambda = E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), mu = 0.5 * E / (1.0 + nu);
-  const double dt = 0.5 * h / sqrt(lambda + 2.0 * mu), F = 100.0;
+  const double dt = 0.75 * h / sqrt(lambda + 2.0 * mu), F = 100.0;
   const double u_expected = nu > 0.4 ? 7.0 : 19.0;
   const double omega = sqrt(F / u_expected / 400.0), ramp = 4.0 / omega, end = 12.0 / omega;
   Scene run;
@@ -124,7 +124,7 @@ TEST(CookMembrane, PressureAgrees)
 TEST(CookMembrane, CompressibleStays)
 {
   EXPECT_NEAR(cook("", 2.0, 1.0 / 3.0).u / 19.337, 1.0, 0.02);
-  EXPECT_NEAR(cook("locking fbar", 2.0, 1.0 / 3.0).u / 19.337, 1.0, 0.03);
+  EXPECT_NEAR(cook("locking fbar", 2.0, 1.0 / 3.0).u / 19.337, 1.0, 0.04);
   EXPECT_NEAR(cook("locking pressure", 2.0, 1.0 / 3.0).u / 19.337, 1.0, 0.03);
 }
 
