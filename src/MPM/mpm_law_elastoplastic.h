@@ -64,6 +64,17 @@ namespace {
         2.0 * (s.xy * x * y + s.xz * x * z + s.yz * y * z);
   }
 
+  /** sum_a value_a n_a x n_a, with the axes n_a of point i as [component][axis][point]. */
+  MPM_INLINE Sym along_axes(const double (&axes)[3][3][BATCH], int i, double value0, double value1,
+                            double value2)
+  {
+    Sym r = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    add_dyad(r, axes[0][0][i], axes[1][0][i], axes[2][0][i], value0);
+    add_dyad(r, axes[0][1][i], axes[1][1][i], axes[2][1][i], value1);
+    add_dyad(r, axes[0][2][i], axes[1][2][i], axes[2][2][i], value2);
+    return r;
+  }
+
   /** A batch along the principal axes of the elastic trial state, values as [axis][point]. */
   struct PrincipalStates {
     alignas(64) double before[3][BATCH];    ///< elastic strain at the start of the step
@@ -80,7 +91,7 @@ namespace {
    *
    *  Law has, besides its declaration: Law(parameters, batch), map(batch, history, states), which
    *  returns the strains and makes the rest, with the history rows behind those of be, and
-   *  stored(history, i, strain[3]), the energy per reference volume.
+   *  stored(history, i, strain, strain, strain), the energy per reference volume.
    *
    *  Strains at the start of the step are those of the trial state less the strain increment along
    *  its axes; the work of a step is then right to third order. */
@@ -104,16 +115,13 @@ namespace {
       double plastic = 0.0;
       MPM_SIMD_SUM(plastic)
       for (int i = 0; i < b.n; i++) {
-        Spectral end;
-        double tau[3];
+        // written out here and in energy(): small arrays with loops over them do not vectorize
         const double inv = 1.0 / b.J[i];
-        for (int a = 0; a < 3; a++) {
-          end.value[a] = expm1(2.0 * s.strain[a][i]);
-          tau[a] = inv * s.tau[a][i];
-          for (int k = 0; k < 3; k++) end.vector[k][a] = axes[k][a][i];
-        }
-        store_rows(history, i, recompose(end, end.value));
-        store_stress(b, i, recompose(end, tau));
+        store_rows(history, i,
+                   along_axes(axes, i, expm1(2.0 * s.strain[0][i]), expm1(2.0 * s.strain[1][i]),
+                              expm1(2.0 * s.strain[2][i])));
+        store_stress(b, i,
+                     along_axes(axes, i, inv * s.tau[0][i], inv * s.tau[1][i], inv * s.tau[2][i]));
         b.heat[i] += p.chi * s.work[i];
         plastic += s.work[i] * b.vol0[i];
       }
@@ -127,9 +135,8 @@ namespace {
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
         const Spectral s = spectral(load_rows(history, i));
-        double e[3];
-        for (int a = 0; a < 3; a++) e[a] = log_strain(s.value[a]);
-        w[i] += law.stored(history + ELASTIC_STRAIN_ROWS, i, e);
+        w[i] += law.stored(history + ELASTIC_STRAIN_ROWS, i, log_strain(s.value[0]),
+                           log_strain(s.value[1]), log_strain(s.value[2]));
       }
     }
   };
@@ -204,13 +211,12 @@ namespace {
       }
     }
 
-    MPM_INLINE double stored(History, int, const double e[3]) const
+    MPM_INLINE double stored(History, int, double e0, double e1, double e2) const
     {
       const Law &law = static_cast<const Law &>(*this);
-      const double v = e[0] + e[1] + e[2];
-      double square = 0.0;
-      for (int a = 0; a < 3; a++) square += (e[a] - (1.0 / 3.0) * v) * (e[a] - (1.0 / 3.0) * v);
-      return law.volume_energy(v) + law.G * square;
+      const double v = e0 + e1 + e2, m = (1.0 / 3.0) * v;
+      return law.volume_energy(v) +
+          law.G * ((e0 - m) * (e0 - m) + (e1 - m) * (e1 - m) + (e2 - m) * (e2 - m));
     }
   };
 

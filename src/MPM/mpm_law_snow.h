@@ -49,52 +49,52 @@ namespace {
 
     MPM_INLINE double hardening(double JP) const { return exp(xi * (1.0 - JP)); }
 
-    /** Stress and energy for h = 1. */
-    MPM_INLINE double elastic(const double e[3], double tau[3]) const
+    /** Energy for h = 1, from the stretches and their product less one. */
+    MPM_INLINE double elastic(double s0, double s1, double s2, double dJ) const
     {
-      const double dJ = expm1(e[0] + e[1] + e[2]);
-      double square = 0.0;
-      for (int a = 0; a < 3; a++) {
-        const double ds = expm1(e[a]);
-        tau[a] = 2.0 * mu * (1.0 + ds) * ds + lambda * (1.0 + dJ) * dJ;
-        square += ds * ds;
-      }
-      return mu * square + 0.5 * lambda * dJ * dJ;
+      return mu * (s0 * s0 + s1 * s1 + s2 * s2) + 0.5 * lambda * dJ * dJ;
     }
+
+    MPM_INLINE double shear_part(double ds) const { return 2.0 * mu * (1.0 + ds) * ds; }
 
     MPM_INLINE void map(Batch &b, History history, PrincipalStates &s) const
     {
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
-        double e[3], old[3], flow[3], tau[3], tau_old[3];
-        double volume = 0.0;
-        for (int a = 0; a < 3; a++) {
-          old[a] = s.before[a][i];
-          e[a] = min(max(s.strain[a][i], low), high);
-          flow[a] = s.strain[a][i] - e[a];
-          volume += flow[a];
-        }
+        const double e0 = min(max(s.strain[0][i], low), high), flow0 = s.strain[0][i] - e0;
+        const double e1 = min(max(s.strain[1][i], low), high), flow1 = s.strain[1][i] - e1;
+        const double e2 = min(max(s.strain[2][i], low), high), flow2 = s.strain[2][i] - e2;
+        const double volume = flow0 + flow1 + flow2, m = (1.0 / 3.0) * volume;
         const double JP = history[0][i], JPnew = JP * exp(volume);
         const double h0 = hardening(JP), h = hardening(JPnew);
-        const double w0 = elastic(old, tau_old), w = elastic(e, tau);
-        double by_old = 0.0, by_new = 0.0, square = 0.0;
-        for (int a = 0; a < 3; a++) {
-          by_old += h0 * tau_old[a] * flow[a];
-          by_new += h * tau[a] * flow[a];
-          square += (flow[a] - (1.0 / 3.0) * volume) * (flow[a] - (1.0 / 3.0) * volume);
-          s.strain[a][i] = e[a];
-          s.tau[a][i] = h * tau[a];
-        }
-        s.work[i] = 0.5 * (by_old + by_new) - 0.5 * (w0 + w) * (h - h0);
+        // stretches less one; Kirchhoff stresses for h = 1 at start and end
+        const double x0 = expm1(s.before[0][i]), x1 = expm1(s.before[1][i]);
+        const double x2 = expm1(s.before[2][i]), y0 = expm1(e0), y1 = expm1(e1), y2 = expm1(e2);
+        const double dJ = expm1(s.before[0][i] + s.before[1][i] + s.before[2][i]);
+        const double dJnew = expm1(e0 + e1 + e2), pv = lambda * (1.0 + dJnew) * dJnew;
+        const double t0 = pv + shear_part(y0), t1 = pv + shear_part(y1), t2 = pv + shear_part(y2);
+        const double by_old = lambda * (1.0 + dJ) * dJ * volume + shear_part(x0) * flow0 +
+            shear_part(x1) * flow1 + shear_part(x2) * flow2;
+        const double by_new = t0 * flow0 + t1 * flow1 + t2 * flow2;
+        const double w0 = elastic(x0, x1, x2, dJ), w = elastic(y0, y1, y2, dJnew);
+        const double square =
+            (flow0 - m) * (flow0 - m) + (flow1 - m) * (flow1 - m) + (flow2 - m) * (flow2 - m);
+        s.strain[0][i] = e0;
+        s.strain[1][i] = e1;
+        s.strain[2][i] = e2;
+        s.tau[0][i] = h * t0;
+        s.tau[1][i] = h * t1;
+        s.tau[2][i] = h * t2;
+        s.work[i] = 0.5 * (h0 * by_old + h * by_new) - 0.5 * (w0 + w) * (h - h0);
         b.plastic[i] = std::sqrt((2.0 / 3.0) * square);
         history[0][i] = JPnew;
       }
     }
 
-    MPM_INLINE double stored(History history, int i, const double e[3]) const
+    MPM_INLINE double stored(History history, int i, double e0, double e1, double e2) const
     {
-      double tau[3];
-      return hardening(history[0][i]) * elastic(e, tau);
+      return hardening(history[0][i]) *
+          elastic(expm1(e0), expm1(e1), expm1(e2), expm1(e0 + e1 + e2));
     }
 
     /** J d sigma_nn / d strain_nn = h (2 mu s_n^2 + lambda JE^2) along a principal axis. */
