@@ -34,7 +34,7 @@ struct Sample {
     {"ogden3", "density 1000 ogden 2e6 term 0.63e6 1.3 term 0.0012e6 5 term -0.01e6 -2"},
     {"transversely_isotropic",
      "density 1580 transversely/isotropic 126e9 11e9 0.28 0.4 6.6e9 axis 1 2 -0.5"},
-    {"linear_kelvin_voigt", "density 1000 linear 1e9 0.3 viscosity kelvin/voigt 10"},
+    {"linear_newtonian", "density 1000 linear 1e9 0.3 viscosity newtonian 10"},
     {"neohookean_maxwell1", "density 1000 neohookean 1e9 0.3 viscosity maxwell term 1e9 1e-3"},
     {"neohookean_maxwell3",
      "density 1000 neohookean 1e9 0.3 viscosity maxwell term 1e9 1e-3 term 1e9 1e-2 term 1e9 1e-1"},

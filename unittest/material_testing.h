@@ -226,7 +226,7 @@ inline const Sample samples[] = {
     {"herschel/bulkley", "density 1000 eos linear 1e6 viscosity herschel/bulkley 1 0.5 2 10"},
     {"power", "density 1000 eos tait 1e6 7 viscosity power 2 0.5 0.1 10"},
     {"damped linear",
-     "density 1000 linear 1e6 0.3 viscosity kelvin/voigt 10 bulk 20 viscosity artificial 2 1"},
+     "density 1000 linear 1e6 0.3 viscosity newtonian 10 bulk 20 viscosity artificial 2 1"},
     {"damped metal",
      "density 8930 eos linear 1e11 strength j2 43e9 157e6 hardening linear 425e6 "
      "viscosity newtonian 1e3"},

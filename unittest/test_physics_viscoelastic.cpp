@@ -57,11 +57,7 @@ struct Case {
 
 static const Case cases[] = {
     {"elastic", "hencky 100 0", 0.0, {0.0, 0.0}, {1.0, 1.0}},
-    {"KelvinVoigt",
-     "linear 100 0 viscosity kelvin/voigt 0.15 bulk 0.1",
-     0.3,
-     {0.0, 0.0},
-     {1.0, 1.0}},
+    {"KelvinVoigt", "linear 100 0 viscosity newtonian 0.15 bulk 0.1", 0.3, {0.0, 0.0}, {1.0, 1.0}},
     {"newtonian", "neohookean 100 0 viscosity newtonian 0.15", 0.2, {0.0, 0.0}, {1.0, 1.0}},
     {"Maxwell",
      "hencky 100 0 viscosity maxwell term 30 0.02 term 15 0.003",

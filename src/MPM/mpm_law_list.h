@@ -43,7 +43,6 @@
 #include "mpm_strength_zerilli_armstrong.h"
 #include "mpm_thermal.h"
 #include "mpm_viscosity_artificial.h"
-#include "mpm_viscosity_kelvin_voigt.h"
 #include "mpm_viscosity_maxwell.h"
 #include "mpm_viscosity_newtonian.h"
 #include "mpm_viscosity_power.h"
@@ -61,7 +60,7 @@ namespace {
   using elastic =
       Family<CLOSED, LawLinear, LawNeoHookean, LawNeoHookeanSplit, LawStVenantKirchhoff, LawHencky,
              LawMooneyRivlin, LawOgden, LawTransverselyIsotropic, LawOrthotropic>;
-  using viscoelastic = Family<VISCOSITY, ViscosityKelvinVoigt, ViscosityMaxwell>;
+  using viscoelastic = Family<VISCOSITY, ViscosityMaxwell>;
   using soil =
       Family<CLOSED, LawDruckerPrager, LawMohrCoulomb, LawCamClay, LawNacc, LawMuI, LawSnow>;
   using porous = Family<CLOSED, LawGurson>;
