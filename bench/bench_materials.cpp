@@ -34,6 +34,9 @@ struct Sample {
     {"ogden3", "density 1000 ogden 2e6 term 0.63e6 1.3 term 0.0012e6 5 term -0.01e6 -2"},
     {"transversely_isotropic",
      "density 1580 transversely/isotropic 126e9 11e9 0.28 0.4 6.6e9 axis 1 2 -0.5"},
+    {"orthotropic",
+     "density 600 orthotropic 11e9 0.9e9 0.5e9 0.4 0.45 0.5 0.7e9 0.65e9 0.05e9 "
+     "axes 1 2 0 0 1 1 angle 20"},
     {"linear_newtonian", "density 1000 linear 1e9 0.3 viscosity newtonian 10"},
     {"neohookean_maxwell1", "density 1000 neohookean 1e9 0.3 viscosity maxwell term 1e9 1e-3"},
     {"neohookean_maxwell3",
@@ -60,6 +63,9 @@ struct Sample {
     {"johnson_cook",
      "density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 0.168 "
      "0.0089 1 1.1 1540 20 thermal adiabatic 460 20 0.9"},
+    {"johnson_cook_warm",
+     "density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 0.168 "
+     "0.0089 1 1.1 1540 20 thermal constant 600"},
     {"johnson_cook_cold",
      "density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 "
      "0.168 0.0089 1"},

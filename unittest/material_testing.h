@@ -172,13 +172,16 @@ inline const Sample samples[] = {
      "0.37 0.013 1e-3"},
     {"zerilli/armstrong bcc",
      "density 7870 eos linear 165e9 strength zerilli/armstrong 80e9 65e6 form bcc 1033e6 0.00698 "
-     "0.000415 266e6 0.289 thermal adiabatic 450 300 0.9"},
+     "0.000415 266e6 0.289 rate 1 thermal adiabatic 450 300 0.9"},
     {"zerilli/armstrong fcc",
      "density 8930 eos shock 3940 1.49 1.96 strength zerilli/armstrong 47e9 65e6 form fcc 890e6 "
-     "0.0028 0.000115 melt 1356 thermal adiabatic 385 300 0.9"},
+     "0.0028 0.000115 melt 1356 rate 1 thermal adiabatic 385 300 0.9"},
     {"steinberg",
      "density 8930 eos shock 3940 1.489 2.02 strength steinberg 47.7e9 0.12e9 36 0.45 0.64e9 "
-     "2.83e-11 3.77e-4 melt 1790 1.5 2.02 thermal adiabatic 385 300 0.9 gruneisen 2.02"},
+     "2.83e-11 3.77e-4 melt 1790 1.5 2.02 tref 300 thermal adiabatic 385 300 0.9 gruneisen 2.02"},
+    {"johnson/cook warm",
+     "density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 0.168 "
+     "0.0089 1 1.1 1540 20 thermal constant 600"},
     {"melting",
      "density 8930 eos linear 1e11 strength j2 43e9 157e6 thermal adiabatic 385 300 0.9 "
      "melt 300.5 200 gruneisen 2"},
