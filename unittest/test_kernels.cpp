@@ -68,13 +68,13 @@ struct Points {
   int guarded;    // as in PointRows: the last row exists, no more
   TransferStep step;
   int base[3];
-  Reals x, v, f, C, tau, vol0, mass, xnew;
+  Reals x, v, f, C, tau, vol0, mass, xnew, size;
 
   Points(int dim, int order, int first, int count, int behind, bool sorted) :
       dim(dim), order(order), first(first), last(first + count), n(first + count + behind),
       nC(dim * dim),
       guarded(integer(0, 1) * (n - 1)), base{integer(-40, 40), integer(-40, 40), integer(-40, 40)},
-      x(3 * n), v(3 * n), f(3 * n), C(nC * n), tau(6 * n), vol0(n), mass(n), xnew(3 * n)
+      x(3 * n), v(3 * n), f(3 * n), C(nC * n), tau(6 * n), vol0(n), mass(n), xnew(3 * n), size(3 * n)
   {
     step.h = uniform(0.1, 2.0);
     step.inv_h = 1.0 / step.h;
@@ -87,6 +87,7 @@ struct Points {
     fill(v), fill(f), fill(C), fill(tau);
     for (double &a : vol0) a = uniform(0.5, 1.5) * step.h * step.h * step.h;
     for (double &a : mass) a = uniform(0.5, 1.5);
+    for (double &a : size) a = uniform(0.02, 0.5);
 
     // everywhere in the range of base nodes of a tile
     const double range = block_side(dim) + 2;
@@ -112,7 +113,7 @@ struct Points {
   {
     return {x.data(),   v.data(),    f.data(),    C.data(),
             tau.data(), vol0.data(), mass.data(), in_place ? x.data() : xnew.data(),
-            nullptr,    guarded};
+            nullptr,    guarded,     nullptr,     nullptr, size.data()};
   }
 
   /** Position of a tile node. */
@@ -165,13 +166,19 @@ struct Case {
   bool split;
 };
 
+/** Merged records suffice. */
+bool may_be_merged(Transfer transfer)
+{
+  return transfer == APIC || transfer == TPIC;
+}
+
 std::string case_name(const ::testing::TestParamInfo<Case> &info)
 {
-  static const char *const shapes[] = {"", "linear", "quadratic", "cubic"};
-  static const char *const transfers[] = {"pic", "flip", "apic"};
+  static const char *const shapes[] = {"", "linear", "quadratic", "cubic", "gimp"};
+  static const char *const transfers[] = {"pic", "flip", "apic", "aflip", "tpic"};
   const Case &c = info.param;
   return std::string(c.isa) + "_" + std::to_string(c.dim) + "d_" + shapes[c.shape] + "_" +
-      transfers[c.transfer] + (c.transfer == APIC ? (c.split ? "_split" : "_merged") : "");
+      transfers[c.transfer] + (may_be_merged(c.transfer) ? (c.split ? "_split" : "_merged") : "");
 }
 
 std::vector<Case> all_cases()
@@ -179,10 +186,10 @@ std::vector<Case> all_cases()
   std::vector<Case> cases;
   for (const char *isa : {"reference", "baseline", "avx2", "avx512"})
     for (int dim : {2, 3})
-      for (Shape shape : {LINEAR, QUADRATIC, CUBIC})
-        for (Transfer transfer : {PIC, FLIP, APIC})
+      for (Shape shape : {LINEAR, QUADRATIC, CUBIC, GIMP})
+        for (Transfer transfer : {PIC, FLIP, APIC, AFLIP, TPIC})
           for (bool split : {true, false})
-            if (split || transfer == APIC) cases.push_back({isa, dim, shape, transfer, split});
+            if (split || may_be_merged(transfer)) cases.push_back({isa, dim, shape, transfer, split});
   return cases;
 }
 
@@ -199,7 +206,7 @@ class Kernels : public ::testing::TestWithParam<Case> {
     table = MPMKernels::select(c.isa);
     if (!table) GTEST_SKIP() << "the CPU does not have it, or the compiler does not know it";
     dim = c.dim;
-    order = c.shape;
+    order = stencil_order(c.shape);
     kernels = table->transfer(dim, c.shape, c.transfer, c.split);
     reference = MPMKernels::select("reference")->transfer(dim, c.shape, c.transfer, c.split);
     nreal = kernels.nreal;
@@ -301,6 +308,7 @@ TEST_P(Kernels, P2GBoxIsThatOfTheBaseNodesAndOnlyWidens)
 TEST_P(Kernels, TotalFrame)
 {
   const Case &c = GetParam();
+  if (c.shape == GIMP || c.transfer == AFLIP || c.transfer == TPIC) return;
   const TransferKernels total = table->transfer_total(dim, c.shape, c.transfer, c.split);
   const TransferKernels plain =
       MPMKernels::select("reference")->transfer_total(dim, c.shape, c.transfer, c.split);
@@ -514,6 +522,13 @@ TEST_P(Kernels, AngularMomentumIsConserved)
         const double t = (x[a] - points.step.origin[a]) / points.step.h;
         const double f = t - std::floor(t);
         moment[a] = order == 1 ? f * (1.0 - f) : (order == 2 ? 0.25 : 1.0 / 3.0);
+        if (GetParam().shape == GIMP) {
+          const double s = points.size[3 * p + a];
+          double w[3];
+          const double c = t - std::floor(t + 0.5);
+          Gimp::weights(c + 0.5, s, w);
+          moment[a] = w[0] * (c + 1.0) * (c + 1.0) + w[1] * c * c + w[2] * (1.0 - c) * (1.0 - c);
+        }
         moment[a] *= points.step.h * points.step.h;
       }
       expected += points.mass[p] * (C[dim * i + j] * moment[i] - C[dim * j + i] * moment[j]);
@@ -572,7 +587,7 @@ TEST_P(Kernels, ConstantAndLinearFieldsAreExact)
         if (dim == 3) v += B[6 + i] * x[2], v_old += D[6 + i] * x[2];
         const double size = 200.0 * points.step.h + 10.0;    // of the terms in the field
         EXPECT_NEAR(points.x[3 * p + i], x[i] + points.step.dt * v, 1e-12 * size);
-        if (transfer == FLIP)
+        if (adds_change(transfer))
           v = points.step.flip * (before.v[3 * p + i] + v - v_old) + (1.0 - points.step.flip) * v;
         EXPECT_NEAR(points.v[3 * p + i], v, 1e-12 * size);
       }
@@ -621,8 +636,9 @@ TEST_P(Kernels, AffineFieldSurvivesTheRoundTrip)
 
 TEST_P(Kernels, SplitEqualsMerged)
 {
-  if (GetParam().transfer != APIC || !split) return;    // APIC has both layouts
-  const TransferKernels merged = table->transfer(dim, GetParam().shape, APIC, false);
+  if (!may_be_merged(GetParam().transfer) || !split) return;
+  const TransferKernels merged =
+      table->transfer(dim, GetParam().shape, GetParam().transfer, false);
   ASSERT_EQ(merged.nreal, 4);
   Points a = random_points(150), b = a;
   Tile tile_a(dim, order, 8), tile_b(dim, order, 4);
@@ -896,13 +912,14 @@ TEST_P(Tables, SolveNodesSplit)
 TEST_P(Tables, SaysWhatItHas)
 {
   for (int dim : {2, 3})
-    for (Shape shape : {LINEAR, QUADRATIC, CUBIC})
-      for (Transfer transfer : {PIC, FLIP, APIC})
+    for (Shape shape : {LINEAR, QUADRATIC, CUBIC, GIMP})
+      for (Transfer transfer : {PIC, FLIP, APIC, AFLIP, TPIC})
         for (bool split : {false, true}) {
           const TransferKernels k = table->transfer(dim, shape, transfer, split);
-          EXPECT_EQ(k.nreal, split || transfer != APIC ? 8 : 4);
-          EXPECT_EQ(k.affine, transfer == APIC);
-          EXPECT_EQ(k.mls, transfer == APIC && shape != LINEAR);
+          EXPECT_EQ(k.nreal, split || !may_be_merged(transfer) ? 8 : 4);
+          EXPECT_EQ(k.affine, transfer == APIC || transfer == AFLIP || transfer == TPIC);
+          EXPECT_EQ(k.mls, (transfer == APIC || transfer == AFLIP) &&
+                        (shape == QUADRATIC || shape == CUBIC));
           EXPECT_TRUE(k.p2g && k.p2g_momentum && k.p2g_force && k.g2p && k.g2p_gradient &&
                       k.flush && k.load);
         }

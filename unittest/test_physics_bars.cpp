@@ -212,6 +212,7 @@ TEST_P(VibratingBar, TenPeriods)
 // Linear: an independent code, to 10 % of the period's deviation and 0.002 of the energy (FLIP
 // 0.99: 0.01). Others: the everyday gate of 0.5 % and 1 %. APIC pays per step for what the affine
 // field of a point does not hold: energy 0.991 (quadratic) and 0.985 (cubic) after 3200 steps.
+// Measured: TPIC 0.988, AFLIP 0.997, contiguous GIMP 0.998 with FLIP and 0.997 with APIC.
 
 INSTANTIATE_TEST_SUITE_P(
     Options, VibratingBar,
@@ -232,7 +233,14 @@ INSTANTIATE_TEST_SUITE_P(
         VibrationCase{"shape quadratic transfer apic", 16, 2, 1.0, .005, 1.0, .011},
         VibrationCase{"shape quadratic transfer pic", 16, 2, 0.0, 0.0, .01, .01},
         VibrationCase{"shape cubic transfer flip 1.0 scheme musl", 16, 2, 1.0, .005, 1.0, .01},
-        VibrationCase{"shape cubic transfer apic", 16, 2, 1.0, .005, .98, .02}));
+        VibrationCase{"shape cubic transfer apic", 16, 2, 1.0, .005, .98, .02},
+        VibrationCase{"shape gimp aspect 1 2 transfer flip 1.0 scheme musl", 16, 2, 1.0, .005, 1.0,
+                      .01},
+        VibrationCase{"shape cpgimp aspect 1 2 transfer flip 1.0 scheme musl", 16, 2, 1.0, .005, 1.0,
+                      .01},
+        VibrationCase{"shape cpgimp aspect 1 2 transfer apic", 16, 2, 1.0, .005, 1.0, .011},
+        VibrationCase{"shape quadratic transfer aflip 1.0", 16, 2, 1.0, .005, 1.0, .01},
+        VibrationCase{"shape quadratic transfer tpic", 16, 2, 1.0, .005, .988, .004}));
 
 // a wall is the same thing as symmetry
 
@@ -487,7 +495,12 @@ INSTANTIATE_TEST_SUITE_P(Options, GalileanBar,
                          ::testing::Values("shape quadratic transfer flip 1.0 scheme musl",
                                            "shape quadratic transfer apic",
                                            "shape cubic transfer flip 1.0 scheme musl",
-                                           "shape cubic transfer apic"));
+                                           "shape cubic transfer apic",
+                                           "shape gimp aspect 1 2 transfer flip 1.0 scheme musl",
+                                           "shape cpgimp aspect 1 2 transfer flip 1.0 scheme musl",
+                                           "shape cpgimp aspect 1 2 transfer apic",
+                                           "shape quadratic transfer aflip 1.0",
+                                           "shape quadratic transfer tpic"));
 
 TEST(GalileanBarLinear, ShowsTheDefect)
 {

@@ -374,9 +374,7 @@ TEST_P(MuslApic, ShearedBlockGainsNoEnergy)
   Scene run;
   run.commands("units lj\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
                "region box block 0 16 0 16 0 16\ncreate_box 1 box\n"
-               "fix grid all mpm 1.0 scheme musl transfer apic shape " +
-               GetParam() +
-               "\n"
+               "fix grid all mpm 1.0 scheme musl " + GetParam() + "\n"
                "region body block 5 11 5 11 5 11\ncreate_points 1 region body ppc 2\n"
                "fix m all mpm/material density 1.0 neohookean 100.0 0.3\n"
                "velocity all ramp vx -1.0 1.0 y 5 11\ntimestep 0.06\n"
@@ -392,4 +390,6 @@ TEST_P(MuslApic, ShearedBlockGainsNoEnergy)
   EXPECT_LT(most, 1.002 * start);
 }
 
-INSTANTIATE_TEST_SUITE_P(Pitfall, MuslApic, ::testing::Values("quadratic", "cubic"));
+INSTANTIATE_TEST_SUITE_P(Pitfall, MuslApic, ::testing::Values("transfer apic shape quadratic", "transfer apic shape cubic",
+                                           "transfer aflip 1.0", "transfer tpic shape cubic",
+                                           "transfer tpic", "transfer apic shape cpgimp"));

@@ -78,7 +78,9 @@ INSTANTIATE_TEST_SUITE_P(Options, Restart,
                                            "shape cubic transfer apic scheme musl",
                                            "transfer pic scheme usf", "frame total transfer apic",
                                            "frame total transfer flip 0.99 scheme musl",
-                                           "locking fbar", "scheme musl locking pressure"));
+                                           "locking fbar", "scheme musl locking pressure",
+                                           "transfer aflip 0.99 scheme musl",
+                                           "shape cpgimp transfer tpic"));
 
 // the write_restart command between runs, and a file of one rank read by many
 

@@ -200,3 +200,113 @@ TYPED_TEST(Shape, IsConstexpr)
   };
   static_assert(Sum::at(0.25) > 0.999 && Sum::at(0.25) < 1.001, "weights at compile time");
 }
+
+// Points of finite size: the mean of the linear function over the interval [x - s, x + s].
+
+class GimpShape : public ::testing::TestWithParam<double> {
+ protected:
+  /** Calls check(distance to the middle node, fraction) at random places and at those where the
+   *  function changes its form. */
+  template <class Check> void at_positions(Check check) const
+  {
+    const double s = GetParam();
+    std::mt19937 random(4711);
+    std::uniform_real_distribution<double> uniform(-0.5, 0.5);
+    for (const double c : {-0.5, -s, 0.0, s}) check(c, c + 0.5);
+    for (int n = 0; n < POSITIONS; n++) {
+      const double c = uniform(random);
+      check(c, c + 0.5);
+    }
+  }
+};
+
+/** Integral of the linear function from minus infinity to u. */
+static double integral(double u)
+{
+  if (u <= -1.0) return 0.0;
+  if (u >= 1.0) return 1.0;
+  return u < 0.0 ? 0.5 * (1.0 + u) * (1.0 + u) : 1.0 - 0.5 * (1.0 - u) * (1.0 - u);
+}
+
+TEST_P(GimpShape, IsTheMean)
+{
+  const double s = GetParam();
+  at_positions([s](double c, double f) {
+    double w[3];
+    Gimp::weights(f, s, w);
+    for (int i = 0; i < 3; i++) {
+      const double r = c - (i - 1), mean = (integral(r + s) - integral(r - s)) / (2.0 * s);
+      ASSERT_NEAR(w[i], mean, TOLERANCE / s) << "c = " << c;
+      ASSERT_GE(w[i], 0.0);
+    }
+  });
+}
+
+TEST_P(GimpShape, PartitionOfUnityAndLinearCompleteness)
+{
+  const double s = GetParam();
+  at_positions([s](double c, double f) {
+    double w[3], dw[3], sum = 0.0, first = 0.0, dsum = 0.0, dfirst = 0.0;
+    Gimp::weights(f, s, w);
+    Gimp::gradients(f, s, dw);
+    for (int i = 0; i < 3; i++) {
+      sum += w[i];
+      dsum += dw[i];
+      first += w[i] * (i - 1 - c);
+      dfirst += dw[i] * (i - 1 - c);
+    }
+    ASSERT_NEAR(sum, 1.0, TOLERANCE) << "c = " << c;
+    ASSERT_NEAR(dsum, 0.0, TOLERANCE / s) << "c = " << c;
+    ASSERT_NEAR(first, 0.0, TOLERANCE / s) << "c = " << c;
+    ASSERT_NEAR(dfirst, 1.0, TOLERANCE / s) << "c = " << c;
+  });
+}
+
+TEST_P(GimpShape, GradientIsTheDerivative)
+{
+  // Central differences are exact for quadratics; where the second derivative jumps, by at most
+  // 1/s, they are off by d/4 times the jump. Rounding adds 1e-16/(s d).
+  const double s = GetParam(), d = 1.0e-8;
+  at_positions([=](double c, double f) {
+    if (std::abs(c) > 0.5 - d) return;
+    double low[3], high[3], dw[3];
+    Gimp::weights(f - d, s, low);
+    Gimp::weights(f + d, s, high);
+    Gimp::gradients(f, s, dw);
+    for (int i = 0; i < 3; i++)
+      ASSERT_NEAR(dw[i], (high[i] - low[i]) / (2.0 * d), 1.0e-7 / std::min(1.0, 10.0 * s))
+          << "c = " << c;
+  });
+}
+
+TEST_P(GimpShape, WeightAndGradientVanishTogether)
+{
+  const double s = GetParam();
+  at_positions([s](double c, double f) {
+    double w[3], dw[3];
+    Gimp::weights(f, s, w);
+    Gimp::gradients(f, s, dw);
+    for (const int i : {0, 2}) {
+      if (w[i] == 0.0) { ASSERT_EQ(dw[i], 0.0) << "c = " << c; }
+    }
+    if (c >= s) { ASSERT_EQ(w[0], 0.0); }
+    if (c <= -s) { ASSERT_EQ(w[2], 0.0); }
+  });
+}
+
+INSTANTIATE_TEST_SUITE_P(HalfSizes, GimpShape, ::testing::Values(0.5, 0.37, 0.25, 0.125, 0.01));
+
+// a point as large as a cell has the quadratic B-spline, one of no size the linear function
+TEST(GimpLimits, AreSplines)
+{
+  for (double f = 0.0; f < 1.0; f += 0.01) {
+    double w[3], spline[3], hat[2];
+    Gimp::weights(f, 0.5, w);
+    BSpline<2>::weights(f, spline);
+    for (int i = 0; i < 3; i++) EXPECT_NEAR(w[i], spline[i], TOLERANCE);
+    if (std::abs(f - 0.5) < 1.0e-4) continue;
+    Gimp::weights(f, 1.0e-4, w);
+    BSpline<1>::weights(f < 0.5 ? f + 0.5 : f - 0.5, hat);
+    for (int i = 0; i < 2; i++) EXPECT_NEAR(w[f < 0.5 ? i : i + 1], hat[i], 1.0e-11);
+  }
+}

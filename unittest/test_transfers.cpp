@@ -178,7 +178,9 @@ TEST(Parallel, RanksAgree)
 {
   for (const char *options :
        {"transfer xpic 3", "transfer fmpm 3", "transfer flip 1.0 scheme usavg",
-        "transfer apic scheme usavg shape cubic"}) {
+        "transfer apic scheme usavg shape cubic", "transfer aflip 0.98", "transfer tpic",
+        "shape gimp transfer flip 1.0 scheme musl", "shape cpgimp transfer apic",
+        "shape cpgimp transfer fmpm 2"}) {
     SCOPED_TRACE(options);
     OnRanks run(replaced(two_bodies, "MPM_OPTIONS", options), "run 100\n");
     EXPECT_LT(run.difference(), 1e-12);
@@ -194,6 +196,13 @@ TEST(BadInput, IsRefused)
       {"transfer fmpm 2.5", "Expected integer"},
       {"transfer fmpm 2 scheme musl", "use scheme usl, or transfer xpic"},
       {"transfer fmpm 2 scheme usavg", "use scheme usl, or transfer xpic"},
+      {"transfer aflip", "Illegal fix mpm transfer"},
+      {"transfer aflip 1.5", "Fix mpm transfer aflip share must be within 0 and 1"},
+      {"frame total transfer tpic", "use B-splines with transfer apic or flip"},
+      {"frame total shape gimp", "use B-splines with transfer apic or flip"},
+      {"shape gimp aspect 1 0 1", "aspect must be positive"},
+      {"shape quadratic aspect 1 2 1", "use shape gimp or cpgimp"},
+      {"shape cpgimp aspect 1 1 16", "need at least one point per cell"},
       {"scheme average", "must be one of usl usf musl usavg"},
   };
   for (const auto &bad : cases)

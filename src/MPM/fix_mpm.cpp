@@ -40,8 +40,8 @@ static constexpr double MAX_NODE = 4.0e6;
 ------------------------------------------------------------------------- */
 
 FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), shape(QUADRATIC), transfer(APIC), flip(0.0),
-    refinement(LUMPED), order(1), total(false), scheme(USL), locking(NO_CURE), policy(ERROR),
+    Fix(lmp, narg, arg), shape(QUADRATIC), extent(NO_SIZE), aspect{1.0, 1.0, 1.0}, transfer(APIC),
+    flip(0.0), refinement(LUMPED), order(1), total(false), scheme(USL), locking(NO_CURE), policy(ERROR),
     delete_failed(false), dt_check(true), grid(nullptr), C(nullptr), X(nullptr), ledger_on(false), points(nullptr), halo(nullptr),
     kernels(nullptr), batch_kernels(nullptr), driver(false), topology_valid(false),
     watch_drift(false), drifted(0), want_sort(false), switches(0), switches_sorted(0),
@@ -72,7 +72,7 @@ FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) :
     force_reneighbor = 1;
     next_reneighbor = -1;
   }
-  if (transfer == APIC || total) {
+  if (is_affine(transfer) || total) {
     FixMPM::grow_arrays(atom->nmax);
     atom->add_callback(Atom::GROW);
     atom->add_callback(Atom::RESTART);
@@ -121,6 +121,7 @@ void FixMPM::process_options(int narg, char **arg)
   for (int d = 0; d < 3; d++) lattice.origin[d] = domain->boxlo[d];
   if (lattice.dim == 2) lattice.origin[2] = 0.0;
 
+  bool has_aspect = false;
   int iarg = 4;
   while (iarg < narg) {
     const std::string keyword = arg[iarg];
@@ -138,12 +139,27 @@ void FixMPM::process_options(int narg, char **arg)
       return -1;
     };
     if (keyword == "shape") {
-      shape = (Shape) (1 + choose({"linear", "quadratic", "cubic"}));
+      const int kind = choose({"linear", "quadratic", "cubic", "gimp", "cpgimp"});
+      extent = kind < 3 ? NO_SIZE : (kind == 3 ? UNIFORM : CONTIGUOUS);
+      shape = kind < 3 ? (Shape) (1 + kind) : QUADRATIC;
       iarg += 2;
+    } else if (keyword == "aspect") {
+      need(lattice.dim);
+      double product = 1.0;
+      for (int d = 0; d < lattice.dim; d++) {
+        aspect[d] = utils::numeric(FLERR, arg[iarg + 1 + d], false, lmp);
+        if (!(aspect[d] > 0.0 && std::isfinite(aspect[d])))
+          error->all(FLERR, iarg + 1 + d, "Fix mpm aspect must be positive: {}", arg[iarg + 1 + d]);
+        product *= aspect[d];
+      }
+      for (int d = 0; d < lattice.dim; d++) aspect[d] /= pow(product, 1.0 / lattice.dim);
+      has_aspect = true;
+      iarg += 1 + lattice.dim;
     } else if (keyword == "transfer") {
-      const int kind = choose({"pic", "flip", "apic", "xpic", "fmpm"});
-      transfer = kind < 3 ? (Transfer) kind : FLIP;
-      refinement = kind < 3 ? LUMPED : (kind == 3 ? XPIC : FMPM);
+      const int kind = choose({"pic", "flip", "apic", "aflip", "tpic", "xpic", "fmpm"});
+      transfer = kind < 5 ? (Transfer) kind : FLIP;
+      refinement = kind < 5 ? LUMPED : (kind == 5 ? XPIC : FMPM);
+      flip = 0.0;
       if (refinement != LUMPED) {
         need(2);
         order = utils::inumeric(FLERR, arg[iarg + 2], false, lmp);
@@ -152,12 +168,12 @@ void FixMPM::process_options(int narg, char **arg)
                      arg[iarg + 1], arg[iarg + 2]);
         flip = refinement == XPIC ? 1.0 : 0.0;
         iarg++;
-      } else if (transfer == FLIP) {
+      } else if (adds_change(transfer)) {
         need(2);
         flip = utils::numeric(FLERR, arg[iarg + 2], false, lmp);
         if (!(flip >= 0.0 && flip <= 1.0))
-          error->all(FLERR, iarg + 2, "Fix mpm transfer flip share must be within 0 and 1: {}",
-                     arg[iarg + 2]);
+          error->all(FLERR, iarg + 2, "Fix mpm transfer {} share must be within 0 and 1: {}",
+                     arg[iarg + 1], arg[iarg + 2]);
         iarg++;
       }
       iarg += 2;
@@ -192,6 +208,13 @@ void FixMPM::process_options(int narg, char **arg)
     } else
       error->all(FLERR, iarg, "Unknown fix mpm keyword: {}", keyword);
   }
+
+  if (has_aspect && extent == NO_SIZE)
+    error->all(FLERR, "Fix mpm aspect is for points of finite size: use shape gimp or cpgimp");
+  if (total && (extent != NO_SIZE || transfer == AFLIP || transfer == TPIC))
+    error->all(FLERR, "Fix mpm frame total cannot be used with shape gimp and cpgimp, which points "
+               "that cross no cells do not need, and transfer aflip and tpic: use B-splines with "
+               "transfer apic or flip");
 
   check_box();
 }
@@ -264,7 +287,7 @@ void FixMPM::init()
   // a node that a point barely touches has next to no mass but the full gradient of the function;
   // in the total frame, points do not move through cells
 
-  if (!total && shape == LINEAR && (scheme == USL || transfer == APIC) && comm->me == 0)
+  if (!total && shape == LINEAR && (scheme == USL || is_affine(transfer)) && comm->me == 0)
     error->warning(FLERR, "Fix mpm {}: linear shape functions with scheme usl or transfer apic "
                    "amplify round-off at nodes of tiny mass: use transfer flip with scheme musl, "
                    "or quadratic functions", id);
@@ -328,7 +351,7 @@ void FixMPM::setup_pre_neighbor()
 
   const bool split = ledger_on || stress_before();
   const auto choose = total ? kernels->transfer_total : kernels->transfer;
-  kernel = choose(lattice.dim, shape, transfer, split);
+  kernel = choose(lattice.dim, kernel_shape(), transfer, split);
   batch->h = lattice.h;
 
   // points drift at most half a skin between rebuilds when LAMMPS checks distances each step;
@@ -475,6 +498,7 @@ PointRows FixMPM::rows() const
   r.F = &points->F[0][0];
   r.mass = atom->rmass;
   r.guarded = atom->nmax - 1;
+  r.size = extent == NO_SIZE ? nullptr : sizes.data();
   r.xnew = moves_late() ? const_cast<double *>(xnew.data()) : &atom->x[0][0];
   return r;
 }
@@ -543,7 +567,7 @@ void FixMPM::set_reference()
 
 void FixMPM::grow_arrays(int nmax)
 {
-  if (transfer == APIC) memory->grow(C, nmax, affine_size(), "mpm:C");
+  if (is_affine(transfer)) memory->grow(C, nmax, affine_size(), "mpm:C");
   if (total) memory->grow(X, nmax, 3, "mpm:X");
 }
 

@@ -52,6 +52,7 @@ struct MPMLedger {
 class FixMPM : public Fix {
  public:
   enum Scheme { USL, USF, MUSL, USAVG };
+  enum Extent { NO_SIZE, UNIFORM, CONTIGUOUS };
   enum Refinement { LUMPED, XPIC, FMPM };
   enum Locking { NO_CURE, FBAR, PRESSURE, BOTH };    ///< cure for volumetric locking
   enum Policy { ERROR, WARN, DELETE };
@@ -85,7 +86,9 @@ class FixMPM : public Fix {
   // settings
 
   MPM_NS::Lattice lattice;
-  MPM_NS::Shape shape;
+  MPM_NS::Shape shape;      ///< B-spline, or the one that has the stencil: QUADRATIC with a size
+  Extent extent;            ///< size of points: none, fixed (GIMP), or with F (contiguous GIMP)
+  double aspect[3];         ///< GIMP: edges of an undeformed point; their product is 1
   MPM_NS::Transfer transfer;
   double flip;         ///< FLIP share, 0 for PIC
   Refinement refinement;    ///< of the velocities of the nodes, with transfer FLIP inside
@@ -101,7 +104,7 @@ class FixMPM : public Fix {
 
   MPM_NS::Grid *grid;                           ///< node records: velocity and mass after the solve
   std::vector<FixMPMMaterial *> materials;      ///< all of them, set in init()
-  double **C;    ///< [n][dim*dim] affine, column-major; null: not APIC
+  double **C;    ///< [n][dim*dim] affine, column-major; null: transfer without
   double **X;    ///< [n][3] reference position, NAN before it is known; null: updated frame
   bool ledger_on;                               ///< a compute mpm/energy exists; set in init()
   MPMLedger ledger;
@@ -171,6 +174,7 @@ class FixMPM : public Fix {
     double dt_min, dt_max;
   };
 
+  MPM_NS::Shape kernel_shape() const { return extent == NO_SIZE ? shape : MPM_NS::GIMP; }
   int affine_size() const { return lattice.dim * lattice.dim; }
   /** Reals that each point has of this fix. */
   int own_size() const { return (C ? affine_size() : 0) + (X ? 3 : 0); }
@@ -198,6 +202,7 @@ class FixMPM : public Fix {
   std::vector<double> v_apart, lumped;    // XPIC, FMPM: velocities of points and nodes
   std::vector<double> gradients;         // F-bar: velocity gradients of the points
   std::vector<double> tau_averaged;      // stress with averaged pressure
+  std::vector<double> sizes;             // GIMP: half sizes of points in node spacings, [n][3]
   std::vector<double> history_batch;     // history variables of a batch
   std::vector<double> external_nodes;    // ledger: nodal external forces
   std::vector<double> nodes_apart;       // sums that node actions ask for,
@@ -221,6 +226,8 @@ class FixMPM : public Fix {
   // stages of the step
   void update_topology();    // of all fields
   void find_blocks();
+  void update_sizes();
+  double half_size(int i) const;
   void finish_topology();
   void points_to_grid();
   void stress_first();

@@ -6,7 +6,7 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Affine matrices of APIC apart from the transfers: torques on points, and first values.
+// Affine matrices (APIC, AFLIP, TPIC) apart from the transfers: torques on points, and first values.
 //
 // First values come from the velocities of the points.
 // A point that has not moved yet has no affine matrix, and those of points whose velocities were
@@ -24,6 +24,7 @@
 #include "force.h"
 #include "math_eigen.h"
 #include "math_extra.h"
+#include "modify.h"
 #include "mpm_halo.h"
 #include "mpm_points.h"
 #include "mpm_shape.h"
@@ -136,7 +137,8 @@ void FixMPM::fit_affine()
     return;
   }
 
-  update_topology();
+  // of all fields, by the one that drives them
+  dynamic_cast<FixMPM *>(modify->get_fix_by_style("^mpm$")[0])->update_topology();
   const int dim = lattice.dim;
   enum { M = 0, X = 1, V = 4, VX = 7, XX = 16, NREAL = 22 };    // sums of mass times ...
   std::vector<double> sums(grid->nnodes() * NREAL, 0.0);
@@ -150,6 +152,8 @@ void FixMPM::fit_affine()
     for (int d = 0; d < dim; d++) {
       t[d] = (x[d] - lattice.origin[d]) / lattice.h;
       shape_weights(t[d], base[d], w[d]);
+      if (extent != NO_SIZE)
+        Gimp::weights(t[d] - Gimp::shift - base[d], sizes[3 * (std::size_t) i + d], w[d]);
     }
     int k[3];
     for (k[0] = 0; k[0] <= shape; k[0]++)
@@ -233,7 +237,7 @@ void FixMPM::fit_affine()
 
 void FixMPM::add_torques()
 {
-  if (!C || shape == LINEAR || !atom->torque_flag) return;
+  if (!C || shape == LINEAR || extent != NO_SIZE || !atom->torque_flag) return;
   const int dim = lattice.dim;
   const double inv_moment = (shape == QUADRATIC ? 4.0 : 3.0) / (lattice.h * lattice.h);
   for (const auto &run : runs)

@@ -930,7 +930,7 @@ void FixMPMBoundary::act(double dt, Stage stage)
     const FixMPM &field = *list.field;
     kinetic = collided = 0.0;
     ledger_lanes = field.ledger_on;
-    old_share = count && wall.uniform && field.transfer == FLIP ? field.flip : 0.0;
+    old_share = count && wall.uniform ? field.flip : 0.0;
     decided = stage == MAPPED_BACK || stage == AGAIN;
     act_on_cuts(list);
     for (auto &column : list.columns) act_on_column(list, column);

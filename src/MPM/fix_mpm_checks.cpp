@@ -58,7 +58,7 @@ void FixMPM::check_integrators()
 
 void FixMPM::check_points()
 {
-  enum { POINT, NONE, SEVERAL, MASS, STATE, NKINDS };
+  enum { POINT, NONE, SEVERAL, MASS, STATE, SIZE, NKINDS };
   bigint count[NKINDS] = {0}, all[NKINDS];
   tagint example[NKINDS] = {0}, example_all[NKINDS];
   auto note = [&](int kind, int i) {
@@ -82,6 +82,11 @@ void FixMPM::check_points()
     for (int d = 0; d < 3; d++) sum += fabs(x[d]) + fabs(v[d]);
     for (int c = 0; c < 6; c++) sum += fabs(points->tau[i][c]);
     if (!std::isfinite(sum) || !(J > 0.0)) note(STATE, i);
+    for (int d = 0; d < lattice.dim && extent != NO_SIZE; d++)
+      if (half_size(i) * aspect[d] > 0.5 * (1.0 + 1.0e-6)) {
+        note(SIZE, i);
+        break;
+      }
   }
   MPI_Allreduce(count, all, NKINDS, MPI_LMP_BIGINT, MPI_SUM, world);
   MPI_Allreduce(example, example_all, NKINDS, MPI_LMP_TAGINT, MPI_MAX, world);
@@ -104,6 +109,11 @@ void FixMPM::check_points()
   if (all[STATE])
     error->all(FLERR, "{} material points have a position, velocity, deformation or stress that is "
                "not finite or is inverted, for instance point {}", all[STATE], example_all[STATE]);
+  if (all[SIZE])
+    error->all(FLERR, "{} material points are larger than the cells of fix mpm {}, for instance point "
+               "{}: shape gimp and cpgimp need at least one point per cell, and aspect if points "
+               "are not cubes", all[SIZE], id,
+               example_all[SIZE]);
 }
 
 /* ----------------------------------------------------------------------

@@ -210,7 +210,8 @@ void FixMPMContact::init()
   }
   const FixMPM &first = *fields[0];
   for (const auto *field : fields) {
-    bool same = field->lattice.h == first.lattice.h && field->shape == first.shape;
+    bool same = field->lattice.h == first.lattice.h && field->shape == first.shape &&
+        field->extent == first.extent;
     for (int d = 0; d < 3; d++) same = same && field->lattice.origin[d] == first.lattice.origin[d];
     if (!same)
       error->all(FLERR, Error::NOLASTLINE,

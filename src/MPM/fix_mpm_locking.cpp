@@ -54,7 +54,7 @@ using namespace MPM_NS;
 void FixMPM::average_around_points()
 {
   constexpr int NREAL = 8;
-  const auto pic = kernels->transfer(lattice.dim, shape, PIC, true);
+  const auto pic = kernels->transfer(lattice.dim, kernel_shape(), PIC, true);
   PointRows r = rows();
   r.v = v_apart.data();
   r.mass = rows_apart.data();

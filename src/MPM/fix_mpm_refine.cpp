@@ -95,7 +95,7 @@ void FixMPM::add_term(int lane)
   double *const record = grid->nodes();
   const double before = ledger_on ? nodal_kinetic_energy(0) : 0.0;
 
-  const auto pic = kernels->transfer(lattice.dim, shape, PIC, true);
+  const auto pic = kernels->transfer(lattice.dim, kernel_shape(), PIC, true);
   const std::size_t nrows = 3 * (std::size_t) atom->nmax;
   v_apart.assign(nrows, 0.0);
   xnew.resize(nrows);

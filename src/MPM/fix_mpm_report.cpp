@@ -137,6 +137,7 @@ double FixMPM::bytes_per_point() const
   double bytes = 9 * sizeof(double) + sizeof(tagint) + 2 * sizeof(int) + sizeof(imageint);
   bytes += (1 + 1 + 9 + 6) * sizeof(double);    // mass, V0, F, stress
   bytes += own_size() * sizeof(double);
+  if (extent != NO_SIZE) bytes += 3 * sizeof(double);
   int nhistory = 0;
   for (auto *material : materials) nhistory += material->nhistory;
   return bytes + nhistory * sizeof(double);

@@ -20,6 +20,7 @@
 #include "mpm_batch.h"
 #include "mpm_halo.h"
 #include "mpm_node_action.h"
+#include "mpm_points.h"
 #include "neighbor.h"
 #include "platform.h"
 
@@ -61,6 +62,42 @@ void FixMPM::update_topology()
   for (auto *field : fields) field->find_blocks();
   for (auto *action : actions) action->blocks_found();
   for (auto *field : fields) field->finish_topology();
+  for (auto *field : fields) field->update_sizes();
+}
+
+/* ----------------------------------------------------------------------
+   GIMP: half sizes of the points along the axes, which stay the same throughout a step. At the start
+   a point is a box of its volume. A contiguous one follows F: what was a box of half sizes l has the
+   second moments F diag(l^2) F^T/3, along axis d those of an interval with the half size
+   [sum_e (F_de l_e)^2]^1/2. Without shear and rotation this is F_dd l_d, and a cube that just turns
+   keeps its size. Half a cell is the limit: beyond, a point would reach more nodes than the stencil
+   has.
+------------------------------------------------------------------------- */
+
+void FixMPM::update_sizes()
+{
+  if (extent == NO_SIZE) return;
+  constexpr double MIN_SIZE = 1.0e-4, MAX_SIZE = 0.5;
+  sizes.resize(3 * (std::size_t) atom->nmax, MAX_SIZE);
+  for (const auto &run : runs)
+    for (int i = run.first; i < run.last; i++) {
+      const double half = half_size(i), *F = points->F[i];
+      for (int d = 0; d < lattice.dim; d++, F += 3) {
+        double edge = aspect[d];
+        if (extent == CONTIGUOUS) {
+          double square = 0.0;
+          for (int e = 0; e < lattice.dim; e++) square += F[e] * F[e] * aspect[e] * aspect[e];
+          edge = sqrt(square);
+        }
+        sizes[3 * (std::size_t) i + d] = std::max(MIN_SIZE, std::min(MAX_SIZE, half * edge));
+      }
+    }
+}
+
+/** Half of the edge of a cube with the initial volume of the point, in node spacings. */
+double FixMPM::half_size(int i) const
+{
+  return 0.5 * (lattice.dim == 3 ? cbrt(atom->vfrac[i]) : sqrt(atom->vfrac[i])) / lattice.h;
 }
 
 /* ----------------------------------------------------------------------

@@ -15,8 +15,31 @@
 
 namespace MPM_NS {
 
-enum Shape { LINEAR = 1, QUADRATIC = 2, CUBIC = 3 };    ///< order of the B-spline
-enum Transfer { PIC, FLIP, APIC };
+/** B-splines of order 1 to 3, and functions of points of finite size, see Gimp in mpm_shape.h. */
+enum Shape { LINEAR = 1, QUADRATIC = 2, CUBIC = 3, GIMP = 4 };
+enum Transfer { PIC, FLIP, APIC, AFLIP, TPIC };
+
+/** A point reaches this + 1 nodes along each axis, the same as the B-spline of this order. */
+constexpr int stencil_order(Shape shape)
+{
+  return shape == GIMP ? 2 : shape;
+}
+/** Points have an affine matrix. */
+constexpr bool is_affine(Transfer transfer)
+{
+  return transfer == APIC || transfer == AFLIP || transfer == TPIC;
+}
+/** Points keep a share of their velocity and add the change of the nodes'. */
+constexpr bool adds_change(Transfer transfer)
+{
+  return transfer == FLIP || transfer == AFLIP;
+}
+/** The affine matrix is the fit of moving least squares, and stress is an affine term; otherwise the
+ *  matrix is the gradient of the velocity, as the second moment depends on the position. */
+constexpr bool is_mls(Shape shape, Transfer transfer)
+{
+  return (shape == QUADRATIC || shape == CUBIC) && (transfer == APIC || transfer == AFLIP);
+}
 
 constexpr int BATCH = 64;    ///< points handed to a constitutive law at a time
 
@@ -66,6 +89,7 @@ struct PointRows {
   const double *from = nullptr;    ///< [n][3] total frame: the position that G2P adds dt v to
   const double *P = nullptr;       ///< [n][dim*dim] total frame: first Piola-Kirchhoff stress, the
                                    ///< place of tau, column-major: P[dim*j+i] = P_ij
+  const double *size = nullptr;    ///< [n][3] GIMP: half size along each axis in node spacings
 };
 
 /** What a transfer needs to know about the lattice and the step. */
@@ -82,7 +106,7 @@ struct TransferStep {
 /** Transfers between the points [first,last) of one block and its tile.
  *
  *  base: node index of tile entry (0,0,0), which is the block's first base node minus one per axis.
- *  A base node of a point is floor((x - origin)/h - s), s = 0, 1/2, 1 for linear, quadratic, cubic.
+ *  A base node of a point is floor((x - origin)/h - s), s = 0, 1/2, 1 for linear, quadratic (GIMP), cubic.
  *  In 2d, z is ignored, and tiles and base have two axes (base[2] unused).
  *
  *  Tile entry layout, 8-byte reals:
@@ -130,12 +154,13 @@ struct MPMKernels {
   const char *isa;    ///< "reference", "baseline", "AVX2" or "AVX-512"
 
   /** Kernels for dimension 2 or 3; split: keep force and old velocity apart (FLIP, energy ledger).
-   *  FLIP and PIC are always split. Linear APIC takes C as the gradient of the velocity. */
+   *  PIC, FLIP and AFLIP are always split. */
   TransferKernels (*transfer)(int dim, Shape, Transfer, bool split);
 
   /** The same in the total frame: nodes are places of the reference configuration. C and L are
    *  gradients with respect to the reference position, internal forces are -V0 P grad N, and G2P
-   *  moves a point from its row of from. G2P returns non-zero for positions that are not finite. */
+   *  moves a point from its row of from. G2P returns non-zero for positions that are not finite.
+   *  Fast kernels exist for PIC, FLIP and APIC with B-splines only, null for others. */
   TransferKernels (*transfer_total)(int dim, Shape, Transfer, bool split);
 
   /** v = p/m on n nodes, and the momentum equation.

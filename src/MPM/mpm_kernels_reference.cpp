@@ -40,14 +40,15 @@ double tile_position(double x, const TransferStep &step, const int *base, int ax
   return (x - step.origin[axis]) * step.inv_h - (BSpline<ORDER>::shift + base[axis]);
 }
 
-/** Nodes, weights and gradients of the point at x. */
-template <int DIM, int ORDER> struct Stencil {
+/** Nodes, weights and gradients of the point at x; size: of GIMP. */
+template <int DIM, Shape SHAPE> struct Stencil {
+  static constexpr int ORDER = stencil_order(SHAPE);
   static constexpr int count = DIM == 3 ? (ORDER + 1) * (ORDER + 1) * (ORDER + 1)
                                         : (ORDER + 1) * (ORDER + 1);
   int base[3] = {0, 0, 0};    ///< tile index of the base node
   Node node[count];
 
-  Stencil(const double *x, const TransferStep &step, const int *tilebase)
+  Stencil(const double *x, const double *size, const TransferStep &step, const int *tilebase)
   {
     constexpr int nz = DIM == 3 ? ORDER + 1 : 1;
     // in 2d the z axis has a single node of weight one at distance zero
@@ -56,8 +57,13 @@ template <int DIM, int ORDER> struct Stencil {
       const double t = tile_position<ORDER>(x[a], step, tilebase, a);
       base[a] = static_cast<int>(std::floor(t));
       const double f = t - base[a];
-      BSpline<ORDER>::weights(f, w[a]);
-      BSpline<ORDER>::gradients(f, dw[a]);
+      if constexpr (SHAPE == GIMP) {
+        Gimp::weights(f, size[a], w[a]);
+        Gimp::gradients(f, size[a], dw[a]);
+      } else {
+        BSpline<ORDER>::weights(f, w[a]);
+        BSpline<ORDER>::gradients(f, dw[a]);
+      }
       for (int i = 0; i <= ORDER; i++) {
         dw[a][i] *= step.inv_h;
         d[a][i] = (i - BSpline<ORDER>::shift - f) * step.h;
@@ -105,16 +111,15 @@ template <int DIM> void stress_times(const double *s, const double *a, double *b
 enum Parts { MOMENTUM = 1, FORCE = 2, ALL = 3 };
 
 /** Points to nodes; PARTS says what is transferred. */
-template <int DIM, int ORDER, Transfer TRANSFER, int NREAL, int PARTS, bool TOTAL>
+template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, int PARTS, bool TOTAL>
 void p2g(const PointRows &points, const TransferStep &step, int first, int last, const int base[3],
          double *tile, int box[6])
 {
-  constexpr bool affine = TRANSFER == APIC;
-  constexpr bool mls = affine && ORDER > 1;
-  const double inv_moment = BSpline<ORDER>::inv_moment * step.inv_h * step.inv_h;
+  constexpr bool affine = is_affine(TRANSFER), mls = is_mls(SHAPE, TRANSFER);
+  const double inv_moment = BSpline<stencil_order(SHAPE)>::inv_moment * step.inv_h * step.inv_h;
 
   for (int p = first; p < last; p++) {
-    const Stencil<DIM, ORDER> stencil(points.x + 3 * p, step, base);
+    const Stencil<DIM, SHAPE> stencil(points.x + 3 * p, SHAPE == GIMP ? points.size + 3 * p : nullptr, step, base);
     for (int a = 0; a < DIM; a++) {
       if (stencil.base[a] < box[a]) box[a] = stencil.base[a];
       if (stencil.base[a] > box[3 + a]) box[3 + a] = stencil.base[a];
@@ -152,13 +157,13 @@ void p2g(const PointRows &points, const TransferStep &step, int first, int last,
   }
 }
 
-/** Velocity gradient at a point: the affine matrix for quadratic and cubic APIC. */
-template <int DIM, int ORDER, Transfer TRANSFER, int NREAL>
-void velocity_gradient(const Stencil<DIM, ORDER> &stencil, const TransferStep &step,
+/** Velocity gradient at a point, which is the affine matrix, too. */
+template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL>
+void velocity_gradient(const Stencil<DIM, SHAPE> &stencil, const TransferStep &step,
                        const double *tile, double *L)
 {
-  constexpr bool mls = TRANSFER == APIC && ORDER > 1;
-  const double inv_moment = BSpline<ORDER>::inv_moment * step.inv_h * step.inv_h;
+  constexpr bool mls = is_mls(SHAPE, TRANSFER);
+  const double inv_moment = BSpline<stencil_order(SHAPE)>::inv_moment * step.inv_h * step.inv_h;
   for (int i = 0; i < DIM * DIM; i++) L[i] = 0.0;
   for (const Node &node : stencil.node) {
     const double *v = tile + NREAL * node.index;
@@ -170,24 +175,24 @@ void velocity_gradient(const Stencil<DIM, ORDER> &stencil, const TransferStep &s
 }
 
 /** Nodes to points: velocity, position, affine matrix, velocity gradient. */
-template <int DIM, int ORDER, Transfer TRANSFER, int NREAL, bool TOTAL>
+template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL>
 int g2p(const PointRows &points, const TransferStep &step, int first, int last, const int base[3],
         const double *tile, double *L)
 {
   int left = 0;
   for (int p = first; p < last; p++) {
-    const Stencil<DIM, ORDER> stencil(points.x + 3 * p, step, base);
+    const Stencil<DIM, SHAPE> stencil(points.x + 3 * p, SHAPE == GIMP ? points.size + 3 * p : nullptr, step, base);
     double v[3] = {0.0, 0.0, 0.0}, v_old[3] = {0.0, 0.0, 0.0};
     for (const Node &node : stencil.node) {
       const double *real = tile + NREAL * node.index;
       for (int i = 0; i < DIM; i++) {
         v[i] += node.w * real[i];
-        if (TRANSFER == FLIP) v_old[i] += node.w * real[4 + i];
+        if (adds_change(TRANSFER)) v_old[i] += node.w * real[4 + i];
       }
     }
     double grad[DIM * DIM];
-    velocity_gradient<DIM, ORDER, TRANSFER, NREAL>(stencil, step, tile, grad);
-    if (TRANSFER == APIC)
+    velocity_gradient<DIM, SHAPE, TRANSFER, NREAL>(stencil, step, tile, grad);
+    if (is_affine(TRANSFER))
       for (int i = 0; i < DIM * DIM; i++) points.C[DIM * DIM * p + i] = grad[i];
     if (L)
       for (int i = 0; i < DIM * DIM; i++) L[DIM * DIM * (p - first) + i] = grad[i];
@@ -196,23 +201,24 @@ int g2p(const PointRows &points, const TransferStep &step, int first, int last, 
     points.xnew[3 * p + 2] = from[3 * p + 2];
     for (int i = 0; i < DIM; i++) {
       double &vp = points.v[3 * p + i];
-      vp = TRANSFER == FLIP ? step.flip * (vp + v[i] - v_old[i]) + (1.0 - step.flip) * v[i] : v[i];
+      vp = adds_change(TRANSFER) ? v[i] + step.flip * (vp - v_old[i]) : v[i];
       const double xnew = from[3 * p + i] + step.dt * v[i];
       points.xnew[3 * p + i] = xnew;
-      const double t = TOTAL ? xnew - xnew : tile_position<ORDER>(xnew, step, base, i);
+      const double t =
+          TOTAL ? xnew - xnew : tile_position<stencil_order(SHAPE)>(xnew, step, base, i);
       if (!(t >= 0.0 && t < block_side(DIM) + 2)) left = 1;    // also when t is not a number
     }
   }
   return left;
 }
 
-template <int DIM, int ORDER, Transfer TRANSFER, int NREAL>
+template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL>
 int g2p_gradient(const PointRows &points, const TransferStep &step, int first, int last,
                  const int base[3], const double *tile, double *L)
 {
   for (int p = first; p < last; p++) {
-    const Stencil<DIM, ORDER> stencil(points.x + 3 * p, step, base);
-    velocity_gradient<DIM, ORDER, TRANSFER, NREAL>(stencil, step, tile,
+    const Stencil<DIM, SHAPE> stencil(points.x + 3 * p, SHAPE == GIMP ? points.size + 3 * p : nullptr, step, base);
+    velocity_gradient<DIM, SHAPE, TRANSFER, NREAL>(stencil, step, tile,
                                                    L + DIM * DIM * (p - first));
   }
   return 0;
@@ -278,17 +284,19 @@ void solve_nodes(double *nodes, int nnodes, int nreal, double dt)
   }
 }
 
-template <int DIM, int ORDER, Transfer TRANSFER, int NREAL, bool TOTAL> TransferKernels kernels()
+template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL>
+TransferKernels kernels()
 {
+  constexpr int ORDER = stencil_order(SHAPE);
   TransferKernels k;
   k.nreal = NREAL;
-  k.affine = TRANSFER == APIC;
-  k.mls = k.affine && ORDER > 1;
-  k.p2g = p2g<DIM, ORDER, TRANSFER, NREAL, ALL, TOTAL>;
-  k.p2g_momentum = p2g<DIM, ORDER, TRANSFER, NREAL, MOMENTUM, false>;
-  k.p2g_force = p2g<DIM, ORDER, TRANSFER, NREAL, FORCE, TOTAL>;
-  k.g2p = g2p<DIM, ORDER, TRANSFER, NREAL, TOTAL>;
-  k.g2p_gradient = g2p_gradient<DIM, ORDER, TRANSFER, NREAL>;
+  k.affine = is_affine(TRANSFER);
+  k.mls = is_mls(SHAPE, TRANSFER);
+  k.p2g = p2g<DIM, SHAPE, TRANSFER, NREAL, ALL, TOTAL>;
+  k.p2g_momentum = p2g<DIM, SHAPE, TRANSFER, NREAL, MOMENTUM, false>;
+  k.p2g_force = p2g<DIM, SHAPE, TRANSFER, NREAL, FORCE, TOTAL>;
+  k.g2p = g2p<DIM, SHAPE, TRANSFER, NREAL, TOTAL>;
+  k.g2p_gradient = g2p_gradient<DIM, SHAPE, TRANSFER, NREAL>;
   k.flush = flush<DIM, ORDER, NREAL>;
   k.load = load<DIM, ORDER, NREAL>;
   k.prefetch = [](double *, double *, const int *, const int *) {
@@ -296,15 +304,20 @@ template <int DIM, int ORDER, Transfer TRANSFER, int NREAL, bool TOTAL> Transfer
   return k;
 }
 
-template <bool TOTAL, int DIM, int ORDER> TransferKernels choose(Transfer transfer, bool split)
+template <bool TOTAL, int DIM, Shape SHAPE>
+TransferKernels choose(Transfer transfer, bool split)
 {
   switch (transfer) {
     case PIC:
-      return kernels<DIM, ORDER, PIC, 8, TOTAL>();
+      return kernels<DIM, SHAPE, PIC, 8, TOTAL>();
     case FLIP:
-      return kernels<DIM, ORDER, FLIP, 8, TOTAL>();
+      return kernels<DIM, SHAPE, FLIP, 8, TOTAL>();
     case APIC:
-      return split ? kernels<DIM, ORDER, APIC, 8, TOTAL>() : kernels<DIM, ORDER, APIC, 4, TOTAL>();
+      return split ? kernels<DIM, SHAPE, APIC, 8, TOTAL>() : kernels<DIM, SHAPE, APIC, 4, TOTAL>();
+    case AFLIP:
+      return kernels<DIM, SHAPE, AFLIP, 8, TOTAL>();
+    case TPIC:
+      return split ? kernels<DIM, SHAPE, TPIC, 8, TOTAL>() : kernels<DIM, SHAPE, TPIC, 4, TOTAL>();
   }
   return TransferKernels();
 }
@@ -314,11 +327,13 @@ TransferKernels choose(Shape shape, Transfer transfer, bool split)
 {
   switch (shape) {
     case LINEAR:
-      return choose<TOTAL, DIM, 1>(transfer, split);
+      return choose<TOTAL, DIM, LINEAR>(transfer, split);
     case QUADRATIC:
-      return choose<TOTAL, DIM, 2>(transfer, split);
+      return choose<TOTAL, DIM, QUADRATIC>(transfer, split);
     case CUBIC:
-      return choose<TOTAL, DIM, 3>(transfer, split);
+      return choose<TOTAL, DIM, CUBIC>(transfer, split);
+    case GIMP:
+      return choose<TOTAL, DIM, GIMP>(transfer, split);
   }
   return TransferKernels();
 }

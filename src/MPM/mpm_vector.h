@@ -123,6 +123,13 @@ template <int N> MPM_INLINE Vec<N> operator*(Vec<N> a, Vec<N> b)
   else
     return {a.lo * b.lo, a.hi * b.hi};
 }
+template <int N> MPM_INLINE Vec<N> operator/(Vec<N> a, Vec<N> b)
+{
+  if constexpr (N <= REGISTER)
+    return {a.r / b.r};
+  else
+    return {a.lo / b.lo, a.hi / b.hi};
+}
 template <int N> MPM_INLINE Vec<N> operator+(double s, Vec<N> a)
 {
   return Vec<N>::all(s) + a;

@@ -1,0 +1,32 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_KERNELS_OTHERS_H
+#define LMP_MPM_KERNELS_OTHERS_H
+
+// What the files mpm_kernels*_isa.cpp provide to each other, under names with the instruction set.
+
+#include "mpm_kernels.h"
+
+#define MPM_CONCAT_(a, b) a##b
+#define MPM_CONCAT(a, b) MPM_CONCAT_(a, b)
+#if !defined(MPM_ISA)
+#define MPM_ISA base
+#endif
+
+namespace MPM_NS {
+const MPMKernels *mpm_kernels_reference();
+const MPMKernels *MPM_CONCAT(mpm_kernels_, MPM_ISA)();
+
+/** Transfers aflip and tpic with B-splines. */
+TransferKernels MPM_CONCAT(mpm_kernels_affine_, MPM_ISA)(int dim, Shape, Transfer, bool split);
+
+/** All transfers with points of finite size. */
+TransferKernels MPM_CONCAT(mpm_kernels_gimp_, MPM_ISA)(int dim, Transfer, bool split);
+}    // namespace MPM_NS
+#endif

@@ -1,0 +1,995 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_KERNELS_TRANSFER_H
+#define LMP_MPM_KERNELS_TRANSFER_H
+
+// The fast transfers as templates, for the files mpm_kernels*_isa.cpp, each of which makes those of
+// some shapes and transfers, once for each instruction set with MPM_ISA = base, v3 or v4 (x86-64
+// levels). Nothing but their tables may be visible outside, see mpm_vector.h.
+//
+// What a transfer does is written plainly in mpm_kernels_reference.cpp; this file does the same
+// in fewer operations:
+//  - A point's contribution to a node is a product over axes, plus one term per axis (affine part
+//    or stress gradient). Summed axis by axis this costs two multiply-adds per node and vector,
+//    see Scatter. The way back sums z rows first, then y, then x, see Gather.
+//  - Vectors hold the four reals of a node (x, y, z, mass), for one or two points side by side.
+//    Two points that share the base node are added up before they go to the tile.
+//  - Points are prepared (loaded, weighted) in stages of several, then scattered or gathered: the
+//    long latency of the preparation of one point hides behind the others.
+
+#include "mpm_kernels.h"
+
+#include "mpm_shape.h"
+#include "mpm_vector.h"
+
+#include <cstddef>
+#include <cstdint>
+
+using namespace MPM_NS;
+
+namespace {
+
+// measured: see bench/bench_kernels.cpp
+constexpr int POINTS = REGISTER == 8 ? 2 : 1;    ///< points side by side in a vector
+constexpr int STAGE = 8;                         ///< points prepared before they are transferred
+constexpr int AHEAD = 32;                        ///< distance of prefetches, in points
+
+using Index = std::ptrdiff_t;
+
+/** Brings STAGE rows from the given one on into the cache, to be written when WRITE is 1. STAGE
+ *  rows are a whole number of lines, so that no line is left out between one call and the next. */
+template <int WIDTH, int WRITE = 0> MPM_INLINE void prefetch(const double *rows, Index first)
+{
+  // no pointer arithmetic: the rows ahead may not exist, which prefetches do not mind
+  static_assert(STAGE * sizeof(double) == 64);
+  const std::uintptr_t start =
+      reinterpret_cast<std::uintptr_t>(rows) + WIDTH * sizeof(double) * first;
+  MPM_UNROLL
+  for (int k = 0; k < WIDTH; k++)
+    __builtin_prefetch(reinterpret_cast<const void *>(start + 64 * k), WRITE);
+}
+
+/** Four reals for each of L points: the axes x, y, z, and one more. */
+template <int L> using Quads = Vec<4 * L>;
+
+/** Four reals of each of L consecutive rows, from a column on. */
+template <int L, int WIDTH> MPM_INLINE Quads<L> load_rows(const double *column, Index row)
+{
+  if constexpr (L == 1 || WIDTH == 4)
+    return Quads<L>::load(column + WIDTH * row);
+  else
+    return join(Vec<4>::load(column + WIDTH * row), Vec<4>::load(column + WIDTH * (row + 1)));
+}
+
+/** One number for each of L consecutive points, in all four lanes. */
+template <int L> MPM_INLINE Quads<L> load_numbers(const double *number, Index row)
+{
+  if constexpr (L == 1)
+    return Vec<4>::all(number[row]);
+  else
+    return join(Vec<4>::all(number[row]), Vec<4>::all(number[row + 1]));
+}
+
+/** Where points are in a tile; lanes that are no axis stay zero. */
+template <int DIM, int ORDER, int L> struct Frame {
+  Quads<L> origin, inv_h, low;
+
+  MPM_INLINE Frame(const TransferStep &step, const int *base)
+  {
+    alignas(64) double o[4 * L] = {}, i[4 * L] = {}, b[4 * L] = {};
+    for (int l = 0; l < L; l++)
+      for (int a = 0; a < DIM; a++) {
+        o[4 * l + a] = step.origin[a];
+        i[4 * l + a] = step.inv_h;
+        b[4 * l + a] = BSpline<ORDER>::shift + base[a];
+      }
+    origin = Quads<L>::load(o);
+    inv_h = Quads<L>::load(i);
+    low = Quads<L>::load(b);
+  }
+
+  /** Position in units of h from tile node 0, less the shift: its whole part is the base node. */
+  MPM_INLINE Quads<L> position(Quads<L> x) const { return (x - origin) * inv_h - low; }
+
+  /** Base nodes' places in the tile, in nodes; returns the fractions. */
+  MPM_INLINE Quads<L> locate(Quads<L> t, int *place) const
+  {
+    constexpr int sx = tile_stride_x(DIM, ORDER), sy = tile_stride_y(DIM, ORDER);
+    int index[4 * L];
+    const Quads<L> whole = truncate(t, index);
+    MPM_UNROLL
+    for (int l = 0; l < L; l++)
+      place[l] = index[4 * l] * sx + index[4 * l + 1] * sy + (DIM == 3 ? index[4 * l + 2] : 0);
+    return t - whole;
+  }
+};
+
+/** Weights of L points along the axes, in memory: [node][point][axis]. */
+template <int ORDER, int L> struct AxisWeights {
+  static constexpr int S = ORDER + 1;
+  alignas(32) double w[S][4 * L];
+
+  MPM_INLINE void set(const Quads<L> *weight)
+  {
+    MPM_UNROLL
+    for (int k = 0; k < S; k++) weight[k].store(w[k]);
+  }
+
+  /** Weights along axis A in all lanes of the point, WIDTH lanes for each point. */
+  template <int A, int WIDTH> MPM_INLINE void get(Vec<WIDTH * L> *weight) const
+  {
+    MPM_UNROLL
+    for (int k = 0; k < S; k++) {
+      if constexpr (L == 1)
+        weight[k] = Vec<WIDTH>::all(w[k][A]);
+      else if constexpr (WIDTH == 4)
+        weight[k] = broadcast<A>(Quads<L>::load(w[k]));
+      else
+        weight[k] = join(Vec<WIDTH>::all(w[k][A]), Vec<WIDTH>::all(w[k][4 + A]));
+    }
+  }
+};
+
+/** Copies of the last points of a range, with room behind the rows: vectors of four reals read and
+ *  write past a row of three or nine. */
+struct LastPoints {
+  double x[8], v[8], f[8], C[20], tau[12], vol0[2], mass[2], xnew[8], L[20], from[8], P[20],
+      size[8];
+  PointRows rows{x, v, f, C, tau, vol0, mass, xnew, nullptr, 0, from, P, size};
+
+  template <int WIDTH>
+  static MPM_INLINE void load(double *to, const double *from, Index first, Index last)
+  {
+    for (Index i = 0; i < WIDTH * (last - first); i++) to[i] = from[WIDTH * first + i];
+  }
+  template <int WIDTH>
+  static MPM_INLINE void store(const double *from, double *to, Index first, Index last)
+  {
+    for (Index i = 0; i < WIDTH * (last - first); i++) to[WIDTH * first + i] = from[i];
+  }
+};
+
+/** Weights of the nodes for the fractions of L points and, if asked for, their gradients. */
+template <Shape SHAPE, bool GRADIENT, int L>
+MPM_INLINE void axis_weights(const PointRows &points, Index p, Quads<L> fraction,
+                             AxisWeights<stencil_order(SHAPE), L> &weights,
+                             AxisWeights<stencil_order(SHAPE), L> &gradients)
+{
+  constexpr int ORDER = stencil_order(SHAPE);
+  Quads<L> w[ORDER + 1];
+  if constexpr (SHAPE == GIMP) {
+    const Quads<L> size = load_rows<L, 3>(points.size, p);
+    Gimp::weights(fraction, size, w);
+    weights.set(w);
+    if constexpr (GRADIENT) {
+      Gimp::gradients(fraction, size, w);
+      gradients.set(w);
+    }
+  } else {
+    BSpline<ORDER>::weights(fraction, w);
+    weights.set(w);
+    if constexpr (GRADIENT && ORDER > 1) {
+      BSpline<ORDER>::gradients(fraction, w);
+      gradients.set(w);
+    }
+  }
+}
+
+// ---------------------------------------------------------------------- points to nodes
+
+/** Contributions of L points to their nodes, WIDTH reals per node:
+ *
+ *   node(i,j,k) = wx_i wy_j wz_k (q + i Ax + j Ay + k Az)
+ *                 + gx_i wy_j wz_k Sx + wx_i gy_j wz_k Sy + wx_i wy_j gz_k Sz
+ *
+ *  with weights w, gradients g and node numbers i, j, k from the base node; A is there if AFFINE,
+ *  S if GRADIENT. With K_a[n] = n w_a[n] A_a + g_a[n] S_a along each axis a this is
+ *
+ *   X_i = wx_i q + Kx_i,   XY_ij = wy_j X_i + wx_i Ky_j,   node = wz_k XY_ij + wx_i wy_j Kz_k.
+ */
+template <int DIM, int ORDER, int WIDTH, int L, bool AFFINE, bool GRADIENT> struct Scatter {
+  using V = Vec<WIDTH * L>;
+  using Weights = AxisWeights<ORDER, L>;
+  static constexpr int N = ORDER + 1;
+
+  V q;
+  V A[DIM];
+  V S[DIM];
+
+  /** Node n along an axis has a term K. */
+  static constexpr bool has_K(int n) { return GRADIENT || (AFFINE && n > 0); }
+
+  /** Weights along axis AXIS, and K. */
+  template <int AXIS>
+  MPM_INLINE void along(const Weights &weights, const Weights &gradients, V *w, V *K) const
+  {
+    weights.template get<AXIS, WIDTH>(w);
+    V g[N];
+    if constexpr (GRADIENT && ORDER > 1) gradients.template get<AXIS, WIDTH>(g);
+    MPM_UNROLL
+    for (int n = 0; n < N; n++) {
+      if constexpr (GRADIENT && ORDER == 1)
+        K[n] = n ? S[AXIS] : -S[AXIS];
+      else if constexpr (GRADIENT)
+        K[n] = g[n] * S[AXIS];
+      if constexpr (AFFINE && GRADIENT)
+        if (n) K[n] += double(n) * A[AXIS] * w[n];
+      if constexpr (AFFINE && !GRADIENT)
+        if (n) K[n] = double(n) * A[AXIS] * w[n];
+    }
+  }
+
+  /** Adds a row of nodes along the last axis, w_n row + factor K_n; SAME: points share nodes. */
+  template <bool SAME, int NREAL>
+  static MPM_INLINE void add_row(double *const *base, Index offset, V row, V factor, const V *w,
+                                 const V *K)
+  {
+    MPM_UNROLL
+    for (int n = 0; n < N; n++) {
+      double *node = base[0] + offset + NREAL * n;
+      if constexpr (L == 1) {
+        V sum = V::load(node) + w[n] * row;
+        if (has_K(n)) sum += factor * K[n];
+        sum.store(node);
+      } else {
+        V sum = w[n] * row;
+        if (has_K(n)) sum += factor * K[n];
+        if constexpr (SAME) {
+          (Vec<WIDTH>::load(node) + (half<0>(sum) + half<1>(sum))).store(node);
+        } else {
+          (Vec<WIDTH>::load(node) + half<0>(sum)).store(node);
+          node = base[1] + offset + NREAL * n;
+          (Vec<WIDTH>::load(node) + half<1>(sum)).store(node);
+        }
+      }
+    }
+  }
+
+  /** Adds to all nodes; base: the record of each point's base node. */
+  template <bool SAME, int NREAL>
+  MPM_INLINE void add(const Weights &weights, const Weights &gradients, double *const *base) const
+  {
+    constexpr int sx = NREAL * tile_stride_x(DIM, ORDER), sy = NREAL * tile_stride_y(DIM, ORDER);
+    V wx[N], wy[N], Kx[N], Ky[N];
+    along<0>(weights, gradients, wx, Kx);
+    along<1>(weights, gradients, wy, Ky);
+    V wz[N], Kz[N];
+    if constexpr (DIM == 3) along<2>(weights, gradients, wz, Kz);
+
+    MPM_UNROLL
+    for (int i = 0; i < N; i++) {
+      V X = wx[i] * q;
+      if (has_K(i)) X += Kx[i];
+      if constexpr (DIM == 2) {
+        add_row<SAME, NREAL>(base, sx * i, X, wx[i], wy, Ky);
+      } else {
+        MPM_UNROLL
+        for (int j = 0; j < N; j++) {
+          V XY = wy[j] * X;
+          if (has_K(j)) XY += wx[i] * Ky[j];
+          add_row<SAME, NREAL>(base, sx * i + sy * j, XY, wx[i] * wy[j], wz, Kz);
+        }
+      }
+    }
+  }
+};
+
+enum Parts { MOMENTUM = 1, FORCE = 2, ALL = 3 };
+
+/** P2G of what PARTS says; AFFINE: uses C; MLS: stress as an affine term; TOTAL: first
+ *  Piola-Kirchhoff instead of Kirchhoff stress. */
+template <int DIM, Shape SHAPE, bool AFFINE, bool MLS, int NREAL, int PARTS, bool TOTAL>
+struct PointsToNodes {
+  static constexpr int ORDER = stencil_order(SHAPE);
+  static constexpr bool momentum = PARTS & MOMENTUM;
+  static constexpr bool force = PARTS & FORCE;
+  static constexpr bool gradient = force && !MLS;     // stress with gradients
+
+  // A record of 8 reals has momentum and force apart. One long vector can hold both; else, and for
+  // linear functions where it is faster, the force is scattered after the momentum.
+  static constexpr bool both = NREAL == 8 && PARTS == ALL;
+  static constexpr bool wide = both && REGISTER == 8 && ORDER > 1;
+  static constexpr int N = ORDER + 1;
+
+  /** L points ready to be scattered. */
+  template <int L> struct Prepared {
+    static constexpr bool affine = (AFFINE && momentum) || (MLS && force);
+    static constexpr bool sloped = gradient && (wide || !both);
+    Scatter<DIM, ORDER, wide ? 8 : 4, L, affine, sloped> main;
+    Scatter<DIM, ORDER, 4, L, MLS, !MLS> apart;    // the force, if it is not in main
+    AxisWeights<ORDER, L> weights, gradients;
+    int place[L];
+  };
+
+  /** Columns of a full matrix; lanes that are no axis are arbitrary. */
+  template <int L>
+  static MPM_INLINE void matrix_columns(const double *matrix, Index p, Quads<L> *column)
+  {
+    if constexpr (DIM == 2) {
+      column[0] = load_rows<L, 4>(matrix, p);
+      column[1] = shuffle<2, 3, 2, 3>(column[0], column[0]);
+    } else {
+      MPM_UNROLL
+      for (int a = 0; a < 3; a++) column[a] = load_rows<L, 9>(matrix + 3 * a, p);
+    }
+  }
+
+  /** Columns of the stress tensor; lanes that are no axis are arbitrary. */
+  template <int L>
+  static MPM_INLINE void stress_columns(const double *tau, Index p, Quads<L> *column)
+  {
+    const Quads<L> a = load_rows<L, 6>(tau, p);    // xx yy zz xy
+    if constexpr (DIM == 2) {
+      column[0] = shuffle<0, 3, 3, 3>(a, a);
+      column[1] = shuffle<3, 1, 1, 1>(a, a);
+    } else {
+      const Quads<L> b = load_rows<L, 6>(tau + 2, p);                   // zz xy xz yz
+      column[0] = shuffle<0, 5, 6, 7>(a, b);                            // xx xy xz
+      column[1] = shuffle<4, 1, 6, 7>(a, shuffle<1, 1, 3, 3>(b, b));    // xy yy yz
+      column[2] = shuffle<2, 3, 0, 0>(b, b);                            // xz yz zz
+    }
+  }
+
+  /** Momentum and force of each point side by side. */
+  template <int N4> static MPM_INLINE Vec<2 * N4> side_by_side(Vec<N4> m, Vec<N4> f)
+  {
+    if constexpr (N4 == 4)
+      return join(m, f);
+    else
+      return join(join(half<0>(m), half<0>(f)), join(half<1>(m), half<1>(f)));
+  }
+
+  /** Momentum and mass: value at the point and affine matrix per node spacing. */
+  template <int L>
+  static MPM_INLINE void momentum_terms(const PointRows &points, Index p, double h, Quads<L> &q,
+                                        Quads<L> *A)
+  {
+    const Quads<L> mass = load_numbers<L>(points.mass, p);
+    q = blend<DIM>(load_rows<L, 3>(points.v, p), repeat<4 * L>(0.0, 0.0, 0.0, 1.0)) * mass;
+    if constexpr (AFFINE) {
+      if constexpr (DIM == 2) {
+        const Quads<L> C = (h * mass) * load_rows<L, 4>(points.C, p);
+        A[0] = C;
+        A[1] = shuffle<2, 3, 2, 3>(C, C);
+      } else {
+        MPM_UNROLL
+        for (int a = 0; a < 3; a++) A[a] = (h * mass) * load_rows<L, 9>(points.C + 3 * a, p);
+      }
+    }
+  }
+
+  /** Force times scale: external, and columns of -stress that an affine or gradient term takes. */
+  template <int L>
+  static MPM_INLINE void force_terms(const PointRows &points, Index p, const TransferStep &step,
+                                     double scale, Quads<L> &q, Quads<L> *A)
+  {
+    q = (scale * step.force_scale) * blend<DIM>(load_rows<L, 3>(points.f, p), Quads<L>{});
+    const double factor =
+        -scale * step.stress_scale * step.inv_h * (MLS ? BSpline<ORDER>::inv_moment : 1.0);
+    const Quads<L> volume = load_numbers<L>(points.vol0, p) * factor;
+    if constexpr (TOTAL)
+      matrix_columns<L>(points.P, p, A);
+    else
+      stress_columns<L>(points.tau, p, A);
+    MPM_UNROLL
+    for (int a = 0; a < DIM; a++) A[a] = volume * A[a];
+  }
+
+  /** Clears the lanes that are no axis. */
+  template <int N4> static MPM_INLINE void clear_lanes(Vec<N4> *A)
+  {
+    MPM_UNROLL
+    for (int a = 0; a < DIM; a++) A[a] = blend<DIM>(A[a], Vec<N4>{});
+  }
+
+  /** Moves the origin of an affine field from the point to its base node. */
+  template <int N4>
+  static MPM_INLINE void to_base_node(Vec<N4> &q, const Vec<N4> *A, Vec<N4> fraction)
+  {
+    const Vec<N4> distance = fraction + BSpline<ORDER>::shift;
+    q -= broadcast<0>(distance) * A[0] + broadcast<1>(distance) * A[1];
+    if constexpr (DIM == 3) q -= broadcast<2>(distance) * A[2];
+  }
+
+  /** Loads L points and computes what scatter needs; notes their extent. */
+  template <int L>
+  static MPM_INLINE void prepare(const PointRows &points, Index p, const TransferStep &step,
+                                 const Frame<DIM, ORDER, L> &frame, Prepared<L> &out,
+                                 Quads<L> &lowest, Quads<L> &highest)
+  {
+    using P = Quads<L>;
+
+    const P t = frame.position(load_rows<L, 3>(points.x, p));
+    lowest = min(lowest, t);
+    highest = max(highest, t);
+    const P fraction = frame.locate(t, out.place);
+    axis_weights<SHAPE, gradient, L>(points, p, fraction, out.weights, out.gradients);
+
+    // Am is an affine term, Af an affine or a gradient term
+    P qm, qf, Am[DIM], Af[DIM];
+    if constexpr (momentum) momentum_terms<L>(points, p, step.h, qm, Am);
+    if constexpr (force) force_terms<L>(points, p, step, NREAL == 4 ? step.dt : 1.0, qf, Af);
+
+    if constexpr (both) {
+      if constexpr (AFFINE) {
+        clear_lanes(Am);
+        to_base_node(qm, Am, fraction);
+      }
+      clear_lanes(Af);
+      if constexpr (MLS) to_base_node(qf, Af, fraction);
+      if constexpr (wide) {
+        out.main.q = side_by_side(qm, qf);
+        MPM_UNROLL
+        for (int a = 0; a < DIM; a++) {
+          if constexpr (AFFINE) out.main.A[a] = side_by_side(Am[a], MLS ? Af[a] : P{});
+          if constexpr (!MLS) out.main.S[a] = side_by_side(P{}, Af[a]);
+        }
+      } else {
+        out.main.q = qm;
+        out.apart.q = qf;
+        MPM_UNROLL
+        for (int a = 0; a < DIM; a++) {
+          if constexpr (AFFINE) out.main.A[a] = Am[a];
+          (MLS ? out.apart.A[a] : out.apart.S[a]) = Af[a];
+        }
+      }
+    } else {
+      if constexpr (MLS && momentum && force) {
+        MPM_UNROLL
+        for (int a = 0; a < DIM; a++) Am[a] += Af[a];
+      }
+      P q = momentum ? qm : qf;
+      if constexpr (momentum && force) q += qf;
+      if constexpr (AFFINE && (momentum || MLS)) {
+        P *A = momentum ? Am : Af;
+        clear_lanes(A);
+        to_base_node(q, A, fraction);
+        MPM_UNROLL
+        for (int a = 0; a < DIM; a++) out.main.A[a] = A[a];
+      }
+      if constexpr (gradient) {
+        clear_lanes(Af);
+        MPM_UNROLL
+        for (int a = 0; a < DIM; a++) out.main.S[a] = Af[a];
+      }
+      out.main.q = q;
+    }
+  }
+
+  /** Adds to the tile; SAME: the points have one base node. */
+  template <bool SAME, int L>
+  static MPM_INLINE void scatter(const Prepared<L> &in, double *const *base)
+  {
+    in.main.template add<SAME, NREAL>(in.weights, in.gradients, base);
+    if constexpr (both && !wide) {
+      double *forces[L];
+      MPM_UNROLL
+      for (int l = 0; l < L; l++) forces[l] = base[l] + 4;
+      in.apart.template add<SAME, NREAL>(in.weights, in.gradients, forces);
+    }
+  }
+
+  /** Points [first,last), L at a time. */
+  template <int L>
+  static __attribute__((noinline)) void range(const PointRows &rows, const TransferStep &transfer,
+                                              Index first, Index last, const int *base,
+                                              double *tile, int *box)
+  {
+    // copies, so that the compiler knows that no store changes them
+    const PointRows points = rows;
+    const TransferStep step = transfer;
+    const Frame<DIM, ORDER, L> frame(step, base);
+    double *const entry = tile + (NREAL == 8 && PARTS == FORCE ? 4 : 0);
+    Quads<L> lowest = Quads<L>::all(1.0e6), highest = Quads<L>::all(-1.0e6);
+    constexpr int ENTRIES = STAGE / L;
+    Prepared<L> stage[ENTRIES];
+
+    for (Index p = first; p < last;) {
+      const Index n = (last - p) / L < ENTRIES ? (last - p) / L : ENTRIES;
+      const Index ahead = p + AHEAD;
+      prefetch<3>(points.x, ahead);
+      if (SHAPE == GIMP) prefetch<3>(points.size, ahead);
+      if (momentum) {
+        prefetch<3>(points.v, ahead);
+        prefetch<1>(points.mass, ahead);
+        if (AFFINE) prefetch<DIM * DIM>(points.C, ahead);
+      }
+      if (force) {
+        prefetch<3>(points.f, ahead);
+        if (!TOTAL) prefetch<6>(points.tau, ahead);    // P has just been made
+        prefetch<1>(points.vol0, ahead);
+      }
+      for (Index i = 0; i < n; i++, p += L)
+        prepare<L>(points, p, step, frame, stage[i], lowest, highest);
+      for (Index i = 0; i < n; i++) {
+        const Prepared<L> &in = stage[i];
+        double *node[L];
+        MPM_UNROLL
+        for (int l = 0; l < L; l++) node[l] = entry + NREAL * in.place[l];
+        if (L == 1 || __builtin_expect(node[0] == node[L - 1], 1)) {
+          scatter<true>(in, node);
+        } else {
+          // barrier: otherwise GCC moves what both branches have in common above them, and spills
+          asm volatile("" ::: "memory");
+          scatter<false>(in, node);
+        }
+      }
+    }
+
+    for (int l = 0; l < L; l++)
+      for (int a = 0; a < DIM; a++) {
+        const int low = static_cast<int>(lowest.lane(4 * l + a));
+        const int high = static_cast<int>(highest.lane(4 * l + a));
+        if (low < box[a]) box[a] = low;
+        if (high > box[3 + a]) box[3 + a] = high;
+      }
+  }
+
+  /** All points; the last of all through padded copies. */
+  static void p2g(const PointRows &points, const TransferStep &step, int first, int last,
+                  const int base[3], double *tile, int box[6])
+  {
+    if (first >= last) return;
+    const bool guarded = last <= points.guarded;
+    const int rest = first + (last - first - !guarded) / POINTS * POINTS;
+    if (rest > first) range<POINTS>(points, step, first, rest, base, tile, box);
+    if (guarded) {
+      if (rest < last) range<1>(points, step, rest, last, base, tile, box);
+      return;
+    }
+
+    LastPoints copy;
+    copy.load<3>(copy.x, points.x, rest, last);
+    if (SHAPE == GIMP) copy.load<3>(copy.size, points.size, rest, last);
+    if (momentum) {
+      copy.load<3>(copy.v, points.v, rest, last);
+      copy.load<1>(copy.mass, points.mass, rest, last);
+      if (AFFINE) copy.template load<DIM * DIM>(copy.C, points.C, rest, last);
+    }
+    if (force) {
+      copy.load<3>(copy.f, points.f, rest, last);
+      if (TOTAL)
+        copy.template load<DIM * DIM>(copy.P, points.P, rest, last);
+      else
+        copy.load<6>(copy.tau, points.tau, rest, last);
+      copy.load<1>(copy.vol0, points.vol0, rest, last);
+    }
+    if (last - rest == POINTS)
+      range<POINTS>(copy.rows, step, 0, POINTS, base, tile, box);
+    else
+      range<1>(copy.rows, step, 0, 1, base, tile, box);
+  }
+};
+
+// ---------------------------------------------------------------------- nodes to points
+
+/** Sums of weight times node vector for L points. GRADIENT: with the derivatives along each axis,
+ *  by the gradients or, if MLS, as first moments with node numbers (from the base node). */
+template <int DIM, int ORDER, int NREAL, int L, bool MLS, bool GRADIENT> struct Gather {
+  using V = Quads<L>;
+  using Weights = AxisWeights<ORDER, L>;
+  static constexpr int N = ORDER + 1;
+
+  V value, derivative[DIM];
+
+  /** Node vector of each point; SAME: points share the node. */
+  template <bool SAME> static MPM_INLINE V node(const double *const *base, Index offset)
+  {
+    const Vec<4> first = Vec<4>::load(base[0] + offset);
+    if constexpr (L == 1)
+      return first;
+    else
+      return join(first, SAME ? first : Vec<4>::load(base[1] + offset));
+  }
+
+  static MPM_INLINE void accumulate(bool first, V &sum, V a, V b)
+  {
+    if (first)
+      sum = a * b;
+    else
+      sum += a * b;
+  }
+
+  /** Sums a row of nodes along the last axis. */
+  template <bool SAME>
+  static MPM_INLINE void row(const double *const *base, Index offset, const V *w, const V *d,
+                             V &value, V &derivative)
+  {
+    MPM_UNROLL
+    for (int n = 0; n < N; n++) {
+      const V a = node<SAME>(base, offset + NREAL * n);
+      accumulate(n == 0, value, w[n], a);
+      if (GRADIENT && !(MLS && n == 0)) accumulate(n == MLS, derivative, d[n], a);
+    }
+  }
+
+  /** Weights along AXIS and what takes their place in derivatives. */
+  template <int AXIS>
+  static MPM_INLINE void along(const Weights &weights, const Weights &gradients, V *w, V *d)
+  {
+    weights.template get<AXIS, 4>(w);
+    if constexpr (MLS) {
+      MPM_UNROLL
+      for (int n = 1; n < N; n++) d[n] = n == 1 ? w[n] : double(n) * w[n];
+    } else if constexpr (GRADIENT) {
+      gradients.template get<AXIS, 4>(d);
+    }
+  }
+
+  /** Value and derivatives; base: the record of each point's base node. */
+  template <bool SAME>
+  MPM_INLINE void sum(const Weights &weights, const Weights &gradients, const double *const *base)
+  {
+    constexpr int sx = NREAL * tile_stride_x(DIM, ORDER), sy = NREAL * tile_stride_y(DIM, ORDER);
+    V wx[N], wy[N], wz[N], dx[N], dy[N], dz[N];
+    along<0>(weights, gradients, wx, dx);
+    along<1>(weights, gradients, wy, dy);
+    if constexpr (DIM == 3) along<2>(weights, gradients, wz, dz);
+
+    MPM_UNROLL
+    for (int i = 0; i < N; i++) {
+      V plane, plane_y, plane_z;
+      if constexpr (DIM == 2) {
+        row<SAME>(base, sx * i, wy, dy, plane, plane_y);
+      } else {
+        MPM_UNROLL
+        for (int j = 0; j < N; j++) {
+          V line, line_z;
+          row<SAME>(base, sx * i + sy * j, wz, dz, line, line_z);
+          accumulate(j == 0, plane, wy[j], line);
+          if (GRADIENT) {
+            if (!(MLS && j == 0)) accumulate(j == MLS, plane_y, dy[j], line);
+            accumulate(j == 0, plane_z, wy[j], line_z);
+          }
+        }
+      }
+      accumulate(i == 0, value, wx[i], plane);
+      if (GRADIENT) {
+        if (!(MLS && i == 0)) accumulate(i == MLS, derivative[0], dx[i], plane);
+        accumulate(i == 0, derivative[1], wx[i], plane_y);
+        if constexpr (DIM == 3) accumulate(i == 0, derivative[2], wx[i], plane_z);
+      }
+    }
+  }
+
+  /** The same for linear functions with the fraction f: interpolation takes fewer operations. */
+  template <bool SAME> MPM_INLINE void interpolate(V f, const double *const *base)
+  {
+    constexpr int sx = NREAL * tile_stride_x(DIM, ORDER), sy = NREAL * tile_stride_y(DIM, ORDER);
+    const V fx = broadcast<0>(f), fy = broadcast<1>(f), fz = broadcast<2>(f);
+    V plane[2], plane_y[2], plane_z[2];
+    MPM_UNROLL
+    for (int i = 0; i < 2; i++) {
+      V line[2], line_z[2];
+      MPM_UNROLL
+      for (int j = 0; j < 2; j++) {
+        line[j] = node<SAME>(base, sx * i + sy * j);
+        if constexpr (DIM == 3) {
+          line_z[j] = node<SAME>(base, sx * i + sy * j + NREAL) - line[j];
+          line[j] += fz * line_z[j];
+        }
+      }
+      plane_y[i] = line[1] - line[0];
+      plane[i] = line[0] + fy * plane_y[i];
+      if constexpr (DIM == 3) plane_z[i] = line_z[0] + fy * (line_z[1] - line_z[0]);
+    }
+    derivative[0] = plane[1] - plane[0];
+    value = plane[0] + fx * derivative[0];
+    derivative[1] = plane_y[0] + fx * (plane_y[1] - plane_y[0]);
+    if constexpr (DIM == 3) derivative[2] = plane_z[0] + fx * (plane_z[1] - plane_z[0]);
+  }
+};
+
+/** G2P and velocity gradient; TOTAL: places on the lattice are not the positions that change. */
+template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct NodesToPoints {
+  static constexpr int ORDER = stencil_order(SHAPE);
+  static constexpr bool affine = is_affine(TRANSFER);
+  static constexpr bool increment = adds_change(TRANSFER);
+  static constexpr bool mls = is_mls(SHAPE, TRANSFER);    // gradient from first moments
+
+  /** L points ready to be gathered. */
+  template <int L> struct Prepared {
+    alignas(64) double x[4 * L], fraction[4 * L];
+    AxisWeights<ORDER, L> weights, gradients;
+    int place[L];
+  };
+
+  /** Loads L points and computes what gather needs. */
+  template <bool UPDATE, bool GRADIENT, int L>
+  static MPM_INLINE void prepare(const PointRows &points, Index p,
+                                 const Frame<DIM, ORDER, L> &frame, Prepared<L> &out)
+  {
+    const Quads<L> x = load_rows<L, 3>(points.x, p);
+    const Quads<L> fraction = frame.locate(frame.position(x), out.place);
+    if constexpr (TOTAL && UPDATE)
+      load_rows<L, 3>(points.from, p).store(out.x);
+    else
+      x.store(out.x);
+    fraction.store(out.fraction);
+    if constexpr (ORDER > 1)
+      axis_weights<SHAPE, GRADIENT && !mls, L>(points, p, fraction, out.weights, out.gradients);
+  }
+
+  /** Value and derivatives of the node vector at OFFSET in the records. */
+  template <bool SAME, bool GRADIENT, int OFFSET, int L>
+  static MPM_INLINE void gather(const Prepared<L> &in, const double *const *node, Quads<L> &value,
+                                Quads<L> *derivative)
+  {
+    const double *base[L];
+    MPM_UNROLL
+    for (int l = 0; l < L; l++) base[l] = node[l] + OFFSET;
+    Gather<DIM, ORDER, NREAL, L, mls && GRADIENT, GRADIENT> field;
+    if constexpr (ORDER == 1)
+      field.template interpolate<SAME>(Quads<L>::load(in.fraction), base);
+    else
+      field.template sum<SAME>(in.weights, in.gradients, base);
+    value = field.value;
+    if constexpr (GRADIENT) {
+      MPM_UNROLL
+      for (int a = 0; a < DIM; a++) derivative[a] = field.derivative[a];
+    }
+  }
+
+  /** Stores the first K reals of each point's four in rows of three. */
+  template <int K, int L> static MPM_INLINE void store_rows(double *rows, Index p, Quads<L> a)
+  {
+    if constexpr (L == 1) {
+      store_lanes<K>(rows + 3 * p, a);
+    } else {
+      store_lanes<K>(rows + 3 * p, half<0>(a));
+      store_lanes<K>(rows + 3 * (p + 1), half<1>(a));
+    }
+  }
+
+  /** Stores the columns of matrices in rows of nine (2d: four), from the first row to the last. In
+   *  3d a column also writes one real behind it, which the next one overwrites; not so the last. */
+  template <int L>
+  static MPM_INLINE void store_columns(double *rows, Index p, const Quads<L> *column)
+  {
+    if constexpr (DIM == 2) {
+      shuffle<0, 1, 4, 5>(column[0], column[1]).store(rows + 4 * p);
+    } else if constexpr (L == 1) {
+      column[0].store(rows + 9 * p);
+      column[1].store(rows + 9 * p + 3);
+      store_lanes<3>(rows + 9 * p + 6, column[2]);
+    } else {
+      MPM_UNROLL
+      for (int a = 0; a < 3; a++) half<0>(column[a]).store(rows + 9 * p + 3 * a);
+      half<1>(column[0]).store(rows + 9 * p + 9);
+      half<1>(column[1]).store(rows + 9 * p + 12);
+      store_lanes<3>(rows + 9 * p + 15, half<1>(column[2]));
+    }
+  }
+
+  /** Points [first,last), L at a time. UPDATE: velocity, position and C; GRADIENT: the velocity
+   *  gradient, which goes to C and to the rows of gradients, the first of them for point first. */
+  template <int L, bool UPDATE, bool GRADIENT>
+  static __attribute__((noinline)) int range(const PointRows &rows, const TransferStep &transfer,
+                                             Index first, Index last, const int *base,
+                                             const double *tile, double *gradients)
+  {
+    using P = Quads<L>;
+    // copies, so that the compiler knows that no store changes them
+    const PointRows points = rows;
+    const TransferStep step = transfer;
+    const Frame<DIM, ORDER, L> frame(step, base);
+    P outside = {};
+    constexpr double range_of_bases = block_side(DIM) + 2;
+    constexpr int ENTRIES = STAGE / L;
+    Prepared<L> stage[ENTRIES];
+
+    for (Index p = first; p < last;) {
+      const Index n = (last - p) / L < ENTRIES ? (last - p) / L : ENTRIES;
+      const Index ahead = p + AHEAD;
+      if (SHAPE == GIMP) prefetch<3>(points.size, ahead);
+      if (UPDATE) {
+        prefetch<3, 1>(points.x, ahead);
+        if (TOTAL) prefetch<3, 1>(points.from, ahead);
+        prefetch<3, 1>(points.v, ahead);
+        if (affine) prefetch<DIM * DIM, 1>(points.C, ahead);
+      } else {
+        prefetch<3>(points.x, ahead);
+      }
+      if (GRADIENT) {
+        // the constitutive law comes next
+        if (points.F) prefetch<9, 1>(points.F, ahead);
+        prefetch<6, 1>(points.tau, ahead);
+        prefetch<1>(points.vol0, ahead);
+      }
+      for (Index i = 0; i < n; i++) prepare<UPDATE, GRADIENT, L>(points, p + L * i, frame, stage[i]);
+      for (Index i = 0; i < n; i++, p += L) {
+        const Prepared<L> &in = stage[i];
+        const double *node[L];
+        MPM_UNROLL
+        for (int l = 0; l < L; l++) node[l] = tile + NREAL * in.place[l];
+        P v, D[DIM], v_old;
+        if (L == 1 || __builtin_expect(node[0] == node[L - 1], 1)) {
+          gather<true, GRADIENT, 0>(in, node, v, D);
+          if constexpr (UPDATE && increment) gather<true, false, 4>(in, node, v_old, D);
+        } else {
+          // barrier: otherwise GCC moves what both branches have in common above them, and spills
+          asm volatile("" ::: "memory");
+          gather<false, GRADIENT, 0>(in, node, v, D);
+          if constexpr (UPDATE && increment) gather<false, false, 4>(in, node, v_old, D);
+        }
+
+        if constexpr (GRADIENT) {
+          const double factor = mls ? BSpline<ORDER>::inv_moment * step.inv_h : step.inv_h;
+          if constexpr (mls) {
+            // moments about the point instead of the base node
+            const P distance = P::load(in.fraction) + BSpline<ORDER>::shift;
+            D[0] -= broadcast<0>(distance) * v;
+            D[1] -= broadcast<1>(distance) * v;
+            if constexpr (DIM == 3) D[2] -= broadcast<2>(distance) * v;
+          }
+          MPM_UNROLL
+          for (int a = 0; a < DIM; a++) D[a] = factor * D[a];
+          if (UPDATE && affine) store_columns<L>(points.C, p, D);
+          if (!affine || gradients) store_columns<L>(gradients, p - first, D);
+        }
+
+        if constexpr (UPDATE) {
+          if constexpr (DIM == 2) v = blend<2>(v, P{});
+          const P x = P::load(in.x) + step.dt * v;
+          outside = flag_outside(outside, TOTAL ? x - x : frame.position(x), range_of_bases);
+          store_rows<3, L>(points.xnew, p, x);
+          if constexpr (increment) v += step.flip * (load_rows<L, 3>(points.v, p) - v_old);
+          store_rows<DIM, L>(points.v, p, v);
+        }
+      }
+    }
+
+    bool left = false;
+    for (int l = 0; l < L; l++)
+      for (int a = 0; a < DIM; a++) left = left || outside.lane(4 * l + a) != 0.0;
+    return left;
+  }
+
+  /** All points; the last of all through padded copies. */
+  template <bool UPDATE, bool GRADIENT>
+  static int run(const PointRows &points, const TransferStep &step, int first, int last,
+                 const int *base, const double *tile, double *gradients)
+  {
+    if (first >= last) return 0;
+    const bool guarded = last <= points.guarded;
+    const int rest = first + (last - first - !guarded) / POINTS * POINTS;
+    int left = 0;
+    if (rest > first)
+      left = range<POINTS, UPDATE, GRADIENT>(points, step, first, rest, base, tile, gradients);
+    if (guarded) {
+      if (rest < last)
+        left |= range<1, UPDATE, GRADIENT>(points, step, rest, last, base, tile,
+                                           gradients ? gradients + DIM * DIM * (rest - first)
+                                                     : nullptr);
+      return left;
+    }
+
+    LastPoints copy;
+    copy.load<3>(copy.x, points.x, rest, last);
+    if (SHAPE == GIMP) copy.load<3>(copy.size, points.size, rest, last);
+    if (UPDATE) copy.load<3>(copy.v, points.v, rest, last);
+    if (UPDATE && TOTAL) copy.load<3>(copy.from, points.from, rest, last);
+    if (last - rest == POINTS)
+      left |= range<POINTS, UPDATE, GRADIENT>(copy.rows, step, 0, POINTS, base, tile, copy.L);
+    else
+      left |= range<1, UPDATE, GRADIENT>(copy.rows, step, 0, 1, base, tile, copy.L);
+    if (UPDATE) {
+      copy.store<3>(copy.xnew, points.xnew, rest, last);
+      copy.store<3>(copy.v, points.v, rest, last);
+      if (affine) copy.template store<DIM * DIM>(copy.C, points.C, rest, last);
+    }
+    if (GRADIENT && gradients)
+      copy.template store<DIM * DIM>(copy.L, gradients, rest - first, last - first);
+    return left;
+  }
+
+  static int g2p(const PointRows &points, const TransferStep &step, int first, int last,
+                 const int base[3], const double *tile, double *L)
+  {
+    if (affine || L) return run<true, true>(points, step, first, last, base, tile, L);
+    if constexpr (!affine)
+      return run<true, false>(points, step, first, last, base, tile, L);
+    return 0;
+  }
+
+  static int g2p_gradient(const PointRows &points, const TransferStep &step, int first, int last,
+                          const int base[3], const double *tile, double *L)
+  {
+    run<false, true>(points, step, first, last, base, tile, L);
+    return 0;
+  }
+};
+
+// ---------------------------------------------------------------------- nodes
+
+enum TileMove { FLUSH, LOAD, PREFETCH };
+
+/** Adds N reals of the tile to nodes and clears them, loads them, or brings the nodes near. */
+template <int N, TileMove MOVE> MPM_INLINE void move_reals(double *tile, double *nodes)
+{
+  if constexpr (MOVE == PREFETCH) {
+    // to the second-level cache: the first has no room for another tile yet
+    constexpr int line = 8;
+    MPM_UNROLL
+    for (int i = 0; i < N; i += line) __builtin_prefetch(nodes + i, 1, 2);
+    return;
+  }
+  MPM_UNROLL
+  for (int i = 0; i < N; i += 4) {
+    if constexpr (MOVE == LOAD) {
+      Vec<4>::load(nodes + i).store(tile + i);
+    } else {
+      (Vec<4>::load(nodes + i) + Vec<4>::load(tile + i)).store(nodes + i);
+      Vec<4>{}.store(tile + i);
+    }
+  }
+}
+
+/** Flush, load or prefetch, a row of nodes along the last axis at a time. A row has one node in the block
+ *  before, all of its own block and ORDER + 1 nodes in the block after; each of these parts is
+ *  moved whole if the box touches it. */
+template <int DIM, int ORDER, int NREAL, TileMove MOVE>
+void tile_io(double *tile, double *nodes, const int slot[27], const int box[6])
+{
+  constexpr int side = block_side(DIM), last = DIM - 1, after = ORDER + 1;
+  constexpr int sx = tile_stride_x(DIM, ORDER), sy = tile_stride_y(DIM, ORDER);
+  const bool touches_before = box[last] == 0;
+  const bool touches_own = box[last] <= side;
+  const bool touches_after = box[3 + last] + ORDER > side;
+
+  const int ylow = DIM == 3 ? box[1] : 0;
+  const int yhigh = DIM == 3 ? box[4] + ORDER : 0;
+  for (int i = box[0]; i <= box[3] + ORDER; i++)
+    for (int j = ylow; j <= yhigh; j++) {
+      // tile node 0 is the last node of the block before
+      const int x = i + side - 1, y = j + side - 1;
+      double *row = tile + NREAL * (DIM == 3 ? i * sx + j * sy : i * sx);
+      const int *block = slot + (DIM == 3 ? 9 * (x / side) + 3 * (y / side) : 9 * (x / side));
+      const int index = DIM == 3 ? (x % side * side + y % side) * side : x % side * side;
+      // in 3d slots of a row are neighbours, in 2d three apart, the middle one of three in z
+      constexpr int next = DIM == 3 ? 1 : 3, middle = DIM == 3 ? 0 : 1;
+      if (touches_before)
+        move_reals<NREAL, MOVE>(row,
+                                nodes + (Index(64) * block[middle] + index + side - 1) * NREAL);
+      if (touches_own)
+        move_reals<side * NREAL, MOVE>(row + NREAL,
+                                       nodes + (Index(64) * block[next + middle] + index) * NREAL);
+      if (touches_after)
+        move_reals<after * NREAL, MOVE>(row + NREAL * (side + 1),
+                                        nodes +
+                                            (Index(64) * block[2 * next + middle] + index) * NREAL);
+    }
+}
+
+// ---------------------------------------------------------------------- table
+
+/** All of one dimension, shape, transfer, size of records, and frame. */
+template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL>
+TransferKernels kernels()
+{
+  constexpr int ORDER = stencil_order(SHAPE);
+  constexpr bool affine = is_affine(TRANSFER), mls = is_mls(SHAPE, TRANSFER);
+  using G2P = NodesToPoints<DIM, SHAPE, TRANSFER, NREAL, TOTAL>;
+  TransferKernels k;
+  k.nreal = NREAL;
+  k.affine = affine;
+  k.mls = mls;
+  k.p2g = PointsToNodes<DIM, SHAPE, affine, mls, NREAL, ALL, TOTAL>::p2g;
+  k.p2g_momentum = PointsToNodes<DIM, SHAPE, affine, mls, NREAL, MOMENTUM, false>::p2g;
+  k.p2g_force = PointsToNodes<DIM, SHAPE, affine, mls, NREAL, FORCE, TOTAL>::p2g;
+  k.g2p = G2P::g2p;
+  k.g2p_gradient = NodesToPoints<DIM, SHAPE, TRANSFER, NREAL, false>::g2p_gradient;
+  k.flush = tile_io<DIM, ORDER, NREAL, FLUSH>;
+  k.load = tile_io<DIM, ORDER, NREAL, LOAD>;
+  k.prefetch = tile_io<DIM, ORDER, NREAL, PREFETCH>;
+  return k;
+}
+
+}    // namespace
+#endif
