@@ -20,6 +20,7 @@
 #include "mpm_points.h"
 #include "neigh_list.h"
 #include "neighbor.h"
+#include "update.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,7 +34,7 @@ static constexpr int NOTHING = -1;    // field of an atom that is no point
 
 PairMPMPenalty::PairMPMPenalty(LAMMPS *lmp) :
     Pair(lmp), points(nullptr), growth(1.2), velocities(false), damped(false), look(true),
-    warned(false), nmax(0), radius(nullptr), mass(nullptr)
+    warned(false), warned_deep(false), nmax(0), radius(nullptr), mass(nullptr)
 {
   single_enable = 0;
   nextra = 2;
@@ -69,6 +70,7 @@ void PairMPMPenalty::compute(int eflag, int vflag)
   const bool flat = domain->dimension == 2;
   const double to_force = 1.0 / force->nktv2p;
   double contacts = 0.0, dissipated = 0.0;
+  int deep = -1;    // a point that another one has entered
 
   for (const auto &pair : pairs) {
     const int i = pair.first, j = pair.second;
@@ -80,6 +82,7 @@ void PairMPMPenalty::compute(int eflag, int vflag)
     const Coeff &c = coeff_of(type[i], type[j]);
     const double r = sqrt(rsq), overlap = reach - r;
     const double width = 2.0 * std::min(radius[i], radius[j]);
+    if (overlap > 0.5 * width) deep = i;
     const double stiffness = c.modulus * to_force * (flat ? width : width * width) / reach;
     const double n[3] = {d[0] / r, d[1] / r, d[2] / r};
     double normal = stiffness * overlap, power = 0.0;
@@ -123,6 +126,14 @@ void PairMPMPenalty::compute(int eflag, int vflag)
                    0.0, force_i[0], force_i[1], force_i[2], d[0], d[1], d[2]);
   }
 
+  if (deep >= 0 && !warned_deep) {
+    warned_deep = true;
+    error->warning(FLERR,
+                   "Pair style mpm/penalty: point {} and one of another field overlap by more than "
+                   "a radius at step {}: bodies will penetrate each other, unless their pair_coeff "
+                   "has a larger modulus",
+                   atom->tag[deep], update->ntimestep);
+  }
   pvector[0] = contacts;
   pvector[1] = dissipated;
   if (vflag_fdotr) virial_fdotr_compute();
@@ -410,7 +421,7 @@ void PairMPMPenalty::init_style()
   comm_forward = damped ? 2 : 1;
   nmax = 0;
   look = true;
-  warned = false;
+  warned = warned_deep = false;
 
   neighbor->add_request(this);
 }

@@ -68,6 +68,7 @@ class PairMPMPenalty : public Pair {
   bool velocities, damped;        // some coefficients need velocities, masses
   bool look;                      // at what the neighbor list consists of
   bool warned;                    // that points outgrow their limit
+  bool warned_deep;               // that bodies penetrate each other
 
   int nmax;
   double *radius, *mass;                     // current, [nlocal+nghost]; mass with damping only
