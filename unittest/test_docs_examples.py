@@ -134,7 +134,8 @@ def scene_for(lines):
                        "create_points %d region body%d ppc 2\ngroup %s type %d\n" %
                        (k, 0.03 * k + 0.01, 0.03 * k + 0.03, k + 1, k, named[k], k + 1))
     material = "" if "mpm/material" in text or own_field and grid == "" else MATERIAL
-    points = "" if makes_points else POINTS + "".join("group %s type 1\n" % g for g in GROUPS)
+    points = POINTS.replace("0.05*", "0.025*") if "gimp" in text else POINTS    # below a cell
+    points = "" if makes_points else points + "".join("group %s type 1\n" % g for g in GROUPS)
     scene = head + grid + points + material + before
     if "write_dump" in text:
         scene += "timestep 1.0e-7\nrun 0\n"

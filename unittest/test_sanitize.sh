@@ -58,8 +58,11 @@ for isa in "${sets[@]}"; do
     name=$(basename "$laws" .cpp)
     compile "$laws" "${name}_$isa.o" -DMPM_ISA="$isa" "${march[@]}" -g0
   done
-  # the optimizer needs minutes for this one with sanitizers
-  compile "$src/mpm_kernels_isa.cpp" "kernels_$isa.o" -DMPM_ISA="$isa" "${march[@]}" -O0 -g0
+  # the optimizer needs minutes for these with sanitizers
+  for kernels in "$src"/mpm_kernels*_isa.cpp; do
+    name=$(basename "$kernels" .cpp)
+    compile "$kernels" "${name}_$isa.o" -DMPM_ISA="$isa" "${march[@]}" -O0 -g0
+  done
 done
 
 library=("${objects[@]}")
