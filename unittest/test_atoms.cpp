@@ -49,10 +49,14 @@ thermo 1000
 // Atoms have the velocity of full steps, points that of half steps: the momentum of all, with the
 // second half of the last impulse given to the points, is constant to round-off.
 
-TEST(Atoms, HitABodyWithConstantMomentum)
+// With every K, points take a step in every K of the atoms, with the mean of the K forces.
+
+class Atoms : public ::testing::TestWithParam<int> {};
+
+TEST_P(Atoms, HitABodyWithConstantMomentum)
 {
   Scene run;
-  run.commands(scene);
+  run.commands(replaced(scene, "mpm 1.0\n", strprintf("mpm 1.0 every %d\n", GetParam())));
   run.commands("run 0 post no\n");
   auto *atom = run.lmp->atom;
 
@@ -79,3 +83,5 @@ TEST(Atoms, HitABodyWithConstantMomentum)
   }
   EXPECT_LT(pushed, 0.5 * start[2]);    // the atoms did hit the body
 }
+
+INSTANTIATE_TEST_SUITE_P(Every, Atoms, ::testing::Values(1, 2, 5));

@@ -80,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(Options, Restart,
                                            "frame total transfer flip 0.99 scheme musl",
                                            "locking fbar", "scheme musl locking pressure",
                                            "transfer aflip 0.99 scheme musl",
-                                           "shape cpgimp transfer tpic"));
+                                           "shape cpgimp transfer tpic", "every 3"));
 
 // the write_restart command between runs, and a file of one rank read by many
 

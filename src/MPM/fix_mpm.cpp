@@ -42,10 +42,11 @@ static constexpr double MAX_NODE = 4.0e6;
 FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), shape(QUADRATIC), extent(NO_SIZE), aspect{1.0, 1.0, 1.0}, transfer(APIC),
     flip(0.0), refinement(LUMPED), order(1), total(false), scheme(USL), locking(NO_CURE), policy(ERROR),
-    delete_failed(false), dt_check(true), grid(nullptr), C(nullptr), X(nullptr), ledger_on(false), points(nullptr), halo(nullptr),
+    delete_failed(false), every(1), dt_check(true), grid(nullptr), C(nullptr), X(nullptr),
+    waiting(nullptr), ledger_on(false), points(nullptr), halo(nullptr),
     kernels(nullptr), batch_kernels(nullptr), driver(false), topology_valid(false),
     watch_drift(false), drifted(0), want_sort(false), switches(0), switches_sorted(0),
-    tile(nullptr), tile_load(nullptr), batch(nullptr), kinetic_points(0.0), nbad_total(0),
+    tile(nullptr), tile_load(nullptr), waited(0), elapsed(0.0), batch(nullptr), kinetic_points(0.0), nbad_total(0),
     next_dt_check(0), clock(0.0), running(false), velocities(0), velocities_known(false)
 {
   points = MPMPoints::get(atom);
@@ -72,7 +73,7 @@ FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) :
     force_reneighbor = 1;
     next_reneighbor = -1;
   }
-  if (is_affine(transfer) || total) {
+  if (is_affine(transfer) || total || every > 1) {
     FixMPM::grow_arrays(atom->nmax);
     atom->add_callback(Atom::GROW);
     atom->add_callback(Atom::RESTART);
@@ -95,12 +96,13 @@ FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) :
 
 FixMPM::~FixMPM()
 {
-  if ((C || X) && modify) {
+  if ((C || X || waiting) && modify) {
     atom->delete_callback(id, Atom::GROW);
     atom->delete_callback(id, Atom::RESTART);
   }
   memory->destroy(C);
   memory->destroy(X);
+  memory->destroy(waiting);
   memory->sfree(tile);
   memory->sfree(tile_load);
   delete grid;
@@ -196,6 +198,12 @@ void FixMPM::process_options(int narg, char **arg)
       iarg += 2;
     } else if (keyword == "failed") {
       delete_failed = choose({"keep", "delete"}) == 1;
+      iarg += 2;
+    } else if (keyword == "every") {
+      need(1);
+      every = utils::inumeric(FLERR, arg[iarg + 1], false, lmp);
+      if (every < 1)
+        error->all(FLERR, iarg + 1, "Fix mpm every must be at least 1: {}", arg[iarg + 1]);
       iarg += 2;
     } else if (keyword == "dtcheck") {
       need(1);
@@ -303,6 +311,10 @@ void FixMPM::init()
     for (auto *ifix : modify->get_fix_list())
       if (auto *action = dynamic_cast<MPMNodeAction *>(ifix)) actions.push_back(action);
     for (auto *field : fields)
+      if (field->every != every)
+        error->all(FLERR, "All fix mpm instances must have the same every: {} and {} differ", id,
+                   field->id);
+    for (auto *field : fields)
       if (field->scheme != scheme)
         error->all(FLERR, "All fix mpm instances must have the same scheme: {} and {} differ", id,
                    field->id);
@@ -358,7 +370,7 @@ void FixMPM::setup_pre_neighbor()
   // a tile has room for a drift of one cell
 
   watch_drift = !total &&
-      (neighbor->skin > 2.0 * lattice.h || neighbor->delay > 0 || neighbor->every > 1 ||
+      (every > 1 || neighbor->skin > 2.0 * lattice.h || neighbor->delay > 0 || neighbor->every > 1 ||
        !neighbor->dist_check);
 
   check_integrators();
@@ -415,11 +427,12 @@ void FixMPM::setup(int)
 {
   memset(&report, 0, sizeof(Report));
   halo->bytes_sent = 0;
-  report.dt_min = report.dt_max = update->dt;
+  report.dt_min = report.dt_max = step_dt();
   if (update->dt <= 0.0)
     error->all(FLERR, "Fix mpm requires a positive time step: {}", update->dt);
   running = true;
   fit_affine();
+  if (waited) topology_valid = false;
   if (ledger_on) kinetic_points = point_kinetic_energy();
   next_dt_check = update->ntimestep;
   if (update->nsteps > 0) check_dt();
@@ -491,7 +504,7 @@ PointRows FixMPM::rows() const
   r.x = X ? &X[0][0] : &atom->x[0][0];
   r.from = &atom->x[0][0];
   r.v = &atom->v[0][0];
-  r.f = &atom->f[0][0];
+  r.f = waiting ? mean_force.data() : &atom->f[0][0];
   r.C = C ? &C[0][0] : nullptr;
   r.tau = &points->tau[0][0];
   r.vol0 = atom->vfrac;
@@ -509,7 +522,7 @@ TransferStep FixMPM::step_data() const
   s.h = lattice.h;
   s.inv_h = 1.0 / lattice.h;
   for (int d = 0; d < 3; d++) s.origin[d] = lattice.origin[d];
-  s.dt = update->dt;
+  s.dt = step_dt();
   s.flip = flip;
   s.force_scale = force->ftm2v;
   s.stress_scale = force->ftm2v / force->nktv2p;
@@ -522,7 +535,7 @@ void FixMPM::load_state(Batch &b, const int *list, int n, const FixMPMMaterial *
                         std::vector<double> &history) const
 {
   b.n = n;
-  b.dt = update->dt;
+  b.dt = step_dt();
   b.h = lattice.h;
   history.resize((std::size_t) MAX(1, material->nhistory) * BATCH);
   b.history = reinterpret_cast<double(*)[BATCH]>(history.data());
@@ -569,12 +582,14 @@ void FixMPM::grow_arrays(int nmax)
 {
   if (is_affine(transfer)) memory->grow(C, nmax, affine_size(), "mpm:C");
   if (total) memory->grow(X, nmax, 3, "mpm:X");
+  if (every > 1) memory->grow(waiting, nmax, waiting_size(), "mpm:waiting");
 }
 
 void FixMPM::copy_arrays(int i, int j, int)
 {
   if (C) memcpy(C[j], C[i], affine_size() * sizeof(double));
   if (X) memcpy(X[j], X[i], 3 * sizeof(double));
+  if (waiting) memcpy(waiting[j], waiting[i], waiting_size() * sizeof(double));
 }
 
 void FixMPM::set_arrays(int i)
@@ -587,19 +602,24 @@ void FixMPM::set_arrays(int i)
     memcpy(X[i], atom->x[i], 3 * sizeof(double));
     if (!running) X[i][0] = NAN;    // not known, for set_reference()
   }
+  if (waiting) memset(waiting[i], 0, waiting_size() * sizeof(double));
 }
 
 int FixMPM::pack_exchange(int i, double *buf)
 {
-  if (C) memcpy(buf, C[i], affine_size() * sizeof(double));
-  if (X) memcpy(buf + own_size() - 3, X[i], 3 * sizeof(double));
+  const int own[3] = {C ? affine_size() : 0, waiting_size(), X ? 3 : 0};
+  if (C) memcpy(buf, C[i], own[0] * sizeof(double));
+  if (waiting) memcpy(buf + own[0], waiting[i], own[1] * sizeof(double));
+  if (X) memcpy(buf + own[0] + own[1], X[i], own[2] * sizeof(double));
   return own_size();
 }
 
 int FixMPM::unpack_exchange(int i, double *buf)
 {
-  if (C) memcpy(C[i], buf, affine_size() * sizeof(double));
-  if (X) memcpy(X[i], buf + own_size() - 3, 3 * sizeof(double));
+  const int own[3] = {C ? affine_size() : 0, waiting_size(), X ? 3 : 0};
+  if (C) memcpy(C[i], buf, own[0] * sizeof(double));
+  if (waiting) memcpy(waiting[i], buf + own[0], own[1] * sizeof(double));
+  if (X) memcpy(X[i], buf + own[0] + own[1], own[2] * sizeof(double));
   return own_size();
 }
 
@@ -617,7 +637,7 @@ void FixMPM::unpack_restart(int i, int nth)
   for (int k = 0; k < nth; k++) m += static_cast<int>(extra[i][m]);
   if (static_cast<int>(extra[i][m]) != 1 + own_size())
     error->one(FLERR, "The restart file has {} numbers per point for fix mpm {}, not {}: give the "
-               "fix the transfer and frame with which the file was written",
+               "fix the transfer, frame and every with which the file was written",
                static_cast<int>(extra[i][m]) - 1, id, own_size());
   unpack_exchange(i, extra[i] + m + 1);
 }
@@ -638,9 +658,9 @@ int FixMPM::maxsize_restart()
 
 namespace {
 struct Saved {
-  double ledger[7], deleted[5];
+  double ledger[7], deleted[5], elapsed;
   uint64_t velocities;
-  int velocities_known, nstart;    // nstart reals follow
+  int velocities_known, waited, nstart;    // nstart reals follow
 };
 }    // namespace
 
@@ -651,6 +671,8 @@ void FixMPM::write_restart(FILE *fp)
   memset(&saved, 0, sizeof(Saved));
   saved.velocities = velocities;
   saved.velocities_known = velocities_known;
+  saved.waited = waited;
+  saved.elapsed = elapsed;
   static_assert(sizeof(MPMLedger) == sizeof(saved.ledger), "MPMLedger holds 7 doubles");
   static_assert(sizeof(deleted) == sizeof(saved.deleted), "deleted holds 5 doubles");
   memcpy(saved.deleted, &deleted, sizeof(deleted));
@@ -674,6 +696,8 @@ void FixMPM::restart(char *buf)
   memcpy(&deleted, saved.deleted, sizeof(deleted));
   velocities = saved.velocities;
   velocities_known = saved.velocities_known != 0;
+  waited = saved.waited;
+  elapsed = saved.elapsed;
   ledger_start.resize(saved.nstart);
   memcpy(ledger_start.data(), buf + sizeof(Saved), saved.nstart * sizeof(double));
 }

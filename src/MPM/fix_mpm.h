@@ -98,6 +98,7 @@ class FixMPM : public Fix {
   Locking locking;     ///< what is averaged against volumetric locking
   Policy policy;       ///< what to do with a point that goes bad
   bool delete_failed;  ///< remove points whose damage is 1
+  int every;           ///< steps of LAMMPS in a step of the cycle
   bool dt_check;       ///< stop when the time step is above the stable limit
 
   // state of the step, for node actions and output
@@ -106,6 +107,8 @@ class FixMPM : public Fix {
   std::vector<FixMPMMaterial *> materials;      ///< all of them, set in init()
   double **C;    ///< [n][dim*dim] affine, column-major; null: transfer without
   double **X;    ///< [n][3] reference position, NAN before it is known; null: updated frame
+  double **waiting;    ///< [n][6 or 9] since the last step of the cycle: impulse, displacement, and
+                       ///< angular impulse if atoms have torques; null: every is 1
   bool ledger_on;                               ///< a compute mpm/energy exists; set in init()
   MPMLedger ledger;
   std::vector<double> ledger_start;    ///< of compute mpm/energy, until the end of the next run
@@ -118,6 +121,11 @@ class FixMPM : public Fix {
   bool averages_stress() const { return locking == PRESSURE || locking == BOTH; }
   /** Are the old positions needed after G2P? */
   bool moves_late() const { return stress_after() || (averages_strain() && !stress_before()); }
+
+  /** Duration of a step of the cycle. */
+  double step_dt() const;
+  /** Steps of LAMMPS until the next step of the cycle ends, seen from the end of this step. */
+  int steps_to_next() const { return waited < every ? every - waited : every; }
 
   /** True when atom i is a material point of this field. */
   bool is_point(int i) const;
@@ -177,7 +185,8 @@ class FixMPM : public Fix {
   MPM_NS::Shape kernel_shape() const { return extent == NO_SIZE ? shape : MPM_NS::GIMP; }
   int affine_size() const { return lattice.dim * lattice.dim; }
   /** Reals that each point has of this fix. */
-  int own_size() const { return (C ? affine_size() : 0) + (X ? 3 : 0); }
+  int own_size() const { return (C ? affine_size() : 0) + (X ? 3 : 0) + waiting_size(); }
+  int waiting_size() const;
 
   MPMPoints *points;
   MPMHalo *halo;
@@ -200,6 +209,9 @@ class FixMPM : public Fix {
   double *tile, *tile_load;
   std::vector<double> xnew;              // when points move late: position at the end of the step
   std::vector<double> v_apart, lumped;    // XPIC, FMPM: velocities of points and nodes
+  int waited;                            // steps of LAMMPS since the last step of the cycle,
+  double elapsed;                        // and their duration, if every is above 1
+  std::vector<double> mean_force, mean_torque;    // over them
   std::vector<double> gradients;         // F-bar: velocity gradients of the points
   std::vector<double> tau_averaged;      // stress with averaged pressure
   std::vector<double> sizes;             // GIMP: half sizes of points in node spacings, [n][3]
@@ -224,6 +236,9 @@ class FixMPM : public Fix {
   bool velocities_known;
 
   // stages of the step
+  bool wait();    // of all fields
+  void add_waiting();
+  void end_waiting();
   void update_topology();    // of all fields
   void find_blocks();
   void update_sizes();

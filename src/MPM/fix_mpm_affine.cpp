@@ -242,9 +242,9 @@ void FixMPM::add_torques()
   const double inv_moment = (shape == QUADRATIC ? 4.0 : 3.0) / (lattice.h * lattice.h);
   for (const auto &run : runs)
     for (int i = run.first; i < run.last; i++) {
-      const double *torque = atom->torque[i];
+      const double *torque = waiting ? &mean_torque[3 * (std::size_t) i] : atom->torque[i];
       double W[9] = {0.0};    // what a gradient in space would change by, row-major
-      const double scale = 0.5 * update->dt * force->ftm2v * inv_moment / atom->rmass[i];
+      const double scale = 0.5 * step_dt() * force->ftm2v * inv_moment / atom->rmass[i];
       for (int d = dim == 3 ? 0 : 2; d < 3; d++) {
         const int e = (d + 1) % 3, f = (d + 2) % 3;
         W[3 * f + e] = scale * torque[d];

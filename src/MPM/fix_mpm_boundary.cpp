@@ -404,7 +404,7 @@ void FixMPMBoundary::setup(int)
   if (!region_moves()) return;
   modify->clearstep_compute();
   region->prematch();
-  modify->addstep_compute(update->ntimestep + 1);
+  modify->addstep_compute(update->ntimestep + nodes[0].field->steps_to_next());
 }
 
 /* ----------------------------------------------------------------------
@@ -858,7 +858,7 @@ void FixMPMBoundary::update_motion(double dt)
   if (region_moves()) region->prematch();
   for (int d = 0; d < 3; d++) wall.shift[d] = evaluate(velocity[d]);
   const double omega = rotating ? evaluate(rate) : 0.0;
-  if (variables) modify->addstep_compute(update->ntimestep + 1);
+  if (variables) modify->addstep_compute(update->ntimestep + nodes[0].field->steps_to_next());
 
   if (rotating) {
     wall.uniform = false;

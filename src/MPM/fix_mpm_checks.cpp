@@ -312,12 +312,12 @@ void FixMPM::check_dt()
   tagint tag;
   double c;
   const double limit = stable_dt_local(tag, c);
-  if (!(update->dt <= limit)) {
+  if (!(step_dt() <= limit)) {
     const int i = find_local(tag);
     error->one(FLERR,
                "Time step {:.6g} is above the limit {} = {:.6g} at step {}: {}, wave "
                "speed {:.6g}; use timestep, fix mpm/dt, or fix mpm ... dtcheck no",
-               update->dt, total ? "s h/c (s: smallest stretch)" : "h/(c+|v|)", limit,
+               step_dt(), total ? "s h/c (s: smallest stretch)" : "h/(c+|v|)", limit,
                update->ntimestep, point_state(i), c);
   }
 }

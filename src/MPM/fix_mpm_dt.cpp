@@ -120,7 +120,8 @@ FixMPMDt::Limit FixMPMDt::find_limit() const
   for (auto *ifix : modify->get_fix_by_style("^mpm$")) {
     tagint tag = 0;
     double speed = 0.0;
-    double dt = dynamic_cast<FixMPM *>(ifix)->stable_dt_local(tag, speed);
+    auto *field = dynamic_cast<FixMPM *>(ifix);
+    double dt = field->stable_dt_local(tag, speed) / field->every;
     if (!(dt > 0.0)) dt = 0.0;    // also NaN
     if (dt < mine.dt) mine = {dt, speed, (double) tag};
   }

@@ -64,7 +64,7 @@ double FixMPM::point_kinetic_energy() const
 
 double FixMPM::external_work()
 {
-  const double dt = update->dt;
+  const double dt = step_dt();
   const int64_t nnodes = grid->nnodes();
   external_nodes.assign(nnodes * 8, 0.0);
   zero_volume.assign(atom->nlocal, 0.0);

@@ -33,7 +33,7 @@ using namespace MPM_NS;
 
 void FixMPM::initial_integrate(int /*vflag*/)
 {
-  if (!driver) return;
+  if (!driver || (every > 1 && wait())) return;
 
   update_topology();
   for (auto *field : fields) field->points_to_grid();
@@ -55,6 +55,8 @@ void FixMPM::initial_integrate(int /*vflag*/)
   }
 
   for (auto *field : fields) field->bookkeeping();
+  if (every > 1)
+    for (auto *field : fields) field->end_waiting();
 }
 
 /* ----------------------------------------------------------------------
@@ -86,9 +88,9 @@ void FixMPM::stress_first()
   clock = platform::walltime();
   grid->copy_aliases();
   if (scheme == USAVG)
-    gradient_and_material(0.5 * update->dt, 0.75 * update->dt);
+    gradient_and_material(0.5 * step_dt(), 0.75 * step_dt());
   else
-    gradient_and_material(update->dt, update->dt);
+    gradient_and_material(step_dt(), step_dt());
   lap(report.t_g2p);
 
   // back to momentum, free of what boundaries did; room for the force
@@ -115,7 +117,7 @@ void FixMPM::stress_first()
 void FixMPM::solve()
 {
   clock = platform::walltime();
-  kernels->solve_nodes(grid->nodes(), grid->nnodes(), kernel.nreal, update->dt);
+  kernels->solve_nodes(grid->nodes(), grid->nnodes(), kernel.nreal, step_dt());
   if (ledger_on) before_actions = ledger.boundary + ledger.contact + ledger.transfer;
   lap(report.t_nodes);
 }
@@ -157,11 +159,11 @@ void FixMPM::grid_to_points()
                               kernel.affine || scheme != USL ? nullptr : out);
         if (scheme == USL && !fbar)
           material_update(r, runs[k], i, last - i,
-                          kernel.affine ? r.C + (bigint) affine_size() * i : L, update->dt);
+                          kernel.affine ? r.C + (bigint) affine_size() * i : L, step_dt());
       }
   }
   if (fbar) {
-    averaged_material(kernel.affine ? r.C : gradients.data(), update->dt);
+    averaged_material(kernel.affine ? r.C : gradients.data(), step_dt());
     move_points();
   }
   lap(report.t_g2p);
@@ -203,9 +205,9 @@ void FixMPM::stress_last()
   clock = platform::walltime();
   grid->copy_aliases();
   if (scheme == USAVG)
-    gradient_and_material(0.5 * update->dt, -0.25 * update->dt);
+    gradient_and_material(0.5 * step_dt(), -0.25 * step_dt());
   else
-    gradient_and_material(update->dt, 0.0);
+    gradient_and_material(step_dt(), 0.0);
   move_points();
   lap(report.t_g2p);
 }
@@ -353,8 +355,8 @@ void FixMPM::bookkeeping()
 
   report.steps++;
   for (const auto &run : runs) report.point_steps += run.last - run.first;
-  report.dt_min = std::min(report.dt_min, update->dt);
-  report.dt_max = std::max(report.dt_max, update->dt);
+  report.dt_min = std::min(report.dt_min, step_dt());
+  report.dt_max = std::max(report.dt_max, step_dt());
   lap(report.t_topology);
 }
 
@@ -364,7 +366,7 @@ void FixMPM::act_on_nodes(MPMNodeAction::Stage stage)
 {
   if (actions.empty()) return;
   const double start = platform::walltime();
-  for (auto *action : actions) action->act(update->dt, stage);
+  for (auto *action : actions) action->act(step_dt(), stage);
   report.t_nodes += platform::walltime() - start;
 }
 
