@@ -396,6 +396,16 @@ void FixMPMBoundary::init()
 }
 
 /* ----------------------------------------------------------------------
+   when variables are needed again
+------------------------------------------------------------------------- */
+
+bigint FixMPMBoundary::next_step() const
+{
+  const auto *field = dynamic_cast<FixMPM *>(modify->get_fix_by_style("^mpm$")[0]);
+  return update->ntimestep + field->steps_to_next();
+}
+
+/* ----------------------------------------------------------------------
    regions: their state at the start of the first step
 ------------------------------------------------------------------------- */
 
@@ -404,7 +414,7 @@ void FixMPMBoundary::setup(int)
   if (!region_moves()) return;
   modify->clearstep_compute();
   region->prematch();
-  modify->addstep_compute(update->ntimestep + nodes[0].field->steps_to_next());
+  modify->addstep_compute(next_step());
 }
 
 /* ----------------------------------------------------------------------
@@ -858,7 +868,7 @@ void FixMPMBoundary::update_motion(double dt)
   if (region_moves()) region->prematch();
   for (int d = 0; d < 3; d++) wall.shift[d] = evaluate(velocity[d]);
   const double omega = rotating ? evaluate(rate) : 0.0;
-  if (variables) modify->addstep_compute(update->ntimestep + nodes[0].field->steps_to_next());
+  if (variables) modify->addstep_compute(next_step());
 
   if (rotating) {
     wall.uniform = false;

@@ -155,6 +155,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
   void list_face_nodes(FieldNodes &);
   void list_column(FieldNodes &, int face, const int *index);
   void list_orbits(FieldNodes &, const std::vector<Face> &, const bool *prescribed);
+  bigint next_step() const;
   void list_region_nodes(FieldNodes &);
   bool decides() const { return kind == SEPARATE || friction > 0.0; }
   bool narrow(const std::vector<Face> &, int axis) const;
