@@ -269,7 +269,11 @@ INSTANTIATE_TEST_SUITE_P(
         OrderCase{"shape cubic transfer apic", 1e-4, 2, 8, 16, 5.7e-6},
         OrderCase{"shape quadratic transfer apic", .05, 2, 8, 16, 2.1e-3},
         OrderCase{"shape cubic transfer apic", .05, 2, 8, 16, 3.2e-3},
-        OrderCase{"shape quadratic transfer flip 1.0 scheme musl", .05, 2, 8, 16, 3.5e-3}));
+        OrderCase{"shape quadratic transfer flip 1.0 scheme musl", .05, 2, 8, 16, 3.5e-3},
+        OrderCase{"shape quadratic transfer apic stress gradient", 1e-4, 1, 16, 64, 2.75e-7},
+        OrderCase{"shape cubic transfer apic stress gradient", 1e-4, 1, 16, 64, 5.23e-7},
+        OrderCase{"shape quadratic transfer apic stress gradient", .05, 2, 8, 16, 2.1e-3},
+        OrderCase{"shape cubic transfer aflip 0.95 stress gradient", .05, 2, 8, 16, 3.2e-3}));
 
 TEST(OrderLinear, DivergesWithCellCrossing)
 {

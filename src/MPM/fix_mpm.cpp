@@ -41,7 +41,7 @@ static constexpr double MAX_NODE = 4.0e6;
 
 FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), shape(QUADRATIC), extent(NO_SIZE), aspect{1.0, 1.0, 1.0}, transfer(APIC),
-    flip(0.0), refinement(LUMPED), order(1), total(false), scheme(USL), locking(NO_CURE), policy(ERROR),
+    flip(0.0), refinement(LUMPED), order(1), total(false), scheme(USL), stress(DEFAULT_STRESS), locking(NO_CURE), policy(ERROR),
     delete_failed(false), every(1), dt_check(true), grid(nullptr), C(nullptr), X(nullptr),
     waiting(nullptr), ledger_on(false), points(nullptr), halo(nullptr),
     kernels(nullptr), batch_kernels(nullptr), driver(false), topology_valid(false),
@@ -185,6 +185,9 @@ void FixMPM::process_options(int narg, char **arg)
     } else if (keyword == "frame") {
       total = choose({"updated", "total"}) == 1;
       iarg += 2;
+    } else if (keyword == "stress") {
+      stress = (Stress) (1 + choose({"mls", "gradient"}));
+      iarg += 2;
     } else if (keyword == "locking") {
       locking = (Locking) choose({"none", "fbar", "pressure", "both"});
       iarg += 2;
@@ -223,6 +226,12 @@ void FixMPM::process_options(int narg, char **arg)
     error->all(FLERR, "Fix mpm frame total cannot be used with shape gimp and cpgimp, which points "
                "that cross no cells do not need, and transfer aflip and tpic: use B-splines with "
                "transfer apic or flip");
+  if (stress == MLS_STRESS && !is_mls(kernel_shape(), transfer))
+    error->all(FLERR, "Fix mpm stress mls needs shape quadratic or cubic with transfer apic or aflip: "
+               "other ones have the gradients of the shape functions");
+  if (strains_apart() && total)
+    error->all(FLERR, "Fix mpm stress gradient with frame total needs transfer flip or pic: that of "
+               "transfer apic is stress mls");
 
   check_box();
 }
@@ -364,6 +373,14 @@ void FixMPM::setup_pre_neighbor()
   const bool split = ledger_on || stress_before();
   const auto choose = total ? kernels->transfer_total : kernels->transfer;
   kernel = choose(lattice.dim, kernel_shape(), transfer, split);
+  if (strains_apart()) {
+    // to the nodes, TPIC differs in nothing but the stress; back, it has the gradient
+    const auto tpic = choose(lattice.dim, kernel_shape(), TPIC, kernel.nreal == 8);
+    kernel.p2g = tpic.p2g;
+    kernel.p2g_force = tpic.p2g_force;
+    kernel.g2p_gradient = tpic.g2p_gradient;
+    kernel.mls = false;
+  }
   batch->h = lattice.h;
 
   // points drift at most half a skin between rebuilds when LAMMPS checks distances each step;

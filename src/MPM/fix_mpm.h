@@ -56,6 +56,7 @@ class FixMPM : public Fix {
   enum Refinement { LUMPED, XPIC, FMPM };
   enum Locking { NO_CURE, FBAR, PRESSURE, BOTH };    ///< cure for volumetric locking
   enum Policy { ERROR, WARN, DELETE };
+  enum Stress { DEFAULT_STRESS, MLS_STRESS, GRADIENT_STRESS };
 
   FixMPM(class LAMMPS *, int, char **);
   ~FixMPM() override;
@@ -95,6 +96,7 @@ class FixMPM : public Fix {
   int order;                ///< terms of the inverse of the mass matrix, 1: lumped
   bool total;          ///< nodes are places of the reference configuration (total Lagrangian)
   Scheme scheme;
+  Stress stress;       ///< how stress acts on nodes, and how these strain the points
   Locking locking;     ///< what is averaged against volumetric locking
   Policy policy;       ///< what to do with a point that goes bad
   bool delete_failed;  ///< remove points whose damage is 1
@@ -119,6 +121,12 @@ class FixMPM : public Fix {
   /** What does the cure for locking average: changes of volume, pressures in the force? */
   bool averages_strain() const { return locking == FBAR || locking == BOTH; }
   bool averages_stress() const { return locking == PRESSURE || locking == BOTH; }
+  /** Is the velocity gradient of a point another matrix than the affine one, by the gradients of
+   *  the shape functions instead of their moments? */
+  bool strains_apart() const
+  {
+    return stress == GRADIENT_STRESS && MPM_NS::is_mls(kernel_shape(), transfer);
+  }
   /** Are the old positions needed after G2P? */
   bool moves_late() const { return stress_after() || (averages_strain() && !stress_before()); }
 

@@ -143,7 +143,8 @@ void FixMPM::grid_to_points()
   grid->copy_aliases();
   if (moves_late()) xnew.resize(3 * (std::size_t) atom->nlocal);
   const bool fbar = averages_strain() && scheme == USL;
-  if (fbar && !kernel.affine) gradients.resize(affine_size() * (std::size_t) atom->nmax);
+  const bool apart = strains_apart(), in_C = kernel.affine && !apart;
+  if (fbar && !in_C) gradients.resize(affine_size() * (std::size_t) atom->nmax);
 
   const PointRows r = rows();
   const TransferStep s = step_data();
@@ -155,15 +156,16 @@ void FixMPM::grid_to_points()
       for (int i = runs[k].first; i < runs[k].last; i += BATCH) {
         const int last = std::min(i + BATCH, runs[k].last);
         double *const out = fbar ? gradients.data() + affine_size() * (bigint) i : L;
+        if (apart && scheme == USL) kernel.g2p_gradient(r, s, i, last, base, tile_load, out);
         drifted |= kernel.g2p(r, s, i, last, base, tile_load,
                               kernel.affine || scheme != USL ? nullptr : out);
         if (scheme == USL && !fbar)
-          material_update(r, runs[k], i, last - i,
-                          kernel.affine ? r.C + (bigint) affine_size() * i : L, step_dt());
+          material_update(r, runs[k], i, last - i, in_C ? r.C + (bigint) affine_size() * i : L,
+                          step_dt());
       }
   }
   if (fbar) {
-    averaged_material(kernel.affine ? r.C : gradients.data(), step_dt());
+    averaged_material(in_C ? r.C : gradients.data(), step_dt());
     move_points();
   }
   lap(report.t_g2p);
