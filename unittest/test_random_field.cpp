@@ -59,7 +59,8 @@ TEST(RandomDefinition, Errors)
   const char *cases[][2] = {
       {"random", "random: name of the parameter is missing"},
       {"random SIGMA normal 0.1 1 1",
-       "random SIGMA: no such parameter: choose one of eos.K, strength.G, strength.SIGMAY"},
+       "random SIGMA: no such parameter: choose one of density, eos.K, strength.G, "
+       "strength.SIGMAY"},
       {"random SIGMAY weibull 0.1 1 1", "the distribution must be lognormal or normal"},
       {"random SIGMAY normal -0.1 1 1", "COV = -0.1 (coefficient of variation) is out of range"},
       {"random SIGMAY normal 0.1 0 1", "LENGTH = 0 (correlation length) is out of range"},
@@ -69,18 +70,30 @@ TEST(RandomDefinition, Errors)
       {"random strength.H normal 0.1 1 1 random K normal 0.1 1 1 random eos.K normal 0.1 1 1",
        "random eos.K: is given twice"},
       {"random B normal 0.1 1 1", "its value is 0, which a factor does not change"},
-      {"viscosity artificial 1.5 0.06 thermal constant 300 random T0 normal 0.1 1 1",
-       "no such parameter"},
+      {"thermal adiabatic 460 300 random LATENT normal 0.1 1 1", "its value is 0"},
+      {"random density normal 0.1 1 1 random density normal 0.1 1 2", "is given twice"},
+      {"viscosity maxwell term 1e9 1 term 2e9 2 random G3 normal 0.1 1 1",
+       "no such parameter: choose one of density, eos.K, strength.G, strength.SIGMAY"},
+      {"viscosity maxwell term 1e9 1 term 2e9 2 random G2 normal 0.1 1 1 random maxwell.G2 normal "
+       "0.1 1 1",
+       "random maxwell.G2: is given twice"},
   };
   for (const auto &c : cases) {
     const std::string error = error_of(STEEL + c[0]);
     EXPECT_NE(error.find(c[1]), std::string::npos) << c[0] << "\n" << error;
   }
   // the same name in two laws
-  const std::string error =
-      error_of("density 1 eos linear 1e9 viscosity newtonian 1 viscosity artificial 1 1 "
-               "random viscosity.MU normal 0.1 1 1 random CQ normal 0.1 1 1");
-  EXPECT_EQ(error, "");
+  const std::string two = "density 1 eos linear 1e9 viscosity newtonian 1 bulk 2 "
+                          "viscosity bingham 1 1 10 ";
+  const std::string error = error_of(two + "random viscosity.MU normal 0.1 1 1");
+  EXPECT_NE(error.find("several laws of this material have it: choose density, eos.K, "
+                       "newtonian.MU, newtonian.ZETA, bingham.MU"),
+            std::string::npos)
+      << error;
+  EXPECT_EQ(error_of(two +
+                     "random newtonian.MU normal 0.1 1 1 random viscosity.ZETA normal 0.1 1 "
+                     "1 random bingham.MU normal 0.1 1 1 random TAUY normal 0.1 1 1"),
+            "");
 }
 
 // points far apart: mean, variance, and distribution; pairs at a distance: correlation
@@ -212,6 +225,26 @@ TEST_F(Random, EveryPointHasItsOwnMaterial)
       {"density 7850 eos linear 1.6e11 strength j2 8e10 3e8 hardening linear 1e9 "
        "damage cockcroft/latham VALUE soften energy 6e6 viscosity artificial 1.5 0.06",
        "2e7", "damage.WC", 2e7},
+      // parameters of terms
+      {"density 1000 ogden 1e8 term VALUE 1.3 term 2e5 5 term -1e4 -2", "4e5", "MU1", 4e5},
+      {"density 1000 ogden 1e8 term 4e5 1.3 term 2e5 VALUE", "5", "ogden.ALPHA2", 5.0},
+      {"density 1000 neohookean 1e6 0.4 viscosity maxwell term 3e5 0.2 term 1e6 VALUE", "0.1",
+       "maxwell.TAU2", 0.1},
+      {"density 7850 eos linear 1.6e11 strength j2 8e10 3e8 point 0.1 VALUE point 1 2e9", "6e8",
+       "SIGMA1", 6e8},
+      // what other parts know of: the density, and the heat of a thermal part
+      {"density VALUE eos shock 4570 1.49 1.93 strength johnson/cook 79.6e9 806e6 614e6 0.168 "
+       "0.0089 1 1.1 1540 20 thermal adiabatic 460 20 0.9 viscosity artificial 1.5 0.06",
+       "7830", "density", 7830},
+      {"density 7830 eos shock 4570 1.49 1.93 strength johnson/cook 79.6e9 806e6 614e6 0.168 "
+       "0.0089 1 1.1 1540 20 thermal adiabatic VALUE 20 0.9 viscosity artificial 1.5 0.06",
+       "460", "CP", 460},
+      {"density 7830 eos linear 1.6e11 strength johnson/cook 79.6e9 806e6 614e6 0.168 0.0089 1 1.1 "
+       "1540 20 damage johnson/cook 0.5 3.4 -2.1 thermal adiabatic 460 20 VALUE",
+       "0.45", "thermal.CHI", 0.45},
+      {"density 7830 eos linear 1.6e11 strength j2 79.6e9 806e6 thermal adiabatic 460 20 0.9 melt "
+       "VALUE 2e4",
+       "60", "TMELT", 60},
   };
   for (const auto &c : cases) {
     const auto definition = [&](const std::string &value) {
@@ -248,6 +281,31 @@ TEST_F(Random, EveryPointHasItsOwnMaterial)
     }
     for (int k = 0; k < MPM_NS::NWORK; k++)
       EXPECT_NEAR(all.work[k], work[k], 1e-10 * std::fabs(work[k]));
+  }
+}
+
+// the initial temperature, which is the start of a history variable
+
+TEST_F(Random, InitialTemperature)
+{
+  for (const char *thermal : {"constant 300", "adiabatic 460 300 0.9"}) {
+    const auto material = make(STEEL + "thermal " + thermal + " random T0 normal 0.1 0.1 3");
+    const auto &variables = material->history();
+    size_t row = 0;
+    while (variables[row].name != "temperature") row++;
+    double mean = 0.0, square = 0.0;
+    const int side = 11;
+    const double n = side * side * side;
+    std::vector<double> history(variables.size());
+    for (int i = 0; i < n; i++) {
+      const double x[3] = {0.21 * (i % side), 0.21 * (i / side % side), 0.21 * (i / side / side)};
+      material->initialize(x, history.data());
+      mean += history[row] / n;
+      square += history[row] * history[row] / n;
+      EXPECT_NEAR(history[row], 300.0 * history.back(), 1e-10);
+    }
+    EXPECT_NEAR(mean, 300.0, 4 * 30.0 / std::sqrt(n));
+    EXPECT_NEAR(std::sqrt(square - mean * mean), 30.0, 5 * 30.0 / std::sqrt(n));
   }
 }
 
@@ -316,4 +374,63 @@ TEST_F(Random, FixAndRestart)
     for (int i = 0; i < run.lmp->atom->nlocal; i++)
       if (run.lmp->atom->tag[i] > n) ASSERT_NEAR(row(run, i), expected(run.lmp->atom->x[i]), 1e-14);
   }
+}
+
+// parameters of all kinds, each point with its own: the temperature that the same plastic work gives,
+// the stress of a term, and the mass
+
+TEST_F(Random, FixWithEveryKindOfParameter)
+{
+  Scene run;
+  run.commands("units si\nboundary f f f\natom_style mpm\nneighbor 0.3 bin\n"
+               "region box block 0 10 0 10 0 10\ncreate_box 1 box\nfix grid all mpm 1.0\n"
+               "region body block 1 9 1 9 1 9\ncreate_points 1 region body ppc 2\n"
+               "fix m all mpm/material density 2000 ogden 1e7 term 1e6 2 thermal adiabatic 500 300 "
+               "random density lognormal 0.1 0.25 1 random MU1 lognormal 0.2 0.25 2 "
+               "random T0 normal 0.05 0.25 3\n");
+  const RandomField density(0.25, 1), modulus(0.25, 2), temperature(0.25, 3);
+  const auto lognormal = [](double g, double c) {
+    return std::exp(std::sqrt(std::log1p(c * c)) * g - 0.5 * std::log1p(c * c));
+  };
+  struct Moments {
+    double n = 0.0, sum = 0.0, square = 0.0;
+    void add(double x)
+    {
+      n++;
+      sum += x;
+      square += x * x;
+    }
+    // neighboring points are two lengths apart: nearly independent
+    void expect(double mean, double deviation) const
+    {
+      const double m = sum / n;
+      EXPECT_NEAR(m, mean, 4 * deviation / std::sqrt(n));
+      EXPECT_NEAR(std::sqrt(square / n - m * m), deviation, 5 * deviation / std::sqrt(n));
+    }
+  } mass, warmth, stiffness;
+  const auto before = run.gather();
+  ASSERT_EQ(before.size(), 4096);
+  for (const auto &p : before) {
+    mass.add(p.mass / p.vol / 2000.0);
+    ASSERT_NEAR(p.mass / p.vol / 2000.0, lognormal(density.value(p.x), 0.1), 1e-13);
+  }
+  mass.expect(1.0, 0.1);
+
+  run.commands("compute t all mpm/atom temperature\ncompute low all reduce min c_t\n"
+               "compute high all reduce max c_t\ncompute mean all reduce ave c_t\n"
+               "thermo_style custom step c_low c_high c_mean\nrun 0\n");
+  for (const auto &p : before) warmth.add(300 * (1 + 0.05 * temperature.value(p.x)));
+  warmth.expect(300.0, 15.0);
+  EXPECT_NEAR(run.evaluate("c_mean"), warmth.sum / warmth.n, 1e-9);
+  EXPECT_LT(run.evaluate("c_low"), 255);
+  EXPECT_GT(run.evaluate("c_high"), 345);
+
+  // shear so fast that no wave has come far: sigma_xy = G gamma, G = MU1 for ALPHA = 2
+  run.commands("timestep 1e-8\nvariable v atom 1000*y\nvelocity all set v_v 0 0\nrun 2\n");
+  for (const auto &p : run.gather()) {
+    if (*std::min_element(p.x, p.x + 3) < 3 || *std::max_element(p.x, p.x + 3) > 7) continue;
+    stiffness.add(p.stress[3] / (1e6 * 2e-5));
+    ASSERT_NEAR(p.stress[3] / (1e6 * 2e-5), lognormal(modulus.value(p.x), 0.2), 1e-3);
+  }
+  stiffness.expect(1.0, 0.2);
 }

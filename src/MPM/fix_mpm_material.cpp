@@ -91,12 +91,12 @@ void FixMPMMaterial::init()
 
   // a mass that create_atoms left, together with a volume that was set, is easily overlooked
 
-  const double density = material->density();
   bigint n = 0, all;
-  for (int i = 0; i < atom->nlocal; i++)
-    if ((atom->mask[i] & groupbit) && atom->vfrac[i] > 0.0 &&
-        fabs(atom->rmass[i] - density * atom->vfrac[i]) > 1.0e-3 * density * atom->vfrac[i])
-      n++;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit) || !(atom->vfrac[i] > 0.0)) continue;
+    const double mass = density(i) * atom->vfrac[i];
+    if (fabs(atom->rmass[i] - mass) > 1.0e-3 * mass) n++;
+  }
   MPI_Allreduce(&n, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   if (all && comm->me == 0)
     error->warning(FLERR,
@@ -177,12 +177,16 @@ void FixMPMMaterial::report_exits()
 
 void FixMPMMaterial::assign_mass()
 {
-  const double density = material->density();
   const double *const vfrac = atom->vfrac;
   double *const rmass = atom->rmass;
   for (int i = 0; i < atom->nlocal; i++)
     if ((atom->mask[i] & groupbit) && vfrac[i] > 0.0 && !(rmass[i] > 0.0))
-      rmass[i] = density * vfrac[i];
+      rmass[i] = density(i) * vfrac[i];
+}
+
+double FixMPMMaterial::density(int i) const
+{
+  return material->density(history ? history[i] : nullptr);
 }
 
 /* ---------------------------------------------------------------------- */

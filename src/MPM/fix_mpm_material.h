@@ -65,6 +65,8 @@ class FixMPMMaterial : public Fix {
   void watch_ranges(const MPM_NS::Batch &, int first);
 
  private:
+  double density(int) const;    ///< reference density of a point
+
   /** The first time that a point left a range: of all points in that step the one with the smallest
    *  ID. */
   struct Exit {

@@ -6,29 +6,16 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Composition of materials, and the parser of their definition:
-//
-//   density RHO
-//   one closed law:      linear ... | neohookean ... | ogden ...
-//   or an eos:           eos linear | shock | tait ...
-//     with at most one   strength elastic | j2 | johnson/cook ...
-//   any number of        viscosity newtonian | artificial | maxwell ...
-//   at most one          damage ...
-//   at most one          thermal adiabatic | constant ...
-//   any number of        range QUANTITY LOW HIGH
-//   any number of        random PARAMETER lognormal | normal COV LENGTH SEED
-//
-// in any order. What follows the name of a law is in the declaration of its parameters.
+// Composition of a material from laws: the order in which they work on a batch, what they are told
+// of each other, their rows of history, and their parameters where these differ from point to point.
 
 #include "mpm_material.h"
 
-#include "mpm_law.h"
+#include "mpm_material_parts.h"
 #include "mpm_random_field.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <iterator>
 
@@ -36,100 +23,22 @@ using namespace MPM_NS;
 
 namespace {
 
-const char *const part_name[NPARTS] = {"", "eos", "strength", "viscosity", "damage", "thermal"};
-
-/* ---------------------------------------------------------------------- composition */
-
-/** A parameter that differs from point to point: its value is the mean times a factor, which is a
- *  history variable. */
-struct RandomParameter {
-  int parameter;    ///< in the declaration of its law
-  int row;          ///< of the factor in the history of the material
-  bool lognormal;
-  double variation;    ///< standard deviation over mean
-  std::shared_ptr<const RandomField> field;
-
-  /** Factor with mean 1 from a standard normal deviate. */
-  double factor(double g) const
-  {
-    if (!lognormal) return 1.0 + variation * g;
-    const double s2 = std::log1p(variation * variation);
-    return std::exp(std::sqrt(s2) * g - 0.5 * s2);
-  }
-};
-
-/** A random parameter in a definition. */
-struct UsedRandom {
-  int word;    ///< of the name in the definition
-  std::string name;
-  bool lognormal;
-  double variation, length;
-  long seed;
-};
-
-/** A law with its parameters in a material. */
-struct UsedLaw {
-  const LawInfo *info;
-  int index;    ///< in its list
-  int word;     ///< of its name in the definition
-  LawParameters parameters;
-  int history;                  ///< first row of its history
-  const LawKernels *kernels;    ///< for the instruction set that runs
-  std::vector<RandomParameter> random;
-};
-
-bool in_range(const Range &range, double value)
-{
-  return range.closed ? value >= range.low && value <= range.high
-                      : value > range.low && value < range.high;
-}
-
-std::string number(double x)
-{
-  char text[32];
-  snprintf(text, sizeof(text), "%.15g", x);
-  return text;
-}
-
-std::string title(Part part, const LawInfo &info)
-{
-  return std::string(part_name[part]) + (part == CLOSED ? "" : " ") + info.name;
-}
-
-/** A range of validity in a definition. */
-struct UsedRange : ValidRange {
-  int word;    ///< of its quantity in the definition
-  /** How the quantity is found: one of these, or a row of history. */
-  int source;
-  enum { PRESSURE_OF_STRESS = -3, STRAIN_RATE = -2, DENSITY_OF_J = -1 };
-};
-
-/** Does a viscosity add to that share of the stress on which a law builds in the next step? */
-bool shares_stress(const std::vector<UsedLaw> (&laws)[NPARTS])
-{
-  for (const Part part : {CLOSED, STRENGTH})
-    for (const auto &law : laws[part])
-      for (const auto &viscosity : laws[VISCOSITY])
-        if (law.info->share & viscosity.info->share) return true;
-  return false;
-}
+/** The density of a material, as its laws declare their parameters. */
+constexpr Parameter DENSITY = {"", "density", "density", POSITIVE, REQUIRED, "reference density"};
 
 class ComposedMaterial : public Material {
  public:
-  ComposedMaterial(double density, std::vector<UsedLaw> used[NPARTS],
-                   const std::vector<UsedRange> &ranges, const std::vector<UsedRandom> &random,
-                   const LawTable *table) :
-      rho(density),
-      table(table)
+  ComposedMaterial(const MaterialDefinition &definition, const LawTable *table) :
+      rho(definition.density), table(table)
   {
-    for (int part = 0; part < NPARTS; part++) laws[part] = std::move(used[part]);
+    std::copy(definition.laws, definition.laws + NPARTS, laws);
     text = "density " + number(rho);
     for (int part = 0; part < NPARTS; part++)
       for (auto &law : laws[part]) add(static_cast<Part>(part), law);
-    for (const auto &r : random) add(r);
-    for (const auto &range : ranges) add(range);
+    for (const auto &r : definition.random) add(r);
+    for (const auto &range : definition.ranges) add(range);
     viscous = -1;
-    if (shares_stress(laws)) {
+    if (definition.shares_stress()) {
       viscous = variables.size();
       for (const char *name : {"xx", "yy", "zz", "xy", "xz", "yz"})
         variables.push_back({std::string("viscous_") + name, 0.0});
@@ -147,23 +56,37 @@ class ComposedMaterial : public Material {
   }
 
   double density() const override { return rho; }
+  double density(const double *history) const override { return rho * density_factor(history); }
   const std::vector<HistoryVariable> &history() const override { return variables; }
   std::string describe() const override { return text; }
 
   void initialize(const double *x, double *history) const override
   {
     for (size_t k = 0; k < variables.size(); k++) history[k] = variables[k].initial;
+    if (random_density) set_factor(*random_density, DENSITY, rho, x, history);
     for (const auto &part : laws)
       for (const auto &law : part)
-        if (law.random.empty()) {
-          if (law.info->initialize) law.info->initialize(law.parameters, x, history + law.history);
-        } else {
-          initialize_random(law, x, history);
+        for (const auto &r : law.random) {
+          const LawInfo &info = *law.info;
+          set_factor(r, (r.term < 0 ? info.parameters : info.term_parameters)[r.parameter],
+                     r.of(law.parameters), x, history);
+        }
+    const auto factor = [history](int row) {
+      return history[row];
+    };
+    for (const auto &part : laws)
+      for (const auto &law : part)
+        if (law.varies) {
+          LocalParameters local(*this, law);
+          initialize(law, local.at(factor), x, history);
+        } else if (law.info->initialize) {
+          law.info->initialize(law.parameters, x, history + law.history);
         }
   }
 
   void initialized() const override
   {
+    if (random_density) random_density->field->release();
     for (const auto &part : laws)
       for (const auto &law : part)
         for (const auto &r : law.random) r.field->release();
@@ -186,7 +109,7 @@ class ComposedMaterial : public Material {
     for (int i = 0; i < b.n; i++) b.heat[i] = b.plastic[i] = 0.0;
     for (double &w : b.work) w = 0.0;
 
-    const auto run = [&b](const UsedLaw &law) {
+    const auto run = [this, &b](const UsedLaw &law) {
       call(law.kernels->update, law, b);
     };
     if (damage) call(damage->kernels->prepare, *damage, b);
@@ -227,6 +150,8 @@ class ComposedMaterial : public Material {
         break;
       case UsedRange::DENSITY_OF_J:
         for (int i = 0; i < b.n; i++) value[i] = rho / b.J[i];
+        if (random_density)
+          for (int i = 0; i < b.n; i++) value[i] *= b.history[random_density->row][i];
         break;
       default:
         v = b.history[source[k]];
@@ -258,8 +183,11 @@ class ComposedMaterial : public Material {
   double rho_pressure;    ///< density in units of pressure over velocity^2, as the laws need it
   const LawTable *table;
   std::vector<UsedLaw> laws[NPARTS];
-  const UsedLaw *base;      ///< closed law or strength, or null
-  const UsedLaw *damage;    ///< or null
+  const UsedLaw *base;                                      ///< closed law or strength, or null
+  const UsedLaw *damage;                                    ///< or null
+  const UsedLaw *thermal;                                   ///< or null
+  std::unique_ptr<const RandomParameter> random_density;    ///< when it differs from point to point
+  bool random_heat = false;    ///< does what the thermal part tells the others, too?
   /** First of six history variables with what viscosities added to the stress in the last step, for
    *  a closed law or strength that builds on that stress and must not see it; -1 when not needed. */
   int viscous;
@@ -315,11 +243,52 @@ class ComposedMaterial : public Material {
   static_assert(sizeof(Batch) < (9 + 9 + 6 + std::size(single_rows) + 1) * BATCH * sizeof(double),
                 "all rows are listed");
 
-  /** A kernel that changes a batch. */
-  static void call(void (*kernel)(const LawParameters &, Batch &, History), const UsedLaw &law,
-                   Batch &b)
+  double density_factor(const double *history) const
   {
-    if (law.random.empty()) {
+    return random_density ? history[random_density->row] : 1.0;
+  }
+
+  /** Parameters of a law at one point after the other. */
+  class LocalParameters {
+   public:
+    LocalParameters(const ComposedMaterial &material, const UsedLaw &law) :
+        material(material), law(law), p(law.parameters)
+    {
+      if (material.random_heat) heat = material.thermal->parameters;
+    }
+
+    /** factor(row): the value of that row of history at the point. */
+    template <class Factor> const LawParameters &at(Factor factor)
+    {
+      replace(law, p, factor);
+      if (const auto &r = material.random_density) {
+        p.density = law.parameters.density * factor(r->row);
+        p.heat_density = law.parameters.heat_density * factor(r->row);
+      }
+      if (material.random_heat) {
+        replace(*material.thermal, heat, factor);
+        heat.heat_density = p.heat_density;
+        share_heat(*material.thermal->info, heat, law.heats_alone, p);
+      }
+      return p;
+    }
+
+   private:
+    const ComposedMaterial &material;
+    const UsedLaw &law;
+    LawParameters p, heat;
+
+    template <class Factor> static void replace(const UsedLaw &law, LawParameters &p, Factor factor)
+    {
+      for (const auto &r : law.random) r.of(p) = r.of(law.parameters) * factor(r.row);
+    }
+  };
+
+  /** A kernel that changes a batch. */
+  void call(void (*kernel)(const LawParameters &, Batch &, History), const UsedLaw &law,
+            Batch &b) const
+  {
+    if (!law.varies) {
       kernel(law.parameters, b, rows(b, law));
       return;
     }
@@ -332,10 +301,10 @@ class ComposedMaterial : public Material {
   }
 
   /** A kernel that adds to values of the points. */
-  static void call(void (*kernel)(const LawParameters &, const Batch &, History, double *),
-                   const UsedLaw &law, const Batch &b, double *value)
+  void call(void (*kernel)(const LawParameters &, const Batch &, History, double *),
+            const UsedLaw &law, const Batch &b, double *value) const
   {
-    if (law.random.empty())
+    if (!law.varies)
       kernel(law.parameters, b, rows(b, law), value);
     else
       one_by_one(law, b, [&](const LawParameters &p, const Batch &one, History history, int i) {
@@ -345,41 +314,46 @@ class ComposedMaterial : public Material {
 
   /** Calls work for each point in a batch of its own, with its own parameters. The history is not
    *  copied: its rows are those of the batch, beginning with the point. */
-  template <class Work> static void one_by_one(const UsedLaw &law, const Batch &b, Work work)
+  template <class Work> void one_by_one(const UsedLaw &law, const Batch &b, Work work) const
   {
     Batch one;
     one.n = 1;
     one.dt = b.dt;
     one.h = b.h;
     one.time = b.time;
-    LawParameters p = law.parameters;
+    LocalParameters local(*this, law);
     for (int i = 0; i < b.n; i++) {
-      for (const auto &r : law.random)
-        p.value[r.parameter] = law.parameters.value[r.parameter] * b.history[r.row][i];
       for (int k = 0; k < 9; k++) one.A[k][0] = b.A[k][i];
       for (int k = 0; k < 9; k++) one.F[k][0] = b.F[k][i];
       for (int k = 0; k < 6; k++) one.stress[k][0] = b.stress[k][i];
       for (double &w : one.work) w = 0.0;
       for (const auto row : single_rows) (one.*row)[0] = (b.*row)[i];
       one.history = reinterpret_cast<History>(&b.history[0][i]);
-      work(p, one, one.history + law.history, i);
+      work(local.at([&](int row) {
+        return b.history[row][i];
+      }),
+           one, one.history + law.history, i);
     }
   }
 
-  /** Factors of a new point, and the history of its law, which may depend on the parameters. */
-  static void initialize_random(const UsedLaw &law, const double *x, double *history)
+  /** Factor of a parameter at x; it must keep the parameter in the range that it is declared with. */
+  static void set_factor(const RandomParameter &r, const Parameter &declared, double mean,
+                         const double *x, double *history)
   {
-    LawParameters p = law.parameters;
-    for (const auto &r : law.random) {
-      const double factor = history[r.row] = r.factor(r.field->value(x));
-      const Parameter &declared = law.info->parameters[r.parameter];
-      p.value[r.parameter] *= factor;
-      if (!in_range(declared.range, p.value[r.parameter]))
-        throw std::runtime_error(std::string("random ") + declared.name + " is " +
-                                 number(p.value[r.parameter]) +
-                                 " at a point, which is out of range: use lognormal, or a smaller "
-                                 "coefficient of variation");
-    }
+    const double g = r.field->value(x);    // standard normal deviate
+    const double s2 = std::log1p(r.variation * r.variation);
+    history[r.row] = r.lognormal ? std::exp(std::sqrt(s2) * g - 0.5 * s2) : 1.0 + r.variation * g;
+    const double value = mean * history[r.row];
+    if (!in_range(declared.range, value))
+      throw std::runtime_error(std::string("random ") + declared.name + " is " + number(value) +
+                               " at a point, which is out of range: use lognormal, or a smaller "
+                               "coefficient of variation");
+  }
+
+  /** History of a law at a new point with these parameters. */
+  static void initialize(const UsedLaw &law, const LawParameters &p, const double *x,
+                         double *history)
+  {
     if (const char *wrong = law.info->check(p))
       throw std::runtime_error(std::string("with the random parameters of a point, ") +
                                law.info->name + ": " + wrong);
@@ -387,6 +361,16 @@ class ComposedMaterial : public Material {
       if (law.info->history[k].initial >= 0)
         history[law.history + k] = p.value[law.info->history[k].initial];
     if (law.info->initialize) law.info->initialize(p, x, history + law.history);
+  }
+
+  /** What a thermal part with parameters t tells another law. With a damage all plastic work goes to
+   *  batch.heat, for account_of_strength(). */
+  static void share_heat(const LawInfo &info, const LawParameters &t, bool heats_alone,
+                         LawParameters &p)
+  {
+    const double chi = info.heat_share(t), warm = info.warming(t);
+    p.chi = heats_alone ? 1.0 : chi;
+    p.warm = heats_alone ? warm * chi : warm;
   }
 
   /** Kernels of all parts, and what they are told of each other. */
@@ -397,31 +381,37 @@ class ComposedMaterial : public Material {
     for (const Part part : {CLOSED, STRENGTH})
       if (!laws[part].empty()) base = laws[part].data();
     damage = laws[DAMAGE].empty() ? nullptr : laws[DAMAGE].data();
-
-    LawParameters shared;
-    shared.chi = 1.0;
-    shared.warm = 0.0;
-    shared.temperature = -1;
-    for (auto &law : laws[THERMAL]) {
-      law.parameters.heat_density = rho * energy_scale;
-      shared.chi = law.info->heat_share(law.parameters);
-      shared.warm = law.info->warming(law.parameters);
-      shared.temperature = law.history;
-    }
+    thermal = laws[THERMAL].empty() ? nullptr : laws[THERMAL].data();
+    for (auto &law : laws[THERMAL]) law.parameters.heat_density = rho * energy_scale;
+    random_heat = thermal && random_heats();
     for (int part = 0; part < NPARTS; part++)
       for (auto &law : laws[part]) {
+        LawParameters &p = law.parameters;
         law.kernels = &table->kernels(static_cast<Part>(part), law.index);
-        law.parameters.density = rho_pressure;
-        law.parameters.heat_density = rho * energy_scale;
-        law.parameters.chi = shared.chi;
-        law.parameters.warm = shared.warm;
-        law.parameters.temperature = shared.temperature;
-        // with a damage all plastic work goes to batch.heat, for account_of_strength()
-        if (damage && part == STRENGTH) {
-          law.parameters.chi = 1.0;
-          law.parameters.warm *= shared.chi;
-        }
+        law.heats_alone = damage && part == STRENGTH;
+        law.varies = !law.random.empty() || random_density || random_heat;
+        p.density = rho_pressure;
+        p.heat_density = rho * energy_scale;
+        p.chi = 1.0;
+        p.warm = 0.0;
+        p.temperature = thermal ? thermal->history : -1;
+        if (thermal) share_heat(*thermal->info, thermal->parameters, law.heats_alone, p);
       }
+  }
+
+  /** Does what share_heat() tells differ from point to point? */
+  bool random_heats() const
+  {
+    if (random_density) return true;
+    const LawInfo &info = *thermal->info;
+    for (const auto &r : thermal->random) {
+      LawParameters p = thermal->parameters;
+      r.of(p) *= 0.5;
+      if (info.heat_share(p) != info.heat_share(thermal->parameters) ||
+          info.warming(p) != info.warming(thermal->parameters))
+        return true;
+    }
+    return false;
   }
 
   /** Energy stored by one part, added to w. */
@@ -438,6 +428,16 @@ class ComposedMaterial : public Material {
       b.plastic_work[i] = b.heat[i];
       b.heat[i] *= damage->parameters.chi * b.kept[i];
       b.shear_energy[i] = b.volume_energy[i] = 0.0;
+    }
+    if (random_heat) {
+      LocalParameters local(*this, *damage);
+      for (int i = 0; i < b.n; i++)
+        b.heat[i] = local
+                        .at([&](int row) {
+                          return b.history[row][i];
+                        })
+                        .chi *
+            b.kept[i] * b.plastic_work[i];
     }
     add_energy(STRENGTH, b, b.shear_energy);
   }
@@ -468,46 +468,58 @@ class ComposedMaterial : public Material {
     }
   }
 
-  /** NAME or LAW.NAME, where LAW is the name of the part or of the closed law. */
+  /** density, NAME, or LAW.NAME, where LAW is the name of the part or of the closed law or, of
+   *  viscosities, as there may be several, that of the law. Parameters of terms are NAME1, NAME2, ... */
   void add(const UsedRandom &random)
   {
     const std::string what = "random " + random.name;
     UsedLaw *owner = nullptr;
-    int parameter = -1;
-    std::string choice;
+    RandomParameter r = {
+        -1, -1, static_cast<int>(variables.size()), random.lognormal, random.variation, nullptr};
+    std::string choice = "density";
+    const auto consider = [&](Part part, UsedLaw &law, int term, int k) {
+      const LawInfo &info = *law.info;
+      const std::string name = term < 0 ? std::string(info.parameters[k].name)
+                                        : info.term_parameters[k].name + std::to_string(term + 1);
+      const std::string of_part = std::string(part_name[part]) + "." + name;
+      const std::string of_law = std::string(info.name) + "." + name;
+      const bool by_law = part == CLOSED || part == VISCOSITY;
+      choice += ", " + (by_law ? of_law : of_part);
+      if (random.name != name && random.name != of_part && !(by_law && random.name == of_law))
+        return;
+      if (owner)
+        throw MaterialError(random.word,
+                            what + ": several laws of this material have it: choose " + choice);
+      owner = &law;
+      r.term = term;
+      r.parameter = k;
+    };
     for (int part = 0; part < NPARTS; part++)
-      for (auto &law : laws[part])
-        for (int k = 0; k < law.info->nparameters && part != THERMAL; k++) {
-          const std::string name = law.info->parameters[k].name;
-          const std::string full =
-              std::string(part == CLOSED ? law.info->name : part_name[part]) + "." + name;
-          choice += (choice.empty() ? "" : ", ") + full;
-          if (random.name != name && random.name != full) continue;
-          if (owner)
-            throw MaterialError(random.word,
-                                what +
-                                    ": several laws of this material have it: "
-                                    "choose " +
-                                    choice);
-          owner = &law;
-          parameter = k;
-        }
-    if (!owner)
+      for (auto &law : laws[part]) {
+        for (int k = 0; k < law.info->nparameters; k++)
+          consider(static_cast<Part>(part), law, -1, k);
+        for (int term = 0; term < law.parameters.nterms; term++)
+          for (int k = 0; k < law.info->nterm_parameters; k++)
+            consider(static_cast<Part>(part), law, term, k);
+      }
+    const bool of_density = random.name == "density";
+    if (!owner && !of_density)
       throw MaterialError(random.word, what + ": no such parameter: choose one of " + choice);
-    const double mean = owner->parameters.value[parameter];
+    const double mean = of_density ? rho : r.of(owner->parameters);
     if (mean == 0.0 || !std::isfinite(mean))
       throw MaterialError(random.word,
                           what + ": its value is " + number(mean) +
                               ", which a factor does not change: give it another one");
-    for (const auto &other : owner->random)
-      if (other.parameter == parameter) throw MaterialError(random.word, what + ": is given twice");
-    RandomParameter r;
-    r.parameter = parameter;
-    r.row = variables.size();
-    r.lognormal = random.lognormal;
-    r.variation = random.variation;
+    bool twice = of_density && random_density;
+    if (owner)
+      for (const auto &other : owner->random)
+        twice = twice || (other.term == r.term && other.parameter == r.parameter);
+    if (twice) throw MaterialError(random.word, what + ": is given twice");
     r.field = std::make_shared<const RandomField>(random.length, random.seed);
-    owner->random.push_back(r);
+    if (of_density)
+      random_density = std::make_unique<const RandomParameter>(r);
+    else
+      owner->random.push_back(r);
     variables.push_back({"random/" + random.name, 1.0});
     text += ", " + what + (random.lognormal ? " lognormal " : " normal ") +
         number(random.variation) + " " + number(random.length) + " " + std::to_string(random.seed);
@@ -542,334 +554,8 @@ class ComposedMaterial : public Material {
       for (const auto &law : part)
         if (law.kernels->modulus) call(law.kernels->modulus, law, b, k);
     table->speed(b.n, rho_pressure, k, c);
-  }
-};
-
-/* ---------------------------------------------------------------------- parser */
-
-bool looks_numeric(const std::string &word)
-{
-  return !word.empty() && strchr("+-.0123456789", word[0]) != nullptr;
-}
-
-/** Words separated by blanks. */
-std::vector<std::string> split(const std::string &text)
-{
-  std::vector<std::string> words(1);
-  for (const char c : text) {
-    if (c == ' ')
-      words.emplace_back();
-    else
-      words.back() += c;
-  }
-  return words;
-}
-
-std::string join(const std::vector<std::string> &words, const char *between)
-{
-  std::string text;
-  for (const auto &word : words) text += (text.empty() ? "" : between) + word;
-  return text;
-}
-
-std::vector<std::string> names(const LawList &laws)
-{
-  std::vector<std::string> list;
-  for (const auto &info : laws) list.emplace_back(info.name);
-  return list;
-}
-
-int find(const LawList &laws, const std::string &name)
-{
-  for (size_t k = 0; k < laws.size(); k++)
-    if (name == laws[k].name) return k;
-  return -1;
-}
-
-std::string describe_range(const Range &range)
-{
-  const std::string less = range.closed ? " <= " : " < ";
-  std::string text = "VALUE";
-  if (range.low != -UNBOUNDED) text = number(range.low) + less + text;
-  if (range.high != UNBOUNDED) text += less + number(range.high);
-  return text;
-}
-
-class Parser {
- public:
-  Parser(const std::vector<std::string> &words, const char *isa) : words(words), next(0), isa(isa)
-  {
-  }
-
-  std::unique_ptr<Material> parse()
-  {
-    while (!at_end()) {
-      const int here = next;
-      const std::string keyword = words[next++];
-      if (keyword == "density")
-        parse_density(here);
-      else if (keyword == "range")
-        parse_range();
-      else if (keyword == "random")
-        parse_random(here);
-      else if (find(declared_laws(CLOSED), keyword) >= 0)
-        parse_law(CLOSED, here);
-      else if (const int part = find_part(keyword))
-        parse_law(static_cast<Part>(part), next++);
-      else
-        fail(here,
-             "unknown keyword '" + keyword + "': expected density, " +
-                 join(names(declared_laws(CLOSED)), ", ") +
-                 ", eos, strength, viscosity, damage, thermal, range or random");
-    }
-    check();
-    const LawTable *table = LawTable::select(isa);
-    if (!table) {
-      const char *name = isa ? isa : getenv("MPM_ISA");
-      fail(0,
-           std::string("MPM_ISA=") + (name ? name : "") +
-               ": not one of reference, baseline, avx2, avx512, or this CPU cannot run it");
-    }
-    return std::unique_ptr<Material>(new ComposedMaterial(density, used, ranges, random, table));
-  }
-
- private:
-  const std::vector<std::string> &words;
-  int next;
-  const char *isa;
-  double density = 0.0;
-  std::vector<UsedLaw> used[NPARTS];
-  std::vector<UsedRange> ranges;
-  std::vector<UsedRandom> random;
-
-  bool at_end() const { return next >= static_cast<int>(words.size()); }
-
-  /** The part that a keyword introduces, 0 (closed laws have no such keyword): none. */
-  static int find_part(const std::string &keyword)
-  {
-    for (int part = NPARTS - 1; part > 0; part--)
-      if (keyword == part_name[part]) return part;
-    return 0;
-  }
-
-  [[noreturn]] static void fail(int word, const std::string &message)
-  {
-    throw MaterialError(word, message);
-  }
-
-  /** The next word as a number in a range; what: the name of its owner. */
-  double parse_number(const std::string &what, const char *name, const char *unit,
-                      const char *meaning, const Range &range)
-  {
-    const std::string full = what + ": " + name;
-    if (at_end()) fail(next, full + " is missing (" + meaning + ")");
-    const std::string &word = words[next];
-    char *end = nullptr;
-    const double value = strtod(word.c_str(), &end);
-    if (word.empty() || *end != '\0' || !std::isfinite(value))
-      fail(next, full + " must be a number (" + meaning + ", " + unit + "), not '" + word + "'");
-    if (!in_range(range, value))
-      fail(next,
-           full + " = " + word + " (" + meaning + ") is out of range: " + describe_range(range));
-    next++;
-    return value;
-  }
-
-  void parse_density(int here)
-  {
-    if (density > 0.0) fail(here, "density is given twice");
-    density = parse_number("density", "RHO", "density", "reference density", POSITIVE);
-  }
-
-  /** range QUANTITY LOW HIGH, where LOW may be -INF and HIGH may be INF */
-  void parse_range()
-  {
-    UsedRange range;
-    range.word = next;
-    if (at_end()) fail(next, "range: name of the quantity is missing");
-    range.quantity = words[next++];
-    const std::string what = "range " + range.quantity;
-    const auto limit = [&](const char *name, const char *infinite, double value) {
-      if (at_end() || words[next] != infinite)
-        return parse_number(what, name, "units of the quantity", "limit of validity, or INF",
-                            {-UNBOUNDED, UNBOUNDED, false});
-      next++;
-      return value;
-    };
-    range.low = limit("LOW", "-INF", -UNBOUNDED);
-    range.high = limit("HIGH", "INF", UNBOUNDED);
-    if (!(range.low < range.high)) fail(next - 1, what + ": LOW must be less than HIGH");
-    ranges.push_back(range);
-  }
-
-  /** random PARAMETER lognormal | normal COV LENGTH SEED */
-  void parse_random(int here)
-  {
-    if (!RandomField::available())
-      fail(
-          here,
-          "random: this program was built without FFTW; install it (libfftw3-dev) and build again");
-    UsedRandom r;
-    r.word = next;
-    if (at_end()) fail(next, "random: name of the parameter is missing");
-    r.name = words[next++];
-    const std::string what = "random " + r.name;
-    if (at_end() || (words[next] != "lognormal" && words[next] != "normal"))
-      fail(next, what + ": the distribution must be lognormal or normal");
-    r.lognormal = words[next++] == "lognormal";
-    r.variation = parse_number(what, "COV", "1", "coefficient of variation", POSITIVE);
-    r.length = parse_number(what, "LENGTH", "length", "correlation length", POSITIVE);
-    const double seed = parse_number(what, "SEED", "1", "seed", {1.0, 2147483647.0, true});
-    r.seed = static_cast<long>(seed);
-    if (r.seed != seed) fail(next - 1, what + ": SEED must be an integer");
-    random.push_back(r);
-  }
-
-  /** here: word of the law's name; next is behind it. */
-  void parse_law(Part part, int here)
-  {
-    const auto &laws = declared_laws(part);
-    const std::string choice = "choose " + join(names(laws), ", ");
-    if (here >= static_cast<int>(words.size()))
-      fail(here, std::string(part_name[part]) + ": name is missing, " + choice);
-    UsedLaw law;
-    law.index = find(laws, words[here]);
-    law.word = here;
-    if (law.index < 0)
-      fail(here, std::string("unknown ") + part_name[part] + " '" + words[here] + "': " + choice);
-    law.info = &laws[law.index];
-    if (part != VISCOSITY && !used[part].empty())
-      fail(here,
-           "'" + title(part, *law.info) + "': the material has '" +
-               title(part, *used[part][0].info) + "' already");
-    for (const auto &other : used[part])
-      if (other.index == law.index) fail(here, "'" + title(part, *law.info) + "' is given twice");
-    parse_parameters(title(part, *law.info), *law.info, law.parameters);
-    const char *wrong = law.info->check(law.parameters);
-    if (wrong) fail(here, title(part, *law.info) + ": " + wrong);
-    used[part].push_back(law);
-  }
-
-  void parse_parameters(const std::string &what, const LawInfo &info, LawParameters &parameters)
-  {
-    double *const value = parameters.value;
-    parameters.nterms = 0;
-    for (int k = 0; k < info.nparameters; k++) value[k] = info.parameters[k].standard;
-
-    bool tail = true;    // read the positional parameters that have a default?
-    bool first = true;
-    for (int k = 0; k < info.nparameters; k++) {
-      const Parameter &p = info.parameters[k];
-      if (*p.option) continue;
-      if (!std::isnan(p.standard) && first) {
-        first = false;
-        tail = !at_end() && looks_numeric(words[next]);
-      }
-      if (tail) value[k] = parse_number(what, p.name, p.unit, p.meaning, p.range);
-    }
-
-    std::vector<std::string> given;    // first words of the options so far
-    while (!at_end() &&
-           (parse_term(what, info, parameters) || parse_option(what, info, value, given))) {}
-    if (!at_end() && looks_numeric(words[next]))
-      fail(next, what + ": too many values, '" + words[next] + "' is not expected");
-  }
-
-  /** Reads the option of the law that may be given several times, false when the next word is not
-   *  that. */
-  bool parse_term(const std::string &what, const LawInfo &info, LawParameters &parameters)
-  {
-    if (!info.term || words[next] != info.term) return false;
-    if (parameters.nterms == LawParameters::MAX_TERMS)
-      fail(next,
-           what + ": more than " + std::to_string(LawParameters::MAX_TERMS) + " of '" + info.term +
-               "'");
-    next++;
-    double *const term = parameters.term[parameters.nterms++];
-    for (int k = 0; k < info.nterm_parameters; k++) {
-      const Parameter &p = info.term_parameters[k];
-      term[k] = parse_number(what + " " + info.term, p.name, p.unit, p.meaning, p.range);
-    }
-    return true;
-  }
-
-  /** Reads one option of the law, false when the next word is none. */
-  bool parse_option(const std::string &what, const LawInfo &info, double *value,
-                    std::vector<std::string> &given)
-  {
-    const int here = next;
-    std::vector<std::string> choices;
-    int match = -1;
-    for (int k = 0; k < info.nparameters; k++) {
-      if (!*info.parameters[k].option) continue;
-      const auto option = split(info.parameters[k].option);
-      if (option[0] != words[here]) continue;
-      if (option.size() == 1) {
-        if (match < 0) match = k;
-      } else {
-        if (choices.empty() || choices.back() != option[1]) choices.push_back(option[1]);
-        if (here + 1 < static_cast<int>(words.size()) && option[1] == words[here + 1] && match < 0)
-          match = k;
-      }
-    }
-    if (match < 0 && choices.empty()) return false;
-    if (match < 0)
-      fail(here + 1, what + ": '" + words[here] + "' must be followed by " + join(choices, " or "));
-    for (const auto &word : given)
-      if (word == words[here]) fail(here, what + ": '" + words[here] + "' is given twice");
-    given.push_back(words[here]);
-
-    const char *option = info.parameters[match].option;
-    next += split(option).size();
-    for (int k = match; k < info.nparameters; k++) {
-      const Parameter &p = info.parameters[k];
-      if (!strcmp(p.option, option) && !strcmp(p.unit, FLAG))
-        value[k] = 1.0;
-      else if (!strcmp(p.option, option))
-        value[k] = parse_number(what + " " + option, p.name, p.unit, p.meaning, p.range);
-    }
-    return true;
-  }
-
-  /** Parts that do not go together. */
-  void check() const
-  {
-    const int end = words.size();
-    if (density <= 0.0) fail(end, "density is missing: add 'density RHO'");
-    if (!used[CLOSED].empty()) {
-      const std::string name = used[CLOSED][0].info->name;
-      for (const Part part : {EOS, STRENGTH, DAMAGE})
-        if (!used[part].empty())
-          fail(used[part][0].word,
-               "'" + title(part, *used[part][0].info) + "': '" + name +
-                   "' is a complete law; use either '" + name + "' or eos and strength");
-    } else if (used[EOS].empty()) {
-      if (!used[STRENGTH].empty())
-        fail(used[STRENGTH][0].word,
-             "'" + title(STRENGTH, *used[STRENGTH][0].info) +
-                 "' makes the stress deviator only: add an equation of state, such as "
-                 "'eos linear K' with the bulk modulus");
-      fail(end,
-           "no law: add " + join(names(declared_laws(CLOSED)), ", ") +
-               ", or eos with strength or viscosity");
-    }
-    if (!used[DAMAGE].empty() && used[STRENGTH].empty())
-      fail(used[DAMAGE][0].word,
-           "'" + title(DAMAGE, *used[DAMAGE][0].info) +
-               "' reduces the stress of a solid: add a strength, such as 'strength elastic G'");
-    for (const auto &part : used)
-      for (const auto &law : part)
-        if (law.info->needs_temperature(law.parameters) && used[THERMAL].empty())
-          fail(law.word,
-               std::string("'") + law.info->name +
-                   "' with these parameters depends on the temperature: add 'thermal adiabatic' "
-                   "with the specific heat, or 'thermal constant'");
-    if (!used[DAMAGE].empty() && shares_stress(used))
-      fail(used[DAMAGE][0].word,
-           "'" + title(DAMAGE, *used[DAMAGE][0].info) +
-               "' does not go with a viscosity that adds to the stress on which a strength or law "
-               "builds in the next step: leave out the viscosity, or use viscosity artificial with "
-               "eos and strength");
+    if (random_density)
+      for (int i = 0; i < b.n; i++) c[i] /= std::sqrt(b.history[random_density->row][i]);
   }
 };
 
@@ -877,7 +563,8 @@ class Parser {
 
 /* ---------------------------------------------------------------------- */
 
-std::unique_ptr<Material> Material::create(const std::vector<std::string> &words, const char *isa)
+std::unique_ptr<Material> MPM_NS::compose(const MaterialDefinition &definition,
+                                          const LawTable *table)
 {
-  return Parser(words, isa).parse();
+  return std::make_unique<ComposedMaterial>(definition, table);
 }

@@ -89,7 +89,7 @@ class Material {
  public:
   virtual ~Material() = default;
 
-  /** A material from the words of its definition, "density RHO <parts>" (see mpm_material.cpp for
+  /** A material from the words of its definition, "density RHO <parts>" (see mpm_material_parser.cpp for
    *  the grammar); throws MaterialError. isa: as for LawTable::select(). */
   static std::unique_ptr<Material> create(const std::vector<std::string> &words,
                                           const char *isa = nullptr);
@@ -99,7 +99,11 @@ class Material {
    *  that of energy / volume, nktv2p; both 1 in consistent units and when this is not called. */
   virtual bool configure(const char *isa, double pressure_scale, double energy_scale) = 0;
 
-  virtual double density() const = 0;    ///< reference density
+  virtual double density() const = 0;    ///< reference density, its mean where points differ
+
+  /** Reference density of a point with this history (as of initialize(); null when it has none). */
+  virtual double density(const double *history) const = 0;
+
   virtual const std::vector<HistoryVariable> &history() const = 0;
 
   /** All history variables of a new point at x; throws std::runtime_error when it cannot be. */

@@ -331,6 +331,13 @@ void MaterialPoint::frame_state(double *F, double *stress) const
 
 /* ---------------------------------------------------------------------- */
 
+double MaterialPoint::density() const
+{
+  std::vector<double> row(material.history().size());
+  for (std::size_t k = 0; k < row.size(); k++) row[k] = history(k);
+  return material.density(row.data());
+}
+
 double MaterialPoint::pressure() const
 {
   return -(stress(0) + stress(1) + stress(2)) / 3.0;

@@ -63,6 +63,7 @@ class MaterialPoint {
   /** State of the first point. */
   double stress(int k) const { return batch.stress[k][0]; }
   double history(int k) const { return batch.history[k][0]; }
+  double density() const;    ///< reference density
   double pressure() const;
   double vonmises() const;
   double wave_speed() const;

@@ -472,7 +472,7 @@ std::vector<std::pair<std::string, double>> MPMPoint::row(const MaterialPoint &p
   if (path == SHOCK) {
     // jump conditions of mass, momentum, and energy with the stress along the shock's normal
     const double P = -stress[0], eta = 1.0 - point.batch.J[0];
-    const double density = material->density() * force->mvv2e * force->nktv2p;
+    const double density = point.density() * force->mvv2e * force->nktv2p;
     add("us", eta > 0.0 ? sqrt(P / (density * eta)) : point.wave_speed());
     add("up", sqrt(std::max(0.0, P * eta) / density));
     add("jump", 0.5 * P * eta);
