@@ -130,6 +130,33 @@ def test_every_law_has_a_page_that_includes_its_table():
     check(wrong)
 
 
+def test_every_law_page_tells_cost_use_and_references():
+    """each section with a text; a measured cost; where the law comes from"""
+    sections = ["Syntax", "Examples", "Description", "Parameters", "Cost", "When to use it",
+                "Related commands"]
+    wrong = []
+    for page in sorted(law_tables()):
+        path = os.path.join(PAGES, page + ".rst")
+        if not os.path.exists(path):
+            continue
+        parts = re.split(r"^([A-Z].*)\n\"+\n", read(path), flags=re.M)
+        text = dict(zip(parts[1::2], parts[2::2]))
+        order = [name for name in parts[1::2] if name in sections]
+        for section in sections:
+            if not text.get(section, "").strip():
+                wrong.append("%s: section '%s' is missing" % (relative(path), section))
+        if order != [name for name in sections if name in order]:
+            wrong.append("%s: sections are out of order" % relative(path))
+        if len(text.get("When to use it", "").split()) < 15:
+            wrong.append("%s: 'When to use it' says too little" % relative(path))
+        if not re.search(r"\d ns\b|^None\b", text.get("Cost", "").strip()):
+            wrong.append("%s: no nanoseconds in 'Cost'" % relative(path))
+        if not re.search(r"^\.\. _[\w-]+:\n\n\*\*\(.+\)\*\* .*\n?.*\(\d{4}\)",
+                         read(path), re.M):
+            wrong.append("%s: no reference" % relative(path))
+    check(wrong)
+
+
 def test_pages_have_the_order_of_the_lammps_manual():
     wrong = []
     for page, style in sorted(styles().items()):
