@@ -56,7 +56,7 @@ namespace {
 
     explicit EosPolynomial(const LawParameters &p) :
         a1(p.value[A1]), a2(p.value[A2]), a3(p.value[A3]), b0(p.value[B0]), b1(p.value[B1]),
-        t1(p.value[T1] > 0.0 ? p.value[T1] : a1), t2(p.value[T2]), least(0.01 * a1),
+        t1(p.value[T1] > 0.0 ? p.value[T1] : a1), t2(p.value[T2]), least(LEAST_MODULUS * a1),
         tension(p.value[CUTOFF], p.value[SPALL])
     {
     }

@@ -52,7 +52,7 @@ namespace {
 
     explicit EosShock(const LawParameters &p) :
         K(p.density * p.value[C0] * p.value[C0]), s(p.value[S]), gamma0(p.value[GAMMA0]),
-        least(0.01 * K), tension(p.value[CUTOFF], p.value[SPALL])
+        least(LEAST_MODULUS * K), tension(p.value[CUTOFF], p.value[SPALL])
     {
     }
 

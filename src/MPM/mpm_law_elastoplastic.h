@@ -155,8 +155,9 @@ namespace {
   {
     const Sym s = deviator(stress);
     const double s2 = J * J * norm2(s), x2 = 2.0 * s2 / (4.0 * G * G);
-    return K + (4.0 / 3.0) * G * (1.0 + (1.0 / 3.0) * x2) - (1.0 / 3.0) * J * trace(stress) +
-        std::sqrt((2.0 / 3.0) * s2);
+    return max(K + (4.0 / 3.0) * G * (1.0 + (1.0 / 3.0) * x2) - (1.0 / 3.0) * J * trace(stress) +
+                   std::sqrt((2.0 / 3.0) * s2),
+               LEAST_MODULUS * (K + (4.0 / 3.0) * G));
   }
 
   /** A batch in invariants. */

@@ -143,7 +143,7 @@ namespace {
     const double k3 = max(pair_modulus(r, i, 0, 1, 3), pair_modulus(r, i, 1, 0, 3));
     const double k4 = max(pair_modulus(r, i, 0, 2, 4), pair_modulus(r, i, 2, 0, 4));
     const double k5 = max(pair_modulus(r, i, 1, 2, 5), pair_modulus(r, i, 2, 1, 5));
-    return max(max(max(k0, k1), max(k2, k3)), max(max(k4, k5), 0.0));
+    return max(max(max(k0, k1), max(k2, k3)), max(k4, k5));
   }
 
   /** Hyperelastic law that is isotropic. Law has in addition: respond(parameters, n, response). */
@@ -154,17 +154,24 @@ namespace {
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
         const Displacement H = displacement(b, i);
-        const Spectral s = spectral(left_strain(H));
+        double strain[3];
+        principal_values(left_strain(H), strain);
         r.logJ[i] = log_volume(H);
         for (int a = 0; a < 3; a++) {
-          r.e[a][i] = 0.5 * log1p(max(s.value[a], -1.0 + 1e-15));
+          r.e[a][i] = 0.5 * log1p(max(strain[a], -1.0 + 1e-15));
           r.tau[a][i] = 0.0;
           r.A[a][i] = r.A[a + 3][i] = 0.0;
         }
       }
       Law::respond(p, b.n, r);
+      PrincipalResponse rest;
+      for (int a = 0; a < 3; a++)
+        rest.e[a][0] = rest.tau[a][0] = rest.A[a][0] = rest.A[a + 3][0] = 0.0;
+      rest.logJ[0] = 0.0;
+      Law::respond(p, 1, rest);
+      const double least = LEAST_MODULUS * rest.A[0][0];
       MPM_SIMD
-      for (int i = 0; i < b.n; i++) k[i] += largest_modulus(r, i);
+      for (int i = 0; i < b.n; i++) k[i] += max(largest_modulus(r, i), least);
     }
   };
 

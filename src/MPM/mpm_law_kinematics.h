@@ -191,20 +191,32 @@ namespace {
             a.xx * a.xz + a.xy * a.yz + a.xz * a.zz, a.xy * a.xz + a.yy * a.yz + a.yz * a.zz};
   }
 
-  /** Largest eigenvalue of a deviator, to round-off (1e-8 of its norm next to the state in which it
-   *  is double). Scaled by r = sqrt(d:d/6), eigenvalues solve t^3 - 3 t - 2 c = 0 with
-   *  c = det(d)/(2 r^3). The root of largest magnitude comes from Newton steps; for c < 0 that is
-   *  the smallest eigenvalue, and the largest follows from a quadratic. */
+  /** The eigenvalue of largest magnitude of a deviator, and half the distance of the two others:
+   *  to round-off, the latter to 1e-8 of the norm where it vanishes. Scaled by r = sqrt(d:d/6),
+   *  eigenvalues solve t^3 - 3 t - 2 c = 0 with c = det(d)/(2 r^3). The root of largest magnitude
+   *  comes from Newton steps, the others follow from a quadratic. */
+  struct DeviatorRoots {
+    double first, half;
+
+    MPM_INLINE explicit DeviatorRoots(const Sym &d)
+    {
+      const double r = std::sqrt((1.0 / 6.0) * norm2(d)), r3 = r * r * r;
+      const double det = d.xx * (d.yy * d.zz - d.yz * d.yz) - d.xy * (d.xy * d.zz - d.yz * d.xz) +
+          d.xz * (d.xy * d.yz - d.yy * d.xz);
+      const double c = max(-1.0, min(1.0, r3 > 0.0 ? 0.5 * det / r3 : 0.0));
+      const double a = c < 0.0 ? -c : c;
+      double t = std::sqrt(3.0 + a);
+      for (int it = 0; it < 3; it++) t -= (t * (t * t - 3.0) - 2.0 * a) / (3.0 * (t * t - 1.0));
+      first = c < 0.0 ? -r * t : r * t;
+      half = 0.5 * r * std::sqrt(max(12.0 - 3.0 * t * t, 0.0));
+    }
+  };
+
+  /** Largest eigenvalue of a deviator. */
   MPM_INLINE double largest_eigenvalue(const Sym &d)
   {
-    const double r = std::sqrt((1.0 / 6.0) * norm2(d)), r3 = r * r * r;
-    const double det = d.xx * (d.yy * d.zz - d.yz * d.yz) - d.xy * (d.xy * d.zz - d.yz * d.xz) +
-        d.xz * (d.xy * d.yz - d.yy * d.xz);
-    const double c = max(-1.0, min(1.0, r3 > 0.0 ? 0.5 * det / r3 : 0.0));
-    const double a = c < 0.0 ? -c : c;
-    double t = std::sqrt(3.0 + a);
-    for (int it = 0; it < 3; it++) t -= (t * (t * t - 3.0) - 2.0 * a) / (3.0 * (t * t - 1.0));
-    return r * (c < 0.0 ? 0.5 * (t + std::sqrt(max(12.0 - 3.0 * t * t, 0.0))) : t);
+    const DeviatorRoots root(d);
+    return root.first < 0.0 ? root.half - 0.5 * root.first : root.first;
   }
 
   /** Largest eigenvalue of any symmetric tensor. */
@@ -212,6 +224,21 @@ namespace {
   {
     return (1.0 / 3.0) * trace(a) + largest_eigenvalue(deviator(a));
   }
+
+  /** All three, in no particular order, to 1e-8 of the deviator: at a fraction of the cost of their
+   *  vectors. */
+  MPM_INLINE void principal_values(const Sym &a, double value[3])
+  {
+    const double mean = (1.0 / 3.0) * trace(a);
+    const DeviatorRoots root(deviator(a));
+    value[0] = mean + root.first;
+    value[1] = mean - 0.5 * root.first + root.half;
+    value[2] = mean - 0.5 * root.first - root.half;
+  }
+
+  /** Smallest density_0 (wave speed)^2 that is believed, over its value at rest: tangents may be
+   *  zero or negative far from rest, where there are no waves, but the time step must be finite. */
+  constexpr double LEAST_MODULUS = 0.01;
 
   /** Upper bound of the largest eigenvalue of a deviator, exact when the other two are equal. */
   MPM_INLINE double eigenvalue_bound(const Sym &dev)

@@ -50,15 +50,16 @@ namespace {
       }
     }
 
-    /** J d sigma_nn / d epsilon_nn = lambda + 2 mu - tau_nn; bound of -tau_nn over directions n. */
+    /** J d sigma_nn / d epsilon_nn = lambda + 2 mu - tau_nn; bound of -tau_nn over directions n. In
+     *  strong expansion it is negative: the law then has no waves at all. */
     static void modulus(const LawParameters &p, const Batch &b, History, double *k)
     {
       const LawLinear law(p);
+      const double rest = law.K + (4.0 / 3.0) * law.G, least = LEAST_MODULUS * rest;
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
         const Sym tau = b.J[i] * load_stress(b, i);
-        k[i] += law.K + (4.0 / 3.0) * law.G - (1.0 / 3.0) * trace(tau) +
-            eigenvalue_bound(deviator(tau));
+        k[i] += max(rest - (1.0 / 3.0) * trace(tau) + eigenvalue_bound(deviator(tau)), least);
       }
     }
 

@@ -52,10 +52,12 @@ namespace {
     static void modulus(const LawParameters &p, const Batch &b, History, double *k)
     {
       const LawNeoHookean law(p);
+      const double least = LEAST_MODULUS * (law.lambda + 2.0 * law.mu);
       MPM_SIMD
       for (int i = 0; i < b.n; i++)
-        k[i] += law.mu * (largest_principal(left_cauchy_green(b, i)) + 1.0) +
-            law.lambda * (1.0 - log(b.J[i]));
+        k[i] += max(law.mu * (largest_principal(left_cauchy_green(b, i)) + 1.0) +
+                        law.lambda * (1.0 - log(b.J[i])),
+                    least);
     }
 
     /** With H = F - I and det F - 1 = tr H + minors + det H, the terms of first order in H are
