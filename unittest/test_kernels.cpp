@@ -828,7 +828,7 @@ TEST_P(Tables, BatchesAgreeWithMatrixAlgebra)
             f[2] * (f[3] * f[7] - f[4] * f[6]);
       };
       auto b = std::make_unique<Batch>();
-      kernels->load(*b, n, dt, L.data(), F.data(), tau.data(), vol0.data());
+      kernels->load(*b, n, dt, L.data(), F.data(), tau.data(), vol0.data(), nullptr);
       EXPECT_EQ(b->n, n);
       EXPECT_EQ(b->dt, dt);
       std::vector<std::array<double, 9>> expected(n);

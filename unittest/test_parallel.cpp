@@ -87,6 +87,27 @@ INSTANTIATE_TEST_SUITE_P(Options, Ranks,
                                            "transfer flip 1.0 scheme usavg locking fbar",
                                            "shape cubic locking pressure"));
 
+// rings: two bodies that meet on an axis
+
+class AxisymmetricRanks : public Ranks {};
+
+TEST_P(AxisymmetricRanks, ShiftedBrick)
+{
+  auto scene = replaced(replaced(replaced(scene2d, "MPM_OPTIONS", "axisymmetric yes " + GetParam()),
+                                 "boundary p f p", "boundary f f p"),
+                        "velocity one set 0.6 -0.3 0\nvelocity two set -0.5 -0.1 0",
+                        "velocity one set 0.2 0.7 0\nvelocity two set 0 -0.5 0");
+  scene = replaced(scene, "region two block 7.0 12.0 2.0 6.0", "region two block 0.0 4.0 6.5 10.0");
+  compare(scene + "fix axis all mpm/boundary xlo slip\n",
+          "fix lb all balance 20 1.0 shift xy 10 1.05\n");
+}
+
+INSTANTIATE_TEST_SUITE_P(Options, AxisymmetricRanks,
+                         ::testing::Values("transfer apic",
+                                           "shape cpgimp transfer flip 0.99 scheme musl",
+                                           "shape cubic transfer apic scheme usf",
+                                           "locking both", "frame total locking fbar"));
+
 // in the total frame, the two bodies are one, and neighbors on the lattice come to be far apart
 
 class TotalRanks : public Ranks {};

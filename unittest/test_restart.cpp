@@ -111,6 +111,27 @@ INSTANTIATE_TEST_SUITE_P(Options, RestartCommand,
                          ::testing::Values("transfer apic",
                                            "shape cubic transfer flip 1.0 scheme usf"));
 
+// points that are rings
+
+class AxisymmetricRestart : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(AxisymmetricRestart, ContinuesBitwise)
+{
+  const std::string fixes = "fix grid all mpm 1.0 axisymmetric yes " + GetParam() +
+      "\nfix m all mpm/material density 1.0 neohookean 10.0 0.3\n"
+      "fix walls all mpm/boundary xlo ylo slip\nfix step all mpm/dt 0.3\nthermo 1000\n";
+  Continued run("units lj\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.3 bin\n"
+                "region box block 0 8 0 8 -0.5 0.5\ncreate_box 1 box\n" +
+                    fixes + "region body sphere 0 3.5 0 3\ncreate_points 1 region body ppc 2\n"
+                            "velocity all set 0.3 -0.4 0\n",
+                70, "neighbor 0.3 bin\n" + fixes, 60);
+  EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Options, AxisymmetricRestart,
+                         ::testing::Values("transfer apic", "shape cpgimp transfer flip 1.0",
+                                           "transfer apic scheme musl locking both"));
+
 // the state is more than positions and velocities: without a part of it the run goes on differently
 
 TEST(RestartState, AffineMatrixAndHistoryAreInTheFile)

@@ -72,7 +72,7 @@ TEST(TotalKinematics, LoadAndStress)
       auto batch = std::make_unique<Batch>();
       const BatchKernels *kernels = BatchKernels::select(dim);
       const double dt = 0.7;
-      kernels->load_total(*batch, n, dt, L.data(), F.data(), tau.data(), vol0.data());
+      kernels->load_total(*batch, n, dt, L.data(), F.data(), tau.data(), vol0.data(), nullptr);
       kernels->first_piola(n, F.data(), tau.data(), P.data());
       for (int p = 0; p < n; p++) {
         double A[9], rate[9] = {0.0}, stress[9] = {0.0};
@@ -113,7 +113,7 @@ TEST(TotalKinematics, RigidRotationTurnsTheStress)
     const BatchKernels *kernels = BatchKernels::select(3);
     double F[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, tau[6] = {0.0}, vol0 = 1.0;
     const double stretch[9] = {0.2, 0.1, 0.0, 0.05, -0.1, 0.0, 0.0, 0.1, 0.02};
-    kernels->load_total(*batch, 1, 1.0, stretch, F, tau, &vol0);    // column-major, as good as any
+    kernels->load_total(*batch, 1, 1.0, stretch, F, tau, &vol0, nullptr);    // column-major, as good as any
     material.update(*batch);
     kernels->store(*batch, F, tau);
     const std::array<double, 9> F0 = times(F,
@@ -128,7 +128,7 @@ TEST(TotalKinematics, RigidRotationTurnsTheStress)
         for (int j = 0; j < 3; j++) L[3 * j + i] = next[3 * i + j] - turned[3 * i + j];
       turned = next;
       stress = times(times(R, stress.data()).data(), transposed(R).data());
-      kernels->load_total(*batch, 1, 1.0, L, F, tau, &vol0);
+      kernels->load_total(*batch, 1, 1.0, L, F, tau, &vol0, nullptr);
       material.update(*batch);
       ASSERT_EQ(kernels->store(*batch, F, tau), 0);
       const auto found = full(tau);

@@ -104,14 +104,20 @@ void CreatePoints::command(int narg, char **arg)
     atom->map_set();
   }
 
-  MPI_Barrier(world);
+  double made = 0.0, all_made = 0.0;
+  for (int i = nlocal_previous; i < atom->nlocal; i++) made += atom->vfrac[i];
+  MPI_Reduce(&made, &all_made, 1, MPI_DOUBLE, MPI_SUM, 0, world);
   if (comm->me == 0) {
     const bool flat = domain->dimension == 2;
     utils::logmesg(lmp, "Created {} material points of type {}\n", npoints, type);
     utils::logmesg(lmp, "  spacing = {:.8g} {:.8g}{}\n", spacing[0], spacing[1],
                    flat ? "" : fmt::format(" {:.8g}", spacing[2]));
-    utils::logmesg(lmp, "  volume = {:.8g} per point, {:.8g} in total{}\n", volume,
-                   npoints * volume, flat ? " (per unit thickness)" : "");
+    if (fix && fix->axisymmetric)
+      utils::logmesg(lmp, "  area = {:.8g} per point, volume = {:.8g} in total (all around the axis)\n",
+                     volume, all_made);
+    else
+      utils::logmesg(lmp, "  volume = {:.8g} per point, {:.8g} in total{}\n", volume,
+                     npoints * volume, flat ? " (per unit thickness)" : "");
     utils::logmesg(lmp, "  create_points CPU = {:.3f} seconds\n", platform::walltime() - start);
   }
 }
@@ -312,6 +318,7 @@ void CreatePoints::find_ranges()
     std::copy_n(region_lo, 3, lo);
     std::copy_n(region_hi, 3, hi);
   }
+  if (fix && fix->axisymmetric) lo[0] = std::max(lo[0], 0.0);    // half of what is on the axis
 
   for (int d = 0; d < 3; d++) {
     if (d == domain->dimension) {
@@ -592,7 +599,7 @@ void CreatePoints::make_point(const Site &site)
 
   const int i = atom->nlocal - 1;
   atom->tag[i] = site.tag;
-  atom->vfrac[i] = volume;
+  atom->vfrac[i] = volume * (fix ? fix->circle(site.x[0]) : 1.0);
   atom->rmass[i] = 0.0;    // not known yet, see fix mpm/material
   if (atom->radius_flag) atom->radius[i] = 0.5 * diameter;
 }

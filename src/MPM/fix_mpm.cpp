@@ -41,7 +41,7 @@ static constexpr double MAX_NODE = 4.0e6;
 
 FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), shape(QUADRATIC), extent(NO_SIZE), aspect{1.0, 1.0, 1.0}, transfer(APIC),
-    flip(0.0), refinement(LUMPED), order(1), total(false), scheme(USL), stress(DEFAULT_STRESS), locking(NO_CURE), policy(ERROR),
+    flip(0.0), refinement(LUMPED), order(1), total(false), axisymmetric(false), scheme(USL), stress(DEFAULT_STRESS), locking(NO_CURE), policy(ERROR),
     delete_failed(false), every(1), dt_check(true), grid(nullptr), C(nullptr), X(nullptr),
     waiting(nullptr), ledger_on(false), points(nullptr), halo(nullptr),
     kernels(nullptr), batch_kernels(nullptr), driver(false), topology_valid(false),
@@ -188,6 +188,12 @@ void FixMPM::process_options(int narg, char **arg)
     } else if (keyword == "stress") {
       stress = (Stress) (1 + choose({"mls", "gradient"}));
       iarg += 2;
+    } else if (keyword == "axisymmetric") {
+      need(1);
+      axisymmetric = utils::logical(FLERR, arg[iarg + 1], false, lmp);
+      if (axisymmetric && lattice.dim != 2)
+        error->all(FLERR, iarg, "Fix mpm axisymmetric needs dimension 2");
+      iarg += 2;
     } else if (keyword == "locking") {
       locking = (Locking) choose({"none", "fbar", "pressure", "both"});
       iarg += 2;
@@ -265,6 +271,9 @@ void FixMPM::check_box()
                  "node spacing {}: the nearest valid spacing is {:.16g}",
                  length, axis, lattice.h, length / lattice.ncell[d]);
   }
+  if (axisymmetric && (domain->boxlo[0] < 0.0 || domain->periodicity[0]))
+    error->all(FLERR, "Fix mpm axisymmetric: x is the distance from the axis: the box must not reach "
+               "below x = 0 or be periodic along x");
   if (lattice.dim == 2) {
     lattice.periodic[2] = false;
     lattice.ncell[2] = 1;
@@ -295,6 +304,7 @@ void FixMPM::init()
 
   running = false;
   ledger_on = !modify->get_compute_by_style("^mpm/energy$").empty();
+  if (axisymmetric) check_axis();
 
   if (refinement == FMPM && scheme != USL)
     error->all(FLERR, "Fix mpm {}: transfer fmpm moves points with refined velocities, which the "
@@ -327,6 +337,10 @@ void FixMPM::init()
       if (field->scheme != scheme)
         error->all(FLERR, "All fix mpm instances must have the same scheme: {} and {} differ", id,
                    field->id);
+    for (auto *field : fields)
+      if (field->axisymmetric != axisymmetric)
+        error->all(FLERR, "All fix mpm instances must be axisymmetric, or none: {} and {} differ", id,
+                   field->id);
     for (auto *action : actions) action->init_action();
   }
 
@@ -340,7 +354,7 @@ void FixMPM::init()
 
   const char *wanted = isa.empty() ? nullptr : isa.c_str();
   kernels = MPMKernels::select(wanted);
-  batch_kernels = BatchKernels::select(lattice.dim, wanted);
+  batch_kernels = BatchKernels::select(lattice.dim, wanted, axisymmetric);
   bool can_run = kernels && batch_kernels;
   for (auto *material : materials)
     can_run = can_run && material->material->configure(wanted, force->mvv2e * force->nktv2p, force->nktv2p);
@@ -368,9 +382,10 @@ void FixMPM::init()
 
 void FixMPM::setup_pre_neighbor()
 {
-  // the ledger needs forces and old velocities on the nodes, USF and USAVG sum forces alone
+  // the ledger needs forces and old velocities on the nodes, USF and USAVG sum forces alone; the
+  // kernel that interpolates the hoop rate knows long records only
 
-  const bool split = ledger_on || stress_before();
+  const bool split = ledger_on || stress_before() || (axisymmetric && scheme != USL);
   const auto choose = total ? kernels->transfer_total : kernels->transfer;
   kernel = choose(lattice.dim, kernel_shape(), transfer, split);
   if (strains_apart()) {
@@ -381,6 +396,7 @@ void FixMPM::setup_pre_neighbor()
     kernel.g2p_gradient = tpic.g2p_gradient;
     kernel.mls = false;
   }
+  if (axisymmetric) pic = kernels->transfer(lattice.dim, kernel_shape(), PIC, true);
   batch->h = lattice.h;
 
   // points drift at most half a skin between rebuilds when LAMMPS checks distances each step;

@@ -95,6 +95,7 @@ class FixMPM : public Fix {
   Refinement refinement;    ///< of the velocities of the nodes, with transfer FLIP inside
   int order;                ///< terms of the inverse of the mass matrix, 1: lumped
   bool total;          ///< nodes are places of the reference configuration (total Lagrangian)
+  bool axisymmetric;   ///< 2d: x is the distance from the axis y, points are rings
   Scheme scheme;
   Stress stress;       ///< how stress acts on nodes, and how these strain the points
   Locking locking;     ///< what is averaged against volumetric locking
@@ -156,6 +157,11 @@ class FixMPM : public Fix {
   bool topology_stale() const { return !topology_valid; }
   void renew_topology() { topology_valid = false; }
 
+  /** Length of the circle with radius r around the axis; 1 without axis of symmetry. */
+  double circle(double r) const { return axisymmetric ? 6.28318530717958647693 * r : 1.0; }
+  /** Of the circle through a node; at the axis and beyond it that of a quarter of a cell from it. */
+  double node_circle(int slot, int node) const;
+
   enum Content { OF_MASS, OF_VOLUME };
   /** At the nodes of blocks that are marked in near (and others): sum_p w_p grad N(x_p) with the
    *  mass or volume w of the points, [node][3]. */
@@ -198,7 +204,7 @@ class FixMPM : public Fix {
 
   MPMPoints *points;
   MPMHalo *halo;
-  MPM_NS::TransferKernels kernel;
+  MPM_NS::TransferKernels kernel, pic;    // pic: axisymmetric only
   const MPM_NS::MPMKernels *kernels;
   const MPM_NS::BatchKernels *batch_kernels;
   std::string isa;                         // wanted instruction set, empty: the best
@@ -222,6 +228,7 @@ class FixMPM : public Fix {
   std::vector<double> mean_force, mean_torque;    // over them
   std::vector<double> gradients;         // F-bar: velocity gradients of the points
   std::vector<double> tau_averaged;      // stress with averaged pressure
+  std::vector<double> hoop;              // axisymmetric: strain around the axis in this step
   std::vector<double> sizes;             // GIMP: half sizes of points in node spacings, [n][3]
   std::vector<double> history_batch;     // history variables of a batch
   std::vector<double> external_nodes;    // ledger: nodal external forces
@@ -277,6 +284,14 @@ class FixMPM : public Fix {
   void averaged_material(const double *L, double dt);
   void average_pressure();
   void move_points();
+  void check_axis();
+  double reference_radius(int i) const;
+  double hoop_stiffening(int i) const;
+  void note_radii(int first, int last);
+  void hoop_of_motion(const MPM_NS::PointRows &, int first, int last);
+  void hoop_of_nodes(const MPM_NS::PointRows &, const MPM_NS::TransferStep &, int first, int last,
+                     const int base[3], double dt, double shift);
+  void add_hoop_force(const MPM_NS::PointRows &, bigint first, int n, double *f) const;
   void load_tile(const ActiveBlock &, int base[3]);
   void sum_halo(int lane, int nlane);
   void gradient_and_material(double dt, double shift);

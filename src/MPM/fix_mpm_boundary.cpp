@@ -292,6 +292,12 @@ bool FixMPMBoundary::acts_on(const FixMPM &field) const
   return field_id.empty() || field_id == field.id;
 }
 
+bool FixMPMBoundary::holds_axis(const FixMPM &field) const
+{
+  return acts_on(field) && std::count(face_list.begin(), face_list.end(), 0) && !decides() &&
+      !rotating && constrained[0] && velocity[0].variable.empty() && velocity[0].value == 0.0;
+}
+
 /* ---------------------------------------------------------------------- */
 
 void FixMPMBoundary::init()

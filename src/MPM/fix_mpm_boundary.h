@@ -47,6 +47,10 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
   void topology_changed(FixMPM &) override;
   void act(double dt, Stage) override;
 
+
+  /** Keeps the nodes of a field at the face xlo, an axis of symmetry, from moving along x. */
+  bool holds_axis(const FixMPM &) const;
+
  private:
   static constexpr int DEPTH = 3;    // nodes on either side of a mirror plane that are paired
 

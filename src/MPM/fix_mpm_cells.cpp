@@ -227,13 +227,16 @@ void FixMPMCells::unpack_reverse_grid(int, void *vbuf, int nlist, int *list)
 
 void FixMPMCells::average()
 {
-  double cell_volume = 1.0;
-  for (int d = 0; d < dim; d++) cell_volume *= domain->prd[d] / ncell[d];
+  double area = 1.0;
+  for (int d = 0; d < dim; d++) area *= domain->prd[d] / ncell[d];
+  const auto *field = dynamic_cast<FixMPM *>(modify->get_fix_by_id(field_id));
 
   for (int z = owned.lo[2]; z <= owned.hi[2]; z++)
     for (int y = owned.lo[1]; y <= owned.hi[1]; y++)
       for (int x = owned.lo[0]; x <= owned.hi[0]; x++) {
         const double *sum = &sums[all.index(x, y, z) * NSUM];
+        const double radius = domain->boxlo[0] + (x + 0.5) * domain->prd[0] / ncell[0];
+        const double cell_volume = area * (field ? field->circle(radius) : 1.0);
         const double per_mass = sum[MASS] > 0.0 ? 1.0 / sum[MASS] : 0.0;
         const double per_volume = sum[VOLUME] > 0.0 ? 1.0 / sum[VOLUME] : 0.0;
         *value(DENSITY, x, y, z) = sum[MASS] / cell_volume;

@@ -58,7 +58,7 @@ void FixMPM::check_integrators()
 
 void FixMPM::check_points()
 {
-  enum { POINT, NONE, SEVERAL, MASS, STATE, SIZE, NKINDS };
+  enum { POINT, NONE, SEVERAL, MASS, STATE, AXIS, SIZE, NKINDS };
   bigint count[NKINDS] = {0}, all[NKINDS];
   tagint example[NKINDS] = {0}, example_all[NKINDS];
   auto note = [&](int kind, int i) {
@@ -82,6 +82,7 @@ void FixMPM::check_points()
     for (int d = 0; d < 3; d++) sum += fabs(x[d]) + fabs(v[d]);
     for (int c = 0; c < 6; c++) sum += fabs(points->tau[i][c]);
     if (!std::isfinite(sum) || !(J > 0.0)) note(STATE, i);
+    if (axisymmetric && !(x[0] > 0.0)) note(AXIS, i);
     for (int d = 0; d < lattice.dim && extent != NO_SIZE; d++)
       if (half_size(i) * aspect[d] > 0.5 * (1.0 + 1.0e-6)) {
         note(SIZE, i);
@@ -109,6 +110,10 @@ void FixMPM::check_points()
   if (all[STATE])
     error->all(FLERR, "{} material points have a position, velocity, deformation or stress that is "
                "not finite or is inverted, for instance point {}", all[STATE], example_all[STATE]);
+  if (all[AXIS])
+    error->all(FLERR, "{} material points of fix mpm {} axisymmetric are not at positive x, for "
+               "instance point {}: x is the distance from the axis", all[AXIS], id,
+               example_all[AXIS]);
   if (all[SIZE])
     error->all(FLERR, "{} material points are larger than the cells of fix mpm {}, for instance point "
                "{}: shape gimp and cpgimp need at least one point per cell, and aspect if points "
@@ -282,7 +287,8 @@ double FixMPM::stable_dt_local(tagint &id_min, double &wave_speed) const
            material_of(last) == material)
       last++;
     const int n = last - i, nhistory = material->nhistory;
-    batch_kernels->load(b, n, 0.0, no_gradient, points->F[i], points->tau[i], atom->vfrac + i);
+    batch_kernels->load(b, n, 0.0, no_gradient, points->F[i], points->tau[i], atom->vfrac + i,
+                        no_gradient);
     history.resize((std::size_t) std::max(1, nhistory) * BATCH);
     b.history = reinterpret_cast<double(*)[BATCH]>(history.data());
     for (int p = 0; p < n; p++)
@@ -291,6 +297,7 @@ double FixMPM::stable_dt_local(tagint &id_min, double &wave_speed) const
 
     for (int p = 0; p < n; p++) {
       const double *v = atom->v[i + p];
+      if (axisymmetric) c[p] *= hoop_stiffening(i + p);
       const double speed = total ? c[p] / smallest_stretch(lattice.dim, points->F[i + p])
                                  : c[p] + sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
       if (speed * smallest <= lattice.h) continue;    // NaN does not pass unseen

@@ -482,7 +482,8 @@ bool FixMPMContact::make_pair(const Common &c, int n, int a, int b, double volum
   pair.state = OPEN;
   pair.normal = pair.tangential[0] = pair.tangential[1] = pair.tangential[2] = 0.0;
   if (law == ADHESIVE && pair.area > 0.0) {
-    const double cell = dim == 3 ? h * h * h : h * h;
+    const double cell =
+        (dim == 3 ? h * h * h : h * h) * fields[a]->node_circle(c.slot[a], n);
     const double opening = std::max(0.0, full - volume_share) * cell / pair.area;
     pair.fade = std::max(0.0, 1.0 - opening * normal_strength / (2.0 * release_work));
   }

@@ -126,9 +126,12 @@ double FixMPM::volume_change(int i, const double *L, double dt) const
 {
   const int dim = lattice.dim;
   double A[9];
+  const auto around = [&](double plane) {    // the third direction, if it is stretched at all
+    return axisymmetric ? plane + hoop[i] + plane * hoop[i] : plane;
+  };
   if (!total) {
     for (int c = 0; c < dim * dim; c++) A[c] = dt * L[c];
-    return dilatation(dim, A);
+    return around(dilatation(dim, A));
   }
   const double *F = points->F[i];
   if (dim == 2) {
@@ -137,7 +140,7 @@ double FixMPM::volume_change(int i, const double *L, double dt) const
       A[r] = scale * (L[r] * F[4] - L[2 + r] * F[3]);
       A[2 + r] = scale * (L[2 + r] * F[0] - L[r] * F[1]);
     }
-    return dilatation(dim, A);
+    return around(dilatation(dim, A));
   }
   const double scale = dt / points->jacobian(i);
   for (int j = 0; j < 3; j++) {
@@ -155,13 +158,14 @@ double FixMPM::volume_change(int i, const double *L, double dt) const
 
 /* ----------------------------------------------------------------------
    F-bar: the material update of all points with velocity gradients L whose change of volume is
-   averaged. I + dt L (total frame: F + dt L) is multiplied by a number, in 2d in the plane, so that
+   averaged. I + dt L (total frame: F + dt L) is multiplied by a number, in plane strain in the plane, so that
    laws see a motion like any other. What points keep is this F: sum V0 J follows the sum of the true changes of volume.
 ------------------------------------------------------------------------- */
 
 void FixMPM::averaged_material(const double *L, double dt)
 {
   const int dim = lattice.dim, nL = affine_size();
+  const bool plane = dim == 2 && !axisymmetric;
   v_apart.resize(3 * (std::size_t) atom->nmax);
   rows_apart.resize(6 * (std::size_t) atom->nmax);
 
@@ -186,8 +190,8 @@ void FixMPM::averaged_material(const double *L, double dt)
         double more = 0.0;    // scale - 1
         if (rows_apart[i + p] > 0.0) {
           const double q = (v_apart[3 * (bigint) (i + p)] - change) / (1.0 + change);
-          const double root = dim == 2 ? std::sqrt(1.0 + q) : std::cbrt(1.0 + q);
-          more = q / (dim == 2 ? root + 1.0 : root * (root + 1.0) + 1.0);
+          const double root = plane ? std::sqrt(1.0 + q) : std::cbrt(1.0 + q);
+          more = q / (plane ? root + 1.0 : root * (root + 1.0) + 1.0);
         }
         double *to = averaged + nL * p;
         for (int c = 0; c < nL; c++) to[c] = (1.0 + more) * from[c];
@@ -195,6 +199,7 @@ void FixMPM::averaged_material(const double *L, double dt)
         for (int r = 0; r < dim; r++)
           for (int c = 0; c < dim; c++)
             to[dim * c + r] += more / dt * (total ? F[3 * r + c] : r == c);
+        if (axisymmetric) hoop[i + p] += more * (1.0 + hoop[i + p]);
       }
       material_update(r, run, i, n, averaged, dt);
     }

@@ -138,6 +138,7 @@ double FixMPM::bytes_per_point() const
   bytes += (1 + 1 + 9 + 6) * sizeof(double);    // mass, V0, F, stress
   bytes += own_size() * sizeof(double);
   if (extent != NO_SIZE) bytes += 3 * sizeof(double);
+  if (axisymmetric) bytes += sizeof(double);
   int nhistory = 0;
   for (auto *material : materials) nhistory += material->nhistory;
   return bytes + nhistory * sizeof(double);
@@ -199,6 +200,6 @@ double FixMPM::memory_usage()
   bytes += runs.capacity() * sizeof(Run) + active.capacity() * sizeof(ActiveBlock);
   bytes += (xnew.capacity() + external_nodes.capacity() + zero_volume.capacity() +
             v_apart.capacity() + rows_apart.capacity() + nodes_apart.capacity() +
-            gradients.capacity() + tau_averaged.capacity()) * sizeof(double);
+            gradients.capacity() + tau_averaged.capacity() + hoop.capacity()) * sizeof(double);
   return bytes + 2.0 * MAX_TILE_NODES * 8 * sizeof(double);
 }

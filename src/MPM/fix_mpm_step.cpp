@@ -142,7 +142,8 @@ void FixMPM::grid_to_points()
   }
   grid->copy_aliases();
   if (moves_late()) xnew.resize(3 * (std::size_t) atom->nlocal);
-  const bool fbar = averages_strain() && scheme == USL;
+  const bool fbar = averages_strain() && scheme == USL, round = axisymmetric && scheme == USL;
+  if (round) hoop.resize(atom->nmax);
   const bool apart = strains_apart(), in_C = kernel.affine && !apart;
   if (fbar && !in_C) gradients.resize(affine_size() * (std::size_t) atom->nmax);
 
@@ -157,8 +158,10 @@ void FixMPM::grid_to_points()
         const int last = std::min(i + BATCH, runs[k].last);
         double *const out = fbar ? gradients.data() + affine_size() * (bigint) i : L;
         if (apart && scheme == USL) kernel.g2p_gradient(r, s, i, last, base, tile_load, out);
+        if (round) note_radii(i, last);
         drifted |= kernel.g2p(r, s, i, last, base, tile_load,
                               kernel.affine || scheme != USL ? nullptr : out);
+        if (round) hoop_of_motion(r, i, last);
         if (scheme == USL && !fbar)
           material_update(r, runs[k], i, last - i, in_C ? r.C + (bigint) affine_size() * i : L,
                           step_dt());
@@ -266,6 +269,10 @@ void FixMPM::gradient_and_material(double dt, double shift)
   const TransferStep s = step_data();
   const bool fbar = averages_strain();
   if (fbar) gradients.resize(affine_size() * (std::size_t) atom->nmax);
+  if (axisymmetric) {
+    hoop.resize(atom->nmax);
+    v_apart.resize(3 * (std::size_t) atom->nmax);
+  }
   double batch_gradients[9 * BATCH];
   for (const auto &a : active) {
     int base[3];
@@ -276,6 +283,7 @@ void FixMPM::gradient_and_material(double dt, double shift)
         double *const L = fbar ? gradients.data() + affine_size() * (bigint) i : batch_gradients;
         kernel.g2p_gradient(r, s, i, last, base, tile_load, L);
         if (shift != 0.0 && !total) shift_gradient(lattice.dim, last - i, shift, L);
+        if (axisymmetric) hoop_of_nodes(r, s, i, last, base, dt, total ? 0.0 : shift);
         if (!fbar) material_update(r, runs[k], i, last - i, L, dt);
       }
   }
@@ -294,7 +302,7 @@ void FixMPM::material_update(const PointRows &r, const Run &run, int first, int 
   FixMPMMaterial *material = run.material;
   double *F = r.F + 9 * (bigint) first, *tau = r.tau + 6 * (bigint) first;
   const auto load = total ? batch_kernels->load_total : batch_kernels->load;
-  load(b, n, dt, L, F, tau, r.vol0 + first);
+  load(b, n, dt, L, F, tau, r.vol0 + first, axisymmetric ? hoop.data() + first : nullptr);
   b.history = reinterpret_cast<double(*)[BATCH]>(history_batch.data());
   b.time = current_time();
 
@@ -395,20 +403,20 @@ void FixMPM::map_to_nodes(P2G p2g)
 
 /* ----------------------------------------------------------------------
    points of a run to the tile. In the total frame their first Piola-Kirchhoff stress is made here,
-   a batch at a time: to read F and tau costs less than to write and read another matrix
+   a batch at a time: to read F and tau costs less than to write and read another matrix.
+   With an axis of symmetry, the hoop stress adds to the force
 ------------------------------------------------------------------------- */
 
 void FixMPM::map_run(P2G p2g, const PointRows &r, const TransferStep &s, const Run &run,
                      const int base[3], int box[6])
 {
-  if (!total || p2g == kernel.p2g_momentum) {
+  if (!(total || axisymmetric) || p2g == kernel.p2g_momentum) {
     p2g(r, s, run.first, run.last, base, tile, box);
     return;
   }
-  double P[9 * BATCH + 8];
+  double P[9 * BATCH + 8], f[3 * BATCH + 8];
   for (bigint i = run.first; i < run.last; i += BATCH) {
     const int n = (int) std::min<bigint>(BATCH, run.last - i);
-    batch_kernels->first_piola(n, r.F + 9 * i, r.tau + 6 * i, P);
     PointRows b = r;    // as if the batch were all
     b.x += 3 * i;
     b.v += 3 * i;
@@ -417,7 +425,16 @@ void FixMPM::map_run(P2G p2g, const PointRows &r, const TransferStep &s, const R
     b.vol0 += i;
     b.mass += i;
     b.guarded -= (int) i;
-    b.P = P;
+    b.tau += 6 * i;
+    if (r.size) b.size += 3 * i;
+    if (total) {
+      batch_kernels->first_piola(n, r.F + 9 * i, r.tau + 6 * i, P);
+      b.P = P;
+    }
+    if (axisymmetric) {
+      add_hoop_force(r, i, n, f);
+      b.f = f;
+    }
     p2g(b, s, 0, n, base, tile, box);
   }
 }
@@ -450,7 +467,8 @@ void FixMPM::map_some(const PointRows &r, const TransferStep &s, P2G p2g,
 }
 
 /* ----------------------------------------------------------------------
-   the internal force of the Cauchy stress -I is the gradient of the volume
+   the internal force of the Cauchy stress -I is the gradient of the volume; with an axis of
+   symmetry, that of the area in the plane, times the length of the circle through the node
 ------------------------------------------------------------------------- */
 
 void FixMPM::map_gradient(Content content, const std::vector<char> &near,
@@ -468,12 +486,16 @@ void FixMPM::map_gradient(Content content, const std::vector<char> &near,
   map_some(r, s, kernel.p2g_force, near, lane, 3, [&](int i) {
     double *const tau = r.tau + 6 * (std::size_t) i;
     const double weight =
-        content == OF_MASS ? atom->rmass[i] / atom->vfrac[i] : points->jacobian(i);
+        (content == OF_MASS ? atom->rmass[i] / atom->vfrac[i] : points->jacobian(i)) /
+        circle(atom->x[i][0]);
     for (int k = 0; k < 6; k++) tau[k] = k < 3 ? -weight : 0.0;
   });
   gradient.resize(3 * grid->nnodes());
-  for (int64_t n = 0; n < grid->nnodes(); n++)
-    for (int d = 0; d < 3; d++) gradient[3 * n + d] = nodes_apart[n * kernel.nreal + lane + d];
+  for (int64_t n = 0; n < grid->nnodes(); n++) {
+    const double length = node_circle((int) (n / NODES_PER_BLOCK), (int) (n % NODES_PER_BLOCK));
+    for (int d = 0; d < 3; d++)
+      gradient[3 * n + d] = length * nodes_apart[n * kernel.nreal + lane + d];
+  }
 }
 
 /* ---------------------------------------------------------------------- */
@@ -484,7 +506,9 @@ void FixMPM::map_volume(const std::vector<char> &near, std::vector<double> &shar
   PointRows r = rows();
   r.mass = rows_apart.data();
   map_some(r, step_data(), kernel.p2g_momentum, near, 3, 1,
-           [&](int i) { rows_apart[i] = atom->vfrac[i] * points->jacobian(i); });
+           [&](int i) {
+             rows_apart[i] = atom->vfrac[i] * points->jacobian(i) / circle(atom->x[i][0]);
+           });
   const double h = lattice.h, inverse = 1.0 / (lattice.dim == 3 ? h * h * h : h * h);
   share.resize(grid->nnodes());
   for (int64_t n = 0; n < grid->nnodes(); n++)

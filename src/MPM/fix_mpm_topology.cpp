@@ -94,9 +94,10 @@ void FixMPM::update_sizes()
     }
 }
 
-/** Half of the edge of a cube with the initial volume of the point, in node spacings. */
+/** Half of the edge of a cube (2d: square) with the initial volume of the point, in node spacings. */
 double FixMPM::half_size(int i) const
 {
+  if (axisymmetric) return 0.5 * sqrt(atom->vfrac[i] / circle(reference_radius(i))) / lattice.h;
   return 0.5 * (lattice.dim == 3 ? cbrt(atom->vfrac[i]) : sqrt(atom->vfrac[i])) / lattice.h;
 }
 

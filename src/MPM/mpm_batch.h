@@ -18,14 +18,15 @@ struct BatchKernels {
   /** Kinematics of n points: A = dt L, F <- (I + A) F, J, Jold; stress of the start of the step.
    *  L: [n][dim*dim] column-major velocity gradient, F: [n][9] row-major, tau: [n][6] Kirchhoff
    *  stress, vol0: [n].  In 2d (plane strain) the entries of A and F that are always zero are left
-   *  alone: the batch must have been zero when it was made. */
+   *  alone: the batch must have been zero when it was made. hoop: [n] strain of the step around the
+   *  axis, A_zz and factor 1 + A_zz of F_zz; for the axisymmetric table only, else not looked at. */
   void (*load)(Batch &, int n, double dt, const double *L, const double *F, const double *tau,
-               const double *vol0);
+               const double *vol0, const double *hoop);
 
   /** The same in the total frame, where L is the gradient with respect to the reference position:
    *  F <- F + dt L, and A = dt L F_old^-1. */
   void (*load_total)(Batch &, int n, double dt, const double *L, const double *F, const double *tau,
-                     const double *vol0);
+                     const double *vol0, const double *hoop);
 
   /** P: [n][dim*dim] first Piola-Kirchhoff stress tau F^-T, column-major; F, tau as in load. */
   void (*first_piola)(int n, const double *F, const double *tau, double *P);
@@ -34,7 +35,9 @@ struct BatchKernels {
    *  positive (NaN included); nothing is written for these. */
   int (*store)(const Batch &, double *F, double *tau);
 
-  static const BatchKernels *select(int dim, const char *isa = nullptr);
+  /** The table for dimension 2 or 3; hoop: for dimension 2 with an axis of symmetry, where F_zz
+   *  changes, too. */
+  static const BatchKernels *select(int dim, const char *isa = nullptr, bool hoop = false);
 };
 
 }    // namespace MPM_NS

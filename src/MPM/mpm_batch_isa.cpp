@@ -102,9 +102,9 @@ MPM_INLINE void load_one(Batch &batch, Column *A, int p, double dt, const double
   for (int c = 0; c < 6; c++) batch.stress[c][p] = tau[6 * p + c];
 }
 
-template <int DIM, bool TOTAL>
+template <int DIM, bool TOTAL, bool HOOP>
 void load(Batch &batch, int n, double dt, const double *L, const double *F, const double *tau,
-          const double *vol0)
+          const double *vol0, const double *hoop)
 {
   batch.n = n;
   batch.dt = dt;
@@ -188,7 +188,15 @@ void load(Batch &batch, int n, double dt, const double *L, const double *F, cons
       batch.F[3][q] = gyx;
       batch.F[4][q] = gyy;
       batch.Jold[q] = Jold;
-      batch.J[q] = Fzz * (gxx * gyy - gxy * gyx);
+      if constexpr (HOOP) {
+        // a point that would cross the axis is a bad one, also when it turns over in the plane
+        const double around = 1.0 + hoop[q], gzz = Fzz * around;
+        batch.A[8][q] = hoop[q];
+        batch.F[8][q] = gzz;
+        const double J = gzz * (gxx * gyy - gxy * gyx);
+        batch.J[q] = around > 0.0 ? J : -1.0;
+      } else
+        batch.J[q] = Fzz * (gxx * gyy - gxy * gyx);
       const double inv = 1.0 / Jold;
       for (int c = 0; c < 4; c++) batch.stress[c][q] *= inv;
       batch.stress[4][q] = batch.stress[5][q] = 0.0;
@@ -197,7 +205,7 @@ void load(Batch &batch, int n, double dt, const double *L, const double *F, cons
 }
 
 /** Writes the points p..p+3; tau: columns. */
-template <int DIM>
+template <int DIM, bool HOOP>
 MPM_INLINE void store_four(const Batch &batch, const Column *tau_columns, int p, double *F,
                            double *tau)
 {
@@ -218,11 +226,12 @@ MPM_INLINE void store_four(const Batch &batch, const Column *tau_columns, int p,
       double *row = F + 9 * (p + k);
       half<0>(r[k]).store(row);
       half<1>(r[k]).store(row + 3);
+      if constexpr (HOOP) row[8] = batch.F[8][p + k];
     }
   }
 }
 
-template <int DIM> int store(const Batch &batch, double *F, double *tau)
+template <int DIM, bool HOOP> int store(const Batch &batch, double *F, double *tau)
 {
   constexpr int NTAU = DIM == 3 ? 6 : 4;
   alignas(64) double tau_columns[NTAU][BATCH];
@@ -236,7 +245,7 @@ template <int DIM> int store(const Batch &batch, double *F, double *tau)
 
   int p = 0;
   if (bad == 0)
-    for (; p + 4 <= n; p += 4) store_four<DIM>(batch, tau_columns, p, F, tau);
+    for (; p + 4 <= n; p += 4) store_four<DIM, HOOP>(batch, tau_columns, p, F, tau);
   for (; p < n; p++) {
     if (bad && !(batch.J[p] > 0.0)) continue;
     for (int c = 0; c < 9; c++) F[9 * p + c] = batch.F[c][p];
@@ -310,12 +319,16 @@ template <int DIM> void first_piola(int n, const double *F, const double *tau, d
 }    // namespace
 
 namespace MPM_NS {
-const BatchKernels *MPM_CONCAT(mpm_batch_, MPM_ISA)(int dim);
+const BatchKernels *MPM_CONCAT(mpm_batch_, MPM_ISA)(int dim, bool hoop);
 }
 
-const BatchKernels *MPM_NS::MPM_CONCAT(mpm_batch_, MPM_ISA)(int dim)
+const BatchKernels *MPM_NS::MPM_CONCAT(mpm_batch_, MPM_ISA)(int dim, bool hoop)
 {
-  static const BatchKernels solid = {load<3, false>, load<3, true>, first_piola<3>, store<3>},
-                            plane = {load<2, false>, load<2, true>, first_piola<2>, store<2>};
-  return dim == 3 ? &solid : &plane;
+  static const BatchKernels solid = {load<3, false, false>, load<3, true, false>, first_piola<3>,
+                                     store<3, false>},
+                            plane = {load<2, false, false>, load<2, true, false>, first_piola<2>,
+                                     store<2, false>},
+                            axial = {load<2, false, true>, load<2, true, true>, first_piola<2>,
+                                     store<2, true>};
+  return dim == 3 ? &solid : hoop ? &axial : &plane;
 }

@@ -386,6 +386,12 @@ void PairMPMPenalty::init_style()
                "give each body a fix mpm",
                fields.empty() ? "is no fix mpm" : "is only one fix mpm");
 
+  for (const auto *field : fields)
+    if (field->axisymmetric)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Pair style mpm/penalty cannot be used with axisymmetric fix mpm {}, where points "
+                 "are rings: use fix mpm/contact", field->id);
+
   const std::size_t nfields = fields.size(), n = atom->ntypes + 1;
   coupled.assign(nfields * nfields, 0);
   for (std::size_t a = 0; a < nfields; a++)
