@@ -150,10 +150,97 @@ TEST(Library, MaterialFilesAreComplete)
                            "Ice",
                            "Snow_Stomakhin",
                            "Sand_dry_DP",
+                           "Sand_Toyoura_wet_DP",
+                           "Gelatin_10_ballistic",
                            "Clay_London_CC",
                            "Concrete_C30_MC",
                            "Sandstone_Berea_MC"})
     EXPECT_TRUE(names.count(name)) << name;
+}
+
+// wet sand, gelatin, and the failure of Weldox: what the laws make of the values is what the sources say
+
+TEST(Library, WetSandIsAtCriticalState)
+{
+  const auto material = make(definition("Sand_Toyoura_wet_DP"));
+  // density of saturated sand from void ratio 0.915, grains of 2650, water of 1000
+  EXPECT_NEAR(material->density(), (2650 + 0.915 * 1000) / 1.915, 1.0);
+  MaterialPoint p(*material);
+  const double G = 125 * 1e5 * std::pow(2.97 - 0.915, 2) / 1.915;
+  const double K = 2 * G * 1.05 / (3 * 0.9);
+  EXPECT_NEAR(p.wave_speed(), std::sqrt((K + 4 * G / 3) / material->density()),
+              0.002 * p.wave_speed());
+  // squeezed to about 100 kPa, then triaxial compression at constant volume: q = 1.25 p
+  move_to(p, {0.9987, 0, 0, 0, 0.9987, 0, 0, 0, 0.9987});
+  const double pressure = p.pressure();
+  EXPECT_NEAR(pressure, 1e5, 3e4);
+  for (int i = 1; i <= 100; i++) {
+    const double a = 0.9987 * std::exp(-0.001 * i), b = 0.9987 * std::exp(0.0005 * i);
+    move_to(p, {a, 0, 0, 0, b, 0, 0, 0, b});
+  }
+  EXPECT_NEAR(p.vonmises() / p.pressure(), 1.25, 1e-4);
+  EXPECT_NEAR(p.pressure(), pressure, 1e-6 * pressure);
+}
+
+TEST(Library, GelatinFollowsItsHugoniot)
+{
+  const auto material = make(definition("Gelatin_10_ballistic"));
+  for (const double eta : {0.02, 0.05, 0.1}) {
+    MaterialPoint p(*material);
+    move_to(p, {1 - eta, 0, 0, 0, 1, 0, 0, 0, 1}, 1e-6);
+    const double us = 1520 / (1 - 2.0 * eta), up = eta * us;
+    EXPECT_NEAR(p.pressure(), 1030 * us * up, 0.02 * p.pressure()) << eta;
+  }
+  MaterialPoint p(*material);
+  EXPECT_NEAR(p.wave_speed(), 1520, 2);
+  // shear: yields at 0.22 MPa, fails at the plastic strain 0.9
+  double failed = 0.0;
+  for (int i = 1; i <= 200 && !failed; i++) {
+    move_to(p, {1, 0.01 * i, 0, 0, 1, 0, 0, 0, 1});
+    for (size_t k = 0; k < material->history().size(); k++) {
+      if (material->history()[k].name == "damage" && p.history(k) >= 1.0) failed = 0.01 * i;
+    }
+    if (i > 60 && !failed) EXPECT_NEAR(p.vonmises(), 0.22e6, 1.0);
+  }
+  // at a shear of sqrt(3) (plastic + elastic strain), with steps of 0.01 and some of the elastic shear
+  // lost as it turns
+  EXPECT_NEAR(failed, std::sqrt(3.0) * (0.9 + 0.22e6 / (3 * 0.85e6)), 0.03);
+  EXPECT_EQ(p.vonmises(), 0.0);
+}
+
+TEST(Library, WeldoxFailsAtTheStrainsOfItsTests)
+{
+  const auto material = make(definition("Weldox_460E_failure"));
+  const auto &variables = material->history();
+  size_t damage = 0, strain = 0;
+  for (size_t k = 0; k < variables.size(); k++) {
+    if (variables[k].name == "damage") damage = k;
+    if (variables[k].name == "eplastic") strain = k;
+  }
+  // uniaxial stress: triaxiality 1/3; simple shear: 0
+  for (const bool shear : {false, true}) {
+    MaterialPoint p(*material);
+    if (shear) {
+      for (int i = 1; i < 10000 && p.history(damage) < 1.0; i++)
+        move_to(p, {1, 1e-3 * i, 0, 0, 1, 0, 0, 0, 1});
+    } else {
+      double lateral = 1.0;
+      for (int i = 1; i < 10000 && p.history(damage) < 1.0; i++) {
+        const double axial = std::exp(2e-4 * i);
+        double low = lateral * 0.9997, high = lateral * 1.0001;
+        const MaterialPoint before(p);
+        for (int k = 0; k < 50; k++) {
+          lateral = 0.5 * (low + high);
+          MaterialPoint trial(before);
+          move_to(trial, {axial, 0, 0, 0, lateral, 0, 0, 0, lateral});
+          (trial.stress(1) > 0.0 ? high : low) = lateral;
+          if (trial.history(damage) >= 1.0) break;
+        }
+        move_to(p, {axial, 0, 0, 0, lateral, 0, 0, 0, lateral});
+      }
+    }
+    EXPECT_NEAR(p.history(strain), shear ? 0.636 + 1.936 : 1.355612, 2e-3) << shear;
+  }
 }
 
 /* ---------------------------------------------------------------------- units */

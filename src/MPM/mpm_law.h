@@ -65,6 +65,9 @@ struct Parameter {
   const char *meaning;
 };
 
+/** Declarations that several laws share. */
+constexpr Parameter SHEAR_MODULUS = {"", "G", "pressure", POSITIVE, REQUIRED, "shear modulus"};
+
 /** Declaration of one history variable. */
 struct HistoryDeclaration {
   const char *name;    ///< as used by compute mpm/atom
@@ -74,6 +77,7 @@ struct HistoryDeclaration {
 };
 /** Initial values of history variables; INITIALIZED: by initialize(). */
 enum { ZERO = -1, ONE = -2, INITIALIZED = -3 };
+constexpr HistoryDeclaration PLASTIC_STRAIN = {"eplastic", ZERO, "1", "equivalent plastic strain"};
 
 /** Shares of the stress: which ones a law needs from the last step, which ones a viscosity adds. When
  *  these overlap, the material keeps what viscosities add apart and out of the law's sight. */

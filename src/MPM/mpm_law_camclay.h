@@ -29,7 +29,7 @@ namespace {
     static constexpr const char *name = "camclay";
     static constexpr const char *meaning = "modified Cam-Clay";
     static constexpr Parameter parameters[] = {
-        {"", "G", "pressure", POSITIVE, REQUIRED, "shear modulus"},
+        SHEAR_MODULUS,
         {"", "M", "1", POSITIVE, REQUIRED, "slope of the critical state line"},
         {"", "LAMBDA", "1", POSITIVE, REQUIRED,
          "slope of the compression line, void ratio over ln p"},
@@ -39,7 +39,7 @@ namespace {
         {"", "PC", "pressure", POSITIVE, REQUIRED, "initial preconsolidation pressure"}};
     static constexpr HistoryDeclaration history[] = {
         MPM_ELASTIC_STRAIN_HISTORY,
-        {"eplastic", ZERO, "1", "equivalent plastic strain"},
+        PLASTIC_STRAIN,
         {"preconsolidation", CC_PC, "pressure", "preconsolidation pressure (Kirchhoff)"}};
     static constexpr int nhistory(const LawParameters &) { return ELASTIC_STRAIN_ROWS + 2; }
     static constexpr const char *check(const LawParameters &p)

@@ -43,7 +43,7 @@ namespace {
         {"plane", "PLANE", FLAG, FRACTION, 0.0, "equal to Mohr-Coulomb in plane strain"}};
     static constexpr HistoryDeclaration history[] = {
         MPM_ELASTIC_STRAIN_HISTORY,
-        {"eplastic", ZERO, "1", "equivalent plastic strain"},
+        PLASTIC_STRAIN,
         {"gap", ZERO, "1", "logarithmic volume strain between separated grains"}};
     static constexpr int nhistory(const LawParameters &) { return ELASTIC_STRAIN_ROWS + 2; }
     static constexpr const char *check(const LawParameters &p)

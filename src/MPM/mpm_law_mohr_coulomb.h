@@ -106,7 +106,7 @@ namespace {
         {"residual", "RATE", "1", NOT_NEGATIVE, 0.0, "softening per plastic strain"}};
     static constexpr HistoryDeclaration history[] = {
         MPM_ELASTIC_STRAIN_HISTORY,
-        {"eplastic", ZERO, "1", "equivalent plastic strain"},
+        PLASTIC_STRAIN,
         {"gap", ZERO, "1", "logarithmic volume strain between separated parts"}};
     static constexpr int nhistory(const LawParameters &) { return ELASTIC_STRAIN_ROWS + 2; }
     static constexpr const char *check(const LawParameters &p)

@@ -39,7 +39,7 @@ namespace {
         {"fraction", "FRACTION", "1", {0.1, 1.0, true}, 0.6, "solid volume fraction at RHO"}};
     static constexpr HistoryDeclaration history[] = {
         MPM_ELASTIC_STRAIN_HISTORY,
-        {"eplastic", ZERO, "1", "equivalent plastic strain"},
+        PLASTIC_STRAIN,
         {"gap", ZERO, "1", "logarithmic volume strain between separated grains"},
         {"inertial", ZERO, "1", "inertial number"}};
     static constexpr int nhistory(const LawParameters &) { return ELASTIC_STRAIN_ROWS + 3; }

@@ -36,7 +36,7 @@ namespace {
         {"", "ALPHA0", "1", {-UNBOUNDED, 0.0, true}, REQUIRED, "initial value of alpha"}};
     static constexpr HistoryDeclaration history[] = {
         MPM_ELASTIC_STRAIN_HISTORY,
-        {"eplastic", ZERO, "1", "equivalent plastic strain"},
+        PLASTIC_STRAIN,
         {"alpha", NACC_ALPHA, "1", "logarithm of the plastic volume ratio"}};
     static constexpr int nhistory(const LawParameters &) { return ELASTIC_STRAIN_ROWS + 2; }
 

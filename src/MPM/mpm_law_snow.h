@@ -22,7 +22,8 @@ namespace {
    *
    *  Elastic energy that hardening adds to the strain that is there is taken from the plastic work.
    *  The box of stretches is no yield surface with associated flow: the plastic work is negative
-   *  where snow at THETAS is drawn out under compression from its sides. */
+   *  where snow at THETAS is drawn out under compression from its sides. Clamping the work would
+   *  not close the balance of energy, another direction of flow would be another law (nacc). */
   struct LawSnow : PrincipalReturn<LawSnow> {
     static constexpr const char *name = "snow";
     static constexpr const char *meaning = "snow with critical compression and stretch";

@@ -19,8 +19,7 @@ namespace {
     static constexpr const char *name = "elastic";
     static constexpr const char *meaning = "elastic shear, no yield";
     static constexpr StressShare share = DEVIATOR;
-    static constexpr Parameter parameters[] = {
-        {"", "G", "pressure", POSITIVE, REQUIRED, "shear modulus"}};
+    static constexpr Parameter parameters[] = {SHEAR_MODULUS};
 
     static void update(const LawParameters &p, Batch &b, History)
     {

@@ -161,7 +161,7 @@ namespace {
     static constexpr StressShare share = DEVIATOR;
     static constexpr Range EXPONENT{1.0, UNBOUNDED, true};
     static constexpr Parameter parameters[] = {
-        {"", "G", "pressure", POSITIVE, REQUIRED, "shear modulus"},
+        SHEAR_MODULUS,
         {"", "SIGMAY", "pressure", NOT_NEGATIVE, REQUIRED, "yield stress in uniaxial tension"},
         {"hardening linear", "H", "pressure", NOT_NEGATIVE, 0.0,
          "slope of flow stress over plastic strain"},
@@ -185,7 +185,7 @@ namespace {
         {"", "E", "1", POSITIVE, REQUIRED, "plastic strain"},
         {"", "SIGMA", "pressure", NOT_NEGATIVE, REQUIRED, "flow stress there"}};
     static constexpr HistoryDeclaration history[] = {
-        {"eplastic", ZERO, "1", "equivalent plastic strain"},
+        PLASTIC_STRAIN,
         {"backxx", ZERO, "pressure", "back stress times J"},
         {"backyy", ZERO, "pressure", "back stress times J"},
         {"backzz", ZERO, "pressure", "back stress times J"},

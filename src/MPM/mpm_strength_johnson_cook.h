@@ -94,7 +94,7 @@ namespace {
     static constexpr const char *meaning = "Johnson-Cook plasticity with rate and temperature";
     static constexpr StressShare share = DEVIATOR;
     static constexpr Parameter parameters[] = {
-        {"", "G", "pressure", POSITIVE, REQUIRED, "shear modulus"},
+        SHEAR_MODULUS,
         {"", "A", "pressure", NOT_NEGATIVE, REQUIRED, "yield stress"},
         {"", "B", "pressure", NOT_NEGATIVE, REQUIRED, "hardening B e^N"},
         {"", "N", "1", POSITIVE, REQUIRED, "exponent of the plastic strain e"},
@@ -103,8 +103,7 @@ namespace {
         {"", "M", "1", NOT_NEGATIVE, 0.0, "exponent of the temperature, 0: no thermal softening"},
         {"", "TMELT", "temperature", {-UNBOUNDED, UNBOUNDED, false}, 1.0, "melting temperature"},
         {"", "TREF", "temperature", {-UNBOUNDED, UNBOUNDED, false}, 0.0, "reference temperature"}};
-    static constexpr HistoryDeclaration history[] = {
-        {"eplastic", ZERO, "1", "equivalent plastic strain"}};
+    static constexpr HistoryDeclaration history[] = {PLASTIC_STRAIN};
     static constexpr int nhistory(const LawParameters &) { return 1; }
     static constexpr bool needs_temperature(const LawParameters &p) { return p.value[JC_M] > 0.0; }
     static constexpr const char *check(const LawParameters &p)

@@ -118,8 +118,7 @@ namespace {
         {"melt", "MGAMMA", "1", NOT_NEGATIVE, 0.0, "Gruneisen parameter at reference"},
         {"tref", "TREF", "temperature", NOT_NEGATIVE, 300.0, "reference temperature"}};
     static constexpr HistoryDeclaration history[] = {
-        {"eplastic", ZERO, "1", "equivalent plastic strain"},
-        {"shear_energy", ZERO, "pressure", "elastic energy of the deviator"}};
+        PLASTIC_STRAIN, {"shear_energy", ZERO, "pressure", "elastic energy of the deviator"}};
     static constexpr int nhistory(const LawParameters &) { return 2; }
     static constexpr bool needs_temperature(const LawParameters &p)
     {

@@ -89,7 +89,7 @@ namespace {
     static constexpr const char *meaning = "Zerilli-Armstrong plasticity of bcc and fcc metals";
     static constexpr StressShare share = DEVIATOR;
     static constexpr Parameter parameters[] = {
-        {"", "G", "pressure", POSITIVE, REQUIRED, "shear modulus"},
+        SHEAR_MODULUS,
         {"", "C0", "pressure", NOT_NEGATIVE, REQUIRED, "athermal stress, with that of grain size"},
         {"form bcc", "C1", "pressure", NOT_NEGATIVE, 0.0, "thermal stress at absolute zero"},
         {"form bcc", "C3", "1/temperature", NOT_NEGATIVE, 0.0, "decay with temperature"},
@@ -101,8 +101,7 @@ namespace {
         {"form fcc", "C4", "1/temperature", NOT_NEGATIVE, 0.0, "effect of the rate"},
         {"melt", "TMELT", "temperature", POSITIVE, 0.0, "melting temperature, 0: none"},
         {"rate", "RATE", "1/time", POSITIVE, 1.0, "unit of the plastic strain rate, 1/s"}};
-    static constexpr HistoryDeclaration history[] = {
-        {"eplastic", ZERO, "1", "equivalent plastic strain"}};
+    static constexpr HistoryDeclaration history[] = {PLASTIC_STRAIN};
     static constexpr int nhistory(const LawParameters &) { return 1; }
     static constexpr bool needs_temperature(const LawParameters &) { return true; }
     static constexpr const char *check(const LawParameters &p)

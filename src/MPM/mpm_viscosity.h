@@ -24,6 +24,27 @@ namespace {
     return std::sqrt(c * c + a * a) + a;
   }
 
+  /** Declarations and viscous stress of fluids with a power of the shear rate. */
+  constexpr Parameter CONSISTENCY = {"", "K", "pressure time^N", POSITIVE, REQUIRED, "consistency"};
+  struct PowerOfRate {
+    double k, n, steepness;
+
+    PowerOfRate(double k, double n) : k(k), n(n), steepness(max(n, 1.0)) {}
+
+    /** Apparent viscosity of the stress yield + K rate^N. */
+    MPM_INLINE double viscosity(double rate, double yield) const
+    {
+      const double g = max(rate, 1e-100);
+      return (yield + k * pow(g, n)) / g;
+    }
+  };
+
+  /** History of a generalized Newtonian fluid; at rest it has the viscosity of this parameter. */
+  constexpr HistoryDeclaration apparent_viscosity(int parameter)
+  {
+    return {"viscosity", parameter, "pressure time", "apparent viscosity"};
+  }
+
   /** Loops of a generalized Newtonian fluid (R.B. Bird, R.C. Armstrong, O. Hassager, Dynamics of
    *  Polymeric Liquids 1, 1987, ch. 4): adds 2 eta dev(D) with an apparent viscosity eta of the
    *  shear rate sqrt(2 dev(D):dev(D)), D the strain rate half-way in the step.

@@ -21,28 +21,27 @@ namespace {
     static constexpr const char *meaning = "power-law fluid";
     enum { K, N, MUMIN, MUMAX };
     static constexpr Parameter parameters[] = {
-        {"", "K", "pressure time^N", POSITIVE, REQUIRED, "consistency"},
+        CONSISTENCY,
         {"", "N", "1", POSITIVE, REQUIRED, "exponent, below 1: thins with the shear rate"},
         {"", "MUMIN", "pressure time", NOT_NEGATIVE, REQUIRED, "smallest viscosity"},
         {"", "MUMAX", "pressure time", POSITIVE, REQUIRED, "largest viscosity"}};
-    static constexpr HistoryDeclaration history[] = {
-        {"viscosity", MUMAX, "pressure time", "apparent viscosity"}};
+    static constexpr HistoryDeclaration history[] = {apparent_viscosity(MUMAX)};
     static constexpr const char *check(const LawParameters &p)
     {
       return p.value[MUMAX] >= p.value[MUMIN] ? nullptr : "MUMAX must not be below MUMIN";
     }
 
-    double k, n, mumin, mumax, steepness;
+    PowerOfRate power;
+    double mumin, mumax, steepness;
 
     explicit ViscosityPower(const LawParameters &p) :
-        k(p.value[K]), n(p.value[N]), mumin(p.value[MUMIN]), mumax(p.value[MUMAX]),
-        steepness(max(n, 1.0))
+        power(p.value[K], p.value[N]), mumin(p.value[MUMIN]), mumax(p.value[MUMAX]),
+        steepness(power.steepness)
     {
     }
     MPM_INLINE double apparent(double rate) const
     {
-      const double g = max(rate, 1e-100);
-      return min(max(k * pow(g, n) / g, mumin), mumax);
+      return min(max(power.viscosity(rate, 0.0), mumin), mumax);
     }
   };
 

@@ -29,8 +29,7 @@ namespace {
         {"", "MU", "pressure time", NOT_NEGATIVE, REQUIRED, "plastic viscosity"},
         {"", "TAUY", "pressure", NOT_NEGATIVE, REQUIRED, "yield stress in shear"},
         {"", "MUMAX", "pressure time", POSITIVE, REQUIRED, "viscosity below yield"}};
-    static constexpr HistoryDeclaration history[] = {
-        {"viscosity", MUMAX, "pressure time", "apparent viscosity"}};
+    static constexpr HistoryDeclaration history[] = {apparent_viscosity(MUMAX)};
     static constexpr const char *check(const LawParameters &p)
     {
       return p.value[MUMAX] > p.value[MU] ? nullptr : "MUMAX must be above MU";
@@ -55,24 +54,23 @@ namespace {
     static constexpr const char *meaning = "Herschel-Bulkley fluid, bi-viscous";
     enum { K, N, TAUY, MUMAX };
     static constexpr Parameter parameters[] = {
-        {"", "K", "pressure time^N", POSITIVE, REQUIRED, "consistency"},
+        CONSISTENCY,
         {"", "N", "1", POSITIVE, REQUIRED, "exponent of the shear rate"},
         {"", "TAUY", "pressure", NOT_NEGATIVE, REQUIRED, "yield stress in shear"},
         {"", "MUMAX", "pressure time", POSITIVE, REQUIRED, "largest viscosity, that below yield"}};
-    static constexpr HistoryDeclaration history[] = {
-        {"viscosity", MUMAX, "pressure time", "apparent viscosity"}};
+    static constexpr HistoryDeclaration history[] = {apparent_viscosity(MUMAX)};
 
-    double k, n, tauy, mumax, steepness;
+    PowerOfRate power;
+    double tauy, mumax, steepness;
 
     explicit ViscosityHerschelBulkley(const LawParameters &p) :
-        k(p.value[K]), n(p.value[N]), tauy(p.value[TAUY]), mumax(p.value[MUMAX]),
-        steepness(max(n, 1.0))
+        power(p.value[K], p.value[N]), tauy(p.value[TAUY]), mumax(p.value[MUMAX]),
+        steepness(power.steepness)
     {
     }
     MPM_INLINE double apparent(double rate) const
     {
-      const double g = max(rate, 1e-100);
-      return min((tauy + k * pow(g, n)) / g, mumax);
+      return min(power.viscosity(rate, tauy), mumax);
     }
   };
 
