@@ -393,3 +393,25 @@ TEST_P(MuslApic, ShearedBlockGainsNoEnergy)
 INSTANTIATE_TEST_SUITE_P(Pitfall, MuslApic, ::testing::Values("transfer apic shape quadratic", "transfer apic shape cubic",
                                            "transfer aflip 1.0", "transfer tpic shape cubic",
                                            "transfer tpic", "transfer apic shape cpgimp"));
+
+// points that cross their block without leaving its tile, while neighbor lists are not made, came to
+// reach into a block that did not exist
+
+TEST(Pitfall, LongDriftWithinATile)
+{
+  for (const int dim : {2, 3}) {
+    Scene run;
+    run.commands(strprintf("units lj\ndimension %d\nboundary f f %s\natom_style mpm\n"
+                           "neighbor 0.3 bin\nneigh_modify every 1000 check no\n"
+                           "region box block 0 40 0 40 %s\ncreate_box 1 box\nfix grid all mpm 1.0\n"
+                           "region body block 8 9 8 9 %s\ncreate_points 1 region body ppc 2\n"
+                           "fix m all mpm/material density 1.0 neohookean 1.0e-6 0.3\n"
+                           "velocity all set 0.3 0.4 0.0\ntimestep 0.5\nthermo 1000\nrun 40\n",
+                           dim, dim == 2 ? "p" : "f", dim == 2 ? "-0.5 0.5" : "0 40",
+                           dim == 2 ? "INF INF" : "8 9"));
+    for (const auto &p : run.gather()) {
+      EXPECT_NEAR(p.v[0], 0.3, 1e-12);
+      EXPECT_NEAR(p.v[1], 0.4, 1e-12);
+    }
+  }
+}

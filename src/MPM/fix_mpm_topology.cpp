@@ -174,10 +174,11 @@ void FixMPM::find_blocks()
     active.push_back(a);
   }
 
-  // blocks that the points can reach before the next update
+  // blocks that the points can reach before the next update, which comes when a point leaves its tile
+  // at the latest: all around the block, if nothing else bounds the drift
 
   const double drift = total ? 0.0 :
-      watch_drift            ? 1.0 :
+      watch_drift            ? grid->side :
                                std::min(1.0, 0.5 * neighbor->skin / lattice.h);
   const int nactive = active.size();
   for (int k = 0; k < nactive; k++) {
