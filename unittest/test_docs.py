@@ -230,6 +230,11 @@ def test_links_lead_somewhere():
     check(wrong)
 
 
+def test_page_of_the_atlas_is_what_its_tables_give():
+    result = mt.run([sys.executable, os.path.join(ROOT, "bench", "atlas", "atlas_page.py"), "--check"])
+    assert result.code == 0, result.output
+
+
 def test_input_in_the_readme_is_that_of_the_example():
     path = os.path.join(ROOT, "README.md")
     text = read(path)

@@ -1,0 +1,218 @@
+#!/usr/bin/env python3
+# This file is part of the MPM package for LAMMPS, distributed under the GNU
+# General Public License, version 2; see the file LICENSE.
+"""Atlas of the variants of fix mpm: what each costs, and how accurate it is, on six scenes.
+
+usage: atlas.py LMP [--out FOLDER] [--scene NAME ...] [--limit N]
+
+Runs what is missing in FOLDER (default: the folder of this file) and goes on where it stopped:
+  runs.csv       one line for each combination of settings, from one run: quantity of interest,
+                 energy gained by the method, steps
+  cost.csv       one line for each combination but for dtfrac: ns of processor time per point-step
+                 without ledger and exact solution, bytes per point
+  campaigns.csv  date, machine, compiler, and versions that the lines refer to
+
+Order: reference runs, full factorial of shape, transfer, scheme and frame at two spacings, other
+settings one at a time, costs, then finer spacings, other points per cell and time steps for what is
+on the Pareto front.  atlas_page.py makes the page of the manual from these files.
+"""
+import argparse
+import csv
+import datetime
+import os
+import re
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import scenes as sc    # noqa: E402
+import results as rs    # noqa: E402
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+TIMEOUT = 300              # seconds for one run
+SLOW = 6.0                 # seconds: refinements that would take longer are left out
+COST_WORK = 2.5e6          # point-steps of a run that measures cost
+REFERENCE_EVERY = 8        # measurements of cost between those of the reference
+
+
+def lammps(lmp, scene, settings, more):
+    """Run one scene; return (values printed at its end or None, seconds of processor time, output)."""
+    command = [lmp, "-nocite", "-log", "none", "-in", "in.run"]
+    values = dict(zip(sc.SETTINGS, settings))
+    for name in sc.SETTINGS:
+        if name != "precision":
+            command += ["-v", name, values[name]]
+    for name, value in more.items():
+        command += ["-v", name, value]
+    env = dict(os.environ, OMP_NUM_THREADS="1", OMPI_ALLOW_RUN_AS_ROOT="1",
+               OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+    with tempfile.TemporaryDirectory() as folder:
+        with open(os.path.join(folder, "in.run"), "w") as file:
+            file.write('include "%s"\n' % os.path.join(HERE, "in." + scene) +
+                       'print "RESULT $(v_q:%.10g) $(v_lost:%.6g) $(step) $(atoms)"\n')
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        try:
+            done = subprocess.run(command, cwd=folder, env=env, stdin=subprocess.DEVNULL,
+                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=TIMEOUT)
+            output = done.stdout.decode(errors="replace")
+        except subprocess.TimeoutExpired:
+            output = "ERROR: timeout"
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    found = re.search(r"^RESULT (\S+) (\S+) (\S+) (\S+)$", output, re.M)
+    return found.groups() if found else None, seconds, output
+
+
+def why(output):
+    """A word for why a run has failed."""
+    error = re.search(r"^ERROR.*", output, re.M)
+    text = error.group(0) if error else output[-200:]
+    for word, pattern in (("left", "has left the box"), ("inverted", "nverted|not positive|not finite|J ="),
+                          ("dt", "[Tt]ime ?step"), ("timeout", "timeout"), ("left", "Lost atoms")):
+        if re.search(pattern, text):
+            return word
+    raise SystemExit("this failed for a reason that is none of the method:\n" + output[-1500:])
+
+
+class Atlas:
+    def __init__(self, lmp, out, limit):
+        self.lmp, self.out, self.limit, self.count, self.start = lmp, out, limit, 0, time.time()
+        self.runs = rs.read(os.path.join(out, "runs.csv"))
+        self.costs = rs.read(os.path.join(out, "cost.csv"))
+        self.campaign = self.new_campaign()
+        self.reference = None
+        self.until_reference = 0
+
+    def new_campaign(self):
+        """Line of campaigns.csv for this machine, day, and program."""
+        text = subprocess.run([self.lmp, "-h"], stdout=subprocess.PIPE,
+                              stdin=subprocess.DEVNULL).stdout.decode(errors="replace")
+        version = re.search(r"Simulator - (.+)", text).group(1).strip()
+        compiler = re.search(r"Compiler: (.+?)(?: with .*)?$", text, re.M).group(1)
+        model = "unknown"
+        if os.path.exists("/proc/cpuinfo"):
+            with open("/proc/cpuinfo") as file:
+                found = re.search(r"model name\s*: (.*)", file.read())
+                model = found.group(1).strip() if found else model
+        package = subprocess.run(["git", "-C", HERE, "rev-parse", "--short", "HEAD"],
+                                 stdout=subprocess.PIPE).stdout.decode().strip()
+        row = {"date": datetime.date.today().isoformat(), "machine": "%s, %d cores" % (model, os.cpu_count()),
+               "compiler": compiler, "lammps": version, "package": package}
+        path = os.path.join(self.out, "campaigns.csv")
+        known = rs.read(path)
+        for other in known:
+            if all(other[k] == row[k] for k in row):
+                return other["campaign"]
+        row["campaign"] = str(len(known) + 1)
+        self.append("campaigns.csv", rs.CAMPAIGN, row)
+        return row["campaign"]
+
+    def append(self, name, columns, row):
+        path = os.path.join(self.out, name)
+        new = not os.path.exists(path)
+        with open(path, "a", newline="") as file:
+            writer = csv.DictWriter(file, columns, lineterminator="\n")
+            if new:
+                writer.writeheader()
+            writer.writerow(row)
+
+    def progress(self, text):
+        self.count += 1
+        print("%5d %6.0f s  %s" % (self.count, time.time() - self.start, text), flush=True)
+        if self.limit and self.count >= self.limit:
+            sys.exit("stopped after %d runs as asked" % self.limit)
+
+    def accuracy(self, scene, combinations, most=1e9):
+        known = {(r["scene"],) + rs.key(r) for r in self.runs}
+        for c in combinations:
+            if (scene,) + c in known or self.predicted(scene, c) > most:
+                continue
+            known.add((scene,) + c)
+            values, seconds, output = lammps(self.lmp, scene, c, {"ledger": "yes"})
+            row = dict(zip(sc.SETTINGS, c), scene=scene, campaign=self.campaign)
+            if values and all(abs(float(v)) < 1e30 for v in values):
+                row.update(status="ok", q=values[0], lost=values[1], steps=values[2], points=values[3])
+            else:
+                row.update(status="inverted" if values else why(output))
+            self.runs.append(row)
+            self.append("runs.csv", rs.RUNS, row)
+            self.progress("%-10s %-60s %-8s q %-13s %.2f s" % (scene, " ".join(c), row["status"],
+                                                            row.get("q", ""), seconds))
+
+    def predicted(self, scene, c):
+        """Seconds that a combination will take, from a coarser run of its kind; 0: nothing known."""
+        ns = rs.cost_of(self.costs, scene, c) or 100.0
+        dim, best = sc.SCENES[scene]["dimension"], 0.0
+        for r in self.runs:
+            if r["scene"] == scene and r["status"] == "ok" and r["frame"] == c[3]:
+                ratio = float(r["h"]) / float(c[7])
+                points = int(r["points"]) * (ratio * int(c[4]) / int(r["ppc"]))**dim
+                steps = int(r["steps"]) * ratio * float(r["dtfrac"]) / float(c[5])
+                best = max(best, 0) or points * steps * ns * 1e-9
+        return best
+
+    def point_step(self, scene, c):
+        """ns of processor time per point-step and the output of one pair of runs."""
+        more = {"ledger": "no", "body": "no"}
+        _, base, output = lammps(self.lmp, scene, c, dict(more, steps="10"))
+        points = int(re.search(r"MPM grid: (\d+) points", output).group(1))
+        steps = max(200, int(COST_WORK / points))
+        values, seconds, output = lammps(self.lmp, scene, c, dict(more, steps=str(steps)))
+        if not values:
+            return None, output
+        return (seconds - base) / (int(values[2]) - 10) / points * 1e9, output
+
+    def cost(self, scene, combinations):
+        """Cost of all but dtfrac and h, at one spacing of the scene."""
+        known = {(r["scene"],) + rs.cost_key(r) for r in self.costs}
+        for c in combinations:
+            c = c[:5] + ("0.4", c[6], sc.cost_spacing(scene))
+            key = (scene,) + rs.cost_key(dict(zip(sc.SETTINGS, c)))
+            if key in known:
+                continue
+            known.add(key)
+            if self.until_reference <= 0:
+                self.reference, _ = self.point_step(*rs.REFERENCE)
+                self.until_reference = REFERENCE_EVERY
+            self.until_reference -= 1
+            ns, output = self.point_step(scene, c)
+            row = dict(zip(sc.SETTINGS, c), scene=scene, campaign=self.campaign)
+            row.update(ns="%.2f" % ns if ns else "", reference_ns="%.2f" % self.reference)
+            found = re.search(r"(\d+) bytes per point", output)
+            row["bytes"] = found.group(1) if found else ""
+            del row["dtfrac"]
+            self.costs.append(row)
+            self.append("cost.csv", rs.COST, row)
+            self.progress("%-10s %-60s cost %s ns" % (scene, " ".join(c), row["ns"]))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("lmp")
+    parser.add_argument("--out", default=HERE)
+    parser.add_argument("--scene", nargs="*", default=list(sc.SCENES))
+    parser.add_argument("--limit", type=int, default=0)
+    options = parser.parse_args()
+    os.makedirs(options.out, exist_ok=True)
+    atlas = Atlas(os.path.abspath(options.lmp), options.out, options.limit)
+    for scene in options.scene:
+        atlas.accuracy(scene, sc.factorial(scene))
+        atlas.accuracy(scene, sc.one_at_a_time(scene))
+        atlas.cost(scene, sc.costed(scene))
+        atlas.cost(scene, sc.one_at_a_time(scene))
+        atlas.accuracy(scene, sc.reference_runs(scene))
+        for _ in range(2):    # the second time next to what the first has found
+            data = rs.Results(atlas.runs, atlas.costs)
+            front = rs.kinds(data.front(scene))
+            atlas.cost(scene, (kind + sc.MIDDLE + (sc.cost_spacing(scene),) for kind in front))
+            front = rs.kinds(rs.Results(atlas.runs, atlas.costs).front(scene))
+            atlas.cost(scene, sc.refinement(scene, front))
+            atlas.accuracy(scene, sc.refinement(scene, front), SLOW)
+
+
+if __name__ == "__main__":
+    main()

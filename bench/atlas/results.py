@@ -1,0 +1,148 @@
+# This file is part of the MPM package for LAMMPS, distributed under the GNU
+# General Public License, version 2; see the file LICENSE.
+"""Results of the atlas: reading the tables, errors, times, and Pareto fronts."""
+import csv
+import os
+import statistics
+
+import scenes as sc
+
+RUNS = ("scene",) + sc.SETTINGS + ("status", "q", "lost", "steps", "points", "campaign")
+COST = ("scene", "shape", "transfer", "scheme", "frame", "ppc", "precision", "h", "ns", "reference_ns",
+        "bytes", "campaign")
+CAMPAIGN = ("campaign", "date", "machine", "compiler", "lammps", "package")
+REFERENCE = ("bar", ("quadratic", "apic", "usl", "updated", "2", "0.4", "double", "0.015625"))
+
+
+def read(path):
+    if not os.path.exists(path):
+        return []
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def key(row):
+    return tuple(row[s] for s in sc.SETTINGS)
+
+
+def cost_key(row):
+    return tuple(row[s] for s in ("shape", "transfer", "scheme", "frame", "ppc", "precision"))
+
+
+def cost_of(costs, scene, c):
+    """ns per point-step as measured, of a combination or, with other points per cell, of its like."""
+    want = cost_key(dict(zip(sc.SETTINGS, c)))
+    near = None
+    for r in costs:
+        if r["scene"] == scene and r["ns"]:
+            have = cost_key(r)
+            if have == want:
+                return float(r["ns"])
+            if have[:4] == want[:4]:
+                near = float(r["ns"])
+    return near
+
+
+def kinds(rows):
+    """The (shape, transfer, scheme, frame) of rows, without repetition."""
+    found = []
+    for r in rows:
+        kind = tuple(r[s] for s in sc.SETTINGS[:4])
+        if kind not in found:
+            found.append(kind)
+    return found
+
+
+class Results:
+    """Rows of runs.csv, those that worked with error, ns (at the median speed of the machine), and time."""
+
+    def __init__(self, runs, costs):
+        self.runs, self.costs = runs, costs
+        pace = [float(r["reference_ns"]) for r in costs]
+        self.pace = statistics.median(pace) if pace else 1.0
+        self.cost = {}
+        for r in costs:
+            if r["ns"]:
+                self.cost[(r["scene"],) + cost_key(r)] = (float(r["ns"]) * self.pace / float(r["reference_ns"]),
+                                                          int(r["bytes"]))
+        self.reference = {scene: self.make_reference(scene) for scene in sc.SCENES}
+        self.rows = {scene: [] for scene in sc.SCENES}
+        for r in runs:
+            made = self.make_row(r)
+            if made:
+                self.rows[r["scene"]].append(made)
+        for rows in self.rows.values():
+            self.credit(rows)
+        self.index = {(scene,) + key(r): r for scene, rows in self.rows.items() for r in rows}
+        self.goals = {}    # times to the goal, by scene, once they are known
+
+    @staticmethod
+    def credit(rows):
+        """The error that a run is credited with: not less than at the next finer spacing, and at most
+        second order from the next coarser one, as a single error may be small by chance of its sign."""
+        ladder = {}
+        for r in rows:
+            ladder.setdefault(key(r)[:-1], []).append(r)
+        for rungs in ladder.values():
+            rungs.sort(key=lambda r: -float(r["h"]))
+            for k, r in enumerate(rungs):
+                r["credited"] = r["error"]
+                if k > 0:
+                    ratio = float(r["h"]) / float(rungs[k - 1]["h"])
+                    r["credited"] = max(r["credited"], rungs[k - 1]["error"] * ratio**2)
+                if k + 1 < len(rungs):
+                    r["credited"] = max(r["credited"], rungs[k + 1]["error"])
+
+    def make_reference(self, scene):
+        """(value, uncertainty) of the quantity of interest; (None, None): not yet known"""
+        s = sc.SCENES[scene]
+        if not isinstance(s["reference"], tuple):
+            return s["reference"], 0.0
+        values = {key(r): float(r["q"]) for r in self.runs if r["scene"] == scene and r["status"] == "ok"}
+        limits = []
+        for base in s["reference"]:
+            coarse, fine = [values.get(base + sc.MIDDLE + (h,)) for h in s["reference_levels"]]
+            if coarse is None or fine is None:
+                return None, None
+            ratio = float(s["reference_levels"][0]) / float(s["reference_levels"][1])
+            limits.append(fine + (fine - coarse) / (ratio - 1))
+        return statistics.mean(limits), max(limits) - min(limits)
+
+    def make_row(self, r):
+        reference = self.reference[r["scene"]][0]
+        if r["status"] != "ok" or reference is None:
+            return None
+        row = dict(r)
+        row["error"] = abs(float(r["q"]) - reference) / sc.SCENES[r["scene"]]["scale"]
+        row["lost"] = float(r["lost"])
+        ns, size, row["measured"] = self.cost_of(r["scene"], cost_key(r))
+        row["ns"], row["bytes"] = ns, size
+        row["time"] = ns * 1e-9 * int(r["points"]) * int(r["steps"]) if ns else None
+        return row
+
+    def cost_of(self, scene, c):
+        """(ns, bytes, True) as measured; if it was not, (ns, bytes, False) from usl in the scene and the
+        factor of the scheme in the scene where costs of all schemes are measured; else (None, None, False)"""
+        found = self.cost.get((scene,) + c)
+        if found:
+            return found + (True,)
+        usl = c[:2] + ("usl",) + c[3:]
+        here = self.cost.get((scene,) + usl)
+        if here is None and c[4] != "2":    # other points per cell cost about the same
+            return self.cost_of(scene, c[:4] + ("2",) + c[5:])[:2] + (False,)
+        other = sc.COST_SCENE[sc.SCENES[scene]["dimension"]]
+        there = self.cost.get((other,) + c), self.cost.get((other,) + usl)
+        if here and all(there):
+            return here[0] * there[0][0] / there[1][0], here[1], False
+        return None, None, False
+
+    def front(self, scene, rows=None):
+        """Rows that no other one beats in both time and credited error, from fast to exact; less than a tenth
+        of the error is no gain."""
+        rows = [r for r in (self.rows[scene] if rows is None else rows) if r["time"]]
+        best, found = float("inf"), []
+        for r in sorted(rows, key=lambda r: (r["time"], r["credited"])):
+            if r["credited"] < 0.9 * best:
+                best = r["credited"]
+                found.append(r)
+        return found

@@ -1,0 +1,141 @@
+# This file is part of the MPM package for LAMMPS, distributed under the GNU
+# General Public License, version 2; see the file LICENSE.
+"""The scenes of the atlas and the combinations of settings that are run on them.
+
+A combination is a tuple of settings in the order of SETTINGS, all of them strings as in the input.
+"""
+
+SETTINGS = ("shape", "transfer", "scheme", "frame", "ppc", "dtfrac", "precision", "h")
+
+SHAPES = ("linear", "quadratic", "cubic", "gimp", "cpgimp")
+TRANSFERS = ("pic", "flip 1.0", "apic", "tpic", "aflip 1.0", "xpic 5", "fmpm 5")
+SCHEMES = ("usl", "usf", "musl", "usavg")
+TOTAL = (("linear", "quadratic", "cubic"), ("pic", "flip 1.0", "apic", "xpic 5", "fmpm 5"))
+MAIN_TRANSFERS = ("flip 1.0", "apic")
+COST_SCENE = {2: "bar", 3: "taylor"}    # by dimension: where the costs of all schemes are measured
+MIDDLE = ("2", "0.4", "double")    # ppc, dtfrac, precision of the full factorial
+
+# levels: spacings from coarse to fine, as text; the factorial uses the first two, the others are for
+#   combinations on the Pareto front
+# reference: value of the quantity of interest, or the combinations whose values at the two last
+#   spacings of "reference levels" are extrapolated to zero spacing (first order) and averaged
+# cost_level: the spacing at which costs are measured, so fine that a run is long enough for that
+# cheap: whether all schemes are part of the factorial; goal: the error that settings are compared at
+# scale: what errors are relative to; pairs of q: error = |q - reference| / scale
+SCENES = {
+    "bar": dict(
+        title="Wave in a bar that flies across the lattice",
+        quantity="largest error of the displacement over one flight, relative to the amplitude",
+        source="exact", reference=0.0, scale=1.0, total=True, cheap=True, cost_level=2, dimension=2, goal=0.02,
+        levels=("0.0625", "0.03125", "0.015625", "0.0078125")),
+    "vortex": dict(
+        title="Generalized vortex",
+        quantity="largest error of the displacement in a period, over the largest displacement",
+        source="exact (manufactured)", reference=0.0, scale=1.0, total=True, cheap=True, cost_level=2, dimension=2, goal=0.04,
+        levels=("0.1", "0.05", "0.025", "0.0125")),
+    "cantilever": dict(
+        title="Cantilever under gravity",
+        quantity="lowest position of the lower corner of the free end",
+        source="extrapolated from finite elements, -3.2958 m with 40 by 10 and -3.3027 m with 80 by 20",
+        reference=-3.3050, scale=3.3050, total=True, cheap=True, cost_level=2, dimension=2, goal=0.01,
+        levels=("0.25", "0.125", "0.0625", "0.03125")),
+    "taylor": dict(
+        title="Taylor bar",
+        quantity="final diameter of the foot over the final length",
+        source="axisymmetric finite elements, 13.48 mm over 16.27 mm",
+        reference=13.48 / 16.27, scale=13.48 / 16.27, total=True, cheap=False, cost_level=0, dimension=3, goal=0.04,
+        levels=("0.00095", "0.00076", "0.000475", "0.00038")),
+    "dam": dict(
+        title="Dam break",
+        quantity="center of mass along the floor at T = 2.5, over the width of the column",
+        source="extrapolated from runs of this atlas",
+        reference=(("quadratic", "apic", "usl", "updated"), ("cubic", "flip 1.0", "musl", "updated")),
+        reference_levels=("0.0017859375", "0.00089296875"),
+        scale=1.0, total=False, cheap=False, cost_level=2, dimension=2, goal=0.01,
+        levels=("0.00714375", "0.003571875", "0.0017859375")),
+    "sand": dict(
+        title="Sand column",
+        quantity="center of mass along the floor after the collapse, over the width of the column",
+        source="extrapolated from runs of this atlas",
+        reference=(("quadratic", "apic", "usl", "updated"), ("cubic", "flip 1.0", "musl", "updated")),
+        reference_levels=("0.003125", "0.0015625"),
+        scale=0.25, total=False, cheap=False, cost_level=1, dimension=2, goal=0.1,
+        levels=("0.0125", "0.00625", "0.003125")),
+}
+
+
+def allowed(scene, shape, transfer, scheme, frame):
+    """Combinations that fix mpm accepts and that are not the same as another one."""
+    name = transfer.split()[0]
+    if name == "fmpm" and scheme != "usl":
+        return False
+    if frame == "total":
+        return SCENES[scene]["total"] and shape in TOTAL[0] and transfer in TOTAL[1]
+    # with these shapes tpic is apic
+    return not (name == "tpic" and shape not in ("quadratic", "cubic"))
+
+
+def factorial(scene):
+    """Full factorial of shape, transfer, scheme, and frame at the two coarsest spacings; in scenes that
+    are not cheap, schemes usf and usavg with two transfers only."""
+    for h in SCENES[scene]["levels"][:2]:
+        for kind in kinds(scene):
+            yield kind + MIDDLE + (h,)
+
+
+def kinds(scene):
+    """The (shape, transfer, scheme, frame) of the factorial."""
+    for frame in ("updated", "total"):
+        for shape in SHAPES:
+            for transfer in TRANSFERS:
+                for scheme in SCHEMES:
+                    cheap = SCENES[scene]["cheap"] or scheme in ("usl", "musl") or transfer in MAIN_TRANSFERS
+                    if cheap and allowed(scene, shape, transfer, scheme, frame):
+                        yield shape, transfer, scheme, frame
+
+
+def costed(scene):
+    """Those whose cost is measured before anything is known: all on one scene of each dimension, else
+    with usl; what is on the front is always measured (results.py estimates the others)."""
+    for kind in kinds(scene):
+        if scene in COST_SCENE.values() or kind[2] == "usl":
+            yield kind + MIDDLE + (cost_spacing(scene),)
+
+
+def cost_spacing(scene):
+    return SCENES[scene]["levels"][SCENES[scene]["cost_level"]]
+
+
+def one_at_a_time(scene):
+    """From two base settings: points per cell, time step, and parameters of transfers."""
+    h = SCENES[scene]["levels"][1]
+    bases = [("quadratic", "apic", "usl", "updated"), ("cubic", "flip 1.0", "musl", "updated")]
+    if SCENES[scene]["total"]:
+        bases.append(("linear", "flip 1.0", "musl", "total"))
+    for base in bases:
+        for ppc in ("1", "3", "4"):
+            yield base + (ppc,) + MIDDLE[1:] + (h,)
+        for dtfrac in ("0.1", "0.2", "0.6", "0.8", "1.0"):
+            yield base + (MIDDLE[0], dtfrac, MIDDLE[2], h)
+    for shape in ("quadratic", "gimp"):
+        for dtfrac in ("0.1", "0.2", "0.6", "0.8"):
+            yield (shape, "fmpm 5", "usl", "updated", MIDDLE[0], dtfrac, MIDDLE[2], h)
+    for transfer in ("flip 0.99", "flip 0.95", "aflip 0.99", "xpic 2", "fmpm 2"):
+        yield ("quadratic", transfer, "usl", "updated") + MIDDLE + (h,)
+
+
+def reference_runs(scene):
+    """The runs that the reference comes from."""
+    if isinstance(SCENES[scene]["reference"], tuple):
+        for h in SCENES[scene]["reference_levels"]:
+            for base in SCENES[scene]["reference"]:
+                yield base + MIDDLE + (h,)
+
+
+def refinement(scene, front):
+    """Settings next to those on the Pareto front so far: other points per cell, time steps, and spacings."""
+    for c in front:
+        shape, transfer, scheme, frame = c[:4]
+        for h in SCENES[scene]["levels"]:
+            for ppc, dtfrac in (("2", "0.4"), ("2", "0.8"), ("1", "0.4"), ("3", "0.4")):
+                yield (shape, transfer, scheme, frame, ppc, dtfrac, "double", h)

@@ -1,0 +1,100 @@
+# This file is part of the MPM package for LAMMPS, distributed under the GNU
+# General Public License, version 2; see the file LICENSE.
+#
+# labels: unit
+# timeout: 300
+"""The atlas of bench/atlas: its program goes on where it stopped, all scenes run and give what the tables
+in the repository say, and errors, fronts, and references follow from the tables as they should."""
+
+import os
+import sys
+import tempfile
+
+import mpm_testing as mt
+
+FOLDER = os.path.join(mt.ROOT, "bench", "atlas")
+sys.path.insert(0, FOLDER)
+import atlas    # noqa: E402
+import results as rs    # noqa: E402
+import scenes as sc    # noqa: E402
+
+BASE = ("quadratic", "apic", "usl", "updated") + sc.MIDDLE
+
+
+def sweep(folder, scene, limit):
+    return mt.run([sys.executable, os.path.join(FOLDER, "atlas.py"), mt.LMP, "--out", folder, "--scene", scene,
+                   "--limit", str(limit)])
+
+
+def test_goes_on_where_it_stopped():
+    with tempfile.TemporaryDirectory() as folder:
+        assert sweep(folder, "bar", 3).output.count(" ok ") == 3
+        first = rs.read(os.path.join(folder, "runs.csv"))
+        assert sweep(folder, "bar", 2).output.count(" ok ") == 2
+        rows = rs.read(os.path.join(folder, "runs.csv"))
+        assert rows[:3] == first and len(rows) == 5, rows
+        wanted = [c for c, _ in zip(sc.factorial("bar"), range(5))]
+        assert [rs.key(r) for r in rows] == wanted, rows
+        campaigns = rs.read(os.path.join(folder, "campaigns.csv"))
+        assert len(campaigns) == 1 and all(campaigns[0].values()), campaigns
+
+
+def test_scenes_give_the_values_of_the_tables():
+    known = {(r["scene"],) + rs.key(r): r for r in rs.read(os.path.join(FOLDER, "runs.csv"))}
+    wrong = []
+    for scene in sc.SCENES:
+        c = BASE + (sc.SCENES[scene]["levels"][0],)
+        if (scene,) + c not in known:
+            continue
+        row = known[(scene,) + c]
+        values, _, output = atlas.lammps(mt.LMP, scene, c, {"ledger": "yes"})
+        if not values:
+            wrong.append("%s: %s" % (scene, output[-500:]))
+            continue
+        # sand and splashes amplify round-off of another processor
+        tolerance = 0.03 if scene in ("sand", "dam") else 0.01
+        if abs(float(values[0]) / float(row["q"]) - 1) > tolerance:
+            wrong.append("%s: q = %s, table: %s" % (scene, values[0], row["q"]))
+        if values[3] != row["points"]:
+            wrong.append("%s: %s points, table: %s" % (scene, values[3], row["points"]))
+        if abs(float(values[1]) - float(row["lost"])) > 0.02:
+            wrong.append("%s: lost %s, table: %s" % (scene, values[1], row["lost"]))
+    assert not wrong, "\n".join(wrong)
+
+
+def test_cost_is_measured():
+    with tempfile.TemporaryDirectory() as folder:
+        work = atlas.Atlas(mt.LMP, folder, 0)
+        work.cost("bar", [BASE + ("0.03125",)])
+        rows = rs.read(os.path.join(folder, "cost.csv"))
+        assert len(rows) == 1 and float(rows[0]["ns"]) > 0 and float(rows[0]["reference_ns"]) > 0, rows
+        assert 200 < int(rows[0]["bytes"]) < 400, rows
+        work.cost("bar", [BASE + ("0.0625",)])    # does not depend on the spacing
+        assert len(rs.read(os.path.join(folder, "cost.csv"))) == 1
+
+
+def row(h, q, time_steps, transfer="apic", status="ok"):
+    return dict(scene="bar", shape="quadratic", transfer=transfer, scheme="usl", frame="updated", ppc="2",
+                dtfrac="0.4", precision="double", h=h, status=status, q=q, lost="0", steps=time_steps, points="1000",
+                campaign="1")
+
+
+def test_fronts_and_credited_errors():
+    cost = [dict(scene="bar", shape="quadratic", transfer=t, scheme="usl", frame="updated", ppc="2",
+                 precision="double", h="0.03125", ns=ns, reference_ns=pace, bytes="300", campaign="1")
+            for t, ns, pace in (("apic", "50", "40"), ("pic", "90", "60"), ("flip 1.0", "10", "40"))]
+    # apic: an error by chance at the finer spacing; pic: slower and worse; flip: fails
+    runs = [row("0.2", "0.4", "100"), row("0.1", "0.001", "200"), row("0.2", "0.9", "100", "pic"),
+            row("0.2", "0.1", "100", "flip 1.0", "left")]
+    data = rs.Results(runs, cost)
+    assert [r["credited"] for r in data.rows["bar"]] == [0.4, 0.1, 0.9], data.rows["bar"]
+    # ns at the median pace: 50, 90 40/60, 10
+    assert abs(data.rows["bar"][2]["ns"] - 60.0) < 1e-9
+    assert abs(data.rows["bar"][1]["time"] - 50e-9 * 1000 * 200) < 1e-12
+    front = data.front("bar")
+    assert [(r["h"], r["transfer"]) for r in front] == [("0.2", "apic"), ("0.1", "apic")], front
+    # schemes without a measurement: factor from the scene where all are measured
+    assert data.cost_of("bar", ("quadratic", "apic", "musl", "updated", "2", "double"))[0] is None
+
+
+mt.main(globals())
