@@ -57,4 +57,21 @@ def test_refinement_comes_closer_to_finite_elements():
     assert fine < coarse
 
 
+def test_body_of_revolution():
+    """The axisymmetric bar at twice the resolution, about as many points as 3d has at a third of it."""
+    scene = os.path.join(mt.ROOT, "examples", "taylor-bar-axisymmetric")
+    with tempfile.TemporaryDirectory() as folder:
+        with open(os.path.join(scene, "in.taylor-bar-axisymmetric")) as f:
+            text = re.sub(r"\ndump .*?cf .*?\n", "\n", f.read(), flags=re.S)    # no pictures
+        result = mt.lammps(folder, text, arguments=["-v", "h", "0.00038"], timeout=200)
+        assert result.code == 0, result.tail()
+        table = mt.run([sys.executable, os.path.join(scene, "plot.py"), folder])
+        assert table.code == 0, table.tail()
+    print(table.output)
+    values = [float(v) for v in re.findall(r" ([0-9.]+)(?: mm|$)", table.output.strip())]
+    for (key, (value, _)), found, percent in zip(FINITE_ELEMENTS.items(), values, (0.5, 3.0, 0.5)):
+        assert abs(found / value - 1) < percent / 100, (key, found)
+    assert abs(values[3] / 1.63 - 1) < 0.03, values    # largest plastic strain
+
+
 mt.main(globals())
