@@ -131,6 +131,45 @@ run 50
   EXPECT_LT(noise_left("transfer fmpm 3"), 1e-3);
 }
 
+// a vibrating block in free fall: gravity does the work that its center gains, whatever the transfer
+// does to the rest
+TEST(Refined, LedgerTellsWorkFromLoss)
+{
+  for (const char *transfer : {"flip 1.0", "xpic 2", "xpic 5", "fmpm 5"}) {
+    Scene run;
+    run.commands(R"(
+units si
+dimension 2
+boundary f f p
+atom_style mpm
+neighbor 0.05 bin
+region box block 0 1 0 1 -0.1 0.1
+create_box 1 box
+fix g all mpm 0.05 transfer )" +
+                 std::string(transfer) + R"(
+region b block 0.3 0.7 0.4 0.8 INF INF
+create_points 1 region b ppc 2
+fix m all mpm/material density 1000 neohookean 1e5 0.3
+fix f all gravity 10 vector 0 -1 0
+variable v atom 0.2*cos(PI*(x-0.3)/0.4)
+velocity all set v_v -0.5 0
+timestep 0.001
+compute e all mpm/energy
+variable fall equal 0.5*mass(all)*vcm(all,y)^2
+thermo_style custom step c_e[1] c_e[6] c_e[9] c_e[10] c_e[11] v_fall
+run 0
+)");
+    const double start = run.evaluate("v_fall"), scale = 0.5 * 160 * 0.02;    // of the vibration
+    run.commands("run 100\n");
+    EXPECT_NEAR(run.evaluate("c_e[6]"), run.evaluate("v_fall") - start, 1e-8) << transfer;
+    EXPECT_LT(std::fabs(run.evaluate("c_e[11]")), 1e-10) << transfer;
+    EXPECT_LT(std::fabs(run.evaluate("c_e[9]")), 0.4 * scale) << transfer;
+    EXPECT_LT(std::fabs(run.evaluate("c_e[10]")), 0.05 * scale) << transfer;
+    measured(std::string(transfer) + ", transfer", run.evaluate("c_e[9]") / scale);
+    measured(std::string(transfer) + ", integration", run.evaluate("c_e[10]") / scale);
+  }
+}
+
 TEST(Refined, WallsHold)
 {
   for (const char *transfer : {"xpic 3", "fmpm 3"}) {

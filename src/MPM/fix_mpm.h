@@ -264,6 +264,7 @@ class FixMPM : public Fix {
   void solve();
   void refine_velocities();    // of all fields
   void filter_old_velocities();
+  void swap_old_velocities();
   void save_velocities(int lane);
   void add_term(int lane);
   void grid_to_points();

@@ -73,6 +73,18 @@ void FixMPM::filter_old_velocities()
     memset(&atom->v[run.first][0], 0, 3 * sizeof(double) * (run.last - run.first));
 }
 
+/* ----------------------------------------------------------------------
+   old velocities of the nodes and what XPIC has put in their place change places: the ledger needs
+   the former for a moment
+------------------------------------------------------------------------- */
+
+void FixMPM::swap_old_velocities()
+{
+  double *record = grid->nodes() + 4;
+  for (std::size_t k = 0; k < lumped.size(); k += 3, record += 8)
+    for (int d = 0; d < 3; d++) std::swap(record[d], lumped[k + d]);
+}
+
 /* ---------------------------------------------------------------------- */
 
 void FixMPM::save_velocities(int lane)

@@ -132,8 +132,10 @@ void FixMPM::grid_to_points()
   if (ledger_on) {
     // node actions may have changed old velocities, too
 
+    if (refinement == XPIC) swap_old_velocities();
     const double external = external_work();
     const double old = nodal_kinetic_energy(4), kinetic = nodal_kinetic_energy(0);
+    if (refinement == XPIC) swap_old_velocities();
     ledger.external += external;
     ledger.internal += external + ledger.boundary + ledger.contact + ledger.transfer -
         before_actions - (kinetic - old);
