@@ -168,6 +168,9 @@ class FixMPM : public Fix {
   void map_gradient(Content, const std::vector<char> &near, std::vector<double> &gradient);
   /** At the same nodes: sum_p V_p N(x_p) as share of the volume h^dim of a node, [node]. */
   void map_volume(const std::vector<char> &near, std::vector<double> &share);
+  /** At the points, [n]: that share of the volume, which is 1 inside of a body and falls to 0 across
+   *  its surface. Points that have failed do not count as volume. Finds the blocks if need be. */
+  void volume_at_points(std::vector<double> &share);
 
   /** Nodes along one axis that a position reaches (in node spacings from the origin): their number,
    *  the first one, and the weights. */
@@ -249,6 +252,8 @@ class FixMPM : public Fix {
   bool running;                            // between setup() and post_run()
   uint64_t velocities;                     // hash of those that C belongs to, between runs
   bool velocities_known;
+
+  void find_topology();
 
   // stages of the step
   bool wait();    // of all fields

@@ -137,8 +137,7 @@ void FixMPM::fit_affine()
     return;
   }
 
-  // of all fields, by the one that drives them
-  dynamic_cast<FixMPM *>(modify->get_fix_by_style("^mpm$")[0])->update_topology();
+  find_topology();
   const int dim = lattice.dim;
   enum { M = 0, X = 1, V = 4, VX = 7, XX = 16, NREAL = 22 };    // sums of mass times ...
   std::vector<double> sums(grid->nnodes() * NREAL, 0.0);

@@ -221,6 +221,7 @@ void FixMPM::delete_points(const std::vector<tagint> &list, bool warn)
   }
   MPI_Allreduce(lost, all, 5, MPI_DOUBLE, MPI_SUM, world);
   if (all[0] == 0.0) return;
+  topology_valid = false;
   atom->natoms -= (bigint) all[0];
   deleted.points += all[0];
   deleted.mass += all[1];

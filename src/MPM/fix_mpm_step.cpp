@@ -517,6 +517,63 @@ void FixMPM::map_volume(const std::vector<char> &near, std::vector<double> &shar
     share[n] = inverse * nodes_apart[n * kernel.nreal + 3];
 }
 
+/* ---------------------------------------------------------------------- */
+
+void FixMPM::volume_at_points(std::vector<double> &share)
+{
+  constexpr int NREAL = 8;
+  find_topology();
+  const auto pic = kernels->transfer(lattice.dim, kernel_shape(), PIC, true);
+  rows_apart.resize(6 * (std::size_t) atom->nmax);
+  std::vector<double> values(3 * (std::size_t) atom->nmax);
+  PointRows r = rows();
+  r.mass = rows_apart.data();
+  r.v = values.data();
+  r.xnew = r.x;    // stays: the time step is zero
+  r.F = nullptr;
+  TransferStep s = step_data();
+  s.dt = 0.0;
+
+  std::vector<ActiveBlock> blocks = active;
+  nodes_apart.assign(grid->nnodes() * NREAL, 0.0);
+  int base[3];
+  for (auto &a : blocks) {
+    const auto &block = grid->blocks[a.slot];
+    for (int d = 0; d < 3; d++) {
+      base[d] = grid->side * block.b[d] - 1;
+      a.box[d] = 127;
+      a.box[3 + d] = -127;
+    }
+    for (int k = a.first_run; k < a.last_run; k++) {
+      const auto *material = runs[k].material;
+      const int damage = material ? material->damage : -1;
+      for (int i = runs[k].first; i < runs[k].last; i++) {
+        const bool failed = damage >= 0 && material->history[i][damage] >= 1.0;
+        rows_apart[i] = failed ? 0.0 : atom->vfrac[i] * (total ? 1.0 : points->jacobian(i));
+      }
+      pic.p2g_momentum(r, s, runs[k].first, runs[k].last, base, tile, a.box);
+    }
+    pic.flush(tile, nodes_apart.data(), block.slot, a.box);
+  }
+  grid->fold_aliases(nodes_apart.data(), NREAL, 3, 1);
+  halo->sum(nodes_apart.data(), NREAL, 3, 1);
+  const double h = lattice.h, inverse = 1.0 / (lattice.dim == 3 ? h * h * h : h * h);
+  for (int64_t n = 0; n < grid->nnodes(); n++)
+    nodes_apart[n * NREAL] = inverse * nodes_apart[n * NREAL + 3];
+  grid->copy_aliases(nodes_apart.data(), NREAL);
+
+  for (const auto &a : blocks) {
+    const auto &block = grid->blocks[a.slot];
+    for (int d = 0; d < 3; d++) base[d] = grid->side * block.b[d] - 1;
+    pic.load(tile_load, nodes_apart.data(), block.slot, a.box);
+    for (int k = a.first_run; k < a.last_run; k++)
+      pic.g2p(r, s, runs[k].first, runs[k].last, base, tile_load, nullptr);
+  }
+  share.resize(atom->nmax);
+  for (const auto &run : runs)
+    for (int i = run.first; i < run.last; i++) share[i] = values[3 * (std::size_t) i];
+}
+
 /* ----------------------------------------------------------------------
    nodes of a block to the tile, and those of the next block towards the cache: in a large run
    they are not there, and nothing else would hide that

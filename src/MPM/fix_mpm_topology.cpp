@@ -66,6 +66,16 @@ void FixMPM::update_topology()
 }
 
 /* ----------------------------------------------------------------------
+   the same apart from the step: of all fields, by the one that drives them
+------------------------------------------------------------------------- */
+
+void FixMPM::find_topology()
+{
+  if (!topology_valid)
+    dynamic_cast<FixMPM *>(modify->get_fix_by_style("^mpm$")[0])->update_topology();
+}
+
+/* ----------------------------------------------------------------------
    GIMP: half sizes of the points along the axes, which stay the same throughout a step. At the start
    a point is a box of its volume. A contiguous one follows F: what was a box of half sizes l has the
    second moments F diag(l^2) F^T/3, along axis d those of an interval with the half size

@@ -1,0 +1,250 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+
+#include "fix_mpm_surface.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix_mpm.h"
+#include "fix_mpm_material.h"
+#include "memory.h"
+#include "modify.h"
+#include "mpm_points.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+
+/* ----------------------------------------------------------------------
+   fix ID group mpm/surface keyword value ...
+------------------------------------------------------------------------- */
+
+FixMPMSurface::FixMPMSurface(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), scale(1.0), grow(1.2), depth(0.5), known(false), at_surface(nullptr),
+    points(MPMPoints::get(atom))
+{
+  if (!points || !atom->radius_flag)
+    error->all(FLERR, "Fix mpm/surface requires material points with a radius: use atom_style "
+               "hybrid sphere mpm");
+  for (int iarg = 3; iarg < narg; iarg += 2) {
+    const std::string keyword = arg[iarg];
+    double *const value = keyword == "scale" ? &scale : keyword == "grow" ? &grow :
+        keyword == "depth"                   ? &depth : nullptr;
+    if (!value) error->all(FLERR, iarg, "Unknown fix mpm/surface keyword: {}", keyword);
+    if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, "fix mpm/surface " + keyword, error);
+    *value = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
+    if (!(*value > 0.0) || !std::isfinite(*value) || (value == &grow && grow < 1.0))
+      error->all(FLERR, iarg + 1, "Fix mpm/surface {} must be {}: {}", keyword,
+                 value == &grow ? "at least 1" : "positive", arg[iarg + 1]);
+  }
+
+  scalar_flag = peratom_flag = 1;
+  size_peratom_cols = 0;
+  peratom_freq = 1;
+  global_freq = 1;
+  extscalar = 1;
+  comm_forward = 1;
+  create_attribute = 1;
+  maxexchange = 1;
+  FixMPMSurface::grow_arrays(atom->nmax);
+  atom->add_callback(Atom::GROW);
+  for (int i = 0; i < atom->nlocal; i++) FixMPMSurface::set_arrays(i);
+  vector_atom = at_surface;
+  give_largest();
+}
+
+FixMPMSurface::~FixMPMSurface()
+{
+  if (modify) atom->delete_callback(id, Atom::GROW);
+  memory->destroy(at_surface);
+}
+
+int FixMPMSurface::setmask()
+{
+  return PRE_EXCHANGE | PRE_FORCE | POST_RUN;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMSurface::init()
+{
+  if (modify->get_fix_by_style("^mpm$").empty())
+    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/surface needs a fix mpm");
+  for (auto *other : modify->get_fix_by_style("^mpm/surface$"))
+    if (other != this && (other->groupbit & groupbit) && other->igroup == igroup)
+      error->all(FLERR, Error::NOLASTLINE, "Fix mpm/surface {} and {} have the same group", id,
+                 other->id);
+
+  // pair styles have taken their cutoffs from the radii of this moment
+
+  int small = 0, small_all;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (has_radius(i) && atom->radius[i] < largest_radius(i) * (1.0 - 1.0e-10)) small = 1;
+  MPI_Allreduce(&small, &small_all, 1, MPI_INT, MPI_MAX, world);
+  if (small_all)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/surface {}: points were created, or their radius set, after the fix, which "
+               "sets it: define the fix after them", id);
+}
+
+/* ----------------------------------------------------------------------
+   start of a run: neighbor lists are made with the largest radii; the surface is found once
+   fix mpm has put points in order
+------------------------------------------------------------------------- */
+
+void FixMPMSurface::setup_pre_exchange()
+{
+  give_largest();
+}
+
+void FixMPMSurface::setup_pre_force(int)
+{
+  find_surface();
+  comm->forward_comm(this);
+}
+
+/* ----------------------------------------------------------------------
+   a run without set-up ("run pre no") has none of this before its first step
+------------------------------------------------------------------------- */
+
+void FixMPMSurface::pre_force(int)
+{
+  if (!known) setup_pre_force(0);
+}
+
+/* ----------------------------------------------------------------------
+   before ghosts and neighbor lists are made
+------------------------------------------------------------------------- */
+
+void FixMPMSurface::pre_exchange()
+{
+  find_surface();
+}
+
+/* ----------------------------------------------------------------------
+   the next run takes its cutoffs from the radii
+------------------------------------------------------------------------- */
+
+void FixMPMSurface::post_run()
+{
+  give_largest();
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool FixMPMSurface::has_radius(int i) const
+{
+  return (atom->mask[i] & groupbit) && atom->vfrac[i] > 0.0;
+}
+
+double FixMPMSurface::largest_radius(int i) const
+{
+  const double V = atom->vfrac[i];
+  return 0.5 * scale * grow * (domain->dimension == 3 ? std::cbrt(V) : std::sqrt(V));
+}
+
+void FixMPMSurface::give_largest()
+{
+  known = false;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (has_radius(i)) {
+      atom->radius[i] = largest_radius(i);
+      at_surface[i] = 1.0;
+    }
+}
+
+/* ----------------------------------------------------------------------
+   The volume at the nodes over that of a cell, interpolated, goes from 1 inside of a body to 0
+   outside. To map and to interpolate smooths a step by functions with the variance (order + 1)/12
+   of the B-spline each: at the depth y it is close to the normal distribution with the sum of both.
+------------------------------------------------------------------------- */
+
+void FixMPMSurface::find_surface()
+{
+  known = true;
+  for (auto *ifix : modify->get_fix_by_style("^mpm$")) {
+    auto &field = *dynamic_cast<FixMPM *>(ifix);
+    field.volume_at_points(share);
+    const double deviation = std::sqrt((field.shape + 1) / 6.0);
+    const double limit = 0.5 * std::erfc(-depth / (deviation * std::sqrt(2.0)));
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!has_radius(i) || !field.is_point(i)) continue;
+      const auto *material = field.material_of(i);
+      const bool failed = material && material->damage >= 0 &&
+          material->history[i][material->damage] >= 1.0;
+      at_surface[i] = failed || share[i] < limit;
+      const double V = atom->vfrac[i] * points->jacobian(i);
+      const double radius = 0.5 * scale * (domain->dimension == 3 ? std::cbrt(V) : std::sqrt(V));
+      atom->radius[i] = at_surface[i] > 0.0 ? std::min(radius, largest_radius(i)) : 0.0;
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   points at the surface
+------------------------------------------------------------------------- */
+
+double FixMPMSurface::compute_scalar()
+{
+  double mine = 0.0, all;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (has_radius(i)) mine += at_surface[i];
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+double FixMPMSurface::memory_usage()
+{
+  return (double) (atom->nmax + share.capacity()) * sizeof(double);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMSurface::grow_arrays(int nmax)
+{
+  memory->grow(at_surface, nmax, "mpm/surface:at_surface");
+  vector_atom = at_surface;
+}
+
+void FixMPMSurface::copy_arrays(int i, int j, int)
+{
+  at_surface[j] = at_surface[i];
+}
+
+void FixMPMSurface::set_arrays(int i)
+{
+  at_surface[i] = 0.0;
+}
+
+int FixMPMSurface::pack_exchange(int i, double *buf)
+{
+  buf[0] = at_surface[i];
+  return 1;
+}
+
+int FixMPMSurface::unpack_exchange(int i, double *buf)
+{
+  at_surface[i] = buf[0];
+  return 1;
+}
+
+int FixMPMSurface::pack_forward_comm(int n, int *list, double *buf, int, int *)
+{
+  for (int k = 0; k < n; k++) buf[k] = atom->radius[list[k]];
+  return n;
+}
+
+void FixMPMSurface::unpack_forward_comm(int n, int first, double *buf)
+{
+  for (int k = 0; k < n; k++) atom->radius[first + k] = buf[k];
+}

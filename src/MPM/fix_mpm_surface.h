@@ -1,0 +1,64 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(mpm/surface,FixMPMSurface);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_MPM_SURFACE_H
+#define LMP_FIX_MPM_SURFACE_H
+
+#include "fix.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+/** Gives a contact radius, that of their present volume, to the material points at the surface of
+ *  bodies and to those that have failed, and none to the others, so that the pair styles of grains
+ *  meet no points inside. */
+class FixMPMSurface : public Fix {
+ public:
+  FixMPMSurface(class LAMMPS *, int, char **);
+  ~FixMPMSurface() override;
+  int setmask() override;
+  void init() override;
+  void setup_pre_exchange() override;
+  void setup_pre_force(int) override;
+  void pre_exchange() override;
+  void pre_force(int) override;
+  void post_run() override;
+  double compute_scalar() override;
+  double memory_usage() override;
+  void grow_arrays(int) override;
+  void copy_arrays(int, int, int) override;
+  void set_arrays(int) override;
+  int pack_exchange(int, double *) override;
+  int unpack_exchange(int, double *) override;
+  int pack_forward_comm(int, int *, double *, int, int *) override;
+  void unpack_forward_comm(int, int, double *) override;
+
+ private:
+  double scale, grow, depth;     // of the radius; its largest growth; of what counts as surface [h]
+  bool known;                    // radii are those of the surface, not the largest ones
+  double *at_surface;            // [n] 1: has a radius, 0: has not
+  std::vector<double> share;     // of the volume, at the points of a field
+  struct MPMPoints *points;
+
+  bool has_radius(int i) const;
+  double largest_radius(int i) const;
+  void give_largest();
+  void find_surface();
+};
+
+}    // namespace LAMMPS_NS
+#endif
+#endif

@@ -1,0 +1,151 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// labels: physics
+// mpi: 1 2
+
+// Fix mpm/surface: which points carry a contact radius, and what grains feel of it.
+
+#include "fix_mpm_material.h"
+#include "mpm_lammps.h"
+#include "neigh_list.h"
+#include "pair.h"
+
+#include "gtest/gtest.h"
+
+using namespace LAMMPS_NS;
+using namespace MPM_TEST;
+
+static const std::string head = "units lj\nboundary p p f\natom_style hybrid sphere mpm\n"
+                                "neighbor 0.3 multi\ncomm_modify vel yes mode multi\n"
+                                "region box block 0 12 0 12 -1 12\ncreate_box 2 box\n";
+
+static const std::string contact =
+    "pair_style granular\n"
+    "pair_coeff * * hooke 100.0 0.5 tangential linear_nohistory 0.5 0.4\n"
+    "neigh_modify exclude type 1 1\n";
+
+static double surface_points(Scene &run)
+{
+  double n = -1.0;
+  run.each_step([&](double **) { n = run.lmp->modify->get_fix_by_id("surf")->compute_scalar(); });
+  run.commands("run 0 post no\n");
+  return n;
+}
+
+// A slab of 12 layers of 24 x 24 points anywhere on the lattice: the first and the last layer.
+
+class Surface : public ::testing::TestWithParam<const char *> {};
+
+TEST_P(Surface, IsTheOutermostLayer)
+{
+  for (const char *shift : {"0 0 0", "0.13 0.31 0.47", "0.5 0.25 0.7", "5.1 0 0"}) {
+    Scene run;
+    run.commands(head + "fix grid all mpm 1.0 " + GetParam() +
+                 "\nregion slab block INF INF INF INF 1 7\n" +
+                 "create_points 1 region slab ppc 2\ngroup slab type 1\nfix m slab mpm/material density 1.0 neohookean 10.0 0.3\n" +
+                 "displace_atoms all move " + shift + " units box\nfix surf slab mpm/surface\n" +
+                 contact + "timestep 0.01\nthermo 1000\n");
+    EXPECT_EQ(surface_points(run), 2 * 24 * 24) << shift;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Options, Surface,
+                         ::testing::Values("", "shape linear transfer flip 1.0 scheme musl",
+                                           "shape cubic", "shape cpgimp", "frame total"));
+
+// Points that have failed are no longer inside of anything, and their neighbors have a surface.
+
+TEST(Surface, OpensWherePointsHaveFailed)
+{
+  Scene run;
+  run.commands(head +
+               "fix grid all mpm 1.0\nregion slab block INF INF INF INF 1 7\n"
+               "create_points 1 region slab ppc 2\ngroup slab type 1\n"
+               "fix m slab mpm/material density 1.0 eos linear 10.0 strength elastic 5.0 damage "
+               "rankine 100.0\nfix surf slab mpm/surface\n" +
+               contact + "timestep 0.01\nthermo 1000\nrun 0 post no\n");
+  auto *material = dynamic_cast<FixMPMMaterial *>(run.lmp->modify->get_fix_by_id("m"));
+  ASSERT_GE(material->damage, 0);
+  for (int i = 0; i < run.n(); i++)    // two layers in the middle
+    if (std::abs(run.lmp->atom->x[i][2] - 4.0) < 0.5)
+      material->history[i][material->damage] = 1.0;
+  EXPECT_EQ(surface_points(run), 6 * 24 * 24);
+}
+
+// Grains on the surface feel the same with and without the points inside; lists are shorter.
+
+static const std::string grains =
+    "fix grid all mpm 1.0\nregion block block INF INF INF INF INF 5\n"
+    "create_points 1 region block ppc 2\ngroup block type 1\n"
+    "create_atoms 2 single 3.1 3.2 5.95\ncreate_atoms 2 single 8.9 3.7 6.1\n"
+    "create_atoms 2 single 6.4 9.2 5.9\ngroup grains type 2\n"
+    "set type 2 diameter 2.0 density 2.0\nvelocity grains set 0.3 0.2 -0.5\n";
+static const std::string fixes =
+    "group block type 1\ngroup grains type 2\n"
+    "fix soft block mpm/material density 1.0 neohookean 50.0 0.3\n"
+    "fix floor all mpm/boundary zlo stick\nfix move grains nve/sphere\n";
+
+TEST(SurfaceContact, IsThatOfAllPoints)
+{
+  double force[2][3] = {{0.0}}, pairs[2] = {0.0, 0.0};
+  for (int all = 0; all < 2; all++) {
+    Scene run;
+    run.commands(head + grains + fixes +
+                 (all ? "set type 1 diameter 0.5\n" : "fix surf block mpm/surface grow 1.0\n") +
+                 contact + "timestep 0.01\nthermo 1000\n");
+    double mine[4] = {0.0}, sum[4];
+    run.each_step([&](double **) {
+      auto *atom = run.lmp->atom;
+      for (int i = 0; i < run.n(); i++)
+        if (atom->type[i] == 2)
+          for (int d = 0; d < 3; d++) mine[d] += std::abs(atom->f[i][d]);
+    });
+    run.commands("run 1 post no\n");
+    const auto *list = run.lmp->force->pair->list;
+    for (int k = 0; k < list->inum; k++) mine[3] += list->numneigh[list->ilist[k]];
+    MPI_Allreduce(mine, sum, 4, MPI_DOUBLE, MPI_SUM, run.lmp->world);
+    for (int d = 0; d < 3; d++) force[all][d] = sum[d];
+    pairs[all] = sum[3];
+  }
+  EXPECT_GT(force[0][2], 1.0);
+  for (int d = 0; d < 3; d++) EXPECT_NEAR(force[0][d], force[1][d], 1.0e-12 * force[1][2]);
+  EXPECT_LE(pairs[0], pairs[1]);
+}
+
+TEST(SurfaceContact, IsTheSameOnAnyNumberOfRanks)
+{
+  OnRanks run(head + grains + fixes + "fix surf block mpm/surface\n" + contact +
+                  "timestep 0.01\nthermo 1000\n",
+              "run 150\n");
+  EXPECT_LT(run.difference(), 1.0e-10);
+}
+
+TEST(SurfaceContact, GoesOnFromARestartFile)
+{
+  const std::string next = "fix surf block mpm/surface\n" + contact + "timestep 0.01\nthermo 1000\n";
+  Continued run(head + grains + fixes + next, 60,
+                "neighbor 0.3 multi\ncomm_modify vel yes mode multi\nfix grid all mpm 1.0\n" + fixes +
+                    next,
+                80);
+  EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
+}
+
+TEST(Surface, RefusesMistakes)
+{
+  expect_refused(head + grains + fixes + contact,
+                 {{"fix surf block mpm/surface width 3", "Unknown fix mpm/surface keyword: width"},
+                  {"fix surf block mpm/surface grow 0.5", "grow must be at least 1: 0.5"},
+                  {"fix surf block mpm/surface scale -1", "scale must be positive: -1"},
+                  {"fix surf block mpm/surface depth", "depth"},
+                  {"fix surf block mpm/surface\nset type 1 diameter 0.1", "define the fix after"}},
+                 "timestep 0.01\nrun 0\n");
+  EXPECT_THAT(error_of("units lj\natom_style mpm\nregion box block 0 4 0 4 0 4\ncreate_box 1 box\n"
+                       "fix grid all mpm 1.0\nfix surf all mpm/surface\n"),
+              ::testing::HasSubstr("use atom_style hybrid sphere mpm"));
+}
