@@ -118,22 +118,44 @@ TEST(SurfaceContact, IsThatOfAllPoints)
   EXPECT_LE(pairs[0], pairs[1]);
 }
 
+// A group of grains and surface alone can be in the neighbor lists and be the ghosts of other ranks.
+
+static const std::string plain = "fix surf block mpm/surface\n";
+static const std::string skin = "group skin union grains block\natom_modify first skin\n"
+                                "fix surf block mpm/surface group skin\n"
+                                "neigh_modify include skin\ncomm_modify group skin\n";
+static const std::string rest =
+    contact + "fix g all gravity 1.0 vector 0 0 -1\ntimestep 0.01\nthermo 1000\n";
+
 TEST(SurfaceContact, IsTheSameOnAnyNumberOfRanks)
 {
-  OnRanks run(head + grains + fixes + "fix surf block mpm/surface\n" + contact +
-                  "timestep 0.01\nthermo 1000\n",
-              "run 150\n");
-  EXPECT_LT(run.difference(), 1.0e-10);
+  for (const auto &surface : {plain, skin}) {
+    OnRanks run(head + grains + fixes + surface + rest, "run 150\n");
+    EXPECT_LT(run.difference(), 1.0e-10);
+  }
+}
+
+TEST(SurfaceContact, DoesNotNeedPointsInside)
+{
+  Scene all, some;
+  all.commands(head + grains + fixes + plain + rest + "run 150\n");
+  some.commands(head + grains + fixes + skin + rest);
+  int inside = 0;    // of the atoms with neighbor lists
+  some.each_step([&](double **) { inside = some.n() - some.lmp->atom->nfirst; });
+  some.commands("run 150 post no\n");
+  EXPECT_LT(difference(all.gather(), some.gather()), 1.0e-10);
+  EXPECT_GT(inside, some.n() / 2);
 }
 
 TEST(SurfaceContact, GoesOnFromARestartFile)
 {
-  const std::string next = "fix surf block mpm/surface\n" + contact + "timestep 0.01\nthermo 1000\n";
-  Continued run(head + grains + fixes + next, 60,
-                "neighbor 0.3 multi\ncomm_modify vel yes mode multi\nfix grid all mpm 1.0\n" + fixes +
-                    next,
-                80);
-  EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
+  for (const auto &surface : {plain, skin}) {
+    Continued run(head + grains + fixes + surface + rest, 60,
+                  "neighbor 0.3 multi\ncomm_modify vel yes mode multi\nfix grid all mpm 1.0\n" +
+                      fixes + surface + rest,
+                  80);
+    EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
+  }
 }
 
 TEST(Surface, RefusesMistakes)
@@ -143,6 +165,9 @@ TEST(Surface, RefusesMistakes)
                   {"fix surf block mpm/surface grow 0.5", "grow must be at least 1: 0.5"},
                   {"fix surf block mpm/surface scale -1", "scale must be positive: -1"},
                   {"fix surf block mpm/surface depth", "depth"},
+                  {"fix surf block mpm/surface group none", "static group"},
+                  {"group g empty\natom_modify first g\nneigh_modify include g\n",
+                   "use fix mpm/surface with keyword group g"},
                   {"fix surf block mpm/surface\nset type 1 diameter 0.1", "define the fix after"}},
                  "timestep 0.01\nrun 0\n");
   EXPECT_THAT(error_of("units lj\natom_style mpm\nregion box block 0 4 0 4 0 4\ncreate_box 1 box\n"

@@ -14,7 +14,9 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_mpm_material.h"
+#include "fix_mpm_surface.h"
 #include "force.h"
+#include "group.h"
 #include "memory.h"
 #include "modify.h"
 #include "mpm_batch.h"
@@ -342,6 +344,15 @@ void FixMPM::init()
         error->all(FLERR, "All fix mpm instances must be axisymmetric, or none: {} and {} differ", id,
                    field->id);
     for (auto *action : actions) action->init_action();
+    if (neighbor->includegroup) {
+      bool known = false;
+      for (auto *ifix : modify->get_fix_by_style("^mpm/surface$"))
+        known = known || dynamic_cast<FixMPMSurface *>(ifix)->keeps_group(neighbor->includegroup);
+      if (!known)
+        error->all(FLERR, "Neigh_modify include {} leaves the forces of other material points as they "
+                   "are: use fix mpm/surface with keyword group {}",
+                   group->names[neighbor->includegroup], group->names[neighbor->includegroup]);
+    }
   }
 
   materials.clear();
@@ -403,11 +414,12 @@ void FixMPM::setup_pre_neighbor()
   // a tile has room for a drift of one cell
 
   watch_drift = !total &&
-      (every > 1 || neighbor->skin > 2.0 * lattice.h || neighbor->delay > 0 || neighbor->every > 1 ||
+      (every > 1 || neighbor->includegroup || neighbor->skin > 2.0 * lattice.h || neighbor->delay > 0 || neighbor->every > 1 ||
        !neighbor->dist_check);
 
   check_integrators();
   check_points();
+  if (driver && force->pair) check_neighbors();
   set_reference();
   give_initial_stress();
   sort_points();

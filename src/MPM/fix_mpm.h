@@ -316,6 +316,7 @@ class FixMPM : public Fix {
   bool restart_step() const;
   void check_integrators();
   void check_points();
+  void check_neighbors();
   void check_inside_box();
   void check_dt();
   void point_is_bad(int i, const std::string &what);

@@ -23,6 +23,8 @@
 #include "modify.h"
 #include "mpm_batch.h"
 #include "mpm_points.h"
+#include "neighbor.h"
+#include "pair.h"
 #include "update.h"
 
 #include <algorithm>
@@ -119,6 +121,58 @@ void FixMPM::check_points()
                "{}: shape gimp and cpgimp need at least one point per cell, and aspect if points "
                "are not cubes", all[SIZE], id,
                example_all[SIZE]);
+}
+
+/* ----------------------------------------------------------------------
+   Neighbor lists of points and grains: the two settings that make them slow. Pairs of points do
+   nothing but cost time, unless pair style mpm/penalty is there for them; and with bins of the size
+   of a grain, each point tests all points within reach of a grain.
+------------------------------------------------------------------------- */
+
+void FixMPM::check_neighbors()
+{
+  constexpr bigint MANY = 1000;    // points for which it matters
+  constexpr double RATIO = 2.0;
+  const int ntypes = atom->ntypes;
+  std::vector<int> mine(2 * (ntypes + 1), 0), all(2 * (ntypes + 1));    // points, other atoms
+  bigint npoints = 0, npoints_all;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const bool point = atom->vfrac[i] > 0.0;
+    mine[2 * atom->type[i] + !point] = 1;
+    npoints += point;
+  }
+  MPI_Allreduce(mine.data(), all.data(), mine.size(), MPI_INT, MPI_MAX, world);
+  MPI_Allreduce(&npoints, &npoints_all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (npoints_all < MANY) return;
+
+  double cut_points = 0.0, cut_others = 0.0;    // squares
+  for (int t = 1; t <= ntypes; t++) {
+    const double cut = force->pair->cutsq[t][t];
+    if (all[2 * t]) cut_points = std::max(cut_points, cut);
+    if (all[2 * t + 1] && !all[2 * t]) cut_others = std::max(cut_others, cut);
+    if (!all[2 * t] || cut == 0.0 || force->pair_match("mpm/penalty", 0)) continue;
+
+    bool excluded = false;
+    for (int k = 0; k < neighbor->nex_type; k++)
+      excluded = excluded || (neighbor->ex1_type[k] == t && neighbor->ex2_type[k] == t);
+    for (int k = 0; k < neighbor->nex_group; k++) {
+      const int bits = neighbor->ex1_bit[k] | neighbor->ex2_bit[k];
+      int in = 1, in_all;
+      for (int i = 0; i < atom->nlocal; i++)
+        if (atom->type[i] == t && atom->vfrac[i] > 0.0 && (atom->mask[i] & bits) != bits) in = 0;
+      MPI_Allreduce(&in, &in_all, 1, MPI_INT, MPI_MIN, world);
+      excluded = excluded || in_all;
+    }
+    if (!excluded && comm->me == 0)
+      error->warning(FLERR, "Fix mpm: pairs of material points of type {} are in the neighbor lists, "
+                     "at great cost and for nothing but pair forces between them: use neigh_modify "
+                     "exclude type {} {}", t, t, t);
+  }
+  if (cut_others > RATIO * RATIO * cut_points && neighbor->style != Neighbor::MULTI &&
+      comm->me == 0)
+    error->warning(FLERR, "Fix mpm: neighbor lists of points and of grains {:.1f} times as large are "
+                   "many times faster with neighbor ... multi and comm_modify mode multi",
+                   sqrt(cut_others / std::max(cut_points, 1.0e-300)));
 }
 
 /* ----------------------------------------------------------------------

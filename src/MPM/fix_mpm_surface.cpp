@@ -15,12 +15,15 @@
 #include "error.h"
 #include "fix_mpm.h"
 #include "fix_mpm_material.h"
+#include "group.h"
 #include "memory.h"
 #include "modify.h"
 #include "mpm_points.h"
+#include "neighbor.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -30,7 +33,7 @@ using namespace FixConst;
 ------------------------------------------------------------------------- */
 
 FixMPMSurface::FixMPMSurface(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), scale(1.0), grow(1.2), depth(0.5), known(false), at_surface(nullptr),
+    Fix(lmp, narg, arg), scale(1.0), grow(1.2), depth(0.5), surface_group(-1), known(false), at_surface(nullptr),
     points(MPMPoints::get(atom))
 {
   if (!points || !atom->radius_flag)
@@ -38,6 +41,14 @@ FixMPMSurface::FixMPMSurface(LAMMPS *lmp, int narg, char **arg) :
                "hybrid sphere mpm");
   for (int iarg = 3; iarg < narg; iarg += 2) {
     const std::string keyword = arg[iarg];
+    if (keyword == "group") {
+      if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, "fix mpm/surface group", error);
+      surface_group = group->find(arg[iarg + 1]);
+      if (surface_group <= 0 || surface_group == igroup || group->dynamic[surface_group])
+        error->all(FLERR, iarg + 1, "Fix mpm/surface group must be a static group other than all and "
+                   "that of the fix: {}", arg[iarg + 1]);
+      continue;
+    }
     double *const value = keyword == "scale" ? &scale : keyword == "grow" ? &grow :
         keyword == "depth"                   ? &depth : nullptr;
     if (!value) error->all(FLERR, iarg, "Unknown fix mpm/surface keyword: {}", keyword);
@@ -120,6 +131,14 @@ void FixMPMSurface::setup_pre_force(int)
 void FixMPMSurface::pre_force(int)
 {
   if (!known) setup_pre_force(0);
+  if (!neighbor->includegroup) return;
+
+  // LAMMPS has set to zero the forces of the atoms in the neighbor lists only
+
+  const std::size_t n = 3 * (std::size_t) (atom->nlocal - atom->nfirst) * sizeof(double);
+  if (n == 0) return;
+  memset(&atom->f[atom->nfirst][0], 0, n);
+  if (atom->torque_flag) memset(&atom->torque[atom->nfirst][0], 0, n);
 }
 
 /* ----------------------------------------------------------------------
@@ -157,10 +176,16 @@ void FixMPMSurface::give_largest()
 {
   known = false;
   for (int i = 0; i < atom->nlocal; i++)
-    if (has_radius(i)) {
-      atom->radius[i] = largest_radius(i);
-      at_surface[i] = 1.0;
-    }
+    if (has_radius(i)) give_radius(i, true, largest_radius(i));
+}
+
+void FixMPMSurface::give_radius(int i, bool surface, double radius)
+{
+  at_surface[i] = surface;
+  atom->radius[i] = surface ? radius : 0.0;
+  if (surface_group < 0) return;
+  const int bit = group->bitmask[surface_group];
+  atom->mask[i] = surface ? atom->mask[i] | bit : atom->mask[i] & ~bit;
 }
 
 /* ----------------------------------------------------------------------
@@ -182,10 +207,9 @@ void FixMPMSurface::find_surface()
       const auto *material = field.material_of(i);
       const bool failed = material && material->damage >= 0 &&
           material->history[i][material->damage] >= 1.0;
-      at_surface[i] = failed || share[i] < limit;
       const double V = atom->vfrac[i] * points->jacobian(i);
       const double radius = 0.5 * scale * (domain->dimension == 3 ? std::cbrt(V) : std::sqrt(V));
-      atom->radius[i] = at_surface[i] > 0.0 ? std::min(radius, largest_radius(i)) : 0.0;
+      give_radius(i, failed || share[i] < limit, std::min(radius, largest_radius(i)));
     }
   }
 }

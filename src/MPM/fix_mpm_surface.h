@@ -37,6 +37,10 @@ class FixMPMSurface : public Fix {
   void pre_force(int) override;
   void post_run() override;
   double compute_scalar() override;
+
+  /** Are points members of this group only if they have a radius? */
+  bool keeps_group(int group) const { return group == surface_group; }
+
   double memory_usage() override;
   void grow_arrays(int) override;
   void copy_arrays(int, int, int) override;
@@ -48,6 +52,7 @@ class FixMPMSurface : public Fix {
 
  private:
   double scale, grow, depth;     // of the radius; its largest growth; of what counts as surface [h]
+  int surface_group;             // that points with a radius are in, -1: none
   bool known;                    // radii are those of the surface, not the largest ones
   double *at_surface;            // [n] 1: has a radius, 0: has not
   std::vector<double> share;     // of the volume, at the points of a field
@@ -55,6 +60,7 @@ class FixMPMSurface : public Fix {
 
   bool has_radius(int i) const;
   double largest_radius(int i) const;
+  void give_radius(int i, bool at_surface, double radius);
   void give_largest();
   void find_surface();
 };

@@ -16,6 +16,7 @@
 #include "comm.h"
 #include "error.h"
 #include "fix_mpm_material.h"
+#include "group.h"
 #include "modify.h"
 #include "mpm_batch.h"
 #include "mpm_halo.h"
@@ -277,26 +278,31 @@ void FixMPM::sort_points()
     key[i] = index * keys_per_block + m * NODES_PER_BLOCK + cell;
   }
 
-  // blocks in order of their coordinates; atoms that are no points come last
+  // blocks in order of their coordinates; atoms that are no points come last. A group that LAMMPS
+  // wants to be first (atom_modify first) stays so, and has the same order in itself
 
   std::vector<int> rank(index_of_block.size());
   int nblocks = 0;
   for (const auto &entry : index_of_block) rank[entry.second] = nblocks++;
   const int nkeys = nblocks * keys_per_block;
-  std::vector<int> start_of_key(nkeys + 2, 0);
+  const int firstbit = atom->firstgroupname ? group->bitmask[atom->firstgroup] : 0;
+  const int others = firstbit ? nkeys + 1 : 0;
+  const int all_keys = others + nkeys + 1;
+  std::vector<int> start_of_key(all_keys + 1, 0);
   for (int i = 0; i < nlocal; i++) {
     if (key[i] < 0)
       key[i] = nkeys;
     else
       key[i] = rank[key[i] / keys_per_block] * keys_per_block + key[i] % keys_per_block;
+    if (!(atom->mask[i] & firstbit)) key[i] += others;
     start_of_key[key[i] + 1]++;
   }
-  for (int k = 0; k <= nkeys; k++) start_of_key[k + 1] += start_of_key[k];
+  for (int k = 0; k < all_keys; k++) start_of_key[k + 1] += start_of_key[k];
   std::vector<int> permute(nlocal), next(start_of_key.begin(), start_of_key.end() - 1);
   for (int i = 0; i < nlocal; i++) permute[next[key[i]]++] = i;
   const tagint *tag = atom->tag;
-  for (int k = 0; k < nkeys; k++)
-    if (start_of_key[k + 1] - start_of_key[k] > 1)
+  for (int k = 0; k < all_keys; k++)
+    if (k != nkeys && k != others + nkeys && start_of_key[k + 1] - start_of_key[k] > 1)
       std::sort(permute.begin() + start_of_key[k], permute.begin() + start_of_key[k + 1],
                 [tag](int i, int j) { return tag[i] < tag[j]; });
 
