@@ -107,7 +107,7 @@ def prerequisites(line, before):
 def scene_for(lines):
     """A scene around lines of an example, which has what they need and does not show."""
     text, before = "\n".join(lines), ""
-    style = "hybrid sphere mpm" if "diameter" in text else "mpm"
+    style = "hybrid sphere mpm" if re.search("diameter|mpm/surface", text) else "mpm"
     grid = re.search(r"^fix grid all mpm (\S+)", text, re.M)
     h = float(grid.group(1)) if grid else 0.0
     head = HEAD.format(style=style, x=32 * h or 0.1, z=60 * h or 0.1)
