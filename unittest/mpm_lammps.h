@@ -294,7 +294,8 @@ class Scene {
         const int dim = fix->lattice.dim;
         double CF[9];    // total frame: the velocity C (X - X_p) is at F (X - X_p)
         if (fix->total) {
-          const double *F = MPMPoints::get(atom)->F[i];
+          double F[9];
+          fix->lattice_F(i, F);
           for (int a = 0; a < dim; a++)
             for (int b = 0; b < dim; b++) {
               CF[dim * b + a] = 0.0;

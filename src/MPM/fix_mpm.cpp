@@ -43,11 +43,11 @@ static constexpr double MAX_NODE = 4.0e6;
 
 FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), shape(QUADRATIC), extent(NO_SIZE), aspect{1.0, 1.0, 1.0}, transfer(APIC),
-    flip(0.0), refinement(LUMPED), order(1), total(false), axisymmetric(false), scheme(USL), stress(DEFAULT_STRESS), locking(NO_CURE), policy(ERROR),
-    delete_failed(false), every(1), dt_check(true), grid(nullptr), C(nullptr), X(nullptr),
+    flip(0.0), refinement(LUMPED), order(1), total(false), most_distorted(0.0), axisymmetric(false), scheme(USL), stress(DEFAULT_STRESS), locking(NO_CURE), policy(ERROR),
+    delete_failed(false), every(1), dt_check(true), grid(nullptr), C(nullptr), X(nullptr), R(nullptr),
     waiting(nullptr), ledger_on(false), points(nullptr), halo(nullptr),
     kernels(nullptr), batch_kernels(nullptr), driver(false), topology_valid(false),
-    watch_drift(false), drifted(0), want_sort(false), switches(0), switches_sorted(0),
+    watch_drift(false), drifted(0), want_sort(false), refer_anew(false), switches(0), switches_sorted(0),
     tile(nullptr), tile_load(nullptr), waited(0), elapsed(0.0), batch(nullptr), kinetic_points(0.0), nbad_total(0),
     next_dt_check(0), clock(0.0), running(false), velocities(0), velocities_known(false)
 {
@@ -71,7 +71,7 @@ FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) :
   memset(&ledger, 0, sizeof(MPMLedger));
   memset(&deleted, 0, sizeof(deleted));
 
-  if (may_delete()) {
+  if (may_delete() || most_distorted > 0.0) {
     force_reneighbor = 1;
     next_reneighbor = -1;
   }
@@ -104,6 +104,7 @@ FixMPM::~FixMPM()
   }
   memory->destroy(C);
   memory->destroy(X);
+  memory->destroy(R);
   memory->destroy(waiting);
   memory->sfree(tile);
   memory->sfree(tile_load);
@@ -190,6 +191,17 @@ void FixMPM::process_options(int narg, char **arg)
     } else if (keyword == "stress") {
       stress = (Stress) (1 + choose({"mls", "gradient"}));
       iarg += 2;
+    } else if (keyword == "reference") {
+      most_distorted = 0.0;
+      if (choose({"fixed", "update"}) == 1) {
+        need(2);
+        most_distorted = utils::numeric(FLERR, arg[iarg + 2], false, lmp);
+        if (!(most_distorted > 1.0 && std::isfinite(most_distorted)))
+          error->all(FLERR, iarg + 2, "Fix mpm reference update needs a ratio of stretches above 1: {}",
+                     arg[iarg + 2]);
+        iarg++;
+      }
+      iarg += 2;
     } else if (keyword == "axisymmetric") {
       need(1);
       axisymmetric = utils::logical(FLERR, arg[iarg + 1], false, lmp);
@@ -228,6 +240,9 @@ void FixMPM::process_options(int narg, char **arg)
       error->all(FLERR, iarg, "Unknown fix mpm keyword: {}", keyword);
   }
 
+  if (most_distorted > 0.0 && !total)
+    error->all(FLERR, "Fix mpm reference update is for frame total: in the updated frame, the reference "
+               "is the present configuration in each step");
   if (has_aspect && extent == NO_SIZE)
     error->all(FLERR, "Fix mpm aspect is for points of finite size: use shape gimp or cpgimp");
   if (total && (extent != NO_SIZE || transfer == AFLIP || transfer == TPIC))
@@ -506,6 +521,10 @@ void FixMPM::pre_neighbor()
 {
   int flag = want_sort, flag_all;
   MPI_Allreduce(&flag, &flag_all, 1, MPI_INT, MPI_MAX, world);
+  if (refer_anew) {
+    update_reference();
+    flag_all = 1;
+  }
   if (flag_all || restart_step()) sort_points();
   topology_valid = false;
 }
@@ -596,29 +615,6 @@ void FixMPM::load_state(Batch &b, const int *list, int n, const FixMPMMaterial *
 }
 
 /* ----------------------------------------------------------------------
-   total frame: the reference position of a point is where it is at the start of its first run,
-   so that commands which place or displace points can be used before
-------------------------------------------------------------------------- */
-
-void FixMPM::set_reference()
-{
-  if (!X) return;
-  tagint deformed = 0, deformed_all;
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!is_point(i) || !std::isnan(X[i][0])) continue;
-    memcpy(X[i], atom->x[i], 3 * sizeof(double));
-    for (int c = 0; c < 9; c++)
-      if (fabs(points->F[i][c] - (c % 4 == 0)) > 1.0e-12)
-        deformed = std::max(deformed, atom->tag[i]);
-  }
-  MPI_Allreduce(&deformed, &deformed_all, 1, MPI_LMP_TAGINT, MPI_MAX, world);
-  if (deformed_all)
-    error->all(FLERR, "Fix mpm {} frame total: points have no reference position but are deformed "
-               "already, for instance point {}: use frame total from the first run on, and the "
-               "same fix ID after read_restart", id, deformed_all);
-}
-
-/* ----------------------------------------------------------------------
    affine matrix of APIC and reference position: per-atom arrays that migrate and restart with the
    atom
 ------------------------------------------------------------------------- */
@@ -627,6 +623,7 @@ void FixMPM::grow_arrays(int nmax)
 {
   if (is_affine(transfer)) memory->grow(C, nmax, affine_size(), "mpm:C");
   if (total) memory->grow(X, nmax, 3, "mpm:X");
+  if (most_distorted > 0.0) memory->grow(R, nmax, 9, "mpm:R");
   if (every > 1) memory->grow(waiting, nmax, waiting_size(), "mpm:waiting");
 }
 
@@ -634,6 +631,7 @@ void FixMPM::copy_arrays(int i, int j, int)
 {
   if (C) memcpy(C[j], C[i], affine_size() * sizeof(double));
   if (X) memcpy(X[j], X[i], 3 * sizeof(double));
+  if (R) memcpy(R[j], R[i], 9 * sizeof(double));
   if (waiting) memcpy(waiting[j], waiting[i], waiting_size() * sizeof(double));
 }
 
@@ -647,6 +645,7 @@ void FixMPM::set_arrays(int i)
     memcpy(X[i], atom->x[i], 3 * sizeof(double));
     if (!running) X[i][0] = NAN;    // not known, for set_reference()
   }
+  for (int c = 0; c < 9 && R; c++) R[i][c] = c % 4 == 0;
   if (waiting) memset(waiting[i], 0, waiting_size() * sizeof(double));
 }
 
@@ -656,6 +655,7 @@ int FixMPM::pack_exchange(int i, double *buf)
   if (C) memcpy(buf, C[i], own[0] * sizeof(double));
   if (waiting) memcpy(buf + own[0], waiting[i], own[1] * sizeof(double));
   if (X) memcpy(buf + own[0] + own[1], X[i], own[2] * sizeof(double));
+  if (R) memcpy(buf + own[0] + own[1] + own[2], R[i], 9 * sizeof(double));
   return own_size();
 }
 
@@ -665,6 +665,7 @@ int FixMPM::unpack_exchange(int i, double *buf)
   if (C) memcpy(C[i], buf, own[0] * sizeof(double));
   if (waiting) memcpy(waiting[i], buf + own[0], own[1] * sizeof(double));
   if (X) memcpy(X[i], buf + own[0] + own[1], own[2] * sizeof(double));
+  if (R) memcpy(R[i], buf + own[0] + own[1] + own[2], 9 * sizeof(double));
   return own_size();
 }
 
@@ -682,7 +683,7 @@ void FixMPM::unpack_restart(int i, int nth)
   for (int k = 0; k < nth; k++) m += static_cast<int>(extra[i][m]);
   if (static_cast<int>(extra[i][m]) != 1 + own_size())
     error->one(FLERR, "The restart file has {} numbers per point for fix mpm {}, not {}: give the "
-               "fix the transfer, frame and every with which the file was written",
+               "fix the transfer, frame, reference and every with which the file was written",
                static_cast<int>(extra[i][m]) - 1, id, own_size());
   unpack_exchange(i, extra[i] + m + 1);
 }

@@ -95,6 +95,7 @@ class FixMPM : public Fix {
   Refinement refinement;    ///< of the velocities of the nodes, with transfer FLIP inside
   int order;                ///< terms of the inverse of the mass matrix, 1: lumped
   bool total;          ///< nodes are places of the reference configuration (total Lagrangian)
+  double most_distorted;    ///< ratio of stretches that asks for a new reference, 0: never
   bool axisymmetric;   ///< 2d: x is the distance from the axis y, points are rings
   Scheme scheme;
   Stress stress;       ///< how stress acts on nodes, and how these strain the points
@@ -110,6 +111,7 @@ class FixMPM : public Fix {
   std::vector<FixMPMMaterial *> materials;      ///< all of them, set in init()
   double **C;    ///< [n][dim*dim] affine, column-major; null: transfer without
   double **X;    ///< [n][3] reference position, NAN before it is known; null: updated frame
+  double **R;    ///< [n][9] F at the last update of the reference, row-major; null: there is none
   double **waiting;    ///< [n][6 or 9] since the last step of the cycle: impulse, displacement, and
                        ///< angular impulse if atoms have torques; null: every is 1
   bool ledger_on;                               ///< a compute mpm/energy exists; set in init()
@@ -140,6 +142,8 @@ class FixMPM : public Fix {
   bool is_point(int i) const;
   /** Where a point is on the lattice. */
   const double *place(int i) const;
+  /** Deformation gradient of a point with respect to the places of the lattice (total frame). */
+  void lattice_F(int i, double F[9]) const;
   /** Material of a point of this field (null: none). */
   FixMPMMaterial *material_of(int i) const;
   /** Number of points of this field on this rank. */
@@ -195,14 +199,14 @@ class FixMPM : public Fix {
   };
   struct Report {    // of the present run
     double t_topology, t_p2g, t_halo, t_nodes, t_g2p, t_sort;
-    bigint steps, point_steps, topologies, sorts;
+    bigint steps, point_steps, topologies, sorts, references;
     double dt_min, dt_max;
   };
 
   MPM_NS::Shape kernel_shape() const { return extent == NO_SIZE ? shape : MPM_NS::GIMP; }
   int affine_size() const { return lattice.dim * lattice.dim; }
   /** Reals that each point has of this fix. */
-  int own_size() const { return (C ? affine_size() : 0) + (X ? 3 : 0) + waiting_size(); }
+  int own_size() const { return (C ? affine_size() : 0) + (X ? 3 : 0) + (R ? 9 : 0) + waiting_size(); }
   int waiting_size() const;
 
   MPMPoints *points;
@@ -220,6 +224,7 @@ class FixMPM : public Fix {
   bool topology_valid;
   bool watch_drift;      // rebuilds of neighbor lists do not bound the drift: check every step
   int drifted;           // a point has left the range of its tile
+  bool refer_anew;       // the present configuration is to become the reference
   bool want_sort;        // order of points has decayed since the last sort
   bigint switches;       // neighbours in memory that are in different cells, now
   bigint switches_sorted;    // and right after the last sort
@@ -292,6 +297,7 @@ class FixMPM : public Fix {
   void move_points();
   void check_axis();
   double reference_radius(int i) const;
+  double total_radius(int i) const;
   double hoop_stiffening(int i) const;
   void note_radii(int first, int last);
   void hoop_of_motion(const MPM_NS::PointRows &, int first, int last);
@@ -309,6 +315,10 @@ class FixMPM : public Fix {
   void remember_velocities();
   void check_velocities();
   void set_reference();
+  void refer_gradients(int first, int n, double *L) const;
+  void stretches(int i, double &smallest, double &largest) const;
+  void check_distortion();
+  void update_reference();
   void fit_affine();
   void add_torques();
   void process_options(int, char **);

@@ -252,7 +252,7 @@ void FixMPM::add_torques()
       if (total) {
         // the velocity C (X - X_p) is at F (X - X_p): the part of C F^T is the same as without F
         double inverse[3][3], F[3][3];
-        memcpy(F, points->F[i], 9 * sizeof(double));
+        lattice_F(i, &F[0][0]);
         MathExtra::invert3(F, inverse);
         double G[9];
         for (int a = 0; a < 3; a++)

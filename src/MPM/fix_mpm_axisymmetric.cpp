@@ -69,7 +69,13 @@ void FixMPM::check_axis()
 
 double FixMPM::reference_radius(int i) const
 {
-  return X && !std::isnan(X[i][0]) ? X[i][0] : atom->x[i][0] / points->F[i][8];
+  return atom->x[i][0] / points->F[i][8];
+}
+
+/** Distance from the axis in the total frame, as the deformation gradient has it. */
+double FixMPM::total_radius(int i) const
+{
+  return X[i][0] * points->F[i][8] / (R ? R[i][8] : 1.0);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -106,7 +112,7 @@ void FixMPM::note_radii(int first, int last)
 void FixMPM::hoop_of_motion(const PointRows &r, int first, int last)
 {
   for (bigint i = first; i < last; i++) {
-    const double radius = total ? X[i][0] * points->F[i][8] : hoop[i];
+    const double radius = total ? total_radius(i) : hoop[i];
     hoop[i] = (r.xnew[3 * i] - hoop[i]) / radius;
   }
 }
@@ -126,7 +132,7 @@ void FixMPM::hoop_of_nodes(const PointRows &r, const TransferStep &step, int fir
   s.dt = 0.0;
   pic.g2p(rows, s, first, last, base, tile_load, nullptr);
   for (bigint i = first; i < last; i++) {
-    const double rate = v_apart[3 * i] / (total ? X[i][0] * points->F[i][8] : atom->x[i][0]);
+    const double rate = v_apart[3 * i] / (total ? total_radius(i) : atom->x[i][0]);
     hoop[i] = dt * rate / (1.0 - shift * rate);
   }
 }
@@ -141,7 +147,7 @@ void FixMPM::add_hoop_force(const PointRows &r, bigint first, int n, double *f) 
   std::copy_n(r.f + 3 * first, 3 * n, f);
   for (int p = 0; p < n; p++) {
     const bigint i = first + p;
-    const double radius = total ? r.x[3 * i] * r.F[9 * i + 8] : r.x[3 * i];
+    const double radius = total ? total_radius(i) : r.x[3 * i];
     f[3 * p] -= unit * r.vol0[i] * r.tau[6 * i + 2] / radius;
   }
 }

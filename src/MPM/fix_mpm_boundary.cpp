@@ -319,6 +319,13 @@ void FixMPMBoundary::init()
                  kind == SEPARATE ? "separate" : rotating ? "rotate" : "with a moving region",
                  field->id,
                  kind == SEPARATE ? "fix wall/gran or a pair style" : "stick velocity with variables");
+    bool moves = false;
+    for (const auto &v : velocity) moves = moves || !v.variable.empty() || v.value != 0.0;
+    if (field->R && moves)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/boundary {} velocity cannot be used with reference update of fix mpm {}: the "
+                 "material that it holds would leave it with the first update",
+                 id, field->id);
     if (field->stress_before() && decides())
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/boundary separate and friction cannot be used "

@@ -19,7 +19,6 @@
 #include "fix_mpm_material.h"
 #include "force.h"
 #include "group.h"
-#include "math_extra.h"
 #include "modify.h"
 #include "mpm_batch.h"
 #include "mpm_points.h"
@@ -287,36 +286,6 @@ void FixMPM::delete_points(const std::vector<tagint> &list, bool warn)
 }
 
 /* ----------------------------------------------------------------------
-   smallest singular value of F, in 2d of its part in the plane; not its smallest eigenvalue, which
-   tells nothing when the body has turned. 3d: from the largest eigenvalue of (F F^T)^-1, by the
-   trigonometric form of the cubic equation
-------------------------------------------------------------------------- */
-
-static double smallest_stretch(int dim, const double *F)
-{
-  if (dim == 2) {
-    const double a = 0.5 * hypot(F[0] + F[4], F[3] - F[1]),
-                 b = 0.5 * hypot(F[0] - F[4], F[3] + F[1]);
-    return fabs(F[0] * F[4] - F[1] * F[3]) / (a + b);
-  }
-  double f[3][3], g[3][3];
-  std::copy(F, F + 9, &f[0][0]);
-  MathExtra::invert3(f, g);
-  double B[3][3];
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) B[i][j] = g[0][i] * g[0][j] + g[1][i] * g[1][j] + g[2][i] * g[2][j];
-  const double mean = (B[0][0] + B[1][1] + B[2][2]) / 3.0;
-  double p = 0.0;
-  for (int i = 0; i < 3; i++) {
-    B[i][i] -= mean;
-    for (int j = 0; j < 3; j++) p += B[i][j] * B[i][j];
-  }
-  p = sqrt(p / 6.0);
-  const double r = p > 0.0 ? 0.5 * MathExtra::det3(B) / (p * p * p) : 1.0;
-  return 1.0 / sqrt(mean + 2.0 * p * cos(acos(std::max(-1.0, std::min(1.0, r))) / 3.0));
-}
-
-/* ----------------------------------------------------------------------
    smallest h/(c + |v|) over this rank's points. Total frame: points stay where they are on the
    lattice, but waves cross it faster where it is compressed: a plane wave with wave vector K there
    has k = F^-T K in space, |k| <= |K|/s with the smallest singular value s of F: s h/c
@@ -353,8 +322,12 @@ double FixMPM::stable_dt_local(tagint &id_min, double &wave_speed) const
     for (int p = 0; p < n; p++) {
       const double *v = atom->v[i + p];
       if (axisymmetric) c[p] *= hoop_stiffening(i + p);
-      const double speed = total ? c[p] / smallest_stretch(lattice.dim, points->F[i + p])
-                                 : c[p] + sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+      double speed = c[p] + sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+      if (total) {
+        double least, most;
+        stretches(i + p, least, most);
+        speed = c[p] / least;
+      }
       if (speed * smallest <= lattice.h) continue;    // NaN does not pass unseen
       smallest = lattice.h / speed;
       id_min = atom->tag[i + p];

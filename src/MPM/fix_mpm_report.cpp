@@ -186,6 +186,8 @@ void FixMPM::post_run()
     utils::logmesg(lmp, "  {:.0f} points deleted so far, mass {:.10g}, momentum {:.10g} {:.10g} "
                    "{:.10g}\n", deleted.points, deleted.mass, deleted.momentum[0],
                    deleted.momentum[1], deleted.momentum[2]);
+  if (report.references)
+    utils::logmesg(lmp, "  {} updates of the reference configuration\n", report.references);
   if (nbad_total)
     utils::logmesg(lmp, "  {} bad point updates so far (policy {})\n", nbad_total,
                    policy == WARN ? "warn" : "delete");

@@ -146,7 +146,7 @@ void FixMPM::grid_to_points()
   if (moves_late()) xnew.resize(3 * (std::size_t) atom->nlocal);
   const bool fbar = averages_strain() && scheme == USL, round = axisymmetric && scheme == USL;
   if (round) hoop.resize(atom->nmax);
-  const bool apart = strains_apart(), in_C = kernel.affine && !apart;
+  const bool apart = strains_apart(), in_C = kernel.affine && !apart && !R;
   if (fbar && !in_C) gradients.resize(affine_size() * (std::size_t) atom->nmax);
 
   const PointRows r = rows();
@@ -164,6 +164,11 @@ void FixMPM::grid_to_points()
         drifted |= kernel.g2p(r, s, i, last, base, tile_load,
                               kernel.affine || scheme != USL ? nullptr : out);
         if (round) hoop_of_motion(r, i, last);
+        if (R && scheme == USL) {
+          if (kernel.affine && !apart)
+            memcpy(out, C[i], affine_size() * sizeof(double) * (last - i));
+          refer_gradients(i, last - i, out);
+        }
         if (scheme == USL && !fbar)
           material_update(r, runs[k], i, last - i, in_C ? r.C + (bigint) affine_size() * i : L,
                           step_dt());
@@ -285,6 +290,7 @@ void FixMPM::gradient_and_material(double dt, double shift)
         double *const L = fbar ? gradients.data() + affine_size() * (bigint) i : batch_gradients;
         kernel.g2p_gradient(r, s, i, last, base, tile_load, L);
         if (shift != 0.0 && !total) shift_gradient(lattice.dim, last - i, shift, L);
+        if (R) refer_gradients(i, last - i, L);
         if (axisymmetric) hoop_of_nodes(r, s, i, last, base, dt, total ? 0.0 : shift);
         if (!fbar) material_update(r, runs[k], i, last - i, L, dt);
       }
@@ -363,6 +369,7 @@ void FixMPM::bookkeeping()
     drifted = 0;
   }
   if (policy != ERROR || delete_failed) handle_bad_points();
+  if (R) check_distortion();
   if (dt_check && update->ntimestep >= next_dt_check) check_dt();
 
   report.steps++;
@@ -416,7 +423,7 @@ void FixMPM::map_run(P2G p2g, const PointRows &r, const TransferStep &s, const R
     p2g(r, s, run.first, run.last, base, tile, box);
     return;
   }
-  double P[9 * BATCH + 8], f[3 * BATCH + 8];
+  double P[9 * BATCH + 8], f[3 * BATCH + 8], F[9 * BATCH];
   for (bigint i = run.first; i < run.last; i += BATCH) {
     const int n = (int) std::min<bigint>(BATCH, run.last - i);
     PointRows b = r;    // as if the batch were all
@@ -430,7 +437,9 @@ void FixMPM::map_run(P2G p2g, const PointRows &r, const TransferStep &s, const R
     b.tau += 6 * i;
     if (r.size) b.size += 3 * i;
     if (total) {
-      batch_kernels->first_piola(n, r.F + 9 * i, r.tau + 6 * i, P);
+      if (R)
+        for (int p = 0; p < n; p++) lattice_F((int) i + p, F + 9 * p);
+      batch_kernels->first_piola(n, R ? F : r.F + 9 * i, r.tau + 6 * i, P);
       b.P = P;
     }
     if (axisymmetric) {

@@ -1,0 +1,164 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// labels: physics mpi restart
+// mpi: 1 2 4
+// timeout: 900
+
+// fix mpm frame total with reference update: what is exact remains so, nothing jumps, and the frame
+// without updates comes out where there are none.
+
+#include "mpm_lammps.h"
+
+#include "gtest/gtest.h"
+
+#include <cmath>
+
+using namespace MPM_TEST;
+
+static std::string body(int dim, const std::string &options, const std::string &law)
+{
+  return strprintf("units lj\ndimension %d\nboundary f f %s\natom_style mpm\nneighbor 0.2 bin\n"
+                   "region box block -10 30 -10 20 %s\ncreate_box 1 box\n"
+                   "fix grid all mpm 0.5 frame total %s\nregion body block 2 6 2 5 %s\n"
+                   "create_points 1 region body ppc 2\nfix m all mpm/material density 1.0 %s\n"
+                   "thermo 1000000\n",
+                   dim, dim == 2 ? "p" : "f", dim == 2 ? "-0.5 0.5" : "-10 20", options.c_str(),
+                   dim == 2 ? "INF INF" : "2 4", law.c_str());
+}
+
+/* ----------------------------------------------------------------------
+   a body without stiffness in simple shear to 3, spinning, and stretched: F = (I + dt L)^n to
+   round-off whenever the reference is made anew, and stress is that of F
+------------------------------------------------------------------------- */
+
+TEST(ReferenceUpdate, AffineMotionIsExact)
+{
+  for (const int dim : {2, 3})
+    for (const char *rest :
+         {"transfer apic", "transfer apic scheme musl", "shape cubic transfer apic",
+          "shape linear transfer apic scheme usf", "transfer apic locking both"}) {
+      Scene run{MPI_COMM_SELF};
+      run.commands(body(dim, std::string(rest) + " reference update 1.5", "neohookean 1.0e-9 0.3") +
+                   "timestep 0.02\n");
+      run.set_reference();
+      run.set_velocity([](const double *x, double *v) {
+        v[0] = 1.0 * x[1] + 0.1 * x[0];
+        v[1] = -0.1 * x[0];
+      });
+      run.commands("run 150\n");
+      double worst = 0.0, shear = 0.0;
+      for (int i = 0; i < run.n(); i++) {
+        const double *F = run.points().F[i], *x = run.x()[i], *X = run.reference(i);
+        const double y[2] = {1.0 + 3.0 * 0.1, 1.0};    // points keep their velocities
+        worst = std::max(worst, std::abs(F[0] - y[0]));
+        worst = std::max(worst, std::abs(F[1] - 3.0));
+        worst = std::max(worst, std::abs(F[3] + 0.3));
+        worst = std::max(worst, std::abs(F[4] - y[1]));
+        worst = std::max(worst, std::abs(x[0] - (1.3 * X[0] + 3.0 * X[1])));
+        shear = std::max(shear, F[1]);
+      }
+      EXPECT_LT(worst, 1e-7) << rest;
+      EXPECT_GT(shear, 2.9);
+      double R = 0.0;
+      for (int i = 0; i < run.n(); i++) R = std::max(R, run.field()->R[i][1]);
+      EXPECT_GT(R, 1.0) << rest;    // there were updates
+    }
+}
+
+// a threshold that is never met changes nothing but round-off
+
+TEST(ReferenceUpdate, NoneIsTheTotalFrame)
+{
+  for (const char *rest :
+       {"transfer apic", "transfer flip 1.0 scheme musl", "transfer apic locking fbar"}) {
+    const auto state = [&](const std::string &more) {
+      Scene run{MPI_COMM_SELF};
+      run.commands(body(3, rest + more, "neohookean 10.0 0.3") +
+                   "velocity all ramp vx 0.0 1.0 y 2 5\ntimestep 0.02\nrun 100\n");
+      return run.gather();
+    };
+    EXPECT_LT(difference(state(""), state(" reference update 1000")), 1e-12) << rest;
+  }
+}
+
+/* ----------------------------------------------------------------------
+   a block that is thrown with a shear and vibrates: momentum is exact, energy does not jump, and the
+   motion is that of a frame without updates up to the error of both
+------------------------------------------------------------------------- */
+
+TEST(ReferenceUpdate, MomentumAndEnergy)
+{
+  double angle[2], energy[2];
+  for (const bool updates : {false, true}) {
+    Scene run{MPI_COMM_SELF};
+    run.commands(body(2, std::string("transfer apic") + (updates ? " reference update 1.15" : ""),
+                      "neohookean 10.0 0.3") +
+                 "velocity all set 0.5 0.2 0.0\nvelocity all ramp vx 0.0 2.0 y 2 5 sum yes\n"
+                 "compute e all mpm/energy\nthermo_style custom step c_e\ntimestep 0.01\nrun 0\n");
+    const auto before = run.sums();
+    auto *e = run.lmp->modify->get_compute_by_id("e");
+    const double start = e->compute_scalar();
+    double last = start, jump = 0.0;
+    for (int k = 0; k < 60; k++) {
+      run.commands("run 10 post no\n");
+      const double now = e->compute_scalar();
+      jump = std::max(jump, std::abs(now - last));
+      last = now;
+    }
+    const auto after = run.sums();
+    for (int d = 0; d < 2; d++) EXPECT_NEAR(after.p[d], before.p[d], 1e-11 * before.mass);
+    EXPECT_LT(jump, 0.03 * start);
+    angle[updates] = measured("angular momentum", after.L[2]);
+    energy[updates] = measured("energy, share that is left", last / start);
+  }
+  EXPECT_NEAR(angle[1], angle[0], 0.05 * std::abs(angle[0]));
+  EXPECT_NEAR(energy[1], energy[0], 0.1);
+}
+
+// any number of ranks, and after a restart
+
+static const char *const thrown = "velocity all ramp vx 0.0 2.0 y 2 5\ntimestep 0.01\n";
+
+TEST(ReferenceUpdate, Ranks)
+{
+  for (const char *rest : {"transfer apic", "transfer flip 0.99 scheme musl locking fbar"}) {
+    OnRanks run(body(3, std::string(rest) + " reference update 1.2", "neohookean 10.0 0.3") +
+                    thrown,
+                "run 150\n", "");
+    EXPECT_LT(run.difference(), 1e-12) << rest;
+    double R = 0.0;
+    for (int i = 0; i < run.serial.n(); i++) R = std::max(R, std::abs(run.serial.field()->R[i][1]));
+    EXPECT_GT(R, 0.1);
+  }
+}
+
+TEST(ReferenceUpdate, Restart)
+{
+  const std::string fixes = "fix grid all mpm 0.5 frame total transfer apic reference update 1.2\n"
+                            "fix m all mpm/material density 1.0 neohookean 10.0 0.3\n";
+  Continued run(body(3, "transfer apic reference update 1.2", "neohookean 10.0 0.3") + thrown, 85,
+                "neighbor 0.2 bin\n" + fixes + "timestep 0.01\n", 60);
+  EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
+}
+
+TEST(ReferenceUpdate, Refused)
+{
+  const std::string head =
+      "units lj\nboundary f f f\natom_style mpm\nregion box block 0 8 0 8 0 8\n"
+      "create_box 1 box\n";
+  EXPECT_THAT(error_of(head + "fix grid all mpm 1.0 reference update 2.0\n"),
+              ::testing::HasSubstr("is for frame total"));
+  EXPECT_THAT(error_of(head + "fix grid all mpm 1.0 frame total reference update 1.0\n"),
+              ::testing::HasSubstr("above 1"));
+  EXPECT_THAT(error_of(head +
+                       "fix grid all mpm 1.0 frame total reference update 2.0\n"
+                       "create_points 1 box ppc 2\nfix m all mpm/material density 1 linear 1 0.3\n"
+                       "fix w all mpm/boundary xlo stick velocity 1 0 0\nrun 0\n"),
+              ::testing::HasSubstr("would leave it"));
+}
