@@ -47,9 +47,10 @@ thermo 1000
 
 class Ranks : public ::testing::TestWithParam<std::string> {
  protected:
-  void compare(const std::string &scene, const std::string &layout)
+  void compare(const std::string &scene, const std::string &layout,
+               const std::string &steps = "run 200\n")
   {
-    OnRanks run(scene, "run 200\n", layout);
+    OnRanks run(scene, steps, layout);
     const auto a = run.serial.gather();
     EXPECT_GT(a.size(), 100u);
     EXPECT_LT(measured("other ranks", run.difference()), 1.0e-12);
@@ -114,13 +115,14 @@ class TotalRanks : public Ranks {};
 
 TEST_P(TotalRanks, Bricks)
 {
-  compare(replaced(two_bodies, "MPM_OPTIONS", GetParam()) + "timestep 0.02\nrun 200\n", "");
+  compare(replaced(two_bodies, "MPM_OPTIONS", GetParam()), "", "timestep 0.02\nrun 300\n");
 }
 
 TEST_P(TotalRanks, Rcb)
 {
-  compare(replaced(two_bodies, "MPM_OPTIONS", GetParam()) + "timestep 0.02\nrun 200\n",
-          "comm_style tiled\nbalance 1.0 rcb\nfix lb all balance 20 1.0 rcb\n");
+  compare(replaced(two_bodies, "MPM_OPTIONS", GetParam()),
+          "comm_style tiled\nbalance 1.0 rcb\nfix lb all balance 20 1.0 rcb\n",
+          "timestep 0.02\nrun 300\n");
 }
 
 INSTANTIATE_TEST_SUITE_P(Options, TotalRanks,

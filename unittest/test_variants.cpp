@@ -1,0 +1,334 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// labels: physics
+// timeout: 900
+
+// Properties that all variants share, or that tell them apart: conservation, noise at rest, what
+// the place of a body on the lattice changes, stretch at which a body comes apart, equivalences.
+// A new variant is a line in the lists.
+
+#include "mpm_lammps.h"
+
+#include "gtest/gtest.h"
+
+#include <cmath>
+#include <ostream>
+#include <random>
+
+using namespace MPM_TEST;
+
+static constexpr double PI = 3.14159265358979323846;
+
+struct Variant {
+  const char *shape;     // for points that are cubes
+  double spread;         // of a result over places of the body on the lattice, see GridInvariance
+  double least, most;    // stretch at which it comes apart, see Fracture
+};
+
+static const Variant shapes[] = {
+    {"shape linear scheme musl", 0.05, 1.1, 1.4},
+    {"shape quadratic", 0.01, 1.65, 2.2},
+    {"shape cubic", 0.01, 1.9, 2.6},
+    {"shape gimp", 0.01, 1.55, 2.1},
+    {"shape cpgimp", 0.01, 1.55, 2.1},
+};
+
+static const char *const transfers[] = {"transfer pic",
+                                        "transfer flip 1.0",
+                                        "transfer apic",
+                                        "transfer aflip 1.0",
+                                        "transfer tpic",
+                                        "transfer xpic 3",
+                                        "transfer fmpm 3 scheme usl"};
+
+static std::vector<std::string> all_variants()
+{
+  std::vector<std::string> all;
+  for (const auto &shape : shapes)
+    for (const char *transfer : transfers) all.push_back(std::string(shape.shape) + " " + transfer);
+  return all;
+}
+
+static std::vector<Variant> all_shapes()
+{
+  return {std::begin(shapes), std::end(shapes)};
+}
+
+static void PrintTo(const Variant &v, std::ostream *out)
+{
+  *out << v.shape;
+}
+
+/* ----------------------------------------------------------------------
+   a rectangle that is thrown, spins, and vibrates: mass and momentum
+------------------------------------------------------------------------- */
+
+static const char *const plane = "units si\ndimension 2\nboundary f f p\natom_style mpm\n"
+                                 "neighbor 0.04 bin\nregion box block -3 3 -3 3 -0.5 0.5\n"
+                                 "create_box 1 box\nthermo 1000000\n";
+
+class Conservation : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(Conservation, MassAndMomentum)
+{
+  Scene run;
+  run.commands(plane + ("fix grid all mpm 0.1 " + GetParam()) +
+               "\nregion body block -0.4 0.4 -0.2 0.2 INF INF\ncreate_points 1 region body ppc 2\n"
+               "fix m all mpm/material density 1000 neohookean 1.0e6 0.3\n");
+  run.set_velocity([](const double *x, double *v) {
+    v[0] = 3.0 - 10.0 * x[1] + 4.0 * x[0];
+    v[1] = -2.0 + 10.0 * x[0];
+  });
+  run.commands("run 0\n");
+  const auto start = run.sums();
+  run.commands("timestep 2.0e-4\nrun 300\n");
+  const auto end = run.sums();
+  EXPECT_EQ(end.mass, start.mass);
+  for (int d = 0; d < 2; d++) EXPECT_NEAR(end.p[d], start.p[d], 1.0e-12 * start.mass);
+  for (int d = 0; d < 2; d++)
+    EXPECT_NEAR(end.x[d], start.x[d] + 300 * 2.0e-4 * start.p[d] / start.mass, 1.0e-12);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Conservation, ::testing::ValuesIn(all_variants()));
+
+/* ----------------------------------------------------------------------
+   Noise at rest: a free body whose points have small random velocities, which the lattice sees in
+   part only. It must not grow, whatever the transfer leaves of it, as the null space of the
+   transfers gives way to forces that points cannot see, or the reverse.
+------------------------------------------------------------------------- */
+
+class NoiseAtRest : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(NoiseAtRest, DoesNotGrow)
+{
+  Scene run;
+  run.commands(
+      plane + ("fix grid all mpm 0.1 " + GetParam()) +
+      "\nregion body block -0.43 0.37 -0.2 0.2 INF INF\n"
+      "create_points 1 region body ppc 2\n"
+      "fix m all mpm/material density 1000 neohookean 1.0e6 0.3\ncompute e all mpm/energy\n");
+  std::mt19937 generator(7);
+  std::uniform_real_distribution<double> uniform(-1.0e-3, 1.0e-3);
+  run.set_velocity([&](const double *, double *v) {
+    v[0] = uniform(generator);
+    v[1] = uniform(generator);
+  });
+  run.commands("thermo_style custom step c_e\nrun 0\n");
+  const double start = run.evaluate("c_e");
+  run.commands("timestep 5.0e-4\nrun 4000\n");
+  EXPECT_LT(measured(GetParam() + ": energy", run.evaluate("c_e") / start), 1.05);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, NoiseAtRest, ::testing::ValuesIn(all_variants()));
+
+/* ----------------------------------------------------------------------
+   A free rectangle begins to stretch along its own axis. What it has reached after about a quarter
+   of its period must not depend on how it lies on the lattice: shifts by fractions of a cell, and
+   rotations of the body.
+------------------------------------------------------------------------- */
+
+static double extension(const std::string &options, double shift, double degrees)
+{
+  Scene run;
+  run.commands(plane +
+               strprintf("fix grid all mpm 0.1 %s\nregion body block -0.8 0.8 -0.4 0.4 INF INF\n"
+                         "create_points 1 region body ppc 2\n"
+                         "displace_atoms all rotate 0 0 0 0 0 1 %g\n"
+                         "displace_atoms all move %.17g %.17g 0\n"
+                         "fix m all mpm/material density 1000 neohookean 1.0e6 0.3\n",
+                         options.c_str(), degrees, shift, 0.7 * shift));
+  const double a[2] = {cos(degrees * PI / 180.0), sin(degrees * PI / 180.0)};
+  auto along = [&](const double *x) {
+    return (x[0] - shift) * a[0] + (x[1] - 0.7 * shift) * a[1];
+  };
+  run.set_velocity([&](const double *x, double *v) {
+    for (int d = 0; d < 2; d++) v[d] = 4.0 * along(x) * a[d];
+  });
+  double start = 0.0, end = 0.0;
+  for (int i = 0; i < run.n(); i++) start += along(run.x()[i]) * along(run.x()[i]);
+  run.commands("timestep 2.0e-4\nrun 125\n");
+  for (int i = 0; i < run.n(); i++) end += along(run.x()[i]) * along(run.x()[i]);
+  return sqrt(end / start) - 1.0;
+}
+
+class GridInvariance : public ::testing::TestWithParam<Variant> {};
+
+TEST_P(GridInvariance, ShiftsAndRotations)
+{
+  for (const char *transfer : {"transfer flip 1.0 ", "transfer apic "}) {
+    const std::string options = std::string(transfer) + GetParam().shape;
+    double least = 1.0e300, most = 0.0;
+    for (const double shift : {0.0, 0.025, 0.05})
+      for (const double degrees : {0.0, 22.5, 45.0}) {
+        const double e = extension(options, shift, degrees);
+        least = std::min(least, e);
+        most = std::max(most, e);
+      }
+    EXPECT_GT(least, 0.02);
+    EXPECT_LT(measured(options + ": spread over places on the lattice", most / least - 1.0),
+              GetParam().spread);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, GridInvariance, ::testing::ValuesIn(all_shapes()));
+
+/* ----------------------------------------------------------------------
+   A bar in uniaxial strain, 12 cells between the grips, is pulled at constant velocity. The total
+   frame passes a stretch of 11 (test_total.cpp). In the updated frame it comes apart: the middle half stays 10 %
+   behind, or its mean stress falls below 70 % of lambda ln F/F + mu (F - 1/F).
+------------------------------------------------------------------------- */
+
+static double fracture(const std::string &options)
+{
+  const double E = 1.0e6, nu = 0.3, rate = 2.5, dt = 5.0e-4;
+  const double lambda = E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), mu = 0.5 * E / (1.0 + nu);
+  Scene run;
+  run.commands(
+      strprintf("units si\ndimension 2\nboundary f p p\natom_style mpm\nneighbor 0.1 bin\n"
+                "region box block -2 46 0 0.25 -0.5 0.5\ncreate_box 1 box\n"
+                "fix grid all mpm 0.25 transfer flip 1.0 dtcheck no bad warn %s\n"
+                "region body block 0 4 INF INF INF INF\ncreate_points 1 region body ppc 2\n"
+                "fix m all mpm/material density 1000 neohookean %.17g %.17g\n"
+                "region left block -2 0.5 INF INF INF INF\n"
+                "variable move equal %.17g*step*dt\n"
+                "region right block 3.5 46 INF INF INF INF move v_move NULL NULL\n"
+                "fix left all mpm/boundary region left stick\n"
+                "fix right all mpm/boundary region right stick\nthermo 1000000\n"
+                "timestep %.17g\n",
+                options.c_str(), E, nu, 3.0 * rate, dt));
+  run.set_reference();
+  run.set_velocity([=](const double *x, double *v) {
+    v[0] = rate * std::min(std::max(x[0] - 0.5, 0.0), 3.0);
+  });
+  for (int step = 20; step <= 2000; step += 20) {
+    run.commands("run 20 post no\n");
+    double mean = 0.0, n = 0.0, xX = 0.0, XX = 0.0;
+    for (int i = 0; i < run.n(); i++) {
+      const double X = run.reference(i)[0] - 2.0;
+      if (std::abs(X) > 1.0) continue;
+      double sigma[6];
+      run.points().cauchy(i, sigma);
+      mean += sigma[0];
+      n += 1.0;
+      xX += X * run.x()[i][0];
+      XX += X * X;
+    }
+    const double F = 1.0 + rate * dt * step;
+    const double exact = mu * (F - 1.0 / F) + lambda * log(F) / F;
+    if (xX / XX < 0.9 * F || mean / n < 0.7 * exact) return F;
+  }
+  return 1.0 + rate * dt * 2000;
+}
+
+class Fracture : public ::testing::TestWithParam<Variant> {};
+
+TEST_P(Fracture, Stretch)
+{
+  const double stretch =
+      measured(std::string(GetParam().shape) + ": comes apart at", fracture(GetParam().shape));
+  EXPECT_GT(stretch, GetParam().least);
+  EXPECT_LT(stretch, GetParam().most);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Fracture, ::testing::ValuesIn(all_shapes()));
+
+/* ----------------------------------------------------------------------
+   equivalences
+------------------------------------------------------------------------- */
+
+// flip 0 is pic
+
+TEST(Equivalent, FlipZeroIsPic)
+{
+  std::vector<Scene::State> found[2];
+  for (const int k : {0, 1}) {
+    Scene run;
+    run.commands(replaced(two_bodies, "MPM_OPTIONS", k ? "transfer pic" : "transfer flip 0.0") +
+                 "run 50\n");
+    found[k] = run.gather();
+  }
+  EXPECT_LT(difference(found[0], found[1]), 1.0e-14);
+}
+
+// plane strain is a slice of a body between two walls that slip, one cell thick
+
+TEST(Equivalent, PlaneStrainIsASlice)
+{
+  for (const auto &shape : shapes) {
+    std::vector<Scene::State> found[2];
+    for (const int dim : {2, 3}) {
+      Scene run;
+      run.commands(strprintf(
+          "units si\ndimension %d\nboundary f f %s\natom_style mpm\nneighbor 0.04 bin\n"
+          "region box block -1 1 -1 1 -0.05 0.05\ncreate_box 1 box\nthermo 1000000\n"
+          "fix grid all mpm 0.1 origin 0 0 %stransfer flip 1.0 %s\n"
+          "region body block -0.43 0.37 -0.21 0.19 INF INF\ncreate_points 1 region body %s\n"
+          "fix m all mpm/material density 1000 neohookean 1.0e6 0.3\n%stimestep 2.0e-4\n",
+          dim, dim == 3 ? "f" : "p", dim == 3 ? "-0.05 " : "", shape.shape,
+          dim == 3 ? "ppc 2 2 2" : "ppc 2",
+          dim == 3 ? "fix w all mpm/boundary zlo zhi slip\n" : ""));
+      run.set_velocity([](const double *x, double *v) {
+        v[0] = 4.0 * x[0] - 5.0 * x[1];
+        v[1] = 5.0 * x[0] - 2.0 * x[1] * x[0];
+      });
+      run.commands("run 100\n");
+      for (auto &s : run.gather()) {
+        if (dim == 3 && s.x[2] > 0.0) {
+          EXPECT_NEAR(s.x[2], 0.025, 1.0e-12);
+          continue;
+        }
+        s.tag = s.type = s.x[2] = s.v[2] = s.vol = s.mass = 0.0;
+        found[dim - 2].push_back(s);
+      }
+    }
+    auto before = [](const Scene::State &a, const Scene::State &b) {
+      return std::abs(a.x[1] - b.x[1]) > 1.0e-9 ? a.x[1] < b.x[1] : a.x[0] < b.x[0];
+    };
+    for (auto &states : found) std::sort(states.begin(), states.end(), before);
+    EXPECT_LT(measured(std::string(shape.shape) + ": plane strain and a slice",
+                       difference(found[0], found[1])),
+              1.0e-11);
+  }
+}
+
+// schemes differ by the order of the time step only: half the step, half the difference
+
+TEST(Equivalent, SchemesAgreeForSmallSteps)
+{
+  auto end = [](const char *scheme, int steps) {
+    Scene run;
+    run.commands(plane +
+                 strprintf("fix grid all mpm 0.1 transfer flip 1.0 %s\n"
+                           "region body block -0.4 0.4 -0.2 0.2 INF INF\n"
+                           "create_points 1 region body ppc 2\n"
+                           "fix m all mpm/material density 1000 neohookean 1.0e6 0.3\n",
+                           scheme));
+    run.set_velocity([](const double *x, double *v) {
+      v[0] = 2.0 * x[0];
+      v[1] = -2.0 * x[1];
+    });
+    run.commands(strprintf("timestep %.17g\nrun %d\n", 0.02 / steps, steps));
+    std::vector<double> x;
+    for (const auto &s : run.gather()) x.insert(x.end(), {s.x[0], s.x[1]});
+    return x;
+  };
+  for (const char *other : {"scheme musl", "scheme usf", "scheme usavg"}) {
+    double distance[2];
+    for (const int k : {0, 1}) {
+      const auto a = end("scheme usl", 100 << k), b = end(other, 100 << k);
+      double sum = 0.0;
+      for (std::size_t i = 0; i < a.size(); i++) sum += (a[i] - b[i]) * (a[i] - b[i]);
+      distance[k] = sqrt(sum / a.size());
+    }
+    EXPECT_GT(distance[1], 1.0e-12);
+    EXPECT_NEAR(
+        measured(std::string(other) + ": order of the difference", log2(distance[0] / distance[1])),
+        1.0, 0.35);
+  }
+}
