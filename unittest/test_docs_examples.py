@@ -40,6 +40,22 @@ REGIONS = {"bar": "block 0.01 0.04 0.01 0.04 0.01 0.04", "ball": "sphere 0.06 0.
 VARIABLES = {"down": "equal 1.0e-3", "damage": "atom id"}
 COMPUTES = {"mine": "all property/atom vx vy"}
 FIXES = {"fine": "all mpm 0.01"}
+# a tetrahedron, for lines that read a mesh
+MESH_FILE = """$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$Nodes
+4
+1 0 0 0
+2 %g 0 0
+3 0 %g 0
+4 0 0 %g
+$EndNodes
+$Elements
+1
+1 %s 1 2 3 4
+$EndElements
+"""
 BODIES = ["left", "right", "plane", "disk", "block", "pad", "disc"]    # each with a fix mpm
 
 
@@ -136,6 +152,8 @@ def scene_for(lines):
     material = "" if "mpm/material" in text or own_field and grid == "" else MATERIAL
     points = POINTS.replace("0.05*", "0.025*") if "gimp" in text else POINTS    # below a cell
     points = "" if makes_points else points + "".join("group %s type 1\n" % g for g in GROUPS)
+    if "mpm/elements" in text:
+        points = "create_points 2 mesh ring.msh move 0.05 0.05 0.05\ngroup ring type 2\n"
     scene = head + grid + points + material + before
     if "write_dump" in text:
         scene += "timestep 1.0e-7\nrun 0\n"
@@ -152,6 +170,10 @@ def scene_for(lines):
 def run_scene(scene, timeout=60):
     folder = tempfile.mkdtemp(prefix="mpm_docs_")
     os.mkdir(os.path.join(folder, "out"))
+    # in units of the file or of the scene
+    size = 10.0 if "scale" in scene else 0.01
+    with open(os.path.join(folder, "ring.msh"), "w") as file:
+        file.write(MESH_FILE % (size, size, size, "4 2 1 1"))
     try:
         return mt.lammps(folder, scene, timeout=timeout)
     finally:

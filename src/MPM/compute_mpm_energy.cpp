@@ -11,6 +11,7 @@
 #include "atom.h"
 #include "error.h"
 #include "fix_mpm.h"
+#include "fix_mpm_elements.h"
 #include "fix_mpm_material.h"
 #include "force.h"
 #include "group.h"
@@ -117,11 +118,17 @@ ComputeMPMEnergy::Sums ComputeMPMEnergy::evaluate() const
     mine.fracture += material->work[Work::FRACTURE];
   }
 
+  int nodes = 0;    // groups of nodes of elements, which store the energy
+  for (auto *fix : modify->get_fix_by_style("^mpm/elements$")) {
+    nodes |= fix->groupbit;
+    mine.stored += dynamic_cast<FixMPMElements *>(fix)->stored_energy();
+  }
   visit_point_batches(lmp, groupbit,
-                      [&](const Batch &batch, const int *, const FixMPMMaterial &material) {
+                      [&](const Batch &batch, const int *list, const FixMPMMaterial &material) {
                         double w[BATCH];
                         material.material->stored_energy(batch, w);
-                        for (int k = 0; k < batch.n; k++) mine.stored += batch.vol0[k] * w[k];
+                        for (int k = 0; k < batch.n; k++)
+                          if (!(atom->mask[list[k]] & nodes)) mine.stored += batch.vol0[k] * w[k];
                       });
 
   mine.kinetic *= force->mvv2e;

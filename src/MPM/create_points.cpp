@@ -65,10 +65,16 @@ void CreatePoints::command(int narg, char **arg)
                "Cannot create_points after reading a restart file with per-atom info of fixes: "
                "define these fixes and use run 0 first");
 
-  parse(narg, arg);
-  find_ranges();
-  check_outside();
-  check_overlap();
+  const bool mesh = narg > 1 && strcmp(arg[1], "mesh") == 0;
+  if (mesh) {
+    parse_type(narg, arg);
+    parse_mesh(narg, arg);
+  } else {
+    parse(narg, arg);
+    find_ranges();
+    check_outside();
+    check_overlap();
+  }
 
   MPI_Barrier(world);
   const double start = platform::walltime();
@@ -81,7 +87,7 @@ void CreatePoints::command(int narg, char **arg)
 
   const bigint natoms_previous = atom->natoms;
   const int nlocal_previous = atom->nlocal;
-  const bigint npoints = make_points();
+  const bigint npoints = mesh ? make_mesh_points() : make_points();
 
   atom->data_fix_compute_variable(nlocal_previous, atom->nlocal);
 
@@ -110,14 +116,16 @@ void CreatePoints::command(int narg, char **arg)
   if (comm->me == 0) {
     const bool flat = domain->dimension == 2;
     utils::logmesg(lmp, "Created {} material points of type {}\n", npoints, type);
-    utils::logmesg(lmp, "  spacing = {:.8g} {:.8g}{}\n", spacing[0], spacing[1],
-                   flat ? "" : fmt::format(" {:.8g}", spacing[2]));
+    if (!mesh)
+      utils::logmesg(lmp, "  spacing = {:.8g} {:.8g}{}\n", spacing[0], spacing[1],
+                     flat ? "" : fmt::format(" {:.8g}", spacing[2]));
     if (fix && fix->axisymmetric)
       utils::logmesg(lmp, "  area = {:.8g} per point, volume = {:.8g} in total (all around the axis)\n",
                      volume, all_made);
     else
-      utils::logmesg(lmp, "  volume = {:.8g} per point, {:.8g} in total{}\n", volume,
-                     npoints * volume, flat ? " (per unit thickness)" : "");
+      utils::logmesg(lmp, "  volume = {:.8g} {}, {:.8g} in total{}\n", volume,
+                     mesh ? "on average" : "per point", npoints * volume,
+                     flat ? " (per unit thickness)" : "");
     utils::logmesg(lmp, "  create_points CPU = {:.3f} seconds\n", platform::walltime() - start);
   }
 }
@@ -126,20 +134,26 @@ void CreatePoints::command(int narg, char **arg)
    settings, lattice of sites
 ------------------------------------------------------------------------- */
 
+void CreatePoints::parse_type(int narg, char **arg)
+{
+  const int iarg = 0;
+  if (narg < 2) utils::missing_cmd_args(FLERR, "create_points", error);
+  type = utils::expand_type_int(FLERR, arg[0], Atom::ATOM, lmp);
+  if (type < 1 || type > atom->ntypes)
+    error->all(FLERR, iarg, "Invalid atom type {} in create_points command, the box has {} type{}",
+               arg[0], atom->ntypes, atom->ntypes > 1 ? "s" : "");
+}
+
+/* ---------------------------------------------------------------------- */
+
 void CreatePoints::parse(int narg, char **arg)
 {
   const int dim = domain->dimension;
   int ppc[3] = {2, 2, 2};
   bool use_ppc = false, use_spacing = false;
 
-  int iarg = 0;
-  if (narg < 2) utils::missing_cmd_args(FLERR, "create_points", error);
-  type = utils::expand_type_int(FLERR, arg[0], Atom::ATOM, lmp);
-  if (type < 1 || type > atom->ntypes)
-    error->all(FLERR, iarg, "Invalid atom type {} in create_points command, the box has {} type{}",
-               arg[0], atom->ntypes, atom->ntypes > 1 ? "s" : "");
-
-  iarg = 2;
+  parse_type(narg, arg);
+  int iarg = 2;
   if (strcmp(arg[1], "region") == 0) {
     if (narg < 3) utils::missing_cmd_args(FLERR, "create_points region", error);
     region = domain->get_region_by_id(arg[2]);
@@ -148,7 +162,7 @@ void CreatePoints::parse(int narg, char **arg)
     region->prematch();
     iarg = 3;
   } else if (strcmp(arg[1], "box") != 0) {
-    error->all(FLERR, 1, "Unknown create_points option {}: expected region or box", arg[1]);
+    error->all(FLERR, 1, "Unknown create_points option {}: expected region, box, or mesh", arg[1]);
   }
 
   // ppc and spacing: one number, or one for each axis
@@ -539,10 +553,7 @@ bigint CreatePoints::make_points()
   for (int i = 0; i < atom->nlocal; i++) mytag = std::max(mytag, atom->tag[i]);
   MPI_Allreduce(&mytag, &maxtag, 1, MPI_LMP_TAGINT, MPI_MAX, world);
 
-  Irregular irregular(lmp);
-  if (comm->nprocs > 1) comm->coord2proc_setup();
-  std::vector<Site> made, received;
-  std::vector<int> owner;
+  std::vector<Site> made;
   bigint npoints = 0;
 
   for (bigint base = 0; base < n; base += SHARE * comm->nprocs) {
@@ -555,6 +566,7 @@ bigint CreatePoints::make_points()
       if (!in_region(s)) return;
       made.emplace_back();
       point_position(s, made.back().x);
+      made.back().volume = volume;
     });
 
     // IDs
@@ -569,25 +581,35 @@ bigint CreatePoints::make_points()
                  MAXTAGINT);
     for (bigint k = 0; k < nmade; k++) made[k].tag = atom->tag_enable ? maxtag + before + k + 1 : 0;
 
-    // to their owners, where they arrive in an order that is the same in each run
-
-    if (comm->nprocs == 1) {
-      received.swap(made);
-    } else {
-      owner.resize(nmade);
-      int unused[3];
-      for (bigint k = 0; k < nmade; k++)
-        owner[k] = comm->coord2proc(made[k].x, unused[0], unused[1], unused[2]);
-      received.resize(irregular.create_data(nmade, owner.data(), 1));
-      irregular.exchange_data((char *) made.data(), sizeof(Site), (char *) received.data());
-      irregular.destroy_data();
-    }
-
-    const bigint need = (bigint) atom->nlocal + received.size();
-    if (need > atom->nmax) atom->avec->grow(atom->avec->roundup(need));
-    for (const auto &site : received) make_point(site);
+    send_and_make(made);
   }
   return npoints;
+}
+
+/* ----------------------------------------------------------------------
+   sites to their owners, where they arrive in an order that is the same in each run
+------------------------------------------------------------------------- */
+
+void CreatePoints::send_and_make(std::vector<Site> &made)
+{
+  std::vector<Site> received;
+  if (comm->nprocs == 1) {
+    received.swap(made);
+  } else {
+    Irregular irregular(lmp);
+    comm->coord2proc_setup();
+    std::vector<int> owner(made.size());
+    int unused[3];
+    for (std::size_t k = 0; k < made.size(); k++)
+      owner[k] = comm->coord2proc(made[k].x, unused[0], unused[1], unused[2]);
+    received.resize(irregular.create_data((int) made.size(), owner.data(), 1));
+    irregular.exchange_data((char *) made.data(), sizeof(Site), (char *) received.data());
+    irregular.destroy_data();
+  }
+
+  const bigint need = (bigint) atom->nlocal + received.size();
+  if (need > atom->nmax) atom->avec->grow(atom->avec->roundup(need));
+  for (const auto &site : received) make_point(site);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -599,7 +621,7 @@ void CreatePoints::make_point(const Site &site)
 
   const int i = atom->nlocal - 1;
   atom->tag[i] = site.tag;
-  atom->vfrac[i] = volume * (fix ? fix->circle(site.x[0]) : 1.0);
+  atom->vfrac[i] = site.volume * (fix ? fix->circle(site.x[0]) : 1.0);
   atom->rmass[i] = 0.0;    // not known yet, see fix mpm/material
   if (atom->radius_flag) atom->radius[i] = 0.5 * diameter;
 }

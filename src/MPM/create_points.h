@@ -17,9 +17,12 @@ CommandStyle(create_points,CreatePoints);
 
 #include "command.h"
 
+#include <vector>
+
 namespace LAMMPS_NS {
 
-/** Fills a region with material points on a regular lattice of sites.
+/** Fills a region with material points on a regular lattice of sites, or puts them at the nodes of a
+ *  mesh.
  *
  *  Sites are at origin + (s + 1/2) spacing for integer s. Their numbering, the test against the
  *  region, the jitter and the IDs are functions of the site alone; ranks take equal shares of the
@@ -34,6 +37,7 @@ class CreatePoints : public Command {
  private:
   struct Site {    // a point to be made
     double x[3];
+    double volume;
     tagint tag;
   };
   struct Range {    // consecutive sites along an axis
@@ -56,12 +60,18 @@ class CreatePoints : public Command {
   Range box[3];       // sites in the simulation box
   Range search[3];    // sites that can be in the region, also outside the box
 
+  std::vector<Site> mesh_sites;    // nodes of a mesh
+
+  void parse_type(int, char **);
   void parse(int, char **);
+  void parse_mesh(int, char **);
   void find_lattice();
   void find_ranges();
   void check_outside();
   void check_overlap();
   bigint make_points();
+  bigint make_mesh_points();
+  void send_and_make(std::vector<Site> &);
   void make_point(const Site &);
 
   double position(int d, bigint s) const { return origin[d] + (s + 0.5) * spacing[d]; }

@@ -13,6 +13,7 @@
 #include "compute_mpm_energy.h"
 #include "domain.h"
 #include "error.h"
+#include "fix_mpm_elements.h"
 #include "fix_mpm_material.h"
 #include "fix_mpm_surface.h"
 #include "force.h"
@@ -373,6 +374,9 @@ void FixMPM::init()
   materials.clear();
   for (auto *ifix : modify->get_fix_by_style("^mpm/material$"))
     materials.push_back(dynamic_cast<FixMPMMaterial *>(ifix));
+  elements.clear();
+  for (auto *ifix : modify->get_fix_by_style("^mpm/elements$"))
+    elements.push_back(dynamic_cast<FixMPMElements *>(ifix));
   if (materials.empty())
     error->all(FLERR, "Fix mpm found no material: define one with fix mpm/material");
 
@@ -551,6 +555,13 @@ FixMPMMaterial *FixMPM::material_of(int i) const
   for (auto *material : materials)
     if (atom->mask[i] & material->groupbit) return material;
   return nullptr;
+}
+
+bool FixMPM::is_node(int i) const
+{
+  for (auto *ifix : elements)
+    if (atom->mask[i] & ifix->groupbit) return true;
+  return false;
 }
 
 int FixMPM::npoints_local() const

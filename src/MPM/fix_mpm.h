@@ -30,6 +30,7 @@ struct BatchKernels;
 }    // namespace MPM_NS
 
 namespace LAMMPS_NS {
+class FixMPMElements;
 class FixMPMMaterial;
 class MPMHalo;
 struct MPMPoints;
@@ -109,6 +110,7 @@ class FixMPM : public Fix {
 
   MPM_NS::Grid *grid;                           ///< node records: velocity and mass after the solve
   std::vector<FixMPMMaterial *> materials;      ///< all of them, set in init()
+  std::vector<FixMPMElements *> elements;       ///< all of them, set in init()
   double **C;    ///< [n][dim*dim] affine, column-major; null: transfer without
   double **X;    ///< [n][3] reference position, NAN before it is known; null: updated frame
   double **R;    ///< [n][9] F at the last update of the reference, row-major; null: there is none
@@ -146,6 +148,8 @@ class FixMPM : public Fix {
   void lattice_F(int i, double F[9]) const;
   /** Material of a point of this field (null: none). */
   FixMPMMaterial *material_of(int i) const;
+  /** True when atom i is a node of finite elements: without stress and material of its own. */
+  bool is_node(int i) const;
   /** Number of points of this field on this rank. */
   int npoints_local() const;
 
@@ -188,7 +192,7 @@ class FixMPM : public Fix {
   }
 
  private:
-  struct Run {    // consecutive points of one block and material
+  struct Run {    // consecutive points of one block and material (null: nodes of elements)
     int first, last, slot;
     FixMPMMaterial *material;
   };
@@ -342,7 +346,7 @@ class FixMPM : public Fix {
   double current_time() const;    ///< during a step: its end
   double nodal_kinetic_energy(int lane) const;
   double point_kinetic_energy() const;
-  double external_work();
+  double external_work(const double *force_on);
   double bytes_per_point() const;
   MPM_NS::PointRows rows() const;
   MPM_NS::TransferStep step_data() const;

@@ -16,6 +16,7 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "fix_mpm_elements.h"
 #include "fix_mpm_material.h"
 #include "force.h"
 #include "group.h"
@@ -303,12 +304,20 @@ double FixMPM::stable_dt_local(tagint &id_min, double &wave_speed) const
   for (int i = 0, last; i < atom->nlocal; i = last) {
     last = i + 1;
     if (!is_point(i)) continue;
+    if (is_node(i)) {    // must not cross a cell in a step; the rest: FixMPMElements
+      const double *v = atom->v[i], speed = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+      if (total || speed * smallest <= lattice.h) continue;
+      smallest = lattice.h / speed;
+      id_min = atom->tag[i];
+      if (std::isnan(smallest)) return smallest;
+      continue;
+    }
 
     // consecutive points of one material
 
     const FixMPMMaterial *material = material_of(i);
     while (last < atom->nlocal && last < i + BATCH && is_point(last) &&
-           material_of(last) == material)
+           material_of(last) == material && !is_node(last))
       last++;
     const int n = last - i, nhistory = material->nhistory;
     batch_kernels->load(b, n, 0.0, no_gradient, points->F[i], points->tau[i], atom->vfrac + i,
@@ -344,6 +353,8 @@ void FixMPM::check_dt()
 {
   next_dt_check = update->ntimestep + DT_CHECK_EVERY;
   if (!dt_check) return;
+  for (auto *ifix : elements)
+    if (driver) ifix->check_dt();
   tagint tag;
   double c;
   const double limit = stable_dt_local(tag, c);

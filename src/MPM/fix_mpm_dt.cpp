@@ -11,6 +11,7 @@
 #include "comm.h"
 #include "error.h"
 #include "fix_mpm.h"
+#include "fix_mpm_elements.h"
 #include "force.h"
 #include "integrate.h"
 #include "modify.h"
@@ -122,6 +123,13 @@ FixMPMDt::Limit FixMPMDt::find_limit() const
     double speed = 0.0;
     auto *field = dynamic_cast<FixMPM *>(ifix);
     double dt = field->stable_dt_local(tag, speed) / field->every;
+    if (!(dt > 0.0)) dt = 0.0;    // also NaN
+    if (dt < mine.dt) mine = {dt, speed, (double) tag};
+  }
+  for (auto *ifix : modify->get_fix_by_style("^mpm/elements$")) {
+    tagint tag = 0;
+    double speed = 0.0;
+    double dt = dynamic_cast<FixMPMElements *>(ifix)->stable_dt_local(tag, speed);
     if (!(dt > 0.0)) dt = 0.0;    // also NaN
     if (dt < mine.dt) mine = {dt, speed, (double) tag};
   }

@@ -58,11 +58,11 @@ double FixMPM::point_kinetic_energy() const
 }
 
 /* ----------------------------------------------------------------------
-   work of atom->f in the momentum equation: nodal external forces times the mean of the old and
+   work of forces on points (atom->f, or a part of it) in the momentum equation: nodal external forces times the mean of the old and
    the final velocity of the node. The forces alone are mapped once more, with zero volumes.
 ------------------------------------------------------------------------- */
 
-double FixMPM::external_work()
+double FixMPM::external_work(const double *force_on)
 {
   const double dt = step_dt();
   const int64_t nnodes = grid->nnodes();
@@ -70,6 +70,7 @@ double FixMPM::external_work()
   zero_volume.assign(atom->nlocal, 0.0);
   PointRows r = rows();
   r.vol0 = zero_volume.data();
+  r.f = force_on;
   const TransferStep s = step_data();
   for (auto &a : active) {
     const auto &block = grid->blocks[a.slot];

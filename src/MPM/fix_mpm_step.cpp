@@ -12,6 +12,7 @@
 #include "fix_mpm.h"
 
 #include "atom.h"
+#include "fix_mpm_elements.h"
 #include "fix_mpm_material.h"
 #include "mpm_batch.h"
 #include "mpm_halo.h"
@@ -133,7 +134,8 @@ void FixMPM::grid_to_points()
     // node actions may have changed old velocities, too
 
     if (refinement == XPIC) swap_old_velocities();
-    const double external = external_work();
+    double external = external_work(rows().f);
+    for (auto *ifix : elements) external -= external_work(ifix->forces());    // is internal
     const double old = nodal_kinetic_energy(4), kinetic = nodal_kinetic_energy(0);
     if (refinement == XPIC) swap_old_velocities();
     ledger.external += external;
@@ -308,6 +310,7 @@ void FixMPM::material_update(const PointRows &r, const Run &run, int first, int 
   // not through row pointers: one of them per batch is always a cache miss
   Batch &b = *batch;
   FixMPMMaterial *material = run.material;
+  if (!material) return;    // nodes of elements
   double *F = r.F + 9 * (bigint) first, *tau = r.tau + 6 * (bigint) first;
   const auto load = total ? batch_kernels->load_total : batch_kernels->load;
   load(b, n, dt, L, F, tau, r.vol0 + first, axisymmetric ? hoop.data() + first : nullptr);
@@ -396,6 +399,11 @@ void FixMPM::map_to_nodes(P2G p2g)
   PointRows r = rows();
   if (averages_stress()) r.tau = tau_averaged.data();
   const TransferStep s = step_data();
+  PointRows stressless = r;    // nodes of elements
+  if (!elements.empty()) {
+    zero_volume.assign(atom->nmax, 0.0);
+    stressless.vol0 = zero_volume.data();
+  }
   for (auto &a : active) {
     const auto &block = grid->blocks[a.slot];
     kernel.prefetch(tile, grid->nodes(), block.slot, a.box);    // that of the step before
@@ -405,7 +413,8 @@ void FixMPM::map_to_nodes(P2G p2g)
       a.box[d] = 127;
       a.box[3 + d] = -127;
     }
-    for (int k = a.first_run; k < a.last_run; k++) map_run(p2g, r, s, runs[k], base, a.box);
+    for (int k = a.first_run; k < a.last_run; k++)
+      map_run(p2g, runs[k].material ? r : stressless, s, runs[k], base, a.box);
     kernel.flush(tile, grid->nodes(), block.slot, a.box);
   }
 }

@@ -144,7 +144,7 @@ void FixMPM::find_blocks()
     }
     for (int d = 0; d < 3; d++) b[d] = base[d] >> grid->shift_bits;
     if (base[0] != last_base[0] || base[1] != last_base[1] || base[2] != last_base[2]) switches++;
-    FixMPMMaterial *material = material_of(i);
+    FixMPMMaterial *material = is_node(i) ? nullptr : material_of(i);
     const bool same_block =
         b[0] == last_block[0] && b[1] == last_block[1] && b[2] == last_block[2];
     if (same_block && runs.back().last == i && runs.back().material == material) {
@@ -330,6 +330,7 @@ void FixMPM::sort_points()
   bigint nghost = atom->nghost + (moved && atom->map_style != Atom::MAP_NONE), nghost_all;
   MPI_Allreduce(&nghost, &nghost_all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   if (nghost_all) {
+    if (atom->map_style != Atom::MAP_NONE) atom->map_clear();    // as in exchange(), for borders()
     atom->nghost = 0;    // else borders() appends to them
     atom->avec->clear_bonus();
     comm->borders();

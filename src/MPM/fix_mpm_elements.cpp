@@ -1,0 +1,801 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "fix_mpm_elements.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix_mpm.h"
+#include "fix_mpm_material.h"
+#include "force.h"
+#include "group.h"
+#include "memory.h"
+#include "modify.h"
+#include "mpm_batch.h"
+#include "mpm_element.h"
+#include "mpm_material.h"
+#include "mpm_mesh_input.h"
+#include "mpm_points.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using namespace MPM_NS;
+
+/** Elements whose integration points are in the batch. */
+struct FixMPMElements::Work {
+  int n, nelement;
+  std::size_t element[BATCH];
+  int start[BATCH];                        // first point of an element
+  double g[BATCH][MAX_ELEMENT_NODES][3];   // gradients of the functions in space
+  double volume[BATCH];                    // reference volume
+  double J[BATCH];                         // without F-bar
+};
+
+/* ----------------------------------------------------------------------
+   fix ID group mpm/elements FILE keyword value ...
+------------------------------------------------------------------------- */
+
+FixMPMElements::FixMPMElements(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), dim(domain->dimension), maxnode(0), maxpoint(0), nhistory(0), stride(0),
+    max_of_node(0), nelements(0), fbar(false), shortest(0.0), material(nullptr), points(nullptr),
+    batch(nullptr), work(nullptr), first(nullptr), count(nullptr), width(0)
+{
+  if (narg < 4) utils::missing_cmd_args(FLERR, "fix mpm/elements", error);
+  points = MPMPoints::get(atom);
+  if (!points)
+    error->all(FLERR, "Fix mpm/elements requires material points: use atom_style mpm, or hybrid "
+               "with mpm");
+  if (!atom->tag_enable) error->all(FLERR, "Fix mpm/elements requires atom IDs");
+
+  std::string part;
+  for (int iarg = 4; iarg < narg; iarg += 2) {
+    const std::string keyword = arg[iarg];
+    if (keyword != "part" && keyword != "locking")
+      error->all(FLERR, iarg, "Unknown fix mpm/elements keyword: {}", keyword);
+    if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "fix mpm/elements " + keyword, error);
+    const std::string value = arg[iarg + 1];
+    if (keyword == "part")
+      part = value;
+    else if (value == "fbar" || value == "none")
+      fbar = value == "fbar";
+    else
+      error->all(FLERR, iarg + 1, "Unknown fix mpm/elements locking {}: must be none or fbar",
+                 value);
+  }
+
+  restart_global = restart_peratom = 1;
+  create_attribute = 1;
+  scalar_flag = 1;
+  global_freq = 1;
+  extscalar = 1;
+
+  Mesh mesh;
+  try {
+    mesh = read_body(lmp, arg[3], part);
+  } catch (const std::runtime_error &e) {
+    error->all(FLERR, 3, "Fix mpm/elements: {}", e.what());
+  }
+  for (const auto &e : mesh.elements) {
+    const auto &rule = ElementRule::of(e.type);
+    maxnode = std::max(maxnode, rule.nnode);
+    maxpoint = std::max(maxpoint, rule.npoint);
+  }
+  if (fbar && maxpoint == 1)
+    error->all(FLERR, "Fix mpm/elements locking fbar is for quadrangles and hexahedra: elements with "
+               "one integration point have no other volume to average with");
+
+  // ghosts are found by their IDs
+
+  if (atom->map_style == Atom::MAP_NONE) {
+    atom->map_user = Atom::MAP_YES;
+    atom->map_init();
+    atom->map_set();
+  }
+
+  find_material();
+  nhistory = material->nhistory;
+  stride = 2 + maxnode * (1 + dim) + maxpoint * (15 + nhistory);
+  width = 18 + nhistory;
+  comm_reverse = width;
+  batch = new Batch();    // zero, see mpm_batch.h
+  work = new Work;
+  history.resize((std::size_t) std::max(1, nhistory) * BATCH);
+
+  FixMPMElements::grow_arrays(atom->nmax);
+  atom->add_callback(Atom::GROW);
+  atom->add_callback(Atom::RESTART);
+  for (int i = 0; i < atom->nlocal; i++) FixMPMElements::set_arrays(i);
+  make_elements(mesh);
+  maxexchange = 1 + max_of_node * stride;
+}
+
+/* ---------------------------------------------------------------------- */
+
+FixMPMElements::~FixMPMElements()
+{
+  if (first && modify) {
+    atom->delete_callback(id, Atom::GROW);
+    atom->delete_callback(id, Atom::RESTART);
+  }
+  memory->destroy(first);
+  memory->destroy(count);
+  delete batch;
+  delete work;
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixMPMElements::setmask()
+{
+  return POST_NEIGHBOR | POST_FORCE;
+}
+
+/* ----------------------------------------------------------------------
+   the material of the nodes is that of the elements
+------------------------------------------------------------------------- */
+
+void FixMPMElements::find_material()
+{
+  const auto all = modify->get_fix_by_style("^mpm/material$");
+  int mine = -1, index;
+  for (int i = 0; i < atom->nlocal; i++)
+    for (int k = 0; k < (int) all.size() && (atom->mask[i] & groupbit); k++)
+      if (atom->mask[i] & all[k]->groupbit) mine = k;
+  MPI_Allreduce(&mine, &index, 1, MPI_INT, MPI_MAX, world);
+  if (index < 0)
+    error->all(FLERR, "Fix mpm/elements {}: the points of group {} have no material: define a fix "
+               "mpm/material for them before", id, group->names[igroup]);
+  material = dynamic_cast<FixMPMMaterial *>(all[index]);
+  bigint other = 0, others;
+  for (int i = 0; i < atom->nlocal; i++)
+    other += (atom->mask[i] & groupbit) && !(atom->mask[i] & material->groupbit);
+  MPI_Allreduce(&other, &others, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (others)
+    error->all(FLERR, "Fix mpm/elements {}: the points of group {} must have one material: use a "
+               "fix mpm/elements and a mesh for each", id, group->names[igroup]);
+}
+
+/* ----------------------------------------------------------------------
+   elements from the mesh, whose nodes are the points of the group in order of their IDs; the
+   reference configuration is where these are now
+------------------------------------------------------------------------- */
+
+void FixMPMElements::make_elements(const Mesh &mesh)
+{
+  const bigint nnodes = mesh.nodes.size();
+  bigint n = 0, all;
+  tagint low = MAXTAGINT, high = 0, lowest, highest;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    n++;
+    low = std::min(low, atom->tag[i]);
+    high = std::max(high, atom->tag[i]);
+  }
+  MPI_Allreduce(&n, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  MPI_Allreduce(&low, &lowest, 1, MPI_LMP_TAGINT, MPI_MIN, world);
+  MPI_Allreduce(&high, &highest, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  if (all != nnodes || (bigint) highest - lowest + 1 != nnodes)
+    error->all(FLERR, "Fix mpm/elements {}: group {} has {} atoms with IDs from {} to {}, the mesh has "
+               "{} nodes: its group must be the points that one create_points ... mesh made from "
+               "the same mesh", id, group->names[igroup], all, all ? lowest : 0, highest, nnodes);
+
+  std::vector<double> mine(3 * nnodes, 0.0), x(3 * nnodes);
+  std::vector<int> local(nnodes, -1);
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    local[atom->tag[i] - lowest] = i;
+    for (int d = 0; d < 3; d++) mine[3 * (atom->tag[i] - lowest) + d] = atom->x[i][d];
+  }
+  MPI_Allreduce(mine.data(), x.data(), (int) (3 * nnodes), MPI_DOUBLE, MPI_SUM, world);
+
+  // each element belongs to the node that has fewest so far
+
+  nelements = mesh.elements.size();
+  std::vector<int> owned(nnodes, 0);
+  std::vector<std::pair<int, int>> here;    // (atom, element)
+  for (int e = 0; e < nelements; e++) {
+    const auto &element = mesh.elements[e];
+    int owner = element.node[0];
+    for (int k = 1; k < element_nodes(element.type); k++)
+      if (owned[element.node[k]] < owned[owner]) owner = element.node[k];
+    max_of_node = std::max(max_of_node, ++owned[owner]);
+    if (local[owner] >= 0) here.emplace_back(local[owner], e);
+  }
+  std::stable_sort(here.begin(), here.end(), [](const auto &a, const auto &b) {
+    return a.first < b.first;
+  });
+  pool.assign(here.size() * stride, 0.0);
+  double least = std::numeric_limits<double>::max(), volume[2] = {0.0, 0.0}, volumes[2];
+  for (std::size_t k = 0; k < here.size(); k++) {
+    const int i = here[k].first;
+    const auto &element = mesh.elements[here[k].second];
+    if (count[i]++ == 0) first[i] = (int) k;
+    double *const r = row(k);
+    r[0] = (double) element.label;
+    r[1] = (double) static_cast<int>(element.type);
+    const auto &rule = ElementRule::of(element.type);
+    double X[MAX_ELEMENT_NODES][3];
+    for (int m = 0; m < rule.nnode; m++) {
+      const double *const origin = &x[3 * (std::size_t) element.node[0]];
+      const double *const at = &x[3 * (std::size_t) element.node[m]];
+      for (int d = 0; d < 3; d++) X[m][d] = at[d] - origin[d];
+      for (int d = 0; d < dim; d++)
+        if (domain->periodicity[d]) X[m][d] -= domain->prd[d] * round(X[m][d] / domain->prd[d]);
+      r[2 + m] = (double) (lowest + element.node[m]);
+      for (int d = 0; d < dim; d++) r[2 + maxnode + m * dim + d] = X[m][d];
+    }
+    double frequency = 0.0, size = 0.0;
+    for (int q = 0; q < rule.npoint; q++) {
+      double g[MAX_ELEMENT_NODES][3], G[3][3] = {{0.0}};
+      const double w = rule.gradients(q, X, g);
+      if (!(w > 0.0))
+        error->one(FLERR, "Fix mpm/elements {}: element {} of the mesh is inverted", id,
+                   element.label);
+      for (int m = 0; m < rule.nnode; m++)
+        for (int a = 0; a < 3; a++)
+          for (int b = 0; b < 3; b++) G[a][b] += g[m][a] * g[m][b];
+      frequency += w * rule.nnode * largest_eigenvalue(dim, G);
+      size += w;
+      double at[3], *const s = state(r, q);
+      for (int d = 0; d < 3; d++) {
+        at[d] = x[3 * (std::size_t) element.node[0] + d];
+        for (int m = 0; m < rule.nnode; m++) at[d] += rule.N[q][m] * X[m][d];
+      }
+      s[0] = s[4] = s[8] = 1.0;
+      if (nhistory) material->material->initialize(at, s + 15);
+    }
+    volume[0] += size;
+    least = std::min(least, 2.0 * sqrt(size / frequency));
+  }
+  MPI_Allreduce(&least, &shortest, 1, MPI_DOUBLE, MPI_MIN, world);
+
+  // pressure of an equation of state
+
+  for_batches(false, [&](Work &w) {
+    material->material->initial_stress(*batch);
+    for (int k = 0; k < w.nelement; k++) {
+      double *const r = row(w.element[k]);
+      const int end = k + 1 < w.nelement ? w.start[k + 1] : w.n;
+      for (int p = w.start[k]; p < end; p++)
+        for (int c = 0; c < 6; c++) state(r, p - w.start[k])[9 + c] = batch->stress[c][p];
+    }
+  });
+
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & groupbit) volume[1] += atom->vfrac[i];
+  MPI_Allreduce(volume, volumes, 2, MPI_DOUBLE, MPI_SUM, world);
+  if (!modify->nfix_restart_peratom && !(fabs(volumes[0] - volumes[1]) <= 1.0e-6 * volumes[0]))
+    error->all(FLERR, "Fix mpm/elements {}: the elements have a volume of {:.8g}, their nodes of {:.8g}: "
+               "points that create_points ... mesh made must not be deformed before", id,
+               volumes[0], volumes[1]);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMElements::init()
+{
+  for (auto *ifix : modify->get_fix_by_style("^mpm$")) {
+    const auto *field = dynamic_cast<FixMPM *>(ifix);
+    int mine = 0, any;
+    for (int i = 0; i < atom->nlocal; i++)
+      mine |= (atom->mask[i] & groupbit) && (atom->mask[i] & field->groupbit);
+    MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+    if (!any) continue;
+    if (field->locking != FixMPM::NO_CURE)
+      error->all(FLERR, "Fix mpm {} locking is not for nodes of elements: use fix mpm/elements {} "
+                 "locking fbar", field->id, id);
+    if (field->policy == FixMPM::DELETE || field->delete_failed)
+      error->all(FLERR, "Fix mpm {} bad delete and failed delete cannot be used with fix mpm/elements "
+                 "{}, whose nodes must not be deleted: give them a fix mpm of their own", field->id,
+                 id);
+    if (field->axisymmetric)
+      error->all(FLERR, "Fix mpm {} axisymmetric cannot be used with fix mpm/elements {}, whose elements "
+                 "are of plane strain", field->id, id);
+    if (field->every > 1)
+      error->all(FLERR, "Fix mpm {} every cannot be used with fix mpm/elements {}: give the other "
+                 "points a fix mpm of their own", field->id, id);
+  }
+
+  // nodes of elements may be ghosts; what has been stretched since is asked for with comm_modify
+
+  const double extent = largest_extent();
+  comm->cutghostuser = std::max(comm->cutghostuser, extent);
+}
+
+/* ----------------------------------------------------------------------
+   a bound of the distance of nodes of an element, with room for more deformation: the Frobenius
+   norm of F is sqrt(dim) for none
+------------------------------------------------------------------------- */
+
+double FixMPMElements::largest_extent() const
+{
+  double largest = 0.0, all;
+  for (std::size_t e = 0; e < pool.size() / stride; e++) {
+    double *const r = row(e);
+    const auto &rule = ElementRule::of((ElementType) (int) r[1]);
+    const double *const X = r + 2 + maxnode;
+    double square = 0.0, stretch = 0.0;
+    for (int k = 0; k < rule.nnode; k++)
+      for (int j = 0; j < k; j++) {
+        double s = 0.0;
+        for (int d = 0; d < dim; d++)
+          s += (X[k * dim + d] - X[j * dim + d]) * (X[k * dim + d] - X[j * dim + d]);
+        square = std::max(square, s);
+      }
+    for (int q = 0; q < rule.npoint; q++) {
+      double s = 0.0;
+      for (int c = 0; c < (dim == 3 ? 9 : 5); c++) s += state(r, q)[c] * state(r, q)[c];
+      stretch = std::max(stretch, s);
+    }
+    largest = std::max(largest, sqrt(square * stretch));
+  }
+  MPI_Allreduce(&largest, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+  return all;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMElements::setup_post_neighbor()
+{
+  post_neighbor();
+}
+
+/* ----------------------------------------------------------------------
+   rows in the order of atoms, and where their nodes are
+------------------------------------------------------------------------- */
+
+void FixMPMElements::post_neighbor()
+{
+  const int nlocal = atom->nlocal;
+  std::size_t n = 0;
+  for (int i = 0; i < nlocal; i++) n += count[i];
+  std::vector<double> sorted(n * stride);
+  nodes.resize(n);
+  n = 0;
+  for (int i = 0; i < nlocal; i++) {
+    if (count[i] == 0) continue;
+    memcpy(&sorted[n * stride], row(first[i]), sizeof(double) * stride * count[i]);
+    first[i] = (int) n;
+    for (int k = 0; k < count[i]; k++, n++) {
+      const double *const r = &sorted[n * stride];
+      const int nnode = element_nodes((ElementType) (int) r[1]);
+      for (int m = 0; m < nnode; m++) {
+        const int j = atom->map((tagint) r[2 + m]);
+        if (j < 0)
+          error->one(FLERR, "Fix mpm/elements {}: node {} of element {} is out of reach at step {}: "
+                     "use comm_modify cutoff with more than the present {:.6g}, the element may have "
+                     "been stretched", id, (tagint) r[2 + m], (bigint) r[0], update->ntimestep,
+                     comm->get_comm_cutoff());
+        nodes[n].i[m] = domain->closest_image(i, j);
+      }
+    }
+  }
+  pool.swap(sorted);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMElements::setup(int)
+{
+  compute(true);
+}
+
+void FixMPMElements::post_force(int)
+{
+  compute(false);
+}
+
+/* ----------------------------------------------------------------------
+   forces of the elements on their nodes, and means of their state for output
+------------------------------------------------------------------------- */
+
+void FixMPMElements::compute(bool starting)
+{
+  const int nlocal = atom->nlocal, nall = nlocal + atom->nghost;
+  sums.assign((std::size_t) nall * width, 0.0);
+  for_batches(true, [&](Work &w) {
+    material_update(w, starting);
+    add_sums(w);
+  });
+  comm->reverse_comm(this);
+
+  force_on.assign(3 * (std::size_t) atom->nmax, 0.0);
+  double **const f = atom->f;
+  for (int i = 0; i < nlocal; i++) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    const double *const s = &sums[(std::size_t) i * width], inverse = 1.0 / atom->vfrac[i];
+    for (int d = 0; d < dim; d++) {
+      force_on[3 * (std::size_t) i + d] = s[d];
+      f[i][d] += s[d];
+    }
+    for (int c = 0; c < 9; c++) points->F[i][c] = inverse * s[3 + c];
+    for (int c = 0; c < 6; c++) points->tau[i][c] = inverse * s[12 + c];
+    for (int k = 0; k < nhistory; k++) material->history[i][k] = inverse * s[18 + k];
+  }
+}
+
+/* ----------------------------------------------------------------------
+   visit all elements, as many as fit into a batch at a time
+------------------------------------------------------------------------- */
+
+template <class Visit> void FixMPMElements::for_batches(bool moved, Visit visit) const
+{
+  Work &w = *work;
+  w.n = w.nelement = 0;
+  const auto flush = [&]() {
+    if (w.n == 0) return;
+    batch->n = w.n;
+    batch->dt = update->dt;
+    batch->h = shortest;
+    batch->time = update->atime + (update->ntimestep - update->atimestep) * update->dt;
+    batch->history = reinterpret_cast<double(*)[BATCH]>(history.data());
+    visit(w);
+    w.n = w.nelement = 0;
+  };
+  const std::size_t n = pool.size() / stride;
+  for (std::size_t e = 0; e < n; e++) {
+    if (w.n + ElementRule::of((ElementType) (int) row(e)[1]).npoint > BATCH) flush();
+    load(w, e, moved);
+  }
+  flush();
+}
+
+/* ----------------------------------------------------------------------
+   kinematics of an element: F = sum_k x_k grad_0 N_k, or, if it has not moved, what the row has.
+   F-bar (E.A. de Souza Neto et al., Int. J. Solids Struct. 33 (1996) 3277) takes the mean of J over
+   the element for the J of each point, in 2d by scaling the plane
+------------------------------------------------------------------------- */
+
+void FixMPMElements::load(Work &w, std::size_t e, bool moved) const
+{
+  double *const r = row(e);
+  const auto &rule = ElementRule::of((ElementType) (int) r[1]);
+  double X[MAX_ELEMENT_NODES][3], x[MAX_ELEMENT_NODES][3];
+  for (int m = 0; m < rule.nnode; m++) {
+    X[m][2] = 0.0;
+    for (int d = 0; d < dim; d++) X[m][d] = r[2 + maxnode + m * dim + d];
+    if (!moved) continue;
+    const double *const at = atom->x[nodes[e].i[m]], *const origin = atom->x[nodes[e].i[0]];
+    for (int d = 0; d < 3; d++) x[m][d] = at[d] - origin[d];
+  }
+
+  double F[MAX_ELEMENT_POINTS][9], mean = 0.0, size = 0.0;
+  w.element[w.nelement] = e;
+  w.start[w.nelement++] = w.n;
+  for (int q = 0; q < rule.npoint; q++) {
+    const int p = w.n + q;
+    double g[MAX_ELEMENT_NODES][3];
+    w.volume[p] = rule.gradients(q, X, g);
+    double *const f = F[q];
+    if (moved) {
+      for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++) {
+          f[3 * a + b] = a == b && a >= dim ? 1.0 : 0.0;
+          for (int m = 0; m < rule.nnode && a < dim && b < dim; m++) f[3 * a + b] += x[m][a] * g[m][b];
+        }
+    } else {
+      memcpy(f, state(r, q), 9 * sizeof(double));
+    }
+    const double J = w.J[p] = MPMPoints::det(f);
+    if (!(J > 0.0))
+      error->one(FLERR, "Fix mpm/elements {}: element {} of the mesh has a deformation gradient of "
+                 "determinant {} at step {}: use a smaller time step, a finer mesh, or elements of "
+                 "better shape", id, (bigint) r[0], J, update->ntimestep);
+    mean += w.volume[p] * J;
+    size += w.volume[p];
+    const double inv = 1.0 / J;
+    double inverse[3][3];
+    for (int a = 0; a < 3; a++)
+      for (int b = 0; b < 3; b++) {
+        const int a1 = (a + 1) % 3, a2 = (a + 2) % 3, b1 = (b + 1) % 3, b2 = (b + 2) % 3;
+        inverse[b][a] = inv * (f[3 * a1 + b1] * f[3 * a2 + b2] - f[3 * a1 + b2] * f[3 * a2 + b1]);
+      }
+    for (int m = 0; m < rule.nnode; m++)
+      for (int a = 0; a < 3; a++)
+        w.g[p][m][a] =
+            g[m][0] * inverse[0][a] + g[m][1] * inverse[1][a] + g[m][2] * inverse[2][a];
+  }
+
+  Batch &b = *batch;
+  for (int q = 0; q < rule.npoint; q++) {
+    const int p = w.n + q;
+    double *const f = F[q];
+    const double *const s = state(r, q);    // F tau history
+    b.J[p] = w.J[p];
+    if (fbar && moved && rule.npoint > 1) {
+      const double J = mean / size, scale = dim == 2 ? sqrt(J / w.J[p]) : cbrt(J / w.J[p]);
+      for (int c = 0; c < (dim == 3 ? 9 : 5); c++) f[c] *= scale;
+      b.J[p] = J;
+    }
+    const double Jold = MPMPoints::det(s), inv = 1.0 / Jold;
+    b.Jold[p] = Jold;
+    double inverse[3][3];
+    for (int i = 0; i < 3; i++)
+      for (int j = 0; j < 3; j++) {
+        const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+        inverse[j][i] = inv * (s[3 * i1 + j1] * s[3 * i2 + j2] - s[3 * i1 + j2] * s[3 * i2 + j1]);
+      }
+    for (int i = 0; i < 3; i++)
+      for (int j = 0; j < 3; j++) {
+        b.F[3 * i + j][p] = f[3 * i + j];
+        double a = 0.0;
+        for (int k = 0; k < 3; k++) a += (f[3 * i + k] - s[3 * i + k]) * inverse[k][j];
+        b.A[3 * i + j][p] = a;
+      }
+    for (int c = 0; c < 6; c++) b.stress[c][p] = inv * s[9 + c];
+    b.vol0[p] = w.volume[p];
+    for (int k = 0; k < nhistory; k++) history[k * BATCH + p] = s[15 + k];
+  }
+  w.n += rule.npoint;
+}
+
+/* ----------------------------------------------------------------------
+   stress and history of the points in the batch. At the start of a run nothing has moved since the
+   stress was computed, unless a command has moved points
+------------------------------------------------------------------------- */
+
+void FixMPMElements::material_update(Work &w, bool starting)
+{
+  Batch &b = *batch;
+  if (starting) {
+    double largest = 0.0;
+    for (int c = 0; c < 9; c++)
+      for (int p = 0; p < w.n; p++) largest = std::max(largest, fabs(b.A[c][p]));
+    if (largest < 1.0e-10) return;
+  }
+  material->material->update(b);
+  for (int k = 0; k < NWORK; k++) material->work[k] += b.work[k];
+  for (int k = 0; k < w.nelement; k++) {
+    double *const r = row(w.element[k]);
+    const int end = k + 1 < w.nelement ? w.start[k + 1] : w.n;
+    for (int p = w.start[k]; p < end; p++) {
+      double *const s = state(r, p - w.start[k]);
+      for (int c = 0; c < 9; c++) s[c] = b.F[c][p];
+      for (int c = 0; c < 6; c++) s[9 + c] = b.J[p] * b.stress[c][p];
+      for (int h = 0; h < nhistory; h++) s[15 + h] = history[h * BATCH + p];
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   f_k = -sum_q V0 tau grad N_k. With F-bar the power of the stress is tau : (L + (mean - tr L)/dim I)
+   where mean is the rate of the mean of J, so the force has the mean of the pressure on the
+   gradients of the volume of the element in the place of the pressure of each point: force and
+   strain belong together, and an elastic body keeps its energy
+------------------------------------------------------------------------- */
+
+void FixMPMElements::add_sums(const Work &w)
+{
+  const double scale = 1.0 / force->nktv2p;
+  std::vector<double> &mean = element_mean;
+  for (int k = 0; k < w.nelement; k++) {
+    const std::size_t e = w.element[k];
+    double *const r = row(e);
+    const auto &rule = ElementRule::of((ElementType) (int) r[1]);
+    const bool average = fbar && rule.npoint > 1;
+    double f[MAX_ELEMENT_NODES][3] = {{0.0}}, share[MAX_ELEMENT_NODES] = {0.0};
+    double size = 0.0, volume = 0.0, pressure = 0.0;
+    mean.assign(15 + nhistory, 0.0);
+    for (int q = 0; q < rule.npoint; q++) {
+      const int p = w.start[k] + q;
+      const double *const s = state(r, q), V = w.volume[p];
+      double t[6];
+      for (int c = 0; c < 6; c++) t[c] = V * s[9 + c];
+      if (average) {
+        const double trace = (t[0] + t[1] + (dim == 3 ? t[2] : 0.0)) / dim;
+        pressure += trace;
+        for (int d = 0; d < dim; d++) t[d] -= trace;
+        volume += V * w.J[p];
+      }
+      for (int m = 0; m < rule.nnode; m++) {
+        const double *const g = w.g[p][m];
+        f[m][0] += t[0] * g[0] + t[3] * g[1] + t[4] * g[2];
+        f[m][1] += t[3] * g[0] + t[1] * g[1] + t[5] * g[2];
+        f[m][2] += t[4] * g[0] + t[5] * g[1] + t[2] * g[2];
+        share[m] += V * rule.N[q][m];
+      }
+      size += V;
+    }
+    if (average)
+      for (int q = 0; q < rule.npoint; q++) {
+        const int p = w.start[k] + q;
+        const double factor = pressure * w.volume[p] * w.J[p] / volume;
+        for (int m = 0; m < rule.nnode; m++)
+          for (int d = 0; d < dim; d++) f[m][d] += factor * w.g[p][m][d];
+      }
+    for (int q = 0; q < rule.npoint; q++) {
+      const double *const s = state(r, q), weight = w.volume[w.start[k] + q] / size;
+      for (int c = 0; c < 15 + nhistory; c++) mean[c] += weight * s[c];
+    }
+    for (int m = 0; m < rule.nnode; m++) {
+      double *const sum = &sums[(std::size_t) nodes[e].i[m] * width];
+      for (int d = 0; d < dim; d++) sum[d] -= scale * f[m][d];
+      for (int c = 0; c < 15 + nhistory; c++) sum[3 + c] += share[m] * mean[c];
+    }
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixMPMElements::stored_energy() const
+{
+  double sum = 0.0, energy[BATCH];
+  for_batches(false, [&](Work &w) {
+    material->material->stored_energy(*batch, energy);
+    for (int p = 0; p < w.n; p++) sum += w.volume[p] * energy[p];
+  });
+  return sum;
+}
+
+/* ----------------------------------------------------------------------
+   The square of the highest frequency of an element with lumped masses rho_0 V_0/n at its n nodes
+   and a stiffness of rho c^2 at most for any strain is n c^2 times the mean of the largest
+   eigenvalue of sum_k grad N_k x grad N_k at most, and that of the body is not larger. The lattice
+   can only lower it: its velocities are a part of those that nodes can have, and its lumped mass is
+   not less than theirs.
+------------------------------------------------------------------------- */
+
+double FixMPMElements::stable_dt_local(tagint &tag, double &speed) const
+{
+  double smallest = std::numeric_limits<double>::max(), c[BATCH];
+  tag = 0;
+  speed = 0.0;
+  for_batches(false, [&](Work &w) {
+    material->material->wave_speed(*batch, c);
+    for (int k = 0; k < w.nelement; k++) {
+      const double *const r = row(w.element[k]);
+      const auto &rule = ElementRule::of((ElementType) (int) r[1]);
+      double sum = 0.0, size = 0.0, largest = 0.0;
+      for (int q = 0; q < rule.npoint; q++) {
+        const int p = w.start[k] + q;
+        double G[3][3] = {{0.0}};
+        for (int m = 0; m < rule.nnode; m++)
+          for (int a = 0; a < 3; a++)
+            for (int b = 0; b < 3; b++) G[a][b] += w.g[p][m][a] * w.g[p][m][b];
+        sum += w.volume[p] * c[p] * c[p] * rule.nnode * largest_eigenvalue(dim, G);
+        size += w.volume[p];
+        largest = std::max(largest, c[p]);
+      }
+      const double dt = 2.0 * sqrt(size / sum);
+      if (std::isnan(smallest) || dt >= smallest) continue;    // NaN does not pass unseen
+      smallest = dt;
+      tag = (tagint) r[2];
+      speed = largest;
+    }
+  });
+  return smallest;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMElements::check_dt() const
+{
+  tagint tag;
+  double speed;
+  const double limit = stable_dt_local(tag, speed);
+  if (!(update->dt <= limit))
+    error->one(FLERR, "Time step {:.6g} is above the limit {:.6g} of fix mpm/elements {} at step {}: "
+               "element with node {}, wave speed {:.6g}; use timestep, fix mpm/dt, or a mesh without "
+               "small elements", update->dt, limit, id, update->ntimestep, tag, speed);
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixMPMElements::compute_scalar()
+{
+  return (double) nelements;
+}
+
+double FixMPMElements::memory_usage()
+{
+  return (double) atom->nmax * 2 * sizeof(int) +
+      (double) (pool.capacity() + sums.capacity() + force_on.capacity()) * sizeof(double) +
+      (double) nodes.capacity() * sizeof(Nodes);
+}
+
+/* ----------------------------------------------------------------------
+   elements go where their atom goes. Rows that nobody has any more are dropped by post_neighbor()
+------------------------------------------------------------------------- */
+
+void FixMPMElements::grow_arrays(int nmax)
+{
+  memory->grow(first, nmax, "mpm/elements:first");
+  memory->grow(count, nmax, "mpm/elements:count");
+}
+
+void FixMPMElements::copy_arrays(int i, int j, int)
+{
+  first[j] = first[i];
+  count[j] = count[i];
+}
+
+void FixMPMElements::set_arrays(int i)
+{
+  first[i] = count[i] = 0;
+}
+
+int FixMPMElements::pack_exchange(int i, double *buf)
+{
+  buf[0] = count[i];
+  if (count[i]) memcpy(buf + 1, row(first[i]), sizeof(double) * stride * count[i]);
+  return 1 + count[i] * stride;
+}
+
+int FixMPMElements::unpack_exchange(int i, double *buf)
+{
+  count[i] = (int) buf[0];
+  first[i] = (int) (pool.size() / stride);
+  pool.insert(pool.end(), buf + 1, buf + 1 + count[i] * stride);
+  return 1 + count[i] * stride;
+}
+
+int FixMPMElements::pack_restart(int i, double *buf)
+{
+  buf[0] = 2 + count[i] * stride;
+  return 1 + pack_exchange(i, buf + 1);
+}
+
+void FixMPMElements::unpack_restart(int i, int nth)
+{
+  double *extra = atom->extra[i];
+  for (int k = 0; k < nth; k++) extra += static_cast<int>(*extra);
+  const int n = static_cast<int>(extra[0]), elements = static_cast<int>(extra[1]);
+  if (n != 2 + elements * stride)
+    error->one(FLERR, "Fix mpm/elements {}: the restart file was written with another mesh or material",
+               id);
+  unpack_exchange(i, extra + 1);
+}
+
+int FixMPMElements::size_restart(int i)
+{
+  return 2 + count[i] * stride;
+}
+
+int FixMPMElements::maxsize_restart()
+{
+  return 2 + max_of_node * stride;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMElements::write_restart(FILE *fp)
+{
+  if (comm->me) return;
+  const int size = sizeof(double);
+  fwrite(&size, sizeof(int), 1, fp);
+  fwrite(&shortest, sizeof(double), 1, fp);
+}
+
+void FixMPMElements::restart(char *buf)
+{
+  memcpy(&shortest, buf, sizeof(double));
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixMPMElements::pack_reverse_comm(int n, int start, double *buf)
+{
+  memcpy(buf, sums.data() + (std::size_t) start * width, sizeof(double) * n * width);
+  return n * width;
+}
+
+void FixMPMElements::unpack_reverse_comm(int n, int *list, double *buf)
+{
+  for (int k = 0; k < n; k++) {
+    double *const s = &sums[(std::size_t) list[k] * width];
+    for (int c = 0; c < width; c++) s[c] += *buf++;
+  }
+}

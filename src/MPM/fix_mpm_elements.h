@@ -1,0 +1,123 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(mpm/elements,FixMPMElements);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_MPM_ELEMENTS_H
+#define LMP_FIX_MPM_ELEMENTS_H
+
+#include "fix.h"
+#include "mpm_mesh.h"
+
+#include <vector>
+
+namespace MPM_NS {
+struct Batch;
+struct ElementRule;
+}    // namespace MPM_NS
+
+namespace LAMMPS_NS {
+
+/** Finite elements whose nodes are material points: the points have no stress of their own, the
+ *  internal force is integrated over the elements (total Lagrangian) and put on atom->f, and fix
+ *  mpm moves the points. This is the generalized particle in cell method of V.P. Nguyen,
+ *  A. de Vaucorbeil, C. Nguyen-Thanh, T.K. Mandal, Comput. Methods Appl. Mech. Eng. 371 (2020)
+ *  113308.
+ *
+ *  An element belongs to one of its nodes and migrates with it; the others may be ghosts.
+ */
+class FixMPMElements : public Fix {
+ public:
+  FixMPMElements(class LAMMPS *, int, char **);
+  ~FixMPMElements() override;
+  int setmask() override;
+  void init() override;
+  void setup_post_neighbor() override;
+  void setup(int) override;
+  void post_neighbor() override;
+  void post_force(int) override;
+  double compute_scalar() override;
+  double memory_usage() override;
+  void grow_arrays(int) override;
+  void copy_arrays(int, int, int) override;
+  void set_arrays(int) override;
+  int pack_exchange(int, double *) override;
+  int unpack_exchange(int, double *) override;
+  int pack_restart(int, double *) override;
+  void unpack_restart(int, int) override;
+  int size_restart(int) override;
+  int maxsize_restart() override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+  int pack_reverse_comm(int, int, double *) override;
+  void unpack_reverse_comm(int, int *, double *) override;
+
+  /** Energy stored by the elements of this rank [pressure * volume]. */
+  double stored_energy() const;
+
+  /** Forces of the elements on the points of this rank, [nlocal][3], as added to atom->f. */
+  const double *forces() const { return force_on.data(); }
+
+  /** Smallest stable time step of this rank's elements: 2/omega with a bound of the highest
+   *  frequency omega. tag: a node of that element, speed: its wave speed. */
+  double stable_dt_local(tagint &tag, double &speed) const;
+
+  /** Stop when the time step is above that of an element. */
+  void check_dt() const;
+
+ private:
+  struct Work;
+  struct Nodes {
+    int i[8];
+  };
+
+  int dim, maxnode, maxpoint;    // of the largest element of the mesh
+  int nhistory, stride;
+  int max_of_node;               // largest number of elements that belong to one node
+  bigint nelements;              // of the mesh
+  bool fbar;
+  double shortest;               // length of the smallest element, for artificial viscosity
+  class FixMPMMaterial *material;
+  struct MPMPoints *points;
+  MPM_NS::Batch *batch;
+  Work *work;
+
+  // A row of the pool: label and type of an element, tags of its nodes [maxnode], their reference
+  // positions relative to the first one [maxnode][dim], and for each integration point F [9],
+  // tau [6], and history.
+
+  int *first, *count;                      // of an atom: its elements in the pool
+  std::vector<double> pool;
+  std::vector<Nodes> nodes;                // local indices, after post_neighbor()
+  int width;                               // of rows of sums
+  std::vector<double> sums;                // forces and averages of nodes
+  std::vector<double> force_on, element_mean;
+  mutable std::vector<double> history;    // of a batch
+
+  double *row(std::size_t e) const { return const_cast<double *>(pool.data()) + e * stride; }
+  double *state(double *row, int q) const
+  {
+    return row + 2 + maxnode * (1 + dim) + q * (15 + nhistory);
+  }
+  void find_material();
+  void make_elements(const MPM_NS::Mesh &);
+  double largest_extent() const;
+  void compute(bool starting);
+  void load(Work &, std::size_t e, bool moved) const;
+  template <class Visit> void for_batches(bool moved, Visit) const;
+  void material_update(Work &, bool starting);
+  void add_sums(const Work &);
+};
+
+}    // namespace LAMMPS_NS
+#endif
+#endif
