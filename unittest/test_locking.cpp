@@ -31,11 +31,11 @@ struct Cook {
   double ripple;    // rms of pressure minus its mean over the points of a cell, by rms of pressure
 };
 
-static Cook cook(const char *options, double h, double nu)
+static Cook cook(const char *options, double h, double nu, double cfl = 0.75)
 {
   const double E = nu > 0.4 ? 240.565 : 70.0;
   const double lambda = E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), mu = 0.5 * E / (1.0 + nu);
-  const double dt = 0.75 * h / sqrt(lambda + 2.0 * mu), F = 100.0;
+  const double dt = cfl * h / sqrt(lambda + 2.0 * mu), F = 100.0;
   const double u_expected = nu > 0.4 ? 7.0 : 19.0;
   const double omega = sqrt(F / u_expected / 400.0), ramp = 4.0 / omega, end = 12.0 / omega;
   Scene run;
@@ -128,6 +128,18 @@ TEST(CookMembrane, CompressibleStays)
   EXPECT_NEAR(cook("locking pressure", 2.0, 1.0 / 3.0).u / 19.337, 1.0, 0.03);
 }
 
+// in the updated frame, averaged volumes part from the motion while points vibrate over the lattice: 4 %
+// too soft above. On the lattice of the undeformed panel this cannot be, and the time step does not matter
+
+TEST(CookMembrane, CompressibleDoesNotCreepInTheTotalFrame)
+{
+  const double none = cook("frame total", 4.0, 1.0 / 3.0).u;
+  const double fbar = cook("frame total locking fbar", 4.0, 1.0 / 3.0).u;
+  const double small = cook("frame total locking fbar", 4.0, 1.0 / 3.0, 0.3).u;
+  EXPECT_NEAR(fbar / none, 1.011, 0.005);
+  EXPECT_NEAR(small / fbar, 1.0, 0.004);
+}
+
 /* ----------------------------------------------------------------------
    Limit load of a rough rigid punch of half-width 1 on a half-space that flows at constant volume
    (von Mises, perfectly plastic, plane strain): (2 + pi) sigma_y/sqrt(3) by L. Prandtl. On the
@@ -138,16 +150,16 @@ static double punch(const char *options)
 {
   const double h = 0.1, dt = 0.4 * h / 37.0;
   Scene run;
-  run.commands(strprintf(
-      "units si\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.04 bin\n"
-      "region box block 0 5 -3 1 -0.5 0.5\ncreate_box 1 box\nfix grid all mpm %g %s\n"
-      "region soil block 0 5 -3 0 INF INF\ncreate_points 1 region soil ppc 2\n"
-      "fix m all mpm/material density 1 eos linear 833.33 strength j2 384.6 1.0\n"
-      "fix sides all mpm/boundary xlo xhi slip\nfix floor all mpm/boundary ylo stick\n"
-      "region punch block -1 1.001 -0.001 1 INF INF\n"
-      "fix punch all mpm/boundary region punch stick velocity 0 -0.04 0\n"
-      "fix slow all viscous %g\nthermo 1000000\ntimestep %.17g\nrun %ld\n",
-      h, options, 0.75 * h * h, dt, std::lround(0.9 / dt)));
+  run.commands(
+      strprintf("units si\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.04 bin\n"
+                "region box block 0 5 -3 1 -0.5 0.5\ncreate_box 1 box\nfix grid all mpm %g %s\n"
+                "region soil block 0 5 -3 0 INF INF\ncreate_points 1 region soil ppc 2\n"
+                "fix m all mpm/material density 1 eos linear 833.33 strength j2 384.6 1.0\n"
+                "fix sides all mpm/boundary xlo xhi slip\nfix floor all mpm/boundary ylo stick\n"
+                "region punch block -1 1.001 -0.001 1 INF INF\n"
+                "fix punch all mpm/boundary region punch stick velocity 0 -0.04 0\n"
+                "fix slow all viscous %g\nthermo 1000000\ntimestep %.17g\nrun %ld\n",
+                h, options, 0.75 * h * h, dt, std::lround(0.9 / dt)));
   const double exact = (2.0 + 3.14159265358979) / sqrt(3.0) * (1.0 + 0.5 * h);
   return measured(std::string("punch, ") + options + ": force/limit load",
                   std::abs(run.fix_vector("punch", 3)[1]) / exact);
@@ -155,9 +167,14 @@ static double punch(const char *options)
 
 TEST(Punch, LimitLoad)
 {
-  const double without = punch("locking none"), with = punch("locking fbar");
-  EXPECT_NEAR(with, 1.0, 0.08);
-  EXPECT_LT(with, without - 0.03);
+  for (const char *shape : {"shape quadratic ", "shape linear transfer flip 0.99 scheme musl "}) {
+    const double without = punch((std::string(shape) + "locking none").c_str());
+    for (const char *cure : {"locking fbar", "locking pressure", "locking both"}) {
+      const double with = punch((std::string(shape) + cure).c_str());
+      EXPECT_NEAR(with, 1.0, 0.08) << shape << cure;
+      EXPECT_LT(with, without - 0.03) << shape << cure;
+    }
+  }
 }
 
 /* ----------------------------------------------------------------------

@@ -212,7 +212,9 @@ TEST_P(VibratingBar, TenPeriods)
 // Linear: an independent code, to 10 % of the period's deviation and 0.002 of the energy (FLIP
 // 0.99: 0.01). Others: the everyday gate of 0.5 % and 1 %. APIC pays per step for what the affine
 // field of a point does not hold: energy 0.991 (quadratic) and 0.985 (cubic) after 3200 steps.
-// Measured: TPIC 0.988, AFLIP 0.997, contiguous GIMP 0.998 with FLIP and 0.997 with APIC.
+// Measured: TPIC 0.988, AFLIP 0.997, contiguous GIMP 0.998 with FLIP and 0.997 with APIC. The transfers
+// of a wave with kh = 0.098, 2 points per cell and without forces, take 2.2e-6 (APIC) and 3.0e-6
+// (TPIC) of the amplitude of the velocity per step: 0.9929 and 0.9905; USL takes the rest.
 
 INSTANTIATE_TEST_SUITE_P(
     Options, VibratingBar,
