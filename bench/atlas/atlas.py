@@ -33,8 +33,9 @@ import results as rs    # noqa: E402
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 TIMEOUT = 300              # seconds for one run
-SLOW = 6.0                 # seconds: refinements that would take longer are left out
-COST_WORK = 2.5e6          # point-steps of a run that measures cost
+SLOW = 5.0                 # seconds: refinements that would take longer are left out
+COST_WORK = 2.0e6          # point-steps of a run that measures cost
+PASSES = 1                 # of refinements around the front
 REFERENCE_EVERY = 8        # measurements of cost between those of the reference
 
 
@@ -144,7 +145,7 @@ class Atlas:
 
     def predicted(self, scene, c):
         """Seconds that a combination will take, from a coarser run of its kind; 0: nothing known."""
-        ns = rs.cost_of(self.costs, scene, c) or 100.0
+        ns = (rs.cost_of(self.costs, scene, c) or 100.0) + sc.SCENES[scene].get("extra", 0.0)
         dim, best = sc.SCENES[scene]["dimension"], 0.0
         for r in self.runs:
             if r["scene"] == scene and r["status"] == "ok" and r["frame"] == c[3]:
@@ -159,7 +160,7 @@ class Atlas:
         more = {"ledger": "no", "body": "no"}
         _, base, output = lammps(self.lmp, scene, c, dict(more, steps="10"))
         points = int(re.search(r"MPM grid: (\d+) points", output).group(1))
-        steps = max(200, int(COST_WORK / points))
+        steps = 10 * max(20, int(0.1 * COST_WORK / points))
         values, seconds, output = lammps(self.lmp, scene, c, dict(more, steps=str(steps)))
         if not values:
             return None, output
@@ -205,7 +206,7 @@ def main():
         atlas.cost(scene, sc.costed(scene))
         atlas.cost(scene, sc.one_at_a_time(scene))
         atlas.accuracy(scene, sc.reference_runs(scene))
-        for _ in range(2):    # the second time next to what the first has found
+        for _ in range(PASSES):    # later ones next to what the first has found
             data = rs.Results(atlas.runs, atlas.costs)
             front = rs.kinds(data.front(scene))
             atlas.cost(scene, (kind + sc.MIDDLE + (sc.cost_spacing(scene),) for kind in front))

@@ -11,6 +11,7 @@ RUNS = ("scene",) + sc.SETTINGS + ("status", "q", "lost", "steps", "points", "ca
 COST = ("scene", "shape", "transfer", "scheme", "frame", "ppc", "precision", "h", "ns", "reference_ns",
         "bytes", "campaign")
 CAMPAIGN = ("campaign", "date", "machine", "compiler", "lammps", "package")
+DEFAULT = ("quadratic", "apic", "usl", "updated")
 REFERENCE = ("bar", ("quadratic", "apic", "usl", "updated", "2", "0.4", "double", "0.015625"))
 
 
@@ -71,22 +72,23 @@ class Results:
             made = self.make_row(r)
             if made:
                 self.rows[r["scene"]].append(made)
-        for rows in self.rows.values():
-            self.credit(rows)
+        for scene, rows in self.rows.items():
+            self.credit(rows, (self.reference[scene][1] or 0.0) / sc.SCENES[scene]["scale"])
         self.index = {(scene,) + key(r): r for scene, rows in self.rows.items() for r in rows}
         self.goals = {}    # times to the goal, by scene, once they are known
 
     @staticmethod
-    def credit(rows):
-        """The error that a run is credited with: not less than at the next finer spacing, and at most
-        second order from the next coarser one, as a single error may be small by chance of its sign."""
+    def credit(rows, uncertainty):
+        """The error that a run is credited with: not less than at the next finer spacing, at most second
+        order from the next coarser one, as a single error may be small by chance of its sign, and not less
+        than what the reference is uncertain by."""
         ladder = {}
         for r in rows:
             ladder.setdefault(key(r)[:-1], []).append(r)
         for rungs in ladder.values():
             rungs.sort(key=lambda r: -float(r["h"]))
             for k, r in enumerate(rungs):
-                r["credited"] = r["error"]
+                r["credited"] = max(r["error"], uncertainty)
                 if k > 0:
                     ratio = float(r["h"]) / float(rungs[k - 1]["h"])
                     r["credited"] = max(r["credited"], rungs[k - 1]["error"] * ratio**2)
@@ -121,19 +123,21 @@ class Results:
         return row
 
     def cost_of(self, scene, c):
-        """(ns, bytes, True) as measured; if it was not, (ns, bytes, False) from usl in the scene and the
-        factor of the scheme in the scene where costs of all schemes are measured; else (None, None, False)"""
-        found = self.cost.get((scene,) + c)
-        if found:
-            return found + (True,)
-        usl = c[:2] + ("usl",) + c[3:]
-        here = self.cost.get((scene,) + usl)
-        if here is None and c[4] != "2":    # other points per cell cost about the same
+        """(ns, bytes, True) as measured in this scene; if it was not, (ns, bytes, False) from usl or the
+        default in this scene and the ratio to it in the scene where all are measured; points per cell do
+        not matter for the cost of a point; (None, None, False) if all that is not known"""
+        if (scene,) + c in self.cost:
+            return self.cost[(scene,) + c] + (True,)
+        if c[4] != "2":
             return self.cost_of(scene, c[:4] + ("2",) + c[5:])[:2] + (False,)
         other = sc.COST_SCENE[sc.SCENES[scene]["dimension"]]
-        there = self.cost.get((other,) + c), self.cost.get((other,) + usl)
-        if here and all(there):
-            return here[0] * there[0][0] / there[1][0], here[1], False
+        usl, default = c[:2] + ("usl",) + c[3:], DEFAULT + c[4:]
+        for near, shape in ((usl, c[0]), (usl, "quadratic"), (default, c[0])):
+            here = self.cost.get((scene,) + near)
+            # the factor of a scheme may come from quadratic functions, too
+            want, base = (other, shape) + c[1:], (other, shape if near == usl else near[0]) + near[1:]
+            if here and want in self.cost and base in self.cost:
+                return here[0] * self.cost[want][0] / self.cost[base][0], here[1], False
         return None, None, False
 
     def front(self, scene, rows=None):
