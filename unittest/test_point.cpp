@@ -374,6 +374,36 @@ TEST(Point, Units)
   EXPECT_NEAR(metal["energy"].back() * 1e5, si["energy"].back(), 1e-6 * si["energy"].back());
 }
 
+// a path that leaves two ranges of the material, one of them in many steps: one warning each, with the
+// first step; a path inside: none
+
+TEST(Point, LeavingARangeWarnsOnce)
+{
+  const std::string material = " material density 1000 eos linear 1e9 strength elastic 1e8 "
+                               "range density 950 1020 range pressure -1e12 3.05e7";
+  const auto warnings = [&](const std::string &path) {
+    const MPM_TEST::ScratchFile log("point.log");
+    {
+      Scene run;
+      run.commands("log " + log.name + "\nunits si\nmpm_point NULL " + path + material +
+                   "\nlog none\n");
+    }
+    MPI_Barrier(MPI_COMM_WORLD);
+    std::vector<std::string> lines;
+    std::ifstream file(log.name);
+    for (std::string line; std::getline(file, line);)
+      if (line.find("out of the range") != std::string::npos) lines.push_back(line);
+    return lines;
+  };
+  EXPECT_EQ(warnings("uniaxial/strain -1 strain 0.01 steps 100").size(), 0);
+  // true strain 0.001 a step: density above 1020 from step 20, p = K (1/J - 1) above 30.5 MPa from 31
+  const auto found = warnings("uniaxial/strain -1 strain 0.05 steps 50");
+  ASSERT_EQ(found.size(), 2);
+  EXPECT_NE(found[0].find("density 1020.2 at step 20"), std::string::npos) << found[0];
+  EXPECT_NE(found[1].find("pressure"), std::string::npos) << found[1];
+  EXPECT_NE(found[1].find("at step 31 "), std::string::npos) << found[1];
+}
+
 /* ---------------------------------------------------------------------- errors */
 
 TEST(Point, ErrorsNameTheRemedy)

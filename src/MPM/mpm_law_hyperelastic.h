@@ -154,11 +154,14 @@ namespace {
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
         const Displacement H = displacement(b, i);
-        double strain[3];
-        principal_values(left_strain(H), strain);
+        const Sym strain = left_strain(H);
+        const double mean = (1.0 / 3.0) * trace(strain), least = -1.0 + 1e-15;
+        const DeviatorRoots root(deviator(strain));
         r.logJ[i] = log_volume(H);
+        r.e[0][i] = 0.5 * log1p(max(mean + root.first, least));
+        r.e[1][i] = 0.5 * log1p(max(mean - 0.5 * root.first + root.half, least));
+        r.e[2][i] = 0.5 * log1p(max(mean - 0.5 * root.first - root.half, least));
         for (int a = 0; a < 3; a++) {
-          r.e[a][i] = 0.5 * log1p(max(strain[a], -1.0 + 1e-15));
           r.tau[a][i] = 0.0;
           r.A[a][i] = r.A[a + 3][i] = 0.0;
         }

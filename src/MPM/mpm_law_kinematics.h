@@ -225,17 +225,6 @@ namespace {
     return (1.0 / 3.0) * trace(a) + largest_eigenvalue(deviator(a));
   }
 
-  /** All three, in no particular order, to 1e-8 of the deviator: at a fraction of the cost of their
-   *  vectors. */
-  MPM_INLINE void principal_values(const Sym &a, double value[3])
-  {
-    const double mean = (1.0 / 3.0) * trace(a);
-    const DeviatorRoots root(deviator(a));
-    value[0] = mean + root.first;
-    value[1] = mean - 0.5 * root.first + root.half;
-    value[2] = mean - 0.5 * root.first - root.half;
-  }
-
   /** Smallest density_0 (wave speed)^2 that is believed, over its value at rest: tangents may be
    *  zero or negative far from rest, where there are no waves, but the time step must be finite. */
   constexpr double LEAST_MODULUS = 0.01;
