@@ -99,8 +99,8 @@ struct ScratchFile {
       ScratchFile(base, comm)
   {
     if (rank(comm) == 0) {
-      FILE *fp = fopen(name.c_str(), "w");
-      fputs(text.c_str(), fp);
+      FILE *fp = fopen(name.c_str(), "wb");
+      fwrite(text.data(), 1, text.size(), fp);
       fclose(fp);
     }
     MPI_Barrier(comm);

@@ -37,7 +37,11 @@ GROUPS = ["bar", "rod", "solid", "solids"]
 REGIONS = {"bar": "block 0.01 0.04 0.01 0.04 0.01 0.04", "ball": "sphere 0.06 0.06 0.06 0.02",
            "plate": "block 0.01 0.09 0.01 0.09 0.01 0.02", "soil": "block -0.02 0.12 0 0.1 0 0.03",
            "shell": "cylinder z 0.05 0.05 0.045 INF INF side out"}
-VARIABLES = {"down": "equal 1.0e-3", "damage": "atom id"}
+CORNERS = [(0, 0, 0), (9, 0, 0), (0, 9, 0), (0, 0, 9)]
+TOOL = "solid tool\n%sendsolid\n" % "".join(    # a tetrahedron
+    "facet\nouter loop\n%sendloop\nendfacet\n" % "".join("vertex %d %d %d\n" % CORNERS[k] for k in face)
+    for face in [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])
+VARIABLES = {"down": "equal 1.0e-3", "depth": "equal -0.1*step*dt", "damage": "atom id"}
 COMPUTES = {"mine": "all property/atom vx vy"}
 FIXES = {"fine": "all mpm 0.01"}
 # a tetrahedron, for lines that read a mesh
@@ -174,6 +178,8 @@ def run_scene(scene, timeout=60):
     size = 10.0 if "scale" in scene else 0.01
     with open(os.path.join(folder, "ring.msh"), "w") as file:
         file.write(MESH_FILE % (size, size, size, "4 2 1 1"))
+    with open(os.path.join(folder, "tool.stl"), "w") as out:
+        out.write(TOOL)
     try:
         return mt.lammps(folder, scene, timeout=timeout)
     finally:

@@ -165,7 +165,7 @@ FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) :
     velocity[d] = {0.0, true, "", -1};
     constrained[d] = true;
     center[d] = axis[d] = 0.0;
-    impulse[d] = reaction[d] = 0.0;
+    impulse[d] = reaction[d] = impulse[3 + d] = reaction[3 + d] = 0.0;
   }
   rate = {0.0, true, "", -1};
   memset(&wall, 0, sizeof(Wall));
@@ -234,7 +234,7 @@ FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) :
   }
 
   scalar_flag = vector_flag = 1;
-  size_vector = 3;
+  size_vector = region_id.empty() ? 3 : 6;
   global_freq = 1;
   extscalar = extvector = 1;
   restart_global = 1;
@@ -921,15 +921,20 @@ void FixMPMBoundary::update_motion(double dt)
 
 /* ---------------------------------------------------------------------- */
 
+static void node_position(const FixMPM &field, int64_t node, double *x)
+{
+  const Grid &grid = *field.grid;
+  int index[3];
+  grid.node_index(grid.blocks[node / NODES_PER_BLOCK], node % NODES_PER_BLOCK, index);
+  field.node_position(index, x);
+}
+
 void FixMPMBoundary::wall_velocity(const FixMPM &field, int64_t node, double *v) const
 {
   for (int d = 0; d < 3; d++) v[d] = wall.shift[d];
   if (wall.uniform) return;
-  const Grid &grid = *field.grid;
-  int index[3];
   double x[3];
-  grid.node_index(grid.blocks[node / NODES_PER_BLOCK], node % NODES_PER_BLOCK, index);
-  field.node_position(index, x);
+  node_position(field, node, x);
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) v[i] += wall.gradient[i][j] * (x[j] - wall.origin[j]);
 }
@@ -942,7 +947,7 @@ void FixMPMBoundary::act(double dt, Stage stage)
   update_motion(dt);
   counting = count;
   if (count) {
-    impulse[0] = impulse[1] = impulse[2] = 0.0;
+    for (double &i : impulse) i = 0.0;
     dt_last = dt;
     reaction_known = false;
   }
@@ -1206,6 +1211,15 @@ void FixMPMBoundary::act_on_single(const FieldNodes &list, Single &single)
     if (single.contact == STUCK) keep = 0.0;
     for (int d = 0; d < dim; d++) v[d] = V[d] + keep * slide[d];
   }
+  if (counting && single.owned) {
+    double x[3], push[3] = {0.0, 0.0, 0.0};
+    node_position(*list.field, single.node, x);
+    for (int d = 0; d < dim; d++) push[d] = r[3] * (v[d] - r[d]);
+    for (int d = 0; d < 3; d++) {
+      const int e = (d + 1) % 3, f = (d + 2) % 3;
+      impulse[3 + d] += x[e] * push[f] - x[f] * push[e];
+    }
+  }
   set_velocity(r, v, nullptr, dim, single.owned);
 }
 
@@ -1227,7 +1241,7 @@ double FixMPMBoundary::compute_scalar()
 double FixMPMBoundary::compute_vector(int i)
 {
   if (!reaction_known) {
-    MPI_Allreduce(impulse, reaction, 3, MPI_DOUBLE, MPI_SUM, world);
+    MPI_Allreduce(impulse, reaction, size_vector, MPI_DOUBLE, MPI_SUM, world);
     for (double &r : reaction) r /= -dt_last * force->ftm2v;
     reaction_known = true;
   }

@@ -137,10 +137,10 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
   double before[3];           // its velocity in the last step, when it does not turn
   bool acted;                 // there was a last step
   bigint motion_step;         // step for which the motion of the wall is known
-  double impulse[3], work;    // on the body, this rank's share: of the last step; of all steps
+  double impulse[6], work;    // on the body, with its moment, this rank's share: of the last step; of all steps
   double dt_last;
   bool reaction_known;
-  double reaction[3];
+  double reaction[6];    // force and, of regions, torque
 
   bool counting;
   bool decided;         // contact was decided before in this step (MUSL)
