@@ -91,6 +91,12 @@ void FixMPMSurface::init()
 {
   if (modify->get_fix_by_style("^mpm$").empty())
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/surface needs a fix mpm");
+  for (auto *ifix : modify->get_fix_by_style("^mpm$"))
+    if (dynamic_cast<FixMPM *>(ifix)->axisymmetric)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/surface cannot be used with axisymmetric fix mpm {}, where points are "
+                 "rings: use fix mpm/contact",
+                 ifix->id);
   for (auto *other : modify->get_fix_by_style("^mpm/surface$"))
     if (other != this && (other->groupbit & groupbit) && other->igroup == igroup)
       error->all(FLERR, Error::NOLASTLINE, "Fix mpm/surface {} and {} have the same group", id,
