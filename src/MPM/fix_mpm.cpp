@@ -44,7 +44,7 @@ static constexpr double MAX_NODE = 4.0e6;
 
 FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), shape(QUADRATIC), extent(NO_SIZE), aspect{1.0, 1.0, 1.0}, transfer(APIC),
-    flip(0.0), refinement(LUMPED), order(1), total(false), most_distorted(0.0), axisymmetric(false), scheme(USL), stress(DEFAULT_STRESS), locking(NO_CURE), policy(ERROR),
+    flip(0.0), refinement(LUMPED), order(1), total(false), most_distorted(0.0), axisymmetric(false), scheme(USL), stress(DEFAULT_STRESS), locking(NO_CURE), light(0.0), policy(ERROR),
     delete_failed(false), every(1), dt_check(true), grid(nullptr), C(nullptr), X(nullptr), R(nullptr),
     waiting(nullptr), ledger_on(false), points(nullptr), halo(nullptr),
     kernels(nullptr), batch_kernels(nullptr), driver(false), topology_valid(false),
@@ -212,6 +212,12 @@ void FixMPM::process_options(int narg, char **arg)
     } else if (keyword == "locking") {
       locking = (Locking) choose({"none", "fbar", "pressure", "both"});
       iarg += 2;
+    } else if (keyword == "light") {
+      need(1);
+      light = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
+      if (!(light >= 0.0 && light <= 1.0))
+        error->all(FLERR, iarg + 1, "Fix mpm light share must be within 0 and 1: {}", arg[iarg + 1]);
+      iarg += 2;
     } else if (keyword == "origin") {
       need(lattice.dim);
       for (int d = 0; d < lattice.dim; d++)
@@ -329,13 +335,7 @@ void FixMPM::init()
                "gradients of scheme usf, musl and usavg do not follow: use scheme usl, or transfer "
                "xpic", id);
 
-  // a node that a point barely touches has next to no mass but the full gradient of the function;
-  // in the total frame, points do not move through cells
-
-  if (!total && shape == LINEAR && (scheme == USL || is_affine(transfer)) && comm->me == 0)
-    error->warning(FLERR, "Fix mpm {}: linear shape functions with scheme usl or transfer apic "
-                   "amplify round-off at nodes of tiny mass: use transfer flip with scheme musl, "
-                   "or quadratic functions", id);
+  check_light_nodes();
 
   // all fields step together, driven by the first one
 

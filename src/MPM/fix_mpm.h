@@ -101,6 +101,7 @@ class FixMPM : public Fix {
   Scheme scheme;
   Stress stress;       ///< how stress acts on nodes, and how these strain the points
   Locking locking;     ///< what is averaged against volumetric locking
+  double light;        ///< nodes with less than this share of a cell full of material are light; 0: none
   Policy policy;       ///< what to do with a point that goes bad
   bool delete_failed;  ///< remove points whose damage is 1
   int every;           ///< steps of LAMMPS in a step of the cycle
@@ -133,7 +134,10 @@ class FixMPM : public Fix {
     return stress == GRADIENT_STRESS && MPM_NS::is_mls(kernel_shape(), transfer);
   }
   /** Are the old positions needed after G2P? */
-  bool moves_late() const { return stress_after() || (averages_strain() && !stress_before()); }
+  bool moves_late() const
+  {
+    return stress_after() || light > 0.0 || (averages_strain() && !stress_before());
+  }
 
   /** Duration of a step of the cycle. */
   double step_dt() const;
@@ -282,12 +286,15 @@ class FixMPM : public Fix {
   void save_velocities(int lane);
   void add_term(int lane);
   void grid_to_points();
+  void blend_light_nodes();
+  void gradient_with_light_nodes();
   void map_back();
   void stress_last();
   void bookkeeping();
 
   // their parts
   void act_on_nodes(MPMNodeAction::Stage);
+  void check_light_nodes();
   void map_to_nodes(MPM_NS::P2G);
   void map_run(MPM_NS::P2G, const MPM_NS::PointRows &, const MPM_NS::TransferStep &, const Run &,
                const int base[3], int box[6]);

@@ -49,6 +49,14 @@ void FixMPM::initial_integrate(int /*vflag*/)
   refine_velocities();
   for (auto *field : fields) field->grid_to_points();
 
+  bool any_light = false;
+  for (auto *field : fields) any_light = any_light || field->light > 0.0;
+  if (any_light) {
+    for (auto *field : fields) field->blend_light_nodes();
+    act_on_nodes(MPMNodeAction::MAPPED_BACK);
+    for (auto *field : fields) field->gradient_with_light_nodes();
+  }
+
   if (stress_after()) {
     for (auto *field : fields) field->map_back();
     act_on_nodes(MPMNodeAction::MAPPED_BACK);
@@ -147,6 +155,7 @@ void FixMPM::grid_to_points()
   grid->copy_aliases();
   if (moves_late()) xnew.resize(3 * (std::size_t) atom->nlocal);
   const bool fbar = averages_strain() && scheme == USL, round = axisymmetric && scheme == USL;
+  const bool now = scheme == USL && light == 0.0;    // the gradient is final
   if (round) hoop.resize(atom->nmax);
   const bool apart = strains_apart(), in_C = kernel.affine && !apart && !R;
   if (fbar && !in_C) gradients.resize(affine_size() * (std::size_t) atom->nmax);
@@ -164,14 +173,14 @@ void FixMPM::grid_to_points()
         if (apart && scheme == USL) kernel.g2p_gradient(r, s, i, last, base, tile_load, out);
         if (round) note_radii(i, last);
         drifted |= kernel.g2p(r, s, i, last, base, tile_load,
-                              kernel.affine || scheme != USL ? nullptr : out);
+                              kernel.affine || !now ? nullptr : out);
         if (round) hoop_of_motion(r, i, last);
         if (R && scheme == USL) {
           if (kernel.affine && !apart)
             memcpy(out, C[i], affine_size() * sizeof(double) * (last - i));
           refer_gradients(i, last - i, out);
         }
-        if (scheme == USL && !fbar)
+        if (now && !fbar)
           material_update(r, runs[k], i, last - i, in_C ? r.C + (bigint) affine_size() * i : L,
                           step_dt());
       }

@@ -13,6 +13,7 @@
 
 #include "mpm_shape.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
