@@ -57,7 +57,7 @@ template <int DIM, Shape SHAPE> struct Stencil {
     for (int a = 0; a < DIM; a++) {
       const double t = tile_position<ORDER>(x[a], step, tilebase, a);
       base[a] = static_cast<int>(std::floor(t));
-      const double f = t - base[a];
+      const double f = ORDER == 1 ? std::max(t - base[a], SMALLEST_FRACTION) : t - base[a];
       if constexpr (SHAPE == GIMP) {
         Gimp::weights(f, size[a], w[a]);
         Gimp::gradients(f, size[a], dw[a]);

@@ -106,7 +106,10 @@ template <int DIM, int ORDER, int L> struct Frame {
     MPM_UNROLL
     for (int l = 0; l < L; l++)
       place[l] = index[4 * l] * sx + index[4 * l + 1] * sy + (DIM == 3 ? index[4 * l + 2] : 0);
-    return t - whole;
+    if constexpr (ORDER == 1)
+      return max(t - whole, Quads<L>::all(SMALLEST_FRACTION));
+    else
+      return t - whole;
   }
 };
 

@@ -11,6 +11,11 @@
 
 namespace MPM_NS {
 
+/** Smallest fraction of a point in its cell with linear functions. A point exactly on a node has the
+ *  weight 0 but the full gradient at the next node, where its force would act on nothing and the
+ *  momentum be lost. A position that is wrong by the last bit of a cell is not. */
+constexpr double SMALLEST_FRACTION = 0x1p-52;
+
 /** Uniform B-spline of order 1 (linear), 2 (quadratic) or 3 (cubic) along one axis.
  *
  *  Lengths are in units of the node spacing. A point at position x has the base node
