@@ -121,3 +121,187 @@ TEST(LightNodesInput, IsRefusedWhereItIsOfNoUse)
   EXPECT_THAT(run.error(scene + "fix grid all mpm 1.0 shape linear light 1.5\n"),
               ::testing::HasSubstr("within 0 and 1"));
 }
+
+/* ----------------------------------------------------------------------
+   points exactly on nodes, at the edge of a body: the next node has no mass, but with linear
+   functions a force, whose momentum was lost
+------------------------------------------------------------------------- */
+
+class OnNodes : public ::testing::TestWithParam<const char *> {};
+
+TEST_P(OnNodes, KeepMomentum)
+{
+  for (const char *shift : {"0.25 0", "0.25 0.25", "0.75 0.25"})
+    for (const char *kernels : {"auto", "reference"}) {
+      Scene run;
+      run.commands(strprintf("units lj\ndimension 2\nboundary f f p\natom_style mpm\n"
+                             "neighbor 0.5 bin\nregion box block 0 12 0 12 -0.5 0.5\n"
+                             "create_box 1 box\nfix grid all mpm 1.0 %s kernels %s\n"
+                             "region body block 3 7 4 6 -0.5 0.5\ncreate_points 1 region body ppc 2\n"
+                             "displace_atoms all move %s 0\n"
+                             "fix m all mpm/material density 1.0 eos stiffened/gas 2.0 0.49 "
+                             "pressure 0.01\ntimestep 0.2\nrun 1\n",
+                             GetParam(), kernels, shift));
+      const auto s = run.sums();
+      for (int d = 0; d < 2; d++) EXPECT_NEAR(s.p[d], 0.0, 1.0e-15) << shift << " " << kernels;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Options, OnNodes,
+                         ::testing::Values("shape linear transfer flip 1.0 scheme musl",
+                                           "shape linear transfer pic scheme usf",
+                                           "shape linear transfer flip 1.0 light 0.5",
+                                           "shape linear transfer apic light 0.5", "shape quadratic",
+                                           "shape cubic", "shape gimp", "shape cpgimp"));
+
+/* ----------------------------------------------------------------------
+   the largest stable time step: random velocities, all energy is kinetic at the start
+------------------------------------------------------------------------- */
+
+struct Limit {
+  const char *options;
+  double stable, unstable;    // in h/c
+};
+
+class TimeStep : public ::testing::TestWithParam<Limit> {};
+
+static bool is_stable(const char *options, double shift, double dt)
+{
+  Scene run;
+  run.commands(strprintf("units lj\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.5 bin\n"
+                         "region box block 0 16 0 9 -0.5 0.5\ncreate_box 1 box\n"
+                         "fix grid all mpm 1.0 %s dtcheck no\nregion body block 3 13 3 6 -0.5 0.5\n"
+                         "create_points 1 region body ppc 2\ndisplace_atoms all move %g %g 0\n"
+                         "fix m all mpm/material density 1.0 neohookean 0.742857142857 0.3\n"
+                         "variable vx atom random(-1e-4,1e-4,4711)\n"
+                         "variable vy atom random(-1e-4,1e-4,815)\nvelocity all set v_vx v_vy NULL\n"
+                         "timestep %.10g\nthermo 100000\nrun 0\n",
+                         options, shift, shift, dt));
+  const double start = run.sums().kinetic;
+  for (int k = 0; k < 100; k++) {
+    if (!run.error("run 10 post no\n").empty() || !(run.sums().kinetic < 2.0 * start)) return false;
+  }
+  return true;
+}
+
+TEST_P(TimeStep, IsWithinTheTable)
+{
+  for (double shift : {0.0, 0.249, 0.250001}) {
+    EXPECT_TRUE(is_stable(GetParam().options, shift, GetParam().stable)) << shift;
+    EXPECT_FALSE(is_stable(GetParam().options, shift, GetParam().unstable)) << shift;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Options, TimeStep,
+                         ::testing::Values(Limit{"transfer flip 1.0 scheme usl", 0.64, 0.9},
+                                           Limit{"transfer flip 1.0 scheme musl", 1.9, 2.15},
+                                           Limit{"transfer apic scheme usl", 1.05, 1.2},
+                                           Limit{"transfer apic scheme musl", 1.15, 1.35},
+                                           Limit{"shape cubic transfer apic scheme usl", 1.25, 1.4},
+                                           Limit{"shape cpgimp transfer flip 1.0 scheme usl", 0.55, 0.75},
+                                           Limit{"shape linear transfer apic scheme usl light 0.5",
+                                                 0.8, 1.1}));
+
+/** Above that limit there is a warning, and in the end an error that names a point; no silence. */
+TEST(TimeStepBeyond, EndsWithAnError)
+{
+  for (const char *options : {"transfer flip 1.0 scheme usl", "shape cpgimp transfer flip 1.0 scheme usl",
+                              "transfer fmpm 2"}) {
+    Scene run;
+    run.commands(strprintf("units lj\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.5 bin\n"
+                           "region box block 0 16 0 9 -0.5 0.5\ncreate_box 1 box\n"
+                           "fix grid all mpm 1.0 %s\nregion body block 3 13 3 6 -0.5 0.5\n"
+                           "create_points 1 region body ppc 2\n"
+                           "fix m all mpm/material density 1.0 neohookean 0.742857142857 0.3\n"
+                           "variable vx atom random(-1e-4,1e-4,4711)\nvelocity all set v_vx 0 NULL\n"
+                           "timestep 0.99\nthermo 100000\n",
+                           options));
+    const int warnings = run.lmp->error->get_numwarn();
+    const std::string error = run.error("run 10000\n");
+    EXPECT_GT(run.lmp->error->get_numwarn(), warnings) << options;
+    EXPECT_THAT(error, ::testing::HasSubstr("Material point")) << options;
+  }
+}
+
+/* ----------------------------------------------------------------------
+   many steps: energy stays bounded, momentum is that of the start
+------------------------------------------------------------------------- */
+
+TEST(ManySteps, EnergyAndMomentum)
+{
+  for (const char *options : {"transfer flip 1.0 scheme musl", "transfer apic"}) {
+    SCOPED_TRACE(options);
+    Scene run;
+    run.commands(strprintf("units lj\ndimension 2\nboundary p p p\natom_style mpm\nneighbor 0.4 bin\n"
+                           "neigh_modify every 10\nregion box block 0 8 0 8 -0.5 0.5\n"
+                           "create_box 1 box\nfix grid all mpm 1.0 %s\n"
+                           "region body block 2 6 3 4 -0.5 0.5\ncreate_points 1 region body ppc 2\n"
+                           "fix m all mpm/material density 1.0 neohookean 0.742857142857 0.3\n"
+                           "variable vy atom 0.005+0.002*(x-4)+0.02*cos(2*PI*(x-4)/4)\n"
+                           "velocity all set 0.01 v_vy NULL\ntimestep 0.5\ncompute e all mpm/energy\n"
+                           "variable mech equal c_e[1]+c_e[2]\nthermo_style custom step v_mech\n"
+                           "thermo 1000000\nrun 0\n",
+                           options));
+    const double start = run.evaluate("v_mech");
+    const auto before = run.sums();
+    double most = 0.0;
+    for (int k = 0; k < 20; k++) {
+      run.commands("run 5000 post no\n");
+      most = std::max(most, run.evaluate("v_mech") / start);
+    }
+    const auto after = run.sums();
+    for (int d = 0; d < 2; d++) EXPECT_NEAR(after.p[d], before.p[d], 1.0e-12 * before.mass);
+    EXPECT_LT(measured(strprintf("%s: largest energy in 10^5 steps", options), most), 1.02);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   gravity from nothing to c^2/h: free fall is exact, no stress
+------------------------------------------------------------------------- */
+
+TEST(Gravity, FreeFall)
+{
+  for (double g : {0.0, 1.0e-6, 1.0e-3, 1.0}) {
+    Scene run;
+    run.commands(strprintf("units lj\ndimension 2\nboundary p p p\natom_style mpm\nneighbor 0.4 bin\n"
+                           "region box block 0 10 0 20 -0.5 0.5\ncreate_box 1 box\n"
+                           "fix grid all mpm 1.0\nregion b block 2 8 INF 6 INF INF\n"
+                           "create_points 1 region b ppc 2\n"
+                           "fix m all mpm/material density 1 neohookean 0.742857142857 0.3\n"
+                           "fix g all gravity %g vector 0 -1 0\nfix dt all mpm/dt 0.5 every 1\n"
+                           "thermo 100000\nrun 400\n",
+                           g));
+    const auto s = run.sums();
+    EXPECT_NEAR(s.p[1] / s.mass, -g * run.time(), 1.0e-12 * (1.0 + g * run.time()));
+    double stress = 0.0;
+    for (int i = 0; i < run.n(); i++)
+      for (int c = 0; c < 6; c++) stress = std::max(stress, std::abs(run.points().tau[i][c]));
+    EXPECT_LT(stress, 1.0e-11) << g;
+  }
+}
+
+/* ----------------------------------------------------------------------
+   the time step follows a wave speed that jumps by 100 within one step
+------------------------------------------------------------------------- */
+
+TEST(AdaptiveTimeStep, FollowsWithinOneStep)
+{
+  Scene run;
+  run.commands("units lj\ndimension 2\nboundary p p p\natom_style mpm\nneighbor 0.4 bin\n"
+               "region box block 0 8 0 8 -0.5 0.5\ncreate_box 1 box\nfix grid all mpm 1.0\n"
+               "region b block 2 6 2 6 INF INF\ncreate_points 1 region b ppc 2\n"
+               "fix m all mpm/material density 1 eos ideal/gas 1.4 energy 1.0\n"
+               "fix dt all mpm/dt 0.5 every 1\nthermo 100000\nrun 1\n");
+  const double before = run.lmp->update->dt;
+  auto *material = dynamic_cast<FixMPMMaterial *>(run.lmp->modify->get_fix_by_id("m"));
+  const int energy = material->find_history("energy");
+  ASSERT_GE(energy, 0);
+  run.each_step([&](double **) {
+    if (run.lmp->update->ntimestep == 3)
+      for (int i = 0; i < run.n(); i++) material->history[i][energy] *= 1.0e4;
+  });
+  run.commands("run 1\n");
+  EXPECT_GT(run.lmp->update->dt, 0.5 * before);
+  EXPECT_EQ(run.error("run 3\n"), "");
+  EXPECT_LT(run.lmp->update->dt, 0.02 * before);
+}

@@ -37,7 +37,13 @@ def combos():
                                                                                   scheme)
 
 
+# those of these are measured in all cases of the time step and in the sweep of the edge, unless in
+# the total frame, where the edge stays where it is on the lattice; all others in the first case only
+SHORT_TRANSFERS = ["flip 1.0", "apic"]
+SHORT_SCHEMES = ["usl", "usf", "musl"]
+
+
 def in_short(key):
-    """Those that are measured in all cases; the others only in the first."""
+    """Is this combination measured in all cases?"""
     shape, transfer, scheme = key
-    return "total" not in shape and transfer != "xpic 5"
+    return "total" not in shape and transfer in SHORT_TRANSFERS and scheme in SHORT_SCHEMES

@@ -12,10 +12,13 @@ import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import trial
+import drift
 import dt_limit
+import scenes
 import sweep
 
-PARTS = {"dt": dt_limit.measure, "sweep": sweep.measure}
+PARTS = {"dt": dt_limit.measure, "sweep": sweep.measure, "scenes": scenes.measure,
+         "drift": drift.measure}
 
 
 def main():

@@ -499,7 +499,10 @@ void FixMPM::setup(int)
   if (waited) topology_valid = false;
   if (ledger_on) kinetic_points = point_kinetic_energy();
   next_dt_check = update->ntimestep;
-  if (update->nsteps > 0) check_dt();
+  if (update->nsteps > 0) {
+    check_dt();
+    warn_dt();
+  }
 }
 
 /* ---------------------------------------------------------------------- */

@@ -340,6 +340,8 @@ class FixMPM : public Fix {
   void check_neighbors();
   void check_inside_box();
   void check_dt();
+  double stable_share() const;
+  void warn_dt() const;
   void point_is_bad(int i, const std::string &what);
   void handle_bad_points();
   bool may_delete() const { return policy == DELETE || delete_failed; }

@@ -368,6 +368,37 @@ void FixMPM::check_dt()
   }
 }
 
+/* ----------------------------------------------------------------------
+   largest stable time step in parts of h/(c + |v|) where it is below 1: the smallest of what
+   bench/extremes has measured for bodies anywhere on the lattice, rounded down. Stress that is made
+   from velocities which the same stress has just changed (USL without affine matrix) is what costs
+   most; points of finite size and the matrices of APIC have steeper gradients than splines.
+------------------------------------------------------------------------- */
+
+double FixMPM::stable_share() const
+{
+  if (refinement == FMPM) return 0.4;
+  const bool affine = is_affine(transfer);
+  if (extent != NO_SIZE && (affine || scheme == USL)) return scheme == USL ? 0.5 : 0.7;
+  if (scheme == USL && !affine) return shape == LINEAR ? 0.7 : (shape == QUADRATIC ? 0.65 : 0.9);
+  return 1.0;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPM::warn_dt() const
+{
+  const double share = stable_share();
+  if (!dt_check || share >= 1.0) return;
+  tagint tag;
+  double c, limit, mine = stable_dt_local(tag, c);
+  MPI_Allreduce(&mine, &limit, 1, MPI_DOUBLE, MPI_MIN, world);
+  if (comm->me == 0 && step_dt() > share * limit)
+    error->warning(FLERR, "Fix mpm {}: the time step is {:.3g} h/(c+|v|), but this shape, transfer and "
+                   "scheme are unstable above {} to 1, depending on where points are in their cells: "
+                   "use fix mpm/dt {} or less, or another scheme", id, step_dt() / limit, share, share);
+}
+
 int FixMPM::find_local(tagint tag) const
 {
   int i = 0;
