@@ -120,9 +120,9 @@ def stiffness_ratio(words):
     """A pulse in a bar runs into material that is 1e6 times stiffer at the same density and held at
     its far end: all of it comes back with the opposite sign. Against a wall in the place of the
     stiff material it would come back with exactly that."""
-    text = head(words, "0 120 0 1 -0.5 0.5", "f p p") + """
-region soft block 0 110 INF INF INF INF
-region stiff block 110 120 INF INF INF INF
+    text = head(words, "0 70 0 1 -0.5 0.5", "f p p") + """
+region soft block 0 60 INF INF INF INF
+region stiff block 60 70 INF INF INF INF
 create_points 1 region soft ppc 2
 create_points 2 region stiff ppc 2
 group soft type 1
@@ -130,18 +130,18 @@ group stiff type 2
 fix s soft mpm/material density 1 linear 1.0 0.0
 fix h stiff mpm/material density 1 linear 1e6 0.0
 fix w all mpm/boundary xhi stick
-variable vx atom 2e-3*exp(-(x-80)*(x-80)/36)
+variable vx atom 2e-3*exp(-(x-45)*(x-45)/16)
 velocity soft set v_vx 0 NULL
-timestep 0.0004
+timestep 0.0005
 compute e all mpm/energy
-variable back atom -vx*(x>70)
+variable back atom -vx*(x>40)
 compute back all reduce max v_back
 compute hot stiff reduce max v_back
 thermo 1000000
 thermo_style custom step c_back c_hot c_e
 run 0
 variable e0 equal $(c_e)
-run 87500
+run 46000
 print "reflected = $(c_back/1e-3)"
 print "stiff = $(c_hot/1e-3)"
 print "energy = $(c_e/v_e0)"

@@ -119,9 +119,9 @@ def scenes_table():
 
 def drift_table():
     lines = [[r["shape"], r["transfer"], r["scheme"], r["energy_most"], r["energy_last"],
-              r["momentum"], r["angular"], "yes" if r["outcome"] == "ok" else "error: " + r["outcome"]]
+              r["grown"], r["momentum"], r["angular"], "yes" if r["outcome"] == "ok" else "error: " + r["outcome"]]
              for r in read("drift")]
-    return table(["shape", "transfer", "scheme", "energy, most", "energy, last",
+    return table(["shape", "transfer", "scheme", "energy, most", "energy, last", "+10 % after",
                   "momentum, change", "angular momentum of points, last", "10^6 steps done"], lines)
 
 
