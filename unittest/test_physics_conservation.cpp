@@ -551,6 +551,62 @@ TEST(TwoDisks, Refined)
   EXPECT_NEAR((kinetic + run.stored_energy()) / start, 1.0, 0.015);
 }
 
+/* ----------------------------------------------------------------------
+   C3: two hyperelastic rings collide at 60 m/s: momentum, mirror symmetry, energy; no point loses
+   the others, and the rings bounce off
+------------------------------------------------------------------------- */
+
+TEST(Rings, Collision)
+{
+  const double h = 2.5e-3;
+  Scene run;
+  run.commands(strprintf(
+      "units si\ndimension 2\nboundary f f p\natom_style mpm\nneighbor %.17g bin\n"
+      "region box block -0.15 0.15 -0.08 0.08 -0.5 0.5\ncreate_box 2 box\n"
+      "fix grid all mpm %.17g transfer flip 1.0 scheme musl\n"
+      "region outer1 cylinder z -0.05 0 0.04 INF INF\n"
+      "region inner1 cylinder z -0.05 0 0.03 INF INF side out\n"
+      "region outer2 cylinder z 0.05 0 0.04 INF INF\n"
+      "region inner2 cylinder z 0.05 0 0.03 INF INF side out\n"
+      "region ring1 intersect 2 outer1 inner1\nregion ring2 intersect 2 outer2 inner2\n"
+      "create_points 1 region ring1 ppc 2\ncreate_points 2 region ring2 ppc 2\n"
+      "group one type 1\ngroup two type 2\n"
+      "fix m all mpm/material density 1010 neohookean 73.08e6 0.4\n"
+      "velocity one set 30 0 0\nvelocity two set -30 0 0\ntimestep 1.25e-6\nthermo 1000000\n"
+      "run 0\n",
+      0.4 * h, h));
+  const auto start = run.sums();
+  const auto energy = [&]() {
+    return run.sums().kinetic + run.stored_energy();
+  };
+  const double E0 = energy();
+  double asymmetry = 0.0, drift = 0.0, worst = 0.0;
+  for (int k = 0; k < 14; k++) {
+    run.commands("run 200 post no\n");
+    const auto one = run.sums(1), two = run.sums(2), all = run.sums();
+    asymmetry = std::max(asymmetry, std::abs(one.x[0] + two.x[0]) / h);
+    drift = std::max(drift, std::abs(all.p[0]) / (start.mass * 30.0));
+    worst = std::max(worst, std::abs(energy() / E0 - 1.0));
+  }
+  EXPECT_LT(measured("C3 asymmetry", asymmetry), 1.0e-8);
+  EXPECT_LT(measured("C3 momentum", drift), 1.0e-12);
+  EXPECT_LT(measured("C3 energy", worst), 0.02);
+  const auto one = run.sums(1);
+  const double rebound = measured("C3 rebound", -one.p[0] / one.mass / 30.0);
+  EXPECT_GT(rebound, 0.6);
+  EXPECT_LT(rebound, 0.95);
+  double loneliest = 0.0;
+  for (int i = 0; i < run.n(); i++) {
+    double nearest = 1.0e300;
+    for (int j = 0; j < run.n(); j++)
+      if (j != i)
+        nearest = std::min(
+            nearest, std::hypot(run.x()[i][0] - run.x()[j][0], run.x()[i][1] - run.x()[j][1]));
+    loneliest = std::max(loneliest, nearest);
+  }
+  EXPECT_LT(measured("C3 largest distance to the next point / h", loneliest / h), 1.5);
+}
+
 // all kernels of the two storage forms (force apart from momentum, or merged with it)
 
 TEST(LedgerOnOff, SameTrajectory)
