@@ -98,7 +98,7 @@ def examples(path):
 def mentions(line, kind, name):
     """Does a command use this ID?"""
     pattern = {"compute": r"\bc_%s\b", "fix": r"\bf_%s\b|\bfix %s\b", "variable": r"\bv_%s\b",
-               "region": r"\bregion %s\b"}.get(kind, r"(?<!_)\b%s\b")
+               "region": r"\b(?:region|mpm/rigid) %s\b"}.get(kind, r"(?<!_)\b%s\b")
     pattern = pattern.replace("%s", re.escape(name))
     words = line.split()
     own = words[0] == kind and words[1] == name

@@ -1,0 +1,609 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+
+/* ----------------------------------------------------------------------
+   Each node inside of the body that moves into it gets an impulse, and the body the opposite one, such
+   that afterwards the node moves like the material of the body there, V + Omega x r: in all
+   directions (stick), or along the normal (slip, separate; separate: no impulse may pull). With the
+   mass m_i of the nodes and their velocities v_i before, all of these together make a linear system
+   for V and Omega of 6 equations,
+
+     M V + sum_i m_i N_i (V + Omega x r_i)             = M V' + sum_i m_i N_i v_i - t_i
+     I Omega + sum_i r_i x m_i N_i (V + Omega x r_i)   = L'   + sum_i r_i x (m_i N_i v_i - t_i)
+
+   with N_i = 1 or n_i n_i^T and the tangential impulses t_i of friction. Which nodes take part, and t_i
+   (at most friction times the normal impulse, and no more than what makes the node stick), follow from
+   the solution, so that it is repeated until they stay the same.
+------------------------------------------------------------------------- */
+
+#include "fix_mpm_rigid.h"
+
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix_mpm.h"
+#include "force.h"
+#include "input.h"
+#include "math_extra.h"
+#include "modify.h"
+#include "mpm_surface_mesh.h"
+#include "region_mpm_mesh.h"
+#include "update.h"
+#include "variable.h"
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using namespace MPM_NS;
+
+/* ----------------------------------------------------------------------
+   fix ID all mpm/rigid REGION density|mass VALUE stick|slip|separate keyword values ...
+------------------------------------------------------------------------- */
+
+FixMPMRigid::FixMPMRigid(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), mesh(nullptr), kind(STICK), friction(0.0), mass(0.0), density(0.0),
+    gravity{0.0, 0.0, 0.0}, fixed{false, false, false, false, false, false}, L{0.0, 0.0, 0.0},
+    omega{0.0, 0.0, 0.0}, dt_last(0.0)
+{
+  if (narg < 7) utils::missing_cmd_args(FLERR, "fix mpm/rigid", error);
+  if (igroup != 0)
+    error->all(FLERR, 1, "Fix mpm/rigid acts on nodes, which have no group: use group all");
+  region_id = arg[3];
+  auto *region = dynamic_cast<RegMPMMesh *>(domain->get_region_by_id(region_id));
+  if (!region)
+    error->all(FLERR, 3, "Fix mpm/rigid needs a region of style mpm/mesh: {}", region_id);
+  if (domain->dimension == 2)
+    error->all(FLERR, "Fix mpm/rigid requires 3d: in 2d, move a region with fix mpm/boundary");
+  mesh = &region->surface_mesh();
+
+  const double value = utils::numeric(FLERR, arg[5], false, lmp);
+  if (!(value > 0.0) || !std::isfinite(value))
+    error->all(FLERR, 5, "Fix mpm/rigid {} must be positive: {}", arg[4], arg[5]);
+  if (strcmp(arg[4], "density") == 0)
+    density = value;
+  else if (strcmp(arg[4], "mass") == 0)
+    density = value / mesh->volume;
+  else
+    error->all(FLERR, 4, "Unknown fix mpm/rigid option {}: must be density or mass", arg[4]);
+  mass = density * mesh->volume;
+  for (int k = 0; k < 6; k++) {
+    body_inertia[k] = density * mesh->inertia[k];
+    impulse[k] = 0.0;
+  }
+
+  static const char *const kinds[] = {"stick", "slip", "separate"};
+  int k = 0;
+  while (k < 3 && strcmp(arg[6], kinds[k]) != 0) k++;
+  if (k == 3)
+    error->all(FLERR, 6, "Unknown fix mpm/rigid contact {}: must be stick, slip or separate", arg[6]);
+  kind = (Kind) k;
+
+  for (int d = 0; d < 3; d++) {
+    x[d] = mesh->center[d];
+    v[d] = 0.0;
+    force[d] = torque[d] = {0.0, ""};
+    for (int e = 0; e < 3; e++) Q[d][e] = d == e;
+  }
+  double spin_start[3] = {0.0, 0.0, 0.0};
+  int iarg = 7;
+  while (iarg < narg) {
+    const std::string keyword = arg[iarg];
+    const auto numbers = [&](double *to) {
+      if (iarg + 3 >= narg) utils::missing_cmd_args(FLERR, "fix mpm/rigid " + keyword, error);
+      for (int d = 0; d < 3; d++) to[d] = utils::numeric(FLERR, arg[iarg + 1 + d], false, lmp);
+      iarg += 4;
+    };
+    if (keyword == "velocity") {
+      numbers(v);
+    } else if (keyword == "omega") {
+      numbers(spin_start);
+    } else if (keyword == "gravity") {
+      numbers(gravity);
+    } else if (keyword == "force" || keyword == "torque") {
+      if (iarg + 3 >= narg) utils::missing_cmd_args(FLERR, "fix mpm/rigid " + keyword, error);
+      auto *const to = keyword == "force" ? force : torque;
+      for (int d = 0; d < 3; d++) {
+        const char *word = arg[iarg + 1 + d];
+        if (utils::strmatch(word, "^v_"))
+          to[d].variable = word + 2;
+        else
+          to[d].value = utils::numeric(FLERR, word, false, lmp);
+      }
+      iarg += 4;
+    } else if (keyword == "friction") {
+      if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, "fix mpm/rigid friction", error);
+      friction = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
+      if (!(friction >= 0.0) || !std::isfinite(friction))
+        error->all(FLERR, iarg + 1, "Fix mpm/rigid friction must not be negative: {}", arg[iarg + 1]);
+      if (kind == STICK)
+        error->all(FLERR, iarg, "Fix mpm/rigid friction is for slip and separate");
+      iarg += 2;
+    } else if (keyword == "hold") {
+      static const char *const axes[] = {"x", "y", "z", "rx", "ry", "rz"};
+      iarg++;
+      int found = 0;
+      for (bool more = true; more && iarg < narg;) {
+        more = false;
+        for (int a = 0; a < 6; a++)
+          if (strcmp(arg[iarg], axes[a]) == 0) {
+            fixed[a] = more = true;
+            found++;
+          }
+        if (more) iarg++;
+      }
+      if (!found)
+        error->all(FLERR, iarg - 1, "Fix mpm/rigid hold needs one or more of x y z rx ry rz");
+    } else
+      error->all(FLERR, iarg, "Unknown fix mpm/rigid keyword: {}", keyword);
+  }
+  for (int a = 0; a < 3; a++) {
+    if (fixed[a] && v[a] != 0.0)
+      error->all(FLERR, "Fix mpm/rigid cannot hold {} and give it a velocity", "xyz"[a]);
+    if (fixed[3 + a] && spin_start[a] != 0.0)
+      error->all(FLERR, "Fix mpm/rigid cannot hold r{} and give it an angular velocity", "xyz"[a]);
+  }
+  double I[3][3] = {{body_inertia[0], body_inertia[3], body_inertia[4]},
+                    {body_inertia[3], body_inertia[1], body_inertia[5]},
+                    {body_inertia[4], body_inertia[5], body_inertia[2]}};
+  MathExtra::matvec(I, spin_start, L);
+  spin();
+
+  scalar_flag = vector_flag = 1;
+  size_vector = 24;
+  global_freq = 1;
+  extscalar = 1;
+  extvector = 0;
+  restart_global = 1;
+  dynamic_group_allow = 0;
+  if (comm->me == 0)
+    utils::logmesg(lmp, "Rigid body {}: mass {:.8g}, center {:.8g} {:.8g} {:.8g}\n", id, mass, x[0],
+                   x[1], x[2]);
+}
+
+int FixMPMRigid::setmask()
+{
+  return 0;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMRigid::init()
+{
+  auto *region = dynamic_cast<RegMPMMesh *>(domain->get_region_by_id(region_id));
+  if (!region || region->dynamic_check() || !region->interior)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/rigid {} needs its region {} at rest and with side in: the fix moves a copy "
+               "of it",
+               id, region_id);
+  mesh = &region->surface_mesh();
+  const auto fields = modify->get_fix_by_style("^mpm$");
+  if (fields.empty()) error->all(FLERR, Error::NOLASTLINE, "Fix mpm/rigid needs a fix mpm");
+  for (auto *ifix : fields) {
+    const auto *field = dynamic_cast<FixMPM *>(ifix);
+    if (field->total)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/rigid cannot be used with frame total of fix mpm {}, whose nodes are not "
+                 "where the body is: use frame updated",
+                 field->id);
+    if (field->stress_before())
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/rigid cannot be used with scheme usf or usavg of fix mpm {}, which need "
+                 "the contact before it is known: use usl or musl",
+                 field->id);
+  }
+  for (auto *loads : {force, torque})
+    for (int d = 0; d < 3; d++) {
+      if (loads[d].variable.empty()) continue;
+      const int index = input->variable->find(loads[d].variable.c_str());
+      if (index < 0 || !input->variable->equalstyle(index))
+        error->all(FLERR, Error::NOLASTLINE,
+                   "Fix mpm/rigid {}: there is no equal-style variable {}", id, loads[d].variable);
+    }
+}
+
+double FixMPMRigid::evaluate(const Load &load) const
+{
+  if (load.variable.empty()) return load.value;
+  return input->variable->compute_equal(input->variable->find(load.variable.c_str()));
+}
+
+/* ----------------------------------------------------------------------
+   inverse of the inertia about the center, in space
+------------------------------------------------------------------------- */
+
+void FixMPMRigid::inverse_inertia(double out[3][3]) const
+{
+  const double I[3][3] = {{body_inertia[0], body_inertia[3], body_inertia[4]},
+                          {body_inertia[3], body_inertia[1], body_inertia[5]},
+                          {body_inertia[4], body_inertia[5], body_inertia[2]}};
+  double inverse[3][3], half[3][3];
+  MathExtra::invert3(I, inverse);
+  MathExtra::times3(Q, inverse, half);
+  MathExtra::times3_transpose(half, Q, out);
+}
+
+void FixMPMRigid::spin()
+{
+  double inverse[3][3];
+  inverse_inertia(inverse);
+  MathExtra::matvec(inverse, L, omega);
+}
+
+/* ----------------------------------------------------------------------
+   forces that the input gives
+------------------------------------------------------------------------- */
+
+void FixMPMRigid::load_impulse(double dt)
+{
+  bool variables = false;
+  for (const auto *loads : {force, torque})
+    for (int d = 0; d < 3; d++) variables = variables || !loads[d].variable.empty();
+  if (variables) modify->clearstep_compute();
+  for (int d = 0; d < 3; d++) {
+    v[d] += dt * (gravity[d] + evaluate(force[d]) * LAMMPS_NS::Pointers::force->ftm2v / mass);
+    L[d] += dt * evaluate(torque[d]) * LAMMPS_NS::Pointers::force->ftm2v;
+  }
+  if (variables) {
+    const auto *field = dynamic_cast<FixMPM *>(modify->get_fix_by_style("^mpm$")[0]);
+    modify->addstep_compute(update->ntimestep + field->steps_to_next());
+  }
+}
+
+/* ----------------------------------------------------------------------
+   nodes with mass inside of the body, and where its surface is
+------------------------------------------------------------------------- */
+
+void FixMPMRigid::find_contacts()
+{
+  contacts.clear();
+  double radius = 0.0;    // of a sphere about the center
+  for (int d = 0; d < 3; d++) {
+    const double far = std::max(mesh->hi[d] - mesh->center[d], mesh->center[d] - mesh->lo[d]);
+    radius += far * far;
+  }
+  radius = sqrt(radius);
+  for (auto *ifix : modify->get_fix_by_style("^mpm$")) {
+    auto *field = dynamic_cast<FixMPM *>(ifix);
+    auto &grid = *field->grid;
+    const double half = 0.5 * (grid.side - 1) * field->lattice.h;
+    for (std::size_t slot = 0; slot < grid.blocks.size(); slot++) {
+      const auto &block = grid.blocks[slot];
+      int index[3];
+      double at[3];
+      grid.node_index(block, 0, index);
+      field->node_position(index, at);
+      for (int d = 0; d < 3; d++) at[d] += half - x[d];
+      domain->minimum_image(FLERR, at[0], at[1], at[2]);
+      if (MathExtra::len3(at) > radius + 1.8 * half) continue;
+      for (int n = 0; n < NODES_PER_BLOCK; n++) {
+        if (block.alias >> n & 1) continue;
+        const double *record = grid.record((int) slot, n);
+        if (!(record[3] > 0.0)) continue;
+        grid.node_index(block, n, index);
+        Contact c;
+        field->node_position(index, c.r);
+        for (int d = 0; d < 3; d++) c.r[d] -= x[d];
+        domain->minimum_image(FLERR, c.r[0], c.r[1], c.r[2]);
+        double local[3];
+        MathExtra::transpose_matvec(Q, c.r, local);
+        const SurfaceMesh::Point p = {mesh->center[0] + local[0], mesh->center[1] + local[1],
+                                      mesh->center[2] + local[2]};
+        if (mesh->bound(p) > 0.0) continue;
+        SurfaceMesh::Point closest;
+        const double distance = mesh->distance(p, closest);
+        if (distance > 0.0) continue;
+        const double out[3] = {closest[0] - p[0], closest[1] - p[1], closest[2] - p[2]};
+        MathExtra::matvec(Q, out, c.n);
+        const double length = MathExtra::len3(c.n);
+        // a node on the surface: outward from the center will do
+        if (length > 0.0)
+          MathExtra::norm3(c.n);
+        else
+          MathExtra::copy3(c.r, c.n), MathExtra::norm3(c.n);
+        c.field = field;
+        c.node = (int64_t) slot * NODES_PER_BLOCK + n;
+        c.owned = block.owned >> n & 1;
+        c.active = true;
+        MathExtra::copy3(record, c.v);
+        c.tangential[0] = c.tangential[1] = c.tangential[2] = 0.0;
+        contacts.push_back(c);
+      }
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   velocities of the body after the contact
+------------------------------------------------------------------------- */
+
+void FixMPMRigid::solve()
+{
+  constexpr int MAX_ROUNDS = 30;
+  using Matrix6 = Eigen::Matrix<double, 6, 6>;
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
+  double inverse[3][3], inertia[3][3];
+  inverse_inertia(inverse);
+  MathExtra::invert3(inverse, inertia);
+
+  for (int round = 0; round < MAX_ROUNDS; round++) {
+    double mine[42] = {0.0}, all[42];    // matrix, right-hand side
+    for (const auto &c : contacts) {
+      if (!c.owned || !c.active) continue;
+      const double m = c.field->grid->nodes()[c.node * c.field->grid->nreal + 3];
+      // rows of N_i (1, -r x): one for each direction
+      const int rows = kind == STICK ? 3 : 1;
+      for (int k = 0; k < rows; k++) {
+        double row[6];
+        if (kind == STICK)
+          for (int d = 0; d < 3; d++) row[d] = d == k;
+        else
+          MathExtra::copy3(c.n, row);
+        MathExtra::cross3(c.r, row, row + 3);
+        const double known = m * MathExtra::dot3(row, c.v);
+        for (int i = 0; i < 6; i++) {
+          for (int j = 0; j < 6; j++) mine[6 * i + j] += m * row[i] * row[j];
+          mine[36 + i] += known * row[i];
+        }
+      }
+      double moment[3];
+      MathExtra::cross3(c.r, c.tangential, moment);
+      for (int d = 0; d < 3; d++) {
+        mine[36 + d] -= c.tangential[d];
+        mine[39 + d] -= moment[d];
+      }
+    }
+    MPI_Allreduce(mine, all, 42, MPI_DOUBLE, MPI_SUM, world);
+    Matrix6 A;
+    Vector6 b;
+    for (int i = 0; i < 6; i++) {
+      for (int j = 0; j < 6; j++) A(i, j) = all[6 * i + j];
+      b(i) = all[36 + i];
+    }
+    for (int d = 0; d < 3; d++) {
+      A(d, d) += mass;
+      b(d) += mass * v[d];
+      b(3 + d) += L[d];
+      for (int e = 0; e < 3; e++) A(3 + d, 3 + e) += inertia[d][e];
+    }
+    for (int i = 0; i < 6; i++) {
+      if (!fixed[i]) continue;
+      A.row(i).setZero();
+      A.col(i).setZero();
+      A(i, i) = 1.0;
+      b(i) = 0.0;
+    }
+    const Vector6 u = A.ldlt().solve(b);
+
+    // does the solution agree with what it assumed?
+
+    int changed = 0, changed_all;
+    for (auto &c : contacts) {
+      const double *record = c.field->grid->nodes() + c.node * c.field->grid->nreal;
+      const double m = record[3], V[3] = {u(0), u(1), u(2)}, O[3] = {u(3), u(4), u(5)};
+      double w[3];
+      MathExtra::cross3(O, c.r, w);
+      for (int d = 0; d < 3; d++) w[d] += V[d] - c.v[d];    // of the body relative to the node
+      const double normal = MathExtra::dot3(w, c.n);
+      if (kind == SEPARATE && (normal > 0.0) != c.active) {
+        c.active = normal > 0.0;
+        changed = 1;
+      }
+      if (friction > 0.0) {
+        double slide[3], length = 0.0;
+        for (int d = 0; d < 3; d++) {
+          slide[d] = w[d] - normal * c.n[d];
+          length += slide[d] * slide[d];
+        }
+        length = sqrt(length);
+        const double most = c.active ? friction * fabs(normal) : 0.0;
+        const double share = length > most ? most / length : 1.0;
+        for (int d = 0; d < 3; d++) {
+          const double t = m * share * slide[d];
+          if (fabs(t - c.tangential[d]) > 1.0e-10 * m * (length + fabs(normal))) changed = 1;
+          c.tangential[d] = t;
+        }
+      }
+    }
+    MPI_Allreduce(&changed, &changed_all, 1, MPI_INT, MPI_MAX, world);
+    if (changed_all && round + 1 < MAX_ROUNDS) continue;
+
+    // The impulses themselves, with the friction of the last round, and their sum to the body: opposite
+    // to round-off even if the rounds have not converged
+
+    double sum[6] = {0.0}, total[6];
+    for (auto &c : contacts) {
+      const double *record = c.field->grid->nodes() + c.node * c.field->grid->nreal;
+      const double V[3] = {u(0), u(1), u(2)}, O[3] = {u(3), u(4), u(5)};
+      double w[3], push[3] = {0.0, 0.0, 0.0};
+      MathExtra::cross3(O, c.r, w);
+      for (int d = 0; d < 3; d++) w[d] += V[d] - c.v[d];
+      if (c.active) {
+        const double normal = MathExtra::dot3(w, c.n);
+        for (int d = 0; d < 3; d++)
+          push[d] = kind == STICK ? record[3] * w[d]
+                                  : record[3] * normal * c.n[d] + c.tangential[d];
+      }
+      if (c.owned) {
+        double moment[3];
+        MathExtra::cross3(c.r, push, moment);
+        for (int d = 0; d < 3; d++) {
+          sum[d] -= push[d];
+          sum[3 + d] -= moment[d];
+        }
+      }
+      if (c.active) give(c, push);
+    }
+    MPI_Allreduce(sum, total, 6, MPI_DOUBLE, MPI_SUM, world);
+    for (int d = 0; d < 3; d++) {
+      impulse[d] = total[d];
+      impulse[3 + d] = total[3 + d];
+      if (!fixed[d]) v[d] += total[d] / mass;
+      if (!fixed[3 + d]) L[d] += total[3 + d];
+    }
+    return;
+  }
+}
+
+/* ----------------------------------------------------------------------
+   impulse to a node, and the energy ledger of its field (as between bodies, see fix mpm/contact)
+------------------------------------------------------------------------- */
+
+void FixMPMRigid::give(const Contact &c, const double *push) const
+{
+  auto &field = *c.field;
+  double *record = field.grid->nodes() + c.node * field.grid->nreal;
+  double moved = 0.0, lost = 0.0;
+  for (int d = 0; d < 3; d++) {
+    const double change = push[d] / record[3];
+    record[d] += change;
+    moved += change * record[d];
+    if (field.ledger_on) lost += 0.5 * change * (record[d] - record[4 + d]);
+  }
+  if (!field.ledger_on || !c.owned) return;
+  const double mvv2e = LAMMPS_NS::Pointers::force->mvv2e;
+  field.ledger.contact += record[3] * moved * mvv2e;
+  field.ledger.transfer -= record[3] * lost * mvv2e;
+}
+
+/* ----------------------------------------------------------------------
+   center and orientation to the end of the step: rotation by the angular velocity at its middle,
+   which keeps the angular momentum
+------------------------------------------------------------------------- */
+
+static void rotate(const double *angle, const double from[3][3], double to[3][3])
+{
+  const double size = MathExtra::len3(angle);
+  double R[3][3];
+  const double s = size > 1.0e-8 ? sin(size) / size : 1.0;
+  const double c = size > 1.0e-8 ? (1.0 - cos(size)) / (size * size) : 0.5;
+  const double K[3][3] = {{0.0, -angle[2], angle[1]},
+                          {angle[2], 0.0, -angle[0]},
+                          {-angle[1], angle[0], 0.0}};
+  double KK[3][3];
+  MathExtra::times3(K, K, KK);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) R[i][j] = (i == j) + s * K[i][j] + c * KK[i][j];
+  MathExtra::times3(R, from, to);
+}
+
+void FixMPMRigid::move(double dt)
+{
+  double start[3][3], angle[3], moved[3][3];
+  memcpy(start, Q, sizeof(Q));
+  for (int round = 0; round < 3; round++) {
+    spin();
+    for (int d = 0; d < 3; d++) angle[d] = 0.5 * dt * omega[d];
+    rotate(angle, start, Q);
+  }
+  spin();
+  for (int d = 0; d < 3; d++) angle[d] = dt * omega[d];
+  rotate(angle, start, moved);
+  memcpy(Q, moved, sizeof(Q));
+  spin();
+  for (int d = 0; d < 3; d++) {
+    x[d] += dt * v[d];
+    if (fixed[3 + d]) omega[d] = 0.0;
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMRigid::act(double dt, Stage stage)
+{
+  if (stage == STEP) {
+    dt_last = dt;
+    load_impulse(dt);
+    for (int d = 0; d < 3; d++) {
+      if (fixed[d]) v[d] = 0.0;
+      if (fixed[3 + d]) L[d] = 0.0;
+    }
+    find_contacts();
+    solve();
+    move(dt);
+    return;
+  }
+
+  // velocities that serve the gradient alone: those of the body, along what it has decided
+
+  for (const auto &c : contacts) {
+    if (!c.active) continue;
+    double *record = c.field->grid->nodes() + c.node * c.field->grid->nreal;
+    double w[3];
+    MathExtra::cross3(omega, c.r, w);
+    for (int d = 0; d < 3; d++) w[d] += v[d] - record[d];
+    const double normal = MathExtra::dot3(w, c.n);
+    for (int d = 0; d < 3; d++) record[d] += kind == STICK ? w[d] : normal * c.n[d];
+  }
+}
+
+/* ----------------------------------------------------------------------
+   kinetic energy
+------------------------------------------------------------------------- */
+
+double FixMPMRigid::compute_scalar()
+{
+  return 0.5 * LAMMPS_NS::Pointers::force->mvv2e *
+      (mass * MathExtra::dot3(v, v) + MathExtra::dot3(L, omega));
+}
+
+/* ----------------------------------------------------------------------
+   center, velocity, angular velocity, force and torque of the material, rotation matrix by rows
+------------------------------------------------------------------------- */
+
+double FixMPMRigid::compute_vector(int i)
+{
+  if (i < 3) return x[i];
+  if (i < 6) return v[i - 3];
+  if (i < 9) return omega[i - 6];
+  if (i < 15)
+    return dt_last > 0.0 ? impulse[i - 9] / (dt_last * LAMMPS_NS::Pointers::force->ftm2v) : 0.0;
+  return Q[(i - 15) / 3][(i - 15) % 3];
+}
+
+/* ---------------------------------------------------------------------- */
+
+namespace {
+struct Saved {
+  double x[3], v[3], L[3], Q[3][3], omega[3], impulse[6], dt;
+};
+}    // namespace
+
+void FixMPMRigid::write_restart(FILE *fp)
+{
+  if (comm->me) return;
+  Saved saved;
+  memcpy(saved.x, x, sizeof(x));
+  memcpy(saved.v, v, sizeof(v));
+  memcpy(saved.L, L, sizeof(L));
+  memcpy(saved.Q, Q, sizeof(Q));
+  memcpy(saved.omega, omega, sizeof(omega));
+  memcpy(saved.impulse, impulse, sizeof(impulse));
+  saved.dt = dt_last;
+  const int size = sizeof(Saved);
+  fwrite(&size, sizeof(int), 1, fp);
+  fwrite(&saved, size, 1, fp);
+}
+
+void FixMPMRigid::restart(char *buf)
+{
+  Saved saved;
+  memcpy(&saved, buf, sizeof(Saved));
+  memcpy(x, saved.x, sizeof(x));
+  memcpy(v, saved.v, sizeof(v));
+  memcpy(L, saved.L, sizeof(L));
+  memcpy(Q, saved.Q, sizeof(Q));
+  memcpy(omega, saved.omega, sizeof(omega));
+  memcpy(impulse, saved.impulse, sizeof(impulse));
+  dt_last = saved.dt;
+}

@@ -1,0 +1,92 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(mpm/rigid,FixMPMRigid);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_MPM_RIGID_H
+#define LMP_FIX_MPM_RIGID_H
+
+#include "fix.h"
+#include "mpm_node_action.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace MPM_NS {
+class SurfaceMesh;
+}
+
+namespace LAMMPS_NS {
+class FixMPM;
+
+/** A free rigid body with the shape of a region mpm/mesh, in contact with the material at the nodes
+ *  inside of it. Body and nodes take opposite impulses, found together, so that light bodies are as
+ *  stable as heavy ones, and momentum and angular momentum are kept to round-off. */
+class FixMPMRigid : public Fix, public MPMNodeAction {
+ public:
+  FixMPMRigid(class LAMMPS *, int, char **);
+  int setmask() override;
+  void init() override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+
+  void init_action() override {}
+  void act(double dt, Stage) override;
+
+ private:
+  enum Kind { STICK, SLIP, SEPARATE };
+  struct Load {    // a component of a force
+    double value;
+    std::string variable;
+  };
+  struct Contact {    // a node inside of the body
+    FixMPM *field;
+    int64_t node;
+    bool owned, active;
+    double r[3];       // from the center of the body
+    double n[3];       // out of the body
+    double v[3];       // before the contact
+    double tangential[3];    // impulse of friction on the node
+  };
+
+  std::string region_id;
+  const MPM_NS::SurfaceMesh *mesh;
+  Kind kind;
+  double friction, mass, density;
+  double gravity[3];
+  Load force[3], torque[3];
+  bool fixed[6];               // velocities and angular velocities that stay zero
+  double body_inertia[6];      // about the center, in the frame of the mesh
+
+  double x[3], v[3], L[3];     // center, its velocity, angular momentum
+  double Q[3][3];              // from the frame of the mesh to space
+  double omega[3];
+  double impulse[6], dt_last;  // of the material on the body in the last step
+  std::vector<Contact> contacts;
+
+  void load_impulse(double dt);
+  void find_contacts();
+  void solve();
+  void give(const Contact &, const double *impulse) const;
+  void move(double dt);
+  void inverse_inertia(double out[3][3]) const;
+  void spin();
+  double evaluate(const Load &) const;
+};
+
+}    // namespace LAMMPS_NS
+#endif
+#endif

@@ -1,0 +1,232 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+
+// labels: physics
+// mpi: 1 2
+
+// Fix mpm/rigid: free bodies with the shape of an STL file.
+
+#include "stl_testing.h"
+
+#include "gtest/gtest.h"
+
+using namespace MPM_TEST;
+
+static const std::string head = "units lj\nboundary p p f\natom_style mpm\nneighbor 0.3 bin\n"
+                                "region box block 0 10 0 10 0 12\ncreate_box 1 box\n"
+                                "fix grid all mpm 0.5 GRID\n"
+                                "region body block 3 7 3 7 2 5\ncreate_points 1 region body ppc 2\n";
+static const std::string fixes = "fix m all mpm/material density 1.0 neohookean 30.0 0.3\n"
+                                 "region shape mpm/mesh FILE 1.0 4.2 5.7 6.4\n"
+                                 "fix tool all mpm/rigid shape density 2.0 CONTACT velocity 0.1 -0.2 -1.0 "
+                                 "omega 0.3 0.8 0.5\n"
+                                 "timestep 0.01\nthermo 1000\n";
+
+static std::string scene(const std::string &file, const std::string &grid = "")
+{
+  return replaced(replaced(head, "GRID", grid) + fixes, "FILE", file);
+}
+
+static std::string with(const std::string &text, const std::string &contact)
+{
+  return replaced(text, "CONTACT", contact);
+}
+
+class Rigid : public ::testing::TestWithParam<const char *> {};
+
+// A body that turns hits a block: momentum and angular momentum of both stay, to round-off.
+
+TEST_P(Rigid, KeepsMomentum)
+{
+  if (nranks() > 1) GTEST_SKIP() << "sums are those of one rank";
+  const ScratchFile file("torus.stl", binary_of(torus(1.0, 0.5, 24)));
+  for (const char *grid : {"", "scheme musl"}) {
+    Scene run;
+    run.commands(with(scene(file.name, grid), GetParam()));
+    auto *body = run.lmp->modify->get_fix_by_id("tool");
+    const MPM_NS::SurfaceMesh mesh(binary_of(torus(1.0, 0.5, 24)), "torus", 1.0, {0.0, 0.0, 0.0});
+    const double mass = 2.0 * mesh.volume;
+    double p[3], L[3], p_start[3], L_start[3], pushed = 0.0, worst = 0.0;
+    const auto total = [&]() {
+      const auto s = run.sums();
+      double x[3], v[3], w[3], Q[3][3], l[3];
+      for (int d = 0; d < 3; d++) {
+        x[d] = body->compute_vector(d);
+        v[d] = body->compute_vector(3 + d);
+        w[d] = body->compute_vector(6 + d);
+        for (int e = 0; e < 3; e++) Q[d][e] = body->compute_vector(15 + 3 * d + e);
+      }
+      const double *J = mesh.inertia;
+      const double I[3][3] = {{J[0], J[3], J[4]}, {J[3], J[1], J[5]}, {J[4], J[5], J[2]}};
+      for (int d = 0; d < 3; d++) {
+        l[d] = 0.0;
+        for (int a = 0; a < 3; a++)
+          for (int b = 0; b < 3; b++)
+            for (int e = 0; e < 3; e++) l[d] += 2.0 * Q[d][a] * I[a][b] * Q[e][b] * w[e];
+      }
+      for (int d = 0; d < 3; d++) {
+        const int e = (d + 1) % 3, f = (d + 2) % 3;
+        p[d] = s.p[d] + mass * v[d];
+        L[d] = s.L[d] + l[d] + mass * (x[e] * v[f] - x[f] * v[e]);
+      }
+      pushed = std::min(pushed, s.p[2]);
+    };
+    total();
+    for (int d = 0; d < 3; d++) {
+      p_start[d] = p[d];
+      L_start[d] = L[d];
+    }
+    run.each_step([&](double **) {
+      total();
+      for (int d = 0; d < 3; d++)
+        worst = std::max(worst, std::max(fabs(p[d] - p_start[d]), fabs(L[d] - L_start[d]) / 10.0));
+    });
+    run.commands("run 300\n");
+    EXPECT_LT(measured(std::string("momentum, ") + GetParam() + " " + grid, worst / mass), 1.0e-12);
+    EXPECT_LT(pushed, -0.3 * mass);    // it did hit
+  }
+}
+
+TEST_P(Rigid, IsTheSameOnAnyNumberOfRanksAndAfterARestart)
+{
+  const ScratchFile file("torus.stl", binary_of(torus(1.0, 0.5, 24)));
+  const std::string text = with(scene(file.name), GetParam());
+  OnRanks ranks(text, "run 150\n");
+  EXPECT_LT(ranks.difference(), 1.0e-9);
+  for (int k = 0; k < 24; k++) {
+    const auto value = [&](Scene &s) { return s.lmp->modify->get_fix_by_id("tool")->compute_vector(k); };
+    EXPECT_NEAR(value(ranks.serial), value(ranks.parallel), 1.0e-9);
+  }
+  Continued run(text, 80, "neighbor 0.3 bin\nfix grid all mpm 0.5\n" +
+                              with(replaced(fixes, "FILE", file.name), GetParam()), 70);
+  EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Contact, Rigid,
+                         ::testing::Values("stick", "slip", "separate", "separate friction 0.3"));
+
+// Without contact an unequal box turns about no fixed axis: its energy stays, to second order.
+
+TEST(RigidBody, TurnsFreely)
+{
+  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
+  const ScratchFile file("box.stl", text_of(box({0.0, 0.0, 0.0}, {0.5, 1.0, 1.5})));
+  double drift[2];
+  for (int k = 0; k < 2; k++) {
+    Scene run;
+    run.commands(with(replaced(scene(file.name), "omega 0.3 0.8 0.5", "omega 0.3 2.0 0.2"), "slip"));
+    run.commands(strprintf("region shape delete\nunfix tool\nregion shape mpm/mesh %s 1.0 4.2 5.7 9.0\n"
+                           "fix tool all mpm/rigid shape density 2.0 slip omega 0.2 2.0 0.1\n"
+                           "timestep %g\n", file.name.c_str(), 0.02 / (1 << k)));
+    auto *body = run.lmp->modify->get_fix_by_id("tool");
+    const double start = body->compute_scalar();
+    double worst = 0.0, most = 0.0;
+    for (int n = 0; n < 20; n++) {
+      run.commands(strprintf("run %d post no\n", 25 << k));
+      worst = std::max(worst, fabs(body->compute_scalar() / start - 1.0));
+      most = std::max(most, fabs(body->compute_vector(8)));
+    }
+    EXPECT_GT(most, 0.5);    // about the middle axis it tumbles
+    drift[k] = worst;
+  }
+  EXPECT_LT(measured("drift of the energy", drift[1]), 2.0e-4);
+  EXPECT_NEAR(measured("order", log2(drift[0] / drift[1])), 2.0, 0.4);
+}
+
+// A body on the end of an elastic column: beta tan beta = m/M with beta = omega l/c.
+
+TEST(RigidBody, SwingsOnAColumn)
+{
+  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
+  const ScratchFile file("box.stl", text_of(box({-1.0, -1.0, 0.0}, {3.0, 3.0, 3.0})));
+  const double h = 0.5, length = 10.0, M = 100.0, column = 4.0 * length;
+  double beta = 0.5;
+  const double end = M + 4.0 * 0.5;    // with the material inside of it
+  for (int k = 0; k < 100; k++) beta = atan2(column / end, beta) * 0.5 + 0.5 * beta;
+  const double c = sqrt(100.0 * 0.7 / (1.3 * 0.4));    // E = 100, nu = .3, density 1
+  const double period = 2.0 * PI * length / (beta * c);
+  Scene run;
+  run.commands(strprintf(
+      "units lj\nboundary f f f\natom_style mpm\nneighbor 0.3 bin\nregion box block 0 2 0 2 0 14\n"
+      "create_box 1 box\nfix grid all mpm %g transfer flip 1.0 scheme musl\n"
+      "region body block 0 2 0 2 0 10.5\n"
+      "create_points 1 region body ppc 2\nfix m all mpm/material density 1.0 linear 100.0 0.3\n"
+      "fix floor all mpm/boundary zlo stick\nfix sides all mpm/boundary xlo xhi ylo yhi slip\n"
+      "region shape mpm/mesh %s 1.0 0 0 9.99\n"
+      "fix tool all mpm/rigid shape mass %g stick velocity 0 0 0.02 hold x y rx ry rz\n"
+      "timestep 0.01\nthermo 1000\n", h, file.name.c_str(), M));
+  auto *body = run.lmp->modify->get_fix_by_id("tool");
+  std::vector<double> crossings;
+  double before = 0.0;
+  const double z = body->compute_vector(2);
+  run.each_step([&](double **) {
+    const double u = body->compute_vector(2) - z;
+    if (before * u < 0.0) crossings.push_back(run.time() - 0.01 * u / (u - before));
+    before = u;
+  });
+  run.commands(strprintf("run %d post no\n", (int) (2.6 * period / 0.01)));
+  ASSERT_GE(crossings.size(), 4u);
+  EXPECT_NEAR(measured("period/exact", (crossings[3] - crossings[1]) / period), 1.0, 0.03);
+}
+
+// A body that weighs nothing goes with the material.
+
+TEST(RigidBody, MayBeLight)
+{
+  const ScratchFile file("box.stl", text_of(box({0.0, 0.0, 0.0}, {1.2, 1.2, 1.2})));
+  Scene run;
+  run.commands(with(scene(file.name), "slip"));
+  run.commands("region shape delete\nunfix tool\nregion shape mpm/mesh " + file.name +
+               " 1.0 4.4 4.4 2.9\nfix tool all mpm/rigid shape density 1.0e-9 stick\n"
+               "velocity all set 0.1 0.2 0.3\nrun 200\n");
+  auto *body = run.lmp->modify->get_fix_by_id("tool");
+  for (int d = 0; d < 3; d++) EXPECT_NEAR(body->compute_vector(3 + d), 0.1 * (d + 1), 1.0e-6);
+}
+
+// Weight, forces, and held directions.
+
+TEST(RigidBody, FallsAndIsHeld)
+{
+  const ScratchFile file("box.stl", text_of(box({0.0, 0.0, 0.0}, {1.0, 1.0, 1.0})));
+  Scene run;
+  run.commands(with(scene(file.name), "slip"));
+  run.commands("region shape delete\nunfix tool\nregion shape mpm/mesh " + file.name +
+               " 1.0 4.4 4.4 8.0\nvariable f equal 3.0\n"
+               "fix tool all mpm/rigid shape density 2.0 slip gravity 0 0 -0.5 force v_f 1.0 0 "
+               "torque 0 0 0.1 hold y\nrun 100\n");
+  auto *body = run.lmp->modify->get_fix_by_id("tool");
+  EXPECT_NEAR(body->compute_vector(3), 1.5, 1.0e-12);
+  EXPECT_EQ(body->compute_vector(4), 0.0);
+  EXPECT_NEAR(body->compute_vector(5), -0.5, 1.0e-12);
+  EXPECT_NEAR(body->compute_vector(8), 0.1 / (2.0 / 6.0), 1.0e-9);
+}
+
+TEST(RigidBody, RefusesMistakes)
+{
+  const ScratchFile file("box.stl", text_of(box({0.0, 0.0, 0.0}, {1.0, 1.0, 1.0})));
+  const std::string fix = "fix t all mpm/rigid shape density 2.0 ";
+  expect_refused(
+      replaced(head, "GRID", "") + "fix m all mpm/material density 1.0 neohookean 30.0 0.3\n" +
+          "region shape mpm/mesh " + file.name + " 1.0 4 4 8\ntimestep 0.01\nvariable a atom x\nvariable z equal 0\n" +
+          "region turned mpm/mesh " + file.name + " 1.0 4 4 8 rotate v_z 0 0 0 0 0 1\n",
+      {{"fix t all mpm/rigid body density 1.0 slip", "needs a region of style mpm/mesh: body"},
+       {"fix t all mpm/rigid shape density 0.0 slip", "density must be positive: 0.0"},
+       {"fix t all mpm/rigid shape weight 1.0 slip", "must be density or mass"},
+       {fix + "glue", "Unknown fix mpm/rigid contact glue"},
+       {"fix t all mpm/rigid turned density 2.0 slip", "at rest and with side in"},
+       {fix + "stick friction 0.1", "friction is for slip and separate"},
+       {fix + "slip friction -0.1", "must not be negative: -0.1"},
+       {fix + "slip hold w", "one or more of x y z rx ry rz"},
+       {fix + "slip velocity 1 0 0 hold x", "cannot hold x"},
+       {fix + "slip sharp", "Unknown fix mpm/rigid keyword: sharp"},
+       {fix + "slip force v_a 0 0", "no equal-style variable a"},
+       {"unfix grid\nfix grid all mpm 0.5 frame total\n" + fix + "slip", "use frame updated"},
+       {"unfix grid\nfix grid all mpm 0.5 scheme usf\n" + fix + "slip", "use usl or musl"}},
+      "run 1\n");
+}
