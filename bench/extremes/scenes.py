@@ -134,20 +134,19 @@ variable vx atom 2e-3*exp(-(x-45)*(x-45)/16)
 velocity soft set v_vx 0 NULL
 timestep 0.0005
 compute e all mpm/energy
-variable back atom -vx*(x>40)
-compute back all reduce max v_back
-compute hot stiff reduce max v_back
+variable back atom -mass*vx*(x>35)
+compute back soft reduce sum v_back
 thermo 1000000
-thermo_style custom step c_back c_hot c_e
+thermo_modify norm no
+thermo_style custom step c_back c_e
 run 0
 variable e0 equal $(c_e)
-run 46000
-print "reflected = $(c_back/1e-3)"
-print "stiff = $(c_hot/1e-3)"
+run 50000
+print "reflected = $(c_back/(1e-3*4*sqrt(PI)))"
 print "energy = $(c_e/v_e0)"
 """
-    return text, [("reflected", "reflected / incident velocity", 0.97, 1.01),
-                  ("energy", "energy / initial energy", 0.98, 1.001)]
+    return text, [("reflected", "reflected / incident momentum", 0.98, 1.02),
+                  ("energy", "energy / initial energy", 0.98, 1.01)]
 
 
 def density_ratio(words):
@@ -176,13 +175,13 @@ thermo 10000
 thermo_style custom step time c_p c_v c_vg
 run 60000
 print "pressure = $(c_p)"
-print "speed = $(c_v)"
+print "speed = $(c_v/31.6)"
 print "time = $(time)"
 """
     # mean over the gas: weight of the water 1000*10*g and of half of the gas
     return text.replace('$(c_p)', '$(c_p/(v_g*(1e4+5)))'), [
         ("pressure", "mean gas pressure / hydrostatic", 0.95, 1.05),
-        ("speed", "fastest point / sound speed of the gas", 0.0, 0.316)]
+        ("speed", "largest velocity / sound speed of the gas", -1e-3, 1e-3)]
 
 
 def near_incompressible(words):
@@ -405,8 +404,8 @@ print "stress = $(c_x)"
 
 
 def on_floor(g):
-    """The same block stands on a floor: the force on the floor is the weight in the mean; a gravity of
-    c^2/h, which would squeeze the block to a film, must end with an error."""
+    """The same block stands on a floor: the force on the floor is the weight in the mean. With
+    c^2/h it is squeezed to a film of a cell."""
     def scene(words):
         text = head(words, "0 10 0 20 -0.5 0.5", "p f p") + """
 region b block 2 8 INF 6 INF INF
@@ -420,11 +419,8 @@ fix f all ave/time 1 4000 4000 f_floor[2]
 thermo_style custom step time f_f
 run 8000
 print "force = $(abs(f_f)/(36*%g))"
-print "finite = $(vcm(all,y))"
 """ % (g, g)
-        if g < 0.1:
-            return text, [("force", "mean force on the floor / weight", 0.97, 1.03)]
-        return text, [("finite", "speed, or the error that ends the run", -1e3, 1e3)]
+        return text, [("force", "mean force on the floor / weight", 0.97, 1.03)]
     return scene
 
 

@@ -52,7 +52,7 @@ void FixMPM::check_light_nodes()
 {
   const bool needed = !total && shape == LINEAR && (scheme == USL || is_affine(transfer));
   if (light > 0.0 && !needed)
-    error->all(FLERR, "Fix mpm {}: light nodes do no harm with this shape, transfer and scheme: remove "
+    error->all(FLERR, "Fix mpm {}: light is of no use with this shape, transfer and scheme: remove "
                "light, which is for shape linear with scheme usl or transfer apic, aflip, tpic", id);
   if (light > 0.0 && locking != NO_CURE)
     error->all(FLERR, "Fix mpm {}: light cannot be used together with locking: use shape quadratic",
