@@ -44,8 +44,8 @@ static constexpr double MAX_NODE = 4.0e6;
 
 FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), shape(QUADRATIC), extent(NO_SIZE), aspect{1.0, 1.0, 1.0}, transfer(APIC),
-    flip(0.0), refinement(LUMPED), order(1), total(false), most_distorted(0.0), axisymmetric(false), scheme(USL), stress(DEFAULT_STRESS), locking(NO_CURE), light(0.0), policy(ERROR),
-    delete_failed(false), every(1), dt_check(true), grid(nullptr), C(nullptr), X(nullptr), R(nullptr),
+    flip(0.0), poly(false), refinement(LUMPED), order(1), total(false), most_distorted(0.0), axisymmetric(false), scheme(USL), stress(DEFAULT_STRESS), locking(NO_CURE), light(0.0), policy(ERROR),
+    delete_failed(false), every(1), dt_check(true), grid(nullptr), C(nullptr), Q(nullptr), X(nullptr), R(nullptr),
     waiting(nullptr), ledger_on(false), points(nullptr), halo(nullptr),
     kernels(nullptr), batch_kernels(nullptr), driver(false), topology_valid(false),
     watch_drift(false), drifted(0), want_sort(false), refer_anew(false), switches(0), switches_sorted(0),
@@ -104,6 +104,7 @@ FixMPM::~FixMPM()
     atom->delete_callback(id, Atom::RESTART);
   }
   memory->destroy(C);
+  memory->destroy(Q);
   memory->destroy(X);
   memory->destroy(R);
   memory->destroy(waiting);
@@ -162,9 +163,10 @@ void FixMPM::process_options(int narg, char **arg)
       has_aspect = true;
       iarg += 1 + lattice.dim;
     } else if (keyword == "transfer") {
-      const int kind = choose({"pic", "flip", "apic", "aflip", "tpic", "xpic", "fmpm"});
-      transfer = kind < 5 ? (Transfer) kind : FLIP;
-      refinement = kind < 5 ? LUMPED : (kind == 5 ? XPIC : FMPM);
+      const int kind = choose({"pic", "flip", "apic", "aflip", "tpic", "xpic", "fmpm", "polypic"});
+      poly = kind == 7;
+      transfer = kind < 5 ? (Transfer) kind : (poly ? APIC : FLIP);
+      refinement = kind == 5 ? XPIC : (kind == 6 ? FMPM : LUMPED);
       flip = 0.0;
       if (refinement != LUMPED) {
         need(2);
@@ -256,6 +258,10 @@ void FixMPM::process_options(int narg, char **arg)
     error->all(FLERR, "Fix mpm frame total cannot be used with shape gimp and cpgimp, which points "
                "that cross no cells do not need, and transfer aflip and tpic: use B-splines with "
                "transfer apic or flip");
+  if (poly && (total || !is_mls(kernel_shape(), transfer)))
+    error->all(FLERR, "Fix mpm transfer polypic needs shape quadratic or cubic and frame updated");
+  if (poly && axisymmetric)
+    error->all(FLERR, "Fix mpm transfer polypic cannot be used with axisymmetric: use transfer apic");
   if (stress == MLS_STRESS && !is_mls(kernel_shape(), transfer))
     error->all(FLERR, "Fix mpm stress mls needs shape quadratic or cubic with transfer apic or aflip: "
                "other ones have the gradients of the shape functions");
@@ -426,6 +432,7 @@ void FixMPM::setup_pre_neighbor()
     kernel.g2p_gradient = tpic.g2p_gradient;
     kernel.mls = false;
   }
+  if (poly) modes = PolyKernels::select(*kernels, lattice.dim, shape, kernel.nreal);
   if (axisymmetric) pic = kernels->transfer(lattice.dim, kernel_shape(), PIC, true);
   batch->h = lattice.h;
 
@@ -636,6 +643,7 @@ void FixMPM::load_state(Batch &b, const int *list, int n, const FixMPMMaterial *
 void FixMPM::grow_arrays(int nmax)
 {
   if (is_affine(transfer)) memory->grow(C, nmax, affine_size(), "mpm:C");
+  if (poly) memory->grow(Q, nmax, modes_size(), "mpm:Q");
   if (total) memory->grow(X, nmax, 3, "mpm:X");
   if (most_distorted > 0.0) memory->grow(R, nmax, 9, "mpm:R");
   if (every > 1) memory->grow(waiting, nmax, waiting_size(), "mpm:waiting");
@@ -644,6 +652,7 @@ void FixMPM::grow_arrays(int nmax)
 void FixMPM::copy_arrays(int i, int j, int)
 {
   if (C) memcpy(C[j], C[i], affine_size() * sizeof(double));
+  if (Q) memcpy(Q[j], Q[i], modes_size() * sizeof(double));
   if (X) memcpy(X[j], X[i], 3 * sizeof(double));
   if (R) memcpy(R[j], R[i], 9 * sizeof(double));
   if (waiting) memcpy(waiting[j], waiting[i], waiting_size() * sizeof(double));
@@ -655,6 +664,7 @@ void FixMPM::set_arrays(int i)
     memset(C[i], 0, affine_size() * sizeof(double));
     if (!running) C[i][0] = NAN;    // not known, for fit_affine()
   }
+  if (Q) memset(Q[i], 0, modes_size() * sizeof(double));
   if (X) {
     memcpy(X[i], atom->x[i], 3 * sizeof(double));
     if (!running) X[i][0] = NAN;    // not known, for set_reference()
@@ -670,6 +680,7 @@ int FixMPM::pack_exchange(int i, double *buf)
   if (waiting) memcpy(buf + own[0], waiting[i], own[1] * sizeof(double));
   if (X) memcpy(buf + own[0] + own[1], X[i], own[2] * sizeof(double));
   if (R) memcpy(buf + own[0] + own[1] + own[2], R[i], 9 * sizeof(double));
+  if (Q) memcpy(buf + own_size() - modes_size(), Q[i], modes_size() * sizeof(double));
   return own_size();
 }
 
@@ -680,6 +691,7 @@ int FixMPM::unpack_exchange(int i, double *buf)
   if (waiting) memcpy(waiting[i], buf + own[0], own[1] * sizeof(double));
   if (X) memcpy(X[i], buf + own[0] + own[1], own[2] * sizeof(double));
   if (R) memcpy(R[i], buf + own[0] + own[1] + own[2], 9 * sizeof(double));
+  if (Q) memcpy(Q[i], buf + own_size() - modes_size(), modes_size() * sizeof(double));
   return own_size();
 }
 

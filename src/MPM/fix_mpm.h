@@ -18,6 +18,7 @@ FixStyle(mpm,FixMPM);
 #include "fix.h"
 #include "mpm_grid.h"
 #include "mpm_kernels.h"
+#include "mpm_kernels_poly.h"
 #include "mpm_node_action.h"
 
 #include <cstdint>
@@ -93,6 +94,7 @@ class FixMPM : public Fix {
   double aspect[3];         ///< GIMP: edges of an undeformed point; their product is 1
   MPM_NS::Transfer transfer;
   double flip;         ///< FLIP share, 0 for PIC
+  bool poly;           ///< bilinear modes of the velocity, too; transfer is APIC then
   Refinement refinement;    ///< of the velocities of the nodes, with transfer FLIP inside
   int order;                ///< terms of the inverse of the mass matrix, 1: lumped
   bool total;          ///< nodes are places of the reference configuration (total Lagrangian)
@@ -113,6 +115,7 @@ class FixMPM : public Fix {
   std::vector<FixMPMMaterial *> materials;      ///< all of them, set in init()
   std::vector<FixMPMElements *> elements;       ///< all of them, set in init()
   double **C;    ///< [n][dim*dim] affine, column-major; null: transfer without
+  double **Q;    ///< [n][poly_size(dim)] bilinear modes of the velocity; null: transfer without
   double **X;    ///< [n][3] reference position, NAN before it is known; null: updated frame
   double **R;    ///< [n][9] F at the last update of the reference, row-major; null: there is none
   double **waiting;    ///< [n][6 or 9] since the last step of the cycle: impulse, displacement, and
@@ -214,12 +217,14 @@ class FixMPM : public Fix {
   MPM_NS::Shape kernel_shape() const { return extent == NO_SIZE ? shape : MPM_NS::GIMP; }
   int affine_size() const { return lattice.dim * lattice.dim; }
   /** Reals that each point has of this fix. */
-  int own_size() const { return (C ? affine_size() : 0) + (X ? 3 : 0) + (R ? 9 : 0) + waiting_size(); }
+  int own_size() const { return (C ? affine_size() : 0) + modes_size() + (X ? 3 : 0) + (R ? 9 : 0) + waiting_size(); }
   int waiting_size() const;
+  int modes_size() const { return poly ? MPM_NS::poly_size(lattice.dim) : 0; }
 
   MPMPoints *points;
   MPMHalo *halo;
   MPM_NS::TransferKernels kernel, pic;    // pic: axisymmetric only
+  MPM_NS::PolyKernels modes;
   const MPM_NS::MPMKernels *kernels;
   const MPM_NS::BatchKernels *batch_kernels;
   std::string isa;                         // wanted instruction set, empty: the best

@@ -104,7 +104,10 @@ void FixMPM::check_velocities()
 {
   if (!C || !velocities_known || velocity_hash() == velocities) return;
   for (int i = 0; i < atom->nlocal; i++)
-    if (is_point(i)) C[i][0] = NAN;
+    if (is_point(i)) {
+      C[i][0] = NAN;
+      if (Q) memset(Q[i], 0, modes_size() * sizeof(double));
+    }
 }
 
 /* ----------------------------------------------------------------------

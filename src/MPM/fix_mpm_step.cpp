@@ -170,6 +170,7 @@ void FixMPM::grid_to_points()
       for (int i = runs[k].first; i < runs[k].last; i += BATCH) {
         const int last = std::min(i + BATCH, runs[k].last);
         double *const out = fbar ? gradients.data() + affine_size() * (bigint) i : L;
+        if (Q) modes.g2p(r, &Q[0][0], s, i, last, base, tile_load);
         if (apart && scheme == USL) kernel.g2p_gradient(r, s, i, last, base, tile_load, out);
         if (round) note_radii(i, last);
         drifted |= kernel.g2p(r, s, i, last, base, tile_load,
@@ -424,6 +425,9 @@ void FixMPM::map_to_nodes(P2G p2g)
     }
     for (int k = a.first_run; k < a.last_run; k++)
       map_run(p2g, runs[k].material ? r : stressless, s, runs[k], base, a.box);
+    if (Q && p2g != kernel.p2g_force)
+      for (int k = a.first_run; k < a.last_run; k++)
+        modes.p2g(r, &Q[0][0], s, runs[k].first, runs[k].last, base, tile);
     kernel.flush(tile, grid->nodes(), block.slot, a.box);
   }
 }
