@@ -912,7 +912,7 @@ TEST_P(Tables, SolveNodesSplit)
 TEST_P(Tables, SaysWhatItHas)
 {
   for (int dim : {2, 3})
-    for (Shape shape : {LINEAR, QUADRATIC, CUBIC, GIMP})
+    for (Shape shape : {LINEAR, QUADRATIC, CUBIC, GIMP, CPDI, CPDI2})
       for (Transfer transfer : {PIC, FLIP, APIC, AFLIP, TPIC})
         for (bool split : {false, true}) {
           const TransferKernels k = table->transfer(dim, shape, transfer, split);

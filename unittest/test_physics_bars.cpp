@@ -501,6 +501,8 @@ INSTANTIATE_TEST_SUITE_P(Options, GalileanBar,
                                            "shape gimp aspect 1 2 transfer flip 1.0 scheme musl",
                                            "shape cpgimp aspect 1 2 transfer flip 1.0 scheme musl",
                                            "shape cpgimp aspect 1 2 transfer apic",
+                                           "shape cpdi aspect 1 2 transfer flip 1.0 scheme musl",
+                                           "shape cpdi2 aspect 1 2 transfer apic",
                                            "shape quadratic transfer aflip 1.0",
                                            "shape quadratic transfer tpic"));
 

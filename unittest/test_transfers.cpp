@@ -240,7 +240,7 @@ TEST(BadInput, IsRefused)
       {"frame total transfer tpic", "use B-splines with transfer apic or flip"},
       {"frame total shape gimp", "use B-splines with transfer apic or flip"},
       {"shape gimp aspect 1 0 1", "aspect must be positive"},
-      {"shape quadratic aspect 1 2 1", "use shape gimp or cpgimp"},
+      {"shape quadratic aspect 1 2 1", "use shape gimp, cpgimp"},
       {"shape cpgimp aspect 1 1 16", "need at least one point per cell"},
       {"scheme average", "must be one of usl usf musl usavg"},
   };

@@ -65,10 +65,15 @@ void CreatePoints::command(int narg, char **arg)
                "Cannot create_points after reading a restart file with per-atom info of fixes: "
                "define these fixes and use run 0 first");
 
-  const bool mesh = narg > 1 && strcmp(arg[1], "mesh") == 0;
+  const bool at_nodes = narg > 1 && strcmp(arg[1], "mesh") == 0;
+  const bool in_elements = narg > 1 && strcmp(arg[1], "elements") == 0;
+  const bool mesh = at_nodes || in_elements;
   if (mesh) {
     parse_type(narg, arg);
-    parse_mesh(narg, arg);
+    if (at_nodes)
+      parse_mesh(narg, arg);
+    else
+      parse_elements(narg, arg);
   } else {
     parse(narg, arg);
     find_ranges();
@@ -87,9 +92,11 @@ void CreatePoints::command(int narg, char **arg)
 
   const bigint natoms_previous = atom->natoms;
   const int nlocal_previous = atom->nlocal;
-  const bigint npoints = mesh ? make_mesh_points() : make_points();
+  const bigint npoints =
+      at_nodes ? make_mesh_points() : (in_elements ? make_element_points() : make_points());
 
   atom->data_fix_compute_variable(nlocal_previous, atom->nlocal);
+  if (in_elements) set_domains(nlocal_previous);
 
   bigint nblocal = atom->nlocal;
   MPI_Allreduce(&nblocal, &atom->natoms, 1, MPI_LMP_BIGINT, MPI_SUM, world);
@@ -162,7 +169,7 @@ void CreatePoints::parse(int narg, char **arg)
     region->prematch();
     iarg = 3;
   } else if (strcmp(arg[1], "box") != 0) {
-    error->all(FLERR, 1, "Unknown create_points option {}: expected region, box, or mesh", arg[1]);
+    error->all(FLERR, 1, "Unknown create_points option {}: expected region, box, mesh, or elements", arg[1]);
   }
 
   // ppc and spacing: one number, or one for each axis

@@ -22,7 +22,7 @@ CommandStyle(create_points,CreatePoints);
 namespace LAMMPS_NS {
 
 /** Fills a region with material points on a regular lattice of sites, or puts them at the nodes of a
- *  mesh.
+ *  mesh, or makes one for each of its elements.
  *
  *  Sites are at origin + (s + 1/2) spacing for integer s. Their numbering, the test against the
  *  region, the jitter and the IDs are functions of the site alone; ranks take equal shares of the
@@ -39,6 +39,9 @@ class CreatePoints : public Command {
     double x[3];
     double volume;
     tagint tag;
+  };
+  struct Element {    // of a mesh: center, volume, corners relative to the center, see mpm_domain.h
+    double x[3], volume, corners[24];
   };
   struct Range {    // consecutive sites along an axis
     bigint first, n;
@@ -61,10 +64,12 @@ class CreatePoints : public Command {
   Range search[3];    // sites that can be in the region, also outside the box
 
   std::vector<Site> mesh_sites;    // nodes of a mesh
+  std::vector<Element> elements;    // of all ranks; at last those that are points here
 
   void parse_type(int, char **);
   void parse(int, char **);
   void parse_mesh(int, char **);
+  void parse_elements(int, char **);
   void find_lattice();
   void find_ranges();
   void check_outside();
@@ -72,6 +77,8 @@ class CreatePoints : public Command {
   bigint make_points();
   bigint make_mesh_points();
   void send_and_make(std::vector<Site> &);
+  bigint make_element_points();
+  void set_domains(int first);
   void make_point(const Site &);
 
   double position(int d, bigint s) const { return origin[d] + (s + 0.5) * spacing[d]; }

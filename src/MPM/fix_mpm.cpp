@@ -45,7 +45,7 @@ static constexpr double MAX_NODE = 4.0e6;
 FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), shape(QUADRATIC), extent(NO_SIZE), aspect{1.0, 1.0, 1.0}, transfer(APIC),
     flip(0.0), poly(false), refinement(LUMPED), order(1), total(false), most_distorted(0.0), axisymmetric(false), scheme(USL), stress(DEFAULT_STRESS), locking(NO_CURE), light(0.0), policy(ERROR),
-    delete_failed(false), every(1), dt_check(true), grid(nullptr), C(nullptr), Q(nullptr), X(nullptr), R(nullptr),
+    delete_failed(false), every(1), dt_check(true), grid(nullptr), C(nullptr), Q(nullptr), corners(nullptr), X(nullptr), R(nullptr),
     waiting(nullptr), ledger_on(false), points(nullptr), halo(nullptr),
     kernels(nullptr), batch_kernels(nullptr), driver(false), topology_valid(false),
     watch_drift(false), drifted(0), want_sort(false), refer_anew(false), switches(0), switches_sorted(0),
@@ -76,7 +76,7 @@ FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) :
     force_reneighbor = 1;
     next_reneighbor = -1;
   }
-  if (is_affine(transfer) || total || every > 1) {
+  if (is_affine(transfer) || total || every > 1 || extent == CORNERS) {
     FixMPM::grow_arrays(atom->nmax);
     atom->add_callback(Atom::GROW);
     atom->add_callback(Atom::RESTART);
@@ -89,17 +89,17 @@ FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) :
   grid = new Grid(lattice);
   halo = new MPMHalo(lmp);
   batch = new Batch();    // zero, see mpm_batch.h
-  tile = (double *) memory->smalloc(MAX_TILE_NODES * 8 * sizeof(double), "mpm:tile");
-  tile_load = (double *) memory->smalloc(MAX_TILE_NODES * 8 * sizeof(double), "mpm:tile");
-  memset(tile, 0, MAX_TILE_NODES * 8 * sizeof(double));
-  memset(tile_load, 0, MAX_TILE_NODES * 8 * sizeof(double));
+  tile = (double *) memory->smalloc(tile_reals() * sizeof(double), "mpm:tile");
+  tile_load = (double *) memory->smalloc(tile_reals() * sizeof(double), "mpm:tile");
+  memset(tile, 0, tile_reals() * sizeof(double));
+  memset(tile_load, 0, tile_reals() * sizeof(double));
 }
 
 /* ---------------------------------------------------------------------- */
 
 FixMPM::~FixMPM()
 {
-  if ((C || X || waiting) && modify) {
+  if ((C || X || waiting || corners) && modify) {
     atom->delete_callback(id, Atom::GROW);
     atom->delete_callback(id, Atom::RESTART);
   }
@@ -107,6 +107,7 @@ FixMPM::~FixMPM()
   memory->destroy(Q);
   memory->destroy(X);
   memory->destroy(R);
+  memory->destroy(corners);
   memory->destroy(waiting);
   memory->sfree(tile);
   memory->sfree(tile_load);
@@ -146,9 +147,10 @@ void FixMPM::process_options(int narg, char **arg)
       return -1;
     };
     if (keyword == "shape") {
-      const int kind = choose({"linear", "quadratic", "cubic", "gimp", "cpgimp"});
-      extent = kind < 3 ? NO_SIZE : (kind == 3 ? UNIFORM : CONTIGUOUS);
-      shape = kind < 3 ? (Shape) (1 + kind) : QUADRATIC;
+      const int kind =
+          choose({"linear", "quadratic", "cubic", "gimp", "cpgimp", "cpdi", "cpdi2"});
+      extent = kind < 3 ? NO_SIZE : (Extent) (UNIFORM + kind - 3);
+      shape = kind < 3 ? (Shape) (1 + kind) : (kind < 5 ? QUADRATIC : LINEAR);
       iarg += 2;
     } else if (keyword == "aspect") {
       need(lattice.dim);
@@ -253,15 +255,18 @@ void FixMPM::process_options(int narg, char **arg)
     error->all(FLERR, "Fix mpm reference update is for frame total: in the updated frame, the reference "
                "is the present configuration in each step");
   if (has_aspect && extent == NO_SIZE)
-    error->all(FLERR, "Fix mpm aspect is for points of finite size: use shape gimp or cpgimp");
+    error->all(FLERR, "Fix mpm aspect is for points of finite size: use shape gimp, cpgimp, cpdi "
+               "or cpdi2");
   if (total && (extent != NO_SIZE || transfer == AFLIP || transfer == TPIC))
-    error->all(FLERR, "Fix mpm frame total cannot be used with shape gimp and cpgimp, which points "
-               "that cross no cells do not need, and transfer aflip and tpic: use B-splines with "
+    error->all(FLERR, "Fix mpm frame total cannot be used with shape gimp, cpgimp, cpdi and cpdi2, "
+               "which points that cross no cells do not need, and transfer aflip and tpic: use B-splines with "
                "transfer apic or flip");
   if (poly && (total || !is_mls(kernel_shape(), transfer)))
     error->all(FLERR, "Fix mpm transfer polypic needs shape quadratic or cubic and frame updated");
   if (poly && axisymmetric)
     error->all(FLERR, "Fix mpm transfer polypic cannot be used with axisymmetric: use transfer apic");
+  if (extent == CORNERS && axisymmetric)
+    error->all(FLERR, "Fix mpm axisymmetric cannot be used with shape cpdi2: use shape cpdi");
   if (stress == MLS_STRESS && !is_mls(kernel_shape(), transfer))
     error->all(FLERR, "Fix mpm stress mls needs shape quadratic or cubic with transfer apic or aflip: "
                "other ones have the gradients of the shape functions");
@@ -439,7 +444,7 @@ void FixMPM::setup_pre_neighbor()
   // points drift at most half a skin between rebuilds when LAMMPS checks distances each step;
   // a tile has room for a drift of one cell
 
-  watch_drift = !total &&
+  watch_drift = !total && !has_domains() &&
       (every > 1 || neighbor->includegroup || neighbor->skin > 2.0 * lattice.h || neighbor->delay > 0 || neighbor->every > 1 ||
        !neighbor->dist_check);
 
@@ -596,7 +601,8 @@ PointRows FixMPM::rows() const
   r.F = &points->F[0][0];
   r.mass = atom->rmass;
   r.guarded = atom->nmax - 1;
-  r.size = extent == NO_SIZE ? nullptr : sizes.data();
+  r.size = has_boxes() ? sizes.data() : nullptr;
+  if (has_domains()) r.domain = corners ? &corners[0][0] : domains.data();
   r.xnew = moves_late() ? const_cast<double *>(xnew.data()) : &atom->x[0][0];
   return r;
 }
@@ -647,6 +653,7 @@ void FixMPM::grow_arrays(int nmax)
   if (total) memory->grow(X, nmax, 3, "mpm:X");
   if (most_distorted > 0.0) memory->grow(R, nmax, 9, "mpm:R");
   if (every > 1) memory->grow(waiting, nmax, waiting_size(), "mpm:waiting");
+  if (extent == CORNERS) memory->grow(corners, nmax, domain_size(), "mpm:corners");
 }
 
 void FixMPM::copy_arrays(int i, int j, int)
@@ -656,6 +663,7 @@ void FixMPM::copy_arrays(int i, int j, int)
   if (X) memcpy(X[j], X[i], 3 * sizeof(double));
   if (R) memcpy(R[j], R[i], 9 * sizeof(double));
   if (waiting) memcpy(waiting[j], waiting[i], waiting_size() * sizeof(double));
+  if (corners) memcpy(corners[j], corners[i], domain_size() * sizeof(double));
 }
 
 void FixMPM::set_arrays(int i)
@@ -671,6 +679,7 @@ void FixMPM::set_arrays(int i)
   }
   for (int c = 0; c < 9 && R; c++) R[i][c] = c % 4 == 0;
   if (waiting) memset(waiting[i], 0, waiting_size() * sizeof(double));
+  if (corners) corners[i][0] = NAN;    // not known, for update_domains()
 }
 
 int FixMPM::pack_exchange(int i, double *buf)
@@ -681,6 +690,8 @@ int FixMPM::pack_exchange(int i, double *buf)
   if (X) memcpy(buf + own[0] + own[1], X[i], own[2] * sizeof(double));
   if (R) memcpy(buf + own[0] + own[1] + own[2], R[i], 9 * sizeof(double));
   if (Q) memcpy(buf + own_size() - modes_size(), Q[i], modes_size() * sizeof(double));
+  if (corners)
+    memcpy(buf + own_size() - domain_size(), corners[i], domain_size() * sizeof(double));
   return own_size();
 }
 
@@ -692,6 +703,8 @@ int FixMPM::unpack_exchange(int i, double *buf)
   if (X) memcpy(X[i], buf + own[0] + own[1], own[2] * sizeof(double));
   if (R) memcpy(R[i], buf + own[0] + own[1] + own[2], 9 * sizeof(double));
   if (Q) memcpy(Q[i], buf + own_size() - modes_size(), modes_size() * sizeof(double));
+  if (corners)
+    memcpy(corners[i], buf + own_size() - domain_size(), domain_size() * sizeof(double));
   return own_size();
 }
 
@@ -709,7 +722,7 @@ void FixMPM::unpack_restart(int i, int nth)
   for (int k = 0; k < nth; k++) m += static_cast<int>(extra[i][m]);
   if (static_cast<int>(extra[i][m]) != 1 + own_size())
     error->one(FLERR, "The restart file has {} numbers per point for fix mpm {}, not {}: give the "
-               "fix the transfer, frame, reference and every with which the file was written",
+               "fix the shape, transfer, frame, reference and every with which the file was written",
                static_cast<int>(extra[i][m]) - 1, id, own_size());
   unpack_exchange(i, extra[i] + m + 1);
 }

@@ -54,7 +54,7 @@ struct MPMLedger {
 class FixMPM : public Fix {
  public:
   enum Scheme { USL, USF, MUSL, USAVG };
-  enum Extent { NO_SIZE, UNIFORM, CONTIGUOUS };
+  enum Extent { NO_SIZE, UNIFORM, CONTIGUOUS, PARALLELEPIPED, CORNERS };
   enum Refinement { LUMPED, XPIC, FMPM };
   enum Locking { NO_CURE, FBAR, PRESSURE, BOTH };    ///< cure for volumetric locking
   enum Policy { ERROR, WARN, DELETE };
@@ -89,9 +89,11 @@ class FixMPM : public Fix {
   // settings
 
   MPM_NS::Lattice lattice;
-  MPM_NS::Shape shape;      ///< B-spline, or the one that has the stencil: QUADRATIC with a size
-  Extent extent;            ///< size of points: none, fixed (GIMP), or with F (contiguous GIMP)
-  double aspect[3];         ///< GIMP: edges of an undeformed point; their product is 1
+  MPM_NS::Shape shape;      ///< B-spline, or the one that has the stencil: QUADRATIC with a size,
+                            ///< LINEAR with a domain
+  Extent extent;            ///< size of points: none, fixed (GIMP), with F (contiguous GIMP); domains
+                            ///< with F (CPDI), or corners that move (CPDI2)
+  double aspect[3];         ///< edges of an undeformed point of some size; their product is 1
   MPM_NS::Transfer transfer;
   double flip;         ///< FLIP share, 0 for PIC
   bool poly;           ///< bilinear modes of the velocity, too; transfer is APIC then
@@ -116,6 +118,8 @@ class FixMPM : public Fix {
   std::vector<FixMPMElements *> elements;       ///< all of them, set in init()
   double **C;    ///< [n][dim*dim] affine, column-major; null: transfer without
   double **Q;    ///< [n][poly_size(dim)] bilinear modes of the velocity; null: transfer without
+  double **corners;    ///< [n][2^dim][dim] CPDI2: from the point, in the order of mpm_domain.h, NAN
+                       ///< before the first step; null: other shapes
   double **X;    ///< [n][3] reference position, NAN before it is known; null: updated frame
   double **R;    ///< [n][9] F at the last update of the reference, row-major; null: there is none
   double **waiting;    ///< [n][6 or 9] since the last step of the cycle: impulse, displacement, and
@@ -207,6 +211,7 @@ class FixMPM : public Fix {
       ActiveBlock {    // a block with points: its runs, and the box of base nodes of the last P2G
     int slot, first_run, last_run;
     int box[6];
+    int low[3], high[3];    // domains: offsets of the first and last blocks that are in reach
   };
   struct Report {    // of the present run
     double t_topology, t_p2g, t_halo, t_nodes, t_g2p, t_sort;
@@ -214,10 +219,30 @@ class FixMPM : public Fix {
     double dt_min, dt_max;
   };
 
-  MPM_NS::Shape kernel_shape() const { return extent == NO_SIZE ? shape : MPM_NS::GIMP; }
+  MPM_NS::Shape kernel_shape() const
+  {
+    constexpr MPM_NS::Shape others[] = {MPM_NS::GIMP, MPM_NS::GIMP, MPM_NS::CPDI, MPM_NS::CPDI2};
+    return extent == NO_SIZE ? shape : others[extent - 1];
+  }
+  bool has_boxes() const { return extent == UNIFORM || extent == CONTIGUOUS; }
+  bool has_domains() const { return extent == PARALLELEPIPED || extent == CORNERS; }
+  /** Reals that describe a domain. */
+  int domain_size() const
+  {
+    return extent == CORNERS ? lattice.dim << lattice.dim : lattice.dim * lattice.dim;
+  }
+  /** Reals of a tile, of which there are two. */
+  std::size_t tile_reals() const
+  {
+    return 8 * (has_domains() ? MPM_NS::domain_tile_nodes(lattice.dim) : MPM_NS::MAX_TILE_NODES);
+  }
   int affine_size() const { return lattice.dim * lattice.dim; }
   /** Reals that each point has of this fix. */
-  int own_size() const { return (C ? affine_size() : 0) + modes_size() + (X ? 3 : 0) + (R ? 9 : 0) + waiting_size(); }
+  int own_size() const
+  {
+    return (C ? affine_size() : 0) + modes_size() + (X ? 3 : 0) + (R ? 9 : 0) +
+        (corners ? domain_size() : 0) + waiting_size();
+  }
   int waiting_size() const;
   int modes_size() const { return poly ? MPM_NS::poly_size(lattice.dim) : 0; }
 
@@ -250,6 +275,8 @@ class FixMPM : public Fix {
   std::vector<double> gradients;         // F-bar: velocity gradients of the points
   std::vector<double> tau_averaged;      // stress with averaged pressure
   std::vector<double> hoop;              // axisymmetric: strain around the axis in this step
+  std::vector<double> domains;           // CPDI: half edges of the domains, [n][dim][dim]
+  std::vector<double> corners_late;      // CPDI2, when points move late: corners at the end of the step
   std::vector<double> sizes;             // GIMP: half sizes of points in node spacings, [n][3]
   std::vector<double> history_batch;     // history variables of a batch
   std::vector<double> external_nodes;    // ledger: nodal external forces
@@ -281,6 +308,13 @@ class FixMPM : public Fix {
   void find_blocks();
   void update_sizes();
   double half_size(int i) const;
+  void update_domains();
+  void box_domain(int i, double *edge) const;
+  void reset_corners(int i);
+  void domain_reach(int i, double low[3], double high[3]) const;
+  void limit_domain(int i);
+  void check_corners();
+  double domain_corners(int i, double *x, double *w) const;
   void finish_topology();
   void points_to_grid();
   void stress_first();
@@ -320,6 +354,7 @@ class FixMPM : public Fix {
   void hoop_of_nodes(const MPM_NS::PointRows &, const MPM_NS::TransferStep &, int first, int last,
                      const int base[3], double dt, double shift);
   void add_hoop_force(const MPM_NS::PointRows &, bigint first, int n, double *f) const;
+  void tile_base(const ActiveBlock &, int base[3]) const;
   void load_tile(const ActiveBlock &, int base[3]);
   void sum_halo(int lane, int nlane);
   void gradient_and_material(double dt, double shift);

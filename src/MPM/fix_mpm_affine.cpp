@@ -147,14 +147,14 @@ void FixMPM::fit_affine()
 
   // all nodes of a point: f(record, weight, position relative to the node in node spacings)
 
-  auto visit = [&](const Grid::Block &block, int i, auto f) {
+  auto visit_from = [&](const Grid::Block &block, int i, const double *x, double share, auto f) {
     int base[3];
-    double t[3], w[3][4] = {{0.0}, {0.0}, {1.0}};
-    const double *x = place(i);
+    double t[3], at[3], w[3][4] = {{0.0}, {0.0}, {1.0}};
     for (int d = 0; d < dim; d++) {
       t[d] = (x[d] - lattice.origin[d]) / lattice.h;
+      at[d] = (place(i)[d] - lattice.origin[d]) / lattice.h;
       shape_weights(t[d], base[d], w[d]);
-      if (extent != NO_SIZE)
+      if (has_boxes())
         Gimp::weights(t[d] - Gimp::shift - base[d], sizes[3 * (std::size_t) i + d], w[d]);
     }
     int k[3];
@@ -167,13 +167,23 @@ void FixMPM::fit_affine()
             const int node = base[d] + k[d];
             side[d] = (node >> grid->shift_bits) - block.b[d] + 1;
             in[d] = node & (grid->side - 1);
-            r[d] = t[d] - node;
+            r[d] = at[d] - node;
           }
           const int slot = block.slot[9 * side[0] + 3 * side[1] + side[2]];
           const int n = dim == 3 ? (in[0] * 4 + in[1]) * 4 + in[2] : in[0] * 8 + in[1];
           f(&sums[((int64_t) slot * NODES_PER_BLOCK + n) * NREAL],
-            w[0][k[0]] * w[1][k[1]] * w[2][k[2]], r);
+            share * w[0][k[0]] * w[1][k[1]] * w[2][k[2]], r);
         }
+  };
+  auto visit = [&](const Grid::Block &block, int i, auto f) {
+    if (!has_domains()) return visit_from(block, i, place(i), 1.0, f);
+    double corner[24], share[8];
+    domain_corners(i, corner, share);
+    for (int c = 0; c < 1 << dim; c++) {
+      double x[3] = {0.0, 0.0, 0.0};
+      for (int d = 0; d < dim; d++) x[d] = place(i)[d] + corner[dim * c + d];
+      visit_from(block, i, x, share[c], f);
+    }
   };
 
   for (const auto &run : runs)

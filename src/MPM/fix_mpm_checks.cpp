@@ -85,7 +85,7 @@ void FixMPM::check_points()
     for (int c = 0; c < 6; c++) sum += fabs(points->tau[i][c]);
     if (!std::isfinite(sum) || !(J > 0.0)) note(STATE, i);
     if (axisymmetric && !(x[0] > 0.0)) note(AXIS, i);
-    for (int d = 0; d < lattice.dim && extent != NO_SIZE; d++)
+    for (int d = 0; d < lattice.dim && has_boxes(); d++)
       if (half_size(i) * aspect[d] > 0.5 * (1.0 + 1.0e-6)) {
         note(SIZE, i);
         break;

@@ -50,7 +50,8 @@ using namespace MPM_NS;
 /** Is the option of use, and if not given, is it needed? */
 void FixMPM::check_light_nodes()
 {
-  const bool needed = !total && shape == LINEAR && (scheme == USL || is_affine(transfer));
+  const bool needed =
+      !total && shape == LINEAR && extent == NO_SIZE && (scheme == USL || is_affine(transfer));
   if (light > 0.0 && !needed)
     error->all(FLERR, "Fix mpm {}: light is of no use with this shape, transfer and scheme: remove "
                "light, which is for shape linear with scheme usl or transfer apic, aflip, tpic", id);
@@ -88,7 +89,7 @@ void FixMPM::blend_light_nodes()
   for (const auto &a : active) {
     const auto &block = grid->blocks[a.slot];
     int base[3], box[6] = {127, 127, 127, -127, -127, -127};
-    for (int d = 0; d < 3; d++) base[d] = grid->side * block.b[d] - 1;
+    tile_base(a, base);
     for (int k = a.first_run; k < a.last_run; k++)
       pic.p2g_momentum(r, s, runs[k].first, runs[k].last, base, tile, box);
     pic.flush(tile, nodes_apart.data(), block.slot, box);

@@ -74,7 +74,7 @@ void FixMPM::average_around_points()
       for (auto &a : active) {
         const auto &block = grid->blocks[a.slot];
         int base[3];
-        for (int d = 0; d < 3; d++) base[d] = grid->side * block.b[d] - 1;
+        tile_base(a, base);
         int first = a.first_run, last = a.last_run;    // runs are sorted by material
         while (first < last && runs[first].material != material) first++;
         while (last > first && runs[last - 1].material != material) last--;

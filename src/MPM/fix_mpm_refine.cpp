@@ -124,7 +124,7 @@ void FixMPM::add_term(int lane)
   for (const auto &a : active) {
     const auto &block = grid->blocks[a.slot];
     int base[3];
-    for (int d = 0; d < 3; d++) base[d] = grid->side * block.b[d] - 1;
+    tile_base(a, base);
     pic.load(tile_load, nodes_apart.data(), block.slot, a.box);
     for (int k = a.first_run; k < a.last_run; k++)
       pic.g2p(r, s, runs[k].first, runs[k].last, base, tile_load, nullptr);
@@ -134,7 +134,7 @@ void FixMPM::add_term(int lane)
   for (auto &a : active) {
     const auto &block = grid->blocks[a.slot];
     int base[3], box[6] = {127, 127, 127, -127, -127, -127};
-    for (int d = 0; d < 3; d++) base[d] = grid->side * block.b[d] - 1;
+    tile_base(a, base);
     for (int k = a.first_run; k < a.last_run; k++)
       pic.p2g_momentum(r, s, runs[k].first, runs[k].last, base, tile, box);
     pic.flush(tile, nodes_apart.data(), block.slot, box);

@@ -75,7 +75,7 @@ double FixMPM::external_work(const double *force_on)
   for (auto &a : active) {
     const auto &block = grid->blocks[a.slot];
     int base[3], box[6] = {127, 127, 127, -127, -127, -127};
-    for (int d = 0; d < 3; d++) base[d] = grid->side * block.b[d] - 1;
+    tile_base(a, base);
     for (int k = a.first_run; k < a.last_run; k++)
       map_run(kernel.p2g_force, r, s, runs[k], base, box);
     kernel.flush(tile, external_nodes.data(), block.slot, box);
@@ -138,7 +138,8 @@ double FixMPM::bytes_per_point() const
   double bytes = 9 * sizeof(double) + sizeof(tagint) + 2 * sizeof(int) + sizeof(imageint);
   bytes += (1 + 1 + 9 + 6) * sizeof(double);    // mass, V0, F, stress
   bytes += own_size() * sizeof(double);
-  if (extent != NO_SIZE) bytes += 3 * sizeof(double);
+  if (has_boxes()) bytes += 3 * sizeof(double);
+  if (extent == PARALLELEPIPED) bytes += domain_size() * sizeof(double);
   if (axisymmetric) bytes += sizeof(double);
   int nhistory = 0;
   for (auto *material : materials) nhistory += material->nhistory;
@@ -204,5 +205,6 @@ double FixMPM::memory_usage()
   bytes += (xnew.capacity() + external_nodes.capacity() + zero_volume.capacity() +
             v_apart.capacity() + rows_apart.capacity() + nodes_apart.capacity() +
             gradients.capacity() + tau_averaged.capacity() + hoop.capacity()) * sizeof(double);
-  return bytes + 2.0 * MAX_TILE_NODES * 8 * sizeof(double);
+  bytes += (sizes.capacity() + domains.capacity() + corners_late.capacity()) * sizeof(double);
+  return bytes + 2.0 * tile_reals() * sizeof(double);
 }

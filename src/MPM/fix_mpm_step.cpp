@@ -157,10 +157,12 @@ void FixMPM::grid_to_points()
   const bool fbar = averages_strain() && scheme == USL, round = axisymmetric && scheme == USL;
   const bool now = scheme == USL && light == 0.0;    // the gradient is final
   if (round) hoop.resize(atom->nmax);
+  if (moves_late() && corners) corners_late.resize(domain_size() * (std::size_t) atom->nlocal);
   const bool apart = strains_apart(), in_C = kernel.affine && !apart && !R;
   if (fbar && !in_C) gradients.resize(affine_size() * (std::size_t) atom->nmax);
 
-  const PointRows r = rows();
+  PointRows r = rows();
+  if (corners) r.corners_new = moves_late() ? corners_late.data() : &corners[0][0];
   const TransferStep s = step_data();
   double L[9 * BATCH];
   for (const auto &a : active) {
@@ -202,6 +204,11 @@ void FixMPM::move_points()
   for (const auto &run : runs)
     memcpy(&atom->x[run.first][0], &xnew[3 * (std::size_t) run.first],
            3 * sizeof(double) * (run.last - run.first));
+  const std::size_t n = domain_size();
+  for (const auto &run : runs)
+    if (corners)
+      memcpy(corners[run.first], &corners_late[n * run.first],
+             n * sizeof(double) * (run.last - run.first));
 }
 
 /* ----------------------------------------------------------------------
@@ -369,12 +376,14 @@ void FixMPM::bookkeeping()
     kinetic_points = kinetic;
   }
 
+  if (drifted && corners) check_corners();
   if (drifted)    // rare, and the kernels must never see such a position
     for (const auto &run : runs)
       for (int i = run.first; i < run.last; i++) {
         const double *x = atom->x[i];
         if (!std::isfinite(x[0] + x[1] + x[2])) point_is_bad(i, "has lost its position");
       }
+  if (has_domains()) drifted = 0;
   if (watch_drift) {
     int all;
     MPI_Allreduce(&drifted, &all, 1, MPI_INT, MPI_BOR, world);
@@ -418,8 +427,8 @@ void FixMPM::map_to_nodes(P2G p2g)
     const auto &block = grid->blocks[a.slot];
     kernel.prefetch(tile, grid->nodes(), block.slot, a.box);    // that of the step before
     int base[3];
+    tile_base(a, base);
     for (int d = 0; d < 3; d++) {
-      base[d] = grid->side * block.b[d] - 1;
       a.box[d] = 127;
       a.box[3 + d] = -127;
     }
@@ -458,6 +467,7 @@ void FixMPM::map_run(P2G p2g, const PointRows &r, const TransferStep &s, const R
     b.guarded -= (int) i;
     b.tau += 6 * i;
     if (r.size) b.size += 3 * i;
+    if (r.domain) b.domain += domain_size() * i;
     if (total) {
       if (R)
         for (int p = 0; p < n; p++) lattice_F((int) i + p, F + 9 * p);
@@ -488,7 +498,7 @@ void FixMPM::map_some(const PointRows &r, const TransferStep &s, P2G p2g,
     for (const int slot : block.slot) wanted = wanted || (slot >= 0 && near[slot]);
     if (!wanted) continue;
     int base[3], box[6] = {127, 127, 127, -127, -127, -127};
-    for (int d = 0; d < 3; d++) base[d] = grid->side * block.b[d] - 1;
+    tile_base(a, base);
     for (int k = a.first_run; k < a.last_run; k++) {
       for (int i = runs[k].first; i < runs[k].last; i++) weigh(i);
       p2g(r, s, runs[k].first, runs[k].last, base, tile, box);
@@ -570,8 +580,8 @@ void FixMPM::volume_at_points(std::vector<double> &share)
   int base[3];
   for (auto &a : blocks) {
     const auto &block = grid->blocks[a.slot];
+    tile_base(a, base);
     for (int d = 0; d < 3; d++) {
-      base[d] = grid->side * block.b[d] - 1;
       a.box[d] = 127;
       a.box[3 + d] = -127;
     }
@@ -595,7 +605,7 @@ void FixMPM::volume_at_points(std::vector<double> &share)
 
   for (const auto &a : blocks) {
     const auto &block = grid->blocks[a.slot];
-    for (int d = 0; d < 3; d++) base[d] = grid->side * block.b[d] - 1;
+    tile_base(a, base);
     pic.load(tile_load, nodes_apart.data(), block.slot, a.box);
     for (int k = a.first_run; k < a.last_run; k++)
       pic.g2p(r, s, runs[k].first, runs[k].last, base, tile_load, nullptr);
@@ -606,6 +616,15 @@ void FixMPM::volume_at_points(std::vector<double> &share)
 }
 
 /* ----------------------------------------------------------------------
+   node index of the first entry of the tile of a block
+------------------------------------------------------------------------- */
+
+void FixMPM::tile_base(const ActiveBlock &a, int base[3]) const
+{
+  for (int d = 0; d < 3; d++) base[d] = grid->side * grid->blocks[a.slot].b[d] - kernel.margin;
+}
+
+/* ----------------------------------------------------------------------
    nodes of a block to the tile, and those of the next block towards the cache: in a large run
    they are not there, and nothing else would hide that
 ------------------------------------------------------------------------- */
@@ -613,7 +632,7 @@ void FixMPM::volume_at_points(std::vector<double> &share)
 void FixMPM::load_tile(const ActiveBlock &a, int base[3])
 {
   const auto &block = grid->blocks[a.slot];
-  for (int d = 0; d < 3; d++) base[d] = grid->side * block.b[d] - 1;
+  tile_base(a, base);
   kernel.load(tile_load, grid->nodes(), block.slot, a.box);
   const ActiveBlock *next = &a + 1;
   if (next < active.data() + active.size())

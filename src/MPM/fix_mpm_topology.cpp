@@ -59,6 +59,7 @@ bool FixMPM::base_node(const double *x, int base[3], double t[3]) const
 
 void FixMPM::update_topology()
 {
+  for (auto *field : fields) field->update_domains();
   for (auto *action : actions) action->couple_topology();
   for (auto *field : fields) field->find_blocks();
   for (auto *action : actions) action->blocks_found();
@@ -72,7 +73,7 @@ void FixMPM::update_topology()
 
 void FixMPM::find_topology()
 {
-  if (!topology_valid)
+  if (!topology_valid || has_domains())    // of which corners may have left what is in reach
     dynamic_cast<FixMPM *>(modify->get_fix_by_style("^mpm$")[0])->update_topology();
 }
 
@@ -87,7 +88,7 @@ void FixMPM::find_topology()
 
 void FixMPM::update_sizes()
 {
-  if (extent == NO_SIZE) return;
+  if (!has_boxes()) return;
   constexpr double MIN_SIZE = 1.0e-4, MAX_SIZE = 0.5;
   sizes.resize(3 * (std::size_t) atom->nmax, MAX_SIZE);
   for (const auto &run : runs)
@@ -162,9 +163,11 @@ void FixMPM::find_blocks()
       runs.push_back({i, i + 1, slot, material});
     }
     Range &r = ranges[runs.back().slot];
+    double reach_lo[3] = {0.0, 0.0, 0.0}, reach_hi[3] = {0.0, 0.0, 0.0};
+    if (has_domains()) domain_reach(i, reach_lo, reach_hi);
     for (int d = 0; d < 3; d++) {
-      r.lo[d] = std::min(r.lo[d], t[d]);
-      r.hi[d] = std::max(r.hi[d], t[d]);
+      r.lo[d] = std::min(r.lo[d], t[d] + reach_lo[d]);
+      r.hi[d] = std::max(r.hi[d], t[d] + reach_hi[d]);
       last_base[d] = base[d];
       last_block[d] = b[d];
     }
@@ -188,9 +191,10 @@ void FixMPM::find_blocks()
   // blocks that the points can reach before the next update, which comes when a point leaves its tile
   // at the latest: all around the block, if nothing else bounds the drift
 
+  const double least = has_domains() ? 1.0e-6 : 0.0;    // see update_domains()
   const double drift = total ? 0.0 :
       watch_drift            ? grid->side :
-                               std::min(1.0, 0.5 * neighbor->skin / lattice.h);
+                               std::max(least, std::min(1.0, 0.5 * neighbor->skin / lattice.h));
   const int nactive = active.size();
   for (int k = 0; k < nactive; k++) {
     const Range &r = ranges[k];
@@ -200,6 +204,10 @@ void FixMPM::find_blocks()
       const int first = b[d] * grid->side;
       if ((int) std::floor(r.lo[d] - drift) < first) lo[d] = -1;
       if ((int) std::floor(r.hi[d] + drift) + shape >= first + grid->side) hi[d] = 1;
+    }
+    for (int d = 0; d < 3; d++) {
+      active[k].low[d] = lo[d];
+      active[k].high[d] = hi[d];
     }
     for (int dx = lo[0]; dx <= hi[0]; dx++)
       for (int dy = lo[1]; dy <= hi[1]; dy++)

@@ -15,14 +15,20 @@
 
 namespace MPM_NS {
 
-/** B-splines of order 1 to 3, and functions of points of finite size, see Gimp in mpm_shape.h. */
-enum Shape { LINEAR = 1, QUADRATIC = 2, CUBIC = 3, GIMP = 4 };
+/** B-splines of order 1 to 3; functions of points of finite size, see Gimp in mpm_shape.h; linear
+ *  functions at the corners of a domain, see mpm_domain.h: a box (CPDI) or with free corners. */
+enum Shape { LINEAR = 1, QUADRATIC = 2, CUBIC = 3, GIMP = 4, CPDI = 5, CPDI2 = 6 };
 enum Transfer { PIC, FLIP, APIC, AFLIP, TPIC };
 
-/** A point reaches this + 1 nodes along each axis, the same as the B-spline of this order. */
+constexpr bool has_domain(Shape shape)
+{
+  return shape == CPDI || shape == CPDI2;
+}
+/** A point (of a domain, each corner) reaches this + 1 nodes along each axis, the same as the
+ *  B-spline of this order. */
 constexpr int stencil_order(Shape shape)
 {
-  return shape == GIMP ? 2 : shape;
+  return shape == GIMP ? 2 : has_domain(shape) ? 1 : shape;
 }
 /** Points have an affine matrix. */
 constexpr bool is_affine(Transfer transfer)
@@ -71,8 +77,26 @@ constexpr int tile_nodes(int dim, int order)
   return tile_stride_x(dim, order) * tile_side(dim, order) + 8;
 }
 
-/** Largest number of nodes in a tile over all kernels (cubic, 3d: 9 * 9 * 9 and padding). */
+/** Largest number of nodes in a tile of B-splines (cubic, 3d: 9 * 9 * 9 and padding). */
 constexpr int MAX_TILE_NODES = 1024;
+
+/** Tiles of domains: three blocks along each side, as corners may be far from their point. */
+constexpr int domain_tile_side(int dim)
+{
+  return 3 * block_side(dim);
+}
+constexpr int domain_stride_y(int dim)
+{
+  return dim == 3 ? domain_tile_side(dim) + 1 : 1;
+}
+constexpr int domain_stride_x(int dim)
+{
+  return dim == 3 ? domain_stride_y(dim) * domain_tile_side(dim) : domain_tile_side(dim) + 1;
+}
+constexpr int domain_tile_nodes(int dim)
+{
+  return domain_stride_x(dim) * domain_tile_side(dim) + 8;
+}
 
 /** State of points as contiguous rows; pointers are to the first row of the rank. */
 struct PointRows {
@@ -90,6 +114,9 @@ struct PointRows {
   const double *P = nullptr;       ///< [n][dim*dim] total frame: first Piola-Kirchhoff stress, the
                                    ///< place of tau, column-major: P[dim*j+i] = P_ij
   const double *size = nullptr;    ///< [n][3] GIMP: half size along each axis in node spacings
+  const double *domain = nullptr;  ///< CPDI: [n][dim][dim] half edges; CPDI2: [n][2^dim][dim] corners
+                                   ///< relative to x, in the order of mpm_domain.h
+  double *corners_new = nullptr;   ///< CPDI2: where G2P puts them, the point at the center; null: not
 };
 
 /** What a transfer needs to know about the lattice and the step. */
@@ -108,6 +135,8 @@ struct TransferStep {
  *  base: node index of tile entry (0,0,0), which is the block's first base node minus one per axis.
  *  A base node of a point is floor((x - origin)/h - s), s = 0, 1/2, 1 for linear, quadratic (GIMP), cubic.
  *  In 2d, z is ignored, and tiles and base have two axes (base[2] unused).
+ *  Domains: base is the first node of the block before; each corner has a base node (s = 0), and all
+ *  of them and their next nodes must be in the tile, which has the block's neighbors on all sides.
  *
  *  Tile entry layout, 8-byte reals:
  *   merged (4 reals): on P2G px py pz m, momentum including dt * force; on G2P vx vy vz m.
@@ -119,7 +148,8 @@ struct TransferStep {
 using P2G = void (*)(const PointRows &, const TransferStep &, int first, int last, const int base[3],
                      double *tile, int box[6]);
 
-/** G2P returns 0, or non-zero when a point's new position has left the range of its tile.
+/** G2P returns 0, or non-zero when a point's new position has left the range of its tile (domains:
+ *  when it is not finite, or a domain is inverted, with weights that are not positive).
  *  L: [last-first][dim*dim] column-major velocity gradient with respect to the positions in x;
  *  kernels that store C write the same matrix there and leave L alone when it is null; the others
  *  do not compute it when it is null. */
@@ -137,6 +167,7 @@ using TileIO = void (*)(double *tile, double *nodes, const int slot[27], const i
 /** All kernels of one dimension, shape and transfer. A null pointer: not in this combination. */
 struct TransferKernels {
   int nreal;           ///< reals of a tile entry and node record: 4 merged, 8 split
+  int margin;          ///< nodes of a tile in front of the block, see P2G
   bool affine;         ///< uses C
   bool mls;            ///< stress and velocity gradient through the affine matrix (quadratic, cubic)
   P2G p2g;             ///< mass, momentum and force (internal and external)

@@ -85,6 +85,10 @@ TransferKernels choose(Shape shape, Transfer transfer, bool split)
     case GIMP:
       if (TOTAL) return TransferKernels();
       return MPM_CONCAT(mpm_kernels_gimp_, MPM_ISA)(DIM, transfer, split);
+    case CPDI:
+    case CPDI2:
+      if (TOTAL) return TransferKernels();
+      return MPM_CONCAT(mpm_kernels_domain_, MPM_ISA)(DIM, shape, transfer, split);
   }
   return TransferKernels();
 }

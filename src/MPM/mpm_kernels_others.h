@@ -28,5 +28,9 @@ TransferKernels MPM_CONCAT(mpm_kernels_affine_, MPM_ISA)(int dim, Shape, Transfe
 
 /** All transfers with points of finite size. */
 TransferKernels MPM_CONCAT(mpm_kernels_gimp_, MPM_ISA)(int dim, Transfer, bool split);
+
+/** All transfers with convected domains, CPDI and CPDI2. */
+TransferKernels MPM_CONCAT(mpm_kernels_domain_, MPM_ISA)(int dim, Shape, Transfer, bool split);
+TransferKernels mpm_kernels_domain_reference(int dim, Shape, Transfer, bool split);
 }    // namespace MPM_NS
 #endif

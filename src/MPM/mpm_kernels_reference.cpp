@@ -9,7 +9,7 @@
 // Kernels in plain scalar loops: the statement of what a transfer is. The tests compare every
 // instruction set with them, and they run where nothing else does.
 
-#include "mpm_kernels.h"
+#include "mpm_kernels_others.h"
 
 #include "mpm_shape.h"
 
@@ -17,10 +17,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-
-namespace MPM_NS {
-const MPMKernels *mpm_kernels_reference();
-}
 
 using namespace MPM_NS;
 
@@ -291,6 +287,7 @@ TransferKernels kernels()
   constexpr int ORDER = stencil_order(SHAPE);
   TransferKernels k;
   k.nreal = NREAL;
+  k.margin = 1;
   k.affine = is_affine(TRANSFER);
   k.mls = is_mls(SHAPE, TRANSFER);
   k.p2g = p2g<DIM, SHAPE, TRANSFER, NREAL, ALL, TOTAL>;
@@ -335,6 +332,10 @@ TransferKernels choose(Shape shape, Transfer transfer, bool split)
       return choose<TOTAL, DIM, CUBIC>(transfer, split);
     case GIMP:
       return choose<TOTAL, DIM, GIMP>(transfer, split);
+    case CPDI:
+    case CPDI2:
+      if (TOTAL) return TransferKernels();
+      return mpm_kernels_domain_reference(DIM, shape, transfer, split);
   }
   return TransferKernels();
 }

@@ -981,6 +981,7 @@ TransferKernels kernels()
   using G2P = NodesToPoints<DIM, SHAPE, TRANSFER, NREAL, TOTAL>;
   TransferKernels k;
   k.nreal = NREAL;
+  k.margin = 1;
   k.affine = affine;
   k.mls = mls;
   k.p2g = PointsToNodes<DIM, SHAPE, affine, mls, NREAL, ALL, TOTAL>::p2g;

@@ -1,0 +1,189 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// Domains of the points of fix mpm (shapes cpdi and cpdi2), see mpm_domain.h.
+//
+// Those of cpdi are made from F in each step, half edges F r_0; those of cpdi2 are corners that move
+// with the nodes' velocities. Domains stay the same throughout a step. A tile has the neighbors of
+// its block on all sides, but only those blocks are active that corners can reach soon: whether
+// they still do is checked at the start of each step.
+
+#include "fix_mpm.h"
+
+#include "atom.h"
+#include "error.h"
+#include "memory.h"
+#include "mpm_domain.h"
+#include "mpm_points.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+// of the places of corners, in node spacings
+static constexpr double ROUND_OFF = 1.0e-9;
+
+/* ----------------------------------------------------------------------
+   half edges of the box that an undeformed point is, after the deformation F
+------------------------------------------------------------------------- */
+
+void FixMPM::box_domain(int i, double *edge) const
+{
+  const int dim = lattice.dim;
+  const double half = half_size(i) * lattice.h, *F = points->F[i];
+  for (int k = 0; k < dim; k++)
+    for (int d = 0; d < dim; d++) edge[dim * k + d] = half * aspect[k] * F[3 * d + k];
+}
+
+/* ----------------------------------------------------------------------
+   cpdi2: the corners of that box
+------------------------------------------------------------------------- */
+
+void FixMPM::reset_corners(int i)
+{
+  double edge[9], gradient[24];
+  box_domain(i, edge);
+  if (lattice.dim == 2)
+    PointDomain<2>::box(edge, corners[i], gradient);
+  else
+    PointDomain<3>::box(edge, corners[i], gradient);
+}
+
+/* ----------------------------------------------------------------------
+   corners of the domain relative to the point, and their weights; returns the size
+------------------------------------------------------------------------- */
+
+double FixMPM::domain_corners(int i, double *x, double *w) const
+{
+  const int n = 1 << lattice.dim;
+  double g[24];
+  if (extent == PARALLELEPIPED) {
+    const double *edge = &domains[domain_size() * (std::size_t) i];
+    std::fill(w, w + n, 1.0 / n);
+    return lattice.dim == 2 ? PointDomain<2>::box(edge, x, g) : PointDomain<3>::box(edge, x, g);
+  }
+  std::copy(corners[i], corners[i] + domain_size(), x);
+  return lattice.dim == 2 ? PointDomain<2>::free(x, w, g) : PointDomain<3>::free(x, w, g);
+}
+
+/* ----------------------------------------------------------------------
+   how far a domain reaches from its point along each axis, in node spacings
+------------------------------------------------------------------------- */
+
+void FixMPM::domain_reach(int i, double low[3], double high[3]) const
+{
+  const int dim = lattice.dim;
+  for (int d = 0; d < dim; d++) low[d] = high[d] = 0.0;
+  if (extent == PARALLELEPIPED) {
+    const double *edge = &domains[dim * dim * (std::size_t) i];
+    for (int k = 0; k < dim; k++)
+      for (int d = 0; d < dim; d++) high[d] += std::fabs(edge[dim * k + d]);
+    for (int d = 0; d < dim; d++) {
+      high[d] /= lattice.h;
+      low[d] = -high[d];
+    }
+    return;
+  }
+  const double *x = corners[i];
+  for (int k = 0; k < 1 << dim; k++)
+    for (int d = 0; d < dim; d++, x++) {
+      low[d] = std::min(low[d], *x / lattice.h);
+      high[d] = std::max(high[d], *x / lattice.h);
+    }
+}
+
+/* ----------------------------------------------------------------------
+   a corner may be one block side less one cell away from its point, or else it may be beyond the
+   tile wherever the point is in its block
+------------------------------------------------------------------------- */
+
+void FixMPM::limit_domain(int i)
+{
+  const double limit = grid->side - 1 - 2.0 * ROUND_OFF;
+  double low[3], high[3], reach = 0.0;
+  domain_reach(i, low, high);
+  for (int d = 0; d < lattice.dim; d++) reach = std::max(reach, std::max(-low[d], high[d]));
+  if (reach <= limit) return;
+  if (policy == ERROR)
+    error->one(FLERR, "{} has a domain with a corner {:.4g} node spacings away at step {}, the limit "
+               "is {}: use smaller points or a larger node spacing; with fix mpm ... bad warn the "
+               "domain is made smaller, with bad delete the point is removed",
+               point_state(i), reach, update->ntimestep, grid->side - 1);
+  bad_points.push_back(atom->tag[i]);
+  if (policy == WARN && nbad_total + (bigint) bad_points.size() < 10)
+    error->warning(FLERR, "{} has a domain with a corner {:.4g} node spacings away at step {}: it is "
+                   "made smaller", point_state(i), reach, update->ntimestep);
+  const int n = domain_size();
+  double *row = corners ? corners[i] : &domains[n * (std::size_t) i];
+  const double scale = std::isfinite(reach) ? limit / reach : 0.0;
+  for (int k = 0; k < n; k++) row[k] = scale > 0.0 ? scale * row[k] : 0.0;
+}
+
+/* ----------------------------------------------------------------------
+   cpdi2: points whose domain is inverted; with policy warn it becomes that of F
+------------------------------------------------------------------------- */
+
+void FixMPM::check_corners()
+{
+  const int n = 1 << lattice.dim;
+  for (const auto &run : runs)
+    for (int i = run.first; i < run.last; i++) {
+      double x[24], w[8];
+      const double size = domain_corners(i, x, w);
+      if (size > 0.0 && *std::min_element(w, w + n) >= 0.0) continue;
+      point_is_bad(i, "has a domain that is turned inside out");
+      if (policy == WARN) reset_corners(i);
+    }
+}
+
+/* ----------------------------------------------------------------------
+   the domains of this step; new lists of blocks if corners are beyond those that are active
+------------------------------------------------------------------------- */
+
+void FixMPM::update_domains()
+{
+  if (!has_domains()) return;
+  const int size = domain_size();
+  if (extent == PARALLELEPIPED) domains.resize(size * (std::size_t) atom->nmax);
+  double low[3], high[3];
+
+  if (topology_valid) {
+    int outside = 0, all;
+    for (const auto &a : active) {
+      double first[3], end[3];    // of corners, in node spacings
+      for (int d = 0; d < lattice.dim; d++) {
+        first[d] = grid->side * (grid->blocks[a.slot].b[d] + a.low[d]);
+        end[d] = grid->side * (grid->blocks[a.slot].b[d] + a.high[d] + 1) - 1.0 - ROUND_OFF;
+      }
+      for (int k = a.first_run; k < a.last_run; k++)
+        for (int i = runs[k].first; i < runs[k].last; i++) {
+          if (extent == PARALLELEPIPED) box_domain(i, &domains[size * (std::size_t) i]);
+          domain_reach(i, low, high);
+          for (int d = 0; d < lattice.dim; d++) {
+            const double t = (atom->x[i][d] - lattice.origin[d]) / lattice.h;
+            outside |= !(t + low[d] >= first[d]) | !(t + high[d] < end[d]);
+          }
+        }
+    }
+    MPI_Allreduce(&outside, &all, 1, MPI_INT, MPI_BOR, world);
+    if (!all) return;
+    topology_valid = false;
+  }
+
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!is_point(i)) continue;
+    if (extent == PARALLELEPIPED)
+      box_domain(i, &domains[size * (std::size_t) i]);
+    else if (std::isnan(corners[i][0]))    // has not moved yet
+      reset_corners(i);
+    limit_domain(i);
+  }
+}

@@ -1,0 +1,506 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// labels: physics mpi restart input
+// mpi: 1 4
+// timeout: 900
+
+// Convected particle domain interpolation, shapes cpdi and cpdi2 of fix mpm: large deformation,
+// conservation, ranks, restarts, and what is refused. The weights are tested in test_domain.cpp.
+
+#include "mpm_lammps.h"
+
+#include "mpm_domain.h"
+
+#include "gtest/gtest.h"
+
+#include <cmath>
+
+using namespace MPM_TEST;
+
+static const std::vector<const char *> variants = {
+    "shape cpdi transfer apic",
+    "shape cpdi transfer flip 1.0 scheme musl",
+    "shape cpdi transfer flip 0.99 scheme usavg",
+    "shape cpdi transfer apic scheme usf",
+    "shape cpdi transfer xpic 3",
+    "shape cpdi transfer fmpm 2 locking pressure",
+    "shape cpdi2 transfer apic",
+    "shape cpdi2 transfer flip 1.0 scheme musl",
+    "shape cpdi2 transfer aflip 0.99 scheme usavg",
+    "shape cpdi2 transfer pic scheme usf",
+    "shape cpdi2 transfer apic locking fbar",
+};
+
+// periodic faces and boundaries of ranks are crossed
+
+TEST(Parallel, RanksAgree)
+{
+  for (const char *options : variants) {
+    SCOPED_TRACE(options);
+    OnRanks run(replaced(two_bodies, "MPM_OPTIONS", options), "run 60\n");
+    EXPECT_LT(run.difference(), 1e-12);
+  }
+}
+
+TEST(Restart, GoesOnBitByBit)
+{
+  for (const char *options : {"shape cpdi transfer apic", "shape cpdi2 transfer flip 1.0 scheme musl",
+                              "shape cpdi2 transfer tpic"}) {
+    SCOPED_TRACE(options);
+    const std::string next = "neighbor 0.3 bin\nfix grid all mpm 1.0 " + std::string(options) + R"(
+fix m1 one mpm/material density 1.0 neohookean 10.0 0.3
+fix m2 two mpm/material density 2.0 linear 20.0 0.2
+timestep 0.05
+thermo 1000
+)";
+    Continued run(replaced(two_bodies, "MPM_OPTIONS", options), 40, next, 40);
+    EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
+  }
+  const std::string scene = replaced(two_bodies, "MPM_OPTIONS", "shape cpdi2");
+  const ScratchFile file("other");
+  Scene first;
+  first.commands(scene + "run 1\nwrite_restart " + file.name + "\n");
+  Scene second;
+  EXPECT_THAT(second.error("read_restart " + file.name + "\nfix grid all mpm 1.0 shape cpdi\n"),
+              ::testing::HasSubstr("give the fix the shape"));
+}
+
+TEST(Conservation, MomentumIsKeptAndNoEnergyGained)
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  for (const char *options : variants) {
+    SCOPED_TRACE(options);
+    Scene run;
+    run.commands(replaced(two_bodies, "MPM_OPTIONS", options));
+    run.commands("compute e all mpm/energy\nvariable px equal vcm(all,x)\nvariable m equal mass(all)\n"
+                 "thermo_style custom step c_e[*] v_px\nrun 0\n");
+    const double p = run.evaluate("v_px*v_m"), kinetic = run.evaluate("c_e[1]");
+    run.commands("run 150\n");
+    EXPECT_NEAR(run.evaluate("v_px*v_m"), p, 1e-11 * run.evaluate("v_m"));
+    EXPECT_LT(run.evaluate("(c_e[1]+c_e[2])") / kinetic, 1.02);
+  }
+}
+
+// The mean of corners is that of the box, in which GIMP takes it, where the box is in one cell: up to
+// second order in the displacement for points whose edges are on nodes at first. Gradients agree
+// anyway.
+
+TEST(Equivalence, BoxesInOneCellAreThoseOfCpgimp)
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  for (const char *transfer : {"transfer flip 1.0 scheme musl", "transfer apic"}) {
+    std::vector<Scene::State> states[2];
+    for (const int k : {0, 1}) {
+      Scene run;
+      run.commands(std::string(R"(
+units lj
+dimension 2
+boundary p p p
+atom_style mpm
+region box block 0 16 0 4 -0.5 0.5
+create_box 1 box
+fix g all mpm 1.0 shape )") + (k ? "cpdi " : "cpgimp ") + transfer + R"(
+create_points 1 region box ppc 2
+fix m all mpm/material density 1 neohookean 100 0.3
+variable v atom 1e-7*sin(2*PI*x/16)
+velocity all set v_v 0 0
+timestep 0.02
+thermo 1000
+run 200
+)");
+      states[k] = run.gather();
+    }
+    EXPECT_LT(measured("cpdi and cpgimp", difference(states[0], states[1])), 1e-6);
+  }
+}
+
+// each point flies on with v = 2 x t^-1, eleven times as long in the end. Points of FLIP that are alone
+// on their nodes would not notice that they are stretched
+
+TEST(Stretch, ElevenfoldWithoutFracture)
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  const auto error = [](const std::string &shape) {
+    Scene run;
+    run.commands(R"(
+units lj
+dimension 2
+boundary f p p
+atom_style mpm
+region box block -70 70 0 4 -0.5 0.5
+create_box 1 box
+fix g all mpm 1.0 transfer flip 1.0 scheme musl shape )" +
+                 shape + R"(
+region bar block -6 6 0 4 -0.5 0.5
+create_points 1 region bar ppc 2
+fix m all mpm/material density 1 neohookean 1e-10 0.3
+variable v atom 0.1*x
+velocity all set v_v 0 0
+timestep 0.05
+thermo 10000
+run 2000
+)");
+    double worst = 0.0;    // points at the ends have nothing outside that goes on faster
+    for (const auto &s : run.gather())
+      if (std::fabs(s.x[0]) < 44.0) worst = std::max(worst, std::fabs(s.F[0] - 11.0));
+    return measured(shape + ", error of the stretch", worst);
+  };
+  EXPECT_LT(error("cpdi"), 0.2);
+  EXPECT_LT(error("cpdi2"), 0.2);
+  EXPECT_GT(error("quadratic"), 1.0);
+}
+
+// B2, benchmark of K. Kamojjala et al., Eng. Comput. 31 (2015) 269: a ring that is swirled by
+// alpha = g(t) s(R), shear up to 6.2. Exact forces at the reference positions.
+
+static double vortex(const std::string &options, int n, double G, double *volume = nullptr)
+{
+  const double h = 0.5 / n, c2 = 1.0 / 2.6, w = 2.0 * M_PI;
+  Scene run;
+  run.commands(strprintf(R"(
+units si
+dimension 2
+boundary f f p
+atom_style mpm
+neighbor %g bin
+region box block %g %g %g %g -0.1 0.1
+create_box 1 box
+fix grid all mpm %.17g %s
+region outer cylinder z 0 0 1.25 INF INF
+region hole cylinder z 0 0 0.75 INF INF side out
+region ring intersect 2 outer hole
+create_points 1 region ring ppc 2
+fix soft all mpm/material density 1000 neohookean 1000 0.3
+timestep %.17g
+thermo 100000
+)",
+                         0.5 * h, -1.5 - h, 1.5 + h, -1.5 - h, 1.5 + h, h, options.c_str(),
+                         0.2 * h / 5.06));
+  run.set_reference();
+  double worst = 0.0;
+  run.each_step([&](double **force) {
+    const double t = run.time();
+    const double g = 0.5 * G * (1.0 - cos(w * t)), g1 = 0.5 * G * w * sin(w * t),
+                 g2 = 0.5 * G * w * w * cos(w * t);
+    double sum = 0.0;
+    for (int i = 0; i < run.n(); i++) {
+      const double *X = run.reference(i), R = hypot(X[0], X[1]), q = 2.0 * (R - 1.0);
+      const double s = 1.0 - 8.0 * q * q + 16.0 * q * q * q * q, s1 = 2.0 * (64.0 * q * q * q - 16.0 * q),
+                   s2 = 4.0 * (192.0 * q * q - 16.0), a = g * s;
+      const double A = c2 * (3.0 * g * s1 + R * g * s2) - R * g2 * s;
+      const double B = R * (c2 * g * s1 * g * s1 - g1 * s * g1 * s);
+      const double bR = A * sin(a) + B * cos(a), bT = -A * cos(a) + B * sin(a);
+      force[i][0] = run.mass()[i] * (bR * X[0] - bT * X[1]) / R;
+      force[i][1] = run.mass()[i] * (bR * X[1] + bT * X[0]) / R;
+      const double ex = run.x()[i][0] - X[0] * cos(a) + X[1] * sin(a);
+      const double ey = run.x()[i][1] - X[1] * cos(a) - X[0] * sin(a);
+      sum += ex * ex + ey * ey;
+    }
+    worst = std::max(worst, sqrt(sum / run.n()));
+  });
+  const double dt = 0.2 * h / 5.06;
+  run.commands(strprintf("run %ld\n", std::lround(0.5 / dt)));
+  if (volume) {    // of domains against J, where the ring is turned most
+    volume[0] = volume[1] = 0.0;
+    for (int i = 0; i < run.n(); i++) {
+      double weight[4], gradient[8];
+      volume[0] += MPM_NS::PointDomain<2>::free(run.field()->corners[i], weight, gradient);
+      volume[1] += run.points().jacobian(i) * run.lmp->atom->vfrac[i];
+    }
+  }
+  run.commands(strprintf("run %ld\n", std::lround(0.5 / dt)));
+  return measured(strprintf("B2, G = %g, %s, %d cells", G, options.c_str(), n), worst);
+}
+
+class Vortex : public ::testing::TestWithParam<const char *> {};
+
+TEST_P(Vortex, Converges)
+{
+  if (nranks() > 1) GTEST_SKIP() << "forces are those of one rank";
+  const std::string options = GetParam();
+  const double coarse = vortex(options, 5, 1.0), fine = vortex(options, 10, 1.0);
+  EXPECT_GT(measured("order", log2(coarse / fine)), 1.3);
+  EXPECT_LT(fine, 0.09);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, Vortex,
+                         ::testing::Values("shape cpdi transfer apic",
+                                           "shape cpdi transfer flip 1.0 scheme musl"));
+
+// with 5 cells across the ring, the ragged rim turns free corners inside out; and the volume of
+// domains is that of F
+
+TEST(VortexVolume, FreeCorners)
+{
+  if (nranks() > 1) GTEST_SKIP() << "forces are those of one rank";
+  double volume[2];
+  EXPECT_LT(vortex("shape cpdi2 transfer apic", 10, 1.0, volume), 0.09);
+  EXPECT_NEAR(volume[0] / volume[1], 1.0, 1e-10);
+}
+
+// D2: cantilever of 4 x 1 m under its weight; finite elements: -3.3027 m
+
+class Cantilever : public ::testing::TestWithParam<const char *> {};
+
+TEST_P(Cantilever, BendsAsFiniteElements)
+{
+  if (nranks() > 1) GTEST_SKIP() << "one is enough";
+  Scene run;
+  run.commands(strprintf(R"(
+units si
+dimension 2
+boundary f f p
+atom_style mpm
+neighbor 0.05 bin
+region box block 0 5 -5 2 -0.1 0.1
+create_box 1 box
+fix grid all mpm 0.125 %s
+region beam block 0 4 0 1 -0.1 0.1
+create_points 1 region beam ppc 2
+fix m all mpm/material density 1050 neohookean 1e6 0.3
+fix wall all mpm/boundary xlo stick
+fix weight all gravity 10 vector 0 -1 0
+compute u all displace/atom
+region tip block 3.9 5 -0.01 0.06 -1 1
+group tip region tip
+variable y atom c_u[2]
+compute tip tip reduce min v_y
+thermo_style custom step c_tip
+thermo 100000
+timestep 6e-4
+)",
+                         GetParam()));
+  double lowest = 0.0;
+  run.commands("run 0\n");
+  run.each_step([&](double **) {
+    for (int i = 0; i < run.n(); i++) {
+      const double *x = run.x()[i];
+      if (run.lmp->atom->tag[i] == 64) lowest = std::min(lowest, x[1] - 0.03125);
+    }
+  });
+  run.commands("run 2000\n");
+  // the point is half a spacing of points away from the tip
+  EXPECT_NEAR(measured(std::string("D2 ") + GetParam(), lowest), -3.27, 0.09);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, Cantilever,
+                         ::testing::Values("shape cpdi transfer apic", "shape cpdi2 transfer apic"));
+
+TEST(Size, Limit)
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  const std::string scene = R"(
+units lj
+dimension 2
+boundary f p p
+atom_style mpm
+region box block -200 200 0 4 -0.5 0.5
+create_box 1 box
+fix g all mpm 1.0 transfer flip 1.0 scheme musl shape MPM_SHAPE
+region bar block -3 3 0 4 -0.5 0.5
+create_points 1 region bar ppc 2
+fix m all mpm/material density 1 neohookean 1e-10 0.3
+variable v atom 0.1*x
+velocity all set v_v 0 0
+timestep 0.5
+thermo 10000
+)";
+  for (const char *shape : {"cpdi", "cpdi2"}) {
+    const auto s = replaced(scene, "MPM_SHAPE", shape);
+    EXPECT_THAT(error_of(s + "run 700\n"), ::testing::HasSubstr("has a domain with a corner 7."));
+    Scene warned;
+    warned.commands(replaced(s, "1.0 transfer", "1.0 bad warn transfer") + "run 700\n");
+    EXPECT_EQ(warned.evaluate("f_g"), 96.0);
+    Scene deleted;
+    deleted.commands(replaced(s, "1.0 transfer", "1.0 bad delete transfer") + "run 700\n");
+    EXPECT_LT(deleted.evaluate("f_g"), 96.0);
+  }
+}
+
+// walls on the nodes, between them, and contact
+
+TEST(Boundaries, WallsAndContactHold)
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  for (const char *options : {"shape cpdi", "shape cpdi2 transfer flip 1.0 scheme musl"})
+    for (const char *face : {"slip", "separate"}) {
+      SCOPED_TRACE(std::string(options) + " " + face);
+      Scene run;
+      run.commands(strprintf(R"(
+units lj
+dimension 2
+boundary p f p
+atom_style mpm
+region box block 0 8 0 12 -0.5 0.5
+create_box 1 box
+fix g all mpm 1.0 origin 0 0.5 %s
+region column block 0 8 0 6 -0.5 0.5
+create_points 1 region column ppc 2
+fix m all mpm/material density 1 neohookean 100 0.3
+fix w all mpm/boundary ylo %s
+fix f all gravity 0.5 vector 0 -1 0
+thermo 1000
+timestep 0.01
+fix mean all ave/time 1 1000 1000 f_w[2]
+run 2000
+)",
+                             options, face));
+      EXPECT_NEAR(run.evaluate("f_mean"), -0.5 * 48, 0.15 * 0.5 * 48);
+      EXPECT_GT(run.evaluate("bound(all,ymin)"), 0.1);
+    }
+
+  for (const char *options : {"shape cpdi", "shape cpdi2 transfer flip 1.0 scheme musl"}) {
+    SCOPED_TRACE(options);
+    Scene run;
+    run.commands(strprintf(R"(
+units lj
+dimension 2
+boundary p p p
+atom_style mpm
+region box block 0 32 0 8 -0.5 0.5
+create_box 2 box
+group a type 1
+group b type 2
+fix a a mpm 1.0 %s
+fix b b mpm 1.0 %s
+region a block 4 12 0 8 -0.5 0.5
+region b block 16 24 0 8 -0.5 0.5
+create_points 1 region a ppc 2
+create_points 2 region b ppc 2
+group a type 1
+group b type 2
+fix m all mpm/material density 1 neohookean 100 0.3
+fix c all mpm/contact a b
+velocity a set 1 0 0
+velocity b set -1 0 0
+thermo 1000
+timestep 0.02
+run 500
+)",
+                           options, options));
+    EXPECT_LT(run.evaluate("vcm(a,x)"), -0.5);
+    EXPECT_NEAR(run.evaluate("vcm(a,x)"), run.evaluate("-vcm(b,x)"), 1e-10);
+    EXPECT_LT(run.evaluate("bound(a,xmax)"), run.evaluate("bound(b,xmin)"));
+  }
+}
+
+// A box of n^dim cells of a mesh, of quadrilaterals or hexahedra, or each cell in triangles or
+// tetrahedra. Nodes inside are displaced.
+
+static std::string box_mesh(int dim, int n, bool simplices)
+{
+  const int m = n + 1, nz = dim == 3 ? n : 1;
+  std::string text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" +
+      std::to_string(m * m * (dim == 3 ? m : 1)) + "\n";
+  const auto node = [&](int i, int j, int k) {
+    return 1 + i + m * (j + m * k);
+  };
+  for (int k = 0; k < (dim == 3 ? m : 1); k++)
+    for (int j = 0; j < m; j++)
+      for (int i = 0; i < m; i++) {
+        double x[3] = {(double) i, (double) j, (double) k};
+        const bool inside = i % n && j % n && (dim == 2 || k % n);
+        for (int d = 0; d < dim && inside; d++) x[d] += 0.1 * sin(3.0 * i + 5.0 * j + 7.0 * k + d);
+        text += strprintf("%d %.17g %.17g %.17g\n", node(i, j, k), x[0] / n, x[1] / n, x[2] / n);
+      }
+  std::vector<std::string> elements;
+  for (int k = 0; k < nz; k++)
+    for (int j = 0; j < n; j++)
+      for (int i = 0; i < n; i++) {
+        const auto at = [&](int bits) {
+          return std::to_string(node(i + (bits & 1), j + (bits >> 1 & 1), k + (bits >> 2 & 1))) + " ";
+        };
+        if (dim == 2 && simplices) {
+          elements.push_back("2 2 0 1 " + at(0) + at(1) + at(3));
+          elements.push_back("2 2 0 1 " + at(0) + at(3) + at(2));
+        } else if (dim == 2) {
+          elements.push_back("3 2 0 1 " + at(0) + at(1) + at(3) + at(2));
+        } else if (simplices) {    // along the diagonal
+          for (const auto &e : {"13", "15", "23", "26", "45", "46"})
+            elements.push_back("4 2 0 1 " + at(0) + at(e[0] - '0') + at(e[1] - '0') + at(7));
+        } else {
+          elements.push_back("5 2 0 1 " + at(0) + at(1) + at(3) + at(2) + at(4) + at(5) + at(7) +
+                             at(6));
+        }
+      }
+  text += "$EndNodes\n$Elements\n" + std::to_string(elements.size()) + "\n";
+  for (std::size_t e = 0; e < elements.size(); e++)
+    text += std::to_string(e + 1) + " " + elements[e] + "\n";
+  return text + "$EndElements\n";
+}
+
+static const char *const mesh_scene = R"(
+units lj
+dimension MPM_DIM
+boundary p p p
+atom_style mpm
+region box block 0 8 0 8 MPM_Z
+create_box 1 box
+fix grid all mpm 1.0 shape cpdi2 MPM_OPTIONS
+create_points 1 elements MPM_FILE scale 4.2 move 1.9 2.1 MPM_UP
+fix m all mpm/material density 2.0 neohookean 100 0.3
+timestep 0.02
+thermo 10000
+)";
+
+TEST(Elements, BecomeDomains)
+{
+  for (int dim : {2, 3})
+    for (bool simplices : {false, true}) {
+      SCOPED_TRACE(strprintf("%dd %s", dim, simplices ? "simplices" : "cubes"));
+      const ScratchFile file("msh", box_mesh(dim, 5, simplices));
+      std::string scene = replaced(mesh_scene, "MPM_DIM", std::to_string(dim));
+      scene = replaced(scene, "MPM_Z", dim == 3 ? "0 8" : "-0.5 0.5");
+      scene = replaced(scene, "MPM_UP", dim == 3 ? "2.05" : "");
+      scene = replaced(scene, "MPM_FILE", file.name);
+
+      // volume and mass, and those of domains; a field that is linear is exact
+      Scene run;
+      run.commands(replaced(scene, "MPM_OPTIONS", "transfer apic"));
+      run.commands("variable vx atom 0.1*x+0.02*y\nvariable vy atom -0.05*x+0.03*y\n"
+                   "velocity all set v_vx v_vy 0\ntimestep 1e-7\nrun 1\n");
+      const auto state = run.gather();
+      const double volume = pow(4.2, dim);
+      double sum = 0.0, mass = 0.0;
+      for (const auto &s : state) {
+        sum += s.vol, mass += s.mass;
+        EXPECT_NEAR(s.F[0] - 1.0, 0.1e-7, 2e-14);
+        EXPECT_NEAR(s.F[1], 0.02e-7, 2e-14);
+        EXPECT_NEAR(s.F[3], -0.05e-7, 2e-14);
+      }
+      EXPECT_NEAR(sum, volume, 1e-6 * volume);
+      EXPECT_NEAR(mass, 2.0 * volume, 1e-12 * volume);
+      const std::size_t cells = dim == 2 ? 25 : 125;
+      EXPECT_EQ(state.size(), cells * (simplices ? (dim == 2 ? 2 : 6) : 1));
+
+      OnRanks ranks(replaced(scene, "MPM_OPTIONS", "transfer flip 1.0 scheme musl") +
+                        "variable vx atom 2*sin(PI*x/4)\nvelocity all set v_vx 1 0\n",
+                    "run 60\n");
+      EXPECT_LT(ranks.difference(), 1e-12);
+    }
+  EXPECT_THAT(error_of(replaced(replaced(replaced(mesh_scene, "MPM_DIM", "3"), "MPM_Z", "0 8"),
+                                "MPM_OPTIONS", "")),
+              ::testing::HasSubstr("MPM_FILE"));
+}
+
+TEST(BadInput, IsRefused)
+{
+  const Mistake cases[] = {
+      {"shape cpdi3", "must be one of"},
+      {"shape cpdi frame total", "use B-splines with transfer apic or flip"},
+      {"shape cpdi2 frame total", "use B-splines with transfer apic or flip"},
+      {"shape cpdi stress mls", "needs shape quadratic or cubic"},
+  };
+  for (const auto &bad : cases)
+    EXPECT_THAT(error_of(replaced(two_bodies, "MPM_OPTIONS", bad.lines) + "run 1\n"),
+                ::testing::HasSubstr(bad.message));
+  EXPECT_THAT(error_of("dimension 2\nboundary f f p\natom_style mpm\nregion b block 0 4 0 4 -0.5 0.5\n"
+                       "create_box 1 b\nfix g all mpm 1.0 shape cpdi2 axisymmetric yes\n"),
+              ::testing::HasSubstr("use shape cpdi"));
+}
