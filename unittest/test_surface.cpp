@@ -158,6 +158,49 @@ TEST(SurfaceContact, GoesOnFromARestartFile)
   }
 }
 
+// Clumps of spheres that LAMMPS moves as rigid bodies: what they lose of momentum, the block has. When
+// forces are known, velocities of grains and points are those of half steps.
+
+class Clump : public ::testing::TestWithParam<const char *> {};
+
+TEST_P(Clump, PushesWithConstantMomentum)
+{
+  Scene run;
+  run.commands(replaced(head, "neighbor 0.3", "atom_modify map array\nneighbor 0.3") +
+               replaced(grains, "create_atoms 2 single 3.1 3.2 5.95\ncreate_atoms 2 single 8.9 "
+                                       "3.7 6.1\ncreate_atoms 2 single 6.4 9.2 5.9\n",
+                               "create_atoms 2 single 5.0 5.5 6.2\ncreate_atoms 2 single 6.2 5.5 6.0\n"
+                               "create_atoms 2 single 5.6 6.6 6.6\n") +
+               replaced(replaced(fixes, "fix floor all mpm/boundary zlo stick\n", ""),
+                        "fix move grains nve/sphere\n",
+                        GetParam() + std::string("\nneigh_modify exclude type 2 2\n")) +
+               plain + contact + "timestep 0.005\nthermo 1000\n");
+  auto *atom = run.lmp->atom;
+  double start[4] = {0.0}, pushed = 0.0, worst = 0.0;    // the last: of the points along z
+  bool first = true;
+  run.each_step([&](double **) {
+    double mine[4] = {0.0, 0.0, 0.0, 0.0}, now[4];
+    for (int i = 0; i < atom->nlocal; i++) {
+      for (int d = 0; d < 3; d++) mine[d] += atom->rmass[i] * atom->v[i][d];
+      if (atom->type[i] == 1) mine[3] += atom->rmass[i] * atom->v[i][2];
+    }
+    MPI_Allreduce(mine, now, 4, MPI_DOUBLE, MPI_SUM, run.lmp->world);
+    if (first) std::copy(now, now + 4, start);
+    first = false;
+    for (int d = 0; d < 3; d++) worst = std::max(worst, fabs(now[d] - start[d]));
+    pushed = std::min(pushed, now[3]);
+  });
+  run.commands("run 400\n");
+  EXPECT_LT(measured("momentum", worst / fabs(start[2])), 1.0e-12);
+  EXPECT_LT(pushed, 0.5 * start[2]);    // it did hit the block
+}
+
+INSTANTIATE_TEST_SUITE_P(Fixes, Clump,
+                         ::testing::Values("fix move grains rigid single",
+                                           "fix body all property/atom i_body ghost yes\n"
+                                           "set type 2 i_body 1\nset type 1 i_body 0\n"
+                                           "fix move grains rigid/small custom i_body"));
+
 TEST(Surface, RefusesMistakes)
 {
   expect_refused(head + grains + fixes + contact,
