@@ -380,7 +380,7 @@ class FixMPM : public Fix {
   void check_neighbors();
   void check_inside_box();
   void check_dt();
-  double stable_share() const;
+  double stable_share(double size) const;
   void warn_dt() const;
   void point_is_bad(int i, const std::string &what);
   void handle_bad_points();

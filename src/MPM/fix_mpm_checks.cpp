@@ -371,32 +371,47 @@ void FixMPM::check_dt()
 /* ----------------------------------------------------------------------
    largest stable time step in parts of h/(c + |v|) where it is below 1: the smallest of what
    bench/extremes has measured for bodies anywhere on the lattice, rounded down. Stress that is made
-   from velocities which the same stress has just changed (USL without affine matrix) is what costs
-   most; points of finite size and the matrices of APIC have steeper gradients than splines.
+   from velocities which the same stress has just changed (USL without affine matrix) costs most;
+   with points of finite size it goes with the square root of their half size s in node spacings, as
+   the ratio of stiffness and mass of a node that they barely reach is E/(rho h^2 s). Linear functions
+   without any limit have a warning of their own, see check_light_nodes().
 ------------------------------------------------------------------------- */
 
-double FixMPM::stable_share() const
+double FixMPM::stable_share(double size) const
 {
+  const bool usl = scheme == USL, affine = is_affine(transfer);
+  if (extent != NO_SIZE) {
+    const double share = refinement == FMPM ? 0.4 : (usl ? 0.5 : (affine ? 0.55 : 1.0));
+    return usl ? std::min(share, 1.4 * share / 0.5 * sqrt(size)) : share;
+  }
   if (refinement == FMPM) return 0.4;
-  const bool affine = is_affine(transfer);
-  if (extent != NO_SIZE && (affine || scheme == USL)) return scheme == USL ? 0.5 : 0.7;
-  if (scheme == USL && !affine) return shape == LINEAR ? 0.7 : (shape == QUADRATIC ? 0.65 : 0.9);
-  return 1.0;
+  if (shape == LINEAR && !total) {
+    if (light > 0.0) return scheme == USF ? 0.3 : 0.75;
+    if (usl) return 0.7;
+    return affine || scheme == USAVG ? 1.0 : (scheme == USF ? 0.25 : 0.65);
+  }
+  if (affine) return shape == CUBIC ? 1.0 : (transfer == TPIC && usl ? 0.8 : 0.95);
+  if (!usl) return 1.0;
+  return shape == LINEAR ? 0.7 : (shape == QUADRATIC ? 0.55 : 0.9);
 }
 
 /* ---------------------------------------------------------------------- */
 
 void FixMPM::warn_dt() const
 {
-  const double share = stable_share();
-  if (!dt_check || share >= 1.0) return;
+  if (!dt_check) return;
   tagint tag;
-  double c, limit, mine = stable_dt_local(tag, c);
-  MPI_Allreduce(&mine, &limit, 1, MPI_DOUBLE, MPI_MIN, world);
-  if (comm->me == 0 && step_dt() > share * limit)
+  double c, mine[2] = {stable_dt_local(tag, c), 0.5}, all[2];
+  if (extent != NO_SIZE)
+    for (int i = 0; i < atom->nlocal; i++)
+      if (is_point(i)) mine[1] = std::min(mine[1], half_size(i));
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MIN, world);
+  const double share = stable_share(all[1]);
+  if (comm->me == 0 && share < 1.0 && step_dt() > share * all[0])
     error->warning(FLERR, "Fix mpm {}: the time step is {:.3g} h/(c+|v|), but this shape, transfer and "
-                   "scheme are unstable above {} to 1, depending on where points are in their cells: "
-                   "use fix mpm/dt {} or less, or another scheme", id, step_dt() / limit, share, share);
+                   "scheme can be unstable above {:.2g}, depending on where points are in their cells: "
+                   "use fix mpm/dt {:.2g} or less, or another scheme", id, step_dt() / all[0], share,
+                   share);
 }
 
 int FixMPM::find_local(tagint tag) const
