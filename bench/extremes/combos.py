@@ -10,6 +10,8 @@ SHAPES = [
     ("cubic", "shape cubic"),
     ("gimp", "shape gimp"),
     ("cpgimp", "shape cpgimp"),
+    ("cpdi", "shape cpdi"),
+    ("cpdi2", "shape cpdi2"),
     ("linear total", "shape linear frame total"),
     ("quadratic total", "shape quadratic frame total"),
     ("cubic total", "shape cubic frame total"),

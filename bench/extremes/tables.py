@@ -11,7 +11,8 @@ import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 FOLDER = os.path.join(HERE, "..", "..", "doc", "src", "stability")
-SHAPES = ["linear", "linear light", "quadratic", "cubic", "gimp", "cpgimp", "linear total",
+SHAPES = ["linear", "linear light", "quadratic", "cubic", "gimp", "cpgimp", "cpdi", "cpdi2",
+          "linear total",
           "quadratic total", "cubic total"]
 CASES = {"bar": "bar of 10 x 3 cells, 2 x 2 points per cell, at 1/4 and 3/4 of the cells",
          "faces": "the same, points 0.001 h before faces or middles of cells",

@@ -380,17 +380,18 @@ void FixMPM::check_dt()
 double FixMPM::stable_share(double size) const
 {
   const bool usl = scheme == USL, affine = is_affine(transfer);
-  if (extent != NO_SIZE) {
+  if (extent == UNIFORM || extent == CONTIGUOUS) {
     const double share = refinement == FMPM ? 0.4 : (usl ? 0.5 : (affine ? 0.55 : 1.0));
     return usl ? std::min(share, 1.4 * share / 0.5 * sqrt(size)) : share;
   }
   if (refinement == FMPM) return 0.4;
-  if (shape == LINEAR && !total) {
+  if (shape == LINEAR && extent == NO_SIZE && !total) {
     if (light > 0.0) return scheme == USF ? 0.3 : 0.75;
     if (usl) return 0.7;
     return affine || scheme == USAVG ? 1.0 : (scheme == USF ? 0.25 : 0.65);
   }
-  if (affine) return shape == CUBIC ? 1.0 : (transfer == TPIC && usl ? 0.8 : 0.95);
+  if (affine)
+    return shape == CUBIC ? 1.0 : (extent != NO_SIZE ? 0.9 : (transfer == TPIC && usl ? 0.8 : 0.95));
   if (!usl) return 1.0;
   return shape == LINEAR ? 0.7 : (shape == QUADRATIC ? 0.55 : 0.9);
 }
@@ -402,7 +403,7 @@ void FixMPM::warn_dt() const
   if (!dt_check) return;
   tagint tag;
   double c, mine[2] = {stable_dt_local(tag, c), 0.5}, all[2];
-  if (extent != NO_SIZE)
+  if (extent == UNIFORM || extent == CONTIGUOUS)
     for (int i = 0; i < atom->nlocal; i++)
       if (is_point(i)) mine[1] = std::min(mine[1], half_size(i));
   MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MIN, world);
