@@ -33,9 +33,10 @@ import results as rs    # noqa: E402
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 TIMEOUT = 300              # seconds for one run
-SLOW = 5.0                 # seconds: refinements that would take longer are left out
+SLOW = 3.0                 # seconds: refinements that would take longer are left out
 COST_WORK = 2.0e6          # point-steps of a run that measures cost
 PASSES = 1                 # of refinements around the front
+NEAR = 4.0                 # times the goal: what is refined
 REFERENCE_EVERY = 8        # measurements of cost between those of the reference
 
 
@@ -155,6 +156,11 @@ class Atlas:
                 best = max(best, 0) or points * steps * ns * 1e-9
         return best
 
+    def front(self, scene):
+        """Kinds on the front that come near to the goal of the scene."""
+        data = rs.Results(self.runs, self.costs)
+        return rs.kinds(r for r in data.front(scene) if r["credited"] < NEAR * sc.SCENES[scene]["goal"])
+
     def point_step(self, scene, c):
         """ns of processor time per point-step and the output of one pair of runs."""
         more = {"ledger": "no", "body": "no"}
@@ -207,10 +213,9 @@ def main():
         atlas.cost(scene, sc.one_at_a_time(scene))
         atlas.accuracy(scene, sc.reference_runs(scene))
         for _ in range(PASSES):    # later ones next to what the first has found
-            data = rs.Results(atlas.runs, atlas.costs)
-            front = rs.kinds(data.front(scene))
+            front = atlas.front(scene)
             atlas.cost(scene, (kind + sc.MIDDLE + (sc.cost_spacing(scene),) for kind in front))
-            front = rs.kinds(rs.Results(atlas.runs, atlas.costs).front(scene))
+            front = atlas.front(scene)
             atlas.cost(scene, sc.refinement(scene, front))
             atlas.accuracy(scene, sc.refinement(scene, front), SLOW)
 

@@ -78,11 +78,14 @@ def allowed(scene, shape, transfer, scheme, frame):
 
 
 def factorial(scene):
-    """Full factorial of shape, transfer, scheme, and frame at the two coarsest spacings; in scenes that
-    are not cheap, schemes usf and usavg with two transfers only."""
-    for h in SCENES[scene]["levels"][:2]:
+    """Factorial of shape, transfer, scheme, and frame at the two coarsest spacings: full in scenes that are
+    cheap; in the others the schemes usf and usavg with two transfers and at the coarsest spacing only, and
+    musl at the second spacing with two transfers only."""
+    for level, h in enumerate(SCENES[scene]["levels"][:2]):
         for kind in kinds(scene):
-            yield kind + MIDDLE + (h,)
+            main = kind[1] in MAIN_TRANSFERS and kind[2] == "musl"
+            if SCENES[scene]["cheap"] or level == 0 or kind[2] == "usl" or main:
+                yield kind + MIDDLE + (h,)
 
 
 def kinds(scene):
