@@ -95,14 +95,14 @@ class Scene:
 
 
 def kinds_of_the_atlas(scene):
-    """Settings that the atlas found worth trying: from its Pareto fronts, those of most scenes first."""
+    """Settings that the atlas found worth trying: from its Pareto fronts near the goals, those of most scenes first."""
     import results as rs
     import scenes as sc
     folder = os.path.join(ROOT, "bench", "atlas")
     data = rs.Results(rs.read(os.path.join(folder, "runs.csv")), rs.read(os.path.join(folder, "cost.csv")))
     votes = {}
     for name in sc.SCENES:
-        for kind in rs.kinds(data.front(name)):
+        for kind in data.candidates(name):
             votes[kind] = votes.get(kind, 0) + 1
     found = [DEFAULT] + [k for k in sorted(votes, key=lambda k: (-votes[k], k)) if k != DEFAULT]
     return [k for k in found if scene.can(k)][:TRIALS]

@@ -45,6 +45,7 @@ def test_scenes_give_the_values_of_the_tables():
     for scene in sc.SCENES:
         c = BASE + (sc.SCENES[scene]["levels"][0],)
         if (scene,) + c not in known:
+            wrong.append("%s: not in runs.csv" % scene)
             continue
         row = known[(scene,) + c]
         values, _, output = atlas.lammps(mt.LMP, scene, c, {"ledger": "yes"})

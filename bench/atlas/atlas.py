@@ -33,10 +33,9 @@ import results as rs    # noqa: E402
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 TIMEOUT = 300              # seconds for one run
-SLOW = 3.0                 # seconds: refinements that would take longer are left out
+SLOW = 2.5                 # seconds: runs beside the factorial that would take longer are left out
 COST_WORK = 2.0e6          # point-steps of a run that measures cost
 PASSES = 1                 # of refinements around the front
-NEAR = 4.0                 # times the goal: what is refined
 REFERENCE_EVERY = 8        # measurements of cost between those of the reference
 
 
@@ -156,16 +155,14 @@ class Atlas:
                 best = max(best, 0) or points * steps * ns * 1e-9
         return best
 
-    def front(self, scene):
-        """Kinds on the front that come near to the goal of the scene."""
-        data = rs.Results(self.runs, self.costs)
-        return rs.kinds(r for r in data.front(scene) if r["credited"] < NEAR * sc.SCENES[scene]["goal"])
-
     def point_step(self, scene, c):
         """ns of processor time per point-step and the output of one pair of runs."""
         more = {"ledger": "no", "body": "no"}
         _, base, output = lammps(self.lmp, scene, c, dict(more, steps="10"))
-        points = int(re.search(r"MPM grid: (\d+) points", output).group(1))
+        found = re.search(r"MPM grid: (\d+) points", output)
+        if not found:
+            return None, output
+        points = int(found.group(1))
         steps = 10 * max(20, int(0.1 * COST_WORK / points))
         values, seconds, output = lammps(self.lmp, scene, c, dict(more, steps=str(steps)))
         if not values:
@@ -208,14 +205,14 @@ def main():
     atlas = Atlas(os.path.abspath(options.lmp), options.out, options.limit)
     for scene in options.scene:
         atlas.accuracy(scene, sc.factorial(scene))
-        atlas.accuracy(scene, sc.one_at_a_time(scene))
+        atlas.accuracy(scene, sc.one_at_a_time(scene), SLOW)
         atlas.cost(scene, sc.costed(scene))
         atlas.cost(scene, sc.one_at_a_time(scene))
         atlas.accuracy(scene, sc.reference_runs(scene))
         for _ in range(PASSES):    # later ones next to what the first has found
-            front = atlas.front(scene)
+            front = rs.Results(atlas.runs, atlas.costs).candidates(scene)
             atlas.cost(scene, (kind + sc.MIDDLE + (sc.cost_spacing(scene),) for kind in front))
-            front = atlas.front(scene)
+            front = rs.Results(atlas.runs, atlas.costs).candidates(scene)
             atlas.cost(scene, sc.refinement(scene, front))
             atlas.accuracy(scene, sc.refinement(scene, front), SLOW)
 

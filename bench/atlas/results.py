@@ -11,6 +11,7 @@ RUNS = ("scene",) + sc.SETTINGS + ("status", "q", "lost", "steps", "points", "ca
 COST = ("scene", "shape", "transfer", "scheme", "frame", "ppc", "precision", "h", "ns", "reference_ns",
         "bytes", "campaign")
 CAMPAIGN = ("campaign", "date", "machine", "compiler", "lammps", "package")
+NEAR = 4.0    # times the goal
 DEFAULT = ("quadratic", "apic", "usl", "updated")
 REFERENCE = ("bar", ("quadratic", "apic", "usl", "updated", "2", "0.4", "double", "0.015625"))
 
@@ -101,14 +102,11 @@ class Results:
         if not isinstance(s["reference"], tuple):
             return s["reference"], 0.0
         values = {key(r): float(r["q"]) for r in self.runs if r["scene"] == scene and r["status"] == "ok"}
-        limits = []
-        for base in s["reference"]:
-            coarse, fine = [values.get(base + sc.MIDDLE + (h,)) for h in s["reference_levels"]]
-            if coarse is None or fine is None:
-                return None, None
-            ratio = float(s["reference_levels"][0]) / float(s["reference_levels"][1])
-            limits.append(fine + (fine - coarse) / (ratio - 1))
-        return statistics.mean(limits), max(limits) - min(limits)
+        coarse, fine = [[values.get(base + sc.MIDDLE + (h,)) for base in s["reference"]]
+                        for h in s["reference_levels"]]
+        if None in coarse + fine:
+            return None, None
+        return statistics.mean(fine), 0.5 * (max(coarse + fine) - min(coarse + fine))
 
     def make_row(self, r):
         reference = self.reference[r["scene"]][0]
@@ -150,3 +148,8 @@ class Results:
                 best = r["credited"]
                 found.append(r)
         return found
+
+    def candidates(self, scene):
+        """The kinds of settings on the front that come near to the goal of the scene."""
+        near = NEAR * sc.SCENES[scene]["goal"]
+        return kinds(r for r in self.front(scene) if r["credited"] < near)
