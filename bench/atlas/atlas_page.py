@@ -371,7 +371,7 @@ def page(data, campaigns):
 
 
 COLORS = {"linear": "tab:blue", "quadratic": "tab:orange", "cubic": "tab:green", "gimp": "tab:red",
-          "cpgimp": "tab:purple"}
+          "cpgimp": "tab:purple", "cpdi": "tab:brown", "cpdi2": "tab:cyan"}
 MARKERS = {"pic": "x", "flip": "o", "apic": "s", "tpic": "D", "aflip": "^", "xpic": "v", "fmpm": "P"}
 
 

@@ -7,7 +7,8 @@ A combination is a tuple of settings in the order of SETTINGS, all of them strin
 
 SETTINGS = ("shape", "transfer", "scheme", "frame", "ppc", "dtfrac", "precision", "h")
 
-SHAPES = ("linear", "quadratic", "cubic", "gimp", "cpgimp")
+SHAPES = ("linear", "quadratic", "cubic", "gimp", "cpgimp", "cpdi", "cpdi2")
+CORNERS = SHAPES[5:]    # slow, for solids: two transfers, usl and musl
 TRANSFERS = ("pic", "flip 1.0", "apic", "tpic", "aflip 1.0", "xpic 5", "fmpm 5")
 SCHEMES = ("usl", "usf", "musl", "usavg")
 TOTAL = (("linear", "quadratic", "cubic"), ("pic", "flip 1.0", "apic", "xpic 5", "fmpm 5"))
@@ -70,6 +71,9 @@ def allowed(scene, shape, transfer, scheme, frame):
     """Combinations that fix mpm accepts and that are not the same as another one."""
     name = transfer.split()[0]
     if name == "fmpm" and scheme != "usl":
+        return False
+    if shape in CORNERS and (not SCENES[scene]["total"] or transfer not in MAIN_TRANSFERS or
+                             scheme not in ("usl", "musl")):
         return False
     if frame == "total":
         return SCENES[scene]["total"] and shape in TOTAL[0] and transfer in TOTAL[1]
