@@ -215,6 +215,88 @@ TEST(Friction, DiskRollsOrSlips)
   }
 }
 
+static const char *const disks = R"(
+units lj
+dimension 2
+boundary p p p
+atom_style mpm
+neighbor 0.3 bin
+region box block 0 24 0 12 -0.5 0.5
+create_box 2 box
+region one cylinder z 3.1 6.2 2.5 INF INF
+region two cylinder z 20.9 5.3 2.5 INF INF
+group one type 1
+group two type 2
+fix F1 one mpm 0.5
+fix F2 two mpm 0.5
+create_points 1 region one ppc 2
+create_points 2 region two ppc 2
+group one type 1
+group two type 2
+fix m all mpm/material density 1 neohookean 50 0.3
+fix c all mpm/contact F1 F2 law coulomb 0.3
+velocity one set -0.5 0.02 0
+velocity two set 0.5 0 0
+timestep 0.01
+thermo 1000
+)";
+
+// A block that slides without friction on a plane at an angle to the lattice: what the normals are worth.
+
+static const char *const tilted = R"(
+units si
+dimension 2
+boundary f f p
+atom_style mpm
+region box block 0 4 0 3 -0.05 0.05
+create_box 2 box
+variable s equal sin(ANGLE*PI/180)
+variable c equal cos(ANGLE*PI/180)
+region slab block 0.6 3.4 0.8 1.3 -0.05 0.05
+region body block 0.9 1.4 1.3 1.7 -0.05 0.05
+group plane type 1
+group body type 2
+fix F1 plane mpm 0.1
+fix F2 body mpm 0.1
+create_points 1 region slab ppc 2
+create_points 2 region body ppc 2
+group plane type 1
+group body type 2
+displace_atoms all rotate 2 1.3 0 0 0 1 -ANGLE units box
+region hold plane $(2-0.25*v_s) $(1.3-0.25*v_c) 0 $(-v_s) $(-v_c) 0
+fix m1 plane mpm/material density 1000 neohookean 4.2e7 0.4
+fix m2 body mpm/material density 1000 neohookean 4.2e6 0.4
+fix hold all mpm/boundary region hold stick field F1
+fix c all mpm/contact F1 F2 normal NORMAL
+fix g body gravity 9.81 vector 0 -1 0
+fix dt all mpm/dt 0.5
+variable v equal vcm(body,x)*v_c-vcm(body,y)*v_s
+thermo 100000
+run 1400
+)";
+
+TEST(Normals, LogisticRegressionFindsAnInclinedPlane)
+{
+  for (const int angle : {20, 35})
+    for (const char *normal : {"colinear", "volume", "logistic"}) {
+      Scene run;
+      run.commands(replaced(replaced(tilted, "ANGLE", std::to_string(angle)), "NORMAL", normal));
+      const double exact = 9.81 * std::sin(angle * M_PI / 180.0) * run.evaluate("time");
+      const double ratio = measured(std::to_string(angle) + " degrees, " + normal,
+                                    run.evaluate("v_v") / exact);
+      EXPECT_NEAR(ratio, 1.0, std::string(normal) == "logistic" ? 0.005 : 0.04);
+    }
+}
+
+TEST(Normals, LogisticRegressionIsTheSameOnAnyNumberOfRanks)
+{
+  OnRanks run(replaced(replaced(replaced(tilted, "ANGLE", "20"), "NORMAL", "logistic"), "run 1400", ""),
+              "run 400\n");
+  EXPECT_LT(run.difference(), 1e-10);
+  OnRanks periodic(replaced(disks, "coulomb 0.3", "coulomb 0.3 normal logistic"), "run 300\n");
+  EXPECT_LT(periodic.difference(), 1e-10);
+}
+
 // ---------------------------------------------------------------------- three bodies at a node
 
 static const char *const corner = R"(
@@ -272,32 +354,6 @@ TEST(ManyBodies, OrderOfNamesDoesNotMatter)
 }
 
 // ---------------------------------------------------------------------- ranks, periodic faces, restart
-
-static const char *const disks = R"(
-units lj
-dimension 2
-boundary p p p
-atom_style mpm
-neighbor 0.3 bin
-region box block 0 24 0 12 -0.5 0.5
-create_box 2 box
-region one cylinder z 3.1 6.2 2.5 INF INF
-region two cylinder z 20.9 5.3 2.5 INF INF
-group one type 1
-group two type 2
-fix F1 one mpm 0.5
-fix F2 two mpm 0.5
-create_points 1 region one ppc 2
-create_points 2 region two ppc 2
-group one type 1
-group two type 2
-fix m all mpm/material density 1 neohookean 50 0.3
-fix c all mpm/contact F1 F2 law coulomb 0.3
-velocity one set -0.5 0.02 0
-velocity two set 0.5 0 0
-timestep 0.01
-thermo 1000
-)";
 
 TEST(Parallel, RanksAgreeAcrossAPeriodicFace)
 {

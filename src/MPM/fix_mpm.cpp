@@ -48,7 +48,7 @@ FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) :
     delete_failed(false), every(1), dt_check(true), grid(nullptr), C(nullptr), Q(nullptr), corners(nullptr), X(nullptr), R(nullptr),
     waiting(nullptr), ledger_on(false), points(nullptr), halo(nullptr),
     kernels(nullptr), batch_kernels(nullptr), driver(false), topology_valid(false),
-    watch_drift(false), drifted(0), want_sort(false), refer_anew(false), switches(0), switches_sorted(0),
+    watch_drift(false), drifted(0), refer_anew(false), want_sort(false), switches(0), switches_sorted(0),
     tile(nullptr), tile_load(nullptr), waited(0), elapsed(0.0), batch(nullptr), kinetic_points(0.0), nbad_total(0),
     next_dt_check(0), clock(0.0), running(false), velocities(0), velocities_known(false)
 {

@@ -22,6 +22,7 @@ FixStyle(mpm,FixMPM);
 #include "mpm_node_action.h"
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -195,6 +196,13 @@ class FixMPM : public Fix {
    *  the first one, and the weights. */
   int shape_weights(double t, int &first, double w[4]) const;
 
+  /** Calls f(point, wanted[node], weight, r) for each point and each node that it reaches where wanted
+   *  is not negative (wanted: [node]; r: from the node to the point, in node spacings). */
+  void visit_points(const std::vector<int> &wanted,
+                    const std::function<void(int, int, double, const double *)> &f) const;
+  /** Adds up what ranks have of nodes they share: all reals of [node][nreal]. */
+  void sum_over_ranks(double *nodes, int nreal) const;
+
   /** Position of a node. */
   void node_position(const int index[3], double x[3]) const
   {
@@ -299,6 +307,12 @@ class FixMPM : public Fix {
   bool velocities_known;
 
   void find_topology();
+
+  template <class F>
+  void visit_nodes(const MPM_NS::Grid::Block &, int i, const F &f) const;
+  template <class F>
+  void visit_nodes(const MPM_NS::Grid::Block &, int i, const double *x, double share,
+                   const F &f) const;
 
   // stages of the step
   bool wait();    // of all fields

@@ -19,6 +19,7 @@
 // points around have no extent get no slope (pseudo-inverse).
 
 #include "fix_mpm.h"
+#include "fix_mpm_visit.h"
 
 #include "atom.h"
 #include "force.h"
@@ -27,7 +28,6 @@
 #include "modify.h"
 #include "mpm_halo.h"
 #include "mpm_points.h"
-#include "mpm_shape.h"
 #include "update.h"
 
 #include <algorithm>
@@ -145,50 +145,10 @@ void FixMPM::fit_affine()
   enum { M = 0, X = 1, V = 4, VX = 7, XX = 16, NREAL = 22 };    // sums of mass times ...
   std::vector<double> sums(grid->nnodes() * NREAL, 0.0);
 
-  // all nodes of a point: f(record, weight, position relative to the node in node spacings)
-
-  auto visit_from = [&](const Grid::Block &block, int i, const double *x, double share, auto f) {
-    int base[3];
-    double t[3], at[3], w[3][4] = {{0.0}, {0.0}, {1.0}};
-    for (int d = 0; d < dim; d++) {
-      t[d] = (x[d] - lattice.origin[d]) / lattice.h;
-      at[d] = (place(i)[d] - lattice.origin[d]) / lattice.h;
-      shape_weights(t[d], base[d], w[d]);
-      if (has_boxes())
-        Gimp::weights(t[d] - Gimp::shift - base[d], sizes[3 * (std::size_t) i + d], w[d]);
-    }
-    int k[3];
-    for (k[0] = 0; k[0] <= shape; k[0]++)
-      for (k[1] = 0; k[1] <= shape; k[1]++)
-        for (k[2] = 0; k[2] <= (dim == 3 ? (int) shape : 0); k[2]++) {
-          int side[3] = {1, 1, 1}, in[3] = {0, 0, 0};
-          double r[3] = {0.0, 0.0, 0.0};
-          for (int d = 0; d < dim; d++) {
-            const int node = base[d] + k[d];
-            side[d] = (node >> grid->shift_bits) - block.b[d] + 1;
-            in[d] = node & (grid->side - 1);
-            r[d] = at[d] - node;
-          }
-          const int slot = block.slot[9 * side[0] + 3 * side[1] + side[2]];
-          const int n = dim == 3 ? (in[0] * 4 + in[1]) * 4 + in[2] : in[0] * 8 + in[1];
-          f(&sums[((int64_t) slot * NODES_PER_BLOCK + n) * NREAL],
-            share * w[0][k[0]] * w[1][k[1]] * w[2][k[2]], r);
-        }
-  };
-  auto visit = [&](const Grid::Block &block, int i, auto f) {
-    if (!has_domains()) return visit_from(block, i, place(i), 1.0, f);
-    double corner[24], share[8];
-    domain_corners(i, corner, share);
-    for (int c = 0; c < 1 << dim; c++) {
-      double x[3] = {0.0, 0.0, 0.0};
-      for (int d = 0; d < dim; d++) x[d] = place(i)[d] + corner[dim * c + d];
-      visit_from(block, i, x, share[c], f);
-    }
-  };
-
   for (const auto &run : runs)
     for (int i = run.first; i < run.last; i++)
-      visit(grid->blocks[run.slot], i, [&](double *s, double weight, const double *r) {
+      visit_nodes(grid->blocks[run.slot], i, [&](int64_t node, double weight, const double *r) {
+        double *const s = &sums[node * NREAL];
         const double m = weight * atom->rmass[i], *v = atom->v[i];
         s[M] += m;
         for (int a = 0, k = 0; a < dim; a++) {
@@ -216,7 +176,8 @@ void FixMPM::fit_affine()
     for (int i = run.first; i < run.last; i++) {
       if (!std::isnan(C[i][0])) continue;
       double mass = 0.0, vx[3][3] = {{0.0}}, xx[3][3] = {{0.0}};
-      visit(grid->blocks[run.slot], i, [&](const double *s, double weight, const double *) {
+      visit_nodes(grid->blocks[run.slot], i, [&](int64_t node, double weight, const double *) {
+        const double *const s = &sums[node * NREAL];
         mass += weight * s[M];
         for (int a = 0, k = 0; a < dim; a++) {
           for (int b = 0; b < dim; b++) vx[a][b] += weight * s[VX + 3 * a + b];

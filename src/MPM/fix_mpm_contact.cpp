@@ -147,9 +147,12 @@ FixMPMContact::FixMPMContact(LAMMPS *lmp, int narg, char **arg) :
         normal_by = VOLUME;
       else if (choice == "colinear")
         normal_by = COLINEAR;
+      else if (choice == "logistic")
+        normal_by = LOGISTIC;
       else
         error->all(FLERR, iarg + 1,
-                   "Unknown fix mpm/contact normal {}: must be mass, volume or colinear", choice);
+                   "Unknown fix mpm/contact normal {}: must be mass, volume, colinear or "
+                   "logistic", choice);
       iarg += 2;
     } else {    // gap
       if (choice == "no") {
@@ -660,7 +663,10 @@ void FixMPMContact::act(double dt, Stage stage)
     dt_last = dt;
     nodes.clear();
     pairs.clear();
-    if (may_touch && map_bodies()) find_contacts();
+    if (may_touch && map_bodies()) {
+      find_contacts();
+      if (normal_by == LOGISTIC) separate_points();
+    }
   }
   for (auto &node : nodes) resolve(node, dt, !count);
 }

@@ -53,7 +53,7 @@ class FixMPMContact : public Fix, public MPMNodeAction {
   static constexpr int MAX_PAIRS = MAX_FIELDS * (MAX_FIELDS - 1) / 2;
 
   enum Law { FRICTIONLESS, COULOMB, STICK, ADHESIVE };
-  enum Normal { MASS, VOLUME, COLINEAR };
+  enum Normal { MASS, VOLUME, COLINEAR, LOGISTIC };
   enum State : char { OPEN, SLIDING, STUCK };
 
   struct Common {            // a block of nodes that several fields have
@@ -108,6 +108,7 @@ class FixMPMContact : public Fix, public MPMNodeAction {
   void mark_near(int k, int slot);
   bool map_bodies();
   void find_contacts();
+  void separate_points();
   bool make_pair(const Common &, int n, int a, int b, double volume_share, Pair &);
   void resolve(Node &, double dt, bool decided);
   void apply(Pair &, double m, double &largest, double dt, bool decided);

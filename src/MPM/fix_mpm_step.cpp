@@ -14,6 +14,7 @@
 #include "atom.h"
 #include "fix_mpm_elements.h"
 #include "fix_mpm_material.h"
+#include "fix_mpm_visit.h"
 #include "mpm_batch.h"
 #include "mpm_halo.h"
 #include "mpm_node_action.h"
@@ -556,6 +557,31 @@ void FixMPM::map_volume(const std::vector<char> &near, std::vector<double> &shar
   share.resize(grid->nnodes());
   for (int64_t n = 0; n < grid->nnodes(); n++)
     share[n] = inverse * nodes_apart[n * kernel.nreal + 3];
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPM::visit_points(const std::vector<int> &wanted,
+                          const std::function<void(int, int, double, const double *)> &f) const
+{
+  std::vector<char> near(grid->blocks.size(), 0);
+  for (std::size_t n = 0; n < wanted.size(); n++)
+    if (wanted[n] >= 0) near[n / NODES_PER_BLOCK] = 1;
+  for (const auto &run : runs) {
+    const auto &block = grid->blocks[run.slot];
+    bool some = false;
+    for (const int slot : block.slot) some = some || (slot >= 0 && near[slot]);
+    if (!some) continue;
+    for (int i = run.first; i < run.last; i++)
+      visit_nodes(block, i, [&](int64_t node, double weight, const double *r) {
+        if (weight != 0.0 && wanted[node] >= 0) f(i, wanted[node], weight, r);
+      });
+  }
+}
+
+void FixMPM::sum_over_ranks(double *nodes, int nreal) const
+{
+  halo->sum(nodes, nreal, 0, nreal);
 }
 
 /* ---------------------------------------------------------------------- */
