@@ -66,8 +66,8 @@ def options(c):
 
 def times_to_goal(data, scene):
     """{(shape, transfer, scheme, frame): seconds of processor time to the goal of the scene} of runs that
-    reach it, or by interpolation between spacings or extrapolation to at most half or twice the spacing;
-    what does not reach it is not there.  All with the points per cell and time step of the factorial, so that
+    reach it, or by interpolation between spacings or extrapolation to at most half of the finest; what does not
+    reach it is not there.  All with the points per cell and time step of the factorial, so that
     what has been tried in more ways has no advantage; where much is stretched, with more points, too."""
     if scene in data.goals:
         return data.goals[scene]
@@ -90,8 +90,7 @@ def times_to_goal(data, scene):
             work = math.log(b["time"] / a["time"]) / ratio
             h = float(b["h"]) * (goal / b["credited"])**(1 / order)
             finest = 0.5 * float(b["h"]) if b is rungs[-1] else float(b["h"])
-            coarsest = 2 * float(a["h"]) if a is rungs[0] else float(a["h"])
-            if finest <= h <= coarsest:
+            if finest <= h <= float(a["h"]):
                 time = b["time"] * (float(b["h"]) / h)**work
                 best[setting[:4]] = min(best.get(setting[:4], time), time)
     data.goals[scene] = best
