@@ -126,6 +126,8 @@ def prerequisites(line, before):
 
 def scene_for(lines):
     """A scene around lines of an example, which has what they need and does not show."""
+    if "mpm/handshake" in lines[-1]:
+        return crystal_for(lines)
     text, before = "\n".join(lines), ""
     style = "hybrid sphere mpm" if re.search("diameter|mpm/surface", text) else "mpm"
     grid = re.search(r"^fix grid all mpm (\S+)", text, re.M)
@@ -169,6 +171,40 @@ def scene_for(lines):
     if "mpm/dt" not in text:
         scene += "timestep 1.0e-7\n"
     return scene + "run 2\n"
+
+
+def crystal_for(lines):
+    """A crystal of atoms that fills the box, and points where these have not the full weight."""
+    zones = re.findall(r"zone x (\S+) (\S+)", lines[-1])
+    low = high = "INF"
+    for one, zero in zones:
+        if float(zero) < float(one):
+            low = one
+        else:
+            high = one
+    return """
+units           lj
+boundary        f p p
+atom_style      hybrid atomic mpm
+region          box block 0 120 0 6.2 0 6.2
+create_box      2 box
+lattice         fcc 1.07395
+create_atoms    1 box
+group           atoms type 1
+set             type 1 mass 1.0
+mass            * 1.0
+fix             grid all mpm 3.1 transfer flip 1.0
+region          atoms block %s %s INF INF INF INF side out units box
+create_points   2 region atoms ppc 2
+group           points type 2
+fix             solid points mpm/material density 1.07395 linear 57.35 0.363
+%s
+pair_style      lj/cut 2.5
+pair_coeff      * * 1.0 1.0
+neigh_modify    exclude type 2 2 exclude type 1 2
+fix             move atoms nve
+run             2
+""" % (low, high, "\n".join(lines))
 
 
 def run_scene(scene, timeout=60):

@@ -192,6 +192,10 @@ class FixMPM : public Fix {
    *  its surface. Points that have failed do not count as volume. Finds the blocks if need be. */
   void volume_at_points(std::vector<double> &share);
 
+  /** Add what periodic images and other ranks hold of reals [lane, lane+nlane) of nodes that are
+   *  arranged like those of the grid. */
+  void sum_copies(double *nodes, int nreal, int lane, int nlane);
+
   /** Nodes along one axis that a position reaches (in node spacings from the origin): their number,
    *  the first one, and the weights. */
   int shape_weights(double t, int &first, double w[4]) const;

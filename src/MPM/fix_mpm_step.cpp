@@ -506,8 +506,7 @@ void FixMPM::map_some(const PointRows &r, const TransferStep &s, P2G p2g,
     }
     kernel.flush(tile, nodes_apart.data(), block.slot, box);
   }
-  grid->fold_aliases(nodes_apart.data(), kernel.nreal, lane, nlane);
-  halo->sum(nodes_apart.data(), kernel.nreal, lane, nlane);
+  sum_copies(nodes_apart.data(), kernel.nreal, lane, nlane);
 }
 
 /* ----------------------------------------------------------------------
@@ -622,8 +621,7 @@ void FixMPM::volume_at_points(std::vector<double> &share)
     }
     pic.flush(tile, nodes_apart.data(), block.slot, a.box);
   }
-  grid->fold_aliases(nodes_apart.data(), NREAL, 3, 1);
-  halo->sum(nodes_apart.data(), NREAL, 3, 1);
+  sum_copies(nodes_apart.data(), NREAL, 3, 1);
   const double h = lattice.h, inverse = 1.0 / (lattice.dim == 3 ? h * h * h : h * h);
   for (int64_t n = 0; n < grid->nnodes(); n++)
     nodes_apart[n * NREAL] = inverse * nodes_apart[n * NREAL + 3];
@@ -671,9 +669,16 @@ void FixMPM::load_tile(const ActiveBlock &a, int base[3])
 
 void FixMPM::sum_halo(int lane, int nlane)
 {
-  grid->fold_aliases(grid->nodes(), kernel.nreal, lane, nlane);
-  halo->sum(grid->nodes(), kernel.nreal, lane, nlane);
+  sum_copies(grid->nodes(), kernel.nreal, lane, nlane);
   lap(report.t_halo);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPM::sum_copies(double *nodes, int nreal, int lane, int nlane)
+{
+  grid->fold_aliases(nodes, nreal, lane, nlane);
+  halo->sum(nodes, nreal, lane, nlane);
 }
 
 /* ---------------------------------------------------------------------- */

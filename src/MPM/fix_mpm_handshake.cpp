@@ -1,0 +1,745 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+/* ----------------------------------------------------------------------
+   Bridging domain of S.P. Xiao, T. Belytschko, Comput. Methods Appl. Mech. Eng. 193 (2004) 1645, on
+   the nodes of the material points. Across the zone the energy of the system is
+
+     E = sum_i w_i (m_i v_i^2/2 + e_i) + sum_p (1 - w_p) (m_p v_p^2/2 + V_p W_p)
+
+   with a weight w that falls linearly from 1 (atoms only) to 0 (points only). Each atom and point
+   keeps the weight of the place where it was when it got it, so that the masses w m are constant.
+   Mass and volume of points are scaled once. With e_i half of the energies of the pairs of atom i,
+   the force of the weighted energy is
+
+     G_i = sum_j (w_i + w_j)/2 f_ij = w_i f_i + g_i,   g_i = sum_j (w_j - w_i)/2 f_ij,
+
+   where g_i, the stress of the atoms times the gradient of w, is what balances the missing stress of
+   the points; the sum of all G_i is zero exactly.
+
+   Instead of by Lagrange multipliers, atoms and points are tied at the nodes, with the shape
+   functions N of the points. A node has the masses and forces
+
+     m_a = sum_i N w_i m_i,  f_a = sum_i N G_i;  m_c, f_c: what fix mpm has of the points,
+
+   and the velocities u_a = sum_i N m_i v_i / sum_i N m_i, and u_c likewise, with *full* masses: those
+   with the weights in them would be velocities at two different places, the centers of mass of what
+   is in the cells around the node. Both get the acceleration of a common momentum equation and lose
+   their difference as in an inelastic collision:
+
+     a = (f_a + f_c)/(m_a + m_c),  d = u_a - U_c
+     points: v_p += sum N [dt a + d m_a/(m_a + m_c)],
+     atoms:  v_i += dt f_i/m_i + sum N [dt a - dt (sum_i N w_i f_i)/m_a - d m_c/(m_a + m_c)].
+
+   U_c is what points and nodes make of the velocities with which points move, sum N u_c. With
+   FLIP these are not v_p but, for a wave number k, smaller by a factor 1 - (k h)^2/4. It is the
+   displacements of atoms and points that must agree; with u_c in place of U_c, the stress would do
+   more work on one side of the zone than on the other, and a pulse lose this part of its energy.
+
+   So only the part of their motion that nodes can represent is changed, thermal motion is not, and
+   forces on single atoms are those of the full crystal, which are zero where it is strained
+   uniformly. The sum of w m v over atoms and points changes by the forces from outside only, to
+   round-off. Atoms with w = 0 complete the neighborhood of the others: they move with v.
+
+   Damping acts on v_i - sum N u_a. The momentum that it takes from atoms is given to the nodes.
+
+   Points have the velocity of the middle of the step, atoms that of the end. The velocity of atoms
+   before the step, v_i - dt f_i/(2 m_i), is what it was before the last half of fix nve, and the
+   first half is still to come: fix nve must come after fix mpm.
+------------------------------------------------------------------------- */
+
+#include "fix_mpm_handshake.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "fix_mpm.h"
+#include "force.h"
+#include "memory.h"
+#include "modify.h"
+#include "neigh_list.h"
+#include "neighbor.h"
+#include "pair.h"
+#include "update.h"
+
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+using namespace FixConst;
+
+// lanes of a node: with full masses momentum and mass of the atoms, and of the points; with weights
+// mass and force of the atoms, and of the forces the part without the gradient of the weights;
+// the number of atoms and points that need the other kind at the node; and later what is for the atoms
+
+enum { ATOMS = 0, POINTS = 4, FORCE = 8, MASS = 11, PLAIN = 12, PRESENCE = 15, NREAL = 16 };
+enum { CHANGE = 0, VELOCITY = 4 };
+
+/* ----------------------------------------------------------------------
+   fix ID atoms mpm/handshake FIELD zone AXIS ONE ZERO ... damp RATE
+------------------------------------------------------------------------- */
+
+FixMPMHandshake::FixMPMHandshake(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), damping(0.0), field(nullptr), list(nullptr), weight(nullptr),
+    role(nullptr), natoms(0), nreach(0), heat(0.0), impulse(), dt_last(0.0)
+{
+  if (narg < 4) utils::missing_cmd_args(FLERR, "fix mpm/handshake", error);
+  field_name = arg[3];
+  const auto number = [&](int i) {
+    const double value = utils::numeric(FLERR, arg[i], false, lmp);
+    if (!std::isfinite(value))
+      error->all(FLERR, i, "Fix mpm/handshake value {} is not finite", arg[i]);
+    return value;
+  };
+  for (int iarg = 4; iarg < narg;) {
+    const std::string keyword = arg[iarg];
+    if (keyword == "zone") {
+      if (iarg + 3 >= narg) utils::missing_cmd_args(FLERR, "fix mpm/handshake zone", error);
+      const std::string name = arg[iarg + 1];
+      Zone zone;
+      if (name == "x" || name == "y" || name == "z")
+        zone.axis = name[0] - 'x';
+      else
+        error->all(FLERR, iarg + 1, "Unknown axis {} of fix mpm/handshake zone: must be x, y or z",
+                   name);
+      zone.one = number(iarg + 2);
+      zone.zero = number(iarg + 3);
+      if (zone.one == zone.zero)
+        error->all(
+            FLERR, iarg + 2,
+            "Fix mpm/handshake zone has no width: the planes where the weight of the atoms is "
+            "one and zero must differ");
+      zones.push_back(zone);
+      iarg += 4;
+    } else if (keyword == "damp") {
+      if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, "fix mpm/handshake damp", error);
+      damping = number(iarg + 1);
+      if (damping < 0.0)
+        error->all(FLERR, iarg + 1, "Fix mpm/handshake rate of damping must not be negative: {}",
+                   arg[iarg + 1]);
+      iarg += 2;
+    } else
+      error->all(FLERR, iarg, "Unknown fix mpm/handshake keyword: {}", keyword);
+  }
+  if (zones.empty())
+    error->all(FLERR, Error::NOPOINTER, "Fix mpm/handshake needs at least one zone");
+
+  scalar_flag = vector_flag = peratom_flag = 1;
+  size_vector = 3;
+  size_peratom_cols = 0;
+  peratom_freq = global_freq = 1;
+  extscalar = extvector = 1;
+  create_attribute = 1;
+  comm_forward = 2;
+  maxexchange = 2;
+  restart_global = restart_peratom = 1;
+  FixMPMHandshake::grow_arrays(atom->nmax);
+  atom->add_callback(Atom::GROW);
+  atom->add_callback(Atom::RESTART);
+  for (int i = 0; i < atom->nlocal; i++) FixMPMHandshake::set_arrays(i);
+}
+
+FixMPMHandshake::~FixMPMHandshake()
+{
+  if (modify) {
+    atom->delete_callback(id, Atom::GROW);
+    atom->delete_callback(id, Atom::RESTART);
+  }
+  memory->destroy(weight);
+  memory->destroy(role);
+}
+
+int FixMPMHandshake::setmask()
+{
+  return PRE_NEIGHBOR | POST_NEIGHBOR;    // the rest is called by fix mpm
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMHandshake::init()
+{
+  const auto refuse = [&](const std::string &why) {
+    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/handshake {} {}", id, why);
+  };
+  field = dynamic_cast<FixMPM *>(modify->get_fix_by_id(field_name));
+  if (!field) refuse("needs the ID of a fix mpm, not " + field_name);
+  for (const auto &zone : zones) {
+    if (zone.axis >= field->lattice.dim) refuse("cannot have a zone along z in 2d");
+    if (fabs(zone.one - zone.zero) < field->lattice.h)
+      refuse(
+          fmt::format("has a zone of the width {}, less than the node spacing {}: make it several "
+                      "node spacings wide",
+                      fabs(zone.one - zone.zero), field->lattice.h));
+  }
+  if (is_affine(field->transfer) || field->refinement != FixMPM::LUMPED || field->flip < 1.0)
+    refuse("needs a field with transfer flip (1.0), which maps points as it maps atoms");
+  if (field->extent != FixMPM::NO_SIZE)
+    refuse("cannot be used with points of finite size (gimp): use a spline");
+  if (field->scheme != FixMPM::USL || field->light > 0.0)
+    refuse("needs a field with scheme usl and without light nodes");
+  if (field->total || field->axisymmetric)
+    refuse("cannot be used with frame total or axisymmetric of fix mpm: atoms are in space");
+  if (field->every > 1)
+    refuse("cannot be used with fix mpm every: atoms and points share each step");
+  for (auto *other : modify->get_fix_by_style("^mpm/handshake$"))
+    if (other != this && dynamic_cast<FixMPMHandshake *>(other)->field_name == field_name)
+      refuse(fmt::format("and {} have the same field: give one of them all zones", other->id));
+  if (!force->pair || !force->pair->single_enable)
+    refuse(
+        "needs a pair style that can tell the force of a single pair (no many-body potentials but "
+        "EAM)");
+  if (force->bond || force->kspace) refuse("cannot be used with bonds or kspace styles");
+
+  // atoms are moved by fix nve, after the step of the points
+
+  bool before = true;
+  for (auto *ifix : modify->get_fix_list()) {
+    if (utils::strmatch(ifix->style, "^mpm$")) before = false;
+    if (before && ifix->time_integrate && !utils::strmatch(ifix->style, "^mpm"))
+      refuse(fmt::format("needs positions of the start of the step: define fix {} after fix mpm",
+                         ifix->id));
+  }
+  neighbor->add_request(this, NeighConst::REQ_FULL);
+}
+
+void FixMPMHandshake::init_list(int /*id*/, NeighList *ptr)
+{
+  list = ptr;
+}
+
+/* ----------------------------------------------------------------------
+   weights
+------------------------------------------------------------------------- */
+
+/** Atoms this far from the zone may be neighbors of those in it. */
+double FixMPMHandshake::margin() const
+{
+  return force->pair->cutforce + neighbor->skin;
+}
+
+/** Weight of an atom at x; if it is 1, how far inside of the atoms x is; if it is 0, how far it is
+ *  beyond the zone. */
+double FixMPMHandshake::weight_at(const double *x, double &inside, double &beyond) const
+{
+  double w = 1.0;
+  inside = 1.0e300;
+  beyond = 0.0;
+  for (const auto &zone : zones) {
+    const double width = fabs(zone.one - zone.zero);
+    const double s = (zone.zero - x[zone.axis]) / (zone.zero - zone.one);
+    w *= MAX(0.0, MIN(1.0, s));
+    inside = MIN(inside, (s - 1.0) * width);
+    beyond = MAX(beyond, -s * width);
+  }
+  return w;
+}
+
+/** Atoms and points that have no weight yet get that of the place where they are. */
+void FixMPMHandshake::weigh()
+{
+  const double reach = margin(), reach_nodes = 2.0 * (field->shape + 1) * field->lattice.h;
+  bigint none = 0, all;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (role[i] != UNKNOWN) continue;
+    double inside, beyond;
+    const double w = weight_at(atom->x[i], inside, beyond);
+    if (field->is_point(i)) {
+      role[i] = beyond < reach_nodes ? NEAR_POINT : POINT;
+      weight[i] = 1.0 - w;
+      if (!(weight[i] > 0.0)) none++;
+      atom->rmass[i] *= weight[i];
+      atom->vfrac[i] *= weight[i];
+    } else if ((atom->mask[i] & groupbit) && atom->vfrac[i] == 0.0) {
+      role[i] = inside < reach ? COUPLED : APART;
+      weight[i] = w;
+    } else {
+      role[i] = APART;
+      weight[i] = 1.0;
+    }
+  }
+  MPI_Allreduce(&none, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (all)
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/handshake {}: {} material points are where atoms have the full weight: create "
+        "points in the zone and beyond it only",
+        id, all);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMHandshake::check_weights()
+{
+  // atoms must go as far beyond each zone as forces reach, and be moved by fix nve
+
+  bigint n[2] = {0, 0}, all[2];
+  std::vector<double> mine(zones.size(), -1.0e300), pads(zones.size());
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (role[i] != COUPLED) continue;
+    n[0]++;
+    int integrators = 0;
+    for (auto *ifix : modify->get_fix_list())
+      if (ifix->time_integrate && (atom->mask[i] & ifix->groupbit) &&
+          utils::strmatch(ifix->style, "^nve$"))
+        integrators++;
+    if (integrators != 1) n[1]++;
+    for (std::size_t k = 0; k < zones.size(); k++) {
+      const auto &zone = zones[k];
+      const double sign = zone.zero > zone.one ? 1.0 : -1.0;
+      mine[k] = MAX(mine[k], sign * (atom->x[i][zone.axis] - zone.zero));
+    }
+  }
+  MPI_Allreduce(n, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
+  MPI_Allreduce(mine.data(), pads.data(), (int) zones.size(), MPI_DOUBLE, MPI_MAX, world);
+  if (all[0] == 0)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/handshake {}: no atom of its group is in the zone", id);
+  if (all[1])
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/handshake {}: {} atoms in reach of the zone are not moved by one fix nve",
+               id, all[1]);
+  const double need = (force->pair->manybody_flag ? 2.0 : 1.0) * force->pair->cutforce;
+  for (std::size_t k = 0; k < zones.size(); k++)
+    if (pads[k] < 0.5 * need)
+      error->all(
+          FLERR, Error::NOLASTLINE,
+          "Fix mpm/handshake {}: atoms end {:.6g} beyond the plane {} of zone {}, where their "
+          "weight is zero: create them up to {:.6g} beyond it, as far as forces reach",
+          id, pads[k], zones[k].zero, k + 1, need);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMHandshake::setup_pre_neighbor()
+{
+  weigh();
+  check_weights();
+}
+
+void FixMPMHandshake::setup_post_neighbor()
+{
+  post_neighbor();
+}
+
+void FixMPMHandshake::post_neighbor()
+{
+  comm->forward_comm(this);    // weights of ghosts
+}
+
+/* ----------------------------------------------------------------------
+   blocks that atoms reach before the next update: by then they move half a skin
+------------------------------------------------------------------------- */
+
+void FixMPMHandshake::extend_topology(FixMPM &which)
+{
+  if (&which != field) return;
+  Grid &grid = *field->grid;
+  const auto &lattice = grid.lattice;
+  const double drift = MIN(1.0, 0.5 * neighbor->skin / lattice.h);
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (role[i] != COUPLED) continue;
+    int lo[3] = {0, 0, 0}, hi[3] = {0, 0, 0};
+    for (int d = 0; d < lattice.dim; d++) {
+      const double t = (atom->x[i][d] - lattice.origin[d]) / lattice.h;
+      int first;
+      double w[4];
+      field->shape_weights(t - drift, first, w);
+      lo[d] = first >> grid.shift_bits;
+      const int n = field->shape_weights(t + drift, first, w);
+      hi[d] = (first + n - 1) >> grid.shift_bits;
+    }
+    for (int bx = lo[0]; bx <= hi[0]; bx++)
+      for (int by = lo[1]; by <= hi[1]; by++)
+        for (int bz = lo[2]; bz <= hi[2]; bz++) {
+          const int b[3] = {bx, by, bz};
+          grid.activate(b);
+        }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   after the momentum equation of the points
+------------------------------------------------------------------------- */
+
+void FixMPMHandshake::act(double dt, Stage stage)
+{
+  if (stage != STEP) return;
+  find_nodes();
+  map_members(dt);
+  map_forces();
+  field->sum_copies(sums.data(), NREAL, 0, NREAL);
+  if (damping > 0.0) damp(dt);
+  tie(dt);
+  move_atoms(dt);
+}
+
+/* ---------------------------------------------------------------------- */
+
+template <class Function> void FixMPMHandshake::each_node(std::size_t k, const Function &f)
+{
+  const int *const node = &nodes[k * nreach];
+  const double *const share = &shares[k * nreach];
+  for (int j = 0; j < nreach; j++) f(&sums[(std::size_t) node[j] * NREAL], share[j]);
+}
+
+/** Which nodes do atoms and points reach, and with which weights? */
+void FixMPMHandshake::find_nodes()
+{
+  Grid &grid = *field->grid;
+  const auto &lattice = grid.lattice;
+  const int n = field->shape + 1, dim = lattice.dim, mask = grid.side - 1;
+  nreach = dim == 3 ? n * n * n : n * n;
+
+  members.clear();
+  for (int i = 0; i < atom->nlocal; i++)
+    if (role[i] == COUPLED) members.push_back(i);
+  natoms = members.size();
+  for (int i = 0; i < atom->nlocal; i++)
+    if (role[i] == NEAR_POINT) members.push_back(i);
+  nodes.resize(members.size() * nreach);
+  shares.resize(members.size() * nreach);
+
+  int slot = -1, last[3] = {0, 0, 0};
+  for (std::size_t k = 0; k < members.size(); k++) {
+    const double *const x = atom->x[members[k]];
+    int base[3] = {0, 0, 0}, b[3] = {0, 0, 0};
+    double w[3][4] = {{1.0}, {1.0}, {1.0}};
+    for (int d = 0; d < dim; d++) {
+      const double t = (x[d] - lattice.origin[d]) / lattice.h;
+      if (!(fabs(t) < 4.0e6))
+        error->one(FLERR, "Fix mpm/handshake {}: atom {} is far out of reach of the lattice", id,
+                   atom->tag[members[k]]);
+      field->shape_weights(t, base[d], w[d]);
+      b[d] = base[d] >> grid.shift_bits;
+    }
+    if (slot < 0 || memcmp(b, last, sizeof(b)) != 0) slot = grid.find(b);
+    memcpy(last, b, sizeof(b));
+    std::size_t m = k * nreach;
+    for (int kx = 0; kx < n; kx++)
+      for (int ky = 0; ky < n; ky++)
+        for (int kz = 0; kz < (dim == 3 ? n : 1); kz++, m++) {
+          const int index[3] = {base[0] + kx, base[1] + ky, base[2] + kz};
+          int to = -1;
+          if (slot >= 0) {
+            int side[3] = {1, 1, 1};
+            for (int d = 0; d < dim; d++) side[d] = (index[d] >> grid.shift_bits) - b[d] + 1;
+            to = grid.blocks[slot].slot[9 * side[0] + 3 * side[1] + side[2]];
+          }
+          if (to < 0)
+            error->one(FLERR, "Fix mpm/handshake {}: atom {} has left the active blocks", id,
+                       atom->tag[members[k]]);
+          nodes[m] = to * NODES_PER_BLOCK +
+              (dim == 3 ? ((index[0] & mask) * 4 + (index[1] & mask)) * 4 + (index[2] & mask)
+                        : (index[0] & mask) * 8 + (index[1] & mask));
+          shares[m] = w[0][kx] * w[1][ky] * w[2][kz];
+        }
+  }
+}
+
+/** Masses and momenta of atoms and points at the start of the step. */
+void FixMPMHandshake::map_members(double dt)
+{
+  const double half = 0.5 * dt * force->ftm2v;
+  sums.assign(field->grid->nnodes() * NREAL, 0.0);
+  for (std::size_t k = 0; k < members.size(); k++) {
+    const int i = members[k];
+    const bool is_atom = k < natoms;
+    const double full = is_atom ? atom->rmass[i] : atom->rmass[i] / weight[i];
+    const double weighted = is_atom ? weight[i] * full : 0.0;
+    const double present = is_atom ? weight[i] > 0.0 : weight[i] < 1.0;
+    double p[3];
+    for (int d = 0; d < 3; d++)
+      p[d] = full * atom->v[i][d] - (is_atom ? half * atom->f[i][d] : 0.0);
+    const int lane = is_atom ? ATOMS : POINTS;
+    each_node(k, [&](double *s, double share) {
+      for (int d = 0; d < 3; d++) s[lane + d] += share * p[d];
+      s[lane + 3] += share * full;
+      s[MASS] += share * weighted;
+      s[PRESENCE] += share * present;
+    });
+  }
+}
+
+/** Force of the weighted energy of the atoms. */
+void FixMPMHandshake::map_forces()
+{
+  Pair *const pair = force->pair;
+  double *const *const x = atom->x;
+  const int *const type = atom->type;
+  for (std::size_t k = 0; k < natoms; k++) {
+    const int i = members[k];
+    const double w = weight[i];
+    const int *const neighbors = list->firstneigh[i];
+    double g[3] = {0.0, 0.0, 0.0}, pushed = 0.0;
+    for (int jj = 0; jj < list->numneigh[i]; jj++) {
+      const int j = neighbors[jj] & NEIGHMASK;
+      if (role[j] == POINT || role[j] == NEAR_POINT)
+        error->one(FLERR,
+                   "Fix mpm/handshake {}: atom {} in reach of the zone is a neighbor of material "
+                   "point {}, which stands for the same material: use neigh_modify exclude",
+                   id, atom->tag[i], atom->tag[j]);
+      const double difference = (role[j] == COUPLED ? weight[j] : 1.0) - w;
+      if (difference == 0.0) continue;
+      const double r[3] = {x[i][0] - x[j][0], x[i][1] - x[j][1], x[i][2] - x[j][2]};
+      const double rsq = r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
+      if (rsq >= pair->cutsq[type[i]][type[j]]) continue;
+      double f_over_r;
+      pair->single(i, j, type[i], type[j], rsq, 1.0, 1.0, f_over_r);
+      for (int d = 0; d < 3; d++) g[d] += 0.5 * difference * f_over_r * r[d];
+      pushed = 1.0;
+    }
+    const double *const f = atom->f[i];
+    each_node(k, [&](double *s, double share) {
+      for (int d = 0; d < 3; d++) {
+        s[FORCE + d] += share * (w * f[d] + g[d]);
+        s[PLAIN + d] += share * w * f[d];
+      }
+      s[PRESENCE] += share * pushed;
+    });
+  }
+}
+
+/* ----------------------------------------------------------------------
+   damp the motion of the atoms relative to the nodes, which get the momentum
+------------------------------------------------------------------------- */
+
+void FixMPMHandshake::damp(double dt)
+{
+  const std::size_t nnodes = field->grid->nnodes();
+  const double half = 0.5 * dt * force->ftm2v;
+  field->grid->copy_aliases(sums.data(), NREAL);
+  std::vector<double> taken(nnodes * 4, 0.0);
+  for (std::size_t k = 0; k < natoms; k++) {
+    const int i = members[k];
+    const double w = weight[i], m = atom->rmass[i];
+    if (w == 0.0 || w == 1.0) continue;
+    double coarse[3] = {0.0, 0.0, 0.0}, p[3];
+    each_node(k, [&](const double *s, double share) {
+      for (int d = 0; d < 3; d++) coarse[d] += share * s[ATOMS + d] / s[ATOMS + 3];
+    });
+    const double part = -expm1(-damping * (1.0 - w) * dt);
+    for (int d = 0; d < 3; d++) {
+      const double v = atom->v[i][d] - half / m * atom->f[i][d], dv = part * (coarse[d] - v);
+      heat -= force->mvv2e * w * m * dv * (v + 0.5 * dv);
+      atom->v[i][d] += dv;
+      p[d] = w * m * dv;
+    }
+    for (std::size_t j = k * nreach; j < (k + 1) * nreach; j++)
+      for (int d = 0; d < 3; d++) taken[4 * (std::size_t) nodes[j] + d] += shares[j] * p[d];
+  }
+  field->sum_copies(taken.data(), 4, 0, 3);
+  const double inverse = 1.0 / (dt * force->ftm2v);
+  for (std::size_t n = 0; n < nnodes; n++)
+    for (int d = 0; d < 3; d++) sums[NREAL * n + FORCE + d] -= inverse * taken[4 * n + d];
+}
+
+/* ----------------------------------------------------------------------
+   momentum with full masses of the velocity with which points move, [node][4]
+------------------------------------------------------------------------- */
+
+void FixMPMHandshake::smooth_points(std::vector<double> &p)
+{
+  field->grid->copy_aliases(sums.data(), NREAL);
+  p.assign(4 * field->grid->nnodes(), 0.0);
+  for (std::size_t k = natoms; k < members.size(); k++) {
+    const double m = atom->rmass[members[k]] / weight[members[k]];
+    double v[3] = {0.0, 0.0, 0.0};
+    each_node(k, [&](const double *s, double share) {
+      for (int d = 0; d < 3; d++) v[d] += share * s[POINTS + d] / s[POINTS + 3];
+    });
+    for (std::size_t j = k * nreach; j < (k + 1) * nreach; j++)
+      for (int d = 0; d < 3; d++) p[4 * (std::size_t) nodes[j] + d] += shares[j] * m * v[d];
+  }
+  field->sum_copies(p.data(), 4, 0, 3);
+}
+
+/* ----------------------------------------------------------------------
+   one velocity for atoms and points at each node
+------------------------------------------------------------------------- */
+
+void FixMPMHandshake::tie(double dt)
+{
+  Grid &grid = *field->grid;
+  const double dtf = dt * force->ftm2v;
+  std::vector<double> smooth;
+  smooth_points(smooth);
+  double work = 0.0;
+  for (int d = 0; d < 3; d++) impulse[d] = 0.0;
+  dt_last = dt;
+  for (std::size_t slot = 0; slot < grid.blocks.size(); slot++) {
+    const auto &block = grid.blocks[slot];
+    for (int n = 0; n < NODES_PER_BLOCK; n++) {
+      if (block.alias >> n & 1) continue;
+      double *const r = grid.record((int) slot, n);    // vx vy vz m, old velocity
+      double *const s = &sums[(slot * NODES_PER_BLOCK + n) * NREAL];
+      const double ma = s[MASS], mc = r[3], inverse = 1.0 / (ma + mc);
+      const bool tied = s[PRESENCE] > 0.0 && ma + mc > 0.0, owned = block.owned >> n & 1;
+      if (!tied) {
+        for (int d = 0; d < 3; d++) {
+          s[CHANGE + d] = 0.0;
+          s[VELOCITY + d] = r[d];
+        }
+        continue;
+      }
+      const double *const c = &smooth[4 * (slot * NODES_PER_BLOCK + n)];
+      const bool both = ma > 0.0 && mc > 0.0;
+      for (int d = 0; d < 3; d++) {
+        const double own = mc > 0.0 ? r[d] - r[4 + d] : 0.0;
+        const double gain = inverse * (mc * own + dtf * s[FORCE + d]);
+        const double ahead = both ? s[ATOMS + d] / s[ATOMS + 3] - c[d] / s[POINTS + 3] : 0.0;
+        s[CHANGE + d] = ma > 0.0 ? gain - mc * inverse * ahead - dtf * s[PLAIN + d] / ma : 0.0;
+        r[d] = r[4 + d] + gain + ma * inverse * ahead;
+        s[VELOCITY + d] = r[d];
+        if (!owned || mc == 0.0) continue;
+        const double change = r[d] - r[4 + d] - own;    // by atoms
+        impulse[d] += mc * change;
+        work += mc * change * 0.5 * (r[d] + r[4 + d]);    // like a force
+      }
+    }
+  }
+  if (field->ledger_on) field->ledger.contact += force->mvv2e * work;
+}
+
+/** Atoms: the change of the velocity of the nodes, or where they have no weight, this velocity. */
+void FixMPMHandshake::move_atoms(double dt)
+{
+  field->grid->copy_aliases(sums.data(), NREAL);
+  const double half = 0.5 * dt * force->ftm2v;
+  for (std::size_t k = 0; k < natoms; k++) {
+    const int i = members[k];
+    double *const v = atom->v[i], sum[3] = {0.0, 0.0, 0.0};
+    const int lane = weight[i] == 0.0 ? VELOCITY : CHANGE;
+    each_node(k, [&](const double *s, double share) {
+      for (int d = 0; d < 3; d++) sum[d] += share * s[lane + d];
+    });
+    for (int d = 0; d < 3; d++)
+      v[d] = lane == CHANGE ? v[d] + sum[d]
+                            : sum[d] - half / atom->rmass[i] * atom->f[i][d];    // that of fix nve
+  }
+}
+
+/* ----------------------------------------------------------------------
+   output: energy of the fine motion that damping took; force of the atoms on the points
+------------------------------------------------------------------------- */
+
+double FixMPMHandshake::compute_scalar()
+{
+  double all;
+  MPI_Allreduce(&heat, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+double FixMPMHandshake::compute_vector(int d)
+{
+  if (dt_last == 0.0) return 0.0;
+  double all;
+  MPI_Allreduce(&impulse[d], &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all / (dt_last * force->ftm2v);
+}
+
+double FixMPMHandshake::memory_usage()
+{
+  return sizeof(double) * (2.0 * atom->nmax + sums.capacity() + shares.capacity()) +
+      sizeof(int) * (double) (nodes.capacity() + members.capacity());
+}
+
+/* ----------------------------------------------------------------------
+   weights and roles of atoms and points
+------------------------------------------------------------------------- */
+
+void FixMPMHandshake::grow_arrays(int nmax)
+{
+  memory->grow(weight, nmax, "mpm/handshake:weight");
+  memory->grow(role, nmax, "mpm/handshake:role");
+  vector_atom = weight;
+}
+
+void FixMPMHandshake::copy_arrays(int i, int j, int /*delflag*/)
+{
+  weight[j] = weight[i];
+  role[j] = role[i];
+}
+
+void FixMPMHandshake::set_arrays(int i)
+{
+  weight[i] = 1.0;
+  role[i] = UNKNOWN;
+}
+
+int FixMPMHandshake::pack_forward_comm(int n, int *send, double *buf, int /*pbc_flag*/,
+                                       int * /*pbc*/)
+{
+  for (int k = 0; k < n; k++) {
+    buf[2 * k] = weight[send[k]];
+    buf[2 * k + 1] = role[send[k]];
+  }
+  return 2 * n;
+}
+
+void FixMPMHandshake::unpack_forward_comm(int n, int first, double *buf)
+{
+  for (int k = 0; k < n; k++) {
+    weight[first + k] = buf[2 * k];
+    role[first + k] = buf[2 * k + 1];
+  }
+}
+
+int FixMPMHandshake::pack_exchange(int i, double *buf)
+{
+  buf[0] = weight[i];
+  buf[1] = role[i];
+  return 2;
+}
+
+int FixMPMHandshake::unpack_exchange(int i, double *buf)
+{
+  weight[i] = buf[0];
+  role[i] = buf[1];
+  return 2;
+}
+
+int FixMPMHandshake::pack_restart(int i, double *buf)
+{
+  buf[0] = 3;
+  return 1 + pack_exchange(i, buf + 1);
+}
+
+void FixMPMHandshake::unpack_restart(int i, int nth)
+{
+  double **const extra = atom->extra;
+  int m = 0;
+  for (int k = 0; k < nth; k++) m += static_cast<int>(extra[i][m]);
+  unpack_exchange(i, extra[i] + m + 1);
+}
+
+int FixMPMHandshake::size_restart(int /*nlocal*/)
+{
+  return 3;
+}
+
+int FixMPMHandshake::maxsize_restart()
+{
+  return 3;
+}
+
+void FixMPMHandshake::write_restart(FILE *fp)
+{
+  const double all = compute_scalar();
+  if (comm->me) return;
+  const int size = sizeof(double);
+  fwrite(&size, sizeof(int), 1, fp);
+  fwrite(&all, size, 1, fp);
+}
+
+void FixMPMHandshake::restart(char *buf)
+{
+  double all;
+  memcpy(&all, buf, sizeof(double));
+  heat = comm->me == 0 ? all : 0.0;
+}

@@ -1,0 +1,103 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(mpm/handshake,FixMPMHandshake);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_MPM_HANDSHAKE_H
+#define LMP_FIX_MPM_HANDSHAKE_H
+
+#include "fix.h"
+#include "mpm_node_action.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+class FixMPM;
+
+/** Zone where atoms and material points describe the same material, each with a share of its energy
+ *  and mass, and move with one velocity at the nodes of a field. */
+class FixMPMHandshake : public Fix, public MPMNodeAction {
+ public:
+  FixMPMHandshake(class LAMMPS *, int, char **);
+  ~FixMPMHandshake() override;
+  int setmask() override;
+  void init() override;
+  void init_list(int, class NeighList *) override;
+  void setup_pre_neighbor() override;
+  void setup_post_neighbor() override;
+  void post_neighbor() override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+  double memory_usage() override;
+  void grow_arrays(int) override;
+  void copy_arrays(int, int, int) override;
+  void set_arrays(int) override;
+  int pack_forward_comm(int, int *, double *, int, int *) override;
+  void unpack_forward_comm(int, int, double *) override;
+  int pack_exchange(int, double *) override;
+  int unpack_exchange(int, double *) override;
+  int pack_restart(int, double *) override;
+  void unpack_restart(int, int) override;
+  int size_restart(int) override;
+  int maxsize_restart() override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+
+  void extend_topology(FixMPM &) override;
+  void act(double dt, Stage) override;
+
+ private:
+  /** The weight of the atoms falls linearly from 1 to 0 between two planes. */
+  struct Zone {
+    int axis;
+    double one, zero;    // positions of the planes
+  };
+  enum Role { UNKNOWN, APART, COUPLED, POINT, NEAR_POINT };    // near: at the nodes of the zone
+
+  std::string field_name;
+  std::vector<Zone> zones;
+  double damping;    // rate at which the fine motion is damped where w = 0 [1/time]
+
+  FixMPM *field;
+  class NeighList *list;
+  double *weight;    // [n] share of the mass and energy of an atom or point that counts
+  double *role;      // [n] a Role
+
+  // of the present step
+
+  std::vector<int> members;      // local atoms that are coupled, then points near the zone
+  std::size_t natoms;            // the former
+  std::vector<int> nodes;        // of each of them: the nodes that it reaches,
+  std::vector<double> shares;    // and their weights
+  int nreach;                    // number of these
+  std::vector<double> sums;      // at the nodes
+  double heat, impulse[3], dt_last;
+
+  double margin() const;
+  double weight_at(const double *x, double &inside, double &beyond) const;
+  void weigh();
+  void check_weights();
+  void find_nodes();
+  void map_members(double dt);
+  void map_forces();
+  void damp(double dt);
+  void smooth_points(std::vector<double> &);
+  void tie(double dt);
+  void move_atoms(double dt);
+  template <class Function> void each_node(std::size_t k, const Function &);
+};
+
+}    // namespace LAMMPS_NS
+#endif
+#endif
