@@ -22,10 +22,10 @@ SECONDS = 400    # for one run, on a busy machine
 
 # node spacing times this, where the default one is for a nicer picture or takes too long
 COARSER = {"taylor-bar": 2.0, "spall": 2.0, "cook-membrane": 2.0, "hypervelocity": 2.0, "ring-collision": 2.0, "spinning-disk": 2.0,
-           "taylor-bar-total": 1.6, "taylor-bar-axisymmetric": 2.0}
+           "taylor-bar-total": 1.6, "taylor-bar-axisymmetric": 2.0, "ball-in-sand": 1.6}
 
 # steps, where a part of the run will do
-FEWER_STEPS = {"grains-on-block": 1000, "vortex": 110, "ring-on-block": 1200}
+FEWER_STEPS = {"grains-on-block": 1000, "vortex": 110, "ring-on-block": 1200, "hopper": 1500}
 
 # has its own test, as it must be built first
 BUILT_FIRST = ["own-material"]

@@ -66,8 +66,8 @@ def options(c):
 
 def times_to_goal(data, scene):
     """{(shape, transfer, scheme, frame): seconds of processor time to the goal of the scene} of runs that
-    reach it, or by interpolation between spacings or extrapolation to at most half or twice the spacing;
-    what does not reach it is not there.  All with the points per cell and time step of the factorial, so that
+    reach it, or by interpolation between spacings or extrapolation to at most half of the finest; what does not
+    reach it is not there.  All with the points per cell and time step of the factorial, so that
     what has been tried in more ways has no advantage; where much is stretched, with more points, too."""
     if scene in data.goals:
         return data.goals[scene]
@@ -90,8 +90,7 @@ def times_to_goal(data, scene):
             work = math.log(b["time"] / a["time"]) / ratio
             h = float(b["h"]) * (goal / b["credited"])**(1 / order)
             finest = 0.5 * float(b["h"]) if b is rungs[-1] else float(b["h"])
-            coarsest = 2 * float(a["h"]) if a is rungs[0] else float(a["h"])
-            if finest <= h <= coarsest:
+            if finest <= h <= float(a["h"]):
                 time = b["time"] * (float(b["h"]) / h)**work
                 best[setting[:4]] = min(best.get(setting[:4], time), time)
     data.goals[scene] = best
@@ -200,8 +199,7 @@ def change_table(data):
             for k, v in change.items():
                 c[k] = v
             r = find(data, scene, tuple(c))
-            failed = any(rs.key(x) == tuple(c) and x["scene"] == scene and x["status"] != "ok" for x in data.runs)
-            if failed:
+            if (scene,) + tuple(c) in data.failed:
                 cells.append("fails")
             elif r and base and r["time"] and base["time"]:
                 cells.append("%s / %s" % (number(r["error"] / base["error"]), number(r["time"] / base["time"])))
@@ -222,9 +220,9 @@ def energy_table(data):
                 continue
             cells = ["*%s*, *%s*" % (transfer, scheme)]
             for scene in sc.SCENES:
-                r = find(data, scene, ("quadratic", transfer, scheme, "updated") + sc.MIDDLE +
-                         (sc.SCENES[scene]["levels"][1],))
-                cells.append(percent(r["lost"]) if r else "fails")
+                c = ("quadratic", transfer, scheme, "updated") + sc.MIDDLE + (sc.SCENES[scene]["levels"][1],)
+                r = find(data, scene, c)
+                cells.append(percent(r["lost"]) if r else "fails" if (scene,) + c in data.failed else "-")
             rows.append(cells)
     return table(["transfer, scheme"] + list(sc.SCENES), rows, [22] + [13] * len(sc.SCENES))
 
@@ -307,7 +305,9 @@ def rules(data):
         if best:
             t, kind = best[0]
             base = [u for u, k in best if k == BASE[:4]]
-            rest = "the default needs %s times as long" % number(base[0] / t) if base else "the default does not reach it"
+            rest = ("this is the default" if kind == BASE[:4] else
+                    "the default needs %s times as long" % number(base[0] / t) if base else
+                    "the default does not reach it")
             lines.append("* %s, to %s: %s; %s." % (sc.SCENES[scene]["title"].lower(),
                                                   percent(sc.SCENES[scene]["goal"], 1), options(kind), rest))
     out.append("**The cheapest setting** for the goal of each scene:\n\n" + "\n".join(lines) + "\n")

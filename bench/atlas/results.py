@@ -76,6 +76,7 @@ class Results:
         for scene, rows in self.rows.items():
             self.credit(rows, (self.reference[scene][1] or 0.0) / sc.SCENES[scene]["scale"])
         self.index = {(scene,) + key(r): r for scene, rows in self.rows.items() for r in rows}
+        self.failed = {(r["scene"],) + key(r) for r in runs if r["status"] != "ok"}
         self.goals = {}    # times to the goal, by scene, once they are known
 
     @staticmethod
