@@ -450,6 +450,7 @@ void FixMPM::setup_pre_neighbor()
 
   check_integrators();
   check_points();
+  if (force->pair) check_radii();
   if (driver && force->pair) check_neighbors();
   set_reference();
   give_initial_stress();

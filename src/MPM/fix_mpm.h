@@ -396,6 +396,7 @@ class FixMPM : public Fix {
   void check_integrators();
   void check_points();
   void check_neighbors();
+  void check_radii();
   void check_inside_box();
   void check_dt();
   double stable_share(double size) const;

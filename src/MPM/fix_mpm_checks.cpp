@@ -37,13 +37,14 @@ using namespace MPM_NS;
 static constexpr int DT_CHECK_EVERY = 20;    // steps between checks of the time step
 
 /* ----------------------------------------------------------------------
-   a point must have one integrator
+   a point must have one integrator; fixes of this style may hide from LAMMPS that they are one,
+   see init()
 ------------------------------------------------------------------------- */
 
 void FixMPM::check_integrators()
 {
   for (auto *other : modify->get_fix_list()) {
-    if (other == this || !other->time_integrate) continue;
+    if (other == this || !(other->time_integrate || utils::strmatch(other->style, "^mpm$"))) continue;
     bigint n = 0, all;
     for (int i = 0; i < atom->nlocal; i++)
       if (is_point(i) && (atom->mask[i] & other->groupbit)) n++;
@@ -173,6 +174,50 @@ void FixMPM::check_neighbors()
     error->warning(FLERR, "Fix mpm: neighbor lists of points and of grains {:.1f} times as large are "
                    "many times faster with neighbor ... multi and comm_modify mode multi",
                    sqrt(cut_others / std::max(cut_points, 1.0e-300)));
+}
+
+/* ----------------------------------------------------------------------
+   Grains see points by their radius. LAMMPS gives no error for a radius of zero, where no force
+   or one between centers remains, nor for one of 0.5, its default, in other units.
+------------------------------------------------------------------------- */
+
+void FixMPM::check_radii()
+{
+  if (!atom->radius_flag || !modify->get_fix_by_style("^mpm/surface$").empty()) return;
+  if (!utils::strmatch(force->pair_style, "^gran") && !force->pair_match("^gran", 0)) return;
+  const int ntypes = atom->ntypes;
+  std::vector<int> grains(ntypes + 1, 0), grains_all(ntypes + 1);    // types of other atoms
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->vfrac[i] == 0.0) grains[atom->type[i]] = 1;
+  MPI_Allreduce(grains.data(), grains_all.data(), ntypes + 1, MPI_INT, MPI_MAX, world);
+
+  bigint mine[3] = {0, 0, 0}, all[3];    // points that meet them, without radius, too large
+  tagint example = 0, example_all;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!is_point(i)) continue;
+    bool meets = false;
+    for (int t = 1; t <= ntypes; t++)
+      meets = meets || (grains_all[t] && force->pair->cutsq[atom->type[i]][t] > 0.0);
+    if (!meets) continue;
+    mine[0]++;
+    mine[1] += atom->radius[i] == 0.0;
+    if (atom->radius[i] <= 2.0 * lattice.h) continue;
+    mine[2]++;
+    example = std::max(example, atom->tag[i]);
+  }
+  MPI_Allreduce(mine, all, 3, MPI_LMP_BIGINT, MPI_SUM, world);
+  MPI_Allreduce(&example, &example_all, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  if (all[0] == 0) return;
+  if (all[1] == all[0])
+    error->all(FLERR, Error::NOLASTLINE,
+               "Points of fix mpm {} have no radius, by which pair style {} couples them to grains: "
+               "use fix mpm/surface, or set ... diameter",
+               id, force->pair_style);
+  if (all[2])
+    error->all(FLERR, Error::NOLASTLINE,
+               "{} points of fix mpm {} have a radius of more than two node spacings, for instance "
+               "point {}: use fix mpm/surface, or set ... diameter",
+               all[2], id, example_all);
 }
 
 /* ----------------------------------------------------------------------

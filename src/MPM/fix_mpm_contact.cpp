@@ -35,7 +35,9 @@
 
 #include "fix_mpm_contact.h"
 
+#include "atom.h"
 #include "comm.h"
+#include "domain.h"
 #include "error.h"
 #include "fix_mpm.h"
 #include "force.h"
@@ -54,6 +56,12 @@ using namespace MPM_NS;
 static constexpr int MAX_ITERATIONS = 200;      // of impulses where three or more bodies meet
 static constexpr double CONVERGED = 1.0e-12;    // relative change of the impulses
 
+// share of volume from which bodies overlap, by half a cell to a cell, depending on where they are in
+// the cell; points at the ends of regions that are no multiple of their spacing reach 1.37. And the
+// least share of each body there
+
+static constexpr double OVERLAP = 1.4, OVERLAP_EACH = 0.25;
+
 /* ----------------------------------------------------------------------
    fix ID all mpm/contact FIELD FIELD ...  law ... normal ... gap ...
 ------------------------------------------------------------------------- */
@@ -61,7 +69,7 @@ static constexpr double CONVERGED = 1.0e-12;    // relative change of the impuls
 FixMPMContact::FixMPMContact(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), law(FRICTIONLESS), normal_by(COLINEAR), kinetic_friction(0.0),
     static_friction(0.0), normal_strength(0.0), shear_strength(0.0), release_work(0.0), gap(true),
-    full(1.0), lists_valid(false), may_touch(false), dt_last(0.0), force_now(), count_now(),
+    full(1.0), lists_valid(false), may_touch(false), look(true), dt_last(0.0), force_now(), count_now(),
     friction_work(), array(), array_step(-1)
 {
   if (igroup != 0)
@@ -259,6 +267,7 @@ void FixMPMContact::init()
   near.assign(fields.size(), std::vector<char>());
   images.assign(fields.size(), std::vector<int>());
   lists_valid = false;
+  look = true;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -310,7 +319,7 @@ void FixMPMContact::blocks_found()
 
   for (std::size_t k = 0; k < fields.size(); k++) {
     const Grid &grid = *fields[k]->grid;
-    const Lattice &lattice = grid.lattice;
+    const MPM_NS::Lattice &lattice = grid.lattice;
     reach[k].clear();
     int range[6];    // low, and minus high
     for (int &r : range) r = INT_MAX;
@@ -407,7 +416,7 @@ void FixMPMContact::mark_near(int k, int slot)
 {
   near[k][slot] = 1;
   const Grid &grid = *fields[k]->grid;
-  const Lattice &lattice = grid.lattice;
+  const MPM_NS::Lattice &lattice = grid.lattice;
   if (!lattice.periodic[0] && !lattice.periodic[1] && !lattice.periodic[2]) return;
   for (const int image : images[k])
     for (int corner = 0; corner < 8 && !near[k][image]; corner++) {
@@ -452,9 +461,79 @@ bool FixMPMContact::map_bodies()
   for (std::size_t k = 0; k < fields.size(); k++) {
     fields[k]->map_gradient(normal_by == MASS ? FixMPM::OF_MASS : FixMPM::OF_VOLUME, near[k],
                             gradient[k]);
-    if (gap) fields[k]->map_volume(near[k], share[k]);
+    if (gap || look) fields[k]->map_volume(near[k], share[k]);
   }
   return true;
+}
+
+/* ----------------------------------------------------------------------
+   first step of a run: bodies that share space. Contact takes away their approach, it does not
+   part them. The node where they do so most, and the nearest point of each of the two.
+------------------------------------------------------------------------- */
+
+void FixMPMContact::warn_overlap()
+{
+  struct {
+    double value;
+    int rank;
+  } mine = {0.0, comm->me}, worst;
+  double place[5] = {0.0};    // position of the node, and two bodies
+  for (const auto &c : common)
+    for (int n = 0; n < NODES_PER_BLOCK; n++) {
+      if (!(c.canonical >> n & 1)) continue;
+      double sum = 0.0, most[2] = {0.0, 0.0};
+      int body[2] = {-1, -1};
+      for (int k = 0; k < (int) fields.size(); k++) {
+        if (c.slot[k] < 0) continue;
+        const double s = share[k][(int64_t) c.slot[k] * NODES_PER_BLOCK + n];
+        sum += s;
+        const int at = s > most[0] ? 0 : 1;
+        if (s <= most[at]) continue;
+        if (at == 0) {
+          most[1] = most[0];
+          body[1] = body[0];
+        }
+        most[at] = s;
+        body[at] = k;
+      }
+      if (most[1] < OVERLAP_EACH || sum < OVERLAP || sum <= mine.value) continue;
+      mine.value = sum;
+      const FixMPM &field = *fields[body[0]];
+      int index[3];
+      field.grid->node_index(field.grid->blocks[c.slot[body[0]]], n, index);
+      field.node_position(index, place);
+      place[3] = body[0];
+      place[4] = body[1];
+    }
+  MPI_Allreduce(&mine, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
+  if (worst.value == 0.0) return;
+  MPI_Bcast(place, 5, MPI_DOUBLE, worst.rank, world);
+
+  tagint tags[2];
+  for (int b = 0; b < 2; b++) {
+    const FixMPM &field = *fields[(int) place[3 + b]];
+    mine.value = 1.0e300;
+    tags[b] = 0;
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!field.is_point(i)) continue;
+      double d[3];
+      for (int k = 0; k < 3; k++) d[k] = k < field.lattice.dim ? atom->x[i][k] - place[k] : 0.0;
+      domain->minimum_image(FLERR, d);
+      const double rsq = MathExtra::lensq3(d);
+      if (rsq >= mine.value) continue;
+      mine.value = rsq;
+      tags[b] = atom->tag[i];
+    }
+    MPI_Allreduce(&mine, &worst, 1, MPI_DOUBLE_INT, MPI_MINLOC, world);
+    MPI_Bcast(&tags[b], 1, MPI_LMP_TAGINT, worst.rank, world);
+  }
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "Fix mpm/contact {}: bodies {} and {} overlap at the start of the run, for "
+                   "instance points {} and {} near {:.6g} {:.6g} {:.6g}: contact keeps bodies from "
+                   "approaching each other, but does not part them",
+                   id, fields[(int) place[3]]->id, fields[(int) place[4]]->id, tags[0], tags[1],
+                   place[0], place[1], place[2]);
 }
 
 /* ----------------------------------------------------------------------
@@ -664,9 +743,11 @@ void FixMPMContact::act(double dt, Stage stage)
     nodes.clear();
     pairs.clear();
     if (may_touch && map_bodies()) {
+      if (look) warn_overlap();
       find_contacts();
       if (normal_by == LOGISTIC) separate_points();
     }
+    look = false;
   }
   for (auto &node : nodes) resolve(node, dt, !count);
 }

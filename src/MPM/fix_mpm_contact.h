@@ -91,6 +91,7 @@ class FixMPMContact : public Fix, public MPMNodeAction {
   std::vector<std::vector<char>> near;     // [field][slot] a block where bodies share nodes
   std::vector<std::vector<int>> images;    // [field] blocks with periodic images
   bool lists_valid, may_touch;
+  bool look;    // for bodies that overlap, in the first step of a run
 
   std::vector<std::vector<double>> gradient;    // [field] of the volume (or mass) at the nodes
   std::vector<std::vector<double>> share;       // [field] volume at the nodes / node volume
@@ -107,6 +108,7 @@ class FixMPMContact : public Fix, public MPMNodeAction {
   void list_common_blocks();
   void mark_near(int k, int slot);
   bool map_bodies();
+  void warn_overlap();
   void find_contacts();
   void separate_points();
   bool make_pair(const Common &, int n, int a, int b, double volume_share, Pair &);

@@ -97,10 +97,24 @@ void FixMPMSurface::init()
                  "Fix mpm/surface cannot be used with axisymmetric fix mpm {}, where points are "
                  "rings: use fix mpm/contact",
                  ifix->id);
-  for (auto *other : modify->get_fix_by_style("^mpm/surface$"))
-    if (other != this && (other->groupbit & groupbit) && other->igroup == igroup)
-      error->all(FLERR, Error::NOLASTLINE, "Fix mpm/surface {} and {} have the same group", id,
+  bigint n = 0, nall;
+  for (int i = 0; i < atom->nlocal; i++) n += has_radius(i);
+  MPI_Allreduce(&n, &nall, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (nall == 0)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/surface {} has no material points: its group {} has no atoms with a volume",
+               id, group->names[igroup]);
+  for (auto *other : modify->get_fix_by_style("^mpm/surface$")) {
+    if (other == this) continue;
+    int shared = 0, shared_all;
+    for (int i = 0; i < atom->nlocal; i++)
+      if (has_radius(i) && (atom->mask[i] & other->groupbit)) shared = 1;
+    MPI_Allreduce(&shared, &shared_all, 1, MPI_INT, MPI_MAX, world);
+    if (shared_all)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/surface {} and {} have points in common: give them disjoint groups", id,
                  other->id);
+  }
 
   // pair styles have taken their cutoffs from the radii of this moment
 
