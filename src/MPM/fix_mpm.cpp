@@ -45,7 +45,7 @@ static constexpr double MAX_NODE = 4.0e6;
 FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), shape(QUADRATIC), extent(NO_SIZE), aspect{1.0, 1.0, 1.0}, transfer(APIC),
     flip(0.0), poly(false), refinement(LUMPED), order(1), total(false), most_distorted(0.0), axisymmetric(false), scheme(USL), stress(DEFAULT_STRESS), locking(NO_CURE), light(0.0), policy(ERROR),
-    delete_failed(false), every(1), dt_check(true), grid(nullptr), C(nullptr), Q(nullptr), corners(nullptr), X(nullptr), R(nullptr),
+    delete_failed(false), modified_edges(false), every(1), dt_check(true), grid(nullptr), C(nullptr), Q(nullptr), corners(nullptr), X(nullptr), R(nullptr),
     waiting(nullptr), ledger_on(false), points(nullptr), halo(nullptr),
     kernels(nullptr), batch_kernels(nullptr), driver(false), topology_valid(false),
     watch_drift(false), drifted(0), refer_anew(false), want_sort(false), switches(0), switches_sorted(0),
@@ -233,6 +233,9 @@ void FixMPM::process_options(int narg, char **arg)
     } else if (keyword == "failed") {
       delete_failed = choose({"keep", "delete"}) == 1;
       iarg += 2;
+    } else if (keyword == "edges") {
+      modified_edges = choose({"plain", "modified"}) == 1;
+      iarg += 2;
     } else if (keyword == "every") {
       need(1);
       every = utils::inumeric(FLERR, arg[iarg + 1], false, lmp);
@@ -274,6 +277,11 @@ void FixMPM::process_options(int narg, char **arg)
     error->all(FLERR, "Fix mpm stress gradient with frame total needs transfer flip or pic: that of "
                "transfer apic is stress mls");
 
+  if (modified_edges && (shape == LINEAR || extent != NO_SIZE || refinement != LUMPED ||
+                         is_affine(transfer) || axisymmetric))
+    error->all(FLERR, "Fix mpm edges modified is for shape quadratic and cubic with transfer pic and "
+               "flip, not with axisymmetric");
+
   check_box();
 }
 
@@ -313,6 +321,7 @@ void FixMPM::check_box()
     lattice.periodic[2] = false;
     lattice.ncell[2] = 1;
   }
+  if (modified_edges) check_edges();
   if (grid) grid->lattice = lattice;
 }
 

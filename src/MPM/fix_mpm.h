@@ -109,6 +109,7 @@ class FixMPM : public Fix {
   double light;        ///< nodes with less than this share of a cell full of material are light; 0: none
   Policy policy;       ///< what to do with a point that goes bad
   bool delete_failed;  ///< remove points whose damage is 1
+  bool modified_edges;    ///< functions next to fixed faces need no nodes outside
   int every;           ///< steps of LAMMPS in a step of the cycle
   bool dt_check;       ///< stop when the time step is above the stable limit
 
@@ -317,6 +318,17 @@ class FixMPM : public Fix {
   template <class F>
   void visit_nodes(const MPM_NS::Grid::Block &, int i, const double *x, double share,
                    const F &f) const;
+
+  // functions next to fixed faces
+  struct EdgeNodes {
+    int64_t outside, face, inside;
+  };
+  std::vector<EdgeNodes> edges[3];    // by axis; empty: functions are the same everywhere
+  void check_edges() const;
+  void list_edges();
+  void fold_edges(double *nodes, int nreal, int lane, int nlane) const;
+  void extend_edges(double *nodes, int nreal, int lane, int nlane) const;
+  void extend_edges();
 
   // stages of the step
   bool wait();    // of all fields

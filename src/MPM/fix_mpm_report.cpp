@@ -80,6 +80,7 @@ double FixMPM::external_work(const double *force_on)
       map_run(kernel.p2g_force, r, s, runs[k], base, box);
     kernel.flush(tile, external_nodes.data(), block.slot, box);
   }
+  fold_edges(external_nodes.data(), 8, 4, 3);
   grid->fold_aliases(external_nodes.data(), 8, 4, 3);
   halo->sum(external_nodes.data(), 8, 4, 3);
 

@@ -97,6 +97,7 @@ void FixMPM::stress_first()
 {
   clock = platform::walltime();
   grid->copy_aliases();
+  extend_edges();
   if (scheme == USAVG)
     gradient_and_material(0.5 * step_dt(), 0.75 * step_dt());
   else
@@ -154,6 +155,7 @@ void FixMPM::grid_to_points()
     kinetic_points = kinetic;
   }
   grid->copy_aliases();
+  extend_edges();
   if (moves_late()) xnew.resize(3 * (std::size_t) atom->nlocal);
   const bool fbar = averages_strain() && scheme == USL, round = axisymmetric && scheme == USL;
   const bool now = scheme == USL && light == 0.0;    // the gradient is final
@@ -236,6 +238,7 @@ void FixMPM::stress_last()
 {
   clock = platform::walltime();
   grid->copy_aliases();
+  extend_edges();
   if (scheme == USAVG)
     gradient_and_material(0.5 * step_dt(), -0.25 * step_dt());
   else
@@ -626,6 +629,7 @@ void FixMPM::volume_at_points(std::vector<double> &share)
   for (int64_t n = 0; n < grid->nnodes(); n++)
     nodes_apart[n * NREAL] = inverse * nodes_apart[n * NREAL + 3];
   grid->copy_aliases(nodes_apart.data(), NREAL);
+  extend_edges(nodes_apart.data(), NREAL, 0, 1);
 
   for (const auto &a : blocks) {
     const auto &block = grid->blocks[a.slot];
@@ -677,6 +681,7 @@ void FixMPM::sum_halo(int lane, int nlane)
 
 void FixMPM::sum_copies(double *nodes, int nreal, int lane, int nlane)
 {
+  fold_edges(nodes, nreal, lane, nlane);
   grid->fold_aliases(nodes, nreal, lane, nlane);
   halo->sum(nodes, nreal, lane, nlane);
 }

@@ -234,6 +234,7 @@ void FixMPM::finish_topology()
   grid->finish();
   grid->allocate(kernel.nreal);
   halo->setup(*grid);
+  if (modified_edges) list_edges();
   for (auto *action : master->actions) action->topology_changed(*this);
 
   topology_valid = true;

@@ -1,0 +1,114 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+
+// B-splines that are modified next to fixed faces (keyword edges of fix mpm), so that the nodes inside of
+// the box and on its faces alone reproduce linear fields (M. Steffen, R.M. Kirby, M. Berzins, Int. J.
+// Numer. Meth. Eng. 76 (2008) 922).
+//
+// A node outside has the value that continues those of the two nodes before it, f_-1 = 2 f_0 - f_1. In
+// terms of functions, N_0 + 2 N_-1 and N_1 - N_-1 take the place of N_0, N_1 and N_-1: at the distance x
+// from the face 1 - x + x^3/6 and x - x^3/3 (cubic, up to one node spacing) or 1 - x and x (quadratic, up
+// to half of it), which are not negative. So no kernel needs to know of it: sums at nodes outside are
+// folded to the two nodes inside, and values continued to them before they are interpolated.
+
+#include "fix_mpm.h"
+
+#include "domain.h"
+#include "error.h"
+
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPM::check_edges() const
+{
+  constexpr double ON_NODE = 1.0e-6;
+  for (int a = 0; a < lattice.dim; a++) {
+    if (lattice.periodic[a]) continue;
+    for (int side = 0; side < 2; side++) {
+      const double at = ((side ? domain->boxhi[a] : domain->boxlo[a]) - lattice.origin[a]) / lattice.h;
+      if (std::fabs(at - std::lround(at)) > ON_NODE)
+        error->all(FLERR, "Fix mpm {} edges modified: the fixed face {}{} must be in a plane of nodes: "
+                   "change spacing or origin", id, "xyz"[a], side ? "hi" : "lo");
+    }
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPM::list_edges()
+{
+  for (int a = 0; a < lattice.dim; a++) {
+    edges[a].clear();
+    if (lattice.periodic[a]) continue;
+    for (int side = 0; side < 2; side++) {
+      const double at = ((side ? domain->boxhi[a] : domain->boxlo[a]) - lattice.origin[a]) / lattice.h;
+      const int plane = (int) std::lround(at), out = side ? 1 : -1;
+      for (std::size_t slot = 0; slot < grid->blocks.size(); slot++) {
+        const auto &block = grid->blocks[slot];
+        const int n = plane + out - block.b[a] * grid->side;
+        if (n < 0 || n >= grid->side) continue;
+        for (int k = 0; k < NODES_PER_BLOCK; k++) {
+          int index[3];
+          grid->node_index(block, k, index);
+          if (index[a] != plane + out) continue;
+          EdgeNodes e;
+          e.outside = (int64_t) slot * NODES_PER_BLOCK + k;
+          index[a] = plane;
+          e.face = grid->locate(index);
+          index[a] = plane - out;
+          e.inside = grid->locate(index);
+          // points that reach the node outside reach these two, so that it has nothing without them
+          if (e.face >= 0 && e.inside >= 0) edges[a].push_back(e);
+        }
+      }
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   sums of this rank, before those of others are added
+------------------------------------------------------------------------- */
+
+void FixMPM::fold_edges(double *nodes, int nreal, int lane, int nlane) const
+{
+  for (int a = lattice.dim - 1; a >= 0; a--)
+    for (const auto &e : edges[a]) {
+      double *out = nodes + e.outside * nreal + lane;
+      double *face = nodes + e.face * nreal + lane, *in = nodes + e.inside * nreal + lane;
+      for (int i = 0; i < nlane; i++) {
+        face[i] += 2.0 * out[i];
+        in[i] -= out[i];
+        out[i] = 0.0;
+      }
+    }
+}
+
+/* ----------------------------------------------------------------------
+   values, for interpolation; where faces meet, the last axis has the last word
+------------------------------------------------------------------------- */
+
+void FixMPM::extend_edges(double *nodes, int nreal, int lane, int nlane) const
+{
+  for (int a = 0; a < lattice.dim; a++)
+    for (const auto &e : edges[a])
+      for (int i = lane; i < lane + nlane; i++)
+        nodes[e.outside * nreal + i] =
+            2.0 * nodes[e.face * nreal + i] - nodes[e.inside * nreal + i];
+}
+
+/** Velocities of the nodes, also the old ones. */
+void FixMPM::extend_edges()
+{
+  extend_edges(grid->nodes(), kernel.nreal, 0, 3);
+  if (kernel.nreal == 8) extend_edges(grid->nodes(), kernel.nreal, 4, 3);
+}

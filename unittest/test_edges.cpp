@@ -1,0 +1,127 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+
+// labels: physics
+// mpi: 1 2
+
+// B-splines that are modified next to fixed faces (fix mpm ... edges modified).
+
+#include "mpm_lammps.h"
+
+#include "gtest/gtest.h"
+
+using namespace MPM_TEST;
+using MPM_NS::NODES_PER_BLOCK;
+
+static const std::string full = "units lj\nboundary f p f\natom_style mpm\nneighbor 0.3 bin\n"
+                                "region box block 0 6 0 5 0 4\ncreate_box 1 box\n"
+                                "fix grid all mpm 1.0 OPTIONS edges modified\n"
+                                "create_points 1 box ppc 2\n"
+                                "fix m all mpm/material density 1.0 neohookean 10.0 0.3\n"
+                                "timestep 0.001\nthermo 1000\n";
+
+/** B-spline of a node at the place i next to a face at 0, at the distance x from the face. */
+static double modified(int order, int i, double x)
+{
+  const auto plain = [order](double r) {
+    r = fabs(r);
+    if (order == 2) return r < 0.5 ? 0.75 - r * r : (r < 1.5 ? 0.5 * (1.5 - r) * (1.5 - r) : 0.0);
+    return r < 1.0 ? 2.0 / 3.0 - r * r + 0.5 * r * r * r : (r < 2.0 ? pow(2.0 - r, 3) / 6.0 : 0.0);
+  };
+  const double range = order == 2 ? 0.5 : 1.0;
+  if (i == 0 && x < range) return order == 2 ? 1.0 - x : 1.0 - x + x * x * x / 6.0;
+  if (i == 1 && x < range) return order == 2 ? x : x - x * x * x / 3.0;
+  return plain(x - i);
+}
+
+// The mass of the nodes is that of these functions, and there is none outside.
+
+TEST(Edges, FunctionsAreModified)
+{
+  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
+  for (int order : {2, 3}) {
+    Scene run;
+    run.commands(replaced(full, "OPTIONS", order == 2 ? "transfer flip 1.0" :
+                                                        "shape cubic transfer flip 1.0 scheme musl") +
+                 "displace_atoms all random 0.1 0.1 0.1 4711 units box\nrun 1 post no\n");
+    auto *atom = run.lmp->atom;
+    auto *field = dynamic_cast<FixMPM *>(run.lmp->modify->get_fix_by_id("grid"));
+    auto &grid = *field->grid;
+    double total = 0.0;
+    for (std::size_t slot = 0; slot < grid.blocks.size(); slot++)
+      for (int n = 0; n < NODES_PER_BLOCK; n++) {
+        if (!(grid.blocks[slot].owned >> n & 1)) continue;
+        int index[3];
+        grid.node_index(grid.blocks[slot], n, index);
+        const double m = grid.record((int) slot, n)[3];
+        total += m;
+        if (index[0] < 0 || index[0] > 6 || index[2] < 0 || index[2] > 4) {
+          EXPECT_EQ(m, 0.0);
+          continue;
+        }
+        double exact = 0.0;
+        for (int i = 0; i < run.n(); i++) {
+          const double *x = atom->x[i];    // the body is at rest
+          const double wx = index[0] < 3 ? modified(order, index[0], x[0]) :
+                                           modified(order, 6 - index[0], 6.0 - x[0]);
+          const double wz = index[2] < 2 ? modified(order, index[2], x[2]) :
+                                           modified(order, 4 - index[2], 4.0 - x[2]);
+          double wy = 0.0;
+          for (int image = -5; image <= 5; image += 5)
+            wy += modified(order, 100, 100.0 + x[1] + image - index[1]);
+          exact += atom->rmass[i] * wx * wy * wz;
+        }
+        EXPECT_NEAR(m, exact, 1.0e-12);
+      }
+    EXPECT_NEAR(total, 120.0, 1.0e-11);
+  }
+}
+
+// Walls, rank boundaries, periodic faces, and a restart.
+
+static const std::string moving = "fix w1 all mpm/boundary xlo xhi stick\n"
+                                  "fix w2 all mpm/boundary zlo zhi slip\n"
+                                  "velocity all ramp vy 0.0 1.0 x 0 6 units box\n"
+                                  "velocity all ramp vz 0.0 0.5 y 0 5 units box\n";
+
+class EdgesRun : public ::testing::TestWithParam<const char *> {};
+
+TEST_P(EdgesRun, AgreesOnRanksAndAfterARestart)
+{
+  const std::string scene = replaced(full, "OPTIONS", GetParam()) + moving;
+  OnRanks ranks(replaced(scene, "0.001", "0.05"), "run 100\n");
+  EXPECT_LT(ranks.difference(), 1.0e-11);
+  Continued run(replaced(scene, "0.001", "0.05"), 40,
+                "neighbor 0.3 bin\n" + replaced("fix grid all mpm 1.0 OPTIONS edges modified\n",
+                                                "OPTIONS", GetParam()) +
+                    "fix m all mpm/material density 1.0 neohookean 10.0 0.3\n"
+                    "fix w1 all mpm/boundary xlo xhi stick\nfix w2 all mpm/boundary zlo zhi slip\n"
+                    "thermo 1000\n",
+                40);
+  EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Options, EdgesRun,
+                         ::testing::Values("transfer flip 1.0 scheme musl",
+                                           "shape cubic transfer flip 1.0 scheme musl",
+                                           "transfer flip 0.99 scheme usf",
+                                           "transfer flip 1.0 frame total"));
+
+TEST(Edges, RefuseMistakes)
+{
+  const std::string scene = "units lj\natom_style mpm\nboundary f f f\nregion box block 0 6 0 6 0 6\n"
+                            "create_box 1 box\n";
+  for (const char *options : {"shape linear transfer flip 1.0", "shape gimp transfer flip 1.0", "transfer xpic 3", "transfer polypic", "transfer apic"})
+    EXPECT_THAT(error_of(scene + "fix grid all mpm 1.0 edges modified " + options + "\n"),
+                ::testing::HasSubstr("edges modified is for shape quadratic and cubic"));
+  EXPECT_THAT(error_of(scene + "fix grid all mpm 1.0 edges modified transfer flip 1.0 origin 0.5 0 0\n"
+                               "create_points 1 box ppc 2\nfix m all mpm/material density 1 neohookean "
+                               "10 0.3\ntimestep 0.01\nrun 0\n"),
+              ::testing::HasSubstr("the fixed face xlo must be in a plane of nodes"));
+}
