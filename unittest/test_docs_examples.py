@@ -129,7 +129,7 @@ def scene_for(lines):
     if "mpm/handshake" in lines[-1]:
         return crystal_for(lines)
     text, before = "\n".join(lines), ""
-    style = "hybrid sphere mpm" if re.search("diameter|mpm/surface", text) else "mpm"
+    style = "hybrid sphere mpm" if re.search("diameter|mpm/surface|mpm/immersed", text) else "mpm"
     grid = re.search(r"^fix grid all mpm (\S+)", text, re.M)
     h = float(grid.group(1)) if grid else 0.0
     head = HEAD.format(style=style, x=32 * h or 0.1, z=60 * h or 0.1)
@@ -158,6 +158,8 @@ def scene_for(lines):
     material = "" if "mpm/material" in text or own_field and grid == "" else MATERIAL
     points = POINTS.replace("0.05*", "0.025*") if "gimp" in text else POINTS    # below a cell
     points = "" if makes_points else points + "".join("group %s type 1\n" % g for g in GROUPS)
+    if "mpm/immersed" in text:
+        before += "group grains type 3\n"
     if "mpm/elements" in text:
         points = "create_points 2 mesh ring.msh move 0.05 0.05 0.05\ngroup ring type 2\n"
     scene = head + grid + points + material + before

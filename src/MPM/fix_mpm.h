@@ -196,6 +196,8 @@ class FixMPM : public Fix {
   /** Add what periodic images and other ranks hold of reals [lane, lane+nlane) of nodes that are
    *  arranged like those of the grid. */
   void sum_copies(double *nodes, int nreal, int lane, int nlane);
+  /** Impulse of a node action to a node, with its energy as contact in the ledger. */
+  void push_node(int64_t node, bool owned, const double *impulse);
 
   /** Nodes along one axis that a position reaches (in node spacings from the origin): their number,
    *  the first one, and the weights. */

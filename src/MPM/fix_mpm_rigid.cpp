@@ -442,7 +442,7 @@ void FixMPMRigid::solve()
           sum[3 + d] -= moment[d];
         }
       }
-      if (c.active) give(c, push);
+      if (c.active) c.field->push_node(c.node, c.owned, push);
     }
     MPI_Allreduce(sum, total, 6, MPI_DOUBLE, MPI_SUM, world);
     for (int d = 0; d < 3; d++) {
@@ -453,27 +453,6 @@ void FixMPMRigid::solve()
     }
     return;
   }
-}
-
-/* ----------------------------------------------------------------------
-   impulse to a node, and the energy ledger of its field (as between bodies, see fix mpm/contact)
-------------------------------------------------------------------------- */
-
-void FixMPMRigid::give(const Contact &c, const double *push) const
-{
-  auto &field = *c.field;
-  double *record = field.grid->nodes() + c.node * field.grid->nreal;
-  double moved = 0.0, lost = 0.0;
-  for (int d = 0; d < 3; d++) {
-    const double change = push[d] / record[3];
-    record[d] += change;
-    moved += change * record[d];
-    if (field.ledger_on) lost += 0.5 * change * (record[d] - record[4 + d]);
-  }
-  if (!field.ledger_on || !c.owned) return;
-  const double mvv2e = LAMMPS_NS::Pointers::force->mvv2e;
-  field.ledger.contact += record[3] * moved * mvv2e;
-  field.ledger.transfer -= record[3] * lost * mvv2e;
 }
 
 /* ----------------------------------------------------------------------

@@ -80,7 +80,6 @@ class FixMPMRigid : public Fix, public MPMNodeAction {
   void load_impulse(double dt);
   void find_contacts();
   void solve();
-  void give(const Contact &, const double *impulse) const;
   void move(double dt);
   void inverse_inertia(double out[3][3]) const;
   void spin();

@@ -15,6 +15,7 @@
 #include "fix_mpm_elements.h"
 #include "fix_mpm_material.h"
 #include "fix_mpm_visit.h"
+#include "force.h"
 #include "mpm_batch.h"
 #include "mpm_halo.h"
 #include "mpm_node_action.h"
@@ -413,6 +414,27 @@ void FixMPM::act_on_nodes(MPMNodeAction::Stage stage)
   const double start = platform::walltime();
   for (auto *action : actions) action->act(step_dt(), stage);
   report.t_nodes += platform::walltime() - start;
+}
+
+/* ----------------------------------------------------------------------
+   The work of the impulse takes the new velocity: that is what moves points. With the mean of the old
+   and the new one it would be the change of kinetic energy; the rest is part of integration
+------------------------------------------------------------------------- */
+
+void FixMPM::push_node(int64_t node, bool owned, const double *impulse)
+{
+  double *record = grid->nodes() + node * grid->nreal;
+  if (!(record[3] > 0.0)) return;
+  double moved = 0.0, lost = 0.0;
+  for (int d = 0; d < 3; d++) {
+    const double change = impulse[d] / record[3];
+    record[d] += change;
+    moved += change * record[d];
+    if (ledger_on) lost += 0.5 * change * (record[d] - record[4 + d]);
+  }
+  if (!ledger_on || !owned) return;
+  ledger.contact += record[3] * moved * force->mvv2e;
+  ledger.transfer -= record[3] * lost * force->mvv2e;
 }
 
 /* ---------------------------------------------------------------------- */

@@ -1,0 +1,480 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+/* ----------------------------------------------------------------------
+   The field is the mixture: its velocity U is the flux of volume of fluid and grains together, which
+   is what a field of nearly constant volume has without sources,
+
+     div [eps u + (1 - eps) v] = 0,    U - v = eps (u - v)
+
+   for the velocity u of the fluid in the pores, v of the grains, and the porosity eps. So laws of drag
+   are written for the superficial slip U - v, with the force that remains when the fluid does not
+   accelerate and does not weigh: that of the gradient of pressure along a bed included ("model B",
+   Z.Y. Zhou, S.B. Kuang, K.W. Chu, A.B. Yu, J. Fluid Mech. 661 (2010) 482). The weight of the displaced
+   fluid is added. All of these are impulses between a grain and the nodes around it, in proportion
+   to N_i m_i: opposite to round-off, and the same change of velocity for nodes that are nearly empty.
+------------------------------------------------------------------------- */
+
+#include "fix_mpm_immersed.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix_mpm.h"
+#include "force.h"
+#include "math_const.h"
+#include "modify.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+using MathConst::MY_PI;
+
+static constexpr int NREAL = 8;
+
+/* ----------------------------------------------------------------------
+   fix ID group mpm/immersed FIELD DENSITY VISCOSITY keyword values ...
+------------------------------------------------------------------------- */
+
+FixMPMImmersed::FixMPMImmersed(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), law(GIDASPOW), gravity{0.0, 0.0, 0.0}, field(nullptr), force_now{},
+    count(0), dt_last(0.0)
+{
+  if (narg < 6) utils::missing_cmd_args(FLERR, "fix mpm/immersed", error);
+  field_id = arg[3];
+  density = utils::numeric(FLERR, arg[4], false, lmp);
+  if (!(density > 0.0) || !std::isfinite(density))
+    error->all(FLERR, 4, "Fix mpm/immersed density of the fluid must be positive: {}", arg[4]);
+  viscosity = utils::numeric(FLERR, arg[5], false, lmp);
+  if (!(viscosity >= 0.0) || !std::isfinite(viscosity))
+    error->all(FLERR, 5, "Fix mpm/immersed viscosity must not be negative: {}", arg[5]);
+  viscosity *= force->ftm2v / force->nktv2p;
+
+  int iarg = 6;
+  while (iarg < narg) {
+    if (strcmp(arg[iarg], "drag") == 0) {
+      if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, "fix mpm/immersed drag", error);
+      static const char *const laws[] = {"none",  "stokes",   "schiller",
+                                         "ergun", "gidaspow", "difelice"};
+      int k = 0;
+      while (k < 6 && strcmp(arg[iarg + 1], laws[k]) != 0) k++;
+      if (k == 6)
+        error->all(
+            FLERR, iarg + 1,
+            "Unknown fix mpm/immersed drag {}: must be none, stokes, schiller, ergun, gidaspow "
+            "or difelice",
+            arg[iarg + 1]);
+      law = (Law) k;
+      iarg += 2;
+    } else if (strcmp(arg[iarg], "gravity") == 0) {
+      if (iarg + 3 >= narg) utils::missing_cmd_args(FLERR, "fix mpm/immersed gravity", error);
+      for (int d = 0; d < 3; d++) {
+        gravity[d] = utils::numeric(FLERR, arg[iarg + 1 + d], false, lmp);
+        if (!std::isfinite(gravity[d]))
+          error->all(FLERR, iarg + 1 + d, "Fix mpm/immersed gravity must be finite: {}",
+                     arg[iarg + 1 + d]);
+      }
+      iarg += 4;
+    } else
+      error->all(FLERR, iarg, "Unknown fix mpm/immersed keyword: {}", arg[iarg]);
+  }
+  if (law != NONE && viscosity == 0.0)
+    error->all(FLERR, 5,
+               "Fix mpm/immersed needs a positive viscosity for its drag: use drag none "
+               "without");
+  if (domain->dimension == 2)
+    error->all(FLERR, "Fix mpm/immersed requires 3d: its laws of drag are those of spheres");
+  if (!atom->radius_flag || !atom->rmass_flag)
+    error->all(FLERR,
+               "Fix mpm/immersed needs the radius of grains: use atom_style hybrid sphere mpm");
+
+  scalar_flag = vector_flag = 1;
+  size_vector = 6;
+  global_freq = 1;
+  extscalar = extvector = 1;
+  dynamic_group_allow = 1;
+}
+
+int FixMPMImmersed::setmask()
+{
+  return 0;
+}
+
+/* ----------------------------------------------------------------------
+   a missing field is found here; with one, it calls init_action()
+------------------------------------------------------------------------- */
+
+void FixMPMImmersed::init()
+{
+  if (!dynamic_cast<FixMPM *>(modify->get_fix_by_id(field_id)))
+    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/immersed {}: there is no fix mpm {}", id,
+               field_id);
+}
+
+/* ----------------------------------------------------------------------
+   what runs on this field and these grains
+------------------------------------------------------------------------- */
+
+void FixMPMImmersed::init_action()
+{
+  field = dynamic_cast<FixMPM *>(modify->get_fix_by_id(field_id));
+  if (!field)
+    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/immersed {}: there is no fix mpm {}", id,
+               field_id);
+  if (field->total)
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/immersed {} cannot be used with frame total of fix mpm {}, whose nodes are not "
+        "where the grains are: use frame updated",
+        id, field_id);
+  if (field->refinement == FixMPM::FMPM)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/immersed {} cannot be used with transfer fmpm of fix mpm {}: use xpic", id,
+               field_id);
+
+  // Who moves the grains, and which of the two half steps with forces are still to come?
+
+  movers.clear();
+  const int driver = modify->find_fix(modify->get_fix_by_style("^mpm$")[0]->id);
+  for (int k = 0; k < modify->nfix; k++) {
+    const Fix *ifix = modify->fix[k];
+    if (utils::strmatch(ifix->style, "^rigid")) {
+      bigint mine = 0, all;
+      for (int i = 0; i < atom->nlocal; i++)
+        if (is_grain(i) && (atom->mask[i] & ifix->groupbit)) mine++;
+      MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+      if (all)
+        error->all(
+            FLERR, Error::NOLASTLINE,
+            "Fix mpm/immersed {}: {} grains of fix {} ({}) have no velocity of their own: use "
+            "single spheres",
+            id, all, ifix->id, ifix->style);
+    }
+    if (ifix->time_integrate && !utils::strmatch(ifix->style, "^mpm$"))
+      movers.push_back({ifix->groupbit, k < driver ? 1.0 : 0.5});
+  }
+
+  // walls hold nodes for good: what grains do to these comes before
+
+  const int own = modify->find_fix(id);
+  for (const auto *style : {"^mpm/boundary$", "^mpm/contact$", "^mpm/rigid$"})
+    for (const auto *ifix : modify->get_fix_by_style(style))
+      if (modify->find_fix(ifix->id) < own)
+        error->all(
+            FLERR, Error::NOLASTLINE,
+            "Fix mpm/immersed {} must be defined before fix {} ({}), which has the last word on "
+            "nodes",
+            id, ifix->id, ifix->style);
+  bigint points = 0, all;
+  for (int i = 0; i < atom->nlocal; i++)
+    if ((atom->mask[i] & groupbit) && atom->vfrac[i] > 0.0) points++;
+  MPI_Allreduce(&points, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (all)
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/immersed {}: {} atoms of its group are material points: use a group of grains", id,
+        all);
+  bigint large = 0, largest;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (is_grain(i) && 2.0 * atom->radius[i] > 2.0 * field->lattice.h) large++;
+  MPI_Allreduce(&large, &largest, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (largest && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix mpm/immersed {}: {} grains are larger than two node spacings: for "
+                   "them, contact through a pair style resolves the flow",
+                   id, largest);
+}
+
+bool FixMPMImmersed::is_grain(int i) const
+{
+  return (atom->mask[i] & groupbit) && atom->radius[i] > 0.0 && atom->vfrac[i] == 0.0;
+}
+
+/* ----------------------------------------------------------------------
+   f(node, N_i) for the nodes around a grain; false: some of them are not there
+------------------------------------------------------------------------- */
+
+template <class F> bool FixMPMImmersed::visit(int i, const F &f) const
+{
+  const auto &grid = *field->grid;
+  int first[3], k[3];
+  double w[3][4];
+  int n = 0;
+  for (int d = 0; d < 3; d++)
+    n = field->shape_weights((atom->x[i][d] - grid.lattice.origin[d]) / grid.lattice.h, first[d],
+                             w[d]);
+  for (k[0] = 0; k[0] < n; k[0]++)
+    for (k[1] = 0; k[1] < n; k[1]++)
+      for (k[2] = 0; k[2] < n; k[2]++) {
+        const int index[3] = {first[0] + k[0], first[1] + k[1], first[2] + k[2]};
+        const int64_t node = grid.locate(index);
+        if (node < 0) return false;
+        f(node, w[0][k[0]] * w[1][k[1]] * w[2][k[2]]);
+      }
+  return true;
+}
+
+/* ----------------------------------------------------------------------
+   blocks around the grains of this rank, and when they need others
+------------------------------------------------------------------------- */
+
+void FixMPMImmersed::couple_topology()
+{
+  int missing = 0, any;
+  if (!field->topology_stale())
+    for (int i = 0; i < atom->nlocal && !missing; i++)
+      if (is_grain(i) && !visit(i, [](int64_t, double) {
+          }))
+        missing = 1;
+  MPI_Allreduce(&missing, &any, 1, MPI_INT, MPI_MAX, world);
+  if (any) field->renew_topology();
+}
+
+void FixMPMImmersed::extend_topology(FixMPM &extended)
+{
+  if (&extended != field) return;
+  auto &grid = *field->grid;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!is_grain(i)) continue;
+    int lo[3], hi[3], b[3];
+    for (int d = 0; d < 3; d++) {
+      double w[4];
+      const double t = (atom->x[i][d] - grid.lattice.origin[d]) / grid.lattice.h;
+      if (!(fabs(t) < 4.0e6))
+        error->one(FLERR, Error::NOLASTLINE,
+                   "Fix mpm/immersed {}: grain {} is far out of reach of the "
+                   "lattice",
+                   id, atom->tag[i]);
+      const int n = field->shape_weights(t, lo[d], w);
+      hi[d] = (lo[d] + n) >> grid.shift_bits;    // one more on each side: grains move
+      lo[d] = (lo[d] - 1) >> grid.shift_bits;
+    }
+    for (b[0] = lo[0]; b[0] <= hi[0]; b[0]++)
+      for (b[1] = lo[1]; b[1] <= hi[1]; b[1]++)
+        for (b[2] = lo[2]; b[2] <= hi[2]; b[2]++) grid.activate(b);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   drag on a sphere / superficial slip, by the share of space that grains take up.
+   For a single sphere, L. Schiller, A. Naumann, Z. Ver. Dtsch. Ing. 77 (1935) 318; for a bed, S. Ergun,
+   Chem. Eng. Prog. 48 (1952) 89; Ergun below the porosity 0.8 and C.Y. Wen, Y.H. Yu, Chem. Eng. Prog.
+   Symp. Ser. 62 (1966) 100 above: D. Gidaspow, Multiphase Flow and Fluidization (1994);
+   R. Di Felice, Int. J. Multiphase Flow 20 (1994) 153. Those that exclude the gradient of pressure
+   along the bed are divided by the porosity.
+------------------------------------------------------------------------- */
+
+double FixMPMImmersed::drag_coefficient(double diameter, double slip, double solid) const
+{
+  constexpr double LEAST_POROSITY = 0.26;    // of equal spheres
+  const double eps = std::max(LEAST_POROSITY, 1.0 - solid);
+  const double stokes = 3.0 * MY_PI * viscosity * diameter;
+  const double Re = density * slip * diameter / viscosity;
+  const auto schiller = [&](double number) {
+    return number < 1000.0 ? 1.0 + 0.15 * pow(number, 0.687) : 0.44 / 24.0 * number;
+  };
+  const auto ergun = [&]() {
+    const double eps3 = eps * eps * eps;
+    return MY_PI / 6.0 * diameter *
+        (150.0 * viscosity * (1.0 - eps) + 1.75 * density * diameter * slip) / eps3;
+  };
+  switch (law) {
+    case STOKES:
+      return stokes;
+    case SCHILLER:
+      return stokes * schiller(Re);
+    case ERGUN:
+      return ergun();
+    case GIDASPOW:
+      return eps < 0.8 ? ergun() : stokes * schiller(Re) * pow(eps, -4.65);
+    case DIFELICE: {
+      const double logarithm = 1.5 - log10(std::max(Re, 1.0e-10));
+      const double power = 3.7 - 0.65 * exp(-0.5 * logarithm * logarithm);
+      const double root = 0.63 * sqrt(Re) + 4.8;
+      return stokes / 24.0 * root * root * pow(eps, -power - 1.0);
+    }
+    default:
+      return 0.0;
+  }
+}
+
+/* ----------------------------------------------------------------------
+   grains with fluid around them. In half a cell above the surface, buoyancy and drag fall to zero
+------------------------------------------------------------------------- */
+
+void FixMPMImmersed::find_grains(double dt)
+{
+  grains.clear();
+  entries.clear();
+  const double h = field->lattice.h, full = density * h * h * h;
+  const double *records = field->grid->nodes();
+  const int nreal = field->grid->nreal;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!is_grain(i)) continue;
+    Grain g;
+    g.i = i;
+    g.first = (int) entries.size();
+    double mass = 0.0;
+    visit(i, [&](int64_t node, double w) {
+      const double m = w * records[node * nreal + 3];
+      mass += m;
+      entries.push_back({node, w, m});
+    });
+    if (!(mass > 1.0e-10 * full)) {
+      entries.resize(g.first);
+      continue;
+    }
+    for (std::size_t e = g.first; e < entries.size(); e++) entries[e].share /= mass;
+    g.immersed = std::min(1.0, 2.0 * mass / full);
+    g.mass = HUGE_VAL;
+    double ahead = 0.0;
+    for (const auto &mover : movers)
+      if (atom->mask[i] & mover.groupbit) {
+        g.mass = atom->rmass[i];
+        ahead = mover.ahead;
+      }
+    const double r = atom->radius[i], volume = 4.0 / 3.0 * MY_PI * r * r * r;
+    for (int d = 0; d < 3; d++) {
+      g.buoyancy[d] = -dt * g.immersed * density * volume * gravity[d];
+      g.velocity[d] = atom->v[i][d];
+      if (std::isfinite(g.mass))
+        g.velocity[d] += (g.buoyancy[d] + ahead * dt * force->ftm2v * atom->f[i][d]) / g.mass;
+    }
+    grains.push_back(g);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   reals [lane, lane+nlane) of all nodes, from images and other ranks, too; images get the sums
+------------------------------------------------------------------------- */
+
+void FixMPMImmersed::sum_nodes(int lane, int nlane)
+{
+  field->sum_copies(sums.data(), NREAL, lane, nlane);
+  field->grid->copy_aliases(sums.data(), NREAL);
+}
+
+/* ----------------------------------------------------------------------
+   Impulses of this step. That of drag acts on the slip which it leaves: with one grain, by the
+   implicit Euler method; when grains share nodes, the sum of all coefficients at these is what their
+   fluid is taken to be slowed down with. That is at least what it is, so that the slip of no grain
+   changes its sign, however stiff; and it is exact when the motion is steady. Forces of the grain
+   count up to the time when it moves, so that a grain sinks with its terminal velocity
+   for any time step.
+------------------------------------------------------------------------- */
+
+void FixMPMImmersed::act(double dt, Stage stage)
+{
+  if (stage != STEP) return;
+  auto &grid = *field->grid;
+  const int nreal = grid.nreal;
+  grid.copy_aliases();
+  find_grains(dt);
+  sums.assign(NREAL * grid.nnodes(), 0.0);
+  entries.push_back({-1, 0.0, 0.0});    // so that each grain has an end
+  const auto around = [&](std::size_t g, const auto &f) {
+    const int last = g + 1 < grains.size() ? grains[g + 1].first : (int) entries.size() - 1;
+    for (int e = grains[g].first; e < last; e++) f(entries[e], &sums[NREAL * entries[e].node]);
+  };
+
+  const double h = field->lattice.h, inverse = 1.0 / (h * h * h);
+  const bool dense = law == ERGUN || law == GIDASPOW || law == DIFELICE;
+  if (dense) {
+    for (std::size_t g = 0; g < grains.size(); g++) {
+      const double r = atom->radius[grains[g].i];
+      const double share = inverse * 4.0 / 3.0 * MY_PI * r * r * r;
+      around(g, [&](const Entry &e, double *sum) {
+        sum[0] += e.w * share;
+      });
+    }
+    sum_nodes(0, 1);
+  }
+
+  for (std::size_t k = 0; k < grains.size(); k++) {
+    Grain &g = grains[k];
+    double solid = 0.0, slip[3] = {-g.velocity[0], -g.velocity[1], -g.velocity[2]};
+    around(k, [&](const Entry &e, const double *sum) {
+      const double *record = grid.nodes() + e.node * nreal;
+      solid += e.w * sum[0];
+      for (int d = 0; d < 3; d++) slip[d] += e.share * record[d];
+    });
+    g.coefficient = g.immersed *
+        drag_coefficient(2.0 * atom->radius[g.i],
+                         sqrt(slip[0] * slip[0] + slip[1] * slip[1] + slip[2] * slip[2]), solid);
+  }
+  for (std::size_t k = 0; k < grains.size(); k++)
+    around(k, [&](const Entry &e, double *sum) {
+      for (int d = 0; d < 3; d++) sum[1 + d] -= e.share * grains[k].buoyancy[d];
+      sum[4] += e.share * grains[k].coefficient;
+    });
+  sum_nodes(1, 4);
+
+  std::fill(force_now, force_now + 6, 0.0);
+  for (std::size_t k = 0; k < grains.size(); k++) {
+    const Grain &g = grains[k];
+    double slip[3] = {-g.velocity[0], -g.velocity[1], -g.velocity[2]};
+    double slowing = g.coefficient / g.mass;    // rate of the slip
+    around(k, [&](const Entry &e, const double *sum) {
+      const double *record = grid.nodes() + e.node * nreal;
+      if (!(record[3] > 0.0)) return;
+      for (int d = 0; d < 3; d++) slip[d] += e.share * (record[d] + sum[1 + d] / record[3]);
+      slowing += e.share * sum[4] / record[3];
+    });
+    const double factor = dt * g.coefficient / (1.0 + dt * slowing);
+    double drag[3];
+    for (int d = 0; d < 3; d++) {
+      drag[d] = factor * slip[d];
+      atom->v[g.i][d] += (drag[d] + g.buoyancy[d]) / g.mass;
+      force_now[d] += drag[d];
+      force_now[3 + d] += g.buoyancy[d];
+    }
+    around(k, [&](const Entry &e, double *sum) {
+      for (int d = 0; d < 3; d++) sum[5 + d] -= e.share * drag[d];
+    });
+  }
+  sum_nodes(5, 3);
+
+  for (std::size_t slot = 0; slot < grid.blocks.size(); slot++)
+    for (int n = 0; n < NODES_PER_BLOCK; n++) {
+      const int64_t node = (int64_t) slot * NODES_PER_BLOCK + n;
+      const double *sum = &sums[NREAL * node];
+      const double push[3] = {sum[1] + sum[5], sum[2] + sum[6], sum[3] + sum[7]};
+      if (push[0] != 0.0 || push[1] != 0.0 || push[2] != 0.0)
+        field->push_node(node, grid.blocks[slot].owned >> n & 1, push);
+    }
+  count = (int) grains.size();
+  dt_last = dt;
+}
+
+/* ----------------------------------------------------------------------
+   number of grains with fluid around them; drag (1 to 3) and buoyancy (4 to 6) on all of them
+------------------------------------------------------------------------- */
+
+double FixMPMImmersed::compute_scalar()
+{
+  bigint mine = count, all;
+  MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  return (double) all;
+}
+
+double FixMPMImmersed::compute_vector(int i)
+{
+  double all;
+  MPI_Allreduce(&force_now[i], &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return dt_last > 0.0 ? all / (dt_last * force->ftm2v) : 0.0;
+}
+
+double FixMPMImmersed::memory_usage()
+{
+  return (double) (sums.capacity() * sizeof(double) + grains.capacity() * sizeof(Grain) +
+                   entries.capacity() * sizeof(Entry));
+}

@@ -1,0 +1,272 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+
+// labels: physics restart
+// mpi: 1 4
+
+// Fix mpm/immersed: drag and buoyancy of grains in a fluid.
+
+#include "mpm_lammps.h"
+
+#include <cmath>
+
+using namespace MPM_TEST;
+
+static const double PI = 3.14159265358979323846;
+
+static std::string head(const std::string &box, const std::string &boundary = "p p p",
+                        const std::string &grid = "transfer apic")
+{
+  return "units lj\nboundary " + boundary +
+      "\natom_style hybrid sphere mpm\nneighbor 0.3 bin\ncomm_modify vel yes\n"
+      "region box block " + box + "\ncreate_box 2 box\nfix grid all mpm 1.0 " + grid + "\n";
+}
+
+// the fluid of density 1 and the grains; no contact between them
+static std::string rest(const std::string &fix, const std::string &fluid = "eos tait 500.0 7")
+{
+  return "group water type 1\ngroup grains type 2\nfix drag grains mpm/immersed grid 1.0 " + fix +
+      "\nfix fluid water mpm/material density 1.0 " + fluid +
+      "\nneigh_modify exclude type 1 1 exclude type 1 2\npair_style zero 0.5\npair_coeff * *\n"
+      "thermo 1000\nthermo_modify norm no\n";
+}
+
+// Terminal velocity of a single sphere, by the law of Schiller and Naumann
+
+TEST(Immersed, SinksWithTheTerminalVelocity)
+{
+  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
+  struct Case {
+    double diameter, viscosity;
+  };
+  for (const auto &c : {Case{0.2, 1.0}, Case{0.5, 0.1}, Case{0.2, 0.01}}) {
+    const double d = c.diameter, mu = c.viscosity, weight = 2.0 * PI / 6.0 * d * d * d;
+    double low = 0.0, high = 100.0;
+    for (int k = 0; k < 80; k++) {
+      const double v = 0.5 * (low + high);
+      const bool above = 3.0 * PI * mu * d * v * (1.0 + 0.15 * pow(v * d / mu, 0.687)) > weight;
+      (above ? high : low) = v;
+    }
+    Scene run;
+    run.commands(head("0 8 0 8 0 12") + "create_points 1 box ppc 2\ncreate_atoms 2 single 4.1 4.2 8.3\n" +
+                 strprintf("set type 2 diameter %g density 3.0\n", d) +
+                 rest(strprintf("%g drag schiller gravity 0 0 -1", mu),
+                      strprintf("eos tait 500.0 7 viscosity newtonian %g", mu)) +
+                 "fix move grains nve/sphere\nfix g grains gravity 1.0 vector 0 0 -1\ntimestep 0.01\n"
+                 "run 350\n");
+    const double start = run.evaluate("xcm(grains,z)");
+    run.commands("run 50\n");
+    const double v = (start - run.evaluate("xcm(grains,z)")) / 0.5 + run.evaluate("vcm(water,z)");
+    EXPECT_NEAR(measured(strprintf("terminal velocity / law at Re %.3g", low * d / mu), v / low), 1.0,
+                0.05);
+    EXPECT_NEAR(run.fix_vector("drag", 6)[2] / weight, 1.0, 0.01);
+  }
+}
+
+// A column of water at rest under gravity: the force on a grain is its volume times the gradient of the
+// pressure of the points; the floor carries it; a grain of the density of water stays where it is
+
+TEST(Immersed, BuoyancyIsTheGradientOfPressure)
+{
+  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
+  Scene run;
+  run.commands(head("0 4 0 4 0 20", "p p f", "transfer pic") +
+               "region water block 0 4 0 4 0 14\ncreate_points 1 region water ppc 2\n"
+               "create_atoms 2 single 1.1 1.3 7.2\ncreate_atoms 2 single 3.2 2.9 5.4\n"
+               "set type 2 diameter 0.6 density 1.0\n" +
+               rest("0.5 drag stokes gravity 0 0 -1", "eos tait 2000.0 7") +
+               "fix floor all mpm/boundary zlo slip\nfix move grains nve/sphere\n"
+               "fix g all gravity 1.0 vector 0 0 -1\ntimestep 0.008\nrun 2000\n");
+  const double volume = PI / 6.0 * 0.6 * 0.6 * 0.6;
+  // line through the pressure of points, over height, in the middle of the column
+  double n = 0.0, z = 0.0, zz = 0.0, p = 0.0, zp = 0.0;
+  for (const auto &s : run.gather()) {
+    if (s.type != 1 || s.x[2] < 3.0 || s.x[2] > 11.0) continue;
+    const double pressure = -(s.stress[0] + s.stress[1] + s.stress[2]) / 3.0;
+    n++;
+    z += s.x[2];
+    zz += s.x[2] * s.x[2];
+    p += pressure;
+    zp += s.x[2] * pressure;
+  }
+  const double slope = (n * zp - z * p) / (n * zz - z * z);
+  const double buoyancy = run.fix_vector("drag", 6)[5] / 2.0;
+  EXPECT_NEAR(measured("buoyancy / (volume * gradient of pressure)", -buoyancy / (slope * volume)), 1.0,
+              0.05);
+  EXPECT_NEAR(buoyancy, volume, 1.0e-10);
+  const auto state = run.gather();
+  for (const auto &s : state)
+    if (s.type == 2) {
+      EXPECT_NEAR(measured("height of a grain as dense as water", s.x[2]), s.x[0] < 2.0 ? 7.2 : 5.4, 0.1);
+      EXPECT_LT(fabs(s.v[2]), 0.02);
+    }
+}
+
+// Flow through a bed that fills half of a periodic column, driven by a force on the fluid. In the bed the
+// pressure of the points falls as Ergun's equation has it for the flux. The drop over all of it is less,
+// because the porosity changes over two cells at each end.
+
+TEST(Immersed, PressureDropOfABedIsErgun)
+{
+  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
+  struct Case {
+    double viscosity, force;
+  };
+  for (const auto &c : {Case{0.01, 0.5}, Case{0.0001, 0.5}}) {
+    const double d = 0.5;
+    Scene run;
+    run.commands(head("0 4 0 4 0 16") +
+                 "create_points 1 box ppc 2\nlattice sc 8.0 origin 0.5 0.5 0.5\n"
+                 "region bed block 0 4 0 4 4 12 units box\ncreate_atoms 2 region bed\n"
+                 "set type 2 diameter 0.5 density 3.0\ngroup bed type 2\n"
+                 "displace_atoms bed random 0.1 0.1 0.1 4711 units box\n" +
+                 rest(strprintf("%g drag ergun", c.viscosity)) +
+                 strprintf("fix g water gravity %g vector 0 0 1\ntimestep 0.01\nrun 800\n", c.force));
+    const double flux = run.evaluate("vcm(water,z)");
+    double n = 0.0, z = 0.0, zz = 0.0, p = 0.0, zp = 0.0, outer[2] = {0.0}, height[2] = {0.0},
+           count[2] = {0.0};
+    int grains = 0;
+    for (const auto &s : run.gather()) {
+      if (s.type == 2) {
+        grains++;
+        continue;
+      }
+      const double at = fmod(s.x[2], 16.0), pressure = -(s.stress[0] + s.stress[1] + s.stress[2]) / 3.0;
+      const int k = at > 1.0 && at < 2.5 ? 0 : (at > 13.5 && at < 15.0 ? 1 : -1);
+      if (k >= 0) {
+        outer[k] += pressure;
+        height[k] += at;
+        count[k]++;
+      }
+      if (at < 5.5 || at > 10.5) continue;
+      n++;
+      z += at;
+      zz += at * at;
+      p += pressure;
+      zp += at * pressure;
+    }
+    const double gradient = c.force - (n * zp - z * p) / (n * zz - z * z);
+    const double drop = outer[0] / count[0] - outer[1] / count[1] +
+        c.force * (height[1] / count[1] - height[0] / count[0]);
+    const double solid = grains * PI / 6.0 * d * d * d / (4.0 * 4.0 * 8.0), eps = 1.0 - solid;
+    EXPECT_NEAR(measured("share of volume of the grains", solid), PI / 6.0, 1.0e-6);
+    const double ergun = 1.0 / (eps * eps * eps) *
+        (150.0 * c.viscosity * solid * solid * flux / (d * d) + 1.75 * solid * flux * flux / d);
+    const auto at = strprintf(" / Ergun at Re %.3g", flux * d / c.viscosity);
+    EXPECT_NEAR(measured("pressure gradient in the bed" + at, gradient / ergun), 1.0, 0.1);
+    EXPECT_NEAR(measured("pressure drop over the bed" + at, drop / (8.0 * ergun)), 0.85, 0.1);
+    // in the end all of the force on the fluid is on the bed
+    EXPECT_NEAR(measured("force on the bed", run.fix_vector("drag", 6)[2] / (256.0 * c.force)), 1.0, 0.02);
+  }
+}
+
+// single ones: their tags do not depend on the number of ranks
+static std::string cloud()
+{
+  std::string text = "create_points 1 region blob ppc 2\n";
+  for (int k = 0; k < 125; k++)
+    text += strprintf("create_atoms 2 single %d.1 %d.2 %d.3\n", 2 + k % 5, 2 + k / 5 % 5, 2 + k / 25);
+  return text + "set type 2 diameter 0.5 density 3.0\ngroup cloud type 2\n"
+                "displace_atoms cloud random 0.3 0.3 0.3 4711 units box\n"
+                "velocity cloud create 0.5 4711 loop geom\n"
+                "velocity cloud set 0.4 0.2 -0.3 sum yes units box\n";
+}
+static const std::string blob = "region blob block 1 9 1 8 1 8\n";
+
+static std::string cloud_with(const std::string &law, const std::string &grid = "transfer apic")
+{
+  return head("0 10 0 10 0 10", "p p p", grid) + blob + cloud() + rest(law) +
+      "fix move grains nve/sphere\ntimestep 0.01\n";
+}
+
+// Momentum of fluid and grains together stays, and stiff drag leaves no slip
+
+TEST(Immersed, KeepsMomentum)
+{
+  if (nranks() > 1) GTEST_SKIP() << "sums are those of one rank";
+  for (const char *law : {"0.1 drag gidaspow", "0.1 drag difelice", "0.01 drag schiller gravity 0 0 -0.2",
+                          "1.0e5 drag ergun", "1.0e5 drag stokes"})
+    for (const char *grid : {"transfer apic", "transfer flip 1.0 scheme musl"}) {
+      Scene run;
+      run.commands(cloud_with(law, grid));
+      const auto start = run.sums();
+      const auto grains = run.sums(2);
+      double scale = 0.0, worst = 0.0;
+      for (int d = 0; d < 3; d++) scale += fabs(grains.p[d]);
+      const double energy = start.kinetic;
+      run.each_step([&](double **) {
+        const auto now = run.sums();
+        for (int d = 0; d < 3; d++) worst = std::max(worst, fabs(now.p[d] - start.p[d]) / scale);
+        EXPECT_LT(now.kinetic, 1.05 * energy);
+      });
+      run.commands("run 100\n");
+      EXPECT_LT(measured(std::string("momentum, ") + law + ", " + grid, worst), 1.0e-12);
+      EXPECT_GT(fabs(run.sums(1).p[0]), 0.01 * scale);    // the fluid has got some of it
+    }
+}
+
+TEST(Immersed, IsTheSameOnAnyNumberOfRanksAndAfterARestart)
+{
+  const std::string law = "0.1 drag gidaspow gravity 0 0 -0.2";
+  OnRanks ranks(cloud_with(law), "run 60\n");
+  EXPECT_LT(measured("ranks", ranks.difference()), 1.0e-9);
+  for (int k = 0; k < 6; k++)
+    EXPECT_NEAR(ranks.serial.fix_vector("drag", 6)[k], ranks.parallel.fix_vector("drag", 6)[k], 1.0e-8);
+  Continued run(cloud_with(law), 30,
+                "neighbor 0.3 bin\ncomm_modify vel yes\nfix grid all mpm 1.0 transfer apic\n" + rest(law) +
+                    "fix move grains nve/sphere\ntimestep 0.01\n",
+                30);
+  EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
+}
+
+// What the grains do to the fluid is in the ledger of its energy
+
+TEST(Immersed, ClosesTheLedger)
+{
+  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
+  Scene run;
+  run.commands(cloud_with("0.1 drag gidaspow gravity 0 0 -0.2") + "compute e all mpm/energy\n");
+  run.commands("run 100\n");
+  auto *e = run.lmp->modify->get_compute_by_id("e");
+  e->compute_vector();
+  EXPECT_GT(fabs(e->vector[7]), 0.01);
+  EXPECT_LT(fabs(measured("imbalance", e->vector[10])), 1.0e-12);
+}
+
+TEST(Immersed, RefusesBadInput)
+{
+  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
+  const std::string start =
+      head("0 4 0 4 0 4", "p p f", "GRID") +
+      "create_points 1 box ppc 2\ncreate_atoms 2 single 2 2 2\ncreate_atoms 2 single 1 2 2\n"
+      "set type 2 diameter 0.5 density 3.0\ngroup g type 2\ngroup w type 1\nfix m w mpm/material density 1.0 neohookean 30.0 0.3\n"
+      "pair_style zero 1.0\npair_coeff * *\n";
+  const std::string fix = "fix d g mpm/immersed grid ";
+  expect_refused(replaced(start, "GRID", ""),
+                 {{fix + "1.0", "missing argument"},
+                  {fix + "-1.0 1.0", "density of the fluid must be positive"},
+                  {fix + "1.0 -1.0", "viscosity must not be negative"},
+                  {fix + "1.0 0.0", "needs a positive viscosity"},
+                  {fix + "1.0 1.0 drag newton", "Unknown fix mpm/immersed drag newton"},
+                  {fix + "1.0 1.0 drag", "missing argument"},
+                  {fix + "1.0 1.0 gravity 0 0", "missing argument"},
+                  {fix + "1.0 1.0 lift yes", "Unknown fix mpm/immersed keyword: lift"}});
+  const std::string good = fix + "1.0 1.0\n";
+  expect_refused(replaced(start, "GRID", ""),
+                 {{"fix d g mpm/immersed other 1.0 1.0", "there is no fix mpm other"},
+                  {"fix d all mpm/immersed grid 1.0 1.0", "are material points: use a group of grains"},
+                  {"fix b all mpm/boundary zlo slip\n" + good, "must be defined before fix b"},
+                  {good + "fix r g rigid/nve single", "use single spheres"}},
+                 "run 0\n");
+  expect_refused(replaced(start, "GRID", "frame total"), {{good, "use frame updated"}}, "run 0\n");
+  expect_refused(replaced(start, "GRID", "transfer fmpm 2"), {{good, "use xpic"}}, "run 0\n");
+  EXPECT_THAT(error_of("units lj\natom_style mpm\nregion box block 0 4 0 4 0 4\ncreate_box 1 box\n"
+                       "fix grid all mpm 1.0\n" + fix.substr(0, 6) + "all mpm/immersed grid 1.0 1.0\n"),
+              ::testing::HasSubstr("use atom_style hybrid sphere mpm"));
+}
