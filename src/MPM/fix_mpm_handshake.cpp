@@ -190,10 +190,11 @@ void FixMPMHandshake::init()
   for (auto *other : modify->get_fix_by_style("^mpm/handshake$"))
     if (other != this && dynamic_cast<FixMPMHandshake *>(other)->field_name == field_name)
       refuse(fmt::format("and {} have the same field: give one of them all zones", other->id));
-  if (!force->pair || !force->pair->single_enable)
-    refuse(
-        "needs a pair style that can tell the force of a single pair (no many-body potentials but "
-        "EAM)");
+  // the forces that single() of EAM gives are wrong in a step after one with energies
+
+  if (!force->pair || !force->pair->single_enable || force->pair->manybody_flag)
+    refuse("needs a pair potential, whose energy and force are sums over pairs: the pair style has "
+           "no single() or is a many-body potential");
   if (force->bond || force->kspace) refuse("cannot be used with bonds or kspace styles");
 
   // atoms are moved by fix nve, after the step of the points
@@ -304,7 +305,7 @@ void FixMPMHandshake::check_weights()
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/handshake {}: {} atoms in reach of the zone are not moved by one fix nve",
                id, all[1]);
-  const double need = (force->pair->manybody_flag ? 2.0 : 1.0) * force->pair->cutforce;
+  const double need = force->pair->cutforce;
   for (std::size_t k = 0; k < zones.size(); k++)
     if (pads[k] < 0.5 * need)
       error->all(
