@@ -266,6 +266,8 @@ TEST(Immersed, RefusesBadInput)
                  "run 0\n");
   expect_refused(replaced(start, "GRID", "frame total"), {{good, "use frame updated"}}, "run 0\n");
   expect_refused(replaced(start, "GRID", "transfer fmpm 2"), {{good, "use xpic"}}, "run 0\n");
+  expect_refused(replaced(start, "GRID", "transfer flip 1.0 edges modified"),
+                 {{good, "use edges plain"}}, "run 0\n");
   EXPECT_THAT(error_of("units lj\natom_style mpm\nregion box block 0 4 0 4 0 4\ncreate_box 1 box\n"
                        "fix grid all mpm 1.0\n" + fix.substr(0, 6) + "all mpm/immersed grid 1.0 1.0\n"),
               ::testing::HasSubstr("use atom_style hybrid sphere mpm"));

@@ -136,6 +136,11 @@ void FixMPMImmersed::init_action()
         "Fix mpm/immersed {} cannot be used with frame total of fix mpm {}, whose nodes are not "
         "where the grains are: use frame updated",
         id, field_id);
+  if (field->modified_edges)
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/immersed {} cannot be used with edges modified of fix mpm {}: use edges plain", id,
+        field_id);
   if (field->refinement == FixMPM::FMPM)
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/immersed {} cannot be used with transfer fmpm of fix mpm {}: use xpic", id,
@@ -212,13 +217,25 @@ template <class F> bool FixMPMImmersed::visit(int i, const F &f) const
   for (int d = 0; d < 3; d++)
     n = field->shape_weights((atom->x[i][d] - grid.lattice.origin[d]) / grid.lattice.h, first[d],
                              w[d]);
+  // one look-up per grain, neighbors from the table of its first block
+  int b[3];
+  for (int d = 0; d < 3; d++) b[d] = first[d] >> grid.shift_bits;
+  const int start = grid.find(b);
+  if (start < 0) return false;
+  const auto &block = grid.blocks[start];
   for (k[0] = 0; k[0] < n; k[0]++)
     for (k[1] = 0; k[1] < n; k[1]++)
       for (k[2] = 0; k[2] < n; k[2]++) {
-        const int index[3] = {first[0] + k[0], first[1] + k[1], first[2] + k[2]};
-        const int64_t node = grid.locate(index);
-        if (node < 0) return false;
-        f(node, w[0][k[0]] * w[1][k[1]] * w[2][k[2]]);
+        int side[3], in[3];
+        for (int d = 0; d < 3; d++) {
+          const int index = first[d] + k[d];
+          side[d] = (index >> grid.shift_bits) - b[d] + 1;
+          in[d] = index & (grid.side - 1);
+        }
+        const int slot = block.slot[9 * side[0] + 3 * side[1] + side[2]];
+        if (slot < 0) return false;
+        f((int64_t) slot * NODES_PER_BLOCK + (in[0] * 4 + in[1]) * 4 + in[2],
+          w[0][k[0]] * w[1][k[1]] * w[2][k[2]]);
       }
   return true;
 }
