@@ -89,8 +89,9 @@ static const char *const M1 = "fix m1 low mpm/material density 1.0 neohookean 30
 static const char *const CONTACT = "fix c all mpm/contact F1 F2 law coulomb 0.3\n";
 static const char *const FLOOR = "fix floor all mpm/boundary zlo stick\n";
 static const char *const SURFACE = "fix surf body mpm/surface\n";
-static const char *const PAIR = "pair_style granular\n"
-                                "pair_coeff * * hooke 50.0 0.5 tangential linear_nohistory 0.5 0.4\n";
+static const char *const PAIR =
+    "pair_style granular\n"
+    "pair_coeff * * hooke 50.0 0.5 tangential linear_nohistory 0.5 0.4\n";
 static const char *const RUN = "run 3\n";
 
 class BadCoupling : public ::testing::TestWithParam<Change> {};
@@ -110,28 +111,37 @@ TEST_P(BadCoupling, IsExplained)
 }
 
 static const Change fields[] = {
-    {"LatticesDiffer", F2, "fix F2 high mpm 0.5\n", "F1 and F2 must have the same lattice.*pair style"},
-    {"OriginsDiffer", F2, "fix F2 high mpm 1.0 origin 0.5 0 0\n", "F1 and F2 must have the same lattice"},
-    {"ShapesDiffer", F2, "fix F2 high mpm 1.0 shape cubic\n", "must have the same lattice.*shape function"},
-    {"TotalFrame", F2, "fix F2 high mpm 1.0 frame total\n", "frame total of fix mpm F2.*pair style"},
+    {"LatticesDiffer", F2, "fix F2 high mpm 0.5\n",
+     "F1 and F2 must have the same lattice.*pair style"},
+    {"OriginsDiffer", F2, "fix F2 high mpm 1.0 origin 0.5 0 0\n",
+     "F1 and F2 must have the same lattice"},
+    {"ShapesDiffer", F2, "fix F2 high mpm 1.0 shape cubic\n",
+     "must have the same lattice.*shape function"},
+    {"TotalFrame", F2, "fix F2 high mpm 1.0 frame total\n",
+     "frame total of fix mpm F2.*pair style"},
     {"EveryDiffers", F2, "fix F2 high mpm 1.0 every 5\n", "the same every: F1 and F2 differ"},
     {"SchemesDiffer", F2, "fix F2 high mpm 1.0 scheme musl\n", "the same scheme: F1 and F2 differ"},
-    {"FieldUnknown", CONTACT, "fix c all mpm/contact F1 F3\n", "F3 is not the ID of a fix mpm: define one"},
-    {"FieldIsAGroup", CONTACT, "fix c all mpm/contact low high\n", "low is not the ID of a fix mpm"},
+    {"FieldUnknown", CONTACT, "fix c all mpm/contact F1 F3\n",
+     "F3 is not the ID of a fix mpm: define one"},
+    {"FieldIsAGroup", CONTACT, "fix c all mpm/contact low high\n",
+     "low is not the ID of a fix mpm"},
     {"FieldTwice", CONTACT, "fix c all mpm/contact F1 F1\n", "field F1 is named twice"},
     {"ContactOfAGroup", CONTACT, "fix c body mpm/contact F1 F2\n", "use group all"},
     {"ContactTwice", RUN, "fix d all mpm/contact F2 F1\nrun 3\n", "counted twice"},
     {"FieldRemoved", RUN, "run 1\nunfix F2\nrun 1\n", "F2 is not the ID of a fix mpm"},
-    {"FieldOfGrains", F1, "fix F1 grain mpm 1.0\n", "F1 has no material points: its group grain has no atoms with a volume"},
+    {"FieldOfGrains", F1, "fix F1 grain mpm 1.0\n",
+     "F1 has no material points: its group grain has no atoms with a volume"},
     {"FieldsShareTheirPoints", F1, "fix F1 body mpm 1.0\n",
-     "256 material points of fix F[12] \\(style mpm\\) are also integrated by fix F[12] \\(style mpm\\)"},
+     "256 material points of fix F[12] \\(style mpm\\) are also integrated by fix F[12] \\(style "
+     "mpm\\)"},
     {"MaterialsShareTheirPoints", M1, "fix m1 body mpm/material density 1.0 neohookean 30.0 0.3\n",
      "256 material points have more than one material, for instance point"},
     {"MaterialOfTheGrains", M1, "fix m1 grain mpm/material density 1.0 neohookean 30.0 0.3\n",
      "864 material points have no material, for instance point"},
     {"WallOfAnUnknownField", FLOOR, "fix floor all mpm/boundary zlo stick field F9\n",
      "field F9 is not the ID of a fix mpm"},
-    {"WallTwice", RUN, "fix w all mpm/boundary zlo slip\nrun 3\n", "Face zlo belongs to.*floor and w"},
+    {"WallTwice", RUN, "fix w all mpm/boundary zlo slip\nrun 3\n",
+     "Face zlo belongs to.*floor and w"},
     {"WallOfADeletedRegion", RUN,
      "region w block 0 8 0 8 0 1\nfix w all mpm/boundary region w stick\nregion w delete\nrun 3\n",
      "Region w for fix mpm/boundary does not exist"},
@@ -142,16 +152,19 @@ static const Change fields[] = {
 INSTANTIATE_TEST_SUITE_P(Fields, BadCoupling, ::testing::ValuesIn(fields), case_name);
 
 static const Change grains[] = {
-    {"NoVelocitiesOfGhosts", VEL, "comm_modify mode multi\n", "requires ghost atoms store velocity"},
+    {"NoVelocitiesOfGhosts", VEL, "comm_modify mode multi\n",
+     "requires ghost atoms store velocity"},
     {"NoRadii", STYLE, "atom_style mpm\n", "diameter for atom style mpm"},
     {"MpmBeforeSphere", STYLE, "atom_style hybrid mpm sphere\n", "mpm must come after sphere"},
     {"PointsWithoutRadius", SURFACE, "set group body diameter 0\n",
      "Points of fix mpm F1 have no radius.*pair style granular.*fix mpm/surface"},
     {"RadiusOfOtherUnits", SURFACE, "set type 2 diameter 20\n",
      "256 points of fix mpm F2 have a radius of more than two node spacings, for instance point"},
-    {"GrainsWithoutRadius", RUN, "set group grain diameter 0\nrun 3\n", "requires extended particles"},
+    {"GrainsWithoutRadius", RUN, "set group grain diameter 0\nrun 3\n",
+     "requires extended particles"},
     {"NveOfPoints", RUN, "fix more all nve\nrun 3\n",
-     "864 material points of fix F1 .* also integrated by fix more \\(style nve\\): give the fixes disjoint"},
+     "864 material points of fix F1 .* also integrated by fix more \\(style nve\\): give the fixes "
+     "disjoint"},
     {"NveSphereOfPoints", "fix move grain nve/sphere", "fix move all nve/sphere",
      "also integrated by fix move \\(style nve/sphere\\)"},
     {"RigidPoints", RUN, "fix more high rigid single\nrun 3\n",
@@ -162,13 +175,16 @@ static const Change grains[] = {
      "(surf|more) and (surf|more) have points in common: give them disjoint groups"},
     {"SurfacesShareTheirPoints", SURFACE, "fix surf body mpm/surface\nfix more low mpm/surface\n",
      "have points in common"},
-    {"RadiusSetAfterTheSurface", RUN, "set type 1 diameter 0.1\nrun 3\n", "define the fix after them"},
+    {"RadiusSetAfterTheSurface", RUN, "set type 1 diameter 0.1\nrun 3\n",
+     "define the fix after them"},
     {"PairsWithoutCoefficients", PAIR,
      "pair_style granular\npair_coeff 3 3 hooke 50.0 0.5 tangential linear_nohistory 0.5 0.4\n",
      "All pair coeffs are not set"},
     {"PenaltyWithoutCoefficients", RUN,
-     "unfix c\npair_style mpm/penalty\npair_coeff 1 1 50\nrun 3\n", "no pair_coeff for types 1 and 2"},
-    {"TimeStepOfTheBodies", "timestep 0.01\n", "timestep 0.5\n", "Time step 0\\.5 is above the limit"},
+     "unfix c\npair_style mpm/penalty\npair_coeff 1 1 50\nrun 3\n",
+     "no pair_coeff for types 1 and 2"},
+    {"TimeStepOfTheBodies", "timestep 0.01\n", "timestep 0.5\n",
+     "Time step 0\\.5 is above the limit"},
     {"Respa", RUN, "run_style respa 2 2\nrun 3\n", "requires run_style verlet"},
     {"Minimize", RUN, "minimize 0 0 10 10\n", "minimize before the fix is defined"},
 };
@@ -179,7 +195,8 @@ INSTANTIATE_TEST_SUITE_P(Grains, BadCoupling, ::testing::ValuesIn(grains), case_
 TEST(MaterialFiles, OfMixedUnits)
 {
   const ScratchFile file("steel.mpm", "# UNITS: si\ndensity 7850 linear 200e9 0.3\n");
-  const std::string text = error_of(changed(M1, "fix m1 low mpm/material file " + file.name + "\n"));
+  const std::string text =
+      error_of(changed(M1, "fix m1 low mpm/material file " + file.name + "\n"));
   EXPECT_THAT(text, ::testing::HasSubstr("is in si units but the input uses lj units"));
 }
 
@@ -192,7 +209,8 @@ TEST(RigidBodies, Refused)
   const std::string rigid = shape + "fix tool all mpm/rigid shape density 2.0 slip\n";
   for (const auto &mistake : {
            Mistake{rigid + "region shape delete\nrun 3\n", "shape"},
-           Mistake{shape + "fix tool grain mpm/rigid shape density 2.0 slip\nrun 3\n", "use group all"},
+           Mistake{shape + "fix tool grain mpm/rigid shape density 2.0 slip\nrun 3\n",
+                   "use group all"},
            Mistake{"fix tool all mpm/rigid shape density 2.0 slip\n" + shape + "run 3\n",
                    "needs a region of style mpm/mesh: shape"},
            Mistake{rigid + "unfix c\nunfix floor\nunfix F1\nunfix F2\nunfix surf\nrun 3\n",
@@ -200,9 +218,11 @@ TEST(RigidBodies, Refused)
        })
     EXPECT_THAT(error_of(changed(RUN, mistake.lines)), ::testing::HasSubstr(mistake.message))
         << mistake.lines;
-  const std::string flat = "units lj\ndimension 2\nboundary p p p\natom_style mpm\n"
-                           "region box block 0 8 0 8 -0.5 0.5\ncreate_box 1 box\nfix grid all mpm 1.0\n";
-  EXPECT_THAT(error_of(flat + rigid), ::testing::HasSubstr("in 2d, move a region with fix mpm/boundary"));
+  const std::string flat =
+      "units lj\ndimension 2\nboundary p p p\natom_style mpm\n"
+      "region box block 0 8 0 8 -0.5 0.5\ncreate_box 1 box\nfix grid all mpm 1.0\n";
+  EXPECT_THAT(error_of(flat + rigid),
+              ::testing::HasSubstr("in 2d, move a region with fix mpm/boundary"));
 }
 
 // ---------------------------------------------------------------------- bodies that overlap at the start
@@ -223,19 +243,22 @@ static std::string said(const std::string &lines)
 
 TEST(Overlap, IsReported)
 {
-  const std::string words = "bodies F1 and F2 overlap at the start of the run, for instance points ";
+  const std::string words =
+      "bodies F1 and F2 overlap at the start of the run, for instance points ";
   EXPECT_THAT(said(""), ::testing::Not(::testing::HasSubstr("overlap")));
   // touching bodies may be compressed, and interlock by less than half a cell
-  EXPECT_THAT(said("displace_atoms high move 0 0 -0.25\n"), ::testing::Not(::testing::HasSubstr("overlap")));
-  for (const char *lines : {"displace_atoms high move 0 0 -1.0\n",
-                            "displace_atoms high move 0.3 0.2 -2.0\n",
-                            "unfix c\nfix c all mpm/contact F1 F2 gap no\n"
-                            "displace_atoms high move 0 0 -1.0\n"}) {
+  EXPECT_THAT(said("displace_atoms high move 0 0 -0.25\n"),
+              ::testing::Not(::testing::HasSubstr("overlap")));
+  for (const char *lines :
+       {"displace_atoms high move 0 0 -1.0\n", "displace_atoms high move 0.3 0.2 -2.0\n",
+        "unfix c\nfix c all mpm/contact F1 F2 gap no\n"
+        "displace_atoms high move 0 0 -1.0\n"}) {
     const std::string text = said(lines);
     const auto found = std::regex_search(
-        text, std::regex(
-                  "Fix mpm/contact c: bodies F[12] and F[12] overlap at the start of the run, for "
-                  "instance points [1-9][0-9]* and [1-9][0-9]* near [0-9. ]+: .*does not part them"));
+        text,
+        std::regex(
+            "Fix mpm/contact c: bodies F[12] and F[12] overlap at the start of the run, for "
+            "instance points [1-9][0-9]* and [1-9][0-9]* near [0-9. ]+: .*does not part them"));
     EXPECT_TRUE(found) << lines << text;
   }
   // create_points does not let it happen
