@@ -201,6 +201,82 @@ TEST(Pitfall, PointsOnRankBoundariesExistOnce)
   }
 }
 
+// contact force in 2d with the wrong dimension: disks passed through each other
+
+TEST(Pitfall, DisksDoNotPassThroughEachOther)
+{
+  double v[2];
+  for (int k = 0; k < 2; k++) {    // whatever the thickness of the box
+    Scene run;
+    run.commands(replaced(R"(
+units lj
+dimension 2
+boundary f f p
+atom_style mpm
+region box block 0 24 0 8 -DEEP DEEP
+create_box 2 box
+region one cylinder z 8.3 4.2 2.5 INF INF
+region two cylinder z 15.6 3.9 2.5 INF INF
+create_points 1 region one spacing 0.25
+create_points 2 region two spacing 0.25
+group one type 1
+group two type 2
+fix F1 one mpm 0.5
+fix F2 two mpm 0.5
+fix m all mpm/material density 1 neohookean 50 0.3
+fix c all mpm/contact F1 F2
+velocity one set 0.5 0 0
+velocity two set -0.5 0 0
+timestep 0.01
+thermo 1000
+)",
+                          "DEEP", k ? "7.0" : "0.05"));
+    double nearest = 24.0;
+    for (int n = 0; n < 30; n++) {
+      run.commands("run 20 post no\n");
+      nearest = std::min(nearest, run.evaluate("xcm(two,x)-xcm(one,x)"));
+    }
+    EXPECT_GT(nearest, 4.0);
+    EXPECT_LT(nearest, 5.0);    // they did touch
+    v[k] = run.evaluate("vcm(two,x)");
+    EXPECT_GT(v[k], 0.25);
+  }
+  EXPECT_NEAR(v[0], v[1], 1.0e-12);
+}
+
+// rigid nodes flagged once and never cleared: a trail behind the moving body
+
+TEST(Pitfall, MovingWallLeavesNoTrail)
+{
+  const std::string scene = R"(
+units lj
+dimension 2
+boundary f f p
+atom_style mpm
+region box block 0 24 0 12 -0.5 0.5
+create_box 1 box
+region body block 5 8 6.5 9.5 -0.5 0.5
+fix grid all mpm 0.5
+create_points 1 region body ppc 2
+fix m all mpm/material density 1 neohookean 50 0.3
+velocity all set 0 -0.5 0
+timestep 0.01
+thermo 1000
+variable x equal vdisplace(0,SPEED)
+region tool block 3 10 1 5 -0.5 0.5 move v_x NULL NULL
+)";
+  const std::string wall = "fix wall all mpm/boundary region tool stick\n", go = "run 800\n";
+  std::vector<Scene::State> state[3];    // no wall; a wall that has left in time; one that stays
+  for (int k = 0; k < 3; k++) {
+    Scene run;
+    run.commands(replaced(scene, "SPEED", k == 2 ? "0.0" : "6.0") + (k ? wall : "") + go);
+    state[k] = run.gather();
+  }
+  EXPECT_LT(difference(state[0], state[1]), 1.0e-12);
+  EXPECT_LT(momentum(state[0], 1), -0.4 * 9.0);
+  EXPECT_GT(momentum(state[2], 1), -0.1 * 9.0);
+}
+
 // node forces and reactions counted nodes of other ranks, too: 1000 N became 1907 N on 2 ranks
 
 TEST(Pitfall, ReactionsCountEachNodeOnce)
