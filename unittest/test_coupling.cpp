@@ -84,10 +84,10 @@ TEST(Coupling, IsTheSameOnAnyNumberOfRanks)
 
 TEST(Coupling, GoesOnFromARestartFile)
 {
-  if (nranks() > 1) GTEST_SKIP() << "checked on one rank only";
-  Continued run(head + all_fixes() + replaced(pair, "linear_history 20.0", "linear_nohistory"), 120,
+  const std::string no_history = replaced(pair, "linear_history 20.0", "linear_nohistory");
+  Continued run(head + all_fixes() + no_history, 120,
                 "neighbor 0.3 multi\ncomm_modify vel yes mode multi\nthermo 1000\n" + all_fixes() +
-                    "neigh_modify exclude group body body\n",
+                    no_history,
                 80);
   EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
 }
