@@ -296,6 +296,30 @@ TEST_P(GimpShape, WeightAndGradientVanishTogether)
 
 INSTANTIATE_TEST_SUITE_P(HalfSizes, GimpShape, ::testing::Values(0.5, 0.37, 0.25, 0.125, 0.01));
 
+TEST(BernsteinShape, PartitionOfUnityAndLinearCompleteness)
+{
+  for (double f = 0.0; f <= 1.0; f += 0.01) {
+    double w[3], dw[3], low[3], high[3], sum = 0.0, first = 0.0, dsum = 0.0, dfirst = 0.0;
+    const double d = 1.0e-4;
+    Bernstein::weights(f, w);
+    Bernstein::gradients(f, dw);
+    Bernstein::weights(f - d, low);
+    Bernstein::weights(f + d, high);
+    for (int i = 0; i < 3; i++) {
+      EXPECT_GE(w[i], 0.0);
+      sum += w[i];
+      dsum += dw[i];
+      first += w[i] * i;
+      dfirst += dw[i] * i;
+      EXPECT_NEAR(dw[i], 0.5 * (high[i] - low[i]) / (2.0 * d), 1.0e-11);    // a cell is two spacings
+    }
+    EXPECT_NEAR(sum, 1.0, TOLERANCE);
+    EXPECT_NEAR(dsum, 0.0, TOLERANCE);
+    EXPECT_NEAR(first, 2.0 * f, TOLERANCE);
+    EXPECT_NEAR(dfirst, 1.0, TOLERANCE);
+  }
+}
+
 // a point as large as a cell has the quadratic B-spline, one of no size the linear function
 TEST(GimpLimits, AreSplines)
 {

@@ -43,7 +43,7 @@ static constexpr double MAX_NODE = 4.0e6;
 ------------------------------------------------------------------------- */
 
 FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), shape(QUADRATIC), extent(NO_SIZE), aspect{1.0, 1.0, 1.0}, transfer(APIC),
+    Fix(lmp, narg, arg), shape(QUADRATIC), bernstein(false), mixed_precision(false), extent(NO_SIZE), aspect{1.0, 1.0, 1.0}, transfer(APIC),
     flip(0.0), poly(false), refinement(LUMPED), order(1), total(false), most_distorted(0.0), axisymmetric(false), scheme(USL), stress(DEFAULT_STRESS), locking(NO_CURE), light(0.0), policy(ERROR),
     delete_failed(false), modified_edges(false), every(1), dt_check(true), grid(nullptr), C(nullptr), Q(nullptr), corners(nullptr), X(nullptr), R(nullptr),
     waiting(nullptr), ledger_on(false), points(nullptr), halo(nullptr),
@@ -147,10 +147,11 @@ void FixMPM::process_options(int narg, char **arg)
       return -1;
     };
     if (keyword == "shape") {
-      const int kind =
-          choose({"linear", "quadratic", "cubic", "gimp", "cpgimp", "cpdi", "cpdi2"});
-      extent = kind < 3 ? NO_SIZE : (Extent) (UNIFORM + kind - 3);
-      shape = kind < 3 ? (Shape) (1 + kind) : (kind < 5 ? QUADRATIC : LINEAR);
+      const int kind = choose(
+          {"linear", "quadratic", "cubic", "gimp", "cpgimp", "cpdi", "cpdi2", "bernstein"});
+      bernstein = kind == 7;
+      extent = kind < 3 || bernstein ? NO_SIZE : (Extent) (UNIFORM + kind - 3);
+      shape = kind < 3 ? (Shape) (1 + kind) : (kind < 5 || bernstein ? QUADRATIC : LINEAR);
       iarg += 2;
     } else if (keyword == "aspect") {
       need(lattice.dim);
@@ -246,6 +247,9 @@ void FixMPM::process_options(int narg, char **arg)
       need(1);
       dt_check = utils::logical(FLERR, arg[iarg + 1], false, lmp);
       iarg += 2;
+    } else if (keyword == "precision") {
+      mixed_precision = choose({"double", "mixed"}) == 1;
+      iarg += 2;
     } else if (keyword == "kernels") {
       static const char *const name[] = {"", "reference", "baseline", "avx2", "avx512"};
       isa = name[choose({"auto", "reference", "baseline", "avx2", "avx512"})];
@@ -277,10 +281,23 @@ void FixMPM::process_options(int narg, char **arg)
     error->all(FLERR, "Fix mpm stress gradient with frame total needs transfer flip or pic: that of "
                "transfer apic is stress mls");
 
-  if (modified_edges && (shape == LINEAR || extent != NO_SIZE || refinement != LUMPED ||
-                         is_affine(transfer) || axisymmetric))
+  if (modified_edges && (shape == LINEAR || bernstein || extent != NO_SIZE ||
+                         refinement != LUMPED || is_affine(transfer) || axisymmetric))
     error->all(FLERR, "Fix mpm edges modified is for shape quadratic and cubic with transfer pic and "
                "flip, not with axisymmetric");
+
+  if (bernstein && !total)
+    error->all(FLERR, "Fix mpm shape bernstein has gradients that jump where points cross cells: it "
+               "needs frame total, where they do not, or use shape quadratic");
+  if (bernstein && (axisymmetric || poly))
+    error->all(FLERR, "Fix mpm shape bernstein cannot be used with axisymmetric and transfer polypic: use "
+               "shape quadratic");
+  if (mixed_precision &&
+      (extent != NO_SIZE || bernstein || refinement != LUMPED || poly || transfer == AFLIP ||
+       transfer == TPIC || axisymmetric || strains_apart()))
+    error->all(FLERR, "Fix mpm precision mixed needs shape linear, quadratic or cubic and transfer pic, "
+               "flip or apic, without stress gradient and axisymmetric: use precision double for "
+               "others");
 
   check_box();
 }
@@ -313,6 +330,10 @@ void FixMPM::check_box()
       error->all(FLERR, "Length {} of the box along periodic axis {} must be a multiple of the "
                  "node spacing {}: the nearest valid spacing is {:.16g}",
                  length, axis, lattice.h, length / lattice.ncell[d]);
+    if (bernstein && lattice.periodic[d] && lattice.ncell[d] % 2)
+      error->all(FLERR, "Fix mpm shape bernstein has cells of two node spacings, but there are {} "
+                 "spacings along periodic axis {}: use an even number, for instance a spacing of "
+                 "{:.16g}", lattice.ncell[d], axis, length / (lattice.ncell[d] + 1));
   }
   if (axisymmetric && (domain->boxlo[0] < 0.0 || domain->periodicity[0]))
     error->all(FLERR, "Fix mpm axisymmetric: x is the distance from the axis: the box must not reach "
@@ -411,6 +432,9 @@ void FixMPM::init()
   if (!can_run)
     error->all(FLERR, "Fix mpm kernels {} cannot run on this CPU or were not compiled",
                wanted ? wanted : "named by the environment variable MPM_ISA");
+  if (mixed_precision && !kernels->transfer_mixed(lattice.dim, shape, transfer, true, total).p2g)
+    error->all(FLERR, "Fix mpm kernels reference has no precision mixed: use other kernels, or "
+               "precision double");
 
   // LAMMPS warns when the groups of two integrators overlap, but atoms of this group that are not
   // material points may well be moved by others; check_integrators() looks at the points
@@ -437,7 +461,8 @@ void FixMPM::setup_pre_neighbor()
 
   const bool split = ledger_on || stress_before() || (axisymmetric && scheme != USL);
   const auto choose = total ? kernels->transfer_total : kernels->transfer;
-  kernel = choose(lattice.dim, kernel_shape(), transfer, split);
+  kernel = mixed_precision ? kernels->transfer_mixed(lattice.dim, shape, transfer, split, total)
+                           : choose(lattice.dim, kernel_shape(), transfer, split);
   if (strains_apart()) {
     // to the nodes, TPIC differs in nothing but the stress; back, it has the gradient
     const auto tpic = choose(lattice.dim, kernel_shape(), TPIC, kernel.nreal == 8);

@@ -92,6 +92,8 @@ class FixMPM : public Fix {
   MPM_NS::Lattice lattice;
   MPM_NS::Shape shape;      ///< B-spline, or the one that has the stencil: QUADRATIC with a size,
                             ///< LINEAR with a domain
+  bool bernstein;           ///< Bernstein polynomials, which have the stencil of QUADRATIC
+  bool mixed_precision;     ///< transfers in single precision
   Extent extent;            ///< size of points: none, fixed (GIMP), with F (contiguous GIMP); domains
                             ///< with F (CPDI), or corners that move (CPDI2)
   double aspect[3];         ///< edges of an undeformed point of some size; their product is 1
@@ -236,6 +238,7 @@ class FixMPM : public Fix {
 
   MPM_NS::Shape kernel_shape() const
   {
+    if (bernstein) return MPM_NS::BERNSTEIN;
     constexpr MPM_NS::Shape others[] = {MPM_NS::GIMP, MPM_NS::GIMP, MPM_NS::CPDI, MPM_NS::CPDI2};
     return extent == NO_SIZE ? shape : others[extent - 1];
   }

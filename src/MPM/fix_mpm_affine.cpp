@@ -56,6 +56,12 @@ uint64_t mixed(uint64_t z)
 
 int FixMPM::shape_weights(double t, int &first, double w[4]) const
 {
+  if (bernstein) {
+    const double cell = std::floor(0.5 * t);
+    first = 2 * (int) cell;
+    Bernstein::weights(0.5 * t - cell, w);
+    return Bernstein::nodes;
+  }
   const double s = t - 0.5 * (shape - 1);
   first = (int) std::floor(s);
   if (shape == LINEAR)
@@ -210,7 +216,7 @@ void FixMPM::fit_affine()
 
 void FixMPM::add_torques()
 {
-  if (!C || shape == LINEAR || extent != NO_SIZE || !atom->torque_flag) return;
+  if (!C || shape == LINEAR || bernstein || extent != NO_SIZE || !atom->torque_flag) return;
   const int dim = lattice.dim;
   const double inv_moment = (shape == QUADRATIC ? 4.0 : 3.0) / (lattice.h * lattice.h);
   for (const auto &run : runs)

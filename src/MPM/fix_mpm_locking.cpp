@@ -59,6 +59,7 @@ void FixMPM::average_around_points()
   r.v = v_apart.data();
   r.mass = rows_apart.data();
   r.xnew = r.x;    // stays: the time step is zero
+  r.from = r.x;
   r.F = nullptr;
   TransferStep s = step_data();
   s.dt = 0.0;

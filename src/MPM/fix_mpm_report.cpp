@@ -6,7 +6,6 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-
 // What fix mpm tells: energy ledger, thermo values, report at the end of a run.
 
 #include "fix_mpm.h"
@@ -51,8 +50,7 @@ double FixMPM::point_kinetic_energy() const
   for (int i = 0; i < atom->nlocal; i++) {
     if (!is_point(i)) continue;
     const double *v = atom->v[i];
-    sum += atom->rmass[i] *
-        (v[0] * v[0] + v[1] * v[1] + (lattice.dim == 3 ? v[2] * v[2] : 0.0));
+    sum += atom->rmass[i] * (v[0] * v[0] + v[1] * v[1] + (lattice.dim == 3 ? v[2] * v[2] : 0.0));
   }
   return 0.5 * force->mvv2e * sum;
 }
@@ -91,8 +89,7 @@ double FixMPM::external_work(const double *force_on)
       const double *record = grid->record(b, n);    // v m | v old
       const double *f = &external_nodes[(b * NODES_PER_BLOCK + n) * 8 + 4];
       if (record[3] <= 0.0) continue;
-      for (int d = 0; d < 3; d++)
-        work += dt * f[d] * 0.5 * (record[d] + record[4 + d]);
+      for (int d = 0; d < 3; d++) work += dt * f[d] * 0.5 * (record[d] + record[4 + d]);
     }
   return force->mvv2e * work;    // nodal forces are mass * acceleration
 }
@@ -121,12 +118,18 @@ double FixMPM::compute_vector(int k)
   double all[4];
   MPI_Allreduce(mine, all, 4, MPI_DOUBLE, MPI_SUM, world);
   switch (k) {
-    case 0: return all[0];
-    case 1: return all[1];
-    case 2: return all[0] > 0.0 ? all[2] / all[0] : 0.0;
-    case 3: return report.topologies;
-    case 4: return report.sorts;
-    default: return all[3];
+    case 0:
+      return all[0];
+    case 1:
+      return all[1];
+    case 2:
+      return all[0] > 0.0 ? all[2] / all[0] : 0.0;
+    case 3:
+      return report.topologies;
+    case 4:
+      return report.sorts;
+    default:
+      return all[3];
   }
 }
 
@@ -157,8 +160,8 @@ void FixMPM::post_run()
   if (report.steps == 0) return;
 
   enum { TOPOLOGY, SORT, P2GRID, HALO, NODES, G2POINTS, NTIMES };
-  double t[NTIMES] = {report.t_topology, report.t_sort, report.t_p2g, report.t_halo,
-                      report.t_nodes, report.t_g2p};
+  double t[NTIMES] = {report.t_topology, report.t_sort,  report.t_p2g,
+                      report.t_halo,     report.t_nodes, report.t_g2p};
   double t_max[NTIMES], sum[4], mine[4];
   MPI_Allreduce(t, t_max, NTIMES, MPI_DOUBLE, MPI_MAX, world);
   mine[0] = report.point_steps;
@@ -173,22 +176,24 @@ void FixMPM::post_run()
   for (double stage : t_max) total += stage;
   const double npoints = sum[0] / report.steps;
   utils::logmesg(lmp,
-                 "MPM {}: {:.0f} points, {} kernels, {:.2f} ns per point-step and core\n"
+                 "MPM {}: {:.0f} points, {} kernels{}, {:.2f} ns per point-step and core\n"
                  "  of these: topology and checks {:.2f}, sort {:.2f}, points to grid {:.2f}, "
                  "halo {:.2f}, nodes {:.2f}, grid to points with material {:.2f}\n"
                  "  {:.0f} bytes per point; {:.0f} blocks with points of {:.0f} active, "
                  "{:.1f} points per block\n"
                  "  {} updates of the topology, {} sorts, {:.0f} halo bytes per step, "
                  "time step {:.6g} to {:.6g}\n",
-                 id, npoints, kernels->isa, total * scale, t_max[TOPOLOGY] * scale,
-                 t_max[SORT] * scale, t_max[P2GRID] * scale, t_max[HALO] * scale,
-                 t_max[NODES] * scale, t_max[G2POINTS] * scale, bytes_per_point(), sum[1], sum[2],
-                 npoints / std::max(1.0, sum[1]), report.topologies, report.sorts, sum[3],
-                 report.dt_min, report.dt_max);
+                 id, npoints, kernels->isa, mixed_precision ? " (mixed)" : "", total * scale,
+                 t_max[TOPOLOGY] * scale, t_max[SORT] * scale, t_max[P2GRID] * scale,
+                 t_max[HALO] * scale, t_max[NODES] * scale, t_max[G2POINTS] * scale,
+                 bytes_per_point(), sum[1], sum[2], npoints / std::max(1.0, sum[1]),
+                 report.topologies, report.sorts, sum[3], report.dt_min, report.dt_max);
   if (deleted.points > 0.0)
-    utils::logmesg(lmp, "  {:.0f} points deleted so far, mass {:.10g}, momentum {:.10g} {:.10g} "
-                   "{:.10g}\n", deleted.points, deleted.mass, deleted.momentum[0],
-                   deleted.momentum[1], deleted.momentum[2]);
+    utils::logmesg(lmp,
+                   "  {:.0f} points deleted so far, mass {:.10g}, momentum {:.10g} {:.10g} "
+                   "{:.10g}\n",
+                   deleted.points, deleted.mass, deleted.momentum[0], deleted.momentum[1],
+                   deleted.momentum[2]);
   if (report.references)
     utils::logmesg(lmp, "  {} updates of the reference configuration\n", report.references);
   if (nbad_total)

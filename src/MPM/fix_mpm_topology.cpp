@@ -46,9 +46,9 @@ bool FixMPM::base_node(const double *x, int base[3], double t[3]) const
   base[2] = 0;
   t[2] = 0.0;
   for (int d = 0; d < lattice.dim; d++) {
-    t[d] = (x[d] - lattice.origin[d]) / lattice.h - BASE_SHIFT[shape];
+    t[d] = (x[d] - lattice.origin[d]) / lattice.h - (bernstein ? 0.0 : BASE_SHIFT[shape]);
     if (!(fabs(t[d]) < 4.0e6)) return false;
-    base[d] = (int) std::floor(t[d]);
+    base[d] = bernstein ? 2 * (int) std::floor(0.5 * t[d]) : (int) std::floor(t[d]);
   }
   return true;
 }

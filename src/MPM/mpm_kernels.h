@@ -16,8 +16,9 @@
 namespace MPM_NS {
 
 /** B-splines of order 1 to 3; functions of points of finite size, see Gimp in mpm_shape.h; linear
- *  functions at the corners of a domain, see mpm_domain.h: a box (CPDI) or with free corners. */
-enum Shape { LINEAR = 1, QUADRATIC = 2, CUBIC = 3, GIMP = 4, CPDI = 5, CPDI2 = 6 };
+ *  functions at the corners of a domain, see mpm_domain.h: a box (CPDI) or with free corners;
+ *  Bernstein polynomials, see mpm_shape.h. */
+enum Shape { LINEAR = 1, QUADRATIC = 2, CUBIC = 3, GIMP = 4, CPDI = 5, CPDI2 = 6, BERNSTEIN = 7 };
 enum Transfer { PIC, FLIP, APIC, AFLIP, TPIC };
 
 constexpr bool has_domain(Shape shape)
@@ -28,7 +29,7 @@ constexpr bool has_domain(Shape shape)
  *  B-spline of this order. */
 constexpr int stencil_order(Shape shape)
 {
-  return shape == GIMP ? 2 : has_domain(shape) ? 1 : shape;
+  return shape == GIMP || shape == BERNSTEIN ? 2 : has_domain(shape) ? 1 : shape;
 }
 /** Points have an affine matrix. */
 constexpr bool is_affine(Transfer transfer)
@@ -68,8 +69,8 @@ constexpr int tile_stride_y(int dim, int order)
 }
 constexpr int tile_stride_x(int dim, int order)
 {
-  return dim == 3 ? tile_stride_y(dim, order) * tile_side(dim, order) + (order == 1 ? 1 : 0) :
-                    (tile_side(dim, order) | 1);
+  return dim == 3 ? tile_stride_y(dim, order) * tile_side(dim, order) + (order == 1 ? 1 : 0)
+                  : (tile_side(dim, order) | 1);
 }
 /** Nodes to allocate for a tile. */
 constexpr int tile_nodes(int dim, int order)
@@ -100,16 +101,16 @@ constexpr int domain_tile_nodes(int dim)
 
 /** State of points as contiguous rows; pointers are to the first row of the rank. */
 struct PointRows {
-  double *x;               ///< [n][3] position (total frame: reference position)
-  double *v;               ///< [n][3] velocity
-  const double *f;         ///< [n][3] external force (gravity, contact, walls, ...)
-  double *C;               ///< [n][dim*dim] affine matrix, column-major: C[dim*j+i] = d v_i / d x_j
-  double *tau;             ///< [n][6] Kirchhoff stress J sigma, xx yy zz xy xz yz
-  const double *vol0;      ///< [n] initial volume: V sigma = V0 tau
-  const double *mass;      ///< [n]
-  double *xnew;            ///< [n][3] where G2P puts the new position (x itself, unless MUSL)
-  double *F = nullptr;     ///< [n][9] not touched: G2P brings it to the cache for the law, if given
-  int guarded = 0;         ///< behind the rows before this one there is memory that may be read
+  double *x;              ///< [n][3] position (total frame: reference position)
+  double *v;              ///< [n][3] velocity
+  const double *f;        ///< [n][3] external force (gravity, contact, walls, ...)
+  double *C;              ///< [n][dim*dim] affine matrix, column-major: C[dim*j+i] = d v_i / d x_j
+  double *tau;            ///< [n][6] Kirchhoff stress J sigma, xx yy zz xy xz yz
+  const double *vol0;     ///< [n] initial volume: V sigma = V0 tau
+  const double *mass;     ///< [n]
+  double *xnew;           ///< [n][3] where G2P puts the new position (x itself, unless MUSL)
+  double *F = nullptr;    ///< [n][9] not touched: G2P brings it to the cache for the law, if given
+  int guarded = 0;        ///< behind the rows before this one there is memory that may be read
   const double *from = nullptr;    ///< [n][3] total frame: the position that G2P adds dt v to
   const double *P = nullptr;       ///< [n][dim*dim] total frame: first Piola-Kirchhoff stress, the
                                    ///< place of tau, column-major: P[dim*j+i] = P_ij
@@ -121,11 +122,11 @@ struct PointRows {
 
 /** What a transfer needs to know about the lattice and the step. */
 struct TransferStep {
-  double h;            ///< node spacing
+  double h;    ///< node spacing
   double inv_h;
   double origin[3];    ///< position of node (0,0,0)
   double dt;
-  double flip;         ///< FLIP share of the velocity update (0: PIC, 1: FLIP)
+  double flip;                  ///< FLIP share of the velocity update (0: PIC, 1: FLIP)
   double force_scale = 1.0;     ///< external force to mass * acceleration (ftm2v of LAMMPS)
   double stress_scale = 1.0;    ///< stress * area to mass * acceleration (ftm2v / nktv2p)
 };
@@ -133,7 +134,8 @@ struct TransferStep {
 /** Transfers between the points [first,last) of one block and its tile.
  *
  *  base: node index of tile entry (0,0,0), which is the block's first base node minus one per axis.
- *  A base node of a point is floor((x - origin)/h - s), s = 0, 1/2, 1 for linear, quadratic (GIMP), cubic.
+ *  A base node of a point is floor((x - origin)/h - s), s = 0, 1/2, 1 for linear, quadratic (GIMP), cubic,
+ *  and 2 floor((x - origin)/(2 h)) for BERNSTEIN.
  *  In 2d, z is ignored, and tiles and base have two axes (base[2] unused).
  *  Domains: base is the first node of the block before; each corner has a base node (s = 0), and all
  *  of them and their next nodes must be in the tile, which has the block's neighbors on all sides.
@@ -145,8 +147,8 @@ struct TransferStep {
  *
  *  box: [6] lowest and highest tile index of base nodes (x,y,z low; x,y,z high); widened, not reset.
  */
-using P2G = void (*)(const PointRows &, const TransferStep &, int first, int last, const int base[3],
-                     double *tile, int box[6]);
+using P2G = void (*)(const PointRows &, const TransferStep &, int first, int last,
+                     const int base[3], double *tile, int box[6]);
 
 /** G2P returns 0, or non-zero when a point's new position has left the range of its tile (domains:
  *  when it is not finite, or a domain is inverted, with weights that are not positive).
@@ -191,8 +193,17 @@ struct MPMKernels {
   /** The same in the total frame: nodes are places of the reference configuration. C and L are
    *  gradients with respect to the reference position, internal forces are -V0 P grad N, and G2P
    *  moves a point from its row of from. G2P returns non-zero for positions that are not finite.
-   *  Fast kernels exist for PIC, FLIP and APIC with B-splines only, null for others. */
+   *  Fast kernels exist for PIC, FLIP and APIC with B-splines and BERNSTEIN only, null for others.
+   *  The other table has those of the total frame for BERNSTEIN, too. */
   TransferKernels (*transfer_total)(int dim, Shape, Transfer, bool split);
+
+  /** Mixed precision, for PIC, FLIP and APIC with B-splines; null pointers for others, and from the
+   *  reference table. Positions, rows of points and node records are double precision, and what
+   *  happens between them is single precision: results deviate from those of double precision by
+   *  some 1e-7 of the differences of velocity within a tile, while what its points have in common
+   *  is exact. The insides of tiles are those of the kernels: any memory of the same size that was
+   *  zero before the first P2G will do. */
+  TransferKernels (*transfer_mixed)(int dim, Shape, Transfer, bool split, bool total);
 
   /** v = p/m on n nodes, and the momentum equation.
    *  merged: (p,m) -> (p/m, m).  split: (p,m|f) -> ((p + dt f)/m, m | p/m).

@@ -55,8 +55,7 @@ void solve_nodes(double *nodes, int nnodes, int nreal, double dt)
   }
 }
 
-template <bool TOTAL, int DIM, Shape SHAPE>
-TransferKernels choose(Transfer transfer, bool split)
+template <bool TOTAL, int DIM, Shape SHAPE> TransferKernels choose(Transfer transfer, bool split)
 {
   switch (transfer) {
     case PIC:
@@ -71,8 +70,7 @@ TransferKernels choose(Transfer transfer, bool split)
   }
 }
 
-template <bool TOTAL, int DIM>
-TransferKernels choose(Shape shape, Transfer transfer, bool split)
+template <bool TOTAL, int DIM> TransferKernels choose(Shape shape, Transfer transfer, bool split)
 {
   switch (shape) {
     case LINEAR:
@@ -89,23 +87,24 @@ TransferKernels choose(Shape shape, Transfer transfer, bool split)
     case CPDI2:
       if (TOTAL) return TransferKernels();
       return MPM_CONCAT(mpm_kernels_domain_, MPM_ISA)(DIM, shape, transfer, split);
+    case BERNSTEIN:
+      return MPM_CONCAT(mpm_kernels_bernstein_, MPM_ISA)(DIM, transfer, split);
   }
   return TransferKernels();
 }
 
-template <bool TOTAL>
-TransferKernels transfer(int dim, Shape shape, Transfer transfer, bool split)
+template <bool TOTAL> TransferKernels transfer(int dim, Shape shape, Transfer transfer, bool split)
 {
-  return dim == 3 ? choose<TOTAL, 3>(shape, transfer, split) :
-                    choose<TOTAL, 2>(shape, transfer, split);
+  return dim == 3 ? choose<TOTAL, 3>(shape, transfer, split)
+                  : choose<TOTAL, 2>(shape, transfer, split);
 }
 
 }    // namespace
 
 const MPMKernels *MPM_NS::MPM_CONCAT(mpm_kernels_, MPM_ISA)()
 {
-  static const MPMKernels table = {MPM_CONCAT(MPM_NAME_, MPM_ISA), transfer<false>,
-                                   transfer<true>, solve_nodes};
+  static const MPMKernels table = {MPM_CONCAT(MPM_NAME_, MPM_ISA), transfer<false>, transfer<true>,
+                                   MPM_CONCAT(mpm_kernels_mixed_, MPM_ISA), solve_nodes};
   return &table;
 }
 

@@ -26,6 +26,13 @@ const MPMKernels *MPM_CONCAT(mpm_kernels_, MPM_ISA)();
 /** Transfers aflip and tpic with B-splines. */
 TransferKernels MPM_CONCAT(mpm_kernels_affine_, MPM_ISA)(int dim, Shape, Transfer, bool split);
 
+/** Transfers pic, flip, apic with Bernstein polynomials in the total frame. */
+TransferKernels MPM_CONCAT(mpm_kernels_bernstein_, MPM_ISA)(int dim, Transfer, bool split);
+
+/** Transfers pic, flip, apic with B-splines in mixed precision. */
+TransferKernels MPM_CONCAT(mpm_kernels_mixed_, MPM_ISA)(int dim, Shape, Transfer, bool split,
+                                                        bool total);
+
 /** All transfers with points of finite size. */
 TransferKernels MPM_CONCAT(mpm_kernels_gimp_, MPM_ISA)(int dim, Transfer, bool split);
 

@@ -30,7 +30,8 @@ struct Node {
   double d[3];       ///< position of the node minus that of the point
 };
 
-/** Position in units of h from tile node 0, less the shift: its floor is the base node. */
+/** Position in units of h from tile node 0, less the shift: its floor is the base node (but for
+ *  BERNSTEIN). */
 template <int ORDER>
 double tile_position(double x, const TransferStep &step, const int *base, int axis)
 {
@@ -53,8 +54,14 @@ template <int DIM, Shape SHAPE> struct Stencil {
     for (int a = 0; a < DIM; a++) {
       const double t = tile_position<ORDER>(x[a], step, tilebase, a);
       base[a] = static_cast<int>(std::floor(t));
-      const double f = ORDER == 1 ? std::max(t - base[a], SMALLEST_FRACTION) : t - base[a];
-      if constexpr (SHAPE == GIMP) {
+      double f = ORDER == 1 ? std::max(t - base[a], SMALLEST_FRACTION) : t - base[a];
+      if constexpr (SHAPE == BERNSTEIN) {
+        const double cell = 0.5 * (x[a] - step.origin[a]) * step.inv_h, first = std::floor(cell);
+        f = cell - first;
+        base[a] = 2 * static_cast<int>(first) - tilebase[a];
+        Bernstein::weights(f, w[a]);
+        Bernstein::gradients(f, dw[a]);
+      } else if constexpr (SHAPE == GIMP) {
         Gimp::weights(f, size[a], w[a]);
         Gimp::gradients(f, size[a], dw[a]);
       } else {
@@ -63,7 +70,7 @@ template <int DIM, Shape SHAPE> struct Stencil {
       }
       for (int i = 0; i <= ORDER; i++) {
         dw[a][i] *= step.inv_h;
-        d[a][i] = (i - BSpline<ORDER>::shift - f) * step.h;
+        d[a][i] = (i - (SHAPE == BERNSTEIN ? 2.0 * f : BSpline<ORDER>::shift + f)) * step.h;
       }
     }
     int n = 0;
@@ -116,7 +123,8 @@ void p2g(const PointRows &points, const TransferStep &step, int first, int last,
   const double inv_moment = BSpline<stencil_order(SHAPE)>::inv_moment * step.inv_h * step.inv_h;
 
   for (int p = first; p < last; p++) {
-    const Stencil<DIM, SHAPE> stencil(points.x + 3 * p, SHAPE == GIMP ? points.size + 3 * p : nullptr, step, base);
+    const Stencil<DIM, SHAPE> stencil(points.x + 3 * p,
+                                      SHAPE == GIMP ? points.size + 3 * p : nullptr, step, base);
     for (int a = 0; a < DIM; a++) {
       if (stencil.base[a] < box[a]) box[a] = stencil.base[a];
       if (stencil.base[a] > box[3 + a]) box[3 + a] = stencil.base[a];
@@ -178,7 +186,8 @@ int g2p(const PointRows &points, const TransferStep &step, int first, int last, 
 {
   int left = 0;
   for (int p = first; p < last; p++) {
-    const Stencil<DIM, SHAPE> stencil(points.x + 3 * p, SHAPE == GIMP ? points.size + 3 * p : nullptr, step, base);
+    const Stencil<DIM, SHAPE> stencil(points.x + 3 * p,
+                                      SHAPE == GIMP ? points.size + 3 * p : nullptr, step, base);
     double v[3] = {0.0, 0.0, 0.0}, v_old[3] = {0.0, 0.0, 0.0};
     for (const Node &node : stencil.node) {
       const double *real = tile + NREAL * node.index;
@@ -201,8 +210,8 @@ int g2p(const PointRows &points, const TransferStep &step, int first, int last, 
       vp = adds_change(TRANSFER) ? v[i] + step.flip * (vp - v_old[i]) : v[i];
       const double xnew = from[3 * p + i] + step.dt * v[i];
       points.xnew[3 * p + i] = xnew;
-      const double t =
-          TOTAL ? xnew - xnew : tile_position<stencil_order(SHAPE)>(xnew, step, base, i);
+      const double t = TOTAL ? xnew - xnew
+                             : tile_position<stencil_order(SHAPE)>(xnew, step, base, i);
       if (!(t >= 0.0 && t < block_side(DIM) + 2)) left = 1;    // also when t is not a number
     }
   }
@@ -214,7 +223,8 @@ int g2p_gradient(const PointRows &points, const TransferStep &step, int first, i
                  const int base[3], const double *tile, double *L)
 {
   for (int p = first; p < last; p++) {
-    const Stencil<DIM, SHAPE> stencil(points.x + 3 * p, SHAPE == GIMP ? points.size + 3 * p : nullptr, step, base);
+    const Stencil<DIM, SHAPE> stencil(points.x + 3 * p,
+                                      SHAPE == GIMP ? points.size + 3 * p : nullptr, step, base);
     velocity_gradient<DIM, SHAPE, TRANSFER, NREAL>(stencil, step, tile,
                                                    L + DIM * DIM * (p - first));
   }
@@ -281,8 +291,7 @@ void solve_nodes(double *nodes, int nnodes, int nreal, double dt)
   }
 }
 
-template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL>
-TransferKernels kernels()
+template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> TransferKernels kernels()
 {
   constexpr int ORDER = stencil_order(SHAPE);
   TransferKernels k;
@@ -302,8 +311,7 @@ TransferKernels kernels()
   return k;
 }
 
-template <bool TOTAL, int DIM, Shape SHAPE>
-TransferKernels choose(Transfer transfer, bool split)
+template <bool TOTAL, int DIM, Shape SHAPE> TransferKernels choose(Transfer transfer, bool split)
 {
   switch (transfer) {
     case PIC:
@@ -320,8 +328,7 @@ TransferKernels choose(Transfer transfer, bool split)
   return TransferKernels();
 }
 
-template <bool TOTAL, int DIM>
-TransferKernels choose(Shape shape, Transfer transfer, bool split)
+template <bool TOTAL, int DIM> TransferKernels choose(Shape shape, Transfer transfer, bool split)
 {
   switch (shape) {
     case LINEAR:
@@ -336,22 +343,25 @@ TransferKernels choose(Shape shape, Transfer transfer, bool split)
     case CPDI2:
       if (TOTAL) return TransferKernels();
       return mpm_kernels_domain_reference(DIM, shape, transfer, split);
+    case BERNSTEIN:
+      return choose<true, DIM, BERNSTEIN>(transfer, split);
   }
   return TransferKernels();
 }
 
-template <bool TOTAL>
-TransferKernels transfer(int dim, Shape shape, Transfer transfer, bool split)
+template <bool TOTAL> TransferKernels transfer(int dim, Shape shape, Transfer transfer, bool split)
 {
-  return dim == 3 ? choose<TOTAL, 3>(shape, transfer, split) :
-                    choose<TOTAL, 2>(shape, transfer, split);
+  return dim == 3 ? choose<TOTAL, 3>(shape, transfer, split)
+                  : choose<TOTAL, 2>(shape, transfer, split);
 }
 
 }    // namespace
 
 const MPMKernels *MPM_NS::mpm_kernels_reference()
 {
-  static const MPMKernels table = {"reference", transfer<false>,
-                                   transfer<true>, solve_nodes};
+  const auto none = [](int, Shape, Transfer, bool, bool) {
+    return TransferKernels();
+  };
+  static const MPMKernels table = {"reference", transfer<false>, transfer<true>, none, solve_nodes};
   return &table;
 }
