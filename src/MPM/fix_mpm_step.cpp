@@ -621,6 +621,7 @@ void FixMPM::volume_at_points(std::vector<double> &share)
   r.mass = rows_apart.data();
   r.v = values.data();
   r.xnew = r.x;    // stays: the time step is zero
+  r.from = r.x;
   r.F = nullptr;
   TransferStep s = step_data();
   s.dt = 0.0;
