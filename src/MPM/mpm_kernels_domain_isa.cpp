@@ -32,8 +32,8 @@ static_assert(GROUP % REGISTER == 0);
 MPM_INLINE Vec<4> quad(double a, double b, double c, double d)
 {
   Vec<2> low, high;
-  low.r = Raw<2>::Reals{a, b};
-  high.r = Raw<2>::Reals{c, d};
+  low.r = Raw<2, double>::Reals{a, b};
+  high.r = Raw<2, double>::Reals{c, d};
   return join(low, high);
 }
 

@@ -1247,16 +1247,35 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
 
 enum TileMove { FLUSH, LOAD, PREFETCH };
 
-/** Adds COUNT entries of the tile to nodes and clears them, loads them, or brings the nodes near. */
-template <int COUNT, int NREAL, int SECOND, TileMove MOVE>
-MPM_INLINE void move_nodes(Real *entry, double *nodes, const double *header)
+/** Adds N reals of a tile in double precision to nodes and clears them, loads them, or brings the nodes
+ *  near. */
+template <int N, TileMove MOVE> MPM_INLINE void move_reals(double *tile, double *nodes)
 {
   if constexpr (MOVE == PREFETCH) {
     // to the second-level cache: the first has no room for another tile yet
     constexpr int line = 8;
     MPM_UNROLL
-    for (int i = 0; i < COUNT * NREAL; i += line) __builtin_prefetch(nodes + i, 1, 2);
-  } else if constexpr (MIXED) {
+    for (int i = 0; i < N; i += line) __builtin_prefetch(nodes + i, 1, 2);
+    return;
+  }
+  MPM_UNROLL
+  for (int i = 0; i < N; i += 4) {
+    if constexpr (MOVE == LOAD) {
+      WideQuads<1>::load(nodes + i).store(tile + i);
+    } else {
+      (WideQuads<1>::load(nodes + i) + WideQuads<1>::load(tile + i)).store(nodes + i);
+      WideQuads<1>{}.store(tile + i);
+    }
+  }
+}
+
+/** The same for COUNT entries, in either precision. */
+template <int COUNT, int NREAL, int SECOND, TileMove MOVE>
+MPM_INLINE void move_nodes(Real *entry, double *nodes, const double *header)
+{
+  if constexpr (MOVE == PREFETCH || !MIXED) {
+    move_reals<COUNT * NREAL, MOVE>(reinterpret_cast<double *>(entry), nodes);
+  } else {
     using W = WideQuads<1>;
     const W v = W::load(header);
     const double mass = header[4];
@@ -1276,17 +1295,6 @@ MPM_INLINE void move_nodes(Real *entry, double *nodes, const double *header)
               .store(nodes + 4);
           Vec<4>{}.store(entry + SECOND);
         }
-      }
-    }
-  } else {
-    double *const tile = reinterpret_cast<double *>(entry);
-    MPM_UNROLL
-    for (int i = 0; i < COUNT * NREAL; i += 4) {
-      if constexpr (MOVE == LOAD) {
-        WideQuads<1>::load(nodes + i).store(tile + i);
-      } else {
-        (WideQuads<1>::load(nodes + i) + WideQuads<1>::load(tile + i)).store(nodes + i);
-        WideQuads<1>{}.store(tile + i);
       }
     }
   }
