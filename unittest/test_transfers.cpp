@@ -14,6 +14,8 @@
 
 #include "mpm_lammps.h"
 
+#include "error.h"
+
 #include "gtest/gtest.h"
 
 #include <cmath>
@@ -167,6 +169,20 @@ run 0
     EXPECT_LT(std::fabs(run.evaluate("c_e[10]")), 0.05 * scale) << transfer;
     measured(std::string(transfer) + ", transfer", run.evaluate("c_e[9]") / scale);
     measured(std::string(transfer) + ", integration", run.evaluate("c_e[10]") / scale);
+  }
+}
+
+// after half a turn of the disk, all schemes but USL have lost its spin: they say so at the start
+
+TEST(Refined, LostSpinHasAWarning)
+{
+  for (const char *options : {"transfer xpic 2", "transfer xpic 2 scheme musl", "transfer xpic 2 scheme usf",
+                              "transfer xpic 2 scheme usavg", "transfer flip 1.0 scheme musl"}) {
+    Scene run;
+    const int before = run.lmp->error->get_numwarn();
+    run.commands(replaced(disk, "OPTIONS", std::string(options) + " dtcheck no") + "run 0\n");
+    const bool warned = run.lmp->error->get_numwarn() > before;
+    EXPECT_EQ(warned, std::string(options).find("xpic 2 scheme") != std::string::npos) << options;
   }
 }
 

@@ -375,6 +375,9 @@ void FixMPM::init()
     error->all(FLERR, "Fix mpm {}: transfer fmpm moves points with refined velocities, which the "
                "gradients of scheme usf, musl and usavg do not follow: use scheme usl, or transfer "
                "xpic", id);
+  if (refinement == XPIC && order > 1 && scheme != USL && comm->me == 0)
+    error->warning(FLERR, "Fix mpm {}: a body that turns loses its spin with transfer xpic and scheme "
+                   "usf, musl and usavg: use scheme usl, or transfer flip or apic", id);
 
   check_light_nodes();
 

@@ -418,8 +418,9 @@ void FixMPM::check_dt()
    bench/extremes has measured for bodies anywhere on the lattice, rounded down. Stress that is made
    from velocities which the same stress has just changed (USL without affine matrix) costs most;
    with points of finite size it goes with the square root of their half size s in node spacings, as
-   the ratio of stiffness and mass of a node that they barely reach is E/(rho h^2 s). Linear functions
-   without any limit have a warning of their own, see check_light_nodes().
+   the ratio of stiffness and mass of a node that they barely reach is E/(rho h^2 s). Domains (CPDI)
+   do not care for size: 0.70 (USL), 0.93 (affine), 1.39 (others) with 1 to 64 points per cell. Linear
+   functions without any limit have a warning of their own, see check_light_nodes().
 ------------------------------------------------------------------------- */
 
 double FixMPM::stable_share(double size) const
