@@ -176,6 +176,7 @@ run 0
 
 TEST(Refined, LostSpinHasAWarning)
 {
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
   for (const char *options : {"transfer xpic 2", "transfer xpic 2 scheme musl", "transfer xpic 2 scheme usf",
                               "transfer xpic 2 scheme usavg", "transfer flip 1.0 scheme musl"}) {
     Scene run;
