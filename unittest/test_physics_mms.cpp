@@ -220,11 +220,6 @@ INSTANTIATE_TEST_SUITE_P(
             .1,
             8,
             {6.45e-3, 1.61e-3, 4.01e-4}},
-        Row{"shape cpdi aspect 1 2 transfer flip 1.0 scheme usl",
-            .05,
-            .1,
-            8,
-            {6.45e-3, 1.61e-3, 4.01e-4}},
         Row{"shape cpgimp aspect 1 2 transfer flip 1.0 scheme usl", 1e-4, .03, 16, {2.286e-6}},
         Row{"shape gimp aspect 1 2 transfer flip 1.0 scheme usl", 1e-4, .03, 16, {2.286e-6}},
         Row{"shape quadratic transfer flip 1.0 scheme musl",
@@ -263,6 +258,8 @@ TEST_P(Order, Two)
 INSTANTIATE_TEST_SUITE_P(
     Options, Order,
     ::testing::Values(
+        // cpdi samples at corners what cpgimp integrates: same order, errors a tenth larger
+        OrderCase{"shape cpdi aspect 1 2 transfer flip 1.0 scheme usl", .05, 1, 16, 32, 5.791e-4},
         OrderCase{"shape quadratic transfer apic", 1e-4, 1, 16, 64, 2.75e-7},
         OrderCase{"shape cubic transfer apic", 1e-4, 1, 16, 64, 5.23e-7},
         OrderCase{"shape quadratic transfer apic", .05, 1, 8, 32, 5.8e-4},
