@@ -363,6 +363,25 @@ TEST(Parallel, RanksAgreeAcrossAPeriodicFace)
   EXPECT_LT(run.difference(), 1e-11);
 }
 
+// Bodies that meet next to a wall: walls have the last word, wherever they are defined.
+
+TEST(Order, WallsActAfterContact)
+{
+  const std::string scene = replaced(
+      replaced(disks, "region two cylinder z 20.9 5.3 2.5 INF INF", "region two block 5.8 10 0 6 -0.5 0.5"),
+      "boundary p p p", "boundary p f p");
+  const std::string contact = "fix c all mpm/contact F1 F2 law coulomb 0.3\n";
+  const std::string wall = "fix w all mpm/boundary ylo slip\n";
+  const std::string body = replaced(replaced(scene, "cylinder z 3.1 6.2 2.5 INF INF", "block 2 5.6 0 5 -0.5 0.5"),
+                                    contact, "");
+  Scene before, after;
+  before.commands(body + contact + wall + "velocity one set 0.5 -0.1 0\nvelocity two set -0.5 -0.1 0\nrun 200\n");
+  after.commands(body + wall + contact + "velocity one set 0.5 -0.1 0\nvelocity two set -0.5 -0.1 0\nrun 200\n");
+  EXPECT_TRUE(identical(before.gather(), after.gather()));
+  before.commands("variable v equal vcm(one,x)\n");
+  EXPECT_LT(before.evaluate("v_v"), 0.3);    // they have met
+}
+
 TEST(Restart, ContinuesExactly)
 {
   Continued run(disks, 120,

@@ -261,7 +261,6 @@ TEST(Immersed, RefusesBadInput)
   expect_refused(replaced(start, "GRID", ""),
                  {{"fix d g mpm/immersed other 1.0 1.0", "there is no fix mpm other"},
                   {"fix d all mpm/immersed grid 1.0 1.0", "are material points: use a group of grains"},
-                  {"fix b all mpm/boundary zlo slip\n" + good, "must be defined before fix b"},
                   {good + "fix r g rigid/nve single", "use single spheres"}},
                  "run 0\n");
   expect_refused(replaced(start, "GRID", "frame total"), {{good, "use frame updated"}}, "run 0\n");

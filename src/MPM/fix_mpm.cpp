@@ -28,6 +28,7 @@
 #include "output.h"
 #include "update.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -391,6 +392,8 @@ void FixMPM::init()
     for (auto *ifix : all) fields.push_back(dynamic_cast<FixMPM *>(ifix));
     for (auto *ifix : modify->get_fix_list())
       if (auto *action = dynamic_cast<MPMNodeAction *>(ifix)) actions.push_back(action);
+    std::stable_sort(actions.begin(), actions.end(),
+                     [](auto *a, auto *b) { return a->turn() < b->turn(); });
     for (auto *field : fields)
       if (field->every != every)
         error->all(FLERR, "All fix mpm instances must have the same every: {} and {} differ", id,

@@ -33,6 +33,7 @@ class Region;
  */
 class FixMPMBoundary : public Fix, public MPMNodeAction {
  public:
+  Turn turn() const override { return WALLS; }
   FixMPMBoundary(class LAMMPS *, int, char **);
   int setmask() override;
   void init() override;

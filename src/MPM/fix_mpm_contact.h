@@ -29,6 +29,7 @@ class FixMPM;
 /** Contact between bodies that are fields (fix mpm) on one lattice, at the nodes they share. */
 class FixMPMContact : public Fix, public MPMNodeAction {
  public:
+  Turn turn() const override { return BETWEEN_BODIES; }
   FixMPMContact(class LAMMPS *, int, char **);
   int setmask() override;
   void init() override;

@@ -168,17 +168,6 @@ void FixMPMImmersed::init_action()
       movers.push_back({ifix->groupbit, k < driver ? 1.0 : 0.5});
   }
 
-  // walls hold nodes for good: what grains do to these comes before
-
-  const int own = modify->find_fix(id);
-  for (const auto *style : {"^mpm/boundary$", "^mpm/contact$", "^mpm/rigid$"})
-    for (const auto *ifix : modify->get_fix_by_style(style))
-      if (modify->find_fix(ifix->id) < own)
-        error->all(
-            FLERR, Error::NOLASTLINE,
-            "Fix mpm/immersed {} must be defined before fix {} ({}), which has the last word on "
-            "nodes",
-            id, ifix->id, ifix->style);
   bigint points = 0, all;
   for (int i = 0; i < atom->nlocal; i++)
     if ((atom->mask[i] & groupbit) && atom->vfrac[i] > 0.0) points++;

@@ -35,6 +35,7 @@ class FixMPM;
  *  stable as heavy ones, and momentum and angular momentum are kept to round-off. */
 class FixMPMRigid : public Fix, public MPMNodeAction {
  public:
+  Turn turn() const override { return RIGID_BODIES; }
   FixMPMRigid(class LAMMPS *, int, char **);
   int setmask() override;
   void init() override;

@@ -12,9 +12,14 @@
 namespace LAMMPS_NS {
 
 /** What acts on the nodes of the fields after the momentum equation: boundaries, contact, ...
- *  Fixes that derive from this are called by fix mpm in the order of their definition. */
+ *  Fixes that derive from this are called by fix mpm in turns, in each in the order of definition. */
 class MPMNodeAction {
  public:
+  /** What exchanges momentum between materials comes first, and walls, which hold nodes for good, have
+   *  the last word: else contact would push points through them. */
+  enum Turn { EXCHANGE, BETWEEN_BODIES, RIGID_BODIES, WALLS };
+  virtual Turn turn() const { return EXCHANGE; }
+
   /** Collective, at the start of a run: check and prepare; called by fix mpm in its init(). */
   virtual void init_action() {}
 
