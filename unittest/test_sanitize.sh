@@ -46,8 +46,9 @@ compile() {
 }
 
 objects=()
-for name in mpm_grid mpm_kernels mpm_kernels_reference mpm_batch mpm_material mpm_material_point \
-  mpm_law_registry mpm_random_field; do
+for name in mpm_grid mpm_kernels mpm_kernels_reference mpm_kernels_domain_reference mpm_kernels_poly \
+  mpm_batch mpm_material mpm_material_parser mpm_material_point mpm_law_registry mpm_random_field \
+  mpm_mesh mpm_surface_mesh; do
   compile "$src/$name.cpp" "$name.o"
 done
 for isa in "${sets[@]}"; do

@@ -516,10 +516,12 @@ void FixMPMContact::warn_overlap()
     tags[b] = 0;
     for (int i = 0; i < atom->nlocal; i++) {
       if (!field.is_point(i)) continue;
-      double d[3];
-      for (int k = 0; k < 3; k++) d[k] = k < field.lattice.dim ? atom->x[i][k] - place[k] : 0.0;
-      domain->minimum_image(FLERR, d);
-      const double rsq = MathExtra::lensq3(d);
+      double rsq = 0.0;
+      for (int k = 0; k < field.lattice.dim; k++) {
+        double d = atom->x[i][k] - place[k];
+        if (domain->periodicity[k]) d -= domain->prd[k] * std::round(d / domain->prd[k]);
+        rsq += d * d;
+      }
       if (rsq >= mine.value) continue;
       mine.value = rsq;
       tags[b] = atom->tag[i];

@@ -261,6 +261,17 @@ void FixMPMRigid::load_impulse(double dt)
 }
 
 /* ----------------------------------------------------------------------
+   shortest of the periodic images of a distance. Domain::minimum_image() takes other arguments in
+   older versions of LAMMPS, and distances of two boxes at the most
+------------------------------------------------------------------------- */
+
+static void nearest_image(const Domain &domain, double *d)
+{
+  for (int a = 0; a < 3; a++)
+    if (domain.periodicity[a]) d[a] -= domain.prd[a] * std::round(d[a] / domain.prd[a]);
+}
+
+/* ----------------------------------------------------------------------
    nodes with mass inside of the body, and where its surface is
 ------------------------------------------------------------------------- */
 
@@ -284,7 +295,7 @@ void FixMPMRigid::find_contacts()
       grid.node_index(block, 0, index);
       field->node_position(index, at);
       for (int d = 0; d < 3; d++) at[d] += half - x[d];
-      domain->minimum_image(FLERR, at[0], at[1], at[2]);
+      nearest_image(*domain, at);
       if (MathExtra::len3(at) > radius + 1.8 * half) continue;
       for (int n = 0; n < NODES_PER_BLOCK; n++) {
         if (block.alias >> n & 1) continue;
@@ -294,7 +305,7 @@ void FixMPMRigid::find_contacts()
         Contact c;
         field->node_position(index, c.r);
         for (int d = 0; d < 3; d++) c.r[d] -= x[d];
-        domain->minimum_image(FLERR, c.r[0], c.r[1], c.r[2]);
+        nearest_image(*domain, c.r);
         double local[3];
         MathExtra::transpose_matvec(Q, c.r, local);
         const SurfaceMesh::Point p = {mesh->center[0] + local[0], mesh->center[1] + local[1],

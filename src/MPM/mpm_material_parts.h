@@ -60,11 +60,11 @@ struct UsedLaw {
 
   // set by the composition
 
-  int history;                            ///< first row of its history
-  const LawKernels *kernels;              ///< for the instruction set that runs
+  int history = 0;                        ///< first row of its history
+  const LawKernels *kernels = nullptr;    ///< for the instruction set that runs
   std::vector<RandomParameter> random;    ///< its own parameters that differ from point to point
-  bool varies;                            ///< do its LawParameters differ from point to point?
-  bool heats_alone;    ///< a strength whose plastic work is all turned into heat by the damage
+  bool varies = false;                    ///< do its LawParameters differ from point to point?
+  bool heats_alone = false;    ///< a strength whose plastic work is all turned into heat by the damage
 };
 
 /** A range of validity in a definition. */
