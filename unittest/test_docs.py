@@ -117,6 +117,38 @@ def test_every_style_has_a_page_and_every_page_a_style():
     check(wrong)
 
 
+def test_the_guide_links_every_style_and_every_other_guide():
+    text = read(os.path.join(PAGES, "Howto_mpm.rst"))
+    guides = [os.path.basename(path)[:-4] for path in pages() if "Howto_" in os.path.basename(path)]
+    check(["doc/src/Howto_mpm.rst has no link to %s" % page
+           for page in sorted(set(styles()) | set(guides) - {"Howto_mpm"})
+           if not re.search(r":doc:`[^`]*<%s>`" % page, text)])
+
+
+def test_the_readme_counts_the_styles():
+    names = "no one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen".split()
+    text = " ".join(read(os.path.join(ROOT, "README.md")).split())
+    have, wrong = list(styles()), []
+    for begin, what in (("atom_style_", "atom style"), ("pair_", "pair style"), ("region_", "region"),
+                        ("fix_", "fix"), ("compute_", "compute"), ("dump_", "dump"), ("", "command")):
+        mine = [page for page in have if page.startswith(begin)]
+        have = [page for page in have if page not in mine]
+        said = "%s %s" % (names[len(mine)], what + ("es" if what == "fix" else "s")[:2 * (len(mine) > 1)])
+        if not re.search(r"\b%s\b" % said, text):
+            wrong.append("README.md does not say '%s'" % said)
+    check(wrong)
+
+
+def test_every_law_and_every_material_file_is_in_the_page_of_the_fix():
+    text = read(os.path.join(PAGES, "fix_mpm_material.rst"))
+    syntax = text[:text.index("\nExamples\n")]
+    check(["doc/src/fix_mpm_material.rst: no law %s in the syntax" % page
+           for page in sorted(law_tables()) if "<%s>`" % page not in syntax] +
+          ["doc/src/fix_mpm_material.rst: no file %s in the table" % os.path.basename(path)
+           for path in sorted(glob.glob(os.path.join(ROOT, "potentials", "*.mpm")))
+           if not re.search(r"\b%s\b" % re.escape(os.path.basename(path)), text)])
+
+
 def test_every_law_has_a_page_that_includes_its_table():
     laws = law_tables()
     assert laws, "no tables in doc/src/laws: run tools/law_tables.sh"
