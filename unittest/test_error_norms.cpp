@@ -63,6 +63,53 @@ TEST(ErrorNorms, AreThoseOfTheDefinition)
   EXPECT_NEAR(run.evaluate("c_e[5]"), 0.1, 1e-14);
 }
 
+// points of the group only, with their volumes as weights, at unwrapped positions; an error that is not a
+// number stays one, whichever point has it
+
+TEST(ErrorNorms, VolumesGroupsAndImages)
+{
+  Scene run;
+  run.commands(R"(
+units lj
+boundary p p p
+atom_style mpm
+region box block 0 4 0 4 0 4
+create_box 3 box
+fix grid all mpm 1.0
+region left block 0 1 0 4 0 4
+region middle block 1 2 0 4 0 4
+region right block 3 4 0 4 0 4
+create_points 1 region left ppc 2
+create_points 2 region middle ppc 1
+create_points 3 region right ppc 1
+group some type 1 2
+fix m all mpm/material density 1 neohookean 10 0.3
+velocity some set 0.3 0 0
+velocity all set 0.2 NULL NULL sum yes
+variable v atom 0.2+0.1*(type==1)
+variable zero atom 0.0*x
+variable bad atom (0.5-(id==7))^0.5
+compute v some mpm/error vx v_v
+compute all all mpm/error vx v_v
+compute b some mpm/error vx v_bad
+compute x some mpm/error x v_zero
+thermo_style custom step c_v c_v[2] c_all c_b c_b[2] c_x
+run 0
+)");
+  // vx - v: 0.2 in a volume of 16 (128 points) and 0.3 in one of 16 (16 points)
+  EXPECT_NEAR(run.evaluate("c_v"), std::sqrt((0.04 + 0.09) / 2), 1e-14);
+  EXPECT_NEAR(run.evaluate("c_v[2]"), 0.3, 1e-14);
+  EXPECT_NEAR(run.evaluate("c_all"), std::sqrt((0.04 + 0.09) / 3), 1e-14);
+  EXPECT_TRUE(std::isnan(run.evaluate("c_b")));
+  EXPECT_TRUE(std::isnan(run.evaluate("c_b[2]")));
+  // x at first, and after the points have crossed the periodic face: 3 further to the right
+  const double left = (0.25 * 0.25 + 0.75 * 0.75) / 2, middle = 1.5 * 1.5;
+  EXPECT_NEAR(run.evaluate("c_x"), std::sqrt((left + middle) / 2), 1e-13);
+  run.commands("displace_atoms all move 3 0 0\nrun 0\n");
+  const double moved = (3.25 * 3.25 + 3.75 * 3.75) / 2;
+  EXPECT_NEAR(run.evaluate("c_x"), std::sqrt((moved + 4.5 * 4.5) / 2), 1e-13);
+}
+
 /** The example, n cells across the ring: largest error of the positions. */
 static double vortex(int n, const std::string &settings = "", double angle = 0.1)
 {

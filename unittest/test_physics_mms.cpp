@@ -322,13 +322,17 @@ TEST(FixedGimp, WallsAgainstSymmetry)
 struct ShapeOrder {
   const char *options;
   double crossing;    // order when points cross cells, in the updated frame, within 0.2
+  double D;           // second moment of the functions about points, mean over points, over h^2
 };
 
+// Crossing: linear functions do not converge (-0.69 by another code, whose other transfers are not known);
+// quadratic functions and gimp approach the error at which they stall, 1.86 and 1.87 by other codes: the
+// table above and FixedGimp
+
 static const ShapeOrder shapes[] = {
-    {"shape linear", -0.8},    // does not converge: forces are wrong when points cross cells
-    {"shape quadratic", 1.9},         {"shape cubic", 2.0},
-    {"shape gimp aspect 1 2", 1.8},    // gaps between points
-    {"shape cpgimp aspect 1 2", 2.0},
+    {"shape linear", -0.69, 3.0 / 16.0},           {"shape quadratic", 1.86, 1.0 / 4.0},
+    {"shape cubic", 2.0, 1.0 / 3.0},               {"shape gimp aspect 1 2", 1.87, 3.0 / 16.0},
+    {"shape cpgimp aspect 1 2", 2.0, 3.0 / 16.0},
 };
 
 struct TransferOrder {
@@ -338,14 +342,29 @@ struct TransferOrder {
 };
 
 static const TransferOrder orders[] = {
-    {"pic", 0.8, true, true},    // of first order for small h: takes h^2/dt per time
+    {"pic", 0.0, true, true},    // see pic_order
     {"flip 1.0", 2.0, true, false},
     {"apic", 2.0, true, false},
     {"aflip 1.0", 2.0, false, false},
     {"tpic", 2.0, false, false},
     {"xpic 2", 2.0, true, false},
-    {"fmpm 2", 0.0, true, true},    // 2 with functions of first order, else 3
+    // Damps waves by (D k^2 h^2)^2 in each of 1/h steps: order 3, where the other errors, of order 2,
+    // are small, as they are with functions of higher order than linear
+    {"fmpm 2", 0.0, true, true},
 };
+
+/** Order of pic between 16 and 32 cells: of what goes to the nodes and back, a wave loses the share D k^2
+ *  h^2 in each step, so that its amplitude falls as exp(-D (pi h)^2 t / 2 dt), with dt = 0.2 h/c as
+ *  exp(-2.5 D pi^2 h c t). The error is of first order when this exponent is small. */
+static double pic_order(double D)
+{
+  double error[2] = {0.0, 0.0};
+  for (const int k : {0, 1})
+    for (double ct = 0.0; ct < 2.0; ct += 1e-3)
+      error[k] = std::max(error[k],
+                          (1.0 - exp(-2.5 * D * PI * PI * ct / (16 << k))) * std::fabs(sin(PI * ct)));
+  return log2(error[0] / error[1]);
+}
 
 class Sweep : public ::testing::TestWithParam<ShapeOrder> {};
 
@@ -370,10 +389,14 @@ TEST_P(Sweep, EveryTransferAndFrame)
   for (const auto &transfer : orders) {
     const std::string options = name + " transfer " + transfer.options;
     const bool fmpm = std::string(transfer.options).find("fmpm") == 0;
-    const double expected = !fmpm ? transfer.order : (linear || !spline ? 2.0 : 3.0);
+    const bool pic = std::string(transfer.options) == "pic";
+    const double expected = pic ? pic_order(shape.D)
+                                : (!fmpm ? transfer.order : (linear || !spline ? 2.0 : 3.0));
     const char *scheme = linear && !fmpm ? " scheme musl" : "";    // see fix mpm: what is sound
-    EXPECT_NEAR(order(options + scheme, 1e-4), expected, 0.2) << options;
-    if (!transfer.alone) {
+    EXPECT_NEAR(order(options + scheme, 1e-4), expected, pic ? 0.03 : 0.2) << options;
+    if (!transfer.alone && linear && transfer.order == 2.0 && options.find("flip 1") == std::string::npos) {
+      EXPECT_LT(order(options + scheme, .05), 0.2) << options;
+    } else if (!transfer.alone) {
       EXPECT_NEAR(order(options + scheme, .05), shape.crossing, 0.2) << options;
     }
     if (spline && transfer.total)

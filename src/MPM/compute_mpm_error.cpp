@@ -199,10 +199,11 @@ void ComputeMPMError::compute_vector()
     mine[0] += atom->vfrac[i];
     mine[1] += atom->vfrac[i] * difference2[i];
     mine[2] += atom->vfrac[i] * exact2[i];
-    if (!(difference2[i] <= largest)) largest = difference2[i];
+    largest = std::max(largest, difference2[i]);    // leaves out what is not a number
   }
   MPI_Allreduce(mine, sum, 3, MPI_DOUBLE, MPI_SUM, world);
   MPI_Allreduce(&largest, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+  if (std::isnan(sum[1])) all = sum[1];    // NaN stays, whichever point and rank has it
   const double volume = sum[0] > 0.0 ? sum[0] : 1.0;
   vector[L2] = sqrt(sum[1] / volume);
   vector[LARGEST] = sqrt(all);
