@@ -16,7 +16,6 @@ import json
 import math
 import os
 import re
-import resource
 import statistics
 import subprocess
 import sys
@@ -30,6 +29,21 @@ TRIALS = 10                  # kinds of settings that are tried
 PROMISING = 4                # of these, what goes on to the finest trials
 ORDERS = 0.5, 2.0            # of convergence that are believed
 FINEST = 32                  # times finer than the spacing of the input: no further
+REPEATS = 3                  # of trials, for the median of their times,
+ENOUGH = 3.0                 # unless they have taken so many seconds together
+
+
+def environment():
+    return dict(os.environ, OMP_NUM_THREADS="1", OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+
+
+def loop_seconds(output):
+    """Processor time of all loops of a run, without set-up."""
+    total = 0.0
+    for loop in re.split(r"^Loop time of ", output, flags=re.M)[1:]:
+        share = re.search(r"^([\d.]+)% CPU use", loop, re.M)
+        total += float(loop.split()[0]) * (float(share.group(1)) / 100 if share else 1.0)
+    return total
 
 
 class Trial:
@@ -68,30 +82,79 @@ class Scene:
         values.update((name, value) for name, value in zip(SETTINGS, kind) if name in self.names)
         return [word for name in values for word in ("-v", name, values[name])]
 
-    def run(self, kind, h, more=()):
-        """(output, seconds of processor time)"""
-        env = dict(os.environ, OMP_NUM_THREADS="1", OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+    def run(self, kind, h):
+        """Output of the input with these settings."""
         with tempfile.TemporaryDirectory() as folder:
             script = os.path.join(folder, "in.trial")
             with open(script, "w") as file:
                 file.write('include "%s"\nprint "QUANTITY $(v_%s:%%.15g)"\n' % (self.path, self.quantity))
-            command = [self.lmp, "-in", script, "-nocite", "-log", "none", "-v", "outdir", folder] + list(more)
-            before = resource.getrusage(resource.RUSAGE_CHILDREN)
-            done = subprocess.run(command + self.arguments(kind, h), cwd=os.path.dirname(self.path), env=env,
+            command = [self.lmp, "-in", script, "-nocite", "-log", "none", "-v", "outdir", folder]
+            done = subprocess.run(command + self.arguments(kind, h), cwd=os.path.dirname(self.path), env=environment(),
                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-            after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        return (done.stdout.decode(errors="replace"),
-                after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+        return done.stdout.decode(errors="replace")
 
-    def trial(self, kind, h, setup):
+    def trial(self, kind, h):
         """Trial, or None if the run fails or its quantity is not finite."""
-        output, seconds = self.run(kind, h)
+        output = self.run(kind, h)
         found = re.search(r"^QUANTITY (\S+)", output, re.M)
         loops = re.findall(r"^Loop time of \S+ on \d+ procs for (\d+) steps with (\d+) atoms", output, re.M)
         steps = sum(int(n) for n, _ in loops)
         if not found or not steps or not math.isfinite(float(found.group(1))):
             return None
-        return Trial(float(found.group(1)), int(loops[0][1]), steps, max(seconds - setup, 1e-4))
+        return Trial(float(found.group(1)), int(loops[0][1]), steps, max(loop_seconds(output), 1e-4))
+
+
+# takes about a tenth of a second
+REFERENCE = """
+units lj
+dimension 2
+boundary p p p
+atom_style mpm
+neighbor 0.5 bin
+region box block 0 64 0 64 -0.5 0.5
+create_box 1 box
+fix grid all mpm 1.0
+create_points 1 box ppc 2
+fix m all mpm/material density 1 neohookean 1 0.3
+velocity all ramp vx 0 0.1 x 0 64
+timestep 0.1
+run 100
+"""
+
+
+def reference_seconds(lmp):
+    """Processor time of a work that is always the same: the speed that the machine has just now."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "in.reference")
+        with open(path, "w") as file:
+            file.write(REFERENCE)
+        done = subprocess.run([lmp, "-in", path, "-nocite", "-log", "none"], env=environment(), stdin=subprocess.DEVNULL,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    return loop_seconds(done.stdout.decode(errors="replace"))
+
+
+class Pace:
+    """Speed of the machine, which other work changes from second to second: a reference runs before and after each
+    trial. What is known of a trial is the ratio of its time to those two; seconds are those at the median of all."""
+
+    def __init__(self, scene):
+        self.scene, self.all = scene, [reference_seconds(scene.lmp)]
+
+    def timed(self, kind, h):
+        """Trial with its time relative to that of the reference: the median of some."""
+        ratios, spent = [], 0.0
+        while len(ratios) < REPEATS and spent < ENOUGH:
+            trial = self.scene.trial(kind, h)
+            if not trial:
+                return None
+            self.all.append(reference_seconds(self.scene.lmp))
+            ratios.append(trial.seconds / statistics.mean(self.all[-2:]))
+            spent += trial.seconds
+        trial.seconds = statistics.median(ratios)
+        return trial
+
+    def seconds(self):
+        return statistics.median(self.all)
 
 
 def kinds_of_the_atlas(scene):
@@ -165,17 +228,15 @@ class Choice:
 
 
 def explore(scene, kinds, levels, report):
-    """{kind: trials}, exact value and its uncertainty, spacing of the finest trials"""
-    output, setup = scene.run(kinds[0], scene.h, ["-skiprun"])
-    if "Total wall time" not in output:
-        sys.exit("the input does not run:\n" + output[-1500:])
-    trials = {}
+    """{kind: trials}, exact value and its uncertainty, spacing of the finest trials, reference of the times"""
+    trials, pace = {}, Pace(scene)
 
     def go_on(kind, level):
-        found = scene.trial(kind, scene.h / 2**level, setup)
+        found = pace.timed(kind, scene.h / 2**level)
         if found:
             trials.setdefault(kind, []).append(found)
-            report("%-40s h %-10.4g q %-14.8g %8.2f s" % (" ".join(kind), scene.h / 2**level, found.q, found.seconds))
+            report("%-40s h %-10.4g q %-14.8g %8.2f s" %
+                   (" ".join(kind), scene.h / 2**level, found.q, found.seconds * pace.seconds()))
         else:
             trials.pop(kind, None)
             report("%-40s h %-10.4g fails" % (" ".join(kind), scene.h / 2**level))
@@ -185,7 +246,7 @@ def explore(scene, kinds, levels, report):
             if level == 0 or kind in trials:
                 go_on(kind, level)
     if not trials:
-        sys.exit("all trials failed")
+        sys.exit("all trials failed, the first of them with\n" + scene.run(kinds[0], scene.h)[-1500:])
     # the others may be right with two trials, but only these are followed
     exact = best_limit(trials)[0]
     ranked = sorted(trials, key=lambda k: Choice(k, trials[k], 2.0, scene.h / 2, exact).error_last**1.5 *
@@ -199,7 +260,10 @@ def explore(scene, kinds, levels, report):
     if not chosen:
         sys.exit("all finer trials failed")
     trials = {k: trials[k] for k in chosen}
-    return (trials,) + best_limit(trials) + (scene.h / 2**(max(levels, 2) - 1),)
+    for found in trials.values():
+        for trial in found:
+            trial.seconds *= pace.seconds()
+    return (trials,) + best_limit(trials) + (scene.h / 2**(max(levels, 2) - 1), pace)
 
 
 def best_limit(trials):
@@ -243,7 +307,7 @@ def main():
     wrong = [k for k in kinds if not scene.can(k)]
     if wrong:
         sys.exit("the input has no variables for: " + "; ".join(" ".join(k) for k in wrong))
-    trials, exact, uncertain, h = explore(scene, kinds, options.levels, lambda text: print(text, flush=True))
+    trials, exact, uncertain, h, pace = explore(scene, kinds, options.levels, lambda text: print(text, flush=True))
     choices = [Choice(kind, found, 2.0, h, exact) for kind, found in trials.items()]
 
     tolerance = options.error * abs(exact) if options.error and options.relative else options.error
@@ -272,7 +336,8 @@ def main():
     if options.json:
         with open(options.json, "w") as file:
             json.dump({"kind": c.kind, "h": spacing, "error": error, "time": time, "exact": exact,
-                       "uncertain": uncertain, "arguments": arguments}, file, indent=1)
+                       "uncertain": uncertain, "arguments": arguments,
+                       "reference": pace.seconds()}, file, indent=1)
 
 
 if __name__ == "__main__":
