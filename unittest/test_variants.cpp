@@ -15,6 +15,8 @@
 
 #include "mpm_lammps.h"
 
+#include "mpm_grid.h"
+
 #include "gtest/gtest.h"
 
 #include <cmath>
@@ -55,6 +57,26 @@ static std::vector<std::string> all_variants()
   return all;
 }
 
+// what the lists above leave out: the other schemes, polypic, domains, light nodes, the total frame
+
+static std::vector<std::string> more_variants()
+{
+  std::vector<std::string> all = {"shape cubic transfer polypic",
+                                  "shape linear light 0.5 transfer apic",
+                                  "shape linear light 0.5 transfer aflip 1.0 scheme musl",
+                                  "shape linear light 0.5 transfer flip 1.0"};
+  for (const char *transfer : {"pic", "flip 1.0", "apic", "aflip 1.0", "tpic", "polypic"})
+    for (const char *scheme : {"usl", "usf", "musl", "usavg"})
+      all.push_back(strprintf("shape quadratic transfer %s scheme %s", transfer, scheme));
+  for (const char *transfer : {"pic", "flip 1.0", "apic"}) {
+    for (const char *shape : {"linear", "quadratic", "cubic", "bernstein"})
+      all.push_back(strprintf("shape %s frame total transfer %s scheme musl", shape, transfer));
+    for (const char *shape : {"cpdi", "cpdi2"})
+      all.push_back(strprintf("shape %s transfer %s", shape, transfer));
+  }
+  return all;
+}
+
 static std::vector<Variant> all_shapes()
 {
   return {std::begin(shapes), std::end(shapes)};
@@ -91,11 +113,14 @@ TEST_P(Conservation, MassAndMomentum)
   const auto end = run.sums();
   EXPECT_EQ(end.mass, start.mass);
   for (int d = 0; d < 2; d++) EXPECT_NEAR(end.p[d], start.p[d], 1.0e-12 * start.mass);
+  // a point with free corners is put in the middle of them, which parts from its path in second order
+  const double exact = GetParam().find("cpdi2") == std::string::npos ? 1.0e-12 : 1.0e-5;
   for (int d = 0; d < 2; d++)
-    EXPECT_NEAR(end.x[d], start.x[d] + 300 * 2.0e-4 * start.p[d] / start.mass, 1.0e-12);
+    EXPECT_NEAR(end.x[d], start.x[d] + 300 * 2.0e-4 * start.p[d] / start.mass, exact);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Conservation, ::testing::ValuesIn(all_variants()));
+INSTANTIATE_TEST_SUITE_P(More, Conservation, ::testing::ValuesIn(more_variants()));
 
 /* ----------------------------------------------------------------------
    Noise at rest: a free body whose points have small random velocities, which the lattice sees in
@@ -132,6 +157,94 @@ TEST_P(NoiseAtRest, DoesNotGrow)
 }
 
 INSTANTIATE_TEST_SUITE_P(All, NoiseAtRest, ::testing::ValuesIn(all_variants()));
+INSTANTIATE_TEST_SUITE_P(More, NoiseAtRest, ::testing::ValuesIn(more_variants()));
+
+/* ----------------------------------------------------------------------
+   Noise of points that change cells: a periodic medium under the uniform pressure p = 0.01 K, with points
+   0.7 node spacings apart along both axes. Nothing should happen, at rest or in flight over the lattice.
+   What nodes feel is the sum of p V_p grad N, which is zero for points that are boxes side by side. For
+   B-splines of order n it is, by Poisson's summation, a wave of k = 2 pi/0.7 with the amplitude
+   2 p k sinc(k h/2)^(n+1), and smaller ones of 2 k, 3 k, ...
+------------------------------------------------------------------------- */
+
+struct Crossing {
+  const char *shape;
+  int order;                  // of B-splines, 0: none
+  double flip_low, flip_high, apic_high;    // noise in flight over 10 cells, in p/(rho c)
+};
+
+static void PrintTo(const Crossing &c, std::ostream *out)
+{
+  *out << c.shape;
+}
+
+class CrossingNoise : public ::testing::TestWithParam<Crossing> {
+ protected:
+  static constexpr double P = 0.01;
+
+  void medium(Scene &run, const char *transfer, double V)
+  {
+    run.commands(strprintf("units lj\ndimension 2\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
+                           "region box block 0 7 0 7 -0.5 0.5\ncreate_box 1 box\n"
+                           "fix grid all mpm 1.0 %s %s\ncreate_points 1 box spacing 0.7 0.7\n"
+                           "fix m all mpm/material density 1.0 eos stiffened/gas 2.0 0.49 "
+                           "pressure %g\nvelocity all set %g %g 0\ntimestep 0.25\nthermo 100000\n",
+                           GetParam().shape, transfer, P, V, 0.7 * V));
+    ASSERT_EQ(run.n(), 100);
+  }
+};
+
+TEST_P(CrossingNoise, ForcesOnNodes)
+{
+  Scene run;
+  medium(run, "transfer flip 1.0", 0.0);
+  run.commands("run 1 post no\n");
+  auto &grid = *dynamic_cast<FixMPM *>(run.lmp->modify->get_fix_by_id("grid"))->grid;
+  double most = 0.0;
+  for (std::size_t slot = 0; slot < grid.blocks.size(); slot++)
+    for (int n = 0; n < MPM_NS::NODES_PER_BLOCK; n++)
+      if (grid.blocks[slot].owned >> n & 1)
+        for (int d = 0; d < 2; d++)
+          most = std::max(most, std::abs(grid.record((int) slot, n)[d]) / 0.25);
+  measured(GetParam().shape + std::string(": largest acceleration of a node"), most / P);
+  const double k = 2.0 * PI / 0.7, wave = 2.0 * k * pow(std::abs(sin(0.5 * k) / (0.5 * k)), GetParam().order + 1);
+  if (GetParam().order == 0)
+    EXPECT_LT(most / P, 1.0e-12);
+  else
+    EXPECT_NEAR(most / P / wave, 1.0, 0.15);    // masses differ, too, and no node is at the very top of it
+}
+
+TEST_P(CrossingNoise, VelocityInFlight)
+{
+  const auto &c = GetParam();
+  for (const char *transfer : {"transfer flip 1.0 scheme musl", "transfer apic scheme usavg"}) {
+    const bool apic = std::string(transfer).find("apic") != std::string::npos;
+    if (apic && c.order == 1) continue;    // unsound
+    Scene run;
+    const double V = 0.1;
+    medium(run, transfer, V);
+    double most = 0.0;
+    run.each_step([&](double **) {
+      for (int i = 0; i < run.n(); i++) {
+        most = std::max(most, std::abs(run.v()[i][0] - V));
+        most = std::max(most, std::abs(run.v()[i][1] - 0.7 * V));
+      }
+    });
+    run.commands("run 400\n");
+    measured(strprintf("%s %s: noise in p/(rho c)", c.shape, transfer), most / P);
+    EXPECT_GE(most / P, apic ? 0.0 : c.flip_low);
+    EXPECT_LT(most / P, apic ? c.apic_high : c.flip_high);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, CrossingNoise,
+                         ::testing::Values(Crossing{"shape linear", 1, 2.0, 1.0e300, 0.0},
+                                           Crossing{"shape quadratic", 2, 0.0, 2.0, 0.015},
+                                           Crossing{"shape cubic", 3, 0.0, 0.15, 0.001},
+                                           Crossing{"shape gimp", 0, 0.0, 1.0e-11, 1.0e-11},
+                                           Crossing{"shape cpgimp", 0, 0.0, 1.0e-11, 1.0e-11},
+                                           Crossing{"shape cpdi", 0, 0.0, 1.0e-11, 1.0e-11},
+                                           Crossing{"shape cpdi2", 0, 0.0, 1.0e-11, 1.0e-11}));
 
 /* ----------------------------------------------------------------------
    A free rectangle begins to stretch along its own axis. What it has reached after about a quarter
@@ -169,6 +282,10 @@ TEST_P(GridInvariance, ShiftsAndRotations)
 {
   for (const char *transfer : {"transfer flip 1.0 ", "transfer apic "}) {
     const std::string options = std::string(transfer) + GetParam().shape;
+    // not sound where the lattice has nodes of next to no mass, see test_extreme.cpp
+    if (options.find("total") != std::string::npos && options.find("apic") != std::string::npos &&
+        (options.find("linear") != std::string::npos || options.find("bernstein") != std::string::npos))
+      continue;
     double least = 1.0e300, most = 0.0;
     for (const double shift : {0.0, 0.025, 0.05})
       for (const double degrees : {0.0, 22.5, 45.0}) {
@@ -183,6 +300,15 @@ TEST_P(GridInvariance, ShiftsAndRotations)
 }
 
 INSTANTIATE_TEST_SUITE_P(All, GridInvariance, ::testing::ValuesIn(all_shapes()));
+
+// fracture: not asked for here
+INSTANTIATE_TEST_SUITE_P(More, GridInvariance,
+                         ::testing::Values(Variant{"shape cpdi", 0.01, 0.0, 0.0},
+                                           Variant{"shape cpdi2", 0.01, 0.0, 0.0},
+                                           Variant{"shape linear scheme musl frame total", 0.08, 0.0, 0.0},
+                                           Variant{"shape quadratic frame total", 0.01, 0.0, 0.0},
+                                           Variant{"shape cubic frame total", 0.01, 0.0, 0.0},
+                                           Variant{"shape bernstein scheme musl frame total", 0.08, 0.0, 0.0}));
 
 /* ----------------------------------------------------------------------
    A bar in uniaxial strain, 12 cells between the grips, is pulled at constant velocity. The total

@@ -116,14 +116,23 @@ void wavespeed(const Material &material, const Batch &batch, double, double *val
   material.wave_speed(batch, value);
 }
 
+double angmom(const FixMPM &field, int i, int component)
+{
+  double L[3];
+  field.affine_angmom(i, L);
+  return L[component];
+}
+
 }    // namespace
 
-/** A quantity of the table: a function of one point, or of a batch of one material. */
+/** A quantity of the table: a function of one point, of a batch of one material, or of what fix mpm knows
+ *  of a point. */
 struct ComputeMPMAtom::Quantity {
   const char *name;
   double (*of_point)(const Point &, int component);
   int component;
   void (*of_batch)(const Material &, const Batch &, double pressure_to_energy, double *);
+  double (*of_field)(const FixMPM &, int i, int component) = nullptr;
 };
 
 // customize by adding a line: names of the form group/component can be asked for as group/*
@@ -158,6 +167,9 @@ static const ComputeMPMAtom::Quantity quantities[] = {
     {"speed", speed, 0, nullptr},
     {"energy", nullptr, 0, energy},
     {"wavespeed", nullptr, 0, wavespeed},
+    {"angmom/x", nullptr, 0, nullptr, angmom},
+    {"angmom/y", nullptr, 1, nullptr, angmom},
+    {"angmom/z", nullptr, 2, nullptr, angmom},
 };
 
 static const ComputeMPMAtom::Quantity *find_quantity(const std::string &name)
@@ -202,7 +214,7 @@ ComputeMPMAtom::ComputeMPMAtom(LAMMPS *lmp, int narg, char **arg) :
       if (!quantity && name.find('*') != std::string::npos)
         error->all(FLERR, iarg,
                    "Unknown compute mpm/atom quantities {}: wildcards are F/*, "
-                   "stress/*, and principal/*",
+                   "stress/*, principal/*, and angmom/*",
                    name);
       columns.push_back({name, quantity});
     }
@@ -314,8 +326,10 @@ void ComputeMPMAtom::compute_peratom()
       }
     } else {
       for (int i = 0; i < nlocal; i++) out[(bigint) i * stride] = 0.0;
-      if (quantity)
+      if (quantity && quantity->of_batch)
         batches = true;
+      else if (quantity)
+        field_column(*quantity, out, stride);
       else
         history_column(columns[n].name, out, stride);
     }
@@ -333,6 +347,17 @@ void ComputeMPMAtom::compute_peratom()
             for (int k = 0; k < batch.n; k++) out[(bigint) list[k] * stride] = value[k];
           }
         });
+}
+
+/** What fix mpm knows of its points. */
+void ComputeMPMAtom::field_column(const Quantity &quantity, double *out, int stride)
+{
+  for (const auto &fix : modify->get_fix_by_style("^mpm$")) {
+    const auto &field = *dynamic_cast<FixMPM *>(fix);
+    for (int i = 0; i < atom->nlocal; i++)
+      if (is_point(i) && field.is_point(i))
+        out[(bigint) i * stride] = quantity.of_field(field, i, quantity.component);
+  }
 }
 
 /** History variable of the points whose material has it; the others keep their value. */

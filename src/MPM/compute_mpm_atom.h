@@ -58,6 +58,7 @@ class ComputeMPMAtom : public Compute {
   double *column(int);
   bool is_point(int) const;
   std::string known_names() const;
+  void field_column(const Quantity &, double *, int);
   void history_column(const std::string &, double *, int);
 };
 

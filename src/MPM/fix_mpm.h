@@ -159,6 +159,9 @@ class FixMPM : public Fix {
   bool is_point(int i) const;
   /** Where a point is on the lattice. */
   const double *place(int i) const;
+  /** Angular momentum of the affine motion of a point about itself (mass distance velocity units):
+   *  zero without affine matrix, and before the first step. */
+  void affine_angmom(int i, double L[3]) const;
   /** Deformation gradient of a point with respect to the places of the lattice (total frame). */
   void lattice_F(int i, double F[9]) const;
   /** Material of a point of this field (null: none). */
@@ -342,6 +345,7 @@ class FixMPM : public Fix {
   void update_topology();    // of all fields
   void find_blocks();
   void update_sizes();
+  void box_sizes(int i, double *size) const;
   double half_size(int i) const;
   void update_domains();
   void box_domain(int i, double *edge) const;

@@ -6,7 +6,8 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Affine matrices (APIC, AFLIP, TPIC) apart from the transfers: torques on points, and first values.
+// Affine matrices (APIC, AFLIP, TPIC) apart from the transfers: torques on points, their angular momentum,
+// and first values.
 //
 // First values come from the velocities of the points.
 // A point that has not moved yet has no affine matrix, and those of points whose velocities were
@@ -26,6 +27,7 @@
 #include "math_eigen.h"
 #include "math_extra.h"
 #include "modify.h"
+#include "mpm_domain.h"
 #include "mpm_halo.h"
 #include "mpm_points.h"
 #include "update.h"
@@ -244,4 +246,66 @@ void FixMPM::add_torques()
       for (int a = 0; a < dim; a++)
         for (int b = 0; b < dim; b++) C[i][dim * b + a] += W[3 * a + b];
     }
+}
+
+/* ----------------------------------------------------------------------
+   What nodes get of the affine field has the angular momentum m <F r x C r> about the point, where < >
+   are means with the shape functions N_ip over the places r of nodes from the point, and F is that of the
+   total frame, else 1. <r r> is D in the moving least squares form; with other functions it depends on
+   where the point is in its cell. Bilinear modes (PolyPIC) have none, as products of coordinates are
+   orthogonal to linear functions.
+------------------------------------------------------------------------- */
+
+void FixMPM::affine_angmom(int i, double L[3]) const
+{
+  L[0] = L[1] = L[2] = 0.0;
+  if (!C || std::isnan(C[i][0])) return;
+  const int dim = lattice.dim;
+
+  // the functions at the point or, of domains, at their corners
+
+  int ncorner = 1;
+  double corner[24] = {0.0}, share[8] = {1.0}, edge[9], gradient[24], size[3];
+  if (has_domains()) {
+    ncorner = 1 << dim;
+    std::fill(share, share + ncorner, 1.0 / ncorner);
+    if (extent == PARALLELEPIPED || std::isnan(corners[i][0])) {
+      box_domain(i, edge);
+      dim == 2 ? PointDomain<2>::box(edge, corner, gradient) : PointDomain<3>::box(edge, corner, gradient);
+    } else
+      domain_corners(i, corner, share);
+  }
+  if (has_boxes()) box_sizes(i, size);
+  double rr[3][3] = {{0.0}};
+  for (int c = 0; c < ncorner; c++) {
+    double first_moment[3] = {0.0}, second_moment[3] = {0.0};
+    for (int d = 0; d < dim; d++) {
+      const double at = (place(i)[d] - lattice.origin[d]) / lattice.h;
+      const double t = at + corner[dim * c + d] / lattice.h;
+      int node;
+      double w[4];
+      const int n = shape_weights(t, node, w);
+      if (has_boxes()) Gimp::weights(t - Gimp::shift - node, size[d], w);
+      for (int k = 0; k < n; k++) {
+        const double r = node + k - at;
+        first_moment[d] += w[k] * r;
+        second_moment[d] += w[k] * r * r;
+      }
+    }
+    for (int a = 0; a < dim; a++)
+      for (int b = 0; b < dim; b++)
+        rr[a][b] += share[c] * (a == b ? second_moment[a] : first_moment[a] * first_moment[b]);
+  }
+
+  double F[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}, moment[3][3] = {{0.0}};
+  if (total) lattice_F(i, &F[0][0]);
+  for (int e = 0; e < dim; e++)
+    for (int f = 0; f < dim; f++)
+      for (int a = 0; a < dim; a++)
+        for (int b = 0; b < dim; b++) moment[e][f] += F[e][a] * rr[a][b] * C[i][dim * b + f];
+  const double scale = atom->rmass[i] * lattice.h * lattice.h;
+  for (int d = dim == 3 ? 0 : 2; d < 3; d++) {
+    const int e = (d + 1) % 3, f = (d + 2) % 3;
+    L[d] = scale * (moment[e][f] - moment[f][e]);
+  }
 }

@@ -34,6 +34,8 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
+static constexpr double MAX_SIZE = 0.5;    // of points with GIMP, in node spacings
+
 // base node of a point relative to its cell, in cells
 static constexpr double BASE_SHIFT[4] = {0.0, 0.0, 0.5, 1.0};
 
@@ -89,21 +91,24 @@ void FixMPM::find_topology()
 void FixMPM::update_sizes()
 {
   if (!has_boxes()) return;
-  constexpr double MIN_SIZE = 1.0e-4, MAX_SIZE = 0.5;
   sizes.resize(3 * (std::size_t) atom->nmax, MAX_SIZE);
   for (const auto &run : runs)
-    for (int i = run.first; i < run.last; i++) {
-      const double half = half_size(i), *F = points->F[i];
-      for (int d = 0; d < lattice.dim; d++, F += 3) {
-        double edge = aspect[d];
-        if (extent == CONTIGUOUS) {
-          double square = 0.0;
-          for (int e = 0; e < lattice.dim; e++) square += F[e] * F[e] * aspect[e] * aspect[e];
-          edge = sqrt(square);
-        }
-        sizes[3 * (std::size_t) i + d] = std::max(MIN_SIZE, std::min(MAX_SIZE, half * edge));
-      }
+    for (int i = run.first; i < run.last; i++) box_sizes(i, &sizes[3 * (std::size_t) i]);
+}
+
+void FixMPM::box_sizes(int i, double *size) const
+{
+  constexpr double MIN_SIZE = 1.0e-4;
+  const double half = half_size(i), *F = points->F[i];
+  for (int d = 0; d < lattice.dim; d++, F += 3) {
+    double edge = aspect[d];
+    if (extent == CONTIGUOUS) {
+      double square = 0.0;
+      for (int e = 0; e < lattice.dim; e++) square += F[e] * F[e] * aspect[e] * aspect[e];
+      edge = sqrt(square);
     }
+    size[d] = std::max(MIN_SIZE, std::min(MAX_SIZE, half * edge));
+  }
 }
 
 /** Half of the edge of a cube (2d: square) with the initial volume of the point, in node spacings. */
