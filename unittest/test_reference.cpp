@@ -71,6 +71,45 @@ TEST(ReferenceUpdate, AffineMotionIsExact)
     }
 }
 
+// The same for points that are deformed already when they get their reference configuration, in a way that does
+// not commute with what follows: F = (I + t A) F0
+
+TEST(ReferenceUpdate, DeformedAtTheStart)
+{
+  const double F0[4] = {1.3, 0.5, 0.0, 0.8}, A[4] = {0.1, 1.0, -0.1, 0.0};
+  for (const int dim : {2, 3}) {
+    Scene run{MPI_COMM_SELF};
+    run.commands(body(dim, "transfer apic reference update 1.5", "neohookean 1.0e-9 0.3") +
+                 "timestep 0.02\n");
+    run.set_reference();
+    for (int i = 0; i < run.n(); i++)
+      for (int a = 0; a < 2; a++)
+        for (int b = 0; b < 2; b++) run.points().F[i][3 * a + b] = F0[2 * a + b];
+    run.set_velocity([&](const double *x, double *v) {
+      for (int a = 0; a < 2; a++) v[a] = A[2 * a] * x[0] + A[2 * a + 1] * x[1];
+    });
+    run.commands("run 150\n");
+    double worst = 0.0;
+    int updates = 0;
+    for (int i = 0; i < run.n(); i++) {
+      const double *F = run.points().F[i], *x = run.x()[i], *X = run.reference(i);
+      for (int a = 0; a < 2; a++) {
+        double expected = X[a];
+        for (int b = 0; b < 2; b++) {
+          expected += 3.0 * A[2 * a + b] * X[b];
+          double G = F0[2 * a + b];
+          for (int k = 0; k < 2; k++) G += 3.0 * A[2 * a + k] * F0[2 * k + b];
+          worst = std::max(worst, std::abs(F[3 * a + b] - G));
+        }
+        worst = std::max(worst, std::abs(x[a] - expected));
+      }
+      updates += std::abs(run.field()->R[i][1] - F0[1]) > 0.5;
+    }
+    EXPECT_LT(worst, 1e-7);
+    EXPECT_EQ(updates, run.n());
+  }
+}
+
 // a threshold that is never met changes nothing but round-off
 
 TEST(ReferenceUpdate, NoneIsTheTotalFrame)
