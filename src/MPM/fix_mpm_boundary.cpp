@@ -324,7 +324,7 @@ void FixMPMBoundary::init()
     if (field->R && moves)
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/boundary {} velocity cannot be used with reference update of fix mpm {}: the "
-                 "material that it holds would leave it with the first update",
+                 "material that it holds would leave it with the first update: use reference fixed",
                  id, field->id);
     if (field->stress_before() && decides())
       error->all(FLERR, Error::NOLASTLINE,

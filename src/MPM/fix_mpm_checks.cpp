@@ -320,6 +320,11 @@ void FixMPM::delete_points(const std::vector<tagint> &list, bool warn)
   }
   MPI_Allreduce(lost, all, 5, MPI_DOUBLE, MPI_SUM, world);
   if (all[0] == 0.0) return;
+  if (atom->map_style != Atom::MAP_NONE) {    // ghosts do not follow their owners any more
+    atom->nghost = 0;
+    atom->map_init();
+    atom->map_set();
+  }
   topology_valid = false;
   atom->natoms -= (bigint) all[0];
   deleted.points += all[0];

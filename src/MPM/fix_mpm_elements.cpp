@@ -50,7 +50,7 @@ struct FixMPMElements::Work {
 
 FixMPMElements::FixMPMElements(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), dim(domain->dimension), maxnode(0), maxpoint(0), nhistory(0), stride(0),
-    max_of_node(0), nelements(0), fbar(false), shortest(0.0), material(nullptr), points(nullptr),
+    max_of_node(0), nelements(0), nnodes(0), lowest(0), fbar(false), shortest(0.0), material(nullptr), points(nullptr),
     batch(nullptr), work(nullptr), first(nullptr), count(nullptr), width(0)
 {
   if (narg < 4) utils::missing_cmd_args(FLERR, "fix mpm/elements", error);
@@ -169,24 +169,35 @@ void FixMPMElements::find_material()
 }
 
 /* ----------------------------------------------------------------------
+   atoms of the group, and the range of their IDs
+------------------------------------------------------------------------- */
+
+void FixMPMElements::count_nodes(bigint &n, tagint &low, tagint &high) const
+{
+  bigint mine = 0;
+  tagint least = MAXTAGINT, most = 0;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    mine++;
+    least = std::min(least, atom->tag[i]);
+    most = std::max(most, atom->tag[i]);
+  }
+  MPI_Allreduce(&mine, &n, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  MPI_Allreduce(&least, &low, 1, MPI_LMP_TAGINT, MPI_MIN, world);
+  MPI_Allreduce(&most, &high, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+}
+
+/* ----------------------------------------------------------------------
    elements from the mesh, whose nodes are the points of the group in order of their IDs; the
    reference configuration is where these are now
 ------------------------------------------------------------------------- */
 
 void FixMPMElements::make_elements(const Mesh &mesh)
 {
-  const bigint nnodes = mesh.nodes.size();
-  bigint n = 0, all;
-  tagint low = MAXTAGINT, high = 0, lowest, highest;
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & groupbit)) continue;
-    n++;
-    low = std::min(low, atom->tag[i]);
-    high = std::max(high, atom->tag[i]);
-  }
-  MPI_Allreduce(&n, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  MPI_Allreduce(&low, &lowest, 1, MPI_LMP_TAGINT, MPI_MIN, world);
-  MPI_Allreduce(&high, &highest, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  nnodes = (bigint) mesh.nodes.size();
+  bigint all;
+  tagint highest;
+  count_nodes(all, lowest, highest);
   if (all != nnodes || (bigint) highest - lowest + 1 != nnodes)
     error->all(FLERR, "Fix mpm/elements {}: group {} has {} atoms with IDs from {} to {}, the mesh has "
                "{} nodes: its group must be the points that one create_points ... mesh made from "
@@ -287,6 +298,15 @@ void FixMPMElements::make_elements(const Mesh &mesh)
 
 void FixMPMElements::init()
 {
+  bigint n;
+  tagint low, high;
+  count_nodes(n, low, high);
+  if (n != nnodes || low != lowest || (bigint) high - low + 1 != nnodes)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/elements {}: group {} has {} atoms with IDs from {} to {}, but had {} from {} "
+               "on: nodes of elements must not be added, deleted or renumbered; unfix it before",
+               id, group->names[igroup], n, n ? low : 0, high, nnodes, lowest);
+
   for (auto *ifix : modify->get_fix_by_style("^mpm$")) {
     const auto *field = dynamic_cast<FixMPM *>(ifix);
     int mine = 0, any;
@@ -701,9 +721,9 @@ double FixMPMElements::compute_scalar()
 
 double FixMPMElements::memory_usage()
 {
-  return (double) atom->nmax * 2 * sizeof(int) +
-      (double) (pool.capacity() + sums.capacity() + force_on.capacity()) * sizeof(double) +
-      (double) nodes.capacity() * sizeof(Nodes);
+  return (double) atom->nmax * 2 * sizeof(int) + (double) nodes.capacity() * sizeof(Nodes) +
+      (double) (pool.capacity() + sums.capacity() + force_on.capacity() + history.capacity()) *
+      sizeof(double);
 }
 
 /* ----------------------------------------------------------------------

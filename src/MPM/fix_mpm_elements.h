@@ -83,7 +83,8 @@ class FixMPMElements : public Fix {
   int dim, maxnode, maxpoint;    // of the largest element of the mesh
   int nhistory, stride;
   int max_of_node;               // largest number of elements that belong to one node
-  bigint nelements;              // of the mesh
+  bigint nelements, nnodes;      // of the mesh
+  tagint lowest;                 // ID of its first node
   bool fbar;
   double shortest;               // length of the smallest element, for artificial viscosity
   class FixMPMMaterial *material;
@@ -110,6 +111,7 @@ class FixMPMElements : public Fix {
   }
   void find_material();
   void make_elements(const MPM_NS::Mesh &);
+  void count_nodes(bigint &n, tagint &low, tagint &high) const;
   double largest_extent() const;
   void compute(bool starting);
   void load(Work &, std::size_t e, bool moved) const;

@@ -320,11 +320,24 @@ void FixMPM::sort_points()
       std::sort(permute.begin() + start_of_key[k], permute.begin() + start_of_key[k + 1],
                 [tag](int i, int j) { return tag[i] < tag[j]; });
 
+  // ghosts refer to the old order, and the first of them is in the free place that is used below: the
+  // map must forget them before
+
+  const bool mapped = atom->map_style != Atom::MAP_NONE;
+  bool moves = false;
+  for (int i = 0; i < nlocal; i++) moves = moves || permute[i] != i;
+  bigint renew = atom->nghost + (moves && mapped), renew_all;
+  MPI_Allreduce(&renew, &renew_all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (renew_all) {
+    if (mapped) atom->map_clear();    // as in exchange(), for borders()
+    atom->nghost = 0;    // else borders() appends to them
+    atom->avec->clear_bonus();
+  }
+
   // move the atoms, cycle by cycle, through the free place at the end
 
   if (nlocal == atom->nmax) atom->avec->grow(0);
   std::vector<int> &current = key;
-  bigint moved = 0;
   for (int i = 0; i < nlocal; i++) current[i] = i;
   for (int i = 0; i < nlocal; i++) {
     if (current[i] == permute[i]) continue;
@@ -333,22 +346,12 @@ void FixMPM::sort_points()
     while (permute[empty] != i) {
       atom->avec->copy(permute[empty], empty, 0);
       empty = current[empty] = permute[empty];
-      moved++;
     }
     atom->avec->copy(nlocal, empty, 0);
     current[empty] = permute[empty];
   }
 
-  // ghosts refer to the old order
-
-  bigint nghost = atom->nghost + (moved && atom->map_style != Atom::MAP_NONE), nghost_all;
-  MPI_Allreduce(&nghost, &nghost_all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  if (nghost_all) {
-    if (atom->map_style != Atom::MAP_NONE) atom->map_clear();    // as in exchange(), for borders()
-    atom->nghost = 0;    // else borders() appends to them
-    atom->avec->clear_bonus();
-    comm->borders();
-  }
+  if (renew_all) comm->borders();
 
   switches_sorted = -1;    // to be counted with the next topology
   want_sort = false;
