@@ -33,7 +33,8 @@ struct Choice {
   const char *kind;    // of two choices of one kind, there is no pair
   Place place;
   const char *text;
-  const char *needs_kind = "", *needs = "";    // option that it cannot be without, unless the other gives it
+  const char *needs_kind = "",
+             *needs = "";    // option that it cannot be without, unless the other gives it
 };
 
 const Choice choices[] = {
@@ -72,11 +73,15 @@ const Choice choices[] = {
     {"elements", "elements", FIX, ""},
     {"grain", "grain", FIX, ""},
     {"map", "map", HEAD, "atom_modify map hash\ncomm_modify cutoff 1.5\n"},
-    {"rigid", "rigid", FIX, "region tool mpm/mesh STL 1.0 2.0 3.7 2.0\n"
-     "fix tool all mpm/rigid tool density 2.0 separate friction 0.2 velocity 0 -0.4 0.1 omega 0.1 0.2 0.1\n"},
-    {"driven", "wall", FIX, "variable push equal 0.3*sin(0.2*step)\n"
+    {"rigid", "rigid", FIX,
+     "region tool mpm/mesh STL 1.0 2.0 3.7 2.0\n"
+     "fix tool all mpm/rigid tool density 2.0 separate friction 0.2 velocity 0 -0.4 0.1 omega 0.1 "
+     "0.2 0.1\n"},
+    {"driven", "wall", FIX,
+     "variable push equal 0.3*sin(0.2*step)\n"
      "fix w2 all mpm/boundary ylo slip velocity 0 v_push 0\n"},
-    {"region", "wall", FIX, "variable down equal -0.02*step\n"
+    {"region", "wall", FIX,
+     "variable down equal -0.02*step\n"
      "region die block INF INF 3.1 9 INF INF move NULL v_down NULL\n"
      "fix w2 all mpm/boundary ylo slip\nfix die all mpm/boundary region die slip\n"},
     {"friction", "wall", FIX, "fix w2 all mpm/boundary ylo separate friction 0.3\n"},
@@ -84,11 +89,14 @@ const Choice choices[] = {
     {"dt", "dt", FIX, "fix dt all mpm/dt 0.1 every 2\n"},
     {"balance", "comm", FIX, "comm_style tiled\nfix lb all balance 5 1.0 rcb\n"},
     {"delay", "neigh", FIX, "neigh_modify every 5 delay 5 check no\n"},
-    {"deposit", "deposit", FIX, "region sky block 6 7.5 4 7.5 0.1 0.4\n"
+    {"deposit", "deposit", FIX,
+     "region sky block 6 7.5 4 7.5 0.1 0.4\n"
      "fix rain all deposit 3 3 4 4711 region sky near 0.1\n"},
-    {"create", "between", BETWEEN, "region more block 0 2 4 6 INF INF\n"
+    {"create", "between", BETWEEN,
+     "region more block 0 2 4 6 INF INF\n"
      "create_points 2 region more ppc 2\ngroup two type 2\ngroup bodies type 1 2\n"},
-    {"remove", "between", BETWEEN, "region cut block 3 4 2 3 INF INF\ndelete_atoms region cut compress no\n"},
+    {"remove", "between", BETWEEN,
+     "region cut block 3 4 2 3 INF INF\ndelete_atoms region cut compress no\n"},
     {"box", "between", BETWEEN, "change_box all x final 0 10 y final 0 12\n"},
     {"runs", "between", BETWEEN, "run 2\nrun 0\nrun 1\n"},
     {"velocity", "between", BETWEEN, "velocity all ramp vx 0.0 0.4 y 0 3 sum yes units box\n"},
@@ -147,14 +155,16 @@ using Chosen = std::vector<const Choice *>;
 
 bool has_kind(const Chosen &chosen, const char *kind)
 {
-  return std::any_of(chosen.begin(), chosen.end(),
-                     [&](const Choice *c) { return !strcmp(c->kind, kind); });
+  return std::any_of(chosen.begin(), chosen.end(), [&](const Choice *c) {
+    return !strcmp(c->kind, kind);
+  });
 }
 
 bool has(const Chosen &chosen, const char *name)
 {
-  return std::any_of(chosen.begin(), chosen.end(),
-                     [&](const Choice *c) { return !strcmp(c->name, name); });
+  return std::any_of(chosen.begin(), chosen.end(), [&](const Choice *c) {
+    return !strcmp(c->name, name);
+  });
 }
 
 std::string names(const Chosen &chosen)
@@ -206,7 +216,8 @@ struct Combination {
 
     again = "fix grid " + std::string(two ? "one" : "bodies") + " mpm 1.0 " + options + "\n";
     if (two) again += "fix other two mpm 1.0 " + options + "\n";
-    again += "fix m bodies mpm/material density 1.0 " + law + "\nfix w1 all mpm/boundary xlo slip\n";
+    again +=
+        "fix m bodies mpm/material density 1.0 " + law + "\nfix w1 all mpm/boundary xlo slip\n";
     if (!has_kind(chosen, "wall")) again += "fix w2 all mpm/boundary ylo slip\n";
     if (meshed) again += "fix el one mpm/elements " + mesh + "\n";
     if (grain)
@@ -221,7 +232,8 @@ struct Combination {
     scene += again;
     again = "neighbor 0.3 bin\n" + again;
     between = lines(chosen, BETWEEN);
-    if (!between.empty()) between = "run 0\n" + between;    // some must not follow read_restart at once
+    if (!between.empty())
+      between = "run 0\n" + between;    // some must not follow read_restart at once
   }
 };
 
@@ -246,11 +258,13 @@ std::vector<Chosen> covering(const std::vector<const Choice *> &all)
         Chosen with = set;
         with.push_back(c);
         // of no use with flip and musl together
-        if (has(with, "light") && has_kind(with, "transfer") && has_kind(with, "scheme")) fits = false;
+        if (has(with, "light") && has_kind(with, "transfer") && has_kind(with, "scheme"))
+          fits = false;
         if (!fits) continue;
         int gain = 0;
         for (const auto &p : left)
-          for (const auto *d : set) gain += (p.first == c && p.second == d) || (p.first == d && p.second == c);
+          for (const auto *d : set)
+            gain += (p.first == c && p.second == d) || (p.first == d && p.second == c);
         if (gain > most) {
           most = gain;
           best = c;
@@ -286,7 +300,8 @@ std::string box_mesh(int dim)
         const int c = 1 + i + j * sy + k * sz;
         elements += strprintf("%d %d 2 1 1 %d %d %d %d", ++nelement, dim == 2 ? 3 : 5, c, c + 1,
                               c + 1 + sy, c + sy);
-        if (dim == 3) elements += strprintf(" %d %d %d %d", c + sz, c + 1 + sz, c + 1 + sy + sz, c + sy + sz);
+        if (dim == 3)
+          elements += strprintf(" %d %d %d %d", c + sz, c + 1 + sz, c + 1 + sy + sz, c + sy + sz);
         elements += "\n";
       }
   return "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" + std::to_string(nnode) + "\n" + nodes +

@@ -556,10 +556,7 @@ bigint CreatePoints::make_points()
                nsite);
   const bigint n = range[0].n * range[1].n * range[2].n;
 
-  tagint mytag = 0, maxtag = 0;
-  for (int i = 0; i < atom->nlocal; i++) mytag = std::max(mytag, atom->tag[i]);
-  MPI_Allreduce(&mytag, &maxtag, 1, MPI_LMP_TAGINT, MPI_MAX, world);
-
+  const tagint maxtag = largest_tag();
   std::vector<Site> made;
   bigint npoints = 0;
 
@@ -583,14 +580,28 @@ bigint CreatePoints::make_points()
     MPI_Allreduce(&nmade, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
     before += npoints - nmade;
     npoints += all;
-    if (atom->tag_enable && maxtag + npoints >= MAXTAGINT)
-      error->all(FLERR, Error::NOLASTLINE, "New atom IDs exceed the maximum allowed ID {}",
-                 MAXTAGINT);
+    check_tags(maxtag, npoints);
     for (bigint k = 0; k < nmade; k++) made[k].tag = atom->tag_enable ? maxtag + before + k + 1 : 0;
 
     send_and_make(made);
   }
   return npoints;
+}
+
+/* ---------------------------------------------------------------------- */
+
+tagint CreatePoints::largest_tag() const
+{
+  tagint mine = 0, all;
+  for (int i = 0; i < atom->nlocal; i++) mine = std::max(mine, atom->tag[i]);
+  MPI_Allreduce(&mine, &all, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  return all;
+}
+
+void CreatePoints::check_tags(tagint largest, bigint nmore) const
+{
+  if (atom->tag_enable && largest + nmore >= MAXTAGINT)
+    error->all(FLERR, Error::NOLASTLINE, "New atom IDs exceed the maximum allowed ID {}", MAXTAGINT);
 }
 
 /* ----------------------------------------------------------------------

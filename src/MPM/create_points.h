@@ -19,6 +19,10 @@ CommandStyle(create_points,CreatePoints);
 
 #include <vector>
 
+namespace MPM_NS {
+struct Mesh;
+}
+
 namespace LAMMPS_NS {
 
 /** Fills a region with material points on a regular lattice of sites, or puts them at the nodes of a
@@ -70,6 +74,10 @@ class CreatePoints : public Command {
   void parse(int, char **);
   void parse_mesh(int, char **);
   void parse_elements(int, char **);
+  MPM_NS::Mesh read_mesh(int, char **);
+  bool put_into_box(double *x) const;
+  tagint largest_tag() const;
+  void check_tags(tagint largest, bigint nmore) const;
   void find_lattice();
   void find_ranges();
   void check_outside();

@@ -23,7 +23,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -55,48 +54,8 @@ static const int *corner_nodes(ElementType type)
 
 void CreatePoints::parse_elements(int narg, char **arg)
 {
-  int iarg;
-  if (narg < 3) utils::missing_cmd_args(FLERR, "create_points elements", error);
-  for (auto *ifix : modify->get_fix_by_style("^mpm$"))
-    if (dynamic_cast<FixMPM *>(ifix)->axisymmetric)
-      error->all(FLERR, 1, "Create_points elements cannot be used with axisymmetric fix mpm {}, whose "
-                 "points are rings: use create_points region", ifix->id);
+  const Mesh mesh = read_mesh(narg, arg);
   const int dim = domain->dimension, ncorner = 1 << dim;
-  std::string part;
-  double scale = 1.0, move[3] = {0.0, 0.0, 0.0};
-  for (iarg = 3; iarg < narg;) {
-    const std::string keyword = arg[iarg];
-    const int n = keyword == "move" ? dim : 1;
-    if (keyword != "move" && keyword != "scale" && keyword != "part" && keyword != "diameter")
-      error->all(FLERR, iarg, "Unknown create_points elements keyword: {}", keyword);
-    if (iarg + n >= narg)
-      utils::missing_cmd_args(FLERR, "create_points elements " + keyword, error);
-    if (keyword == "move")
-      for (int d = 0; d < dim; d++)
-        move[d] = utils::numeric(FLERR, arg[iarg + 1 + d], false, lmp);
-    else if (keyword == "part")
-      part = arg[iarg + 1];
-    else {
-      const double value = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
-      if (!(value > 0.0 && std::isfinite(value)))
-        error->all(FLERR, iarg + 1, "Create_points elements {} {} must be > 0", keyword,
-                   arg[iarg + 1]);
-      if (keyword == "diameter" && !atom->radius_flag)
-        error->all(FLERR, iarg, "Create_points diameter needs atom_style hybrid sphere mpm");
-      (keyword == "scale" ? scale : diameter) = value;
-    }
-    iarg += 1 + n;
-  }
-
-  Mesh mesh;
-  try {
-    mesh = read_gmsh(arg[2]);
-    mesh.keep(dim, part);
-  } catch (const std::runtime_error &e) {
-    error->all(FLERR, 2, "Create_points: {}", e.what());
-  }
-  mesh.orient();
-
   bigint outside = 0;
   for (const auto &e : mesh.elements) {
     Element element;
@@ -104,24 +63,19 @@ void CreatePoints::parse_elements(int narg, char **arg)
     double w[8], g[24];
     for (int c = 0; c < ncorner; c++)
       for (int d = 0; d < dim; d++)
-        element.corners[dim * c + d] = move[d] + scale * mesh.nodes[e.node[node[c]]][d];
+        element.corners[dim * c + d] = mesh.nodes[e.node[node[c]]][d];
     element.volume = dim == 2 ? PointDomain<2>::free(element.corners, w, g)
                               : PointDomain<3>::free(element.corners, w, g);
     if (!(element.volume > 0.0 && *std::min_element(w, w + ncorner) >= 0.0))
       error->all(FLERR, 2, "Create_points: element {} of {} has no volume or is twisted", e.label,
                  arg[2]);
-    bool inside = true;
     for (int d = 0; d < 3; d++) {
       element.x[d] = 0.0;
       for (int c = 0; c < ncorner && d < dim; c++)
         element.x[d] += w[c] * element.corners[dim * c + d];
       for (int c = 0; c < ncorner && d < dim; c++) element.corners[dim * c + d] -= element.x[d];
-      inside = inside &&
-          (domain->periodicity[d] ||
-           (element.x[d] >= domain->boxlo[d] && element.x[d] < domain->boxhi[d]));
     }
-    outside += !inside;
-    domain->remap(element.x);
+    outside += !put_into_box(element.x);
     volume += element.volume;
     elements.push_back(element);
   }
@@ -137,12 +91,9 @@ void CreatePoints::parse_elements(int narg, char **arg)
 
 bigint CreatePoints::make_element_points()
 {
-  tagint mytag = 0, maxtag = 0;
-  for (int i = 0; i < atom->nlocal; i++) mytag = std::max(mytag, atom->tag[i]);
-  MPI_Allreduce(&mytag, &maxtag, 1, MPI_LMP_TAGINT, MPI_MAX, world);
   const bigint n = elements.size();
-  if (atom->tag_enable && maxtag + n >= MAXTAGINT)
-    error->all(FLERR, Error::NOLASTLINE, "New atom IDs exceed the maximum allowed ID {}", MAXTAGINT);
+  const tagint maxtag = largest_tag();
+  check_tags(maxtag, n);
   if (comm->nprocs > 1) comm->coord2proc_setup();
   std::vector<Element> mine;
   for (bigint k = 0; k < n; k++) {

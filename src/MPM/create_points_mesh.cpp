@@ -6,7 +6,7 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Create_points TYPE mesh FILE: a point at each node of a mesh of finite elements.
+// Create_points TYPE mesh FILE: a point at each node of a mesh of finite elements; reading of a mesh.
 
 #include "create_points.h"
 
@@ -14,23 +14,31 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "fix_mpm.h"
+#include "modify.h"
 #include "mpm_element.h"
 #include "mpm_mesh_input.h"
 
+#include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 /* ----------------------------------------------------------------------
-   TYPE mesh FILE keyword value ...
+   TYPE mesh|elements FILE keyword value ...: the mesh, scaled and moved
 ------------------------------------------------------------------------- */
 
-void CreatePoints::parse_mesh(int narg, char **arg)
+Mesh CreatePoints::read_mesh(int narg, char **arg)
 {
-  if (narg < 3) utils::missing_cmd_args(FLERR, "create_points mesh", error);
+  const std::string what = std::string("create_points ") + arg[1];
+  if (narg < 3) utils::missing_cmd_args(FLERR, what, error);
+  for (auto *ifix : modify->get_fix_by_style("^mpm$"))
+    if (dynamic_cast<FixMPM *>(ifix)->axisymmetric)
+      error->all(FLERR, 1, "Create_points {} cannot be used with axisymmetric fix mpm {}, whose "
+                 "points are rings: use create_points region", arg[1], ifix->id);
+
   const int dim = domain->dimension;
   std::string part;
   double scale = 1.0, move[3] = {0.0, 0.0, 0.0};
@@ -38,8 +46,8 @@ void CreatePoints::parse_mesh(int narg, char **arg)
     const std::string keyword = arg[iarg];
     const int n = keyword == "move" ? dim : 1;
     if (keyword != "move" && keyword != "scale" && keyword != "part" && keyword != "diameter")
-      error->all(FLERR, iarg, "Unknown create_points mesh keyword: {}", keyword);
-    if (iarg + n >= narg) utils::missing_cmd_args(FLERR, "create_points mesh " + keyword, error);
+      error->all(FLERR, iarg, "Unknown {} keyword: {}", what, keyword);
+    if (iarg + n >= narg) utils::missing_cmd_args(FLERR, what + " " + keyword, error);
     if (keyword == "move")
       for (int d = 0; d < dim; d++)
         move[d] = utils::numeric(FLERR, arg[iarg + 1 + d], false, lmp);
@@ -48,7 +56,8 @@ void CreatePoints::parse_mesh(int narg, char **arg)
     else {
       const double value = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
       if (!(value > 0.0 && std::isfinite(value)))
-        error->all(FLERR, iarg + 1, "Create_points mesh {} {} must be > 0", keyword, arg[iarg + 1]);
+        error->all(FLERR, iarg + 1, "Create_points {} {} {} must be > 0", arg[1], keyword,
+                   arg[iarg + 1]);
       if (keyword == "diameter" && !atom->radius_flag)
         error->all(FLERR, iarg, "Create_points diameter needs atom_style hybrid sphere mpm");
       (keyword == "scale" ? scale : diameter) = value;
@@ -62,6 +71,29 @@ void CreatePoints::parse_mesh(int narg, char **arg)
   } catch (const std::runtime_error &e) {
     error->all(FLERR, 2, "Create_points: {}", e.what());
   }
+  for (auto &x : mesh.nodes)
+    for (int d = 0; d < 3; d++) x[d] = d < dim ? move[d] + scale * x[d] : 0.0;
+  return mesh;
+}
+
+/* ----------------------------------------------------------------------
+   wrap a position into the box; false: it is outside
+------------------------------------------------------------------------- */
+
+bool CreatePoints::put_into_box(double *x) const
+{
+  for (int d = 0; d < 3; d++)
+    if (!domain->periodicity[d] && !(x[d] >= domain->boxlo[d] && x[d] < domain->boxhi[d]))
+      return false;
+  domain->remap(x);
+  return true;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void CreatePoints::parse_mesh(int narg, char **arg)
+{
+  const Mesh mesh = read_mesh(narg, arg);
 
   // a node has its share of the volume of the elements around it
 
@@ -72,7 +104,7 @@ void CreatePoints::parse_mesh(int narg, char **arg)
     const auto &rule = ElementRule::of(e.type);
     double x[MAX_ELEMENT_NODES][3], g[MAX_ELEMENT_NODES][3];
     for (int k = 0; k < rule.nnode; k++)
-      for (int d = 0; d < 3; d++) x[k][d] = scale * mesh.nodes[e.node[k]][d];
+      std::copy_n(mesh.nodes[e.node[k]].begin(), 3, x[k]);
     for (int q = 0; q < rule.npoint; q++) {
       const double w = rule.gradients(q, x, g);
       if (!(w > 0.0))
@@ -86,14 +118,8 @@ void CreatePoints::parse_mesh(int narg, char **arg)
 
   bigint outside = 0;
   for (std::size_t k = 0; k < mesh_sites.size(); k++) {
-    bool in = true;
-    double *const x = mesh_sites[k].x;
-    for (int d = 0; d < 3; d++) {
-      x[d] = d < dim ? move[d] + scale * mesh.nodes[k][d] : 0.0;
-      in = in && (domain->periodicity[d] || (x[d] >= domain->boxlo[d] && x[d] < domain->boxhi[d]));
-    }
-    outside += !in;
-    domain->remap(x);
+    std::copy_n(mesh.nodes[k].begin(), 3, mesh_sites[k].x);
+    outside += !put_into_box(mesh_sites[k].x);
   }
   if (outside)
     error->all(FLERR, 2, "Create_points: {} nodes of {} are outside of the simulation box; enlarge the "
@@ -106,12 +132,9 @@ void CreatePoints::parse_mesh(int narg, char **arg)
 
 bigint CreatePoints::make_mesh_points()
 {
-  tagint mytag = 0, maxtag = 0;
-  for (int i = 0; i < atom->nlocal; i++) mytag = std::max(mytag, atom->tag[i]);
-  MPI_Allreduce(&mytag, &maxtag, 1, MPI_LMP_TAGINT, MPI_MAX, world);
   const bigint n = mesh_sites.size();
-  if (atom->tag_enable && maxtag + n >= MAXTAGINT)
-    error->all(FLERR, Error::NOLASTLINE, "New atom IDs exceed the maximum allowed ID {}", MAXTAGINT);
+  const tagint maxtag = largest_tag();
+  check_tags(maxtag, n);
   for (bigint k = 0; k < n; k++) mesh_sites[k].tag = atom->tag_enable ? maxtag + k + 1 : 0;
   if (comm->me) mesh_sites.clear();    // all ranks have all
   send_and_make(mesh_sites);

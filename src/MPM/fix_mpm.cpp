@@ -285,7 +285,7 @@ void FixMPM::process_options(int narg, char **arg)
   if (modified_edges && (shape == LINEAR || bernstein || extent != NO_SIZE ||
                          refinement != LUMPED || is_affine(transfer) || axisymmetric))
     error->all(FLERR, "Fix mpm edges modified is for shape quadratic and cubic with transfer pic and "
-               "flip, not with axisymmetric");
+               "flip, not with axisymmetric: use edges plain");
 
   if (bernstein && !total)
     error->all(FLERR, "Fix mpm shape bernstein has gradients that jump where points cross cells: it "
@@ -478,7 +478,7 @@ void FixMPM::setup_pre_neighbor()
     kernel.mls = false;
   }
   if (poly) modes = PolyKernels::select(*kernels, lattice.dim, shape, kernel.nreal);
-  if (axisymmetric) pic = kernels->transfer(lattice.dim, kernel_shape(), PIC, true);
+  pic = kernels->transfer(lattice.dim, kernel_shape(), PIC, true);
   batch->h = lattice.h;
 
   // points drift at most half a skin between rebuilds when LAMMPS checks distances each step;
@@ -645,6 +645,18 @@ PointRows FixMPM::rows() const
   r.size = has_boxes() ? sizes.data() : nullptr;
   if (has_domains()) r.domain = corners ? &corners[0][0] : domains.data();
   r.xnew = moves_late() ? const_cast<double *>(xnew.data()) : &atom->x[0][0];
+  return r;
+}
+
+/** Rows for transfers of other values and weights, in which points stay (the time step is zero). */
+PointRows FixMPM::rows_at_rest(double *values, const double *weights) const
+{
+  PointRows r = rows();
+  r.v = values;
+  r.mass = weights;
+  r.xnew = r.x;
+  r.from = r.x;
+  r.F = nullptr;
   return r;
 }
 

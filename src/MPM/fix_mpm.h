@@ -227,10 +227,9 @@ class FixMPM : public Fix {
     int first, last, slot;
     FixMPMMaterial *material;
   };
-  struct
-      ActiveBlock {    // a block with points: its runs, and the box of base nodes of the last P2G
+  struct ActiveBlock {    // a block with points: its runs, and boxes of base nodes
     int slot, first_run, last_run;
-    int box[6];
+    int box[6], box_apart[6];    // of the last P2G, and of the last sum apart from it
     int low[3], high[3];    // domains: offsets of the first and last blocks that are in reach
   };
   struct Report {    // of the present run
@@ -269,7 +268,7 @@ class FixMPM : public Fix {
 
   MPMPoints *points;
   MPMHalo *halo;
-  MPM_NS::TransferKernels kernel, pic;    // pic: axisymmetric only
+  MPM_NS::TransferKernels kernel, pic;    // pic: for sums apart from the step
   MPM_NS::PolyKernels modes;
   const MPM_NS::MPMKernels *kernels;
   const MPM_NS::BatchKernels *batch_kernels;
@@ -300,8 +299,7 @@ class FixMPM : public Fix {
   std::vector<double> corners_late;      // CPDI2, when points move late: corners at the end of the step
   std::vector<double> sizes;             // GIMP: half sizes of points in node spacings, [n][3]
   std::vector<double> history_batch;     // history variables of a batch
-  std::vector<double> external_nodes;    // ledger: nodal external forces
-  std::vector<double> nodes_apart;       // sums that node actions ask for,
+  std::vector<double> nodes_apart;       // sums apart from the step,
   std::vector<double> rows_apart;        // and rows of the points for them
   std::vector<double> zero_volume;
   MPM_NS::Batch *batch;
@@ -339,7 +337,7 @@ class FixMPM : public Fix {
   void extend_edges();
 
   // stages of the step
-  bool wait();    // of all fields
+  bool wait();    // all fields: true when it is not yet time for the cycle
   void add_waiting();
   void end_waiting();
   void update_topology();    // of all fields
@@ -364,6 +362,7 @@ class FixMPM : public Fix {
   void save_velocities(int lane);
   void add_term(int lane);
   void grid_to_points();
+  bool any_light() const;    // of all fields
   void blend_light_nodes();
   void gradient_with_light_nodes();
   void map_back();
@@ -376,6 +375,9 @@ class FixMPM : public Fix {
   void map_to_nodes(MPM_NS::P2G);
   void map_run(MPM_NS::P2G, const MPM_NS::PointRows &, const MPM_NS::TransferStep &, const Run &,
                const int base[3], int box[6]);
+  template <class Map> void map_apart(const MPM_NS::TransferKernels &, const Map &);
+  template <class Gather> void gather_apart(const MPM_NS::TransferKernels &, const Gather &);
+  template <class Use> void visit_gradients(double *of_all, const Use &);
   template <class Weigh>
   void map_some(const MPM_NS::PointRows &, const MPM_NS::TransferStep &, MPM_NS::P2G,
                 const std::vector<char> &near, int lane, int nlane, const Weigh &);
@@ -436,8 +438,10 @@ class FixMPM : public Fix {
   double nodal_kinetic_energy(int lane) const;
   double point_kinetic_energy() const;
   double external_work(const double *force_on);
+  void account_for_nodes();
   double bytes_per_point() const;
   MPM_NS::PointRows rows() const;
+  MPM_NS::PointRows rows_at_rest(double *values, const double *weights) const;
   MPM_NS::TransferStep step_data() const;
 };
 

@@ -44,6 +44,7 @@ double FixMPM::step_dt() const
 
 bool FixMPM::wait()
 {
+  if (every == 1) return false;
   for (auto *field : fields) field->add_waiting();
   return waited < every;
 }

@@ -13,8 +13,8 @@
 #include "atom.h"
 #include "comm.h"
 #include "error.h"
+#include "fix_mpm_passes.h"
 #include "mpm_batch.h"
-#include "mpm_halo.h"
 #include "mpm_points.h"
 #include "platform.h"
 
@@ -67,6 +67,11 @@ void FixMPM::check_light_nodes()
                    "quadratic functions, or light 0.5", id);
 }
 
+bool FixMPM::any_light() const
+{
+  return std::any_of(fields.begin(), fields.end(), [](auto *field) { return field->light > 0.0; });
+}
+
 /* ----------------------------------------------------------------------
    after G2P, with points still where they were: velocities of light nodes, for gradients only
 ------------------------------------------------------------------------- */
@@ -75,34 +80,24 @@ void FixMPM::blend_light_nodes()
 {
   if (light == 0.0) return;
   clock = platform::walltime();
-  constexpr int NREAL = 8;
-  const auto pic = kernels->transfer(lattice.dim, kernel_shape(), PIC, true);
-  rows_apart.resize(6 * (std::size_t) atom->nmax);
+  rows_apart.resize(std::max(rows_apart.size(), (std::size_t) atom->nmax));
   for (const auto &run : runs)
     for (int i = run.first; i < run.last; i++)
       rows_apart[i] = atom->vfrac[i] * points->jacobian(i);
   PointRows r = rows();
   r.mass = rows_apart.data();
   const TransferStep s = step_data();
-
-  nodes_apart.assign(grid->nnodes() * NREAL, 0.0);
-  for (const auto &a : active) {
-    const auto &block = grid->blocks[a.slot];
-    int base[3], box[6] = {127, 127, 127, -127, -127, -127};
-    tile_base(a, base);
-    for (int k = a.first_run; k < a.last_run; k++)
-      pic.p2g_momentum(r, s, runs[k].first, runs[k].last, base, tile, box);
-    pic.flush(tile, nodes_apart.data(), block.slot, box);
-  }
+  map_apart(pic, [&](const Run &run, const int *base, int *box) {
+    pic.p2g_momentum(r, s, run.first, run.last, base, tile, box);
+  });
   lap(report.t_p2g);
-  grid->fold_aliases(nodes_apart.data(), NREAL, 0, 4);
-  halo->sum(nodes_apart.data(), NREAL, 0, 4);
+  sum_copies(nodes_apart.data(), pic.nreal, 0, 4);
   lap(report.t_halo);
 
   const double h = lattice.h, full = light * (lattice.dim == 3 ? h * h * h : h * h);
   double *record = grid->nodes();
   const double *mapped = nodes_apart.data();
-  for (int64_t n = grid->nnodes(); n > 0; n--, record += kernel.nreal, mapped += NREAL) {
+  for (int64_t n = grid->nnodes(); n > 0; n--, record += kernel.nreal, mapped += pic.nreal) {
     const double volume = mapped[3];
     if (!(volume > 0.0) || volume >= full) continue;
     const double own = volume / full;
@@ -121,19 +116,10 @@ void FixMPM::gradient_with_light_nodes()
   clock = platform::walltime();
   grid->copy_aliases();
   const PointRows r = rows();
-  const TransferStep s = step_data();
-  double L[9 * BATCH];
-  for (const auto &a : active) {
-    int base[3];
-    load_tile(a, base);
-    for (int k = a.first_run; k < a.last_run; k++)
-      for (int i = runs[k].first; i < runs[k].last; i += BATCH) {
-        const int last = std::min(i + BATCH, runs[k].last);
-        kernel.g2p_gradient(r, s, i, last, base, tile_load, L);
-        if (C) memcpy(C[i], L, sizeof(double) * affine_size() * (last - i));
-        if (scheme == USL) material_update(r, runs[k], i, last - i, L, step_dt());
-      }
-  }
+  visit_gradients(nullptr, [&](const Run &run, int i, int n, const int *, const double *L) {
+    if (C) memcpy(C[i], L, sizeof(double) * affine_size() * n);
+    if (scheme == USL) material_update(r, run, i, n, L, step_dt());
+  });
   if (!stress_after()) move_points();
   lap(report.t_g2p);
 }

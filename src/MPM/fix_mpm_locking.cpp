@@ -12,7 +12,7 @@
 
 #include "atom.h"
 #include "fix_mpm_material.h"
-#include "mpm_halo.h"
+#include "fix_mpm_passes.h"
 #include "mpm_points.h"
 #include "platform.h"
 #include "update.h"
@@ -53,54 +53,26 @@ using namespace MPM_NS;
 
 void FixMPM::average_around_points()
 {
-  constexpr int NREAL = 8;
-  const auto pic = kernels->transfer(lattice.dim, kernel_shape(), PIC, true);
-  PointRows r = rows();
-  r.v = v_apart.data();
-  r.mass = rows_apart.data();
-  r.xnew = r.x;    // stays: the time step is zero
-  r.from = r.x;
-  r.F = nullptr;
+  const PointRows r = rows_at_rest(v_apart.data(), rows_apart.data());
   TransferStep s = step_data();
   s.dt = 0.0;
   lap(report.t_g2p);
 
-  for (auto &a : active)
-    for (int d = 0; d < 3; d++) {
-      a.box[d] = 127;
-      a.box[3 + d] = -127;
-    }
   for (auto *material : materials) {
-    const auto for_blocks = [&](auto &&act) {
-      for (auto &a : active) {
-        const auto &block = grid->blocks[a.slot];
-        int base[3];
-        tile_base(a, base);
-        int first = a.first_run, last = a.last_run;    // runs are sorted by material
-        while (first < last && runs[first].material != material) first++;
-        while (last > first && runs[last - 1].material != material) last--;
-        if (first < last) act(a, block.slot, base, first, last);
-      }
-    };
-    nodes_apart.assign(grid->nnodes() * NREAL, 0.0);
-    for_blocks([&](ActiveBlock &a, const int *slot, const int *base, int first, int last) {
-      for (int k = first; k < last; k++)
-        if (runs[k].material == material)
-          pic.p2g_momentum(r, s, runs[k].first, runs[k].last, base, tile, a.box);
-      pic.flush(tile, nodes_apart.data(), slot, a.box);
+    map_apart(pic, [&](const Run &run, const int *base, int *box) {
+      if (run.material == material)
+        pic.p2g_momentum(r, s, run.first, run.last, base, tile, box);
     });
     lap(report.t_p2g);
-    grid->fold_aliases(nodes_apart.data(), NREAL, 0, 4);
-    halo->sum(nodes_apart.data(), NREAL, 0, 4);
+    sum_copies(nodes_apart.data(), pic.nreal, 0, 4);
     lap(report.t_halo);
-    kernels->solve_nodes(nodes_apart.data(), grid->nnodes(), NREAL, 0.0);
-    grid->copy_aliases(nodes_apart.data(), NREAL);
+    kernels->solve_nodes(nodes_apart.data(), grid->nnodes(), pic.nreal, 0.0);
+    grid->copy_aliases(nodes_apart.data(), pic.nreal);
+    extend_edges(nodes_apart.data(), pic.nreal, 0, 1);
     lap(report.t_nodes);
-    for_blocks([&](ActiveBlock &a, const int *slot, const int *base, int first, int last) {
-      pic.load(tile_load, nodes_apart.data(), slot, a.box);
-      for (int k = first; k < last; k++)
-        if (runs[k].material == material)
-          pic.g2p(r, s, runs[k].first, runs[k].last, base, tile_load, nullptr);
+    gather_apart(pic, [&](const Run &run, const int *base) {
+      if (run.material == material)
+        pic.g2p(r, s, run.first, run.last, base, tile_load, nullptr);
     });
     lap(report.t_g2p);
   }
@@ -168,7 +140,7 @@ void FixMPM::averaged_material(const double *L, double dt)
   const int dim = lattice.dim, nL = affine_size();
   const bool plane = dim == 2 && !axisymmetric;
   v_apart.resize(3 * (std::size_t) atom->nmax);
-  rows_apart.resize(6 * (std::size_t) atom->nmax);
+  rows_apart.resize(std::max(rows_apart.size(), (std::size_t) atom->nmax));
 
   for (const auto &run : runs)
     for (bigint i = run.first; i < run.last; i++) {
@@ -215,7 +187,7 @@ void FixMPM::averaged_material(const double *L, double dt)
 void FixMPM::average_pressure()
 {
   v_apart.resize(3 * (std::size_t) atom->nmax);
-  rows_apart.resize(6 * (std::size_t) atom->nmax);
+  rows_apart.resize(std::max(rows_apart.size(), (std::size_t) atom->nmax));
   tau_averaged.resize(6 * (std::size_t) atom->nmax);
   const auto mean = [](const double *tau) {
     return (tau[0] + tau[1] + tau[2]) / 3.0;

@@ -11,7 +11,7 @@
 #include "fix_mpm.h"
 
 #include "atom.h"
-#include "mpm_halo.h"
+#include "fix_mpm_passes.h"
 #include "platform.h"
 #include "update.h"
 
@@ -102,18 +102,12 @@ void FixMPM::save_velocities(int lane)
 void FixMPM::add_term(int lane)
 {
   clock = platform::walltime();
-  constexpr int NREAL = 8;
+  const int NREAL = pic.nreal;
   const int64_t nnodes = grid->nnodes();
   double *const record = grid->nodes();
   const double before = ledger_on ? nodal_kinetic_energy(0) : 0.0;
-
-  const auto pic = kernels->transfer(lattice.dim, kernel_shape(), PIC, true);
-  const std::size_t nrows = 3 * (std::size_t) atom->nmax;
-  v_apart.assign(nrows, 0.0);
-  xnew.resize(nrows);
-  PointRows r = rows();
-  r.v = v_apart.data();
-  r.xnew = xnew.data();    // not used
+  v_apart.assign(3 * (std::size_t) atom->nmax, 0.0);
+  const PointRows r = rows_at_rest(v_apart.data(), atom->rmass);
   TransferStep s = step_data();
   s.dt = 0.0;
 
@@ -121,26 +115,15 @@ void FixMPM::add_term(int lane)
   for (int64_t n = 0; n < nnodes; n++)
     for (int d = 0; d < 3; d++) nodes_apart[NREAL * n + d] = record[NREAL * n + lane + d];
   grid->copy_aliases(nodes_apart.data(), NREAL);
-  for (const auto &a : active) {
-    const auto &block = grid->blocks[a.slot];
-    int base[3];
-    tile_base(a, base);
-    pic.load(tile_load, nodes_apart.data(), block.slot, a.box);
-    for (int k = a.first_run; k < a.last_run; k++)
-      pic.g2p(r, s, runs[k].first, runs[k].last, base, tile_load, nullptr);
-  }
+  for (auto &a : active) std::copy_n(a.box, 6, a.box_apart);    // points are where they were
+  gather_apart(pic, [&](const Run &run, const int *base) {
+    pic.g2p(r, s, run.first, run.last, base, tile_load, nullptr);
+  });
+  map_apart(pic, [&](const Run &run, const int *base, int *box) {
+    pic.p2g_momentum(r, s, run.first, run.last, base, tile, box);
+  });
+  sum_copies(nodes_apart.data(), NREAL, 0, 3);
 
-  nodes_apart.assign(nnodes * NREAL, 0.0);
-  for (auto &a : active) {
-    const auto &block = grid->blocks[a.slot];
-    int base[3], box[6] = {127, 127, 127, -127, -127, -127};
-    tile_base(a, base);
-    for (int k = a.first_run; k < a.last_run; k++)
-      pic.p2g_momentum(r, s, runs[k].first, runs[k].last, base, tile, box);
-    pic.flush(tile, nodes_apart.data(), block.slot, box);
-  }
-  grid->fold_aliases(nodes_apart.data(), NREAL, 0, 3);
-  halo->sum(nodes_apart.data(), NREAL, 0, 3);
   for (int64_t n = 0; n < nnodes; n++) {
     const double m = record[NREAL * n + 3];
     if (!(m > 0.0)) continue;

@@ -12,7 +12,9 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "fix_mpm_elements.h"
 #include "fix_mpm_material.h"
+#include "fix_mpm_passes.h"
 #include "force.h"
 #include "mpm_halo.h"
 #include "mpm_points.h"
@@ -56,38 +58,50 @@ double FixMPM::point_kinetic_energy() const
 }
 
 /* ----------------------------------------------------------------------
-   work of forces on points (atom->f, or a part of it) in the momentum equation: nodal external forces times the mean of the old and
-   the final velocity of the node. The forces alone are mapped once more, with zero volumes.
+   ledger: what forces and node actions have done to the nodes, which points are about to get
+------------------------------------------------------------------------- */
+
+void FixMPM::account_for_nodes()
+{
+  // node actions may have changed old velocities, too
+
+  if (refinement == XPIC) swap_old_velocities();
+  double external = external_work(rows().f);
+  for (auto *ifix : elements) external -= external_work(ifix->forces());    // is internal
+  const double old = nodal_kinetic_energy(4), kinetic = nodal_kinetic_energy(0);
+  if (refinement == XPIC) swap_old_velocities();
+  ledger.external += external;
+  ledger.internal += external + ledger.boundary + ledger.contact + ledger.transfer -
+      before_actions - (kinetic - old);
+  ledger.transfer += old - kinetic_points;
+  kinetic_points = kinetic;
+}
+
+/* ----------------------------------------------------------------------
+   work of forces on points (atom->f, or a part of it) in the momentum equation: nodal external
+   forces times the mean of the old and the final velocity of the node. The forces alone are mapped
+   once more, with zero volumes.
 ------------------------------------------------------------------------- */
 
 double FixMPM::external_work(const double *force_on)
 {
   const double dt = step_dt();
-  const int64_t nnodes = grid->nnodes();
-  external_nodes.assign(nnodes * 8, 0.0);
-  zero_volume.assign(atom->nlocal, 0.0);
+  zero_volume.assign(atom->nmax, 0.0);
   PointRows r = rows();
   r.vol0 = zero_volume.data();
   r.f = force_on;
   const TransferStep s = step_data();
-  for (auto &a : active) {
-    const auto &block = grid->blocks[a.slot];
-    int base[3], box[6] = {127, 127, 127, -127, -127, -127};
-    tile_base(a, base);
-    for (int k = a.first_run; k < a.last_run; k++)
-      map_run(kernel.p2g_force, r, s, runs[k], base, box);
-    kernel.flush(tile, external_nodes.data(), block.slot, box);
-  }
-  fold_edges(external_nodes.data(), 8, 4, 3);
-  grid->fold_aliases(external_nodes.data(), 8, 4, 3);
-  halo->sum(external_nodes.data(), 8, 4, 3);
+  map_apart(kernel, [&](const Run &run, const int *base, int *box) {
+    map_run(kernel.p2g_force, r, s, run, base, box);
+  });
+  sum_copies(nodes_apart.data(), kernel.nreal, 4, 3);
 
   double work = 0.0;
   for (std::size_t b = 0; b < grid->blocks.size(); b++)
     for (int n = 0; n < NODES_PER_BLOCK; n++) {
       if (!(grid->blocks[b].owned >> n & 1)) continue;
       const double *record = grid->record(b, n);    // v m | v old
-      const double *f = &external_nodes[(b * NODES_PER_BLOCK + n) * 8 + 4];
+      const double *f = &nodes_apart[(b * NODES_PER_BLOCK + n) * kernel.nreal + 4];
       if (record[3] <= 0.0) continue;
       for (int d = 0; d < 3; d++) work += dt * f[d] * 0.5 * (record[d] + record[4 + d]);
     }
@@ -205,12 +219,13 @@ void FixMPM::post_run()
 
 double FixMPM::memory_usage()
 {
-  double bytes = grid->memory_usage();
-  bytes += (double) own_size() * atom->nmax * sizeof(double);
+  double bytes = grid->memory_usage() + halo->memory_usage();
+  bytes += (double) own_size() * atom->nmax * sizeof(double) + 2.0 * tile_reals() * sizeof(double);
   bytes += runs.capacity() * sizeof(Run) + active.capacity() * sizeof(ActiveBlock);
-  bytes += (xnew.capacity() + external_nodes.capacity() + zero_volume.capacity() +
-            v_apart.capacity() + rows_apart.capacity() + nodes_apart.capacity() +
-            gradients.capacity() + tau_averaged.capacity() + hoop.capacity()) * sizeof(double);
-  bytes += (sizes.capacity() + domains.capacity() + corners_late.capacity()) * sizeof(double);
-  return bytes + 2.0 * tile_reals() * sizeof(double);
+  for (const auto &list : edges) bytes += list.capacity() * sizeof(EdgeNodes);
+  for (const auto *list : {&xnew, &v_apart, &lumped, &mean_force, &mean_torque, &gradients,
+                           &tau_averaged, &hoop, &domains, &corners_late, &sizes, &history_batch,
+                           &nodes_apart, &rows_apart, &zero_volume})
+    bytes += list->capacity() * sizeof(double);
+  return bytes;
 }

@@ -14,6 +14,7 @@
 #include "atom.h"
 #include "fix_mpm_elements.h"
 #include "fix_mpm_material.h"
+#include "fix_mpm_passes.h"
 #include "fix_mpm_visit.h"
 #include "force.h"
 #include "mpm_batch.h"
@@ -36,7 +37,7 @@ using namespace MPM_NS;
 
 void FixMPM::initial_integrate(int /*vflag*/)
 {
-  if (!driver || (every > 1 && wait())) return;
+  if (!driver || wait()) return;
 
   update_topology();
   for (auto *field : fields) field->points_to_grid();
@@ -51,9 +52,7 @@ void FixMPM::initial_integrate(int /*vflag*/)
   refine_velocities();
   for (auto *field : fields) field->grid_to_points();
 
-  bool any_light = false;
-  for (auto *field : fields) any_light = any_light || field->light > 0.0;
-  if (any_light) {
+  if (any_light()) {
     for (auto *field : fields) field->blend_light_nodes();
     act_on_nodes(MPMNodeAction::MAPPED_BACK);
     for (auto *field : fields) field->gradient_with_light_nodes();
@@ -66,8 +65,6 @@ void FixMPM::initial_integrate(int /*vflag*/)
   }
 
   for (auto *field : fields) field->bookkeeping();
-  if (every > 1)
-    for (auto *field : fields) field->end_waiting();
 }
 
 /* ----------------------------------------------------------------------
@@ -135,61 +132,51 @@ void FixMPM::solve()
 }
 
 /* ----------------------------------------------------------------------
-   velocity and position of the points, and with USL their stress
+   velocity and position of the points, and with USL their stress: the motion of this step is that of
+   the material then, unless light nodes wait for a better gradient
 ------------------------------------------------------------------------- */
 
 void FixMPM::grid_to_points()
 {
   clock = platform::walltime();
-  if (ledger_on) {
-    // node actions may have changed old velocities, too
-
-    if (refinement == XPIC) swap_old_velocities();
-    double external = external_work(rows().f);
-    for (auto *ifix : elements) external -= external_work(ifix->forces());    // is internal
-    const double old = nodal_kinetic_energy(4), kinetic = nodal_kinetic_energy(0);
-    if (refinement == XPIC) swap_old_velocities();
-    ledger.external += external;
-    ledger.internal += external + ledger.boundary + ledger.contact + ledger.transfer -
-        before_actions - (kinetic - old);
-    ledger.transfer += old - kinetic_points;
-    kinetic_points = kinetic;
-  }
+  if (ledger_on) account_for_nodes();
   grid->copy_aliases();
   extend_edges();
-  if (moves_late()) xnew.resize(3 * (std::size_t) atom->nlocal);
-  const bool fbar = averages_strain() && scheme == USL, round = axisymmetric && scheme == USL;
-  const bool now = scheme == USL && light == 0.0;    // the gradient is final
-  if (round) hoop.resize(atom->nmax);
-  if (moves_late() && corners) corners_late.resize(domain_size() * (std::size_t) atom->nlocal);
-  const bool apart = strains_apart(), in_C = kernel.affine && !apart && !R;
+
+  const bool strains = scheme == USL && light == 0.0;
+  const bool fbar = strains && averages_strain(), around = strains && axisymmetric;
+  const bool apart = strains && strains_apart(), refers = strains && R;
+  const bool in_C = kernel.affine && !apart && !refers;    // the gradient is there
+  if (moves_late()) xnew.resize(3 * (std::size_t) atom->nmax);
+  if (moves_late() && corners) corners_late.resize(domain_size() * (std::size_t) atom->nmax);
+  if (around) hoop.resize(atom->nmax);
   if (fbar && !in_C) gradients.resize(affine_size() * (std::size_t) atom->nmax);
 
   PointRows r = rows();
   if (corners) r.corners_new = moves_late() ? corners_late.data() : &corners[0][0];
   const TransferStep s = step_data();
-  double L[9 * BATCH];
+  double batch_gradients[9 * BATCH];
   for (const auto &a : active) {
     int base[3];
     load_tile(a, base);
     for (int k = a.first_run; k < a.last_run; k++)
       for (int i = runs[k].first; i < runs[k].last; i += BATCH) {
         const int last = std::min(i + BATCH, runs[k].last);
-        double *const out = fbar ? gradients.data() + affine_size() * (bigint) i : L;
+        const bigint place_in_C = (bigint) affine_size() * i;
+        double *const L = fbar && !in_C ? gradients.data() + place_in_C : batch_gradients;
         if (Q) modes.g2p(r, &Q[0][0], s, i, last, base, tile_load);
-        if (apart && scheme == USL) kernel.g2p_gradient(r, s, i, last, base, tile_load, out);
-        if (round) note_radii(i, last);
+        if (apart) kernel.g2p_gradient(r, s, i, last, base, tile_load, L);
+        if (around) note_radii(i, last);
         drifted |= kernel.g2p(r, s, i, last, base, tile_load,
-                              kernel.affine || !now ? nullptr : out);
-        if (round) hoop_of_motion(r, i, last);
-        if (R && scheme == USL) {
+                              strains && !kernel.affine ? L : nullptr);
+        if (around) hoop_of_motion(r, i, last);
+        if (refers) {
           if (kernel.affine && !apart)
-            memcpy(out, C[i], affine_size() * sizeof(double) * (last - i));
-          refer_gradients(i, last - i, out);
+            memcpy(L, r.C + place_in_C, affine_size() * sizeof(double) * (last - i));
+          refer_gradients(i, last - i, L);
         }
-        if (now && !fbar)
-          material_update(r, runs[k], i, last - i, in_C ? r.C + (bigint) affine_size() * i : L,
-                          step_dt());
+        if (strains && !fbar)
+          material_update(r, runs[k], i, last - i, in_C ? r.C + place_in_C : L, step_dt());
       }
   }
   if (fbar) {
@@ -291,7 +278,7 @@ static void shift_gradient(int dim, int n, double dt, double *gradients)
 }
 
 /* ----------------------------------------------------------------------
-   velocity gradient of the nodes' velocities at the points, and the material update
+   velocity gradients of the nodes' velocities at the points, and the material update
 ------------------------------------------------------------------------- */
 
 void FixMPM::gradient_and_material(double dt, double shift)
@@ -304,21 +291,13 @@ void FixMPM::gradient_and_material(double dt, double shift)
     hoop.resize(atom->nmax);
     v_apart.resize(3 * (std::size_t) atom->nmax);
   }
-  double batch_gradients[9 * BATCH];
-  for (const auto &a : active) {
-    int base[3];
-    load_tile(a, base);
-    for (int k = a.first_run; k < a.last_run; k++)
-      for (int i = runs[k].first; i < runs[k].last; i += BATCH) {
-        const int last = std::min(i + BATCH, runs[k].last);
-        double *const L = fbar ? gradients.data() + affine_size() * (bigint) i : batch_gradients;
-        kernel.g2p_gradient(r, s, i, last, base, tile_load, L);
-        if (shift != 0.0 && !total) shift_gradient(lattice.dim, last - i, shift, L);
-        if (R) refer_gradients(i, last - i, L);
-        if (axisymmetric) hoop_of_nodes(r, s, i, last, base, dt, total ? 0.0 : shift);
-        if (!fbar) material_update(r, runs[k], i, last - i, L, dt);
-      }
-  }
+  visit_gradients(fbar ? gradients.data() : nullptr,
+                  [&](const Run &run, int i, int n, const int *base, double *L) {
+                    if (shift != 0.0 && !total) shift_gradient(lattice.dim, n, shift, L);
+                    if (R) refer_gradients(i, n, L);
+                    if (axisymmetric) hoop_of_nodes(r, s, i, i + n, base, dt, total ? 0.0 : shift);
+                    if (!fbar) material_update(r, run, i, n, L, dt);
+                  });
   if (fbar) averaged_material(gradients.data(), dt);
 }
 
@@ -403,6 +382,7 @@ void FixMPM::bookkeeping()
   for (const auto &run : runs) report.point_steps += run.last - run.first;
   report.dt_min = std::min(report.dt_min, step_dt());
   report.dt_max = std::max(report.dt_max, step_dt());
+  if (waiting) end_waiting();
   lap(report.t_topology);
 }
 
@@ -510,27 +490,25 @@ void FixMPM::map_run(P2G p2g, const PointRows &r, const TransferStep &s, const R
 
 /* ----------------------------------------------------------------------
    a sum over points at the nodes of some blocks, in nodes that are not those of the step.
-   weigh(first, last) sets what the kernel reads of these points
+   weigh(point) sets what the kernel reads of a point
 ------------------------------------------------------------------------- */
+
+/** Can points of a block reach nodes of blocks that are marked? */
+static bool reaches(const Grid::Block &block, const std::vector<char> &near)
+{
+  return std::any_of(block.slot, block.slot + 27,
+                     [&](int slot) { return slot >= 0 && near[slot]; });
+}
 
 template <class Weigh>
 void FixMPM::map_some(const PointRows &r, const TransferStep &s, P2G p2g,
                       const std::vector<char> &near, int lane, int nlane, const Weigh &weigh)
 {
-  nodes_apart.assign(grid->nnodes() * kernel.nreal, 0.0);
-  for (auto &a : active) {
-    const auto &block = grid->blocks[a.slot];
-    bool wanted = false;
-    for (const int slot : block.slot) wanted = wanted || (slot >= 0 && near[slot]);
-    if (!wanted) continue;
-    int base[3], box[6] = {127, 127, 127, -127, -127, -127};
-    tile_base(a, base);
-    for (int k = a.first_run; k < a.last_run; k++) {
-      for (int i = runs[k].first; i < runs[k].last; i++) weigh(i);
-      p2g(r, s, runs[k].first, runs[k].last, base, tile, box);
-    }
-    kernel.flush(tile, nodes_apart.data(), block.slot, box);
-  }
+  map_apart(kernel, [&](const Run &run, const int *base, int *box) {
+    if (!reaches(grid->blocks[run.slot], near)) return;
+    for (int i = run.first; i < run.last; i++) weigh(i);
+    p2g(r, s, run.first, run.last, base, tile, box);
+  });
   sum_copies(nodes_apart.data(), kernel.nreal, lane, nlane);
 }
 
@@ -593,9 +571,7 @@ void FixMPM::visit_points(const std::vector<int> &wanted,
     if (wanted[n] >= 0) near[n / NODES_PER_BLOCK] = 1;
   for (const auto &run : runs) {
     const auto &block = grid->blocks[run.slot];
-    bool some = false;
-    for (const int slot : block.slot) some = some || (slot >= 0 && near[slot]);
-    if (!some) continue;
+    if (!reaches(block, near)) continue;
     for (int i = run.first; i < run.last; i++)
       visit_nodes(block, i, [&](int64_t node, double weight, const double *r) {
         if (weight != 0.0 && wanted[node] >= 0) f(i, wanted[node], weight, r);
@@ -608,59 +584,37 @@ void FixMPM::sum_over_ranks(double *nodes, int nreal) const
   halo->sum(nodes, nreal, 0, nreal);
 }
 
-/* ---------------------------------------------------------------------- */
+/* ----------------------------------------------------------------------
+   volumes on the lattice: in the total frame those of the reference configuration
+------------------------------------------------------------------------- */
 
 void FixMPM::volume_at_points(std::vector<double> &share)
 {
-  constexpr int NREAL = 8;
   find_topology();
-  const auto pic = kernels->transfer(lattice.dim, kernel_shape(), PIC, true);
-  rows_apart.resize(6 * (std::size_t) atom->nmax);
-  std::vector<double> values(3 * (std::size_t) atom->nmax);
-  PointRows r = rows();
-  r.mass = rows_apart.data();
-  r.v = values.data();
-  r.xnew = r.x;    // stays: the time step is zero
-  r.from = r.x;
-  r.F = nullptr;
+  std::vector<double> values(3 * (std::size_t) atom->nmax), weights(atom->nmax);
+  const PointRows r = rows_at_rest(values.data(), weights.data());
   TransferStep s = step_data();
   s.dt = 0.0;
 
-  std::vector<ActiveBlock> blocks = active;
-  nodes_apart.assign(grid->nnodes() * NREAL, 0.0);
-  int base[3];
-  for (auto &a : blocks) {
-    const auto &block = grid->blocks[a.slot];
-    tile_base(a, base);
-    for (int d = 0; d < 3; d++) {
-      a.box[d] = 127;
-      a.box[3 + d] = -127;
+  map_apart(pic, [&](const Run &run, const int *base, int *box) {
+    const int damage = run.material ? run.material->damage : -1;
+    for (int i = run.first; i < run.last; i++) {
+      const bool failed = damage >= 0 && run.material->history[i][damage] >= 1.0;
+      const double J = !total ? points->jacobian(i) : (R ? MPMPoints::det(R[i]) : 1.0);
+      weights[i] = failed ? 0.0 : atom->vfrac[i] * J;
     }
-    for (int k = a.first_run; k < a.last_run; k++) {
-      const auto *material = runs[k].material;
-      const int damage = material ? material->damage : -1;
-      for (int i = runs[k].first; i < runs[k].last; i++) {
-        const bool failed = damage >= 0 && material->history[i][damage] >= 1.0;
-        rows_apart[i] = failed ? 0.0 : atom->vfrac[i] * (total ? 1.0 : points->jacobian(i));
-      }
-      pic.p2g_momentum(r, s, runs[k].first, runs[k].last, base, tile, a.box);
-    }
-    pic.flush(tile, nodes_apart.data(), block.slot, a.box);
-  }
-  sum_copies(nodes_apart.data(), NREAL, 3, 1);
+    pic.p2g_momentum(r, s, run.first, run.last, base, tile, box);
+  });
+  sum_copies(nodes_apart.data(), pic.nreal, 3, 1);
   const double h = lattice.h, inverse = 1.0 / (lattice.dim == 3 ? h * h * h : h * h);
   for (int64_t n = 0; n < grid->nnodes(); n++)
-    nodes_apart[n * NREAL] = inverse * nodes_apart[n * NREAL + 3];
-  grid->copy_aliases(nodes_apart.data(), NREAL);
-  extend_edges(nodes_apart.data(), NREAL, 0, 1);
+    nodes_apart[n * pic.nreal] = inverse * nodes_apart[n * pic.nreal + 3];
+  grid->copy_aliases(nodes_apart.data(), pic.nreal);
+  extend_edges(nodes_apart.data(), pic.nreal, 0, 1);
+  gather_apart(pic, [&](const Run &run, const int *base) {
+    pic.g2p(r, s, run.first, run.last, base, tile_load, nullptr);
+  });
 
-  for (const auto &a : blocks) {
-    const auto &block = grid->blocks[a.slot];
-    tile_base(a, base);
-    pic.load(tile_load, nodes_apart.data(), block.slot, a.box);
-    for (int k = a.first_run; k < a.last_run; k++)
-      pic.g2p(r, s, runs[k].first, runs[k].last, base, tile_load, nullptr);
-  }
   share.resize(atom->nmax);
   for (const auto &run : runs)
     for (int i = run.first; i < run.last; i++) share[i] = values[3 * (std::size_t) i];

@@ -183,3 +183,15 @@ void MPMHalo::sum(double *nodes, int nreal, int lane, int nlane)
   }
   MPI_Waitall(nranks, requests.data() + nranks, MPI_STATUSES_IGNORE);
 }
+
+/* ---------------------------------------------------------------------- */
+
+double MPMHalo::memory_usage() const
+{
+  double bytes = (shared.capacity() + first.capacity()) * sizeof(int) +
+      contributions.capacity() * sizeof(Contribution);
+  for (const auto &list : slots) bytes += list.capacity() * sizeof(int);
+  for (const auto *buffers : {&send, &recv})
+    for (const auto &buffer : *buffers) bytes += buffer.capacity() * sizeof(double);
+  return bytes;
+}

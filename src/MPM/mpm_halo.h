@@ -37,6 +37,7 @@ class MPMHalo : protected Pointers {
 
   bigint bytes_sent;    ///< since the last reset by the caller
   int nneighbors() const { return (int) ranks.size(); }
+  double memory_usage() const;
 
  private:
   struct Contribution {
