@@ -10,10 +10,9 @@
 // timeout: 900
 
 // Every mistake in an input gives an error that says what is wrong, and no crash and no endless
-// loop. A case is the good scene with one thing changed, in a LAMMPS instance of its own; a scene
-// that would run forever is killed by an alarm.
+// loop.
 
-#include "mpm_lammps.h"
+#include "bad_input_testing.h"
 
 #include "exceptions.h"
 
@@ -21,13 +20,9 @@
 
 #include <cstdio>
 #include <fstream>
-#include <regex>
 #include <sstream>
-#include <unistd.h>
 
 using namespace MPM_TEST;
-
-static constexpr unsigned SECONDS_PER_CASE = 60;
 
 static const std::string good_scene = R"(
 units lj
@@ -46,27 +41,6 @@ thermo 5
 run 10
 )";
 
-/** What LAMMPS says to an input, in time: the text of its error, or nothing. */
-static std::string answer(const std::string &input)
-{
-  alarm(SECONDS_PER_CASE);
-  const std::string text = error_of(input);
-  alarm(0);
-  return text;
-}
-
-static bool contains(const std::string &text, const std::string &pattern)
-{
-  return std::regex_search(text, std::regex(pattern));
-}
-
-static std::string changed(std::string text, const std::string &from, const std::string &to)
-{
-  const auto at = text.find(from);
-  if (at == std::string::npos) return "no '" + from + "' in the scene";
-  return text.replace(at, from.size(), to);
-}
-
 /** The scene with this before its run. */
 static std::string before_run(const std::string &lines, const std::string &run = "run 10\n")
 {
@@ -81,29 +55,11 @@ static std::string file_text(const std::string &name)
   return text.str();
 }
 
-/** A mistake: this part of the good scene becomes that, and the error matches a pattern. */
-struct Change {
-  const char *name, *from, *to, *error;
-};
-
-static void PrintTo(const Change &mistake, std::ostream *out)
-{
-  *out << mistake.to;
-}
-
 class BadInput : public ::testing::TestWithParam<Change> {};
 
 TEST_P(BadInput, IsExplained)
 {
-  const Change &m = GetParam();
-  const std::string text = answer(changed(good_scene, m.from, m.to));
-  EXPECT_FALSE(text.empty()) << "no error";
-  EXPECT_TRUE(contains(text, m.error)) << "expected: " << m.error << "\nfound: " << text;
-}
-
-static std::string case_name(const ::testing::TestParamInfo<Change> &info)
-{
-  return info.param.name;
+  expect_explained(good_scene, GetParam());
 }
 
 TEST(GoodInput, Runs)

@@ -1,0 +1,71 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MPM_BAD_INPUT_TESTING_H
+#define MPM_BAD_INPUT_TESTING_H
+
+// Mistakes in an input: a good scene with one thing changed, in a LAMMPS instance of its own, must
+// give an error that says what is wrong. A scene that would run forever is killed by an alarm.
+
+#include "mpm_lammps.h"
+
+#include <ostream>
+#include <regex>
+#include <string>
+#include <unistd.h>
+
+namespace MPM_TEST {
+
+constexpr unsigned SECONDS_PER_CASE = 60;
+
+/** What LAMMPS says to an input, in time: the text of its error, or nothing. */
+inline std::string answer(const std::string &input)
+{
+  alarm(SECONDS_PER_CASE);
+  const std::string text = error_of(input);
+  alarm(0);
+  return text;
+}
+
+inline bool contains(const std::string &text, const std::string &pattern)
+{
+  return std::regex_search(text, std::regex(pattern));
+}
+
+inline std::string changed(std::string text, const std::string &from, const std::string &to)
+{
+  const auto at = text.find(from);
+  if (at == std::string::npos) return "no '" + from + "' in the scene";
+  return text.replace(at, from.size(), to);
+}
+
+/** A mistake: this part of the good scene becomes that, and the error matches a pattern. */
+struct Change {
+  const char *name, *from, *to, *error;
+};
+
+inline void PrintTo(const Change &mistake, std::ostream *out)
+{
+  *out << mistake.to;
+}
+
+inline std::string case_name(const ::testing::TestParamInfo<Change> &info)
+{
+  return info.param.name;
+}
+
+inline void expect_explained(const std::string &good_scene, const Change &mistake)
+{
+  const std::string text = answer(changed(good_scene, mistake.from, mistake.to));
+  EXPECT_FALSE(text.empty()) << "no error";
+  EXPECT_TRUE(contains(text, mistake.error))
+      << "expected: " << mistake.error << "\nfound: " << text;
+}
+
+}    // namespace MPM_TEST
+#endif
