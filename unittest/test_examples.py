@@ -210,6 +210,13 @@ def test_there_are_examples():
     assert len(inputs()) >= 5, inputs()
 
 
+def test_logs_name_no_folders_of_a_machine():
+    wrong = [path + ": " + line
+             for path in glob.glob(os.path.join(EXAMPLES, "*", "log.*"))
+             for line in read(path).splitlines() if re.search(r"(?<![\w.*/-])/\w+/\w", line)]
+    assert not wrong, "\n".join(wrong)
+
+
 for _path in inputs():
     globals().update(make_test(_path))
 
