@@ -83,6 +83,54 @@ TEST(Edges, FunctionsAreModified)
   }
 }
 
+// Linear fields are exact next to the faces, although only nodes inside and on them count: a turn by an angle
+// a that all nodes are given is that of all points, and F is its matrix.
+
+TEST(Edges, LinearFieldsAreExact)
+{
+  for (const char *options : {"transfer flip 1.0", "transfer pic scheme musl",
+                              "shape cubic transfer flip 1.0",
+                              "shape cubic transfer flip 1.0 precision mixed"}) {
+    Scene run{MPI_COMM_SELF};
+    const double a = 0.02, dt = 0.01;
+    run.commands(replaced(full, "OPTIONS", options) +
+                 "displace_atoms all random 0.2 0.2 0.2 4711 units box\n" +
+                 strprintf("region everything block EDGE EDGE EDGE EDGE EDGE EDGE\n"
+                           "fix turn all mpm/boundary region everything stick rotate 3 0 2 0 1 0 %g\n"
+                           "timestep %g\n",
+                           a / dt, dt));
+    run.set_reference();
+    run.commands("run 1\n");
+    const double tolerance = strstr(options, "mixed") ? 1.0e-7 : 1.0e-14;
+    for (int i = 0; i < run.n(); i++) {
+      const double *X = run.reference(i), *x = run.x()[i], *F = run.points().F[i];
+      const double r[2] = {X[0] - 3.0, X[2] - 2.0};
+      EXPECT_NEAR(x[0] - 3.0, cos(a) * r[0] + sin(a) * r[1], tolerance) << options;
+      EXPECT_NEAR(x[2] - 2.0, cos(a) * r[1] - sin(a) * r[0], tolerance) << options;
+      const double R[9] = {cos(a), 0, sin(a), 0, 1, 0, -sin(a), 0, cos(a)};
+      for (int c = 0; c < 9; c++) EXPECT_NEAR(F[c], R[c], tolerance) << options;
+    }
+  }
+}
+
+// A body that fills a closed box under uniform pressure stays at rest: the sum over points of V grad N of a
+// node inside is zero. That of two points per cell is exact for quadratic functions, whose gradients are
+// linear in between.
+
+TEST(Edges, UniformPressureMakesNoForce)
+{
+  for (const char *options : {"transfer flip 1.0", "transfer flip 1.0 scheme usf"}) {
+    Scene run{MPI_COMM_SELF};
+    run.commands(replaced(full, "OPTIONS", options) +
+                 "fix box all mpm/boundary xlo xhi zlo zhi slip\n");
+    for (int i = 0; i < run.n(); i++)
+      for (int c = 0; c < 3; c++) run.points().tau[i][c] = -1.0;
+    run.commands("run 1\n");
+    for (int i = 0; i < run.n(); i++)
+      for (int d = 0; d < 3; d++) EXPECT_NEAR(run.v()[i][d], 0.0, 1.0e-15) << options;
+  }
+}
+
 // Walls, rank boundaries, periodic faces, and a restart.
 
 static const std::string moving = "fix w1 all mpm/boundary xlo xhi stick\n"

@@ -126,6 +126,32 @@ TEST(ReferenceUpdate, NoneIsTheTotalFrame)
   }
 }
 
+// The lattice sees a body of the volume V0 det R: inside, its share of the volume of a node is one, however
+// much the body has expanded since the start.
+
+TEST(ReferenceUpdate, VolumeOnTheLattice)
+{
+  Scene run{MPI_COMM_SELF};
+  run.commands(body(2, "reference update 1.2", "neohookean 1.0e-9 0.3") + "timestep 0.02\n");
+  run.set_velocity([](const double *x, double *v) {
+    v[0] = 0.5 * (x[0] - 4.0);
+  });
+  run.commands("run 50\n");
+  std::vector<double> share;
+  run.field()->volume_at_points(share);
+  double least = 10.0, most = 0.0, volume = 0.0;
+  for (int i = 0; i < run.n(); i++) {
+    const double *X = run.field()->X[i];
+    volume = std::max(volume, MPMPoints::det(run.field()->R[i]));
+    if (std::abs(X[0] - 4.0) > 1.0 || std::abs(X[1] - 3.5) > 0.2) continue;
+    least = std::min(least, share[i]);
+    most = std::max(most, share[i]);
+  }
+  EXPECT_GT(volume, 1.3);
+  EXPECT_NEAR(least, 1.0, 0.1);
+  EXPECT_NEAR(most, 1.0, 0.1);
+}
+
 /* ----------------------------------------------------------------------
    a block that is thrown with a shear and vibrates: momentum is exact, energy does not jump, and the
    motion is that of a frame without updates up to the error of both

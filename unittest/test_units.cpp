@@ -11,7 +11,7 @@
 // All unit styles: the same numbers for lengths, times and masses, with moduli and accelerations
 // converted by LAMMPS's own constants, must give the same motion, and energies in energy units.
 
-#include "mpm_lammps.h"
+#include "stl_testing.h"
 
 #include "force.h"
 
@@ -21,77 +21,167 @@ using namespace MPM_TEST;
 
 struct Result {
   std::vector<Scene::State> states;
-  double kinetic, total, wavespeed, scale;    // scale: mvv2e of the unit style
-  double inconsistency;                       // of mvv2e and 1/ftm2v
+  std::vector<double> energies, forces;    // in mass velocity^2, and mass acceleration
+  double wavespeed;
+  double inconsistency;    // of mvv2e and 1/ftm2v
 };
 
-static Result simulate(const std::string &units, const std::string &material)
+/** text with {number P} as a pressure, {number A} as force/mass, {number F} as a force, in the units of
+ *  the instance. */
+static std::string converted(const std::string &text, Force *force)
+{
+  std::string out;
+  for (std::size_t at = 0, end; at < text.size(); at = end + 1) {
+    const auto start = std::min(text.find('{', at), text.size());
+    out += text.substr(at, start - at);
+    if (start == text.size()) break;
+    end = text.find('}', start);
+    std::size_t used;
+    const double value = std::stod(text.substr(start + 1), &used);
+    const double unit = text[end - 1] == 'P' ? force->mvv2e * force->nktv2p : 1.0 / force->ftm2v;
+    out += fmt::format("{:.17g}", value * unit);
+  }
+  return out;
+}
+
+/** A scene that has a compute e all mpm/energy, and fixes of style mpm/boundary and mpm/rigid whose
+ *  forces are compared. */
+static Result simulate(const std::string &units, const std::string &scene)
 {
   Scene run;
   run.commands("units " + units + "\n");
   auto *force = run.lmp->force;
-  const double pressure = force->mvv2e * force->nktv2p;
-  auto text = [](double value) {
-    return fmt::format("{:.17g}", value);
-  };
-  std::string law = material;
-  for (const char *name : {"P1", "P2", "P3"}) {
-    const auto at = law.find(name);
-    if (at == std::string::npos) continue;
-    const double value = name[1] == '1' ? 100.0 : name[1] == '2' ? 40.0 : 1.0;
-    law.replace(at, 2, text(value * pressure));
-  }
-  run.commands("boundary f f f\natom_style mpm\nneighbor 0.3 bin\ntimestep 0.02\n"
-               "region box block 0 8 0 8 0 8\ncreate_box 1 box\nfix grid all mpm 1.0\n"
-               "region one block 2 6 2 6 0 4\ncreate_points 1 region one ppc 2\n"
-               "fix m all mpm/material density 1.5 " +
-               law +
-               "\n"
-               "fix floor all mpm/boundary zlo separate friction 0.3\n"
-               "fix g all gravity " +
-               text(0.5 / force->ftm2v) +
-               " vector 0.2 0 -1\n"
-               "velocity all set 0.3 0.1 -0.5\n"
+  run.commands(converted(scene, force) +
                "compute e all mpm/energy\ncompute c all mpm/atom wavespeed energy\n"
                "compute cmax all reduce max c_c[1]\ncompute sum all reduce sum c_c[2]\n"
                "thermo_style custom step c_e c_e[1] c_e[2] c_e[11] c_cmax c_sum\n"
-               "run 60\n");
+               "timestep 0.02\nrun 60\n");
   Result r;
   r.states = run.gather();
   auto *energy = run.lmp->modify->get_compute_by_id("e");
   energy->compute_vector();
-  r.kinetic = energy->vector[0];
-  r.total = energy->compute_scalar();
+  const double total = energy->compute_scalar();
+  for (int k = 0; k < energy->size_vector; k++)
+    r.energies.push_back(energy->vector[k] / force->mvv2e);
+  r.energies.push_back(total / force->mvv2e);
+  for (auto *fix : run.lmp->modify->get_fix_by_style("^mpm/boundary$"))
+    for (int d = 0; d < 3; d++) r.forces.push_back(fix->compute_vector(d) * force->ftm2v);
   r.wavespeed = run.lmp->modify->get_compute_by_id("cmax")->compute_scalar();
-  r.scale = force->mvv2e;
   r.inconsistency = std::abs(force->mvv2e * force->ftm2v - 1.0);
-  EXPECT_LT(std::abs(energy->vector[10]), 1.0e-10 * r.total) << units;
-  const double stored = run.lmp->modify->get_compute_by_id("sum")->compute_scalar();
-  EXPECT_NEAR(stored, energy->vector[1], 1.0e-10 * r.total) << units;
+  EXPECT_LT(std::abs(energy->vector[10]), 1.0e-10 * total) << units;
+  if (run.lmp->modify->get_fix_by_style("^mpm/elements$").empty()) {
+    const double stored = run.lmp->modify->get_compute_by_id("sum")->compute_scalar();
+    EXPECT_NEAR(stored, energy->vector[1], 1.0e-10 * total) << units;
+  }
   for (auto &s : r.states)
-    for (double &stress : s.stress) stress /= pressure;
+    for (double &stress : s.stress) stress /= force->mvv2e * force->nktv2p;
   return r;
 }
+
+static void compare(const std::string &scene)
+{
+  const Result lj = simulate("lj", scene);
+  EXPECT_GT(lj.energies[0], 0.0);
+  EXPECT_GT(lj.energies[1], 0.0);
+  double largest = 0.0;
+  for (const double f : lj.forces) largest = std::max(largest, std::abs(f));
+  for (const std::string units : {"real", "metal", "si", "cgs", "electron", "micro", "nano"}) {
+    const Result other = simulate(units, scene);
+
+    // LAMMPS's factors of electron units agree with each other to 8 digits only
+    const double tolerance = 1.0e-10 + 100.0 * other.inconsistency;
+    EXPECT_LT(difference(lj.states, other.states), tolerance) << units;
+    for (std::size_t k = 0; k < lj.energies.size(); k++)
+      EXPECT_NEAR(other.energies[k], lj.energies[k], tolerance * lj.energies.back())
+          << units << " " << k;
+    for (std::size_t k = 0; k < lj.forces.size(); k++)
+      EXPECT_NEAR(other.forces[k], lj.forces[k], tolerance * largest) << units << " " << k;
+    EXPECT_NEAR(other.wavespeed, lj.wavespeed, tolerance * lj.wavespeed) << units;
+  }
+}
+
+static const std::string box3d = "boundary f f f\natom_style mpm\nneighbor 0.3 bin\n"
+                                 "region box block 0 8 0 8 0 8\ncreate_box 2 box\n";
+static const std::string box2d = "dimension 2\nboundary f f p\natom_style mpm\nneighbor 0.3 bin\n"
+                                 "region box block 0 8 0 8 -0.5 0.5\ncreate_box 2 box\n";
+static const std::string soft = "fix m all mpm/material density 1.5 neohookean {100 P} 0.3\n";
 
 class Units : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(Units, SameMotionInAllUnitStyles)
 {
-  const Result lj = simulate("lj", GetParam());
-  EXPECT_GT(lj.kinetic, 0.0);
-  for (const std::string units : {"real", "metal", "si", "cgs", "electron", "micro", "nano"}) {
-    const Result other = simulate(units, GetParam());
-
-    // LAMMPS's factors of electron units agree with each other to 8 digits only
-    const double tolerance = 1.0e-10 + 100.0 * other.inconsistency;
-    EXPECT_LT(difference(lj.states, other.states), tolerance) << units;
-    EXPECT_NEAR(other.total / other.scale, lj.total, tolerance * lj.total) << units;
-    EXPECT_NEAR(other.wavespeed, lj.wavespeed, tolerance * lj.wavespeed) << units;
-  }
+  compare(box3d +
+          "fix grid all mpm 1.0\nregion one block 2 6 2 6 0 4\ncreate_points 1 region one ppc 2\n"
+          "fix m all mpm/material density 1.5 " +
+          GetParam() +
+          "\nfix floor all mpm/boundary zlo separate friction 0.3\n"
+          "fix g all gravity {0.5 A} vector 0.2 0 -1\nvelocity all set 0.3 0.1 -0.5\n");
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, Units,
-                         ::testing::Values("neohookean P1 0.3",
-                                           "eos shock 8.0 1.5 2.0 strength j2 P2 P3",
-                                           "eos tait P1 7 viscosity newtonian P3 "
+                         ::testing::Values("neohookean {100 P} 0.3",
+                                           "eos shock 8.0 1.5 2.0 strength j2 {40 P} {1 P}",
+                                           "eos tait {100 P} 7 viscosity newtonian {1 P} "
                                            "viscosity artificial 1.5 0.06"));
+
+// the parts of fix mpm that convert units on their own
+
+class UnitsOfOptions : public ::testing::TestWithParam<const char *> {};
+
+TEST_P(UnitsOfOptions, SameMotionInAllUnitStyles)
+{
+  compare(box3d + "fix grid all mpm 1.0 " + GetParam() +
+          "\nregion one block 2 6 2 6 0 4\ncreate_points 1 region one ppc 2\n" + soft +
+          "fix floor all mpm/boundary zlo slip\nfix g all gravity {0.5 A} vector 0.2 0 -1\n"
+          "velocity all ramp vz 0.0 -1.0 z 0 4\n");
+}
+
+INSTANTIATE_TEST_SUITE_P(All, UnitsOfOptions,
+                         ::testing::Values("frame total", "frame total reference update 1.02",
+                                           "transfer flip 1.0 scheme usf locking both",
+                                           "shape linear transfer apic light 0.5",
+                                           "transfer xpic 2", "shape cpdi transfer tpic",
+                                           "every 3 transfer flip 0.99 edges modified"));
+
+TEST(Units, Axisymmetric)
+{
+  for (const char *options : {"", "frame total transfer flip 1.0 scheme musl"})
+    compare(box2d + "fix grid all mpm 1.0 axisymmetric yes " + options +
+            "\nregion one block 0 4 0 5 INF INF\ncreate_points 1 region one ppc 2\n" + soft +
+            "fix walls all mpm/boundary xlo ylo slip\nfix g all gravity {0.5 A} vector 0 -1 0\n"
+            "velocity all ramp vx 0.0 0.5 x 0 4\n");
+}
+
+TEST(Units, Contact)
+{
+  for (const char *law : {"coulomb 0.3", "adhesive {5 P} {3 P} {1 P}"})
+    compare(box2d +
+            "fix lattice all mpm 1.0\nregion one block 1 4 1 4 INF INF\n"
+            "region two block 4 7 1 5 INF INF\ncreate_points 1 region one ppc 2\n"
+            "create_points 2 region two ppc 2\nunfix lattice\ngroup one type 1\ngroup two type 2\n"
+            "fix a one mpm 1.0\nfix b two mpm 1.0\n" +
+            soft + "fix touch all mpm/contact a b law " + law +
+            "\nvelocity one set 0.6 0.3 0\nvelocity two set -0.6 -0.1 0\n");
+}
+
+TEST(Units, Rigid)
+{
+  const ScratchFile stl("box.stl", binary_of(box({-0.8, -0.8, -0.8}, {0.8, 0.8, 0.8})));
+  compare(box3d +
+          "fix grid all mpm 1.0\nregion one block 2 6 2 6 0 4\ncreate_points 1 region one ppc 2\n" +
+          soft + "fix floor all mpm/boundary zlo stick\nregion shape mpm/mesh " + stl.name +
+          " 1.0 4.1 3.8 5.2\nfix tool all mpm/rigid shape density 2.0 separate friction 0.2 "
+          "gravity 0 0 -0.5 force {0.3 F} 0 0 velocity 0 0 -0.8\n");
+}
+
+TEST(Units, Elements)
+{
+  const ScratchFile mesh(
+      "quads.msh",
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n6\n1 2 2 0\n2 4 2 0\n3 6 2 0\n"
+      "4 2 4 0\n5 4 4.5 0\n6 6 4 0\n$EndNodes\n$Elements\n2\n1 3 2 1 1 1 2 5 4\n"
+      "2 3 2 1 1 2 3 6 5\n$EndElements\n");
+  compare(box2d + "fix grid all mpm 1.0\ncreate_points 1 mesh " + mesh.name + "\n" + soft +
+          "fix el all mpm/elements " + mesh.name +
+          "\nfix g all gravity {0.5 A} vector 0 -1 0\nvelocity all ramp vx -0.5 0.5 x 2 6\n");
+}
