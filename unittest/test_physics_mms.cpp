@@ -342,7 +342,7 @@ struct TransferOrder {
 };
 
 static const TransferOrder orders[] = {
-    {"pic", 0.0, true, true},    // see pic_order
+    {"pic", 0.0, true, true},    // see pic_error
     {"flip 1.0", 2.0, true, false},
     {"apic", 2.0, true, false},
     {"aflip 1.0", 2.0, false, false},
@@ -353,17 +353,15 @@ static const TransferOrder orders[] = {
     {"fmpm 2", 0.0, true, true},
 };
 
-/** Order of pic between 16 and 32 cells: of what goes to the nodes and back, a wave loses the share D k^2
- *  h^2 in each step, so that its amplitude falls as exp(-D (pi h)^2 t / 2 dt), with dt = 0.2 h/c as
- *  exp(-2.5 D pi^2 h c t). The error is of first order when this exponent is small. */
-static double pic_order(double D)
+/** Largest rms error of pic for a small amplitude, relative to it: of what goes to the nodes and back, a wave
+ *  loses the share D k^2 h^2 in each step, so that its amplitude falls as exp(-D (pi h)^2 t / 2 dt), with
+ *  dt = 0.2 h/c as exp(-2.5 D pi^2 h c t). The error is of first order when this exponent is small. */
+static double pic_error(double D, int ne)
 {
-  double error[2] = {0.0, 0.0};
-  for (const int k : {0, 1})
-    for (double ct = 0.0; ct < 2.0; ct += 1e-3)
-      error[k] = std::max(error[k],
-                          (1.0 - exp(-2.5 * D * PI * PI * ct / (16 << k))) * std::fabs(sin(PI * ct)));
-  return log2(error[0] / error[1]);
+  double error = 0.0;
+  for (double ct = 0.0; ct < 2.0; ct += 1e-3)
+    error = std::max(error, (1.0 - exp(-2.5 * D * PI * PI * ct / ne)) * std::fabs(sin(PI * ct)));
+  return error / sqrt(2.0);
 }
 
 class Sweep : public ::testing::TestWithParam<ShapeOrder> {};
@@ -390,11 +388,14 @@ TEST_P(Sweep, EveryTransferAndFrame)
     const std::string options = name + " transfer " + transfer.options;
     const bool fmpm = std::string(transfer.options).find("fmpm") == 0;
     const bool pic = std::string(transfer.options) == "pic";
-    const double expected = pic ? pic_order(shape.D)
+    const double expected = pic ? log2(pic_error(shape.D, 16) / pic_error(shape.D, 32))
                                 : (!fmpm ? transfer.order : (linear || !spline ? 2.0 : 3.0));
     const char *scheme = linear && !fmpm ? " scheme musl" : "";    // see fix mpm: what is sound
     EXPECT_NEAR(order(options + scheme, 1e-4), expected, pic ? 0.03 : 0.2) << options;
-    if (!transfer.alone && linear && transfer.order == 2.0 && options.find("flip 1") == std::string::npos) {
+    if (pic) {
+      const double error = mms_error(1, 32, 1e-4, options + scheme, true);
+      EXPECT_NEAR(error / (1e-4 * pic_error(shape.D, 32)), 1.0, 0.02) << options;
+    } else if (linear && !fmpm && std::string(transfer.options) != "flip 1.0") {
       EXPECT_LT(order(options + scheme, .05), 0.2) << options;
     } else if (!transfer.alone) {
       EXPECT_NEAR(order(options + scheme, .05), shape.crossing, 0.2) << options;
