@@ -134,6 +134,11 @@ static const Change grains[] = {
      "Points of fix mpm F1 have no radius.*pair style granular.*fix mpm/surface"},
     {"RadiusOfOtherUnits", SURFACE, "set type 2 diameter 20\n",
      "256 points of fix mpm F2 have a radius of more than two node spacings, for instance point"},
+    {"CutoffBelowTheRadii", PAIR,    // as after read_restart, which knows none: then it is mostly 0
+     "pair_style granular\npair_coeff * * hooke 50.0 0.5 tangential linear_nohistory 0.5 0.4 "
+     "cutoff 1.2\n",
+     "Cutoff 1\\.2 of pair style granular between points of type 1 and grains of type 3 is below the "
+     "sum 1\\.3 of their largest radii.*give pair_style and pair_coeff again"},
     {"GrainsWithoutRadius", RUN, "set group grain diameter 0\nrun 3\n",
      "requires extended particles"},
     {"NveOfPoints", RUN, "fix more all nve\nrun 3\n",

@@ -224,6 +224,7 @@ void FixMPM::add_torques()
   for (const auto &run : runs)
     for (int i = run.first; i < run.last; i++) {
       const double *torque = waiting ? &mean_torque[3 * (std::size_t) i] : atom->torque[i];
+      if (torque[0] == 0.0 && torque[1] == 0.0 && torque[2] == 0.0) continue;    // most points
       double W[9] = {0.0};    // what a gradient in space would change by, row-major
       const double scale = 0.5 * step_dt() * force->ftm2v * inv_moment / atom->rmass[i];
       for (int d = dim == 3 ? 0 : 2; d < 3; d++) {

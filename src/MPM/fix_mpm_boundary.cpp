@@ -107,7 +107,7 @@ struct RegionMotion : public Region {
 
 FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), region(nullptr), kind(STICK), friction(0.0), rotating(false), acted(false),
-    motion_step(-1), work(0.0), dt_last(0.0), reaction_known(true), counting(false), decided(false),
+    region_was{}, motion_step(-1), work(0.0), dt_last(0.0), reaction_known(true), counting(false), decided(false),
     kinetic(0.0)
 {
   if (igroup != 0)
@@ -419,7 +419,8 @@ bigint FixMPMBoundary::next_step() const
 }
 
 /* ----------------------------------------------------------------------
-   regions: their state at the start of the first step
+   regions: their state at the start of the first step. A run may start between two steps of the cycle
+   (keyword every of fix mpm); then it is that of the last one
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::setup(int)
@@ -428,6 +429,18 @@ void FixMPMBoundary::setup(int)
   modify->clearstep_compute();
   region->prematch();
   modify->addstep_compute(next_step());
+  const auto *field = dynamic_cast<FixMPM *>(modify->get_fix_by_style("^mpm$")[0]);
+  if (!acted || field->steps_to_next() == field->every) note_region();
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMBoundary::note_region()
+{
+  region_was[0] = region->dx;
+  region_was[1] = region->dy;
+  region_was[2] = region->dz;
+  region_was[3] = region->theta;
 }
 
 /* ----------------------------------------------------------------------
@@ -868,13 +881,13 @@ void FixMPMBoundary::update_motion(double dt)
   wall.uniform = true;
   const bool variables = region_moves() || !velocity[0].variable.empty() ||
       !velocity[1].variable.empty() || !velocity[2].variable.empty() || !rate.variable.empty();
-  double old[4] = {0.0, 0.0, 0.0, 0.0};
+  const double *const old = region_was;
   if (region_moves()) {
+    region->dx = old[0];    // others may have looked at the region since then
+    region->dy = old[1];
+    region->dz = old[2];
+    region->theta = old[3];
     for (auto &list : nodes) list_region_nodes(list);
-    old[0] = region->dx;
-    old[1] = region->dy;
-    old[2] = region->dz;
-    old[3] = region->theta;
   }
 
   if (variables) modify->clearstep_compute();
@@ -915,6 +928,7 @@ void FixMPMBoundary::update_motion(double dt)
           wall_velocity(field, s.node, v);
           s.growth = (s.distance - distance) / dt - MathExtra::dot3(v, s.normal);
         }
+    note_region();
   }
   if (!acted) memcpy(before, wall.shift, sizeof(before));
 }
@@ -1256,6 +1270,7 @@ void FixMPMBoundary::write_restart(FILE *fp)
   memset(&saved, 0, sizeof(Saved));    // padding, too: files of equal states are equal
   saved.work = FixMPMBoundary::compute_scalar();
   memcpy(saved.shift, wall.shift, sizeof(saved.shift));
+  memcpy(saved.region_was, region_was, sizeof(saved.region_was));
   saved.acted = acted;
   if (comm->me) return;
   const int size = sizeof(Saved);
@@ -1269,6 +1284,7 @@ void FixMPMBoundary::restart(char *buf)
   memcpy(&saved, buf, sizeof(Saved));
   work = comm->me == 0 ? saved.work / force->mvv2e : 0.0;
   memcpy(wall.shift, saved.shift, sizeof(saved.shift));
+  memcpy(region_was, saved.region_was, sizeof(region_was));
   acted = saved.acted;
 }
 

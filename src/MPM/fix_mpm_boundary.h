@@ -119,7 +119,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
     bool uniform;
   };
   struct Saved {    // in restart files
-    double work, shift[3];
+    double work, shift[3], region_was[4];
     bool acted;
   };
 
@@ -137,6 +137,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
   Wall wall;                  // in this step
   double before[3];           // its velocity in the last step, when it does not turn
   bool acted;                 // there was a last step
+  double region_was[4];       // shift and angle of the region at the end of the last step
   bigint motion_step;         // step for which the motion of the wall is known
   double impulse[6], work;    // on the body, with its moment, this rank's share: of the last step; of all steps
   double dt_last;
@@ -171,6 +172,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
   double surface_distance(const double *x) const;
   bool surface_normal(const double *x, double step, int dim, double *normal) const;
   void update_motion(double dt);
+  void note_region();
   void set_rotation(double angle, const double *unit, double dt);
   static void end_of_step(Wall &, double dt);
   void wall_velocity(const FixMPM &, int64_t node, double *v) const;

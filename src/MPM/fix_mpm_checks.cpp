@@ -29,6 +29,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 using namespace LAMMPS_NS;
@@ -177,14 +178,44 @@ void FixMPM::check_neighbors()
 }
 
 /* ----------------------------------------------------------------------
+   Pair style granular takes its cutoffs from the radii, but what tells it to do so is not in restart
+   files: with the settings of a file alone cutoffs are anything, mostly 0. Then there are no ghosts,
+   and contacts across ranks and periodic faces are missed without a word.
+------------------------------------------------------------------------- */
+
+static void check_cutoffs(LAMMPS *lmp)
+{
+  const Atom *atom = lmp->atom;
+  const int ntypes = atom->ntypes;
+  std::vector<double> mine(2 * (ntypes + 1), -1.0), all(2 * (ntypes + 1));    // of points, of others
+  for (int i = 0; i < atom->nlocal; i++) {
+    double &largest = mine[2 * atom->type[i] + !(atom->vfrac[i] > 0.0)];
+    largest = std::max(largest, atom->radius[i]);
+  }
+  MPI_Allreduce(mine.data(), all.data(), mine.size(), MPI_DOUBLE, MPI_MAX, lmp->world);
+  for (int i = 1; i <= ntypes; i++)
+    for (int j = 1; j <= ntypes; j++) {
+      const double sum = all[2 * i] + all[2 * j + 1], cut = sqrt(lmp->force->pair->cutsq[i][j]);
+      if (all[2 * i] > 0.0 && all[2 * j + 1] > 0.0 && !(cut >= sum * (1.0 - 1.0e-10)))
+        lmp->error->all(FLERR, Error::NOLASTLINE,
+                        "Cutoff {:.6g} of pair style granular between points of type {} and grains of "
+                        "type {} is below the sum {:.6g} of their largest radii. Read_restart loses the "
+                        "cutoffs of this pair style: give pair_style and pair_coeff again after it",
+                        cut, i, j, sum);
+    }
+}
+
+/* ----------------------------------------------------------------------
    Grains see points by their radius. LAMMPS gives no error for a radius of zero, where no force
    or one between centers remains, nor for one of 0.5, its default, in other units.
 ------------------------------------------------------------------------- */
 
 void FixMPM::check_radii()
 {
-  if (!atom->radius_flag || !modify->get_fix_by_style("^mpm/surface$").empty()) return;
+  if (!atom->radius_flag) return;
   if (!utils::strmatch(force->pair_style, "^gran") && !force->pair_match("^gran", 0)) return;
+  if (strcmp(force->pair_style, "granular") == 0) check_cutoffs(lmp);
+  if (!modify->get_fix_by_style("^mpm/surface$").empty()) return;
   const int ntypes = atom->ntypes;
   std::vector<int> grains(ntypes + 1, 0), grains_all(ntypes + 1);    // types of other atoms
   for (int i = 0; i < atom->nlocal; i++)

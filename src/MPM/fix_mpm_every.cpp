@@ -6,14 +6,15 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Affine matrices (APIC, AFLIP, TPIC) apart from the transfers: torques on points, and first values.
-
 // Steps of LAMMPS between the steps of the cycle (keyword every of fix mpm): grains and atoms that
 // need a smaller time step take several under one of the material points.
 //
 // Between two steps of the cycle, points move with their constant velocity, so that what they touch
-// sees them move smoothly, and their forces add up. The cycle then starts from where they were, with
-// the mean of these forces: it gives them the impulse that they have received, to round-off.
+// sees them move smoothly, and their forces add up. The cycle then starts from where they were in the
+// middle of these steps, with the mean of the forces: it gives them the impulse that they have
+// received, to round-off. On a linear spring this mean is the force at the middle, and K steps are
+// one of leapfrog, which keeps the energy; with the place at their start they would be damped, by a
+// part (K - 1)/(2 K) (omega dt)^2 of the energy in each step dt of the cycle.
 
 #include "fix_mpm.h"
 
@@ -50,15 +51,16 @@ bool FixMPM::wait()
 }
 
 /* ----------------------------------------------------------------------
-   add forces, and move the points on, or back to the start when it is time for the cycle
+   add forces, and move the points on, or to their place on the lattice when it is time for the cycle.
+   Points that have not waited before are where they are at the start of these steps
 ------------------------------------------------------------------------- */
 
 void FixMPM::add_waiting()
 {
-  const double dt = update->dt;
+  const double dt = update->dt, before = 0.5 * (every - 1) * dt;
+  const bool first = waited == 0, last = waited == every - 1, turns = atom->torque_flag;
   waited++;
   elapsed += dt;
-  const bool last = waited == every, turns = atom->torque_flag;
   if (last) {
     mean_force.resize(3 * (std::size_t) atom->nmax);
     if (turns) mean_torque.resize(3 * (std::size_t) atom->nmax);
@@ -68,7 +70,9 @@ void FixMPM::add_waiting()
     if (!is_point(i)) continue;
     double *const w = waiting[i], *const x = atom->x[i];
     const double *const v = atom->v[i], *const f = atom->f[i];
+    const bool is_new = first && w[3] == 0.0 && w[4] == 0.0 && w[5] == 0.0;
     for (int d = 0; d < 3; d++) {
+      if (is_new) w[3 + d] = -before * v[d];
       w[d] += dt * f[d];
       if (turns) w[6 + d] += dt * atom->torque[i][d];
       if (last) {
@@ -83,12 +87,23 @@ void FixMPM::add_waiting()
   }
 }
 
-/* ---------------------------------------------------------------------- */
+/* ----------------------------------------------------------------------
+   from their new place on the lattice, which they pass in the middle of the next forces to be added
+   up, to where they are when the first of these acts
+------------------------------------------------------------------------- */
 
 void FixMPM::end_waiting()
 {
-  for (int i = 0; i < atom->nlocal; i++)
-    if (is_point(i)) memset(waiting[i], 0, waiting_size() * sizeof(double));
+  const double before = 0.5 * (elapsed - update->dt);
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!is_point(i)) continue;
+    double *const w = waiting[i];
+    memset(w, 0, waiting_size() * sizeof(double));
+    for (int d = 0; d < 3; d++) {
+      w[3 + d] = -before * atom->v[i][d];
+      atom->x[i][d] += w[3 + d];
+    }
+  }
   waited = 0;
   elapsed = 0.0;
 }

@@ -1,0 +1,235 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// labels: physics
+// mpi: 1 2
+
+// Keyword every of fix mpm: K steps of the run under one of the points.
+
+#include "mpm_lammps.h"
+
+#include "gtest/gtest.h"
+
+#include <cmath>
+
+using namespace MPM_TEST;
+
+/** Where points are on the lattice, in order of tags; the last three: velocity. */
+static std::vector<std::array<double, 7>> places(Scene &run)
+{
+  std::vector<std::array<double, 7>> rows;
+  struct Row {
+    double tag, x[6];
+  };
+  std::vector<Row> mine;
+  for (auto *ifix : run.lmp->modify->get_fix_by_style("^mpm$")) {
+    auto *field = dynamic_cast<FixMPM *>(ifix);
+    for (int i = 0; i < run.n(); i++) {
+      if (!field->is_point(i)) continue;
+      Row row{(double) run.lmp->atom->tag[i], {0.0}};
+      double x[3];
+      run.lmp->domain->unmap(run.x()[i], run.lmp->atom->image[i], x);
+      for (int d = 0; d < 3; d++) {
+        row.x[d] = x[d] - (field->waiting ? field->waiting[i][3 + d] : 0.0);
+        row.x[3 + d] = run.v()[i][d];
+      }
+      mine.push_back(row);
+    }
+  }
+  for (const auto &row : all_by_tag(mine, run.lmp->world))
+    rows.push_back({row.tag, row.x[0], row.x[1], row.x[2], row.x[3], row.x[4], row.x[5]});
+  return rows;
+}
+
+/* ----------------------------------------------------------------------
+   What does not ask when a step of the run is: K steps are a larger one, to round-off. Bodies at rest
+   at the start, whose place in the middle of the steps is that at their start.
+------------------------------------------------------------------------- */
+
+static const std::string head = "units lj\nboundary p p f\natom_style mpm\nneighbor 0.3 bin\n"
+                                "region box block 0 8 0 8 0 12\ncreate_box 2 box\n";
+static const std::string block = "region b block 2 6 2 6 0 4\ncreate_points 1 region b ppc 2\n";
+static const std::string rubber =
+    "fix m all mpm/material density 1.0 neohookean 40.0 0.3\nfix g all gravity 0.5 vector 0.6 0 -1\n";
+static const std::string floors = "fix floor all mpm/boundary zlo stick\n";
+
+struct Feature {
+  const char *name;
+  std::string text;
+};
+
+static void PrintTo(const Feature &feature, std::ostream *out)
+{
+  *out << feature.name;
+}
+
+class LargerStep : public ::testing::TestWithParam<Feature> {};
+
+TEST_P(LargerStep, IsTheSame)
+{
+  const auto scene = [](int every) {
+    return head + replaced(GetParam().text, "EVERY", every == 1 ? "" : strprintf("every %d", every)) +
+        strprintf("timestep %.17g\nthermo 1000\n", 0.04 / every);
+  };
+  Scene one;
+  one.commands(scene(1) + "run 60\n");
+  const auto expected = places(one);
+  for (const int every : {2, 5}) {
+    Scene many;
+    many.commands(scene(every) + strprintf("run %d\n", 23 * every + 1) +
+                  strprintf("run %d\n", 37 * every - 1));
+    EXPECT_NEAR(many.time(), one.time(), 1.0e-12);
+    const auto found = places(many);
+    ASSERT_EQ(found.size(), expected.size());
+    double worst = 0.0, moved = 0.0;
+    for (std::size_t k = 0; k < found.size(); k++)
+      for (int c = 0; c < 7; c++) {
+        worst = std::max(worst, std::abs(found[k][c] - expected[k][c]));
+        if (c > 3) moved = std::max(moved, std::abs(expected[k][c]));
+      }
+    EXPECT_LT(measured("difference", worst), 1.0e-11) << every;
+    EXPECT_GT(moved, 0.05);
+  }
+}
+
+static const Feature features[] = {
+    {"Apic", "fix grid all mpm 1.0 EVERY\n" + block + rubber + floors},
+    {"FlipMusl", "fix grid all mpm 1.0 transfer flip 0.99 scheme musl EVERY\n" + block + rubber + floors},
+    {"Usavg", "fix grid all mpm 1.0 shape cubic scheme usavg EVERY\n" + block + rubber + floors},
+    {"Total", "fix grid all mpm 1.0 frame total EVERY\n" + block + rubber + floors},
+    {"Cpdi2", "fix grid all mpm 1.0 shape cpdi2 EVERY\n" + block + rubber + floors},
+    {"MovingFace", "variable v equal 0.3*sin(3*time)\nfix grid all mpm 1.0 EVERY\n" + block + rubber +
+         "fix floor all mpm/boundary zlo stick velocity v_v 0 0\n"},
+    {"MovingRegion",
+     "variable up equal 0.1*time^2\nregion plate block INF INF INF INF -2 0.3 move NULL NULL v_up\n"
+     "fix grid all mpm 1.0 EVERY\nregion b block 2 6 2 6 0.5 4\ncreate_points 1 region b ppc 2\n" +
+         rubber + "fix push all mpm/boundary region plate separate friction 0.2\n"},
+    {"Contact", "region b block 2 6 2 6 0 3\nregion c block 3 5 2.5 4.5 3 5\n"
+                "create_points 1 region b spacing 0.5\ncreate_points 2 region c spacing 0.5\n"
+                "group low type 1\ngroup high type 2\n"
+                "fix low low mpm 1.0 EVERY\nfix high high mpm 1.0 EVERY\n" + rubber + floors +
+         "fix c all mpm/contact low high law coulomb 0.2\n"},
+};
+
+INSTANTIATE_TEST_SUITE_P(Every, LargerStep, ::testing::ValuesIn(features),
+                         [](const auto &info) { return std::string(info.param.name); });
+
+// Points that fail are deleted in the same steps of the cycle.
+
+TEST(LargerStep, DeletesTheSamePoints)
+{
+  const auto scene = [](int every) {
+    return std::string("units lj\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.3 bin\n"
+                       "region box block -2 30 -2 8 -0.5 0.5\ncreate_box 1 box\n"
+                       "region bar block 0 20 1 5 INF INF\n") +
+        strprintf("fix grid all mpm 1.0 failed delete every %d\n", every) +
+        "create_points 1 region bar ppc 2\n"
+        "fix m all mpm/material density 1.0 eos linear 100.0 strength elastic 60.0 damage rankine 3.0 "
+        "after none\nregion left block INF 1 INF INF INF INF\nregion right block 19 INF INF INF INF INF\n"
+        "fix l all mpm/boundary region left stick\n"
+        "fix r all mpm/boundary region right stick velocity 0.5 0 0\n" +
+        strprintf("timestep %.17g\nthermo 1000\n", 0.02 / every);
+  };
+  Scene one, many;
+  one.commands(scene(1) + "run 250\n");
+  many.commands(scene(5) + "run 1250\n");
+  const double *a = one.fix_vector("grid", 11), *b = many.fix_vector("grid", 11);
+  EXPECT_GT(a[6], 3.0);
+  EXPECT_EQ(a[6], b[6]);
+  for (int k = 7; k < 11; k++) EXPECT_NEAR(a[k], b[k], 1.0e-9);
+  const auto expected = places(one), found = places(many);
+  ASSERT_EQ(found.size(), expected.size());
+  double worst = 0.0;
+  for (std::size_t k = 0; k < found.size(); k++)
+    for (int c = 0; c < 7; c++) worst = std::max(worst, std::abs(found[k][c] - expected[k][c]));
+  EXPECT_LT(measured("difference", worst), 1.0e-9);
+}
+
+/* ----------------------------------------------------------------------
+   What grains see: points that move smoothly, without a jump at the start of a run, and, with a constant
+   force, that are where and as fast as they should be at the time of each step of the cycle
+------------------------------------------------------------------------- */
+
+TEST(Seen, MotionIsThatOfTheTime)
+{
+  if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
+  const double dt = 0.01, v0 = 0.4, a = -0.25;
+  for (const int every : {1, 2, 5, 20}) {
+    Scene run;
+    run.commands(replaced(head, "p p f", "p p p") + strprintf("fix grid all mpm 1.0 every %d\n", every) +
+                 "region b block 2 6 2 6 3 7\ncreate_points 1 region b ppc 2\n"
+                 "fix m all mpm/material density 1.0 neohookean 10.0 0.3\n" +
+                 strprintf("velocity all set %g 0 0\ntimestep %g\nthermo 1000\n", v0, dt));
+    const double start = run.evaluate("xcm(all,x)"), height = run.evaluate("xcm(all,z)");
+    double worst = 0.0;
+    bool first = true;
+    run.each_step([&](double **force) {    // all points have the same motion
+      for (int i = 0; i < run.n(); i++) force[i][2] = a * run.mass()[i];
+      const double t = run.time();
+      for (int i = 0; i < run.n() && !first; i++) {
+        double x[3];
+        run.lmp->domain->unmap(run.x()[i], run.lmp->atom->image[i], x);
+        worst = std::max(worst, std::abs(x[0] - run.reference(i)[0] - v0 * t));
+      }
+      if (first) run.set_reference();
+      first = false;
+    });
+    run.commands(strprintf("run %d post no\n", 200 / every * every));
+    const double t = run.time();
+    EXPECT_LT(measured("uniform motion", worst), 1.0e-12);
+    EXPECT_NEAR(run.evaluate("xcm(all,x)"), start + v0 * t, 1.0e-12);
+    EXPECT_NEAR(run.evaluate("vcm(all,z)"), a * t, 1.0e-12);
+    // the velocity at the end of the last step is taken for its whole length: half of a step of the run
+    EXPECT_NEAR(run.evaluate("xcm(all,z)") - height, 0.5 * a * t * (t + dt), 1.0e-12);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   A body on a linear spring: the mean force of K steps is that at the place on the lattice, as if the
+   step were a larger one. Leapfrog keeps v^2 + omega^2 x (x + dt v) to round-off, and its
+   phase is theta in each step with cos(theta) = 1 - (omega dt)^2/2.
+------------------------------------------------------------------------- */
+
+TEST(Seen, SpringIsNotDamped)
+{
+  if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
+  const double omega = 1.0, step = 0.5;
+  for (const int every : {1, 2, 5, 10}) {
+    Scene run;
+    run.commands(replaced(head, "p p f", "p p p") + strprintf("fix grid all mpm 1.0 every %d\n", every) +
+                 "region b block 2 6 2 6 3 7\ncreate_points 1 region b ppc 2\n"
+                 "fix m all mpm/material density 1.0 neohookean 1.0 0.3\n" +
+                 strprintf("velocity all set 0.3 0 0\ntimestep %.17g\nthermo 100000\n", step / every));
+    run.set_reference();
+    const auto seen = [&](int i) {
+      double x[3];
+      run.lmp->domain->unmap(run.x()[i], run.lmp->atom->image[i], x);
+      return x[0] - run.reference(i)[0];
+    };
+    run.each_step([&](double **force) {
+      for (int i = 0; i < run.n(); i++) force[i][0] = -omega * omega * run.mass()[i] * seen(i);
+    });
+    double least = 1.0e300, most = 0.0;
+    int turns = 0;
+    double last = 1.0;
+    const int cycles = 500;
+    for (int k = 0; k < cycles; k++) {
+      run.commands(strprintf("run %d pre no post no\n", every));
+      const auto *field = run.field();
+      const double x = seen(0) - (field->waiting ? field->waiting[0][3] : 0.0), v = run.v()[0][0];
+      const double energy = v * v + omega * omega * x * (x - step * v);    // x: after this v
+      least = std::min(least, energy);
+      most = std::max(most, energy);
+      turns += v * last < 0.0;
+      last = v;
+    }
+    EXPECT_LT(measured("spread of the energy", (most - least) / most), 1.0e-9) << every;
+    const double theta = std::acos(1.0 - 0.5 * omega * omega * step * step);
+    EXPECT_NEAR(turns, cycles * theta / M_PI, 1.0) << every;
+  }
+}
