@@ -126,8 +126,8 @@ class FixMPM : public Fix {
                        ///< before the first step; null: other shapes
   double **X;    ///< [n][3] reference position, NAN before it is known; null: updated frame
   double **R;    ///< [n][9] F at the last update of the reference, row-major; null: there is none
-  double **waiting;    ///< [n][6 or 9] since the last step of the cycle: impulse, displacement, and
-                       ///< angular impulse if atoms have torques; null: every is 1
+  double **waiting;    ///< [n][6 or 9] impulse since the last step of the cycle, displacement from the
+                       ///< place on the lattice, angular impulse if atoms have torques; null: every is 1
   bool ledger_on;                               ///< a compute mpm/energy exists; set in init()
   MPMLedger ledger;
   std::vector<double> ledger_start;    ///< of compute mpm/energy, until the end of the next run
@@ -195,7 +195,8 @@ class FixMPM : public Fix {
   /** At the same nodes: sum_p V_p N(x_p) as share of the volume h^dim of a node, [node]. */
   void map_volume(const std::vector<char> &near, std::vector<double> &share);
   /** At the points, [n]: that share of the volume, which is 1 inside of a body and falls to 0 across
-   *  its surface. Points that have failed do not count as volume. Finds the blocks if need be. */
+   *  its surface. Points that have failed do not count as volume. A body on a fixed face of the box
+   *  has no surface there (updated frame, faces in planes of nodes). Finds the blocks if need be. */
   void volume_at_points(std::vector<double> &share);
 
   /** Add what periodic images and other ranks hold of reals [lane, lane+nlane) of nodes that are
@@ -327,11 +328,13 @@ class FixMPM : public Fix {
 
   // functions next to fixed faces
   struct EdgeNodes {
-    int64_t outside, face, inside;
+    int64_t outside, face, inside;    // outside is negative if no point reaches it
   };
-  std::vector<EdgeNodes> edges[3];    // by axis; empty: functions are the same everywhere
+  typedef std::vector<EdgeNodes> EdgeLists[3];    // by axis
+  EdgeLists edges;                                // empty: functions are the same everywhere
   void check_edges() const;
-  void list_edges();
+  bool face_on_nodes(int a, int side, int &plane) const;
+  void list_edges(EdgeLists &, bool without_outside) const;
   void fold_edges(double *nodes, int nreal, int lane, int nlane) const;
   void extend_edges(double *nodes, int nreal, int lane, int nlane) const;
   void extend_edges();

@@ -30,6 +30,7 @@
 #include "mpm_domain.h"
 #include "mpm_halo.h"
 #include "mpm_points.h"
+#include "neighbor.h"
 #include "update.h"
 
 #include <algorithm>
@@ -221,8 +222,10 @@ void FixMPM::add_torques()
   if (!C || shape == LINEAR || bernstein || extent != NO_SIZE || !atom->torque_flag) return;
   const int dim = lattice.dim;
   const double inv_moment = (shape == QUADRATIC ? 4.0 : 3.0) / (lattice.h * lattice.h);
+  // pair styles act on atoms in neighbor lists; with every, on those of several lists
+  const int end = neighbor->includegroup && !waiting ? atom->nfirst : atom->nlocal;
   for (const auto &run : runs)
-    for (int i = run.first; i < run.last; i++) {
+    for (int i = run.first; i < std::min(run.last, end); i++) {
       const double *torque = waiting ? &mean_torque[3 * (std::size_t) i] : atom->torque[i];
       if (torque[0] == 0.0 && torque[1] == 0.0 && torque[2] == 0.0) continue;    // most points
       double W[9] = {0.0};    // what a gradient in space would change by, row-major

@@ -31,48 +31,53 @@ using namespace MPM_NS;
 
 void FixMPM::check_edges() const
 {
-  constexpr double ON_NODE = 1.0e-6;
-  for (int a = 0; a < lattice.dim; a++) {
-    if (lattice.periodic[a]) continue;
-    for (int side = 0; side < 2; side++) {
-      const double at = ((side ? domain->boxhi[a] : domain->boxlo[a]) - lattice.origin[a]) / lattice.h;
-      if (std::fabs(at - std::lround(at)) > ON_NODE)
+  for (int a = 0; a < lattice.dim; a++)
+    for (int side = 0, plane; side < 2 && !lattice.periodic[a]; side++)
+      if (!face_on_nodes(a, side, plane))
         error->all(FLERR, "Fix mpm {} edges modified: the fixed face {}{} must be in a plane of nodes: "
                    "change spacing or origin", id, "xyz"[a], side ? "hi" : "lo");
-    }
-  }
 }
 
 /* ---------------------------------------------------------------------- */
 
-void FixMPM::list_edges()
+void FixMPM::list_edges(EdgeLists &lists, bool without_outside) const
 {
   for (int a = 0; a < lattice.dim; a++) {
-    edges[a].clear();
+    lists[a].clear();
     if (lattice.periodic[a]) continue;
     for (int side = 0; side < 2; side++) {
-      const double at = ((side ? domain->boxhi[a] : domain->boxlo[a]) - lattice.origin[a]) / lattice.h;
-      const int plane = (int) std::lround(at), out = side ? 1 : -1;
+      int plane;
+      if (!face_on_nodes(a, side, plane)) continue;
+      const int out = side ? 1 : -1;
       for (std::size_t slot = 0; slot < grid->blocks.size(); slot++) {
         const auto &block = grid->blocks[slot];
-        const int n = plane + out - block.b[a] * grid->side;
+        const int n = plane - block.b[a] * grid->side;
         if (n < 0 || n >= grid->side) continue;
         for (int k = 0; k < NODES_PER_BLOCK; k++) {
           int index[3];
           grid->node_index(block, k, index);
-          if (index[a] != plane + out) continue;
+          if (index[a] != plane) continue;
           EdgeNodes e;
-          e.outside = (int64_t) slot * NODES_PER_BLOCK + k;
-          index[a] = plane;
-          e.face = grid->locate(index);
+          e.face = (int64_t) slot * NODES_PER_BLOCK + k;
+          index[a] = plane + out;
+          e.outside = grid->locate(index);
           index[a] = plane - out;
           e.inside = grid->locate(index);
-          // points that reach the node outside reach these two, so that it has nothing without them
-          if (e.face >= 0 && e.inside >= 0) edges[a].push_back(e);
+          // points that reach the node outside reach the others, so that it has nothing without them
+          if (e.inside >= 0 && (e.outside >= 0 || without_outside)) lists[a].push_back(e);
         }
       }
     }
   }
+}
+
+/** Index along axis a of the plane of nodes in a fixed face of the box; false: there is none. */
+bool FixMPM::face_on_nodes(int a, int side, int &plane) const
+{
+  constexpr double ON_NODE = 1.0e-6;
+  const double at = ((side ? domain->boxhi[a] : domain->boxlo[a]) - lattice.origin[a]) / lattice.h;
+  plane = (int) std::lround(at);
+  return std::fabs(at - plane) <= ON_NODE;
 }
 
 /* ----------------------------------------------------------------------

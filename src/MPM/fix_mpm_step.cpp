@@ -605,12 +605,27 @@ void FixMPM::volume_at_points(std::vector<double> &share)
     }
     pic.p2g_momentum(r, s, run.first, run.last, base, tile, box);
   });
-  sum_copies(nodes_apart.data(), pic.nreal, 3, 1);
+
+  // behind a fixed face, the mirror image: nothing can get between it and the body
+
+  const int nreal = pic.nreal;
+  double *const volume = nodes_apart.data() + 3;
+  EdgeLists faces;
+  if (!total && !modified_edges) list_edges(faces, true);
+  for (int a = lattice.dim - 1; a >= 0; a--)
+    for (const auto &e : faces[a]) {
+      volume[e.face * nreal] *= 2.0;
+      if (e.outside >= 0) volume[e.inside * nreal] += volume[e.outside * nreal];
+    }
+  sum_copies(nodes_apart.data(), nreal, 3, 1);
+  for (int a = 0; a < lattice.dim; a++)
+    for (const auto &e : faces[a])
+      if (e.outside >= 0) volume[e.outside * nreal] = volume[e.inside * nreal];
   const double h = lattice.h, inverse = 1.0 / (lattice.dim == 3 ? h * h * h : h * h);
   for (int64_t n = 0; n < grid->nnodes(); n++)
-    nodes_apart[n * pic.nreal] = inverse * nodes_apart[n * pic.nreal + 3];
-  grid->copy_aliases(nodes_apart.data(), pic.nreal);
-  extend_edges(nodes_apart.data(), pic.nreal, 0, 1);
+    nodes_apart[n * nreal] = inverse * nodes_apart[n * nreal + 3];
+  grid->copy_aliases(nodes_apart.data(), nreal);
+  extend_edges(nodes_apart.data(), nreal, 0, 1);
   gather_apart(pic, [&](const Run &run, const int *base) {
     pic.g2p(r, s, run.first, run.last, base, tile_load, nullptr);
   });

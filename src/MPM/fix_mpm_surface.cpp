@@ -10,6 +10,7 @@
 #include "fix_mpm_surface.h"
 
 #include "atom.h"
+#include "atom_vec.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
@@ -20,6 +21,7 @@
 #include "modify.h"
 #include "mpm_points.h"
 #include "neighbor.h"
+#include "update.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,7 +35,7 @@ using namespace FixConst;
 ------------------------------------------------------------------------- */
 
 FixMPMSurface::FixMPMSurface(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), scale(1.0), grow(1.2), depth(0.5), surface_group(-1), known(false), at_surface(nullptr),
+    Fix(lmp, narg, arg), scale(1.0), grow(1.2), depth(0.5), surface_group(-1), known(false), no_torques(false), at_surface(nullptr),
     points(MPMPoints::get(atom))
 {
   if (!points || !atom->radius_flag)
@@ -65,6 +67,8 @@ FixMPMSurface::FixMPMSurface(LAMMPS *lmp, int narg, char **arg) :
   global_freq = 1;
   extscalar = 1;
   comm_forward = 1;
+  force_reneighbor = 1;
+  next_reneighbor = -1;
   create_attribute = 1;
   maxexchange = 1;
   FixMPMSurface::grow_arrays(atom->nmax);
@@ -130,11 +134,12 @@ void FixMPMSurface::init()
 
 /* ----------------------------------------------------------------------
    start of a run: neighbor lists are made with the largest radii; the surface is found once
-   fix mpm has put points in order
+   fix mpm has put points in order, and lists are made with it in the first step
 ------------------------------------------------------------------------- */
 
 void FixMPMSurface::setup_pre_exchange()
 {
+  no_torques = false;
   give_largest();
 }
 
@@ -142,6 +147,7 @@ void FixMPMSurface::setup_pre_force(int)
 {
   find_surface();
   comm->forward_comm(this);
+  next_reneighbor = update->ntimestep + 1;    // lists and ghosts with the surface alone
 }
 
 /* ----------------------------------------------------------------------
@@ -153,12 +159,14 @@ void FixMPMSurface::pre_force(int)
   if (!known) setup_pre_force(0);
   if (!neighbor->includegroup) return;
 
-  // LAMMPS has set to zero the forces of the atoms in the neighbor lists only
+  // LAMMPS has set to zero the forces of the atoms in the neighbor lists only. Nothing exerts torques
+  // on the others, so that these stay zero until atoms change their places in memory
 
   const std::size_t n = 3 * (std::size_t) (atom->nlocal - atom->nfirst) * sizeof(double);
   if (n == 0) return;
   memset(&atom->f[atom->nfirst][0], 0, n);
-  if (atom->torque_flag) memset(&atom->torque[atom->nfirst][0], 0, n);
+  if (atom->torque_flag && !no_torques) memset(&atom->torque[atom->nfirst][0], 0, n);
+  no_torques = true;
 }
 
 /* ----------------------------------------------------------------------
@@ -167,7 +175,33 @@ void FixMPMSurface::pre_force(int)
 
 void FixMPMSurface::pre_exchange()
 {
+  no_torques = false;
   find_surface();
+  if (surface_group >= 0 && atom->firstgroupname && group->find(atom->firstgroupname) == surface_group)
+    keep_first();
+}
+
+/* ----------------------------------------------------------------------
+   The group is first in memory (atom_modify first), and a few points have left it or come to it. LAMMPS
+   would shift all atoms behind each of them by one place. Here the few change places
+------------------------------------------------------------------------- */
+
+void FixMPMSurface::keep_first()
+{
+  const int bit = group->bitmask[surface_group], n = atom->nlocal;
+  if (n == atom->nmax) atom->avec->grow(0);
+  const int *const mask = atom->mask;
+  int nfirst = 0;
+  for (int i = 0; i < n; i++) nfirst += (mask[i] & bit) != 0;
+  for (int out = 0, in = nfirst; out < nfirst; out++) {
+    if (mask[out] & bit) continue;
+    while (!(mask[in] & bit)) in++;    // as many are in the wrong part on both sides
+    atom->avec->copy(out, n, 0);
+    atom->avec->copy(in, out, 0);
+    atom->avec->copy(n, in, 0);
+    in++;
+  }
+  for (auto *ifix : modify->get_fix_by_style("^mpm$")) dynamic_cast<FixMPM *>(ifix)->renew_topology();
 }
 
 /* ----------------------------------------------------------------------

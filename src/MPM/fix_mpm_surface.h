@@ -54,6 +54,7 @@ class FixMPMSurface : public Fix {
   double scale, grow, depth;     // of the radius; its largest growth; of what counts as surface [h]
   int surface_group;             // that points with a radius are in, -1: none
   bool known;                    // radii are those of the surface, not the largest ones
+  bool no_torques;               // of atoms that are not in neighbor lists, since these were made
   double *at_surface;            // [n] 1: has a radius, 0: has not
   std::vector<double> share;     // of the volume, at the points of a field
   struct MPMPoints *points;
@@ -63,6 +64,7 @@ class FixMPMSurface : public Fix {
   void give_radius(int i, bool at_surface, double radius);
   void give_largest();
   void find_surface();
+  void keep_first();
 };
 
 }    // namespace LAMMPS_NS

@@ -239,7 +239,7 @@ void FixMPM::finish_topology()
   grid->finish();
   grid->allocate(kernel.nreal);
   halo->setup(*grid);
-  if (modified_edges) list_edges();
+  if (modified_edges) list_edges(edges, false);
   for (auto *action : master->actions) action->topology_changed(*this);
 
   topology_valid = true;
