@@ -204,6 +204,15 @@ TEST(CockcroftLathamDamage, FailureStrain)
   MaterialPoint c(*material);
   for (int i = 0; i < 1000; i++) c.step_uniaxial_stress(-1.0, 5e-4);
   EXPECT_NEAR(value(c, "used"), 0.0, 1e-12);
+  // nor does flow under high pressure give back what was used before
+  MaterialPoint d(*material);
+  for (int i = 0; i < 100; i++) shear(d, 1e-3);
+  const double used = value(d, "used"), strain = value(d, "eplastic");
+  EXPECT_GT(used, 0.1);
+  set_triaxiality(d, -1.0);
+  for (int i = 0; i < 100; i++) shear(d, 1e-3);
+  EXPECT_GT(value(d, "eplastic"), strain + 0.09);
+  EXPECT_NEAR(value(d, "used"), used, 1e-12);
 }
 
 /* ---------------------------------------------------------------------- energy */
@@ -356,6 +365,28 @@ TEST(RankineDamage, FractureEnergyDoesNotDependOnTheSpacing)
       else
         EXPECT_LT(peak, 0.9 * ft);
     }
+}
+
+// pressure stores energy that a crack does not set free: shear alone makes it grow
+
+TEST(RankineDamage, GrowsUnderPressureByTheEnergyOfShear)
+{
+  const double GC = 100.0, ft = 3e6, h = 0.01;
+  std::ostringstream text;
+  text << CONCRETE << "damage rankine " << ft << " soften energy " << GC;
+  const auto material = make(text.str());
+  MaterialPoint p(*material, 1, h);
+  const double K = E_CONCRETE / (3 - 6 * NU_CONCRETE), G = E_CONCRETE / (2 + 2 * NU_CONCRETE);
+  const double volume = -1.2 * ft / K / 3.0, angle = 3.0 * ft / G / 2.0;
+  const Matrix L = {volume, angle, 0, angle, volume, 0, 0, 0, volume};
+  p.step(L.data(), 1.0);
+  const double r = value(p, "opening"), rf = value(p, "ductility");
+  EXPECT_LT(mean(p), -ft);
+  EXPECT_NEAR(r, 1.8, 0.01);    // (3 - 1.2) ft over the strength
+  // at the strength the energy of shear is 1/r^2 of this one
+  EXPECT_NEAR(rf, GC / (h * value(p, "shear_energy") / (r * r)), 1e-10 * rf);
+  EXPECT_NEAR(value(p, "shear_energy"), 9.0 * ft * ft / (2.0 * G), 1e-3 * 9.0 * ft * ft / G);
+  EXPECT_NEAR(value(p, "damage"), 1.0 - (rf - r) / (r * (rf - 1.0)), 1e-12);
 }
 
 TEST(CockcroftLathamDamage, FractureEnergyDoesNotDependOnTheSpacing)

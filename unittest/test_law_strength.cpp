@@ -671,6 +671,26 @@ TEST(SteinbergLaw, ModulusAndFlowStress)
   EXPECT_GT(137e9 * (1 / 0.12 - 1), 1e12);    // TPa are reached
 }
 
+// the flow stress begins where strain before the start has left it, and TREF is where G0 and Y0 are meant
+
+TEST(SteinbergLaw, PrestrainAndReferenceTemperature)
+{
+  const auto material =
+      make("density 8930 eos linear 137e9 strength steinberg 47.7e9 0.12e9 36 0.45 0.64e9 0 3.77e-4 "
+           "prestrain 0.05 tref 400 thermal constant 300");
+  MaterialPoint p(*material);
+  const double f = 1 + 3.77e-4 * 100;
+  const Matrix small = {0, 1e-6, 0, 1e-6, 0, 0, 0, 0, 0};
+  MaterialPoint q(p);
+  q.step(small.data(), 1.0);
+  EXPECT_NEAR(q.stress(3), 2e-6 * 47.7e9 * f, 1e-9 * 47.7e9);
+  for (int i = 0; i < 5; i++) {
+    shear(p, 0.01, 1.0);
+    const double Y = f * 0.12e9 * std::pow(1 + 36 * (p.history(0) + 0.05), 0.45);
+    EXPECT_NEAR(shear_stress(p), Y, 1e-10 * Y);
+  }
+}
+
 TEST(SteinbergLaw, Melting)
 {
   const auto material = make(SCG);
