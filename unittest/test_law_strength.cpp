@@ -610,6 +610,22 @@ TEST(ZerilliArmstrongLaw, AgainstDifferentialEquation)
   EXPECT_GT(std::log2(error[0] / error[2]), 2 * 0.85);
 }
 
+TEST(ZerilliArmstrongLaw, Melting)
+{
+  const std::string text =
+      "density 8960 eos linear 137e9 strength zerilli/armstrong 46e9 65e6 form fcc 890e6 2.8e-3 "
+      "1.15e-4 melt 1356 thermal constant ";
+  for (const char *T : {"1355", "1357"}) {
+    const auto material = make(text + T);
+    MaterialPoint p(*material);
+    for (int i = 0; i < 5; i++) shear(p, 0.02, 1.0);
+    if (T == std::string("1355"))
+      EXPECT_GT(p.vonmises(), 65e6);
+    else
+      EXPECT_LT(p.vonmises(), 1e-3);
+  }
+}
+
 TEST(ZerilliArmstrongLaw, BadInputIsRefused)
 {
   for (const char *text : {"", "form bcc 0 1 1 0 1", "form hcp 1"})
