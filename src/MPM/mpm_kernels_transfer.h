@@ -98,6 +98,15 @@ template <int L> MPM_INLINE Quads<L> load_numbers(const double *number, Index ro
   }
 }
 
+/** Products of weights over the axes are too large by the inverse of this, see SixfoldCubic. Double
+ *  precision makes good for it, on the way into a tile with the unit of masses. */
+template <int DIM, int ORDER> constexpr double weight_scale()
+{
+  if (!MIXED || ORDER < 3) return 1.0;
+  constexpr double one = 1.0 / SixfoldCubic::multiple;
+  return DIM == 3 ? one * one * one : one * one;
+}
+
 /** What stands before the entries of a tile in mixed precision: numbers of 4 bytes need a
  *  reference. Velocities, and with them momenta, are relative to a velocity v from within the tile,
  *  so that what all points have in common is kept in double precision, and masses relative to one
@@ -105,14 +114,15 @@ template <int L> MPM_INLINE Quads<L> load_numbers(const double *number, Index ro
  *  that is zero has no reference: the first transfer to it takes one. */
 struct MixedHeader {
   double v[4];    ///< zero where there is no axis
-  double mass;
+  double mass;    ///< of a point, times weight_scale()
   double room[3];
 
-  template <int DIM> static MPM_INLINE void first(double *tile, const PointRows &points, Index p)
+  template <int DIM, int ORDER>
+  static MPM_INLINE void first(double *tile, const PointRows &points, Index p)
   {
     MixedHeader *const header = reinterpret_cast<MixedHeader *>(tile);
     if (header->mass != 0.0) return;
-    header->mass = points.mass[p];
+    header->mass = weight_scale<DIM, ORDER>() * points.mass[p];
     for (int a = 0; a < DIM; a++) header->v[a] = points.v[3 * p + a];
   }
 };
@@ -180,7 +190,8 @@ template <int DIM, Shape SHAPE, int L> struct Frame {
       return fraction + BSpline<ORDER>::shift;
   }
 
-  /** Base nodes' places in the tile, in nodes; returns the fractions. */
+  /** Base nodes' places in the tile, in nodes; returns the fractions. Floats are rounded to multiples
+   *  of 2^-23, for which the distances from all nodes are exact. */
   MPM_INLINE Quads<L> locate(WideQuads<L> t, int *place) const
   {
     constexpr int sx = tile_stride_x(DIM, ORDER), sy = tile_stride_y(DIM, ORDER);
@@ -192,6 +203,8 @@ template <int DIM, Shape SHAPE, int L> struct Frame {
           (DIM == 3 ? node(2, index[4 * l + 2]) : 0);
     if constexpr (ORDER == 1)
       return max(convert<Real>(t - whole), Quads<L>::all(SMALLEST_FRACTION));
+    else if constexpr (MIXED)
+      return (convert<Real>(t - whole) + 1.0) - 1.0;
     else
       return convert<Real>(t - whole);
   }
@@ -267,12 +280,11 @@ MPM_INLINE void axis_weights(const PointRows &points, Index p, Quads<L> fraction
       gradients.set(w);
     }
   } else {
-    BSpline<ORDER>::weights(fraction, w);
-    // rounding of 1/6 must not make the sum of weights differ from one in the same way in each step
-    if constexpr (MIXED && ORDER == 3) w[2] = 1.0 - (w[0] + w[1] + w[3]);
+    using Spline = std::conditional_t<MIXED && ORDER == 3, SixfoldCubic, BSpline<ORDER>>;
+    Spline::weights(fraction, w);
     weights.set(w);
     if constexpr (GRADIENT && (ORDER > 1 || Weights::linear_gradients)) {
-      BSpline<ORDER>::gradients(fraction, w);
+      Spline::gradients(fraction, w);
       gradients.set(w);
     }
   }
@@ -577,7 +589,7 @@ struct PointsToNodes {
       if constexpr (MIXED) {
         const auto *header = reinterpret_cast<const MixedHeader *>(tile);
         v = repeat<4 * L>(WideQuads<1>::load(header->v));
-        inv_mass = 1.0 / header->mass;
+        inv_mass = weight_scale<DIM, ORDER>() / header->mass;
       }
     }
   };
@@ -848,7 +860,7 @@ struct PointsToNodes {
                   const int base[3], double *tile, int box[6])
   {
     if (first >= last) return;
-    if constexpr (MIXED) MixedHeader::first<DIM>(tile, points, first);
+    if constexpr (MIXED) MixedHeader::first<DIM, ORDER>(tile, points, first);
     const bool guarded = last <= points.guarded;
     const int rest = first + (last - first - !guarded) / POINTS * POINTS;
     if (rest > first) range<POINTS>(points, step, first, rest, base, tile, box);
@@ -1079,17 +1091,17 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
   /** Stores the columns of matrices in rows of nine (2d: four), from the first row to the last. In
    *  3d a column also writes one real behind it, which the next one overwrites; not so the last. */
   template <int L>
-  static MPM_INLINE void store_columns(double *rows, Index p, const Quads<L> *column)
+  static MPM_INLINE void store_columns(double *rows, Index p, const WideQuads<L> *column)
   {
     if constexpr (DIM == 2) {
-      convert<double>(shuffle<0, 1, 4, 5>(column[0], column[1])).store(rows + 4 * p);
+      shuffle<0, 1, 4, 5>(column[0], column[1]).store(rows + 4 * p);
     } else if constexpr (L == 1) {
-      convert<double>(column[0]).store(rows + 9 * p);
-      convert<double>(column[1]).store(rows + 9 * p + 3);
-      store_lanes<3>(rows + 9 * p + 6, convert<double>(column[2]));
+      column[0].store(rows + 9 * p);
+      column[1].store(rows + 9 * p + 3);
+      store_lanes<3>(rows + 9 * p + 6, column[2]);
     } else {
-      const Quads<L / 2> low[3] = {half<0>(column[0]), half<0>(column[1]), half<0>(column[2])};
-      const Quads<L / 2> high[3] = {half<1>(column[0]), half<1>(column[1]), half<1>(column[2])};
+      const WideQuads<L / 2> low[3] = {half<0>(column[0]), half<0>(column[1]), half<0>(column[2])};
+      const WideQuads<L / 2> high[3] = {half<1>(column[0]), half<1>(column[1]), half<1>(column[2])};
       store_columns<L / 2>(rows, p, low);
       store_columns<L / 2>(rows, p + L / 2, high);
     }
@@ -1152,7 +1164,8 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
         }
 
         if constexpr (GRADIENT) {
-          const double factor = mls ? BSpline<ORDER>::inv_moment * step.inv_h : step.inv_h;
+          const double factor =
+              weight_scale<DIM, ORDER>() * (mls ? BSpline<ORDER>::inv_moment * step.inv_h : step.inv_h);
           if constexpr (mls) {
             // moments about the point instead of the base node
             const P distance = P::load(in.fraction) + BSpline<ORDER>::shift;
@@ -1160,22 +1173,24 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
             D[1] -= broadcast<1>(distance) * v;
             if constexpr (DIM == 3) D[2] -= broadcast<2>(distance) * v;
           }
+          WideQuads<L> column[DIM];
           MPM_UNROLL
-          for (int a = 0; a < DIM; a++) D[a] = factor * D[a];
-          if (UPDATE && affine) store_columns<L>(points.C, p, D);
-          if (!affine || gradients) store_columns<L>(gradients, p - first, D);
+          for (int a = 0; a < DIM; a++) column[a] = factor * convert<double>(D[a]);
+          if (UPDATE && affine) store_columns<L>(points.C, p, column);
+          if (!affine || gradients) store_columns<L>(gradients, p - first, column);
         }
 
         if constexpr (UPDATE) {
           WideQuads<L> v_new = convert<double>(v);
-          if constexpr (MIXED) v_new += reference;
+          if constexpr (MIXED) v_new = reference + v_new * weight_scale<DIM, ORDER>();
           if constexpr (DIM == 2) v_new = blend<2>(v_new, WideQuads<L>{});
           const WideQuads<L> x = WideQuads<L>::load(in.x) + step.dt * v_new;
           outside = flag_outside(outside, TOTAL ? x - x : frame.position(x), range_of_bases);
           store_rows<3, L>(points.xnew, p, x);
           if constexpr (increment) {
             WideQuads<L> old = convert<double>(v_old);
-            if constexpr (MIXED) old = v_new - old;    // the tile has changes
+            if constexpr (MIXED)    // the tile has changes
+              old = v_new - old * weight_scale<DIM, ORDER>();
             v_new += step.flip * (load_wide<L, 3>(points.v, p) - old);
           }
           store_rows<DIM, L>(points.v, p, v_new);
