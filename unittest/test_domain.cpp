@@ -12,6 +12,7 @@
 // Domains of points (CPDI): their weights against quadrature, and the transfers of every
 // instruction set against the plain loops and against what every transfer must do.
 
+#include "kernel_testing.h"
 #include "mpm_domain.h"
 #include "mpm_kernels.h"
 
@@ -24,29 +25,9 @@
 #include <vector>
 
 using namespace MPM_NS;
+using namespace MPM_TEST;
 
 namespace {
-
-using Reals = std::vector<double>;
-std::mt19937 generator(20260704);
-
-double uniform(double low, double high)
-{
-  return std::uniform_real_distribution<double>(low, high)(generator);
-}
-void fill(Reals &a, double size = 1.0)
-{
-  for (double &x : a) x = uniform(-size, size);
-}
-double difference(const Reals &a, const Reals &b)
-{
-  double diff = 0.0, scale = 1e-300;
-  for (std::size_t i = 0; i < a.size(); i++) {
-    if (!(std::abs(a[i] - b[i]) <= diff)) diff = std::abs(a[i] - b[i]);
-    scale = std::max(scale, std::abs(b[i]));
-  }
-  return diff / scale;
-}
 
 /** Corners of a cube of half edge size, each moved by up to noise. */
 template <int DIM> void distorted(double size, double noise, double *x)
@@ -377,8 +358,9 @@ TEST_P(Kernels, MassMomentumAndForceAreConserved)
       size += 100.0 * points.step.h;
     }
     for (int r = 0; r < 4; r++) EXPECT_NEAR(sum[r], exact[r], 1e-14 * size);
-    if (force || !kernels.affine)
+    if (force || !kernels.affine) {
       for (double m : torque) EXPECT_NEAR(m, 0.0, 1e-13 * size * (1.0 + points.step.h));
+    }
   }
 }
 
@@ -410,10 +392,11 @@ TEST_P(Kernels, LinearFieldsAreExact)
       EXPECT_NEAR(points.xnew[3 * p + i], c.center[i] + points.step.dt * v, 1e-13 * size);
       for (int j = 0; j < dim; j++)
         EXPECT_NEAR(L[dim * dim * p + dim * j + i], B[3 * j + i], 1e-12 * (1.0 + size));
-      if (shape == CPDI2)    // corners move with the field
+      if (shape == CPDI2) {    // corners move with the field
         for (int k = 0; k < points.N; k++)
           EXPECT_NEAR(points.xnew[3 * p + i] + points.corners_new[points.row * p + dim * k + i],
                       c.x[dim * k + i] + points.step.dt * field(c.x + dim * k, i), 1e-13 * size);
+      }
     }
   }
 

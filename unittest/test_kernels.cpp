@@ -12,6 +12,7 @@
 // Transfer kernels of every instruction set: agreement with the reference, and what a transfer must
 // do whatever the implementation (conservation, exact fields, rows left alone).
 
+#include "kernel_testing.h"
 #include "mpm_batch.h"
 #include "mpm_kernels.h"
 #include "mpm_shape.h"
@@ -30,37 +31,14 @@
 #include <vector>
 
 using namespace MPM_NS;
+using namespace MPM_TEST;
 
 namespace {
 
-using Reals = std::vector<double>;
-std::mt19937 generator(20260704);
-
-double uniform(double low, double high)
-{
-  return std::uniform_real_distribution<double>(low, high)(generator);
-}
 int integer(int low, int high)
 {
   return std::uniform_int_distribution<int>(low, high)(generator);
 }
-void fill(Reals &a)
-{
-  for (double &x : a) x = uniform(-1.0, 1.0);
-}
-
-/** Largest difference, relative to the largest value. */
-double difference(const Reals &a, const Reals &b)
-{
-  if (a.size() != b.size()) return std::numeric_limits<double>::infinity();
-  double diff = 0.0, scale = std::numeric_limits<double>::min();
-  for (size_t i = 0; i < a.size(); i++) {
-    if (!(std::abs(a[i] - b[i]) <= diff)) diff = std::abs(a[i] - b[i]);
-    scale = std::max(scale, std::abs(b[i]));
-  }
-  return diff / scale;
-}
-
 /** Points of which the rows [first,last) lie in the tile of a block; arrays are not padded. */
 struct Points {
   int dim, order, first, last, n;

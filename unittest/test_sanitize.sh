@@ -35,7 +35,7 @@ if "$cxx" "${v3[@]}" -x c++ -c - -o /dev/null </dev/null 2>/dev/null &&
 fi
 
 # compile SOURCE OBJECT FLAGS...: when the object is missing or older than any source or header
-newest=$(ls -t "$src"/mpm_*.h "$src"/mpm_*.cpp "${BASH_SOURCE[0]}" | head -1)
+newest=$(ls -t "$src"/mpm_*.h "$src"/mpm_*.cpp "$root"/unittest/*_testing.h "${BASH_SOURCE[0]}" | head -1)
 compile() {
   local source=$1 object=$2
   shift 2
@@ -71,7 +71,7 @@ failed=0
 export ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1
 export UBSAN_OPTIONS=print_stacktrace=1
 unset GTEST_OUTPUT
-for name in shape grid kernels materials; do
+for name in shape grid kernels domain materials; do
   [ -e "$root/unittest/test_$name.cpp" ] || continue
   objects=()
   compile "$root/unittest/test_$name.cpp" "test_$name.o" -DMPM_SOURCE_DIR="\"$root\""

@@ -10,10 +10,7 @@
 
 #include "mpm_kernels_others.h"
 
-#if !defined(__has_builtin)
-#define __has_builtin(x) 0
-#endif
-#if __has_builtin(__builtin_shufflevector)
+#if defined(MPM_HAVE_VECTORS)
 
 #include "mpm_kernels_transfer.h"
 

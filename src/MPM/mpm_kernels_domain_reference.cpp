@@ -245,18 +245,9 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL> TransferKernels ke
 
 template <int DIM, Shape SHAPE> TransferKernels choose(Transfer transfer, bool split)
 {
-  switch (transfer) {
-    case PIC:
-      return kernels<DIM, SHAPE, PIC, 8>();
-    case FLIP:
-      return kernels<DIM, SHAPE, FLIP, 8>();
-    case AFLIP:
-      return kernels<DIM, SHAPE, AFLIP, 8>();
-    case APIC:    // the affine matrix is the gradient
-    case TPIC:
-      return split ? kernels<DIM, SHAPE, TPIC, 8>() : kernels<DIM, SHAPE, TPIC, 4>();
-  }
-  return TransferKernels();
+  return choose_gradient_transfer(transfer, split, [](auto constants) {
+    return kernels<DIM, SHAPE, constants.transfer, constants.nreal>();
+  });
 }
 
 }    // namespace

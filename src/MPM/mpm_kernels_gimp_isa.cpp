@@ -10,10 +10,7 @@
 
 #include "mpm_kernels_others.h"
 
-#if !defined(__has_builtin)
-#define __has_builtin(x) 0
-#endif
-#if __has_builtin(__builtin_shufflevector)
+#if defined(MPM_HAVE_VECTORS)
 
 #include "mpm_kernels_transfer.h"
 
@@ -21,18 +18,9 @@ namespace {
 
 template <int DIM> TransferKernels choose(Transfer transfer, bool split)
 {
-  switch (transfer) {
-    case PIC:
-      return kernels<DIM, GIMP, PIC, 8, false>();
-    case FLIP:
-      return kernels<DIM, GIMP, FLIP, 8, false>();
-    case AFLIP:
-      return kernels<DIM, GIMP, AFLIP, 8, false>();
-    case APIC:    // the affine matrix is the gradient
-    case TPIC:
-      return split ? kernels<DIM, GIMP, TPIC, 8, false>() : kernels<DIM, GIMP, TPIC, 4, false>();
-  }
-  return TransferKernels();
+  return choose_gradient_transfer(transfer, split, [](auto constants) {
+    return kernels<DIM, GIMP, constants.transfer, constants.nreal, false>();
+  });
 }
 
 }    // namespace

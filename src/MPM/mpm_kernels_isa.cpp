@@ -12,10 +12,7 @@
 
 #include "mpm_kernels_others.h"
 
-#if !defined(__has_builtin)
-#define __has_builtin(x) 0
-#endif
-#if !__has_builtin(__builtin_shufflevector)
+#if !defined(MPM_HAVE_VECTORS)
 
 // no vector extensions: the plain loops serve
 

@@ -19,6 +19,14 @@
 #define MPM_ISA base
 #endif
 
+// The vector extensions of mpm_vector.h: without them the plain loops serve, and the other files are
+// empty.
+#if defined(__has_builtin)
+#if __has_builtin(__builtin_shufflevector)
+#define MPM_HAVE_VECTORS
+#endif
+#endif
+
 namespace MPM_NS {
 const MPMKernels *mpm_kernels_reference();
 const MPMKernels *MPM_CONCAT(mpm_kernels_, MPM_ISA)();
@@ -40,4 +48,32 @@ TransferKernels MPM_CONCAT(mpm_kernels_gimp_, MPM_ISA)(int dim, Transfer, bool s
 TransferKernels MPM_CONCAT(mpm_kernels_domain_, MPM_ISA)(int dim, Shape, Transfer, bool split);
 TransferKernels mpm_kernels_domain_reference(int dim, Shape, Transfer, bool split);
 }    // namespace MPM_NS
+
+namespace {    // not shared between instruction sets
+
+template <MPM_NS::Transfer TRANSFER, int NREAL> struct TransferConstants {
+  static constexpr MPM_NS::Transfer transfer = TRANSFER;
+  static constexpr int nreal = NREAL;
+};
+
+/** make(TransferConstants) for functions whose affine matrix is the gradient: their apic is tpic. */
+template <class Make>
+MPM_NS::TransferKernels choose_gradient_transfer(MPM_NS::Transfer transfer, bool split, Make make)
+{
+  using namespace MPM_NS;
+  switch (transfer) {
+    case PIC:
+      return make(TransferConstants<PIC, 8>());
+    case FLIP:
+      return make(TransferConstants<FLIP, 8>());
+    case AFLIP:
+      return make(TransferConstants<AFLIP, 8>());
+    case APIC:
+    case TPIC:
+      return split ? make(TransferConstants<TPIC, 8>()) : make(TransferConstants<TPIC, 4>());
+  }
+  return TransferKernels();
+}
+
+}    // namespace
 #endif

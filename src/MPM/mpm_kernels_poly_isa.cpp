@@ -15,10 +15,7 @@ namespace MPM_NS {
 PolyKernels MPM_CONCAT(mpm_kernels_poly_, MPM_ISA)(int dim, Shape, int nreal);
 }
 
-#if !defined(__has_builtin)
-#define __has_builtin(x) 0
-#endif
-#if !__has_builtin(__builtin_shufflevector)
+#if !defined(MPM_HAVE_VECTORS)
 
 // no vector extensions: the plain loops serve
 
