@@ -13,8 +13,10 @@
 //
 // with what = p2g (points to tiles), g2p (tiles to points, in batches as for the constitutive law),
 // io (flush and load of all tiles), step (p2g, flush, solve_nodes, load, g2p).
+// cpdi and cpdi2 are domains of the size of the points, a little distorted.
 // Example: bench_kernels --benchmark_filter='step/AVX-512/3d/quadratic/apic/'
 
+#include "mpm_domain.h"
 #include "mpm_kernels.h"
 
 #include "benchmark/benchmark.h"
@@ -44,11 +46,12 @@ struct Block {
 /** A square or cube of jittered points, sorted, with its blocks. */
 struct Scene {
   int dim, n, nblocks;
-  std::vector<double> x, v, f, C, F, tau, vol0, mass;
+  std::vector<double> x, v, f, C, F, tau, vol0, mass, domain;
   std::vector<Block> blocks;
 
-  Scene(int dim, int order, int wanted) : dim(dim)
+  Scene(int dim, Shape shape, int margin, int wanted) : dim(dim)
   {
+    const int order = stencil_order(shape);
     const int ppc = 2;    // per axis
     const int cells = dim == 3 ? std::lround(std::cbrt(wanted / 8.0))
                                : std::lround(std::sqrt(wanted / 4.0));
@@ -94,6 +97,15 @@ struct Scene {
       for (int a = 0; a < 3; a++) x[3 * p + a] = H * points[p].t[a];
     for (auto *a : {&v, &f, &C, &tau})
       for (double &b : *a) b = 1e-6 * jitter(random);
+    if (has_domain(shape)) {
+      const int row = shape == CPDI ? dim * dim : dim << dim;
+      domain.resize(row * n);
+      for (int i = 0; i < row * n; i++) {
+        const int k = i % row / dim, d = i % row % dim;    // edge or corner, axis
+        const double sign = shape == CPDI ? k == d : PointDomain<3>::sign(k, d);
+        domain[i] = 0.5 * H / ppc * (sign + jitter(random));
+      }
+    }
 
     for (int p = 0; p < n;) {
       Block b;
@@ -104,7 +116,7 @@ struct Scene {
       int at[3] = {0, 0, 0};
       for (int a = dim - 1; a >= 0; a--) {
         at[a] = number % nside;
-        b.base[a] = at[a] * side - 1;
+        b.base[a] = at[a] * side - margin;
         number /= nside;
       }
       for (int s = 0; s < 27; s++) {
@@ -118,21 +130,23 @@ struct Scene {
 
   PointRows rows()
   {
-    return {x.data(),    v.data(),    f.data(), C.data(), tau.data(),
-            vol0.data(), mass.data(), x.data(), F.data(), n - 1};
+    PointRows r = {x.data(),    v.data(),    f.data(), C.data(), tau.data(),
+                   vol0.data(), mass.data(), x.data(), F.data(), n - 1};
+    r.domain = domain.data();
+    return r;
   }
 };
 
 /** The scene; only the last one is kept, to save memory. */
-Scene &scene(int dim, int order, int n)
+Scene &scene(int dim, Shape shape, int margin, int n)
 {
-  using Key = std::tuple<int, int, int>;
+  using Key = std::tuple<int, Shape, int>;
   static Key kept;
   static std::unique_ptr<Scene> scene;
-  if (!scene || kept != Key(dim, order, n)) {
+  if (!scene || kept != Key(dim, shape, n)) {
     scene.reset();
-    scene = std::make_unique<Scene>(dim, order, n);
-    kept = Key(dim, order, n);
+    scene = std::make_unique<Scene>(dim, shape, margin, n);
+    kept = Key(dim, shape, n);
   }
   return *scene;
 }
@@ -142,14 +156,15 @@ enum What { P2G_ONLY, G2P_ONLY, IO, STEP };
 void run(benchmark::State &state, What what, const MPMKernels *table, int dim, Shape shape,
          Transfer transfer, bool split, bool mixed, int wanted)
 {
-  Scene &s = scene(dim, shape, wanted);
   const TransferKernels k = mixed ? table->transfer_mixed(dim, shape, transfer, split, false)
                                   : table->transfer(dim, shape, transfer, split);
+  Scene &s = scene(dim, shape, k.margin, wanted);
   // small displacements: points stay in their tiles however often the benchmark repeats
   const TransferStep step = {H, 1.0 / H, {0.0, 0.0, 0.0}, 1e-9, 0.99};
   const PointRows rows = s.rows();
   std::vector<double> nodes(64 * static_cast<size_t>(k.nreal) * s.nblocks, 0.0);
-  alignas(64) static double to_nodes[8 * MAX_TILE_NODES], to_points[8 * MAX_TILE_NODES];
+  constexpr int most = std::max(MAX_TILE_NODES, domain_tile_nodes(3));
+  alignas(64) static double to_nodes[8 * most], to_points[8 * most];
   double L[9 * BATCH];
   std::vector<int> boxes(6 * s.blocks.size());
   std::fill(std::begin(to_nodes), std::end(to_nodes), 0.0);
@@ -206,13 +221,14 @@ void run(benchmark::State &state, What what, const MPMKernels *table, int dim, S
 
 int main(int argc, char **argv)
 {
-  static const char *const shapes[] = {"", "linear", "quadratic", "cubic"};
+  static const char *const shapes[] = {"",     "linear", "quadratic", "cubic",
+                                       "gimp", "cpdi",   "cpdi2"};
   static const char *const transfers[] = {"pic", "flip", "apic"};
   static const char *const whats[] = {"p2g", "g2p", "io", "step"};
 
   for (int wanted : {50000, 400000})
     for (int dim : {3, 2})
-      for (Shape shape : {LINEAR, QUADRATIC, CUBIC})
+      for (Shape shape : {LINEAR, QUADRATIC, CUBIC, CPDI, CPDI2})
         for (const char *isa : {"reference", "baseline", "avx2", "avx512"}) {
           const MPMKernels *table = MPMKernels::select(isa);
           if (!table) continue;

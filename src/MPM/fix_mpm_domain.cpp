@@ -24,6 +24,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -35,12 +36,40 @@ static constexpr double ROUND_OFF = 1.0e-9;
    half edges of the box that an undeformed point is, after the deformation F
 ------------------------------------------------------------------------- */
 
+template <int DIM> static void half_edges(double half, const double *aspect, const double *F, double *edge)
+{
+  for (int k = 0; k < DIM; k++)
+    for (int d = 0; d < DIM; d++) edge[DIM * k + d] = half * aspect[k] * F[3 * d + k];
+}
+
 void FixMPM::box_domain(int i, double *edge) const
 {
-  const int dim = lattice.dim;
   const double half = half_size(i) * lattice.h, *F = points->F[i];
-  for (int k = 0; k < dim; k++)
-    for (int d = 0; d < dim; d++) edge[dim * k + d] = half * aspect[k] * F[3 * d + k];
+  lattice.dim == 2 ? half_edges<2>(half, aspect, F, edge) : half_edges<3>(half, aspect, F, edge);
+}
+
+/* ----------------------------------------------------------------------
+   how far a domain with these half edges or corners reaches from its point
+------------------------------------------------------------------------- */
+
+template <int DIM> static void reach_of_edges(const double *edge, double *low, double *high)
+{
+  for (int d = 0; d < DIM; d++) {
+    high[d] = 0.0;
+    for (int k = 0; k < DIM; k++) high[d] += std::fabs(edge[DIM * k + d]);
+    low[d] = -high[d];
+  }
+}
+
+template <int DIM> static void reach_of_corners(const double *x, double *low, double *high)
+{
+  for (int d = 0; d < DIM; d++) {
+    low[d] = high[d] = 0.0;
+    for (int k = 0; k < 1 << DIM; k++) {
+      low[d] = std::min(low[d], x[DIM * k + d]);
+      high[d] = std::max(high[d], x[DIM * k + d]);
+    }
+  }
 }
 
 /* ----------------------------------------------------------------------
@@ -80,24 +109,16 @@ double FixMPM::domain_corners(int i, double *x, double *w) const
 
 void FixMPM::domain_reach(int i, double low[3], double high[3]) const
 {
-  const int dim = lattice.dim;
-  for (int d = 0; d < dim; d++) low[d] = high[d] = 0.0;
-  if (extent == PARALLELEPIPED) {
-    const double *edge = &domains[dim * dim * (std::size_t) i];
-    for (int k = 0; k < dim; k++)
-      for (int d = 0; d < dim; d++) high[d] += std::fabs(edge[dim * k + d]);
-    for (int d = 0; d < dim; d++) {
-      high[d] /= lattice.h;
-      low[d] = -high[d];
-    }
-    return;
+  const double *row = extent == PARALLELEPIPED ? &domains[domain_size() * (std::size_t) i] : corners[i];
+  low[2] = high[2] = 0.0;
+  if (extent == PARALLELEPIPED)
+    lattice.dim == 2 ? reach_of_edges<2>(row, low, high) : reach_of_edges<3>(row, low, high);
+  else
+    lattice.dim == 2 ? reach_of_corners<2>(row, low, high) : reach_of_corners<3>(row, low, high);
+  for (int d = 0; d < lattice.dim; d++) {
+    low[d] /= lattice.h;
+    high[d] /= lattice.h;
   }
-  const double *x = corners[i];
-  for (int k = 0; k < 1 << dim; k++)
-    for (int d = 0; d < dim; d++, x++) {
-      low[d] = std::min(low[d], *x / lattice.h);
-      high[d] = std::max(high[d], *x / lattice.h);
-    }
 }
 
 /* ----------------------------------------------------------------------
@@ -153,26 +174,42 @@ void FixMPM::update_domains()
   if (!has_domains()) return;
   const int size = domain_size();
   if (extent == PARALLELEPIPED) domains.resize(size * (std::size_t) atom->nmax);
-  double low[3], high[3];
 
   if (topology_valid) {
     int outside = 0, all;
-    for (const auto &a : active) {
-      double first[3], end[3];    // of corners, in node spacings
-      for (int d = 0; d < lattice.dim; d++) {
-        first[d] = grid->side * (grid->blocks[a.slot].b[d] + a.low[d]);
-        end[d] = grid->side * (grid->blocks[a.slot].b[d] + a.high[d] + 1) - 1.0 - ROUND_OFF;
-      }
-      for (int k = a.first_run; k < a.last_run; k++)
-        for (int i = runs[k].first; i < runs[k].last; i++) {
-          if (extent == PARALLELEPIPED) box_domain(i, &domains[size * (std::size_t) i]);
-          domain_reach(i, low, high);
-          for (int d = 0; d < lattice.dim; d++) {
-            const double t = (atom->x[i][d] - lattice.origin[d]) / lattice.h;
-            outside |= !(t + low[d] >= first[d]) | !(t + high[d] < end[d]);
-          }
+    const auto look = [&](auto dimension) {
+      constexpr int DIM = dimension;
+      double volume = 0.0, half = 0.0;    // of the point before: most have the same
+      for (const auto &a : active) {
+        double first[DIM], end[DIM], low[DIM], high[DIM];
+        for (int d = 0; d < DIM; d++) {
+          const int b = grid->blocks[a.slot].b[d], n = grid->side;
+          first[d] = lattice.origin[d] + lattice.h * (n * (b + a.low[d]) + ROUND_OFF);
+          end[d] = lattice.origin[d] + lattice.h * (n * (b + a.high[d] + 1) - 1.0 - ROUND_OFF);
         }
-    }
+        for (int k = a.first_run; k < a.last_run; k++)
+          for (int i = runs[k].first; i < runs[k].last; i++) {
+            if (extent == PARALLELEPIPED) {
+              if (axisymmetric || atom->vfrac[i] != volume) {
+                volume = atom->vfrac[i];
+                half = half_size(i) * lattice.h;
+              }
+              double *edge = &domains[DIM * DIM * (std::size_t) i];
+              half_edges<DIM>(half, aspect, points->F[i], edge);
+              reach_of_edges<DIM>(edge, low, high);
+            } else {
+              reach_of_corners<DIM>(corners[i], low, high);
+            }
+            const double *x = atom->x[i];
+            for (int d = 0; d < DIM; d++)
+              outside |= !(x[d] + low[d] >= first[d]) | !(x[d] + high[d] < end[d]);
+          }
+      }
+    };
+    if (lattice.dim == 2)
+      look(std::integral_constant<int, 2>());
+    else
+      look(std::integral_constant<int, 3>());
     MPI_Allreduce(&outside, &all, 1, MPI_INT, MPI_BOR, world);
     if (!all) return;
     topology_valid = false;

@@ -47,16 +47,11 @@ template <int DIM> struct PointDomain {
       det = dot(r, dual);
     }
     const T factor = (T{} + 1.0 / corners) / det;
-    for (int c = 0; c < corners; c++)
-      for (int d = 0; d < DIM; d++) {
-        T a = sign(c, 0) * r[d], b = sign(c, 0) * dual[d];
-        for (int k = 1; k < DIM; k++) {
-          a = a + sign(c, k) * r[DIM * k + d];
-          b = b + sign(c, k) * dual[DIM * k + d];
-        }
-        x[DIM * c + d] = a;
-        g[DIM * c + d] = factor * b;
-      }
+    for (T &a : dual) a = factor * a;
+    for (int d = 0; d < DIM; d++) {
+      signed_sums(r + d, x + d);
+      signed_sums(dual + d, g + d);
+    }
     return double(corners) * det;
   }
 
@@ -70,6 +65,23 @@ template <int DIM> struct PointDomain {
   }
 
  private:
+  /** sum[DIM*c] = sum over axes k of sign(c,k) a[DIM*k]; opposite corners have opposite sums. */
+  template <class T> [[gnu::always_inline]] static void signed_sums(const T *a, T *sum)
+  {
+    const T plus = a[0] + a[DIM], minus = a[0] - a[DIM];
+    if constexpr (DIM == 2) {
+      sum[2 * DIM] = -minus;
+      sum[3 * DIM] = plus;
+      sum[DIM] = minus;
+      sum[0] = -plus;
+    } else {
+      sum[4 * DIM] = a[2 * DIM] - plus;
+      sum[5 * DIM] = a[2 * DIM] + minus;
+      sum[6 * DIM] = a[2 * DIM] - minus;
+      sum[7 * DIM] = a[2 * DIM] + plus;
+      for (int c = 0; c < 4; c++) sum[c * DIM] = -sum[(7 - c) * DIM];
+    }
+  }
   template <class T> [[gnu::always_inline]] static void cross(const T *a, const T *b, T *c)
   {
     c[0] = a[1] * b[2] - a[2] * b[1];
@@ -105,74 +117,84 @@ template <int DIM> struct PointDomain {
     return 4.0 * J;
   }
 
-  /** The product of the coordinates whose bit is set in m. */
-  [[gnu::always_inline]] static double power(int m, const double *at)
+  /** Sum and difference of the numbers of corners along one axis. */
+  template <int BIT, class T> [[gnu::always_inline]] static void to_modes(T *mode)
   {
-    return ((m & 1) ? at[0] : 1.0) * ((m & 2) ? at[1] : 1.0) * ((m & 4) ? at[2] : 1.0);
+    for (int c = 0; c < 8; c++)
+      for (int d = 0; d < 3 && !(c & BIT); d++) {
+        const T low = mode[3 * c + d], high = mode[3 * (c + BIT) + d];
+        mode[3 * c + d] = low + high;
+        mode[3 * (c + BIT) + d] = high - low;
+      }
+  }
+  /** And back, sums of the numbers of modes with the signs of the corners. */
+  template <int BIT, int WIDTH, class T> [[gnu::always_inline]] static void to_corners(T *corner)
+  {
+    for (int c = 0; c < 8; c++)
+      for (int d = 0; d < WIDTH && !(c & BIT); d++) {
+        const T even = corner[WIDTH * c + d], odd = corner[WIDTH * (c + BIT) + d];
+        corner[WIDTH * c + d] = even - odd;
+        corner[WIDTH * (c + BIT) + d] = even + odd;
+      }
   }
 
-  /** By two Gauss points along each axis, which are exact: with the columns x,k of the map's
-   *  gradient, J grad M_c = sum_k M_c,k (x,k+1 x x,k+2), and integrands are cubic along each axis. */
-  template <class T> [[gnu::always_inline]] static T hexahedron(const T *x, T *w, T *g)
+  /** a x b + c x d */
+  template <class T>
+  [[gnu::always_inline]] static void crosses(const T *a, const T *b, const T *c, const T *d, T *sum)
   {
-    constexpr double GAUSS = 0.57735026918962576451;
+    T first[3], second[3];
+    cross(a, b, first);
+    cross(c, d, second);
+    for (int k = 0; k < 3; k++) sum[k] = first[k] + second[k];
+  }
 
+  /** The map is x = .. + a xi + b eta + c zeta + d eta zeta + e zeta xi + f xi eta + g xi eta zeta. Along
+   *  axis k, J grad M_c = sum_k M_c,k (x,k+1 x x,k+2) with the columns x,k of the map's gradient, and J is
+   *  their triple product. Odd powers of a coordinate have no mean, even ones 1/3. */
+  template <class T> [[gnu::always_inline]] static T hexahedron(const T *x, T *w, T *grad)
+  {
     // coefficients of 1, xi, eta, xi eta, zeta, xi zeta, ...: bits of the number are the powers
     T mode[24];
     for (int k = 0; k < 24; k++) mode[k] = 0.125 * x[k];
-    for (int bit = 1; bit < 8; bit *= 2)
-      for (int c = 0; c < 8; c++)
-        if (!(c & bit))
-          for (int d = 0; d < 3; d++) {
-            const T low = mode[3 * c + d], high = mode[3 * (c + bit) + d];
-            mode[3 * c + d] = low + high;
-            mode[3 * (c + bit) + d] = high - low;
-          }
+    to_modes<1>(mode), to_modes<2>(mode), to_modes<4>(mode);
+    const T *a = mode + 3, *b = mode + 6, *f = mode + 9, *c = mode + 12, *e = mode + 15,
+            *d = mode + 18, *g = mode + 21;
 
-    // integrals of J times these powers; of cofactors times those of their derivatives
+    T ab[3], bc[3], ca[3], fe[3], df[3], ed[3], xy[3], zx[3], yz[3];
+    cross(a, b, ab), cross(b, c, bc), cross(c, a, ca);
+    cross(f, e, fe), cross(d, f, df), cross(e, d, ed);
+    crosses(b, d, e, a, xy), crosses(d, c, a, f, zx), crosses(c, e, f, b, yz);
+
+    // means of J times powers, and of cofactors times the derivatives of powers
+    constexpr double third = 1.0 / 3.0, ninth = 1.0 / 9.0, n27 = 1.0 / 27.0;
     T moment[8], flux[24];
-    for (T &m : moment) m = T{};
-    for (T &f : flux) f = T{};
-    for (int q = 0; q < 8; q++) {
-      const double at[3] = {GAUSS * sign(q, 0), GAUSS * sign(q, 1), GAUSS * sign(q, 2)};
-      T column[9], cofactor[9];
-      for (int k = 0; k < 3; k++) {
-        const int i = (k + 1) % 3, j = (k + 2) % 3, K = 1 << k, I = 1 << i, B = 1 << j;
-        for (int d = 0; d < 3; d++)
-          column[3 * k + d] = mode[3 * K + d] + at[i] * mode[3 * (K + I) + d] +
-              at[j] * mode[3 * (K + B) + d] + (at[i] * at[j]) * mode[21 + d];
-      }
-      for (int k = 0; k < 3; k++)
-        cross(column + 3 * ((k + 1) % 3), column + 3 * ((k + 2) % 3), cofactor + 3 * k);
-      const T J = dot(column, cofactor);
-      for (int m = 0; m < 8; m++) {
-        moment[m] = moment[m] + power(m, at) * J;
-        for (int k = 0; k < 3; k++)    // d power / d xi_k
-          if (m >> k & 1)
-            for (int d = 0; d < 3; d++)
-              flux[3 * m + d] = flux[3 * m + d] + power(m - (1 << k), at) * cofactor[3 * k + d];
-      }
+    moment[0] = dot(a, bc) + third * (dot(a, fe) + dot(b, df) + dot(c, ed));
+    moment[1] = third * (dot(e, ab) + dot(f, ca)) + ninth * dot(g, yz);
+    moment[2] = third * (dot(d, ab) + dot(f, bc)) + ninth * dot(g, zx);
+    moment[4] = third * (dot(d, ca) + dot(e, bc)) + ninth * dot(g, xy);
+    moment[3] = ninth * (dot(g, ab) - dot(a, df) - dot(b, fe)) - n27 * dot(g, ed);
+    moment[5] = ninth * (dot(g, ca) - dot(a, ed) - dot(c, fe)) - n27 * dot(g, df);
+    moment[6] = ninth * (dot(g, bc) - dot(b, ed) - dot(c, df)) - n27 * dot(g, fe);
+    moment[7] = (-2.0 * n27) * dot(d, fe);
+    for (int k = 0; k < 3; k++) {
+      flux[k] = flux[21 + k] = T{};
+      flux[3 + k] = bc[k] + third * fe[k];
+      flux[6 + k] = ca[k] + third * df[k];
+      flux[12 + k] = ab[k] + third * ed[k];
+      flux[9 + k] = third * xy[k];
+      flux[15 + k] = third * zx[k];
+      flux[18 + k] = third * yz[k];
     }
 
     // M_c = sum over powers of the product of signs, / 8
-    const T volume = moment[0], inv = (T{} + 0.125) / volume;
-    for (int c = 0; c < 8; c++) {
-      w[c] = inv * moment[c];
-      for (int d = 0; d < 3; d++) g[3 * c + d] = inv * flux[3 * c + d];
+    const T inv = (T{} + 0.125) / moment[0];
+    for (int k = 0; k < 8; k++) {
+      w[k] = inv * moment[k];
+      for (int i = 0; i < 3; i++) grad[3 * k + i] = inv * flux[3 * k + i];
     }
-    for (int bit = 1; bit < 8; bit *= 2)
-      for (int c = 0; c < 8; c++)
-        if (!(c & bit)) {
-          const T low = w[c], high = w[c + bit];
-          w[c] = low - high;
-          w[c + bit] = low + high;
-          for (int d = 0; d < 3; d++) {
-            const T l = g[3 * c + d], h = g[3 * (c + bit) + d];
-            g[3 * c + d] = l - h;
-            g[3 * (c + bit) + d] = l + h;
-          }
-        }
-    return volume;
+    to_corners<1, 1>(w), to_corners<2, 1>(w), to_corners<4, 1>(w);
+    to_corners<1, 3>(grad), to_corners<2, 3>(grad), to_corners<4, 3>(grad);
+    return 8.0 * moment[0];
   }
 };
 

@@ -14,10 +14,7 @@
 
 #include "mpm_kernels_others.h"
 
-#if !defined(__has_builtin)
-#define __has_builtin(x) 0
-#endif
-#if __has_builtin(__builtin_shufflevector)
+#if defined(MPM_HAVE_VECTORS)
 
 #include "mpm_kernels_transfer.h"
 
@@ -43,92 +40,181 @@ template <int DIM, int STRIDE> MPM_INLINE Vec<4> strided(const double *p)
   return quad(p[0], p[STRIDE], DIM == 3 ? p[2 * STRIDE] : 0.0, 0.0);
 }
 
-/** The domains of up to GROUP points; [.][point]. */
-template <int DIM, Shape SHAPE> struct Domains {
+/** Places in the tile in node spacings from its first node. */
+struct TileFrame {
+  double origin[3], low[3], inv_h;
+
+  TileFrame(const TransferStep &step, const int *base) : inv_h(step.inv_h)
+  {
+    for (int d = 0; d < 3; d++) origin[d] = step.origin[d];
+    for (int d = 0; d < 3; d++) low[d] = base[d];
+  }
+};
+
+/** Four numbers of each of the points side by side to rows of four. */
+template <int N>
+MPM_INLINE void transpose(Vec<N> a, Vec<N> b, Vec<N> c, Vec<N> d, double (*row)[4])
+{
+  if constexpr (N == 2) {
+    for (int l = 0; l < 2; l++) quad(a.lane(l), b.lane(l), c.lane(l), d.lane(l)).store(row[l]);
+  } else {
+    const auto ab0 = shuffle<0, 4, 2, 6>(a, b), ab1 = shuffle<1, 5, 3, 7>(a, b);
+    const auto cd0 = shuffle<0, 4, 2, 6>(c, d), cd1 = shuffle<1, 5, 3, 7>(c, d);
+    const Vec<N> rows[4] = {shuffle<0, 1, 4, 5>(ab0, cd0), shuffle<0, 1, 4, 5>(ab1, cd1),
+                            shuffle<2, 3, 6, 7>(ab0, cd0), shuffle<2, 3, 6, 7>(ab1, cd1)};
+    MPM_UNROLL
+    for (int l = 0; l < 4; l++) {
+      if constexpr (N == 4) {
+        rows[l].store(row[l]);
+      } else {
+        half<0>(rows[l]).store(row[l]);
+        half<1>(rows[l]).store(row[l + 4]);
+      }
+    }
+  }
+}
+
+/** The domains of up to GROUP points; [.][point]. STENCIL: also what Stencil needs. */
+template <int DIM, Shape SHAPE, bool STENCIL> struct Domains {
+  using V = Vec<REGISTER>;
   static constexpr int N = 1 << DIM;
   static constexpr int ROW = SHAPE == CPDI ? DIM * DIM : N * DIM;
   alignas(64) double in[ROW][GROUP];
-  alignas(64) double shift[DIM][GROUP];    ///< of the center from the place of the point
-  alignas(64) double x[N * DIM][GROUP];    ///< corners relative to the center
-  alignas(64) double w[N][GROUP];
-  alignas(64) double g[N * DIM][GROUP];
+  alignas(64) double center[DIM][GROUP];    ///< in space
+  alignas(64) double place[DIM][GROUP];     ///< and in the tile
+  alignas(64) double x[N * DIM][GROUP];     ///< corners relative to the center
+  alignas(64) double wg[N][GROUP][4];       ///< weight and its gradient
+  alignas(64) double f[N * DIM][GROUP];     ///< of corners from their base nodes, in node spacings
+  int corner[N][GROUP];                     ///< base node of the corner, index in the tile
+  alignas(64) double low[DIM][GROUP], high[DIM][GROUP];    ///< extreme base nodes of corners
+
+  // Stencil: its first node, index of that in the tile, index of base nodes of corners in it; weights of
+  // nodes along the last axis, and their products along the others
+  alignas(64) double start[DIM][GROUP];
+  int place_of_start[GROUP], number[N][GROUP];
+  alignas(64) double line[N][2][GROUP], plane[N][N / 2][GROUP];
+  alignas(64) double wide[GROUP];    ///< 1: a corner reaches other nodes
 
   /** The n points from p on. Returns true when weights are not positive. */
-  __attribute__((noinline)) bool set(const double *domain, Index p, int n)
+  __attribute__((noinline)) bool set(const PointRows &points, Index p, int n, const TileFrame &frame)
   {
-    using V = Vec<REGISTER>;
     for (int l = 0; l < GROUP; l++) {
-      const double *row = domain + ROW * (p + (l < n ? l : n - 1));
+      const Index i = p + (l < n ? l : n - 1);
+      const double *row = points.domain + ROW * i;
+      MPM_UNROLL
       for (int k = 0; k < ROW; k++) in[k][l] = row[k];
+      MPM_UNROLL
+      for (int d = 0; d < DIM; d++) center[d][l] = points.x[3 * i + d];
     }
     V bad{};
     for (int l = 0; l < GROUP; l += REGISTER) {
-      V a[N * DIM], b[N * DIM], c[N];
+      V a[ROW], g[N * DIM], w[N], size;
+      MPM_UNROLL
       for (int k = 0; k < ROW; k++) a[k] = V::load(in[k] + l);
       if constexpr (SHAPE == CPDI) {
-        V corner[N * DIM];
-        bad = flag_outside(bad, PointDomain<DIM>::box(a, corner, b), 1.0e300);
-        for (int k = 0; k < N * DIM; k++) corner[k].store(x[k] + l);
-      } else {
-        bad = flag_outside(bad, PointDomain<DIM>::free(a, c, b), 1.0e300);
-        for (int d = 0; d < DIM; d++) {
-          V center = c[0] * a[d];
-          for (int k = 1; k < N; k++) center += c[k] * a[DIM * k + d];
-          center.store(shift[d] + l);
-          for (int k = 0; k < N; k++) (a[DIM * k + d] - center).store(x[DIM * k + d] + l);
-        }
+        V corners[N * DIM];
+        size = PointDomain<DIM>::box(a, corners, g);
+        MPM_UNROLL
         for (int k = 0; k < N; k++) {
-          bad = flag_outside(bad, c[k], 1.0e300);
-          c[k].store(w[k] + l);
+          w[k] = V::all(1.0 / N);
+          MPM_UNROLL
+          for (int d = 0; d < DIM; d++) corners[DIM * k + d].store(x[DIM * k + d] + l);
         }
+      } else {
+        size = PointDomain<DIM>::free(a, w, g);
+        MPM_UNROLL
+        for (int d = 0; d < DIM; d++) {
+          V shift = w[0] * a[d];
+          MPM_UNROLL
+          for (int k = 1; k < N; k++) shift += w[k] * a[DIM * k + d];
+          (V::load(center[d] + l) + shift).store(center[d] + l);
+          MPM_UNROLL
+          for (int k = 0; k < N; k++) (a[DIM * k + d] - shift).store(x[DIM * k + d] + l);
+        }
+        MPM_UNROLL
+        for (int k = 0; k < N; k++) bad = flag_outside(bad, w[k], 1.0e300);
       }
-      for (int k = 0; k < N * DIM; k++) b[k].store(g[k] + l);
+      bad = flag_outside(bad, size, 1.0e300);
+      MPM_UNROLL
+      for (int k = 0; k < N; k++)
+        transpose(w[k], g[DIM * k], g[DIM * k + 1], DIM == 3 ? g[DIM * k + DIM - 1] : V{}, wg[k] + l);
+      locate(l, frame);
     }
     double sum = 0.0;
     for (int l = 0; l < REGISTER; l++) sum += bad.lane(l);
     return sum != 0.0;
   }
 
-  MPM_INLINE double weight(int c, int l) const { return SHAPE == CPDI ? 1.0 / N : w[c][l]; }
-
-  /** Place of the center of point l. */
-  MPM_INLINE Vec<4> center(const double *row, int l) const
+ private:
+  /** Where the corners of a vector of points are. */
+  MPM_INLINE void locate(int l, const TileFrame &frame)
   {
-    const Vec<4> place = strided<DIM, 1>(row);
-    return SHAPE == CPDI ? place : place + strided<DIM, GROUP>(shift[0] + l);
+    constexpr double in_tile[3] = {domain_stride_x(DIM), domain_stride_y(DIM), 1.0};
+    constexpr double in_stencil[3] = {DIM == 3 ? 48.0 : 16.0, DIM == 3 ? 16.0 : 8.0, 8.0};
+    V index[N], near[N], first{}, reach{};
+    int ints[REGISTER];
+    MPM_UNROLL
+    for (int d = 0; d < DIM; d++) {
+      const V at = (V::load(center[d] + l) - frame.origin[d]) * frame.inv_h - frame.low[d];
+      at.store(place[d] + l);
+      V whole[N], least, most;
+      MPM_UNROLL
+      for (int k = 0; k < N; k++) {
+        const V t = at + frame.inv_h * V::load(x[DIM * k + d] + l);
+        whole[k] = truncate(t, ints);
+        (t - whole[k]).store(f[DIM * k + d] + l);
+        least = k ? min(least, whole[k]) : whole[k];
+        most = k ? max(most, whole[k]) : whole[k];
+        index[k] = d ? index[k] + in_tile[d] * whole[k] : in_tile[d] * whole[k];
+      }
+      least.store(low[d] + l);
+      most.store(high[d] + l);
+      if constexpr (STENCIL) {
+        // three nodes from the start on are in the tile
+        const V begin = min(least, V::all(domain_tile_side(DIM) - 3));
+        MPM_UNROLL
+        for (int k = 0; k < N; k++) {
+          const V there = in_stencil[d] * (whole[k] - begin);
+          near[k] = d ? near[k] + there : there;
+        }
+        first += in_tile[d] * begin;
+        reach = max(reach, most - begin);
+        begin.store(start[d] + l);
+      }
+    }
+    MPM_UNROLL
+    for (int k = 0; k < N; k++) truncate(index[k], corner[k] + l);
+    if constexpr (STENCIL) {
+      truncate(first, place_of_start + l);
+      flag_outside(V{}, reach, 1.5).store(wide + l);
+      MPM_UNROLL
+      for (int k = 0; k < N; k++) {
+        truncate(near[k], number[k] + l);
+        const V fx = V::load(f[DIM * k] + l), last = V::load(f[DIM * k + DIM - 1] + l);
+        (1.0 - last).store(line[k][0] + l);
+        last.store(line[k][1] + l);
+        if constexpr (DIM == 2) {
+          (1.0 - fx).store(plane[k][0] + l);
+          fx.store(plane[k][1] + l);
+        } else {
+          const V fy = V::load(f[DIM * k + 1] + l), gx = 1.0 - fx, gy = 1.0 - fy;
+          (gx * gy).store(plane[k][0] + l);
+          (gx * fy).store(plane[k][1] + l);
+          (fx * gy).store(plane[k][N / 2 - 2] + l);
+          (fx * fy).store(plane[k][N / 2 - 1] + l);
+        }
+      }
+    }
   }
 };
 
-/** Where points and corners are in a tile, in node spacings from its first node. */
-template <int DIM> struct TileFrame {
-  Vec<4> origin, low;
-  double inv_h;
-
-  MPM_INLINE TileFrame(const TransferStep &step, const int *base) :
-      origin(strided<DIM, 1>(step.origin)),
-      low(quad(base[0], base[1], DIM == 3 ? base[2] : 0.0, 0.0)), inv_h(step.inv_h)
-  {
-  }
-
-  MPM_INLINE Vec<4> position(Vec<4> x) const { return (x - origin) * inv_h - low; }
-};
-
-/** Index of a corner's base node in the tile; t becomes the whole part, fraction the rest. */
-template <int DIM> MPM_INLINE Index base_index(Vec<4> &t, double *fraction)
-{
-  int index[4];
-  const Vec<4> whole = truncate(t, index);
-  (t - whole).store(fraction);
-  t = whole;
-  return index[0] * domain_stride_x(DIM) + index[1] * domain_stride_y(DIM) +
-      (DIM == 3 ? index[2] : 0);
-}
-
-/** Adds w_n (q + i A_x + j A_y + k A_z) to the nodes n of a cell, i, j, k = 0, 1. */
+/** Adds w_n (q + i A_x + j A_y + k A_z) to the nodes n of a cell, i, j, k = 0, 1; fractions are a group
+ *  apart. */
 template <int DIM, bool AFFINE, int NREAL, int WIDTH>
-MPM_INLINE void add_to_cell(double *node, const double *f, Vec<WIDTH> q, const Vec<WIDTH> *A)
+MPM_INLINE void add_to_cell(double *node, const double *fraction, Vec<WIDTH> q, const Vec<WIDTH> *A)
 {
   constexpr int sx = NREAL * domain_stride_x(DIM), sy = NREAL * domain_stride_y(DIM);
+  const double f[3] = {fraction[0], fraction[GROUP], DIM == 3 ? fraction[2 * GROUP] : 0.0};
   MPM_UNROLL
   for (int i = 0; i < 2; i++) {
     const double wx = i ? f[0] : 1.0 - f[0];
@@ -152,11 +238,12 @@ MPM_INLINE void add_to_cell(double *node, const double *f, Vec<WIDTH> q, const V
   }
 }
 
-/** Interpolation between the nodes of a cell. */
+/** Interpolation between the nodes of a cell; fractions are a group apart. */
 template <int DIM, int NREAL, int WIDTH>
-MPM_INLINE Vec<WIDTH> in_cell(const double *node, const double *f)
+MPM_INLINE Vec<WIDTH> in_cell(const double *node, const double *fraction)
 {
   using V = Vec<WIDTH>;
+  const double f[3] = {fraction[0], fraction[GROUP], DIM == 3 ? fraction[2 * GROUP] : 0.0};
   constexpr int sx = NREAL * domain_stride_x(DIM), sy = NREAL * domain_stride_y(DIM);
   V plane[2];
   MPM_UNROLL
@@ -173,6 +260,68 @@ MPM_INLINE Vec<WIDTH> in_cell(const double *node, const double *f)
   return plane[0] + f[0] * (plane[1] - plane[0]);
 }
 
+/** Weights W and gradients G of a domain that reaches at most three nodes along each axis, at these
+ *  nodes: what corners have in common is added up before it goes to the tile. A row of nodes along the last
+ *  axis is two cells of two nodes: CPUs are slow to load what was just stored in two pieces. */
+template <int DIM> struct Stencil {
+  static constexpr int ROWS = DIM == 3 ? 9 : 3;
+  alignas(64) double real[ROWS][16];    ///< [row][8 * cell + 4 * node + (W, G_x, G_y, G_z)]
+
+  MPM_INLINE void clear()
+  {
+    for (int r = 0; r < ROWS; r++) {
+      Vec<8>{}.store(real[r]);
+      Vec<8>{}.store(real[r] + 8);
+    }
+  }
+
+  /** Adds corner c of point l. */
+  template <class Domains> MPM_INLINE void add(const Domains &domains, int c, int l)
+  {
+    double *const cell = real[0] + domains.number[c][l];
+    const Vec<4> wg = Vec<4>::load(domains.wg[c][l]);
+    const Vec<8> pair = join(domains.line[c][0][l] * wg, domains.line[c][1][l] * wg);
+    MPM_UNROLL
+    for (int n = 0; n < 1 << (DIM - 1); n++) {
+      double *const node = cell + 16 * (DIM == 3 ? 3 * (n >> 1) + (n & 1) : n);
+      (Vec<8>::load(node) + domains.plane[c][n][l] * pair).store(node);
+    }
+  }
+
+  /** To the nodes from the lowest on: W (q + i A_x + j A_y + k A_z) + G_x S_x + G_y S_y + G_z S_z. */
+  template <bool AFFINE, bool GRADIENT, int NREAL, int WIDTH>
+  MPM_INLINE void scatter(double *lowest, Vec<WIDTH> q, const Vec<WIDTH> *A, const Vec<WIDTH> *S)
+  {
+    using V = Vec<WIDTH>;
+    constexpr int tx = NREAL * domain_stride_x(DIM), ty = NREAL * domain_stride_y(DIM);
+    MPM_UNROLL
+    for (int r = 0; r < ROWS; r++)    // the node that both cells have
+      (Vec<4>::load(real[r] + 4) + Vec<4>::load(real[r] + 8)).store(real[r] + 8);
+    MPM_UNROLL
+    for (int i = 0; i < 3; i++) {
+      MPM_UNROLL
+      for (int j = 0; j < ROWS / 3; j++) {
+        const double *row = real[ROWS / 3 * i + j];
+        double *node = lowest + tx * i + (DIM == 3 ? ty * j : 0);
+        V Q = q;
+        if (AFFINE && i) Q += double(i) * A[0];
+        if (AFFINE && j) Q += double(j) * A[1];
+        MPM_UNROLL
+        for (int k = 0; k < 3; k++, node += NREAL) {
+          const double *wg = row + (k ? 4 + 4 * k : 0);
+          if (AFFINE && k) Q += A[DIM - 1];
+          V sum = V::load(node) + wg[0] * Q;
+          if constexpr (GRADIENT) {
+            MPM_UNROLL
+            for (int a = 0; a < DIM; a++) sum += wg[1 + a] * S[a];
+          }
+          sum.store(node);
+        }
+      }
+    }
+  }
+};
+
 /** P2G of what PARTS says. */
 template <int DIM, Shape SHAPE, bool AFFINE, int NREAL, int PARTS>
 void p2g(const PointRows &rows, const TransferStep &transfer, int first, int last,
@@ -185,21 +334,35 @@ void p2g(const PointRows &rows, const TransferStep &transfer, int first, int las
   // copies, so that the compiler knows that no store changes them
   const PointRows points = rows;
   const TransferStep step = transfer;
-  const TileFrame<DIM> frame(step, base);
+  const TileFrame frame(step, base);
   double *const entry = tile + (NREAL == 8 && PARTS == FORCE ? 4 : 0);
   const double scale = NREAL == 4 ? step.dt : 1.0;
-  Domains<DIM, SHAPE> domains;
+  Domains<DIM, SHAPE, true> domains;
+  Stencil<DIM> stencil[GROUP];
   constexpr int N = domains.N;
-  Vec<4> lowest = Vec<4>::all(1.0e6), highest = Vec<4>::all(-1.0e6);
+  Vec<GROUP> lowest[DIM], highest[DIM];
+  for (int d = 0; d < DIM; d++) {
+    lowest[d] = Vec<GROUP>::all(1.0e6);
+    highest[d] = Vec<GROUP>::all(-1.0e6);
+  }
 
   for (Index p = first; p < last; p += GROUP) {
     const int n = last - p < GROUP ? last - p : GROUP;
-    domains.set(points.domain, p, n);
+    domains.set(points, p, n, frame);
+    for (int d = 0; d < DIM; d++) {
+      lowest[d] = min(lowest[d], Vec<GROUP>::load(domains.low[d]));
+      highest[d] = max(highest[d], Vec<GROUP>::load(domains.high[d]));
+    }
+    // corner by corner: one addition to a stencil must not wait for the one before
+    for (int l = 0; l < n; l++) stencil[l].clear();
+    for (int c = 0; c < N; c++)
+      for (int l = 0; l < n; l++)
+        if (__builtin_expect(domains.wide[l] == 0.0, 1)) stencil[l].add(domains, c, l);
     for (int l = 0; l < n; l++) {
       const Index i = p + l;
-      const Vec<4> center = frame.position(domains.center(points.x + 3 * i, l));
 
-      Vec<4> q{}, C[DIM], fq{}, T[DIM];
+      // momentum and force of the point, and their changes from node to node
+      Vec<4> q{}, C[DIM] = {}, fq{}, T[DIM] = {};
       if constexpr (momentum) {
         const double m = points.mass[i], *v = points.v + 3 * i;
         q = quad(m * v[0], m * v[1], DIM == 3 ? m * v[2] : 0.0, m);
@@ -215,47 +378,55 @@ void p2g(const PointRows &rows, const TransferStep &transfer, int first, int las
         T[1] = factor * quad(t[3], t[1], DIM == 3 ? t[5] : 0.0, 0.0);
         if constexpr (DIM == 3) T[2] = factor * quad(t[4], t[5], t[2], 0.0);
       }
-
-      for (int c = 0; c < N; c++) {
-        double f[4];
-        Vec<4> t = center + frame.inv_h * strided<DIM, GROUP>(domains.x[DIM * c] + l);
-        lowest = min(lowest, t);
-        highest = max(highest, t);
-        double *const node = entry + NREAL * base_index<DIM>(t, f);
-
-        const double w = domains.weight(c, l);
-        Vec<4> corner = q, fc = w * fq;
-        V A[DIM];
-        if constexpr (affine) {
-          const Vec<4> distance = t - center;
-          corner += broadcast<0>(distance) * C[0] + broadcast<1>(distance) * C[1];
-          if constexpr (DIM == 3) corner += broadcast<2>(distance) * C[2];
-          for (int a = 0; a < DIM; a++) {
-            if constexpr (both)
-              A[a] = join(w * C[a], Vec<4>{});
-            else
-              A[a] = w * C[a];
-          }
-        }
-        if constexpr (force)
-          for (int a = 0; a < DIM; a++) fc += domains.g[DIM * c + a][l] * T[a];
+      V value, A[DIM], S[DIM];
+      if constexpr (both)
+        value = join(q, fq);
+      else if constexpr (momentum && force)
+        value = q + fq;
+      else
+        value = momentum ? q : fq;
+      MPM_UNROLL
+      for (int a = 0; a < DIM; a++) {
         if constexpr (both)
-          add_to_cell<DIM, affine, NREAL>(node, f, join(w * corner, fc), A);
-        else if constexpr (momentum && force)
-          add_to_cell<DIM, affine, NREAL>(node, f, w * corner + fc, A);
-        else if constexpr (momentum)
-          add_to_cell<DIM, affine, NREAL>(node, f, w * corner, A);
+          A[a] = join(C[a], Vec<4>{}), S[a] = join(Vec<4>{}, T[a]);
         else
-          add_to_cell<DIM, affine, NREAL>(node, f, fc, A);
+          A[a] = C[a], S[a] = T[a];
+      }
+
+      if (__builtin_expect(domains.wide[l] == 0.0, 1)) {
+        if constexpr (affine) {
+          MPM_UNROLL
+          for (int a = 0; a < DIM; a++)
+            value += (domains.start[a][l] - domains.place[a][l]) * A[a];
+        }
+        stencil[l].template scatter<affine, force, NREAL>(entry + NREAL * domains.place_of_start[l], value,
+                                                         A, S);
+        continue;
+      }
+      for (int c = 0; c < N; c++) {
+        const double *const wg = domains.wg[c][l];
+        V corner = value, wA[DIM];
+        if constexpr (affine)
+          for (int a = 0; a < DIM; a++) {
+            const int k = DIM * c + a;
+            corner += (frame.inv_h * domains.x[k][l] - domains.f[k][l]) * A[a];
+            wA[a] = wg[0] * A[a];
+          }
+        corner = wg[0] * corner;
+        if constexpr (force)
+          for (int a = 0; a < DIM; a++) corner += wg[1 + a] * S[a];
+        add_to_cell<DIM, affine, NREAL>(entry + NREAL * domains.corner[c][l], domains.f[DIM * c] + l,
+                                        corner, wA);
       }
     }
   }
 
-  for (int a = 0; a < DIM && first < last; a++) {
-    const int low = static_cast<int>(lowest.lane(a)), high = static_cast<int>(highest.lane(a));
-    if (low < box[a]) box[a] = low;
-    if (high > box[3 + a]) box[3 + a] = high;
-  }
+  for (int d = 0; d < DIM && first < last; d++)
+    for (int l = 0; l < GROUP; l++) {
+      const int low = static_cast<int>(lowest[d].lane(l)), high = static_cast<int>(highest[d].lane(l));
+      if (low < box[d]) box[d] = low;
+      if (high > box[3 + d]) box[3 + d] = high;
+    }
 }
 
 /** G2P and velocity gradient. */
@@ -267,33 +438,30 @@ int gather(const PointRows &rows, const TransferStep &transfer, int first, int l
   constexpr int WIDTH = increment ? 8 : 4;
   const PointRows points = rows;
   const TransferStep step = transfer;
-  const TileFrame<DIM> frame(step, base);
-  Domains<DIM, SHAPE> domains;
+  const TileFrame frame(step, base);
+  Domains<DIM, SHAPE, false> domains;
   constexpr int N = domains.N;
   bool bad = false;
   Vec<4> outside{};
 
   for (Index p = first; p < last; p += GROUP) {
     const int n = last - p < GROUP ? last - p : GROUP;
-    bad |= domains.set(points.domain, p, n);
+    bad |= domains.set(points, p, n, frame);
     for (int l = 0; l < n; l++) {
       const Index i = p + l;
-      const Vec<4> center = domains.center(points.x + 3 * i, l);
-      const Vec<4> place = frame.position(center);
       Vec<WIDTH> v{};
       Vec<4> D[DIM] = {}, at[N];
       MPM_UNROLL
       for (int c = 0; c < N; c++) {
-        double f[4];
-        Vec<4> t = place + frame.inv_h * strided<DIM, GROUP>(domains.x[DIM * c] + l);
-        const double *node = tile + NREAL * base_index<DIM>(t, f);
-        const Vec<WIDTH> here = in_cell<DIM, NREAL, WIDTH>(node, f);
+        const Vec<WIDTH> here = in_cell<DIM, NREAL, WIDTH>(tile + NREAL * domains.corner[c][l],
+                                                           domains.f[DIM * c] + l);
         if constexpr (increment)
           at[c] = half<0>(here);
         else
           at[c] = here;
-        v += domains.weight(c, l) * here;
-        for (int a = 0; a < DIM; a++) D[a] += domains.g[DIM * c + a][l] * at[c];
+        const double *const wg = domains.wg[c][l];
+        v += wg[0] * here;
+        for (int a = 0; a < DIM; a++) D[a] += wg[1 + a] * at[c];
       }
 
       if (UPDATE && is_affine(TRANSFER))
@@ -310,7 +478,9 @@ int gather(const PointRows &rows, const TransferStep &transfer, int first, int l
           mean = v;
         // the point goes to its center if its corners may move along
         const bool stays = SHAPE == CPDI2 && !points.corners_new;
-        const Vec<4> xnew = (stays ? strided<DIM, 1>(points.x + 3 * i) : center) + step.dt * mean;
+        const Vec<4> xnew = (stays ? strided<DIM, 1>(points.x + 3 * i)
+                                   : strided<DIM, GROUP>(domains.center[0] + l)) +
+            step.dt * mean;
         outside = flag_outside(outside, blend<DIM>(xnew - xnew, Vec<4>{}), 1.0);
         if (DIM == 2) points.xnew[3 * i + 2] = points.x[3 * i + 2];
         store_lanes<DIM>(points.xnew + 3 * i, xnew);
@@ -375,19 +545,9 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL> TransferKernels do
 
 template <int DIM, Shape SHAPE> TransferKernels choose(Transfer transfer, bool split)
 {
-  switch (transfer) {
-    case PIC:
-      return domain_kernels<DIM, SHAPE, PIC, 8>();
-    case FLIP:
-      return domain_kernels<DIM, SHAPE, FLIP, 8>();
-    case AFLIP:
-      return domain_kernels<DIM, SHAPE, AFLIP, 8>();
-    case APIC:    // the affine matrix is the gradient
-    case TPIC:
-      return split ? domain_kernels<DIM, SHAPE, TPIC, 8>() :
-                     domain_kernels<DIM, SHAPE, TPIC, 4>();
-  }
-  return TransferKernels();
+  return choose_gradient_transfer(transfer, split, [](auto constants) {
+    return domain_kernels<DIM, SHAPE, constants.transfer, constants.nreal>();
+  });
 }
 
 }    // namespace
