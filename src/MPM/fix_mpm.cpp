@@ -46,7 +46,7 @@ static constexpr double MAX_NODE = 4.0e6;
 FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), shape(QUADRATIC), bernstein(false), mixed_precision(false), extent(NO_SIZE), aspect{1.0, 1.0, 1.0}, transfer(APIC),
     flip(0.0), poly(false), refinement(LUMPED), order(1), total(false), most_distorted(0.0), axisymmetric(false), scheme(USL), stress(DEFAULT_STRESS), locking(NO_CURE), light(0.0), policy(ERROR),
-    delete_failed(false), modified_edges(false), every(1), dt_check(true), grid(nullptr), C(nullptr), Q(nullptr), corners(nullptr), X(nullptr), R(nullptr),
+    delete_failed(false), modified_edges(false), every(1), dt_check(true), keep_old(false), grid(nullptr), C(nullptr), Q(nullptr), corners(nullptr), X(nullptr), R(nullptr),
     waiting(nullptr), ledger_on(false), points(nullptr), halo(nullptr),
     kernels(nullptr), batch_kernels(nullptr), driver(false), topology_valid(false),
     watch_drift(false), drifted(0), refer_anew(false), want_sort(false), switches(0), switches_sorted(0),
@@ -406,6 +406,7 @@ void FixMPM::init()
       if (field->axisymmetric != axisymmetric)
         error->all(FLERR, "All fix mpm instances must be axisymmetric, or none: {} and {} differ", id,
                    field->id);
+    for (auto *field : fields) field->keep_old = false;
     for (auto *action : actions) action->init_action();
     if (neighbor->includegroup) {
       bool known = false;
@@ -462,10 +463,10 @@ void FixMPM::init()
 
 void FixMPM::setup_pre_neighbor()
 {
-  // the ledger needs forces and old velocities on the nodes, USF and USAVG sum forces alone; the
-  // kernel that interpolates the hoop rate knows long records only
+  // the ledger and some node actions need forces and old velocities on the nodes, USF and USAVG sum
+  // forces alone; the kernel that interpolates the hoop rate knows long records only
 
-  const bool split = ledger_on || stress_before() || (axisymmetric && scheme != USL);
+  const bool split = ledger_on || keep_old || stress_before() || (axisymmetric && scheme != USL);
   const auto choose = total ? kernels->transfer_total : kernels->transfer;
   kernel = mixed_precision ? kernels->transfer_mixed(lattice.dim, shape, transfer, split, total)
                            : choose(lattice.dim, kernel_shape(), transfer, split);

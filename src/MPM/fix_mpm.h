@@ -114,6 +114,8 @@ class FixMPM : public Fix {
   bool modified_edges;    ///< functions next to fixed faces need no nodes outside
   int every;           ///< steps of LAMMPS in a step of the cycle
   bool dt_check;       ///< stop when the time step is above the stable limit
+  bool keep_old;       ///< a node action reads what nodes had before the momentum equation; set by
+                       ///< its init_action()
 
   // state of the step, for node actions and output
 

@@ -13,11 +13,23 @@
      div [eps u + (1 - eps) v] = 0,    U - v = eps (u - v)
 
    for the velocity u of the fluid in the pores, v of the grains, and the porosity eps. So laws of drag
-   are written for the superficial slip U - v, with the force that remains when the fluid does not
-   accelerate and does not weigh: that of the gradient of pressure along a bed included ("model B",
-   Z.Y. Zhou, S.B. Kuang, K.W. Chu, A.B. Yu, J. Fluid Mech. 661 (2010) 482). The weight of the displaced
-   fluid is added. All of these are impulses between a grain and the nodes around it, in proportion
-   to N_i m_i: opposite to round-off, and the same change of velocity for nodes that are nearly empty.
+   are written for the superficial slip U - v, with the force K (U - v) that remains when the fluid does
+   not accelerate and does not weigh: that of the gradient of pressure along a bed included ("model B",
+   Z.Y. Zhou, S.B. Kuang, K.W. Chu, A.B. Yu, J. Fluid Mech. 661 (2010) 482).
+
+   To this comes the force of Archimedes in fluid that accelerates,
+
+     F = K (U - v) + rho V (dU/dt - g).
+
+   dU/dt follows from the internal forces, which nodes know, and from the forces -F of the grains, whose
+   share phi of the volume is that of all fluid, since the field has the mass of full space:
+   dU/dt = A - phi F/(rho V) with the acceleration A before these, so that
+
+     F = [K (U - v) + rho V (A - g)]/(1 + phi),
+
+   which takes phi as nodes mix the forces. All of these are impulses between a grain and the
+   nodes around it, in proportion to N_i m_i: opposite to round-off, and the same change of velocity
+   for nodes that are nearly empty.
 ------------------------------------------------------------------------- */
 
 #include "fix_mpm_immersed.h"
@@ -92,7 +104,10 @@ FixMPMImmersed::FixMPMImmersed(LAMMPS *lmp, int narg, char **arg) :
                "Fix mpm/immersed needs a positive viscosity for its drag: use drag none "
                "without");
   if (domain->dimension == 2)
-    error->all(FLERR, "Fix mpm/immersed requires 3d: its laws of drag are those of spheres");
+    error->all(FLERR,
+               "Fix mpm/immersed requires 3d: drag on spheres, and the share of space that they "
+               "take up, have no meaning per thickness of a 2d box: use a 3d box that is periodic "
+               "and a few node spacings thick");
   if (!atom->radius_flag || !atom->rmass_flag)
     error->all(FLERR,
                "Fix mpm/immersed needs the radius of grains: use atom_style hybrid sphere mpm");
@@ -146,6 +161,8 @@ void FixMPMImmersed::init_action()
                "Fix mpm/immersed {} cannot be used with transfer fmpm of fix mpm {}: use xpic", id,
                field_id);
 
+  field->keep_old = true;    // for the acceleration of the fluid
+
   // Who moves the grains, and which of the two half steps with forces are still to come?
 
   movers.clear();
@@ -194,18 +211,20 @@ bool FixMPMImmersed::is_grain(int i) const
 }
 
 /* ----------------------------------------------------------------------
-   f(node, N_i) for the nodes around a grain; false: some of them are not there
+   f(node, N_i, r) for the nodes around a grain, r from the grain in node spacings; false: some of them
+   are not there
 ------------------------------------------------------------------------- */
 
 template <class F> bool FixMPMImmersed::visit(int i, const F &f) const
 {
   const auto &grid = *field->grid;
   int first[3], k[3];
-  double w[3][4];
+  double w[3][4], t[3];
   int n = 0;
-  for (int d = 0; d < 3; d++)
-    n = field->shape_weights((atom->x[i][d] - grid.lattice.origin[d]) / grid.lattice.h, first[d],
-                             w[d]);
+  for (int d = 0; d < 3; d++) {
+    t[d] = (atom->x[i][d] - grid.lattice.origin[d]) / grid.lattice.h;
+    n = field->shape_weights(t[d], first[d], w[d]);
+  }
   // one look-up per grain, neighbors from the table of its first block
   int b[3];
   for (int d = 0; d < 3; d++) b[d] = first[d] >> grid.shift_bits;
@@ -216,15 +235,17 @@ template <class F> bool FixMPMImmersed::visit(int i, const F &f) const
     for (k[1] = 0; k[1] < n; k[1]++)
       for (k[2] = 0; k[2] < n; k[2]++) {
         int side[3], in[3];
+        double r[3];
         for (int d = 0; d < 3; d++) {
           const int index = first[d] + k[d];
+          r[d] = index - t[d];
           side[d] = (index >> grid.shift_bits) - b[d] + 1;
           in[d] = index & (grid.side - 1);
         }
         const int slot = block.slot[9 * side[0] + 3 * side[1] + side[2]];
         if (slot < 0) return false;
         f((int64_t) slot * NODES_PER_BLOCK + (in[0] * 4 + in[1]) * 4 + in[2],
-          w[0][k[0]] * w[1][k[1]] * w[2][k[2]]);
+          w[0][k[0]] * w[1][k[1]] * w[2][k[2]], r);
       }
   return true;
 }
@@ -238,7 +259,7 @@ void FixMPMImmersed::couple_topology()
   int missing = 0, any;
   if (!field->topology_stale())
     for (int i = 0; i < atom->nlocal && !missing; i++)
-      if (is_grain(i) && !visit(i, [](int64_t, double) {
+      if (is_grain(i) && !visit(i, [](int64_t, double, const double *) {
           }))
         missing = 1;
   MPI_Allreduce(&missing, &any, 1, MPI_INT, MPI_MAX, world);
@@ -268,6 +289,29 @@ void FixMPMImmersed::extend_topology(FixMPM &extended)
       for (b[1] = lo[1]; b[1] <= hi[1]; b[1]++)
         for (b[2] = lo[2]; b[2] <= hi[2]; b[2]++) grid.activate(b);
   }
+}
+
+/* ----------------------------------------------------------------------
+   Share of space that grains take up around one of them, of the volume V, from the mapped share and its
+   first moment sum N r. Both mappings smooth it over a width s, s^2 = (p+1)/6 h^2 for splines of degree p,
+   so that at a distance x inside of the end of a bed is left the part A = Phi(x/s), the normal
+   distribution. Its logarithmic slope tells where that is: q = s |grad A|/A = Phi'/Phi falls from 0.8 at
+   the end to none inside, and A = 1 - 0.64 q^1.12 within 0.01. What the slope would be by chance, for
+   grains at random places, int |grad K|^2 V/phi with the kernel K of the width s, is no end.
+------------------------------------------------------------------------- */
+
+double FixMPMImmersed::end_of_bed(double solid, const double *moment, double volume) const
+{
+  if (!(solid > 0.0)) return solid;
+  const double h = field->lattice.h, p1 = field->shape + 1.0, width = sqrt(p1 / 6.0);
+  const double slope = width * 12.0 / p1 / solid;    // sum N r^2 = (p+1)/12, of moment
+  const double chance =
+      3.0 / 16.0 * pow(MY_PI, -1.5) * volume / (h * h * h * width * width * width);
+  const double q2 =
+      slope * slope * (moment[0] * moment[0] + moment[1] * moment[1] + moment[2] * moment[2]) -
+      chance / solid;
+  if (!(q2 > 0.0)) return solid;
+  return solid / (1.0 - 0.64 * pow(std::min(q2, 2.0 / MY_PI), 0.56));
 }
 
 /* ----------------------------------------------------------------------
@@ -314,6 +358,38 @@ double FixMPMImmersed::drag_coefficient(double diameter, double slip, double sol
 }
 
 /* ----------------------------------------------------------------------
+   Is there fluid on all sides of a node? If not, a wall may hold it, or the node next to it together
+   with its image. Walls act later, and what the momentum equation gives such nodes now is the
+   unbalanced pressure on the wall.
+------------------------------------------------------------------------- */
+
+bool FixMPMImmersed::is_inner(int64_t node)
+{
+  enum { INNER = 1, OUTER };
+  char &known = inner[node];
+  if (known) return known == INNER;
+  auto &grid = *field->grid;
+  const double h = field->lattice.h, least = 0.6 * density * h * h * h;
+  const auto full = [&](int64_t n) {
+    return grid.nodes()[n * grid.nreal + 3] > least;
+  };
+  const auto &block = grid.blocks[node / NODES_PER_BLOCK];
+  const int n = (int) (node % NODES_PER_BLOCK), in[3] = {n / 16, n / 4 % 4, n % 4};
+  bool all = full(node);
+  for (int k = 0; k < 6 && all; k++) {
+    int to[3] = {in[0], in[1], in[2]}, side[3] = {1, 1, 1};
+    const int d = k / 2;
+    to[d] += 2 * (k % 2) - 1;
+    side[d] += (to[d] > 3) - (to[d] < 0);
+    to[d] &= 3;
+    const int slot = block.slot[9 * side[0] + 3 * side[1] + side[2]];
+    all = slot >= 0 && full((int64_t) slot * NODES_PER_BLOCK + (to[0] * 4 + to[1]) * 4 + to[2]);
+  }
+  known = all ? INNER : OUTER;
+  return all;
+}
+
+/* ----------------------------------------------------------------------
    grains with fluid around them. In half a cell above the surface, buoyancy and drag fall to zero
 ------------------------------------------------------------------------- */
 
@@ -321,25 +397,35 @@ void FixMPMImmersed::find_grains(double dt)
 {
   grains.clear();
   entries.clear();
+  inner.assign(field->grid->nnodes(), 0);
   const double h = field->lattice.h, full = density * h * h * h;
-  const double *records = field->grid->nodes();
+  const double *records = field->grid->nodes();    // vx vy vz m, old velocity
   const int nreal = field->grid->nreal;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!is_grain(i)) continue;
     Grain g;
     g.i = i;
     g.first = (int) entries.size();
-    double mass = 0.0;
-    visit(i, [&](int64_t node, double w) {
-      const double m = w * records[node * nreal + 3];
+    double mass = 0.0, inside = 0.0;
+    for (int d = 0; d < 3; d++) g.gain[d] = 0.0;
+    visit(i, [&](int64_t node, double w, const double *r) {
+      const double *const record = records + node * nreal;
+      const double m = w * record[3];
       mass += m;
-      entries.push_back({node, w, m});
+      const bool deep = is_inner(node);
+      entries.push_back({node, w, m, {r[0], r[1], r[2]}, deep});
+      if (!deep) return;
+      inside += m;
+      for (int d = 0; d < 3; d++) g.gain[d] += m * (record[d] - record[4 + d]);
     });
     if (!(mass > 1.0e-10 * full)) {
       entries.resize(g.first);
       continue;
     }
     for (std::size_t e = g.first; e < entries.size(); e++) entries[e].share /= mass;
+    g.part = inside > 0.0 ? 0.0 : 1.0;    // without an acceleration its term is left out
+    if (inside > 0.0)
+      for (int d = 0; d < 3; d++) g.gain[d] /= inside;
     g.immersed = std::min(1.0, 2.0 * mass / full);
     g.mass = HUGE_VAL;
     double ahead = 0.0;
@@ -350,10 +436,10 @@ void FixMPMImmersed::find_grains(double dt)
       }
     const double r = atom->radius[i], volume = 4.0 / 3.0 * MY_PI * r * r * r;
     for (int d = 0; d < 3; d++) {
-      g.buoyancy[d] = -dt * g.immersed * density * volume * gravity[d];
+      g.buoyancy[d] = g.immersed * density * volume * (g.gain[d] - dt * gravity[d]);
       g.velocity[d] = atom->v[i][d];
       if (std::isfinite(g.mass))
-        g.velocity[d] += (g.buoyancy[d] + ahead * dt * force->ftm2v * atom->f[i][d]) / g.mass;
+        g.velocity[d] += ahead * dt * force->ftm2v * atom->f[i][d] / g.mass;
     }
     grains.push_back(g);
   }
@@ -386,36 +472,46 @@ void FixMPMImmersed::act(double dt, Stage stage)
   grid.copy_aliases();
   find_grains(dt);
   sums.assign(NREAL * grid.nnodes(), 0.0);
-  entries.push_back({-1, 0.0, 0.0});    // so that each grain has an end
+  entries.push_back({-1, 0.0, 0.0, {0.0, 0.0, 0.0}, false});    // so that each grain has an end
   const auto around = [&](std::size_t g, const auto &f) {
     const int last = g + 1 < grains.size() ? grains[g + 1].first : (int) entries.size() - 1;
     for (int e = grains[g].first; e < last; e++) f(entries[e], &sums[NREAL * entries[e].node]);
   };
 
   const double h = field->lattice.h, inverse = 1.0 / (h * h * h);
-  const bool dense = law == ERGUN || law == GIDASPOW || law == DIFELICE;
-  if (dense) {
-    for (std::size_t g = 0; g < grains.size(); g++) {
-      const double r = atom->radius[grains[g].i];
-      const double share = inverse * 4.0 / 3.0 * MY_PI * r * r * r;
-      around(g, [&](const Entry &e, double *sum) {
-        sum[0] += e.w * share;
-      });
-    }
-    sum_nodes(0, 1);
+  const auto volume = [&](const Grain &g) {
+    const double r = atom->radius[g.i];
+    return 4.0 / 3.0 * MY_PI * r * r * r;
+  };
+  for (std::size_t g = 0; g < grains.size(); g++) {
+    const double share = inverse * volume(grains[g]);
+    around(g, [&](const Entry &e, double *sum) {
+      sum[0] += e.w * share;
+    });
   }
+  sum_nodes(0, 1);
 
   for (std::size_t k = 0; k < grains.size(); k++) {
     Grain &g = grains[k];
-    double solid = 0.0, slip[3] = {-g.velocity[0], -g.velocity[1], -g.velocity[2]};
+    double solid = 0.0, moment[3] = {0.0, 0.0, 0.0}, slip[3] = {0.0, 0.0, 0.0};
     around(k, [&](const Entry &e, const double *sum) {
       const double *record = grid.nodes() + e.node * nreal;
       solid += e.w * sum[0];
-      for (int d = 0; d < 3; d++) slip[d] += e.share * record[d];
+      for (int d = 0; d < 3; d++) {
+        moment[d] += e.w * sum[0] * e.r[d];
+        slip[d] += e.share * (e.inner ? record[d] : record[4 + d] + g.gain[d]);
+      }
     });
-    g.coefficient = g.immersed *
+    if (g.part != 1.0) g.part = 1.0 / (1.0 + solid);
+    for (int d = 0; d < 3; d++) {
+      g.buoyancy[d] *= g.part;
+      g.velocity[d] += g.buoyancy[d] / g.mass;
+      slip[d] -= g.velocity[d];
+    }
+    g.coefficient = g.part * g.immersed *
         drag_coefficient(2.0 * atom->radius[g.i],
-                         sqrt(slip[0] * slip[0] + slip[1] * slip[1] + slip[2] * slip[2]), solid);
+                         sqrt(slip[0] * slip[0] + slip[1] * slip[1] + slip[2] * slip[2]),
+                         end_of_bed(solid, moment, volume(g)));
   }
   for (std::size_t k = 0; k < grains.size(); k++)
     around(k, [&](const Entry &e, double *sum) {
@@ -432,7 +528,9 @@ void FixMPMImmersed::act(double dt, Stage stage)
     around(k, [&](const Entry &e, const double *sum) {
       const double *record = grid.nodes() + e.node * nreal;
       if (!(record[3] > 0.0)) return;
-      for (int d = 0; d < 3; d++) slip[d] += e.share * (record[d] + sum[1 + d] / record[3]);
+      for (int d = 0; d < 3; d++)
+        slip[d] +=
+            e.share * ((e.inner ? record[d] : record[4 + d] + g.gain[d]) + sum[1 + d] / record[3]);
       slowing += e.share * sum[4] / record[3];
     });
     const double factor = dt * g.coefficient / (1.0 + dt * slowing);
@@ -440,8 +538,8 @@ void FixMPMImmersed::act(double dt, Stage stage)
     for (int d = 0; d < 3; d++) {
       drag[d] = factor * slip[d];
       atom->v[g.i][d] += (drag[d] + g.buoyancy[d]) / g.mass;
-      force_now[d] += drag[d];
-      force_now[3 + d] += g.buoyancy[d];
+      force_now[d] += drag[d] / g.part;
+      force_now[3 + d] += drag[d] + g.buoyancy[d] - drag[d] / g.part;
     }
     around(k, [&](const Entry &e, double *sum) {
       for (int d = 0; d < 3; d++) sum[5 + d] -= e.share * drag[d];
@@ -481,6 +579,6 @@ double FixMPMImmersed::compute_vector(int i)
 
 double FixMPMImmersed::memory_usage()
 {
-  return (double) (sums.capacity() * sizeof(double) + grains.capacity() * sizeof(Grain) +
-                   entries.capacity() * sizeof(Entry));
+  return (double) (inner.capacity() + sums.capacity() * sizeof(double) +
+                   grains.capacity() * sizeof(Grain) + entries.capacity() * sizeof(Entry));
 }

@@ -52,13 +52,17 @@ class FixMPMImmersed : public Fix, public MPMNodeAction {
     int i, first;          // atom, and its first stencil entry
     double mass;           // infinite: held
     double immersed;       // share of it that is in the fluid
+    double gain[3];        // of the velocity of the fluid in this step
     double velocity[3];    // with forces, before drag
-    double coefficient;    // force of drag / velocity [mass/time]
-    double buoyancy[3];    // impulse
+    double part;           // 1/(1 + share of volume of the grains)
+    double coefficient;    // part of the force of drag / velocity [mass/time]
+    double buoyancy[3];    // impulse, part of it
   };
   struct Entry {    // a node next to a grain
     int64_t node;
     double w, share;    // shape function; share of the impulse
+    double r[3];        // from the grain, in node spacings
+    bool inner;         // there is fluid around the node
   };
 
   std::string field_id;
@@ -69,15 +73,18 @@ class FixMPMImmersed : public Fix, public MPMNodeAction {
   std::vector<Mover> movers;
   std::vector<Grain> grains;
   std::vector<Entry> entries;
+  std::vector<char> inner;     // [node] of is_inner(): 0 as long as it was not asked
   std::vector<double> sums;    // [node][8] volume of grains; buoyancy; coefficients; drag
   double force_now[6];         // drag and buoyancy on the grains of this rank, impulses
   int count;
   double dt_last;
 
   bool is_grain(int i) const;
+  bool is_inner(int64_t node);
   template <class F> bool visit(int i, const F &) const;
   void find_grains(double dt);
   void sum_nodes(int lane, int nlane);
+  double end_of_bed(double solid, const double *moment, double volume) const;
   double drag_coefficient(double diameter, double slip, double solid) const;
 };
 
