@@ -59,16 +59,19 @@
 #include "comm.h"
 #include "error.h"
 #include "fix_mpm.h"
+#include "fix_mpm_material.h"
 #include "force.h"
 #include "memory.h"
 #include "modify.h"
 #include "neigh_list.h"
 #include "neighbor.h"
-#include "pair.h"
+#include "pair_hybrid.h"
 #include "update.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -87,7 +90,8 @@ enum { CHANGE = 0, VELOCITY = 4 };
 
 FixMPMHandshake::FixMPMHandshake(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), damping(0.0), field(nullptr), list(nullptr), weight(nullptr),
-    role(nullptr), natoms(0), nreach(0), heat(0.0), impulse(), dt_last(0.0)
+    role(nullptr), natoms(0), nreach(0), heat(0.0), lost(0.0), impulse(), dt_last(0.0),
+    eam(nullptr), flaw(0.0)
 {
   if (narg < 4) utils::missing_cmd_args(FLERR, "fix mpm/handshake", error);
   field_name = arg[3];
@@ -131,7 +135,7 @@ FixMPMHandshake::FixMPMHandshake(LAMMPS *lmp, int narg, char **arg) :
     error->all(FLERR, Error::NOPOINTER, "Fix mpm/handshake needs at least one zone");
 
   scalar_flag = vector_flag = peratom_flag = 1;
-  size_vector = 3;
+  size_vector = 4;
   size_peratom_cols = 0;
   peratom_freq = global_freq = 1;
   extscalar = extvector = 1;
@@ -157,7 +161,7 @@ FixMPMHandshake::~FixMPMHandshake()
 
 int FixMPMHandshake::setmask()
 {
-  return PRE_NEIGHBOR | POST_NEIGHBOR;    // the rest is called by fix mpm
+  return PRE_NEIGHBOR | POST_NEIGHBOR | POST_FORCE;    // the rest is called by fix mpm
 }
 
 /* ---------------------------------------------------------------------- */
@@ -190,12 +194,7 @@ void FixMPMHandshake::init()
   for (auto *other : modify->get_fix_by_style("^mpm/handshake$"))
     if (other != this && dynamic_cast<FixMPMHandshake *>(other)->field_name == field_name)
       refuse(fmt::format("and {} have the same field: give one of them all zones", other->id));
-  // the forces that single() of EAM gives are wrong in a step after one with energies
-
-  if (!force->pair || !force->pair->single_enable || force->pair->manybody_flag)
-    refuse("needs a pair potential, whose energy and force are sums over pairs: the pair style has "
-           "no single() or is a many-body potential");
-  if (force->bond || force->kspace) refuse("cannot be used with bonds or kspace styles");
+  check_pair();
 
   // atoms are moved by fix nve, after the step of the points
 
@@ -208,6 +207,104 @@ void FixMPMHandshake::init()
   }
   neighbor->add_request(this, NeighConst::REQ_FULL);
 }
+
+/* ----------------------------------------------------------------------
+   Weights act on forces between two atoms, so that the force on each must be a sum of these, central
+   and opposite. Those of EAM are: with the slopes F'_i of the embedding energies
+
+     f_ij = -(F'_i rho_j' + F'_j rho_i' + phi') r_ij/r_ij.
+
+   The force of sum_i w_i e_i has w_i F'_i in place of (w_i + w_j)/2 F'_i: the same where F' is
+   uniform, and what F' and w differ by from atom to atom is odd in r_ij, and cancels in the crystal up
+   to third differences. Styles for accelerators keep F' elsewhere. Forces between three atoms have no
+   single f_ij.
+------------------------------------------------------------------------- */
+
+namespace {
+/** What pair style hybrid has inside. */
+struct SubStyles : PairHybrid {
+  static int number(const PairHybrid &pair) { return pair.*&SubStyles::nstyles; }
+  static Pair *style(const PairHybrid &pair, int k) { return (pair.*&SubStyles::styles)[k]; }
+  static const char *name(const PairHybrid &pair, int k) { return (pair.*&SubStyles::keywords)[k]; }
+};
+}    // namespace
+
+void FixMPMHandshake::check_pair()
+{
+  static const char *const embedded[] = {"eam",           "eam/alloy",     "eam/fs",     "eam/he",
+                                         "eam/opt",       "eam/alloy/opt", "eam/fs/opt", "eam/omp",
+                                         "eam/alloy/omp", "eam/fs/omp"};
+  const auto refuse = [&](const std::string &why) {
+    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/handshake {} {}", id, why);
+  };
+  if (!force->pair) refuse("needs a pair style between the atoms");
+  auto *const hybrid = dynamic_cast<PairHybrid *>(force->pair);
+  eam = nullptr;
+  for (int k = 0; k < (hybrid ? SubStyles::number(*hybrid) : 1); k++) {
+    Pair *const pair = hybrid ? SubStyles::style(*hybrid, k) : force->pair;
+    const std::string style = hybrid ? SubStyles::name(*hybrid, k) : force->pair_style;
+    if (std::find(std::begin(embedded), std::end(embedded), style) != std::end(embedded)) {
+      if (eam) refuse("cannot be used with two pair styles eam: use one for all elements");
+      eam = pair;
+    } else if (pair->manybody_flag || !pair->single_enable)
+      refuse("cannot be used with pair style " + style +
+             ", whose forces are not known pair by pair: use a pair potential or eam for the atoms "
+             "of the zone");
+  }
+}
+
+/* ----------------------------------------------------------------------
+   PairEAM::single() returns the pair energy and a share of the embedding energy of its first atom, and
+   in LAMMPS of 2025 and 2026 the derivative of the former takes the sum of both: the force over the
+   distance is too large by share/r^2. Since forces are symmetric, two atoms with different shares show
+   whether this is so; the share alone is what is left at distances far beyond the cutoff.
+------------------------------------------------------------------------- */
+
+double FixMPMHandshake::embedding_share(int i) const
+{
+  const int type = atom->type[i];
+  const double far = 1.0e4 * eam->cutsq[type][type];
+  double unused;
+  const double near = eam->single(i, i, type, type, far, 1.0, 1.0, unused);
+  return 2.0 * eam->single(i, i, type, type, 4.0 * far, 1.0, 1.0, unused) - near;
+}
+
+void FixMPMHandshake::check_embedding()
+{
+  flaw = 0.0;
+  if (!eam) return;
+  double found[2] = {-1.0e300, -1.0e300}, all[2];    // largest of it and of its negative
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (role[i] != COUPLED) continue;
+    const double share = embedding_share(i);
+    for (int jj = 0; jj < list->numneigh[i]; jj++) {
+      const int j = list->firstneigh[i][jj] & NEIGHMASK;
+      const int itype = atom->type[i], jtype = atom->type[j];
+      if (j >= atom->nlocal || role[j] != COUPLED) continue;
+      const double *const x = atom->x[i], *const y = atom->x[j];
+      const double rsq = (x[0] - y[0]) * (x[0] - y[0]) + (x[1] - y[1]) * (x[1] - y[1]) +
+          (x[2] - y[2]) * (x[2] - y[2]);
+      const double difference = share - embedding_share(j);
+      if (rsq >= eam->cutsq[itype][jtype] || fabs(difference) < 1.0e-3 * fabs(share)) continue;
+      double one, other;
+      eam->single(i, j, itype, jtype, rsq, 1.0, 1.0, one);
+      eam->single(j, i, jtype, itype, rsq, 1.0, 1.0, other);
+      const double ratio = (one - other) * rsq / difference;
+      found[0] = MAX(found[0], ratio);
+      found[1] = MAX(found[1], -ratio);
+      break;
+    }
+  }
+  MPI_Allreduce(found, all, 2, MPI_DOUBLE, MPI_MAX, world);
+  flaw = all[0] > 0.5 ? 1.0 : 0.0;
+  if (!(fabs(all[0] - flaw) < 1.0e-6) || !(fabs(all[1] + flaw) < 1.0e-6))
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/handshake {} does not understand the forces of pair style eam of this "
+               "LAMMPS: use a pair potential",
+               id);
+}
+
+/* ---------------------------------------------------------------------- */
 
 void FixMPMHandshake::init_list(int /*id*/, NeighList *ptr)
 {
@@ -245,7 +342,7 @@ double FixMPMHandshake::weight_at(const double *x, double &inside, double &beyon
 void FixMPMHandshake::weigh()
 {
   const double reach = margin(), reach_nodes = 2.0 * (field->shape + 1) * field->lattice.h;
-  bigint none = 0, all;
+  bigint none = 0, wrong = 0, all;
   for (int i = 0; i < atom->nlocal; i++) {
     if (role[i] != UNKNOWN) continue;
     double inside, beyond;
@@ -254,6 +351,8 @@ void FixMPMHandshake::weigh()
       role[i] = beyond < reach_nodes ? NEAR_POINT : POINT;
       weight[i] = 1.0 - w;
       if (!(weight[i] > 0.0)) none++;
+      const double mass = field->material_of(i)->density(i) * atom->vfrac[i];
+      if (fabs(atom->rmass[i] - mass) > 1.0e-3 * mass) wrong++;
       atom->rmass[i] *= weight[i];
       atom->vfrac[i] *= weight[i];
     } else if ((atom->mask[i] & groupbit) && atom->vfrac[i] == 0.0) {
@@ -270,6 +369,15 @@ void FixMPMHandshake::weigh()
         FLERR, Error::NOLASTLINE,
         "Fix mpm/handshake {}: {} material points are where atoms have the full weight: create "
         "points in the zone and beyond it only",
+        id, all);
+  MPI_Allreduce(&wrong, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (all)
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/handshake {}: {} material points do not have the mass of their density, which is "
+        "that of the crystal (pair_coeff of eam gives the mass of its element to all that are "
+        "there: "
+        "define it before create_points, or NULL for the type of points with pair_style hybrid)",
         id, all);
 }
 
@@ -365,6 +473,82 @@ void FixMPMHandshake::extend_topology(FixMPM &which)
 }
 
 /* ----------------------------------------------------------------------
+   forces by the gradient of the weight, as soon as those of the pair style are there: EAM knows the
+   slopes of embedding energies for the present positions only
+------------------------------------------------------------------------- */
+
+void FixMPMHandshake::setup(int /*vflag*/)
+{
+  check_embedding();
+  find_pushes();
+}
+
+void FixMPMHandshake::post_force(int /*vflag*/)
+{
+  find_pushes();
+  lost += work_of_pushes(update->dt, 0.0);    // second half of the way; v is that of its middle
+}
+
+void FixMPMHandshake::find_pushes()
+{
+  Pair *const pair = force->pair;
+  double *const *const x = atom->x;
+  const int *const type = atom->type;
+  natoms = 0;
+  pushes.clear();
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (role[i] != COUPLED) continue;
+    const int *const neighbors = list->firstneigh[i];
+    const double share = flaw > 0.0 ? embedding_share(i) : 0.0;
+    double g[3] = {0.0, 0.0, 0.0};
+    for (int jj = 0; jj < list->numneigh[i]; jj++) {
+      const int j = neighbors[jj] & NEIGHMASK;
+      if (role[j] == POINT || role[j] == NEAR_POINT)
+        error->one(FLERR,
+                   "Fix mpm/handshake {}: atom {} in reach of the zone is a neighbor of material "
+                   "point {}, which stands for the same material: use neigh_modify exclude",
+                   id, atom->tag[i], atom->tag[j]);
+      const double difference = (role[j] == COUPLED ? weight[j] : 1.0) - weight[i];
+      if (difference == 0.0) continue;
+      const double r[3] = {x[i][0] - x[j][0], x[i][1] - x[j][1], x[i][2] - x[j][2]};
+      const double rsq = r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
+      if (rsq >= pair->cutsq[type[i]][type[j]]) continue;
+      double f_over_r;
+      pair->single(i, j, type[i], type[j], rsq, 1.0, 1.0, f_over_r);
+      if (flaw > 0.0 && rsq < eam->cutsq[type[i]][type[j]]) f_over_r -= share / rsq;
+      for (int d = 0; d < 3; d++) g[d] += 0.5 * difference * f_over_r * r[d];
+    }
+    natoms++;
+    pushes.insert(pushes.end(), g, g + 3);
+  }
+}
+
+/** Work of the pushes over half a step with the velocity v + ahead f/m. */
+double FixMPMHandshake::work_of_pushes(double dt, double ahead) const
+{
+  double work = 0.0;
+  const double *g = pushes.data();
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (role[i] != COUPLED) continue;
+    const double a = ahead * force->ftm2v / atom->rmass[i];
+    for (int d = 0; d < 3; d++) work += g[d] * (atom->v[i][d] + a * atom->f[i][d]);
+    g += 3;
+  }
+  return 0.5 * dt * work;
+}
+
+/** Weighted kinetic energy of the coupled atoms. */
+double FixMPMHandshake::kinetic_energy() const
+{
+  double sum = 0.0;
+  for (std::size_t k = 0; k < natoms; k++) {
+    const double *const v = atom->v[members[k]];
+    sum += weight[members[k]] * atom->rmass[members[k]] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  }
+  return 0.5 * force->mvv2e * sum;
+}
+
+/* ----------------------------------------------------------------------
    after the momentum equation of the points
 ------------------------------------------------------------------------- */
 
@@ -375,9 +559,11 @@ void FixMPMHandshake::act(double dt, Stage stage)
   map_members(dt);
   map_forces();
   field->sum_copies(sums.data(), NREAL, 0, NREAL);
+  lost += kinetic_energy();
   if (damping > 0.0) damp(dt);
   tie(dt);
   move_atoms(dt);
+  lost += work_of_pushes(dt, 0.5 * dt) - kinetic_energy();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -400,7 +586,8 @@ void FixMPMHandshake::find_nodes()
   members.clear();
   for (int i = 0; i < atom->nlocal; i++)
     if (role[i] == COUPLED) members.push_back(i);
-  natoms = members.size();
+  if (members.size() != natoms)
+    error->one(FLERR, "Fix mpm/handshake {}: atoms have changed since their forces were found", id);
   for (int i = 0; i < atom->nlocal; i++)
     if (role[i] == NEAR_POINT) members.push_back(i);
   nodes.resize(members.size() * nreach);
@@ -470,32 +657,9 @@ void FixMPMHandshake::map_members(double dt)
 /** Force of the weighted energy of the atoms. */
 void FixMPMHandshake::map_forces()
 {
-  Pair *const pair = force->pair;
-  double *const *const x = atom->x;
-  const int *const type = atom->type;
   for (std::size_t k = 0; k < natoms; k++) {
-    const int i = members[k];
-    const double w = weight[i];
-    const int *const neighbors = list->firstneigh[i];
-    double g[3] = {0.0, 0.0, 0.0}, pushed = 0.0;
-    for (int jj = 0; jj < list->numneigh[i]; jj++) {
-      const int j = neighbors[jj] & NEIGHMASK;
-      if (role[j] == POINT || role[j] == NEAR_POINT)
-        error->one(FLERR,
-                   "Fix mpm/handshake {}: atom {} in reach of the zone is a neighbor of material "
-                   "point {}, which stands for the same material: use neigh_modify exclude",
-                   id, atom->tag[i], atom->tag[j]);
-      const double difference = (role[j] == COUPLED ? weight[j] : 1.0) - w;
-      if (difference == 0.0) continue;
-      const double r[3] = {x[i][0] - x[j][0], x[i][1] - x[j][1], x[i][2] - x[j][2]};
-      const double rsq = r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
-      if (rsq >= pair->cutsq[type[i]][type[j]]) continue;
-      double f_over_r;
-      pair->single(i, j, type[i], type[j], rsq, 1.0, 1.0, f_over_r);
-      for (int d = 0; d < 3; d++) g[d] += 0.5 * difference * f_over_r * r[d];
-      pushed = 1.0;
-    }
-    const double *const f = atom->f[i];
+    const double w = weight[members[k]], *const f = atom->f[members[k]], *const g = &pushes[3 * k];
+    const bool pushed = g[0] != 0.0 || g[1] != 0.0 || g[2] != 0.0;
     each_node(k, [&](double *s, double share) {
       for (int d = 0; d < 3; d++) {
         s[FORCE + d] += share * (w * f[d] + g[d]);
@@ -527,7 +691,7 @@ void FixMPMHandshake::damp(double dt)
     const double part = -expm1(-damping * (1.0 - w) * dt);
     for (int d = 0; d < 3; d++) {
       const double v = atom->v[i][d] - half / m * atom->f[i][d], dv = part * (coarse[d] - v);
-      heat -= force->mvv2e * w * m * dv * (v + 0.5 * dv);
+      heat -= force->mvv2e * w * m * dv * (atom->v[i][d] + 0.5 * dv);
       atom->v[i][d] += dv;
       p[d] = w * m * dv;
     }
@@ -605,6 +769,7 @@ void FixMPMHandshake::tie(double dt)
     }
   }
   if (field->ledger_on) field->ledger.contact += force->mvv2e * work;
+  lost -= force->mvv2e * work;
 }
 
 /** Atoms: the change of the velocity of the nodes, or where they have no weight, this velocity. */
@@ -626,7 +791,12 @@ void FixMPMHandshake::move_atoms(double dt)
 }
 
 /* ----------------------------------------------------------------------
-   output: energy of the fine motion that damping took; force of the atoms on the points
+   output: energy of the fine motion that damping took; force of the atoms on the points, and energy
+   that atoms and points have lost where their velocities are tied, so that
+
+     weighted energy of the atoms + energy of the points + scalar + 4th value
+
+   changes only by what the integrators of both leave.
 ------------------------------------------------------------------------- */
 
 double FixMPMHandshake::compute_scalar()
@@ -638,15 +808,17 @@ double FixMPMHandshake::compute_scalar()
 
 double FixMPMHandshake::compute_vector(int d)
 {
-  if (dt_last == 0.0) return 0.0;
+  if (d < 3 && dt_last == 0.0) return 0.0;
+  const double mine = d < 3 ? impulse[d] / (dt_last * force->ftm2v) : lost - heat;
   double all;
-  MPI_Allreduce(&impulse[d], &all, 1, MPI_DOUBLE, MPI_SUM, world);
-  return all / (dt_last * force->ftm2v);
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
 }
 
 double FixMPMHandshake::memory_usage()
 {
-  return sizeof(double) * (2.0 * atom->nmax + sums.capacity() + shares.capacity()) +
+  return sizeof(double) *
+      (2.0 * atom->nmax + sums.capacity() + shares.capacity() + pushes.capacity()) +
       sizeof(int) * (double) (nodes.capacity() + members.capacity());
 }
 
@@ -731,16 +903,18 @@ int FixMPMHandshake::maxsize_restart()
 
 void FixMPMHandshake::write_restart(FILE *fp)
 {
-  const double all = compute_scalar();
+  const double mine[2] = {heat, lost};
+  double all[2];
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
   if (comm->me) return;
-  const int size = sizeof(double);
+  const int size = sizeof(all);
   fwrite(&size, sizeof(int), 1, fp);
-  fwrite(&all, size, 1, fp);
+  fwrite(all, size, 1, fp);
 }
 
 void FixMPMHandshake::restart(char *buf)
 {
-  double all;
-  memcpy(&all, buf, sizeof(double));
-  heat = comm->me == 0 ? all : 0.0;
+  if (comm->me) return;
+  memcpy(&heat, buf, sizeof(double));
+  memcpy(&lost, buf + sizeof(double), sizeof(double));
 }

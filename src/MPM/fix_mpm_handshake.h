@@ -37,6 +37,8 @@ class FixMPMHandshake : public Fix, public MPMNodeAction {
   void setup_pre_neighbor() override;
   void setup_post_neighbor() override;
   void post_neighbor() override;
+  void setup(int) override;
+  void post_force(int) override;
   double compute_scalar() override;
   double compute_vector(int) override;
   double memory_usage() override;
@@ -78,19 +80,30 @@ class FixMPMHandshake : public Fix, public MPMNodeAction {
 
   std::vector<int> members;      // local atoms that are coupled, then points near the zone
   std::size_t natoms;            // the former
+  std::vector<double> pushes;    // [natoms][3] their forces g by the gradient of the weight
   std::vector<int> nodes;        // of each of them: the nodes that it reaches,
   std::vector<double> shares;    // and their weights
   int nreach;                    // number of these
   std::vector<double> sums;      // at the nodes
-  double heat, impulse[3], dt_last;
+  double heat, lost;             // energy taken so far by damping, and in all, on this rank
+  double impulse[3], dt_last;
 
+  class Pair *eam;    // the style of embedded atoms, if there is one
+  double flaw;        // 1: its single() has the embedding energy in the force
+
+  void check_pair();
+  void check_embedding();
+  double embedding_share(int i) const;
   double margin() const;
   double weight_at(const double *x, double &inside, double &beyond) const;
   void weigh();
   void check_weights();
   void find_nodes();
+  void find_pushes();
   void map_members(double dt);
   void map_forces();
+  double work_of_pushes(double dt, double ahead) const;
+  double kinetic_energy() const;
   void damp(double dt);
   void smooth_points(std::vector<double> &);
   void tie(double dt);

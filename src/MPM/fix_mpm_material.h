@@ -64,9 +64,9 @@ class FixMPMMaterial : public Fix {
    *  range of validity. */
   void watch_ranges(const MPM_NS::Batch &, int first);
 
- private:
   double density(int) const;    ///< reference density of a point
 
+ private:
   /** The first time that a point left a range: of all points in that step the one with the smallest
    *  ID. */
   struct Exit {
