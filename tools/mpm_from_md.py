@@ -306,7 +306,7 @@ run %d
 
     def viscosity(self, density):
         """Stress over rate, at three rates, extrapolated in the rate to none."""
-        rate = self.o.rate or 0.1 / (100.0 * self.dt) * 0.5
+        rate = self.o.rate or 5.0e-4 / self.dt
         rates = np.array([0.5, 1.0, 2.0]) * rate
         values = []
         for r, factor in zip(rates, (8, 4, 2)):
@@ -408,7 +408,8 @@ def main():
             md.say("  " + note)
         md.say("density at rest")
         density = md.rest_density(md.atom_mass * BASIS[o.lattice] / a0**3)
-        md.say("  " + format(density))
+        notes.append("Density at rest %s" % format(density * unit[0]))
+        md.say("  " + notes[-1])
     else:
         density = Value(o.density)
 
