@@ -75,6 +75,17 @@ inline Soup box(const Point &lo, const Point &hi)
   return soup;
 }
 
+/** The box with x moved by this share of z and y by half of it: its inertia has all components. */
+inline Soup sheared(Soup soup, double share)
+{
+  for (auto &t : soup)
+    for (auto &x : t) {
+      x[0] += share * x[2];
+      x[1] += 0.5 * share * x[2];
+    }
+  return soup;
+}
+
 /** Torus about z: not convex, and with a hole. */
 inline Soup torus(double R, double r, int n)
 {

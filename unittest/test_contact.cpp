@@ -65,6 +65,7 @@ static std::string two_bars(const std::string &options, const std::string &conta
 // A3(a): interface stress rho c v, contact for 2 L/c, rebound with the same speed; momentum exact
 TEST(Contact, EqualBars)
 {
+  if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
   for (const char *options :
        {"transfer flip 1.0 scheme musl", "transfer apic", "shape cubic transfer flip 1.0"}) {
     SCOPED_TRACE(options);
@@ -104,6 +105,7 @@ TEST(Contact, EqualBars)
 // without the gap rule bodies feel each other more than a node spacing apart
 TEST(Contact, WithoutTheGapRuleContactIsEarly)
 {
+  if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
   Scene run;
   run.commands(two_bars("transfer flip 1.0 scheme musl", "gap no"));
   double touch = 0.0;
@@ -115,9 +117,34 @@ TEST(Contact, WithoutTheGapRuleContactIsEarly)
   EXPECT_LT(touch, 2.5);
 }
 
+// between walls without friction, half of the volume of the nodes at a wall is outside: bars touch there
+// as they do where they are continued periodically
+TEST(Contact, BarsBetweenWalls)
+{
+  if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
+  for (const char *options : {"transfer apic", "shape cubic", "shape gimp",
+                              "transfer flip 1.0 scheme musl", "transfer flip 1.0 edges modified"}) {
+    SCOPED_TRACE(options);
+    double v[2], f[2];
+    for (int k = 0; k < 2; k++) {
+      std::string text = replaced(two_bars(options, ""), "timestep 2e-4", "timestep 4e-4");
+      if (k)
+        text = replaced(text, "boundary f p p", "boundary f f p") +
+            "fix walls all mpm/boundary ylo yhi slip\n";
+      Scene run;
+      run.commands(text + "run 1500\n");
+      v[k] = measured("speed", run.evaluate("v_v1"));
+      f[k] = measured("force", run.evaluate("f_c[1][1]"));
+    }
+    EXPECT_NEAR(v[1], v[0], (strstr(options, "edges") ? 0.02 : 0.01) * 0.05);
+    EXPECT_NEAR(f[1], f[0], 0.01 * 0.04);
+  }
+}
+
 // A3(c): Z = 10 and 40: stress Z1 Z2/(Z1 + Z2) (v1 - v2), interface velocity (Z1 v1 + Z2 v2)/(Z1 + Z2)
 TEST(Contact, DifferentImpedances)
 {
+  if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
   Scene run;
   run.commands(two_bars("transfer flip 1.0 scheme musl", "", "4", "400"));
   double mean = 0.0;
@@ -174,36 +201,46 @@ static std::string on_incline(const std::string &body, const std::string &spacin
   return replaced(replaced(text, "TRANSFER", transfer), "FRICTION", std::to_string(mu));
 }
 
+// The block settles on the plane, damped and stuck; then it is let go, with friction from zero across the
+// limit of sticking, tan(30 degrees) = 0.577. Its elasticity makes it jump a little at first
+
 TEST(Friction, BlockSlidesOrSticks)
 {
+  if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
   const double g = 9.81, sine = 0.5, cosine = std::sqrt(0.75);
   for (const char *transfer : {"apic", "flip 1.0"})
-    for (const double mu : {0.0, 0.1, 0.3, 0.7}) {
+    for (const double mu : {0.0, 0.1, 0.3, 0.55, 0.6}) {
       SCOPED_TRACE(std::string(transfer) + " " + std::to_string(mu));
       Scene run;
       run.commands(on_incline("block 0.5 1.5 0.5 1.0 -0.05 0.05", "0.1", transfer, mu));
-      run.commands("run 750\n");
-      const double before = run.evaluate("v_x");
-      run.commands("run 750\n");
-      const double t = run.evaluate("time"), x = run.evaluate("v_x"), v = run.evaluate("v_v");
-      const double a = std::max(0.0, g * (sine - mu * cosine));
-      if (a > 0.0) {
-        EXPECT_NEAR(x - 1.0, 0.5 * a * t * t, 0.02 * 0.5 * a * t * t + 0.002);    // and settling
-        EXPECT_NEAR(v, a * t, 0.02 * a * t);
-      } else {
-        EXPECT_NEAR(x, before, 5e-4);
-        EXPECT_NEAR(v, 0.0, 0.01);
+      run.commands("unfix c\nfix c all mpm/contact F1 F2 law stick\nfix damp body viscous 750\n"
+                   "run 500\nunfix damp\nunfix c\n" +
+                   strprintf("fix c all mpm/contact F1 F2 law coulomb %g\n", mu) +
+                   "run 900 post no\n");
+      double t[3], x[3], work[3];
+      for (int k = 0; k < 3; k++) {
+        if (k) run.commands("run 450 post no\n");
+        t[k] = run.evaluate("time");
+        x[k] = run.evaluate("v_x");
+        work[k] = run.evaluate("f_c");
       }
-      // the work of friction, and the entry of the ledger, is friction times the way
-      const double normal = 1000 * 0.5 * g * cosine, way = x - 1.0;
-      if (a > 0.0) EXPECT_NEAR(run.evaluate("f_c"), -mu * normal * way, 0.05 * normal * way);
+      const double exact = std::max(0.0, g * (sine - mu * cosine));
+      if (exact > 0.0) {
+        const double a = 2.0 * ((x[2] - x[1]) / (t[2] - t[1]) - (x[1] - x[0]) / (t[1] - t[0])) / (t[2] - t[0]);
+        EXPECT_NEAR(measured(strprintf("%s, mu = %g: acceleration", transfer, mu), a), exact, 0.005 * g);
+        // the work of friction is friction times the way
+        const double friction = mu * 1000 * 0.5 * g * cosine, way = x[2] - x[0];
+        EXPECT_NEAR(measured("work", work[2] - work[0]), -friction * way, 0.01 * friction * way + 1e-12);
+      } else
+        EXPECT_NEAR(measured(strprintf("%s, mu = %g: creep", transfer, mu), x[2] - x[1]), 0.0, 5e-4);
     }
 }
 
 TEST(Friction, DiskRollsOrSlips)
 {
+  if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
   const double g = 9.81, sine = 0.5, cosine = std::sqrt(0.75);
-  for (const double mu : {0.1, 0.3}) {
+  for (const double mu : {0.1, 0.17, 0.22, 0.3}) {    // it rolls from 0.192 on
     SCOPED_TRACE(mu);
     Scene run;
     run.commands(on_incline("cylinder z 0.7 1.0 0.5 -0.05 0.05", "0.05", "apic", mu));
@@ -211,7 +248,9 @@ TEST(Friction, DiskRollsOrSlips)
     const double t = run.evaluate("time");
     const bool rolls = std::tan(M_PI / 6) <= 3 * mu;
     const double a = rolls ? 2.0 / 3.0 * g * sine : g * (sine - mu * cosine);
-    EXPECT_NEAR((run.evaluate("v_x") - 0.7) / (0.5 * a * t * t), 1.0, 0.02);
+    const double ratio =
+        measured(strprintf("mu = %g: way/exact", mu), (run.evaluate("v_x") - 0.7) / (0.5 * a * t * t));
+    EXPECT_NEAR(ratio, 1.0, mu == 0.1 || mu == 0.3 ? 0.02 : 0.03);
   }
 }
 
@@ -277,6 +316,7 @@ run 1400
 
 TEST(Normals, LogisticRegressionFindsAnInclinedPlane)
 {
+  if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
   for (const int angle : {20, 35})
     for (const char *normal : {"colinear", "volume", "logistic"}) {
       Scene run;
@@ -367,6 +407,7 @@ TEST(Parallel, RanksAgreeAcrossAPeriodicFace)
 
 TEST(Order, WallsActAfterContact)
 {
+  if (nranks() > 1) GTEST_SKIP() << "nodes of one rank";
   const std::string scene = replaced(
       replaced(disks, "region two cylinder z 20.9 5.3 2.5 INF INF", "region two block 5.8 10 0 6 -0.5 0.5"),
       "boundary p p p", "boundary p f p");
@@ -380,6 +421,25 @@ TEST(Order, WallsActAfterContact)
   EXPECT_TRUE(identical(before.gather(), after.gather()));
   before.commands("variable v equal vcm(one,x)\n");
   EXPECT_LT(before.evaluate("v_v"), 0.3);    // they have met
+
+  // friction between the bodies pushes nodes at the wall up and down: the wall does not let them
+
+  int both = 0;
+  for (const char *id : {"F1", "F2"}) {
+    auto &grid = *after.field(id)->grid;
+    auto &other = *after.field(id[1] == '1' ? "F2" : "F1")->grid;
+    for (std::size_t slot = 0; slot < grid.blocks.size(); slot++)
+      for (int n = 0; n < MPM_NS::NODES_PER_BLOCK; n++) {
+        int index[3];
+        grid.node_index(grid.blocks[slot], n, index);
+        const double *record = grid.record((int) slot, n);
+        if (index[1] != 0 || record[3] == 0.0) continue;
+        const auto there = other.locate(index);
+        if (there >= 0) both += other.nodes()[there * other.nreal + 3] > 0.0;
+        EXPECT_EQ(record[1], 0.0) << id << " " << index[0];
+      }
+  }
+  EXPECT_GT(both, 0);
 }
 
 TEST(Restart, ContinuesExactly)
@@ -395,12 +455,102 @@ TEST(Restart, ContinuesExactly)
   EXPECT_NEAR(run.again.evaluate("f_c"), work, 1e-12 * std::fabs(work));
 }
 
+// friction at rest may be larger: the block stays where it would slide with the other one, and slides with
+// that when it moves. (At the ends of the block the pull is a multiple of the mean.)
+
+TEST(Friction, StaticAndKinetic)
+{
+  if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
+  for (const double v : {0.0, 0.2}) {
+    Scene run;
+    run.commands(on_incline("block 0.5 1.5 0.5 1.0 -0.05 0.05", "0.1", "apic", 0.0));
+    run.commands("unfix c\nfix c all mpm/contact F1 F2 law stick\nfix damp body viscous 750\n"
+                 "run 500\nunfix damp\nunfix c\n" +
+                 strprintf("fix c all mpm/contact F1 F2 law coulomb 0.3 %g\n", v > 0.0 ? 0.9 : 5.0) +
+                 strprintf("velocity body set %g NULL NULL sum yes\nrun 450 post no\n", v));
+    double t[3], x[3];
+    for (int k = 0; k < 3; k++) {
+      if (k) run.commands("run 450 post no\n");
+      t[k] = run.evaluate("time");
+      x[k] = run.evaluate("v_x");
+    }
+    const double a = 2.0 * ((x[2] - x[1]) / (t[2] - t[1]) - (x[1] - x[0]) / (t[1] - t[0])) / (t[2] - t[0]);
+    if (v > 0.0)
+      EXPECT_NEAR(measured("acceleration", a), 9.81 * (0.5 - 0.3 * std::sqrt(0.75)), 0.005 * 9.81);
+    else
+      EXPECT_NEAR(measured("creep", x[2] - x[1]), 0.0, 5e-4);
+  }
+}
+
+// ---------------------------------------------------------------------- a body and itself
+
+// Two lobes of one field approach and slide, without an end across. They act on each other from where they
+// have nodes in common, two cells apart with quadratic functions, as if the material went on between
+// them: they do not touch, and do not slide freely. Two fields touch where they are, and do
+// slide
+
+static const char *const lobes = R"(
+units lj
+dimension 2
+boundary p p p
+atom_style mpm
+neighbor 0.3 bin
+region box block 0 16 0 4 -0.5 0.5
+create_box 2 box
+region one block 2 7 0 4 -0.5 0.5
+region two block 9 14 0 4 -0.5 0.5
+group one type 1
+group two type 2
+FIELDS
+create_points 1 region one ppc 2 fix FIRST
+create_points 2 region two ppc 2 fix FIRST
+group one type 1
+group two type 2
+group both type 1 2
+fix m all mpm/material density 1 neohookean 50 0.3
+velocity one set 0.2 0.2 0
+velocity two set -0.2 -0.2 0
+timestep 0.01
+variable slide equal vcm(one,y)-vcm(two,y)
+variable gap equal bound(two,xmin)-bound(one,xmax)-0.25
+thermo 100000
+)";
+
+TEST(SelfContact, LobesStick)
+{
+  if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
+  double slide[2], gap[2] = {100.0, 100.0}, touch[2] = {-1.0, -1.0};    // gaps in cells
+  for (int k = 0; k < 2; k++) {
+    const std::string fields = k ? "fix F1 one mpm 0.5\nfix F2 two mpm 0.5\nfix c all mpm/contact F1 F2" :
+                                   "group both type 1 2\nfix F1 both mpm 0.5";
+    Scene run;
+    run.commands(replaced(replaced(lobes, "FIRST", "F1"), "FIELDS", fields));
+    for (int n = 0; n < 80; n++) {
+      run.commands("run 10 post no\n");
+      gap[k] = std::min(gap[k], run.evaluate("v_gap/0.5"));
+      if (touch[k] < 0.0 && run.evaluate("vcm(one,x)") < 0.99 * 0.2) touch[k] = run.evaluate("v_gap/0.5");
+    }
+    slide[k] = run.evaluate("v_slide/0.4");
+    const std::string name = k ? "two fields: " : "one field: ";
+    measured(name + "gap when they begin to push", touch[k]);
+    measured(name + "smallest gap", gap[k]);
+    measured(name + "sliding in the end", slide[k]);
+  }
+  EXPECT_NEAR(touch[0], 2.0, 0.1);
+  EXPECT_GT(gap[0], 1.0);
+  EXPECT_LT(slide[0], 0.0);    // sheared, and back
+  EXPECT_NEAR(touch[1], 0.0, 0.05);
+  EXPECT_GT(gap[1], -0.05);
+  EXPECT_NEAR(slide[1], 1.0, 1e-6);
+}
+
 // ---------------------------------------------------------------------- adhesion
 
 // a bar is drawn off another one that is held: the pull reaches strength times area, the work is
 // the work of release times area
 TEST(Adhesion, StrengthAndWork)
 {
+  if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
   Scene run;
   std::string text = two_bars("transfer apic", "law adhesive 0.02 1.0 2e-4 gap yes");
   text = replaced(text, "b2 block 1.05 2.05", "b2 block 1.0 2.0");

@@ -10,7 +10,8 @@
 // mpi: 1 3
 // timeout: 900
 
-// Contact between fields on different lattices through pair style mpm/penalty.
+// Contact between fields on different lattices through pair style mpm/penalty. Hertz contact is in
+// test_hertz.cpp.
 
 #include "mpm_lammps.h"
 
@@ -129,101 +130,6 @@ TEST(Bars, DampingDissipates)
   EXPECT_LT(measured("speed after", v), -0.01);
   EXPECT_GT(v, -0.045);
   EXPECT_NEAR(run.evaluate("v_lost"), energy - left, 0.01 * energy);
-}
-
-// ---------------------------------------------------------------------- Hertz
-
-/** Elastic spheres of radius 1, made of shells of points, so that their surfaces are smooth, pressed
- *  together by their inertia: slow enough that contact is all but static. */
-static void spheres(Scene &run, int cells)
-{
-  struct Point {
-    int type;
-    double x[3], volume;
-  };
-  std::vector<Point> points;
-  const double pi = 3.14159265358979324;
-  const int shells[2] = {2 * cells, 2 * cells * 9 / 8};
-  for (int b = 0; b < 2; b++)
-    for (int k = 0; k < shells[b]; k++) {
-      const double s = 1.0 / shells[b], r = (k + 0.5) * s;
-      const int n = std::max(4, (int) std::lround(4.0 * pi * (r * r + s * s / 12.0) / (s * s)));
-      const double volume =
-          4.0 / 3.0 * pi * (std::pow(r + 0.5 * s, 3) - std::pow(r - 0.5 * s, 3)) / n;
-      for (int i = 0; i < n; i++) {    // along a spiral
-        const double z = 1.0 - (2.0 * i + 1.0) / n, phi = i * pi * (3.0 - std::sqrt(5.0)) + k;
-        const double q = r * std::sqrt(1.0 - z * z);
-        points.push_back(
-            {b + 1, {q * std::cos(phi), r * z, q * std::sin(phi) + (b ? 1.0 : -1.0)}, volume});
-      }
-    }
-  run.commands(strprintf(R"(
-units si
-boundary f f f
-atom_style mpm
-neighbor %g bin
-region box block -1.3 1.3 -1.3 1.3 -2.3 2.3
-create_box 2 box
-create_atoms 1 random %d 4711 box
-group one type 1
-group two type 2
-)",
-                         0.5 / cells, (int) points.size()));
-  auto *atom = run.lmp->atom;
-  for (int i = 0; i < atom->nlocal; i++) {
-    const Point &p = points[i];
-    for (int d = 0; d < 3; d++) atom->x[i][d] = p.x[d];
-    atom->vfrac[i] = atom->rmass[i] = p.volume;
-    atom->type[i] = p.type;
-  }
-  run.commands(strprintf(R"(
-group one clear
-group two clear
-group one type 1
-group two type 2
-fix F1 one mpm %g transfer flip 1.0 scheme musl
-fix F2 two mpm %g transfer flip 1.0 scheme musl
-fix m all mpm/material density 1 linear 1 0.25
-velocity one set 0 0 0.02
-velocity two set 0 0 -0.02
-pair_style mpm/penalty
-pair_coeff 1 2 1.0
-timestep %g
-compute f two reduce sum fz
-variable delta equal 2-(xcm(two,z)-xcm(one,z))
-thermo_style custom step c_f
-thermo 100000
-)",
-                         1.0 / cells, 1.0 / (cells * 9 / 8), 0.3 / (cells * 9 / 8)));
-}
-
-// F = 4/3 E* sqrt(R*) delta^(3/2). The measured factor is above one and grows with refinement (1.1 to
-// 1.2 with 12 cells); finite spheres may be stiffer than half-spaces, which is not checked here
-TEST(Hertz, ForceAndIndentation)
-{
-  if (!first_rank()) return;
-  for (const int cells : {6, 8}) {
-    Scene run(MPI_COMM_SELF);
-    spheres(run, cells);
-    const double stiffness = 4.0 / 3.0 * (0.5 / (1.0 - 0.0625)) * std::sqrt(0.5);
-    double sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0, ratio = 0.0;
-    int n = 0;
-    for (double delta = 0.0; delta < 0.1;) {
-      run.commands("run 4 post no\n");
-      delta = run.evaluate("v_delta");
-      if (delta < 0.03) continue;
-      const double f = run.evaluate("c_f");
-      const double x = std::log(delta), y = std::log(f);
-      ratio += f / (stiffness * std::pow(delta, 1.5));
-      sx += x;
-      sy += y;
-      sxx += x * x;
-      sxy += x * y;
-      n++;
-    }
-    EXPECT_NEAR(measured("exponent", (n * sxy - sx * sy) / (n * sxx - sx * sx)), 1.5, 0.1);
-    EXPECT_NEAR(measured("force / Hertz", ratio / n), 1.05, 0.1);
-  }
 }
 
 // ---------------------------------------------------------------------- friction

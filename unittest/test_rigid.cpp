@@ -207,6 +207,30 @@ TEST(RigidBody, FallsAndIsHeld)
   EXPECT_NEAR(body->compute_vector(8), 0.1 / (2.0 / 6.0), 1.0e-9);
 }
 
+// A body that is held in its turns about x and y turns about z as its moment of inertia about z says,
+// also if the axis is none of its principal axes
+
+TEST(RigidBody, TurnsAboutAHeldAxis)
+{
+  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
+  const Soup soup = sheared(box({0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}), 0.8);
+  const ScratchFile file("sheared.stl", text_of(soup));
+  Scene run;
+  run.commands(with(scene(file.name), "slip"));
+  run.commands("region shape delete\nunfix tool\nregion shape mpm/mesh " + file.name +
+               " 1.0 4.4 4.4 8.0\nfix tool all mpm/rigid shape density 2.0 slip omega 0 0 0.3 "
+               "torque 0 0 0.5 hold rx ry\nrun 300\n");
+  auto *body = run.lmp->modify->get_fix_by_id("tool");
+  const double inertia = 2.0 * (2.0 + 1.25 * 0.64) / 12.0, t = 3.0;
+  EXPECT_EQ(body->compute_vector(6), 0.0);
+  EXPECT_EQ(body->compute_vector(7), 0.0);
+  EXPECT_NEAR(body->compute_vector(8), 0.3 + 0.5 * t / inertia, 1.0e-6);
+  const double angle = 0.3 * t + 0.25 * (t * t + 0.01 * t) / inertia;    // semi-implicit steps
+  EXPECT_NEAR(body->compute_vector(15), cos(angle), 1.0e-6);
+  EXPECT_NEAR(body->compute_vector(18), sin(angle), 1.0e-6);
+  EXPECT_NEAR(body->compute_vector(23), 1.0, 1.0e-12);
+}
+
 TEST(RigidBody, RefusesMistakes)
 {
   const ScratchFile file("box.stl", text_of(box({0.0, 0.0, 0.0}, {1.0, 1.0, 1.0})));

@@ -56,6 +56,22 @@ TEST(SurfaceMesh, BoxHasExactDistances)
     }
 }
 
+// x = u + s w, y = v + s/2 w with u, v, w independent and uniform over the edges of the box
+
+TEST(SurfaceMesh, ShearedBoxHasExactInertia)
+{
+  const double a = 2.0, b = 1.5, c = 0.75, s = 0.8, mass = a * b * c;
+  const SurfaceMesh mesh(text_of(sheared(box({0.0, 0.0, 0.0}, {a, b, c}), s)), "box", 1.0, {4.0, 5.0, 6.0});
+  const double u = a * a / 12.0, v = b * b / 12.0, w = c * c / 12.0;
+  const double xx = u + s * s * w, yy = v + 0.25 * s * s * w, xy = 0.5 * s * s * w;
+  const double exact[] = {yy + w, xx + w, xx + yy, -xy, -s * w, -0.5 * s * w};
+  EXPECT_NEAR(mesh.volume, mass, 1.0e-8);
+  for (int k = 0; k < 6; k++) EXPECT_NEAR(mesh.inertia[k], mass * exact[k], 1.0e-8) << k;
+  EXPECT_NEAR(mesh.center[0], 4.0 + 0.5 * (a + s * c), 1.0e-8);
+  EXPECT_NEAR(mesh.center[1], 5.0 + 0.5 * (b + 0.5 * s * c), 1.0e-8);
+  EXPECT_NEAR(mesh.center[2], 6.0 + 0.5 * c, 1.0e-8);
+}
+
 TEST(SurfaceMesh, TorusConverges)
 {
   const double R = 2.0, r = 0.7;

@@ -206,6 +206,8 @@ class FixMPM : public Fix {
   void sum_copies(double *nodes, int nreal, int lane, int nlane);
   /** Impulse of a node action to a node, with its energy as contact in the ledger. */
   void push_node(int64_t node, bool owned, const double *impulse);
+  /** The energy of an action that has changed the velocity of an owned node, as contact in the ledger. */
+  void count_push(const double *record, const double *change);
 
   /** Nodes along one axis that a position reaches (in node spacings from the origin): their number,
    *  the first one, and the weights. */

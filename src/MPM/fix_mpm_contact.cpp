@@ -30,7 +30,8 @@
    at that distance, and the mass that a wall sends beyond the end of a block that slides on it
    would stand in its way. The volumes of all bodies at a node, as a share of the volume that belongs
    to a node, add up to one where they touch, whatever the position of the interface relative to the
-   nodes, and to less while there is a gap or beyond the end of one of them.
+   nodes, and to less while there is a gap or beyond the end of one of them. What of this volume is
+   outside of fixed faces of the box does not count (fix_mpm_contact_room.cpp).
 ------------------------------------------------------------------------- */
 
 #include "fix_mpm_contact.h"
@@ -43,6 +44,7 @@
 #include "force.h"
 #include "math_extra.h"
 #include "modify.h"
+#include "mpm_image.h"
 #include "update.h"
 
 #include <algorithm>
@@ -260,6 +262,7 @@ void FixMPMContact::init()
                "more than the node spacing {}: raise the strength or the node spacing",
                id, 2.0 * release_work / normal_strength, first.lattice.h);
 
+  find_room();
   reach.assign(fields.size(), Blocks());
   extent.assign(fields.size(), std::array<int, 6>());
   gradient.assign(fields.size(), std::vector<double>());
@@ -516,12 +519,10 @@ void FixMPMContact::warn_overlap()
     tags[b] = 0;
     for (int i = 0; i < atom->nlocal; i++) {
       if (!field.is_point(i)) continue;
-      double rsq = 0.0;
-      for (int k = 0; k < field.lattice.dim; k++) {
-        double d = atom->x[i][k] - place[k];
-        if (domain->periodicity[k]) d -= domain->prd[k] * std::round(d / domain->prd[k]);
-        rsq += d * d;
-      }
+      double r[3] = {0.0, 0.0, 0.0};
+      for (int k = 0; k < field.lattice.dim; k++) r[k] = atom->x[i][k] - place[k];
+      nearest_image(*domain, r);
+      const double rsq = MathExtra::lensq3(r);
       if (rsq >= mine.value) continue;
       mine.value = rsq;
       tags[b] = atom->tag[i];
@@ -586,17 +587,16 @@ void FixMPMContact::find_contacts()
       if (!(c.canonical >> n & 1)) continue;
       Node node;
       int massive = 0;
-      double volume_share = 0.0;
       for (int k = 0; k < nfields; k++) {
         node.record[k] = nullptr;
         if (c.slot[k] < 0) continue;
         double *record = fields[k]->grid->record(c.slot[k], n);
         if (!(record[3] > 0.0)) continue;
         node.record[k] = record;
-        if (gap) volume_share += share[k][(int64_t) c.slot[k] * NODES_PER_BLOCK + n];
         massive++;
       }
       if (massive < 2) continue;
+      const double volume_share = gap ? filled(c, n) : full;
       node.first = (int) pairs.size();
       node.owned = c.owned >> n & 1;
       Pair pair;
@@ -699,9 +699,7 @@ void FixMPMContact::resolve(Node &node, double dt, bool decided)
 }
 
 /* ----------------------------------------------------------------------
-   forces between bodies, work of the friction, and the ledgers of the fields: work is impulse times
-   the velocity with which points are then moved; what nodes cannot keep of what forces gave them
-   counts as transfer, as at walls
+   forces between bodies, work of the friction, and the ledgers of the fields
 ------------------------------------------------------------------------- */
 
 void FixMPMContact::account(const Node &node, const double start[][3])
@@ -720,15 +718,10 @@ void FixMPMContact::account(const Node &node, const double start[][3])
   }
   for (std::size_t k = 0; k < fields.size(); k++) {
     const double *record = node.record[k];
-    if (!record || !fields[k]->ledger_on) continue;
-    double moved = 0.0, lost = 0.0;
-    for (int d = 0; d < dim; d++) {
-      const double change = record[d] - start[k][d];
-      moved += change * record[d];
-      lost += 0.5 * change * (record[d] - record[4 + d]);
-    }
-    fields[k]->ledger.contact += record[3] * moved * force->mvv2e;
-    fields[k]->ledger.transfer -= record[3] * lost * force->mvv2e;
+    if (!record) continue;
+    double change[3] = {0.0, 0.0, 0.0};
+    for (int d = 0; d < dim; d++) change[d] = record[d] - start[k][d];
+    fields[k]->count_push(record, change);
   }
 }
 
@@ -791,10 +784,10 @@ double FixMPMContact::compute_array(int row, int column)
 
 void FixMPMContact::write_restart(FILE *fp)
 {
-  std::vector<double> total(size_array_rows);
-  MPI_Reduce(friction_work, total.data(), size_array_rows, MPI_DOUBLE, MPI_SUM, 0, world);
+  std::vector<double> total(1 + size_array_rows, size_array_rows);
+  MPI_Reduce(friction_work, &total[1], size_array_rows, MPI_DOUBLE, MPI_SUM, 0, world);
   if (comm->me) return;
-  const int size = (int) (size_array_rows * sizeof(double));
+  const int size = (int) (total.size() * sizeof(double));
   fwrite(&size, sizeof(int), 1, fp);
   fwrite(total.data(), 1, size, fp);
 }
@@ -805,7 +798,13 @@ void FixMPMContact::write_restart(FILE *fp)
 
 void FixMPMContact::restart(char *buf)
 {
-  if (comm->me == 0) memcpy(friction_work, buf, size_array_rows * sizeof(double));
+  const auto *const from = (const double *) buf;
+  if ((int) from[0] != size_array_rows)
+    error->all(FLERR, Error::NOPOINTER,
+               "Fix mpm/contact {} had another number of fields when the restart file was written: "
+               "name as many, or give the fix another ID to begin anew",
+               id);
+  if (comm->me == 0) std::copy(from + 1, from + 1 + size_array_rows, friction_work);
 }
 
 /* ---------------------------------------------------------------------- */

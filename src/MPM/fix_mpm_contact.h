@@ -53,6 +53,7 @@ class FixMPMContact : public Fix, public MPMNodeAction {
  private:
   static constexpr int MAX_PAIRS = MAX_FIELDS * (MAX_FIELDS - 1) / 2;
 
+  static constexpr int REACH = 2;    // of the function of a node, in nodes
   enum Law { FRICTIONLESS, COULOMB, STICK, ADHESIVE };
   enum Normal { MASS, VOLUME, COLINEAR, LOGISTIC };
   enum State : char { OPEN, SLIDING, STUCK };
@@ -75,6 +76,11 @@ class FixMPMContact : public Fix, public MPMNodeAction {
     bool owned;
     double *record[MAX_FIELDS];    // null: the body is not here
   };
+  struct Room {      // along an axis, for nodes near a fixed face: share of their volume inside of the box
+    int plane;       // index of the plane of nodes at the face
+    bool fixed;      // else there is no such face
+    double share[REACH + 1];    // from the plane on inward
+  };
   using Blocks = std::vector<std::array<int, 3>>;
 
   std::vector<std::string> names;
@@ -84,6 +90,7 @@ class FixMPMContact : public Fix, public MPMNodeAction {
   double normal_strength, shear_strength, release_work;
   bool gap;
   double full;    // with gap: volume share of a node at which bodies touch
+  Room room[3][2];    // [axis][side]
 
   std::vector<FixMPM *> fields;
   std::vector<Blocks> reach;                 // [field] blocks in reach of its points, canonical
@@ -104,6 +111,8 @@ class FixMPMContact : public Fix, public MPMNodeAction {
   double array[MAX_PAIRS][5];
   bigint array_step;
 
+  void find_room();
+  double filled(const Common &, int n) const;
   int index_of(const FixMPM &) const;
   int pair_index(int a, int b) const;
   void list_common_blocks();

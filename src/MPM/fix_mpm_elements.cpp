@@ -20,6 +20,7 @@
 #include "modify.h"
 #include "mpm_batch.h"
 #include "mpm_element.h"
+#include "mpm_image.h"
 #include "mpm_material.h"
 #include "mpm_mesh_input.h"
 #include "mpm_points.h"
@@ -243,8 +244,7 @@ void FixMPMElements::make_elements(const Mesh &mesh)
       const double *const origin = &x[3 * (std::size_t) element.node[0]];
       const double *const at = &x[3 * (std::size_t) element.node[m]];
       for (int d = 0; d < 3; d++) X[m][d] = at[d] - origin[d];
-      for (int d = 0; d < dim; d++)
-        if (domain->periodicity[d]) X[m][d] -= domain->prd[d] * round(X[m][d] / domain->prd[d]);
+      nearest_image(*domain, X[m]);
       r[2 + m] = (double) (lowest + element.node[m]);
       for (int d = 0; d < dim; d++) r[2 + maxnode + m * dim + d] = X[m][d];
     }

@@ -32,6 +32,7 @@
 #include "input.h"
 #include "math_extra.h"
 #include "modify.h"
+#include "mpm_image.h"
 #include "mpm_surface_mesh.h"
 #include "region_mpm_mesh.h"
 #include "update.h"
@@ -219,25 +220,36 @@ double FixMPMRigid::evaluate(const Load &load) const
 }
 
 /* ----------------------------------------------------------------------
-   inverse of the inertia about the center, in space
+   inertia about the center, in space
 ------------------------------------------------------------------------- */
 
-void FixMPMRigid::inverse_inertia(double out[3][3]) const
+void FixMPMRigid::inertia(double out[3][3]) const
 {
   const double I[3][3] = {{body_inertia[0], body_inertia[3], body_inertia[4]},
                           {body_inertia[3], body_inertia[1], body_inertia[5]},
                           {body_inertia[4], body_inertia[5], body_inertia[2]}};
-  double inverse[3][3], half[3][3];
-  MathExtra::invert3(I, inverse);
-  MathExtra::times3(Q, inverse, half);
+  double half[3][3];
+  MathExtra::times3(Q, I, half);
   MathExtra::times3_transpose(half, Q, out);
 }
 
+/* ----------------------------------------------------------------------
+   angular velocity from angular momentum. What holds an axis takes up the moment that keeps the
+   angular velocity around it zero
+------------------------------------------------------------------------- */
+
 void FixMPMRigid::spin()
 {
-  double inverse[3][3];
-  inverse_inertia(inverse);
-  MathExtra::matvec(inverse, L, omega);
+  double I[3][3], inverse[3][3], moment[3];
+  inertia(I);
+  for (int d = 0; d < 3; d++) {
+    moment[d] = fixed[3 + d] ? 0.0 : L[d];
+    if (!fixed[3 + d]) continue;
+    for (int e = 0; e < 3; e++) I[d][e] = I[e][d] = 0.0;
+    I[d][d] = 1.0;
+  }
+  MathExtra::invert3(I, inverse);
+  MathExtra::matvec(inverse, moment, omega);
 }
 
 /* ----------------------------------------------------------------------
@@ -258,17 +270,6 @@ void FixMPMRigid::load_impulse(double dt)
     const auto *field = dynamic_cast<FixMPM *>(modify->get_fix_by_style("^mpm$")[0]);
     modify->addstep_compute(update->ntimestep + field->steps_to_next());
   }
-}
-
-/* ----------------------------------------------------------------------
-   shortest of the periodic images of a distance. Domain::minimum_image() takes other arguments in
-   older versions of LAMMPS, and distances of two boxes at the most
-------------------------------------------------------------------------- */
-
-static void nearest_image(const Domain &domain, double *d)
-{
-  for (int a = 0; a < 3; a++)
-    if (domain.periodicity[a]) d[a] -= domain.prd[a] * std::round(d[a] / domain.prd[a]);
 }
 
 /* ----------------------------------------------------------------------
@@ -343,9 +344,8 @@ void FixMPMRigid::solve()
   constexpr int MAX_ROUNDS = 30;
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
   using Vector6 = Eigen::Matrix<double, 6, 1>;
-  double inverse[3][3], inertia[3][3];
-  inverse_inertia(inverse);
-  MathExtra::invert3(inverse, inertia);
+  double I[3][3];
+  inertia(I);
 
   for (int round = 0; round < MAX_ROUNDS; round++) {
     double mine[42] = {0.0}, all[42];    // matrix, right-hand side
@@ -385,7 +385,7 @@ void FixMPMRigid::solve()
       A(d, d) += mass;
       b(d) += mass * v[d];
       b(3 + d) += L[d];
-      for (int e = 0; e < 3; e++) A(3 + d, 3 + e) += inertia[d][e];
+      for (int e = 0; e < 3; e++) A(3 + d, 3 + e) += I[d][e];
     }
     for (int i = 0; i < 6; i++) {
       if (!fixed[i]) continue;
@@ -501,10 +501,7 @@ void FixMPMRigid::move(double dt)
   rotate(angle, start, moved);
   memcpy(Q, moved, sizeof(Q));
   spin();
-  for (int d = 0; d < 3; d++) {
-    x[d] += dt * v[d];
-    if (fixed[3 + d]) omega[d] = 0.0;
-  }
+  for (int d = 0; d < 3; d++) x[d] += dt * v[d];
 }
 
 /* ---------------------------------------------------------------------- */

@@ -44,7 +44,6 @@ class FixMPMRigid : public Fix, public MPMNodeAction {
   double compute_scalar() override;
   double compute_vector(int) override;
 
-  void init_action() override {}
   void act(double dt, Stage) override;
 
  private:
@@ -82,7 +81,7 @@ class FixMPMRigid : public Fix, public MPMNodeAction {
   void find_contacts();
   void solve();
   void move(double dt);
-  void inverse_inertia(double out[3][3]) const;
+  void inertia(double out[3][3]) const;
   void spin();
   double evaluate(const Load &) const;
 };

@@ -396,23 +396,30 @@ void FixMPM::act_on_nodes(MPMNodeAction::Stage stage)
   report.t_nodes += platform::walltime() - start;
 }
 
+void FixMPM::push_node(int64_t node, bool owned, const double *impulse)
+{
+  double *record = grid->nodes() + node * grid->nreal, change[3];
+  if (!(record[3] > 0.0)) return;
+  for (int d = 0; d < 3; d++) {
+    change[d] = impulse[d] / record[3];
+    record[d] += change[d];
+  }
+  if (owned) count_push(record, change);
+}
+
 /* ----------------------------------------------------------------------
    The work of the impulse takes the new velocity: that is what moves points. With the mean of the old
    and the new one it would be the change of kinetic energy; the rest is part of integration
 ------------------------------------------------------------------------- */
 
-void FixMPM::push_node(int64_t node, bool owned, const double *impulse)
+void FixMPM::count_push(const double *record, const double *change)
 {
-  double *record = grid->nodes() + node * grid->nreal;
-  if (!(record[3] > 0.0)) return;
+  if (!ledger_on) return;
   double moved = 0.0, lost = 0.0;
-  for (int d = 0; d < 3; d++) {
-    const double change = impulse[d] / record[3];
-    record[d] += change;
-    moved += change * record[d];
-    if (ledger_on) lost += 0.5 * change * (record[d] - record[4 + d]);
+  for (int d = 0; d < lattice.dim; d++) {
+    moved += change[d] * record[d];
+    lost += 0.5 * change[d] * (record[d] - record[4 + d]);
   }
-  if (!ledger_on || !owned) return;
   ledger.contact += record[3] * moved * force->mvv2e;
   ledger.transfer -= record[3] * lost * force->mvv2e;
 }

@@ -1,0 +1,293 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// labels: physics
+// timeout: 600
+
+// Hertz contact: force and contact radius against indentation, on one lattice (fix
+// mpm/contact) and on two (pair mpm/penalty), with an error that falls with the node spacing.
+
+#include "mpm_lammps.h"
+
+#include "gtest/gtest.h"
+
+#include <cmath>
+#include <functional>
+#include <utility>
+#include <vector>
+
+using namespace MPM_TEST;
+
+static constexpr double PI = 3.14159265358979323846;
+
+/** An elastic block of width W (radius or edge) and depth D between walls without friction, except for
+ *  its upper face, into which a rigid paraboloid of radius R is pressed. Modulus 1, density 1. */
+struct Block {
+  double nu, R, W, D;
+
+  double plane_modulus() const { return 1.0 / (1.0 - nu * nu); }
+  double wave_modulus() const { return (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)); }
+  double wave_speed() const { return std::sqrt(wave_modulus()); }
+
+  // K.L. Johnson, Contact Mechanics (1985), section 4.2, with the radius a of the contact
+  double force(double a) const { return 4.0 / 3.0 * plane_modulus() * a * a * a / R; }
+  double peak(double a) const { return 2.0 / PI * plane_modulus() * a / R; }
+
+  /** Pressure of wave number k, times what it has as amplitude of J0 or of cosines, to the
+   *  displacement of the surface: of a half-space 2/(E* k), of a layer on a floor without friction less
+   *  by the factor (cosh 2u - 1)/(sinh 2u + 2u), u = k D. */
+  double compliance(double k) const
+  {
+    const double u = std::min(k * D, 300.0);
+    return 2.0 / (plane_modulus() * k) * (std::cosh(2.0 * u) - 1.0) /
+        (std::sinh(2.0 * u) + 2.0 * u);
+  }
+  /** Integral of r p(r) J0(k r) over the pressure of Hertz, p = peak sqrt(1 - r^2/a^2). */
+  double transform(double a, double k) const
+  {
+    const double q = k * a;
+    return peak(a) * a * a * (std::sin(q) - q * std::cos(q)) / (q * q * q);
+  }
+
+  // The indentation is the displacement of the surface at the center. That of a half-space would be
+  // a^2/R; walls and floor change it by a relative amount of the order of a/D, which these series have,
+  // but the shape of the surface, and with it force and pressure, by (a/D)^3 only.
+
+  double indentation_round(double a) const    // in a cylinder
+  {
+    double sum = force(a) * D / (PI * W * W * wave_modulus());
+    for (int n = 1; n < 4000; n++) {
+      double q = (n + 0.25) * PI - 3.0 / (8.0 * (n + 0.25) * PI);    // zero of J1
+      for (int k = 0; k < 3; k++) q -= j1(q) / (j0(q) - j1(q) / q);
+      sum += compliance(q / W) * transform(a, q / W) * 2.0 / (W * W * j0(q) * j0(q));
+    }
+    return sum;
+  }
+  double indentation_square(double a) const    // a quarter of it in a corner of W x W
+  {
+    double sum = force(a) * D / (4.0 * W * W * wave_modulus());
+    for (int m = 0; m < 800; m++)
+      for (int n = 0; n < 800; n++) {
+        if (m + n == 0) continue;
+        const double k = PI / W * std::hypot(m, n);
+        sum += (m ? 2.0 : 1.0) * (n ? 2.0 : 1.0) * 0.5 * PI / (W * W) * compliance(k) *
+            transform(a, k);
+      }
+    return sum;
+  }
+};
+
+/** Errors of a run at three radii of the contact: of the force relative to it, and of the radius in
+ *  the same unit. */
+struct Errors {
+  double force[3], radius[3];
+};
+
+static constexpr double RADII[3] = {0.6, 0.8, 1.0};
+
+/** What a run has to tell: force on the paraboloid (of which there is a part only), contact radius. */
+struct Probe {
+  int depth;    // axis along which it comes down
+  double part;
+  std::function<double(Scene &)> force, radius;
+};
+
+/** The paraboloid comes down at a constant speed, so slowly that waves cross the block many times. */
+static Errors press(Scene &run, const Block &block, double (Block::*indentation)(double) const,
+                    const Probe &probe, double h, double transits)
+{
+  const double end = (block.*indentation)(1.0);
+  const double time = transits * block.D / block.wave_speed(), speed = end / time;
+  for (int i = 0; i < run.n(); i++) {
+    if (run.lmp->atom->type[i] != 2) continue;
+    double *const x = run.x()[i];
+    const double across = probe.depth == 1 ? x[0] * x[0] : x[0] * x[0] + x[1] * x[1];
+    x[probe.depth] += 0.5 * across / block.R;    // a plate, sheared
+    run.v()[i][probe.depth] = -speed;
+  }
+  Errors errors;
+  const double dt = run.lmp->update->dt;
+  const int steps = (int) (time / dt), samples = 10, window = steps / 60 / samples * samples;
+  for (int n = 0; n < 3; n++) {
+    const double a = RADII[n];
+    const double at = (block.*indentation)(a) / end * time;
+    run.commands(strprintf("run %d post no\n", (int) ((at - run.time()) / dt) - window));
+    double f = 0.0, radius = 0.0, exact_f = 0.0, exact_a = 0.0;
+    for (int k = 0; k < samples; k++) {
+      run.commands(strprintf("run %d post no\n", window / samples));
+      const double now = a * std::sqrt(run.time() / at);    // near a the indentation goes with a^2
+      exact_a += now / samples;
+      exact_f += block.force(now) / samples;
+      f += probe.force(run) / probe.part / samples;
+      radius += probe.radius(run) / samples;
+    }
+    const std::string name = strprintf("h/a = %.3f: ", h / a);
+    errors.force[n] = std::fabs(measured(name + "error of the force", f / exact_f - 1.0));
+    errors.radius[n] =
+        std::fabs(measured(name + "error of the radius in cells", (radius - exact_a) / h)) * h;
+  }
+  return errors;
+}
+
+// The exact solution itself: in a deep and wide block the indentation is that of a half-space, less
+// F a0/(pi E* D) for a wide layer, with a0 = 1.16757, the integral of 1 - L
+
+TEST(Hertz, SeriesHaveTheKnownLimits)
+{
+  const Block wide = {0.3, 10.0, 60.0, 10.0};
+  const double layer = 0.1 - wide.force(1.0) * 1.16757 / (PI * wide.plane_modulus() * wide.D);
+  EXPECT_NEAR(wide.indentation_round(1.0), layer, 2.0e-4 * layer);
+  const Block near = {0.3, 10.0, 8.0, 8.0};
+  EXPECT_NEAR(near.indentation_square(1.0), near.indentation_round(1.0),
+              0.02 * near.indentation_round(1.0));
+}
+
+// a body of revolution on another one, on one lattice
+
+TEST(Hertz, OnOneLattice)
+{
+  const Block block = {0.3, 10.0, 8.0, 8.0};
+  Errors error[2];
+  for (int k = 0; k < 2; k++) {
+    const double h = 0.25 / (1 << k);
+    Scene run;
+    run.commands(strprintf("variable h equal %g\n", h) + R"(
+units lj
+dimension 2
+boundary f f p
+atom_style mpm
+atom_modify map array
+neighbor $(0.3*v_h) bin
+region box block 0 8 0 11 -0.5 0.5
+create_box 2 box
+fix all all mpm ${h} axisymmetric yes
+region one block 0 8 0 8 INF INF
+region two block 0 2.5 8 $(8+3*v_h) INF INF
+create_points 1 region one ppc 2
+create_points 2 region two ppc 2
+unfix all
+group one type 1
+group two type 2
+fix one one mpm ${h} axisymmetric yes transfer flip 1.0 scheme musl
+fix two two mpm ${h} axisymmetric yes transfer flip 1.0 scheme musl
+fix m1 one mpm/material density 1.0 linear 1.0 0.3
+fix m2 two mpm/material density 1.0e9 linear 1.0 0.3
+fix axis all mpm/boundary xlo xhi ylo slip
+fix c all mpm/contact two one
+thermo 100000000
+timestep $(0.4*v_h/1.16)
+)");
+    // The stress of single points is uneven down to some cells below the contact, its mean over four
+    // layers is not. At depth z the mean of r^2 with the stress as weight is 2/5 a^2 + 2 z^2, of
+    // which 3 z^3/s is beyond the radius s, with a share (z/s)^3 of the force
+
+    std::vector<std::pair<tagint, double>> layers;
+    for (int i = 0; i < run.n(); i++) {
+      const double z = 8.0 - run.x()[i][1];
+      if (z > h && z < 3.0 * h) layers.emplace_back(run.lmp->atom->tag[i], z);
+    }
+    const Probe probe = {1, 1.0,
+                         [](Scene &r) {
+                           return r.evaluate("-f_c[1][2]");
+                         },
+                         [&](Scene &r) {
+                           const double s = 4.0;
+                           double force = 0.0, first = 0.0, second = 0.0, part = 0.0, square = 0.0;
+                           for (const auto &p : layers) {
+                             const int i = r.lmp->atom->map(p.first);
+                             const double radius = r.x()[i][0], z = p.second;
+                             if (radius > s) continue;
+                             double stress[6];
+                             r.points().cauchy(i, stress);
+                             force -= stress[1] * radius;
+                             first -= stress[1] * radius * radius * radius;
+                           }
+                           for (const auto &p : layers) {
+                             const double z = p.second;
+                             square += 2.0 * z * z - 3.0 * z * z * z / s;
+                             part += 1.0 - z * z * z / (s * s * s);
+                           }
+                           second = first / force * part - square;
+                           return std::sqrt(std::max(0.0, 2.5 * second / layers.size()));
+                         }};
+    error[k] = press(run, block, &Block::indentation_round, probe, h, 15.0);
+  }
+  for (int n = 0; n < 3; n++) {
+    EXPECT_LT(error[1].force[n], 0.03);
+    EXPECT_LT(error[1].force[n], 0.5 * error[0].force[n]);
+    EXPECT_LT(error[1].radius[n], 0.75 * 0.125);
+    EXPECT_LT(error[1].radius[n], 0.5 * error[0].radius[n]);
+  }
+  EXPECT_LT(error[1].force[2], 0.01);
+}
+
+// in three dimensions, on two lattices: a quarter. Spheres of points touch late where they face gaps of
+// the other lattice, and the layer of contact yields: the force is too small by what both are of the
+// indentation, which is of first order in the spacing of points
+
+TEST(Hertz, OnTwoLattices)
+{
+  const Block block = {0.3, 4.0, 4.0, 4.0};
+  Errors error[2];
+  for (int k = 0; k < 2; k++) {
+    const double h = k ? 0.2 : 1.0 / 3.0;
+    Scene run;
+    run.commands(strprintf("variable h equal %.17g\n", h) + R"(
+units lj
+boundary f f f
+atom_style mpm
+atom_modify map array
+neighbor $(0.3*v_h) bin
+region box block 0 4 0 4 0 7
+create_box 2 box
+fix one all mpm ${h}
+fix two all mpm $(0.8*v_h) origin 0 0 4
+region one block 0 4 0 4 0 4
+region two block 0 1.6 0 1.6 4 $(4+2.4*v_h)
+create_points 1 region one ppc 2 fix one
+create_points 2 region two ppc 2 fix two
+unfix one
+unfix two
+group one type 1
+group two type 2
+fix one one mpm ${h} transfer flip 1.0 scheme musl
+fix two two mpm $(0.8*v_h) origin 0 0 4 transfer flip 1.0 scheme musl
+fix m1 one mpm/material density 1.0 linear 1.0 0.3
+fix m2 two mpm/material density 1.0e9 linear 1.0 0.3
+fix sides all mpm/boundary xlo xhi ylo yhi zlo slip
+pair_style mpm/penalty
+pair_coeff 1 2 1.0
+compute f two reduce sum fz
+thermo_style custom step c_f
+thermo 100000000
+timestep $(0.4*v_h/1.16)
+)");
+    // forces on the points of the paraboloid: the mean of r^2 is 2/5 a^2
+
+    const Probe probe = {2, 0.25,
+                         [](Scene &r) {
+                           return r.evaluate("c_f");
+                         },
+                         [](Scene &r) {
+                           double sum = 0.0, second = 0.0;
+                           for (int i = 0; i < r.n(); i++) {
+                             if (r.lmp->atom->type[i] != 2) continue;
+                             const double *x = r.x()[i], f = r.lmp->atom->f[i][2];
+                             sum += f;
+                             second += f * (x[0] * x[0] + x[1] * x[1]);
+                           }
+                           return std::sqrt(2.5 * second / sum);
+                         }};
+    error[k] = press(run, block, &Block::indentation_square, probe, h, 8.0);
+  }
+  for (int n = 0; n < 3; n++) {
+    EXPECT_LT(error[1].force[n], 0.62 * error[0].force[n]);    // first order
+    EXPECT_LT(error[1].radius[n], 0.1 * 0.2);
+  }
+  EXPECT_LT(error[1].force[2], 0.07);
+}
