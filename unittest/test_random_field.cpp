@@ -132,9 +132,19 @@ TEST_F(Random, MomentsAndCorrelation)
   EXPECT_NEAR(inside / n, 0.6827, 0.5 * e);
   for (int d = 0; d < 4; d++)
     for (double c : pair[d]) EXPECT_NEAR(c, std::exp(-distance[d] * distance[d]), 1.5 * e);
-}
 
-// the variance is the same on the nodes of the lattice and between them, to what splines can do
+  // twice as many values along each axis: the squares of neighbors correlate by exp(-2 (1.05)^2),
+  // of all neighbors of a value in sum by 0.83, which leaves 1/1.83 of them as independent values
+  const int dense = 2 * side;
+  double variance = 0.0;
+  for (int i = 0; i < dense * dense * dense; i++) {
+    const double x[3] = {1.05 * length * (i % dense) - 1.5,
+                         1.05 * length * (i / dense % dense) + 0.77,
+                         1.05 * length * (i / dense / dense)};
+    variance += std::pow(field.value(x), 2) / (dense * dense * dense);
+  }
+  EXPECT_NEAR(variance, 1.0, 4.0 * std::sqrt(2.0 * 1.83 / (dense * dense * dense)));
+}
 
 TEST_F(Random, IsSmoothAndTheSameFromAnywhere)
 {
@@ -173,6 +183,7 @@ TEST_F(Random, IsSmoothAndTheSameFromAnywhere)
 
 TEST_F(Random, FactorsOfAMaterial)
 {
+  const RandomField field(0.1, 7);
   for (const char *kind : {"lognormal", "normal"}) {
     const auto material = make(STEEL + "random strength.SIGMAY " + kind + " 0.2 0.1 7");
     ASSERT_EQ(material->history().size(), 2);
@@ -184,6 +195,9 @@ TEST_F(Random, FactorsOfAMaterial)
       const double x[3] = {0.21 * (i % side), 0.21 * (i / side % side), 0.21 * (i / side / side)};
       double history[2];
       material->initialize(x, history);
+      const double s2 = std::log(1.04), g = field.value(x);    // 1.04: 1 + 0.2^2
+      EXPECT_NEAR(history[1], kind[0] == 'l' ? std::exp(std::sqrt(s2) * g - 0.5 * s2) : 1 + 0.2 * g,
+                  1e-12);
       mean += history[1] / n;
       square += history[1] * history[1] / n;
       lowest = std::min(lowest, history[1]);
