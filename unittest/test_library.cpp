@@ -158,6 +158,45 @@ TEST(Library, MaterialFilesAreComplete)
     EXPECT_TRUE(names.count(name)) << name;
 }
 
+// longitudinal speeds of sound, as handbooks and tables for ultrasonic testing have them (such as the
+// CRC Handbook of Chemistry and Physics): density, bulk and shear modulus of the files come from
+// tests at high rates, and must be those of the material all the same. (Not so in PMMA_elastic, with
+// a slow modulus, and in Water_shock, a line for strong shocks.)
+
+TEST(Library, SpeedsOfSoundAreThoseOfHandbooks)
+{
+  const struct {
+    const char *name;
+    double speed;
+  } cases[] = {{"Cu_OFHC_JC", 4760},
+               {"Cu_OFHC_SCG", 4760},
+               {"Cu_OFHC_ZA", 4760},
+               {"Al_1100_O_SCG", 6420},
+               {"Al_2024_T351_JC", 6370},
+               {"Al_6061_T6_JC", 6400},
+               {"Al_6061_T6_SCG", 6400},
+               {"Al_7075_T651_JC", 6350},
+               {"Steel_1006_JC", 5960},
+               {"Steel_4340_JC", 5940},
+               {"Iron_Armco_JC", 5950},
+               {"Iron_Armco_ZA", 5950},
+               {"Weldox_460E_JC", 5960},
+               {"W_alloy_JC", 5220},
+               {"W_alloy_SCG", 5220},
+               {"Ti_6Al4V_JC", 6150},
+               {"Ta_SCG", 4160},
+               {"Ice_polycrystal", 3980},
+               {"Glass_soda_lime", 5840},
+               {"Water_Tait", 1482},
+               {"Glycerol", 1920},
+               {"Hg_shock", 1450},
+               {"Air", 340}};
+  for (const auto &c : cases) {
+    const auto material = make(definition(c.name));
+    EXPECT_NEAR(MaterialPoint(*material).wave_speed() / c.speed, 1.0, 0.05) << c.name;
+  }
+}
+
 // wet sand, gelatin, and the failure of Weldox: what the laws make of the values is what the sources say
 
 TEST(Library, WetSandIsAtCriticalState)
