@@ -98,4 +98,10 @@ def test_fronts_and_credited_errors():
     assert data.cost_of("bar", ("quadratic", "apic", "musl", "updated", "2", "double"))[0] is None
 
 
+def test_tables_of_convergence():
+    # no run is missing, orders are those of theory or have a reason, and the manual has them
+    result = mt.run([sys.executable, os.path.join(mt.ROOT, "bench", "convergence.py"), "--check"])
+    assert result.code == 0, result.output
+
+
 mt.main(globals())
