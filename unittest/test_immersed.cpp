@@ -13,6 +13,8 @@
 
 #include "mpm_lammps.h"
 
+#include "group.h"
+
 #include <cmath>
 
 using namespace MPM_TEST;
@@ -35,6 +37,13 @@ static std::string rest(const std::string &fix, const std::string &fluid = "eos 
       "\nfix fluid water mpm/material density 1.0 " + fluid +
       "\nneigh_modify exclude type 1 1 exclude type 1 2\npair_style zero 0.5\npair_coeff * *\n"
       "thermo 1000\nthermo_modify norm no\n";
+}
+
+/** The quadratic spline around zero. */
+static double spline(double x)
+{
+  x = fabs(x);
+  return x < 0.5 ? 0.75 - x * x : x < 1.5 ? 0.5 * pow(1.5 - x, 2.0) : 0.0;
 }
 
 // Terminal velocity of a single sphere, by the law of Schiller and Naumann
@@ -140,8 +149,9 @@ TEST(Immersed, ArchimedesInFluidThatAccelerates)
     // what a grain takes from the fluid slows down the fluid around it, by its share of the nodes
     const double volume = PI / 6.0 * 0.125;
     const auto squares = [](double x) {
-      const double f = x - floor(x + 0.5), low = 0.5 - f, high = 0.5 + f;
-      return 0.25 * (pow(low, 4.0) + pow(high, 4.0)) + pow(0.75 - f * f, 2.0);
+      double sum = 0.0;
+      for (int n = -1; n < 8; n++) sum += pow(spline(x - n), 2.0);
+      return sum;
     };
     for (const auto &s : run.gather())
       if (s.type == 2) {
@@ -160,6 +170,94 @@ TEST(Immersed, ArchimedesInFluidThatAccelerates)
         EXPECT_NEAR(
             measured("velocity / that of the fluid * density", s.v[0] * s.mass / volume / vx), 1.0,
             0.01);
+  }
+}
+
+// Drag on held grains in a lattice, in fluid that moves past them
+
+TEST(Immersed, LawsOfDrag)
+{
+  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
+  const double d = 0.5, w = 1.0, volume = PI / 6.0 * d * d * d;
+  struct Case {
+    const char *law;
+    double viscosity, cell;
+  };
+  for (const auto &c :
+       {Case{"stokes", 1.0, 0.625}, Case{"schiller", 0.01, 1.0}, Case{"schiller", 1.0e-4, 1.0},
+        Case{"ergun", 0.05, 0.625}, Case{"ergun", 1.0e-3, 0.5}, Case{"gidaspow", 0.05, 0.625},
+        Case{"gidaspow", 0.05, 1.0}, Case{"gidaspow", 1.0e-4, 1.0}, Case{"difelice", 1.0, 1.0},
+        Case{"difelice", 0.02, 0.625}, Case{"difelice", 1.0e-4, 0.625}}) {
+    const std::string law = c.law;
+    const double mu = c.viscosity, eps = 1.0 - volume / (c.cell * c.cell * c.cell), Re = w * d / mu;
+    // coefficients for the area of the sphere and the superficial velocity
+    const double single = Re < 1000.0 ? 24.0 / Re * (1.0 + 0.15 * pow(Re, 0.687)) : 0.44;
+    const double square = 0.125 * PI * d * d * w * w;
+    double force = 0.0;
+    if (law == "stokes")
+      force = 3.0 * PI * mu * d * w;
+    else if (law == "schiller")
+      force = square * single;
+    else if (law == "difelice")
+      force = square * pow(0.63 + 4.8 / sqrt(Re), 2.0) / eps *
+          pow(eps, -(3.7 - 0.65 * exp(-0.5 * pow(1.5 - log10(Re), 2.0))));
+    else if (law == "gidaspow" && eps > 0.8)    // Wen and Yu with the gradient of pressure: / eps
+      force = square * single * pow(eps, -4.65);
+    else    // gradient of pressure over the number of grains in a volume
+      force = volume / (1.0 - eps) *
+          (150.0 * mu * pow(1.0 - eps, 2.0) * w / (d * d) + 1.75 * (1.0 - eps) * w * w / d) /
+          pow(eps, 3.0);
+    Scene run;
+    run.commands(head("0 5 0 5 0 5") + "create_points 1 box ppc 2\n" +
+                 strprintf("lattice sc %.10g\ncreate_atoms 2 box\n", 1.0 / pow(c.cell, 3.0)) +
+                 strprintf("set type 2 diameter %g density 3\n", d) +
+                 rest(strprintf("%g drag %s", mu, c.law)) +
+                 "velocity water set 0 1 0 units box\ntimestep 1.0e-5\nrun 1\n");
+    const double grains = run.lmp->group->count(run.lmp->group->find("grains"));
+    EXPECT_NEAR(measured(strprintf("drag %s, Re %g, porosity %.2f", c.law, Re, eps),
+                         run.fix_vector("drag", 6)[1] / (grains * force)),
+                1.0, 0.002);
+  }
+}
+
+// Grains at random places have no ends of beds among them: their drag is that of the mean porosity, but for
+// what the mapped porosity scatters
+
+TEST(Immersed, RandomPlacesAreNoEndsOfBeds)
+{
+  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
+  const double d = 0.4, volume = PI / 6.0 * d * d * d;
+  const int grains = 3000;
+  Scene run;
+  run.commands(head("0 10 0 10 0 10") + "create_points 1 box ppc 2\n" +
+               strprintf("create_atoms 2 random %d 4711 NULL\n", grains) +
+               strprintf("set type 2 diameter %g density 3\n", d) + rest("0.1 drag difelice") +
+               "velocity water set 0 1 0 units box\ntimestep 1.0e-5\nrun 1\n");
+  const double eps = 1.0 - grains * volume / 1000.0, Re = d / 0.1;
+  const double force = 0.125 * PI * d * d * pow(0.63 + 4.8 / sqrt(Re), 2.0) *
+      pow(eps, -4.7 + 0.65 * exp(-0.5 * pow(1.5 - log10(Re), 2.0)));
+  EXPECT_NEAR(measured("drag", run.fix_vector("drag", 6)[1] / (grains * force)), 1.0, 0.06);
+}
+
+// Above the surface of the fluid, buoyancy falls with the mass around the grain
+
+TEST(Immersed, EndsAtTheSurface)
+{
+  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
+  const double volume = PI / 6.0 * 0.125;
+  for (double z : {5.4, 7.0, 7.3, 7.9, 8.6, 10.2}) {
+    Scene run;
+    run.commands(head("0 4 0 4 0 20", "p p f") +
+                 "region water block 0 4 0 4 0 7\ncreate_points 1 region water ppc 2\n" +
+                 strprintf("create_atoms 2 single 2.1 1.7 %g\n", z) +
+                 "set type 2 diameter 0.5 density 1.0\n" + rest("0.5 drag none gravity 0 0 -1") +
+                 "timestep 1.0e-3\nrun 1\n");
+    double mass = 0.0;    // of full space
+    for (int n = 0; n < 20; n++)
+      for (int k = 0; k < 14; k++) mass += 0.5 * spline(z - n) * spline(0.25 + 0.5 * k - n);
+    const double *const f = run.fix_vector("drag", 6);
+    EXPECT_NEAR(measured(strprintf("buoyancy at %g", z), f[5] / volume), std::min(1.0, 2.0 * mass),
+                z < 6.0 ? 0.02 : 1.0e-10);
   }
 }
 
