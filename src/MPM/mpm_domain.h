@@ -155,7 +155,8 @@ template <int DIM> struct PointDomain {
   {
     // coefficients of 1, xi, eta, xi eta, zeta, xi zeta, ...: bits of the number are the powers
     T mode[24];
-    for (int k = 0; k < 24; k++) mode[k] = 0.125 * x[k];
+    for (int k = 0; k < 8; k++)
+      for (int i = 0; i < 3; i++) mode[3 * k + i] = 0.125 * x[3 * k + i];
     to_modes<1>(mode), to_modes<2>(mode), to_modes<4>(mode);
     const T *a = mode + 3, *b = mode + 6, *f = mode + 9, *c = mode + 12, *e = mode + 15,
             *d = mode + 18, *g = mode + 21;

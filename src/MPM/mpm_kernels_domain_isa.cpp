@@ -23,7 +23,7 @@
 namespace {
 
 constexpr int GROUP = 8;    ///< points whose domains are prepared together
-static_assert(GROUP % REGISTER == 0);
+static_assert(GROUP % REGISTER == 0 && GROUP == STAGE);
 
 /** Four reals in a vector. */
 MPM_INLINE Vec<4> quad(double a, double b, double c, double d)
@@ -110,7 +110,10 @@ template <int DIM, Shape SHAPE, bool STENCIL> struct Domains {
     for (int l = 0; l < GROUP; l += REGISTER) {
       V a[ROW], g[N * DIM], w[N], size;
       MPM_UNROLL
-      for (int k = 0; k < ROW; k++) a[k] = V::load(in[k] + l);
+      for (int k = 0; k < ROW / DIM; k++) {
+        MPM_UNROLL
+        for (int d = 0; d < DIM; d++) a[DIM * k + d] = V::load(in[DIM * k + d] + l);
+      }
       if constexpr (SHAPE == CPDI) {
         V corners[N * DIM];
         size = PointDomain<DIM>::box(a, corners, g);
@@ -131,8 +134,10 @@ template <int DIM, Shape SHAPE, bool STENCIL> struct Domains {
           MPM_UNROLL
           for (int k = 0; k < N; k++) (a[DIM * k + d] - shift).store(x[DIM * k + d] + l);
         }
+        V least = w[0];
         MPM_UNROLL
-        for (int k = 0; k < N; k++) bad = flag_outside(bad, w[k], 1.0e300);
+        for (int k = 1; k < N; k++) least = min(least, w[k]);
+        bad = flag_outside(bad, least, 1.0e300);
       }
       bad = flag_outside(bad, size, 1.0e300);
       MPM_UNROLL
@@ -348,6 +353,19 @@ void p2g(const PointRows &rows, const TransferStep &transfer, int first, int las
 
   for (Index p = first; p < last; p += GROUP) {
     const int n = last - p < GROUP ? last - p : GROUP;
+    const Index ahead = p + AHEAD;
+    prefetch<domains.ROW>(points.domain, ahead);
+    prefetch<3>(points.x, ahead);
+    if (momentum) {
+      prefetch<3>(points.v, ahead);
+      prefetch<1>(points.mass, ahead);
+      if (AFFINE) prefetch<DIM * DIM>(points.C, ahead);
+    }
+    if (force) {
+      prefetch<3>(points.f, ahead);
+      prefetch<6>(points.tau, ahead);
+      prefetch<1>(points.vol0, ahead);
+    }
     domains.set(points, p, n, frame);
     for (int d = 0; d < DIM; d++) {
       lowest[d] = min(lowest[d], Vec<GROUP>::load(domains.low[d]));
@@ -446,6 +464,18 @@ int gather(const PointRows &rows, const TransferStep &transfer, int first, int l
 
   for (Index p = first; p < last; p += GROUP) {
     const int n = last - p < GROUP ? last - p : GROUP;
+    const Index ahead = p + AHEAD;
+    prefetch<domains.ROW, UPDATE && SHAPE == CPDI2>(points.domain, ahead);
+    prefetch<3, UPDATE>(points.x, ahead);
+    if (UPDATE) {
+      prefetch<3, 1>(points.v, ahead);
+      if (is_affine(TRANSFER)) prefetch<DIM * DIM, 1>(points.C, ahead);
+    }
+    if (points.F) {    // the constitutive law comes next
+      prefetch<9, 1>(points.F, ahead);
+      prefetch<6, 1>(points.tau, ahead);
+      prefetch<1>(points.vol0, ahead);
+    }
     bad |= domains.set(points, p, n, frame);
     for (int l = 0; l < n; l++) {
       const Index i = p + l;
