@@ -131,6 +131,34 @@ TEST(Edges, UniformPressureMakesNoForce)
   }
 }
 
+// What nodes give to points has the same functions as what points give to nodes: a body that touches all
+// faces keeps its momentum, and neither velocities nor their gradients change where all points have one.
+
+TEST(Edges, KeepMomentum)
+{
+  for (const char *options :
+       {"transfer pic", "transfer flip 1.0", "transfer flip 1.0 scheme usavg", "transfer flip 1.0 frame total",
+        "shape cubic transfer flip 1.0 scheme musl", "shape cubic transfer pic scheme usf"}) {
+    SCOPED_TRACE(options);
+    Scene run{MPI_COMM_SELF};
+    run.commands(replaced(replaced(full, "OPTIONS", options), "0.001", "0.05") +
+                 "displace_atoms all random 0.05 0.05 0.05 4711 units box\n"
+                 "variable v atom random(-0.1,0.1,4711)\nvelocity all set v_v v_v v_v\n");
+    const auto before = run.sums();
+    run.commands("run 20\n");
+    const auto after = run.sums();
+    for (int d = 0; d < 3; d++) EXPECT_NEAR(after.p[d], before.p[d], 1.0e-12 * before.mass);
+    double stress = 0.0;
+    for (int i = 0; i < run.n(); i++) stress = std::max(stress, std::abs(run.points().tau[i][0]));
+    EXPECT_GT(stress, 0.01);
+  }
+  Scene run{MPI_COMM_SELF};
+  run.commands(replaced(full, "OPTIONS", "transfer flip 1.0 scheme usavg") +
+               "displace_atoms all random 0.05 0.05 0.05 4711 units box\nvelocity all set 0.3 0.2 0.1\nrun 20\n");
+  for (int i = 0; i < run.n(); i++)
+    for (int c = 0; c < 6; c++) ASSERT_NEAR(run.points().tau[i][c], 0.0, 1.0e-12);
+}
+
 // Walls, rank boundaries, periodic faces, and a restart.
 
 static const std::string moving = "fix w1 all mpm/boundary xlo xhi stick\n"

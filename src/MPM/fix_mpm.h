@@ -379,6 +379,7 @@ class FixMPM : public Fix {
   // their parts
   void act_on_nodes(MPMNodeAction::Stage);
   void check_light_nodes();
+  double light_share();
   void map_to_nodes(MPM_NS::P2G);
   void map_run(MPM_NS::P2G, const MPM_NS::PointRows &, const MPM_NS::TransferStep &, const Run &,
                const int base[3], int box[6]);
@@ -430,7 +431,7 @@ class FixMPM : public Fix {
   void check_inside_box();
   void check_dt();
   double stable_share(double size) const;
-  void warn_dt() const;
+  void warn_dt();
   void point_is_bad(int i, const std::string &what);
   void handle_bad_points();
   bool may_delete() const { return policy == DELETE || delete_failed; }

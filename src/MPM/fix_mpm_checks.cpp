@@ -455,32 +455,35 @@ void FixMPM::check_dt()
    from velocities which the same stress has just changed (USL without affine matrix) costs most;
    with points of finite size it goes with the square root of their half size s in node spacings, as
    the ratio of stiffness and mass of a node that they barely reach is E/(rho h^2 s). Domains (CPDI)
-   do not care for size: 0.70 (USL), 0.93 (affine), 1.39 (others) with 1 to 64 points per cell. Linear
-   functions without any limit have a warning of their own, see check_light_nodes().
+   do not care for size. Linear functions without any limit have warnings of their own, see
+   check_light_nodes() and light_share().
 ------------------------------------------------------------------------- */
 
 double FixMPM::stable_share(double size) const
 {
   const bool usl = scheme == USL, affine = is_affine(transfer);
   if (extent == UNIFORM || extent == CONTIGUOUS) {
-    const double share = refinement == FMPM ? 0.4 : (usl ? 0.5 : (affine ? 0.55 : 1.0));
-    return usl ? std::min(share, 1.4 * share / 0.5 * sqrt(size)) : share;
+    const double share = refinement == FMPM ? 0.37 : (usl ? 0.5 : (affine ? 0.55 : 1.0));
+    return usl ? std::min(share, 1.25 * share / 0.5 * sqrt(size)) : share;
   }
   if (refinement == FMPM) return 0.4;
   if (shape == LINEAR && extent == NO_SIZE && !total) {
-    if (light > 0.0) return scheme == USF ? 0.3 : 0.75;
-    if (usl) return 0.7;
-    return affine || scheme == USAVG ? 1.0 : (scheme == USF ? 0.25 : 0.65);
+    if (light > 0.0) return scheme == USF ? 0.3 : 0.7;
+    if (usl) return 0.65;
+    return affine ? 0.9 : (scheme == USAVG ? 1.0 : (scheme == USF ? 0.25 : 0.65));
   }
-  if (affine)
-    return shape == CUBIC ? 1.0 : (extent != NO_SIZE ? 0.9 : (transfer == TPIC && usl ? 0.8 : 0.95));
+  if (affine) {
+    if (shape == CUBIC) return 1.0;
+    if (transfer == TPIC && shape == QUADRATIC) return usl ? 0.7 : 0.85;
+    return bernstein ? 0.8 : (shape == QUADRATIC ? 0.95 : (total ? 0.75 : 0.9));
+  }
   if (!usl) return 1.0;
-  return shape == LINEAR ? 0.7 : (shape == QUADRATIC ? 0.55 : 0.9);
+  return shape == LINEAR ? (total ? 0.6 : 0.65) : (shape == QUADRATIC ? 0.55 : 0.9);
 }
 
 /* ---------------------------------------------------------------------- */
 
-void FixMPM::warn_dt() const
+void FixMPM::warn_dt()
 {
   if (!dt_check) return;
   tagint tag;
@@ -489,12 +492,12 @@ void FixMPM::warn_dt() const
     for (int i = 0; i < atom->nlocal; i++)
       if (is_point(i)) mine[1] = std::min(mine[1], half_size(i));
   MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MIN, world);
-  const double share = stable_share(all[1]);
+  const double share = std::min(stable_share(all[1]), light_share());
   if (comm->me == 0 && share < 1.0 && step_dt() > share * all[0])
     error->warning(FLERR, "Fix mpm {}: the time step is {:.3g} h/(c+|v|), but this shape, transfer and "
                    "scheme can be unstable above {:.2g}, depending on where points are in their cells: "
-                   "use fix mpm/dt {:.2g} or less, or another scheme", id, step_dt() / all[0], share,
-                   share);
+                   "use fix mpm/dt {:.2g} or less, or another scheme{}", id, step_dt() / all[0], share,
+                   share, total ? ", or an origin for which faces of the body are on nodes" : "");
 }
 
 int FixMPM::find_local(tagint tag) const
