@@ -207,15 +207,27 @@ TEST_F(Random, FactorsOfAMaterial)
     EXPECT_GT(lowest, kind[0] == 'l' ? 0.4 : 0.0) << kind;
   }
   // a value that its law cannot have
-  const auto wild = make(STEEL + "random strength.G normal 2.0 0.1 7");
-  const auto many = [&]() {
-    for (int i = 0; i < 100; i++) {
-      const double x[3] = {0.3 * i, 0.0, 0.0};
-      double history[2];
-      wild->initialize(x, history);
+  const auto error_at_points = [](const std::string &text) -> std::string {
+    const auto wild = make(text);
+    std::vector<double> history(wild->history().size());
+    try {
+      for (int i = 0; i < 100; i++) {
+        const double x[3] = {0.3 * i, 0.0, 0.0};
+        wild->initialize(x, history.data());
+      }
+    } catch (const std::runtime_error &e) {
+      return e.what();
     }
+    return "";
   };
-  EXPECT_THROW(many(), std::runtime_error);
+  EXPECT_NE(error_at_points(STEEL + "random strength.G normal 2.0 0.1 7")
+                .find("which is out of range: use lognormal"),
+            std::string::npos);
+  // values that do not go together
+  EXPECT_NE(error_at_points("density 1800 drucker/prager 1e7 0.3 30 dilatancy 25 "
+                            "random PHI normal 0.2 0.1 7")
+                .find("PSI must not exceed PHI"),
+            std::string::npos);
 }
 
 // each point of a batch is as with a material that has its value for all
@@ -320,6 +332,30 @@ TEST_F(Random, InitialTemperature)
     }
     EXPECT_NEAR(mean, 300.0, 4 * 30.0 / std::sqrt(n));
     EXPECT_NEAR(std::sqrt(square - mean * mean), 30.0, 5 * 30.0 / std::sqrt(n));
+  }
+}
+
+// laws that make their initial state themselves do so with the parameters of the point
+
+TEST_F(Random, InitialStateOfALaw)
+{
+  const auto gas = make("density 1.2 eos ideal/gas 1.4 pressure 1e5 random P0 lognormal 0.3 1.0 5");
+  const std::string glass = "density 2500 eos linear 43e9 strength elastic 30e9 damage rankine 5e7 "
+                            "weibull 7 1e-6 4711 ";
+  const auto random = make(glass + "random SIGMA lognormal 0.3 1.0 5"), plain = make(glass);
+  const size_t row = 3;
+  ASSERT_EQ(plain->history()[row].name, "random");
+  std::vector<double> of_gas(gas->history().size()), of_random(random->history().size()),
+      of_plain(plain->history().size());
+  for (int i = 0; i < 20; i++) {
+    const double x[3] = {0.7 * i, -0.3 * i, 0.1};
+    gas->initialize(x, of_gas.data());
+    EXPECT_NE(of_gas.back(), 1.0);
+    EXPECT_NEAR(of_gas[0], 1e5 * of_gas.back() / 0.4, 1e-6);
+    random->initialize(x, of_random.data());
+    plain->initialize(x, of_plain.data());
+    EXPECT_GT(of_plain[row], 0.0);
+    EXPECT_EQ(of_random[row], of_plain[row]);
   }
 }
 
