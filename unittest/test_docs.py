@@ -262,6 +262,20 @@ def test_links_lead_somewhere():
     check(wrong)
 
 
+def test_every_scene_is_in_the_gallery_and_says_what_to_look_at():
+    gallery, wrong = read(os.path.join(ROOT, "README.md")), []
+    for folder in sorted(glob.glob(os.path.join(ROOT, "examples", "*", ""))):
+        name = os.path.basename(os.path.dirname(folder))
+        text = read(os.path.join(folder, "README.md"))
+        for target in ("examples/%s/%s.png" % (name, name), "examples/%s/README.md" % name):
+            if "(%s)" % target not in gallery:
+                wrong.append("README.md has no link to " + target)
+        for part in ("(%s.png)" % name, "in.%s" % name, "\n## What to look at\n"):
+            if part not in text:
+                wrong.append("examples/%s/README.md: no %s" % (name, part.strip()))
+    check(wrong)
+
+
 def test_page_of_the_atlas_is_what_its_tables_give():
     result = mt.run([sys.executable, os.path.join(ROOT, "bench", "atlas", "atlas_page.py"), "--check"])
     assert result.code == 0, result.output
