@@ -393,6 +393,37 @@ TEST(ManyBodies, OrderOfNamesDoesNotMatter)
   }
 }
 
+// a plate of half a cell between two bars that close in on it: after contact no two of the three approach
+// each other, at any node, and their momentum is what it was
+
+TEST(ManyBodies, NoneApproaches)
+{
+  if (nranks() > 1) GTEST_SKIP() << "nodes of one rank";
+  Scene run;
+  run.commands(replaced(replaced(replaced(replaced(replaced(
+                   corner, "b1 block 2 8 2 8", "b1 block 2 8 0 16"), "b2 block 8 14 2 8", "b2 block 8.5 14 0 16"),
+                   "b3 block 5 11 8 14", "b3 block 8 8.5 0 16"), "FIELDS law coulomb 0.4", "F1 F2 F3 gap no"),
+                   "velocity three set 0.1 -0.5 0", "velocity three set 0.1 0.3 0"));
+  run.commands("run 1\n");
+  auto &grid = *run.field("F1")->grid;
+  int all = 0;
+  for (std::size_t slot = 0; slot < grid.blocks.size(); slot++)
+    for (int n = 0; n < MPM_NS::NODES_PER_BLOCK; n++) {
+      if (grid.blocks[slot].alias >> n & 1) continue;
+      int index[3];
+      grid.node_index(grid.blocks[slot], n, index);
+      std::vector<const double *> row;    // from left to right
+      for (const char *id : {"F1", "F3", "F2"}) {
+        auto &other = *run.field(id)->grid;
+        const auto there = other.locate(index);
+        if (there >= 0 && other.nodes()[there * other.nreal + 3] > 0.0) row.push_back(other.nodes() + there * other.nreal);
+      }
+      for (std::size_t k = 1; k < row.size(); k++) EXPECT_LT(row[k - 1][0] - row[k][0], 1e-9) << index[0];
+      all += row.size() == 3;
+    }
+  EXPECT_GT(all, 0);
+}
+
 // ---------------------------------------------------------------------- ranks, periodic faces, restart
 
 TEST(Parallel, RanksAgreeAcrossAPeriodicFace)
@@ -573,6 +604,28 @@ TEST(Adhesion, StrengthAndWork)
   EXPECT_NEAR(largest, 0.02, 0.05 * 0.02);
   EXPECT_EQ(after, 0.0);
   EXPECT_NEAR(work, 2e-4, 0.15 * 2e-4);
+}
+
+// the same bars drawn along each other: strength in shear times area, however far they slide
+TEST(Adhesion, Shear)
+{
+  if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
+  Scene run;
+  std::string text = two_bars("transfer apic", "law adhesive 0.2 0.01 2e-3");
+  text = replaced(text, "b2 block 1.05 2.05", "b2 block 1.0 2.0");
+  text = replaced(text, "velocity one set 0.05 0 0",
+                  "region left block -1 0.1 0 0.08 -0.05 0.05\n"
+                  "fix hold all mpm/boundary region left stick field F1");
+  text = replaced(text, "velocity two set -0.05 0 0",
+                  "region right block 1.9 3 0 0.08 -0.05 0.05\n"
+                  "fix pull all mpm/boundary region right stick velocity 0 0.01 0 field F2\n"
+                  "velocity two set 0 0.01 0");
+  run.commands(text + "run 5000\n");
+  for (int k = 0; k < 5; k++) {
+    run.commands("run 200 post no\n");
+    EXPECT_NEAR(measured("shear force/strength", std::fabs(run.evaluate("f_c[1][2]")) / 0.08 / 0.01), 1.0, 0.02);
+  }
+  EXPECT_LT(run.evaluate("f_c"), 0.0);
 }
 
 // ---------------------------------------------------------------------- input that cannot work

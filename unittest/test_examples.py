@@ -27,7 +27,7 @@ COARSER = {"taylor-bar": 2.0, "spall": 2.0, "cook-membrane": 2.0, "hypervelocity
 # steps, where a part of the run will do
 FEWER_STEPS = {"grains-on-block": 1000, "impact-on-crystal": 1000, "vortex": 110, "ring-on-block": 1200, "hopper": 1500,
                "boulders-in-debris": 600, "tyre-on-gravel": 500,
-               "elastic-gate": 3000, "settling": 600}
+               "elastic-gate": 3000, "elastic-plate": 3000, "settling": 600}
 
 # has its own test, as it must be built first
 BUILT_FIRST = ["own-material"]
