@@ -23,6 +23,7 @@ import tempfile
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 sys.path.insert(0, os.path.join(ROOT, "bench", "atlas"))
+from results import loop_seconds    # noqa: E402
 SETTINGS = ("shape", "transfer", "scheme", "frame")
 DEFAULT = ("quadratic", "apic", "usl", "updated")
 TRIALS = 10                  # kinds of settings that are tried
@@ -35,15 +36,6 @@ ENOUGH = 3.0                 # unless they have taken so many seconds together
 
 def environment():
     return dict(os.environ, OMP_NUM_THREADS="1", OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-
-
-def loop_seconds(output):
-    """Processor time of all loops of a run, without set-up."""
-    total = 0.0
-    for loop in re.split(r"^Loop time of ", output, flags=re.M)[1:]:
-        share = re.search(r"^([\d.]+)% CPU use", loop, re.M)
-        total += float(loop.split()[0]) * (float(share.group(1)) / 100 if share else 1.0)
-    return total
 
 
 class Trial:

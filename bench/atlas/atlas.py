@@ -3,13 +3,14 @@
 # General Public License, version 2; see the file LICENSE.
 """Atlas of the variants of fix mpm: what each costs, and how accurate it is, on six scenes.
 
-usage: atlas.py LMP [--out FOLDER] [--scene NAME ...] [--limit N]
+usage: atlas.py LMP [--out FOLDER] [--scene NAME ...] [--limit N] [--again]
 
 Runs what is missing in FOLDER (default: the folder of this file) and goes on where it stopped:
   runs.csv       one line for each combination of settings, from one run: quantity of interest,
                  energy gained by the method, steps
   cost.csv       one line for each combination but for dtfrac: ns of processor time per point-step
-                 without ledger and exact solution, bytes per point
+                 without ledger and exact solution, from the median ratio to a reference combination
+                 that runs in turn with it; bytes per point
   campaigns.csv  date, machine, compiler, and versions that the lines refer to
 
 Order: reference runs, full factorial of shape, transfer, scheme and frame at two spacings, other
@@ -22,6 +23,7 @@ import datetime
 import os
 import re
 import resource
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -35,8 +37,8 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 TIMEOUT = 300              # seconds for one run
 SLOW = 2.5                 # seconds: runs beside the factorial that would take longer are left out
 COST_WORK = 2.0e6          # point-steps of a run that measures cost
+PAIRS = 5                  # of runs of a combination and of the reference in turn
 PASSES = 1                 # of refinements around the front
-REFERENCE_EVERY = 8        # measurements of cost between those of the reference
 
 
 def lammps(lmp, scene, settings, more):
@@ -44,8 +46,7 @@ def lammps(lmp, scene, settings, more):
     command = [lmp, "-nocite", "-log", "none", "-in", "in.run"]
     values = dict(zip(sc.SETTINGS, settings))
     for name in sc.SETTINGS:
-        if name != "precision":
-            command += ["-v", name, values[name]]
+        command += ["-v", name, values[name]]
     for name, value in more.items():
         command += ["-v", name, value]
     env = dict(os.environ, OMP_NUM_THREADS="1", OMPI_ALLOW_RUN_AS_ROOT="1",
@@ -84,8 +85,7 @@ class Atlas:
         self.runs = rs.read(os.path.join(out, "runs.csv"))
         self.costs = rs.read(os.path.join(out, "cost.csv"))
         self.campaign = self.new_campaign()
-        self.reference = None
-        self.until_reference = 0
+        self.reference = None    # scene, settings, number of points
 
     def new_campaign(self):
         """Line of campaigns.csv for this machine, day, and program."""
@@ -115,10 +115,18 @@ class Atlas:
         path = os.path.join(self.out, name)
         new = not os.path.exists(path)
         with open(path, "a", newline="") as file:
-            writer = csv.DictWriter(file, columns, lineterminator="\n")
+            writer = csv.DictWriter(file, columns, lineterminator="\n", extrasaction="ignore")
             if new:
                 writer.writeheader()
             writer.writerow(row)
+
+    def rewrite(self, name, columns, rows):
+        path = os.path.join(self.out, name)
+        with open(path + ".new", "w", newline="") as file:
+            writer = csv.DictWriter(file, columns, lineterminator="\n", extrasaction="ignore")
+            writer.writeheader()
+            writer.writerows(rows)
+        os.replace(path + ".new", path)
 
     def progress(self, text):
         self.count += 1
@@ -155,19 +163,39 @@ class Atlas:
                 best = max(best, 0) or points * steps * ns * 1e-9
         return best
 
-    def point_step(self, scene, c):
-        """ns of processor time per point-step and the output of one pair of runs."""
-        more = {"ledger": "no", "body": "no"}
-        _, base, output = lammps(self.lmp, scene, c, dict(more, steps="10"))
+    def points(self, scene, c):
+        """Number of points of a scene; None: it does not run."""
+        output = lammps(self.lmp, scene, c, {"ledger": "no", "body": "no", "steps": "10"})[2]
         found = re.search(r"MPM grid: (\d+) points", output)
-        if not found:
-            return None, output
-        points = int(found.group(1))
+        return int(found.group(1)) if found else None
+
+    def point_step(self, scene, c, points):
+        """ns of processor time per point-step, and output."""
         steps = 10 * max(20, int(0.1 * COST_WORK / points))
-        values, seconds, output = lammps(self.lmp, scene, c, dict(more, steps=str(steps)))
+        values, _, output = lammps(self.lmp, scene, c, {"ledger": "no", "body": "no", "steps": str(steps)})
         if not values:
             return None, output
-        return (seconds - base) / (int(values[2]) - 10) / points * 1e9, output
+        return rs.loop_seconds(output) / int(values[2]) / points * 1e9, output
+
+    def cost_row(self, scene, c):
+        """Row of cost.csv. The speed of the machine changes from second to second: what counts is the ratio of a
+        run to one of the reference right after it, the median of several such pairs."""
+        row = dict(zip(sc.SETTINGS, c), scene=scene, campaign=self.campaign, ns="", bytes="", pairs="0")
+        del row["dtfrac"]
+        if not self.reference:
+            self.reference = rs.REFERENCE + (self.points(*rs.REFERENCE),)
+        points, ratios, references = self.points(scene, c), [], []
+        while len(references) < PAIRS:
+            references.append(self.point_step(*self.reference)[0])
+            ns, output = self.point_step(scene, c, points) if points else (None, "")
+            if not ns:
+                break
+            ratios.append(ns / references[-1])
+        row["reference_ns"] = "%.2f" % statistics.median(references)
+        if ratios:
+            row.update(ns="%.2f" % (statistics.median(ratios) * statistics.median(references)),
+                       pairs=str(len(ratios)), bytes=re.search(r"(\d+) bytes per point", output).group(1))
+        return row
 
     def cost(self, scene, combinations):
         """Cost of all but dtfrac and h, at one spacing of the scene."""
@@ -178,19 +206,22 @@ class Atlas:
             if key in known:
                 continue
             known.add(key)
-            if self.until_reference <= 0:
-                self.reference, _ = self.point_step(*rs.REFERENCE)
-                self.until_reference = REFERENCE_EVERY
-            self.until_reference -= 1
-            ns, output = self.point_step(scene, c)
-            row = dict(zip(sc.SETTINGS, c), scene=scene, campaign=self.campaign)
-            row.update(ns="%.2f" % ns if ns else "", reference_ns="%.2f" % self.reference)
-            found = re.search(r"(\d+) bytes per point", output)
-            row["bytes"] = found.group(1) if found else ""
-            del row["dtfrac"]
+            row = self.cost_row(scene, c)
             self.costs.append(row)
             self.append("cost.csv", rs.COST, row)
             self.progress("%-10s %-60s cost %s ns" % (scene, " ".join(c), row["ns"]))
+
+    def cost_again(self, scene):
+        """Costs that were measured by fewer pairs of runs, those of the front first."""
+        front = {rs.cost_key(r) for r in rs.Results(self.runs, self.costs).front(scene)}
+        few = [r for r in self.costs if r["scene"] == scene and r["ns"] and int(r["pairs"]) < PAIRS]
+        for r in sorted(few, key=lambda r: rs.cost_key(r) not in front):
+            row = self.cost_row(scene, tuple(dict(r, dtfrac=sc.MIDDLE[1])[s] for s in sc.SETTINGS))
+            if row["ns"]:
+                self.progress("%-10s %-60s cost %s ns, was %.2f" % (scene, " ".join(rs.cost_key(r)), row["ns"], float(
+                    r["ns"]) * float(row["reference_ns"]) / float(r["reference_ns"])))
+                r.update(row)
+                self.rewrite("cost.csv", rs.COST, self.costs)
 
 
 def main():
@@ -200,13 +231,20 @@ def main():
     parser.add_argument("--out", default=HERE)
     parser.add_argument("--scene", nargs="*", default=list(sc.SCENES))
     parser.add_argument("--limit", type=int, default=0)
+    parser.add_argument("--again", action="store_true",
+                        help="measure costs again that are from fewer pairs of runs than now")
     options = parser.parse_args()
     os.makedirs(options.out, exist_ok=True)
     atlas = Atlas(os.path.abspath(options.lmp), options.out, options.limit)
     for scene in options.scene:
+        if options.again:
+            atlas.cost_again(scene)
+            continue
         atlas.accuracy(scene, sc.factorial(scene))
+        atlas.accuracy(scene, sc.mixed(scene))
         atlas.accuracy(scene, sc.one_at_a_time(scene), SLOW)
         atlas.cost(scene, sc.costed(scene))
+        atlas.cost(scene, sc.mixed(scene))
         atlas.cost(scene, sc.one_at_a_time(scene))
         atlas.accuracy(scene, sc.reference_runs(scene))
         for _ in range(PASSES):    # later ones next to what the first has found

@@ -59,7 +59,7 @@ def options(c):
     """Settings as in an input, defaults left out."""
     words = []
     for name, value, default in zip(sc.SETTINGS, c, BASE):
-        if name in ("shape", "transfer", "scheme", "frame") and (value != default or name in ("shape", "transfer")):
+        if name in ("shape", "transfer") or (name in ("scheme", "frame", "precision") and value != default):
             words.append("%s %s" % (name, value))
     return "*" + " ".join(words) + "*"
 
@@ -74,7 +74,7 @@ def times_to_goal(data, scene):
     ladders, best = {}, {}
     ppc = (sc.MIDDLE[0], "3") if sc.SCENES[scene].get("stretch") else sc.MIDDLE[:1]
     for r in data.rows[scene]:
-        if r["time"] and r["ppc"] in ppc and r["dtfrac"] == sc.MIDDLE[1]:
+        if r["time"] and r["ppc"] in ppc and (r["dtfrac"], r["precision"]) == sc.MIDDLE[1:]:
             ladders.setdefault(rs.key(r)[:-1], []).append(r)
     goal = sc.SCENES[scene]["goal"]
     for setting, rungs in ladders.items():
@@ -169,6 +169,16 @@ def cost_tables(data):
             factors.setdefault(scheme, []).append(value / usl[0])
     out.append("Schemes cost, relative to *usl* (median of all combinations and scenes): " + ", ".join(
         "*%s* %s" % (s, number(statistics.median(factors[s]))) for s in sc.SCHEMES if s in factors) + ".\n")
+    rows = []
+    for kind in [c[:4] for c in sc.mixed("bar")][::2]:
+        cells = []
+        for scene in sc.SCENES:
+            single, double = [data.cost.get((scene,) + kind + ("2", p)) for p in ("mixed", "double")]
+            cells.append(number(single[0] / double[0]) if single and double else "-")
+        rows.append([options(kind)] + cells)
+    if any(set(row[1:]) != {"-"} for row in rows):
+        out.append("*Precision mixed*: cost relative to the same settings with *double*:\n")
+        out.append(table(["settings"] + list(sc.SCENES), rows, [40] + [10] * len(sc.SCENES)))
     return "\n".join(out)
 
 
@@ -177,7 +187,7 @@ def change_table(data):
     changes = []
     for shape in sc.SHAPES:
         changes.append(("shape " + shape, {0: shape}))
-    for transfer in ("pic", "flip 1.0", "flip 0.99", "flip 0.95", "tpic", "aflip 1.0", "aflip 0.99", "xpic 2",
+    for transfer in ("pic", "flip 1.0", "flip 0.99", "flip 0.95", "tpic", "aflip 1.0", "aflip 0.99", "polypic", "xpic 2",
                      "xpic 5", "fmpm 2", "fmpm 5"):
         changes.append(("transfer " + transfer, {1: transfer}))
     for scheme in ("usf", "musl", "usavg"):
@@ -185,11 +195,12 @@ def change_table(data):
     changes.append(("frame total", {3: "total"}))
     for ppc in ("1", "3", "4"):
         changes.append(("ppc " + ppc, {4: ppc}))
+    changes.append(("precision mixed", {6: "mixed"}))
     for dt in ("0.1", "0.2", "0.6", "0.8", "1.0"):
         changes.append(("dt fraction " + dt, {5: dt}))
     rows = []
     for name, change in changes:
-        if name == "shape quadratic":
+        if name in ("shape quadratic", "shape bernstein"):    # the base, and what needs the total frame
             continue
         cells = ["*%s*" % name]
         for scene in sc.SCENES:
@@ -223,7 +234,8 @@ def energy_table(data):
                 c = ("quadratic", transfer, scheme, "updated") + sc.MIDDLE + (sc.SCENES[scene]["levels"][1],)
                 r = find(data, scene, c)
                 cells.append(percent(r["lost"]) if r else "fails" if (scene,) + c in data.failed else "-")
-            rows.append(cells)
+            if set(cells[1:]) != {"-"}:
+                rows.append(cells)
     return table(["transfer, scheme"] + list(sc.SCENES), rows, [22] + [13] * len(sc.SCENES))
 
 
@@ -350,8 +362,8 @@ def rules(data):
 
 def page(data, campaigns):
     used = {r["campaign"] for r in data.runs} | {r["campaign"] for r in data.costs}
-    machines = "; ".join("%s: %s, %s, LAMMPS %s" % (c["date"], c["machine"], c["compiler"], c["lammps"])
-                         for c in campaigns if c["campaign"] in used)
+    machines = "; ".join(dict.fromkeys("%s: %s, %s, LAMMPS %s" % (c["date"], c["machine"], c["compiler"], c["lammps"])
+                                       for c in campaigns if c["campaign"] in used))
     with open(os.path.join(HERE, "page.rst.in")) as file:
         text = file.read()
     parts = {
@@ -371,8 +383,8 @@ def page(data, campaigns):
 
 
 COLORS = {"linear": "tab:blue", "quadratic": "tab:orange", "cubic": "tab:green", "gimp": "tab:red",
-          "cpgimp": "tab:purple", "cpdi": "tab:brown", "cpdi2": "tab:cyan"}
-MARKERS = {"pic": "x", "flip": "o", "apic": "s", "tpic": "D", "aflip": "^", "xpic": "v", "fmpm": "P"}
+          "cpgimp": "tab:purple", "cpdi": "tab:brown", "cpdi2": "tab:cyan", "bernstein": "tab:olive"}
+MARKERS = {"pic": "x", "flip": "o", "apic": "s", "tpic": "D", "aflip": "^", "polypic": "*", "xpic": "v", "fmpm": "P"}
 
 
 def figures(data, folder):

@@ -3,13 +3,14 @@
 """Results of the atlas: reading the tables, errors, times, and Pareto fronts."""
 import csv
 import os
+import re
 import statistics
 
 import scenes as sc
 
 RUNS = ("scene",) + sc.SETTINGS + ("status", "q", "lost", "steps", "points", "campaign")
 COST = ("scene", "shape", "transfer", "scheme", "frame", "ppc", "precision", "h", "ns", "reference_ns",
-        "bytes", "campaign")
+        "bytes", "pairs", "campaign")    # pairs: of runs, in turn with the reference, that ns is the median of
 CAMPAIGN = ("campaign", "date", "machine", "compiler", "lammps", "package")
 NEAR = 4.0    # times the goal
 DEFAULT = ("quadratic", "apic", "usl", "updated")
@@ -21,6 +22,15 @@ def read(path):
         return []
     with open(path, newline="") as file:
         return list(csv.DictReader(file))
+
+
+def loop_seconds(output):
+    """Processor time of all loops of a run, without set-up."""
+    total = 0.0
+    for loop in re.split(r"^Loop time of ", output, flags=re.M)[1:]:
+        share = re.search(r"^([\d.]+)% CPU use", loop, re.M)
+        total += float(loop.split()[0]) * (float(share.group(1)) / 100 if share else 1.0)
+    return total
 
 
 def key(row):
@@ -40,7 +50,7 @@ def cost_of(costs, scene, c):
             have = cost_key(r)
             if have == want:
                 return float(r["ns"])
-            if have[:4] == want[:4]:
+            if have[:4] == want[:4] and have[5] == want[5]:
                 near = float(r["ns"])
     return near
 

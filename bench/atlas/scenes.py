@@ -7,11 +7,12 @@ A combination is a tuple of settings in the order of SETTINGS, all of them strin
 
 SETTINGS = ("shape", "transfer", "scheme", "frame", "ppc", "dtfrac", "precision", "h")
 
-SHAPES = ("linear", "quadratic", "cubic", "gimp", "cpgimp", "cpdi", "cpdi2")
-CORNERS = SHAPES[5:]    # slow, for solids: two transfers, usl and musl
-TRANSFERS = ("pic", "flip 1.0", "apic", "tpic", "aflip 1.0", "xpic 5", "fmpm 5")
+SHAPES = ("linear", "quadratic", "cubic", "gimp", "cpgimp", "cpdi", "cpdi2", "bernstein")
+SPLINES = SHAPES[:3]
+CORNERS = SHAPES[5:7]    # slow, for solids: two transfers, usl and musl
+TRANSFERS = ("pic", "flip 1.0", "apic", "tpic", "aflip 1.0", "polypic", "xpic 5", "fmpm 5")
 SCHEMES = ("usl", "usf", "musl", "usavg")
-TOTAL = (("linear", "quadratic", "cubic"), ("pic", "flip 1.0", "apic", "xpic 5", "fmpm 5"))
+TOTAL = (SPLINES + ("bernstein",), ("pic", "flip 1.0", "apic", "xpic 5", "fmpm 5"))
 MAIN_TRANSFERS = ("flip 1.0", "apic")
 COST_SCENE = {2: "bar", 3: "taylor"}    # by dimension: where the costs of all schemes are measured
 MIDDLE = ("2", "0.4", "double")    # ppc, dtfrac, precision of the full factorial
@@ -72,11 +73,15 @@ def allowed(scene, shape, transfer, scheme, frame):
     name = transfer.split()[0]
     if name == "fmpm" and scheme != "usl":
         return False
-    if shape in CORNERS and (not SCENES[scene]["total"] or transfer not in MAIN_TRANSFERS or
-                             scheme not in ("usl", "musl")):
+    if (shape in CORNERS + ("bernstein",) and
+            (not SCENES[scene]["total"] or transfer not in MAIN_TRANSFERS or scheme not in ("usl", "musl"))):
         return False
+    if name == "polypic":
+        return frame == "updated" and shape in ("quadratic", "cubic") and scheme in ("usl", "musl")
     if frame == "total":
         return SCENES[scene]["total"] and shape in TOTAL[0] and transfer in TOTAL[1]
+    if shape == "bernstein":
+        return False
     # with these shapes tpic is apic
     return not (name == "tpic" and shape not in ("quadratic", "cubic"))
 
@@ -93,6 +98,18 @@ def factorial(scene):
                 main = main and level == 0    # takes five times as many steps there
             if SCENES[scene]["cheap"] or level == 0 or plain or main:
                 yield kind + MIDDLE + (h,)
+
+
+def mixed(scene):
+    """Single precision in the transfers: where it is meant to be faster (flip, cubic functions), in the default, and
+    in the total frame. Errors at the two coarsest spacings, and costs."""
+    for kind in (("quadratic", "apic", "usl", "updated"), ("quadratic", "flip 1.0", "usl", "updated"),
+                 ("quadratic", "flip 1.0", "musl", "updated"), ("cubic", "apic", "usl", "updated"),
+                 ("cubic", "flip 1.0", "musl", "updated"), ("linear", "flip 1.0", "usl", "total"),
+                 ("quadratic", "apic", "usl", "total")):
+        if allowed(scene, *kind):
+            for h in SCENES[scene]["levels"][:2]:
+                yield kind + MIDDLE[:2] + ("mixed", h)
 
 
 def kinds(scene):
@@ -136,7 +153,8 @@ def one_at_a_time(scene):
             for shape in SHAPES:
                 for transfer in MAIN_TRANSFERS:
                     for scheme in ("usl", "musl"):
-                        yield (shape, transfer, scheme, "updated", "3") + MIDDLE[1:] + (level,)
+                        if allowed(scene, shape, transfer, scheme, "updated"):
+                            yield (shape, transfer, scheme, "updated", "3") + MIDDLE[1:] + (level,)
     for shape in ("quadratic", "gimp"):
         for dtfrac in ("0.1", "0.2", "0.6", "0.8"):
             yield (shape, "fmpm 5", "usl", "updated", MIDDLE[0], dtfrac, MIDDLE[2], h)
