@@ -113,6 +113,22 @@ TEST(Edges, LinearFieldsAreExact)
   }
 }
 
+// A body that moves along its faces keeps its velocity, old and new ones of the nodes alike.
+
+TEST(Edges, UniformMotionIsKept)
+{
+  for (const char *options : {"transfer flip 1.0", "transfer flip 1.0 scheme musl", "transfer pic",
+                              "shape cubic transfer flip 0.5 scheme usf"}) {
+    Scene run{MPI_COMM_SELF};
+    run.commands(replaced(full, "OPTIONS", options) + "velocity all set 0 0.5 0\nrun 5\n");
+    for (int i = 0; i < run.n(); i++) {
+      EXPECT_NEAR(run.v()[i][0], 0.0, 1.0e-14) << options;
+      EXPECT_NEAR(run.v()[i][1], 0.5, 1.0e-14) << options;
+      EXPECT_NEAR(run.v()[i][2], 0.0, 1.0e-14) << options;
+    }
+  }
+}
+
 // A body that fills a closed box under uniform pressure stays at rest: the sum over points of V grad N of a
 // node inside is zero. That of two points per cell is exact for quadratic functions, whose gradients are
 // linear in between.

@@ -143,6 +143,28 @@ INSTANTIATE_TEST_SUITE_P(All, UnitsOfOptions,
                                            "transfer xpic 2", "shape cpdi transfer tpic",
                                            "every 3 transfer flip 0.99 edges modified"));
 
+// density and modulus eight times as large: the same motion to the last bit, as factors of two are exact
+
+TEST_P(UnitsOfOptions, DensityAndModulusTogether)
+{
+  std::vector<Scene::State> states[2];
+  for (const int k : {0, 1}) {
+    Scene run;
+    run.commands("units lj\n" + box3d + "fix grid all mpm 1.0 " + GetParam() +
+                 "\nregion one block 2 6 2 6 0 4\ncreate_points 1 region one ppc 2\n" +
+                 fmt::format("fix m all mpm/material density {} neohookean {} 0.3\n", k ? 12.0 : 1.5,
+                             k ? 800.0 : 100.0) +
+                 "fix floor all mpm/boundary zlo slip\nvelocity all ramp vz 0.0 -1.0 z 0 4\n"
+                 "velocity all ramp vx 0.0 0.5 y 0 4 sum yes\ntimestep 0.02\nrun 60\n");
+    states[k] = run.gather();
+    for (auto &s : states[k]) {
+      s.mass /= k ? 8.0 : 1.0;
+      for (double &stress : s.stress) stress /= k ? 8.0 : 1.0;
+    }
+  }
+  EXPECT_TRUE(identical(states[0], states[1])) << difference(states[0], states[1]);
+}
+
 TEST(Units, Axisymmetric)
 {
   for (const char *options : {"", "frame total transfer flip 1.0 scheme musl"})

@@ -339,7 +339,8 @@ void CreatePoints::find_ranges()
     std::copy_n(region_lo, 3, lo);
     std::copy_n(region_hi, 3, hi);
   }
-  if (fix && fix->axisymmetric) lo[0] = std::max(lo[0], 0.0);    // half of what is on the axis
+  // half of what is on the axis
+  if (fix && fix->axisymmetric && lo[0] > -INFINITE) lo[0] = std::max(lo[0], 0.0);
 
   for (int d = 0; d < 3; d++) {
     if (d == domain->dimension) {
