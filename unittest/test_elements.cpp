@@ -519,6 +519,27 @@ timestep 0.01
   EXPECT_NEAR(rebound[1], rebound[0], 0.1);
 }
 
+// A body too heavy to be stopped is sheared: past yield, the shear stress rises with the plastic strain of
+// all steps before, t = (s_y + H e)/sqrt(3) with e = (g - t/G)/sqrt(3).
+
+TEST(Elements, HardeningIsRemembered)
+{
+  const double G = 10.0, sy = 0.05, H = 3.0, g = 0.1;
+  const double expected = (sy / sqrt(3.0) + H * g / 3.0) / (1.0 + H / (3.0 * G));
+  for (const auto &kind : kinds) {
+    SCOPED_TRACE(strprintf("%dd %s%s", kind.dim, kind.simplices ? "simplices" : "cubes", kind.options));
+    ScratchFile file("sheared.msh", block_mesh(kind), MPI_COMM_SELF);
+    if (nranks() > 1) GTEST_SKIP() << "on one rank only";
+    Scene run;
+    run.commands(replaced(replaced(block(kind, file.name), "neohookean 30 0.3",
+                                   strprintf("eos linear 30 strength j2 %g %g hardening linear %g", G, sy, H)),
+                          "density 2 ", "density 2e8 "));
+    run.set_velocity([&](const double *x, double *v) { v[0] = g * (x[1] - 3.5); });
+    run.commands("timestep 0.01\nrun 100\n");
+    for (const auto &s : run.gather()) EXPECT_NEAR(s.stress[3], expected, 0.01 * expected);
+  }
+}
+
 TEST(Elements, RanksAndRestart)
 {
   for (const auto &kind : {kinds[0], kinds[2], kinds[3], kinds[4]}) {

@@ -272,6 +272,38 @@ INSTANTIATE_TEST_SUITE_P(Options, Volume,
                                            "locking fbar frame total"));
 
 /* ----------------------------------------------------------------------
+   A pressure that is the same everywhere is its own average, however much points are compressed.
+------------------------------------------------------------------------- */
+
+TEST(AveragedPressure, KeepsAUniformOne)
+{
+  std::vector<Scene::State> states[2];
+  for (const int averaged : {0, 1}) {
+    Scene run;
+    run.commands(std::string("units si\ndimension 2\nboundary f f p\natom_style mpm\n"
+                             "region box block -5 5 -5 5 -0.5 0.5\ncreate_box 1 box\n"
+                             "fix grid all mpm 0.5 ") +
+                 (averaged ? "locking pressure" : "") +
+                 "\nregion body block -1 1 -1 1 INF INF\ncreate_points 1 region body ppc 2\n"
+                 "fix m all mpm/material density 1 linear 1.0 0.3\ntimestep 0.01\nthermo 1000\n");
+    for (int i = 0; i < run.n(); i++) {
+      const double J = 1.0 + 0.3 * sin(3.0 * run.x()[i][0] + 5.0 * run.x()[i][1]);
+      run.points().F[i][4] = J;
+      for (int c = 0; c < 3; c++) run.points().tau[i][c] = -2.0 * J;
+    }
+    run.commands("run 1\n");
+    states[averaged] = run.gather();
+  }
+  double speed = 0.0;
+  for (std::size_t i = 0; i < states[0].size(); i++)
+    for (int d = 0; d < 2; d++) {
+      speed = std::max(speed, std::abs(states[0][i].v[d]));
+      EXPECT_NEAR(states[1][i].v[d], states[0][i].v[d], 1.0e-14);
+    }
+  EXPECT_GT(speed, 0.01);
+}
+
+/* ----------------------------------------------------------------------
    Free oscillation of a bar in uniaxial strain, fixed at one end: v = v0 sin(k X) cos(w t) with
    w = k sqrt((lambda + 2 mu)/rho), k = pi/2. There is nothing to cure, so averages only lower the
    frequency, by (kh)^2/8 of the part of the bulk modulus in lambda + 2 mu.

@@ -639,10 +639,13 @@ void FixMPMContact::apply(Pair &pair, double m, double &largest, double dt, bool
     const double unit = force->ftm2v / force->nktv2p * pair.area * pair.fade * dt;
     normal = std::max(normal, law == ADHESIVE ? -normal_strength * unit : 0.0);
     const double push = std::max(normal, 0.0), bond = shear_strength * unit;
+    const double limit = static_friction * push + bond;
     keep = 1.0;
     if (law == STICK)
       keep = push > 0.0 ? 1.0 : 0.0;
-    else if (length > static_friction * push + bond)
+    else if (limit == 0.0)
+      keep = 0.0;    // also where there is no tangential velocity, up to rounding
+    else if (length > limit)
       keep = (kinetic_friction * push + bond) / length;
     pair.state = normal == 0.0 && keep == 0.0 ? OPEN : (keep == 1.0 ? STUCK : SLIDING);
   }
