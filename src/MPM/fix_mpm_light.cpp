@@ -107,8 +107,7 @@ double FixMPM::light_share()
         sums[node * NREAL] += atom->vfrac[i] * weight;
         sums[node * NREAL + 1] += atom->vfrac[i] * weight * weight * slope;
       });
-  grid->fold_aliases(sums.data(), NREAL, 0, NREAL);
-  halo->sum(sums.data(), NREAL, 0, NREAL);
+  sum_copies(sums.data(), NREAL, 0, NREAL);
   double mine = 0.0, all;
   for (std::size_t k = 0; k < sums.size(); k += NREAL)
     if (sums[k] > 0.0) mine = std::max(mine, sums[k + 1] / sums[k]);
