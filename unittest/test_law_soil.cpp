@@ -707,15 +707,19 @@ TEST(Nacc, BreaksInTension)
 TEST(MuI, SteadyShear)
 {
   const double mus = std::tan(20.9 * DEG), mu2 = std::tan(32.76 * DEG), I0 = 0.279, d = 5e-4;
-  const auto material = make("density 1500 mui 1e6 0.3 " + std::to_string(mus) + " " +
-                             std::to_string(mu2) + " 0.279 5e-4");
-  for (const double rate : {1e-3, 1.0, 30.0, 300.0, 1e5}) {
+  const std::string text =
+      "density 1500 mui 1e6 0.3 " + std::to_string(mus) + " " + std::to_string(mu2) + " 0.279 5e-4";
+  const auto common = make(text), dense = make(text + " fraction 0.9");
+  for (const double rate :
+       {1e-3, 1.0, 30.0, -30.0, 300.0, 1e5}) {    // negative: the other material
+    const auto &material = rate > 0.0 ? common : dense;
+    const double density = 1500 / (rate > 0.0 ? 0.6 : 0.9);
     MaterialPoint p(*material);
     consolidate(p, 500.0);
     const Matrix L = {0, rate, 0, 0, 0, 0, 0, 0, 0};
-    for (int i = 0; i < 4000; i++) p.step(L.data(), 1e-3 / rate);
+    for (int i = 0; i < 4000; i++) p.step(L.data(), 1e-3 / std::fabs(rate));
     const double t = p.vonmises() / std::sqrt(3.0), pr = p.pressure();
-    const double I = rate * d / std::sqrt(pr / (1500 / 0.6));
+    const double I = std::fabs(rate) * d / std::sqrt(pr / density);
     EXPECT_NEAR(t / pr, mus + (mu2 - mus) * I / (I0 + I), 2e-5) << rate;
     EXPECT_NEAR(value(p, "inertial"), I, 2e-4 * I);
     EXPECT_NEAR(pr, 500.0, 1e-6);
@@ -764,6 +768,11 @@ TEST(Snow, HardensInCompressionAndFallsApartInTension)
     }
     EXPECT_GT(p.work[PLASTIC], 0.0);
   }
+  // energy that hardening adds to the strain comes from the plastic work
+  MaterialPoint p(*material);
+  for (int i = 1; i <= 3000; i++) move_to(p, {1 - 1e-4 * i, 0, 0, 0, 1, 0, 0, 0, 1});
+  EXPECT_GT(p.stored_energy(), 0.1 * p.power);
+  EXPECT_NEAR(p.stored_energy() + p.work[PLASTIC], p.power, 1e-4 * p.power);
 }
 
 /* ---------------------------------------------------------------------- order */

@@ -274,6 +274,23 @@ TEST(Maxwell, AnyTimeStep)
 }
 
 // a rotation on top of the motion turns the stress and changes nothing else
+// what an element has stored becomes heat when it relaxes, in many steps or in one
+
+TEST(Maxwell, DissipatesWhatItHasStored)
+{
+  const auto material = make("density 1000 neohookean 1e5 0.45 viscosity maxwell term 5e4 1e-3");
+  const Matrix shear = {1, 1e-3, 0, 0, 1, 0, 0, 0, 1}, rest = {};
+  for (const int n : {1, 10, 1000}) {
+    MaterialPoint p(*material);
+    move_to(p, shear, 1e-9);
+    const double stored = p.stored_energy(), viscous = p.work[VISCOUS];
+    for (int i = 0; i < n; i++) p.step(rest.data(), 0.02 / n);
+    EXPECT_NEAR(stored - p.stored_energy(), 0.5 * 5e4 * 1e-6, 1e-4 * stored) << n;
+    // in steps as long as the relaxation time the rule of integration shows
+    EXPECT_NEAR(p.work[VISCOUS] - viscous, 0.5 * 5e4 * 1e-6, (n == 10 ? 0.2 : 1e-3) * stored) << n;
+  }
+}
+
 TEST(Maxwell, Objectivity)
 {
   const auto material = make("density 1000 hencky 1e6 0.3 viscosity maxwell term 3e5 0.2");
