@@ -606,6 +606,34 @@ TEST(GursonLaw, HydrostaticTension)
   for (int k = 0; k < 3; k++) EXPECT_NEAR(std::log2(error[1][k] / error[2][k]), 1.0, 0.25) << k;
 }
 
+// a point that has failed bears no tension; what has opened must close before it bears pressure
+
+TEST(GursonLaw, FailedPointsCloseBeforeTheyBearPressure)
+{
+  const auto material = make(GTN_TEXT);
+  MaterialPoint p(*material);
+  double volume = 0.0;    // logarithmic
+  const auto change = [&](double by, int n) {
+    for (int i = 0; i < n; i++) {
+      volume += by / n;
+      const double F = std::exp(volume / 3);
+      move_to(p, {F, 0, 0, 0, F, 0, 0, 0, F});
+    }
+  };
+  while (value(p, "damage") < 1.0 && volume < 2.0) change(2e-3, 1);
+  ASSERT_EQ(value(p, "damage"), 1.0);
+  const double opened = value(p, "gap");
+  change(0.05, 5);
+  EXPECT_EQ(p.pressure(), 0.0);
+  EXPECT_NEAR(value(p, "gap"), opened + 0.05, 1e-12);
+  change(-0.04, 4);
+  EXPECT_EQ(p.pressure(), 0.0);
+  EXPECT_NEAR(value(p, "gap"), opened + 0.01, 1e-12);
+  change(-opened - 0.011, 4);
+  EXPECT_EQ(value(p, "gap"), 0.0);
+  EXPECT_NEAR(std::exp(volume) * p.pressure(), GTN.K * 0.001, 1e-8 * GTN.K);
+}
+
 TEST(GursonLaw, ReturnEndsOnTheYieldSurface)
 {
   std::mt19937 random(5);
