@@ -39,8 +39,8 @@ GROUPS = {
     }, ("points", "grains")),
     "every": ("in.grains", 400, {
         "skin": ("a step of the points in each step", {"mode": "skin"}),
+        "every2": ("in every 2nd step", {"mode": "skin", "every": "2"}),
         "every5": ("in every 5th step", {"mode": "skin", "every": "5"}),
-        "every20": ("in every 20th step", {"mode": "skin", "every": "20"}),
     }, ("skin",)),
     "contact": ("in.bodies", 300, {
         "one": ("one field", {"mode": "one"}),

@@ -119,6 +119,21 @@ static const Feature features[] = {
 INSTANTIATE_TEST_SUITE_P(Every, LargerStep, ::testing::ValuesIn(features),
                          [](const auto &info) { return std::string(info.param.name); });
 
+// A restart file that is written between two steps of the points: bitwise as without
+
+TEST(LargerStep, GoesOnFromARestartFile)
+{
+  for (const auto &feature : features) {
+    if (std::string(feature.name) != "MovingFace" && std::string(feature.name) != "MovingRegion") continue;
+    const std::string scene = replaced(feature.text, "EVERY", "every 5");
+    // variables and regions are not in the file, points are
+    const auto fixes = replaced(scene, "create_points 1 region b ppc 2\n", "");
+    const std::string steps = "timestep 0.008\nthermo 1000\n";
+    Continued run(head + scene + steps, 53, "neighbor 0.3 bin\n" + fixes + steps, 49);
+    EXPECT_TRUE(identical(run.whole.gather(), run.again.gather())) << feature.name;
+  }
+}
+
 // Points that fail are deleted in the same steps of the cycle.
 
 TEST(LargerStep, DeletesTheSamePoints)

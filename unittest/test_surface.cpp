@@ -155,35 +155,42 @@ static const std::string skin = "group skin union grains block\natom_modify firs
 static const std::string rest =
     contact + "fix g all gravity 1.0 vector 0 0 -1\ntimestep 0.01\nthermo 1000\n";
 
+// with every, torques and forces of the steps between are those of several neighbor lists
+static const std::string every3 = replaced(grains, "mpm 1.0\n", "mpm 1.0 every 3\n");
+
 TEST(SurfaceContact, IsTheSameOnAnyNumberOfRanks)
 {
-  for (const auto &surface : {plain, skin}) {
-    OnRanks run(head + grains + fixes + surface + rest, "run 150\n");
-    EXPECT_LT(run.difference(), 1.0e-10);
-  }
+  for (const auto &start : {grains, every3})
+    for (const auto &surface : {plain, skin}) {
+      OnRanks run(head + start + fixes + surface + rest, "run 150\n");
+      EXPECT_LT(measured("difference", run.difference()), 1.0e-10);
+    }
 }
 
 TEST(SurfaceContact, DoesNotNeedPointsInside)
 {
-  Scene all, some;
-  all.commands(head + grains + fixes + plain + rest + "run 150\n");
-  some.commands(head + grains + fixes + skin + rest);
-  int inside = 0;    // of the atoms with neighbor lists
-  some.each_step([&](double **) { inside = some.n() - some.lmp->atom->nfirst; });
-  some.commands("run 150 post no\n");
-  EXPECT_LT(difference(all.gather(), some.gather()), 1.0e-10);
-  EXPECT_GE(inside, some.n() / 2);
+  for (const auto &start : {grains, every3}) {
+    Scene all, some;
+    all.commands(head + start + fixes + plain + rest + "run 150\n");
+    some.commands(head + start + fixes + skin + rest);
+    int inside = 0;    // of the atoms with neighbor lists
+    some.each_step([&](double **) { inside = some.n() - some.lmp->atom->nfirst; });
+    some.commands("run 150 post no\n");
+    EXPECT_LT(measured("difference", difference(all.gather(), some.gather())), 1.0e-10);
+    EXPECT_GE(inside, some.n() / 2);
+  }
 }
 
 TEST(SurfaceContact, GoesOnFromARestartFile)
 {
-  for (const auto &surface : {plain, skin}) {
-    Continued run(head + grains + fixes + surface + rest, 60,
-                  "neighbor 0.3 multi\ncomm_modify vel yes mode multi\nfix grid all mpm 1.0\n" +
-                      fixes + surface + rest,
-                  80);
-    EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
-  }
+  for (const auto &start : {grains, every3})    // there, in the middle of a step of the points
+    for (const auto &surface : {plain, skin}) {
+      Continued run(head + start + fixes + surface + rest, start == grains ? 60 : 61,
+                    "neighbor 0.3 multi\ncomm_modify vel yes mode multi\n" +
+                        start.substr(0, start.find('\n') + 1) + fixes + surface + rest,
+                    80);
+      EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
+    }
 }
 
 // Clumps of spheres that LAMMPS moves as rigid bodies: what they lose of momentum, the block has. When
