@@ -104,6 +104,65 @@ TEST(Surface, OpensWherePointsHaveFailed)
   EXPECT_EQ(surface_points(run), 6 * 24 * 24);
 }
 
+TEST(Surface, FailedPointsHaveARadius)
+{
+  Scene run;
+  run.commands(head +
+               "fix grid all mpm 1.0\nregion slab block INF INF INF INF 1 7\n"
+               "create_points 1 region slab ppc 2\ngroup slab type 1\n"
+               "fix m slab mpm/material density 1.0 eos linear 10.0 strength elastic 5.0 damage "
+               "rankine 100.0\nfix surf slab mpm/surface depth 0.3\n" +
+               contact + "timestep 0.01\nthermo 1000\nrun 0 post no\n");
+  double n = -1.0;
+  run.each_step([&](double **) { n = run.lmp->modify->get_fix_by_id("surf")->compute_scalar(); });
+  run.commands("run 0 post no\n");
+  const double before = n;
+  auto *material = dynamic_cast<FixMPMMaterial *>(run.lmp->modify->get_fix_by_id("m"));
+  double deep = 0.0, all;
+  for (int i = 0; i < run.n(); i++) {    // one point inside
+    if (run.lmp->atom->tag[i] != 12 * 24 * 12 + 6 * 24 + 6) continue;
+    material->history[i][material->damage] = 1.0;
+    deep = std::min(7.0 - run.x()[i][2], run.x()[i][2] - 1.0);
+  }
+  MPI_Allreduce(&deep, &all, 1, MPI_DOUBLE, MPI_SUM, run.lmp->world);
+  EXPECT_GT(all, 1.0);
+  run.commands("run 0 post no\n");
+  EXPECT_EQ(n, before + 1.0);
+}
+
+TEST(Surface, RadiusFollowsTheVolume)
+{
+  Scene run;
+  run.commands(head +
+               "fix grid all mpm 1.0\nregion slab block INF INF INF INF 1 7\n"
+               "create_points 1 region slab ppc 2\ngroup slab type 1\n"
+               "fix m slab mpm/material density 1.0 neohookean 10.0 0.3\n"
+               "fix surf slab mpm/surface scale 1.1 grow 1.03\n" +
+               contact + "timestep 0.01\nthermo 1000\nrun 0 post no\n");
+  double mine = 0.0, worst = 0.0, expected = 1.0;
+  int n = 0;
+  run.each_step([&](double **) {
+    for (int i = 0; i < run.n(); i++) {
+      const double r = run.lmp->atom->radius[i];
+      if (r == 0.0) continue;
+      mine = std::max(mine, std::abs(r / expected - 1.0));
+      n++;
+    }
+  });
+  for (const double J : {0.8, 1.05, 1.15}) {    // the last: at the most 1.03 times that without deformation
+    for (int i = 0; i < run.n(); i++) {
+      for (int c = 0; c < 9; c++) run.points().F[i][c] = c % 4 == 0;
+      run.points().F[i][0] = J;
+    }
+    expected = 0.5 * 1.1 * std::min(0.5 * std::cbrt(J), 0.5 * 1.03);
+    mine = n = 0;
+    run.commands("run 0 post no\n");
+    EXPECT_GT(n, 0);
+    MPI_Allreduce(&mine, &worst, 1, MPI_DOUBLE, MPI_MAX, run.lmp->world);
+    EXPECT_LT(worst, 1.0e-12) << J;
+  }
+}
+
 // Grains on the surface feel the same with and without the points inside; lists are shorter.
 
 static const std::string grains =
@@ -174,10 +233,16 @@ TEST(SurfaceContact, DoesNotNeedPointsInside)
     all.commands(head + start + fixes + plain + rest + "run 150\n");
     some.commands(head + start + fixes + skin + rest);
     int inside = 0;    // of the atoms with neighbor lists
-    some.each_step([&](double **) { inside = some.n() - some.lmp->atom->nfirst; });
+    double torque = 0.0;
+    some.each_step([&](double **) {
+      inside = some.n() - some.lmp->atom->nfirst;
+      for (int i = some.lmp->atom->nfirst; i < some.n(); i++)
+        for (int d = 0; d < 3; d++) torque = std::max(torque, std::abs(some.lmp->atom->torque[i][d]));
+    });
     some.commands("run 150 post no\n");
     EXPECT_LT(measured("difference", difference(all.gather(), some.gather())), 1.0e-10);
     EXPECT_GE(inside, some.n() / 2);
+    EXPECT_EQ(torque, 0.0);
   }
 }
 
