@@ -143,8 +143,8 @@ TEST(Immersed, BuoyancyIsTheGradientOfPressure)
 TEST(Immersed, ArchimedesInFluidThatAccelerates)
 {
   if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
-  for (const char *scheme :
-       {"transfer apic", "transfer flip 1.0 scheme musl", "transfer apic scheme usf"}) {
+  for (const char *scheme : {"transfer apic", "transfer flip 1.0 scheme musl",
+                             "transfer apic scheme usf", "transfer xpic 2"}) {
     Scene run;
     run.commands(head("0 6 0 6 0 6", "p p p", scheme) +
                  "create_points 1 box ppc 2\ncreate_atoms 2 single 2.1 2.2 3.3\n"

@@ -351,7 +351,8 @@ void FixMPMHandshake::weigh()
       role[i] = beyond < reach_nodes ? NEAR_POINT : POINT;
       weight[i] = 1.0 - w;
       if (!(weight[i] > 0.0)) none++;
-      const double mass = field->material_of(i)->density(i) * atom->vfrac[i];
+      const auto *const material = field->material_of(i);    // none: a node of elements
+      const double mass = material ? material->density(i) * atom->vfrac[i] : atom->rmass[i];
       if (fabs(atom->rmass[i] - mass) > 1.0e-3 * mass) wrong++;
       atom->rmass[i] *= weight[i];
       atom->vfrac[i] *= weight[i];
