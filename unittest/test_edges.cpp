@@ -135,7 +135,8 @@ TEST(Edges, UniformMotionIsKept)
 
 TEST(Edges, UniformPressureMakesNoForce)
 {
-  for (const char *options : {"transfer flip 1.0", "transfer flip 1.0 scheme usf"}) {
+  for (const char *options : {"transfer flip 1.0", "transfer flip 1.0 scheme usf",
+                              "transfer flip 1.0 locking pressure"}) {
     Scene run{MPI_COMM_SELF};
     run.commands(replaced(full, "OPTIONS", options) +
                  "fix box all mpm/boundary xlo xhi zlo zhi slip\n");

@@ -16,7 +16,6 @@
 #include "error.h"
 #include "fix_mpm_passes.h"
 #include "mpm_batch.h"
-#include "mpm_halo.h"
 #include "mpm_points.h"
 #include "platform.h"
 
