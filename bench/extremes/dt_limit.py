@@ -3,12 +3,14 @@
 """Largest stable time step, as a fraction of h/c, of a free bar of 10 x 3 (3d: 6 x 2 x 2) cells.
 
 The bar has random velocities of 1e-4 c and no stress. All of its energy is kinetic then, so that it
-is unstable if the kinetic energy is ever more than twice what it was at the start.
+is unstable if the kinetic energy is ever more than twice what it was at the start. With functions that
+are modified next to fixed faces (edges) it lies in the corner of the box, where it touches these.
 """
 import trial
-from combos import combos, in_short
+from combos import combos, AFFINE
 
 STEPS = 1200
+XPIC_STEPS = 500     # which take long
 LOWEST, HIGHEST = 0.02, 8.0
 ACCURACY = 0.01
 
@@ -42,6 +44,7 @@ variable vy atom random(-1e-4,1e-4,815)
 variable vz atom random(-1e-4,1e-4,1234)
 velocity all set v_vx v_vy {vz}
 timestep {dt:.10g}
+thermo_modify warn reset
 compute k all ke
 run 0
 variable start equal $(c_k)
@@ -54,12 +57,14 @@ print "growth = $(v_growth)"
 """
 
 
-def scene(words, case, dt, steps=STEPS, check=False, halt=True, shift=None):
+def scene(words, case, dt, steps=None, check=False, halt=True, shift=None):
+    steps = steps if steps is not None else XPIC_STEPS if "xpic" in words else STEPS
     dim, ppc, standard = CASES[case]
     shift = standard if shift is None else shift
     small = ppc > 4
-    body = {2: "3 %d 3 %d -0.5 0.5" % (7 if small else 13, 5 if small else 6),
-            3: "3 9 3 5 3 5"}[dim]
+    size = {2: (4, 2) if small else (10, 3), 3: (6, 2, 2)}[dim]
+    corner = 0 if "edges" in words else 3
+    body = " ".join("%d %d" % (corner, corner + n) for n in size) + ("" if dim == 3 else " -0.5 0.5")
     return SCENE.format(
         dim=dim, words=words, ppc=ppc, body=body, shift=shift, zshift=shift if dim == 3 else 0,
         zbound="p" if dim == 2 else "f", zbox="-0.5 0.5" if dim == 2 else "0 9",
@@ -69,10 +74,17 @@ def scene(words, case, dt, steps=STEPS, check=False, halt=True, shift=None):
 
 
 def outcome(words, case, dt, **more):
+    """What becomes of the run: "ok", "growth", or the error that a user would see."""
     kind, out = trial.run(scene(words, case, dt, **more))
     if kind == "ok" and not trial.value(out, "growth") <= 2.0:
         kind = "growth"
     return kind
+
+
+def stable(words, case, dt, **more):
+    """With bad warn, as an error would end a process that takes longer to start than the trial."""
+    kind, out = trial.run(scene(words + " bad warn", case, dt, **more))
+    return kind == "ok" and "WARNING: Material point" not in out and trial.value(out, "growth") <= 2.0
 
 
 def find_limit(stable, guess):
@@ -113,17 +125,31 @@ def find_limit(stable, guess):
     return low
 
 
-def measure(cases=("bar", "empty", "3d", "ppc1", "ppc64", "faces", "ppc16", "3d empty")):
-    table = trial.Table("dt", ["case", "shape", "transfer", "scheme"], ["limit", "beyond"])
-    work = [(case, key, words) for case in cases for key, words in combos()
-            if case == "bar" or in_short(key)]
+def first_guess(table, case, key):
+    """The limit of the nearest combination that is known: limits differ little within a family."""
+    shape, transfer, scheme = key
+    base = "apic" if transfer.split()[0] in AFFINE else "flip 1.0"
+    for known in ((case,) + key, (case, shape, base, scheme), (case, shape.split()[0], transfer, scheme),
+                  (case, shape.split()[0], base, scheme), ("bar",) + key):
+        row = table.get(*known)
+        if row and float(row["limit"]) > 0:
+            return float(row["limit"])
+    return 1.0
+
+
+def dt_table():
+    return trial.Table("dt", ["case", "shape", "transfer", "scheme"], ["limit", "beyond"])
+
+
+def measure(cases=tuple(CASES)):
+    table = dt_table()
+    work = sorted(((case, key, words) for case in cases for key, words in combos()),
+                  key=lambda item: "xpic" in item[1][1])
     for n, (case, key, words) in enumerate(work):
         if table.has(case, *key):
             continue
         trial.progress(n, len(work), "time step: %s, %s" % (case, " ".join(key)))
-        bar = table.get("bar", *key)
-        guess = float(bar["limit"]) if bar and float(bar["limit"]) > 0 else 1.0
-        limit = find_limit(lambda f: outcome(words, case, f) == "ok", guess)
+        limit = find_limit(lambda f: stable(words, case, f), first_guess(table, case, key))
         # what a user sees who takes 1.25 times as much, with the check of the time step
         beyond = ""
         if limit < HIGHEST and case in ("bar", "empty"):

@@ -6,14 +6,15 @@
 usage: tables.py [check]     check: only tell, by the exit status, whether they are up to date
 """
 import csv
+import io
 import os
 import sys
 
+import combos
+
 HERE = os.path.dirname(os.path.abspath(__file__))
 FOLDER = os.path.join(HERE, "..", "..", "doc", "src", "stability")
-SHAPES = ["linear", "linear light", "quadratic", "cubic", "gimp", "cpgimp", "cpdi", "cpdi2",
-          "linear total",
-          "quadratic total", "cubic total"]
+SHAPES = [name for name, words in combos.SHAPES]
 CASES = {"bar": "bar of 10 x 3 cells, 2 x 2 points per cell, at 1/4 and 3/4 of the cells",
          "faces": "the same, points 0.001 h before faces or middles of cells",
          "empty": "the same, one layer of points 1e-6 h inside cells that are empty otherwise",
@@ -31,12 +32,10 @@ def read(name):
 
 
 def table(head, rows):
-    out = [".. list-table::", "   :header-rows: 1", "   :widths: auto", ""]
-    for row in [head] + rows:
-        for k, cell in enumerate(row):
-            out.append(("   * - " if k == 0 else "     - ") + str(cell))
-            out[-1] = out[-1].rstrip()
-    return "\n".join(out) + "\n"
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows([head] + rows)
+    return (".. csv-table::\n   :header-rows: 1\n   :widths: auto\n\n" +
+            "".join("   %s\n" % line for line in text.getvalue().splitlines()))
 
 
 def shown(limit):
@@ -59,18 +58,39 @@ def unique(rows, *columns):
     return seen
 
 
+def matrix(rows, value):
+    """One row for a transfer and scheme, one column for a shape."""
+    shapes = ordered({r["shape"] for r in rows}, SHAPES)
+    cell = {(r["transfer"], r["scheme"], r["shape"]): value(r) for r in rows}
+    lines = [[t, s] + [cell.get((t, s, shape), "") for shape in shapes]
+             for t in ordered({r["transfer"] for r in rows}, combos.TRANSFERS) for s in combos.SCHEMES
+             if any(key[:2] == (t, s) for key in cell)]
+    return table(["transfer", "scheme"] + shapes, lines) + "\n"
+
+
+def title(text):
+    return "**%s**\n\n" % (text[0].upper() + text[1:])
+
+
+def smallest_limits():
+    """{(shape, transfer, scheme): smallest limit of the time step over all cases}"""
+    least = {}
+    for r in read("dt"):
+        key = (r["shape"], r["transfer"], r["scheme"])
+        least[key] = min(float(r["limit"]), least.get(key, 8.0))
+    return least
+
+
+def smallest_table():
+    return matrix([dict(zip(("shape", "transfer", "scheme"), key), limit=limit)
+                   for key, limit in smallest_limits().items()], lambda r: shown(r["limit"]))
+
+
 def dt_table():
-    out = ""
     rows = read("dt")
-    for case in ordered({r["case"] for r in rows}, list(CASES)):
-        of_case = [r for r in rows if r["case"] == case]
-        shapes = ordered({r["shape"] for r in of_case}, SHAPES)
-        limit = {(r["transfer"], r["scheme"], r["shape"]): shown(r["limit"]) for r in of_case}
-        lines = [[t, s] + [limit.get((t, s, shape), "") for shape in shapes]
-                 for t, s in unique(of_case, "transfer", "scheme")]
-        out += "**%s**\n\n" % (CASES[case][0].upper() + CASES[case][1:])
-        out += table(["transfer", "scheme"] + shapes, lines) + "\n"
-    return out
+    return "".join(title(CASES[case]) + matrix([r for r in rows if r["case"] == case],
+                                               lambda r: shown(r["limit"]))
+                   for case in CASES)
 
 
 def beyond_table():
@@ -91,11 +111,13 @@ def beyond_table():
 
 
 def sweep_table():
-    lines = [[r["shape"], r["transfer"], r["scheme"], shown(r["limit"]), r["limit_at"],
-              "error" if r["velocity"] == "nan" else r["velocity"],
-              "error" if r["acceleration"] == "nan" else r["acceleration"]] for r in read("sweep")]
-    return table(["shape", "transfer", "scheme", "smallest limit", "at", "largest speed",
-                  "largest acceleration"], lines)
+    rows = read("sweep")
+
+    def of_kick(name):
+        return lambda r: "error" if r[name] == "nan" else "%.2f" % float(r[name])
+    return (title("smallest limit of the time step") + matrix(rows, lambda r: shown(r["limit"])) +
+            title("largest speed") + matrix(rows, of_kick("velocity")) +
+            title("largest acceleration") + matrix(rows, of_kick("acceleration")))
 
 
 def verdict(r):
@@ -119,16 +141,20 @@ def scenes_table():
 
 
 def drift_table():
+    rows = read("drift")
     lines = [[r["shape"], r["transfer"], r["scheme"], r["energy_most"], r["energy_last"],
-              r["grown"], r["momentum"], r["angular"], "yes" if r["outcome"] == "ok" else "error: " + r["outcome"]]
-             for r in read("drift")]
+              r["grown"], r["momentum"], r["angular_change"], r["angular_last"],
+              "yes" if r["outcome"] == "ok" else "error: " + r["outcome"]]
+             for shape in ordered({r["shape"] for r in rows}, SHAPES)
+             for t in ordered({r["transfer"] for r in rows}, combos.TRANSFERS) for s in combos.SCHEMES
+             for r in rows if (r["shape"], r["transfer"], r["scheme"]) == (shape, t, s)]
     return table(["shape", "transfer", "scheme", "energy, most", "energy, last", "+10 % after",
-                  "momentum, change", "angular momentum of points, last", "10^6 steps done"], lines)
+                  "momentum, change", "angular momentum, change", "last", "10^6 steps done"], lines)
 
 
 def main():
     stale = []
-    for name, make in (("dt", dt_table), ("beyond", beyond_table), ("sweep", sweep_table),
+    for name, make in (("smallest", smallest_table), ("dt", dt_table), ("beyond", beyond_table), ("sweep", sweep_table),
                        ("scenes", scenes_table), ("drift", drift_table)):
         path = os.path.join(FOLDER, name + ".inc")
         text = ".. made from bench/extremes/results by bench/extremes/tables.py\n\n" + make()

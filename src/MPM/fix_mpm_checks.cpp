@@ -468,17 +468,17 @@ double FixMPM::stable_share(double size) const
   }
   if (refinement == FMPM) return 0.4;
   if (shape == LINEAR && extent == NO_SIZE && !total) {
-    if (light > 0.0) return scheme == USF ? 0.3 : 0.7;
+    if (light > 0.0) return scheme == USF ? 0.28 : 0.7;
     if (usl) return 0.65;
     return affine ? 0.9 : (scheme == USAVG ? 1.0 : (scheme == USF ? 0.25 : 0.65));
   }
   if (affine) {
     if (shape == CUBIC) return 1.0;
     if (transfer == TPIC && shape == QUADRATIC) return usl ? 0.7 : 0.85;
-    return bernstein ? 0.8 : (shape == QUADRATIC ? 0.95 : (total ? 0.75 : 0.9));
+    return bernstein ? 0.8 : (shape == QUADRATIC ? 0.95 : (total ? 0.75 : 0.85));
   }
   if (!usl) return 1.0;
-  return shape == LINEAR ? (total ? 0.6 : 0.65) : (shape == QUADRATIC ? 0.55 : 0.9);
+  return shape == LINEAR ? 0.6 : (shape == QUADRATIC ? 0.55 : 0.9);
 }
 
 /* ---------------------------------------------------------------------- */
