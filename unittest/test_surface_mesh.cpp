@@ -72,6 +72,26 @@ TEST(SurfaceMesh, ShearedBoxHasExactInertia)
   EXPECT_NEAR(mesh.center[2], 6.0 + 0.5 * c, 1.0e-8);
 }
 
+// at sharp edges, beyond which a point is behind one of the two triangles though it is outside
+
+TEST(SurfaceMesh, SharpEdges)
+{
+  const double share = 3.0;
+  const SurfaceMesh mesh(text_of(sheared(box({0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}), share)), "box", 1.0,
+                         {0.0, 0.0, 0.0});
+  srand(5);
+  for (int n = 0; n < 3000; n++) {
+    const Point x = {6.0 * rand() / RAND_MAX - 1.0, 4.0 * rand() / RAND_MAX - 0.75,
+                     2.0 * rand() / RAND_MAX - 0.5};
+    const double u[3] = {x[0] - share * x[2], x[1] - 0.5 * share * x[2], x[2]};
+    bool inside = true;
+    for (const double c : u) inside = inside && c > 0.0 && c < 1.0;
+    Point out;
+    EXPECT_EQ(mesh.inside(x), inside) << x[0] << " " << x[1] << " " << x[2];
+    EXPECT_EQ(mesh.distance(x, out) < 0.0, inside) << x[0] << " " << x[1] << " " << x[2];
+  }
+}
+
 TEST(SurfaceMesh, TorusConverges)
 {
   const double R = 2.0, r = 0.7;
