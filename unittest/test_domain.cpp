@@ -438,6 +438,25 @@ TEST_P(Kernels, InvertedDomainsAreReported)
   }
 }
 
+// a corner that is pushed in nearly to the opposite one: the size is positive, but not all weights are
+
+TEST_P(Kernels, FoldedDomainsAreReported)
+{
+  if (shape == CPDI) return;
+  for (int which : {0, 7, 12}) {
+    Points points(dim, shape, 13);
+    double *x = &points.domain[points.row * which], w[8], g[24];
+    for (int c = 0; c < points.N; c++)
+      for (int d = 0; d < dim; d++)
+        x[dim * c + d] =
+            0.3 * points.step.h * (c == points.N - 1 ? -0.9 : PointDomain<3>::sign(c, d));
+    ASSERT_GT(dim == 2 ? PointDomain<2>::free(x, w, g) : PointDomain<3>::free(x, w, g), 0.0);
+    ASSERT_LT(*std::min_element(w, w + points.N), 0.0);
+    const Reals field = tile();
+    EXPECT_NE(kernels.g2p(points.rows(), points.step, 0, points.n, points.base, field.data(), nullptr), 0);
+  }
+}
+
 /** Tile and nodes: the box goes to blocks and back. */
 TEST_P(Kernels, TileMovesItsBox)
 {
