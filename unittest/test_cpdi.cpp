@@ -120,6 +120,37 @@ run 200
   }
 }
 
+// domains of two sizes that fill the periodic box: uniform pressure does not move them, as forces on a node
+// are the integral of the gradient of its function, which the corners give exactly
+
+TEST(UniformPressure, PointsOfTwoSizes)
+{
+  for (const char *shape : {"cpdi", "cpdi2"}) {
+    Scene run;
+    run.commands(strprintf(R"(
+units lj
+dimension 2
+boundary p p p
+atom_style mpm
+region box block 0 8 0 8 -0.5 0.5
+create_box 1 box
+fix g all mpm 1.0 shape %s transfer apic
+region left block 0 4 0 8 -0.5 0.5
+region right block 4 8 0 8 -0.5 0.5
+create_points 1 region left ppc 2
+create_points 1 region right ppc 3
+fix m all mpm/material density 1 camclay 10 1 0.2 0.05 1 1 2
+timestep 0.01
+thermo 1000
+run 20
+)",
+                           shape));
+    EXPECT_NEAR(run.points().F[0][0], 1.0, 1e-12);
+    for (int i = 0; i < run.n(); i++)
+      for (int d = 0; d < 2; d++) EXPECT_NEAR(run.v()[i][d], 0.0, 1e-13) << shape;
+  }
+}
+
 // each point flies on with v = 2 x t^-1, eleven times as long in the end. Points of FLIP that are alone
 // on their nodes would not notice that they are stretched
 
