@@ -248,3 +248,57 @@ TEST(Seen, SpringIsNotDamped)
     EXPECT_NEAR(turns, cycles * theta / M_PI, 1.0) << every;
   }
 }
+
+// Time steps that change between two steps of the points: each force acts as long as its step lasts.
+
+TEST(Seen, ImpulseIsThatOfAllSteps)
+{
+  const double a = -0.25;
+  Scene run;
+  run.commands(replaced(head, "p p f", "p p p") +
+               "fix grid all mpm 1.0 every 5\nregion b block 2 6 2 6 3 7\n"
+               "create_points 1 region b ppc 2\nfix m all mpm/material density 1.0 neohookean 10.0 0.3\n"
+               "timestep 0.001\nthermo 1000\n");
+  run.each_step([&](double **force) {
+    for (int i = 0; i < run.n(); i++) force[i][2] = a * run.mass()[i];
+  });
+  run.commands("run 53\ntimestep 0.003\nrun 47\n");
+  EXPECT_NEAR(run.evaluate("vcm(all,z)") / (a * run.time()), 1.0, 1.0e-12);
+}
+
+/* ----------------------------------------------------------------------
+   A grain that grazes a free block: friction acts on the surface of a point, and its torque belongs to the
+   angular momentum. What is lost of the sum is a small part of these torques.
+------------------------------------------------------------------------- */
+
+TEST(Seen, TorquesAreThoseOfAllSteps)
+{
+  if (nranks() > 1) GTEST_SKIP() << "sums of one rank";
+  for (const int every : {1, 3}) {
+    Scene run;
+    run.commands("units lj\nboundary f f f\natom_style hybrid sphere mpm\nneighbor 0.3 bin\n"
+                 "comm_modify vel yes\nregion box block -4 14 -4 14 -4 14\ncreate_box 2 box\n" +
+                 strprintf("fix grid all mpm 1.0 every %d\n", every) +
+                 "region b block 2 7 2 7 2 6\ncreate_points 1 region b ppc 2 diameter 0.5\n"
+                 "create_atoms 2 single 3.6 4.1 7.1\nset type 2 diameter 2.0 density 2.0\n"
+                 "group block type 1\ngroup grain type 2\nvelocity grain set 1.0 0 -0.3\n"
+                 "fix m block mpm/material density 1.0 neohookean 60.0 0.3\nfix move grain nve/sphere\n"
+                 "pair_style granular\n"
+                 "pair_coeff * * hooke 60.0 2.0 tangential linear_nohistory 1.0 0.5\n"
+                 "neigh_modify exclude type 1 1\ntimestep 0.01\nthermo 1000\n");
+    double torque = 0.0;
+    run.each_step([&](double **) {
+      for (int i = 0; i < run.n(); i++)
+        if (run.lmp->atom->type[i] == 1) torque += 0.01 * run.lmp->atom->torque[i][1];
+    });
+    run.commands("run 0\n");
+    const auto start = run.sums();
+    run.commands("run 300\n");
+    const auto end = run.sums();
+    const double lost = std::abs(end.L[1] - start.L[1]);
+    measured("lost", lost);
+    measured("torques", torque);
+    EXPECT_GT(std::abs(torque), 0.005);
+    EXPECT_LT(lost, (every == 1 ? 1.0e-9 : 0.002) * std::abs(torque)) << every;
+  }
+}
