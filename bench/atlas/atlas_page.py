@@ -370,6 +370,7 @@ def page(data, campaigns):
         "RUNS": "%d" % len(data.runs),
         "FAILED": "%d" % sum(r["status"] != "ok" for r in data.runs),
         "COSTS": "%d" % len(data.costs),
+        "MEDIANS": "%d" % sum(int(r["pairs"]) > 1 for r in data.costs),
         "MACHINES": machines,
         "RULES": rules(data),
         "SCENES": "\n".join(scene_section(data, scene) for scene in sc.SCENES if data.front(scene)),
