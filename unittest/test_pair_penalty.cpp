@@ -132,6 +132,45 @@ TEST(Bars, DampingDissipates)
   EXPECT_NEAR(run.evaluate("v_lost"), energy - left, 0.01 * energy);
 }
 
+// two points of volumes 1 and 0.8^3: radii 0.5 and 0.4, face of the smaller one 0.64
+TEST(TwoPoints, ForceEnergyAndPower)
+{
+  if (!first_rank()) return;
+  Scene run(MPI_COMM_SELF);
+  run.commands(R"(
+units lj
+boundary f f f
+atom_style mpm
+neighbor 0.3 bin
+comm_modify vel yes
+region box block 0 5 0 5 0 5
+create_box 2 box
+create_atoms 1 single 2 2 2
+create_atoms 2 single 2.8 2 2
+set type 1 volume 1.0
+set type 2 volume 0.512
+group one type 1
+group two type 2
+fix F1 one mpm 1.0
+fix F2 two mpm 0.9
+fix m all mpm/material density 1 neohookean 50 0.3
+pair_style mpm/penalty
+pair_coeff 1 2 50 friction 0.3 0.05
+velocity one set 0 1 0
+compute pair all pair mpm/penalty
+compute f one reduce sum fx fy
+thermo_style custom step c_pair c_f[1] c_f[2]
+timestep 0.001
+run 0
+)");
+  const double force = 50.0 * 0.64 * 0.1 / 0.9;
+  EXPECT_NEAR(run.evaluate("c_f[1]"), -force, 1e-12);
+  EXPECT_NEAR(run.evaluate("c_f[2]"), -0.3 * force, 1e-12);
+  EXPECT_NEAR(run.evaluate("c_pair"), 0.05 * force, 1e-12);
+  EXPECT_EQ(run.evaluate("c_pair[1]"), 1.0);
+  EXPECT_NEAR(run.evaluate("c_pair[2]"), 0.3 * force, 1e-12);
+}
+
 // ---------------------------------------------------------------------- friction
 
 /** A block on a plane of other spacing, gravity tilted by 30 degrees. */
