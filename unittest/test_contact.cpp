@@ -453,8 +453,9 @@ TEST(Order, WallsActAfterContact)
       "boundary p p p", "boundary p f p");
   const std::string contact = "fix c all mpm/contact F1 F2 law coulomb 0.3\n";
   const std::string wall = "fix w all mpm/boundary ylo slip\n";
-  const std::string body = replaced(replaced(scene, "cylinder z 3.1 6.2 2.5 INF INF", "block 2 5.6 0 5 -0.5 0.5"),
+  std::string body = replaced(replaced(scene, "cylinder z 3.1 6.2 2.5 INF INF", "block 2 5.6 0 5 -0.5 0.5"),
                                     contact, "");
+  body += "displace_atoms all ramp x 0 3 y 0 6 units box\n";    // an inclined interface
   Scene before, after;
   before.commands(body + contact + wall + "velocity one set 0.5 -0.1 0\nvelocity two set -0.5 -0.1 0\nrun 200\n");
   after.commands(body + wall + contact + "velocity one set 0.5 -0.1 0\nvelocity two set -0.5 -0.1 0\nrun 200\n");
