@@ -457,8 +457,8 @@ TEST(Order, WallsActAfterContact)
                                     contact, "");
   body += "displace_atoms all ramp x 0 3 y 0 6 units box\n";    // an inclined interface
   Scene before, after;
-  before.commands(body + contact + wall + "velocity one set 0.5 -0.1 0\nvelocity two set -0.5 -0.1 0\nrun 200\n");
-  after.commands(body + wall + contact + "velocity one set 0.5 -0.1 0\nvelocity two set -0.5 -0.1 0\nrun 200\n");
+  before.commands(body + contact + wall + "velocity one set 0.5 -0.1 0\nvelocity two set -0.5 -0.1 0\nrun 60\n");
+  after.commands(body + wall + contact + "velocity one set 0.5 -0.1 0\nvelocity two set -0.5 -0.1 0\nrun 60\n");
   EXPECT_TRUE(identical(before.gather(), after.gather()));
   before.commands("variable v equal vcm(one,x)\n");
   EXPECT_LT(before.evaluate("v_v"), 0.3);    // they have met
@@ -481,6 +481,7 @@ TEST(Order, WallsActAfterContact)
       }
   }
   EXPECT_GT(both, 0);
+  EXPECT_GT(after.evaluate("f_c[1][4]"), 0.0);    // they push now
 }
 
 TEST(Restart, ContinuesExactly)
