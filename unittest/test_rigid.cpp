@@ -247,6 +247,79 @@ TEST(RigidBody, TurnsAboutAHeldAxis)
   EXPECT_NEAR(body->compute_vector(23), 1.0, 1.0e-12);
 }
 
+// A thick plate that lies on a block, which is smaller than it, with friction
+
+static std::string plate(double h, const std::string &file, const std::string &words, double timestep)
+{
+  return strprintf("units lj\nboundary p p f\natom_style mpm\nneighbor 0.3 bin\n"
+                   "region box block 0 8 0 8 0 4\ncreate_box 1 box\nfix grid all mpm %g\n"
+                   "region body block 2.5 5.5 2.5 5.5 0 1\ncreate_points 1 region body ppc 2\n"
+                   "fix m all mpm/material density 1.0 neohookean 2000.0 0.3\n"
+                   "fix floor all mpm/boundary zlo stick\n"
+                   "region shape mpm/mesh %s 1.0 1.0 1.0 0.95\n"
+                   "fix tool all mpm/rigid shape %s\ntimestep %g\nthermo 1000\n",
+                   h, file.c_str(), words.c_str(), timestep);
+}
+
+// As long as it slides, each impulse along the block is the coefficient times the one across, also when the
+// plate weighs less than the nodes below it. In the end it sticks.
+
+TEST(RigidBody, SlidesUntilItSticks)
+{
+  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
+  const ScratchFile file("box.stl", text_of(box({0.0, 0.0, 0.0}, {6.0, 6.0, 3.0})));
+  const double mu = 0.4, v0 = 0.5, g = 0.5;
+  for (const double density : {0.4, 0.01}) {
+    Scene run;
+    run.commands(plate(0.5, file.name,
+                       strprintf("density %g separate friction %g velocity %g 0 0 gravity 0 0 %g "
+                                 "hold rx ry rz",
+                                 density, mu, v0, -g),
+                       0.002));
+    auto *body = run.lmp->modify->get_fix_by_id("tool");
+    double worst = 0.0, largest = 0.0;
+    run.each_step([&](double **) {
+      if (body->compute_vector(3) < 0.5 * v0) return;
+      const double along = v0 - body->compute_vector(3);
+      worst = std::max(worst, fabs(along - mu * (body->compute_vector(5) + g * run.time())));
+      largest = std::max(largest, along);
+    });
+    run.commands("run 2000 post no\n");
+    EXPECT_GT(largest, 0.45 * v0);
+    EXPECT_LT(measured("friction - mu times push", worst / v0), 0.002);
+    EXPECT_LT(fabs(measured("last velocity", body->compute_vector(3) / v0)), 0.02);
+    EXPECT_LT(fabs(body->compute_vector(4) / v0), 1.0e-6);
+  }
+}
+
+// When it spins, the moment of friction is mu N times the mean distance of a square from its center, which
+// is (sqrt(2) + asinh(1)) / 6 of its side for a uniform pressure.
+
+TEST(RigidBody, SpinsUntilItSticks)
+{
+  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
+  const ScratchFile file("box.stl", text_of(box({0.0, 0.0, 0.0}, {6.0, 6.0, 3.0})));
+  const double mu = 0.8, g = 2.0, omega = 0.5;
+  Scene run;
+  run.commands(plate(0.25, file.name,
+                     strprintf("density 1.0 separate friction %g omega 0 0 %g gravity 0 0 %g "
+                               "hold x y rx ry",
+                               mu, omega, -g),
+                     0.001));
+  auto *body = run.lmp->modify->get_fix_by_id("tool");
+  const double arm = 3.0 * (sqrt(2.0) + asinh(1.0)) / 6.0, inertia = 36.0 / 6.0;    // per mass
+  double along = 0.0, across = 0.0;
+  run.each_step([&](double **) {
+    if (body->compute_vector(8) < 0.5 * omega) return;
+    along = inertia * (omega - body->compute_vector(8));
+    across = body->compute_vector(5) + g * run.time();
+  });
+  run.commands("run 2000 post no\n");
+  EXPECT_GT(along, 0.45 * inertia * omega);
+  EXPECT_NEAR(measured("moment/exact", along / (mu * arm * across)), 1.0, 0.1);
+  EXPECT_LT(fabs(measured("last spin", body->compute_vector(8) / omega)), 0.02);
+}
+
 TEST(RigidBody, RefusesMistakes)
 {
   const ScratchFile file("box.stl", text_of(box({0.0, 0.0, 0.0}, {1.0, 1.0, 1.0})));

@@ -14,12 +14,12 @@
    mass m_i of the nodes and their velocities v_i before, all of these together make a linear system
    for V and Omega of 6 equations,
 
-     M V + sum_i m_i N_i (V + Omega x r_i)             = M V' + sum_i m_i N_i v_i - t_i
-     I Omega + sum_i r_i x m_i N_i (V + Omega x r_i)   = L'   + sum_i r_i x (m_i N_i v_i - t_i)
+     M V + sum_i m_i N_i (V + Omega x r_i)             = M V' + sum_i m_i N_i v_i
+     I Omega + sum_i r_i x m_i N_i (V + Omega x r_i)   = L'   + sum_i r_i x m_i N_i v_i
 
-   with N_i = 1 or n_i n_i^T and the tangential impulses t_i of friction. Which nodes take part, and t_i
-   (at most friction times the normal impulse, and no more than what makes the node stick), follow from
-   the solution, so that it is repeated until they stay the same.
+   with N_i = 1 where a node sticks and (n_i + mu t_i) n_i^T where it slides, where t_i is the direction of
+   friction. Which nodes take part, which of them stick (those that friction is able to hold), and t_i
+   follow from the solution, so that it is repeated until they stay the same.
 ------------------------------------------------------------------------- */
 
 #include "fix_mpm_rigid.h"
@@ -326,13 +326,30 @@ void FixMPMRigid::find_contacts()
         c.field = field;
         c.node = (int64_t) slot * NODES_PER_BLOCK + n;
         c.owned = block.owned >> n & 1;
-        c.active = true;
+        c.state = kind == STICK ? Contact::STICKS : Contact::SLIDES;
         MathExtra::copy3(record, c.v);
-        c.tangential[0] = c.tangential[1] = c.tangential[2] = 0.0;
+        MathExtra::zero3(c.pull);
         contacts.push_back(c);
       }
     }
   }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMRigid::Contact::relative_velocity(const double *u, double *w) const
+{
+  MathExtra::cross3(u + 3, r, w);
+  for (int d = 0; d < 3; d++) w[d] += u[d] - v[d];
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMRigid::Contact::impulse(double m, const double *w, double *push) const
+{
+  const double normal = MathExtra::dot3(w, n);
+  for (int d = 0; d < 3; d++)
+    push[d] = state == APART ? 0.0 : m * (state == STICKS ? w[d] : normal * (n[d] + pull[d]));
 }
 
 /* ----------------------------------------------------------------------
@@ -350,28 +367,23 @@ void FixMPMRigid::solve()
   for (int round = 0; round < MAX_ROUNDS; round++) {
     double mine[42] = {0.0}, all[42];    // matrix, right-hand side
     for (const auto &c : contacts) {
-      if (!c.owned || !c.active) continue;
+      if (!c.owned || c.state == Contact::APART) continue;
       const double m = c.field->grid->nodes()[c.node * c.field->grid->nreal + 3];
-      // rows of N_i (1, -r x): one for each direction
-      const int rows = kind == STICK ? 3 : 1;
-      for (int k = 0; k < rows; k++) {
-        double row[6];
-        if (kind == STICK)
-          for (int d = 0; d < 3; d++) row[d] = d == k;
-        else
-          MathExtra::copy3(c.n, row);
+      // N_i as sum of products of a direction of the impulse and one of the velocity: each with r x it
+      const int products = c.state == Contact::STICKS ? 3 : 1;
+      for (int k = 0; k < products; k++) {
+        double row[6], column[6];
+        for (int d = 0; d < 3; d++) {
+          row[d] = c.state == Contact::STICKS ? (double) (d == k) : c.n[d];
+          column[d] = c.state == Contact::STICKS ? row[d] : c.n[d] + c.pull[d];
+        }
         MathExtra::cross3(c.r, row, row + 3);
+        MathExtra::cross3(c.r, column, column + 3);
         const double known = m * MathExtra::dot3(row, c.v);
         for (int i = 0; i < 6; i++) {
-          for (int j = 0; j < 6; j++) mine[6 * i + j] += m * row[i] * row[j];
-          mine[36 + i] += known * row[i];
+          for (int j = 0; j < 6; j++) mine[6 * i + j] += m * column[i] * row[j];
+          mine[36 + i] += known * column[i];
         }
-      }
-      double moment[3];
-      MathExtra::cross3(c.r, c.tangential, moment);
-      for (int d = 0; d < 3; d++) {
-        mine[36 + d] -= c.tangential[d];
-        mine[39 + d] -= moment[d];
       }
     }
     MPI_Allreduce(mine, all, 42, MPI_DOUBLE, MPI_SUM, world);
@@ -394,37 +406,34 @@ void FixMPMRigid::solve()
       A(i, i) = 1.0;
       b(i) = 0.0;
     }
-    const Vector6 u = A.ldlt().solve(b);
+    const Vector6 u = A.partialPivLu().solve(b);
 
     // does the solution agree with what it assumed?
 
     int changed = 0, changed_all;
     for (auto &c : contacts) {
-      const double *record = c.field->grid->nodes() + c.node * c.field->grid->nreal;
-      const double m = record[3], V[3] = {u(0), u(1), u(2)}, O[3] = {u(3), u(4), u(5)};
+      if (kind == STICK) break;
       double w[3];
-      MathExtra::cross3(O, c.r, w);
-      for (int d = 0; d < 3; d++) w[d] += V[d] - c.v[d];    // of the body relative to the node
+      c.relative_velocity(u.data(), w);
       const double normal = MathExtra::dot3(w, c.n);
-      if (kind == SEPARATE && (normal > 0.0) != c.active) {
-        c.active = normal > 0.0;
-        changed = 1;
+      double slide[3];
+      for (int d = 0; d < 3; d++) slide[d] = w[d] - normal * c.n[d];
+      const double length = MathExtra::len3(slide), most = friction * fabs(normal);
+      const Contact before = c;
+      MathExtra::zero3(c.pull);
+      if (kind == SEPARATE && !(normal > 0.0))
+        c.state = Contact::APART;
+      else if (friction > 0.0 && length <= most)
+        c.state = Contact::STICKS;
+      else {
+        c.state = Contact::SLIDES;
+        if (friction > 0.0)
+          for (int d = 0; d < 3; d++)
+            c.pull[d] = std::copysign(friction, normal) * slide[d] / length;
       }
-      if (friction > 0.0) {
-        double slide[3], length = 0.0;
-        for (int d = 0; d < 3; d++) {
-          slide[d] = w[d] - normal * c.n[d];
-          length += slide[d] * slide[d];
-        }
-        length = sqrt(length);
-        const double most = c.active ? friction * fabs(normal) : 0.0;
-        const double share = length > most ? most / length : 1.0;
-        for (int d = 0; d < 3; d++) {
-          const double t = m * share * slide[d];
-          if (fabs(t - c.tangential[d]) > 1.0e-10 * m * (length + fabs(normal))) changed = 1;
-          c.tangential[d] = t;
-        }
-      }
+      if (c.state != before.state) changed = 1;
+      for (int d = 0; d < 3; d++)
+        if (fabs(c.pull[d] - before.pull[d]) > 1.0e-10 * friction) changed = 1;
     }
     MPI_Allreduce(&changed, &changed_all, 1, MPI_INT, MPI_MAX, world);
     if (changed_all && round + 1 < MAX_ROUNDS) continue;
@@ -434,17 +443,9 @@ void FixMPMRigid::solve()
 
     double sum[6] = {0.0}, total[6];
     for (auto &c : contacts) {
-      const double *record = c.field->grid->nodes() + c.node * c.field->grid->nreal;
-      const double V[3] = {u(0), u(1), u(2)}, O[3] = {u(3), u(4), u(5)};
-      double w[3], push[3] = {0.0, 0.0, 0.0};
-      MathExtra::cross3(O, c.r, w);
-      for (int d = 0; d < 3; d++) w[d] += V[d] - c.v[d];
-      if (c.active) {
-        const double normal = MathExtra::dot3(w, c.n);
-        for (int d = 0; d < 3; d++)
-          push[d] = kind == STICK ? record[3] * w[d]
-                                  : record[3] * normal * c.n[d] + c.tangential[d];
-      }
+      double w[3], push[3];
+      c.relative_velocity(u.data(), w);
+      c.impulse(c.field->grid->nodes()[c.node * c.field->grid->nreal + 3], w, push);
       if (c.owned) {
         double moment[3];
         MathExtra::cross3(c.r, push, moment);
@@ -453,7 +454,7 @@ void FixMPMRigid::solve()
           sum[3 + d] -= moment[d];
         }
       }
-      if (c.active) c.field->push_node(c.node, c.owned, push);
+      if (c.state != Contact::APART) c.field->push_node(c.node, c.owned, push);
     }
     MPI_Allreduce(sum, total, 6, MPI_DOUBLE, MPI_SUM, world);
     for (int d = 0; d < 3; d++) {
@@ -524,7 +525,7 @@ void FixMPMRigid::act(double dt, Stage stage)
   // velocities that serve the gradient alone: those of the body, along what it has decided
 
   for (const auto &c : contacts) {
-    if (!c.active) continue;
+    if (c.state == Contact::APART) continue;
     double *record = c.field->grid->nodes() + c.node * c.field->grid->nreal;
     double w[3];
     MathExtra::cross3(omega, c.r, w);

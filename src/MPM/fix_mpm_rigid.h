@@ -53,13 +53,20 @@ class FixMPMRigid : public Fix, public MPMNodeAction {
     std::string variable;
   };
   struct Contact {    // a node inside of the body
+    enum State { APART, SLIDES, STICKS };
     FixMPM *field;
     int64_t node;
-    bool owned, active;
+    bool owned;
+    State state;
     double r[3];       // from the center of the body
     double n[3];       // out of the body
     double v[3];       // before the contact
-    double tangential[3];    // impulse of friction on the node
+    double pull[3];    // impulse of friction on the node, for an impulse of 1 along n
+
+    /** Velocity of the body (u: its velocity and angular velocity) at the node, relative to v. */
+    void relative_velocity(const double *u, double *w) const;
+    /** Impulse on the node (mass m) if it had the velocity w of the body, relative to its own. */
+    void impulse(double m, const double *w, double *push) const;
   };
 
   std::string region_id;
