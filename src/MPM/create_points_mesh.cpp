@@ -15,11 +15,11 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_mpm.h"
+#include "math_extra.h"
 #include "modify.h"
 #include "mpm_element.h"
 #include "mpm_mesh_input.h"
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -104,7 +104,7 @@ void CreatePoints::parse_mesh(int narg, char **arg)
     const auto &rule = ElementRule::of(e.type);
     double x[MAX_ELEMENT_NODES][3], g[MAX_ELEMENT_NODES][3];
     for (int k = 0; k < rule.nnode; k++)
-      std::copy_n(mesh.nodes[e.node[k]].begin(), 3, x[k]);
+      MathExtra::copy3(mesh.nodes[e.node[k]].data(), x[k]);
     for (int q = 0; q < rule.npoint; q++) {
       const double w = rule.gradients(q, x, g);
       if (!(w > 0.0))
@@ -118,7 +118,7 @@ void CreatePoints::parse_mesh(int narg, char **arg)
 
   bigint outside = 0;
   for (std::size_t k = 0; k < mesh_sites.size(); k++) {
-    std::copy_n(mesh.nodes[k].begin(), 3, mesh_sites[k].x);
+    MathExtra::copy3(mesh.nodes[k].data(), mesh_sites[k].x);
     outside += !put_into_box(mesh_sites[k].x);
   }
   if (outside)
