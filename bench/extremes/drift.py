@@ -7,7 +7,7 @@ periodic box, with the time step at half of h/c. Momentum: largest change in par
 momentum: largest change, and last value, in parts of the first one, of velocities and affine matrices
 of the points, about the center of mass. Energy: the largest and the last value of kinetic and stored
 energy, in parts of the initial one; grown: the step after which it was ever more than 1.1 (looked
-at every 10^4 steps). Rows without angular_change were measured in a box of 8 cells.
+at every 10^4 steps).
 """
 import trial
 from combos import combos
