@@ -588,22 +588,28 @@ TEST(SelfContact, LobesStick)
 
 // ---------------------------------------------------------------------- adhesion
 
+// two bars that touch: the left end of one is held, the right end of the other, and all of it at the start,
+// has the given velocity
+static std::string drawn_bars(const std::string &law, const std::string &velocity)
+{
+  std::string text = two_bars("transfer apic", law);
+  text = replaced(text, "b2 block 1.05 2.05", "b2 block 1.0 2.0");
+  text = replaced(text, "velocity one set 0.05 0 0",
+                  "region left block -1 0.1 0 0.08 -0.05 0.05\n"
+                  "fix hold all mpm/boundary region left stick field F1");
+  return replaced(text, "velocity two set -0.05 0 0",
+                  "region right block 1.9 3 0 0.08 -0.05 0.05\n"
+                  "fix pull all mpm/boundary region right stick velocity " + velocity +
+                      " field F2\nvelocity two set " + velocity);
+}
+
 // a bar is drawn off another one that is held: the pull reaches strength times area, the work is
 // the work of release times area
 TEST(Adhesion, StrengthAndWork)
 {
   if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
   Scene run;
-  std::string text = two_bars("transfer apic", "law adhesive 0.02 1.0 2e-4 gap yes");
-  text = replaced(text, "b2 block 1.05 2.05", "b2 block 1.0 2.0");
-  text = replaced(text, "velocity one set 0.05 0 0",
-                  "region left block -1 0.1 0 0.08 -0.05 0.05\n"
-                  "fix hold all mpm/boundary region left stick field F1");
-  text = replaced(text, "velocity two set -0.05 0 0",
-                  "region right block 1.9 3 0 0.08 -0.05 0.05\n"
-                  "fix pull all mpm/boundary region right stick velocity 0.02 0 0 field F2\n"
-                  "velocity two set 0.02 0 0");
-  run.commands(text);
+  run.commands(drawn_bars("law adhesive 0.02 1.0 2e-4 gap yes", "0.02 0 0"));
   double largest = 0.0, after = 0.0, work = 0.0;
   for (int k = 0; k < 300; k++) {
     run.commands("run 20 post no\n");
@@ -622,16 +628,7 @@ TEST(Adhesion, Shear)
 {
   if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
   Scene run;
-  std::string text = two_bars("transfer apic", "law adhesive 0.2 0.01 2e-3");
-  text = replaced(text, "b2 block 1.05 2.05", "b2 block 1.0 2.0");
-  text = replaced(text, "velocity one set 0.05 0 0",
-                  "region left block -1 0.1 0 0.08 -0.05 0.05\n"
-                  "fix hold all mpm/boundary region left stick field F1");
-  text = replaced(text, "velocity two set -0.05 0 0",
-                  "region right block 1.9 3 0 0.08 -0.05 0.05\n"
-                  "fix pull all mpm/boundary region right stick velocity 0 0.01 0 field F2\n"
-                  "velocity two set 0 0.01 0");
-  run.commands(text + "run 5000\n");
+  run.commands(drawn_bars("law adhesive 0.2 0.01 2e-3", "0 0.01 0") + "run 5000\n");
   for (int k = 0; k < 5; k++) {
     run.commands("run 200 post no\n");
     EXPECT_NEAR(measured("shear force/strength", std::fabs(run.evaluate("f_c[1][2]")) / 0.08 / 0.01), 1.0, 0.02);
