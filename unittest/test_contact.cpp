@@ -497,6 +497,18 @@ TEST(Restart, ContinuesExactly)
   EXPECT_NEAR(run.again.evaluate("f_c"), work, 1e-12 * std::fabs(work));
 }
 
+TEST(Restart, RefusesAnotherNumberOfBodies)
+{
+  const ScratchFile file("restart");
+  Scene whole;
+  whole.commands(std::string(disks) + "run 10\nwrite_restart " + file.name + "\n");
+  expect_refused("read_restart " + file.name + "\nneighbor 0.3 bin\n",
+                 {{"group three empty\nfix F1 one mpm 0.5\nfix F2 two mpm 0.5\nfix F3 three mpm 0.5\n"
+                   "fix m all mpm/material density 1 neohookean 50 0.3\n"
+                   "fix c all mpm/contact F1 F2 F3 law coulomb 0.3",
+                   "another number of fields"}});
+}
+
 // friction at rest may be larger: the block stays where it would slide with the other one, and slides with
 // that when it moves. (At the ends of the block the pull is a multiple of the mean.)
 
