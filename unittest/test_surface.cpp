@@ -205,6 +205,35 @@ TEST(SurfaceContact, IsThatOfAllPoints)
   EXPECT_LT(pairs[0], pairs[1]);
 }
 
+// At set-up all points have the largest radius, and then those at the surface that of their volume:
+// ghosts, too. With plain bins a pair is found with the lower of the two as the owner, which is the grain
+// for a grain below the slab: what it touches are ghosts, where it is on a corner of the periodic box.
+
+TEST(SurfaceContact, IsTheSameAcrossPeriodicFacesFromSetUpOn)
+{
+  std::array<double, 3> force[2];
+  for (const int corner : {0, 1}) {
+    Scene run;
+    run.commands(replaced(replaced(head, "0.3 multi", "0.3 bin"), "mode multi", "mode single") +
+                 "fix grid all mpm 1.0\nregion slab block INF INF INF INF 1 7\n"
+                 "create_points 1 region slab ppc 2\ncreate_atoms 2 single " +
+                 (corner ? "0.1 0.2 0.1\n" : "6.1 6.2 0.1\n") + "group slab type 1\ngroup grains type 2\n"
+                 "set type 2 diameter 2.0 density 2.0\nfix m slab mpm/material density 1.0 neohookean 10.0 0.3\n"
+                 "fix move grains nve/sphere\nfix surf slab mpm/surface\n" +
+                 contact + "timestep 0.01\nthermo 1000\n");
+    double mine[3] = {0.0};
+    run.each_step([&](double **) {
+      auto *atom = run.lmp->atom;
+      for (int i = 0; i < run.n(); i++)
+        if (atom->type[i] == 2) std::copy(atom->f[i], atom->f[i] + 3, mine);
+    });
+    run.commands("run 0 post no\n");
+    MPI_Allreduce(mine, force[corner].data(), 3, MPI_DOUBLE, MPI_SUM, run.lmp->world);
+  }
+  EXPECT_LT(force[0][2], -1.0);
+  for (int d = 0; d < 3; d++) EXPECT_NEAR(force[1][d], force[0][d], 1.0e-12 * -force[0][2]);
+}
+
 // A group of grains and surface alone can be in the neighbor lists and be the ghosts of other ranks.
 
 static const std::string plain = "fix surf block mpm/surface\n";
