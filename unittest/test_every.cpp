@@ -302,3 +302,42 @@ TEST(Seen, TorquesAreThoseOfAllSteps)
     EXPECT_LT(lost, (every == 1 ? 1.0e-9 : 0.002) * std::abs(torque)) << every;
   }
 }
+
+// A torque on a point that leaves the group of the neighbor lists before it is time for the cycle, here
+// one inside that counts as failed during the first step only.
+
+TEST(Seen, TorqueIsNotLostWithTheGroup)
+{
+  if (nranks() > 1) GTEST_SKIP() << "sums of one rank";
+  const double dt = 0.01, T = 0.3;
+  Scene run;
+  run.commands("units lj\nboundary f f f\natom_style hybrid sphere mpm\nneighbor 0.3 bin\n"
+               "neigh_modify every 1 delay 0 check no\ncomm_modify vel yes\n"
+               "region box block -4 14 -4 14 -4 14\ncreate_box 2 box\nfix grid all mpm 1.0 every 3\n"
+               "region b block 2 8 2 8 2 8\ncreate_points 1 region b ppc 2\ngroup block type 1\n"
+               "create_atoms 2 single 5 5 10\nset type 2 diameter 1.0 density 1.0\ngroup skin type 2\n"
+               "atom_modify first skin\nneigh_modify include skin\ncomm_modify group skin\n"
+               "fix surf block mpm/surface group skin\n"
+               "fix m block mpm/material density 1.0 eos linear 10.0 strength elastic 5.0 damage rankine 100.0\n"
+               "pair_style granular\npair_coeff * * hooke 60.0 2.0 tangential linear_nohistory 1.0 0.5\n"
+               "neigh_modify exclude type 1 1\ntimestep 0.01\nthermo 1000\nrun 0\n");
+  const auto *material = dynamic_cast<FixMPMMaterial *>(run.lmp->modify->get_fix_by_id("m"));
+  const auto inside = [&] {
+    int i = 0;
+    while (run.lmp->atom->tag[i] != 6 * 144 + 6 * 12 + 6) i++;
+    return i;
+  };
+  material->history[inside()][material->damage] = 1.0;
+  bool first = true, in_lists[2] = {false, true};
+  run.each_step([&](double **) {
+    const int i = inside();
+    in_lists[!first] = i < run.lmp->atom->nfirst;
+    if (first) run.lmp->atom->torque[i][1] = T;
+    first = false;
+    material->history[i][material->damage] = 0.0;
+  });
+  run.commands("run 3 post no\n");
+  EXPECT_TRUE(in_lists[0]);
+  EXPECT_FALSE(in_lists[1]);
+  EXPECT_NEAR(run.sums().L[1], T * dt, 1.0e-14);
+}
