@@ -56,6 +56,36 @@ TEST(SurfaceMesh, BoxHasExactDistances)
     }
 }
 
+// at equally close faces the mean of their normals, at the surface that of the face, edge or corner
+
+TEST(SurfaceMesh, NormalsHaveTheSymmetryOfTheBody)
+{
+  const SurfaceMesh mesh(text_of(box({-1.0, -1.0, -2.0}, {1.0, 1.0, 2.0})), "box", 1.0, {0.0, 0.0, 0.0});
+  const double a = sqrt(0.5), b = sqrt(1.0 / 3.0);
+  const struct {
+    Point x, normal;
+    double distance;
+  } cases[] = {{{0.25, 0.5, 0.0}, {0.0, 1.0, 0.0}, -0.5},
+               {{0.25, -0.5, 0.0}, {0.0, -1.0, 0.0}, -0.5},
+               {{0.5, 0.5, 0.25}, {a, a, 0.0}, -0.5},
+               {{-0.5, 0.5, -0.25}, {-a, a, 0.0}, -0.5},
+               {{0.5, -0.5, 1.5}, {b, -b, b}, -0.5},
+               {{0.0, 0.0, 1.0}, {0.0, 0.0, 1.0}, -1.0},
+               {{0.0, 0.0, 0.25}, {0.0, 0.0, 0.0}, -1.0},
+               {{0.5, 0.25, 2.0}, {0.0, 0.0, 1.0}, 0.0},
+               {{1.0, 0.25, 2.0}, {a, 0.0, a}, 0.0},
+               {{1.0, -1.0, 2.0}, {b, -b, b}, 0.0},
+               {{4.0, 0.5, 6.0}, {0.6, 0.0, 0.8}, 5.0}};
+  for (const auto &c : cases)
+    for (const double nudge : {-1.0e-15, 0.0, 1.0e-15}) {    // rounding errors make no difference
+      Point normal;
+      const Point x = {c.x[0] + nudge, c.x[1], c.x[2]};
+      EXPECT_NEAR(mesh.distance_and_normal(x, normal), c.distance, 1.0e-13);
+      for (int d = 0; d < 3; d++)
+        EXPECT_NEAR(normal[d], c.normal[d], 1.0e-13) << c.x[0] << " " << c.x[1] << " " << c.x[2];
+    }
+}
+
 // x = u + s w, y = v + s/2 w with u, v, w independent and uniform over the edges of the box
 
 TEST(SurfaceMesh, ShearedBoxHasExactInertia)

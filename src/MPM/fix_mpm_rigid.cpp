@@ -312,22 +312,20 @@ void FixMPMRigid::find_contacts()
         const SurfaceMesh::Point p = {mesh->center[0] + local[0], mesh->center[1] + local[1],
                                       mesh->center[2] + local[2]};
         if (mesh->bound(p) > 0.0) continue;
-        SurfaceMesh::Point closest;
-        const double distance = mesh->distance(p, closest);
-        if (distance > 0.0) continue;
-        const double out[3] = {closest[0] - p[0], closest[1] - p[1], closest[2] - p[2]};
-        MathExtra::matvec(Q, out, c.n);
-        const double length = MathExtra::len3(c.n);
-        // a node on the surface: outward from the center will do
-        if (length > 0.0)
+        SurfaceMesh::Point out;
+        if (mesh->distance_and_normal(p, out) > 0.0) continue;
+        MathExtra::copy3(record, c.v);
+        MathExtra::matvec(Q, out.data(), c.n);
+        if (!(MathExtra::lensq3(c.n) > 0.0)) {    // no way out is shorter: along the motion of the body
+          const double u[6] = {v[0], v[1], v[2], omega[0], omega[1], omega[2]};
+          c.relative_velocity(u, c.n);
+          if (!(MathExtra::lensq3(c.n) > 0.0)) continue;
           MathExtra::norm3(c.n);
-        else
-          MathExtra::copy3(c.r, c.n), MathExtra::norm3(c.n);
+        }
         c.field = field;
         c.node = (int64_t) slot * NODES_PER_BLOCK + n;
         c.owned = block.owned >> n & 1;
         c.state = kind == STICK ? Contact::STICKS : Contact::SLIDES;
-        MathExtra::copy3(record, c.v);
         MathExtra::zero3(c.pull);
         contacts.push_back(c);
       }

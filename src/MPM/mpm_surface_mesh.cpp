@@ -121,7 +121,7 @@ SurfaceMesh::SurfaceMesh(const std::string &bytes, const std::string &name, doub
 void SurfaceMesh::weld(const std::vector<Point> &soup, const std::string &name)
 {
   const Point size = hi - lo;
-  const double near = 1.0e-6 * std::sqrt(dot(size, size));
+  near = 1.0e-6 * std::sqrt(dot(size, size));
   if (!(near > 0.0)) throw std::runtime_error("File " + name + ": all corners are at one place");
 
   std::unordered_map<uint64_t, std::vector<int>> places;    // corners by cells of the size near
@@ -326,9 +326,13 @@ static Point closest_on_triangle(const Point &x, const Point &a, const Point &b,
   return a + (vb * inverse) * ab + (vc * inverse) * ac;
 }
 
-/* ---------------------------------------------------------------------- */
+/* ----------------------------------------------------------------------
+   visit(triangle, closest point of it, feature, square of its distance) for triangles in boxes whose
+   square of the distance is below limit, near ones first; visit() may lower the limit
+------------------------------------------------------------------------- */
 
-double SurfaceMesh::distance(const Point &x, Point &closest) const
+template <class Visit>
+void SurfaceMesh::search(const Point &x, double &limit, Visit &&visit) const
 {
   const auto to_box = [&](const Node &node) {
     double sum = 0.0;
@@ -338,12 +342,11 @@ double SurfaceMesh::distance(const Point &x, Point &closest) const
     }
     return sum;
   };
-  double smallest = std::numeric_limits<double>::max(), side = 1.0;
   int stack[64], depth = 0;
   stack[depth++] = 0;
   while (depth) {
     const Node &node = tree[stack[--depth]];
-    if (to_box(node) >= smallest) continue;
+    if (to_box(node) >= limit) continue;
     if (node.last < 0) {
       const bool swap = to_box(tree[node.child[0]]) < to_box(tree[node.child[1]]);
       stack[depth++] = node.child[swap];        // the nearer one is looked at first
@@ -357,15 +360,48 @@ double SurfaceMesh::distance(const Point &x, Point &closest) const
                                           corners[t.corner[2]], feature);
       const Point r = x - p;
       const double square = dot(r, r);
-      if (square >= smallest) continue;
-      smallest = square;
-      closest = p;
-      side = dot(r, feature == 0 ? t.normal :
-                    feature < 4  ? t.edge_normal[feature - 1] :
-                                   corner_normals[t.corner[feature - 4]]);
+      if (square < limit) visit(t, p, feature, square);
     }
   }
+}
+
+/* ---------------------------------------------------------------------- */
+
+double SurfaceMesh::distance(const Point &x, Point &closest) const
+{
+  double smallest = std::numeric_limits<double>::max(), side = 1.0;
+  search(x, smallest, [&](const Triangle &t, const Point &p, int feature, double square) {
+    smallest = square;
+    closest = p;
+    side = dot(x - p, feature == 0 ? t.normal :
+                      feature < 4  ? t.edge_normal[feature - 1] :
+                                     corner_normals[t.corner[feature - 4]]);
+  });
   return side < 0.0 ? -std::sqrt(smallest) : std::sqrt(smallest);
+}
+
+/* ---------------------------------------------------------------------- */
+
+double SurfaceMesh::distance_and_normal(const Point &x, Point &normal) const
+{
+  Point closest;
+  const double d = distance(x, closest), side = d < 0.0 ? -1.0 : 1.0;
+  double limit = (std::fabs(d) + near) * (std::fabs(d) + near);
+  std::vector<Point> found;
+  normal = {0.0, 0.0, 0.0};
+  search(x, limit, [&](const Triangle &t, const Point &p, int, double) {
+    Point out = std::fabs(d) > near ? side * (x - p) : t.normal;
+    const double size = std::sqrt(dot(out, out));
+    if (!(size > 0.0)) return;    // a sliver
+    out = (1.0 / size) * out;
+    for (const auto &other : found)    // triangles of one face, or with a common edge or corner
+      if (dot(out - other, out - other) < 1.0e-12) return;
+    found.push_back(out);
+    normal = normal + out;
+  });
+  const double length = std::sqrt(dot(normal, normal)), least = 1.0e-3 * (double) found.size();
+  normal = (length > least ? 1.0 / length : 0.0) * normal;
+  return d;
 }
 
 /* ----------------------------------------------------------------------

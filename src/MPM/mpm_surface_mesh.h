@@ -39,6 +39,12 @@ class SurfaceMesh {
   /** Distance of x from the surface, negative inside; closest: the point there. */
   double distance(const Point &x, Point &closest) const;
 
+  /** As distance(), with the unit normal outward: along the line through x and the closest point, on the
+   *  surface the mean normal. Where several points are equally close (to 1e-6 of the size of the body)
+   *  it is the mean of their directions, so that it has the symmetry of the body and does not depend
+   *  on rounding errors; zero where that leaves no direction, as at the center of a ball. */
+  double distance_and_normal(const Point &x, Point &normal) const;
+
   /** Lower bound of the distance, without a search: positive outside, negative inside, 0: unknown. */
   double bound(const Point &x) const;
 
@@ -69,6 +75,7 @@ class SurfaceMesh {
   std::vector<float> coarse;    // distances at the centers of cells
   int ncells[3];
   double cell;
+  double near;                  // points closer than this are one
 
   void weld(const std::vector<Point> &soup, const std::string &name);
   void close(const std::string &name);
@@ -76,6 +83,7 @@ class SurfaceMesh {
   void normals();
   int build(int first, int last);
   void make_coarse();
+  template <class Visit> void search(const Point &x, double &limit, Visit &&visit) const;
   int cell_of(const Point &x, Point &center_of_cell) const;
 };
 
