@@ -73,7 +73,55 @@ INSTANTIATE_TEST_SUITE_P(
                       "shape linear transfer apic scheme musl light 0.5",
                       "shape linear transfer apic scheme usf light 0.5",
                       "shape linear transfer aflip 1.0 scheme usl light 0.5",
-                      "shape linear transfer xpic 2 scheme usl light 0.5"));
+                      "shape linear transfer xpic 2 scheme usl light 0.5",
+                      "shape linear transfer apic scheme usl light 0.5 locking fbar",
+                      "shape linear transfer apic scheme usl light 0.5 locking pressure",
+                      "shape linear transfer flip 1.0 scheme usl light 0.5 locking both"));
+
+/* The same in a body of revolution: a rod in a sleeve has the waves of the plane along its axis; of a
+   thick tube the speed of the outer face grows as (13/r)^1/2 while its wave goes inward, by 8 % here */
+
+class LightRings : public ::testing::TestWithParam<const char *> {};
+
+TEST_P(LightRings, DoNotKickPoints)
+{
+  const std::string rod = "boundary f f p\nregion box block 0 4 0 16 -0.5 0.5",
+                    tube = "boundary f p p\nregion box block 0 16 0 2 -0.5 0.5";
+  for (const bool along : {true, false}) {
+    double worst = 0.0;
+    for (double shift : {0.0, 0.1, 0.25, 0.25 + 1e-3, 0.25 + 1e-6, 0.25 + 1e-9, 0.25 + 1e-12, 0.4, 0.6,
+                         0.75 + 1e-6, 0.75 + 1e-9, 0.9}) {
+      Scene run;
+      const std::string error = run.error(
+          "units lj\ndimension 2\natom_style mpm\nneighbor 0.5 bin\n" + (along ? rod : tube) +
+          "\ncreate_box 1 box\nfix grid all mpm 1.0 axisymmetric yes " + GetParam() +
+          "\nregion body block " + (along ? "0 4 3 13" : "3 13 0 2") + " INF INF\n" +
+          "create_points 1 region body ppc 2\nfix walls all mpm/boundary xlo" + (along ? " xhi" : "") +
+          " slip\ndisplace_atoms all move " +
+          strprintf(along ? "0 %.17g 0\n" : "%.17g 0 0\n", shift) +
+          "fix m all mpm/material density 1.0 eos stiffened/gas 2.0 0.49 pressure 0.01\n"
+          "timestep 0.2\nrun 0\n");
+      EXPECT_EQ(error, "");
+      const double along_axis = run.sums().p[1], mass = run.sums().mass;
+      for (int k = 0; k < (along ? 40 : 10); k++) {
+        if (!run.error("run 1 post no\n").empty()) worst = INFINITY;
+        for (int i = 0; i < run.n(); i++)
+          worst = std::max(worst, std::abs(run.v()[i][!along ? 0 : 1]) / 0.01);
+      }
+      EXPECT_NEAR(run.sums().p[1], along_axis, 1.0e-14 * mass);
+    }
+    EXPECT_LT(measured(std::string(GetParam()) + (along ? ", rod" : ", tube") +
+                           ": largest speed of a point in p/(rho c)", worst),
+              along ? 2.0 : 2.0 * 1.08);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Options, LightRings,
+    ::testing::Values("transfer apic", "shape linear transfer flip 1.0 scheme usl light 0.5",
+                      "shape linear transfer apic scheme usl light 0.5",
+                      "shape linear transfer apic scheme musl light 0.5",
+                      "shape linear transfer aflip 1.0 scheme usl light 0.5 locking both"));
 
 TEST(LightNodesWithout, LinearFunctionsBreak)
 {
@@ -85,7 +133,8 @@ TEST(LightNodesWithout, LinearFunctionsBreak)
 
 TEST(LightNodes3d, BallInFlight)
 {
-  for (const char *options : {"transfer flip 1.0 scheme usl", "transfer apic", "transfer apic scheme musl"}) {
+  for (const char *options : {"transfer flip 1.0 scheme usl", "transfer apic", "transfer apic scheme musl",
+                              "transfer apic locking both", "transfer flip 1.0 scheme usl locking fbar"}) {
     SCOPED_TRACE(options);
     Scene run;
     run.commands(strprintf("units si\nboundary f f f\natom_style mpm\nneighbor 0.3 bin\n"
@@ -130,6 +179,39 @@ TEST(LightNodes, ShareIsThatOfTheVolume)
     EXPECT_NEAR(C[1] / scale, (1.0 - 2.0 * fx) * (1.0 - 2.0 * fy), 1.0e-9);
     EXPECT_NEAR(C[2] / scale, (1.0 - 2.0 * fx) * (1.0 - 2.0 * fy), 1.0e-9);
   }
+}
+
+/* Of a ring at the radius r, of any mass, it is that of the area A: nodes get dt p/rho (grad N_i/N_i + e_r/r),
+   the second part from stress around the axis, have the share A N_i, and <v> = dt p/(rho r) e_r is the same
+   for all of them, so that the gradient is that of the plane. At the axis, r = fx, two nodes do not move along
+   x; the others have dt p/rho 2/fx instead and <v> = 2 dt p/rho. Around the axis counts the motion itself: F_zz
+   is the radius over the one before. */
+
+TEST(LightRings, ShareIsThatOfTheArea)
+{
+  const double fx = 0.3, fy = 0.4, A = 0.25, light = 0.5, dt = 0.1, p = 0.01, rho = 3.0;
+  for (const double cell : {0.0, 2.0, 20.0})
+    for (const char *transfer : {"apic", "apic locking fbar"}) {
+      const double r = cell + fx, V = 6.283185307179586 * r * A;
+      Scene run;
+      run.commands(strprintf(
+          "units lj\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.5 bin\n"
+          "region box block 0 24 0 6 -0.5 0.5\ncreate_box 1 box\n"
+          "fix grid all mpm 1.0 shape linear axisymmetric yes light %g transfer %s\n"
+          "create_atoms 1 single %.17g %.17g 0\nset atom 1 volume %.17g mass %.17g\n"
+          "fix m all mpm/material density %g eos stiffened/gas 2.0 0.49 pressure %g\n"
+          "fix axis all mpm/boundary xlo slip\ntimestep %g\nrun 1\n",
+          light, transfer, r, 3.0 + fy, V, rho * V, rho, p, dt));
+      const double *C = run.field()->C[0], scale = A / light * dt * p / rho;
+      const double x = 1.0 - fx, y = 1.0 - fy, xx = x * x + fx * fx, yy = y * y + fy * fy;
+      const bool held = cell == 0.0;
+      EXPECT_NEAR(C[0] / scale, held ? 2.0 * light / A + 2.0 * x * yy : 2.0 * yy, 1.0e-9);
+      EXPECT_NEAR(C[2] / scale, (held ? 2.0 * x * fx : x - fx) * (fy - y) * (held ? 1.0 : -1.0), 1.0e-9);
+      EXPECT_NEAR(C[1] / scale, (x - fx) * (y - fy), 1.0e-9);
+      EXPECT_NEAR(C[3] / scale, 2.0 * xx, 1.0e-9);
+      EXPECT_NEAR(run.points().F[0][8], run.x()[0][0] / r, 1.0e-15);
+      EXPECT_NEAR((run.points().F[0][8] - 1.0) * r / (dt * dt * p / rho), held ? 2.0 : 1.0 / r, 1.0e-6);
+    }
 }
 
 /* a body across a periodic face is the body inside of the box */
@@ -218,15 +300,16 @@ class TimeStep : public ::testing::TestWithParam<Limit> {};
 
 static std::string bar(const char *options, double shift, double dt, bool check)
 {
+  const bool round = strstr(options, "axisymmetric");    // from the axis on
   return strprintf("units lj\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.5 bin\n"
                    "region box block 0 16 0 9 -0.5 0.5\ncreate_box 1 box\n"
-                   "fix grid all mpm 1.0 %s dtcheck %s\nregion body block 3 13 3 6 -0.5 0.5\n"
+                   "fix grid all mpm 1.0 %s dtcheck %s\nregion body block %s 3 6 -0.5 0.5\n"
                    "create_points 1 region body ppc 2\ndisplace_atoms all move %g %g 0\n"
-                   "fix m all mpm/material density 1.0 neohookean 0.742857142857 0.3\n"
+                   "fix axis all mpm/boundary xlo slip\nfix m all mpm/material density 1.0 neohookean 0.742857142857 0.3\n"
                    "variable vx atom random(-1e-4,1e-4,4711)\n"
                    "variable vy atom random(-1e-4,1e-4,815)\nvelocity all set v_vx v_vy NULL\n"
                    "timestep %.10g\nthermo 100000\n",
-                   options, check ? "yes" : "no", shift, shift, dt);
+                   options, check ? "yes" : "no", round ? "0 10" : "3 13", round ? 0.0 : shift, shift, dt);
 }
 
 static bool is_stable(const char *options, double shift, double dt)
@@ -256,7 +339,13 @@ INSTANTIATE_TEST_SUITE_P(Options, TimeStep,
                                            Limit{"shape cubic transfer apic scheme usl", 1.25, 1.4},
                                            Limit{"shape cpgimp transfer flip 1.0 scheme usl", 0.55, 0.75},
                                            Limit{"shape linear transfer apic scheme usl light 0.5",
-                                                 0.8, 1.1}));
+                                                 0.8, 1.1},
+                                           Limit{"shape linear transfer flip 1.0 scheme usl light 0.5 "
+                                                 "locking fbar", 0.8, 1.1},
+                                           Limit{"shape linear transfer flip 1.0 scheme usl light 0.5 "
+                                                 "axisymmetric yes", 0.7, 1.0},
+                                           Limit{"shape linear transfer apic scheme usl light 0.5 "
+                                                 "axisymmetric yes", 0.8, 1.1}));
 
 /** In the total frame the limit at nodes of next to no mass is that of the warning, if they are there: the
  *  bar is moved by 1/4 h + shift, a layer of points is at the distance shift from the faces of empty cells. */

@@ -21,7 +21,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -46,7 +45,9 @@ using namespace MPM_NS;
    matrices of the points next to light nodes. The work of the internal force on the light nodes
    differs from that of the stress; the ledger has the difference in its integration entry. Volumes
    rather than masses are what tells how full a cell is, because bodies of any density may meet at a
-   node.
+   node; with an axis of symmetry areas in the plane, as the ring of a node far from the axis is heavy
+   whatever share of its cells is full, and so is the force on it. Strain around the axis needs no
+   cure: v_i has the weight N/r there, not 1/h, and stays that of the motion.
 ------------------------------------------------------------------------- */
 
 /** Is the option of use, and if not given, is it needed? */
@@ -57,12 +58,6 @@ void FixMPM::check_light_nodes()
   if (light > 0.0 && !needed)
     error->all(FLERR, "Fix mpm {}: light is of no use with this shape, transfer and scheme: remove "
                "light, which is for shape linear with scheme usl or transfer apic, aflip, tpic", id);
-  if (light > 0.0 && locking != NO_CURE)
-    error->all(FLERR, "Fix mpm {}: light cannot be used together with locking: use shape quadratic",
-               id);
-  if (light > 0.0 && axisymmetric)
-    error->all(FLERR, "Fix mpm {}: light cannot be used together with axisymmetric: use shape "
-               "quadratic", id);
   if (light == 0.0 && needed && comm->me == 0)
     error->warning(FLERR, "Fix mpm {}: linear shape functions with scheme usl or transfer apic "
                    "amplify round-off at nodes of tiny mass: use transfer flip with scheme musl, "
@@ -125,7 +120,7 @@ void FixMPM::blend_light_nodes()
   rows_apart.resize(std::max(rows_apart.size(), (std::size_t) atom->nmax));
   for (const auto &run : runs)
     for (int i = run.first; i < run.last; i++)
-      rows_apart[i] = atom->vfrac[i] * points->jacobian(i);
+      rows_apart[i] = atom->vfrac[i] * points->jacobian(i) / circle(atom->x[i][0]);
   PointRows r = rows();
   r.mass = rows_apart.data();
   const TransferStep s = step_data();
@@ -157,11 +152,14 @@ void FixMPM::gradient_with_light_nodes()
   if (light == 0.0) return;
   clock = platform::walltime();
   grid->copy_aliases();
+  const bool fbar = scheme == USL && averages_strain();
+  if (fbar && !C) gradients.resize(affine_size() * (std::size_t) atom->nmax);
+  double *const of_all = C ? &C[0][0] : (fbar ? gradients.data() : nullptr);
   const PointRows r = rows();
-  visit_gradients(nullptr, [&](const Run &run, int i, int n, const int *, const double *L) {
-    if (C) memcpy(C[i], L, sizeof(double) * affine_size() * n);
-    if (scheme == USL) material_update(r, run, i, n, L, step_dt());
+  visit_gradients(of_all, [&](const Run &run, int i, int n, const int *, const double *L) {
+    if (scheme == USL && !fbar) material_update(r, run, i, n, L, step_dt());
   });
+  if (fbar) averaged_material(of_all, step_dt());
   if (!stress_after()) move_points();
   lap(report.t_g2p);
 }

@@ -144,7 +144,7 @@ void FixMPM::grid_to_points()
   extend_edges();
 
   const bool strains = scheme == USL && light == 0.0;
-  const bool fbar = strains && averages_strain(), around = strains && axisymmetric;
+  const bool fbar = strains && averages_strain(), around = scheme == USL && axisymmetric;
   const bool apart = strains && strains_apart(), refers = strains && R;
   const bool in_C = kernel.affine && !apart && !refers;    // the gradient is there
   if (moves_late()) xnew.resize(3 * (std::size_t) atom->nmax);
