@@ -151,7 +151,7 @@ void FixMPM::check_neighbors()
   for (int t = 1; t <= ntypes; t++) {
     const double cut = force->pair->cutsq[t][t];
     if (all[2 * t]) cut_points = std::max(cut_points, cut);
-    if (all[2 * t + 1] && !all[2 * t]) cut_others = std::max(cut_others, cut);
+    if (all[2 * t + 1]) cut_others = std::max(cut_others, cut);
     if (!all[2 * t] || cut == 0.0 || force->pair_match("mpm/penalty", 0)) continue;
 
     bool excluded = false;
