@@ -102,6 +102,25 @@ TEST(Contact, EqualBars)
   }
 }
 
+// bodies that are placed next to each other touch from the first step on: round-off does not decide
+TEST(Contact, TouchingIsNotAMatterOfRounding)
+{
+  if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
+  for (const char *options : {"shape linear transfer flip 1.0", "transfer apic", "shape cubic", "shape gimp"})
+    for (const double shift : {0.0, 0.0031, 0.01, 0.0173}) {
+      double force[3];
+      for (const int k : {0, 1, 2}) {
+        Scene run;
+        run.commands(replaced(two_bars(options, ""), "block 1.05 2.05", "block 1 2") +
+                     strprintf("displace_atoms all move %g 0 0\ndisplace_atoms two move %g 0 0\nrun 1\n",
+                               shift, (k - 1) * 1.0e-13));
+        force[k] = run.evaluate("f_c[1][1]");
+      }
+      EXPECT_GT(force[1], 0.0) << options << " " << shift;
+      for (const int k : {0, 2}) EXPECT_NEAR(force[k] / force[1], 1.0, 1.0e-9) << options << " " << shift;
+    }
+}
+
 // without the gap rule bodies feel each other more than a node spacing apart
 TEST(Contact, WithoutTheGapRuleContactIsEarly)
 {

@@ -64,6 +64,11 @@ static constexpr double CONVERGED = 1.0e-12;    // relative change of the impuls
 
 static constexpr double OVERLAP = 1.4, OVERLAP_EACH = 0.25;
 
+// bodies that are placed next to each other fill the nodes between them up to rounding, which must not
+// decide whether they touch
+
+static constexpr double ROUNDING = 1.0e-8;
+
 /* ----------------------------------------------------------------------
    fix ID all mpm/contact FIELD FIELD ...  law ... normal ... gap ...
 ------------------------------------------------------------------------- */
@@ -572,7 +577,7 @@ bool FixMPMContact::make_pair(const Common &c, int n, int a, int b, double volum
     const double opening = std::max(0.0, full - volume_share) * cell / pair.area;
     pair.fade = std::max(0.0, 1.0 - opening * normal_strength / (2.0 * release_work));
   }
-  return !gap || volume_share >= full || pair.fade > 0.0;
+  return !gap || volume_share >= full * (1.0 - ROUNDING) || pair.fade > 0.0;
 }
 
 /* ---------------------------------------------------------------------- */
