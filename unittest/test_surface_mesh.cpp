@@ -86,6 +86,38 @@ TEST(SurfaceMesh, NormalsHaveTheSymmetryOfTheBody)
     }
 }
 
+// in the corners of a box all of its faces, outside of its edges the edge, never the far face of a plate
+
+TEST(SurfaceMesh, TouchesEachPartOnce)
+{
+  const SurfaceMesh mesh(text_of(box({0.0, 0.0, 0.0}, {4.0, 4.0, 1.0})), "box", 1.0, {0.0, 0.0, 0.0});
+  ASSERT_EQ(mesh.nparts, 6);
+  const struct {
+    Point x;
+    double cutoff;
+    std::vector<std::pair<double, Point>> expected;
+  } cases[] = {
+      {{0.25, 0.2, 0.3}, 0.5, {{-0.2, {0.25, 0.0, 0.3}}, {-0.25, {0.0, 0.2, 0.3}}, {-0.3, {0.25, 0.2, 0.0}}}},
+      {{0.25, 0.2, 0.3}, 0.28, {{-0.2, {0.25, 0.0, 0.3}}, {-0.25, {0.0, 0.2, 0.3}}}},
+      {{2.0, 2.0, 0.25}, 0.9, {{-0.25, {2.0, 2.0, 0.0}}, {-0.75, {2.0, 2.0, 1.0}}}},
+      {{2.0, 2.0, 1.25}, 1.5, {{0.25, {2.0, 2.0, 1.0}}}},
+      {{-0.3, 2.0, 1.4}, 1.5, {{0.5, {0.0, 2.0, 1.0}}}},
+      {{-0.2, -0.1, 1.2}, 1.5, {{0.3, {0.0, 0.0, 1.0}}}},
+      {{-0.2, 2.0, 0.5}, 0.1, {}}};
+  for (const auto &c : cases) {
+    SurfaceMesh::Touch list[6];
+    const int n = mesh.touches(c.x, c.cutoff, list, 6);
+    ASSERT_EQ(n, (int) c.expected.size()) << c.x[0] << " " << c.x[1] << " " << c.x[2];
+    for (int i = 0; i < n; i++) {
+      EXPECT_NEAR(list[i].distance, c.expected[i].first, 1.0e-12);
+      for (int d = 0; d < 3; d++) EXPECT_NEAR(list[i].point[d], c.expected[i].second[d], 1.0e-12);
+      for (int j = 0; j < i; j++) EXPECT_NE(list[i].part, list[j].part);
+    }
+  }
+  const SurfaceMesh round(text_of(torus(2.0, 0.7, 24)), "torus", 1.0, {0.0, 0.0, 0.0});
+  EXPECT_EQ(round.nparts, 1);
+}
+
 // x = u + s w, y = v + s/2 w with u, v, w independent and uniform over the edges of the box
 
 TEST(SurfaceMesh, ShearedBoxHasExactInertia)
@@ -217,6 +249,54 @@ TEST(RegionMesh, ActsLikeABlock)
   EXPECT_NEAR(mesh.evaluate("f_w1[3]"), block.evaluate("f_w1[3]"),
               1.0e-5 * fabs(block.evaluate("f_w1[3]")));
   EXPECT_GT(fabs(block.evaluate("f_w1[3]")), 0.1);
+}
+
+// Grains that fall into a corner of three walls, and into an edge with friction and its history. (With history and three
+// walls at once, fix wall/gran/region takes the history of one wall for another when they are touched in another order
+// than the region lists them.)
+
+TEST(RegionMesh, HoldsGrainsLikeABlock)
+{
+  const ScratchFile room("room.stl", text_of(box({1.0, 1.0, 1.0}, {9.0, 9.0, 9.0})));
+  const std::string text = R"(
+units lj
+boundary f f f
+atom_style sphere
+comm_modify vel yes
+region box block 0 10 0 10 0 10
+create_box 1 box
+REGION
+region seeds block 1.5 3 3.5 5 1.5 3
+lattice sc 1.1
+create_atoms 1 region seeds
+set group all diameter 1.0 density 1.0
+velocity all create 0.5 4711 loop geom
+pair_style granular
+pair_coeff * * hooke 500.0 20.0 tangential linear_nohistory 1.0 0.5
+fix move all nve/sphere
+fix wall all wall/gran/region granular hooke 500.0 20.0 tangential FRICTION region room
+fix pull all gravity 2.0 vector PULL
+timestep 0.002
+compute all all reduce sumsq x y z vx vy vz
+thermo 1000
+thermo_style custom step atoms c_all[*]
+run 1500
+)";
+  for (const bool history : {false, true}) {
+    const auto with = [&](const std::string &region) {
+      return replaced(replaced(replaced(text, "REGION", region), "PULL", history ? "-0.8 0 -1" : "-0.8 -1.8 -1"),
+                      "FRICTION", history ? "linear_history 300.0 1.0 0.5" : "linear_nohistory 1.0 0.5");
+    };
+    Scene block, mesh;
+    block.commands(with("region room block 1 9 1 9 1 9"));
+    mesh.commands(with("region room mpm/mesh " + room.name + " 1.0 0 0 0"));
+    EXPECT_EQ(mesh.evaluate("atoms"), 8);
+    for (int k = 1; k <= 6; k++) {
+      const std::string sum = "c_all[" + std::to_string(k) + "]";
+      const double expected = block.evaluate(sum);
+      EXPECT_NEAR(mesh.evaluate(sum), expected, 1.0e-9 * expected) << sum;
+    }
+  }
 }
 
 // What a tool takes of the angular momentum of a body is its torque over time.

@@ -109,8 +109,17 @@ SurfaceMesh::SurfaceMesh(const std::string &bytes, const std::string &name, doub
     integrate();
   }
   normals();
+  find_parts();
   tree.reserve(2 * triangles.size());
   build(0, (int) triangles.size());
+  around_first.assign(corners.size() + 1, 0);
+  for (const auto &t : triangles)
+    for (const int c : t.corner) around_first[c + 1]++;
+  std::partial_sum(around_first.begin(), around_first.end(), around_first.begin());
+  around.resize(3 * triangles.size());
+  std::vector<int> next(around_first.begin(), around_first.end() - 1);
+  for (int i = 0; i < (int) triangles.size(); i++)
+    for (const int c : triangles[i].corner) around[next[c]++] = i;
   make_coarse();
 }
 
@@ -249,6 +258,33 @@ void SurfaceMesh::normals()
 }
 
 /* ----------------------------------------------------------------------
+   parts of the surface that hang together without crossing a sharp edge
+------------------------------------------------------------------------- */
+
+void SurfaceMesh::find_parts()
+{
+  const double sharp = std::sqrt(0.5);
+  std::vector<int> parent(triangles.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  std::map<std::pair<int, int>, int> edges;
+  for (int i = 0; i < (int) triangles.size(); i++)
+    for (int c = 0; c < 3; c++)
+      edges[{triangles[i].corner[c], triangles[i].corner[(c + 1) % 3]}] = i;
+  for (const auto &edge : edges) {
+    const int i = edge.second, j = edges.at({edge.first.second, edge.first.first});
+    if (dot(triangles[i].normal, triangles[j].normal) > sharp) parent[root(i)] = root(j);
+  }
+  std::map<int, int> number;
+  for (int i = 0; i < (int) triangles.size(); i++)
+    triangles[i].part = number.emplace(root(i), (int) number.size()).first->second;
+  nparts = (int) number.size();
+}
+
+/* ----------------------------------------------------------------------
    tree of boxes over the triangles [first,last), halves by the longest axis of their centers
 ------------------------------------------------------------------------- */
 
@@ -274,6 +310,9 @@ int SurfaceMesh::build(int first, int last)
   }
   node.first = first;
   node.last = last;
+  node.part = triangles[first].part;
+  for (int i = first; i < last; i++)
+    if (triangles[i].part != node.part) node.part = -1;
   if (last - first > LEAF) {
     int axis = 0;
     for (int d = 1; d < 3; d++)
@@ -328,11 +367,12 @@ static Point closest_on_triangle(const Point &x, const Point &a, const Point &b,
 
 /* ----------------------------------------------------------------------
    visit(triangle, closest point of it, feature, square of its distance) for triangles in boxes whose
-   square of the distance is below limit, near ones first; visit() may lower the limit
+   square of the distance is below limit, near ones first, but for parts with skip(part);
+   visit() may lower the limit
 ------------------------------------------------------------------------- */
 
-template <class Visit>
-void SurfaceMesh::search(const Point &x, double &limit, Visit &&visit) const
+template <class Skip, class Visit>
+void SurfaceMesh::search(const Point &x, double &limit, Skip &&skip, Visit &&visit) const
 {
   const auto to_box = [&](const Node &node) {
     double sum = 0.0;
@@ -346,7 +386,7 @@ void SurfaceMesh::search(const Point &x, double &limit, Visit &&visit) const
   stack[depth++] = 0;
   while (depth) {
     const Node &node = tree[stack[--depth]];
-    if (to_box(node) >= limit) continue;
+    if (to_box(node) >= limit || (node.part >= 0 && skip(node.part))) continue;
     if (node.last < 0) {
       const bool swap = to_box(tree[node.child[0]]) < to_box(tree[node.child[1]]);
       stack[depth++] = node.child[swap];        // the nearer one is looked at first
@@ -355,6 +395,7 @@ void SurfaceMesh::search(const Point &x, double &limit, Visit &&visit) const
     }
     for (int i = node.first; i < node.last; i++) {
       const Triangle &t = triangles[i];
+      if (skip(t.part)) continue;
       int feature;
       const Point p = closest_on_triangle(x, corners[t.corner[0]], corners[t.corner[1]],
                                           corners[t.corner[2]], feature);
@@ -365,17 +406,28 @@ void SurfaceMesh::search(const Point &x, double &limit, Visit &&visit) const
   }
 }
 
+/* ----------------------------------------------------------------------
+   normal for the sign of a distance from a face, edge, or corner: its length has no meaning
+------------------------------------------------------------------------- */
+
+const Point &SurfaceMesh::mean_normal(const Triangle &t, int feature) const
+{
+  return feature == 0 ? t.normal :
+         feature < 4  ? t.edge_normal[feature - 1] :
+                        corner_normals[t.corner[feature - 4]];
+}
+
+static const auto no_part = [](int) { return false; };
+
 /* ---------------------------------------------------------------------- */
 
 double SurfaceMesh::distance(const Point &x, Point &closest) const
 {
   double smallest = std::numeric_limits<double>::max(), side = 1.0;
-  search(x, smallest, [&](const Triangle &t, const Point &p, int feature, double square) {
+  search(x, smallest, no_part, [&](const Triangle &t, const Point &p, int feature, double square) {
     smallest = square;
     closest = p;
-    side = dot(x - p, feature == 0 ? t.normal :
-                      feature < 4  ? t.edge_normal[feature - 1] :
-                                     corner_normals[t.corner[feature - 4]]);
+    side = dot(x - p, mean_normal(t, feature));
   });
   return side < 0.0 ? -std::sqrt(smallest) : std::sqrt(smallest);
 }
@@ -389,7 +441,7 @@ double SurfaceMesh::distance_and_normal(const Point &x, Point &normal) const
   double limit = (std::fabs(d) + near) * (std::fabs(d) + near);
   std::vector<Point> found;
   normal = {0.0, 0.0, 0.0};
-  search(x, limit, [&](const Triangle &t, const Point &p, int, double) {
+  search(x, limit, no_part, [&](const Triangle &t, const Point &p, int, double) {
     Point out = std::fabs(d) > near ? side * (x - p) : t.normal;
     const double size = std::sqrt(dot(out, out));
     if (!(size > 0.0)) return;    // a sliver
@@ -402,6 +454,55 @@ double SurfaceMesh::distance_and_normal(const Point &x, Point &normal) const
   const double length = std::sqrt(dot(normal, normal)), least = 1.0e-3 * (double) found.size();
   normal = (length > least ? 1.0 / length : 0.0) * normal;
   return d;
+}
+
+/* ----------------------------------------------------------------------
+   is no triangle at this edge or corner of t closer to x than that is?
+------------------------------------------------------------------------- */
+
+bool SurfaceMesh::is_closest_around(const Point &x, const Triangle &t, int feature,
+                                    double square) const
+{
+  if (feature == 0) return true;
+  const int c = t.corner[(feature - 1) % 3], other = feature < 4 ? t.corner[feature % 3] : c;
+  for (int k = around_first[c]; k < around_first[c + 1]; k++) {
+    const int *corner = triangles[around[k]].corner;
+    if (corner[0] != other && corner[1] != other && corner[2] != other) continue;
+    int unused;
+    const Point r =
+        x - closest_on_triangle(x, corners[corner[0]], corners[corner[1]], corners[corner[2]], unused);
+    if (dot(r, r) < square * (1.0 - 1.0e-9)) return false;
+  }
+  return true;
+}
+
+/* ---------------------------------------------------------------------- */
+
+int SurfaceMesh::touches(const Point &x, double cutoff, Touch *list, int most) const
+{
+  double side = 0.0;    // not known
+  for (int n = 0; n < most; n++) {
+    double smallest = cutoff * cutoff;
+    list[n].part = -1;
+    const auto done = [&](int part) {
+      for (int k = 0; k < n; k++)
+        if (list[k].part == part) return true;
+      return false;
+    };
+    search(x, smallest, done, [&](const Triangle &t, const Point &p, int feature, double square) {
+      const double out = dot(x - p, mean_normal(t, feature));
+      if (n > 0) {
+        if (!(side * out > 0.0) || !is_closest_around(x, t, feature, square)) return;
+        for (int k = 0; k < n; k++)    // a common edge or corner
+          if (dot(p - list[k].point, p - list[k].point) <= near * near) return;
+      }
+      smallest = square;
+      if (n == 0) side = out < 0.0 ? -1.0 : 1.0;
+      list[n] = {p, side * std::sqrt(square), t.part};
+    });
+    if (list[n].part < 0) return n;
+  }
+  return most;
 }
 
 /* ----------------------------------------------------------------------

@@ -45,6 +45,17 @@ class SurfaceMesh {
    *  on rounding errors; zero where that leaves no direction, as at the center of a ball. */
   double distance_and_normal(const Point &x, Point &normal) const;
 
+  /** Where a ball touches the surface. */
+  struct Touch {
+    Point point;
+    double distance;    // negative inside of the body
+    int part;
+  };
+
+  /** Places where the distance from x is smallest, seen from the same side as x and within cutoff: one for
+   *  each part of the surface (see nparts), the closest first, most in number. Returns how many. */
+  int touches(const Point &x, double cutoff, Touch *list, int most) const;
+
   /** Lower bound of the distance, without a search: positive outside, negative inside, 0: unknown. */
   double bound(const Point &x) const;
 
@@ -55,6 +66,7 @@ class SurfaceMesh {
   double volume;              ///< of the body
   Point center;               ///< of its volume
   double inertia[6];          ///< about the center, of unit density: xx yy zz xy xz yz
+  int nparts;                 ///< parts between sharp edges: with normals more than 45 degrees apart
   std::size_t size() const { return triangles.size(); }
 
  private:
@@ -62,15 +74,18 @@ class SurfaceMesh {
     int corner[3];
     Point normal;             // unit
     Point edge_normal[3];     // of the edges 01, 12, 20: sum of the two triangles' normals
+    int part;
   };
   struct Node {               // of the tree of boxes
     Point lo, hi;
     int first, last;          // triangles of a leaf; else last < 0 and the children are
     int child[2];
+    int part;                 // of all triangles in it; -1: of several
   };
 
   std::vector<Point> corners, corner_normals;
   std::vector<Triangle> triangles;
+  std::vector<int> around, around_first;    // triangles at each corner
   std::vector<Node> tree;
   std::vector<float> coarse;    // distances at the centers of cells
   int ncells[3];
@@ -81,9 +96,13 @@ class SurfaceMesh {
   void close(const std::string &name);
   void integrate();
   void normals();
+  void find_parts();
   int build(int first, int last);
   void make_coarse();
-  template <class Visit> void search(const Point &x, double &limit, Visit &&visit) const;
+  template <class Skip, class Visit>
+  void search(const Point &x, double &limit, Skip &&skip, Visit &&visit) const;
+  const Point &mean_normal(const Triangle &t, int feature) const;
+  bool is_closest_around(const Point &x, const Triangle &t, int feature, double square) const;
   int cell_of(const Point &x, Point &center_of_cell) const;
 };
 

@@ -14,9 +14,11 @@
 #include "mpm_surface_mesh.h"
 #include "utils.h"
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <string>
+#include <utility>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -24,6 +26,8 @@ using namespace MPM_NS;
 /* ----------------------------------------------------------------------
    region ID mpm/mesh file scale x y z keyword value ...
 ------------------------------------------------------------------------- */
+
+static constexpr int MAX_TOUCHES = 6;
 
 RegMPMMesh::RegMPMMesh(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, arg)
 {
@@ -72,9 +76,8 @@ RegMPMMesh::RegMPMMesh(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, ar
   } else
     bboxflag = 0;
 
-  cmax = 1;
+  cmax = tmax = std::min(mesh->nparts, MAX_TOUCHES);
   contact = new Contact[cmax];
-  tmax = 1;
   if (comm->me == 0)
     utils::logmesg(lmp, "Region {}: {} triangles, volume {:.8g}, center {:.8g} {:.8g} {:.8g}\n", id,
                    mesh->size(), mesh->volume, mesh->center[0], mesh->center[1], mesh->center[2]);
@@ -104,7 +107,7 @@ int RegMPMMesh::surface_exterior(double *x, double cutoff)
 }
 
 /* ----------------------------------------------------------------------
-   the closest point of the surface, if x is on the given side of it and closer than the cutoff
+   the closest point of each part of the surface, if x is on the given side and it is within the cutoff
 ------------------------------------------------------------------------- */
 
 int RegMPMMesh::touch(const double *x, double cutoff, double side)
@@ -112,15 +115,22 @@ int RegMPMMesh::touch(const double *x, double cutoff, double side)
   const SurfaceMesh::Point here = {x[0], x[1], x[2]};
   const double known = mesh->bound(here);
   if (known * side < 0.0 || std::fabs(known) >= cutoff) return 0;
-  SurfaceMesh::Point closest;
-  const double r = side * mesh->distance(here, closest);
-  if (r < 0.0 || r >= cutoff) return 0;
-  contact[0].r = r;
-  contact[0].delx = x[0] - closest[0];
-  contact[0].dely = x[1] - closest[1];
-  contact[0].delz = x[2] - closest[2];
-  contact[0].radius = 0.0;
-  contact[0].iwall = 0;
-  contact[0].varflag = 0;
-  return 1;
+  SurfaceMesh::Touch touches[MAX_TOUCHES];
+  const int n = mesh->touches(here, cutoff, touches, tmax);
+  if (n == 0 || side * touches[0].distance < 0.0) return 0;
+  // the same order in every step, as other regions have it
+  for (int i = 1; i < n; i++)
+    for (int j = i; j > 0 && touches[j].part < touches[j - 1].part; j--)
+      std::swap(touches[j], touches[j - 1]);
+  for (int i = 0; i < n; i++) {
+    const auto &touch = touches[i];
+    contact[i].r = std::fabs(touch.distance);
+    contact[i].delx = x[0] - touch.point[0];
+    contact[i].dely = x[1] - touch.point[1];
+    contact[i].delz = x[2] - touch.point[2];
+    contact[i].radius = 0.0;
+    contact[i].iwall = touch.part;
+    contact[i].varflag = 0;
+  }
+  return n;
 }
