@@ -848,6 +848,42 @@ TEST_P(Tables, BatchesAgreeWithMatrixAlgebra)
     }
 }
 
+/** A shape that is far from that of the start is forgotten, and J is kept: stretch ratios of 100
+ *  against those of a pure change of volume, in 2d in the plane. */
+TEST_P(Tables, FarShapesAreForgotten)
+{
+  for (int dim : {2, 3})
+    for (int n : {1, 5, 8, 64}) {
+      const auto *kernels = BatchKernels::select(dim, GetParam());
+      ASSERT_NE(kernels, nullptr);
+      auto b = std::make_unique<Batch>();
+      memset(b.get(), 0, sizeof(Batch));
+      b->n = n;
+      const double stretches[] = {0.3, 1.0, 2.5}, shears[] = {0.0, 99.0, -101.0, 1.0e9};
+      std::vector<double> shear(n), size(n);
+      for (int p = 0; p < n; p++) {
+        shear[p] = shears[p % 4];
+        size[p] = stretches[p % 3];
+        for (int d = 0; d < 3; d++) b->F[4 * d][p] = d < dim ? size[p] : 7.0;
+        b->F[dim == 3 ? 6 : 3][p] = shear[p] * size[p];    // zx or yx
+        b->J[p] = pow(size[p], dim) * (dim == 3 ? 1.0 : 7.0);
+      }
+      const bool inverted = n > 8;
+      if (inverted) b->J[7] = -1.0;
+      const auto before = *b;
+      kernels->forget_shape(*b);
+      for (int p = 0; p < n; p++) {
+        EXPECT_EQ(b->J[p], before.J[p]);
+        const bool forgotten = fabs(shear[p]) > 100.0 && !(inverted && p == 7);
+        for (int c = 0; c < 9; c++)
+          if (forgotten)
+            EXPECT_NEAR(b->F[c][p], c % 4 ? 0.0 : c == 8 && dim == 2 ? 7.0 : size[p], 1e-15 * 7.0);
+          else
+            EXPECT_EQ(b->F[c][p], before.F[c][p]);
+      }
+    }
+}
+
 TEST_P(Tables, SolveNodesMerged)
 {
   const int n = 37;

@@ -1066,6 +1066,43 @@ TEST(InstructionSets, PartlyFilledBatches)
 
 /* ---------------------------------------------------------------------- definition */
 
+// laws that declare so know the deformation gradient by its determinant, at all times
+TEST(Definition, OfFOnlyWhatIsDeclared)
+{
+  int shapes = 0;
+  for (const auto &sample : samples) {
+    SCOPED_TRACE(sample.name);
+    const auto material = make(sample.text);
+    MaterialPoint p(*material, 1, 0.01), q(*material, 1, 0.01);
+    double difference = 0.0;
+    const int n = 100;
+    for (int i = 0; i < n; i++) {
+      const Matrix L = there_and_back((i + 0.5) / n);
+      p.step(L.data(), 1.0 / n);
+      q.step(L.data(), 1.0 / n);
+      const double scale = p.density() * p.wave_speed() * p.wave_speed();
+      const auto compare = [&] {
+        difference = std::max({difference, distance(stress_of(p), stress_of(q)) / scale,
+                               std::fabs(p.stored_energy() - q.stored_energy()) / scale,
+                               std::fabs(p.wave_speed() / q.wave_speed() - 1.0)});
+      };
+      compare();
+      const double s = std::cbrt(q.batch.J[0]);
+      for (int k = 0; k < 9; k++) q.batch.F[k][0] = k % 4 ? 0.0 : s;
+      compare();
+    }
+    for (size_t k = 0; k < material->history().size(); k++)
+      difference = std::max(
+          difference, std::fabs(p.history(k) - q.history(k)) / (1e-3 + std::fabs(p.history(k))));
+    if (material->uses_F())
+      EXPECT_GT(difference, 1e-3);
+    else
+      EXPECT_LT(difference, 1e-6);    // round-off, large near a pole of eos shock
+    shapes += material->uses_F();
+  }
+  EXPECT_EQ(shapes, 10);    // hyperelastic ones, two of them with a viscosity
+}
+
 TEST(Definition, DescribesItself)
 {
   const auto material =

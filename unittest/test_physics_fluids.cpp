@@ -525,4 +525,138 @@ TEST(Channel, SteadyFlowOfYieldStressAndPowerLawFluids)
             0.025);
 }
 
+/* ----------------------------------------------------------------------
+   Drops in free flight. A point that is alone keeps the shear of its velocity gradient L, as nothing
+   acts on it, and its deformation gradient grows for ever; its J must not take notice of that. With
+   APIC and quadratic functions the nodes give dL/dt = -4 J sigma/(density_0 h^2), so that small
+   changes of volume are oscillations of ln J with the frequency 2 sqrt(DIM) c/h, and
+   V_0 psi + m h^2/8 L:L is conserved.
+------------------------------------------------------------------------- */
+
+constexpr double SHEAR = 0.5, DT = 0.02, DENSITY = 1.5, BULK = 150.0;
+
+/** Points of a quarter (3d: eighth) of a cell each, in a block of n points along each axis. */
+std::string drop(int dim, int n, const std::string &material, const char *options = "")
+{
+  const double end = 8.0 + 0.5 * n;
+  return strprintf("units lj\ndimension %d\nboundary p p p\natom_style mpm\nneighbor 0.4 bin\n"
+                   "region box block 0 16 0 16 %s\ncreate_box 1 box\nfix grid all mpm 1.0 %s\n"
+                   "region drop block 8 %g 8 %g %s\ncreate_points 1 region drop ppc 2\n"
+                   "fix m all mpm/material density %g %s\n"
+                   "timestep %.17g\nthermo 1000000\n",
+                   dim, dim == 3 ? "0 16" : "-0.5 0.5", options, end, end,
+                   dim == 3 ? strprintf("8 %g", end).c_str() : "INF INF", DENSITY, material.c_str(),
+                   DT);
+}
+
+const std::string water = strprintf("eos tait %g 7", BULK);
+
+/** Kinetic energy, also of the affine matrices, and stored energy. */
+double energy_of_drop(Scene &run)
+{
+  const int dim = run.field()->lattice.dim;
+  double sum = run.sums().kinetic + run.stored_energy();
+  for (int i = 0; i < run.n(); i++)
+    for (int k = 0; k < dim * dim; k++) sum += run.mass()[i] / 8.0 * pow(run.field()->C[i][k], 2);
+  return sum;
+}
+
+/** L of a single point: expansion, and a shear without rotation. Column-major. */
+void set_gradient(Scene &run, double rate)
+{
+  const int dim = run.field()->lattice.dim;
+  double *C = run.field()->C[0];
+  for (int k = 0; k < dim * dim; k++) C[k] = k % (dim + 1) ? 0.0 : rate;
+  C[1] = C[dim] = SHEAR;
+}
+
+TEST(FreeFlight, SinglePointOscillatesWithoutEnd)
+{
+  for (int dim : {2, 3})
+    for (double rate : {0.02, 2.0, -2.0}) {
+      SCOPED_TRACE(strprintf("%dd, rate %g", dim, rate));
+      Scene run;
+      const double v[3] = {0.31, 0.17, dim == 3 ? -0.23 : 0.0};
+      run.commands(drop(dim, 1, water) +
+                   strprintf("velocity all set %g %g %g\nrun 0\n", v[0], v[1], v[2]));
+      ASSERT_EQ(run.n(), 1);
+      set_gradient(run, rate);
+      const double start = energy_of_drop(run);
+
+      // the same point by itself, with J instead of F
+
+      double a = rate, J = 1.0, low = 1.0, high = 1.0, wrong = 0.0;    // L_xx = L_yy = L_zz = a
+      run.each_step([&](double **) {
+        if (run.lmp->update->ntimestep == 0) return;
+        const double tau = BULK / 7.0 * (J - pow(J, -6.0));
+        a -= DT * 4.0 * tau / DENSITY;
+        const double g = 1.0 + DT * a;
+        J *= (g * g - pow(DT * SHEAR, 2)) * (dim == 3 ? g : 1.0);
+        wrong = std::max(wrong, fabs(run.points().jacobian(0) / J - 1.0));
+        const double energy = energy_of_drop(run) / start;
+        low = std::min(low, energy);
+        high = std::max(high, energy);
+      });
+      run.commands("run 10000\n");
+      EXPECT_LT(measured("J", wrong), 3e-9);
+      const double e = sqrt(dim * BULK / DENSITY) * DT;    // half of frequency times dt, h = 1
+      EXPECT_GT(measured("least energy", low), 0.9 / (1.0 + e));
+      EXPECT_LT(measured("largest energy", high), 1.1 / (1.0 - e));
+      for (int d = 0; d < 3; d++) EXPECT_NEAR(run.v()[0][d], v[d], 1e-12);
+    }
+}
+
+TEST(FreeFlight, DropThatIsTornGainsNoEnergy)
+{
+  for (int dim : {2, 3}) {
+    SCOPED_TRACE(dim);
+    Scene run;
+    run.commands(drop(dim, 2, water));
+    ASSERT_EQ(run.n(), 1 << dim);
+    run.set_velocity([&](const double *x, double *v) {
+      v[0] = 0.3 + SHEAR * (x[1] - 8.5) + 0.2 * (x[0] - 8.5);
+      v[1] = 0.2 + SHEAR * (x[0] - 8.5) + 0.2 * (x[1] - 8.5);
+      if (dim == 3) v[2] = 0.1 + 0.4 * (x[2] - 8.5);
+    });
+    run.commands("run 0\n");
+    const auto before = run.sums();
+    const double start = energy_of_drop(run);
+    double most = 0.0;
+    run.each_step([&](double **) {
+      most = std::max(most, energy_of_drop(run) / start);
+    });
+    run.commands("run 10000\n");
+    EXPECT_LT(measured("largest energy", most), 1.1);
+    for (int d = 0; d < 3; d++) EXPECT_NEAR(run.sums().p[d], before.p[d], 1e-12);
+  }
+}
+
+// what is forgotten there matters to a law that knows all of F, and to the lattice in the total frame
+
+TEST(FreeFlight, SolidsForgetNothing)
+{
+  for (int dim : {2, 3}) {
+    SCOPED_TRACE(dim);
+    for (const char *material : {"neohookean 1e-20 0.0", "eos tait 1e-20 7"}) {
+      SCOPED_TRACE(material);
+      Scene run;
+      run.commands(drop(dim, 1, material) + "run 0\n");
+      set_gradient(run, 0.0);
+      run.commands("run 1000\n");
+      const double F = run.points().F[0][1];    // powers of I + dt L
+      const double grown = 0.5 * (pow(1.0 + DT * SHEAR, 1000) - pow(1.0 - DT * SHEAR, 1000));
+      if (material[0] == 'n')
+        EXPECT_NEAR(F / grown, 1.0, 1e-10);
+      else
+        EXPECT_LT(fabs(F), 100.0);
+    }
+
+    Scene run;
+    run.commands(drop(dim, 1, "eos tait 1e-20 7", "frame total") + "run 0\n");
+    run.field()->C[0][dim] = 50.0;    // L_xy
+    run.commands("run 1000\n");
+    EXPECT_NEAR(run.points().F[0][1], 1000 * DT * 50.0, 1e-9);
+  }
+}
+
 }    // namespace

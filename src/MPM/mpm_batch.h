@@ -28,6 +28,12 @@ struct BatchKernels {
   void (*load_total)(Batch &, int n, double dt, const double *L, const double *F, const double *tau,
                      const double *vol0, const double *hoop);
 
+  /** For materials that know F by its determinant only: where |F| > FORGET J^(1/3), F becomes
+   *  J^(1/3) I; in 2d in the plane, with (J/F_zz)^(1/2). A fluid point that flies alone shears for
+   *  ever, and J would be lost in the round-off of products of entries of F that cancel. */
+  void (*forget_shape)(Batch &);
+  static constexpr double FORGET = 100.0;
+
   /** P: [n][dim*dim] first Piola-Kirchhoff stress tau F^-T, column-major; F, tau as in load. */
   void (*first_piola)(int n, const double *F, const double *tau, double *P);
 

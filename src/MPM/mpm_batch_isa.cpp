@@ -14,6 +14,8 @@
 #include "mpm_batch.h"
 #include "mpm_vector.h"
 
+#include <cmath>
+
 #define MPM_CONCAT2(a, b) a##b
 #define MPM_CONCAT(a, b) MPM_CONCAT2(a, b)
 #ifndef MPM_ISA
@@ -204,6 +206,33 @@ void load(Batch &batch, int n, double dt, const double *L, const double *F, cons
   }
 }
 
+template <int DIM> void forget_shape(Batch &b)
+{
+  constexpr double LIMIT = BatchKernels::FORGET * BatchKernels::FORGET;
+  const int n = b.n;
+  alignas(64) double far[BATCH];    // positive: |F|^2 is above LIMIT J^(2/DIM), with J in the plane
+  int nfar = 0;
+#pragma omp simd reduction(+ : nfar)
+  for (int p = 0; p < n; p++) {
+    double square = b.F[0][p] * b.F[0][p] + b.F[1][p] * b.F[1][p] + b.F[3][p] * b.F[3][p] +
+        b.F[4][p] * b.F[4][p];
+    if constexpr (DIM == 3) {
+      square += b.F[2][p] * b.F[2][p] + b.F[5][p] * b.F[5][p] + b.F[6][p] * b.F[6][p] +
+          b.F[7][p] * b.F[7][p] + b.F[8][p] * b.F[8][p];
+      far[p] = square * square * square - LIMIT * LIMIT * LIMIT * b.J[p] * b.J[p];
+    } else
+      far[p] = square * b.F[8][p] - LIMIT * b.J[p];
+    nfar += far[p] > 0.0;
+  }
+  if (nfar == 0) return;
+
+  for (int p = 0; p < n; p++) {
+    if (!(far[p] > 0.0 && b.J[p] > 0.0)) continue;    // store() knows what to do with bad points
+    const double scale = DIM == 3 ? std::cbrt(b.J[p]) : std::sqrt(b.J[p] / b.F[8][p]);
+    for (int c = 0; c < (DIM == 3 ? 9 : 5); c++) b.F[c][p] = c % 4 == 0 ? scale : 0.0;
+  }
+}
+
 /** Writes the points p..p+3; tau: columns. */
 template <int DIM, bool HOOP>
 MPM_INLINE void store_four(const Batch &batch, const Column *tau_columns, int p, double *F,
@@ -324,11 +353,11 @@ const BatchKernels *MPM_CONCAT(mpm_batch_, MPM_ISA)(int dim, bool hoop);
 
 const BatchKernels *MPM_NS::MPM_CONCAT(mpm_batch_, MPM_ISA)(int dim, bool hoop)
 {
-  static const BatchKernels solid = {load<3, false, false>, load<3, true, false>, first_piola<3>,
-                                     store<3, false>},
-                            plane = {load<2, false, false>, load<2, true, false>, first_piola<2>,
-                                     store<2, false>},
-                            axial = {load<2, false, true>, load<2, true, true>, first_piola<2>,
-                                     store<2, true>};
+  static const BatchKernels solid = {load<3, false, false>, load<3, true, false>, forget_shape<3>,
+                                     first_piola<3>, store<3, false>},
+                            plane = {load<2, false, false>, load<2, true, false>, forget_shape<2>,
+                                     first_piola<2>, store<2, false>},
+                            axial = {load<2, false, true>, load<2, true, true>, forget_shape<2>,
+                                     first_piola<2>, store<2, true>};
   return dim == 3 ? &solid : hoop ? &axial : &plane;
 }

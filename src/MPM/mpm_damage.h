@@ -58,6 +58,8 @@ namespace {
    *  point that has not failed (less than the old one: no change) and updates the law's own history;
    *  the enum value AFTER, index of after_none in its parameters. */
   template <class Law> struct ScalarDamage : LawDefaults {
+    static constexpr bool uses_F = false;
+
     static void prepare(const LawParameters &, Batch &b, History history)
     {
       MPM_SIMD

@@ -27,6 +27,8 @@ namespace {
    *  reference density times the square of the sound speed), stored(J) = -integral of p dJ from 1.
    */
   template <class Eos> struct Barotropic : LawDefaults {
+    static constexpr bool uses_F = false;
+
     static void update(const LawParameters &p, Batch &b, History)
     {
       const Eos eos(p);
@@ -85,6 +87,8 @@ namespace {
    *  does the work. History: energy, heat (the dissipated part of it), and with spall a mark.
    */
   template <class Eos> struct LinearInEnergy : LawDefaults {
+    static constexpr bool uses_F = false;
+
     enum { ENERGY, HEATED, SPALLED };
 
     static void update(const LawParameters &p, Batch &b, History history)

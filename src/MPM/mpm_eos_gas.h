@@ -74,6 +74,7 @@ namespace {
    *  Riemann Solvers and Numerical Methods for Fluid Dynamics, 2009, ch. 1). The pressure is
    *  absolute and positive from the start: points have the stress -P0 before the first step. */
   struct EosIdealGas : LawDefaults {
+    static constexpr bool uses_F = false;
     static constexpr const char *name = "ideal/gas";
     static constexpr const char *meaning = "ideal gas";
     enum { GAMMA, P0, E0 };
@@ -112,6 +113,7 @@ namespace {
    *  pressure (F.H. Harlow, A.A. Amsden, LA-4700, 1971; R. Menikoff, B.J. Plohr, Rev. Mod. Phys. 61
    *  (1989) 75). */
   struct EosStiffenedGas : LawDefaults {
+    static constexpr bool uses_F = false;
     static constexpr const char *name = "stiffened/gas";
     static constexpr const char *meaning = "stiffened gas";
     enum { GAMMA, PINF, P0, CUTOFF };

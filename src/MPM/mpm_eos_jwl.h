@@ -26,6 +26,7 @@ namespace {
    *  made. Without detonation points all has burnt from the start. E is E0 from the start and
    *  changes by the work of the pressure and by heat only: the chemical energy is released once. */
   struct EosJWL : LawDefaults {
+    static constexpr bool uses_F = false;
     static constexpr const char *name = "jwl";
     static constexpr const char *meaning = "Jones-Wilkins-Lee detonation products";
     enum { A, B, R1, R2, OMEGA, E0, D, WIDTH };

@@ -126,6 +126,7 @@ struct LawInfo {
   /** History variables that a law with these parameters has, those of the terms not counted. */
   int (*nhistory)(const LawParameters &);
   bool uses_speed;    ///< of a viscosity: does update() read batch.speed?
+  bool uses_F;        ///< does any kernel read batch.F? Else J and A are all it knows of it
   /** What is wrong with parameters that are each in their range; null when all is well. */
   const char *(*check)(const LawParameters &);
   /** Does a law with these parameters need the temperature, and so a thermal part? */
@@ -176,7 +177,7 @@ struct LawKernels {
 /** What a law need not declare or provide; all laws derive from this. */
 struct LawDefaults {
   static constexpr StressShare share = NO_SHARE;
-  static constexpr bool uses_speed = true;
+  static constexpr bool uses_speed = true, uses_F = true;
   static constexpr const char *term = nullptr;
   static constexpr std::nullptr_t term_parameters = nullptr;
   static constexpr std::nullptr_t history = nullptr;
@@ -218,7 +219,7 @@ struct LawVersion {
   int interface;    ///< raised with each change of what laws and package expect of each other
   int batch, info, kernels, parameters;
 };
-constexpr LawVersion law_version{1, sizeof(Batch), sizeof(LawInfo), sizeof(LawKernels),
+constexpr LawVersion law_version{2, sizeof(Batch), sizeof(LawInfo), sizeof(LawKernels),
                                  sizeof(LawParameters)};
 
 /** A law of a plugin. */

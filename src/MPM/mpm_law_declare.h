@@ -41,7 +41,8 @@ namespace {
     info.term_history = Law::term_history;
     info.nterm_history = count(Law::term_history);
     info.nhistory = Law::nhistory;
-  info.uses_speed = Law::uses_speed;
+    info.uses_speed = Law::uses_speed;
+    info.uses_F = Law::uses_F;
     info.check = Law::check;
     info.needs_temperature = Law::needs_temperature;
     info.heat_share = Law::heat_share;

@@ -96,6 +96,8 @@ namespace {
    *  Strains at the start of the step are those of the trial state less the strain increment along
    *  its axes; the work of a step is then right to third order. */
   template <class Law> struct PrincipalReturn : LawDefaults {
+    static constexpr bool uses_F = false;
+
     static void update(const LawParameters &p, Batch &b, History history)
     {
       const Law law(p, b);

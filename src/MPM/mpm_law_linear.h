@@ -22,6 +22,7 @@ namespace {
    *  whose change is the stress power on any path. Small strain: Hooke's law. Old stress is kept.
    */
   struct LawLinear : LawDefaults {
+    static constexpr bool uses_F = false;
     static constexpr const char *name = "linear";
     static constexpr const char *meaning = "isotropic linear elastic, rate form";
     static constexpr StressShare share = WHOLE_STRESS;

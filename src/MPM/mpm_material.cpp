@@ -34,7 +34,10 @@ class ComposedMaterial : public Material {
     std::copy(definition.laws, definition.laws + NPARTS, laws);
     text = "density " + number(rho);
     for (int part = 0; part < NPARTS; part++)
-      for (auto &law : laws[part]) add(static_cast<Part>(part), law);
+      for (auto &law : laws[part]) {
+        add(static_cast<Part>(part), law);
+        shape_matters = shape_matters || law.info->uses_F;
+      }
     for (const auto &r : definition.random) add(r);
     for (const auto &range : definition.ranges) add(range);
     viscous = -1;
@@ -58,6 +61,7 @@ class ComposedMaterial : public Material {
   double density() const override { return rho; }
   double density(const double *history) const override { return rho * density_factor(history); }
   const std::vector<HistoryVariable> &history() const override { return variables; }
+  bool uses_F() const override { return shape_matters; }
   std::string describe() const override { return text; }
 
   void initialize(const double *x, double *history) const override
@@ -187,6 +191,7 @@ class ComposedMaterial : public Material {
   const UsedLaw *damage;                                    ///< or null
   const UsedLaw *thermal;                                   ///< or null
   std::unique_ptr<const RandomParameter> random_density;    ///< when it differs from point to point
+  bool shape_matters = false;                               ///< does a law look at F?
   bool random_heat = false;    ///< does what the thermal part tells the others, too?
   /** First of six history variables with what viscosities added to the stress in the last step, for
    *  a closed law or strength that builds on that stress and must not see it; -1 when not needed. */

@@ -106,6 +106,9 @@ class Material {
 
   virtual const std::vector<HistoryVariable> &history() const = 0;
 
+  /** Does any law look at more of the deformation gradient than its determinant? */
+  virtual bool uses_F() const = 0;
+
   /** All history variables of a new point at x; throws std::runtime_error when it cannot be. */
   virtual void initialize(const double *x, double *history) const = 0;
 

@@ -28,6 +28,8 @@ namespace {
 
   /** Wave speed and energy of a strength whose first parameter is the shear modulus. */
   struct ShearElasticity : LawDefaults {
+    static constexpr bool uses_F = false;
+
     /** J ds_nn / d epsilon_nn = 4/3 G - J s_nn */
     static void modulus(const LawParameters &p, const Batch &b, History, double *k)
     {

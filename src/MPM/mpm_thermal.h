@@ -25,6 +25,7 @@ namespace {
    *  temperature stays at TMELT until the molten fraction f, LATENT df = CP dT, has gone from 0 to 1,
    *  and on cooling back to 0. */
   struct ThermalAdiabatic : LawDefaults {
+    static constexpr bool uses_F = false;
     static constexpr const char *name = "adiabatic";
     static constexpr const char *meaning = "temperature by dissipation, without conduction";
     enum { CP, T0, CHI, GAMMA, TMELT, LATENT };
@@ -82,6 +83,7 @@ namespace {
 
   /** Temperature that nothing changes. */
   struct ThermalConstant : LawDefaults {
+    static constexpr bool uses_F = false;
     static constexpr const char *name = "constant";
     static constexpr const char *meaning = "constant temperature";
     static constexpr Parameter parameters[] = {

@@ -54,7 +54,7 @@ namespace {
    *  apparent viscosity of the last step, which the stable time step needs, and for output. */
   template <class Fluid> struct GeneralizedNewtonian : LawDefaults {
     static constexpr StressShare share = DEVIATOR;
-    static constexpr bool uses_speed = false;
+    static constexpr bool uses_speed = false, uses_F = false;
     static constexpr int nhistory(const LawParameters &) { return 1; }
 
     static void update(const LawParameters &p, Batch &b, History history)

@@ -21,6 +21,7 @@ namespace {
    *
    *  with node spacing h, wave speed c. Shocks spread over a few h. */
   struct ViscosityArtificial : LawDefaults {
+    static constexpr bool uses_F = false;
     static constexpr const char *name = "artificial";
     static constexpr const char *meaning = "artificial bulk viscosity for shocks";
     static constexpr StressShare share = PRESSURE;

@@ -35,6 +35,7 @@ namespace {
    *    z <- exp(-x) f z f^T + (1 - exp(-x))/x (f f^T - I)
    */
   struct ViscosityMaxwell : LawDefaults {
+    static constexpr bool uses_F = false;
     static constexpr const char *name = "maxwell";
     static constexpr const char *meaning = "Maxwell elements (Prony series) in shear";
     static constexpr StressShare share = DEVIATOR;

@@ -17,6 +17,7 @@ namespace {
   /** Newtonian viscosity: adds 2 MU dev(D) + ZETA tr(D) I, D the strain rate half-way in the step.
    *  With the elasticity of a solid that is the Kelvin-Voigt element. */
   struct ViscosityNewtonian : LawDefaults {
+    static constexpr bool uses_F = false;
     static constexpr const char *name = "newtonian";
     static constexpr const char *meaning = "Newtonian viscosity; damping of solids (Kelvin-Voigt)";
     static constexpr StressShare share = WHOLE_STRESS;
