@@ -30,6 +30,12 @@
    which takes phi as nodes mix the forces. All of these are impulses between a grain and the
    nodes around it, in proportion to N_i m_i: opposite to round-off, and the same change of velocity
    for nodes that are nearly empty.
+
+   In 2d all is per unit of depth, and a grain is a disc of that depth, with the volume pi d^2/4: for
+   Archimedes, and for porosity. Its drag per volume is that of spheres of its diameter, so that a bed has the
+   pressure drop of one of spheres with its porosity. That is not far from what discs, which are cylinders
+   across the flow, have: for square arrays in slow flow (A.S. Sangani, A. Acrivos, Int. J. Multiphase Flow
+   8 (1982) 193) 1.12, 1.00, 1.00, 1.13 of Ergun's law at the shares of volume 0.2, 0.3, 0.4, 0.5.
 ------------------------------------------------------------------------- */
 
 #include "fix_mpm_immersed.h"
@@ -103,11 +109,8 @@ FixMPMImmersed::FixMPMImmersed(LAMMPS *lmp, int narg, char **arg) :
     error->all(FLERR, 5,
                "Fix mpm/immersed needs a positive viscosity for its drag: use drag none "
                "without");
-  if (domain->dimension == 2)
-    error->all(FLERR,
-               "Fix mpm/immersed requires 3d: drag on spheres, and the share of space that they "
-               "take up, have no meaning per thickness of a 2d box: use a 3d box that is periodic "
-               "and a few node spacings thick");
+  if (domain->dimension == 2 && gravity[2] != 0.0)
+    error->all(FLERR, "Fix mpm/immersed gravity must be along x and y in 2d: {}", gravity[2]);
   if (!atom->radius_flag || !atom->rmass_flag)
     error->all(FLERR,
                "Fix mpm/immersed needs the radius of grains: use atom_style hybrid sphere mpm");
@@ -150,6 +153,12 @@ void FixMPMImmersed::init_action()
         FLERR, Error::NOLASTLINE,
         "Fix mpm/immersed {} cannot be used with frame total of fix mpm {}, whose nodes are not "
         "where the grains are: use frame updated",
+        id, field_id);
+  if (field->axisymmetric)
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/immersed {} cannot be used with axisymmetric fix mpm {}, where a grain would be a "
+        "ring: use a sector in 3d, or 2d",
         id, field_id);
   if (field->modified_edges)
     error->all(
@@ -210,6 +219,26 @@ bool FixMPMImmersed::is_grain(int i) const
   return (atom->mask[i] & groupbit) && atom->radius[i] > 0.0 && atom->vfrac[i] == 0.0;
 }
 
+/** 2d: per unit of depth. */
+double FixMPMImmersed::volume(int i) const
+{
+  const double r = atom->radius[i];
+  return field->lattice.dim == 3 ? 4.0 / 3.0 * MY_PI * r * r * r : MY_PI * r * r;
+}
+
+/** Space that belongs to a node. */
+double FixMPMImmersed::space() const
+{
+  const double h = field->lattice.h;
+  return field->lattice.dim == 3 ? h * h * h : h * h;
+}
+
+/** Number of a node in its block, by its indices there. */
+static int number(int dim, const int in[3])
+{
+  return dim == 3 ? (in[0] * 4 + in[1]) * 4 + in[2] : in[0] * 8 + in[1];
+}
+
 /* ----------------------------------------------------------------------
    f(node, N_i, r) for the nodes around a grain, r from the grain in node spacings; false: some of them
    are not there
@@ -218,10 +247,11 @@ bool FixMPMImmersed::is_grain(int i) const
 template <class F> bool FixMPMImmersed::visit(int i, const F &f) const
 {
   const auto &grid = *field->grid;
-  int first[3], k[3];
-  double w[3][4], t[3];
+  const int dim = field->lattice.dim;
+  int first[3] = {0, 0, 0}, k[3];
+  double w[3][4] = {{0.0}, {0.0}, {1.0}}, t[3] = {0.0, 0.0, 0.0};
   int n = 0;
-  for (int d = 0; d < 3; d++) {
+  for (int d = 0; d < dim; d++) {
     t[d] = (atom->x[i][d] - grid.lattice.origin[d]) / grid.lattice.h;
     n = field->shape_weights(t[d], first[d], w[d]);
   }
@@ -233,7 +263,7 @@ template <class F> bool FixMPMImmersed::visit(int i, const F &f) const
   const auto &block = grid.blocks[start];
   for (k[0] = 0; k[0] < n; k[0]++)
     for (k[1] = 0; k[1] < n; k[1]++)
-      for (k[2] = 0; k[2] < n; k[2]++) {
+      for (k[2] = 0; k[2] < (dim == 3 ? n : 1); k[2]++) {
         int side[3], in[3];
         double r[3];
         for (int d = 0; d < 3; d++) {
@@ -244,7 +274,7 @@ template <class F> bool FixMPMImmersed::visit(int i, const F &f) const
         }
         const int slot = block.slot[9 * side[0] + 3 * side[1] + side[2]];
         if (slot < 0) return false;
-        f((int64_t) slot * NODES_PER_BLOCK + (in[0] * 4 + in[1]) * 4 + in[2],
+        f((int64_t) slot * NODES_PER_BLOCK + number(dim, in),
           w[0][k[0]] * w[1][k[1]] * w[2][k[2]], r);
       }
   return true;
@@ -272,8 +302,8 @@ void FixMPMImmersed::extend_topology(FixMPM &extended)
   auto &grid = *field->grid;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!is_grain(i)) continue;
-    int lo[3], hi[3], b[3];
-    for (int d = 0; d < 3; d++) {
+    int lo[3] = {0, 0, 0}, hi[3] = {0, 0, 0}, b[3];
+    for (int d = 0; d < field->lattice.dim; d++) {
       double w[4];
       const double t = (atom->x[i][d] - grid.lattice.origin[d]) / grid.lattice.h;
       if (!(fabs(t) < 4.0e6))
@@ -292,21 +322,21 @@ void FixMPMImmersed::extend_topology(FixMPM &extended)
 }
 
 /* ----------------------------------------------------------------------
-   Share of space that grains take up around one of them, of the volume V, from the mapped share and its
+   Share of space that grains take up around one of them, of the volume V = own, from the mapped share and its
    first moment sum N r. Both mappings smooth it over a width s, s^2 = (p+1)/6 h^2 for splines of degree p,
    so that at a distance x inside of the end of a bed is left the part A = Phi(x/s), the normal
    distribution. Its logarithmic slope tells where that is: q = s |grad A|/A = Phi'/Phi falls from 0.8 at
    the end to none inside, and A = 1 - 0.64 q^1.12 within 0.01. What the slope would be by chance, for
-   grains at random places, int |grad K|^2 V/phi with the kernel K of the width s, is no end.
+   grains at random places, int |grad K|^2 V/phi with the kernel K of the width s, is no end: the integral is
+   (n/2)/(s^2 (4 pi s^2)^(n/2)) in n dimensions.
 ------------------------------------------------------------------------- */
 
-double FixMPMImmersed::end_of_bed(double solid, const double *moment, double volume) const
+double FixMPMImmersed::end_of_bed(double solid, const double *moment, double own) const
 {
   if (!(solid > 0.0)) return solid;
-  const double h = field->lattice.h, p1 = field->shape + 1.0, width = sqrt(p1 / 6.0);
+  const double p1 = field->shape + 1.0, width = sqrt(p1 / 6.0), n = field->lattice.dim;
   const double slope = width * 12.0 / p1 / solid;    // sum N r^2 = (p+1)/12, of moment
-  const double chance =
-      3.0 / 16.0 * pow(MY_PI, -1.5) * volume / (h * h * h * width * width * width);
+  const double chance = 0.5 * n * pow(4.0 * MY_PI * width * width, -0.5 * n) * own / space();
   const double q2 =
       slope * slope * (moment[0] * moment[0] + moment[1] * moment[1] + moment[2] * moment[2]) -
       chance / solid;
@@ -320,13 +350,20 @@ double FixMPMImmersed::end_of_bed(double solid, const double *moment, double vol
    Chem. Eng. Prog. 48 (1952) 89; Ergun below the porosity 0.8 and C.Y. Wen, Y.H. Yu, Chem. Eng. Prog.
    Symp. Ser. 62 (1966) 100 above: D. Gidaspow, Multiphase Flow and Fluidization (1994);
    R. Di Felice, Int. J. Multiphase Flow 20 (1994) 153. Those that exclude the gradient of pressure
-   along the bed are divided by the porosity.
+   along the bed are divided by the porosity. For a disc of unit depth, times its volume over the sphere's.
 ------------------------------------------------------------------------- */
 
 double FixMPMImmersed::drag_coefficient(double diameter, double slip, double solid) const
 {
-  constexpr double LEAST_POROSITY = 0.26;    // of equal spheres
-  const double eps = std::max(LEAST_POROSITY, 1.0 - solid);
+  if (field->lattice.dim == 2) return 1.5 / diameter * drag_on_sphere(diameter, slip, solid);
+  return drag_on_sphere(diameter, slip, solid);
+}
+
+double FixMPMImmersed::drag_on_sphere(double diameter, double slip, double solid) const
+{
+  // densest packing of equal spheres, of equal discs
+  const double least_porosity = field->lattice.dim == 3 ? 0.26 : 1.0 - MY_PI / sqrt(12.0);
+  const double eps = std::max(least_porosity, 1.0 - solid);
   const double stokes = 3.0 * MY_PI * viscosity * diameter;
   const double Re = density * slip * diameter / viscosity;
   const auto schiller = [&](double number) {
@@ -358,6 +395,22 @@ double FixMPMImmersed::drag_coefficient(double diameter, double slip, double sol
 }
 
 /* ----------------------------------------------------------------------
+   drag / slip at the slip which is left at the end of the step: w = slip/(1 + slowing K(w)). Laws are
+   between K = a and K = b w: a line through two of their values, exact for that of Ergun
+------------------------------------------------------------------------- */
+
+double FixMPMImmersed::drag_after_step(double diameter, double slip, double solid, double slowing) const
+{
+  const double most = drag_coefficient(diameter, slip, solid);
+  if (!(slowing * most > 0.0)) return most;
+  const double low = slip / (1.0 + slowing * most), least = drag_coefficient(diameter, low, solid);
+  const double rise = slip > low ? (most - least) / (slip - low) : 0.0;
+  const double linear = 1.0 + slowing * (least - rise * low);
+  const double w = 2.0 * slip / (linear + sqrt(linear * linear + 4.0 * slowing * rise * slip));
+  return least + rise * (w - low);
+}
+
+/* ----------------------------------------------------------------------
    Is there fluid on all sides of a node? If not, a wall may hold it, or the node next to it together
    with its image. Walls act later, and what the momentum equation gives such nodes now is the
    unbalanced pressure on the wall.
@@ -369,21 +422,23 @@ bool FixMPMImmersed::is_inner(int64_t node)
   char &known = inner[node];
   if (known) return known == INNER;
   auto &grid = *field->grid;
-  const double h = field->lattice.h, least = 0.6 * density * h * h * h;
+  const double least = 0.6 * density * space();
   const auto full = [&](int64_t n) {
     return grid.nodes()[n * grid.nreal + 3] > least;
   };
   const auto &block = grid.blocks[node / NODES_PER_BLOCK];
-  const int n = (int) (node % NODES_PER_BLOCK), in[3] = {n / 16, n / 4 % 4, n % 4};
+  const int dim = field->lattice.dim, last = grid.side - 1;
+  int index[3];
+  grid.node_index(block, (int) (node % NODES_PER_BLOCK), index);
   bool all = full(node);
-  for (int k = 0; k < 6 && all; k++) {
-    int to[3] = {in[0], in[1], in[2]}, side[3] = {1, 1, 1};
+  for (int k = 0; k < 2 * dim && all; k++) {
+    int to[3] = {index[0] & last, index[1] & last, index[2] & last}, side[3] = {1, 1, 1};
     const int d = k / 2;
     to[d] += 2 * (k % 2) - 1;
-    side[d] += (to[d] > 3) - (to[d] < 0);
-    to[d] &= 3;
+    side[d] += (to[d] > last) - (to[d] < 0);
+    to[d] &= last;
     const int slot = block.slot[9 * side[0] + 3 * side[1] + side[2]];
-    all = slot >= 0 && full((int64_t) slot * NODES_PER_BLOCK + (to[0] * 4 + to[1]) * 4 + to[2]);
+    all = slot >= 0 && full((int64_t) slot * NODES_PER_BLOCK + number(dim, to));
   }
   known = all ? INNER : OUTER;
   return all;
@@ -398,7 +453,7 @@ void FixMPMImmersed::find_grains(double dt)
   grains.clear();
   entries.clear();
   inner.assign(field->grid->nnodes(), 0);
-  const double h = field->lattice.h, full = density * h * h * h;
+  const double full = density * space();
   const double *records = field->grid->nodes();    // vx vy vz m, old velocity
   const int nreal = field->grid->nreal;
   for (int i = 0; i < atom->nlocal; i++) {
@@ -434,9 +489,8 @@ void FixMPMImmersed::find_grains(double dt)
         g.mass = atom->rmass[i];
         ahead = mover.ahead;
       }
-    const double r = atom->radius[i], volume = 4.0 / 3.0 * MY_PI * r * r * r;
     for (int d = 0; d < 3; d++) {
-      g.buoyancy[d] = g.immersed * density * volume * (g.gain[d] - dt * gravity[d]);
+      g.buoyancy[d] = g.immersed * density * volume(i) * (g.gain[d] - dt * gravity[d]);
       g.velocity[d] = atom->v[i][d];
       if (std::isfinite(g.mass))
         g.velocity[d] += ahead * dt * force->ftm2v * atom->f[i][d] / g.mass;
@@ -459,7 +513,8 @@ void FixMPMImmersed::sum_nodes(int lane, int nlane)
    Impulses of this step. That of drag acts on the slip which it leaves: with one grain, by the
    implicit Euler method; when grains share nodes, the sum of all coefficients at these is what their
    fluid is taken to be slowed down with. That is at least what it is, so that the slip of no grain
-   changes its sign, however stiff; and it is exact when the motion is steady. Forces of the grain
+   changes its sign, however stiff; and it is exact when the motion is steady. The coefficient is that of
+   the slip which is left, too. Forces of the grain
    count up to the time when it moves, so that a grain sinks with its terminal velocity
    for any time step.
 ------------------------------------------------------------------------- */
@@ -478,13 +533,8 @@ void FixMPMImmersed::act(double dt, Stage stage)
     for (int e = grains[g].first; e < last; e++) f(entries[e], &sums[NREAL * entries[e].node]);
   };
 
-  const double h = field->lattice.h, inverse = 1.0 / (h * h * h);
-  const auto volume = [&](const Grain &g) {
-    const double r = atom->radius[g.i];
-    return 4.0 / 3.0 * MY_PI * r * r * r;
-  };
   for (std::size_t g = 0; g < grains.size(); g++) {
-    const double share = inverse * volume(grains[g]);
+    const double share = volume(grains[g].i) / space();
     around(g, [&](const Entry &e, double *sum) {
       sum[0] += e.w * share;
     });
@@ -503,15 +553,17 @@ void FixMPMImmersed::act(double dt, Stage stage)
       }
     });
     if (g.part != 1.0) g.part = 1.0 / (1.0 + solid);
+    const double of_fluid = solid / (density * volume(g.i));    // all grains around are taken for equal
     for (int d = 0; d < 3; d++) {
       g.buoyancy[d] *= g.part;
       g.velocity[d] += g.buoyancy[d] / g.mass;
-      slip[d] -= g.velocity[d];
+      slip[d] -= g.velocity[d] + of_fluid * g.buoyancy[d];
     }
-    g.coefficient = g.part * g.immersed *
-        drag_coefficient(2.0 * atom->radius[g.i],
-                         sqrt(slip[0] * slip[0] + slip[1] * slip[1] + slip[2] * slip[2]),
-                         end_of_bed(solid, moment, volume(g)));
+    const double part = g.part * g.immersed;
+    g.coefficient = part *
+        drag_after_step(2.0 * atom->radius[g.i],
+                        sqrt(slip[0] * slip[0] + slip[1] * slip[1] + slip[2] * slip[2]),
+                        end_of_bed(solid, moment, volume(g.i)), dt * part * (1.0 / g.mass + of_fluid));
   }
   for (std::size_t k = 0; k < grains.size(); k++)
     around(k, [&](const Entry &e, double *sum) {

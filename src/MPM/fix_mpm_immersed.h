@@ -80,12 +80,16 @@ class FixMPMImmersed : public Fix, public MPMNodeAction {
   double dt_last;
 
   bool is_grain(int i) const;
+  double volume(int i) const;
+  double space() const;
   bool is_inner(int64_t node);
   template <class F> bool visit(int i, const F &) const;
   void find_grains(double dt);
   void sum_nodes(int lane, int nlane);
-  double end_of_bed(double solid, const double *moment, double volume) const;
+  double end_of_bed(double solid, const double *moment, double own) const;
   double drag_coefficient(double diameter, double slip, double solid) const;
+  double drag_after_step(double diameter, double slip, double solid, double slowing) const;
+  double drag_on_sphere(double diameter, double slip, double solid) const;
 };
 
 }    // namespace LAMMPS_NS
