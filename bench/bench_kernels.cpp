@@ -177,7 +177,7 @@ void run(benchmark::State &state, What what, const MPMKernels *table, int dim, S
   auto g2p = [&](const Block &b) {
     for (int p = b.first; p < b.last; p += BATCH)
       if (k.g2p(rows, step, p, std::min(p + BATCH, b.last), b.base, to_points,
-                k.affine ? nullptr : L))
+                k.gradient_in_C ? nullptr : L))
         abort();
     benchmark::DoNotOptimize(L);
   };

@@ -312,9 +312,6 @@ DEPARTURES = [
     ("The shear varies from 0 to 6 within a few cells: another code with linear functions has 1.3 between 5 and 20 cells, "
      "and 1.6 between 20 and 40.",
      lambda key, found, errors: key == ("vortex-large", "linear", key[2], "total") and found < 1.8),
-    ("With *apic* errors grow where the shear is largest, and with *cpdi2* domains are turned inside out there, although not "
-     "with *flip*: use that, or *frame total*.",
-     lambda key, found, errors: key[0] == "vortex-large" and key[1].startswith("cpdi") and key[2] == "apic"),
     ("Two points per cell, not evenly spaced after points have moved, or with gaps: the sum over points is off by a small "
      "amount, at which the error will stall.",
      lambda key, found, errors: found < 1.8 and key[3] != "total" and key[0] != "bar-small" and

@@ -932,8 +932,8 @@ TEST_P(Tables, SaysWhatItHas)
           const TransferKernels k = table->transfer(dim, shape, transfer, split);
           EXPECT_EQ(k.nreal, split || !may_be_merged(transfer) ? 8 : 4);
           EXPECT_EQ(k.affine, transfer == APIC || transfer == AFLIP || transfer == TPIC);
-          EXPECT_EQ(k.mls, (transfer == APIC || transfer == AFLIP) &&
-                        (shape == QUADRATIC || shape == CUBIC));
+          EXPECT_EQ(k.gradient_in_C,
+                    transfer == TPIC || (k.affine && shape != CPDI && shape != CPDI2));
           EXPECT_TRUE(k.p2g && k.p2g_momentum && k.p2g_force && k.g2p && k.g2p_gradient &&
                       k.flush && k.load);
         }

@@ -476,7 +476,7 @@ void FixMPM::setup_pre_neighbor()
     kernel.p2g = tpic.p2g;
     kernel.p2g_force = tpic.p2g_force;
     kernel.g2p_gradient = tpic.g2p_gradient;
-    kernel.mls = false;
+    kernel.gradient_in_C = false;
   }
   if (poly) modes = PolyKernels::select(*kernels, lattice.dim, shape, kernel.nreal);
   pic = kernels->transfer(lattice.dim, kernel_shape(), PIC, true);

@@ -146,7 +146,7 @@ void FixMPM::grid_to_points()
   const bool strains = scheme == USL && light == 0.0;
   const bool fbar = strains && averages_strain(), around = scheme == USL && axisymmetric;
   const bool apart = strains && strains_apart(), refers = strains && R;
-  const bool in_C = kernel.affine && !apart && !refers;    // the gradient is there
+  const bool in_C = kernel.gradient_in_C && !refers;    // the gradient that stress needs is there
   if (moves_late()) xnew.resize(3 * (std::size_t) atom->nmax);
   if (moves_late() && corners) corners_late.resize(domain_size() * (std::size_t) atom->nmax);
   if (around) hoop.resize(atom->nmax);
@@ -168,13 +168,9 @@ void FixMPM::grid_to_points()
         if (apart) kernel.g2p_gradient(r, s, i, last, base, tile_load, L);
         if (around) note_radii(i, last);
         drifted |= kernel.g2p(r, s, i, last, base, tile_load,
-                              strains && !kernel.affine ? L : nullptr);
+                              strains && !in_C && !apart ? L : nullptr);
         if (around) hoop_of_motion(r, i, last);
-        if (refers) {
-          if (kernel.affine && !apart)
-            memcpy(L, r.C + place_in_C, affine_size() * sizeof(double) * (last - i));
-          refer_gradients(i, last - i, L);
-        }
+        if (refers) refer_gradients(i, last - i, L);
         if (strains && !fbar)
           material_update(r, runs[k], i, last - i, in_C ? r.C + place_in_C : L, step_dt());
       }

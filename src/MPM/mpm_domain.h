@@ -64,6 +64,24 @@ template <int DIM> struct PointDomain {
       return hexahedron(x, w, g);
   }
 
+  /** Numbers of a symmetric matrix (xx yy xy, xx yy zz xy xz yz), and the place of its component a, b. */
+  static constexpr int symmetric = DIM * (DIM + 1) / 2;
+  static constexpr int component(int a, int b) { return a == b ? a : a + b + DIM - 1; }
+
+  template <class T> [[gnu::always_inline]] static void invert_symmetric(const T *m, T *inverse)
+  {
+    if constexpr (DIM == 2) {
+      const T factor = (T{} + 1.0) / (m[0] * m[1] - m[2] * m[2]);
+      inverse[0] = factor * m[1], inverse[1] = factor * m[0];
+      inverse[2] = -(factor * m[2]);
+    } else {
+      T c[6] = {m[1] * m[2] - m[5] * m[5], m[0] * m[2] - m[4] * m[4], m[0] * m[1] - m[3] * m[3],
+                m[4] * m[5] - m[3] * m[2], m[3] * m[5] - m[4] * m[1], m[3] * m[4] - m[0] * m[5]};
+      const T factor = (T{} + 1.0) / (m[0] * c[0] + m[3] * c[3] + m[4] * c[4]);
+      for (int k = 0; k < 6; k++) inverse[k] = factor * c[k];
+    }
+  }
+
  private:
   /** sum[DIM*c] = sum over axes k of sign(c,k) a[DIM*k]; opposite corners have opposite sums. */
   template <class T> [[gnu::always_inline]] static void signed_sums(const T *a, T *sum)

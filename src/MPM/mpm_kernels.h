@@ -41,11 +41,16 @@ constexpr bool adds_change(Transfer transfer)
 {
   return transfer == FLIP || transfer == AFLIP;
 }
-/** The affine matrix is the fit of moving least squares, and stress is an affine term; otherwise the
- *  matrix is the gradient of the velocity, as the second moment depends on the position. */
+/** The affine matrix is the fit of moving least squares, and stress is an affine term. */
 constexpr bool is_mls(Shape shape, Transfer transfer)
 {
   return (shape == QUADRATIC || shape == CUBIC) && (transfer == APIC || transfer == AFLIP);
+}
+/** The affine matrix is the velocity gradient, too. That of domains with APIC is not: it is the fit with the
+ *  second moment of the weights, which depends on the position and the shape of the domain. */
+constexpr bool is_gradient(Shape shape, Transfer transfer)
+{
+  return is_affine(transfer) && (transfer == TPIC || !has_domain(shape));
 }
 
 constexpr int BATCH = 64;    ///< points handed to a constitutive law at a time
@@ -153,8 +158,7 @@ using P2G = void (*)(const PointRows &, const TransferStep &, int first, int las
 /** G2P returns 0, or non-zero when a point's new position has left the range of its tile (domains:
  *  when it is not finite, or a domain is inverted, with weights that are not positive).
  *  L: [last-first][dim*dim] column-major velocity gradient with respect to the positions in x;
- *  kernels that store C write the same matrix there and leave L alone when it is null; the others
- *  do not compute it when it is null. */
+ *  kernels whose gradient is in C write the same matrix there; L may be null. */
 using G2P = int (*)(const PointRows &, const TransferStep &, int first, int last, const int base[3],
                     const double *tile, double *L);
 
@@ -171,7 +175,7 @@ struct TransferKernels {
   int nreal;           ///< reals of a tile entry and node record: 4 merged, 8 split
   int margin;          ///< nodes of a tile in front of the block, see P2G
   bool affine;         ///< uses C
-  bool mls;            ///< stress and velocity gradient through the affine matrix (quadratic, cubic)
+  bool gradient_in_C;    ///< g2p leaves the velocity gradient there
   P2G p2g;             ///< mass, momentum and force (internal and external)
   P2G p2g_momentum;    ///< mass and momentum only, force reals untouched
   P2G p2g_force;       ///< force only (split: the force reals; merged: dt * force on the momentum)

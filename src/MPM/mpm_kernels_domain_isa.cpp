@@ -74,9 +74,11 @@ MPM_INLINE void transpose(Vec<N> a, Vec<N> b, Vec<N> c, Vec<N> d, double (*row)[
   }
 }
 
-/** The domains of up to GROUP points; [.][point]. STENCIL: also what Stencil needs. */
-template <int DIM, Shape SHAPE, bool STENCIL> struct Domains {
+/** The domains of up to GROUP points; [.][point]. STENCIL: also what Stencil needs; MOMENT: what the fit of
+ *  an affine field needs. */
+template <int DIM, Shape SHAPE, bool STENCIL, bool MOMENT> struct Domains {
   using V = Vec<REGISTER>;
+  using Domain = PointDomain<DIM>;
   static constexpr int N = 1 << DIM;
   static constexpr int ROW = SHAPE == CPDI ? DIM * DIM : N * DIM;
   alignas(64) double in[ROW][GROUP];
@@ -94,6 +96,11 @@ template <int DIM, Shape SHAPE, bool STENCIL> struct Domains {
   int place_of_start[GROUP], number[N][GROUP];
   alignas(64) double line[N][2][GROUP], plane[N][N / 2][GROUP];
   alignas(64) double wide[GROUP];    ///< 1: a corner reaches other nodes
+
+  // Moment: base nodes of corners relative to the center, and the inverse of the second moment of the
+  // weights, in node spacings
+  static constexpr int OFFSETS = MOMENT ? N * DIM : 1, MOMENTS = MOMENT ? Domain::symmetric : 1;
+  alignas(64) double offset[OFFSETS][GROUP], inverse[MOMENTS][GROUP];
 
   /** The n points from p on. Returns true when weights are not positive. */
   __attribute__((noinline)) bool set(const PointRows &points, Index p, int n, const TileFrame &frame)
@@ -144,6 +151,7 @@ template <int DIM, Shape SHAPE, bool STENCIL> struct Domains {
       for (int k = 0; k < N; k++)
         transpose(w[k], g[DIM * k], g[DIM * k + 1], DIM == 3 ? g[DIM * k + DIM - 1] : V{}, wg[k] + l);
       locate(l, frame);
+      if constexpr (MOMENT) find_moment(l, w, frame.inv_h);
     }
     double sum = 0.0;
     for (int l = 0; l < REGISTER; l++) sum += bad.lane(l);
@@ -151,6 +159,31 @@ template <int DIM, Shape SHAPE, bool STENCIL> struct Domains {
   }
 
  private:
+  /** The moment D = sum_c w_c (x_c x_c^T + diag of f (1 - f)): that of linear functions about the corner x_c
+   *  is f (1 - f) with its place f in the cell. */
+  MPM_INLINE void find_moment(int l, const V *w, double inv_h)
+  {
+    V D[Domain::symmetric], inv[Domain::symmetric];
+    MPM_UNROLL
+    for (int k = 0; k < Domain::symmetric; k++) D[k] = V{};
+    MPM_UNROLL
+    for (int c = 0; c < N; c++) {
+      V at[DIM];
+      MPM_UNROLL
+      for (int d = 0; d < DIM; d++) {
+        const V place = V::load(f[DIM * c + d] + l);
+        at[d] = inv_h * V::load(x[DIM * c + d] + l);
+        (at[d] - place).store(offset[DIM * c + d] + l);
+        D[d] += w[c] * (at[d] * at[d] + place * (1.0 - place));
+        MPM_UNROLL
+        for (int e = 0; e < d; e++) D[Domain::component(e, d)] += w[c] * (at[e] * at[d]);
+      }
+    }
+    Domain::invert_symmetric(D, inv);
+    MPM_UNROLL
+    for (int k = 0; k < Domain::symmetric; k++) inv[k].store(inverse[k] + l);
+  }
+
   /** Where the corners of a vector of points are. */
   MPM_INLINE void locate(int l, const TileFrame &frame)
   {
@@ -243,24 +276,36 @@ MPM_INLINE void add_to_cell(double *node, const double *fraction, Vec<WIDTH> q, 
   }
 }
 
-/** Interpolation between the nodes of a cell; fractions are a group apart. */
-template <int DIM, int NREAL, int WIDTH>
-MPM_INLINE Vec<WIDTH> in_cell(const double *node, const double *fraction)
+/** Interpolation between the nodes of a cell; fractions are a group apart. FACES: also on its upper faces. */
+template <int DIM, int NREAL, bool FACES, int WIDTH>
+MPM_INLINE Vec<WIDTH> in_cell(const double *node, const double *fraction, Vec<WIDTH> *face)
 {
   using V = Vec<WIDTH>;
   const double f[3] = {fraction[0], fraction[GROUP], DIM == 3 ? fraction[2 * GROUP] : 0.0};
   constexpr int sx = NREAL * domain_stride_x(DIM), sy = NREAL * domain_stride_y(DIM);
-  V plane[2];
+  V plane[2], side[2], top[2];
   MPM_UNROLL
   for (int i = 0; i < 2; i++) {
-    V line[2];
+    V line[2], above[2];
     MPM_UNROLL
     for (int j = 0; j < 2; j++) {
       const double *row = node + sx * i + sy * j;
       line[j] = V::load(row);
-      if constexpr (DIM == 3) line[j] += f[2] * (V::load(row + NREAL) - line[j]);
+      if constexpr (DIM == 3) {
+        above[j] = V::load(row + NREAL);
+        line[j] += f[2] * (above[j] - line[j]);
+      }
     }
     plane[i] = line[0] + f[1] * (line[1] - line[0]);
+    if constexpr (FACES) {
+      side[i] = line[1];
+      if constexpr (DIM == 3) top[i] = above[0] + f[1] * (above[1] - above[0]);
+    }
+  }
+  if constexpr (FACES) {
+    face[0] = plane[1];
+    face[1] = side[0] + f[0] * (side[1] - side[0]);
+    if constexpr (DIM == 3) face[2] = top[0] + f[0] * (top[1] - top[0]);
   }
   return plane[0] + f[0] * (plane[1] - plane[0]);
 }
@@ -342,7 +387,7 @@ void p2g(const PointRows &rows, const TransferStep &transfer, int first, int las
   const TileFrame frame(step, base);
   double *const entry = tile + (NREAL == 8 && PARTS == FORCE ? 4 : 0);
   const double scale = NREAL == 4 ? step.dt : 1.0;
-  Domains<DIM, SHAPE, true> domains;
+  Domains<DIM, SHAPE, true, false> domains;
   Stencil<DIM> stencil[GROUP];
   constexpr int N = domains.N;
   Vec<GROUP> lowest[DIM], highest[DIM];
@@ -452,12 +497,13 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool UPDATE>
 int gather(const PointRows &rows, const TransferStep &transfer, int first, int last,
            const int base[3], const double *tile, double *L)
 {
-  constexpr bool increment = UPDATE && adds_change(TRANSFER);
+  constexpr bool increment = UPDATE && adds_change(TRANSFER), affine = UPDATE && is_affine(TRANSFER);
+  constexpr bool fit = affine && !is_gradient(SHAPE, TRANSFER);
   constexpr int WIDTH = increment ? 8 : 4;
   const PointRows points = rows;
   const TransferStep step = transfer;
   const TileFrame frame(step, base);
-  Domains<DIM, SHAPE, false> domains;
+  Domains<DIM, SHAPE, false, fit> domains;
   constexpr int N = domains.N;
   bool bad = false;
   Vec<4> outside{};
@@ -480,24 +526,46 @@ int gather(const PointRows &rows, const TransferStep &transfer, int first, int l
     for (int l = 0; l < n; l++) {
       const Index i = p + l;
       Vec<WIDTH> v{};
-      Vec<4> D[DIM] = {}, at[N];
+      Vec<4> gradient[DIM] = {}, B[DIM] = {}, at[N];
       MPM_UNROLL
       for (int c = 0; c < N; c++) {
-        const Vec<WIDTH> here = in_cell<DIM, NREAL, WIDTH>(tile + NREAL * domains.corner[c][l],
-                                                           domains.f[DIM * c] + l);
+        Vec<WIDTH> face[DIM];
+        const Vec<WIDTH> here = in_cell<DIM, NREAL, fit>(tile + NREAL * domains.corner[c][l],
+                                                         domains.f[DIM * c] + l, face);
         if constexpr (increment)
           at[c] = half<0>(here);
         else
           at[c] = here;
         const double *const wg = domains.wg[c][l];
         v += wg[0] * here;
-        for (int a = 0; a < DIM; a++) D[a] += wg[1 + a] * at[c];
+        for (int a = 0; a < DIM; a++) gradient[a] += wg[1 + a] * at[c];
+        if constexpr (fit) {    // B = sum_i N_ip v_i (x_i - x_p)^T
+          MPM_UNROLL
+          for (int a = 0; a < DIM; a++) {
+            const int k = DIM * c + a;
+            Vec<4> upper;
+            if constexpr (increment)
+              upper = half<0>(face[a]);
+            else
+              upper = face[a];
+            B[a] += wg[0] * (domains.offset[k][l] * at[c] + domains.f[k][l] * upper);
+          }
+        }
       }
 
-      if (UPDATE && is_affine(TRANSFER))
-        for (int a = 0; a < DIM; a++) store_lanes<DIM>(points.C + DIM * (DIM * i + a), D[a]);
+      if constexpr (fit) {
+        for (int a = 0; a < DIM; a++) {
+          Vec<4> C{};
+          MPM_UNROLL
+          for (int b = 0; b < DIM; b++)
+            C += (frame.inv_h * domains.inverse[PointDomain<DIM>::component(a, b)][l]) * B[b];
+          store_lanes<DIM>(points.C + DIM * (DIM * i + a), C);
+        }
+      } else if constexpr (affine) {
+        for (int a = 0; a < DIM; a++) store_lanes<DIM>(points.C + DIM * (DIM * i + a), gradient[a]);
+      }
       if (L)
-        for (int a = 0; a < DIM; a++) store_lanes<DIM>(L + DIM * (DIM * (i - first) + a), D[a]);
+        for (int a = 0; a < DIM; a++) store_lanes<DIM>(L + DIM * (DIM * (i - first) + a), gradient[a]);
 
       if constexpr (UPDATE) {
         Vec<4> mean, add{};
@@ -561,7 +629,7 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL> TransferKernels do
   k.nreal = NREAL;
   k.margin = block_side(DIM);
   k.affine = affine;
-  k.mls = false;
+  k.gradient_in_C = is_gradient(SHAPE, TRANSFER);
   k.p2g = p2g<DIM, SHAPE, affine, NREAL, ALL>;
   k.p2g_momentum = p2g<DIM, SHAPE, affine, NREAL, MOMENTUM>;
   k.p2g_force = p2g<DIM, SHAPE, affine, NREAL, FORCE>;
@@ -575,7 +643,7 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL> TransferKernels do
 
 template <int DIM, Shape SHAPE> TransferKernels choose(Transfer transfer, bool split)
 {
-  return choose_gradient_transfer(transfer, split, [](auto constants) {
+  return choose_transfer(transfer, split, [](auto constants) {
     return domain_kernels<DIM, SHAPE, constants.transfer, constants.nreal>();
   });
 }

@@ -147,6 +147,31 @@ int g2p_gradient(const PointRows &points, const TransferStep &step, int first, i
   return 0;
 }
 
+/** C = B D^-1 with B = sum_i N_ip v_i (x_i - x_p)^T, D = sum_i N_ip (x_i - x_p) (x_i - x_p)^T: of all
+ *  affine fields the one nearest to the nodes' velocities, so that no field gains energy on its way from
+ *  the nodes to the points and back, and angular momentum is conserved (C. Jiang et al., ACM Trans.
+ *  Graph. 34(4) (2015) 51). */
+template <int DIM, Shape SHAPE, int NREAL>
+void affine_fit(const Corners<DIM, SHAPE> &corners, const double *tile, double *C)
+{
+  using Domain = PointDomain<DIM>;
+  double B[DIM][DIM] = {}, D[Domain::symmetric] = {}, inverse[Domain::symmetric];
+  for (int c = 0; c < 1 << DIM; c++)
+    for (const Node &node : corners.node[c]) {
+      const double w = corners.w[c] * node.w, *v = tile + NREAL * node.index;
+      for (int j = 0; j < DIM; j++) {
+        for (int i = 0; i < DIM; i++) B[i][j] += w * v[i] * node.d[j];
+        for (int k = 0; k <= j; k++) D[Domain::component(k, j)] += w * node.d[j] * node.d[k];
+      }
+    }
+  Domain::invert_symmetric(D, inverse);
+  for (int j = 0; j < DIM; j++)
+    for (int i = 0; i < DIM; i++) {
+      double &sum = C[DIM * j + i] = 0.0;
+      for (int k = 0; k < DIM; k++) sum += B[i][k] * inverse[Domain::component(k, j)];
+    }
+}
+
 template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL>
 int g2p(const PointRows &points, const TransferStep &step, int first, int last, const int base[3],
         const double *tile, double *L)
@@ -167,7 +192,10 @@ int g2p(const PointRows &points, const TransferStep &step, int first, int last, 
     }
     double grad[DIM * DIM];
     g2p_gradient<DIM, SHAPE, NREAL>(points, step, p, p + 1, base, tile, grad);
-    if (is_affine(TRANSFER)) std::copy(grad, grad + DIM * DIM, points.C + DIM * DIM * p);
+    if (is_gradient(SHAPE, TRANSFER))
+      std::copy(grad, grad + DIM * DIM, points.C + DIM * DIM * p);
+    else if (is_affine(TRANSFER))
+      affine_fit<DIM, SHAPE, NREAL>(corners, tile, points.C + DIM * DIM * p);
     if (L) std::copy(grad, grad + DIM * DIM, L + DIM * DIM * (p - first));
 
     xnew[2] = points.x[3 * p + 2];
@@ -230,7 +258,7 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL> TransferKernels ke
   k.nreal = NREAL;
   k.margin = block_side(DIM);
   k.affine = affine;
-  k.mls = false;
+  k.gradient_in_C = is_gradient(SHAPE, TRANSFER);
   k.p2g = p2g<DIM, SHAPE, affine, NREAL, ALL>;
   k.p2g_momentum = p2g<DIM, SHAPE, affine, NREAL, MOMENTUM>;
   k.p2g_force = p2g<DIM, SHAPE, affine, NREAL, FORCE>;
@@ -245,7 +273,7 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL> TransferKernels ke
 
 template <int DIM, Shape SHAPE> TransferKernels choose(Transfer transfer, bool split)
 {
-  return choose_gradient_transfer(transfer, split, [](auto constants) {
+  return choose_transfer(transfer, split, [](auto constants) {
     return kernels<DIM, SHAPE, constants.transfer, constants.nreal>();
   });
 }

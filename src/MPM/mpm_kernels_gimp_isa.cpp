@@ -18,7 +18,8 @@ namespace {
 
 template <int DIM> TransferKernels choose(Transfer transfer, bool split)
 {
-  return choose_gradient_transfer(transfer, split, [](auto constants) {
+  // the affine matrix is the gradient
+  return choose_transfer(transfer == APIC ? TPIC : transfer, split, [](auto constants) {
     return kernels<DIM, GIMP, constants.transfer, constants.nreal, false>();
   });
 }

@@ -56,9 +56,9 @@ template <MPM_NS::Transfer TRANSFER, int NREAL> struct TransferConstants {
   static constexpr int nreal = NREAL;
 };
 
-/** make(TransferConstants) for functions whose affine matrix is the gradient: their apic is tpic. */
+/** make(TransferConstants) of a transfer. */
 template <class Make>
-MPM_NS::TransferKernels choose_gradient_transfer(MPM_NS::Transfer transfer, bool split, Make make)
+MPM_NS::TransferKernels choose_transfer(MPM_NS::Transfer transfer, bool split, Make make)
 {
   using namespace MPM_NS;
   switch (transfer) {
@@ -69,6 +69,7 @@ MPM_NS::TransferKernels choose_gradient_transfer(MPM_NS::Transfer transfer, bool
     case AFLIP:
       return make(TransferConstants<AFLIP, 8>());
     case APIC:
+      return split ? make(TransferConstants<APIC, 8>()) : make(TransferConstants<APIC, 4>());
     case TPIC:
       return split ? make(TransferConstants<TPIC, 8>()) : make(TransferConstants<TPIC, 4>());
   }

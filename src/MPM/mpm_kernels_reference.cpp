@@ -298,7 +298,7 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> Transf
   k.nreal = NREAL;
   k.margin = 1;
   k.affine = is_affine(TRANSFER);
-  k.mls = is_mls(SHAPE, TRANSFER);
+  k.gradient_in_C = is_gradient(SHAPE, TRANSFER);
   k.p2g = p2g<DIM, SHAPE, TRANSFER, NREAL, ALL, TOTAL>;
   k.p2g_momentum = p2g<DIM, SHAPE, TRANSFER, NREAL, MOMENTUM, false>;
   k.p2g_force = p2g<DIM, SHAPE, TRANSFER, NREAL, FORCE, TOTAL>;

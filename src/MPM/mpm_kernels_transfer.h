@@ -1392,7 +1392,7 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> Transf
   k.nreal = NREAL;
   k.margin = 1;
   k.affine = affine;
-  k.mls = mls;
+  k.gradient_in_C = is_gradient(SHAPE, TRANSFER);
   k.p2g = PointsToNodes<DIM, SHAPE, affine, mls, NREAL, ALL, TOTAL>::p2g;
   k.p2g_momentum = PointsToNodes<DIM, SHAPE, affine, mls, NREAL, MOMENTUM, false>::p2g;
   k.p2g_force = PointsToNodes<DIM, SHAPE, affine, mls, NREAL, FORCE, TOTAL>::p2g;
