@@ -72,6 +72,7 @@
 #include "math_extra.h"
 #include "modify.h"
 #include "region.h"
+#include "region_mpm_mesh.h"
 #include "update.h"
 #include "variable.h"
 
@@ -727,8 +728,11 @@ double FixMPMBoundary::surface_distance(const double *x) const
   const bool inside = region->match(x[0], x[1], x[2]);
   const int interior = region->interior;
   if (!inside) region->interior = !interior;    // Region::surface() answers for one side only
+  auto *mesh = dynamic_cast<RegMPMMesh *>(region);
+  if (mesh && domain->dimension == 3) mesh->most_touches = 1;    // in 2d the closest one may be along z
   const int n = region->surface(x[0], x[1], x[2], far);
   region->interior = interior;
+  if (mesh) mesh->most_touches = mesh->tmax;
   double distance = far;
   for (int i = 0; i < n; i++) {
     const auto &c = region->contact[i];

@@ -480,29 +480,34 @@ bool SurfaceMesh::is_closest_around(const Point &x, const Triangle &t, int featu
 
 int SurfaceMesh::touches(const Point &x, double cutoff, Touch *list, int most) const
 {
-  double side = 0.0;    // not known
-  for (int n = 0; n < most; n++) {
+  int n = 0;
+  double side = 0.0;            // not known yet
+  std::vector<int> done;        // parts
+  const auto skip = [&](int part) { return std::find(done.begin(), done.end(), part) != done.end(); };
+  while (n < most && (int) done.size() < nparts) {
     double smallest = cutoff * cutoff;
-    list[n].part = -1;
-    const auto done = [&](int part) {
-      for (int k = 0; k < n; k++)
-        if (list[k].part == part) return true;
-      return false;
-    };
-    search(x, smallest, done, [&](const Triangle &t, const Point &p, int feature, double square) {
+    const Triangle *triangle = nullptr;
+    Touch touch;
+    int at;
+    search(x, smallest, skip, [&](const Triangle &t, const Point &p, int feature, double square) {
       const double out = dot(x - p, mean_normal(t, feature));
-      if (n > 0) {
-        if (!(side * out > 0.0) || !is_closest_around(x, t, feature, square)) return;
-        for (int k = 0; k < n; k++)    // a common edge or corner
-          if (dot(p - list[k].point, p - list[k].point) <= near * near) return;
-      }
-      smallest = square;
+      if (n > 0 && !(side * out > 0.0)) return;    // the far side of a plate
       if (n == 0) side = out < 0.0 ? -1.0 : 1.0;
-      list[n] = {p, side * std::sqrt(square), t.part};
+      smallest = square;
+      triangle = &t;
+      at = feature;
+      touch = {p, side * std::sqrt(square), t.part};
     });
-    if (list[n].part < 0) return n;
+    if (!triangle) break;
+    done.push_back(triangle->part);
+    bool is_new = is_closest_around(x, *triangle, at, smallest);
+    for (int k = 0; k < n; k++) {    // a common edge or corner
+      const Point r = touch.point - list[k].point;
+      if (dot(r, r) <= near * near) is_new = false;
+    }
+    if (is_new) list[n++] = touch;
   }
-  return most;
+  return n;
 }
 
 /* ----------------------------------------------------------------------

@@ -52,8 +52,9 @@ class SurfaceMesh {
     int part;
   };
 
-  /** Places where the distance from x is smallest, seen from the same side as x and within cutoff: one for
-   *  each part of the surface (see nparts), the closest first, most in number. Returns how many. */
+  /** The closest point of each part of the surface (see nparts) that is seen from the side of x, within
+   *  cutoff, if none next to it beyond the edge of the part is closer; the closest first, most in
+   *  number. Returns how many. */
   int touches(const Point &x, double cutoff, Touch *list, int most) const;
 
   /** Lower bound of the distance, without a search: positive outside, negative inside, 0: unknown. */

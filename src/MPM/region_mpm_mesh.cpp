@@ -76,7 +76,7 @@ RegMPMMesh::RegMPMMesh(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, ar
   } else
     bboxflag = 0;
 
-  cmax = tmax = std::min(mesh->nparts, MAX_TOUCHES);
+  most_touches = cmax = tmax = std::min(mesh->nparts, MAX_TOUCHES);
   contact = new Contact[cmax];
   if (comm->me == 0)
     utils::logmesg(lmp, "Region {}: {} triangles, volume {:.8g}, center {:.8g} {:.8g} {:.8g}\n", id,
@@ -116,7 +116,7 @@ int RegMPMMesh::touch(const double *x, double cutoff, double side)
   const double known = mesh->bound(here);
   if (known * side < 0.0 || std::fabs(known) >= cutoff) return 0;
   SurfaceMesh::Touch touches[MAX_TOUCHES];
-  const int n = mesh->touches(here, cutoff, touches, tmax);
+  const int n = mesh->touches(here, cutoff, touches, most_touches);
   if (n == 0 || side * touches[0].distance < 0.0) return 0;
   // the same order in every step, as other regions have it
   for (int i = 1; i < n; i++)

@@ -37,6 +37,8 @@ class RegMPMMesh : public Region {
 
   const MPM_NS::SurfaceMesh &surface_mesh() const { return *mesh; }
 
+  int most_touches;    ///< that surface() looks for: tmax, or 1 for the closest point alone
+
  private:
   std::unique_ptr<MPM_NS::SurfaceMesh> mesh;
 
