@@ -531,7 +531,4 @@ TEST(BadInput, IsRefused)
   for (const auto &bad : cases)
     EXPECT_THAT(error_of(replaced(two_bodies, "MPM_OPTIONS", bad.lines) + "run 1\n"),
                 ::testing::HasSubstr(bad.message));
-  EXPECT_THAT(error_of("dimension 2\nboundary f f p\natom_style mpm\nregion b block 0 4 0 4 -0.5 0.5\n"
-                       "create_box 1 b\nfix g all mpm 1.0 shape cpdi2 axisymmetric yes\n"),
-              ::testing::HasSubstr("use shape cpdi"));
 }

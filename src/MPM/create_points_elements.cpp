@@ -69,6 +69,10 @@ void CreatePoints::parse_elements(int narg, char **arg)
     if (!(element.volume > 0.0 && *std::min_element(w, w + ncorner) >= 0.0))
       error->all(FLERR, 2, "Create_points: element {} of {} has no volume or is twisted", e.label,
                  arg[2]);
+    for (int c = 0; c < ncorner && fix; c++)
+      if (element.corners[dim * c] < -1.0e-10 * domain->xprd)
+        error->all(FLERR, 2, "Create_points: element {} of {} reaches below x = 0, which is the axis of "
+                   "fix mpm {}", e.label, arg[2], fix->id);
     for (int d = 0; d < 3; d++) {
       element.x[d] = 0.0;
       for (int c = 0; c < ncorner && d < dim; c++)
@@ -104,7 +108,7 @@ bigint CreatePoints::make_element_points()
     atom->avec->create_atom(type, e.x);
     const int i = atom->nlocal - 1;
     atom->tag[i] = atom->tag_enable ? maxtag + k + 1 : 0;
-    atom->vfrac[i] = e.volume;
+    atom->vfrac[i] = e.volume * (fix ? fix->circle(e.x[0]) : 1.0);
     atom->rmass[i] = 0.0;    // not known yet, see fix mpm/material
     const double edge = domain->dimension == 3 ? std::cbrt(e.volume) : std::sqrt(e.volume);
     if (atom->radius_flag) atom->radius[i] = 0.5 * (diameter > 0.0 ? diameter : edge);

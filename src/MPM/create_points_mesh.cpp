@@ -21,6 +21,7 @@
 #include "mpm_mesh_input.h"
 
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
 
 using namespace LAMMPS_NS;
@@ -35,9 +36,11 @@ Mesh CreatePoints::read_mesh(int narg, char **arg)
   const std::string what = std::string("create_points ") + arg[1];
   if (narg < 3) utils::missing_cmd_args(FLERR, what, error);
   for (auto *ifix : modify->get_fix_by_style("^mpm$"))
-    if (dynamic_cast<FixMPM *>(ifix)->axisymmetric)
-      error->all(FLERR, 1, "Create_points {} cannot be used with axisymmetric fix mpm {}, whose "
-                 "points are rings: use create_points region", arg[1], ifix->id);
+    if (dynamic_cast<FixMPM *>(ifix)->axisymmetric) fix = dynamic_cast<FixMPM *>(ifix);
+  if (fix && strcmp(arg[1], "mesh") == 0)
+    error->all(FLERR, 1, "Create_points mesh cannot be used with axisymmetric fix mpm {}: elements, to "
+               "which its points belong, are of plane strain; use create_points elements or region",
+               fix->id);
 
   const int dim = domain->dimension;
   std::string part;

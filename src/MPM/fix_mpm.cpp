@@ -271,10 +271,6 @@ void FixMPM::process_options(int narg, char **arg)
                "transfer apic or flip");
   if (poly && (total || !is_mls(kernel_shape(), transfer)))
     error->all(FLERR, "Fix mpm transfer polypic needs shape quadratic or cubic and frame updated");
-  if (poly && axisymmetric)
-    error->all(FLERR, "Fix mpm transfer polypic cannot be used with axisymmetric: use transfer apic");
-  if (extent == CORNERS && axisymmetric)
-    error->all(FLERR, "Fix mpm axisymmetric cannot be used with shape cpdi2: use shape cpdi");
   if (stress == MLS_STRESS && !is_mls(kernel_shape(), transfer))
     error->all(FLERR, "Fix mpm stress mls needs shape quadratic or cubic with transfer apic or aflip: "
                "other ones have the gradients of the shape functions");
@@ -290,9 +286,8 @@ void FixMPM::process_options(int narg, char **arg)
   if (bernstein && !total)
     error->all(FLERR, "Fix mpm shape bernstein has gradients that jump where points cross cells: it "
                "needs frame total, where they do not, or use shape quadratic");
-  if (bernstein && (axisymmetric || poly))
-    error->all(FLERR, "Fix mpm shape bernstein cannot be used with axisymmetric and transfer polypic: use "
-               "shape quadratic");
+  if (bernstein && poly)
+    error->all(FLERR, "Fix mpm shape bernstein cannot be used with transfer polypic: use shape quadratic");
   if (mixed_precision &&
       (extent != NO_SIZE || bernstein || refinement != LUMPED || poly || transfer == AFLIP ||
        transfer == TPIC || axisymmetric || strains_apart()))

@@ -125,9 +125,7 @@ void FixMPM::hoop_of_motion(const PointRows &r, int first, int last)
 void FixMPM::hoop_of_nodes(const PointRows &r, const TransferStep &step, int first, int last,
                            const int base[3], double dt, double shift)
 {
-  PointRows rows = r;
-  rows.v = v_apart.data();
-  rows.xnew = r.x;    // stays
+  const PointRows rows = rows_at_rest(v_apart.data(), r.mass);
   TransferStep s = step;
   s.dt = 0.0;
   pic.g2p(rows, s, first, last, base, tile_load, nullptr);
