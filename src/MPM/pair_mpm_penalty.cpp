@@ -15,6 +15,7 @@
 #include "fix_mpm.h"
 #include "fix_mpm_contact.h"
 #include "force.h"
+#include "math_const.h"
 #include "memory.h"
 #include "modify.h"
 #include "mpm_points.h"
@@ -33,8 +34,8 @@ static constexpr int NOTHING = -1;    // field of an atom that is no point
 /* ---------------------------------------------------------------------- */
 
 PairMPMPenalty::PairMPMPenalty(LAMMPS *lmp) :
-    Pair(lmp), points(nullptr), growth(1.2), velocities(false), damped(false), look(true),
-    warned(false), warned_deep(false), nmax(0), radius(nullptr), mass(nullptr)
+    Pair(lmp), points(nullptr), growth(1.2), rings(false), velocities(false), damped(false),
+    look(true), warned(false), warned_deep(false), nmax(0), radius(nullptr), mass(nullptr)
 {
   single_enable = 0;
   nextra = 2;
@@ -83,7 +84,8 @@ void PairMPMPenalty::compute(int eflag, int vflag)
     const double r = sqrt(rsq), overlap = reach - r;
     const double width = 2.0 * std::min(radius[i], radius[j]);
     if (overlap > 0.5 * width) deep = i;
-    const double stiffness = c.modulus * to_force * (flat ? width : width * width) / reach;
+    const double depth = rings ? MathConst::MY_PI * (x[i][0] + x[j][0]) : (flat ? 1.0 : width);
+    const double stiffness = c.modulus * to_force * width * depth / reach;
     const double n[3] = {d[0] / r, d[1] / r, d[2] / r};
     double normal = stiffness * overlap, power = 0.0;
     double force_i[3] = {0.0, 0.0, 0.0};
@@ -117,6 +119,11 @@ void PairMPMPenalty::compute(int eflag, int vflag)
       force_i[k] += normal * n[k];
       f[i][k] += force_i[k];
       if (newton_pair || j < nlocal) f[j][k] -= force_i[k];
+    }
+    if (rings) {    // the energy is that of a ring, which is shorter nearer to the axis
+      const double inward = 0.5 * stiffness * overlap * overlap / (x[i][0] + x[j][0]);
+      f[i][0] -= inward;
+      if (newton_pair || j < nlocal) f[j][0] -= inward;
     }
     const double share = newton_pair || j < nlocal ? 1.0 : 0.5;
     contacts += share;
@@ -226,19 +233,20 @@ int PairMPMPenalty::field_of(int i) const
 }
 
 /* ----------------------------------------------------------------------
-   half the spacing of points of this volume (2d: area)
+   half the spacing of points of this volume (2d: area; a ring: volume over its circle)
 ------------------------------------------------------------------------- */
 
 double PairMPMPenalty::initial_radius(int i) const
 {
-  const double V = atom->vfrac[i];
+  double V = atom->vfrac[i];
+  if (rings) V /= fields[0]->circle(atom->x[i][0] / points->F[i][8]);
   return 0.5 * (domain->dimension == 2 ? sqrt(V) : cbrt(V));
 }
 
 double PairMPMPenalty::current_radius(int i)
 {
   if (atom->vfrac[i] == 0.0) return 0.0;
-  const double J = points->jacobian(i);
+  const double J = points->jacobian(i) / (rings ? points->F[i][8] : 1.0);
   double factor = domain->dimension == 2 ? sqrt(J) : cbrt(J);
   if (!(factor <= growth)) {
     factor = growth;
@@ -386,11 +394,7 @@ void PairMPMPenalty::init_style()
                "give each body a fix mpm",
                fields.empty() ? "is no fix mpm" : "is only one fix mpm");
 
-  for (const auto *field : fields)
-    if (field->axisymmetric)
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Pair style mpm/penalty cannot be used with axisymmetric fix mpm {}, where points "
-                 "are rings: use fix mpm/contact", field->id);
+  rings = fields[0]->axisymmetric;    // all fields are, or none
 
   const std::size_t nfields = fields.size(), n = atom->ntypes + 1;
   coupled.assign(nfields * nfields, 0);

@@ -30,7 +30,8 @@ struct MPMPoints;
  *  Points are spheres (2d: disks) as wide as the spacing of points that their present volume
  *  means. Where two overlap by delta, they repel each other along the line of their centers with
  *  F = E A delta/(r_i + r_j), A the face of the smaller one: aligned faces feel the pressure
- *  E delta/spacing, as of a layer of material of modulus E between the outermost points.
+ *  E delta/spacing, as of a layer of material of modulus E between the outermost points. With an axis of
+ *  symmetry all of this is along the circle that is midway between the two.
  */
 class PairMPMPenalty : public Pair {
  public:
@@ -65,6 +66,7 @@ class PairMPMPenalty : public Pair {
   std::vector<char> coupled;      // [field][field] same field, or left to fix mpm/contact
   std::vector<char> present;      // [field][type]
   std::vector<double> largest;    // [type] initial radius of the largest point
+  bool rings;                     // axisymmetric: x is the distance from the axis
   bool velocities, damped;        // some coefficients need velocities, masses
   bool look;                      // at what the neighbor list consists of
   bool warned;                    // that points outgrow their limit
