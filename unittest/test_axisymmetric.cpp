@@ -621,4 +621,12 @@ TEST(Axisymmetric, Refused)
        {"fix axis all mpm/boundary xlo slip\nfix plane all mpm 0.5",
         "must be axisymmetric, or none"}},
       "run 0\n");
+  const std::string grains = replaced(replaced(scene, "atom_style mpm", "atom_style hybrid sphere mpm"),
+                                      "create_box 1", "create_box 2") +
+      "set type 1 diameter 0.3\ncreate_atoms 2 single 2 3.9 0\nset type 2 diameter 0.5 density/disc 1\n"
+      "group grains type 2\nfix move grains nve/sphere disc\nfix axis all mpm/boundary xlo slip\n"
+      "comm_modify vel yes\npair_style granular\npair_coeff * * hooke 10 0 tangential linear_nohistory 0 0\n";
+  EXPECT_THAT(error_of(grains + "run 0\n"), ::testing::HasSubstr("a grain would be a ring"));
+  EXPECT_THAT(error_of(grains + "fix skin all mpm/surface\nrun 0\n"),
+              ::testing::HasSubstr("a grain would be a ring"));
 }

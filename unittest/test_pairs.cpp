@@ -128,7 +128,7 @@ const struct {
     {"every delete", "elements", "a fix mpm of their own"},
     {"axis", "elements", "use create_points elements or region"},
     {"remove", "elements", "unfix it before"},
-    {"axis", "grain", "use fix mpm/contact"},
+    {"axis", "grain", "let bodies meet through fix mpm/contact"},
     {"create", "grain", "define the fix after them"},
 };
 

@@ -239,6 +239,11 @@ void FixMPM::check_radii()
   MPI_Allreduce(mine, all, 3, MPI_LMP_BIGINT, MPI_SUM, world);
   MPI_Allreduce(&example, &example_all, 1, MPI_LMP_TAGINT, MPI_MAX, world);
   if (all[0] == 0) return;
+  if (axisymmetric)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Points of fix mpm {} axisymmetric cannot meet grains through pair style {}: a grain would be "
+               "a ring; let bodies meet through fix mpm/contact, or use 3d for grains",
+               id, force->pair_style);
   if (all[1] == all[0])
     error->all(FLERR, Error::NOLASTLINE,
                "Points of fix mpm {} have no radius, by which pair style {} couples them to grains: "

@@ -323,7 +323,7 @@ void FixMPMElements::init()
                  id);
     if (field->axisymmetric)
       error->all(FLERR, "Fix mpm {} axisymmetric cannot be used with fix mpm/elements {}, whose elements "
-                 "are of plane strain", field->id, id);
+                 "are of plane strain: use create_points elements with shape cpdi2", field->id, id);
     if (field->every > 1)
       error->all(FLERR, "Fix mpm {} every cannot be used with fix mpm/elements {}: give the other "
                  "points a fix mpm of their own", field->id, id);

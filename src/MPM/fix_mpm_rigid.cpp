@@ -65,7 +65,8 @@ FixMPMRigid::FixMPMRigid(LAMMPS *lmp, int narg, char **arg) :
   if (!region)
     error->all(FLERR, 3, "Fix mpm/rigid needs a region of style mpm/mesh: {}", region_id);
   if (domain->dimension == 2)
-    error->all(FLERR, "Fix mpm/rigid requires 3d: in 2d, move a region with fix mpm/boundary");
+    error->all(FLERR, "Fix mpm/rigid requires 3d, as surfaces are of triangles: in 2d, move a region with "
+               "fix mpm/boundary, or use a thin 3d box that is periodic");
   mesh = &region->surface_mesh();
 
   const double value = utils::numeric(FLERR, arg[5], false, lmp);

@@ -98,8 +98,8 @@ void FixMPMSurface::init()
   for (auto *ifix : modify->get_fix_by_style("^mpm$"))
     if (dynamic_cast<FixMPM *>(ifix)->axisymmetric)
       error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/surface cannot be used with axisymmetric fix mpm {}, where points are "
-                 "rings: use fix mpm/contact",
+                 "Fix mpm/surface cannot be used with axisymmetric fix mpm {}, where a grain would "
+                 "be a ring: let bodies meet through fix mpm/contact, or use 3d for grains",
                  ifix->id);
   bigint n = 0, nall;
   for (int i = 0; i < atom->nlocal; i++) n += has_radius(i);
