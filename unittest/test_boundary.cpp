@@ -1385,9 +1385,34 @@ TEST(TimeStep, GrowthMaxAndMin)
             std::string::npos);
 }
 
+// a body that expands as a whole, in a field whose points take every second step
+
+TEST(TimeStep, StrainOfAStep)
+{
+  for (int every : {1, 2})
+    for (const char *options : {"", "scheme musl", "frame total transfer flip 1.0", "scheme usavg"}) {
+      SCOPED_TRACE(std::string(options) + " every " + std::to_string(every));
+      Scene run;
+      const double rate = 0.02;    // of each axis
+      run.commands("units lj\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
+                   "region box block 0 8 0 8 0 8\ncreate_box 1 box\nfix grid all mpm 1.0 " +
+                   std::string(options) + (every > 1 ? " every 2" : "") +
+                   "\nregion body block 2 6 2 6 2 6\ncreate_points 1 region body ppc 2\n"
+                   "fix m all mpm/material density 1.0 neohookean 1.0e-6 0.3\n");
+      run.set_velocity([=](const double *x, double *v) {
+        for (int d = 0; d < 3; d++) v[d] = rate * (x[d] - 4.0);
+      });
+      run.commands("fix step all mpm/dt 0.5 max 0.1 strain 0.003\nrun 4\n");
+      EXPECT_NEAR(run.lmp->update->dt, 0.003 / (3.0 * rate) / every, 0.025 * 0.05 / every);
+      auto *fix = run.lmp->modify->get_fix_by_id("step");
+      EXPECT_EQ(fix->compute_vector(1), 0.0);    // no wave speed
+      EXPECT_GE(fix->compute_vector(0), 1.0);
+    }
+}
+
 TEST(TimeStep, RestartTakesTheSameSteps)
 {
-  for (const char *every : {"every 10", "every 7", "every 1"}) {
+  for (const char *every : {"every 10", "every 7", "every 1", "every 10 strain 0.002"}) {
     const std::string step = std::string("fix step all mpm/dt 0.4 ") + every + "\n";
     const ScratchFile file("restart");
     Scene whole, parts;
@@ -1484,6 +1509,8 @@ timestep 0.001
        {"fix s all mpm/dt 0.5 every 0", "must be positive"},
        {"fix s all mpm/dt 0.5 grow 0.9", "at least 1"},
        {"fix s all mpm/dt 0.5 max -1", "must be positive"},
+       {"fix s all mpm/dt 0.5 strain 0", "strain must be positive"},
+       {"fix s all mpm/dt 0.5 strain", "issing"},
        {"fix s all mpm/dt 0.5 min 2 max 1", "above max"},
        {"fix s all mpm/dt 0.5 often 2", "Unknown fix mpm/dt keyword"},
        {"fix s all mpm/dt 0.5\nfix s2 all mpm/dt 0.4\nrun 0", "both set the time step"},

@@ -46,8 +46,8 @@ static constexpr double MAX_NODE = 4.0e6;
 FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), shape(QUADRATIC), bernstein(false), mixed_precision(false), extent(NO_SIZE), aspect{1.0, 1.0, 1.0}, transfer(APIC),
     flip(0.0), poly(false), refinement(LUMPED), order(1), total(false), most_distorted(0.0), axisymmetric(false), scheme(USL), stress(DEFAULT_STRESS), locking(NO_CURE), light(0.0), policy(ERROR),
-    delete_failed(false), modified_edges(false), every(1), dt_check(true), keep_old(false), grid(nullptr), C(nullptr), Q(nullptr), corners(nullptr), X(nullptr), R(nullptr),
-    waiting(nullptr), ledger_on(false), points(nullptr), halo(nullptr),
+    delete_failed(false), modified_edges(false), every(1), dt_check(true), watch_volume(false), keep_old(false), grid(nullptr), C(nullptr), Q(nullptr), corners(nullptr), X(nullptr), R(nullptr),
+    waiting(nullptr), ledger_on(false), volume_rate({0.0, 0}), points(nullptr), halo(nullptr),
     kernels(nullptr), batch_kernels(nullptr), driver(false), topology_valid(false),
     watch_drift(false), drifted(0), refer_anew(false), want_sort(false), switches(0), switches_sorted(0),
     tile(nullptr), tile_load(nullptr), waited(0), elapsed(0.0), batch(nullptr), kinetic_points(0.0), nbad_total(0),
@@ -363,7 +363,7 @@ void FixMPM::init()
     error->all(FLERR, "Fix mpm requires a box of constant size and shape: remove the fix that "
                "changes it");
 
-  running = false;
+  running = watch_volume = false;
   ledger_on = !modify->get_compute_by_style("^mpm/energy$").empty();
   if (axisymmetric) check_axis();
 

@@ -114,6 +114,7 @@ class FixMPM : public Fix {
   bool modified_edges;    ///< functions next to fixed faces need no nodes outside
   int every;           ///< steps of LAMMPS in a step of the cycle
   bool dt_check;       ///< stop when the time step is above the stable limit
+  bool watch_volume;    ///< keep volume_rate; set at the start of a run by fix mpm/dt
   bool keep_old;       ///< a node action reads what nodes had before the momentum equation; set by
                        ///< its init_action()
 
@@ -132,6 +133,13 @@ class FixMPM : public Fix {
                        ///< place on the lattice, angular impulse if atoms have torques; null: every is 1
   bool ledger_on;                               ///< a compute mpm/energy exists; set in init()
   MPMLedger ledger;
+
+  /** Largest |J/J_old - 1|/dt of this rank's points in all steps since it was set to zero, and whose. */
+  struct {
+    double most;
+    tagint tag;
+  } volume_rate;
+
   std::vector<double> ledger_start;    ///< of compute mpm/energy, until the end of the next run
 
   /** Does the scheme update stress at the start, at the end of the step, or (neither) in between? */
@@ -409,6 +417,7 @@ class FixMPM : public Fix {
   void gradient_and_material(double dt, double shift);
   void material_update(const MPM_NS::PointRows &, const Run &, int first, int n, const double *L,
                        double dt);
+  void note_volume_rate(const MPM_NS::Batch &, int first);
   void lap(double &timer);
 
   uint64_t velocity_hash() const;

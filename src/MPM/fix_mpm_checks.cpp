@@ -433,6 +433,21 @@ double FixMPM::stable_dt_local(tagint &id_min, double &wave_speed) const
   return smallest;
 }
 
+/* ----------------------------------------------------------------------
+   change of volume of the points of a batch in this step; inverted ones are errors anyway
+------------------------------------------------------------------------- */
+
+void FixMPM::note_volume_rate(const Batch &b, int first)
+{
+  double most = 0.0;
+#pragma omp simd reduction(max : most)
+  for (int p = 0; p < b.n; p++) most = std::max(most, fabs(b.J[p] / b.Jold[p] - 1.0));
+  if (!(most > volume_rate.most * b.dt)) return;
+  int fastest = 0;
+  while (fastest < b.n - 1 && fabs(b.J[fastest] / b.Jold[fastest] - 1.0) < most) fastest++;
+  volume_rate = {most / b.dt, atom->tag[first + fastest]};
+}
+
 /* ---------------------------------------------------------------------- */
 
 void FixMPM::check_dt()

@@ -34,8 +34,8 @@ static constexpr double NO_POINTS = std::numeric_limits<double>::max();
 ------------------------------------------------------------------------- */
 
 FixMPMDt::FixMPMDt(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), grow(1.05), dt_min(0.0), dt_max(0.0), limit({0.0, 0.0, 0.0}), nchanges(0),
-    continues(false), dt_left(0.0), limit_left(0.0)
+    Fix(lmp, narg, arg), grow(1.05), dt_min(0.0), dt_max(0.0), strain(0.0), look_every(10), limit({0.0, 0.0, 0.0}),
+    nchanges(0), continues(false), dt_left(0.0), limit_left(0.0), carried({NO_POINTS, 0.0, 0.0})
 {
   if (igroup != 0)
     error->all(FLERR, 1, "Fix mpm/dt looks at the points of all fix mpm: use group all");
@@ -47,16 +47,16 @@ FixMPMDt::FixMPMDt(LAMMPS *lmp, int narg, char **arg) :
                "for instance 0.5: {}",
                arg[3]);
 
-  nevery = 10;
   int iarg = 4;
   while (iarg < narg) {
     const std::string keyword = arg[iarg];
-    if (keyword != "every" && keyword != "grow" && keyword != "min" && keyword != "max")
+    if (keyword != "every" && keyword != "grow" && keyword != "min" && keyword != "max" &&
+        keyword != "strain")
       error->all(FLERR, iarg, "Unknown fix mpm/dt keyword: {}", keyword);
     if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, "fix mpm/dt " + keyword, error);
     if (keyword == "every") {
-      nevery = utils::inumeric(FLERR, arg[iarg + 1], false, lmp);
-      if (nevery <= 0)
+      look_every = utils::inumeric(FLERR, arg[iarg + 1], false, lmp);
+      if (look_every <= 0)
         error->all(FLERR, iarg + 1, "Fix mpm/dt every must be positive: {}", arg[iarg + 1]);
     } else {
       const double value = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
@@ -68,13 +68,15 @@ FixMPMDt::FixMPMDt(LAMMPS *lmp, int narg, char **arg) :
       } else {
         if (!(value > 0.0))
           error->all(FLERR, iarg + 1, "Fix mpm/dt {} must be positive: {}", keyword, arg[iarg + 1]);
-        (keyword == "min" ? dt_min : dt_max) = value;
+        (keyword == "strain" ? strain : keyword == "min" ? dt_min : dt_max) = value;
       }
     }
     iarg += 2;
   }
   if (dt_min > 0.0 && dt_max > 0.0 && dt_min > dt_max)
     error->all(FLERR, "Fix mpm/dt min {} is above max {}", dt_min, dt_max);
+
+  nevery = strain > 0.0 ? 1 : look_every;
 
   time_depend = 1;    // as in fix dt/reset: the elapsed time must not lose its step
   scalar_flag = vector_flag = 1;
@@ -112,12 +114,31 @@ void FixMPMDt::init()
 }
 
 /* ----------------------------------------------------------------------
-   the smallest h/(c + |v|) of all points of all fields, known to all ranks
+   the step in which the volume of a point would change by STRAIN, at the largest rate of the steps
+   since the last look. A drop that is alone on the lattice breathes in a few steps: the rate of a
+   single one of them may be that of a turning point
+------------------------------------------------------------------------- */
+
+FixMPMDt::Limit FixMPMDt::strain_limit_local() const
+{
+  Limit mine = carried;
+  if (strain == 0.0) return mine;
+  for (auto *ifix : modify->get_fix_by_style("^mpm$")) {
+    const auto *field = dynamic_cast<FixMPM *>(ifix);
+    const auto &rate = field->volume_rate;
+    const double dt = strain / (rate.most * fraction * field->every);
+    if (rate.most > 0.0 && dt < mine.dt) mine = {dt, 0.0, (double) rate.tag};
+  }
+  return mine;
+}
+
+/* ----------------------------------------------------------------------
+   the smallest limit of all points of all fields, known to all ranks
 ------------------------------------------------------------------------- */
 
 FixMPMDt::Limit FixMPMDt::find_limit() const
 {
-  Limit mine = {NO_POINTS, 0.0, 0.0};
+  Limit mine = strain_limit_local();
   for (auto *ifix : modify->get_fix_by_style("^mpm$")) {
     tagint tag = 0;
     double speed = 0.0;
@@ -133,6 +154,11 @@ FixMPMDt::Limit FixMPMDt::find_limit() const
     if (!(dt > 0.0)) dt = 0.0;    // also NaN
     if (dt < mine.dt) mine = {dt, speed, (double) tag};
   }
+  return smallest(mine);
+}
+
+FixMPMDt::Limit FixMPMDt::smallest(Limit mine) const
+{
   struct {
     double dt;
     int rank;
@@ -150,6 +176,8 @@ FixMPMDt::Limit FixMPMDt::find_limit() const
 
 void FixMPMDt::setup_pre_force(int)
 {
+  for (auto *ifix : modify->get_fix_by_style("^mpm$"))
+    dynamic_cast<FixMPM *>(ifix)->watch_volume = strain > 0.0;
   limit = find_limit();
   if (continues && update->dt == dt_left && fabs(limit.dt - limit_left) <= 1.0e-9 * limit_left) {
     update->dt_default = 0;
@@ -158,11 +186,23 @@ void FixMPMDt::setup_pre_force(int)
   if (limit.dt < NO_POINTS) set_dt(fraction * limit.dt);
 }
 
-/* ---------------------------------------------------------------------- */
+/* ----------------------------------------------------------------------
+   the limit of strain is kept at once, as in an impact the next look could be too late
+------------------------------------------------------------------------- */
 
 void FixMPMDt::end_of_step()
 {
+  if (update->ntimestep % look_every) {
+    const Limit steps = smallest(strain_limit_local());
+    if (!(fraction * steps.dt < update->dt)) return;
+    limit = steps;
+    set_dt(fraction * limit.dt);
+    return;
+  }
   limit = find_limit();
+  carried = {NO_POINTS, 0.0, 0.0};
+  for (auto *ifix : modify->get_fix_by_style("^mpm$"))
+    dynamic_cast<FixMPM *>(ifix)->volume_rate = {0.0, 0};
   if (limit.dt < NO_POINTS) set_dt(std::min(fraction * limit.dt, grow * update->dt));
 }
 
@@ -223,19 +263,21 @@ double FixMPMDt::compute_vector(int i)
 
 void FixMPMDt::write_restart(FILE *fp)
 {
-  const double state[3] = {update->dt, find_limit().dt, (double) nchanges};
+  const Limit steps = smallest(strain_limit_local());
+  const double state[5] = {update->dt, find_limit().dt, (double) nchanges, steps.dt, steps.tag};
   if (comm->me) return;
   const int size = sizeof(state);
   fwrite(&size, sizeof(int), 1, fp);
-  fwrite(state, sizeof(double), 3, fp);
+  fwrite(state, sizeof(double), 5, fp);
 }
 
 void FixMPMDt::restart(char *buf)
 {
-  double state[3];
+  double state[5];
   memcpy(state, buf, sizeof(state));
   dt_left = state[0];
   limit_left = state[1];
   nchanges = (bigint) state[2];
+  if (strain > 0.0) carried = {state[3], 0.0, state[4]};
   continues = true;
 }

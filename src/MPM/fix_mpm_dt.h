@@ -19,7 +19,8 @@ FixStyle(mpm/dt,FixMPMDt);
 
 namespace LAMMPS_NS {
 
-/** Time step as a fraction of the smallest h/(c + |v|) over all material points. */
+/** Time step as a fraction of the smallest h/(c + |v|) over all material points, and with a limit of
+ *  their change of volume in a step. */
 class FixMPMDt : public Fix {
  public:
   FixMPMDt(class LAMMPS *, int, char **);
@@ -35,11 +36,13 @@ class FixMPMDt : public Fix {
 
  private:
   double fraction, grow, dt_min, dt_max;    // dt_min, dt_max: 0 = none
+  double strain;                            // largest change of volume in a step, 0: any
+  int look_every;                           // steps between looks at wave speeds
 
   /** The point that limits the time step. */
   struct Limit {
-    double dt;       // its h/(c + |v|); 0: it has no valid wave speed
-    double speed;    // its wave speed
+    double dt;       // its h/(c + |v|); 0: it has no valid wave speed; strain: dt/fraction
+    double speed;    // its wave speed, 0: limit of strain
     double tag;
   };
   Limit limit;
@@ -48,8 +51,11 @@ class FixMPMDt : public Fix {
   // what the last run left, to see whether anything was changed since
   bool continues;
   double dt_left, limit_left;
+  Limit carried;    // strain since the last look, from the restart file
 
   Limit find_limit() const;
+  Limit strain_limit_local() const;
+  Limit smallest(Limit) const;
   void set_dt(double);
 };
 

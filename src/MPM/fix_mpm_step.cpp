@@ -323,6 +323,7 @@ void FixMPM::material_update(const PointRows &r, const Run &run, int first, int 
 
   material->material->update(b);
   if (material->watching) material->watch_ranges(b, first);
+  if (watch_volume) note_volume_rate(b, first);
   if (!total && !material->material->uses_F()) batch_kernels->forget_shape(b);
 
   const int bad = batch_kernels->store(b, F, tau);
