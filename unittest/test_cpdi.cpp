@@ -270,9 +270,11 @@ INSTANTIATE_TEST_SUITE_P(Shapes, Vortex,
 TEST(VortexVolume, FreeCorners)
 {
   if (nranks() > 1) GTEST_SKIP() << "forces are those of one rank";
-  double volume[2];
-  EXPECT_LT(vortex("shape cpdi2 transfer apic", 10, 1.0, volume), 0.09);
-  EXPECT_NEAR(volume[0] / volume[1], 1.0, 1e-10);
+  for (const char *options : {"shape cpdi2 transfer apic", "shape cpdi2 transfer apic scheme musl"}) {
+    double volume[2];
+    EXPECT_LT(vortex(options, 10, 1.0, volume), 0.09);
+    EXPECT_NEAR(volume[0] / volume[1], 1.0, 1e-10) << options;
+  }
 }
 
 // D2: cantilever of 4 x 1 m under its weight; finite elements: -3.3027 m
@@ -351,6 +353,70 @@ thermo 10000
     Scene deleted;
     deleted.commands(replaced(s, "1.0 transfer", "1.0 bad delete transfer") + "run 700\n");
     EXPECT_LT(deleted.evaluate("f_g"), 96.0);
+  }
+}
+
+// blocks are half as wide in 3d, and so is what a domain may reach
+
+TEST(Size, LimitIn3d)
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  for (const char *shape : {"cpdi", "cpdi2"})
+    EXPECT_THAT(error_of(strprintf(R"(
+units lj
+boundary f p p
+atom_style mpm
+region box block -40 40 0 2 0 2
+create_box 1 box
+fix g all mpm 1.0 transfer flip 1.0 scheme musl shape %s
+region bar block -2 2 0 2 0 2
+create_points 1 region bar ppc 2
+fix m all mpm/material density 1 neohookean 1e-10 0.3
+variable v atom 0.1*x
+velocity all set v_v 0 0
+timestep 0.5
+thermo 10000
+run 400
+)",
+                                   shape)),
+                ::testing::ContainsRegex("Material point [0-9]+ at .* has a domain with a corner "
+                                         "3\\.[0-9]* node spacings away at step [0-9]+, the limit is 3"));
+}
+
+// shear by 6, at which domains of 3.5 cells lie around a periodic box of 3 cells more than once: as in a box
+// of many cells
+
+TEST(Periodic, DomainsAreWiderThanTheBox)
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  for (const char *options : {"shape cpdi", "shape cpdi2 transfer flip 1.0 scheme musl"}) {
+    SCOPED_TRACE(options);
+    double shear[2];
+    for (const int k : {0, 1}) {
+      Scene run;
+      run.commands(strprintf(R"(
+units lj
+dimension 2
+boundary p p p
+atom_style mpm
+region box block 0 %d 0 8 -0.5 0.5
+create_box 1 box
+fix g all mpm 1.0 %s
+create_points 1 region box ppc 2
+fix m all mpm/material density 3.0 neohookean 0.001 0.3
+variable vx atom 0.4*sin(PI*y/4)+0.03*cos(PI*y/4)
+variable vy atom 0.02*cos(PI*y/4)
+velocity all set v_vx v_vy 0
+timestep 0.05
+thermo 1000
+run 480
+)",
+                             k ? 12 : 3, options));
+      shear[k] = 0.0;
+      for (const auto &s : run.gather()) shear[k] = std::max(shear[k], s.F[1]);
+    }
+    EXPECT_GT(shear[0], 6.0);
+    EXPECT_NEAR(shear[0], shear[1], 1e-11);
   }
 }
 

@@ -393,7 +393,8 @@ class FixMPM : public Fix {
                const int base[3], int box[6]);
   template <class Map> void map_apart(const MPM_NS::TransferKernels &, const Map &);
   template <class Gather> void gather_apart(const MPM_NS::TransferKernels &, const Gather &);
-  template <class Use> void visit_gradients(double *of_all, const Use &);
+  template <class Use>
+  void visit_gradients(double *of_all, const Use &, double *corners_new = nullptr);
   template <class Weigh>
   void map_some(const MPM_NS::PointRows &, const MPM_NS::TransferStep &, MPM_NS::P2G,
                 const std::vector<char> &near, int lane, int nlane, const Weigh &);
@@ -441,7 +442,8 @@ class FixMPM : public Fix {
   void check_dt();
   double stable_share(double size) const;
   void warn_dt();
-  void point_is_bad(int i, const std::string &what);
+  void point_is_bad(int i, const std::string &what,
+                    const std::string &cure = "it keeps its previous deformation");
   void handle_bad_points();
   bool may_delete() const { return policy == DELETE || delete_failed; }
   void delete_points(const std::vector<tagint> &, bool warn);

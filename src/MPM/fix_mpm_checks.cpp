@@ -301,15 +301,14 @@ std::string FixMPM::point_state(int i) const
 
 /* ---------------------------------------------------------------------- */
 
-void FixMPM::point_is_bad(int i, const std::string &what)
+void FixMPM::point_is_bad(int i, const std::string &what, const std::string &cure)
 {
   if (policy == ERROR)
     error->one(FLERR, "{} {} at step {}: try a smaller time step (fix mpm/dt), more points per "
                "cell, or a smoother shape function; fix mpm ... bad warn|delete goes on",
                point_state(i), what, update->ntimestep);
   if (policy == WARN && nbad_total + (bigint) bad_points.size() < 10)
-    error->warning(FLERR, "{} {} at step {}: it keeps its previous deformation", point_state(i),
-                   what, update->ntimestep);
+    error->warning(FLERR, "{} {} at step {}: {}", point_state(i), what, update->ntimestep, cure);
   bad_points.push_back(atom->tag[i]);
 }
 

@@ -160,7 +160,7 @@ void FixMPM::check_corners()
       double x[24], w[8];
       const double size = domain_corners(i, x, w);
       if (size > 0.0 && *std::min_element(w, w + n) >= 0.0) continue;
-      point_is_bad(i, "has a domain that is turned inside out");
+      point_is_bad(i, "has a domain that is turned inside out", "it becomes the parallelogram of F");
       if (policy == WARN) reset_corners(i);
     }
 }

@@ -51,10 +51,13 @@ void FixMPM::gather_apart(const MPM_NS::TransferKernels &with, const Gather &gat
 }
 
 /** Velocity gradients of the nodes' velocities at the points: use(run, first, n, base, L) for up to
- *  BATCH of them, L in the array of_all of all points if that is not null. */
-template <class Use> void FixMPM::visit_gradients(double *of_all, const Use &use)
+ *  BATCH of them, L in the array of_all of all points if that is not null; corners of CPDI2 that have moved
+ *  with these velocities go to corners_new. */
+template <class Use>
+void FixMPM::visit_gradients(double *of_all, const Use &use, double *corners_new)
 {
-  const MPM_NS::PointRows r = rows();
+  MPM_NS::PointRows r = rows();
+  r.corners_new = corners_new;
   const MPM_NS::TransferStep s = step_data();
   double batch_gradients[9 * MPM_NS::BATCH];
   for (const auto &a : active) {

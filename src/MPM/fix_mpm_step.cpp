@@ -274,7 +274,8 @@ static void shift_gradient(int dim, int n, double dt, double *gradients)
 }
 
 /* ----------------------------------------------------------------------
-   velocity gradients of the nodes' velocities at the points, and the material update
+   velocity gradients of the nodes' velocities at the points, and the material update. With MUSL, corners
+   move with the velocities that were mapped back: domains that stress does not see are not held by it
 ------------------------------------------------------------------------- */
 
 void FixMPM::gradient_and_material(double dt, double shift)
@@ -293,7 +294,8 @@ void FixMPM::gradient_and_material(double dt, double shift)
                     if (R) refer_gradients(i, n, L);
                     if (axisymmetric) hoop_of_nodes(r, s, i, i + n, base, dt, total ? 0.0 : shift);
                     if (!fbar) material_update(r, run, i, n, L, dt);
-                  });
+                  },
+                  corners && scheme == MUSL ? corners_late.data() : nullptr);
   if (fbar) averaged_material(gradients.data(), dt);
 }
 

@@ -180,7 +180,7 @@ struct TransferKernels {
   P2G p2g_momentum;    ///< mass and momentum only, force reals untouched
   P2G p2g_force;       ///< force only (split: the force reals; merged: dt * force on the momentum)
   G2P g2p;             ///< velocity, position, C, velocity gradient
-  G2P g2p_gradient;    ///< velocity gradient only, into L; points untouched, always returns 0
+  G2P g2p_gradient;    ///< velocity gradient only, into L, and corners_new; else points stay; returns 0
   TileIO flush;        ///< tile -> nodes, all reals
   TileIO load;         ///< nodes -> tile
   TileIO prefetch;     ///< nodes of the box into the cache, for a flush or load some time later

@@ -567,13 +567,13 @@ int gather(const PointRows &rows, const TransferStep &transfer, int first, int l
       if (L)
         for (int a = 0; a < DIM; a++) store_lanes<DIM>(L + DIM * (DIM * (i - first) + a), gradient[a]);
 
+      Vec<4> mean, add{};
+      if constexpr (increment) {
+        mean = half<0>(v);
+        add = step.flip * (strided<DIM, 1>(points.v + 3 * i) - half<1>(v));
+      } else
+        mean = v;
       if constexpr (UPDATE) {
-        Vec<4> mean, add{};
-        if constexpr (increment) {
-          mean = half<0>(v);
-          add = step.flip * (strided<DIM, 1>(points.v + 3 * i) - half<1>(v));
-        } else
-          mean = v;
         // the point goes to its center if its corners may move along
         const bool stays = SHAPE == CPDI2 && !points.corners_new;
         const Vec<4> xnew = (stays ? strided<DIM, 1>(points.x + 3 * i)
@@ -583,12 +583,12 @@ int gather(const PointRows &rows, const TransferStep &transfer, int first, int l
         if (DIM == 2) points.xnew[3 * i + 2] = points.x[3 * i + 2];
         store_lanes<DIM>(points.xnew + 3 * i, xnew);
         store_lanes<DIM>(points.v + 3 * i, mean + add);
-        if (SHAPE == CPDI2 && points.corners_new) {
-          double *corner = points.corners_new + DIM * N * i;
-          for (int c = 0; c < N; c++, corner += DIM)
-            store_lanes<DIM>(corner, strided<DIM, GROUP>(domains.x[DIM * c] + l) +
-                                 step.dt * (at[c] - mean));
-        }
+      }
+      if (SHAPE == CPDI2 && points.corners_new) {
+        double *corner = points.corners_new + DIM * N * i;
+        for (int c = 0; c < N; c++, corner += DIM)
+          store_lanes<DIM>(corner, strided<DIM, GROUP>(domains.x[DIM * c] + l) +
+                               step.dt * (at[c] - mean));
       }
     }
   }

@@ -137,12 +137,20 @@ int g2p_gradient(const PointRows &points, const TransferStep &step, int first, i
   for (int p = first; p < last; p++, L += DIM * DIM) {
     const Corners<DIM, SHAPE> corners(points, p, step, base);
     std::fill(L, L + DIM * DIM, 0.0);
-    for (int c = 0; c < 1 << DIM; c++) {
-      double v[3];
-      at_corner<DIM, NREAL>(corners.node[c], tile, 0, v);
-      for (int j = 0; j < DIM; j++)
-        for (int i = 0; i < DIM; i++) L[DIM * j + i] += v[i] * corners.g[DIM * c + j];
+    constexpr int N = 1 << DIM;
+    double at[N][3], v[3] = {0.0, 0.0, 0.0};
+    for (int c = 0; c < N; c++) {
+      at_corner<DIM, NREAL>(corners.node[c], tile, 0, at[c]);
+      for (int i = 0; i < DIM; i++) {
+        v[i] += corners.w[c] * at[c][i];
+        for (int j = 0; j < DIM; j++) L[DIM * j + i] += at[c][i] * corners.g[DIM * c + j];
+      }
     }
+    if (SHAPE == CPDI2 && points.corners_new)
+      for (int c = 0; c < N; c++)
+        for (int i = 0; i < DIM; i++)
+          points.corners_new[DIM * (N * p + c) + i] =
+              corners.x[DIM * c + i] + step.dt * (at[c][i] - v[i]);
   }
   return 0;
 }
@@ -181,12 +189,12 @@ int g2p(const PointRows &points, const TransferStep &step, int first, int last, 
   for (int p = first; p < last; p++) {
     const Corners<DIM, SHAPE> corners(points, p, step, base);
     bad = bad || !corners.good;
-    double v[3] = {0.0, 0.0, 0.0}, old[3] = {0.0, 0.0, 0.0}, at[N][3], xnew[3];
+    double v[3] = {0.0, 0.0, 0.0}, old[3] = {0.0, 0.0, 0.0}, xnew[3];
     for (int c = 0; c < N; c++) {
-      at_corner<DIM, NREAL>(corners.node[c], tile, 0, at[c]);
-      for (int i = 0; i < DIM; i++) v[i] += corners.w[c] * at[c][i];
-      if (!adds_change(TRANSFER)) continue;
       double a[3];
+      at_corner<DIM, NREAL>(corners.node[c], tile, 0, a);
+      for (int i = 0; i < DIM; i++) v[i] += corners.w[c] * a[i];
+      if (!adds_change(TRANSFER)) continue;
       at_corner<DIM, NREAL>(corners.node[c], tile, 4, a);
       for (int i = 0; i < DIM; i++) old[i] += corners.w[c] * a[i];
     }
@@ -208,11 +216,6 @@ int g2p(const PointRows &points, const TransferStep &step, int first, int last, 
       bad = bad || !std::isfinite(xnew[i]);
     }
     for (int i = 0; i < 3; i++) points.xnew[3 * p + i] = xnew[i];
-    if (SHAPE == CPDI2 && points.corners_new)
-      for (int c = 0; c < N; c++)
-        for (int i = 0; i < DIM; i++)
-          points.corners_new[DIM * (N * p + c) + i] =
-              corners.x[DIM * c + i] + step.dt * (at[c][i] - v[i]);
   }
   return bad;
 }
