@@ -25,6 +25,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <regex>
 #include <set>
 #include <sstream>
 
@@ -158,6 +159,33 @@ TEST(Library, MaterialFilesAreComplete)
     EXPECT_TRUE(names.count(name)) << name;
 }
 
+// where a file says that its moduli come from E and nu, they do, to the digits that it has; the bulk
+// modulus of a shock equation of state has sources of its own
+
+TEST(Library, ModuliAreThoseOfEAndNu)
+{
+  const std::regex words("E = ([0-9.]+) ([GM])Pa, nu = ([0-9]\\.[0-9]+)"), shock("\\neos +shock ");
+  int files = 0;
+  for (const auto &entry :
+       std::filesystem::directory_iterator(std::string(MPM_SOURCE_DIR) + "/potentials")) {
+    const std::string text = text_of(entry.path());
+    std::smatch found;
+    if (!std::regex_search(text, found, words) || text.find("\nstrength") == std::string::npos) continue;
+    SCOPED_TRACE(entry.path().stem().string());
+    files++;
+    const double E = std::stod(found[1]) * (found[2] == "G" ? GPa : MPa), nu = std::stod(found[3]);
+    const auto material = make(definition(entry.path().stem().string()));
+    const double e = 1e-7;
+    MaterialPoint sheared(*material), pressed(*material);
+    move_to(sheared, {1, e, 0, 0, 1, 0, 0, 0, 1});
+    EXPECT_NEAR(sheared.stress(3) / e / (0.5 * E / (1 + nu)), 1.0, 5e-3);
+    if (std::regex_search(text, shock)) continue;
+    move_to(pressed, {1 - e, 0, 0, 0, 1 - e, 0, 0, 0, 1 - e});
+    EXPECT_NEAR(pressed.pressure() / (3 * e) / (E / (3 * (1 - 2 * nu))), 1.0, 5e-3);
+  }
+  EXPECT_GE(files, 14);
+}
+
 // longitudinal speeds of sound, as handbooks and tables for ultrasonic testing have them (such as the
 // CRC Handbook of Chemistry and Physics): density, bulk and shear modulus of the files come from
 // tests at high rates, and must be those of the material all the same. (Not so in PMMA_elastic, with
@@ -167,7 +195,7 @@ TEST(Library, SpeedsOfSoundAreThoseOfHandbooks)
 {
   const struct {
     const char *name;
-    double speed;
+    double speed, tolerance = 0.02;    // where alloys, glasses, ices, or strong shocks differ: 5 %
   } cases[] = {{"Cu_OFHC_JC", 4760},
                {"Cu_OFHC_SCG", 4760},
                {"Cu_OFHC_ZA", 4760},
@@ -177,23 +205,23 @@ TEST(Library, SpeedsOfSoundAreThoseOfHandbooks)
                {"Al_6061_T6_SCG", 6400},
                {"Al_7075_T651_JC", 6350},
                {"Steel_1006_JC", 5960},
-               {"Steel_4340_JC", 5940},
+               {"Steel_4340_JC", 5850},
                {"Iron_Armco_JC", 5950},
                {"Iron_Armco_ZA", 5950},
-               {"Weldox_460E_JC", 5960},
+               {"Weldox_460E_JC", 5960, 0.05},
                {"W_alloy_JC", 5220},
-               {"W_alloy_SCG", 5220},
-               {"Ti_6Al4V_JC", 6150},
+               {"W_alloy_SCG", 5180},
+               {"Ti_6Al4V_JC", 6130},
                {"Ta_SCG", 4160},
-               {"Ice_polycrystal", 3980},
-               {"Glass_soda_lime", 5840},
+               {"Ice_polycrystal", 3980, 0.05},
+               {"Glass_soda_lime", 5840, 0.05},
                {"Water_Tait", 1482},
                {"Glycerol", 1920},
-               {"Hg_shock", 1450},
+               {"Hg_shock", 1450, 0.05},
                {"Air", 340}};
   for (const auto &c : cases) {
     const auto material = make(definition(c.name));
-    EXPECT_NEAR(MaterialPoint(*material).wave_speed() / c.speed, 1.0, 0.05) << c.name;
+    EXPECT_NEAR(MaterialPoint(*material).wave_speed() / c.speed, 1.0, c.tolerance) << c.name;
   }
 }
 
