@@ -325,8 +325,8 @@ void FixMPMElements::init()
       error->all(FLERR, "Fix mpm {} axisymmetric cannot be used with fix mpm/elements {}, whose elements "
                  "are of plane strain: use create_points elements with shape cpdi2", field->id, id);
     if (field->every > 1)
-      error->all(FLERR, "Fix mpm {} every cannot be used with fix mpm/elements {}: give the other "
-                 "points a fix mpm of their own", field->id, id);
+      error->all(FLERR, "Fix mpm {} every cannot be used with fix mpm/elements {}, which strains elements "
+                 "in each step: use every 1", field->id, id);
   }
 
   // nodes of elements may be ghosts; what has been stretched since is asked for with comm_modify

@@ -48,6 +48,7 @@
 #include "force.h"
 #include "math_const.h"
 #include "modify.h"
+#include "update.h"
 
 #include <algorithm>
 #include <cmath>
@@ -487,13 +488,13 @@ void FixMPMImmersed::find_grains(double dt)
     for (const auto &mover : movers)
       if (atom->mask[i] & mover.groupbit) {
         g.mass = atom->rmass[i];
-        ahead = mover.ahead;
+        ahead = mover.ahead + 0.5 * (field->every - 1);    // in the mean over the steps to come
       }
     for (int d = 0; d < 3; d++) {
       g.buoyancy[d] = g.immersed * density * volume(i) * (g.gain[d] - dt * gravity[d]);
       g.velocity[d] = atom->v[i][d];
       if (std::isfinite(g.mass))
-        g.velocity[d] += ahead * dt * force->ftm2v * atom->f[i][d] / g.mass;
+        g.velocity[d] += ahead * update->dt * force->ftm2v * atom->f[i][d] / g.mass;
     }
     grains.push_back(g);
   }

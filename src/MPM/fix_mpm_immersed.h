@@ -46,7 +46,7 @@ class FixMPMImmersed : public Fix, public MPMNodeAction {
 
   struct Mover {    // a fix that integrates grains
     int groupbit;
-    double ahead;    // share of a step that forces still act before the grain moves
+    double ahead;    // steps that forces still act before the grain moves
   };
   struct Grain {
     int i, first;          // atom, and its first stencil entry
