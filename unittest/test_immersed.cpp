@@ -39,6 +39,43 @@ static std::string rest(const std::string &fix, const std::string &fluid = "eos 
       "thermo 1000\nthermo_modify norm no\n";
 }
 
+/** Pressure of the points of fluid over their height along an axis, in a part of a column that is periodic
+ *  over the length. */
+struct Pressure {
+  double height = 0.0, mean = 0.0, slope = 0.0;
+
+  Pressure(Scene &run, int axis, double low, double high, double length)
+  {
+    double n = 0.0, xx = 0.0, xp = 0.0;
+    for (const auto &s : run.gather()) {
+      const double x = fmod(s.x[axis], length);
+      if (s.type != 1 || x < low || x > high) continue;
+      const double p = -(s.stress[0] + s.stress[1] + s.stress[2]) / 3.0;
+      n++;
+      height += x;
+      mean += p;
+      xx += x * x;
+      xp += x * p;
+    }
+    height /= n;
+    mean /= n;
+    slope = (xp / n - height * mean) / (xx / n - height * height);
+  }
+};
+
+/** Pressure gradient inside of a bed from 4 to 12 of a column of 16, and pressure drop over it, of fluid that
+ *  is driven through it by a force per mass. */
+struct Drop {
+  double gradient, all;
+
+  Drop(Scene &run, int axis, double force)
+  {
+    const Pressure before(run, axis, 1.0, 2.5, 16.0), after(run, axis, 13.5, 15.0, 16.0);
+    gradient = force - Pressure(run, axis, 5.5, 10.5, 16.0).slope;
+    all = before.mean - after.mean + force * (after.height - before.height);
+  }
+};
+
 /** The quadratic spline around zero. */
 static double spline(double x)
 {
@@ -57,8 +94,9 @@ TEST(Immersed, SinksWithTheTerminalVelocity)
     int every = 1;
   };
   // in the first two, a time step is longer than the time of relaxation
-  for (const auto &c : {Case{0.2, 1.0, false}, Case{0.2, 1.0, true}, Case{0.5, 0.1, false},
-                        Case{0.2, 0.01, false}, Case{0.2, 1.0, false, 10}, Case{0.2, 1.0, true, 10}}) {
+  for (const auto &c :
+       {Case{0.2, 1.0, false}, Case{0.2, 1.0, true}, Case{0.5, 0.1, false}, Case{0.2, 0.01, false},
+        Case{0.2, 1.0, false, 10}, Case{0.2, 1.0, true, 10}}) {
     const double d = c.diameter, mu = c.viscosity, weight = 2.0 * PI / 6.0 * d * d * d;
     double low = 0.0, high = 100.0;
     for (int k = 0; k < 80; k++) {
@@ -66,8 +104,9 @@ TEST(Immersed, SinksWithTheTerminalVelocity)
       const bool above = 3.0 * PI * mu * d * v * (1.0 + 0.15 * pow(v * d / mu, 0.687)) > weight;
       (above ? high : low) = v;
     }
-    const std::string move = "fix move grains nve/sphere\n", start_of_box =
-        head("0 8 0 8 0 12", "p p p", strprintf("transfer apic every %d", c.every));
+    const std::string move = "fix move grains nve/sphere\n",
+                      start_of_box = head("0 8 0 8 0 12", "p p p",
+                                          strprintf("transfer apic every %d", c.every));
     Scene run;
     run.commands(
         (c.before ? replaced(start_of_box, "fix grid", "group grains type 2\n" + move + "fix grid")
@@ -76,8 +115,7 @@ TEST(Immersed, SinksWithTheTerminalVelocity)
         strprintf("set type 2 diameter %g density 3.0\n", d) +
         rest(strprintf("%g drag schiller gravity 0 0 -1", mu),
              strprintf("eos tait 500.0 7 viscosity newtonian %g", mu)) +
-        (c.before ? "" : move) +
-        "fix g grains gravity 1.0 vector 0 0 -1\n" +
+        (c.before ? "" : move) + "fix g grains gravity 1.0 vector 0 0 -1\n" +
         strprintf("timestep %.17g\nrun %d\n", 0.01 / c.every, 350 * c.every));
     const double start = run.evaluate("xcm(grains,z)");
     run.commands(strprintf("run %d\n", 50 * c.every));
@@ -108,18 +146,7 @@ TEST(Immersed, BuoyancyIsTheGradientOfPressure)
       "fix g all gravity 1.0 vector 0 0 -1\ntimestep 0.008\nrun 2500\n"
       "fix mean all ave/time 1 500 500 f_drag[6] f_drag[3] f_low[6] f_low[3]\nrun 500\n");
   const double volume = PI / 6.0 * 0.6 * 0.6 * 0.6;
-  // line through the pressure of points, over height, in the middle of the column
-  double n = 0.0, z = 0.0, zz = 0.0, p = 0.0, zp = 0.0;
-  for (const auto &s : run.gather()) {
-    if (s.type != 1 || s.x[2] < 3.0 || s.x[2] > 11.0) continue;
-    const double pressure = -(s.stress[0] + s.stress[1] + s.stress[2]) / 3.0;
-    n++;
-    z += s.x[2];
-    zz += s.x[2] * s.x[2];
-    p += pressure;
-    zp += s.x[2] * pressure;
-  }
-  const double slope = (n * zp - z * p) / (n * zz - z * z);
+  const double slope = Pressure(run, 2, 3.0, 11.0, 20.0).slope;    // in the middle of the column
   const double *const mean = run.fix_vector("mean", 4);
   const double buoyancy = mean[0] / 2.0, all = buoyancy + mean[1] / 2.0;
   EXPECT_NEAR(measured("buoyancy / (volume * gradient of pressure)", -buoyancy / (slope * volume)),
@@ -323,39 +350,15 @@ TEST(Immersed, PressureDropOfABedIsErgun)
         rest(strprintf("%g drag ergun", c.viscosity)) +
         strprintf("fix g water gravity %g vector 0 0 1\ntimestep 0.01\nrun 800\n", c.force));
     const double flux = run.evaluate("vcm(water,z)");
-    double n = 0.0, z = 0.0, zz = 0.0, p = 0.0, zp = 0.0, outer[2] = {0.0}, height[2] = {0.0},
-           count[2] = {0.0};
-    int grains = 0;
-    for (const auto &s : run.gather()) {
-      if (s.type == 2) {
-        grains++;
-        continue;
-      }
-      const double at = fmod(s.x[2], 16.0),
-                   pressure = -(s.stress[0] + s.stress[1] + s.stress[2]) / 3.0;
-      const int k = at > 1.0 && at < 2.5 ? 0 : (at > 13.5 && at < 15.0 ? 1 : -1);
-      if (k >= 0) {
-        outer[k] += pressure;
-        height[k] += at;
-        count[k]++;
-      }
-      if (at < 5.5 || at > 10.5) continue;
-      n++;
-      z += at;
-      zz += at * at;
-      p += pressure;
-      zp += at * pressure;
-    }
-    const double gradient = c.force - (n * zp - z * p) / (n * zz - z * z);
-    const double drop = outer[0] / count[0] - outer[1] / count[1] +
-        c.force * (height[1] / count[1] - height[0] / count[0]);
+    const Drop drop(run, 2, c.force);
+    const bigint grains = run.lmp->group->count(run.lmp->group->find("bed"));
     const double solid = grains * PI / 6.0 * d * d * d / (4.0 * 4.0 * 8.0), eps = 1.0 - solid;
     EXPECT_NEAR(measured("share of volume of the grains", solid), PI / 6.0, 1.0e-6);
     const double ergun = 1.0 / (eps * eps * eps) *
         (150.0 * c.viscosity * solid * solid * flux / (d * d) + 1.75 * solid * flux * flux / d);
     const auto at = strprintf(" / Ergun at Re %.3g", flux * d / c.viscosity);
-    EXPECT_NEAR(measured("pressure gradient in the bed" + at, gradient / ergun), 1.0, 0.02);
-    EXPECT_NEAR(measured("pressure drop over the bed" + at, drop / (8.0 * ergun)), 1.0, 0.05);
+    EXPECT_NEAR(measured("pressure gradient in the bed" + at, drop.gradient / ergun), 1.0, 0.02);
+    EXPECT_NEAR(measured("pressure drop over the bed" + at, drop.all / (8.0 * ergun)), 1.0, 0.05);
     // in the end all of the force on the fluid is on the bed
     const double *const on_bed = run.fix_vector("drag", 6);
     EXPECT_NEAR(measured("force on the bed", (on_bed[2] + on_bed[5]) / (256.0 * c.force)), 1.0,
@@ -504,9 +507,11 @@ TEST(ImmersedPlane, LawsOfDrag)
   // the last one is denser than any packing
   for (const double cell : {1.0, 0.625, 5.0 / 9.0, 5.0 / 11.0})
     for (const double mu : {1.0, 0.05, 1.0e-4}) {
-      const double eps = std::max(1.0 - PI / sqrt(12.0), 1.0 - area / (cell * cell)), Re = w * d / mu;
+      const double eps = std::max(1.0 - PI / sqrt(12.0), 1.0 - area / (cell * cell)),
+                   Re = w * d / mu;
       const double single = Re < 1000.0 ? 24.0 / Re * (1.0 + 0.15 * pow(Re, 0.687)) : 0.44;
-      const double square = 0.75 * w * w / d;    // of a coefficient to the force on a sphere per volume
+      const double square =
+          0.75 * w * w / d;    // of a coefficient to the force on a sphere per volume
       const double ergun =
           (150.0 * mu * (1.0 - eps) * w / (d * d) + 1.75 * w * w / d) / (eps * eps * eps);
       const struct {
@@ -516,7 +521,8 @@ TEST(ImmersedPlane, LawsOfDrag)
                   {"schiller", square * single},
                   {"ergun", ergun},
                   {"gidaspow", eps < 0.8 ? ergun : square * single * pow(eps, -4.65)},
-                  {"difelice", square * pow(0.63 + 4.8 / sqrt(Re), 2.0) / eps *
+                  {"difelice",
+                   square * pow(0.63 + 4.8 / sqrt(Re), 2.0) / eps *
                        pow(eps, -(3.7 - 0.65 * exp(-0.5 * pow(1.5 - log10(Re), 2.0))))}};
       for (const auto &l : laws)
         EXPECT_NEAR(drag_on_disc(cell, d, strprintf("%g drag %s", mu, l.law), w) / (area * l.force),
@@ -536,10 +542,11 @@ TEST(ImmersedPlane, ErgunIsNearCylindersInSlowFlow)
   } rows[] = {{0.2, 51.53, 0.13}, {0.3, 102.90, 0.01}, {0.4, 217.89, 0.01}, {0.5, 532.55, 0.14}};
   for (const auto &row : rows) {
     const double cell = 0.625, mu = 10.0, speed = 1.0e-4;
-    const double force =
-        drag_on_disc(cell, cell * sqrt(4.0 * row.solid / PI), strprintf("%g drag ergun", mu), speed);
-    EXPECT_NEAR(measured(strprintf("table / drag at %g", row.solid), row.force * mu * speed / force), 1.0,
-                row.error);
+    const double force = drag_on_disc(cell, cell * sqrt(4.0 * row.solid / PI),
+                                      strprintf("%g drag ergun", mu), speed);
+    EXPECT_NEAR(
+        measured(strprintf("table / drag at %g", row.solid), row.force * mu * speed / force), 1.0,
+        row.error);
   }
 }
 
@@ -558,25 +565,16 @@ TEST(ImmersedPlane, BuoyancyIsTheGradientOfPressure)
                "timestep 0.008\nrun 2500\n"
                "fix mean all ave/time 1 500 500 f_drag[5] f_drag[2]\nrun 500\n");
   const double volume = 0.25 * PI * 0.3 * 0.3;
-  double n = 0.0, y = 0.0, yy = 0.0, p = 0.0, yp = 0.0;
-  for (const auto &s : run.gather()) {
+  for (const auto &s : run.gather())
     if (s.type == 2) {    // as dense as water
       EXPECT_NEAR(s.x[1], s.x[0] < 2.0 ? 7.2 : 5.4, 0.1);
       EXPECT_LT(fabs(s.v[1]), 0.02);
     }
-    if (s.type == 2 || s.x[1] < 3.0 || s.x[1] > 11.0) continue;
-    const double pressure = -(s.stress[0] + s.stress[1] + s.stress[2]) / 3.0;
-    n++;
-    y += s.x[1];
-    yy += s.x[1] * s.x[1];
-    p += pressure;
-    yp += s.x[1] * pressure;
-  }
-  const double slope = (n * yp - y * p) / (n * yy - y * y);
+  const double slope = Pressure(run, 1, 3.0, 11.0, 20.0).slope;
   const double *const mean = run.fix_vector("mean", 2);
   const double buoyancy = 0.5 * mean[0], all = buoyancy + 0.5 * mean[1];
-  EXPECT_NEAR(measured("buoyancy / (volume * gradient of pressure)", -buoyancy / (slope * volume)), 1.0,
-              0.02);
+  EXPECT_NEAR(measured("buoyancy / (volume * gradient of pressure)", -buoyancy / (slope * volume)),
+              1.0, 0.02);
   EXPECT_NEAR(measured("buoyancy / weight of the displaced water", buoyancy / volume), 1.0, 0.01);
   EXPECT_NEAR(measured("the same with drag", all / volume), 1.0, 0.002);
 }
@@ -597,39 +595,15 @@ TEST(ImmersedPlane, PressureDropOfABedIsErgun)
                  rest(strprintf("%g drag ergun", mu)) +
                  strprintf("fix g water gravity %g vector 0 1 0\ntimestep 0.01\nrun 800\n", pull));
     const double flux = run.evaluate("vcm(water,y)");
-    double n = 0.0, y = 0.0, yy = 0.0, p = 0.0, yp = 0.0, outer[2] = {0.0}, height[2] = {0.0},
-           count[2] = {0.0};
-    int grains = 0;
-    for (const auto &s : run.gather()) {
-      if (s.type == 2) {
-        grains++;
-        continue;
-      }
-      const double at = fmod(s.x[1], 16.0),
-                   pressure = -(s.stress[0] + s.stress[1] + s.stress[2]) / 3.0;
-      const int k = at > 1.0 && at < 2.5 ? 0 : (at > 13.5 && at < 15.0 ? 1 : -1);
-      if (k >= 0) {
-        outer[k] += pressure;
-        height[k] += at;
-        count[k]++;
-      }
-      if (at < 5.5 || at > 10.5) continue;
-      n++;
-      y += at;
-      yy += at * at;
-      p += pressure;
-      yp += at * pressure;
-    }
+    const Drop drop(run, 1, pull);
+    const bigint grains = run.lmp->group->count(run.lmp->group->find("bed"));
     ASSERT_EQ(grains, 14 * 28);
-    const double gradient = pull - (n * yp - y * p) / (n * yy - y * y);
-    const double drop = outer[0] / count[0] - outer[1] / count[1] +
-        pull * (height[1] / count[1] - height[0] / count[0]);
     const double solid = grains * 0.25 * PI * d * d / (4.0 * 8.0), eps = 1.0 - solid;
     const double ergun = 1.0 / (eps * eps * eps) *
         (150.0 * mu * solid * solid * flux / (d * d) + 1.75 * solid * flux * flux / d);
     const auto at = strprintf(" / Ergun at Re %.3g", flux * d / mu);
-    EXPECT_NEAR(measured("pressure gradient in the bed" + at, gradient / ergun), 1.0, 0.02);
-    EXPECT_NEAR(measured("pressure drop over the bed" + at, drop / (8.0 * ergun)), 1.0, 0.05);
+    EXPECT_NEAR(measured("pressure gradient in the bed" + at, drop.gradient / ergun), 1.0, 0.02);
+    EXPECT_NEAR(measured("pressure drop over the bed" + at, drop.all / (8.0 * ergun)), 1.0, 0.05);
     const double *const on_bed = run.fix_vector("drag", 6);
     EXPECT_NEAR(measured("force on the bed", (on_bed[1] + on_bed[4]) / (64.0 * pull)), 1.0, 0.02);
   }
@@ -643,11 +617,11 @@ TEST(ImmersedPlane, RandomPlacesAreNoEndsOfBeds)
   const double d = 0.1, area = 0.25 * PI * d * d;
   const int grains = 16000;
   Scene run;
-  run.commands(plane("0 30 0 30") + "create_points 1 box ppc 2\n" +
-               strprintf("create_atoms 2 random %d 4711 NULL\nset type 2 diameter %g density/disc 3\n",
-                         grains, d) +
-               rest("0.1 drag difelice") +
-               "velocity water set 0 1 0 units box\ntimestep 1.0e-5\nrun 1\n");
+  run.commands(
+      plane("0 30 0 30") + "create_points 1 box ppc 2\n" +
+      strprintf("create_atoms 2 random %d 4711 NULL\nset type 2 diameter %g density/disc 3\n",
+                grains, d) +
+      rest("0.1 drag difelice") + "velocity water set 0 1 0 units box\ntimestep 1.0e-5\nrun 1\n");
   const double eps = 1.0 - grains * area / 900.0, Re = d / 0.1;
   const double force = area * 0.75 / d * pow(0.63 + 4.8 / sqrt(Re), 2.0) *
       pow(eps, -4.7 + 0.65 * exp(-0.5 * pow(1.5 - log10(Re), 2.0)));
@@ -659,10 +633,12 @@ static std::string plane_cloud(const std::string &law, const std::string &grid =
   std::string text = plane("0 10 0 10", "p p p", grid) +
       "region blob block 1 9 1 8 INF INF\ncreate_points 1 region blob ppc 2\n";
   for (int k = 0; k < 64; k++)
-    text += strprintf("create_atoms 2 single %.1f %.1f 0\n", 1.6 + 0.9 * (k % 8), 1.7 + 0.9 * (k / 8));
+    text +=
+        strprintf("create_atoms 2 single %.1f %.1f 0\n", 1.6 + 0.9 * (k % 8), 1.7 + 0.9 * (k / 8));
   return text +
       "set type 2 diameter 0.5 density/disc 3.0\ngroup cloud type 2\n"
-      "displace_atoms cloud random 0.3 0.3 0 4711 units box\nvelocity cloud create 0.5 4711 loop geom\n"
+      "displace_atoms cloud random 0.3 0.3 0 4711 units box\nvelocity cloud create 0.5 4711 loop "
+      "geom\n"
       "velocity cloud set 0.4 0.2 0 sum yes units box\nvelocity all set NULL NULL 0\n" +
       rest(law) + move_discs + "compute e all mpm/energy\ntimestep 0.01\n";
 }
@@ -670,8 +646,10 @@ static std::string plane_cloud(const std::string &law, const std::string &grid =
 TEST(ImmersedPlane, KeepsMomentumAndTheLedger)
 {
   if (nranks() > 1) GTEST_SKIP() << "sums are those of one rank";
-  for (const char *law : {"0.1 drag gidaspow", "0.01 drag schiller gravity 0 -0.2 0", "1e5 drag ergun"})
-    for (const char *grid : {"transfer apic", "transfer flip 1.0 scheme musl", "shape cubic transfer apic"}) {
+  for (const char *law :
+       {"0.1 drag gidaspow", "0.01 drag schiller gravity 0 -0.2 0", "1e5 drag ergun"})
+    for (const char *grid :
+         {"transfer apic", "transfer flip 1.0 scheme musl", "shape cubic transfer apic"}) {
       Scene run;
       run.commands(plane_cloud(law, grid));
       const auto start = run.sums(), grains = run.sums(2);
@@ -698,10 +676,11 @@ TEST(ImmersedPlane, IsTheSameOnAnyNumberOfRanksAndAfterARestart)
   OnRanks ranks(plane_cloud(law), "run 60\n");
   EXPECT_LT(measured("ranks", ranks.difference()), 1.0e-9);
   for (int k = 0; k < 6; k++)
-    EXPECT_NEAR(ranks.serial.fix_vector("drag", 6)[k], ranks.parallel.fix_vector("drag", 6)[k], 1.0e-8);
+    EXPECT_NEAR(ranks.serial.fix_vector("drag", 6)[k], ranks.parallel.fix_vector("drag", 6)[k],
+                1.0e-8);
   Continued run(plane_cloud(law), 30,
-                "neighbor 0.3 bin\ncomm_modify vel yes\nfix grid all mpm 1.0 transfer apic\n" + rest(law) +
-                    move_discs + "compute e all mpm/energy\ntimestep 0.01\n",
+                "neighbor 0.3 bin\ncomm_modify vel yes\nfix grid all mpm 1.0 transfer apic\n" +
+                    rest(law) + move_discs + "compute e all mpm/energy\ntimestep 0.01\n",
                 30);
   EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
 }
@@ -710,7 +689,8 @@ TEST(ImmersedPlane, RefusesBadInput)
 {
   if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
   const std::string fix = "group g type 2\nfix d g mpm/immersed grid 1.0 1.0";
-  EXPECT_THAT(error_of(plane("0 4 0 4") + fix + " gravity 0 0 -1\n"), ::testing::HasSubstr("x and y in 2d"));
+  EXPECT_THAT(error_of(plane("0 4 0 4") + fix + " gravity 0 0 -1\n"),
+              ::testing::HasSubstr("x and y in 2d"));
   EXPECT_THAT(error_of(plane("0 4 0 4", "f f p", "axisymmetric yes") +
                        "create_points 1 box ppc 2\nfix w all mpm/boundary xlo slip\n"
                        "fix m all mpm/material density 1.0 neohookean 30.0 0.3\n" +

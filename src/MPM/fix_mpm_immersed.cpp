@@ -275,8 +275,8 @@ template <class F> bool FixMPMImmersed::visit(int i, const F &f) const
         }
         const int slot = block.slot[9 * side[0] + 3 * side[1] + side[2]];
         if (slot < 0) return false;
-        f((int64_t) slot * NODES_PER_BLOCK + number(dim, in),
-          w[0][k[0]] * w[1][k[1]] * w[2][k[2]], r);
+        f((int64_t) slot * NODES_PER_BLOCK + number(dim, in), w[0][k[0]] * w[1][k[1]] * w[2][k[2]],
+          r);
       }
   return true;
 }
@@ -400,7 +400,8 @@ double FixMPMImmersed::drag_on_sphere(double diameter, double slip, double solid
    between K = a and K = b w: a line through two of their values, exact for that of Ergun
 ------------------------------------------------------------------------- */
 
-double FixMPMImmersed::drag_after_step(double diameter, double slip, double solid, double slowing) const
+double FixMPMImmersed::drag_after_step(double diameter, double slip, double solid,
+                                       double slowing) const
 {
   const double most = drag_coefficient(diameter, slip, solid);
   if (!(slowing * most > 0.0)) return most;
@@ -554,7 +555,8 @@ void FixMPMImmersed::act(double dt, Stage stage)
       }
     });
     if (g.part != 1.0) g.part = 1.0 / (1.0 + solid);
-    const double of_fluid = solid / (density * volume(g.i));    // all grains around are taken for equal
+    const double of_fluid =
+        solid / (density * volume(g.i));    // all grains around are taken for equal
     for (int d = 0; d < 3; d++) {
       g.buoyancy[d] *= g.part;
       g.velocity[d] += g.buoyancy[d] / g.mass;
@@ -564,7 +566,8 @@ void FixMPMImmersed::act(double dt, Stage stage)
     g.coefficient = part *
         drag_after_step(2.0 * atom->radius[g.i],
                         sqrt(slip[0] * slip[0] + slip[1] * slip[1] + slip[2] * slip[2]),
-                        end_of_bed(solid, moment, volume(g.i)), dt * part * (1.0 / g.mass + of_fluid));
+                        end_of_bed(solid, moment, volume(g.i)),
+                        dt * part * (1.0 / g.mass + of_fluid));
   }
   for (std::size_t k = 0; k < grains.size(); k++)
     around(k, [&](const Entry &e, double *sum) {
