@@ -98,7 +98,7 @@ TEST(Axisymmetric, StrainAroundIsThatOfTheRadius)
         "frame total transfer apic", "frame total transfer apic reference update 1.05",
         "shape gimp locking pressure", "shape cpdi", "shape cpdi transfer flip 1.0",
         "shape linear transfer apic light 0.5", "shape linear transfer flip 1.0 light 0.5",
-        "transfer polypic", "shape cubic transfer polypic", "shape cpdi2", "shape cpdi2 transfer flip 1.0",
+        "transfer polypic", "shape cubic transfer polypic", "transfer flip 1.0 edges modified", "shape cpdi2", "shape cpdi2 transfer flip 1.0",
         "shape bernstein frame total", "shape bernstein frame total transfer flip 1.0"}) {
     Scene run;
     run.commands(start(10, 10, 1.0, options) +
@@ -162,6 +162,8 @@ TEST(Axisymmetric, UniformPressureMakesNoForce)
               {"shape quadratic transfer tpic", 0.025, 1e-13},
               {"shape quadratic transfer apic", 0.006, 1e-13},
               {"shape cubic transfer apic", 0.0025, 1e-13},
+              {"shape quadratic transfer flip 1.0", 0.025, 1e-13},
+              {"shape quadratic transfer flip 1.0 edges modified", 0.025, 1e-13},
               {"shape cpdi2 transfer apic", 1e-13, 1e-13},
               // r N is a cubic in each cell, and the errors of two cells do not cancel: as 1/r
               {"shape bernstein frame total", 0.04, 0.02 / 3.0}};
@@ -287,6 +289,7 @@ TEST(AxisymmetricVibration, Cylinder)
                               "shape cpgimp transfer apic", "frame total transfer apic",
                               "transfer flip 1.0 scheme musl", "transfer apic scheme usf",
                               "transfer polypic", "shape cpdi2 transfer apic",
+                              "transfer flip 1.0 scheme musl edges modified",
                               "shape bernstein frame total transfer apic"}) {
     const double coarse = cylinder_frequency(8, options), fine = cylinder_frequency(16, options);
     EXPECT_LT(std::abs(fine), 0.0015) << options;
@@ -337,6 +340,7 @@ TEST(Axisymmetric, MomentumAndEnergy)
         "frame total transfer flip 1.0 scheme musl locking both", "shape linear transfer apic light 0.5",
         "shape linear transfer flip 1.0 light 0.5",
         "shape linear transfer apic scheme musl light 0.5 locking both", "transfer polypic",
+        "transfer flip 1.0 scheme musl edges modified", "shape cubic transfer flip 1.0 scheme musl edges modified",
         "shape cubic transfer polypic scheme musl locking both", "shape cpdi2 transfer apic",
         "shape cpdi2 transfer flip 1.0 scheme musl",
         "shape bernstein frame total locking pressure",

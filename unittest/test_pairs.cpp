@@ -111,7 +111,7 @@ const struct {
      "needs shape quadratic or cubic and frame updated"},
     {"gimp cpgimp cpdi cpdi2", "total update", "use B-splines with transfer apic or flip"},
     {"aflip tpic", "bernstein total update", "use B-splines with transfer apic or flip"},
-    {"linear gimp cpgimp cpdi cpdi2 bernstein aflip tpic polypic xpic fmpm light axis", "edges",
+    {"linear gimp cpgimp cpdi cpdi2 bernstein aflip tpic polypic xpic fmpm light", "edges",
      "use edges plain"},
     {"gimp cpgimp cpdi cpdi2 bernstein aflip tpic polypic xpic fmpm gradient axis", "mixed",
      "use precision double"},

@@ -279,9 +279,9 @@ void FixMPM::process_options(int narg, char **arg)
                "transfer apic is stress mls");
 
   if (modified_edges && (shape == LINEAR || bernstein || extent != NO_SIZE ||
-                         refinement != LUMPED || is_affine(transfer) || axisymmetric))
+                         refinement != LUMPED || is_affine(transfer)))
     error->all(FLERR, "Fix mpm edges modified is for shape quadratic and cubic with transfer pic and "
-               "flip, not with axisymmetric: use edges plain");
+               "flip: use edges plain");
 
   if (bernstein && !total)
     error->all(FLERR, "Fix mpm shape bernstein has gradients that jump where points cross cells: it "
