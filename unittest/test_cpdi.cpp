@@ -384,7 +384,7 @@ run 400
 }
 
 // shear by 6, at which domains of 3.5 cells lie around a periodic box of 3 cells more than once: as in a box
-// of many cells
+// of many cells. There neighbor lists are made so rarely that domains leave the blocks that were active
 
 TEST(Periodic, DomainsAreWiderThanTheBox)
 {
@@ -409,14 +409,55 @@ variable vy atom 0.02*cos(PI*y/4)
 velocity all set v_vx v_vy 0
 timestep 0.05
 thermo 1000
+%s
 run 480
 )",
-                             k ? 12 : 3, options));
+                             k ? 12 : 3, options, k ? "neigh_modify every 40 check no" : ""));
       shear[k] = 0.0;
       for (const auto &s : run.gather()) shear[k] = std::max(shear[k], s.F[1]);
     }
     EXPECT_GT(shear[0], 6.0);
     EXPECT_NEAR(shear[0], shear[1], 1e-11);
+  }
+}
+
+// a domain that is turned inside out, after the step in which this is found
+
+TEST(Inverted, BadDecides)
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  for (const char *policy : {"error", "warn", "delete"}) {
+    SCOPED_TRACE(policy);
+    Scene run;
+    run.commands(strprintf(R"(
+units lj
+dimension 2
+boundary p p p
+atom_style mpm
+region box block 0 8 0 8 -0.5 0.5
+create_box 1 box
+fix grid all mpm 1.0 shape cpdi2 bad %s
+region block block 2 4 2 4 -0.5 0.5
+create_points 1 region block ppc 2
+fix m all mpm/material density 3.0 neohookean 1.0 0.3
+timestep 1e-9
+thermo 1000
+run 1
+)",
+                           policy));
+    double *corner = run.field()->corners[5];
+    for (int d = 0; d < 2; d++) std::swap(corner[d], corner[2 + d]), std::swap(corner[4 + d], corner[6 + d]);
+    if (std::string(policy) == "error") {
+      EXPECT_THAT(run.error("run 1\n"),
+                  ::testing::ContainsRegex("Material point [0-9]+ at .* has a domain that is turned inside out"));
+      continue;
+    }
+    run.commands("run 3\n");
+    const bool keeps = std::string(policy) == "warn";
+    ASSERT_EQ(run.n(), keeps ? 16 : 15);
+    for (int i = 0; i < run.n(); i++)
+      for (int k = 0; k < 8; k++)    // all squares
+        EXPECT_NEAR(run.field()->corners[i][k], 0.25 * MPM_NS::PointDomain<2>::sign(k / 2, k % 2), 1e-8);
   }
 }
 
