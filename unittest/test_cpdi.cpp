@@ -421,6 +421,43 @@ run 480
   }
 }
 
+// a body leaves the blocks that were active, in each direction, between two neighbor lists
+
+TEST(Reach, BodiesLeaveActiveBlocks)
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  for (const char *shape : {"cpdi", "cpdi2"})
+    for (const char *velocity : {"1 0 0", "-1 0 0", "0 1 0", "0 -1 0", "0 0 1", "0 0 -1"}) {
+      SCOPED_TRACE(std::string(shape) + " " + velocity);
+      Scene run;
+      run.commands(strprintf(R"(
+units lj
+boundary p p p
+atom_style mpm
+region box block 0 12 0 12 0 12
+create_box 1 box
+fix g all mpm 1.0 shape %s
+region body block 5 7 5 7 5 7
+create_points 1 region body ppc 1
+fix m all mpm/material density 3.0 neohookean 1.0 0.3
+velocity all set %s
+neigh_modify delay 0 every 1000 check no
+timestep 0.1
+thermo 1000
+run 20
+)",
+                             shape, velocity));
+      double v[3];
+      sscanf(velocity, "%lf %lf %lf", v, v + 1, v + 2);
+      for (const auto &s : run.gather())
+        for (int d = 0; d < 3; d++) {
+          EXPECT_NEAR(s.v[d], v[d], 1e-13);
+          EXPECT_NEAR(fmod(s.x[d], 1.0), 0.5, 1e-12);
+          EXPECT_NEAR(s.F[4 * d], 1.0, 1e-13);
+        }
+    }
+}
+
 // a domain that is turned inside out, after the step in which this is found
 
 TEST(Inverted, BadDecides)
