@@ -168,7 +168,7 @@ static double punch(const char *options)
 TEST(Punch, LimitLoad)
 {
   for (const char *shape : {"shape quadratic ", "shape linear transfer flip 0.99 scheme musl ",
-                            "shape linear transfer apic light 0.5 "}) {
+                            "shape linear transfer apic scheme musl light 0.5 "}) {
     const double without = punch((std::string(shape) + "locking none").c_str());
     for (const char *cure : {"locking fbar", "locking pressure", "locking both"}) {
       const double with = punch((std::string(shape) + cure).c_str());

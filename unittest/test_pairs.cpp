@@ -66,7 +66,7 @@ const Choice choices[] = {
     {"mixed", "precision", OPTION, "precision mixed"},
     {"axis", "axis", OPTION, "axisymmetric yes"},
     {"delete", "delete", OPTION, "bad delete failed delete"},
-    {"damage", "law", LAW, "eos linear 20.0 strength elastic 8.0 damage rankine 1.3"},
+    {"damage", "law", LAW, "eos linear 20.0 strength elastic 8.0 damage rankine 1.0"},
     {"plastic", "law", LAW, "eos linear 20.0 strength j2 8.0 0.5 hardening linear 1.0"},
     {"fields", "bodies", FIX, ""},
     {"contact", "bodies", FIX, "fix touch all mpm/contact grid other\n"},
@@ -116,6 +116,7 @@ const struct {
     {"gimp cpgimp cpdi cpdi2 bernstein aflip tpic polypic xpic fmpm gradient axis", "mixed",
      "use precision double"},
     {"cubic gimp cpgimp cpdi cpdi2 bernstein total update", "light", "remove light"},
+    {"fbar both", "light", "use scheme musl"},
     {"fmpm", "usf musl usavg", "use scheme usl, or transfer xpic"},
     {"gradient", "total update", "needs transfer flip or pic"},
     {"bernstein total update", "contact", "let bodies meet through a pair style"},
@@ -257,6 +258,7 @@ std::vector<Chosen> covering(const std::vector<const Choice *> &all)
         // of no use with flip and musl together
         if (has(with, "light") && has_kind(with, "transfer") && has_kind(with, "scheme"))
           fits = false;
+        if (has(with, "light") && has(with, "axis") && has(with, "usf")) fits = false;
         if (!fits) continue;
         int gain = 0;
         for (const auto &p : left)

@@ -487,8 +487,7 @@ double FixMPM::stable_share(double size) const
   }
   if (refinement == FMPM) return 0.4;
   if (shape == LINEAR && extent == NO_SIZE && !total) {
-    if (light > 0.0 && scheme == USF) return axisymmetric ? 0.19 : 0.28;
-    if (light > 0.0) return usl && affine && averages_stress() ? 0.6 : 0.7;
+    if (light > 0.0) return scheme == USF ? 0.28 : 0.7;
     if (usl) return 0.65;
     return affine ? 0.9 : (scheme == USAVG ? 1.0 : (scheme == USF ? 0.25 : 0.65));
   }
