@@ -37,7 +37,7 @@ ALLOWED = ["Per-atom field rmass is used in multiple sub-styles", "previous ther
 
 # of the range of a column
 REFERENCE_TOLERANCE = 0.02     # another machine, compiler or version
-PROCESSES_TOLERANCE = 1.0e-6   # collisions amplify round-off, by less than 1e7 here: a decision that hangs on it shows
+PROCESSES_TOLERANCE = 1.0e-5   # collisions amplify round-off, 1e-7 in hot crystals: a decision that hangs on it shows
 
 UNIMPORTANT = ["CPU", "S/CPU", "CPULeft", "Part"]
 
@@ -152,8 +152,9 @@ def check_files(example):
 
 
 def compare(found, expected, tolerance, what, all_rows=False):
-    """Last or all rows of all tables, each column relative to its range of values."""
+    """Last or all rows of all tables, each column relative to its range of values; returns the largest difference."""
     a, b = mt.thermo(found), mt.thermo(expected)
+    most = 0.0
     assert len(a) == len(b), "%s: %d runs, not %d" % (what, len(a), len(b))
     for (names, rows), (other_names, other_rows) in zip(a, b):
         assert names == other_names, "%s: columns %s, not %s" % (what, names, other_names)
@@ -170,6 +171,8 @@ def compare(found, expected, tolerance, what, all_rows=False):
                 difference = abs(float(row[k]) - value) / scale
                 assert difference <= tolerance, "%s: at step %s, %s is %s, not %.15g: %.2g of its range" % (
                     what, row[names.index("Step")], name, row[k], value, difference)
+                most = max(most, difference)
+    return most
 
 
 def reference(path):
@@ -200,7 +203,8 @@ def make_test(path):
             raise mt.Skip("failed with one process")
         with Example(path, processes=2) as example:
             check_run(example)
-            compare(example.result.output, outputs[path].output, PROCESSES_TOLERANCE, name, all_rows=True)
+            most = compare(example.result.output, outputs[path].output, PROCESSES_TOLERANCE, name, all_rows=True)
+            print("largest difference: %.1e of the range of a column" % most)
 
     return {"test_" + name: one_process, "test_" + name + "_with_two_processes": two_processes}
 
