@@ -439,7 +439,6 @@ double FixMPM::stable_dt_local(tagint &id_min, double &wave_speed) const
 void FixMPM::note_volume_rate(const Batch &b, int first)
 {
   double most = 0.0;
-#pragma omp simd reduction(max : most)
   for (int p = 0; p < b.n; p++) most = std::max(most, fabs(b.J[p] / b.Jold[p] - 1.0));
   if (!(most > volume_rate.most * b.dt)) return;
   int fastest = 0;
