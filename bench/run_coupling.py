@@ -94,7 +94,7 @@ def main():
     if len(sys.argv) < 2:
         sys.exit(__doc__)
     for group in sys.argv[2:] or GROUPS:
-        table = measure(sys.argv[1], group)
+        table = measure(os.path.abspath(sys.argv[1]), group)
         print("\n" + table, flush=True)
         with open(README) as file:
             text = file.read()
