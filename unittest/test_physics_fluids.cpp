@@ -681,7 +681,7 @@ TEST(FreeFlight, StrainOfAStepIsLimited)
         measured(strprintf("%dd, Mach %g%s: energy", dim, mach, limit), most);
         if (*limit) {
           EXPECT_FALSE(stopped);
-          EXPECT_LT(most, 5.0);
+          EXPECT_LT(most, 2.5);
         } else
           EXPECT_TRUE(stopped || most > 1000.0);
       }
