@@ -16,8 +16,8 @@
 // cpdi and cpdi2 are domains of the size of the points, a little distorted.
 // Example: bench_kernels --benchmark_filter='step/AVX-512/3d/quadratic/apic/'
 
-#include "mpm_domain.h"
-#include "mpm_kernels.h"
+#include "transfer/cpdi.h"
+#include "transfer/kernels.h"
 
 #include "benchmark/benchmark.h"
 
@@ -221,8 +221,7 @@ void run(benchmark::State &state, What what, const MPMKernels *table, int dim, S
 
 int main(int argc, char **argv)
 {
-  static const char *const shapes[] = {"",     "linear", "quadratic", "cubic",
-                                       "gimp", "cpdi",   "cpdi2"};
+  static const char *const shapes[] = {"", "linear", "quadratic", "cubic", "gimp", "cpdi", "cpdi2"};
   static const char *const transfers[] = {"pic", "flip", "apic"};
   static const char *const whats[] = {"p2g", "g2p", "io", "step"};
 

@@ -9,8 +9,8 @@
 // Cost of the constitutive laws: time per point of Material::update (yielding points), wave_speed
 // and stored_energy on full batches, for each instruction set that this CPU has.
 
-#include "mpm_kernels.h"
-#include "mpm_material_point.h"
+#include "material/material_point.h"
+#include "transfer/kernels.h"
 
 #include <benchmark/benchmark.h>
 

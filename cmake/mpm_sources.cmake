@@ -7,11 +7,20 @@
 get_filename_component(MPM_ROOT "${CMAKE_CURRENT_LIST_DIR}/.." ABSOLUTE)
 set(MPM_DIR ${MPM_ROOT}/src/MPM)
 
-file(GLOB MPM_SOURCES CONFIGURE_DEPENDS ${MPM_DIR}/*.cpp)
-file(GLOB MPM_ISA_SOURCES CONFIGURE_DEPENDS ${MPM_DIR}/mpm_*_isa.cpp)
-if(MPM_ISA_SOURCES)
-  list(REMOVE_ITEM MPM_SOURCES ${MPM_ISA_SOURCES})
-endif()
+# styles and what needs LAMMPS are flat; what does not is in a folder for each idea
+set(MPM_FOLDERS declare lattice law material mesh transfer)
+set(MPM_SOURCES)
+set(MPM_ISA_SOURCES)
+foreach(folder . ${MPM_FOLDERS})
+  file(GLOB sources CONFIGURE_DEPENDS ${MPM_DIR}/${folder}/*.cpp)
+  foreach(source ${sources})
+    if(source MATCHES "_isa\\.cpp$")
+      list(APPEND MPM_ISA_SOURCES ${source})
+    else()
+      list(APPEND MPM_SOURCES ${source})
+    endif()
+  endforeach()
+endforeach()
 file(GLOB MPM_PLUGIN_SOURCES CONFIGURE_DEPENDS ${MPM_DIR}/plugin/*.cpp)
 file(GLOB MPM_HEADERS CONFIGURE_DEPENDS ${MPM_DIR}/*.h)
 
@@ -71,7 +80,7 @@ if(FFTW3_INCLUDE_DIR AND FFTW3_LIBRARY)
   set(MPM_FEATURES MPM_FFTW)
 endif()
 
-# Instruction sets for the hot kernels mpm_*_isa.cpp: compiled once per set with
+# Instruction sets for the hot kernels *_isa.cpp: compiled once per set with
 # MPM_ISA = base, v3, v4; MPM_HAVE_V3, MPM_HAVE_V4 tell the dispatcher which exist.
 # Functions there must be in namespaces named by MPM_ISA or have internal linkage:
 # a shared inline function compiled for v4 could end up in the baseline's place.

@@ -35,6 +35,7 @@ tests and benchmarks: libgtest-dev libgmock-dev libbenchmark-dev
 unpacking LAMMPS: xz-utils dpkg-dev
 scripts and plots: python3 python3-numpy python3-matplotlib
 manual: python3-sphinx
+format of the sources: clang-format
 LIST
 }
 

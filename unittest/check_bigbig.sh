@@ -10,7 +10,7 @@ compiler=$1
 folder=$2
 shift 2
 failed=0
-for source in "$folder"/*.cpp; do
+for source in "$folder"/*.cpp "$folder"/*/*.cpp; do
   case $source in *_isa.cpp) continue ;; esac
   grep -q LAMMPS_NS "$source" || continue
   "$compiler" -std=c++17 -fsyntax-only -Wall -Wextra -Werror=format -Werror=narrowing \

@@ -96,27 +96,29 @@ TEST(Crystal, KeepsMomentumAndEnergyWithAPlate)
 {
   for (const int every : {1, 5}) {
     Scene run;
-    run.commands("variable a equal 1.549603\nunits lj\nboundary p p p\natom_style hybrid atomic mpm\n"
-                 "neighbor 0.3 bin\nregion box block 0 $(6*v_a) 0 $(6*v_a) 0 $(12*v_a)\n"
-                 "create_box 2 box\nmass * 1.0\nlattice fcc $(4/v_a^3)\n"
-                 "region c block INF INF INF INF 0 $(3.99*v_a) units box\ncreate_atoms 2 region c\n"
-                 "group crystal type 2\nset type 2 mass 1.0\n" +
-                 strprintf("fix grid all mpm $(v_a) transfer flip 1.0 every %d\n", every) +
-                 "region p block INF INF INF INF $(5*v_a) $(8*v_a) units box\n"
-                 "create_points 1 region p ppc 2\ngroup plate type 1\n"
-                 "fix m plate mpm/material density 1.074975 linear 57.3528 0.36277\n"
-                 "velocity plate set 0 0 -0.4767 units box\npair_style lj/cut 2.5\n"
-                 "pair_coeff * * 1.0 1.0 2.5\npair_coeff 1 2 0.5 0.8 0.898\npair_modify shift yes\n"
-                 "neigh_modify exclude type 1 1\nfix move crystal nve\ntimestep 0.004\n"
-                 "compute kc crystal ke\ncompute e all mpm/energy\nthermo 10000\n"
-                 "thermo_style custom step c_kc pe c_e[1]\nthermo_modify norm no\n"
-                 "variable p equal mass(crystal)*vcm(crystal,z)+mass(plate)*vcm(plate,z)\n"
-                 "variable total equal c_kc+c_thermo_pe+c_e[1]+c_e[2]-c_e[9]-c_e[10]\nrun 0\n");
+    run.commands(
+        "variable a equal 1.549603\nunits lj\nboundary p p p\natom_style hybrid atomic mpm\n"
+        "neighbor 0.3 bin\nregion box block 0 $(6*v_a) 0 $(6*v_a) 0 $(12*v_a)\n"
+        "create_box 2 box\nmass * 1.0\nlattice fcc $(4/v_a^3)\n"
+        "region c block INF INF INF INF 0 $(3.99*v_a) units box\ncreate_atoms 2 region c\n"
+        "group crystal type 2\nset type 2 mass 1.0\n" +
+        strprintf("fix grid all mpm $(v_a) transfer flip 1.0 every %d\n", every) +
+        "region p block INF INF INF INF $(5*v_a) $(8*v_a) units box\n"
+        "create_points 1 region p ppc 2\ngroup plate type 1\n"
+        "fix m plate mpm/material density 1.074975 linear 57.3528 0.36277\n"
+        "velocity plate set 0 0 -0.4767 units box\npair_style lj/cut 2.5\n"
+        "pair_coeff * * 1.0 1.0 2.5\npair_coeff 1 2 0.5 0.8 0.898\npair_modify shift yes\n"
+        "neigh_modify exclude type 1 1\nfix move crystal nve\ntimestep 0.004\n"
+        "compute kc crystal ke\ncompute e all mpm/energy\nthermo 10000\n"
+        "thermo_style custom step c_kc pe c_e[1]\nthermo_modify norm no\n"
+        "variable p equal mass(crystal)*vcm(crystal,z)+mass(plate)*vcm(plate,z)\n"
+        "variable total equal c_kc+c_thermo_pe+c_e[1]+c_e[2]-c_e[9]-c_e[10]\nrun 0\n");
     const double p = run.evaluate("v_p"), energy = run.evaluate("v_total");
     const double impact = run.evaluate("c_e[1]");
     run.commands("run 4000\n");
     EXPECT_NEAR(measured("momentum/start", run.evaluate("v_p") / p), 1.0, 1.0e-12);
-    EXPECT_LT(std::abs(measured("energy gained/all", (run.evaluate("v_total") - energy) / energy)), 1.0e-4);
+    EXPECT_LT(std::abs(measured("energy gained/all", (run.evaluate("v_total") - energy) / energy)),
+              1.0e-4);
     EXPECT_LT(run.evaluate("c_e[1]"), 0.8 * impact);    // it has hit
   }
 }

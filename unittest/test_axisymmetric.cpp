@@ -53,7 +53,8 @@ TEST(Axisymmetric, VolumesAreThoseOfRings)
 TEST(Axisymmetric, UniformExpansionIsExact)
 {
   const double a = 0.3, b = -0.2, dt = 0.01;
-  for (const char *shape : {"linear", "quadratic", "cubic", "gimp", "cpgimp", "cpdi", "cpdi2", "bernstein"})
+  for (const char *shape :
+       {"linear", "quadratic", "cubic", "gimp", "cpgimp", "cpdi", "cpdi2", "bernstein"})
     for (const char *rest :
          {"apic", "polypic", "tpic", "apic scheme musl", "tpic scheme usf", "apic locking both",
           "apic scheme musl locking fbar", "apic frame total", "apic frame total scheme musl",
@@ -92,14 +93,26 @@ TEST(Axisymmetric, UniformExpansionIsExact)
 
 TEST(Axisymmetric, StrainAroundIsThatOfTheRadius)
 {
-  for (const char *options :
-       {"transfer apic", "shape cubic transfer flip 1.0", "shape cpgimp transfer aflip 0.9",
-        "transfer xpic 3", "transfer fmpm 3", "shape linear frame total transfer flip 1.0",
-        "frame total transfer apic", "frame total transfer apic reference update 1.05",
-        "shape gimp locking pressure", "shape cpdi", "shape cpdi transfer flip 1.0",
-        "shape linear transfer apic light 0.5", "shape linear transfer flip 1.0 light 0.5",
-        "transfer polypic", "shape cubic transfer polypic", "transfer flip 1.0 edges modified", "shape cpdi2", "shape cpdi2 transfer flip 1.0",
-        "shape bernstein frame total", "shape bernstein frame total transfer flip 1.0"}) {
+  for (const char *options : {"transfer apic",
+                              "shape cubic transfer flip 1.0",
+                              "shape cpgimp transfer aflip 0.9",
+                              "transfer xpic 3",
+                              "transfer fmpm 3",
+                              "shape linear frame total transfer flip 1.0",
+                              "frame total transfer apic",
+                              "frame total transfer apic reference update 1.05",
+                              "shape gimp locking pressure",
+                              "shape cpdi",
+                              "shape cpdi transfer flip 1.0",
+                              "shape linear transfer apic light 0.5",
+                              "shape linear transfer flip 1.0 light 0.5",
+                              "transfer polypic",
+                              "shape cubic transfer polypic",
+                              "transfer flip 1.0 edges modified",
+                              "shape cpdi2",
+                              "shape cpdi2 transfer flip 1.0",
+                              "shape bernstein frame total",
+                              "shape bernstein frame total transfer flip 1.0"}) {
     Scene run;
     run.commands(start(10, 10, 1.0, options) +
                  "region body block 0 4 2 8 INF INF\ncreate_points 1 region body ppc 2\n"
@@ -145,7 +158,8 @@ static Spurious spurious(const std::string &options)
   for (int i = 0; i < run.n(); i++) {
     const double *x = run.x()[i], a = std::hypot(run.v()[i][0], run.v()[i][1]) / 0.01;
     if (x[0] < 3.0) worst.at_axis = std::max(worst.at_axis, a);
-    if (x[0] > 3.0 && x[0] < 7.0 && x[1] > 3.0 && x[1] < 7.0) worst.inside = std::max(worst.inside, a);
+    if (x[0] > 3.0 && x[0] < 7.0 && x[1] > 3.0 && x[1] < 7.0)
+      worst.inside = std::max(worst.inside, a);
   }
   measured(options + ": acceleration under uniform pressure at the axis", worst.at_axis);
   return worst;
@@ -285,16 +299,17 @@ static double cylinder_frequency(int n, const std::string &options)
 
 TEST(AxisymmetricVibration, Cylinder)
 {
-  for (const char *options : {"shape quadratic transfer apic", "shape cubic transfer flip 1.0",
-                              "shape cpgimp transfer apic", "frame total transfer apic",
-                              "transfer flip 1.0 scheme musl", "transfer apic scheme usf",
-                              "transfer polypic", "shape cpdi2 transfer apic",
-                              "transfer flip 1.0 scheme musl edges modified",
-                              "shape bernstein frame total transfer apic"}) {
+  for (const char *options :
+       {"shape quadratic transfer apic", "shape cubic transfer flip 1.0",
+        "shape cpgimp transfer apic", "frame total transfer apic", "transfer flip 1.0 scheme musl",
+        "transfer apic scheme usf", "transfer polypic", "shape cpdi2 transfer apic",
+        "transfer flip 1.0 scheme musl edges modified",
+        "shape bernstein frame total transfer apic"}) {
     const double coarse = cylinder_frequency(8, options), fine = cylinder_frequency(16, options);
     EXPECT_LT(std::abs(fine), 0.0015) << options;
     const double order = measured("order", log2(coarse / fine));
-    if (!strstr(options, "bernstein"))    // whose sum over points has an error of its own, see above
+    if (!strstr(options,
+                "bernstein"))    // whose sum over points has an error of its own, see above
       EXPECT_NEAR(order, 2.0, 0.2) << options;
   }
 }
@@ -332,16 +347,27 @@ TEST(AxisymmetricVibration, Sphere)
 TEST(Axisymmetric, MomentumAndEnergy)
 {
   for (const char *options :
-       {"transfer apic", "shape cubic transfer flip 1.0 scheme musl",
-        "shape gimp transfer aflip 0.99", "shape cpgimp transfer tpic", "transfer xpic 3",
-        "transfer fmpm 2", "transfer flip 1.0 scheme usavg", "transfer apic scheme usf",
-        "shape cpdi transfer apic", "shape cpdi transfer flip 1.0 scheme musl",
-        "transfer apic locking both", "frame total transfer apic",
-        "frame total transfer flip 1.0 scheme musl locking both", "shape linear transfer apic light 0.5",
+       {"transfer apic",
+        "shape cubic transfer flip 1.0 scheme musl",
+        "shape gimp transfer aflip 0.99",
+        "shape cpgimp transfer tpic",
+        "transfer xpic 3",
+        "transfer fmpm 2",
+        "transfer flip 1.0 scheme usavg",
+        "transfer apic scheme usf",
+        "shape cpdi transfer apic",
+        "shape cpdi transfer flip 1.0 scheme musl",
+        "transfer apic locking both",
+        "frame total transfer apic",
+        "frame total transfer flip 1.0 scheme musl locking both",
+        "shape linear transfer apic light 0.5",
         "shape linear transfer flip 1.0 light 0.5",
-        "shape linear transfer apic scheme musl light 0.5 locking both", "transfer polypic",
-        "transfer flip 1.0 scheme musl edges modified", "shape cubic transfer flip 1.0 scheme musl edges modified",
-        "shape cubic transfer polypic scheme musl locking both", "shape cpdi2 transfer apic",
+        "shape linear transfer apic scheme musl light 0.5 locking both",
+        "transfer polypic",
+        "transfer flip 1.0 scheme musl edges modified",
+        "shape cubic transfer flip 1.0 scheme musl edges modified",
+        "shape cubic transfer polypic scheme musl locking both",
+        "shape cpdi2 transfer apic",
         "shape cpdi2 transfer flip 1.0 scheme musl",
         "shape bernstein frame total locking pressure",
         "shape bernstein frame total transfer flip 1.0 scheme musl locking both"}) {
@@ -486,13 +512,16 @@ static double pull(bool round)
       "region one block 0 2 4 8 INF INF\nregion two block 0 2 8 12 INF INF\n"
       "create_points 1 region one ppc 2\ncreate_points 2 region two ppc 2\nunfix all\n"
       "group one type 1\ngroup two type 2\nfix one one mpm 0.5 axisymmetric %s\n"
-      "fix two two mpm 0.5 axisymmetric %s\nfix m all mpm/material density 1.0 neohookean 50.0 0.0\n"
+      "fix two two mpm 0.5 axisymmetric %s\nfix m all mpm/material density 1.0 neohookean 50.0 "
+      "0.0\n"
       "fix sides all mpm/boundary xlo xhi slip\n"
       "fix c all mpm/contact one two law adhesive %g %g 0.02\n"
-      "region low block INF INF 0 4.6 INF INF\nfix hold all mpm/boundary region low stick field one\n"
+      "region low block INF INF 0 4.6 INF INF\nfix hold all mpm/boundary region low stick field "
+      "one\n"
       "region high block INF INF 11.4 16 INF INF\n"
       "fix pull all mpm/boundary region high stick velocity 0 0.02 0 field two\n"
-      "velocity two set 0 0.02 0\ntimestep 0.02\nthermo_style custom step f_c[1][2]\nthermo 1000000\n",
+      "velocity two set 0 0.02 0\ntimestep 0.02\nthermo_style custom step f_c[1][2]\nthermo "
+      "1000000\n",
       round ? "yes" : "no", round ? "yes" : "no", round ? "yes" : "no", strength, strength));
   double largest = 0.0;
   for (int k = 0; k < 90; k++) {
@@ -517,12 +546,13 @@ TEST(Axisymmetric, TimeStepOfRings)
   const double nu = 0.3, c = sqrt((1 - nu) / ((1 + nu) * (1 - 2 * nu)));
   for (const double inner : {0.0, 0.5, 4.0}) {
     Scene run;
-    run.commands(strprintf("units lj\ndimension 2\nboundary f p p\natom_style mpm\nneighbor 0.3 bin\n"
-                           "region box block %g 8 0 4 -0.5 0.5\ncreate_box 1 box\n"
-                           "fix grid all mpm 1.0 axisymmetric yes\ncreate_points 1 box ppc 2\n"
-                           "fix m all mpm/material density 1.0 linear 1.0 0.3\n"
-                           "fix axis all mpm/boundary xlo slip\nfix dt all mpm/dt 0.5\nrun 0\n",
-                           inner));
+    run.commands(
+        strprintf("units lj\ndimension 2\nboundary f p p\natom_style mpm\nneighbor 0.3 bin\n"
+                  "region box block %g 8 0 4 -0.5 0.5\ncreate_box 1 box\n"
+                  "fix grid all mpm 1.0 axisymmetric yes\ncreate_points 1 box ppc 2\n"
+                  "fix m all mpm/material density 1.0 linear 1.0 0.3\n"
+                  "fix axis all mpm/boundary xlo slip\nfix dt all mpm/dt 0.5\nrun 0\n",
+                  inner));
     const double ratio = inner > 0.0 ? 0.5 / (inner + 0.25) : 0.0;
     EXPECT_NEAR(run.lmp->update->dt, 0.5 / (c * sqrt(1.0 + ratio * ratio)), 1e-12) << inner;
   }
@@ -554,7 +584,8 @@ TEST(Axisymmetric, Cells)
 
 static std::string crooked_mesh(double left, double right, double low, double high, int n)
 {
-  std::string text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" + std::to_string((n + 1) * (n + 1)) + "\n";
+  std::string text =
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" + std::to_string((n + 1) * (n + 1)) + "\n";
   for (int j = 0; j <= n; j++)
     for (int i = 0; i <= n; i++) {
       const double inside = i > 0 && i < n && j > 0 && j < n ? 0.2 / n : 0.0;
@@ -578,7 +609,8 @@ TEST(Axisymmetric, ElementsOfAMeshAreRings)
     const ScratchFile mesh("rings.msh", crooked_mesh(bore, 4.0, 1.0, 4.0, 7));
     Scene run;
     run.commands(start(6, 6, 1.0, "shape cpdi2") + "create_points 1 elements " + mesh.name +
-                 "\nfix m all mpm/material density 2.0 neohookean 10.0 0.3\n" + strprintf("timestep %g\n", dt));
+                 "\nfix m all mpm/material density 2.0 neohookean 10.0 0.3\n" +
+                 strprintf("timestep %g\n", dt));
     run.set_velocity([=](const double *x, double *v) {
       v[0] = a * x[0];
       v[1] = b * x[1];
@@ -625,11 +657,14 @@ TEST(Axisymmetric, Refused)
        {"fix axis all mpm/boundary xlo slip\nfix plane all mpm 0.5",
         "must be axisymmetric, or none"}},
       "run 0\n");
-  const std::string grains = replaced(replaced(scene, "atom_style mpm", "atom_style hybrid sphere mpm"),
-                                      "create_box 1", "create_box 2") +
-      "set type 1 diameter 0.3\ncreate_atoms 2 single 2 3.9 0\nset type 2 diameter 0.5 density/disc 1\n"
+  const std::string grains =
+      replaced(replaced(scene, "atom_style mpm", "atom_style hybrid sphere mpm"), "create_box 1",
+               "create_box 2") +
+      "set type 1 diameter 0.3\ncreate_atoms 2 single 2 3.9 0\nset type 2 diameter 0.5 "
+      "density/disc 1\n"
       "group grains type 2\nfix move grains nve/sphere disc\nfix axis all mpm/boundary xlo slip\n"
-      "comm_modify vel yes\npair_style granular\npair_coeff * * hooke 10 0 tangential linear_nohistory 0 0\n";
+      "comm_modify vel yes\npair_style granular\npair_coeff * * hooke 10 0 tangential "
+      "linear_nohistory 0 0\n";
   EXPECT_THAT(error_of(grains + "run 0\n"), ::testing::HasSubstr("a grain would be a ring"));
   EXPECT_THAT(error_of(grains + "fix skin all mpm/surface\nrun 0\n"),
               ::testing::HasSubstr("a grain would be a ring"));

@@ -13,7 +13,7 @@
 // scene may be meant, that says what is wrong. A case is the good scene with one thing changed.
 
 #include "bad_input_testing.h"
-#include "stl_testing.h"
+#include "mesh/stl_testing.h"
 
 #include "gtest/gtest.h"
 
@@ -137,7 +137,8 @@ static const Change grains[] = {
     {"CutoffBelowTheRadii", PAIR,    // as after read_restart, which knows none: then it is mostly 0
      "pair_style granular\npair_coeff * * hooke 50.0 0.5 tangential linear_nohistory 0.5 0.4 "
      "cutoff 1.2\n",
-     "Cutoff 1\\.2 of pair style granular between points of type 1 and grains of type 3 is below the "
+     "Cutoff 1\\.2 of pair style granular between points of type 1 and grains of type 3 is below "
+     "the "
      "sum 1\\.3 of their largest radii.*give pair_style and pair_coeff again"},
     {"GrainsWithoutRadius", RUN, "set group grain diameter 0\nrun 3\n",
      "requires extended particles"},

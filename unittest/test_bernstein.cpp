@@ -12,11 +12,11 @@
 
 // Bernstein polynomials as shape functions of the total frame: kernels of every instruction set
 // against the reference, exact fields, ranks, and what is refused. The functions themselves are in
-// test_shape.cpp, convergence is in test_physics_mms.cpp.
+// transfer/test_shape.cpp, convergence is in test_physics_mms.cpp.
 
-#include "kernel_testing.h"
-#include "mpm_kernels.h"
 #include "mpm_lammps.h"
+#include "transfer/kernel_testing.h"
+#include "transfer/kernels.h"
 
 #include "gtest/gtest.h"
 

@@ -1390,7 +1390,8 @@ TEST(TimeStep, GrowthMaxAndMin)
 TEST(TimeStep, StrainOfAStep)
 {
   for (int every : {1, 2})
-    for (const char *options : {"", "scheme musl", "frame total transfer flip 1.0", "scheme usavg"}) {
+    for (const char *options :
+         {"", "scheme musl", "frame total transfer flip 1.0", "scheme usavg"}) {
       SCOPED_TRACE(std::string(options) + " every " + std::to_string(every));
       Scene run;
       const double rate = 0.02;    // of each axis

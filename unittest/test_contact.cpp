@@ -106,18 +106,21 @@ TEST(Contact, EqualBars)
 TEST(Contact, TouchingIsNotAMatterOfRounding)
 {
   if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
-  for (const char *options : {"shape linear transfer flip 1.0", "transfer apic", "shape cubic", "shape gimp"})
+  for (const char *options :
+       {"shape linear transfer flip 1.0", "transfer apic", "shape cubic", "shape gimp"})
     for (const double shift : {0.0, 0.0031, 0.01, 0.0173}) {
       double force[3];
       for (const int k : {0, 1, 2}) {
         Scene run;
-        run.commands(replaced(two_bars(options, ""), "block 1.05 2.05", "block 1 2") +
-                     strprintf("displace_atoms all move %g 0 0\ndisplace_atoms two move %g 0 0\nrun 1\n",
-                               shift, (k - 1) * 1.0e-13));
+        run.commands(
+            replaced(two_bars(options, ""), "block 1.05 2.05", "block 1 2") +
+            strprintf("displace_atoms all move %g 0 0\ndisplace_atoms two move %g 0 0\nrun 1\n",
+                      shift, (k - 1) * 1.0e-13));
         force[k] = run.evaluate("f_c[1][1]");
       }
       EXPECT_GT(force[1], 0.0) << options << " " << shift;
-      for (const int k : {0, 2}) EXPECT_NEAR(force[k] / force[1], 1.0, 1.0e-9) << options << " " << shift;
+      for (const int k : {0, 2})
+        EXPECT_NEAR(force[k] / force[1], 1.0, 1.0e-9) << options << " " << shift;
     }
 }
 
@@ -141,8 +144,9 @@ TEST(Contact, WithoutTheGapRuleContactIsEarly)
 TEST(Contact, BarsBetweenWalls)
 {
   if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
-  for (const char *options : {"transfer apic", "shape cubic", "shape gimp",
-                              "transfer flip 1.0 scheme musl", "transfer flip 1.0 edges modified"}) {
+  for (const char *options :
+       {"transfer apic", "shape cubic", "shape gimp", "transfer flip 1.0 scheme musl",
+        "transfer flip 1.0 edges modified"}) {
     SCOPED_TRACE(options);
     double v[2], f[2];
     for (int k = 0; k < 2; k++) {
@@ -245,13 +249,17 @@ TEST(Friction, BlockSlidesOrSticks)
       }
       const double exact = std::max(0.0, g * (sine - mu * cosine));
       if (exact > 0.0) {
-        const double a = 2.0 * ((x[2] - x[1]) / (t[2] - t[1]) - (x[1] - x[0]) / (t[1] - t[0])) / (t[2] - t[0]);
-        EXPECT_NEAR(measured(strprintf("%s, mu = %g: acceleration", transfer, mu), a), exact, 0.005 * g);
+        const double a =
+            2.0 * ((x[2] - x[1]) / (t[2] - t[1]) - (x[1] - x[0]) / (t[1] - t[0])) / (t[2] - t[0]);
+        EXPECT_NEAR(measured(strprintf("%s, mu = %g: acceleration", transfer, mu), a), exact,
+                    0.005 * g);
         // the work of friction is friction times the way
         const double friction = mu * 1000 * 0.5 * g * cosine, way = x[2] - x[0];
-        EXPECT_NEAR(measured("work", work[2] - work[0]), -friction * way, 0.01 * friction * way + 1e-12);
+        EXPECT_NEAR(measured("work", work[2] - work[0]), -friction * way,
+                    0.01 * friction * way + 1e-12);
       } else
-        EXPECT_NEAR(measured(strprintf("%s, mu = %g: creep", transfer, mu), x[2] - x[1]), 0.0, 5e-4);
+        EXPECT_NEAR(measured(strprintf("%s, mu = %g: creep", transfer, mu), x[2] - x[1]), 0.0,
+                    5e-4);
     }
 }
 
@@ -267,8 +275,8 @@ TEST(Friction, DiskRollsOrSlips)
     const double t = run.evaluate("time");
     const bool rolls = std::tan(M_PI / 6) <= 3 * mu;
     const double a = rolls ? 2.0 / 3.0 * g * sine : g * (sine - mu * cosine);
-    const double ratio =
-        measured(strprintf("mu = %g: way/exact", mu), (run.evaluate("v_x") - 0.7) / (0.5 * a * t * t));
+    const double ratio = measured(strprintf("mu = %g: way/exact", mu),
+                                  (run.evaluate("v_x") - 0.7) / (0.5 * a * t * t));
     EXPECT_NEAR(ratio, 1.0, mu == 0.1 || mu == 0.3 ? 0.02 : 0.03);
   }
 }
@@ -342,8 +350,8 @@ TEST(Normals, LogisticRegressionFindsAnInclinedPlane)
       Scene run;
       run.commands(replaced(replaced(tilted, "ANGLE", std::to_string(angle)), "NORMAL", normal));
       const double exact = 9.81 * std::sin(angle * M_PI / 180.0) * run.evaluate("time");
-      const double ratio = measured(std::to_string(angle) + " degrees, " + normal,
-                                    run.evaluate("v_v") / exact);
+      const double ratio =
+          measured(std::to_string(angle) + " degrees, " + normal, run.evaluate("v_v") / exact);
       const double error = std::fabs(ratio - 1.0);
       if (std::string(normal) == "logistic") {
         EXPECT_LT(error, 0.004);
@@ -358,8 +366,9 @@ TEST(Normals, LogisticRegressionFindsAnInclinedPlane)
 
 TEST(Normals, LogisticRegressionIsTheSameOnAnyNumberOfRanks)
 {
-  OnRanks run(replaced(replaced(replaced(tilted, "ANGLE", "20"), "NORMAL", "logistic"), "run 1400", ""),
-              "run 400\n");
+  OnRanks run(
+      replaced(replaced(replaced(tilted, "ANGLE", "20"), "NORMAL", "logistic"), "run 1400", ""),
+      "run 400\n");
   EXPECT_LT(run.difference(), 1e-10);
   OnRanks periodic(replaced(disks, "coulomb 0.3", "coulomb 0.3 normal logistic"), "run 300\n");
   EXPECT_LT(periodic.difference(), 1e-10);
@@ -428,10 +437,12 @@ TEST(ManyBodies, NoneApproaches)
 {
   if (nranks() > 1) GTEST_SKIP() << "nodes of one rank";
   Scene run;
-  run.commands(replaced(replaced(replaced(replaced(replaced(
-                   corner, "b1 block 2 8 2 8", "b1 block 2 8 0 16"), "b2 block 8 14 2 8", "b2 block 8.5 14 0 16"),
-                   "b3 block 5 11 8 14", "b3 block 8 8.5 0 16"), "FIELDS law coulomb 0.4", "F1 F2 F3 gap no"),
-                   "velocity three set 0.1 -0.5 0", "velocity three set 0.1 0.3 0"));
+  run.commands(
+      replaced(replaced(replaced(replaced(replaced(corner, "b1 block 2 8 2 8", "b1 block 2 8 0 16"),
+                                          "b2 block 8 14 2 8", "b2 block 8.5 14 0 16"),
+                                 "b3 block 5 11 8 14", "b3 block 8 8.5 0 16"),
+                        "FIELDS law coulomb 0.4", "F1 F2 F3 gap no"),
+               "velocity three set 0.1 -0.5 0", "velocity three set 0.1 0.3 0"));
   run.commands("run 1\n");
   auto &grid = *run.field("F1")->grid;
   int all = 0;
@@ -444,9 +455,11 @@ TEST(ManyBodies, NoneApproaches)
       for (const char *id : {"F1", "F3", "F2"}) {
         auto &other = *run.field(id)->grid;
         const auto there = other.locate(index);
-        if (there >= 0 && other.nodes()[there * other.nreal + 3] > 0.0) row.push_back(other.nodes() + there * other.nreal);
+        if (there >= 0 && other.nodes()[there * other.nreal + 3] > 0.0)
+          row.push_back(other.nodes() + there * other.nreal);
       }
-      for (std::size_t k = 1; k < row.size(); k++) EXPECT_LT(row[k - 1][0] - row[k][0], 1e-9) << index[0];
+      for (std::size_t k = 1; k < row.size(); k++)
+        EXPECT_LT(row[k - 1][0] - row[k][0], 1e-9) << index[0];
       all += row.size() == 3;
     }
   EXPECT_GT(all, 0);
@@ -467,17 +480,19 @@ TEST(Parallel, RanksAgreeAcrossAPeriodicFace)
 TEST(Order, WallsActAfterContact)
 {
   if (nranks() > 1) GTEST_SKIP() << "nodes of one rank";
-  const std::string scene = replaced(
-      replaced(disks, "region two cylinder z 20.9 5.3 2.5 INF INF", "region two block 5.8 10 0 6 -0.5 0.5"),
-      "boundary p p p", "boundary p f p");
+  const std::string scene = replaced(replaced(disks, "region two cylinder z 20.9 5.3 2.5 INF INF",
+                                              "region two block 5.8 10 0 6 -0.5 0.5"),
+                                     "boundary p p p", "boundary p f p");
   const std::string contact = "fix c all mpm/contact F1 F2 law coulomb 0.3\n";
   const std::string wall = "fix w all mpm/boundary ylo slip\n";
-  std::string body = replaced(replaced(scene, "cylinder z 3.1 6.2 2.5 INF INF", "block 2 5.6 0 5 -0.5 0.5"),
-                                    contact, "");
+  std::string body = replaced(
+      replaced(scene, "cylinder z 3.1 6.2 2.5 INF INF", "block 2 5.6 0 5 -0.5 0.5"), contact, "");
   body += "displace_atoms all ramp x 0 3 y 0 6 units box\n";    // an inclined interface
   Scene before, after;
-  before.commands(body + contact + wall + "velocity one set 0.5 -0.1 0\nvelocity two set -0.5 -0.1 0\nrun 60\n");
-  after.commands(body + wall + contact + "velocity one set 0.5 -0.1 0\nvelocity two set -0.5 -0.1 0\nrun 60\n");
+  before.commands(body + contact + wall +
+                  "velocity one set 0.5 -0.1 0\nvelocity two set -0.5 -0.1 0\nrun 60\n");
+  after.commands(body + wall + contact +
+                 "velocity one set 0.5 -0.1 0\nvelocity two set -0.5 -0.1 0\nrun 60\n");
   EXPECT_TRUE(identical(before.gather(), after.gather()));
   before.commands("variable v equal vcm(one,x)\n");
   EXPECT_LT(before.evaluate("v_v"), 0.3);    // they have met
@@ -521,11 +536,12 @@ TEST(Restart, RefusesAnotherNumberOfBodies)
   const ScratchFile file("restart");
   Scene whole;
   whole.commands(std::string(disks) + "run 10\nwrite_restart " + file.name + "\n");
-  expect_refused("read_restart " + file.name + "\nneighbor 0.3 bin\n",
-                 {{"group three empty\nfix F1 one mpm 0.5\nfix F2 two mpm 0.5\nfix F3 three mpm 0.5\n"
-                   "fix m all mpm/material density 1 neohookean 50 0.3\n"
-                   "fix c all mpm/contact F1 F2 F3 law coulomb 0.3",
-                   "another number of fields"}});
+  expect_refused(
+      "read_restart " + file.name + "\nneighbor 0.3 bin\n",
+      {{"group three empty\nfix F1 one mpm 0.5\nfix F2 two mpm 0.5\nfix F3 three mpm 0.5\n"
+        "fix m all mpm/material density 1 neohookean 50 0.3\n"
+        "fix c all mpm/contact F1 F2 F3 law coulomb 0.3",
+        "another number of fields"}});
 }
 
 // friction at rest may be larger: the block stays where it would slide with the other one, and slides with
@@ -537,17 +553,19 @@ TEST(Friction, StaticAndKinetic)
   for (const double v : {0.0, 0.2}) {
     Scene run;
     run.commands(on_incline("block 0.5 1.5 0.5 1.0 -0.05 0.05", "0.1", "apic", 0.0));
-    run.commands("unfix c\nfix c all mpm/contact F1 F2 law stick\nfix damp body viscous 750\n"
-                 "run 500\nunfix damp\nunfix c\n" +
-                 strprintf("fix c all mpm/contact F1 F2 law coulomb 0.3 %g\n", v > 0.0 ? 0.9 : 5.0) +
-                 strprintf("velocity body set %g NULL NULL sum yes\nrun 450 post no\n", v));
+    run.commands(
+        "unfix c\nfix c all mpm/contact F1 F2 law stick\nfix damp body viscous 750\n"
+        "run 500\nunfix damp\nunfix c\n" +
+        strprintf("fix c all mpm/contact F1 F2 law coulomb 0.3 %g\n", v > 0.0 ? 0.9 : 5.0) +
+        strprintf("velocity body set %g NULL NULL sum yes\nrun 450 post no\n", v));
     double t[3], x[3];
     for (int k = 0; k < 3; k++) {
       if (k) run.commands("run 450 post no\n");
       t[k] = run.evaluate("time");
       x[k] = run.evaluate("v_x");
     }
-    const double a = 2.0 * ((x[2] - x[1]) / (t[2] - t[1]) - (x[1] - x[0]) / (t[1] - t[0])) / (t[2] - t[0]);
+    const double a =
+        2.0 * ((x[2] - x[1]) / (t[2] - t[1]) - (x[1] - x[0]) / (t[1] - t[0])) / (t[2] - t[0]);
     if (v > 0.0)
       EXPECT_NEAR(measured("acceleration", a), 9.81 * (0.5 - 0.3 * std::sqrt(0.75)), 0.005 * 9.81);
     else
@@ -594,14 +612,16 @@ TEST(SelfContact, LobesStick)
   if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
   double slide[2], gap[2] = {100.0, 100.0}, touch[2] = {-1.0, -1.0};    // gaps in cells
   for (int k = 0; k < 2; k++) {
-    const std::string fields = k ? "fix F1 one mpm 0.5\nfix F2 two mpm 0.5\nfix c all mpm/contact F1 F2" :
-                                   "group both type 1 2\nfix F1 both mpm 0.5";
+    const std::string fields = k
+        ? "fix F1 one mpm 0.5\nfix F2 two mpm 0.5\nfix c all mpm/contact F1 F2"
+        : "group both type 1 2\nfix F1 both mpm 0.5";
     Scene run;
     run.commands(replaced(replaced(lobes, "FIRST", "F1"), "FIELDS", fields));
     for (int n = 0; n < 80; n++) {
       run.commands("run 10 post no\n");
       gap[k] = std::min(gap[k], run.evaluate("v_gap/0.5"));
-      if (touch[k] < 0.0 && run.evaluate("vcm(one,x)") < 0.99 * 0.2) touch[k] = run.evaluate("v_gap/0.5");
+      if (touch[k] < 0.0 && run.evaluate("vcm(one,x)") < 0.99 * 0.2)
+        touch[k] = run.evaluate("v_gap/0.5");
     }
     slide[k] = run.evaluate("v_slide/0.4");
     const std::string name = k ? "two fields: " : "one field: ";
@@ -630,8 +650,8 @@ static std::string drawn_bars(const std::string &law, const std::string &velocit
                   "fix hold all mpm/boundary region left stick field F1");
   return replaced(text, "velocity two set -0.05 0 0",
                   "region right block 1.9 3 0 0.08 -0.05 0.05\n"
-                  "fix pull all mpm/boundary region right stick velocity " + velocity +
-                      " field F2\nvelocity two set " + velocity);
+                  "fix pull all mpm/boundary region right stick velocity " +
+                      velocity + " field F2\nvelocity two set " + velocity);
 }
 
 // a bar is drawn off another one that is held: the pull reaches strength times area, the work is
@@ -663,7 +683,9 @@ TEST(Adhesion, Shear)
   run.commands(drawn_bars("law adhesive 0.2 0.01 2e-3", "0 0.01 0") + "run 5000\n");
   for (int k = 0; k < 5; k++) {
     run.commands("run 200 post no\n");
-    EXPECT_NEAR(measured("shear force/strength", std::fabs(run.evaluate("f_c[1][2]")) / 0.08 / 0.01), 1.0, 1.0e-6);
+    EXPECT_NEAR(
+        measured("shear force/strength", std::fabs(run.evaluate("f_c[1][2]")) / 0.08 / 0.01), 1.0,
+        1.0e-6);
   }
   EXPECT_LT(run.evaluate("f_c"), 0.0);
 }

@@ -11,11 +11,11 @@
 // timeout: 900
 
 // Convected particle domain interpolation, shapes cpdi and cpdi2 of fix mpm: large deformation,
-// conservation, ranks, restarts, and what is refused. The weights are tested in test_domain.cpp.
+// conservation, ranks, restarts, and what is refused. The weights are tested in transfer/test_cpdi_kernels.cpp.
 
 #include "mpm_lammps.h"
 
-#include "mpm_domain.h"
+#include "transfer/cpdi.h"
 
 #include "gtest/gtest.h"
 
@@ -26,8 +26,8 @@ using namespace MPM_TEST;
 /** Start of a 2d scene. */
 static std::string plane(const std::string &boundary, const std::string &box)
 {
-  return "units lj\ndimension 2\nboundary " + boundary + "\natom_style mpm\nregion box block " + box +
-      " -0.5 0.5\ncreate_box 1 box\n";
+  return "units lj\ndimension 2\nboundary " + boundary + "\natom_style mpm\nregion box block " +
+      box + " -0.5 0.5\ncreate_box 1 box\n";
 }
 
 static const std::vector<const char *> variants = {
@@ -57,8 +57,9 @@ TEST(Parallel, RanksAgree)
 
 TEST(Restart, GoesOnBitByBit)
 {
-  for (const char *options : {"shape cpdi transfer apic", "shape cpdi2 transfer flip 1.0 scheme musl",
-                              "shape cpdi2 transfer tpic"}) {
+  for (const char *options :
+       {"shape cpdi transfer apic", "shape cpdi2 transfer flip 1.0 scheme musl",
+        "shape cpdi2 transfer tpic"}) {
     SCOPED_TRACE(options);
     const std::string next = "neighbor 0.3 bin\nfix grid all mpm 1.0 " + std::string(options) + R"(
 fix m1 one mpm/material density 1.0 neohookean 10.0 0.3
@@ -85,8 +86,9 @@ TEST(Conservation, MomentumIsKeptAndNoEnergyGained)
     SCOPED_TRACE(options);
     Scene run;
     run.commands(replaced(two_bodies, "MPM_OPTIONS", options));
-    run.commands("compute e all mpm/energy\nvariable px equal vcm(all,x)\nvariable m equal mass(all)\n"
-                 "thermo_style custom step c_e[*] v_px\nrun 0\n");
+    run.commands(
+        "compute e all mpm/energy\nvariable px equal vcm(all,x)\nvariable m equal mass(all)\n"
+        "thermo_style custom step c_e[*] v_px\nrun 0\n");
     const double p = run.evaluate("v_px*v_m"), kinetic = run.evaluate("c_e[1]");
     run.commands("run 150\n");
     EXPECT_NEAR(run.evaluate("v_px*v_m"), p, 1e-11 * run.evaluate("v_m"));
@@ -106,7 +108,8 @@ TEST(Equivalence, BoxesInOneCellAreThoseOfCpgimp)
     for (const int k : {0, 1}) {
       Scene run;
       run.commands(plane("p p p", "0 16 0 4") + std::string(R"(
-fix g all mpm 1.0 shape )") + (k ? "cpdi " : "cpgimp ") + transfer + R"(
+fix g all mpm 1.0 shape )") +
+                   (k ? "cpdi " : "cpgimp ") + transfer + R"(
 create_points 1 region box ppc 2
 fix m all mpm/material density 1 neohookean 100 0.3
 variable v atom 1e-7*sin(2*PI*x/16)
@@ -128,7 +131,8 @@ TEST(UniformPressure, PointsOfTwoSizes)
 {
   for (const char *shape : {"cpdi", "cpdi2"}) {
     Scene run;
-    run.commands(plane("p p p", "0 8 0 8") + strprintf(R"(
+    run.commands(plane("p p p", "0 8 0 8") +
+                 strprintf(R"(
 fix g all mpm 1.0 shape %s transfer apic
 region left block 0 4 0 8 -0.5 0.5
 region right block 4 8 0 8 -0.5 0.5
@@ -211,8 +215,9 @@ thermo 100000
     double sum = 0.0;
     for (int i = 0; i < run.n(); i++) {
       const double *X = run.reference(i), R = hypot(X[0], X[1]), q = 2.0 * (R - 1.0);
-      const double s = 1.0 - 8.0 * q * q + 16.0 * q * q * q * q, s1 = 2.0 * (64.0 * q * q * q - 16.0 * q),
-                   s2 = 4.0 * (192.0 * q * q - 16.0), a = g * s;
+      const double s = 1.0 - 8.0 * q * q + 16.0 * q * q * q * q,
+                   s1 = 2.0 * (64.0 * q * q * q - 16.0 * q), s2 = 4.0 * (192.0 * q * q - 16.0),
+                   a = g * s;
       const double A = c2 * (3.0 * g * s1 + R * g * s2) - R * g2 * s;
       const double B = R * (c2 * g * s1 * g * s1 - g1 * s * g1 * s);
       const double bR = A * sin(a) + B * cos(a), bT = -A * cos(a) + B * sin(a);
@@ -259,7 +264,8 @@ INSTANTIATE_TEST_SUITE_P(Shapes, Vortex,
 TEST(VortexVolume, FreeCorners)
 {
   if (nranks() > 1) GTEST_SKIP() << "forces are those of one rank";
-  for (const char *options : {"shape cpdi2 transfer apic", "shape cpdi2 transfer apic scheme musl"}) {
+  for (const char *options :
+       {"shape cpdi2 transfer apic", "shape cpdi2 transfer apic scheme musl"}) {
     double volume[2];
     EXPECT_LT(vortex(options, 10, 1.0, volume), 0.065);
     EXPECT_NEAR(volume[0] / volume[1], 1.0, 1e-10) << options;
@@ -312,7 +318,8 @@ timestep 6e-4
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, Cantilever,
-                         ::testing::Values("shape cpdi transfer apic", "shape cpdi2 transfer apic"));
+                         ::testing::Values("shape cpdi transfer apic",
+                                           "shape cpdi2 transfer apic"));
 
 TEST(Size, Limit)
 {
@@ -345,7 +352,8 @@ TEST(Size, LimitIn3d)
 {
   if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
   for (const char *shape : {"cpdi", "cpdi2"})
-    EXPECT_THAT(error_of(strprintf(R"(
+    EXPECT_THAT(
+        error_of(strprintf(R"(
 units lj
 boundary f p p
 atom_style mpm
@@ -361,9 +369,9 @@ timestep 0.5
 thermo 10000
 run 400
 )",
-                                   shape)),
-                ::testing::ContainsRegex("Material point [0-9]+ at .* has a domain with a corner "
-                                         "3\\.[0-9]* node spacings away at step [0-9]+, the limit is 3"));
+                           shape)),
+        ::testing::ContainsRegex("Material point [0-9]+ at .* has a domain with a corner "
+                                 "3\\.[0-9]* node spacings away at step [0-9]+, the limit is 3"));
 }
 
 // shear by 6, at which domains of 3.5 cells lie around a periodic box of 3 cells more than once: as in a box
@@ -377,7 +385,8 @@ TEST(Periodic, DomainsAreWiderThanTheBox)
     double shear[2];
     for (const int k : {0, 1}) {
       Scene run;
-      run.commands(plane("p p p", k ? "0 12 0 8" : "0 3 0 8") + strprintf(R"(
+      run.commands(plane("p p p", k ? "0 12 0 8" : "0 3 0 8") +
+                   strprintf(R"(
 fix g all mpm 1.0 %s
 create_points 1 region box ppc 2
 fix m all mpm/material density 3.0 neohookean 0.001 0.3
@@ -443,7 +452,8 @@ TEST(Inverted, BadDecides)
   for (const char *policy : {"error", "warn", "delete"}) {
     SCOPED_TRACE(policy);
     Scene run;
-    run.commands(plane("p p p", "0 8 0 8") + strprintf(R"(
+    run.commands(plane("p p p", "0 8 0 8") +
+                 strprintf(R"(
 fix grid all mpm 1.0 shape cpdi2 bad %s
 region block block 2 4 2 4 -0.5 0.5
 create_points 1 region block ppc 2
@@ -454,10 +464,12 @@ run 1
 )",
                            policy));
     double *corner = run.field()->corners[5];
-    for (int d = 0; d < 2; d++) std::swap(corner[d], corner[2 + d]), std::swap(corner[4 + d], corner[6 + d]);
+    for (int d = 0; d < 2; d++)
+      std::swap(corner[d], corner[2 + d]), std::swap(corner[4 + d], corner[6 + d]);
     if (std::string(policy) == "error") {
       EXPECT_THAT(run.error("run 1\n"),
-                  ::testing::ContainsRegex("Material point [0-9]+ at .* has a domain that is turned inside out"));
+                  ::testing::ContainsRegex(
+                      "Material point [0-9]+ at .* has a domain that is turned inside out"));
       continue;
     }
     run.commands("run 3\n");
@@ -465,7 +477,8 @@ run 1
     ASSERT_EQ(run.n(), keeps ? 16 : 15);
     for (int i = 0; i < run.n(); i++)
       for (int k = 0; k < 8; k++)    // all squares
-        EXPECT_NEAR(run.field()->corners[i][k], 0.25 * MPM_NS::PointDomain<2>::sign(k / 2, k % 2), 1e-8);
+        EXPECT_NEAR(run.field()->corners[i][k], 0.25 * MPM_NS::PointDomain<2>::sign(k / 2, k % 2),
+                    1e-8);
   }
 }
 
@@ -478,7 +491,8 @@ TEST(Boundaries, WallsAndContactHold)
     for (const char *face : {"slip", "separate"}) {
       SCOPED_TRACE(std::string(options) + " " + face);
       Scene run;
-      run.commands(plane("p f p", "0 8 0 12") + strprintf(R"(
+      run.commands(plane("p f p", "0 8 0 12") +
+                   strprintf(R"(
 fix g all mpm 1.0 origin 0 0.5 %s
 region column block 0 8 0 6 -0.5 0.5
 create_points 1 region column ppc 2
@@ -554,7 +568,8 @@ static std::string box_mesh(int dim, int n, bool simplices)
     for (int j = 0; j < n; j++)
       for (int i = 0; i < n; i++) {
         const auto at = [&](int bits) {
-          return std::to_string(node(i + (bits & 1), j + (bits >> 1 & 1), k + (bits >> 2 & 1))) + " ";
+          return std::to_string(node(i + (bits & 1), j + (bits >> 1 & 1), k + (bits >> 2 & 1))) +
+              " ";
         };
         if (dim == 2 && simplices) {
           elements.push_back("2 2 0 1 " + at(0) + at(1) + at(3));

@@ -219,10 +219,10 @@ def test_pages_have_the_order_of_the_lammps_manual():
 def test_every_source_file_is_in_the_table_of_the_developer_guide():
     text = read(os.path.join(PAGES, "Developer_mpm.rst"))
     table = text[text.index("\nFiles\n"):text.index("\nData structures\n")]
-    names = re.findall(r"(?<![\w.])(?:plugin/)?[a-z]\w*\*?(?:\.(?:h|cpp))?(?![\w.])", table)
+    names = re.findall(r"(?<![\w.])(?:[a-z]+/)?[a-z]\w*\*?(?:\.(?:h|cpp))?(?![\w.])", table)
     wrong = []
     for path in sorted(glob.glob(os.path.join(SOURCES, "*.[hc]*")) +
-                       glob.glob(os.path.join(SOURCES, "plugin", "*.cpp"))):
+                       glob.glob(os.path.join(SOURCES, "*", "*.[hc]*"))):
         name = os.path.relpath(path, SOURCES)
         base = name.rsplit(".", 1)[0]
         if not any(fnmatch.fnmatch(name, n) or fnmatch.fnmatch(base, n) for n in names):

@@ -6,7 +6,6 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-
 // labels: physics
 // mpi: 1 2
 
@@ -47,9 +46,10 @@ TEST(Edges, FunctionsAreModified)
   if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
   for (int order : {2, 3}) {
     Scene run;
-    run.commands(replaced(full, "OPTIONS", order == 2 ? "transfer flip 1.0" :
-                                                        "shape cubic transfer flip 1.0 scheme musl") +
-                 "displace_atoms all random 0.1 0.1 0.1 4711 units box\nrun 1 post no\n");
+    run.commands(
+        replaced(full, "OPTIONS",
+                 order == 2 ? "transfer flip 1.0" : "shape cubic transfer flip 1.0 scheme musl") +
+        "displace_atoms all random 0.1 0.1 0.1 4711 units box\nrun 1 post no\n");
     auto *atom = run.lmp->atom;
     auto *field = dynamic_cast<FixMPM *>(run.lmp->modify->get_fix_by_id("grid"));
     auto &grid = *field->grid;
@@ -68,10 +68,10 @@ TEST(Edges, FunctionsAreModified)
         double exact = 0.0;
         for (int i = 0; i < run.n(); i++) {
           const double *x = atom->x[i];    // the body is at rest
-          const double wx = index[0] < 3 ? modified(order, index[0], x[0]) :
-                                           modified(order, 6 - index[0], 6.0 - x[0]);
-          const double wz = index[2] < 2 ? modified(order, index[2], x[2]) :
-                                           modified(order, 4 - index[2], 4.0 - x[2]);
+          const double wx = index[0] < 3 ? modified(order, index[0], x[0])
+                                         : modified(order, 6 - index[0], 6.0 - x[0]);
+          const double wz = index[2] < 2 ? modified(order, index[2], x[2])
+                                         : modified(order, 4 - index[2], 4.0 - x[2]);
           double wy = 0.0;
           for (int image = -5; image <= 5; image += 5)
             wy += modified(order, 100, 100.0 + x[1] + image - index[1]);
@@ -88,17 +88,18 @@ TEST(Edges, FunctionsAreModified)
 
 TEST(Edges, LinearFieldsAreExact)
 {
-  for (const char *options : {"transfer flip 1.0", "transfer pic scheme musl",
-                              "shape cubic transfer flip 1.0",
-                              "shape cubic transfer flip 1.0 precision mixed"}) {
+  for (const char *options :
+       {"transfer flip 1.0", "transfer pic scheme musl", "shape cubic transfer flip 1.0",
+        "shape cubic transfer flip 1.0 precision mixed"}) {
     Scene run{MPI_COMM_SELF};
     const double a = 0.02, dt = 0.01;
-    run.commands(replaced(full, "OPTIONS", options) +
-                 "displace_atoms all random 0.2 0.2 0.2 4711 units box\n" +
-                 strprintf("region everything block EDGE EDGE EDGE EDGE EDGE EDGE\n"
-                           "fix turn all mpm/boundary region everything stick rotate 3 0 2 0 1 0 %g\n"
-                           "timestep %g\n",
-                           a / dt, dt));
+    run.commands(
+        replaced(full, "OPTIONS", options) +
+        "displace_atoms all random 0.2 0.2 0.2 4711 units box\n" +
+        strprintf("region everything block EDGE EDGE EDGE EDGE EDGE EDGE\n"
+                  "fix turn all mpm/boundary region everything stick rotate 3 0 2 0 1 0 %g\n"
+                  "timestep %g\n",
+                  a / dt, dt));
     run.set_reference();
     run.commands("run 1\n");
     const double tolerance = strstr(options, "mixed") ? 1.0e-7 : 1.0e-14;
@@ -154,8 +155,9 @@ TEST(Edges, UniformPressureMakesNoForce)
 TEST(Edges, KeepMomentum)
 {
   for (const char *options :
-       {"transfer pic", "transfer flip 1.0", "transfer flip 1.0 scheme usavg", "transfer flip 1.0 frame total",
-        "shape cubic transfer flip 1.0 scheme musl", "shape cubic transfer pic scheme usf"}) {
+       {"transfer pic", "transfer flip 1.0", "transfer flip 1.0 scheme usavg",
+        "transfer flip 1.0 frame total", "shape cubic transfer flip 1.0 scheme musl",
+        "shape cubic transfer pic scheme usf"}) {
     SCOPED_TRACE(options);
     Scene run{MPI_COMM_SELF};
     run.commands(replaced(replaced(full, "OPTIONS", options), "0.001", "0.05") +
@@ -171,7 +173,8 @@ TEST(Edges, KeepMomentum)
   }
   Scene run{MPI_COMM_SELF};
   run.commands(replaced(full, "OPTIONS", "transfer flip 1.0 scheme usavg") +
-               "displace_atoms all random 0.05 0.05 0.05 4711 units box\nvelocity all set 0.3 0.2 0.1\nrun 20\n");
+               "displace_atoms all random 0.05 0.05 0.05 4711 units box\nvelocity all set 0.3 0.2 "
+               "0.1\nrun 20\n");
   for (int i = 0; i < run.n(); i++)
     for (int c = 0; c < 6; c++) ASSERT_NEAR(run.points().tau[i][c], 0.0, 1.0e-12);
 }
@@ -190,13 +193,14 @@ TEST_P(EdgesRun, AgreesOnRanksAndAfterARestart)
   const std::string scene = replaced(full, "OPTIONS", GetParam()) + moving;
   OnRanks ranks(replaced(scene, "0.001", "0.05"), "run 100\n");
   EXPECT_LT(ranks.difference(), 1.0e-11);
-  Continued run(replaced(scene, "0.001", "0.05"), 40,
-                "neighbor 0.3 bin\n" + replaced("fix grid all mpm 1.0 OPTIONS edges modified\n",
-                                                "OPTIONS", GetParam()) +
-                    "fix m all mpm/material density 1.0 neohookean 10.0 0.3\n"
-                    "fix w1 all mpm/boundary xlo xhi stick\nfix w2 all mpm/boundary zlo zhi slip\n"
-                    "thermo 1000\n",
-                40);
+  Continued run(
+      replaced(scene, "0.001", "0.05"), 40,
+      "neighbor 0.3 bin\n" +
+          replaced("fix grid all mpm 1.0 OPTIONS edges modified\n", "OPTIONS", GetParam()) +
+          "fix m all mpm/material density 1.0 neohookean 10.0 0.3\n"
+          "fix w1 all mpm/boundary xlo xhi stick\nfix w2 all mpm/boundary zlo zhi slip\n"
+          "thermo 1000\n",
+      40);
   EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
 }
 
@@ -208,13 +212,16 @@ INSTANTIATE_TEST_SUITE_P(Options, EdgesRun,
 
 TEST(Edges, RefuseMistakes)
 {
-  const std::string scene = "units lj\natom_style mpm\nboundary f f f\nregion box block 0 6 0 6 0 6\n"
-                            "create_box 1 box\n";
-  for (const char *options : {"shape linear transfer flip 1.0", "shape gimp transfer flip 1.0", "transfer xpic 3", "transfer polypic", "transfer apic"})
+  const std::string scene =
+      "units lj\natom_style mpm\nboundary f f f\nregion box block 0 6 0 6 0 6\n"
+      "create_box 1 box\n";
+  for (const char *options : {"shape linear transfer flip 1.0", "shape gimp transfer flip 1.0",
+                              "transfer xpic 3", "transfer polypic", "transfer apic"})
     EXPECT_THAT(error_of(scene + "fix grid all mpm 1.0 edges modified " + options + "\n"),
                 ::testing::HasSubstr("edges modified is for shape quadratic and cubic"));
-  EXPECT_THAT(error_of(scene + "fix grid all mpm 1.0 edges modified transfer flip 1.0 origin 0.5 0 0\n"
-                               "create_points 1 box ppc 2\nfix m all mpm/material density 1 neohookean "
-                               "10 0.3\ntimestep 0.01\nrun 0\n"),
+  EXPECT_THAT(error_of(scene +
+                       "fix grid all mpm 1.0 edges modified transfer flip 1.0 origin 0.5 0 0\n"
+                       "create_points 1 box ppc 2\nfix m all mpm/material density 1 neohookean "
+                       "10 0.3\ntimestep 0.01\nrun 0\n"),
               ::testing::HasSubstr("the fixed face xlo must be in a plane of nodes"));
 }

@@ -54,8 +54,8 @@ static std::vector<std::array<double, 7>> places(Scene &run)
 static const std::string head = "units lj\nboundary p p f\natom_style mpm\nneighbor 0.3 bin\n"
                                 "region box block 0 8 0 8 0 12\ncreate_box 2 box\n";
 static const std::string block = "region b block 2 6 2 6 0 4\ncreate_points 1 region b ppc 2\n";
-static const std::string rubber =
-    "fix m all mpm/material density 1.0 neohookean 40.0 0.3\nfix g all gravity 0.5 vector 0.6 0 -1\n";
+static const std::string rubber = "fix m all mpm/material density 1.0 neohookean 40.0 0.3\nfix g "
+                                  "all gravity 0.5 vector 0.6 0 -1\n";
 static const std::string floors = "fix floor all mpm/boundary zlo stick\n";
 
 struct Feature {
@@ -73,7 +73,8 @@ class LargerStep : public ::testing::TestWithParam<Feature> {};
 TEST_P(LargerStep, IsTheSame)
 {
   const auto scene = [](int every) {
-    return head + replaced(GetParam().text, "EVERY", every == 1 ? "" : strprintf("every %d", every)) +
+    return head +
+        replaced(GetParam().text, "EVERY", every == 1 ? "" : strprintf("every %d", every)) +
         strprintf("timestep %.17g\nthermo 1000\n", 0.04 / every);
   };
   Scene one;
@@ -99,32 +100,37 @@ TEST_P(LargerStep, IsTheSame)
 
 static const Feature features[] = {
     {"Apic", "fix grid all mpm 1.0 EVERY\n" + block + rubber + floors},
-    {"FlipMusl", "fix grid all mpm 1.0 transfer flip 0.99 scheme musl EVERY\n" + block + rubber + floors},
+    {"FlipMusl",
+     "fix grid all mpm 1.0 transfer flip 0.99 scheme musl EVERY\n" + block + rubber + floors},
     {"Usavg", "fix grid all mpm 1.0 shape cubic scheme usavg EVERY\n" + block + rubber + floors},
     {"Total", "fix grid all mpm 1.0 frame total EVERY\n" + block + rubber + floors},
     {"Cpdi2", "fix grid all mpm 1.0 shape cpdi2 EVERY\n" + block + rubber + floors},
-    {"MovingFace", "variable v equal 0.3*sin(3*time)\nfix grid all mpm 1.0 EVERY\n" + block + rubber +
+    {"MovingFace",
+     "variable v equal 0.3*sin(3*time)\nfix grid all mpm 1.0 EVERY\n" + block + rubber +
          "fix floor all mpm/boundary zlo stick velocity v_v 0 0\n"},
     {"MovingRegion",
      "variable up equal 0.1*time^2\nregion plate block INF INF INF INF -2 0.3 move NULL NULL v_up\n"
      "fix grid all mpm 1.0 EVERY\nregion b block 2 6 2 6 0.5 4\ncreate_points 1 region b ppc 2\n" +
          rubber + "fix push all mpm/boundary region plate separate friction 0.2\n"},
-    {"Contact", "region b block 2 6 2 6 0 3\nregion c block 3 5 2.5 4.5 3 5\n"
-                "create_points 1 region b spacing 0.5\ncreate_points 2 region c spacing 0.5\n"
-                "group low type 1\ngroup high type 2\n"
-                "fix low low mpm 1.0 EVERY\nfix high high mpm 1.0 EVERY\n" + rubber + floors +
-         "fix c all mpm/contact low high law coulomb 0.2\n"},
+    {"Contact",
+     "region b block 2 6 2 6 0 3\nregion c block 3 5 2.5 4.5 3 5\n"
+     "create_points 1 region b spacing 0.5\ncreate_points 2 region c spacing 0.5\n"
+     "group low type 1\ngroup high type 2\n"
+     "fix low low mpm 1.0 EVERY\nfix high high mpm 1.0 EVERY\n" +
+         rubber + floors + "fix c all mpm/contact low high law coulomb 0.2\n"},
 };
 
-INSTANTIATE_TEST_SUITE_P(Every, LargerStep, ::testing::ValuesIn(features),
-                         [](const auto &info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(Every, LargerStep, ::testing::ValuesIn(features), [](const auto &info) {
+  return std::string(info.param.name);
+});
 
 // A restart file that is written between two steps of the points: bitwise as without
 
 TEST(LargerStep, GoesOnFromARestartFile)
 {
   for (const auto &feature : features) {
-    if (std::string(feature.name) != "MovingFace" && std::string(feature.name) != "MovingRegion") continue;
+    if (std::string(feature.name) != "MovingFace" && std::string(feature.name) != "MovingRegion")
+      continue;
     const std::string scene = replaced(feature.text, "EVERY", "every 5");
     // variables and regions are not in the file, points are
     const auto fixes = replaced(scene, "create_points 1 region b ppc 2\n", "");
@@ -144,8 +150,10 @@ TEST(LargerStep, DeletesTheSamePoints)
                        "region bar block 0 20 1 5 INF INF\n") +
         strprintf("fix grid all mpm 1.0 failed delete every %d\n", every) +
         "create_points 1 region bar ppc 2\n"
-        "fix m all mpm/material density 1.0 eos linear 100.0 strength elastic 60.0 damage rankine 3.0 "
-        "after none\nregion left block INF 1 INF INF INF INF\nregion right block 19 INF INF INF INF INF\n"
+        "fix m all mpm/material density 1.0 eos linear 100.0 strength elastic 60.0 damage rankine "
+        "3.0 "
+        "after none\nregion left block INF 1 INF INF INF INF\nregion right block 19 INF INF INF "
+        "INF INF\n"
         "fix l all mpm/boundary region left stick\n"
         "fix r all mpm/boundary region right stick velocity 0.5 0 0\n" +
         strprintf("timestep %.17g\nthermo 1000\n", 0.02 / every);
@@ -176,7 +184,8 @@ TEST(Seen, MotionIsThatOfTheTime)
   const double dt = 0.01, v0 = 0.4, a = -0.25;
   for (const int every : {1, 2, 5, 20}) {
     Scene run;
-    run.commands(replaced(head, "p p f", "p p p") + strprintf("fix grid all mpm 1.0 every %d\n", every) +
+    run.commands(replaced(head, "p p f", "p p p") +
+                 strprintf("fix grid all mpm 1.0 every %d\n", every) +
                  "region b block 2 6 2 6 3 7\ncreate_points 1 region b ppc 2\n"
                  "fix m all mpm/material density 1.0 neohookean 10.0 0.3\n" +
                  strprintf("velocity all set %g 0 0\ntimestep %g\nthermo 1000\n", v0, dt));
@@ -216,10 +225,11 @@ TEST(Seen, SpringIsNotDamped)
   const double omega = 1.0, step = 0.5;
   for (const int every : {1, 2, 5, 10}) {
     Scene run;
-    run.commands(replaced(head, "p p f", "p p p") + strprintf("fix grid all mpm 1.0 every %d\n", every) +
-                 "region b block 2 6 2 6 3 7\ncreate_points 1 region b ppc 2\n"
-                 "fix m all mpm/material density 1.0 neohookean 1.0 0.3\n" +
-                 strprintf("velocity all set 0.3 0 0\ntimestep %.17g\nthermo 100000\n", step / every));
+    run.commands(
+        replaced(head, "p p f", "p p p") + strprintf("fix grid all mpm 1.0 every %d\n", every) +
+        "region b block 2 6 2 6 3 7\ncreate_points 1 region b ppc 2\n"
+        "fix m all mpm/material density 1.0 neohookean 1.0 0.3\n" +
+        strprintf("velocity all set 0.3 0 0\ntimestep %.17g\nthermo 100000\n", step / every));
     run.set_reference();
     const auto seen = [&](int i) {
       double x[3];
@@ -255,10 +265,11 @@ TEST(Seen, ImpulseIsThatOfAllSteps)
 {
   const double a = -0.25;
   Scene run;
-  run.commands(replaced(head, "p p f", "p p p") +
-               "fix grid all mpm 1.0 every 5\nregion b block 2 6 2 6 3 7\n"
-               "create_points 1 region b ppc 2\nfix m all mpm/material density 1.0 neohookean 10.0 0.3\n"
-               "timestep 0.001\nthermo 1000\n");
+  run.commands(
+      replaced(head, "p p f", "p p p") +
+      "fix grid all mpm 1.0 every 5\nregion b block 2 6 2 6 3 7\n"
+      "create_points 1 region b ppc 2\nfix m all mpm/material density 1.0 neohookean 10.0 0.3\n"
+      "timestep 0.001\nthermo 1000\n");
   run.each_step([&](double **force) {
     for (int i = 0; i < run.n(); i++) force[i][2] = a * run.mass()[i];
   });
@@ -276,16 +287,17 @@ TEST(Seen, TorquesAreThoseOfAllSteps)
   if (nranks() > 1) GTEST_SKIP() << "sums of one rank";
   for (const int every : {1, 3}) {
     Scene run;
-    run.commands("units lj\nboundary f f f\natom_style hybrid sphere mpm\nneighbor 0.3 bin\n"
-                 "comm_modify vel yes\nregion box block -4 14 -4 14 -4 14\ncreate_box 2 box\n" +
-                 strprintf("fix grid all mpm 1.0 every %d\n", every) +
-                 "region b block 2 7 2 7 2 6\ncreate_points 1 region b ppc 2 diameter 0.5\n"
-                 "create_atoms 2 single 3.6 4.1 7.1\nset type 2 diameter 2.0 density 2.0\n"
-                 "group block type 1\ngroup grain type 2\nvelocity grain set 1.0 0 -0.3\n"
-                 "fix m block mpm/material density 1.0 neohookean 60.0 0.3\nfix move grain nve/sphere\n"
-                 "pair_style granular\n"
-                 "pair_coeff * * hooke 60.0 2.0 tangential linear_nohistory 1.0 0.5\n"
-                 "neigh_modify exclude type 1 1\ntimestep 0.01\nthermo 1000\n");
+    run.commands(
+        "units lj\nboundary f f f\natom_style hybrid sphere mpm\nneighbor 0.3 bin\n"
+        "comm_modify vel yes\nregion box block -4 14 -4 14 -4 14\ncreate_box 2 box\n" +
+        strprintf("fix grid all mpm 1.0 every %d\n", every) +
+        "region b block 2 7 2 7 2 6\ncreate_points 1 region b ppc 2 diameter 0.5\n"
+        "create_atoms 2 single 3.6 4.1 7.1\nset type 2 diameter 2.0 density 2.0\n"
+        "group block type 1\ngroup grain type 2\nvelocity grain set 1.0 0 -0.3\n"
+        "fix m block mpm/material density 1.0 neohookean 60.0 0.3\nfix move grain nve/sphere\n"
+        "pair_style granular\n"
+        "pair_coeff * * hooke 60.0 2.0 tangential linear_nohistory 1.0 0.5\n"
+        "neigh_modify exclude type 1 1\ntimestep 0.01\nthermo 1000\n");
     double torque = 0.0;
     run.each_step([&](double **) {
       for (int i = 0; i < run.n(); i++)
@@ -311,16 +323,18 @@ TEST(Seen, TorqueIsNotLostWithTheGroup)
   if (nranks() > 1) GTEST_SKIP() << "sums of one rank";
   const double dt = 0.01, T = 0.3;
   Scene run;
-  run.commands("units lj\nboundary f f f\natom_style hybrid sphere mpm\nneighbor 0.3 bin\n"
-               "neigh_modify every 1 delay 0 check no\ncomm_modify vel yes\n"
-               "region box block -4 14 -4 14 -4 14\ncreate_box 2 box\nfix grid all mpm 1.0 every 3\n"
-               "region b block 2 8 2 8 2 8\ncreate_points 1 region b ppc 2\ngroup block type 1\n"
-               "create_atoms 2 single 5 5 10\nset type 2 diameter 1.0 density 1.0\ngroup skin type 2\n"
-               "atom_modify first skin\nneigh_modify include skin\ncomm_modify group skin\n"
-               "fix surf block mpm/surface group skin\n"
-               "fix m block mpm/material density 1.0 eos linear 10.0 strength elastic 5.0 damage rankine 100.0\n"
-               "pair_style granular\npair_coeff * * hooke 60.0 2.0 tangential linear_nohistory 1.0 0.5\n"
-               "neigh_modify exclude type 1 1\ntimestep 0.01\nthermo 1000\nrun 0\n");
+  run.commands(
+      "units lj\nboundary f f f\natom_style hybrid sphere mpm\nneighbor 0.3 bin\n"
+      "neigh_modify every 1 delay 0 check no\ncomm_modify vel yes\n"
+      "region box block -4 14 -4 14 -4 14\ncreate_box 2 box\nfix grid all mpm 1.0 every 3\n"
+      "region b block 2 8 2 8 2 8\ncreate_points 1 region b ppc 2\ngroup block type 1\n"
+      "create_atoms 2 single 5 5 10\nset type 2 diameter 1.0 density 1.0\ngroup skin type 2\n"
+      "atom_modify first skin\nneigh_modify include skin\ncomm_modify group skin\n"
+      "fix surf block mpm/surface group skin\n"
+      "fix m block mpm/material density 1.0 eos linear 10.0 strength elastic 5.0 damage rankine "
+      "100.0\n"
+      "pair_style granular\npair_coeff * * hooke 60.0 2.0 tangential linear_nohistory 1.0 0.5\n"
+      "neigh_modify exclude type 1 1\ntimestep 0.01\nthermo 1000\nrun 0\n");
   const auto *material = dynamic_cast<FixMPMMaterial *>(run.lmp->modify->get_fix_by_id("m"));
   const auto inside = [&] {
     int i = 0;

@@ -32,15 +32,15 @@ using namespace MPM_TEST;
 static double release(const std::string &options, double shift)
 {
   Scene run;
-  const std::string error =
-      run.error(strprintf("units lj\ndimension 2\nboundary f p p\natom_style mpm\nneighbor 0.5 bin\n"
-                          "region box block 0 16 0 2 -0.5 0.5\ncreate_box 1 box\n"
-                          "fix grid all mpm 1.0 %s\nregion body block 3 13 0 2 -0.5 0.5\n"
-                          "create_points 1 region body ppc 2\n"
-                          "displace_atoms all move %.17g 0 0\n"
-                          "fix m all mpm/material density 1.0 eos stiffened/gas 2.0 0.49 "
-                          "pressure 0.01\ntimestep 0.2\nrun 0\n",
-                          options.c_str(), shift));
+  const std::string error = run.error(
+      strprintf("units lj\ndimension 2\nboundary f p p\natom_style mpm\nneighbor 0.5 bin\n"
+                "region box block 0 16 0 2 -0.5 0.5\ncreate_box 1 box\n"
+                "fix grid all mpm 1.0 %s\nregion body block 3 13 0 2 -0.5 0.5\n"
+                "create_points 1 region body ppc 2\n"
+                "displace_atoms all move %.17g 0 0\n"
+                "fix m all mpm/material density 1.0 eos stiffened/gas 2.0 0.49 "
+                "pressure 0.01\ntimestep 0.2\nrun 0\n",
+                options.c_str(), shift));
   EXPECT_EQ(error, "");
   const double momentum = run.sums().p[0];
   double fastest = 0.0;
@@ -57,10 +57,11 @@ class LightNodes : public ::testing::TestWithParam<const char *> {};
 TEST_P(LightNodes, DoNotKickPoints)
 {
   double worst = 0.0;
-  for (double shift : {0.0, 0.1, 0.2, 0.25, 0.25 + 1e-3, 0.25 + 1e-6, 0.25 + 1e-9, 0.25 + 1e-12, 0.4,
-                       0.6, 0.75 + 1e-3, 0.75 + 1e-6, 0.75 + 1e-9, 0.9})
+  for (double shift : {0.0, 0.1, 0.2, 0.25, 0.25 + 1e-3, 0.25 + 1e-6, 0.25 + 1e-9, 0.25 + 1e-12,
+                       0.4, 0.6, 0.75 + 1e-3, 0.75 + 1e-6, 0.75 + 1e-9, 0.9})
     worst = std::max(worst, release(GetParam(), shift));
-  EXPECT_LT(measured(std::string(GetParam()) + ": largest speed of a point in p/(rho c)", worst), 2.0);
+  EXPECT_LT(measured(std::string(GetParam()) + ": largest speed of a point in p/(rho c)", worst),
+            2.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -89,15 +90,15 @@ TEST_P(LightRings, DoNotKickPoints)
                     tube = "boundary f p p\nregion box block 0 16 0 2 -0.5 0.5";
   for (const bool along : {true, false}) {
     double worst = 0.0;
-    for (double shift : {0.0, 0.1, 0.25, 0.25 + 1e-3, 0.25 + 1e-6, 0.25 + 1e-9, 0.25 + 1e-12, 0.4, 0.6,
-                         0.75 + 1e-6, 0.75 + 1e-9, 0.9}) {
+    for (double shift : {0.0, 0.1, 0.25, 0.25 + 1e-3, 0.25 + 1e-6, 0.25 + 1e-9, 0.25 + 1e-12, 0.4,
+                         0.6, 0.75 + 1e-6, 0.75 + 1e-9, 0.9}) {
       Scene run;
       const std::string error = run.error(
           "units lj\ndimension 2\natom_style mpm\nneighbor 0.5 bin\n" + (along ? rod : tube) +
           "\ncreate_box 1 box\nfix grid all mpm 1.0 axisymmetric yes " + GetParam() +
           "\nregion body block " + (along ? "0 4 3 13" : "3 13 0 2") + " INF INF\n" +
-          "create_points 1 region body ppc 2\nfix walls all mpm/boundary xlo" + (along ? " xhi" : "") +
-          " slip\ndisplace_atoms all move " +
+          "create_points 1 region body ppc 2\nfix walls all mpm/boundary xlo" +
+          (along ? " xhi" : "") + " slip\ndisplace_atoms all move " +
           strprintf(along ? "0 %.17g 0\n" : "%.17g 0 0\n", shift) +
           "fix m all mpm/material density 1.0 eos stiffened/gas 2.0 0.49 pressure 0.01\n"
           "timestep 0.2\nrun 0\n");
@@ -111,7 +112,8 @@ TEST_P(LightRings, DoNotKickPoints)
       EXPECT_NEAR(run.sums().p[1], along_axis, 1.0e-14 * mass);
     }
     EXPECT_LT(measured(std::string(GetParam()) + (along ? ", rod" : ", tube") +
-                           ": largest speed of a point in p/(rho c)", worst),
+                           ": largest speed of a point in p/(rho c)",
+                       worst),
               along ? 2.0 : 2.0 * 1.08);
   }
 }
@@ -133,9 +135,9 @@ TEST(LightNodesWithout, LinearFunctionsBreak)
 
 TEST(LightNodes3d, BallInFlight)
 {
-  for (const char *options : {"transfer flip 1.0 scheme usl", "transfer apic", "transfer apic scheme musl",
-                              "transfer apic scheme musl locking both",
-                              "transfer flip 1.0 scheme usl locking fbar"}) {
+  for (const char *options :
+       {"transfer flip 1.0 scheme usl", "transfer apic", "transfer apic scheme musl",
+        "transfer apic scheme musl locking both", "transfer flip 1.0 scheme usl locking fbar"}) {
     SCOPED_TRACE(options);
     Scene run;
     run.commands(strprintf("units si\nboundary f f f\natom_style mpm\nneighbor 0.3 bin\n"
@@ -151,8 +153,7 @@ TEST(LightNodes3d, BallInFlight)
     const auto before = run.sums();
     run.commands("run 500\n");
     const auto after = run.sums();
-    for (int d = 0; d < 3; d++)
-      EXPECT_NEAR(after.p[d], before.p[d], 1.0e-12 * before.mass);
+    for (int d = 0; d < 3; d++) EXPECT_NEAR(after.p[d], before.p[d], 1.0e-12 * before.mass);
     EXPECT_NEAR(run.evaluate("c_e"), start, 1.0e-10 * start);
   }
 }
@@ -166,13 +167,14 @@ TEST(LightNodes, ShareIsThatOfTheVolume)
   const double fx = 0.3, fy = 0.4, V = 0.25, light = 0.5, dt = 0.1, p = 0.01, rho = 3.0;
   for (const char *scheme : {"usl", "musl"}) {
     Scene run;
-    run.commands(strprintf("units lj\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.5 bin\n"
-                           "region box block 0 6 0 6 -0.5 0.5\ncreate_box 1 box\n"
-                           "fix grid all mpm 1.0 shape linear transfer apic scheme %s light %g\n"
-                           "create_atoms 1 single %g %g 0\nset atom 1 volume %g mass %g\n"
-                           "fix m all mpm/material density %g eos stiffened/gas 2.0 0.49 pressure %g\n"
-                           "timestep %g\nrun 1\n",
-                           scheme, light, 2.0 + fx, 3.0 + fy, V, rho * V, rho, p, dt));
+    run.commands(
+        strprintf("units lj\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.5 bin\n"
+                  "region box block 0 6 0 6 -0.5 0.5\ncreate_box 1 box\n"
+                  "fix grid all mpm 1.0 shape linear transfer apic scheme %s light %g\n"
+                  "create_atoms 1 single %g %g 0\nset atom 1 volume %g mass %g\n"
+                  "fix m all mpm/material density %g eos stiffened/gas 2.0 0.49 pressure %g\n"
+                  "timestep %g\nrun 1\n",
+                  scheme, light, 2.0 + fx, 3.0 + fy, V, rho * V, rho, p, dt));
     const double *C = dynamic_cast<FixMPM *>(run.lmp->modify->get_fix_by_id("grid"))->C[0];
     const double scale = V / light * dt * p / rho;
     EXPECT_NEAR(C[0] / scale, 2.0 * ((1.0 - fy) * (1.0 - fy) + fy * fy), 1.0e-9);
@@ -195,23 +197,25 @@ TEST(LightRings, ShareIsThatOfTheArea)
     for (const char *transfer : {"apic", "tpic"}) {
       const double r = cell + fx, V = 6.283185307179586 * r * A;
       Scene run;
-      run.commands(strprintf(
-          "units lj\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.5 bin\n"
-          "region box block 0 24 0 6 -0.5 0.5\ncreate_box 1 box\n"
-          "fix grid all mpm 1.0 shape linear axisymmetric yes light %g transfer %s\n"
-          "create_atoms 1 single %.17g %.17g 0\nset atom 1 volume %.17g mass %.17g\n"
-          "fix m all mpm/material density %g eos stiffened/gas 2.0 0.49 pressure %g\n"
-          "fix axis all mpm/boundary xlo slip\ntimestep %g\nrun 1\n",
-          light, transfer, r, 3.0 + fy, V, rho * V, rho, p, dt));
+      run.commands(
+          strprintf("units lj\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.5 bin\n"
+                    "region box block 0 24 0 6 -0.5 0.5\ncreate_box 1 box\n"
+                    "fix grid all mpm 1.0 shape linear axisymmetric yes light %g transfer %s\n"
+                    "create_atoms 1 single %.17g %.17g 0\nset atom 1 volume %.17g mass %.17g\n"
+                    "fix m all mpm/material density %g eos stiffened/gas 2.0 0.49 pressure %g\n"
+                    "fix axis all mpm/boundary xlo slip\ntimestep %g\nrun 1\n",
+                    light, transfer, r, 3.0 + fy, V, rho * V, rho, p, dt));
       const double *C = run.field()->C[0], scale = A / light * dt * p / rho;
       const double x = 1.0 - fx, y = 1.0 - fy, xx = x * x + fx * fx, yy = y * y + fy * fy;
       const bool held = cell == 0.0;
       EXPECT_NEAR(C[0] / scale, held ? 2.0 * light / A + 2.0 * x * yy : 2.0 * yy, 1.0e-9);
-      EXPECT_NEAR(C[2] / scale, (held ? 2.0 * x * fx : x - fx) * (fy - y) * (held ? 1.0 : -1.0), 1.0e-9);
+      EXPECT_NEAR(C[2] / scale, (held ? 2.0 * x * fx : x - fx) * (fy - y) * (held ? 1.0 : -1.0),
+                  1.0e-9);
       EXPECT_NEAR(C[1] / scale, (x - fx) * (y - fy), 1.0e-9);
       EXPECT_NEAR(C[3] / scale, 2.0 * xx, 1.0e-9);
       EXPECT_NEAR(run.points().F[0][8], run.x()[0][0] / r, 1.0e-15);
-      EXPECT_NEAR((run.points().F[0][8] - 1.0) * r / (dt * dt * p / rho), held ? 2.0 : 1.0 / r, 1.0e-6);
+      EXPECT_NEAR((run.points().F[0][8] - 1.0) * r / (dt * dt * p / rho), held ? 2.0 : 1.0 / r,
+                  1.0e-6);
     }
 }
 
@@ -222,15 +226,16 @@ TEST(LightNodes, PeriodicFace)
   std::vector<double> found[2];
   for (int across : {0, 1}) {
     Scene run;
-    run.commands(strprintf("units lj\ndimension 2\nboundary p p p\natom_style mpm\nneighbor 0.4 bin\n"
-                           "region box block 0 16 0 16 -0.5 0.5\ncreate_box 1 box\n"
-                           "fix grid all mpm 1.0 shape linear transfer apic light 0.5\n"
-                           "region b block 6 10 7 9 INF INF\ncreate_points 1 region b ppc 2\n"
-                           "fix m all mpm/material density 1 neohookean 0.742857142857 0.3\n"
-                           "variable vx atom 0.02*(y-8)\nvariable vy atom -0.03*(x-8)\n"
-                           "velocity all set v_vx v_vy NULL\ndisplace_atoms all move %g %g 0\n"
-                           "timestep 0.25\nthermo 100000\nrun 200\n",
-                           0.3 + 8.0 * across, 0.28 + 8.0 * across));
+    run.commands(
+        strprintf("units lj\ndimension 2\nboundary p p p\natom_style mpm\nneighbor 0.4 bin\n"
+                  "region box block 0 16 0 16 -0.5 0.5\ncreate_box 1 box\n"
+                  "fix grid all mpm 1.0 shape linear transfer apic light 0.5\n"
+                  "region b block 6 10 7 9 INF INF\ncreate_points 1 region b ppc 2\n"
+                  "fix m all mpm/material density 1 neohookean 0.742857142857 0.3\n"
+                  "variable vx atom 0.02*(y-8)\nvariable vy atom -0.03*(x-8)\n"
+                  "velocity all set v_vx v_vy NULL\ndisplace_atoms all move %g %g 0\n"
+                  "timestep 0.25\nthermo 100000\nrun 200\n",
+                  0.3 + 8.0 * across, 0.28 + 8.0 * across));
     for (const auto &s : run.gather())    // by tag
       found[across].insert(found[across].end(), {s.v[0], s.v[1], s.F[1], s.F[4]});
   }
@@ -244,22 +249,24 @@ TEST(LightNodesInput, IsRefusedWhereItIsOfNoUse)
                             "region box block 0 8 0 8 0 8\ncreate_box 1 box\n"
                             "create_points 1 box spacing 1.0\n";
   const std::string material = "fix m all mpm/material density 1.0 linear 1.0 0.3\nrun 0\n";
-  for (const char *options :
-       {"light 0.5", "shape linear transfer flip 1.0 scheme musl light 0.5",
-        "shape linear frame total light 0.5", "shape gimp light 0.5"}) {
+  for (const char *options : {"light 0.5", "shape linear transfer flip 1.0 scheme musl light 0.5",
+                              "shape linear frame total light 0.5", "shape gimp light 0.5"}) {
     Scene run;
     EXPECT_THAT(run.error(scene + "fix grid all mpm 1.0 " + options + "\n" + material),
                 ::testing::HasSubstr("remove light"));
   }
   for (const char *transfer : {"apic", "aflip 1.0", "tpic"}) {
     Scene run;
-    EXPECT_THAT(run.error(scene + "fix grid all mpm 1.0 shape linear light 0.5 locking pressure transfer " +
+    EXPECT_THAT(run.error(scene +
+                          "fix grid all mpm 1.0 shape linear light 0.5 locking pressure transfer " +
                           transfer + "\n" + material),
                 ::testing::HasSubstr("use scheme musl, or transfer flip"));
   }
-  EXPECT_THAT(error_of("dimension 2\n" + replaced(replaced(scene, "p p p", "f p p"), "0 8 0 8 0 8", "0 8 0 8 -1 1") +
+  EXPECT_THAT(error_of("dimension 2\n" +
+                       replaced(replaced(scene, "p p p", "f p p"), "0 8 0 8 0 8", "0 8 0 8 -1 1") +
                        "fix grid all mpm 1.0 shape linear light 0.5 scheme usf axisymmetric yes\n"
-                       "fix axis all mpm/boundary xlo slip\n" + material),
+                       "fix axis all mpm/boundary xlo slip\n" +
+                       material),
               ::testing::HasSubstr("use scheme usl or musl"));
   Scene run;
   EXPECT_THAT(run.error(scene + "fix grid all mpm 1.0 shape linear light 1.5\n"),
@@ -278,14 +285,15 @@ TEST_P(OnNodes, KeepMomentum)
   for (const char *shift : {"0.25 0", "0.25 0.25", "0.75 0.25"})
     for (const char *kernels : {"auto", "reference"}) {
       Scene run;
-      run.commands(strprintf("units lj\ndimension 2\nboundary f f p\natom_style mpm\n"
-                             "neighbor 0.5 bin\nregion box block 0 12 0 12 -0.5 0.5\n"
-                             "create_box 1 box\nfix grid all mpm 1.0 %s kernels %s\n"
-                             "region body block 3 7 4 6 -0.5 0.5\ncreate_points 1 region body ppc 2\n"
-                             "displace_atoms all move %s 0\n"
-                             "fix m all mpm/material density 1.0 eos stiffened/gas 2.0 0.49 "
-                             "pressure 0.01\ntimestep 0.2\nrun 1\n",
-                             GetParam(), kernels, shift));
+      run.commands(
+          strprintf("units lj\ndimension 2\nboundary f f p\natom_style mpm\n"
+                    "neighbor 0.5 bin\nregion box block 0 12 0 12 -0.5 0.5\n"
+                    "create_box 1 box\nfix grid all mpm 1.0 %s kernels %s\n"
+                    "region body block 3 7 4 6 -0.5 0.5\ncreate_points 1 region body ppc 2\n"
+                    "displace_atoms all move %s 0\n"
+                    "fix m all mpm/material density 1.0 eos stiffened/gas 2.0 0.49 "
+                    "pressure 0.01\ntimestep 0.2\nrun 1\n",
+                    GetParam(), kernels, shift));
       const auto s = run.sums();
       for (int d = 0; d < 2; d++) EXPECT_NEAR(s.p[d], 0.0, 1.0e-15) << shift << " " << kernels;
     }
@@ -295,8 +303,9 @@ INSTANTIATE_TEST_SUITE_P(Options, OnNodes,
                          ::testing::Values("shape linear transfer flip 1.0 scheme musl",
                                            "shape linear transfer pic scheme usf",
                                            "shape linear transfer flip 1.0 light 0.5",
-                                           "shape linear transfer apic light 0.5", "shape quadratic",
-                                           "shape cubic", "shape gimp", "shape cpgimp"));
+                                           "shape linear transfer apic light 0.5",
+                                           "shape quadratic", "shape cubic", "shape gimp",
+                                           "shape cpgimp"));
 
 /* ----------------------------------------------------------------------
    the largest stable time step: random velocities, all energy is kinetic at the start
@@ -316,11 +325,13 @@ static std::string bar(const char *options, double shift, double dt, bool check)
                    "region box block 0 16 0 9 -0.5 0.5\ncreate_box 1 box\n"
                    "fix grid all mpm 1.0 %s dtcheck %s\nregion body block %s 3 6 -0.5 0.5\n"
                    "create_points 1 region body ppc 2\ndisplace_atoms all move %g %g 0\n"
-                   "fix axis all mpm/boundary xlo slip\nfix m all mpm/material density 1.0 neohookean 0.742857142857 0.3\n"
+                   "fix axis all mpm/boundary xlo slip\nfix m all mpm/material density 1.0 "
+                   "neohookean 0.742857142857 0.3\n"
                    "variable vx atom random(-1e-4,1e-4,4711)\n"
                    "variable vy atom random(-1e-4,1e-4,815)\nvelocity all set v_vx v_vy NULL\n"
                    "timestep %.10g\nthermo 100000\n",
-                   options, check ? "yes" : "no", round ? "0 10" : "3 13", round ? 0.0 : shift, shift, dt);
+                   options, check ? "yes" : "no", round ? "0 10" : "3 13", round ? 0.0 : shift,
+                   shift, dt);
 }
 
 static bool is_stable(const char *options, double shift, double dt)
@@ -342,29 +353,33 @@ TEST_P(TimeStep, IsWithinTheTable)
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Options, TimeStep,
-                         ::testing::Values(Limit{"transfer flip 1.0 scheme usl", 0.64, 0.9},
-                                           Limit{"transfer flip 1.0 scheme musl", 1.9, 2.15},
-                                           Limit{"transfer apic scheme usl", 1.05, 1.2},
-                                           Limit{"transfer apic scheme musl", 1.15, 1.35},
-                                           Limit{"shape cubic transfer apic scheme usl", 1.25, 1.4},
-                                           Limit{"shape cpgimp transfer flip 1.0 scheme usl", 0.55, 0.75},
-                                           Limit{"shape linear transfer apic scheme usl light 0.5",
-                                                 0.8, 1.1},
-                                           Limit{"shape linear transfer flip 1.0 scheme usl light 0.5 "
-                                                 "locking fbar", 0.8, 1.1},
-                                           Limit{"shape linear transfer flip 1.0 scheme usl light 0.5 "
-                                                 "axisymmetric yes", 0.7, 1.0},
-                                           Limit{"shape linear transfer apic scheme usl light 0.5 "
-                                                 "axisymmetric yes", 0.8, 1.1}));
+INSTANTIATE_TEST_SUITE_P(
+    Options, TimeStep,
+    ::testing::Values(Limit{"transfer flip 1.0 scheme usl", 0.64, 0.9},
+                      Limit{"transfer flip 1.0 scheme musl", 1.9, 2.15},
+                      Limit{"transfer apic scheme usl", 1.05, 1.2},
+                      Limit{"transfer apic scheme musl", 1.15, 1.35},
+                      Limit{"shape cubic transfer apic scheme usl", 1.25, 1.4},
+                      Limit{"shape cpgimp transfer flip 1.0 scheme usl", 0.55, 0.75},
+                      Limit{"shape linear transfer apic scheme usl light 0.5", 0.8, 1.1},
+                      Limit{"shape linear transfer flip 1.0 scheme usl light 0.5 "
+                            "locking fbar",
+                            0.8, 1.1},
+                      Limit{"shape linear transfer flip 1.0 scheme usl light 0.5 "
+                            "axisymmetric yes",
+                            0.7, 1.0},
+                      Limit{"shape linear transfer apic scheme usl light 0.5 "
+                            "axisymmetric yes",
+                            0.8, 1.1}));
 
 /** Energy that comes in bursts does so late: 6000 steps at the usual half of the limit. */
 TEST(LightNodes, KeepEnergyWithTheCuresForLocking)
 {
-  for (const char *options : {"transfer flip 1.0 locking fbar", "transfer flip 1.0 locking both",
-                              "transfer apic scheme musl locking fbar", "transfer aflip 1.0 scheme musl locking pressure",
-                              "transfer flip 1.0 locking both axisymmetric yes", "transfer apic axisymmetric yes",
-                              "transfer apic scheme musl locking both axisymmetric yes"}) {
+  for (const char *options :
+       {"transfer flip 1.0 locking fbar", "transfer flip 1.0 locking both",
+        "transfer apic scheme musl locking fbar", "transfer aflip 1.0 scheme musl locking pressure",
+        "transfer flip 1.0 locking both axisymmetric yes", "transfer apic axisymmetric yes",
+        "transfer apic scheme musl locking both axisymmetric yes"}) {
     const auto words = "shape linear light 0.5 " + std::string(options);
     Scene run;
     run.commands(bar(words.c_str(), 0.250001, 0.5, false) + "run 0\n");
@@ -382,14 +397,17 @@ TEST(LightNodes, KeepEnergyWithTheCuresForLocking)
  *  bar is moved by 1/4 h + shift, a layer of points is at the distance shift from the faces of empty cells. */
 TEST(TotalLightNodes, LimitIsThatOfTheWarning)
 {
-  const double mistake = 2.0;    // of the estimate, with affine matrices and for the weights of the other axis
-  for (const char *options : {"shape linear frame total transfer flip 1.0", "shape linear frame total transfer apic scheme musl",
+  const double mistake =
+      2.0;    // of the estimate, with affine matrices and for the weights of the other axis
+  for (const char *options : {"shape linear frame total transfer flip 1.0",
+                              "shape linear frame total transfer apic scheme musl",
                               "shape bernstein frame total transfer flip 1.0"})
     for (double shift : {1.0e-3, 0.01}) {
       SCOPED_TRACE(options);
       // the stiffest node has one layer of points: k/m = N'^2/N of them, N = shift or, Bernstein, 2 s (1 - s)
       // with s = shift/2
-      const double s = 0.5 * shift, bernstein = (1.0 - 2.0 * s) * (1.0 - 2.0 * s) / (2.0 * s * (1.0 - s));
+      const double s = 0.5 * shift,
+                   bernstein = (1.0 - 2.0 * s) * (1.0 - 2.0 * s) / (2.0 * s * (1.0 - s));
       const double limit = 1.0 / sqrt(strstr(options, "bernstein") ? bernstein : 1.0 / shift);
       EXPECT_TRUE(is_stable(options, 0.25 + shift, 0.9 * limit)) << shift;
       EXPECT_FALSE(is_stable(options, 0.25 + shift, mistake * limit)) << shift;
@@ -406,17 +424,18 @@ TEST(TotalLightNodes, LimitIsThatOfTheWarning)
 /** Above that limit there is a warning, and in the end an error that names a point; no silence. */
 TEST(TimeStepBeyond, EndsWithAnError)
 {
-  for (const char *options : {"transfer flip 1.0 scheme usl", "shape cpgimp transfer flip 1.0 scheme usl",
-                              "transfer fmpm 2"}) {
+  for (const char *options : {"transfer flip 1.0 scheme usl",
+                              "shape cpgimp transfer flip 1.0 scheme usl", "transfer fmpm 2"}) {
     Scene run;
-    run.commands(strprintf("units lj\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.5 bin\n"
-                           "region box block 0 16 0 9 -0.5 0.5\ncreate_box 1 box\n"
-                           "fix grid all mpm 1.0 %s\nregion body block 3 13 3 6 -0.5 0.5\n"
-                           "create_points 1 region body ppc 2\n"
-                           "fix m all mpm/material density 1.0 neohookean 0.742857142857 0.3\n"
-                           "variable vx atom random(-1e-4,1e-4,4711)\nvelocity all set v_vx 0 NULL\n"
-                           "timestep 0.99\nthermo 100000\n",
-                           options));
+    run.commands(
+        strprintf("units lj\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.5 bin\n"
+                  "region box block 0 16 0 9 -0.5 0.5\ncreate_box 1 box\n"
+                  "fix grid all mpm 1.0 %s\nregion body block 3 13 3 6 -0.5 0.5\n"
+                  "create_points 1 region body ppc 2\n"
+                  "fix m all mpm/material density 1.0 neohookean 0.742857142857 0.3\n"
+                  "variable vx atom random(-1e-4,1e-4,4711)\nvelocity all set v_vx 0 NULL\n"
+                  "timestep 0.99\nthermo 100000\n",
+                  options));
     const int warnings = run.lmp->error->get_numwarn();
     const std::string error = run.error("run 10000\n");
     EXPECT_GT(run.lmp->error->get_numwarn(), warnings) << options;
@@ -434,16 +453,17 @@ TEST(ManySteps, EnergyAndMomentum)
   for (const char *options : {"transfer flip 0.99 scheme musl", "transfer apic"}) {
     SCOPED_TRACE(options);
     Scene run;
-    run.commands(strprintf("units lj\ndimension 2\nboundary p p p\natom_style mpm\nneighbor 0.4 bin\n"
-                           "neigh_modify every 10\nregion box block 0 8 0 8 -0.5 0.5\n"
-                           "create_box 1 box\nfix grid all mpm 1.0 %s\n"
-                           "region body block 2 6 3 4 -0.5 0.5\ncreate_points 1 region body ppc 2\n"
-                           "fix m all mpm/material density 1.0 neohookean 0.742857142857 0.3\n"
-                           "variable vy atom 0.005+0.002*(x-4)+0.02*cos(2*PI*(x-4)/4)\n"
-                           "velocity all set 0.01 v_vy NULL\ntimestep 0.5\ncompute e all mpm/energy\n"
-                           "variable mech equal c_e[1]+c_e[2]\nthermo_style custom step v_mech\n"
-                           "thermo 1000000\nrun 0\n",
-                           options));
+    run.commands(
+        strprintf("units lj\ndimension 2\nboundary p p p\natom_style mpm\nneighbor 0.4 bin\n"
+                  "neigh_modify every 10\nregion box block 0 8 0 8 -0.5 0.5\n"
+                  "create_box 1 box\nfix grid all mpm 1.0 %s\n"
+                  "region body block 2 6 3 4 -0.5 0.5\ncreate_points 1 region body ppc 2\n"
+                  "fix m all mpm/material density 1.0 neohookean 0.742857142857 0.3\n"
+                  "variable vy atom 0.005+0.002*(x-4)+0.02*cos(2*PI*(x-4)/4)\n"
+                  "velocity all set 0.01 v_vy NULL\ntimestep 0.5\ncompute e all mpm/energy\n"
+                  "variable mech equal c_e[1]+c_e[2]\nthermo_style custom step v_mech\n"
+                  "thermo 1000000\nrun 0\n",
+                  options));
     const double start = run.evaluate("v_mech");
     const auto before = run.sums();
     double most = 0.0;
@@ -465,14 +485,15 @@ TEST(Gravity, FreeFall)
 {
   for (double g : {0.0, 1.0e-6, 1.0e-3, 1.0}) {
     Scene run;
-    run.commands(strprintf("units lj\ndimension 2\nboundary p p p\natom_style mpm\nneighbor 0.4 bin\n"
-                           "region box block 0 10 0 20 -0.5 0.5\ncreate_box 1 box\n"
-                           "fix grid all mpm 1.0\nregion b block 2 8 INF 6 INF INF\n"
-                           "create_points 1 region b ppc 2\n"
-                           "fix m all mpm/material density 1 neohookean 0.742857142857 0.3\n"
-                           "fix g all gravity %g vector 0 -1 0\nfix dt all mpm/dt 0.5 every 1\n"
-                           "thermo 100000\nrun 400\n",
-                           g));
+    run.commands(
+        strprintf("units lj\ndimension 2\nboundary p p p\natom_style mpm\nneighbor 0.4 bin\n"
+                  "region box block 0 10 0 20 -0.5 0.5\ncreate_box 1 box\n"
+                  "fix grid all mpm 1.0\nregion b block 2 8 INF 6 INF INF\n"
+                  "create_points 1 region b ppc 2\n"
+                  "fix m all mpm/material density 1 neohookean 0.742857142857 0.3\n"
+                  "fix g all gravity %g vector 0 -1 0\nfix dt all mpm/dt 0.5 every 1\n"
+                  "thermo 100000\nrun 400\n",
+                  g));
     const auto s = run.sums();
     EXPECT_NEAR(s.p[1] / s.mass, -g * run.time(), 1.0e-12 * (1.0 + g * run.time()));
     double stress = 0.0;

@@ -25,16 +25,18 @@ class AtSpeed : public ::testing::TestWithParam<const char *> {};
  *  corner where ranks meet, three times around. */
 TEST_P(AtSpeed, AcrossPeriodicFacesAndCorners)
 {
-  OnRanks both(strprintf("units lj\ndimension 2\nboundary p p p\natom_style mpm\nneighbor 0.4 bin\n"
-                         "region box block 0 16 0 16 -0.5 0.5\ncreate_box 1 box\n"
-                         "fix grid all mpm 1.0 %s\nregion b block 3 7 3 7 INF INF\n"
-                         "create_points 1 region b ppc 2\ndisplace_atoms all move 0.25 0.25 0\n"
-                         "fix m all mpm/material density 1 neohookean 0.742857142857 0.3\n"
-                         "variable vx atom 0.35+0.02*(y-5.25)\nvariable vy atom 0.35-0.02*(x-5.25)\n"
-                         "velocity all set v_vx v_vy NULL\ntimestep 0.25\nthermo 100000\n",
-                         GetParam()),
-               "run 550\n");
-  EXPECT_LT(measured(std::string(GetParam()) + ": difference to one rank", both.difference()), 1.0e-9);
+  OnRanks both(
+      strprintf("units lj\ndimension 2\nboundary p p p\natom_style mpm\nneighbor 0.4 bin\n"
+                "region box block 0 16 0 16 -0.5 0.5\ncreate_box 1 box\n"
+                "fix grid all mpm 1.0 %s\nregion b block 3 7 3 7 INF INF\n"
+                "create_points 1 region b ppc 2\ndisplace_atoms all move 0.25 0.25 0\n"
+                "fix m all mpm/material density 1 neohookean 0.742857142857 0.3\n"
+                "variable vx atom 0.35+0.02*(y-5.25)\nvariable vy atom 0.35-0.02*(x-5.25)\n"
+                "velocity all set v_vx v_vy NULL\ntimestep 0.25\nthermo 100000\n",
+                GetParam()),
+      "run 550\n");
+  EXPECT_LT(measured(std::string(GetParam()) + ": difference to one rank", both.difference()),
+            1.0e-9);
   const auto s = both.parallel.gather();
   double p[2] = {0.0, 0.0}, mass = 0.0;
   for (const auto &point : s) {

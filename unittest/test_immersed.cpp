@@ -422,9 +422,9 @@ static void expect_the_same(const std::string &scene, const std::string &again)
   for (int k = 0; k < 6; k++)
     EXPECT_NEAR(ranks.serial.fix_vector("drag", 6)[k], ranks.parallel.fix_vector("drag", 6)[k],
                 1.0e-10);
-  Continued run(scene, 30,
-                "neighbor 0.3 bin\ncomm_modify vel yes\nfix grid all mpm 1.0 transfer apic\n" + again,
-                30);
+  Continued run(
+      scene, 30,
+      "neighbor 0.3 bin\ncomm_modify vel yes\nfix grid all mpm 1.0 transfer apic\n" + again, 30);
   EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
 }
 

@@ -10,7 +10,7 @@
 // mpi: 1 2
 
 // fix mpm/material: definition in the input and in files, masses, and history variables that move
-// with their points, through restart files and to new points. The laws: test_materials.cpp.
+// with their points, through restart files and to new points. The laws: material/test_materials.cpp.
 
 #include "mpm_lammps.h"
 

@@ -17,7 +17,7 @@
 #include "fix_mpm_material.h"
 #include "grid2d.h"
 #include "grid3d.h"
-#include "mpm_material.h"
+#include "material/material.h"
 #include "mpm_vtk.h"
 #include "output.h"
 

@@ -117,7 +117,7 @@ def test_errors_of_its_parameters():
 
 
 LAW = """
-#include "mpm_law_plugin.h"
+#include "law/plugin.h"
 namespace MPM_NS::law {
 namespace {
 struct Own : LawDefaults {

@@ -440,7 +440,8 @@ TEST(BadInput, IsRefused)
 static std::string rings(const std::string &more)
 {
   return "units si\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.1 bin\n"
-         "region box block 0 6 0 12 -0.5 0.5\ncreate_box 2 box\ngroup one type 1\ngroup two type 2\n"
+         "region box block 0 6 0 12 -0.5 0.5\ncreate_box 2 box\ngroup one type 1\ngroup two type "
+         "2\n"
          "fix F1 one mpm 0.5 axisymmetric yes transfer flip 1.0 scheme musl\n"
          "fix F2 two mpm 0.4 axisymmetric yes transfer flip 1.0 scheme musl\n"
          "fix axis all mpm/boundary xlo slip\npair_style mpm/penalty\n" +
@@ -457,11 +458,13 @@ TEST(Rings, ForceIsTheSlopeOfTheEnergy)
   Scene run(MPI_COMM_SELF);
   std::string scene;
   for (int k = 0; k < 2; k++)
-    scene += strprintf("create_atoms %d single %.17g %.17g 0\nset type %d volume %.17g\n", k + 1, r[k], y[k],
-                       k + 1, 2.0 * M_PI * r[k] * area);
-  run.commands(rings(scene + "group one type 1\ngroup two type 2\npair_coeff 1 2 3.0\n"
-                             "fix m all mpm/material density 1 linear 1 0\ntimestep 1e-9\n"
-                             "compute pair all pair mpm/penalty\nthermo_style custom step c_pair\nrun 0\n"));
+    scene += strprintf("create_atoms %d single %.17g %.17g 0\nset type %d volume %.17g\n", k + 1,
+                       r[k], y[k], k + 1, 2.0 * M_PI * r[k] * area);
+  run.commands(
+      rings(scene +
+            "group one type 1\ngroup two type 2\npair_coeff 1 2 3.0\n"
+            "fix m all mpm/material density 1 linear 1 0\ntimestep 1e-9\n"
+            "compute pair all pair mpm/penalty\nthermo_style custom step c_pair\nrun 0\n"));
   const auto energy = [&](int point, int axis, double by) {
     const auto at = [&]() {
       int i = 0;
@@ -477,7 +480,8 @@ TEST(Rings, ForceIsTheSlopeOfTheEnergy)
     return found;
   };
   const double distance = hypot(r[0] - r[1], y[0] - y[1]), overlap = 0.2 - distance;
-  EXPECT_NEAR(energy(0, 0, 0.0), 0.5 * E * 0.2 * M_PI * (r[0] + r[1]) * overlap * overlap / 0.2, 1e-14);
+  EXPECT_NEAR(energy(0, 0, 0.0), 0.5 * E * 0.2 * M_PI * (r[0] + r[1]) * overlap * overlap / 0.2,
+              1e-14);
   double f[2][2];
   for (int i = 0; i < 2; i++)
     for (int d = 0; d < 2; d++) f[run.lmp->atom->type[i] - 1][d] = run.lmp->atom->f[i][d];
@@ -495,12 +499,13 @@ TEST(Rings, RodSwellsInASleeve)
 {
   if (!first_rank()) return;
   Scene run(MPI_COMM_SELF);
-  run.commands(rings("region one block 0 2 4 8 INF INF\nregion two block 2.05 3.25 4 8 INF INF\n"
-                     "create_points 1 region one ppc 2 fix F1\ncreate_points 2 region two ppc 2 fix F2\n"
-                     "group one type 1\ngroup two type 2\npair_coeff 1 2 2.0\n"
-                     "fix m all mpm/material density 1 neohookean 10.0 0.3\ncompute e all mpm/energy\n"
-                     "compute pair all pair mpm/penalty\nthermo_style custom step c_e c_pair\n"
-                     "timestep 0.01\nthermo 100000\n"));
+  run.commands(
+      rings("region one block 0 2 4 8 INF INF\nregion two block 2.05 3.25 4 8 INF INF\n"
+            "create_points 1 region one ppc 2 fix F1\ncreate_points 2 region two ppc 2 fix F2\n"
+            "group one type 1\ngroup two type 2\npair_coeff 1 2 2.0\n"
+            "fix m all mpm/material density 1 neohookean 10.0 0.3\ncompute e all mpm/energy\n"
+            "compute pair all pair mpm/penalty\nthermo_style custom step c_e c_pair\n"
+            "timestep 0.01\nthermo 100000\n"));
   run.set_velocity([](const double *x, double *v) {
     v[0] = x[0] < 2.02 ? 0.3 * x[0] : 0.0;
   });
@@ -524,7 +529,8 @@ TEST(Rings, RodSwellsInASleeve)
     ASSERT_GT(outer, inner);
   }
   EXPECT_GT(measured("energy of the contact", touch), 0.1);
-  EXPECT_LT(measured("work of the contact and its energy", drift), touch * 2.0 / (10.0 / (3.0 * 0.4)));
+  EXPECT_LT(measured("work of the contact and its energy", drift),
+            touch * 2.0 / (10.0 / (3.0 * 0.4)));
   EXPECT_GT(measured("stretch of the sleeve", stretch), 1.01);
   EXPECT_NEAR(run.sums().p[1], 0.0, 1e-12);
 }
@@ -536,13 +542,14 @@ TEST(Rings, RodsCollide)
   if (!first_rank()) return;
   Scene run(MPI_COMM_SELF);
   const double v = 0.05, c = 10.0;
-  run.commands(rings("region one block 0 2 0.5 5.5 INF INF\nregion two block 0 2 5.6 10.4 INF INF\n"
-                     "create_points 1 region one ppc 2 fix F1\ncreate_points 2 region two ppc 2 fix F2\n"
-                     "group one type 1\ngroup two type 2\npair_coeff 1 2 20.0\n"
-                     "fix m all mpm/material density 1 linear 100.0 0\ncompute e all mpm/energy\n"
-                     "compute pair all pair mpm/penalty\nthermo_style custom step c_e c_pair\n"
-                     "timestep 0.004\nthermo 100000\nvelocity one set 0 0.05 0\nvelocity two set 0 -0.05 0\n"
-                     "variable p equal mass(one)*vcm(one,y)\nrun 0\n"));
+  run.commands(
+      rings("region one block 0 2 0.5 5.5 INF INF\nregion two block 0 2 5.6 10.4 INF INF\n"
+            "create_points 1 region one ppc 2 fix F1\ncreate_points 2 region two ppc 2 fix F2\n"
+            "group one type 1\ngroup two type 2\npair_coeff 1 2 20.0\n"
+            "fix m all mpm/material density 1 linear 100.0 0\ncompute e all mpm/energy\n"
+            "compute pair all pair mpm/penalty\nthermo_style custom step c_e c_pair\n"
+            "timestep 0.004\nthermo 100000\nvelocity one set 0 0.05 0\nvelocity two set 0 -0.05 0\n"
+            "variable p equal mass(one)*vcm(one,y)\nrun 0\n"));
   const double start = run.evaluate("c_e"), all = run.sums().p[1];
   double before = 0.0, drift = 0.0;
   for (int k = 1; k <= 100; k++) {    // until 2.0: contact lasts from 1.0 to 2.0
@@ -550,8 +557,9 @@ TEST(Rings, RodsCollide)
     if (k == 70) before = run.evaluate("v_p");
     drift = std::max(drift, std::fabs(run.evaluate("c_e[6]") + run.evaluate("c_pair")) / start);
     if (k == 95)
-      EXPECT_NEAR(measured("stress / rho c v", (before - run.evaluate("v_p")) / (0.5 * 4.0 * M_PI * c * v)),
-                  1.0, 0.05);
+      EXPECT_NEAR(
+          measured("stress / rho c v", (before - run.evaluate("v_p")) / (0.5 * 4.0 * M_PI * c * v)),
+          1.0, 0.05);
   }
   EXPECT_LT(measured("work of the contact and its energy", drift), 0.02);
   EXPECT_NEAR(run.sums().p[1], all, 1e-12);

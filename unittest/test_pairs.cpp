@@ -14,7 +14,7 @@
 // Each pair of them is refused with what to do instead, or is in a scene with some others that has the
 // same result on one rank and on two, and after a restart file in the middle of the run.
 
-#include "stl_testing.h"
+#include "mesh/stl_testing.h"
 
 #include "gtest/gtest.h"
 

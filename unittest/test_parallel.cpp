@@ -106,8 +106,8 @@ TEST_P(AxisymmetricRanks, ShiftedBrick)
 INSTANTIATE_TEST_SUITE_P(Options, AxisymmetricRanks,
                          ::testing::Values("transfer apic",
                                            "shape cpgimp transfer flip 0.99 scheme musl",
-                                           "shape cubic transfer apic scheme usf",
-                                           "locking both", "frame total locking fbar"));
+                                           "shape cubic transfer apic scheme usf", "locking both",
+                                           "frame total locking fbar"));
 
 // in the total frame, the two bodies are one, and neighbors on the lattice come to be far apart
 

@@ -238,8 +238,8 @@ INSTANTIATE_TEST_SUITE_P(
         VibrationCase{"shape cubic transfer apic", 16, 2, 1.0, .005, .98, .02},
         VibrationCase{"shape gimp aspect 1 2 transfer flip 1.0 scheme musl", 16, 2, 1.0, .005, 1.0,
                       .01},
-        VibrationCase{"shape cpgimp aspect 1 2 transfer flip 1.0 scheme musl", 16, 2, 1.0, .005, 1.0,
-                      .01},
+        VibrationCase{"shape cpgimp aspect 1 2 transfer flip 1.0 scheme musl", 16, 2, 1.0, .005,
+                      1.0, .01},
         VibrationCase{"shape cpgimp aspect 1 2 transfer apic", 16, 2, 1.0, .005, 1.0, .011},
         VibrationCase{"shape quadratic transfer aflip 1.0", 16, 2, 1.0, .005, 1.0, .01},
         VibrationCase{"shape quadratic transfer tpic", 16, 2, 1.0, .005, .988, .004}));
@@ -609,7 +609,9 @@ TEST_P(GalileanBarAtRest, KeepsItsEnergy)
   const double A = GALILEAN_A, h = 0.05;
   Scene run;
   setup(run, {h, 0.0, 1.0, -0.5, 1.5, GetParam().options, "", GALILEAN_E, "neohookean"});
-  run.set_velocity([=](const double *x, double *v) { v[0] = -A * 10.0 * PI * cos(PI * x[0]); });
+  run.set_velocity([=](const double *x, double *v) {
+    v[0] = -A * 10.0 * PI * cos(PI * x[0]);
+  });
   run.commands("run 0\n");
   const double start = run.sums().kinetic, momentum = run.sums().p[0];
   double least = 1.0e300, most = 0.0, end = 0.0;
@@ -632,10 +634,12 @@ static constexpr double PHASE = 1.1 * 0.0157;
 
 INSTANTIATE_TEST_SUITE_P(
     Options, GalileanBarAtRest,
-    ::testing::Values(LongBar{"shape quadratic transfer flip 1.0 scheme musl", 1.0 - PHASE, 1.019 + PHASE},    // 1.019
+    ::testing::Values(LongBar{"shape quadratic transfer flip 1.0 scheme musl", 1.0 - PHASE,
+                              1.019 + PHASE},    // 1.019
                       LongBar{"shape linear transfer flip 1.0 scheme musl frame total", 1.0 - PHASE,
                               1.0 + PHASE},    // 1.006
-                      LongBar{"shape quadratic transfer flip 1.0 scheme musl frame total", 1.0 - PHASE,
-                              1.0 + PHASE},    // 0.996
-                      LongBar{"shape quadratic transfer flip 1.0", 0.713 * (1.0 - PHASE), 1.0},    // 0.713
+                      LongBar{"shape quadratic transfer flip 1.0 scheme musl frame total",
+                              1.0 - PHASE, 1.0 + PHASE},    // 0.996
+                      LongBar{"shape quadratic transfer flip 1.0", 0.713 * (1.0 - PHASE),
+                              1.0},                                                         // 0.713
                       LongBar{"shape cpgimp aspect 1 2 transfer flip 1.0", 0.75, 1.0}));    // 0.893

@@ -876,38 +876,57 @@ static double hats(double f)
 TEST(AffineSpin, IsThatOfTheShapeFunctions)
 {
   const double half = 0.25;    // of a point
-  const auto gimp = [=](double f) {    // mean over the point of (x - x_p)^2 and of those of linear functions
-    double sum = 0.0;
-    const int n = 2000;
-    for (int k = 0; k < n; k++) sum += hats(f - half + 2.0 * half * (k + 0.5) / n) / n;
-    return half * half / 3.0 + sum;
-  };
+  const auto gimp =
+      [=](double f) {    // mean over the point of (x - x_p)^2 and of those of linear functions
+        double sum = 0.0;
+        const int n = 2000;
+        for (int k = 0; k < n; k++) sum += hats(f - half + 2.0 * half * (k + 0.5) / n) / n;
+        return half * half / 3.0 + sum;
+      };
   const auto cpdi = [=](double f) {
     return half * half + 0.5 * (hats(f - half) + hats(f + half));
   };
-  const AffineSpin cases[] = {{"transfer apic", [](double) { return 0.25; }},
-                              {"transfer polypic", [](double) { return 0.25; }},
-                              {"shape cubic transfer tpic", [](double) { return 1.0 / 3.0; }},
-                              {"shape cubic transfer aflip 1.0", [](double) { return 1.0 / 3.0; }},
-                              {"transfer apic frame total", [](double) { return 0.25; }},
+  const AffineSpin cases[] = {{"transfer apic",
+                               [](double) {
+                                 return 0.25;
+                               }},
+                              {"transfer polypic",
+                               [](double) {
+                                 return 0.25;
+                               }},
+                              {"shape cubic transfer tpic",
+                               [](double) {
+                                 return 1.0 / 3.0;
+                               }},
+                              {"shape cubic transfer aflip 1.0",
+                               [](double) {
+                                 return 1.0 / 3.0;
+                               }},
+                              {"transfer apic frame total",
+                               [](double) {
+                                 return 0.25;
+                               }},
                               {"shape linear transfer apic light 0.5", hats},
                               {"shape gimp transfer apic", gimp},
                               {"shape cpgimp transfer apic", gimp},
                               {"shape cpdi transfer apic", cpdi},
                               {"shape cpdi2 transfer apic", cpdi},
-                              {"transfer flip 1.0", [](double) { return 0.0; }}};
+                              {"transfer flip 1.0", [](double) {
+                                 return 0.0;
+                               }}};
   const double omega = 0.01;
   for (const auto &c : cases)
     for (int dim : {2, 3}) {
       Scene run;
-      run.commands(strprintf(
-          "units lj\ndimension %d\nboundary f f %s\natom_style mpm\nneighbor 0.3 bin\n"
-          "region box block 0 8 0 8 %s\ncreate_box 1 box\nfix grid all mpm 1.0 %s\n"
-          "region body block 2 5 2 5 %s\ncreate_points 1 region body ppc 2\n"
-          "displace_atoms all move 0.25 0.1 0\nfix m all mpm/material density 3.0 neohookean 1.0 0.3\n"
-          "timestep 1.0e-9\ncompute q all mpm/atom angmom/*\nrun 0\n",
-          dim, dim == 3 ? "f" : "p", dim == 3 ? "0 8" : "-0.5 0.5", c.options,
-          dim == 3 ? "2 5" : "INF INF"));
+      run.commands(
+          strprintf("units lj\ndimension %d\nboundary f f %s\natom_style mpm\nneighbor 0.3 bin\n"
+                    "region box block 0 8 0 8 %s\ncreate_box 1 box\nfix grid all mpm 1.0 %s\n"
+                    "region body block 2 5 2 5 %s\ncreate_points 1 region body ppc 2\n"
+                    "displace_atoms all move 0.25 0.1 0\nfix m all mpm/material density 3.0 "
+                    "neohookean 1.0 0.3\n"
+                    "timestep 1.0e-9\ncompute q all mpm/atom angmom/*\nrun 0\n",
+                    dim, dim == 3 ? "f" : "p", dim == 3 ? "0 8" : "-0.5 0.5", c.options,
+                    dim == 3 ? "2 5" : "INF INF"));
       run.set_velocity([=](const double *x, double *v) {
         v[0] = -omega * (x[1] - 3.0);
         v[1] = omega * (x[0] - 3.0);
@@ -928,19 +947,21 @@ TEST(AffineSpin, IsThatOfTheShapeFunctions)
 
 TEST(AffineSpin, CompletesTheAngularMomentum)
 {
-  for (const char *options : {"transfer apic", "transfer polypic", "shape cubic transfer apic scheme musl",
-                              "transfer apic frame total"}) {
+  for (const char *options :
+       {"transfer apic", "transfer polypic", "shape cubic transfer apic scheme musl",
+        "transfer apic frame total"}) {
     SCOPED_TRACE(options);
     Scene run;
-    run.commands(strprintf("units lj\ndimension 2\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
-                           "region box block 0 16 0 16 -0.5 0.5\ncreate_box 1 box\n"
-                           "fix grid all mpm 1.0 %s\nregion body block 2 9 2 5 INF INF\n"
-                           "create_points 1 region body ppc 2\n"
-                           "fix m all mpm/material density 3.0 neohookean 1.0 0.3\n"
-                           "timestep 0.5\nthermo 100000\ncompute q all mpm/atom angmom/z\n"
-                           "compute sum all reduce sum c_q\nvariable L equal angmom(all,z)+c_sum\n"
-                           "thermo_style custom step c_sum\n",
-                           options));
+    run.commands(
+        strprintf("units lj\ndimension 2\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
+                  "region box block 0 16 0 16 -0.5 0.5\ncreate_box 1 box\n"
+                  "fix grid all mpm 1.0 %s\nregion body block 2 9 2 5 INF INF\n"
+                  "create_points 1 region body ppc 2\n"
+                  "fix m all mpm/material density 3.0 neohookean 1.0 0.3\n"
+                  "timestep 0.5\nthermo 100000\ncompute q all mpm/atom angmom/z\n"
+                  "compute sum all reduce sum c_q\nvariable L equal angmom(all,z)+c_sum\n"
+                  "thermo_style custom step c_sum\n",
+                  options));
     run.set_velocity([](const double *x, double *v) {
       v[0] = 0.4 - 0.02 * (x[1] - 3.5);
       v[1] = 0.3 + 0.02 * (x[0] - 5.5) + 0.05 * cos(x[0]);
@@ -948,7 +969,8 @@ TEST(AffineSpin, CompletesTheAngularMomentum)
     run.commands("run 0\n");
     const double start = run.evaluate("v_L"), part = run.evaluate("c_sum") / start;
     run.commands("run 500\n");    // most of a turn
-    const double L = measured(std::string(options) + ": change of L", run.evaluate("v_L") / start - 1.0);
+    const double L =
+        measured(std::string(options) + ": change of L", run.evaluate("v_L") / start - 1.0);
     const auto s = run.sums();
     const double about = s.x[0] * s.p[1] - s.x[1] * s.p[0];
     EXPECT_NEAR(run.evaluate("v_L"), s.L[2] - about, 1.0e-11 * start);

@@ -168,13 +168,14 @@ TEST(GasAtRest, NoiseDoesNotGrowOffTheEdgesOfFunctions)
 {
   const auto growth = [](const char *ppc, const char *options) {
     Scene run;
-    run.commands(strprintf("units si\ndimension 2\nboundary p p p\natom_style mpm\nneighbor 0.4 bin\n"
-                           "region box block 0 16 0 16 -0.5 0.5\ncreate_box 1 box\n"
-                           "fix grid all mpm 1.0 %s\ncreate_points 1 box ppc %s\n"
-                           "fix m all mpm/material density 1.0 eos ideal/gas 1.4 pressure 1.0 viscosity artificial "
-                           "2.0 1.0\nvariable u atom random(-1e-6,1e-6,4711)\nvariable v atom "
-                           "random(-1e-6,1e-6,4712)\nvelocity all set v_u v_v 0\ntimestep 0.2\nthermo 1000000\n",
-                           options, ppc));
+    run.commands(strprintf(
+        "units si\ndimension 2\nboundary p p p\natom_style mpm\nneighbor 0.4 bin\n"
+        "region box block 0 16 0 16 -0.5 0.5\ncreate_box 1 box\n"
+        "fix grid all mpm 1.0 %s\ncreate_points 1 box ppc %s\n"
+        "fix m all mpm/material density 1.0 eos ideal/gas 1.4 pressure 1.0 viscosity artificial "
+        "2.0 1.0\nvariable u atom random(-1e-6,1e-6,4711)\nvariable v atom "
+        "random(-1e-6,1e-6,4712)\nvelocity all set v_u v_v 0\ntimestep 0.2\nthermo 1000000\n",
+        options, ppc));
     const double start = run.sums().kinetic;
     run.commands("run 1200\n");
     return measured(std::string(options) + " ppc " + ppc, run.sums().kinetic / start);

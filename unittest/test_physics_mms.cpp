@@ -282,8 +282,9 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Mixed, SameErrors)
 {
-  for (const char *options : {"shape quadratic transfer apic", "shape cubic transfer flip 1.0 scheme musl",
-                              "frame total shape quadratic transfer flip 1.0"}) {
+  for (const char *options :
+       {"shape quadratic transfer apic", "shape cubic transfer flip 1.0 scheme musl",
+        "frame total shape quadratic transfer flip 1.0"}) {
     const double full = mms_error(2, 16, .05, options, true);
     const double mixed = mms_error(2, 16, .05, std::string(options) + " precision mixed", true);
     EXPECT_NEAR(measured("mixed / double", mixed / full), 1.0, 1e-4) << options;
@@ -330,8 +331,10 @@ struct ShapeOrder {
 // table above and FixedGimp
 
 static const ShapeOrder shapes[] = {
-    {"shape linear", -0.69, 3.0 / 16.0},           {"shape quadratic", 1.86, 1.0 / 4.0},
-    {"shape cubic", 2.0, 1.0 / 3.0},               {"shape gimp aspect 1 2", 1.87, 3.0 / 16.0},
+    {"shape linear", -0.69, 3.0 / 16.0},
+    {"shape quadratic", 1.86, 1.0 / 4.0},
+    {"shape cubic", 2.0, 1.0 / 3.0},
+    {"shape gimp aspect 1 2", 1.87, 3.0 / 16.0},
     {"shape cpgimp aspect 1 2", 2.0, 3.0 / 16.0},
 };
 
@@ -416,8 +419,8 @@ INSTANTIATE_TEST_SUITE_P(All, Sweep, ::testing::ValuesIn(shapes));
 
 TEST(MMS, EdgesModified)
 {
-  for (const char *options :
-       {"shape cubic transfer flip 1.0 scheme musl", "shape quadratic transfer flip 1.0 scheme musl"}) {
+  for (const char *options : {"shape cubic transfer flip 1.0 scheme musl",
+                              "shape quadratic transfer flip 1.0 scheme musl"}) {
     const std::string modified = options + std::string(" edges modified");
     double error[2], apart[2];
     for (const int k : {0, 1}) {
@@ -425,7 +428,8 @@ TEST(MMS, EdgesModified)
       apart[k] = std::abs(mms_error(1, 16 << k, 1e-4, options, true) - error[k]);
     }
     EXPECT_GT(measured("order", log2(error[0] / error[1])), 1.9) << options;
-    EXPECT_NEAR(measured("order of the difference", log2(apart[0] / apart[1])), 3.0, 0.2) << options;
+    EXPECT_NEAR(measured("order of the difference", log2(apart[0] / apart[1])), 3.0, 0.2)
+        << options;
     EXPECT_GT(apart[1], 0.0);
   }
 }

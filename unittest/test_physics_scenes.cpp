@@ -333,22 +333,22 @@ TEST_P(GrainOnColumn, Restitution)
   const double R = 0.002, Rp = 0.00125, Reff = R * Rp / (R + Rp);
   const double density = m / (4.0 / 3.0 * 3.14159265358979323846 * R * R * R);
   Scene run;
-  run.commands(
-      strprintf("units si\nboundary f f f\natom_style hybrid sphere mpm\ncomm_modify vel yes\n"
-                "neighbor 0.002 bin\nregion box block 0 0.005 0 0.005 -0.16 0.02\n"
-                "create_box 2 box\nfix grid all mpm 0.005 every %d\n"
-                "region column block 0 0.005 0 0.005 -0.15 0\n"
-                "create_points 1 region column ppc 1 1 2\ngroup column type 1\n"
-                "fix m column mpm/material density 1000 linear 1.0e7 0.3\n"
-                "fix sides all mpm/boundary xlo xhi ylo yhi slip\n"
-                "create_atoms 2 single 0.0025 0.0025 %.17g\ngroup grains type 2\n"
-                "set type 1 diameter 0.0025\nset type 2 diameter %.17g density %.17g\n"
-                "velocity grains set 0 0 -1\n"
-                "pair_style granular\n"
-                "pair_coeff * * hertz %.17g 0.0 tangential linear_nohistory 0.0 0.0\n"
-                "neigh_modify exclude type 1 1\nfix move grains nve/sphere\ncompute e all mpm/energy\n"
-                "timestep 1.0e-6\nthermo 1000000\nthermo_style custom step c_e[6]\n",
-                GetParam(), -0.00125 + R + Rp + 1.0e-5, 2.0 * R, density, k / sqrt(Reff)));
+  run.commands(strprintf(
+      "units si\nboundary f f f\natom_style hybrid sphere mpm\ncomm_modify vel yes\n"
+      "neighbor 0.002 bin\nregion box block 0 0.005 0 0.005 -0.16 0.02\n"
+      "create_box 2 box\nfix grid all mpm 0.005 every %d\n"
+      "region column block 0 0.005 0 0.005 -0.15 0\n"
+      "create_points 1 region column ppc 1 1 2\ngroup column type 1\n"
+      "fix m column mpm/material density 1000 linear 1.0e7 0.3\n"
+      "fix sides all mpm/boundary xlo xhi ylo yhi slip\n"
+      "create_atoms 2 single 0.0025 0.0025 %.17g\ngroup grains type 2\n"
+      "set type 1 diameter 0.0025\nset type 2 diameter %.17g density %.17g\n"
+      "velocity grains set 0 0 -1\n"
+      "pair_style granular\n"
+      "pair_coeff * * hertz %.17g 0.0 tangential linear_nohistory 0.0 0.0\n"
+      "neigh_modify exclude type 1 1\nfix move grains nve/sphere\ncompute e all mpm/energy\n"
+      "timestep 1.0e-6\nthermo 1000000\nthermo_style custom step c_e[6]\n",
+      GetParam(), -0.00125 + R + Rp + 1.0e-5, 2.0 * R, density, k / sqrt(Reff)));
   ASSERT_NEAR(run.sums(2).mass / m, 1.0, 1.0e-12);
   double largest = 0.0, first = -1.0, last = 0.0;
   run.each_step([&](double **) {
@@ -367,7 +367,8 @@ TEST_P(GrainOnColumn, Restitution)
   // what the grain has lost and the column has not received
 
   const double energy = 0.5 * m;
-  const double lost = energy - run.sums(2).kinetic - run.lmp->modify->get_compute_by_id("e")->vector[5];
+  const double lost =
+      energy - run.sums(2).kinetic - run.lmp->modify->get_compute_by_id("e")->vector[5];
   // of first order in the step of the points
   EXPECT_LT(std::abs(measured("K1(b) energy lost between grain and points/exact", lost / energy)),
             3.4e-5 * (3 + GetParam()));

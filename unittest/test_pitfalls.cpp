@@ -16,7 +16,7 @@
 
 #include "mpm_lammps.h"
 
-#include "mpm_grid.h"
+#include "lattice/grid.h"
 
 #include "gtest/gtest.h"
 
@@ -114,16 +114,31 @@ TEST(Pitfall, NoOptionIsIgnored)
         all.push_back(fmt::format("shape {} transfer {} scheme {}", shape, transfer, scheme));
 
   // one line for each option that came later
-  for (const char *other :
-       {"shape gimp transfer flip 1.0", "shape cpgimp transfer flip 1.0", "shape gimp transfer apic",
-        "shape gimp aspect 1 2 2 transfer apic", "transfer aflip 0.5", "transfer aflip 1.0",
-        "transfer tpic", "transfer xpic 2", "transfer xpic 3", "transfer fmpm 2", "transfer fmpm 3",
-        "transfer flip 1.0 scheme usavg", "transfer apic scheme usavg", "frame total transfer apic",
-        "frame total transfer flip 1.0", "frame total transfer flip 0.5",
-        "frame total transfer pic", "frame total transfer xpic 2", "frame total transfer fmpm 2",
-        "frame total shape linear transfer flip 1.0",
-        "frame total shape cubic transfer apic scheme musl", "frame total locking fbar",
-        "locking fbar", "locking pressure", "locking both"})
+  for (const char *other : {"shape gimp transfer flip 1.0",
+                            "shape cpgimp transfer flip 1.0",
+                            "shape gimp transfer apic",
+                            "shape gimp aspect 1 2 2 transfer apic",
+                            "transfer aflip 0.5",
+                            "transfer aflip 1.0",
+                            "transfer tpic",
+                            "transfer xpic 2",
+                            "transfer xpic 3",
+                            "transfer fmpm 2",
+                            "transfer fmpm 3",
+                            "transfer flip 1.0 scheme usavg",
+                            "transfer apic scheme usavg",
+                            "frame total transfer apic",
+                            "frame total transfer flip 1.0",
+                            "frame total transfer flip 0.5",
+                            "frame total transfer pic",
+                            "frame total transfer xpic 2",
+                            "frame total transfer fmpm 2",
+                            "frame total shape linear transfer flip 1.0",
+                            "frame total shape cubic transfer apic scheme musl",
+                            "frame total locking fbar",
+                            "locking fbar",
+                            "locking pressure",
+                            "locking both"})
     all.push_back(other);
   std::map<std::string, std::vector<Scene::State>> results;
   for (const auto &options : all) {
@@ -464,7 +479,9 @@ TEST_P(MuslApic, ShearedBlockGainsNoEnergy)
   Scene run;
   run.commands("units lj\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
                "region box block 0 16 0 16 0 16\ncreate_box 1 box\n"
-               "fix grid all mpm 1.0 scheme musl " + GetParam() + "\n"
+               "fix grid all mpm 1.0 scheme musl " +
+               GetParam() +
+               "\n"
                "region body block 5 11 5 11 5 11\ncreate_points 1 region body ppc 2\n"
                "fix m all mpm/material density 1.0 neohookean 100.0 0.3\n"
                "velocity all ramp vx -1.0 1.0 y 5 11\ntimestep 0.06\n"
@@ -480,9 +497,11 @@ TEST_P(MuslApic, ShearedBlockGainsNoEnergy)
   EXPECT_LT(most, 1.002 * start);
 }
 
-INSTANTIATE_TEST_SUITE_P(Pitfall, MuslApic, ::testing::Values("transfer apic shape quadratic", "transfer apic shape cubic",
-                                           "transfer aflip 1.0", "transfer tpic shape cubic",
-                                           "transfer tpic", "transfer apic shape cpgimp"));
+INSTANTIATE_TEST_SUITE_P(Pitfall, MuslApic,
+                         ::testing::Values("transfer apic shape quadratic",
+                                           "transfer apic shape cubic", "transfer aflip 1.0",
+                                           "transfer tpic shape cubic", "transfer tpic",
+                                           "transfer apic shape cpgimp"));
 
 // points that cross their block without leaving its tile, while neighbor lists are not made, came to
 // reach into a block that did not exist
@@ -532,12 +551,11 @@ TEST_P(Turn, InflatesNothing)
   EXPECT_LT(J, 1.0 + 2.0 * 0.0042 + 1.0e-3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Pitfall, Turn,
-                         ::testing::Values("transfer apic", "transfer flip 1.0",
-                                           "transfer flip 1.0 scheme usf",
-                                           "transfer flip 1.0 scheme usavg",
-                                           "transfer apic scheme musl", "shape cpgimp transfer apic",
-                                           "frame total transfer apic"));
+INSTANTIATE_TEST_SUITE_P(
+    Pitfall, Turn,
+    ::testing::Values("transfer apic", "transfer flip 1.0", "transfer flip 1.0 scheme usf",
+                      "transfer flip 1.0 scheme usavg", "transfer apic scheme musl",
+                      "shape cpgimp transfer apic", "frame total transfer apic"));
 
 // a tetrahedron with a volume of (1/6) in integers had no mass; sizes of points that do not add up
 // to the body make its mass depend on the variant. Momentum of CPDI was not conserved: that of all

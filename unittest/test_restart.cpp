@@ -72,15 +72,13 @@ TEST_P(Restart, ContinuesBitwise)
   EXPECT_LT(difference(expected, serial.gather()), 1.0e-11);
 }
 
-INSTANTIATE_TEST_SUITE_P(Options, Restart,
-                         ::testing::Values("transfer apic",
-                                           "shape linear transfer flip 0.99 scheme musl",
-                                           "shape cubic transfer apic scheme musl",
-                                           "transfer pic scheme usf", "frame total transfer apic",
-                                           "frame total transfer flip 0.99 scheme musl",
-                                           "locking fbar", "scheme musl locking pressure",
-                                           "transfer aflip 0.99 scheme musl",
-                                           "shape cpgimp transfer tpic", "every 3"));
+INSTANTIATE_TEST_SUITE_P(
+    Options, Restart,
+    ::testing::Values("transfer apic", "shape linear transfer flip 0.99 scheme musl",
+                      "shape cubic transfer apic scheme musl", "transfer pic scheme usf",
+                      "frame total transfer apic", "frame total transfer flip 0.99 scheme musl",
+                      "locking fbar", "scheme musl locking pressure",
+                      "transfer aflip 0.99 scheme musl", "shape cpgimp transfer tpic", "every 3"));
 
 // the write_restart command between runs, and a file of one rank read by many
 
@@ -122,8 +120,9 @@ TEST_P(AxisymmetricRestart, ContinuesBitwise)
       "fix walls all mpm/boundary xlo ylo slip\nfix step all mpm/dt 0.3\nthermo 1000\n";
   Continued run("units lj\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.3 bin\n"
                 "region box block 0 8 0 8 -0.5 0.5\ncreate_box 1 box\n" +
-                    fixes + "region body sphere 0 3.5 0 3\ncreate_points 1 region body ppc 2\n"
-                            "velocity all set 0.3 -0.4 0\n",
+                    fixes +
+                    "region body sphere 0 3.5 0 3\ncreate_points 1 region body ppc 2\n"
+                    "velocity all set 0.3 -0.4 0\n",
                 70, "neighbor 0.3 bin\n" + fixes, 60);
   EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
 }

@@ -11,7 +11,7 @@
 
 // Fix mpm/rigid: free bodies with the shape of an STL file.
 
-#include "stl_testing.h"
+#include "mesh/stl_testing.h"
 
 #include "gtest/gtest.h"
 
@@ -251,7 +251,8 @@ TEST(RigidBody, TurnsAboutAHeldAxis)
 
 // A thick plate that lies on a block, which is smaller than it, with friction
 
-static std::string plate(double h, const std::string &file, const std::string &words, double timestep)
+static std::string plate(double h, const std::string &file, const std::string &words,
+                         double timestep)
 {
   return strprintf("units lj\nboundary p p f\natom_style mpm\nneighbor 0.3 bin\n"
                    "region box block 0 8 0 8 0 4\ncreate_box 1 box\nfix grid all mpm %g\n"
@@ -362,9 +363,11 @@ TEST(RigidBody, FrictionIsThatOfTheVelocityAfterTheStep)
     for (const char *hold : {"hold rx ry rz", ""}) {
       SCOPED_TRACE(strprintf("density %g %s", density, hold));
       const auto state = [&](Scene &run) {
-        run.commands(plate(0.5, file.name,
-                           strprintf("density %g separate friction %g velocity 0.1 0.05 -0.2 ", density, mu) + hold,
-                           0.002));
+        run.commands(plate(
+            0.5, file.name,
+            strprintf("density %g separate friction %g velocity 0.1 0.05 -0.2 ", density, mu) +
+                hold,
+            0.002));
         run.set_velocity([](const double *x, double *v) {
           v[0] = -0.3 * (x[1] - 3.6);
           v[1] = 0.3 * (x[0] - 4.1);
@@ -404,7 +407,8 @@ TEST(RigidBody, FrictionIsThatOfTheVelocityAfterTheStep)
         }
         EXPECT_LT(push[2], 0.0);
         EXPECT_NEAR(w[2], 0.0, 1.0e-9);
-        const double along = hypot(push[0], push[1]), slide = hypot(w[0], w[1]), most = -mu * push[2];
+        const double along = hypot(push[0], push[1]), slide = hypot(w[0], w[1]),
+                     most = -mu * push[2];
         if (slide > 1.0e-9) {
           EXPECT_NEAR(along, most, 1.0e-9);
           EXPECT_NEAR(push[0] * w[0] + push[1] * w[1], along * slide, 1.0e-9 * slide);

@@ -35,7 +35,7 @@ if "$cxx" "${v3[@]}" -x c++ -c - -o /dev/null </dev/null 2>/dev/null &&
 fi
 
 # compile SOURCE OBJECT FLAGS...: when the object is missing or older than any source or header
-newest=$(ls -t "$src"/mpm_*.h "$src"/mpm_*.cpp "$root"/unittest/*_testing.h "${BASH_SOURCE[0]}" | head -1)
+newest=$(ls -t "$src"/*/*.h "$src"/*/*.cpp "$root"/unittest/*/*_testing.h "${BASH_SOURCE[0]}" | head -1)
 compile() {
   local source=$1 object=$2
   shift 2
@@ -47,31 +47,37 @@ compile() {
 
 # kernels of Bernstein polynomials and of mixed precision take long to compile; no test here calls them
 cat >others.cpp <<'CODE'
-#include "mpm_kernels_others.h"
+#include "transfer/kernels_isa.h"
 #include <cstdlib>
 using namespace MPM_NS;
 TransferKernels MPM_NS::MPM_CONCAT(mpm_kernels_bernstein_, MPM_ISA)(int, Transfer, bool) { abort(); }
 TransferKernels MPM_NS::MPM_CONCAT(mpm_kernels_mixed_, MPM_ISA)(int, Shape, Transfer, bool, bool) { abort(); }
 CODE
 
+# FOLDER_FILE_ISA.o: files of the same name are in several folders
+object_of() {
+  local folder=$(dirname "$1")
+  echo "$(basename "$folder")_$(basename "$1" .cpp)_$2.o"
+}
+
 objects=()
-for name in mpm_grid mpm_kernels mpm_kernels_reference mpm_kernels_domain_reference mpm_batch mpm_mesh \
-  mpm_material mpm_material_parser mpm_material_point mpm_law_registry mpm_random_field; do
-  compile "$src/$name.cpp" "$name.o"
+for source in "$src"/{lattice,law,material,mesh,transfer}/*.cpp; do
+  case $source in *_isa.cpp | */polypic.cpp) continue ;; esac
+  compile "$source" "$(object_of "$source" base)"
 done
 for isa in "${sets[@]}"; do
   march=()
   [ "$isa" = v3 ] && march=("${v3[@]}")
-  compile "$src/mpm_batch_isa.cpp" "batch_$isa.o" -DMPM_ISA="$isa" "${march[@]}"
-  for laws in "$src"/mpm_laws*_isa.cpp; do
+  compile "$src/material/batch_isa.cpp" "batch_$isa.o" -DMPM_ISA="$isa" "${march[@]}"
+  for laws in "$src"/law/laws*_isa.cpp; do
     name=$(basename "$laws" .cpp)
     compile "$laws" "${name}_$isa.o" -DMPM_ISA="$isa" "${march[@]}" -g0
   done
   compile others.cpp "others_$isa.o" -DMPM_ISA="$isa"
   # the optimizer needs minutes for these with sanitizers
-  for kernels in "$src"/mpm_kernels*_isa.cpp; do
+  for kernels in "$src"/transfer/*_isa.cpp; do
     name=$(basename "$kernels" .cpp)
-    case $name in *_bernstein_* | *_mixed_* | *_poly_*) continue ;; esac
+    case $name in bernstein_* | mixed_* | polypic_*) continue ;; esac
     compile "$kernels" "${name}_$isa.o" -DMPM_ISA="$isa" "${march[@]}" -O0 -g0
   done
 done
@@ -81,10 +87,11 @@ failed=0
 export ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1
 export UBSAN_OPTIONS=print_stacktrace=1
 unset GTEST_OUTPUT
-for name in shape grid mesh kernels domain materials; do
-  [ -e "$root/unittest/test_$name.cpp" ] || continue
+for test in transfer/test_shape lattice/test_grid mesh/test_gmsh transfer/test_kernels \
+  transfer/test_cpdi_kernels material/test_materials; do
+  name=${test##*/test_}
   objects=()
-  compile "$root/unittest/test_$name.cpp" "test_$name.o" -DMPM_SOURCE_DIR="\"$root\""
+  compile "$root/unittest/$test.cpp" "test_$name.o" -DMPM_SOURCE_DIR="\"$root\""
   "$cxx" "${flags[@]}" "test_$name.o" "${library[@]}" -lgmock -lgtest_main -lgtest -lpthread \
     -o "test_$name" || { echo "cannot link test_$name"; exit 1; }
   echo "== test_$name"

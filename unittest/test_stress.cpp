@@ -42,10 +42,10 @@ static std::string text(int dim, const std::string &options)
   return replaced(text, "EXTENT", flat ? "-0.5 0.5" : "-8 8");
 }
 
-static const char *const cases[] = {"shape quadratic transfer apic",
-                                    "shape quadratic transfer aflip 0.95", "shape cubic transfer apic",
-                                    "shape quadratic transfer apic locking fbar",
-                                    "shape quadratic transfer apic scheme musl"};
+static const char *const cases[] = {
+    "shape quadratic transfer apic", "shape quadratic transfer aflip 0.95",
+    "shape cubic transfer apic", "shape quadratic transfer apic locking fbar",
+    "shape quadratic transfer apic scheme musl"};
 
 // patch: a linear field of velocities deforms points inside the body by exactly that gradient, with
 // either
@@ -103,7 +103,8 @@ run 4000
     const double scale = run.evaluate("c_e");
     EXPECT_LT(std::fabs(run.evaluate("c_e[11]")), 1e-12 * scale);
     EXPECT_LT(measured("integration", std::fabs(run.evaluate("c_e[10]")) / scale),
-              options.find("musl") == std::string::npos ? 2e-5 : 2e-4);    // with other forces: 4e-5
+              options.find("musl") == std::string::npos ? 2e-5
+                                                        : 2e-4);    // with other forces: 4e-5
     double p[2] = {0.0, 0.0}, m = 0.0;
     for (const auto &s : run.gather()) {
       m += s.mass;
@@ -153,11 +154,13 @@ run 3000
 TEST(Stress, Refused)
 {
   using ::testing::HasSubstr;
-  const std::string head = "units lj\ndimension 2\natom_style mpm\nregion b block 0 4 0 4 -0.5 0.5\n"
-                           "create_box 1 b\nfix g all mpm 1.0 ";
+  const std::string head =
+      "units lj\ndimension 2\natom_style mpm\nregion b block 0 4 0 4 -0.5 0.5\n"
+      "create_box 1 b\nfix g all mpm 1.0 ";
   for (const char *options : {"transfer flip 1.0", "shape linear", "transfer tpic", "shape gimp"}) {
     Scene run;
-    EXPECT_THAT(run.error(head + options + " stress mls"), HasSubstr("needs shape quadratic or cubic"));
+    EXPECT_THAT(run.error(head + options + " stress mls"),
+                HasSubstr("needs shape quadratic or cubic"));
     Scene other;
     EXPECT_EQ(other.error(head + options + " stress gradient"), "");
   }

@@ -33,7 +33,9 @@ static const std::string contact =
 static double surface_points(Scene &run)
 {
   double n = -1.0;
-  run.each_step([&](double **) { n = run.lmp->modify->get_fix_by_id("surf")->compute_scalar(); });
+  run.each_step([&](double **) {
+    n = run.lmp->modify->get_fix_by_id("surf")->compute_scalar();
+  });
   run.commands("run 0 post no\n");
   return n;
 }
@@ -48,7 +50,8 @@ TEST_P(Surface, IsTheOutermostLayer)
     Scene run;
     run.commands(head + "fix grid all mpm 1.0 " + GetParam() +
                  "\nregion slab block INF INF INF INF 1 7\n" +
-                 "create_points 1 region slab ppc 2\ngroup slab type 1\nfix m slab mpm/material density 1.0 neohookean 10.0 0.3\n" +
+                 "create_points 1 region slab ppc 2\ngroup slab type 1\nfix m slab mpm/material "
+                 "density 1.0 neohookean 10.0 0.3\n" +
                  "displace_atoms all move " + shift + " units box\nfix surf slab mpm/surface\n" +
                  contact + "timestep 0.01\nthermo 1000\n");
     EXPECT_EQ(surface_points(run), 2 * 24 * 24) << shift;
@@ -63,9 +66,10 @@ INSTANTIATE_TEST_SUITE_P(Options, Surface,
 
 TEST(Surface, IsNotOnAFixedFace)
 {
-  const std::string box = "units lj\nboundary f p f\natom_style hybrid sphere mpm\nneighbor 0.3 multi\n"
-                          "comm_modify vel yes mode multi\nregion box block 0 12 0 12 0 12\n"
-                          "create_box 2 box\n";
+  const std::string box =
+      "units lj\nboundary f p f\natom_style hybrid sphere mpm\nneighbor 0.3 multi\n"
+      "comm_modify vel yes mode multi\nregion box block 0 12 0 12 0 12\n"
+      "create_box 2 box\n";
   struct {
     const char *options, *gap;
     int expected;
@@ -73,14 +77,16 @@ TEST(Surface, IsNotOnAFixedFace)
                      {"shape linear transfer flip 1.0 scheme musl", "0 0 0", 24 * 24},
                      {"shape cubic", "0 0 0", 24 * 24},
                      {"", "0 0 0.5", 2 * 24 * 24},
-                     {"frame total", "0 0 0", 2 * 24 * 24 + (2 * 10 + 4) * 24}};    // may move away; next to the edges
+                     {"frame total", "0 0 0",
+                      2 * 24 * 24 + (2 * 10 + 4) * 24}};    // may move away; next to the edges
   for (const auto &c : cases) {
     Scene run;
     run.commands(box + "fix grid all mpm 1.0 " + c.options +
                  "\nregion slab block INF INF INF INF 0 6\ncreate_points 1 region slab ppc 2\n"
                  "group slab type 1\nfix m slab mpm/material density 1.0 neohookean 10.0 0.3\n"
-                 "displace_atoms all move " + c.gap + " units box\nfix surf slab mpm/surface\n" +
-                 contact + "timestep 0.01\nthermo 1000\n");
+                 "displace_atoms all move " +
+                 c.gap + " units box\nfix surf slab mpm/surface\n" + contact +
+                 "timestep 0.01\nthermo 1000\n");
     EXPECT_EQ(measured("points", surface_points(run)), c.expected) << c.options << " " << c.gap;
   }
 }
@@ -99,8 +105,7 @@ TEST(Surface, OpensWherePointsHaveFailed)
   auto *material = dynamic_cast<FixMPMMaterial *>(run.lmp->modify->get_fix_by_id("m"));
   ASSERT_GE(material->damage, 0);
   for (int i = 0; i < run.n(); i++)    // two layers in the middle
-    if (std::abs(run.lmp->atom->x[i][2] - 4.0) < 0.5)
-      material->history[i][material->damage] = 1.0;
+    if (std::abs(run.lmp->atom->x[i][2] - 4.0) < 0.5) material->history[i][material->damage] = 1.0;
   EXPECT_EQ(surface_points(run), 6 * 24 * 24);
 }
 
@@ -114,7 +119,9 @@ TEST(Surface, FailedPointsHaveARadius)
                "rankine 100.0\nfix surf slab mpm/surface depth 0.3\n" +
                contact + "timestep 0.01\nthermo 1000\nrun 0 post no\n");
   double n = -1.0;
-  run.each_step([&](double **) { n = run.lmp->modify->get_fix_by_id("surf")->compute_scalar(); });
+  run.each_step([&](double **) {
+    n = run.lmp->modify->get_fix_by_id("surf")->compute_scalar();
+  });
   run.commands("run 0 post no\n");
   const double before = n;
   auto *material = dynamic_cast<FixMPMMaterial *>(run.lmp->modify->get_fix_by_id("m"));
@@ -149,7 +156,8 @@ TEST(Surface, RadiusFollowsTheVolume)
       n++;
     }
   });
-  for (const double J : {0.8, 1.05, 1.15}) {    // the last: at the most 1.03 times that without deformation
+  for (const double J :
+       {0.8, 1.05, 1.15}) {    // the last: at the most 1.03 times that without deformation
     for (int i = 0; i < run.n(); i++) {
       for (int c = 0; c < 9; c++) run.points().F[i][c] = c % 4 == 0;
       run.points().F[i][0] = J;
@@ -217,8 +225,10 @@ TEST(SurfaceContact, IsTheSameAcrossPeriodicFacesFromSetUpOn)
     run.commands(replaced(replaced(head, "0.3 multi", "0.3 bin"), "mode multi", "mode single") +
                  "fix grid all mpm 1.0\nregion slab block INF INF INF INF 1 7\n"
                  "create_points 1 region slab ppc 2\ncreate_atoms 2 single " +
-                 (corner ? "0.1 0.2 0.1\n" : "6.1 6.2 0.1\n") + "group slab type 1\ngroup grains type 2\n"
-                 "set type 2 diameter 2.0 density 2.0\nfix m slab mpm/material density 1.0 neohookean 10.0 0.3\n"
+                 (corner ? "0.1 0.2 0.1\n" : "6.1 6.2 0.1\n") +
+                 "group slab type 1\ngroup grains type 2\n"
+                 "set type 2 diameter 2.0 density 2.0\nfix m slab mpm/material density 1.0 "
+                 "neohookean 10.0 0.3\n"
                  "fix move grains nve/sphere\nfix surf slab mpm/surface\n" +
                  contact + "timestep 0.01\nthermo 1000\n");
     double mine[3] = {0.0};
@@ -266,7 +276,8 @@ TEST(SurfaceContact, DoesNotNeedPointsInside)
     some.each_step([&](double **) {
       inside = some.n() - some.lmp->atom->nfirst;
       for (int i = some.lmp->atom->nfirst; i < some.n(); i++)
-        for (int d = 0; d < 3; d++) torque = std::max(torque, std::abs(some.lmp->atom->torque[i][d]));
+        for (int d = 0; d < 3; d++)
+          torque = std::max(torque, std::abs(some.lmp->atom->torque[i][d]));
     });
     some.commands("run 150 post no\n");
     EXPECT_LT(measured("difference", difference(all.gather(), some.gather())), 1.0e-10);
@@ -296,10 +307,11 @@ TEST_P(Clump, PushesWithConstantMomentum)
 {
   Scene run;
   run.commands(replaced(head, "neighbor 0.3", "atom_modify map array\nneighbor 0.3") +
-               replaced(grains, "create_atoms 2 single 3.1 3.2 5.95\ncreate_atoms 2 single 8.9 "
-                                       "3.7 6.1\ncreate_atoms 2 single 6.4 9.2 5.9\n",
-                               "create_atoms 2 single 5.0 5.5 6.2\ncreate_atoms 2 single 6.2 5.5 6.0\n"
-                               "create_atoms 2 single 5.6 6.6 6.6\n") +
+               replaced(grains,
+                        "create_atoms 2 single 3.1 3.2 5.95\ncreate_atoms 2 single 8.9 "
+                        "3.7 6.1\ncreate_atoms 2 single 6.4 9.2 5.9\n",
+                        "create_atoms 2 single 5.0 5.5 6.2\ncreate_atoms 2 single 6.2 5.5 6.0\n"
+                        "create_atoms 2 single 5.6 6.6 6.6\n") +
                replaced(replaced(fixes, "fix floor all mpm/boundary zlo stick\n", ""),
                         "fix move grains nve/sphere\n",
                         GetParam() + std::string("\nneigh_modify exclude type 2 2\n")) +

@@ -11,7 +11,7 @@
 
 // fix mpm with frame total: kinematics, exact solutions at large deformation, invariants, limit of
 // the time step, and what is refused. Convergence is in test_physics_mms.cpp and
-// test_error_norms.cpp, kernels are in test_kernels.cpp, ranks and restarts in test_parallel.cpp and
+// test_error_norms.cpp, kernels are in transfer/test_kernels.cpp, ranks and restarts in test_parallel.cpp and
 // test_restart.cpp.
 
 #include "mpm_lammps.h"
@@ -113,7 +113,8 @@ TEST(TotalKinematics, RigidRotationTurnsTheStress)
     const BatchKernels *kernels = BatchKernels::select(3);
     double F[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, tau[6] = {0.0}, vol0 = 1.0;
     const double stretch[9] = {0.2, 0.1, 0.0, 0.05, -0.1, 0.0, 0.0, 0.1, 0.02};
-    kernels->load_total(*batch, 1, 1.0, stretch, F, tau, &vol0, nullptr);    // column-major, as good as any
+    kernels->load_total(*batch, 1, 1.0, stretch, F, tau, &vol0,
+                        nullptr);    // column-major, as good as any
     material.update(*batch);
     kernels->store(*batch, F, tau);
     const std::array<double, 9> F0 = times(F,

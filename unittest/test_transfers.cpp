@@ -177,8 +177,9 @@ run 0
 TEST(Refined, LostSpinHasAWarning)
 {
   if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
-  for (const char *options : {"transfer xpic 2", "transfer xpic 2 scheme musl", "transfer xpic 2 scheme usf",
-                              "transfer xpic 2 scheme usavg", "transfer flip 1.0 scheme musl"}) {
+  for (const char *options :
+       {"transfer xpic 2", "transfer xpic 2 scheme musl", "transfer xpic 2 scheme usf",
+        "transfer xpic 2 scheme usavg", "transfer flip 1.0 scheme musl"}) {
     Scene run;
     const int before = run.lmp->error->get_numwarn();
     run.commands(replaced(disk, "OPTIONS", std::string(options) + " dtcheck no") + "run 0\n");

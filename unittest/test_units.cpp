@@ -11,7 +11,7 @@
 // All unit styles: the same numbers for lengths, times and masses, with moduli and accelerations
 // converted by LAMMPS's own constants, must give the same motion, and energies in energy units.
 
-#include "stl_testing.h"
+#include "mesh/stl_testing.h"
 
 #include "force.h"
 
@@ -152,8 +152,8 @@ TEST_P(UnitsOfOptions, DensityAndModulusTogether)
     Scene run;
     run.commands("units lj\n" + box3d + "fix grid all mpm 1.0 " + GetParam() +
                  "\nregion one block 2 6 2 6 0 4\ncreate_points 1 region one ppc 2\n" +
-                 fmt::format("fix m all mpm/material density {} neohookean {} 0.3\n", k ? 12.0 : 1.5,
-                             k ? 800.0 : 100.0) +
+                 fmt::format("fix m all mpm/material density {} neohookean {} 0.3\n",
+                             k ? 12.0 : 1.5, k ? 800.0 : 100.0) +
                  "fix floor all mpm/boundary zlo slip\nvelocity all ramp vz 0.0 -1.0 z 0 4\n"
                  "velocity all ramp vx 0.0 0.5 y 0 4 sum yes\ntimestep 0.02\nrun 60\n");
     states[k] = run.gather();

@@ -15,7 +15,7 @@
 
 #include "mpm_lammps.h"
 
-#include "mpm_grid.h"
+#include "lattice/grid.h"
 
 #include "gtest/gtest.h"
 
@@ -169,7 +169,7 @@ INSTANTIATE_TEST_SUITE_P(More, NoiseAtRest, ::testing::ValuesIn(more_variants())
 
 struct Crossing {
   const char *shape;
-  int order;                  // of B-splines, 0: none
+  int order;                                // of B-splines, 0: none
   double flip_low, flip_high, apic_high;    // noise in flight over 10 cells, in p/(rho c)
 };
 
@@ -184,12 +184,13 @@ class CrossingNoise : public ::testing::TestWithParam<Crossing> {
 
   void medium(Scene &run, const char *transfer, double V)
   {
-    run.commands(strprintf("units lj\ndimension 2\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
-                           "region box block 0 7 0 7 -0.5 0.5\ncreate_box 1 box\n"
-                           "fix grid all mpm 1.0 %s %s\ncreate_points 1 box spacing 0.7 0.7\n"
-                           "fix m all mpm/material density 1.0 eos stiffened/gas 2.0 0.49 "
-                           "pressure %g\nvelocity all set %g %g 0\ntimestep 0.25\nthermo 100000\n",
-                           GetParam().shape, transfer, P, V, 0.7 * V));
+    run.commands(
+        strprintf("units lj\ndimension 2\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
+                  "region box block 0 7 0 7 -0.5 0.5\ncreate_box 1 box\n"
+                  "fix grid all mpm 1.0 %s %s\ncreate_points 1 box spacing 0.7 0.7\n"
+                  "fix m all mpm/material density 1.0 eos stiffened/gas 2.0 0.49 "
+                  "pressure %g\nvelocity all set %g %g 0\ntimestep 0.25\nthermo 100000\n",
+                  GetParam().shape, transfer, P, V, 0.7 * V));
     ASSERT_EQ(run.n(), 100);
   }
 };
@@ -240,12 +241,14 @@ TEST_P(CrossingNoise, ForcesOnNodes)
       slopes += slope;
     }
     for (int m = 1; m < 2000; m++)
-      waves += 2.0 * m * k * pow(sin(0.5 * m * k) / (0.5 * m * k), order + 1) * sin(m * k * (node - 0.35));
+      waves += 2.0 * m * k * pow(sin(0.5 * m * k) / (0.5 * m * k), order + 1) *
+          sin(m * k * (node - 0.35));
     exact = std::max(exact, std::abs(slopes / sum));
     wave = std::max(wave, std::abs(waves / 0.7 / sum));
   }
   EXPECT_NEAR(most / P / exact, 1.0, 1.0e-10);
-  EXPECT_NEAR(wave / exact, 1.0, order == 1 ? 1.0e-3 : 1.0e-6);    // as far as the waves have been added up
+  EXPECT_NEAR(wave / exact, 1.0,
+              order == 1 ? 1.0e-3 : 1.0e-6);    // as far as the waves have been added up
 }
 
 TEST_P(CrossingNoise, VelocityInFlight)
@@ -318,7 +321,8 @@ TEST_P(GridInvariance, ShiftsAndRotations)
     const std::string options = std::string(transfer) + GetParam().shape;
     // not sound where the lattice has nodes of next to no mass, see test_extreme.cpp
     if (options.find("total") != std::string::npos && options.find("apic") != std::string::npos &&
-        (options.find("linear") != std::string::npos || options.find("bernstein") != std::string::npos))
+        (options.find("linear") != std::string::npos ||
+         options.find("bernstein") != std::string::npos))
       continue;
     double least = 1.0e300, most = 0.0;
     for (const double shift : {0.0, 0.025, 0.05})
@@ -337,13 +341,13 @@ INSTANTIATE_TEST_SUITE_P(All, GridInvariance, ::testing::ValuesIn(all_shapes()))
 
 // Fracture: not asked for here. With gradients that jump at the faces of cells (linear, bernstein), the largest
 // extension is that of the first shift, which puts layers of points on faces and into otherwise empty cells.
-INSTANTIATE_TEST_SUITE_P(More, GridInvariance,
-                         ::testing::Values(Variant{"shape cpdi", 0.01, 0.0, 0.0},
-                                           Variant{"shape cpdi2", 0.01, 0.0, 0.0},
-                                           Variant{"shape linear scheme musl frame total", 0.08, 0.0, 0.0},
-                                           Variant{"shape quadratic frame total", 0.01, 0.0, 0.0},
-                                           Variant{"shape cubic frame total", 0.01, 0.0, 0.0},
-                                           Variant{"shape bernstein scheme musl frame total", 0.08, 0.0, 0.0}));
+INSTANTIATE_TEST_SUITE_P(
+    More, GridInvariance,
+    ::testing::Values(Variant{"shape cpdi", 0.01, 0.0, 0.0}, Variant{"shape cpdi2", 0.01, 0.0, 0.0},
+                      Variant{"shape linear scheme musl frame total", 0.08, 0.0, 0.0},
+                      Variant{"shape quadratic frame total", 0.01, 0.0, 0.0},
+                      Variant{"shape cubic frame total", 0.01, 0.0, 0.0},
+                      Variant{"shape bernstein scheme musl frame total", 0.08, 0.0, 0.0}));
 
 /* ----------------------------------------------------------------------
    A bar in uniaxial strain, 12 cells between the grips, is pulled at constant velocity. The total

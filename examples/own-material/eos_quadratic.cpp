@@ -6,12 +6,11 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-
 // An equation of state that is not part of the package: everything that it takes.
 
-#include "mpm_law_plugin.h"
+#include "law/plugin.h"
 
-#include "mpm_eos.h"
+#include "law/eos.h"
 
 namespace MPM_NS::law {
 namespace {
@@ -32,10 +31,7 @@ namespace {
       return u * (K + K2 * u);
     }
     // - J dp/dJ * J, at least a small part of K where the liquid is torn apart
-    MPM_INLINE double bulk(double J) const
-    {
-      return max(K + 2.0 * K2 * (1.0 - J) / J, 0.01 * K);
-    }
+    MPM_INLINE double bulk(double J) const { return max(K + 2.0 * K2 * (1.0 - J) / J, 0.01 * K); }
     // integral of p from J to 1
     MPM_INLINE double stored(double J) const
     {

@@ -15,8 +15,8 @@
 #include "fix_mpm_material.h"
 #include "force.h"
 #include "group.h"
+#include "material/material.h"
 #include "modify.h"
-#include "mpm_material.h"
 #include "mpm_point_batches.h"
 #include "update.h"
 

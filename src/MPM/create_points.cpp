@@ -92,8 +92,8 @@ void CreatePoints::command(int narg, char **arg)
 
   const bigint natoms_previous = atom->natoms;
   const int nlocal_previous = atom->nlocal;
-  const bigint npoints =
-      at_nodes ? make_mesh_points() : (in_elements ? make_element_points() : make_points());
+  const bigint npoints = at_nodes ? make_mesh_points()
+                                  : (in_elements ? make_element_points() : make_points());
 
   atom->data_fix_compute_variable(nlocal_previous, atom->nlocal);
   if (in_elements) set_domains(nlocal_previous);
@@ -127,7 +127,8 @@ void CreatePoints::command(int narg, char **arg)
       utils::logmesg(lmp, "  spacing = {:.8g} {:.8g}{}\n", spacing[0], spacing[1],
                      flat ? "" : fmt::format(" {:.8g}", spacing[2]));
     if (fix && fix->axisymmetric)
-      utils::logmesg(lmp, "  area = {:.8g} per point, volume = {:.8g} in total (all around the axis)\n",
+      utils::logmesg(lmp,
+                     "  area = {:.8g} per point, volume = {:.8g} in total (all around the axis)\n",
                      volume, all_made);
     else
       utils::logmesg(lmp, "  volume = {:.8g} {}, {:.8g} in total{}\n", volume,
@@ -169,7 +170,8 @@ void CreatePoints::parse(int narg, char **arg)
     region->prematch();
     iarg = 3;
   } else if (strcmp(arg[1], "box") != 0) {
-    error->all(FLERR, 1, "Unknown create_points option {}: expected region, box, mesh, or elements", arg[1]);
+    error->all(FLERR, 1, "Unknown create_points option {}: expected region, box, mesh, or elements",
+               arg[1]);
   }
 
   // ppc and spacing: one number, or one for each axis
@@ -602,7 +604,8 @@ tagint CreatePoints::largest_tag() const
 void CreatePoints::check_tags(tagint largest, bigint nmore) const
 {
   if (atom->tag_enable && largest + nmore >= MAXTAGINT)
-    error->all(FLERR, Error::NOLASTLINE, "New atom IDs exceed the maximum allowed ID {}", MAXTAGINT);
+    error->all(FLERR, Error::NOLASTLINE, "New atom IDs exceed the maximum allowed ID {}",
+               MAXTAGINT);
 }
 
 /* ----------------------------------------------------------------------

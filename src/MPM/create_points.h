@@ -44,7 +44,8 @@ class CreatePoints : public Command {
     double volume;
     tagint tag;
   };
-  struct Element {    // of a mesh: center, volume, corners relative to the center, see mpm_domain.h
+  struct
+      Element {    // of a mesh: center, volume, corners relative to the center, see transfer/cpdi.h
     double x[3], volume, corners[24];
   };
   struct Range {    // consecutive sites along an axis
@@ -67,7 +68,7 @@ class CreatePoints : public Command {
   Range box[3];       // sites in the simulation box
   Range search[3];    // sites that can be in the region, also outside the box
 
-  std::vector<Site> mesh_sites;    // nodes of a mesh
+  std::vector<Site> mesh_sites;     // nodes of a mesh
   std::vector<Element> elements;    // of all ranks; at last those that are points here
 
   void parse_type(int, char **);

@@ -17,9 +17,9 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_mpm.h"
+#include "mesh/gmsh.h"
 #include "modify.h"
-#include "mpm_domain.h"
-#include "mpm_mesh.h"
+#include "transfer/cpdi.h"
 
 #include <algorithm>
 #include <cmath>
@@ -62,8 +62,7 @@ void CreatePoints::parse_elements(int narg, char **arg)
     const int *node = corner_nodes(e.type);
     double w[8], g[24];
     for (int c = 0; c < ncorner; c++)
-      for (int d = 0; d < dim; d++)
-        element.corners[dim * c + d] = mesh.nodes[e.node[node[c]]][d];
+      for (int d = 0; d < dim; d++) element.corners[dim * c + d] = mesh.nodes[e.node[node[c]]][d];
     element.volume = dim == 2 ? PointDomain<2>::free(element.corners, w, g)
                               : PointDomain<3>::free(element.corners, w, g);
     if (!(element.volume > 0.0 && *std::min_element(w, w + ncorner) >= 0.0))
@@ -71,8 +70,10 @@ void CreatePoints::parse_elements(int narg, char **arg)
                  arg[2]);
     for (int c = 0; c < ncorner && fix; c++)
       if (element.corners[dim * c] < -1.0e-10 * domain->xprd)
-        error->all(FLERR, 2, "Create_points: element {} of {} reaches below x = 0, which is the axis of "
-                   "fix mpm {}", e.label, arg[2], fix->id);
+        error->all(FLERR, 2,
+                   "Create_points: element {} of {} reaches below x = 0, which is the axis of "
+                   "fix mpm {}",
+                   e.label, arg[2], fix->id);
     for (int d = 0; d < 3; d++) {
       element.x[d] = 0.0;
       for (int c = 0; c < ncorner && d < dim; c++)
@@ -84,8 +85,10 @@ void CreatePoints::parse_elements(int narg, char **arg)
     elements.push_back(element);
   }
   if (outside)
-    error->all(FLERR, 2, "Create_points: {} elements of {} are outside of the simulation box; enlarge "
-               "the box, or use the keywords scale and move", outside, arg[2]);
+    error->all(FLERR, 2,
+               "Create_points: {} elements of {} are outside of the simulation box; enlarge "
+               "the box, or use the keywords scale and move",
+               outside, arg[2]);
   volume /= elements.size();
 }
 

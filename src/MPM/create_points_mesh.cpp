@@ -16,8 +16,8 @@
 #include "error.h"
 #include "fix_mpm.h"
 #include "math_extra.h"
+#include "mesh/element.h"
 #include "modify.h"
-#include "mpm_element.h"
 #include "mpm_mesh_input.h"
 
 #include <cmath>
@@ -38,7 +38,8 @@ Mesh CreatePoints::read_mesh(int narg, char **arg)
   for (auto *ifix : modify->get_fix_by_style("^mpm$"))
     if (dynamic_cast<FixMPM *>(ifix)->axisymmetric) fix = dynamic_cast<FixMPM *>(ifix);
   if (fix && strcmp(arg[1], "mesh") == 0)
-    error->all(FLERR, 1, "Create_points mesh cannot be used with axisymmetric fix mpm {}: elements, to "
+    error->all(FLERR, 1,
+               "Create_points mesh cannot be used with axisymmetric fix mpm {}: elements, to "
                "which its points belong, are of plane strain; use create_points elements or region",
                fix->id);
 
@@ -52,8 +53,7 @@ Mesh CreatePoints::read_mesh(int narg, char **arg)
       error->all(FLERR, iarg, "Unknown {} keyword: {}", what, keyword);
     if (iarg + n >= narg) utils::missing_cmd_args(FLERR, what + " " + keyword, error);
     if (keyword == "move")
-      for (int d = 0; d < dim; d++)
-        move[d] = utils::numeric(FLERR, arg[iarg + 1 + d], false, lmp);
+      for (int d = 0; d < dim; d++) move[d] = utils::numeric(FLERR, arg[iarg + 1 + d], false, lmp);
     else if (keyword == "part")
       part = arg[iarg + 1];
     else {
@@ -106,8 +106,7 @@ void CreatePoints::parse_mesh(int narg, char **arg)
   for (const auto &e : mesh.elements) {
     const auto &rule = ElementRule::of(e.type);
     double x[MAX_ELEMENT_NODES][3], g[MAX_ELEMENT_NODES][3];
-    for (int k = 0; k < rule.nnode; k++)
-      MathExtra::copy3(mesh.nodes[e.node[k]].data(), x[k]);
+    for (int k = 0; k < rule.nnode; k++) MathExtra::copy3(mesh.nodes[e.node[k]].data(), x[k]);
     for (int q = 0; q < rule.npoint; q++) {
       const double w = rule.gradients(q, x, g);
       if (!(w > 0.0))
@@ -125,8 +124,10 @@ void CreatePoints::parse_mesh(int narg, char **arg)
     outside += !put_into_box(mesh_sites[k].x);
   }
   if (outside)
-    error->all(FLERR, 2, "Create_points: {} nodes of {} are outside of the simulation box; enlarge the "
-               "box, or use the keywords scale and move", outside, arg[2]);
+    error->all(FLERR, 2,
+               "Create_points: {} nodes of {} are outside of the simulation box; enlarge the "
+               "box, or use the keywords scale and move",
+               outside, arg[2]);
 }
 
 /* ----------------------------------------------------------------------

@@ -18,9 +18,9 @@
 #include "fix_mpm_surface.h"
 #include "force.h"
 #include "group.h"
+#include "material/batch.h"
 #include "memory.h"
 #include "modify.h"
-#include "mpm_batch.h"
 #include "mpm_halo.h"
 #include "mpm_node_action.h"
 #include "mpm_points.h"
@@ -44,14 +44,18 @@ static constexpr double MAX_NODE = 4.0e6;
 ------------------------------------------------------------------------- */
 
 FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), shape(QUADRATIC), bernstein(false), mixed_precision(false), extent(NO_SIZE), aspect{1.0, 1.0, 1.0}, transfer(APIC),
-    flip(0.0), poly(false), refinement(LUMPED), order(1), total(false), most_distorted(0.0), axisymmetric(false), scheme(USL), stress(DEFAULT_STRESS), locking(NO_CURE), light(0.0), policy(ERROR),
-    delete_failed(false), modified_edges(false), every(1), dt_check(true), watch_volume(false), keep_old(false), grid(nullptr), C(nullptr), Q(nullptr), corners(nullptr), X(nullptr), R(nullptr),
-    waiting(nullptr), ledger_on(false), volume_rate({0.0, 0}), points(nullptr), halo(nullptr),
-    kernels(nullptr), batch_kernels(nullptr), driver(false), topology_valid(false),
-    watch_drift(false), drifted(0), refer_anew(false), want_sort(false), switches(0), switches_sorted(0),
-    tile(nullptr), tile_load(nullptr), waited(0), elapsed(0.0), batch(nullptr), kinetic_points(0.0), nbad_total(0),
-    next_dt_check(0), clock(0.0), running(false), velocities(0), velocities_known(false)
+    Fix(lmp, narg, arg), shape(QUADRATIC), bernstein(false), mixed_precision(false),
+    extent(NO_SIZE), aspect{1.0, 1.0, 1.0}, transfer(APIC), flip(0.0), poly(false),
+    refinement(LUMPED), order(1), total(false), most_distorted(0.0), axisymmetric(false),
+    scheme(USL), stress(DEFAULT_STRESS), locking(NO_CURE), light(0.0), policy(ERROR),
+    delete_failed(false), modified_edges(false), every(1), dt_check(true), watch_volume(false),
+    keep_old(false), grid(nullptr), C(nullptr), Q(nullptr), corners(nullptr), X(nullptr),
+    R(nullptr), waiting(nullptr), ledger_on(false), volume_rate({0.0, 0}), points(nullptr),
+    halo(nullptr), kernels(nullptr), batch_kernels(nullptr), driver(false), topology_valid(false),
+    watch_drift(false), drifted(0), refer_anew(false), want_sort(false), switches(0),
+    switches_sorted(0), tile(nullptr), tile_load(nullptr), waited(0), elapsed(0.0), batch(nullptr),
+    kinetic_points(0.0), nbad_total(0), next_dt_check(0), clock(0.0), running(false), velocities(0),
+    velocities_known(false)
 {
   points = MPMPoints::get(atom);
   if (!points)
@@ -89,7 +93,7 @@ FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) :
 
   grid = new Grid(lattice);
   halo = new MPMHalo(lmp);
-  batch = new Batch();    // zero, see mpm_batch.h
+  batch = new Batch();    // zero, see material/batch.h
   tile = (double *) memory->smalloc(tile_reals() * sizeof(double), "mpm:tile");
   tile_load = (double *) memory->smalloc(tile_reals() * sizeof(double), "mpm:tile");
   memset(tile, 0, tile_reals() * sizeof(double));
@@ -143,13 +147,13 @@ void FixMPM::process_options(int narg, char **arg)
         if (names[k] == arg[iarg + 1]) return (int) k;
       std::string known;
       for (const auto &name : names) known += " " + name;
-      error->all(FLERR, iarg + 1, "Unknown fix mpm {} {}: must be one of{}", keyword,
-                 arg[iarg + 1], known);
+      error->all(FLERR, iarg + 1, "Unknown fix mpm {} {}: must be one of{}", keyword, arg[iarg + 1],
+                 known);
       return -1;
     };
     if (keyword == "shape") {
-      const int kind = choose(
-          {"linear", "quadratic", "cubic", "gimp", "cpgimp", "cpdi", "cpdi2", "bernstein"});
+      const int kind =
+          choose({"linear", "quadratic", "cubic", "gimp", "cpgimp", "cpdi", "cpdi2", "bernstein"});
       bernstein = kind == 7;
       extent = kind < 3 || bernstein ? NO_SIZE : (Extent) (UNIFORM + kind - 3);
       shape = kind < 3 ? (Shape) (1 + kind) : (kind < 5 || bernstein ? QUADRATIC : LINEAR);
@@ -204,7 +208,8 @@ void FixMPM::process_options(int narg, char **arg)
         need(2);
         most_distorted = utils::numeric(FLERR, arg[iarg + 2], false, lmp);
         if (!(most_distorted > 1.0 && std::isfinite(most_distorted)))
-          error->all(FLERR, iarg + 2, "Fix mpm reference update needs a ratio of stretches above 1: {}",
+          error->all(FLERR, iarg + 2,
+                     "Fix mpm reference update needs a ratio of stretches above 1: {}",
                      arg[iarg + 2]);
         iarg++;
       }
@@ -222,7 +227,8 @@ void FixMPM::process_options(int narg, char **arg)
       need(1);
       light = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
       if (!(light >= 0.0 && light <= 1.0))
-        error->all(FLERR, iarg + 1, "Fix mpm light share must be within 0 and 1: {}", arg[iarg + 1]);
+        error->all(FLERR, iarg + 1, "Fix mpm light share must be within 0 and 1: {}",
+                   arg[iarg + 1]);
       iarg += 2;
     } else if (keyword == "origin") {
       need(lattice.dim);
@@ -260,38 +266,49 @@ void FixMPM::process_options(int narg, char **arg)
   }
 
   if (most_distorted > 0.0 && !total)
-    error->all(FLERR, "Fix mpm reference update is for frame total: in the updated frame, the reference "
+    error->all(FLERR,
+               "Fix mpm reference update is for frame total: in the updated frame, the reference "
                "is the present configuration in each step");
   if (has_aspect && extent == NO_SIZE)
-    error->all(FLERR, "Fix mpm aspect is for points of finite size: use shape gimp, cpgimp, cpdi "
+    error->all(FLERR,
+               "Fix mpm aspect is for points of finite size: use shape gimp, cpgimp, cpdi "
                "or cpdi2");
   if (total && (extent != NO_SIZE || transfer == AFLIP || transfer == TPIC))
-    error->all(FLERR, "Fix mpm frame total cannot be used with shape gimp, cpgimp, cpdi and cpdi2, "
-               "which points that cross no cells do not need, and transfer aflip and tpic: use B-splines with "
+    error->all(FLERR,
+               "Fix mpm frame total cannot be used with shape gimp, cpgimp, cpdi and cpdi2, "
+               "which points that cross no cells do not need, and transfer aflip and tpic: use "
+               "B-splines with "
                "transfer apic or flip");
   if (poly && (total || !is_mls(kernel_shape(), transfer)))
     error->all(FLERR, "Fix mpm transfer polypic needs shape quadratic or cubic and frame updated");
   if (stress == MLS_STRESS && !is_mls(kernel_shape(), transfer))
-    error->all(FLERR, "Fix mpm stress mls needs shape quadratic or cubic with transfer apic or aflip: "
+    error->all(FLERR,
+               "Fix mpm stress mls needs shape quadratic or cubic with transfer apic or aflip: "
                "other ones have the gradients of the shape functions");
   if (strains_apart() && total)
-    error->all(FLERR, "Fix mpm stress gradient with frame total needs transfer flip or pic: that of "
+    error->all(FLERR,
+               "Fix mpm stress gradient with frame total needs transfer flip or pic: that of "
                "transfer apic is stress mls");
 
-  if (modified_edges && (shape == LINEAR || bernstein || extent != NO_SIZE ||
-                         refinement != LUMPED || is_affine(transfer)))
-    error->all(FLERR, "Fix mpm edges modified is for shape quadratic and cubic with transfer pic and "
+  if (modified_edges &&
+      (shape == LINEAR || bernstein || extent != NO_SIZE || refinement != LUMPED ||
+       is_affine(transfer)))
+    error->all(FLERR,
+               "Fix mpm edges modified is for shape quadratic and cubic with transfer pic and "
                "flip: use edges plain");
 
   if (bernstein && !total)
-    error->all(FLERR, "Fix mpm shape bernstein has gradients that jump where points cross cells: it "
+    error->all(FLERR,
+               "Fix mpm shape bernstein has gradients that jump where points cross cells: it "
                "needs frame total, where they do not, or use shape quadratic");
   if (bernstein && poly)
-    error->all(FLERR, "Fix mpm shape bernstein cannot be used with transfer polypic: use shape quadratic");
+    error->all(FLERR,
+               "Fix mpm shape bernstein cannot be used with transfer polypic: use shape quadratic");
   if (mixed_precision &&
       (extent != NO_SIZE || bernstein || refinement != LUMPED || poly || transfer == AFLIP ||
        transfer == TPIC || axisymmetric || strains_apart()))
-    error->all(FLERR, "Fix mpm precision mixed needs shape linear, quadratic or cubic and transfer pic, "
+    error->all(FLERR,
+               "Fix mpm precision mixed needs shape linear, quadratic or cubic and transfer pic, "
                "flip or apic, without stress gradient and axisymmetric: use precision double for "
                "others");
 
@@ -308,31 +325,38 @@ void FixMPM::check_box()
   for (int d = 0; d < lattice.dim; d++) {
     const char axis = 'x' + d;
     if (domain->boundary[d][0] > 1 || domain->boundary[d][1] > 1)
-      error->all(FLERR, "Fix mpm requires periodic or fixed boundaries (p or f), "
-                 "but axis {} is shrink-wrapped", axis);
+      error->all(FLERR,
+                 "Fix mpm requires periodic or fixed boundaries (p or f), "
+                 "but axis {} is shrink-wrapped",
+                 axis);
     const double length = domain->prd[d];
     if (lattice.h > length * (1.0 + 1.0e-10))
       error->all(FLERR, "Fix mpm node spacing {} is larger than the box length {} along {}",
                  lattice.h, length, axis);
-    const double far = MAX(fabs(domain->boxlo[d] - lattice.origin[d]),
-                           fabs(domain->boxhi[d] - lattice.origin[d]));
+    const double far =
+        MAX(fabs(domain->boxlo[d] - lattice.origin[d]), fabs(domain->boxhi[d] - lattice.origin[d]));
     if (!(far < MAX_NODE * lattice.h))
-      error->all(FLERR, "Fix mpm node spacing {} is too small for the box length {} along {}, or "
+      error->all(FLERR,
+                 "Fix mpm node spacing {} is too small for the box length {} along {}, or "
                  "its origin {} is too far away: there can be {:.0f} nodes between them",
                  lattice.h, length, axis, lattice.origin[d], MAX_NODE);
     lattice.periodic[d] = domain->periodicity[d] != 0;
     lattice.ncell[d] = MAX(1, (int) std::lround(length / lattice.h));
     if (lattice.periodic[d] && fabs(lattice.ncell[d] * lattice.h - length) > 1.0e-10 * length)
-      error->all(FLERR, "Length {} of the box along periodic axis {} must be a multiple of the "
+      error->all(FLERR,
+                 "Length {} of the box along periodic axis {} must be a multiple of the "
                  "node spacing {}: the nearest valid spacing is {:.16g}",
                  length, axis, lattice.h, length / lattice.ncell[d]);
     if (bernstein && lattice.periodic[d] && lattice.ncell[d] % 2)
-      error->all(FLERR, "Fix mpm shape bernstein has cells of two node spacings, but there are {} "
+      error->all(FLERR,
+                 "Fix mpm shape bernstein has cells of two node spacings, but there are {} "
                  "spacings along periodic axis {}: use an even number, for instance a spacing of "
-                 "{:.16g}", lattice.ncell[d], axis, length / (lattice.ncell[d] + 1));
+                 "{:.16g}",
+                 lattice.ncell[d], axis, length / (lattice.ncell[d] + 1));
   }
   if (axisymmetric && (domain->boxlo[0] < 0.0 || domain->periodicity[0]))
-    error->all(FLERR, "Fix mpm axisymmetric: x is the distance from the axis: the box must not reach "
+    error->all(FLERR,
+               "Fix mpm axisymmetric: x is the distance from the axis: the box must not reach "
                "below x = 0 or be periodic along x");
   if (lattice.dim == 2) {
     lattice.periodic[2] = false;
@@ -356,11 +380,13 @@ void FixMPM::init()
   if (utils::strmatch(update->integrate_style, "^respa"))
     error->all(FLERR, "Fix mpm requires run_style verlet");
   if (update->whichflag == 2)
-    error->all(FLERR, "Fix mpm cannot be used with minimize, which would move material points like "
+    error->all(FLERR,
+               "Fix mpm cannot be used with minimize, which would move material points like "
                "atoms: minimize before the fix is defined");
   check_box();
   if (domain->box_change_size || domain->box_change_shape)
-    error->all(FLERR, "Fix mpm requires a box of constant size and shape: remove the fix that "
+    error->all(FLERR,
+               "Fix mpm requires a box of constant size and shape: remove the fix that "
                "changes it");
 
   running = watch_volume = false;
@@ -368,12 +394,16 @@ void FixMPM::init()
   if (axisymmetric) check_axis();
 
   if (refinement == FMPM && scheme != USL)
-    error->all(FLERR, "Fix mpm {}: transfer fmpm moves points with refined velocities, which the "
+    error->all(FLERR,
+               "Fix mpm {}: transfer fmpm moves points with refined velocities, which the "
                "gradients of scheme usf, musl and usavg do not follow: use scheme usl, or transfer "
-               "xpic", id);
+               "xpic",
+               id);
   if (refinement == XPIC && order > 1 && scheme != USL && comm->me == 0)
-    error->warning(FLERR, "Fix mpm {}: a body that turns loses its spin with transfer xpic and scheme "
-                   "usf, musl and usavg: use scheme usl, or transfer flip or apic", id);
+    error->warning(FLERR,
+                   "Fix mpm {}: a body that turns loses its spin with transfer xpic and scheme "
+                   "usf, musl and usavg: use scheme usl, or transfer flip or apic",
+                   id);
 
   check_light_nodes();
 
@@ -387,8 +417,9 @@ void FixMPM::init()
     for (auto *ifix : all) fields.push_back(dynamic_cast<FixMPM *>(ifix));
     for (auto *ifix : modify->get_fix_list())
       if (auto *action = dynamic_cast<MPMNodeAction *>(ifix)) actions.push_back(action);
-    std::stable_sort(actions.begin(), actions.end(),
-                     [](auto *a, auto *b) { return a->turn() < b->turn(); });
+    std::stable_sort(actions.begin(), actions.end(), [](auto *a, auto *b) {
+      return a->turn() < b->turn();
+    });
     for (auto *field : fields)
       if (field->every != every)
         error->all(FLERR, "All fix mpm instances must have the same every: {} and {} differ", id,
@@ -399,8 +430,8 @@ void FixMPM::init()
                    field->id);
     for (auto *field : fields)
       if (field->axisymmetric != axisymmetric)
-        error->all(FLERR, "All fix mpm instances must be axisymmetric, or none: {} and {} differ", id,
-                   field->id);
+        error->all(FLERR, "All fix mpm instances must be axisymmetric, or none: {} and {} differ",
+                   id, field->id);
     for (auto *field : fields) field->keep_old = false;
     for (auto *action : actions) action->init_action();
     if (neighbor->includegroup) {
@@ -408,7 +439,8 @@ void FixMPM::init()
       for (auto *ifix : modify->get_fix_by_style("^mpm/surface$"))
         known = known || dynamic_cast<FixMPMSurface *>(ifix)->keeps_group(neighbor->includegroup);
       if (!known)
-        error->all(FLERR, "Neigh_modify include {} leaves the forces of other material points as they "
+        error->all(FLERR,
+                   "Neigh_modify include {} leaves the forces of other material points as they "
                    "are: use fix mpm/surface with keyword group {}",
                    group->names[neighbor->includegroup], group->names[neighbor->includegroup]);
     }
@@ -430,12 +462,14 @@ void FixMPM::init()
   batch_kernels = BatchKernels::select(lattice.dim, wanted, axisymmetric);
   bool can_run = kernels && batch_kernels;
   for (auto *material : materials)
-    can_run = can_run && material->material->configure(wanted, force->mvv2e * force->nktv2p, force->nktv2p);
+    can_run = can_run &&
+        material->material->configure(wanted, force->mvv2e * force->nktv2p, force->nktv2p);
   if (!can_run)
     error->all(FLERR, "Fix mpm kernels {} cannot run on this CPU or were not compiled",
                wanted ? wanted : "named by the environment variable MPM_ISA");
   if (mixed_precision && !kernels->transfer_mixed(lattice.dim, shape, transfer, true, total).p2g)
-    error->all(FLERR, "Fix mpm kernels reference has no precision mixed: use other kernels, or "
+    error->all(FLERR,
+               "Fix mpm kernels reference has no precision mixed: use other kernels, or "
                "precision double");
 
   // LAMMPS warns when the groups of two integrators overlap, but atoms of this group that are not
@@ -481,8 +515,8 @@ void FixMPM::setup_pre_neighbor()
   // a tile has room for a drift of one cell
 
   watch_drift = !total && !has_domains() &&
-      (every > 1 || neighbor->includegroup || neighbor->skin > 2.0 * lattice.h || neighbor->delay > 0 || neighbor->every > 1 ||
-       !neighbor->dist_check);
+      (every > 1 || neighbor->includegroup || neighbor->skin > 2.0 * lattice.h ||
+       neighbor->delay > 0 || neighbor->every > 1 || !neighbor->dist_check);
 
   check_integrators();
   check_points();
@@ -541,8 +575,7 @@ void FixMPM::setup(int)
   memset(&report, 0, sizeof(Report));
   halo->bytes_sent = 0;
   report.dt_min = report.dt_max = step_dt();
-  if (update->dt <= 0.0)
-    error->all(FLERR, "Fix mpm requires a positive time step: {}", update->dt);
+  if (update->dt <= 0.0) error->all(FLERR, "Fix mpm requires a positive time step: {}", update->dt);
   running = true;
   fit_affine();
   if (waited) topology_valid = false;
@@ -739,8 +772,7 @@ int FixMPM::pack_exchange(int i, double *buf)
   if (X) memcpy(buf + own[0] + own[1], X[i], own[2] * sizeof(double));
   if (R) memcpy(buf + own[0] + own[1] + own[2], R[i], 9 * sizeof(double));
   if (Q) memcpy(buf + own_size() - modes_size(), Q[i], modes_size() * sizeof(double));
-  if (corners)
-    memcpy(buf + own_size() - domain_size(), corners[i], domain_size() * sizeof(double));
+  if (corners) memcpy(buf + own_size() - domain_size(), corners[i], domain_size() * sizeof(double));
   return own_size();
 }
 
@@ -752,8 +784,7 @@ int FixMPM::unpack_exchange(int i, double *buf)
   if (X) memcpy(X[i], buf + own[0] + own[1], own[2] * sizeof(double));
   if (R) memcpy(R[i], buf + own[0] + own[1] + own[2], 9 * sizeof(double));
   if (Q) memcpy(Q[i], buf + own_size() - modes_size(), modes_size() * sizeof(double));
-  if (corners)
-    memcpy(corners[i], buf + own_size() - domain_size(), domain_size() * sizeof(double));
+  if (corners) memcpy(corners[i], buf + own_size() - domain_size(), domain_size() * sizeof(double));
   return own_size();
 }
 
@@ -770,9 +801,11 @@ void FixMPM::unpack_restart(int i, int nth)
   int m = 0;
   for (int k = 0; k < nth; k++) m += static_cast<int>(extra[i][m]);
   if (static_cast<int>(extra[i][m]) != 1 + own_size())
-    error->one(FLERR, "The restart file has {} numbers per point for fix mpm {}, not {}: give the "
-               "fix the shape, transfer, frame, reference and every with which the file was written",
-               static_cast<int>(extra[i][m]) - 1, id, own_size());
+    error->one(
+        FLERR,
+        "The restart file has {} numbers per point for fix mpm {}, not {}: give the "
+        "fix the shape, transfer, frame, reference and every with which the file was written",
+        static_cast<int>(extra[i][m]) - 1, id, own_size());
   unpack_exchange(i, extra[i] + m + 1);
 }
 

@@ -16,10 +16,10 @@ FixStyle(mpm,FixMPM);
 #define LMP_FIX_MPM_H
 
 #include "fix.h"
-#include "mpm_grid.h"
-#include "mpm_kernels.h"
-#include "mpm_kernels_poly.h"
+#include "lattice/grid.h"
 #include "mpm_node_action.h"
+#include "transfer/kernels.h"
+#include "transfer/polypic.h"
 
 #include <cstdint>
 #include <functional>
@@ -39,11 +39,11 @@ struct MPMPoints;
 
 /** Energy spent or gained since the first step with a ledger, this rank's share [energy]. */
 struct MPMLedger {
-  double external;     ///< work of atom->f (gravity, contact by pair styles, walls, ...)
-  double boundary;     ///< work of node actions of kind boundary
-  double contact;      ///< work of node actions between fields
-  double internal;     ///< work of the internal forces on the nodes, minus sign: done by the body
-  double transfer;     ///< kinetic energy gained (mostly lost: negative) by P2G and G2P
+  double external;    ///< work of atom->f (gravity, contact by pair styles, walls, ...)
+  double boundary;    ///< work of node actions of kind boundary
+  double contact;     ///< work of node actions between fields
+  double internal;    ///< work of the internal forces on the nodes, minus sign: done by the body
+  double transfer;    ///< kinetic energy gained (mostly lost: negative) by P2G and G2P
   double deleted_kinetic, deleted_stored;    ///< energy of points that were deleted
 };
 
@@ -90,48 +90,51 @@ class FixMPM : public Fix {
   // settings
 
   MPM_NS::Lattice lattice;
-  MPM_NS::Shape shape;      ///< B-spline, or the one that has the stencil: QUADRATIC with a size,
-                            ///< LINEAR with a domain
-  bool bernstein;           ///< Bernstein polynomials, which have the stencil of QUADRATIC
-  bool mixed_precision;     ///< transfers in single precision
-  Extent extent;            ///< size of points: none, fixed (GIMP), with F (contiguous GIMP); domains
-                            ///< with F (CPDI), or corners that move (CPDI2)
-  double aspect[3];         ///< edges of an undeformed point of some size; their product is 1
+  MPM_NS::Shape shape;     ///< B-spline, or the one that has the stencil: QUADRATIC with a size,
+                           ///< LINEAR with a domain
+  bool bernstein;          ///< Bernstein polynomials, which have the stencil of QUADRATIC
+  bool mixed_precision;    ///< transfers in single precision
+  Extent extent;       ///< size of points: none, fixed (GIMP), with F (contiguous GIMP); domains
+                       ///< with F (CPDI), or corners that move (CPDI2)
+  double aspect[3];    ///< edges of an undeformed point of some size; their product is 1
   MPM_NS::Transfer transfer;
-  double flip;         ///< FLIP share, 0 for PIC
-  bool poly;           ///< bilinear modes of the velocity, too; transfer is APIC then
+  double flip;              ///< FLIP share, 0 for PIC
+  bool poly;                ///< bilinear modes of the velocity, too; transfer is APIC then
   Refinement refinement;    ///< of the velocities of the nodes, with transfer FLIP inside
   int order;                ///< terms of the inverse of the mass matrix, 1: lumped
-  bool total;          ///< nodes are places of the reference configuration (total Lagrangian)
+  bool total;               ///< nodes are places of the reference configuration (total Lagrangian)
   double most_distorted;    ///< ratio of stretches that asks for a new reference, 0: never
-  bool axisymmetric;   ///< 2d: x is the distance from the axis y, points are rings
+  bool axisymmetric;        ///< 2d: x is the distance from the axis y, points are rings
   Scheme scheme;
-  Stress stress;       ///< how stress acts on nodes, and how these strain the points
-  Locking locking;     ///< what is averaged against volumetric locking
-  double light;        ///< nodes with less than this share of a cell full of material are light; 0: none
-  Policy policy;       ///< what to do with a point that goes bad
-  bool delete_failed;  ///< remove points whose damage is 1
+  Stress stress;      ///< how stress acts on nodes, and how these strain the points
+  Locking locking;    ///< what is averaged against volumetric locking
+  double
+      light;    ///< nodes with less than this share of a cell full of material are light; 0: none
+  Policy policy;          ///< what to do with a point that goes bad
+  bool delete_failed;     ///< remove points whose damage is 1
   bool modified_edges;    ///< functions next to fixed faces need no nodes outside
-  int every;           ///< steps of LAMMPS in a step of the cycle
-  bool dt_check;       ///< stop when the time step is above the stable limit
-  bool watch_volume;    ///< keep volume_rate; set at the start of a run by fix mpm/dt
-  bool keep_old;       ///< a node action reads what nodes had before the momentum equation; set by
-                       ///< its init_action()
+  int every;              ///< steps of LAMMPS in a step of the cycle
+  bool dt_check;          ///< stop when the time step is above the stable limit
+  bool watch_volume;      ///< keep volume_rate; set at the start of a run by fix mpm/dt
+  bool keep_old;    ///< a node action reads what nodes had before the momentum equation; set by
+                    ///< its init_action()
 
   // state of the step, for node actions and output
 
-  MPM_NS::Grid *grid;                           ///< node records: velocity and mass after the solve
-  std::vector<FixMPMMaterial *> materials;      ///< all of them, set in init()
-  std::vector<FixMPMElements *> elements;       ///< all of them, set in init()
+  MPM_NS::Grid *grid;                         ///< node records: velocity and mass after the solve
+  std::vector<FixMPMMaterial *> materials;    ///< all of them, set in init()
+  std::vector<FixMPMElements *> elements;     ///< all of them, set in init()
   double **C;    ///< [n][dim*dim] affine, column-major; null: transfer without
   double **Q;    ///< [n][poly_size(dim)] bilinear modes of the velocity; null: transfer without
-  double **corners;    ///< [n][2^dim][dim] CPDI2: from the point, in the order of mpm_domain.h, NAN
-                       ///< before the first step; null: other shapes
-  double **X;    ///< [n][3] reference position, NAN before it is known; null: updated frame
-  double **R;    ///< [n][9] F at the last update of the reference, row-major; null: there is none
-  double **waiting;    ///< [n][6 or 9] impulse since the last step of the cycle, displacement from the
-                       ///< place on the lattice, angular impulse if atoms have torques; null: every is 1
-  bool ledger_on;                               ///< a compute mpm/energy exists; set in init()
+  double *
+      *corners;    ///< [n][2^dim][dim] CPDI2: from the point, in the order of transfer/cpdi.h, NAN
+                   ///< before the first step; null: other shapes
+  double **X;      ///< [n][3] reference position, NAN before it is known; null: updated frame
+  double **R;      ///< [n][9] F at the last update of the reference, row-major; null: there is none
+  double *
+      *waiting;    ///< [n][6 or 9] impulse since the last step of the cycle, displacement from the
+      ///< place on the lattice, angular impulse if atoms have torques; null: every is 1
+  bool ledger_on;    ///< a compute mpm/energy exists; set in init()
   MPMLedger ledger;
 
   /** Largest |J/J_old - 1|/dt of this rank's points in all steps since it was set to zero, and whose. */
@@ -243,7 +246,7 @@ class FixMPM : public Fix {
   struct ActiveBlock {    // a block with points: its runs, and boxes of base nodes
     int slot, first_run, last_run;
     int box[6], box_apart[6];    // of the last P2G, and of the last sum apart from it
-    int low[3], high[3];    // domains: offsets of the first and last blocks that are in reach
+    int low[3], high[3];         // domains: offsets of the first and last blocks that are in reach
   };
   struct Report {    // of the present run
     double t_topology, t_p2g, t_halo, t_nodes, t_g2p, t_sort;
@@ -293,47 +296,47 @@ class FixMPM : public Fix {
   std::vector<Run> runs;              // grouped by block
   std::vector<ActiveBlock> active;    // blocks with points
   bool topology_valid;
-  bool watch_drift;      // rebuilds of neighbor lists do not bound the drift: check every step
-  int drifted;           // a point has left the range of its tile
-  bool refer_anew;       // the present configuration is to become the reference
-  bool want_sort;        // order of points has decayed since the last sort
-  bigint switches;       // neighbours in memory that are in different cells, now
+  bool watch_drift;          // rebuilds of neighbor lists do not bound the drift: check every step
+  int drifted;               // a point has left the range of its tile
+  bool refer_anew;           // the present configuration is to become the reference
+  bool want_sort;            // order of points has decayed since the last sort
+  bigint switches;           // neighbours in memory that are in different cells, now
   bigint switches_sorted;    // and right after the last sort
   double *tile, *tile_load;
-  std::vector<double> xnew;              // when points move late: position at the end of the step
+  std::vector<double> xnew;               // when points move late: position at the end of the step
   std::vector<double> v_apart, lumped;    // XPIC, FMPM: velocities of points and nodes
-  int waited;                            // steps of LAMMPS since the last step of the cycle,
-  double elapsed;                        // and their duration, if every is above 1
+  int waited;                             // steps of LAMMPS since the last step of the cycle,
+  double elapsed;                         // and their duration, if every is above 1
   std::vector<double> mean_force, mean_torque;    // over them
-  std::vector<double> gradients;         // F-bar: velocity gradients of the points
-  std::vector<double> tau_averaged;      // stress with averaged pressure
-  std::vector<double> hoop;              // axisymmetric: strain around the axis in this step
-  std::vector<double> domains;           // CPDI: half edges of the domains, [n][dim][dim]
-  std::vector<double> corners_late;      // CPDI2, when points move late: corners at the end of the step
-  std::vector<double> sizes;             // GIMP: half sizes of points in node spacings, [n][3]
-  std::vector<double> history_batch;     // history variables of a batch
-  std::vector<double> nodes_apart;       // sums apart from the step,
-  std::vector<double> rows_apart;        // and rows of the points for them
+  std::vector<double> gradients;                  // F-bar: velocity gradients of the points
+  std::vector<double> tau_averaged;               // stress with averaged pressure
+  std::vector<double> hoop;       // axisymmetric: strain around the axis in this step
+  std::vector<double> domains;    // CPDI: half edges of the domains, [n][dim][dim]
+  std::vector<double>
+      corners_late;             // CPDI2, when points move late: corners at the end of the step
+  std::vector<double> sizes;    // GIMP: half sizes of points in node spacings, [n][3]
+  std::vector<double> history_batch;    // history variables of a batch
+  std::vector<double> nodes_apart;      // sums apart from the step,
+  std::vector<double> rows_apart;       // and rows of the points for them
   std::vector<double> zero_volume;
   MPM_NS::Batch *batch;
   Report report;
-  double before_actions;                   // ledger: sum of entries before node actions
-  double kinetic_points;                   // ledger: at the end of the last step
-  std::vector<tagint> bad_points;          // of this step, policies warn and delete
-  std::vector<tagint> failed_points;       // of this step, to be deleted
+  double before_actions;                // ledger: sum of entries before node actions
+  double kinetic_points;                // ledger: at the end of the last step
+  std::vector<tagint> bad_points;       // of this step, policies warn and delete
+  std::vector<tagint> failed_points;    // of this step, to be deleted
   struct {
     double points, mass, momentum[3];
-  } deleted;                               // so far, on all ranks
+  } deleted;    // so far, on all ranks
   bigint nbad_total, next_dt_check;
   double clock;
-  bool running;                            // between setup() and post_run()
-  uint64_t velocities;                     // hash of those that C belongs to, between runs
+  bool running;           // between setup() and post_run()
+  uint64_t velocities;    // hash of those that C belongs to, between runs
   bool velocities_known;
 
   void find_topology();
 
-  template <class F>
-  void visit_nodes(const MPM_NS::Grid::Block &, int i, const F &f) const;
+  template <class F> void visit_nodes(const MPM_NS::Grid::Block &, int i, const F &f) const;
   template <class F>
   void visit_nodes(const MPM_NS::Grid::Block &, int i, const double *x, double share,
                    const F &f) const;

@@ -27,10 +27,10 @@
 #include "math_eigen.h"
 #include "math_extra.h"
 #include "modify.h"
-#include "mpm_domain.h"
 #include "mpm_halo.h"
 #include "mpm_points.h"
 #include "neighbor.h"
+#include "transfer/cpdi.h"
 #include "update.h"
 
 #include <algorithm>
@@ -275,7 +275,8 @@ void FixMPM::affine_angmom(int i, double L[3]) const
     std::fill(share, share + ncorner, 1.0 / ncorner);
     if (extent == PARALLELEPIPED || std::isnan(corners[i][0])) {
       box_domain(i, edge);
-      dim == 2 ? PointDomain<2>::box(edge, corner, gradient) : PointDomain<3>::box(edge, corner, gradient);
+      dim == 2 ? PointDomain<2>::box(edge, corner, gradient)
+               : PointDomain<3>::box(edge, corner, gradient);
     } else
       domain_corners(i, corner, share);
   }

@@ -35,8 +35,8 @@
 #include "error.h"
 #include "fix_mpm_boundary.h"
 #include "force.h"
+#include "material/batch.h"
 #include "modify.h"
-#include "mpm_batch.h"
 #include "mpm_points.h"
 
 #include <algorithm>

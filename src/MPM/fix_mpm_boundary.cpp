@@ -107,9 +107,9 @@ struct RegionMotion : public Region {
 ------------------------------------------------------------------------- */
 
 FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), region(nullptr), kind(STICK), friction(0.0), rotating(false), acted(false),
-    region_was{}, motion_step(-1), work(0.0), dt_last(0.0), reaction_known(true), counting(false), decided(false),
-    kinetic(0.0)
+    Fix(lmp, narg, arg), region(nullptr), kind(STICK), friction(0.0), rotating(false),
+    acted(false), region_was{}, motion_step(-1), work(0.0), dt_last(0.0), reaction_known(true),
+    counting(false), decided(false), kinetic(0.0)
 {
   if (igroup != 0)
     error->all(FLERR, 1,
@@ -317,22 +317,27 @@ void FixMPMBoundary::init()
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/boundary {} cannot be used with frame total of fix mpm {}, whose nodes "
                  "keep to the same material wherever it goes: use {}",
-                 kind == SEPARATE ? "separate" : rotating ? "rotate" : "with a moving region",
+                 kind == SEPARATE ? "separate"
+                     : rotating   ? "rotate"
+                                  : "with a moving region",
                  field->id,
-                 kind == SEPARATE ? "fix wall/gran or a pair style" : "stick velocity with variables");
+                 kind == SEPARATE ? "fix wall/gran or a pair style"
+                                  : "stick velocity with variables");
     bool moves = false;
     for (const auto &v : velocity) moves = moves || !v.variable.empty() || v.value != 0.0;
     if (field->R && moves)
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/boundary {} velocity cannot be used with reference update of fix mpm {}: the "
-                 "material that it holds would leave it with the first update: use reference fixed",
-                 id, field->id);
+      error->all(
+          FLERR, Error::NOLASTLINE,
+          "Fix mpm/boundary {} velocity cannot be used with reference update of fix mpm {}: the "
+          "material that it holds would leave it with the first update: use reference fixed",
+          id, field->id);
     if (field->stress_before() && decides())
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/boundary separate and friction cannot be used "
-                 "with scheme usf or usavg of fix mpm {}, which need the contact before it is known: use "
-                 "usl or musl",
-                 field->id);
+      error->all(
+          FLERR, Error::NOLASTLINE,
+          "Fix mpm/boundary separate and friction cannot be used "
+          "with scheme usf or usavg of fix mpm {}, which need the contact before it is known: use "
+          "usl or musl",
+          field->id);
   }
   if (!found)
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/boundary field {} is not the ID of a fix mpm",
@@ -729,7 +734,8 @@ double FixMPMBoundary::surface_distance(const double *x) const
   const int interior = region->interior;
   if (!inside) region->interior = !interior;    // Region::surface() answers for one side only
   auto *mesh = dynamic_cast<RegMPMMesh *>(region);
-  if (mesh && domain->dimension == 3) mesh->most_touches = 1;    // in 2d the closest one may be along z
+  if (mesh && domain->dimension == 3)
+    mesh->most_touches = 1;    // in 2d the closest one may be along z
   const int n = region->surface(x[0], x[1], x[2], far);
   region->interior = interior;
   if (mesh) mesh->most_touches = mesh->tmax;

@@ -48,7 +48,6 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
   void topology_changed(FixMPM &) override;
   void act(double dt, Stage) override;
 
-
   /** Keeps the nodes of a field at the face xlo, an axis of symmetry, from moving along x. */
   bool holds_axis(const FixMPM &) const;
 
@@ -134,12 +133,13 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
   bool constrained[3];    // stick: components that are prescribed
 
   std::vector<FieldNodes> nodes;
-  Wall wall;                  // in this step
-  double before[3];           // its velocity in the last step, when it does not turn
-  bool acted;                 // there was a last step
-  double region_was[4];       // shift and angle of the region at the end of the last step
-  bigint motion_step;         // step for which the motion of the wall is known
-  double impulse[6], work;    // on the body, with its moment, this rank's share: of the last step; of all steps
+  Wall wall;               // in this step
+  double before[3];        // its velocity in the last step, when it does not turn
+  bool acted;              // there was a last step
+  double region_was[4];    // shift and angle of the region at the end of the last step
+  bigint motion_step;      // step for which the motion of the wall is known
+  double impulse[6],
+      work;    // on the body, with its moment, this rank's share: of the last step; of all steps
   double dt_last;
   bool reaction_known;
   double reaction[6];    // force and, of regions, torque

@@ -6,7 +6,6 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-
 // Checks of fix mpm: what may go wrong with points and time step, and what is done about it.
 
 #include "fix_mpm.h"
@@ -20,8 +19,8 @@
 #include "fix_mpm_material.h"
 #include "force.h"
 #include "group.h"
+#include "material/batch.h"
 #include "modify.h"
-#include "mpm_batch.h"
 #include "mpm_points.h"
 #include "neighbor.h"
 #include "pair.h"
@@ -45,14 +44,17 @@ static constexpr int DT_CHECK_EVERY = 20;    // steps between checks of the time
 void FixMPM::check_integrators()
 {
   for (auto *other : modify->get_fix_list()) {
-    if (other == this || !(other->time_integrate || utils::strmatch(other->style, "^mpm$"))) continue;
+    if (other == this || !(other->time_integrate || utils::strmatch(other->style, "^mpm$")))
+      continue;
     bigint n = 0, all;
     for (int i = 0; i < atom->nlocal; i++)
       if (is_point(i) && (atom->mask[i] & other->groupbit)) n++;
     MPI_Allreduce(&n, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
     if (all)
-      error->all(FLERR, "{} material points of fix {} (style mpm) are also integrated by fix {} "
-                 "(style {}): give the fixes disjoint groups", all, id, other->id, other->style);
+      error->all(FLERR,
+                 "{} material points of fix {} (style mpm) are also integrated by fix {} "
+                 "(style {}): give the fixes disjoint groups",
+                 all, id, other->id, other->style);
   }
 }
 
@@ -97,32 +99,41 @@ void FixMPM::check_points()
   MPI_Allreduce(example, example_all, NKINDS, MPI_LMP_TAGINT, MPI_MAX, world);
 
   if (all[POINT] == 0)
-    error->all(FLERR, "Fix mpm {} has no material points: its group {} has no atoms with a volume; "
-               "make points with create_points, or give atoms a volume with set ... volume", id,
-               group->names[igroup]);
+    error->all(FLERR,
+               "Fix mpm {} has no material points: its group {} has no atoms with a volume; "
+               "make points with create_points, or give atoms a volume with set ... volume",
+               id, group->names[igroup]);
   if (all[NONE])
-    error->all(FLERR, "{} material points have no material, for instance point {}: "
-               "define a fix mpm/material for their group", all[NONE], example_all[NONE]);
+    error->all(FLERR,
+               "{} material points have no material, for instance point {}: "
+               "define a fix mpm/material for their group",
+               all[NONE], example_all[NONE]);
   if (all[SEVERAL])
-    error->all(FLERR, "{} material points have more than one material, for instance point {}: "
-               "the groups of the mpm/material fixes must be disjoint", all[SEVERAL],
-               example_all[SEVERAL]);
+    error->all(FLERR,
+               "{} material points have more than one material, for instance point {}: "
+               "the groups of the mpm/material fixes must be disjoint",
+               all[SEVERAL], example_all[SEVERAL]);
   if (all[MASS])
-    error->all(FLERR, "{} material points have no positive mass, for instance point {}: "
-               "check the density of their material or their set mass", all[MASS],
-               example_all[MASS]);
+    error->all(FLERR,
+               "{} material points have no positive mass, for instance point {}: "
+               "check the density of their material or their set mass",
+               all[MASS], example_all[MASS]);
   if (all[STATE])
-    error->all(FLERR, "{} material points have a position, velocity, deformation or stress that is "
-               "not finite or is inverted, for instance point {}", all[STATE], example_all[STATE]);
+    error->all(FLERR,
+               "{} material points have a position, velocity, deformation or stress that is "
+               "not finite or is inverted, for instance point {}",
+               all[STATE], example_all[STATE]);
   if (all[AXIS])
-    error->all(FLERR, "{} material points of fix mpm {} axisymmetric are not at positive x, for "
-               "instance point {}: x is the distance from the axis", all[AXIS], id,
-               example_all[AXIS]);
+    error->all(FLERR,
+               "{} material points of fix mpm {} axisymmetric are not at positive x, for "
+               "instance point {}: x is the distance from the axis",
+               all[AXIS], id, example_all[AXIS]);
   if (all[SIZE])
-    error->all(FLERR, "{} material points are larger than the cells of fix mpm {}, for instance point "
+    error->all(FLERR,
+               "{} material points are larger than the cells of fix mpm {}, for instance point "
                "{}: shape gimp and cpgimp need at least one point per cell, and aspect if points "
-               "are not cubes", all[SIZE], id,
-               example_all[SIZE]);
+               "are not cubes",
+               all[SIZE], id, example_all[SIZE]);
 }
 
 /* ----------------------------------------------------------------------
@@ -166,13 +177,16 @@ void FixMPM::check_neighbors()
       excluded = excluded || in_all;
     }
     if (!excluded && comm->me == 0)
-      error->warning(FLERR, "Fix mpm: pairs of material points of type {} are in the neighbor lists, "
+      error->warning(FLERR,
+                     "Fix mpm: pairs of material points of type {} are in the neighbor lists, "
                      "at great cost and for nothing but pair forces between them: use neigh_modify "
-                     "exclude type {} {}", t, t, t);
+                     "exclude type {} {}",
+                     t, t, t);
   }
   if (cut_others > RATIO * RATIO * cut_points && neighbor->style != Neighbor::MULTI &&
       comm->me == 0)
-    error->warning(FLERR, "Fix mpm: neighbor lists of points and of grains {:.1f} times as large are "
+    error->warning(FLERR,
+                   "Fix mpm: neighbor lists of points and of grains {:.1f} times as large are "
                    "many times faster with neighbor ... multi and comm_modify mode multi",
                    sqrt(cut_others / std::max(cut_points, 1.0e-300)));
 }
@@ -187,7 +201,8 @@ static void check_cutoffs(LAMMPS *lmp)
 {
   const Atom *atom = lmp->atom;
   const int ntypes = atom->ntypes;
-  std::vector<double> mine(2 * (ntypes + 1), -1.0), all(2 * (ntypes + 1));    // of points, of others
+  std::vector<double> mine(2 * (ntypes + 1), -1.0),
+      all(2 * (ntypes + 1));    // of points, of others
   for (int i = 0; i < atom->nlocal; i++) {
     double &largest = mine[2 * atom->type[i] + !(atom->vfrac[i] > 0.0)];
     largest = std::max(largest, atom->radius[i]);
@@ -197,11 +212,12 @@ static void check_cutoffs(LAMMPS *lmp)
     for (int j = 1; j <= ntypes; j++) {
       const double sum = all[2 * i] + all[2 * j + 1], cut = sqrt(lmp->force->pair->cutsq[i][j]);
       if (all[2 * i] > 0.0 && all[2 * j + 1] > 0.0 && !(cut >= sum * (1.0 - 1.0e-10)))
-        lmp->error->all(FLERR, Error::NOLASTLINE,
-                        "Cutoff {:.6g} of pair style granular between points of type {} and grains of "
-                        "type {} is below the sum {:.6g} of their largest radii. Read_restart loses the "
-                        "cutoffs of this pair style: give pair_style and pair_coeff again after it",
-                        cut, i, j, sum);
+        lmp->error->all(
+            FLERR, Error::NOLASTLINE,
+            "Cutoff {:.6g} of pair style granular between points of type {} and grains of "
+            "type {} is below the sum {:.6g} of their largest radii. Read_restart loses the "
+            "cutoffs of this pair style: give pair_style and pair_coeff again after it",
+            cut, i, j, sum);
     }
 }
 
@@ -241,14 +257,16 @@ void FixMPM::check_radii()
   if (all[0] == 0) return;
   if (axisymmetric)
     error->all(FLERR, Error::NOLASTLINE,
-               "Points of fix mpm {} axisymmetric cannot meet grains through pair style {}: a grain would be "
+               "Points of fix mpm {} axisymmetric cannot meet grains through pair style {}: a "
+               "grain would be "
                "a ring; let bodies meet through fix mpm/contact, or use 3d for grains",
                id, force->pair_style);
   if (all[1] == all[0])
-    error->all(FLERR, Error::NOLASTLINE,
-               "Points of fix mpm {} have no radius, by which pair style {} couples them to grains: "
-               "use fix mpm/surface, or set ... diameter",
-               id, force->pair_style);
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Points of fix mpm {} have no radius, by which pair style {} couples them to grains: "
+        "use fix mpm/surface, or set ... diameter",
+        id, force->pair_style);
   if (all[2])
     error->all(FLERR, Error::NOLASTLINE,
                "{} points of fix mpm {} have a radius of more than two node spacings, for instance "
@@ -274,7 +292,8 @@ void FixMPM::check_inside_box()
     if (policy == DELETE)
       out.push_back(atom->tag[i]);
     else
-      error->one(FLERR, "{} has left the box through a fixed face; enlarge the box, put a "
+      error->one(FLERR,
+                 "{} has left the box through a fixed face; enlarge the box, put a "
                  "fix mpm/boundary there, or let it go with fix mpm ... bad delete",
                  point_state(i));
   }
@@ -304,7 +323,8 @@ std::string FixMPM::point_state(int i) const
 void FixMPM::point_is_bad(int i, const std::string &what, const std::string &cure)
 {
   if (policy == ERROR)
-    error->one(FLERR, "{} {} at step {}: try a smaller time step (fix mpm/dt), more points per "
+    error->one(FLERR,
+               "{} {} at step {}: try a smaller time step (fix mpm/dt), more points per "
                "cell, or a smoother shape function; fix mpm ... bad warn|delete goes on",
                point_state(i), what, update->ntimestep);
   if (policy == WARN && nbad_total + (bigint) bad_points.size() < 10)
@@ -366,9 +386,10 @@ void FixMPM::delete_points(const std::vector<tagint> &list, bool warn)
   deleted.mass += all[1];
   for (int d = 0; d < 3; d++) deleted.momentum[d] += all[2 + d];
   if (warn && comm->me == 0)
-    error->warning(FLERR, "Fix mpm {} deleted {:.0f} points of mass {:.6g} and momentum {:.6g} "
-                   "{:.6g} {:.6g} at step {}", id, all[0], all[1], all[2], all[3], all[4],
-                   update->ntimestep);
+    error->warning(FLERR,
+                   "Fix mpm {} deleted {:.0f} points of mass {:.6g} and momentum {:.6g} "
+                   "{:.6g} {:.6g} at step {}",
+                   id, all[0], all[1], all[2], all[3], all[4], update->ntimestep);
 }
 
 /* ----------------------------------------------------------------------
@@ -512,10 +533,13 @@ void FixMPM::warn_dt()
   MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MIN, world);
   const double share = std::min(stable_share(all[1]), light_share());
   if (comm->me == 0 && share < 1.0 && step_dt() > share * all[0])
-    error->warning(FLERR, "Fix mpm {}: the time step is {:.3g} h/(c+|v|), but this shape, transfer and "
-                   "scheme can be unstable above {:.2g}, depending on where points are in their cells: "
-                   "use fix mpm/dt {:.2g} or less, or another scheme{}", id, step_dt() / all[0], share,
-                   share, total ? ", or an origin for which faces of the body are on nodes" : "");
+    error->warning(
+        FLERR,
+        "Fix mpm {}: the time step is {:.3g} h/(c+|v|), but this shape, transfer and "
+        "scheme can be unstable above {:.2g}, depending on where points are in their cells: "
+        "use fix mpm/dt {:.2g} or less, or another scheme{}",
+        id, step_dt() / all[0], share, share,
+        total ? ", or an origin for which faces of the body are on nodes" : "");
 }
 
 int FixMPM::find_local(tagint tag) const

@@ -76,8 +76,8 @@ static constexpr double ROUNDING = 1.0e-8;
 FixMPMContact::FixMPMContact(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), law(FRICTIONLESS), normal_by(COLINEAR), kinetic_friction(0.0),
     static_friction(0.0), normal_strength(0.0), shear_strength(0.0), release_work(0.0), gap(true),
-    full(1.0), lists_valid(false), may_touch(false), look(true), dt_last(0.0), force_now(), count_now(),
-    friction_work(), array(), array_step(-1)
+    full(1.0), lists_valid(false), may_touch(false), look(true), dt_last(0.0), force_now(),
+    count_now(), friction_work(), array(), array_step(-1)
 {
   if (igroup != 0)
     error->all(FLERR, 1,
@@ -167,7 +167,8 @@ FixMPMContact::FixMPMContact(LAMMPS *lmp, int narg, char **arg) :
       else
         error->all(FLERR, iarg + 1,
                    "Unknown fix mpm/contact normal {}: must be mass, volume, colinear or "
-                   "logistic", choice);
+                   "logistic",
+                   choice);
       iarg += 2;
     } else {    // gap
       if (choice == "no") {
@@ -238,15 +239,17 @@ void FixMPMContact::init()
                  "style",
                  id, first.id, field->id);
     if (field->total)
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/contact cannot be used with frame total of fix mpm {}, whose nodes are not "
-                 "where the body is: let bodies meet through a pair style",
-                 field->id);
+      error->all(
+          FLERR, Error::NOLASTLINE,
+          "Fix mpm/contact cannot be used with frame total of fix mpm {}, whose nodes are not "
+          "where the body is: let bodies meet through a pair style",
+          field->id);
     if (field->stress_before())
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/contact cannot be used with scheme usf or usavg of fix mpm {}, which need the "
-                 "contact before it is known: use usl or musl",
-                 field->id);
+      error->all(
+          FLERR, Error::NOLASTLINE,
+          "Fix mpm/contact cannot be used with scheme usf or usavg of fix mpm {}, which need the "
+          "contact before it is known: use usl or musl",
+          field->id);
   }
   for (auto *other : modify->get_fix_by_style("^mpm/contact$")) {
     if (other == this) continue;
@@ -572,8 +575,7 @@ bool FixMPMContact::make_pair(const Common &c, int n, int a, int b, double volum
   pair.state = OPEN;
   pair.normal = pair.tangential[0] = pair.tangential[1] = pair.tangential[2] = 0.0;
   if (law == ADHESIVE && pair.area > 0.0) {
-    const double cell =
-        (dim == 3 ? h * h * h : h * h) * fields[a]->node_circle(c.slot[a], n);
+    const double cell = (dim == 3 ? h * h * h : h * h) * fields[a]->node_circle(c.slot[a], n);
     const double opening = std::max(0.0, full - volume_share) * cell / pair.area;
     pair.fade = std::max(0.0, 1.0 - opening * normal_strength / (2.0 * release_work));
   }

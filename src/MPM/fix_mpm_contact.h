@@ -76,9 +76,10 @@ class FixMPMContact : public Fix, public MPMNodeAction {
     bool owned;
     double *record[MAX_FIELDS];    // null: the body is not here
   };
-  struct Room {      // along an axis, for nodes near a fixed face: share of their volume inside of the box
-    int plane;       // index of the plane of nodes at the face
-    bool fixed;      // else there is no such face
+  struct
+      Room {    // along an axis, for nodes near a fixed face: share of their volume inside of the box
+    int plane;                  // index of the plane of nodes at the face
+    bool fixed;                 // else there is no such face
     double share[REACH + 1];    // from the plane on inward
   };
   using Blocks = std::vector<std::array<int, 3>>;
@@ -89,7 +90,7 @@ class FixMPMContact : public Fix, public MPMNodeAction {
   double kinetic_friction, static_friction;
   double normal_strength, shear_strength, release_work;
   bool gap;
-  double full;    // with gap: volume share of a node at which bodies touch
+  double full;        // with gap: volume share of a node at which bodies touch
   Room room[3][2];    // [axis][side]
 
   std::vector<FixMPM *> fields;

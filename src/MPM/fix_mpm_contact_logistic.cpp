@@ -6,7 +6,6 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-
 // Normals of fix mpm/contact by logistic regression: the plane that tells the points of two bodies
 // apart best, near a node (J.A. Nairn, C.C. Hammerquist, G.D. Smith, Comput. Methods Appl. Mech. Eng.
 // 362 (2020) 112859; here with the likelihood as measure, whose only minimum Newton's method finds).
@@ -36,7 +35,8 @@ using namespace MPM_NS;
 
 void FixMPMContact::separate_points()
 {
-  constexpr int ROUNDS = 6, NREAL = 14;    // converged to 1e-4; 4 of the gradient, 10 second derivatives
+  constexpr int ROUNDS = 6,
+                NREAL = 14;    // converged to 1e-4; 4 of the gradient, 10 second derivatives
   constexpr double RIDGE = 1.0e-3;
   const int dim = fields[0]->lattice.dim, nfields = (int) fields.size();
 
@@ -56,8 +56,7 @@ void FixMPMContact::separate_points()
         grid.node_index(grid.blocks[slot], n, index);
         for (int d = 0; d < dim; d++) index[d] = grid.lattice.wrap(d, index[d]);
         const int64_t canonical = grid.locate(index);
-        if (canonical >= 0)
-          wanted[k][(int64_t) slot * NODES_PER_BLOCK + n] = wanted[k][canonical];
+        if (canonical >= 0) wanted[k][(int64_t) slot * NODES_PER_BLOCK + n] = wanted[k][canonical];
       }
   }
 
@@ -96,9 +95,13 @@ void FixMPMContact::separate_points()
                   act(sums[(std::size_t) p * NREAL + i], shared[(std::size_t) n * NREAL + i]);
               }
           };
-          each([](double &mine, double &node) { node = mine; });
+          each([](double &mine, double &node) {
+            node = mine;
+          });
           fields[a]->sum_over_ranks(shared.data(), NREAL);
-          each([](double &mine, double &node) { mine = node; });
+          each([](double &mine, double &node) {
+            mine = node;
+          });
         }
       }
 

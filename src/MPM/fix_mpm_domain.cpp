@@ -6,7 +6,7 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Domains of the points of fix mpm (shapes cpdi and cpdi2), see mpm_domain.h.
+// Domains of the points of fix mpm (shapes cpdi and cpdi2), see transfer/cpdi.h.
 //
 // Those of cpdi are made from F in each step, half edges F r_0; those of cpdi2 are corners that move
 // with the nodes' velocities. Domains stay the same throughout a step. A tile has the neighbors of
@@ -18,8 +18,8 @@
 #include "atom.h"
 #include "error.h"
 #include "memory.h"
-#include "mpm_domain.h"
 #include "mpm_points.h"
+#include "transfer/cpdi.h"
 #include "update.h"
 
 #include <algorithm>
@@ -36,7 +36,8 @@ static constexpr double ROUND_OFF = 1.0e-9;
    half edges of the box that an undeformed point is, after the deformation F
 ------------------------------------------------------------------------- */
 
-template <int DIM> static void half_edges(double half, const double *aspect, const double *F, double *edge)
+template <int DIM>
+static void half_edges(double half, const double *aspect, const double *F, double *edge)
 {
   for (int k = 0; k < DIM; k++)
     for (int d = 0; d < DIM; d++) edge[DIM * k + d] = half * aspect[k] * F[3 * d + k];
@@ -109,7 +110,8 @@ double FixMPM::domain_corners(int i, double *x, double *w) const
 
 void FixMPM::domain_reach(int i, double low[3], double high[3]) const
 {
-  const double *row = extent == PARALLELEPIPED ? &domains[domain_size() * (std::size_t) i] : corners[i];
+  const double *row = extent == PARALLELEPIPED ? &domains[domain_size() * (std::size_t) i]
+                                               : corners[i];
   low[2] = high[2] = 0.0;
   if (extent == PARALLELEPIPED)
     lattice.dim == 2 ? reach_of_edges<2>(row, low, high) : reach_of_edges<3>(row, low, high);
@@ -134,14 +136,17 @@ void FixMPM::limit_domain(int i)
   for (int d = 0; d < lattice.dim; d++) reach = std::max(reach, std::max(-low[d], high[d]));
   if (reach <= limit) return;
   if (policy == ERROR)
-    error->one(FLERR, "{} has a domain with a corner {:.4g} node spacings away at step {}, the limit "
+    error->one(FLERR,
+               "{} has a domain with a corner {:.4g} node spacings away at step {}, the limit "
                "is {}: use smaller points or a larger node spacing; with fix mpm ... bad warn the "
                "domain is made smaller, with bad delete the point is removed",
                point_state(i), reach, update->ntimestep, grid->side - 1);
   bad_points.push_back(atom->tag[i]);
   if (policy == WARN && nbad_total + (bigint) bad_points.size() < 10)
-    error->warning(FLERR, "{} has a domain with a corner {:.4g} node spacings away at step {}: it is "
-                   "made smaller", point_state(i), reach, update->ntimestep);
+    error->warning(FLERR,
+                   "{} has a domain with a corner {:.4g} node spacings away at step {}: it is "
+                   "made smaller",
+                   point_state(i), reach, update->ntimestep);
   const int n = domain_size();
   double *row = corners ? corners[i] : &domains[n * (std::size_t) i];
   const double scale = std::isfinite(reach) ? limit / reach : 0.0;
@@ -160,7 +165,8 @@ void FixMPM::check_corners()
       double x[24], w[8];
       const double size = domain_corners(i, x, w);
       if (size > 0.0 && *std::min_element(w, w + n) >= 0.0) continue;
-      point_is_bad(i, "has a domain that is turned inside out", "it becomes the parallelogram of F");
+      point_is_bad(i, "has a domain that is turned inside out",
+                   "it becomes the parallelogram of F");
       if (policy == WARN) reset_corners(i);
     }
 }

@@ -34,8 +34,9 @@ static constexpr double NO_POINTS = std::numeric_limits<double>::max();
 ------------------------------------------------------------------------- */
 
 FixMPMDt::FixMPMDt(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), grow(1.05), dt_min(0.0), dt_max(0.0), strain(0.0), look_every(10), limit({0.0, 0.0, 0.0}),
-    nchanges(0), continues(false), dt_left(0.0), limit_left(0.0), carried({NO_POINTS, 0.0, 0.0})
+    Fix(lmp, narg, arg), grow(1.05), dt_min(0.0), dt_max(0.0), strain(0.0), look_every(10),
+    limit({0.0, 0.0, 0.0}), nchanges(0), continues(false), dt_left(0.0), limit_left(0.0),
+    carried({NO_POINTS, 0.0, 0.0})
 {
   if (igroup != 0)
     error->all(FLERR, 1, "Fix mpm/dt looks at the points of all fix mpm: use group all");

@@ -6,7 +6,6 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-
 // B-splines that are modified next to fixed faces (keyword edges of fix mpm), so that the nodes inside of
 // the box and on its faces alone reproduce linear fields (M. Steffen, R.M. Kirby, M. Berzins, Int. J.
 // Numer. Meth. Eng. 76 (2008) 922).
@@ -34,8 +33,10 @@ void FixMPM::check_edges() const
   for (int a = 0; a < lattice.dim; a++)
     for (int side = 0, plane; side < 2 && !lattice.periodic[a]; side++)
       if (!face_on_nodes(a, side, plane))
-        error->all(FLERR, "Fix mpm {} edges modified: the fixed face {}{} must be in a plane of nodes: "
-                   "change spacing or origin", id, "xyz"[a], side ? "hi" : "lo");
+        error->all(FLERR,
+                   "Fix mpm {} edges modified: the fixed face {}{} must be in a plane of nodes: "
+                   "change spacing or origin",
+                   id, "xyz"[a], side ? "hi" : "lo");
 }
 
 /* ---------------------------------------------------------------------- */

@@ -16,12 +16,12 @@
 #include "fix_mpm_material.h"
 #include "force.h"
 #include "group.h"
+#include "material/batch.h"
+#include "material/material.h"
 #include "memory.h"
+#include "mesh/element.h"
 #include "modify.h"
-#include "mpm_batch.h"
-#include "mpm_element.h"
 #include "mpm_image.h"
-#include "mpm_material.h"
 #include "mpm_mesh_input.h"
 #include "mpm_points.h"
 #include "update.h"
@@ -39,10 +39,10 @@ using namespace MPM_NS;
 struct FixMPMElements::Work {
   int n, nelement;
   std::size_t element[BATCH];
-  int start[BATCH];                        // first point of an element
-  double g[BATCH][MAX_ELEMENT_NODES][3];   // gradients of the functions in space
-  double volume[BATCH];                    // reference volume
-  double J[BATCH];                         // without F-bar
+  int start[BATCH];                         // first point of an element
+  double g[BATCH][MAX_ELEMENT_NODES][3];    // gradients of the functions in space
+  double volume[BATCH];                     // reference volume
+  double J[BATCH];                          // without F-bar
 };
 
 /* ----------------------------------------------------------------------
@@ -51,13 +51,15 @@ struct FixMPMElements::Work {
 
 FixMPMElements::FixMPMElements(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), dim(domain->dimension), maxnode(0), maxpoint(0), nhistory(0), stride(0),
-    max_of_node(0), nelements(0), nnodes(0), lowest(0), fbar(false), shortest(0.0), material(nullptr), points(nullptr),
-    batch(nullptr), work(nullptr), first(nullptr), count(nullptr), width(0)
+    max_of_node(0), nelements(0), nnodes(0), lowest(0), fbar(false), shortest(0.0),
+    material(nullptr), points(nullptr), batch(nullptr), work(nullptr), first(nullptr),
+    count(nullptr), width(0)
 {
   if (narg < 4) utils::missing_cmd_args(FLERR, "fix mpm/elements", error);
   points = MPMPoints::get(atom);
   if (!points)
-    error->all(FLERR, "Fix mpm/elements requires material points: use atom_style mpm, or hybrid "
+    error->all(FLERR,
+               "Fix mpm/elements requires material points: use atom_style mpm, or hybrid "
                "with mpm");
   if (!atom->tag_enable) error->all(FLERR, "Fix mpm/elements requires atom IDs");
 
@@ -95,7 +97,8 @@ FixMPMElements::FixMPMElements(LAMMPS *lmp, int narg, char **arg) :
     maxpoint = std::max(maxpoint, rule.npoint);
   }
   if (fbar && maxpoint == 1)
-    error->all(FLERR, "Fix mpm/elements locking fbar is for quadrangles and hexahedra: elements with "
+    error->all(FLERR,
+               "Fix mpm/elements locking fbar is for quadrangles and hexahedra: elements with "
                "one integration point have no other volume to average with");
 
   // ghosts are found by their IDs
@@ -111,7 +114,7 @@ FixMPMElements::FixMPMElements(LAMMPS *lmp, int narg, char **arg) :
   stride = 2 + maxnode * (1 + dim) + maxpoint * (15 + nhistory);
   width = 18 + nhistory;
   comm_reverse = width;
-  batch = new Batch();    // zero, see mpm_batch.h
+  batch = new Batch();    // zero, see material/batch.h
   work = new Work;
   history.resize((std::size_t) std::max(1, nhistory) * BATCH);
 
@@ -157,16 +160,20 @@ void FixMPMElements::find_material()
       if (atom->mask[i] & all[k]->groupbit) mine = k;
   MPI_Allreduce(&mine, &index, 1, MPI_INT, MPI_MAX, world);
   if (index < 0)
-    error->all(FLERR, "Fix mpm/elements {}: the points of group {} have no material: define a fix "
-               "mpm/material for them before", id, group->names[igroup]);
+    error->all(FLERR,
+               "Fix mpm/elements {}: the points of group {} have no material: define a fix "
+               "mpm/material for them before",
+               id, group->names[igroup]);
   material = dynamic_cast<FixMPMMaterial *>(all[index]);
   bigint other = 0, others;
   for (int i = 0; i < atom->nlocal; i++)
     other += (atom->mask[i] & groupbit) && !(atom->mask[i] & material->groupbit);
   MPI_Allreduce(&other, &others, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   if (others)
-    error->all(FLERR, "Fix mpm/elements {}: the points of group {} must have one material: use a "
-               "fix mpm/elements and a mesh for each", id, group->names[igroup]);
+    error->all(FLERR,
+               "Fix mpm/elements {}: the points of group {} must have one material: use a "
+               "fix mpm/elements and a mesh for each",
+               id, group->names[igroup]);
 }
 
 /* ----------------------------------------------------------------------
@@ -200,9 +207,11 @@ void FixMPMElements::make_elements(const Mesh &mesh)
   tagint highest;
   count_nodes(all, lowest, highest);
   if (all != nnodes || (bigint) highest - lowest + 1 != nnodes)
-    error->all(FLERR, "Fix mpm/elements {}: group {} has {} atoms with IDs from {} to {}, the mesh has "
+    error->all(FLERR,
+               "Fix mpm/elements {}: group {} has {} atoms with IDs from {} to {}, the mesh has "
                "{} nodes: its group must be the points that one create_points ... mesh made from "
-               "the same mesh", id, group->names[igroup], all, all ? lowest : 0, highest, nnodes);
+               "the same mesh",
+               id, group->names[igroup], all, all ? lowest : 0, highest, nnodes);
 
   std::vector<double> mine(3 * nnodes, 0.0), x(3 * nnodes);
   std::vector<int> local(nnodes, -1);
@@ -289,9 +298,10 @@ void FixMPMElements::make_elements(const Mesh &mesh)
     if (atom->mask[i] & groupbit) volume[1] += atom->vfrac[i];
   MPI_Allreduce(volume, volumes, 2, MPI_DOUBLE, MPI_SUM, world);
   if (!modify->nfix_restart_peratom && !(fabs(volumes[0] - volumes[1]) <= 1.0e-6 * volumes[0]))
-    error->all(FLERR, "Fix mpm/elements {}: the elements have a volume of {:.8g}, their nodes of {:.8g}: "
-               "points that create_points ... mesh made must not be deformed before", id,
-               volumes[0], volumes[1]);
+    error->all(FLERR,
+               "Fix mpm/elements {}: the elements have a volume of {:.8g}, their nodes of {:.8g}: "
+               "points that create_points ... mesh made must not be deformed before",
+               id, volumes[0], volumes[1]);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -302,10 +312,11 @@ void FixMPMElements::init()
   tagint low, high;
   count_nodes(n, low, high);
   if (n != nnodes || low != lowest || (bigint) high - low + 1 != nnodes)
-    error->all(FLERR, Error::NOLASTLINE,
-               "Fix mpm/elements {}: group {} has {} atoms with IDs from {} to {}, but had {} from {} "
-               "on: nodes of elements must not be added, deleted or renumbered; unfix it before",
-               id, group->names[igroup], n, n ? low : 0, high, nnodes, lowest);
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/elements {}: group {} has {} atoms with IDs from {} to {}, but had {} from {} "
+        "on: nodes of elements must not be added, deleted or renumbered; unfix it before",
+        id, group->names[igroup], n, n ? low : 0, high, nnodes, lowest);
 
   for (auto *ifix : modify->get_fix_by_style("^mpm$")) {
     const auto *field = dynamic_cast<FixMPM *>(ifix);
@@ -315,18 +326,25 @@ void FixMPMElements::init()
     MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
     if (!any) continue;
     if (field->locking != FixMPM::NO_CURE)
-      error->all(FLERR, "Fix mpm {} locking is not for nodes of elements: use fix mpm/elements {} "
-                 "locking fbar", field->id, id);
+      error->all(FLERR,
+                 "Fix mpm {} locking is not for nodes of elements: use fix mpm/elements {} "
+                 "locking fbar",
+                 field->id, id);
     if (field->policy == FixMPM::DELETE || field->delete_failed)
-      error->all(FLERR, "Fix mpm {} bad delete and failed delete cannot be used with fix mpm/elements "
-                 "{}, whose nodes must not be deleted: give them a fix mpm of their own", field->id,
-                 id);
+      error->all(FLERR,
+                 "Fix mpm {} bad delete and failed delete cannot be used with fix mpm/elements "
+                 "{}, whose nodes must not be deleted: give them a fix mpm of their own",
+                 field->id, id);
     if (field->axisymmetric)
-      error->all(FLERR, "Fix mpm {} axisymmetric cannot be used with fix mpm/elements {}, whose elements "
-                 "are of plane strain: use create_points elements with shape cpdi2", field->id, id);
+      error->all(FLERR,
+                 "Fix mpm {} axisymmetric cannot be used with fix mpm/elements {}, whose elements "
+                 "are of plane strain: use create_points elements with shape cpdi2",
+                 field->id, id);
     if (field->every > 1)
-      error->all(FLERR, "Fix mpm {} every cannot be used with fix mpm/elements {}, which strains elements "
-                 "in each step: use every 1", field->id, id);
+      error->all(FLERR,
+                 "Fix mpm {} every cannot be used with fix mpm/elements {}, which strains elements "
+                 "in each step: use every 1",
+                 field->id, id);
   }
 
   // nodes of elements may be ghosts; what has been stretched since is asked for with comm_modify
@@ -395,10 +413,12 @@ void FixMPMElements::post_neighbor()
       for (int m = 0; m < nnode; m++) {
         const int j = atom->map((tagint) r[2 + m]);
         if (j < 0)
-          error->one(FLERR, "Fix mpm/elements {}: node {} of element {} is out of reach at step {}: "
-                     "use comm_modify cutoff with more than the present {:.6g}, the element may have "
-                     "been stretched", id, (tagint) r[2 + m], (bigint) r[0], update->ntimestep,
-                     comm->get_comm_cutoff());
+          error->one(
+              FLERR,
+              "Fix mpm/elements {}: node {} of element {} is out of reach at step {}: "
+              "use comm_modify cutoff with more than the present {:.6g}, the element may have "
+              "been stretched",
+              id, (tagint) r[2 + m], (bigint) r[0], update->ntimestep, comm->get_comm_cutoff());
         nodes[n].i[m] = domain->closest_image(i, j);
       }
     }
@@ -504,16 +524,19 @@ void FixMPMElements::load(Work &w, std::size_t e, bool moved) const
       for (int a = 0; a < 3; a++)
         for (int b = 0; b < 3; b++) {
           f[3 * a + b] = a == b && a >= dim ? 1.0 : 0.0;
-          for (int m = 0; m < rule.nnode && a < dim && b < dim; m++) f[3 * a + b] += x[m][a] * g[m][b];
+          for (int m = 0; m < rule.nnode && a < dim && b < dim; m++)
+            f[3 * a + b] += x[m][a] * g[m][b];
         }
     } else {
       memcpy(f, state(r, q), 9 * sizeof(double));
     }
     const double J = w.J[p] = MPMPoints::det(f);
     if (!(J > 0.0))
-      error->one(FLERR, "Fix mpm/elements {}: element {} of the mesh has a deformation gradient of "
+      error->one(FLERR,
+                 "Fix mpm/elements {}: element {} of the mesh has a deformation gradient of "
                  "determinant {} at step {}: use a smaller time step, a finer mesh, or elements of "
-                 "better shape", id, (bigint) r[0], J, update->ntimestep);
+                 "better shape",
+                 id, (bigint) r[0], J, update->ntimestep);
     mean += w.volume[p] * J;
     size += w.volume[p];
     const double inv = 1.0 / J;
@@ -525,8 +548,7 @@ void FixMPMElements::load(Work &w, std::size_t e, bool moved) const
       }
     for (int m = 0; m < rule.nnode; m++)
       for (int a = 0; a < 3; a++)
-        w.g[p][m][a] =
-            g[m][0] * inverse[0][a] + g[m][1] * inverse[1][a] + g[m][2] * inverse[2][a];
+        w.g[p][m][a] = g[m][0] * inverse[0][a] + g[m][1] * inverse[1][a] + g[m][2] * inverse[2][a];
   }
 
   Batch &b = *batch;
@@ -707,9 +729,12 @@ void FixMPMElements::check_dt() const
   double speed;
   const double limit = stable_dt_local(tag, speed);
   if (!(update->dt <= limit))
-    error->one(FLERR, "Time step {:.6g} is above the limit {:.6g} of fix mpm/elements {} at step {}: "
-               "element with node {}, wave speed {:.6g}; use timestep, fix mpm/dt, or a mesh without "
-               "small elements", update->dt, limit, id, update->ntimestep, tag, speed);
+    error->one(
+        FLERR,
+        "Time step {:.6g} is above the limit {:.6g} of fix mpm/elements {} at step {}: "
+        "element with node {}, wave speed {:.6g}; use timestep, fix mpm/dt, or a mesh without "
+        "small elements",
+        update->dt, limit, id, update->ntimestep, tag, speed);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -774,7 +799,8 @@ void FixMPMElements::unpack_restart(int i, int nth)
   for (int k = 0; k < nth; k++) extra += static_cast<int>(*extra);
   const int n = static_cast<int>(extra[0]), elements = static_cast<int>(extra[1]);
   if (n != 2 + elements * stride)
-    error->one(FLERR, "Fix mpm/elements {}: the restart file was written with another mesh or material",
+    error->one(FLERR,
+               "Fix mpm/elements {}: the restart file was written with another mesh or material",
                id);
   unpack_exchange(i, extra + 1);
 }

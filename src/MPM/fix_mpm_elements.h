@@ -16,7 +16,7 @@ FixStyle(mpm/elements,FixMPMElements);
 #define LMP_FIX_MPM_ELEMENTS_H
 
 #include "fix.h"
-#include "mpm_mesh.h"
+#include "mesh/gmsh.h"
 
 #include <vector>
 
@@ -82,11 +82,11 @@ class FixMPMElements : public Fix {
 
   int dim, maxnode, maxpoint;    // of the largest element of the mesh
   int nhistory, stride;
-  int max_of_node;               // largest number of elements that belong to one node
-  bigint nelements, nnodes;      // of the mesh
-  tagint lowest;                 // ID of its first node
+  int max_of_node;             // largest number of elements that belong to one node
+  bigint nelements, nnodes;    // of the mesh
+  tagint lowest;               // ID of its first node
   bool fbar;
-  double shortest;               // length of the smallest element, for artificial viscosity
+  double shortest;    // length of the smallest element, for artificial viscosity
   class FixMPMMaterial *material;
   struct MPMPoints *points;
   MPM_NS::Batch *batch;
@@ -96,11 +96,11 @@ class FixMPMElements : public Fix {
   // positions relative to the first one [maxnode][dim], and for each integration point F [9],
   // tau [6], and history.
 
-  int *first, *count;                      // of an atom: its elements in the pool
+  int *first, *count;    // of an atom: its elements in the pool
   std::vector<double> pool;
-  std::vector<Nodes> nodes;                // local indices, after post_neighbor()
-  int width;                               // of rows of sums
-  std::vector<double> sums;                // forces and averages of nodes
+  std::vector<Nodes> nodes;    // local indices, after post_neighbor()
+  int width;                   // of rows of sums
+  std::vector<double> sums;    // forces and averages of nodes
   std::vector<double> force_on, element_mean;
   mutable std::vector<double> history;    // of a batch
 

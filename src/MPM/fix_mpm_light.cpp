@@ -15,7 +15,7 @@
 #include "comm.h"
 #include "error.h"
 #include "fix_mpm_passes.h"
-#include "mpm_batch.h"
+#include "material/batch.h"
 #include "mpm_points.h"
 #include "platform.h"
 
@@ -61,23 +61,35 @@ void FixMPM::check_light_nodes()
   const bool needed =
       !total && shape == LINEAR && extent == NO_SIZE && (scheme == USL || is_affine(transfer));
   if (light > 0.0 && !needed)
-    error->all(FLERR, "Fix mpm {}: light is of no use with this shape, transfer and scheme: remove "
-               "light, which is for shape linear with scheme usl or transfer apic, aflip, tpic", id);
+    error->all(FLERR,
+               "Fix mpm {}: light is of no use with this shape, transfer and scheme: remove "
+               "light, which is for shape linear with scheme usl or transfer apic, aflip, tpic",
+               id);
   if (light > 0.0 && locking != NO_CURE && scheme == USL && is_affine(transfer))
-    error->all(FLERR, "Fix mpm {}: light and locking together are unstable with scheme usl and transfer apic, "
-               "aflip, tpic: use scheme musl, or transfer flip", id);
+    error->all(
+        FLERR,
+        "Fix mpm {}: light and locking together are unstable with scheme usl and transfer apic, "
+        "aflip, tpic: use scheme musl, or transfer flip",
+        id);
   if (light > 0.0 && axisymmetric && scheme == USF)
-    error->all(FLERR, "Fix mpm {}: light and axisymmetric together are unstable with scheme usf: use scheme "
-               "usl or musl", id);
+    error->all(
+        FLERR,
+        "Fix mpm {}: light and axisymmetric together are unstable with scheme usf: use scheme "
+        "usl or musl",
+        id);
   if (light == 0.0 && needed && comm->me == 0)
-    error->warning(FLERR, "Fix mpm {}: linear shape functions with scheme usl or transfer apic "
+    error->warning(FLERR,
+                   "Fix mpm {}: linear shape functions with scheme usl or transfer apic "
                    "amplify round-off at nodes of tiny mass: use transfer flip with scheme musl, "
-                   "quadratic functions, or light 0.5", id);
+                   "quadratic functions, or light 0.5",
+                   id);
 }
 
 bool FixMPM::any_light() const
 {
-  return std::any_of(fields.begin(), fields.end(), [](auto *field) { return field->light > 0.0; });
+  return std::any_of(fields.begin(), fields.end(), [](auto *field) {
+    return field->light > 0.0;
+  });
 }
 
 /* ----------------------------------------------------------------------
@@ -89,7 +101,8 @@ bool FixMPM::any_light() const
 
 double FixMPM::light_share()
 {
-  if (!total || !(scheme == USL || is_affine(transfer)) || !(shape == LINEAR || bernstein)) return 1.0;
+  if (!total || !(scheme == USL || is_affine(transfer)) || !(shape == LINEAR || bernstein))
+    return 1.0;
   find_topology();
   constexpr int NREAL = 2;
   std::vector<double> sums(grid->nnodes() * NREAL, 0.0);
@@ -99,7 +112,8 @@ double FixMPM::light_share()
         if (weight <= 0.0) return;
         double slope = 0.0;    // square of grad N / N
         int index[3];
-        grid->node_index(grid->blocks[node / NODES_PER_BLOCK], (int) (node % NODES_PER_BLOCK), index);
+        grid->node_index(grid->blocks[node / NODES_PER_BLOCK], (int) (node % NODES_PER_BLOCK),
+                         index);
         for (int d = 0; d < lattice.dim; d++) {
           const double a = fabs(r[d]);
           if (!bernstein)

@@ -60,8 +60,7 @@ void FixMPM::average_around_points()
 
   for (auto *material : materials) {
     map_apart(pic, [&](const Run &run, const int *base, int *box) {
-      if (run.material == material)
-        pic.p2g_momentum(r, s, run.first, run.last, base, tile, box);
+      if (run.material == material) pic.p2g_momentum(r, s, run.first, run.last, base, tile, box);
     });
     lap(report.t_p2g);
     sum_copies(nodes_apart.data(), pic.nreal, 0, 4);
@@ -71,8 +70,7 @@ void FixMPM::average_around_points()
     extend_edges(nodes_apart.data(), pic.nreal, 0, 1);
     lap(report.t_nodes);
     gather_apart(pic, [&](const Run &run, const int *base) {
-      if (run.material == material)
-        pic.g2p(r, s, run.first, run.last, base, tile_load, nullptr);
+      if (run.material == material) pic.g2p(r, s, run.first, run.last, base, tile_load, nullptr);
     });
     lap(report.t_g2p);
   }

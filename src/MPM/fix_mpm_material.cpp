@@ -8,7 +8,7 @@
 
 #include "fix_mpm_material.h"
 
-#include "mpm_material.h"
+#include "material/material.h"
 #include "mpm_material_input.h"
 
 #include "atom.h"

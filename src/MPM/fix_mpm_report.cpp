@@ -223,9 +223,9 @@ double FixMPM::memory_usage()
   bytes += (double) own_size() * atom->nmax * sizeof(double) + 2.0 * tile_reals() * sizeof(double);
   bytes += runs.capacity() * sizeof(Run) + active.capacity() * sizeof(ActiveBlock);
   for (const auto &list : edges) bytes += list.capacity() * sizeof(EdgeNodes);
-  for (const auto *list : {&xnew, &v_apart, &lumped, &mean_force, &mean_torque, &gradients,
-                           &tau_averaged, &hoop, &domains, &corners_late, &sizes, &history_batch,
-                           &nodes_apart, &rows_apart, &zero_volume})
+  for (const auto *list :
+       {&xnew, &v_apart, &lumped, &mean_force, &mean_torque, &gradients, &tau_averaged, &hoop,
+        &domains, &corners_late, &sizes, &history_batch, &nodes_apart, &rows_apart, &zero_volume})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

@@ -6,7 +6,6 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-
 /* ----------------------------------------------------------------------
    Each node inside of the body that moves into it gets an impulse, and the body the opposite one, such
    that afterwards the node moves like the material of the body there, V + Omega x r: in all
@@ -31,9 +30,9 @@
 #include "force.h"
 #include "input.h"
 #include "math_extra.h"
+#include "mesh/surface_mesh.h"
 #include "modify.h"
 #include "mpm_image.h"
-#include "mpm_surface_mesh.h"
 #include "region_mpm_mesh.h"
 #include "update.h"
 #include "variable.h"
@@ -53,9 +52,9 @@ using namespace MPM_NS;
 ------------------------------------------------------------------------- */
 
 FixMPMRigid::FixMPMRigid(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), mesh(nullptr), kind(STICK), friction(0.0), mass(0.0), density(0.0),
-    gravity{0.0, 0.0, 0.0}, fixed{false, false, false, false, false, false}, L{0.0, 0.0, 0.0},
-    omega{0.0, 0.0, 0.0}, dt_last(0.0)
+    Fix(lmp, narg, arg), mesh(nullptr), kind(STICK), friction(0.0), mass(0.0),
+    density(0.0), gravity{0.0, 0.0, 0.0}, fixed{false, false, false, false, false, false},
+    L{0.0, 0.0, 0.0}, omega{0.0, 0.0, 0.0}, dt_last(0.0)
 {
   if (narg < 7) utils::missing_cmd_args(FLERR, "fix mpm/rigid", error);
   if (igroup != 0)
@@ -65,7 +64,8 @@ FixMPMRigid::FixMPMRigid(LAMMPS *lmp, int narg, char **arg) :
   if (!region)
     error->all(FLERR, 3, "Fix mpm/rigid needs a region of style mpm/mesh: {}", region_id);
   if (domain->dimension == 2)
-    error->all(FLERR, "Fix mpm/rigid requires 3d, as surfaces are of triangles: in 2d, move a region with "
+    error->all(FLERR,
+               "Fix mpm/rigid requires 3d, as surfaces are of triangles: in 2d, move a region with "
                "fix mpm/boundary, or use a thin 3d box that is periodic");
   mesh = &region->surface_mesh();
 
@@ -88,7 +88,8 @@ FixMPMRigid::FixMPMRigid(LAMMPS *lmp, int narg, char **arg) :
   int k = 0;
   while (k < 3 && strcmp(arg[6], kinds[k]) != 0) k++;
   if (k == 3)
-    error->all(FLERR, 6, "Unknown fix mpm/rigid contact {}: must be stick, slip or separate", arg[6]);
+    error->all(FLERR, 6, "Unknown fix mpm/rigid contact {}: must be stick, slip or separate",
+               arg[6]);
   kind = (Kind) k;
 
   for (int d = 0; d < 3; d++) {
@@ -127,9 +128,9 @@ FixMPMRigid::FixMPMRigid(LAMMPS *lmp, int narg, char **arg) :
       if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, "fix mpm/rigid friction", error);
       friction = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
       if (!(friction >= 0.0) || !std::isfinite(friction))
-        error->all(FLERR, iarg + 1, "Fix mpm/rigid friction must not be negative: {}", arg[iarg + 1]);
-      if (kind == STICK)
-        error->all(FLERR, iarg, "Fix mpm/rigid friction is for slip and separate");
+        error->all(FLERR, iarg + 1, "Fix mpm/rigid friction must not be negative: {}",
+                   arg[iarg + 1]);
+      if (kind == STICK) error->all(FLERR, iarg, "Fix mpm/rigid friction is for slip and separate");
       iarg += 2;
     } else if (keyword == "hold") {
       static const char *const axes[] = {"x", "y", "z", "rx", "ry", "rz"};
@@ -184,10 +185,11 @@ void FixMPMRigid::init()
 {
   auto *region = dynamic_cast<RegMPMMesh *>(domain->get_region_by_id(region_id));
   if (!region || region->dynamic_check() || !region->interior)
-    error->all(FLERR, Error::NOLASTLINE,
-               "Fix mpm/rigid {} needs its region {} at rest and with side in: the fix moves a copy "
-               "of it",
-               id, region_id);
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/rigid {} needs its region {} at rest and with side in: the fix moves a copy "
+        "of it",
+        id, region_id);
   mesh = &region->surface_mesh();
   const auto fields = modify->get_fix_by_style("^mpm$");
   if (fields.empty()) error->all(FLERR, Error::NOLASTLINE, "Fix mpm/rigid needs a fix mpm");
@@ -317,7 +319,8 @@ void FixMPMRigid::find_contacts()
         if (mesh->distance_and_normal(p, out) > 0.0) continue;
         MathExtra::copy3(record, c.v);
         MathExtra::matvec(Q, out.data(), c.n);
-        if (!(MathExtra::lensq3(c.n) > 0.0)) {    // no way out is shorter: along the motion of the body
+        if (!(MathExtra::lensq3(c.n) >
+              0.0)) {    // no way out is shorter: along the motion of the body
           const double u[6] = {v[0], v[1], v[2], omega[0], omega[1], omega[2]};
           c.relative_velocity(u, c.n);
           if (!(MathExtra::lensq3(c.n) > 0.0)) continue;
@@ -477,9 +480,8 @@ static void rotate(const double *angle, const double from[3][3], double to[3][3]
   double R[3][3];
   const double s = size > 1.0e-8 ? sin(size) / size : 1.0;
   const double c = size > 1.0e-8 ? (1.0 - cos(size)) / (size * size) : 0.5;
-  const double K[3][3] = {{0.0, -angle[2], angle[1]},
-                          {angle[2], 0.0, -angle[0]},
-                          {-angle[1], angle[0], 0.0}};
+  const double K[3][3] = {
+      {0.0, -angle[2], angle[1]}, {angle[2], 0.0, -angle[0]}, {-angle[1], angle[0], 0.0}};
   double KK[3][3];
   MathExtra::times3(K, K, KK);
   for (int i = 0; i < 3; i++)

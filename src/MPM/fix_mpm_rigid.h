@@ -6,7 +6,6 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-
 #ifdef FIX_CLASS
 // clang-format off
 FixStyle(mpm/rigid,FixMPMRigid);
@@ -75,13 +74,13 @@ class FixMPMRigid : public Fix, public MPMNodeAction {
   double friction, mass, density;
   double gravity[3];
   Load force[3], torque[3];
-  bool fixed[6];               // velocities and angular velocities that stay zero
-  double body_inertia[6];      // about the center, in the frame of the mesh
+  bool fixed[6];             // velocities and angular velocities that stay zero
+  double body_inertia[6];    // about the center, in the frame of the mesh
 
-  double x[3], v[3], L[3];     // center, its velocity, angular momentum
-  double Q[3][3];              // from the frame of the mesh to space
+  double x[3], v[3], L[3];    // center, its velocity, angular momentum
+  double Q[3][3];             // from the frame of the mesh to space
   double omega[3];
-  double impulse[6], dt_last;  // of the material on the body in the last step
+  double impulse[6], dt_last;    // of the material on the body in the last step
   std::vector<Contact> contacts;
 
   void load_impulse(double dt);

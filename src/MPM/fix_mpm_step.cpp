@@ -6,7 +6,6 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-
 // The step of fix mpm: its stages and what they share.
 
 #include "fix_mpm.h"
@@ -17,7 +16,7 @@
 #include "fix_mpm_passes.h"
 #include "fix_mpm_visit.h"
 #include "force.h"
-#include "mpm_batch.h"
+#include "material/batch.h"
 #include "mpm_halo.h"
 #include "mpm_node_action.h"
 #include "mpm_points.h"
@@ -167,8 +166,8 @@ void FixMPM::grid_to_points()
         if (Q) modes.g2p(r, &Q[0][0], s, i, last, base, tile_load);
         if (apart) kernel.g2p_gradient(r, s, i, last, base, tile_load, L);
         if (around) note_radii(i, last);
-        drifted |= kernel.g2p(r, s, i, last, base, tile_load,
-                              strains && !in_C && !apart ? L : nullptr);
+        drifted |=
+            kernel.g2p(r, s, i, last, base, tile_load, strains && !in_C && !apart ? L : nullptr);
         if (around) hoop_of_motion(r, i, last);
         if (refers) refer_gradients(i, last - i, L);
         if (strains && !fbar)
@@ -288,14 +287,15 @@ void FixMPM::gradient_and_material(double dt, double shift)
     hoop.resize(atom->nmax);
     v_apart.resize(3 * (std::size_t) atom->nmax);
   }
-  visit_gradients(fbar ? gradients.data() : nullptr,
-                  [&](const Run &run, int i, int n, const int *base, double *L) {
-                    if (shift != 0.0 && !total) shift_gradient(lattice.dim, n, shift, L);
-                    if (R) refer_gradients(i, n, L);
-                    if (axisymmetric) hoop_of_nodes(r, s, i, i + n, base, dt, total ? 0.0 : shift);
-                    if (!fbar) material_update(r, run, i, n, L, dt);
-                  },
-                  corners && scheme == MUSL ? corners_late.data() : nullptr);
+  visit_gradients(
+      fbar ? gradients.data() : nullptr,
+      [&](const Run &run, int i, int n, const int *base, double *L) {
+        if (shift != 0.0 && !total) shift_gradient(lattice.dim, n, shift, L);
+        if (R) refer_gradients(i, n, L);
+        if (axisymmetric) hoop_of_nodes(r, s, i, i + n, base, dt, total ? 0.0 : shift);
+        if (!fbar) material_update(r, run, i, n, L, dt);
+      },
+      corners && scheme == MUSL ? corners_late.data() : nullptr);
   if (fbar) averaged_material(gradients.data(), dt);
 }
 
@@ -344,7 +344,8 @@ void FixMPM::material_update(const PointRows &r, const Run &run, int first, int 
   if (bad)
     for (int p = 0; p < n; p++)
       if (!(b.J[p] > 0.0))
-        point_is_bad(first + p, fmt::format("has a deformation gradient of determinant {}", b.J[p]));
+        point_is_bad(first + p,
+                     fmt::format("has a deformation gradient of determinant {}", b.J[p]));
 }
 
 /* ----------------------------------------------------------------------
@@ -503,8 +504,9 @@ void FixMPM::map_run(P2G p2g, const PointRows &r, const TransferStep &s, const R
 /** Can points of a block reach nodes of blocks that are marked? */
 static bool reaches(const Grid::Block &block, const std::vector<char> &near)
 {
-  return std::any_of(block.slot, block.slot + 27,
-                     [&](int slot) { return slot >= 0 && near[slot]; });
+  return std::any_of(block.slot, block.slot + 27, [&](int slot) {
+    return slot >= 0 && near[slot];
+  });
 }
 
 template <class Weigh>
@@ -558,10 +560,9 @@ void FixMPM::map_volume(const std::vector<char> &near, std::vector<double> &shar
   rows_apart.resize(6 * (std::size_t) atom->nmax);
   PointRows r = rows();
   r.mass = rows_apart.data();
-  map_some(r, step_data(), kernel.p2g_momentum, near, 3, 1,
-           [&](int i) {
-             rows_apart[i] = atom->vfrac[i] * points->jacobian(i) / circle(atom->x[i][0]);
-           });
+  map_some(r, step_data(), kernel.p2g_momentum, near, 3, 1, [&](int i) {
+    rows_apart[i] = atom->vfrac[i] * points->jacobian(i) / circle(atom->x[i][0]);
+  });
   const double h = lattice.h, inverse = 1.0 / (lattice.dim == 3 ? h * h * h : h * h);
   share.resize(grid->nnodes());
   for (int64_t n = 0; n < grid->nnodes(); n++)

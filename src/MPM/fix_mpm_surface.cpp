@@ -6,7 +6,6 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-
 #include "fix_mpm_surface.h"
 
 #include "atom.h"
@@ -35,11 +34,12 @@ using namespace FixConst;
 ------------------------------------------------------------------------- */
 
 FixMPMSurface::FixMPMSurface(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), scale(1.0), grow(1.2), depth(0.5), surface_group(-1), known(false), no_torques(false), at_surface(nullptr),
-    points(MPMPoints::get(atom))
+    Fix(lmp, narg, arg), scale(1.0), grow(1.2), depth(0.5), surface_group(-1), known(false),
+    no_torques(false), at_surface(nullptr), points(MPMPoints::get(atom))
 {
   if (!points || !atom->radius_flag)
-    error->all(FLERR, "Fix mpm/surface requires material points with a radius: use atom_style "
+    error->all(FLERR,
+               "Fix mpm/surface requires material points with a radius: use atom_style "
                "hybrid sphere mpm");
   for (int iarg = 3; iarg < narg; iarg += 2) {
     const std::string keyword = arg[iarg];
@@ -47,12 +47,16 @@ FixMPMSurface::FixMPMSurface(LAMMPS *lmp, int narg, char **arg) :
       if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, "fix mpm/surface group", error);
       surface_group = group->find(arg[iarg + 1]);
       if (surface_group <= 0 || surface_group == igroup || group->dynamic[surface_group])
-        error->all(FLERR, iarg + 1, "Fix mpm/surface group must be a static group other than all and "
-                   "that of the fix: {}", arg[iarg + 1]);
+        error->all(FLERR, iarg + 1,
+                   "Fix mpm/surface group must be a static group other than all and "
+                   "that of the fix: {}",
+                   arg[iarg + 1]);
       continue;
     }
-    double *const value = keyword == "scale" ? &scale : keyword == "grow" ? &grow :
-        keyword == "depth"                   ? &depth : nullptr;
+    double *const value = keyword == "scale" ? &scale
+        : keyword == "grow"                  ? &grow
+        : keyword == "depth"                 ? &depth
+                                             : nullptr;
     if (!value) error->all(FLERR, iarg, "Unknown fix mpm/surface keyword: {}", keyword);
     if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, "fix mpm/surface " + keyword, error);
     *value = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
@@ -129,7 +133,8 @@ void FixMPMSurface::init()
   if (small_all)
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/surface {}: points were created, or their radius set, after the fix, which "
-               "sets it: define the fix after them", id);
+               "sets it: define the fix after them",
+               id);
 }
 
 /* ----------------------------------------------------------------------
@@ -162,7 +167,7 @@ void FixMPMSurface::pre_force(int)
   // LAMMPS has set to zero the forces of the atoms in the neighbor lists only. Nothing exerts torques
   // on the others, so that these stay zero until atoms change their places in memory
 
-  const std::size_t n = 3 * (std::size_t) (atom->nlocal - atom->nfirst) * sizeof(double);
+  const std::size_t n = 3 * (std::size_t)(atom->nlocal - atom->nfirst) * sizeof(double);
   if (n == 0) return;
   memset(&atom->f[atom->nfirst][0], 0, n);
   if (atom->torque_flag && !no_torques) memset(&atom->torque[atom->nfirst][0], 0, n);
@@ -177,7 +182,8 @@ void FixMPMSurface::pre_exchange()
 {
   no_torques = false;
   find_surface();
-  if (surface_group >= 0 && atom->firstgroupname && group->find(atom->firstgroupname) == surface_group)
+  if (surface_group >= 0 && atom->firstgroupname &&
+      group->find(atom->firstgroupname) == surface_group)
     keep_first();
 }
 
@@ -201,7 +207,8 @@ void FixMPMSurface::keep_first()
     atom->avec->copy(n, in, 0);
     in++;
   }
-  for (auto *ifix : modify->get_fix_by_style("^mpm$")) dynamic_cast<FixMPM *>(ifix)->renew_topology();
+  for (auto *ifix : modify->get_fix_by_style("^mpm$"))
+    dynamic_cast<FixMPM *>(ifix)->renew_topology();
 }
 
 /* ----------------------------------------------------------------------
@@ -259,8 +266,8 @@ void FixMPMSurface::find_surface()
     for (int i = 0; i < atom->nlocal; i++) {
       if (!has_radius(i) || !field.is_point(i)) continue;
       const auto *material = field.material_of(i);
-      const bool failed = material && material->damage >= 0 &&
-          material->history[i][material->damage] >= 1.0;
+      const bool failed =
+          material && material->damage >= 0 && material->history[i][material->damage] >= 1.0;
       const double V = atom->vfrac[i] * points->jacobian(i);
       const double radius = 0.5 * scale * (domain->dimension == 3 ? std::cbrt(V) : std::sqrt(V));
       give_radius(i, failed || share[i] < limit, std::min(radius, largest_radius(i)));

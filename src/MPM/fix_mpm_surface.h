@@ -6,7 +6,6 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-
 #ifdef FIX_CLASS
 // clang-format off
 FixStyle(mpm/surface,FixMPMSurface);
@@ -51,12 +50,12 @@ class FixMPMSurface : public Fix {
   void unpack_forward_comm(int, int, double *) override;
 
  private:
-  double scale, grow, depth;     // of the radius; its largest growth; of what counts as surface [h]
-  int surface_group;             // that points with a radius are in, -1: none
-  bool known;                    // radii are those of the surface, not the largest ones
-  bool no_torques;               // of atoms that are not in neighbor lists, since these were made
-  double *at_surface;            // [n] 1: has a radius, 0: has not
-  std::vector<double> share;     // of the volume, at the points of a field
+  double scale, grow, depth;    // of the radius; its largest growth; of what counts as surface [h]
+  int surface_group;            // that points with a radius are in, -1: none
+  bool known;                   // radii are those of the surface, not the largest ones
+  bool no_torques;              // of atoms that are not in neighbor lists, since these were made
+  double *at_surface;           // [n] 1: has a radius, 0: has not
+  std::vector<double> share;    // of the volume, at the points of a field
   struct MPMPoints *points;
 
   bool has_radius(int i) const;

@@ -6,7 +6,6 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-
 // Topology of fix mpm: which blocks have points, and the order of points in memory.
 
 #include "fix_mpm.h"
@@ -17,8 +16,8 @@
 #include "error.h"
 #include "fix_mpm_material.h"
 #include "group.h"
+#include "material/batch.h"
 #include "modify.h"
-#include "mpm_batch.h"
 #include "mpm_halo.h"
 #include "mpm_node_action.h"
 #include "mpm_points.h"
@@ -151,8 +150,7 @@ void FixMPM::find_blocks()
     for (int d = 0; d < 3; d++) b[d] = base[d] >> grid->shift_bits;
     if (base[0] != last_base[0] || base[1] != last_base[1] || base[2] != last_base[2]) switches++;
     FixMPMMaterial *material = is_node(i) ? nullptr : material_of(i);
-    const bool same_block =
-        b[0] == last_block[0] && b[1] == last_block[1] && b[2] == last_block[2];
+    const bool same_block = b[0] == last_block[0] && b[1] == last_block[1] && b[2] == last_block[2];
     if (same_block && runs.back().last == i && runs.back().material == material) {
       runs.back().last++;
     } else {
@@ -177,8 +175,9 @@ void FixMPM::find_blocks()
       last_block[d] = b[d];
     }
   }
-  std::stable_sort(runs.begin(), runs.end(),
-                   [](const Run &a, const Run &b) { return a.slot < b.slot; });
+  std::stable_sort(runs.begin(), runs.end(), [](const Run &a, const Run &b) {
+    return a.slot < b.slot;
+  });
 
   for (int k = 0, end; k < (int) runs.size(); k = end) {
     ActiveBlock a;
@@ -197,9 +196,9 @@ void FixMPM::find_blocks()
   // at the latest: all around the block, if nothing else bounds the drift
 
   const double least = has_domains() ? 1.0e-6 : 0.0;    // see update_domains()
-  const double drift = total ? 0.0 :
-      watch_drift            ? grid->side :
-                               std::max(least, std::min(1.0, 0.5 * neighbor->skin / lattice.h));
+  const double drift = total ? 0.0
+      : watch_drift          ? grid->side
+                             : std::max(least, std::min(1.0, 0.5 * neighbor->skin / lattice.h));
   const int nactive = active.size();
   for (int k = 0; k < nactive; k++) {
     const Range &r = ranges[k];
@@ -283,9 +282,9 @@ void FixMPM::sort_points()
       index = index_of_block.emplace(block, (int) index_of_block.size()).first->second;
       last = block;
     }
-    const int cell = lattice.dim == 3 ?
-        ((base[0] & mask) << 2 | (base[1] & mask)) << 2 | (base[2] & mask) :
-        (base[0] & mask) << 3 | (base[1] & mask);
+    const int cell = lattice.dim == 3
+        ? ((base[0] & mask) << 2 | (base[1] & mask)) << 2 | (base[2] & mask)
+        : (base[0] & mask) << 3 | (base[1] & mask);
     int m = 0;
     if (nmaterials > 1)
       while (m < nmaterials - 1 && !(atom->mask[i] & materials[m]->groupbit)) m++;
@@ -318,7 +317,9 @@ void FixMPM::sort_points()
   for (int k = 0; k < all_keys; k++)
     if (k != nkeys && k != others + nkeys && start_of_key[k + 1] - start_of_key[k] > 1)
       std::sort(permute.begin() + start_of_key[k], permute.begin() + start_of_key[k + 1],
-                [tag](int i, int j) { return tag[i] < tag[j]; });
+                [tag](int i, int j) {
+                  return tag[i] < tag[j];
+                });
 
   // ghosts refer to the old order, and the first of them is in the free place that is used below: the
   // map must forget them before
@@ -330,7 +331,7 @@ void FixMPM::sort_points()
   MPI_Allreduce(&renew, &renew_all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   if (renew_all) {
     if (mapped) atom->map_clear();    // as in exchange(), for borders()
-    atom->nghost = 0;    // else borders() appends to them
+    atom->nghost = 0;                 // else borders() appends to them
     atom->avec->clear_bonus();
   }
 

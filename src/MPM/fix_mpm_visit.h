@@ -6,7 +6,6 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-
 #ifndef LMP_FIX_MPM_VISIT_H
 #define LMP_FIX_MPM_VISIT_H
 
@@ -14,7 +13,7 @@
 // kernels do not have what is needed.
 
 #include "fix_mpm.h"
-#include "mpm_shape.h"
+#include "transfer/shape.h"
 
 namespace LAMMPS_NS {
 
@@ -50,8 +49,7 @@ void FixMPM::visit_nodes(const MPM_NS::Grid::Block &block, int i, const double *
     const double t = (x[d] - lattice.origin[d]) / lattice.h;
     at[d] = (place(i)[d] - lattice.origin[d]) / lattice.h;
     shape_weights(t, base[d], w[d]);
-    if (has_boxes())
-      Gimp::weights(t - Gimp::shift - base[d], sizes[3 * (std::size_t) i + d], w[d]);
+    if (has_boxes()) Gimp::weights(t - Gimp::shift - base[d], sizes[3 * (std::size_t) i + d], w[d]);
   }
   int k[3];
   for (k[0] = 0; k[0] <= shape; k[0]++)

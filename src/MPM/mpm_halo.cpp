@@ -9,8 +9,8 @@
 #include "mpm_halo.h"
 
 #include "comm.h"
+#include "lattice/grid.h"
 #include "memory.h"
-#include "mpm_grid.h"
 
 #include <algorithm>
 

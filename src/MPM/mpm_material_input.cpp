@@ -8,7 +8,7 @@
 
 #include "mpm_material_input.h"
 
-#include "mpm_law_plugin.h"
+#include "law/plugin.h"
 
 #include "comm.h"
 #include "error.h"

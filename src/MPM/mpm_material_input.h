@@ -11,7 +11,7 @@
 
 // The definition of a material in an input script or a material file.
 
-#include "mpm_material.h"
+#include "material/material.h"
 
 namespace LAMMPS_NS {
 class LAMMPS;

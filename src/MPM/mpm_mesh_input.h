@@ -9,7 +9,7 @@
 #ifndef LMP_MPM_MESH_INPUT_H
 #define LMP_MPM_MESH_INPUT_H
 
-#include "mpm_mesh.h"
+#include "mesh/gmsh.h"
 #include "pointers.h"
 
 namespace LAMMPS_NS {

@@ -8,9 +8,9 @@
 
 #include "mpm_point.h"
 
-#include "mpm_law.h"
+#include "law/law.h"
+#include "material/material_point.h"
 #include "mpm_material_input.h"
-#include "mpm_material_point.h"
 
 #include "comm.h"
 #include "error.h"

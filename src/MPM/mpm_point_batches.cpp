@@ -11,8 +11,8 @@
 #include "atom.h"
 #include "fix_mpm.h"
 #include "fix_mpm_material.h"
+#include "material/material.h"
 #include "modify.h"
-#include "mpm_material.h"
 
 #include <memory>
 #include <vector>

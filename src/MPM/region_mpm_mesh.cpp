@@ -6,12 +6,11 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-
 #include "region_mpm_mesh.h"
 
 #include "comm.h"
 #include "error.h"
-#include "mpm_surface_mesh.h"
+#include "mesh/surface_mesh.h"
 #include "utils.h"
 
 #include <algorithm>
@@ -54,7 +53,8 @@ RegMPMMesh::RegMPMMesh(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, ar
   }
   MPI_Bcast(&size, 1, MPI_LMP_BIGINT, 0, world);
   if (size < 0)
-    error->all(FLERR, 2, "Cannot open file {} of region mpm/mesh: {}", arg[2], utils::getsyserror());
+    error->all(FLERR, 2, "Cannot open file {} of region mpm/mesh: {}", arg[2],
+               utils::getsyserror());
   bytes.resize(size);
   MPI_Bcast(&bytes[0], (int) size, MPI_CHAR, 0, world);
   std::string message;

@@ -6,7 +6,6 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-
 #ifdef REGION_CLASS
 // clang-format off
 RegionStyle(mpm/mesh,RegMPMMesh);

@@ -1,0 +1,124 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MPM_LATTICE_GRID_H
+#define MPM_LATTICE_GRID_H
+
+// Block-sparse computing lattice. Knows nothing of physics, points or LAMMPS.
+
+#include <cmath>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+namespace MPM_NS {
+
+constexpr int NODES_PER_BLOCK = 64;
+
+/** Geometry of the computing lattice: node i of axis d sits at origin[d] + i h. */
+struct Lattice {
+  int dim;     ///< 2 or 3
+  double h;    ///< node spacing
+  double origin[3];
+  bool periodic[3];
+  int ncell[3];    ///< cells along a periodic axis; unused on others
+
+  /** Node index modulo the period: the canonical node of a set of periodic images. */
+  int wrap(int axis, int i) const
+  {
+    if (!periodic[axis]) return i;
+    const int r = i % ncell[axis];
+    return r < 0 ? r + ncell[axis] : r;
+  }
+};
+
+/** The blocks of nodes within reach of this rank's points, and their node records.
+ *
+ *  A block holds 4x4x4 nodes in 3d and 8x8 in 2d; block b of an axis holds nodes b*side ...
+ *  b*side + side - 1. Node in block: (ix*4+iy)*4+iz in 3d, ix*8+iy in 2d.
+ *  A node record is nreal reals, layout see transfer/kernels.h. Periodic images are separate nodes
+ *  (aliases) whose sums are folded into the canonical node and copied back after the solve,
+ *  so that no kernel needs to know about periodicity.
+ */
+class Grid {
+ public:
+  struct Block {
+    int b[3];          ///< block coordinates
+    int slot[27];      ///< neighbours at [9*(dx+1)+3*(dy+1)+(dz+1)], -1: not active
+    uint64_t alias;    ///< bit n: node n is a periodic image of a canonical node
+    uint64_t owned;    ///< bit n: canonical, and this rank counts it in sums over nodes
+  };
+
+  Lattice lattice;
+  int side, shift_bits;    ///< nodes along a block side, log2 of it
+  std::vector<Block> blocks;
+  int nreal;    ///< reals of a node record
+
+  explicit Grid(const Lattice &);
+  Grid(const Grid &) = delete;
+  Grid &operator=(const Grid &) = delete;
+  ~Grid();
+
+  void clear();                      ///< forget all blocks
+  int activate(const int b[3]);      ///< slot of a block, made active when it is not
+  int find(const int b[3]) const;    ///< slot or -1
+  void close_periodic();             ///< activate canonical blocks, list the aliases
+  void finish();                     ///< neighbour tables, owned masks (all canonical)
+  void allocate(int nreal);          ///< node records for all blocks, zeroed
+
+  double *nodes() { return node; }
+  double *record(int slot, int n) { return node + ((int64_t) slot * NODES_PER_BLOCK + n) * nreal; }
+  int64_t nnodes() const { return (int64_t) blocks.size() * NODES_PER_BLOCK; }
+  void zero();
+
+  /** Add reals [lane, lane+nlane) of the images to their canonical node. */
+  void fold_aliases(double *nodes, int nreal, int lane, int nlane) const;
+  /** Canonical node to its images, all reals. */
+  void copy_aliases(double *nodes, int nreal) const;
+  void copy_aliases() { copy_aliases(node, nreal); }
+
+  /** Global node index of node n of a block. */
+  void node_index(const Block &block, int n, int index[3]) const
+  {
+    if (lattice.dim == 3) {
+      index[0] = 4 * block.b[0] + (n >> 4);
+      index[1] = 4 * block.b[1] + ((n >> 2) & 3);
+      index[2] = 4 * block.b[2] + (n & 3);
+    } else {
+      index[0] = 8 * block.b[0] + (n >> 3);
+      index[1] = 8 * block.b[1] + (n & 7);
+      index[2] = 0;
+    }
+  }
+  /** Slot*64 + node of a global node index, -1 when its block is not active. */
+  int64_t locate(const int index[3]) const;
+
+  int64_t memory_usage() const;
+
+ private:
+  std::unordered_map<uint64_t, int> table;
+  std::vector<int64_t> alias_node, alias_of;    // parallel lists of node numbers slot*64+n
+  double *node;
+  int64_t capacity;    // reals
+
+  static uint64_t key(const int b[3])
+  {
+    constexpr uint64_t bias = 1u << 20, mask = (1u << 21) - 1;
+    return (((b[0] + bias) & mask) << 42) | (((b[1] + bias) & mask) << 21) | ((b[2] + bias) & mask);
+  }
+
+ public:
+  static uint64_t block_key(const Block &block) { return key(block.b); }
+  static int key_coordinate(uint64_t key, int axis)
+  {
+    return (int) ((key >> (42 - 21 * axis)) & ((1u << 21) - 1)) - (1 << 20);
+  }
+};
+
+}    // namespace MPM_NS
+#endif

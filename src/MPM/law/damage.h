@@ -1,0 +1,193 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MPM_LAW_DAMAGE_H
+#define MPM_LAW_DAMAGE_H
+
+#include "law/kinematics.h"
+
+namespace MPM_NS::law {
+namespace {
+
+  // parameters that all damages have at the end, in this order
+  constexpr Parameter after_none = {"after none", "NONE", FLAG,
+                                    FRACTION,     0.0,    "failed points bear no stress at all"};
+  constexpr Parameter after_pressure = {
+      "after pressure", "PRESSURE", FLAG, FRACTION, 0.0, "failed points bear pressure (default)"};
+  constexpr Parameter after_friction = {
+      "after friction", "MU", "1",
+      NOT_NEGATIVE,     0.0,  "failed points bear pressure and friction, coefficient"};
+
+  // history variables that all damages have at the beginning, in this order
+  enum { DAMAGED, SHEAR_ENERGY, REST_ENERGY, NDAMAGE };
+  constexpr HistoryDeclaration damaged = {"damage", ZERO, "1",
+                                          "share of the stress that is lost, 1: failed"};
+  constexpr HistoryDeclaration shear_energy = {
+      "shear_energy", ZERO, "pressure", "energy of the undamaged stress deviator, per volume"};
+  constexpr HistoryDeclaration rest_energy = {
+      "rest_energy", ZERO, "pressure",
+      "energy of the equation of state without tension, per volume"};
+
+  /** Undamaged stress at the end of a step: what a criterion works with. */
+  struct Intact {
+    Sym s;          ///< deviator
+    double mean;    ///< mean stress of the equation of state, positive in tension
+  };
+
+  /** Isotropic damage D (L.M. Kachanov 1958; J. Lemaitre, A Course on Damage Mechanics, 1996, ch. 1)
+   *  on top of any equation of state and strength, which see the undamaged stress. With tension of
+   *  the equation of state only,
+   *
+   *    sigma = (1 - D) s + [(1 - D) max(m, 0) + min(m, 0)] I,   s, m: undamaged
+   *    w = (1 - D) (w_s + w_t) + w_0
+   *
+   *  w_s: energy of the strength; w_0: of the equation of state where its pressure was last zero or
+   *  positive, w_t: the rest of it. The energy (w_s + w_t) dD that is set free is the work FRACTURE;
+   *  plastic work and its heat are 1 - D of those of the undamaged material. Viscous stress is not
+   *  damaged. A failed point (D = 1) bears shear by friction only, sqrt(s:s/2) <= MU p.
+   *
+   *  Sums over a step use mean values of its two ends, so that the energy balance has an error of
+   *  third order in a step, and none for a step at whose end all is lost.
+   *
+   *  Law has: Law(parameters, batch); grow(batch, history, i, intact), which returns the new D of a
+   *  point that has not failed (less than the old one: no change) and updates the law's own history;
+   *  the enum value AFTER, index of after_none in its parameters. */
+  template <class Law> struct ScalarDamage : LawDefaults {
+    static constexpr bool uses_F = false;
+
+    static void prepare(const LawParameters &, Batch &b, History history)
+    {
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const double D = history[DAMAGED][i];
+        const double kept = D < 1.0 ? 1.0 - D : 1.0, scale = 1.0 / kept;
+        const Sym all = load_stress(b, i);
+        const double mean = (1.0 / 3.0) * trace(all);
+        store_stress(b, i, add_diagonal(scale * deviator(all), mean > 0.0 ? scale * mean : mean));
+        b.kept[i] = kept;
+      }
+    }
+
+    static void update(const LawParameters &p, Batch &b, History history)
+    {
+      const Law law(p, b);
+      const bool none = p.value[Law::AFTER] > 0.0;
+      const double friction = p.value[Law::AFTER + 2];
+      double less_plastic = 0.0, less_heat = 0.0, fracture = 0.0;
+      MPM_SIMD_SUM(less_plastic, less_heat, fracture)
+      for (int i = 0; i < b.n; i++) {
+        const Sym all = load_stress(b, i);
+        const double total = (1.0 / 3.0) * trace(all);
+        const Intact intact = {add_diagonal(all, -total), total - b.viscous_mean[i]};
+        const double mean = intact.mean, ws = b.shear_energy[i], we = b.volume_energy[i];
+
+        const double D0 = history[DAMAGED][i];
+        const double grown = law.grow(b, history, i, intact);
+        const double D = D0 < 1.0 ? min(max(grown, D0), 1.0) : 1.0;
+        const bool had_failed = !(D0 < 1.0), failed = !(D < 1.0);
+
+        // deviator: share kept before and after, and of its energy after
+        const double tau = std::sqrt(0.5 * norm2(intact.s)), hold = friction * max(-mean, 0.0);
+        const double slip = tau > hold ? hold / tau : 1.0;
+        const double kept0 = b.kept[i], kept = failed ? slip : 1.0 - D;
+        const double stored = failed ? slip * slip : 1.0 - D;
+        double released =
+            (kept - stored) * ws + (kept0 - kept) * std::sqrt(ws * history[SHEAR_ENERGY][i]);
+        history[SHEAR_ENERGY][i] = failed ? stored * ws : ws;
+
+        // tension: energy at the start follows from that of the end by the work of the step
+        const double rest = mean > 0.0 ? min(history[REST_ENERGY][i], we) : we;
+        const double wt = we - rest, dJ = b.J[i] - b.Jold[i];
+        released += (D - D0) * max(wt - 0.5 * max(mean, 0.0) * dJ, 0.0);
+        history[REST_ENERGY][i] = rest;
+
+        // what is lost on top of that when nothing at all is left
+        const bool gone = none && failed;
+        released += gone && !had_failed ? rest - 0.5 * min(mean, 0.0) * dJ : 0.0;
+        const double press = gone ? 0.0 : min(mean, 0.0);
+        store_stress(
+            b, i,
+            add_diagonal(kept * intact.s, (1.0 - D) * max(mean, 0.0) + press + b.viscous_mean[i]));
+        history[DAMAGED][i] = D;
+        fracture += released * b.vol0[i];
+
+        const double work = b.plastic_work[i], share = had_failed ? kept : 0.5 * (kept0 + kept);
+        less_plastic += (1.0 - share) * work * b.vol0[i];
+        less_heat += (1.0 - p.chi * share) * work * b.vol0[i];
+        b.heat[i] += p.chi * (share - kept0) * work;
+      }
+      b.work[PLASTIC] -= less_plastic;
+      b.work[HEAT] -= less_heat;
+      b.work[FRACTURE] += fracture;
+    }
+
+    static void energy(const LawParameters &p, const Batch &b, History history, double *w)
+    {
+      const bool none = p.value[Law::AFTER] > 0.0;
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const double D = history[DAMAGED][i];
+        const double wt = max(w[i] - history[REST_ENERGY][i], 0.0);
+        const double damaged = w[i] - D * wt + (D < 1.0 ? 1.0 - D : 1.0) * history[SHEAR_ENERGY][i];
+        w[i] = none && !(D < 1.0) ? 0.0 : damaged;
+      }
+    }
+  };
+
+  /** Mises equivalent stress. */
+  MPM_INLINE double equivalent(const Intact &intact)
+  {
+    return std::sqrt(1.5 * norm2(intact.s));
+  }
+
+  /** Largest principal stress. */
+  MPM_INLINE double principal(const Intact &intact)
+  {
+    return intact.mean + largest_eigenvalue(intact.s);
+  }
+
+  // a ductile law measures how much of its ductility is used (row USED of its history, 1: all), and
+  // what follows from that for the stress is the same for all of them
+
+  constexpr Parameter soften_from = {
+      "soften from",    "START", "1",
+      {0.0, 1.0, true}, 1.0,     "used share of the ductility at which the stress begins to drop"};
+  constexpr Parameter soften_energy = {
+      "soften energy", "GC", "pressure*length",
+      POSITIVE,        0.0,  "plastic work per area of crack, after all ductility is used"};
+  enum { USED = NDAMAGE, NDUCTILE };
+  constexpr HistoryDeclaration ductility_used = {"used", ZERO, "1",
+                                                 "share of the ductility that is used"};
+
+  /** Stress as a function of what is used: lost at once at 1; or linearly from START on; or, from 1
+   *  on, linearly with the plastic work of one cell, which adds up to GC per area: a crack is one
+   *  cell wide whatever the spacing h of the nodes (A. Hillerborg, M. Modeer, P.-E. Petersson, Cem.
+   *  Concr. Res. 6 (1976) 773; Z.P. Bazant, B.H. Oh, Mater. Struct. 16 (1983) 155). */
+  struct Ductile {
+    double start, inv_range, per_work;
+
+    Ductile(const LawParameters &p, const Batch &b, int soften) :
+        start(p.value[soften]), inv_range(1.0 / max(1.0 - start, 1e-12)),
+        per_work(p.value[soften + 1] > 0.0 ? 0.5 * b.h / p.value[soften + 1] : 0.0)
+    {
+    }
+
+    /** Adds to what is used; returns the damage. */
+    MPM_INLINE double use(const Batch &b, History history, int i, double more) const
+    {
+      const double used = min(history[USED][i] + more, 1.0);
+      history[USED][i] = used;
+      const double direct = used >= 1.0 ? 1.0 : (used - start) * inv_range;
+      const double by_work = used >= 1.0 ? history[DAMAGED][i] + per_work * b.plastic_work[i] : 0.0;
+      return per_work > 0.0 ? by_work : direct;
+    }
+  };
+
+}    // namespace
+}    // namespace MPM_NS::law
+#endif

@@ -1,0 +1,112 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MPM_LAW_DAMAGE_RANKINE_H
+#define MPM_LAW_DAMAGE_RANKINE_H
+
+#include "law/damage.h"
+#include "law/math.h"
+
+namespace MPM_NS::law {
+namespace {
+
+  /** Brittle failure at the largest principal stress (W.J.M. Rankine 1858), at once or with the
+   *  fracture energy GC of a crack that is one cell wide (Z.P. Bazant, B.H. Oh, Mater. Struct. 16
+   *  (1983) 155). After sigma_1 = strength, where the energy that damage may set free is w_1 (w_s +
+   *  w_t, see ScalarDamage), the stress drops linearly with the largest r = sqrt(w/w_1) in tension:
+   *
+   *    D = 1 - (r_f - r) / [r (r_f - 1)],   r_f = GC / (h w_1)
+   *
+   *  The work of damage, integral of w dD, is w_1 r_f = GC/h in any state of stress. A point with
+   *  w_1 > GC/h, which cannot spend so little, fails at once when it has stored GC/h.
+   *
+   *  With weibull, strengths of points of reference volume V have the distribution function
+   *
+   *    P = 1 - exp[-(V/V0) (sigma/SIGMA)^M]    (W. Weibull, J. Appl. Mech. 18 (1951) 293) */
+  struct DamageRankine : ScalarDamage<DamageRankine> {
+    static constexpr const char *name = "rankine";
+    static constexpr const char *meaning = "brittle failure at the largest principal stress";
+    enum { STRENGTH_, GC, M, V0, SEED, AFTER };
+    static constexpr Parameter parameters[] = {
+        {"", "SIGMA", "pressure", POSITIVE, REQUIRED, "tensile strength, with weibull its scale"},
+        {"soften energy", "GC", "pressure*length", POSITIVE, 0.0, "fracture energy per area"},
+        {"weibull", "M", "1", POSITIVE, 0.0, "Weibull modulus"},
+        {"weibull", "V0", "volume", POSITIVE, 1.0, "reference volume (in 2d per thickness)"},
+        {"weibull", "SEED", "1", NOT_NEGATIVE, 0.0, "seed of the random numbers"},
+        after_none,
+        after_pressure,
+        after_friction};
+    static constexpr HistoryDeclaration history[] = {
+        damaged,
+        shear_energy,
+        rest_energy,
+        {"random", ZERO, "1", "uniform random number of the point, if weibull is given"},
+        {"opening", ZERO, "1", "largest r since the crack began"},
+        {"ductility", ZERO, "1", "r at which all stress is lost, 0: no crack yet"}};
+    enum { RANDOM = NDAMAGE, OPENING, DUCTILITY, NRANKINE };
+    static constexpr int nhistory(const LawParameters &p)
+    {
+      return p.value[GC] > 0.0 ? NRANKINE : p.value[M] > 0.0 ? OPENING : RANDOM;
+    }
+
+    /** A random number of each position, whatever the number of processes: finalizer of
+     *  D. Stafford's variant 13 of a 64-bit mix (as in G.L. Steele, D. Lea, C.H. Flood, OOPSLA
+     *  2014) over the bits of seed and coordinates. */
+    static void initialize(const LawParameters &p, const double *x, double *history)
+    {
+      if (!(p.value[M] > 0.0)) return;
+      uint64_t state = 0x9e3779b97f4a7c15;
+      for (const double value : {p.value[SEED], x[0], x[1], x[2]}) {
+        state += to_bits(value + 0.0) + 0x9e3779b97f4a7c15;    // + 0.0: -0 is 0
+        state = (state ^ (state >> 30)) * 0xbf58476d1ce4e5b9;
+        state = (state ^ (state >> 27)) * 0x94d049bb133111eb;
+        state ^= state >> 31;
+      }
+      history[RANDOM] = (static_cast<double>(state >> 11) + 0.5) * 0x1p-53;
+    }
+
+    double strength, inv_m, inv_v0, crack;
+    bool scatter;
+
+    DamageRankine(const LawParameters &p, const Batch &b) :
+        strength(p.value[STRENGTH_]), inv_m(p.value[M] > 0.0 ? 1.0 / p.value[M] : 1.0),
+        inv_v0(1.0 / p.value[V0]), crack(p.value[GC] / b.h), scatter(p.value[M] > 0.0)
+    {
+    }
+
+    /** Inverse of the stress at which the point fails. */
+    MPM_INLINE double inverse_strength(const Batch &b, History history, int i) const
+    {
+      if (!scatter) return 1.0 / strength;
+      const double weakness = b.vol0[i] * inv_v0 / -log(1.0 - history[RANDOM][i]);
+      return min(pow(weakness, inv_m), 1e60) / strength;
+    }
+
+    MPM_INLINE double grow(const Batch &b, History history, int i, const Intact &intact) const
+    {
+      const double r = principal(intact) * inverse_strength(b, history, i);
+      if (!(crack > 0.0)) return r >= 1.0 ? 1.0 : 0.0;
+
+      const double tension = max(b.volume_energy[i] - history[REST_ENERGY][i], 0.0);
+      const double w = b.shear_energy[i] + (intact.mean > 0.0 ? tension : 0.0);
+      const double ratio = crack * r * r / max(w, 1e-300);    // r_f if the crack began now
+      const bool begins = ratio > 1.0 ? r >= 1.0 : r > 0.0 && w >= crack;
+      const double old = history[DUCTILITY][i];
+      const double rf = old > 0.0 ? old : begins ? max(ratio, 1.0) : 0.0;
+      const double now = r > 0.0 ? std::sqrt(w * rf / crack) : 0.0;
+      const double largest = max(history[OPENING][i], now);
+      history[DUCTILITY][i] = rf;
+      history[OPENING][i] = largest;
+      const double softened = 1.0 - (rf - largest) / max(largest * (rf - 1.0), 1e-300);
+      return rf > 0.0 ? (largest >= rf || rf <= 1.0 ? 1.0 : softened) : 0.0;
+    }
+  };
+
+}    // namespace
+}    // namespace MPM_NS::law
+#endif

@@ -1,0 +1,264 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MPM_LAW_ELASTOPLASTIC_H
+#define MPM_LAW_ELASTOPLASTIC_H
+
+// Finite-strain elastoplasticity with return mapping in principal logarithmic strains: what the
+// laws of soil, rock and snow share.
+
+#include "law/spectral.h"
+
+namespace MPM_NS::law {
+namespace {
+
+// First rows of the history of these laws: be - I, so that small strains keep their digits. A macro,
+// as lists of declarations cannot be joined.
+#define MPM_ELASTIC_STRAIN_HISTORY                                                          \
+  {"elastic_xx", ZERO, "1", "elastic left Cauchy-Green tensor less identity, xx"},          \
+      {"elastic_yy", ZERO, "1", "the same, yy"}, {"elastic_zz", ZERO, "1", "the same, zz"}, \
+      {"elastic_xy", ZERO, "1", "the same, xy"}, {"elastic_xz", ZERO, "1", "the same, xz"}, \
+  {                                                                                         \
+    "elastic_yz", ZERO, "1", "the same, yz"                                                 \
+  }
+  constexpr int ELASTIC_STRAIN_ROWS = 6;
+
+  /** f b f^T - I for b = I + c, with f = I + A of this step: f c f^T + A + A^T + A A^T. */
+  MPM_INLINE Sym push_forward_strain(const Batch &b, int i, const Sym &c)
+  {
+    const double xx = b.A[0][i], xy = b.A[1][i], xz = b.A[2][i];
+    const double yx = b.A[3][i], yy = b.A[4][i], yz = b.A[5][i];
+    const double zx = b.A[6][i], zy = b.A[7][i], zz = b.A[8][i];
+    const Sym f = {2.0 * xx + xx * xx + xy * xy + xz * xz, 2.0 * yy + yx * yx + yy * yy + yz * yz,
+                   2.0 * zz + zx * zx + zy * zy + zz * zz, xy + yx + xx * yx + xy * yy + xz * yz,
+                   xz + zx + xx * zx + xy * zy + xz * zz,  yz + zy + yx * zx + yy * zy + yz * zz};
+    return push_forward(b, i, c) + f;
+  }
+
+  /** Principal logarithmic strain, from a principal value of be - I. */
+  MPM_INLINE double log_strain(double value)
+  {
+    return 0.5 * log1p(max(value, -1.0 + 1e-15));
+  }
+
+  /** det(I + c) - 1 */
+  MPM_INLINE double elastic_volume(const Sym &c)
+  {
+    const double minors =
+        (c.xx * c.yy - c.xy * c.xy) + (c.xx * c.zz - c.xz * c.xz) + (c.yy * c.zz - c.yz * c.yz);
+    const double det = c.xx * (c.yy * c.zz - c.yz * c.yz) - c.xy * (c.xy * c.zz - c.yz * c.xz) +
+        c.xz * (c.xy * c.yz - c.yy * c.xz);
+    return trace(c) + minors + det;
+  }
+
+  /** n . s . n for axis a of a spectral decomposition. */
+  MPM_INLINE double along(const Spectral &axes, int a, const Sym &s)
+  {
+    const double x = axes.vector[0][a], y = axes.vector[1][a], z = axes.vector[2][a];
+    return s.xx * x * x + s.yy * y * y + s.zz * z * z +
+        2.0 * (s.xy * x * y + s.xz * x * z + s.yz * y * z);
+  }
+
+  /** sum_a value_a n_a x n_a, with the axes n_a of point i as [component][axis][point]. */
+  MPM_INLINE Sym along_axes(const double (&axes)[3][3][BATCH], int i, double value0, double value1,
+                            double value2)
+  {
+    Sym r = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    add_dyad(r, axes[0][0][i], axes[1][0][i], axes[2][0][i], value0);
+    add_dyad(r, axes[0][1][i], axes[1][1][i], axes[2][1][i], value1);
+    add_dyad(r, axes[0][2][i], axes[1][2][i], axes[2][2][i], value2);
+    return r;
+  }
+
+  /** A batch along the principal axes of the elastic trial state, values as [axis][point]. */
+  struct PrincipalStates {
+    alignas(64) double before[3][BATCH];    ///< elastic strain at the start of the step
+    alignas(64) double strain[3][BATCH];    ///< elastic strain; in: trial, out: end of the step
+    alignas(64) double tau[3][BATCH];       ///< out: Kirchhoff stress
+    alignas(64) double work[BATCH];         ///< out: dissipated work per reference volume
+  };
+
+  /** Update of an isotropic law by F = Fe Fp with the history be = Fe Fe^T (J.C. Simo, Comput.
+   *  Methods Appl. Mech. Eng. 99 (1992) 61; E.A. de Souza Neto, D. Peric, D.R.J. Owen,
+   *  Computational Methods for Plasticity, 2008, ch. 14.4): the trial state f be f^T is exact for
+   *  any rotation, its principal logarithmic strains ln(be)/2 are returned as in small strain, and
+   *  the axes stay. Stresses of the law are Kirchhoff stresses, J times Cauchy.
+   *
+   *  Law has, besides its declaration: Law(parameters, batch), map(batch, history, states), which
+   *  returns the strains and makes the rest, with the history rows behind those of be, and
+   *  stored(history, i, strain, strain, strain), the energy per reference volume.
+   *
+   *  Strains at the start of the step are those of the trial state less the strain increment along
+   *  its axes; the work of a step is then right to third order. */
+  template <class Law> struct PrincipalReturn : LawDefaults {
+    static constexpr bool uses_F = false;
+
+    static void update(const LawParameters &p, Batch &b, History history)
+    {
+      const Law law(p, b);
+      alignas(64) double axes[3][3][BATCH];
+      PrincipalStates s;
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const Spectral trial = spectral(push_forward_strain(b, i, load_rows(history, i)));
+        const Increment total = increment(b, i);
+        for (int a = 0; a < 3; a++) {
+          s.strain[a][i] = log_strain(trial.value[a]);
+          s.before[a][i] = s.strain[a][i] - along(trial, a, total.strain);
+          for (int k = 0; k < 3; k++) axes[k][a][i] = trial.vector[k][a];
+        }
+      }
+      law.map(b, history + ELASTIC_STRAIN_ROWS, s);
+      double plastic = 0.0;
+      MPM_SIMD_SUM(plastic)
+      for (int i = 0; i < b.n; i++) {
+        // written out here and in energy(): small arrays with loops over them do not vectorize
+        const double inv = 1.0 / b.J[i];
+        store_rows(history, i,
+                   along_axes(axes, i, expm1(2.0 * s.strain[0][i]), expm1(2.0 * s.strain[1][i]),
+                              expm1(2.0 * s.strain[2][i])));
+        store_stress(b, i,
+                     along_axes(axes, i, inv * s.tau[0][i], inv * s.tau[1][i], inv * s.tau[2][i]));
+        b.heat[i] += p.chi * s.work[i];
+        plastic += s.work[i] * b.vol0[i];
+      }
+      b.work[PLASTIC] += plastic;
+      b.work[HEAT] += p.chi * plastic;
+    }
+
+    static void energy(const LawParameters &p, const Batch &b, History history, double *w)
+    {
+      const Law law(p, b);
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const Spectral s = spectral(load_rows(history, i));
+        w[i] += law.stored(history + ELASTIC_STRAIN_ROWS, i, log_strain(s.value[0]),
+                           log_strain(s.value[1]), log_strain(s.value[2]));
+      }
+    }
+  };
+
+  /** Work of a plastic strain increment: the mean of the stresses at start and end of the step. The
+   *  old stress counts only if it does work in this direction: otherwise the step began elastic. */
+  MPM_INLINE double plastic_work(double by_old, double by_new)
+  {
+    return max(0.5 * (max(by_old, 0.0) + by_new), 0.0);
+  }
+
+  /** Upper bound of the acoustic modulus of Hencky elasticity, J d sigma_nn / d strain_nn: along a
+   *  principal axis K + 4/3 G - tau_nn, between two axes G grows to G x coth(x) <= G (1 + x^2/3)
+   *  with the difference x of their logarithmic strains. */
+  MPM_INLINE double hencky_modulus(double K, double G, double J, const Sym &stress)
+  {
+    const Sym s = deviator(stress);
+    const double s2 = J * J * norm2(s), x2 = 2.0 * s2 / (4.0 * G * G);
+    return max(K + (4.0 / 3.0) * G * (1.0 + (1.0 / 3.0) * x2) - (1.0 / 3.0) * J * trace(stress) +
+                   std::sqrt((2.0 / 3.0) * s2),
+               LEAST_MODULUS * (K + (4.0 / 3.0) * G));
+  }
+
+  /** A batch in invariants. */
+  struct InvariantStates {
+    alignas(64) double volume[BATCH];    ///< tr of the elastic strain; in: trial, out: end of step
+    alignas(64) double shear[BATCH];     ///< sqrt(2/3 e:e) of its deviator e; as volume
+    alignas(64) double flow[BATCH];      ///< out: plastic volume strain on which the pressure works
+  };
+
+  /** Laws whose yield surface and flow have no third invariant, with constant shear modulus: the
+   *  return mapping is one in pressure p = -tr(tau)/3 and equivalent stress q = 3 G shear.
+   *
+   *  Law has: G; pressure(v) and volume_energy(v) of the elastic volume strain v; and
+   *  solve(batch, history, states). */
+  template <class Law> struct InvariantReturn : PrincipalReturn<Law> {
+    MPM_INLINE void map(Batch &b, History history, PrincipalStates &s) const
+    {
+      const Law &law = static_cast<const Law &>(*this);
+      InvariantStates t;
+      alignas(64) double shear[BATCH];
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const double v = s.strain[0][i] + s.strain[1][i] + s.strain[2][i];
+        double square = 0.0;
+        for (int a = 0; a < 3; a++) {
+          const double e = s.strain[a][i] - (1.0 / 3.0) * v;
+          square += e * e;
+        }
+        t.volume[i] = v;
+        t.flow[i] = 0.0;
+        t.shear[i] = shear[i] = std::sqrt((2.0 / 3.0) * square);
+      }
+      law.solve(b, history, t);
+      const double G = law.G;
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const double v = s.strain[0][i] + s.strain[1][i] + s.strain[2][i];
+        const double v0 = s.before[0][i] + s.before[1][i] + s.before[2][i];
+        const double scale = shear[i] > 0.0 ? t.shear[i] / shear[i] : 1.0;
+        const double p = law.pressure(t.volume[i]);
+        double dev_work = 0.0;
+        for (int a = 0; a < 3; a++) {
+          const double e = s.strain[a][i] - (1.0 / 3.0) * v;
+          dev_work += 2.0 * G * (s.before[a][i] - (1.0 / 3.0) * v0) * (1.0 - scale) * e;
+          s.strain[a][i] = scale * e + (1.0 / 3.0) * t.volume[i];
+          s.tau[a][i] = 2.0 * G * scale * e - p;
+        }
+        const double D = shear[i] - t.shear[i];
+        s.work[i] = plastic_work(dev_work - law.pressure(v0) * t.flow[i],
+                                 3.0 * G * t.shear[i] * D - p * t.flow[i]);
+        b.plastic[i] = D;
+      }
+    }
+
+    MPM_INLINE double stored(History, int, double e0, double e1, double e2) const
+    {
+      const Law &law = static_cast<const Law &>(*this);
+      const double v = e0 + e1 + e2, m = (1.0 / 3.0) * v;
+      return law.volume_energy(v) +
+          law.G * ((e0 - m) * (e0 - m) + (e1 - m) * (e1 - m) + (e2 - m) * (e2 - m));
+    }
+  };
+
+  /** Linear relation of Kirchhoff stress and logarithmic elastic strain (H. Hencky, 1928), with
+   *  Young's modulus and Poisson's ratio as first parameters of the law. */
+  struct HenckyModuli {
+    double K, G;
+    HenckyModuli(double E, double nu) : K(E / (3.0 * (1.0 - 2.0 * nu))), G(E / (2.0 * (1.0 + nu)))
+    {
+    }
+  };
+
+  /** InvariantReturn with Hencky elasticity. */
+  template <class Law> struct HenckyInvariantReturn : InvariantReturn<Law>, HenckyModuli {
+    explicit HenckyInvariantReturn(const LawParameters &p) : HenckyModuli(p.value[0], p.value[1]) {}
+    MPM_INLINE double pressure(double v) const { return -K * v; }
+    MPM_INLINE double volume_energy(double v) const { return 0.5 * K * v * v; }
+
+    static void modulus(const LawParameters &p, const Batch &b, History, double *k)
+    {
+      const HenckyModuli m(p.value[0], p.value[1]);
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) k[i] += hencky_modulus(m.K, m.G, b.J[i], load_stress(b, i));
+    }
+  };
+
+  /** Grains that separated: the volume strain that opened between them without stress ("gap") must
+   *  close again before they carry pressure (A.P. Tampubolon et al., ACM Trans. Graph. 36 (2017)
+   *  105, volume correction of G. Klar et al., ACM Trans. Graph. 35 (2016) 103). Returns the trial
+   *  volume strain after closing. */
+  MPM_INLINE double close_gap(double volume, double &gap)
+  {
+    const double closed = min(gap, max(-volume, 0.0));
+    gap -= closed;
+    return volume + closed;
+  }
+
+  constexpr double DEGREES = 0.017453292519943295769;
+
+}    // namespace
+}    // namespace MPM_NS::law
+#endif

@@ -1,0 +1,83 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MPM_LAW_EOS_TAIT_H
+#define MPM_LAW_EOS_TAIT_H
+
+#include "law/eos.h"
+
+namespace MPM_NS::law {
+namespace {
+
+  /** Tait-Murnaghan p = K/gamma (J^-gamma - 1), not below the cavitation pressure
+   *  (F.D. Murnaghan, Proc. Natl. Acad. Sci. 30 (1944) 244; J.J. Monaghan, J. Comput. Phys. 110
+   *  (1994) 399). Density_0 c^2 = K J^(1-gamma), also in the cavitated state: ready for closure. */
+  struct EosTait : Barotropic<EosTait> {
+    static constexpr const char *name = "tait";
+    static constexpr const char *meaning = "Tait-Murnaghan liquid";
+    enum { BULK, GAMMA, CUTOFF };
+    static constexpr Parameter parameters[] = {
+        {"", "K", "pressure", POSITIVE, REQUIRED, "bulk modulus at reference density"},
+        {"", "GAMMA", "1", POSITIVE, REQUIRED, "exponent (water: 7)"},
+        {"cutoff",
+         "PMIN",
+         "pressure",
+         {-UNBOUNDED, 0.0, true},
+         -UNBOUNDED,
+         "lowest pressure, not positive; the liquid cavitates there"}};
+    static constexpr const char *check(const LawParameters &p)
+    {
+      return p.value[CUTOFF] != -UNBOUNDED && p.value[CUTOFF] <= -p.value[BULK] / p.value[GAMMA]
+          ? "PMIN is never reached: pressure stays above -K/GAMMA; leave cutoff out or raise PMIN"
+          : nullptr;
+    }
+
+    double K, gamma, pmin;
+    double inv_a, linear;    ///< integral of J^-gamma: power, or logarithm for gamma = 1
+    double logJc, Jc, Uc;    ///< start of cavitation, with energy there
+
+    explicit EosTait(const LawParameters &p) :
+        K(p.value[BULK]), gamma(p.value[GAMMA]), pmin(p.value[CUTOFF])
+    {
+      const double a = 1.0 - gamma;
+      const bool one = a < 1e-9 && a > -1e-9;
+      inv_a = one ? 0.0 : 1.0 / a;
+      linear = one ? 1.0 : 0.0;
+      logJc = 709.0;
+      Jc = Uc = 0.0;
+      if (pmin == -UNBOUNDED) return;
+      logJc = -log(1.0 + gamma * pmin / K) / gamma;
+      Jc = exp(logJc);
+      Uc = liquid_energy(Jc, logJc);
+    }
+
+    MPM_INLINE double pressure(double J) const
+    {
+      const double x = log(J);
+      const double p = (K / gamma) * expm1(-gamma * x);
+      return x > logJc ? pmin : p;
+    }
+    MPM_INLINE double bulk(double J) const { return K * exp((1.0 - gamma) * log(J)); }
+
+    /** -K/gamma [(J^(1-gamma) - 1)/(1-gamma) - (J - 1)] */
+    MPM_INLINE double liquid_energy(double J, double x) const
+    {
+      const double a = 1.0 - gamma;
+      return -(K / gamma) * (inv_a * expm1(a * x) + linear * x - (J - 1.0));
+    }
+    MPM_INLINE double stored(double J) const
+    {
+      const double x = log(J);
+      const double u = liquid_energy(J, x);
+      return x > logJc ? Uc - pmin * (J - Jc) : u;
+    }
+  };
+
+}    // namespace
+}    // namespace MPM_NS::law
+#endif

@@ -1,0 +1,220 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MPM_LAW_HYPERELASTIC_H
+#define MPM_LAW_HYPERELASTIC_H
+
+#include "law/spectral.h"
+
+namespace MPM_NS::law {
+namespace {
+
+  /** Displacement gradient F - I of a point. */
+  struct Displacement {
+    double xx, xy, xz, yx, yy, yz, zx, zy, zz;
+  };
+
+  MPM_INLINE Displacement displacement(const Batch &b, int i)
+  {
+    return {b.F[0][i] - 1.0, b.F[1][i], b.F[2][i], b.F[3][i],      b.F[4][i] - 1.0,
+            b.F[5][i],       b.F[6][i], b.F[7][i], b.F[8][i] - 1.0};
+  }
+
+  /** b - I = H + H^T + H H^T: small strains keep full relative precision. */
+  MPM_INLINE Sym left_strain(const Displacement &H)
+  {
+    return {2.0 * H.xx + H.xx * H.xx + H.xy * H.xy + H.xz * H.xz,
+            2.0 * H.yy + H.yx * H.yx + H.yy * H.yy + H.yz * H.yz,
+            2.0 * H.zz + H.zx * H.zx + H.zy * H.zy + H.zz * H.zz,
+            H.xy + H.yx + H.xx * H.yx + H.xy * H.yy + H.xz * H.yz,
+            H.xz + H.zx + H.xx * H.zx + H.xy * H.zy + H.xz * H.zz,
+            H.yz + H.zy + H.yx * H.zx + H.yy * H.zy + H.yz * H.zz};
+  }
+
+  /** Green-Lagrange strain (F^T F - I)/2. */
+  MPM_INLINE Sym green_lagrange(const Displacement &H)
+  {
+    return 0.5 * left_strain({H.xx, H.yx, H.zx, H.xy, H.yy, H.zy, H.xz, H.yz, H.zz});
+  }
+
+  /** ln J, from J - 1 = tr H + minors + det H. */
+  MPM_INLINE double log_volume(const Displacement &H)
+  {
+    const double minors =
+        (H.xx * H.yy - H.xy * H.yx) + (H.xx * H.zz - H.xz * H.zx) + (H.yy * H.zz - H.yz * H.zy);
+    const double det = H.xx * (H.yy * H.zz - H.yz * H.zy) - H.xy * (H.yx * H.zz - H.yz * H.zx) +
+        H.xz * (H.yx * H.zy - H.yy * H.zx);
+    return log1p(H.xx + H.yy + H.zz + (minors + det));
+  }
+
+  /** Invariants of a symmetric tensor. */
+  MPM_INLINE double minors(const Sym &a)
+  {
+    return (a.xx * a.yy - a.xy * a.xy) + (a.xx * a.zz - a.xz * a.xz) + (a.yy * a.zz - a.yz * a.yz);
+  }
+
+  MPM_INLINE double determinant(const Sym &a)
+  {
+    return a.xx * (a.yy * a.zz - a.yz * a.yz) - a.xy * (a.xy * a.zz - a.yz * a.xz) +
+        a.xz * (a.xy * a.yz - a.yy * a.xz);
+  }
+
+  /** Change of shape: z = J^(-2/3) b - I. */
+  struct Isochoric {
+    Sym z;
+    double logJ;
+
+    MPM_INLINE Isochoric(const Batch &b, int i)
+    {
+      const Displacement H = displacement(b, i);
+      logJ = log_volume(H);
+      const double change = expm1((-2.0 / 3.0) * logJ);
+      z = add_diagonal((1.0 + change) * left_strain(H), change);
+    }
+
+    /** tr(z) = first invariant - 3, of second order in the strain: since det(I + z) = 1, it is also
+     *  minus the sum of the other two invariants of z, which does not cancel for small strains. */
+    MPM_INLINE double first() const
+    {
+      const double t = trace(z);
+      return t > 0.01 ? t : -(minors(z) + determinant(z));
+    }
+  };
+
+  /** Loops of a law whose stress is a function of F. Law has: Law(parameters);
+   *  kirchhoff(batch, i), the Kirchhoff stress J sigma; stored(batch, i), the energy per reference
+   *  volume. */
+  template <class Law> struct Hyperelastic : LawDefaults {
+    static void update(const LawParameters &p, Batch &b, History)
+    {
+      const Law law(p);
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) store_stress(b, i, (1.0 / b.J[i]) * law.kirchhoff(b, i));
+    }
+
+    static void energy(const LawParameters &p, const Batch &b, History, double *w)
+    {
+      const Law law(p);
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) w[i] += law.stored(b, i);
+    }
+  };
+
+  /** Response of isotropic points in principal axes. */
+  struct PrincipalResponse {
+    alignas(64) double e[3][BATCH];      ///< logarithms of the principal stretches
+    alignas(64) double logJ[BATCH];      ///< their sum
+    alignas(64) double tau[3][BATCH];    ///< out: principal Kirchhoff stresses
+    alignas(64) double A[6][BATCH];      ///< out: d tau_a / d e_b for ab = 11 22 33 12 13 23
+  };
+
+  /** Waves along axis b that move points along axis a, see largest_modulus(); ab: index of A_ab. */
+  MPM_INLINE double pair_modulus(const PrincipalResponse &r, int i, int a, int b, int ab)
+  {
+    const double d = r.e[a][i] - r.e[b][i], coupling = r.A[ab][i], tau = r.tau[b][i];
+    const bool equal = d * d < 1e-10;    // equal stretches: the limit
+    const double limit = 0.5 * (r.A[a][i] - coupling);
+    const double s = equal ? limit : (r.tau[a][i] - tau) / expm1(2.0 * (equal ? 1.0 : d));
+    return s + std::fabs(coupling + s - tau);
+  }
+
+  /** Largest density_0 c^2 of all waves in an isotropic elastic point, or little more.
+   *
+   *  For a plane wave with normal n and polarisation m, both in principal axes, density_0 c^2 is
+   *  (R.W. Ogden, Non-Linear Elastic Deformations, 1984, ch. 6.3; here with Kirchhoff stresses)
+   *
+   *    sum_a (A_aa - tau_a) n_a^2 m_a^2
+   *      + sum_(a != b) [s_ab n_b^2 m_a^2 + (A_ab + s_ab - tau_b) n_a m_a n_b m_b],
+   *    s_ab = (tau_a - tau_b) / (exp(2 (e_a - e_b)) - 1),
+   *
+   *  a matrix in m. Its largest eigenvalue is at most max_a (M v)_a / v_a for any positive v, with
+   *  the absolute values of the off-diagonal entries in M (L. Collatz, Math. Z. 48 (1942) 221).
+   *  v = |n| makes that a mean over n_b^2 of the entries below: a bound for all n, which is exact
+   *  at small strain. */
+  MPM_INLINE double largest_modulus(const PrincipalResponse &r, int i)
+  {
+    const double k0 = r.A[0][i] - r.tau[0][i], k1 = r.A[1][i] - r.tau[1][i];
+    const double k2 = r.A[2][i] - r.tau[2][i];
+    const double k3 = max(pair_modulus(r, i, 0, 1, 3), pair_modulus(r, i, 1, 0, 3));
+    const double k4 = max(pair_modulus(r, i, 0, 2, 4), pair_modulus(r, i, 2, 0, 4));
+    const double k5 = max(pair_modulus(r, i, 1, 2, 5), pair_modulus(r, i, 2, 1, 5));
+    return max(max(max(k0, k1), max(k2, k3)), max(k4, k5));
+  }
+
+  /** Hyperelastic law that is isotropic. Law has in addition: respond(parameters, n, response). */
+  template <class Law> struct IsotropicHyperelastic : Hyperelastic<Law> {
+    static void modulus(const LawParameters &p, const Batch &b, History, double *k)
+    {
+      PrincipalResponse r;
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const Displacement H = displacement(b, i);
+        const Sym strain = left_strain(H);
+        const double mean = (1.0 / 3.0) * trace(strain), least = -1.0 + 1e-15;
+        const DeviatorRoots root(deviator(strain));
+        r.logJ[i] = log_volume(H);
+        r.e[0][i] = 0.5 * log1p(max(mean + root.first, least));
+        r.e[1][i] = 0.5 * log1p(max(mean - 0.5 * root.first + root.half, least));
+        r.e[2][i] = 0.5 * log1p(max(mean - 0.5 * root.first - root.half, least));
+        for (int a = 0; a < 3; a++) {
+          r.tau[a][i] = 0.0;
+          r.A[a][i] = r.A[a + 3][i] = 0.0;
+        }
+      }
+      Law::respond(p, b.n, r);
+      PrincipalResponse rest;
+      for (int a = 0; a < 3; a++)
+        rest.e[a][0] = rest.tau[a][0] = rest.A[a][0] = rest.A[a + 3][0] = 0.0;
+      rest.logJ[0] = 0.0;
+      Law::respond(p, 1, rest);
+      const double least = LEAST_MODULUS * rest.A[0][0];
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) k[i] += max(largest_modulus(r, i), least);
+    }
+  };
+
+  /** Adds a term MU/ALPHA (sum_a exp(ALPHA (e_a - ln J/3)) - 3) of the energy, Ogden's. */
+  MPM_INLINE void respond_ogden(double mu, double alpha, PrincipalResponse &r, int i)
+  {
+    const double mean = (1.0 / 3.0) * r.logJ[i];
+    const double x = exp(alpha * (r.e[0][i] - mean)), y = exp(alpha * (r.e[1][i] - mean));
+    const double z = exp(alpha * (r.e[2][i] - mean)), average = (1.0 / 3.0) * (x + y + z);
+    const double third = (1.0 / 3.0) * mu * alpha;
+    r.tau[0][i] += mu * (x - average);
+    r.tau[1][i] += mu * (y - average);
+    r.tau[2][i] += mu * (z - average);
+    r.A[0][i] += third * (x + average);
+    r.A[1][i] += third * (y + average);
+    r.A[2][i] += third * (z + average);
+    r.A[3][i] -= third * (x + y - average);
+    r.A[4][i] -= third * (x + z - average);
+    r.A[5][i] -= third * (y + z - average);
+  }
+
+  /** Adds a mean Kirchhoff stress with its derivative with respect to ln J. */
+  MPM_INLINE void respond_mean(double tau, double derivative, PrincipalResponse &r, int i)
+  {
+    for (int a = 0; a < 3; a++) {
+      r.tau[a][i] += tau;
+      r.A[a][i] += derivative;
+      r.A[a + 3][i] += derivative;
+    }
+  }
+
+  /** Resistance to change of volume, U = K/4 (J^2 - 1 - 2 ln J): convex, and infinite for J -> 0
+   *  (J.C. Simo, T.J.R. Hughes, Computational Inelasticity, 1998, eq. 9.2.5). */
+  struct VolumeEnergy {
+    double K;
+    MPM_INLINE double stress(double logJ) const { return 0.5 * K * expm1(2.0 * logJ); }
+    MPM_INLINE double derivative(double logJ) const { return K * exp(2.0 * logJ); }
+    MPM_INLINE double stored(double logJ) const { return 0.25 * K * expm1_minus(2.0 * logJ); }
+  };
+
+}    // namespace
+}    // namespace MPM_NS::law
+#endif

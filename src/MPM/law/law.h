@@ -1,0 +1,236 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MPM_LAW_LAW_H
+#define MPM_LAW_LAW_H
+
+// What a constitutive law declares (its parameters and history) and the kernels it provides.
+//
+// A law is one header: a struct with the declaration and the loops over a batch, which is added to
+// its list in law/list.h; nothing else has to change. The headers are compiled once for each
+// instruction set by law/laws_isa.cpp, and once more without special options by material/material.cpp,
+// which reads the declarations only. All of their content is in unnamed namespaces, so that the
+// linker cannot take a function of one instruction set for that of another.
+
+#include "material/material.h"
+
+#include <cstddef>
+#include <deque>
+#include <limits>
+
+#define MPM_INLINE inline __attribute__((always_inline))
+
+// Loops over the points of a batch, without and with sums; MPM_ISA is set for law/laws_isa.cpp.
+#ifdef MPM_ISA
+#define MPM_PRAGMA(x) _Pragma(#x)
+#define MPM_SIMD MPM_PRAGMA(omp simd)
+#define MPM_SIMD_SUM(...) MPM_PRAGMA(omp simd reduction(+ : __VA_ARGS__))
+#else
+#define MPM_SIMD
+#define MPM_SIMD_SUM(...)
+#endif
+
+namespace MPM_NS {
+
+/** Values that a parameter may have: low < value < high, or low <= value <= high when closed. */
+struct Range {
+  double low, high;
+  bool closed;
+};
+constexpr double UNBOUNDED = std::numeric_limits<double>::infinity();
+constexpr double REQUIRED = std::numeric_limits<double>::quiet_NaN();    ///< no default value
+constexpr Range POSITIVE{0.0, UNBOUNDED, false};
+constexpr Range NOT_NEGATIVE{0.0, UNBOUNDED, true};
+constexpr Range FRACTION{0.0, 1.0, true};
+constexpr Range POISSON_RATIO{-1.0, 0.5, false};
+constexpr const char *FLAG = "flag";    ///< unit of an option without a value: 1 when given
+
+/** Declaration of one parameter.
+ *
+ *  Parameters without option are given first, in this order; those of them that have a default are
+ *  given all together or not at all. The others follow the words of their option, options in any
+ *  order. Options that begin with the same word exclude each other.
+ */
+struct Parameter {
+  const char *option;    ///< word or words that introduce it, "" when positional
+  const char *name;      ///< as in the manual
+  const char *unit;      ///< kind of unit: pressure, velocity, viscosity, temperature, ..., or 1
+  Range range;
+  double standard;    ///< value when not given, or REQUIRED
+  const char *meaning;
+};
+
+/** Declarations that several laws share. */
+constexpr Parameter SHEAR_MODULUS = {"", "G", "pressure", POSITIVE, REQUIRED, "shear modulus"};
+
+/** Declaration of one history variable. */
+struct HistoryDeclaration {
+  const char *name;    ///< as used by compute mpm/atom
+  int initial;         ///< index of the parameter that is its initial value, or one of those below
+  const char *unit;    ///< kind of unit, as for parameters
+  const char *meaning;
+};
+/** Initial values of history variables; INITIALIZED: by initialize(). */
+enum { ZERO = -1, ONE = -2, INITIALIZED = -3 };
+constexpr HistoryDeclaration PLASTIC_STRAIN = {"eplastic", ZERO, "1", "equivalent plastic strain"};
+
+/** Shares of the stress: which ones a law needs from the last step, which ones a viscosity adds. When
+ *  these overlap, the material keeps what viscosities add apart and out of the law's sight. */
+enum StressShare { NO_SHARE = 0, PRESSURE = 1, DEVIATOR = 2, WHOLE_STRESS = 3 };
+
+/** The places that a law can take in a material, in the order of their history variables. */
+enum Part { CLOSED, EOS, STRENGTH, VISCOSITY, DAMAGE, THERMAL, NPARTS };
+
+/** Values of the parameters, as the kernels get them, and what other parts of the material tell. */
+struct LawParameters {
+  static constexpr int MAX = 32, MAX_TERMS = 32, TERM = 4;
+  double density;       ///< reference density, in pressure / velocity^2
+  double value[MAX];    ///< in the order of the declaration
+  int nterms;
+  double term[MAX_TERMS][TERM];    ///< values of the repeated option, in the order they are given
+
+  double heat_density;    ///< reference density, in pressure / (unit of CP * temperature)
+  double chi;             ///< share of the plastic work that becomes heat
+  double warm;        ///< temperature rise per heat of unit reference volume; 0: no thermal part
+  int temperature;    ///< row of the temperature in batch.history, -1: no thermal part
+};
+
+/** Rows of history variables of a batch, beginning with the first one of a law. */
+using History = double (*)[BATCH];
+
+/** Temperature of the points of a batch, or null when the material has no thermal part. */
+inline __attribute__((always_inline)) double *temperature(const LawParameters &p, const Batch &b)
+{
+  return p.temperature < 0 ? nullptr : b.history[p.temperature];
+}
+
+/** Declaration of a law. */
+struct LawInfo {
+  const char *name;
+  const char *meaning;
+  StressShare share;    ///< of the old stress that it builds on; of a viscosity: what it adds
+  const Parameter *parameters;
+  int nparameters;
+  const char *term;    ///< option that may be given several times, or null
+  const Parameter *term_parameters;
+  int nterm_parameters;
+  const HistoryDeclaration *history;
+  int ndeclared;                             ///< entries of history
+  const HistoryDeclaration *term_history;    ///< one set for each term, names followed by 1, 2, ...
+  int nterm_history;
+  /** History variables that a law with these parameters has, those of the terms not counted. */
+  int (*nhistory)(const LawParameters &);
+  bool uses_speed;    ///< of a viscosity: does update() read batch.speed?
+  bool uses_F;        ///< does any kernel read batch.F? Else J and A are all it knows of it
+  /** What is wrong with parameters that are each in their range; null when all is well. */
+  const char *(*check)(const LawParameters &);
+  /** Does a law with these parameters need the temperature, and so a thermal part? */
+  bool (*needs_temperature)(const LawParameters &);
+  /** Of a thermal part: share of the plastic work that becomes heat, and temperature rise per heat
+   *  of unit reference volume. */
+  double (*heat_share)(const LawParameters &);
+  double (*warming)(const LawParameters &);
+  /** History of a new point at x (its values one after the other; in: initial values). Null: keep
+   *  the initial values. */
+  void (*initialize)(const LawParameters &, const double *x, double *history);
+};
+
+/** Declarations of all laws for one place: in the order of the lists in law/list.h, then those
+ *  of plugins. They stay where they are when others are added. */
+using LawList = std::deque<LawInfo>;
+const LawList &declared_laws(Part);
+
+/** Kernels of a law; those that do not concern it are null.
+ *
+ *  Energies are per reference volume. The parts of a composed material work on one batch in turn:
+ *  a damage takes back its reduction of the stress (prepare), a strength makes the deviator of the
+ *  stress, viscosities add to it, the equation of state subtracts the pressure, a damage reduces the
+ *  stress, a thermal part turns batch.heat into temperature. A closed law makes the whole stress.
+ *  The other parts know nothing of a damage: it corrects their accounts of plastic work and heat.
+ */
+struct LawKernels {
+  /** Stress and history at the end of the step; work of the batch is added to batch.work, heat of
+   *  the points to batch.heat, increments of the equivalent plastic strain go to batch.plastic. */
+  void (*update)(const LawParameters &, Batch &, History);
+
+  /** Adds to k[n] this part's share of density * (wave speed)^2, with the reference density:
+   *  J d sigma_nn / d epsilon_nn for a small uniaxial strain on top of the present state. */
+  void (*modulus)(const LawParameters &, const Batch &, History, double *k);
+
+  /** Adds to w[n] the stored energy; a damage, whose strength is not asked, finds the energy of the
+   *  equation of state there and makes it that of the damaged material. */
+  void (*energy)(const LawParameters &, const Batch &, History, double *w);
+
+  /** Of a viscosity: raises c[n] so that h / c[n] is the stable step with this viscosity. */
+  void (*raise_speed)(const LawParameters &, const Batch &, History, double *c);
+
+  /** Of a damage: before the other parts, gives back the stress of the undamaged material, and
+   *  tells in batch.kept what share of its deviator there was. */
+  void (*prepare)(const LawParameters &, Batch &, History);
+};
+
+/** What a law need not declare or provide; all laws derive from this. */
+struct LawDefaults {
+  static constexpr StressShare share = NO_SHARE;
+  static constexpr bool uses_speed = true, uses_F = true;
+  static constexpr const char *term = nullptr;
+  static constexpr std::nullptr_t term_parameters = nullptr;
+  static constexpr std::nullptr_t history = nullptr;
+  static constexpr std::nullptr_t term_history = nullptr;
+  static constexpr int nhistory(const LawParameters &) { return 0; }
+  static constexpr const char *check(const LawParameters &) { return nullptr; }
+  static constexpr bool needs_temperature(const LawParameters &) { return false; }
+  static constexpr std::nullptr_t heat_share = nullptr, warming = nullptr;
+  static constexpr std::nullptr_t initialize = nullptr;
+  static constexpr std::nullptr_t modulus = nullptr, energy = nullptr;
+  static constexpr std::nullptr_t raise_speed = nullptr, prepare = nullptr;
+};
+
+/** Kernels of all laws for one instruction set. */
+struct LawTable {
+  const char *isa;                            ///< "baseline", "AVX2" or "AVX-512"
+  std::vector<LawKernels> builtin[NPARTS];    ///< in the order of the lists in law/list.h
+  void (*clear_stress)(Batch &);              ///< stress of a law with no strength
+  void (*speed)(int n, double density, const double *k, double *c);    ///< c = sqrt(k / density)
+
+  void (*mean_stress)(const Batch &, double *);    ///< a third of the trace
+
+  /** Pressure at the end of a step, and equivalent strain rate sqrt(2/3 D:D) in its middle. */
+  void (*pressure)(const Batch &, double *);
+  void (*strain_rate)(const Batch &, double *);
+
+  /** Number of values below low or above high. */
+  int (*outside)(int n, const double *value, double low, double high);
+
+  /** The table for this CPU, or the one with this name: as MPMKernels::select(). */
+  static const LawTable *select(const char *name = nullptr);
+
+  /** Kernels of a law by its index in declared_laws(). */
+  const LawKernels &kernels(Part, int index) const;
+};
+
+/** What a plugin with laws must have in common with the package. */
+struct LawVersion {
+  int interface;    ///< raised with each change of what laws and package expect of each other
+  int batch, info, kernels, parameters;
+};
+constexpr LawVersion law_version{2, sizeof(Batch), sizeof(LawInfo), sizeof(LawKernels),
+                                 sizeof(LawParameters)};
+
+/** A law of a plugin. */
+struct PluginLaw {
+  Part part;
+  LawInfo info;
+  LawKernels kernels;
+};
+
+/** Adds laws to declared_laws(); returns what is wrong, or nothing. */
+std::string add_laws(const LawVersion &, const PluginLaw *, int n);
+
+}    // namespace MPM_NS
+#endif

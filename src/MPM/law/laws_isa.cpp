@@ -1,0 +1,85 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// What materials need besides their laws, for one instruction set: see law/kernels.h.
+
+#include "law/kinematics.h"
+
+namespace MPM_NS::law {
+namespace {
+
+  void clear_stress(Batch &b)
+  {
+    for (int k = 0; k < 6; k++) {
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) b.stress[k][i] = 0.0;
+    }
+  }
+
+  void speed(int n, double density, const double *k, double *c)
+  {
+    const double inv = 1.0 / density;
+    MPM_SIMD
+    for (int i = 0; i < n; i++) c[i] = std::sqrt(max(k[i] * inv, 0.0));
+  }
+
+  void mean_stress(const Batch &b, double *mean)
+  {
+    MPM_SIMD
+    for (int i = 0; i < b.n; i++) mean[i] = (1.0 / 3.0) * trace(load_stress(b, i));
+  }
+
+  void pressure(const Batch &b, double *p)
+  {
+    mean_stress(b, p);
+    MPM_SIMD
+    for (int i = 0; i < b.n; i++) p[i] = -p[i];
+  }
+
+  void strain_rate(const Batch &b, double *rate)
+  {
+    const double c = (2.0 / 3.0) / (b.dt * b.dt);
+    MPM_SIMD
+    for (int i = 0; i < b.n; i++) rate[i] = std::sqrt(c * norm2(increment(b, i).strain));
+  }
+
+  int outside(int n, const double *value, double low, double high)
+  {
+    int count = 0;
+    MPM_SIMD_SUM(count)
+    for (int i = 0; i < n; i++) count += value[i] < low || value[i] > high ? 1 : 0;
+    return count;
+  }
+
+#if defined(__AVX512F__)
+  constexpr const char *isa = "AVX-512";
+#elif defined(__AVX2__)
+  constexpr const char *isa = "AVX2";
+#else
+  constexpr const char *isa = "baseline";
+#endif
+
+}    // namespace
+}    // namespace MPM_NS::law
+
+#define MPM_PASTE(a, b) a##b
+#define MPM_NAME(isa) MPM_PASTE(mpm_laws_common_, isa)
+
+namespace MPM_NS {
+void MPM_NAME(MPM_ISA)(LawTable &);
+void MPM_NAME(MPM_ISA)(LawTable &table)
+{
+  table.isa = law::isa;
+  table.clear_stress = law::clear_stress;
+  table.speed = law::speed;
+  table.mean_stress = law::mean_stress;
+  table.pressure = law::pressure;
+  table.strain_rate = law::strain_rate;
+  table.outside = law::outside;
+}
+}    // namespace MPM_NS

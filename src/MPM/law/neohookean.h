@@ -1,0 +1,87 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MPM_LAW_NEOHOOKEAN_H
+#define MPM_LAW_NEOHOOKEAN_H
+
+#include "law/kinematics.h"
+
+namespace MPM_NS::law {
+namespace {
+
+  /** Compressible neo-Hookean solid in the logarithmic form (J. Simo, K. Pister, Comput. Methods
+   *  Appl. Mech. Eng. 46 (1984) 201; J. Bonet, R. Wood, Nonlinear Continuum Mechanics, eq. 6.27):
+   *
+   *    w = mu/2 (tr b - 3 - 2 ln J) + lambda/2 ln^2 J
+   *    sigma = [mu (b - I) + lambda ln J I] / J
+   */
+  struct LawNeoHookean : LawDefaults {
+    static constexpr const char *name = "neohookean";
+    static constexpr const char *meaning = "compressible neo-Hookean hyperelastic";
+    enum { E, NU };
+    static constexpr Parameter parameters[] = {
+        {"", "E", "pressure", POSITIVE, REQUIRED, "Young's modulus at small strain"},
+        {"", "NU", "1", POISSON_RATIO, REQUIRED, "Poisson's ratio at small strain"}};
+
+    double mu, lambda;
+
+    explicit LawNeoHookean(const LawParameters &p) :
+        mu(p.value[E] / (2.0 * (1.0 + p.value[NU]))),
+        lambda(p.value[E] * p.value[NU] / ((1.0 + p.value[NU]) * (1.0 - 2.0 * p.value[NU])))
+    {
+    }
+
+    static void update(const LawParameters &p, Batch &b, History)
+    {
+      const LawNeoHookean law(p);
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const double J = b.J[i], inv = 1.0 / J;
+        const Sym bb = left_cauchy_green(b, i);
+        store_stress(b, i, add_diagonal(law.mu * inv * bb, (law.lambda * log(J) - law.mu) * inv));
+      }
+    }
+
+    /** Acoustic tensor: J rho c^2 = mu n.b.n + mu + lambda (1 - ln J), largest along the longest
+     *  principal stretch. */
+    static void modulus(const LawParameters &p, const Batch &b, History, double *k)
+    {
+      const LawNeoHookean law(p);
+      const double least = LEAST_MODULUS * (law.lambda + 2.0 * law.mu);
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++)
+        k[i] += max(law.mu * (largest_principal(left_cauchy_green(b, i)) + 1.0) +
+                        law.lambda * (1.0 - log(b.J[i])),
+                    least);
+    }
+
+    /** With H = F - I and det F - 1 = tr H + minors + det H, the terms of first order in H are
+     *  taken out of tr b - 3 - 2 ln J by hand: small strains keep full relative precision. */
+    static void energy(const LawParameters &p, const Batch &b, History, double *w)
+    {
+      const LawNeoHookean law(p);
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const double xx = b.F[0][i] - 1.0, xy = b.F[1][i], xz = b.F[2][i];
+        const double yx = b.F[3][i], yy = b.F[4][i] - 1.0, yz = b.F[5][i];
+        const double zx = b.F[6][i], zy = b.F[7][i], zz = b.F[8][i] - 1.0;
+        const double square =
+            xx * xx + xy * xy + xz * xz + yx * yx + yy * yy + yz * yz + zx * zx + zy * zy + zz * zz;
+        const double minors = (xx * yy - xy * yx) + (xx * zz - xz * zx) + (yy * zz - yz * zy);
+        const double det =
+            xx * (yy * zz - yz * zy) - xy * (yx * zz - yz * zx) + xz * (yx * zy - yy * zx);
+        const double J = b.J[i], logJ = log(J);
+        w[i] += 0.5 * law.mu * (square - 2.0 * (minors + det) + 2.0 * minus1_minus_log(J)) +
+            0.5 * law.lambda * logJ * logJ;
+      }
+    }
+  };
+
+}    // namespace
+}    // namespace MPM_NS::law
+#endif

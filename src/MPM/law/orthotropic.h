@@ -1,0 +1,260 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MPM_LAW_ORTHOTROPIC_H
+#define MPM_LAW_ORTHOTROPIC_H
+
+#include "law/hyperelastic.h"
+
+namespace MPM_NS::law {
+namespace {
+
+  constexpr Range ANY_NUMBER{-UNBOUNDED, UNBOUNDED, false};
+
+  /** Elastic constants of a material with three orthogonal planes of symmetry. */
+  struct Orthotropic {
+    double E1, E2, E3, nu12, nu13, nu23, G12, G13, G23;
+
+    /** Is the energy positive for any strain? (B.M. Lempriere, AIAA J. 6 (1968) 2226) */
+    bool admissible() const
+    {
+      const double r12 = nu12 * nu12 * E2 / E1, r13 = nu13 * nu13 * E3 / E1;
+      const double r23 = nu23 * nu23 * E3 / E2;
+      return r12 < 1.0 && r13 < 1.0 && r23 < 1.0 &&
+          1.0 - r12 - r13 - r23 - 2.0 * nu12 * nu13 * nu23 * E3 / E1 > 0.0;
+    }
+  };
+
+  /** Anisotropic solid with the second Piola-Kirchhoff stress linear in the Green-Lagrange strain
+   *  (as St. Venant and Kirchhoff):
+   *
+   *    w = E:C:E/2,  J sigma = F (C:E) F^T
+   *
+   *  The axes of the material, given in the reference configuration, turn and stretch with it, and
+   *  any rotation leaves the stress rotated and otherwise unchanged. */
+  struct AnisotropicKirchhoff {
+    double C11, C22, C33, C12, C13, C23, G12, G13, G23;
+    double to_axes[9], from_axes[9];    ///< rotations of tensors into the axes and back
+
+    /** axis: three orthonormal vectors. */
+    AnisotropicKirchhoff(const Orthotropic &c, const double axis[3][3]) :
+        G12(c.G12), G13(c.G13), G23(c.G23)
+    {
+      // inverse of the compliance
+      const double s11 = 1.0 / c.E1, s22 = 1.0 / c.E2, s33 = 1.0 / c.E3;
+      const double s12 = -c.nu12 * s11, s13 = -c.nu13 * s11, s23 = -c.nu23 * s22;
+      const double det = s11 * (s22 * s33 - s23 * s23) - s12 * (s12 * s33 - s23 * s13) +
+          s13 * (s12 * s23 - s22 * s13);
+      C11 = (s22 * s33 - s23 * s23) / det;
+      C22 = (s11 * s33 - s13 * s13) / det;
+      C33 = (s11 * s22 - s12 * s12) / det;
+      C12 = (s13 * s23 - s12 * s33) / det;
+      C13 = (s12 * s23 - s13 * s22) / det;
+      C23 = (s12 * s13 - s23 * s11) / det;
+      for (int a = 0; a < 3; a++)
+        for (int k = 0; k < 3; k++) from_axes[3 * k + a] = to_axes[3 * a + k] = axis[a][k];
+    }
+
+    /** Second Piola-Kirchhoff stress in the axes of the material. */
+    MPM_INLINE Sym stress(const Sym &e) const
+    {
+      return {C11 * e.xx + C12 * e.yy + C13 * e.zz,
+              C12 * e.xx + C22 * e.yy + C23 * e.zz,
+              C13 * e.xx + C23 * e.yy + C33 * e.zz,
+              2.0 * G12 * e.xy,
+              2.0 * G13 * e.xz,
+              2.0 * G23 * e.yz};
+    }
+
+    MPM_INLINE Sym kirchhoff(const Batch &b, int i) const
+    {
+      const double F[9] = {b.F[0][i], b.F[1][i], b.F[2][i], b.F[3][i], b.F[4][i],
+                           b.F[5][i], b.F[6][i], b.F[7][i], b.F[8][i]};
+      const Sym e = congruence(to_axes, green_lagrange(displacement(b, i)));
+      return congruence(F, congruence(from_axes, stress(e)));
+    }
+
+    MPM_INLINE double stored(const Batch &b, int i) const
+    {
+      const Sym e = congruence(to_axes, green_lagrange(displacement(b, i))), s = stress(e);
+      return 0.5 * (s.xx * e.xx + s.yy * e.yy + s.zz * e.zz) + s.xy * e.xy + s.xz * e.xz +
+          s.yz * e.yz;
+    }
+
+    /** Largest density_0 c^2 of small waves in the unstrained material, or little more: exact when
+     *  it is that of an axis or when the material is isotropic; reason as in largest_modulus(). */
+    double stiffest() const
+    {
+      const double a = max(C11, max(C22, C33));
+      const double b = max(G12 + std::fabs(C12 + G12),
+                           max(G13 + std::fabs(C13 + G13), G23 + std::fabs(C23 + G23)));
+      return max(a, b);
+    }
+
+    /** With N = F^T n and M = F^T m, J density c^2 = (M N):C:(M N) + n.tau.n. */
+    static MPM_INLINE void bound(const AnisotropicKirchhoff &law, const Batch &b, double *k)
+    {
+      const double stiff = law.stiffest();
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const double longest = largest_principal(left_cauchy_green(b, i));
+        const double tension = largest_principal(b.J[i] * load_stress(b, i));
+        k[i] += stiff * longest * longest + max(tension, 0.0);
+      }
+    }
+  };
+
+  /** Law by nine engineering constants. */
+  struct LawOrthotropic : Hyperelastic<LawOrthotropic>, AnisotropicKirchhoff {
+    static constexpr const char *name = "orthotropic";
+    static constexpr const char *meaning = "orthotropic elastic, linear in Green-Lagrange strain";
+    static constexpr Parameter parameters[] = {
+        {"", "E1", "pressure", POSITIVE, REQUIRED, "Young's modulus along axis 1"},
+        {"", "E2", "pressure", POSITIVE, REQUIRED, "Young's modulus along axis 2"},
+        {"", "E3", "pressure", POSITIVE, REQUIRED, "Young's modulus along axis 3"},
+        {"", "NU12", "1", ANY_NUMBER, REQUIRED, "contraction along 2 under stress along 1"},
+        {"", "NU13", "1", ANY_NUMBER, REQUIRED, "contraction along 3 under stress along 1"},
+        {"", "NU23", "1", ANY_NUMBER, REQUIRED, "contraction along 3 under stress along 2"},
+        {"", "G12", "pressure", POSITIVE, REQUIRED, "shear modulus in the plane 12"},
+        {"", "G13", "pressure", POSITIVE, REQUIRED, "shear modulus in the plane 13"},
+        {"", "G23", "pressure", POSITIVE, REQUIRED, "shear modulus in the plane 23"},
+        {"axes", "A1X", "1", ANY_NUMBER, 1.0, "axis 1, of any length"},
+        {"axes", "A1Y", "1", ANY_NUMBER, 0.0, "axis 1"},
+        {"axes", "A1Z", "1", ANY_NUMBER, 0.0, "axis 1"},
+        {"axes", "A2X", "1", ANY_NUMBER, 0.0, "vector in the plane 12"},
+        {"axes", "A2Y", "1", ANY_NUMBER, 1.0, "vector in the plane 12"},
+        {"axes", "A2Z", "1", ANY_NUMBER, 0.0, "vector in the plane 12"},
+        {"angle", "THETA", "degrees", ANY_NUMBER, 0.0, "then turns axes 1 and 2 about axis 3"}};
+
+    struct Axes {
+      double axis[3][3];
+
+      explicit Axes(const LawParameters &p)
+      {
+        const double *const a = p.value + 9, *const b = p.value + 12;
+        const double length = std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+        double one[3], two[3], along = 0.0, rest = 0.0;
+        for (int k = 0; k < 3; k++) one[k] = a[k] / length;
+        for (int k = 0; k < 3; k++) along += b[k] * one[k];
+        for (int k = 0; k < 3; k++) two[k] = b[k] - along * one[k];
+        for (int k = 0; k < 3; k++) rest += two[k] * two[k];
+        rest = std::sqrt(rest);
+        const double angle = p.value[15] * (3.14159265358979323846 / 180.0);
+        const double c = std::cos(angle), s = std::sin(angle);
+        for (int k = 0; k < 3; k++) {
+          two[k] /= rest;
+          axis[0][k] = c * one[k] + s * two[k];
+          axis[1][k] = c * two[k] - s * one[k];
+        }
+        for (int k = 0; k < 3; k++) {
+          const int m = (k + 1) % 3, n = (k + 2) % 3;
+          axis[2][k] = one[m] * two[n] - one[n] * two[m];
+        }
+      }
+    };
+
+    static Orthotropic constants(const LawParameters &p)
+    {
+      const double *const v = p.value;
+      return {v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7], v[8]};
+    }
+
+    static const char *check(const LawParameters &p)
+    {
+      const double *const a = p.value + 9, *const b = p.value + 12;
+      double cross2 = 0.0, aa = 0.0, bb = 0.0;
+      for (int k = 0; k < 3; k++) {
+        const int m = (k + 1) % 3, n = (k + 2) % 3;
+        const double c = a[m] * b[n] - a[n] * b[m];
+        cross2 += c * c;
+        aa += a[k] * a[k];
+        bb += b[k] * b[k];
+      }
+      if (!(cross2 > 1e-12 * aa * bb)) return "axes must be two vectors that are not parallel";
+      if (!constants(p).admissible())
+        return "the energy is not positive for all strains: check E1, E2, E3 and NU12, NU13, NU23";
+      return nullptr;
+    }
+
+    explicit LawOrthotropic(const LawParameters &p) :
+        AnisotropicKirchhoff(constants(p), Axes(p).axis)
+    {
+    }
+
+    static void modulus(const LawParameters &p, const Batch &b, History, double *k)
+    {
+      bound(LawOrthotropic(p), b, k);
+    }
+  };
+
+  /** Law by the five constants of a material with an axis of symmetry, such as fibres. */
+  struct LawTransverselyIsotropic : Hyperelastic<LawTransverselyIsotropic>, AnisotropicKirchhoff {
+    static constexpr const char *name = "transversely/isotropic";
+    static constexpr const char *meaning = "elastic with one axis, linear in Green-Lagrange strain";
+    enum { EA, ET, NUA, NUT, GA, AXIS };
+    static constexpr Parameter parameters[] = {
+        {"", "EA", "pressure", POSITIVE, REQUIRED, "Young's modulus along the axis"},
+        {"", "ET", "pressure", POSITIVE, REQUIRED, "Young's modulus across the axis"},
+        {"", "NUA", "1", ANY_NUMBER, REQUIRED, "contraction across under stress along the axis"},
+        {"", "NUT", "1", {-1.0, 1.0, false}, REQUIRED, "contraction across under stress across"},
+        {"", "GA", "pressure", POSITIVE, REQUIRED, "shear modulus in planes through the axis"},
+        {"axis", "AX", "1", ANY_NUMBER, 1.0, "axis, of any length"},
+        {"axis", "AY", "1", ANY_NUMBER, 0.0, "axis"},
+        {"axis", "AZ", "1", ANY_NUMBER, 0.0, "axis"}};
+
+    struct Axes {
+      double axis[3][3];
+
+      explicit Axes(const LawParameters &p)
+      {
+        const double *const a = p.value + AXIS;
+        const double length = std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+        for (int k = 0; k < 3; k++) axis[0][k] = a[k] / length;
+        // two more, from the coordinate axis that is farthest from the first
+        int far = 0;
+        for (int k = 1; k < 3; k++)
+          if (std::fabs(axis[0][k]) < std::fabs(axis[0][far])) far = k;
+        const double along = axis[0][far], rest = std::sqrt(1.0 - along * along);
+        for (int k = 0; k < 3; k++) axis[1][k] = ((k == far) - along * axis[0][k]) / rest;
+        for (int k = 0; k < 3; k++) {
+          const int m = (k + 1) % 3, n = (k + 2) % 3;
+          axis[2][k] = axis[0][m] * axis[1][n] - axis[0][n] * axis[1][m];
+        }
+      }
+    };
+
+    static Orthotropic constants(const LawParameters &p)
+    {
+      const double *const v = p.value;
+      const double GT = v[ET] / (2.0 * (1.0 + v[NUT]));
+      return {v[EA], v[ET], v[ET], v[NUA], v[NUA], v[NUT], v[GA], v[GA], GT};
+    }
+
+    static const char *check(const LawParameters &p)
+    {
+      const double *const a = p.value + AXIS;
+      if (!(a[0] * a[0] + a[1] * a[1] + a[2] * a[2] > 0.0)) return "axis must not be zero";
+      if (!constants(p).admissible())
+        return "the energy is not positive for all strains: 1 - NUT must be above 2 NUA^2 ET/EA";
+      return nullptr;
+    }
+
+    explicit LawTransverselyIsotropic(const LawParameters &p) :
+        AnisotropicKirchhoff(constants(p), Axes(p).axis)
+    {
+    }
+
+    static void modulus(const LawParameters &p, const Batch &b, History, double *k)
+    {
+      bound(LawTransverselyIsotropic(p), b, k);
+    }
+  };
+
+}    // namespace
+}    // namespace MPM_NS::law
+#endif

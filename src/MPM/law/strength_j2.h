@@ -1,0 +1,291 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MPM_LAW_STRENGTH_J2_H
+#define MPM_LAW_STRENGTH_J2_H
+
+#include "law/strength_kinematic.h"
+
+namespace MPM_NS::law {
+namespace {
+
+  enum {
+    J2_G,
+    J2_SIGMAY,
+    J2_H,
+    J2_B,
+    J2_N,
+    J2_VOCE_Q,
+    J2_VOCE_BETA,
+    J2_VOCE_H,
+    J2_SWIFT_E0,
+    J2_SWIFT_N,
+    J2_COWPER_RATE,
+    J2_COWPER_P,
+    J2_PERZYNA_S,
+    J2_PERZYNA_RATE,
+    J2_PERZYNA_M,
+    J2_BACK_C,
+    J2_BACK_GAMMA
+  };
+
+  /** Flow stress at rest over the plastic strain e: kinds, or the size of a table. */
+  enum { HARDENING_POWER, HARDENING_VOCE, SHORT_TABLE = 8, LONG_TABLE = LawParameters::MAX_TERMS };
+
+  /** Straight lines between the points, from SIGMAY at e = 0; constant behind the last one. SIZE:
+   *  room for points, as only loops of fixed length vectorise inside of others. */
+  template <int SIZE> struct J2Hardening {
+    double sigmay;
+    double from[SIZE], length[SIZE], slopes[SIZE];
+
+    explicit J2Hardening(const LawParameters &p) : sigmay(p.value[J2_SIGMAY])
+    {
+      double e = 0.0, y = sigmay;
+      for (int k = 0; k < SIZE; k++) {
+        from[k] = e;
+        length[k] = slopes[k] = 0.0;
+        if (k >= p.nterms) continue;
+        length[k] = p.term[k][0] - e;
+        slopes[k] = (p.term[k][1] - y) / length[k];
+        e = p.term[k][0];
+        y = p.term[k][1];
+      }
+    }
+    MPM_INLINE double operator()(double e, double &slope) const
+    {
+      double y = sigmay, dy = 0.0;
+#pragma GCC unroll 32
+      for (int k = 0; k < SIZE; k++) {
+        const double x = e - from[k];
+        y += slopes[k] * min(max(x, 0.0), length[k]);
+        dy = x >= 0.0 && x < length[k] ? slopes[k] : dy;
+      }
+      slope = dy;
+      return y;
+    }
+  };
+
+  /** SIGMAY + H e + B e^N (P. Ludwik, Elemente der technologischen Mechanik, 1909), or
+   *  SIGMAY (1 + e/E0)^N (H.W. Swift, J. Mech. Phys. Solids 1 (1952) 1). */
+  template <> struct J2Hardening<HARDENING_POWER> {
+    double base, H, B, N, inv, offset;
+
+    explicit J2Hardening(const LawParameters &p)
+    {
+      const bool swift = p.value[J2_SWIFT_E0] > 0.0;
+      base = swift ? 0.0 : p.value[J2_SIGMAY];
+      H = p.value[J2_H];
+      B = swift ? p.value[J2_SIGMAY] : p.value[J2_B];
+      N = swift ? p.value[J2_SWIFT_N] : p.value[J2_N];
+      inv = swift ? 1.0 / p.value[J2_SWIFT_E0] : 1.0;
+      offset = swift ? 1.0 : 0.0;
+    }
+    MPM_INLINE double operator()(double e, double &slope) const
+    {
+      const double x = offset + inv * e, power = B * pow(x, N);
+      slope = H + N * inv * power / max(x, 1e-300);
+      return base + H * e + power;
+    }
+  };
+
+  /** SIGMAY + Q (1 - exp(-BETA e)) + H e (E. Voce, J. Inst. Metals 74 (1948) 537). */
+  template <> struct J2Hardening<HARDENING_VOCE> {
+    double sigmay, Q, beta, H;
+
+    explicit J2Hardening(const LawParameters &p) :
+        sigmay(p.value[J2_SIGMAY]), Q(p.value[J2_VOCE_Q]), beta(p.value[J2_VOCE_BETA]),
+        H(p.value[J2_VOCE_H])
+    {
+    }
+    MPM_INLINE double operator()(double e, double &slope) const
+    {
+      const double left = expm1(-beta * e);
+      slope = H + Q * beta * (1.0 + left);
+      return sigmay + H * e - Q * left;
+    }
+  };
+
+  /** Flow stress of hardening and plastic strain rate r, at the end of the step:
+   *
+   *    Y (1 + (r/RATE)^(1/P))      G.R. Cowper, P.S. Symonds, Brown Univ. Tech. Rep. 28 (1957)
+   *    Y + S (r/RATE)^(1/M)        P. Perzyna, Adv. Appl. Mech. 9 (1966) 243
+   */
+  template <int KIND, bool RATE> struct J2Flow {
+    static constexpr bool smooth = KIND < SHORT_TABLE, goes_on = RATE;
+    J2Hardening<KIND> hardening;
+    double G;
+    double inv_rate, exponent, factor, drag;    ///< factor and drag times (r/RATE)^exponent
+
+    J2Flow(const LawParameters &p, const Batch &b) : hardening(p), G(p.value[J2_G])
+    {
+      const bool perzyna = p.value[J2_PERZYNA_S] > 0.0;
+      const double rate = p.value[perzyna ? J2_PERZYNA_RATE : J2_COWPER_RATE];
+      inv_rate = 1.0 / max(rate * b.dt, 1e-300);
+      exponent = 1.0 / p.value[perzyna ? J2_PERZYNA_M : J2_COWPER_P];
+      factor = perzyna ? 0.0 : 1.0;
+      drag = p.value[J2_PERZYNA_S];
+    }
+    MPM_INLINE double shear(int) const { return G; }
+    MPM_INLINE double start(History history, int i) const
+    {
+      double slope;
+      return hardening(history[0][i], slope);
+    }
+    MPM_INLINE void stress(History history, int i, double, const TrialState, double D, double &y,
+                           double &dy) const
+    {
+      y = hardening(history[0][i] + D, dy);
+      if (RATE) {
+        const double x = pow(D * inv_rate, exponent), fast = 1.0 + factor * x;
+        dy = dy * fast + (y * factor + drag) * exponent * x / max(D, 1e-300);
+        y = y * fast + drag * x;
+      }
+    }
+    MPM_INLINE double finish(History history, int i, double start, double D, double y, double) const
+    {
+      history[0][i] += D;
+      return 0.5 * (start + y) * D;
+    }
+  };
+
+  /** Von Mises plasticity with isotropic and kinematic hardening and rate dependence. Linear
+   *  isotropic hardening alone is solved in closed form. */
+  struct StrengthJ2 : ShearElasticity {
+    static constexpr const char *name = "j2";
+    static constexpr const char *meaning = "von Mises plasticity with hardening and rate";
+    static constexpr StressShare share = DEVIATOR;
+    static constexpr Range EXPONENT{1.0, UNBOUNDED, true};
+    static constexpr Parameter parameters[] = {
+        SHEAR_MODULUS,
+        {"", "SIGMAY", "pressure", NOT_NEGATIVE, REQUIRED, "yield stress in uniaxial tension"},
+        {"hardening linear", "H", "pressure", NOT_NEGATIVE, 0.0,
+         "slope of flow stress over plastic strain"},
+        {"hardening power", "B", "pressure", NOT_NEGATIVE, 0.0, "hardening B e^N"},
+        {"hardening power", "N", "1", POSITIVE, 1.0, "exponent of the plastic strain e"},
+        {"hardening voce", "Q", "pressure", NOT_NEGATIVE, 0.0, "hardening Q (1 - exp(-BETA e))"},
+        {"hardening voce", "BETA", "1", NOT_NEGATIVE, 0.0, "rate of the exponential"},
+        {"hardening voce", "HVOCE", "pressure", NOT_NEGATIVE, 0.0, "slope that is added"},
+        {"hardening swift", "E0", "1", POSITIVE, 0.0, "strain of SIGMAY (1 + e/E0)^NSWIFT"},
+        {"hardening swift", "NSWIFT", "1", POSITIVE, 1.0, "exponent"},
+        {"rate cowper/symonds", "RATE", "1/time", POSITIVE, 0.0,
+         "plastic strain rate that doubles the flow stress"},
+        {"rate cowper/symonds", "P", "1", EXPONENT, 1.0, "inverse exponent of the rate"},
+        {"rate perzyna", "S", "pressure", POSITIVE, 0.0, "overstress at the rate RATEP"},
+        {"rate perzyna", "RATEP", "1/time", POSITIVE, 1.0, "reference plastic strain rate"},
+        {"rate perzyna", "M", "1", EXPONENT, 1.0, "inverse exponent of the rate"},
+        {"kinematic", "C", "pressure", POSITIVE, 0.0, "initial slope of the back stress"},
+        {"kinematic", "GAMMA", "1", NOT_NEGATIVE, 0.0, "dynamic recovery, back stress <= C/GAMMA"}};
+    static constexpr const char *term = "point";
+    static constexpr Parameter term_parameters[] = {
+        {"", "E", "1", POSITIVE, REQUIRED, "plastic strain"},
+        {"", "SIGMA", "pressure", NOT_NEGATIVE, REQUIRED, "flow stress there"}};
+    static constexpr HistoryDeclaration history[] = {
+        PLASTIC_STRAIN,
+        {"backxx", ZERO, "pressure", "back stress times J"},
+        {"backyy", ZERO, "pressure", "back stress times J"},
+        {"backzz", ZERO, "pressure", "back stress times J"},
+        {"backxy", ZERO, "pressure", "back stress times J"},
+        {"backxz", ZERO, "pressure", "back stress times J"},
+        {"backyz", ZERO, "pressure", "back stress times J"}};
+
+    static constexpr bool kinematic(const LawParameters &p) { return p.value[J2_BACK_C] > 0.0; }
+    static constexpr bool rate(const LawParameters &p)
+    {
+      return p.value[J2_COWPER_RATE] > 0.0 || p.value[J2_PERZYNA_S] > 0.0;
+    }
+    static constexpr bool power(const LawParameters &p)
+    {
+      return p.value[J2_B] > 0.0 || p.value[J2_SWIFT_E0] > 0.0;
+    }
+    static constexpr bool voce(const LawParameters &p) { return p.value[J2_VOCE_Q] > 0.0; }
+    static constexpr int nhistory(const LawParameters &p) { return kinematic(p) ? 7 : 1; }
+
+    static const char *check(const LawParameters &p)
+    {
+      if (p.nterms > 0 && (power(p) || p.value[J2_H] > 0.0 || voce(p) || p.value[J2_VOCE_H] > 0.0))
+        return "points of the flow stress do not go with hardening: use one of them";
+      double e = 0.0, y = p.value[J2_SIGMAY];
+      for (int k = 0; k < p.nterms; k++) {
+        if (!(p.term[k][0] > e)) return "plastic strains of points must increase";
+        if (y - p.term[k][1] > 0.5 * p.value[J2_G] * (p.term[k][0] - e))
+          return "the flow stress must not fall faster than G/2 between points";
+        e = p.term[k][0];
+        y = p.term[k][1];
+      }
+      return nullptr;
+    }
+
+    static void update(const LawParameters &p, Batch &b, History history)
+    {
+      if (p.nterms > SHORT_TABLE)
+        choose<LONG_TABLE>(p, b, history);
+      else if (p.nterms > 0)
+        choose<SHORT_TABLE>(p, b, history);
+      else if (voce(p) || p.value[J2_VOCE_H] > 0.0)
+        choose<HARDENING_VOCE>(p, b, history);
+      else if (power(p) || rate(p) || kinematic(p))
+        choose<HARDENING_POWER>(p, b, history);
+      else
+        linear(p, b, history);
+    }
+
+    static void energy(const LawParameters &p, const Batch &b, History history, double *w)
+    {
+      ShearElasticity::energy(p, b, history, w);
+      if (kinematic(p)) back_stress_energy(b, history + 1, p.value[J2_BACK_C], w);
+    }
+
+   private:
+    template <int KIND>
+    static MPM_INLINE void choose(const LawParameters &p, Batch &b, History history)
+    {
+      if (rate(p))
+        choose_kinematic<J2Flow<KIND, true>>(p, b, history);
+      else
+        choose_kinematic<J2Flow<KIND, false>>(p, b, history);
+    }
+
+    template <class Flow>
+    static MPM_INLINE void choose_kinematic(const LawParameters &p, Batch &b, History history)
+    {
+      if (kinematic(p))
+        KinematicReturn<Flow>::update(p, p.value[J2_BACK_C], p.value[J2_BACK_GAMMA], b, history,
+                                      history + 1);
+      else
+        RadialReturn<Flow>::update(p, b, history);
+    }
+
+    static MPM_INLINE void linear(const LawParameters &p, Batch &b, History history)
+    {
+      const double G = p.value[J2_G], sigmay = p.value[J2_SIGMAY], H = p.value[J2_H];
+      const ElasticDeviator elastic{G};
+      double plastic = 0.0;
+      MPM_SIMD_SUM(plastic)
+      for (int i = 0; i < b.n; i++) {
+        const Increment inc = increment(b, i);
+        const Sym s = elastic.trial(b, i, inc);
+        const double q = std::sqrt(1.5 * norm2(s));
+        const double e = history[0][i], y = sigmay + H * e;
+        const double J = b.J[i];
+        const double D = max(q - y, 0.0) / (3.0 * G / J + H);
+        const double ynew = y + H * D;
+        store_stress(b, i, (q > y ? ynew / q : 1.0) * s);
+        const double work = 0.5 * (J + b.Jold[i]) * 0.5 * (y + ynew) * D;
+        history[0][i] = e + D;
+        b.plastic[i] = D;
+        b.heat[i] += p.chi * work;
+        plastic += work * b.vol0[i];
+      }
+      b.work[PLASTIC] += plastic;
+      b.work[HEAT] += p.chi * plastic;
+    }
+  };
+
+}    // namespace
+}    // namespace MPM_NS::law
+#endif

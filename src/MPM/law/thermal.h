@@ -1,0 +1,101 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MPM_LAW_THERMAL_H
+#define MPM_LAW_THERMAL_H
+
+#include "law/kinematics.h"
+
+namespace MPM_NS::law {
+namespace {
+
+  /** Temperature of a point that exchanges no heat with others:
+   *
+   *    density_0 CP dT = dq - density_0 CP GAMMA T dJ
+   *
+   *  with the heat dq of the step per reference volume: the share CHI of the plastic work
+   *  (G.I. Taylor, H. Quinney, Proc. R. Soc. London A 143 (1934) 307), and all viscous work. The
+   *  second term is the change along an isentrope when density * Gruneisen parameter is constant,
+   *  T ~ exp(GAMMA (1 - J)). Strengths use the temperature of the end of the step. With melting the
+   *  temperature stays at TMELT until the molten fraction f, LATENT df = CP dT, has gone from 0 to 1,
+   *  and on cooling back to 0. */
+  struct ThermalAdiabatic : LawDefaults {
+    static constexpr bool uses_F = false;
+    static constexpr const char *name = "adiabatic";
+    static constexpr const char *meaning = "temperature by dissipation, without conduction";
+    enum { CP, T0, CHI, GAMMA, TMELT, LATENT };
+    static constexpr Parameter parameters[] = {
+        {"", "CP", "energy/(mass temperature)", POSITIVE, REQUIRED, "specific heat"},
+        {"", "T0", "temperature", {-UNBOUNDED, UNBOUNDED, false}, REQUIRED, "initial temperature"},
+        {"", "CHI", "1", FRACTION, 0.9, "share of the plastic work that becomes heat"},
+        {"gruneisen", "GAMMA", "1", NOT_NEGATIVE, 0.0, "Gruneisen parameter at reference density"},
+        {"melt",
+         "TMELT",
+         "temperature",
+         {-UNBOUNDED, UNBOUNDED, false},
+         0.0,
+         "melting temperature"},
+        {"melt", "LATENT", "energy/mass", POSITIVE, 0.0, "heat of fusion, 0: none"}};
+    static constexpr HistoryDeclaration history[] = {
+        {"temperature", T0, "temperature", "temperature"},
+        {"molten", ZERO, "1", "molten fraction"}};
+    static constexpr int nhistory(const LawParameters &p) { return p.value[LATENT] > 0.0 ? 2 : 1; }
+    static constexpr const char *check(const LawParameters &p)
+    {
+      return p.value[LATENT] > 0.0 && p.value[T0] > p.value[TMELT] ? "T0 must not be above TMELT"
+                                                                   : nullptr;
+    }
+    static double heat_share(const LawParameters &p) { return p.value[CHI]; }
+    static double warming(const LawParameters &p) { return 1.0 / (p.heat_density * p.value[CP]); }
+
+    static void update(const LawParameters &p, Batch &b, History history)
+    {
+      const double warm = p.warm, gamma = p.value[GAMMA];
+      double *const T = history[0];
+      if (gamma > 0.0) {
+        MPM_SIMD
+        for (int i = 0; i < b.n; i++) T[i] += T[i] * expm1(-gamma * (b.J[i] - b.Jold[i]));
+      }
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) T[i] += warm * b.heat[i];
+      if (nhistory(p) > 1) melt(p.value[TMELT], p.value[LATENT] / p.value[CP], b, T, history[1]);
+    }
+
+   private:
+    /** range: the latent heat as a difference of temperatures. */
+    static MPM_INLINE void melt(double melting, double range, const Batch &b, double *T,
+                                double *molten)
+    {
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const double all = T[i] + range * molten[i];    // had it not melted
+        const double latent = min(max(all - melting, 0.0), range);
+        molten[i] = latent / range;
+        T[i] = all - latent;
+      }
+    }
+  };
+
+  /** Temperature that nothing changes. */
+  struct ThermalConstant : LawDefaults {
+    static constexpr bool uses_F = false;
+    static constexpr const char *name = "constant";
+    static constexpr const char *meaning = "constant temperature";
+    static constexpr Parameter parameters[] = {
+        {"", "T0", "temperature", {-UNBOUNDED, UNBOUNDED, false}, REQUIRED, "temperature"}};
+    static constexpr HistoryDeclaration history[] = {
+        {"temperature", 0, "temperature", "temperature"}};
+    static constexpr int nhistory(const LawParameters &) { return 1; }
+    static double heat_share(const LawParameters &) { return 1.0; }
+    static double warming(const LawParameters &) { return 0.0; }
+    static void update(const LawParameters &, Batch &, History) {}
+  };
+
+}    // namespace
+}    // namespace MPM_NS::law
+#endif

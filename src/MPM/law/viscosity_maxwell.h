@@ -1,0 +1,133 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MPM_LAW_VISCOSITY_MAXWELL_H
+#define MPM_LAW_VISCOSITY_MAXWELL_H
+
+#include "law/hyperelastic.h"
+
+namespace MPM_NS::law {
+namespace {
+
+  /** Maxwell elements parallel to the rest of the material: a Prony series G_k exp(-t/TAU_k) of the
+   *  shear modulus at finite strain.
+   *
+   *  Each element has a strain z, the elastic left Cauchy-Green tensor c of the change of shape less
+   *  I, which follows the motion like b* = J^(-2/3) b and relaxes to zero (J. Lubliner, Mech. Res.
+   *  Commun. 12 (1985) 93, in spatial form):
+   *
+   *    upper convected rate of c (isochoric part of the motion) = -(c - I)/TAU
+   *    J sigma = G dev(c),   w = G/2 (tr c - 3 - ln det c)
+   *    dissipation rate = G/(2 TAU) (tr c + tr c^-1 - 6) >= 0
+   *
+   *  Fast motion: the neo-Hookean solid G/2 (tr b* - 3). Slow motion: viscosity G TAU. Small strain:
+   *  linear viscoelasticity. The equation of c is linear in the reference frame, where it is
+   *  integrated with the exponential function and linear interpolation of what c relaxes to: of
+   *  second order, exact for small strain at constant rate, stable for any step, and a rotation
+   *  leaves the stress rotated and otherwise unchanged. With f the motion of the step, isochoric
+   *  part, x = dt/TAU,
+   *
+   *    z <- exp(-x) f z f^T + (1 - exp(-x))/x (f f^T - I)
+   */
+  struct ViscosityMaxwell : LawDefaults {
+    static constexpr bool uses_F = false;
+    static constexpr const char *name = "maxwell";
+    static constexpr const char *meaning = "Maxwell elements (Prony series) in shear";
+    static constexpr StressShare share = DEVIATOR;
+    static constexpr bool uses_speed = false;
+    static constexpr std::nullptr_t parameters = nullptr;
+    static constexpr const char *term = "term";
+    static constexpr Parameter term_parameters[] = {
+        {"term", "G", "pressure", POSITIVE, REQUIRED, "shear modulus of the element"},
+        {"term", "TAU", "time", POSITIVE, REQUIRED, "its relaxation time"}};
+    static constexpr HistoryDeclaration term_history[] = {
+        {"maxwell_xx", ZERO, "1", "strain of the element"},
+        {"maxwell_yy", ZERO, "1", "strain of the element"},
+        {"maxwell_zz", ZERO, "1", "strain of the element"},
+        {"maxwell_xy", ZERO, "1", "strain of the element"},
+        {"maxwell_xz", ZERO, "1", "strain of the element"},
+        {"maxwell_yz", ZERO, "1", "strain of the element"}};
+
+    static const char *check(const LawParameters &p)
+    {
+      return p.nterms == 0 ? "no element: add 'term G TAU'" : nullptr;
+    }
+
+    /** tr(c) + tr(c^-1) - 6, in the invariants of z. */
+    static MPM_INLINE double excess(const Sym &z)
+    {
+      const double one = trace(z), two = minors(z), three = determinant(z);
+      return (norm2(z) + one * (two + three) - 3.0 * three) / (1.0 + one + two + three);
+    }
+
+    static void update(const LawParameters &p, Batch &b, History history)
+    {
+      double viscous = 0.0;
+      for (int k = 0; k < p.nterms; k++) {
+        const History h = history + 6 * k;
+        const double G = p.term[k][0], x = b.dt / p.term[k][1];
+        const double decay = exp(-x), gain = x > 0.0 ? -expm1(-x) / x : 1.0;
+        // weights of both ends in the integral of the dissipation: right for small steps, for
+        // relaxation in one large step, and for steady flow
+        const double first = 0.5 * (1.0 - decay), second = x - first;
+        MPM_SIMD_SUM(viscous)
+        for (int i = 0; i < b.n; i++) {
+          const Displacement H = {b.A[0][i], b.A[1][i], b.A[2][i], b.A[3][i], b.A[4][i],
+                                  b.A[5][i], b.A[6][i], b.A[7][i], b.A[8][i]};
+          const double change = expm1((-2.0 / 3.0) * log_volume(H)), scale = 1.0 + change;
+          const Sym old = load_rows(h, i);
+          const Sym z = (decay * scale) * push_forward(b, i, old) +
+              gain * add_diagonal(scale * left_strain(H), change);
+          store_rows(h, i, z);
+          store_stress(b, i, load_stress(b, i) + (G / b.J[i]) * deviator(z));
+          const double work = 0.5 * G * (first * excess(old) + second * excess(z));
+          b.heat[i] += work;
+          viscous += work * b.vol0[i];
+        }
+      }
+      b.work[VISCOUS] += viscous;
+    }
+
+    /** Sudden strain: the elements do not relax. Bound as in largest_modulus(), with the principal
+     *  values of c in place of those of b*. */
+    static void modulus(const LawParameters &p, const Batch &b, History history, double *k)
+    {
+      for (int term = 0; term < p.nterms; term++) {
+        const History h = history + 6 * term;
+        const double G = p.term[term][0];
+        MPM_SIMD
+        for (int i = 0; i < b.n; i++) {
+          const Sym z = load_rows(h, i);
+          const double most = 1.0 + largest_principal(z);
+          const double least = max(1.0 - largest_principal(-1.0 * z), 0.0);
+          const double sum = 3.0 + trace(z);
+          const double along = (5.0 / 9.0) * sum - (1.0 / 3.0) * least;
+          const double across = most + (1.0 / 9.0) * max(6.0 * most - sum, sum - 6.0 * least);
+          k[i] += G * max(along, across);
+        }
+      }
+    }
+
+    static void energy(const LawParameters &p, const Batch &b, History history, double *w)
+    {
+      for (int term = 0; term < p.nterms; term++) {
+        const History h = history + 6 * term;
+        const double G = p.term[term][0];
+        MPM_SIMD
+        for (int i = 0; i < b.n; i++) {
+          const Sym z = load_rows(h, i);
+          const double rest = minors(z) + determinant(z);    // det c - 1 - tr z
+          w[i] += 0.5 * G * (minus1_minus_log(1.0 + trace(z) + rest) - rest);
+        }
+      }
+    }
+  };
+
+}    // namespace
+}    // namespace MPM_NS::law
+#endif

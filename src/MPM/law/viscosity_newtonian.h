@@ -1,0 +1,57 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MPM_LAW_VISCOSITY_NEWTONIAN_H
+#define MPM_LAW_VISCOSITY_NEWTONIAN_H
+
+#include "law/viscosity.h"
+
+namespace MPM_NS::law {
+namespace {
+
+  /** Newtonian viscosity: adds 2 MU dev(D) + ZETA tr(D) I, D the strain rate half-way in the step.
+   *  With the elasticity of a solid that is the Kelvin-Voigt element. */
+  struct ViscosityNewtonian : LawDefaults {
+    static constexpr bool uses_F = false;
+    static constexpr const char *name = "newtonian";
+    static constexpr const char *meaning = "Newtonian viscosity; damping of solids (Kelvin-Voigt)";
+    static constexpr StressShare share = WHOLE_STRESS;
+    static constexpr bool uses_speed = false;
+    static constexpr Parameter parameters[] = {
+        {"", "MU", "pressure time", NOT_NEGATIVE, REQUIRED, "dynamic viscosity"},
+        {"bulk", "ZETA", "pressure time", NOT_NEGATIVE, 0.0, "bulk viscosity"}};
+
+    static void update(const LawParameters &p, Batch &b, History)
+    {
+      const double inv_dt = b.dt > 0.0 ? 1.0 / b.dt : 0.0;
+      const double twomu = 2.0 * p.value[0] * inv_dt, zeta = p.value[1] * inv_dt;
+      double viscous = 0.0;
+      MPM_SIMD_SUM(viscous)
+      for (int i = 0; i < b.n; i++) {
+        const Increment inc = increment(b, i);
+        const Sym e = deviator(inc.strain);
+        const double tr = trace(inc.strain);
+        store_stress(b, i, add_diagonal(load_stress(b, i) + twomu * e, zeta * tr));
+        const double work = 0.5 * (b.J[i] + b.Jold[i]) * (twomu * norm2(e) + zeta * tr * tr);
+        b.heat[i] += work;
+        viscous += work * b.vol0[i];
+      }
+      b.work[VISCOUS] += viscous;
+    }
+
+    static void raise_speed(const LawParameters &p, const Batch &b, History, double *c)
+    {
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) c[i] = damped_speed(p, b, i, c[i], p.value[0], p.value[1]);
+    }
+  };
+
+}    // namespace
+}    // namespace MPM_NS::law
+
+#endif

@@ -1,0 +1,575 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// Composition of a material from laws: the order in which they work on a batch, what they are told
+// of each other, their rows of history, and their parameters where these differ from point to point.
+
+#include "material/material.h"
+
+#include "material/parts.h"
+#include "material/random_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <iterator>
+
+using namespace MPM_NS;
+
+namespace {
+
+/** The density of a material, as its laws declare their parameters. */
+constexpr Parameter DENSITY = {"", "density", "density", POSITIVE, REQUIRED, "reference density"};
+
+class ComposedMaterial : public Material {
+ public:
+  ComposedMaterial(const MaterialDefinition &definition, const LawTable *table) :
+      rho(definition.density), table(table)
+  {
+    std::copy(definition.laws, definition.laws + NPARTS, laws);
+    text = "density " + number(rho);
+    for (int part = 0; part < NPARTS; part++)
+      for (auto &law : laws[part]) {
+        add(static_cast<Part>(part), law);
+        shape_matters = shape_matters || law.info->uses_F;
+      }
+    for (const auto &r : definition.random) add(r);
+    for (const auto &range : definition.ranges) add(range);
+    viscous = -1;
+    if (definition.shares_stress()) {
+      viscous = variables.size();
+      for (const char *name : {"xx", "yy", "zz", "xy", "xz", "yz"})
+        variables.push_back({std::string("viscous_") + name, 0.0});
+    }
+    ComposedMaterial::bind(1.0, 1.0);
+  }
+
+  bool configure(const char *isa, double pressure_scale, double energy_scale) override
+  {
+    const LawTable *wanted = LawTable::select(isa);
+    if (!wanted) return false;
+    table = wanted;
+    bind(pressure_scale, energy_scale);
+    return true;
+  }
+
+  double density() const override { return rho; }
+  double density(const double *history) const override { return rho * density_factor(history); }
+  const std::vector<HistoryVariable> &history() const override { return variables; }
+  bool uses_F() const override { return shape_matters; }
+  std::string describe() const override { return text; }
+
+  void initialize(const double *x, double *history) const override
+  {
+    for (size_t k = 0; k < variables.size(); k++) history[k] = variables[k].initial;
+    if (random_density) set_factor(*random_density, DENSITY, rho, x, history);
+    for (const auto &part : laws)
+      for (const auto &law : part)
+        for (const auto &r : law.random) {
+          const LawInfo &info = *law.info;
+          set_factor(r, (r.term < 0 ? info.parameters : info.term_parameters)[r.parameter],
+                     r.of(law.parameters), x, history);
+        }
+    const auto factor = [history](int row) {
+      return history[row];
+    };
+    for (const auto &part : laws)
+      for (const auto &law : part)
+        if (law.varies) {
+          LocalParameters local(*this, law);
+          initialize(law, local.at(factor), x, history);
+        } else if (law.info->initialize) {
+          law.info->initialize(law.parameters, x, history + law.history);
+        }
+  }
+
+  void initialized() const override
+  {
+    if (random_density) random_density->field->release();
+    for (const auto &part : laws)
+      for (const auto &law : part)
+        for (const auto &r : law.random) r.field->release();
+  }
+
+  void initial_stress(Batch &b) const override
+  {
+    b.dt = 0.0;
+    for (int i = 0; i < b.n; i++) {
+      b.heat[i] = b.plastic[i] = 0.0;
+      b.Jold[i] = b.J[i];
+      for (auto &row : b.A) row[i] = 0.0;
+    }
+    table->clear_stress(b);
+    for (const auto &law : laws[EOS]) call(law.kernels->update, law, b);
+  }
+
+  void update(Batch &b) const override
+  {
+    for (int i = 0; i < b.n; i++) b.heat[i] = b.plastic[i] = 0.0;
+    for (double &w : b.work) w = 0.0;
+
+    const auto run = [this, &b](const UsedLaw &law) {
+      call(law.kernels->update, law, b);
+    };
+    if (damage) call(damage->kernels->prepare, *damage, b);
+    if (viscous >= 0) take_viscous_stress(b);
+    for (const auto &law : laws[VISCOSITY])
+      if (law.info->uses_speed) {
+        plain_speed(b, b.speed);
+        break;
+      }
+    if (base)
+      run(*base);
+    else
+      table->clear_stress(b);
+    if (damage) account_of_strength(b);
+    if (viscous >= 0) begin_viscous_stress(b);
+    for (const auto &law : laws[VISCOSITY]) run(law);
+    if (viscous >= 0) end_viscous_stress(b);
+    if (damage) table->mean_stress(b, b.viscous_mean);
+    for (const auto &law : laws[EOS]) run(law);
+    if (damage) {
+      add_energy(EOS, b, b.volume_energy);
+      run(*damage);
+    }
+    for (const auto &law : laws[THERMAL]) run(law);
+  }
+
+  const std::vector<ValidRange> &ranges() const override { return valid; }
+
+  int outside(const Batch &b, int k, double *value) const override
+  {
+    const double *v = value;
+    switch (source[k]) {
+      case UsedRange::PRESSURE_OF_STRESS:
+        table->pressure(b, value);
+        break;
+      case UsedRange::STRAIN_RATE:
+        table->strain_rate(b, value);
+        break;
+      case UsedRange::DENSITY_OF_J:
+        for (int i = 0; i < b.n; i++) value[i] = rho / b.J[i];
+        if (random_density)
+          for (int i = 0; i < b.n; i++) value[i] *= b.history[random_density->row][i];
+        break;
+      default:
+        v = b.history[source[k]];
+        std::copy(v, v + b.n, value);
+    }
+    return table->outside(b.n, v, valid[k].low, valid[k].high);
+  }
+
+  void wave_speed(const Batch &state, double *c) const override
+  {
+    Batch copy;
+    const Batch &b = without_viscous_stress(state, copy);
+    plain_speed(b, c);
+    for (const auto &law : laws[VISCOSITY])
+      if (law.kernels->raise_speed) call(law.kernels->raise_speed, law, b, c);
+  }
+
+  void stored_energy(const Batch &state, double *w) const override
+  {
+    Batch copy;
+    const Batch &b = without_viscous_stress(state, copy);
+    for (int i = 0; i < b.n; i++) w[i] = 0.0;
+    for (int part = 0; part < NPARTS; part++)
+      if (!damage || part != STRENGTH) add_energy(static_cast<Part>(part), b, w);
+  }
+
+ private:
+  double rho;
+  double rho_pressure;    ///< density in units of pressure over velocity^2, as the laws need it
+  const LawTable *table;
+  std::vector<UsedLaw> laws[NPARTS];
+  const UsedLaw *base;                                      ///< closed law or strength, or null
+  const UsedLaw *damage;                                    ///< or null
+  const UsedLaw *thermal;                                   ///< or null
+  std::unique_ptr<const RandomParameter> random_density;    ///< when it differs from point to point
+  bool shape_matters = false;                               ///< does a law look at F?
+  bool random_heat = false;    ///< does what the thermal part tells the others, too?
+  /** First of six history variables with what viscosities added to the stress in the last step, for
+   *  a closed law or strength that builds on that stress and must not see it; -1 when not needed. */
+  int viscous;
+  std::vector<HistoryVariable> variables;
+  std::vector<ValidRange> valid;
+  std::vector<int> source;    ///< of the quantities of these, as in UsedRange
+  std::string text;
+
+  void take_viscous_stress(Batch &b) const
+  {
+    for (int k = 0; k < 6; k++)
+      for (int i = 0; i < b.n; i++) b.stress[k][i] -= b.history[viscous + k][i];
+  }
+
+  // around the viscosities: stress after them minus stress before them
+  void begin_viscous_stress(Batch &b) const
+  {
+    for (int k = 0; k < 6; k++)
+      for (int i = 0; i < b.n; i++) b.history[viscous + k][i] = -b.stress[k][i];
+  }
+
+  void end_viscous_stress(Batch &b) const
+  {
+    for (int k = 0; k < 6; k++)
+      for (int i = 0; i < b.n; i++) b.history[viscous + k][i] += b.stress[k][i];
+  }
+
+  const Batch &without_viscous_stress(const Batch &b, Batch &copy) const
+  {
+    if (viscous < 0) return b;
+    copy = b;
+    take_viscous_stress(copy);
+    return copy;
+  }
+
+  static History rows(const Batch &b, const UsedLaw &law)
+  {
+    return b.history ? b.history + law.history : nullptr;
+  }
+
+  /** The rows of a batch but A, F, stress, and history. */
+  static constexpr double (Batch::*single_rows[])[BATCH] = {&Batch::J,
+                                                            &Batch::Jold,
+                                                            &Batch::vol0,
+                                                            &Batch::heat,
+                                                            &Batch::plastic,
+                                                            &Batch::speed,
+                                                            &Batch::kept,
+                                                            &Batch::plastic_work,
+                                                            &Batch::viscous_mean,
+                                                            &Batch::shear_energy,
+                                                            &Batch::volume_energy};
+  static_assert(sizeof(Batch) < (9 + 9 + 6 + std::size(single_rows) + 1) * BATCH * sizeof(double),
+                "all rows are listed");
+
+  double density_factor(const double *history) const
+  {
+    return random_density ? history[random_density->row] : 1.0;
+  }
+
+  /** Parameters of a law at one point after the other. */
+  class LocalParameters {
+   public:
+    LocalParameters(const ComposedMaterial &material, const UsedLaw &law) :
+        material(material), law(law), p(law.parameters)
+    {
+      if (material.random_heat) heat = material.thermal->parameters;
+    }
+
+    /** factor(row): the value of that row of history at the point. */
+    template <class Factor> const LawParameters &at(Factor factor)
+    {
+      replace(law, p, factor);
+      if (const auto &r = material.random_density) {
+        p.density = law.parameters.density * factor(r->row);
+        p.heat_density = law.parameters.heat_density * factor(r->row);
+      }
+      if (material.random_heat) {
+        replace(*material.thermal, heat, factor);
+        heat.heat_density = p.heat_density;
+        share_heat(*material.thermal->info, heat, law.heats_alone, p);
+      }
+      return p;
+    }
+
+   private:
+    const ComposedMaterial &material;
+    const UsedLaw &law;
+    LawParameters p, heat;
+
+    template <class Factor> static void replace(const UsedLaw &law, LawParameters &p, Factor factor)
+    {
+      for (const auto &r : law.random) r.of(p) = r.of(law.parameters) * factor(r.row);
+    }
+  };
+
+  /** A kernel that changes a batch. */
+  void call(void (*kernel)(const LawParameters &, Batch &, History), const UsedLaw &law,
+            Batch &b) const
+  {
+    if (!law.varies) {
+      kernel(law.parameters, b, rows(b, law));
+      return;
+    }
+    one_by_one(law, b, [&](const LawParameters &p, Batch &one, History history, int i) {
+      kernel(p, one, history);
+      for (int k = 0; k < 6; k++) b.stress[k][i] = one.stress[k][0];
+      for (const auto row : single_rows) (b.*row)[i] = (one.*row)[0];
+      for (int k = 0; k < NWORK; k++) b.work[k] += one.work[k];
+    });
+  }
+
+  /** A kernel that adds to values of the points. */
+  void call(void (*kernel)(const LawParameters &, const Batch &, History, double *),
+            const UsedLaw &law, const Batch &b, double *value) const
+  {
+    if (!law.varies)
+      kernel(law.parameters, b, rows(b, law), value);
+    else
+      one_by_one(law, b, [&](const LawParameters &p, const Batch &one, History history, int i) {
+        kernel(p, one, history, value + i);
+      });
+  }
+
+  /** Calls work for each point in a batch of its own, with its own parameters. The history is not
+   *  copied: its rows are those of the batch, beginning with the point. */
+  template <class Work> void one_by_one(const UsedLaw &law, const Batch &b, Work work) const
+  {
+    Batch one;
+    one.n = 1;
+    one.dt = b.dt;
+    one.h = b.h;
+    one.time = b.time;
+    LocalParameters local(*this, law);
+    for (int i = 0; i < b.n; i++) {
+      for (int k = 0; k < 9; k++) one.A[k][0] = b.A[k][i];
+      for (int k = 0; k < 9; k++) one.F[k][0] = b.F[k][i];
+      for (int k = 0; k < 6; k++) one.stress[k][0] = b.stress[k][i];
+      for (double &w : one.work) w = 0.0;
+      for (const auto row : single_rows) (one.*row)[0] = (b.*row)[i];
+      one.history = reinterpret_cast<History>(&b.history[0][i]);
+      work(local.at([&](int row) {
+        return b.history[row][i];
+      }),
+           one, one.history + law.history, i);
+    }
+  }
+
+  /** Factor of a parameter at x; it must keep the parameter in the range that it is declared with. */
+  static void set_factor(const RandomParameter &r, const Parameter &declared, double mean,
+                         const double *x, double *history)
+  {
+    const double g = r.field->value(x);    // standard normal deviate
+    const double s2 = std::log1p(r.variation * r.variation);
+    history[r.row] = r.lognormal ? std::exp(std::sqrt(s2) * g - 0.5 * s2) : 1.0 + r.variation * g;
+    const double value = mean * history[r.row];
+    if (!in_range(declared.range, value))
+      throw std::runtime_error(std::string("random ") + declared.name + " is " + number(value) +
+                               " at a point, which is out of range: use lognormal, or a smaller "
+                               "coefficient of variation");
+  }
+
+  /** History of a law at a new point with these parameters. */
+  static void initialize(const UsedLaw &law, const LawParameters &p, const double *x,
+                         double *history)
+  {
+    if (const char *wrong = law.info->check(p))
+      throw std::runtime_error(std::string("with the random parameters of a point, ") +
+                               law.info->name + ": " + wrong);
+    for (int k = 0; k < law.info->nhistory(p); k++)
+      if (law.info->history[k].initial >= 0)
+        history[law.history + k] = p.value[law.info->history[k].initial];
+    if (law.info->initialize) law.info->initialize(p, x, history + law.history);
+  }
+
+  /** What a thermal part with parameters t tells another law. With a damage all plastic work goes to
+   *  batch.heat, for account_of_strength(). */
+  static void share_heat(const LawInfo &info, const LawParameters &t, bool heats_alone,
+                         LawParameters &p)
+  {
+    const double chi = info.heat_share(t), warm = info.warming(t);
+    p.chi = heats_alone ? 1.0 : chi;
+    p.warm = heats_alone ? warm * chi : warm;
+  }
+
+  /** Kernels of all parts, and what they are told of each other. */
+  void bind(double pressure_scale, double energy_scale)
+  {
+    rho_pressure = rho * pressure_scale;
+    base = nullptr;
+    for (const Part part : {CLOSED, STRENGTH})
+      if (!laws[part].empty()) base = laws[part].data();
+    damage = laws[DAMAGE].empty() ? nullptr : laws[DAMAGE].data();
+    thermal = laws[THERMAL].empty() ? nullptr : laws[THERMAL].data();
+    for (auto &law : laws[THERMAL]) law.parameters.heat_density = rho * energy_scale;
+    random_heat = thermal && random_heats();
+    for (int part = 0; part < NPARTS; part++)
+      for (auto &law : laws[part]) {
+        LawParameters &p = law.parameters;
+        law.kernels = &table->kernels(static_cast<Part>(part), law.index);
+        law.heats_alone = damage && part == STRENGTH;
+        law.varies = !law.random.empty() || random_density || random_heat;
+        p.density = rho_pressure;
+        p.heat_density = rho * energy_scale;
+        p.chi = 1.0;
+        p.warm = 0.0;
+        p.temperature = thermal ? thermal->history : -1;
+        if (thermal) share_heat(*thermal->info, thermal->parameters, law.heats_alone, p);
+      }
+  }
+
+  /** Does what share_heat() tells differ from point to point? */
+  bool random_heats() const
+  {
+    if (random_density) return true;
+    const LawInfo &info = *thermal->info;
+    for (const auto &r : thermal->random) {
+      LawParameters p = thermal->parameters;
+      r.of(p) *= 0.5;
+      if (info.heat_share(p) != info.heat_share(thermal->parameters) ||
+          info.warming(p) != info.warming(thermal->parameters))
+        return true;
+    }
+    return false;
+  }
+
+  /** Energy stored by one part, added to w. */
+  void add_energy(Part part, const Batch &b, double *w) const
+  {
+    for (const auto &law : laws[part])
+      if (law.kernels->energy) call(law.kernels->energy, law, b, w);
+  }
+
+  /** What the strength has done, for a damage; heat that the equation of state shall have. */
+  void account_of_strength(Batch &b) const
+  {
+    for (int i = 0; i < b.n; i++) {
+      b.plastic_work[i] = b.heat[i];
+      b.heat[i] *= damage->parameters.chi * b.kept[i];
+      b.shear_energy[i] = b.volume_energy[i] = 0.0;
+    }
+    if (random_heat) {
+      LocalParameters local(*this, *damage);
+      for (int i = 0; i < b.n; i++)
+        b.heat[i] = local
+                        .at([&](int row) {
+                          return b.history[row][i];
+                        })
+                        .chi *
+            b.kept[i] * b.plastic_work[i];
+    }
+    add_energy(STRENGTH, b, b.shear_energy);
+  }
+
+  void add(Part part, UsedLaw &law)
+  {
+    const LawInfo &info = *law.info;
+    const LawParameters &p = law.parameters;
+    law.history = variables.size();
+    const auto declare = [&](const HistoryDeclaration &h, const std::string &suffix) {
+      const double initial = h.initial >= 0 ? p.value[h.initial] : h.initial == ONE ? 1.0 : 0.0;
+      variables.push_back({h.name + suffix, initial});
+    };
+    for (int k = 0; k < info.nhistory(p); k++) declare(info.history[k], "");
+    for (int term = 0; term < p.nterms; term++)
+      for (int k = 0; k < info.nterm_history; k++)
+        declare(info.term_history[k], std::to_string(term + 1));
+
+    text += ", " + title(part, info);
+    for (int k = 0; k < info.nparameters; k++)
+      if (p.value[k] != info.parameters[k].standard)
+        text += !strcmp(info.parameters[k].unit, FLAG)
+            ? std::string(" ") + info.parameters[k].option
+            : std::string(" ") + info.parameters[k].name + "=" + number(p.value[k]);
+    for (int term = 0; term < p.nterms; term++) {
+      text += std::string(" ") + info.term;
+      for (int k = 0; k < info.nterm_parameters; k++) text += " " + number(p.term[term][k]);
+    }
+  }
+
+  /** density, NAME, or LAW.NAME, where LAW is the name of the part or of the closed law or, of
+   *  viscosities, as there may be several, that of the law. Parameters of terms are NAME1, NAME2, ... */
+  void add(const UsedRandom &random)
+  {
+    const std::string what = "random " + random.name;
+    UsedLaw *owner = nullptr;
+    RandomParameter r = {
+        -1, -1, static_cast<int>(variables.size()), random.lognormal, random.variation, nullptr};
+    std::string choice = "density";
+    const auto consider = [&](Part part, UsedLaw &law, int term, int k) {
+      const LawInfo &info = *law.info;
+      const std::string name = term < 0 ? std::string(info.parameters[k].name)
+                                        : info.term_parameters[k].name + std::to_string(term + 1);
+      const std::string of_part = std::string(part_name[part]) + "." + name;
+      const std::string of_law = std::string(info.name) + "." + name;
+      const bool by_law = part == CLOSED || part == VISCOSITY;
+      choice += ", " + (by_law ? of_law : of_part);
+      if (random.name != name && random.name != of_part && !(by_law && random.name == of_law))
+        return;
+      if (owner)
+        throw MaterialError(random.word,
+                            what + ": several laws of this material have it: choose " + choice);
+      owner = &law;
+      r.term = term;
+      r.parameter = k;
+    };
+    for (int part = 0; part < NPARTS; part++)
+      for (auto &law : laws[part]) {
+        for (int k = 0; k < law.info->nparameters; k++)
+          consider(static_cast<Part>(part), law, -1, k);
+        for (int term = 0; term < law.parameters.nterms; term++)
+          for (int k = 0; k < law.info->nterm_parameters; k++)
+            consider(static_cast<Part>(part), law, term, k);
+      }
+    const bool of_density = random.name == "density";
+    if (!owner && !of_density)
+      throw MaterialError(random.word, what + ": no such parameter: choose one of " + choice);
+    const double mean = of_density ? rho : r.of(owner->parameters);
+    if (mean == 0.0 || !std::isfinite(mean))
+      throw MaterialError(random.word,
+                          what + ": its value is " + number(mean) +
+                              ", which a factor does not change: give it another one");
+    bool twice = of_density && random_density;
+    if (owner)
+      for (const auto &other : owner->random)
+        twice = twice || (other.term == r.term && other.parameter == r.parameter);
+    if (twice) throw MaterialError(random.word, what + ": is given twice");
+    r.field = std::make_shared<const RandomField>(random.length, random.seed);
+    if (of_density)
+      random_density = std::make_unique<const RandomParameter>(r);
+    else
+      owner->random.push_back(r);
+    variables.push_back({"random/" + random.name, 1.0});
+    text += ", " + what + (random.lognormal ? " lognormal " : " normal ") +
+        number(random.variation) + " " + number(random.length) + " " + std::to_string(random.seed);
+  }
+
+  void add(const UsedRange &range)
+  {
+    int from = range.quantity == "pressure" ? UsedRange::PRESSURE_OF_STRESS
+        : range.quantity == "rate"          ? UsedRange::STRAIN_RATE
+        : range.quantity == "density"       ? UsedRange::DENSITY_OF_J
+                                            : static_cast<int>(variables.size());
+    std::string choice = "pressure, rate, density";
+    for (size_t k = 0; k < variables.size(); k++) {
+      choice += ", " + variables[k].name;
+      if (from >= 0 && variables[k].name == range.quantity) from = k;
+    }
+    if (from == static_cast<int>(variables.size()))
+      throw MaterialError(range.word,
+                          "range: this material has no '" + range.quantity + "': choose " + choice);
+    for (const auto &other : valid)
+      if (other.quantity == range.quantity)
+        throw MaterialError(range.word, "range: '" + range.quantity + "' is given twice");
+    valid.push_back(range);
+    source.push_back(from);
+    text += ", range " + range.quantity + " " + number(range.low) + " " + number(range.high);
+  }
+
+  void plain_speed(const Batch &b, double *c) const
+  {
+    double k[BATCH] = {};
+    for (const auto &part : laws)
+      for (const auto &law : part)
+        if (law.kernels->modulus) call(law.kernels->modulus, law, b, k);
+    table->speed(b.n, rho_pressure, k, c);
+    if (random_density)
+      for (int i = 0; i < b.n; i++) c[i] /= std::sqrt(b.history[random_density->row][i]);
+  }
+};
+
+}    // namespace
+
+/* ---------------------------------------------------------------------- */
+
+std::unique_ptr<Material> MPM_NS::compose(const MaterialDefinition &definition,
+                                          const LawTable *table)
+{
+  return std::make_unique<ComposedMaterial>(definition, table);
+}

@@ -1,0 +1,146 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MPM_MATERIAL_MATERIAL_H
+#define MPM_MATERIAL_MATERIAL_H
+
+// Constitutive models: a batch of points in, stress and history out. Nothing here knows about
+// grids, and only the parser knows about LAMMPS (for its error messages).
+
+#include "transfer/kernels.h"
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace MPM_NS {
+
+/** Kinds of work that a law reports, in energy summed over the points of a batch. */
+enum Work {
+  PLASTIC,     ///< plastic work
+  VISCOUS,     ///< work of viscous stress
+  HEAT,        ///< part of these two that became heat
+  FRACTURE,    ///< work spent on damage, and on friction between fragments
+  NWORK
+};
+
+/** Up to BATCH points of one material in structure-of-arrays form.
+ *
+ *  Kinematics: A = dt * grad v with respect to the positions at the start of the step, so that the
+ *  points' own motion x + dt v gives exactly F_new = (I + A) F_old. The velocity gradient of the
+ *  middle of the step is G/dt with G = A (I + A/2)^-1; I + A is its Cayley transform, a rotation
+ *  when G is skew. Rate-form laws use G (sym: strain increment, skew: incremental rotation).
+ */
+struct Batch {
+  int n;                                  ///< points in use, 1..BATCH
+  double dt;                              ///< time step
+  double h;                               ///< node spacing, the length of artificial viscosity
+  alignas(64) double A[9][BATCH];         ///< dt * velocity gradient, row-major
+  alignas(64) double F[9][BATCH];         ///< deformation gradient at the end of the step
+  alignas(64) double J[BATCH];            ///< det F at the end of the step
+  alignas(64) double Jold[BATCH];         ///< det F at the start of the step
+  alignas(64) double stress[6][BATCH];    ///< Cauchy stress; in: start, out: end of the step
+  alignas(64) double vol0[BATCH];         ///< initial volume
+  double (*history)[BATCH];               ///< [nhistory][BATCH]; in: start, out: end of the step
+  double work[NWORK];                     ///< out: energy of each kind spent in this batch and step
+  double time;                            ///< at the end of the step
+
+  // passed from part to part of a material within a step
+
+  alignas(64) double heat[BATCH];       ///< energy turned into heat, per reference volume
+  alignas(64) double plastic[BATCH];    ///< increment of the equivalent plastic strain
+  alignas(64) double speed[BATCH];      ///< wave speed without viscosity, for viscosities only
+
+  // the same, for a damage only; energies are per reference volume, of the undamaged material
+
+  alignas(64) double kept[BATCH];             ///< share of the stress deviator at the start
+  alignas(64) double plastic_work[BATCH];     ///< of the step
+  alignas(64) double viscous_mean[BATCH];     ///< mean stress of the viscosities
+  alignas(64) double shear_energy[BATCH];     ///< stored by the strength
+  alignas(64) double volume_energy[BATCH];    ///< stored by the equation of state
+};
+
+/** A history variable of a material. */
+struct HistoryVariable {
+  std::string name;    ///< as used by compute mpm/atom
+  double initial;      ///< value of a new point, before Material::initialize()
+};
+
+/** Values of a quantity for which a material is meant. */
+struct ValidRange {
+  std::string quantity;    ///< pressure, rate, density, or name of a history variable
+  double low, high;
+};
+
+/** What is wrong with the definition of a material, and which of its words is to blame. */
+struct MaterialError : std::runtime_error {
+  int word;    ///< index of the word, or the number of words when something is missing at the end
+  MaterialError(int word, const std::string &message) : std::runtime_error(message), word(word) {}
+};
+
+/** A constitutive model with its parameters; stateless, all state is in the batch. */
+class Material {
+ public:
+  virtual ~Material() = default;
+
+  /** A material from the words of its definition, "density RHO <parts>" (see material/parser.cpp for
+   *  the grammar); throws MaterialError. isa: as for LawTable::select(). */
+  static std::unique_ptr<Material> create(const std::vector<std::string> &words,
+                                          const char *isa = nullptr);
+
+  /** Choose the instruction set (as for LawTable::select(); false: cannot run here) and the unit
+   *  of density * velocity^2 in the unit of pressure, mvv2e * nktv2p of the LAMMPS unit style, and
+   *  that of energy / volume, nktv2p; both 1 in consistent units and when this is not called. */
+  virtual bool configure(const char *isa, double pressure_scale, double energy_scale) = 0;
+
+  virtual double density() const = 0;    ///< reference density, its mean where points differ
+
+  /** Reference density of a point with this history (as of initialize(); null when it has none). */
+  virtual double density(const double *history) const = 0;
+
+  virtual const std::vector<HistoryVariable> &history() const = 0;
+
+  /** Does any law look at more of the deformation gradient than its determinant? */
+  virtual bool uses_F() const = 0;
+
+  /** All history variables of a new point at x; throws std::runtime_error when it cannot be. */
+  virtual void initialize(const double *x, double *history) const = 0;
+
+  /** Many points were initialized: what is only needed for that may be freed. */
+  virtual void initialized() const = 0;
+
+  /** Stress of points that have none yet: the pressure of the equation of state in the present
+   *  state, such as that of a gas. n, h, time and current F, J, history in the batch; sets stress,
+   *  and A, dt, and Jold as for no motion. */
+  virtual void initial_stress(Batch &) const = 0;
+
+  /** Stress and history at the end of the step (hot: one call per batch). */
+  virtual void update(Batch &) const = 0;
+
+  /** Ranges of validity. They change nothing; whoever steps the material may look at them. */
+  virtual const std::vector<ValidRange> &ranges() const = 0;
+
+  /** value[n]: the quantity of range k after update(); returns the number of points outside. */
+  virtual int outside(const Batch &, int k, double *value) const = 0;
+
+  /** c[n]: speed of the fastest (longitudinal) wave at the present state, raised by a viscosity
+   *  such that h/c is the stable time step; n, h and current F, J, stress, history in the batch, A
+   *  and Jold are not set. */
+  virtual void wave_speed(const Batch &, double *c) const = 0;
+
+  /** w[n]: energy stored per reference volume in the present state (elastic, and of the equation
+   *  of state); A and Jold are not set. */
+  virtual void stored_energy(const Batch &, double *w) const = 0;
+
+  /** One-line description for the log: names and values of the parts. */
+  virtual std::string describe() const = 0;
+};
+
+}    // namespace MPM_NS
+#endif

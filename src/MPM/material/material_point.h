@@ -1,0 +1,77 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MPM_MATERIAL_MATERIAL_POINT_H
+#define MPM_MATERIAL_MATERIAL_POINT_H
+
+// Drives a material along a prescribed motion, without a grid: for tests and for plots of a law.
+
+#include "material/material.h"
+
+namespace MPM_NS {
+
+/** Motion of a step of which some components are found from the stress.
+ *
+ *  L is the velocity gradient, constant during the step: F_new = exp(dt L) F. For each component k
+ *  of the symmetric part (order of the stress) with stress_given[k], a rate of deformation is added
+ *  to L such that the Cauchy stress at the end of the step has the value stress[k].
+ */
+struct MixedControl {
+  double L[9] = {};    ///< row-major
+  bool stress_given[6] = {};
+  double stress[6] = {};
+};
+
+/** A batch of equal points that all follow the same velocity gradient. */
+class MaterialPoint {
+ public:
+  /** n points of reference volume 1 each; h: length of the artificial viscosity. */
+  explicit MaterialPoint(const Material &, int n = 1, double h = 1.0);
+  MaterialPoint(const MaterialPoint &);
+  MaterialPoint &operator=(const MaterialPoint &) = delete;
+
+  /** One step with the velocity gradient L[9] (row-major) of the middle of the step. */
+  void step(const double *L, double dt);
+
+  /** One step of the motion F_new = (I + A) F. */
+  void move(const double *A, double dt);
+
+  /** One step of a motion that is known in part; throws std::runtime_error when no motion gives the
+   *  stress. rotation: of the frame in which control, strain(), and stress are meant, at the end of
+   *  the step (row-major; null: as before, at first none). Returns the number of iterations. */
+  int step(const MixedControl &, double dt, const double *rotation = nullptr);
+
+  /** One step with strain rate along x and free lateral surfaces (sigma_yy = sigma_zz = 0). */
+  void step_uniaxial_stress(double rate, double dt);
+
+  const Material &material;
+  Batch batch;
+  std::vector<double> storage;    ///< history of the batch
+  double time;
+  double power;          ///< stress power so far, integral of P:dF by the trapezoidal rule
+  double work[NWORK];    ///< so far, per reference volume
+  double rotation[9];    ///< of the frame in which motion is controlled, see step()
+
+  /** Deformation gradient and Cauchy stress in the frame in which motion is controlled. */
+  void frame_state(double *F, double *stress) const;
+
+  /** State of the first point. */
+  double stress(int k) const { return batch.stress[k][0]; }
+  double history(int k) const { return batch.history[k][0]; }
+  double density() const;    ///< reference density
+  double pressure() const;
+  double vonmises() const;
+  double wave_speed() const;
+  double stored_energy() const;
+
+ private:
+  double guess[6];    ///< rate of deformation found in the last step with mixed control
+};
+
+}    // namespace MPM_NS
+#endif

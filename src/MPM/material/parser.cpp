@@ -1,0 +1,362 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// Parser of the definition of a material:
+//
+//   density RHO
+//   one closed law:      linear ... | neohookean ... | ogden ...
+//   or an eos:           eos linear | shock | tait ...
+//     with at most one   strength elastic | j2 | johnson/cook ...
+//   any number of        viscosity newtonian | artificial | maxwell ...
+//   at most one          damage ...
+//   at most one          thermal adiabatic | constant ...
+//   any number of        range QUANTITY LOW HIGH
+//   any number of        random PARAMETER lognormal | normal COV LENGTH SEED
+//
+// in any order. What follows the name of a law is in the declaration of its parameters.
+
+#include "material/parts.h"
+#include "material/random_field.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+
+using namespace MPM_NS;
+
+namespace {
+
+bool looks_numeric(const std::string &word)
+{
+  return !word.empty() && strchr("+-.0123456789", word[0]) != nullptr;
+}
+
+/** Words separated by blanks. */
+std::vector<std::string> split(const std::string &text)
+{
+  std::vector<std::string> words(1);
+  for (const char c : text) {
+    if (c == ' ')
+      words.emplace_back();
+    else
+      words.back() += c;
+  }
+  return words;
+}
+
+std::string join(const std::vector<std::string> &words, const char *between)
+{
+  std::string text;
+  for (const auto &word : words) text += (text.empty() ? "" : between) + word;
+  return text;
+}
+
+std::vector<std::string> names(const LawList &laws)
+{
+  std::vector<std::string> list;
+  for (const auto &info : laws) list.emplace_back(info.name);
+  return list;
+}
+
+int find(const LawList &laws, const std::string &name)
+{
+  for (size_t k = 0; k < laws.size(); k++)
+    if (name == laws[k].name) return k;
+  return -1;
+}
+
+std::string describe_range(const Range &range)
+{
+  const std::string less = range.closed ? " <= " : " < ";
+  std::string text = "VALUE";
+  if (range.low != -UNBOUNDED) text = number(range.low) + less + text;
+  if (range.high != UNBOUNDED) text += less + number(range.high);
+  return text;
+}
+
+class Parser {
+ public:
+  Parser(const std::vector<std::string> &words, const char *isa) : words(words), next(0), isa(isa)
+  {
+  }
+
+  std::unique_ptr<Material> parse()
+  {
+    while (!at_end()) {
+      const int here = next;
+      const std::string keyword = words[next++];
+      if (keyword == "density")
+        parse_density(here);
+      else if (keyword == "range")
+        parse_range();
+      else if (keyword == "random")
+        parse_random(here);
+      else if (find(declared_laws(CLOSED), keyword) >= 0)
+        parse_law(CLOSED, here);
+      else if (const int part = find_part(keyword))
+        parse_law(static_cast<Part>(part), next++);
+      else
+        fail(here,
+             "unknown keyword '" + keyword + "': expected density, " +
+                 join(names(declared_laws(CLOSED)), ", ") +
+                 ", eos, strength, viscosity, damage, thermal, range or random");
+    }
+    check();
+    const LawTable *table = LawTable::select(isa);
+    if (!table) {
+      const char *name = isa ? isa : getenv("MPM_ISA");
+      fail(0,
+           std::string("MPM_ISA=") + (name ? name : "") +
+               ": not one of reference, baseline, avx2, avx512, or this CPU cannot run it");
+    }
+    return compose(material, table);
+  }
+
+ private:
+  const std::vector<std::string> &words;
+  int next;
+  const char *isa;
+  MaterialDefinition material;
+
+  bool at_end() const { return next >= static_cast<int>(words.size()); }
+
+  /** The part that a keyword introduces, 0 (closed laws have no such keyword): none. */
+  static int find_part(const std::string &keyword)
+  {
+    for (int part = NPARTS - 1; part > 0; part--)
+      if (keyword == part_name[part]) return part;
+    return 0;
+  }
+
+  [[noreturn]] static void fail(int word, const std::string &message)
+  {
+    throw MaterialError(word, message);
+  }
+
+  /** The next word as a number in a range; what: the name of its owner. */
+  double parse_number(const std::string &what, const char *name, const char *unit,
+                      const char *meaning, const Range &range)
+  {
+    const std::string full = what + ": " + name;
+    if (at_end()) fail(next, full + " is missing (" + meaning + ")");
+    const std::string &word = words[next];
+    char *end = nullptr;
+    const double value = strtod(word.c_str(), &end);
+    if (word.empty() || *end != '\0' || !std::isfinite(value))
+      fail(next, full + " must be a number (" + meaning + ", " + unit + "), not '" + word + "'");
+    if (!in_range(range, value))
+      fail(next,
+           full + " = " + word + " (" + meaning + ") is out of range: " + describe_range(range));
+    next++;
+    return value;
+  }
+
+  void parse_density(int here)
+  {
+    if (material.density > 0.0) fail(here, "density is given twice");
+    material.density = parse_number("density", "RHO", "density", "reference density", POSITIVE);
+  }
+
+  /** range QUANTITY LOW HIGH, where LOW may be -INF and HIGH may be INF */
+  void parse_range()
+  {
+    UsedRange range;
+    range.word = next;
+    if (at_end()) fail(next, "range: name of the quantity is missing");
+    range.quantity = words[next++];
+    const std::string what = "range " + range.quantity;
+    const auto limit = [&](const char *name, const char *infinite, double value) {
+      if (at_end() || words[next] != infinite)
+        return parse_number(what, name, "units of the quantity", "limit of validity, or INF",
+                            {-UNBOUNDED, UNBOUNDED, false});
+      next++;
+      return value;
+    };
+    range.low = limit("LOW", "-INF", -UNBOUNDED);
+    range.high = limit("HIGH", "INF", UNBOUNDED);
+    if (!(range.low < range.high)) fail(next - 1, what + ": LOW must be less than HIGH");
+    material.ranges.push_back(range);
+  }
+
+  /** random PARAMETER lognormal | normal COV LENGTH SEED */
+  void parse_random(int here)
+  {
+    if (!RandomField::available())
+      fail(
+          here,
+          "random: this program was built without FFTW; install it (libfftw3-dev) and build again");
+    UsedRandom r;
+    r.word = next;
+    if (at_end()) fail(next, "random: name of the parameter is missing");
+    r.name = words[next++];
+    const std::string what = "random " + r.name;
+    if (at_end() || (words[next] != "lognormal" && words[next] != "normal"))
+      fail(next, what + ": the distribution must be lognormal or normal");
+    r.lognormal = words[next++] == "lognormal";
+    r.variation = parse_number(what, "COV", "1", "coefficient of variation", POSITIVE);
+    r.length = parse_number(what, "LENGTH", "length", "correlation length", POSITIVE);
+    const double seed = parse_number(what, "SEED", "1", "seed", {1.0, 2147483647.0, true});
+    r.seed = static_cast<long>(seed);
+    if (r.seed != seed) fail(next - 1, what + ": SEED must be an integer");
+    material.random.push_back(r);
+  }
+
+  /** here: word of the law's name; next is behind it. */
+  void parse_law(Part part, int here)
+  {
+    const auto &laws = declared_laws(part);
+    const std::string choice = "choose " + join(names(laws), ", ");
+    if (here >= static_cast<int>(words.size()))
+      fail(here, std::string(part_name[part]) + ": name is missing, " + choice);
+    UsedLaw law;
+    law.index = find(laws, words[here]);
+    law.word = here;
+    if (law.index < 0)
+      fail(here, std::string("unknown ") + part_name[part] + " '" + words[here] + "': " + choice);
+    law.info = &laws[law.index];
+    if (part != VISCOSITY && !material.laws[part].empty())
+      fail(here,
+           "'" + title(part, *law.info) + "': the material has '" +
+               title(part, *material.laws[part][0].info) + "' already");
+    for (const auto &other : material.laws[part])
+      if (other.index == law.index) fail(here, "'" + title(part, *law.info) + "' is given twice");
+    parse_parameters(title(part, *law.info), *law.info, law.parameters);
+    const char *wrong = law.info->check(law.parameters);
+    if (wrong) fail(here, title(part, *law.info) + ": " + wrong);
+    material.laws[part].push_back(law);
+  }
+
+  void parse_parameters(const std::string &what, const LawInfo &info, LawParameters &parameters)
+  {
+    double *const value = parameters.value;
+    parameters.nterms = 0;
+    for (int k = 0; k < info.nparameters; k++) value[k] = info.parameters[k].standard;
+
+    bool tail = true;    // read the positional parameters that have a default?
+    bool first = true;
+    for (int k = 0; k < info.nparameters; k++) {
+      const Parameter &p = info.parameters[k];
+      if (*p.option) continue;
+      if (!std::isnan(p.standard) && first) {
+        first = false;
+        tail = !at_end() && looks_numeric(words[next]);
+      }
+      if (tail) value[k] = parse_number(what, p.name, p.unit, p.meaning, p.range);
+    }
+
+    std::vector<std::string> given;    // first words of the options so far
+    while (!at_end() &&
+           (parse_term(what, info, parameters) || parse_option(what, info, value, given))) {}
+    if (!at_end() && looks_numeric(words[next]))
+      fail(next, what + ": too many values, '" + words[next] + "' is not expected");
+  }
+
+  /** Reads the option of the law that may be given several times, false when the next word is not
+   *  that. */
+  bool parse_term(const std::string &what, const LawInfo &info, LawParameters &parameters)
+  {
+    if (!info.term || words[next] != info.term) return false;
+    if (parameters.nterms == LawParameters::MAX_TERMS)
+      fail(next,
+           what + ": more than " + std::to_string(LawParameters::MAX_TERMS) + " of '" + info.term +
+               "'");
+    next++;
+    double *const term = parameters.term[parameters.nterms++];
+    for (int k = 0; k < info.nterm_parameters; k++) {
+      const Parameter &p = info.term_parameters[k];
+      term[k] = parse_number(what + " " + info.term, p.name, p.unit, p.meaning, p.range);
+    }
+    return true;
+  }
+
+  /** Reads one option of the law, false when the next word is none. */
+  bool parse_option(const std::string &what, const LawInfo &info, double *value,
+                    std::vector<std::string> &given)
+  {
+    const int here = next;
+    std::vector<std::string> choices;
+    int match = -1;
+    for (int k = 0; k < info.nparameters; k++) {
+      if (!*info.parameters[k].option) continue;
+      const auto option = split(info.parameters[k].option);
+      if (option[0] != words[here]) continue;
+      if (option.size() == 1) {
+        if (match < 0) match = k;
+      } else {
+        if (choices.empty() || choices.back() != option[1]) choices.push_back(option[1]);
+        if (here + 1 < static_cast<int>(words.size()) && option[1] == words[here + 1] && match < 0)
+          match = k;
+      }
+    }
+    if (match < 0 && choices.empty()) return false;
+    if (match < 0)
+      fail(here + 1, what + ": '" + words[here] + "' must be followed by " + join(choices, " or "));
+    for (const auto &word : given)
+      if (word == words[here]) fail(here, what + ": '" + words[here] + "' is given twice");
+    given.push_back(words[here]);
+
+    const char *option = info.parameters[match].option;
+    next += split(option).size();
+    for (int k = match; k < info.nparameters; k++) {
+      const Parameter &p = info.parameters[k];
+      if (!strcmp(p.option, option) && !strcmp(p.unit, FLAG))
+        value[k] = 1.0;
+      else if (!strcmp(p.option, option))
+        value[k] = parse_number(what + " " + option, p.name, p.unit, p.meaning, p.range);
+    }
+    return true;
+  }
+
+  /** Parts that do not go together. */
+  void check() const
+  {
+    const int end = words.size();
+    if (material.density <= 0.0) fail(end, "density is missing: add 'density RHO'");
+    if (!material.laws[CLOSED].empty()) {
+      const std::string name = material.laws[CLOSED][0].info->name;
+      for (const Part part : {EOS, STRENGTH, DAMAGE})
+        if (!material.laws[part].empty())
+          fail(material.laws[part][0].word,
+               "'" + title(part, *material.laws[part][0].info) + "': '" + name +
+                   "' is a complete law; use either '" + name + "' or eos and strength");
+    } else if (material.laws[EOS].empty()) {
+      if (!material.laws[STRENGTH].empty())
+        fail(material.laws[STRENGTH][0].word,
+             "'" + title(STRENGTH, *material.laws[STRENGTH][0].info) +
+                 "' makes the stress deviator only: add an equation of state, such as "
+                 "'eos linear K' with the bulk modulus");
+      fail(end,
+           "no law: add " + join(names(declared_laws(CLOSED)), ", ") +
+               ", or eos with strength or viscosity");
+    }
+    if (!material.laws[DAMAGE].empty() && material.laws[STRENGTH].empty())
+      fail(material.laws[DAMAGE][0].word,
+           "'" + title(DAMAGE, *material.laws[DAMAGE][0].info) +
+               "' reduces the stress of a solid: add a strength, such as 'strength elastic G'");
+    for (const auto &part : material.laws)
+      for (const auto &law : part)
+        if (law.info->needs_temperature(law.parameters) && material.laws[THERMAL].empty())
+          fail(law.word,
+               std::string("'") + law.info->name +
+                   "' with these parameters depends on the temperature: add 'thermal adiabatic' "
+                   "with the specific heat, or 'thermal constant'");
+    if (!material.laws[DAMAGE].empty() && material.shares_stress())
+      fail(material.laws[DAMAGE][0].word,
+           "'" + title(DAMAGE, *material.laws[DAMAGE][0].info) +
+               "' does not go with a viscosity that adds to the stress on which a strength or law "
+               "builds in the next step: leave out the viscosity, or use viscosity artificial with "
+               "eos and strength");
+  }
+};
+
+}    // namespace
+
+std::unique_ptr<Material> Material::create(const std::vector<std::string> &words, const char *isa)
+{
+  return Parser(words, isa).parse();
+}

@@ -1,0 +1,121 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MPM_MATERIAL_PARTS_H
+#define MPM_MATERIAL_PARTS_H
+
+// The definition of a material as the parser hands it over to the composition.
+
+#include "law/law.h"
+
+#include <cstdio>
+#include <cstring>
+
+namespace MPM_NS {
+
+class RandomField;
+
+constexpr const char *part_name[NPARTS] = {"", "eos", "strength", "viscosity", "damage", "thermal"};
+
+/** A parameter that differs from point to point: its value is the mean times a factor, which is a
+ *  history variable. */
+struct RandomParameter {
+  int term;         ///< of the option that is given several times, -1: not of a term
+  int parameter;    ///< in the declaration of its law
+  int row;          ///< of the factor in the history of the material
+  bool lognormal;
+  double variation;    ///< standard deviation over mean
+  std::shared_ptr<const RandomField> field;
+
+  double &of(LawParameters &p) const
+  {
+    return term < 0 ? p.value[parameter] : p.term[term][parameter];
+  }
+  double of(const LawParameters &p) const
+  {
+    return term < 0 ? p.value[parameter] : p.term[term][parameter];
+  }
+};
+
+/** A random parameter in a definition. */
+struct UsedRandom {
+  int word;    ///< of the name in the definition
+  std::string name;
+  bool lognormal;
+  double variation, length;
+  long seed;
+};
+
+/** A law with its parameters in a material. */
+struct UsedLaw {
+  const LawInfo *info;
+  int index;    ///< in its list
+  int word;     ///< of its name in the definition
+  LawParameters parameters;
+
+  // set by the composition
+
+  int history = 0;                        ///< first row of its history
+  const LawKernels *kernels = nullptr;    ///< for the instruction set that runs
+  std::vector<RandomParameter> random;    ///< its own parameters that differ from point to point
+  bool varies = false;                    ///< do its LawParameters differ from point to point?
+  bool heats_alone =
+      false;    ///< a strength whose plastic work is all turned into heat by the damage
+};
+
+/** A range of validity in a definition. */
+struct UsedRange : ValidRange {
+  int word;    ///< of its quantity in the definition
+  /** How the quantity is found: one of these, or a row of history. */
+  int source;
+  enum { PRESSURE_OF_STRESS = -3, STRAIN_RATE = -2, DENSITY_OF_J = -1 };
+};
+
+/** All of it; the parser has checked that the parts go together. */
+struct MaterialDefinition {
+  double density = 0.0;
+  std::vector<UsedLaw> laws[NPARTS];
+  std::vector<UsedRange> ranges;
+  std::vector<UsedRandom> random;
+
+  /** Does a viscosity add to that share of the stress on which a law builds in the next step? */
+  bool shares_stress() const
+  {
+    for (const Part part : {CLOSED, STRENGTH})
+      for (const auto &law : laws[part])
+        for (const auto &viscosity : laws[VISCOSITY])
+          if (law.info->share & viscosity.info->share) return true;
+    return false;
+  }
+};
+
+/** The material of a definition; throws MaterialError when a range or random parameter is not one of
+ *  the material. */
+std::unique_ptr<Material> compose(const MaterialDefinition &, const LawTable *);
+
+inline bool in_range(const Range &range, double value)
+{
+  return range.closed ? value >= range.low && value <= range.high
+                      : value > range.low && value < range.high;
+}
+
+inline std::string number(double x)
+{
+  char text[32];
+  snprintf(text, sizeof(text), "%.15g", x);
+  return text;
+}
+
+/** Name of a law with that of its part in front. */
+inline std::string title(Part part, const LawInfo &info)
+{
+  return std::string(part_name[part]) + (part == CLOSED ? "" : " ") + info.name;
+}
+
+}    // namespace MPM_NS
+#endif

@@ -1,0 +1,124 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "mesh/element.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace MPM_NS;
+
+namespace {
+
+// corners of a square and a cube in the order of Gmsh
+constexpr int CORNER[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
+                              {-1, -1, 1},  {1, -1, 1},  {1, 1, 1},  {-1, 1, 1}};
+
+/** Triangle or tetrahedron with one point. */
+ElementRule simplex(int dim)
+{
+  ElementRule r = {};
+  r.dim = dim;
+  r.nnode = dim + 1;
+  r.npoint = 1;
+  r.weight[0] = dim == 2 ? 0.5 : 1.0 / 6.0;
+  for (int k = 0; k <= dim; k++) {
+    r.N[0][k] = 1.0 / (dim + 1);
+    for (int d = 0; d < dim; d++) r.dN[0][k][d] = k == 0 ? -1.0 : (k == d + 1 ? 1.0 : 0.0);
+  }
+  return r;
+}
+
+/** Quadrangle or hexahedron with two points along each axis. */
+ElementRule cube(int dim)
+{
+  ElementRule r = {};
+  r.dim = dim;
+  r.nnode = r.npoint = 1 << dim;
+  for (int q = 0; q < r.npoint; q++) {
+    r.weight[q] = 1.0;
+    for (int k = 0; k < r.nnode; k++) {
+      double f[3];
+      for (int d = 0; d < dim; d++) f[d] = 0.5 * (1.0 + CORNER[k][d] * CORNER[q][d] / sqrt(3.0));
+      r.N[q][k] = 1.0;
+      for (int d = 0; d < dim; d++) r.N[q][k] *= f[d];
+      for (int d = 0; d < dim; d++) {
+        r.dN[q][k][d] = 0.5 * CORNER[k][d];
+        for (int e = 0; e < dim; e++)
+          if (e != d) r.dN[q][k][d] *= f[e];
+      }
+    }
+  }
+  return r;
+}
+
+}    // namespace
+
+/* ---------------------------------------------------------------------- */
+
+const ElementRule &ElementRule::of(ElementType type)
+{
+  static const ElementRule rules[4] = {simplex(2), cube(2), simplex(3), cube(3)};
+  return rules[static_cast<int>(type)];
+}
+
+/* ----------------------------------------------------------------------
+   with the Jacobian matrix J_ab = dx_a/dxi_b: g = J^-T dN
+------------------------------------------------------------------------- */
+
+double ElementRule::gradients(int q, const double (*x)[3], double (*g)[3]) const
+{
+  const double(*d)[3] = dN[q];
+  double J[3][3] = {{0.0}};
+  for (int k = 0; k < nnode; k++)
+    for (int a = 0; a < dim; a++)
+      for (int b = 0; b < dim; b++) J[a][b] += x[k][a] * d[k][b];
+
+  if (dim == 2) {
+    const double det = J[0][0] * J[1][1] - J[0][1] * J[1][0], inv = 1.0 / det;
+    for (int k = 0; k < nnode; k++) {
+      g[k][0] = inv * (J[1][1] * d[k][0] - J[1][0] * d[k][1]);
+      g[k][1] = inv * (J[0][0] * d[k][1] - J[0][1] * d[k][0]);
+      g[k][2] = 0.0;
+    }
+    return weight[q] * det;
+  }
+
+  double C[3][3];    // cofactors
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++) {
+      const int a1 = (a + 1) % 3, a2 = (a + 2) % 3, b1 = (b + 1) % 3, b2 = (b + 2) % 3;
+      C[a][b] = J[a1][b1] * J[a2][b2] - J[a1][b2] * J[a2][b1];
+    }
+  const double det = J[0][0] * C[0][0] + J[0][1] * C[0][1] + J[0][2] * C[0][2], inv = 1.0 / det;
+  for (int k = 0; k < nnode; k++)
+    for (int a = 0; a < 3; a++)
+      g[k][a] = inv * (C[a][0] * d[k][0] + C[a][1] * d[k][1] + C[a][2] * d[k][2]);
+  return weight[q] * det;
+}
+
+/* ----------------------------------------------------------------------
+   3d: trigonometric form of the cubic equation
+------------------------------------------------------------------------- */
+
+double MPM_NS::largest_eigenvalue(int dim, const double (*G)[3])
+{
+  if (dim == 2) {
+    const double mean = 0.5 * (G[0][0] + G[1][1]);
+    return mean + hypot(0.5 * (G[0][0] - G[1][1]), G[0][1]);
+  }
+  const double mean = (G[0][0] + G[1][1] + G[2][2]) / 3.0;
+  const double a = G[0][0] - mean, b = G[1][1] - mean, c = G[2][2] - mean;
+  const double off = G[0][1] * G[0][1] + G[0][2] * G[0][2] + G[1][2] * G[1][2];
+  const double p = sqrt((a * a + b * b + c * c + 2.0 * off) / 6.0);
+  if (!(p > 0.0)) return mean;
+  const double det = a * b * c + 2.0 * G[0][1] * G[0][2] * G[1][2] - a * G[1][2] * G[1][2] -
+      b * G[0][2] * G[0][2] - c * G[0][1] * G[0][1];
+  const double r = std::max(-1.0, std::min(1.0, 0.5 * det / (p * p * p)));
+  return mean + 2.0 * p * cos(acos(r) / 3.0);
+}

@@ -1,0 +1,40 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MPM_MESH_ELEMENT_H
+#define MPM_MESH_ELEMENT_H
+
+// Linear finite elements: shape functions and their integration points. Nothing here knows about
+// LAMMPS.
+
+#include "mesh/gmsh.h"
+
+namespace MPM_NS {
+
+constexpr int MAX_ELEMENT_NODES = 8, MAX_ELEMENT_POINTS = 8;
+
+/** Gauss points of an element in its own coordinates: one for triangles and tetrahedra, 2x2 and
+ *  2x2x2 for quadrangles and hexahedra (full integration). */
+struct ElementRule {
+  int nnode, npoint, dim;
+  double weight[MAX_ELEMENT_POINTS];
+  double N[MAX_ELEMENT_POINTS][MAX_ELEMENT_NODES];        ///< shape functions at the points
+  double dN[MAX_ELEMENT_POINTS][MAX_ELEMENT_NODES][3];    ///< their derivatives
+
+  /** Gradients of the shape functions at point q with respect to the positions x[nnode][3] of the
+   *  nodes; returns the weight of the point as area or volume, negative for an inverted element. */
+  double gradients(int q, const double (*x)[3], double (*g)[3]) const;
+
+  static const ElementRule &of(ElementType);
+};
+
+/** Largest eigenvalue of a symmetric, positive semidefinite matrix [dim][dim]. */
+double largest_eigenvalue(int dim, const double (*G)[3]);
+
+}    // namespace MPM_NS
+#endif

@@ -1,0 +1,76 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MPM_MESH_GMSH_H
+#define MPM_MESH_GMSH_H
+
+// Meshes of linear elements, as Gmsh writes them. Nothing here knows about LAMMPS.
+
+#include <array>
+#include <cstdint>
+#include <istream>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace MPM_NS {
+
+/** Linear elements; their nodes are in Gmsh's order, which is that of VTK. */
+enum class ElementType : int { TRIANGLE, QUAD, TETRAHEDRON, HEXAHEDRON };
+
+/** Number of nodes of an element, and its dimension (2 or 3). */
+constexpr int element_nodes(ElementType t)
+{
+  return t == ElementType::TRIANGLE ? 3 : t == ElementType::HEXAHEDRON ? 8 : 4;
+}
+constexpr int element_dimension(ElementType t)
+{
+  return t == ElementType::TRIANGLE || t == ElementType::QUAD ? 2 : 3;
+}
+
+/** An element of a mesh; plain data, so that a mesh can be sent as bytes. */
+struct MeshElement {
+  ElementType type;
+  int physical;     ///< tag of its physical group, 0 for none (the first one of several)
+  int64_t label;    ///< its number in the file
+  int node[8];      ///< places in Mesh::nodes
+};
+
+/** Nodes and elements of a mesh file. */
+struct Mesh {
+  std::vector<std::array<double, 3>> nodes;
+  std::vector<int64_t> labels;    ///< numbers of the nodes in the file
+  std::vector<MeshElement> elements;
+  std::map<std::pair<int, int>, std::string> groups;    ///< (dimension, tag) -> name
+
+  /** The largest dimension of an element, 0 without elements. */
+  int dimension() const;
+
+  /** Keep only elements of a dimension (drop the surface of a solid, say) and, when not empty, of a
+   *  physical group (a name, or a tag), then only the nodes that these use. Throws
+   *  std::runtime_error when nothing is left. */
+  void keep(int dim, const std::string &group = "");
+
+  /** Number the nodes of elements of negative size in the opposite sense (a body of elements of
+   *  dimension 2 has its normal along +z). */
+  void orient();
+
+  /** Area or volume of an element, negative when its nodes are numbered in the wrong sense. */
+  double size(const MeshElement &) const;
+};
+
+/** Read the ASCII formats 2.2 and 4.1 of Gmsh. Points and lines of the mesh are left out, as are
+ *  sections that describe no mesh. Throws std::runtime_error that begins with name:line. */
+Mesh read_gmsh(std::istream &, const std::string &name);
+
+/** The same from a file. */
+Mesh read_gmsh(const std::string &file);
+
+}    // namespace MPM_NS
+#endif

@@ -1,0 +1,578 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "mesh/surface_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <sstream>
+#include <stdexcept>
+#include <unordered_map>
+
+using namespace MPM_NS;
+using Point = SurfaceMesh::Point;
+
+static Point operator-(const Point &a, const Point &b)
+{
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+static Point operator+(const Point &a, const Point &b)
+{
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+static Point operator*(double s, const Point &a)
+{
+  return {s * a[0], s * a[1], s * a[2]};
+}
+static double dot(const Point &a, const Point &b)
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+static Point cross(const Point &a, const Point &b)
+{
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+/* ----------------------------------------------------------------------
+   corners of the triangles of an STL file, three in a row
+------------------------------------------------------------------------- */
+
+static std::vector<Point> read_stl(const std::string &bytes, const std::string &name)
+{
+  std::vector<Point> soup;
+  constexpr std::size_t HEAD = 84, EACH = 50;
+  if (bytes.size() >= HEAD) {
+    uint32_t n;
+    memcpy(&n, bytes.data() + 80, 4);
+    if (bytes.size() == HEAD + EACH * (std::size_t) n) {
+      for (std::size_t t = 0; t < n; t++)
+        for (int c = 0; c < 3; c++) {
+          float x[3];
+          memcpy(x, bytes.data() + HEAD + EACH * t + 12 * (c + 1), 12);
+          soup.push_back({x[0], x[1], x[2]});
+        }
+      return soup;
+    }
+  }
+  if (bytes.compare(0, 5, "solid") != 0)
+    throw std::runtime_error("File " + name +
+                             " is no STL file: it does not begin with 'solid', and "
+                             "its length is not that of a binary one");
+  std::istringstream in(bytes);
+  std::string word;
+  while (in >> word)
+    if (word == "vertex") {
+      Point x;
+      if (!(in >> x[0] >> x[1] >> x[2]))
+        throw std::runtime_error("File " + name + ": vertex " + std::to_string(soup.size() + 1) +
+                                 " has no three coordinates");
+      soup.push_back(x);
+    }
+  if (soup.size() % 3 != 0)
+    throw std::runtime_error("File " + name + ": the last triangle has no three corners");
+  return soup;
+}
+
+/* ---------------------------------------------------------------------- */
+
+SurfaceMesh::SurfaceMesh(const std::string &bytes, const std::string &name, double scale,
+                         const Point &shift)
+{
+  std::vector<Point> soup = read_stl(bytes, name);
+  if (soup.empty()) throw std::runtime_error("File " + name + " has no triangles");
+  for (auto &x : soup) {
+    x = scale * x + shift;
+    if (!std::isfinite(x[0] + x[1] + x[2]))
+      throw std::runtime_error("File " + name + " has a corner that is not finite");
+  }
+  lo = hi = soup[0];
+  for (const auto &x : soup)
+    for (int d = 0; d < 3; d++) {
+      lo[d] = std::min(lo[d], x[d]);
+      hi[d] = std::max(hi[d], x[d]);
+    }
+  weld(soup, name);
+  close(name);
+  integrate();
+  if (volume < 0.0) {    // turned inside out
+    for (auto &t : triangles) std::swap(t.corner[1], t.corner[2]);
+    integrate();
+  }
+  normals();
+  find_parts();
+  tree.reserve(2 * triangles.size());
+  build(0, (int) triangles.size());
+  around_first.assign(corners.size() + 1, 0);
+  for (const auto &t : triangles)
+    for (const int c : t.corner) around_first[c + 1]++;
+  std::partial_sum(around_first.begin(), around_first.end(), around_first.begin());
+  around.resize(3 * triangles.size());
+  std::vector<int> next(around_first.begin(), around_first.end() - 1);
+  for (int i = 0; i < (int) triangles.size(); i++)
+    for (const int c : triangles[i].corner) around[next[c]++] = i;
+  make_coarse();
+}
+
+/* ----------------------------------------------------------------------
+   corners at the same place become one; triangles without area go
+------------------------------------------------------------------------- */
+
+void SurfaceMesh::weld(const std::vector<Point> &soup, const std::string &name)
+{
+  const Point size = hi - lo;
+  near = 1.0e-6 * std::sqrt(dot(size, size));
+  if (!(near > 0.0)) throw std::runtime_error("File " + name + ": all corners are at one place");
+
+  std::unordered_map<uint64_t, std::vector<int>> places;    // corners by cells of the size near
+  const auto key = [&](const Point &x, const int *step) {
+    uint64_t k = 0;    // 1e6 cells and a margin: 21 bits an axis
+    for (int d = 0; d < 3; d++)
+      k = k << 21 | (uint64_t) (std::floor((x[d] - lo[d]) / near) + step[d] + 1);
+    return k;
+  };
+  std::vector<int> number(soup.size());
+  for (std::size_t i = 0; i < soup.size(); i++) {
+    int found = -1;
+    for (int c = 0; c < 27 && found < 0; c++) {
+      const int step[3] = {c / 9 - 1, c / 3 % 3 - 1, c % 3 - 1};
+      const auto there = places.find(key(soup[i], step));
+      if (there == places.end()) continue;
+      for (const int k : there->second) {
+        const Point d = corners[k] - soup[i];
+        if (dot(d, d) <= near * near) found = k;
+      }
+    }
+    if (found < 0) {
+      const int step[3] = {0, 0, 0};
+      found = (int) corners.size();
+      corners.push_back(soup[i]);
+      places[key(soup[i], step)].push_back(found);
+    }
+    number[i] = found;
+  }
+  for (std::size_t i = 0; i + 2 < number.size(); i += 3) {
+    Triangle t;
+    for (int c = 0; c < 3; c++) t.corner[c] = number[i + c];
+    if (t.corner[0] != t.corner[1] && t.corner[1] != t.corner[2] && t.corner[2] != t.corner[0])
+      triangles.push_back(t);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   each edge must belong to two triangles that run along it in opposite directions
+------------------------------------------------------------------------- */
+
+void SurfaceMesh::close(const std::string &name)
+{
+  std::map<std::pair<int, int>, int> edges;
+  for (const auto &t : triangles)
+    for (int c = 0; c < 3; c++) edges[{t.corner[c], t.corner[(c + 1) % 3]}]++;
+  std::size_t open = 0;
+  Point example = {0.0, 0.0, 0.0};
+  for (const auto &edge : edges) {
+    const auto back = edges.find({edge.first.second, edge.first.first});
+    if (edge.second == 1 && back != edges.end() && back->second == 1) continue;
+    open++;
+    example = 0.5 * (corners[edge.first.first] + corners[edge.first.second]);
+  }
+  if (!open) return;
+  std::ostringstream text;
+  text << "The surface of file " << name << " is not closed, or its triangles do not all look "
+       << "outward: " << open << " of " << edges.size() << " edges, one of them at " << example[0]
+       << " " << example[1] << " " << example[2] << "; repair the mesh";
+  throw std::runtime_error(text.str());
+}
+
+/* ----------------------------------------------------------------------
+   volume, center, inertia: sums over the tetrahedra of the triangles and one point
+------------------------------------------------------------------------- */
+
+void SurfaceMesh::integrate()
+{
+  const Point origin = 0.5 * (lo + hi);
+  double first[3] = {0.0, 0.0, 0.0}, second[3][3] = {{0.0}};
+  volume = 0.0;
+  for (const auto &t : triangles) {
+    Point p[3];
+    for (int c = 0; c < 3; c++) p[c] = corners[t.corner[c]] - origin;
+    const double V = dot(p[0], cross(p[1], p[2])) / 6.0;
+    volume += V;
+    for (int i = 0; i < 3; i++) {
+      const double sum = p[0][i] + p[1][i] + p[2][i];
+      first[i] += V * sum / 4.0;
+      for (int j = 0; j < 3; j++) {
+        double products = sum * (p[0][j] + p[1][j] + p[2][j]);
+        for (int c = 0; c < 3; c++) products += p[c][i] * p[c][j];
+        second[i][j] += V * products / 20.0;
+      }
+    }
+  }
+  Point c;
+  for (int i = 0; i < 3; i++) c[i] = first[i] / volume;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) second[i][j] -= volume * c[i] * c[j];
+  center = origin + c;
+  for (int i = 0; i < 3; i++) {
+    inertia[i] = second[(i + 1) % 3][(i + 1) % 3] + second[(i + 2) % 3][(i + 2) % 3];
+    inertia[3 + i] = -second[i == 2 ? 1 : 0][i == 0 ? 1 : 2];
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void SurfaceMesh::normals()
+{
+  std::map<std::pair<int, int>, Point> at_edge;
+  corner_normals.assign(corners.size(), {0.0, 0.0, 0.0});
+  const auto edge = [](int a, int b) {
+    return std::make_pair(std::min(a, b), std::max(a, b));
+  };
+  for (auto &t : triangles) {
+    const Point *p[3];
+    for (int c = 0; c < 3; c++) p[c] = &corners[t.corner[c]];
+    const Point n = cross(*p[1] - *p[0], *p[2] - *p[0]);
+    const double length = std::sqrt(dot(n, n));
+    t.normal = (length > 0.0 ? 1.0 / length : 0.0) * n;
+    for (int c = 0; c < 3; c++) {
+      const Point a = *p[(c + 1) % 3] - *p[c], b = *p[(c + 2) % 3] - *p[c];
+      const Point ab = cross(a, b);
+      const double angle = std::atan2(std::sqrt(dot(ab, ab)), dot(a, b));
+      auto &corner = corner_normals[t.corner[c]];
+      corner = corner + angle * t.normal;
+      auto &sum = at_edge.emplace(edge(t.corner[c], t.corner[(c + 1) % 3]), Point{0.0, 0.0, 0.0})
+                      .first->second;
+      sum = sum + t.normal;
+    }
+  }
+  for (auto &t : triangles)
+    for (int c = 0; c < 3; c++)
+      t.edge_normal[c] = at_edge[edge(t.corner[c], t.corner[(c + 1) % 3])];
+}
+
+/* ----------------------------------------------------------------------
+   parts of the surface that hang together without crossing a sharp edge
+------------------------------------------------------------------------- */
+
+void SurfaceMesh::find_parts()
+{
+  const double sharp = std::sqrt(0.5);
+  std::vector<int> parent(triangles.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  std::map<std::pair<int, int>, int> edges;
+  for (int i = 0; i < (int) triangles.size(); i++)
+    for (int c = 0; c < 3; c++)
+      edges[{triangles[i].corner[c], triangles[i].corner[(c + 1) % 3]}] = i;
+  for (const auto &edge : edges) {
+    const int i = edge.second, j = edges.at({edge.first.second, edge.first.first});
+    if (dot(triangles[i].normal, triangles[j].normal) > sharp) parent[root(i)] = root(j);
+  }
+  std::map<int, int> number;
+  for (int i = 0; i < (int) triangles.size(); i++)
+    triangles[i].part = number.emplace(root(i), (int) number.size()).first->second;
+  nparts = (int) number.size();
+}
+
+/* ----------------------------------------------------------------------
+   tree of boxes over the triangles [first,last), halves by the longest axis of their centers
+------------------------------------------------------------------------- */
+
+int SurfaceMesh::build(int first, int last)
+{
+  constexpr int LEAF = 4;
+  const int me = (int) tree.size();
+  tree.push_back(Node());
+  Node node;
+  Point low, high;
+  for (int i = first; i < last; i++) {
+    const auto &t = triangles[i];
+    const Point c = corners[t.corner[0]] + corners[t.corner[1]] + corners[t.corner[2]];
+    for (int d = 0; d < 3; d++) {
+      low[d] = i == first ? c[d] : std::min(low[d], c[d]);
+      high[d] = i == first ? c[d] : std::max(high[d], c[d]);
+      for (int k = 0; k < 3; k++) {
+        const double x = corners[t.corner[k]][d];
+        node.lo[d] = i == first && k == 0 ? x : std::min(node.lo[d], x);
+        node.hi[d] = i == first && k == 0 ? x : std::max(node.hi[d], x);
+      }
+    }
+  }
+  node.first = first;
+  node.last = last;
+  node.part = triangles[first].part;
+  for (int i = first; i < last; i++)
+    if (triangles[i].part != node.part) node.part = -1;
+  if (last - first > LEAF) {
+    int axis = 0;
+    for (int d = 1; d < 3; d++)
+      if (high[d] - low[d] > high[axis] - low[axis]) axis = d;
+    const int middle = (first + last) / 2;
+    std::nth_element(triangles.begin() + first, triangles.begin() + middle,
+                     triangles.begin() + last, [&](const Triangle &a, const Triangle &b) {
+                       double x = 0.0, y = 0.0;
+                       for (int k = 0; k < 3; k++) {
+                         x += corners[a.corner[k]][axis];
+                         y += corners[b.corner[k]][axis];
+                       }
+                       return x < y;
+                     });
+    node.last = -1;
+    node.child[0] = build(first, middle);
+    node.child[1] = build(middle, last);
+  }
+  tree[me] = node;
+  return me;
+}
+
+/* ----------------------------------------------------------------------
+   closest point of a triangle (a, b, c) to x; feature: 0 face, 1 to 3 edges ab, bc, ca, 4 to 6 corners.
+   The regions of the plane are told apart by the signs of barycentric products
+------------------------------------------------------------------------- */
+
+static Point closest_on_triangle(const Point &x, const Point &a, const Point &b, const Point &c,
+                                 int &feature)
+{
+  const Point ab = b - a, ac = c - a, ax = x - a, bx = x - b, cx = x - c;
+  const double d1 = dot(ab, ax), d2 = dot(ac, ax), d3 = dot(ab, bx), d4 = dot(ac, bx),
+               d5 = dot(ab, cx), d6 = dot(ac, cx);
+  feature = 4;
+  if (d1 <= 0.0 && d2 <= 0.0) return a;
+  feature = 5;
+  if (d3 >= 0.0 && d4 <= d3) return b;
+  feature = 6;
+  if (d6 >= 0.0 && d5 <= d6) return c;
+  const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
+  feature = 1;
+  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return a + (d1 / (d1 - d3)) * ab;
+  feature = 2;
+  if (va <= 0.0 && d4 >= d3 && d5 >= d6) return b + ((d4 - d3) / ((d4 - d3) + (d5 - d6))) * (c - b);
+  feature = 3;
+  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return a + (d2 / (d2 - d6)) * ac;
+  feature = 0;
+  const double inverse = 1.0 / (va + vb + vc);
+  return a + (vb * inverse) * ab + (vc * inverse) * ac;
+}
+
+/* ----------------------------------------------------------------------
+   visit(triangle, closest point of it, feature, square of its distance) for triangles in boxes whose
+   square of the distance is below limit, near ones first, but for parts with skip(part);
+   visit() may lower the limit
+------------------------------------------------------------------------- */
+
+template <class Skip, class Visit>
+void SurfaceMesh::search(const Point &x, double &limit, Skip &&skip, Visit &&visit) const
+{
+  const auto to_box = [&](const Node &node) {
+    double sum = 0.0;
+    for (int d = 0; d < 3; d++) {
+      const double out = std::max(0.0, std::max(node.lo[d] - x[d], x[d] - node.hi[d]));
+      sum += out * out;
+    }
+    return sum;
+  };
+  int stack[64], depth = 0;
+  stack[depth++] = 0;
+  while (depth) {
+    const Node &node = tree[stack[--depth]];
+    if (to_box(node) >= limit || (node.part >= 0 && skip(node.part))) continue;
+    if (node.last < 0) {
+      const bool swap = to_box(tree[node.child[0]]) < to_box(tree[node.child[1]]);
+      stack[depth++] = node.child[swap];    // the nearer one is looked at first
+      stack[depth++] = node.child[!swap];
+      continue;
+    }
+    for (int i = node.first; i < node.last; i++) {
+      const Triangle &t = triangles[i];
+      if (skip(t.part)) continue;
+      int feature;
+      const Point p = closest_on_triangle(x, corners[t.corner[0]], corners[t.corner[1]],
+                                          corners[t.corner[2]], feature);
+      const Point r = x - p;
+      const double square = dot(r, r);
+      if (square < limit) visit(t, p, feature, square);
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   normal for the sign of a distance from a face, edge, or corner: its length has no meaning
+------------------------------------------------------------------------- */
+
+const Point &SurfaceMesh::mean_normal(const Triangle &t, int feature) const
+{
+  return feature == 0 ? t.normal
+      : feature < 4   ? t.edge_normal[feature - 1]
+                      : corner_normals[t.corner[feature - 4]];
+}
+
+static const auto no_part = [](int) {
+  return false;
+};
+
+/* ---------------------------------------------------------------------- */
+
+double SurfaceMesh::distance(const Point &x, Point &closest) const
+{
+  double smallest = std::numeric_limits<double>::max(), side = 1.0;
+  search(x, smallest, no_part, [&](const Triangle &t, const Point &p, int feature, double square) {
+    smallest = square;
+    closest = p;
+    side = dot(x - p, mean_normal(t, feature));
+  });
+  return side < 0.0 ? -std::sqrt(smallest) : std::sqrt(smallest);
+}
+
+/* ---------------------------------------------------------------------- */
+
+double SurfaceMesh::distance_and_normal(const Point &x, Point &normal) const
+{
+  Point closest;
+  const double d = distance(x, closest), side = d < 0.0 ? -1.0 : 1.0;
+  double limit = (std::fabs(d) + near) * (std::fabs(d) + near);
+  std::vector<Point> found;
+  normal = {0.0, 0.0, 0.0};
+  search(x, limit, no_part, [&](const Triangle &t, const Point &p, int, double) {
+    Point out = std::fabs(d) > near ? side * (x - p) : t.normal;
+    const double size = std::sqrt(dot(out, out));
+    if (!(size > 0.0)) return;    // a sliver
+    out = (1.0 / size) * out;
+    for (const auto &other : found)    // triangles of one face, or with a common edge or corner
+      if (dot(out - other, out - other) < 1.0e-12) return;
+    found.push_back(out);
+    normal = normal + out;
+  });
+  const double length = std::sqrt(dot(normal, normal)), least = 1.0e-3 * (double) found.size();
+  normal = (length > least ? 1.0 / length : 0.0) * normal;
+  return d;
+}
+
+/* ----------------------------------------------------------------------
+   is no triangle at this edge or corner of t closer to x than that is?
+------------------------------------------------------------------------- */
+
+bool SurfaceMesh::is_closest_around(const Point &x, const Triangle &t, int feature,
+                                    double square) const
+{
+  if (feature == 0) return true;
+  const int c = t.corner[(feature - 1) % 3], other = feature < 4 ? t.corner[feature % 3] : c;
+  for (int k = around_first[c]; k < around_first[c + 1]; k++) {
+    const int *corner = triangles[around[k]].corner;
+    if (corner[0] != other && corner[1] != other && corner[2] != other) continue;
+    int unused;
+    const Point r = x -
+        closest_on_triangle(x, corners[corner[0]], corners[corner[1]], corners[corner[2]], unused);
+    if (dot(r, r) < square * (1.0 - 1.0e-9)) return false;
+  }
+  return true;
+}
+
+/* ---------------------------------------------------------------------- */
+
+int SurfaceMesh::touches(const Point &x, double cutoff, Touch *list, int most) const
+{
+  int n = 0;
+  double side = 0.0;        // not known yet
+  std::vector<int> done;    // parts
+  const auto skip = [&](int part) {
+    return std::find(done.begin(), done.end(), part) != done.end();
+  };
+  while (n < most && (int) done.size() < nparts) {
+    double smallest = cutoff * cutoff;
+    const Triangle *triangle = nullptr;
+    Touch touch;
+    int at;
+    search(x, smallest, skip, [&](const Triangle &t, const Point &p, int feature, double square) {
+      const double out = dot(x - p, mean_normal(t, feature));
+      if (n > 0 && !(side * out > 0.0)) return;    // the far side of a plate
+      if (n == 0) side = out < 0.0 ? -1.0 : 1.0;
+      smallest = square;
+      triangle = &t;
+      at = feature;
+      touch = {p, side * std::sqrt(square), t.part};
+    });
+    if (!triangle) break;
+    done.push_back(triangle->part);
+    bool is_new = is_closest_around(x, *triangle, at, smallest);
+    for (int k = 0; k < n; k++) {    // a common edge or corner
+      const Point r = touch.point - list[k].point;
+      if (dot(r, r) <= near * near) is_new = false;
+    }
+    if (is_new) list[n++] = touch;
+  }
+  return n;
+}
+
+/* ----------------------------------------------------------------------
+   coarse grid over the box of the body
+------------------------------------------------------------------------- */
+
+void SurfaceMesh::make_coarse()
+{
+  constexpr int CELLS = 32;    // along the longest axis
+  cell = 0.0;
+  for (int d = 0; d < 3; d++) cell = std::max(cell, (hi[d] - lo[d]) / CELLS);
+  for (int d = 0; d < 3; d++) ncells[d] = 1 + (int) ((hi[d] - lo[d]) / cell);
+  coarse.resize((std::size_t) ncells[0] * ncells[1] * ncells[2]);
+  std::size_t n = 0;
+  for (int i = 0; i < ncells[0]; i++)
+    for (int j = 0; j < ncells[1]; j++)
+      for (int k = 0; k < ncells[2]; k++) {
+        Point closest;
+        const Point c = {lo[0] + (i + 0.5) * cell, lo[1] + (j + 0.5) * cell,
+                         lo[2] + (k + 0.5) * cell};
+        coarse[n++] = (float) distance(c, closest);
+      }
+}
+
+int SurfaceMesh::cell_of(const Point &x, Point &c) const
+{
+  int index = 0;
+  for (int d = 0; d < 3; d++) {
+    const double t = (x[d] - lo[d]) / cell;
+    if (!(t >= 0.0 && t < ncells[d])) return -1;
+    const int i = (int) t;
+    c[d] = lo[d] + (i + 0.5) * cell;
+    index = index * ncells[d] + i;
+  }
+  return index;
+}
+
+double SurfaceMesh::bound(const Point &x) const
+{
+  Point c;
+  const int index = cell_of(x, c);
+  if (index < 0) {    // outside of the grid: not closer than the box of the body
+    double sum = 0.0;
+    for (int d = 0; d < 3; d++) {
+      const double out = std::max(0.0, std::max(lo[d] - x[d], x[d] - hi[d]));
+      sum += out * out;
+    }
+    return std::sqrt(sum);
+  }
+  const Point r = x - c;
+  // single precision in the grid
+  const double known = std::abs((double) coarse[index]) * (1.0 - 1.0e-6) - std::sqrt(dot(r, r));
+  if (known <= 0.0) return 0.0;
+  return coarse[index] < 0.0f ? -known : known;
+}
+
+bool SurfaceMesh::inside(const Point &x) const
+{
+  const double known = bound(x);
+  if (known != 0.0) return known < 0.0;
+  Point closest;
+  return distance(x, closest) <= 0.0;
+}

@@ -1,0 +1,110 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MPM_MESH_SURFACE_MESH_H
+#define MPM_MESH_SURFACE_MESH_H
+
+// Closed surfaces of triangles: signed distance, volume, inertia. Nothing here knows about LAMMPS.
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace MPM_NS {
+
+/** Surface of a body, made of triangles.
+ *
+ *  Distances come from the closest triangle, found in a tree of boxes, with the sign of the normal
+ *  there; at edges and corners that is the mean normal weighted with angles (J.A. Baerentzen,
+ *  H. Aanaes, IEEE Trans. Vis. Comput. Graph. 11 (2005) 243). A coarse grid of distances, made once,
+ *  answers most questions without a search: a point is no closer to the surface than the distance at
+ *  the center of its cell less its distance from that center.
+ */
+class SurfaceMesh {
+ public:
+  using Point = std::array<double, 3>;
+
+  /** From the bytes of an STL file, text or binary, positions times scale plus shift. Corners closer
+   *  than 1e-6 of the size of the body become one. Throws std::runtime_error, with name in the
+   *  message, for what is no STL file and when the surface is not closed; a surface whose triangles
+   *  all look inward is turned. */
+  SurfaceMesh(const std::string &bytes, const std::string &name, double scale, const Point &shift);
+
+  /** Distance of x from the surface, negative inside; closest: the point there. */
+  double distance(const Point &x, Point &closest) const;
+
+  /** As distance(), with the unit normal outward: along the line through x and the closest point, on the
+   *  surface the mean normal. Where several points are equally close (to 1e-6 of the size of the body)
+   *  it is the mean of their directions, so that it has the symmetry of the body and does not depend
+   *  on rounding errors; zero where that leaves no direction, as at the center of a ball. */
+  double distance_and_normal(const Point &x, Point &normal) const;
+
+  /** Where a ball touches the surface. */
+  struct Touch {
+    Point point;
+    double distance;    // negative inside of the body
+    int part;
+  };
+
+  /** The closest point of each part of the surface (see nparts) that is seen from the side of x, within
+   *  cutoff, if none next to it beyond the edge of the part is closer; the closest first, most in
+   *  number. Returns how many. */
+  int touches(const Point &x, double cutoff, Touch *list, int most) const;
+
+  /** Lower bound of the distance, without a search: positive outside, negative inside, 0: unknown. */
+  double bound(const Point &x) const;
+
+  /** Is x inside of the body or on its surface? */
+  bool inside(const Point &x) const;
+
+  Point lo, hi;         ///< box around the body
+  double volume;        ///< of the body
+  Point center;         ///< of its volume
+  double inertia[6];    ///< about the center, of unit density: xx yy zz xy xz yz
+  int nparts;           ///< parts between sharp edges: with normals more than 45 degrees apart
+  std::size_t size() const { return triangles.size(); }
+
+ private:
+  struct Triangle {
+    int corner[3];
+    Point normal;            // unit
+    Point edge_normal[3];    // of the edges 01, 12, 20: sum of the two triangles' normals
+    int part;
+  };
+  struct Node {    // of the tree of boxes
+    Point lo, hi;
+    int first, last;    // triangles of a leaf; else last < 0 and the children are
+    int child[2];
+    int part;    // of all triangles in it; -1: of several
+  };
+
+  std::vector<Point> corners, corner_normals;
+  std::vector<Triangle> triangles;
+  std::vector<int> around, around_first;    // triangles at each corner
+  std::vector<Node> tree;
+  std::vector<float> coarse;    // distances at the centers of cells
+  int ncells[3];
+  double cell;
+  double near;    // points closer than this are one
+
+  void weld(const std::vector<Point> &soup, const std::string &name);
+  void close(const std::string &name);
+  void integrate();
+  void normals();
+  void find_parts();
+  int build(int first, int last);
+  void make_coarse();
+  template <class Skip, class Visit>
+  void search(const Point &x, double &limit, Skip &&skip, Visit &&visit) const;
+  const Point &mean_normal(const Triangle &t, int feature) const;
+  bool is_closest_around(const Point &x, const Triangle &t, int feature, double square) const;
+  int cell_of(const Point &x, Point &center_of_cell) const;
+};
+
+}    // namespace MPM_NS
+#endif

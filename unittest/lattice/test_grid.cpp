@@ -1,0 +1,156 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// labels: unit
+
+// The block-sparse lattice alone: indices, neighbours, periodic images, memory.
+
+#include "lattice/grid.h"
+
+#include "gtest/gtest.h"
+
+#include <set>
+
+using namespace MPM_NS;
+
+static Lattice make_lattice(int dim, int n, bool periodic)
+{
+  Lattice lattice;
+  lattice.dim = dim;
+  lattice.h = 0.5;
+  for (int d = 0; d < 3; d++) {
+    lattice.origin[d] = -1.0;
+    lattice.periodic[d] = periodic && d < dim;
+    lattice.ncell[d] = d < dim ? n : 1;
+  }
+  return lattice;
+}
+
+TEST(Grid, NodeIndexAndLocateAreInverse)
+{
+  for (int dim : {2, 3}) {
+    Grid grid(make_lattice(dim, 10, false));
+    const int blocks[][3] = {{0, 0, 0}, {-1, 3, 0}, {-7, -2, 0}, {1000, -1000, 0}};
+    for (auto &b : blocks) grid.activate(b);
+    grid.finish();
+    for (int slot = 0; slot < 4; slot++)
+      for (int n = 0; n < NODES_PER_BLOCK; n++) {
+        int index[3];
+        grid.node_index(grid.blocks[slot], n, index);
+        EXPECT_EQ(grid.locate(index), slot * NODES_PER_BLOCK + n);
+      }
+    const int elsewhere[3] = {500, 500, 0};
+    EXPECT_EQ(grid.locate(elsewhere), -1);
+  }
+}
+
+TEST(Grid, BlockKeyKeepsSignsAndCoordinates)
+{
+  Grid grid(make_lattice(3, 10, false));
+  const int b[3] = {-1048576, 1048575, -3};
+  const int slot = grid.activate(b);
+  const uint64_t key = Grid::block_key(grid.blocks[slot]);
+  for (int d = 0; d < 3; d++) EXPECT_EQ(Grid::key_coordinate(key, d), b[d]);
+}
+
+TEST(Grid, NeighbourTable)
+{
+  Grid grid(make_lattice(3, 10, false));
+  for (int x = 0; x < 3; x++)
+    for (int y = 0; y < 3; y++) {
+      const int b[3] = {x, y, 5};
+      grid.activate(b);
+    }
+  grid.finish();
+  const int middle[3] = {1, 1, 5};
+  const auto &block = grid.blocks[grid.find(middle)];
+  for (int dx = -1; dx <= 1; dx++)
+    for (int dy = -1; dy <= 1; dy++)
+      for (int dz = -1; dz <= 1; dz++) {
+        const int slot = block.slot[9 * (dx + 1) + 3 * (dy + 1) + dz + 1];
+        if (dz) {
+          EXPECT_EQ(slot, -1);
+        } else {
+          EXPECT_EQ(grid.blocks[slot].b[0], 1 + dx);
+          EXPECT_EQ(grid.blocks[slot].b[1], 1 + dy);
+        }
+      }
+}
+
+// any number of cells along a period: multiples of the block side and not, fewer than a block
+
+TEST(Grid, PeriodicImagesFoldOntoOneCanonicalNode)
+{
+  for (int dim : {2, 3})
+    for (int n : {1, 2, 3, 5, 8, 11, 16}) {
+      Grid grid(make_lattice(dim, n, true));
+      const int nb = n / grid.side + 1;
+      for (int x = -1; x <= nb; x++)
+        for (int y = -1; y <= nb; y++)
+          for (int z = -1; z <= nb; z++) {
+            const int b[3] = {x, y, dim == 3 ? z : 0};
+            grid.activate(b);
+          }
+      grid.close_periodic();
+      grid.finish();
+      grid.allocate(4);
+
+      // each node gets 1: a canonical node must end with the number of its images
+
+      std::set<int64_t> canonical_seen;
+      for (int64_t k = 0; k < grid.nnodes(); k++) grid.nodes()[4 * k + 2] = 1.0;
+      grid.fold_aliases(grid.nodes(), 4, 2, 1);
+      double total = 0.0;
+      for (std::size_t s = 0; s < grid.blocks.size(); s++)
+        for (int k = 0; k < NODES_PER_BLOCK; k++)
+          if (grid.blocks[s].owned >> k & 1) total += grid.record(s, k)[2];
+      EXPECT_EQ(total, (double) grid.nnodes()) << "dim " << dim << " n " << n;
+
+      // owned nodes are the nodes of one period, each once
+
+      int64_t owned = 0, expected = 1;
+      for (const auto &block : grid.blocks)
+        for (int k = 0; k < NODES_PER_BLOCK; k++) owned += block.owned >> k & 1;
+      for (int d = 0; d < dim; d++) expected *= n;
+      EXPECT_EQ(owned, expected) << "dim " << dim << " n " << n;
+
+      // and images get the canonical record back
+
+      for (std::size_t s = 0; s < grid.blocks.size(); s++)
+        for (int k = 0; k < NODES_PER_BLOCK; k++) {
+          int index[3];
+          grid.node_index(grid.blocks[s], k, index);
+          double value = 0.0;
+          for (int d = 0; d < dim; d++) value = 100.0 * value + grid.lattice.wrap(d, index[d]);
+          if (grid.blocks[s].owned >> k & 1) grid.record(s, k)[0] = value;
+        }
+      grid.copy_aliases();
+      for (std::size_t s = 0; s < grid.blocks.size(); s++)
+        for (int k = 0; k < NODES_PER_BLOCK; k++) {
+          int index[3];
+          grid.node_index(grid.blocks[s], k, index);
+          double value = 0.0;
+          for (int d = 0; d < dim; d++) value = 100.0 * value + grid.lattice.wrap(d, index[d]);
+          EXPECT_EQ(grid.record(s, k)[0], value);
+        }
+    }
+}
+
+TEST(Grid, MemoryFollowsBlocksNotTheBox)
+{
+  Grid small(make_lattice(3, 16, false)), large(make_lattice(3, 100000, false));
+  for (auto *grid : {&small, &large}) {
+    for (int x = 0; x < 10; x++) {
+      const int b[3] = {x, 0, 0};
+      grid->activate(b);
+    }
+    grid->finish();
+    grid->allocate(4);
+  }
+  EXPECT_EQ(small.memory_usage(), large.memory_usage());
+}

@@ -1,0 +1,336 @@
+// labels: unit physics
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// Kelvin-Voigt damping and Maxwell elements at a point, with any elastic law.
+
+#include "material/material_testing.h"
+
+#include "gtest/gtest.h"
+
+#include <cmath>
+#include <string>
+
+using namespace MPM_NS;
+using namespace material_testing;
+
+namespace {
+
+const char *const SOLIDS[] = {"linear 1e6 0.3",
+                              "neohookean 1e6 0.3",
+                              "hencky 1e6 0.3",
+                              "ogden 2e6 term 0.63e6 1.3 term 0.0012e6 5 term -0.01e6 -2",
+                              "orthotropic 1e6 2e6 3e6 0.1 0.2 0.3 1e6 2e6 3e6 angle 30",
+                              "eos linear 1e6 strength elastic 3e5",
+                              "eos linear 1e6 strength j2 3e5 1e4"};
+
+Matrix some_motion(double t)
+{
+  return {0.3, 1.2 * std::cos(3 * t), 0.2, 0.1, -0.4, 0.3 * std::sin(2 * t), 0.5 * t, -0.1, 0.2};
+}
+
+const Matrix STILL{};
+
+/* ---------------------------------------------------------------------- Kelvin-Voigt */
+
+// the sum of the elastic stress, which does not notice, and the viscous one
+TEST(KelvinVoigt, AddsToAnyLaw)
+{
+  const double eta = 300, bulk = 500;
+  for (const std::string solid : SOLIDS) {
+    SCOPED_TRACE(solid);
+    const auto elastic = make("density 1000 " + solid);
+    const auto damped = make("density 1000 " + solid + " viscosity newtonian 300 bulk 500");
+    MaterialPoint p(*elastic), q(*damped);
+    const double dt = 0.01;
+    for (int i = 0; i < 200; i++) {
+      const Matrix L = some_motion(i * dt);
+      for (MaterialPoint *point : {&p, &q}) point->step(L.data(), dt);
+      const double trace = L[0] + L[4] + L[8];
+      Matrix sum = stress_of(p);
+      for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++) {
+          const double D = 0.5 * (L[3 * a + b] + L[3 * b + a]), mean = a == b ? trace / 3 : 0.0;
+          sum[3 * a + b] += 2 * eta * (D - mean) + (a == b ? bulk * trace : 0.0);
+        }
+      ASSERT_LT(distance(stress_of(q), sum), 1e-12 * (i + 1) * (size(sum) + 1e4)) << i;
+    }
+    EXPECT_NEAR(q.stored_energy(), p.stored_energy(), 1e-10 * p.stored_energy());
+    for (MaterialPoint *point : {&p, &q}) point->step(STILL.data(), dt);
+    EXPECT_LT(distance(stress_of(q), stress_of(p)), 1e-10 * size(stress_of(p)));
+  }
+}
+
+TEST(KelvinVoigt, InitialStressIsKept)
+{
+  const auto material = make("density 1000 linear 1e6 0.3 viscosity newtonian 300");
+  MaterialPoint p(*material);
+  for (int k = 0; k < 6; k++) p.batch.stress[k][0] = 100.0 * (k + 1);
+  const Matrix L = {0, 0.1, 0, 0.1, 0, 0, 0, 0, 0};
+  p.step(L.data(), 1e-9);
+  EXPECT_NEAR(p.stress(3), 400 + 2 * 300 * 0.1, 1e-3);
+  EXPECT_NEAR(p.stress(4), 500, 1e-3);
+  p.step(STILL.data(), 1e-9);
+  EXPECT_NEAR(p.stress(3), 400, 1e-3);
+}
+
+// forced shear: loss angle tan(delta) = ETA omega / G, and the work of a cycle
+TEST(KelvinVoigt, OscillatingShear)
+{
+  const double G = 1e6 / 2.6, eta = 2e4, omega = 7.0, g0 = 1e-4;
+  for (const std::string solid : {"linear 1e6 0.3", "neohookean 1e6 0.3"}) {
+    const auto material = make("density 1000 " + solid + " viscosity newtonian 2e4");
+    MaterialPoint p(*material);
+    const int n = 2000;
+    const double dt = 2 * M_PI / omega / n;
+    double in_phase = 0.0, out_of_phase = 0.0;
+    for (int i = 1; i <= n; i++) {
+      const double dg = g0 * (std::sin(omega * i * dt) - std::sin(omega * (i - 1) * dt));
+      const Matrix L = {0, dg / dt, 0, 0, 0, 0, 0, 0, 0};
+      p.step(L.data(), dt);
+      in_phase += 2.0 / n * p.stress(3) / g0 * std::sin(omega * i * dt);
+      out_of_phase += 2.0 / n * p.stress(3) / g0 * std::cos(omega * i * dt);
+    }
+    EXPECT_NEAR(in_phase, G, 2e-3 * G);
+    EXPECT_NEAR(out_of_phase, eta * omega, 2e-3 * eta * omega);
+    const double cycle = M_PI * eta * omega * g0 * g0;
+    EXPECT_NEAR(p.work[VISCOUS], cycle, 1e-5 * cycle);
+  }
+}
+
+// h/c is the limit of explicit steps: an oscillator with the highest frequency of the lattice
+TEST(KelvinVoigt, StableTimeStep)
+{
+  const double M = 1e6 * 0.7 / (1.3 * 0.4), rho = 1000, h = 0.1;
+  for (const double eta : {10.0, 1e3, 1e5}) {
+    const auto material =
+        make("density 1000 linear 1e6 0.3 viscosity newtonian " + std::to_string(eta) + " bulk 5");
+    MaterialPoint p(*material, 1, h);
+    for (const bool stable : {true, false}) {
+      const double dt = (stable ? 0.999 : 1.001) * h / p.wave_speed();
+      const double k2 = 4 / (h * h) / rho, damping = 4.0 / 3 * eta + 5;
+      double strain = 1e-6, v = 0.0;
+      for (int i = 0; i < 40000; i++) {
+        v -= dt * k2 * (M * strain + damping * v);
+        strain += dt * v;
+      }
+      EXPECT_EQ(std::fabs(strain) < 1e-5, stable) << eta;
+    }
+  }
+}
+
+/* ---------------------------------------------------------------------- Maxwell */
+
+const char *const FLUID = "density 1000 eos linear 1e6 viscosity maxwell ";
+
+// large sudden shear: every component decays with its own time, at any time step
+TEST(Maxwell, Relaxation)
+{
+  const double g = 2.0, G1 = 3e5, tau1 = 0.2, G2 = 1e5, tau2 = 0.05;
+  const auto material = make(std::string(FLUID) + "term 3e5 0.2 term 1e5 0.05");
+  for (const double dt : {0.01, 0.3}) {
+    MaterialPoint p(*material);
+    move_to(p, {1, g, 0, 0, 1, 0, 0, 0, 1}, 1e-12);
+    EXPECT_NEAR(p.stress(3), (G1 + G2) * g, 1e-9 * (G1 + G2) * g);
+    const double stored = p.stored_energy();
+    EXPECT_NEAR(stored, 0.5 * (G1 + G2) * g * g, 1e-9 * stored);    // neo-Hookean
+    for (int i = 1; i <= 20; i++) {
+      p.step(STILL.data(), dt);
+      const double shear = g * (G1 * std::exp(-i * dt / tau1) + G2 * std::exp(-i * dt / tau2));
+      EXPECT_NEAR(p.stress(3), shear, 1e-9 * shear + 1e-9);
+      EXPECT_NEAR(p.stress(0) - p.stress(1), g * shear, 1e-9 * g * shear + 1e-9);
+    }
+    if (dt < 0.1) {
+      while (p.time < 5.0) p.step(STILL.data(), dt);
+      EXPECT_NEAR(p.work[VISCOUS], stored, 2e-2 * stored);    // all that was stored
+    }
+  }
+}
+
+// without relaxation: the neo-Hookean solid, stress and energy, at any motion
+TEST(Maxwell, FastMotionIsNeoHookean)
+{
+  const auto visco = make(std::string(FLUID) + "term 3e5 1e20");
+  const auto solid = make("density 1000 mooney/rivlin 1.5e5 0 1e6");
+  MaterialPoint p(*visco), q(*solid);
+  for (int i = 0; i < 300; i++) {
+    const Matrix L = some_motion(0.01 * i);
+    p.step(L.data(), 0.01);
+    q.step(L.data(), 0.01);
+    const double mean_p = -p.pressure(), mean_q = -q.pressure();
+    for (int k = 0; k < 6; k++)
+      ASSERT_NEAR(p.stress(k) - (k < 3) * mean_p, q.stress(k) - (k < 3) * mean_q,
+                  1e-10 * (q.vonmises() + 1e5));
+  }
+  EXPECT_EQ(p.work[VISCOUS] < 1e-10 * p.stored_energy(), true);
+}
+
+// start of steady shear, upper convected Maxwell fluid (R.B. Bird, R.C. Armstrong, O. Hassager,
+// Dynamics of Polymeric Liquids 1, 1987, ch. 7.2); order of convergence in the time step
+TEST(Maxwell, StartOfSteadyShear)
+{
+  const double G = 3e5, tau = 0.2, rate = 8.0, eta = G * tau;    // Weissenberg number 1.6
+  const auto material = make(std::string(FLUID) + "term 3e5 0.2");
+  double error[3] = {};
+  for (int level = 0; level < 3; level++) {
+    MaterialPoint p(*material);
+    const int n = 50 << level;
+    const double dt = 1.0 / n;
+    const Matrix L = {0, rate, 0, 0, 0, 0, 0, 0, 0};
+    for (int i = 1; i <= n; i++) {
+      p.step(L.data(), dt);
+      const double s = i * dt / tau, decay = std::exp(-s);
+      const double shear = eta * rate * (1 - decay);
+      const double normal = 2 * eta * tau * rate * rate * (1 - decay * (1 + s));
+      error[level] = std::max(error[level], std::fabs(p.stress(3) - shear) / (eta * rate));
+      error[level] =
+          std::max(error[level],
+                   std::fabs(p.stress(0) - p.stress(1) - normal) / (2 * eta * tau * rate * rate));
+      EXPECT_NEAR(p.stress(1), p.stress(2), 1e-9 * eta * rate);    // no second difference
+    }
+    // in steady flow all power is dissipated
+    const double before = p.work[VISCOUS];
+    for (int i = 0; i < n; i++) p.step(L.data(), dt);
+    EXPECT_NEAR(p.work[VISCOUS] - before, eta * rate * rate, 2e-2 * eta * rate * rate);
+  }
+  EXPECT_LT(error[2], 1e-4);
+  EXPECT_GT(std::log2(error[0] / error[2]), 2 * 1.9) << error[0] << " " << error[2];
+}
+
+// small strain at constant rate: exact for steps of any length, and a viscosity for long ones
+TEST(Maxwell, ConstantRateIsExact)
+{
+  const double G = 3e5, tau = 0.2, rate = 1e-9;
+  const auto material = make(std::string(FLUID) + "term 3e5 0.2");
+  for (const double dt : {1e-3, 0.1, 1.0, 1e6}) {
+    MaterialPoint p(*material);
+    const Matrix L = {0, rate, 0, 0, 0, 0, 0, 0, 0};
+    for (int i = 1; i <= (dt > 1e3 ? 3 : 20); i++) {
+      p.step(L.data(), dt);
+      const double expected = G * tau * rate * -std::expm1(-i * dt / tau);
+      // linear for a strain, within a relaxation time, of up to 1e-6
+      EXPECT_NEAR(p.stress(3), expected, (1e-12 + 1e-8) * expected) << dt;
+    }
+  }
+}
+
+// storage and loss modulus of a Prony series with a solid
+TEST(Maxwell, OscillatingShear)
+{
+  const double G0 = 1e6 / 2.6, G[2] = {3e5, 2e5}, tau[2] = {1.0, 0.02}, g0 = 1e-4;
+  for (const std::string solid : {"linear 1e6 0.3", "hencky 1e6 0.3"}) {
+    const auto material =
+        make("density 1000 " + solid + " viscosity maxwell term 3e5 1 term 2e5 0.02");
+    for (const double omega : {0.3, 1.0, 10.0, 50.0, 1000.0}) {
+      MaterialPoint p(*material);
+      const int n = 400, cycles = 2 + static_cast<int>(2 * omega);    // six relaxation times
+      const double dt = 2 * M_PI / omega / n;
+      double storage = 0.0, loss = 0.0, work = 0.0;
+      for (int i = 1; i <= std::min(cycles, 60) * n; i++) {
+        const double a = omega * i * dt, dg = g0 * (std::sin(a) - std::sin(a - omega * dt));
+        const Matrix L = {0, dg / dt, 0, 0, 0, 0, 0, 0, 0};
+        p.step(L.data(), dt);
+        if (i <= (std::min(cycles, 60) - 1) * n) {
+          work = p.work[VISCOUS];
+          continue;
+        }
+        storage += 2.0 / n * p.stress(3) / g0 * std::sin(a);
+        loss += 2.0 / n * p.stress(3) / g0 * std::cos(a);
+      }
+      double expected_storage = G0, expected_loss = 0.0;
+      for (int k = 0; k < 2; k++) {
+        const double x = omega * tau[k];
+        expected_storage += G[k] * x * x / (1 + x * x);
+        expected_loss += G[k] * x / (1 + x * x);
+      }
+      EXPECT_NEAR(storage, expected_storage, 2e-3 * expected_storage) << omega;
+      EXPECT_NEAR(loss, expected_loss, 5e-3 * expected_storage) << omega;
+      const double cycle = M_PI * expected_loss * g0 * g0;
+      EXPECT_NEAR(p.work[VISCOUS] - work, cycle, 1e-2 * cycle) << omega;
+    }
+  }
+}
+
+// stable and dissipative where a step is much longer than the relaxation time, or shorter
+TEST(Maxwell, AnyTimeStep)
+{
+  for (const char *tau : {"1e-12", "1e-3", "1", "1e12"}) {
+    const auto material = make(std::string(FLUID) + "term 3e5 " + tau);
+    MaterialPoint p(*material);
+    for (int i = 0; i < 12; i++) {
+      const Matrix L = some_motion(0.1 * i);
+      p.step(L.data(), 0.5);
+      ASSERT_TRUE(std::isfinite(p.vonmises()) && std::isfinite(p.stored_energy())) << tau;
+      ASSERT_TRUE(std::isfinite(p.wave_speed())) << tau;
+      ASSERT_GE(p.stored_energy(), 0.0) << tau;
+      ASSERT_GE(p.batch.work[VISCOUS], 0.0) << tau;
+    }
+  }
+}
+
+// a rotation on top of the motion turns the stress and changes nothing else
+// what an element has stored becomes heat when it relaxes, in many steps or in one
+
+TEST(Maxwell, DissipatesWhatItHasStored)
+{
+  const auto material = make("density 1000 neohookean 1e5 0.45 viscosity maxwell term 5e4 1e-3");
+  const Matrix shear = {1, 1e-3, 0, 0, 1, 0, 0, 0, 1}, rest = {};
+  for (const int n : {1, 10, 1000}) {
+    MaterialPoint p(*material);
+    move_to(p, shear, 1e-9);
+    const double stored = p.stored_energy(), viscous = p.work[VISCOUS];
+    for (int i = 0; i < n; i++) p.step(rest.data(), 0.02 / n);
+    EXPECT_NEAR(stored - p.stored_energy(), 0.5 * 5e4 * 1e-6, 1e-4 * stored) << n;
+    // in steps as long as the relaxation time the rule of integration shows
+    EXPECT_NEAR(p.work[VISCOUS] - viscous, 0.5 * 5e4 * 1e-6, (n == 10 ? 0.2 : 1e-3) * stored) << n;
+  }
+}
+
+TEST(Maxwell, Objectivity)
+{
+  const auto material = make("density 1000 hencky 1e6 0.3 viscosity maxwell term 3e5 0.2");
+  const std::array<double, 3> axis = {0.48, 0.6, 0.64};
+  MaterialPoint plain(*material), turned(*material);
+  for (int i = 1; i <= 50; i++) {
+    const double t = 0.02 * i;
+    const Matrix F = {1 + 0.3 * t, 2 * t, 0, 0, 1, -t, 0, 0, 1 - 0.4 * t};
+    const Matrix R = rotation(axis, 30.0 * t);
+    move_to(plain, F, 0.02);
+    move_to(turned, R * F, 0.02);
+    const Matrix expected = R * stress_of(plain) * transpose(R);
+    EXPECT_LT(distance(stress_of(turned), expected), 1e-11 * size(expected));
+    EXPECT_NEAR(turned.stored_energy(), plain.stored_energy(), 1e-11 * plain.stored_energy());
+    EXPECT_NEAR(turned.work[VISCOUS], plain.work[VISCOUS], 1e-11 * plain.work[VISCOUS]);
+  }
+}
+
+// the instantaneous modulus, and a step that is stable for any relaxation time
+TEST(Maxwell, WaveSpeed)
+{
+  for (const char *tau : {"1e-9", "1e-3", "1e9"}) {
+    const auto material =
+        make("density 1000 linear 1e6 0.25 viscosity maxwell term 4e5 " + std::string(tau));
+    const double M = 1.2e6 + 4.0 / 3 * 4e5;
+    EXPECT_NEAR(MaterialPoint(*material).wave_speed(), std::sqrt(M / 1000), 1e-9);
+  }
+  // never slower than the solid that it becomes in fast motion, at large strain too
+  const auto visco = make(std::string(FLUID) + "term 3e5 1e20");
+  const auto solid = make("density 1000 mooney/rivlin 1.5e5 0 1e6");
+  for (const Matrix &F :
+       {Matrix{4, 0, 0, 0, 0.5, 0, 0, 0, 0.5}, Matrix{0.25, 0, 0, 0, 2, 0, 0, 0, 2},
+        Matrix{1, 3, 0, 0, 1, 0, 0, 0, 1}}) {
+    MaterialPoint p(*visco), q(*solid);
+    move_to(p, F);
+    move_to(q, F);
+    EXPECT_GE(p.wave_speed(), (1 - 1e-6) * q.wave_speed());
+    // parts add up their fastest waves, which need not be the same
+    EXPECT_LE(p.wave_speed(), 1.3 * q.wave_speed());
+  }
+}
+
+}    // namespace

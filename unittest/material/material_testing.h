@@ -1,0 +1,243 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MATERIAL_TESTING_H
+#define MATERIAL_TESTING_H
+
+// What tests of constitutive laws share: 3x3 matrices, motions of a point, and samples of all laws.
+
+#include "material/material_point.h"
+
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace material_testing {
+
+using MPM_NS::Material;
+using MPM_NS::MaterialPoint;
+
+using Matrix = std::array<double, 9>;
+constexpr Matrix IDENTITY = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+
+std::unique_ptr<Material> make(const std::string &text, const char *isa = nullptr)
+{
+  std::istringstream in(text);
+  std::vector<std::string> words;
+  for (std::string word; in >> word;) words.push_back(word);
+  return Material::create(words, isa);
+}
+
+/** The definition in a file of the folder potentials. */
+inline std::string definition(const std::string &name)
+{
+  std::ifstream file(std::string(MPM_SOURCE_DIR) + "/potentials/" + name + ".mpm");
+  if (!file) throw std::runtime_error("no material file " + name);
+  std::string text;
+  for (std::string line; std::getline(file, line);) text += line.substr(0, line.find('#')) + " ";
+  return text;
+}
+
+inline Matrix operator*(const Matrix &a, const Matrix &b)
+{
+  Matrix c{};
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      for (int k = 0; k < 3; k++) c[3 * i + j] += a[3 * i + k] * b[3 * k + j];
+  return c;
+}
+
+inline Matrix transpose(const Matrix &a)
+{
+  return {a[0], a[3], a[6], a[1], a[4], a[7], a[2], a[5], a[8]};
+}
+
+inline double det(const Matrix &F)
+{
+  return F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
+      F[2] * (F[3] * F[7] - F[4] * F[6]);
+}
+
+inline Matrix inverse(const Matrix &M)
+{
+  Matrix c = {M[4] * M[8] - M[5] * M[7], M[2] * M[7] - M[1] * M[8], M[1] * M[5] - M[2] * M[4],
+              M[5] * M[6] - M[3] * M[8], M[0] * M[8] - M[2] * M[6], M[2] * M[3] - M[0] * M[5],
+              M[3] * M[7] - M[4] * M[6], M[1] * M[6] - M[0] * M[7], M[0] * M[4] - M[1] * M[3]};
+  for (double &x : c) x /= det(M);
+  return c;
+}
+
+/** Rotation by an angle about a unit axis. */
+inline Matrix rotation(const std::array<double, 3> &n, double angle)
+{
+  const double c = std::cos(angle), s = std::sin(angle);
+  const Matrix skew = {0, -n[2], n[1], n[2], 0, -n[0], -n[1], n[0], 0};
+  Matrix R{};
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      R[3 * i + j] = (i == j ? c : 0.0) + (1.0 - c) * n[i] * n[j] + s * skew[3 * i + j];
+  return R;
+}
+
+inline Matrix stress_of(const MaterialPoint &p)
+{
+  return {p.stress(0), p.stress(3), p.stress(4), p.stress(3), p.stress(1),
+          p.stress(5), p.stress(4), p.stress(5), p.stress(2)};
+}
+
+inline double size(const Matrix &a)
+{
+  double sum = 0.0;
+  for (const double x : a) sum += x * x;
+  return std::sqrt(sum);
+}
+
+inline double distance(const Matrix &a, const Matrix &b)
+{
+  Matrix d;
+  for (int k = 0; k < 9; k++) d[k] = a[k] - b[k];
+  return size(d);
+}
+
+/** Moves a point to a new deformation gradient in one step. */
+inline void move_to(MaterialPoint &p, const Matrix &F, double dt = 1.0)
+{
+  Matrix old;
+  for (int k = 0; k < 9; k++) old[k] = p.batch.F[k][0];
+  Matrix A = F * inverse(old);
+  for (int k = 0; k < 9; k++) A[k] -= IDENTITY[k];
+  p.move(A.data(), dt);
+}
+
+/** Steps with a velocity gradient that depends on time. */
+inline void follow(MaterialPoint &p, const std::function<Matrix(double)> &L, double time, int n)
+{
+  const double dt = time / n;
+  for (int i = 0; i < n; i++) p.step(L((i + 0.5) * dt).data(), dt);
+}
+
+constexpr double MPa = 1e6, GPa = 1e9;
+
+/** One material of each kind, with names for messages: the tests of properties that all laws have
+ *  (objectivity, energy, wave speed, instruction sets, extremes) go through these. */
+struct Sample {
+  const char *name, *text;
+};
+inline const Sample samples[] = {
+    {"linear", "density 1000 linear 1e6 0.3"},
+    {"neohookean", "density 1000 neohookean 1e6 0.3"},
+    {"neohookean/split", "density 1000 neohookean/split 1e6 0.3"},
+    {"stvenant/kirchhoff", "density 1000 stvenant/kirchhoff 1e6 0.3"},
+    {"hencky", "density 1000 hencky 1e6 0.3"},
+    {"mooney/rivlin", "density 1000 mooney/rivlin 0.3e6 0.1e6 2e6"},
+    {"ogden", "density 1000 ogden 2e6 term 0.63e6 1.3 term 0.0012e6 5 term -0.01e6 -2"},
+    {"transversely/isotropic",
+     "density 1580 transversely/isotropic 126e9 11e9 0.28 0.4 6.6e9 axis 1 2 -0.5"},
+    {"orthotropic",
+     "density 600 orthotropic 11e9 0.9e9 0.5e9 0.4 0.45 0.5 0.7e9 0.65e9 0.05e9 "
+     "axes 1 2 0 0 1 1 angle 20"},
+    {"elastic", "density 2700 eos linear 70e9 strength elastic 26e9"},
+    {"shock+elastic", "density 2703 eos shock 5350 1.34 2 strength elastic 26e9"},
+    {"j2", "density 8930 eos shock 3940 1.49 1.96 strength j2 43e9 157e6 hardening linear 425e6"},
+    {"j2 power", "density 8940 eos linear 1e11 strength j2 44e9 65e6 hardening power 356e6 0.37"},
+    {"j2 voce", "density 7800 eos linear 160e9 strength j2 80e9 300e6 hardening voce 2e8 15 1e8"},
+    {"j2 swift", "density 7800 eos linear 160e9 strength j2 80e9 300e6 hardening swift 0.002 0.2"},
+    {"j2 table", "density 7800 eos linear 160e9 strength j2 80e9 300e6 point 0.1 4e8 point 1 6e8"},
+    {"j2 kinematic", "density 7800 eos linear 160e9 strength j2 80e9 300e6 kinematic 20e9 0"},
+    {"j2 recovery",
+     "density 7800 eos shock 3940 1.49 1.96 strength j2 80e9 300e6 hardening linear 1e9 "
+     "kinematic 20e9 100"},
+    {"j2 cowper/symonds",
+     "density 7800 eos linear 160e9 strength j2 80e9 300e6 hardening power 5e8 0.3 "
+     "rate cowper/symonds 40.4 5"},
+    {"j2 perzyna",
+     "density 7800 eos linear 160e9 strength j2 80e9 300e6 rate perzyna 1e8 1 4 "
+     "kinematic 20e9 100"},
+    {"johnson/cook",
+     "density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 0.168 "
+     "0.0089 1 1.1 1540 20 thermal adiabatic 460 20 0.9"},
+    {"johnson/cook cold",
+     "density 8940 eos shock 3933 1.5 2 strength johnson/cook 44e9 65e6 356e6 "
+     "0.37 0.013 1e-3"},
+    {"zerilli/armstrong bcc",
+     "density 7870 eos linear 165e9 strength zerilli/armstrong 80e9 65e6 form bcc 1033e6 0.00698 "
+     "0.000415 266e6 0.289 rate 1 thermal adiabatic 450 300 0.9"},
+    {"zerilli/armstrong fcc",
+     "density 8930 eos shock 3940 1.49 1.96 strength zerilli/armstrong 47e9 65e6 form fcc 890e6 "
+     "0.0028 0.000115 melt 1356 rate 1 thermal adiabatic 385 300 0.9"},
+    {"steinberg",
+     "density 8930 eos shock 3940 1.489 2.02 strength steinberg 47.7e9 0.12e9 36 0.45 0.64e9 "
+     "2.83e-11 3.77e-4 melt 1790 1.5 2.02 tref 300 thermal adiabatic 385 300 0.9 gruneisen 2.02"},
+    {"johnson/cook warm",
+     "density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 0.168 "
+     "0.0089 1 1.1 1540 20 thermal constant 600"},
+    {"melting",
+     "density 8930 eos linear 1e11 strength j2 43e9 157e6 thermal adiabatic 385 300 0.9 "
+     "melt 300.5 200 gruneisen 2"},
+    {"steinberg cold",
+     "density 8930 eos linear 137e9 strength steinberg 47.7e9 0.12e9 36 0.45 0.64e9 2.83e-11 0 "
+     "prestrain 0.01"},
+    {"tait", "density 1000 eos tait 2.2e9 7 cutoff -1e5 viscosity newtonian 1e-3"},
+    {"fluid", "density 1000 eos linear 1e6 viscosity newtonian 1 viscosity artificial 1.5 0.06"},
+    {"drucker/prager", "density 1600 drucker/prager 1e6 0.3 30"},
+    {"drucker/prager cohesion",
+     "density 1600 drucker/prager 1e6 0.3 35 cohesion 2e4 dilatancy 10 tension 5e3 plane"},
+    {"gurson",
+     "density 7800 gurson 200e9 0.3 400e6 0.02 hardening 0.01 0.1 nucleation 0.04 0.1 0.05 "
+     "coalescence 0.15 0.25"},
+    {"johnson/cook damage",
+     "density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 0.168 0.0089 1 1.1 "
+     "1540 20 thermal adiabatic 460 20 0.9 damage johnson/cook 0.1 0.5 -1.5 rate -0.01 1 "
+     "temperature 0.6 1540 20 soften from 0.1 after friction 0.3"},
+    {"energy of damage",
+     "density 2703 eos shock 5350 1.34 2 strength j2 26e9 0.3e9 "
+     "damage cockcroft/latham 2e7 soften energy 6e6 viscosity artificial 1.5 0.06"},
+    {"rankine",
+     "density 2400 eos linear 2e10 strength elastic 1.5e10 damage rankine 1e7 soften energy 1e8 "
+     "weibull 5 1 7"},
+    {"grady/kipp",
+     "density 2700 eos linear 2e10 strength elastic 1.5e10 "
+     "damage grady/kipp 1e4 3 0.1 4e10 after none"},
+    {"mohr/coulomb", "density 1900 mohr/coulomb 1e6 0.3 30 1e4 dilatancy 10"},
+    {"mohr/coulomb soft", "density 1900 mohr/coulomb 1e6 0.3 30 3e4 residual 1e4 20 5"},
+    {"mui", "density 1500 mui 1e6 0.3 0.38 0.64 0.3 1e-3"},
+    {"snow", "density 400 snow 1.4e5 0.2 0.025 0.0075 5"},
+    {"camclay", "density 1900 camclay 5e6 0.9 0.2 0.04 0 1e5 1.5e5"},
+    {"nacc", "density 250 nacc 1e6 0.3 1.85 0.3 3 -0.05"},
+    {"viscous rubber",
+     "density 1000 neohookean 1e6 0.3 viscosity newtonian 10 viscosity artificial 2 1"},
+    {"shock cutoff", "density 8930 eos shock 3940 1.49 1.96 cutoff -1e9"},
+    {"shock spall", "density 8930 eos shock 3940 1.49 1.96 spall -1e9 strength elastic 43e9"},
+    {"polynomial", "density 2700 eos polynomial 7e10 8e10 5e10 2 1.5 6e10 1e10 energy 1e9"},
+    {"ideal gas", "density 1.2 eos ideal/gas 1.4 pressure 1e5"},
+    {"stiffened gas", "density 1000 eos stiffened/gas 4.4 6e8 pressure 1e5 cutoff -1e6"},
+    {"jwl", "density 1630 eos jwl 371.2e9 3.231e9 4.15 0.95 0.3 7.0e9 6930"},
+    {"jwl burning", "density 1630 eos jwl 371.2e9 3.231e9 4.15 0.95 0.3 7.0e9 69 detonate 0 0 0 0"},
+    {"bulk viscosity", "density 1000 eos linear 1e6 viscosity newtonian 1 bulk 2"},
+    {"bingham", "density 1000 eos linear 1e6 viscosity bingham 1 2 10"},
+    {"herschel/bulkley", "density 1000 eos linear 1e6 viscosity herschel/bulkley 1 0.5 2 10"},
+    {"power", "density 1000 eos tait 1e6 7 viscosity power 2 0.5 0.1 10"},
+    {"damped linear",
+     "density 1000 linear 1e6 0.3 viscosity newtonian 10 bulk 20 viscosity artificial 2 1"},
+    {"damped metal",
+     "density 8930 eos linear 1e11 strength j2 43e9 157e6 hardening linear 425e6 "
+     "viscosity newtonian 1e3"},
+    {"maxwell rubber",
+     "density 1000 hencky 1e6 0.3 viscosity maxwell term 2e5 0.1 term 1e5 0.01 term 1e5 1e-5"},
+    {"maxwell linear", "density 1000 linear 1e6 0.3 viscosity maxwell term 2e5 0.1"},
+    {"maxwell fluid", "density 1000 eos tait 1e6 7 viscosity maxwell term 2e5 0.1"},
+};
+
+}    // namespace material_testing
+#endif
