@@ -1,0 +1,66 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "mpm_options.h"
+
+#include "error.h"
+#include "input.h"
+#include "utils.h"
+#include "variable.h"
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+void LAMMPS_NS::explain_errors(LAMMPS *lmp, const std::function<void()> &f)
+{
+  Error *error = lmp->error;
+  try {
+    f();
+  } catch (const OptionError &e) {
+    if (e.missing) utils::missing_cmd_args(FLERR, e.text, error);
+    error->all(FLERR, e.iarg >= 0 ? e.iarg : Error::NOPOINTER, e.text);
+  }
+}
+
+int LAMMPS_NS::read_options(LAMMPS *lmp, Options &options, int narg, char **arg, int iarg,
+                            const std::string &last)
+{
+  OptionInput input;
+  input.narg = narg;
+  input.arg = arg;
+  input.number = [=](int i) {
+    return utils::numeric(FLERR, arg[i], false, lmp);
+  };
+  input.integer = [=](int i) {
+    return utils::bnumeric(FLERR, arg[i], false, lmp);
+  };
+  input.yes = [=](int i) {
+    return utils::logical(FLERR, arg[i], false, lmp) != 0;
+  };
+  explain_errors(lmp, [&] {
+    iarg = options.read(input, iarg, last);
+  });
+  return iarg;
+}
+
+void LAMMPS_NS::find_variable(LAMMPS *lmp, NumberOrVariable &v, const std::string &user)
+{
+  if (v.variable.empty()) return;
+  v.index = lmp->input->variable->find(v.variable.c_str());
+  if (v.index < 0)
+    lmp->error->all(FLERR, Error::NOLASTLINE, "Variable {} for {} does not exist", v.variable,
+                    user);
+  if (!lmp->input->variable->equalstyle(v.index))
+    lmp->error->all(FLERR, Error::NOLASTLINE, "Variable {} for {} is not equal-style", v.variable,
+                    user);
+}
+
+double LAMMPS_NS::evaluate(LAMMPS *lmp, const NumberOrVariable &v)
+{
+  return v.variable.empty() ? v.value : lmp->input->variable->compute_equal(v.index);
+}
