@@ -10,13 +10,13 @@
 
 #include "atom.h"
 #include "error.h"
-#include "fix_mpm.h"
 #include "fix_mpm_elements.h"
 #include "fix_mpm_material.h"
 #include "force.h"
 #include "group.h"
 #include "material/material.h"
 #include "modify.h"
+#include "mpm_field.h"
 #include "mpm_point_batches.h"
 #include "update.h"
 
@@ -72,8 +72,8 @@ void ComputeMPMEnergy::begin()
   if (started) return;
   started = true;
   start = evaluate();
-  for (auto *fix : modify->get_fix_by_style("^mpm$")) {
-    const auto &restored = dynamic_cast<FixMPM *>(fix)->ledger_start;
+  for (const auto *field : MPMField::all(lmp)) {
+    const auto &restored = field->ledger.start;
     if (restored.size() * sizeof(double) != sizeof(Sums)) continue;
     memcpy(&start, restored.data(), sizeof(Sums));
     return;
@@ -94,8 +94,7 @@ ComputeMPMEnergy::Sums ComputeMPMEnergy::evaluate() const
 {
   Sums mine = {};
 
-  for (auto *fix : modify->get_fix_by_style("^mpm$")) {
-    const auto *field = dynamic_cast<FixMPM *>(fix);
+  for (const auto *field : MPMField::all(lmp)) {
     for (int i = 0; i < atom->nlocal; i++) {
       if (!field->is_point(i)) continue;
       const double *v = atom->v[i];

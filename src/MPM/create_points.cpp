@@ -13,9 +13,10 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "fix_mpm.h"
 #include "irregular.h"
 #include "modify.h"
+#include "mpm_field.h"
+#include "mpm_frame.h"
 #include "mpm_points.h"
 #include "region.h"
 
@@ -126,7 +127,7 @@ void CreatePoints::command(int narg, char **arg)
     if (!mesh)
       utils::logmesg(lmp, "  spacing = {:.8g} {:.8g}{}\n", spacing[0], spacing[1],
                      flat ? "" : fmt::format(" {:.8g}", spacing[2]));
-    if (fix && fix->axisymmetric)
+    if (fix && fix->options.axisymmetric)
       utils::logmesg(lmp,
                      "  area = {:.8g} per point, volume = {:.8g} in total (all around the axis)\n",
                      volume, all_made);
@@ -218,7 +219,7 @@ void CreatePoints::parse(int narg, char **arg)
       if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "create_points fix", error);
       auto *ifix = modify->get_fix_by_id(arg[iarg + 1]);
       if (!ifix) error->all(FLERR, iarg + 1, "Create_points fix {} does not exist", arg[iarg + 1]);
-      fix = dynamic_cast<FixMPM *>(ifix);
+      fix = MPMField::find(lmp, arg[iarg + 1]);
       if (!fix)
         error->all(FLERR, iarg + 1, "Create_points fix {} is a fix {}, not a fix mpm",
                    arg[iarg + 1], ifix->style);
@@ -298,7 +299,7 @@ void CreatePoints::parse(int narg, char **arg)
       error->warning(FLERR,
                      "Create_points spacing {:.8g} along {} is wider than the cells of fix "
                      "{} ({:.8g}): there will be cells without points inside the body",
-                     spacing[d], axis_name[d], fix->id, fix->lattice.h);
+                     spacing[d], axis_name[d], fix->id(), fix->lattice.h);
   }
 }
 
@@ -309,9 +310,7 @@ void CreatePoints::parse(int narg, char **arg)
 void CreatePoints::find_lattice()
 {
   if (fix) return;
-  for (auto *ifix : modify->get_fix_by_style("^mpm$")) {
-    auto *other = dynamic_cast<FixMPM *>(ifix);
-    if (!other) continue;
+  for (auto *other : MPMField::all(lmp)) {
     if (!fix) fix = other;
     bool same = other->lattice.h == fix->lattice.h;
     for (int d = 0; d < domain->dimension; d++)
@@ -320,7 +319,7 @@ void CreatePoints::find_lattice()
       error->all(FLERR, Error::NOPOINTER,
                  "Fixes mpm {} and {} have different lattices: say with "
                  "create_points keyword fix which one is meant",
-                 fix->id, other->id);
+                 fix->id(), other->id());
   }
 }
 
@@ -342,7 +341,7 @@ void CreatePoints::find_ranges()
     std::copy_n(region_hi, 3, hi);
   }
   // half of what is on the axis
-  if (fix && fix->axisymmetric && lo[0] > -INFINITE) lo[0] = std::max(lo[0], 0.0);
+  if (fix && fix->options.axisymmetric && lo[0] > -INFINITE) lo[0] = std::max(lo[0], 0.0);
 
   for (int d = 0; d < 3; d++) {
     if (d == domain->dimension) {
@@ -643,7 +642,7 @@ void CreatePoints::make_point(const Site &site)
 
   const int i = atom->nlocal - 1;
   atom->tag[i] = site.tag;
-  atom->vfrac[i] = site.volume * (fix ? fix->circle(site.x[0]) : 1.0);
+  atom->vfrac[i] = site.volume * (fix ? fix->frame->circle(site.x[0]) : 1.0);
   atom->rmass[i] = 0.0;    // not known yet, see fix mpm/material
   if (atom->radius_flag) atom->radius[i] = 0.5 * diameter;
 }

@@ -57,7 +57,7 @@ class CreatePoints : public Command {
 
   int type, seed;
   class Region *region;    // null: the whole box
-  class FixMPM *fix;       // whose lattice the sites refer to; null: none
+  class MPMField *fix;     // whose lattice the sites refer to; null: none
   double spacing[3], origin[3];
   double jitter, diameter;
   bool allow_overlap, ignore_outside;

@@ -14,10 +14,10 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "fix_mpm.h"
 #include "math_extra.h"
 #include "mesh/element.h"
 #include "modify.h"
+#include "mpm_field.h"
 #include "mpm_mesh_input.h"
 
 #include <cmath>
@@ -35,13 +35,13 @@ Mesh CreatePoints::read_mesh(int narg, char **arg)
 {
   const std::string what = std::string("create_points ") + arg[1];
   if (narg < 3) utils::missing_cmd_args(FLERR, what, error);
-  for (auto *ifix : modify->get_fix_by_style("^mpm$"))
-    if (dynamic_cast<FixMPM *>(ifix)->axisymmetric) fix = dynamic_cast<FixMPM *>(ifix);
+  for (auto *field : MPMField::all(lmp))
+    if (field->options.axisymmetric) fix = field;
   if (fix && strcmp(arg[1], "mesh") == 0)
     error->all(FLERR, 1,
                "Create_points mesh cannot be used with axisymmetric fix mpm {}: elements, to "
                "which its points belong, are of plane strain; use create_points elements or region",
-               fix->id);
+               fix->id());
 
   const int dim = domain->dimension;
   std::string part;

@@ -9,8 +9,9 @@
 #include "dump_mpm_grid_vtk.h"
 
 #include "error.h"
-#include "fix_mpm.h"
+#include "fix.h"
 #include "modify.h"
+#include "mpm_field.h"
 #include "mpm_vtk.h"
 #include "update.h"
 
@@ -69,13 +70,13 @@ DumpMPMGridVTK::~DumpMPMGridVTK() = default;
 
 /* ---------------------------------------------------------------------- */
 
-FixMPM *DumpMPMGridVTK::find_field() const
+MPMField *DumpMPMGridVTK::find_field() const
 {
   auto *fix = modify->get_fix_by_id(fix_id);
   if (!fix)
     error->all(FLERR, Error::NOLASTLINE, "Dump mpm/grid/vtk {} fix ID {} does not exist", id,
                fix_id);
-  auto *found = dynamic_cast<FixMPM *>(fix);
+  auto *found = MPMField::find(lmp, fix_id);
   if (!found)
     error->all(FLERR, Error::NOLASTLINE, "Dump mpm/grid/vtk {} fix {} is of style {}, not mpm", id,
                fix_id, fix->style);
@@ -112,7 +113,7 @@ int DumpMPMGridVTK::modify_param(int narg, char **arg)
 
 template <typename Visitor> void DumpMPMGridVTK::visit_nodes(Visitor visit) const
 {
-  auto *grid = field->grid;
+  auto *grid = &field->grid;
   if (grid->nreal == 0) return;
   for (std::size_t slot = 0; slot < grid->blocks.size(); slot++) {
     const auto &block = grid->blocks[slot];
@@ -138,7 +139,7 @@ void DumpMPMGridVTK::pack(tagint *)
   double *row = buf;
   visit_nodes([&](const Grid::Block &block, int n, const double *record) {
     int index[3];
-    field->grid->node_index(block, n, index);
+    field->grid.node_index(block, n, index);
     for (int d = 0; d < 3; d++) {
       row[INDEX + d] = index[d];
       row[VELOCITY + d] = record[d];

@@ -65,12 +65,12 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "fix_mpm.h"
 #include "force.h"
 #include "group.h"
 #include "input.h"
 #include "math_extra.h"
 #include "modify.h"
+#include "mpm_field.h"
 #include "region.h"
 #include "region_mpm_mesh.h"
 #include "update.h"
@@ -288,12 +288,12 @@ bool FixMPMBoundary::region_moves() const
   return region && region->dynamic_check();
 }
 
-bool FixMPMBoundary::acts_on(const FixMPM &field) const
+bool FixMPMBoundary::acts_on(const MPMField &field) const
 {
-  return field_id.empty() || field_id == field.id;
+  return field_id.empty() || field_id == field.id();
 }
 
-bool FixMPMBoundary::holds_axis(const FixMPM &field) const
+bool FixMPMBoundary::holds_axis(const MPMField &field) const
 {
   return acts_on(field) && std::count(face_list.begin(), face_list.end(), 0) && !decides() &&
       !rotating && constrained[0] && velocity[0].variable.empty() && velocity[0].value == 0.0;
@@ -305,39 +305,38 @@ void FixMPMBoundary::init()
 {
   // fields, in the order of their definition
 
-  const auto fields = modify->get_fix_by_style("^mpm$");
+  const auto fields = MPMField::all(lmp);
   if (fields.empty())
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/boundary needs a fix mpm to act on");
   bool found = false;
-  for (auto *ifix : fields) {
-    auto *field = dynamic_cast<FixMPM *>(ifix);
+  for (auto *field : fields) {
     if (!acts_on(*field)) continue;
     found = true;
-    if (field->total && (kind == SEPARATE || rotating || region_moves()))
+    if (field->options.total && (kind == SEPARATE || rotating || region_moves()))
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/boundary {} cannot be used with frame total of fix mpm {}, whose nodes "
                  "keep to the same material wherever it goes: use {}",
                  kind == SEPARATE ? "separate"
                      : rotating   ? "rotate"
                                   : "with a moving region",
-                 field->id,
+                 field->id(),
                  kind == SEPARATE ? "fix wall/gran or a pair style"
                                   : "stick velocity with variables");
     bool moves = false;
     for (const auto &v : velocity) moves = moves || !v.variable.empty() || v.value != 0.0;
-    if (field->R && moves)
+    if (field->options.most_distorted > 0.0 && moves)
       error->all(
           FLERR, Error::NOLASTLINE,
           "Fix mpm/boundary {} velocity cannot be used with reference update of fix mpm {}: the "
           "material that it holds would leave it with the first update: use reference fixed",
-          id, field->id);
-    if (field->stress_before() && decides())
+          id, field->id());
+    if (field->options.stress_before() && decides())
       error->all(
           FLERR, Error::NOLASTLINE,
           "Fix mpm/boundary separate and friction cannot be used "
           "with scheme usf or usavg of fix mpm {}, which need the contact before it is known: use "
           "usl or musl",
-          field->id);
+          field->id());
   }
   if (!found)
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/boundary field {} is not the ID of a fix mpm",
@@ -385,8 +384,8 @@ void FixMPMBoundary::init()
       // opposite face
 
       if (std::count(other->face_list.begin(), other->face_list.end(), face ^ 1))
-        for (auto *jfix : fields) {
-          auto &field = *dynamic_cast<FixMPM *>(jfix);
+        for (auto *each : fields) {
+          const auto &field = *each;
           if (!acts_on(field) || !other->acts_on(field)) continue;
           if (narrow({face_on_lattice(field, face), face_on_lattice(field, face ^ 1)}, face / 2))
             error->all(FLERR, Error::NOLASTLINE,
@@ -395,8 +394,8 @@ void FixMPMBoundary::init()
                        FACE_NAME[face], FACE_NAME[face ^ 1]);
         }
     }
-    for (auto *jfix : fields) {
-      auto &field = *dynamic_cast<FixMPM *>(jfix);
+    for (auto *each : fields) {
+      const auto &field = *each;
       if (!acts_on(field)) continue;
       const auto faces = faces_on_lattice(field);
       if (decides() && narrow(faces, face / 2))
@@ -408,7 +407,7 @@ void FixMPMBoundary::init()
           error->all(FLERR, Error::NOLASTLINE,
                      "Fix mpm/boundary faces that are not in planes of nodes of fix mpm {} must be "
                      "at least 5 cells apart: change its spacing or origin",
-                     field.id);
+                     field.id());
     }
   }
   motion_step = -1;
@@ -420,7 +419,7 @@ void FixMPMBoundary::init()
 
 bigint FixMPMBoundary::next_step() const
 {
-  const auto *field = dynamic_cast<FixMPM *>(modify->get_fix_by_style("^mpm$")[0]);
+  const auto *field = MPMField::all(lmp)[0];
   return update->ntimestep + field->steps_to_next();
 }
 
@@ -435,8 +434,8 @@ void FixMPMBoundary::setup(int)
   modify->clearstep_compute();
   region->prematch();
   modify->addstep_compute(next_step());
-  const auto *field = dynamic_cast<FixMPM *>(modify->get_fix_by_style("^mpm$")[0]);
-  if (!acted || field->steps_to_next() == field->every) note_region();
+  const auto *field = MPMField::all(lmp)[0];
+  if (!acted || field->steps_to_next() == field->options.every) note_region();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -453,7 +452,7 @@ void FixMPMBoundary::note_region()
    faces of the box in terms of nodes
 ------------------------------------------------------------------------- */
 
-FixMPMBoundary::Face FixMPMBoundary::face_on_lattice(const FixMPM &field, int face) const
+FixMPMBoundary::Face FixMPMBoundary::face_on_lattice(const MPMField &field, int face) const
 {
   Face f;
   f.axis = face / 2;
@@ -468,7 +467,7 @@ FixMPMBoundary::Face FixMPMBoundary::face_on_lattice(const FixMPM &field, int fa
   return f;
 }
 
-std::vector<FixMPMBoundary::Face> FixMPMBoundary::faces_on_lattice(const FixMPM &field) const
+std::vector<FixMPMBoundary::Face> FixMPMBoundary::faces_on_lattice(const MPMField &field) const
 {
   std::vector<Face> faces;
   for (int face : face_list) faces.push_back(face_on_lattice(field, face));
@@ -492,10 +491,10 @@ bool FixMPMBoundary::narrow(const std::vector<Face> &faces, int axis) const
    a rank that has nodes near a mirror plane needs the plane and the images
 ------------------------------------------------------------------------- */
 
-void FixMPMBoundary::extend_topology(FixMPM &field)
+void FixMPMBoundary::extend_topology(MPMField &field)
 {
   if (!acts_on(field) || face_list.empty()) return;
-  Grid &grid = *field.grid;
+  Grid &grid = field.grid;
   const auto faces = faces_on_lattice(field);
 
   // blocks that are added are looked at, too: images of images at edges, and narrow channels
@@ -525,7 +524,7 @@ void FixMPMBoundary::extend_topology(FixMPM &field)
 
 /* ---------------------------------------------------------------------- */
 
-void FixMPMBoundary::topology_changed(FixMPM &field)
+void FixMPMBoundary::topology_changed(MPMField &field)
 {
   if (!acts_on(field)) return;
   FieldNodes *mine = nullptr;
@@ -554,7 +553,7 @@ void FixMPMBoundary::topology_changed(FixMPM &field)
 
 void FixMPMBoundary::list_face_nodes(FieldNodes &list)
 {
-  const Grid &grid = *list.field->grid;
+  const Grid &grid = list.field->grid;
   for (std::size_t ib = 0; ib < grid.blocks.size(); ib++) {
     const auto &block = grid.blocks[ib];
     for (std::size_t f = 0; f < list.faces.size(); f++) {
@@ -614,7 +613,7 @@ void FixMPMBoundary::list_face_nodes(FieldNodes &list)
 
 void FixMPMBoundary::list_column(FieldNodes &list, int f, const int *index)
 {
-  const Grid &grid = *list.field->grid;
+  const Grid &grid = list.field->grid;
   const Face &face = list.faces[f];
   auto owned = [&](int64_t node) {
     return (int) (grid.blocks[node / NODES_PER_BLOCK].owned >> (node % NODES_PER_BLOCK) & 1);
@@ -647,7 +646,7 @@ void FixMPMBoundary::list_column(FieldNodes &list, int f, const int *index)
 void FixMPMBoundary::list_orbits(FieldNodes &list, const std::vector<Face> &faces,
                                  const bool *prescribed)
 {
-  const Grid &grid = *list.field->grid;
+  const Grid &grid = list.field->grid;
   bool has[3][2] = {{false}};
   int plane[3][2] = {{0}};
   for (const auto &face : faces) {
@@ -786,8 +785,8 @@ bool FixMPMBoundary::surface_normal(const double *x, double step, int dim, doubl
 
 void FixMPMBoundary::list_region_nodes(FieldNodes &list)
 {
-  const FixMPM &field = *list.field;
-  const Grid &grid = *field.grid;
+  const MPMField &field = *list.field;
+  const Grid &grid = field.grid;
   const int dim = field.lattice.dim;
   const double h = field.lattice.h;
   const bool moves = region_moves();
@@ -922,11 +921,11 @@ void FixMPMBoundary::update_motion(double dt)
     if (region->varshape)
       for (auto &list : nodes)
         for (auto &s : list.singles) {
-          const FixMPM &field = *list.field;
+          const MPMField &field = *list.field;
           int index[3];
           double x[3];
-          field.grid->node_index(field.grid->blocks[s.node / NODES_PER_BLOCK],
-                                 s.node % NODES_PER_BLOCK, index);
+          field.grid.node_index(field.grid.blocks[s.node / NODES_PER_BLOCK],
+                                s.node % NODES_PER_BLOCK, index);
           field.node_position(index, x);
           const double distance = surface_distance(x), far = FAR * field.lattice.h;
           s.growth = 0.0;
@@ -945,15 +944,15 @@ void FixMPMBoundary::update_motion(double dt)
 
 /* ---------------------------------------------------------------------- */
 
-static void node_position(const FixMPM &field, int64_t node, double *x)
+static void node_position(const MPMField &field, int64_t node, double *x)
 {
-  const Grid &grid = *field.grid;
+  const Grid &grid = field.grid;
   int index[3];
   grid.node_index(grid.blocks[node / NODES_PER_BLOCK], node % NODES_PER_BLOCK, index);
   field.node_position(index, x);
 }
 
-void FixMPMBoundary::wall_velocity(const FixMPM &field, int64_t node, double *v) const
+void FixMPMBoundary::wall_velocity(const MPMField &field, int64_t node, double *v) const
 {
   for (int d = 0; d < 3; d++) v[d] = wall.shift[d];
   if (wall.uniform) return;
@@ -979,16 +978,16 @@ void FixMPMBoundary::act(double dt, Stage stage)
   const Wall now = wall;
   if (at_end) end_of_step(wall, dt);
   for (auto &list : nodes) {
-    const FixMPM &field = *list.field;
+    const MPMField &field = *list.field;
     kinetic = collided = 0.0;
-    ledger_lanes = field.ledger_on;
-    old_share = count && wall.uniform ? field.flip : 0.0;
+    ledger_lanes = field.ledger.on;
+    old_share = count && wall.uniform ? field.options.flip : 0.0;
     decided = stage == MAPPED_BACK || stage == AGAIN;
     act_on_cuts(list);
     for (auto &column : list.columns) act_on_column(list, column);
     for (const auto &orbit : list.orbits) act_on_orbit(list, orbit);
     for (auto &single : list.singles) act_on_single(list, single);
-    if (count && field.ledger_on) {
+    if (count && field.ledger.on) {
       list.field->ledger.boundary += kinetic * force->mvv2e;
       list.field->ledger.transfer += collided * force->mvv2e;
     }
@@ -1044,7 +1043,7 @@ static void first_inside(const double *record, const double *wall, int dim, doub
 
 void FixMPMBoundary::act_on_column(const FieldNodes &list, Column &column)
 {
-  Grid &grid = *list.field->grid;
+  Grid &grid = list.field->grid;
   const Face &face = list.faces[column.face];
   const int dim = grid.lattice.dim, a = face.axis;
   auto record = [&](int64_t node) {
@@ -1150,7 +1149,7 @@ void FixMPMBoundary::act_on_column(const FieldNodes &list, Column &column)
 
 void FixMPMBoundary::act_on_orbit(const FieldNodes &list, const Orbit &orbit)
 {
-  Grid &grid = *list.field->grid;
+  Grid &grid = list.field->grid;
   const int dim = grid.lattice.dim;
   auto record = [&](int64_t node) {
     return grid.nodes() + node * grid.nreal;
@@ -1199,7 +1198,7 @@ void FixMPMBoundary::act_on_orbit(const FieldNodes &list, const Orbit &orbit)
 
 void FixMPMBoundary::act_on_single(const FieldNodes &list, Single &single)
 {
-  Grid &grid = *list.field->grid;
+  Grid &grid = list.field->grid;
   const int dim = grid.lattice.dim;
   double *r = grid.nodes() + single.node * grid.nreal;
   if (r[3] <= 0.0) return;

@@ -23,7 +23,7 @@ FixStyle(mpm/boundary,FixMPMBoundary);
 #include <vector>
 
 namespace LAMMPS_NS {
-class FixMPM;
+class MPMField;
 class Region;
 
 /** Walls that act on the nodes of the fields: faces of the box, or a region.
@@ -44,12 +44,12 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
   double compute_vector(int) override;
   double memory_usage() override;
 
-  void extend_topology(FixMPM &) override;
-  void topology_changed(FixMPM &) override;
+  void extend_topology(MPMField &) override;
+  void topology_changed(MPMField &) override;
   void act(double dt, Stage) override;
 
   /** Keeps the nodes of a field at the face xlo, an axis of symmetry, from moving along x. */
-  bool holds_axis(const FixMPM &) const;
+  bool holds_axis(const MPMField &) const;
 
  private:
   static constexpr int DEPTH = 3;    // nodes on either side of a mirror plane that are paired
@@ -99,7 +99,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
     Contact contact;
   };
   struct FieldNodes {
-    FixMPM *field;
+    MPMField *field;
     std::vector<Face> faces;
     std::vector<Column> columns;
     std::vector<Cut> cuts;
@@ -155,9 +155,9 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
   void check_variable(Value &, const char *what);
   double evaluate(const Value &) const;
   bool region_moves() const;
-  bool acts_on(const FixMPM &) const;
-  Face face_on_lattice(const FixMPM &, int face) const;
-  std::vector<Face> faces_on_lattice(const FixMPM &) const;
+  bool acts_on(const MPMField &) const;
+  Face face_on_lattice(const MPMField &, int face) const;
+  std::vector<Face> faces_on_lattice(const MPMField &) const;
   void list_face_nodes(FieldNodes &);
   void list_column(FieldNodes &, int face, const int *index);
   void list_orbits(FieldNodes &, const std::vector<Face> &, const bool *prescribed);
@@ -165,7 +165,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
   void list_region_nodes(FieldNodes &);
   bool decides() const { return kind == SEPARATE || friction > 0.0; }
   bool narrow(const std::vector<Face> &, int axis) const;
-  static void cut_weights(const FixMPM &, double x, Face &);
+  static void cut_weights(const MPMField &, double x, Face &);
   void list_cut(FieldNodes &, int face, const int *index);
   void act_on_cuts(FieldNodes &);
   void act_on_cut(const FieldNodes &, Cut &, bool last);
@@ -175,7 +175,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
   void note_region();
   void set_rotation(double angle, const double *unit, double dt);
   static void end_of_step(Wall &, double dt);
-  void wall_velocity(const FixMPM &, int64_t node, double *v) const;
+  void wall_velocity(const MPMField &, int64_t node, double *v) const;
   void set_velocity(double *record, const double *v, const double *old, int dim, bool owned);
   void act_on_column(const FieldNodes &, Column &);
   void act_on_orbit(const FieldNodes &, const Orbit &);

@@ -40,11 +40,14 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "fix_mpm.h"
 #include "force.h"
 #include "math_extra.h"
 #include "modify.h"
+#include "mpm_field.h"
+#include "mpm_frame.h"
 #include "mpm_image.h"
+#include "mpm_node_sums.h"
+#include "mpm_point_map.h"
 #include "update.h"
 
 #include <algorithm>
@@ -219,7 +222,7 @@ void FixMPMContact::init()
 {
   fields.clear();
   for (const auto &name : names) {
-    auto *field = dynamic_cast<FixMPM *>(modify->get_fix_by_id(name));
+    auto *field = MPMField::find(lmp, name);
     if (!field)
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/contact {}: {} is not the ID of a fix mpm: define one fix mpm for each "
@@ -227,29 +230,28 @@ void FixMPMContact::init()
                  id, name);
     fields.push_back(field);
   }
-  const FixMPM &first = *fields[0];
+  const MPMField &first = *fields[0];
   for (const auto *field : fields) {
-    bool same = field->lattice.h == first.lattice.h && field->shape == first.shape &&
-        field->extent == first.extent;
+    bool same = field->lattice.h == first.lattice.h && field->options.shape == first.options.shape;
     for (int d = 0; d < 3; d++) same = same && field->lattice.origin[d] == first.lattice.origin[d];
     if (!same)
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/contact {}: fields {} and {} must have the same lattice (node spacing "
                  "and origin) and shape function; bodies on different lattices meet through a pair "
                  "style",
-                 id, first.id, field->id);
-    if (field->total)
+                 id, first.id(), field->id());
+    if (field->options.total)
       error->all(
           FLERR, Error::NOLASTLINE,
           "Fix mpm/contact cannot be used with frame total of fix mpm {}, whose nodes are not "
           "where the body is: let bodies meet through a pair style",
-          field->id);
-    if (field->stress_before())
+          field->id());
+    if (field->options.stress_before())
       error->all(
           FLERR, Error::NOLASTLINE,
           "Fix mpm/contact cannot be used with scheme usf or usavg of fix mpm {}, which need the "
           "contact before it is known: use usl or musl",
-          field->id);
+          field->id());
   }
   for (auto *other : modify->get_fix_by_style("^mpm/contact$")) {
     if (other == this) continue;
@@ -291,7 +293,7 @@ bool FixMPMContact::couples(const std::string &a, const std::string &b) const
   return a != b && has(a) && has(b);
 }
 
-int FixMPMContact::index_of(const FixMPM &field) const
+int FixMPMContact::index_of(const MPMField &field) const
 {
   for (std::size_t k = 0; k < fields.size(); k++)
     if (fields[k] == &field) return (int) k;
@@ -312,9 +314,9 @@ int FixMPMContact::pair_index(int a, int b) const
 void FixMPMContact::couple_topology()
 {
   bool stale = false;
-  for (const auto *field : fields) stale = stale || field->topology_stale();
+  for (const auto *field : fields) stale = stale || !field->map->valid;
   if (stale)
-    for (auto *field : fields) field->renew_topology();
+    for (auto *field : fields) field->map->valid = false;
 }
 
 /* ----------------------------------------------------------------------
@@ -324,12 +326,12 @@ void FixMPMContact::couple_topology()
 void FixMPMContact::blocks_found()
 {
   bool stale = false;
-  for (const auto *field : fields) stale = stale || field->topology_stale();
+  for (const auto *field : fields) stale = stale || !field->map->valid;
   if (!stale) return;
   lists_valid = false;
 
   for (std::size_t k = 0; k < fields.size(); k++) {
-    const Grid &grid = *fields[k]->grid;
+    const Grid &grid = fields[k]->grid;
     const MPM_NS::Lattice &lattice = grid.lattice;
     reach[k].clear();
     int range[6];    // low, and minus high
@@ -364,7 +366,7 @@ void FixMPMContact::blocks_found()
    a rank must know the mass of all bodies at the nodes of any of them, where bodies may meet
 ------------------------------------------------------------------------- */
 
-void FixMPMContact::extend_topology(FixMPM &field)
+void FixMPMContact::extend_topology(MPMField &field)
 {
   const int k = index_of(field);
   if (k < 0) return;
@@ -374,14 +376,14 @@ void FixMPMContact::extend_topology(FixMPM &field)
       bool inside = true;
       for (int d = 0; d < 3; d++)
         inside = inside && b[d] >= extent[k][d] && b[d] <= -extent[k][3 + d];
-      if (inside) field.grid->activate(b.data());
+      if (inside) field.grid.activate(b.data());
     }
   }
 }
 
 /* ---------------------------------------------------------------------- */
 
-void FixMPMContact::topology_changed(FixMPM &field)
+void FixMPMContact::topology_changed(MPMField &field)
 {
   if (index_of(field) >= 0) lists_valid = false;
 }
@@ -393,7 +395,7 @@ void FixMPMContact::list_common_blocks()
   common.clear();
   const int n = (int) fields.size();
   for (int k = 0; k < n; k++) {
-    const Grid &grid = *fields[k]->grid;
+    const Grid &grid = fields[k]->grid;
     images[k].clear();
     for (std::size_t slot = 0; slot < grid.blocks.size(); slot++)
       if (grid.blocks[slot].alias) images[k].push_back((int) slot);
@@ -402,7 +404,7 @@ void FixMPMContact::list_common_blocks()
       int count = 0;
       bool listed = false;
       for (int j = 0; j < n; j++) {
-        c.slot[j] = fields[j]->grid->find(block.b);
+        c.slot[j] = fields[j]->grid.find(block.b);
         if (c.slot[j] < 0) continue;
         count++;
         listed = listed || j < k;
@@ -426,7 +428,7 @@ void FixMPMContact::list_common_blocks()
 void FixMPMContact::mark_near(int k, int slot)
 {
   near[k][slot] = 1;
-  const Grid &grid = *fields[k]->grid;
+  const Grid &grid = fields[k]->grid;
   const MPM_NS::Lattice &lattice = grid.lattice;
   if (!lattice.periodic[0] && !lattice.periodic[1] && !lattice.periodic[2]) return;
   for (const int image : images[k])
@@ -450,7 +452,7 @@ void FixMPMContact::mark_near(int k, int slot)
 bool FixMPMContact::map_bodies()
 {
   const int nfields = (int) fields.size();
-  for (int k = 0; k < nfields; k++) near[k].assign(fields[k]->grid->blocks.size(), 0);
+  for (int k = 0; k < nfields; k++) near[k].assign(fields[k]->grid.blocks.size(), 0);
   int any = 0, all;
   for (const auto &c : common) {
     bool meet = false;
@@ -458,7 +460,7 @@ bool FixMPMContact::map_bodies()
       if (!(c.canonical >> n & 1)) continue;
       int massive = 0;
       for (int k = 0; k < nfields; k++)
-        massive += c.slot[k] >= 0 && fields[k]->grid->record(c.slot[k], n)[3] > 0.0;
+        massive += c.slot[k] >= 0 && fields[k]->grid.record(c.slot[k], n)[3] > 0.0;
       meet = massive > 1;
     }
     if (!meet) continue;
@@ -470,9 +472,9 @@ bool FixMPMContact::map_bodies()
   if (!all) return false;
 
   for (std::size_t k = 0; k < fields.size(); k++) {
-    fields[k]->map_gradient(normal_by == MASS ? FixMPM::OF_MASS : FixMPM::OF_VOLUME, near[k],
-                            gradient[k]);
-    if (gap || look) fields[k]->map_volume(near[k], share[k]);
+    map_gradient(*fields[k], normal_by == MASS ? Weight::MASS : Weight::VOLUME, near[k],
+                 gradient[k]);
+    if (gap || look) map_volume(*fields[k], near[k], share[k]);
   }
   return true;
 }
@@ -509,9 +511,9 @@ void FixMPMContact::warn_overlap()
       }
       if (most[1] < OVERLAP_EACH || sum < OVERLAP || sum <= mine.value) continue;
       mine.value = sum;
-      const FixMPM &field = *fields[body[0]];
+      const MPMField &field = *fields[body[0]];
       int index[3];
-      field.grid->node_index(field.grid->blocks[c.slot[body[0]]], n, index);
+      field.grid.node_index(field.grid.blocks[c.slot[body[0]]], n, index);
       field.node_position(index, place);
       place[3] = body[0];
       place[4] = body[1];
@@ -522,7 +524,7 @@ void FixMPMContact::warn_overlap()
 
   tagint tags[2];
   for (int b = 0; b < 2; b++) {
-    const FixMPM &field = *fields[(int) place[3 + b]];
+    const MPMField &field = *fields[(int) place[3 + b]];
     mine.value = 1.0e300;
     tags[b] = 0;
     for (int i = 0; i < atom->nlocal; i++) {
@@ -543,7 +545,7 @@ void FixMPMContact::warn_overlap()
                    "Fix mpm/contact {}: bodies {} and {} overlap at the start of the run, for "
                    "instance points {} and {} near {:.6g} {:.6g} {:.6g}: contact keeps bodies from "
                    "approaching each other, but does not part them",
-                   id, fields[(int) place[3]]->id, fields[(int) place[4]]->id, tags[0], tags[1],
+                   id, fields[(int) place[3]]->id(), fields[(int) place[4]]->id(), tags[0], tags[1],
                    place[0], place[1], place[2]);
 }
 
@@ -568,14 +570,15 @@ bool FixMPMContact::make_pair(const Common &c, int n, int a, int b, double volum
 
   pair.a = a;
   pair.b = b;
-  pair.ra = fields[a]->grid->record(c.slot[a], n);
-  pair.rb = fields[b]->grid->record(c.slot[b], n);
+  pair.ra = fields[a]->grid.record(c.slot[a], n);
+  pair.rb = fields[b]->grid.record(c.slot[b], n);
   pair.area = 0.5 * (la + lb);
   pair.fade = 0.0;
   pair.state = OPEN;
   pair.normal = pair.tangential[0] = pair.tangential[1] = pair.tangential[2] = 0.0;
   if (law == ADHESIVE && pair.area > 0.0) {
-    const double cell = (dim == 3 ? h * h * h : h * h) * fields[a]->node_circle(c.slot[a], n);
+    const double cell =
+        (dim == 3 ? h * h * h : h * h) * fields[a]->frame->node_circle(c.slot[a], n);
     const double opening = std::max(0.0, full - volume_share) * cell / pair.area;
     pair.fade = std::max(0.0, 1.0 - opening * normal_strength / (2.0 * release_work));
   }
@@ -597,7 +600,7 @@ void FixMPMContact::find_contacts()
       for (int k = 0; k < nfields; k++) {
         node.record[k] = nullptr;
         if (c.slot[k] < 0) continue;
-        double *record = fields[k]->grid->record(c.slot[k], n);
+        double *record = fields[k]->grid.record(c.slot[k], n);
         if (!(record[3] > 0.0)) continue;
         node.record[k] = record;
         massive++;
@@ -731,7 +734,7 @@ void FixMPMContact::account(const Node &node, const double start[][3])
     if (!record) continue;
     double change[3] = {0.0, 0.0, 0.0};
     for (int d = 0; d < dim; d++) change[d] = record[d] - start[k][d];
-    fields[k]->count_push(record, change);
+    fields[k]->ledger.count_push(record, change);
   }
 }
 

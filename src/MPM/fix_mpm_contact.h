@@ -24,7 +24,7 @@ FixStyle(mpm/contact,FixMPMContact);
 #include <vector>
 
 namespace LAMMPS_NS {
-class FixMPM;
+class MPMField;
 
 /** Contact between bodies that are fields (fix mpm) on one lattice, at the nodes they share. */
 class FixMPMContact : public Fix, public MPMNodeAction {
@@ -41,8 +41,8 @@ class FixMPMContact : public Fix, public MPMNodeAction {
 
   void couple_topology() override;
   void blocks_found() override;
-  void extend_topology(FixMPM &) override;
-  void topology_changed(FixMPM &) override;
+  void extend_topology(MPMField &) override;
+  void topology_changed(MPMField &) override;
   void act(double dt, Stage) override;
 
   /** Is contact between these two fields (IDs) left to this fix? */
@@ -93,7 +93,7 @@ class FixMPMContact : public Fix, public MPMNodeAction {
   double full;        // with gap: volume share of a node at which bodies touch
   Room room[3][2];    // [axis][side]
 
-  std::vector<FixMPM *> fields;
+  std::vector<MPMField *> fields;
   std::vector<Blocks> reach;                 // [field] blocks in reach of its points, canonical
   std::vector<std::array<int, 6>> extent;    // [field] their range over all ranks
   std::vector<Common> common;
@@ -114,7 +114,7 @@ class FixMPMContact : public Fix, public MPMNodeAction {
 
   void find_room();
   double filled(const Common &, int n) const;
-  int index_of(const FixMPM &) const;
+  int index_of(const MPMField &) const;
   int pair_index(int a, int b) const;
   void list_common_blocks();
   void mark_near(int k, int slot);

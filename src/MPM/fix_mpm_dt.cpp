@@ -10,11 +10,12 @@
 
 #include "comm.h"
 #include "error.h"
-#include "fix_mpm.h"
 #include "fix_mpm_elements.h"
 #include "force.h"
 #include "integrate.h"
 #include "modify.h"
+#include "mpm_field.h"
+#include "mpm_time_limit.h"
 #include "output.h"
 #include "pair.h"
 #include "update.h"
@@ -124,10 +125,9 @@ FixMPMDt::Limit FixMPMDt::strain_limit_local() const
 {
   Limit mine = carried;
   if (strain == 0.0) return mine;
-  for (auto *ifix : modify->get_fix_by_style("^mpm$")) {
-    const auto *field = dynamic_cast<FixMPM *>(ifix);
-    const auto &rate = field->volume_rate;
-    const double dt = strain / (rate.most * fraction * field->every);
+  for (const auto *field : MPMField::all(lmp)) {
+    const auto &rate = field->time_limit->volume_rate;
+    const double dt = strain / (rate.most * fraction * field->options.every);
     if (rate.most > 0.0 && dt < mine.dt) mine = {dt, 0.0, (double) rate.tag};
   }
   return mine;
@@ -140,11 +140,10 @@ FixMPMDt::Limit FixMPMDt::strain_limit_local() const
 FixMPMDt::Limit FixMPMDt::find_limit() const
 {
   Limit mine = strain_limit_local();
-  for (auto *ifix : modify->get_fix_by_style("^mpm$")) {
+  for (auto *field : MPMField::all(lmp)) {
     tagint tag = 0;
     double speed = 0.0;
-    auto *field = dynamic_cast<FixMPM *>(ifix);
-    double dt = field->stable_dt_local(tag, speed) / field->every;
+    double dt = field->time_limit->stable_dt(tag, speed) / field->options.every;
     if (!(dt > 0.0)) dt = 0.0;    // also NaN
     if (dt < mine.dt) mine = {dt, speed, (double) tag};
   }
@@ -177,8 +176,7 @@ FixMPMDt::Limit FixMPMDt::smallest(Limit mine) const
 
 void FixMPMDt::setup_pre_force(int)
 {
-  for (auto *ifix : modify->get_fix_by_style("^mpm$"))
-    dynamic_cast<FixMPM *>(ifix)->watch_volume = strain > 0.0;
+  for (auto *field : MPMField::all(lmp)) field->time_limit->watch_volume = strain > 0.0;
   limit = find_limit();
   if (continues && update->dt == dt_left && fabs(limit.dt - limit_left) <= 1.0e-9 * limit_left) {
     update->dt_default = 0;
@@ -202,8 +200,7 @@ void FixMPMDt::end_of_step()
   }
   limit = find_limit();
   carried = {NO_POINTS, 0.0, 0.0};
-  for (auto *ifix : modify->get_fix_by_style("^mpm$"))
-    dynamic_cast<FixMPM *>(ifix)->volume_rate = {0.0, 0};
+  for (auto *field : MPMField::all(lmp)) field->time_limit->volume_rate = {0.0, 0};
   if (limit.dt < NO_POINTS) set_dt(std::min(fraction * limit.dt, grow * update->dt));
 }
 

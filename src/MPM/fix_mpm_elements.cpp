@@ -12,7 +12,6 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "fix_mpm.h"
 #include "fix_mpm_material.h"
 #include "force.h"
 #include "group.h"
@@ -21,6 +20,7 @@
 #include "memory.h"
 #include "mesh/element.h"
 #include "modify.h"
+#include "mpm_field.h"
 #include "mpm_image.h"
 #include "mpm_mesh_input.h"
 #include "mpm_points.h"
@@ -318,33 +318,32 @@ void FixMPMElements::init()
         "on: nodes of elements must not be added, deleted or renumbered; unfix it before",
         id, group->names[igroup], n, n ? low : 0, high, nnodes, lowest);
 
-  for (auto *ifix : modify->get_fix_by_style("^mpm$")) {
-    const auto *field = dynamic_cast<FixMPM *>(ifix);
+  for (const auto *field : MPMField::all(lmp)) {
     int mine = 0, any;
     for (int i = 0; i < atom->nlocal; i++)
-      mine |= (atom->mask[i] & groupbit) && (atom->mask[i] & field->groupbit);
+      mine |= (atom->mask[i] & groupbit) && (atom->mask[i] & field->fix.groupbit);
     MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
     if (!any) continue;
-    if (field->locking != FixMPM::NO_CURE)
+    if (field->options.locking != MPMFieldOptions::NO_CURE)
       error->all(FLERR,
                  "Fix mpm {} locking is not for nodes of elements: use fix mpm/elements {} "
                  "locking fbar",
-                 field->id, id);
-    if (field->policy == FixMPM::DELETE || field->delete_failed)
+                 field->id(), id);
+    if (field->options.bad == MPMFieldOptions::DELETE || field->options.delete_failed)
       error->all(FLERR,
                  "Fix mpm {} bad delete and failed delete cannot be used with fix mpm/elements "
                  "{}, whose nodes must not be deleted: give them a fix mpm of their own",
-                 field->id, id);
-    if (field->axisymmetric)
+                 field->id(), id);
+    if (field->options.axisymmetric)
       error->all(FLERR,
                  "Fix mpm {} axisymmetric cannot be used with fix mpm/elements {}, whose elements "
                  "are of plane strain: use create_points elements with shape cpdi2",
-                 field->id, id);
-    if (field->every > 1)
+                 field->id(), id);
+    if (field->options.every > 1)
       error->all(FLERR,
                  "Fix mpm {} every cannot be used with fix mpm/elements {}, which strains elements "
                  "in each step: use every 1",
-                 field->id, id);
+                 field->id(), id);
   }
 
   // nodes of elements may be ghosts; what has been stretched since is asked for with comm_modify

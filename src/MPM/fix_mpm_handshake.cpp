@@ -58,11 +58,11 @@
 #include "atom.h"
 #include "comm.h"
 #include "error.h"
-#include "fix_mpm.h"
 #include "fix_mpm_material.h"
 #include "force.h"
 #include "memory.h"
 #include "modify.h"
+#include "mpm_field.h"
 #include "neigh_list.h"
 #include "neighbor.h"
 #include "pair_hybrid.h"
@@ -171,7 +171,7 @@ void FixMPMHandshake::init()
   const auto refuse = [&](const std::string &why) {
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/handshake {} {}", id, why);
   };
-  field = dynamic_cast<FixMPM *>(modify->get_fix_by_id(field_name));
+  field = MPMField::find(lmp, field_name);
   if (!field) refuse("needs the ID of a fix mpm, not " + field_name);
   for (const auto &zone : zones) {
     if (zone.axis >= field->lattice.dim) refuse("cannot have a zone along z in 2d");
@@ -181,15 +181,16 @@ void FixMPMHandshake::init()
                       "node spacings wide",
                       fabs(zone.one - zone.zero), field->lattice.h));
   }
-  if (is_affine(field->transfer) || field->refinement != FixMPM::LUMPED || field->flip < 1.0)
+  if (is_affine(field->options.transfer) || field->options.series != MPMFieldOptions::LUMPED ||
+      field->options.flip < 1.0)
     refuse("needs a field with transfer flip (1.0), which maps points as it maps atoms");
-  if (field->extent != FixMPM::NO_SIZE)
+  if (field->options.has_size())
     refuse("cannot be used with points of finite size (gimp): use a spline");
-  if (field->scheme != FixMPM::USL || field->light > 0.0)
+  if (field->options.scheme != MPMFieldOptions::USL || field->options.light > 0.0)
     refuse("needs a field with scheme usl and without light nodes");
-  if (field->total || field->axisymmetric)
+  if (field->options.total || field->options.axisymmetric)
     refuse("cannot be used with frame total or axisymmetric of fix mpm: atoms are in space");
-  if (field->every > 1)
+  if (field->options.every > 1)
     refuse("cannot be used with fix mpm every: atoms and points share each step");
   for (auto *other : modify->get_fix_by_style("^mpm/handshake$"))
     if (other != this && dynamic_cast<FixMPMHandshake *>(other)->field_name == field_name)
@@ -341,7 +342,8 @@ double FixMPMHandshake::weight_at(const double *x, double &inside, double &beyon
 /** Atoms and points that have no weight yet get that of the place where they are. */
 void FixMPMHandshake::weigh()
 {
-  const double reach = margin(), reach_nodes = 2.0 * (field->shape + 1) * field->lattice.h;
+  const double reach = margin(),
+               reach_nodes = 2.0 * (stencil_order(field->options.shape) + 1) * field->lattice.h;
   bigint none = 0, wrong = 0, all;
   for (int i = 0; i < atom->nlocal; i++) {
     if (role[i] != UNKNOWN) continue;
@@ -446,10 +448,10 @@ void FixMPMHandshake::post_neighbor()
    blocks that atoms reach before the next update: by then they move half a skin
 ------------------------------------------------------------------------- */
 
-void FixMPMHandshake::extend_topology(FixMPM &which)
+void FixMPMHandshake::extend_topology(MPMField &which)
 {
   if (&which != field) return;
-  Grid &grid = *field->grid;
+  Grid &grid = field->grid;
   const auto &lattice = grid.lattice;
   const double drift = MIN(1.0, 0.5 * neighbor->skin / lattice.h);
   for (int i = 0; i < atom->nlocal; i++) {
@@ -459,9 +461,9 @@ void FixMPMHandshake::extend_topology(FixMPM &which)
       const double t = (atom->x[i][d] - lattice.origin[d]) / lattice.h;
       int first;
       double w[4];
-      field->shape_weights(t - drift, first, w);
+      field->weights(t - drift, first, w);
       lo[d] = first >> grid.shift_bits;
-      const int n = field->shape_weights(t + drift, first, w);
+      const int n = field->weights(t + drift, first, w);
       hi[d] = (first + n - 1) >> grid.shift_bits;
     }
     for (int bx = lo[0]; bx <= hi[0]; bx++)
@@ -559,7 +561,7 @@ void FixMPMHandshake::act(double dt, Stage stage)
   find_nodes();
   map_members(dt);
   map_forces();
-  field->sum_copies(sums.data(), NREAL, 0, NREAL);
+  field->sum(sums.data(), NREAL, 0, NREAL);
   lost += kinetic_energy();
   if (damping > 0.0) damp(dt);
   tie(dt);
@@ -579,9 +581,9 @@ template <class Function> void FixMPMHandshake::each_node(std::size_t k, const F
 /** Which nodes do atoms and points reach, and with which weights? */
 void FixMPMHandshake::find_nodes()
 {
-  Grid &grid = *field->grid;
+  Grid &grid = field->grid;
   const auto &lattice = grid.lattice;
-  const int n = field->shape + 1, dim = lattice.dim, mask = grid.side - 1;
+  const int n = stencil_order(field->options.shape) + 1, dim = lattice.dim, mask = grid.side - 1;
   nreach = dim == 3 ? n * n * n : n * n;
 
   members.clear();
@@ -604,7 +606,7 @@ void FixMPMHandshake::find_nodes()
       if (!(fabs(t) < 4.0e6))
         error->one(FLERR, "Fix mpm/handshake {}: atom {} is far out of reach of the lattice", id,
                    atom->tag[members[k]]);
-      field->shape_weights(t, base[d], w[d]);
+      field->weights(t, base[d], w[d]);
       b[d] = base[d] >> grid.shift_bits;
     }
     if (slot < 0 || memcmp(b, last, sizeof(b)) != 0) slot = grid.find(b);
@@ -635,7 +637,7 @@ void FixMPMHandshake::find_nodes()
 void FixMPMHandshake::map_members(double dt)
 {
   const double half = 0.5 * dt * force->ftm2v;
-  sums.assign(field->grid->nnodes() * NREAL, 0.0);
+  sums.assign(field->grid.nnodes() * NREAL, 0.0);
   for (std::size_t k = 0; k < members.size(); k++) {
     const int i = members[k];
     const bool is_atom = k < natoms;
@@ -677,9 +679,9 @@ void FixMPMHandshake::map_forces()
 
 void FixMPMHandshake::damp(double dt)
 {
-  const std::size_t nnodes = field->grid->nnodes();
+  const std::size_t nnodes = field->grid.nnodes();
   const double half = 0.5 * dt * force->ftm2v;
-  field->grid->copy_aliases(sums.data(), NREAL);
+  field->grid.copy_aliases(sums.data(), NREAL);
   std::vector<double> taken(nnodes * 4, 0.0);
   for (std::size_t k = 0; k < natoms; k++) {
     const int i = members[k];
@@ -699,7 +701,7 @@ void FixMPMHandshake::damp(double dt)
     for (std::size_t j = k * nreach; j < (k + 1) * nreach; j++)
       for (int d = 0; d < 3; d++) taken[4 * (std::size_t) nodes[j] + d] += shares[j] * p[d];
   }
-  field->sum_copies(taken.data(), 4, 0, 3);
+  field->sum(taken.data(), 4, 0, 3);
   const double inverse = 1.0 / (dt * force->ftm2v);
   for (std::size_t n = 0; n < nnodes; n++)
     for (int d = 0; d < 3; d++) sums[NREAL * n + FORCE + d] -= inverse * taken[4 * n + d];
@@ -711,8 +713,8 @@ void FixMPMHandshake::damp(double dt)
 
 void FixMPMHandshake::smooth_points(std::vector<double> &p)
 {
-  field->grid->copy_aliases(sums.data(), NREAL);
-  p.assign(4 * field->grid->nnodes(), 0.0);
+  field->grid.copy_aliases(sums.data(), NREAL);
+  p.assign(4 * field->grid.nnodes(), 0.0);
   for (std::size_t k = natoms; k < members.size(); k++) {
     const double m = atom->rmass[members[k]] / weight[members[k]];
     double v[3] = {0.0, 0.0, 0.0};
@@ -722,7 +724,7 @@ void FixMPMHandshake::smooth_points(std::vector<double> &p)
     for (std::size_t j = k * nreach; j < (k + 1) * nreach; j++)
       for (int d = 0; d < 3; d++) p[4 * (std::size_t) nodes[j] + d] += shares[j] * m * v[d];
   }
-  field->sum_copies(p.data(), 4, 0, 3);
+  field->sum(p.data(), 4, 0, 3);
 }
 
 /* ----------------------------------------------------------------------
@@ -731,7 +733,7 @@ void FixMPMHandshake::smooth_points(std::vector<double> &p)
 
 void FixMPMHandshake::tie(double dt)
 {
-  Grid &grid = *field->grid;
+  Grid &grid = field->grid;
   const double dtf = dt * force->ftm2v;
   std::vector<double> smooth;
   smooth_points(smooth);
@@ -769,14 +771,14 @@ void FixMPMHandshake::tie(double dt)
       }
     }
   }
-  if (field->ledger_on) field->ledger.contact += force->mvv2e * work;
+  if (field->ledger.on) field->ledger.contact += force->mvv2e * work;
   lost -= force->mvv2e * work;
 }
 
 /** Atoms: the change of the velocity of the nodes, or where they have no weight, this velocity. */
 void FixMPMHandshake::move_atoms(double dt)
 {
-  field->grid->copy_aliases(sums.data(), NREAL);
+  field->grid.copy_aliases(sums.data(), NREAL);
   const double half = 0.5 * dt * force->ftm2v;
   for (std::size_t k = 0; k < natoms; k++) {
     const int i = members[k];

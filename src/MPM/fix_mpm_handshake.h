@@ -23,7 +23,7 @@ FixStyle(mpm/handshake,FixMPMHandshake);
 #include <vector>
 
 namespace LAMMPS_NS {
-class FixMPM;
+class MPMField;
 
 /** Zone where atoms and material points describe the same material, each with a share of its energy
  *  and mass, and move with one velocity at the nodes of a field. */
@@ -56,7 +56,7 @@ class FixMPMHandshake : public Fix, public MPMNodeAction {
   void write_restart(FILE *) override;
   void restart(char *) override;
 
-  void extend_topology(FixMPM &) override;
+  void extend_topology(MPMField &) override;
   void act(double dt, Stage) override;
 
  private:
@@ -71,7 +71,7 @@ class FixMPMHandshake : public Fix, public MPMNodeAction {
   std::vector<Zone> zones;
   double damping;    // rate at which the fine motion is damped where w = 0 [1/time]
 
-  FixMPM *field;
+  MPMField *field;
   class NeighList *list;
   double *weight;    // [n] share of the mass and energy of an atom or point that counts
   double *role;      // [n] a Role

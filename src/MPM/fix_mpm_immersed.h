@@ -23,7 +23,7 @@ FixStyle(mpm/immersed,FixMPMImmersed);
 #include <vector>
 
 namespace LAMMPS_NS {
-class FixMPM;
+class MPMField;
 
 /** Drag and buoyancy between grains smaller than the node spacing and the fluid of a field
  *  (fix mpm), exchanged at the nodes around each grain. */
@@ -38,7 +38,7 @@ class FixMPMImmersed : public Fix, public MPMNodeAction {
 
   void init_action() override;
   void couple_topology() override;
-  void extend_topology(FixMPM &) override;
+  void extend_topology(MPMField &) override;
   void act(double dt, Stage) override;
 
  private:
@@ -69,7 +69,7 @@ class FixMPMImmersed : public Fix, public MPMNodeAction {
   double density, viscosity;    // [mass/distance^3], [mass/(distance time)]
   Law law;
   double gravity[3];
-  FixMPM *field;
+  MPMField *field;
   std::vector<Mover> movers;
   std::vector<Grain> grains;
   std::vector<Entry> entries;

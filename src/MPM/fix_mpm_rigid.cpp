@@ -26,12 +26,12 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "fix_mpm.h"
 #include "force.h"
 #include "input.h"
 #include "math_extra.h"
 #include "mesh/surface_mesh.h"
 #include "modify.h"
+#include "mpm_field.h"
 #include "mpm_image.h"
 #include "region_mpm_mesh.h"
 #include "update.h"
@@ -191,20 +191,19 @@ void FixMPMRigid::init()
         "of it",
         id, region_id);
   mesh = &region->surface_mesh();
-  const auto fields = modify->get_fix_by_style("^mpm$");
+  const auto fields = MPMField::all(lmp);
   if (fields.empty()) error->all(FLERR, Error::NOLASTLINE, "Fix mpm/rigid needs a fix mpm");
-  for (auto *ifix : fields) {
-    const auto *field = dynamic_cast<FixMPM *>(ifix);
-    if (field->total)
+  for (const auto *field : fields) {
+    if (field->options.total)
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/rigid cannot be used with frame total of fix mpm {}, whose nodes are not "
                  "where the body is: use frame updated",
-                 field->id);
-    if (field->stress_before())
+                 field->id());
+    if (field->options.stress_before())
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/rigid cannot be used with scheme usf or usavg of fix mpm {}, which need "
                  "the contact before it is known: use usl or musl",
-                 field->id);
+                 field->id());
   }
   for (auto *loads : {force, torque})
     for (int d = 0; d < 3; d++) {
@@ -270,7 +269,7 @@ void FixMPMRigid::load_impulse(double dt)
     L[d] += dt * evaluate(torque[d]) * LAMMPS_NS::Pointers::force->ftm2v;
   }
   if (variables) {
-    const auto *field = dynamic_cast<FixMPM *>(modify->get_fix_by_style("^mpm$")[0]);
+    const auto *field = MPMField::all(lmp)[0];
     modify->addstep_compute(update->ntimestep + field->steps_to_next());
   }
 }
@@ -288,9 +287,8 @@ void FixMPMRigid::find_contacts()
     radius += far * far;
   }
   radius = sqrt(radius);
-  for (auto *ifix : modify->get_fix_by_style("^mpm$")) {
-    auto *field = dynamic_cast<FixMPM *>(ifix);
-    auto &grid = *field->grid;
+  for (auto *field : MPMField::all(lmp)) {
+    auto &grid = field->grid;
     const double half = 0.5 * (grid.side - 1) * field->lattice.h;
     for (std::size_t slot = 0; slot < grid.blocks.size(); slot++) {
       const auto &block = grid.blocks[slot];
@@ -339,6 +337,11 @@ void FixMPMRigid::find_contacts()
 
 /* ---------------------------------------------------------------------- */
 
+double *FixMPMRigid::Contact::record() const
+{
+  return field->grid.nodes() + node * field->grid.nreal;
+}
+
 void FixMPMRigid::Contact::relative_velocity(const double *u, double *w) const
 {
   MathExtra::cross3(u + 3, r, w);
@@ -370,7 +373,7 @@ void FixMPMRigid::solve()
     double mine[42] = {0.0}, all[42];    // matrix, right-hand side
     for (const auto &c : contacts) {
       if (!c.owned || c.state == Contact::APART) continue;
-      const double m = c.field->grid->nodes()[c.node * c.field->grid->nreal + 3];
+      const double m = c.record()[3];
       // N_i as sum of products of a direction of the impulse and one of the velocity: each with r x it
       const int products = c.state == Contact::STICKS ? 3 : 1;
       for (int k = 0; k < products; k++) {
@@ -447,7 +450,7 @@ void FixMPMRigid::solve()
     for (auto &c : contacts) {
       double w[3], push[3];
       c.relative_velocity(u.data(), w);
-      c.impulse(c.field->grid->nodes()[c.node * c.field->grid->nreal + 3], w, push);
+      c.impulse(c.record()[3], w, push);
       if (c.owned) {
         double moment[3];
         MathExtra::cross3(c.r, push, moment);
@@ -456,7 +459,7 @@ void FixMPMRigid::solve()
           sum[3 + d] -= moment[d];
         }
       }
-      if (c.state != Contact::APART) c.field->push_node(c.node, c.owned, push);
+      if (c.state != Contact::APART) c.field->ledger.push_node(c.record(), c.owned, push);
     }
     MPI_Allreduce(sum, total, 6, MPI_DOUBLE, MPI_SUM, world);
     for (int d = 0; d < 3; d++) {
@@ -527,7 +530,7 @@ void FixMPMRigid::act(double dt, Stage stage)
 
   for (const auto &c : contacts) {
     if (c.state == Contact::APART) continue;
-    double *record = c.field->grid->nodes() + c.node * c.field->grid->nreal;
+    double *record = c.record();
     double w[3];
     MathExtra::cross3(omega, c.r, w);
     for (int d = 0; d < 3; d++) w[d] += v[d] - record[d];

@@ -27,7 +27,7 @@ class SurfaceMesh;
 }
 
 namespace LAMMPS_NS {
-class FixMPM;
+class MPMField;
 
 /** A free rigid body with the shape of a region mpm/mesh, in contact with the material at the nodes
  *  inside of it. Body and nodes take opposite impulses, found together, so that light bodies are as
@@ -53,7 +53,7 @@ class FixMPMRigid : public Fix, public MPMNodeAction {
   };
   struct Contact {    // a node inside of the body
     enum State { APART, SLIDES, STICKS };
-    FixMPM *field;
+    MPMField *field;
     int64_t node;
     bool owned;
     State state;
@@ -62,6 +62,7 @@ class FixMPMRigid : public Fix, public MPMNodeAction {
     double v[3];       // before the contact
     double pull[3];    // impulse of friction on the node, for an impulse of 1 along n
 
+    double *record() const;    ///< of the node: its velocity and mass
     /** Velocity of the body (u: its velocity and angular velocity) at the node, relative to v. */
     void relative_velocity(const double *u, double *w) const;
     /** Impulse on the node (mass m) if it had the velocity w of the body, relative to its own. */

@@ -13,11 +13,13 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "fix_mpm.h"
 #include "fix_mpm_material.h"
 #include "group.h"
 #include "memory.h"
 #include "modify.h"
+#include "mpm_field.h"
+#include "mpm_node_sums.h"
+#include "mpm_point_map.h"
 #include "mpm_points.h"
 #include "neighbor.h"
 #include "update.h"
@@ -99,12 +101,12 @@ void FixMPMSurface::init()
 {
   if (modify->get_fix_by_style("^mpm$").empty())
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/surface needs a fix mpm");
-  for (auto *ifix : modify->get_fix_by_style("^mpm$"))
-    if (dynamic_cast<FixMPM *>(ifix)->axisymmetric)
+  for (const auto *field : MPMField::all(lmp))
+    if (field->options.axisymmetric)
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/surface cannot be used with axisymmetric fix mpm {}, where a grain would "
                  "be a ring: let bodies meet through fix mpm/contact, or use 3d for grains",
-                 ifix->id);
+                 field->id());
   bigint n = 0, nall;
   for (int i = 0; i < atom->nlocal; i++) n += has_radius(i);
   MPI_Allreduce(&n, &nall, 1, MPI_LMP_BIGINT, MPI_SUM, world);
@@ -207,8 +209,7 @@ void FixMPMSurface::keep_first()
     atom->avec->copy(n, in, 0);
     in++;
   }
-  for (auto *ifix : modify->get_fix_by_style("^mpm$"))
-    dynamic_cast<FixMPM *>(ifix)->renew_topology();
+  for (auto *field : MPMField::all(lmp)) field->map->valid = false;
 }
 
 /* ----------------------------------------------------------------------
@@ -258,10 +259,10 @@ void FixMPMSurface::give_radius(int i, bool surface, double radius)
 void FixMPMSurface::find_surface()
 {
   known = true;
-  for (auto *ifix : modify->get_fix_by_style("^mpm$")) {
-    auto &field = *dynamic_cast<FixMPM *>(ifix);
-    field.volume_at_points(share);
-    const double deviation = std::sqrt((field.shape + 1) / 6.0);
+  for (auto *each : MPMField::all(lmp)) {
+    auto &field = *each;
+    volume_at_points(field, share);
+    const double deviation = std::sqrt((stencil_order(field.options.shape) + 1) / 6.0);
     const double limit = 0.5 * std::erfc(-depth / (deviation * std::sqrt(2.0)));
     for (int i = 0; i < atom->nlocal; i++) {
       if (!has_radius(i) || !field.is_point(i)) continue;

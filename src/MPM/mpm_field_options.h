@@ -53,6 +53,12 @@ struct MPMFieldOptions {
   bool plan = false;              ///< print the plan of the step with the cost of each stage
   std::string kernels;            ///< wanted instruction set, empty: the best
 
+  /** Does the scheme update stress at the start, at the end of the step, or (neither) in between? */
+  bool stress_before() const { return scheme == USF || scheme == USAVG; }
+  bool stress_after() const { return scheme == MUSL || scheme == USAVG; }
+  /** What does the cure for locking average: changes of volume, pressures in the force? */
+  bool averages_strain() const { return locking == FBAR || locking == BOTH; }
+  bool averages_stress() const { return locking == PRESSURE || locking == BOTH; }
   /** Do points have a size, by which they reach nodes? */
   bool has_size() const;
   /** Forces and strains have the gradients of the shape functions, the affine matrix has not. */

@@ -12,12 +12,13 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "fix_mpm.h"
 #include "fix_mpm_contact.h"
 #include "force.h"
 #include "math_const.h"
 #include "memory.h"
 #include "modify.h"
+#include "mpm_field.h"
+#include "mpm_frame.h"
 #include "mpm_points.h"
 #include "neigh_list.h"
 #include "neighbor.h"
@@ -228,7 +229,7 @@ int PairMPMPenalty::field_of(int i) const
 {
   if (i < atom->nlocal && atom->vfrac[i] == 0.0) return NOTHING;
   for (std::size_t k = 0; k < fields.size(); k++)
-    if (atom->mask[i] & fields[k]->groupbit) return (int) k;
+    if (atom->mask[i] & fields[k]->fix.groupbit) return (int) k;
   return NOTHING;
 }
 
@@ -239,7 +240,7 @@ int PairMPMPenalty::field_of(int i) const
 double PairMPMPenalty::initial_radius(int i) const
 {
   double V = atom->vfrac[i];
-  if (rings) V /= fields[0]->circle(atom->x[i][0] / points->F[i][8]);
+  if (rings) V /= fields[0]->frame->circle(atom->x[i][0] / points->F[i][8]);
   return 0.5 * (domain->dimension == 2 ? sqrt(V) : cbrt(V));
 }
 
@@ -386,15 +387,14 @@ void PairMPMPenalty::init_style()
     error->all(FLERR, Error::NOLASTLINE,
                "Pair style mpm/penalty requires material points: use "
                "atom_style mpm, or hybrid with mpm");
-  fields.clear();
-  for (auto *fix : modify->get_fix_by_style("^mpm$")) fields.push_back(dynamic_cast<FixMPM *>(fix));
+  fields = MPMField::all(lmp);
   if (fields.size() < 2)
     error->all(FLERR, Error::NOLASTLINE,
                "Pair style mpm/penalty acts between fields, but there {}: "
                "give each body a fix mpm",
                fields.empty() ? "is no fix mpm" : "is only one fix mpm");
 
-  rings = fields[0]->axisymmetric;    // all fields are, or none
+  rings = fields[0]->options.axisymmetric;    // all fields are, or none
 
   const std::size_t nfields = fields.size(), n = atom->ntypes + 1;
   coupled.assign(nfields * nfields, 0);
@@ -402,7 +402,7 @@ void PairMPMPenalty::init_style()
     for (std::size_t b = 0; b < nfields; b++) {
       coupled[a * nfields + b] = a == b;
       for (auto *fix : modify->get_fix_by_style("^mpm/contact$"))
-        if (dynamic_cast<FixMPMContact *>(fix)->couples(fields[a]->id, fields[b]->id))
+        if (dynamic_cast<FixMPMContact *>(fix)->couples(fields[a]->id(), fields[b]->id()))
           coupled[a * nfields + b] = 1;
     }
 
@@ -466,7 +466,7 @@ double PairMPMPenalty::init_one(int i, int j)
           "Pair style mpm/penalty has no pair_coeff for types {} and "
           "{}, but fields {} and {} have such points: give one, with modulus 0 if they shall "
           "not touch",
-          i, j, fields[a]->id, fields[b]->id);
+          i, j, fields[a]->id(), fields[b]->id());
     if (c.modulus > 0.0) return reach;
   }
 

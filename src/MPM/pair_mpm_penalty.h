@@ -22,7 +22,7 @@ PairStyle(mpm/penalty,PairMPMPenalty);
 #include <vector>
 
 namespace LAMMPS_NS {
-class FixMPM;
+class MPMField;
 struct MPMPoints;
 
 /** Contact between points of different fields (fix mpm), whatever their lattices.
@@ -62,7 +62,7 @@ class PairMPMPenalty : public Pair {
   MPMPoints *points;
   double growth;                // radii grow to this multiple of their initial value at most
   std::vector<Coeff> coeffs;    // [ntypes+1][ntypes+1]
-  std::vector<FixMPM *> fields;
+  std::vector<MPMField *> fields;
   std::vector<char> coupled;      // [field][field] same field, or left to fix mpm/contact
   std::vector<char> present;      // [field][type]
   std::vector<double> largest;    // [type] initial radius of the largest point

@@ -16,10 +16,11 @@
 // to half of it), which are not negative. So no kernel needs to know of it: sums at nodes outside are
 // folded to the two nodes inside, and values continued to them before they are interpolated.
 
-#include "fix_mpm.h"
+#include "mpm_edges.h"
 
 #include "domain.h"
 #include "error.h"
+#include "mpm_field.h"
 
 #include <cmath>
 
@@ -28,42 +29,43 @@ using namespace MPM_NS;
 
 /* ---------------------------------------------------------------------- */
 
-void FixMPM::check_edges() const
+void MPMEdges::check() const
 {
-  for (int a = 0; a < lattice.dim; a++)
-    for (int side = 0, plane; side < 2 && !lattice.periodic[a]; side++)
+  for (int a = 0; a < field.lattice.dim; a++)
+    for (int side = 0, plane; side < 2 && !field.lattice.periodic[a]; side++)
       if (!face_on_nodes(a, side, plane))
         error->all(FLERR,
                    "Fix mpm {} edges modified: the fixed face {}{} must be in a plane of nodes: "
                    "change spacing or origin",
-                   id, "xyz"[a], side ? "hi" : "lo");
+                   field.id(), "xyz"[a], side ? "hi" : "lo");
 }
 
 /* ---------------------------------------------------------------------- */
 
-void FixMPM::list_edges(EdgeLists &lists, bool without_outside) const
+void MPMEdges::find(bool without_outside)
 {
-  for (int a = 0; a < lattice.dim; a++) {
+  const Grid &grid = field.grid;
+  for (int a = 0; a < grid.lattice.dim; a++) {
     lists[a].clear();
-    if (lattice.periodic[a]) continue;
+    if (grid.lattice.periodic[a]) continue;
     for (int side = 0; side < 2; side++) {
       int plane;
       if (!face_on_nodes(a, side, plane)) continue;
       const int out = side ? 1 : -1;
-      for (std::size_t slot = 0; slot < grid->blocks.size(); slot++) {
-        const auto &block = grid->blocks[slot];
-        const int n = plane - block.b[a] * grid->side;
-        if (n < 0 || n >= grid->side) continue;
+      for (std::size_t slot = 0; slot < grid.blocks.size(); slot++) {
+        const auto &block = grid.blocks[slot];
+        const int n = plane - block.b[a] * grid.side;
+        if (n < 0 || n >= grid.side) continue;
         for (int k = 0; k < NODES_PER_BLOCK; k++) {
           int index[3];
-          grid->node_index(block, k, index);
+          grid.node_index(block, k, index);
           if (index[a] != plane) continue;
-          EdgeNodes e;
+          Nodes e;
           e.face = (int64_t) slot * NODES_PER_BLOCK + k;
           index[a] = plane + out;
-          e.outside = grid->locate(index);
+          e.outside = grid.locate(index);
           index[a] = plane - out;
-          e.inside = grid->locate(index);
+          e.inside = grid.locate(index);
           // points that reach the node outside reach the others, so that it has nothing without them
           if (e.inside >= 0 && (e.outside >= 0 || without_outside)) lists[a].push_back(e);
         }
@@ -73,22 +75,21 @@ void FixMPM::list_edges(EdgeLists &lists, bool without_outside) const
 }
 
 /** Index along axis a of the plane of nodes in a fixed face of the box; false: there is none. */
-bool FixMPM::face_on_nodes(int a, int side, int &plane) const
+bool MPMEdges::face_on_nodes(int a, int side, int &plane) const
 {
   constexpr double ON_NODE = 1.0e-6;
+  const auto &lattice = field.lattice;
   const double at = ((side ? domain->boxhi[a] : domain->boxlo[a]) - lattice.origin[a]) / lattice.h;
   plane = (int) std::lround(at);
   return std::fabs(at - plane) <= ON_NODE;
 }
 
-/* ----------------------------------------------------------------------
-   sums of this rank, before those of others are added
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
-void FixMPM::fold_edges(double *nodes, int nreal, int lane, int nlane) const
+void MPMEdges::fold(double *nodes, int nreal, int lane, int nlane) const
 {
-  for (int a = lattice.dim - 1; a >= 0; a--)
-    for (const auto &e : edges[a]) {
+  for (int a = field.lattice.dim - 1; a >= 0; a--)
+    for (const auto &e : lists[a]) {
       double *out = nodes + e.outside * nreal + lane;
       double *face = nodes + e.face * nreal + lane, *in = nodes + e.inside * nreal + lane;
       for (int i = 0; i < nlane; i++) {
@@ -99,22 +100,18 @@ void FixMPM::fold_edges(double *nodes, int nreal, int lane, int nlane) const
     }
 }
 
-/* ----------------------------------------------------------------------
-   values, for interpolation; where faces meet, the last axis has the last word
-------------------------------------------------------------------------- */
-
-void FixMPM::extend_edges(double *nodes, int nreal, int lane, int nlane) const
+void MPMEdges::extend(double *nodes, int nreal, int lane, int nlane) const
 {
-  for (int a = 0; a < lattice.dim; a++)
-    for (const auto &e : edges[a])
+  for (int a = 0; a < field.lattice.dim; a++)
+    for (const auto &e : lists[a])
       for (int i = lane; i < lane + nlane; i++)
         nodes[e.outside * nreal + i] =
             2.0 * nodes[e.face * nreal + i] - nodes[e.inside * nreal + i];
 }
 
-/** Velocities of the nodes, also the old ones. */
-void FixMPM::extend_edges()
+double MPMEdges::memory_usage() const
 {
-  extend_edges(grid->nodes(), kernel.nreal, 0, 3);
-  if (kernel.nreal == 8) extend_edges(grid->nodes(), kernel.nreal, 4, 3);
+  double bytes = 0.0;
+  for (const auto &list : lists) bytes += list.capacity() * sizeof(Nodes);
+  return bytes;
 }

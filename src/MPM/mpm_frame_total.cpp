@@ -21,11 +21,15 @@
    of points do not change.
 ------------------------------------------------------------------------- */
 
-#include "fix_mpm.h"
+#include "mpm_frame_total.h"
 
 #include "atom.h"
 #include "error.h"
+#include "fix.h"
+#include "material/batch.h"
 #include "math_extra.h"
+#include "mpm_affine.h"
+#include "mpm_field.h"
 #include "mpm_points.h"
 #include "update.h"
 
@@ -38,22 +42,36 @@ using namespace MPM_NS;
 
 static constexpr int CHECK_EVERY = 10;    // steps between looks at the distortion
 
+/* ---------------------------------------------------------------------- */
+
+MPMFrameTotal::MPMFrameTotal(LAMMPS *lmp, MPMField &field, MPMPointState &state) :
+    MPMFrame(lmp, field), X(nullptr), R(nullptr), nupdate(0), refer_anew(false)
+{
+  state.declare(X, "mpm:X", 3, [this](int i, double *row) {
+    memcpy(row, atom->x[i], 3 * sizeof(double));
+    if (!this->field.running) row[0] = NAN;    // not known, for setup()
+  });
+  if (field.options.most_distorted > 0.0)
+    state.declare(R, "mpm:R", 9, [](int, double *row) {
+      row[0] = row[4] = row[8] = 1.0;
+    });
+}
+
 /* ----------------------------------------------------------------------
    the reference position of a point is where it is at the start of its first run, so that commands
    which place or displace points can be used before
 ------------------------------------------------------------------------- */
 
-void FixMPM::set_reference()
+void MPMFrameTotal::setup()
 {
-  if (!X) return;
   tagint deformed = 0, deformed_all;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!is_point(i) || !std::isnan(X[i][0])) continue;
+    if (!field.is_point(i) || !std::isnan(X[i][0])) continue;
+    const double *const F = field.points->F[i];
     memcpy(X[i], atom->x[i], 3 * sizeof(double));
-    if (R) memcpy(R[i], points->F[i], 9 * sizeof(double));
+    if (R) memcpy(R[i], F, 9 * sizeof(double));
     for (int c = 0; c < 9 && !R; c++)
-      if (fabs(points->F[i][c] - (c % 4 == 0)) > 1.0e-12)
-        deformed = std::max(deformed, atom->tag[i]);
+      if (fabs(F[c] - (c % 4 == 0)) > 1.0e-12) deformed = std::max(deformed, atom->tag[i]);
   }
   MPI_Allreduce(&deformed, &deformed_all, 1, MPI_LMP_TAGINT, MPI_MAX, world);
   if (deformed_all)
@@ -62,25 +80,60 @@ void FixMPM::set_reference()
         "Fix mpm {} frame total: points have no reference position but are deformed already, "
         "for instance point {}: use frame total from the first run on, and the same fix ID "
         "after read_restart, or reference update",
-        id, deformed_all);
+        field.id(), deformed_all);
+}
+
+/* ---------------------------------------------------------------------- */
+
+TransferKernels MPMFrameTotal::kernels(const MPMKernels &all, Transfer transfer, bool split) const
+{
+  return all.transfer_total(field.lattice.dim, field.options.shape, transfer, split);
+}
+
+/* ----------------------------------------------------------------------
+   The first Piola-Kirchhoff stress is made here, a batch at a time: to read F and tau costs less than
+   to write and read another matrix
+------------------------------------------------------------------------- */
+
+void MPMFrameTotal::forces(PointRows &rows, int first, int n, ForceRows &room) const
+{
+  double F[9 * BATCH];
+  for (int p = 0; p < n && R; p++) lattice_F(first + p, F + 9 * p);
+  field.batch_kernels->first_piola(n, R ? F : rows.F, rows.tau, room.P);
+  rows.P = room.P;
+}
+
+void MPMFrameTotal::load(Batch &b, int, int n, double dt, const double *L, const double *F,
+                         const double *tau, const double *vol0) const
+{
+  field.batch_kernels->load_total(b, n, dt, L, F, tau, vol0, nullptr);
 }
 
 /* ----------------------------------------------------------------------
    deformation gradient with respect to the reference configuration, row-major
 ------------------------------------------------------------------------- */
 
-void FixMPM::lattice_F(int i, double *F) const
+void MPMFrameTotal::lattice_F(int i, double F[9]) const
 {
-  if (!R) {
-    memcpy(F, points->F[i], 9 * sizeof(double));
-    return;
-  }
+  MPMFrame::lattice_F(i, F);
+  if (!R) return;
   double f[3][3], r[3][3], inverse[3][3], product[3][3];
-  memcpy(f, points->F[i], sizeof(f));
+  memcpy(f, F, sizeof(f));
   memcpy(r, R[i], sizeof(r));
   MathExtra::invert3(r, inverse);
   MathExtra::times3(f, inverse, product);
   memcpy(F, product, sizeof(product));
+}
+
+double MPMFrameTotal::lattice_jacobian(int i) const
+{
+  return R ? MPMPoints::det(R[i]) : 1.0;
+}
+
+/** As the deformation gradient has it. */
+double MPMFrameTotal::radius(int i, double) const
+{
+  return X[i][0] * field.points->F[i][8] / (R ? R[i][8] : 1.0);
 }
 
 /* ----------------------------------------------------------------------
@@ -88,9 +141,10 @@ void FixMPM::lattice_F(int i, double *F) const
    the undeformed body: L <- L R
 ------------------------------------------------------------------------- */
 
-void FixMPM::refer_gradients(int first, int n, double *L) const
+void MPMFrameTotal::refer_gradients(int first, int n, double *L) const
 {
-  const int dim = lattice.dim;
+  if (!R) return;
+  const int dim = field.lattice.dim;
   for (int i = first; i < first + n; i++, L += dim * dim) {
     double product[9];
     for (int c = 0; c < dim; c++)
@@ -100,6 +154,46 @@ void FixMPM::refer_gradients(int first, int n, double *L) const
       }
     memcpy(L, product, dim * dim * sizeof(double));
   }
+}
+
+/* ----------------------------------------------------------------------
+   the change of volume of I + A = (F + dt L) F^-1
+------------------------------------------------------------------------- */
+
+double MPMFrameTotal::volume_change(int i, const double *L, double dt) const
+{
+  const double *F = field.points->F[i];
+  double A[9];
+  if (field.lattice.dim == 2) {
+    const double scale = dt / (F[0] * F[4] - F[1] * F[3]);
+    for (int r = 0; r < 2; r++) {
+      A[r] = scale * (L[r] * F[4] - L[2 + r] * F[3]);
+      A[2 + r] = scale * (L[2 + r] * F[0] - L[r] * F[1]);
+    }
+    return MPMFrame::volume_change(i, A, 1.0);
+  }
+  const double scale = dt / field.points->jacobian(i);
+  for (int j = 0; j < 3; j++) {
+    const int a = (j + 1) % 3, b = (j + 2) % 3;
+    double inverse[3];    // column j of F^-1, times det F
+    for (int k = 0; k < 3; k++) {
+      const int c = (k + 1) % 3, d = (k + 2) % 3;
+      inverse[k] = F[3 * a + c] * F[3 * b + d] - F[3 * a + d] * F[3 * b + c];
+    }
+    for (int r = 0; r < 3; r++)
+      A[3 * j + r] = scale * (L[r] * inverse[0] + L[3 + r] * inverse[1] + L[6 + r] * inverse[2]);
+  }
+  return MPMFrame::volume_change(i, A, 1.0);
+}
+
+/** What is stretched is F + dt L. */
+void MPMFrameTotal::stretch(int i, double more, double dt, double *L)
+{
+  const int dim = field.lattice.dim;
+  const double *F = field.points->F[i];
+  for (int c = 0; c < dim * dim; c++) L[c] = (1.0 + more) * L[c];
+  for (int r = 0; r < dim; r++)
+    for (int c = 0; c < dim; c++) L[dim * c + r] += more / dt * F[3 * r + c];
 }
 
 /* ----------------------------------------------------------------------
@@ -125,11 +219,11 @@ static double largest_eigenvalue(double B[3][3])
    has turned. 3d: the roots of the largest eigenvalues of (F F^T)^-1 and F F^T
 ------------------------------------------------------------------------- */
 
-void FixMPM::stretches(int i, double &smallest, double &largest) const
+void MPMFrameTotal::stretches(int i, double &smallest, double &largest) const
 {
   double F[9];
   lattice_F(i, F);
-  if (lattice.dim == 2) {
+  if (field.lattice.dim == 2) {
     largest = 0.5 * (hypot(F[0] + F[4], F[3] - F[1]) + hypot(F[0] - F[4], F[3] + F[1]));
     smallest = fabs(F[0] * F[4] - F[1] * F[3]) / largest;
     return;
@@ -146,48 +240,59 @@ void FixMPM::stretches(int i, double &smallest, double &largest) const
   smallest = 1.0 / sqrt(largest_eigenvalue(inverse));
 }
 
+/** Points stay where they are on the lattice, but waves cross it faster where it is compressed: a plane
+ *  wave with wave vector K there has k = F^-T K in space, |k| <= |K|/s with the smallest singular
+ *  value s of F. */
+double MPMFrameTotal::speed(int i, double &c) const
+{
+  double least, most;
+  stretches(i, least, most);
+  return c / least;
+}
+
 /* ----------------------------------------------------------------------
    is it time for a new reference configuration? It is taken where points have just been sorted to
    ranks, in this step. The steps of this look do not depend on when the run has started.
 ------------------------------------------------------------------------- */
 
-void FixMPM::check_distortion()
+void MPMFrameTotal::end_of_step()
 {
-  if (update->ntimestep % CHECK_EVERY >= every) return;
+  if (!R || update->ntimestep % CHECK_EVERY >= field.options.every) return;
   double worst = 0.0, worst_all;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!is_point(i)) continue;
+    if (!field.is_point(i)) continue;
     double smallest, largest;
     stretches(i, smallest, largest);
     worst = std::max(worst, largest / smallest);
   }
   MPI_Allreduce(&worst, &worst_all, 1, MPI_DOUBLE, MPI_MAX, world);
-  refer_anew = worst_all > most_distorted;
-  if (refer_anew) next_reneighbor = update->ntimestep;
+  refer_anew = worst_all > field.options.most_distorted;
+  if (refer_anew) field.fix.next_reneighbor = update->ntimestep;
 }
 
 /* ---------------------------------------------------------------------- */
 
-void FixMPM::update_reference()
+bool MPMFrameTotal::renew_places()
 {
-  const int dim = lattice.dim;
+  if (!refer_anew) return false;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!is_point(i)) continue;
-    if (C) {
-      double F[9], f[3][3], g[3][3], product[9];
+    if (!field.is_point(i)) continue;
+    if (field.affine) {
+      double F[9], f[3][3], inverse[3][3];
       lattice_F(i, F);
       memcpy(f, F, sizeof(f));
-      MathExtra::invert3(f, g);
-      for (int c = 0; c < dim; c++)
-        for (int r = 0; r < dim; r++) {
-          product[dim * c + r] = 0.0;
-          for (int k = 0; k < dim; k++) product[dim * c + r] += C[i][dim * k + r] * g[k][c];
-        }
-      memcpy(C[i], product, dim * dim * sizeof(double));
+      MathExtra::invert3(f, inverse);
+      field.affine->refer(i, inverse);
     }
     memcpy(X[i], atom->x[i], 3 * sizeof(double));
-    memcpy(R[i], points->F[i], 9 * sizeof(double));
+    memcpy(R[i], field.points->F[i], 9 * sizeof(double));
   }
   refer_anew = false;
-  report.references++;
+  nupdate++;
+  return true;
+}
+
+std::string MPMFrameTotal::report() const
+{
+  return nupdate ? fmt::format("  {} updates of the reference configuration\n", nupdate) : "";
 }

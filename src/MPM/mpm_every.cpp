@@ -6,8 +6,7 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Steps of LAMMPS between the steps of the cycle (keyword every of fix mpm): grains and atoms that
-// need a smaller time step take several under one of the material points.
+// Grains and atoms that need a smaller time step take several under one of the material points.
 //
 // Between two steps of the cycle, points move with their constant velocity, so that what they touch
 // sees them move smoothly, and their forces add up. The cycle then starts from where they were in the
@@ -16,38 +15,39 @@
 // one of leapfrog, which keeps the energy; with the place at their start they would be damped, by a
 // part (K - 1)/(2 K) (omega dt)^2 of the energy in each step dt of the cycle.
 
-#include "fix_mpm.h"
+#include "mpm_every.h"
 
 #include "atom.h"
+#include "mpm_field.h"
 #include "update.h"
 
 #include <cstring>
 
 using namespace LAMMPS_NS;
 
-int FixMPM::waiting_size() const
+/* ---------------------------------------------------------------------- */
+
+MPMEvery::MPMEvery(LAMMPS *lmp, MPMField &field, MPMPointState &state) :
+    Pointers(lmp), progress({0, 0.0}), field(field)
 {
-  return every == 1 ? 0 : (atom->torque_flag ? 9 : 6);
+  state.declare(waiting, "mpm:waiting", width());
 }
 
-/* ----------------------------------------------------------------------
-   all steps of the cycle so far have ended when waited is 0
-------------------------------------------------------------------------- */
-
-double FixMPM::step_dt() const
+int MPMEvery::width() const
 {
-  return elapsed + (every - waited) * update->dt;
+  return atom->torque_flag ? 9 : 6;
 }
 
-/* ----------------------------------------------------------------------
-   all fields: true when it is not yet time for the cycle
-------------------------------------------------------------------------- */
-
-bool FixMPM::wait()
+/** All steps of the cycle so far have ended when no step of LAMMPS waits. */
+double MPMEvery::step_dt() const
 {
-  if (every == 1) return false;
-  for (auto *field : fields) field->add_waiting();
-  return waited < every;
+  return progress.elapsed + (field.options.every - progress.waited) * update->dt;
+}
+
+int MPMEvery::steps_to_next() const
+{
+  const int every = field.options.every;
+  return progress.waited < every ? every - progress.waited : every;
 }
 
 /* ----------------------------------------------------------------------
@@ -55,19 +55,21 @@ bool FixMPM::wait()
    Points that have not waited before are where they are at the start of these steps
 ------------------------------------------------------------------------- */
 
-void FixMPM::add_waiting()
+bool MPMEvery::wait()
 {
+  const int every = field.options.every;
   const double dt = update->dt, before = 0.5 * (every - 1) * dt;
-  const bool first = waited == 0, last = waited == every - 1, turns = atom->torque_flag;
-  waited++;
-  elapsed += dt;
+  const bool first = progress.waited == 0, last = progress.waited == every - 1;
+  const bool turns = atom->torque_flag;
+  progress.waited++;
+  progress.elapsed += dt;
   if (last) {
     mean_force.resize(3 * (std::size_t) atom->nmax);
     if (turns) mean_torque.resize(3 * (std::size_t) atom->nmax);
   }
-  const double inverse = 1.0 / elapsed;
+  const double inverse = 1.0 / progress.elapsed;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!is_point(i)) continue;
+    if (!field.is_point(i)) continue;
     double *const w = waiting[i], *const x = atom->x[i];
     const double *const v = atom->v[i], *const f = atom->f[i];
     const bool is_new = first && w[3] == 0.0 && w[4] == 0.0 && w[5] == 0.0;
@@ -85,6 +87,7 @@ void FixMPM::add_waiting()
       }
     }
   }
+  return progress.waited < every;
 }
 
 /* ----------------------------------------------------------------------
@@ -92,18 +95,17 @@ void FixMPM::add_waiting()
    up, to where they are when the first of these acts
 ------------------------------------------------------------------------- */
 
-void FixMPM::end_waiting()
+void MPMEvery::finish()
 {
-  const double before = 0.5 * (elapsed - update->dt);
+  const double before = 0.5 * (progress.elapsed - update->dt);
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!is_point(i)) continue;
+    if (!field.is_point(i)) continue;
     double *const w = waiting[i];
-    memset(w, 0, waiting_size() * sizeof(double));
+    memset(w, 0, width() * sizeof(double));
     for (int d = 0; d < 3; d++) {
       w[3 + d] = -before * atom->v[i][d];
       atom->x[i][d] += w[3 + d];
     }
   }
-  waited = 0;
-  elapsed = 0.0;
+  progress = {0, 0.0};
 }

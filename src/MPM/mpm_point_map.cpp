@@ -6,21 +6,19 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Topology of fix mpm: which blocks have points, and the order of points in memory.
-
-#include "fix_mpm.h"
+#include "mpm_point_map.h"
 
 #include "atom.h"
 #include "atom_vec.h"
 #include "comm.h"
-#include "error.h"
 #include "fix_mpm_material.h"
 #include "group.h"
-#include "material/batch.h"
-#include "modify.h"
+#include "memory.h"
+#include "mpm_cpdi.h"
+#include "mpm_field.h"
+#include "mpm_frame.h"
+#include "mpm_guard.h"
 #include "mpm_halo.h"
-#include "mpm_node_action.h"
-#include "mpm_points.h"
 #include "neighbor.h"
 #include "platform.h"
 
@@ -28,105 +26,119 @@
 #include <array>
 #include <climits>
 #include <cmath>
+#include <cstring>
 #include <map>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr double MAX_SIZE = 0.5;    // of points with GIMP, in node spacings
+/* ---------------------------------------------------------------------- */
 
-// base node of a point relative to its cell, in cells
-static constexpr double BASE_SHIFT[4] = {0.0, 0.0, 0.5, 1.0};
+MPMPointMap::MPMPointMap(LAMMPS *lmp, MPMField &field) :
+    Pointers(lmp), valid(false), drifted(0), sort_time(0.0), nsort(0), nbuild(0), field(field),
+    watch_drift(false), decayed(false), switches(0), switches_sorted(0)
+{
+  for (double **memory_of : {&tile, &tile_load}) {
+    *memory_of = (double *) memory->smalloc(tile_reals() * sizeof(double), "mpm:tile");
+    memset(*memory_of, 0, tile_reals() * sizeof(double));
+  }
+}
+
+MPMPointMap::~MPMPointMap()
+{
+  memory->sfree(tile);
+  memory->sfree(tile_load);
+}
+
+/** Reals of a tile, of which there are two. */
+std::size_t MPMPointMap::tile_reals() const
+{
+  return 8 * (field.domains ? domain_tile_nodes(field.lattice.dim) : MAX_TILE_NODES);
+}
 
 /* ----------------------------------------------------------------------
-   base node of a position and its coordinate t in cells; false: not a usable position
+   points drift at most half a skin between rebuilds when LAMMPS checks distances each step;
+   a tile has room for a drift of one cell
 ------------------------------------------------------------------------- */
 
-bool FixMPM::base_node(const double *x, int base[3], double t[3]) const
+void MPMPointMap::setup()
 {
+  watch_drift = !field.frame->is_total() && !field.domains &&
+      (field.every || neighbor->includegroup || neighbor->skin > 2.0 * field.lattice.h ||
+       neighbor->delay > 0 || neighbor->every > 1 || !neighbor->dist_check);
+}
+
+void MPMPointMap::check_drift()
+{
+  if (field.domains) drifted = 0;    // looked at by themselves, see MPMCpdi::update()
+  if (!watch_drift) return;
+  int all;
+  MPI_Allreduce(&drifted, &all, 1, MPI_INT, MPI_BOR, world);
+  if (all) valid = false;
+  drifted = 0;
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool MPMPointMap::base_node(const double *x, int base[3], double t[3]) const
+{
+  // base node of a point relative to its cell, in cells
+  const Shape shape = field.options.shape;
+  const bool bernstein = shape == BERNSTEIN;
+  const double shift = bernstein ? 0.0 : 0.5 * (stencil_order(shape) - 1);
+  const Lattice &lattice = field.lattice;
   base[2] = 0;
   t[2] = 0.0;
   for (int d = 0; d < lattice.dim; d++) {
-    t[d] = (x[d] - lattice.origin[d]) / lattice.h - (bernstein ? 0.0 : BASE_SHIFT[shape]);
+    t[d] = (x[d] - lattice.origin[d]) / lattice.h - shift;
     if (!(fabs(t[d]) < 4.0e6)) return false;
     base[d] = bernstein ? 2 * (int) std::floor(0.5 * t[d]) : (int) std::floor(t[d]);
   }
   return true;
 }
 
-/* ----------------------------------------------------------------------
-   stage 1, for all fields that need it: when points have migrated, were sorted or have drifted
-------------------------------------------------------------------------- */
-
-void FixMPM::update_topology()
+void MPMPointMap::tile_base(const ActiveBlock &a, int base[3]) const
 {
-  for (auto *field : fields) field->update_domains();
-  for (auto *action : actions) action->couple_topology();
-  for (auto *field : fields) field->find_blocks();
-  for (auto *action : actions) action->blocks_found();
-  for (auto *field : fields) field->finish_topology();
-  for (auto *field : fields) field->update_sizes();
+  const Grid &grid = field.grid;
+  for (int d = 0; d < 3; d++) base[d] = grid.side * grid.blocks[a.slot].b[d] - field.kernel.margin;
 }
 
 /* ----------------------------------------------------------------------
-   the same apart from the step: of all fields, by the one that drives them
+   the nodes of the next block go towards the cache: in a large run they are not there, and nothing
+   else would hide that
 ------------------------------------------------------------------------- */
 
-void FixMPM::find_topology()
+void MPMPointMap::load_tile(const ActiveBlock &a, int base[3])
 {
-  if (!topology_valid || has_domains())    // of which corners may have left what is in reach
-    dynamic_cast<FixMPM *>(modify->get_fix_by_style("^mpm$")[0])->update_topology();
+  Grid &grid = field.grid;
+  tile_base(a, base);
+  field.kernel.load(tile_load, grid.nodes(), grid.blocks[a.slot].slot, a.box);
+  const ActiveBlock *next = &a + 1;
+  if (next < active.data() + active.size())
+    field.kernel.prefetch(tile_load, grid.nodes(), grid.blocks[next->slot].slot, next->box);
 }
 
-/* ----------------------------------------------------------------------
-   GIMP: half sizes of the points along the axes, which stay the same throughout a step. At the start
-   a point is a box of its volume. A contiguous one follows F: what was a box of half sizes l has the
-   second moments F diag(l^2) F^T/3, along axis d those of an interval with the half size
-   [sum_e (F_de l_e)^2]^1/2. Without shear and rotation this is F_dd l_d, and a cube that just turns
-   keeps its size. Half a cell is the limit: beyond, a point would reach more nodes than the stencil
-   has.
-------------------------------------------------------------------------- */
-
-void FixMPM::update_sizes()
+bigint MPMPointMap::npoints() const
 {
-  if (!has_boxes()) return;
-  sizes.resize(3 * (std::size_t) atom->nmax, MAX_SIZE);
-  for (const auto &run : runs)
-    for (int i = run.first; i < run.last; i++) box_sizes(i, &sizes[3 * (std::size_t) i]);
+  bigint n = 0;
+  for (const auto &run : runs) n += run.last - run.first;
+  return n;
 }
 
-void FixMPM::box_sizes(int i, double *size) const
+double MPMPointMap::memory_usage() const
 {
-  constexpr double MIN_SIZE = 1.0e-4;
-  const double half = half_size(i), *F = points->F[i];
-  for (int d = 0; d < lattice.dim; d++, F += 3) {
-    double edge = aspect[d];
-    if (extent == CONTIGUOUS) {
-      double square = 0.0;
-      for (int e = 0; e < lattice.dim; e++) square += F[e] * F[e] * aspect[e] * aspect[e];
-      edge = sqrt(square);
-    }
-    size[d] = std::max(MIN_SIZE, std::min(MAX_SIZE, half * edge));
-  }
+  return 2.0 * tile_reals() * sizeof(double) + runs.capacity() * sizeof(Run) +
+      active.capacity() * sizeof(ActiveBlock);
 }
 
-/** Half of the edge of a cube (2d: square) with the initial volume of the point, in node spacings. */
-double FixMPM::half_size(int i) const
+/* ---------------------------------------------------------------------- */
+
+void MPMPointMap::find_blocks()
 {
-  if (axisymmetric) return 0.5 * sqrt(atom->vfrac[i] / circle(reference_radius(i))) / lattice.h;
-  return 0.5 * (lattice.dim == 3 ? cbrt(atom->vfrac[i]) : sqrt(atom->vfrac[i])) / lattice.h;
-}
+  if (valid) return;
+  Grid &grid = field.grid;
 
-/* ----------------------------------------------------------------------
-   runs of points of one block, and blocks within reach
-------------------------------------------------------------------------- */
-
-void FixMPM::find_blocks()
-{
-  if (topology_valid) return;
-  clock = platform::walltime();
-
-  grid->clear();
+  grid.clear();
   runs.clear();
   active.clear();
   switches = 0;
@@ -140,21 +152,21 @@ void FixMPM::find_blocks()
   int last_base[3] = {INT_MAX, INT_MAX, INT_MAX}, last_block[3] = {INT_MAX, INT_MAX, INT_MAX};
   const int nlocal = atom->nlocal;
   for (int i = 0; i < nlocal; i++) {
-    if (!is_point(i)) continue;
+    if (!field.is_point(i)) continue;
     int base[3], b[3];
     double t[3];
-    if (!base_node(place(i), base, t)) {
-      point_is_bad(i, "is far out of reach of the lattice");
+    if (!base_node(field.place(i), base, t)) {
+      field.guard->point_is_bad(i, "is far out of reach of the lattice");
       continue;
     }
-    for (int d = 0; d < 3; d++) b[d] = base[d] >> grid->shift_bits;
+    for (int d = 0; d < 3; d++) b[d] = base[d] >> grid.shift_bits;
     if (base[0] != last_base[0] || base[1] != last_base[1] || base[2] != last_base[2]) switches++;
-    FixMPMMaterial *material = is_node(i) ? nullptr : material_of(i);
+    FixMPMMaterial *material = field.is_element_node(i) ? nullptr : field.material_of(i);
     const bool same_block = b[0] == last_block[0] && b[1] == last_block[1] && b[2] == last_block[2];
     if (same_block && runs.back().last == i && runs.back().material == material) {
       runs.back().last++;
     } else {
-      const int slot = same_block ? runs.back().slot : grid->activate(b);
+      const int slot = same_block ? runs.back().slot : grid.activate(b);
       if (slot == (int) ranges.size()) {
         Range r;
         for (int d = 0; d < 3; d++) {
@@ -167,7 +179,7 @@ void FixMPM::find_blocks()
     }
     Range &r = ranges[runs.back().slot];
     double reach_lo[3] = {0.0, 0.0, 0.0}, reach_hi[3] = {0.0, 0.0, 0.0};
-    if (has_domains()) domain_reach(i, reach_lo, reach_hi);
+    if (field.domains) field.domains->reach(i, reach_lo, reach_hi);
     for (int d = 0; d < 3; d++) {
       r.lo[d] = std::min(r.lo[d], t[d] + reach_lo[d]);
       r.hi[d] = std::max(r.hi[d], t[d] + reach_hi[d]);
@@ -195,19 +207,19 @@ void FixMPM::find_blocks()
   // blocks that the points can reach before the next update, which comes when a point leaves its tile
   // at the latest: all around the block, if nothing else bounds the drift
 
-  const double least = has_domains() ? 1.0e-6 : 0.0;    // see update_domains()
-  const double drift = total ? 0.0
-      : watch_drift          ? grid->side
-                             : std::max(least, std::min(1.0, 0.5 * neighbor->skin / lattice.h));
-  const int nactive = active.size();
+  const double least = field.domains ? 1.0e-6 : 0.0;    // see MPMCpdi::update()
+  const double drift = field.frame->is_total() ? 0.0
+      : watch_drift                            ? grid.side
+                    : std::max(least, std::min(1.0, 0.5 * neighbor->skin / grid.lattice.h));
+  const int nactive = active.size(), order = stencil_order(field.options.shape);
   for (int k = 0; k < nactive; k++) {
     const Range &r = ranges[k];
     int b[3], lo[3] = {0, 0, 0}, hi[3] = {0, 0, 0};
-    for (int d = 0; d < 3; d++) b[d] = grid->blocks[k].b[d];
-    for (int d = 0; d < lattice.dim; d++) {
-      const int first = b[d] * grid->side;
+    for (int d = 0; d < 3; d++) b[d] = grid.blocks[k].b[d];
+    for (int d = 0; d < grid.lattice.dim; d++) {
+      const int first = b[d] * grid.side;
       if ((int) std::floor(r.lo[d] - drift) < first) lo[d] = -1;
-      if ((int) std::floor(r.hi[d] + drift) + shape >= first + grid->side) hi[d] = 1;
+      if ((int) std::floor(r.hi[d] + drift) + order >= first + grid.side) hi[d] = 1;
     }
     for (int d = 0; d < 3; d++) {
       active[k].low[d] = lo[d];
@@ -217,40 +229,25 @@ void FixMPM::find_blocks()
       for (int dy = lo[1]; dy <= hi[1]; dy++)
         for (int dz = lo[2]; dz <= hi[2]; dz++) {
           const int neighbor_block[3] = {b[0] + dx, b[1] + dy, b[2] + dz};
-          grid->activate(neighbor_block);
+          grid.activate(neighbor_block);
         }
   }
-  lap(report.t_topology);
 }
 
-/* ----------------------------------------------------------------------
-   blocks that node actions need, and which of all other ranks have, too
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
-void FixMPM::finish_topology()
+void MPMPointMap::finish_blocks()
 {
-  if (topology_valid) return;
-  clock = platform::walltime();
+  field.grid.close_periodic();
+  field.grid.finish();
+  field.allocate_nodes();
+  field.halo->setup(field.grid);
 
-  auto *master = dynamic_cast<FixMPM *>(modify->get_fix_by_style("^mpm$")[0]);
-  for (auto *action : master->actions) action->extend_topology(*this);
-  grid->close_periodic();
-  grid->finish();
-  grid->allocate(kernel.nreal);
-  halo->setup(*grid);
-  if (modified_edges) list_edges(edges, false);
-  for (auto *action : master->actions) action->topology_changed(*this);
-
-  topology_valid = true;
+  valid = true;
   drifted = 0;
-  int nhistory = 1;
-  for (auto *material : materials) nhistory = std::max(nhistory, material->nhistory);
-  history_batch.resize((std::size_t) nhistory * BATCH);
-  report.topologies++;
-
+  nbuild++;
   if (switches_sorted < 0) switches_sorted = switches;
-  want_sort = switches > 1.6 * switches_sorted + 100;
-  lap(report.t_topology);
+  decayed = switches > 1.6 * switches_sorted + 100;
 }
 
 /* ----------------------------------------------------------------------
@@ -258,16 +255,16 @@ void FixMPM::finish_topology()
    Tags make the order, and with it all sums, independent of what happened before.
 ------------------------------------------------------------------------- */
 
-void FixMPM::sort_points()
+void MPMPointMap::sort()
 {
   const double start = platform::walltime();
   const int nlocal = atom->nlocal;
 
   // key of a point: (block in order of first appearance, material, cell)
 
-  const int nmaterials = MAX(1, (int) materials.size());
+  const int nmaterials = MAX(1, (int) field.materials.size());
   const int keys_per_block = nmaterials * NODES_PER_BLOCK;
-  const int mask = grid->side - 1;
+  const int mask = field.grid.side - 1;
   std::map<std::array<int, 3>, int> index_of_block;    // ordered: gives the order of blocks
   std::vector<int> key(nlocal, -1);
   std::array<int, 3> last = {INT_MAX, INT_MAX, INT_MAX};
@@ -275,19 +272,19 @@ void FixMPM::sort_points()
   for (int i = 0; i < nlocal; i++) {
     int base[3];
     double t[3];
-    if (!is_point(i) || !base_node(place(i), base, t)) continue;
+    if (!field.is_point(i) || !base_node(field.place(i), base, t)) continue;
     std::array<int, 3> block;
-    for (int d = 0; d < 3; d++) block[d] = base[d] >> grid->shift_bits;
+    for (int d = 0; d < 3; d++) block[d] = base[d] >> field.grid.shift_bits;
     if (block != last) {
       index = index_of_block.emplace(block, (int) index_of_block.size()).first->second;
       last = block;
     }
-    const int cell = lattice.dim == 3
+    const int cell = field.lattice.dim == 3
         ? ((base[0] & mask) << 2 | (base[1] & mask)) << 2 | (base[2] & mask)
         : (base[0] & mask) << 3 | (base[1] & mask);
     int m = 0;
     if (nmaterials > 1)
-      while (m < nmaterials - 1 && !(atom->mask[i] & materials[m]->groupbit)) m++;
+      while (m < nmaterials - 1 && !(atom->mask[i] & field.materials[m]->groupbit)) m++;
     key[i] = index * keys_per_block + m * NODES_PER_BLOCK + cell;
   }
 
@@ -355,8 +352,8 @@ void FixMPM::sort_points()
   if (renew_all) comm->borders();
 
   switches_sorted = -1;    // to be counted with the next topology
-  want_sort = false;
-  topology_valid = false;
-  report.sorts++;
-  report.t_sort += platform::walltime() - start;
+  decayed = false;
+  valid = false;
+  nsort++;
+  sort_time += platform::walltime() - start;
 }
