@@ -18,6 +18,7 @@
 #include "group.h"
 #include "memory.h"
 #include "modify.h"
+#include "mpm_options.h"
 #include "mpm_points.h"
 #include "neighbor.h"
 #include "update.h"
@@ -28,41 +29,49 @@
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
+using namespace MPM_NS;
 
 /* ----------------------------------------------------------------------
    fix ID group mpm/surface keyword value ...
 ------------------------------------------------------------------------- */
 
+Options MPMSurfaceOptions::declare()
+{
+  using namespace option;
+  Options o("fix mpm/surface");
+  o.add("scale",
+        {number(scale, "S", POSITIVE, "",
+                "diameter of a point over the edge of a cube (2d: square) of its volume")});
+  o.add("grow",
+        {number(grow, "G", AT_LEAST_ONE, "",
+                "largest diameter over the diameter of an undeformed point")});
+  o.add("depth",
+        {number(depth, "D", POSITIVE, "",
+                "depth below the surface of points with a radius, in node spacings")});
+  o.add("group",
+        {text(group_id, "group-ID",
+              "points are in this group if they have a radius, and only then")})
+      .standard("none");
+  return o;
+}
+
 FixMPMSurface::FixMPMSurface(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), scale(1.0), grow(1.2), depth(0.5), surface_group(-1), known(false),
-    no_torques(false), at_surface(nullptr), points(MPMPoints::get(atom))
+    Fix(lmp, narg, arg), surface_group(-1), known(false), no_torques(false), at_surface(nullptr),
+    points(MPMPoints::get(atom))
 {
   if (!points || !atom->radius_flag)
     error->all(FLERR,
                "Fix mpm/surface requires material points with a radius: use atom_style "
                "hybrid sphere mpm");
-  for (int iarg = 3; iarg < narg; iarg += 2) {
-    const std::string keyword = arg[iarg];
-    if (keyword == "group") {
-      if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, "fix mpm/surface group", error);
-      surface_group = group->find(arg[iarg + 1]);
-      if (surface_group <= 0 || surface_group == igroup || group->dynamic[surface_group])
-        error->all(FLERR, iarg + 1,
-                   "Fix mpm/surface group must be a static group other than all and "
-                   "that of the fix: {}",
-                   arg[iarg + 1]);
-      continue;
-    }
-    double *const value = keyword == "scale" ? &scale
-        : keyword == "grow"                  ? &grow
-        : keyword == "depth"                 ? &depth
-                                             : nullptr;
-    if (!value) error->all(FLERR, iarg, "Unknown fix mpm/surface keyword: {}", keyword);
-    if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, "fix mpm/surface " + keyword, error);
-    *value = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
-    if (!(*value > 0.0) || !std::isfinite(*value) || (value == &grow && grow < 1.0))
-      error->all(FLERR, iarg + 1, "Fix mpm/surface {} must be {}: {}", keyword,
-                 value == &grow ? "at least 1" : "positive", arg[iarg + 1]);
+  Options options = declare();
+  read_options(lmp, options, narg, arg, 3);
+  if (options.given("group")) {
+    surface_group = group->find(group_id);
+    if (surface_group <= 0 || surface_group == igroup || group->dynamic[surface_group])
+      error->all(
+          FLERR, options.where("group") + 1,
+          "Fix mpm/surface group must be a static group other than all and that of the fix: {}",
+          group_id);
   }
 
   scalar_flag = peratom_flag = 1;

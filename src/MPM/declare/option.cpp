@@ -534,7 +534,8 @@ std::string Options::message(const Rule &rule) const
 void Options::check() const
 {
   for (const auto &rule : refusals)
-    if (rule.test()) throw OptionError{where(rule.keyword), message(rule)};
+    if ((rule.keyword.empty() || given(rule.keyword)) && rule.test())
+      throw OptionError{where(rule.keyword), message(rule)};
 }
 
 std::vector<std::string> Options::warnings() const

@@ -188,10 +188,11 @@ class Options {
   Option &add(const std::string &keyword, std::vector<OptionValue>,
               const std::string &meaning = "");
 
-  /** The input is refused when the test is true of the values read. The message is the command, the
-   *  keyword, and the text, in which {name} is the present value of that keyword. */
+  /** The input is refused when the keyword is given (or is empty) and the test is true of the values
+   *  read. The message is the command, the keyword, and the text, in which {name} is the present value
+   *  of that keyword. */
   void refuse(const std::string &keyword, std::function<bool()> test, const std::string &text);
-  /** As refuse(), but for warnings(). */
+  /** For warnings(): whether the keyword is given or not. */
   void warn(const std::string &keyword, std::function<bool()> test, const std::string &text);
 
   /** Reads arguments from iarg on, up to the end or the word last, whose index is returned, and
@@ -203,8 +204,6 @@ class Options {
   int where(const std::string &keyword) const;
   bool given(const std::string &keyword) const { return where(keyword) >= 0; }
 
-  /** Refusals: checked again, for values that have not been read. Throws OptionError. */
-  void check() const;
   /** What can be run but is likely to be a mistake. */
   std::vector<std::string> warnings() const;
 
@@ -230,6 +229,7 @@ class Options {
   std::vector<Rule> refusals, doubts;
 
   const Option *find(const std::string &keyword) const;
+  void check() const;
   std::string message(const Rule &) const;
 };
 
