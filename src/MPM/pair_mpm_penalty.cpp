@@ -340,7 +340,7 @@ Options MPMPenaltyCoeff::declare()
   o.argument(number(modulus, "modulus", NOT_NEGATIVE));
   o.add("friction",
         {number(friction, "mu", NOT_NEGATIVE, "1", "coefficient of Coulomb friction"),
-         number(slip, "velocity", POSITIVE, "velocity",
+         number(slip, "slip", POSITIVE, "velocity",
                 "sliding velocity from which on friction is full")})
       .standard("0");
   o.add("damping",

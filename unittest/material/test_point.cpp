@@ -428,7 +428,7 @@ TEST(Point, ErrorsNameTheRemedy)
       {"mpm_point NULL shear 1 time 1 xx" + rubber,
        "Unknown mpm_point xx material: must be one of rate stress"},
       {"mpm_point NULL shear 1 time 1 xx force 1" + rubber,
-       "xx must be followed by rate or stress, not force"},
+       "Unknown mpm_point xx force: must be one of rate stress"},
       {"mpm_point NULL shear 1 time 1 xx rate 1 xx stress 1" + rubber, "xx is given twice"},
       {"mpm_point NULL shear 1 time 1 xx rate v_no" + rubber, "Variable no for mpm_point does not"},
       {"mpm_point NULL shear 1 time 1 xx rate v_atomic" + rubber, "is not equal-style"},

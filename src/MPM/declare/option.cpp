@@ -94,9 +94,9 @@ Strings explain(const std::string &names, const std::string &meaning, const std:
 {
   const std::string units = unit.empty() ? "" : (unit == "1" ? "unitless" : unit + " units");
   const std::string remark = join({units, interval}, ", ");
-  if (meaning.empty() && remark.empty()) return {};
-  return {join(split(names, ' '), ",") + " = " +
-          join({meaning, remark.empty() ? "" : "(" + remark + ")"}, " ")};
+  if (meaning.empty()) return {};
+  return {join(split(names, ' '), ",") + " = " + meaning +
+          (remark.empty() ? "" : " (" + remark + ")")};
 }
 
 double take(OptionReader &r, const std::string &name, const Range &range)
@@ -112,11 +112,13 @@ int64_t take(OptionReader &r, const std::string &name, const Limits &limits)
 {
   const int iarg = r.next();
   const int64_t value = r.input.integer(iarg);
-  if (value < limits.low || value > limits.high) {
-    Range range = range_of(limits);
-    if (limits.low == 1 && range.high == UNBOUNDED) range = POSITIVE;
-    r.fail(iarg, name, required(range) + ": " + r.input.arg[iarg]);
-  }
+  if (value > limits.high && limits.high == option::MOST)
+    r.fail(iarg, name, "must be below 2147483648: " + std::string(r.input.arg[iarg]));
+  if (value < limits.low || value > limits.high)
+    r.fail(iarg, name,
+           (limits.low == 1 && limits.high >= option::MOST ? "must be positive"
+                                                           : required(range_of(limits))) +
+               ": " + r.input.arg[iarg]);
   return value;
 }
 
@@ -427,7 +429,7 @@ std::string Option::text() const
   return join(parts, " ");
 }
 
-/** Its part of the block of keywords in the manual. */
+/** Its part of the block of keywords in the manual, after the keyword. */
 std::vector<std::string> Option::lines() const
 {
   int count = 0;
@@ -436,8 +438,7 @@ std::vector<std::string> Option::lines() const
     count += value.count;
     usage.push_back(value.usage);
   }
-  // a single number or word needs no name of its own beside its meaning
-  all.push_back("*" + keyword + "* value" + (count > 1 ? "s" : "") + " = " + join(usage, " "));
+  all.push_back(std::string(" value") + (count > 1 ? "s" : "") + " = " + join(usage, " "));
   for (const auto &line : split(meaning, '\n')) all.push_back("  " + line);
   for (const auto &value : values)
     for (const auto &line : value.lines) all.push_back("  " + line);
@@ -591,8 +592,15 @@ std::string Options::table() const
     line += next;
   }
   text += line + "\n\n  .. parsed-literal::\n\n";
-  for (const auto &option : options)
-    for (const auto &one : option.lines()) text += "       " + one + "\n";
+  std::string names;    // of options with the same values: they are explained once
+  for (std::size_t k = 0; k < options.size(); k++) {
+    const Strings lines = options[k].lines();
+    names += (names.empty() ? "*" : ",\\ *") + options[k].keyword + "*";
+    if (k + 1 < options.size() && options[k + 1].lines() == lines) continue;
+    for (const auto &one : lines)
+      text += "       " + (&one == &lines.front() ? names : "") + one + "\n";
+    names.clear();
+  }
   return text;
 }
 
