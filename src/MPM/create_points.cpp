@@ -159,7 +159,7 @@ Options CreatePointsOptions::declare(int dim, bool has_radius)
   using namespace option;
   Options o("create_points");
   o.add("ppc",
-        {one_or_axes(ppc, dim, "N Nx Ny Nz", {1, MAX_PPC},
+        {one_or_axes(ppc, dim, "N Nx Ny Nz", {1, MAX_PPC, true},
                      "number of points along each axis of a cell of fix mpm",
                      "number of points along x, y, z")})
       .standard("2");
@@ -172,7 +172,7 @@ Options CreatePointsOptions::declare(int dim, bool has_radius)
   o.add("jitter",
         {number(jitter, "fraction", {0.0, 0.5, true}, "",
                 "largest displacement along each axis, in units of the spacing"),
-         integer(seed, "seed", {1, MOST}, "random number seed")})
+         integer(seed, "seed", POSITIVE, "random number seed")})
       .standard("none");
   o.add("overlap", {yes_no(allow_overlap)},
         "allow new points where there are material points already");

@@ -278,31 +278,21 @@ void FixMPMBoundary::init()
     auto *field = dynamic_cast<FixMPM *>(ifix);
     if (!acts_on(*field)) continue;
     found = true;
-    if (field->total && (kind == SEPARATE || rotating || region_moves()))
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/boundary {} cannot be used with frame total of fix mpm {}, whose nodes "
-                 "keep to the same material wherever it goes: use {}",
-                 kind == SEPARATE ? "separate"
-                     : rotating   ? "rotate"
-                                  : "with a moving region",
-                 field->id,
-                 kind == SEPARATE ? "fix wall/gran or a pair style"
-                                  : "stick velocity with variables");
     bool moves = false;
     for (const auto &v : velocity) moves = moves || !v.variable.empty() || v.value != 0.0;
-    if (field->R && moves)
-      error->all(
-          FLERR, Error::NOLASTLINE,
-          "Fix mpm/boundary {} velocity cannot be used with reference update of fix mpm {}: the "
-          "material that it holds would leave it with the first update: use reference fixed",
-          id, field->id);
-    if (field->stress_before() && decides())
-      error->all(
-          FLERR, Error::NOLASTLINE,
-          "Fix mpm/boundary separate and friction cannot be used "
-          "with scheme usf or usavg of fix mpm {}, which need the contact before it is known: use "
-          "usl or musl",
-          field->id);
+    const std::string keeps = "its nodes keep to the same material wherever it goes: use ";
+    refuse_field(
+        *this, *field,
+        {{field->total && kind == SEPARATE, "separate and frame total",
+          keeps + "fix wall/gran or a pair style"},
+         {field->total && rotating, "rotate and frame total",
+          keeps + "stick velocity with variables"},
+         {field->total && region_moves(), "a moving region and frame total",
+          keeps + "stick velocity with variables"},
+         {field->R && moves, "velocity and reference update",
+          "the material that it holds would leave it with the first update: use reference fixed"},
+         {field->stress_before() && decides(), "separate or friction and scheme usf and usavg",
+          "these need the contact before it is known: use usl or musl"}});
   }
   if (!found)
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/boundary field {} is not the ID of a fix mpm",

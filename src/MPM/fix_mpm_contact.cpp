@@ -209,18 +209,11 @@ void FixMPMContact::init()
                  "and origin) and shape function; bodies on different lattices meet through a pair "
                  "style",
                  id, first.id, field->id);
-    if (field->total)
-      error->all(
-          FLERR, Error::NOLASTLINE,
-          "Fix mpm/contact cannot be used with frame total of fix mpm {}, whose nodes are not "
-          "where the body is: let bodies meet through a pair style",
-          field->id);
-    if (field->stress_before())
-      error->all(
-          FLERR, Error::NOLASTLINE,
-          "Fix mpm/contact cannot be used with scheme usf or usavg of fix mpm {}, which need the "
-          "contact before it is known: use usl or musl",
-          field->id);
+    refuse_field(lmp, *this, *field,
+                 {{field->total, "frame total",
+                   "its nodes are not where the body is: let bodies meet through a pair style"},
+                  {field->stress_before(), "scheme usf and usavg",
+                   "these need the contact before it is known: use usl or musl"}});
   }
   for (auto *other : modify->get_fix_by_style("^mpm/contact$")) {
     if (other == this) continue;

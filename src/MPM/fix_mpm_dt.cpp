@@ -40,7 +40,7 @@ Options MPMDtOptions::declare()
   using namespace option;
   Options o("fix mpm/dt");
   o.argument(number(fraction, "fraction of h/(c+|v|)", {0.0, 2.0, false, true}));
-  o.add("every", {integer(look_every, "N", {1, MOST}, "set the time step every this many steps")});
+  o.add("every", {integer(look_every, "N", POSITIVE, "set the time step every this many steps")});
   o.add(
       "grow",
       {number(grow, "R", AT_LEAST_ONE, "", "largest factor by which the time step grows at once")});

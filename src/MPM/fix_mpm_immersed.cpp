@@ -142,27 +142,12 @@ void FixMPMImmersed::init_action()
   if (!field)
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/immersed {}: there is no fix mpm {}", id,
                field_id);
-  if (field->total)
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm/immersed {} cannot be used with frame total of fix mpm {}, whose nodes are not "
-        "where the grains are: use frame updated",
-        id, field_id);
-  if (field->axisymmetric)
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm/immersed {} cannot be used with axisymmetric fix mpm {}, where a grain would be a "
-        "ring: use a sector in 3d, or 2d",
-        id, field_id);
-  if (field->modified_edges)
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm/immersed {} cannot be used with edges modified of fix mpm {}: use edges plain", id,
-        field_id);
-  if (field->refinement == FixMPM::FMPM)
-    error->all(FLERR, Error::NOLASTLINE,
-               "Fix mpm/immersed {} cannot be used with transfer fmpm of fix mpm {}: use xpic", id,
-               field_id);
+  refuse_field(
+      *this, *field,
+      {{field->total, "frame total", "its nodes are not where the grains are: use frame updated"},
+       {field->axisymmetric, "axisymmetric", "a grain would be a ring: use a sector in 3d, or 2d"},
+       {field->modified_edges, "edges modified", "use edges plain"},
+       {field->refinement == FixMPM::FMPM, "transfer fmpm", "use xpic"}});
 
   field->keep_old = true;    // for the acceleration of the fluid
 

@@ -165,16 +165,11 @@ void FixMPMRigid::init()
   if (fields.empty()) error->all(FLERR, Error::NOLASTLINE, "Fix mpm/rigid needs a fix mpm");
   for (auto *ifix : fields) {
     const auto *field = dynamic_cast<FixMPM *>(ifix);
-    if (field->total)
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/rigid cannot be used with frame total of fix mpm {}, whose nodes are not "
-                 "where the body is: use frame updated",
-                 field->id);
-    if (field->stress_before())
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/rigid cannot be used with scheme usf or usavg of fix mpm {}, which need "
-                 "the contact before it is known: use usl or musl",
-                 field->id);
+    refuse_field(
+        *this, *field,
+        {{field->total, "frame total", "its nodes are not where the body is: use frame updated"},
+         {field->stress_before(), "scheme usf and usavg",
+          "these need the contact before it is known: use usl or musl"}});
   }
   for (int d = 0; d < 3; d++) {
     find_variable(lmp, load[d], "fix mpm/rigid force");

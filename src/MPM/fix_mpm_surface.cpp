@@ -109,11 +109,10 @@ void FixMPMSurface::init()
   if (modify->get_fix_by_style("^mpm$").empty())
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/surface needs a fix mpm");
   for (auto *ifix : modify->get_fix_by_style("^mpm$"))
-    if (dynamic_cast<FixMPM *>(ifix)->axisymmetric)
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/surface cannot be used with axisymmetric fix mpm {}, where a grain would "
-                 "be a ring: let bodies meet through fix mpm/contact, or use 3d for grains",
-                 ifix->id);
+    refuse_field(lmp, *this, *ifix,
+                 {{dynamic_cast<FixMPM *>(ifix)->axisymmetric, "axisymmetric",
+                   "a grain would be a ring: let bodies meet through fix mpm/contact, or use 3d "
+                   "for grains"}});
   bigint n = 0, nall;
   for (int i = 0; i < atom->nlocal; i++) n += has_radius(i);
   MPI_Allreduce(&n, &nall, 1, MPI_LMP_BIGINT, MPI_SUM, world);

@@ -15,6 +15,7 @@
 #include "declare/option.h"
 
 namespace LAMMPS_NS {
+class Fix;
 class LAMMPS;
 
 /** Reads the arguments from iarg on as declared, up to the end or the word last, whose index it
@@ -24,6 +25,16 @@ int read_options(LAMMPS *, MPM_NS::Options &, int narg, char **arg, int iarg,
 
 /** Runs f(), which may throw an OptionError, and makes an error of LAMMPS of that. */
 void explain_errors(LAMMPS *, const std::function<void()> &f);
+
+/** Something of a field (fix mpm) that a style cannot work with. */
+struct FieldRule {
+  bool broken;
+  std::string what;    ///< keyword and value of fix mpm
+  std::string why;     ///< and the remedy
+};
+
+/** Stops with an error when one of the rules is broken by the field. */
+void refuse_field(LAMMPS *, const Fix &user, const Fix &field, const std::vector<FieldRule> &);
 
 /** Finds the variable, if it is one, and stops with an error if it does not exist or is not
  *  equal-style; user: who needs it, for example fix mpm/rigid force. */

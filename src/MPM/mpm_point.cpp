@@ -87,14 +87,14 @@ Options MPMPointOptions::declare()
   using namespace option;
   Options o("mpm_point");
   o.add("time", {number(duration, "T", POSITIVE, "time", "duration of the path")}).standard("");
-  o.add("strain",
-        {number(strain, "E", POSITIVE, "1", "size of the strain at which the path ends")}).standard("");
+  o.add("strain", {number(strain, "E", POSITIVE, "1", "size of the strain at which the path ends")})
+      .standard("");
   o.add("cycle",
         {number(amplitude, "A", POSITIVE, "1", "amplitude of the strain"),
-         number(cycles, "N", POSITIVE, "", "number of cycles")}).standard("");
-  o.add("steps", {integer(nsteps, "N", {1, INT64_MAX}, "number of time steps")});
-  o.add("every",
-        {integer(every, "M", {1, INT64_MAX}, "write a row of the table every this many steps")})
+         number(cycles, "N", POSITIVE, "", "number of cycles")})
+      .standard("");
+  o.add("steps", {integer(nsteps, "N", POSITIVE, "number of time steps")});
+  o.add("every", {integer(every, "M", POSITIVE, "write a row of the table every this many steps")})
       .standard("steps/1000");
   for (int k = 0; k < 6; k++)
     o.add(component_name[k],

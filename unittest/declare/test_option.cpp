@@ -47,13 +47,14 @@ struct Paint {
                   "the sky",
                   {optional(number(gloss, "gloss", FRACTION, "1", "shine"))}}})})
         .keep();
-    o.add("coats", {integer(coats, "N", {1, MOST}, "number of coats")}).keep();
+    o.add("coats", {integer(coats, "N", POSITIVE, "number of coats")}).keep();
     o.add("shares", {axes(shares, 3, "a b c", POSITIVE)}, "of each pigment");
-    o.add("cells", {one_or_axes(cells, 2, "n nx ny nz", {1, 9}, "cells", "cells along x, y, z")});
+    o.add("cells",
+          {one_or_axes(cells, 2, "n nx ny nz", {1, 9, true}, "cells", "cells along x, y, z")});
     o.add("wet", {yes_no(wet)});
     o.add("name", {text(name, "ID")}).once().standard("none");
     o.add("speed", {variables(speed, 2, "u v", "velocity", "of the brush", true)});
-    o.add("layer", {integer(layer, "k", {0, 5})}).then([this] {
+    o.add("layer", {integer(layer, "k", {0, 5, true})}).then([this] {
       layers.push_back(layer);
     });
     o.add("sides", {any_of(sides, {"top", "side", "back"})});
@@ -150,8 +151,7 @@ TEST(Option, MistakesAreExplained)
             "2: Unknown fix paint color pink: must be one of red green blue");
   EXPECT_EQ(answer("1 color blue 2"), "3: Fix paint color blue gloss must be within 0 and 1: 2");
   EXPECT_EQ(answer("1 coats 0"), "2: Fix paint coats must be positive: 0");
-  EXPECT_EQ(answer("1 coats 3000000000"),
-            "2: Fix paint coats must be below 2147483648: 3000000000");
+  EXPECT_EQ(answer("1 coats 3000000000"), "2: Fix paint coats is too large: 3000000000");
   EXPECT_EQ(answer("1 shares 1 0 1"), "3: Fix paint shares must be positive: 0");
   EXPECT_EQ(answer("1 shares 1 1 1e999"), "4: Fix paint shares must be positive: 1e999");
   EXPECT_EQ(answer("1 shares 1 1"), "missing: fix paint shares");
