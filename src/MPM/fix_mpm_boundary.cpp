@@ -280,19 +280,18 @@ void FixMPMBoundary::init()
     found = true;
     bool moves = false;
     for (const auto &v : velocity) moves = moves || !v.variable.empty() || v.value != 0.0;
-    const std::string keeps = "its nodes keep to the same material wherever it goes: use ";
-    refuse_field(
-        *this, *field,
-        {{field->total && kind == SEPARATE, "separate and frame total",
-          keeps + "fix wall/gran or a pair style"},
-         {field->total && rotating, "rotate and frame total",
-          keeps + "stick velocity with variables"},
-         {field->total && region_moves(), "a moving region and frame total",
-          keeps + "stick velocity with variables"},
-         {field->R && moves, "velocity and reference update",
-          "the material that it holds would leave it with the first update: use reference fixed"},
-         {field->stress_before() && decides(), "separate or friction and scheme usf and usavg",
-          "these need the contact before it is known: use usl or musl"}});
+    const std::string keeps = "its nodes keep to the same material wherever it goes: instead of ";
+    refuse_field(lmp, *this, *field,
+                 {{field->total && kind == SEPARATE, "frame total",
+                   keeps + "separate, use fix wall/gran or a pair style"},
+                  {field->total && (rotating || region_moves()), "frame total",
+                   keeps + (rotating ? "rotate" : "a moving region") +
+                       ", use stick velocity with variables"},
+                  {field->R && moves, "reference update",
+                   "the material that a wall with velocity holds would leave it with the first "
+                   "update: use reference fixed"},
+                  {field->stress_before() && decides(), "scheme usf and usavg",
+                   "separate and friction need the contact before it is known: use usl or musl"}});
   }
   if (!found)
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/boundary field {} is not the ID of a fix mpm",

@@ -143,7 +143,7 @@ void FixMPMImmersed::init_action()
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/immersed {}: there is no fix mpm {}", id,
                field_id);
   refuse_field(
-      *this, *field,
+      lmp, *this, *field,
       {{field->total, "frame total", "its nodes are not where the grains are: use frame updated"},
        {field->axisymmetric, "axisymmetric", "a grain would be a ring: use a sector in 3d, or 2d"},
        {field->modified_edges, "edges modified", "use edges plain"},

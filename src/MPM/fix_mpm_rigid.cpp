@@ -166,7 +166,7 @@ void FixMPMRigid::init()
   for (auto *ifix : fields) {
     const auto *field = dynamic_cast<FixMPM *>(ifix);
     refuse_field(
-        *this, *field,
+        lmp, *this, *field,
         {{field->total, "frame total", "its nodes are not where the body is: use frame updated"},
          {field->stress_before(), "scheme usf and usavg",
           "these need the contact before it is known: use usl or musl"}});
