@@ -151,7 +151,7 @@ def test_every_law_and_every_material_file_is_in_the_page_of_the_fix():
 
 def test_every_law_has_a_page_that_includes_its_table():
     laws = law_tables()
-    assert laws, "no tables in doc/src/laws: run tools/law_tables.sh"
+    assert laws, "no tables in doc/src/laws: run tools/tables.sh"
     wrong = []
     for page, table in sorted(laws.items()):
         path = os.path.join(PAGES, page + ".rst")

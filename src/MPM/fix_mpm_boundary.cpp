@@ -67,14 +67,13 @@
 #include "error.h"
 #include "force.h"
 #include "group.h"
-#include "input.h"
 #include "math_extra.h"
 #include "modify.h"
 #include "mpm_field.h"
+#include "mpm_options.h"
 #include "region.h"
 #include "region_mpm_mesh.h"
 #include "update.h"
-#include "variable.h"
 
 #include <algorithm>
 #include <cmath>
@@ -106,10 +105,70 @@ struct RegionMotion : public Region {
    fix ID all mpm/boundary faces|region REG  stick|slip|separate  keyword values
 ------------------------------------------------------------------------- */
 
+Options MPMBoundaryOptions::declare(int dim)
+{
+  using namespace option;
+  Options o("fix mpm/boundary");
+  o.argument(word(kind, {{"stick", STICK}, {"slip", SLIP}, {"separate", SEPARATE}}, "kind"));
+  o.add("friction",
+        {number(friction, "mu", NOT_NEGATIVE, "1",
+                "Coulomb coefficient, for *slip* and *separate*")});
+  o.add("velocity",
+        {variables(velocity, 3, "vx vy vz", "velocity",
+                   "velocity of the wall, can be variables (see below); with *stick*, NULL leaves "
+                   "a component free",
+                   true)});
+  o.add("rotate",
+        {numbers(center, 3, "ox oy oz", ANY_NUMBER, "distance", "a point on the axis of rotation"),
+         numbers(axis, 3, "ax ay az", ANY_NUMBER, "", "direction of the axis"),
+         variables(&rate, 1, "rate", "radians/time",
+                   "angular velocity, can be a variable (see below)")})
+      .standard("none");
+  o.add("field", {text(field_id, "fix-ID", "ID of the :doc:`fix mpm <fix_mpm>` to act on")})
+      .standard("all");
+  o.refuse(
+      "friction",
+      [this] {
+        return kind == STICK;
+      },
+      "needs kind slip or separate");
+  o.refuse(
+      "velocity",
+      [this] {
+        return kind != STICK && !all_given();
+      },
+      "allows NULL only with kind stick");
+  o.refuse(
+      "velocity",
+      [this] {
+        return !velocity[0].given && !velocity[1].given && !velocity[2].given;
+      },
+      "leaves all components free");
+  o.refuse(
+      "rotate",
+      [this] {
+        return MathExtra::len3(axis) == 0.0;
+      },
+      "needs an axis of non-zero length");
+  o.refuse(
+      "rotate",
+      [=] {
+        return dim == 2 && (axis[0] != 0.0 || axis[1] != 0.0);
+      },
+      "needs an axis along z in 2d");
+  o.refuse(
+      "rotate",
+      [this] {
+        return !all_given();
+      },
+      "prescribes all components of the velocity");
+  return o;
+}
+
 FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), region(nullptr), kind(STICK), friction(0.0), rotating(false),
-    acted(false), region_was{}, motion_step(-1), work(0.0), dt_last(0.0), reaction_known(true),
-    counting(false), decided(false), kinetic(0.0)
+    Fix(lmp, narg, arg), region(nullptr), rotating(false), acted(false), region_was{},
+    motion_step(-1), work(0.0), dt_last(0.0), reaction_known(true), counting(false), decided(false),
+    kinetic(0.0)
 {
   if (igroup != 0)
     error->all(FLERR, 1,
@@ -147,80 +206,18 @@ FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) :
 
   // what
 
-  if (iarg >= narg) utils::missing_cmd_args(FLERR, "fix mpm/boundary", error);
-  const std::string kind_name = arg[iarg];
-  if (kind_name == "stick")
-    kind = STICK;
-  else if (kind_name == "slip")
-    kind = SLIP;
-  else if (kind_name == "separate")
-    kind = SEPARATE;
-  else
-    error->all(FLERR, iarg, "Unknown fix mpm/boundary kind {}: must be stick, slip or separate",
-               kind_name);
-  iarg++;
-
-  // keywords
-
+  Options options = declare(domain->dimension);
+  read_options(lmp, options, narg, arg, iarg);
+  rotating = options.given("rotate");
+  const bool moving = rotating || options.given("velocity");
+  const double length = MathExtra::len3(axis);
+  for (int d = 0; d < 3 && rotating; d++) axis[d] /= length;
   for (int d = 0; d < 3; d++) {
-    velocity[d] = {0.0, true, "", -1};
-    constrained[d] = true;
-    center[d] = axis[d] = 0.0;
+    constrained[d] = velocity[d].given;
     impulse[d] = reaction[d] = impulse[3 + d] = reaction[3 + d] = 0.0;
   }
-  rate = {0.0, true, "", -1};
   memset(&wall, 0, sizeof(Wall));
   memset(before, 0, sizeof(before));
-  bool moving = false;
-
-  while (iarg < narg) {
-    const std::string keyword = arg[iarg];
-    auto need = [&](int n) {
-      if (iarg + n >= narg) utils::missing_cmd_args(FLERR, "fix mpm/boundary " + keyword, error);
-    };
-    if (keyword == "friction") {
-      need(1);
-      if (kind == STICK)
-        error->all(FLERR, iarg, "Fix mpm/boundary friction needs kind slip or separate");
-      friction = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
-      if (!(friction >= 0.0))
-        error->all(FLERR, iarg + 1, "Fix mpm/boundary friction must not be negative: {}",
-                   arg[iarg + 1]);
-      iarg += 2;
-    } else if (keyword == "velocity") {
-      need(3);
-      for (int d = 0; d < 3; d++) {
-        velocity[d] = parse_value(arg[iarg + 1 + d], iarg + 1 + d, kind == STICK);
-        constrained[d] = velocity[d].given;
-      }
-      if (!constrained[0] && !constrained[1] && !constrained[2])
-        error->all(FLERR, iarg + 1, "Fix mpm/boundary velocity leaves all components free");
-      moving = true;
-      iarg += 4;
-    } else if (keyword == "rotate") {
-      need(7);
-      for (int d = 0; d < 3; d++) {
-        center[d] = utils::numeric(FLERR, arg[iarg + 1 + d], false, lmp);
-        axis[d] = utils::numeric(FLERR, arg[iarg + 4 + d], false, lmp);
-      }
-      const double length = MathExtra::len3(axis);
-      if (!(length > 0.0))
-        error->all(FLERR, iarg + 4, "Fix mpm/boundary rotate needs an axis of non-zero length");
-      if (domain->dimension == 2 && (axis[0] != 0.0 || axis[1] != 0.0))
-        error->all(FLERR, iarg + 4, "Fix mpm/boundary rotate needs an axis along z in 2d");
-      for (double &a : axis) a /= length;
-      rate = parse_value(arg[iarg + 7], iarg + 7, false);
-      rotating = moving = true;
-      iarg += 8;
-    } else if (keyword == "field") {
-      need(1);
-      field_id = arg[iarg + 1];
-      iarg += 2;
-    } else
-      error->all(FLERR, iarg, "Unknown fix mpm/boundary keyword: {}", keyword);
-  }
-  if (rotating && !(constrained[0] && constrained[1] && constrained[2]))
-    error->all(FLERR, "Fix mpm/boundary rotate prescribes all components of the velocity");
 
   if (!region_id.empty()) {
     region = domain->get_region_by_id(region_id);
@@ -251,38 +248,6 @@ int FixMPMBoundary::setmask()
 
 /* ---------------------------------------------------------------------- */
 
-FixMPMBoundary::Value FixMPMBoundary::parse_value(const char *text, int iarg, bool null_allowed)
-{
-  Value v = {0.0, true, "", -1};
-  if (strcmp(text, "NULL") == 0) {
-    if (!null_allowed)
-      error->all(FLERR, iarg, "Fix mpm/boundary allows NULL only as velocity with kind stick");
-    v.given = false;
-  } else if (utils::strmatch(text, "^v_")) {
-    v.variable = text + 2;
-  } else {
-    v.value = utils::numeric(FLERR, text, false, lmp);
-  }
-  return v;
-}
-
-void FixMPMBoundary::check_variable(Value &v, const char *what)
-{
-  if (v.variable.empty()) return;
-  v.index = input->variable->find(v.variable.c_str());
-  if (v.index < 0)
-    error->all(FLERR, Error::NOLASTLINE, "Variable {} for fix mpm/boundary {} does not exist",
-               v.variable, what);
-  if (!input->variable->equalstyle(v.index))
-    error->all(FLERR, Error::NOLASTLINE, "Variable {} for fix mpm/boundary {} is not equal-style",
-               v.variable, what);
-}
-
-double FixMPMBoundary::evaluate(const Value &v) const
-{
-  return v.variable.empty() ? v.value : input->variable->compute_equal(v.index);
-}
-
 bool FixMPMBoundary::region_moves() const
 {
   return region && region->dynamic_check();
@@ -312,39 +277,28 @@ void FixMPMBoundary::init()
   for (auto *field : fields) {
     if (!acts_on(*field)) continue;
     found = true;
-    if (field->options.total && (kind == SEPARATE || rotating || region_moves()))
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/boundary {} cannot be used with frame total of fix mpm {}, whose nodes "
-                 "keep to the same material wherever it goes: use {}",
-                 kind == SEPARATE ? "separate"
-                     : rotating   ? "rotate"
-                                  : "with a moving region",
-                 field->id(),
-                 kind == SEPARATE ? "fix wall/gran or a pair style"
-                                  : "stick velocity with variables");
     bool moves = false;
     for (const auto &v : velocity) moves = moves || !v.variable.empty() || v.value != 0.0;
-    if (field->options.most_distorted > 0.0 && moves)
-      error->all(
-          FLERR, Error::NOLASTLINE,
-          "Fix mpm/boundary {} velocity cannot be used with reference update of fix mpm {}: the "
-          "material that it holds would leave it with the first update: use reference fixed",
-          id, field->id());
-    if (field->options.stress_before() && decides())
-      error->all(
-          FLERR, Error::NOLASTLINE,
-          "Fix mpm/boundary separate and friction cannot be used "
-          "with scheme usf or usavg of fix mpm {}, which need the contact before it is known: use "
-          "usl or musl",
-          field->id());
+    const std::string keeps = "its nodes keep to the same material wherever it goes: instead of ";
+    refuse_field(lmp, *this, *field,
+                 {{field->options.total && kind == SEPARATE, "frame total",
+                   keeps + "separate, use fix wall/gran or a pair style"},
+                  {field->options.total && (rotating || region_moves()), "frame total",
+                   keeps + (rotating ? "rotate" : "a moving region") +
+                       ", use stick velocity with variables"},
+                  {field->options.most_distorted > 0.0 && moves, "reference update",
+                   "the material that a wall with velocity holds would leave it with the first "
+                   "update: use reference fixed"},
+                  {field->options.stress_before() && decides(), "scheme usf and usavg",
+                   "separate and friction need the contact before it is known: use usl or musl"}});
   }
   if (!found)
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/boundary field {} is not the ID of a fix mpm",
                field_id);
   nodes.clear();    // made again with the topology
 
-  for (int d = 0; d < 3; d++) check_variable(velocity[d], "velocity");
-  check_variable(rate, "rotate");
+  for (auto &v : velocity) find_variable(lmp, v, "fix mpm/boundary velocity");
+  find_variable(lmp, rate, "fix mpm/boundary rotate");
 
   if (!region_id.empty()) {
     region = domain->get_region_by_id(region_id);
@@ -901,8 +855,8 @@ void FixMPMBoundary::update_motion(double dt)
 
   if (variables) modify->clearstep_compute();
   if (region_moves()) region->prematch();
-  for (int d = 0; d < 3; d++) wall.shift[d] = evaluate(velocity[d]);
-  const double omega = rotating ? evaluate(rate) : 0.0;
+  for (int d = 0; d < 3; d++) wall.shift[d] = evaluate(lmp, velocity[d]);
+  const double omega = rotating ? evaluate(lmp, rate) : 0.0;
   if (variables) modify->addstep_compute(next_step());
 
   if (rotating) {

@@ -15,6 +15,7 @@ FixStyle(mpm/boundary,FixMPMBoundary);
 #ifndef LMP_FIX_MPM_BOUNDARY_H
 #define LMP_FIX_MPM_BOUNDARY_H
 
+#include "declare/option.h"
 #include "fix.h"
 #include "mpm_node_action.h"
 
@@ -26,12 +27,25 @@ namespace LAMMPS_NS {
 class MPMField;
 class Region;
 
+struct MPMBoundaryOptions {
+  enum Kind { STICK, SLIP, SEPARATE };
+
+  Kind kind = STICK;
+  double friction = 0.0;
+  MPM_NS::NumberOrVariable velocity[3], rate;
+  double center[3] = {0.0, 0.0, 0.0}, axis[3] = {0.0, 0.0, 0.0};    ///< of the rotation
+  std::string field_id;                                             ///< empty: all fields
+
+  bool all_given() const { return velocity[0].given && velocity[1].given && velocity[2].given; }
+  MPM_NS::Options declare(int dimension);
+};
+
 /** Walls that act on the nodes of the fields: faces of the box, or a region.
  *
  *  A face mirrors: nodes beyond it are images of nodes inside. A region acts on each of the nodes
  *  inside it.
  */
-class FixMPMBoundary : public Fix, public MPMNodeAction {
+class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOptions {
  public:
   Turn turn() const override { return WALLS; }
   FixMPMBoundary(class LAMMPS *, int, char **);
@@ -53,8 +67,6 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
 
  private:
   static constexpr int DEPTH = 3;    // nodes on either side of a mirror plane that are paired
-
-  enum Kind { STICK, SLIP, SEPARATE };
 
   struct Face {    // a face of the box on the lattice of a field
     int axis;
@@ -107,12 +119,6 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
     std::vector<Orbit> orbits;
     std::vector<Single> singles;
   };
-  struct Value {    // number or equal-style variable; NULL: not given
-    double value;
-    bool given;
-    std::string variable;
-    int index;
-  };
   struct Wall {    // its motion in this step: velocity shift + gradient (x - origin)
     double shift[3], gradient[3][3], origin[3];
     bool uniform;
@@ -123,13 +129,9 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
   };
 
   std::vector<int> face_list;    // 2 * axis + (0: lo, 1: hi)
-  std::string region_id, field_id;
+  std::string region_id;
   Region *region;
-  Kind kind;
-  double friction;
-  Value velocity[3], rate;
   bool rotating;
-  double center[3], axis[3];
   bool constrained[3];    // stick: components that are prescribed
 
   std::vector<FieldNodes> nodes;
@@ -151,9 +153,6 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
   double old_share;     // FLIP share when old velocities are constrained, too; otherwise 0
   double kinetic;       // gained by the nodes of a field in the present act()
 
-  Value parse_value(const char *, int iarg, bool null_allowed);
-  void check_variable(Value &, const char *what);
-  double evaluate(const Value &) const;
   bool region_moves() const;
   bool acts_on(const MPMField &) const;
   Face face_on_lattice(const MPMField &, int face) const;

@@ -47,6 +47,7 @@
 #include "mpm_frame.h"
 #include "mpm_image.h"
 #include "mpm_node_sums.h"
+#include "mpm_options.h"
 #include "mpm_point_map.h"
 #include "update.h"
 
@@ -76,22 +77,87 @@ static constexpr double ROUNDING = 1.0e-8;
    fix ID all mpm/contact FIELD FIELD ...  law ... normal ... gap ...
 ------------------------------------------------------------------------- */
 
+Options MPMContactOptions::declare()
+{
+  using namespace option;
+  Options o("fix mpm/contact");
+  o.add("law",
+        {word(law,
+              {{"frictionless", FRICTIONLESS, "bodies slide freely"},
+               {"coulomb",
+                COULOMB,
+                "friction",
+                {number(kinetic_friction, "mu", NOT_NEGATIVE, "1", "coefficient of friction"),
+                 optional(number(static_friction, "mu_s", NOT_NEGATIVE, "1",
+                                 "coefficient of static friction, not below mu; default: mu"))}},
+               {"stick", STICK, "bodies do not slide while they press on each other"},
+               {"adhesive",
+                ADHESIVE,
+                "bodies that touch resist separation and sliding",
+                {number(normal_strength, "sn", NOT_NEGATIVE, "pressure", "normal strength"),
+                 number(shear_strength, "ss", NOT_NEGATIVE, "pressure", "shear strength"),
+                 number(release_work, "work", NOT_NEGATIVE, "pressure*distance",
+                        "work to separate the bodies, per area"),
+                 optional(number(kinetic_friction, "mu", NOT_NEGATIVE, "1",
+                                 "coefficient of friction, in addition; default: 0"))}}})})
+      .standard("frictionless");
+  o.add(
+      "normal",
+      {word(normal_by,
+            {{"colinear", COLINEAR}, {"volume", VOLUME}, {"mass", MASS}, {"logistic", LOGISTIC}})},
+      "how the normal of the interface is computed from the bodies");
+  o.add(
+      "gap",
+      {word(
+          gap,
+          {{"no", false, "bodies are in contact as soon as they have nodes in common"},
+           {"yes",
+            true,
+            "bodies are in contact when they touch",
+            {optional(number(
+                full, "share", {0.5, 1.0, true}, "",
+                "share of the volume of a node that they fill when they touch; default: 1"))}}})});
+  o.refuse(
+      "law",
+      [this] {
+        return law == COULOMB && static_friction >= 0.0 && static_friction < kinetic_friction;
+      },
+      "coulomb: the coefficient of static friction must not be below that of friction: {law}");
+  o.refuse(
+      "law",
+      [this] {
+        return law == ADHESIVE && (normal_strength == 0.0 || release_work == 0.0);
+      },
+      "adhesive needs a positive normal strength and work of release: use frictionless or coulomb "
+      "for "
+      "bodies that do not adhere");
+  o.refuse(
+      "law",
+      [this] {
+        return law == ADHESIVE && !gap;
+      },
+      "adhesive must know how far bodies are apart: drop gap no");
+  o.refuse(
+      "law",
+      [this] {
+        return law == ADHESIVE && normal_by == MASS;
+      },
+      "adhesive needs the area of the interface: use normal volume or colinear");
+  return o;
+}
+
 FixMPMContact::FixMPMContact(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), law(FRICTIONLESS), normal_by(COLINEAR), kinetic_friction(0.0),
-    static_friction(0.0), normal_strength(0.0), shear_strength(0.0), release_work(0.0), gap(true),
-    full(1.0), lists_valid(false), may_touch(false), look(true), dt_last(0.0), force_now(),
-    count_now(), friction_work(), array(), array_step(-1)
+    Fix(lmp, narg, arg), lists_valid(false), may_touch(false), look(true), dt_last(0.0),
+    force_now(), count_now(), friction_work(), array(), array_step(-1)
 {
   if (igroup != 0)
     error->all(FLERR, 1,
                "Fix mpm/contact acts on nodes, which have no group: use group all; the bodies are "
                "the fields that are named");
 
+  Options options = declare();
   int iarg = 3;
-  const auto is_keyword = [](const std::string &word) {
-    return word == "law" || word == "normal" || word == "gap";
-  };
-  while (iarg < narg && !is_keyword(arg[iarg])) {
+  while (iarg < narg && !options.has(arg[iarg])) {
     if (std::count(names.begin(), names.end(), arg[iarg]))
       error->all(FLERR, iarg, "Fix mpm/contact field {} is named twice", arg[iarg]);
     names.emplace_back(arg[iarg++]);
@@ -103,103 +169,8 @@ FixMPMContact::FixMPMContact(LAMMPS *lmp, int narg, char **arg) :
     error->all(FLERR, 3 + MAX_FIELDS, "Fix mpm/contact takes at most {} bodies: use several",
                MAX_FIELDS);
 
-  const auto number = [&](int i, const char *what, double low) {
-    const double value = utils::numeric(FLERR, arg[i], false, lmp);
-    if (!(value >= low) || !std::isfinite(value))
-      error->all(FLERR, i, "Fix mpm/contact {} must not be below {}: {}", what, low, arg[i]);
-    return value;
-  };
-  const auto is_number = [&](int i) {
-    return i < narg && (utils::is_double(arg[i]) || utils::strmatch(arg[i], "^v_"));
-  };
-
-  while (iarg < narg) {
-    const std::string keyword = arg[iarg];
-    if (!is_keyword(keyword))
-      error->all(FLERR, iarg, "Unknown fix mpm/contact keyword: {}", keyword);
-    const auto need = [&](int n) {
-      if (iarg + n >= narg) utils::missing_cmd_args(FLERR, "fix mpm/contact " + keyword, error);
-    };
-    need(1);
-    const std::string choice = arg[iarg + 1];
-    if (keyword == "law") {
-      if (choice == "frictionless") {
-        law = FRICTIONLESS;
-        iarg += 2;
-      } else if (choice == "stick") {
-        law = STICK;
-        iarg += 2;
-      } else if (choice == "coulomb") {
-        need(2);
-        law = COULOMB;
-        kinetic_friction = static_friction = number(iarg + 2, "coefficient of friction", 0.0);
-        iarg += 3;
-        if (is_number(iarg)) {
-          static_friction = number(iarg, "coefficient of static friction", kinetic_friction);
-          iarg++;
-        }
-      } else if (choice == "adhesive") {
-        need(4);
-        law = ADHESIVE;
-        normal_strength = number(iarg + 2, "adhesive normal strength", 0.0);
-        shear_strength = number(iarg + 3, "adhesive shear strength", 0.0);
-        release_work = number(iarg + 4, "adhesive work of release", 0.0);
-        if (normal_strength == 0.0 || release_work == 0.0)
-          error->all(FLERR, iarg + 2,
-                     "Fix mpm/contact law adhesive needs a positive normal strength and work of "
-                     "release: use frictionless or coulomb for bodies that do not adhere");
-        iarg += 5;
-        if (is_number(iarg)) {
-          kinetic_friction = static_friction = number(iarg, "coefficient of friction", 0.0);
-          iarg++;
-        }
-      } else
-        error->all(FLERR, iarg + 1,
-                   "Unknown fix mpm/contact law {}: must be frictionless, coulomb, stick or "
-                   "adhesive",
-                   choice);
-    } else if (keyword == "normal") {
-      if (choice == "mass")
-        normal_by = MASS;
-      else if (choice == "volume")
-        normal_by = VOLUME;
-      else if (choice == "colinear")
-        normal_by = COLINEAR;
-      else if (choice == "logistic")
-        normal_by = LOGISTIC;
-      else
-        error->all(FLERR, iarg + 1,
-                   "Unknown fix mpm/contact normal {}: must be mass, volume, colinear or "
-                   "logistic",
-                   choice);
-      iarg += 2;
-    } else {    // gap
-      if (choice == "no") {
-        gap = false;
-        iarg += 2;
-      } else if (choice == "yes") {
-        gap = true;
-        iarg += 2;
-        if (is_number(iarg)) {
-          full = number(iarg, "share of volume at contact", 0.5);
-          if (full > 1.0)
-            error->all(FLERR, iarg, "Fix mpm/contact share of volume at contact is above one: {}",
-                       arg[iarg]);
-          iarg++;
-        }
-      } else
-        error->all(FLERR, iarg + 1, "Unknown fix mpm/contact gap {}: must be yes or no", choice);
-    }
-  }
-  if (law == ADHESIVE) {
-    if (!gap)
-      error->all(FLERR, Error::NOPOINTER,
-                 "Fix mpm/contact law adhesive must know how far bodies are apart: drop gap no");
-    if (normal_by == MASS)
-      error->all(FLERR, Error::NOPOINTER,
-                 "Fix mpm/contact law adhesive needs the area of the interface: use normal volume "
-                 "or colinear");
-  }
+  read_options(lmp, options, narg, arg, iarg);
+  if (static_friction < 0.0 || law == ADHESIVE) static_friction = kinetic_friction;
 
   scalar_flag = array_flag = 1;
   size_array_rows = (int) (names.size() * (names.size() - 1) / 2);
@@ -240,18 +211,11 @@ void FixMPMContact::init()
                  "and origin) and shape function; bodies on different lattices meet through a pair "
                  "style",
                  id, first.id(), field->id());
-    if (field->options.total)
-      error->all(
-          FLERR, Error::NOLASTLINE,
-          "Fix mpm/contact cannot be used with frame total of fix mpm {}, whose nodes are not "
-          "where the body is: let bodies meet through a pair style",
-          field->id());
-    if (field->options.stress_before())
-      error->all(
-          FLERR, Error::NOLASTLINE,
-          "Fix mpm/contact cannot be used with scheme usf or usavg of fix mpm {}, which need the "
-          "contact before it is known: use usl or musl",
-          field->id());
+    refuse_field(lmp, *this, *field,
+                 {{field->options.total, "frame total",
+                   "its nodes are not where the body is: let bodies meet through a pair style"},
+                  {field->options.stress_before(), "scheme usf and usavg",
+                   "these need the contact before it is known: use usl or musl"}});
   }
   for (auto *other : modify->get_fix_by_style("^mpm/contact$")) {
     if (other == this) continue;

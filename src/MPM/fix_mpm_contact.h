@@ -15,6 +15,7 @@ FixStyle(mpm/contact,FixMPMContact);
 #ifndef LMP_FIX_MPM_CONTACT_H
 #define LMP_FIX_MPM_CONTACT_H
 
+#include "declare/option.h"
 #include "fix.h"
 #include "mpm_node_action.h"
 
@@ -26,8 +27,23 @@ FixStyle(mpm/contact,FixMPMContact);
 namespace LAMMPS_NS {
 class MPMField;
 
+struct MPMContactOptions {
+  enum Law { FRICTIONLESS, COULOMB, STICK, ADHESIVE };
+  enum Normal { MASS, VOLUME, COLINEAR, LOGISTIC };
+
+  Law law = FRICTIONLESS;
+  Normal normal_by = COLINEAR;
+  double kinetic_friction = 0.0;
+  double static_friction = -1.0;    ///< negative: the same
+  double normal_strength = 0.0, shear_strength = 0.0, release_work = 0.0;
+  bool gap = true;
+  double full = 1.0;    ///< with gap: volume share of a node at which bodies touch
+
+  MPM_NS::Options declare();
+};
+
 /** Contact between bodies that are fields (fix mpm) on one lattice, at the nodes they share. */
-class FixMPMContact : public Fix, public MPMNodeAction {
+class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOptions {
  public:
   Turn turn() const override { return BETWEEN_BODIES; }
   FixMPMContact(class LAMMPS *, int, char **);
@@ -54,8 +70,6 @@ class FixMPMContact : public Fix, public MPMNodeAction {
   static constexpr int MAX_PAIRS = MAX_FIELDS * (MAX_FIELDS - 1) / 2;
 
   static constexpr int REACH = 2;    // of the function of a node, in nodes
-  enum Law { FRICTIONLESS, COULOMB, STICK, ADHESIVE };
-  enum Normal { MASS, VOLUME, COLINEAR, LOGISTIC };
   enum State : char { OPEN, SLIDING, STUCK };
 
   struct Common {            // a block of nodes that several fields have
@@ -85,12 +99,6 @@ class FixMPMContact : public Fix, public MPMNodeAction {
   using Blocks = std::vector<std::array<int, 3>>;
 
   std::vector<std::string> names;
-  Law law;
-  Normal normal_by;
-  double kinetic_friction, static_friction;
-  double normal_strength, shear_strength, release_work;
-  bool gap;
-  double full;        // with gap: volume share of a node at which bodies touch
   Room room[3][2];    // [axis][side]
 
   std::vector<MPMField *> fields;

@@ -15,6 +15,7 @@
 #include "integrate.h"
 #include "modify.h"
 #include "mpm_field.h"
+#include "mpm_options.h"
 #include "mpm_time_limit.h"
 #include "output.h"
 #include "pair.h"
@@ -27,6 +28,7 @@
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
+using namespace MPM_NS;
 
 static constexpr double NO_POINTS = std::numeric_limits<double>::max();
 
@@ -34,49 +36,40 @@ static constexpr double NO_POINTS = std::numeric_limits<double>::max();
    fix ID all mpm/dt FRACTION keyword value ...
 ------------------------------------------------------------------------- */
 
+Options MPMDtOptions::declare()
+{
+  using namespace option;
+  Options o("fix mpm/dt");
+  o.argument(number(fraction, "fraction of h/(c+|v|)", {0.0, 2.0, false, true}));
+  o.add("every", {integer(look_every, "N", POSITIVE, "set the time step every this many steps")});
+  o.add(
+      "grow",
+      {number(grow, "R", AT_LEAST_ONE, "", "largest factor by which the time step grows at once")});
+  o.add("min",
+        {number(dt_min, "dt", POSITIVE, "time", "smallest time step; a smaller one is an error")})
+      .standard("none");
+  o.add("max", {number(dt_max, "dt", POSITIVE, "time", "largest time step")}).standard("none");
+  o.add("strain",
+        {number(strain, "S", POSITIVE, "",
+                "largest relative change of the volume of a point in a step")})
+      .standard("no limit");
+  o.refuse(
+      "min",
+      [this] {
+        return dt_max > 0.0 && dt_min > dt_max;
+      },
+      "{min} is above max {max}");
+  return o;
+}
+
 FixMPMDt::FixMPMDt(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), grow(1.05), dt_min(0.0), dt_max(0.0), strain(0.0), look_every(10),
-    limit({0.0, 0.0, 0.0}), nchanges(0), continues(false), dt_left(0.0), limit_left(0.0),
-    carried({NO_POINTS, 0.0, 0.0})
+    Fix(lmp, narg, arg), limit({0.0, 0.0, 0.0}), nchanges(0), continues(false), dt_left(0.0),
+    limit_left(0.0), carried({NO_POINTS, 0.0, 0.0})
 {
   if (igroup != 0)
     error->all(FLERR, 1, "Fix mpm/dt looks at the points of all fix mpm: use group all");
-  if (narg < 4) utils::missing_cmd_args(FLERR, "fix mpm/dt", error);
-  fraction = utils::numeric(FLERR, arg[3], false, lmp);
-  if (!(fraction > 0.0 && fraction <= 2.0))
-    error->all(FLERR, 3,
-               "Fix mpm/dt fraction of h/(c+|v|) must be above 0 and at most 2, "
-               "for instance 0.5: {}",
-               arg[3]);
-
-  int iarg = 4;
-  while (iarg < narg) {
-    const std::string keyword = arg[iarg];
-    if (keyword != "every" && keyword != "grow" && keyword != "min" && keyword != "max" &&
-        keyword != "strain")
-      error->all(FLERR, iarg, "Unknown fix mpm/dt keyword: {}", keyword);
-    if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, "fix mpm/dt " + keyword, error);
-    if (keyword == "every") {
-      look_every = utils::inumeric(FLERR, arg[iarg + 1], false, lmp);
-      if (look_every <= 0)
-        error->all(FLERR, iarg + 1, "Fix mpm/dt every must be positive: {}", arg[iarg + 1]);
-    } else {
-      const double value = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
-      if (keyword == "grow") {
-        if (!(value >= 1.0))
-          error->all(FLERR, iarg + 1, "Fix mpm/dt grow is a factor of at least 1: {}",
-                     arg[iarg + 1]);
-        grow = value;
-      } else {
-        if (!(value > 0.0))
-          error->all(FLERR, iarg + 1, "Fix mpm/dt {} must be positive: {}", keyword, arg[iarg + 1]);
-        (keyword == "strain" ? strain : keyword == "min" ? dt_min : dt_max) = value;
-      }
-    }
-    iarg += 2;
-  }
-  if (dt_min > 0.0 && dt_max > 0.0 && dt_min > dt_max)
-    error->all(FLERR, "Fix mpm/dt min {} is above max {}", dt_min, dt_max);
+  Options options = declare();
+  read_options(lmp, options, narg, arg, 3);
 
   nevery = strain > 0.0 ? 1 : look_every;
 

@@ -63,6 +63,7 @@
 #include "memory.h"
 #include "modify.h"
 #include "mpm_field.h"
+#include "mpm_options.h"
 #include "neigh_list.h"
 #include "neighbor.h"
 #include "pair_hybrid.h"
@@ -88,51 +89,50 @@ enum { CHANGE = 0, VELOCITY = 4 };
    fix ID atoms mpm/handshake FIELD zone AXIS ONE ZERO ... damp RATE
 ------------------------------------------------------------------------- */
 
-FixMPMHandshake::FixMPMHandshake(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), damping(0.0), field(nullptr), list(nullptr), weight(nullptr),
-    role(nullptr), natoms(0), nreach(0), heat(0.0), lost(0.0), impulse(), dt_last(0.0),
-    eam(nullptr), flaw(0.0)
+Options MPMHandshakeOptions::declare()
 {
-  if (narg < 4) utils::missing_cmd_args(FLERR, "fix mpm/handshake", error);
-  field_name = arg[3];
-  const auto number = [&](int i) {
-    const double value = utils::numeric(FLERR, arg[i], false, lmp);
-    if (!std::isfinite(value))
-      error->all(FLERR, i, "Fix mpm/handshake value {} is not finite", arg[i]);
-    return value;
-  };
-  for (int iarg = 4; iarg < narg;) {
-    const std::string keyword = arg[iarg];
-    if (keyword == "zone") {
-      if (iarg + 3 >= narg) utils::missing_cmd_args(FLERR, "fix mpm/handshake zone", error);
-      const std::string name = arg[iarg + 1];
-      Zone zone;
-      if (name == "x" || name == "y" || name == "z")
-        zone.axis = name[0] - 'x';
-      else
-        error->all(FLERR, iarg + 1, "Unknown axis {} of fix mpm/handshake zone: must be x, y or z",
-                   name);
-      zone.one = number(iarg + 2);
-      zone.zero = number(iarg + 3);
-      if (zone.one == zone.zero)
-        error->all(
-            FLERR, iarg + 2,
-            "Fix mpm/handshake zone has no width: the planes where the weight of the atoms is "
-            "one and zero must differ");
-      zones.push_back(zone);
-      iarg += 4;
-    } else if (keyword == "damp") {
-      if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, "fix mpm/handshake damp", error);
-      damping = number(iarg + 1);
-      if (damping < 0.0)
-        error->all(FLERR, iarg + 1, "Fix mpm/handshake rate of damping must not be negative: {}",
-                   arg[iarg + 1]);
-      iarg += 2;
-    } else
-      error->all(FLERR, iarg, "Unknown fix mpm/handshake keyword: {}", keyword);
-  }
-  if (zones.empty())
-    error->all(FLERR, Error::NOPOINTER, "Fix mpm/handshake needs at least one zone");
+  using namespace option;
+  Options o("fix mpm/handshake");
+  o.argument(text(field_name, "field"));
+  o.add(
+       "zone",
+       {word(next.axis, {{"x", Zone::X}, {"y", Zone::Y}, {"z", Zone::Z}}, "axis"),
+        number(
+            next.one, "one", ANY_NUMBER, "distance",
+            "coordinate where the weight of the atoms is 1, and beyond which there are atoms only"),
+        number(next.zero, "zero", ANY_NUMBER, "distance",
+               "coordinate where it is 0, and beyond which there are material points only")},
+       "may be repeated: the weight is the product")
+      .then([this] {
+        zones.push_back(next);
+      })
+      .standard("");
+  o.add("damp",
+        {number(damping, "rate", NOT_NEGATIVE, "1/time",
+                "rate at which the fine motion of the atoms is damped at weight 0")});
+  o.refuse(
+      "",
+      [this] {
+        return zones.empty();
+      },
+      "needs at least one zone");
+  o.refuse(
+      "zone",
+      [this] {
+        return std::any_of(zones.begin(), zones.end(), [](const Zone &z) {
+          return z.one == z.zero;
+        });
+      },
+      "has no width: the planes where the weight of the atoms is one and zero must differ");
+  return o;
+}
+
+FixMPMHandshake::FixMPMHandshake(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), field(nullptr), list(nullptr), weight(nullptr), role(nullptr), natoms(0),
+    nreach(0), heat(0.0), lost(0.0), impulse(), dt_last(0.0), eam(nullptr), flaw(0.0)
+{
+  Options options = declare();
+  read_options(lmp, options, narg, arg, 3);
 
   scalar_flag = vector_flag = peratom_flag = 1;
   size_vector = 4;

@@ -15,6 +15,7 @@ FixStyle(mpm/handshake,FixMPMHandshake);
 #ifndef LMP_FIX_MPM_HANDSHAKE_H
 #define LMP_FIX_MPM_HANDSHAKE_H
 
+#include "declare/option.h"
 #include "fix.h"
 #include "mpm_node_action.h"
 
@@ -25,9 +26,25 @@ FixStyle(mpm/handshake,FixMPMHandshake);
 namespace LAMMPS_NS {
 class MPMField;
 
+struct MPMHandshakeOptions {
+  /** The weight of the atoms falls linearly from 1 to 0 between two planes. */
+  struct Zone {
+    enum { X, Y, Z } axis;
+    double one, zero;    ///< positions of the planes
+  };
+  std::string field_name;
+  std::vector<Zone> zones;
+  double damping = 0.0;    ///< rate at which the fine motion is damped where w = 0 [1/time]
+
+  MPM_NS::Options declare();
+
+ private:
+  Zone next = {Zone::X, 0.0, 0.0};    // to be read
+};
+
 /** Zone where atoms and material points describe the same material, each with a share of its energy
  *  and mass, and move with one velocity at the nodes of a field. */
-class FixMPMHandshake : public Fix, public MPMNodeAction {
+class FixMPMHandshake : public Fix, public MPMNodeAction, private MPMHandshakeOptions {
  public:
   FixMPMHandshake(class LAMMPS *, int, char **);
   ~FixMPMHandshake() override;
@@ -60,16 +77,7 @@ class FixMPMHandshake : public Fix, public MPMNodeAction {
   void act(double dt, Stage) override;
 
  private:
-  /** The weight of the atoms falls linearly from 1 to 0 between two planes. */
-  struct Zone {
-    int axis;
-    double one, zero;    // positions of the planes
-  };
   enum Role { UNKNOWN, APART, COUPLED, POINT, NEAR_POINT };    // near: at the nodes of the zone
-
-  std::string field_name;
-  std::vector<Zone> zones;
-  double damping;    // rate at which the fine motion is damped where w = 0 [1/time]
 
   MPMField *field;
   class NeighList *list;

@@ -48,6 +48,7 @@
 #include "math_const.h"
 #include "modify.h"
 #include "mpm_field.h"
+#include "mpm_options.h"
 #include "mpm_point_map.h"
 #include "update.h"
 
@@ -65,54 +66,46 @@ static constexpr int NREAL = 8;
    fix ID group mpm/immersed FIELD DENSITY VISCOSITY keyword values ...
 ------------------------------------------------------------------------- */
 
-FixMPMImmersed::FixMPMImmersed(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), law(GIDASPOW), gravity{0.0, 0.0, 0.0}, field(nullptr), force_now{},
-    count(0), dt_last(0.0)
+Options MPMImmersedOptions::declare(int dim)
 {
-  if (narg < 6) utils::missing_cmd_args(FLERR, "fix mpm/immersed", error);
-  field_id = arg[3];
-  density = utils::numeric(FLERR, arg[4], false, lmp);
-  if (!(density > 0.0) || !std::isfinite(density))
-    error->all(FLERR, 4, "Fix mpm/immersed density of the fluid must be positive: {}", arg[4]);
-  viscosity = utils::numeric(FLERR, arg[5], false, lmp);
-  if (!(viscosity >= 0.0) || !std::isfinite(viscosity))
-    error->all(FLERR, 5, "Fix mpm/immersed viscosity must not be negative: {}", arg[5]);
-  viscosity *= force->ftm2v / force->nktv2p;
+  using namespace option;
+  Options o("fix mpm/immersed");
+  o.argument(text(field_id, "fix-ID"));
+  o.argument(number(density, "density of the fluid", POSITIVE));
+  o.argument(number(viscosity, "viscosity", NOT_NEGATIVE));
+  o.add("drag",
+        {word(law,
+              {{"gidaspow", GIDASPOW},
+               {"difelice", DIFELICE},
+               {"ergun", ERGUN},
+               {"schiller", SCHILLER},
+               {"stokes", STOKES},
+               {"none", NONE}})});
+  o.add(
+      "gravity",
+      {numbers(gravity, 3, "gx gy gz", ANY_NUMBER, "velocity/time",
+               "acceleration of gravity that fluid and grains have from elsewhere, for buoyancy")});
+  o.refuse(
+      "",
+      [this] {
+        return law != NONE && viscosity == 0.0;
+      },
+      "needs a positive viscosity for its drag: use drag none without");
+  o.refuse(
+      "gravity",
+      [=] {
+        return dim == 2 && gravity[2] != 0.0;
+      },
+      "must be along x and y in 2d: {gravity}");
+  return o;
+}
 
-  int iarg = 6;
-  while (iarg < narg) {
-    if (strcmp(arg[iarg], "drag") == 0) {
-      if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, "fix mpm/immersed drag", error);
-      static const char *const laws[] = {"none",  "stokes",   "schiller",
-                                         "ergun", "gidaspow", "difelice"};
-      int k = 0;
-      while (k < 6 && strcmp(arg[iarg + 1], laws[k]) != 0) k++;
-      if (k == 6)
-        error->all(
-            FLERR, iarg + 1,
-            "Unknown fix mpm/immersed drag {}: must be none, stokes, schiller, ergun, gidaspow "
-            "or difelice",
-            arg[iarg + 1]);
-      law = (Law) k;
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "gravity") == 0) {
-      if (iarg + 3 >= narg) utils::missing_cmd_args(FLERR, "fix mpm/immersed gravity", error);
-      for (int d = 0; d < 3; d++) {
-        gravity[d] = utils::numeric(FLERR, arg[iarg + 1 + d], false, lmp);
-        if (!std::isfinite(gravity[d]))
-          error->all(FLERR, iarg + 1 + d, "Fix mpm/immersed gravity must be finite: {}",
-                     arg[iarg + 1 + d]);
-      }
-      iarg += 4;
-    } else
-      error->all(FLERR, iarg, "Unknown fix mpm/immersed keyword: {}", arg[iarg]);
-  }
-  if (law != NONE && viscosity == 0.0)
-    error->all(FLERR, 5,
-               "Fix mpm/immersed needs a positive viscosity for its drag: use drag none "
-               "without");
-  if (domain->dimension == 2 && gravity[2] != 0.0)
-    error->all(FLERR, "Fix mpm/immersed gravity must be along x and y in 2d: {}", gravity[2]);
+FixMPMImmersed::FixMPMImmersed(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), field(nullptr), force_now{}, count(0), dt_last(0.0)
+{
+  Options options = declare(domain->dimension);
+  read_options(lmp, options, narg, arg, 3);
+  viscosity *= force->ftm2v / force->nktv2p;
   if (!atom->radius_flag || !atom->rmass_flag)
     error->all(FLERR,
                "Fix mpm/immersed needs the radius of grains: use atom_style hybrid sphere mpm");
@@ -150,27 +143,13 @@ void FixMPMImmersed::init_action()
   if (!field)
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/immersed {}: there is no fix mpm {}", id,
                field_id);
-  if (field->options.total)
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm/immersed {} cannot be used with frame total of fix mpm {}, whose nodes are not "
-        "where the grains are: use frame updated",
-        id, field_id);
-  if (field->options.axisymmetric)
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm/immersed {} cannot be used with axisymmetric fix mpm {}, where a grain would be a "
-        "ring: use a sector in 3d, or 2d",
-        id, field_id);
-  if (field->options.modified_edges)
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm/immersed {} cannot be used with edges modified of fix mpm {}: use edges plain", id,
-        field_id);
-  if (field->options.series == MPMFieldOptions::FMPM)
-    error->all(FLERR, Error::NOLASTLINE,
-               "Fix mpm/immersed {} cannot be used with transfer fmpm of fix mpm {}: use xpic", id,
-               field_id);
+  refuse_field(lmp, *this, *field,
+               {{field->options.total, "frame total",
+                 "its nodes are not where the grains are: use frame updated"},
+                {field->options.axisymmetric, "axisymmetric",
+                 "a grain would be a ring: use a sector in 3d, or 2d"},
+                {field->options.modified_edges, "edges modified", "use edges plain"},
+                {field->options.series == MPMFieldOptions::FMPM, "transfer fmpm", "use xpic"}});
 
   field->keep_old = true;    // for the acceleration of the fluid
 

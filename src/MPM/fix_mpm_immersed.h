@@ -15,6 +15,7 @@ FixStyle(mpm/immersed,FixMPMImmersed);
 #ifndef LMP_FIX_MPM_IMMERSED_H
 #define LMP_FIX_MPM_IMMERSED_H
 
+#include "declare/option.h"
 #include "fix.h"
 #include "mpm_node_action.h"
 
@@ -25,9 +26,20 @@ FixStyle(mpm/immersed,FixMPMImmersed);
 namespace LAMMPS_NS {
 class MPMField;
 
+struct MPMImmersedOptions {
+  enum Law { NONE, STOKES, SCHILLER, ERGUN, GIDASPOW, DIFELICE };
+
+  std::string field_id;
+  double density = 0.0, viscosity = 0.0;    ///< viscosity: in units of pressure, then of mass
+  Law law = GIDASPOW;
+  double gravity[3] = {0.0, 0.0, 0.0};
+
+  MPM_NS::Options declare(int dimension);
+};
+
 /** Drag and buoyancy between grains smaller than the node spacing and the fluid of a field
  *  (fix mpm), exchanged at the nodes around each grain. */
-class FixMPMImmersed : public Fix, public MPMNodeAction {
+class FixMPMImmersed : public Fix, public MPMNodeAction, private MPMImmersedOptions {
  public:
   FixMPMImmersed(class LAMMPS *, int, char **);
   int setmask() override;
@@ -42,8 +54,6 @@ class FixMPMImmersed : public Fix, public MPMNodeAction {
   void act(double dt, Stage) override;
 
  private:
-  enum Law { NONE, STOKES, SCHILLER, ERGUN, GIDASPOW, DIFELICE };
-
   struct Mover {    // a fix that integrates grains
     int groupbit;
     double ahead;    // steps that forces still act before the grain moves
@@ -65,10 +75,6 @@ class FixMPMImmersed : public Fix, public MPMNodeAction {
     bool inner;         // there is fluid around the node
   };
 
-  std::string field_id;
-  double density, viscosity;    // [mass/distance^3], [mass/(distance time)]
-  Law law;
-  double gravity[3];
   MPMField *field;
   std::vector<Mover> movers;
   std::vector<Grain> grains;

@@ -56,7 +56,8 @@ Options MPMFieldOptions::declare(int dim)
 
   enum { XPIC_WORD = 5, FMPM_WORD, POLYPIC_WORD };    // after those of enum Transfer
   const auto share = number(flip, "share", FRACTION, "", "FLIP share of the velocity update");
-  const auto terms = integer(order, "order", {1, 100}, "terms of the inverse of the mass matrix");
+  const auto terms =
+      integer(order, "order", {1, 100, true}, "terms of the inverse of the mass matrix");
   o.add("transfer",
         {word(
             [this] {
@@ -140,7 +141,7 @@ Options MPMFieldOptions::declare(int dim)
   o.add("edges", {word(modified_edges, {{"plain", false}, {"modified", true}})},
         "functions next to fixed faces of the box");
   o.add("every",
-        {integer(every, "K", {1, MOST}, "points take one step in every K steps of the run")})
+        {integer(every, "K", POSITIVE, "points take one step in every K steps of the run")})
       .keep();
   o.add("dtcheck", {yes_no(dt_check)}, "stop when the time step is above the limit");
   o.add("plan", {yes_no(plan)}, "print the stages of the step, and at the end what each has cost");

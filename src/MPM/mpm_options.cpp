@@ -9,7 +9,9 @@
 #include "mpm_options.h"
 
 #include "error.h"
+#include "fix.h"
 #include "input.h"
+#include "mpm_field.h"
 #include "utils.h"
 #include "variable.h"
 
@@ -46,6 +48,16 @@ int LAMMPS_NS::read_options(LAMMPS *lmp, Options &options, int narg, char **arg,
     iarg = options.read(input, iarg, last);
   });
   return iarg;
+}
+
+void LAMMPS_NS::refuse_field(LAMMPS *lmp, const Fix &user, const MPMField &field,
+                             const std::vector<FieldRule> &rules)
+{
+  for (const auto &rule : rules)
+    if (rule.broken)
+      lmp->error->all(FLERR, Error::NOLASTLINE,
+                      "Fix {} {} cannot be used with {} of fix mpm {}: {}", user.style, user.id,
+                      rule.what, field.id(), rule.why);
 }
 
 void LAMMPS_NS::find_variable(LAMMPS *lmp, NumberOrVariable &v, const std::string &user)

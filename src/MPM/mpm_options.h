@@ -15,7 +15,9 @@
 #include "declare/option.h"
 
 namespace LAMMPS_NS {
+class Fix;
 class LAMMPS;
+class MPMField;
 
 /** Reads the arguments from iarg on as declared, up to the end or the word last, whose index it
  *  returns. */
@@ -24,6 +26,16 @@ int read_options(LAMMPS *, MPM_NS::Options &, int narg, char **arg, int iarg,
 
 /** Runs f(), which may throw an OptionError, and makes an error of LAMMPS of that. */
 void explain_errors(LAMMPS *, const std::function<void()> &f);
+
+/** Something of a field (fix mpm) that a style cannot work with. */
+struct FieldRule {
+  bool broken;
+  std::string what;    ///< keyword and value of fix mpm
+  std::string why;     ///< and the remedy
+};
+
+/** Stops with an error when one of the rules is broken by the field. */
+void refuse_field(LAMMPS *, const Fix &user, const MPMField &field, const std::vector<FieldRule> &);
 
 /** Finds the variable, if it is one, and stops with an error if it does not exist or is not
  *  equal-style; user: who needs it, for example fix mpm/rigid force. */

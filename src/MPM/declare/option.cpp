@@ -28,6 +28,16 @@ std::string format(double x)
   return text;
 }
 
+std::string format(int64_t n)
+{
+  return std::to_string(n);
+}
+
+std::string format(int n)
+{
+  return std::to_string(n);
+}
+
 std::string format(const NumberOrVariable &v)
 {
   if (!v.given) return "NULL";
@@ -82,42 +92,33 @@ std::string interval(const Range &r)
   return join(parts, " and ");
 }
 
-Range range_of(const Limits &limits)
-{
-  const bool free = limits.high >= option::MOST;
-  return {double(limits.low), free ? UNBOUNDED : double(limits.high), true};
-}
-
 /** "name = meaning (unit, interval)", or nothing when there is nothing to say. */
 Strings explain(const std::string &names, const std::string &meaning, const std::string &unit,
                 const std::string &interval)
 {
   const std::string units = unit.empty() ? "" : (unit == "1" ? "unitless" : unit + " units");
   const std::string remark = join({units, interval}, ", ");
-  if (meaning.empty() && remark.empty()) return {};
-  return {join(split(names, ' '), ",") + " = " +
-          join({meaning, remark.empty() ? "" : "(" + remark + ")"}, " ")};
+  if (meaning.empty()) return {};
+  return {join(split(names, ' '), ",") + " = " + meaning +
+          (remark.empty() ? "" : " (" + remark + ")")};
 }
 
-double take(OptionReader &r, const std::string &name, const Range &range)
+void take(OptionReader &r, const std::string &name, const Range &range, double &to)
 {
   const int iarg = r.next();
-  const double value = r.input.number(iarg);
-  if (!std::isfinite(value) || !range.contains(value))
+  to = r.input.number(iarg);
+  if (!std::isfinite(to) || !range.contains(to))
     r.fail(iarg, name, required(range) + ": " + r.input.arg[iarg]);
-  return value;
 }
 
-int64_t take(OptionReader &r, const std::string &name, const Limits &limits)
+template <class Integer>
+void take(OptionReader &r, const std::string &name, const Range &range, Integer &to)
 {
   const int iarg = r.next();
   const int64_t value = r.input.integer(iarg);
-  if (value < limits.low || value > limits.high) {
-    Range range = range_of(limits);
-    if (limits.low == 1 && range.high == UNBOUNDED) range = POSITIVE;
-    r.fail(iarg, name, required(range) + ": " + r.input.arg[iarg]);
-  }
-  return value;
+  to = static_cast<Integer>(value);
+  if (to != value || !range.contains(static_cast<double>(value)))
+    r.fail(iarg, name, (to != value ? "is too large" : required(range)) + ": " + r.input.arg[iarg]);
 }
 
 bool is_number(const OptionReader &r, int iarg)
@@ -129,31 +130,41 @@ bool is_number(const OptionReader &r, int iarg)
   return word.compare(0, 2, "v_") == 0 || (end != word.c_str() && *end == '\0');
 }
 
-template <class Integer>
-OptionValue make_integer(Integer &to, const std::string &name, const Limits &limits,
-                         const std::string &meaning)
+/** Present values of n variables. */
+template <class T> std::function<std::string()> writer(const T *from, int n)
 {
-  return {name,
-          name,
-          explain(name, meaning, "", interval(range_of(limits))),
-          1,
-          false,
-          [=, &to](OptionReader &r) {
-            to = static_cast<Integer>(take(r, name, limits));
-          },
-          [&to] {
-            return std::to_string(to);
-          }};
+  return [=] {
+    Strings parts;
+    for (int k = 0; k < n; k++) parts.push_back(format(from[k]));
+    return join(parts, " ");
+  };
 }
 
-template <class Number, class Allowed>
-OptionValue make_one_or_axes(Number *to, int dim, const std::string &names, const Allowed &allowed,
-                             const std::string &interval, const std::string &unit,
-                             const std::string &meaning, const std::string &meaning_each)
+/** The k-th of n names; that of a single value may have blanks. */
+std::string name_of(const std::string &names, int k, int n)
+{
+  return n == 1 ? names : split(names, ' ')[k];
+}
+
+template <class Number>
+OptionValue make_numbers(Number *to, int n, const std::string &names, const Range &range,
+                         const std::string &unit, const std::string &meaning)
+{
+  const auto read = [=](OptionReader &r) {
+    for (int k = 0; k < n; k++) take(r, name_of(names, k, n), range, to[k]);
+  };
+  return {names, names,        explain(names, meaning, unit, interval(range)), n, false,
+          read,  writer(to, n)};
+}
+
+template <class Number>
+OptionValue make_one_or_axes(Number *to, int dim, const std::string &names, const Range &range,
+                             const std::string &unit, const std::string &meaning,
+                             const std::string &meaning_each)
 {
   const Strings all = split(names, ' ');
   const std::string each = join(Strings(all.begin() + 1, all.end()), " ");
-  Strings lines = explain(all[0], meaning, unit, interval);
+  Strings lines = explain(all[0], meaning, unit, interval(range));
   for (const auto &line : explain(each, meaning_each, "", "")) lines.push_back(line);
   const auto read = [=](OptionReader &r) {
     int n = 0;
@@ -163,18 +174,13 @@ OptionValue make_one_or_axes(Number *to, int dim, const std::string &names, cons
     if (n != 1 && n != dim)
       r.fail(r.iarg - 1, "",
              "expects 1 or " + d + " numbers in a " + d + "d simulation, not " + std::to_string(n));
-    for (int k = 0; k < dim; k++)
-      to[k] = k < n ? static_cast<Number>(take(r, all[0], allowed)) : to[0];
+    for (int k = 0; k < n; k++) take(r, all[0], range, to[k]);
+    for (int k = n; k < dim; k++) to[k] = to[0];
   };
-  const auto text = [=] {
-    Strings parts;
-    for (int k = 0; k < dim; k++) parts.push_back(format(to[k]));
-    return join(parts, " ");
-  };
-  return {all[0], all[0] + " or " + each + " (in 2d: " + all[1] + " " + all[2] + ")",
-          lines,  2,
-          false,  read,
-          text};
+  return {all[0],         all[0] + " or " + each + " (in 2d: " + all[1] + " " + all[2] + ")",
+          lines,          2,
+          false,          read,
+          writer(to, dim)};
 }
 
 }    // namespace
@@ -197,44 +203,25 @@ void OptionReader::fail(int at, const std::string &name, const std::string &text
 OptionValue option::number(double &to, const std::string &name, const Range &range,
                            const std::string &unit, const std::string &meaning)
 {
-  return {name,
-          name,
-          explain(name, meaning, unit, interval(range)),
-          1,
-          false,
-          [=, &to](OptionReader &r) {
-            to = take(r, name, range);
-          },
-          [&to] {
-            return format(to);
-          }};
+  return make_numbers(&to, 1, name, range, unit, meaning);
 }
 
-OptionValue option::integer(int &to, const std::string &name, const Limits &limits,
+OptionValue option::integer(int &to, const std::string &name, const Range &range,
                             const std::string &meaning)
 {
-  return make_integer(to, name, limits, meaning);
+  return make_numbers(&to, 1, name, range, "", meaning);
 }
 
-OptionValue option::integer(int64_t &to, const std::string &name, const Limits &limits,
+OptionValue option::integer(int64_t &to, const std::string &name, const Range &range,
                             const std::string &meaning)
 {
-  return make_integer(to, name, limits, meaning);
+  return make_numbers(&to, 1, name, range, "", meaning);
 }
 
 OptionValue option::numbers(double *to, int n, const std::string &names, const Range &range,
                             const std::string &unit, const std::string &meaning)
 {
-  const auto read = [=](OptionReader &r) {
-    const Strings name = split(names, ' ');
-    for (int k = 0; k < n; k++) to[k] = take(r, name[k], range);
-  };
-  const auto text = [=] {
-    Strings parts;
-    for (int k = 0; k < n; k++) parts.push_back(format(to[k]));
-    return join(parts, " ");
-  };
-  return {names, names, explain(names, meaning, unit, interval(range)), n, false, read, text};
+  return make_numbers(to, n, names, range, unit, meaning);
 }
 
 OptionValue option::axes(double *to, int dim, const std::string &names, const Range &range,
@@ -249,14 +236,13 @@ OptionValue option::one_or_axes(double *to, int dim, const std::string &names, c
                                 const std::string &unit, const std::string &meaning,
                                 const std::string &meaning_each)
 {
-  return make_one_or_axes(to, dim, names, range, interval(range), unit, meaning, meaning_each);
+  return make_one_or_axes(to, dim, names, range, unit, meaning, meaning_each);
 }
 
-OptionValue option::one_or_axes(int *to, int dim, const std::string &names, const Limits &limits,
+OptionValue option::one_or_axes(int *to, int dim, const std::string &names, const Range &range,
                                 const std::string &meaning, const std::string &meaning_each)
 {
-  return make_one_or_axes(to, dim, names, limits, interval(range_of(limits)), "", meaning,
-                          meaning_each);
+  return make_one_or_axes(to, dim, names, range, "", meaning, meaning_each);
 }
 
 OptionValue option::yes_no(bool &to)
@@ -293,27 +279,18 @@ OptionValue option::variables(NumberOrVariable *to, int n, const std::string &na
                               const std::string &unit, const std::string &meaning, bool null)
 {
   const auto read = [=](OptionReader &r) {
-    const Strings name = split(names, ' ');
     for (int k = 0; k < n; k++) {
       to[k] = NumberOrVariable();
       const std::string word = r.iarg < r.input.narg ? r.input.arg[r.iarg] : "";
-      if (null && word == "NULL")
-        to[k].given = false;
-      else if (word.compare(0, 2, "v_") == 0)
-        to[k].variable = word.substr(2);
-      else {
-        to[k].value = take(r, name[k], ANY_NUMBER);
-        continue;
-      }
-      r.iarg++;
+      to[k].given = !(null && word == "NULL");
+      if (word.compare(0, 2, "v_") == 0) to[k].variable = word.substr(2);
+      if (!to[k].given || !to[k].variable.empty())
+        r.next();
+      else
+        take(r, name_of(names, k, n), ANY_NUMBER, to[k].value);
     }
   };
-  const auto text = [=] {
-    Strings parts;
-    for (int k = 0; k < n; k++) parts.push_back(format(to[k]));
-    return join(parts, " ");
-  };
-  return {names, names, explain(names, meaning, unit, ""), n, false, read, text};
+  return {names, names, explain(names, meaning, unit, ""), n, false, read, writer(to, n)};
 }
 
 OptionValue option::word(std::function<int()> get, std::function<void(int)> set,
@@ -427,7 +404,7 @@ std::string Option::text() const
   return join(parts, " ");
 }
 
-/** Its part of the block of keywords in the manual. */
+/** Its part of the block of keywords in the manual, after the keyword. */
 std::vector<std::string> Option::lines() const
 {
   int count = 0;
@@ -436,8 +413,7 @@ std::vector<std::string> Option::lines() const
     count += value.count;
     usage.push_back(value.usage);
   }
-  // a single number or word needs no name of its own beside its meaning
-  all.push_back("*" + keyword + "* value" + (count > 1 ? "s" : "") + " = " + join(usage, " "));
+  all.push_back(std::string(" value") + (count > 1 ? "s" : "") + " = " + join(usage, " "));
   for (const auto &line : split(meaning, '\n')) all.push_back("  " + line);
   for (const auto &value : values)
     for (const auto &line : value.lines) all.push_back("  " + line);
@@ -534,7 +510,8 @@ std::string Options::message(const Rule &rule) const
 void Options::check() const
 {
   for (const auto &rule : refusals)
-    if (rule.test()) throw OptionError{where(rule.keyword), message(rule)};
+    if ((rule.keyword.empty() || given(rule.keyword)) && rule.test())
+      throw OptionError{where(rule.keyword), message(rule)};
 }
 
 std::vector<std::string> Options::warnings() const
@@ -590,8 +567,15 @@ std::string Options::table() const
     line += next;
   }
   text += line + "\n\n  .. parsed-literal::\n\n";
-  for (const auto &option : options)
-    for (const auto &one : option.lines()) text += "       " + one + "\n";
+  std::string names;    // of options with the same values: they are explained once
+  for (std::size_t k = 0; k < options.size(); k++) {
+    const Strings lines = options[k].lines();
+    names += (names.empty() ? "*" : ",\\ *") + options[k].keyword + "*";
+    if (k + 1 < options.size() && options[k + 1].lines() == lines) continue;
+    for (const auto &one : lines)
+      text += "       " + (&one == &lines.front() ? names : "") + one + "\n";
+    names.clear();
+  }
   return text;
 }
 

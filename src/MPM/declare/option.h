@@ -19,7 +19,7 @@
 //     using namespace option;
 //     Options o("fix mpm/dt");
 //     o.argument(number(fraction, "fraction", {0.0, 2.0, false, true}));
-//     o.add("every", {integer(look_every, "N", {1, MOST}, "set the time step every this many steps")});
+//     o.add("every", {integer(look_every, "N", POSITIVE, "set the time step every this many steps")});
 //     o.add("min", {number(dt_min, "dt", POSITIVE, "time", "smallest time step")}).standard("none");
 //     o.add("max", {number(dt_max, "dt", POSITIVE, "time", "largest time step")}).standard("none");
 //     o.refuse("min", [this] { return dt_max < dt_min; }, "{min} is above max {max}");
@@ -62,11 +62,6 @@ struct NumberOrVariable {
   int index = -1;          ///< of the variable, for who evaluates it
 };
 
-/** Limits of an integer, both included. */
-struct Limits {
-  int64_t low, high;
-};
-
 /** Where in the input a value is read, and how messages name it. */
 struct OptionReader {
   const OptionInput &input;
@@ -103,13 +98,11 @@ struct OptionWord {
  *  as velocity, "1" for none that has no unit, "" for what needs no mention. */
 namespace option {
 
-  constexpr int64_t MOST = INT32_MAX;    ///< largest int
-
   OptionValue number(double &, const std::string &name, const Range &, const std::string &unit = "",
                      const std::string &meaning = "");
-  OptionValue integer(int &, const std::string &name, const Limits &,
+  OptionValue integer(int &, const std::string &name, const Range &,
                       const std::string &meaning = "");
-  OptionValue integer(int64_t &, const std::string &name, const Limits &,
+  OptionValue integer(int64_t &, const std::string &name, const Range &,
                       const std::string &meaning = "");
   /** n numbers with one meaning; their names are separated by blanks. */
   OptionValue numbers(double *, int n, const std::string &names, const Range &,
@@ -121,7 +114,7 @@ namespace option {
   OptionValue one_or_axes(double *, int dim, const std::string &names, const Range &,
                           const std::string &unit, const std::string &meaning,
                           const std::string &meaning_each);
-  OptionValue one_or_axes(int *, int dim, const std::string &names, const Limits &,
+  OptionValue one_or_axes(int *, int dim, const std::string &names, const Range &,
                           const std::string &meaning, const std::string &meaning_each);
   OptionValue yes_no(bool &);
   /** Any word, such as an ID. */
@@ -188,10 +181,11 @@ class Options {
   Option &add(const std::string &keyword, std::vector<OptionValue>,
               const std::string &meaning = "");
 
-  /** The input is refused when the test is true of the values read. The message is the command, the
-   *  keyword, and the text, in which {name} is the present value of that keyword. */
+  /** The input is refused when the keyword is given (or is empty) and the test is true of the values
+   *  read. The message is the command, the keyword, and the text, in which {name} is the present value
+   *  of that keyword. */
   void refuse(const std::string &keyword, std::function<bool()> test, const std::string &text);
-  /** As refuse(), but for warnings(). */
+  /** For warnings(): whether the keyword is given or not. */
   void warn(const std::string &keyword, std::function<bool()> test, const std::string &text);
 
   /** Reads arguments from iarg on, up to the end or the word last, whose index is returned, and
@@ -203,8 +197,6 @@ class Options {
   int where(const std::string &keyword) const;
   bool given(const std::string &keyword) const { return where(keyword) >= 0; }
 
-  /** Refusals: checked again, for values that have not been read. Throws OptionError. */
-  void check() const;
   /** What can be run but is likely to be a mistake. */
   std::vector<std::string> warnings() const;
 
@@ -230,6 +222,7 @@ class Options {
   std::vector<Rule> refusals, doubts;
 
   const Option *find(const std::string &keyword) const;
+  void check() const;
   std::string message(const Rule &) const;
 };
 
