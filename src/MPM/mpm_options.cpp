@@ -14,6 +14,8 @@
 #include "utils.h"
 #include "variable.h"
 
+#include <algorithm>
+
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
@@ -47,6 +49,15 @@ int LAMMPS_NS::read_options(LAMMPS *lmp, Options &options, int narg, char **arg,
     iarg = options.read(input, iarg, last);
   });
   return iarg;
+}
+
+int LAMMPS_NS::read_precision(LAMMPS *lmp, int narg, char **arg, bool &single)
+{
+  Options o("dump_modify");
+  o.add("precision", {option::word(single, {{"single", true}, {"double", false}})});
+  if (!o.has(arg[0])) return 0;
+  read_options(lmp, o, std::min(narg, 2), arg, 0);
+  return 2;
 }
 
 void LAMMPS_NS::refuse_field(LAMMPS *lmp, const Fix &user, const Fix &field,

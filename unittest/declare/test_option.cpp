@@ -58,24 +58,15 @@ struct Paint {
       layers.push_back(layer);
     });
     o.add("sides", {any_of(sides, {"top", "side", "back"})});
-    o.refuse(
-        "coats",
-        [this] {
-          return coats > 2 && wet;
-        },
-        "{coats} would run: use wet no");
-    o.refuse(
-        "",
-        [this] {
-          return gloss == 0.0;
-        },
-        "needs some gloss");
-    o.warn(
-        "size",
-        [this] {
-          return size > 1.9;
-        },
-        "is large");
+    o.refuse("coats", "{coats} would run: use wet no", [this] {
+      return coats > 2 && wet;
+    });
+    o.refuse("", "needs some gloss", [this] {
+      return gloss == 0.0;
+    });
+    o.warn("size", "is large", [this] {
+      return size > 1.9;
+    });
     return o;
   }
 

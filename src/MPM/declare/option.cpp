@@ -441,13 +441,13 @@ Option &Options::add(const std::string &keyword, std::vector<OptionValue> values
   return options.back();
 }
 
-void Options::refuse(const std::string &keyword, std::function<bool()> test,
-                     const std::string &text)
+void Options::refuse(const std::string &keyword, const std::string &text,
+                     std::function<bool()> test)
 {
   refusals.push_back({keyword, text, std::move(test)});
 }
 
-void Options::warn(const std::string &keyword, std::function<bool()> test, const std::string &text)
+void Options::warn(const std::string &keyword, const std::string &text, std::function<bool()> test)
 {
   doubts.push_back({keyword, text, std::move(test)});
 }

@@ -22,7 +22,7 @@
 //     o.add("every", {integer(look_every, "N", POSITIVE, "set the time step every this many steps")});
 //     o.add("min", {number(dt_min, "dt", POSITIVE, "time", "smallest time step")}).standard("none");
 //     o.add("max", {number(dt_max, "dt", POSITIVE, "time", "largest time step")}).standard("none");
-//     o.refuse("min", [this] { return dt_max < dt_min; }, "{min} is above max {max}");
+//     o.refuse("min", "{min} is above max {max}", [this] { return dt_max < dt_min; });
 //     return o;
 //   }
 //
@@ -184,9 +184,9 @@ class Options {
   /** The input is refused when the keyword is given (or is empty) and the test is true of the values
    *  read. The message is the command, the keyword, and the text, in which {name} is the present value
    *  of that keyword. */
-  void refuse(const std::string &keyword, std::function<bool()> test, const std::string &text);
+  void refuse(const std::string &keyword, const std::string &text, std::function<bool()> test);
   /** For warnings(): whether the keyword is given or not. */
-  void warn(const std::string &keyword, std::function<bool()> test, const std::string &text);
+  void warn(const std::string &keyword, const std::string &text, std::function<bool()> test);
 
   /** Reads arguments from iarg on, up to the end or the word last, whose index is returned, and
    *  applies the refusals; throws OptionError. */
