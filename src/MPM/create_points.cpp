@@ -182,11 +182,10 @@ Options CreatePointsOptions::declare(int dim, bool has_radius)
         {number(diameter, "D", POSITIVE, "distance",
                 "diameter of the points in contact with grains")})
       .standard("edge of a cube (2d: square) of the volume");
-  o.refuse("spacing", "and ppc cannot be given together: use either of them", [this] {
-    return ppc[0] > 0;
-  });
-  o.refuse("diameter", "needs atom_style hybrid sphere mpm", [=] {
-    return !has_radius;
+  o.refuse([=] {
+    return OptionRules{
+        {ppc[0] > 0, "spacing", "and ppc cannot be given together: use either of them"},
+        {!has_radius, "diameter", "needs atom_style hybrid sphere mpm"}};
   });
   return o;
 }

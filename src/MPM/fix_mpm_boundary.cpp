@@ -126,23 +126,15 @@ Options MPMBoundaryOptions::declare(int dim)
       .standard("none");
   o.add("field", {text(field_id, "fix-ID", "ID of the :doc:`fix mpm <fix_mpm>` to act on")})
       .standard("all");
-  o.refuse("friction", "needs kind slip or separate", [this] {
-    return kind == STICK;
-  });
-  o.refuse("velocity", "allows NULL only with kind stick", [this] {
-    return kind != STICK && !all_given();
-  });
-  o.refuse("velocity", "leaves all components free", [this] {
-    return !velocity[0].given && !velocity[1].given && !velocity[2].given;
-  });
-  o.refuse("rotate", "needs an axis of non-zero length", [this] {
-    return MathExtra::len3(axis) == 0.0;
-  });
-  o.refuse("rotate", "needs an axis along z in 2d", [=] {
-    return dim == 2 && (axis[0] != 0.0 || axis[1] != 0.0);
-  });
-  o.refuse("rotate", "prescribes all components of the velocity", [this] {
-    return !all_given();
+  o.refuse([=] {
+    return OptionRules{
+        {kind == STICK, "friction", "needs kind slip or separate"},
+        {kind != STICK && !all_given(), "velocity", "allows NULL only with kind stick"},
+        {!velocity[0].given && !velocity[1].given && !velocity[2].given, "velocity",
+         "leaves all components free"},
+        {MathExtra::len3(axis) == 0.0, "rotate", "needs an axis of non-zero length"},
+        {dim == 2 && (axis[0] != 0.0 || axis[1] != 0.0), "rotate", "needs an axis along z in 2d"},
+        {!all_given(), "rotate", "prescribes all components of the velocity"}};
   });
   return o;
 }

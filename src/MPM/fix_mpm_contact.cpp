@@ -114,26 +114,18 @@ Options MPMContactOptions::declare()
             {optional(number(
                 full, "share", {0.5, 1.0, true}, "",
                 "share of the volume of a node that they fill when they touch; default: 1"))}}})});
-  o.refuse("law",
-           "coulomb: the coefficient of static friction must not be below that of friction: {law}",
-           [this] {
-             return law == COULOMB && static_friction >= 0.0 && static_friction < kinetic_friction;
-           });
-  o.refuse(
-      "law",
-      "adhesive needs a positive normal strength and work of release: use frictionless or coulomb "
-      "for "
-      "bodies that do not adhere",
-      [this] {
-        return law == ADHESIVE && (normal_strength == 0.0 || release_work == 0.0);
-      });
-  o.refuse("law", "adhesive must know how far bodies are apart: drop gap no", [this] {
-    return law == ADHESIVE && !gap;
+  o.refuse([=] {
+    return OptionRules{
+        {law == COULOMB && static_friction >= 0.0 && static_friction < kinetic_friction, "law",
+         "coulomb: the coefficient of static friction must not be below that of friction: {law}"},
+        {law == ADHESIVE && (normal_strength == 0.0 || release_work == 0.0), "law",
+         "adhesive needs a positive normal strength and work of release: use frictionless or "
+         "coulomb for bodies that do not adhere"},
+        {law == ADHESIVE && !gap, "law",
+         "adhesive must know how far bodies are apart: drop gap no"},
+        {law == ADHESIVE && normal_by == MASS, "law",
+         "adhesive needs the area of the interface: use normal volume or colinear"}};
   });
-  o.refuse("law", "adhesive needs the area of the interface: use normal volume or colinear",
-           [this] {
-             return law == ADHESIVE && normal_by == MASS;
-           });
   return o;
 }
 

@@ -52,8 +52,8 @@ Options MPMDtOptions::declare()
         {number(strain, "S", POSITIVE, "",
                 "largest relative change of the volume of a point in a step")})
       .standard("no limit");
-  o.refuse("min", "{min} is above max {max}", [this] {
-    return dt_max > 0.0 && dt_min > dt_max;
+  o.refuse([=] {
+    return OptionRules{{dt_max > 0.0 && dt_min > dt_max, "min", "{min} is above max {max}"}};
   });
   return o;
 }

@@ -61,13 +61,13 @@ int LAMMPS_NS::read_precision(LAMMPS *lmp, int narg, char **arg, bool &single)
 }
 
 void LAMMPS_NS::refuse_field(LAMMPS *lmp, const Fix &user, const Fix &field,
-                             const std::vector<FieldRule> &rules)
+                             const OptionRules &rules)
 {
   for (const auto &rule : rules)
     if (rule.broken)
       lmp->error->all(FLERR, Error::NOLASTLINE,
                       "Fix {} {} cannot be used with {} of fix mpm {}: {}", user.style, user.id,
-                      rule.what, field.id, rule.why);
+                      rule.keyword, field.id, rule.text);
 }
 
 void LAMMPS_NS::find_variable(LAMMPS *lmp, NumberOrVariable &v, const std::string &user)

@@ -146,31 +146,20 @@ Options MPMPointOptions::declare()
       return c.kind != Component::AS_PATH;
     });
   };
-  o.refuse("", "needs a rate that is different from zero", [this] {
-    return path != MIXED && rate == 0.0;
-  });
-  o.refuse("", "needs one of the keywords time, strain and cycle", [=] {
-    return given() == 0;
-  });
-  o.refuse("", "needs only one of the keywords time, strain and cycle", [=] {
-    return given() > 1;
-  });
-  o.refuse("", "mixed has no strain of its own: use time instead of strain and cycle", [this] {
-    return path == MIXED && duration < 0.0;
-  });
-  o.refuse(
-      "",
-      "shock goes from the initial state to each of its states in one step: cycle and rotate do "
-      "not go with it",
-      [this] {
-        return path == SHOCK && (amplitude > 0.0 || turns != 0.0);
-      });
-  o.refuse("", "shock is uniaxial compression: no component can be changed; use uniaxial/strain",
-           [=] {
-             return path == SHOCK && changed();
-           });
-  o.refuse("rotate", "needs an axis that is not zero", [this] {
-    return axis[0] == 0.0 && axis[1] == 0.0 && axis[2] == 0.0;
+  o.refuse([=] {
+    return OptionRules{
+        {path != MIXED && rate == 0.0, "", "needs a rate that is different from zero"},
+        {given() == 0, "", "needs one of the keywords time, strain and cycle"},
+        {given() > 1, "", "needs only one of the keywords time, strain and cycle"},
+        {path == MIXED && duration < 0.0, "",
+         "mixed has no strain of its own: use time instead of strain and cycle"},
+        {path == SHOCK && (amplitude > 0.0 || turns != 0.0), "",
+         "shock goes from the initial state to each of its states in one step: cycle and rotate do "
+         "not go with it"},
+        {path == SHOCK && changed(), "",
+         "shock is uniaxial compression: no component can be changed; use uniaxial/strain"},
+        {axis[0] == 0.0 && axis[1] == 0.0 && axis[2] == 0.0, "rotate",
+         "needs an axis that is not zero"}};
   });
   return o;
 }

@@ -58,14 +58,12 @@ struct Paint {
       layers.push_back(layer);
     });
     o.add("sides", {any_of(sides, {"top", "side", "back"})});
-    o.refuse("coats", "{coats} would run: use wet no", [this] {
-      return coats > 2 && wet;
+    o.refuse([=] {
+      return OptionRules{{coats > 2 && wet, "coats", "{coats} would run: use wet no"},
+                         {gloss == 0.0, "", "needs some gloss"}};
     });
-    o.refuse("", "needs some gloss", [this] {
-      return gloss == 0.0;
-    });
-    o.warn("size", "is large", [this] {
-      return size > 1.9;
+    o.warn([=] {
+      return OptionRules{{size > 1.9, "size", "is large"}};
     });
     return o;
   }
