@@ -213,8 +213,8 @@ Options MPMFieldOptions::declare(int dim)
          "xpic with scheme usf, musl and usavg: a body that turns loses its spin: use scheme usl, "
          "or transfer flip or apic"},
         {light == 0.0 && amplifies(), "shape",
-         "linear with scheme usl or transfer apic amplifies round-off at nodes of tiny mass: use "
-         "transfer flip with scheme musl, quadratic functions, or light 0.5"}};
+         "linear with scheme usl or transfer apic: linear functions amplify round-off at nodes of "
+         "tiny mass: use transfer flip with scheme musl, quadratic functions, or light 0.5"}};
   });
   return o;
 }
