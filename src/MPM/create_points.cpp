@@ -184,12 +184,11 @@ Options CreatePointsOptions::declare(int dim, bool has_radius)
         {number(diameter, "D", POSITIVE, "distance",
                 "diameter of the points in contact with grains")})
       .standard("edge of a cube (2d: square) of the volume");
-  o.refuse(
-      "diameter",
-      [=] {
-        return !has_radius;
-      },
-      "needs atom_style hybrid sphere mpm");
+  o.refuse([=] {
+    return OptionRules{
+        {ppc[0] > 0, "spacing", "and ppc cannot be given together: use either of them"},
+        {!has_radius, "diameter", "needs atom_style hybrid sphere mpm"}};
+  });
   return o;
 }
 
@@ -225,9 +224,8 @@ void CreatePoints::parse(int narg, char **arg)
   // lattice of sites
 
   const bool use_spacing = options.given("spacing");
-  if (use_spacing && options.given("ppc"))
-    error->all(FLERR, Error::NOPOINTER, "Create_points takes either ppc or spacing, not both");
   find_lattice();
+  if (ppc[0] == 0) std::fill(ppc, ppc + 3, 2);
   if (fix) {
     for (int d = 0; d < dim; d++) {
       origin[d] = fix->lattice.origin[d];

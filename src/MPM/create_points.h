@@ -31,7 +31,7 @@ namespace LAMMPS_NS {
 struct CreatePointsOptions {
   static constexpr int MAX_PPC = 1000;
 
-  int ppc[3] = {2, 2, 2};
+  int ppc[3] = {0, 0, 0};    ///< 0: not given, 2
   double spacing[3] = {0.0, 0.0, 0.0};
   std::string fix_id;
   double jitter = 0.0;

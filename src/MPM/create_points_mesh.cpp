@@ -45,12 +45,9 @@ Options CreatePointsMeshOptions::declare(const std::string &command, int dim, bo
         {number(diameter, "D", POSITIVE, "distance",
                 "diameter of the points in contact with grains")})
       .standard("edge of a cube (2d: square) of the volume");
-  o.refuse(
-      "diameter",
-      [=] {
-        return !has_radius;
-      },
-      "needs atom_style hybrid sphere mpm");
+  o.refuse([=] {
+    return OptionRules{{!has_radius, "diameter", "needs atom_style hybrid sphere mpm"}};
+  });
   return o;
 }
 

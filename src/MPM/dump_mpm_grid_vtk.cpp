@@ -12,6 +12,7 @@
 #include "fix.h"
 #include "modify.h"
 #include "mpm_field.h"
+#include "mpm_options.h"
 #include "mpm_vtk.h"
 #include "update.h"
 
@@ -99,12 +100,7 @@ void DumpMPMGridVTK::init_style()
 
 int DumpMPMGridVTK::modify_param(int narg, char **arg)
 {
-  if (strcmp(arg[0], "precision") != 0) return 0;
-  if (narg < 2) utils::missing_cmd_args(FLERR, "dump_modify precision", error);
-  single = strcmp(arg[1], "single") == 0;
-  if (!single && strcmp(arg[1], "double") != 0)
-    error->all(FLERR, "Unknown dump_modify precision {}: must be single or double", arg[1]);
-  return 2;
+  return read_precision(lmp, narg, arg, single);
 }
 
 /* ----------------------------------------------------------------------

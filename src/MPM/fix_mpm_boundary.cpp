@@ -126,42 +126,16 @@ Options MPMBoundaryOptions::declare(int dim)
       .standard("none");
   o.add("field", {text(field_id, "fix-ID", "ID of the :doc:`fix mpm <fix_mpm>` to act on")})
       .standard("all");
-  o.refuse(
-      "friction",
-      [this] {
-        return kind == STICK;
-      },
-      "needs kind slip or separate");
-  o.refuse(
-      "velocity",
-      [this] {
-        return kind != STICK && !all_given();
-      },
-      "allows NULL only with kind stick");
-  o.refuse(
-      "velocity",
-      [this] {
-        return !velocity[0].given && !velocity[1].given && !velocity[2].given;
-      },
-      "leaves all components free");
-  o.refuse(
-      "rotate",
-      [this] {
-        return MathExtra::len3(axis) == 0.0;
-      },
-      "needs an axis of non-zero length");
-  o.refuse(
-      "rotate",
-      [=] {
-        return dim == 2 && (axis[0] != 0.0 || axis[1] != 0.0);
-      },
-      "needs an axis along z in 2d");
-  o.refuse(
-      "rotate",
-      [this] {
-        return !all_given();
-      },
-      "prescribes all components of the velocity");
+  o.refuse([=] {
+    return OptionRules{
+        {kind == STICK, "friction", "needs kind slip or separate"},
+        {kind != STICK && !all_given(), "velocity", "allows NULL only with kind stick"},
+        {!velocity[0].given && !velocity[1].given && !velocity[2].given, "velocity",
+         "leaves all components free"},
+        {MathExtra::len3(axis) == 0.0, "rotate", "needs an axis of non-zero length"},
+        {dim == 2 && (axis[0] != 0.0 || axis[1] != 0.0), "rotate", "needs an axis along z in 2d"},
+        {!all_given(), "rotate", "prescribes all components of the velocity"}};
+  });
   return o;
 }
 

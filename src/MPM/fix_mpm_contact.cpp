@@ -117,32 +117,18 @@ Options MPMContactOptions::declare()
             {optional(number(
                 full, "share", {0.5, 1.0, true}, "",
                 "share of the volume of a node that they fill when they touch; default: 1"))}}})});
-  o.refuse(
-      "law",
-      [this] {
-        return law == COULOMB && static_friction >= 0.0 && static_friction < kinetic_friction;
-      },
-      "coulomb: the coefficient of static friction must not be below that of friction: {law}");
-  o.refuse(
-      "law",
-      [this] {
-        return law == ADHESIVE && (normal_strength == 0.0 || release_work == 0.0);
-      },
-      "adhesive needs a positive normal strength and work of release: use frictionless or coulomb "
-      "for "
-      "bodies that do not adhere");
-  o.refuse(
-      "law",
-      [this] {
-        return law == ADHESIVE && !gap;
-      },
-      "adhesive must know how far bodies are apart: drop gap no");
-  o.refuse(
-      "law",
-      [this] {
-        return law == ADHESIVE && normal_by == MASS;
-      },
-      "adhesive needs the area of the interface: use normal volume or colinear");
+  o.refuse([=] {
+    return OptionRules{
+        {law == COULOMB && static_friction >= 0.0 && static_friction < kinetic_friction, "law",
+         "coulomb: the coefficient of static friction must not be below that of friction: {law}"},
+        {law == ADHESIVE && (normal_strength == 0.0 || release_work == 0.0), "law",
+         "adhesive needs a positive normal strength and work of release: use frictionless or "
+         "coulomb for bodies that do not adhere"},
+        {law == ADHESIVE && !gap, "law",
+         "adhesive must know how far bodies are apart: drop gap no"},
+        {law == ADHESIVE && normal_by == MASS, "law",
+         "adhesive needs the area of the interface: use normal volume or colinear"}};
+  });
   return o;
 }
 

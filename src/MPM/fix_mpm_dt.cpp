@@ -53,12 +53,9 @@ Options MPMDtOptions::declare()
         {number(strain, "S", POSITIVE, "",
                 "largest relative change of the volume of a point in a step")})
       .standard("no limit");
-  o.refuse(
-      "min",
-      [this] {
-        return dt_max > 0.0 && dt_min > dt_max;
-      },
-      "{min} is above max {max}");
+  o.refuse([=] {
+    return OptionRules{{dt_max > 0.0 && dt_min > dt_max, "min", "{min} is above max {max}"}};
+  });
   return o;
 }
 

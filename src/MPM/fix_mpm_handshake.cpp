@@ -110,20 +110,16 @@ Options MPMHandshakeOptions::declare()
   o.add("damp",
         {number(damping, "rate", NOT_NEGATIVE, "1/time",
                 "rate at which the fine motion of the atoms is damped at weight 0")});
-  o.refuse(
-      "",
-      [this] {
-        return zones.empty();
-      },
-      "needs at least one zone");
-  o.refuse(
-      "zone",
-      [this] {
-        return std::any_of(zones.begin(), zones.end(), [](const Zone &z) {
-          return z.one == z.zero;
-        });
-      },
-      "has no width: the planes where the weight of the atoms is one and zero must differ");
+  o.refuse([=] {
+    return OptionRules{
+        {zones.empty(), "", "needs at least one zone"},
+        {std::any_of(zones.begin(), zones.end(),
+                     [](const Zone &z) {
+                       return z.one == z.zero;
+                     }),
+         "zone",
+         "has no width: the planes where the weight of the atoms is one and zero must differ"}};
+  });
   return o;
 }
 

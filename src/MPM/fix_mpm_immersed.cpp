@@ -85,18 +85,12 @@ Options MPMImmersedOptions::declare(int dim)
       "gravity",
       {numbers(gravity, 3, "gx gy gz", ANY_NUMBER, "velocity/time",
                "acceleration of gravity that fluid and grains have from elsewhere, for buoyancy")});
-  o.refuse(
-      "",
-      [this] {
-        return law != NONE && viscosity == 0.0;
-      },
-      "needs a positive viscosity for its drag: use drag none without");
-  o.refuse(
-      "gravity",
-      [=] {
-        return dim == 2 && gravity[2] != 0.0;
-      },
-      "must be along x and y in 2d: {gravity}");
+  o.refuse([=] {
+    return OptionRules{
+        {law != NONE && viscosity == 0.0, "",
+         "needs a positive viscosity for its drag: use drag none without"},
+        {dim == 2 && gravity[2] != 0.0, "gravity", "must be along x and y in 2d: {gravity}"}};
+  });
   return o;
 }
 

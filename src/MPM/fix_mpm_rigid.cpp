@@ -77,27 +77,17 @@ Options MPMRigidOptions::declare()
         {any_of(fixed, {"x", "y", "z", "rx", "ry", "rz"},
                 "components of the velocity and of the angular velocity that stay zero")})
       .standard("nothing");
-  o.refuse(
-      "friction",
-      [this] {
-        return kind == STICK;
-      },
-      "is for slip and separate");
-  for (int a = 0; a < 3; a++) {
-    const std::string axis(1, "xyz"[a]);
-    o.refuse(
-        "",
-        [=] {
-          return fixed[a] && v[a] != 0.0;
-        },
-        "cannot hold " + axis + " and give it a velocity");
-    o.refuse(
-        "",
-        [=] {
-          return fixed[3 + a] && omega[a] != 0.0;
-        },
-        "cannot hold r" + axis + " and give it an angular velocity");
-  }
+  o.refuse([=] {
+    OptionRules rules = {{kind == STICK, "friction", "is for slip and separate"}};
+    for (int a = 0; a < 3; a++) {
+      const std::string axis(1, "xyz"[a]);
+      rules.push_back(
+          {fixed[a] && v[a] != 0.0, "", "cannot hold " + axis + " and give it a velocity"});
+      rules.push_back({fixed[3 + a] && omega[a] != 0.0, "",
+                       "cannot hold r" + axis + " and give it an angular velocity"});
+    }
+    return rules;
+  });
   return o;
 }
 

@@ -162,114 +162,60 @@ Options MPMFieldOptions::declare(int dim)
 
   // what does not go together
 
-  o.refuse(
-      "axisymmetric",
-      [=] {
-        return axisymmetric && dim != 2;
-      },
-      "needs dimension 2");
-  o.refuse(
-      "reference",
-      [this] {
-        return most_distorted > 0.0 && !total;
-      },
-      "update is for frame total: in the updated frame, the reference is the present "
-      "configuration in each step");
-  o.refuse(
-      "aspect",
-      [this] {
-        return has_aspect && !has_size();
-      },
-      "is for points of finite size: use shape gimp, cpgimp, cpdi or cpdi2");
-  o.refuse(
-      "frame",
-      [this] {
-        return total && (has_size() || transfer == AFLIP || transfer == TPIC);
-      },
-      "total cannot be used with shape gimp, cpgimp, cpdi and cpdi2, which points that cross "
-      "no cells do not need, and transfer aflip and tpic: use B-splines with transfer apic or "
-      "flip");
-  o.refuse(
-      "transfer",
-      [this] {
-        return polypic && (total || !is_mls(shape, transfer));
-      },
-      "polypic needs shape quadratic or cubic and frame updated");
-  o.refuse(
-      "stress",
-      [this] {
-        return stress == MLS_STRESS && !is_mls(shape, transfer);
-      },
-      "mls needs shape quadratic or cubic with transfer apic or aflip: other ones have the "
-      "gradients of the shape functions");
-  o.refuse(
-      "stress",
-      [this] {
-        return strains_apart() && total;
-      },
-      "gradient with frame total needs transfer flip or pic: that of transfer apic is stress "
-      "mls");
-  o.refuse(
-      "edges",
-      [this] {
-        return modified_edges &&
-            ((shape != QUADRATIC && shape != CUBIC) || series != LUMPED || is_affine(transfer));
-      },
-      "modified is for shape quadratic and cubic with transfer pic and flip: use edges plain");
-  o.refuse(
-      "shape",
-      [this] {
-        return shape == BERNSTEIN && !total;
-      },
-      "bernstein has gradients that jump where points cross cells: it needs frame total, "
-      "where they do not, or use shape quadratic");
-  o.refuse(
-      "transfer",
-      [this] {
-        return series == FMPM && scheme != USL;
-      },
-      "fmpm moves points with refined velocities, which the gradients of scheme usf, musl and "
-      "usavg do not follow: use scheme usl, or transfer xpic");
   const auto amplifies = [this] {
     return !total && shape == LINEAR && (scheme == USL || is_affine(transfer));
   };
-  o.refuse(
-      "light",
-      [=] {
-        return light > 0.0 && !amplifies();
-      },
-      "is of no use with this shape, transfer and scheme: remove light, which is for shape "
-      "linear with scheme usl or transfer apic, aflip, tpic");
-  o.refuse(
-      "light",
-      [this] {
-        return light > 0.0 && locking != NO_CURE && scheme == USL && is_affine(transfer);
-      },
-      "and locking together are unstable with scheme usl and transfer apic, aflip, tpic: use "
-      "scheme musl, or transfer flip");
-  o.refuse(
-      "light",
-      [this] {
-        return light > 0.0 && axisymmetric && scheme == USF;
-      },
-      "and axisymmetric together are unstable with scheme usf: use scheme usl or musl");
+  o.refuse([=] {
+    return OptionRules{
+        {axisymmetric && dim != 2, "axisymmetric", "needs dimension 2"},
+        {most_distorted > 0.0 && !total, "reference",
+         "update is for frame total: in the updated frame, the reference is the present "
+         "configuration in each step"},
+        {has_aspect && !has_size(), "aspect",
+         "is for points of finite size: use shape gimp, cpgimp, cpdi or cpdi2"},
+        {total && (has_size() || transfer == AFLIP || transfer == TPIC), "frame",
+         "total cannot be used with shape gimp, cpgimp, cpdi and cpdi2, which points that cross "
+         "no cells do not need, and transfer aflip and tpic: use B-splines with transfer apic or "
+         "flip"},
+        {polypic && (total || !is_mls(shape, transfer)), "transfer",
+         "polypic needs shape quadratic or cubic and frame updated"},
+        {stress == MLS_STRESS && !is_mls(shape, transfer), "stress",
+         "mls needs shape quadratic or cubic with transfer apic or aflip: other ones have the "
+         "gradients of the shape functions"},
+        {strains_apart() && total, "stress",
+         "gradient with frame total needs transfer flip or pic: that of transfer apic is stress "
+         "mls"},
+        {modified_edges &&
+             ((shape != QUADRATIC && shape != CUBIC) || series != LUMPED || is_affine(transfer)),
+         "edges",
+         "modified is for shape quadratic and cubic with transfer pic and flip: use edges plain"},
+        {shape == BERNSTEIN && !total, "shape",
+         "bernstein has gradients that jump where points cross cells: it needs frame total, "
+         "where they do not, or use shape quadratic"},
+        {series == FMPM && scheme != USL, "transfer",
+         "fmpm moves points with refined velocities, which the gradients of scheme usf, musl and "
+         "usavg do not follow: use scheme usl, or transfer xpic"},
+        {light > 0.0 && !amplifies(), "light",
+         "is of no use with this shape, transfer and scheme: remove light, which is for shape "
+         "linear with scheme usl or transfer apic, aflip, tpic"},
+        {light > 0.0 && locking != NO_CURE && scheme == USL && is_affine(transfer), "light",
+         "and locking together are unstable with scheme usl and transfer apic, aflip, tpic: use "
+         "scheme musl, or transfer flip"},
+        {light > 0.0 && axisymmetric && scheme == USF, "light",
+         "and axisymmetric together are unstable with scheme usf: use scheme usl or musl"}};
+  });
 
   // what is likely to be a mistake
 
-  o.warn(
-      "transfer",
-      [this] {
-        return series == XPIC && order > 1 && scheme != USL;
-      },
-      "xpic with scheme usf, musl and usavg: a body that turns loses its spin: use scheme usl, "
-      "or transfer flip or apic");
-  o.warn(
-      "shape",
-      [=] {
-        return light == 0.0 && amplifies();
-      },
-      "linear with scheme usl or transfer apic amplifies round-off at nodes of tiny mass: use "
-      "transfer flip with scheme musl, quadratic functions, or light 0.5");
+  o.warn([=] {
+    return OptionRules{
+        {series == XPIC && order > 1 && scheme != USL, "transfer",
+         "xpic with scheme usf, musl and usavg: a body that turns loses its spin: use scheme usl, "
+         "or transfer flip or apic"},
+        {light == 0.0 && amplifies(), "shape",
+         "linear with scheme usl or transfer apic: linear functions amplify round-off at nodes of "
+         "tiny mass: use transfer flip with scheme musl, quadratic functions, or light 0.5"}};
+  });
   return o;
 }
 

@@ -15,6 +15,8 @@
 #include "utils.h"
 #include "variable.h"
 
+#include <algorithm>
+
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
@@ -50,14 +52,23 @@ int LAMMPS_NS::read_options(LAMMPS *lmp, Options &options, int narg, char **arg,
   return iarg;
 }
 
+int LAMMPS_NS::read_precision(LAMMPS *lmp, int narg, char **arg, bool &single)
+{
+  Options o("dump_modify");
+  o.add("precision", {option::word(single, {{"single", true}, {"double", false}})});
+  if (!o.has(arg[0])) return 0;
+  read_options(lmp, o, std::min(narg, 2), arg, 0);
+  return 2;
+}
+
 void LAMMPS_NS::refuse_field(LAMMPS *lmp, const Fix &user, const MPMField &field,
-                             const std::vector<FieldRule> &rules)
+                             const OptionRules &rules)
 {
   for (const auto &rule : rules)
     if (rule.broken)
       lmp->error->all(FLERR, Error::NOLASTLINE,
                       "Fix {} {} cannot be used with {} of fix mpm {}: {}", user.style, user.id,
-                      rule.what, field.id(), rule.why);
+                      rule.keyword, field.id(), rule.text);
 }
 
 void LAMMPS_NS::find_variable(LAMMPS *lmp, NumberOrVariable &v, const std::string &user)

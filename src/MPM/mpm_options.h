@@ -27,15 +27,12 @@ int read_options(LAMMPS *, MPM_NS::Options &, int narg, char **arg, int iarg,
 /** Runs f(), which may throw an OptionError, and makes an error of LAMMPS of that. */
 void explain_errors(LAMMPS *, const std::function<void()> &f);
 
-/** Something of a field (fix mpm) that a style cannot work with. */
-struct FieldRule {
-  bool broken;
-  std::string what;    ///< keyword and value of fix mpm
-  std::string why;     ///< and the remedy
-};
+/** Reads precision single|double of dump_modify and returns 2, or 0 for any other keyword. */
+int read_precision(LAMMPS *, int narg, char **arg, bool &single);
 
-/** Stops with an error when one of the rules is broken by the field. */
-void refuse_field(LAMMPS *, const Fix &user, const MPMField &field, const std::vector<FieldRule> &);
+/** Stops with an error when a field (fix mpm) breaks one of the rules of a fix: their keyword is what
+ *  of the field cannot be used, their text says why, and the remedy. */
+void refuse_field(LAMMPS *, const Fix &user, const MPMField &field, const MPM_NS::OptionRules &);
 
 /** Finds the variable, if it is one, and stops with an error if it does not exist or is not
  *  equal-style; user: who needs it, for example fix mpm/rigid force. */

@@ -26,6 +26,7 @@
 
 #include <Eigen/Dense>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -39,10 +40,7 @@ static const char *const path_name[] = {"uniaxial/stress", "uniaxial/strain", "s
 
 /* ---------------------------------------------------------------------- */
 
-MPMPoint::MPMPoint(LAMMPS *lmp) :
-    Command(lmp), path(MIXED), rate(0.0), pressure(0.0), fp(nullptr), iterations(0)
-{
-}
+MPMPoint::MPMPoint(LAMMPS *lmp) : Command(lmp), fp(nullptr), iterations(0) {}
 
 MPMPoint::~MPMPoint()
 {
@@ -86,6 +84,20 @@ Options MPMPointOptions::declare()
 {
   using namespace option;
   Options o("mpm_point");
+  const auto any = number(rate, "rate", ANY_NUMBER);
+  o.argument(word(path,
+                  {{path_name[UNIAXIAL_STRESS], UNIAXIAL_STRESS, "", {any}},
+                   {path_name[UNIAXIAL_STRAIN], UNIAXIAL_STRAIN, "", {any}},
+                   {path_name[SHEAR], SHEAR, "", {any}},
+                   {path_name[BIAXIAL], BIAXIAL, "", {any}},
+                   {path_name[TRIAXIAL],
+                    TRIAXIAL,
+                    "",
+                    {any, number(pressure, "confining pressure", NOT_NEGATIVE)}},
+                   {path_name[VOLUMETRIC], VOLUMETRIC, "", {any}},
+                   {path_name[SHOCK], SHOCK, "", {number(rate, "rate", {-UNBOUNDED, 0.0, false})}},
+                   {path_name[MIXED], MIXED}},
+                  "path"));
   o.add("time", {number(duration, "T", POSITIVE, "time", "duration of the path")}).standard("");
   o.add("strain", {number(strain, "E", POSITIVE, "1", "size of the strain at which the path ends")})
       .standard("");
@@ -126,21 +138,37 @@ Options MPMPointOptions::declare()
   o.add("length",
         {number(length, "h", POSITIVE, "distance",
                 "node spacing that an artificial viscosity shall see")});
-  o.refuse(
-      "rotate",
-      [this] {
-        return axis[0] == 0.0 && axis[1] == 0.0 && axis[2] == 0.0;
-      },
-      "needs an axis that is not zero");
+  const auto given = [this] {
+    return (duration > 0.0) + (strain > 0.0) + (amplitude > 0.0);
+  };
+  const auto changed = [this] {
+    return std::any_of(component, component + 6, [](const Component &c) {
+      return c.kind != Component::AS_PATH;
+    });
+  };
+  o.refuse([=] {
+    return OptionRules{
+        {path != MIXED && rate == 0.0, "", "needs a rate that is different from zero"},
+        {given() == 0, "", "needs one of the keywords time, strain and cycle"},
+        {given() > 1, "", "needs only one of the keywords time, strain and cycle"},
+        {path == MIXED && duration < 0.0, "",
+         "mixed has no strain of its own: use time instead of strain and cycle"},
+        {path == SHOCK && (amplitude > 0.0 || turns != 0.0), "",
+         "shock goes from the initial state to each of its states in one step: cycle and rotate do "
+         "not go with it"},
+        {path == SHOCK && changed(), "",
+         "shock is uniaxial compression: no component can be changed; use uniaxial/strain"},
+        {axis[0] == 0.0 && axis[1] == 0.0 && axis[2] == 0.0, "rotate",
+         "needs an axis that is not zero"}};
+  });
   return o;
 }
 
 void MPMPoint::parse(int narg, char **arg)
 {
-  if (narg < 2) utils::missing_cmd_args(FLERR, "mpm_point", error);
-  if (strcmp(arg[0], "NULL") != 0) file = arg[0];
+  if (narg > 0 && strcmp(arg[0], "NULL") != 0) file = arg[0];
   Options options = declare();
-  const int iarg = read_options(lmp, options, narg, arg, parse_path(narg, arg), "material");
+  const int iarg = read_options(lmp, options, narg, arg, 1, "material");
   if (iarg >= narg)
     error->all(FLERR,
                "Mpm_point: the material is missing: end the command with 'material density "
@@ -156,60 +184,11 @@ void MPMPoint::parse(int narg, char **arg)
   const double norm = MathExtra::len3(axis);
   for (int d = 0; d < 3 && norm > 0.0; d++) axis[d] /= norm;
 
-  // what does not go together
-
-  const bool mixed = path == MIXED;
-  const int given = (duration > 0.0) + (strain > 0.0) + (amplitude > 0.0);
-  if (given != 1)
-    error->all(FLERR, "Mpm_point {} needs {} of the keywords {}", path_name[path],
-               given ? "only one" : "one", mixed ? "time" : "time, strain and cycle");
-  if (mixed && duration < 0.0)
-    error->all(FLERR,
-               "Mpm_point mixed has no strain of its own: use time instead of strain and "
-               "cycle");
-  if (path == SHOCK) {
-    if (amplitude > 0.0 || turns != 0.0)
-      error->all(FLERR,
-                 "Mpm_point shock goes from the initial state to each of its states in one "
-                 "step: cycle and rotate do not go with it");
-    for (auto &c : component)
-      if (c.kind != Component::AS_PATH)
-        error->all(FLERR,
-                   "Mpm_point shock is uniaxial compression: no component can be changed; "
-                   "use uniaxial/strain");
-  }
   if (amplitude > 0.0) duration = 4.0 * amplitude * cycles / fabs(rate);
   if (strain > 0.0) duration = strain / fabs(rate);
   if (every == 0) every = std::max<bigint>(1, nsteps / 1000);
 
   material = read_material(lmp, "Mpm_point", iarg + 1, narg, arg);
-}
-
-/* ---------------------------------------------------------------------- */
-
-int MPMPoint::parse_path(int narg, char **arg)
-{
-  int k = 0;
-  while (k < NPATHS && strcmp(arg[1], path_name[k]) != 0) k++;
-  if (k == NPATHS) {
-    std::string all;
-    for (const char *name : path_name) all += fmt::format("{}{}", all.empty() ? "" : ", ", name);
-    error->all(FLERR, 1, "Unknown mpm_point path {}: choose one of {}", arg[1], all);
-  }
-  path = static_cast<Path>(k);
-  if (path == MIXED) return 2;
-  const int nvalues = path == TRIAXIAL ? 2 : 1;
-  if (narg < 2 + nvalues) utils::missing_cmd_args(FLERR, std::string("mpm_point ") + arg[1], error);
-  rate = utils::numeric(FLERR, arg[2], false, lmp);
-  if (rate == 0.0 || (path == SHOCK && rate > 0.0))
-    error->all(FLERR, 2, "Mpm_point {}: the rate must be {}", arg[1],
-               path == SHOCK ? "negative (compression)" : "different from zero");
-  if (path == TRIAXIAL) {
-    pressure = utils::numeric(FLERR, arg[3], false, lmp);
-    if (!(pressure >= 0.0))
-      error->all(FLERR, 3, "Mpm_point triaxial: the confining pressure must not be negative");
-  }
-  return 2 + nvalues;
 }
 
 /* ---------------------------------------------------------------------- */

@@ -37,7 +37,21 @@ struct MPMPointOptions {
     enum Kind { AS_PATH, RATE, STRESS } kind = AS_PATH;
     MPM_NS::NumberOrVariable value;
   };
+  enum Path {
+    UNIAXIAL_STRESS,
+    UNIAXIAL_STRAIN,
+    SHEAR,
+    BIAXIAL,
+    TRIAXIAL,
+    VOLUMETRIC,
+    SHOCK,
+    MIXED,
+    NPATHS
+  };
   static constexpr double NOT_GIVEN = -1.0;
+
+  Path path = MIXED;
+  double rate = 0.0, pressure = 0.0;    ///< of the path
 
   double duration = NOT_GIVEN, strain = NOT_GIVEN, amplitude = NOT_GIVEN, cycles = 0.0;
   int64_t nsteps = 1000, every = 0;
@@ -58,19 +72,6 @@ class MPMPoint : public Command, private MPMPointOptions {
   void command(int, char **) override;
 
  private:
-  enum Path {
-    UNIAXIAL_STRESS,
-    UNIAXIAL_STRAIN,
-    SHEAR,
-    BIAXIAL,
-    TRIAXIAL,
-    VOLUMETRIC,
-    SHOCK,
-    MIXED,
-    NPATHS
-  };
-  Path path;
-  double rate, pressure;    // of the path
   std::string file;
 
   std::unique_ptr<MPM_NS::Material> material;
@@ -79,7 +80,6 @@ class MPMPoint : public Command, private MPMPointOptions {
   bigint iterations;
 
   void parse(int, char **);
-  int parse_path(int, char **);
   double value_at(const MPM_NS::NumberOrVariable &, double time);
   double path_strain(double time) const;
   MPM_NS::MixedControl control(double t0, double t1, bool started, double share);

@@ -58,24 +58,13 @@ struct Paint {
       layers.push_back(layer);
     });
     o.add("sides", {any_of(sides, {"top", "side", "back"})});
-    o.refuse(
-        "coats",
-        [this] {
-          return coats > 2 && wet;
-        },
-        "{coats} would run: use wet no");
-    o.refuse(
-        "",
-        [this] {
-          return gloss == 0.0;
-        },
-        "needs some gloss");
-    o.warn(
-        "size",
-        [this] {
-          return size > 1.9;
-        },
-        "is large");
+    o.refuse([=] {
+      return OptionRules{{coats > 2 && wet, "coats", "{coats} would run: use wet no"},
+                         {gloss == 0.0, "", "needs some gloss"}};
+    });
+    o.warn([=] {
+      return OptionRules{{size > 1.9, "size", "is large"}};
+    });
     return o;
   }
 

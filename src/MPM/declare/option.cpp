@@ -441,15 +441,14 @@ Option &Options::add(const std::string &keyword, std::vector<OptionValue> values
   return options.back();
 }
 
-void Options::refuse(const std::string &keyword, std::function<bool()> test,
-                     const std::string &text)
+void Options::refuse(std::function<OptionRules()> rules)
 {
-  refusals.push_back({keyword, text, std::move(test)});
+  refusals = std::move(rules);
 }
 
-void Options::warn(const std::string &keyword, std::function<bool()> test, const std::string &text)
+void Options::warn(std::function<OptionRules()> rules)
 {
-  doubts.push_back({keyword, text, std::move(test)});
+  doubts = std::move(rules);
 }
 
 const Option *Options::find(const std::string &keyword) const
@@ -496,7 +495,7 @@ int Options::read(const OptionInput &input, int iarg, const std::string &last)
   return iarg;
 }
 
-std::string Options::message(const Rule &rule) const
+std::string Options::message(const OptionRule &rule) const
 {
   std::string text = join({command, rule.keyword, rule.text}, " ");
   for (const auto &option : options) {
@@ -509,16 +508,18 @@ std::string Options::message(const Rule &rule) const
 
 void Options::check() const
 {
-  for (const auto &rule : refusals)
-    if ((rule.keyword.empty() || given(rule.keyword)) && rule.test())
+  if (!refusals) return;
+  for (const auto &rule : refusals())
+    if (rule.broken && (rule.keyword.empty() || given(rule.keyword)))
       throw OptionError{where(rule.keyword), message(rule)};
 }
 
 std::vector<std::string> Options::warnings() const
 {
   Strings all;
-  for (const auto &rule : doubts)
-    if (rule.test()) all.push_back(message(rule));
+  if (doubts)
+    for (const auto &rule : doubts())
+      if (rule.broken) all.push_back(message(rule));
   return all;
 }
 

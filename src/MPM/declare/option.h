@@ -22,7 +22,7 @@
 //     o.add("every", {integer(look_every, "N", POSITIVE, "set the time step every this many steps")});
 //     o.add("min", {number(dt_min, "dt", POSITIVE, "time", "smallest time step")}).standard("none");
 //     o.add("max", {number(dt_max, "dt", POSITIVE, "time", "largest time step")}).standard("none");
-//     o.refuse("min", [this] { return dt_max < dt_min; }, "{min} is above max {max}");
+//     o.refuse([=] { return OptionRules{{dt_max < dt_min, "min", "{min} is above max {max}"}}; });
 //     return o;
 //   }
 //
@@ -93,6 +93,15 @@ struct OptionWord {
   std::string meaning = "";                ///< empty: that of the next word is for both
   std::vector<OptionValue> values = {};    ///< that follow this word
 };
+
+/** What options exclude. The message is the command, the keyword, and the text, in which {name} is the
+ *  present value of that keyword. */
+struct OptionRule {
+  bool broken;
+  std::string keyword;    ///< that is to blame, or empty
+  std::string text;       ///< what is wrong, with the remedy
+};
+using OptionRules = std::vector<OptionRule>;
 
 /** The kinds of values. Names are those in the manual and in messages; units are kinds of units, such
  *  as velocity, "1" for none that has no unit, "" for what needs no mention. */
@@ -181,12 +190,11 @@ class Options {
   Option &add(const std::string &keyword, std::vector<OptionValue>,
               const std::string &meaning = "");
 
-  /** The input is refused when the keyword is given (or is empty) and the test is true of the values
-   *  read. The message is the command, the keyword, and the text, in which {name} is the present value
-   *  of that keyword. */
-  void refuse(const std::string &keyword, std::function<bool()> test, const std::string &text);
-  /** For warnings(): whether the keyword is given or not. */
-  void warn(const std::string &keyword, std::function<bool()> test, const std::string &text);
+  /** The rules, evaluated when the values are read, that the input must not break; those without the
+   *  keyword of a rule in the input are not looked at. */
+  void refuse(std::function<OptionRules()>);
+  /** The rules of warnings(). */
+  void warn(std::function<OptionRules()>);
 
   /** Reads arguments from iarg on, up to the end or the word last, whose index is returned, and
    *  applies the refusals; throws OptionError. */
@@ -212,18 +220,14 @@ class Options {
   std::string defaults() const;
 
  private:
-  struct Rule {
-    std::string keyword, text;
-    std::function<bool()> test;
-  };
   std::string command;
   std::vector<OptionValue> arguments;
   std::vector<Option> options;
-  std::vector<Rule> refusals, doubts;
+  std::function<OptionRules()> refusals, doubts;
 
   const Option *find(const std::string &keyword) const;
   void check() const;
-  std::string message(const Rule &) const;
+  std::string message(const OptionRule &) const;
 };
 
 }    // namespace MPM_NS
