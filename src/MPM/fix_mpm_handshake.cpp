@@ -60,7 +60,6 @@
 #include "error.h"
 #include "fix_mpm_material.h"
 #include "force.h"
-#include "memory.h"
 #include "modify.h"
 #include "mpm_field.h"
 #include "mpm_options.h"
@@ -124,8 +123,8 @@ Options MPMHandshakeOptions::declare()
 }
 
 FixMPMHandshake::FixMPMHandshake(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), field(nullptr), list(nullptr), weight(nullptr), role(nullptr), natoms(0),
-    nreach(0), heat(0.0), lost(0.0), impulse(), dt_last(0.0), eam(nullptr), flaw(0.0)
+    FixMPMState(lmp, narg, arg), field(nullptr), list(nullptr), weight(nullptr), role(nullptr),
+    natoms(0), nreach(0), heat(0.0), lost(0.0), impulse(), dt_last(0.0), eam(nullptr), flaw(0.0)
 {
   Options options = declare();
   read_options(lmp, options, narg, arg, 3);
@@ -135,24 +134,16 @@ FixMPMHandshake::FixMPMHandshake(LAMMPS *lmp, int narg, char **arg) :
   size_peratom_cols = 0;
   peratom_freq = global_freq = 1;
   extscalar = extvector = 1;
-  create_attribute = 1;
   comm_forward = 2;
-  maxexchange = 2;
-  restart_global = restart_peratom = 1;
-  FixMPMHandshake::grow_arrays(atom->nmax);
-  atom->add_callback(Atom::GROW);
-  atom->add_callback(Atom::RESTART);
-  for (int i = 0; i < atom->nlocal; i++) FixMPMHandshake::set_arrays(i);
-}
-
-FixMPMHandshake::~FixMPMHandshake()
-{
-  if (modify) {
-    atom->delete_callback(id, Atom::GROW);
-    atom->delete_callback(id, Atom::RESTART);
-  }
-  memory->destroy(weight);
-  memory->destroy(role);
+  restart_global = 1;
+  state.declare(weight, "mpm/handshake:weight", [](int, double *row) {
+    *row = 1.0;
+  });
+  state.declare(role, "mpm/handshake:role", [](int, double *row) {
+    *row = UNKNOWN;
+  });
+  keep_arrays();
+  vector_atom = weight;
 }
 
 int FixMPMHandshake::setmask()
@@ -816,8 +807,8 @@ double FixMPMHandshake::compute_vector(int d)
 
 double FixMPMHandshake::memory_usage()
 {
-  return sizeof(double) *
-      (2.0 * atom->nmax + sums.capacity() + shares.capacity() + pushes.capacity()) +
+  return FixMPMState::memory_usage() +
+      sizeof(double) * (double) (sums.capacity() + shares.capacity() + pushes.capacity()) +
       sizeof(int) * (double) (nodes.capacity() + members.capacity());
 }
 
@@ -827,21 +818,8 @@ double FixMPMHandshake::memory_usage()
 
 void FixMPMHandshake::grow_arrays(int nmax)
 {
-  memory->grow(weight, nmax, "mpm/handshake:weight");
-  memory->grow(role, nmax, "mpm/handshake:role");
+  FixMPMState::grow_arrays(nmax);
   vector_atom = weight;
-}
-
-void FixMPMHandshake::copy_arrays(int i, int j, int /*delflag*/)
-{
-  weight[j] = weight[i];
-  role[j] = role[i];
-}
-
-void FixMPMHandshake::set_arrays(int i)
-{
-  weight[i] = 1.0;
-  role[i] = UNKNOWN;
 }
 
 int FixMPMHandshake::pack_forward_comm(int n, int *send, double *buf, int /*pbc_flag*/,
@@ -860,44 +838,6 @@ void FixMPMHandshake::unpack_forward_comm(int n, int first, double *buf)
     weight[first + k] = buf[2 * k];
     role[first + k] = buf[2 * k + 1];
   }
-}
-
-int FixMPMHandshake::pack_exchange(int i, double *buf)
-{
-  buf[0] = weight[i];
-  buf[1] = role[i];
-  return 2;
-}
-
-int FixMPMHandshake::unpack_exchange(int i, double *buf)
-{
-  weight[i] = buf[0];
-  role[i] = buf[1];
-  return 2;
-}
-
-int FixMPMHandshake::pack_restart(int i, double *buf)
-{
-  buf[0] = 3;
-  return 1 + pack_exchange(i, buf + 1);
-}
-
-void FixMPMHandshake::unpack_restart(int i, int nth)
-{
-  double **const extra = atom->extra;
-  int m = 0;
-  for (int k = 0; k < nth; k++) m += static_cast<int>(extra[i][m]);
-  unpack_exchange(i, extra[i] + m + 1);
-}
-
-int FixMPMHandshake::size_restart(int /*nlocal*/)
-{
-  return 3;
-}
-
-int FixMPMHandshake::maxsize_restart()
-{
-  return 3;
 }
 
 void FixMPMHandshake::write_restart(FILE *fp)

@@ -16,8 +16,8 @@ FixStyle(mpm/handshake,FixMPMHandshake);
 #define LMP_FIX_MPM_HANDSHAKE_H
 
 #include "declare/option.h"
-#include "fix.h"
 #include "mpm_node_action.h"
+#include "mpm_state.h"
 
 #include <cstdint>
 #include <string>
@@ -44,10 +44,9 @@ struct MPMHandshakeOptions {
 
 /** Zone where atoms and material points describe the same material, each with a share of its energy
  *  and mass, and move with one velocity at the nodes of a field. */
-class FixMPMHandshake : public Fix, public MPMNodeAction, private MPMHandshakeOptions {
+class FixMPMHandshake : public FixMPMState, public MPMNodeAction, private MPMHandshakeOptions {
  public:
   FixMPMHandshake(class LAMMPS *, int, char **);
-  ~FixMPMHandshake() override;
   int setmask() override;
   void init() override;
   void init_list(int, class NeighList *) override;
@@ -60,16 +59,8 @@ class FixMPMHandshake : public Fix, public MPMNodeAction, private MPMHandshakeOp
   double compute_vector(int) override;
   double memory_usage() override;
   void grow_arrays(int) override;
-  void copy_arrays(int, int, int) override;
-  void set_arrays(int) override;
   int pack_forward_comm(int, int *, double *, int, int *) override;
   void unpack_forward_comm(int, int, double *) override;
-  int pack_exchange(int, double *) override;
-  int unpack_exchange(int, double *) override;
-  int pack_restart(int, double *) override;
-  void unpack_restart(int, int) override;
-  int size_restart(int) override;
-  int maxsize_restart() override;
   void write_restart(FILE *) override;
   void restart(char *) override;
 

@@ -15,7 +15,6 @@
 #include "error.h"
 #include "fix_mpm_material.h"
 #include "group.h"
-#include "memory.h"
 #include "modify.h"
 #include "mpm_field.h"
 #include "mpm_node_sums.h"
@@ -58,8 +57,8 @@ Options MPMSurfaceOptions::declare()
 }
 
 FixMPMSurface::FixMPMSurface(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), surface_group(-1), known(false), no_torques(false), at_surface(nullptr),
-    points(MPMPoints::get(atom))
+    FixMPMState(lmp, narg, arg), surface_group(-1), known(false), no_torques(false),
+    at_surface(nullptr), points(MPMPoints::get(atom))
 {
   if (!points || !atom->radius_flag)
     error->all(FLERR,
@@ -84,19 +83,10 @@ FixMPMSurface::FixMPMSurface(LAMMPS *lmp, int narg, char **arg) :
   comm_forward = 1;
   force_reneighbor = 1;
   next_reneighbor = -1;
-  create_attribute = 1;
-  maxexchange = 1;
-  FixMPMSurface::grow_arrays(atom->nmax);
-  atom->add_callback(Atom::GROW);
-  for (int i = 0; i < atom->nlocal; i++) FixMPMSurface::set_arrays(i);
+  state.declare(at_surface, "mpm/surface:at_surface");
+  keep_arrays(false);
   vector_atom = at_surface;
   give_largest();
-}
-
-FixMPMSurface::~FixMPMSurface()
-{
-  if (modify) atom->delete_callback(id, Atom::GROW);
-  memory->destroy(at_surface);
 }
 
 int FixMPMSurface::setmask()
@@ -299,37 +289,15 @@ double FixMPMSurface::compute_scalar()
 
 double FixMPMSurface::memory_usage()
 {
-  return (double) (atom->nmax + share.capacity()) * sizeof(double);
+  return FixMPMState::memory_usage() + share.capacity() * sizeof(double);
 }
 
 /* ---------------------------------------------------------------------- */
 
 void FixMPMSurface::grow_arrays(int nmax)
 {
-  memory->grow(at_surface, nmax, "mpm/surface:at_surface");
+  FixMPMState::grow_arrays(nmax);
   vector_atom = at_surface;
-}
-
-void FixMPMSurface::copy_arrays(int i, int j, int)
-{
-  at_surface[j] = at_surface[i];
-}
-
-void FixMPMSurface::set_arrays(int i)
-{
-  at_surface[i] = 0.0;
-}
-
-int FixMPMSurface::pack_exchange(int i, double *buf)
-{
-  buf[0] = at_surface[i];
-  return 1;
-}
-
-int FixMPMSurface::unpack_exchange(int i, double *buf)
-{
-  at_surface[i] = buf[0];
-  return 1;
 }
 
 int FixMPMSurface::pack_forward_comm(int n, int *list, double *buf, int, int *)

@@ -16,7 +16,7 @@ FixStyle(mpm/surface,FixMPMSurface);
 #define LMP_FIX_MPM_SURFACE_H
 
 #include "declare/option.h"
-#include "fix.h"
+#include "mpm_state.h"
 
 #include <string>
 #include <vector>
@@ -35,10 +35,9 @@ struct MPMSurfaceOptions {
 /** Gives a contact radius, that of their present volume, to the material points at the surface of
  *  bodies and to those that have failed, and none to the others, so that the pair styles of grains
  *  meet no points inside. */
-class FixMPMSurface : public Fix, private MPMSurfaceOptions {
+class FixMPMSurface : public FixMPMState, private MPMSurfaceOptions {
  public:
   FixMPMSurface(class LAMMPS *, int, char **);
-  ~FixMPMSurface() override;
   int setmask() override;
   void init() override;
   void setup_pre_exchange() override;
@@ -53,10 +52,6 @@ class FixMPMSurface : public Fix, private MPMSurfaceOptions {
 
   double memory_usage() override;
   void grow_arrays(int) override;
-  void copy_arrays(int, int, int) override;
-  void set_arrays(int) override;
-  int pack_exchange(int, double *) override;
-  int unpack_exchange(int, double *) override;
   int pack_forward_comm(int, int *, double *, int, int *) override;
   void unpack_forward_comm(int, int, double *) override;
 

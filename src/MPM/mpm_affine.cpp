@@ -144,18 +144,18 @@ void MPMAffine::fit()
 
   for (const auto &run : field.map->runs)
     for (int i = run.first; i < run.last; i++)
-      stencil.visit(field.grid.blocks[run.slot], i,
-                    [&](int64_t node, double weight, const double *r) {
-                      double *const s = &sums[node * NREAL];
-                      const double m = weight * atom->rmass[i], *v = atom->v[i];
-                      s[M] += m;
-                      for (int a = 0, k = 0; a < dim; a++) {
-                        s[X + a] += m * r[a];
-                        s[V + a] += m * v[a];
-                        for (int b = 0; b < dim; b++) s[VX + 3 * a + b] += m * v[a] * r[b];
-                        for (int b = 0; b <= a; b++) s[XX + k++] += m * r[a] * r[b];
-                      }
-                    });
+      stencil.visit(field.grid.blocks[run.slot], i, [&](const MPMStencil::Node &node) {
+        double *const s = &sums[node.number * NREAL];
+        const double *const r = node.r;
+        const double m = node.weight * atom->rmass[i], *v = atom->v[i];
+        s[M] += m;
+        for (int a = 0, k = 0; a < dim; a++) {
+          s[X + a] += m * r[a];
+          s[V + a] += m * v[a];
+          for (int b = 0; b < dim; b++) s[VX + 3 * a + b] += m * v[a] * r[b];
+          for (int b = 0; b <= a; b++) s[XX + k++] += m * r[a] * r[b];
+        }
+      });
   field.grid.fold_aliases(sums.data(), NREAL, 0, NREAL);
   field.halo->sum(sums.data(), NREAL, 0, NREAL);
   field.grid.copy_aliases(sums.data(), NREAL);
@@ -174,15 +174,15 @@ void MPMAffine::fit()
     for (int i = run.first; i < run.last; i++) {
       if (!std::isnan(C[i][0])) continue;
       double mass = 0.0, vx[3][3] = {{0.0}}, xx[3][3] = {{0.0}};
-      stencil.visit(field.grid.blocks[run.slot], i,
-                    [&](int64_t node, double weight, const double *) {
-                      const double *const s = &sums[node * NREAL];
-                      mass += weight * s[M];
-                      for (int a = 0, k = 0; a < dim; a++) {
-                        for (int b = 0; b < dim; b++) vx[a][b] += weight * s[VX + 3 * a + b];
-                        for (int b = 0; b <= a; b++) xx[a][b] += weight * s[XX + k++];
-                      }
-                    });
+      stencil.visit(field.grid.blocks[run.slot], i, [&](const MPMStencil::Node &node) {
+        const double *const s = &sums[node.number * NREAL];
+        const double weight = node.weight;
+        mass += weight * s[M];
+        for (int a = 0, k = 0; a < dim; a++) {
+          for (int b = 0; b < dim; b++) vx[a][b] += weight * s[VX + 3 * a + b];
+          for (int b = 0; b <= a; b++) xx[a][b] += weight * s[XX + k++];
+        }
+      });
       for (int a = 0; a < 3; a++)
         for (int b = 0; b < a; b++) xx[b][a] = xx[a][b];
       double extent[3], axis[3][3];

@@ -140,10 +140,11 @@ void MPMCpdi::reset_corners(int i)
    corners of the domain relative to the point, and their weights; returns the size
 ------------------------------------------------------------------------- */
 
-double MPMCpdi::corners_of(int i, double *x, double *w) const
+double MPMCpdi::corners_of(int i, double *x, double *w, double *g) const
 {
   const int n = 1 << field.lattice.dim;
-  double g[24];
+  double unused[24];
+  if (!g) g = unused;
   if (follows_F()) {
     const double *edge = &edges[size() * (std::size_t) i];
     std::fill(w, w + n, 1.0 / n);

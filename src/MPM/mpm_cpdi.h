@@ -41,8 +41,9 @@ class MPMCpdi : protected Pointers {
   /** cpdi2: points whose domain is inverted are bad; with policy warn it becomes that of F. */
   void check_corners();
 
-  /** Corners of the domain relative to the point, and their weights; returns the size. */
-  double corners_of(int i, double *x, double *w) const;
+  /** Corners of the domain relative to the point, their weights and, if asked for, the gradients of
+   *  these; returns the size. */
+  double corners_of(int i, double *x, double *w, double *g = nullptr) const;
   /** How far a domain reaches from its point along each axis, in node spacings. */
   void reach(int i, double low[3], double high[3]) const;
   /** Half edges of the box that an undeformed point is, after the deformation F. */

@@ -40,6 +40,8 @@ class MPMEvery : protected Pointers {
   double step_dt() const;
   /** Steps of LAMMPS until the next step of the cycle ends, seen from the end of this step. */
   int steps_to_next() const;
+  /** From the place of a point on the lattice to where it is, along axis d. */
+  double displacement(int i, int d) const { return waiting[i][3 + d]; }
 
  private:
   MPMField &field;

@@ -288,7 +288,7 @@ int MPMField::weights(double t, int &first, double w[4]) const
 bool MPMField::moves_late() const
 {
   return options.stress_after() || options.light > 0.0 ||
-      (options.averages_strain() && !options.stress_before());
+      (locking && locking->averages_strain() && !options.stress_before());
 }
 
 /* ---------------------------------------------------------------------- */

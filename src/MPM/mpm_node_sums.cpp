@@ -112,8 +112,9 @@ void LAMMPS_NS::visit_points(const MPMField &field, const std::vector<int> &want
     const auto &block = field.grid.blocks[run.slot];
     if (!reaches(block, near)) continue;
     for (int i = run.first; i < run.last; i++)
-      stencil.visit(block, i, [&](int64_t node, double weight, const double *r) {
-        if (weight != 0.0 && wanted[node] >= 0) f(i, wanted[node], weight, r);
+      stencil.visit(block, i, [&](const MPMStencil::Node &node) {
+        const int which = wanted[node.number];
+        if (node.weight != 0.0 && which >= 0) f(i, which, node.weight, node.r);
       });
   }
 }

@@ -9,8 +9,11 @@
 #ifndef LMP_MPM_PHYSICS_H
 #define LMP_MPM_PHYSICS_H
 
-#include "lmptype.h"
 #include "mpm_plan.h"
+
+#include "fix.h"
+#include "lammps.h"
+#include "modify.h"
 
 #include <limits>
 #include <string>
@@ -47,6 +50,15 @@ class MPMPhysics {
  protected:
   ~MPMPhysics() = default;    // owned and deleted as a Fix
 };
+
+/** All physics, in the order of definition of their fixes. */
+inline std::vector<MPMPhysics *> find_physics(LAMMPS *lmp)
+{
+  std::vector<MPMPhysics *> list;
+  for (auto *ifix : lmp->modify->get_fix_list())
+    if (auto *physics = dynamic_cast<MPMPhysics *>(ifix)) list.push_back(physics);
+  return list;
+}
 
 }    // namespace LAMMPS_NS
 #endif

@@ -36,11 +36,9 @@ void MPMPlan::make()
 {
   fields = MPMField::all(lmp);
   actions.clear();
-  physics.clear();
-  for (auto *ifix : modify->get_fix_list()) {
+  for (auto *ifix : modify->get_fix_list())
     if (auto *action = dynamic_cast<MPMNodeAction *>(ifix)) actions.push_back(action);
-    if (auto *other = dynamic_cast<MPMPhysics *>(ifix)) physics.push_back(other);
-  }
+  physics = find_physics(lmp);
   std::stable_sort(actions.begin(), actions.end(), [](auto *a, auto *b) {
     return a->turn() < b->turn();
   });

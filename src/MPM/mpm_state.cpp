@@ -21,13 +21,22 @@ using namespace LAMMPS_NS;
 
 MPMPointState::~MPMPointState()
 {
-  for (auto &array : arrays) memory->destroy(array.mine);
+  for (auto &array : arrays) {
+    memory->destroy(array.mine);
+    memory->destroy(array.mine_values);
+  }
 }
 
 void MPMPointState::declare(double **&rows, const char *name, int width, Fresh fresh)
 {
   rows = nullptr;
-  arrays.push_back({&rows, nullptr, name, width, std::move(fresh)});
+  arrays.push_back({&rows, nullptr, nullptr, nullptr, name, width, std::move(fresh)});
+}
+
+void MPMPointState::declare(double *&values, const char *name, Fresh fresh)
+{
+  values = nullptr;
+  arrays.push_back({nullptr, &values, nullptr, nullptr, name, 1, std::move(fresh)});
 }
 
 int MPMPointState::size() const
@@ -48,18 +57,22 @@ std::string MPMPointState::layout() const
 
 void MPMPointState::grow(int nmax)
 {
-  for (auto &array : arrays) *array.rows = memory->grow(array.mine, nmax, array.width, array.name);
+  for (auto &array : arrays)
+    if (array.rows)
+      *array.rows = memory->grow(array.mine, nmax, array.width, array.name);
+    else
+      *array.values = memory->grow(array.mine_values, nmax, array.name);
 }
 
 void MPMPointState::copy(int from, int to)
 {
-  for (auto &array : arrays) memcpy(array.mine[to], array.mine[from], array.width * sizeof(double));
+  for (auto &array : arrays) memcpy(array.row(to), array.row(from), array.width * sizeof(double));
 }
 
 void MPMPointState::fresh(int i)
 {
   for (auto &array : arrays) {
-    double *const row = array.mine[i];
+    double *const row = array.row(i);
     memset(row, 0, array.width * sizeof(double));
     if (array.fresh) array.fresh(i, row);
   }
@@ -69,7 +82,7 @@ int MPMPointState::pack(int i, double *buf) const
 {
   double *at = buf;
   for (const auto &array : arrays) {
-    memcpy(at, array.mine[i], array.width * sizeof(double));
+    memcpy(at, array.row(i), array.width * sizeof(double));
     at += array.width;
   }
   return (int) (at - buf);
@@ -79,7 +92,7 @@ int MPMPointState::unpack(int i, const double *buf)
 {
   const double *at = buf;
   for (auto &array : arrays) {
-    memcpy(array.mine[i], at, array.width * sizeof(double));
+    memcpy(array.row(i), at, array.width * sizeof(double));
     at += array.width;
   }
   return (int) (at - buf);

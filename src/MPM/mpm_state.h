@@ -32,6 +32,8 @@ class MPMPointState {
    *  fresh: fills the row of a new atom, which is zero without. The reference to rows must stay
    *  valid as long as this object. */
   void declare(double **&rows, const char *name, int width, Fresh fresh = nullptr);
+  /** The same for one real for each atom. */
+  void declare(double *&values, const char *name, Fresh fresh = nullptr);
 
   bool empty() const { return arrays.empty(); }
   /** Reals of a point in all arrays. */
@@ -47,8 +49,9 @@ class MPMPointState {
 
  private:
   struct Array {
-    double ***rows;    // of the owner, who may be gone when the arrays are destroyed
-    double **mine;
+    double ***rows, **values;    // of the owner, who may be gone when the arrays are destroyed
+    double **mine, *mine_values;
+    double *row(int i) const { return mine ? mine[i] : mine_values + i; }
     const char *name;
     int width;
     Fresh fresh;

@@ -19,35 +19,40 @@ using namespace MPM_NS;
 
 /* ---------------------------------------------------------------------- */
 
-int MPMStencil::weights(double t, int &first, double w[4]) const
+template <class Functions> static int evaluate(double f, double *w, double *slopes)
+{
+  Functions::weights(f, w);
+  if (slopes) Functions::gradients(f, slopes);
+  return Functions::nodes;
+}
+
+int MPMStencil::weights(double t, int &first, double w[4], double *slopes) const
 {
   if (field.options.shape == BERNSTEIN) {
     const double cell = std::floor(0.5 * t);
     first = 2 * (int) cell;
-    Bernstein::weights(0.5 * t - cell, w);
-    return Bernstein::nodes;
+    return evaluate<Bernstein>(0.5 * t - cell, w, slopes);
   }
   const int order = stencil_order(field.options.shape);
   const double s = t - 0.5 * (order - 1);
   first = (int) std::floor(s);
-  if (order == 1)
-    BSpline<1>::weights(s - first, w);
-  else if (order == 2)
-    BSpline<2>::weights(s - first, w);
-  else
-    BSpline<3>::weights(s - first, w);
-  return order + 1;
+  if (order == 1) return evaluate<BSpline<1>>(s - first, w, slopes);
+  if (order == 2) return evaluate<BSpline<2>>(s - first, w, slopes);
+  return evaluate<BSpline<3>>(s - first, w, slopes);
 }
 
-void MPMStencil::weights_of_size(int i, int axis, double t, int first, double w[4]) const
+void MPMStencil::weights_of_size(int i, int axis, double t, int first, double w[4],
+                                 double slopes[4]) const
 {
-  Gimp::weights(t - Gimp::shift - first, field.boxes->sizes[3 * (std::size_t) i + axis], w);
+  const double size = field.boxes->sizes[3 * (std::size_t) i + axis];
+  Gimp::weights(t - Gimp::shift - first, size, w);
+  Gimp::gradients(t - Gimp::shift - first, size, slopes);
 }
 
-int MPMStencil::corners(int i, double *x, double *w) const
+int MPMStencil::corners(int i, double *x, double *w, double *g) const
 {
   if (field.domains) {
-    field.domains->corners_of(i, x, w);
+    field.domains->corners_of(i, x, w, g);
     return 1 << field.lattice.dim;
   }
   w[0] = 1.0;

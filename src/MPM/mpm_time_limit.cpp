@@ -18,7 +18,7 @@
 #include "mpm_field.h"
 #include "mpm_frame.h"
 #include "mpm_guard.h"
-#include "mpm_plan.h"
+#include "mpm_physics.h"
 #include "mpm_point_map.h"
 #include "mpm_points.h"
 #include "mpm_stencil.h"
@@ -62,6 +62,14 @@ double MPMTimeLimit::stable_dt(tagint &id_min, double &wave_speed) const
   double c[BATCH], smallest = std::numeric_limits<double>::max();
   id_min = 0;
   wave_speed = 0.0;
+  for (const auto *physics : field.plan->physics) {
+    tagint tag = 0;
+    const double dt = physics->stable_dt(field, tag);
+    if (dt < smallest) {
+      smallest = dt;
+      id_min = tag;
+    }
+  }
 
   for (int i = 0, last; i < atom->nlocal; i = last) {
     last = i + 1;
@@ -198,11 +206,13 @@ double MPMTimeLimit::share_of_thin_nodes() const
   std::vector<double> sums(grid.nnodes() * NREAL, 0.0);
   for (const auto &run : field.map->runs)
     for (int i = run.first; i < run.last; i++)
-      stencil.visit(grid.blocks[run.slot], i, [&](int64_t node, double weight, const double *r) {
+      stencil.visit(grid.blocks[run.slot], i, [&](const MPMStencil::Node &node) {
+        const double weight = node.weight, *const r = node.r;
         if (weight <= 0.0) return;
         double slope = 0.0;    // square of grad N / N
         int index[3];
-        grid.node_index(grid.blocks[node / NODES_PER_BLOCK], (int) (node % NODES_PER_BLOCK), index);
+        grid.node_index(grid.blocks[node.number / NODES_PER_BLOCK],
+                        (int) (node.number % NODES_PER_BLOCK), index);
         for (int d = 0; d < field.lattice.dim; d++) {
           const double a = fabs(r[d]);
           if (!bernstein)
@@ -212,8 +222,8 @@ double MPMTimeLimit::share_of_thin_nodes() const
           else
             slope += 1.0 / ((1.0 - 0.5 * a) * (1.0 - 0.5 * a));
         }
-        sums[node * NREAL] += atom->vfrac[i] * weight;
-        sums[node * NREAL + 1] += atom->vfrac[i] * weight * weight * slope;
+        sums[node.number * NREAL] += atom->vfrac[i] * weight;
+        sums[node.number * NREAL + 1] += atom->vfrac[i] * weight * weight * slope;
       });
   field.sum(sums.data(), NREAL, 0, NREAL);
   double mine = 0.0, all;
