@@ -219,7 +219,7 @@ def test_pages_have_the_order_of_the_lammps_manual():
 def test_every_source_file_is_in_the_table_of_the_developer_guide():
     text = read(os.path.join(PAGES, "Developer_mpm.rst"))
     table = text[text.index("\nFiles\n"):text.index("\nData structures\n")]
-    names = re.findall(r"(?<![\w.])(?:[a-z]+/)?[a-z]\w*\*?(?:\.(?:h|cpp))?(?![\w.])", table)
+    names = re.findall(r"(?<![\w.])(?:[a-z]+/\*|(?:[a-z]+/)?[a-z]\w*\*?(?:\.(?:h|cpp))?)(?![\w.])", table)
     wrong = []
     for path in sorted(glob.glob(os.path.join(SOURCES, "*.[hc]*")) +
                        glob.glob(os.path.join(SOURCES, "*", "*.[hc]*"))):

@@ -80,7 +80,8 @@ Options MPMImmersedOptions::declare(int dim)
                {"ergun", ERGUN},
                {"schiller", SCHILLER},
                {"stokes", STOKES},
-               {"none", NONE}})});
+               {"none", NONE}})},
+        "law of the drag");
   o.add(
       "gravity",
       {numbers(gravity, 3, "gx gy gz", ANY_NUMBER, "velocity/time",

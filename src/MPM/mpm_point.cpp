@@ -134,7 +134,7 @@ Options MPMPointOptions::declare()
                 "number of turns that the frame makes during the path")})
       .standard("none");
   o.add("temperature", {number(temperature, "T", ANY_NUMBER, "temperature", "initial temperature")})
-      .standard("");
+      .standard("that of the material");
   o.add("length",
         {number(length, "h", POSITIVE, "distance",
                 "node spacing that an artificial viscosity shall see")});

@@ -585,10 +585,10 @@ std::string Options::defaults() const
   Strings parts;
   for (const auto &option : options)
     if (!option.preset.empty()) parts.push_back("*" + option.keyword + "* = " + option.preset);
-  std::string text = parts.size() > 1 ? "The option defaults are" : "The option default is", line;
+  std::string text = parts.size() > 1 ? "The option defaults are" : "The option default is";
   for (std::size_t k = 0; k < parts.size(); k++) {
     const std::string next = " " + std::string(k > 0 && k + 1 == parts.size() ? "and " : "") +
-        parts[k] + (k + 1 == parts.size() ? "." : ",");
+        parts[k] + (k + 1 == parts.size() ? "." : (parts.size() > 2 ? "," : ""));
     const auto start = text.rfind('\n') + 1;    // of the line; 0 when it is the first
     if (text.size() - start + next.size() > 100)
       text += "\n" + next.substr(1);
