@@ -236,9 +236,88 @@ class Scene {
   double **v() { return lmp->atom->v; }
   double *mass() { return lmp->atom->rmass; }
   MPMPoints &points() { return *MPMPoints::get(lmp->atom); }
-  FixMPM *field(const std::string &id = "grid")
+  template <class T = Fix> T *fix(const std::string &id)
   {
-    return dynamic_cast<FixMPM *>(lmp->modify->get_fix_by_id(id));
+    return dynamic_cast<T *>(lmp->modify->get_fix_by_id(id));
+  }
+  FixMPMMaterial *material(const std::string &id = "m") { return fix<FixMPMMaterial>(id); }
+
+  // what tests read of a field: nothing else in the tests knows the members of fix mpm
+
+  std::vector<std::string> fields()
+  {
+    std::vector<std::string> ids;
+    for (auto *one : lmp->modify->get_fix_by_style("^mpm$")) ids.push_back(one->id);
+    return ids;
+  }
+  int dim() { return lmp->domain->dimension; }
+  double spacing(const std::string &id = "grid") { return field(id)->lattice.h; }
+  bool is_point(int i, const std::string &id = "grid") { return field(id)->is_point(i); }
+  /** C[dim*j+i] = d v_i / d x_j of APIC, for each point; null without. */
+  double **affine(const std::string &id = "grid") { return field(id)->C; }
+  /** Bilinear modes of PolyPIC; null without. */
+  double **modes(const std::string &id = "grid") { return field(id)->Q; }
+  /** Corners of CPDI2 from the point; null without. */
+  double **corners(const std::string &id = "grid") { return field(id)->corners; }
+  /** Reference positions, and F at the last update of the reference (total frame). */
+  double **reference_positions() { return field()->X; }
+  double **reference_F() { return field()->R; }
+  /** Displacement since the last step of the cycle. */
+  double waiting(int i, int d, const std::string &id = "grid")
+  {
+    return field(id)->waiting ? field(id)->waiting[i][3 + d] : 0.0;
+  }
+  /** This rank's stable time step; the point that has it, and its wave speed. */
+  double stable_dt(tagint *tag = nullptr, double *wave_speed = nullptr)
+  {
+    tagint whose;
+    double c;
+    return field()->stable_dt_local(tag ? *tag : whose, wave_speed ? *wave_speed : c);
+  }
+  /** The share that points have of the volume around them. */
+  std::vector<double> volume_shares()
+  {
+    std::vector<double> share;
+    field()->volume_at_points(share);
+    return share;
+  }
+  /** Work of the walls on this rank. */
+  double work_of_boundaries() { return field()->ledger.boundary; }
+  void switch_locking_off() { field()->locking = FixMPM::NO_CURE; }
+
+  MPM_NS::Grid &grid(const std::string &id = "grid") { return *field(id)->grid; }
+
+  /** A node after the step. */
+  struct Node {
+    int index[3];
+    double x[3], v[3], mass;
+    bool owned, alias;    ///< counted by this rank; periodic image of another one
+  };
+  /** Calls f(node) for all nodes of this rank. */
+  template <class F> void each_node(const F &f, const std::string &id = "grid")
+  {
+    auto &nodes = grid(id);
+    for (std::size_t slot = 0; slot < nodes.blocks.size(); slot++)
+      for (int n = 0; n < MPM_NS::NODES_PER_BLOCK; n++) {
+        const auto &block = nodes.blocks[slot];
+        Node node;
+        nodes.node_index(block, n, node.index);
+        field(id)->node_position(node.index, node.x);
+        const double *record = nodes.record((int) slot, n);
+        std::copy(record, record + 3, node.v);
+        node.mass = record[3];
+        node.owned = block.owned >> n & 1;
+        node.alias = block.alias >> n & 1;
+        f(node);
+      }
+  }
+  /** Velocity and mass of a node of this rank; null where there is none, or no mass. */
+  const double *node(const int index[3], const std::string &id = "grid")
+  {
+    auto &nodes = grid(id);
+    const auto at = nodes.locate(index);
+    const double *record = at < 0 ? nullptr : nodes.nodes() + at * nodes.nreal;
+    return record && record[3] > 0.0 ? record : nullptr;
   }
 
   /** Take the present positions as the reference: reference(i) is then that of local atom i. */
@@ -283,8 +362,8 @@ class Scene {
           s[7 + d] += 0.4L * m * atom->radius[i] * atom->radius[i] * atom->omega[i][d];
       }
     }
-    for (auto *ifix : lmp->modify->get_fix_by_style("^mpm$")) {
-      auto *fix = dynamic_cast<FixMPM *>(ifix);
+    for (const auto &id : fields()) {
+      const auto *fix = field(id);
       if (!fix->C || fix->shape == MPM_NS::LINEAR) continue;
       const double h = fix->lattice.h;
       const double inertia = h * h / (fix->shape == MPM_NS::QUADRATIC ? 4.0 : 3.0);
@@ -334,6 +413,8 @@ class Scene {
   }
 
  private:
+  FixMPM *field(const std::string &id = "grid") { return fix<FixMPM>(id); }
+
   std::vector<double> values;
   std::vector<std::array<double, 3>> references;
   std::function<void(double **)> callback;

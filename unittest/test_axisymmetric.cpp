@@ -566,7 +566,7 @@ TEST(Axisymmetric, Cells)
   run.commands(start(4, 3, 0.5, "") +
                "create_points 1 box ppc 3\nfix m all mpm/material density 2.0 neohookean 10.0 0.3\n"
                "fix cells all mpm/cells grid\nrun 0\n");
-  auto *cells = run.lmp->modify->get_fix_by_id("cells");
+  auto *cells = run.fix("cells");
   for (const char *name : {"density", "fraction"}) {
     int ncolumn;
     const int index = cells->get_griddata_by_name(0, name, ncolumn);

@@ -30,7 +30,7 @@ void set_field(Scene &run,
                const std::function<void(const double *x, double *v, double g[3][3])> &field)
 {
   auto *atom = run.lmp->atom;
-  double **C = run.field()->C;
+  double **C = run.affine();
   const int dim = run.lmp->domain->dimension;
   for (int i = 0; i < atom->nlocal; i++) {
     double v[3] = {0.0, 0.0, 0.0}, g[3][3] = {{0.0}};
@@ -164,7 +164,7 @@ TEST_P(WallVelocity, LinearFieldsArePreserved)
       EXPECT_NEAR(after[k].x[d], before[k].x[d] + 0.01 * before[k].v[d], 1.0e-13);
     }
   auto *atom = run.lmp->atom;
-  double **C = run.field()->C;
+  double **C = run.affine();
   for (int i = 0; i < atom->nlocal && !friction; i++) {
     EXPECT_NEAR(C[i][3], 0.7, 1.0e-12);
     EXPECT_NEAR(C[i][4], -0.4, 1.0e-12);
@@ -446,8 +446,8 @@ run 1
     run.commands(replaced(scene, "MPM_V", std::to_string(V)));
     const double u = -0.5 - V;
     const double p = -area * u * (plane + 4.0 * inside * image / (inside + image));
-    auto *fix = run.lmp->modify->get_fix_by_id("w");
-    double mine = run.field()->ledger.boundary, ledger;
+    auto *fix = run.fix("w");
+    double mine = run.work_of_boundaries(), ledger;
     MPI_Allreduce(&mine, &ledger, 1, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
     EXPECT_NEAR(ledger, p * V, 1.0e-12);    // what the collision dissipates is under transfer
     EXPECT_NEAR(fix->compute_vector(1), -p / 0.01, 1.0e-12 * p / 0.01);
@@ -465,7 +465,7 @@ fix w all mpm/boundary ylo slip velocity 0 MPM_V 0
 run 0
 )",
                           "MPM_V", std::to_string(V)));
-    EXPECT_NEAR(run.lmp->modify->get_fix_by_id("w")->compute_scalar(), before, 1.0e-15);
+    EXPECT_NEAR(run.fix("w")->compute_scalar(), before, 1.0e-15);
   }
 }
 
@@ -625,7 +625,7 @@ TEST_P(Separate, ABodyThatLeavesFeelsNothing)
   without.commands(replaced(place, "WALL", "") +
                    "velocity all ramp vy 0.0 0.2 y 0 0.4 sum yes\nrun 100\n");
   EXPECT_LT(difference(with.gather(), without.gather()), 1.0e-13);
-  EXPECT_EQ(with.lmp->modify->get_fix_by_id("w")->compute_scalar(), 0.0);
+  EXPECT_EQ(with.fix("w")->compute_scalar(), 0.0);
 }
 
 TEST_P(Separate, AThrownBodyRebounds)
@@ -771,7 +771,7 @@ TEST(CutFaces, Settlement)
                              "variable yc equal xcm(all,y)\nfix av all ave/time 1 545 545 v_yc\n"
                              "run 545\n",
                              shape, 0.05 * offset, 0.05 * offset));
-      const double mean = 0.5 - run.lmp->modify->get_fix_by_id("av")->compute_scalar();
+      const double mean = 0.5 - run.fix("av")->compute_scalar();
       const double exact = 1000.0 / (3.0 * 1.0e6 * 0.7 / (1.3 * 0.4));
       const double ratio =
           measured(strprintf("settlement/exact, %s, offset %g", shape, offset), mean / exact);
@@ -1033,7 +1033,7 @@ run 0
   const double v = run.variable("v");
   if (run.lmp->comm->me == 0) printf("  mean velocity %.4f\n", v);
   EXPECT_NEAR(v, -0.1, 0.01);
-  EXPECT_NEAR(run.lmp->modify->get_fix_by_id("w")->compute_scalar(), -0.1 * 16.0 * v, 1.0e-6);
+  EXPECT_NEAR(run.fix("w")->compute_scalar(), -0.1 * 16.0 * v, 1.0e-6);
 }
 
 /* ----------------------------------------------------------------------
@@ -1111,29 +1111,23 @@ timestep 0.01
 fix w all mpm/boundary region obstacle slip
 run 1
 )");
-    auto *field = run.field();
     int checked = 0;
-    for (std::size_t b = 0; b < field->grid->blocks.size(); b++)
-      for (int n = 0; n < 64; n++) {
-        int index[3];
-        double x[3], normal[3];
-        field->grid->node_index(field->grid->blocks[b], n, index);
-        field->node_position(index, x);
-        const double *r = field->grid->record(b, n);
-        if (r[3] <= 0.0) continue;
-        const int inside = c.normal(x, normal);
-        const double v0[3] = {0.3, -0.2, 0.15};
-        if (inside == 0) {
-          for (int d = 0; d < 3; d++) EXPECT_NEAR(r[d], v0[d], 1.0e-12) << c.region;
-        } else if (inside == 1) {
-          double vn = 0.0;
-          for (int d = 0; d < 3; d++) vn += v0[d] * normal[d];
-          for (int d = 0; d < 3; d++)
-            EXPECT_NEAR(r[d], v0[d] - vn * normal[d], 1.0e-7)
-                << c.region << " at " << x[0] << " " << x[1] << " " << x[2];
-          checked++;
-        }
+    run.each_node([&](const Scene::Node &node) {
+      if (node.mass <= 0.0) return;
+      double normal[3];
+      const int inside = c.normal(node.x, normal);
+      const double v0[3] = {0.3, -0.2, 0.15};
+      if (inside == 0) {
+        for (int d = 0; d < 3; d++) EXPECT_NEAR(node.v[d], v0[d], 1.0e-12) << c.region;
+      } else if (inside == 1) {
+        double vn = 0.0;
+        for (int d = 0; d < 3; d++) vn += v0[d] * normal[d];
+        for (int d = 0; d < 3; d++)
+          EXPECT_NEAR(node.v[d], v0[d] - vn * normal[d], 1.0e-7)
+              << c.region << " at " << node.x[0] << " " << node.x[1] << " " << node.x[2];
+        checked++;
       }
+    });
     int all;
     MPI_Allreduce(&checked, &all, 1, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
     EXPECT_GT(all, 20) << c.region;
@@ -1164,20 +1158,16 @@ timestep 0.05
 run 0
 )");
   run.commands("run 60\n");    // the region covers 7 to 12 now
-  auto *field = run.field();
   int held = 0, under = 0;
-  for (std::size_t b = 0; b < field->grid->blocks.size(); b++)
-    for (int n = 0; n < 64; n++) {
-      int index[3];
-      field->grid->node_index(field->grid->blocks[b], n, index);
-      const double *r = field->grid->record(b, n);
-      if (r[3] <= 0.0) continue;
-      if (index[0] >= 8 && index[0] <= 11 && index[1] == 8) {    // not next to the sides
-        EXPECT_EQ(r[1], 0.0);
-        under++;
-      } else if (r[1] == 0.0 && (index[0] < 7 || index[0] > 11))
-        held++;
-    }
+  run.each_node([&](const Scene::Node &node) {
+    const int *index = node.index;
+    if (node.mass <= 0.0) return;
+    if (index[0] >= 8 && index[0] <= 11 && index[1] == 8) {    // not next to the sides
+      EXPECT_EQ(node.v[1], 0.0);
+      under++;
+    } else if (node.v[1] == 0.0 && (index[0] < 7 || index[0] > 11))
+      held++;
+  });
   int mine[2] = {held, under}, all[2];
   MPI_Allreduce(mine, all, 2, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
   EXPECT_EQ(all[0], 0);
@@ -1240,7 +1230,7 @@ TEST_P(Decomposition, AnyRanksGiveTheSame)
     double expected[4] = {fix->compute_vector(0), fix->compute_vector(1), fix->compute_vector(2),
                           fix->compute_scalar()};
     for (Scene *run : {&brick, &tiled}) {
-      auto *other = run->lmp->modify->get_fix_by_id(fix->id);
+      auto *other = run->fix(fix->id);
       for (int d = 0; d < 3; d++) EXPECT_NEAR(other->compute_vector(d), expected[d], 1.0e-8);
       EXPECT_NEAR(other->compute_scalar(), expected[3], 1.0e-9);
     }
@@ -1257,8 +1247,7 @@ TEST_P(Decomposition, RestartContinues)
                  options(GetParam()) + "\n" + definitions(GetParam()) + "run 27\n");
   EXPECT_LT(difference(whole.gather(), parts.gather()), 1.0e-11);
   for (auto *fix : whole.lmp->modify->get_fix_by_style("^mpm/boundary$"))
-    EXPECT_NEAR(parts.lmp->modify->get_fix_by_id(fix->id)->compute_scalar(), fix->compute_scalar(),
-                1.0e-9);
+    EXPECT_NEAR(parts.fix(fix->id)->compute_scalar(), fix->compute_scalar(), 1.0e-9);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -1348,7 +1337,7 @@ TEST(TimeStep, Limit)
   run.commands(std::string(dt_scene) + "timestep 1e9\nfix step all mpm/dt 0.5 every 1\nrun 0\n");
   const double c = std::sqrt(10.0 * 0.7 / (1.3 * 0.4)), v = std::sqrt(0.36 + 0.1225 + 0.16);
   EXPECT_NEAR(run.lmp->update->dt, 0.5 / (c + v), 1.0e-9);
-  auto *fix = run.lmp->modify->get_fix_by_id("step");
+  auto *fix = run.fix("step");
   EXPECT_NEAR(fix->compute_scalar(), run.lmp->update->dt, 0.0);
   EXPECT_NEAR(fix->compute_vector(1), c, 1.0e-9);
   EXPECT_GE(fix->compute_vector(0), 1.0);
@@ -1405,7 +1394,7 @@ TEST(TimeStep, StrainOfAStep)
       });
       run.commands("fix step all mpm/dt 0.5 max 0.1 strain 0.003\nrun 4\n");
       EXPECT_NEAR(run.lmp->update->dt, 0.003 / (3.0 * rate) / every, 0.025 * 0.05 / every);
-      auto *fix = run.lmp->modify->get_fix_by_id("step");
+      auto *fix = run.fix("step");
       EXPECT_EQ(fix->compute_vector(1), 0.0);    // no wave speed
       EXPECT_GE(fix->compute_vector(0), 1.0);
     }

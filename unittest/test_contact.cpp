@@ -444,24 +444,17 @@ TEST(ManyBodies, NoneApproaches)
                         "FIELDS law coulomb 0.4", "F1 F2 F3 gap no"),
                "velocity three set 0.1 -0.5 0", "velocity three set 0.1 0.3 0"));
   run.commands("run 1\n");
-  auto &grid = *run.field("F1")->grid;
   int all = 0;
-  for (std::size_t slot = 0; slot < grid.blocks.size(); slot++)
-    for (int n = 0; n < MPM_NS::NODES_PER_BLOCK; n++) {
-      if (grid.blocks[slot].alias >> n & 1) continue;
-      int index[3];
-      grid.node_index(grid.blocks[slot], n, index);
-      std::vector<const double *> row;    // from left to right
-      for (const char *id : {"F1", "F3", "F2"}) {
-        auto &other = *run.field(id)->grid;
-        const auto there = other.locate(index);
-        if (there >= 0 && other.nodes()[there * other.nreal + 3] > 0.0)
-          row.push_back(other.nodes() + there * other.nreal);
-      }
-      for (std::size_t k = 1; k < row.size(); k++)
-        EXPECT_LT(row[k - 1][0] - row[k][0], 1e-9) << index[0];
-      all += row.size() == 3;
-    }
+  const auto look = [&](const Scene::Node &node) {
+    if (node.alias) return;
+    std::vector<const double *> row;    // from left to right
+    for (const char *id : {"F1", "F3", "F2"})
+      if (const double *there = run.node(node.index, id)) row.push_back(there);
+    for (std::size_t k = 1; k < row.size(); k++)
+      EXPECT_LT(row[k - 1][0] - row[k][0], 1e-9) << node.index[0];
+    all += row.size() == 3;
+  };
+  run.each_node(look, "F1");
   EXPECT_GT(all, 0);
 }
 
@@ -500,19 +493,13 @@ TEST(Order, WallsActAfterContact)
   // friction between the bodies pushes nodes at the wall up and down: the wall does not let them
 
   int both = 0;
-  for (const char *id : {"F1", "F2"}) {
-    auto &grid = *after.field(id)->grid;
-    auto &other = *after.field(id[1] == '1' ? "F2" : "F1")->grid;
-    for (std::size_t slot = 0; slot < grid.blocks.size(); slot++)
-      for (int n = 0; n < MPM_NS::NODES_PER_BLOCK; n++) {
-        int index[3];
-        grid.node_index(grid.blocks[slot], n, index);
-        const double *record = grid.record((int) slot, n);
-        if (index[1] != 0 || record[3] == 0.0) continue;
-        const auto there = other.locate(index);
-        if (there >= 0) both += other.nodes()[there * other.nreal + 3] > 0.0;
-        EXPECT_EQ(record[1], 0.0) << id << " " << index[0];
-      }
+  for (const std::string id : {"F1", "F2"}) {
+    const auto look = [&](const Scene::Node &node) {
+      if (node.index[1] != 0 || node.mass == 0.0) return;
+      both += after.node(node.index, id == "F1" ? "F2" : "F1") != nullptr;
+      EXPECT_EQ(node.v[1], 0.0) << id << " " << node.index[0];
+    };
+    after.each_node(look, id);
   }
   EXPECT_GT(both, 0);
   EXPECT_GT(after.evaluate("f_c[1][4]"), 0.0);    // they push now

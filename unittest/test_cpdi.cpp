@@ -235,7 +235,7 @@ thermo 100000
     volume[0] = volume[1] = 0.0;
     for (int i = 0; i < run.n(); i++) {
       double weight[4], gradient[8];
-      volume[0] += MPM_NS::PointDomain<2>::free(run.field()->corners[i], weight, gradient);
+      volume[0] += MPM_NS::PointDomain<2>::free(run.corners()[i], weight, gradient);
       volume[1] += run.points().jacobian(i) * run.lmp->atom->vfrac[i];
     }
   }
@@ -463,7 +463,7 @@ thermo 1000
 run 1
 )",
                            policy));
-    double *corner = run.field()->corners[5];
+    double *corner = run.corners()[5];
     for (int d = 0; d < 2; d++)
       std::swap(corner[d], corner[2 + d]), std::swap(corner[4 + d], corner[6 + d]);
     if (std::string(policy) == "error") {
@@ -477,8 +477,7 @@ run 1
     ASSERT_EQ(run.n(), keeps ? 16 : 15);
     for (int i = 0; i < run.n(); i++)
       for (int k = 0; k < 8; k++)    // all squares
-        EXPECT_NEAR(run.field()->corners[i][k], 0.25 * MPM_NS::PointDomain<2>::sign(k / 2, k % 2),
-                    1e-8);
+        EXPECT_NEAR(run.corners()[i][k], 0.25 * MPM_NS::PointDomain<2>::sign(k / 2, k % 2), 1e-8);
   }
 }
 

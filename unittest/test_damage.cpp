@@ -147,7 +147,7 @@ TEST(DamageRestart, ContinuesBitwise)
                   60);
     auto &whole = run.whole, &again = run.again;
     EXPECT_TRUE(identical(whole.gather(), again.gather()));
-    auto *material = dynamic_cast<FixMPMMaterial *>(whole.lmp->modify->get_fix_by_id("m"));
+    auto *material = whole.material();
     for (const auto &variable : material->material->history())
       EXPECT_EQ(history(whole, variable.name), history(again, variable.name)) << variable.name;
     double largest = 0.0;

@@ -51,34 +51,29 @@ TEST(Edges, FunctionsAreModified)
                  order == 2 ? "transfer flip 1.0" : "shape cubic transfer flip 1.0 scheme musl") +
         "displace_atoms all random 0.1 0.1 0.1 4711 units box\nrun 1 post no\n");
     auto *atom = run.lmp->atom;
-    auto *field = dynamic_cast<FixMPM *>(run.lmp->modify->get_fix_by_id("grid"));
-    auto &grid = *field->grid;
     double total = 0.0;
-    for (std::size_t slot = 0; slot < grid.blocks.size(); slot++)
-      for (int n = 0; n < NODES_PER_BLOCK; n++) {
-        if (!(grid.blocks[slot].owned >> n & 1)) continue;
-        int index[3];
-        grid.node_index(grid.blocks[slot], n, index);
-        const double m = grid.record((int) slot, n)[3];
-        total += m;
-        if (index[0] < 0 || index[0] > 6 || index[2] < 0 || index[2] > 4) {
-          EXPECT_EQ(m, 0.0);
-          continue;
-        }
-        double exact = 0.0;
-        for (int i = 0; i < run.n(); i++) {
-          const double *x = atom->x[i];    // the body is at rest
-          const double wx = index[0] < 3 ? modified(order, index[0], x[0])
-                                         : modified(order, 6 - index[0], 6.0 - x[0]);
-          const double wz = index[2] < 2 ? modified(order, index[2], x[2])
-                                         : modified(order, 4 - index[2], 4.0 - x[2]);
-          double wy = 0.0;
-          for (int image = -5; image <= 5; image += 5)
-            wy += modified(order, 100, 100.0 + x[1] + image - index[1]);
-          exact += atom->rmass[i] * wx * wy * wz;
-        }
-        EXPECT_NEAR(m, exact, 1.0e-12);
+    run.each_node([&](const Scene::Node &node) {
+      if (!node.owned) return;
+      const int *index = node.index;
+      total += node.mass;
+      if (index[0] < 0 || index[0] > 6 || index[2] < 0 || index[2] > 4) {
+        EXPECT_EQ(node.mass, 0.0);
+        return;
       }
+      double exact = 0.0;
+      for (int i = 0; i < run.n(); i++) {
+        const double *x = atom->x[i];    // the body is at rest
+        const double wx = index[0] < 3 ? modified(order, index[0], x[0])
+                                       : modified(order, 6 - index[0], 6.0 - x[0]);
+        const double wz = index[2] < 2 ? modified(order, index[2], x[2])
+                                       : modified(order, 4 - index[2], 4.0 - x[2]);
+        double wy = 0.0;
+        for (int image = -5; image <= 5; image += 5)
+          wy += modified(order, 100, 100.0 + x[1] + image - index[1]);
+        exact += atom->rmass[i] * wx * wy * wz;
+      }
+      EXPECT_NEAR(node.mass, exact, 1.0e-12);
+    });
     EXPECT_NEAR(total, 120.0, 1.0e-11);
   }
 }

@@ -27,20 +27,18 @@ static std::vector<std::array<double, 7>> places(Scene &run)
     double tag, x[6];
   };
   std::vector<Row> mine;
-  for (auto *ifix : run.lmp->modify->get_fix_by_style("^mpm$")) {
-    auto *field = dynamic_cast<FixMPM *>(ifix);
+  for (const auto &field : run.fields())
     for (int i = 0; i < run.n(); i++) {
-      if (!field->is_point(i)) continue;
+      if (!run.is_point(i, field)) continue;
       Row row{(double) run.lmp->atom->tag[i], {0.0}};
       double x[3];
       run.lmp->domain->unmap(run.x()[i], run.lmp->atom->image[i], x);
       for (int d = 0; d < 3; d++) {
-        row.x[d] = x[d] - (field->waiting ? field->waiting[i][3 + d] : 0.0);
+        row.x[d] = x[d] - run.waiting(i, d, field);
         row.x[3 + d] = run.v()[i][d];
       }
       mine.push_back(row);
     }
-  }
   for (const auto &row : all_by_tag(mine, run.lmp->world))
     rows.push_back({row.tag, row.x[0], row.x[1], row.x[2], row.x[3], row.x[4], row.x[5]});
   return rows;
@@ -245,8 +243,7 @@ TEST(Seen, SpringIsNotDamped)
     const int cycles = 500;
     for (int k = 0; k < cycles; k++) {
       run.commands(strprintf("run %d pre no post no\n", every));
-      const auto *field = run.field();
-      const double x = seen(0) - (field->waiting ? field->waiting[0][3] : 0.0), v = run.v()[0][0];
+      const double x = seen(0) - run.waiting(0, 0), v = run.v()[0][0];
       const double energy = v * v + omega * omega * x * (x - step * v);    // x: after this v
       least = std::min(least, energy);
       most = std::max(most, energy);
@@ -335,7 +332,7 @@ TEST(Seen, TorqueIsNotLostWithTheGroup)
       "100.0\n"
       "pair_style granular\npair_coeff * * hooke 60.0 2.0 tangential linear_nohistory 1.0 0.5\n"
       "neigh_modify exclude type 1 1\ntimestep 0.01\nthermo 1000\nrun 0\n");
-  const auto *material = dynamic_cast<FixMPMMaterial *>(run.lmp->modify->get_fix_by_id("m"));
+  const auto *material = run.material();
   const auto inside = [&] {
     int i = 0;
     while (run.lmp->atom->tag[i] != 6 * 144 + 6 * 12 + 6) i++;

@@ -175,7 +175,7 @@ TEST(LightNodes, ShareIsThatOfTheVolume)
                   "fix m all mpm/material density %g eos stiffened/gas 2.0 0.49 pressure %g\n"
                   "timestep %g\nrun 1\n",
                   scheme, light, 2.0 + fx, 3.0 + fy, V, rho * V, rho, p, dt));
-    const double *C = dynamic_cast<FixMPM *>(run.lmp->modify->get_fix_by_id("grid"))->C[0];
+    const double *C = run.affine()[0];
     const double scale = V / light * dt * p / rho;
     EXPECT_NEAR(C[0] / scale, 2.0 * ((1.0 - fy) * (1.0 - fy) + fy * fy), 1.0e-9);
     EXPECT_NEAR(C[3] / scale, 2.0 * ((1.0 - fx) * (1.0 - fx) + fx * fx), 1.0e-9);
@@ -205,7 +205,7 @@ TEST(LightRings, ShareIsThatOfTheArea)
                     "fix m all mpm/material density %g eos stiffened/gas 2.0 0.49 pressure %g\n"
                     "fix axis all mpm/boundary xlo slip\ntimestep %g\nrun 1\n",
                     light, transfer, r, 3.0 + fy, V, rho * V, rho, p, dt));
-      const double *C = run.field()->C[0], scale = A / light * dt * p / rho;
+      const double *C = run.affine()[0], scale = A / light * dt * p / rho;
       const double x = 1.0 - fx, y = 1.0 - fy, xx = x * x + fx * fx, yy = y * y + fy * fy;
       const bool held = cell == 0.0;
       EXPECT_NEAR(C[0] / scale, held ? 2.0 * light / A + 2.0 * x * yy : 2.0 * yy, 1.0e-9);
@@ -516,7 +516,7 @@ TEST(AdaptiveTimeStep, FollowsWithinOneStep)
                "fix m all mpm/material density 1 eos ideal/gas 1.4 energy 1.0\n"
                "fix dt all mpm/dt 0.5 every 1\nthermo 100000\nrun 1\n");
   const double before = run.lmp->update->dt;
-  auto *material = dynamic_cast<FixMPMMaterial *>(run.lmp->modify->get_fix_by_id("m"));
+  auto *material = run.material();
   const int energy = material->find_history("energy");
   ASSERT_GE(energy, 0);
   run.each_step([&](double **) {

@@ -179,7 +179,7 @@ static const char *const energies =
 static std::array<double, 4> momentum(Scene &run)
 {
   auto *atom = run.lmp->atom;
-  const auto *bridge = run.lmp->modify->get_fix_by_id("bridge");
+  const auto *bridge = run.fix("bridge");
   const double half = 0.5 * run.lmp->update->dt * run.lmp->force->ftm2v;
   double p[4] = {0.0}, all[4];
   for (int i = 0; i < atom->nlocal; i++)
@@ -363,7 +363,7 @@ TEST(Handshake, KeepsMomentum)
       const auto end = momentum(run);
       for (int d = 0; d < 3; d++)
         EXPECT_NEAR(end[d], start[d], 1.0e-12 * start[3]) << name << options;
-      const double heat = run.lmp->modify->get_fix_by_id("bridge")->compute_scalar();
+      const double heat = run.fix("bridge")->compute_scalar();
       if (options.empty())
         EXPECT_EQ(heat, 0.0);
       else
@@ -431,11 +431,10 @@ TEST(Handshake, SameOnRanksAndAfterRestart)
     again.commands(next);
     serial.commands(next);
     double *const losses = whole.fix_vector("bridge", 4);
-    const double heat = whole.lmp->modify->get_fix_by_id("bridge")->compute_scalar();
+    const double heat = whole.fix("bridge")->compute_scalar();
     for (auto *other : {&again, &serial}) {
       EXPECT_LT(difference(whole.gather(), other->gather()), 1.0e-10) << made.name;
-      EXPECT_NEAR(other->lmp->modify->get_fix_by_id("bridge")->compute_scalar(), heat,
-                  1.0e-10 * heat);
+      EXPECT_NEAR(other->fix("bridge")->compute_scalar(), heat, 1.0e-10 * heat);
       EXPECT_NEAR(other->fix_vector("bridge", 4)[3], losses[3], 1.0e-10 * heat);
     }
   }

@@ -252,7 +252,7 @@ TEST_P(Volume, SumIsThatOfTheMotion)
         v[2] = dim == 3 ? cos(x[0]) * sin(x[2] + x[1]) : 0.0;
       });
       run.commands("run 4\n");
-      if (!averaged) run.field()->locking = FixMPM::NO_CURE;
+      if (!averaged) run.switch_locking_off();
       run.commands("run 1\n");
       volume[averaged] = largest[averaged] = 0.0;
       for (int i = 0; i < run.n(); i++) {

@@ -52,7 +52,7 @@ timestep 1.0e-9
 
 FixMPMMaterial *material(Scene &run, const std::string &id)
 {
-  return dynamic_cast<FixMPMMaterial *>(run.lmp->modify->get_fix_by_id(id));
+  return run.material(id);
 }
 
 /** The error that a definition gives: what follows "fix m one mpm/material". */

@@ -170,7 +170,7 @@ class ByHand : public ::testing::Test {
   {
     auto *atom = run.lmp->atom;
     auto *points = MPMPoints::get(atom);
-    auto *plastic = dynamic_cast<FixMPMMaterial *>(run.lmp->modify->get_fix_by_id("m2"));
+    auto *plastic = run.material("m2");
     const int eplastic = plastic->find_history("eplastic");
     ASSERT_GE(eplastic, 0);
     for (int i = 0; i < atom->nlocal; i++) {

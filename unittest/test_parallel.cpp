@@ -202,8 +202,8 @@ TEST_P(Walls, ReactionsAndEnergiesAgree)
     std::vector<double> a, b;
     for (const char *wall : {"floor", "side", "push"})
       for (int d = -1; d < 3; d++) {
-        auto *s = serial.lmp->modify->get_fix_by_id(wall);
-        auto *p = parallel.lmp->modify->get_fix_by_id(wall);
+        auto *s = serial.fix(wall);
+        auto *p = parallel.fix(wall);
         a.push_back(d < 0 ? s->compute_scalar() : s->compute_vector(d));
         b.push_back(d < 0 ? p->compute_scalar() : p->compute_vector(d));
       }

@@ -164,7 +164,6 @@ TEST_P(Patch, AffineVelocity)
                          GetParam()));
   run.set_reference();
   const double A[3][3] = {{0.8, 0.3, 0.0}, {-0.2, -0.4, 0.1}, {0.0, 0.25, 0.15}};
-  auto *field = run.field();
   for (int i = 0; i < run.n(); i++)
     for (int d = 0; d < 3; d++) {
       run.v()[i][d] = 0.3;
@@ -186,7 +185,7 @@ TEST_P(Patch, AffineVelocity)
           for (int k = 0; k < 3; k++) expected += 0.1 * A[d][k] * F[3 * k + e];
         }
         error_F = std::max(error_F, std::abs(F[3 * d + e] - expected));
-        error_v = std::max(error_v, std::abs(field->C[i][3 * e + d] - A[d][e]));
+        error_v = std::max(error_v, std::abs(run.affine()[i][3 * e + d] - A[d][e]));
       }
       error_v = std::max(error_v, std::abs(run.v()[i][d] - v));
       error = std::max(error, std::abs(run.x()[i][d] - run.reference(i)[d] - 0.1 * v));
@@ -209,13 +208,12 @@ class AffineFit : public ::testing::TestWithParam<std::tuple<int, const char *>>
  protected:
   static double error(Scene &run, const double A[3][3])
   {
-    auto *field = run.field();
-    const int dim = field->lattice.dim;
+    const int dim = run.dim();
     double worst = 0.0;
     for (int i = 0; i < run.n(); i++)
       for (int d = 0; d < dim; d++)
         for (int e = 0; e < dim; e++)
-          worst = std::max(worst, std::abs(field->C[i][dim * e + d] - A[d][e]));
+          worst = std::max(worst, std::abs(run.affine()[i][dim * e + d] - A[d][e]));
     return worst;
   }
 };
@@ -288,9 +286,8 @@ TEST(AffineFit, SecondField)
                "group a type 1\ngroup b type 2\nfix first a mpm 1.0\nfix grid b mpm 1.0\n"
                "fix m all mpm/material density 1 neohookean 100 0.3\nthermo 1000\n"
                "velocity b ramp vx -1 1 y 3 8\nrun 0\n");
-  const auto *field = dynamic_cast<FixMPM *>(run.lmp->modify->get_fix_by_id("grid"));
   for (int i = 0; i < run.n(); i++)
-    if (field->is_point(i)) { EXPECT_NEAR(field->C[i][2], 0.4, 1.0e-12); }
+    if (run.is_point(i)) { EXPECT_NEAR(run.affine()[i][2], 0.4, 1.0e-12); }
 }
 
 TEST(AffineFit, ThinBodies)
@@ -310,7 +307,7 @@ TEST(AffineFit, ThinBodies)
   const double A[9] = {0.0, 0.2, 0.1, -0.2, 0.0, 0.0, 0.0, 0.0, 0.0};    // columns
   for (int i = 0; i < run.n(); i++)
     for (int c = 0; c < 9; c++)
-      EXPECT_NEAR(run.field()->C[i][c], run.lmp->atom->type[i] == 1 ? A[c] : 0.0, 1.0e-12);
+      EXPECT_NEAR(run.affine()[i][c], run.lmp->atom->type[i] == 1 ? A[c] : 0.0, 1.0e-12);
 }
 
 // with stress: the interior of a uniformly stretching block is free of force, up to what the

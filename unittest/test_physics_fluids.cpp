@@ -351,7 +351,7 @@ TEST(Hugoniot, SymmetricImpactAt7KilometersPerSecond)
     p += pressure(s);
     count++;
   }
-  auto *material = dynamic_cast<FixMPMMaterial *>(run.lmp->modify->get_fix_by_id("al"));
+  auto *material = run.material("al");
   for (int i = 0; i < run.n(); i++)
     if (run.x()[i][0] > 8e-4 && run.x()[i][0] < 4e-3)
       energy += material->history[i][material->find_history("energy")] / rho / count;
@@ -582,18 +582,18 @@ const std::string water = strprintf("eos tait %g 7", BULK);
 /** Kinetic energy, also of the affine matrices, and stored energy. */
 double energy_of_drop(Scene &run)
 {
-  const int dim = run.field()->lattice.dim;
+  const int dim = run.dim();
   double sum = run.sums().kinetic + run.stored_energy();
   for (int i = 0; i < run.n(); i++)
-    for (int k = 0; k < dim * dim; k++) sum += run.mass()[i] / 8.0 * pow(run.field()->C[i][k], 2);
+    for (int k = 0; k < dim * dim; k++) sum += run.mass()[i] / 8.0 * pow(run.affine()[i][k], 2);
   return sum;
 }
 
 /** L of a single point: expansion, and a shear without rotation. Column-major. */
 void set_gradient(Scene &run, double rate)
 {
-  const int dim = run.field()->lattice.dim;
-  double *C = run.field()->C[0];
+  const int dim = run.dim();
+  double *C = run.affine()[0];
   for (int k = 0; k < dim * dim; k++) C[k] = k % (dim + 1) ? 0.0 : rate;
   C[1] = C[dim] = SHEAR;
 }
@@ -710,7 +710,7 @@ TEST(FreeFlight, SolidsForgetNothing)
 
     Scene run;
     run.commands(drop(dim, 1, "eos tait 1e-20 7", "frame total") + "run 0\n");
-    run.field()->C[0][dim] = 50.0;    // L_xy
+    run.affine()[0][dim] = 50.0;    // L_xy
     run.commands("run 1000\n");
     EXPECT_NEAR(run.points().F[0][1], 1000 * DT * 50.0, 1e-9);
   }

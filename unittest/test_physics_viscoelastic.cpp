@@ -109,7 +109,7 @@ TEST_P(StandingWave, AmplitudeAndEnergy)
   measured(std::string(c.name) + " amplitude left", std::hypot(mode.y[1], 10.0 * k * mode.y[0]));
   EXPECT_LT(worst, 0.02);
 
-  const auto *material = dynamic_cast<FixMPMMaterial *>(run.lmp->modify->get_fix_by_id("solid"));
+  const auto *material = run.material("solid");
   const double left = run.sums().kinetic + run.stored_energy(),
                viscous = material->work[MPM_NS::VISCOUS];
   measured(std::string(c.name) + " viscous work", viscous / energy0);

@@ -381,7 +381,7 @@ TEST(Pitfall, EmptyCellsCostNoMemory)
                     "fix soft all mpm/material density 1.0 neohookean 10.0 0.3\n"
                     "velocity all ramp vy -0.1 0.1 x 2 6\ntimestep 0.05\nthermo 1000\nrun 20\n",
                     size));
-    auto *grid = run.lmp->modify->get_fix_by_id("grid");
+    auto *grid = run.fix("grid");
     bytes[k] = grid->memory_usage();
     blocks[k] = grid->compute_vector(1);
   }
@@ -412,17 +412,16 @@ TEST(Pitfall, SharedNodesTravelOncePerSum)
                  "region body block 2 10 2 10 2 10\ncreate_points 1 region body ppc 2\n"
                  "fix soft all mpm/material density 1.0 neohookean 10.0 0.3\n"
                  "timestep 0.05\nthermo 1000\nrun 10\n");
-    auto *fix = run.field();
 
     // blocks that several ranks have, counted independently of the code under test
     std::vector<uint64_t> mine;
-    for (const auto &block : fix->grid->blocks) mine.push_back(MPM_NS::Grid::block_key(block));
+    for (const auto &block : run.grid().blocks) mine.push_back(MPM_NS::Grid::block_key(block));
     std::map<uint64_t, double> sharers;
     for (uint64_t key : all_rows(mine, run.lmp->world)) sharers[key] += 1.0;
     double messages = 0.0;
     for (const auto &s : sharers) messages += s.second * (s.second - 1.0);
     const double bytes = messages * MPM_NS::NODES_PER_BLOCK * c.reals * sizeof(double);
-    EXPECT_EQ(fix->compute_vector(5), bytes) << c.options;
+    EXPECT_EQ(run.fix("grid")->compute_vector(5), bytes) << c.options;
     EXPECT_EQ(bytes > 0.0, nranks() > 1);
   }
 }
@@ -449,11 +448,8 @@ TEST_P(TurnedBody, HasTheTimeStepOfTheBodyAtRest)
                "region body block 2 5 2.5 5 3 5\ncreate_points 1 region body ppc 2\n"
                "fix m all mpm/material density 1.0 " +
                GetParam() + "\ntimestep 0.001\nrun 0\n");
-  auto *field = run.field();
   auto *points = MPMPoints::get(run.lmp->atom);
-  tagint tag;
-  double c;
-  const double at_rest = field->stable_dt_local(tag, c);
+  const double at_rest = run.stable_dt();
   if (run.lmp->atom->nlocal) EXPECT_LT(at_rest, 1.0);
 
   for (double degrees : {30.0, 90.0, 180.0, 270.0}) {
@@ -461,7 +457,7 @@ TEST_P(TurnedBody, HasTheTimeStepOfTheBodyAtRest)
     const double R[9] = {cos(a), -sin(a), 0.0, sin(a), cos(a), 0.0, 0.0, 0.0, 1.0};
     for (int i = 0; i < run.lmp->atom->nlocal; i++)
       for (int k = 0; k < 9; k++) points->F[i][k] = R[k];
-    EXPECT_NEAR(field->stable_dt_local(tag, c), at_rest, 1.0e-13 * at_rest) << degrees;
+    EXPECT_NEAR(run.stable_dt(), at_rest, 1.0e-13 * at_rest) << degrees;
   }
 }
 
@@ -576,11 +572,10 @@ TEST(Pitfall, MassIsThatOfTheBodyInEveryVariant)
     EXPECT_NEAR(volume, 3.0 * 2.5 * 2.0, 1.0) << options;
 
     // nodes have the same mass as points; the lowest rank of those that share a node counts it
-    auto &grid = *run.field()->grid;
     double mine = 0.0, all = 0.0;
-    for (std::size_t slot = 0; slot < grid.blocks.size(); slot++)
-      for (int n = 0; n < MPM_NS::NODES_PER_BLOCK; n++)
-        if (grid.blocks[slot].owned >> n & 1) mine += grid.record(slot, n)[3];
+    run.each_node([&](const Scene::Node &node) {
+      if (node.owned) mine += node.mass;
+    });
     MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, run.lmp->world);
     EXPECT_NEAR(all, mass, 1.0e-12) << options;
   }

@@ -66,7 +66,7 @@ TEST(ReferenceUpdate, AffineMotionIsExact)
       EXPECT_LT(worst, 1e-7) << rest;
       EXPECT_GT(shear, 2.9);
       double R = 0.0;
-      for (int i = 0; i < run.n(); i++) R = std::max(R, run.field()->R[i][1]);
+      for (int i = 0; i < run.n(); i++) R = std::max(R, run.reference_F()[i][1]);
       EXPECT_GT(R, 1.0) << rest;    // there were updates
     }
 }
@@ -103,7 +103,7 @@ TEST(ReferenceUpdate, DeformedAtTheStart)
         }
         worst = std::max(worst, std::abs(x[a] - expected));
       }
-      updates += std::abs(run.field()->R[i][1] - F0[1]) > 0.5;
+      updates += std::abs(run.reference_F()[i][1] - F0[1]) > 0.5;
     }
     EXPECT_LT(worst, 1e-7);
     EXPECT_EQ(updates, run.n());
@@ -137,12 +137,11 @@ TEST(ReferenceUpdate, VolumeOnTheLattice)
     v[0] = 0.5 * (x[0] - 4.0);
   });
   run.commands("run 50\n");
-  std::vector<double> share;
-  run.field()->volume_at_points(share);
+  const std::vector<double> share = run.volume_shares();
   double least = 10.0, most = 0.0, volume = 0.0;
   for (int i = 0; i < run.n(); i++) {
-    const double *X = run.field()->X[i];
-    volume = std::max(volume, MPMPoints::det(run.field()->R[i]));
+    const double *X = run.reference_positions()[i];
+    volume = std::max(volume, MPMPoints::det(run.reference_F()[i]));
     if (std::abs(X[0] - 4.0) > 1.0 || std::abs(X[1] - 3.5) > 0.2) continue;
     least = std::min(least, share[i]);
     most = std::max(most, share[i]);
@@ -198,7 +197,8 @@ TEST(ReferenceUpdate, Ranks)
                 "run 150\n", "");
     EXPECT_LT(run.difference(), 1e-12) << rest;
     double R = 0.0;
-    for (int i = 0; i < run.serial.n(); i++) R = std::max(R, std::abs(run.serial.field()->R[i][1]));
+    for (int i = 0; i < run.serial.n(); i++)
+      R = std::max(R, std::abs(run.serial.reference_F()[i][1]));
     EXPECT_GT(R, 0.1);
   }
 }

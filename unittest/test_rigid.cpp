@@ -52,7 +52,7 @@ TEST_P(Rigid, KeepsMomentum)
   for (const char *grid : {"", "scheme musl"}) {
     Scene run;
     run.commands(with(scene(file.name, grid), GetParam()));
-    auto *body = run.lmp->modify->get_fix_by_id("tool");
+    auto *body = run.fix("tool");
     const MPM_NS::SurfaceMesh mesh(binary_of(torus(1.0, 0.5, 24)), "torus", 1.0, {0.0, 0.0, 0.0});
     const double mass = 2.0 * mesh.volume;
     double p[3], L[3], p_start[3], L_start[3], pushed = 0.0, worst = 0.0;
@@ -104,7 +104,7 @@ TEST_P(Rigid, IsTheSameOnAnyNumberOfRanksAndAfterARestart)
   EXPECT_LT(ranks.difference(), 1.0e-9);
   for (int k = 0; k < 24; k++) {
     const auto value = [&](Scene &s) {
-      return s.lmp->modify->get_fix_by_id("tool")->compute_vector(k);
+      return s.fix("tool")->compute_vector(k);
     };
     EXPECT_NEAR(value(ranks.serial), value(ranks.parallel), 1.0e-9);
   }
@@ -134,7 +134,7 @@ TEST(RigidBody, TurnsFreely)
                   "fix tool all mpm/rigid shape density 2.0 slip omega 0.2 2.0 0.1\n"
                   "timestep %g\n",
                   file.name.c_str(), 0.02 / (1 << k)));
-    auto *body = run.lmp->modify->get_fix_by_id("tool");
+    auto *body = run.fix("tool");
     const double start = body->compute_scalar();
     double worst = 0.0, most = 0.0;
     for (int n = 0; n < 20; n++) {
@@ -176,7 +176,7 @@ TEST(RigidBody, SwingsOnAColumn)
         "fix tool all mpm/rigid shape mass %g stick velocity 0 0 0.02 hold x y rx ry rz\n"
         "timestep %g\nthermo 1000\n",
         h, file.name.c_str(), M, dt));
-    auto *body = run.lmp->modify->get_fix_by_id("tool");
+    auto *body = run.fix("tool");
     std::vector<double> crossings;
     double before = 0.0;
     const double z = body->compute_vector(2);
@@ -203,7 +203,7 @@ TEST(RigidBody, MayBeLight)
   run.commands("region shape delete\nunfix tool\nregion shape mpm/mesh " + file.name +
                " 1.0 4.4 4.4 2.9\nfix tool all mpm/rigid shape density 1.0e-9 stick\n"
                "velocity all set 0.1 0.2 0.3\nrun 200\n");
-  auto *body = run.lmp->modify->get_fix_by_id("tool");
+  auto *body = run.fix("tool");
   for (int d = 0; d < 3; d++) EXPECT_NEAR(body->compute_vector(3 + d), 0.1 * (d + 1), 1.0e-6);
 }
 
@@ -218,7 +218,7 @@ TEST(RigidBody, FallsAndIsHeld)
                " 1.0 4.4 4.4 8.0\nvariable f equal 3.0\n"
                "fix tool all mpm/rigid shape density 2.0 slip gravity 0 0 -0.5 force v_f 1.0 0 "
                "torque 0 0 0.1 hold y\nrun 100\n");
-  auto *body = run.lmp->modify->get_fix_by_id("tool");
+  auto *body = run.fix("tool");
   EXPECT_NEAR(body->compute_vector(3), 1.5, 1.0e-12);
   EXPECT_EQ(body->compute_vector(4), 0.0);
   EXPECT_NEAR(body->compute_vector(5), -0.5, 1.0e-12);
@@ -238,7 +238,7 @@ TEST(RigidBody, TurnsAboutAHeldAxis)
   run.commands("region shape delete\nunfix tool\nregion shape mpm/mesh " + file.name +
                " 1.0 4.4 4.4 8.0\nfix tool all mpm/rigid shape density 2.0 slip omega 0 0 0.3 "
                "torque 0 0 0.5 hold rx ry\nrun 300\n");
-  auto *body = run.lmp->modify->get_fix_by_id("tool");
+  auto *body = run.fix("tool");
   const double inertia = 2.0 * (2.0 + 1.25 * 0.64) / 12.0, t = 3.0;
   EXPECT_EQ(body->compute_vector(6), 0.0);
   EXPECT_EQ(body->compute_vector(7), 0.0);
@@ -279,7 +279,7 @@ TEST(RigidBody, SlidesUntilItSticks)
                                  "hold rx ry rz",
                                  density, mu, v0, -g),
                        0.002));
-    auto *body = run.lmp->modify->get_fix_by_id("tool");
+    auto *body = run.fix("tool");
     double worst = 0.0, largest = 0.0;
     run.each_step([&](double **) {
       if (body->compute_vector(3) < 0.5 * v0) return;
@@ -309,7 +309,7 @@ TEST(RigidBody, SpinsUntilItSticks)
                                "hold x y rx ry",
                                mu, omega, -g),
                      0.001));
-  auto *body = run.lmp->modify->get_fix_by_id("tool");
+  auto *body = run.fix("tool");
   const double arm = 3.0 * (sqrt(2.0) + asinh(1.0)) / 6.0, inertia = 36.0 / 6.0;    // per mass
   double along = 0.0, across = 0.0;
   run.each_step([&](double **) {
@@ -327,27 +327,12 @@ TEST(RigidBody, SpinsUntilItSticks)
 // and friction is at its limit and against the sliding, or there is none. A light plate on a block that
 // comes up and turns, so that nodes stick and slide into all directions.
 
-struct NodeState {
-  double x[3], v[3], mass;
-};
-
-static std::map<std::array<int, 3>, NodeState> nodes_of(Scene &run)
+static std::map<std::array<int, 3>, Scene::Node> nodes_of(Scene &run)
 {
-  std::map<std::array<int, 3>, NodeState> all;
-  auto *field = run.field();
-  auto &grid = *field->grid;
-  for (std::size_t slot = 0; slot < grid.blocks.size(); slot++)
-    for (int n = 0; n < MPM_NS::NODES_PER_BLOCK; n++) {
-      const double *record = grid.record((int) slot, n);
-      if (!(grid.blocks[slot].owned >> n & 1) || !(record[3] > 0.0)) continue;
-      std::array<int, 3> index;
-      NodeState node = {};
-      grid.node_index(grid.blocks[slot], n, index.data());
-      field->node_position(index.data(), node.x);
-      std::copy(record, record + 3, node.v);
-      node.mass = record[3];
-      all[index] = node;
-    }
+  std::map<std::array<int, 3>, Scene::Node> all;
+  run.each_node([&](const Scene::Node &node) {
+    if (node.owned && node.mass > 0.0) all[{node.index[0], node.index[1], node.index[2]}] = node;
+  });
   return all;
 }
 
@@ -379,7 +364,7 @@ TEST(RigidBody, FrictionIsThatOfTheVelocityAfterTheStep)
       alone.commands("unfix tool\nrun 1 post no\n");
       auto before = nodes_of(alone);
       state(run);
-      auto *body = run.lmp->modify->get_fix_by_id("tool");
+      auto *body = run.fix("tool");
       const double center[3] = {4.0, 4.0, 2.45};
       run.commands("run 1 post no\n");
       // its angular momentum is known at the end of the step; the inertia here, that of the start

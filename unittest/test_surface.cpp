@@ -34,7 +34,7 @@ static double surface_points(Scene &run)
 {
   double n = -1.0;
   run.each_step([&](double **) {
-    n = run.lmp->modify->get_fix_by_id("surf")->compute_scalar();
+    n = run.fix("surf")->compute_scalar();
   });
   run.commands("run 0 post no\n");
   return n;
@@ -102,7 +102,7 @@ TEST(Surface, OpensWherePointsHaveFailed)
                "fix m slab mpm/material density 1.0 eos linear 10.0 strength elastic 5.0 damage "
                "rankine 100.0\nfix surf slab mpm/surface\n" +
                contact + "timestep 0.01\nthermo 1000\nrun 0 post no\n");
-  auto *material = dynamic_cast<FixMPMMaterial *>(run.lmp->modify->get_fix_by_id("m"));
+  auto *material = run.material();
   ASSERT_GE(material->damage, 0);
   for (int i = 0; i < run.n(); i++)    // two layers in the middle
     if (std::abs(run.lmp->atom->x[i][2] - 4.0) < 0.5) material->history[i][material->damage] = 1.0;
@@ -120,11 +120,11 @@ TEST(Surface, FailedPointsHaveARadius)
                contact + "timestep 0.01\nthermo 1000\nrun 0 post no\n");
   double n = -1.0;
   run.each_step([&](double **) {
-    n = run.lmp->modify->get_fix_by_id("surf")->compute_scalar();
+    n = run.fix("surf")->compute_scalar();
   });
   run.commands("run 0 post no\n");
   const double before = n;
-  auto *material = dynamic_cast<FixMPMMaterial *>(run.lmp->modify->get_fix_by_id("m"));
+  auto *material = run.material();
   double deep = 0.0, all;
   for (int i = 0; i < run.n(); i++) {    // one point inside
     if (run.lmp->atom->tag[i] != 12 * 24 * 12 + 6 * 24 + 6) continue;

@@ -105,7 +105,7 @@ TEST(TotalKinematics, RigidRotationTurnsTheStress)
                              "fix grid all mpm 1.0 frame total\ncreate_points 1 box ppc 1\n"
                              "fix m all mpm/material density 1.0 ") +
                  law + "\nrun 0\n");
-    const auto &material = *run.field()->materials[0]->material;
+    const auto &material = *run.material()->material;
     auto batch = std::make_unique<Batch>();
     std::vector<double> history(BATCH * 16, 0.0);
     batch->history = reinterpret_cast<double(*)[BATCH]>(history.data());
@@ -169,7 +169,7 @@ static Stretched stretch(const std::string &options)
     v[0] = 10.0 * x[0];
   });
   run.commands("timestep 5.0e-4\nrun 2000\n");
-  Stretched out = {0.0, 0.0, run.lmp->modify->get_fix_by_id("right")->compute_vector(0)};
+  Stretched out = {0.0, 0.0, run.fix("right")->compute_vector(0)};
   for (int i = 0; i < run.n(); i++) {
     double sigma[6];
     run.points().cauchy(i, sigma);
@@ -298,9 +298,9 @@ TEST(TotalTimeStep, FromTheSmallestStretch)
                            dim, dim == 3 ? "f" : "p"));
     tagint tag;
     double c;
-    EXPECT_NEAR(run.field()->stable_dt_local(tag, c), 0.5 / sqrt(10.0), 1e-12);
+    EXPECT_NEAR(run.stable_dt(&tag, &c), 0.5 / sqrt(10.0), 1e-12);
     run.v()[2][0] = 100.0;    // points do not move on the lattice
-    EXPECT_NEAR(run.field()->stable_dt_local(tag, c), 0.5 / sqrt(10.0), 1e-12);
+    EXPECT_NEAR(run.stable_dt(&tag, &c), 0.5 / sqrt(10.0), 1e-12);
     for (const double a : {0.0, 0.5 * PI, 1.0, PI}) {
       const double R[9] = {cos(a), -sin(a), 0.0, sin(a), cos(a), 0.0, 0.0, 0.0, 1.0};
       const double U[9] = {0.2, 0.0, 0.0, 0.0, 1.5, 0.0, 0.0, 0.0, 1.0};
@@ -308,7 +308,7 @@ TEST(TotalTimeStep, FromTheSmallestStretch)
       const auto G = times(R, F.data());
       for (const auto &f : {F, G}) {
         for (int k = 0; k < 9; k++) run.points().F[5][k] = f[k];
-        const double dt = run.field()->stable_dt_local(tag, c);
+        const double dt = run.stable_dt(&tag, &c);
         EXPECT_EQ(tag, run.lmp->atom->tag[5]);
         EXPECT_NEAR(dt, 0.2 * 0.5 / c, 1e-9 * dt) << "angle " << a;
       }

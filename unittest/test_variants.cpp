@@ -217,13 +217,11 @@ TEST_P(CrossingNoise, ForcesOnNodes)
   Scene run;
   medium(run, "transfer flip 1.0", 0.0);
   run.commands("run 1 post no\n");
-  auto &grid = *dynamic_cast<FixMPM *>(run.lmp->modify->get_fix_by_id("grid"))->grid;
   double most = 0.0;
-  for (std::size_t slot = 0; slot < grid.blocks.size(); slot++)
-    for (int n = 0; n < MPM_NS::NODES_PER_BLOCK; n++)
-      if (grid.blocks[slot].owned >> n & 1)
-        for (int d = 0; d < 2; d++)
-          most = std::max(most, std::abs(grid.record((int) slot, n)[d]) / 0.25);
+  run.each_node([&](const Scene::Node &node) {
+    if (node.owned)
+      for (int d = 0; d < 2; d++) most = std::max(most, std::abs(node.v[d]) / 0.25);
+  });
   measured(GetParam().shape + std::string(": largest acceleration of a node"), most / P);
   const int order = GetParam().order;
   if (order == 0) {

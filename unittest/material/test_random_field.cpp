@@ -420,7 +420,7 @@ TEST_F(Random, FixAndRestart)
   };
   const MPM_TEST::ScratchFile file("restart");
   const auto row = [](Scene &run, int i) {
-    auto *fix = dynamic_cast<LAMMPS_NS::FixMPMMaterial *>(run.lmp->modify->get_fix_by_id("m"));
+    auto *fix = run.material();
     return fix->history[i][fix->find_history("random/SIGMAY")];
   };
   const auto gather = [&](Scene &run) {

@@ -133,7 +133,7 @@ std::string block_mesh(const Kind &kind, double skew = 0.15)
 
 FixMPMElements *elements(Scene &run)
 {
-  return dynamic_cast<FixMPMElements *>(run.lmp->modify->get_fix_by_id("e"));
+  return run.fix<FixMPMElements>("e");
 }
 
 /** Positions F X + shift of the present ones. */

@@ -318,7 +318,7 @@ TEST(RegionMesh, HasATorque)
                " 1.5 4.4 6.1 5.0\nfix w all mpm/boundary region tool separate friction 0.3\n"
                "timestep 0.01\nthermo 1000\n");
   double impulse[6] = {0.0};
-  auto *wall = run.lmp->modify->get_fix_by_id("w");
+  auto *wall = run.fix("w");
   bool first = true;
   const auto start = run.sums();
   run.each_step([&](double **) {

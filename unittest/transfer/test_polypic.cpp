@@ -82,16 +82,15 @@ TEST(Polypic, RoundTrip)
           SCOPED_TRACE(strprintf("%dd %s %s %s", dim, shape.c_str(), transfer.c_str(), ledger));
           Scene run;
           run.commands(block(dim, shape + transfer) + ledger + "timestep 1e-14\nrun 0\n");
-          auto *g = run.field("g");
-          ASSERT_EQ(g->Q != nullptr, poly);
+          double **C = run.affine("g"), **Q = run.modes("g");
+          ASSERT_EQ(Q != nullptr, poly);
           const int nmode = dim == 2 ? 1 : 4;
           for (int i = 0; i < run.n(); i++)
             for (int d = 0; d < dim; d++) {
               run.v()[i][d] = field(dim, run.x()[i], d, 0);
-              for (int a = 0; a < dim; a++)
-                g->C[i][dim * a + d] = field(dim, run.x()[i], d, 1 << a);
+              for (int a = 0; a < dim; a++) C[i][dim * a + d] = field(dim, run.x()[i], d, 1 << a);
               for (int m = 0; m < nmode && poly; m++)
-                g->Q[i][dim * m + d] = field(dim, run.x()[i], d, bits[m]);
+                Q[i][dim * m + d] = field(dim, run.x()[i], d, bits[m]);
             }
           run.commands("run 1 pre no post no\n");
           double worst = 0.0, modes = 0.0;
@@ -99,11 +98,11 @@ TEST(Polypic, RoundTrip)
             for (int d = 0; d < dim; d++) {
               worst = std::max(worst, std::fabs(run.v()[i][d] - field(dim, run.x()[i], d, 0)));
               for (int a = 0; a < dim; a++)
-                worst = std::max(
-                    worst, std::fabs(g->C[i][dim * a + d] - field(dim, run.x()[i], d, 1 << a)));
+                worst = std::max(worst,
+                                 std::fabs(C[i][dim * a + d] - field(dim, run.x()[i], d, 1 << a)));
               for (int m = 0; m < nmode && poly; m++)
-                modes = std::max(
-                    modes, std::fabs(g->Q[i][dim * m + d] - field(dim, run.x()[i], d, bits[m])));
+                modes = std::max(modes,
+                                 std::fabs(Q[i][dim * m + d] - field(dim, run.x()[i], d, bits[m])));
             }
           if (poly) {
             EXPECT_LT(worst, 1e-11);
@@ -129,8 +128,7 @@ TEST(Polypic, Conservation)
         double mine[3] = {0.0, 0.0, 0.0};
         const double D = shape == shapes[0] ? 1.0 / 4.0 : 1.0 / 3.0;
         for (int i = 0; i < run.n(); i++) {
-          const double m = run.mass()[i], *x = run.x()[i], *v = run.v()[i],
-                       *C = run.field("g")->C[i];
+          const double m = run.mass()[i], *x = run.x()[i], *v = run.v()[i], *C = run.affine("g")[i];
           mine[0] += m * v[0];
           mine[1] += m * v[1];
           mine[2] += m * (x[0] * v[1] - x[1] * v[0] + D * (C[1] - C[2]));
