@@ -55,6 +55,7 @@ FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
 
   MPMFieldOptions options;
   options.read(lmp, narg, arg, 4, domain->dimension);
+  if (!options.has_origin) std::copy_n(domain->boxlo, domain->dimension, options.origin);
   field.reset(new MPMField(lmp, *this, h, options, state));
   if (comm->me == 0) utils::logmesg(lmp, "Fix mpm {}: spacing {} {}\n", id, h, options.text());
 

@@ -50,7 +50,7 @@ static MPM_NS::Lattice lattice_of(const Domain &domain, double h, const MPMField
   lattice.dim = domain.dimension;
   lattice.h = h;
   for (int d = 0; d < 3; d++) {
-    lattice.origin[d] = options.has_origin ? options.origin[d] : domain.boxlo[d];
+    lattice.origin[d] = d < lattice.dim ? options.origin[d] : domain.boxlo[d];
     lattice.periodic[d] = false;
     lattice.ncell[d] = 1;
   }
@@ -195,7 +195,13 @@ void MPMField::choose_kernels()
 {
   const bool split = ledger.on || keep_old || options.stress_before() ||
       (options.axisymmetric && options.scheme != Options::USL);
-  kernel = frame->kernels(*kernels, options.transfer, split);
+  kernel = options.mixed_precision
+      ? kernels->transfer_mixed(lattice.dim, options.shape, options.transfer, split, options.total)
+      : frame->kernels(*kernels, options.transfer, split);
+  if (!kernel.p2g)
+    error->all(FLERR,
+               "Fix mpm kernels reference has no precision mixed: use other kernels, or "
+               "precision double");
   if (options.strains_apart()) {
     // to the nodes, TPIC differs in nothing but the stress; back, it has the gradient
     const auto tpic = frame->kernels(*kernels, TPIC, kernel.nreal == 8);
