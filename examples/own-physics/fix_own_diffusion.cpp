@@ -34,7 +34,8 @@ FixOwnDiffusion::FixOwnDiffusion(LAMMPS *lmp, int narg, char **arg) :
   if (narg < 5) utils::missing_cmd_args(FLERR, "fix own/diffusion", error);
   D = utils::numeric(FLERR, arg[3], false, lmp);
   c0 = utils::numeric(FLERR, arg[4], false, lmp);
-  if (!(D > 0.0)) error->all(FLERR, 3, "Fix own/diffusion diffusivity must be positive: {}", arg[3]);
+  if (!(D > 0.0))
+    error->all(FLERR, 3, "Fix own/diffusion diffusivity must be positive: {}", arg[3]);
   for (double &value : held) value = NAN;
   for (int iarg = 5; iarg < narg; iarg += 2) {
     int face = 0;
@@ -44,13 +45,15 @@ FixOwnDiffusion::FixOwnDiffusion(LAMMPS *lmp, int narg, char **arg) :
     held[face] = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
   }
 
-  // a number for each point: it goes where the point goes, and to restart files
-  state.declare(c, "own:c", 1, [this](int, double *row) { row[0] = c0; });
+  // numbers of each point: they go where the point goes, and to restart files
+  state.declare(c, "own:c", 4, [this](int, double *row) {
+    row[0] = c0;
+  });
   keep_arrays();
 
   restart_global = 1;
   peratom_flag = 1;
-  size_peratom_cols = 1;
+  size_peratom_cols = 4;
   peratom_freq = 1;
   array_atom = c;
 }
@@ -77,13 +80,17 @@ void FixOwnDiffusion::init_physics(MPMPlan &plan)
 void FixOwnDiffusion::add_stages(MPMPlan &plan, MPMPlan::Place place)
 {
   if (place == MPMPlan::BEFORE_SOLVE)
-    plan.each("scalar to nodes", [this](MPMField &field) { scalar_to_nodes(field); });
+    plan.each("scalar to nodes", [this](MPMField &field) {
+      scalar_to_nodes(field);
+    });
   if (place == MPMPlan::AFTER_SOLVE)
-    plan.each("scalar to points", [this](MPMField &field) { scalar_to_points(field); });
+    plan.each("scalar to points", [this](MPMField &field) {
+      scalar_to_points(field);
+    });
 }
 
 /* ----------------------------------------------------------------------
-   value c_i = sum_p m_p N_ip c_p / m_i, and its rate m_i dc_i/dt = -sum_p m_p D grad c . grad N_ip
+   value c_i = sum_p m_p N_ip [c_p + g_p (x_i - x_p)] / m_i, and its rate m_i dc_i/dt = -sum_p m_p D grad c . grad N_ip
 ------------------------------------------------------------------------- */
 
 void FixOwnDiffusion::scalar_to_nodes(MPMField &field)
@@ -95,7 +102,9 @@ void FixOwnDiffusion::scalar_to_nodes(MPMField &field)
   for (const auto &run : field.map->runs)
     for (int i = run.first; i < run.last; i++)
       stencil.visit(grid.blocks[run.slot], i, [&](const MPMStencil::Node &n) {
-        node.at(n.number)[VALUE] += atom->rmass[i] * n.weight * c[i][0];
+        double value = c[i][0];
+        for (int d = 0; d < 3; d++) value -= c[i][1 + d] * n.r[d] * field.lattice.h;
+        node.at(n.number)[VALUE] += atom->rmass[i] * n.weight * value;
       });
   field.sum(node);
   const double *record = grid.nodes();    // fourth real: mass
@@ -120,7 +129,7 @@ void FixOwnDiffusion::scalar_to_nodes(MPMField &field)
 }
 
 /* ----------------------------------------------------------------------
-   points get the change of the nodes
+   points get the new values of the nodes, and their gradient
 ------------------------------------------------------------------------- */
 
 void FixOwnDiffusion::scalar_to_points(MPMField &field)
@@ -128,43 +137,50 @@ void FixOwnDiffusion::scalar_to_points(MPMField &field)
   NodeField &node = *nodes[&field];
   Grid &grid = field.grid;
   const double dt = field.step_dt();
-  for (std::size_t slot = 0; slot < grid.blocks.size(); slot++)
-    for (int n = 0; n < NODES_PER_BLOCK; n++) {
-      double *const at = node.at((int64_t) slot * NODES_PER_BLOCK + n);
-      const double mass = grid.record((int) slot, n)[3];
-      if (!(mass > 0.0)) continue;
-      at[CHANGE] *= dt / mass;
-      int index[3];
-      grid.node_index(grid.blocks[slot], n, index);
-      const double value = held_value(field, index);
-      if (std::isnan(value)) continue;
-      const double more = value - (at[VALUE] + at[CHANGE]);
-      at[CHANGE] += more;
-      if (grid.blocks[slot].owned >> n & 1) inflow += mass * more;
-    }
+  const double *record = grid.nodes();
+  for (int64_t n = 0; n < grid.nnodes(); n++, record += grid.nreal)
+    if (record[3] > 0.0) node.at(n)[CHANGE] *= dt / record[3];
+  hold(field);
   field.complete(node);
 
   const MPMStencil stencil(field);
   for (const auto &run : field.map->runs)
-    for (int i = run.first; i < run.last; i++)
+    for (int i = run.first; i < run.last; i++) {
+      memset(c[i], 0, 4 * sizeof(double));
       stencil.visit(grid.blocks[run.slot], i, [&](const MPMStencil::Node &n) {
-        c[i][0] += n.weight * node.at(n.number)[CHANGE];
+        const double value = node.at(n.number)[VALUE] + node.at(n.number)[CHANGE];
+        c[i][0] += n.weight * value;
+        for (int d = 0; d < 3; d++) c[i][1 + d] += n.gradient[d] * value;
       });
+    }
 }
 
-/** Value that a node at or beyond a face of the box is held at, or NAN. */
-double FixOwnDiffusion::held_value(const MPMField &field, const int *index) const
+/* ----------------------------------------------------------------------
+   nodes at a face and beyond it have its value, which is of first order
+------------------------------------------------------------------------- */
+
+void FixOwnDiffusion::hold(MPMField &field)
 {
-  double x[3];
-  field.node_position(index, x);
-  const double small = 1.0e-6 * field.lattice.h;
+  NodeField &node = *nodes[&field];
+  Grid &grid = field.grid;
   for (int face = 0; face < 6; face++) {
     if (std::isnan(held[face])) continue;
-    const int d = face / 2;
-    if (face % 2 ? x[d] >= domain->boxhi[d] - small : x[d] <= domain->boxlo[d] + small)
-      return held[face];
+    const int axis = face / 2, outward = face % 2 ? 1 : -1;
+    const double at = face % 2 ? domain->boxhi[axis] : domain->boxlo[axis];
+    const int plane = (int) std::lround((at - field.lattice.origin[axis]) / field.lattice.h);
+    for (std::size_t slot = 0; slot < grid.blocks.size(); slot++)
+      for (int n = 0; n < NODES_PER_BLOCK; n++) {
+        int index[3];
+        grid.node_index(grid.blocks[slot], n, index);
+        const int beyond = outward * (index[axis] - plane);
+        const double mass = grid.record((int) slot, n)[3];
+        if (beyond < 0 || !(mass > 0.0)) continue;
+        double *const mine = node.at((int64_t) slot * NODES_PER_BLOCK + n);
+        const double more = held[face] - (mine[VALUE] + mine[CHANGE]);
+        mine[CHANGE] += more;
+        if (grid.blocks[slot].owned >> n & 1) inflow += mass * more;
+      }
   }
-  return NAN;
 }
 
 /* ---------------------------------------------------------------------- */

@@ -22,6 +22,8 @@ namespace LAMMPS_NS {
  *
  *    rho dc/dt = div (rho D grad c)
  *
+ *  Points carry c and its gradient, so that little is lost on the way to the nodes and back.
+ *
  *  fix ID group own/diffusion D c0 keyword value ...
  *    D = diffusivity (distance^2/time), c0 = value of points at the start
  *    keyword = xlo, xhi, ylo, yhi, zlo, zhi: value of c at this face of the box
@@ -44,14 +46,14 @@ class FixOwnDiffusion : public FixMPMState, public MPMPhysics {
   enum { VALUE, CHANGE, WIDTH };    // reals of a node
 
   double D, c0;
-  double held[6];     // values at faces of the box, NAN: none
-  double **c;         // [n][1] the scalar of the points
-  double inflow;      // of mass * c through faces so far, this rank's share
+  double held[6];    // values at faces of the box, NAN: none
+  double **c;        // [n][4] the scalar of the points, and its gradient [1/distance]
+  double inflow;     // of mass * c through faces so far, this rank's share
   std::map<const MPMField *, MPM_NS::NodeField *> nodes;
 
   void scalar_to_nodes(MPMField &);
   void scalar_to_points(MPMField &);
-  double held_value(const MPMField &, const int *index) const;
+  void hold(MPMField &);
 };
 
 }    // namespace LAMMPS_NS

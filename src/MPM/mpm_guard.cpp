@@ -60,7 +60,7 @@ void MPMGuard::point_is_bad(int i, const std::string &what, const std::string &c
                             const std::string &hint)
 {
   if (field.options.bad == MPMFieldOptions::ERROR)
-    error->one(FLERR, "{} {} at step {}: {}", describe(i), what, update->ntimestep, hint);
+    error->one(FLERR, "{} {} at step {}{}", describe(i), what, update->ntimestep, hint);
   if (field.options.bad == MPMFieldOptions::WARN && nbad_total + (bigint) bad_points.size() < 10)
     error->warning(FLERR, "{} {} at step {}: {}", describe(i), what, update->ntimestep, cure);
   bad_points.push_back(atom->tag[i]);

@@ -38,11 +38,12 @@ class MPMGuard : protected Pointers {
   /** Position, velocity and volume ratio, for messages. */
   std::string describe(int i) const;
   /** A point is bad: stop, or note it for handle_bad_points(). */
-  void point_is_bad(int i, const std::string &what,
-                    const std::string &cure = "it keeps its previous deformation",
-                    const std::string &hint =
-                        "try a smaller time step (fix mpm/dt), more points per cell, or a smoother "
-                        "shape function; fix mpm ... bad warn|delete goes on");
+  void
+  point_is_bad(int i, const std::string &what,
+               const std::string &cure = "it keeps its previous deformation",
+               const std::string &hint =
+                   ": try a smaller time step (fix mpm/dt), more points per cell, or a smoother "
+                   "shape function; fix mpm ... bad warn|delete goes on");
   /** A point has failed and is to be deleted. */
   void point_has_failed(int i);
   /** The kernels must never see a position that is not finite. */
