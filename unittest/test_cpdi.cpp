@@ -76,7 +76,7 @@ thermo 1000
   first.commands(scene + "run 1\nwrite_restart " + file.name + "\n");
   Scene second;
   EXPECT_THAT(second.error("read_restart " + file.name + "\nfix grid all mpm 1.0 shape cpdi\n"),
-              ::testing::HasSubstr("give the fix the shape"));
+              ::testing::HasSubstr("shape cpdi2 (now cpdi)"));
 }
 
 TEST(Conservation, MomentumIsKeptAndNoEnergyGained)

@@ -99,6 +99,7 @@ void FixMPM::init()
     error->all(FLERR,
                "Fix mpm cannot be used with minimize, which would move material points like "
                "atoms: minimize before the fix is defined");
+  field->check_box();
   if (domain->box_change_size || domain->box_change_shape)
     error->all(FLERR,
                "Fix mpm requires a box of constant size and shape: remove the fix that "

@@ -191,7 +191,7 @@ void MPMCpdi::limit(int i)
       i, fmt::format("has a domain with a corner {:.4g} node spacings away", far),
       "it is made smaller",
       fmt::format(
-          "the limit is {}: use smaller points or a larger node spacing; with fix mpm ... bad "
+          ", the limit is {}: use smaller points or a larger node spacing; with fix mpm ... bad "
           "warn the domain is made smaller, with bad delete the point is removed",
           room));
   const int n = size();
