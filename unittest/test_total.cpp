@@ -379,7 +379,7 @@ TEST(TotalInput, IsRefused)
       {total +
            "run 1\nwrite_restart mpm_total.bin\nclear\nread_restart mpm_total.bin\n"
            "fix grid all mpm 1.0\n",
-       "give the fix the shape, transfer, frame"},
+       "frame total (now updated)"},
   };
   for (const auto &c : cases) {
     const std::string text = error_of(c.input);
