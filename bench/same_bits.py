@@ -17,7 +17,8 @@ Each scene is run with all instruction sets that the processor has (MPM_ISA) and
 --quick only with the best one and on 1 and 2. PATTERN is a regular expression that is searched in the name of
 the scene. The command state_hash is a plugin, compiled here from same_bits.cpp for the stock build of LAMMPS
 that --lammps describes (default: the newest under ~/.cache/lammps-mpm). Where hashes differ, --compare shows the
-largest relative difference of the sums of |x|, |v| and the rest, so that round-off can be told from more.
+largest relative difference of the sums of |x|, |v| and the rest, so that round-off can be told from more. Scenes
+with fix balance on more than two ranks may differ by round-off.
 """
 import argparse
 import concurrent.futures
@@ -34,6 +35,8 @@ import time
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(HERE)
 SECONDS = 300    # for one run
+# of the sums, for scenes with fix balance on more than two ranks: LAMMPS takes messages in any order there
+LOOSE = 1.0e-12
 SETS = ["avx512", "avx2", "baseline"]    # best one first
 
 # examples: node spacing times this, steps of each run, and those that are left out
@@ -189,6 +192,7 @@ def run_all(args):
                         for isa in (sets[:1] if args.quick else sets) for name in names}
                 for (name, isa, _), job in jobs.items():
                     result = results["%s %s %d" % (name, isa, n)] = job.result()
+                    result["loose"] = n > 2 and "balance" in read(scenes, name + ".in")
                     text = " ".join(state[1] for state in result["states"])
                     if "error" in result:
                         failed += 1
@@ -200,13 +204,12 @@ def run_all(args):
 
 
 def difference(a, b):
-    """Largest relative difference of the sums, or in words what differs."""
-    if ("error" in a) != ("error" in b):
-        return "one of them failed"
-    if len(a["states"]) != len(b["states"]) or any(p[0] != q[0] for p, q in zip(a["states"], b["states"])):
-        return "numbers of atoms"
+    """Largest relative difference of the sums; infinite where one has failed or numbers of atoms differ."""
+    counts = [[state[0] for state in result["states"]] + ["error" in result] for result in (a, b)]
+    if counts[0] != counts[1]:
+        return float("inf")
     pairs = [(float(x), float(y)) for p, q in zip(a["states"], b["states"]) for x, y in zip(p[2:], q[2:])]
-    return "%.1e" % max(abs(x - y) / max(abs(x), abs(y), 1.0e-300) for x, y in pairs)
+    return max((abs(x - y) / max(abs(x), abs(y), 1.0e-300) for x, y in pairs), default=0.0)
 
 
 def compare(old, new):
@@ -214,11 +217,12 @@ def compare(old, new):
     same = differ = 0
     for key in sorted(set(a) & set(b)):
         hashes = [[state[:2] for state in result["states"]] + ["error" in result] for result in (a[key], b[key])]
-        if hashes[0] == hashes[1]:
+        size = difference(a[key], b[key])
+        if hashes[0] == hashes[1] or (a[key].get("loose") and size < LOOSE):
             same += 1
         else:
             differ += 1
-            print("%-48s %s" % (key, difference(a[key], b[key])))
+            print("%-48s %.1e%s" % (key, size, " (one failed, or other numbers of atoms)" * (size > 1.0)))
     print("%d the same, %d differ, %d in one file only" % (same, differ, len(set(a) ^ set(b))))
     return 1 if differ or not same else 0
 
