@@ -515,7 +515,7 @@ void CreatePoints::point_position(const bigint *s, double *x) const
 {
   // a random number from the site and the seed alone
   const auto mix = [](uint64_t h) {
-    return mix_bits(h + RANDOM_STEP);
+    return MPM_NS::mix_bits(h + MPM_NS::RANDOM_STEP);
   };
   for (int d = 0; d < 3; d++) {
     x[d] = position(d, s[d]);

@@ -541,7 +541,26 @@ void FixMPMElements::load(Work &w, std::size_t e, bool moved) const
     mean += w.volume[p] * J;
     size += w.volume[p];
     const double inv = 1.0 / J;
-    double inverse[9] = MPM_COFACTORS(s), change[9];    // inverse: transposed
+    double inverse[9] = MPM_COFACTORS(f);    // transposed
+    for (double &a : inverse) a *= inv;
+    for (int m = 0; m < rule.nnode; m++)
+      for (int a = 0; a < 3; a++) w.g[p][m][a] = dot(g[m], inverse + 3 * a);
+  }
+
+  Batch &b = *batch;
+  for (int q = 0; q < rule.npoint; q++) {
+    const int p = w.n + q;
+    double *const f = F[q];
+    const double *const s = state(r, q);    // F tau history
+    b.J[p] = w.J[p];
+    if (fbar && moved && rule.npoint > 1) {
+      const double J = mean / size, scale = dim == 2 ? sqrt(J / w.J[p]) : cbrt(J / w.J[p]);
+      for (int c = 0; c < (dim == 3 ? 9 : 5); c++) f[c] *= scale;
+      b.J[p] = J;
+    }
+    const double Jold = MPMPoints::det(s), inv = 1.0 / Jold;
+    b.Jold[p] = Jold;
+    double inverse[9] = MPM_COFACTORS(s), change[9];
     for (double &a : inverse) a *= inv;
     for (int c = 0; c < 9; c++) change[c] = f[c] - s[c];
     for (int i = 0; i < 3; i++)
