@@ -44,18 +44,17 @@ static constexpr double MAX_NODE = 4.0e6;
 ------------------------------------------------------------------------- */
 
 FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), shape(QUADRATIC), bernstein(false), mixed_precision(false),
-    extent(NO_SIZE), aspect{1.0, 1.0, 1.0}, transfer(APIC), flip(0.0), poly(false),
-    refinement(LUMPED), order(1), total(false), most_distorted(0.0), axisymmetric(false),
-    scheme(USL), stress(DEFAULT_STRESS), locking(NO_CURE), light(0.0), policy(ERROR),
-    delete_failed(false), modified_edges(false), every(1), dt_check(true), watch_volume(false),
-    keep_old(false), grid(nullptr), C(nullptr), Q(nullptr), corners(nullptr), X(nullptr),
-    R(nullptr), waiting(nullptr), ledger_on(false), volume_rate({0.0, 0}), points(nullptr),
-    halo(nullptr), kernels(nullptr), batch_kernels(nullptr), driver(false), topology_valid(false),
-    watch_drift(false), drifted(0), refer_anew(false), want_sort(false), switches(0),
-    switches_sorted(0), tile(nullptr), tile_load(nullptr), waited(0), elapsed(0.0), batch(nullptr),
-    kinetic_points(0.0), nbad_total(0), next_dt_check(0), clock(0.0), running(false), velocities(0),
-    velocities_known(false)
+    Fix(lmp, narg, arg), shape(QUADRATIC), bernstein(false), extent(NO_SIZE), aspect{1.0, 1.0, 1.0},
+    transfer(APIC), flip(0.0), poly(false), refinement(LUMPED), order(1), total(false),
+    most_distorted(0.0), axisymmetric(false), scheme(USL), stress(DEFAULT_STRESS), locking(NO_CURE),
+    light(0.0), policy(ERROR), delete_failed(false), modified_edges(false), every(1),
+    dt_check(true), watch_volume(false), keep_old(false), grid(nullptr), C(nullptr), Q(nullptr),
+    corners(nullptr), X(nullptr), R(nullptr), waiting(nullptr), ledger_on(false),
+    volume_rate({0.0, 0}), points(nullptr), halo(nullptr), kernels(nullptr), batch_kernels(nullptr),
+    driver(false), topology_valid(false), watch_drift(false), drifted(0), refer_anew(false),
+    want_sort(false), switches(0), switches_sorted(0), tile(nullptr), tile_load(nullptr), waited(0),
+    elapsed(0.0), batch(nullptr), kinetic_points(0.0), nbad_total(0), next_dt_check(0), clock(0.0),
+    running(false), velocities(0), velocities_known(false)
 {
   points = MPMPoints::get(atom);
   if (!points)
@@ -254,9 +253,6 @@ void FixMPM::process_options(int narg, char **arg)
       need(1);
       dt_check = utils::logical(FLERR, arg[iarg + 1], false, lmp);
       iarg += 2;
-    } else if (keyword == "precision") {
-      mixed_precision = choose({"double", "mixed"}) == 1;
-      iarg += 2;
     } else if (keyword == "kernels") {
       static const char *const name[] = {"", "reference", "baseline", "avx2", "avx512"};
       isa = name[choose({"auto", "reference", "baseline", "avx2", "avx512"})];
@@ -304,13 +300,6 @@ void FixMPM::process_options(int narg, char **arg)
   if (bernstein && poly)
     error->all(FLERR,
                "Fix mpm shape bernstein cannot be used with transfer polypic: use shape quadratic");
-  if (mixed_precision &&
-      (extent != NO_SIZE || bernstein || refinement != LUMPED || poly || transfer == AFLIP ||
-       transfer == TPIC || axisymmetric || strains_apart()))
-    error->all(FLERR,
-               "Fix mpm precision mixed needs shape linear, quadratic or cubic and transfer pic, "
-               "flip or apic, without stress gradient and axisymmetric: use precision double for "
-               "others");
 
   check_box();
 }
@@ -467,10 +456,6 @@ void FixMPM::init()
   if (!can_run)
     error->all(FLERR, "Fix mpm kernels {} cannot run on this CPU or were not compiled",
                wanted ? wanted : "named by the environment variable MPM_ISA");
-  if (mixed_precision && !kernels->transfer_mixed(lattice.dim, shape, transfer, true, total).p2g)
-    error->all(FLERR,
-               "Fix mpm kernels reference has no precision mixed: use other kernels, or "
-               "precision double");
 
   // LAMMPS warns when the groups of two integrators overlap, but atoms of this group that are not
   // material points may well be moved by others; check_integrators() looks at the points
@@ -497,8 +482,7 @@ void FixMPM::setup_pre_neighbor()
 
   const bool split = ledger_on || keep_old || stress_before() || (axisymmetric && scheme != USL);
   const auto choose = total ? kernels->transfer_total : kernels->transfer;
-  kernel = mixed_precision ? kernels->transfer_mixed(lattice.dim, shape, transfer, split, total)
-                           : choose(lattice.dim, kernel_shape(), transfer, split);
+  kernel = choose(lattice.dim, kernel_shape(), transfer, split);
   if (strains_apart()) {
     // to the nodes, TPIC differs in nothing but the stress; back, it has the gradient
     const auto tpic = choose(lattice.dim, kernel_shape(), TPIC, kernel.nreal == 8);

@@ -90,13 +90,12 @@ class FixMPM : public Fix {
   // settings
 
   MPM_NS::Lattice lattice;
-  MPM_NS::Shape shape;     ///< B-spline, or the one that has the stencil: QUADRATIC with a size,
-                           ///< LINEAR with a domain
-  bool bernstein;          ///< Bernstein polynomials, which have the stencil of QUADRATIC
-  bool mixed_precision;    ///< transfers in single precision
-  Extent extent;       ///< size of points: none, fixed (GIMP), with F (contiguous GIMP); domains
-                       ///< with F (CPDI), or corners that move (CPDI2)
-  double aspect[3];    ///< edges of an undeformed point of some size; their product is 1
+  MPM_NS::Shape shape;    ///< B-spline, or the one that has the stencil: QUADRATIC with a size,
+                          ///< LINEAR with a domain
+  bool bernstein;         ///< Bernstein polynomials, which have the stencil of QUADRATIC
+  Extent extent;          ///< size of points: none, fixed (GIMP), with F (contiguous GIMP); domains
+                          ///< with F (CPDI), or corners that move (CPDI2)
+  double aspect[3];       ///< edges of an undeformed point of some size; their product is 1
   MPM_NS::Transfer transfer;
   double flip;              ///< FLIP share, 0 for PIC
   bool poly;                ///< bilinear modes of the velocity, too; transfer is APIC then
@@ -133,7 +132,7 @@ class FixMPM : public Fix {
   double **R;      ///< [n][9] F at the last update of the reference, row-major; null: there is none
   double *
       *waiting;    ///< [n][6 or 9] impulse since the last step of the cycle, displacement from the
-      ///< place on the lattice, angular impulse if atoms have torques; null: every is 1
+  ///< place on the lattice, angular impulse if atoms have torques; null: every is 1
   bool ledger_on;    ///< a compute mpm/energy exists; set in init()
   MPMLedger ledger;
 

@@ -190,14 +190,14 @@ void FixMPM::post_run()
   for (double stage : t_max) total += stage;
   const double npoints = sum[0] / report.steps;
   utils::logmesg(lmp,
-                 "MPM {}: {:.0f} points, {} kernels{}, {:.2f} ns per point-step and core\n"
+                 "MPM {}: {:.0f} points, {} kernels, {:.2f} ns per point-step and core\n"
                  "  of these: topology and checks {:.2f}, sort {:.2f}, points to grid {:.2f}, "
                  "halo {:.2f}, nodes {:.2f}, grid to points with material {:.2f}\n"
                  "  {:.0f} bytes per point; {:.0f} blocks with points of {:.0f} active, "
                  "{:.1f} points per block\n"
                  "  {} updates of the topology, {} sorts, {:.0f} halo bytes per step, "
                  "time step {:.6g} to {:.6g}\n",
-                 id, npoints, kernels->isa, mixed_precision ? " (mixed)" : "", total * scale,
+                 id, npoints, kernels->isa, total * scale,
                  t_max[TOPOLOGY] * scale, t_max[SORT] * scale, t_max[P2GRID] * scale,
                  t_max[HALO] * scale, t_max[NODES] * scale, t_max[G2POINTS] * scale,
                  bytes_per_point(), sum[1], sum[2], npoints / std::max(1.0, sum[1]),

@@ -37,11 +37,10 @@ struct PolyKernels {
   void (*g2p)(const PointRows &, double *Q, const TransferStep &, int first, int last,
               const int base[3], const double *tile);
 
-  /** For shape QUADRATIC or CUBIC, with the instruction set of these transfers; nreal: of the
-   *  records of nodes. */
-  static PolyKernels select(const MPMKernels &, int dim, Shape, int nreal);
-  /** In plain loops: the statement of what these transfers are. */
-  static PolyKernels reference(int dim, Shape, int nreal);
+  static PolyKernels select(const MPMKernels &kernels, int dim, Shape shape, int nreal)
+  {
+    return kernels.poly(dim, shape, nreal);
+  }
 };
 
 }    // namespace MPM_NS
