@@ -197,11 +197,11 @@ void FixMPM::post_run()
                  "{:.1f} points per block\n"
                  "  {} updates of the topology, {} sorts, {:.0f} halo bytes per step, "
                  "time step {:.6g} to {:.6g}\n",
-                 id, npoints, kernels->isa, total * scale,
-                 t_max[TOPOLOGY] * scale, t_max[SORT] * scale, t_max[P2GRID] * scale,
-                 t_max[HALO] * scale, t_max[NODES] * scale, t_max[G2POINTS] * scale,
-                 bytes_per_point(), sum[1], sum[2], npoints / std::max(1.0, sum[1]),
-                 report.topologies, report.sorts, sum[3], report.dt_min, report.dt_max);
+                 id, npoints, kernels->isa, total * scale, t_max[TOPOLOGY] * scale,
+                 t_max[SORT] * scale, t_max[P2GRID] * scale, t_max[HALO] * scale,
+                 t_max[NODES] * scale, t_max[G2POINTS] * scale, bytes_per_point(), sum[1], sum[2],
+                 npoints / std::max(1.0, sum[1]), report.topologies, report.sorts, sum[3],
+                 report.dt_min, report.dt_max);
   if (deleted.points > 0.0)
     utils::logmesg(lmp,
                    "  {:.0f} points deleted so far, mass {:.10g}, momentum {:.10g} {:.10g} "
