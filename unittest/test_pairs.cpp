@@ -356,11 +356,12 @@ TEST_P(Pairs, Agree)
     again.commands("read_restart " + file.name + "\n" + c.again + rest);
 
     const auto expected = whole.gather();
+    constexpr double STRENGTH = 1.0;    // failed material has no stress but round-off
     const double ranks = has(chosen, "grain") ? 1.0e-9 : 1.0e-11;
-    EXPECT_LT(difference(serial.gather(), expected), ranks);
+    EXPECT_LT(difference(serial.gather(), expected, STRENGTH), ranks);
     // LAMMPS does not keep the borders of ranks that fix balance has moved
     if (has(chosen, "balance"))
-      EXPECT_LT(difference(again.gather(), expected), ranks);
+      EXPECT_LT(difference(again.gather(), expected, STRENGTH), ranks);
     else
       EXPECT_TRUE(identical(again.gather(), expected)) << difference(again.gather(), expected);
     check_map(whole);
