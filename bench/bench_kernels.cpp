@@ -9,7 +9,7 @@
 // Time per point of the transfer kernels: blocks in the order of a simulation, points sorted by
 // block and cell, 8 per cell in 3d and 4 in 2d. Counter ns/point; names are
 //
-//   what/instruction set/dimension/shape/transfer/points     (instruction set-mixed: mixed precision)
+//   what/instruction set/dimension/shape/transfer/points
 //
 // with what = p2g (points to tiles), g2p (tiles to points, in batches as for the constitutive law),
 // io (flush and load of all tiles), step (p2g, flush, solve_nodes, load, g2p).
@@ -154,10 +154,9 @@ Scene &scene(int dim, Shape shape, int margin, int n)
 enum What { P2G_ONLY, G2P_ONLY, IO, STEP };
 
 void run(benchmark::State &state, What what, const MPMKernels *table, int dim, Shape shape,
-         Transfer transfer, bool split, bool mixed, int wanted)
+         Transfer transfer, bool split, int wanted)
 {
-  const TransferKernels k = mixed ? table->transfer_mixed(dim, shape, transfer, split, false)
-                                  : table->transfer(dim, shape, transfer, split);
+  const TransferKernels k = table->transfer(dim, shape, transfer, split);
   Scene &s = scene(dim, shape, k.margin, wanted);
   // small displacements: points stay in their tiles however often the benchmark repeats
   const TransferStep step = {H, 1.0 / H, {0.0, 0.0, 0.0}, 1e-9, 0.99};
@@ -235,17 +234,13 @@ int main(int argc, char **argv)
             for (bool split : {false, true}) {
               if (transfer != APIC && !split) continue;
               for (What what : {P2G_ONLY, G2P_ONLY, IO, STEP}) {
-                for (bool mixed : {false, true}) {
-                  if (mixed && !table->transfer_mixed(dim, shape, transfer, split, false).p2g)
-                    continue;
-                  const std::string name = std::string(whats[what]) + "/" + table->isa +
-                      (mixed ? "-mixed/" : "/") + std::to_string(dim) + "d/" + shapes[shape] + "/" +
-                      transfers[transfer] + (transfer == APIC && split ? "-split" : "") + "/" +
-                      std::to_string(wanted / 1000) + "k";
-                  benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State &state) {
-                    run(state, what, table, dim, shape, transfer, split, mixed, wanted);
-                  })->Unit(benchmark::kMillisecond);
-                }
+                const std::string name = std::string(whats[what]) + "/" + table->isa + "/" +
+                    std::to_string(dim) + "d/" + shapes[shape] + "/" + transfers[transfer] +
+                    (transfer == APIC && split ? "-split" : "") + "/" +
+                    std::to_string(wanted / 1000) + "k";
+                benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State &state) {
+                  run(state, what, table, dim, shape, transfer, split, wanted);
+                })->Unit(benchmark::kMillisecond);
               }
             }
         }

@@ -10,6 +10,7 @@
 // and stored_energy on full batches, for each instruction set that this CPU has.
 
 #include "material/material_point.h"
+#include "math/matrix.h"
 #include "transfer/kernels.h"
 
 #include <benchmark/benchmark.h>
@@ -145,8 +146,7 @@ void run(benchmark::State &state, const char *text, const char *isa, Task task)
           for (int k = 0; k < 3; k++) b.F[3 * r + c][i] += b.A[3 * r + k][i] * F[3 * k + c];
       for (int k = 0; k < 9; k++) F[k] = b.F[k][i];
       b.Jold[i] = b.J[i];
-      b.J[i] = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
-          F[2] * (F[3] * F[7] - F[4] * F[6]);
+      b.J[i] = determinant(F);
     }
     if (step < 49) material->update(b);
   }

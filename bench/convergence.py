@@ -36,9 +36,6 @@ SHAPES = {
     "cpdi": "shape cpdi ASPECT",
     "cpdi2": "shape cpdi2 ASPECT",
     "bernstein": "shape bernstein",
-    "linear mixed": "shape linear precision mixed",
-    "quadratic mixed": "shape quadratic precision mixed",
-    "cubic mixed": "shape cubic precision mixed",
     "quadratic modified": "shape quadratic edges modified",
     "cubic modified": "shape cubic edges modified",
 }
@@ -173,11 +170,11 @@ class Scene:
             return False
         if self.template is BAR:
             return True
-        if "modified" in shape or shape == "linear mixed" or self.tears and "mixed" in shape:
+        if "modified" in shape:
             return False
         if frame == "update" and shape == "bernstein":
             return False
-        few = frame == "update" or "mixed" in shape or shape == "cpdi2" or self.tears and (frame, shape) != (
+        few = frame == "update" or shape == "cpdi2" or self.tears and (frame, shape) != (
             "total", "quadratic")
         return transfer in MAIN or not few
 

@@ -58,8 +58,6 @@ BLOCKS = {
                 for t in ("flip 0.99", "apic")],
     "total": ["frame total shape %s transfer %s" % (s, t) for s in ("linear", "quadratic", "cubic", "bernstein")
               for t in ("flip 0.99", "apic")],
-    "mixed": ["precision mixed shape %s transfer %s" % (s, t) for s in ("linear", "quadratic", "cubic")
-              for t in ("pic", "flip 0.99", "apic", "flip 0.99 scheme musl")],
 }
 
 # input, steps, and variables of the coupling

@@ -462,15 +462,17 @@ inline double measured(const std::string &what, double value)
   return value;
 }
 
-/** Largest difference of two sets of states, each quantity relative to its largest magnitude. */
-inline double difference(const std::vector<Scene::State> &a, const std::vector<Scene::State> &b)
+/** Largest difference of two sets of states, each quantity relative to its largest magnitude, stress to
+ *  the given one if that is larger. */
+inline double difference(const std::vector<Scene::State> &a, const std::vector<Scene::State> &b,
+                         double stress = 1.0e-300)
 {
   if (a.size() != b.size() || a.empty()) return 1.0e300;
   const int reals = sizeof(Scene::State) / sizeof(double);
   const int first[] = {0, 1, 2, 5, 8, 17, 23, 24}, last[] = {1, 2, 5, 8, 17, 23, 24, reals};
   double worst = 0.0;
   for (int g = 0; g < 8; g++) {
-    double scale = 1.0e-300, diff = 0.0;
+    double scale = g == 5 ? stress : 1.0e-300, diff = 0.0;
     for (std::size_t k = 0; k < a.size(); k++) {
       const double *p = &a[k].tag, *q = &b[k].tag;
       for (int r = first[g]; r < last[g]; r++) {

@@ -171,7 +171,6 @@ TEST(Bernstein, RefusedWhere)
       {"shape bernstein", "needs frame total"},
       {"shape bernstein frame total transfer aflip 1.0",
        "use B-splines with transfer apic or flip"},
-      {"shape bernstein frame total precision mixed", "Fix mpm precision mixed needs shape"},
   };
   for (const auto &bad : cases)
     EXPECT_THAT(error_of(replaced(two_bodies, "MPM_OPTIONS", bad.lines) + "run 1\n"),

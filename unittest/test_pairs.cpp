@@ -65,7 +65,6 @@ const Choice choices[] = {
     {"light", "light", OPTION, "light 0.5", "shape", "shape linear"},
     {"edges", "edges", OPTION, "edges modified", "transfer", "transfer flip 0.99"},
     {"every", "every", OPTION, "every 3"},
-    {"mixed", "precision", OPTION, "precision mixed"},
     {"axis", "axis", OPTION, "axisymmetric yes"},
     {"delete", "delete", OPTION, "bad delete failed delete"},
     {"damage", "law", LAW, "eos linear 20.0 strength elastic 8.0 damage rankine 1.0"},
@@ -115,8 +114,6 @@ const struct {
     {"aflip tpic", "bernstein total update", "use B-splines with transfer apic or flip"},
     {"linear gimp cpgimp cpdi cpdi2 bernstein aflip tpic polypic xpic fmpm light", "edges",
      "use edges plain"},
-    {"gimp cpgimp cpdi cpdi2 bernstein aflip tpic polypic xpic fmpm gradient axis", "mixed",
-     "use precision double"},
     {"cubic gimp cpgimp cpdi cpdi2 bernstein total update", "light", "remove light"},
     {"fbar both", "light", "use scheme musl"},
     {"fmpm", "usf musl usavg", "use scheme usl, or transfer xpic"},
@@ -383,11 +380,12 @@ TEST_P(Pairs, Agree)
     again.commands("read_restart " + file.name + "\n" + c.again + rest);
 
     const auto expected = whole.gather();
-    const double ranks = has(chosen, "mixed") ? 1.0e-5 : (has(chosen, "grain") ? 1.0e-9 : 1.0e-11);
-    EXPECT_LT(difference(serial.gather(), expected), ranks);
+    constexpr double STRENGTH = 1.0;    // failed material has no stress but round-off
+    const double ranks = has(chosen, "grain") ? 1.0e-9 : 1.0e-11;
+    EXPECT_LT(difference(serial.gather(), expected, STRENGTH), ranks);
     // LAMMPS does not keep the borders of ranks that fix balance has moved
     if (has(chosen, "balance"))
-      EXPECT_LT(difference(again.gather(), expected), ranks);
+      EXPECT_LT(difference(again.gather(), expected, STRENGTH), ranks);
     else
       EXPECT_TRUE(identical(again.gather(), expected)) << difference(again.gather(), expected);
     check_map(whole);

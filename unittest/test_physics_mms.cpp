@@ -278,19 +278,6 @@ INSTANTIATE_TEST_SUITE_P(
         OrderCase{"frame total shape bernstein transfer flip 1.0", .05, 2, 8, 16, 3.8e-3},
         OrderCase{"frame total shape bernstein transfer apic", .05, 2, 16, 32, 4.5e-4}));
 
-// round-off of mixed precision is far below the error of the method
-
-TEST(Mixed, SameErrors)
-{
-  for (const char *options :
-       {"shape quadratic transfer apic", "shape cubic transfer flip 1.0 scheme musl",
-        "frame total shape quadratic transfer flip 1.0"}) {
-    const double full = mms_error(2, 16, .05, options, true);
-    const double mixed = mms_error(2, 16, .05, std::string(options) + " precision mixed", true);
-    EXPECT_NEAR(measured("mixed / double", mixed / full), 1.0, 1e-4) << options;
-  }
-}
-
 TEST(OrderLinear, DivergesWithCellCrossing)
 {
   const std::string options = "shape linear transfer flip 1.0 scheme musl";

@@ -45,13 +45,13 @@ compile() {
     { rm -f "$object"; echo "cannot compile $source"; exit 1; }
 }
 
-# kernels of Bernstein polynomials and of mixed precision take long to compile; no test here calls them
+# kernels of Bernstein polynomials and of polypic take long to compile; no test here calls them
 cat >others.cpp <<'CODE'
 #include "transfer/kernels_isa.h"
 #include <cstdlib>
 using namespace MPM_NS;
-TransferKernels MPM_NS::MPM_CONCAT(mpm_kernels_bernstein_, MPM_ISA)(int, Transfer, bool) { abort(); }
-TransferKernels MPM_NS::MPM_CONCAT(mpm_kernels_mixed_, MPM_ISA)(int, Shape, Transfer, bool, bool) { abort(); }
+TransferKernels MPM_NS::MPM_OF_ISA(mpm_kernels_bernstein)(const KernelChoice &) { abort(); }
+PolyKernels MPM_NS::MPM_OF_ISA(mpm_kernels_poly)(int, Shape, int) { abort(); }
 CODE
 
 # FOLDER_FILE_ISA.o: files of the same name are in several folders
@@ -62,7 +62,7 @@ object_of() {
 
 objects=()
 for source in "$src"/{declare,lattice,law,material,mesh,transfer}/*.cpp; do
-  case $source in *_isa.cpp | */polypic.cpp) continue ;; esac
+  case $source in *_isa.cpp) continue ;; esac
   compile "$source" "$(object_of "$source" base)"
 done
 for isa in "${sets[@]}"; do
@@ -77,7 +77,7 @@ for isa in "${sets[@]}"; do
   # the optimizer needs minutes for these with sanitizers
   for kernels in "$src"/transfer/*_isa.cpp; do
     name=$(basename "$kernels" .cpp)
-    case $name in bernstein_* | mixed_* | polypic_*) continue ;; esac
+    case $name in bernstein_* | polypic_*) continue ;; esac
     compile "$kernels" "${name}_$isa.o" -DMPM_ISA="$isa" "${march[@]}" -O0 -g0
   done
 done

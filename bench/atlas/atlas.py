@@ -241,10 +241,8 @@ def main():
             atlas.cost_again(scene)
             continue
         atlas.accuracy(scene, sc.factorial(scene))
-        atlas.accuracy(scene, sc.mixed(scene))
         atlas.accuracy(scene, sc.one_at_a_time(scene), SLOW)
         atlas.cost(scene, sc.costed(scene))
-        atlas.cost(scene, sc.mixed(scene))
         atlas.cost(scene, sc.one_at_a_time(scene))
         atlas.accuracy(scene, sc.reference_runs(scene))
         for _ in range(PASSES):    # later ones next to what the first has found

@@ -59,7 +59,7 @@ def options(c):
     """Settings as in an input, defaults left out."""
     words = []
     for name, value, default in zip(sc.SETTINGS, c, BASE):
-        if name in ("shape", "transfer") or (name in ("scheme", "frame", "precision") and value != default):
+        if name in ("shape", "transfer") or (name in ("scheme", "frame") and value != default):
             words.append("%s %s" % (name, value))
     return "*" + " ".join(words) + "*"
 
@@ -74,7 +74,7 @@ def times_to_goal(data, scene):
     ladders, best = {}, {}
     ppc = (sc.MIDDLE[0], "3") if sc.SCENES[scene].get("stretch") else sc.MIDDLE[:1]
     for r in data.rows[scene]:
-        if r["time"] and r["ppc"] in ppc and (r["dtfrac"], r["precision"]) == sc.MIDDLE[1:]:
+        if r["time"] and r["ppc"] in ppc and r["dtfrac"] == sc.MIDDLE[1]:
             ladders.setdefault(rs.key(r)[:-1], []).append(r)
     goal = sc.SCENES[scene]["goal"]
     for setting, rungs in ladders.items():
@@ -140,7 +140,7 @@ def scene_section(data, scene):
 def cost_tables(data):
     """ns per point-step of shapes and transfers, and the factors of schemes, from all scenes."""
     def ns(scene, kind):
-        found = data.cost.get((scene,) + kind + ("2", "double"))
+        found = data.cost.get((scene,) + kind + ("2",))
         return found[0] if found else None
 
     def ratio(kinds, scenes):
@@ -163,22 +163,12 @@ def cost_tables(data):
         out.append("%dd, relative to *quadratic*, *apic*, *usl* (ns per point-step: %s):\n" % (dimension, base))
         out.append(table(["shape"] + list(sc.TRANSFERS), rows))
     factors = {}
-    for (scene, shape, transfer, scheme, frame, ppc, precision), (value, _) in data.cost.items():
-        usl = data.cost.get((scene, shape, transfer, "usl", frame, ppc, precision))
+    for (scene, shape, transfer, scheme, frame, ppc), (value, _) in data.cost.items():
+        usl = data.cost.get((scene, shape, transfer, "usl", frame, ppc))
         if usl and scheme != "usl":
             factors.setdefault(scheme, []).append(value / usl[0])
     out.append("Schemes cost, relative to *usl* (median of all combinations and scenes): " + ", ".join(
         "*%s* %s" % (s, number(statistics.median(factors[s]))) for s in sc.SCHEMES if s in factors) + ".\n")
-    rows = []
-    for kind in [c[:4] for c in sc.mixed("bar")][::2]:
-        cells = []
-        for scene in sc.SCENES:
-            single, double = [data.cost.get((scene,) + kind + ("2", p)) for p in ("mixed", "double")]
-            cells.append(number(single[0] / double[0]) if single and double else "-")
-        rows.append([options(kind)] + cells)
-    if any(set(row[1:]) != {"-"} for row in rows):
-        out.append("*Precision mixed*: cost relative to the same settings with *double*:\n")
-        out.append(table(["settings"] + list(sc.SCENES), rows, [40] + [10] * len(sc.SCENES)))
     return "\n".join(out)
 
 
@@ -195,7 +185,6 @@ def change_table(data):
     changes.append(("frame total", {3: "total"}))
     for ppc in ("1", "3", "4"):
         changes.append(("ppc " + ppc, {4: ppc}))
-    changes.append(("precision mixed", {6: "mixed"}))
     for dt in ("0.1", "0.2", "0.6", "0.8", "1.0"):
         changes.append(("dt fraction " + dt, {5: dt}))
     rows = []

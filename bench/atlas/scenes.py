@@ -5,7 +5,7 @@
 A combination is a tuple of settings in the order of SETTINGS, all of them strings as in the input.
 """
 
-SETTINGS = ("shape", "transfer", "scheme", "frame", "ppc", "dtfrac", "precision", "h")
+SETTINGS = ("shape", "transfer", "scheme", "frame", "ppc", "dtfrac", "h")
 
 SHAPES = ("linear", "quadratic", "cubic", "gimp", "cpgimp", "cpdi", "cpdi2", "bernstein")
 SPLINES = SHAPES[:3]
@@ -15,7 +15,7 @@ SCHEMES = ("usl", "usf", "musl", "usavg")
 TOTAL = (SPLINES + ("bernstein",), ("pic", "flip 1.0", "apic", "xpic 5", "fmpm 5"))
 MAIN_TRANSFERS = ("flip 1.0", "apic")
 COST_SCENE = {2: "bar", 3: "taylor"}    # by dimension: where the costs of all schemes are measured
-MIDDLE = ("2", "0.4", "double")    # ppc, dtfrac, precision of the full factorial
+MIDDLE = ("2", "0.4")    # ppc, dtfrac of the full factorial
 
 # levels: spacings from coarse to fine, as text; the factorial uses the first two, the others are for
 #   combinations on the Pareto front
@@ -100,18 +100,6 @@ def factorial(scene):
                 yield kind + MIDDLE + (h,)
 
 
-def mixed(scene):
-    """Single precision in the transfers: where it is meant to be faster (flip, cubic functions), in the default, and
-    in the total frame. Errors at the two coarsest spacings, and costs."""
-    for kind in (("quadratic", "apic", "usl", "updated"), ("quadratic", "flip 1.0", "usl", "updated"),
-                 ("quadratic", "flip 1.0", "musl", "updated"), ("cubic", "apic", "usl", "updated"),
-                 ("cubic", "flip 1.0", "musl", "updated"), ("linear", "flip 1.0", "usl", "total"),
-                 ("quadratic", "apic", "usl", "total")):
-        if allowed(scene, *kind):
-            for h in SCENES[scene]["levels"][:2]:
-                yield kind + MIDDLE[:2] + ("mixed", h)
-
-
 def kinds(scene):
     """The (shape, transfer, scheme, frame) of the factorial."""
     for frame in ("updated", "total"):
@@ -147,7 +135,7 @@ def one_at_a_time(scene):
         for ppc in ("1", "3", "4"):
             yield base + (ppc,) + MIDDLE[1:] + (h,)
         for dtfrac in ("0.1", "0.2", "0.6", "0.8", "1.0"):
-            yield base + (MIDDLE[0], dtfrac, MIDDLE[2], h)
+            yield base + (MIDDLE[0], dtfrac, h)
     if SCENES[scene].get("stretch"):
         for level in SCENES[scene]["levels"][:3]:
             for shape in SHAPES:
@@ -157,7 +145,7 @@ def one_at_a_time(scene):
                             yield (shape, transfer, scheme, "updated", "3") + MIDDLE[1:] + (level,)
     for shape in ("quadratic", "gimp"):
         for dtfrac in ("0.1", "0.2", "0.6", "0.8"):
-            yield (shape, "fmpm 5", "usl", "updated", MIDDLE[0], dtfrac, MIDDLE[2], h)
+            yield (shape, "fmpm 5", "usl", "updated", MIDDLE[0], dtfrac, h)
     for transfer in ("flip 0.99", "flip 0.95", "aflip 0.99", "xpic 2", "fmpm 2"):
         yield ("quadratic", transfer, "usl", "updated") + MIDDLE + (h,)
 
@@ -176,4 +164,4 @@ def refinement(scene, front):
         shape, transfer, scheme, frame = c[:4]
         for level, h in enumerate(SCENES[scene]["levels"]):
             for ppc, dtfrac in (("2", "0.4"), ("2", "0.8"), ("1", "0.4"), ("3", "0.4"))[:4 if level < 3 else 2]:
-                yield (shape, transfer, scheme, frame, ppc, dtfrac, "double", h)
+                yield (shape, transfer, scheme, frame, ppc, dtfrac, h)

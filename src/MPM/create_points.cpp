@@ -15,6 +15,7 @@
 #include "error.h"
 #include "fix.h"
 #include "irregular.h"
+#include "math/random.h"
 #include "modify.h"
 #include "mpm_field.h"
 #include "mpm_frame.h"
@@ -467,15 +468,10 @@ void CreatePoints::check_overlap()
 
 void CreatePoints::point_position(const bigint *s, double *x) const
 {
-  // one of 2^64 numbers from the site and the seed alone (splitmix64)
-
-  auto mix = [](uint64_t h) {
-    h += 0x9e3779b97f4a7c15u;
-    h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9u;
-    h = (h ^ (h >> 27)) * 0x94d049bb133111ebu;
-    return h ^ (h >> 31);
+  // a random number from the site and the seed alone
+  const auto mix = [](uint64_t h) {
+    return MPM_NS::mix_bits(h + MPM_NS::RANDOM_STEP);
   };
-
   for (int d = 0; d < 3; d++) {
     x[d] = position(d, s[d]);
     if (jitter == 0.0 || d >= domain->dimension) continue;

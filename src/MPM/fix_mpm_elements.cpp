@@ -17,6 +17,7 @@
 #include "group.h"
 #include "material/batch.h"
 #include "material/material.h"
+#include "math/matrix.h"
 #include "memory.h"
 #include "mesh/element.h"
 #include "modify.h"
@@ -537,15 +538,10 @@ void FixMPMElements::load(Work &w, std::size_t e, bool moved) const
     mean += w.volume[p] * J;
     size += w.volume[p];
     const double inv = 1.0 / J;
-    double inverse[3][3];
-    for (int a = 0; a < 3; a++)
-      for (int b = 0; b < 3; b++) {
-        const int a1 = (a + 1) % 3, a2 = (a + 2) % 3, b1 = (b + 1) % 3, b2 = (b + 2) % 3;
-        inverse[b][a] = inv * (f[3 * a1 + b1] * f[3 * a2 + b2] - f[3 * a1 + b2] * f[3 * a2 + b1]);
-      }
+    double inverse[9] = MPM_COFACTORS(f);    // transposed
+    for (double &a : inverse) a *= inv;
     for (int m = 0; m < rule.nnode; m++)
-      for (int a = 0; a < 3; a++)
-        w.g[p][m][a] = g[m][0] * inverse[0][a] + g[m][1] * inverse[1][a] + g[m][2] * inverse[2][a];
+      for (int a = 0; a < 3; a++) w.g[p][m][a] = dot(g[m], inverse + 3 * a);
   }
 
   Batch &b = *batch;
@@ -561,18 +557,13 @@ void FixMPMElements::load(Work &w, std::size_t e, bool moved) const
     }
     const double Jold = MPMPoints::det(s), inv = 1.0 / Jold;
     b.Jold[p] = Jold;
-    double inverse[3][3];
-    for (int i = 0; i < 3; i++)
-      for (int j = 0; j < 3; j++) {
-        const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-        inverse[j][i] = inv * (s[3 * i1 + j1] * s[3 * i2 + j2] - s[3 * i1 + j2] * s[3 * i2 + j1]);
-      }
+    double inverse[9] = MPM_COFACTORS(s), change[9];
+    for (double &a : inverse) a *= inv;
+    for (int c = 0; c < 9; c++) change[c] = f[c] - s[c];
     for (int i = 0; i < 3; i++)
       for (int j = 0; j < 3; j++) {
         b.F[3 * i + j][p] = f[3 * i + j];
-        double a = 0.0;
-        for (int k = 0; k < 3; k++) a += (f[3 * i + k] - s[3 * i + k]) * inverse[k][j];
-        b.A[3 * i + j][p] = a;
+        b.A[3 * i + j][p] = dot(change + 3 * i, inverse + 3 * j);
       }
     for (int c = 0; c < 6; c++) b.stress[c][p] = inv * s[9 + c];
     b.vol0[p] = w.volume[p];

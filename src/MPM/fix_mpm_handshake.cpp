@@ -570,7 +570,7 @@ void FixMPMHandshake::find_nodes()
 {
   Grid &grid = field->grid;
   const auto &lattice = grid.lattice;
-  const int n = stencil_order(field->options.shape) + 1, dim = lattice.dim, mask = grid.side - 1;
+  const int n = stencil_order(field->options.shape) + 1, dim = lattice.dim;
   nreach = dim == 3 ? n * n * n : n * n;
 
   members.clear();
@@ -603,18 +603,11 @@ void FixMPMHandshake::find_nodes()
       for (int ky = 0; ky < n; ky++)
         for (int kz = 0; kz < (dim == 3 ? n : 1); kz++, m++) {
           const int index[3] = {base[0] + kx, base[1] + ky, base[2] + kz};
-          int to = -1;
-          if (slot >= 0) {
-            int side[3] = {1, 1, 1};
-            for (int d = 0; d < dim; d++) side[d] = (index[d] >> grid.shift_bits) - b[d] + 1;
-            to = grid.blocks[slot].slot[9 * side[0] + 3 * side[1] + side[2]];
-          }
-          if (to < 0)
+          const int64_t node = slot < 0 ? -1 : grid.locate_near(grid.blocks[slot], index);
+          if (node < 0)
             error->one(FLERR, "Fix mpm/handshake {}: atom {} has left the active blocks", id,
                        atom->tag[members[k]]);
-          nodes[m] = to * NODES_PER_BLOCK +
-              (dim == 3 ? ((index[0] & mask) * 4 + (index[1] & mask)) * 4 + (index[2] & mask)
-                        : (index[0] & mask) * 8 + (index[1] & mask));
+          nodes[m] = (int) node;
           shares[m] = w[0][kx] * w[1][ky] * w[2][kz];
         }
   }

@@ -209,12 +209,6 @@ double FixMPMImmersed::space() const
   return field->lattice.dim == 3 ? h * h * h : h * h;
 }
 
-/** Number of a node in its block, by its indices there. */
-static int number(int dim, const int in[3])
-{
-  return dim == 3 ? (in[0] * 4 + in[1]) * 4 + in[2] : in[0] * 8 + in[1];
-}
-
 /* ----------------------------------------------------------------------
    f(node, N_i, r) for the nodes around a grain, r from the grain in node spacings; false: some of them
    are not there
@@ -240,18 +234,15 @@ template <class F> bool FixMPMImmersed::visit(int i, const F &f) const
   for (k[0] = 0; k[0] < n; k[0]++)
     for (k[1] = 0; k[1] < n; k[1]++)
       for (k[2] = 0; k[2] < (dim == 3 ? n : 1); k[2]++) {
-        int side[3], in[3];
+        int index[3];
         double r[3];
         for (int d = 0; d < 3; d++) {
-          const int index = first[d] + k[d];
-          r[d] = index - t[d];
-          side[d] = (index >> grid.shift_bits) - b[d] + 1;
-          in[d] = index & (grid.side - 1);
+          index[d] = first[d] + k[d];
+          r[d] = index[d] - t[d];
         }
-        const int slot = block.slot[9 * side[0] + 3 * side[1] + side[2]];
-        if (slot < 0) return false;
-        f((int64_t) slot * NODES_PER_BLOCK + number(dim, in), w[0][k[0]] * w[1][k[1]] * w[2][k[2]],
-          r);
+        const int64_t node = grid.locate_near(block, index);
+        if (node < 0) return false;
+        f(node, w[0][k[0]] * w[1][k[1]] * w[2][k[2]], r);
       }
   return true;
 }
@@ -405,18 +396,14 @@ bool FixMPMImmersed::is_inner(int64_t node)
     return grid.nodes()[n * grid.nreal + 3] > least;
   };
   const auto &block = grid.blocks[node / NODES_PER_BLOCK];
-  const int dim = field->lattice.dim, last = grid.side - 1;
   int index[3];
   grid.node_index(block, (int) (node % NODES_PER_BLOCK), index);
   bool all = full(node);
-  for (int k = 0; k < 2 * dim && all; k++) {
-    int to[3] = {index[0] & last, index[1] & last, index[2] & last}, side[3] = {1, 1, 1};
-    const int d = k / 2;
-    to[d] += 2 * (k % 2) - 1;
-    side[d] += (to[d] > last) - (to[d] < 0);
-    to[d] &= last;
-    const int slot = block.slot[9 * side[0] + 3 * side[1] + side[2]];
-    all = slot >= 0 && full((int64_t) slot * NODES_PER_BLOCK + number(dim, to));
+  for (int k = 0; k < 2 * field->lattice.dim && all; k++) {
+    int next[3] = {index[0], index[1], index[2]};
+    next[k / 2] += 2 * (k % 2) - 1;
+    const int64_t neighbor = grid.locate_near(block, next);
+    all = neighbor >= 0 && full(neighbor);
   }
   known = all ? INNER : OUTER;
   return all;

@@ -20,6 +20,7 @@
 
 #include "atom.h"
 #include "force.h"
+#include "math/random.h"
 #include "math_eigen.h"
 #include "math_extra.h"
 #include "mpm_boxes.h"
@@ -46,13 +47,6 @@ using namespace MPM_NS;
 // mean square distance of points around a node, in node spacings squared, that allows for a slope
 static constexpr double MIN_EXTENT = 1.0e-4;
 
-static uint64_t mixed(uint64_t z)
-{
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-  return z ^ (z >> 31);
-}
-
 /* ---------------------------------------------------------------------- */
 
 MPMAffine::MPMAffine(LAMMPS *lmp, MPMField &field, MPMPointState &state) :
@@ -78,12 +72,12 @@ uint64_t MPMAffine::velocity_hash() const
   uint64_t mine = 0, all;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!field.is_point(i) || std::isnan(C[i][0])) continue;
-    uint64_t h = 0x9e3779b97f4a7c15ULL;
+    uint64_t h = RANDOM_STEP;
     for (int d = 0; d < 3; d++) {
       const double v = atom->v[i][d] + 0.0;    // no negative zero
       uint64_t bits;
       memcpy(&bits, &v, sizeof(bits));
-      h = mixed(h + bits);
+      h = mix_bits(h + bits);
     }
     mine += h;
   }
@@ -215,9 +209,9 @@ bool MPMAffine::takes_torques() const
 
 void MPMAffine::add_torques()
 {
-  const Shape shape = field.options.shape;
   const int dim = field.lattice.dim;
-  const double inv_moment = (shape == QUADRATIC ? 4.0 : 3.0) / (field.lattice.h * field.lattice.h);
+  const double h = field.lattice.h;
+  const double inv_moment = shape_constants[field.options.shape].inv_moment / (h * h);
   // pair styles act on atoms in neighbor lists; with every, on those of several lists
   const int end = neighbor->includegroup && !field.every ? atom->nfirst : atom->nlocal;
   for (const auto &run : field.map->runs)

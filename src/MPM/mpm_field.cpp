@@ -195,13 +195,7 @@ void MPMField::choose_kernels()
 {
   const bool split = ledger.on || keep_old || options.stress_before() ||
       (options.axisymmetric && options.scheme != Options::USL);
-  kernel = options.mixed_precision
-      ? kernels->transfer_mixed(lattice.dim, options.shape, options.transfer, split, options.total)
-      : frame->kernels(*kernels, options.transfer, split);
-  if (!kernel.p2g)
-    error->all(FLERR,
-               "Fix mpm kernels reference has no precision mixed: use other kernels, or "
-               "precision double");
+  kernel = frame->kernels(*kernels, options.transfer, split);
   if (options.strains_apart()) {
     // to the nodes, TPIC differs in nothing but the stress; back, it has the gradient
     const auto tpic = frame->kernels(*kernels, TPIC, kernel.nreal == 8);
@@ -210,8 +204,7 @@ void MPMField::choose_kernels()
     kernel.g2p_gradient = tpic.g2p_gradient;
     kernel.gradient_in_C = false;
   }
-  if (options.polypic)
-    affine->modes = PolyKernels::select(*kernels, lattice.dim, options.shape, kernel.nreal);
+  if (options.polypic) affine->modes = kernels->poly(lattice.dim, options.shape, kernel.nreal);
   pic = kernels->transfer(lattice.dim, options.shape, PIC, true);
   batch->h = lattice.h;
 }

@@ -144,8 +144,6 @@ Options MPMFieldOptions::declare(int dim)
         {integer(every, "K", POSITIVE, "points take one step in every K steps of the run")})
       .keep();
   o.add("dtcheck", {yes_no(dt_check)}, "stop when the time step is above the limit");
-  o.add("precision", {word(mixed_precision, {{"double", false}, {"mixed", true}})},
-        "arithmetic of the transfers between points and nodes");
   o.add("plan", {yes_no(plan)}, "print the stages of the step, and at the end what each has cost");
 
   static const char *const sets[] = {"", "reference", "baseline", "avx2", "avx512"};
@@ -191,13 +189,6 @@ Options MPMFieldOptions::declare(int dim)
              ((shape != QUADRATIC && shape != CUBIC) || series != LUMPED || is_affine(transfer)),
          "edges",
          "modified is for shape quadratic and cubic with transfer pic and flip: use edges plain"},
-        {mixed_precision &&
-             (has_size() || shape == BERNSTEIN || series != LUMPED || polypic ||
-              transfer == AFLIP || transfer == TPIC || axisymmetric || strains_apart()),
-         "precision",
-         "mixed needs shape linear, quadratic or cubic and transfer pic, flip or apic, without "
-         "stress "
-         "gradient and axisymmetric: use precision double for others"},
         {shape == BERNSTEIN && !total, "shape",
          "bernstein has gradients that jump where points cross cells: it needs frame total, "
          "where they do not, or use shape quadratic"},

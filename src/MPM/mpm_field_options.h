@@ -46,13 +46,12 @@ struct MPMFieldOptions {
   double origin[3] = {0.0, 0.0, 0.0};
   bool has_origin = false;    ///< else it is the lower corner of the box
   Policy bad = ERROR;
-  bool delete_failed = false;      ///< remove points whose damage is 1
-  bool modified_edges = false;     ///< functions next to fixed faces need no nodes outside
-  int every = 1;                   ///< steps of LAMMPS in a step of the cycle
-  bool dt_check = true;            ///< stop when the time step is above the stable limit
-  bool mixed_precision = false;    ///< transfers in single precision
-  bool plan = false;               ///< print the plan of the step with the cost of each stage
-  std::string kernels;             ///< wanted instruction set, empty: the best
+  bool delete_failed = false;     ///< remove points whose damage is 1
+  bool modified_edges = false;    ///< functions next to fixed faces need no nodes outside
+  int every = 1;                  ///< steps of LAMMPS in a step of the cycle
+  bool dt_check = true;           ///< stop when the time step is above the stable limit
+  bool plan = false;              ///< print the plan of the step with the cost of each stage
+  std::string kernels;            ///< wanted instruction set, empty: the best
 
   /** Does the scheme update stress at the start, at the end of the step, or (neither) in between? */
   bool stress_before() const { return scheme == USF || scheme == USAVG; }

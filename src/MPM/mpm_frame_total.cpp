@@ -27,6 +27,7 @@
 #include "error.h"
 #include "fix.h"
 #include "material/batch.h"
+#include "math/matrix.h"
 #include "math_extra.h"
 #include "mpm_affine.h"
 #include "mpm_field.h"
@@ -173,15 +174,11 @@ double MPMFrameTotal::volume_change(int i, const double *L, double dt) const
     return MPMFrame::volume_change(i, A, 1.0);
   }
   const double scale = dt / field.points->jacobian(i);
+  const double cofactors[9] = MPM_COFACTORS(F);    // F^-1 transposed, times det F
   for (int j = 0; j < 3; j++) {
-    const int a = (j + 1) % 3, b = (j + 2) % 3;
-    double inverse[3];    // column j of F^-1, times det F
-    for (int k = 0; k < 3; k++) {
-      const int c = (k + 1) % 3, d = (k + 2) % 3;
-      inverse[k] = F[3 * a + c] * F[3 * b + d] - F[3 * a + d] * F[3 * b + c];
-    }
+    const double *const c = cofactors + 3 * j;
     for (int r = 0; r < 3; r++)
-      A[3 * j + r] = scale * (L[r] * inverse[0] + L[3 + r] * inverse[1] + L[6 + r] * inverse[2]);
+      A[3 * j + r] = scale * (L[r] * c[0] + L[3 + r] * c[1] + L[6 + r] * c[2]);
   }
   return MPMFrame::volume_change(i, A, 1.0);
 }

@@ -238,13 +238,12 @@ void MPMPlan::report(const MPMField &field) const
                                (field.options.plan || k == 0 ? " " : ", ") + entries[k].name,
                                entries[k].seconds);
   utils::logmesg(lmp,
-                 "MPM {}: {:.0f} points, {} kernels{}, {:.2f} ns per point-step and core\n{}\n"
+                 "MPM {}: {:.0f} points, {} kernels, {:.2f} ns per point-step and core\n{}\n"
                  "  {:.0f} bytes per point; {:.0f} blocks with points of {:.0f} active, "
                  "{:.1f} points per block\n"
                  "  {} updates of the topology, {} sorts, {:.0f} halo bytes per step, "
                  "time step {:.6g} to {:.6g}\n",
-                 field.id(), npoints, field.kernels->isa,
-                 field.options.mixed_precision ? " (mixed)" : "", total, stages_text,
+                 field.id(), npoints, field.kernels->isa, total, stages_text,
                  field.bytes_per_point(), sum[1], sum[2], npoints / std::max(1.0, sum[1]),
                  field.map->nbuild, field.map->nsort, sum[3], counts.dt_min, counts.dt_max);
   if (least_use < IDLE)

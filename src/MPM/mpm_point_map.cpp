@@ -83,16 +83,14 @@ void MPMPointMap::check_drift()
 bool MPMPointMap::base_node(const double *x, int base[3], double t[3]) const
 {
   // base node of a point relative to its cell, in cells
-  const Shape shape = field.options.shape;
-  const bool bernstein = shape == BERNSTEIN;
-  const double shift = bernstein ? 0.0 : 0.5 * (stencil_order(shape) - 1);
+  const ShapeConstants &shape = shape_constants[field.options.shape];
   const Lattice &lattice = field.lattice;
   base[2] = 0;
   t[2] = 0.0;
   for (int d = 0; d < lattice.dim; d++) {
-    t[d] = (x[d] - lattice.origin[d]) / lattice.h - shift;
+    t[d] = (x[d] - lattice.origin[d]) / lattice.h - shape.shift;
     if (!(fabs(t[d]) < 4.0e6)) return false;
-    base[d] = bernstein ? 2 * (int) std::floor(0.5 * t[d]) : (int) std::floor(t[d]);
+    base[d] = shape.cell * (int) std::floor(t[d] / shape.cell);
   }
   return true;
 }

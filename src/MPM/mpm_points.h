@@ -9,6 +9,8 @@
 #ifndef LMP_MPM_POINTS_H
 #define LMP_MPM_POINTS_H
 
+#include "math/matrix.h"
+
 namespace LAMMPS_NS {
 class Atom;
 
@@ -32,11 +34,7 @@ struct MPMPoints {
     for (int c = 0; c < 6; c++) sigma[c] = tau[i][c] / J;
   }
 
-  static double det(const double *F)
-  {
-    return F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
-        F[2] * (F[3] * F[7] - F[4] * F[6]);
-  }
+  static double det(const double *F) { return MPM_NS::determinant(F); }
 
   /** State of the points of this Atom object; with create = true it is made when absent. */
   static MPMPoints *get(Atom *atom, bool create = false);

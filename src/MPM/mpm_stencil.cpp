@@ -19,8 +19,11 @@ using namespace MPM_NS;
 
 /* ---------------------------------------------------------------------- */
 
-template <class Functions> static int evaluate(double f, double *w, double *slopes)
+template <class Functions> static int evaluate(double t, int &first, double w[4], double *slopes)
 {
+  const double cell = std::floor(t / Functions::cell - Functions::shift);
+  const double f = t / Functions::cell - Functions::shift - cell;
+  first = Functions::cell * (int) cell;
   Functions::weights(f, w);
   if (slopes) Functions::gradients(f, slopes);
   return Functions::nodes;
@@ -28,17 +31,12 @@ template <class Functions> static int evaluate(double f, double *w, double *slop
 
 int MPMStencil::weights(double t, int &first, double w[4], double *slopes) const
 {
-  if (field.options.shape == BERNSTEIN) {
-    const double cell = std::floor(0.5 * t);
-    first = 2 * (int) cell;
-    return evaluate<Bernstein>(0.5 * t - cell, w, slopes);
-  }
-  const int order = stencil_order(field.options.shape);
-  const double s = t - 0.5 * (order - 1);
-  first = (int) std::floor(s);
-  if (order == 1) return evaluate<BSpline<1>>(s - first, w, slopes);
-  if (order == 2) return evaluate<BSpline<2>>(s - first, w, slopes);
-  return evaluate<BSpline<3>>(s - first, w, slopes);
+  const Shape shape = field.options.shape;
+  if (shape == BERNSTEIN) return evaluate<Bernstein>(t, first, w, slopes);
+  const int order = stencil_order(shape);
+  if (order == 1) return evaluate<BSpline<1>>(t, first, w, slopes);
+  if (order == 2) return evaluate<BSpline<2>>(t, first, w, slopes);
+  return evaluate<BSpline<3>>(t, first, w, slopes);
 }
 
 void MPMStencil::weights_of_size(int i, int axis, double t, int first, double w[4],

@@ -63,7 +63,6 @@ class MPMStencil {
                 const double *g, const F &f) const
   {
     const auto &lattice = field.lattice;
-    const auto &grid = field.grid;
     int base[3] = {0, 0, 0}, count[3] = {1, 1, 1};
     double at[3] = {0.0, 0.0, 0.0}, w[3][4] = {{0.0}, {0.0}, {1.0}}, dw[3][4] = {{0.0}};
     for (int d = 0; d < lattice.dim; d++) {
@@ -77,21 +76,18 @@ class MPMStencil {
     for (k[0] = 0; k[0] < count[0]; k[0]++)
       for (k[1] = 0; k[1] < count[1]; k[1]++)
         for (k[2] = 0; k[2] < count[2]; k[2]++) {
-          int side[3] = {1, 1, 1}, in[3] = {0, 0, 0};
+          int index[3] = {0, 0, 0};
           const double N = w[0][k[0]] * w[1][k[1]] * w[2][k[2]];
           for (int d = 0; d < 3; d++) {
             node.r[d] = node.gradient[d] = 0.0;
             if (d >= lattice.dim) continue;
-            const int index = base[d] + k[d], e = (d + 1) % 3, other = (d + 2) % 3;
-            side[d] = (index >> grid.shift_bits) - block.b[d] + 1;
-            in[d] = index & (grid.side - 1);
-            node.r[d] = at[d] - index;
+            const int e = (d + 1) % 3, other = (d + 2) % 3;
+            index[d] = base[d] + k[d];
+            node.r[d] = at[d] - index[d];
             node.gradient[d] = g ? g[d] * N
                                  : dw[d][k[d]] * w[e][k[e]] * w[other][k[other]] / lattice.h;
           }
-          const int slot = block.slot[9 * side[0] + 3 * side[1] + side[2]];
-          const int n = lattice.dim == 3 ? (in[0] * 4 + in[1]) * 4 + in[2] : in[0] * 8 + in[1];
-          node.number = (int64_t) slot * MPM_NS::NODES_PER_BLOCK + n;
+          node.number = field.grid.locate_near(block, index);
           node.weight = share * w[0][k[0]] * w[1][k[1]] * w[2][k[2]];
           f(node);
         }

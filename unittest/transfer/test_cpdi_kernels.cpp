@@ -156,40 +156,10 @@ TEST(Weights, ParallelepipedIsAHexahedron)
   check_box<3>();
 }
 
-struct Case {
-  const char *isa;
-  int dim;
-  Shape shape;
-  Transfer transfer;
-  bool split;
-};
-
-std::vector<Case> all_cases()
-{
-  std::vector<Case> cases;
-  for (const char *isa : {"reference", "baseline", "avx2", "avx512"})
-    for (int dim : {2, 3})
-      for (Shape shape : {CPDI, CPDI2})
-        for (Transfer transfer : {PIC, FLIP, APIC, AFLIP, TPIC})
-          for (bool split : {true, false})
-            if (split || transfer == APIC || transfer == TPIC)
-              cases.push_back({isa, dim, shape, transfer, split});
-  return cases;
-}
-
-std::string case_name(const ::testing::TestParamInfo<Case> &info)
-{
-  static const char *const transfers[] = {"pic", "flip", "apic", "aflip", "tpic"};
-  const Case &c = info.param;
-  return std::string(c.isa) + "_" + std::to_string(c.dim) + "d_" +
-      (c.shape == CPDI ? "cpdi_" : "cpdi2_") + transfers[c.transfer] +
-      (c.split ? "_split" : "_merged");
-}
-
 /** Points in the middle block of a tile, with domains that reach up to 3 cells. */
 struct Points {
   int dim, n, N, row;
-  TransferStep step;
+  TransferStep step = random_step();
   int base[3];
   Reals x, v, f, C, tau, vol0, mass, xnew, domain, corners_new;
 
@@ -198,13 +168,6 @@ struct Points {
       x(3 * n), v(3 * n), f(3 * n), C(dim * dim * n), tau(6 * n), vol0(n), mass(n), xnew(3 * n),
       domain(row * n), corners_new(row * n)
   {
-    step.h = uniform(0.1, 2.0);
-    step.inv_h = 1.0 / step.h;
-    step.dt = uniform(0.01, 0.1) * step.h;
-    step.flip = uniform(0.0, 1.0);
-    step.force_scale = uniform(0.5, 2.0);
-    step.stress_scale = uniform(0.5, 2.0);
-    for (double &o : step.origin) o = uniform(-5.0, 5.0);
     fill(v), fill(f), fill(C), fill(tau);
     for (double &a : vol0) a = uniform(0.5, 1.5) * std::pow(step.h, dim);
     for (double &a : mass) a = uniform(0.5, 1.5);
@@ -266,31 +229,18 @@ struct Points {
   }
 };
 
-class Kernels : public ::testing::TestWithParam<Case> {
+class Kernels : public KernelTest {
  protected:
-  int dim, nreal, nodes;
+  int nodes;
   Shape shape;
-  const MPMKernels *table;
-  TransferKernels kernels, reference;
 
   void SetUp() override
   {
-    const Case &c = GetParam();
-    table = MPMKernels::select(c.isa);
-    if (!table) GTEST_SKIP() << "the CPU does not have it, or the compiler does not know it";
-    dim = c.dim;
-    shape = c.shape;
-    kernels = table->transfer(dim, c.shape, c.transfer, c.split);
-    reference = MPMKernels::select("reference")->transfer(dim, c.shape, c.transfer, c.split);
-    nreal = kernels.nreal;
-    nodes = domain_tile_nodes(dim);
-    generator.seed(1);
+    KernelTest::SetUp();
+    shape = GetParam().shape;
+    nodes = domain_tile_nodes(GetParam().dim);
   }
   Reals tile() const { return Reals(nodes * nreal, 0.0); }
-};
-
-struct Box {
-  int b[6] = {127, 127, 127, -127, -127, -127};
 };
 
 TEST_P(Kernels, AgreeWithTheReference)
@@ -612,6 +562,6 @@ TEST_P(Kernels, TileMovesItsBox)
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Kernels, ::testing::ValuesIn(all_cases()), case_name);
+INSTANTIATE_TEST_SUITE_P(All, Kernels, ::testing::ValuesIn(all_cases({CPDI, CPDI2})), case_name);
 
 }    // namespace

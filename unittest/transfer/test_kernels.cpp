@@ -44,7 +44,7 @@ struct Points {
   int dim, order, first, last, n;
   int nC;         // reals of a matrix C
   int guarded;    // as in PointRows: the last row exists, no more
-  TransferStep step;
+  TransferStep step = random_step();
   int base[3];
   Reals x, v, f, C, tau, vol0, mass, xnew, size;
 
@@ -55,14 +55,6 @@ struct Points {
       x(3 * n), v(3 * n), f(3 * n), C(nC * n), tau(6 * n), vol0(n), mass(n), xnew(3 * n),
       size(3 * n)
   {
-    step.h = uniform(0.1, 2.0);
-    step.inv_h = 1.0 / step.h;
-    step.dt = uniform(0.01, 0.1) * step.h;
-    step.flip = uniform(0.0, 1.0);
-    step.force_scale = uniform(0.5, 2.0);
-    step.stress_scale = uniform(0.5, 2.0);
-    for (double &o : step.origin) o = uniform(-5.0, 5.0);
-
     fill(v), fill(f), fill(C), fill(tau);
     for (double &a : vol0) a = uniform(0.5, 1.5) * step.h * step.h * step.h;
     for (double &a : mass) a = uniform(0.5, 1.5);
@@ -134,65 +126,16 @@ struct Tile {
   }
 };
 
-struct Box {
-  int b[6] = {1000, 1000, 1000, -1000, -1000, -1000};
-};
-
-struct Case {
-  const char *isa;
-  int dim;
-  Shape shape;
-  Transfer transfer;
-  bool split;
-};
-
-/** Merged records suffice. */
-bool may_be_merged(Transfer transfer)
-{
-  return transfer == APIC || transfer == TPIC;
-}
-
-std::string case_name(const ::testing::TestParamInfo<Case> &info)
-{
-  static const char *const shapes[] = {"", "linear", "quadratic", "cubic", "gimp"};
-  static const char *const transfers[] = {"pic", "flip", "apic", "aflip", "tpic"};
-  const Case &c = info.param;
-  return std::string(c.isa) + "_" + std::to_string(c.dim) + "d_" + shapes[c.shape] + "_" +
-      transfers[c.transfer] + (may_be_merged(c.transfer) ? (c.split ? "_split" : "_merged") : "");
-}
-
-std::vector<Case> all_cases()
-{
-  std::vector<Case> cases;
-  for (const char *isa : {"reference", "baseline", "avx2", "avx512"})
-    for (int dim : {2, 3})
-      for (Shape shape : {LINEAR, QUADRATIC, CUBIC, GIMP})
-        for (Transfer transfer : {PIC, FLIP, APIC, AFLIP, TPIC})
-          for (bool split : {true, false})
-            if (split || may_be_merged(transfer))
-              cases.push_back({isa, dim, shape, transfer, split});
-  return cases;
-}
-
-class Kernels : public ::testing::TestWithParam<Case> {
+class Kernels : public KernelTest {
  protected:
-  int dim, order, nreal;
+  int order;
   bool split;
-  const MPMKernels *table;
-  TransferKernels kernels, reference;
 
   void SetUp() override
   {
-    const Case &c = GetParam();
-    table = MPMKernels::select(c.isa);
-    if (!table) GTEST_SKIP() << "the CPU does not have it, or the compiler does not know it";
-    dim = c.dim;
-    order = stencil_order(c.shape);
-    kernels = table->transfer(dim, c.shape, c.transfer, c.split);
-    reference = MPMKernels::select("reference")->transfer(dim, c.shape, c.transfer, c.split);
-    nreal = kernels.nreal;
+    KernelTest::SetUp();
+    order = stencil_order(GetParam().shape);
     split = nreal == 8;
-    generator.seed(1);
   }
 
   Points random_points(int count) const
@@ -770,7 +713,9 @@ TEST_P(Kernels, TileMovesItsBox)
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Kernels, ::testing::ValuesIn(all_cases()), case_name);
+INSTANTIATE_TEST_SUITE_P(All, Kernels,
+                         ::testing::ValuesIn(all_cases({LINEAR, QUADRATIC, CUBIC, GIMP})),
+                         case_name);
 
 class Tables : public ::testing::TestWithParam<const char *> {
  protected:

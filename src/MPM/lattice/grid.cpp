@@ -60,11 +60,7 @@ int64_t Grid::locate(const int index[3]) const
                     lattice.dim == 3 ? index[2] >> shift_bits : 0};
   const int slot = find(b);
   if (slot < 0) return -1;
-  const int mask = side - 1;
-  const int n = lattice.dim == 3
-      ? (((index[0] & mask) << 2 | (index[1] & mask)) << 2 | (index[2] & mask))
-      : ((index[0] & mask) << 3 | (index[1] & mask));
-  return (int64_t) slot * NODES_PER_BLOCK + n;
+  return (int64_t) slot * NODES_PER_BLOCK + number(index);
 }
 
 void Grid::close_periodic()

@@ -95,8 +95,25 @@ class Grid {
       index[2] = 0;
     }
   }
+  /** Number of a node in its block, from its global index. */
+  int number(const int index[3]) const
+  {
+    const int i = index[0] & (side - 1), j = index[1] & (side - 1), k = index[2] & (side - 1);
+    return lattice.dim == 3 ? (4 * i + j) * 4 + k : 8 * i + j;
+  }
   /** Slot*64 + node of a global node index, -1 when its block is not active. */
   int64_t locate(const int index[3]) const;
+  /** The same without a search, for nodes in this block and its neighbours. */
+  int64_t locate_near(const Block &block, const int index[3]) const
+  {
+    int neighbor = 0;
+    for (int d = 0; d < 3; d++) {
+      const int b = d < lattice.dim ? index[d] >> shift_bits : 0;
+      neighbor = 3 * neighbor + b - block.b[d] + 1;
+    }
+    const int slot = block.slot[neighbor];
+    return slot < 0 ? -1 : (int64_t) slot * NODES_PER_BLOCK + number(index);
+  }
 
   int64_t memory_usage() const;
 

@@ -11,6 +11,7 @@
 
 #include "law/damage.h"
 #include "law/math.h"
+#include "math/random.h"
 
 namespace MPM_NS::law {
 namespace {
@@ -54,19 +55,13 @@ namespace {
       return p.value[GC] > 0.0 ? NRANKINE : p.value[M] > 0.0 ? OPENING : RANDOM;
     }
 
-    /** A random number of each position, whatever the number of processes: finalizer of
-     *  D. Stafford's variant 13 of a 64-bit mix (as in G.L. Steele, D. Lea, C.H. Flood, OOPSLA
-     *  2014) over the bits of seed and coordinates. */
+    /** A random number of each position, whatever the number of processes. */
     static void initialize(const LawParameters &p, const double *x, double *history)
     {
       if (!(p.value[M] > 0.0)) return;
-      uint64_t state = 0x9e3779b97f4a7c15;
-      for (const double value : {p.value[SEED], x[0], x[1], x[2]}) {
-        state += to_bits(value + 0.0) + 0x9e3779b97f4a7c15;    // + 0.0: -0 is 0
-        state = (state ^ (state >> 30)) * 0xbf58476d1ce4e5b9;
-        state = (state ^ (state >> 27)) * 0x94d049bb133111eb;
-        state ^= state >> 31;
-      }
+      uint64_t state = RANDOM_STEP;
+      for (const double value : {p.value[SEED], x[0], x[1], x[2]})    // + 0.0: -0 is 0
+        state = mix_bits(state + to_bits(value + 0.0) + RANDOM_STEP);
       history[RANDOM] = (static_cast<double>(state >> 11) + 0.5) * 0x1p-53;
     }
 

@@ -49,11 +49,7 @@ namespace {
   /** det(I + c) - 1 */
   MPM_INLINE double elastic_volume(const Sym &c)
   {
-    const double minors =
-        (c.xx * c.yy - c.xy * c.xy) + (c.xx * c.zz - c.xz * c.xz) + (c.yy * c.zz - c.yz * c.yz);
-    const double det = c.xx * (c.yy * c.zz - c.yz * c.yz) - c.xy * (c.xy * c.zz - c.yz * c.xz) +
-        c.xz * (c.xy * c.yz - c.yy * c.xz);
-    return trace(c) + minors + det;
+    return trace(c) + minors(c) + determinant(c);
   }
 
   /** n . s . n for axis a of a spectral decomposition. */
@@ -223,24 +219,16 @@ namespace {
     }
   };
 
-  /** Linear relation of Kirchhoff stress and logarithmic elastic strain (H. Hencky, 1928), with
-   *  Young's modulus and Poisson's ratio as first parameters of the law. */
-  struct HenckyModuli {
-    double K, G;
-    HenckyModuli(double E, double nu) : K(E / (3.0 * (1.0 - 2.0 * nu))), G(E / (2.0 * (1.0 + nu)))
-    {
-    }
-  };
-
-  /** InvariantReturn with Hencky elasticity. */
-  template <class Law> struct HenckyInvariantReturn : InvariantReturn<Law>, HenckyModuli {
-    explicit HenckyInvariantReturn(const LawParameters &p) : HenckyModuli(p.value[0], p.value[1]) {}
+  /** InvariantReturn with a linear relation of Kirchhoff stress and logarithmic elastic strain
+   *  (H. Hencky, 1928). */
+  template <class Law> struct HenckyInvariantReturn : InvariantReturn<Law>, BulkAndShear {
+    using BulkAndShear::BulkAndShear;
     MPM_INLINE double pressure(double v) const { return -K * v; }
     MPM_INLINE double volume_energy(double v) const { return 0.5 * K * v * v; }
 
     static void modulus(const LawParameters &p, const Batch &b, History, double *k)
     {
-      const HenckyModuli m(p.value[0], p.value[1]);
+      const BulkAndShear m(p);
       MPM_SIMD
       for (int i = 0; i < b.n; i++) k[i] += hencky_modulus(m.K, m.G, b.J[i], load_stress(b, i));
     }

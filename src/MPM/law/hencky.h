@@ -19,21 +19,14 @@ namespace {
    *
    *    w = G dev(e):dev(e) + K/2 ln^2 J,   J sigma = 2 G dev(e) + K ln J I
    */
-  struct LawHencky : IsotropicHyperelastic<LawHencky> {
+  struct LawHencky : IsotropicHyperelastic<LawHencky>, BulkAndShear {
     static constexpr const char *name = "hencky";
     static constexpr const char *meaning = "hyperelastic, linear in logarithmic strain";
-    enum { E, NU };
     static constexpr Parameter parameters[] = {
         {"", "E", "pressure", POSITIVE, REQUIRED, "Young's modulus"},
         {"", "NU", "1", POISSON_RATIO, REQUIRED, "Poisson's ratio"}};
 
-    double G, K;
-
-    explicit LawHencky(const LawParameters &p) :
-        G(p.value[E] / (2.0 * (1.0 + p.value[NU]))),
-        K(p.value[E] / (3.0 * (1.0 - 2.0 * p.value[NU])))
-    {
-    }
+    using BulkAndShear::BulkAndShear;
 
     MPM_INLINE Sym kirchhoff(const Batch &b, int i) const
     {

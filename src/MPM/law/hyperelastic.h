@@ -52,18 +52,6 @@ namespace {
     return log1p(H.xx + H.yy + H.zz + (minors + det));
   }
 
-  /** Invariants of a symmetric tensor. */
-  MPM_INLINE double minors(const Sym &a)
-  {
-    return (a.xx * a.yy - a.xy * a.xy) + (a.xx * a.zz - a.xz * a.xz) + (a.yy * a.zz - a.yz * a.yz);
-  }
-
-  MPM_INLINE double determinant(const Sym &a)
-  {
-    return a.xx * (a.yy * a.zz - a.yz * a.yz) - a.xy * (a.xy * a.zz - a.yz * a.xz) +
-        a.xz * (a.xy * a.yz - a.yy * a.xz);
-  }
-
   /** Change of shape: z = J^(-2/3) b - I. */
   struct Isochoric {
     Sym z;

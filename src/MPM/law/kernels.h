@@ -14,14 +14,9 @@
 
 #include "law/declare.h"
 #include "law/list.h"
+#include "transfer/isa.h"
 
 namespace MPM_NS {
-
-/** Kernels of a family of laws for one instruction set, in the order of its list. */
-struct FamilyKernels {
-  const LawKernels *kernels;
-};
-
 namespace law {
   namespace {
 
@@ -35,17 +30,14 @@ namespace law {
 }    // namespace law
 }    // namespace MPM_NS
 
-#define MPM_PASTE3(a, b, c) mpm_laws_##a##b##c
-#define MPM_FAMILY_NAME(family, isa) MPM_PASTE3(family, _, isa)
-
-/** Defines mpm_laws_<family>_<isa>(), which returns the kernels of the family. */
-#define MPM_LAW_FAMILY(family)                        \
-  namespace MPM_NS {                                  \
-    FamilyKernels MPM_FAMILY_NAME(family, MPM_ISA)(); \
-    FamilyKernels MPM_FAMILY_NAME(family, MPM_ISA)()  \
-    {                                                 \
-      return {law::KernelTable<law::family>::table};  \
-    }                                                 \
+/** Defines mpm_laws_<family>_<isa>(), which returns the kernels of the family in the order of its list. */
+#define MPM_LAW_FAMILY(family)                         \
+  namespace MPM_NS {                                   \
+    const LawKernels *MPM_OF_ISA(mpm_laws_##family)(); \
+    const LawKernels *MPM_OF_ISA(mpm_laws_##family)()  \
+    {                                                  \
+      return law::KernelTable<law::family>::table;     \
+    }                                                  \
   }
 
 #endif

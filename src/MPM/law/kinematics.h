@@ -54,6 +54,18 @@ namespace {
         2.0 * (a.xy * a.xy + a.xz * a.xz + a.yz * a.yz);
   }
 
+  /** Invariants of a symmetric tensor. */
+  MPM_INLINE double minors(const Sym &a)
+  {
+    return (a.xx * a.yy - a.xy * a.xy) + (a.xx * a.zz - a.xz * a.xz) + (a.yy * a.zz - a.yz * a.yz);
+  }
+
+  MPM_INLINE double determinant(const Sym &a)
+  {
+    return a.xx * (a.yy * a.zz - a.yz * a.yz) - a.xy * (a.xy * a.zz - a.yz * a.xz) +
+        a.xz * (a.xy * a.yz - a.yy * a.xz);
+  }
+
   MPM_INLINE Sym load_stress(const Batch &b, int i)
   {
     return {b.stress[0][i], b.stress[1][i], b.stress[2][i],
@@ -84,6 +96,23 @@ namespace {
     rows[4][i] = s.xz;
     rows[5][i] = s.yz;
   }
+
+  /** Isotropic moduli of a law whose first parameters are Young's modulus and Poisson's ratio. */
+  struct BulkAndShear {
+    double K, G;
+    explicit BulkAndShear(const LawParameters &p) :
+        K(p.value[0] / (3.0 * (1.0 - 2.0 * p.value[1]))), G(p.value[0] / (2.0 * (1.0 + p.value[1])))
+    {
+    }
+  };
+  struct LameModuli {
+    double mu, lambda;
+    explicit LameModuli(const LawParameters &p) :
+        mu(p.value[0] / (2.0 * (1.0 + p.value[1]))),
+        lambda(p.value[0] * p.value[1] / ((1.0 + p.value[1]) * (1.0 - 2.0 * p.value[1])))
+    {
+    }
+  };
 
   /** Middle-of-the-step motion: G = dt * velocity gradient of the configuration half-way. */
   struct Increment {

@@ -9,6 +9,7 @@
 // What materials need besides their laws, for one instruction set: see law/kernels.h.
 
 #include "law/kinematics.h"
+#include "transfer/isa.h"
 
 namespace MPM_NS::law {
 namespace {
@@ -56,25 +57,13 @@ namespace {
     return count;
   }
 
-#if defined(__AVX512F__)
-  constexpr const char *isa = "AVX-512";
-#elif defined(__AVX2__)
-  constexpr const char *isa = "AVX2";
-#else
-  constexpr const char *isa = "baseline";
-#endif
-
 }    // namespace
 }    // namespace MPM_NS::law
 
-#define MPM_PASTE(a, b) a##b
-#define MPM_NAME(isa) MPM_PASTE(mpm_laws_common_, isa)
-
 namespace MPM_NS {
-void MPM_NAME(MPM_ISA)(LawTable &);
-void MPM_NAME(MPM_ISA)(LawTable &table)
+void MPM_OF_ISA(mpm_laws_common)(LawTable &);
+void MPM_OF_ISA(mpm_laws_common)(LawTable &table)
 {
-  table.isa = law::isa;
   table.clear_stress = law::clear_stress;
   table.speed = law::speed;
   table.mean_stress = law::mean_stress;

@@ -21,23 +21,16 @@ namespace {
    *  The rate of tau, not of sigma, makes tau_m^2/(2 K) + dev(tau):dev(tau)/(4 mu) a stored energy
    *  whose change is the stress power on any path. Small strain: Hooke's law. Old stress is kept.
    */
-  struct LawLinear : LawDefaults {
+  struct LawLinear : LawDefaults, BulkAndShear {
     static constexpr bool uses_F = false;
     static constexpr const char *name = "linear";
     static constexpr const char *meaning = "isotropic linear elastic, rate form";
     static constexpr StressShare share = WHOLE_STRESS;
-    enum { E, NU };
     static constexpr Parameter parameters[] = {
         {"", "E", "pressure", POSITIVE, REQUIRED, "Young's modulus"},
         {"", "NU", "1", POISSON_RATIO, REQUIRED, "Poisson's ratio"}};
 
-    double G, K;
-
-    explicit LawLinear(const LawParameters &p) :
-        G(p.value[E] / (2.0 * (1.0 + p.value[NU]))),
-        K(p.value[E] / (3.0 * (1.0 - 2.0 * p.value[NU])))
-    {
-    }
+    using BulkAndShear::BulkAndShear;
 
     static void update(const LawParameters &p, Batch &b, History)
     {

@@ -92,7 +92,7 @@ namespace {
    *  at the end of the step: the increment of e that a return makes, as a function of that with which
    *  the strength is taken, has a fixed point, found within a bracket by the secant method (Illinois
    *  variant), a batch at a time. Volume strain at the apex is kept as "gap", see close_gap(). */
-  struct LawMohrCoulomb : PrincipalReturn<LawMohrCoulomb>, HenckyModuli {
+  struct LawMohrCoulomb : PrincipalReturn<LawMohrCoulomb>, BulkAndShear {
     static constexpr const char *name = "mohr/coulomb";
     static constexpr const char *meaning = "Mohr-Coulomb plasticity with softening: soil, rock";
     static constexpr Parameter parameters[] = {
@@ -125,9 +125,9 @@ namespace {
     MohrCoulombSurface surface;
 
     LawMohrCoulomb(const LawParameters &p, const Batch &) :
-        HenckyModuli(p.value[MC_E], p.value[MC_NU]), phi(p.value[MC_PHI] * DEGREES),
-        c(p.value[MC_COHESION]), cr(p.value[MC_RESIDUAL_C]),
-        phir(p.value[MC_RESIDUAL_PHI] * DEGREES), rate(p.value[MC_RATE]), sin_phi(std::sin(phi)),
+        BulkAndShear(p), phi(p.value[MC_PHI] * DEGREES), c(p.value[MC_COHESION]),
+        cr(p.value[MC_RESIDUAL_C]), phir(p.value[MC_RESIDUAL_PHI] * DEGREES),
+        rate(p.value[MC_RATE]), sin_phi(std::sin(phi)),
         c_cos_phi(c * std::cos(phi)), surface{K, G, std::sin(p.value[MC_PSI] * DEGREES)}
     {
     }
@@ -268,7 +268,7 @@ namespace {
 
     static void modulus(const LawParameters &p, const Batch &b, History, double *k)
     {
-      const HenckyModuli m(p.value[MC_E], p.value[MC_NU]);
+      const BulkAndShear m(p);
       MPM_SIMD
       for (int i = 0; i < b.n; i++) k[i] += hencky_modulus(m.K, m.G, b.J[i], load_stress(b, i));
     }

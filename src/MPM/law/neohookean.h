@@ -20,21 +20,14 @@ namespace {
    *    w = mu/2 (tr b - 3 - 2 ln J) + lambda/2 ln^2 J
    *    sigma = [mu (b - I) + lambda ln J I] / J
    */
-  struct LawNeoHookean : LawDefaults {
+  struct LawNeoHookean : LawDefaults, LameModuli {
     static constexpr const char *name = "neohookean";
     static constexpr const char *meaning = "compressible neo-Hookean hyperelastic";
-    enum { E, NU };
     static constexpr Parameter parameters[] = {
         {"", "E", "pressure", POSITIVE, REQUIRED, "Young's modulus at small strain"},
         {"", "NU", "1", POISSON_RATIO, REQUIRED, "Poisson's ratio at small strain"}};
 
-    double mu, lambda;
-
-    explicit LawNeoHookean(const LawParameters &p) :
-        mu(p.value[E] / (2.0 * (1.0 + p.value[NU]))),
-        lambda(p.value[E] * p.value[NU] / ((1.0 + p.value[NU]) * (1.0 - 2.0 * p.value[NU])))
-    {
-    }
+    using LameModuli::LameModuli;
 
     static void update(const LawParameters &p, Batch &b, History)
     {

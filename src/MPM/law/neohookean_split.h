@@ -22,21 +22,14 @@ namespace {
    *    J sigma = G dev(b*) + K J (J - 1) I
    *
    *  The energy is finite at J = 0: for compression beyond about one half take another law. */
-  struct LawNeoHookeanSplit : IsotropicHyperelastic<LawNeoHookeanSplit> {
+  struct LawNeoHookeanSplit : IsotropicHyperelastic<LawNeoHookeanSplit>, BulkAndShear {
     static constexpr const char *name = "neohookean/split";
     static constexpr const char *meaning = "neo-Hookean, volume change uncoupled";
-    enum { E, NU };
     static constexpr Parameter parameters[] = {
         {"", "E", "pressure", POSITIVE, REQUIRED, "Young's modulus at small strain"},
         {"", "NU", "1", POISSON_RATIO, REQUIRED, "Poisson's ratio at small strain"}};
 
-    double G, K;
-
-    explicit LawNeoHookeanSplit(const LawParameters &p) :
-        G(p.value[E] / (2.0 * (1.0 + p.value[NU]))),
-        K(p.value[E] / (3.0 * (1.0 - 2.0 * p.value[NU])))
-    {
-    }
+    using BulkAndShear::BulkAndShear;
 
     MPM_INLINE Sym kirchhoff(const Batch &b, int i) const
     {

@@ -11,6 +11,7 @@
 #include "law/kernels.h"
 
 #include <cstring>
+#include <memory>
 
 using namespace MPM_NS;
 
@@ -79,72 +80,34 @@ std::string MPM_NS::add_laws(const LawVersion &version, const PluginLaw *laws, i
 ------------------------------------------------------------------------- */
 
 namespace MPM_NS {
-#define MPM_DECLARE_KERNELS(family)         \
-  FamilyKernels mpm_laws_##family##_base(); \
-  FamilyKernels mpm_laws_##family##_v3();   \
-  FamilyKernels mpm_laws_##family##_v4();
+MPM_DECLARE_ISA(void, mpm_laws_common, LawTable &)
+#define MPM_DECLARE_KERNELS(family) MPM_DECLARE_ISA(const LawKernels *, mpm_laws_##family)
 MPM_LAW_FAMILIES(MPM_DECLARE_KERNELS)
-void mpm_laws_common_base(LawTable &);
-void mpm_laws_common_v3(LawTable &);
-void mpm_laws_common_v4(LawTable &);
 }    // namespace MPM_NS
 
-#define MPM_ADD_KERNELS(family, isa)                                 \
-  {                                                                  \
-    const LawKernels *kernels = mpm_laws_##family##_##isa().kernels; \
-    auto &list = table.builtin[law::family::part];                   \
-    list.insert(list.end(), kernels, kernels + law::family::size);   \
+static LawTable make_table(InstructionSet set)
+{
+  LawTable table;
+  table.isa = isa_name(set == REFERENCE ? BASE : set);
+  void (*const common[])(LawTable &) = MPM_ALL_ISA(mpm_laws_common);
+  common[set](table);
+#define MPM_ADD_KERNELS(family)                                         \
+  {                                                                     \
+    const LawKernels *(*const of[])() = MPM_ALL_ISA(mpm_laws_##family); \
+    auto &list = table.builtin[law::family::part];                      \
+    list.insert(list.end(), of[set](), of[set]() + law::family::size);  \
   }
-#define MPM_ADD_BASE(family) MPM_ADD_KERNELS(family, base)
-#define MPM_ADD_V3(family) MPM_ADD_KERNELS(family, v3)
-#define MPM_ADD_V4(family) MPM_ADD_KERNELS(family, v4)
-
-static LawTable make_base()
-{
-  LawTable table;
-  mpm_laws_common_base(table);
-  MPM_LAW_FAMILIES(MPM_ADD_BASE)
+  MPM_LAW_FAMILIES(MPM_ADD_KERNELS)
   return table;
 }
-
-#ifdef MPM_HAVE_V3
-static LawTable make_v3()
-{
-  LawTable table;
-  mpm_laws_common_v3(table);
-  MPM_LAW_FAMILIES(MPM_ADD_V3)
-  return table;
-}
-#endif
-
-#ifdef MPM_HAVE_V4
-static LawTable make_v4()
-{
-  LawTable table;
-  mpm_laws_common_v4(table);
-  MPM_LAW_FAMILIES(MPM_ADD_V4)
-  return table;
-}
-#endif
-
-/* ----------------------------------------------------------------------
-   the transfer kernels decide which instruction set runs
-------------------------------------------------------------------------- */
 
 const LawTable *LawTable::select(const char *isa)
 {
-  const MPMKernels *chosen = MPMKernels::select(isa);
-  if (!chosen) return nullptr;
-#ifdef MPM_HAVE_V4
-  static const LawTable v4 = make_v4();
-  if (strcmp(chosen->isa, "AVX-512") == 0) return &v4;
-#endif
-#ifdef MPM_HAVE_V3
-  static const LawTable v3 = make_v3();
-  if (strcmp(chosen->isa, "AVX2") == 0) return &v3;
-#endif
-  static const LawTable base = make_base();
-  return &base;
+  static std::unique_ptr<const LawTable> tables[REFERENCE + 1];
+  InstructionSet set;
+  if (!select_isa(isa, set)) return nullptr;
+  if (!tables[set]) tables[set] = std::make_unique<LawTable>(make_table(set));
+  return tables[set].get();
 }
 
 const LawKernels &LawTable::kernels(Part part, int index) const

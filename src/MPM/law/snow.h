@@ -24,7 +24,7 @@ namespace {
    *  The box of stretches is no yield surface with associated flow: the plastic work is negative
    *  where snow at THETAS is drawn out under compression from its sides. Clamping the work would
    *  not close the balance of energy, another direction of flow would be another law (nacc). */
-  struct LawSnow : PrincipalReturn<LawSnow> {
+  struct LawSnow : PrincipalReturn<LawSnow>, LameModuli {
     static constexpr const char *name = "snow";
     static constexpr const char *meaning = "snow with critical compression and stretch";
     enum { E, NU, THETAC, THETAS, XI };
@@ -38,12 +38,11 @@ namespace {
         MPM_ELASTIC_STRAIN_HISTORY, {"jplastic", ONE, "1", "plastic volume ratio"}};
     static constexpr int nhistory(const LawParameters &) { return ELASTIC_STRAIN_ROWS + 1; }
 
-    double mu, lambda, low, high, xi;
+    double low, high, xi;
 
     explicit LawSnow(const LawParameters &p) :
-        mu(p.value[E] / (2.0 * (1.0 + p.value[NU]))),
-        lambda(p.value[E] * p.value[NU] / ((1.0 + p.value[NU]) * (1.0 - 2.0 * p.value[NU]))),
-        low(std::log1p(-p.value[THETAC])), high(std::log1p(p.value[THETAS])), xi(p.value[XI])
+        LameModuli(p), low(std::log1p(-p.value[THETAC])), high(std::log1p(p.value[THETAS])),
+        xi(p.value[XI])
     {
     }
     LawSnow(const LawParameters &p, const Batch &) : LawSnow(p) {}

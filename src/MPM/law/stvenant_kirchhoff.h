@@ -21,21 +21,14 @@ namespace {
    *
    *  with F E F^T = (b^2 - b)/2. It softens in compression, and under uniaxial compression below a
    *  stretch of 1/sqrt(3) the stress falls. */
-  struct LawStVenantKirchhoff : IsotropicHyperelastic<LawStVenantKirchhoff> {
+  struct LawStVenantKirchhoff : IsotropicHyperelastic<LawStVenantKirchhoff>, LameModuli {
     static constexpr const char *name = "stvenant/kirchhoff";
     static constexpr const char *meaning = "hyperelastic, linear in Green-Lagrange strain";
-    enum { E, NU };
     static constexpr Parameter parameters[] = {
         {"", "E", "pressure", POSITIVE, REQUIRED, "Young's modulus"},
         {"", "NU", "1", POISSON_RATIO, REQUIRED, "Poisson's ratio"}};
 
-    double mu, lambda;
-
-    explicit LawStVenantKirchhoff(const LawParameters &p) :
-        mu(p.value[E] / (2.0 * (1.0 + p.value[NU]))),
-        lambda(p.value[E] * p.value[NU] / ((1.0 + p.value[NU]) * (1.0 - 2.0 * p.value[NU])))
-    {
-    }
+    using LameModuli::LameModuli;
 
     MPM_INLINE Sym kirchhoff(const Batch &b, int i) const
     {

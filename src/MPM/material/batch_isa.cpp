@@ -11,15 +11,11 @@
 // 4x4 pieces in registers, the last few one by one.
 
 #include "material/batch.h"
+#include "math/matrix.h"
+#include "transfer/isa.h"
 #include "transfer/vector.h"
 
 #include <cmath>
-
-#define MPM_CONCAT2(a, b) a##b
-#define MPM_CONCAT(a, b) MPM_CONCAT2(a, b)
-#ifndef MPM_ISA
-#define MPM_ISA base
-#endif
 
 using namespace MPM_NS;
 
@@ -86,15 +82,6 @@ MPM_INLINE void load_four(Batch &batch, Column *A, int p, double dt, const doubl
     for (int c = 0; c < 4; c++) r[c].store(batch.F[planar[c]] + p);
   }
 }
-
-// Cofactors of a row-major matrix f: f c^T = det f. No function: in a loop with omp simd, the address
-// of an array must not be taken, or the loop stays scalar.
-#define MPM_COFACTORS(f)                                                                 \
-  {                                                                                      \
-    f[4] * f[8] - f[5] * f[7], f[5] * f[6] - f[3] * f[8], f[3] * f[7] - f[4] * f[6],     \
-        f[2] * f[7] - f[1] * f[8], f[0] * f[8] - f[2] * f[6], f[1] * f[6] - f[0] * f[7], \
-        f[1] * f[5] - f[2] * f[4], f[2] * f[3] - f[0] * f[5], f[0] * f[4] - f[1] * f[3]  \
-  }
 
 template <int DIM>
 MPM_INLINE void load_one(Batch &batch, Column *A, int p, double dt, const double *L,
@@ -349,10 +336,10 @@ template <int DIM> void first_piola(int n, const double *F, const double *tau, d
 }    // namespace
 
 namespace MPM_NS {
-const BatchKernels *MPM_CONCAT(mpm_batch_, MPM_ISA)(int dim, bool hoop);
+const BatchKernels *MPM_OF_ISA(mpm_batch)(int dim, bool hoop);
 }
 
-const BatchKernels *MPM_NS::MPM_CONCAT(mpm_batch_, MPM_ISA)(int dim, bool hoop)
+const BatchKernels *MPM_NS::MPM_OF_ISA(mpm_batch)(int dim, bool hoop)
 {
   static const BatchKernels solid = {load<3, false, false>, load<3, true, false>, forget_shape<3>,
                                      first_piola<3>, store<3, false>},

@@ -8,6 +8,8 @@
 
 #include "material/material_point.h"
 
+#include "math/matrix.h"
+
 #include <Eigen/Dense>
 
 #include <algorithm>
@@ -60,19 +62,9 @@ static void first_piola(const Batch &b, double *P)
   for (int k = 0; k < 9; k++) F[k] = b.F[k][0];
   static constexpr int voigt[9] = {0, 3, 4, 3, 1, 5, 4, 5, 2};
   for (int k = 0; k < 9; k++) s[k] = b.stress[voigt[k]][0];
-  const double cof[9] = {
-      F[4] * F[8] - F[5] * F[7], F[5] * F[6] - F[3] * F[8], F[3] * F[7] - F[4] * F[6],
-      F[2] * F[7] - F[1] * F[8], F[0] * F[8] - F[2] * F[6], F[1] * F[6] - F[0] * F[7],
-      F[1] * F[5] - F[2] * F[4], F[2] * F[3] - F[0] * F[5], F[0] * F[4] - F[1] * F[3]};
+  const double cof[9] = MPM_COFACTORS(F);
   for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++)
-      P[3 * i + j] = s[3 * i] * cof[j] + s[3 * i + 1] * cof[3 + j] + s[3 * i + 2] * cof[6 + j];
-}
-
-static double determinant(const double *F)
-{
-  return F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
-      F[2] * (F[3] * F[7] - F[4] * F[6]);
+    for (int j = 0; j < 3; j++) P[3 * i + j] = product(s, cof, i, j);
 }
 
 /* ----------------------------------------------------------------------
@@ -84,14 +76,10 @@ void MaterialPoint::step(const double *L, double dt)
   double M[9], A[9];    // I - G/2 and A
   for (int k = 0; k < 9; k++) M[k] = (k % 4 == 0 ? 1.0 : 0.0) - 0.5 * dt * L[k];
   const double det = determinant(M);
-  const double adj[9] = {
-      M[4] * M[8] - M[5] * M[7], M[2] * M[7] - M[1] * M[8], M[1] * M[5] - M[2] * M[4],
-      M[5] * M[6] - M[3] * M[8], M[0] * M[8] - M[2] * M[6], M[2] * M[3] - M[0] * M[5],
-      M[3] * M[7] - M[4] * M[6], M[1] * M[6] - M[0] * M[7], M[0] * M[4] - M[1] * M[3]};
+  const double cof[9] = MPM_COFACTORS(M);
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
-      A[3 * i + j] =
-          dt / det * (adj[3 * i] * L[j] + adj[3 * i + 1] * L[3 + j] + adj[3 * i + 2] * L[6 + j]);
+      A[3 * i + j] = dt / det * (cof[i] * L[j] + cof[3 + i] * L[3 + j] + cof[6 + i] * L[6 + j]);
   move(A, dt);
 }
 
@@ -108,8 +96,7 @@ void MaterialPoint::move(const double *A, double dt)
     double F[9];
     for (int k = 0; k < 9; k++) F[k] = batch.F[k][p];
     for (int i = 0; i < 3; i++)
-      for (int j = 0; j < 3; j++)
-        dF[3 * i + j] = A[3 * i] * F[j] + A[3 * i + 1] * F[3 + j] + A[3 * i + 2] * F[6 + j];
+      for (int j = 0; j < 3; j++) dF[3 * i + j] = product(A, F, i, j);
     for (int k = 0; k < 9; k++) {
       batch.A[k][p] = A[k];
       batch.F[k][p] = F[k] += dF[k];

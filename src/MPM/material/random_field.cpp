@@ -8,6 +8,8 @@
 
 #include "material/random_field.h"
 
+#include "math/random.h"
+
 #include <cmath>
 
 #ifdef MPM_FFTW
@@ -123,24 +125,15 @@ RandomField::~RandomField() = default;
 
 /* ----------------------------------------------------------------------
    normal deviates of the nodes (i,j,k) and (i,j,k+1), k even (G.E.P. Box, M.E. Muller, Ann. Math.
-   Stat. 29 (1958) 610), from two hashes of the indices (finalizer of splitmix64, G.L. Steele et al.,
-   OOPSLA 2014)
+   Stat. 29 (1958) 610), from two hashes of the indices
 ------------------------------------------------------------------------- */
-
-static uint64_t mix(uint64_t z)
-{
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-  return z ^ (z >> 31);
-}
 
 void RandomField::noise(int64_t i, int64_t j, int64_t k, double *pair) const
 {
-  static constexpr uint64_t STEP = 0x9e3779b97f4a7c15ULL;
-  uint64_t h = mix(seed + STEP);
-  for (const int64_t n : {i, j, k}) h = mix(h + STEP + static_cast<uint64_t>(n));
-  const double u = ((mix(h + STEP) >> 11) + 0.5) * 0x1p-53;
-  const double v = (mix(h + 2 * STEP) >> 11) * 0x1p-53;
+  uint64_t h = mix_bits(seed + RANDOM_STEP);
+  for (const int64_t n : {i, j, k}) h = mix_bits(h + RANDOM_STEP + static_cast<uint64_t>(n));
+  const double u = ((mix_bits(h + RANDOM_STEP) >> 11) + 0.5) * 0x1p-53;
+  const double v = (mix_bits(h + 2 * RANDOM_STEP) >> 11) * 0x1p-53;
   const double radius = std::sqrt(-2.0 * std::log(u));
   pair[0] = radius * std::cos(2.0 * PI * v);
   pair[1] = radius * std::sin(2.0 * PI * v);

@@ -8,6 +8,8 @@
 
 #include "mesh/element.h"
 
+#include "math/matrix.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -89,16 +91,11 @@ double ElementRule::gradients(int q, const double (*x)[3], double (*g)[3]) const
     return weight[q] * det;
   }
 
-  double C[3][3];    // cofactors
-  for (int a = 0; a < 3; a++)
-    for (int b = 0; b < 3; b++) {
-      const int a1 = (a + 1) % 3, a2 = (a + 2) % 3, b1 = (b + 1) % 3, b2 = (b + 2) % 3;
-      C[a][b] = J[a1][b1] * J[a2][b2] - J[a1][b2] * J[a2][b1];
-    }
-  const double det = J[0][0] * C[0][0] + J[0][1] * C[0][1] + J[0][2] * C[0][2], inv = 1.0 / det;
+  const double *const m = J[0];
+  const double C[9] = MPM_COFACTORS(m);
+  const double det = dot(m, C), inv = 1.0 / det;
   for (int k = 0; k < nnode; k++)
-    for (int a = 0; a < 3; a++)
-      g[k][a] = inv * (C[a][0] * d[k][0] + C[a][1] * d[k][1] + C[a][2] * d[k][2]);
+    for (int a = 0; a < 3; a++) g[k][a] = inv * dot(C + 3 * a, d[k]);
   return weight[q] * det;
 }
 

@@ -14,29 +14,9 @@
 
 #include "transfer/kernels_fast.h"
 
-namespace {
-
-template <int DIM, Shape SHAPE> TransferKernels choose(Transfer transfer, bool split)
+TransferKernels MPM_NS::MPM_OF_ISA(mpm_kernels_aflip_tpic)(const KernelChoice &choice)
 {
-  if (transfer == AFLIP) return kernels<DIM, SHAPE, AFLIP, 8, false>();
-  if constexpr (SHAPE != LINEAR)
-    return split ? kernels<DIM, SHAPE, TPIC, 8, false>() : kernels<DIM, SHAPE, TPIC, 4, false>();
-  return TransferKernels();
-}
-
-template <int DIM> TransferKernels choose(Shape shape, Transfer transfer, bool split)
-{
-  if (shape == LINEAR) return choose<DIM, LINEAR>(transfer, split);
-  if (shape == QUADRATIC) return choose<DIM, QUADRATIC>(transfer, split);
-  return choose<DIM, CUBIC>(transfer, split);
-}
-
-}    // namespace
-
-TransferKernels MPM_NS::MPM_CONCAT(mpm_kernels_affine_, MPM_ISA)(int dim, Shape shape,
-                                                                 Transfer transfer, bool split)
-{
-  return dim == 3 ? choose<3>(shape, transfer, split) : choose<2>(shape, transfer, split);
+  return kernels_of_file<AFLIP_TPIC_FILE>(choice);
 }
 
 #endif

@@ -15,23 +15,9 @@
 
 #include "transfer/kernels_fast.h"
 
-namespace {
-
-template <int DIM> TransferKernels choose(Transfer transfer, bool split)
+TransferKernels MPM_NS::MPM_OF_ISA(mpm_kernels_bernstein)(const KernelChoice &choice)
 {
-  if (transfer == PIC) return kernels<DIM, BERNSTEIN, PIC, 8, true>();
-  if (transfer == FLIP) return kernels<DIM, BERNSTEIN, FLIP, 8, true>();
-  if (transfer != APIC) return TransferKernels();
-  return split ? kernels<DIM, BERNSTEIN, APIC, 8, true>()
-               : kernels<DIM, BERNSTEIN, APIC, 4, true>();
-}
-
-}    // namespace
-
-TransferKernels MPM_NS::MPM_CONCAT(mpm_kernels_bernstein_, MPM_ISA)(int dim, Transfer transfer,
-                                                                    bool split)
-{
-  return dim == 3 ? choose<3>(transfer, split) : choose<2>(transfer, split);
+  return kernels_of_file<BERNSTEIN_FILE>(choice);
 }
 
 #endif

@@ -9,7 +9,17 @@
 #ifndef MPM_TRANSFER_CPDI_H
 #define MPM_TRANSFER_CPDI_H
 
+#include "math/matrix.h"
+
 namespace MPM_NS {
+
+/** The linear function at the corners of domains; members are those of BSpline. */
+struct DomainCorner {
+  static constexpr int order = 1, nodes = 2;
+  static constexpr int cell = 1;
+  static constexpr double shift = 0.0, inv_moment = 0.0;
+  static constexpr bool has_size = false, has_domain = true;
+};
 
 /** Domain of a point in convected particle domain interpolation: the image of a square or cube
  *  [-1,1]^DIM under the (bi- or tri-) linear map that has given corners.
@@ -27,7 +37,7 @@ namespace MPM_NS {
  *  function. So triangles are quadrilaterals (a, b, c, c), tetrahedra and other bodies hexahedra
  *  (a, b, c, c, d, d, d, d).
  *
- *  As in transfer/shape.h functions take numbers or vectors of points T, and must be inlined.
+ *  As in transfer/bspline.h functions take numbers or vectors of points T, and must be inlined.
  */
 template <int DIM> struct PointDomain {
   static constexpr int corners = 1 << DIM;
@@ -100,17 +110,6 @@ template <int DIM> struct PointDomain {
       for (int c = 0; c < 4; c++) sum[c * DIM] = -sum[(7 - c) * DIM];
     }
   }
-  template <class T> [[gnu::always_inline]] static void cross(const T *a, const T *b, T *c)
-  {
-    c[0] = a[1] * b[2] - a[2] * b[1];
-    c[1] = a[2] * b[0] - a[0] * b[2];
-    c[2] = a[0] * b[1] - a[1] * b[0];
-  }
-  template <class T> [[gnu::always_inline]] static T dot(const T *a, const T *b)
-  {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-  }
-
   /** x = m + a xi + b eta + c xi eta has the Jacobian a x b + xi a x c + eta c x b, the area
    *  4 a x b, and w_c = (1 + [s_0 a x c + s_1 c x b]/[3 a x b])/4. The sum of area g_c is the
    *  derivative of the area with respect to x_c. */

@@ -7,7 +7,7 @@
 ------------------------------------------------------------------------- */
 
 // Fast transfers of points with convected domains (CPDI, CPDI2), see transfer/kernels_isa.cpp and
-// transfer/cpdi.h. What they do is written plainly in transfer/cpdi_reference.cpp.
+// transfer/cpdi.h. What they do is written plainly in transfer/kernels_reference.cpp.
 //
 // Corners and their weights are made for a group of points side by side, then each corner is
 // scattered or gathered as a point with a linear function would be.
@@ -29,8 +29,8 @@ static_assert(GROUP % REGISTER == 0 && GROUP == STAGE);
 MPM_INLINE Vec<4> quad(double a, double b, double c, double d)
 {
   Vec<2> low, high;
-  low.r = Raw<2, double>::Reals{a, b};
-  high.r = Raw<2, double>::Reals{c, d};
+  low.r = Raw<2>::Reals{a, b};
+  high.r = Raw<2>::Reals{c, d};
   return join(low, high);
 }
 
@@ -646,21 +646,16 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL> TransferKernels do
   return k;
 }
 
-template <int DIM, Shape SHAPE> TransferKernels choose(Transfer transfer, bool split)
-{
-  return choose_transfer(transfer, split, [](auto constants) {
-    return domain_kernels<DIM, SHAPE, constants.transfer, constants.nreal>();
-  });
-}
-
 }    // namespace
 
-TransferKernels MPM_NS::MPM_CONCAT(mpm_kernels_domain_, MPM_ISA)(int dim, Shape shape,
-                                                                 Transfer transfer, bool split)
+TransferKernels MPM_NS::MPM_OF_ISA(mpm_kernels_cpdi)(const KernelChoice &choice)
 {
-  if (dim == 3)
-    return shape == CPDI ? choose<3, CPDI>(transfer, split) : choose<3, CPDI2>(transfer, split);
-  return shape == CPDI ? choose<2, CPDI>(transfer, split) : choose<2, CPDI2>(transfer, split);
+  return choose(choice, [](auto c) {
+    if constexpr (c.file() == CPDI_FILE)
+      return domain_kernels<c.dim, c.shape, c.transfer, c.nreal>();
+    else
+      return TransferKernels();
+  });
 }
 
 #endif

@@ -14,22 +14,9 @@
 
 #include "transfer/kernels_fast.h"
 
-namespace {
-
-template <int DIM> TransferKernels choose(Transfer transfer, bool split)
+TransferKernels MPM_NS::MPM_OF_ISA(mpm_kernels_gimp)(const KernelChoice &choice)
 {
-  // the affine matrix is the gradient
-  return choose_transfer(transfer == APIC ? TPIC : transfer, split, [](auto constants) {
-    return kernels<DIM, GIMP, constants.transfer, constants.nreal, false>();
-  });
-}
-
-}    // namespace
-
-TransferKernels MPM_NS::MPM_CONCAT(mpm_kernels_gimp_, MPM_ISA)(int dim, Transfer transfer,
-                                                               bool split)
-{
-  return dim == 3 ? choose<3>(transfer, split) : choose<2>(transfer, split);
+  return kernels_of_file<GIMP_FILE>(choice);
 }
 
 #endif

@@ -9,37 +9,16 @@
 #ifndef MPM_TRANSFER_KERNELS_H
 #define MPM_TRANSFER_KERNELS_H
 
-// Interface of the hot kernels. transfer/kernels_isa.cpp is compiled once for each instruction set;
+// Interface of the hot kernels. The files transfer/*_isa.cpp are compiled once for each instruction set;
 // every compilation fills one MPMKernels table and MPMKernels::select() picks one at run time.
 // Nothing here knows about LAMMPS.
 
+#include "transfer/shape.h"
+
 namespace MPM_NS {
 
-/** B-splines of order 1 to 3; functions of points of finite size, see Gimp in transfer/shape.h; linear
- *  functions at the corners of a domain, see transfer/cpdi.h: a box (CPDI) or with free corners;
- *  Bernstein polynomials, see transfer/shape.h. */
-enum Shape {
-  LINEAR = 1,
-  QUADRATIC = 2,
-  CUBIC = 3,
-  GIMP = 4,
-  CPDI = 5,
-  CPDI2 = 6,
-  BERNSTEIN = 7,
-  CPGIMP = 8    ///< the kernels of GIMP, with sizes that follow the deformation
-};
 enum Transfer { PIC, FLIP, APIC, AFLIP, TPIC };
 
-constexpr bool has_domain(Shape shape)
-{
-  return shape == CPDI || shape == CPDI2;
-}
-/** A point (of a domain, each corner) reaches this + 1 nodes along each axis, the same as the
- *  B-spline of this order. */
-constexpr int stencil_order(Shape shape)
-{
-  return shape == GIMP || shape == CPGIMP || shape == BERNSTEIN ? 2 : has_domain(shape) ? 1 : shape;
-}
 /** Points have an affine matrix. */
 constexpr bool is_affine(Transfer transfer)
 {
@@ -53,7 +32,7 @@ constexpr bool adds_change(Transfer transfer)
 /** The affine matrix is the fit of moving least squares, and stress is an affine term. */
 constexpr bool is_mls(Shape shape, Transfer transfer)
 {
-  return (shape == QUADRATIC || shape == CUBIC) && (transfer == APIC || transfer == AFLIP);
+  return shape_constants[shape].inv_moment > 0.0 && (transfer == APIC || transfer == AFLIP);
 }
 /** The affine matrix is the velocity gradient, too. That of domains with APIC is not: it is the fit with the
  *  second moment of the weights, which depends on the position and the shape of the domain. */
@@ -197,6 +176,8 @@ struct TransferKernels {
   TileIO prefetch;    ///< nodes of the box into the cache, for a flush or load some time later
 };
 
+struct PolyKernels;
+
 /** Kernel table of one instruction set. */
 struct MPMKernels {
   const char *isa;    ///< "reference", "baseline", "AVX2" or "AVX-512"
@@ -212,13 +193,8 @@ struct MPMKernels {
    *  The other table has those of the total frame for BERNSTEIN, too. */
   TransferKernels (*transfer_total)(int dim, Shape, Transfer, bool split);
 
-  /** Mixed precision, for PIC, FLIP and APIC with B-splines; null pointers for others, and from the
-   *  reference table. Positions, rows of points and node records are double precision, and what
-   *  happens between them is single precision: results deviate from those of double precision by
-   *  some 1e-7 of the differences of velocity within a tile, while what its points have in common
-   *  is exact. The insides of tiles are those of the kernels: any memory of the same size that was
-   *  zero before the first P2G will do. */
-  TransferKernels (*transfer_mixed)(int dim, Shape, Transfer, bool split, bool total);
+  /** The modes of polypic, for QUADRATIC and CUBIC; nreal: of the records of nodes. */
+  PolyKernels (*poly)(int dim, Shape, int nreal);
 
   /** v = p/m on n nodes, and the momentum equation.
    *  merged: (p,m) -> (p/m, m).  split: (p,m|f) -> ((p + dt f)/m, m | p/m).

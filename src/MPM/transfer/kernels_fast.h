@@ -20,20 +20,14 @@
 //    see Scatter. The way back sums z rows first, then y, then x, see Gather.
 //  - Vectors hold the four reals of a node (x, y, z, mass), for one or two points side by side.
 //    Two points that share the base node are added up before they go to the tile.
-//  - In mixed precision (MPM_MIXED_PRECISION) tiles and arithmetic are floats, positions and the
-//    state of points doubles, see MixedHeader for what keeps small differences. Points to nodes
-//    has the nodes of a row side by side, see RowScatter.
 //  - Points are prepared (loaded, weighted) in stages of several, then scattered or gathered: the
 //    long latency of the preparation of one point hides behind the others.
 
-#include "transfer/kernels.h"
-
-#include "transfer/shape.h"
+#include "transfer/kernels_isa.h"
 #include "transfer/vector.h"
 
 #include <cstddef>
 #include <cstdint>
-#include <type_traits>
 
 using namespace MPM_NS;
 
@@ -41,9 +35,8 @@ namespace {
 
 // measured: see bench/bench_kernels.cpp
 constexpr int POINTS = REGISTER > 4 ? REGISTER / 4 : 1;    ///< points side by side in a vector
-constexpr bool MIXED = sizeof(Real) < sizeof(double);
-constexpr int STAGE = MIXED ? 16 : 8;    ///< points prepared before they are transferred
-constexpr int AHEAD = 32;                ///< distance of prefetches, in points
+constexpr int STAGE = 8;     ///< points prepared before they are transferred
+constexpr int AHEAD = 32;    ///< distance of prefetches, in points
 
 using Index = std::ptrdiff_t;
 
@@ -63,100 +56,31 @@ template <int WIDTH, int WRITE = 0> MPM_INLINE void prefetch(const double *rows,
 
 /** Four reals for each of L points: the axes x, y, z, and one more. */
 template <int L> using Quads = Vec<4 * L>;
-template <int L> using WideQuads = Vec<4 * L, double>;
 
 /** Four reals of each of L consecutive rows, from a column on. */
-template <int L, int WIDTH> MPM_INLINE WideQuads<L> load_wide(const double *column, Index row)
-{
-  if constexpr (L == 1 || (WIDTH == 4 && L == 2))
-    return WideQuads<L>::load(column + WIDTH * row);
-  else
-    return join(load_wide<L / 2, WIDTH>(column, row), load_wide<L / 2, WIDTH>(column, row + L / 2));
-}
 template <int L, int WIDTH> MPM_INLINE Quads<L> load_rows(const double *column, Index row)
 {
-  return convert<Real>(load_wide<L, WIDTH>(column, row));
+  if constexpr (L == 1 || (WIDTH == 4 && L == 2))
+    return Quads<L>::load(column + WIDTH * row);
+  else
+    return join(load_rows<L / 2, WIDTH>(column, row), load_rows<L / 2, WIDTH>(column, row + L / 2));
 }
 
-/** One number for each of L consecutive points times a factor, in all four lanes. Products with
- *  factors that may be far from one are taken in double precision. */
+/** One number for each of L consecutive points times a factor, in all four lanes. */
 template <int L> MPM_INLINE Quads<L> load_numbers(const double *number, Index row, double factor)
 {
-  if constexpr (!MIXED) {
-    if constexpr (L == 1)
-      return Vec<4>::all(number[row]) * factor;
-    else
-      return join(Vec<4>::all(number[row]), Vec<4>::all(number[row + 1])) * factor;
-  } else if constexpr (L == 4) {
-    return spread<16>(convert<Real>(WideQuads<1>::load(number + row) * factor));
-  } else {
-    const Vec<4> first = Vec<4>::all(static_cast<Real>(number[row] * factor));
-    if constexpr (L == 1)
-      return first;
-    else
-      return join(first, Vec<4>::all(static_cast<Real>(number[row + 1] * factor)));
-  }
-}
-
-/** Products of weights over the axes are too large by the inverse of this, see SixfoldCubic. Double
- *  precision makes good for it, on the way into a tile with the unit of masses. */
-template <int DIM, int ORDER> constexpr double weight_scale()
-{
-  if (!MIXED || ORDER < 3) return 1.0;
-  constexpr double one = 1.0 / SixfoldCubic::multiple;
-  return DIM == 3 ? one * one * one : one * one;
-}
-
-/** What stands before the entries of a tile in mixed precision: numbers of 4 bytes need a
- *  reference. Velocities, and with them momenta, are relative to a velocity v from within the tile,
- *  so that what all points have in common is kept in double precision, and masses relative to one
- *  of them. FLIP gathers changes of velocities, which on load are differences of doubles. A tile
- *  that is zero has no reference: the first transfer to it takes one. */
-struct MixedHeader {
-  double v[4];    ///< zero where there is no axis
-  double mass;    ///< of a point, times weight_scale()
-  double room[3];
-
-  template <int DIM, int ORDER>
-  static MPM_INLINE void first(double *tile, const PointRows &points, Index p)
-  {
-    MixedHeader *const header = reinterpret_cast<MixedHeader *>(tile);
-    if (header->mass != 0.0) return;
-    header->mass = weight_scale<DIM, ORDER>() * points.mass[p];
-    for (int a = 0; a < DIM; a++) header->v[a] = points.v[3 * p + a];
-  }
-};
-
-/** Entries of a tile. */
-MPM_INLINE Real *entries(double *tile)
-{
-  if constexpr (MIXED)
-    return reinterpret_cast<Real *>(tile + sizeof(MixedHeader) / sizeof(double));
+  if constexpr (L == 1)
+    return Vec<4>::all(number[row]) * factor;
   else
-    return reinterpret_cast<Real *>(tile);
-}
-MPM_INLINE const Real *entries(const double *tile)
-{
-  return entries(const_cast<double *>(tile));
+    return join(Vec<4>::all(number[row]), Vec<4>::all(number[row + 1])) * factor;
 }
 
-/** Reals from one tile entry to the next, and from the first four reals of an entry to the others:
- *  in mixed precision these are in a second tile behind the first. */
-constexpr int entry_stride(int nreal)
-{
-  return MIXED ? 4 : nreal;
-}
-constexpr int second_half(int dim, int order)
-{
-  return MIXED ? 4 * tile_nodes(dim, order) : 4;
-}
-
-/** Where points are in a tile; lanes that are no axis stay zero. BERNSTEIN: positions are in cells of
- *  two node spacings from the last even node up to tile node 0. */
+/** Where points are in a tile; lanes that are no axis stay zero. Positions are in cells, which may
+ *  have several nodes, from the last first node of a cell up to tile node 0. */
 template <int DIM, Shape SHAPE, int L> struct Frame {
-  static constexpr int ORDER = stencil_order(SHAPE);
-  static constexpr int STEP = SHAPE == BERNSTEIN ? 2 : 1;    ///< node spacings of a cell
-  WideQuads<L> origin, inv_h, low;
+  using Function = FunctionOf<SHAPE>;
+  static constexpr int ORDER = Function::order, CELL = Function::cell;
+  Quads<L> origin, inv_h, low;
   int before[3] = {0, 0, 0};    ///< nodes from there to tile node 0
 
   MPM_INLINE Frame(const TransferStep &step, const int *base)
@@ -165,56 +89,52 @@ template <int DIM, Shape SHAPE, int L> struct Frame {
     for (int l = 0; l < L; l++)
       for (int a = 0; a < DIM; a++) {
         o[4 * l + a] = step.origin[a];
-        i[4 * l + a] = step.inv_h / STEP;
-        if (SHAPE == BERNSTEIN) before[a] = base[a] & 1;
-        b[4 * l + a] = SHAPE == BERNSTEIN ? (base[a] - before[a]) / 2
-                                          : BSpline<ORDER>::shift + base[a];
+        i[4 * l + a] = step.inv_h / CELL;
+        before[a] = base[a] & (CELL - 1);
+        b[4 * l + a] = Function::shift + (base[a] - before[a]) / CELL;
       }
-    origin = WideQuads<L>::load(o);
-    inv_h = WideQuads<L>::load(i);
-    low = WideQuads<L>::load(b);
+    origin = Quads<L>::load(o);
+    inv_h = Quads<L>::load(i);
+    low = Quads<L>::load(b);
   }
 
   /** Position in units of h from tile node 0, less the shift: its whole part is the base node. */
-  MPM_INLINE WideQuads<L> position(WideQuads<L> x) const { return (x - origin) * inv_h - low; }
+  MPM_INLINE Quads<L> position(Quads<L> x) const { return (x - origin) * inv_h - low; }
 
   /** Base node of a cell along an axis. */
-  MPM_INLINE int node(int axis, int cell) const { return STEP * cell - before[axis]; }
+  MPM_INLINE int node(int axis, int cell) const { return CELL * cell - before[axis]; }
 
   /** Distance of points from their base nodes in node spacings. */
   static MPM_INLINE Quads<L> distance(Quads<L> fraction)
   {
-    if constexpr (SHAPE == BERNSTEIN)
-      return 2.0 * fraction;
+    static_assert(CELL == 1 || Function::shift == 0.0);
+    if constexpr (CELL == 1)
+      return fraction + Function::shift;
     else
-      return fraction + BSpline<ORDER>::shift;
+      return double(CELL) * fraction;
   }
 
-  /** Base nodes' places in the tile, in nodes; returns the fractions. Floats are rounded to multiples
-   *  of 2^-23, for which the distances from all nodes are exact. */
-  MPM_INLINE Quads<L> locate(WideQuads<L> t, int *place) const
+  /** Base nodes' places in the tile, in nodes; returns the fractions. */
+  MPM_INLINE Quads<L> locate(Quads<L> t, int *place) const
   {
     constexpr int sx = tile_stride_x(DIM, ORDER), sy = tile_stride_y(DIM, ORDER);
     int index[4 * L];
-    const WideQuads<L> whole = truncate(t, index);
+    const Quads<L> whole = truncate(t, index);
     MPM_UNROLL
     for (int l = 0; l < L; l++)
       place[l] = node(0, index[4 * l]) * sx + node(1, index[4 * l + 1]) * sy +
           (DIM == 3 ? node(2, index[4 * l + 2]) : 0);
     if constexpr (ORDER == 1)
-      return max(convert<Real>(t - whole), Quads<L>::all(SMALLEST_FRACTION));
-    else if constexpr (MIXED)
-      return (convert<Real>(t - whole) + 1.0) - 1.0;
+      return max(t - whole, Quads<L>::all(SMALLEST_FRACTION));
     else
-      return convert<Real>(t - whole);
+      return t - whole;
   }
 };
 
 /** Weights of L points along the axes, in memory: [node][point][axis]. */
 template <int ORDER, int L> struct AxisWeights {
   static constexpr int S = ORDER + 1;
-  static constexpr bool linear_gradients = false;    ///< gradients of linear functions are known
-  alignas(32) Real w[S][4 * L];
+  alignas(32) double w[S][4 * L];
 
   MPM_INLINE void set(const Quads<L> *weight)
   {
@@ -262,29 +182,21 @@ template <Shape SHAPE, bool GRADIENT, int L, class Weights>
 MPM_INLINE void axis_weights(const PointRows &points, Index p, Quads<L> fraction, Weights &weights,
                              Weights &gradients)
 {
-  constexpr int ORDER = stencil_order(SHAPE);
-  Quads<L> w[ORDER + 1];
-  if constexpr (SHAPE == GIMP) {
+  using Function = FunctionOf<SHAPE>;
+  Quads<L> w[Function::nodes];
+  if constexpr (Function::has_size) {
     const Quads<L> size = load_rows<L, 3>(points.size, p);
-    Gimp::weights(fraction, size, w);
+    Function::weights(fraction, size, w);
     weights.set(w);
     if constexpr (GRADIENT) {
-      Gimp::gradients(fraction, size, w);
-      gradients.set(w);
-    }
-  } else if constexpr (SHAPE == BERNSTEIN) {
-    Bernstein::weights(fraction, w);
-    weights.set(w);
-    if constexpr (GRADIENT) {
-      Bernstein::gradients(fraction, w);
+      Function::gradients(fraction, size, w);
       gradients.set(w);
     }
   } else {
-    using Spline = std::conditional_t<MIXED && ORDER == 3, SixfoldCubic, BSpline<ORDER>>;
-    Spline::weights(fraction, w);
+    Function::weights(fraction, w);
     weights.set(w);
-    if constexpr (GRADIENT && (ORDER > 1 || Weights::linear_gradients)) {
-      Spline::gradients(fraction, w);
+    if constexpr (GRADIENT && Function::order > 1) {    // linear ones are known
+      Function::gradients(fraction, w);
       gradients.set(w);
     }
   }
@@ -336,12 +248,12 @@ template <int DIM, int ORDER, int WIDTH, int L, bool AFFINE, bool GRADIENT> stru
 
   /** Adds a row of nodes along the last axis, w_n row + factor K_n; SAME: points share nodes. */
   template <bool SAME, int NREAL>
-  static MPM_INLINE void add_row(Real *const *base, Index offset, V row, V factor, const V *w,
+  static MPM_INLINE void add_row(double *const *base, Index offset, V row, V factor, const V *w,
                                  const V *K)
   {
     MPM_UNROLL
     for (int n = 0; n < N; n++) {
-      Real *node = base[0] + offset + NREAL * n;
+      double *node = base[0] + offset + NREAL * n;
       if constexpr (L == 1) {
         V sum = V::load(node) + w[n] * row;
         if (has_K(n)) sum += factor * K[n];
@@ -362,7 +274,7 @@ template <int DIM, int ORDER, int WIDTH, int L, bool AFFINE, bool GRADIENT> stru
 
   /** Adds to all nodes; base: the record of each point's base node. */
   template <bool SAME, int NREAL>
-  MPM_INLINE void add(const Weights &weights, const Weights &gradients, Real *const *base) const
+  MPM_INLINE void add(const Weights &weights, const Weights &gradients, double *const *base) const
   {
     constexpr int sx = NREAL * tile_stride_x(DIM, ORDER), sy = NREAL * tile_stride_y(DIM, ORDER);
     V wx[N], wy[N], Kx[N], Ky[N];
@@ -389,167 +301,13 @@ template <int DIM, int ORDER, int WIDTH, int L, bool AFFINE, bool GRADIENT> stru
   }
 };
 
-/** L times four reals in memory. */
-template <int L> struct Stored {
-  alignas(64) Real real[4 * L];
-  MPM_INLINE void operator=(Quads<L> a) { a.store(real); }
-};
-
-/** Weights of L points along the axes, in memory: [axis][point][node], zero for nodes that a point
- *  does not reach. */
-template <int ORDER, int L> struct AxisRows {
-  static constexpr bool linear_gradients = true;
-  alignas(64) Real row[3][4 * L];
-
-  template <int A> MPM_INLINE void set_axis(const Quads<L> *weight)
-  {
-    const Quads<L> low = shuffle<A, A, A + 4, A + 4>(weight[0], weight[1]);
-    Quads<L> high = {};
-    if constexpr (ORDER == 2) high = shuffle<A, A, 4, 4>(weight[2], high);
-    if constexpr (ORDER == 3) high = shuffle<A, A, A + 4, A + 4>(weight[2], weight[3]);
-    shuffle<0, 2, 4, 6>(low, high).store(row[A]);
-  }
-  MPM_INLINE void set(const Quads<L> *weight)
-  {
-    set_axis<0>(weight);
-    set_axis<1>(weight);
-    set_axis<2>(weight);
-  }
-};
-
-/** Products of weights and gradients along x and y for each of L points, [4 i + j]. */
-template <int L> struct PlaneProducts {
-  alignas(64) Real ww[L][16], gw[L][16], wg[L][16];
-
-  template <int l, bool GRADIENT, class Rows>
-  MPM_INLINE void set_point(const Rows &w, const Rows &g)
-  {
-    const Vec<16> x = rows_x<l>(w), y = rows_y<l>(w);
-    (x * y).store(ww[l]);
-    if constexpr (GRADIENT) {
-      (rows_x<l>(g) * y).store(gw[l]);
-      (x * rows_y<l>(g)).store(wg[l]);
-    }
-  }
-  template <bool GRADIENT, class Rows> MPM_INLINE void set(const Rows &w, const Rows &g)
-  {
-    set_point<0, GRADIENT>(w, g);
-    if constexpr (L > 1) set_point<1, GRADIENT>(w, g);
-    if constexpr (L > 2) {
-      set_point<2, GRADIENT>(w, g);
-      set_point<3, GRADIENT>(w, g);
-    }
-  }
-
- private:
-  template <int l, class Rows> static MPM_INLINE Vec<16> rows_x(const Rows &w)
-  {
-    if constexpr (L == 4)
-      return spread_group<l>(Vec<16>::load(w.row[0]));
-    else
-      return spread<16>(Vec<4>::load(w.row[0] + 4 * l));
-  }
-  template <int l, class Rows> static MPM_INLINE Vec<16> rows_y(const Rows &w)
-  {
-    if constexpr (L == 4)
-      return repeat_group<l>(Vec<16>::load(w.row[1]));
-    else
-      return repeat<16>(Vec<4>::load(w.row[1] + 4 * l));
-  }
-};
-
-/** What Scatter does, with the nodes of a row along the last axis side by side in a vector, four
- *  reals for each, and one point after the other. With the weights z and gradients z' along the
- *  last axis
- *
- *    row(i,j) = wx_i wy_j [z (q + k Az) + z' Sz + i z Ax + j z Ay] + gx_i wy_j z Sx + wx_i gy_j z Sy,
- *
- *  where the bracket takes one addition from one row to the next. Points with the same base node are
- *  summed in registers, so that the tile is read and written once for all of them. */
-template <int DIM, int ORDER, bool AFFINE, bool GRADIENT, int L> struct RowScatter {
-  static constexpr int N = ORDER + 1, LAST = DIM - 1;
-  static constexpr int LANES = ORDER == 1 ? 8 : 16;
-  static constexpr int ROWS = DIM == 3 ? N * N : N;
-  using Row = Vec<LANES>;
-  using Weights = AxisRows<ORDER, L>;
-
-  Stored<L> q, A[DIM], S[DIM];
-
-  static MPM_INLINE Row fours(const Stored<L> &from, int l)
-  {
-    return repeat<LANES>(Vec<4>::load(from.real + 4 * l));
-  }
-
-  /** Adds what point l gives to the sums. */
-  MPM_INLINE void add(const Weights &w, const Weights &g, const PlaneProducts<L> &products, int l,
-                      Row *sum) const
-  {
-    const Row z = spread<LANES>(Vec<4>::load(w.row[LAST] + 4 * l));
-    Row B = z * fours(q, l), Ux, Uy, Tx, Ty;
-    if constexpr (AFFINE) {
-      constexpr Real number[4] = {0, 1, 2, 3};
-      B += (z * spread<LANES>(Vec<4>::load(number))) * fours(A[LAST], l);
-      Ux = z * fours(A[0], l);
-      if constexpr (DIM == 3) Uy = z * fours(A[1], l);
-    }
-    if constexpr (GRADIENT) {
-      B += spread<LANES>(Vec<4>::load(g.row[LAST] + 4 * l)) * fours(S[LAST], l);
-      Tx = z * fours(S[0], l);
-      if constexpr (DIM == 3) Ty = z * fours(S[1], l);
-    }
-    MPM_UNROLL
-    for (int i = 0; i < N; i++) {
-      if (AFFINE && i) B += Ux;
-      if constexpr (DIM == 2) {
-        sum[i] += Row::all(w.row[0][4 * l + i]) * B;
-        if constexpr (GRADIENT) sum[i] += Row::all(g.row[0][4 * l + i]) * Tx;
-      } else {
-        Row Bj = B;
-        MPM_UNROLL
-        for (int j = 0; j < N; j++) {
-          if (AFFINE && j) Bj += Uy;
-          sum[N * i + j] += Row::all(products.ww[l][4 * i + j]) * Bj;
-          if constexpr (GRADIENT) {
-            sum[N * i + j] += Row::all(products.gw[l][4 * i + j]) * Tx;
-            sum[N * i + j] += Row::all(products.wg[l][4 * i + j]) * Ty;
-          }
-        }
-      }
-    }
-  }
-
-  static MPM_INLINE void clear(Row *sum)
-  {
-    MPM_UNROLL
-    for (int i = 0; i < N; i++) {
-      MPM_UNROLL
-      for (int j = 0; j < ROWS / N; j++) sum[ROWS / N * i + j] = Row{};
-    }
-  }
-
-  /** Adds the sums to the tile and clears them. */
-  static MPM_INLINE void flush(Row *sum, Real *base)
-  {
-    constexpr int sx = 4 * tile_stride_x(DIM, ORDER), sy = 4 * tile_stride_y(DIM, ORDER);
-    MPM_UNROLL
-    for (int i = 0; i < N; i++) {
-      MPM_UNROLL
-      for (int j = 0; j < ROWS / N; j++) {
-        Real *const node = base + sx * i + (DIM == 3 ? sy * j : 0);
-        (Row::load(node) + sum[ROWS / N * i + j]).store(node);
-      }
-    }
-    clear(sum);
-  }
-};
-
 enum Parts { MOMENTUM = 1, FORCE = 2, ALL = 3 };
 
 /** P2G of what PARTS says; AFFINE: uses C; MLS: stress as an affine term; TOTAL: first
  *  Piola-Kirchhoff instead of Kirchhoff stress. */
 template <int DIM, Shape SHAPE, bool AFFINE, bool MLS, int NREAL, int PARTS, bool TOTAL>
 struct PointsToNodes {
-  static constexpr int ORDER = stencil_order(SHAPE);
+  static constexpr int ORDER = FunctionOf<SHAPE>::order;
   static constexpr bool momentum = PARTS & MOMENTUM;
   static constexpr bool force = PARTS & FORCE;
   static constexpr bool gradient = force && !MLS;    // stress with gradients
@@ -557,7 +315,7 @@ struct PointsToNodes {
   // A record of 8 reals has momentum and force apart. One long vector can hold both; else, and for
   // linear functions where it is faster, the force is scattered after the momentum.
   static constexpr bool both = NREAL == 8 && PARTS == ALL;
-  static constexpr bool wide = !MIXED && both && REGISTER == 8 && ORDER > 1;
+  static constexpr bool wide = both && REGISTER == 8 && ORDER > 1;
   static constexpr int N = ORDER + 1;
 
   /** L points ready to be scattered. */
@@ -569,31 +327,6 @@ struct PointsToNodes {
     AxisWeights<ORDER, L> weights, gradients;
     int place[L];
   };
-  template <int L> struct PreparedRows {
-    using Main = RowScatter<DIM, ORDER, affine, sloped, L>;
-    using Apart = RowScatter<DIM, ORDER, MLS, !MLS, L>;
-    Main main;
-    Apart apart;
-    AxisRows<ORDER, L> weights, gradients;
-    PlaneProducts<L> products;
-    int place[L];
-  };
-
-  /** What momenta and masses in the tile are relative to, see MixedHeader. */
-  template <int L> struct Reference {
-    WideQuads<L> v;
-    double inv_mass = 1.0;
-
-    Reference(const double *tile)
-    {
-      if constexpr (MIXED) {
-        const auto *header = reinterpret_cast<const MixedHeader *>(tile);
-        v = repeat<4 * L>(WideQuads<1>::load(header->v));
-        inv_mass = weight_scale<DIM, ORDER>() / header->mass;
-      }
-    }
-  };
-
   /** Columns of a full matrix; lanes that are no axis are arbitrary. */
   template <int L>
   static MPM_INLINE void matrix_columns(const double *matrix, Index p, Quads<L> *column)
@@ -634,13 +367,12 @@ struct PointsToNodes {
 
   /** Momentum and mass: value at the point and affine matrix per node spacing. */
   template <int L>
-  static MPM_INLINE void momentum_terms(const PointRows &points, Index p, double h,
-                                        const Reference<L> &reference, Quads<L> &q, Quads<L> *A)
+  static MPM_INLINE void momentum_terms(const PointRows &points, Index p, double h, Quads<L> &q,
+                                        Quads<L> *A)
   {
-    const Quads<L> mass = load_numbers<L>(points.mass, p, reference.inv_mass);
-    WideQuads<L> v = load_wide<L, 3>(points.v, p);
-    if constexpr (MIXED) v -= reference.v;
-    q = blend<DIM>(convert<Real>(v), repeat<4 * L>(0.0, 0.0, 0.0, 1.0)) * mass;
+    const Quads<L> mass = load_numbers<L>(points.mass, p, 1.0);
+    const Quads<L> v = load_rows<L, 3>(points.v, p);
+    q = blend<DIM>(v, repeat<4 * L>(0.0, 0.0, 0.0, 1.0)) * mass;
     if constexpr (AFFINE) {
       if constexpr (DIM == 2) {
         const Quads<L> C = (h * mass) * load_rows<L, 4>(points.C, p);
@@ -660,7 +392,7 @@ struct PointsToNodes {
   {
     q = (scale * step.force_scale) * blend<DIM>(load_rows<L, 3>(points.f, p), Quads<L>{});
     const double factor =
-        -scale * step.stress_scale * step.inv_h * (MLS ? BSpline<ORDER>::inv_moment : 1.0);
+        -scale * step.stress_scale * step.inv_h * (MLS ? FunctionOf<SHAPE>::inv_moment : 1.0);
     const Quads<L> volume = load_numbers<L>(points.vol0, p, factor);
     if constexpr (TOTAL)
       matrix_columns<L>(points.P, p, A);
@@ -687,26 +419,23 @@ struct PointsToNodes {
   }
 
   /** Loads L points and computes what scatter needs; notes their extent. */
-  template <int L, class Out>
+  template <int L>
   static MPM_INLINE void prepare(const PointRows &points, Index p, const TransferStep &step,
-                                 const Frame<DIM, SHAPE, L> &frame, const Reference<L> &reference,
-                                 Out &out, WideQuads<L> &lowest, WideQuads<L> &highest)
+                                 const Frame<DIM, SHAPE, L> &frame, Prepared<L> &out,
+                                 Quads<L> &lowest, Quads<L> &highest)
   {
     using P = Quads<L>;
 
-    const WideQuads<L> t = frame.position(load_wide<L, 3>(points.x, p));
+    const Quads<L> t = frame.position(load_rows<L, 3>(points.x, p));
     lowest = min(lowest, t);
     highest = max(highest, t);
     const P fraction = frame.locate(t, out.place);
     axis_weights<SHAPE, gradient, L>(points, p, fraction, out.weights, out.gradients);
-    if constexpr (MIXED && DIM == 3)
-      out.products.template set<gradient>(out.weights, out.gradients);
 
     // Am is an affine term, Af an affine or a gradient term
     P qm, qf, Am[DIM], Af[DIM];
-    if constexpr (momentum) momentum_terms<L>(points, p, step.h, reference, qm, Am);
-    if constexpr (force)
-      force_terms<L>(points, p, step, (NREAL == 4 ? step.dt : 1.0) * reference.inv_mass, qf, Af);
+    if constexpr (momentum) momentum_terms<L>(points, p, step.h, qm, Am);
+    if constexpr (force) force_terms<L>(points, p, step, NREAL == 4 ? step.dt : 1.0, qf, Af);
 
     if constexpr (both) {
       if constexpr (AFFINE) {
@@ -756,36 +485,15 @@ struct PointsToNodes {
 
   /** Adds to the tile; SAME: the points have one base node. */
   template <bool SAME, int L>
-  static MPM_INLINE void scatter(const Prepared<L> &in, Real *const *base)
+  static MPM_INLINE void scatter(const Prepared<L> &in, double *const *base)
   {
     in.main.template add<SAME, NREAL>(in.weights, in.gradients, base);
     if constexpr (both && !wide) {
-      Real *forces[L];
+      double *forces[L];
       MPM_UNROLL
       for (int l = 0; l < L; l++) forces[l] = base[l] + 4;
       in.apart.template add<SAME, NREAL>(in.weights, in.gradients, forces);
     }
-  }
-
-  /** Adds n vectors of points to the tile, row by row. Rows: RowScatter, MEMBER: which one. */
-  template <int L, class Rows, class Member>
-  static __attribute__((noinline)) void scatter_rows(const PreparedRows<L> *in, Index n,
-                                                     Real *entry, Member member)
-  {
-    typename Rows::Row sum[Rows::ROWS];
-    Rows::clear(sum);
-    int place = in[0].place[0];
-    for (Index i = 0; i < n; i++) {
-      MPM_UNROLL
-      for (int l = 0; l < L; l++) {
-        if (__builtin_expect(in[i].place[l] != place, 0)) {
-          Rows::flush(sum, entry + 4 * place);
-          place = in[i].place[l];
-        }
-        (in[i].*member).add(in[i].weights, in[i].gradients, in[i].products, l, sum);
-      }
-    }
-    Rows::flush(sum, entry + 4 * place);
   }
 
   /** Points [first,last), L at a time. */
@@ -798,18 +506,16 @@ struct PointsToNodes {
     const PointRows points = rows;
     const TransferStep step = transfer;
     const Frame<DIM, SHAPE, L> frame(step, base);
-    const Reference<L> reference(tile);
-    Real *const entry =
-        entries(tile) + (NREAL == 8 && PARTS == FORCE ? second_half(DIM, ORDER) : 0);
-    WideQuads<L> lowest = WideQuads<L>::all(1.0e6), highest = WideQuads<L>::all(-1.0e6);
+    double *const entry = tile + (NREAL == 8 && PARTS == FORCE ? 4 : 0);
+    Quads<L> lowest = Quads<L>::all(1.0e6), highest = Quads<L>::all(-1.0e6);
     constexpr int ENTRIES = STAGE / L;
-    std::conditional_t<MIXED, PreparedRows<L>, Prepared<L>> stage[ENTRIES];
+    Prepared<L> stage[ENTRIES];
 
     for (Index p = first; p < last;) {
       const Index n = (last - p) / L < ENTRIES ? (last - p) / L : ENTRIES;
       const Index ahead = p + AHEAD;
       prefetch<3>(points.x, ahead);
-      if (SHAPE == GIMP) prefetch<3>(points.size, ahead);
+      if (has_size(SHAPE)) prefetch<3>(points.size, ahead);
       if (momentum) {
         prefetch<3>(points.v, ahead);
         prefetch<1>(points.mass, ahead);
@@ -821,27 +527,18 @@ struct PointsToNodes {
         prefetch<1>(points.vol0, ahead);
       }
       for (Index i = 0; i < n; i++, p += L)
-        prepare<L>(points, p, step, frame, reference, stage[i], lowest, highest);
-      if constexpr (MIXED) {
-        using Rows = PreparedRows<L>;
-        scatter_rows<L, typename Rows::Main>(stage, n, entry, &Rows::main);
-        if constexpr (both)
-          scatter_rows<L, typename Rows::Apart>(stage, n, entry + second_half(DIM, ORDER),
-                                                &Rows::apart);
-        continue;
-      } else {
-        for (Index i = 0; i < n; i++) {
-          const Prepared<L> &in = stage[i];
-          Real *node[L];
-          MPM_UNROLL
-          for (int l = 0; l < L; l++) node[l] = entry + NREAL * in.place[l];
-          if (L == 1 || __builtin_expect(node[0] == node[L - 1], 1)) {
-            scatter<true>(in, node);
-          } else {
-            // barrier: otherwise GCC moves what both branches have in common above them, and spills
-            asm volatile("" ::: "memory");
-            scatter<false>(in, node);
-          }
+        prepare<L>(points, p, step, frame, stage[i], lowest, highest);
+      for (Index i = 0; i < n; i++) {
+        const Prepared<L> &in = stage[i];
+        double *node[L];
+        MPM_UNROLL
+        for (int l = 0; l < L; l++) node[l] = entry + NREAL * in.place[l];
+        if (L == 1 || __builtin_expect(node[0] == node[L - 1], 1)) {
+          scatter<true>(in, node);
+        } else {
+          // barrier: otherwise GCC moves what both branches have in common above them, and spills
+          asm volatile("" ::: "memory");
+          scatter<false>(in, node);
         }
       }
     }
@@ -860,7 +557,6 @@ struct PointsToNodes {
                   const int base[3], double *tile, int box[6])
   {
     if (first >= last) return;
-    if constexpr (MIXED) MixedHeader::first<DIM, ORDER>(tile, points, first);
     const bool guarded = last <= points.guarded;
     const int rest = first + (last - first - !guarded) / POINTS * POINTS;
     if (rest > first) range<POINTS>(points, step, first, rest, base, tile, box);
@@ -871,7 +567,7 @@ struct PointsToNodes {
 
     LastPoints copy;
     copy.load<3>(copy.x, points.x, rest, last);
-    if (SHAPE == GIMP) copy.load<3>(copy.size, points.size, rest, last);
+    if (has_size(SHAPE)) copy.load<3>(copy.size, points.size, rest, last);
     if (momentum) {
       copy.load<3>(copy.v, points.v, rest, last);
       copy.load<1>(copy.mass, points.mass, rest, last);
@@ -904,18 +600,15 @@ template <int DIM, int ORDER, int NREAL, int L, bool MLS, bool GRADIENT> struct 
   V value, derivative[DIM];
 
   /** Node vector of each point; SAME: points share the node. */
-  template <bool SAME> static MPM_INLINE V node(const Real *const *base, Index offset)
+  template <bool SAME> static MPM_INLINE V node(const double *const *base, Index offset)
   {
     const Vec<4> first = Vec<4>::load(base[0] + offset);
     if constexpr (L == 1)
       return first;
     else if constexpr (SAME)
       return repeat<4 * L>(first);
-    else if constexpr (L == 2)
-      return join(first, Vec<4>::load(base[1] + offset));
     else
-      return join(join(first, Vec<4>::load(base[1] + offset)),
-                  join(Vec<4>::load(base[2] + offset), Vec<4>::load(base[3] + offset)));
+      return join(first, Vec<4>::load(base[1] + offset));
   }
 
   static MPM_INLINE void accumulate(bool first, V &sum, V a, V b)
@@ -928,7 +621,7 @@ template <int DIM, int ORDER, int NREAL, int L, bool MLS, bool GRADIENT> struct 
 
   /** Sums a row of nodes along the last axis. */
   template <bool SAME>
-  static MPM_INLINE void row(const Real *const *base, Index offset, const V *w, const V *d,
+  static MPM_INLINE void row(const double *const *base, Index offset, const V *w, const V *d,
                              V &value, V &derivative)
   {
     MPM_UNROLL
@@ -954,7 +647,7 @@ template <int DIM, int ORDER, int NREAL, int L, bool MLS, bool GRADIENT> struct 
 
   /** Value and derivatives; base: the record of each point's base node. */
   template <bool SAME>
-  MPM_INLINE void sum(const Weights &weights, const Weights &gradients, const Real *const *base)
+  MPM_INLINE void sum(const Weights &weights, const Weights &gradients, const double *const *base)
   {
     constexpr int sx = NREAL * tile_stride_x(DIM, ORDER), sy = NREAL * tile_stride_y(DIM, ORDER);
     V wx[N], wy[N], wz[N], dx[N], dy[N], dz[N];
@@ -989,7 +682,7 @@ template <int DIM, int ORDER, int NREAL, int L, bool MLS, bool GRADIENT> struct 
   }
 
   /** The same for linear functions with the fraction f: interpolation takes fewer operations. */
-  template <bool SAME> MPM_INLINE void interpolate(V f, const Real *const *base)
+  template <bool SAME> MPM_INLINE void interpolate(V f, const double *const *base)
   {
     constexpr int sx = NREAL * tile_stride_x(DIM, ORDER), sy = NREAL * tile_stride_y(DIM, ORDER);
     const V fx = broadcast<0>(f), fy = broadcast<1>(f), fz = broadcast<2>(f);
@@ -1018,16 +711,15 @@ template <int DIM, int ORDER, int NREAL, int L, bool MLS, bool GRADIENT> struct 
 
 /** G2P and velocity gradient; TOTAL: places on the lattice are not the positions that change. */
 template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct NodesToPoints {
-  static constexpr int ORDER = stencil_order(SHAPE);
+  static constexpr int ORDER = FunctionOf<SHAPE>::order;
   static constexpr bool affine = is_affine(TRANSFER);
   static constexpr bool increment = adds_change(TRANSFER);
   static constexpr bool mls = is_mls(SHAPE, TRANSFER);    // gradient from first moments
-  static constexpr int STRIDE = entry_stride(NREAL), OLD = second_half(DIM, ORDER);
 
   /** L points ready to be gathered. */
   template <int L> struct Prepared {
     alignas(64) double x[4 * L];
-    alignas(64) Real fraction[4 * L];
+    alignas(64) double fraction[4 * L];
     AxisWeights<ORDER, L> weights, gradients;
     int place[L];
   };
@@ -1035,10 +727,7 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
   /** L points have the same base node. */
   template <int L> static MPM_INLINE bool same(const int (&place)[L])
   {
-    if constexpr (L == 4)
-      return ((place[0] ^ place[1]) | (place[0] ^ place[2]) | (place[0] ^ place[3])) == 0;
-    else
-      return place[0] == place[L - 1];
+    return place[0] == place[L - 1];
   }
 
   /** Loads L points and computes what gather needs. */
@@ -1046,10 +735,10 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
   static MPM_INLINE void prepare(const PointRows &points, Index p,
                                  const Frame<DIM, SHAPE, L> &frame, Prepared<L> &out)
   {
-    const WideQuads<L> x = load_wide<L, 3>(points.x, p);
+    const Quads<L> x = load_rows<L, 3>(points.x, p);
     const Quads<L> fraction = frame.locate(frame.position(x), out.place);
     if constexpr (TOTAL && UPDATE)
-      load_wide<L, 3>(points.from, p).store(out.x);
+      load_rows<L, 3>(points.from, p).store(out.x);
     else
       x.store(out.x);
     fraction.store(out.fraction);
@@ -1059,13 +748,13 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
 
   /** Value and derivatives of the node vector at OFFSET in the records. */
   template <bool SAME, bool GRADIENT, int OFFSET, int L>
-  static MPM_INLINE void gather(const Prepared<L> &in, const Real *const *node, Quads<L> &value,
+  static MPM_INLINE void gather(const Prepared<L> &in, const double *const *node, Quads<L> &value,
                                 Quads<L> *derivative)
   {
-    const Real *base[L];
+    const double *base[L];
     MPM_UNROLL
     for (int l = 0; l < L; l++) base[l] = node[l] + OFFSET;
-    Gather<DIM, ORDER, STRIDE, L, mls && GRADIENT, GRADIENT> field;
+    Gather<DIM, ORDER, NREAL, L, mls && GRADIENT, GRADIENT> field;
     if constexpr (ORDER == 1)
       field.template interpolate<SAME>(Quads<L>::load(in.fraction), base);
     else
@@ -1078,7 +767,7 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
   }
 
   /** Stores the first K reals of each point's four in rows of three. */
-  template <int K, int L> static MPM_INLINE void store_rows(double *rows, Index p, WideQuads<L> a)
+  template <int K, int L> static MPM_INLINE void store_rows(double *rows, Index p, Quads<L> a)
   {
     if constexpr (L == 1) {
       store_lanes<K>(rows + 3 * p, a);
@@ -1091,7 +780,7 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
   /** Stores the columns of matrices in rows of nine (2d: four), from the first row to the last. In
    *  3d a column also writes one real behind it, which the next one overwrites; not so the last. */
   template <int L>
-  static MPM_INLINE void store_columns(double *rows, Index p, const WideQuads<L> *column)
+  static MPM_INLINE void store_columns(double *rows, Index p, const Quads<L> *column)
   {
     if constexpr (DIM == 2) {
       shuffle<0, 1, 4, 5>(column[0], column[1]).store(rows + 4 * p);
@@ -1100,8 +789,8 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
       column[1].store(rows + 9 * p + 3);
       store_lanes<3>(rows + 9 * p + 6, column[2]);
     } else {
-      const WideQuads<L / 2> low[3] = {half<0>(column[0]), half<0>(column[1]), half<0>(column[2])};
-      const WideQuads<L / 2> high[3] = {half<1>(column[0]), half<1>(column[1]), half<1>(column[2])};
+      const Quads<L / 2> low[3] = {half<0>(column[0]), half<0>(column[1]), half<0>(column[2])};
+      const Quads<L / 2> high[3] = {half<1>(column[0]), half<1>(column[1]), half<1>(column[2])};
       store_columns<L / 2>(rows, p, low);
       store_columns<L / 2>(rows, p + L / 2, high);
     }
@@ -1119,10 +808,7 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
     const PointRows points = rows;
     const TransferStep step = transfer;
     const Frame<DIM, SHAPE, L> frame(step, base);
-    const Real *const entry = entries(tile);
-    WideQuads<L> reference = {};    // velocity that those in the tile are relative to
-    if constexpr (MIXED) reference = repeat<4 * L>(WideQuads<1>::load(tile));
-    WideQuads<L> outside = {};
+    Quads<L> outside = {};
     constexpr double range_of_bases = block_side(DIM) + 2;
     constexpr int ENTRIES = STAGE / L;
     Prepared<L> stage[ENTRIES];
@@ -1130,7 +816,7 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
     for (Index p = first; p < last;) {
       const Index n = (last - p) / L < ENTRIES ? (last - p) / L : ENTRIES;
       const Index ahead = p + AHEAD;
-      if (SHAPE == GIMP) prefetch<3>(points.size, ahead);
+      if (has_size(SHAPE)) prefetch<3>(points.size, ahead);
       if (UPDATE) {
         prefetch<3, 1>(points.x, ahead);
         if (TOTAL) prefetch<3, 1>(points.from, ahead);
@@ -1149,50 +835,43 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
         prepare<UPDATE, GRADIENT, L>(points, p + L * i, frame, stage[i]);
       for (Index i = 0; i < n; i++, p += L) {
         const Prepared<L> &in = stage[i];
-        const Real *node[L];
+        const double *node[L];
         MPM_UNROLL
-        for (int l = 0; l < L; l++) node[l] = entry + STRIDE * in.place[l];
+        for (int l = 0; l < L; l++) node[l] = tile + NREAL * in.place[l];
         P v, D[DIM], v_old;
         if (__builtin_expect(same(in.place), 1)) {
           gather<true, GRADIENT, 0>(in, node, v, D);
-          if constexpr (UPDATE && increment) gather<true, false, OLD>(in, node, v_old, D);
+          if constexpr (UPDATE && increment) gather<true, false, 4>(in, node, v_old, D);
         } else {
           // barrier: otherwise GCC moves what both branches have in common above them, and spills
           asm volatile("" ::: "memory");
           gather<false, GRADIENT, 0>(in, node, v, D);
-          if constexpr (UPDATE && increment) gather<false, false, OLD>(in, node, v_old, D);
+          if constexpr (UPDATE && increment) gather<false, false, 4>(in, node, v_old, D);
         }
 
         if constexpr (GRADIENT) {
-          const double factor = weight_scale<DIM, ORDER>() *
-              (mls ? BSpline<ORDER>::inv_moment * step.inv_h : step.inv_h);
+          const double factor = mls ? FunctionOf<SHAPE>::inv_moment * step.inv_h : step.inv_h;
           if constexpr (mls) {
             // moments about the point instead of the base node
-            const P distance = P::load(in.fraction) + BSpline<ORDER>::shift;
+            const P distance = P::load(in.fraction) + FunctionOf<SHAPE>::shift;
             D[0] -= broadcast<0>(distance) * v;
             D[1] -= broadcast<1>(distance) * v;
             if constexpr (DIM == 3) D[2] -= broadcast<2>(distance) * v;
           }
-          WideQuads<L> column[DIM];
+          Quads<L> column[DIM];
           MPM_UNROLL
-          for (int a = 0; a < DIM; a++) column[a] = factor * convert<double>(D[a]);
+          for (int a = 0; a < DIM; a++) column[a] = factor * D[a];
           if (UPDATE && affine) store_columns<L>(points.C, p, column);
           if (!affine || gradients) store_columns<L>(gradients, p - first, column);
         }
 
         if constexpr (UPDATE) {
-          WideQuads<L> v_new = convert<double>(v);
-          if constexpr (MIXED) v_new = reference + v_new * weight_scale<DIM, ORDER>();
-          if constexpr (DIM == 2) v_new = blend<2>(v_new, WideQuads<L>{});
-          const WideQuads<L> x = WideQuads<L>::load(in.x) + step.dt * v_new;
+          Quads<L> v_new = v;
+          if constexpr (DIM == 2) v_new = blend<2>(v_new, Quads<L>{});
+          const Quads<L> x = Quads<L>::load(in.x) + step.dt * v_new;
           outside = flag_outside(outside, TOTAL ? x - x : frame.position(x), range_of_bases);
           store_rows<3, L>(points.xnew, p, x);
-          if constexpr (increment) {
-            WideQuads<L> old = convert<double>(v_old);
-            if constexpr (MIXED)    // the tile has changes
-              old = v_new - old * weight_scale<DIM, ORDER>();
-            v_new += step.flip * (load_wide<L, 3>(points.v, p) - old);
-          }
+          if constexpr (increment) v_new += step.flip * (load_rows<L, 3>(points.v, p) - v_old);
           store_rows<DIM, L>(points.v, p, v_new);
         }
       }
@@ -1225,7 +904,7 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
 
     LastPoints copy;
     copy.load<3>(copy.x, points.x, rest, last);
-    if (SHAPE == GIMP) copy.load<3>(copy.size, points.size, rest, last);
+    if (has_size(SHAPE)) copy.load<3>(copy.size, points.size, rest, last);
     if (UPDATE) copy.load<3>(copy.v, points.v, rest, last);
     if (UPDATE && TOTAL) copy.load<3>(copy.from, points.from, rest, last);
     if (last - rest == POINTS)
@@ -1262,8 +941,7 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
 
 enum TileMove { FLUSH, LOAD, PREFETCH };
 
-/** Adds N reals of a tile in double precision to nodes and clears them, loads them, or brings the nodes
- *  near. */
+/** Adds N reals of a tile to nodes and clears them, loads them, or brings the nodes near. */
 template <int N, TileMove MOVE> MPM_INLINE void move_reals(double *tile, double *nodes)
 {
   if constexpr (MOVE == PREFETCH) {
@@ -1276,70 +954,12 @@ template <int N, TileMove MOVE> MPM_INLINE void move_reals(double *tile, double 
   MPM_UNROLL
   for (int i = 0; i < N; i += 4) {
     if constexpr (MOVE == LOAD) {
-      WideQuads<1>::load(nodes + i).store(tile + i);
+      Vec<4>::load(nodes + i).store(tile + i);
     } else {
-      (WideQuads<1>::load(nodes + i) + WideQuads<1>::load(tile + i)).store(nodes + i);
-      WideQuads<1>{}.store(tile + i);
+      (Vec<4>::load(nodes + i) + Vec<4>::load(tile + i)).store(nodes + i);
+      Vec<4>{}.store(tile + i);
     }
   }
-}
-
-/** The same for COUNT entries, in either precision. */
-template <int COUNT, int NREAL, int SECOND, TileMove MOVE>
-MPM_INLINE void move_nodes(Real *entry, double *nodes, const double *header)
-{
-  if constexpr (MOVE == PREFETCH || !MIXED) {
-    move_reals<COUNT * NREAL, MOVE>(reinterpret_cast<double *>(entry), nodes);
-  } else {
-    using W = WideQuads<1>;
-    const W v = W::load(header);
-    const double mass = header[4];
-    MPM_UNROLL
-    for (int i = 0; i < COUNT; i++, entry += 4, nodes += NREAL) {
-      if constexpr (MOVE == LOAD) {
-        const W now = W::load(nodes);
-        convert<Real>(blend<3>(now - v, W{})).store(entry);
-        if constexpr (NREAL == 8)
-          convert<Real>(blend<3>(now - W::load(nodes + 4), W{})).store(entry + SECOND);
-      } else {
-        const W a = mass * convert<double>(Vec<4>::load(entry));
-        (W::load(nodes) + a + broadcast<3>(a) * v).store(nodes);
-        Vec<4>{}.store(entry);
-        if constexpr (NREAL == 8) {
-          (W::load(nodes + 4) + mass * convert<double>(Vec<4>::load(entry + SECOND)))
-              .store(nodes + 4);
-          Vec<4>{}.store(entry + SECOND);
-        }
-      }
-    }
-  }
-}
-
-/** Mixed precision: the reference for velocities of nodes is that of the one in the middle of the
- *  box or, if it has no mass, of the heaviest one. */
-template <int DIM, int ORDER, int NREAL>
-void take_reference(double *tile, const double *nodes, const int slot[27], const int box[6])
-{
-  constexpr int side = block_side(DIM);
-  const double *heaviest = nullptr;
-  const auto look = [&](int i, int j, int k) {
-    const int x = i + side - 1, y = j + side - 1, z = DIM == 3 ? k + side - 1 : 1;
-    const int block = slot[9 * (x / side) + 3 * (y / side) + (DIM == 3 ? z / side : 1)];
-    const int index = DIM == 3 ? (x % side * side + y % side) * side + z % side
-                               : x % side * side + y % side;
-    const double *const node = nodes + (Index(64) * block + index) * NREAL;
-    if (!heaviest || node[3] > heaviest[3]) heaviest = node;
-  };
-  const auto middle = [&](int a) {
-    return (box[a] + box[3 + a] + ORDER) / 2;
-  };
-  look(middle(0), middle(1), DIM == 3 ? middle(2) : 0);
-  if (!(heaviest[3] > 0.0))
-    for (int i = box[0]; i <= box[3] + ORDER; i++)
-      for (int j = box[1]; j <= box[4] + ORDER; j++)
-        for (int k = DIM == 3 ? box[2] : 0; k <= (DIM == 3 ? box[5] + ORDER : 0); k++)
-          look(i, j, k);
-  for (int a = 0; a < 3; a++) tile[a] = heaviest[a];
 }
 
 /** Flush, load or prefetch, a row of nodes along the last axis at a time. A row has one node in the block
@@ -1350,11 +970,9 @@ void tile_io(double *tile, double *nodes, const int slot[27], const int box[6])
 {
   constexpr int side = block_side(DIM), last = DIM - 1, after = ORDER + 1;
   constexpr int sx = tile_stride_x(DIM, ORDER), sy = tile_stride_y(DIM, ORDER);
-  constexpr int STRIDE = entry_stride(NREAL), SECOND = second_half(DIM, ORDER);
   const bool touches_before = box[last] == 0;
   const bool touches_own = box[last] <= side;
   const bool touches_after = box[3 + last] + ORDER > side;
-  if constexpr (MIXED && MOVE == LOAD) take_reference<DIM, ORDER, NREAL>(tile, nodes, slot, box);
 
   const int ylow = DIM == 3 ? box[1] : 0;
   const int yhigh = DIM == 3 ? box[4] + ORDER : 0;
@@ -1362,7 +980,7 @@ void tile_io(double *tile, double *nodes, const int slot[27], const int box[6])
     for (int j = ylow; j <= yhigh; j++) {
       // tile node 0 is the last node of the block before
       const int x = i + side - 1, y = j + side - 1;
-      Real *row = entries(tile) + STRIDE * (DIM == 3 ? i * sx + j * sy : i * sx);
+      double *row = tile + NREAL * (DIM == 3 ? i * sx + j * sy : i * sx);
       const int *block = slot + (DIM == 3 ? 9 * (x / side) + 3 * (y / side) : 9 * (x / side));
       const int index = DIM == 3 ? (x % side * side + y % side) * side : x % side * side;
       // in 3d slots of a row are neighbours, in 2d three apart, the middle one of three in z
@@ -1370,14 +988,11 @@ void tile_io(double *tile, double *nodes, const int slot[27], const int box[6])
       const auto record = [&](int which, int node) {
         return nodes + (Index(64) * block[which * next + middle] + node) * NREAL;
       };
-      if (touches_before)
-        move_nodes<1, NREAL, SECOND, MOVE>(row, record(0, index + side - 1), tile);
-      if (touches_own) move_nodes<side, NREAL, SECOND, MOVE>(row + STRIDE, record(1, index), tile);
+      if (touches_before) move_reals<NREAL, MOVE>(row, record(0, index + side - 1));
+      if (touches_own) move_reals<side * NREAL, MOVE>(row + NREAL, record(1, index));
       if (touches_after)
-        move_nodes<after, NREAL, SECOND, MOVE>(row + STRIDE * (side + 1), record(2, index), tile);
+        move_reals<after * NREAL, MOVE>(row + NREAL * (side + 1), record(2, index));
     }
-  if constexpr (MIXED && MOVE == FLUSH)    // the next transfer takes another reference
-    for (int k = 0; k < 5; k++) tile[k] = 0.0;
 }
 
 // ---------------------------------------------------------------------- table
@@ -1385,7 +1000,7 @@ void tile_io(double *tile, double *nodes, const int slot[27], const int box[6])
 /** All of one dimension, shape, transfer, size of records, and frame. */
 template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> TransferKernels kernels()
 {
-  constexpr int ORDER = stencil_order(SHAPE);
+  constexpr int ORDER = FunctionOf<SHAPE>::order;
   constexpr bool affine = is_affine(TRANSFER), mls = is_mls(SHAPE, TRANSFER);
   using G2P = NodesToPoints<DIM, SHAPE, TRANSFER, NREAL, TOTAL>;
   TransferKernels k;
@@ -1402,6 +1017,17 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> Transf
   k.load = tile_io<DIM, ORDER, NREAL, LOAD>;
   k.prefetch = tile_io<DIM, ORDER, NREAL, PREFETCH>;
   return k;
+}
+
+/** Those of the combinations that belong to a file. */
+template <File FILE> TransferKernels kernels_of_file(const KernelChoice &choice)
+{
+  return choose(choice, [](auto c) {
+    if constexpr (c.file() == FILE)
+      return kernels<c.dim, c.shape, c.transfer, c.nreal, c.total>();
+    else
+      return TransferKernels();
+  });
 }
 
 }    // namespace

@@ -6,9 +6,8 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// The fast kernels, compiled once for each instruction set with MPM_ISA = base, v3 or v4: table, node
-// solve, and transfers pic, flip, apic with B-splines. The others are made in files of their own, so
-// that they compile side by side.
+// Compiled once for each instruction set: table of kernels of the set, solve, and transfers pic, flip, apic
+// with B-splines. The others are made in files of their own, so that they compile side by side.
 
 #include "transfer/kernels_isa.h"
 
@@ -16,7 +15,7 @@
 
 // no vector extensions: the plain loops serve
 
-const MPM_NS::MPMKernels *MPM_NS::MPM_CONCAT(mpm_kernels_, MPM_ISA)()
+const MPM_NS::MPMKernels *MPM_NS::MPM_OF_ISA(mpm_kernels)(const char *)
 {
   return mpm_kernels_reference();
 }
@@ -25,11 +24,9 @@ const MPM_NS::MPMKernels *MPM_NS::MPM_CONCAT(mpm_kernels_, MPM_ISA)()
 
 #include "transfer/kernels_fast.h"
 
-namespace {
+#include <initializer_list>
 
-#define MPM_NAME_base "baseline"
-#define MPM_NAME_v3 "AVX2"
-#define MPM_NAME_v4 "AVX-512"
+namespace {
 
 constexpr double SMALLEST = 2.3e-308;    ///< the inverse of a smaller mass may overflow
 
@@ -52,57 +49,30 @@ void solve_nodes(double *nodes, int nnodes, int nreal, double dt)
   }
 }
 
-template <bool TOTAL, int DIM, Shape SHAPE> TransferKernels choose(Transfer transfer, bool split)
+template <bool TOTAL>
+TransferKernels choose_among_files(int dim, Shape shape, Transfer transfer, bool split)
 {
-  switch (transfer) {
-    case PIC:
-      return kernels<DIM, SHAPE, PIC, 8, TOTAL>();
-    case FLIP:
-      return kernels<DIM, SHAPE, FLIP, 8, TOTAL>();
-    case APIC:
-      return split ? kernels<DIM, SHAPE, APIC, 8, TOTAL>() : kernels<DIM, SHAPE, APIC, 4, TOTAL>();
-    default:
-      if (TOTAL) return TransferKernels();
-      return MPM_CONCAT(mpm_kernels_affine_, MPM_ISA)(DIM, SHAPE, transfer, split);
-  }
-}
-
-template <bool TOTAL, int DIM> TransferKernels choose(Shape shape, Transfer transfer, bool split)
-{
-  switch (shape) {
-    case LINEAR:
-      // the affine matrix of linear functions is the gradient anyway
-      return choose<TOTAL, DIM, LINEAR>(transfer == TPIC ? APIC : transfer, split);
-    case QUADRATIC:
-      return choose<TOTAL, DIM, QUADRATIC>(transfer, split);
-    case CUBIC:
-      return choose<TOTAL, DIM, CUBIC>(transfer, split);
-    case GIMP:
-    case CPGIMP:
-      if (TOTAL) return TransferKernels();
-      return MPM_CONCAT(mpm_kernels_gimp_, MPM_ISA)(DIM, transfer, split);
-    case CPDI:
-    case CPDI2:
-      if (TOTAL) return TransferKernels();
-      return MPM_CONCAT(mpm_kernels_domain_, MPM_ISA)(DIM, shape, transfer, split);
-    case BERNSTEIN:
-      return MPM_CONCAT(mpm_kernels_bernstein_, MPM_ISA)(DIM, transfer, split);
+  const KernelChoice choice = {dim, shape, transfer, split, TOTAL};
+  for (const auto of_file : {MPM_OF_ISA(mpm_kernels_splines), MPM_OF_ISA(mpm_kernels_aflip_tpic),
+                             MPM_OF_ISA(mpm_kernels_gimp), MPM_OF_ISA(mpm_kernels_cpdi),
+                             MPM_OF_ISA(mpm_kernels_bernstein)}) {
+    const TransferKernels kernels = of_file(choice);
+    if (kernels.p2g) return kernels;
   }
   return TransferKernels();
 }
 
-template <bool TOTAL> TransferKernels transfer(int dim, Shape shape, Transfer transfer, bool split)
-{
-  return dim == 3 ? choose<TOTAL, 3>(shape, transfer, split)
-                  : choose<TOTAL, 2>(shape, transfer, split);
-}
-
 }    // namespace
 
-const MPMKernels *MPM_NS::MPM_CONCAT(mpm_kernels_, MPM_ISA)()
+TransferKernels MPM_NS::MPM_OF_ISA(mpm_kernels_splines)(const KernelChoice &choice)
 {
-  static const MPMKernels table = {MPM_CONCAT(MPM_NAME_, MPM_ISA), transfer<false>, transfer<true>,
-                                   MPM_CONCAT(mpm_kernels_mixed_, MPM_ISA), solve_nodes};
+  return kernels_of_file<SPLINE_FILE>(choice);
+}
+
+const MPMKernels *MPM_NS::MPM_OF_ISA(mpm_kernels)(const char *isa)
+{
+  static const MPMKernels table = {isa, choose_among_files<false>, choose_among_files<true>,
+                                   MPM_OF_ISA(mpm_kernels_poly), solve_nodes};
   return &table;
 }
 

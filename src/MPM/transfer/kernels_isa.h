@@ -9,13 +9,16 @@
 #ifndef MPM_TRANSFER_KERNELS_ISA_H
 #define MPM_TRANSFER_KERNELS_ISA_H
 
-// What the files transfer/*_isa.cpp provide to each other, under names with the instruction set.
+// From the choice of a user to a combination of constants, for which kernels are compiled: for all
+// files of kernels, the plain and the fast ones.
 
+#include "transfer/isa.h"
 #include "transfer/kernels.h"
+#include "transfer/polypic.h"
 
-#define MPM_CONCAT_(a, b) a##b
-#define MPM_CONCAT(a, b) MPM_CONCAT_(a, b)
-#if !defined(MPM_ISA)
+#include <type_traits>
+
+#if !defined(MPM_ISA)    // the plain loops
 #define MPM_ISA base
 #endif
 
@@ -28,52 +31,106 @@
 #endif
 
 namespace MPM_NS {
+
+/** What is asked for, see MPMKernels::transfer. */
+struct KernelChoice {
+  int dim;
+  Shape shape;
+  Transfer transfer;
+  bool split, total;
+};
+
 const MPMKernels *mpm_kernels_reference();
-const MPMKernels *MPM_CONCAT(mpm_kernels_, MPM_ISA)();
+const MPMKernels *MPM_OF_ISA(mpm_kernels)(const char *isa);
 
-/** Transfers aflip and tpic with B-splines. */
-TransferKernels MPM_CONCAT(mpm_kernels_affine_, MPM_ISA)(int dim, Shape, Transfer, bool split);
+// files that are compiled side by side, each with its share of the combinations
+TransferKernels MPM_OF_ISA(mpm_kernels_splines)(const KernelChoice &);
+TransferKernels MPM_OF_ISA(mpm_kernels_aflip_tpic)(const KernelChoice &);
+TransferKernels MPM_OF_ISA(mpm_kernels_gimp)(const KernelChoice &);
+TransferKernels MPM_OF_ISA(mpm_kernels_cpdi)(const KernelChoice &);
+TransferKernels MPM_OF_ISA(mpm_kernels_bernstein)(const KernelChoice &);
+PolyKernels MPM_OF_ISA(mpm_kernels_poly)(int dim, Shape, int nreal);
 
-/** Transfers pic, flip, apic with Bernstein polynomials in the total frame. */
-TransferKernels MPM_CONCAT(mpm_kernels_bernstein_, MPM_ISA)(int dim, Transfer, bool split);
-
-/** Transfers pic, flip, apic with B-splines in mixed precision. */
-TransferKernels MPM_CONCAT(mpm_kernels_mixed_, MPM_ISA)(int dim, Shape, Transfer, bool split,
-                                                        bool total);
-
-/** All transfers with points of finite size. */
-TransferKernels MPM_CONCAT(mpm_kernels_gimp_, MPM_ISA)(int dim, Transfer, bool split);
-
-/** All transfers with convected domains, CPDI and CPDI2. */
-TransferKernels MPM_CONCAT(mpm_kernels_domain_, MPM_ISA)(int dim, Shape, Transfer, bool split);
-TransferKernels mpm_kernels_domain_reference(int dim, Shape, Transfer, bool split);
 }    // namespace MPM_NS
 
 namespace {    // not shared between instruction sets
 
-template <MPM_NS::Transfer TRANSFER, int NREAL> struct TransferConstants {
-  static constexpr MPM_NS::Transfer transfer = TRANSFER;
+using namespace MPM_NS;
+
+/** use(constant) of the one among VALUES that is the given value. */
+template <class T, T FIRST, T... OTHERS, class Use> auto with(T value, Use use)
+{
+  if constexpr (sizeof...(OTHERS) > 0)
+    if (value != FIRST) return with<T, OTHERS...>(value, use);
+  return use(std::integral_constant<T, FIRST>());
+}
+
+/** Files of fast kernels, see above. */
+enum File { NO_FILE, SPLINE_FILE, AFLIP_TPIC_FILE, GIMP_FILE, CPDI_FILE, BERNSTEIN_FILE };
+
+/** A combination of constants that kernels are compiled for. */
+template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct Combination {
+  static constexpr int dim = DIM;
+  static constexpr Shape shape = SHAPE;
+  static constexpr Transfer transfer = TRANSFER;
   static constexpr int nreal = NREAL;
+  static constexpr bool total = TOTAL;
+
+  static constexpr File file()
+  {
+    const bool others = TRANSFER == AFLIP || TRANSFER == TPIC;
+    if (TOTAL && (others || has_size(SHAPE) || has_domain(SHAPE))) return NO_FILE;
+    if (has_size(SHAPE)) return GIMP_FILE;
+    if (has_domain(SHAPE)) return CPDI_FILE;
+    if (SHAPE == BERNSTEIN) return BERNSTEIN_FILE;
+    return others ? AFLIP_TPIC_FILE : SPLINE_FILE;
+  }
 };
 
-/** make(TransferConstants) of a transfer. */
-template <class Make>
-MPM_NS::TransferKernels choose_transfer(MPM_NS::Transfer transfer, bool split, Make make)
+/** make(Combination) of a choice. */
+template <class Make> TransferKernels choose(KernelChoice c, Make make)
 {
-  using namespace MPM_NS;
-  switch (transfer) {
-    case PIC:
-      return make(TransferConstants<PIC, 8>());
-    case FLIP:
-      return make(TransferConstants<FLIP, 8>());
-    case AFLIP:
-      return make(TransferConstants<AFLIP, 8>());
-    case APIC:
-      return split ? make(TransferConstants<APIC, 8>()) : make(TransferConstants<APIC, 4>());
-    case TPIC:
-      return split ? make(TransferConstants<TPIC, 8>()) : make(TransferConstants<TPIC, 4>());
-  }
-  return TransferKernels();
+  // with these the affine matrix is the gradient in any case
+  if (c.shape == CPGIMP) c.shape = GIMP;
+  if (c.shape == LINEAR && c.transfer == TPIC) c.transfer = APIC;
+  if (c.shape == GIMP && c.transfer == APIC) c.transfer = TPIC;
+  if (c.shape == BERNSTEIN) c.total = true;
+
+  return with<int, 2, 3>(c.dim, [&](auto dim) {
+    constexpr int DIM = decltype(dim)::value;
+    return with<Shape, LINEAR, QUADRATIC, CUBIC, GIMP, CPDI, CPDI2, BERNSTEIN>(
+        c.shape, [&](auto s) {
+          constexpr Shape SHAPE = decltype(s)::value;
+          return with<Transfer, PIC, FLIP, APIC, AFLIP, TPIC>(c.transfer, [&](auto t) {
+            constexpr Transfer TRANSFER = decltype(t)::value;
+            constexpr bool replaced = (SHAPE == LINEAR && TRANSFER == TPIC) ||
+                (SHAPE == GIMP && TRANSFER == APIC);    // see above
+            constexpr int MERGED = is_affine(TRANSFER) && !adds_change(TRANSFER) ? 4 : 8;
+            return with<bool, false, true>(c.total, [&](auto total) {
+              constexpr bool TOTAL = decltype(total)::value;
+              if constexpr (replaced || (SHAPE == BERNSTEIN && !TOTAL))
+                return TransferKernels();
+              else if (c.split)
+                return make(Combination<DIM, SHAPE, TRANSFER, 8, TOTAL>());
+              else
+                return make(Combination<DIM, SHAPE, TRANSFER, MERGED, TOTAL>());
+            });
+          });
+        });
+  });
+}
+
+/** make(Combination) for polypic. */
+template <class Make> PolyKernels choose_poly(int dim, Shape shape, int nreal, Make make)
+{
+  return with<int, 2, 3>(dim, [&](auto d) {
+    constexpr int DIM = decltype(d)::value;
+    return with<Shape, QUADRATIC, CUBIC>(shape, [&](auto s) {
+      constexpr Shape SHAPE = decltype(s)::value;
+      return nreal == 4 ? make(Combination<DIM, SHAPE, APIC, 4, false>())
+                        : make(Combination<DIM, SHAPE, APIC, 8, false>());
+    });
+  });
 }
 
 }    // namespace

@@ -11,14 +11,10 @@
 
 #include "transfer/kernels_isa.h"
 
-#include "transfer/shape.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
-
-using namespace MPM_NS;
 
 namespace {
 
@@ -27,68 +23,121 @@ struct Node {
   int index;         ///< in the tile, in nodes
   double w;          ///< weight
   double grad[3];    ///< gradient of the weight
-  double d[3];       ///< position of the node minus that of the point
+  double d[3];    ///< position of the node minus that of the point, or of the center of its domain
 };
 
-/** Position in units of h from tile node 0, less the shift: its floor is the base node (but for
- *  BERNSTEIN). */
-template <int ORDER>
-double tile_position(double x, const TransferStep &step, const int *base, int axis)
+template <int DIM, Shape SHAPE> constexpr int stride(int axis)
 {
-  return (x - step.origin[axis]) * step.inv_h - (BSpline<ORDER>::shift + base[axis]);
+  constexpr int order = stencil_order(SHAPE);
+  if (axis == 2) return DIM == 3;
+  if (has_domain(SHAPE)) return axis ? domain_stride_y(DIM) : domain_stride_x(DIM);
+  return axis ? tile_stride_y(DIM, order) : tile_stride_x(DIM, order);
 }
 
-/** Nodes, weights and gradients of the point at x; size: of GIMP. */
-template <int DIM, Shape SHAPE> struct Stencil {
-  static constexpr int ORDER = stencil_order(SHAPE);
-  static constexpr int count = DIM == 3 ? (ORDER + 1) * (ORDER + 1) * (ORDER + 1)
-                                        : (ORDER + 1) * (ORDER + 1);
-  int base[3] = {0, 0, 0};    ///< tile index of the base node
+/** Position from tile node 0 in cells, less the shift: its floor is the cell of a point. */
+template <Shape SHAPE>
+double tile_position(double x, const TransferStep &step, const int *base, int axis)
+{
+  using F = FunctionOf<SHAPE>;
+  return (x - step.origin[axis]) * (step.inv_h / F::cell) -
+      (F::shift + (base[axis] - (base[axis] & (F::cell - 1))) / F::cell);
+}
+
+/** The nodes that a point reaches by its function along each axis. */
+template <int DIM, Shape SHAPE> struct PointStencil {
+  using F = FunctionOf<SHAPE>;
+  static constexpr int N = F::nodes, count = DIM == 3 ? N * N * N : N * N;
+  int low[3] = {0, 0, 0}, high[3] = {0, 0, 0};    ///< lowest and highest tile index of base nodes
+  bool good = true;
   Node node[count];
 
-  Stencil(const double *x, const double *size, const TransferStep &step, const int *tilebase)
+  PointStencil(const PointRows &points, int p, const TransferStep &step, const int *tilebase)
   {
-    constexpr int nz = DIM == 3 ? ORDER + 1 : 1;
     // in 2d the z axis has a single node of weight one at distance zero
     double w[3][4] = {{1.0}, {1.0}, {1.0}}, dw[3][4] = {}, d[3][4] = {};
     for (int a = 0; a < DIM; a++) {
-      const double t = tile_position<ORDER>(x[a], step, tilebase, a);
-      base[a] = static_cast<int>(std::floor(t));
-      double f = ORDER == 1 ? std::max(t - base[a], SMALLEST_FRACTION) : t - base[a];
-      if constexpr (SHAPE == BERNSTEIN) {
-        const double cell = 0.5 * (x[a] - step.origin[a]) * step.inv_h, first = std::floor(cell);
-        f = cell - first;
-        base[a] = 2 * static_cast<int>(first) - tilebase[a];
-        Bernstein::weights(f, w[a]);
-        Bernstein::gradients(f, dw[a]);
-      } else if constexpr (SHAPE == GIMP) {
-        Gimp::weights(f, size[a], w[a]);
-        Gimp::gradients(f, size[a], dw[a]);
+      const double t = tile_position<SHAPE>(points.x[3 * p + a], step, tilebase, a);
+      const int cell = static_cast<int>(std::floor(t));
+      const double f = SHAPE == LINEAR ? std::max(t - cell, SMALLEST_FRACTION) : t - cell;
+      low[a] = high[a] = F::cell * cell - (tilebase[a] & (F::cell - 1));
+      if constexpr (F::has_size) {
+        F::weights(f, points.size[3 * p + a], w[a]);
+        F::gradients(f, points.size[3 * p + a], dw[a]);
       } else {
-        BSpline<ORDER>::weights(f, w[a]);
-        BSpline<ORDER>::gradients(f, dw[a]);
+        F::weights(f, w[a]);
+        F::gradients(f, dw[a]);
       }
-      for (int i = 0; i <= ORDER; i++) {
+      for (int i = 0; i < N; i++) {
         dw[a][i] *= step.inv_h;
-        d[a][i] = (i - (SHAPE == BERNSTEIN ? 2.0 * f : BSpline<ORDER>::shift + f)) * step.h;
+        d[a][i] = (i - (F::shift + F::cell * f)) * step.h;
       }
     }
-    int n = 0;
-    for (int i = 0; i <= ORDER; i++)
-      for (int j = 0; j <= ORDER; j++)
-        for (int k = 0; k < nz; k++, n++) {
-          node[n].index = (base[0] + i) * tile_stride_x(DIM, ORDER) +
-              (base[1] + j) * tile_stride_y(DIM, ORDER) + (DIM == 3 ? base[2] + k : 0);
-          node[n].w = w[0][i] * w[1][j] * w[2][k];
-          node[n].grad[0] = dw[0][i] * w[1][j] * w[2][k];
-          node[n].grad[1] = w[0][i] * dw[1][j] * w[2][k];
-          node[n].grad[2] = w[0][i] * w[1][j] * dw[2][k];
-          node[n].d[0] = d[0][i];
-          node[n].d[1] = d[1][j];
-          node[n].d[2] = d[2][k];
-        }
+    Node *n = node;
+    for (int i = 0; i < N; i++)
+      for (int j = 0; j < N; j++)
+        for (int k = 0; k < (DIM == 3 ? N : 1); k++)
+          *n++ = {(low[0] + i) * stride<DIM, SHAPE>(0) + (low[1] + j) * stride<DIM, SHAPE>(1) +
+                      low[2] + k,
+                  w[0][i] * w[1][j] * w[2][k],
+                  {dw[0][i] * w[1][j] * w[2][k], w[0][i] * dw[1][j] * w[2][k],
+                   w[0][i] * w[1][j] * dw[2][k]},
+                  {d[0][i], d[1][j], d[2][k]}};
   }
 };
+
+/** The nodes that the corners of a domain reach by linear functions. */
+template <int DIM, Shape SHAPE> struct DomainStencil {
+  static constexpr int N = 1 << DIM, count = N * N;
+  int low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
+  bool good;                       ///< size and weights of corners are positive
+  double center[3], x[N * DIM];    ///< corners: relative to the center
+  double part[count];              ///< weight of a node at its corner
+  Node node[count];                ///< those of corner c from N c on
+
+  DomainStencil(const PointRows &points, int p, const TransferStep &step, const int *tilebase)
+  {
+    double shift[3] = {0.0, 0.0, 0.0}, w[N], g[N * DIM], size;
+    if (SHAPE == CPDI) {
+      size = PointDomain<DIM>::box(points.domain + DIM * DIM * p, x, g);
+      for (double &a : w) a = 1.0 / N;
+    } else {
+      std::copy(points.domain + N * DIM * p, points.domain + N * DIM * (p + 1), x);
+      size = PointDomain<DIM>::free(x, w, g);
+      for (int k = 0; k < N * DIM; k++) shift[k % DIM] += w[k / DIM] * x[k];
+      for (int k = 0; k < N * DIM; k++) x[k] -= shift[k % DIM];
+    }
+    good = size > 0.0 && *std::min_element(w, w + N) >= 0.0;
+    for (int d = 0; d < 3; d++) center[d] = points.x[3 * p + d] + shift[d];
+
+    for (int c = 0; c < N; c++) {
+      int base[3] = {0, 0, 0};
+      double f[3] = {0.0, 0.0, 0.0};
+      for (int d = 0; d < DIM; d++) {
+        const double t = tile_position<SHAPE>(center[d] + x[DIM * c + d], step, tilebase, d);
+        base[d] = static_cast<int>(std::floor(t));
+        f[d] = t - base[d];
+        low[d] = c ? std::min(low[d], base[d]) : base[d];
+        high[d] = c ? std::max(high[d], base[d]) : base[d];
+      }
+      for (int n = 0; n < N; n++) {
+        Node &a = node[N * c + n] = {};
+        double &weight = part[N * c + n] = 1.0;
+        for (int d = 0; d < DIM; d++) {
+          const int i = n >> d & 1;
+          weight *= i ? f[d] : 1.0 - f[d];
+          a.d[d] = x[DIM * c + d] + (i - f[d]) * step.h;
+          a.index += (base[d] + i) * stride<DIM, SHAPE>(d);
+        }
+        a.w = w[c] * weight;
+        for (int d = 0; d < DIM; d++) a.grad[d] = g[DIM * c + d] * weight;
+      }
+    }
+  }
+};
+
+template <class C>
+using Stencil = std::conditional_t<has_domain(C::shape), DomainStencil<C::dim, C::shape>,
+                                   PointStencil<C::dim, C::shape>>;
 
 /** Full matrix, column-major, times a vector. */
 template <int DIM> void matrix_times(const double *m, const double *a, double *b)
@@ -102,49 +151,43 @@ template <int DIM> void matrix_times(const double *m, const double *a, double *b
 /** Symmetric tensor (xx yy zz xy xz yz) times a vector. */
 template <int DIM> void stress_times(const double *s, const double *a, double *b)
 {
-  b[0] = s[0] * a[0] + s[3] * a[1];
-  b[1] = s[3] * a[0] + s[1] * a[1];
-  b[2] = 0.0;
-  if (DIM == 3) {
-    b[0] += s[4] * a[2];
-    b[1] += s[5] * a[2];
-    b[2] = s[4] * a[0] + s[5] * a[1] + s[2] * a[2];
+  constexpr int place[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+  for (int i = 0; i < DIM; i++) {
+    b[i] = 0.0;
+    for (int j = 0; j < DIM; j++) b[i] += s[place[i][j]] * a[j];
   }
 }
 
 enum Parts { MOMENTUM = 1, FORCE = 2, ALL = 3 };
 
-/** Points to nodes; PARTS says what is transferred. */
-template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, int PARTS, bool TOTAL>
+/** Points to nodes; C: a Combination, PARTS: what is transferred. */
+template <class C, int PARTS>
 void p2g(const PointRows &points, const TransferStep &step, int first, int last, const int base[3],
          double *tile, int box[6])
 {
-  constexpr bool affine = is_affine(TRANSFER), mls = is_mls(SHAPE, TRANSFER);
-  const double inv_moment = BSpline<stencil_order(SHAPE)>::inv_moment * step.inv_h * step.inv_h;
+  constexpr int DIM = C::dim, NREAL = C::nreal;
+  constexpr bool mls = is_mls(C::shape, C::transfer);
+  const double inv_moment = FunctionOf<C::shape>::inv_moment * step.inv_h * step.inv_h;
 
   for (int p = first; p < last; p++) {
-    const Stencil<DIM, SHAPE> stencil(points.x + 3 * p,
-                                      SHAPE == GIMP ? points.size + 3 * p : nullptr, step, base);
+    const Stencil<C> stencil(points, p, step, base);
     for (int a = 0; a < DIM; a++) {
-      if (stencil.base[a] < box[a]) box[a] = stencil.base[a];
-      if (stencil.base[a] > box[3 + a]) box[3 + a] = stencil.base[a];
+      box[a] = std::min(box[a], stencil.low[a]);
+      box[3 + a] = std::max(box[3 + a], stencil.high[a]);
     }
     for (const Node &node : stencil.node) {
       double *real = tile + NREAL * node.index;
       if (PARTS & MOMENTUM) {
         const double wm = node.w * points.mass[p];
-        for (int i = 0; i < DIM; i++) {
-          double v = points.v[3 * p + i];
-          if (affine)
-            for (int j = 0; j < DIM; j++) v += points.C[DIM * (DIM * p + j) + i] * node.d[j];
-          real[i] += wm * v;
-        }
+        double affine[3] = {0.0, 0.0, 0.0};
+        if (is_affine(C::transfer)) matrix_times<DIM>(points.C + DIM * DIM * p, node.d, affine);
+        for (int i = 0; i < DIM; i++) real[i] += wm * (points.v[3 * p + i] + affine[i]);
         real[3] += wm;
       }
       if (PARTS & FORCE) {
         double internal[3];
         const double *a = mls ? node.d : node.grad;
-        if (TOTAL)
+        if (C::total)
           matrix_times<DIM>(points.P + DIM * DIM * p, a, internal);
         else
           stress_times<DIM>(points.tau + 6 * p, a, internal);
@@ -162,16 +205,16 @@ void p2g(const PointRows &points, const TransferStep &step, int first, int last,
   }
 }
 
-/** Velocity gradient at a point, which is the affine matrix, too. */
-template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL>
-void velocity_gradient(const Stencil<DIM, SHAPE> &stencil, const TransferStep &step,
-                       const double *tile, double *L)
+template <class C>
+void velocity_gradient(const Stencil<C> &stencil, const TransferStep &step, const double *tile,
+                       double *L)
 {
-  constexpr bool mls = is_mls(SHAPE, TRANSFER);
-  const double inv_moment = BSpline<stencil_order(SHAPE)>::inv_moment * step.inv_h * step.inv_h;
-  for (int i = 0; i < DIM * DIM; i++) L[i] = 0.0;
+  constexpr int DIM = C::dim;
+  constexpr bool mls = is_mls(C::shape, C::transfer);
+  const double inv_moment = FunctionOf<C::shape>::inv_moment * step.inv_h * step.inv_h;
+  std::fill(L, L + DIM * DIM, 0.0);
   for (const Node &node : stencil.node) {
-    const double *v = tile + NREAL * node.index;
+    const double *v = tile + C::nreal * node.index;
     for (int j = 0; j < DIM; j++) {
       const double g = mls ? inv_moment * node.w * node.d[j] : node.grad[j];
       for (int i = 0; i < DIM; i++) L[DIM * j + i] += v[i] * g;
@@ -179,98 +222,169 @@ void velocity_gradient(const Stencil<DIM, SHAPE> &stencil, const TransferStep &s
   }
 }
 
-/** Nodes to points: velocity, position, affine matrix, velocity gradient. */
-template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL>
+/** A = B D^-1 with B = sum_i N_ip v_i (x_i - x_p)^T, D = sum_i N_ip (x_i - x_p) (x_i - x_p)^T: of all
+ *  affine fields the one nearest to the nodes' velocities, so that no field gains energy on its way from
+ *  the nodes to the points and back, and angular momentum is conserved (C. Jiang et al., ACM Trans.
+ *  Graph. 34(4) (2015) 51). */
+template <class C> void affine_fit(const Stencil<C> &stencil, const double *tile, double *A)
+{
+  constexpr int DIM = C::dim;
+  using Domain = PointDomain<DIM>;
+  double B[DIM][DIM] = {}, D[Domain::symmetric] = {}, inverse[Domain::symmetric];
+  for (const Node &node : stencil.node) {
+    const double *v = tile + C::nreal * node.index;
+    for (int j = 0; j < DIM; j++) {
+      for (int i = 0; i < DIM; i++) B[i][j] += node.w * v[i] * node.d[j];
+      for (int k = 0; k <= j; k++) D[Domain::component(k, j)] += node.w * node.d[j] * node.d[k];
+    }
+  }
+  Domain::invert_symmetric(D, inverse);
+  for (int j = 0; j < DIM; j++)
+    for (int i = 0; i < DIM; i++) {
+      double &sum = A[DIM * j + i] = 0.0;
+      for (int k = 0; k < DIM; k++) sum += B[i][k] * inverse[Domain::component(k, j)];
+    }
+}
+
+/** The corners move with the velocities there, relative to that of the point. */
+template <class C>
+void move_corners(const Stencil<C> &stencil, const TransferStep &step, const double *tile,
+                  double *corner)
+{
+  constexpr int DIM = C::dim, N = 1 << DIM;
+  double at[N * DIM] = {}, v[DIM] = {};
+  for (int n = 0; n < N * N; n++)
+    for (int i = 0; i < DIM; i++) {
+      const double real = tile[C::nreal * stencil.node[n].index + i];
+      at[DIM * (n / N) + i] += stencil.part[n] * real;
+      v[i] += stencil.node[n].w * real;
+    }
+  for (int k = 0; k < N * DIM; k++) corner[k] = stencil.x[k] + step.dt * (at[k] - v[k % DIM]);
+}
+
+/** Nodes to points: velocity, position and affine matrix if UPDATE; velocity gradient; corners. */
+template <class C, bool UPDATE>
 int g2p(const PointRows &points, const TransferStep &step, int first, int last, const int base[3],
         const double *tile, double *L)
 {
-  int left = 0;
+  constexpr int DIM = C::dim;
+  constexpr bool domain = has_domain(C::shape), increment = adds_change(C::transfer);
+  bool left = false;
   for (int p = first; p < last; p++) {
-    const Stencil<DIM, SHAPE> stencil(points.x + 3 * p,
-                                      SHAPE == GIMP ? points.size + 3 * p : nullptr, step, base);
+    const Stencil<C> stencil(points, p, step, base);
+    double grad[DIM * DIM];
+    velocity_gradient<C>(stencil, step, tile, grad);
+    if (L) std::copy(grad, grad + DIM * DIM, L + DIM * DIM * (p - first));
+    if constexpr (C::shape == CPDI2)
+      if (points.corners_new)
+        move_corners<C>(stencil, step, tile, points.corners_new + (DIM << DIM) * p);
+    if (!UPDATE) continue;
+
+    if (is_gradient(C::shape, C::transfer))
+      std::copy(grad, grad + DIM * DIM, points.C + DIM * DIM * p);
+    else if constexpr (is_affine(C::transfer))
+      affine_fit<C>(stencil, tile, points.C + DIM * DIM * p);
+
     double v[3] = {0.0, 0.0, 0.0}, v_old[3] = {0.0, 0.0, 0.0};
     for (const Node &node : stencil.node) {
-      const double *real = tile + NREAL * node.index;
+      const double *real = tile + C::nreal * node.index;
       for (int i = 0; i < DIM; i++) {
         v[i] += node.w * real[i];
-        if (adds_change(TRANSFER)) v_old[i] += node.w * real[4 + i];
+        if (increment) v_old[i] += node.w * real[4 + i];
       }
     }
-    double grad[DIM * DIM];
-    velocity_gradient<DIM, SHAPE, TRANSFER, NREAL>(stencil, step, tile, grad);
-    if (is_affine(TRANSFER))
-      for (int i = 0; i < DIM * DIM; i++) points.C[DIM * DIM * p + i] = grad[i];
-    if (L)
-      for (int i = 0; i < DIM * DIM; i++) L[DIM * DIM * (p - first) + i] = grad[i];
-
-    const double *from = TOTAL ? points.from : points.x;
-    points.xnew[3 * p + 2] = from[3 * p + 2];
+    const double *from = (C::total ? points.from : points.x) + 3 * p;
+    if constexpr (domain)    // the point goes to its center if its corners may move along
+      if (C::shape == CPDI || points.corners_new) from = stencil.center;
+    left = left || !stencil.good;
+    points.xnew[3 * p + 2] = from[2];
     for (int i = 0; i < DIM; i++) {
       double &vp = points.v[3 * p + i];
-      vp = adds_change(TRANSFER) ? v[i] + step.flip * (vp - v_old[i]) : v[i];
-      const double xnew = from[3 * p + i] + step.dt * v[i];
+      vp = increment ? v[i] + step.flip * (vp - v_old[i]) : v[i];
+      const double xnew = from[i] + step.dt * v[i];
       points.xnew[3 * p + i] = xnew;
-      const double t = TOTAL ? xnew - xnew
-                             : tile_position<stencil_order(SHAPE)>(xnew, step, base, i);
-      if (!(t >= 0.0 && t < block_side(DIM) + 2)) left = 1;    // also when t is not a number
+      const double t = C::total || domain ? xnew - xnew
+                                          : tile_position<C::shape>(xnew, step, base, i);
+      left = left || !(t >= 0.0 && t < block_side(DIM) + 2);    // also when t is not a number
     }
   }
   return left;
 }
 
-template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL>
+template <class C>
 int g2p_gradient(const PointRows &points, const TransferStep &step, int first, int last,
                  const int base[3], const double *tile, double *L)
 {
-  for (int p = first; p < last; p++) {
-    const Stencil<DIM, SHAPE> stencil(points.x + 3 * p,
-                                      SHAPE == GIMP ? points.size + 3 * p : nullptr, step, base);
-    velocity_gradient<DIM, SHAPE, TRANSFER, NREAL>(stencil, step, tile,
-                                                   L + DIM * DIM * (p - first));
-  }
-  return 0;
+  return g2p<C, false>(points, step, first, last, base, tile, L);
 }
 
-/** Calls action(index in tile, block slot, index in block) for the nodes of the box. */
-template <int DIM, int ORDER, class Action> void for_box(const int *box, Action action)
+/** Adds the nodes of the box to the nodes of the blocks and clears them, or loads them from there. */
+template <class C, bool FLUSH>
+void move_box(double *tile, double *nodes, const int slot[27], const int box[6])
 {
-  constexpr int side = block_side(DIM);
-  int n[3] = {0, 0, 0};
-  const int zlo = DIM == 3 ? box[2] : 0;
-  const int zhi = DIM == 3 ? box[5] + ORDER : 0;
-  for (n[0] = box[0]; n[0] <= box[3] + ORDER; n[0]++)
-    for (n[1] = box[1]; n[1] <= box[4] + ORDER; n[1]++)
-      for (n[2] = zlo; n[2] <= zhi; n[2]++) {
-        int slot = 0, index = 0, tile = 0;
+  constexpr int DIM = C::dim, NREAL = C::nreal, side = block_side(DIM);
+  constexpr int order = stencil_order(C::shape), before = has_domain(C::shape) ? side : 1;
+  const int zlow = DIM == 3 ? box[2] : 0, zhigh = DIM == 3 ? box[5] + order : 0;
+  for (int i = box[0]; i <= box[3] + order; i++)
+    for (int j = box[1]; j <= box[4] + order; j++)
+      for (int k = zlow; k <= zhigh; k++) {
+        const int n[3] = {i, j, k};
+        int block = 0, index = 0, entry = 0;
         for (int a = 0; a < 3; a++) {
-          // tile node 0 is the last node of the block before
-          const int shifted = a < DIM ? n[a] + side - 1 : side;
-          slot = 3 * slot + shifted / side;
+          // the first nodes of the tile are the last ones of the block before
+          const int shifted = a < DIM ? n[a] + side - before : side;
+          block = 3 * block + shifted / side;
           if (a < DIM) index = side * index + shifted % side;
+          entry += n[a] * stride<DIM, C::shape>(a);
         }
-        tile = n[0] * tile_stride_x(DIM, ORDER) + n[1] * tile_stride_y(DIM, ORDER) + n[2];
-        action(tile, slot, index);
+        double *mine = tile + NREAL * entry;
+        double *node = nodes + (64 * static_cast<std::ptrdiff_t>(slot[block]) + index) * NREAL;
+        for (int r = 0; r < NREAL; r++)
+          if (FLUSH) {
+            node[r] += mine[r];
+            mine[r] = 0.0;
+          } else
+            mine[r] = node[r];
       }
 }
 
-template <int DIM, int ORDER, int NREAL>
-void flush(double *tile, double *nodes, const int slot[27], const int box[6])
+/** The shape of mode m of polypic: the product of the coordinates whose bits are set in xy, xz, yz, xyz. */
+double mode(const Node &node, int m)
 {
-  for_box<DIM, ORDER>(box, [=](int t, int s, int n) {
-    for (int i = 0; i < NREAL; i++) {
-      nodes[(64 * static_cast<std::ptrdiff_t>(slot[s]) + n) * NREAL + i] += tile[NREAL * t + i];
-      tile[NREAL * t + i] = 0.0;
-    }
-  });
+  constexpr int bits[4] = {3, 5, 6, 7};
+  double product = 1.0;
+  for (int a = 0; a < 3; a++)
+    if (bits[m] >> a & 1) product *= node.d[a];
+  return product;
 }
 
-template <int DIM, int ORDER, int NREAL>
-void load(double *tile, double *nodes, const int slot[27], const int box[6])
+template <class C>
+void poly_p2g(const PointRows &points, const double *Q, const TransferStep &step, int first,
+              int last, const int base[3], double *tile)
 {
-  for_box<DIM, ORDER>(box, [=](int t, int s, int n) {
-    for (int i = 0; i < NREAL; i++)
-      tile[NREAL * t + i] = nodes[(64 * static_cast<std::ptrdiff_t>(slot[s]) + n) * NREAL + i];
-  });
+  constexpr int DIM = C::dim;
+  for (int p = first; p < last; p++)
+    for (const Node &node : Stencil<C>(points, p, step, base).node)
+      for (int k = 0; k < poly_size(DIM); k++)
+        tile[C::nreal * node.index + k % DIM] +=
+            points.mass[p] * node.w * mode(node, k / DIM) * Q[poly_size(DIM) * p + k];
+}
+
+template <class C>
+void poly_g2p(const PointRows &points, double *Q, const TransferStep &step, int first, int last,
+              const int base[3], const double *tile)
+{
+  constexpr int DIM = C::dim;
+  const double inv_moment = FunctionOf<C::shape>::inv_moment * step.inv_h * step.inv_h;
+  for (int p = first; p < last; p++) {
+    const Stencil<C> stencil(points, p, step, base);
+    for (int k = 0; k < poly_size(DIM); k++) {
+      double &q = Q[poly_size(DIM) * p + k] = 0.0;
+      for (const Node &node : stencil.node)
+        q += node.w * mode(node, k / DIM) * tile[C::nreal * node.index + k % DIM];
+      q *= inv_moment * inv_moment * (k / DIM == 3 ? inv_moment : 1.0);
+    }
+  }
 }
 
 void solve_nodes(double *nodes, int nnodes, int nreal, double dt)
@@ -291,78 +405,43 @@ void solve_nodes(double *nodes, int nnodes, int nreal, double dt)
   }
 }
 
-template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> TransferKernels kernels()
+template <bool TOTAL>
+TransferKernels choose_plain(int dim, Shape shape, Transfer transfer, bool split)
 {
-  constexpr int ORDER = stencil_order(SHAPE);
-  TransferKernels k;
-  k.nreal = NREAL;
-  k.margin = 1;
-  k.affine = is_affine(TRANSFER);
-  k.gradient_in_C = is_gradient(SHAPE, TRANSFER);
-  k.p2g = p2g<DIM, SHAPE, TRANSFER, NREAL, ALL, TOTAL>;
-  k.p2g_momentum = p2g<DIM, SHAPE, TRANSFER, NREAL, MOMENTUM, false>;
-  k.p2g_force = p2g<DIM, SHAPE, TRANSFER, NREAL, FORCE, TOTAL>;
-  k.g2p = g2p<DIM, SHAPE, TRANSFER, NREAL, TOTAL>;
-  k.g2p_gradient = g2p_gradient<DIM, SHAPE, TRANSFER, NREAL>;
-  k.flush = flush<DIM, ORDER, NREAL>;
-  k.load = load<DIM, ORDER, NREAL>;
-  k.prefetch = [](double *, double *, const int *, const int *) {
-  };
-  return k;
+  return choose({dim, shape, transfer, split, TOTAL}, [](auto c) {
+    TransferKernels k = {};
+    if constexpr (!(c.total && has_domain(c.shape))) {
+      using C = decltype(c);
+      k.nreal = c.nreal;
+      k.margin = has_domain(c.shape) ? block_side(c.dim) : 1;
+      k.affine = is_affine(c.transfer);
+      k.gradient_in_C = is_gradient(c.shape, c.transfer);
+      k.p2g = p2g<C, ALL>;
+      k.p2g_momentum = p2g<C, MOMENTUM>;
+      k.p2g_force = p2g<C, FORCE>;
+      k.g2p = g2p<C, true>;
+      k.g2p_gradient = g2p_gradient<C>;
+      k.flush = move_box<C, true>;
+      k.load = move_box<C, false>;
+      k.prefetch = [](double *, double *, const int *, const int *) {
+      };
+    }
+    return k;
+  });
 }
 
-template <bool TOTAL, int DIM, Shape SHAPE> TransferKernels choose(Transfer transfer, bool split)
+PolyKernels choose_plain_poly(int dim, Shape shape, int nreal)
 {
-  switch (transfer) {
-    case PIC:
-      return kernels<DIM, SHAPE, PIC, 8, TOTAL>();
-    case FLIP:
-      return kernels<DIM, SHAPE, FLIP, 8, TOTAL>();
-    case APIC:
-      return split ? kernels<DIM, SHAPE, APIC, 8, TOTAL>() : kernels<DIM, SHAPE, APIC, 4, TOTAL>();
-    case AFLIP:
-      return kernels<DIM, SHAPE, AFLIP, 8, TOTAL>();
-    case TPIC:
-      return split ? kernels<DIM, SHAPE, TPIC, 8, TOTAL>() : kernels<DIM, SHAPE, TPIC, 4, TOTAL>();
-  }
-  return TransferKernels();
-}
-
-template <bool TOTAL, int DIM> TransferKernels choose(Shape shape, Transfer transfer, bool split)
-{
-  switch (shape) {
-    case LINEAR:
-      return choose<TOTAL, DIM, LINEAR>(transfer, split);
-    case QUADRATIC:
-      return choose<TOTAL, DIM, QUADRATIC>(transfer, split);
-    case CUBIC:
-      return choose<TOTAL, DIM, CUBIC>(transfer, split);
-    case GIMP:
-    case CPGIMP:
-      return choose<TOTAL, DIM, GIMP>(transfer, split);
-    case CPDI:
-    case CPDI2:
-      if (TOTAL) return TransferKernels();
-      return mpm_kernels_domain_reference(DIM, shape, transfer, split);
-    case BERNSTEIN:
-      return choose<true, DIM, BERNSTEIN>(transfer, split);
-  }
-  return TransferKernels();
-}
-
-template <bool TOTAL> TransferKernels transfer(int dim, Shape shape, Transfer transfer, bool split)
-{
-  return dim == 3 ? choose<TOTAL, 3>(shape, transfer, split)
-                  : choose<TOTAL, 2>(shape, transfer, split);
+  return choose_poly(dim, shape, nreal, [](auto c) {
+    return PolyKernels{poly_p2g<decltype(c)>, poly_g2p<decltype(c)>};
+  });
 }
 
 }    // namespace
 
 const MPMKernels *MPM_NS::mpm_kernels_reference()
 {
-  const auto none = [](int, Shape, Transfer, bool, bool) {
-    return TransferKernels();
-  };
-  static const MPMKernels table = {"reference", transfer<false>, transfer<true>, none, solve_nodes};
+  static const MPMKernels table = {"reference", choose_plain<false>, choose_plain<true>,
+                                   choose_plain_poly, solve_nodes};
   return &table;
 }

@@ -36,12 +36,6 @@ struct PolyKernels {
   /** Fits the modes to the velocities of the nodes; to be called before G2P moves the points. */
   void (*g2p)(const PointRows &, double *Q, const TransferStep &, int first, int last,
               const int base[3], const double *tile);
-
-  /** For shape QUADRATIC or CUBIC, with the instruction set of these transfers; nreal: of the
-   *  records of nodes. */
-  static PolyKernels select(const MPMKernels &, int dim, Shape, int nreal);
-  /** In plain loops: the statement of what these transfers are. */
-  static PolyKernels reference(int dim, Shape, int nreal);
 };
 
 }    // namespace MPM_NS

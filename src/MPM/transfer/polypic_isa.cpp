@@ -9,24 +9,9 @@
 // The modes of polypic, see transfer/polypic.h; compiled once for each instruction set.
 
 #include "transfer/kernels_isa.h"
-#include "transfer/polypic.h"
 
-namespace MPM_NS {
-PolyKernels MPM_CONCAT(mpm_kernels_poly_, MPM_ISA)(int dim, Shape, int nreal);
-}
+#if defined(MPM_HAVE_VECTORS)
 
-#if !defined(MPM_HAVE_VECTORS)
-
-// no vector extensions: the plain loops serve
-
-MPM_NS::PolyKernels MPM_NS::MPM_CONCAT(mpm_kernels_poly_, MPM_ISA)(int dim, Shape shape, int nreal)
-{
-  return PolyKernels::reference(dim, shape, nreal);
-}
-
-#else
-
-#include "transfer/shape.h"
 #include "transfer/vector.h"
 
 #include <cstddef>
@@ -149,18 +134,14 @@ void g2p(const PointRows &points, double *Q, const TransferStep &step, int first
   }
 }
 
-template <int DIM, int ORDER> PolyKernels choose(int nreal)
-{
-  if (nreal == 8) return {p2g<DIM, ORDER, 8>, g2p<DIM, ORDER, 8>};
-  return {p2g<DIM, ORDER, 4>, g2p<DIM, ORDER, 4>};
-}
-
 }    // namespace
 
-PolyKernels MPM_NS::MPM_CONCAT(mpm_kernels_poly_, MPM_ISA)(int dim, Shape shape, int nreal)
+PolyKernels MPM_NS::MPM_OF_ISA(mpm_kernels_poly)(int dim, Shape shape, int nreal)
 {
-  if (dim == 3) return shape == CUBIC ? choose<3, 3>(nreal) : choose<3, 2>(nreal);
-  return shape == CUBIC ? choose<2, 3>(nreal) : choose<2, 2>(nreal);
+  return choose_poly(dim, shape, nreal, [](auto c) {
+    return PolyKernels{p2g<c.dim, stencil_order(c.shape), c.nreal>,
+                       g2p<c.dim, stencil_order(c.shape), c.nreal>};
+  });
 }
 
 #endif

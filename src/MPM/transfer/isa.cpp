@@ -1,0 +1,72 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "transfer/isa.h"
+
+#include "transfer/kernels.h"
+
+#include <cstdlib>
+#include <cstring>
+#include <initializer_list>
+
+namespace MPM_NS {
+MPM_DECLARE_ISA(const MPMKernels *, mpm_kernels, const char *isa)
+const MPMKernels *mpm_kernels_reference();
+}    // namespace MPM_NS
+
+using namespace MPM_NS;
+
+namespace {
+
+/** CPU and operating system run the code of a set, and the build has it. */
+bool runs(InstructionSet set)
+{
+#if defined(MPM_HAVE_V3) || defined(MPM_HAVE_V4)
+  const bool v3 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+      __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
+#endif
+#if defined(MPM_HAVE_V4)
+  if (set == V4)
+    return v3 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+        __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
+        __builtin_cpu_supports("avx512cd");
+#endif
+#if defined(MPM_HAVE_V3)
+  if (set == V3) return v3;
+#endif
+  return set == BASE || set == REFERENCE;
+}
+
+}    // namespace
+
+bool MPM_NS::select_isa(const char *name, InstructionSet &set)
+{
+  if (!name) name = std::getenv("MPM_ISA");
+  const bool best = !name || !*name;
+  const char *const names[] = {"baseline", "avx2", "avx512", "reference"};
+  for (const InstructionSet candidate : {V4, V3, BASE, REFERENCE})
+    if ((best || std::strcmp(name, names[candidate]) == 0) && runs(candidate)) {
+      set = candidate;
+      return true;
+    }
+  return false;
+}
+
+const char *MPM_NS::isa_name(InstructionSet set)
+{
+  const char *const names[] = {"baseline", "AVX2", "AVX-512", "reference"};
+  return names[set];
+}
+
+const MPMKernels *MPMKernels::select(const char *name)
+{
+  const MPMKernels *(*const tables[])(const char *) = MPM_ALL_ISA(mpm_kernels);
+  InstructionSet set;
+  if (!select_isa(name, set)) return nullptr;
+  return set == REFERENCE ? mpm_kernels_reference() : tables[set](isa_name(set));
+}
