@@ -21,8 +21,16 @@
 #include "material/batch.h"
 #include "material/material.h"
 #include "modify.h"
+#include "mpm_affine.h"
+#include "mpm_cpdi.h"
+#include "mpm_every.h"
+#include "mpm_field.h"
+#include "mpm_frame_total.h"
+#include "mpm_locking.h"
+#include "mpm_node_sums.h"
 #include "mpm_point_batches.h"
 #include "mpm_points.h"
+#include "mpm_time_limit.h"
 #include "update.h"
 #include "variable.h"
 
@@ -317,38 +325,47 @@ class Scene {
   double spacing(const std::string &id = "grid") { return field(id)->lattice.h; }
   bool is_point(int i, const std::string &id = "grid") { return field(id)->is_point(i); }
   /** C[dim*j+i] = d v_i / d x_j of APIC, for each point; null without. */
-  double **affine(const std::string &id = "grid") { return field(id)->C; }
+  double **affine(const std::string &id = "grid")
+  {
+    return field(id)->affine ? field(id)->affine->C : nullptr;
+  }
   /** Bilinear modes of PolyPIC; null without. */
-  double **modes(const std::string &id = "grid") { return field(id)->Q; }
+  double **modes(const std::string &id = "grid")
+  {
+    return field(id)->affine ? field(id)->affine->Q : nullptr;
+  }
   /** Corners of CPDI2 from the point; null without. */
-  double **corners(const std::string &id = "grid") { return field(id)->corners; }
+  double **corners(const std::string &id = "grid")
+  {
+    return field(id)->domains ? field(id)->domains->corners : nullptr;
+  }
   /** Reference positions, and F at the last update of the reference (total frame). */
-  double **reference_positions() { return field()->X; }
-  double **reference_F() { return field()->R; }
+  double **reference_positions() { return total_frame().X; }
+  double **reference_F() { return total_frame().R; }
   /** Displacement since the last step of the cycle. */
   double waiting(int i, int d, const std::string &id = "grid")
   {
-    return field(id)->waiting ? field(id)->waiting[i][3 + d] : 0.0;
+    return field(id)->every ? field(id)->every->displacement(i, d) : 0.0;
   }
   /** This rank's stable time step; the point that has it, and its wave speed. */
   double stable_dt(tagint *tag = nullptr, double *wave_speed = nullptr)
   {
     tagint whose;
     double c;
-    return field()->stable_dt_local(tag ? *tag : whose, wave_speed ? *wave_speed : c);
+    return field()->time_limit->stable_dt(tag ? *tag : whose, wave_speed ? *wave_speed : c);
   }
   /** The share that points have of the volume around them. */
   std::vector<double> volume_shares()
   {
     std::vector<double> share;
-    field()->volume_at_points(share);
+    volume_at_points(*field(), share);
     return share;
   }
   /** Work of the walls on this rank. */
   double work_of_boundaries() { return field()->ledger.boundary; }
-  void switch_locking_off() { field()->locking = FixMPM::NO_CURE; }
+  void switch_locking_off() { field()->locking.reset(); }
 
-  MPM_NS::Grid &grid(const std::string &id = "grid") { return *field(id)->grid; }
+  MPM_NS::Grid &grid(const std::string &id = "grid") { return field(id)->grid; }
 
   /** A node after the step. */
   struct Node {
@@ -427,17 +444,17 @@ class Scene {
     }
     for (const auto &id : fields()) {
       const auto *fix = field(id);
-      if (!fix->C || fix->shape == MPM_NS::LINEAR) continue;
+      if (!fix->affine || stencil_order(fix->options.shape) == 1) continue;
       const double h = fix->lattice.h;
-      const double inertia = h * h / (fix->shape == MPM_NS::QUADRATIC ? 4.0 : 3.0);
+      const double inertia = h * h / (stencil_order(fix->options.shape) == 2 ? 4.0 : 3.0);
       for (int i = 0; i < atom->nlocal; i++) {
         if (!fix->is_point(i) || (type && atom->type[i] != type)) continue;
-        const double *C = fix->C[i];    // C[dim*j+i] = d v_i / d x_j
+        const double *C = fix->affine->C[i];    // C[dim*j+i] = d v_i / d x_j
         const int dim = fix->lattice.dim;
         double CF[9];    // total frame: the velocity C (X - X_p) is at F (X - X_p)
-        if (fix->total) {
+        if (fix->options.total) {
           double F[9];
-          fix->lattice_F(i, F);
+          fix->frame->lattice_F(i, F);
           for (int a = 0; a < dim; a++)
             for (int b = 0; b < dim; b++) {
               CF[dim * b + a] = 0.0;
@@ -476,7 +493,8 @@ class Scene {
   }
 
  private:
-  FixMPM *field(const std::string &id = "grid") { return fix<FixMPM>(id); }
+  MPMField *field(const std::string &id = "grid") { return MPMField::find(lmp, id); }
+  MPMFrameTotal &total_frame() { return dynamic_cast<MPMFrameTotal &>(*field()->frame); }
 
   std::vector<double> values;
   std::vector<std::array<double, 3>> references;

@@ -62,7 +62,7 @@ TEST(Restart, GoesOnBitByBit)
   Scene first(scene + "run 1\nwrite_restart " + file.name + "\n");
   Scene second;
   EXPECT_THAT(second.error("read_restart " + file.name + "\nfix grid all mpm 1.0 shape cpdi\n"),
-              HasSubstr("give the fix the shape"));
+              HasSubstr("shape cpdi2 (now cpdi)"));
 }
 
 SERIAL_TEST(Conservation, MomentumIsKeptAndNoEnergyGained)

@@ -151,7 +151,7 @@ def test_every_law_and_every_material_file_is_in_the_page_of_the_fix():
 
 def test_every_law_has_a_page_that_includes_its_table():
     laws = law_tables()
-    assert laws, "no tables in doc/src/laws: run tools/law_tables.sh"
+    assert laws, "no tables in doc/src/laws: run tools/tables.sh"
     wrong = []
     for page, table in sorted(laws.items()):
         path = os.path.join(PAGES, page + ".rst")
@@ -219,7 +219,7 @@ def test_pages_have_the_order_of_the_lammps_manual():
 def test_every_source_file_is_in_the_table_of_the_developer_guide():
     text = read(os.path.join(PAGES, "Developer_mpm.rst"))
     table = text[text.index("\nFiles\n"):text.index("\nData structures\n")]
-    names = re.findall(r"(?<![\w.])(?:[a-z]+/)?[a-z]\w*\*?(?:\.(?:h|cpp))?(?![\w.])", table)
+    names = re.findall(r"(?<![\w.])(?:[a-z]+/\*|(?:[a-z]+/)?[a-z]\w*\*?(?:\.(?:h|cpp))?)(?![\w.])", table)
     wrong = []
     for path in sorted(glob.glob(os.path.join(SOURCES, "*.[hc]*")) +
                        glob.glob(os.path.join(SOURCES, "*", "*.[hc]*"))):

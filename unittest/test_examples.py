@@ -33,8 +33,8 @@ FEWER_STEPS = {"grains-on-block": 1000, "impact-on-crystal": 1000, "vortex": 110
                "boulders-in-debris": 600, "tyre-on-gravel": 500,
                "elastic-gate": 3000, "elastic-plate": 3000, "settling": 600}
 
-# has its own test, as it must be built first
-BUILT_FIRST = ["own-material"]
+# have tests of their own, as they must be built first
+BUILT_FIRST = ["own-material", "own-physics"]
 
 # what LAMMPS says of every hybrid style, and of what is set here before each run
 ALLOWED = ["Per-atom field rmass is used in multiple sub-styles", "previous thermo_modify settings will be lost"]

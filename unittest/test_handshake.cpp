@@ -425,21 +425,22 @@ TEST(Handshake, SameOnRanksAndAfterRestart)
 TEST(Handshake, RefusesWhatItCannotDo)
 {
   const std::string scene = crystal(8.0, 6.0, 24.0, ""), move = "fix move atoms nve\n";
-  expect_refused(scene + move,
-                 {{"fix more atoms mpm/handshake grid zone x 10 20", "have the same field"},
-                  {"fix more atoms mpm/handshake", "Illegal fix mpm/handshake"},
-                  {"fix more atoms mpm/handshake grid", "at least one zone"},
-                  {"fix more atoms mpm/handshake grid zone x 10", "Illegal fix mpm/handshake zone"},
-                  {"fix more atoms mpm/handshake grid zone w 1 2", "Unknown axis w"},
-                  {"fix more atoms mpm/handshake grid zone x 4 4", "has no width"},
-                  {"fix more atoms mpm/handshake grid zone x 4 nan", "floating point parameter"},
-                  {"fix more atoms mpm/handshake grid zone x 4 8 damp -1", "must not be negative"},
-                  {"fix more atoms mpm/handshake grid zone x 4 8 taper 1", "keyword: taper"},
-                  {"unfix move", "are not moved by one fix nve"},
-                  {"fix again atoms nve", "are not moved by one fix nve"},
-                  {"pair_style lj/cut 2.5\npair_coeff * * 1.0 1.0\nneigh_modify exclude none",
-                   "use neigh_modify exclude"}},
-                 "run 1\n");
+  expect_refused(
+      scene + move,
+      {{"fix more atoms mpm/handshake grid zone x 10 20", "have the same field"},
+       {"fix more atoms mpm/handshake", "Illegal fix mpm/handshake"},
+       {"fix more atoms mpm/handshake grid", "at least one zone"},
+       {"fix more atoms mpm/handshake grid zone x 10", "Illegal fix mpm/handshake zone"},
+       {"fix more atoms mpm/handshake grid zone w 1 2", "Unknown fix mpm/handshake zone axis w"},
+       {"fix more atoms mpm/handshake grid zone x 4 4", "has no width"},
+       {"fix more atoms mpm/handshake grid zone x 4 nan", "floating point parameter"},
+       {"fix more atoms mpm/handshake grid zone x 4 8 damp -1", "must not be negative"},
+       {"fix more atoms mpm/handshake grid zone x 4 8 taper 1", "keyword: taper"},
+       {"unfix move", "are not moved by one fix nve"},
+       {"fix again atoms nve", "are not moved by one fix nve"},
+       {"pair_style lj/cut 2.5\npair_coeff * * 1.0 1.0\nneigh_modify exclude none",
+        "use neigh_modify exclude"}},
+      "run 1\n");
   const auto refused = [&](const std::string &word, const std::string &by,
                            const std::string &message) {
     const std::string changed = replaced(scene, word, by) + move + "run 0\n";

@@ -494,7 +494,8 @@ TEST_F(ByHand, DumpErrors)
   EXPECT_EQ(run.lmp->modify->ncompute, 3) << "no compute is left behind (3 are those of thermo)";
   EXPECT_EQ(dump("file.*.vtp vonmises"), "");
   EXPECT_EQ(run.lmp->modify->ncompute, 4);
-  EXPECT_THAT(run.error("dump_modify d precision half\n"), HasSubstr("single or double"));
+  EXPECT_THAT(run.error("dump_modify d precision half\n"),
+              HasSubstr("must be one of single double"));
   run.commands("undump d\n");
   EXPECT_EQ(run.lmp->modify->ncompute, 3);
 

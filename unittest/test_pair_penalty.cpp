@@ -384,7 +384,7 @@ TEST(BadInput, IsRefused)
       {"pair_coeff 1 2 nan", "nan"},
       {"pair_coeff 1 2 5 friction 0.3", "Illegal pair_coeff mpm/penalty"},
       {"pair_coeff 1 2 5 friction -0.3 1", "must not be negative"},
-      {"pair_coeff 1 2 5 friction 0.3 0", "velocity must be positive"},
+      {"pair_coeff 1 2 5 friction 0.3 0", "friction slip must be positive"},
       {"pair_coeff 1 2 5 damping -1", "must not be negative"},
       {"pair_coeff 1 2 5 sticky", "Unknown pair_coeff mpm/penalty keyword: sticky"},
       {"pair_coeff 1 3 5", "3"},

@@ -14,6 +14,8 @@
 #include "gtest/gtest.h"
 
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
 
 using namespace MPM_TEST;
 
@@ -302,6 +304,23 @@ std::string box_mesh(int dim)
       "$EndNodes\n$Elements\n" + std::to_string(nelement) + "\n" + elements + "$EndElements\n";
 }
 
+/** Write scene number k as an input for bench/same_bits.py: the whole run, and again from a restart file in the
+ *  middle. */
+void write_scene(const std::string &folder, int dim, int k, const Chosen &chosen)
+{
+  const std::string mesh = strprintf("box%d.msh", dim), stl = "box.stl";
+  const Combination c(dim, chosen, mesh, stl);
+  const std::string rest = c.between + "run 12\nstate_hash\n";
+  const auto write = [&](const std::string &name, const std::string &text) {
+    std::ofstream(folder + "/" + name, std::ios::binary) << text;
+  };
+  write(mesh, box_mesh(dim));
+  write(stl, binary_of(box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5})));
+  write(strprintf("pairs-%dd-%03d.in", dim, k),
+        "# " + names(chosen) + "\n" + c.scene + "run 8\nwrite_restart middle\n" + rest +
+            "clear\nread_restart middle\n" + c.again + rest);
+}
+
 }    // namespace
 
 /** Does the map from IDs find all atoms, and nothing twice? (Chains of copies must end.) */
@@ -340,6 +359,11 @@ class Pairs : public ::testing::TestWithParam<int> {
 
 TEST_P(Pairs, Agree)
 {
+  if (const char *folder = getenv("MPM_WRITE_SCENES")) {    // instead of the test
+    int k = 0;
+    for (const auto &chosen : covering(all())) write_scene(folder, GetParam(), ++k, chosen);
+    return;
+  }
   double deleted = 0.0, deleted_with_map = 0.0;
   for (const auto &chosen : covering(all())) {
     SCOPED_TRACE(names(chosen));

@@ -373,7 +373,7 @@ TEST(RigidBody, RefusesMistakes)
           "region turned mpm/mesh " + file.name + " 1.0 4 4 8 rotate v_z 0 0 0 0 0 1\n",
       {{"fix t all mpm/rigid body density 1.0 slip", "needs a region of style mpm/mesh: body"},
        {"fix t all mpm/rigid shape density 0.0 slip", "density must be positive: 0.0"},
-       {"fix t all mpm/rigid shape weight 1.0 slip", "must be density or mass"},
+       {"fix t all mpm/rigid shape weight 1.0 slip", "must be one of density mass"},
        {fix + "glue", "Unknown fix mpm/rigid contact glue"},
        {"fix t all mpm/rigid turned density 2.0 slip", "at rest and with side in"},
        {fix + "stick friction 0.1", "friction is for slip and separate"},
@@ -381,7 +381,7 @@ TEST(RigidBody, RefusesMistakes)
        {fix + "slip hold w", "one or more of x y z rx ry rz"},
        {fix + "slip velocity 1 0 0 hold x", "cannot hold x"},
        {fix + "slip sharp", "Unknown fix mpm/rigid keyword: sharp"},
-       {fix + "slip force v_a 0 0", "no equal-style variable a"},
+       {fix + "slip force v_a 0 0", "Variable a for fix mpm/rigid force is not equal-style"},
        {"unfix grid\nfix grid all mpm 0.5 frame total\n" + fix + "slip", "use frame updated"},
        {"unfix grid\nfix grid all mpm 0.5 scheme usf\n" + fix + "slip", "use usl or musl"}},
       "run 1\n");

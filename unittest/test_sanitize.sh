@@ -61,7 +61,7 @@ object_of() {
 }
 
 objects=()
-for source in "$src"/{lattice,law,material,mesh,transfer}/*.cpp; do
+for source in "$src"/{declare,lattice,law,material,mesh,transfer}/*.cpp; do
   case $source in *_isa.cpp | */polypic.cpp) continue ;; esac
   compile "$source" "$(object_of "$source" base)"
 done
@@ -87,7 +87,7 @@ failed=0
 export ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1
 export UBSAN_OPTIONS=print_stacktrace=1
 unset GTEST_OUTPUT
-for test in transfer/test_shape lattice/test_grid mesh/test_gmsh transfer/test_kernels \
+for test in declare/test_option transfer/test_shape lattice/test_grid mesh/test_gmsh transfer/test_kernels \
   transfer/test_cpdi_kernels material/test_materials; do
   name=${test##*/test_}
   objects=()

@@ -10,13 +10,14 @@
 
 #include "atom.h"
 #include "error.h"
-#include "fix_mpm.h"
 #include "fix_mpm_material.h"
 #include "force.h"
 #include "material/material.h"
 #include "math_eigen.h"
 #include "memory.h"
 #include "modify.h"
+#include "mpm_affine.h"
+#include "mpm_field.h"
 #include "mpm_point_batches.h"
 #include "mpm_points.h"
 #include "update.h"
@@ -116,10 +117,11 @@ void wavespeed(const Material &material, const Batch &batch, double, double *val
   material.wave_speed(batch, value);
 }
 
-double angmom(const FixMPM &field, int i, int component)
+double angmom(const MPMField &field, int i, int component)
 {
   double L[3];
-  field.affine_angmom(i, L);
+  L[0] = L[1] = L[2] = 0.0;
+  if (field.affine) field.affine->angular_momentum(i, L);
   return L[component];
 }
 
@@ -132,7 +134,7 @@ struct ComputeMPMAtom::Quantity {
   double (*of_point)(const Point &, int component);
   int component;
   void (*of_batch)(const Material &, const Batch &, double pressure_to_energy, double *);
-  double (*of_field)(const FixMPM &, int i, int component) = nullptr;
+  double (*of_field)(const MPMField &, int i, int component) = nullptr;
 };
 
 // customize by adding a line: names of the form group/component can be asked for as group/*
@@ -352,8 +354,8 @@ void ComputeMPMAtom::compute_peratom()
 /** What fix mpm knows of its points. */
 void ComputeMPMAtom::field_column(const Quantity &quantity, double *out, int stride)
 {
-  for (const auto &fix : modify->get_fix_by_style("^mpm$")) {
-    const auto &field = *dynamic_cast<FixMPM *>(fix);
+  for (const auto *each : MPMField::all(lmp)) {
+    const auto &field = *each;
     for (int i = 0; i < atom->nlocal; i++)
       if (is_point(i) && field.is_point(i))
         out[(bigint) i * stride] = quantity.of_field(field, i, quantity.component);
@@ -363,8 +365,7 @@ void ComputeMPMAtom::field_column(const Quantity &quantity, double *out, int str
 /** History variable of the points whose material has it; the others keep their value. */
 void ComputeMPMAtom::history_column(const std::string &name, double *out, int stride)
 {
-  for (const auto &fix : modify->get_fix_by_style("^mpm$")) {
-    const auto *field = dynamic_cast<FixMPM *>(fix);
+  for (const auto *field : MPMField::all(lmp)) {
     for (const auto *material : field->materials) {
       const int index = material->find_history(name);
       if (index < 0) continue;

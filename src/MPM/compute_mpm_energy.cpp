@@ -10,13 +10,14 @@
 
 #include "atom.h"
 #include "error.h"
-#include "fix_mpm.h"
 #include "fix_mpm_elements.h"
 #include "fix_mpm_material.h"
 #include "force.h"
 #include "group.h"
 #include "material/material.h"
 #include "modify.h"
+#include "mpm_field.h"
+#include "mpm_physics.h"
 #include "mpm_point_batches.h"
 #include "update.h"
 
@@ -37,10 +38,12 @@ ComputeMPMEnergy::ComputeMPMEnergy(LAMMPS *lmp, int narg, char **arg) :
                "by group; for the stored energy of a group use compute mpm/atom energy with "
                "compute reduce");
 
+  physics = find_physics(lmp);
+  accounts = names_of_accounts(physics);
   scalar_flag = vector_flag = 1;
   extscalar = extvector = 1;
-  size_vector = NENTRY;
-  vector = new double[NENTRY]();
+  size_vector = NENTRY + (int) accounts.size();
+  vector = new double[size_vector]();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -56,6 +59,12 @@ void ComputeMPMEnergy::init()
 {
   if (modify->get_fix_by_style("^mpm$").empty())
     error->all(FLERR, Error::NOLASTLINE, "Compute {} of style mpm/energy requires a fix mpm", id);
+  physics = find_physics(lmp);
+  if (names_of_accounts(physics) != accounts)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Compute {} of style mpm/energy does not have the entries of all physics: define it "
+               "after the fixes, and again when one of them was removed",
+               id);
 }
 
 /* ----------------------------------------------------------------------
@@ -72,10 +81,12 @@ void ComputeMPMEnergy::begin()
   if (started) return;
   started = true;
   start = evaluate();
-  for (auto *fix : modify->get_fix_by_style("^mpm$")) {
-    const auto &restored = dynamic_cast<FixMPM *>(fix)->ledger_start;
-    if (restored.size() * sizeof(double) != sizeof(Sums)) continue;
+  accounts_start = evaluate_accounts();
+  for (const auto *field : MPMField::all(lmp)) {
+    const auto &restored = field->ledger.start;
+    if (restored.size() != NSUMS + accounts.size()) continue;
     memcpy(&start, restored.data(), sizeof(Sums));
+    accounts_start.assign(restored.begin() + NSUMS, restored.end());
     return;
   }
 }
@@ -83,9 +94,36 @@ void ComputeMPMEnergy::begin()
 std::vector<double> ComputeMPMEnergy::start_sums() const
 {
   if (!started) return {};
-  std::vector<double> sums(sizeof(Sums) / sizeof(double));
+  std::vector<double> sums(NSUMS);
   memcpy(sums.data(), &start, sizeof(Sums));
+  sums.insert(sums.end(), accounts_start.begin(), accounts_start.end());
   return sums;
+}
+
+/* ----------------------------------------------------------------------
+   other physics: a letter for each account tells stored energy from energy that came to the bodies
+------------------------------------------------------------------------- */
+
+std::vector<std::string>
+ComputeMPMEnergy::names_of_accounts(const std::vector<MPMPhysics *> &physics)
+{
+  std::vector<std::string> names;
+  for (const auto *other : physics)
+    for (const auto &account : other->accounts())
+      names.push_back((account.stored ? "S " : "C ") + account.name);
+  return names;
+}
+
+std::vector<double> ComputeMPMEnergy::evaluate_accounts() const
+{
+  std::vector<double> mine(accounts.size(), 0.0), all(accounts.size());
+  std::size_t first = 0;
+  for (const auto *other : physics) {
+    other->account(mine.data() + first);
+    first += other->accounts().size();
+  }
+  MPI_Allreduce(mine.data(), all.data(), (int) mine.size(), MPI_DOUBLE, MPI_SUM, world);
+  return all;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -94,8 +132,7 @@ ComputeMPMEnergy::Sums ComputeMPMEnergy::evaluate() const
 {
   Sums mine = {};
 
-  for (auto *fix : modify->get_fix_by_style("^mpm$")) {
-    const auto *field = dynamic_cast<FixMPM *>(fix);
+  for (const auto *field : MPMField::all(lmp)) {
     for (int i = 0; i < atom->nlocal; i++) {
       if (!field->is_point(i)) continue;
       const double *v = atom->v[i];
@@ -147,6 +184,8 @@ double ComputeMPMEnergy::compute_scalar()
   if (invoked_vector != update->ntimestep) compute_vector();
   invoked_scalar = update->ntimestep;
   scalar = vector[KINETIC] + vector[STORED] + vector[PLASTIC] + vector[VISCOUS] + vector[FRACTURE];
+  for (std::size_t k = 0; k < accounts.size(); k++)
+    if (accounts[k][0] == 'S') scalar += vector[NENTRY + k];
   return scalar;
 }
 
@@ -176,4 +215,12 @@ void ComputeMPMEnergy::compute_vector()
   vector[INTEGRATION] = now.taken() - start.taken() - stored - (now.internal - start.internal);
   vector[RESIDUAL] = now.total() - start.total() - vector[DELETED];
   for (int k = EXTERNAL; k < RESIDUAL; k++) vector[RESIDUAL] -= vector[k];
+
+  const auto present = evaluate_accounts();
+  for (std::size_t k = 0; k < accounts.size(); k++) {
+    const bool stored = accounts[k][0] == 'S';
+    const double change = present[k] - accounts_start[k];
+    vector[NENTRY + k] = stored ? present[k] : change;
+    vector[RESIDUAL] += stored ? change : -change;
+  }
 }

@@ -17,6 +17,7 @@ ComputeStyle(mpm/energy,ComputeMPMEnergy);
 
 #include "compute.h"
 
+#include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -24,7 +25,8 @@ namespace LAMMPS_NS {
 /** Energy ledger of all material points.
  *
  *  The balance is (kinetic + stored + plastic + viscous + fracture) - (the same at the start) =
- *  external + boundary + contact + transfer + integration + deleted + residual. Internal work is what the
+ *  external + boundary + contact + transfer + integration + deleted + residual. What other physics
+ *  (MPMPhysics) store and get adds to the two sides. Internal work is what the
  *  internal forces take from the kinetic energy; what of it is neither stored nor dissipated by
  *  the law is the error of time integration. The residual closes the balance of the stages of
  *  fix mpm and must be round-off.
@@ -56,7 +58,7 @@ class ComputeMPMEnergy : public Compute {
     RESIDUAL,       // what the balance misses
     FRACTURE,       // work spent on damage
     DELETED,        // energy of points that were deleted, negative
-    NENTRY
+    NENTRY          // those of other physics follow
   };
 
   /** What the entries are computed from, summed over ranks. */
@@ -69,10 +71,17 @@ class ComputeMPMEnergy : public Compute {
     double total() const { return kinetic + taken(); }
   };
 
+  static constexpr std::size_t NSUMS = sizeof(Sums) / sizeof(double);
+
   bool started;
-  Sums start;    // at the start of the ledger
+  Sums start;                            // at the start of the ledger
+  std::vector<std::string> accounts;     // of other physics, when this was defined
+  std::vector<double> accounts_start;    // at the start of the ledger
+  std::vector<class MPMPhysics *> physics;
 
   Sums evaluate() const;
+  std::vector<double> evaluate_accounts() const;
+  static std::vector<std::string> names_of_accounts(const std::vector<class MPMPhysics *> &);
   void begin();
 };
 

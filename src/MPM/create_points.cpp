@@ -13,9 +13,12 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "fix_mpm.h"
+#include "fix.h"
 #include "irregular.h"
 #include "modify.h"
+#include "mpm_field.h"
+#include "mpm_frame.h"
+#include "mpm_options.h"
 #include "mpm_points.h"
 #include "region.h"
 
@@ -26,6 +29,7 @@
 #include <vector>
 
 using namespace LAMMPS_NS;
+using namespace MPM_NS;
 
 static constexpr double TOLERANCE = 1.0e-6;       // in spacings, for positions that coincide
 static constexpr double INFINITE = 1.0e19;        // bounds of regions beyond it are INF
@@ -33,15 +37,13 @@ static constexpr double MAX_INDEX = 1.0e15;       // of a lattice site
 static constexpr double MAX_SITES = 9.0e18;       // to look at
 static constexpr bigint MAX_COUNT = 200000000;    // sites per rank looked at outside the box
 static constexpr bigint SHARE = 1 << 18;          // sites a rank looks at before points are sent
-static constexpr int MAX_PPC = 1000;
 
 static const char axis_name[] = "xyz";
 
 /* ---------------------------------------------------------------------- */
 
 CreatePoints::CreatePoints(LAMMPS *lmp) :
-    Command(lmp), type(0), seed(0), region(nullptr), fix(nullptr), jitter(0.0), diameter(0.0),
-    allow_overlap(false), ignore_outside(false), volume(0.0)
+    Command(lmp), type(0), region(nullptr), fix(nullptr), volume(0.0)
 {
 }
 
@@ -126,7 +128,7 @@ void CreatePoints::command(int narg, char **arg)
     if (!mesh)
       utils::logmesg(lmp, "  spacing = {:.8g} {:.8g}{}\n", spacing[0], spacing[1],
                      flat ? "" : fmt::format(" {:.8g}", spacing[2]));
-    if (fix && fix->axisymmetric)
+    if (fix && fix->options.axisymmetric)
       utils::logmesg(lmp,
                      "  area = {:.8g} per point, volume = {:.8g} in total (all around the axis)\n",
                      volume, all_made);
@@ -154,12 +156,45 @@ void CreatePoints::parse_type(int narg, char **arg)
 
 /* ---------------------------------------------------------------------- */
 
+Options CreatePointsOptions::declare(int dim, bool has_radius)
+{
+  using namespace option;
+  Options o("create_points");
+  o.add("ppc",
+        {one_or_axes(ppc, dim, "N Nx Ny Nz", {1, MAX_PPC, true},
+                     "number of points along each axis of a cell of fix mpm",
+                     "number of points along x, y, z")})
+      .standard("2");
+  o.add("spacing",
+        {one_or_axes(spacing, dim, "D Dx Dy Dz", POSITIVE, "distance",
+                     "distance of neighboring points", "distance along x, y, z")})
+      .standard("");
+  o.add("fix", {text(fix_id, "fix-ID", "ID of the fix mpm whose lattice is meant")})
+      .standard("the only fix mpm");
+  o.add("jitter",
+        {number(jitter, "fraction", {0.0, 0.5, true}, "",
+                "largest displacement along each axis, in units of the spacing"),
+         integer(seed, "seed", POSITIVE, "random number seed")})
+      .standard("none");
+  o.add("overlap", {yes_no(allow_overlap)},
+        "allow new points where there are material points already");
+  o.add("outside", {word(ignore_outside, {{"error", false}, {"ignore", true}})},
+        "what to do when the region reaches beyond the box");
+  o.add("diameter",
+        {number(diameter, "D", POSITIVE, "distance",
+                "diameter of the points in contact with grains")})
+      .standard("edge of a cube (2d: square) of the volume");
+  o.refuse([=] {
+    return OptionRules{
+        {ppc[0] > 0, "spacing", "and ppc cannot be given together: use either of them"},
+        {!has_radius, "diameter", "needs atom_style hybrid sphere mpm"}};
+  });
+  return o;
+}
+
 void CreatePoints::parse(int narg, char **arg)
 {
   const int dim = domain->dimension;
-  int ppc[3] = {2, 2, 2};
-  bool use_ppc = false, use_spacing = false;
-
   parse_type(narg, arg);
   int iarg = 2;
   if (strcmp(arg[1], "region") == 0) {
@@ -174,101 +209,23 @@ void CreatePoints::parse(int narg, char **arg)
                arg[1]);
   }
 
-  // ppc and spacing: one number, or one for each axis
-
-  auto count_numbers = [&](const char *keyword) {
-    int n = 0;
-    while (iarg + 1 + n < narg && utils::is_double(arg[iarg + 1 + n])) n++;
-    if (iarg + 1 == narg)
-      utils::missing_cmd_args(FLERR, fmt::format("create_points {}", keyword), error);
-    if (n != 1 && n != dim)
-      error->all(FLERR, iarg,
-                 "Create_points {} expects 1 or {} numbers in a {}d simulation, not "
-                 "{}",
-                 keyword, dim, dim, n);
-    return n;
-  };
-
-  while (iarg < narg) {
-    const std::string keyword = arg[iarg];
-    if (keyword == "ppc") {
-      const int n = count_numbers("ppc");
-      for (int d = 0; d < dim; d++) {
-        const int k = iarg + 1 + (n == 1 ? 0 : d);
-        ppc[d] = utils::inumeric(FLERR, arg[k], false, lmp);
-        if (ppc[d] < 1 || ppc[d] > MAX_PPC)
-          error->all(FLERR, k,
-                     "Create_points ppc {} is out of range: it is the number of points "
-                     "along each axis of a cell, 1 to {}",
-                     arg[k], MAX_PPC);
-      }
-      use_ppc = true;
-      iarg += 1 + n;
-    } else if (keyword == "spacing") {
-      const int n = count_numbers("spacing");
-      for (int d = 0; d < dim; d++) {
-        const int k = iarg + 1 + (n == 1 ? 0 : d);
-        spacing[d] = utils::numeric(FLERR, arg[k], false, lmp);
-        if (!(spacing[d] > 0.0 && std::isfinite(spacing[d])))
-          error->all(FLERR, k, "Create_points spacing {} must be > 0", arg[k]);
-      }
-      use_spacing = true;
-      iarg += 1 + n;
-    } else if (keyword == "fix") {
-      if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "create_points fix", error);
-      auto *ifix = modify->get_fix_by_id(arg[iarg + 1]);
-      if (!ifix) error->all(FLERR, iarg + 1, "Create_points fix {} does not exist", arg[iarg + 1]);
-      fix = dynamic_cast<FixMPM *>(ifix);
-      if (!fix)
-        error->all(FLERR, iarg + 1, "Create_points fix {} is a fix {}, not a fix mpm",
-                   arg[iarg + 1], ifix->style);
-      iarg += 2;
-    } else if (keyword == "jitter") {
-      if (iarg + 3 > narg) utils::missing_cmd_args(FLERR, "create_points jitter", error);
-      jitter = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
-      if (!(jitter >= 0.0 && jitter <= 0.5))
-        error->all(FLERR, iarg + 1,
-                   "Create_points jitter {} must be from 0 to 0.5 (times the "
-                   "spacing, along each axis)",
-                   arg[iarg + 1]);
-      seed = utils::inumeric(FLERR, arg[iarg + 2], false, lmp);
-      if (seed <= 0)
-        error->all(FLERR, iarg + 2, "Create_points jitter seed {} must be > 0", arg[iarg + 2]);
-      iarg += 3;
-    } else if (keyword == "overlap") {
-      if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "create_points overlap", error);
-      allow_overlap = utils::logical(FLERR, arg[iarg + 1], false, lmp);
-      iarg += 2;
-    } else if (keyword == "outside") {
-      if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "create_points outside", error);
-      if (strcmp(arg[iarg + 1], "ignore") == 0)
-        ignore_outside = true;
-      else if (strcmp(arg[iarg + 1], "error") == 0)
-        ignore_outside = false;
-      else
-        error->all(FLERR, iarg + 1,
-                   "Unknown create_points outside option {}: expected error or "
-                   "ignore",
-                   arg[iarg + 1]);
-      iarg += 2;
-    } else if (keyword == "diameter") {
-      if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "create_points diameter", error);
-      if (!atom->radius_flag)
-        error->all(FLERR, iarg, "Create_points diameter needs atom_style hybrid sphere mpm");
-      diameter = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
-      if (!(diameter > 0.0 && std::isfinite(diameter)))
-        error->all(FLERR, iarg + 1, "Create_points diameter {} must be > 0", arg[iarg + 1]);
-      iarg += 2;
-    } else {
-      error->all(FLERR, iarg, "Unknown create_points keyword: {}", arg[iarg]);
-    }
+  Options options = declare(dim, atom->radius_flag);
+  read_options(lmp, options, narg, arg, iarg);
+  if (!fix_id.empty()) {
+    auto *ifix = modify->get_fix_by_id(fix_id);
+    const int where = options.where("fix") + 1;
+    if (!ifix) error->all(FLERR, where, "Create_points fix {} does not exist", fix_id);
+    fix = MPMField::find(lmp, fix_id);
+    if (!fix)
+      error->all(FLERR, where, "Create_points fix {} is a fix {}, not a fix mpm", fix_id,
+                 ifix->style);
   }
 
   // lattice of sites
 
-  if (use_ppc && use_spacing)
-    error->all(FLERR, Error::NOPOINTER, "Create_points takes either ppc or spacing, not both");
+  const bool use_spacing = options.given("spacing");
   find_lattice();
+  if (ppc[0] == 0) std::fill(ppc, ppc + 3, 2);
   if (fix) {
     for (int d = 0; d < dim; d++) {
       origin[d] = fix->lattice.origin[d];
@@ -298,7 +255,7 @@ void CreatePoints::parse(int narg, char **arg)
       error->warning(FLERR,
                      "Create_points spacing {:.8g} along {} is wider than the cells of fix "
                      "{} ({:.8g}): there will be cells without points inside the body",
-                     spacing[d], axis_name[d], fix->id, fix->lattice.h);
+                     spacing[d], axis_name[d], fix->id(), fix->lattice.h);
   }
 }
 
@@ -309,9 +266,7 @@ void CreatePoints::parse(int narg, char **arg)
 void CreatePoints::find_lattice()
 {
   if (fix) return;
-  for (auto *ifix : modify->get_fix_by_style("^mpm$")) {
-    auto *other = dynamic_cast<FixMPM *>(ifix);
-    if (!other) continue;
+  for (auto *other : MPMField::all(lmp)) {
     if (!fix) fix = other;
     bool same = other->lattice.h == fix->lattice.h;
     for (int d = 0; d < domain->dimension; d++)
@@ -320,7 +275,7 @@ void CreatePoints::find_lattice()
       error->all(FLERR, Error::NOPOINTER,
                  "Fixes mpm {} and {} have different lattices: say with "
                  "create_points keyword fix which one is meant",
-                 fix->id, other->id);
+                 fix->id(), other->id());
   }
 }
 
@@ -342,7 +297,7 @@ void CreatePoints::find_ranges()
     std::copy_n(region_hi, 3, hi);
   }
   // half of what is on the axis
-  if (fix && fix->axisymmetric && lo[0] > -INFINITE) lo[0] = std::max(lo[0], 0.0);
+  if (fix && fix->options.axisymmetric && lo[0] > -INFINITE) lo[0] = std::max(lo[0], 0.0);
 
   for (int d = 0; d < 3; d++) {
     if (d == domain->dimension) {
@@ -643,7 +598,7 @@ void CreatePoints::make_point(const Site &site)
 
   const int i = atom->nlocal - 1;
   atom->tag[i] = site.tag;
-  atom->vfrac[i] = site.volume * (fix ? fix->circle(site.x[0]) : 1.0);
+  atom->vfrac[i] = site.volume * (fix ? fix->frame->circle(site.x[0]) : 1.0);
   atom->rmass[i] = 0.0;    // not known yet, see fix mpm/material
   if (atom->radius_flag) atom->radius[i] = 0.5 * diameter;
 }

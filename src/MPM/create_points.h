@@ -16,7 +16,9 @@ CommandStyle(create_points,CreatePoints);
 #define LMP_CREATE_POINTS_H
 
 #include "command.h"
+#include "declare/option.h"
 
+#include <string>
 #include <vector>
 
 namespace MPM_NS {
@@ -24,6 +26,30 @@ struct Mesh;
 }
 
 namespace LAMMPS_NS {
+
+/** Keywords of create_points for regions. */
+struct CreatePointsOptions {
+  static constexpr int MAX_PPC = 1000;
+
+  int ppc[3] = {0, 0, 0};    ///< 0: not given, 2
+  double spacing[3] = {0.0, 0.0, 0.0};
+  std::string fix_id;
+  double jitter = 0.0;
+  int seed = 0;
+  bool allow_overlap = false, ignore_outside = false;
+  double diameter = 0.0;    ///< 0: that of the volume
+
+  MPM_NS::Options declare(int dimension, bool has_radius);
+};
+
+/** Keywords of create_points for meshes. */
+struct CreatePointsMeshOptions {
+  double scale = 1.0, move[3] = {0.0, 0.0, 0.0};
+  std::string part;    ///< a physical group of the mesh, empty: all of it
+  double diameter = 0.0;
+
+  MPM_NS::Options declare(const std::string &command, int dimension, bool has_radius);
+};
 
 /** Fills a region with material points on a regular lattice of sites, or puts them at the nodes of a
  *  mesh, or makes one for each of its elements.
@@ -33,7 +59,7 @@ namespace LAMMPS_NS {
  *  sites of a bounding box in turn and send the points to their owners. So every site is looked at
  *  exactly once, and the points do not depend on the number of ranks or the layout.
  */
-class CreatePoints : public Command {
+class CreatePoints : public Command, private CreatePointsOptions {
  public:
   CreatePoints(class LAMMPS *);
   void command(int, char **) override;
@@ -55,12 +81,10 @@ class CreatePoints : public Command {
 
   // settings
 
-  int type, seed;
+  int type;
   class Region *region;    // null: the whole box
-  class FixMPM *fix;       // whose lattice the sites refer to; null: none
-  double spacing[3], origin[3];
-  double jitter, diameter;
-  bool allow_overlap, ignore_outside;
+  class MPMField *fix;     // whose lattice the sites refer to; null: none
+  double origin[3];
 
   // derived
 

@@ -16,9 +16,11 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "fix_mpm.h"
 #include "mesh/gmsh.h"
 #include "modify.h"
+#include "mpm_cpdi.h"
+#include "mpm_field.h"
+#include "mpm_frame.h"
 #include "transfer/cpdi.h"
 
 #include <algorithm>
@@ -73,7 +75,7 @@ void CreatePoints::parse_elements(int narg, char **arg)
         error->all(FLERR, 2,
                    "Create_points: element {} of {} reaches below x = 0, which is the axis of "
                    "fix mpm {}",
-                   e.label, arg[2], fix->id);
+                   e.label, arg[2], fix->id());
     for (int d = 0; d < 3; d++) {
       element.x[d] = 0.0;
       for (int c = 0; c < ncorner && d < dim; c++)
@@ -111,7 +113,7 @@ bigint CreatePoints::make_element_points()
     atom->avec->create_atom(type, e.x);
     const int i = atom->nlocal - 1;
     atom->tag[i] = atom->tag_enable ? maxtag + k + 1 : 0;
-    atom->vfrac[i] = e.volume * (fix ? fix->circle(e.x[0]) : 1.0);
+    atom->vfrac[i] = e.volume * (fix ? fix->frame->circle(e.x[0]) : 1.0);
     atom->rmass[i] = 0.0;    // not known yet, see fix mpm/material
     const double edge = domain->dimension == 3 ? std::cbrt(e.volume) : std::sqrt(e.volume);
     if (atom->radius_flag) atom->radius[i] = 0.5 * (diameter > 0.0 ? diameter : edge);
@@ -128,10 +130,9 @@ bigint CreatePoints::make_element_points()
 void CreatePoints::set_domains(int first)
 {
   const int n = domain->dimension << domain->dimension;
-  for (auto *ifix : modify->get_fix_by_style("^mpm$")) {
-    auto *field = dynamic_cast<FixMPM *>(ifix);
-    if (!field->corners) continue;
+  for (auto *field : MPMField::all(lmp)) {
+    if (!field->domains || !field->domains->corners) continue;
     for (std::size_t k = 0; k < elements.size(); k++)
-      std::copy_n(elements[k].corners, n, field->corners[first + k]);
+      std::copy_n(elements[k].corners, n, field->domains->corners[first + k]);
   }
 }

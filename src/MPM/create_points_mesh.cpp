@@ -14,11 +14,12 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "fix_mpm.h"
 #include "math_extra.h"
 #include "mesh/element.h"
 #include "modify.h"
+#include "mpm_field.h"
 #include "mpm_mesh_input.h"
+#include "mpm_options.h"
 
 #include <cmath>
 #include <cstring>
@@ -31,51 +32,51 @@ using namespace MPM_NS;
    TYPE mesh|elements FILE keyword value ...: the mesh, scaled and moved
 ------------------------------------------------------------------------- */
 
+Options CreatePointsMeshOptions::declare(const std::string &command, int dim, bool has_radius)
+{
+  using namespace option;
+  Options o(command);
+  o.add("scale", {number(scale, "factor", POSITIVE, "", "factor on the coordinates of the file")});
+  o.add("move",
+        {axes(move, dim, "x y z", ANY_NUMBER, "distance", "added to the scaled coordinates")});
+  o.add("part", {text(part, "name", "name or tag of a physical group of the mesh")})
+      .standard("all elements of the dimension of the simulation");
+  o.add("diameter",
+        {number(diameter, "D", POSITIVE, "distance",
+                "diameter of the points in contact with grains")})
+      .standard("edge of a cube (2d: square) of the volume");
+  o.refuse([=] {
+    return OptionRules{{!has_radius, "diameter", "needs atom_style hybrid sphere mpm"}};
+  });
+  return o;
+}
+
 Mesh CreatePoints::read_mesh(int narg, char **arg)
 {
   const std::string what = std::string("create_points ") + arg[1];
   if (narg < 3) utils::missing_cmd_args(FLERR, what, error);
-  for (auto *ifix : modify->get_fix_by_style("^mpm$"))
-    if (dynamic_cast<FixMPM *>(ifix)->axisymmetric) fix = dynamic_cast<FixMPM *>(ifix);
+  for (auto *field : MPMField::all(lmp))
+    if (field->options.axisymmetric) fix = field;
   if (fix && strcmp(arg[1], "mesh") == 0)
     error->all(FLERR, 1,
                "Create_points mesh cannot be used with axisymmetric fix mpm {}: elements, to "
                "which its points belong, are of plane strain; use create_points elements or region",
-               fix->id);
+               fix->id());
 
   const int dim = domain->dimension;
-  std::string part;
-  double scale = 1.0, move[3] = {0.0, 0.0, 0.0};
-  for (int iarg = 3; iarg < narg;) {
-    const std::string keyword = arg[iarg];
-    const int n = keyword == "move" ? dim : 1;
-    if (keyword != "move" && keyword != "scale" && keyword != "part" && keyword != "diameter")
-      error->all(FLERR, iarg, "Unknown {} keyword: {}", what, keyword);
-    if (iarg + n >= narg) utils::missing_cmd_args(FLERR, what + " " + keyword, error);
-    if (keyword == "move")
-      for (int d = 0; d < dim; d++) move[d] = utils::numeric(FLERR, arg[iarg + 1 + d], false, lmp);
-    else if (keyword == "part")
-      part = arg[iarg + 1];
-    else {
-      const double value = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
-      if (!(value > 0.0 && std::isfinite(value)))
-        error->all(FLERR, iarg + 1, "Create_points {} {} {} must be > 0", arg[1], keyword,
-                   arg[iarg + 1]);
-      if (keyword == "diameter" && !atom->radius_flag)
-        error->all(FLERR, iarg, "Create_points diameter needs atom_style hybrid sphere mpm");
-      (keyword == "scale" ? scale : diameter) = value;
-    }
-    iarg += 1 + n;
-  }
+  CreatePointsMeshOptions given;
+  Options options = given.declare(what, dim, atom->radius_flag);
+  read_options(lmp, options, narg, arg, 3);
+  diameter = given.diameter;
 
   Mesh mesh;
   try {
-    mesh = read_body(lmp, arg[2], part);
+    mesh = read_body(lmp, arg[2], given.part);
   } catch (const std::runtime_error &e) {
     error->all(FLERR, 2, "Create_points: {}", e.what());
   }
   for (auto &x : mesh.nodes)
-    for (int d = 0; d < 3; d++) x[d] = d < dim ? move[d] + scale * x[d] : 0.0;
+    for (int d = 0; d < 3; d++) x[d] = d < dim ? given.move[d] + given.scale * x[d] : 0.0;
   return mesh;
 }
 

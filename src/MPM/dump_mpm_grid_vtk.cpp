@@ -9,8 +9,10 @@
 #include "dump_mpm_grid_vtk.h"
 
 #include "error.h"
-#include "fix_mpm.h"
+#include "fix.h"
 #include "modify.h"
+#include "mpm_field.h"
+#include "mpm_options.h"
 #include "mpm_vtk.h"
 #include "update.h"
 
@@ -69,13 +71,13 @@ DumpMPMGridVTK::~DumpMPMGridVTK() = default;
 
 /* ---------------------------------------------------------------------- */
 
-FixMPM *DumpMPMGridVTK::find_field() const
+MPMField *DumpMPMGridVTK::find_field() const
 {
   auto *fix = modify->get_fix_by_id(fix_id);
   if (!fix)
     error->all(FLERR, Error::NOLASTLINE, "Dump mpm/grid/vtk {} fix ID {} does not exist", id,
                fix_id);
-  auto *found = dynamic_cast<FixMPM *>(fix);
+  auto *found = MPMField::find(lmp, fix_id);
   if (!found)
     error->all(FLERR, Error::NOLASTLINE, "Dump mpm/grid/vtk {} fix {} is of style {}, not mpm", id,
                fix_id, fix->style);
@@ -98,12 +100,7 @@ void DumpMPMGridVTK::init_style()
 
 int DumpMPMGridVTK::modify_param(int narg, char **arg)
 {
-  if (strcmp(arg[0], "precision") != 0) return 0;
-  if (narg < 2) utils::missing_cmd_args(FLERR, "dump_modify precision", error);
-  single = strcmp(arg[1], "single") == 0;
-  if (!single && strcmp(arg[1], "double") != 0)
-    error->all(FLERR, "Unknown dump_modify precision {}: must be single or double", arg[1]);
-  return 2;
+  return read_precision(lmp, narg, arg, single);
 }
 
 /* ----------------------------------------------------------------------
@@ -112,7 +109,7 @@ int DumpMPMGridVTK::modify_param(int narg, char **arg)
 
 template <typename Visitor> void DumpMPMGridVTK::visit_nodes(Visitor visit) const
 {
-  auto *grid = field->grid;
+  auto *grid = &field->grid;
   if (grid->nreal == 0) return;
   for (std::size_t slot = 0; slot < grid->blocks.size(); slot++) {
     const auto &block = grid->blocks[slot];
@@ -138,7 +135,7 @@ void DumpMPMGridVTK::pack(tagint *)
   double *row = buf;
   visit_nodes([&](const Grid::Block &block, int n, const double *record) {
     int index[3];
-    field->grid->node_index(block, n, index);
+    field->grid.node_index(block, n, index);
     for (int d = 0; d < 3; d++) {
       row[INDEX + d] = index[d];
       row[VELOCITY + d] = record[d];

@@ -26,7 +26,7 @@ class VTKCollection;
 }
 
 namespace LAMMPS_NS {
-class FixMPM;
+class MPMField;
 
 /** Node fields of one fix mpm at the nodes, as a VTK UnstructuredGrid of the cells in use.
  *
@@ -53,14 +53,14 @@ class DumpMPMGridVTK : public Dump {
   enum Field { NODE_MASS, NODE_VELOCITY, NODE_MOMENTUM, NODE_INDEX };
 
   std::string fix_id;
-  FixMPM *field;
+  MPMField *field;
   std::vector<Field> fields;
   bool single;
   std::unique_ptr<MPM_NS::VTKCollection> collection;
   std::vector<double> rows;    // of the present file
 
   template <typename Visitor> void visit_nodes(Visitor) const;
-  FixMPM *find_field() const;
+  MPMField *find_field() const;
 };
 
 }    // namespace LAMMPS_NS

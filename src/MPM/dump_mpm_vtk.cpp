@@ -13,6 +13,7 @@
 #include "error.h"
 #include "memory.h"
 #include "modify.h"
+#include "mpm_options.h"
 #include "mpm_vtk.h"
 #include "update.h"
 
@@ -204,14 +205,8 @@ void DumpMPMVTK::init_style()
 
 int DumpMPMVTK::modify_param(int narg, char **arg)
 {
-  if (strcmp(arg[0], "precision") == 0) {
-    if (narg < 2) utils::missing_cmd_args(FLERR, "dump_modify precision", error);
-    single = strcmp(arg[1], "single") == 0;
-    if (!single && strcmp(arg[1], "double") != 0)
-      error->all(FLERR, "Unknown dump_modify precision {}: must be single or double", arg[1]);
-    return 2;
-  }
-  return DumpCustom::modify_param(narg, arg);
+  const int n = read_precision(lmp, narg, arg, single);
+  return n > 0 ? n : DumpCustom::modify_param(narg, arg);
 }
 
 /* ----------------------------------------------------------------------

@@ -65,16 +65,15 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "fix_mpm.h"
 #include "force.h"
 #include "group.h"
-#include "input.h"
 #include "math_extra.h"
 #include "modify.h"
+#include "mpm_field.h"
+#include "mpm_options.h"
 #include "region.h"
 #include "region_mpm_mesh.h"
 #include "update.h"
-#include "variable.h"
 
 #include <algorithm>
 #include <cmath>
@@ -106,10 +105,44 @@ struct RegionMotion : public Region {
    fix ID all mpm/boundary faces|region REG  stick|slip|separate  keyword values
 ------------------------------------------------------------------------- */
 
+Options MPMBoundaryOptions::declare(int dim)
+{
+  using namespace option;
+  Options o("fix mpm/boundary");
+  o.argument(word(kind, {{"stick", STICK}, {"slip", SLIP}, {"separate", SEPARATE}}, "kind"));
+  o.add("friction",
+        {number(friction, "mu", NOT_NEGATIVE, "1",
+                "Coulomb coefficient, for *slip* and *separate*")});
+  o.add("velocity",
+        {variables(velocity, 3, "vx vy vz", "velocity",
+                   "velocity of the wall, can be variables (see below); with *stick*, NULL leaves "
+                   "a component free",
+                   true)});
+  o.add("rotate",
+        {numbers(center, 3, "ox oy oz", ANY_NUMBER, "distance", "a point on the axis of rotation"),
+         numbers(axis, 3, "ax ay az", ANY_NUMBER, "", "direction of the axis"),
+         variables(&rate, 1, "rate", "radians/time",
+                   "angular velocity, can be a variable (see below)")})
+      .standard("none");
+  o.add("field", {text(field_id, "fix-ID", "ID of the :doc:`fix mpm <fix_mpm>` to act on")})
+      .standard("all");
+  o.refuse([=] {
+    return OptionRules{
+        {kind == STICK, "friction", "needs kind slip or separate"},
+        {kind != STICK && !all_given(), "velocity", "allows NULL only with kind stick"},
+        {!velocity[0].given && !velocity[1].given && !velocity[2].given, "velocity",
+         "leaves all components free"},
+        {MathExtra::len3(axis) == 0.0, "rotate", "needs an axis of non-zero length"},
+        {dim == 2 && (axis[0] != 0.0 || axis[1] != 0.0), "rotate", "needs an axis along z in 2d"},
+        {!all_given(), "rotate", "prescribes all components of the velocity"}};
+  });
+  return o;
+}
+
 FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), region(nullptr), kind(STICK), friction(0.0), rotating(false),
-    acted(false), region_was{}, motion_step(-1), work(0.0), dt_last(0.0), reaction_known(true),
-    counting(false), decided(false), kinetic(0.0)
+    Fix(lmp, narg, arg), region(nullptr), rotating(false), acted(false), region_was{},
+    motion_step(-1), work(0.0), dt_last(0.0), reaction_known(true), counting(false), decided(false),
+    kinetic(0.0)
 {
   if (igroup != 0)
     error->all(FLERR, 1,
@@ -147,80 +180,18 @@ FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) :
 
   // what
 
-  if (iarg >= narg) utils::missing_cmd_args(FLERR, "fix mpm/boundary", error);
-  const std::string kind_name = arg[iarg];
-  if (kind_name == "stick")
-    kind = STICK;
-  else if (kind_name == "slip")
-    kind = SLIP;
-  else if (kind_name == "separate")
-    kind = SEPARATE;
-  else
-    error->all(FLERR, iarg, "Unknown fix mpm/boundary kind {}: must be stick, slip or separate",
-               kind_name);
-  iarg++;
-
-  // keywords
-
+  Options options = declare(domain->dimension);
+  read_options(lmp, options, narg, arg, iarg);
+  rotating = options.given("rotate");
+  const bool moving = rotating || options.given("velocity");
+  const double length = MathExtra::len3(axis);
+  for (int d = 0; d < 3 && rotating; d++) axis[d] /= length;
   for (int d = 0; d < 3; d++) {
-    velocity[d] = {0.0, true, "", -1};
-    constrained[d] = true;
-    center[d] = axis[d] = 0.0;
+    constrained[d] = velocity[d].given;
     impulse[d] = reaction[d] = impulse[3 + d] = reaction[3 + d] = 0.0;
   }
-  rate = {0.0, true, "", -1};
   memset(&wall, 0, sizeof(Wall));
   memset(before, 0, sizeof(before));
-  bool moving = false;
-
-  while (iarg < narg) {
-    const std::string keyword = arg[iarg];
-    auto need = [&](int n) {
-      if (iarg + n >= narg) utils::missing_cmd_args(FLERR, "fix mpm/boundary " + keyword, error);
-    };
-    if (keyword == "friction") {
-      need(1);
-      if (kind == STICK)
-        error->all(FLERR, iarg, "Fix mpm/boundary friction needs kind slip or separate");
-      friction = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
-      if (!(friction >= 0.0))
-        error->all(FLERR, iarg + 1, "Fix mpm/boundary friction must not be negative: {}",
-                   arg[iarg + 1]);
-      iarg += 2;
-    } else if (keyword == "velocity") {
-      need(3);
-      for (int d = 0; d < 3; d++) {
-        velocity[d] = parse_value(arg[iarg + 1 + d], iarg + 1 + d, kind == STICK);
-        constrained[d] = velocity[d].given;
-      }
-      if (!constrained[0] && !constrained[1] && !constrained[2])
-        error->all(FLERR, iarg + 1, "Fix mpm/boundary velocity leaves all components free");
-      moving = true;
-      iarg += 4;
-    } else if (keyword == "rotate") {
-      need(7);
-      for (int d = 0; d < 3; d++) {
-        center[d] = utils::numeric(FLERR, arg[iarg + 1 + d], false, lmp);
-        axis[d] = utils::numeric(FLERR, arg[iarg + 4 + d], false, lmp);
-      }
-      const double length = MathExtra::len3(axis);
-      if (!(length > 0.0))
-        error->all(FLERR, iarg + 4, "Fix mpm/boundary rotate needs an axis of non-zero length");
-      if (domain->dimension == 2 && (axis[0] != 0.0 || axis[1] != 0.0))
-        error->all(FLERR, iarg + 4, "Fix mpm/boundary rotate needs an axis along z in 2d");
-      for (double &a : axis) a /= length;
-      rate = parse_value(arg[iarg + 7], iarg + 7, false);
-      rotating = moving = true;
-      iarg += 8;
-    } else if (keyword == "field") {
-      need(1);
-      field_id = arg[iarg + 1];
-      iarg += 2;
-    } else
-      error->all(FLERR, iarg, "Unknown fix mpm/boundary keyword: {}", keyword);
-  }
-  if (rotating && !(constrained[0] && constrained[1] && constrained[2]))
-    error->all(FLERR, "Fix mpm/boundary rotate prescribes all components of the velocity");
 
   if (!region_id.empty()) {
     region = domain->get_region_by_id(region_id);
@@ -251,49 +222,17 @@ int FixMPMBoundary::setmask()
 
 /* ---------------------------------------------------------------------- */
 
-FixMPMBoundary::Value FixMPMBoundary::parse_value(const char *text, int iarg, bool null_allowed)
-{
-  Value v = {0.0, true, "", -1};
-  if (strcmp(text, "NULL") == 0) {
-    if (!null_allowed)
-      error->all(FLERR, iarg, "Fix mpm/boundary allows NULL only as velocity with kind stick");
-    v.given = false;
-  } else if (utils::strmatch(text, "^v_")) {
-    v.variable = text + 2;
-  } else {
-    v.value = utils::numeric(FLERR, text, false, lmp);
-  }
-  return v;
-}
-
-void FixMPMBoundary::check_variable(Value &v, const char *what)
-{
-  if (v.variable.empty()) return;
-  v.index = input->variable->find(v.variable.c_str());
-  if (v.index < 0)
-    error->all(FLERR, Error::NOLASTLINE, "Variable {} for fix mpm/boundary {} does not exist",
-               v.variable, what);
-  if (!input->variable->equalstyle(v.index))
-    error->all(FLERR, Error::NOLASTLINE, "Variable {} for fix mpm/boundary {} is not equal-style",
-               v.variable, what);
-}
-
-double FixMPMBoundary::evaluate(const Value &v) const
-{
-  return v.variable.empty() ? v.value : input->variable->compute_equal(v.index);
-}
-
 bool FixMPMBoundary::region_moves() const
 {
   return region && region->dynamic_check();
 }
 
-bool FixMPMBoundary::acts_on(const FixMPM &field) const
+bool FixMPMBoundary::acts_on(const MPMField &field) const
 {
-  return field_id.empty() || field_id == field.id;
+  return field_id.empty() || field_id == field.id();
 }
 
-bool FixMPMBoundary::holds_axis(const FixMPM &field) const
+bool FixMPMBoundary::holds_axis(const MPMField &field) const
 {
   return acts_on(field) && std::count(face_list.begin(), face_list.end(), 0) && !decides() &&
       !rotating && constrained[0] && velocity[0].variable.empty() && velocity[0].value == 0.0;
@@ -305,47 +244,35 @@ void FixMPMBoundary::init()
 {
   // fields, in the order of their definition
 
-  const auto fields = modify->get_fix_by_style("^mpm$");
+  const auto fields = MPMField::all(lmp);
   if (fields.empty())
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/boundary needs a fix mpm to act on");
   bool found = false;
-  for (auto *ifix : fields) {
-    auto *field = dynamic_cast<FixMPM *>(ifix);
+  for (auto *field : fields) {
     if (!acts_on(*field)) continue;
     found = true;
-    if (field->total && (kind == SEPARATE || rotating || region_moves()))
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/boundary {} cannot be used with frame total of fix mpm {}, whose nodes "
-                 "keep to the same material wherever it goes: use {}",
-                 kind == SEPARATE ? "separate"
-                     : rotating   ? "rotate"
-                                  : "with a moving region",
-                 field->id,
-                 kind == SEPARATE ? "fix wall/gran or a pair style"
-                                  : "stick velocity with variables");
     bool moves = false;
     for (const auto &v : velocity) moves = moves || !v.variable.empty() || v.value != 0.0;
-    if (field->R && moves)
-      error->all(
-          FLERR, Error::NOLASTLINE,
-          "Fix mpm/boundary {} velocity cannot be used with reference update of fix mpm {}: the "
-          "material that it holds would leave it with the first update: use reference fixed",
-          id, field->id);
-    if (field->stress_before() && decides())
-      error->all(
-          FLERR, Error::NOLASTLINE,
-          "Fix mpm/boundary separate and friction cannot be used "
-          "with scheme usf or usavg of fix mpm {}, which need the contact before it is known: use "
-          "usl or musl",
-          field->id);
+    const std::string keeps = "its nodes keep to the same material wherever it goes: instead of ";
+    refuse_field(lmp, *this, *field,
+                 {{field->options.total && kind == SEPARATE, "frame total",
+                   keeps + "separate, use fix wall/gran or a pair style"},
+                  {field->options.total && (rotating || region_moves()), "frame total",
+                   keeps + (rotating ? "rotate" : "a moving region") +
+                       ", use stick velocity with variables"},
+                  {field->options.most_distorted > 0.0 && moves, "reference update",
+                   "the material that a wall with velocity holds would leave it with the first "
+                   "update: use reference fixed"},
+                  {field->options.stress_before() && decides(), "scheme usf and usavg",
+                   "separate and friction need the contact before it is known: use usl or musl"}});
   }
   if (!found)
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/boundary field {} is not the ID of a fix mpm",
                field_id);
   nodes.clear();    // made again with the topology
 
-  for (int d = 0; d < 3; d++) check_variable(velocity[d], "velocity");
-  check_variable(rate, "rotate");
+  for (auto &v : velocity) find_variable(lmp, v, "fix mpm/boundary velocity");
+  find_variable(lmp, rate, "fix mpm/boundary rotate");
 
   if (!region_id.empty()) {
     region = domain->get_region_by_id(region_id);
@@ -385,8 +312,8 @@ void FixMPMBoundary::init()
       // opposite face
 
       if (std::count(other->face_list.begin(), other->face_list.end(), face ^ 1))
-        for (auto *jfix : fields) {
-          auto &field = *dynamic_cast<FixMPM *>(jfix);
+        for (auto *each : fields) {
+          const auto &field = *each;
           if (!acts_on(field) || !other->acts_on(field)) continue;
           if (narrow({face_on_lattice(field, face), face_on_lattice(field, face ^ 1)}, face / 2))
             error->all(FLERR, Error::NOLASTLINE,
@@ -395,8 +322,8 @@ void FixMPMBoundary::init()
                        FACE_NAME[face], FACE_NAME[face ^ 1]);
         }
     }
-    for (auto *jfix : fields) {
-      auto &field = *dynamic_cast<FixMPM *>(jfix);
+    for (auto *each : fields) {
+      const auto &field = *each;
       if (!acts_on(field)) continue;
       const auto faces = faces_on_lattice(field);
       if (decides() && narrow(faces, face / 2))
@@ -408,7 +335,7 @@ void FixMPMBoundary::init()
           error->all(FLERR, Error::NOLASTLINE,
                      "Fix mpm/boundary faces that are not in planes of nodes of fix mpm {} must be "
                      "at least 5 cells apart: change its spacing or origin",
-                     field.id);
+                     field.id());
     }
   }
   motion_step = -1;
@@ -420,7 +347,7 @@ void FixMPMBoundary::init()
 
 bigint FixMPMBoundary::next_step() const
 {
-  const auto *field = dynamic_cast<FixMPM *>(modify->get_fix_by_style("^mpm$")[0]);
+  const auto *field = MPMField::all(lmp)[0];
   return update->ntimestep + field->steps_to_next();
 }
 
@@ -435,8 +362,8 @@ void FixMPMBoundary::setup(int)
   modify->clearstep_compute();
   region->prematch();
   modify->addstep_compute(next_step());
-  const auto *field = dynamic_cast<FixMPM *>(modify->get_fix_by_style("^mpm$")[0]);
-  if (!acted || field->steps_to_next() == field->every) note_region();
+  const auto *field = MPMField::all(lmp)[0];
+  if (!acted || field->steps_to_next() == field->options.every) note_region();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -453,7 +380,7 @@ void FixMPMBoundary::note_region()
    faces of the box in terms of nodes
 ------------------------------------------------------------------------- */
 
-FixMPMBoundary::Face FixMPMBoundary::face_on_lattice(const FixMPM &field, int face) const
+FixMPMBoundary::Face FixMPMBoundary::face_on_lattice(const MPMField &field, int face) const
 {
   Face f;
   f.axis = face / 2;
@@ -468,7 +395,7 @@ FixMPMBoundary::Face FixMPMBoundary::face_on_lattice(const FixMPM &field, int fa
   return f;
 }
 
-std::vector<FixMPMBoundary::Face> FixMPMBoundary::faces_on_lattice(const FixMPM &field) const
+std::vector<FixMPMBoundary::Face> FixMPMBoundary::faces_on_lattice(const MPMField &field) const
 {
   std::vector<Face> faces;
   for (int face : face_list) faces.push_back(face_on_lattice(field, face));
@@ -492,10 +419,10 @@ bool FixMPMBoundary::narrow(const std::vector<Face> &faces, int axis) const
    a rank that has nodes near a mirror plane needs the plane and the images
 ------------------------------------------------------------------------- */
 
-void FixMPMBoundary::extend_topology(FixMPM &field)
+void FixMPMBoundary::extend_topology(MPMField &field)
 {
   if (!acts_on(field) || face_list.empty()) return;
-  Grid &grid = *field.grid;
+  Grid &grid = field.grid;
   const auto faces = faces_on_lattice(field);
 
   // blocks that are added are looked at, too: images of images at edges, and narrow channels
@@ -525,7 +452,7 @@ void FixMPMBoundary::extend_topology(FixMPM &field)
 
 /* ---------------------------------------------------------------------- */
 
-void FixMPMBoundary::topology_changed(FixMPM &field)
+void FixMPMBoundary::topology_changed(MPMField &field)
 {
   if (!acts_on(field)) return;
   FieldNodes *mine = nullptr;
@@ -554,7 +481,7 @@ void FixMPMBoundary::topology_changed(FixMPM &field)
 
 void FixMPMBoundary::list_face_nodes(FieldNodes &list)
 {
-  const Grid &grid = *list.field->grid;
+  const Grid &grid = list.field->grid;
   for (std::size_t ib = 0; ib < grid.blocks.size(); ib++) {
     const auto &block = grid.blocks[ib];
     for (std::size_t f = 0; f < list.faces.size(); f++) {
@@ -614,7 +541,7 @@ void FixMPMBoundary::list_face_nodes(FieldNodes &list)
 
 void FixMPMBoundary::list_column(FieldNodes &list, int f, const int *index)
 {
-  const Grid &grid = *list.field->grid;
+  const Grid &grid = list.field->grid;
   const Face &face = list.faces[f];
   auto owned = [&](int64_t node) {
     return (int) (grid.blocks[node / NODES_PER_BLOCK].owned >> (node % NODES_PER_BLOCK) & 1);
@@ -647,7 +574,7 @@ void FixMPMBoundary::list_column(FieldNodes &list, int f, const int *index)
 void FixMPMBoundary::list_orbits(FieldNodes &list, const std::vector<Face> &faces,
                                  const bool *prescribed)
 {
-  const Grid &grid = *list.field->grid;
+  const Grid &grid = list.field->grid;
   bool has[3][2] = {{false}};
   int plane[3][2] = {{0}};
   for (const auto &face : faces) {
@@ -786,8 +713,8 @@ bool FixMPMBoundary::surface_normal(const double *x, double step, int dim, doubl
 
 void FixMPMBoundary::list_region_nodes(FieldNodes &list)
 {
-  const FixMPM &field = *list.field;
-  const Grid &grid = *field.grid;
+  const MPMField &field = *list.field;
+  const Grid &grid = field.grid;
   const int dim = field.lattice.dim;
   const double h = field.lattice.h;
   const bool moves = region_moves();
@@ -902,8 +829,8 @@ void FixMPMBoundary::update_motion(double dt)
 
   if (variables) modify->clearstep_compute();
   if (region_moves()) region->prematch();
-  for (int d = 0; d < 3; d++) wall.shift[d] = evaluate(velocity[d]);
-  const double omega = rotating ? evaluate(rate) : 0.0;
+  for (int d = 0; d < 3; d++) wall.shift[d] = evaluate(lmp, velocity[d]);
+  const double omega = rotating ? evaluate(lmp, rate) : 0.0;
   if (variables) modify->addstep_compute(next_step());
 
   if (rotating) {
@@ -922,11 +849,11 @@ void FixMPMBoundary::update_motion(double dt)
     if (region->varshape)
       for (auto &list : nodes)
         for (auto &s : list.singles) {
-          const FixMPM &field = *list.field;
+          const MPMField &field = *list.field;
           int index[3];
           double x[3];
-          field.grid->node_index(field.grid->blocks[s.node / NODES_PER_BLOCK],
-                                 s.node % NODES_PER_BLOCK, index);
+          field.grid.node_index(field.grid.blocks[s.node / NODES_PER_BLOCK],
+                                s.node % NODES_PER_BLOCK, index);
           field.node_position(index, x);
           const double distance = surface_distance(x), far = FAR * field.lattice.h;
           s.growth = 0.0;
@@ -945,15 +872,15 @@ void FixMPMBoundary::update_motion(double dt)
 
 /* ---------------------------------------------------------------------- */
 
-static void node_position(const FixMPM &field, int64_t node, double *x)
+static void node_position(const MPMField &field, int64_t node, double *x)
 {
-  const Grid &grid = *field.grid;
+  const Grid &grid = field.grid;
   int index[3];
   grid.node_index(grid.blocks[node / NODES_PER_BLOCK], node % NODES_PER_BLOCK, index);
   field.node_position(index, x);
 }
 
-void FixMPMBoundary::wall_velocity(const FixMPM &field, int64_t node, double *v) const
+void FixMPMBoundary::wall_velocity(const MPMField &field, int64_t node, double *v) const
 {
   for (int d = 0; d < 3; d++) v[d] = wall.shift[d];
   if (wall.uniform) return;
@@ -979,16 +906,16 @@ void FixMPMBoundary::act(double dt, Stage stage)
   const Wall now = wall;
   if (at_end) end_of_step(wall, dt);
   for (auto &list : nodes) {
-    const FixMPM &field = *list.field;
+    const MPMField &field = *list.field;
     kinetic = collided = 0.0;
-    ledger_lanes = field.ledger_on;
-    old_share = count && wall.uniform ? field.flip : 0.0;
+    ledger_lanes = field.ledger.on;
+    old_share = count && wall.uniform ? field.options.flip : 0.0;
     decided = stage == MAPPED_BACK || stage == AGAIN;
     act_on_cuts(list);
     for (auto &column : list.columns) act_on_column(list, column);
     for (const auto &orbit : list.orbits) act_on_orbit(list, orbit);
     for (auto &single : list.singles) act_on_single(list, single);
-    if (count && field.ledger_on) {
+    if (count && field.ledger.on) {
       list.field->ledger.boundary += kinetic * force->mvv2e;
       list.field->ledger.transfer += collided * force->mvv2e;
     }
@@ -1044,7 +971,7 @@ static void first_inside(const double *record, const double *wall, int dim, doub
 
 void FixMPMBoundary::act_on_column(const FieldNodes &list, Column &column)
 {
-  Grid &grid = *list.field->grid;
+  Grid &grid = list.field->grid;
   const Face &face = list.faces[column.face];
   const int dim = grid.lattice.dim, a = face.axis;
   auto record = [&](int64_t node) {
@@ -1150,7 +1077,7 @@ void FixMPMBoundary::act_on_column(const FieldNodes &list, Column &column)
 
 void FixMPMBoundary::act_on_orbit(const FieldNodes &list, const Orbit &orbit)
 {
-  Grid &grid = *list.field->grid;
+  Grid &grid = list.field->grid;
   const int dim = grid.lattice.dim;
   auto record = [&](int64_t node) {
     return grid.nodes() + node * grid.nreal;
@@ -1199,7 +1126,7 @@ void FixMPMBoundary::act_on_orbit(const FieldNodes &list, const Orbit &orbit)
 
 void FixMPMBoundary::act_on_single(const FieldNodes &list, Single &single)
 {
-  Grid &grid = *list.field->grid;
+  Grid &grid = list.field->grid;
   const int dim = grid.lattice.dim;
   double *r = grid.nodes() + single.node * grid.nreal;
   if (r[3] <= 0.0) return;

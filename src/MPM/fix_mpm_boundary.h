@@ -15,6 +15,7 @@ FixStyle(mpm/boundary,FixMPMBoundary);
 #ifndef LMP_FIX_MPM_BOUNDARY_H
 #define LMP_FIX_MPM_BOUNDARY_H
 
+#include "declare/option.h"
 #include "fix.h"
 #include "mpm_node_action.h"
 
@@ -23,15 +24,28 @@ FixStyle(mpm/boundary,FixMPMBoundary);
 #include <vector>
 
 namespace LAMMPS_NS {
-class FixMPM;
+class MPMField;
 class Region;
+
+struct MPMBoundaryOptions {
+  enum Kind { STICK, SLIP, SEPARATE };
+
+  Kind kind = STICK;
+  double friction = 0.0;
+  MPM_NS::NumberOrVariable velocity[3], rate;
+  double center[3] = {0.0, 0.0, 0.0}, axis[3] = {0.0, 0.0, 0.0};    ///< of the rotation
+  std::string field_id;                                             ///< empty: all fields
+
+  bool all_given() const { return velocity[0].given && velocity[1].given && velocity[2].given; }
+  MPM_NS::Options declare(int dimension);
+};
 
 /** Walls that act on the nodes of the fields: faces of the box, or a region.
  *
  *  A face mirrors: nodes beyond it are images of nodes inside. A region acts on each of the nodes
  *  inside it.
  */
-class FixMPMBoundary : public Fix, public MPMNodeAction {
+class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOptions {
  public:
   Turn turn() const override { return WALLS; }
   FixMPMBoundary(class LAMMPS *, int, char **);
@@ -44,17 +58,15 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
   double compute_vector(int) override;
   double memory_usage() override;
 
-  void extend_topology(FixMPM &) override;
-  void topology_changed(FixMPM &) override;
+  void extend_topology(MPMField &) override;
+  void topology_changed(MPMField &) override;
   void act(double dt, Stage) override;
 
   /** Keeps the nodes of a field at the face xlo, an axis of symmetry, from moving along x. */
-  bool holds_axis(const FixMPM &) const;
+  bool holds_axis(const MPMField &) const;
 
  private:
   static constexpr int DEPTH = 3;    // nodes on either side of a mirror plane that are paired
-
-  enum Kind { STICK, SLIP, SEPARATE };
 
   struct Face {    // a face of the box on the lattice of a field
     int axis;
@@ -99,19 +111,13 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
     Contact contact;
   };
   struct FieldNodes {
-    FixMPM *field;
+    MPMField *field;
     std::vector<Face> faces;
     std::vector<Column> columns;
     std::vector<Cut> cuts;
     std::vector<Member> members;
     std::vector<Orbit> orbits;
     std::vector<Single> singles;
-  };
-  struct Value {    // number or equal-style variable; NULL: not given
-    double value;
-    bool given;
-    std::string variable;
-    int index;
   };
   struct Wall {    // its motion in this step: velocity shift + gradient (x - origin)
     double shift[3], gradient[3][3], origin[3];
@@ -123,13 +129,9 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
   };
 
   std::vector<int> face_list;    // 2 * axis + (0: lo, 1: hi)
-  std::string region_id, field_id;
+  std::string region_id;
   Region *region;
-  Kind kind;
-  double friction;
-  Value velocity[3], rate;
   bool rotating;
-  double center[3], axis[3];
   bool constrained[3];    // stick: components that are prescribed
 
   std::vector<FieldNodes> nodes;
@@ -151,13 +153,10 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
   double old_share;     // FLIP share when old velocities are constrained, too; otherwise 0
   double kinetic;       // gained by the nodes of a field in the present act()
 
-  Value parse_value(const char *, int iarg, bool null_allowed);
-  void check_variable(Value &, const char *what);
-  double evaluate(const Value &) const;
   bool region_moves() const;
-  bool acts_on(const FixMPM &) const;
-  Face face_on_lattice(const FixMPM &, int face) const;
-  std::vector<Face> faces_on_lattice(const FixMPM &) const;
+  bool acts_on(const MPMField &) const;
+  Face face_on_lattice(const MPMField &, int face) const;
+  std::vector<Face> faces_on_lattice(const MPMField &) const;
   void list_face_nodes(FieldNodes &);
   void list_column(FieldNodes &, int face, const int *index);
   void list_orbits(FieldNodes &, const std::vector<Face> &, const bool *prescribed);
@@ -165,7 +164,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
   void list_region_nodes(FieldNodes &);
   bool decides() const { return kind == SEPARATE || friction > 0.0; }
   bool narrow(const std::vector<Face> &, int axis) const;
-  static void cut_weights(const FixMPM &, double x, Face &);
+  static void cut_weights(const MPMField &, double x, Face &);
   void list_cut(FieldNodes &, int face, const int *index);
   void act_on_cuts(FieldNodes &);
   void act_on_cut(const FieldNodes &, Cut &, bool last);
@@ -175,7 +174,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction {
   void note_region();
   void set_rotation(double angle, const double *unit, double dt);
   static void end_of_step(Wall &, double dt);
-  void wall_velocity(const FixMPM &, int64_t node, double *v) const;
+  void wall_velocity(const MPMField &, int64_t node, double *v) const;
   void set_velocity(double *record, const double *v, const double *old, int dim, bool owned);
   void act_on_column(const FieldNodes &, Column &);
   void act_on_orbit(const FieldNodes &, const Orbit &);

@@ -24,7 +24,7 @@
 
 #include "fix_mpm_boundary.h"
 
-#include "fix_mpm.h"
+#include "mpm_field.h"
 
 #include <algorithm>
 #include <cmath>
@@ -37,12 +37,12 @@ static constexpr double MIN_WEIGHT[4] = {0.0, 0.5, 0.02, 0.0045};
 
 /* ---------------------------------------------------------------------- */
 
-void FixMPMBoundary::cut_weights(const FixMPM &field, double x, Face &face)
+void FixMPMBoundary::cut_weights(const MPMField &field, double x, Face &face)
 {
   face.cut = true;
-  face.nweight = field.shape_weights((x - field.lattice.origin[face.axis]) / field.lattice.h,
-                                     face.first, face.weight);
-  if (field.shape != LINEAR) return;
+  face.nweight = field.weights((x - field.lattice.origin[face.axis]) / field.lattice.h, face.first,
+                               face.weight);
+  if (stencil_order(field.options.shape) > 1) return;
   face.nweight = 3;    // and the next node inside
   face.weight[2] = 0.0;
   if (face.inward > 0) return;
@@ -58,7 +58,7 @@ void FixMPMBoundary::cut_weights(const FixMPM &field, double x, Face &face)
 
 void FixMPMBoundary::list_cut(FieldNodes &list, int f, const int *index)
 {
-  const Grid &grid = *list.field->grid;
+  const Grid &grid = list.field->grid;
   const Face &face = list.faces[f];
   Cut cut;
   cut.face = f;
@@ -89,7 +89,7 @@ void FixMPMBoundary::act_on_cuts(FieldNodes &list)
 
 void FixMPMBoundary::act_on_cut(const FieldNodes &list, Cut &cut, bool last)
 {
-  Grid &grid = *list.field->grid;
+  Grid &grid = list.field->grid;
   const Face &face = list.faces[cut.face];
   const int dim = grid.lattice.dim, a = face.axis, n = face.nweight;
   const bool hold = old_share > 0.0 && (kind == STICK || (kind == SLIP && !last));
@@ -97,7 +97,7 @@ void FixMPMBoundary::act_on_cut(const FieldNodes &list, Cut &cut, bool last)
 
   // nodes from outside to inside, those with points
 
-  const double least = MIN_WEIGHT[list.field->shape];
+  const double least = MIN_WEIGHT[stencil_order(list.field->options.shape)];
   double *r[4], A[4], B[4] = {0.0, 0.0, 0.0, 0.0}, V[4][3], total = 0.0;
   int owned[4], m = 0;
   bool reached = false;
@@ -107,7 +107,7 @@ void FixMPMBoundary::act_on_cut(const FieldNodes &list, Cut &cut, bool last)
     double *record = grid.nodes() + cut.node[k] * grid.nreal;
     if (record[3] <= 0.0) {
       if (!reached && face.weight[k] >= least) return;
-      if (list.field->shape == LINEAR && j == 0) extrapolated = face.weight[k];
+      if (stencil_order(list.field->options.shape) == 1 && j == 0) extrapolated = face.weight[k];
       continue;
     }
     reached = reached || face.weight[k] >= least;

@@ -11,11 +11,12 @@
 #include "atom.h"
 #include "domain.h"
 #include "error.h"
-#include "fix_mpm.h"
 #include "grid2d.h"
 #include "grid3d.h"
 #include "memory.h"
 #include "modify.h"
+#include "mpm_field.h"
+#include "mpm_frame.h"
 #include "mpm_points.h"
 #include "neighbor.h"
 #include "update.h"
@@ -68,7 +69,7 @@ FixMPMCells::~FixMPMCells()
 
 void FixMPMCells::set_size()
 {
-  const auto *field = dynamic_cast<FixMPM *>(modify->get_fix_by_id(field_id));
+  const auto *field = MPMField::find(lmp, field_id);
   if (!field)
     error->all(FLERR, Error::NOLASTLINE, "Fix {} (style mpm/cells) needs a fix mpm, and {} is none",
                id, field_id);
@@ -229,14 +230,14 @@ void FixMPMCells::average()
 {
   double area = 1.0;
   for (int d = 0; d < dim; d++) area *= domain->prd[d] / ncell[d];
-  const auto *field = dynamic_cast<FixMPM *>(modify->get_fix_by_id(field_id));
+  const auto *field = MPMField::find(lmp, field_id);
 
   for (int z = owned.lo[2]; z <= owned.hi[2]; z++)
     for (int y = owned.lo[1]; y <= owned.hi[1]; y++)
       for (int x = owned.lo[0]; x <= owned.hi[0]; x++) {
         const double *sum = &sums[all.index(x, y, z) * NSUM];
         const double radius = domain->boxlo[0] + (x + 0.5) * domain->prd[0] / ncell[0];
-        const double cell_volume = area * (field ? field->circle(radius) : 1.0);
+        const double cell_volume = area * (field ? field->frame->circle(radius) : 1.0);
         const double per_mass = sum[MASS] > 0.0 ? 1.0 / sum[MASS] : 0.0;
         const double per_volume = sum[VOLUME] > 0.0 ? 1.0 / sum[VOLUME] : 0.0;
         *value(DENSITY, x, y, z) = sum[MASS] / cell_volume;

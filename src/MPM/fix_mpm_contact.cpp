@@ -40,11 +40,15 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "fix_mpm.h"
 #include "force.h"
 #include "math_extra.h"
 #include "modify.h"
+#include "mpm_field.h"
+#include "mpm_frame.h"
 #include "mpm_image.h"
+#include "mpm_node_sums.h"
+#include "mpm_options.h"
+#include "mpm_point_map.h"
 #include "update.h"
 
 #include <algorithm>
@@ -73,22 +77,73 @@ static constexpr double ROUNDING = 1.0e-8;
    fix ID all mpm/contact FIELD FIELD ...  law ... normal ... gap ...
 ------------------------------------------------------------------------- */
 
+Options MPMContactOptions::declare()
+{
+  using namespace option;
+  Options o("fix mpm/contact");
+  o.add("law",
+        {word(law,
+              {{"frictionless", FRICTIONLESS, "bodies slide freely"},
+               {"coulomb",
+                COULOMB,
+                "friction",
+                {number(kinetic_friction, "mu", NOT_NEGATIVE, "1", "coefficient of friction"),
+                 optional(number(static_friction, "mu_s", NOT_NEGATIVE, "1",
+                                 "coefficient of static friction, not below mu; default: mu"))}},
+               {"stick", STICK, "bodies do not slide while they press on each other"},
+               {"adhesive",
+                ADHESIVE,
+                "bodies that touch resist separation and sliding",
+                {number(normal_strength, "sn", NOT_NEGATIVE, "pressure", "normal strength"),
+                 number(shear_strength, "ss", NOT_NEGATIVE, "pressure", "shear strength"),
+                 number(release_work, "work", NOT_NEGATIVE, "pressure*distance",
+                        "work to separate the bodies, per area"),
+                 optional(number(kinetic_friction, "mu", NOT_NEGATIVE, "1",
+                                 "coefficient of friction, in addition; default: 0"))}}})})
+      .standard("frictionless");
+  o.add(
+      "normal",
+      {word(normal_by,
+            {{"colinear", COLINEAR}, {"volume", VOLUME}, {"mass", MASS}, {"logistic", LOGISTIC}})},
+      "how the normal of the interface is computed from the bodies");
+  o.add(
+      "gap",
+      {word(
+          gap,
+          {{"no", false, "bodies are in contact as soon as they have nodes in common"},
+           {"yes",
+            true,
+            "bodies are in contact when they touch",
+            {optional(number(
+                full, "share", {0.5, 1.0, true}, "",
+                "share of the volume of a node that they fill when they touch; default: 1"))}}})});
+  o.refuse([=] {
+    return OptionRules{
+        {law == COULOMB && static_friction >= 0.0 && static_friction < kinetic_friction, "law",
+         "coulomb: the coefficient of static friction must not be below that of friction: {law}"},
+        {law == ADHESIVE && (normal_strength == 0.0 || release_work == 0.0), "law",
+         "adhesive needs a positive normal strength and work of release: use frictionless or "
+         "coulomb for bodies that do not adhere"},
+        {law == ADHESIVE && !gap, "law",
+         "adhesive must know how far bodies are apart: drop gap no"},
+        {law == ADHESIVE && normal_by == MASS, "law",
+         "adhesive needs the area of the interface: use normal volume or colinear"}};
+  });
+  return o;
+}
+
 FixMPMContact::FixMPMContact(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), law(FRICTIONLESS), normal_by(COLINEAR), kinetic_friction(0.0),
-    static_friction(0.0), normal_strength(0.0), shear_strength(0.0), release_work(0.0), gap(true),
-    full(1.0), lists_valid(false), may_touch(false), look(true), dt_last(0.0), force_now(),
-    count_now(), friction_work(), array(), array_step(-1)
+    Fix(lmp, narg, arg), lists_valid(false), may_touch(false), look(true), dt_last(0.0),
+    force_now(), count_now(), friction_work(), array(), array_step(-1)
 {
   if (igroup != 0)
     error->all(FLERR, 1,
                "Fix mpm/contact acts on nodes, which have no group: use group all; the bodies are "
                "the fields that are named");
 
+  Options options = declare();
   int iarg = 3;
-  const auto is_keyword = [](const std::string &word) {
-    return word == "law" || word == "normal" || word == "gap";
-  };
-  while (iarg < narg && !is_keyword(arg[iarg])) {
+  while (iarg < narg && !options.has(arg[iarg])) {
     if (std::count(names.begin(), names.end(), arg[iarg]))
       error->all(FLERR, iarg, "Fix mpm/contact field {} is named twice", arg[iarg]);
     names.emplace_back(arg[iarg++]);
@@ -100,103 +155,8 @@ FixMPMContact::FixMPMContact(LAMMPS *lmp, int narg, char **arg) :
     error->all(FLERR, 3 + MAX_FIELDS, "Fix mpm/contact takes at most {} bodies: use several",
                MAX_FIELDS);
 
-  const auto number = [&](int i, const char *what, double low) {
-    const double value = utils::numeric(FLERR, arg[i], false, lmp);
-    if (!(value >= low) || !std::isfinite(value))
-      error->all(FLERR, i, "Fix mpm/contact {} must not be below {}: {}", what, low, arg[i]);
-    return value;
-  };
-  const auto is_number = [&](int i) {
-    return i < narg && (utils::is_double(arg[i]) || utils::strmatch(arg[i], "^v_"));
-  };
-
-  while (iarg < narg) {
-    const std::string keyword = arg[iarg];
-    if (!is_keyword(keyword))
-      error->all(FLERR, iarg, "Unknown fix mpm/contact keyword: {}", keyword);
-    const auto need = [&](int n) {
-      if (iarg + n >= narg) utils::missing_cmd_args(FLERR, "fix mpm/contact " + keyword, error);
-    };
-    need(1);
-    const std::string choice = arg[iarg + 1];
-    if (keyword == "law") {
-      if (choice == "frictionless") {
-        law = FRICTIONLESS;
-        iarg += 2;
-      } else if (choice == "stick") {
-        law = STICK;
-        iarg += 2;
-      } else if (choice == "coulomb") {
-        need(2);
-        law = COULOMB;
-        kinetic_friction = static_friction = number(iarg + 2, "coefficient of friction", 0.0);
-        iarg += 3;
-        if (is_number(iarg)) {
-          static_friction = number(iarg, "coefficient of static friction", kinetic_friction);
-          iarg++;
-        }
-      } else if (choice == "adhesive") {
-        need(4);
-        law = ADHESIVE;
-        normal_strength = number(iarg + 2, "adhesive normal strength", 0.0);
-        shear_strength = number(iarg + 3, "adhesive shear strength", 0.0);
-        release_work = number(iarg + 4, "adhesive work of release", 0.0);
-        if (normal_strength == 0.0 || release_work == 0.0)
-          error->all(FLERR, iarg + 2,
-                     "Fix mpm/contact law adhesive needs a positive normal strength and work of "
-                     "release: use frictionless or coulomb for bodies that do not adhere");
-        iarg += 5;
-        if (is_number(iarg)) {
-          kinetic_friction = static_friction = number(iarg, "coefficient of friction", 0.0);
-          iarg++;
-        }
-      } else
-        error->all(FLERR, iarg + 1,
-                   "Unknown fix mpm/contact law {}: must be frictionless, coulomb, stick or "
-                   "adhesive",
-                   choice);
-    } else if (keyword == "normal") {
-      if (choice == "mass")
-        normal_by = MASS;
-      else if (choice == "volume")
-        normal_by = VOLUME;
-      else if (choice == "colinear")
-        normal_by = COLINEAR;
-      else if (choice == "logistic")
-        normal_by = LOGISTIC;
-      else
-        error->all(FLERR, iarg + 1,
-                   "Unknown fix mpm/contact normal {}: must be mass, volume, colinear or "
-                   "logistic",
-                   choice);
-      iarg += 2;
-    } else {    // gap
-      if (choice == "no") {
-        gap = false;
-        iarg += 2;
-      } else if (choice == "yes") {
-        gap = true;
-        iarg += 2;
-        if (is_number(iarg)) {
-          full = number(iarg, "share of volume at contact", 0.5);
-          if (full > 1.0)
-            error->all(FLERR, iarg, "Fix mpm/contact share of volume at contact is above one: {}",
-                       arg[iarg]);
-          iarg++;
-        }
-      } else
-        error->all(FLERR, iarg + 1, "Unknown fix mpm/contact gap {}: must be yes or no", choice);
-    }
-  }
-  if (law == ADHESIVE) {
-    if (!gap)
-      error->all(FLERR, Error::NOPOINTER,
-                 "Fix mpm/contact law adhesive must know how far bodies are apart: drop gap no");
-    if (normal_by == MASS)
-      error->all(FLERR, Error::NOPOINTER,
-                 "Fix mpm/contact law adhesive needs the area of the interface: use normal volume "
-                 "or colinear");
-  }
+  read_options(lmp, options, narg, arg, iarg);
+  if (static_friction < 0.0 || law == ADHESIVE) static_friction = kinetic_friction;
 
   scalar_flag = array_flag = 1;
   size_array_rows = (int) (names.size() * (names.size() - 1) / 2);
@@ -219,7 +179,7 @@ void FixMPMContact::init()
 {
   fields.clear();
   for (const auto &name : names) {
-    auto *field = dynamic_cast<FixMPM *>(modify->get_fix_by_id(name));
+    auto *field = MPMField::find(lmp, name);
     if (!field)
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/contact {}: {} is not the ID of a fix mpm: define one fix mpm for each "
@@ -227,29 +187,21 @@ void FixMPMContact::init()
                  id, name);
     fields.push_back(field);
   }
-  const FixMPM &first = *fields[0];
+  const MPMField &first = *fields[0];
   for (const auto *field : fields) {
-    bool same = field->lattice.h == first.lattice.h && field->shape == first.shape &&
-        field->extent == first.extent;
+    bool same = field->lattice.h == first.lattice.h && field->options.shape == first.options.shape;
     for (int d = 0; d < 3; d++) same = same && field->lattice.origin[d] == first.lattice.origin[d];
     if (!same)
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/contact {}: fields {} and {} must have the same lattice (node spacing "
                  "and origin) and shape function; bodies on different lattices meet through a pair "
                  "style",
-                 id, first.id, field->id);
-    if (field->total)
-      error->all(
-          FLERR, Error::NOLASTLINE,
-          "Fix mpm/contact cannot be used with frame total of fix mpm {}, whose nodes are not "
-          "where the body is: let bodies meet through a pair style",
-          field->id);
-    if (field->stress_before())
-      error->all(
-          FLERR, Error::NOLASTLINE,
-          "Fix mpm/contact cannot be used with scheme usf or usavg of fix mpm {}, which need the "
-          "contact before it is known: use usl or musl",
-          field->id);
+                 id, first.id(), field->id());
+    refuse_field(lmp, *this, *field,
+                 {{field->options.total, "frame total",
+                   "its nodes are not where the body is: let bodies meet through a pair style"},
+                  {field->options.stress_before(), "scheme usf and usavg",
+                   "these need the contact before it is known: use usl or musl"}});
   }
   for (auto *other : modify->get_fix_by_style("^mpm/contact$")) {
     if (other == this) continue;
@@ -291,7 +243,7 @@ bool FixMPMContact::couples(const std::string &a, const std::string &b) const
   return a != b && has(a) && has(b);
 }
 
-int FixMPMContact::index_of(const FixMPM &field) const
+int FixMPMContact::index_of(const MPMField &field) const
 {
   for (std::size_t k = 0; k < fields.size(); k++)
     if (fields[k] == &field) return (int) k;
@@ -312,9 +264,9 @@ int FixMPMContact::pair_index(int a, int b) const
 void FixMPMContact::couple_topology()
 {
   bool stale = false;
-  for (const auto *field : fields) stale = stale || field->topology_stale();
+  for (const auto *field : fields) stale = stale || !field->map->valid;
   if (stale)
-    for (auto *field : fields) field->renew_topology();
+    for (auto *field : fields) field->map->valid = false;
 }
 
 /* ----------------------------------------------------------------------
@@ -324,12 +276,12 @@ void FixMPMContact::couple_topology()
 void FixMPMContact::blocks_found()
 {
   bool stale = false;
-  for (const auto *field : fields) stale = stale || field->topology_stale();
+  for (const auto *field : fields) stale = stale || !field->map->valid;
   if (!stale) return;
   lists_valid = false;
 
   for (std::size_t k = 0; k < fields.size(); k++) {
-    const Grid &grid = *fields[k]->grid;
+    const Grid &grid = fields[k]->grid;
     const MPM_NS::Lattice &lattice = grid.lattice;
     reach[k].clear();
     int range[6];    // low, and minus high
@@ -364,7 +316,7 @@ void FixMPMContact::blocks_found()
    a rank must know the mass of all bodies at the nodes of any of them, where bodies may meet
 ------------------------------------------------------------------------- */
 
-void FixMPMContact::extend_topology(FixMPM &field)
+void FixMPMContact::extend_topology(MPMField &field)
 {
   const int k = index_of(field);
   if (k < 0) return;
@@ -374,14 +326,14 @@ void FixMPMContact::extend_topology(FixMPM &field)
       bool inside = true;
       for (int d = 0; d < 3; d++)
         inside = inside && b[d] >= extent[k][d] && b[d] <= -extent[k][3 + d];
-      if (inside) field.grid->activate(b.data());
+      if (inside) field.grid.activate(b.data());
     }
   }
 }
 
 /* ---------------------------------------------------------------------- */
 
-void FixMPMContact::topology_changed(FixMPM &field)
+void FixMPMContact::topology_changed(MPMField &field)
 {
   if (index_of(field) >= 0) lists_valid = false;
 }
@@ -393,7 +345,7 @@ void FixMPMContact::list_common_blocks()
   common.clear();
   const int n = (int) fields.size();
   for (int k = 0; k < n; k++) {
-    const Grid &grid = *fields[k]->grid;
+    const Grid &grid = fields[k]->grid;
     images[k].clear();
     for (std::size_t slot = 0; slot < grid.blocks.size(); slot++)
       if (grid.blocks[slot].alias) images[k].push_back((int) slot);
@@ -402,7 +354,7 @@ void FixMPMContact::list_common_blocks()
       int count = 0;
       bool listed = false;
       for (int j = 0; j < n; j++) {
-        c.slot[j] = fields[j]->grid->find(block.b);
+        c.slot[j] = fields[j]->grid.find(block.b);
         if (c.slot[j] < 0) continue;
         count++;
         listed = listed || j < k;
@@ -426,7 +378,7 @@ void FixMPMContact::list_common_blocks()
 void FixMPMContact::mark_near(int k, int slot)
 {
   near[k][slot] = 1;
-  const Grid &grid = *fields[k]->grid;
+  const Grid &grid = fields[k]->grid;
   const MPM_NS::Lattice &lattice = grid.lattice;
   if (!lattice.periodic[0] && !lattice.periodic[1] && !lattice.periodic[2]) return;
   for (const int image : images[k])
@@ -450,7 +402,7 @@ void FixMPMContact::mark_near(int k, int slot)
 bool FixMPMContact::map_bodies()
 {
   const int nfields = (int) fields.size();
-  for (int k = 0; k < nfields; k++) near[k].assign(fields[k]->grid->blocks.size(), 0);
+  for (int k = 0; k < nfields; k++) near[k].assign(fields[k]->grid.blocks.size(), 0);
   int any = 0, all;
   for (const auto &c : common) {
     bool meet = false;
@@ -458,7 +410,7 @@ bool FixMPMContact::map_bodies()
       if (!(c.canonical >> n & 1)) continue;
       int massive = 0;
       for (int k = 0; k < nfields; k++)
-        massive += c.slot[k] >= 0 && fields[k]->grid->record(c.slot[k], n)[3] > 0.0;
+        massive += c.slot[k] >= 0 && fields[k]->grid.record(c.slot[k], n)[3] > 0.0;
       meet = massive > 1;
     }
     if (!meet) continue;
@@ -470,9 +422,9 @@ bool FixMPMContact::map_bodies()
   if (!all) return false;
 
   for (std::size_t k = 0; k < fields.size(); k++) {
-    fields[k]->map_gradient(normal_by == MASS ? FixMPM::OF_MASS : FixMPM::OF_VOLUME, near[k],
-                            gradient[k]);
-    if (gap || look) fields[k]->map_volume(near[k], share[k]);
+    map_gradient(*fields[k], normal_by == MASS ? Weight::MASS : Weight::VOLUME, near[k],
+                 gradient[k]);
+    if (gap || look) map_volume(*fields[k], near[k], share[k]);
   }
   return true;
 }
@@ -509,9 +461,9 @@ void FixMPMContact::warn_overlap()
       }
       if (most[1] < OVERLAP_EACH || sum < OVERLAP || sum <= mine.value) continue;
       mine.value = sum;
-      const FixMPM &field = *fields[body[0]];
+      const MPMField &field = *fields[body[0]];
       int index[3];
-      field.grid->node_index(field.grid->blocks[c.slot[body[0]]], n, index);
+      field.grid.node_index(field.grid.blocks[c.slot[body[0]]], n, index);
       field.node_position(index, place);
       place[3] = body[0];
       place[4] = body[1];
@@ -522,7 +474,7 @@ void FixMPMContact::warn_overlap()
 
   tagint tags[2];
   for (int b = 0; b < 2; b++) {
-    const FixMPM &field = *fields[(int) place[3 + b]];
+    const MPMField &field = *fields[(int) place[3 + b]];
     mine.value = 1.0e300;
     tags[b] = 0;
     for (int i = 0; i < atom->nlocal; i++) {
@@ -543,7 +495,7 @@ void FixMPMContact::warn_overlap()
                    "Fix mpm/contact {}: bodies {} and {} overlap at the start of the run, for "
                    "instance points {} and {} near {:.6g} {:.6g} {:.6g}: contact keeps bodies from "
                    "approaching each other, but does not part them",
-                   id, fields[(int) place[3]]->id, fields[(int) place[4]]->id, tags[0], tags[1],
+                   id, fields[(int) place[3]]->id(), fields[(int) place[4]]->id(), tags[0], tags[1],
                    place[0], place[1], place[2]);
 }
 
@@ -568,14 +520,15 @@ bool FixMPMContact::make_pair(const Common &c, int n, int a, int b, double volum
 
   pair.a = a;
   pair.b = b;
-  pair.ra = fields[a]->grid->record(c.slot[a], n);
-  pair.rb = fields[b]->grid->record(c.slot[b], n);
+  pair.ra = fields[a]->grid.record(c.slot[a], n);
+  pair.rb = fields[b]->grid.record(c.slot[b], n);
   pair.area = 0.5 * (la + lb);
   pair.fade = 0.0;
   pair.state = OPEN;
   pair.normal = pair.tangential[0] = pair.tangential[1] = pair.tangential[2] = 0.0;
   if (law == ADHESIVE && pair.area > 0.0) {
-    const double cell = (dim == 3 ? h * h * h : h * h) * fields[a]->node_circle(c.slot[a], n);
+    const double cell =
+        (dim == 3 ? h * h * h : h * h) * fields[a]->frame->node_circle(c.slot[a], n);
     const double opening = std::max(0.0, full - volume_share) * cell / pair.area;
     pair.fade = std::max(0.0, 1.0 - opening * normal_strength / (2.0 * release_work));
   }
@@ -597,7 +550,7 @@ void FixMPMContact::find_contacts()
       for (int k = 0; k < nfields; k++) {
         node.record[k] = nullptr;
         if (c.slot[k] < 0) continue;
-        double *record = fields[k]->grid->record(c.slot[k], n);
+        double *record = fields[k]->grid.record(c.slot[k], n);
         if (!(record[3] > 0.0)) continue;
         node.record[k] = record;
         massive++;
@@ -731,7 +684,7 @@ void FixMPMContact::account(const Node &node, const double start[][3])
     if (!record) continue;
     double change[3] = {0.0, 0.0, 0.0};
     for (int d = 0; d < dim; d++) change[d] = record[d] - start[k][d];
-    fields[k]->count_push(record, change);
+    fields[k]->ledger.count_push(record, change);
   }
 }
 

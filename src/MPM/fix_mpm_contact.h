@@ -15,6 +15,7 @@ FixStyle(mpm/contact,FixMPMContact);
 #ifndef LMP_FIX_MPM_CONTACT_H
 #define LMP_FIX_MPM_CONTACT_H
 
+#include "declare/option.h"
 #include "fix.h"
 #include "mpm_node_action.h"
 
@@ -24,10 +25,25 @@ FixStyle(mpm/contact,FixMPMContact);
 #include <vector>
 
 namespace LAMMPS_NS {
-class FixMPM;
+class MPMField;
+
+struct MPMContactOptions {
+  enum Law { FRICTIONLESS, COULOMB, STICK, ADHESIVE };
+  enum Normal { MASS, VOLUME, COLINEAR, LOGISTIC };
+
+  Law law = FRICTIONLESS;
+  Normal normal_by = COLINEAR;
+  double kinetic_friction = 0.0;
+  double static_friction = -1.0;    ///< negative: the same
+  double normal_strength = 0.0, shear_strength = 0.0, release_work = 0.0;
+  bool gap = true;
+  double full = 1.0;    ///< with gap: volume share of a node at which bodies touch
+
+  MPM_NS::Options declare();
+};
 
 /** Contact between bodies that are fields (fix mpm) on one lattice, at the nodes they share. */
-class FixMPMContact : public Fix, public MPMNodeAction {
+class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOptions {
  public:
   Turn turn() const override { return BETWEEN_BODIES; }
   FixMPMContact(class LAMMPS *, int, char **);
@@ -41,8 +57,8 @@ class FixMPMContact : public Fix, public MPMNodeAction {
 
   void couple_topology() override;
   void blocks_found() override;
-  void extend_topology(FixMPM &) override;
-  void topology_changed(FixMPM &) override;
+  void extend_topology(MPMField &) override;
+  void topology_changed(MPMField &) override;
   void act(double dt, Stage) override;
 
   /** Is contact between these two fields (IDs) left to this fix? */
@@ -54,8 +70,6 @@ class FixMPMContact : public Fix, public MPMNodeAction {
   static constexpr int MAX_PAIRS = MAX_FIELDS * (MAX_FIELDS - 1) / 2;
 
   static constexpr int REACH = 2;    // of the function of a node, in nodes
-  enum Law { FRICTIONLESS, COULOMB, STICK, ADHESIVE };
-  enum Normal { MASS, VOLUME, COLINEAR, LOGISTIC };
   enum State : char { OPEN, SLIDING, STUCK };
 
   struct Common {            // a block of nodes that several fields have
@@ -85,15 +99,9 @@ class FixMPMContact : public Fix, public MPMNodeAction {
   using Blocks = std::vector<std::array<int, 3>>;
 
   std::vector<std::string> names;
-  Law law;
-  Normal normal_by;
-  double kinetic_friction, static_friction;
-  double normal_strength, shear_strength, release_work;
-  bool gap;
-  double full;        // with gap: volume share of a node at which bodies touch
   Room room[3][2];    // [axis][side]
 
-  std::vector<FixMPM *> fields;
+  std::vector<MPMField *> fields;
   std::vector<Blocks> reach;                 // [field] blocks in reach of its points, canonical
   std::vector<std::array<int, 6>> extent;    // [field] their range over all ranks
   std::vector<Common> common;
@@ -114,7 +122,7 @@ class FixMPMContact : public Fix, public MPMNodeAction {
 
   void find_room();
   double filled(const Common &, int n) const;
-  int index_of(const FixMPM &) const;
+  int index_of(const MPMField &) const;
   int pair_index(int a, int b) const;
   void list_common_blocks();
   void mark_near(int k, int slot);

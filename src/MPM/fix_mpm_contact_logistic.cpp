@@ -22,9 +22,10 @@
 #include "fix_mpm_contact.h"
 
 #include "comm.h"
-#include "fix_mpm.h"
-#include "fix_mpm_visit.h"
 #include "math_extra.h"
+#include "mpm_field.h"
+#include "mpm_halo.h"
+#include "mpm_node_sums.h"
 
 #include <Eigen/Dense>
 
@@ -44,7 +45,7 @@ void FixMPMContact::separate_points()
 
   std::vector<std::vector<int>> wanted(nfields);
   for (int k = 0; k < nfields; k++) {
-    const Grid &grid = *fields[k]->grid;
+    const Grid &grid = fields[k]->grid;
     wanted[k].assign(grid.nnodes(), -1);
     for (std::size_t m = 0; m < nodes.size(); m++)
       if (nodes[m].record[k])
@@ -65,7 +66,7 @@ void FixMPMContact::separate_points()
   for (int round = 0; round < ROUNDS; round++) {
     sums.assign(sums.size(), 0.0);
     for (int k = 0; k < nfields; k++)
-      fields[k]->visit_points(wanted[k], [&](int, int which, double weight, const double *r) {
+      visit_points(*fields[k], wanted[k], [&](int, int which, double weight, const double *r) {
         const Node &node = nodes[which];
         for (int p = node.first; p < node.last; p++) {
           const Pair &pair = pairs[p];
@@ -83,7 +84,7 @@ void FixMPMContact::separate_points()
 
     if (comm->nprocs > 1)    // by pairs of bodies, on the nodes of the first of them
       for (int a = 0; a < nfields; a++) {
-        const Grid &grid = *fields[a]->grid;
+        const Grid &grid = fields[a]->grid;
         for (int b = a + 1; b < nfields; b++) {
           shared.assign(grid.nnodes() * NREAL, 0.0);
           const auto each = [&](const auto &act) {
@@ -98,7 +99,7 @@ void FixMPMContact::separate_points()
           each([](double &mine, double &node) {
             node = mine;
           });
-          fields[a]->sum_over_ranks(shared.data(), NREAL);
+          fields[a]->halo->sum(shared.data(), NREAL, 0, NREAL);
           each([](double &mine, double &node) {
             mine = node;
           });

@@ -14,7 +14,7 @@
 #include "fix_mpm_contact.h"
 
 #include "domain.h"
-#include "fix_mpm.h"
+#include "mpm_field.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +25,7 @@ using namespace MPM_NS;
 void FixMPMContact::find_room()
 {
   constexpr int FIXED = 1, SAMPLES = 48;    // boundary f; places per cell
-  const FixMPM &field = *fields[0];
+  const MPMField &field = *fields[0];
   for (int d = 0; d < field.lattice.dim; d++) {
     double face[2] = {-1.0e300, 1.0e300};    // in node spacings
     const double h = field.lattice.h, origin = field.lattice.origin[d];
@@ -41,11 +41,11 @@ void FixMPMContact::find_room()
       for (int k = -REACH * SAMPLES; k < REACH * SAMPLES; k++) {
         const double t = node + (k + 0.5) / SAMPLES;
         if (t < face[0] || t > face[1]) continue;
-        if (field.extent != FixMPM::NO_SIZE) {
+        if (field.options.has_size()) {
           sum += std::max(0.0, 1.0 - std::fabs(t - node)) / SAMPLES;
           continue;
         }
-        const int n = field.shape_weights(t, first, w);
+        const int n = field.weights(t, first, w);
         if (node >= first && node < first + n) sum += w[node - first] / SAMPLES;
       }
       return sum;
@@ -57,8 +57,8 @@ void FixMPMContact::find_room()
       near.plane = (int) std::lround(face[side]);
       const int inward = side ? -1 : 1;
       for (int k = 0; k <= REACH; k++) near.share[k] = inside(near.plane + inward * k);
-      if (!field.modified_edges) continue;
-      const double outside = inside(near.plane - inward);    // see FixMPM::fold_edges()
+      if (!field.options.modified_edges) continue;
+      const double outside = inside(near.plane - inward);    // see MPMEdges::fold()
       near.share[0] += 2.0 * outside;
       near.share[1] -= outside;
     }
@@ -73,7 +73,7 @@ double FixMPMContact::filled(const Common &c, int n) const
 {
   int any = 0, index[3];
   while (c.slot[any] < 0) any++;
-  const Grid &grid = *fields[any]->grid;
+  const Grid &grid = fields[any]->grid;
   grid.node_index(grid.blocks[c.slot[any]], n, index);
   double most = 1.0;
   bool image = false;
@@ -95,7 +95,7 @@ double FixMPMContact::filled(const Common &c, int n) const
   double sum = 0.0;
   for (std::size_t k = 0; k < fields.size(); k++) {
     int64_t node = c.slot[k] < 0 ? -1 : (int64_t) c.slot[k] * NODES_PER_BLOCK + n;
-    if (image) node = fields[k]->grid->locate(index);
+    if (image) node = fields[k]->grid.locate(index);
     if (node >= 0) sum += share[k][node];
   }
   return most > 0.0 ? sum / most : 0.0;

@@ -10,11 +10,13 @@
 
 #include "comm.h"
 #include "error.h"
-#include "fix_mpm.h"
 #include "fix_mpm_elements.h"
 #include "force.h"
 #include "integrate.h"
 #include "modify.h"
+#include "mpm_field.h"
+#include "mpm_options.h"
+#include "mpm_time_limit.h"
 #include "output.h"
 #include "pair.h"
 #include "update.h"
@@ -26,6 +28,7 @@
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
+using namespace MPM_NS;
 
 static constexpr double NO_POINTS = std::numeric_limits<double>::max();
 
@@ -33,49 +36,37 @@ static constexpr double NO_POINTS = std::numeric_limits<double>::max();
    fix ID all mpm/dt FRACTION keyword value ...
 ------------------------------------------------------------------------- */
 
+Options MPMDtOptions::declare()
+{
+  using namespace option;
+  Options o("fix mpm/dt");
+  o.argument(number(fraction, "fraction of h/(c+|v|)", {0.0, 2.0, false, true}));
+  o.add("every", {integer(look_every, "N", POSITIVE, "set the time step every this many steps")});
+  o.add(
+      "grow",
+      {number(grow, "R", AT_LEAST_ONE, "", "largest factor by which the time step grows at once")});
+  o.add("min",
+        {number(dt_min, "dt", POSITIVE, "time", "smallest time step; a smaller one is an error")})
+      .standard("none");
+  o.add("max", {number(dt_max, "dt", POSITIVE, "time", "largest time step")}).standard("none");
+  o.add("strain",
+        {number(strain, "S", POSITIVE, "",
+                "largest relative change of the volume of a point in a step")})
+      .standard("no limit");
+  o.refuse([=] {
+    return OptionRules{{dt_max > 0.0 && dt_min > dt_max, "min", "{min} is above max {max}"}};
+  });
+  return o;
+}
+
 FixMPMDt::FixMPMDt(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), grow(1.05), dt_min(0.0), dt_max(0.0), strain(0.0), look_every(10),
-    limit({0.0, 0.0, 0.0}), nchanges(0), continues(false), dt_left(0.0), limit_left(0.0),
-    carried({NO_POINTS, 0.0, 0.0})
+    Fix(lmp, narg, arg), limit({0.0, 0.0, 0.0}), nchanges(0), continues(false), dt_left(0.0),
+    limit_left(0.0), carried({NO_POINTS, 0.0, 0.0})
 {
   if (igroup != 0)
     error->all(FLERR, 1, "Fix mpm/dt looks at the points of all fix mpm: use group all");
-  if (narg < 4) utils::missing_cmd_args(FLERR, "fix mpm/dt", error);
-  fraction = utils::numeric(FLERR, arg[3], false, lmp);
-  if (!(fraction > 0.0 && fraction <= 2.0))
-    error->all(FLERR, 3,
-               "Fix mpm/dt fraction of h/(c+|v|) must be above 0 and at most 2, "
-               "for instance 0.5: {}",
-               arg[3]);
-
-  int iarg = 4;
-  while (iarg < narg) {
-    const std::string keyword = arg[iarg];
-    if (keyword != "every" && keyword != "grow" && keyword != "min" && keyword != "max" &&
-        keyword != "strain")
-      error->all(FLERR, iarg, "Unknown fix mpm/dt keyword: {}", keyword);
-    if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, "fix mpm/dt " + keyword, error);
-    if (keyword == "every") {
-      look_every = utils::inumeric(FLERR, arg[iarg + 1], false, lmp);
-      if (look_every <= 0)
-        error->all(FLERR, iarg + 1, "Fix mpm/dt every must be positive: {}", arg[iarg + 1]);
-    } else {
-      const double value = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
-      if (keyword == "grow") {
-        if (!(value >= 1.0))
-          error->all(FLERR, iarg + 1, "Fix mpm/dt grow is a factor of at least 1: {}",
-                     arg[iarg + 1]);
-        grow = value;
-      } else {
-        if (!(value > 0.0))
-          error->all(FLERR, iarg + 1, "Fix mpm/dt {} must be positive: {}", keyword, arg[iarg + 1]);
-        (keyword == "strain" ? strain : keyword == "min" ? dt_min : dt_max) = value;
-      }
-    }
-    iarg += 2;
-  }
-  if (dt_min > 0.0 && dt_max > 0.0 && dt_min > dt_max)
-    error->all(FLERR, "Fix mpm/dt min {} is above max {}", dt_min, dt_max);
+  Options options = declare();
+  read_options(lmp, options, narg, arg, 3);
 
   nevery = strain > 0.0 ? 1 : look_every;
 
@@ -124,10 +115,9 @@ FixMPMDt::Limit FixMPMDt::strain_limit_local() const
 {
   Limit mine = carried;
   if (strain == 0.0) return mine;
-  for (auto *ifix : modify->get_fix_by_style("^mpm$")) {
-    const auto *field = dynamic_cast<FixMPM *>(ifix);
-    const auto &rate = field->volume_rate;
-    const double dt = strain / (rate.most * fraction * field->every);
+  for (const auto *field : MPMField::all(lmp)) {
+    const auto &rate = field->time_limit->volume_rate;
+    const double dt = strain / (rate.most * fraction * field->options.every);
     if (rate.most > 0.0 && dt < mine.dt) mine = {dt, 0.0, (double) rate.tag};
   }
   return mine;
@@ -140,11 +130,10 @@ FixMPMDt::Limit FixMPMDt::strain_limit_local() const
 FixMPMDt::Limit FixMPMDt::find_limit() const
 {
   Limit mine = strain_limit_local();
-  for (auto *ifix : modify->get_fix_by_style("^mpm$")) {
+  for (auto *field : MPMField::all(lmp)) {
     tagint tag = 0;
     double speed = 0.0;
-    auto *field = dynamic_cast<FixMPM *>(ifix);
-    double dt = field->stable_dt_local(tag, speed) / field->every;
+    double dt = field->time_limit->stable_dt(tag, speed) / field->options.every;
     if (!(dt > 0.0)) dt = 0.0;    // also NaN
     if (dt < mine.dt) mine = {dt, speed, (double) tag};
   }
@@ -177,8 +166,7 @@ FixMPMDt::Limit FixMPMDt::smallest(Limit mine) const
 
 void FixMPMDt::setup_pre_force(int)
 {
-  for (auto *ifix : modify->get_fix_by_style("^mpm$"))
-    dynamic_cast<FixMPM *>(ifix)->watch_volume = strain > 0.0;
+  for (auto *field : MPMField::all(lmp)) field->time_limit->watch_volume = strain > 0.0;
   limit = find_limit();
   if (continues && update->dt == dt_left && fabs(limit.dt - limit_left) <= 1.0e-9 * limit_left) {
     update->dt_default = 0;
@@ -202,8 +190,7 @@ void FixMPMDt::end_of_step()
   }
   limit = find_limit();
   carried = {NO_POINTS, 0.0, 0.0};
-  for (auto *ifix : modify->get_fix_by_style("^mpm$"))
-    dynamic_cast<FixMPM *>(ifix)->volume_rate = {0.0, 0};
+  for (auto *field : MPMField::all(lmp)) field->time_limit->volume_rate = {0.0, 0};
   if (limit.dt < NO_POINTS) set_dt(std::min(fraction * limit.dt, grow * update->dt));
 }
 

@@ -15,13 +15,22 @@ FixStyle(mpm/dt,FixMPMDt);
 #ifndef LMP_FIX_MPM_DT_H
 #define LMP_FIX_MPM_DT_H
 
+#include "declare/option.h"
 #include "fix.h"
 
 namespace LAMMPS_NS {
 
+struct MPMDtOptions {
+  double fraction = 0.0, grow = 1.05, dt_min = 0.0, dt_max = 0.0;    ///< dt_min, dt_max: 0 = none
+  double strain = 0.0;    ///< largest change of volume in a step, 0: any
+  int look_every = 10;    ///< steps between looks at wave speeds
+
+  MPM_NS::Options declare();
+};
+
 /** Time step as a fraction of the smallest h/(c + |v|) over all material points, and with a limit of
  *  their change of volume in a step. */
-class FixMPMDt : public Fix {
+class FixMPMDt : public Fix, private MPMDtOptions {
  public:
   FixMPMDt(class LAMMPS *, int, char **);
   int setmask() override;
@@ -35,10 +44,6 @@ class FixMPMDt : public Fix {
   double compute_vector(int) override;
 
  private:
-  double fraction, grow, dt_min, dt_max;    // dt_min, dt_max: 0 = none
-  double strain;                            // largest change of volume in a step, 0: any
-  int look_every;                           // steps between looks at wave speeds
-
   /** The point that limits the time step. */
   struct Limit {
     double dt;       // its h/(c + |v|); 0: it has no valid wave speed; strain: dt/fraction

@@ -12,7 +12,6 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "fix_mpm.h"
 #include "fix_mpm_material.h"
 #include "force.h"
 #include "group.h"
@@ -21,8 +20,10 @@
 #include "memory.h"
 #include "mesh/element.h"
 #include "modify.h"
+#include "mpm_field.h"
 #include "mpm_image.h"
 #include "mpm_mesh_input.h"
+#include "mpm_options.h"
 #include "mpm_points.h"
 #include "update.h"
 
@@ -49,35 +50,32 @@ struct FixMPMElements::Work {
    fix ID group mpm/elements FILE keyword value ...
 ------------------------------------------------------------------------- */
 
+Options MPMElementsOptions::declare()
+{
+  using namespace option;
+  Options o("fix mpm/elements");
+  o.argument(text(file, "file"));
+  o.add("part",
+        {text(part, "name", "name or tag of a physical group of the mesh, as in create_points")})
+      .standard("all elements of the dimension of the simulation");
+  o.add("locking", {word(fbar, {{"none", false}, {"fbar", true}})},
+        "what is averaged over an element against volumetric locking");
+  return o;
+}
+
 FixMPMElements::FixMPMElements(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), dim(domain->dimension), maxnode(0), maxpoint(0), nhistory(0), stride(0),
-    max_of_node(0), nelements(0), nnodes(0), lowest(0), fbar(false), shortest(0.0),
-    material(nullptr), points(nullptr), batch(nullptr), work(nullptr), first(nullptr),
-    count(nullptr), width(0)
+    max_of_node(0), nelements(0), nnodes(0), lowest(0), shortest(0.0), material(nullptr),
+    points(nullptr), batch(nullptr), work(nullptr), first(nullptr), count(nullptr), width(0)
 {
-  if (narg < 4) utils::missing_cmd_args(FLERR, "fix mpm/elements", error);
+  Options options = declare();
+  read_options(lmp, options, narg, arg, 3);
   points = MPMPoints::get(atom);
   if (!points)
     error->all(FLERR,
                "Fix mpm/elements requires material points: use atom_style mpm, or hybrid "
                "with mpm");
   if (!atom->tag_enable) error->all(FLERR, "Fix mpm/elements requires atom IDs");
-
-  std::string part;
-  for (int iarg = 4; iarg < narg; iarg += 2) {
-    const std::string keyword = arg[iarg];
-    if (keyword != "part" && keyword != "locking")
-      error->all(FLERR, iarg, "Unknown fix mpm/elements keyword: {}", keyword);
-    if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "fix mpm/elements " + keyword, error);
-    const std::string value = arg[iarg + 1];
-    if (keyword == "part")
-      part = value;
-    else if (value == "fbar" || value == "none")
-      fbar = value == "fbar";
-    else
-      error->all(FLERR, iarg + 1, "Unknown fix mpm/elements locking {}: must be none or fbar",
-                 value);
-  }
 
   restart_global = restart_peratom = 1;
   create_attribute = 1;
@@ -87,7 +85,7 @@ FixMPMElements::FixMPMElements(LAMMPS *lmp, int narg, char **arg) :
 
   Mesh mesh;
   try {
-    mesh = read_body(lmp, arg[3], part);
+    mesh = read_body(lmp, file, part);
   } catch (const std::runtime_error &e) {
     error->all(FLERR, 3, "Fix mpm/elements: {}", e.what());
   }
@@ -318,33 +316,32 @@ void FixMPMElements::init()
         "on: nodes of elements must not be added, deleted or renumbered; unfix it before",
         id, group->names[igroup], n, n ? low : 0, high, nnodes, lowest);
 
-  for (auto *ifix : modify->get_fix_by_style("^mpm$")) {
-    const auto *field = dynamic_cast<FixMPM *>(ifix);
+  for (const auto *field : MPMField::all(lmp)) {
     int mine = 0, any;
     for (int i = 0; i < atom->nlocal; i++)
-      mine |= (atom->mask[i] & groupbit) && (atom->mask[i] & field->groupbit);
+      mine |= (atom->mask[i] & groupbit) && (atom->mask[i] & field->fix.groupbit);
     MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
     if (!any) continue;
-    if (field->locking != FixMPM::NO_CURE)
+    if (field->options.locking != MPMFieldOptions::NO_CURE)
       error->all(FLERR,
                  "Fix mpm {} locking is not for nodes of elements: use fix mpm/elements {} "
                  "locking fbar",
-                 field->id, id);
-    if (field->policy == FixMPM::DELETE || field->delete_failed)
+                 field->id(), id);
+    if (field->options.bad == MPMFieldOptions::DELETE || field->options.delete_failed)
       error->all(FLERR,
                  "Fix mpm {} bad delete and failed delete cannot be used with fix mpm/elements "
                  "{}, whose nodes must not be deleted: give them a fix mpm of their own",
-                 field->id, id);
-    if (field->axisymmetric)
+                 field->id(), id);
+    if (field->options.axisymmetric)
       error->all(FLERR,
                  "Fix mpm {} axisymmetric cannot be used with fix mpm/elements {}, whose elements "
                  "are of plane strain: use create_points elements with shape cpdi2",
-                 field->id, id);
-    if (field->every > 1)
+                 field->id(), id);
+    if (field->options.every > 1)
       error->all(FLERR,
                  "Fix mpm {} every cannot be used with fix mpm/elements {}, which strains elements "
                  "in each step: use every 1",
-                 field->id, id);
+                 field->id(), id);
   }
 
   // nodes of elements may be ghosts; what has been stretched since is asked for with comm_modify

@@ -15,9 +15,11 @@ FixStyle(mpm/elements,FixMPMElements);
 #ifndef LMP_FIX_MPM_ELEMENTS_H
 #define LMP_FIX_MPM_ELEMENTS_H
 
+#include "declare/option.h"
 #include "fix.h"
 #include "mesh/gmsh.h"
 
+#include <string>
 #include <vector>
 
 namespace MPM_NS {
@@ -27,6 +29,13 @@ struct ElementRule;
 
 namespace LAMMPS_NS {
 
+struct MPMElementsOptions {
+  std::string file, part;    ///< part: a physical group of the mesh, empty: all of it
+  bool fbar = false;         ///< average the volume over an element
+
+  MPM_NS::Options declare();
+};
+
 /** Finite elements whose nodes are material points: the points have no stress of their own, the
  *  internal force is integrated over the elements (total Lagrangian) and put on atom->f, and fix
  *  mpm moves the points. This is the generalized particle in cell method of V.P. Nguyen,
@@ -35,7 +44,7 @@ namespace LAMMPS_NS {
  *
  *  An element belongs to one of its nodes and migrates with it; the others may be ghosts.
  */
-class FixMPMElements : public Fix {
+class FixMPMElements : public Fix, private MPMElementsOptions {
  public:
   FixMPMElements(class LAMMPS *, int, char **);
   ~FixMPMElements() override;
@@ -85,8 +94,7 @@ class FixMPMElements : public Fix {
   int max_of_node;             // largest number of elements that belong to one node
   bigint nelements, nnodes;    // of the mesh
   tagint lowest;               // ID of its first node
-  bool fbar;
-  double shortest;    // length of the smallest element, for artificial viscosity
+  double shortest;             // length of the smallest element, for artificial viscosity
   class FixMPMMaterial *material;
   struct MPMPoints *points;
   MPM_NS::Batch *batch;

@@ -58,11 +58,11 @@
 #include "atom.h"
 #include "comm.h"
 #include "error.h"
-#include "fix_mpm.h"
 #include "fix_mpm_material.h"
 #include "force.h"
-#include "memory.h"
 #include "modify.h"
+#include "mpm_field.h"
+#include "mpm_options.h"
 #include "neigh_list.h"
 #include "neighbor.h"
 #include "pair_hybrid.h"
@@ -88,75 +88,62 @@ enum { CHANGE = 0, VELOCITY = 4 };
    fix ID atoms mpm/handshake FIELD zone AXIS ONE ZERO ... damp RATE
 ------------------------------------------------------------------------- */
 
-FixMPMHandshake::FixMPMHandshake(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), damping(0.0), field(nullptr), list(nullptr), weight(nullptr),
-    role(nullptr), natoms(0), nreach(0), heat(0.0), lost(0.0), impulse(), dt_last(0.0),
-    eam(nullptr), flaw(0.0)
+Options MPMHandshakeOptions::declare()
 {
-  if (narg < 4) utils::missing_cmd_args(FLERR, "fix mpm/handshake", error);
-  field_name = arg[3];
-  const auto number = [&](int i) {
-    const double value = utils::numeric(FLERR, arg[i], false, lmp);
-    if (!std::isfinite(value))
-      error->all(FLERR, i, "Fix mpm/handshake value {} is not finite", arg[i]);
-    return value;
-  };
-  for (int iarg = 4; iarg < narg;) {
-    const std::string keyword = arg[iarg];
-    if (keyword == "zone") {
-      if (iarg + 3 >= narg) utils::missing_cmd_args(FLERR, "fix mpm/handshake zone", error);
-      const std::string name = arg[iarg + 1];
-      Zone zone;
-      if (name == "x" || name == "y" || name == "z")
-        zone.axis = name[0] - 'x';
-      else
-        error->all(FLERR, iarg + 1, "Unknown axis {} of fix mpm/handshake zone: must be x, y or z",
-                   name);
-      zone.one = number(iarg + 2);
-      zone.zero = number(iarg + 3);
-      if (zone.one == zone.zero)
-        error->all(
-            FLERR, iarg + 2,
-            "Fix mpm/handshake zone has no width: the planes where the weight of the atoms is "
-            "one and zero must differ");
-      zones.push_back(zone);
-      iarg += 4;
-    } else if (keyword == "damp") {
-      if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, "fix mpm/handshake damp", error);
-      damping = number(iarg + 1);
-      if (damping < 0.0)
-        error->all(FLERR, iarg + 1, "Fix mpm/handshake rate of damping must not be negative: {}",
-                   arg[iarg + 1]);
-      iarg += 2;
-    } else
-      error->all(FLERR, iarg, "Unknown fix mpm/handshake keyword: {}", keyword);
-  }
-  if (zones.empty())
-    error->all(FLERR, Error::NOPOINTER, "Fix mpm/handshake needs at least one zone");
+  using namespace option;
+  Options o("fix mpm/handshake");
+  o.argument(text(field_name, "field"));
+  o.add(
+       "zone",
+       {word(next.axis, {{"x", Zone::X}, {"y", Zone::Y}, {"z", Zone::Z}}, "axis"),
+        number(
+            next.one, "one", ANY_NUMBER, "distance",
+            "coordinate where the weight of the atoms is 1, and beyond which there are atoms only"),
+        number(next.zero, "zero", ANY_NUMBER, "distance",
+               "coordinate where it is 0, and beyond which there are material points only")},
+       "may be repeated: the weight is the product")
+      .then([this] {
+        zones.push_back(next);
+      })
+      .standard("");
+  o.add("damp",
+        {number(damping, "rate", NOT_NEGATIVE, "1/time",
+                "rate at which the fine motion of the atoms is damped at weight 0")});
+  o.refuse([=] {
+    return OptionRules{
+        {zones.empty(), "", "needs at least one zone"},
+        {std::any_of(zones.begin(), zones.end(),
+                     [](const Zone &z) {
+                       return z.one == z.zero;
+                     }),
+         "zone",
+         "has no width: the planes where the weight of the atoms is one and zero must differ"}};
+  });
+  return o;
+}
+
+FixMPMHandshake::FixMPMHandshake(LAMMPS *lmp, int narg, char **arg) :
+    FixMPMState(lmp, narg, arg), field(nullptr), list(nullptr), weight(nullptr), role(nullptr),
+    natoms(0), nreach(0), heat(0.0), lost(0.0), impulse(), dt_last(0.0), eam(nullptr), flaw(0.0)
+{
+  Options options = declare();
+  read_options(lmp, options, narg, arg, 3);
 
   scalar_flag = vector_flag = peratom_flag = 1;
   size_vector = 4;
   size_peratom_cols = 0;
   peratom_freq = global_freq = 1;
   extscalar = extvector = 1;
-  create_attribute = 1;
   comm_forward = 2;
-  maxexchange = 2;
-  restart_global = restart_peratom = 1;
-  FixMPMHandshake::grow_arrays(atom->nmax);
-  atom->add_callback(Atom::GROW);
-  atom->add_callback(Atom::RESTART);
-  for (int i = 0; i < atom->nlocal; i++) FixMPMHandshake::set_arrays(i);
-}
-
-FixMPMHandshake::~FixMPMHandshake()
-{
-  if (modify) {
-    atom->delete_callback(id, Atom::GROW);
-    atom->delete_callback(id, Atom::RESTART);
-  }
-  memory->destroy(weight);
-  memory->destroy(role);
+  restart_global = 1;
+  state.declare(weight, "mpm/handshake:weight", [](int, double *row) {
+    *row = 1.0;
+  });
+  state.declare(role, "mpm/handshake:role", [](int, double *row) {
+    *row = UNKNOWN;
+  });
+  keep_arrays();
+  vector_atom = weight;
 }
 
 int FixMPMHandshake::setmask()
@@ -171,7 +158,7 @@ void FixMPMHandshake::init()
   const auto refuse = [&](const std::string &why) {
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/handshake {} {}", id, why);
   };
-  field = dynamic_cast<FixMPM *>(modify->get_fix_by_id(field_name));
+  field = MPMField::find(lmp, field_name);
   if (!field) refuse("needs the ID of a fix mpm, not " + field_name);
   for (const auto &zone : zones) {
     if (zone.axis >= field->lattice.dim) refuse("cannot have a zone along z in 2d");
@@ -181,15 +168,16 @@ void FixMPMHandshake::init()
                       "node spacings wide",
                       fabs(zone.one - zone.zero), field->lattice.h));
   }
-  if (is_affine(field->transfer) || field->refinement != FixMPM::LUMPED || field->flip < 1.0)
+  if (is_affine(field->options.transfer) || field->options.series != MPMFieldOptions::LUMPED ||
+      field->options.flip < 1.0)
     refuse("needs a field with transfer flip (1.0), which maps points as it maps atoms");
-  if (field->extent != FixMPM::NO_SIZE)
+  if (field->options.has_size())
     refuse("cannot be used with points of finite size (gimp): use a spline");
-  if (field->scheme != FixMPM::USL || field->light > 0.0)
+  if (field->options.scheme != MPMFieldOptions::USL || field->options.light > 0.0)
     refuse("needs a field with scheme usl and without light nodes");
-  if (field->total || field->axisymmetric)
+  if (field->options.total || field->options.axisymmetric)
     refuse("cannot be used with frame total or axisymmetric of fix mpm: atoms are in space");
-  if (field->every > 1)
+  if (field->options.every > 1)
     refuse("cannot be used with fix mpm every: atoms and points share each step");
   for (auto *other : modify->get_fix_by_style("^mpm/handshake$"))
     if (other != this && dynamic_cast<FixMPMHandshake *>(other)->field_name == field_name)
@@ -341,7 +329,8 @@ double FixMPMHandshake::weight_at(const double *x, double &inside, double &beyon
 /** Atoms and points that have no weight yet get that of the place where they are. */
 void FixMPMHandshake::weigh()
 {
-  const double reach = margin(), reach_nodes = 2.0 * (field->shape + 1) * field->lattice.h;
+  const double reach = margin(),
+               reach_nodes = 2.0 * (stencil_order(field->options.shape) + 1) * field->lattice.h;
   bigint none = 0, wrong = 0, all;
   for (int i = 0; i < atom->nlocal; i++) {
     if (role[i] != UNKNOWN) continue;
@@ -446,10 +435,10 @@ void FixMPMHandshake::post_neighbor()
    blocks that atoms reach before the next update: by then they move half a skin
 ------------------------------------------------------------------------- */
 
-void FixMPMHandshake::extend_topology(FixMPM &which)
+void FixMPMHandshake::extend_topology(MPMField &which)
 {
   if (&which != field) return;
-  Grid &grid = *field->grid;
+  Grid &grid = field->grid;
   const auto &lattice = grid.lattice;
   const double drift = MIN(1.0, 0.5 * neighbor->skin / lattice.h);
   for (int i = 0; i < atom->nlocal; i++) {
@@ -459,9 +448,9 @@ void FixMPMHandshake::extend_topology(FixMPM &which)
       const double t = (atom->x[i][d] - lattice.origin[d]) / lattice.h;
       int first;
       double w[4];
-      field->shape_weights(t - drift, first, w);
+      field->weights(t - drift, first, w);
       lo[d] = first >> grid.shift_bits;
-      const int n = field->shape_weights(t + drift, first, w);
+      const int n = field->weights(t + drift, first, w);
       hi[d] = (first + n - 1) >> grid.shift_bits;
     }
     for (int bx = lo[0]; bx <= hi[0]; bx++)
@@ -559,7 +548,7 @@ void FixMPMHandshake::act(double dt, Stage stage)
   find_nodes();
   map_members(dt);
   map_forces();
-  field->sum_copies(sums.data(), NREAL, 0, NREAL);
+  field->sum(sums.data(), NREAL, 0, NREAL);
   lost += kinetic_energy();
   if (damping > 0.0) damp(dt);
   tie(dt);
@@ -579,9 +568,9 @@ template <class Function> void FixMPMHandshake::each_node(std::size_t k, const F
 /** Which nodes do atoms and points reach, and with which weights? */
 void FixMPMHandshake::find_nodes()
 {
-  Grid &grid = *field->grid;
+  Grid &grid = field->grid;
   const auto &lattice = grid.lattice;
-  const int n = field->shape + 1, dim = lattice.dim, mask = grid.side - 1;
+  const int n = stencil_order(field->options.shape) + 1, dim = lattice.dim, mask = grid.side - 1;
   nreach = dim == 3 ? n * n * n : n * n;
 
   members.clear();
@@ -604,7 +593,7 @@ void FixMPMHandshake::find_nodes()
       if (!(fabs(t) < 4.0e6))
         error->one(FLERR, "Fix mpm/handshake {}: atom {} is far out of reach of the lattice", id,
                    atom->tag[members[k]]);
-      field->shape_weights(t, base[d], w[d]);
+      field->weights(t, base[d], w[d]);
       b[d] = base[d] >> grid.shift_bits;
     }
     if (slot < 0 || memcmp(b, last, sizeof(b)) != 0) slot = grid.find(b);
@@ -635,7 +624,7 @@ void FixMPMHandshake::find_nodes()
 void FixMPMHandshake::map_members(double dt)
 {
   const double half = 0.5 * dt * force->ftm2v;
-  sums.assign(field->grid->nnodes() * NREAL, 0.0);
+  sums.assign(field->grid.nnodes() * NREAL, 0.0);
   for (std::size_t k = 0; k < members.size(); k++) {
     const int i = members[k];
     const bool is_atom = k < natoms;
@@ -677,9 +666,9 @@ void FixMPMHandshake::map_forces()
 
 void FixMPMHandshake::damp(double dt)
 {
-  const std::size_t nnodes = field->grid->nnodes();
+  const std::size_t nnodes = field->grid.nnodes();
   const double half = 0.5 * dt * force->ftm2v;
-  field->grid->copy_aliases(sums.data(), NREAL);
+  field->grid.copy_aliases(sums.data(), NREAL);
   std::vector<double> taken(nnodes * 4, 0.0);
   for (std::size_t k = 0; k < natoms; k++) {
     const int i = members[k];
@@ -699,7 +688,7 @@ void FixMPMHandshake::damp(double dt)
     for (std::size_t j = k * nreach; j < (k + 1) * nreach; j++)
       for (int d = 0; d < 3; d++) taken[4 * (std::size_t) nodes[j] + d] += shares[j] * p[d];
   }
-  field->sum_copies(taken.data(), 4, 0, 3);
+  field->sum(taken.data(), 4, 0, 3);
   const double inverse = 1.0 / (dt * force->ftm2v);
   for (std::size_t n = 0; n < nnodes; n++)
     for (int d = 0; d < 3; d++) sums[NREAL * n + FORCE + d] -= inverse * taken[4 * n + d];
@@ -711,8 +700,8 @@ void FixMPMHandshake::damp(double dt)
 
 void FixMPMHandshake::smooth_points(std::vector<double> &p)
 {
-  field->grid->copy_aliases(sums.data(), NREAL);
-  p.assign(4 * field->grid->nnodes(), 0.0);
+  field->grid.copy_aliases(sums.data(), NREAL);
+  p.assign(4 * field->grid.nnodes(), 0.0);
   for (std::size_t k = natoms; k < members.size(); k++) {
     const double m = atom->rmass[members[k]] / weight[members[k]];
     double v[3] = {0.0, 0.0, 0.0};
@@ -722,7 +711,7 @@ void FixMPMHandshake::smooth_points(std::vector<double> &p)
     for (std::size_t j = k * nreach; j < (k + 1) * nreach; j++)
       for (int d = 0; d < 3; d++) p[4 * (std::size_t) nodes[j] + d] += shares[j] * m * v[d];
   }
-  field->sum_copies(p.data(), 4, 0, 3);
+  field->sum(p.data(), 4, 0, 3);
 }
 
 /* ----------------------------------------------------------------------
@@ -731,7 +720,7 @@ void FixMPMHandshake::smooth_points(std::vector<double> &p)
 
 void FixMPMHandshake::tie(double dt)
 {
-  Grid &grid = *field->grid;
+  Grid &grid = field->grid;
   const double dtf = dt * force->ftm2v;
   std::vector<double> smooth;
   smooth_points(smooth);
@@ -769,14 +758,14 @@ void FixMPMHandshake::tie(double dt)
       }
     }
   }
-  if (field->ledger_on) field->ledger.contact += force->mvv2e * work;
+  if (field->ledger.on) field->ledger.contact += force->mvv2e * work;
   lost -= force->mvv2e * work;
 }
 
 /** Atoms: the change of the velocity of the nodes, or where they have no weight, this velocity. */
 void FixMPMHandshake::move_atoms(double dt)
 {
-  field->grid->copy_aliases(sums.data(), NREAL);
+  field->grid.copy_aliases(sums.data(), NREAL);
   const double half = 0.5 * dt * force->ftm2v;
   for (std::size_t k = 0; k < natoms; k++) {
     const int i = members[k];
@@ -818,8 +807,8 @@ double FixMPMHandshake::compute_vector(int d)
 
 double FixMPMHandshake::memory_usage()
 {
-  return sizeof(double) *
-      (2.0 * atom->nmax + sums.capacity() + shares.capacity() + pushes.capacity()) +
+  return FixMPMState::memory_usage() +
+      sizeof(double) * (double) (sums.capacity() + shares.capacity() + pushes.capacity()) +
       sizeof(int) * (double) (nodes.capacity() + members.capacity());
 }
 
@@ -829,21 +818,8 @@ double FixMPMHandshake::memory_usage()
 
 void FixMPMHandshake::grow_arrays(int nmax)
 {
-  memory->grow(weight, nmax, "mpm/handshake:weight");
-  memory->grow(role, nmax, "mpm/handshake:role");
+  FixMPMState::grow_arrays(nmax);
   vector_atom = weight;
-}
-
-void FixMPMHandshake::copy_arrays(int i, int j, int /*delflag*/)
-{
-  weight[j] = weight[i];
-  role[j] = role[i];
-}
-
-void FixMPMHandshake::set_arrays(int i)
-{
-  weight[i] = 1.0;
-  role[i] = UNKNOWN;
 }
 
 int FixMPMHandshake::pack_forward_comm(int n, int *send, double *buf, int /*pbc_flag*/,
@@ -862,44 +838,6 @@ void FixMPMHandshake::unpack_forward_comm(int n, int first, double *buf)
     weight[first + k] = buf[2 * k];
     role[first + k] = buf[2 * k + 1];
   }
-}
-
-int FixMPMHandshake::pack_exchange(int i, double *buf)
-{
-  buf[0] = weight[i];
-  buf[1] = role[i];
-  return 2;
-}
-
-int FixMPMHandshake::unpack_exchange(int i, double *buf)
-{
-  weight[i] = buf[0];
-  role[i] = buf[1];
-  return 2;
-}
-
-int FixMPMHandshake::pack_restart(int i, double *buf)
-{
-  buf[0] = 3;
-  return 1 + pack_exchange(i, buf + 1);
-}
-
-void FixMPMHandshake::unpack_restart(int i, int nth)
-{
-  double **const extra = atom->extra;
-  int m = 0;
-  for (int k = 0; k < nth; k++) m += static_cast<int>(extra[i][m]);
-  unpack_exchange(i, extra[i] + m + 1);
-}
-
-int FixMPMHandshake::size_restart(int /*nlocal*/)
-{
-  return 3;
-}
-
-int FixMPMHandshake::maxsize_restart()
-{
-  return 3;
 }
 
 void FixMPMHandshake::write_restart(FILE *fp)

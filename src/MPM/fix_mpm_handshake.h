@@ -15,22 +15,38 @@ FixStyle(mpm/handshake,FixMPMHandshake);
 #ifndef LMP_FIX_MPM_HANDSHAKE_H
 #define LMP_FIX_MPM_HANDSHAKE_H
 
-#include "fix.h"
+#include "declare/option.h"
 #include "mpm_node_action.h"
+#include "mpm_state.h"
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
-class FixMPM;
+class MPMField;
+
+struct MPMHandshakeOptions {
+  /** The weight of the atoms falls linearly from 1 to 0 between two planes. */
+  struct Zone {
+    enum { X, Y, Z } axis;
+    double one, zero;    ///< positions of the planes
+  };
+  std::string field_name;
+  std::vector<Zone> zones;
+  double damping = 0.0;    ///< rate at which the fine motion is damped where w = 0 [1/time]
+
+  MPM_NS::Options declare();
+
+ private:
+  Zone next = {Zone::X, 0.0, 0.0};    // to be read
+};
 
 /** Zone where atoms and material points describe the same material, each with a share of its energy
  *  and mass, and move with one velocity at the nodes of a field. */
-class FixMPMHandshake : public Fix, public MPMNodeAction {
+class FixMPMHandshake : public FixMPMState, public MPMNodeAction, private MPMHandshakeOptions {
  public:
   FixMPMHandshake(class LAMMPS *, int, char **);
-  ~FixMPMHandshake() override;
   int setmask() override;
   void init() override;
   void init_list(int, class NeighList *) override;
@@ -43,35 +59,18 @@ class FixMPMHandshake : public Fix, public MPMNodeAction {
   double compute_vector(int) override;
   double memory_usage() override;
   void grow_arrays(int) override;
-  void copy_arrays(int, int, int) override;
-  void set_arrays(int) override;
   int pack_forward_comm(int, int *, double *, int, int *) override;
   void unpack_forward_comm(int, int, double *) override;
-  int pack_exchange(int, double *) override;
-  int unpack_exchange(int, double *) override;
-  int pack_restart(int, double *) override;
-  void unpack_restart(int, int) override;
-  int size_restart(int) override;
-  int maxsize_restart() override;
   void write_restart(FILE *) override;
   void restart(char *) override;
 
-  void extend_topology(FixMPM &) override;
+  void extend_topology(MPMField &) override;
   void act(double dt, Stage) override;
 
  private:
-  /** The weight of the atoms falls linearly from 1 to 0 between two planes. */
-  struct Zone {
-    int axis;
-    double one, zero;    // positions of the planes
-  };
   enum Role { UNKNOWN, APART, COUPLED, POINT, NEAR_POINT };    // near: at the nodes of the zone
 
-  std::string field_name;
-  std::vector<Zone> zones;
-  double damping;    // rate at which the fine motion is damped where w = 0 [1/time]
-
-  FixMPM *field;
+  MPMField *field;
   class NeighList *list;
   double *weight;    // [n] share of the mass and energy of an atom or point that counts
   double *role;      // [n] a Role

@@ -44,10 +44,12 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "fix_mpm.h"
 #include "force.h"
 #include "math_const.h"
 #include "modify.h"
+#include "mpm_field.h"
+#include "mpm_options.h"
+#include "mpm_point_map.h"
 #include "update.h"
 
 #include <algorithm>
@@ -64,54 +66,41 @@ static constexpr int NREAL = 8;
    fix ID group mpm/immersed FIELD DENSITY VISCOSITY keyword values ...
 ------------------------------------------------------------------------- */
 
-FixMPMImmersed::FixMPMImmersed(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), law(GIDASPOW), gravity{0.0, 0.0, 0.0}, field(nullptr), force_now{},
-    count(0), dt_last(0.0)
+Options MPMImmersedOptions::declare(int dim)
 {
-  if (narg < 6) utils::missing_cmd_args(FLERR, "fix mpm/immersed", error);
-  field_id = arg[3];
-  density = utils::numeric(FLERR, arg[4], false, lmp);
-  if (!(density > 0.0) || !std::isfinite(density))
-    error->all(FLERR, 4, "Fix mpm/immersed density of the fluid must be positive: {}", arg[4]);
-  viscosity = utils::numeric(FLERR, arg[5], false, lmp);
-  if (!(viscosity >= 0.0) || !std::isfinite(viscosity))
-    error->all(FLERR, 5, "Fix mpm/immersed viscosity must not be negative: {}", arg[5]);
-  viscosity *= force->ftm2v / force->nktv2p;
+  using namespace option;
+  Options o("fix mpm/immersed");
+  o.argument(text(field_id, "fix-ID"));
+  o.argument(number(density, "density of the fluid", POSITIVE));
+  o.argument(number(viscosity, "viscosity", NOT_NEGATIVE));
+  o.add("drag",
+        {word(law,
+              {{"gidaspow", GIDASPOW},
+               {"difelice", DIFELICE},
+               {"ergun", ERGUN},
+               {"schiller", SCHILLER},
+               {"stokes", STOKES},
+               {"none", NONE}})},
+        "law of the drag");
+  o.add(
+      "gravity",
+      {numbers(gravity, 3, "gx gy gz", ANY_NUMBER, "velocity/time",
+               "acceleration of gravity that fluid and grains have from elsewhere, for buoyancy")});
+  o.refuse([=] {
+    return OptionRules{
+        {law != NONE && viscosity == 0.0, "",
+         "needs a positive viscosity for its drag: use drag none without"},
+        {dim == 2 && gravity[2] != 0.0, "gravity", "must be along x and y in 2d: {gravity}"}};
+  });
+  return o;
+}
 
-  int iarg = 6;
-  while (iarg < narg) {
-    if (strcmp(arg[iarg], "drag") == 0) {
-      if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, "fix mpm/immersed drag", error);
-      static const char *const laws[] = {"none",  "stokes",   "schiller",
-                                         "ergun", "gidaspow", "difelice"};
-      int k = 0;
-      while (k < 6 && strcmp(arg[iarg + 1], laws[k]) != 0) k++;
-      if (k == 6)
-        error->all(
-            FLERR, iarg + 1,
-            "Unknown fix mpm/immersed drag {}: must be none, stokes, schiller, ergun, gidaspow "
-            "or difelice",
-            arg[iarg + 1]);
-      law = (Law) k;
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "gravity") == 0) {
-      if (iarg + 3 >= narg) utils::missing_cmd_args(FLERR, "fix mpm/immersed gravity", error);
-      for (int d = 0; d < 3; d++) {
-        gravity[d] = utils::numeric(FLERR, arg[iarg + 1 + d], false, lmp);
-        if (!std::isfinite(gravity[d]))
-          error->all(FLERR, iarg + 1 + d, "Fix mpm/immersed gravity must be finite: {}",
-                     arg[iarg + 1 + d]);
-      }
-      iarg += 4;
-    } else
-      error->all(FLERR, iarg, "Unknown fix mpm/immersed keyword: {}", arg[iarg]);
-  }
-  if (law != NONE && viscosity == 0.0)
-    error->all(FLERR, 5,
-               "Fix mpm/immersed needs a positive viscosity for its drag: use drag none "
-               "without");
-  if (domain->dimension == 2 && gravity[2] != 0.0)
-    error->all(FLERR, "Fix mpm/immersed gravity must be along x and y in 2d: {}", gravity[2]);
+FixMPMImmersed::FixMPMImmersed(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), field(nullptr), force_now{}, count(0), dt_last(0.0)
+{
+  Options options = declare(domain->dimension);
+  read_options(lmp, options, narg, arg, 3);
+  viscosity *= force->ftm2v / force->nktv2p;
   if (!atom->radius_flag || !atom->rmass_flag)
     error->all(FLERR,
                "Fix mpm/immersed needs the radius of grains: use atom_style hybrid sphere mpm");
@@ -134,7 +123,7 @@ int FixMPMImmersed::setmask()
 
 void FixMPMImmersed::init()
 {
-  if (!dynamic_cast<FixMPM *>(modify->get_fix_by_id(field_id)))
+  if (!MPMField::find(lmp, field_id))
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/immersed {}: there is no fix mpm {}", id,
                field_id);
 }
@@ -145,31 +134,17 @@ void FixMPMImmersed::init()
 
 void FixMPMImmersed::init_action()
 {
-  field = dynamic_cast<FixMPM *>(modify->get_fix_by_id(field_id));
+  field = MPMField::find(lmp, field_id);
   if (!field)
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/immersed {}: there is no fix mpm {}", id,
                field_id);
-  if (field->total)
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm/immersed {} cannot be used with frame total of fix mpm {}, whose nodes are not "
-        "where the grains are: use frame updated",
-        id, field_id);
-  if (field->axisymmetric)
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm/immersed {} cannot be used with axisymmetric fix mpm {}, where a grain would be a "
-        "ring: use a sector in 3d, or 2d",
-        id, field_id);
-  if (field->modified_edges)
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm/immersed {} cannot be used with edges modified of fix mpm {}: use edges plain", id,
-        field_id);
-  if (field->refinement == FixMPM::FMPM)
-    error->all(FLERR, Error::NOLASTLINE,
-               "Fix mpm/immersed {} cannot be used with transfer fmpm of fix mpm {}: use xpic", id,
-               field_id);
+  refuse_field(lmp, *this, *field,
+               {{field->options.total, "frame total",
+                 "its nodes are not where the grains are: use frame updated"},
+                {field->options.axisymmetric, "axisymmetric",
+                 "a grain would be a ring: use a sector in 3d, or 2d"},
+                {field->options.modified_edges, "edges modified", "use edges plain"},
+                {field->options.series == MPMFieldOptions::FMPM, "transfer fmpm", "use xpic"}});
 
   field->keep_old = true;    // for the acceleration of the fluid
 
@@ -247,14 +222,14 @@ static int number(int dim, const int in[3])
 
 template <class F> bool FixMPMImmersed::visit(int i, const F &f) const
 {
-  const auto &grid = *field->grid;
+  const auto &grid = field->grid;
   const int dim = field->lattice.dim;
   int first[3] = {0, 0, 0}, k[3];
   double w[3][4] = {{0.0}, {0.0}, {1.0}}, t[3] = {0.0, 0.0, 0.0};
   int n = 0;
   for (int d = 0; d < dim; d++) {
     t[d] = (atom->x[i][d] - grid.lattice.origin[d]) / grid.lattice.h;
-    n = field->shape_weights(t[d], first[d], w[d]);
+    n = field->weights(t[d], first[d], w[d]);
   }
   // one look-up per grain, neighbors from the table of its first block
   int b[3];
@@ -288,19 +263,19 @@ template <class F> bool FixMPMImmersed::visit(int i, const F &f) const
 void FixMPMImmersed::couple_topology()
 {
   int missing = 0, any;
-  if (!field->topology_stale())
+  if (field->map->valid)
     for (int i = 0; i < atom->nlocal && !missing; i++)
       if (is_grain(i) && !visit(i, [](int64_t, double, const double *) {
           }))
         missing = 1;
   MPI_Allreduce(&missing, &any, 1, MPI_INT, MPI_MAX, world);
-  if (any) field->renew_topology();
+  if (any) field->map->valid = false;
 }
 
-void FixMPMImmersed::extend_topology(FixMPM &extended)
+void FixMPMImmersed::extend_topology(MPMField &extended)
 {
   if (&extended != field) return;
-  auto &grid = *field->grid;
+  auto &grid = field->grid;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!is_grain(i)) continue;
     int lo[3] = {0, 0, 0}, hi[3] = {0, 0, 0}, b[3];
@@ -312,7 +287,7 @@ void FixMPMImmersed::extend_topology(FixMPM &extended)
                    "Fix mpm/immersed {}: grain {} is far out of reach of the "
                    "lattice",
                    id, atom->tag[i]);
-      const int n = field->shape_weights(t, lo[d], w);
+      const int n = field->weights(t, lo[d], w);
       hi[d] = (lo[d] + n) >> grid.shift_bits;    // one more on each side: grains move
       lo[d] = (lo[d] - 1) >> grid.shift_bits;
     }
@@ -335,7 +310,8 @@ void FixMPMImmersed::extend_topology(FixMPM &extended)
 double FixMPMImmersed::end_of_bed(double solid, const double *moment, double own) const
 {
   if (!(solid > 0.0)) return solid;
-  const double p1 = field->shape + 1.0, width = sqrt(p1 / 6.0), n = field->lattice.dim;
+  const double p1 = stencil_order(field->options.shape) + 1.0, width = sqrt(p1 / 6.0),
+               n = field->lattice.dim;
   const double slope = width * 12.0 / p1 / solid;    // sum N r^2 = (p+1)/12, of moment
   const double chance = 0.5 * n * pow(4.0 * MY_PI * width * width, -0.5 * n) * own / space();
   const double q2 =
@@ -423,7 +399,7 @@ bool FixMPMImmersed::is_inner(int64_t node)
   enum { INNER = 1, OUTER };
   char &known = inner[node];
   if (known) return known == INNER;
-  auto &grid = *field->grid;
+  auto &grid = field->grid;
   const double least = 0.6 * density * space();
   const auto full = [&](int64_t n) {
     return grid.nodes()[n * grid.nreal + 3] > least;
@@ -454,10 +430,10 @@ void FixMPMImmersed::find_grains(double dt)
 {
   grains.clear();
   entries.clear();
-  inner.assign(field->grid->nnodes(), 0);
+  inner.assign(field->grid.nnodes(), 0);
   const double full = density * space();
-  const double *records = field->grid->nodes();    // vx vy vz m, old velocity
-  const int nreal = field->grid->nreal;
+  const double *records = field->grid.nodes();    // vx vy vz m, old velocity
+  const int nreal = field->grid.nreal;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!is_grain(i)) continue;
     Grain g;
@@ -489,7 +465,8 @@ void FixMPMImmersed::find_grains(double dt)
     for (const auto &mover : movers)
       if (atom->mask[i] & mover.groupbit) {
         g.mass = atom->rmass[i];
-        ahead = mover.ahead + 0.5 * (field->every - 1);    // in the mean over the steps to come
+        ahead =
+            mover.ahead + 0.5 * (field->options.every - 1);    // in the mean over the steps to come
       }
     for (int d = 0; d < 3; d++) {
       g.buoyancy[d] = g.immersed * density * volume(i) * (g.gain[d] - dt * gravity[d]);
@@ -507,8 +484,8 @@ void FixMPMImmersed::find_grains(double dt)
 
 void FixMPMImmersed::sum_nodes(int lane, int nlane)
 {
-  field->sum_copies(sums.data(), NREAL, lane, nlane);
-  field->grid->copy_aliases(sums.data(), NREAL);
+  field->sum(sums.data(), NREAL, lane, nlane);
+  field->grid.copy_aliases(sums.data(), NREAL);
 }
 
 /* ----------------------------------------------------------------------
@@ -524,7 +501,7 @@ void FixMPMImmersed::sum_nodes(int lane, int nlane)
 void FixMPMImmersed::act(double dt, Stage stage)
 {
   if (stage != STEP) return;
-  auto &grid = *field->grid;
+  auto &grid = field->grid;
   const int nreal = grid.nreal;
   grid.copy_aliases();
   find_grains(dt);
@@ -609,7 +586,8 @@ void FixMPMImmersed::act(double dt, Stage stage)
       const double *sum = &sums[NREAL * node];
       const double push[3] = {sum[1] + sum[5], sum[2] + sum[6], sum[3] + sum[7]};
       if (push[0] != 0.0 || push[1] != 0.0 || push[2] != 0.0)
-        field->push_node(node, grid.blocks[slot].owned >> n & 1, push);
+        field->ledger.push_node(grid.nodes() + node * grid.nreal, grid.blocks[slot].owned >> n & 1,
+                                push);
     }
   count = (int) grains.size();
   dt_last = dt;

@@ -15,6 +15,7 @@ FixStyle(mpm/immersed,FixMPMImmersed);
 #ifndef LMP_FIX_MPM_IMMERSED_H
 #define LMP_FIX_MPM_IMMERSED_H
 
+#include "declare/option.h"
 #include "fix.h"
 #include "mpm_node_action.h"
 
@@ -23,11 +24,22 @@ FixStyle(mpm/immersed,FixMPMImmersed);
 #include <vector>
 
 namespace LAMMPS_NS {
-class FixMPM;
+class MPMField;
+
+struct MPMImmersedOptions {
+  enum Law { NONE, STOKES, SCHILLER, ERGUN, GIDASPOW, DIFELICE };
+
+  std::string field_id;
+  double density = 0.0, viscosity = 0.0;    ///< viscosity: in units of pressure, then of mass
+  Law law = GIDASPOW;
+  double gravity[3] = {0.0, 0.0, 0.0};
+
+  MPM_NS::Options declare(int dimension);
+};
 
 /** Drag and buoyancy between grains smaller than the node spacing and the fluid of a field
  *  (fix mpm), exchanged at the nodes around each grain. */
-class FixMPMImmersed : public Fix, public MPMNodeAction {
+class FixMPMImmersed : public Fix, public MPMNodeAction, private MPMImmersedOptions {
  public:
   FixMPMImmersed(class LAMMPS *, int, char **);
   int setmask() override;
@@ -38,12 +50,10 @@ class FixMPMImmersed : public Fix, public MPMNodeAction {
 
   void init_action() override;
   void couple_topology() override;
-  void extend_topology(FixMPM &) override;
+  void extend_topology(MPMField &) override;
   void act(double dt, Stage) override;
 
  private:
-  enum Law { NONE, STOKES, SCHILLER, ERGUN, GIDASPOW, DIFELICE };
-
   struct Mover {    // a fix that integrates grains
     int groupbit;
     double ahead;    // steps that forces still act before the grain moves
@@ -65,11 +75,7 @@ class FixMPMImmersed : public Fix, public MPMNodeAction {
     bool inner;         // there is fluid around the node
   };
 
-  std::string field_id;
-  double density, viscosity;    // [mass/distance^3], [mass/(distance time)]
-  Law law;
-  double gravity[3];
-  FixMPM *field;
+  MPMField *field;
   std::vector<Mover> movers;
   std::vector<Grain> grains;
   std::vector<Entry> entries;

@@ -15,7 +15,6 @@
 #include "comm.h"
 #include "error.h"
 #include "force.h"
-#include "memory.h"
 #include "update.h"
 
 #include <algorithm>
@@ -25,12 +24,13 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr int RESTART_VERSION = 1;
+static constexpr int RESTART_VERSION = 2;
 
 /* ---------------------------------------------------------------------- */
 
 FixMPMMaterial::FixMPMMaterial(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), material(nullptr), nhistory(0), history(nullptr), work(), watching(false)
+    FixMPMState(lmp, narg, arg), material(nullptr), nhistory(0), history(nullptr), work(),
+    watching(false)
 {
   static_assert(NWORK <= sizeof(work) / sizeof(double), "room for all kinds of work");
   if (narg < 4) utils::missing_cmd_args(FLERR, "fix mpm/material", error);
@@ -46,15 +46,11 @@ FixMPMMaterial::FixMPMMaterial(LAMMPS *lmp, int narg, char **arg) :
   restart_global = 1;
   nhistory = material->history().size();
   damage = find_history("damage");
-  if (nhistory > 0) {
-    restart_peratom = 1;
-    create_attribute = 1;
-    maxexchange = nhistory;
-    FixMPMMaterial::grow_arrays(atom->nmax);
-    atom->add_callback(Atom::GROW);
-    atom->add_callback(Atom::RESTART);
-    for (int i = 0; i < atom->nlocal; i++) FixMPMMaterial::set_arrays(i);
-  }
+  if (nhistory > 0)
+    state.declare(history, "mpm/material:history", nhistory, [this](int i, double *row) {
+      initialize(i, row);
+    });
+  keep_arrays();
 
   exits.assign(material->ranges().size(), {false, MAXBIGINT, 0, 0.0});
   watching = !exits.empty();
@@ -67,11 +63,6 @@ FixMPMMaterial::FixMPMMaterial(LAMMPS *lmp, int narg, char **arg) :
 
 FixMPMMaterial::~FixMPMMaterial()
 {
-  if (nhistory > 0) {
-    atom->delete_callback(id, Atom::GROW);
-    atom->delete_callback(id, Atom::RESTART);
-  }
-  memory->destroy(history);
   delete material;
 }
 
@@ -199,95 +190,26 @@ int FixMPMMaterial::find_history(const std::string &name) const
   return -1;
 }
 
-/* ---------------------------------------------------------------------- */
-
-double FixMPMMaterial::memory_usage()
-{
-  return (double) atom->nmax * nhistory * sizeof(double);
-}
-
-/* ---------------------------------------------------------------------- */
-
-void FixMPMMaterial::grow_arrays(int nmax)
-{
-  memory->grow(history, nmax, nhistory, "mpm/material:history");
-}
-
-/* ---------------------------------------------------------------------- */
-
-void FixMPMMaterial::copy_arrays(int i, int j, int /*delflag*/)
-{
-  memcpy(history[j], history[i], nhistory * sizeof(double));
-}
-
-/* ---------------------------------------------------------------------- */
-
-void FixMPMMaterial::set_arrays(int i)
+/** History of a new point. */
+void FixMPMMaterial::initialize(int i, double *row) const
 {
   try {
-    material->initialize(atom->x[i], history[i]);
+    material->initialize(atom->x[i], row);
   } catch (const std::runtime_error &e) {
     error->one(FLERR, Error::NOLASTLINE, "Fix mpm/material {}: {}", id, e.what());
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
-int FixMPMMaterial::pack_exchange(int i, double *buf)
+/** Names of the history variables, for the comparison with those of a restart file. */
+std::string FixMPMMaterial::names() const
 {
-  memcpy(buf, history[i], nhistory * sizeof(double));
-  return nhistory;
-}
-
-/* ---------------------------------------------------------------------- */
-
-int FixMPMMaterial::unpack_exchange(int i, double *buf)
-{
-  memcpy(history[i], buf, nhistory * sizeof(double));
-  return nhistory;
-}
-
-/* ---------------------------------------------------------------------- */
-
-int FixMPMMaterial::pack_restart(int i, double *buf)
-{
-  buf[0] = nhistory + 1;
-  memcpy(buf + 1, history[i], nhistory * sizeof(double));
-  return nhistory + 1;
+  std::string text;
+  for (const auto &variable : material->history()) text += " " + variable.name;
+  return text.empty() ? " none" : text;
 }
 
 /* ----------------------------------------------------------------------
-   the values of the nth fix are behind those of n others, each with its length first
-------------------------------------------------------------------------- */
-
-void FixMPMMaterial::unpack_restart(int i, int nth)
-{
-  const double *extra = atom->extra[i];
-  for (int k = 0; k < nth; k++) extra += static_cast<int>(*extra);
-  if (static_cast<int>(*extra) != nhistory + 1)
-    error->one(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm/material {}: the restart file has {} history variables, this material has {}", id,
-        static_cast<int>(*extra) - 1, nhistory);
-  memcpy(history[i], extra + 1, nhistory * sizeof(double));
-}
-
-/* ---------------------------------------------------------------------- */
-
-int FixMPMMaterial::size_restart(int /*i*/)
-{
-  return nhistory + 1;
-}
-
-/* ---------------------------------------------------------------------- */
-
-int FixMPMMaterial::maxsize_restart()
-{
-  return nhistory + 1;
-}
-
-/* ----------------------------------------------------------------------
-   work so far, summed over ranks
+   work so far, summed over ranks, and what the history variables are
 ------------------------------------------------------------------------- */
 
 void FixMPMMaterial::write_restart(FILE *fp)
@@ -296,11 +218,12 @@ void FixMPMMaterial::write_restart(FILE *fp)
   list[0] = RESTART_VERSION;
   list[1] = NWORK;
   MPI_Reduce(work, list + 2, NWORK, MPI_DOUBLE, MPI_SUM, 0, world);
-  if (comm->me == 0) {
-    const int size = sizeof(list);
-    fwrite(&size, sizeof(int), 1, fp);
-    fwrite(list, 1, size, fp);
-  }
+  if (comm->me) return;
+  const std::string text = names();
+  const int size = (int) (sizeof(list) + text.size() + 1);
+  fwrite(&size, sizeof(int), 1, fp);
+  fwrite(list, 1, sizeof(list), fp);
+  fwrite(text.c_str(), 1, text.size() + 1, fp);
 }
 
 /* ----------------------------------------------------------------------
@@ -316,5 +239,11 @@ void FixMPMMaterial::restart(char *buf)
         FLERR, Error::NOLASTLINE,
         "Fix mpm/material {}: the restart file was written by another version of this package", id);
   memcpy(list, buf, sizeof(list));
+  const std::string text = buf + sizeof(list);
+  if (text != names())
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/material {}: the points of the restart file have the history variables{}, "
+               "those of this material are{}: give the laws with which the file was written",
+               id, text, names());
   for (int k = 0; k < NWORK; k++) work[k] = comm->me == 0 ? list[2 + k] : 0.0;
 }

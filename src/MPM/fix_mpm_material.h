@@ -15,7 +15,7 @@ FixStyle(mpm/material,FixMPMMaterial);
 #ifndef LMP_FIX_MPM_MATERIAL_H
 #define LMP_FIX_MPM_MATERIAL_H
 
-#include "fix.h"
+#include "mpm_state.h"
 
 namespace MPM_NS {
 class Material;
@@ -25,7 +25,7 @@ struct Batch;
 namespace LAMMPS_NS {
 
 /** Gives the points of a group a constitutive model, their mass, and their history variables. */
-class FixMPMMaterial : public Fix {
+class FixMPMMaterial : public FixMPMState {
  public:
   FixMPMMaterial(class LAMMPS *, int, char **);
   ~FixMPMMaterial() override;
@@ -33,16 +33,6 @@ class FixMPMMaterial : public Fix {
   void init() override;
   void pre_neighbor() override;
   void post_run() override;
-  double memory_usage() override;
-  void grow_arrays(int) override;
-  void copy_arrays(int, int, int) override;
-  void set_arrays(int) override;
-  int pack_exchange(int, double *) override;
-  int unpack_exchange(int, double *) override;
-  int pack_restart(int, double *) override;
-  void unpack_restart(int, int) override;
-  int size_restart(int) override;
-  int maxsize_restart() override;
   void write_restart(FILE *) override;
   void restart(char *) override;
 
@@ -77,6 +67,8 @@ class FixMPMMaterial : public Fix {
   };
   std::vector<Exit> exits;    ///< for each range of the material
   void report_exits();
+  void initialize(int i, double *row) const;
+  std::string names() const;
 };
 
 }    // namespace LAMMPS_NS

@@ -26,16 +26,15 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "fix_mpm.h"
 #include "force.h"
-#include "input.h"
 #include "math_extra.h"
 #include "mesh/surface_mesh.h"
 #include "modify.h"
+#include "mpm_field.h"
 #include "mpm_image.h"
+#include "mpm_options.h"
 #include "region_mpm_mesh.h"
 #include "update.h"
-#include "variable.h"
 
 #include <Eigen/Dense>
 
@@ -51,15 +50,54 @@ using namespace MPM_NS;
    fix ID all mpm/rigid REGION density|mass VALUE stick|slip|separate keyword values ...
 ------------------------------------------------------------------------- */
 
-FixMPMRigid::FixMPMRigid(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), mesh(nullptr), kind(STICK), friction(0.0), mass(0.0),
-    density(0.0), gravity{0.0, 0.0, 0.0}, fixed{false, false, false, false, false, false},
-    L{0.0, 0.0, 0.0}, omega{0.0, 0.0, 0.0}, dt_last(0.0)
+Options MPMRigidOptions::declare()
 {
-  if (narg < 7) utils::missing_cmd_args(FLERR, "fix mpm/rigid", error);
+  using namespace option;
+  Options o("fix mpm/rigid");
+  const auto value = number(amount, "", POSITIVE);
+  o.argument(text(region_id, "region-ID"));
+  o.argument(
+      word(by_mass, {{"density", false, "", {value}}, {"mass", true, "", {value}}}, "option"));
+  o.argument(word(kind, {{"stick", STICK}, {"slip", SLIP}, {"separate", SEPARATE}}, "contact"));
+  o.add("friction",
+        {number(friction, "mu", NOT_NEGATIVE, "1",
+                "coefficient of friction, for *slip* and *separate*")});
+  o.add("velocity",
+        {numbers(v, 3, "vx vy vz", ANY_NUMBER, "velocity", "velocity of the center at the start")});
+  o.add("omega",
+        {numbers(omega, 3, "wx wy wz", ANY_NUMBER, "1/time", "angular velocity at the start")});
+  o.add("gravity",
+        {numbers(gravity, 3, "gx gy gz", ANY_NUMBER, "velocity/time", "acceleration of the body")});
+  o.add("force",
+        {variables(load, 3, "fx fy fz", "force", "force on the center, can be variables")});
+  o.add("torque",
+        {variables(moment, 3, "tx ty tz", "force*distance",
+                   "torque about the center, can be variables")});
+  o.add("hold",
+        {any_of(fixed, {"x", "y", "z", "rx", "ry", "rz"},
+                "components of the velocity and of the angular velocity that stay zero")})
+      .standard("nothing");
+  o.refuse([=] {
+    OptionRules rules = {{kind == STICK, "friction", "is for slip and separate"}};
+    for (int a = 0; a < 3; a++) {
+      const std::string axis(1, "xyz"[a]);
+      rules.push_back(
+          {fixed[a] && v[a] != 0.0, "", "cannot hold " + axis + " and give it a velocity"});
+      rules.push_back({fixed[3 + a] && omega[a] != 0.0, "",
+                       "cannot hold r" + axis + " and give it an angular velocity"});
+    }
+    return rules;
+  });
+  return o;
+}
+
+FixMPMRigid::FixMPMRigid(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), mesh(nullptr), L{0.0, 0.0, 0.0}, dt_last(0.0)
+{
   if (igroup != 0)
     error->all(FLERR, 1, "Fix mpm/rigid acts on nodes, which have no group: use group all");
-  region_id = arg[3];
+  Options options = declare();
+  read_options(lmp, options, narg, arg, 3);
   auto *region = dynamic_cast<RegMPMMesh *>(domain->get_region_by_id(region_id));
   if (!region)
     error->all(FLERR, 3, "Fix mpm/rigid needs a region of style mpm/mesh: {}", region_id);
@@ -68,98 +106,20 @@ FixMPMRigid::FixMPMRigid(LAMMPS *lmp, int narg, char **arg) :
                "Fix mpm/rigid requires 3d, as surfaces are of triangles: in 2d, move a region with "
                "fix mpm/boundary, or use a thin 3d box that is periodic");
   mesh = &region->surface_mesh();
-
-  const double value = utils::numeric(FLERR, arg[5], false, lmp);
-  if (!(value > 0.0) || !std::isfinite(value))
-    error->all(FLERR, 5, "Fix mpm/rigid {} must be positive: {}", arg[4], arg[5]);
-  if (strcmp(arg[4], "density") == 0)
-    density = value;
-  else if (strcmp(arg[4], "mass") == 0)
-    density = value / mesh->volume;
-  else
-    error->all(FLERR, 4, "Unknown fix mpm/rigid option {}: must be density or mass", arg[4]);
+  density = by_mass ? amount / mesh->volume : amount;
   mass = density * mesh->volume;
   for (int k = 0; k < 6; k++) {
     body_inertia[k] = density * mesh->inertia[k];
     impulse[k] = 0.0;
   }
-
-  static const char *const kinds[] = {"stick", "slip", "separate"};
-  int k = 0;
-  while (k < 3 && strcmp(arg[6], kinds[k]) != 0) k++;
-  if (k == 3)
-    error->all(FLERR, 6, "Unknown fix mpm/rigid contact {}: must be stick, slip or separate",
-               arg[6]);
-  kind = (Kind) k;
-
   for (int d = 0; d < 3; d++) {
     x[d] = mesh->center[d];
-    v[d] = 0.0;
-    force[d] = torque[d] = {0.0, ""};
     for (int e = 0; e < 3; e++) Q[d][e] = d == e;
-  }
-  double spin_start[3] = {0.0, 0.0, 0.0};
-  int iarg = 7;
-  while (iarg < narg) {
-    const std::string keyword = arg[iarg];
-    const auto numbers = [&](double *to) {
-      if (iarg + 3 >= narg) utils::missing_cmd_args(FLERR, "fix mpm/rigid " + keyword, error);
-      for (int d = 0; d < 3; d++) to[d] = utils::numeric(FLERR, arg[iarg + 1 + d], false, lmp);
-      iarg += 4;
-    };
-    if (keyword == "velocity") {
-      numbers(v);
-    } else if (keyword == "omega") {
-      numbers(spin_start);
-    } else if (keyword == "gravity") {
-      numbers(gravity);
-    } else if (keyword == "force" || keyword == "torque") {
-      if (iarg + 3 >= narg) utils::missing_cmd_args(FLERR, "fix mpm/rigid " + keyword, error);
-      auto *const to = keyword == "force" ? force : torque;
-      for (int d = 0; d < 3; d++) {
-        const char *word = arg[iarg + 1 + d];
-        if (utils::strmatch(word, "^v_"))
-          to[d].variable = word + 2;
-        else
-          to[d].value = utils::numeric(FLERR, word, false, lmp);
-      }
-      iarg += 4;
-    } else if (keyword == "friction") {
-      if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, "fix mpm/rigid friction", error);
-      friction = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
-      if (!(friction >= 0.0) || !std::isfinite(friction))
-        error->all(FLERR, iarg + 1, "Fix mpm/rigid friction must not be negative: {}",
-                   arg[iarg + 1]);
-      if (kind == STICK) error->all(FLERR, iarg, "Fix mpm/rigid friction is for slip and separate");
-      iarg += 2;
-    } else if (keyword == "hold") {
-      static const char *const axes[] = {"x", "y", "z", "rx", "ry", "rz"};
-      iarg++;
-      int found = 0;
-      for (bool more = true; more && iarg < narg;) {
-        more = false;
-        for (int a = 0; a < 6; a++)
-          if (strcmp(arg[iarg], axes[a]) == 0) {
-            fixed[a] = more = true;
-            found++;
-          }
-        if (more) iarg++;
-      }
-      if (!found)
-        error->all(FLERR, iarg - 1, "Fix mpm/rigid hold needs one or more of x y z rx ry rz");
-    } else
-      error->all(FLERR, iarg, "Unknown fix mpm/rigid keyword: {}", keyword);
-  }
-  for (int a = 0; a < 3; a++) {
-    if (fixed[a] && v[a] != 0.0)
-      error->all(FLERR, "Fix mpm/rigid cannot hold {} and give it a velocity", "xyz"[a]);
-    if (fixed[3 + a] && spin_start[a] != 0.0)
-      error->all(FLERR, "Fix mpm/rigid cannot hold r{} and give it an angular velocity", "xyz"[a]);
   }
   double I[3][3] = {{body_inertia[0], body_inertia[3], body_inertia[4]},
                     {body_inertia[3], body_inertia[1], body_inertia[5]},
                     {body_inertia[4], body_inertia[5], body_inertia[2]}};
-  MathExtra::matvec(I, spin_start, L);
+  MathExtra::matvec(I, omega, L);
   spin();
 
   scalar_flag = vector_flag = 1;
@@ -191,35 +151,19 @@ void FixMPMRigid::init()
         "of it",
         id, region_id);
   mesh = &region->surface_mesh();
-  const auto fields = modify->get_fix_by_style("^mpm$");
+  const auto fields = MPMField::all(lmp);
   if (fields.empty()) error->all(FLERR, Error::NOLASTLINE, "Fix mpm/rigid needs a fix mpm");
-  for (auto *ifix : fields) {
-    const auto *field = dynamic_cast<FixMPM *>(ifix);
-    if (field->total)
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/rigid cannot be used with frame total of fix mpm {}, whose nodes are not "
-                 "where the body is: use frame updated",
-                 field->id);
-    if (field->stress_before())
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/rigid cannot be used with scheme usf or usavg of fix mpm {}, which need "
-                 "the contact before it is known: use usl or musl",
-                 field->id);
+  for (const auto *field : fields) {
+    refuse_field(lmp, *this, *field,
+                 {{field->options.total, "frame total",
+                   "its nodes are not where the body is: use frame updated"},
+                  {field->options.stress_before(), "scheme usf and usavg",
+                   "these need the contact before it is known: use usl or musl"}});
   }
-  for (auto *loads : {force, torque})
-    for (int d = 0; d < 3; d++) {
-      if (loads[d].variable.empty()) continue;
-      const int index = input->variable->find(loads[d].variable.c_str());
-      if (index < 0 || !input->variable->equalstyle(index))
-        error->all(FLERR, Error::NOLASTLINE,
-                   "Fix mpm/rigid {}: there is no equal-style variable {}", id, loads[d].variable);
-    }
-}
-
-double FixMPMRigid::evaluate(const Load &load) const
-{
-  if (load.variable.empty()) return load.value;
-  return input->variable->compute_equal(input->variable->find(load.variable.c_str()));
+  for (int d = 0; d < 3; d++) {
+    find_variable(lmp, load[d], "fix mpm/rigid force");
+    find_variable(lmp, moment[d], "fix mpm/rigid torque");
+  }
 }
 
 /* ----------------------------------------------------------------------
@@ -262,15 +206,15 @@ void FixMPMRigid::spin()
 void FixMPMRigid::load_impulse(double dt)
 {
   bool variables = false;
-  for (const auto *loads : {force, torque})
-    for (int d = 0; d < 3; d++) variables = variables || !loads[d].variable.empty();
+  for (int d = 0; d < 3; d++)
+    variables = variables || !load[d].variable.empty() || !moment[d].variable.empty();
   if (variables) modify->clearstep_compute();
   for (int d = 0; d < 3; d++) {
-    v[d] += dt * (gravity[d] + evaluate(force[d]) * LAMMPS_NS::Pointers::force->ftm2v / mass);
-    L[d] += dt * evaluate(torque[d]) * LAMMPS_NS::Pointers::force->ftm2v;
+    v[d] += dt * (gravity[d] + evaluate(lmp, load[d]) * force->ftm2v / mass);
+    L[d] += dt * evaluate(lmp, moment[d]) * force->ftm2v;
   }
   if (variables) {
-    const auto *field = dynamic_cast<FixMPM *>(modify->get_fix_by_style("^mpm$")[0]);
+    const auto *field = MPMField::all(lmp)[0];
     modify->addstep_compute(update->ntimestep + field->steps_to_next());
   }
 }
@@ -288,9 +232,8 @@ void FixMPMRigid::find_contacts()
     radius += far * far;
   }
   radius = sqrt(radius);
-  for (auto *ifix : modify->get_fix_by_style("^mpm$")) {
-    auto *field = dynamic_cast<FixMPM *>(ifix);
-    auto &grid = *field->grid;
+  for (auto *field : MPMField::all(lmp)) {
+    auto &grid = field->grid;
     const double half = 0.5 * (grid.side - 1) * field->lattice.h;
     for (std::size_t slot = 0; slot < grid.blocks.size(); slot++) {
       const auto &block = grid.blocks[slot];
@@ -339,6 +282,13 @@ void FixMPMRigid::find_contacts()
 
 /* ---------------------------------------------------------------------- */
 
+double *FixMPMRigid::Contact::record() const
+{
+  return field->grid.nodes() + node * field->grid.nreal;
+}
+
+/* ---------------------------------------------------------------------- */
+
 void FixMPMRigid::Contact::relative_velocity(const double *u, double *w) const
 {
   MathExtra::cross3(u + 3, r, w);
@@ -370,7 +320,7 @@ void FixMPMRigid::solve()
     double mine[42] = {0.0}, all[42];    // matrix, right-hand side
     for (const auto &c : contacts) {
       if (!c.owned || c.state == Contact::APART) continue;
-      const double m = c.field->grid->nodes()[c.node * c.field->grid->nreal + 3];
+      const double m = c.record()[3];
       // N_i as sum of products of a direction of the impulse and one of the velocity: each with r x it
       const int products = c.state == Contact::STICKS ? 3 : 1;
       for (int k = 0; k < products; k++) {
@@ -447,7 +397,7 @@ void FixMPMRigid::solve()
     for (auto &c : contacts) {
       double w[3], push[3];
       c.relative_velocity(u.data(), w);
-      c.impulse(c.field->grid->nodes()[c.node * c.field->grid->nreal + 3], w, push);
+      c.impulse(c.record()[3], w, push);
       if (c.owned) {
         double moment[3];
         MathExtra::cross3(c.r, push, moment);
@@ -456,7 +406,7 @@ void FixMPMRigid::solve()
           sum[3 + d] -= moment[d];
         }
       }
-      if (c.state != Contact::APART) c.field->push_node(c.node, c.owned, push);
+      if (c.state != Contact::APART) c.field->ledger.push_node(c.record(), c.owned, push);
     }
     MPI_Allreduce(sum, total, 6, MPI_DOUBLE, MPI_SUM, world);
     for (int d = 0; d < 3; d++) {
@@ -527,7 +477,7 @@ void FixMPMRigid::act(double dt, Stage stage)
 
   for (const auto &c : contacts) {
     if (c.state == Contact::APART) continue;
-    double *record = c.field->grid->nodes() + c.node * c.field->grid->nreal;
+    double *record = c.record();
     double w[3];
     MathExtra::cross3(omega, c.r, w);
     for (int d = 0; d < 3; d++) w[d] += v[d] - record[d];
@@ -542,8 +492,7 @@ void FixMPMRigid::act(double dt, Stage stage)
 
 double FixMPMRigid::compute_scalar()
 {
-  return 0.5 * LAMMPS_NS::Pointers::force->mvv2e *
-      (mass * MathExtra::dot3(v, v) + MathExtra::dot3(L, omega));
+  return 0.5 * force->mvv2e * (mass * MathExtra::dot3(v, v) + MathExtra::dot3(L, omega));
 }
 
 /* ----------------------------------------------------------------------
@@ -555,8 +504,7 @@ double FixMPMRigid::compute_vector(int i)
   if (i < 3) return x[i];
   if (i < 6) return v[i - 3];
   if (i < 9) return omega[i - 6];
-  if (i < 15)
-    return dt_last > 0.0 ? impulse[i - 9] / (dt_last * LAMMPS_NS::Pointers::force->ftm2v) : 0.0;
+  if (i < 15) return dt_last > 0.0 ? impulse[i - 9] / (dt_last * force->ftm2v) : 0.0;
   return Q[(i - 15) / 3][(i - 15) % 3];
 }
 

@@ -13,11 +13,13 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "fix_mpm.h"
 #include "fix_mpm_material.h"
 #include "group.h"
-#include "memory.h"
 #include "modify.h"
+#include "mpm_field.h"
+#include "mpm_node_sums.h"
+#include "mpm_options.h"
+#include "mpm_point_map.h"
 #include "mpm_points.h"
 #include "neighbor.h"
 #include "update.h"
@@ -28,41 +30,49 @@
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
+using namespace MPM_NS;
 
 /* ----------------------------------------------------------------------
    fix ID group mpm/surface keyword value ...
 ------------------------------------------------------------------------- */
 
+Options MPMSurfaceOptions::declare()
+{
+  using namespace option;
+  Options o("fix mpm/surface");
+  o.add("scale",
+        {number(scale, "S", POSITIVE, "",
+                "diameter of a point over the edge of a cube (2d: square) of its volume")});
+  o.add("grow",
+        {number(grow, "G", AT_LEAST_ONE, "",
+                "largest diameter over the diameter of an undeformed point")});
+  o.add("depth",
+        {number(depth, "D", POSITIVE, "",
+                "depth below the surface of points with a radius, in node spacings")});
+  o.add("group",
+        {text(group_id, "group-ID",
+              "points are in this group if they have a radius, and only then")})
+      .standard("none");
+  return o;
+}
+
 FixMPMSurface::FixMPMSurface(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), scale(1.0), grow(1.2), depth(0.5), surface_group(-1), known(false),
-    no_torques(false), at_surface(nullptr), points(MPMPoints::get(atom))
+    FixMPMState(lmp, narg, arg), surface_group(-1), known(false), no_torques(false),
+    at_surface(nullptr), points(MPMPoints::get(atom))
 {
   if (!points || !atom->radius_flag)
     error->all(FLERR,
                "Fix mpm/surface requires material points with a radius: use atom_style "
                "hybrid sphere mpm");
-  for (int iarg = 3; iarg < narg; iarg += 2) {
-    const std::string keyword = arg[iarg];
-    if (keyword == "group") {
-      if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, "fix mpm/surface group", error);
-      surface_group = group->find(arg[iarg + 1]);
-      if (surface_group <= 0 || surface_group == igroup || group->dynamic[surface_group])
-        error->all(FLERR, iarg + 1,
-                   "Fix mpm/surface group must be a static group other than all and "
-                   "that of the fix: {}",
-                   arg[iarg + 1]);
-      continue;
-    }
-    double *const value = keyword == "scale" ? &scale
-        : keyword == "grow"                  ? &grow
-        : keyword == "depth"                 ? &depth
-                                             : nullptr;
-    if (!value) error->all(FLERR, iarg, "Unknown fix mpm/surface keyword: {}", keyword);
-    if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, "fix mpm/surface " + keyword, error);
-    *value = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
-    if (!(*value > 0.0) || !std::isfinite(*value) || (value == &grow && grow < 1.0))
-      error->all(FLERR, iarg + 1, "Fix mpm/surface {} must be {}: {}", keyword,
-                 value == &grow ? "at least 1" : "positive", arg[iarg + 1]);
+  Options options = declare();
+  read_options(lmp, options, narg, arg, 3);
+  if (options.given("group")) {
+    surface_group = group->find(group_id);
+    if (surface_group <= 0 || surface_group == igroup || group->dynamic[surface_group])
+      error->all(
+          FLERR, options.where("group") + 1,
+          "Fix mpm/surface group must be a static group other than all and that of the fix: {}",
+          group_id);
   }
 
   scalar_flag = peratom_flag = 1;
@@ -73,19 +83,10 @@ FixMPMSurface::FixMPMSurface(LAMMPS *lmp, int narg, char **arg) :
   comm_forward = 1;
   force_reneighbor = 1;
   next_reneighbor = -1;
-  create_attribute = 1;
-  maxexchange = 1;
-  FixMPMSurface::grow_arrays(atom->nmax);
-  atom->add_callback(Atom::GROW);
-  for (int i = 0; i < atom->nlocal; i++) FixMPMSurface::set_arrays(i);
+  state.declare(at_surface, "mpm/surface:at_surface");
+  keep_arrays(false);
   vector_atom = at_surface;
   give_largest();
-}
-
-FixMPMSurface::~FixMPMSurface()
-{
-  if (modify) atom->delete_callback(id, Atom::GROW);
-  memory->destroy(at_surface);
 }
 
 int FixMPMSurface::setmask()
@@ -99,12 +100,11 @@ void FixMPMSurface::init()
 {
   if (modify->get_fix_by_style("^mpm$").empty())
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/surface needs a fix mpm");
-  for (auto *ifix : modify->get_fix_by_style("^mpm$"))
-    if (dynamic_cast<FixMPM *>(ifix)->axisymmetric)
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/surface cannot be used with axisymmetric fix mpm {}, where a grain would "
-                 "be a ring: let bodies meet through fix mpm/contact, or use 3d for grains",
-                 ifix->id);
+  for (const auto *field : MPMField::all(lmp))
+    refuse_field(lmp, *this, *field,
+                 {{field->options.axisymmetric, "axisymmetric",
+                   "a grain would be a ring: let bodies meet through fix mpm/contact, or use 3d "
+                   "for grains"}});
   bigint n = 0, nall;
   for (int i = 0; i < atom->nlocal; i++) n += has_radius(i);
   MPI_Allreduce(&n, &nall, 1, MPI_LMP_BIGINT, MPI_SUM, world);
@@ -207,8 +207,7 @@ void FixMPMSurface::keep_first()
     atom->avec->copy(n, in, 0);
     in++;
   }
-  for (auto *ifix : modify->get_fix_by_style("^mpm$"))
-    dynamic_cast<FixMPM *>(ifix)->renew_topology();
+  for (auto *field : MPMField::all(lmp)) field->map->valid = false;
 }
 
 /* ----------------------------------------------------------------------
@@ -258,10 +257,10 @@ void FixMPMSurface::give_radius(int i, bool surface, double radius)
 void FixMPMSurface::find_surface()
 {
   known = true;
-  for (auto *ifix : modify->get_fix_by_style("^mpm$")) {
-    auto &field = *dynamic_cast<FixMPM *>(ifix);
-    field.volume_at_points(share);
-    const double deviation = std::sqrt((field.shape + 1) / 6.0);
+  for (auto *each : MPMField::all(lmp)) {
+    auto &field = *each;
+    volume_at_points(field, share);
+    const double deviation = std::sqrt((stencil_order(field.options.shape) + 1) / 6.0);
     const double limit = 0.5 * std::erfc(-depth / (deviation * std::sqrt(2.0)));
     for (int i = 0; i < atom->nlocal; i++) {
       if (!has_radius(i) || !field.is_point(i)) continue;
@@ -290,37 +289,15 @@ double FixMPMSurface::compute_scalar()
 
 double FixMPMSurface::memory_usage()
 {
-  return (double) (atom->nmax + share.capacity()) * sizeof(double);
+  return FixMPMState::memory_usage() + share.capacity() * sizeof(double);
 }
 
 /* ---------------------------------------------------------------------- */
 
 void FixMPMSurface::grow_arrays(int nmax)
 {
-  memory->grow(at_surface, nmax, "mpm/surface:at_surface");
+  FixMPMState::grow_arrays(nmax);
   vector_atom = at_surface;
-}
-
-void FixMPMSurface::copy_arrays(int i, int j, int)
-{
-  at_surface[j] = at_surface[i];
-}
-
-void FixMPMSurface::set_arrays(int i)
-{
-  at_surface[i] = 0.0;
-}
-
-int FixMPMSurface::pack_exchange(int i, double *buf)
-{
-  buf[0] = at_surface[i];
-  return 1;
-}
-
-int FixMPMSurface::unpack_exchange(int i, double *buf)
-{
-  at_surface[i] = buf[0];
-  return 1;
 }
 
 int FixMPMSurface::pack_forward_comm(int n, int *list, double *buf, int, int *)

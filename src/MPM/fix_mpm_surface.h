@@ -15,19 +15,29 @@ FixStyle(mpm/surface,FixMPMSurface);
 #ifndef LMP_FIX_MPM_SURFACE_H
 #define LMP_FIX_MPM_SURFACE_H
 
-#include "fix.h"
+#include "declare/option.h"
+#include "mpm_state.h"
 
+#include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
 
+struct MPMSurfaceOptions {
+  double scale = 1.0;    ///< of the radius
+  double grow = 1.2;     ///< its largest growth
+  double depth = 0.5;    ///< of what counts as surface [h]
+  std::string group_id;
+
+  MPM_NS::Options declare();
+};
+
 /** Gives a contact radius, that of their present volume, to the material points at the surface of
  *  bodies and to those that have failed, and none to the others, so that the pair styles of grains
  *  meet no points inside. */
-class FixMPMSurface : public Fix {
+class FixMPMSurface : public FixMPMState, private MPMSurfaceOptions {
  public:
   FixMPMSurface(class LAMMPS *, int, char **);
-  ~FixMPMSurface() override;
   int setmask() override;
   void init() override;
   void setup_pre_exchange() override;
@@ -42,15 +52,10 @@ class FixMPMSurface : public Fix {
 
   double memory_usage() override;
   void grow_arrays(int) override;
-  void copy_arrays(int, int, int) override;
-  void set_arrays(int) override;
-  int pack_exchange(int, double *) override;
-  int unpack_exchange(int, double *) override;
   int pack_forward_comm(int, int *, double *, int, int *) override;
   void unpack_forward_comm(int, int, double *) override;
 
  private:
-  double scale, grow, depth;    // of the radius; its largest growth; of what counts as surface [h]
   int surface_group;            // that points with a radius are in, -1: none
   bool known;                   // radii are those of the surface, not the largest ones
   bool no_torques;              // of atoms that are not in neighbor lists, since these were made

@@ -31,10 +31,10 @@ class MPMNodeAction {
   virtual void blocks_found() {}
 
   /** Activate further blocks that the action needs next to those in reach of points. */
-  virtual void extend_topology(class FixMPM &) {}
+  virtual void extend_topology(class MPMField &) {}
 
   /** The blocks of the field are new: lists of nodes must be made again. */
-  virtual void topology_changed(class FixMPM &) {}
+  virtual void topology_changed(class MPMField &) {}
 
   /** Which velocities the nodes have: those after the momentum equation (STEP), which move points
    *  and count for reactions and work; or others, for which nothing is counted: of the start of the

@@ -11,12 +11,14 @@
 #include "law/law.h"
 #include "material/material_point.h"
 #include "mpm_material_input.h"
+#include "mpm_options.h"
 
 #include "comm.h"
 #include "error.h"
 #include "force.h"
 #include "input.h"
 #include "math_const.h"
+#include "math_extra.h"
 #include "update.h"
 #include "variable.h"
 
@@ -24,6 +26,7 @@
 
 #include <Eigen/Dense>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -31,19 +34,13 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 static constexpr int CONSOLIDATION_STEPS = 100;
-static constexpr double NOT_GIVEN = -1.0;
 static const char *const component_name[6] = {"xx", "yy", "zz", "xy", "xz", "yz"};
 static const char *const path_name[] = {"uniaxial/stress", "uniaxial/strain", "shear", "biaxial",
                                         "triaxial",        "volumetric",      "shock", "mixed"};
 
 /* ---------------------------------------------------------------------- */
 
-MPMPoint::MPMPoint(LAMMPS *lmp) :
-    Command(lmp), path(MIXED), rate(0.0), pressure(0.0), duration(NOT_GIVEN), strain(NOT_GIVEN),
-    amplitude(NOT_GIVEN), cycles(0.0), temperature(NAN), length(1.0), nsteps(1000),
-    every(0), axis{}, turns(0.0), component(), spin(), fp(nullptr), iterations(0)
-{
-}
+MPMPoint::MPMPoint(LAMMPS *lmp) : Command(lmp), fp(nullptr), iterations(0) {}
 
 MPMPoint::~MPMPoint()
 {
@@ -83,118 +80,110 @@ void MPMPoint::command(int narg, char **arg)
    mpm_point FILE PATH values keyword values ... material definition
 ------------------------------------------------------------------------- */
 
+Options MPMPointOptions::declare()
+{
+  using namespace option;
+  Options o("mpm_point");
+  const auto any = number(rate, "rate", ANY_NUMBER);
+  o.argument(word(path,
+                  {{path_name[UNIAXIAL_STRESS], UNIAXIAL_STRESS, "", {any}},
+                   {path_name[UNIAXIAL_STRAIN], UNIAXIAL_STRAIN, "", {any}},
+                   {path_name[SHEAR], SHEAR, "", {any}},
+                   {path_name[BIAXIAL], BIAXIAL, "", {any}},
+                   {path_name[TRIAXIAL],
+                    TRIAXIAL,
+                    "",
+                    {any, number(pressure, "confining pressure", NOT_NEGATIVE)}},
+                   {path_name[VOLUMETRIC], VOLUMETRIC, "", {any}},
+                   {path_name[SHOCK], SHOCK, "", {number(rate, "rate", {-UNBOUNDED, 0.0, false})}},
+                   {path_name[MIXED], MIXED}},
+                  "path"));
+  o.add("time", {number(duration, "T", POSITIVE, "time", "duration of the path")}).standard("");
+  o.add("strain", {number(strain, "E", POSITIVE, "1", "size of the strain at which the path ends")})
+      .standard("");
+  o.add("cycle",
+        {number(amplitude, "A", POSITIVE, "1", "amplitude of the strain"),
+         number(cycles, "N", POSITIVE, "", "number of cycles")})
+      .standard("");
+  o.add("steps", {integer(nsteps, "N", POSITIVE, "number of time steps")});
+  o.add("every", {integer(every, "M", POSITIVE, "write a row of the table every this many steps")})
+      .standard("steps/1000");
+  for (int k = 0; k < 6; k++)
+    o.add(component_name[k],
+          {word(component[k].kind,
+                {{"rate",
+                  Component::RATE,
+                  "",
+                  {variables(&component[k].value, 1, "R", "1/time",
+                             "this component of the rate of deformation, can be a variable")}},
+                 {"stress",
+                  Component::STRESS,
+                  "",
+                  {variables(&component[k].value, 1, "S", "pressure",
+                             "this component of the Cauchy stress, can be a variable")}}})})
+        .once();
+  o.add("spin",
+        {variables(spin, 3, "wx wy wz", "radians/time",
+                   "angular velocity of the material, can be variables")});
+  o.add("clock",
+        {text(clock, "name",
+              "internal-style variable that has the time when variables are evaluated")});
+  o.add("rotate",
+        {numbers(axis, 3, "nx ny nz", ANY_NUMBER, "", "axis"),
+         number(turns, "turns", ANY_NUMBER, "",
+                "number of turns that the frame makes during the path")})
+      .standard("none");
+  o.add("temperature", {number(temperature, "T", ANY_NUMBER, "temperature", "initial temperature")})
+      .standard("that of the material");
+  o.add("length",
+        {number(length, "h", POSITIVE, "distance",
+                "node spacing that an artificial viscosity shall see")});
+  const auto given = [this] {
+    return (duration > 0.0) + (strain > 0.0) + (amplitude > 0.0);
+  };
+  const auto changed = [this] {
+    return std::any_of(component, component + 6, [](const Component &c) {
+      return c.kind != Component::AS_PATH;
+    });
+  };
+  o.refuse([=] {
+    return OptionRules{
+        {path != MIXED && rate == 0.0, "", "needs a rate that is different from zero"},
+        {given() == 0, "", "needs one of the keywords time, strain and cycle"},
+        {given() > 1, "", "needs only one of the keywords time, strain and cycle"},
+        {path == MIXED && duration < 0.0, "",
+         "mixed has no strain of its own: use time instead of strain and cycle"},
+        {path == SHOCK && (amplitude > 0.0 || turns != 0.0), "",
+         "shock goes from the initial state to each of its states in one step: cycle and rotate do "
+         "not go with it"},
+        {path == SHOCK && changed(), "",
+         "shock is uniaxial compression: no component can be changed; use uniaxial/strain"},
+        {axis[0] == 0.0 && axis[1] == 0.0 && axis[2] == 0.0, "rotate",
+         "needs an axis that is not zero"}};
+  });
+  return o;
+}
+
 void MPMPoint::parse(int narg, char **arg)
 {
-  if (narg < 2) utils::missing_cmd_args(FLERR, "mpm_point", error);
-  if (strcmp(arg[0], "NULL") != 0) file = arg[0];
-  int iarg = parse_path(narg, arg);
-
-  const auto need = [&](int n) {
-    if (iarg + n >= narg)
-      utils::missing_cmd_args(FLERR, std::string("mpm_point ") + arg[iarg], error);
-  };
-  const auto number = [&](int k) {
-    return utils::numeric(FLERR, arg[iarg + k], false, lmp);
-  };
-  const auto positive = [&](int k) {
-    const double x = number(k);
-    if (!(x > 0.0)) error->all(FLERR, iarg + k, "Mpm_point {} must be positive", arg[iarg]);
-    return x;
-  };
-
-  while (iarg < narg && strcmp(arg[iarg], "material") != 0) {
-    const std::string key = arg[iarg];
-    int k = 0;
-    while (k < 6 && key != component_name[k]) k++;
-    if (k < 6) {
-      need(2);
-      const std::string kind = arg[iarg + 1];
-      if (kind != "rate" && kind != "stress")
-        error->all(FLERR, iarg + 1, "Mpm_point {} must be followed by rate or stress, not {}", key,
-                   kind);
-      if (component[k].kind != Component::AS_PATH)
-        error->all(FLERR, iarg, "Mpm_point: component {} is given twice", key);
-      component[k].kind = kind == "rate" ? Component::RATE : Component::STRESS;
-      component[k].value = parse_value(iarg + 2, arg);
-      iarg += 3;
-    } else if (key == "spin") {
-      need(3);
-      for (int d = 0; d < 3; d++) spin[d] = parse_value(iarg + 1 + d, arg);
-      iarg += 4;
-    } else if (key == "rotate") {
-      need(4);
-      double norm = 0.0;
-      for (int d = 0; d < 3; d++) {
-        axis[d] = number(1 + d);
-        norm += axis[d] * axis[d];
-      }
-      if (!(norm > 0.0)) error->all(FLERR, iarg + 1, "Mpm_point rotate: the axis is zero");
-      for (double &a : axis) a /= sqrt(norm);
-      turns = number(4);
-      iarg += 5;
-    } else if (key == "cycle") {
-      need(2);
-      amplitude = positive(1);
-      cycles = positive(2);
-      iarg += 3;
-    } else if (key == "clock") {
-      need(1);
-      clock = arg[iarg + 1];
-      const int ivar = input->variable->find(clock.c_str());
-      if (ivar < 0 || !input->variable->internalstyle(ivar))
-        error->all(FLERR, iarg + 1,
-                   "Mpm_point clock: {} is no internal-style variable: define it with "
-                   "'variable {} internal 0'",
-                   clock, clock);
-      iarg += 2;
-    } else if (key == "temperature") {
-      need(1);
-      temperature = number(1);
-      iarg += 2;
-    } else if (key == "steps" || key == "every") {
-      need(1);
-      const bigint n = utils::bnumeric(FLERR, arg[iarg + 1], false, lmp);
-      if (n < 1) error->all(FLERR, iarg + 1, "Mpm_point {} must be positive", key);
-      (key == "steps" ? nsteps : every) = n;
-      iarg += 2;
-    } else if (key == "time" || key == "strain" || key == "length") {
-      need(1);
-      (key == "time" ? duration : key == "strain" ? strain : length) = positive(1);
-      iarg += 2;
-    } else {
-      error->all(FLERR, iarg,
-                 "Unknown mpm_point keyword: {} (the definition of the material comes last, after "
-                 "the word material)",
-                 key);
-    }
-  }
+  if (narg > 0 && strcmp(arg[0], "NULL") != 0) file = arg[0];
+  Options options = declare();
+  const int iarg = read_options(lmp, options, narg, arg, 1, "material");
   if (iarg >= narg)
     error->all(FLERR,
                "Mpm_point: the material is missing: end the command with 'material density "
                "...' or 'material file NAME'");
+  for (auto &c : component) find_variable(lmp, c.value, "mpm_point");
+  for (auto &v : spin) find_variable(lmp, v, "mpm_point");
+  const int ivar = input->variable->find(clock.c_str());
+  if (!clock.empty() && (ivar < 0 || !input->variable->internalstyle(ivar)))
+    error->all(FLERR, options.where("clock") + 1,
+               "Mpm_point clock: {} is no internal-style variable: define it with "
+               "'variable {} internal 0'",
+               clock, clock);
+  const double norm = MathExtra::len3(axis);
+  for (int d = 0; d < 3 && norm > 0.0; d++) axis[d] /= norm;
 
-  // what does not go together
-
-  const bool mixed = path == MIXED;
-  const int given = (duration > 0.0) + (strain > 0.0) + (amplitude > 0.0);
-  if (given != 1)
-    error->all(FLERR, "Mpm_point {} needs {} of the keywords {}", path_name[path],
-               given ? "only one" : "one", mixed ? "time" : "time, strain and cycle");
-  if (mixed && duration < 0.0)
-    error->all(FLERR,
-               "Mpm_point mixed has no strain of its own: use time instead of strain and "
-               "cycle");
-  if (path == SHOCK) {
-    if (amplitude > 0.0 || turns != 0.0)
-      error->all(FLERR,
-                 "Mpm_point shock goes from the initial state to each of its states in one "
-                 "step: cycle and rotate do not go with it");
-    for (auto &c : component)
-      if (c.kind != Component::AS_PATH)
-        error->all(FLERR,
-                   "Mpm_point shock is uniaxial compression: no component can be changed; "
-                   "use uniaxial/strain");
-  }
   if (amplitude > 0.0) duration = 4.0 * amplitude * cycles / fabs(rate);
   if (strain > 0.0) duration = strain / fabs(rate);
   if (every == 0) every = std::max<bigint>(1, nsteps / 1000);
@@ -204,55 +193,11 @@ void MPMPoint::parse(int narg, char **arg)
 
 /* ---------------------------------------------------------------------- */
 
-int MPMPoint::parse_path(int narg, char **arg)
+double MPMPoint::value_at(const NumberOrVariable &v, double time)
 {
-  int k = 0;
-  while (k < NPATHS && strcmp(arg[1], path_name[k]) != 0) k++;
-  if (k == NPATHS) {
-    std::string all;
-    for (const char *name : path_name) all += fmt::format("{}{}", all.empty() ? "" : ", ", name);
-    error->all(FLERR, 1, "Unknown mpm_point path {}: choose one of {}", arg[1], all);
-  }
-  path = static_cast<Path>(k);
-  if (path == MIXED) return 2;
-  const int nvalues = path == TRIAXIAL ? 2 : 1;
-  if (narg < 2 + nvalues) utils::missing_cmd_args(FLERR, std::string("mpm_point ") + arg[1], error);
-  rate = utils::numeric(FLERR, arg[2], false, lmp);
-  if (rate == 0.0 || (path == SHOCK && rate > 0.0))
-    error->all(FLERR, 2, "Mpm_point {}: the rate must be {}", arg[1],
-               path == SHOCK ? "negative (compression)" : "different from zero");
-  if (path == TRIAXIAL) {
-    pressure = utils::numeric(FLERR, arg[3], false, lmp);
-    if (!(pressure >= 0.0))
-      error->all(FLERR, 3, "Mpm_point triaxial: the confining pressure must not be negative");
-  }
-  return 2 + nvalues;
-}
-
-/* ----------------------------------------------------------------------
-   a number or v_name
-------------------------------------------------------------------------- */
-
-MPMPoint::Value MPMPoint::parse_value(int iarg, char **arg)
-{
-  Value v{0.0, ""};
-  if (!utils::strmatch(arg[iarg], "^v_")) {
-    v.number = utils::numeric(FLERR, arg[iarg], false, lmp);
-    return v;
-  }
-  v.variable = arg[iarg] + 2;
-  const int ivar = input->variable->find(v.variable.c_str());
-  if (ivar < 0) error->all(FLERR, iarg, "Variable {} for mpm_point does not exist", v.variable);
-  if (!input->variable->equalstyle(ivar))
-    error->all(FLERR, iarg, "Variable {} for mpm_point is not equal-style", v.variable);
-  return v;
-}
-
-double MPMPoint::evaluate(const Value &v, double time)
-{
-  if (v.variable.empty()) return v.number;
+  if (v.variable.empty()) return v.value;
   if (!clock.empty()) input->variable->internal_set(input->variable->find(clock.c_str()), time);
-  return input->variable->compute_equal(input->variable->find(v.variable.c_str()));
+  return evaluate(lmp, v);
 }
 
 /* ----------------------------------------------------------------------
@@ -313,13 +258,13 @@ MixedControl MPMPoint::control(double t0, double t1, bool started, double share)
   for (int k = 0; k < 6; k++) {
     if (component[k].kind == Component::AS_PATH) continue;
     const bool is_rate = component[k].kind == Component::RATE;
-    const double value = evaluate(component[k].value, is_rate ? middle : t1);
+    const double value = value_at(component[k].value, is_rate ? middle : t1);
     for (const int p : place[k]) c.L[p] = is_rate ? value : 0.0;
     c.stress_given[k] = !is_rate;
     c.stress[k] = is_rate ? 0.0 : value;
   }
-  const double x = evaluate(spin[0], middle), y = evaluate(spin[1], middle),
-               z = evaluate(spin[2], middle);
+  const double x = value_at(spin[0], middle), y = value_at(spin[1], middle),
+               z = value_at(spin[2], middle);
   c.L[1] -= z;
   c.L[3] += z;
   c.L[2] += y;

@@ -16,8 +16,12 @@ CommandStyle(mpm_point,MPMPoint);
 #define LMP_MPM_POINT_H
 
 #include "command.h"
+#include "declare/option.h"
 
+#include <cmath>
+#include <cstdint>
 #include <memory>
+#include <string>
 
 namespace MPM_NS {
 class Material;
@@ -27,25 +31,12 @@ struct MixedControl;
 
 namespace LAMMPS_NS {
 
-/** Drives one material point along a path of strain or stress and writes a table. */
-class MPMPoint : public Command {
- public:
-  MPMPoint(class LAMMPS *);
-  ~MPMPoint() override;
-  void command(int, char **) override;
-
- private:
-  /** A number, or an equal-style variable. */
-  struct Value {
-    double number;
-    std::string variable;
-  };
+struct MPMPointOptions {
   /** Control of a component of the motion, which takes the place of what the path says. */
   struct Component {
-    enum { AS_PATH, RATE, STRESS } kind;
-    Value value;
+    enum Kind { AS_PATH, RATE, STRESS } kind = AS_PATH;
+    MPM_NS::NumberOrVariable value;
   };
-
   enum Path {
     UNIAXIAL_STRESS,
     UNIAXIAL_STRAIN,
@@ -57,14 +48,30 @@ class MPMPoint : public Command {
     MIXED,
     NPATHS
   };
-  Path path;
-  double rate, pressure;    // of the path
-  double duration, strain, amplitude, cycles, temperature, length;
-  bigint nsteps, every;
-  double axis[3], turns;    // of the superposed rotation
-  std::string clock;        // internal-style variable that gets the time
+  static constexpr double NOT_GIVEN = -1.0;
+
+  Path path = MIXED;
+  double rate = 0.0, pressure = 0.0;    ///< of the path
+
+  double duration = NOT_GIVEN, strain = NOT_GIVEN, amplitude = NOT_GIVEN, cycles = 0.0;
+  int64_t nsteps = 1000, every = 0;
+  double axis[3] = {0.0, 0.0, 0.0}, turns = 0.0;    ///< of the superposed rotation
+  std::string clock;                                ///< internal-style variable that gets the time
   Component component[6];
-  Value spin[3];
+  MPM_NS::NumberOrVariable spin[3];
+  double temperature = NAN, length = 1.0;
+
+  MPM_NS::Options declare();
+};
+
+/** Drives one material point along a path of strain or stress and writes a table. */
+class MPMPoint : public Command, private MPMPointOptions {
+ public:
+  MPMPoint(class LAMMPS *);
+  ~MPMPoint() override;
+  void command(int, char **) override;
+
+ private:
   std::string file;
 
   std::unique_ptr<MPM_NS::Material> material;
@@ -73,9 +80,7 @@ class MPMPoint : public Command {
   bigint iterations;
 
   void parse(int, char **);
-  int parse_path(int, char **);
-  Value parse_value(int, char **);
-  double evaluate(const Value &, double time);
+  double value_at(const MPM_NS::NumberOrVariable &, double time);
   double path_strain(double time) const;
   MPM_NS::MixedControl control(double t0, double t1, bool started, double share);
   void run_path(MPM_NS::MaterialPoint &);

@@ -9,10 +9,10 @@
 #include "mpm_point_batches.h"
 
 #include "atom.h"
-#include "fix_mpm.h"
 #include "fix_mpm_material.h"
 #include "material/material.h"
 #include "modify.h"
+#include "mpm_field.h"
 
 #include <memory>
 #include <vector>
@@ -28,8 +28,7 @@ void LAMMPS_NS::visit_point_batches(LAMMPS *lmp, int groupbit, const BatchVisito
   std::vector<int> list;
   list.reserve(BATCH);
 
-  for (const auto &fix : lmp->modify->get_fix_by_style("^mpm$")) {
-    const auto *field = dynamic_cast<FixMPM *>(fix);
+  for (const auto *field : MPMField::all(lmp)) {
     for (auto *material : field->materials) {
       auto flush = [&]() {
         if (list.empty()) return;

@@ -12,12 +12,14 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "fix_mpm.h"
 #include "fix_mpm_contact.h"
 #include "force.h"
 #include "math_const.h"
 #include "memory.h"
 #include "modify.h"
+#include "mpm_field.h"
+#include "mpm_frame.h"
+#include "mpm_options.h"
 #include "mpm_points.h"
 #include "neigh_list.h"
 #include "neighbor.h"
@@ -28,14 +30,15 @@
 #include <cstring>
 
 using namespace LAMMPS_NS;
+using namespace MPM_NS;
 
 static constexpr int NOTHING = -1;    // field of an atom that is no point
 
 /* ---------------------------------------------------------------------- */
 
 PairMPMPenalty::PairMPMPenalty(LAMMPS *lmp) :
-    Pair(lmp), points(nullptr), growth(1.2), rings(false), velocities(false), damped(false),
-    look(true), warned(false), warned_deep(false), nmax(0), radius(nullptr), mass(nullptr)
+    Pair(lmp), points(nullptr), rings(false), velocities(false), damped(false), look(true),
+    warned(false), warned_deep(false), nmax(0), radius(nullptr), mass(nullptr)
 {
   single_enable = 0;
   nextra = 2;
@@ -228,7 +231,7 @@ int PairMPMPenalty::field_of(int i) const
 {
   if (i < atom->nlocal && atom->vfrac[i] == 0.0) return NOTHING;
   for (std::size_t k = 0; k < fields.size(); k++)
-    if (atom->mask[i] & fields[k]->groupbit) return (int) k;
+    if (atom->mask[i] & fields[k]->fix.groupbit) return (int) k;
   return NOTHING;
 }
 
@@ -239,7 +242,7 @@ int PairMPMPenalty::field_of(int i) const
 double PairMPMPenalty::initial_radius(int i) const
 {
   double V = atom->vfrac[i];
-  if (rings) V /= fields[0]->circle(atom->x[i][0] / points->F[i][8]);
+  if (rings) V /= fields[0]->frame->circle(atom->x[i][0] / points->F[i][8]);
   return 0.5 * (domain->dimension == 2 ? sqrt(V) : cbrt(V));
 }
 
@@ -288,19 +291,21 @@ void PairMPMPenalty::unpack_forward_comm(int n, int first, double *buf)
    pair_style mpm/penalty keyword value ...
 ------------------------------------------------------------------------- */
 
+Options MPMPenaltyOptions::declare()
+{
+  using namespace option;
+  Options o("pair_style mpm/penalty");
+  o.add("growth",
+        {number(growth, "factor", AT_LEAST_ONE, "1",
+                "largest radius of a point, in units of its initial radius")});
+  return o;
+}
+
 void PairMPMPenalty::settings(int narg, char **arg)
 {
   growth = 1.2;
-  for (int iarg = 0; iarg < narg; iarg += 2) {
-    const std::string keyword = arg[iarg];
-    if (keyword != "growth")
-      error->all(FLERR, iarg, "Unknown pair_style mpm/penalty keyword: {}", keyword);
-    if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, "pair_style mpm/penalty growth", error);
-    growth = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
-    if (!(growth >= 1.0) || !std::isfinite(growth))
-      error->all(FLERR, iarg + 1, "Pair_style mpm/penalty growth must be at least 1: {}",
-                 arg[iarg + 1]);
-  }
+  Options options = declare();
+  read_options(lmp, options, narg, arg, 0);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -313,7 +318,7 @@ void PairMPMPenalty::allocate()
   memory->create(cutsq, n, n, "pair:cutsq");
   memset(&setflag[0][0], 0, n * n * sizeof(int));
   memset(&cutsq[0][0], 0, n * n * sizeof(double));
-  coeffs.assign(n * n, Coeff{0.0, 0.0, 0.0, 0.0, 0});
+  coeffs.assign(n * n, Coeff());
 
   // points of one body do not interact, so that these need not be given: init_one() knows better
 
@@ -329,6 +334,22 @@ PairMPMPenalty::Coeff &PairMPMPenalty::coeff_of(int i, int j)
    pair_coeff I J modulus keyword values ...
 ------------------------------------------------------------------------- */
 
+Options MPMPenaltyCoeff::declare()
+{
+  using namespace option;
+  Options o("pair_coeff mpm/penalty");
+  o.argument(number(modulus, "modulus", NOT_NEGATIVE));
+  o.add("friction",
+        {number(friction, "mu", NOT_NEGATIVE, "1", "coefficient of Coulomb friction"),
+         number(slip, "slip", POSITIVE, "velocity",
+                "sliding velocity from which on friction is full")})
+      .standard("0");
+  o.add("damping",
+        {number(damping, "zeta", NOT_NEGATIVE, "1",
+                "damping of a contact between two points, 1 = critical")});
+  return o;
+}
+
 void PairMPMPenalty::coeff(int narg, char **arg)
 {
   if (narg < 3) utils::missing_cmd_args(FLERR, "pair_coeff mpm/penalty", error);
@@ -336,34 +357,10 @@ void PairMPMPenalty::coeff(int narg, char **arg)
   int ilo, ihi, jlo, jhi;
   utils::bounds(FLERR, arg[0], 1, atom->ntypes, ilo, ihi, error);
   utils::bounds(FLERR, arg[1], 1, atom->ntypes, jlo, jhi, error);
-
-  Coeff c = {0.0, 0.0, 0.0, 0.0, 1};
-  const auto number = [&](int iarg, const char *what) {
-    if (iarg >= narg)
-      utils::missing_cmd_args(FLERR, std::string("pair_coeff mpm/penalty ") + what, error);
-    const double value = utils::numeric(FLERR, arg[iarg], false, lmp);
-    if (!(value >= 0.0) || !std::isfinite(value))
-      error->all(FLERR, iarg, "Pair_coeff mpm/penalty {} must not be negative: {}", what,
-                 arg[iarg]);
-    return value;
-  };
-  c.modulus = number(2, "modulus");
-  int iarg = 3;
-  while (iarg < narg) {
-    const std::string keyword = arg[iarg];
-    if (keyword == "friction") {
-      c.friction = number(iarg + 1, "friction coefficient");
-      c.slip = number(iarg + 2, "friction velocity");
-      if (!(c.slip > 0.0))
-        error->all(FLERR, iarg + 2, "Pair_coeff mpm/penalty friction velocity must be positive: {}",
-                   arg[iarg + 2]);
-      iarg += 3;
-    } else if (keyword == "damping") {
-      c.damping = number(iarg + 1, "damping");
-      iarg += 2;
-    } else
-      error->all(FLERR, iarg, "Unknown pair_coeff mpm/penalty keyword: {}", keyword);
-  }
+  Coeff c;
+  Options options = c.declare();
+  read_options(lmp, options, narg, arg, 2);
+  c.set = 1;
 
   int count = 0;
   for (int i = ilo; i <= ihi; i++)
@@ -386,15 +383,14 @@ void PairMPMPenalty::init_style()
     error->all(FLERR, Error::NOLASTLINE,
                "Pair style mpm/penalty requires material points: use "
                "atom_style mpm, or hybrid with mpm");
-  fields.clear();
-  for (auto *fix : modify->get_fix_by_style("^mpm$")) fields.push_back(dynamic_cast<FixMPM *>(fix));
+  fields = MPMField::all(lmp);
   if (fields.size() < 2)
     error->all(FLERR, Error::NOLASTLINE,
                "Pair style mpm/penalty acts between fields, but there {}: "
                "give each body a fix mpm",
                fields.empty() ? "is no fix mpm" : "is only one fix mpm");
 
-  rings = fields[0]->axisymmetric;    // all fields are, or none
+  rings = fields[0]->options.axisymmetric;    // all fields are, or none
 
   const std::size_t nfields = fields.size(), n = atom->ntypes + 1;
   coupled.assign(nfields * nfields, 0);
@@ -402,7 +398,7 @@ void PairMPMPenalty::init_style()
     for (std::size_t b = 0; b < nfields; b++) {
       coupled[a * nfields + b] = a == b;
       for (auto *fix : modify->get_fix_by_style("^mpm/contact$"))
-        if (dynamic_cast<FixMPMContact *>(fix)->couples(fields[a]->id, fields[b]->id))
+        if (dynamic_cast<FixMPMContact *>(fix)->couples(fields[a]->id(), fields[b]->id()))
           coupled[a * nfields + b] = 1;
     }
 
@@ -466,7 +462,7 @@ double PairMPMPenalty::init_one(int i, int j)
           "Pair style mpm/penalty has no pair_coeff for types {} and "
           "{}, but fields {} and {} have such points: give one, with modulus 0 if they shall "
           "not touch",
-          i, j, fields[a]->id, fields[b]->id);
+          i, j, fields[a]->id(), fields[b]->id());
     if (c.modulus > 0.0) return reach;
   }
 

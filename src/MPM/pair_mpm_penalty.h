@@ -15,6 +15,7 @@ PairStyle(mpm/penalty,PairMPMPenalty);
 #ifndef LMP_PAIR_MPM_PENALTY_H
 #define LMP_PAIR_MPM_PENALTY_H
 
+#include "declare/option.h"
 #include "pair.h"
 
 #include <cstdint>
@@ -22,8 +23,26 @@ PairStyle(mpm/penalty,PairMPMPenalty);
 #include <vector>
 
 namespace LAMMPS_NS {
-class FixMPM;
+class MPMField;
 struct MPMPoints;
+
+/** Settings of pair_style mpm/penalty. */
+struct MPMPenaltyOptions {
+  double growth = 1.2;    ///< radii grow to this multiple of their initial value at most
+
+  MPM_NS::Options declare();
+};
+
+/** Settings of pair_coeff for mpm/penalty, as they are in restart files. */
+struct MPMPenaltyCoeff {
+  double modulus = 0.0;     ///< pressure units
+  double friction = 0.0;    ///< coefficient of Coulomb
+  double slip = 0.0;        ///< sliding velocity from which on friction is full
+  double damping = 0.0;     ///< share of critical damping of a contact
+  int64_t set = 0;          ///< given by pair_coeff
+
+  MPM_NS::Options declare();
+};
 
 /** Contact between points of different fields (fix mpm), whatever their lattices.
  *
@@ -33,7 +52,7 @@ struct MPMPoints;
  *  E delta/spacing, as of a layer of material of modulus E between the outermost points. With an axis of
  *  symmetry all of this is along the circle that is midway between the two.
  */
-class PairMPMPenalty : public Pair {
+class PairMPMPenalty : public Pair, private MPMPenaltyOptions {
  public:
   PairMPMPenalty(class LAMMPS *);
   ~PairMPMPenalty() override;
@@ -51,18 +70,11 @@ class PairMPMPenalty : public Pair {
   double memory_usage() override;
 
  private:
-  struct Coeff {
-    double modulus;     // pressure units
-    double friction;    // coefficient of Coulomb
-    double slip;        // sliding velocity from which on friction is full
-    double damping;     // share of critical damping of a contact
-    int64_t set;        // given by pair_coeff
-  };
+  using Coeff = MPMPenaltyCoeff;
 
   MPMPoints *points;
-  double growth;                // radii grow to this multiple of their initial value at most
   std::vector<Coeff> coeffs;    // [ntypes+1][ntypes+1]
-  std::vector<FixMPM *> fields;
+  std::vector<MPMField *> fields;
   std::vector<char> coupled;      // [field][field] same field, or left to fix mpm/contact
   std::vector<char> present;      // [field][type]
   std::vector<double> largest;    // [type] initial radius of the largest point

@@ -12,25 +12,21 @@
 // made from the declarations of the laws. The test compares them with the files; with MPM_WRITE=1
 // in the environment it writes the files. That each has its page is tested in test_docs.py.
 
+#include "declare/table_testing.h"
 #include "law/law.h"
 
 #include "gtest/gtest.h"
 
 #include <cctype>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
-#include <dirent.h>
 #include <map>
 #include <set>
-#include <sys/stat.h>
 
 using namespace MPM_NS;
 
 namespace {
 
-const std::string FOLDER = MPM_SOURCE_DIR "/doc/src/laws";
 const char *const PART_NAME[NPARTS] = {"closed",    "eos",    "strength",
                                        "viscosity", "damage", "thermal"};
 
@@ -167,59 +163,11 @@ std::map<std::string, std::string> files()
   return all;
 }
 
-std::string read(const std::string &path)
-{
-  std::string text;
-  if (FILE *fp = fopen(path.c_str(), "r")) {
-    for (int c; (c = fgetc(fp)) != EOF;) text += static_cast<char>(c);
-    fclose(fp);
-  }
-  return text;
-}
-
-std::set<std::string> present()
-{
-  std::set<std::string> names;
-  if (DIR *folder = opendir(FOLDER.c_str())) {
-    while (const dirent *entry = readdir(folder)) {
-      const std::string name = entry->d_name;
-      if (name[0] != '.') names.insert(name);
-    }
-    closedir(folder);
-  }
-  return names;
-}
-
 }    // namespace
 
 TEST(LawTables, AreUpToDate)
 {
-  const bool write = getenv("MPM_WRITE") != nullptr;
-  const auto wanted = files();
-  std::string wrong;
-  for (const auto &[name, text] : wanted) {
-    const std::string path = FOLDER + "/" + name;
-    if (read(path) == text) continue;
-    if (!write) {
-      wrong += " " + name;
-      continue;
-    }
-    mkdir(FOLDER.c_str(), 0777);
-    FILE *fp = fopen(path.c_str(), "w");
-    ASSERT_NE(fp, nullptr) << path;
-    fputs(text.c_str(), fp);
-    fclose(fp);
-    printf("wrote %s\n", path.c_str());
-  }
-  for (const auto &name : present()) {
-    if (wanted.count(name)) continue;
-    if (write)
-      remove((FOLDER + "/" + name).c_str());
-    else
-      wrong += " " + name + " (no such law)";
-  }
-  EXPECT_EQ(wrong, "") << "tables in doc/src/laws differ from the declarations: run\n"
-                       << "  tools/law_tables.sh";
+  MPM_TEST::expect_up_to_date("laws", files());
 }
 
 // units and meanings are given, in the same words for the same thing

@@ -25,15 +25,14 @@ namespace {
     static constexpr const char *name = "polynomial";
     static constexpr const char *meaning = "polynomial in density, linear in energy";
     enum { A1, A2, A3, B0, B1, T1, T2, E0, CUTOFF, SPALL };
-    static constexpr Range ANY{-UNBOUNDED, UNBOUNDED, false};
     static constexpr Parameter parameters[] = {
         {"", "A1", "pressure", POSITIVE, REQUIRED, "bulk modulus"},
-        {"", "A2", "pressure", ANY, REQUIRED, "coefficient of the square in compression"},
-        {"", "A3", "pressure", ANY, REQUIRED, "coefficient of the cube in compression"},
+        {"", "A2", "pressure", ANY_NUMBER, REQUIRED, "coefficient of the square in compression"},
+        {"", "A3", "pressure", ANY_NUMBER, REQUIRED, "coefficient of the cube in compression"},
         {"", "B0", "1", NOT_NEGATIVE, REQUIRED, "coefficient of the energy"},
-        {"", "B1", "1", ANY, REQUIRED, "coefficient of mu times energy in compression"},
+        {"", "B1", "1", ANY_NUMBER, REQUIRED, "coefficient of mu times energy in compression"},
         {"", "T1", "pressure", NOT_NEGATIVE, 0.0, "linear coefficient in tension, 0: A1"},
-        {"", "T2", "pressure", ANY, 0.0, "coefficient of the square in tension"},
+        {"", "T2", "pressure", ANY_NUMBER, 0.0, "coefficient of the square in tension"},
         {"energy", "E0", "pressure", NOT_NEGATIVE, 0.0, "initial energy per reference volume"},
         {"cutoff", "PMIN", "pressure", TENSION, -UNBOUNDED, "lowest pressure, not positive"},
         {"spall", "PSPALL", "pressure", TENSION, -UNBOUNDED,

@@ -17,11 +17,11 @@
 // which reads the declarations only. All of their content is in unnamed namespaces, so that the
 // linker cannot take a function of one instruction set for that of another.
 
+#include "declare/range.h"
 #include "material/material.h"
 
 #include <cstddef>
 #include <deque>
-#include <limits>
 
 #define MPM_INLINE inline __attribute__((always_inline))
 
@@ -37,17 +37,7 @@
 
 namespace MPM_NS {
 
-/** Values that a parameter may have: low < value < high, or low <= value <= high when closed. */
-struct Range {
-  double low, high;
-  bool closed;
-};
-constexpr double UNBOUNDED = std::numeric_limits<double>::infinity();
 constexpr double REQUIRED = std::numeric_limits<double>::quiet_NaN();    ///< no default value
-constexpr Range POSITIVE{0.0, UNBOUNDED, false};
-constexpr Range NOT_NEGATIVE{0.0, UNBOUNDED, true};
-constexpr Range FRACTION{0.0, 1.0, true};
-constexpr Range POISSON_RATIO{-1.0, 0.5, false};
 constexpr const char *FLAG = "flag";    ///< unit of an option without a value: 1 when given
 
 /** Declaration of one parameter.

@@ -159,7 +159,6 @@ namespace {
     static constexpr const char *name = "j2";
     static constexpr const char *meaning = "von Mises plasticity with hardening and rate";
     static constexpr StressShare share = DEVIATOR;
-    static constexpr Range EXPONENT{1.0, UNBOUNDED, true};
     static constexpr Parameter parameters[] = {
         SHEAR_MODULUS,
         {"", "SIGMAY", "pressure", NOT_NEGATIVE, REQUIRED, "yield stress in uniaxial tension"},
@@ -174,10 +173,10 @@ namespace {
         {"hardening swift", "NSWIFT", "1", POSITIVE, 1.0, "exponent"},
         {"rate cowper/symonds", "RATE", "1/time", POSITIVE, 0.0,
          "plastic strain rate that doubles the flow stress"},
-        {"rate cowper/symonds", "P", "1", EXPONENT, 1.0, "inverse exponent of the rate"},
+        {"rate cowper/symonds", "P", "1", AT_LEAST_ONE, 1.0, "inverse exponent of the rate"},
         {"rate perzyna", "S", "pressure", POSITIVE, 0.0, "overstress at the rate RATEP"},
         {"rate perzyna", "RATEP", "1/time", POSITIVE, 1.0, "reference plastic strain rate"},
-        {"rate perzyna", "M", "1", EXPONENT, 1.0, "inverse exponent of the rate"},
+        {"rate perzyna", "M", "1", AT_LEAST_ONE, 1.0, "inverse exponent of the rate"},
         {"kinematic", "C", "pressure", POSITIVE, 0.0, "initial slope of the back stress"},
         {"kinematic", "GAMMA", "1", NOT_NEGATIVE, 0.0, "dynamic recovery, back stress <= C/GAMMA"}};
     static constexpr const char *term = "point";

@@ -349,7 +349,7 @@ class ComposedMaterial : public Material {
     const double s2 = std::log1p(r.variation * r.variation);
     history[r.row] = r.lognormal ? std::exp(std::sqrt(s2) * g - 0.5 * s2) : 1.0 + r.variation * g;
     const double value = mean * history[r.row];
-    if (!in_range(declared.range, value))
+    if (!declared.range.contains(value))
       throw std::runtime_error(std::string("random ") + declared.name + " is " + number(value) +
                                " at a point, which is out of range: use lognormal, or a smaller "
                                "coefficient of variation");

@@ -149,7 +149,7 @@ class Parser {
     const double value = strtod(word.c_str(), &end);
     if (word.empty() || *end != '\0' || !std::isfinite(value))
       fail(next, full + " must be a number (" + meaning + ", " + unit + "), not '" + word + "'");
-    if (!in_range(range, value))
+    if (!range.contains(value))
       fail(next,
            full + " = " + word + " (" + meaning + ") is out of range: " + describe_range(range));
     next++;

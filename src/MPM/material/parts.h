@@ -98,12 +98,6 @@ struct MaterialDefinition {
  *  the material. */
 std::unique_ptr<Material> compose(const MaterialDefinition &, const LawTable *);
 
-inline bool in_range(const Range &range, double value)
-{
-  return range.closed ? value >= range.low && value <= range.high
-                      : value > range.low && value < range.high;
-}
-
 inline std::string number(double x)
 {
   char text[32];

@@ -18,7 +18,16 @@ namespace MPM_NS {
 /** B-splines of order 1 to 3; functions of points of finite size, see Gimp in transfer/shape.h; linear
  *  functions at the corners of a domain, see transfer/cpdi.h: a box (CPDI) or with free corners;
  *  Bernstein polynomials, see transfer/shape.h. */
-enum Shape { LINEAR = 1, QUADRATIC = 2, CUBIC = 3, GIMP = 4, CPDI = 5, CPDI2 = 6, BERNSTEIN = 7 };
+enum Shape {
+  LINEAR = 1,
+  QUADRATIC = 2,
+  CUBIC = 3,
+  GIMP = 4,
+  CPDI = 5,
+  CPDI2 = 6,
+  BERNSTEIN = 7,
+  CPGIMP = 8    ///< the kernels of GIMP, with sizes that follow the deformation
+};
 enum Transfer { PIC, FLIP, APIC, AFLIP, TPIC };
 
 constexpr bool has_domain(Shape shape)
@@ -29,7 +38,7 @@ constexpr bool has_domain(Shape shape)
  *  B-spline of this order. */
 constexpr int stencil_order(Shape shape)
 {
-  return shape == GIMP || shape == BERNSTEIN ? 2 : has_domain(shape) ? 1 : shape;
+  return shape == GIMP || shape == CPGIMP || shape == BERNSTEIN ? 2 : has_domain(shape) ? 1 : shape;
 }
 /** Points have an affine matrix. */
 constexpr bool is_affine(Transfer transfer)

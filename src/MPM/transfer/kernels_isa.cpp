@@ -78,6 +78,7 @@ template <bool TOTAL, int DIM> TransferKernels choose(Shape shape, Transfer tran
     case CUBIC:
       return choose<TOTAL, DIM, CUBIC>(transfer, split);
     case GIMP:
+    case CPGIMP:
       if (TOTAL) return TransferKernels();
       return MPM_CONCAT(mpm_kernels_gimp_, MPM_ISA)(DIM, transfer, split);
     case CPDI:

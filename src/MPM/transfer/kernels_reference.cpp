@@ -338,6 +338,7 @@ template <bool TOTAL, int DIM> TransferKernels choose(Shape shape, Transfer tran
     case CUBIC:
       return choose<TOTAL, DIM, CUBIC>(transfer, split);
     case GIMP:
+    case CPGIMP:
       return choose<TOTAL, DIM, GIMP>(transfer, split);
     case CPDI:
     case CPDI2:

@@ -1,0 +1,261 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "mpm_field_options.h"
+
+#include "mpm_options.h"
+
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+bool MPMFieldOptions::has_size() const
+{
+  return shape == GIMP || shape == CPGIMP || has_domain(shape);
+}
+
+bool MPMFieldOptions::strains_apart() const
+{
+  return stress == GRADIENT_STRESS && is_mls(shape, transfer);
+}
+
+// ---------------------------------------------------------------------- declaration
+
+Options MPMFieldOptions::declare(int dim)
+{
+  using namespace option;
+  Options o("fix mpm");
+
+  o.add("shape",
+        {word(shape,
+              {{"linear", LINEAR},
+               {"quadratic", QUADRATIC},
+               {"cubic", CUBIC, "B-splines of this order connect points and nodes"},
+               {"gimp", GIMP, "mean of the linear function over the fixed size of a point"},
+               {"cpgimp", CPGIMP, "the same with sizes that follow the deformation"},
+               {"cpdi", CPDI,
+                "linear functions at the corners of a domain that follows the deformation"},
+               {"cpdi2", CPDI2, "the same with corners that move freely"},
+               {"bernstein", BERNSTEIN, "quadratic Bernstein polynomials (with *frame total*)"}})})
+      .keep();
+  o.add("aspect",
+        {axes(aspect, dim, "ax ay az", POSITIVE, "",
+              "ratio of the edges of undeformed points (for *gimp*, *cpgimp*, *cpdi*, *cpdi2*)")})
+      .then([=] {
+        double product = 1.0;
+        for (int d = 0; d < dim; d++) product *= aspect[d];
+        for (int d = 0; d < dim; d++) aspect[d] /= pow(product, 1.0 / dim);
+        has_aspect = true;
+      });
+
+  enum { XPIC_WORD = 5, FMPM_WORD, POLYPIC_WORD };    // after those of enum Transfer
+  const auto share = number(flip, "share", FRACTION, "", "FLIP share of the velocity update");
+  const auto terms =
+      integer(order, "order", {1, 100, true}, "terms of the inverse of the mass matrix");
+  o.add("transfer",
+        {word(
+            [this] {
+              return polypic ? POLYPIC_WORD
+                             : (series == LUMPED ? (int) transfer : XPIC_WORD + series - XPIC);
+            },
+            [this](int word) {
+              polypic = word == POLYPIC_WORD;
+              series = word == XPIC_WORD ? XPIC : (word == FMPM_WORD ? FMPM : LUMPED);
+              transfer = polypic ? APIC : (series == LUMPED ? (Transfer) word : FLIP);
+              flip = series == XPIC ? 1.0 : 0.0;
+              order = 1;
+            },
+            {{"pic", PIC},
+             {"flip", FLIP, "", {share}},
+             {"apic", APIC},
+             {"aflip", AFLIP, "", {share}},
+             {"tpic", TPIC},
+             {"xpic", XPIC_WORD, "", {terms}},
+             {"fmpm", FMPM_WORD, "", {terms}},
+             {"polypic", POLYPIC_WORD}})},
+        "how velocities go between points and nodes")
+      .keep();
+  o.add("stress",
+        {word(
+            [this] {
+              const bool mls = is_mls(shape, transfer) && stress != GRADIENT_STRESS;
+              return mls ? MLS_STRESS : GRADIENT_STRESS;
+            },
+            [this](int word) {
+              stress = (Stress) word;
+            },
+            {{"mls", MLS_STRESS}, {"gradient", GRADIENT_STRESS}})},
+        "what makes forces of stress and velocity gradients of nodal velocities")
+      .standard("mls if *shape* and *transfer* have it")
+      .keep();
+  o.add("scheme", {word(scheme, {{"usl", USL}, {"usf", USF}, {"musl", MUSL}, {"usavg", USAVG}})},
+        "when stress is updated in a step")
+      .keep();
+  o.add("frame", {word(total, {{"updated", false}, {"total", true}})},
+        "configuration that the lattice belongs to")
+      .keep();
+  o.add("reference",
+        {word(
+            [this] {
+              return most_distorted > 0.0;
+            },
+            [this](int) {
+              most_distorted = 0.0;
+            },
+            {{"fixed", false},
+             {"update",
+              true,
+              "",
+              {number(most_distorted, "S", {1.0, UNBOUNDED, false}, "",
+                      "ratio of stretches of a point above which a new one is made")}}})},
+        "frame total: reference configuration, which can be made anew where points are distorted")
+      .keep();
+  o.add("axisymmetric", {yes_no(axisymmetric)},
+        "2d: x is the distance from an axis of symmetry, and points are rings");
+  o.add(
+       "locking",
+       {word(locking, {{"none", NO_CURE}, {"fbar", FBAR}, {"pressure", PRESSURE}, {"both", BOTH}})},
+       "what is averaged over neighboring points against volumetric locking")
+      .keep();
+  o.add(
+      "light",
+      {number(
+          light, "share", FRACTION, "",
+          "share of a full cell below which the velocity of a node does not count for gradients")});
+  o.add("origin",
+        {axes(origin, dim, "x y z", ANY_NUMBER, "distance", "position of one node of the lattice")})
+      .then([this] {
+        has_origin = true;
+      })
+      .standard("lower corner of the simulation box");
+  o.add("bad", {word(bad, {{"error", ERROR}, {"warn", WARN}, {"delete", DELETE}})},
+        "what to do with a point that is inverted, not finite, or has left the box");
+  o.add("failed", {word(delete_failed, {{"keep", false}, {"delete", true}})},
+        "what to do with a point whose damage is 1");
+  o.add("edges", {word(modified_edges, {{"plain", false}, {"modified", true}})},
+        "functions next to fixed faces of the box");
+  o.add("every",
+        {integer(every, "K", POSITIVE, "points take one step in every K steps of the run")})
+      .keep();
+  o.add("dtcheck", {yes_no(dt_check)}, "stop when the time step is above the limit");
+  o.add("precision", {word(mixed_precision, {{"double", false}, {"mixed", true}})},
+        "arithmetic of the transfers between points and nodes");
+  o.add("plan", {yes_no(plan)}, "print the stages of the step, and at the end what each has cost");
+
+  static const char *const sets[] = {"", "reference", "baseline", "avx2", "avx512"};
+  o.add("kernels",
+        {word(
+            [this] {
+              int k = 0;
+              while (k < 4 && kernels != sets[k]) k++;
+              return k;
+            },
+            [this](int k) {
+              kernels = sets[k];
+            },
+            {{"auto", 0}, {"reference", 1}, {"baseline", 2}, {"avx2", 3}, {"avx512", 4}})},
+        "instruction set of the transfers and the materials");
+
+  // what does not go together
+
+  const auto amplifies = [this] {
+    return !total && shape == LINEAR && (scheme == USL || is_affine(transfer));
+  };
+  o.refuse([=] {
+    return OptionRules{
+        {axisymmetric && dim != 2, "axisymmetric", "needs dimension 2"},
+        {most_distorted > 0.0 && !total, "reference",
+         "update is for frame total: in the updated frame, the reference is the present "
+         "configuration in each step"},
+        {has_aspect && !has_size(), "aspect",
+         "is for points of finite size: use shape gimp, cpgimp, cpdi or cpdi2"},
+        {total && (has_size() || transfer == AFLIP || transfer == TPIC), "frame",
+         "total cannot be used with shape gimp, cpgimp, cpdi and cpdi2, which points that cross "
+         "no cells do not need, and transfer aflip and tpic: use B-splines with transfer apic or "
+         "flip"},
+        {polypic && (total || !is_mls(shape, transfer)), "transfer",
+         "polypic needs shape quadratic or cubic and frame updated"},
+        {stress == MLS_STRESS && !is_mls(shape, transfer), "stress",
+         "mls needs shape quadratic or cubic with transfer apic or aflip: other ones have the "
+         "gradients of the shape functions"},
+        {strains_apart() && total, "stress",
+         "gradient with frame total needs transfer flip or pic: that of transfer apic is stress "
+         "mls"},
+        {modified_edges &&
+             ((shape != QUADRATIC && shape != CUBIC) || series != LUMPED || is_affine(transfer)),
+         "edges",
+         "modified is for shape quadratic and cubic with transfer pic and flip: use edges plain"},
+        {mixed_precision &&
+             (has_size() || shape == BERNSTEIN || series != LUMPED || polypic ||
+              transfer == AFLIP || transfer == TPIC || axisymmetric || strains_apart()),
+         "precision",
+         "mixed needs shape linear, quadratic or cubic and transfer pic, flip or apic, without "
+         "stress "
+         "gradient and axisymmetric: use precision double for others"},
+        {shape == BERNSTEIN && !total, "shape",
+         "bernstein has gradients that jump where points cross cells: it needs frame total, "
+         "where they do not, or use shape quadratic"},
+        {series == FMPM && scheme != USL, "transfer",
+         "fmpm moves points with refined velocities, which the gradients of scheme usf, musl and "
+         "usavg do not follow: use scheme usl, or transfer xpic"},
+        {light > 0.0 && !amplifies(), "light",
+         "is of no use with this shape, transfer and scheme: remove light, which is for shape "
+         "linear with scheme usl or transfer apic, aflip, tpic"},
+        {light > 0.0 && locking != NO_CURE && scheme == USL && is_affine(transfer), "light",
+         "and locking together are unstable with scheme usl and transfer apic, aflip, tpic: use "
+         "scheme musl, or transfer flip"},
+        {light > 0.0 && axisymmetric && scheme == USF, "light",
+         "and axisymmetric together are unstable with scheme usf: use scheme usl or musl"}};
+  });
+
+  // what is likely to be a mistake
+
+  o.warn([=] {
+    return OptionRules{
+        {series == XPIC && order > 1 && scheme != USL, "transfer",
+         "xpic with scheme usf, musl and usavg: a body that turns loses its spin: use scheme usl, "
+         "or transfer flip or apic"},
+        {light == 0.0 && amplifies(), "shape",
+         "linear with scheme usl or transfer apic: linear functions amplify round-off at nodes of "
+         "tiny mass: use transfer flip with scheme musl, quadratic functions, or light 0.5"}};
+  });
+  return o;
+}
+
+// ---------------------------------------------------------------------- use
+
+void MPMFieldOptions::read(LAMMPS *lmp, int narg, char **arg, int iarg, int dimension)
+{
+  Options o = declare(dimension);
+  read_options(lmp, o, narg, arg, iarg);
+}
+
+std::vector<std::string> MPMFieldOptions::warnings() const
+{
+  MPMFieldOptions copy = *this;
+  return copy.declare(axisymmetric ? 2 : 3).warnings();
+}
+
+std::string MPMFieldOptions::text() const
+{
+  MPMFieldOptions copy = *this;
+  return copy.declare(3).text();
+}
+
+std::string MPMFieldOptions::kept() const
+{
+  MPMFieldOptions copy = *this;
+  return copy.declare(3).kept();
+}
+
+std::string MPMFieldOptions::differences(const std::string &kept_then) const
+{
+  MPMFieldOptions copy = *this;
+  return copy.declare(3).differences(kept_then);
+}

@@ -1,0 +1,86 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_FIELD_OPTIONS_H
+#define LMP_MPM_FIELD_OPTIONS_H
+
+#include "declare/option.h"
+#include "transfer/kernels.h"
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+class LAMMPS;
+
+/** The options of fix mpm, as given in the input. */
+struct MPMFieldOptions {
+  enum Scheme { USL, USF, MUSL, USAVG };    ///< when stress is updated in a step
+  enum Series { LUMPED, XPIC, FMPM };       ///< terms of the inverse of the mass matrix
+  /** What makes forces of stress, and velocity gradients of nodal velocities; by default what the
+   *  shape and the transfer have. */
+  enum Stress { DEFAULT_STRESS, MLS_STRESS, GRADIENT_STRESS };
+  enum Locking { NO_CURE, FBAR, PRESSURE, BOTH };    ///< cure for volumetric locking
+  enum Policy { ERROR, WARN, DELETE };               ///< what to do with a point that goes bad
+
+  MPM_NS::Shape shape = MPM_NS::QUADRATIC;
+  double aspect[3] = {1.0, 1.0, 1.0};    ///< edges of an undeformed point; their product is 1
+  bool has_aspect = false;
+  MPM_NS::Transfer transfer = MPM_NS::APIC;    ///< polypic is APIC, xpic and fmpm are FLIP
+  double flip = 0.0;                           ///< FLIP share, 0: PIC
+  bool polypic = false;                        ///< bilinear modes of the velocity, too
+  Series series = LUMPED;
+  int order = 1;    ///< terms of the series
+  Stress stress = DEFAULT_STRESS;
+  Scheme scheme = USL;
+  bool total = false;             ///< nodes are places of the reference configuration
+  double most_distorted = 0.0;    ///< ratio of stretches that asks for a new reference, 0: never
+  bool axisymmetric = false;      ///< 2d: x is the distance from the axis y, points are rings
+  Locking locking = NO_CURE;
+  double light = 0.0;    ///< nodes with less than this share of a full cell are light; 0: none
+  double origin[3] = {0.0, 0.0, 0.0};
+  bool has_origin = false;    ///< else it is the lower corner of the box
+  Policy bad = ERROR;
+  bool delete_failed = false;      ///< remove points whose damage is 1
+  bool modified_edges = false;     ///< functions next to fixed faces need no nodes outside
+  int every = 1;                   ///< steps of LAMMPS in a step of the cycle
+  bool dt_check = true;            ///< stop when the time step is above the stable limit
+  bool mixed_precision = false;    ///< transfers in single precision
+  bool plan = false;               ///< print the plan of the step with the cost of each stage
+  std::string kernels;             ///< wanted instruction set, empty: the best
+
+  /** Does the scheme update stress at the start, at the end of the step, or (neither) in between? */
+  bool stress_before() const { return scheme == USF || scheme == USAVG; }
+  bool stress_after() const { return scheme == MUSL || scheme == USAVG; }
+  /** What does the cure for locking average: changes of volume, pressures in the force? */
+  bool averages_strain() const { return locking == FBAR || locking == BOTH; }
+  bool averages_stress() const { return locking == PRESSURE || locking == BOTH; }
+  /** Do points have a size, by which they reach nodes? */
+  bool has_size() const;
+  /** Forces and strains have the gradients of the shape functions, the affine matrix has not. */
+  bool strains_apart() const;
+
+  /** Reads the arguments from iarg on and applies all refusals that concern options alone. */
+  void read(LAMMPS *, int narg, char **arg, int iarg, int dimension);
+
+  /** What can be run with these options but is likely to be a mistake. */
+  std::vector<std::string> warnings() const;
+  /** All keywords with their present values, in one line. */
+  std::string text() const;
+  /** For restart files: the options that a run must go on with. */
+  std::string kept() const;
+  /** Which of them differ from what kept() returned when the file was written, with both values;
+   *  empty: none. */
+  std::string differences(const std::string &kept_then) const;
+
+  /** The declaration; refers to this object. */
+  MPM_NS::Options declare(int dimension);
+};
+
+}    // namespace LAMMPS_NS
+#endif

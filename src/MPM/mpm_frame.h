@@ -1,0 +1,122 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_FRAME_H
+#define LMP_MPM_FRAME_H
+
+#include "mpm_state.h"
+#include "pointers.h"
+#include "transfer/kernels.h"
+
+#include <memory>
+
+namespace MPM_NS {
+struct Batch;
+}    // namespace MPM_NS
+
+namespace LAMMPS_NS {
+class MPMField;
+
+/** The configuration that the nodes belong to, and how points strain in it. This class is the updated
+ *  Lagrangian frame: nodes are places in space. Others derive from it; an axis of symmetry is a frame
+ *  around one of these, see mpm_frame_axisymmetric.h.
+ *
+ *  Functions with a range of points are called once for each batch. */
+class MPMFrame : protected Pointers {
+ public:
+  MPMFrame(class LAMMPS *lmp, MPMField &field) : Pointers(lmp), field(field) {}
+  virtual ~MPMFrame() = default;
+  /** The frame that the options of a field ask for. */
+  static std::unique_ptr<MPMFrame> create(class LAMMPS *, MPMField &, MPMPointState &);
+
+  /** Stop where the box or other fixes do not suit the frame; start of a run. */
+  virtual void check() const {}
+  /** Start of a run, before points are sorted. */
+  virtual void setup() {}
+  /** Points were just exchanged between ranks; true when all places are new. */
+  virtual bool renew_places() { return false; }
+  /** End of a step. */
+  virtual void end_of_step() {}
+
+  /** Nodes are places of a reference configuration, which points do not leave. */
+  virtual bool is_total() const { return false; }
+  /** Where points are on the lattice, [n][3]. */
+  virtual double **places() const;
+  virtual MPM_NS::TransferKernels kernels(const MPM_NS::MPMKernels &, MPM_NS::Transfer,
+                                          bool split) const;
+
+  // points to nodes: does a batch need rows of its own for its forces, with room for them
+
+  struct ForceRows {
+    double P[9 * MPM_NS::BATCH + 8], f[3 * MPM_NS::BATCH + 8];
+  };
+  virtual bool changes_forces() const { return false; }
+  /** rows: of the n points from first on, as if they were all. */
+  virtual void forces(MPM_NS::PointRows &, int /*first*/, int /*n*/, ForceRows &) const {}
+
+  // strain in a step; L: velocity gradients of the points with respect to the places of the lattice,
+  // [n][dim*dim], column-major
+
+  /** Room for all points, before the first of them. */
+  virtual void begin_strain() {}
+  /** Before and after points [first,last) move. */
+  virtual void before_motion(int /*first*/, int /*last*/) {}
+  virtual void after_motion(const MPM_NS::PointRows &, int /*first*/, int /*last*/) {}
+  /** Strain that has to be interpolated from the nodes, where points do not move. base: of the tile. */
+  virtual void strain_of_nodes(const MPM_NS::PointRows &, const MPM_NS::TransferStep &,
+                               int /*first*/, int /*last*/, const int * /*base*/, double /*dt*/,
+                               double /*shift*/)
+  {
+  }
+  /** Gradients at the start of a step from those of another time in it, see mpm_stage_stress.cpp. */
+  virtual void shift_gradients(int n, double shift, double *L) const;
+  /** L is not yet what the laws need: gradients must go through refer_gradients(). */
+  virtual bool refers() const { return false; }
+  virtual void refer_gradients(int /*first*/, int /*n*/, double * /*L*/) const {}
+  /** Kinematics of n points from first on; F, tau: rows of the first. */
+  virtual void load(MPM_NS::Batch &, int first, int n, double dt, const double *L, const double *F,
+                    const double *tau, const double *vol0) const;
+
+  /** Relative change of the volume of a point in a step. */
+  virtual double volume_change(int i, const double *L, double dt) const;
+  /** Stretch the motion of a point in the step by the factor 1 + more, in all directions that are not
+   *  held. */
+  virtual void stretch(int i, double more, double dt, double *L);
+  /** Is the third direction held, in plane strain? */
+  virtual bool is_plane() const;
+
+  /** Deformation gradient with respect to the places of the lattice, row-major. */
+  virtual void lattice_F(int i, double F[9]) const;
+  /** Ratio of the volume at the places of the lattice to the initial volume. */
+  virtual double lattice_jacobian(int i) const;
+
+  /** Speed that must not cross a cell in a step, of a point with the wave speed c, which may rise. */
+  virtual double speed(int i, double &c) const;
+
+  /** Length of the circle with radius r around the axis of symmetry; 1 without one. */
+  virtual double circle(double /*r*/) const { return 1.0; }
+  /** The same of a node: at the axis and beyond that of a quarter of a cell from it. */
+  virtual double node_circle(int /*slot*/, int /*node*/) const { return 1.0; }
+  /** Volume of a point before deformation for each unit of length around the axis. */
+  virtual double section(int i) const;
+
+  /** Start of a run, and what there is to tell about it at its end: lines, or nothing. */
+  virtual void start_counting() {}
+  virtual std::string report() const { return ""; }
+  virtual double memory_usage() const { return 0.0; }
+  virtual double bytes_per_point() const { return 0.0; }
+
+ protected:
+  MPMField &field;
+
+  /** Distance of a point from the axis; x: its first coordinate at the start of the step. */
+  virtual double radius(int /*i*/, double x) const { return x; }
+};
+
+}    // namespace LAMMPS_NS
+#endif

@@ -1,0 +1,298 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+/* ----------------------------------------------------------------------
+   The reference configuration of the total frame, and its updates.
+
+   With reference update S, the present configuration becomes the reference one when the ratio of the
+   principal stretches of some point since the last time is above S: X = x and R = F, the deformation
+   gradient then. What happens on the lattice knows the deformation since then only, F_R = F R^-1,
+   while laws see all of F. As V0 is that of the undeformed body,
+
+     f_i = -sum V0 tau F_R^-T grad N,   F <- F + dt (grad v) R
+
+   are the equations of a body with the initial volume V0 det R and the deformation gradient F_R. The
+   affine matrix C, the gradient with respect to X, becomes C F_R^-1. Stress, velocities, and energies
+   of points do not change.
+------------------------------------------------------------------------- */
+
+#include "mpm_frame_total.h"
+
+#include "atom.h"
+#include "error.h"
+#include "fix.h"
+#include "material/batch.h"
+#include "math_extra.h"
+#include "mpm_affine.h"
+#include "mpm_field.h"
+#include "mpm_points.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+static constexpr int CHECK_EVERY = 10;    // steps between looks at the distortion
+
+/* ---------------------------------------------------------------------- */
+
+MPMFrameTotal::MPMFrameTotal(LAMMPS *lmp, MPMField &field, MPMPointState &state) :
+    MPMFrame(lmp, field), X(nullptr), R(nullptr), nupdate(0), refer_anew(false)
+{
+  state.declare(X, "mpm:X", 3, [this](int i, double *row) {
+    memcpy(row, atom->x[i], 3 * sizeof(double));
+    if (!this->field.running) row[0] = NAN;    // not known, for setup()
+  });
+  if (field.options.most_distorted > 0.0)
+    state.declare(R, "mpm:R", 9, [](int, double *row) {
+      row[0] = row[4] = row[8] = 1.0;
+    });
+}
+
+/* ----------------------------------------------------------------------
+   the reference position of a point is where it is at the start of its first run, so that commands
+   which place or displace points can be used before
+------------------------------------------------------------------------- */
+
+void MPMFrameTotal::setup()
+{
+  tagint deformed = 0, deformed_all;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!field.is_point(i) || !std::isnan(X[i][0])) continue;
+    const double *const F = field.points->F[i];
+    memcpy(X[i], atom->x[i], 3 * sizeof(double));
+    if (R) memcpy(R[i], F, 9 * sizeof(double));
+    for (int c = 0; c < 9 && !R; c++)
+      if (fabs(F[c] - (c % 4 == 0)) > 1.0e-12) deformed = std::max(deformed, atom->tag[i]);
+  }
+  MPI_Allreduce(&deformed, &deformed_all, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  if (deformed_all)
+    error->all(
+        FLERR,
+        "Fix mpm {} frame total: points have no reference position but are deformed already, "
+        "for instance point {}: use frame total from the first run on, and the same fix ID "
+        "after read_restart, or reference update",
+        field.id(), deformed_all);
+}
+
+/* ---------------------------------------------------------------------- */
+
+TransferKernels MPMFrameTotal::kernels(const MPMKernels &all, Transfer transfer, bool split) const
+{
+  return all.transfer_total(field.lattice.dim, field.options.shape, transfer, split);
+}
+
+/* ----------------------------------------------------------------------
+   The first Piola-Kirchhoff stress is made here, a batch at a time: to read F and tau costs less than
+   to write and read another matrix
+------------------------------------------------------------------------- */
+
+void MPMFrameTotal::forces(PointRows &rows, int first, int n, ForceRows &room) const
+{
+  double F[9 * BATCH];
+  for (int p = 0; p < n && R; p++) lattice_F(first + p, F + 9 * p);
+  field.batch_kernels->first_piola(n, R ? F : rows.F, rows.tau, room.P);
+  rows.P = room.P;
+}
+
+void MPMFrameTotal::load(Batch &b, int, int n, double dt, const double *L, const double *F,
+                         const double *tau, const double *vol0) const
+{
+  field.batch_kernels->load_total(b, n, dt, L, F, tau, vol0, nullptr);
+}
+
+/* ----------------------------------------------------------------------
+   deformation gradient with respect to the reference configuration, row-major
+------------------------------------------------------------------------- */
+
+void MPMFrameTotal::lattice_F(int i, double F[9]) const
+{
+  MPMFrame::lattice_F(i, F);
+  if (!R) return;
+  double f[3][3], r[3][3], inverse[3][3], product[3][3];
+  memcpy(f, F, sizeof(f));
+  memcpy(r, R[i], sizeof(r));
+  MathExtra::invert3(r, inverse);
+  MathExtra::times3(f, inverse, product);
+  memcpy(F, product, sizeof(product));
+}
+
+double MPMFrameTotal::lattice_jacobian(int i) const
+{
+  return R ? MPMPoints::det(R[i]) : 1.0;
+}
+
+/** As the deformation gradient has it. */
+double MPMFrameTotal::radius(int i, double) const
+{
+  return X[i][0] * field.points->F[i][8] / (R ? R[i][8] : 1.0);
+}
+
+/* ----------------------------------------------------------------------
+   gradients with respect to X, column-major, of the points first ... become those with respect to
+   the undeformed body: L <- L R
+------------------------------------------------------------------------- */
+
+void MPMFrameTotal::refer_gradients(int first, int n, double *L) const
+{
+  if (!R) return;
+  const int dim = field.lattice.dim;
+  for (int i = first; i < first + n; i++, L += dim * dim) {
+    double product[9];
+    for (int c = 0; c < dim; c++)
+      for (int r = 0; r < dim; r++) {
+        product[dim * c + r] = 0.0;
+        for (int k = 0; k < dim; k++) product[dim * c + r] += L[dim * k + r] * R[i][3 * k + c];
+      }
+    memcpy(L, product, dim * dim * sizeof(double));
+  }
+}
+
+/* ----------------------------------------------------------------------
+   the change of volume of I + A = (F + dt L) F^-1
+------------------------------------------------------------------------- */
+
+double MPMFrameTotal::volume_change(int i, const double *L, double dt) const
+{
+  const double *F = field.points->F[i];
+  double A[9];
+  if (field.lattice.dim == 2) {
+    const double scale = dt / (F[0] * F[4] - F[1] * F[3]);
+    for (int r = 0; r < 2; r++) {
+      A[r] = scale * (L[r] * F[4] - L[2 + r] * F[3]);
+      A[2 + r] = scale * (L[2 + r] * F[0] - L[r] * F[1]);
+    }
+    return MPMFrame::volume_change(i, A, 1.0);
+  }
+  const double scale = dt / field.points->jacobian(i);
+  for (int j = 0; j < 3; j++) {
+    const int a = (j + 1) % 3, b = (j + 2) % 3;
+    double inverse[3];    // column j of F^-1, times det F
+    for (int k = 0; k < 3; k++) {
+      const int c = (k + 1) % 3, d = (k + 2) % 3;
+      inverse[k] = F[3 * a + c] * F[3 * b + d] - F[3 * a + d] * F[3 * b + c];
+    }
+    for (int r = 0; r < 3; r++)
+      A[3 * j + r] = scale * (L[r] * inverse[0] + L[3 + r] * inverse[1] + L[6 + r] * inverse[2]);
+  }
+  return MPMFrame::volume_change(i, A, 1.0);
+}
+
+/** What is stretched is F + dt L. */
+void MPMFrameTotal::stretch(int i, double more, double dt, double *L)
+{
+  const int dim = field.lattice.dim;
+  const double *F = field.points->F[i];
+  for (int c = 0; c < dim * dim; c++) L[c] = (1.0 + more) * L[c];
+  for (int r = 0; r < dim; r++)
+    for (int c = 0; c < dim; c++) L[dim * c + r] += more / dt * F[3 * r + c];
+}
+
+/* ----------------------------------------------------------------------
+   largest eigenvalue of a symmetric matrix, by the trigonometric form of the cubic equation
+------------------------------------------------------------------------- */
+
+static double largest_eigenvalue(double B[3][3])
+{
+  const double mean = (B[0][0] + B[1][1] + B[2][2]) / 3.0;
+  double p = 0.0;
+  for (int i = 0; i < 3; i++) {
+    B[i][i] -= mean;
+    for (int j = 0; j < 3; j++) p += B[i][j] * B[i][j];
+  }
+  p = sqrt(p / 6.0);
+  const double r = p > 0.0 ? 0.5 * MathExtra::det3(B) / (p * p * p) : 1.0;
+  return mean + 2.0 * p * cos(acos(std::max(-1.0, std::min(1.0, r))) / 3.0);
+}
+
+/* ----------------------------------------------------------------------
+   smallest and largest principal stretch of a point since its reference configuration: singular
+   values of F, in 2d of its part in the plane; not eigenvalues, which tell nothing when the body
+   has turned. 3d: the roots of the largest eigenvalues of (F F^T)^-1 and F F^T
+------------------------------------------------------------------------- */
+
+void MPMFrameTotal::stretches(int i, double &smallest, double &largest) const
+{
+  double F[9];
+  lattice_F(i, F);
+  if (field.lattice.dim == 2) {
+    largest = 0.5 * (hypot(F[0] + F[4], F[3] - F[1]) + hypot(F[0] - F[4], F[3] + F[1]));
+    smallest = fabs(F[0] * F[4] - F[1] * F[3]) / largest;
+    return;
+  }
+  double f[3][3], g[3][3], B[3][3], inverse[3][3];
+  memcpy(f, F, sizeof(f));
+  MathExtra::invert3(f, g);
+  for (int j = 0; j < 3; j++)
+    for (int k = 0; k < 3; k++) {
+      B[j][k] = f[j][0] * f[k][0] + f[j][1] * f[k][1] + f[j][2] * f[k][2];
+      inverse[j][k] = g[0][j] * g[0][k] + g[1][j] * g[1][k] + g[2][j] * g[2][k];
+    }
+  largest = sqrt(largest_eigenvalue(B));
+  smallest = 1.0 / sqrt(largest_eigenvalue(inverse));
+}
+
+/** Points stay where they are on the lattice, but waves cross it faster where it is compressed: a plane
+ *  wave with wave vector K there has k = F^-T K in space, |k| <= |K|/s with the smallest singular
+ *  value s of F. */
+double MPMFrameTotal::speed(int i, double &c) const
+{
+  double least, most;
+  stretches(i, least, most);
+  return c / least;
+}
+
+/* ----------------------------------------------------------------------
+   is it time for a new reference configuration? It is taken where points have just been sorted to
+   ranks, in this step. The steps of this look do not depend on when the run has started.
+------------------------------------------------------------------------- */
+
+void MPMFrameTotal::end_of_step()
+{
+  if (!R || update->ntimestep % CHECK_EVERY >= field.options.every) return;
+  double worst = 0.0, worst_all;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!field.is_point(i)) continue;
+    double smallest, largest;
+    stretches(i, smallest, largest);
+    worst = std::max(worst, largest / smallest);
+  }
+  MPI_Allreduce(&worst, &worst_all, 1, MPI_DOUBLE, MPI_MAX, world);
+  refer_anew = worst_all > field.options.most_distorted;
+  if (refer_anew) field.fix.next_reneighbor = update->ntimestep;
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool MPMFrameTotal::renew_places()
+{
+  if (!refer_anew) return false;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!field.is_point(i)) continue;
+    if (field.affine) {
+      double F[9], f[3][3], inverse[3][3];
+      lattice_F(i, F);
+      memcpy(f, F, sizeof(f));
+      MathExtra::invert3(f, inverse);
+      field.affine->refer(i, inverse);
+    }
+    memcpy(X[i], atom->x[i], 3 * sizeof(double));
+    memcpy(R[i], field.points->F[i], 9 * sizeof(double));
+  }
+  refer_anew = false;
+  nupdate++;
+  return true;
+}
+
+std::string MPMFrameTotal::report() const
+{
+  return nupdate ? fmt::format("  {} updates of the reference configuration\n", nupdate) : "";
+}

@@ -1,0 +1,70 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_GUARD_H
+#define LMP_MPM_GUARD_H
+
+#include "pointers.h"
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+class MPMField;
+
+/** Points of a field that go bad or fail, and what is done about it (keywords bad and failed). */
+class MPMGuard : protected Pointers {
+ public:
+  /** What was deleted so far, on all ranks; as in restart files. */
+  struct Deleted {
+    double points, mass, momentum[3];
+  } deleted;
+
+  MPMGuard(class LAMMPS *, MPMField &);
+
+  /** Set-up of a run: each point must have one material, one integrator, positive volume and mass, and
+   *  a finite state; pair styles must know its radius. */
+  void check_points() const;
+  void check_integrators() const;
+  /** Settings of LAMMPS that make neighbor lists of points and grains slow; all fields. */
+  void check_neighbors() const;
+  void check_radii() const;
+
+  /** Position, velocity and volume ratio, for messages. */
+  std::string describe(int i) const;
+  /** A point is bad: stop, or note it for handle_bad_points(). */
+  void
+  point_is_bad(int i, const std::string &what,
+               const std::string &cure = "it keeps its previous deformation",
+               const std::string &hint =
+                   ": try a smaller time step (fix mpm/dt), more points per cell, or a smoother "
+                   "shape function; fix mpm ... bad warn|delete goes on");
+  /** A point has failed and is to be deleted. */
+  void point_has_failed(int i);
+  /** The kernels must never see a position that is not finite. */
+  void check_positions();
+  /** End of a step: count bad points, and ask for an exchange that deletes points. */
+  void handle_bad_points();
+  /** Before an exchange, which would lose points outside of fixed faces silently: these are bad. Points
+   *  that are to be deleted go. */
+  void check_inside_box();
+
+  bool may_delete() const;
+  bigint nbad() const { return nbad_total; }
+
+ private:
+  MPMField &field;
+  std::vector<tagint> bad_points;       // of this step, policies warn and delete
+  std::vector<tagint> failed_points;    // of this step, to be deleted
+  bigint nbad_total;
+
+  void delete_points(const std::vector<tagint> &, bool warn);
+};
+
+}    // namespace LAMMPS_NS
+#endif

@@ -1,0 +1,66 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_LEDGER_H
+#define LMP_MPM_LEDGER_H
+
+#include "pointers.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+class MPMField;
+
+/** Energy spent or gained by a field since the first step with a ledger, this rank's share [energy]. */
+struct MPMEnergies {
+  double external;    ///< work of atom->f (gravity, contact by pair styles, walls, ...)
+  double boundary;    ///< work of node actions of kind boundary
+  double contact;     ///< work of node actions between fields
+  double internal;    ///< work of the internal forces on the nodes, minus sign: done by the body
+  double transfer;    ///< kinetic energy gained (mostly lost: negative) by P2G and G2P
+  double deleted_kinetic, deleted_stored;    ///< energy of points that were deleted
+};
+
+/** The energy accounts of a field. */
+class MPMLedger : protected Pointers, public MPMEnergies {
+ public:
+  bool on;                      ///< a compute mpm/energy exists; set in init()
+  std::vector<double> start;    ///< of compute mpm/energy, until the end of the next run
+
+  MPMLedger(class LAMMPS *, MPMField &);
+
+  /** Start of a run. */
+  void setup();
+  /** After the momentum equation, before node actions. */
+  void nodes_solved() { before_actions = boundary + contact + transfer; }
+  /** Before points get what forces and node actions have done to the nodes. */
+  void account_for_nodes();
+  /** End of a step: what the way from nodes to points has changed. */
+  void account_for_points();
+  /** Points are about to be deleted. */
+  void remove(double kinetic, double stored);
+
+  /** Change the velocity of a node by an impulse, which counts as contact where the node is owned. */
+  void push_node(double *record, bool owned, const double *impulse);
+  /** An owned node had its velocity changed by contact: its record has the new one. */
+  void count_push(const double *record, const double *change);
+
+  /** Of the nodes that this rank owns; velocity: the reals from lane on. */
+  double nodal_kinetic_energy(int lane) const;
+  double point_kinetic_energy() const;
+
+ private:
+  MPMField &field;
+  double before_actions;    // sum of entries before node actions
+  double kinetic_points;    // at the end of the last step
+
+  double external_work(const double *force_on) const;
+};
+
+}    // namespace LAMMPS_NS
+#endif

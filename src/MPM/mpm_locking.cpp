@@ -1,0 +1,177 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// Cures for volumetric locking of fix mpm: averages over the points around each point.
+
+#include "mpm_locking.h"
+
+#include "atom.h"
+#include "fix_mpm_material.h"
+#include "mpm_edges.h"
+#include "mpm_field.h"
+#include "mpm_frame.h"
+#include "mpm_passes.h"
+#include "mpm_points.h"
+#include "mpm_stages.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+/* ----------------------------------------------------------------------
+   Each point asks for constant volume when a material is all but incompressible, and several
+   points per cell ask for more than the velocities of the nodes can give. Averages through the
+   lattice leave about one such condition for each node. With volumes V and functions N of points,
+
+     S q_p = sum_i N_ip  [sum_q N_iq V_q q_q] / [sum_q N_iq V_q]
+
+   keeps constants and the integral sum V q, and V S is symmetric. F-bar puts S(dJ/J) for the
+   relative change of volume of a step, in the manner of E.A. de Souza Neto et al., Int. J. Solids
+   Struct. 33 (1996) 3277, and, for points, W.M. Coombs et al., Comput. Methods Appl. Mech. Eng. 333
+   (2018) 466; "pressure" puts S p for the pressure in the internal force B^T V sigma.
+
+   With either, the stiffness of the volume is B^T V K S B: symmetric and not negative where the
+   bulk modulus K is uniform, with the energy (B u)^T V K S (B u)/2. What laws account for is
+   (S B u)^T V K (S B u)/2 (F-bar) or (B u)^T V K (B u)/2 (pressure); the ledger has the difference
+   in its integration entry. With both, force and strain belong together whatever the law is and
+   wherever the points are on the lattice: p V S B u is the power of the force and of the law. The
+   stiffness is B^T V S K S B then.
+
+   Averages are taken over the points of one material only, as others have another pressure or
+   another change of volume next to them for good reasons.
+------------------------------------------------------------------------- */
+
+bool MPMLocking::averages_strain() const
+{
+  return field.options.locking != MPMFieldOptions::PRESSURE;
+}
+
+bool MPMLocking::averages_stress() const
+{
+  return field.options.locking != MPMFieldOptions::FBAR;
+}
+
+double *MPMLocking::room_for_gradients()
+{
+  gradients.resize(field.lattice.dim * field.lattice.dim * (std::size_t) atom->nmax);
+  return gradients.data();
+}
+
+double MPMLocking::memory_usage() const
+{
+  return (gradients.capacity() + tau.capacity()) * sizeof(double);
+}
+
+/* ----------------------------------------------------------------------
+   q <- S q with q = vectors[3*i] and V = weights[i], for all points of this field, at the
+   positions in rows(): the transfers of PIC with volumes for masses
+------------------------------------------------------------------------- */
+
+void MPMLocking::average_around_points()
+{
+  auto &work = field.work;
+  const auto &pic = field.pic;
+  Grid &grid = field.grid;
+  const PointRows r = field.rows_at_rest(work.vectors.data(), work.weights.data());
+  TransferStep s = field.step_data();
+  s.dt = 0.0;
+
+  for (auto *material : field.materials) {
+    points_to(work.nodes, field, pic, [&](const MPMPointMap::Run &run, const int *base, int *box) {
+      if (run.material == material)
+        pic.p2g_momentum(r, s, run.first, run.last, base, field.map->tile, box);
+    });
+    field.sum(work.nodes.data(), pic.nreal, 0, 4);
+    field.kernels->solve_nodes(work.nodes.data(), (int) grid.nnodes(), pic.nreal, 0.0);
+    grid.copy_aliases(work.nodes.data(), pic.nreal);
+    if (field.edges) field.edges->extend(work.nodes.data(), pic.nreal, 0, 1);
+    points_from(work.nodes, field, pic, [&](const MPMPointMap::Run &run, const int *base) {
+      if (run.material == material)
+        pic.g2p(r, s, run.first, run.last, base, field.map->tile_load, nullptr);
+    });
+  }
+}
+
+/* ----------------------------------------------------------------------
+   F-bar: the material update of all points with velocity gradients L whose change of volume is
+   averaged. I + dt L (total frame: F + dt L) is multiplied by a number, in plane strain in the plane, so that
+   laws see a motion like any other. What points keep is this F: sum V0 J follows the sum of the true changes of volume.
+------------------------------------------------------------------------- */
+
+void MPMLocking::strain(const double *L, double dt)
+{
+  MPMFrame &frame = *field.frame;
+  auto &change = field.work.vectors, &volume = field.work.weights;
+  const int nL = field.lattice.dim * field.lattice.dim;
+  const bool plane = frame.is_plane();
+  change.resize(3 * (std::size_t) atom->nmax);
+  volume.resize(std::max(volume.size(), (std::size_t) atom->nmax));
+
+  for (const auto &run : field.map->runs)
+    for (bigint i = run.first; i < run.last; i++) {
+      const double mine = frame.volume_change((int) i, L + nL * i, dt);
+      const bool good = mine > -1.0 && std::isfinite(mine);    // or else it is a bad point
+      change[3 * i] = good ? mine : 0.0;
+      change[3 * i + 1] = change[3 * i + 2] = 0.0;
+      volume[i] = good ? field.volume((int) i) : 0.0;
+    }
+  average_around_points();
+
+  const PointRows r = field.rows();
+  double averaged[9 * BATCH];
+  for (const auto &run : field.map->runs)
+    for (int i = run.first; i < run.last; i += BATCH) {
+      const int n = std::min(BATCH, run.last - i);
+      std::copy_n(L + nL * (bigint) i, nL * n, averaged);
+      for (int p = 0; p < n; p++) {
+        const double mine = frame.volume_change(i + p, averaged + nL * p, dt);
+        double more = 0.0;    // scale - 1
+        if (volume[i + p] > 0.0) {
+          const double q = (change[3 * (bigint) (i + p)] - mine) / (1.0 + mine);
+          const double root = plane ? std::sqrt(1.0 + q) : std::cbrt(1.0 + q);
+          more = q / (plane ? root + 1.0 : root * (root + 1.0) + 1.0);
+        }
+        frame.stretch(i + p, more, dt, averaged + nL * p);
+      }
+      MPMStages::update_stress(field, r, run, i, n, averaged, dt);
+    }
+}
+
+/* ----------------------------------------------------------------------
+   the stress of internal forces, with averaged pressure. The points keep theirs, or else the
+   pressure would spread further with every step.
+------------------------------------------------------------------------- */
+
+void MPMLocking::average_pressure()
+{
+  auto &pressure = field.work.vectors, &volume = field.work.weights;
+  pressure.resize(3 * (std::size_t) atom->nmax);
+  volume.resize(std::max(volume.size(), (std::size_t) atom->nmax));
+  tau.resize(6 * (std::size_t) atom->nmax);
+  const auto mean = [](const double *t) {
+    return (t[0] + t[1] + t[2]) / 3.0;
+  };
+  double **const own = field.points->tau;
+
+  for (const auto &run : field.map->runs)
+    for (bigint i = run.first; i < run.last; i++) {
+      const double J = field.points->jacobian((int) i);
+      pressure[3 * i] = mean(own[i]) / J;
+      pressure[3 * i + 1] = pressure[3 * i + 2] = 0.0;
+      volume[i] = atom->vfrac[i] * J;
+    }
+  average_around_points();
+
+  for (const auto &run : field.map->runs)
+    for (bigint i = run.first; i < run.last; i++) {
+      const double more = volume[i] / atom->vfrac[i] * pressure[3 * i] - mean(own[i]);
+      for (int c = 0; c < 6; c++) tau[6 * i + c] = own[i][c] + (c < 3 ? more : 0.0);
+    }
+}

@@ -1,0 +1,48 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_LOCKING_H
+#define LMP_MPM_LOCKING_H
+
+#include "pointers.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+class MPMField;
+
+/** Cures for volumetric locking: averages over the points around each point. */
+class MPMLocking : protected Pointers {
+ public:
+  MPMLocking(class LAMMPS *lmp, MPMField &field) : Pointers(lmp), field(field) {}
+
+  bool averages_strain() const;
+  bool averages_stress() const;
+
+  /** [n][dim*dim] for velocity gradients of all points. */
+  double *room_for_gradients();
+  /** F-bar: strain and stress of all points with velocity gradients L whose change of volume is
+   *  averaged. */
+  void strain(const double *L, double dt);
+
+  /** Make the stress of internal forces, with averaged pressure. */
+  void average_pressure();
+  /** Kirchhoff stress with averaged pressure, [n][6]. */
+  double *stress() { return tau.data(); }
+
+  double memory_usage() const;
+
+ private:
+  MPMField &field;
+  std::vector<double> gradients, tau;
+
+  void average_around_points();
+};
+
+}    // namespace LAMMPS_NS
+#endif

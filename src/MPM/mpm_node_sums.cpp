@@ -1,0 +1,174 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "mpm_node_sums.h"
+
+#include "atom.h"
+#include "fix_mpm_material.h"
+#include "mpm_edges.h"
+#include "mpm_frame.h"
+#include "mpm_passes.h"
+#include "mpm_plan.h"
+#include "mpm_points.h"
+#include "mpm_stencil.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+/** Can points of a block reach nodes of blocks that are marked? */
+static bool reaches(const Grid::Block &block, const std::vector<char> &near)
+{
+  return std::any_of(block.slot, block.slot + 27, [&](int slot) {
+    return slot >= 0 && near[slot];
+  });
+}
+
+/* ----------------------------------------------------------------------
+   a sum over points at the nodes of some blocks. weigh(point) sets what the kernel reads of a point
+------------------------------------------------------------------------- */
+
+template <class Weigh>
+static void map_some(MPMField &field, const PointRows &r, const TransferStep &s, P2G p2g,
+                     const std::vector<char> &near, int lane, int nlane, const Weigh &weigh)
+{
+  points_to(field.work.nodes, field, field.kernel,
+            [&](const MPMPointMap::Run &run, const int *base, int *box) {
+              if (!reaches(field.grid.blocks[run.slot], near)) return;
+              for (int i = run.first; i < run.last; i++) weigh(i);
+              p2g(r, s, run.first, run.last, base, field.map->tile, box);
+            });
+  field.sum(field.work.nodes.data(), field.kernel.nreal, lane, nlane);
+}
+
+/* ----------------------------------------------------------------------
+   the internal force of the Cauchy stress -I is the gradient of the volume; with an axis of
+   symmetry, that of the area in the plane, times the length of the circle through the node
+------------------------------------------------------------------------- */
+
+void LAMMPS_NS::map_gradient(MPMField &field, Weight content, const std::vector<char> &near,
+                             std::vector<double> &gradient)
+{
+  const MPMFrame &frame = *field.frame;
+  field.work.stress.resize(6 * (std::size_t) field.nmax());
+  PointRows r = field.rows();
+  r.tau = field.work.stress.data();
+  TransferStep s = field.step_data();
+  s.dt = 1.0;
+  s.force_scale = 0.0;
+  s.stress_scale = 1.0;
+
+  const int nreal = field.kernel.nreal, lane = nreal == 8 ? 4 : 0;
+  map_some(field, r, s, field.kernel.p2g_force, near, lane, 3, [&](int i) {
+    double *const tau = r.tau + 6 * (std::size_t) i;
+    const double weight =
+        (content == Weight::MASS ? r.mass[i] / r.vol0[i] : field.points->jacobian(i)) /
+        frame.circle(field.positions()[i][0]);
+    for (int k = 0; k < 6; k++) tau[k] = k < 3 ? -weight : 0.0;
+  });
+  gradient.resize(3 * field.grid.nnodes());
+  for (int64_t n = 0; n < field.grid.nnodes(); n++) {
+    const double length =
+        frame.node_circle((int) (n / NODES_PER_BLOCK), (int) (n % NODES_PER_BLOCK));
+    for (int d = 0; d < 3; d++)
+      gradient[3 * n + d] = length * field.work.nodes[n * nreal + lane + d];
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void LAMMPS_NS::map_volume(MPMField &field, const std::vector<char> &near,
+                           std::vector<double> &share)
+{
+  auto &volumes = field.work.weights;
+  volumes.resize(std::max(volumes.size(), (std::size_t) field.nmax()));
+  PointRows r = field.rows();
+  r.mass = volumes.data();
+  map_some(field, r, field.step_data(), field.kernel.p2g_momentum, near, 3, 1, [&](int i) {
+    volumes[i] = field.volume(i) / field.frame->circle(field.positions()[i][0]);
+  });
+  const double inverse = 1.0 / field.cell_volume();
+  share.resize(field.grid.nnodes());
+  for (int64_t n = 0; n < field.grid.nnodes(); n++)
+    share[n] = inverse * field.work.nodes[n * field.kernel.nreal + 3];
+}
+
+/* ---------------------------------------------------------------------- */
+
+void LAMMPS_NS::visit_points(const MPMField &field, const std::vector<int> &wanted,
+                             const std::function<void(int, int, double, const double *)> &f)
+{
+  const MPMStencil stencil(field);
+  std::vector<char> near(field.grid.blocks.size(), 0);
+  for (std::size_t n = 0; n < wanted.size(); n++)
+    if (wanted[n] >= 0) near[n / NODES_PER_BLOCK] = 1;
+  for (const auto &run : field.map->runs) {
+    const auto &block = field.grid.blocks[run.slot];
+    if (!reaches(block, near)) continue;
+    for (int i = run.first; i < run.last; i++)
+      stencil.visit(block, i, [&](const MPMStencil::Node &node) {
+        const int which = wanted[node.number];
+        if (node.weight != 0.0 && which >= 0) f(i, which, node.weight, node.r);
+      });
+  }
+}
+
+/* ----------------------------------------------------------------------
+   volumes on the lattice: in the total frame those of the reference configuration
+------------------------------------------------------------------------- */
+
+void LAMMPS_NS::volume_at_points(MPMField &field, std::vector<double> &share)
+{
+  field.plan->find_blocks_now();
+  const auto &pic = field.pic;
+  MPMPointMap &map = *field.map;
+  auto &nodes = field.work.nodes;
+  const std::size_t nmax = field.nmax();
+  std::vector<double> values(3 * nmax), weights(nmax);
+  const PointRows r = field.rows_at_rest(values.data(), weights.data());
+  TransferStep s = field.step_data();
+  s.dt = 0.0;
+
+  points_to(nodes, field, pic, [&](const MPMPointMap::Run &run, const int *base, int *box) {
+    const int damage = run.material ? run.material->damage : -1;
+    for (int i = run.first; i < run.last; i++) {
+      const bool failed = damage >= 0 && run.material->history[i][damage] >= 1.0;
+      weights[i] = failed ? 0.0 : r.vol0[i] * field.frame->lattice_jacobian(i);
+    }
+    pic.p2g_momentum(r, s, run.first, run.last, base, map.tile, box);
+  });
+
+  // behind a fixed face, the mirror image: nothing can get between it and the body
+
+  const int nreal = pic.nreal;
+  double *const volume = nodes.data() + 3;
+  MPMEdges faces(field.lammps(), field);
+  if (!field.frame->is_total() && !field.edges) faces.find(true);
+  for (int a = field.lattice.dim - 1; a >= 0; a--)
+    for (const auto &e : faces.lists[a]) {
+      volume[e.face * nreal] *= 2.0;
+      if (e.outside >= 0) volume[e.inside * nreal] += volume[e.outside * nreal];
+    }
+  field.sum(nodes.data(), nreal, 3, 1);
+  for (int a = 0; a < field.lattice.dim; a++)
+    for (const auto &e : faces.lists[a])
+      if (e.outside >= 0) volume[e.outside * nreal] = volume[e.inside * nreal];
+  const double inverse = 1.0 / field.cell_volume();
+  for (int64_t n = 0; n < field.grid.nnodes(); n++)
+    nodes[n * nreal] = inverse * nodes[n * nreal + 3];
+  field.grid.copy_aliases(nodes.data(), nreal);
+  if (field.edges) field.edges->extend(nodes.data(), nreal, 0, 1);
+  points_from(nodes, field, pic, [&](const MPMPointMap::Run &run, const int *base) {
+    pic.g2p(r, s, run.first, run.last, base, map.tile_load, nullptr);
+  });
+
+  share.resize(nmax);
+  for (const auto &run : map.runs)
+    for (int i = run.first; i < run.last; i++) share[i] = values[3 * (std::size_t) i];
+}

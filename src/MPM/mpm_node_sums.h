@@ -1,0 +1,38 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_NODE_SUMS_H
+#define LMP_MPM_NODE_SUMS_H
+
+// Sums over the points of a field that others than its step need: contact, surfaces, couplings.
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace LAMMPS_NS {
+class MPMField;
+
+enum class Weight { MASS, VOLUME };
+/** At the nodes of blocks that are marked in near (and others): sum_p w_p grad N(x_p) with the mass or
+ *  volume w of the points, [node][3]. */
+void map_gradient(MPMField &, Weight, const std::vector<char> &near, std::vector<double> &gradient);
+/** At the same nodes: sum_p V_p N(x_p) as share of the volume of a cell, [node]. */
+void map_volume(MPMField &, const std::vector<char> &near, std::vector<double> &share);
+/** At the points, [n]: that share, which is 1 inside of a body and falls to 0 across its surface. Points
+ *  that have failed do not count as volume. A body on a fixed face of the box has no surface there
+ *  (updated frame, faces in planes of nodes). Finds the blocks if need be. */
+void volume_at_points(MPMField &, std::vector<double> &share);
+
+/** Calls f(point, wanted[node], weight, r) for each point and each node that it reaches where wanted is
+ *  not negative (wanted: [node]; r: from the node to the point, in node spacings). */
+void visit_points(const MPMField &, const std::vector<int> &wanted,
+                  const std::function<void(int, int, double, const double *)> &f);
+
+}    // namespace LAMMPS_NS
+#endif

@@ -1,0 +1,89 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "mpm_options.h"
+
+#include "error.h"
+#include "fix.h"
+#include "input.h"
+#include "mpm_field.h"
+#include "utils.h"
+#include "variable.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+void LAMMPS_NS::explain_errors(LAMMPS *lmp, const std::function<void()> &f)
+{
+  Error *error = lmp->error;
+  try {
+    f();
+  } catch (const OptionError &e) {
+    if (e.missing) utils::missing_cmd_args(FLERR, e.text, error);
+    error->all(FLERR, e.iarg >= 0 ? e.iarg : Error::NOPOINTER, e.text);
+  }
+}
+
+int LAMMPS_NS::read_options(LAMMPS *lmp, Options &options, int narg, char **arg, int iarg,
+                            const std::string &last)
+{
+  OptionInput input;
+  input.narg = narg;
+  input.arg = arg;
+  input.number = [=](int i) {
+    return utils::numeric(FLERR, arg[i], false, lmp);
+  };
+  input.integer = [=](int i) {
+    return utils::bnumeric(FLERR, arg[i], false, lmp);
+  };
+  input.yes = [=](int i) {
+    return utils::logical(FLERR, arg[i], false, lmp) != 0;
+  };
+  explain_errors(lmp, [&] {
+    iarg = options.read(input, iarg, last);
+  });
+  return iarg;
+}
+
+int LAMMPS_NS::read_precision(LAMMPS *lmp, int narg, char **arg, bool &single)
+{
+  Options o("dump_modify");
+  o.add("precision", {option::word(single, {{"single", true}, {"double", false}})});
+  if (!o.has(arg[0])) return 0;
+  read_options(lmp, o, std::min(narg, 2), arg, 0);
+  return 2;
+}
+
+void LAMMPS_NS::refuse_field(LAMMPS *lmp, const Fix &user, const MPMField &field,
+                             const OptionRules &rules)
+{
+  for (const auto &rule : rules)
+    if (rule.broken)
+      lmp->error->all(FLERR, Error::NOLASTLINE,
+                      "Fix {} {} cannot be used with {} of fix mpm {}: {}", user.style, user.id,
+                      rule.keyword, field.id(), rule.text);
+}
+
+void LAMMPS_NS::find_variable(LAMMPS *lmp, NumberOrVariable &v, const std::string &user)
+{
+  if (v.variable.empty()) return;
+  v.index = lmp->input->variable->find(v.variable.c_str());
+  if (v.index < 0)
+    lmp->error->all(FLERR, Error::NOLASTLINE, "Variable {} for {} does not exist", v.variable,
+                    user);
+  if (!lmp->input->variable->equalstyle(v.index))
+    lmp->error->all(FLERR, Error::NOLASTLINE, "Variable {} for {} is not equal-style", v.variable,
+                    user);
+}
+
+double LAMMPS_NS::evaluate(LAMMPS *lmp, const NumberOrVariable &v)
+{
+  return v.variable.empty() ? v.value : lmp->input->variable->compute_equal(v.index);
+}

@@ -1,0 +1,64 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_PHYSICS_H
+#define LMP_MPM_PHYSICS_H
+
+#include "mpm_plan.h"
+
+#include "fix.h"
+#include "lammps.h"
+#include "modify.h"
+
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+class MPMField;
+
+/** Physics that joins the step: heat, pore water, ... Fixes that derive from this class are found by fix
+ *  mpm at the start of each run. examples/own-physics has one, line by line. */
+class MPMPhysics {
+ public:
+  /** Start of a run: check, and declare node fields (MPMField::add_node_field). */
+  virtual void init_physics(MPMPlan &) = 0;
+
+  /** Append the stages for a place in the step to the plan (MPMPlan::each, MPMPlan::together). */
+  virtual void add_stages(MPMPlan &, MPMPlan::Place) = 0;
+
+  /** Largest stable time step of this rank's points of a field; tag: of the point that limits it. */
+  virtual double stable_dt(const MPMField &, tagint & /*tag*/) const
+  {
+    return std::numeric_limits<double>::max();
+  }
+
+  /** Entries of compute mpm/energy: names, fixed when the fix is defined, and the present values of
+   *  this rank [energy]. */
+  struct Account {
+    std::string name;
+    bool stored;    ///< energy that bodies have now; else energy that has come to them so far
+  };
+  virtual std::vector<Account> accounts() const { return {}; }
+  virtual void account(double * /*values*/) const {}
+
+ protected:
+  ~MPMPhysics() = default;    // owned and deleted as a Fix
+};
+
+/** All physics, in the order of definition of their fixes. */
+inline std::vector<MPMPhysics *> find_physics(LAMMPS *lmp)
+{
+  std::vector<MPMPhysics *> list;
+  for (auto *ifix : lmp->modify->get_fix_list())
+    if (auto *physics = dynamic_cast<MPMPhysics *>(ifix)) list.push_back(physics);
+  return list;
+}
+
+}    // namespace LAMMPS_NS
+#endif

@@ -1,0 +1,265 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "mpm_plan.h"
+
+#include "comm.h"
+#include "modify.h"
+#include "mpm_boxes.h"
+#include "mpm_cpdi.h"
+#include "mpm_edges.h"
+#include "mpm_every.h"
+#include "mpm_field.h"
+#include "mpm_frame.h"
+#include "mpm_guard.h"
+#include "mpm_halo.h"
+#include "mpm_physics.h"
+#include "mpm_point_map.h"
+#include "platform.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+
+/* ---------------------------------------------------------------------- */
+
+MPMPlan::MPMPlan(LAMMPS *lmp) : Pointers(lmp), wall_start(0.0), cpu_start(0.0) {}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMPlan::make()
+{
+  fields = MPMField::all(lmp);
+  actions.clear();
+  for (auto *ifix : modify->get_fix_list())
+    if (auto *action = dynamic_cast<MPMNodeAction *>(ifix)) actions.push_back(action);
+  physics = find_physics(lmp);
+  std::stable_sort(actions.begin(), actions.end(), [](auto *a, auto *b) {
+    return a->turn() < b->turn();
+  });
+
+  for (auto *field : fields) field->init(this);
+  for (auto *action : actions) action->init_action();
+  for (auto *other : physics) other->init_physics(*this);
+
+  stages.clear();
+  switch (fields[0]->options.scheme) {
+    case MPMFieldOptions::USL:
+      return make_usl(*this);
+    case MPMFieldOptions::USF:
+      return make_usf(*this);
+    case MPMFieldOptions::MUSL:
+      return make_musl(*this);
+    case MPMFieldOptions::USAVG:
+      return make_usavg(*this);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMPlan::each(const std::string &name, Each run, Wanted wanted)
+{
+  Stage stage;
+  stage.name = name;
+  stage.each = std::move(run);
+  for (auto *field : fields)
+    if (!wanted || wanted(*field)) stage.fields.push_back(field);
+  if (stage.fields.empty()) return;
+  stage.seconds.assign(stage.fields.size(), 0.0);
+  stages.push_back(std::move(stage));
+}
+
+void MPMPlan::together(const std::string &name, std::function<void()> run)
+{
+  Stage stage;
+  stage.name = name;
+  stage.once = std::move(run);
+  stage.seconds.assign(1, 0.0);
+  stages.push_back(std::move(stage));
+}
+
+void MPMPlan::node_actions(MPMNodeAction::Stage stage)
+{
+  if (actions.empty()) return;
+  together("node actions", [this, stage]() {
+    act_on_nodes(stage);
+  });
+}
+
+void MPMPlan::place(Place at)
+{
+  for (auto *other : physics) other->add_stages(*this, at);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMPlan::act_on_nodes(MPMNodeAction::Stage stage)
+{
+  const double dt = fields[0]->step_dt();
+  for (auto *action : actions) action->act(dt, stage);
+}
+
+/* ----------------------------------------------------------------------
+   each stage for all fields before the next one
+------------------------------------------------------------------------- */
+
+void MPMPlan::step()
+{
+  bool waits = false;
+  for (auto *field : fields)
+    if (field->every) waits = field->every->wait() || waits;
+  if (waits) return;
+  double time = platform::walltime();
+  for (auto &stage : stages) {
+    for (std::size_t k = 0; k < stage.seconds.size(); k++) {
+      if (stage.fields.empty())
+        stage.once();
+      else
+        stage.each(*stage.fields[k]);
+      const double now = platform::walltime();
+      stage.seconds[k] += now - time;
+      time = now;
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   blocks of points first, then those that node actions need next to these
+------------------------------------------------------------------------- */
+
+void MPMPlan::find_blocks()
+{
+  for (auto *field : fields)
+    if (field->domains) field->domains->update();
+  for (auto *action : actions) action->couple_topology();
+  for (auto *field : fields) field->map->find_blocks();
+  for (auto *action : actions) action->blocks_found();
+  for (auto *field : fields) {
+    if (field->map->valid) continue;
+    for (auto *action : actions) action->extend_topology(*field);
+    field->map->finish_blocks();
+    if (field->edges) field->edges->find(false);
+    for (auto *action : actions) action->topology_changed(*field);
+  }
+  for (auto *field : fields)
+    if (field->boxes) field->boxes->update();
+}
+
+void MPMPlan::find_blocks_now()
+{
+  // corners of domains may have left what is in reach
+  if (std::any_of(fields.begin(), fields.end(), [](auto *field) {
+        return !field->map->valid || field->domains;
+      }))
+    find_blocks();
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMPlan::start()
+{
+  for (auto &stage : stages) std::fill(stage.seconds.begin(), stage.seconds.end(), 0.0);
+  wall_start = platform::walltime();
+  cpu_start = platform::cputime();
+  for (auto *field : fields) field->start_counting();
+
+  if (comm->me || std::none_of(fields.begin(), fields.end(), [](auto *field) {
+        return field->options.plan;
+      }))
+    return;
+  std::string text = "MPM plan of a step:\n";
+  for (const auto &stage : stages) {
+    text += "  " + stage.name;
+    for (auto *field : stage.fields)
+      if (fields.size() > 1) text += std::string(" ") + field->id();
+    text += "\n";
+  }
+  utils::logmesg(lmp, text);
+}
+
+/** Times of a field by stage, in order of the list; stages of all fields count for the first one. Sorts
+ *  come before the step. */
+std::vector<MPMPlan::Time> MPMPlan::times(const MPMField &field) const
+{
+  std::vector<Time> list = {{"sort", field.map->sort_time}};
+  for (const auto &stage : stages) {
+    if (stage.fields.empty() && &field == fields[0]) list.push_back({stage.name, stage.seconds[0]});
+    for (std::size_t k = 0; k < stage.fields.size(); k++)
+      if (stage.fields[k] == &field) list.push_back({stage.name, stage.seconds[k]});
+  }
+  return list;
+}
+
+/* ----------------------------------------------------------------------
+   A stage costs what it costs the slowest rank. Without keyword plan, stages of the same name are one
+   entry
+------------------------------------------------------------------------- */
+
+void MPMPlan::report(const MPMField &field) const
+{
+  constexpr double IDLE = 0.9;    // of the time is the processor's, or else others have taken it
+  const auto &counts = field.counts;
+  const auto list = times(field);
+  const std::size_t n = list.size();
+  std::vector<double> mine(n), slowest(n);
+  for (std::size_t k = 0; k < n; k++) mine[k] = list[k].seconds;
+  MPI_Allreduce(mine.data(), slowest.data(), (int) n, MPI_DOUBLE, MPI_MAX, world);
+  const double wall = platform::walltime() - wall_start;
+  double use = wall > 0.0 ? (platform::cputime() - cpu_start) / wall : 1.0, least_use;
+  MPI_Allreduce(&use, &least_use, 1, MPI_DOUBLE, MPI_MIN, world);
+  double local[4] = {counts.point_steps, (double) field.map->active.size(),
+                     (double) field.grid.blocks.size(),
+                     (double) field.halo->bytes_sent / counts.steps},
+         sum[4];
+  MPI_Allreduce(local, sum, 4, MPI_DOUBLE, MPI_SUM, world);
+  if (comm->me) return;
+
+  const double scale = 1.0e9 * comm->nprocs / sum[0], npoints = sum[0] / counts.steps;
+  double total = 0.0;
+  std::vector<Time> entries;
+  for (std::size_t k = 0; k < n; k++) {
+    total += slowest[k] * scale;
+    const auto same = std::find_if(entries.begin(), entries.end(), [&](const Time &t) {
+      return t.name == list[k].name;
+    });
+    if (same == entries.end() || field.options.plan)
+      entries.push_back({list[k].name, slowest[k] * scale});
+    else
+      same->seconds += slowest[k] * scale;
+  }
+  std::string stages_text = field.options.plan ? "  plan of the step:" : "  of these:";
+  for (std::size_t k = 0; k < entries.size(); k++)
+    stages_text += fmt::format(field.options.plan ? "\n    {:<40} {:8.2f}" : "{} {:.2f}",
+                               (field.options.plan || k == 0 ? " " : ", ") + entries[k].name,
+                               entries[k].seconds);
+  utils::logmesg(lmp,
+                 "MPM {}: {:.0f} points, {} kernels{}, {:.2f} ns per point-step and core\n{}\n"
+                 "  {:.0f} bytes per point; {:.0f} blocks with points of {:.0f} active, "
+                 "{:.1f} points per block\n"
+                 "  {} updates of the topology, {} sorts, {:.0f} halo bytes per step, "
+                 "time step {:.6g} to {:.6g}\n",
+                 field.id(), npoints, field.kernels->isa,
+                 field.options.mixed_precision ? " (mixed)" : "", total, stages_text,
+                 field.bytes_per_point(), sum[1], sum[2], npoints / std::max(1.0, sum[1]),
+                 field.map->nbuild, field.map->nsort, sum[3], counts.dt_min, counts.dt_max);
+  if (least_use < IDLE)
+    utils::logmesg(lmp,
+                   "  the machine was busy: these times are from a run with {:.0f} % CPU use\n",
+                   100.0 * least_use);
+  const auto &deleted = field.guard->deleted;
+  if (deleted.points > 0.0)
+    utils::logmesg(lmp,
+                   "  {:.0f} points deleted so far, mass {:.10g}, momentum {:.10g} {:.10g} "
+                   "{:.10g}\n",
+                   deleted.points, deleted.mass, deleted.momentum[0], deleted.momentum[1],
+                   deleted.momentum[2]);
+  utils::logmesg(lmp, field.frame->report());
+  if (field.guard->nbad())
+    utils::logmesg(lmp, "  {} bad point updates so far (policy {})\n", field.guard->nbad(),
+                   field.options.bad == MPMFieldOptions::WARN ? "warn" : "delete");
+}

@@ -1,0 +1,95 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_PLAN_H
+#define LMP_MPM_PLAN_H
+
+#include "mpm_node_action.h"
+#include "pointers.h"
+
+#include <functional>
+#include <list>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+class MPMField;
+class MPMPhysics;
+
+/** The step of all fields as a list of named stages, which is made once at the start of a run. The four
+ *  schemes are four such lists, see mpm_step.cpp. A stage tells what it costs. */
+class MPMPlan : protected Pointers {
+ public:
+  using Each = std::function<void(MPMField &)>;
+  using Wanted = std::function<bool(const MPMField &)>;
+
+  /** Places in each of the lists where stages of other physics go, in the order of definition. */
+  enum Place {
+    BEFORE_POINTS_TO_NODES,    ///< positions and forces of the start of the step
+    BEFORE_SOLVE,              ///< nodes have mass and momentum, summed over ranks
+    AFTER_SOLVE,               ///< nodes have their new velocities, points are where they were
+    AFTER_MOTION               ///< the step has ended but for its checks
+  };
+
+  std::vector<MPMField *> fields;
+  std::vector<MPMNodeAction *> actions;    ///< in the order in which they act
+  std::vector<MPMPhysics *> physics;       ///< in the order of definition
+
+  explicit MPMPlan(class LAMMPS *);
+
+  /** Find all fields, node actions and physics, and make the list. */
+  void make();
+
+  /** Append a stage that is run for each field that wants it; without these there is no such stage. */
+  void each(const std::string &name, Each run, Wanted wanted = nullptr);
+  /** Append a stage that is run once for all fields. */
+  void together(const std::string &name, std::function<void()> run);
+  /** Append node actions on one kind of velocities, if there are any. */
+  void node_actions(MPMNodeAction::Stage);
+  /** Append what other physics have at this place. */
+  void place(Place);
+
+  /** Start of a run. */
+  void start();
+  /** A step of LAMMPS: one of the cycle, if it is time for it. */
+  void step();
+  /** What the steps of a run have cost a field, to screen and log file. */
+  void report(const MPMField &) const;
+
+  /** Blocks in reach of points, of all fields whose points have moved in memory or away. */
+  void find_blocks();
+  /** The same apart from the step. */
+  void find_blocks_now();
+  void act_on_nodes(MPMNodeAction::Stage);
+
+ private:
+  struct Stage {
+    std::string name;
+    std::vector<MPMField *> fields;    // empty: run once
+    Each each;
+    std::function<void()> once;
+    std::vector<double> seconds;
+  };
+  std::vector<Stage> stages;
+  double wall_start, cpu_start;    // of the run [s]
+
+  struct Time {
+    std::string name;
+    double seconds;
+  };
+  std::vector<Time> times(const MPMField &) const;
+};
+
+/** The lists of the schemes. */
+void make_usl(MPMPlan &);
+void make_usf(MPMPlan &);
+void make_musl(MPMPlan &);
+void make_usavg(MPMPlan &);
+
+}    // namespace LAMMPS_NS
+#endif

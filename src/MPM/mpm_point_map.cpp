@@ -1,0 +1,359 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "mpm_point_map.h"
+
+#include "atom.h"
+#include "atom_vec.h"
+#include "comm.h"
+#include "fix_mpm_material.h"
+#include "group.h"
+#include "memory.h"
+#include "mpm_cpdi.h"
+#include "mpm_field.h"
+#include "mpm_frame.h"
+#include "mpm_guard.h"
+#include "mpm_halo.h"
+#include "neighbor.h"
+#include "platform.h"
+
+#include <algorithm>
+#include <array>
+#include <climits>
+#include <cmath>
+#include <cstring>
+#include <map>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+/* ---------------------------------------------------------------------- */
+
+MPMPointMap::MPMPointMap(LAMMPS *lmp, MPMField &field) :
+    Pointers(lmp), valid(false), drifted(0), sort_time(0.0), nsort(0), nbuild(0), field(field),
+    watch_drift(false), decayed(false), switches(0), switches_sorted(0)
+{
+  for (double **memory_of : {&tile, &tile_load}) {
+    *memory_of = (double *) memory->smalloc(tile_reals() * sizeof(double), "mpm:tile");
+    memset(*memory_of, 0, tile_reals() * sizeof(double));
+  }
+}
+
+MPMPointMap::~MPMPointMap()
+{
+  memory->sfree(tile);
+  memory->sfree(tile_load);
+}
+
+/** Reals of a tile, of which there are two. */
+std::size_t MPMPointMap::tile_reals() const
+{
+  return 8 * (field.domains ? domain_tile_nodes(field.lattice.dim) : MAX_TILE_NODES);
+}
+
+/* ----------------------------------------------------------------------
+   points drift at most half a skin between rebuilds when LAMMPS checks distances each step;
+   a tile has room for a drift of one cell
+------------------------------------------------------------------------- */
+
+void MPMPointMap::setup()
+{
+  watch_drift = !field.frame->is_total() && !field.domains &&
+      (field.every || neighbor->includegroup || neighbor->skin > 2.0 * field.lattice.h ||
+       neighbor->delay > 0 || neighbor->every > 1 || !neighbor->dist_check);
+}
+
+void MPMPointMap::check_drift()
+{
+  if (field.domains) drifted = 0;    // looked at by themselves, see MPMCpdi::update()
+  if (!watch_drift) return;
+  int all;
+  MPI_Allreduce(&drifted, &all, 1, MPI_INT, MPI_BOR, world);
+  if (all) valid = false;
+  drifted = 0;
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool MPMPointMap::base_node(const double *x, int base[3], double t[3]) const
+{
+  // base node of a point relative to its cell, in cells
+  const Shape shape = field.options.shape;
+  const bool bernstein = shape == BERNSTEIN;
+  const double shift = bernstein ? 0.0 : 0.5 * (stencil_order(shape) - 1);
+  const Lattice &lattice = field.lattice;
+  base[2] = 0;
+  t[2] = 0.0;
+  for (int d = 0; d < lattice.dim; d++) {
+    t[d] = (x[d] - lattice.origin[d]) / lattice.h - shift;
+    if (!(fabs(t[d]) < 4.0e6)) return false;
+    base[d] = bernstein ? 2 * (int) std::floor(0.5 * t[d]) : (int) std::floor(t[d]);
+  }
+  return true;
+}
+
+void MPMPointMap::tile_base(const ActiveBlock &a, int base[3]) const
+{
+  const Grid &grid = field.grid;
+  for (int d = 0; d < 3; d++) base[d] = grid.side * grid.blocks[a.slot].b[d] - field.kernel.margin;
+}
+
+/* ----------------------------------------------------------------------
+   the nodes of the next block go towards the cache: in a large run they are not there, and nothing
+   else would hide that
+------------------------------------------------------------------------- */
+
+void MPMPointMap::load_tile(const ActiveBlock &a, int base[3])
+{
+  Grid &grid = field.grid;
+  tile_base(a, base);
+  field.kernel.load(tile_load, grid.nodes(), grid.blocks[a.slot].slot, a.box);
+  const ActiveBlock *next = &a + 1;
+  if (next < active.data() + active.size())
+    field.kernel.prefetch(tile_load, grid.nodes(), grid.blocks[next->slot].slot, next->box);
+}
+
+bigint MPMPointMap::npoints() const
+{
+  bigint n = 0;
+  for (const auto &run : runs) n += run.last - run.first;
+  return n;
+}
+
+double MPMPointMap::memory_usage() const
+{
+  return 2.0 * tile_reals() * sizeof(double) + runs.capacity() * sizeof(Run) +
+      active.capacity() * sizeof(ActiveBlock);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMPointMap::find_blocks()
+{
+  if (valid) return;
+  Grid &grid = field.grid;
+
+  grid.clear();
+  runs.clear();
+  active.clear();
+  switches = 0;
+
+  // runs, and the range of base coordinates of each block
+
+  struct Range {
+    double lo[3], hi[3];
+  };
+  std::vector<Range> ranges;
+  int last_base[3] = {INT_MAX, INT_MAX, INT_MAX}, last_block[3] = {INT_MAX, INT_MAX, INT_MAX};
+  const int nlocal = atom->nlocal;
+  for (int i = 0; i < nlocal; i++) {
+    if (!field.is_point(i)) continue;
+    int base[3], b[3];
+    double t[3];
+    if (!base_node(field.place(i), base, t)) {
+      field.guard->point_is_bad(i, "is far out of reach of the lattice");
+      continue;
+    }
+    for (int d = 0; d < 3; d++) b[d] = base[d] >> grid.shift_bits;
+    if (base[0] != last_base[0] || base[1] != last_base[1] || base[2] != last_base[2]) switches++;
+    FixMPMMaterial *material = field.is_element_node(i) ? nullptr : field.material_of(i);
+    const bool same_block = b[0] == last_block[0] && b[1] == last_block[1] && b[2] == last_block[2];
+    if (same_block && runs.back().last == i && runs.back().material == material) {
+      runs.back().last++;
+    } else {
+      const int slot = same_block ? runs.back().slot : grid.activate(b);
+      if (slot == (int) ranges.size()) {
+        Range r;
+        for (int d = 0; d < 3; d++) {
+          r.lo[d] = t[d];
+          r.hi[d] = t[d];
+        }
+        ranges.push_back(r);
+      }
+      runs.push_back({i, i + 1, slot, material});
+    }
+    Range &r = ranges[runs.back().slot];
+    double reach_lo[3] = {0.0, 0.0, 0.0}, reach_hi[3] = {0.0, 0.0, 0.0};
+    if (field.domains) field.domains->reach(i, reach_lo, reach_hi);
+    for (int d = 0; d < 3; d++) {
+      r.lo[d] = std::min(r.lo[d], t[d] + reach_lo[d]);
+      r.hi[d] = std::max(r.hi[d], t[d] + reach_hi[d]);
+      last_base[d] = base[d];
+      last_block[d] = b[d];
+    }
+  }
+  std::stable_sort(runs.begin(), runs.end(), [](const Run &a, const Run &b) {
+    return a.slot < b.slot;
+  });
+
+  for (int k = 0, end; k < (int) runs.size(); k = end) {
+    ActiveBlock a;
+    for (end = k; end < (int) runs.size() && runs[end].slot == runs[k].slot;) end++;
+    a.slot = runs[k].slot;
+    a.first_run = k;
+    a.last_run = end;
+    for (int d = 0; d < 3; d++) {
+      a.box[d] = 127;
+      a.box[3 + d] = -127;
+    }
+    active.push_back(a);
+  }
+
+  // blocks that the points can reach before the next update, which comes when a point leaves its tile
+  // at the latest: all around the block, if nothing else bounds the drift
+
+  const double least = field.domains ? 1.0e-6 : 0.0;    // see MPMCpdi::update()
+  const double drift = field.frame->is_total() ? 0.0
+      : watch_drift                            ? grid.side
+                    : std::max(least, std::min(1.0, 0.5 * neighbor->skin / grid.lattice.h));
+  const int nactive = active.size(), order = stencil_order(field.options.shape);
+  for (int k = 0; k < nactive; k++) {
+    const Range &r = ranges[k];
+    int b[3], lo[3] = {0, 0, 0}, hi[3] = {0, 0, 0};
+    for (int d = 0; d < 3; d++) b[d] = grid.blocks[k].b[d];
+    for (int d = 0; d < grid.lattice.dim; d++) {
+      const int first = b[d] * grid.side;
+      if ((int) std::floor(r.lo[d] - drift) < first) lo[d] = -1;
+      if ((int) std::floor(r.hi[d] + drift) + order >= first + grid.side) hi[d] = 1;
+    }
+    for (int d = 0; d < 3; d++) {
+      active[k].low[d] = lo[d];
+      active[k].high[d] = hi[d];
+    }
+    for (int dx = lo[0]; dx <= hi[0]; dx++)
+      for (int dy = lo[1]; dy <= hi[1]; dy++)
+        for (int dz = lo[2]; dz <= hi[2]; dz++) {
+          const int neighbor_block[3] = {b[0] + dx, b[1] + dy, b[2] + dz};
+          grid.activate(neighbor_block);
+        }
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMPointMap::finish_blocks()
+{
+  field.grid.close_periodic();
+  field.grid.finish();
+  field.allocate_nodes();
+  field.halo->setup(field.grid);
+
+  valid = true;
+  drifted = 0;
+  nbuild++;
+  if (switches_sorted < 0) switches_sorted = switches;
+  decayed = switches > 1.6 * switches_sorted + 100;
+}
+
+/* ----------------------------------------------------------------------
+   order the points by block, material, cell and tag, the data itself moved; other atoms follow.
+   Tags make the order, and with it all sums, independent of what happened before.
+------------------------------------------------------------------------- */
+
+void MPMPointMap::sort()
+{
+  const double start = platform::walltime();
+  const int nlocal = atom->nlocal;
+
+  // key of a point: (block in order of first appearance, material, cell)
+
+  const int nmaterials = MAX(1, (int) field.materials.size());
+  const int keys_per_block = nmaterials * NODES_PER_BLOCK;
+  const int mask = field.grid.side - 1;
+  std::map<std::array<int, 3>, int> index_of_block;    // ordered: gives the order of blocks
+  std::vector<int> key(nlocal, -1);
+  std::array<int, 3> last = {INT_MAX, INT_MAX, INT_MAX};
+  int index = 0;
+  for (int i = 0; i < nlocal; i++) {
+    int base[3];
+    double t[3];
+    if (!field.is_point(i) || !base_node(field.place(i), base, t)) continue;
+    std::array<int, 3> block;
+    for (int d = 0; d < 3; d++) block[d] = base[d] >> field.grid.shift_bits;
+    if (block != last) {
+      index = index_of_block.emplace(block, (int) index_of_block.size()).first->second;
+      last = block;
+    }
+    const int cell = field.lattice.dim == 3
+        ? ((base[0] & mask) << 2 | (base[1] & mask)) << 2 | (base[2] & mask)
+        : (base[0] & mask) << 3 | (base[1] & mask);
+    int m = 0;
+    if (nmaterials > 1)
+      while (m < nmaterials - 1 && !(atom->mask[i] & field.materials[m]->groupbit)) m++;
+    key[i] = index * keys_per_block + m * NODES_PER_BLOCK + cell;
+  }
+
+  // blocks in order of their coordinates; atoms that are no points come last. A group that LAMMPS
+  // wants to be first (atom_modify first) stays so, and has the same order in itself
+
+  std::vector<int> rank(index_of_block.size());
+  int nblocks = 0;
+  for (const auto &entry : index_of_block) rank[entry.second] = nblocks++;
+  const int nkeys = nblocks * keys_per_block;
+  const int firstbit = atom->firstgroupname ? group->bitmask[atom->firstgroup] : 0;
+  const int others = firstbit ? nkeys + 1 : 0;
+  const int all_keys = others + nkeys + 1;
+  std::vector<int> start_of_key(all_keys + 1, 0);
+  for (int i = 0; i < nlocal; i++) {
+    if (key[i] < 0)
+      key[i] = nkeys;
+    else
+      key[i] = rank[key[i] / keys_per_block] * keys_per_block + key[i] % keys_per_block;
+    if (!(atom->mask[i] & firstbit)) key[i] += others;
+    start_of_key[key[i] + 1]++;
+  }
+  for (int k = 0; k < all_keys; k++) start_of_key[k + 1] += start_of_key[k];
+  std::vector<int> permute(nlocal), next(start_of_key.begin(), start_of_key.end() - 1);
+  for (int i = 0; i < nlocal; i++) permute[next[key[i]]++] = i;
+  const tagint *tag = atom->tag;
+  for (int k = 0; k < all_keys; k++)
+    if (k != nkeys && k != others + nkeys && start_of_key[k + 1] - start_of_key[k] > 1)
+      std::sort(permute.begin() + start_of_key[k], permute.begin() + start_of_key[k + 1],
+                [tag](int i, int j) {
+                  return tag[i] < tag[j];
+                });
+
+  // ghosts refer to the old order, and the first of them is in the free place that is used below: the
+  // map must forget them before
+
+  const bool mapped = atom->map_style != Atom::MAP_NONE;
+  bool moves = false;
+  for (int i = 0; i < nlocal; i++) moves = moves || permute[i] != i;
+  bigint renew = atom->nghost + (moves && mapped), renew_all;
+  MPI_Allreduce(&renew, &renew_all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (renew_all) {
+    if (mapped) atom->map_clear();    // as in exchange(), for borders()
+    atom->nghost = 0;                 // else borders() appends to them
+    atom->avec->clear_bonus();
+  }
+
+  // move the atoms, cycle by cycle, through the free place at the end
+
+  if (nlocal == atom->nmax) atom->avec->grow(0);
+  std::vector<int> &current = key;
+  for (int i = 0; i < nlocal; i++) current[i] = i;
+  for (int i = 0; i < nlocal; i++) {
+    if (current[i] == permute[i]) continue;
+    atom->avec->copy(i, nlocal, 0);
+    int empty = i;
+    while (permute[empty] != i) {
+      atom->avec->copy(permute[empty], empty, 0);
+      empty = current[empty] = permute[empty];
+    }
+    atom->avec->copy(nlocal, empty, 0);
+    current[empty] = permute[empty];
+  }
+
+  if (renew_all) comm->borders();
+
+  switches_sorted = -1;    // to be counted with the next topology
+  decayed = false;
+  valid = false;
+  nsort++;
+  sort_time += platform::walltime() - start;
+}

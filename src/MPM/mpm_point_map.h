@@ -1,0 +1,84 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_POINT_MAP_H
+#define LMP_MPM_POINT_MAP_H
+
+#include "pointers.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+class FixMPMMaterial;
+class MPMField;
+
+/** Which points are in which blocks of the lattice, and their order in memory. */
+class MPMPointMap : protected Pointers {
+ public:
+  /** Consecutive points of one block and material (null: nodes of elements). */
+  struct Run {
+    int first, last, slot;
+    FixMPMMaterial *material;
+  };
+  /** A block with points: its runs, and boxes of base nodes in its tile. */
+  struct ActiveBlock {
+    int slot, first_run, last_run;
+    int box[6];             ///< of the last momentum
+    int other_box[6];       ///< of the last other sum
+    int low[3], high[3];    ///< offsets of the first and last blocks that its points reach
+  };
+
+  std::vector<Run> runs;    ///< grouped by block
+  std::vector<ActiveBlock> active;
+  double *tile, *tile_load;    ///< one that points add to, one that they read
+  bool valid;                  ///< the blocks are those of the present points
+  int drifted;                 ///< a point has left the range of its tile
+
+  MPMPointMap(class LAMMPS *, MPMField &);
+  ~MPMPointMap();
+
+  /** Start of a run: do rebuilds of neighbor lists bound the drift of points? */
+  void setup();
+  /** Runs of points, and the blocks in their reach; nothing while these are valid. */
+  void find_blocks();
+  /** Neighbors of blocks, room for their nodes, sharers on other ranks; then they are valid. */
+  void finish_blocks();
+  /** The blocks are to be found anew where a point has left its tile on any rank. */
+  void check_drift();
+
+  /** Put points in the order of block, material, cell and tag, the data itself. */
+  void sort();
+  /** Has the order decayed since the last sort? */
+  bool wants_sort() const { return decayed; }
+
+  /** Base node of a position and its coordinates there in cells; false: not a usable position. */
+  bool base_node(const double *x, int base[3], double t[3]) const;
+  /** Node index of the first entry of the tile of a block. */
+  void tile_base(const ActiveBlock &, int base[3]) const;
+  /** Nodes of a block to the tile, and those of the next block towards the cache. */
+  void load_tile(const ActiveBlock &, int base[3]);
+  /** Calls f(first, n, run) for all points, up to BATCH of one run at a time. */
+  template <class F> void for_batches(const F &f) const;
+
+  bigint npoints() const;
+  std::size_t tile_reals() const;
+  double memory_usage() const;
+
+  double sort_time;    ///< in this run [s]
+  bigint nsort, nbuild;
+
+ private:
+  MPMField &field;
+  bool watch_drift;    // rebuilds of neighbor lists do not bound the drift: check each step
+  bool decayed;
+  bigint switches;           // neighbors in memory that are in different cells, now
+  bigint switches_sorted;    // and right after the last sort; negative: not counted yet
+};
+
+}    // namespace LAMMPS_NS
+#endif

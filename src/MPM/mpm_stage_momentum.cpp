@@ -1,0 +1,147 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// Stages: points to nodes, and the momentum equation.
+
+#include "atom.h"
+#include "mpm_affine.h"
+#include "mpm_field.h"
+#include "mpm_frame.h"
+#include "mpm_locking.h"
+#include "mpm_passes.h"
+#include "mpm_stages.h"
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+/* ----------------------------------------------------------------------
+   Where the frame has forces of its own (Piola-Kirchhoff stress, hoop stress), it makes them a batch at
+   a time
+------------------------------------------------------------------------- */
+
+void LAMMPS_NS::run_to_tile(MPMField &field, P2G p2g, const PointRows &rows,
+                            const TransferStep &step, const MPMPointMap::Run &run,
+                            const int base[3], int box[6])
+{
+  double *const tile = field.map->tile;
+  const MPMFrame &frame = *field.frame;
+  if (!frame.changes_forces() || p2g == field.kernel.p2g_momentum) {
+    p2g(rows, step, run.first, run.last, base, tile, box);
+    return;
+  }
+  MPMFrame::ForceRows room;
+  const int nC = field.lattice.dim * field.lattice.dim;
+  for (bigint i = run.first; i < run.last; i += BATCH) {
+    const int n = (int) std::min<bigint>(BATCH, run.last - i);
+    PointRows b = rows;    // as if the batch were all
+    b.x += 3 * i;
+    b.v += 3 * i;
+    b.f += 3 * i;
+    if (b.C) b.C += nC * i;
+    if (b.F) b.F += 9 * i;
+    b.vol0 += i;
+    b.mass += i;
+    b.guarded -= (int) i;
+    b.tau += 6 * i;
+    if (b.size) b.size += 3 * i;
+    if (b.domain) b.domain += field.domain_size() * i;
+    frame.forces(b, (int) i, n, room);
+    p2g(b, step, 0, n, base, tile, box);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+static void to_nodes(MPMField &field, P2G p2g)
+{
+  MPMPointMap &map = *field.map;
+  PointRows r = field.rows();
+  if (field.locking && field.locking->averages_stress()) r.tau = field.locking->stress();
+  const TransferStep s = field.step_data();
+  PointRows stressless = r;    // nodes of elements
+  if (!field.elements.empty()) {
+    field.work.no_volume.assign(field.nmax(), 0.0);
+    stressless.vol0 = field.work.no_volume.data();
+  }
+  double *const nodes = field.grid.nodes();
+  for (auto &a : map.active) {
+    const auto &block = field.grid.blocks[a.slot];
+    field.kernel.prefetch(map.tile, nodes, block.slot, a.box);    // that of the step before
+    int base[3];
+    map.tile_base(a, base);
+    reset_box(a.box);
+    for (int k = a.first_run; k < a.last_run; k++)
+      run_to_tile(field, p2g, map.runs[k].material ? r : stressless, s, map.runs[k], base, a.box);
+    if (field.affine && field.affine->Q && p2g != field.kernel.p2g_force)
+      for (int k = a.first_run; k < a.last_run; k++)
+        field.affine->modes.p2g(r, &field.affine->Q[0][0], s, map.runs[k].first, map.runs[k].last,
+                                base, map.tile);
+    field.kernel.flush(map.tile, nodes, block.slot, a.box);
+  }
+}
+
+void MPMStages::points_to_nodes(MPMField &field)
+{
+  field.grid.zero();
+  to_nodes(field, field.kernel.p2g);
+}
+
+void MPMStages::momentum_to_nodes(MPMField &field)
+{
+  field.grid.zero();
+  to_nodes(field, field.kernel.p2g_momentum);
+}
+
+void MPMStages::forces_to_nodes(MPMField &field)
+{
+  to_nodes(field, field.kernel.p2g_force);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMStages::sum_all(MPMField &field)
+{
+  field.sum(field.grid.nodes(), field.kernel.nreal, 0, field.kernel.nreal);
+}
+
+void MPMStages::sum_momentum(MPMField &field)
+{
+  field.sum(field.grid.nodes(), field.kernel.nreal, 0, 4);
+}
+
+void MPMStages::sum_forces(MPMField &field)
+{
+  field.sum(field.grid.nodes(), field.kernel.nreal, 4, 4);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMStages::momentum_equation(MPMField &field)
+{
+  field.kernels->solve_nodes(field.grid.nodes(), (int) field.grid.nnodes(), field.kernel.nreal,
+                             field.step_dt());
+  if (field.ledger.on) field.ledger.nodes_solved();
+}
+
+void MPMStages::velocities(MPMField &field)
+{
+  field.kernels->solve_nodes(field.grid.nodes(), (int) field.grid.nnodes(), field.kernel.nreal,
+                             0.0);
+}
+
+void MPMStages::back_to_momentum(MPMField &field)
+{
+  double *record = field.grid.nodes();
+  for (int64_t n = field.grid.nnodes(); n > 0; n--, record += 8) {
+    for (int d = 0; d < 3; d++) {
+      record[d] = record[3] * record[4 + d];
+      record[4 + d] = 0.0;
+    }
+    record[7] = 0.0;
+  }
+}

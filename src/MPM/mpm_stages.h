@@ -1,0 +1,86 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_STAGES_H
+#define LMP_MPM_STAGES_H
+
+// The stages of a step, for one field each. Their order is in mpm_step.cpp.
+
+#include "mpm_point_map.h"
+#include "transfer/kernels.h"
+
+namespace LAMMPS_NS {
+class MPMField;
+class MPMPlan;
+
+namespace MPMStages {
+
+  // mpm_stage_momentum.cpp: points to nodes, and the equation of motion there
+
+  /** Mass, momentum and force of the nodes from this rank's points. */
+  void points_to_nodes(MPMField &);
+  /** Mass and momentum only. */
+  void momentum_to_nodes(MPMField &);
+  /** Forces only, to records that have mass and momentum. */
+  void forces_to_nodes(MPMField &);
+  void sum_all(MPMField &);
+  void sum_momentum(MPMField &);
+  void sum_forces(MPMField &);
+  /** v = (p + dt f)/m; the old velocity p/m stays in long records. */
+  void momentum_equation(MPMField &);
+  /** v = p/m. */
+  void velocities(MPMField &);
+  /** Back from velocities to momentum, free of what node actions did, with room for forces. */
+  void back_to_momentum(MPMField &);
+
+  // mpm_stage_points.cpp: nodes to points
+
+  /** What of the strain is made while points move. */
+  enum Strain {
+    ELSEWHERE,    ///< nothing
+    FRAME,        ///< what the frame takes from the motion of the points
+    GRADIENTS,    ///< velocity gradients, too, for MPMLocking::strain()
+    STRESS        ///< stress, too
+  };
+  /** Velocities, affine matrices and positions of the points. */
+  void nodes_to_points(MPMField &, Strain);
+  /** Positions and corners of the end of the step, where they had to wait. */
+  void move_points(MPMField &);
+
+  // mpm_stage_stress.cpp
+
+  /** Stress of points from the present velocities of the nodes, for a share of the step; shift: see
+   *  MPMFrame::shift_gradients(), as a share of the step. move_corners: corners of domains move with
+   *  these velocities. */
+  void strain_from_nodes(MPMField &, double share, double shift, bool move_corners = false);
+  /** Strain and stress of n <= BATCH consecutive points of a run; L: their velocity gradients. */
+  void update_stress(MPMField &, const MPM_NS::PointRows &, const MPMPointMap::Run &, int first,
+                     int n, const double *L, double dt);
+
+  // mpm_stage_light.cpp: nodes with next to no mass
+
+  /** Their velocities, for gradients only. */
+  void blend_light_nodes(MPMField &);
+  /** Affine matrices by gradients of these velocities. */
+  void affine_with_light_nodes(MPMField &);
+  /** Stress, too; then points move. */
+  void stress_with_light_nodes(MPMField &);
+
+  // mpm_stage_series.cpp: more terms of the inverse of the mass matrix
+
+  /** XPIC: in the old velocities. */
+  void xpic(MPMField &);
+  /** FMPM: in the new velocities of all fields, with node actions after each term. */
+  void fmpm(MPMPlan &);
+
+  /** End of a step: bad points, drift, time step. */
+  void checks(MPMField &);
+
+}    // namespace MPMStages
+}    // namespace LAMMPS_NS
+#endif

@@ -1,0 +1,194 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "mpm_state.h"
+
+#include "atom.h"
+#include "error.h"
+#include "memory.h"
+#include "modify.h"
+
+#include <cstring>
+
+using namespace LAMMPS_NS;
+
+/* ---------------------------------------------------------------------- */
+
+MPMPointState::~MPMPointState()
+{
+  for (auto &array : arrays) {
+    memory->destroy(array.mine);
+    memory->destroy(array.mine_values);
+  }
+}
+
+void MPMPointState::declare(double **&rows, const char *name, int width, Fresh fresh)
+{
+  rows = nullptr;
+  arrays.push_back({&rows, nullptr, nullptr, nullptr, name, width, std::move(fresh)});
+}
+
+void MPMPointState::declare(double *&values, const char *name, Fresh fresh)
+{
+  values = nullptr;
+  arrays.push_back({nullptr, &values, nullptr, nullptr, name, 1, std::move(fresh)});
+}
+
+int MPMPointState::size() const
+{
+  int sum = 0;
+  for (const auto &array : arrays) sum += array.width;
+  return sum;
+}
+
+std::string MPMPointState::layout() const
+{
+  std::string text;
+  for (const auto &array : arrays)
+    text +=
+        (text.empty() ? "" : ", ") + std::string(array.name) + " " + std::to_string(array.width);
+  return text;
+}
+
+void MPMPointState::grow(int nmax)
+{
+  for (auto &array : arrays)
+    if (array.rows)
+      *array.rows = memory->grow(array.mine, nmax, array.width, array.name);
+    else
+      *array.values = memory->grow(array.mine_values, nmax, array.name);
+}
+
+void MPMPointState::copy(int from, int to)
+{
+  for (auto &array : arrays) memcpy(array.row(to), array.row(from), array.width * sizeof(double));
+}
+
+void MPMPointState::fresh(int i)
+{
+  for (auto &array : arrays) {
+    double *const row = array.row(i);
+    memset(row, 0, array.width * sizeof(double));
+    if (array.fresh) array.fresh(i, row);
+  }
+}
+
+int MPMPointState::pack(int i, double *buf) const
+{
+  double *at = buf;
+  for (const auto &array : arrays) {
+    memcpy(at, array.row(i), array.width * sizeof(double));
+    at += array.width;
+  }
+  return (int) (at - buf);
+}
+
+int MPMPointState::unpack(int i, const double *buf)
+{
+  const double *at = buf;
+  for (auto &array : arrays) {
+    memcpy(array.row(i), at, array.width * sizeof(double));
+    at += array.width;
+  }
+  return (int) (at - buf);
+}
+
+/* ---------------------------------------------------------------------- */
+
+FixMPMState::FixMPMState(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), state(memory), restarts(false), callbacks(false)
+{
+}
+
+FixMPMState::~FixMPMState()
+{
+  if (!callbacks || !modify) return;
+  atom->delete_callback(id, Atom::GROW);
+  if (restarts) atom->delete_callback(id, Atom::RESTART);
+}
+
+void FixMPMState::keep_arrays(bool in_restart_files)
+{
+  if (state.empty()) return;
+  callbacks = true;
+  restarts = in_restart_files;
+  state.grow(atom->nmax);
+  atom->add_callback(Atom::GROW);
+  if (restarts) atom->add_callback(Atom::RESTART);
+  restart_peratom = restarts;
+  create_attribute = 1;
+  maxexchange = state.size();
+  for (int i = 0; i < atom->nlocal; i++) state.fresh(i);
+}
+
+double FixMPMState::memory_usage()
+{
+  return (double) state.size() * atom->nmax * sizeof(double);
+}
+
+void FixMPMState::grow_arrays(int nmax)
+{
+  state.grow(nmax);
+}
+
+void FixMPMState::copy_arrays(int i, int j, int)
+{
+  state.copy(i, j);
+}
+
+void FixMPMState::set_arrays(int i)
+{
+  state.fresh(i);
+}
+
+int FixMPMState::pack_exchange(int i, double *buf)
+{
+  return state.pack(i, buf);
+}
+
+int FixMPMState::unpack_exchange(int i, double *buf)
+{
+  return state.unpack(i, buf);
+}
+
+int FixMPMState::pack_restart(int i, double *buf)
+{
+  buf[0] = 1 + pack_exchange(i, buf + 1);
+  return (int) buf[0];
+}
+
+const double *FixMPMState::from_restart(int i, int nth, int &n) const
+{
+  const double *extra = atom->extra[i];
+  for (int k = 0; k < nth; k++) extra += (int) *extra;
+  n = (int) *extra - 1;
+  return extra + 1;
+}
+
+void FixMPMState::unpack_restart(int i, int nth)
+{
+  int n;
+  const double *values = from_restart(i, nth, n);
+  if (n != state.size())
+    error->one(
+        FLERR, Error::NOLASTLINE,
+        "The restart file has {} numbers per point for fix {} (style {}), not {} ({}): give the "
+        "fix the options with which the file was written",
+        n, id, style, state.size(), state.layout());
+  state.unpack(i, values);
+}
+
+int FixMPMState::size_restart(int)
+{
+  return 1 + state.size();
+}
+
+int FixMPMState::maxsize_restart()
+{
+  return 1 + state.size();
+}

@@ -1,0 +1,93 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_STATE_H
+#define LMP_MPM_STATE_H
+
+#include "fix.h"
+
+#include <deque>
+#include <functional>
+#include <string>
+
+namespace LAMMPS_NS {
+
+/** The per-point arrays of a fix. Their owners declare them; this class makes them grow and move with
+ *  their atoms, and writes them to restart files. */
+class MPMPointState {
+ public:
+  using Fresh = std::function<void(int i, double *row)>;
+
+  explicit MPMPointState(class Memory *memory) : memory(memory) {}
+  MPMPointState(const MPMPointState &) = delete;
+  MPMPointState &operator=(const MPMPointState &) = delete;
+  ~MPMPointState();
+
+  /** Keep rows of the given number of reals for all atoms; rows[i] is valid from the next grow() on.
+   *  fresh: fills the row of a new atom, which is zero without. The reference to rows must stay
+   *  valid as long as this object. */
+  void declare(double **&rows, const char *name, int width, Fresh fresh = nullptr);
+  /** The same for one real for each atom. */
+  void declare(double *&values, const char *name, Fresh fresh = nullptr);
+
+  bool empty() const { return arrays.empty(); }
+  /** Reals of a point in all arrays. */
+  int size() const;
+  /** Names and widths, for instance "C 9, X 3", for the comparison with those of a restart file. */
+  std::string layout() const;
+
+  void grow(int nmax);
+  void copy(int from, int to);
+  void fresh(int i);
+  int pack(int i, double *buf) const;
+  int unpack(int i, const double *buf);
+
+ private:
+  struct Array {
+    double ***rows, **values;    // of the owner, who may be gone when the arrays are destroyed
+    double **mine, *mine_values;
+    double *row(int i) const { return mine ? mine[i] : mine_values + i; }
+    const char *name;
+    int width;
+    Fresh fresh;
+  };
+  class Memory *memory;
+  std::deque<Array> arrays;
+};
+
+/** A fix with per-point arrays: the callbacks of LAMMPS, which go to its MPMPointState. */
+class FixMPMState : public Fix {
+ public:
+  FixMPMState(class LAMMPS *, int, char **);
+  ~FixMPMState() override;
+  double memory_usage() override;
+  void grow_arrays(int) override;
+  void copy_arrays(int, int, int) override;
+  void set_arrays(int) override;
+  int pack_exchange(int, double *) override;
+  int unpack_exchange(int, double *) override;
+  int pack_restart(int, double *) override;
+  void unpack_restart(int, int) override;
+  int size_restart(int) override;
+  int maxsize_restart() override;
+
+ protected:
+  MPMPointState state;
+
+  /** At the end of the constructor, when all arrays are declared. restarts: they go to restart files. */
+  void keep_arrays(bool restarts = true);
+  /** The values of this fix for atom i in a restart file, n of them; those of nth other fixes come
+   *  first, each with their number in front. */
+  const double *from_restart(int i, int nth, int &n) const;
+
+ private:
+  bool restarts, callbacks;
+};
+
+}    // namespace LAMMPS_NS
+#endif

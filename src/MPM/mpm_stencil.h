@@ -1,0 +1,102 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_STENCIL_H
+#define LMP_MPM_STENCIL_H
+
+// The nodes that a point reaches, one by one: for sums that the fast transfers do not make. These are
+// the only loops over the nodes of a point outside of transfer/.
+
+#include "mpm_field.h"
+
+#include <cstdint>
+
+namespace LAMMPS_NS {
+
+/** The nodes of points, one point at a time. */
+class MPMStencil {
+ public:
+  /** A node as a point sees it. Domains (CPDI) see a node once from each of their corners. */
+  struct Node {
+    int64_t number;        ///< slot * 64 + number in the block
+    double weight;         ///< N_ip
+    double gradient[3];    ///< of N_ip with respect to the place of the point [1/distance]
+    double r[3];           ///< from the node to the point, in node spacings
+  };
+
+  explicit MPMStencil(const MPMField &field) : field(field) {}
+
+  /** Nodes along one axis that a position reaches (in node spacings from the origin): their number,
+   *  the first one, the weights and, if asked for, their slopes for one node spacing. Points of finite
+   *  size: those of the spline with their stencil. */
+  int weights(double t, int &first, double w[4], double *slopes = nullptr) const;
+
+  /** Calls f(Node) for all nodes of point i, which is in the given block. */
+  template <class F> void visit(const MPM_NS::Grid::Block &block, int i, const F &f) const
+  {
+    double corner[24], share[8], slope[24];
+    const int n = corners(i, corner, share, slope), dim = field.lattice.dim;
+    const double *const place = field.place(i);
+    for (int c = 0; c < n; c++) {
+      double x[3] = {0.0, 0.0, 0.0};
+      for (int d = 0; d < dim; d++) x[d] = n > 1 ? place[d] + corner[dim * c + d] : place[d];
+      visit_at(block, i, x, share[c], n > 1 ? slope + dim * c : nullptr, f);
+    }
+  }
+
+ private:
+  const MPMField &field;
+
+  /** Corners of the domain of a point relative to it, their weights, and the gradients of these; a
+   *  point without domain is the only one. */
+  int corners(int i, double *x, double *w, double *g) const;
+  void weights_of_size(int i, int axis, double t, int first, double w[4], double slopes[4]) const;
+
+  /** Functions at x. g: gradient of a corner, null: that of the functions. */
+  template <class F>
+  void visit_at(const MPM_NS::Grid::Block &block, int i, const double *x, double share,
+                const double *g, const F &f) const
+  {
+    const auto &lattice = field.lattice;
+    const auto &grid = field.grid;
+    int base[3] = {0, 0, 0}, count[3] = {1, 1, 1};
+    double at[3] = {0.0, 0.0, 0.0}, w[3][4] = {{0.0}, {0.0}, {1.0}}, dw[3][4] = {{0.0}};
+    for (int d = 0; d < lattice.dim; d++) {
+      const double t = (x[d] - lattice.origin[d]) / lattice.h;
+      at[d] = (field.place(i)[d] - lattice.origin[d]) / lattice.h;
+      count[d] = weights(t, base[d], w[d], dw[d]);
+      if (field.boxes) weights_of_size(i, d, t, base[d], w[d], dw[d]);
+    }
+    Node node;
+    int k[3];
+    for (k[0] = 0; k[0] < count[0]; k[0]++)
+      for (k[1] = 0; k[1] < count[1]; k[1]++)
+        for (k[2] = 0; k[2] < count[2]; k[2]++) {
+          int side[3] = {1, 1, 1}, in[3] = {0, 0, 0};
+          const double N = w[0][k[0]] * w[1][k[1]] * w[2][k[2]];
+          for (int d = 0; d < 3; d++) {
+            node.r[d] = node.gradient[d] = 0.0;
+            if (d >= lattice.dim) continue;
+            const int index = base[d] + k[d], e = (d + 1) % 3, other = (d + 2) % 3;
+            side[d] = (index >> grid.shift_bits) - block.b[d] + 1;
+            in[d] = index & (grid.side - 1);
+            node.r[d] = at[d] - index;
+            node.gradient[d] = g ? g[d] * N
+                                 : dw[d][k[d]] * w[e][k[e]] * w[other][k[other]] / lattice.h;
+          }
+          const int slot = block.slot[9 * side[0] + 3 * side[1] + side[2]];
+          const int n = lattice.dim == 3 ? (in[0] * 4 + in[1]) * 4 + in[2] : in[0] * 8 + in[1];
+          node.number = (int64_t) slot * MPM_NS::NODES_PER_BLOCK + n;
+          node.weight = share * w[0][k[0]] * w[1][k[1]] * w[2][k[2]];
+          f(node);
+        }
+  }
+};
+
+}    // namespace LAMMPS_NS
+#endif

@@ -1,0 +1,80 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// labels: unit docs
+
+// The keywords of all styles in the manual are those that the styles declare: a page includes
+// options/PAGE.inc, and options/PAGE_default.inc for the defaults.
+
+#include "declare/table_testing.h"
+
+#include "create_points.h"
+#include "fix_mpm_boundary.h"
+#include "fix_mpm_contact.h"
+#include "fix_mpm_dt.h"
+#include "fix_mpm_elements.h"
+#include "fix_mpm_handshake.h"
+#include "fix_mpm_immersed.h"
+#include "fix_mpm_rigid.h"
+#include "fix_mpm_surface.h"
+#include "mpm_field_options.h"
+#include "mpm_point.h"
+#include "pair_mpm_penalty.h"
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+namespace {
+
+std::map<std::string, std::string> files()
+{
+  std::map<std::string, std::string> all;
+  const auto add = [&](const std::string &page, const Options &o) {
+    const std::string from =
+        ".. made from the declaration of the options by test_option_tables\n\n";
+    all[page + ".inc"] = from + o.table();
+    all[page + "_default.inc"] = from + o.defaults();
+  };
+  add("create_points", CreatePointsOptions().declare(3, true));
+  add("create_points_mesh", CreatePointsMeshOptions().declare("create_points mesh", 3, true));
+  add("fix_mpm", MPMFieldOptions().declare(3));
+  add("fix_mpm_boundary", MPMBoundaryOptions().declare(3));
+  add("fix_mpm_contact", MPMContactOptions().declare());
+  add("fix_mpm_dt", MPMDtOptions().declare());
+  add("fix_mpm_elements", MPMElementsOptions().declare());
+  add("fix_mpm_handshake", MPMHandshakeOptions().declare());
+  add("fix_mpm_immersed", MPMImmersedOptions().declare(3));
+  add("fix_mpm_rigid", MPMRigidOptions().declare());
+  add("fix_mpm_surface", MPMSurfaceOptions().declare());
+  add("mpm_point", MPMPointOptions().declare());
+  add("pair_mpm_penalty", MPMPenaltyOptions().declare());
+  add("pair_mpm_penalty_coeff", MPMPenaltyCoeff().declare());
+  return all;
+}
+
+}    // namespace
+
+TEST(OptionTables, AreUpToDate)
+{
+  MPM_TEST::expect_up_to_date("options", files());
+}
+
+TEST(OptionTables, AreInTheirPages)
+{
+  const std::string folder = MPM_SOURCE_DIR "/doc/src/";
+  for (const auto &[file, text] : files()) {
+    std::string page = file.substr(0, file.size() - 4);
+    for (const std::string end : {"_default", "_coeff", "_mesh"})
+      if (page.size() > end.size() && page.compare(page.size() - end.size(), end.size(), end) == 0)
+        page.resize(page.size() - end.size());
+    EXPECT_NE(
+        MPM_TEST::text_of_file(folder + page + ".rst").find(".. include:: options/" + file + "\n"),
+        std::string::npos)
+        << "doc/src/" << page << ".rst does not include options/" << file;
+  }
+}
