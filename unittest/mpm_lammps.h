@@ -1,16 +1,11 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 #ifndef MPM_LAMMPS_TEST_H
 #define MPM_LAMMPS_TEST_H
 
 // A LAMMPS instance for tests, on any communicator: one rank may run its own serial reference
-// next to a parallel run.
+// next to a parallel run. This header brings what nearly all tests need, so that they need not name it.
 
 #include "atom.h"
 #include "comm.h"
@@ -44,10 +39,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <functional>
+#include <map>
+#include <memory>
 #include <mpi.h>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -55,6 +54,19 @@
 namespace MPM_TEST {
 
 using namespace LAMMPS_NS;
+using ::testing::HasSubstr;
+
+constexpr double PI = 3.14159265358979323846;
+
+/** A test of what does not depend on the number of ranks: on more than one it is skipped. */
+#define SERIAL_TEST(suite, name)                            \
+  static void suite##_##name();                             \
+  TEST(suite, name)                                         \
+  {                                                         \
+    if (nranks() > 1) GTEST_SKIP() << "one rank is enough"; \
+    suite##_##name();                                       \
+  }                                                         \
+  static void suite##_##name()
 
 inline int nranks(MPI_Comm comm = MPI_COMM_WORLD)
 {
@@ -132,6 +144,54 @@ struct ScratchFile {
   }
 };
 
+/** Text with the arguments of printf in it. */
+template <class... Args> std::string strprintf(const char *text, Args... args)
+{
+  std::vector<char> buffer(snprintf(nullptr, 0, text, args...) + 1);
+  snprintf(buffer.data(), buffer.size(), text, args...);
+  return buffer.data();
+}
+
+/** The first lines of a scene: a box, and material points as atoms. faces: "f f f", extent: "xlo xhi ylo yhi zlo zhi";
+ *  in 2d without those of z, which are periodic, -0.5 and 0.5. skin: of neighbor lists, 0: LAMMPS's default. */
+inline std::string space(const std::string &units, const std::string &faces,
+                         const std::string &extent, int types = 1, double skin = 0.0, int dim = 3)
+{
+  return strprintf("units %s\ndimension %d\nboundary %s\natom_style mpm\n", units.c_str(), dim,
+                   faces.c_str()) +
+      (skin > 0.0 ? strprintf("neighbor %.17g bin\n", skin) : "") +
+      strprintf("region box block %s\ncreate_box %d box\n", extent.c_str(), types);
+}
+
+/** faces: "f f"; the extent may have that along z, for another thickness. */
+inline std::string plane(const std::string &units, const std::string &faces, std::string extent,
+                         int types = 1, double skin = 0.0)
+{
+  if (std::count(extent.begin(), extent.end(), ' ') == 3) extent += " -0.5 0.5";
+  return space(units, faces + " p", extent, types, skin, 2);
+}
+
+/** In 2d, of faces and extent what is in the plane. */
+inline std::string box(int dim, const std::string &units, const std::string &faces,
+                       std::string extent, int types = 1, double skin = 0.0)
+{
+  if (dim == 3) return space(units, faces, extent, types, skin);
+  std::size_t end = 0;
+  for (int word = 0; word < 4; word++) end = extent.find(' ', end + 1);
+  return plane(units, faces.substr(0, 3), extent.substr(0, end), types, skin);
+}
+
+/** Next, mostly: a lattice, and one body of one material (region "box": that fills the box). grid: node spacing
+ *  and options. The fixes are named grid and m, the region body. */
+inline std::string body(const std::string &region, const std::string &material,
+                        const std::string &grid = "1.0", const std::string &ppc = "2")
+{
+  const bool fills = region == "box";
+  return "fix grid all mpm " + grid + "\n" + (fills ? "" : "region body " + region + "\n") +
+      "create_points 1 " + (fills ? "box" : "region body") + " ppc " + ppc + "\n" +
+      "fix m all mpm/material " + material + "\n";
+}
+
 /** A LAMMPS instance: what a test drives. (Not named Run, which is a member of ::testing::Test.) */
 class Scene {
  public:
@@ -141,6 +201,10 @@ class Scene {
   {
     const char *args[] = {"mpm_test", "-log", "none", "-screen", "none", "-nocite"};
     lmp = new LAMMPS(6, const_cast<char **>(args), comm);
+  }
+  explicit Scene(const std::string &text, MPI_Comm comm = MPI_COMM_WORLD) : Scene(comm)
+  {
+    commands(text);
   }
   ~Scene() { delete lmp; }
   Scene(const Scene &) = delete;
@@ -251,7 +315,6 @@ class Scene {
   FixMPMMaterial *material(const std::string &id = "m") { return fix<FixMPMMaterial>(id); }
 
   // what tests read of a field: nothing else in the tests knows the members of fix mpm
-
   std::vector<std::string> fields()
   {
     std::vector<std::string> ids;
@@ -438,14 +501,6 @@ class Scene {
   std::function<void(double **)> callback;
 };
 
-/** Text with the arguments of printf in it. */
-template <class... Args> std::string strprintf(const char *text, Args... args)
-{
-  std::vector<char> buffer(snprintf(nullptr, 0, text, args...) + 1);
-  snprintf(buffer.data(), buffer.size(), text, args...);
-  return buffer.data();
-}
-
 /** Scene with its words in capitals, MPM_<name>, replaced. */
 inline std::string replaced(std::string scene, const std::string &word, const std::string &text)
 {
@@ -524,13 +579,7 @@ struct Continued {
 };
 
 /** Two soft bodies that cross all rank boundaries of a periodic box, collide, and deform. */
-inline const char *const two_bodies = R"(
-units lj
-boundary p p p
-atom_style mpm
-neighbor 0.3 bin
-region box block 0 8 0 8 0 8
-create_box 2 box
+inline const std::string two_bodies = space("lj", "p p p", "0 8 0 8 0 8", 2) + R"(
 fix grid all mpm 1.0 MPM_OPTIONS
 region one sphere 2.6 3.0 3.2 1.9
 region two block 4.8 7.3 2.0 5.0 2.5 5.5
@@ -543,14 +592,40 @@ fix m2 two mpm/material density 2.0 linear 20.0 0.2
 velocity one set 0.6 0.35 -0.4
 velocity two set -0.5 0.1 0.3
 timestep 0.05
-thermo 1000
 )";
+
+/** The same on one rank and on all, and to the last bit after a restart file in the middle of the run. */
+struct Twins {
+  Scene serial{MPI_COMM_SELF}, whole, again;
+
+  /** scene ... run before, write_restart, run after; and read_restart, next ..., run after */
+  Twins(const std::string &scene, int before, const std::string &next, int after, double tolerance)
+  {
+    const ScratchFile file("restart");
+    const std::string first = scene + "run " + std::to_string(before) + "\n";
+    const std::string last = "run " + std::to_string(after) + "\n";
+    serial.commands(first + last);
+    whole.commands(first + "write_restart " + file.name + "\n" + last);
+    again.commands("read_restart " + file.name + "\n" + next + last);
+    EXPECT_LT(measured("difference to one rank", difference(serial.gather(), whole.gather())),
+              tolerance);
+    EXPECT_TRUE(identical(whole.gather(), again.gather()));
+  }
+};
 
 /** The message of the error that an input gives, or nothing. */
 inline std::string error_of(const std::string &input)
 {
   Scene scene;
   return scene.error(input);
+}
+
+/** An input gives an error with these words. */
+inline void expect_error(const std::string &input, const std::string &words)
+{
+  const auto found = error_of(input);
+  EXPECT_THAT(found, HasSubstr(words)) << input;
+  EXPECT_NE(found, "") << input;
 }
 
 /** Mistakes in the input, each with words of its message. */
@@ -566,7 +641,7 @@ inline void expect_refused(const std::string &scene, const std::vector<Mistake> 
     Scene instance;
     instance.commands(scene);
     const auto found = instance.error(mistake.lines + "\n" + run);
-    EXPECT_THAT(found, ::testing::HasSubstr(mistake.message)) << mistake.lines;
+    EXPECT_THAT(found, HasSubstr(mistake.message)) << mistake.lines;
     EXPECT_NE(found, "") << mistake.lines;
   }
 }

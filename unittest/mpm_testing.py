@@ -18,6 +18,10 @@ ROOT = os.environ.get("MPM_ROOT", os.path.dirname(os.path.dirname(os.path.abspat
 LMP = os.environ.get("MPM_LMP", os.path.join(ROOT, "build", "lmp"))
 
 
+# of a file with a line "# parts:", each part is a test of ctest: --part=K, 0 for all of them
+PART = int(([word[7:] for word in sys.argv[1:] if word.startswith("--part=")] or [0])[0])
+
+
 class Skip(Exception):
     """Raised by a test that cannot run here."""
 
@@ -82,8 +86,9 @@ def warnings(output):
 def main(scope):
     """Run the tests in order of definition, or those named on the command line."""
     tests = [(name, f) for name, f in scope.items() if name.startswith("test_") and callable(f)]
-    if sys.argv[1:]:
-        tests = [(name, f) for name, f in tests if name in sys.argv[1:]]
+    chosen = [word for word in sys.argv[1:] if not word.startswith("--")]
+    if chosen:
+        tests = [(name, f) for name, f in tests if name in chosen]
     cases, failed = [], 0
     for name, function in tests:
         case = {"name": name, "status": "RUN", "result": "COMPLETED"}

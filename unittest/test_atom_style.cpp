@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: unit input smoke
 // mpi: 1 2 4
@@ -17,16 +12,10 @@
 
 #include "atom_vec.h"
 
-#include <array>
-#include <cmath>
-#include <set>
-
 using namespace MPM_TEST;
 using ::testing::AllOf;
-using ::testing::HasSubstr;
 
 // everything an atom carries, bit by bit
-
 struct Point {
   double tag, type, mask, x[3], v[3], mass, volume0, volume, radius, F[9], stress[6];
 
@@ -83,31 +72,14 @@ static double total_volume(const std::vector<Point> &points)
 
 // a box and the lattice of a fix mpm; the fix itself needs a material before a run, so tests that
 // run something remove it
+static const std::string box3d = space("si", "f f f", "0 1 0 1 0 1", 3) + "fix grid all mpm 0.1\n";
 
-static const char *const box3d = R"(
-units si
-boundary f f f
-atom_style mpm
-region box block 0 1 0 1 0 1
-create_box 3 box
-fix grid all mpm 0.1
-)";
-
-static const char *const box2d = R"(
-units si
-dimension 2
-boundary f f p
-atom_style mpm
-region box block 0 1 0 1 -0.5 0.5
-create_box 3 box
-)";
+static const std::string box2d = plane("si", "f f", "0 1 0 1", 3);
 
 // ---------------------------------------------------------------- sampling of regions
-
 TEST(CreatePoints, BlockOfCells)
 {
-  Scene scene;
-  scene.commands(box3d);
+  Scene scene(box3d);
   scene.commands("region r block 0.2 0.8 0.2 0.5 0 0.1\ncreate_points 2 region r ppc 2");
   auto points = atoms(scene);
   ASSERT_EQ(points.size(), 12 * 6 * 2);
@@ -135,8 +107,7 @@ TEST(CreatePoints, BlockOfCells)
 
 TEST(CreatePoints, PointsPerCell)
 {
-  Scene scene;
-  scene.commands(box3d);
+  Scene scene(box3d);
   scene.commands("create_points 1 box ppc 1 2 3");
   auto points = atoms(scene);
   ASSERT_EQ(points.size(), 10 * 20 * 30);
@@ -145,16 +116,14 @@ TEST(CreatePoints, PointsPerCell)
   EXPECT_NEAR(points[0].x[1], 0.025, 1.0e-15);
   EXPECT_NEAR(points[0].x[2], 0.1 / 6.0, 1.0e-15);
 
-  Scene implied;
-  implied.commands(box3d);
+  Scene implied(box3d);
   implied.commands("create_points 1 box");
   EXPECT_EQ(atoms(implied).size(), 8000u);    // 2 along each axis
 }
 
 TEST(CreatePoints, ExplicitSpacing)
 {
-  Scene scene;
-  scene.commands(box3d);
+  Scene scene(box3d);
   scene.commands("unfix grid\nregion r block 0.25 0.75 0.2 0.7 0.25 0.75\n"
                  "create_points 1 region r spacing 0.05 0.1 0.25");
   auto points = atoms(scene);
@@ -162,8 +131,7 @@ TEST(CreatePoints, ExplicitSpacing)
   for (const auto &p : points) EXPECT_DOUBLE_EQ(p.volume0, 0.05 * 0.1 * 0.25);
 
   // with a fix mpm, from its origin
-  Scene shifted;
-  shifted.commands(box3d);
+  Scene shifted(box3d);
   shifted.commands("unfix grid\nfix grid all mpm 0.1 origin 0.03 0 0\n"
                    "region r block 0.2 0.8 0.2 0.3 0.2 0.3\ncreate_points 1 region r spacing 0.1");
   points = atoms(shifted);
@@ -173,30 +141,26 @@ TEST(CreatePoints, ExplicitSpacing)
 
 TEST(CreatePoints, WhichLattice)
 {
-  Scene scene;
-  scene.commands(box3d);
+  Scene scene(box3d);
   scene.commands("fix fine all mpm 0.05\nregion r block 0.2 0.3 0.2 0.3 0.2 0.3");
   EXPECT_THAT(scene.error("create_points 1 region r ppc 1"),
               HasSubstr("Fixes mpm grid and fine have different lattices"));
   scene.commands("create_points 1 region r ppc 1 fix fine");
   EXPECT_EQ(atoms(scene).size(), 8u);
 
-  Scene same;
-  same.commands(box3d);
+  Scene same(box3d);
   same.commands("fix second all mpm 0.1\nregion r block 0.2 0.3 0.2 0.3 0.2 0.3\n"
                 "create_points 1 region r ppc 1");
   EXPECT_EQ(atoms(same).size(), 1u);
 }
 
 // numbers of points and error of the area from benchmark L1: +3.45 %, +0.97 %, +0.34 %
-
 TEST(CreatePoints, Disk2d)
 {
   const double h[] = {0.05, 0.025, 0.0125}, excess[] = {0.0345, 0.0097, 0.0034};
   const unsigned count[] = {208, 812, 3228};
   for (int k = 0; k < 3; k++) {
-    Scene scene;
-    scene.commands(box2d);
+    Scene scene(box2d);
     scene.commands(fmt::format("fix grid all mpm {}\nregion r cylinder z 0.5 0.5 0.2 INF INF\n"
                                "create_points 1 region r ppc 2",
                                h[k]));
@@ -213,15 +177,13 @@ TEST(CreatePoints, Disk2d)
     EXPECT_NEAR(centroid[1], 0.5, 1.0e-14);
   }
 
-  Scene scene;
-  scene.commands(box2d);
+  Scene scene(box2d);
   scene.commands("fix grid all mpm 0.1\nregion r block 0 1 0 0.5 INF INF\n"
                  "create_points 1 region r ppc 3 2");
   EXPECT_EQ(atoms(scene).size(), 30 * 10);
 }
 
 // error of the volume is of first order in h or better: at most one half of a layer of points
-
 TEST(CreatePoints, CurvedBodies)
 {
   struct {
@@ -236,8 +198,7 @@ TEST(CreatePoints, CurvedBodies)
   };
   for (const auto &body : bodies)
     for (double h : {0.1, 0.05, 0.025}) {
-      Scene scene;
-      scene.commands(box3d);
+      Scene scene(box3d);
       scene.commands("unfix grid\nfix grid all mpm " + std::to_string(h) + "\n" + body.region +
                      "\ncreate_points 1 region r ppc 2");
       double mine = 0.0, volume = 0.0;
@@ -249,8 +210,7 @@ TEST(CreatePoints, CurvedBodies)
 
 TEST(CreatePoints, ReportsWhatItMade)
 {
-  Scene scene;
-  scene.commands(box2d);
+  Scene scene(box2d);
   scene.commands("fix grid all mpm 0.05\nregion r cylinder z 0.5 0.5 0.2 INF INF");
   const ScratchFile log("log");
   if (rank() == 0) scene.lmp->logfile = fopen(log.name.c_str(), "w");
@@ -273,18 +233,13 @@ TEST(CreatePoints, ReportsWhatItMade)
 // ---------------------------------------------------------------- the same on any number of ranks
 
 // two far spheres in one bounding box of more sites than a rank looks at in one go, with jitter
-
-static const char *const far_spheres = R"(
-region one sphere 0.13 0.13 0.13 0.1
-region two sphere 0.87 0.87 0.8 0.07
-region r union 2 one two
-create_points 1 region r ppc 3 jitter 0.4 98765
-)";
+static const char *const far_spheres =
+    "region one sphere 0.13 0.13 0.13 0.1\nregion two sphere 0.87 0.87 0.8 0.07\n"
+    "region r union 2 one two\ncreate_points 1 region r ppc 3 jitter 0.4 98765\n";
 
 TEST(CreatePoints, AnyNumberOfRanks)
 {
-  Scene serial(MPI_COMM_SELF);
-  serial.commands(box3d);
+  Scene serial(box3d, MPI_COMM_SELF);
   serial.commands("unfix grid\nfix grid all mpm 0.02");
   serial.commands(far_spheres);
   const auto expected = atoms(serial);
@@ -292,8 +247,7 @@ TEST(CreatePoints, AnyNumberOfRanks)
 
   for (const char *layout :
        {"", "processors 1 1 *", "processors 1 * 1", "processors * 1 1", "comm_style tiled"}) {
-    Scene parallel;
-    parallel.commands(layout);
+    Scene parallel(layout);
     parallel.commands(box3d);
     parallel.commands("unfix grid\nfix grid all mpm 0.02");
     parallel.commands(far_spheres);
@@ -312,7 +266,6 @@ TEST(CreatePoints, AnyNumberOfRanks)
 }
 
 // a box cut in unequal parts by balancing what is there already
-
 TEST(CreatePoints, BalancedBox)
 {
   auto build = [](Scene &scene, const std::string &balance) {
@@ -333,15 +286,13 @@ TEST(CreatePoints, BalancedBox)
 }
 
 // sites on the faces between ranks and on the faces of the box
-
 TEST(CreatePoints, SitesOnFaces)
 {
   for (const char *boundary : {"f f f", "p p p"}) {
-    Scene scene;
-    scene.commands(std::string("units si\natom_style mpm\nboundary ") + boundary +
-                   "\nregion box block 0 1 0 1 0 1\ncreate_box 1 box\n"
-                   "fix grid all mpm 0.125 origin 0.0625 -0.0625 0.0625\n"
-                   "create_points 1 box ppc 1\nunfix grid");
+    Scene scene(std::string("units si\natom_style mpm\nboundary ") + boundary +
+                "\nregion box block 0 1 0 1 0 1\ncreate_box 1 box\n"
+                "fix grid all mpm 0.125 origin 0.0625 -0.0625 0.0625\n"
+                "create_points 1 box ppc 1\nunfix grid");
     auto points = atoms(scene);
     ASSERT_EQ(points.size(), 512u) << boundary;
     EXPECT_EQ(total_volume(points), 1.0);
@@ -357,8 +308,7 @@ TEST(CreatePoints, SitesOnFaces)
   }
 
   // the upper faces of a fixed box are outside
-  Scene scene;
-  scene.commands(box3d);
+  Scene scene(box3d);
   scene.commands("unfix grid\nfix grid all mpm 0.125 origin 0.0625 0.0625 0.0625\n"
                  "region r block 0 1 0 1 0 1");
   EXPECT_THAT(scene.error("create_points 1 region r ppc 1"),
@@ -366,13 +316,11 @@ TEST(CreatePoints, SitesOnFaces)
 }
 
 // origins that put sites on a periodic face up to rounding: one of the two images, always
-
 TEST(CreatePoints, PeriodicFaceRounding)
 {
   for (double origin : {-0.05, 0.05, 0.15, 0.35, 1.0 / 3.0, 0.45 + 1.0e-17, -7.65}) {
-    Scene scene;
-    scene.commands("units si\natom_style mpm\nregion box block 0 1.3 0 0.7 0 0.1\n"
-                   "create_box 1 box");
+    Scene scene("units si\natom_style mpm\nregion box block 0 1.3 0 0.7 0 0.1\n"
+                "create_box 1 box");
     scene.commands(fmt::format("fix grid all mpm 0.1 origin {0:.17g} {0:.17g} {0:.17g}\n"
                                "create_points 1 box ppc 1",
                                origin));
@@ -395,9 +343,8 @@ TEST(CreatePoints, PeriodicFaceRounding)
     }
 
     // in a fixed box a site is in or out, and all that are in are made
-    Scene fixed;
-    fixed.commands("units si\nboundary f f f\natom_style mpm\n"
-                   "region box block 0 1.3 0 0.7 0 0.1\ncreate_box 1 box");
+    Scene fixed("units si\nboundary f f f\natom_style mpm\n"
+                "region box block 0 1.3 0 0.7 0 0.1\ncreate_box 1 box");
     fixed.commands(fmt::format("fix grid all mpm 0.1 origin {0:.17g} {0:.17g} {0:.17g}\n"
                                "create_points 1 box ppc 1",
                                origin));
@@ -417,15 +364,13 @@ TEST(CreatePoints, PeriodicFaceRounding)
   }
 
   // a spacing that divides the box up to 5e-7
-  Scene scene;
-  scene.commands("units si\natom_style mpm\nregion box block 0 1.0000005 0 1.0000005 0 1.0000005\n"
-                 "create_box 1 box\nfix grid all mpm 0.10000005 origin 0.05 0.05 0.05\n"
-                 "create_points 1 box spacing 0.1");
+  Scene scene("units si\natom_style mpm\nregion box block 0 1.0000005 0 1.0000005 0 1.0000005\n"
+              "create_box 1 box\nfix grid all mpm 0.10000005 origin 0.05 0.05 0.05\n"
+              "create_points 1 box spacing 0.1");
   EXPECT_EQ(atoms(scene).size(), 1000u);
 }
 
 // ---------------------------------------------------------------- jitter
-
 static std::vector<Point> jittered(const std::string &options, MPI_Comm comm = MPI_COMM_WORLD)
 {
   Scene scene(comm);
@@ -472,11 +417,9 @@ TEST(CreatePoints, Jitter)
 }
 
 // sites near the faces of a fixed box whose cells stick out of it
-
 TEST(CreatePoints, JitterStaysInBox)
 {
-  Scene scene;
-  scene.commands(box3d);
+  Scene scene(box3d);
   scene.commands("unfix grid\nfix grid all mpm 0.1 origin 0.045 0.05 -0.03\n"
                  "create_points 1 box ppc 1 jitter 0.5 3");
   auto points = atoms(scene);
@@ -486,11 +429,9 @@ TEST(CreatePoints, JitterStaysInBox)
 }
 
 // ---------------------------------------------------------------- overlap and outside
-
 TEST(CreatePoints, AbuttingRegions)
 {
-  Scene scene;
-  scene.commands(box3d);
+  Scene scene(box3d);
   scene.commands("region a block 0.1 0.5 0.1 0.6 0.1 0.4\nregion b block 0.5 0.9 0.1 0.6 0.1 0.4\n"
                  "region ab block 0.1 0.9 0.1 0.6 0.1 0.4\n"
                  "create_points 1 region a jitter 0.5 1\ncreate_points 2 region b jitter 0.5 1");
@@ -498,8 +439,7 @@ TEST(CreatePoints, AbuttingRegions)
   EXPECT_EQ(two.size(), 16u * 10 * 6);
 
   // the same points as of one body
-  Scene whole;
-  whole.commands(box3d);
+  Scene whole(box3d);
   whole.commands("region ab block 0.1 0.9 0.1 0.6 0.1 0.4\n"
                  "create_points 1 region ab jitter 0.5 1");
   std::set<std::array<double, 3>> places, one;
@@ -510,8 +450,7 @@ TEST(CreatePoints, AbuttingRegions)
 
 TEST(CreatePoints, Overlap)
 {
-  Scene scene;
-  scene.commands(box3d);
+  Scene scene(box3d);
   scene.commands("region a block 0 0.5 0 0.1 0 0.1\nregion b block 0.3 0.8 0 0.1 0 0.1\n"
                  "create_points 1 region a ppc 2");
   EXPECT_THAT(scene.error("create_points 2 region b ppc 2"),
@@ -535,8 +474,7 @@ TEST(CreatePoints, OverlapAcrossPeriodicFaceAndRanks)
 {
   // sites on the faces of the box, and sites whose cells are cut by them
   for (double origin : {0.0625, -0.08, 0.08}) {
-    Scene scene;
-    scene.commands("units si\natom_style mpm\nregion box block 0 1 0 1 0 1\ncreate_box 2 box");
+    Scene scene("units si\natom_style mpm\nregion box block 0 1 0 1 0 1\ncreate_box 2 box");
     scene.commands(fmt::format("fix grid all mpm 0.125 origin {0} {0} {0}\n"
                                "create_points 1 box ppc 1\ndisplace_atoms all move -0.06 0.06 0.06",
                                origin));
@@ -544,8 +482,7 @@ TEST(CreatePoints, OverlapAcrossPeriodicFaceAndRanks)
   }
 
   // atoms that are no material points are not in the way
-  Scene mixed;
-  mixed.commands(box3d);
+  Scene mixed(box3d);
   mixed.commands("create_atoms 1 single 0.525 0.525 0.525 units box\ncreate_points 2 box");
   EXPECT_EQ(atoms(mixed).size(), 8001u);
   EXPECT_EQ(atoms(mixed)[0].volume0, 0.0);
@@ -553,8 +490,7 @@ TEST(CreatePoints, OverlapAcrossPeriodicFaceAndRanks)
 
 TEST(CreatePoints, OutsideTheBox)
 {
-  Scene scene;
-  scene.commands(box3d);
+  Scene scene(box3d);
   scene.commands("region r block 0.5 1.25 -0.1 0.1 0 0.1\nregion in block INF INF 0.5 0.6 0.5 0.6\n"
                  "region far sphere 5 5 5 1\nregion huge block 0 1e9 0 1e9 0 1e9\n"
                  "region near block 0 1.01 0.2 0.3 0.2 0.3");
@@ -579,7 +515,6 @@ TEST(CreatePoints, OutsideTheBox)
 }
 
 // ---------------------------------------------------------------- bad input
-
 TEST(CreatePoints, BadInput)
 {
   struct {
@@ -623,8 +558,7 @@ TEST(CreatePoints, BadInput)
       {"create_points 1 region r pcc 2", "Unknown create_points keyword: pcc"},
       {"create_points 1 region slit ppc 1", "made no points"},
   };
-  Scene scene;
-  scene.commands(box3d);
+  Scene scene(box3d);
   scene.commands("fix n all nve\nregion r block 0.2 0.3 0.2 0.3 0.2 0.3\n"
                  "region slit block 0.41 0.42 0 1 0 1");
   for (const auto &input : inputs) {
@@ -655,8 +589,7 @@ TEST(CreatePoints, BadSetting)
   EXPECT_THAT(gridless.error("atom_style mpm\nregion box block 0 1 0 1 0 1\ncreate_box 1 box\n"
                              "create_points 1 box ppc 2"),
               AllOf(HasSubstr("define fix mpm first"), HasSubstr("create_points spacing")));
-  Scene flat;
-  flat.commands(box2d);
+  Scene flat(box2d);
   EXPECT_THAT(flat.error("fix grid all mpm 0.1\ncreate_points 1 box ppc 2 2 2"),
               HasSubstr("expects 1 or 2 numbers in a 2d simulation, not 3"));
 }
@@ -676,7 +609,6 @@ TEST(AtomStyle, BadInput)
 }
 
 // ---------------------------------------------------------------- what LAMMPS does to atoms
-
 static const char *const moving = R"(
 units lj
 atom_style mpm
@@ -690,9 +622,8 @@ set type 1 mass 1.0
 
 TEST(AtomStyle, NewAtoms)
 {
-  Scene scene;
-  scene.commands("units lj\natom_style mpm\nlattice sc 1.0\nregion box block 0 3 0 3 0 3\n"
-                 "create_box 2 box\ncreate_atoms 1 box\nvelocity all create 1.0 87287 loop geom");
+  Scene scene("units lj\natom_style mpm\nlattice sc 1.0\nregion box block 0 3 0 3 0 3\n"
+              "create_box 2 box\ncreate_atoms 1 box\nvelocity all create 1.0 87287 loop geom");
   auto made = atoms(scene);
   ASSERT_EQ(made.size(), 27u);
   for (const auto &p : made) {
@@ -715,8 +646,7 @@ TEST(AtomStyle, NewAtoms)
 
 TEST(AtomStyle, MemoryPerPoint)
 {
-  Scene scene(MPI_COMM_SELF);
-  scene.commands(moving);
+  Scene scene(moving, MPI_COMM_SELF);
 
   // LAMMPS's own 16 + 3*24, ours 2*8 + 72 + 48, and a pointer for each row of x, v, f, F, tau
   EXPECT_LE(scene.lmp->atom->avec->memory_usage() / scene.lmp->atom->nmax, 224.0 + 40.0);
@@ -725,7 +655,6 @@ TEST(AtomStyle, MemoryPerPoint)
 }
 
 // points fly through all ranks and are sorted again and again
-
 TEST(AtomStyle, MigrationAndSorting)
 {
   for (const char *style : {"mpm", "hybrid sphere mpm"}) {
@@ -772,13 +701,11 @@ TEST(AtomStyle, Restart)
     const ScratchFile file("restart");
     scene.commands("write_restart " + file.name + " noinit\nclear");
 
-    Scene again;
-    again.commands("read_restart " + file.name);
+    Scene again("read_restart " + file.name);
     EXPECT_TRUE(atoms(again) == before) << style;
 
     // a serial run reads it as well
-    Scene serial(MPI_COMM_SELF);
-    serial.commands("read_restart " + file.name);
+    Scene serial("read_restart " + file.name, MPI_COMM_SELF);
     EXPECT_TRUE(atoms(serial) == before) << style;
 
     // more points can be made
@@ -790,8 +717,7 @@ TEST(AtomStyle, Restart)
 
 TEST(AtomStyle, Replicate)
 {
-  Scene scene;
-  scene.commands(moving);
+  Scene scene(moving);
   fill(scene);
   const auto before = atoms(scene);
   scene.commands("replicate 2 1 3");
@@ -814,8 +740,7 @@ TEST(AtomStyle, Replicate)
 
 TEST(AtomStyle, DeleteAtoms)
 {
-  Scene scene;
-  scene.commands(moving);
+  Scene scene(moving);
   fill(scene);
   const auto before = atoms(scene);
   scene.commands("region cut sphere 2 1 1 0.9\ngroup cut region cut\n"
@@ -835,8 +760,7 @@ TEST(AtomStyle, DeleteAtoms)
 
 TEST(AtomStyle, Clear)
 {
-  Scene scene;
-  scene.commands(moving);
+  Scene scene(moving);
   fill(scene);
   scene.commands("clear");
   scene.commands(moving);
@@ -850,11 +774,9 @@ TEST(AtomStyle, Clear)
 }
 
 // fixes and computes are told about new points
-
 TEST(AtomStyle, NewPointsInComputes)
 {
-  Scene scene;
-  scene.commands(moving);
+  Scene scene(moving);
   scene.commands("compute moved all displace/atom\ncompute far all reduce max c_moved[4]\n"
                  "region s block 0 4 2 4 0 1\ncreate_points 2 region s spacing 0.5\n"
                  "set type 2 mass 1.0\nfix n all nve\nthermo_style custom step c_far\nrun 0");
@@ -863,8 +785,7 @@ TEST(AtomStyle, NewPointsInComputes)
 
 TEST(AtomStyle, PropertyAtom)
 {
-  Scene scene;
-  scene.commands("lattice none 1.0");
+  Scene scene("lattice none 1.0");
   scene.commands(moving);
   fill(scene);
   scene.commands("create_atoms 2 single 3.3 3.3 3.3 units box\n"
@@ -896,7 +817,6 @@ TEST(AtomStyle, PropertyAtom)
 }
 
 // ---------------------------------------------------------------- data files
-
 static const char *const header = R"(LAMMPS data file
 
 4 atoms
@@ -918,8 +838,7 @@ static void round_trip(Scene &scene)
   const auto before = atoms(scene);
   const ScratchFile file("data");
   scene.commands("write_data " + file.name + " noinit\n");
-  Scene again;
-  again.commands("units si");
+  Scene again("units si");
   again.commands(std::string("atom_style ") +
                  (scene.lmp->atom->radius_flag ? "hybrid sphere mpm"
                       : scene.lmp->atom->mass  ? "hybrid atomic mpm"
@@ -945,22 +864,19 @@ static void round_trip(Scene &scene)
 }
 
 // id type density volume x y z; without volume: mass in place of density
-
 TEST(DataFile, Columns)
 {
   const ScratchFile bad("bad",
                         std::string(header) +
                             "Atoms # mpm\n\n1 1 8960 1e-6 .1 .1 .1\n"
                             "2 1 0 1e-6 .2 .1 .1\n3 2 0.5 0 .9 .9 .9\n4 2 2 3 .5 .9 .4 0 1 0\n");
-  Scene scene;
-  scene.commands("units si\natom_style mpm");
+  Scene scene("units si\natom_style mpm");
   EXPECT_THAT(scene.error("read_data " + bad.name), HasSubstr("Incorrect format"));
   const ScratchFile in("good",
                        std::string(header) +
                            "Atoms # mpm\n\n1 1 8960 1e-6 .1 .1 .1\n"
                            "2 1 0 1e-6 .2 .1 .1\n3 2 0.5 0 .9 .9 .9\n4 2 2 3 .5 .9 .4\n");
-  Scene good;
-  good.commands("units si\natom_style mpm\nread_data " + in.name);
+  Scene good("units si\natom_style mpm\nread_data " + in.name);
   auto p = atoms(good);
   ASSERT_EQ(p.size(), 4u);
   EXPECT_DOUBLE_EQ(p[0].mass, 8.96e-3);
@@ -976,7 +892,6 @@ TEST(DataFile, Columns)
 }
 
 // id type x y z diameter density volume
-
 TEST(DataFile, ColumnsWithSpheres)
 {
   const ScratchFile in(
@@ -984,8 +899,7 @@ TEST(DataFile, ColumnsWithSpheres)
       std::string(header) +
           "Atoms # hybrid\n\n1 1 .1 .1 .1 0.02 8960 1e-6\n"
           "2 1 .2 .1 .1 0 100 1e-6\n3 2 .9 .9 .9 0.2 2500 0\n4 2 .5 .9 .4 0 2 0\n");
-  Scene scene;
-  scene.commands("units si\natom_style hybrid sphere mpm\nread_data " + in.name);
+  Scene scene("units si\natom_style hybrid sphere mpm\nread_data " + in.name);
   auto p = atoms(scene);
   ASSERT_EQ(p.size(), 4u);
   EXPECT_DOUBLE_EQ(p[0].mass, 8.96e-3);
@@ -1016,17 +930,14 @@ TEST(DataFile, RoundTrip)
 }
 
 // points without mass yet: can be stored by atom style mpm alone
-
 TEST(DataFile, PointsWithoutMass)
 {
-  Scene scene;
-  scene.commands(box3d);
+  Scene scene(box3d);
   scene.commands("region r block 0.2 0.8 0.2 0.8 0.2 0.8\ncreate_points 2 region r jitter 0.3 5");
   round_trip(scene);
 }
 
 // errors on the rank that owns the atom: in serial
-
 TEST(DataFile, BadInput)
 {
   struct {

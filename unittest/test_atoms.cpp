@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: physics
 // mpi: 1 2
@@ -12,8 +7,6 @@
 // Atoms of molecular dynamics and material points in one run.
 
 #include "mpm_lammps.h"
-
-#include "gtest/gtest.h"
 
 using namespace MPM_TEST;
 
@@ -43,20 +36,17 @@ pair_modify shift yes
 neigh_modify exclude type 1 1
 fix md gas nve
 timestep 0.004
-thermo 1000
 )";
 
 // Atoms have the velocity of full steps, points that of half steps: the momentum of all, with the
 // second half of the last impulse given to the points, is constant to round-off.
 
 // With every K, points take a step in every K of the atoms, with the mean of the K forces.
-
 class Atoms : public ::testing::TestWithParam<int> {};
 
 TEST_P(Atoms, HitABodyWithConstantMomentum)
 {
-  Scene run;
-  run.commands(replaced(scene, "mpm 1.0\n", strprintf("mpm 1.0 every %d\n", GetParam())));
+  Scene run(replaced(scene, "mpm 1.0\n", strprintf("mpm 1.0 every %d\n", GetParam())));
   run.commands("run 0 post no\n");
   auto *atom = run.lmp->atom;
 
@@ -95,24 +85,22 @@ INSTANTIATE_TEST_SUITE_P(Every, Atoms, ::testing::Values(1, 2, 5));
 TEST(Crystal, KeepsMomentumAndEnergyWithAPlate)
 {
   for (const int every : {1, 5}) {
-    Scene run;
-    run.commands(
-        "variable a equal 1.549603\nunits lj\nboundary p p p\natom_style hybrid atomic mpm\n"
-        "neighbor 0.3 bin\nregion box block 0 $(6*v_a) 0 $(6*v_a) 0 $(12*v_a)\n"
-        "create_box 2 box\nmass * 1.0\nlattice fcc $(4/v_a^3)\n"
-        "region c block INF INF INF INF 0 $(3.99*v_a) units box\ncreate_atoms 2 region c\n"
-        "group crystal type 2\nset type 2 mass 1.0\n" +
-        strprintf("fix grid all mpm $(v_a) transfer flip 1.0 every %d\n", every) +
-        "region p block INF INF INF INF $(5*v_a) $(8*v_a) units box\n"
-        "create_points 1 region p ppc 2\ngroup plate type 1\n"
-        "fix m plate mpm/material density 1.074975 linear 57.3528 0.36277\n"
-        "velocity plate set 0 0 -0.4767 units box\npair_style lj/cut 2.5\n"
-        "pair_coeff * * 1.0 1.0 2.5\npair_coeff 1 2 0.5 0.8 0.898\npair_modify shift yes\n"
-        "neigh_modify exclude type 1 1\nfix move crystal nve\ntimestep 0.004\n"
-        "compute kc crystal ke\ncompute e all mpm/energy\nthermo 10000\n"
-        "thermo_style custom step c_kc pe c_e[1]\nthermo_modify norm no\n"
-        "variable p equal mass(crystal)*vcm(crystal,z)+mass(plate)*vcm(plate,z)\n"
-        "variable total equal c_kc+c_thermo_pe+c_e[1]+c_e[2]-c_e[9]-c_e[10]\nrun 0\n");
+    Scene run("variable a equal 1.549603\nunits lj\nboundary p p p\natom_style hybrid atomic mpm\n"
+              "neighbor 0.3 bin\nregion box block 0 $(6*v_a) 0 $(6*v_a) 0 $(12*v_a)\n"
+              "create_box 2 box\nmass * 1.0\nlattice fcc $(4/v_a^3)\n"
+              "region c block INF INF INF INF 0 $(3.99*v_a) units box\ncreate_atoms 2 region c\n"
+              "group crystal type 2\nset type 2 mass 1.0\n" +
+              strprintf("fix grid all mpm $(v_a) transfer flip 1.0 every %d\n", every) +
+              "region p block INF INF INF INF $(5*v_a) $(8*v_a) units box\n"
+              "create_points 1 region p ppc 2\ngroup plate type 1\n"
+              "fix m plate mpm/material density 1.074975 linear 57.3528 0.36277\n"
+              "velocity plate set 0 0 -0.4767 units box\npair_style lj/cut 2.5\n"
+              "pair_coeff * * 1.0 1.0 2.5\npair_coeff 1 2 0.5 0.8 0.898\npair_modify shift yes\n"
+              "neigh_modify exclude type 1 1\nfix move crystal nve\ntimestep 0.004\n"
+              "compute kc crystal ke\ncompute e all mpm/energy\n"
+              "thermo_style custom step c_kc pe c_e[1]\nthermo_modify norm no\n"
+              "variable p equal mass(crystal)*vcm(crystal,z)+mass(plate)*vcm(plate,z)\n"
+              "variable total equal c_kc+c_thermo_pe+c_e[1]+c_e[2]-c_e[9]-c_e[10]\nrun 0\n");
     const double p = run.evaluate("v_p"), energy = run.evaluate("v_total");
     const double impact = run.evaluate("c_e[1]");
     run.commands("run 4000\n");

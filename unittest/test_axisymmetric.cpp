@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: physics
 // timeout: 900
@@ -15,33 +10,23 @@
 
 #include "mpm_lammps.h"
 
-#include "gtest/gtest.h"
-
-#include <cmath>
-#include <cstring>
-
 using namespace MPM_TEST;
-
-static constexpr double PI = 3.14159265358979323846;
 
 /** A box from the axis on, and the lattice; then comes a region body. */
 static std::string start(double radius, double height, double h, const std::string &options)
 {
-  return strprintf("units lj\ndimension 2\nboundary f f p\natom_style mpm\nneighbor %g bin\n"
-                   "region box block 0 %g 0 %g -0.5 0.5\ncreate_box 1 box\n"
-                   "fix grid all mpm %.17g axisymmetric yes %s\n"
-                   "fix axis all mpm/boundary xlo slip\nthermo 100000000\n",
-                   0.3 * h, radius, height, h, options.c_str());
+  return plane("lj", "f f", strprintf("0 %g 0 %g", radius, height), 1, 0.3 * h) +
+      strprintf("fix grid all mpm %.17g axisymmetric yes %s\n"
+                "fix axis all mpm/boundary xlo slip\n",
+                h, options.c_str());
 }
 
 // volumes are those of rings: a cylinder has its own
-
 TEST(Axisymmetric, VolumesAreThoseOfRings)
 {
-  Scene run;
-  run.commands(start(6, 6, 0.5, "") +
-               "region body block 1 3 1 5 INF INF\ncreate_points 1 region body ppc 3\n"
-               "fix m all mpm/material density 2.0 neohookean 10.0 0.3\nrun 0\n");
+  Scene run(start(6, 6, 0.5, "") +
+            "region body block 1 3 1 5 INF INF\ncreate_points 1 region body ppc 3\n"
+            "fix m all mpm/material density 2.0 neohookean 10.0 0.3\nrun 0\n");
   EXPECT_NEAR(run.sums().mass, 2.0 * PI * (9.0 - 1.0) * 4.0, 1e-11);
 }
 
@@ -65,11 +50,10 @@ TEST(Axisymmetric, UniformExpansionIsExact)
       if (size && total) continue;
       if (options.find("bernstein") + 1 && !total) continue;
       if (poly && options.find("quadratic") + options.find("cubic") + 2 == 0) continue;
-      Scene run;
-      run.commands(start(8, 8, 1.0, options) +
-                   "region body block 0 4 1 5 INF INF\ncreate_points 1 region body ppc 2\n"
-                   "fix m all mpm/material density 1.0 linear 1.0 0.3\n" +
-                   strprintf("timestep %.17g\n", dt));
+      Scene run(start(8, 8, 1.0, options) +
+                "region body block 0 4 1 5 INF INF\ncreate_points 1 region body ppc 2\n"
+                "fix m all mpm/material density 1.0 linear 1.0 0.3\n" +
+                strprintf("timestep %.17g\n", dt));
       run.set_velocity([=](const double *x, double *v) {
         v[0] = a * x[0];
         v[1] = b * x[1];
@@ -90,7 +74,6 @@ TEST(Axisymmetric, UniformExpansionIsExact)
 }
 
 // a point's F_zz is its radius over that of the start, however it got there
-
 TEST(Axisymmetric, StrainAroundIsThatOfTheRadius)
 {
   for (const char *options : {"transfer apic",
@@ -113,10 +96,9 @@ TEST(Axisymmetric, StrainAroundIsThatOfTheRadius)
                               "shape cpdi2 transfer flip 1.0",
                               "shape bernstein frame total",
                               "shape bernstein frame total transfer flip 1.0"}) {
-    Scene run;
-    run.commands(start(10, 10, 1.0, options) +
-                 "region body block 0 4 2 8 INF INF\ncreate_points 1 region body ppc 2\n"
-                 "fix m all mpm/material density 1.0 neohookean 10.0 0.3\ntimestep 0.02\n");
+    Scene run(start(10, 10, 1.0, options) +
+              "region body block 0 4 2 8 INF INF\ncreate_points 1 region body ppc 2\n"
+              "fix m all mpm/material density 1.0 neohookean 10.0 0.3\ntimestep 0.02\n");
     run.set_reference();
     run.set_velocity([=](const double *x, double *v) {
       v[0] = 0.2 * x[0];
@@ -146,11 +128,10 @@ struct Spurious {    // acceleration times h density/pressure
 
 static Spurious spurious(const std::string &options)
 {
-  Scene run;
-  run.commands(start(10, 10, 1.0, options) +
-               "create_points 1 box ppc 2\n"
-               "fix m all mpm/material density 1.0 linear 1.0 0.0\n"
-               "fix vessel all mpm/boundary xhi ylo yhi slip\ntimestep 0.01\n");
+  Scene run(start(10, 10, 1.0, options) +
+            "create_points 1 box ppc 2\n"
+            "fix m all mpm/material density 1.0 linear 1.0 0.0\n"
+            "fix vessel all mpm/boundary xhi ylo yhi slip\ntimestep 0.01\n");
   for (int i = 0; i < run.n(); i++)
     for (int c = 0; c < 3; c++) run.points().tau[i][c] = -1.0;
   run.commands("run 1\n");
@@ -200,17 +181,12 @@ static double lame_error(int n, const std::string &options)
   const double c = sqrt(lambda + 2 * mu), dt = 0.4 * h / c;
   // sigma_rr = 2 (lambda + mu) A - 2 mu B/r^2 = 0 at r = 2, A + B = d
   const double ratio = 4.0 * (lambda + mu) / mu, A = d / (1.0 + ratio), B = ratio * A;
-  Scene run;
-  run.commands(strprintf("units lj\ndimension 2\nboundary f p p\natom_style mpm\nneighbor %g bin\n"
-                         "region box block 1 3 0 %.17g -0.5 0.5\ncreate_box 1 box\n"
-                         "fix grid all mpm %.17g axisymmetric yes %s\n"
-                         "region body block 1 2 INF INF INF INF\n"
-                         "create_points 1 region body ppc 2\n"
-                         "fix m all mpm/material density 1.0 linear %g %g\n"
-                         "fix bore all mpm/boundary xlo slip velocity v_push 0 0\n"
-                         "variable push equal %.17g*(step<=100)\n"
-                         "timestep %.17g\nthermo 1000000\n",
-                         0.3 * h, 2.0 * h, h, options.c_str(), E, nu, d / (100.0 * dt), dt));
+  Scene run(plane("lj", "f p", strprintf("1 3 0 %.17g", 2.0 * h), 1, 0.3 * h) +
+            body("block 1 2 INF INF INF INF", strprintf("density 1.0 linear %g %g", E, nu),
+                 strprintf("%.17g axisymmetric yes %s", h, options.c_str())) +
+            strprintf("fix bore all mpm/boundary xlo slip velocity v_push 0 0\n"
+                      "variable push equal %.17g*(step<=100)\ntimestep %.17g\n",
+                      d / (100.0 * dt), dt));
   run.set_reference();
   const double damping = 2.0 * c / 1.0;
   run.each_step([&](double **f) {
@@ -285,11 +261,10 @@ static double cylinder_frequency(int n, const std::string &options)
   const double x = root(1.0, 2.3, [&](double x) {
     return x * std::cyl_bessel_j(0, x) - (1 - 2 * nu) / (1 - nu) * std::cyl_bessel_j(1, x);
   });
-  Scene run;
-  run.commands(start(2, 2.0 * h, h, options) +
-               "region body block 0 1 INF INF INF INF\ncreate_points 1 region body ppc 2\n"
-               "fix m all mpm/material density 1.0 linear 1.0 0.3\n"
-               "fix ends all mpm/boundary ylo yhi slip\n");
+  Scene run(start(2, 2.0 * h, h, options) +
+            "region body block 0 1 INF INF INF INF\ncreate_points 1 region body ppc 2\n"
+            "fix m all mpm/material density 1.0 linear 1.0 0.3\n"
+            "fix ends all mpm/boundary ylo yhi slip\n");
   run.set_velocity([=](const double *r, double *v) {
     v[0] = 1e-5 * std::cyl_bessel_j(1, x * r[0]);
   });
@@ -323,10 +298,9 @@ TEST(AxisymmetricVibration, Sphere)
   });
   const double R = 1.0, h = R / 16;
   for (const char *options : {"transfer apic", "frame total shape cubic transfer flip 1.0"}) {
-    Scene run;
-    run.commands(start(2, 4, h, options) +
-                 "region body sphere 0 2 0 1\ncreate_points 1 region body ppc 2\n"
-                 "fix m all mpm/material density 1.0 linear 1.0 0.3\n");
+    Scene run(start(2, 4, h, options) +
+              "region body sphere 0 2 0 1\ncreate_points 1 region body ppc 2\n"
+              "fix m all mpm/material density 1.0 linear 1.0 0.3\n");
     run.set_velocity([](const double *r, double *v) {
       const double y = r[1] - 2.0;
       v[0] = 1e-5 * r[0];
@@ -371,12 +345,11 @@ TEST(Axisymmetric, MomentumAndEnergy)
         "shape cpdi2 transfer flip 1.0 scheme musl",
         "shape bernstein frame total locking pressure",
         "shape bernstein frame total transfer flip 1.0 scheme musl locking both"}) {
-    Scene run;
-    run.commands(start(10, 20, 0.5, options) +
-                 "region body sphere 0 14 0 2.5\ncreate_points 1 region body ppc 2\n"
-                 "fix m all mpm/material density 1.0 neohookean 10.0 0.3\n"
-                 "fix g all gravity 0.1 vector 0 -1 0\ncompute e all mpm/energy\n"
-                 "thermo_style custom step c_e[*]\ntimestep 0.02\n");
+    Scene run(start(10, 20, 0.5, options) +
+              "region body sphere 0 14 0 2.5\ncreate_points 1 region body ppc 2\n"
+              "fix m all mpm/material density 1.0 neohookean 10.0 0.3\n"
+              "fix g all gravity 0.1 vector 0 -1 0\ncompute e all mpm/energy\n"
+              "thermo_style custom step c_e[*]\ntimestep 0.02\n");
     run.set_velocity([](const double *x, double *v) {
       v[0] = 0.3 * x[0];
       v[1] = -0.3 * (x[1] - 14.0);
@@ -405,9 +378,7 @@ TEST(Axisymmetric, MomentumAndEnergy)
   }
 }
 
-/* ----------------------------------------------------------------------
-   water in a glass: the pressure depends on the depth only, also at the axis
-------------------------------------------------------------------------- */
+/* ------------------- water in a glass: the pressure depends on the depth only, also at the axis */
 
 TEST(Axisymmetric, Hydrostatics)
 {
@@ -439,22 +410,20 @@ TEST(Axisymmetric, Hydrostatics)
 
 static std::string two_bodies_of_revolution(const std::string &one, const std::string &two)
 {
-  return "units lj\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.15 bin\n"
-         "region box block 0 8 0 16 -0.5 0.5\ncreate_box 2 box\n"
-         "fix all all mpm 0.5 axisymmetric yes\nregion one block " +
-      one + " INF INF\nregion two block " + two +
+  return plane("lj", "f f", "0 8 0 16", 2, 0.15) +
+      "fix all all mpm 0.5 axisymmetric yes\nregion one block " + one +
+      " INF INF\nregion two block " + two +
       " INF INF\ncreate_points 1 region one ppc 2\ncreate_points 2 region two ppc 2\n"
       "unfix all\ngroup one type 1\ngroup two type 2\n"
       "fix one one mpm 0.5 axisymmetric yes\nfix two two mpm 0.5 axisymmetric yes\n"
       "fix m all mpm/material density 1.0 neohookean 10.0 0.3\n"
       "fix axis all mpm/boundary xlo slip\nfix c all mpm/contact one two\n"
-      "compute e all mpm/energy\nthermo_style custom step c_e[*]\nthermo 100000\ntimestep 0.02\n";
+      "compute e all mpm/energy\nthermo_style custom step c_e[*]\ntimestep 0.02\n";
 }
 
 TEST(Axisymmetric, Contact)
 {
-  Scene sleeve;
-  sleeve.commands(two_bodies_of_revolution("0 2 4 8", "2 3 4 8"));
+  Scene sleeve(two_bodies_of_revolution("0 2 4 8", "2 3 4 8"));
   sleeve.set_velocity([](const double *x, double *v) {
     v[0] = x[0] < 2.0 ? 0.3 * x[0] : 0.0;
   });
@@ -478,8 +447,7 @@ TEST(Axisymmetric, Contact)
     // without lateral strain, a bar of revolution does what one in the plane does
     auto scene = replaced(two_bodies_of_revolution("0 2 2 5", "0 2 6 9"), "10.0 0.3", "10.0 0.0");
     if (!round) scene = replaced(scene, "axisymmetric yes", "axisymmetric no");
-    Scene axial;
-    axial.commands(scene);
+    Scene axial(scene);
     axial.set_velocity([](const double *x, double *v) {
       v[1] = x[1] < 5.5 ? 0.3 : 0.0;
     });
@@ -505,24 +473,23 @@ TEST(Axisymmetric, Contact)
 static double pull(bool round)
 {
   const double area = round ? PI * 2.0 * 2.0 : 2.0, strength = 0.2;
-  Scene run;
-  run.commands(strprintf(
-      "units lj\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.15 bin\n"
-      "region box block 0 2 0 16 -0.5 0.5\ncreate_box 2 box\nfix all all mpm 0.5 axisymmetric %s\n"
-      "region one block 0 2 4 8 INF INF\nregion two block 0 2 8 12 INF INF\n"
-      "create_points 1 region one ppc 2\ncreate_points 2 region two ppc 2\nunfix all\n"
-      "group one type 1\ngroup two type 2\nfix one one mpm 0.5 axisymmetric %s\n"
-      "fix two two mpm 0.5 axisymmetric %s\nfix m all mpm/material density 1.0 neohookean 50.0 "
-      "0.0\n"
-      "fix sides all mpm/boundary xlo xhi slip\n"
-      "fix c all mpm/contact one two law adhesive %g %g 0.02\n"
-      "region low block INF INF 0 4.6 INF INF\nfix hold all mpm/boundary region low stick field "
-      "one\n"
-      "region high block INF INF 11.4 16 INF INF\n"
-      "fix pull all mpm/boundary region high stick velocity 0 0.02 0 field two\n"
-      "velocity two set 0 0.02 0\ntimestep 0.02\nthermo_style custom step f_c[1][2]\nthermo "
-      "1000000\n",
-      round ? "yes" : "no", round ? "yes" : "no", round ? "yes" : "no", strength, strength));
+  Scene run(plane("lj", "f f", "0 2 0 16", 2, 0.15) +
+            strprintf("fix all all mpm 0.5 axisymmetric %s\nregion one block 0 2 4 8 INF INF\n"
+                      "region two block 0 2 8 12 INF INF\ncreate_points 1 region one ppc 2\n"
+                      "create_points 2 region two ppc 2\nunfix all\ngroup one type 1\n"
+                      "group two type 2\nfix one one mpm 0.5 axisymmetric %s\n"
+                      "fix two two mpm 0.5 axisymmetric %s\n"
+                      "fix m all mpm/material density 1.0 neohookean 50.0 0.0\n"
+                      "fix sides all mpm/boundary xlo xhi slip\n"
+                      "fix c all mpm/contact one two law adhesive %g %g 0.02\n"
+                      "region low block INF INF 0 4.6 INF INF\n"
+                      "fix hold all mpm/boundary region low stick field one\n"
+                      "region high block INF INF 11.4 16 INF INF\n"
+                      "fix pull all mpm/boundary region high stick velocity 0 0.02 0 field two\n"
+                      "velocity two set 0 0.02 0\ntimestep 0.02\n"
+                      "thermo_style custom step f_c[1][2]\n",
+                      round ? "yes" : "no", round ? "yes" : "no", round ? "yes" : "no", strength,
+                      strength));
   double largest = 0.0;
   for (int k = 0; k < 90; k++) {
     run.commands("run 10 post no\n");
@@ -540,32 +507,24 @@ TEST(Axisymmetric, AdhesionActsOnTheWholeCircle)
 
 // in a box that begins at r > 0 rings are stiffer than the plane: the limit of the time step is
 // h/(c [1 + (h/2r)^2]^1/2) at the innermost points
-
 TEST(Axisymmetric, TimeStepOfRings)
 {
   const double nu = 0.3, c = sqrt((1 - nu) / ((1 + nu) * (1 - 2 * nu)));
   for (const double inner : {0.0, 0.5, 4.0}) {
-    Scene run;
-    run.commands(
-        strprintf("units lj\ndimension 2\nboundary f p p\natom_style mpm\nneighbor 0.3 bin\n"
-                  "region box block %g 8 0 4 -0.5 0.5\ncreate_box 1 box\n"
-                  "fix grid all mpm 1.0 axisymmetric yes\ncreate_points 1 box ppc 2\n"
-                  "fix m all mpm/material density 1.0 linear 1.0 0.3\n"
-                  "fix axis all mpm/boundary xlo slip\nfix dt all mpm/dt 0.5\nrun 0\n",
-                  inner));
+    Scene run(plane("lj", "f p", strprintf("%g 8 0 4", inner)) +
+              body("box", "density 1.0 linear 1.0 0.3", "1.0 axisymmetric yes") +
+              "fix axis all mpm/boundary xlo slip\nfix dt all mpm/dt 0.5\nrun 0\n");
     const double ratio = inner > 0.0 ? 0.5 / (inner + 0.25) : 0.0;
     EXPECT_NEAR(run.lmp->update->dt, 0.5 / (c * sqrt(1.0 + ratio * ratio)), 1e-12) << inner;
   }
 }
 
 // averages in cells are over the volume of the ring that a cell is
-
 TEST(Axisymmetric, Cells)
 {
-  Scene run;
-  run.commands(start(4, 3, 0.5, "") +
-               "create_points 1 box ppc 3\nfix m all mpm/material density 2.0 neohookean 10.0 0.3\n"
-               "fix cells all mpm/cells grid\nrun 0\n");
+  Scene run(start(4, 3, 0.5, "") +
+            "create_points 1 box ppc 3\nfix m all mpm/material density 2.0 neohookean 10.0 0.3\n"
+            "fix cells all mpm/cells grid\nrun 0\n");
   auto *cells = run.fix("cells");
   for (const char *name : {"density", "fraction"}) {
     int ncolumn;
@@ -607,10 +566,9 @@ TEST(Axisymmetric, ElementsOfAMeshAreRings)
   const double a = 0.3, b = -0.2, dt = 0.01;
   for (const double bore : {0.0, 1.5}) {
     const ScratchFile mesh("rings.msh", crooked_mesh(bore, 4.0, 1.0, 4.0, 7));
-    Scene run;
-    run.commands(start(6, 6, 1.0, "shape cpdi2") + "create_points 1 elements " + mesh.name +
-                 "\nfix m all mpm/material density 2.0 neohookean 10.0 0.3\n" +
-                 strprintf("timestep %g\n", dt));
+    Scene run(start(6, 6, 1.0, "shape cpdi2") + "create_points 1 elements " + mesh.name +
+              "\nfix m all mpm/material density 2.0 neohookean 10.0 0.3\n" +
+              strprintf("timestep %g\n", dt));
     run.set_velocity([=](const double *x, double *v) {
       v[0] = a * x[0];
       v[1] = b * x[1];
@@ -625,14 +583,12 @@ TEST(Axisymmetric, ElementsOfAMeshAreRings)
   }
   const ScratchFile mesh("rings.msh", crooked_mesh(-0.1, 4.0, 1.0, 4.0, 7));
   const std::string scene = start(6, 6, 1.0, "shape cpdi2");
-  EXPECT_THAT(error_of(scene + "create_points 1 elements " + mesh.name + "\n"),
-              ::testing::HasSubstr("reaches below x = 0"));
-  EXPECT_THAT(error_of(scene + "create_points 1 mesh " + mesh.name + "\n"),
-              ::testing::HasSubstr("use create_points elements or region"));
+  expect_error(scene + "create_points 1 elements " + mesh.name + "\n", "reaches below x = 0");
+  expect_error(scene + "create_points 1 mesh " + mesh.name + "\n",
+               "use create_points elements or region");
 }
 
 // ---------------------------------------------------------------------- mistakes
-
 TEST(Axisymmetric, Refused)
 {
   const std::string head = "units lj\nboundary f f MPM_Z\natom_style mpm\n"
@@ -640,11 +596,11 @@ TEST(Axisymmetric, Refused)
   const auto box = [&](const char *z, const char *low) {
     return replaced(replaced(head, "MPM_Z", z), "MPM_LOW", low);
   };
-  EXPECT_THAT(error_of(box("f", "0") + "create_box 1 box\nfix grid all mpm 0.5 axisymmetric yes\n"),
-              ::testing::HasSubstr("needs dimension 2"));
-  EXPECT_THAT(error_of("dimension 2\n" + box("p", "-1") +
-                       "create_box 1 box\nfix grid all mpm 0.5 axisymmetric yes\n"),
-              ::testing::HasSubstr("must not reach below x = 0"));
+  expect_error(box("f", "0") + "create_box 1 box\nfix grid all mpm 0.5 axisymmetric yes\n",
+               "needs dimension 2");
+  expect_error("dimension 2\n" + box("p", "-1") +
+                   "create_box 1 box\nfix grid all mpm 0.5 axisymmetric yes\n",
+               "must not reach below x = 0");
   const std::string scene = "dimension 2\n" + box("p", "0") +
       "create_box 1 box\nfix grid all mpm 0.5 axisymmetric yes\ncreate_points 1 box ppc 2\n"
       "fix m all mpm/material density 1.0 linear 1.0 0.3\n";
@@ -665,7 +621,6 @@ TEST(Axisymmetric, Refused)
       "group grains type 2\nfix move grains nve/sphere disc\nfix axis all mpm/boundary xlo slip\n"
       "comm_modify vel yes\npair_style granular\npair_coeff * * hooke 10 0 tangential "
       "linear_nohistory 0 0\n";
-  EXPECT_THAT(error_of(grains + "run 0\n"), ::testing::HasSubstr("a grain would be a ring"));
-  EXPECT_THAT(error_of(grains + "fix skin all mpm/surface\nrun 0\n"),
-              ::testing::HasSubstr("a grain would be a ring"));
+  expect_error(grains + "run 0\n", "a grain would be a ring");
+  expect_error(grains + "fix skin all mpm/surface\nrun 0\n", "a grain would be a ring");
 }

@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: input smoke
 // timeout: 900
@@ -14,8 +9,6 @@
 
 #include "bad_input_testing.h"
 #include "mesh/stl_testing.h"
-
-#include "gtest/gtest.h"
 
 #include <sstream>
 
@@ -58,7 +51,6 @@ run 3
 )";
 
 // what stands in the scene and is replaced
-
 static const char *const STYLE = "atom_style hybrid sphere mpm\n";
 static const char *const VEL = "comm_modify vel yes mode multi\n";
 static const char *const F1 = "fix F1 low mpm 1.0\n";
@@ -171,17 +163,15 @@ static const Change grains[] = {
 INSTANTIATE_TEST_SUITE_P(Grains, BadCoupling, ::testing::ValuesIn(grains), case_name);
 
 // material files of two bodies: each must be in the units of the input
-
 TEST(MaterialFiles, OfMixedUnits)
 {
   const ScratchFile file("steel.mpm", "# UNITS: si\ndensity 7850 linear 200e9 0.3\n");
   const std::string text =
       error_of(changed(good_scene, M1, "fix m1 low mpm/material file " + file.name + "\n"));
-  EXPECT_THAT(text, ::testing::HasSubstr("is in si units but the input uses lj units"));
+  EXPECT_THAT(text, HasSubstr("is in si units but the input uses lj units"));
 }
 
 // rigid bodies
-
 TEST(RigidBodies, Refused)
 {
   const ScratchFile file("box.stl", text_of(box({0.0, 0.0, 0.0}, {1.0, 1.0, 1.0})));
@@ -196,14 +186,10 @@ TEST(RigidBodies, Refused)
            Mistake{rigid + "unfix c\nunfix floor\nunfix F1\nunfix F2\nunfix surf\nrun 3\n",
                    "Fix mpm/rigid needs a fix mpm"},
        })
-    EXPECT_THAT(error_of(changed(good_scene, RUN, mistake.lines)),
-                ::testing::HasSubstr(mistake.message))
+    EXPECT_THAT(error_of(changed(good_scene, RUN, mistake.lines)), HasSubstr(mistake.message))
         << mistake.lines;
-  const std::string flat =
-      "units lj\ndimension 2\nboundary p p p\natom_style mpm\n"
-      "region box block 0 8 0 8 -0.5 0.5\ncreate_box 1 box\nfix grid all mpm 1.0\n";
-  EXPECT_THAT(error_of(flat + rigid),
-              ::testing::HasSubstr("in 2d, move a region with fix mpm/boundary"));
+  const std::string flat = plane("lj", "p p", "0 8 0 8") + "fix grid all mpm 1.0\n";
+  expect_error(flat + rigid, "in 2d, move a region with fix mpm/boundary");
 }
 
 // ---------------------------------------------------------------------- bodies that overlap at the start
@@ -226,10 +212,9 @@ TEST(Overlap, IsReported)
 {
   const std::string words =
       "bodies F1 and F2 overlap at the start of the run, for instance points ";
-  EXPECT_THAT(said(""), ::testing::Not(::testing::HasSubstr("overlap")));
+  EXPECT_THAT(said(""), ::testing::Not(HasSubstr("overlap")));
   // touching bodies may be compressed, and interlock by less than half a cell
-  EXPECT_THAT(said("displace_atoms high move 0 0 -0.25\n"),
-              ::testing::Not(::testing::HasSubstr("overlap")));
+  EXPECT_THAT(said("displace_atoms high move 0 0 -0.25\n"), ::testing::Not(HasSubstr("overlap")));
   for (const char *lines :
        {"displace_atoms high move 0 0 -1.0\n", "displace_atoms high move 0.3 0.2 -2.0\n",
         "unfix c\nfix c all mpm/contact F1 F2 gap no\n"
@@ -243,6 +228,5 @@ TEST(Overlap, IsReported)
     EXPECT_TRUE(found) << lines << text;
   }
   // create_points does not let it happen
-  EXPECT_THAT(error_of(changed(good_scene, "b2 block 2 6 2 6 3 5", "b2 block 2 6 2 6 2 4")),
-              ::testing::HasSubstr("overlap yes"));
+  expect_error(changed(good_scene, "b2 block 2 6 2 6 3 5", "b2 block 2 6 2 6 2 4"), "overlap yes");
 }

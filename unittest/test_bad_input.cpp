@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: input smoke
 // timeout: 900
@@ -16,21 +11,12 @@
 
 #include "exceptions.h"
 
-#include "gtest/gtest.h"
-
-#include <cstdio>
 #include <fstream>
 #include <sstream>
 
 using namespace MPM_TEST;
 
-static const std::string good_scene = R"(
-units lj
-boundary f f f
-atom_style mpm
-neighbor 0.3 bin
-region box block 0 8 0 8 0 8
-create_box 2 box
+static const std::string good_scene = space("lj", "f f f", "0 8 0 8 0 8", 2) + R"(
 fix grid all mpm 1.0
 region body block 2 5 2 5 2 5
 create_points 1 region body ppc 2
@@ -69,7 +55,6 @@ TEST(GoodInput, Runs)
 }
 
 // what stands in the scene and is replaced
-
 static const char *const FIX = "fix grid all mpm 1.0\n";
 static const char *const BOUNDARY = "boundary f f f\n";
 static const char *const STYLE = "atom_style mpm\n";
@@ -281,7 +266,6 @@ static const Change companions[] = {
 INSTANTIATE_TEST_SUITE_P(Companions, BadInput, ::testing::ValuesIn(companions), case_name);
 
 // material files
-
 static std::string answer_to(const ScratchFile &file)
 {
   return answer(
@@ -333,7 +317,6 @@ TEST(DataFile, VolumeMustNotBeNegative)
 }
 
 // policies for points that go bad
-
 class Policy : public ::testing::Test {
  protected:
   static std::string scene(const std::string &policy)
@@ -351,8 +334,7 @@ class Policy : public ::testing::Test {
 
 TEST_F(Policy, WarnGoesOnAndCounts)
 {
-  Scene run;
-  run.commands(compressing("warn"));
+  Scene run(compressing("warn"));
   const std::string log = file_text(log_file.name);
   EXPECT_TRUE(contains(log,
                        "WARNING: Material point [0-9]+ at .*has a deformation gradient of "
@@ -380,8 +362,7 @@ TEST_F(Policy, WarnGoesOnAndCounts)
 
 TEST_F(Policy, DeleteReportsMassAndMomentum)
 {
-  Scene warned;
-  warned.commands(compressing("warn"));
+  Scene warned(compressing("warn"));
   double lost_momentum = 0.0;
   int lost = 0;
   for (const auto &p : warned.gather())
@@ -392,8 +373,7 @@ TEST_F(Policy, DeleteReportsMassAndMomentum)
   ASSERT_GT(lost, 0);
   ASSERT_LT(lost, 216);
 
-  Scene run;
-  run.commands(compressing("delete"));
+  Scene run(compressing("delete"));
   const std::string log = file_text(log_file.name);
   EXPECT_EQ(run.gather().size(), 216u - lost);
   EXPECT_EQ(run.lmp->atom->natoms, 216 - lost);
@@ -411,9 +391,8 @@ TEST_F(Policy, DeleteReportsMassAndMomentum)
 
 TEST_F(Policy, DeleteLetsPointsLeaveTheBox)
 {
-  Scene run;
-  run.commands(changed(changed(scene("delete"), "velocity all set 0.1", "velocity all set 3"), RUN,
-                       "log " + log_file.name + "\nrun 150\nlog none\n"));
+  Scene run(changed(changed(scene("delete"), "velocity all set 0.1", "velocity all set 3"), RUN,
+                    "log " + log_file.name + "\nrun 150\nlog none\n"));
   const std::string log = file_text(log_file.name);
   double mass = 0.0, left = 0.0;
   const std::regex line("deleted ([0-9]+) points of mass ([^ ]+) and momentum ([^ ]+) ");
@@ -436,11 +415,9 @@ TEST_F(Policy, WarnDoesNotLetPointsLeaveTheBox)
 }
 
 // an error leaves LAMMPS usable: scripts in Python catch it and go on
-
 TEST(AfterAnError, TheInstanceCanGoOn)
 {
-  Scene run;
-  run.commands(changed(good_scene, RUN, ""));
+  Scene run(changed(good_scene, RUN, ""));
   EXPECT_THROW(run.commands("timestep 5.0\nrun 1\n"), LAMMPSException);
   run.commands("timestep 0.01\nrun 10\n");
   for (const auto &p : run.gather()) EXPECT_NEAR(p.v[0], 0.1, 1.0e-12);

@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: mpi physics
 // mpi: 1 3
@@ -18,9 +13,6 @@
 #include "transfer/kernel_testing.h"
 #include "transfer/kernels.h"
 
-#include "gtest/gtest.h"
-
-#include <cmath>
 #include <random>
 
 using namespace MPM_TEST;
@@ -91,21 +83,15 @@ TEST(BernsteinKernels, AgreeWithReference)
 
 // a stretch of a block between a wall and a grip, as in test_total.cpp, and a patch: affine velocity
 // fields are exact, whatever the cells
-
-TEST(Bernstein, AffineFieldsAreExact)
+SERIAL_TEST(Bernstein, AffineFieldsAreExact)
 {
-  if (nranks() > 1) GTEST_SKIP() << "references are those of one rank";
   for (int dim : {2, 3})
     for (auto *options : {"transfer apic", "transfer flip 1.0", "transfer flip 1.0 scheme musl"}) {
-      Scene run;
-      run.commands(strprintf("units lj\ndimension %d\nboundary f f %s\natom_style mpm\n"
-                             "neighbor 0.3 bin\nregion box block 0 12 0 12 %s\ncreate_box 1 box\n"
-                             "fix grid all mpm 1.0 frame total shape bernstein %s\n"
-                             "region body block 1 11 1 11 %s\ncreate_points 1 region body ppc 2\n"
-                             "fix m all mpm/material density 1.0 linear 1.0e-9 0.0\n"
-                             "thermo 1000\ntimestep 0.01\n",
-                             dim, dim == 3 ? "f" : "p", dim == 3 ? "0 12" : "-0.5 0.5", options,
-                             dim == 3 ? "4 7" : "INF INF"));
+      Scene run(box(dim, "lj", "f f f", "0 12 0 12 0 12") +
+                body(strprintf("block 1 11 1 11 %s", dim == 3 ? "4 7" : "INF INF"),
+                     "density 1.0 linear 1.0e-9 0.0",
+                     strprintf("1.0 frame total shape bernstein %s", options)) +
+                "timestep 0.01\n");
       run.set_reference();
       run.set_velocity([&](const double *x, double *v) {
         v[0] = 0.1 + 0.02 * x[0] - 0.05 * x[1];
@@ -138,20 +124,13 @@ TEST(Bernstein, RanksAgree)
 }
 
 // a wave in a bar that spans the periodic box: images of nodes keep their parity
-
-TEST(Bernstein, PeriodicTranslation)
+SERIAL_TEST(Bernstein, PeriodicTranslation)
 {
-  if (nranks() > 1) GTEST_SKIP() << "sums are those of one rank";
   auto wave = [](double shift) {
-    Scene run;
-    run.commands(
-        strprintf("units lj\ndimension 2\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
-                  "region box block %g %g 0 2 -0.5 0.5\ncreate_box 1 box\n"
-                  "fix grid all mpm 1.0 frame total shape bernstein origin 0 0\n"
-                  "create_points 1 box ppc 2\n"
-                  "fix m all mpm/material density 1.0 neohookean 10.0 0.3\n"
-                  "thermo 10000\ntimestep 0.02\n",
-                  shift, shift + 8.0));
+    Scene run(plane("lj", "p p", strprintf("%g %g 0 2", shift, shift + 8.0)) +
+              body("box", "density 1.0 neohookean 10.0 0.3",
+                   "1.0 frame total shape bernstein origin 0 0") +
+              "timestep 0.02\n");
     run.set_velocity([=](const double *x, double *v) {
       v[0] = 0.5 * sin(0.25 * 3.14159265358979323846 * x[0]);
     });
@@ -173,9 +152,8 @@ TEST(Bernstein, RefusedWhere)
        "use B-splines with transfer apic or flip"},
   };
   for (const auto &bad : cases)
-    EXPECT_THAT(error_of(replaced(two_bodies, "MPM_OPTIONS", bad.lines) + "run 1\n"),
-                ::testing::HasSubstr(bad.message));
-  EXPECT_THAT(error_of("units lj\nboundary p p p\natom_style mpm\nregion box block 0 9 0 8 0 8\n"
-                       "create_box 1 box\nfix grid all mpm 1.0 frame total shape bernstein\n"),
-              ::testing::HasSubstr("9 spacings along periodic axis x: use an even number"));
+    expect_error(replaced(two_bodies, "MPM_OPTIONS", bad.lines) + "run 1\n", bad.message);
+  expect_error(space("lj", "p p p", "0 9 0 8 0 8") +
+                   "fix grid all mpm 1.0 frame total shape bernstein\n",
+               "9 spacings along periodic axis x: use an even number");
 }

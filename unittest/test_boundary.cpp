@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: physics mpi
 // mpi: 1 2 4
@@ -13,13 +8,6 @@
 // Walls: velocity at the wall, momentum and work, friction, separation, motion, regions.
 
 #include "mpm_lammps.h"
-
-#include "gmock/gmock.h"
-#include "gtest/gtest.h"
-
-#include <cmath>
-#include <cstdio>
-#include <functional>
 
 using namespace MPM_TEST;
 
@@ -73,9 +61,7 @@ void momentum(Scene &run, double p[3])
 
 }    // namespace
 
-/* ----------------------------------------------------------------------
-   velocity at the wall
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- velocity at the wall */
 
 struct WallCase {
   const char *shape, *wall;
@@ -87,24 +73,13 @@ class WallVelocity : public ::testing::TestWithParam<WallCase> {
  protected:
   std::string scene(const WallCase &c)
   {
-    return std::string(R"(
-units lj
-boundary p f p
-atom_style mpm
-neighbor 0.3 bin
-region box block 0 6 0 12 0 6
-create_box 1 box
-fix grid all mpm 1.0 shape )") +
-        c.shape + R"( transfer apic
-region body block 0 6 0 4 0 6
-create_points 1 region body ppc 2
-displace_atoms all random 0.1 0.1 0.1 872631
-fix m all mpm/material density 1.0 neohookean 10.0 0.3
-fix w all mpm/boundary ylo )" +
-        c.wall + R"(
-timestep 0.01
-run 0
-)";
+    return space("lj", "p f p", "0 6 0 12 0 6") + "fix grid all mpm 1.0 shape " + c.shape +
+        " transfer apic\nregion body block 0 6 0 4 0 6\n"
+        "create_points 1 region body ppc 2\n"
+        "displace_atoms all random 0.1 0.1 0.1 872631\n"
+        "fix m all mpm/material density 1.0 neohookean 10.0 0.3\n"
+        "fix w all mpm/boundary ylo " +
+        c.wall + "\ntimestep 0.01\nrun 0\n";
   }
 };
 
@@ -112,8 +87,7 @@ TEST_P(WallVelocity, ExactAtTheWall)
 {
   // whatever the velocities of the points: one that is on the wall moves with the wall
   const auto &c = GetParam();
-  Scene run;
-  run.commands(scene(c));
+  Scene run(scene(c));
   set_field(run, wild);
   const auto chosen = put_on_the_floor(run);
   run.commands("run 1\n");
@@ -137,8 +111,7 @@ TEST_P(WallVelocity, LinearFieldsArePreserved)
   const auto &c = GetParam();
   // without a normal impulse there is no friction: then only the normal component is of interest
   const bool friction = std::string(c.wall).find("friction") != std::string::npos;
-  Scene run;
-  run.commands(scene(c));
+  Scene run(scene(c));
   auto field = [&](const double *x, double *v, double g[3][3]) {
     // stick: zero at the wall and linear in the distance. slip: so is the normal component,
     // the others have any gradient across the wall
@@ -172,21 +145,20 @@ TEST_P(WallVelocity, LinearFieldsArePreserved)
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Kinds, WallVelocity,
-    ::testing::Values(
-        WallCase{"linear", "stick", true, {0, 0, 0}},
-        WallCase{"quadratic", "stick", true, {0, 0, 0}},
-        WallCase{"cubic", "stick", true, {0, 0, 0}}, WallCase{"linear", "slip", false, {0, 0, 0}},
-        WallCase{"quadratic", "slip", false, {0, 0, 0}},
-        WallCase{"cubic", "slip", false, {0, 0, 0}},
-        WallCase{"quadratic", "stick velocity 0.3 0.2 -0.1", true, {0.3, 0.2, -0.1}},
-        WallCase{"cubic", "stick velocity 0.3 0.2 -0.1", true, {0.3, 0.2, -0.1}},
-        WallCase{"quadratic", "slip velocity 0 0.2 0", false, {0, 0.2, 0}},
-        WallCase{"quadratic", "slip friction 1e9 velocity 0.3 0.2 0", false, {0.3, 0.2, 0}}));
+static const WallCase wall_velocity_cases[] = {
+    {"linear", "stick", true, {0, 0, 0}},
+    {"quadratic", "stick", true, {0, 0, 0}},
+    {"cubic", "stick", true, {0, 0, 0}},
+    {"linear", "slip", false, {0, 0, 0}},
+    {"quadratic", "slip", false, {0, 0, 0}},
+    {"cubic", "slip", false, {0, 0, 0}},
+    {"quadratic", "stick velocity 0.3 0.2 -0.1", true, {0.3, 0.2, -0.1}},
+    {"cubic", "stick velocity 0.3 0.2 -0.1", true, {0.3, 0.2, -0.1}},
+    {"quadratic", "slip velocity 0 0.2 0", false, {0, 0.2, 0}},
+    {"quadratic", "slip friction 1e9 velocity 0.3 0.2 0", false, {0.3, 0.2, 0}}};
+INSTANTIATE_TEST_SUITE_P(Kinds, WallVelocity, ::testing::ValuesIn(wall_velocity_cases));
 
 // faces between planes of nodes: held exactly, up to nodes that hardly reach them
-
 struct CutCase {
   const char *shape, *wall;
   double offset;    // of the lattice
@@ -202,14 +174,13 @@ class CutFace : public ::testing::TestWithParam<CutCase> {
   std::string scene() const
   {
     const auto &c = GetParam();
-    return strprintf("units lj\nboundary p f p\natom_style mpm\nneighbor 0.3 bin\n"
-                     "region box block 0 6 0 12 0 6\ncreate_box 1 box\n"
-                     "fix grid all mpm 1.0 shape %s origin 0.3 %.17g -0.2\n"
-                     "region body block 0 6 0 4 0 6\ncreate_points 1 region body ppc 2\n"
-                     "displace_atoms all random 0.1 0.1 0.1 872631\n"
-                     "fix m all mpm/material density 1.0 neohookean 10.0 0.3\n"
-                     "fix w all mpm/boundary ylo %s\ntimestep 0.01\nrun 0\n",
-                     c.shape, c.offset, c.wall);
+    return space("lj", "p f p", "0 6 0 12 0 6") +
+        strprintf("fix grid all mpm 1.0 shape %s origin 0.3 %.17g -0.2\n"
+                  "region body block 0 6 0 4 0 6\ncreate_points 1 region body ppc 2\n"
+                  "displace_atoms all random 0.1 0.1 0.1 872631\n"
+                  "fix m all mpm/material density 1.0 neohookean 10.0 0.3\n"
+                  "fix w all mpm/boundary ylo %s\ntimestep 0.01\nrun 0\n",
+                  c.shape, c.offset, c.wall);
   }
 };
 
@@ -218,8 +189,7 @@ TEST_P(CutFace, HasTheVelocityOfTheWall)
   const auto &c = GetParam();
   const bool stick = std::string(c.wall).find("stick") == 0;
   const double V[3] = {0.3, 0.2, -0.1};
-  Scene run;
-  run.commands(scene());
+  Scene run(scene());
   set_field(run, wild);
   const auto chosen = put_on_the_floor(run);
   run.commands("run 1\n");
@@ -237,8 +207,7 @@ TEST_P(CutFace, KeepsLinearFields)
   if (std::string(c.wall).find("friction") != std::string::npos) return;
   const bool stick = std::string(c.wall).find("stick") == 0;
   const double V[3] = {0.3, 0.2, -0.1}, across[3] = {0.7, -0.4, 0.25};
-  Scene run;
-  run.commands(scene());
+  Scene run(scene());
   set_field(run, [&](const double *x, double *v, double g[3][3]) {
     for (int a = 0; a < 3; a++) {
       v[a] = V[a] + across[a] * x[1];
@@ -255,31 +224,21 @@ TEST_P(CutFace, KeepsLinearFields)
   EXPECT_LT(worst, 1.0e-12);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Kinds, CutFace,
-    ::testing::Values(CutCase{"linear", "stick velocity 0.3 0.2 -0.1", 0.37},
-                      CutCase{"linear", "slip velocity 0 0.2 0", 0.7},
-                      CutCase{"quadratic", "stick velocity 0.3 0.2 -0.1", 0.0625},
-                      CutCase{"quadratic", "slip velocity 0 0.2 0", -0.1},
-                      CutCase{"quadratic", "slip friction 0.2 velocity 0.3 0.2 0", 0.15},
-                      CutCase{"cubic", "stick velocity 0.3 0.2 -0.1", 0.5},
-                      CutCase{"cubic", "slip velocity 0 0.2 0", 0.4}));
+static const CutCase cut_face_cases[] = {
+    {"linear", "stick velocity 0.3 0.2 -0.1", 0.37},
+    {"linear", "slip velocity 0 0.2 0", 0.7},
+    {"quadratic", "stick velocity 0.3 0.2 -0.1", 0.0625},
+    {"quadratic", "slip velocity 0 0.2 0", -0.1},
+    {"quadratic", "slip friction 0.2 velocity 0.3 0.2 0", 0.15},
+    {"cubic", "stick velocity 0.3 0.2 -0.1", 0.5},
+    {"cubic", "slip velocity 0 0.2 0", 0.4}};
+INSTANTIATE_TEST_SUITE_P(Kinds, CutFace, ::testing::ValuesIn(cut_face_cases));
 
 // edges and corners: also there both walls have their velocity
-
 TEST(WallCorners, AreHeld)
 {
   for (const char *shape : {"quadratic", "cubic"}) {
-    Scene run;
-    run.commands(std::string(R"(
-units lj
-boundary f f f
-atom_style mpm
-neighbor 0.3 bin
-region box block 0 6 0 6 0 6
-create_box 1 box
-fix grid all mpm 1.0 shape )") +
-                 shape + R"(
+    Scene run(space("lj", "f f f", "0 6 0 6 0 6") + "fix grid all mpm 1.0 shape " + shape + R"(
 region body block 0 4 0 4 0 4
 create_points 1 region body ppc 2
 displace_atoms all random 0.1 0.1 0.1 872631
@@ -306,28 +265,14 @@ run 0
 }
 
 // a wall that prescribes one component is a slip wall, and stick is friction without end
-
 TEST(WallKinds, Equivalences)
 {
-  const std::string scene = R"(
-units lj
-boundary f f f
-atom_style mpm
-neighbor 0.3 bin
-region box block 0 6 0 6 0 6
-create_box 1 box
-fix grid all mpm 1.0
-region body block 1 5 0 3 1 4
-create_points 1 region body ppc 2
-fix m all mpm/material density 1.0 neohookean 10.0 0.3
-fix w all mpm/boundary ylo WALL
-fix g all gravity 0.2 vector 1 -2 0.5
-timestep 0.05
-run 100
-)";
+  const std::string scene = space("lj", "f f f", "0 6 0 6 0 6") +
+      body("block 1 5 0 3 1 4", "density 1.0 neohookean 10.0 0.3") +
+      "fix w all mpm/boundary ylo WALL\nfix g all gravity 0.2 vector 1 -2 0.5\n"
+      "timestep 0.05\nrun 100\n";
   auto result = [&](const std::string &wall) {
-    Scene run;
-    run.commands(replaced(scene, "WALL", wall));
+    Scene run(replaced(scene, "WALL", wall));
     return run.gather();
   };
   auto slip = result("slip"), stick = result("stick");
@@ -335,9 +280,7 @@ run 100
   EXPECT_GT(difference(slip, stick), 0.01);
 }
 
-/* ----------------------------------------------------------------------
-   momentum and work
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- momentum and work */
 
 class Balance : public ::testing::TestWithParam<std::string> {};
 
@@ -346,18 +289,10 @@ TEST_P(Balance, ReactionIsTheChangeOfMomentum)
   const std::string param = GetParam();
   const std::size_t bar = param.find('|');
   const std::string options = param.substr(0, bar), walls = param.substr(bar + 1);
-  Scene run;
-  run.commands(replaced(replaced(R"(
-units lj
-boundary f f f
-atom_style mpm
-neighbor 0.3 bin
-region box block 0 8 0 8 0 8
-create_box 1 box
-fix grid all mpm 1.0 OPTIONS
-region body block 0.5 5 0 3.5 2 6
-create_points 1 region body ppc 2
-fix m all mpm/material density 1.5 neohookean 10.0 0.3
+  Scene run(replaced(
+      replaced(space("lj", "f f f", "0 8 0 8 0 8") +
+                   body("block 0.5 5 0 3.5 2 6", "density 1.5 neohookean 10.0 0.3", "1.0 OPTIONS") +
+                   R"(
 region ball sphere 6 2 4 2
 WALLS
 fix g all gravity 0.3 vector 1 -2 0.5
@@ -368,8 +303,8 @@ compute e all mpm/energy
 thermo_style custom step c_e
 run 0
 )",
-                                 "WALLS", walls),
-                        "OPTIONS", options));
+               "WALLS", walls),
+      "OPTIONS", options));
 
   double p[3], expected[3];
   momentum(run, expected);
@@ -392,58 +327,43 @@ run 0
   EXPECT_GT(largest, 1.0);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Options, Balance,
-    ::testing::Values(
-        "transfer apic|fix w all mpm/boundary xlo ylo stick",
-        "transfer apic origin 0.3 0.4 0.2|fix w all mpm/boundary xlo ylo stick",
-        "transfer flip 0.9 origin 0.3 0.4 0.2|fix w all mpm/boundary xlo ylo stick velocity 0.1 "
-        "0.2 "
-        "0",
-        "transfer flip 1.0 origin 0.3 0.4 0.2|fix w all mpm/boundary xlo ylo slip friction 0.2",
-        "transfer apic origin 0.3 0.4 0.2|fix w all mpm/boundary xlo ylo separate friction 0.2",
-        "transfer apic|fix w all mpm/boundary ylo slip friction 0.2",
-        "transfer apic|fix w all mpm/boundary xlo ylo separate friction 0.2",
-        "transfer flip 1.0|fix w all mpm/boundary xlo ylo slip",
-        "transfer flip 0.9 scheme musl|fix w all mpm/boundary xlo ylo stick velocity 0.1 0.2 0",
-        "transfer pic shape linear|fix w all mpm/boundary xlo ylo separate",
-        "shape cubic scheme musl|fix w all mpm/boundary xlo ylo separate friction 0.5",
-        "transfer flip 1.0 scheme usf|fix w all mpm/boundary ylo stick",
-        "|fix w all mpm/boundary xlo ylo separate friction 0.3\nfix w2 all mpm/boundary region "
-        "ball slip",
-        "transfer apic|fix w all mpm/boundary region ball stick\nfix w2 all mpm/boundary ylo slip",
-        "transfer apic|fix w all mpm/boundary region ball slip friction 0.1\nfix w2 all "
-        "mpm/boundary ylo slip",
-        "transfer flip 1.0|fix w all mpm/boundary region ball separate\nfix w2 all mpm/boundary "
-        "ylo slip"));
+static const std::string balance_cases[] = {
+    "transfer apic|fix w all mpm/boundary xlo ylo stick",
+    "transfer apic origin 0.3 0.4 0.2|fix w all mpm/boundary xlo ylo stick",
+    "transfer flip 0.9 origin 0.3 0.4 0.2|fix w all mpm/boundary xlo ylo stick velocity 0.1 "
+    "0.2 "
+    "0",
+    "transfer flip 1.0 origin 0.3 0.4 0.2|fix w all mpm/boundary xlo ylo slip friction 0.2",
+    "transfer apic origin 0.3 0.4 0.2|fix w all mpm/boundary xlo ylo separate friction 0.2",
+    "transfer apic|fix w all mpm/boundary ylo slip friction 0.2",
+    "transfer apic|fix w all mpm/boundary xlo ylo separate friction 0.2",
+    "transfer flip 1.0|fix w all mpm/boundary xlo ylo slip",
+    "transfer flip 0.9 scheme musl|fix w all mpm/boundary xlo ylo stick velocity 0.1 0.2 0",
+    "transfer pic shape linear|fix w all mpm/boundary xlo ylo separate",
+    "shape cubic scheme musl|fix w all mpm/boundary xlo ylo separate friction 0.5",
+    "transfer flip 1.0 scheme usf|fix w all mpm/boundary ylo stick",
+    "|fix w all mpm/boundary xlo ylo separate friction 0.3\nfix w2 all mpm/boundary region "
+    "ball slip",
+    "transfer apic|fix w all mpm/boundary region ball stick\nfix w2 all mpm/boundary ylo slip",
+    "transfer apic|fix w all mpm/boundary region ball slip friction 0.1\nfix w2 all "
+    "mpm/boundary ylo slip",
+    "transfer flip 1.0|fix w all mpm/boundary region ball separate\nfix w2 all mpm/boundary "
+    "ylo slip"};
+INSTANTIATE_TEST_SUITE_P(Options, Balance, ::testing::ValuesIn(balance_cases));
 
 TEST(Work, LedgerAndRestart)
 {
   // uniform motion into a wall: all that happens in the first step is the projection
-  const std::string scene = R"(
-units lj
-boundary p f p
-atom_style mpm
-neighbor 0.3 bin
-region box block 0 4 0 8 0 4
-create_box 1 box
-fix grid all mpm 1.0
-region body block 0 4 0 4 0 4
-create_points 1 region body ppc 2
-fix m all mpm/material density 1.0 neohookean 10.0 0.3
-fix w all mpm/boundary ylo slip velocity 0 MPM_V 0
-velocity all set 0 -0.5 0
-timestep 0.01
-compute e all mpm/energy
-thermo_style custom step c_e c_e[*]
-run 1
-)";
+  const std::string scene = space("lj", "p f p", "0 4 0 8 0 4") +
+      body("block 0 4 0 4 0 4", "density 1.0 neohookean 10.0 0.3") +
+      "fix w all mpm/boundary ylo slip velocity 0 MPM_V 0\n"
+      "velocity all set 0 -0.5 0\ntimestep 0.01\ncompute e all mpm/energy\n"
+      "thermo_style custom step c_e c_e[*]\nrun 1\n";
   // nodes at distance j h: mass over area, quadratic splines and points at 1/4, 3/4, ...;
   // the image and the first node inside have the mass of one full node
   const double image = 0.5 * (0.25 * 0.25) * 0.5, plane = 0.5, inside = 1.0 - image, area = 16.0;
   for (double V : {0.0, 0.3}) {
-    Scene run;
-    run.commands(replaced(scene, "MPM_V", std::to_string(V)));
+    Scene run(replaced(scene, "MPM_V", std::to_string(V)));
     const double u = -0.5 - V;
     const double p = -area * u * (plane + 4.0 * inside * image / (inside + image));
     auto *fix = run.fix("w");
@@ -458,44 +378,28 @@ run 1
     const double before = fix->compute_scalar();
     const ScratchFile file("restart");
     run.commands("write_restart " + file.name + "\nclear\nread_restart " + file.name + "\n");
-    run.commands(replaced(R"(
-fix grid all mpm 1.0
-fix m all mpm/material density 1.0 neohookean 10.0 0.3
-fix w all mpm/boundary ylo slip velocity 0 MPM_V 0
-run 0
-)",
+    run.commands(replaced("fix grid all mpm 1.0\n"
+                          "fix m all mpm/material density 1.0 neohookean 10.0 0.3\n"
+                          "fix w all mpm/boundary ylo slip velocity 0 MPM_V 0\nrun 0\n",
                           "MPM_V", std::to_string(V)));
     EXPECT_NEAR(run.fix("w")->compute_scalar(), before, 1.0e-15);
   }
 }
 
-/* ----------------------------------------------------------------------
-   friction: benchmark F2, block on an inclined plane
-------------------------------------------------------------------------- */
+/* ------------------------------------------- friction: benchmark F2, block on an inclined plane */
 
 class Incline : public ::testing::TestWithParam<std::pair<double, double>> {
  protected:
   std::string scene(double mu, const std::string &kind)
   {
-    return replaced(replaced(R"(
-units si
-dimension 2
-boundary f f p
-atom_style mpm
-neighbor 0.02 bin
-region box block 0 4.5 0 1 -0.1 0.1
-create_box 1 box
-fix grid all mpm 0.05
-region body block 0.5 1.0 0 0.25 -0.1 0.1
-create_points 1 region body ppc 2
-fix m all mpm/material density 1000 neohookean 4.2e6 0.4
-fix w all mpm/boundary ylo KIND friction MU
-variable g equal 9.81*((time<0.05)*time/0.05+(time>=0.05))
-fix g all gravity v_g vector 0.5 -0.86602540378443865 0
-fix step all mpm/dt 0.4
-variable x equal xcm(all,x)
-variable v equal vcm(all,x)
-)",
+    return replaced(replaced(plane("si", "f f", "0 4.5 0 1 -0.1 0.1", 1, 0.02) +
+                                 body("block 0.5 1.0 0 0.25 -0.1 0.1",
+                                      "density 1000 neohookean 4.2e6 0.4", "0.05") +
+                                 "fix w all mpm/boundary ylo KIND friction MU\n"
+                                 "variable g equal 9.81*((time<0.05)*time/0.05+(time>=0.05))\n"
+                                 "fix g all gravity v_g vector 0.5 -0.86602540378443865 0\n"
+                                 "fix step all mpm/dt 0.4\nvariable x equal xcm(all,x)\n"
+                                 "variable v equal vcm(all,x)\n",
                              "MU", std::to_string(mu)),
                     "KIND", kind);
   }
@@ -503,8 +407,7 @@ variable v equal vcm(all,x)
 
 TEST_P(Incline, Acceleration)
 {
-  Scene run;
-  run.commands(scene(GetParam().first, "separate") + "run 0\n");
+  Scene run(scene(GetParam().first, "separate") + "run 0\n");
   run.commands("run 400\n");
   const double v0 = run.variable("v"), t0 = run.evaluate("time");
   run.commands("run 4000\n");
@@ -523,8 +426,7 @@ class InclineStick : public Incline {};
 
 TEST_P(InclineStick, DoesNotCreep)
 {
-  Scene run;
-  run.commands(scene(GetParam().first, "separate") + "run 0\n");
+  Scene run(scene(GetParam().first, "separate") + "run 0\n");
   const double x0 = run.variable("x");
   run.commands("run 3000\n");
   const double x1 = run.variable("x"), t1 = run.evaluate("time");
@@ -540,20 +442,11 @@ INSTANTIATE_TEST_SUITE_P(Friction, InclineStick,
                          ::testing::Values(std::make_pair(0.65, 0.0), std::make_pair(2.0, 0.0)));
 
 // the same with the plane at an angle to the lattice: a region, and vertical gravity
-
 class InclinedRegion : public Incline {};
 
 TEST_P(InclinedRegion, Acceleration)
 {
-  Scene run;
-  run.commands(replaced(R"(
-units si
-dimension 2
-boundary f f p
-atom_style mpm
-neighbor 0.02 bin
-region box block 0 5 0 4 -0.1 0.1
-create_box 1 box
+  Scene run(replaced(plane("si", "f f", "0 5 0 4 -0.1 0.1", 1, 0.02) + R"(
 fix grid all mpm 0.05
 variable angle equal -PI/6
 variable up equal 3
@@ -569,7 +462,7 @@ variable v equal vcm(all,x)*0.86602540378443865-vcm(all,y)*0.5
 variable d equal xcm(all,x)*0.5+(xcm(all,y)-3)*0.86602540378443865
 run 0
 )",
-                        "MU", std::to_string(GetParam().first)));
+                     "MU", std::to_string(GetParam().first)));
   const double d0 = run.variable("d");
   run.commands("run 800\n");
   const double v0 = run.variable("v"), t0 = run.evaluate("time");
@@ -586,32 +479,17 @@ INSTANTIATE_TEST_SUITE_P(Friction, InclinedRegion,
                                            std::make_pair(0.3, 2.35629),
                                            std::make_pair(0.65, 0.0)));
 
-/* ----------------------------------------------------------------------
-   separation
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- separation */
 
 class Separate : public ::testing::TestWithParam<std::string> {
  protected:
   std::string scene(const std::string &wall, double v)
   {
-    return replaced(R"(
-units si
-dimension 2
-boundary f f p
-atom_style mpm
-neighbor 0.02 bin
-region box block 0 1 0 1.5 -0.1 0.1
-create_box 1 box
-fix grid all mpm 0.05 OPTIONS
-region body block 0.3 0.7 0.1 0.5 -0.1 0.1
-create_points 1 region body ppc 2
-fix m all mpm/material density 1000 neohookean 1e6 0.3
-)",
+    return replaced(plane("si", "f f", "0 1 0 1.5 -0.1 0.1", 1, 0.02) +
+                        body("block 0.3 0.7 0.1 0.5 -0.1 0.1", "density 1000 neohookean 1e6 0.3",
+                             "0.05 OPTIONS"),
                     "OPTIONS", GetParam()) +
-        wall + R"(
-timestep 2e-4
-variable v equal vcm(all,y)
-velocity all set 0 )" +
+        wall + "\ntimestep 2e-4\nvariable v equal vcm(all,y)\nvelocity all set 0 " +
         std::to_string(v) + " 0\n";
   }
 };
@@ -630,8 +508,7 @@ TEST_P(Separate, ABodyThatLeavesFeelsNothing)
 
 TEST_P(Separate, AThrownBodyRebounds)
 {
-  Scene run;
-  run.commands(scene("fix w all mpm/boundary ylo separate", -2.0) + "run 0\n");
+  Scene run(scene("fix w all mpm/boundary ylo separate", -2.0) + "run 0\n");
   run.commands("run 1200\n");
   const double v = run.variable("v");
   const double *force = run.fix_vector("w", 3);
@@ -649,45 +526,30 @@ INSTANTIATE_TEST_SUITE_P(Transfer, Separate,
                                            "shape linear transfer flip 1.0 scheme musl",
                                            "transfer apic origin 0 0.02"));
 
-/* ----------------------------------------------------------------------
-   benchmark G3: elastic column under gravity that is switched on
-------------------------------------------------------------------------- */
+/* ------------------------------- benchmark G3: elastic column under gravity that is switched on */
 
 class Column : public ::testing::TestWithParam<std::string> {};
 
 static std::string column_scene(const std::string &options, const std::string &walls, double width)
 {
   // M = E (1 - nu)/((1 + nu)(1 - 2 nu)) = 1.346154e6, c = 36.69 m/s
-  return replaced(replaced(replaced(R"(
-units si
-dimension 2
-boundary BOUNDARY f p
-atom_style mpm
-neighbor 0.02 bin
-region box block 0 WIDTH 0 1.25 -0.1 0.1
-create_box 1 box
-fix grid all mpm 0.05 OPTIONS
-region body block 0 WIDTH 0 1 -0.1 0.1
-create_points 1 region body ppc 2
-fix m all mpm/material density 1000 neohookean 1e6 0.3
-)" + walls + R"(
-fix g all gravity 1.0 vector 0 -1 0
-region top block INF INF 0.975 1.0 INF INF
-group top region top
-variable y equal xcm(top,y)
-variable yc equal xcm(all,y)
-timestep 4e-4
-)",
-                                    "OPTIONS", options),
-                           "WIDTH", std::to_string(width)),
-                  "BOUNDARY", walls.find("xlo") == std::string::npos ? "p" : "f");
+  return replaced(
+      replaced(
+          replaced(plane("si", "BOUNDARY f", "0 WIDTH 0 1.25 -0.1 0.1", 1, 0.02) +
+                       body("block 0 WIDTH 0 1 -0.1 0.1", "density 1000 neohookean 1e6 0.3",
+                            "0.05 OPTIONS") +
+                       walls +
+                       "\nfix g all gravity 1.0 vector 0 -1 0\n"
+                       "region top block INF INF 0.975 1.0 INF INF\ngroup top region top\n"
+                       "variable y equal xcm(top,y)\nvariable yc equal xcm(all,y)\ntimestep 4e-4\n",
+                   "OPTIONS", options),
+          "WIDTH", std::to_string(width)),
+      "BOUNDARY", walls.find("xlo") == std::string::npos ? "p" : "f");
 }
 
 TEST_P(Column, SettlementAndPeriod)
 {
-  Scene run;
-  run.commands(column_scene(GetParam(), "fix w all mpm/boundary xlo xhi ylo slip", 0.2) +
-               "run 0\n");
+  Scene run(column_scene(GetParam(), "fix w all mpm/boundary xlo xhi ylo slip", 0.2) + "run 0\n");
   const double M = 1.0e6 * 0.7 / (1.3 * 0.4), c = std::sqrt(M / 1000.0);
   const double period = 4.0 / c, y0 = run.variable("y"), x0 = run.variable("yc");
   const double settlement = 1000.0 / (2.0 * M), weight = 1000.0 * 0.2;
@@ -753,24 +615,20 @@ INSTANTIATE_TEST_SUITE_P(Options, Column,
                                            "transfer flip 1.0 shape linear origin 0.025 0.025"));
 
 // floor and sides anywhere in a cell: the centre sinks by rho g L^2/(3 M), averaged over a period
-
 TEST(CutFaces, Settlement)
 {
   for (auto *shape : {"linear transfer flip 1.0 scheme musl", "quadratic", "cubic"})
     for (const double offset : {0.03, 0.2, 0.7, 0.9}) {
-      Scene run;
-      run.commands(strprintf("units si\ndimension 2\nboundary f f p\natom_style mpm\n"
-                             "neighbor 0.02 bin\nregion box block 0 0.3 0 1.25 -0.1 0.1\n"
-                             "create_box 1 box\nfix grid all mpm 0.05\n"
-                             "region body block 0 0.3 0 1 -0.1 0.1\n"
-                             "create_points 1 region body ppc 2\nunfix grid\n"
-                             "fix grid all mpm 0.05 shape %s origin %.17g %.17g\n"
-                             "fix m all mpm/material density 1000 neohookean 1e6 0.3\n"
-                             "fix w all mpm/boundary xlo xhi ylo slip\n"
-                             "fix g all gravity 1.0 vector 0 -1 0\ntimestep 4e-4\n"
-                             "variable yc equal xcm(all,y)\nfix av all ave/time 1 545 545 v_yc\n"
-                             "run 545\n",
-                             shape, 0.05 * offset, 0.05 * offset));
+      Scene run(
+          plane("si", "f f", "0 0.3 0 1.25 -0.1 0.1", 1, 0.02) +
+          strprintf("fix grid all mpm 0.05\nregion body block 0 0.3 0 1 -0.1 0.1\n"
+                    "create_points 1 region body ppc 2\nunfix grid\n"
+                    "fix grid all mpm 0.05 shape %s origin %.17g %.17g\n"
+                    "fix m all mpm/material density 1000 neohookean 1e6 0.3\n"
+                    "fix w all mpm/boundary xlo xhi ylo slip\n"
+                    "fix g all gravity 1.0 vector 0 -1 0\ntimestep 4e-4\n"
+                    "variable yc equal xcm(all,y)\nfix av all ave/time 1 545 545 v_yc\nrun 545\n",
+                    shape, 0.05 * offset, 0.05 * offset));
       const double mean = 0.5 - run.fix("av")->compute_scalar();
       const double exact = 1000.0 / (3.0 * 1.0e6 * 0.7 / (1.3 * 0.4));
       const double ratio =
@@ -783,8 +641,7 @@ TEST(Channel, NarrowOnesAreExact)
 {
   // one, two, three cells between slip walls: each is the same column
   auto result = [](double width, const std::string &walls) {
-    Scene run;
-    run.commands(column_scene("", walls, width) + "run 300\n");
+    Scene run(column_scene("", walls, width) + "run 300\n");
     auto all = run.gather();
     std::vector<double> y;
     double sideways = 0.0;
@@ -807,31 +664,16 @@ TEST(Channel, NarrowOnesAreExact)
   }
 }
 
-/* ----------------------------------------------------------------------
-   motion
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- motion */
 
 TEST(Rotation, AFullTurnKeepsTheRadius)
 {
   // all nodes in reach of the body belong to the wall
-  Scene run;
-  run.commands(R"(
-units lj
-boundary f f f
-atom_style mpm
-neighbor 0.5 bin
-region box block 0 10 0 10 0 10
-create_box 1 box
-fix grid all mpm 1.0
-region body sphere 6.5 5 5 1.4
-create_points 1 region body ppc 2
-fix m all mpm/material density 1.0 neohookean 10.0 0.3
-region all block INF INF INF INF INF INF
-variable rate equal 2*PI/4.0
-fix w all mpm/boundary region all stick rotate 5 5 5 1 2 2 v_rate
-timestep 0.02
-run 0
-)");
+  Scene run(space("lj", "f f f", "0 10 0 10 0 10", 1, 0.5) +
+            body("sphere 6.5 5 5 1.4", "density 1.0 neohookean 10.0 0.3") +
+            "region all block INF INF INF INF INF INF\nvariable rate equal 2*PI/4.0\n"
+            "fix w all mpm/boundary region all stick rotate 5 5 5 1 2 2 v_rate\n"
+            "timestep 0.02\nrun 0\n");
   auto before = run.gather();
   run.commands("run 200\n");
   auto after = run.gather();
@@ -853,28 +695,15 @@ run 0
 }
 
 // FLIP: material at a wall gains what the wall gains
-
 TEST(Motion, FlipFollowsTheWalls)
 {
   for (const char *kind : {"stick", "slip", "slip friction 0.3"}) {
-    Scene run;
-    run.commands(replaced(R"(
-units lj
-boundary p p f
-atom_style mpm
-neighbor 0.5 bin
-region box block 0 4 0 4 0 6
-create_box 1 box
-fix grid all mpm 1.0 transfer flip 1.0
-region body block 0 4 0 4 0 4
-create_points 1 region body ppc 2
-fix m all mpm/material density 1.0 neohookean 1e-9 0.3
-variable v equal 0.003+0.002*cos(3*time)
-fix w all mpm/boundary zlo KIND velocity 0 0 v_v
-timestep 0.02
-run 0
-)",
-                          "KIND", kind));
+    Scene run(replaced(
+        space("lj", "p p f", "0 4 0 4 0 6", 1, 0.5) +
+            body("block 0 4 0 4 0 4", "density 1.0 neohookean 1e-9 0.3", "1.0 transfer flip 1.0") +
+            "variable v equal 0.003+0.002*cos(3*time)\n"
+            "fix w all mpm/boundary zlo KIND velocity 0 0 v_v\ntimestep 0.02\nrun 0\n",
+        "KIND", kind));
     // on the wall, points have its velocity when they had it at the start; what is near moves more
     auto velocity = [](double t) {
       return 0.003 + 0.002 * cos(3.0 * t);
@@ -909,30 +738,16 @@ run 0
 
 // FLIP: a block that is thrown at a wall returns with its speed (0.59 of it with an update as in PIC
 // at the wall)
-
 TEST(Rebound, FlipKeepsTheEnergy)
 {
   for (const char *kind : {"stick", "slip", "slip friction 0.1"}) {
-    Scene run;
-    run.commands(replaced(R"(
-units si
-dimension 2
-boundary p f p
-atom_style mpm
-neighbor 0.02 bin
-region box block 0 0.2 0 1 -0.1 0.1
-create_box 1 box
-fix grid all mpm 0.05 transfer flip 1.0 scheme musl
-region body block INF INF 0.1 0.4 INF INF
-create_points 1 region body ppc 2
-fix m all mpm/material density 1000 neohookean 1e6 0.3
-fix w all mpm/boundary ylo KIND
-velocity all set 0 -1 0
-timestep 2e-4
-variable v equal vcm(all,y)
-run 1000
-)",
-                          "KIND", kind));
+    Scene run(
+        replaced(plane("si", "p f", "0 0.2 0 1 -0.1 0.1", 1, 0.02) +
+                     body("block INF INF 0.1 0.4 INF INF", "density 1000 neohookean 1e6 0.3",
+                          "0.05 transfer flip 1.0 scheme musl") +
+                     "fix w all mpm/boundary ylo KIND\nvelocity all set 0 -1 0\ntimestep 2e-4\n"
+                     "variable v equal vcm(all,y)\nrun 1000\n",
+                 "KIND", kind));
     EXPECT_GT(measured(std::string("rebound, ") + kind, run.variable("v")), 0.9);
     EXPECT_LT(run.variable("v"), 1.0);
   }
@@ -941,22 +756,13 @@ run 1000
 // FLIP: points lose the velocity with which they arrive at a wall for good. With all of the old
 // velocity constrained, 3/4 of the energy of this fall were left when the water should have calmed
 // down, and it splashed higher than it came from.
-
 TEST(Arrival, WaterFallsAndCalmsDown)
 {
-  Scene run;
-  run.commands(R"(
-units si
-dimension 2
-boundary f f p
-atom_style mpm
-neighbor 0.02 bin
-region box block 0 2 0 12 -0.1 0.1
-create_box 1 box
-fix grid all mpm 0.05 transfer flip 1.0 scheme musl
-region body block 0 0.5 0.5 1.0 -0.1 0.1
-create_points 1 region body ppc 2
-fix m all mpm/material density 1000 eos tait 1e5 7 viscosity newtonian 1.0
+  Scene run(plane("si", "f f", "0 2 0 12 -0.1 0.1", 1, 0.02) +
+            body("block 0 0.5 0.5 1.0 -0.1 0.1",
+                 "density 1000 eos tait 1e5 7 viscosity newtonian 1.0",
+                 "0.05 transfer flip 1.0 scheme musl") +
+            R"(
 fix w all mpm/boundary xlo xhi ylo slip
 fix g all gravity 9.81 vector 0 -1 0
 timestep 5e-4
@@ -973,26 +779,12 @@ run 8000
 TEST(Rotation, RegionThatTurnsAndMoves)
 {
   // the body sits in the region, which takes it around and along
-  Scene run;
-  run.commands(R"(
-units lj
-dimension 2
-boundary f f p
-atom_style mpm
-neighbor 0.5 bin
-region box block 0 20 0 20 -0.5 0.5
-create_box 1 box
-fix grid all mpm 1.0
-region body block 5 8 9 11 -0.5 0.5
-create_points 1 region body ppc 2
-fix m all mpm/material density 1.0 neohookean 10.0 0.3
-variable angle equal 2*PI*time/4.0
-variable shift equal 0.5*time
-region grip block 3 10 7 13 INF INF move v_shift NULL NULL rotate v_angle 10 10 0 0 0 1
-fix w all mpm/boundary region grip stick
-timestep 0.02
-run 0
-)");
+  Scene run(
+      plane("lj", "f f", "0 20 0 20", 1, 0.5) +
+      body("block 5 8 9 11 -0.5 0.5", "density 1.0 neohookean 10.0 0.3") +
+      "variable angle equal 2*PI*time/4.0\nvariable shift equal 0.5*time\n"
+      "region grip block 3 10 7 13 INF INF move v_shift NULL NULL rotate v_angle 10 10 0 0 0 1\n"
+      "fix w all mpm/boundary region grip stick\ntimestep 0.02\nrun 0\n");
   auto before = run.gather();
   run.commands("run 120\n");
   run.commands("run 80\n");
@@ -1009,26 +801,12 @@ run 0
 TEST(Motion, PistonOfChangingShape)
 {
   // a block region whose lower face comes down at speed 0.1 pushes the body through an empty box
-  Scene run;
-  run.commands(R"(
-units lj
-dimension 2
-boundary f f p
-atom_style mpm
-neighbor 0.5 bin
-region box block 0 8 0 20 -0.5 0.5
-create_box 1 box
-fix grid all mpm 1.0
-region body block 2 6 10 14 -0.5 0.5
-create_points 1 region body ppc 2
-fix m all mpm/material density 1.0 neohookean 50.0 0.3
-variable face equal 14-0.1*time
-region piston block INF INF v_face INF INF INF
-fix w all mpm/boundary region piston slip
-timestep 0.02
-variable v equal vcm(all,y)
-run 0
-)");
+  Scene run(plane("lj", "f f", "0 8 0 20", 1, 0.5) +
+            body("block 2 6 10 14 -0.5 0.5", "density 1.0 neohookean 50.0 0.3") +
+            "variable face equal 14-0.1*time\n"
+            "region piston block INF INF v_face INF INF INF\n"
+            "fix w all mpm/boundary region piston slip\ntimestep 0.02\n"
+            "variable v equal vcm(all,y)\nrun 0\n");
   run.commands("run 1500\n");
   const double v = run.variable("v");
   if (run.lmp->comm->me == 0) printf("  mean velocity %.4f\n", v);
@@ -1036,9 +814,7 @@ run 0
   EXPECT_NEAR(run.fix("w")->compute_scalar(), -0.1 * 16.0 * v, 1.0e-6);
 }
 
-/* ----------------------------------------------------------------------
-   regions: velocity of the nodes inside, against the known normal
-------------------------------------------------------------------------- */
+/* ------------------------------ regions: velocity of the nodes inside, against the known normal */
 
 TEST(Regions, SlipNormals)
 {
@@ -1092,25 +868,10 @@ TEST(Regions, SlipNormals)
                            return (int) (r <= 2.1);
                          }}};
   for (const auto &c : cases) {
-    Scene run;
-    run.commands(R"(
-units lj
-boundary f f f
-atom_style mpm
-neighbor 0.3 bin
-region box block 0 10 0 10 0 10
-create_box 1 box
-fix grid all mpm 1.0
-region body block 2 8 2 8 2 8
-create_points 1 region body ppc 2
-fix m all mpm/material density 1.0 neohookean 10.0 0.3
-velocity all set 0.3 -0.2 0.15
-timestep 0.01
-)" + std::string("region obstacle ") +
-                 c.region + R"(
-fix w all mpm/boundary region obstacle slip
-run 1
-)");
+    Scene run(space("lj", "f f f", "0 10 0 10 0 10") +
+              body("block 2 8 2 8 2 8", "density 1.0 neohookean 10.0 0.3") +
+              "velocity all set 0.3 -0.2 0.15\ntimestep 0.01\n" + std::string("region obstacle ") +
+              c.region + "\nfix w all mpm/boundary region obstacle slip\nrun 1\n");
     int checked = 0;
     run.each_node([&](const Scene::Node &node) {
       if (node.mass <= 0.0) return;
@@ -1137,26 +898,12 @@ run 1
 TEST(Regions, NoTrailBehindAMovingBody)
 {
   // pitfall 16: a floor moves along under a falling body; nodes that it has left fall freely
-  Scene run;
-  run.commands(R"(
-units lj
-dimension 2
-boundary f f p
-atom_style mpm
-neighbor 0.5 bin
-region box block 0 20 0 20 -0.5 0.5
-create_box 1 box
-fix grid all mpm 1.0
-region body block 2 18 8 12 -0.5 0.5
-create_points 1 region body ppc 2
-fix m all mpm/material density 1.0 neohookean 10.0 0.3
-variable shift equal 2.0*time
-region pass block 1 6 4 8 INF INF move v_shift NULL NULL
-fix w all mpm/boundary region pass slip
-fix g all gravity 0.1 vector 0 -1 0
-timestep 0.05
-run 0
-)");
+  Scene run(plane("lj", "f f", "0 20 0 20", 1, 0.5) +
+            body("block 2 18 8 12 -0.5 0.5", "density 1.0 neohookean 10.0 0.3") +
+            "variable shift equal 2.0*time\n"
+            "region pass block 1 6 4 8 INF INF move v_shift NULL NULL\n"
+            "fix w all mpm/boundary region pass slip\n"
+            "fix g all gravity 0.1 vector 0 -1 0\ntimestep 0.05\nrun 0\n");
   run.commands("run 60\n");    // the region covers 7 to 12 now
   int held = 0, under = 0;
   run.each_node([&](const Scene::Node &node) {
@@ -1174,9 +921,7 @@ run 0
   EXPECT_GE(all[1], 4);
 }
 
-/* ----------------------------------------------------------------------
-   ranks and restart
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- ranks and restart */
 
 /** Parameter: options of fix mpm | walls */
 class Decomposition : public ::testing::TestWithParam<std::string> {
@@ -1184,23 +929,11 @@ class Decomposition : public ::testing::TestWithParam<std::string> {
   static std::string options(const std::string &param) { return param.substr(0, param.find('|')); }
   std::string scene(const std::string &param)
   {
-    return R"(
-units lj
-boundary f f p
-atom_style mpm
-neighbor 0.3 bin
-region box block 0 12 0 12 0 8
-create_box 1 box
-fix grid all mpm 1.0 )" +
-        options(param) + R"(
-region body block 0 5.5 0 5 1 7
-create_points 1 region body ppc 2
-)" + definitions(param) +
-        R"(
-velocity all set -0.3 -0.4 0.35
-velocity all ramp vx -0.4 0.4 y 0 5 sum yes
-timestep 0.04
-)";
+    return space("lj", "f f p", "0 12 0 12 0 8") + "fix grid all mpm 1.0 " + options(param) +
+        "\nregion body block 0 5.5 0 5 1 7\ncreate_points 1 region body ppc 2\n" +
+        definitions(param) +
+        "velocity all set -0.3 -0.4 0.35\n"
+        "velocity all ramp vx -0.4 0.4 y 0 5 sum yes\ntimestep 0.04\n";
   }
   std::string definitions(const std::string &param)
   {
@@ -1250,41 +983,30 @@ TEST_P(Decomposition, RestartContinues)
     EXPECT_NEAR(parts.fix(fix->id)->compute_scalar(), fix->compute_scalar(), 1.0e-9);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Walls, Decomposition,
-    ::testing::Values(
-        "|fix w all mpm/boundary xlo ylo stick\n",
-        "|fix w all mpm/boundary ylo separate friction 0.3\nfix x all mpm/boundary xlo slip\n",
-        "|fix w all mpm/boundary xlo ylo slip\nfix k all mpm/boundary region knob separate "
-        "friction "
-        "0.2\n",
-        "|fix w all mpm/boundary xlo ylo slip velocity v_speed 0 0\nfix p all mpm/boundary region "
-        "paddle stick\n",
-        "|fix w all mpm/boundary xlo ylo stick\nfix p all mpm/boundary region paddle slip friction "
-        "0.2\n",
-        "origin 0.3 0.4 0.2|fix w all mpm/boundary xlo ylo separate friction 0.3\n",
-        "transfer flip 1.0 scheme musl origin 0.3 0.4 0.2|fix w all mpm/boundary xlo ylo stick\n",
-        "transfer flip 1.0 scheme musl|fix w all mpm/boundary xlo ylo stick velocity v_speed 0 0 "
-        "rotate 1 2 0 0 0 1 v_speed\n",
-        "|fix w all mpm/boundary xlo ylo separate friction 0.3\n",
-        "transfer flip 0.95|fix w all mpm/boundary xlo ylo slip friction 0.2 velocity v_speed 0 "
-        "0\n"));
+static const std::string decomposition_cases[] = {
+    "|fix w all mpm/boundary xlo ylo stick\n",
+    "|fix w all mpm/boundary ylo separate friction 0.3\nfix x all mpm/boundary xlo slip\n",
+    "|fix w all mpm/boundary xlo ylo slip\nfix k all mpm/boundary region knob separate "
+    "friction "
+    "0.2\n",
+    "|fix w all mpm/boundary xlo ylo slip velocity v_speed 0 0\nfix p all mpm/boundary region "
+    "paddle stick\n",
+    "|fix w all mpm/boundary xlo ylo stick\nfix p all mpm/boundary region paddle slip friction "
+    "0.2\n",
+    "origin 0.3 0.4 0.2|fix w all mpm/boundary xlo ylo separate friction 0.3\n",
+    "transfer flip 1.0 scheme musl origin 0.3 0.4 0.2|fix w all mpm/boundary xlo ylo stick\n",
+    "transfer flip 1.0 scheme musl|fix w all mpm/boundary xlo ylo stick velocity v_speed 0 0 "
+    "rotate 1 2 0 0 0 1 v_speed\n",
+    "|fix w all mpm/boundary xlo ylo separate friction 0.3\n",
+    "transfer flip 0.95|fix w all mpm/boundary xlo ylo slip friction 0.2 velocity v_speed 0 "
+    "0\n"};
+INSTANTIATE_TEST_SUITE_P(Walls, Decomposition, ::testing::ValuesIn(decomposition_cases));
 
-/* ----------------------------------------------------------------------
-   several fields
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- several fields */
 
 TEST(Fields, KeywordField)
 {
-  Scene run;
-  run.commands(R"(
-units lj
-dimension 2
-boundary f f p
-atom_style mpm
-neighbor 0.5 bin
-region box block 0 20 0 10 -0.5 0.5
-create_box 2 box
+  Scene run(plane("lj", "f f", "0 20 0 10", 2, 0.5) + R"(
 region one block 2 6 0 4 -0.5 0.5
 region two block 12 16 0 4 -0.5 0.5
 lattice none 1
@@ -1308,17 +1030,9 @@ run 1
   EXPECT_GT(v1, -1.5);
 }
 
-/* ----------------------------------------------------------------------
-   time step
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- time step */
 
-static const char *const dt_scene = R"(
-units lj
-boundary p p p
-atom_style mpm
-neighbor 0.3 bin
-region box block 0 8 0 8 0 8
-create_box 1 box
+static const std::string dt_scene = space("lj", "p p p", "0 8 0 8 0 8") + R"(
 fix grid all mpm 1.0
 region one sphere 2.6 3.0 3.2 1.9
 region two block 4.8 7.3 2.0 5.0 2.5 5.5
@@ -1333,8 +1047,7 @@ velocity one set 0.6 0.35 -0.4
 
 TEST(TimeStep, Limit)
 {
-  Scene run;
-  run.commands(std::string(dt_scene) + "timestep 1e9\nfix step all mpm/dt 0.5 every 1\nrun 0\n");
+  Scene run(dt_scene + "timestep 1e9\nfix step all mpm/dt 0.5 every 1\nrun 0\n");
   const double c = std::sqrt(10.0 * 0.7 / (1.3 * 0.4)), v = std::sqrt(0.36 + 0.1225 + 0.16);
   EXPECT_NEAR(run.lmp->update->dt, 0.5 / (c + v), 1.0e-9);
   auto *fix = run.fix("step");
@@ -1355,8 +1068,7 @@ TEST(TimeStep, Limit)
 
 TEST(TimeStep, GrowthMaxAndMin)
 {
-  Scene run;
-  run.commands(std::string(dt_scene) + "fix step all mpm/dt 0.5 every 2 grow 1.02\nrun 0\n");
+  Scene run(dt_scene + "fix step all mpm/dt 0.5 every 2 grow 1.02\nrun 0\n");
   const double dt0 = run.lmp->update->dt;
   // ten times softer: h/c grows by sqrt(10), the time step 2% at every second step
   run.commands("run 3\n");    // 1 2 3
@@ -1365,17 +1077,14 @@ TEST(TimeStep, GrowthMaxAndMin)
   run.commands("run 40\n");
   EXPECT_GT(run.lmp->update->dt, 0.5 * dt0);
 
-  Scene capped;
-  capped.commands(std::string(dt_scene) + "fix step all mpm/dt 0.5 max 0.01\nrun 20\n");
+  Scene capped(dt_scene + "fix step all mpm/dt 0.5 max 0.01\nrun 20\n");
   EXPECT_EQ(capped.lmp->update->dt, 0.01);
 
-  EXPECT_NE(error_of(std::string(dt_scene) + "fix step all mpm/dt 0.5 min 1.0\nrun 1\n")
-                .find("is below min"),
+  EXPECT_NE(error_of(dt_scene + "fix step all mpm/dt 0.5 min 1.0\nrun 1\n").find("is below min"),
             std::string::npos);
 }
 
 // a body that expands as a whole, in a field whose points take every second step
-
 TEST(TimeStep, StrainOfAStep)
 {
   for (int every : {1, 2})
@@ -1384,9 +1093,8 @@ TEST(TimeStep, StrainOfAStep)
       SCOPED_TRACE(std::string(options) + " every " + std::to_string(every));
       Scene run;
       const double rate = 0.02;    // of each axis
-      run.commands("units lj\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
-                   "region box block 0 8 0 8 0 8\ncreate_box 1 box\nfix grid all mpm 1.0 " +
-                   std::string(options) + (every > 1 ? " every 2" : "") +
+      run.commands(space("lj", "p p p", "0 8 0 8 0 8") + "fix grid all mpm 1.0 " + options +
+                   (every > 1 ? " every 2" : "") +
                    "\nregion body block 2 6 2 6 2 6\ncreate_points 1 region body ppc 2\n"
                    "fix m all mpm/material density 1.0 neohookean 1.0e-6 0.3\n");
       run.set_velocity([=](const double *x, double *v) {
@@ -1406,13 +1114,13 @@ TEST(TimeStep, RestartTakesTheSameSteps)
     const std::string step = std::string("fix step all mpm/dt 0.4 ") + every + "\n";
     const ScratchFile file("restart");
     Scene whole, parts;
-    whole.commands(std::string(dt_scene) + step + "run 60\n");
-    parts.commands(std::string(dt_scene) + step + "run 33\nwrite_restart " + file.name + "\n");
+    whole.commands(dt_scene + step + "run 60\n");
+    parts.commands(dt_scene + step + "run 33\nwrite_restart " + file.name + "\n");
     const double dt33 = parts.lmp->update->dt;
-    parts.commands("clear\nread_restart " + file.name + R"(
-fix grid all mpm 1.0
-fix m all mpm/material density 1.0 neohookean 10.0 0.3
-)" + step + "run 0\n");
+    parts.commands("clear\nread_restart " + file.name +
+                   "\nfix grid all mpm 1.0\n"
+                   "fix m all mpm/material density 1.0 neohookean 10.0 0.3\n" +
+                   step + "run 0\n");
     EXPECT_EQ(parts.lmp->update->dt, dt33);
     parts.commands("run 27\n");
     EXPECT_NEAR(parts.lmp->update->dt, whole.lmp->update->dt, 1.0e-12);
@@ -1423,8 +1131,7 @@ fix m all mpm/material density 1.0 neohookean 10.0 0.3
 
 TEST(TimeStep, ChangedStateIsANewStart)
 {
-  Scene run;
-  run.commands(std::string(dt_scene) + "fix step all mpm/dt 0.5\nrun 5\n");
+  Scene run(dt_scene + "fix step all mpm/dt 0.5\nrun 5\n");
   const double before = run.lmp->update->dt;
   run.commands("velocity all set 40 0 0\nrun 0\n");
   EXPECT_LT(run.lmp->update->dt, 0.2 * before);
@@ -1432,22 +1139,12 @@ TEST(TimeStep, ChangedStateIsANewStart)
   EXPECT_GT(run.lmp->update->dt, 0.9 * before);
 }
 
-/* ----------------------------------------------------------------------
-   bad input
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- bad input */
 
 TEST(BadInput, IsRefusedWithTheReason)
 {
-  const std::string scene = R"(
-units lj
-dimension 2
-boundary p f p
-atom_style mpm
-region box block 0 8 0 8 -0.5 0.5
-create_box 1 box
-fix grid all mpm 1.0
-create_points 1 box ppc 2
-fix m all mpm/material density 1.0 neohookean 10.0 0.3
+  const std::string scene =
+      plane("lj", "p f", "0 8 0 8") + body("box", "density 1.0 neohookean 10.0 0.3") + R"(
 variable ok equal 1
 variable text string x
 variable t equal time
@@ -1510,11 +1207,8 @@ timestep 0.001
 
 TEST(BadInput, NarrowChannels)
 {
-  const std::string scene =
-      "units lj\ndimension 2\nboundary f f p\natom_style mpm\n"
-      "region box block 0 2 0 8 -0.5 0.5\ncreate_box 1 box\nfix grid all mpm 1.0\n"
-      "create_points 1 box ppc 2\n"
-      "fix m all mpm/material density 1.0 neohookean 10.0 0.3\ntimestep 0.001\n";
+  const std::string scene = plane("lj", "f f", "0 2 0 8") +
+      body("box", "density 1.0 neohookean 10.0 0.3") + "timestep 0.001\n";
   EXPECT_NE(
       error_of(scene + "fix w all mpm/boundary xlo slip\nfix v all mpm/boundary xhi slip\nrun 0\n")
           .find("less than 3 cells"),

@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: physics mpi input restart
 // mpi: 1 3
@@ -14,22 +9,12 @@
 
 #include "mpm_lammps.h"
 
-#include "gtest/gtest.h"
-
-#include <cmath>
-
 using namespace MPM_TEST;
 
 // ---------------------------------------------------------------------- head-on impact of two bars
 
 /** Bars of length 1 at a distance of 2.5 node spacings, each with speed 0.05; c = 10. */
-static const char *const bars = R"(
-units si
-dimension 2
-boundary f p p
-atom_style mpm
-region box block -0.3 2.6 0 0.08 -0.05 0.05
-create_box 2 box
+static const std::string bars = plane("si", "f p", "-0.3 2.6 0 0.08 -0.05 0.05", 2) + R"(
 region b1 block 0 1 0 0.08 -0.05 0.05
 region b2 block 1.05 2.05 0 0.08 -0.05 0.05
 group one type 1
@@ -51,7 +36,6 @@ variable gap equal (bound(two,xmin)-bound(one,xmax)-0.01)/0.02
 variable v1 equal vcm(one,x)
 variable v2 equal vcm(two,x)
 variable p equal v_v1*mass(one)+v_v2*mass(two)
-thermo 100000
 )";
 
 static std::string two_bars(const std::string &options, const std::string &contact,
@@ -63,14 +47,12 @@ static std::string two_bars(const std::string &options, const std::string &conta
 }
 
 // A3(a): interface stress rho c v, contact for 2 L/c, rebound with the same speed; momentum exact
-TEST(Contact, EqualBars)
+SERIAL_TEST(Contact, EqualBars)
 {
-  if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
   for (const char *options :
        {"transfer flip 1.0 scheme musl", "transfer apic", "shape cubic transfer flip 1.0"}) {
     SCOPED_TRACE(options);
-    Scene run;
-    run.commands(two_bars(options, ""));
+    Scene run(two_bars(options, ""));
     double first = -1.0, last = 0.0, mean = 0.0, worst = 0.0, touch = 0.0;
     int n = 0;
     for (int k = 0; k < 100; k++) {
@@ -103,16 +85,14 @@ TEST(Contact, EqualBars)
 }
 
 // bodies that are placed next to each other touch from the first step on: round-off does not decide
-TEST(Contact, TouchingIsNotAMatterOfRounding)
+SERIAL_TEST(Contact, TouchingIsNotAMatterOfRounding)
 {
-  if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
   for (const char *options :
        {"shape linear transfer flip 1.0", "transfer apic", "shape cubic", "shape gimp"})
     for (const double shift : {0.0, 0.0031, 0.01, 0.0173}) {
       double force[3];
       for (const int k : {0, 1, 2}) {
-        Scene run;
-        run.commands(
+        Scene run(
             replaced(two_bars(options, ""), "block 1.05 2.05", "block 1 2") +
             strprintf("displace_atoms all move %g 0 0\ndisplace_atoms two move %g 0 0\nrun 1\n",
                       shift, (k - 1) * 1.0e-13));
@@ -125,11 +105,9 @@ TEST(Contact, TouchingIsNotAMatterOfRounding)
 }
 
 // without the gap rule bodies feel each other more than a node spacing apart
-TEST(Contact, WithoutTheGapRuleContactIsEarly)
+SERIAL_TEST(Contact, WithoutTheGapRuleContactIsEarly)
 {
-  if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
-  Scene run;
-  run.commands(two_bars("transfer flip 1.0 scheme musl", "gap no"));
+  Scene run(two_bars("transfer flip 1.0 scheme musl", "gap no"));
   double touch = 0.0;
   for (int k = 0; k < 150 && touch == 0.0; k++) {
     run.commands("run 20 post no\n");
@@ -141,9 +119,8 @@ TEST(Contact, WithoutTheGapRuleContactIsEarly)
 
 // between walls without friction, half of the volume of the nodes at a wall is outside: bars touch there
 // as they do where they are continued periodically
-TEST(Contact, BarsBetweenWalls)
+SERIAL_TEST(Contact, BarsBetweenWalls)
 {
-  if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
   for (const char *options :
        {"transfer apic", "shape cubic", "shape gimp", "transfer flip 1.0 scheme musl",
         "transfer flip 1.0 edges modified"}) {
@@ -154,8 +131,7 @@ TEST(Contact, BarsBetweenWalls)
       if (k)
         text = replaced(text, "boundary f p p", "boundary f f p") +
             "fix walls all mpm/boundary ylo yhi slip\n";
-      Scene run;
-      run.commands(text + "run 1500\n");
+      Scene run(text + "run 1500\n");
       v[k] = measured("speed", run.evaluate("v_v1"));
       f[k] = measured("force", run.evaluate("f_c[1][1]"));
     }
@@ -165,11 +141,9 @@ TEST(Contact, BarsBetweenWalls)
 }
 
 // A3(c): Z = 10 and 40: stress Z1 Z2/(Z1 + Z2) (v1 - v2), interface velocity (Z1 v1 + Z2 v2)/(Z1 + Z2)
-TEST(Contact, DifferentImpedances)
+SERIAL_TEST(Contact, DifferentImpedances)
 {
-  if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
-  Scene run;
-  run.commands(two_bars("transfer flip 1.0 scheme musl", "", "4", "400"));
+  Scene run(two_bars("transfer flip 1.0 scheme musl", "", "4", "400"));
   double mean = 0.0;
   int n = 0;
   for (int k = 0; k < 66; k++) {
@@ -187,13 +161,7 @@ TEST(Contact, DifferentImpedances)
 // ---------------------------------------------------------------------- friction
 
 /** A block or a disk on a plane, gravity tilted by 30 degrees; F2 of the literature. */
-static const char *const incline = R"(
-units si
-dimension 2
-boundary f f p
-atom_style mpm
-region box block 0 3 0 2 -0.05 0.05
-create_box 2 box
+static const std::string incline = plane("si", "f f", "0 3 0 2 -0.05 0.05", 2) + R"(
 region plane block 0 3 0 0.5 -0.05 0.05
 region body BODY
 group plane type 1
@@ -214,7 +182,6 @@ fix dt all mpm/dt 0.5
 compute e all mpm/energy
 variable x equal xcm(body,x)
 variable v equal vcm(body,x)
-thermo 100000
 )";
 
 static std::string on_incline(const std::string &body, const std::string &spacing,
@@ -226,16 +193,13 @@ static std::string on_incline(const std::string &body, const std::string &spacin
 
 // The block settles on the plane, damped and stuck; then it is let go, with friction from zero across the
 // limit of sticking, tan(30 degrees) = 0.577. Its elasticity makes it jump a little at first
-
-TEST(Friction, BlockSlidesOrSticks)
+SERIAL_TEST(Friction, BlockSlidesOrSticks)
 {
-  if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
   const double g = 9.81, sine = 0.5, cosine = std::sqrt(0.75);
   for (const char *transfer : {"apic", "flip 1.0"})
     for (const double mu : {0.0, 0.1, 0.3, 0.55, 0.6}) {
       SCOPED_TRACE(std::string(transfer) + " " + std::to_string(mu));
-      Scene run;
-      run.commands(on_incline("block 0.5 1.5 0.5 1.0 -0.05 0.05", "0.1", transfer, mu));
+      Scene run(on_incline("block 0.5 1.5 0.5 1.0 -0.05 0.05", "0.1", transfer, mu));
       run.commands("unfix c\nfix c all mpm/contact F1 F2 law stick\nfix damp body viscous 750\n"
                    "run 500\nunfix damp\nunfix c\n" +
                    strprintf("fix c all mpm/contact F1 F2 law coulomb %g\n", mu) +
@@ -263,14 +227,12 @@ TEST(Friction, BlockSlidesOrSticks)
     }
 }
 
-TEST(Friction, DiskRollsOrSlips)
+SERIAL_TEST(Friction, DiskRollsOrSlips)
 {
-  if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
   const double g = 9.81, sine = 0.5, cosine = std::sqrt(0.75);
   for (const double mu : {0.1, 0.17, 0.22, 0.3}) {    // it rolls from 0.192 on
     SCOPED_TRACE(mu);
-    Scene run;
-    run.commands(on_incline("cylinder z 0.7 1.0 0.5 -0.05 0.05", "0.05", "apic", mu));
+    Scene run(on_incline("cylinder z 0.7 1.0 0.5 -0.05 0.05", "0.05", "apic", mu));
     run.commands("run 4000\n");
     const double t = run.evaluate("time");
     const bool rolls = std::tan(M_PI / 6) <= 3 * mu;
@@ -281,14 +243,7 @@ TEST(Friction, DiskRollsOrSlips)
   }
 }
 
-static const char *const disks = R"(
-units lj
-dimension 2
-boundary p p p
-atom_style mpm
-neighbor 0.3 bin
-region box block 0 24 0 12 -0.5 0.5
-create_box 2 box
+static const std::string disks = plane("lj", "p p", "0 24 0 12", 2) + R"(
 region one cylinder z 3.1 6.2 2.5 INF INF
 region two cylinder z 20.9 5.3 2.5 INF INF
 group one type 1
@@ -304,18 +259,10 @@ fix c all mpm/contact F1 F2 law coulomb 0.3
 velocity one set -0.5 0.02 0
 velocity two set 0.5 0 0
 timestep 0.01
-thermo 1000
 )";
 
 // A block that slides without friction on a plane at an angle to the lattice: what the normals are worth.
-
-static const char *const tilted = R"(
-units si
-dimension 2
-boundary f f p
-atom_style mpm
-region box block 0 4 0 3 -0.05 0.05
-create_box 2 box
+static const std::string tilted = plane("si", "f f", "0 4 0 3 -0.05 0.05", 2) + R"(
 variable s equal sin(ANGLE*PI/180)
 variable c equal cos(ANGLE*PI/180)
 region slab block 0.6 3.4 0.8 1.3 -0.05 0.05
@@ -337,18 +284,15 @@ fix c all mpm/contact F1 F2 normal NORMAL
 fix g body gravity 9.81 vector 0 -1 0
 fix dt all mpm/dt 0.5
 variable v equal vcm(body,x)*v_c-vcm(body,y)*v_s
-thermo 100000
 run 1400
 )";
 
-TEST(Normals, LogisticRegressionFindsAnInclinedPlane)
+SERIAL_TEST(Normals, LogisticRegressionFindsAnInclinedPlane)
 {
-  if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
   for (const int angle : {20, 35}) {
     double others = 1.0;    // the better of the two
     for (const char *normal : {"colinear", "volume", "logistic"}) {
-      Scene run;
-      run.commands(replaced(replaced(tilted, "ANGLE", std::to_string(angle)), "NORMAL", normal));
+      Scene run(replaced(replaced(tilted, "ANGLE", std::to_string(angle)), "NORMAL", normal));
       const double exact = 9.81 * std::sin(angle * M_PI / 180.0) * run.evaluate("time");
       const double ratio =
           measured(std::to_string(angle) + " degrees, " + normal, run.evaluate("v_v") / exact);
@@ -375,14 +319,7 @@ TEST(Normals, LogisticRegressionIsTheSameOnAnyNumberOfRanks)
 }
 
 // ---------------------------------------------------------------------- three bodies at a node
-
-static const char *const corner = R"(
-units lj
-dimension 2
-boundary p p p
-atom_style mpm
-region box block 0 16 0 16 -0.5 0.5
-create_box 3 box
+static const std::string corner = plane("lj", "p p", "0 16 0 16", 3) + R"(
 region b1 block 2 8 2 8 -0.5 0.5
 region b2 block 8 14 2 8 -0.5 0.5
 region b3 block 5 11 8 14 -0.5 0.5
@@ -406,15 +343,13 @@ fix c all mpm/contact FIELDS law coulomb 0.4
 timestep 0.01
 variable px equal vcm(all,x)*mass(all)
 variable py equal vcm(all,y)*mass(all)
-thermo 1000
 )";
 
 TEST(ManyBodies, OrderOfNamesDoesNotMatter)
 {
   std::vector<Scene::State> reference;
   for (const char *names : {"F1 F2 F3", "F3 F1 F2", "F2 F3 F1"}) {
-    Scene run;
-    run.commands(replaced(corner, "FIELDS", names));
+    Scene run(replaced(corner, "FIELDS", names));
     run.commands("run 0\n");
     const double px = run.evaluate("v_px"), py = run.evaluate("v_py");
     run.commands("run 200\n");
@@ -432,12 +367,9 @@ TEST(ManyBodies, OrderOfNamesDoesNotMatter)
 
 // a plate of half a cell between two bars that close in on it: after contact no two of the three approach
 // each other, at any node, and their momentum is what it was
-
-TEST(ManyBodies, NoneApproaches)
+SERIAL_TEST(ManyBodies, NoneApproaches)
 {
-  if (nranks() > 1) GTEST_SKIP() << "nodes of one rank";
-  Scene run;
-  run.commands(
+  Scene run(
       replaced(replaced(replaced(replaced(replaced(corner, "b1 block 2 8 2 8", "b1 block 2 8 0 16"),
                                           "b2 block 8 14 2 8", "b2 block 8.5 14 0 16"),
                                  "b3 block 5 11 8 14", "b3 block 8 8.5 0 16"),
@@ -459,20 +391,23 @@ TEST(ManyBodies, NoneApproaches)
 }
 
 // ---------------------------------------------------------------------- ranks, periodic faces, restart
-
-TEST(Parallel, RanksAgreeAcrossAPeriodicFace)
+TEST(Parallel, RanksAgreeAcrossAPeriodicFaceAndAfterARestart)
 {
-  OnRanks run(disks, "run 300\n");
+  Twins run(disks, 120,
+            "fix F1 one mpm 0.5\nfix F2 two mpm 0.5\n"
+            "fix m all mpm/material density 1 neohookean 50 0.3\n"
+            "fix c all mpm/contact F1 F2 law coulomb 0.3\n",
+            180, 1e-11);
   run.serial.commands("variable v equal vcm(one,x)\n");
   EXPECT_GT(run.serial.evaluate("v_v"), -0.25);    // they have met through the face
-  EXPECT_LT(run.difference(), 1e-11);
+  const double work = run.whole.evaluate("f_c");
+  EXPECT_NE(work, 0.0);
+  EXPECT_NEAR(run.again.evaluate("f_c"), work, 1e-12 * std::fabs(work));
 }
 
 // Bodies that meet next to a wall: walls have the last word, wherever they are defined.
-
-TEST(Order, WallsActAfterContact)
+SERIAL_TEST(Order, WallsActAfterContact)
 {
-  if (nranks() > 1) GTEST_SKIP() << "nodes of one rank";
   const std::string scene = replaced(replaced(disks, "region two cylinder z 20.9 5.3 2.5 INF INF",
                                               "region two block 5.8 10 0 6 -0.5 0.5"),
                                      "boundary p p p", "boundary p f p");
@@ -491,7 +426,6 @@ TEST(Order, WallsActAfterContact)
   EXPECT_LT(before.evaluate("v_v"), 0.3);    // they have met
 
   // friction between the bodies pushes nodes at the wall up and down: the wall does not let them
-
   int both = 0;
   for (const std::string id : {"F1", "F2"}) {
     const auto look = [&](const Scene::Node &node) {
@@ -505,24 +439,10 @@ TEST(Order, WallsActAfterContact)
   EXPECT_GT(after.evaluate("f_c[1][4]"), 0.0);    // they push now
 }
 
-TEST(Restart, ContinuesExactly)
-{
-  Continued run(disks, 120,
-                "neighbor 0.3 bin\nfix F1 one mpm 0.5\nfix F2 two mpm 0.5\n"
-                "fix m all mpm/material density 1 neohookean 50 0.3\n"
-                "fix c all mpm/contact F1 F2 law coulomb 0.3\nthermo 1000\n",
-                120);
-  EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
-  const double work = run.whole.evaluate("f_c");
-  EXPECT_NE(work, 0.0);
-  EXPECT_NEAR(run.again.evaluate("f_c"), work, 1e-12 * std::fabs(work));
-}
-
 TEST(Restart, RefusesAnotherNumberOfBodies)
 {
   const ScratchFile file("restart");
-  Scene whole;
-  whole.commands(std::string(disks) + "run 10\nwrite_restart " + file.name + "\n");
+  Scene whole(disks + "run 10\nwrite_restart " + file.name + "\n");
   expect_refused(
       "read_restart " + file.name + "\nneighbor 0.3 bin\n",
       {{"group three empty\nfix F1 one mpm 0.5\nfix F2 two mpm 0.5\nfix F3 three mpm 0.5\n"
@@ -533,13 +453,10 @@ TEST(Restart, RefusesAnotherNumberOfBodies)
 
 // friction at rest may be larger: the block stays where it would slide with the other one, and slides with
 // that when it moves. (At the ends of the block the pull is a multiple of the mean.)
-
-TEST(Friction, StaticAndKinetic)
+SERIAL_TEST(Friction, StaticAndKinetic)
 {
-  if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
   for (const double v : {0.0, 0.2}) {
-    Scene run;
-    run.commands(on_incline("block 0.5 1.5 0.5 1.0 -0.05 0.05", "0.1", "apic", 0.0));
+    Scene run(on_incline("block 0.5 1.5 0.5 1.0 -0.05 0.05", "0.1", "apic", 0.0));
     run.commands(
         "unfix c\nfix c all mpm/contact F1 F2 law stick\nfix damp body viscous 750\n"
         "run 500\nunfix damp\nunfix c\n" +
@@ -566,15 +483,7 @@ TEST(Friction, StaticAndKinetic)
 // have nodes in common, two cells apart with quadratic functions, as if the material went on between
 // them: they do not touch, and do not slide freely. Two fields touch where they are, and do
 // slide
-
-static const char *const lobes = R"(
-units lj
-dimension 2
-boundary p p p
-atom_style mpm
-neighbor 0.3 bin
-region box block 0 16 0 4 -0.5 0.5
-create_box 2 box
+static const std::string lobes = plane("lj", "p p", "0 16 0 4", 2) + R"(
 region one block 2 7 0 4 -0.5 0.5
 region two block 9 14 0 4 -0.5 0.5
 group one type 1
@@ -591,19 +500,16 @@ velocity two set -0.2 -0.2 0
 timestep 0.01
 variable slide equal vcm(one,y)-vcm(two,y)
 variable gap equal bound(two,xmin)-bound(one,xmax)-0.25
-thermo 100000
 )";
 
-TEST(SelfContact, LobesStick)
+SERIAL_TEST(SelfContact, LobesStick)
 {
-  if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
   double slide[2], gap[2] = {100.0, 100.0}, touch[2] = {-1.0, -1.0};    // gaps in cells
   for (int k = 0; k < 2; k++) {
     const std::string fields = k
         ? "fix F1 one mpm 0.5\nfix F2 two mpm 0.5\nfix c all mpm/contact F1 F2"
         : "group both type 1 2\nfix F1 both mpm 0.5";
-    Scene run;
-    run.commands(replaced(replaced(lobes, "FIRST", "F1"), "FIELDS", fields));
+    Scene run(replaced(replaced(lobes, "FIRST", "F1"), "FIELDS", fields));
     for (int n = 0; n < 80; n++) {
       run.commands("run 10 post no\n");
       gap[k] = std::min(gap[k], run.evaluate("v_gap/0.5"));
@@ -643,11 +549,9 @@ static std::string drawn_bars(const std::string &law, const std::string &velocit
 
 // a bar is drawn off another one that is held: the pull reaches strength times area, the work is
 // the work of release times area
-TEST(Adhesion, StrengthAndWork)
+SERIAL_TEST(Adhesion, StrengthAndWork)
 {
-  if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
-  Scene run;
-  run.commands(drawn_bars("law adhesive 0.02 1.0 2e-4 gap yes", "0.02 0 0"));
+  Scene run(drawn_bars("law adhesive 0.02 1.0 2e-4 gap yes", "0.02 0 0"));
   double largest = 0.0, after = 0.0, work = 0.0;
   for (int k = 0; k < 300; k++) {
     run.commands("run 20 post no\n");
@@ -663,11 +567,9 @@ TEST(Adhesion, StrengthAndWork)
 }
 
 // the same bars drawn along each other: strength in shear times area, however far they slide
-TEST(Adhesion, Shear)
+SERIAL_TEST(Adhesion, Shear)
 {
-  if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
-  Scene run;
-  run.commands(drawn_bars("law adhesive 0.2 0.01 2e-3", "0 0.01 0") + "run 5000\n");
+  Scene run(drawn_bars("law adhesive 0.2 0.01 2e-3", "0 0.01 0") + "run 5000\n");
   for (int k = 0; k < 5; k++) {
     run.commands("run 200 post no\n");
     EXPECT_NEAR(
@@ -678,7 +580,6 @@ TEST(Adhesion, Shear)
 }
 
 // ---------------------------------------------------------------------- input that cannot work
-
 TEST(BadInput, IsRefused)
 {
   const std::string scene = replaced(disks, "fix c all mpm/contact F1 F2 law coulomb 0.3\n", "");

@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: physics
 // timeout: 300
@@ -15,17 +10,10 @@
 
 #include "mpm_lammps.h"
 
-#include "gtest/gtest.h"
-
-#include <cmath>
-
 using namespace MPM_TEST;
-
-static constexpr double PI = 3.14159265358979323846;
 
 // both bars have the length 1 and the speed of waves 10; Z1 = 10. A pulse of stress p sin^2(pi t/tau) at
 // the left end is 0.3 long.
-
 static constexpr double PULSE = 0.03, WIDTH = 0.16;
 
 static const char *const bars = R"(
@@ -48,7 +36,6 @@ fix m1 one mpm/material density 1 linear 100 0
 fix m2 two mpm/material density RATIO linear $(100*RATIO) 0
 fix c all mpm/contact F1 F2
 timestep $(0.04*v_h)
-thermo 100000
 variable p1 equal vcm(one,x)*mass(one)/0.16
 variable p2 equal vcm(two,x)*mass(two)/0.16
 variable gap equal bound(two,xmin)-bound(one,xmax)-0.5*v_h
@@ -86,7 +73,6 @@ struct Bars {
 
 // The pulse has 15 and 30 cells. Nodes that two bodies share have an error of their own, which falls
 // with more than the first power of the spacing
-
 class Waves : public ::testing::TestWithParam<const char *> {};
 
 TEST_P(Waves, CompressionPasses)
@@ -118,7 +104,6 @@ TEST_P(Waves, CompressionPasses)
 
 // A compressive pulse comes back from the free end as tension, which parts the bars: the gap is twice the
 // displacement impulse/Z2 that a pulse carries. Tension from the first bar does not pass
-
 TEST_P(Waves, TensionParts)
 {
   double error[2];

@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: physics mpi restart
 // mpi: 1 4
@@ -14,10 +9,6 @@
 // and in any order of the fixes; what is out of reach changes nothing.
 
 #include "mpm_lammps.h"
-
-#include "gtest/gtest.h"
-
-#include <cmath>
 
 using namespace MPM_TEST;
 
@@ -44,7 +35,6 @@ set group grain diameter 2 density 2
 velocity high set 0.2 0.1 -0.1
 velocity grain set 0.3 0 -0.8
 timestep 0.01
-thermo 1000
 )";
 
 static const std::string pair =
@@ -81,19 +71,16 @@ TEST(Coupling, IsTheSameOnAnyNumberOfRanks)
 }
 
 // without history of the contacts, which has its own test: test_restart_grains.py
-
 TEST(Coupling, GoesOnFromARestartFile)
 {
   const std::string no_history = replaced(pair, "linear_history 20.0", "linear_nohistory");
   Continued run(head + all_fixes() + no_history, 120,
-                "neighbor 0.3 multi\ncomm_modify vel yes mode multi\nthermo 1000\n" + all_fixes() +
-                    no_history,
+                "neighbor 0.3 multi\ncomm_modify vel yes mode multi\n" + all_fixes() + no_history,
                 80);
   EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
 }
 
 // the fixes in their order, reversed, and rotated: sums may be in another order, no more
-
 TEST(Coupling, OrderOfFixesDoesNotMatter)
 {
   std::vector<Scene::State> reference;
@@ -102,8 +89,7 @@ TEST(Coupling, OrderOfFixesDoesNotMatter)
     std::string text = head;
     for (int k = 0; k < n; k++)
       text += shift < 0 ? fixes[n - 1 - k] : fixes[(k + shift + n - 1) % n];
-    Scene run;
-    run.commands(text + pair + "run 150\n");
+    Scene run(text + pair + "run 150\n");
     const auto state = run.gather();
     if (reference.empty()) reference = state;
     EXPECT_LT(measured("difference", difference(state, reference)), 1.0e-10) << text;
@@ -112,17 +98,13 @@ TEST(Coupling, OrderOfFixesDoesNotMatter)
 
 // grains that bounce on each other out of reach: bodies move as if there were none, to the last bit,
 // and so do the grains without the bodies
-
-TEST(Coupling, OutOfReachIsNoCoupling)
+SERIAL_TEST(Coupling, OutOfReachIsNoCoupling)
 {
-  if (nranks() > 1) GTEST_SKIP() << "ranks may share the box in another way";
   const std::string away = "displace_atoms grain move 0 0 5\nvelocity grain set 0 0 0\n"
                            "velocity grain ramp vx 0.5 -0.5 x 4 7\n";
   // lists renewed, and with them points sorted, at the same steps
   const auto state = [&](const std::string &text, int steps) {
-    Scene run;
-    run.commands(text + "neigh_modify every 5 delay 0 check no\nrun " + std::to_string(steps) +
-                 "\n");
+    Scene run(text + "neigh_modify every 5 delay 0 check no\nrun " + std::to_string(steps) + "\n");
     return run.gather();
   };
   std::string bodies = head, without;
@@ -153,21 +135,13 @@ TEST(Coupling, OutOfReachIsNoCoupling)
    half cycle, whatever the amplitude, and leaves the block within mu m g/k of the rest position.
 ------------------------------------------------------------------------- */
 
-TEST(Friction, OscillationDecaysLinearly)
+SERIAL_TEST(Friction, OscillationDecaysLinearly)
 {
-  if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
   const double mass = 500.0, gravity = 9.81, mu = 0.1, omega = 2.0 * M_PI / 0.4;
   const double k = mass * omega * omega, drop = 2.0 * mu * mass * gravity / k;
   for (const char *transfer : {"apic", "flip 1.0"}) {
     SCOPED_TRACE(transfer);
-    Scene run;
-    run.commands(replaced(R"(
-units si
-dimension 2
-boundary f f p
-atom_style mpm
-region box block 0 2 0 1.5 -0.05 0.05
-create_box 2 box
+    Scene run(replaced(plane("si", "f f", "0 2 0 1.5 -0.05 0.05", 2) + R"(
 region plane block 0 2 0 0.5 -0.05 0.05
 region body block 0.5 1.5 0.5 1.0 -0.05 0.05
 create_points 1 region plane spacing 0.05
@@ -184,10 +158,9 @@ fix c all mpm/contact F1 F2 law coulomb 0.1
 fix g body gravity 9.81 vector 0 -1 0
 fix dt all mpm/dt 0.5
 variable x equal xcm(body,x)
-thermo 100000
 run 3000
 )",
-                          "TRANSFER", transfer));
+                       "TRANSFER", transfer));
     run.commands(strprintf("variable rest equal %.17g\n", run.evaluate("v_x") - 0.05) +
                  strprintf("variable f equal %.17g*(v_rest-xcm(body,x))\n", k / 200.0) +
                  "fix spring body addforce v_f 0 0\nrun 0\n");

@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: physics restart
 // mpi: 1 4
@@ -13,10 +8,6 @@
 // Bodies that break: what is deleted is told, history goes with the points, cracks cost energy.
 
 #include "mpm_lammps.h"
-
-#include "gtest/gtest.h"
-
-#include <cmath>
 
 using namespace MPM_TEST;
 
@@ -46,7 +37,7 @@ std::string plate(const std::string &options, const std::string &damage)
       "create_points 1 region plate ppc 2\n" +
       "fix m all mpm/material density 1.0 eos linear 100.0 strength elastic 60.0 " + damage +
       "\nvelocity all ramp vx -1.5 2.0 x 6 18\nvelocity all ramp vy -0.3 0.3 x 6 18 sum yes\n"
-      "fix step all mpm/dt 0.3\nthermo 1000\n";
+      "fix step all mpm/dt 0.3\n";
 }
 
 const std::string brittle = "damage rankine 6.0 weibull 6 0.25 77 ";
@@ -57,9 +48,8 @@ TEST(Deletion, MassAndMomentumAreTold)
 {
   for (const std::string scheme : {"usl", "musl", "usf"}) {
     SCOPED_TRACE(scheme);
-    Scene run;
-    run.commands(plate("failed delete scheme " + scheme, brittle) +
-                 "compute e all mpm/energy\nthermo_style custom step c_e\nrun 0\n");
+    Scene run(plate("failed delete scheme " + scheme, brittle) +
+              "compute e all mpm/energy\nthermo_style custom step c_e\nrun 0\n");
     const auto start = run.gather();
     double before[4] = {}, after[4] = {};
     for (const auto &s : start) {
@@ -94,8 +84,7 @@ TEST(Deletion, MassAndMomentumAreTold)
 
 TEST(Deletion, IsOff)
 {
-  Scene run;
-  run.commands(plate("", brittle + "after none") + "run 150\nrun 0\n");
+  Scene run(plate("", brittle + "after none") + "run 150\nrun 0\n");
   EXPECT_EQ(run.fix_vector("grid", 11)[6], 0.0);
   const auto D = history(run, "damage");
   const auto end = run.gather();
@@ -143,7 +132,7 @@ TEST(DamageRestart, ContinuesBitwise)
     Continued run(plate("", law), 80,
                   "neighbor 0.3 bin\nfix grid all mpm 1.0\n"
                   "fix m all mpm/material density 1.0 eos linear 100.0 strength elastic 60.0 " +
-                      law + "\nfix step all mpm/dt 0.3\nthermo 1000\n",
+                      law + "\nfix step all mpm/dt 0.3\n",
                   60);
     auto &whole = run.whole, &again = run.again;
     EXPECT_TRUE(identical(whole.gather(), again.gather()));
@@ -163,24 +152,23 @@ TEST(DamageRestart, ContinuesBitwise)
 double crack_energy(const std::string &options, double h, const std::string &rest)
 {
   const double GC = 0.004;
-  Scene run(MPI_COMM_SELF);
-  run.commands(strprintf(
-      "units lj\ndimension 2\nboundary f p p\natom_style mpm\nneighbor %g bin\n"
-      "region box block -6 6 0 %g -0.5 0.5\ncreate_box 2 box\n"
-      "fix grid all mpm %g %s\nregion bar block -4 4 INF INF INF INF\n"
-      "region left block -6 -3.5 INF INF INF INF\nregion right block 3.5 6 INF INF INF INF\n"
-      "region weak block 0 %g INF INF INF INF\n"
-      "create_points 1 region bar ppc 2\nset region weak type 2\n"
-      "group strong type 1\ngroup weak type 2\n"
-      "fix m1 strong mpm/material density 1.0 eos linear 100.0 strength elastic 60.0 %s\n"
-      "fix m2 weak mpm/material density 1.0 eos linear 100.0 strength elastic 60.0 "
-      "damage rankine 0.3 soften energy %g\n"
-      "fix l all mpm/boundary region left stick velocity -0.004 NULL NULL\n"
-      "fix r all mpm/boundary region right stick velocity 0.004 NULL NULL\n"
-      "velocity all ramp vx -0.004 0.004 x -3.5 3.5\n"
-      "compute e all mpm/energy\nthermo_style custom step time c_e[12]\n"
-      "fix step all mpm/dt 0.5\nrun %d\n",
-      0.5 * h, 2 * h, h, options.c_str(), h, rest.c_str(), GC, (int) (30.0 / (0.5 * h / 13.5))));
+  Scene run(
+      plane("lj", "f p", strprintf("-6 6 0 %g", 2 * h), 2, 0.5 * h) +
+          strprintf(
+              "fix grid all mpm %g %s\nregion bar block -4 4 INF INF INF INF\n"
+              "region left block -6 -3.5 INF INF INF INF\n"
+              "region right block 3.5 6 INF INF INF INF\n"
+              "region weak block 0 %g INF INF INF INF\ncreate_points 1 region bar ppc 2\n"
+              "set region weak type 2\ngroup strong type 1\ngroup weak type 2\n"
+              "fix m1 strong mpm/material density 1.0 eos linear 100.0 strength elastic 60.0 %s\n"
+              "fix m2 weak mpm/material density 1.0 eos linear 100.0 strength elastic 60.0 damage "
+              "rankine 0.3 soften energy %g\n"
+              "fix l all mpm/boundary region left stick velocity -0.004 NULL NULL\n"
+              "fix r all mpm/boundary region right stick velocity 0.004 NULL NULL\n"
+              "velocity all ramp vx -0.004 0.004 x -3.5 3.5\ncompute e all mpm/energy\n"
+              "thermo_style custom step time c_e[12]\nfix step all mpm/dt 0.5\nrun %d\n",
+              h, options.c_str(), h, rest.c_str(), GC, (int) (30.0 / (0.5 * h / 13.5))),
+      MPI_COMM_SELF);
   auto *e = run.lmp->modify->get_compute_by_id("e");
   e->compute_vector();
   return e->vector[11] / (2 * h * GC);

@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: physics
 // mpi: 1 2
@@ -13,17 +8,12 @@
 
 #include "mpm_lammps.h"
 
-#include "gtest/gtest.h"
-
 using namespace MPM_TEST;
 using MPM_NS::NODES_PER_BLOCK;
 
-static const std::string full = "units lj\nboundary f p f\natom_style mpm\nneighbor 0.3 bin\n"
-                                "region box block 0 6 0 5 0 4\ncreate_box 1 box\n"
-                                "fix grid all mpm 1.0 OPTIONS edges modified\n"
-                                "create_points 1 box ppc 2\n"
-                                "fix m all mpm/material density 1.0 neohookean 10.0 0.3\n"
-                                "timestep 0.001\nthermo 1000\n";
+static const std::string full = space("lj", "f p f", "0 6 0 5 0 4") +
+    body("box", "density 1.0 neohookean 10.0 0.3", "1.0 OPTIONS edges modified") +
+    "timestep 0.001\n";
 
 /** B-spline of a node at the place i next to a face at 0, at the distance x from the face. */
 static double modified(int order, int i, double x)
@@ -40,13 +30,10 @@ static double modified(int order, int i, double x)
 }
 
 // The mass of the nodes is that of these functions, and there is none outside.
-
-TEST(Edges, FunctionsAreModified)
+SERIAL_TEST(Edges, FunctionsAreModified)
 {
-  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
   for (int order : {2, 3}) {
-    Scene run;
-    run.commands(
+    Scene run(
         replaced(full, "OPTIONS",
                  order == 2 ? "transfer flip 1.0" : "shape cubic transfer flip 1.0 scheme musl") +
         "displace_atoms all random 0.1 0.1 0.1 4711 units box\nrun 1 post no\n");
@@ -80,8 +67,7 @@ TEST(Edges, FunctionsAreModified)
 
 // Linear fields are exact next to the faces, although only nodes inside and on them count: a turn by an angle
 // a that all nodes are given is that of all points, and F is its matrix.
-
-TEST(Edges, LinearFieldsAreExact)
+SERIAL_TEST(Edges, LinearFieldsAreExact)
 {
   for (const char *options :
        {"transfer flip 1.0", "transfer pic scheme musl", "shape cubic transfer flip 1.0"}) {
@@ -109,13 +95,12 @@ TEST(Edges, LinearFieldsAreExact)
 }
 
 // A body that moves along its faces keeps its velocity, old and new ones of the nodes alike.
-
-TEST(Edges, UniformMotionIsKept)
+SERIAL_TEST(Edges, UniformMotionIsKept)
 {
   for (const char *options : {"transfer flip 1.0", "transfer flip 1.0 scheme musl", "transfer pic",
                               "shape cubic transfer flip 0.5 scheme usf"}) {
-    Scene run{MPI_COMM_SELF};
-    run.commands(replaced(full, "OPTIONS", options) + "velocity all set 0 0.5 0\nrun 5\n");
+    Scene run(replaced(full, "OPTIONS", options) + "velocity all set 0 0.5 0\nrun 5\n",
+              MPI_COMM_SELF);
     for (int i = 0; i < run.n(); i++) {
       EXPECT_NEAR(run.v()[i][0], 0.0, 1.0e-14) << options;
       EXPECT_NEAR(run.v()[i][1], 0.5, 1.0e-14) << options;
@@ -127,14 +112,13 @@ TEST(Edges, UniformMotionIsKept)
 // A body that fills a closed box under uniform pressure stays at rest: the sum over points of V grad N of a
 // node inside is zero. That of two points per cell is exact for quadratic functions, whose gradients are
 // linear in between.
-
-TEST(Edges, UniformPressureMakesNoForce)
+SERIAL_TEST(Edges, UniformPressureMakesNoForce)
 {
   for (const char *options : {"transfer flip 1.0", "transfer flip 1.0 scheme usf",
                               "transfer flip 1.0 locking pressure"}) {
-    Scene run{MPI_COMM_SELF};
-    run.commands(replaced(full, "OPTIONS", options) +
-                 "fix box all mpm/boundary xlo xhi zlo zhi slip\n");
+    Scene run(replaced(full, "OPTIONS", options) +
+                  "fix box all mpm/boundary xlo xhi zlo zhi slip\n",
+              MPI_COMM_SELF);
     for (int i = 0; i < run.n(); i++)
       for (int c = 0; c < 3; c++) run.points().tau[i][c] = -1.0;
     run.commands("run 1\n");
@@ -145,18 +129,17 @@ TEST(Edges, UniformPressureMakesNoForce)
 
 // What nodes give to points has the same functions as what points give to nodes: a body that touches all
 // faces keeps its momentum, and neither velocities nor their gradients change where all points have one.
-
-TEST(Edges, KeepMomentum)
+SERIAL_TEST(Edges, KeepMomentum)
 {
   for (const char *options :
        {"transfer pic", "transfer flip 1.0", "transfer flip 1.0 scheme usavg",
         "transfer flip 1.0 frame total", "shape cubic transfer flip 1.0 scheme musl",
         "shape cubic transfer pic scheme usf"}) {
     SCOPED_TRACE(options);
-    Scene run{MPI_COMM_SELF};
-    run.commands(replaced(replaced(full, "OPTIONS", options), "0.001", "0.05") +
-                 "displace_atoms all random 0.05 0.05 0.05 4711 units box\n"
-                 "variable v atom random(-0.1,0.1,4711)\nvelocity all set v_v v_v v_v\n");
+    Scene run(replaced(replaced(full, "OPTIONS", options), "0.001", "0.05") +
+                  "displace_atoms all random 0.05 0.05 0.05 4711 units box\n"
+                  "variable v atom random(-0.1,0.1,4711)\nvelocity all set v_v v_v v_v\n",
+              MPI_COMM_SELF);
     const auto before = run.sums();
     run.commands("run 20\n");
     const auto after = run.sums();
@@ -165,16 +148,15 @@ TEST(Edges, KeepMomentum)
     for (int i = 0; i < run.n(); i++) stress = std::max(stress, std::abs(run.points().tau[i][0]));
     EXPECT_GT(stress, 0.01);
   }
-  Scene run{MPI_COMM_SELF};
-  run.commands(replaced(full, "OPTIONS", "transfer flip 1.0 scheme usavg") +
-               "displace_atoms all random 0.05 0.05 0.05 4711 units box\nvelocity all set 0.3 0.2 "
-               "0.1\nrun 20\n");
+  Scene run(replaced(full, "OPTIONS", "transfer flip 1.0 scheme usavg") +
+                "displace_atoms all random 0.05 0.05 0.05 4711 units box\nvelocity all set 0.3 0.2 "
+                "0.1\nrun 20\n",
+            MPI_COMM_SELF);
   for (int i = 0; i < run.n(); i++)
     for (int c = 0; c < 6; c++) ASSERT_NEAR(run.points().tau[i][c], 0.0, 1.0e-12);
 }
 
 // Walls, rank boundaries, periodic faces, and a restart.
-
 static const std::string moving = "fix w1 all mpm/boundary xlo xhi stick\n"
                                   "fix w2 all mpm/boundary zlo zhi slip\n"
                                   "velocity all ramp vy 0.0 1.0 x 0 6 units box\n"
@@ -185,37 +167,28 @@ class EdgesRun : public ::testing::TestWithParam<const char *> {};
 TEST_P(EdgesRun, AgreesOnRanksAndAfterARestart)
 {
   const std::string scene = replaced(full, "OPTIONS", GetParam()) + moving;
-  OnRanks ranks(replaced(scene, "0.001", "0.05"), "run 100\n");
-  EXPECT_LT(ranks.difference(), 1.0e-11);
-  Continued run(
-      replaced(scene, "0.001", "0.05"), 40,
-      "neighbor 0.3 bin\n" +
-          replaced("fix grid all mpm 1.0 OPTIONS edges modified\n", "OPTIONS", GetParam()) +
-          "fix m all mpm/material density 1.0 neohookean 10.0 0.3\n"
-          "fix w1 all mpm/boundary xlo xhi stick\nfix w2 all mpm/boundary zlo zhi slip\n"
-          "thermo 1000\n",
-      40);
-  EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
+  Twins(replaced(scene, "0.001", "0.05"), 50,
+        replaced("fix grid all mpm 1.0 OPTIONS edges modified\n", "OPTIONS", GetParam()) +
+            "fix m all mpm/material density 1.0 neohookean 10.0 0.3\n"
+            "fix w1 all mpm/boundary xlo xhi stick\nfix w2 all mpm/boundary zlo zhi slip\n",
+        50, 1.0e-11);
 }
 
-INSTANTIATE_TEST_SUITE_P(Options, EdgesRun,
-                         ::testing::Values("transfer flip 1.0 scheme musl",
-                                           "shape cubic transfer flip 1.0 scheme musl",
-                                           "transfer flip 0.99 scheme usf",
-                                           "transfer flip 1.0 frame total"));
+static const char *const edges_run_cases[] = {
+    "transfer flip 1.0 scheme musl", "shape cubic transfer flip 1.0 scheme musl",
+    "transfer flip 0.99 scheme usf", "transfer flip 1.0 frame total"};
+INSTANTIATE_TEST_SUITE_P(Options, EdgesRun, ::testing::ValuesIn(edges_run_cases));
 
 TEST(Edges, RefuseMistakes)
 {
-  const std::string scene =
-      "units lj\natom_style mpm\nboundary f f f\nregion box block 0 6 0 6 0 6\n"
-      "create_box 1 box\n";
+  const std::string scene = space("lj", "f f f", "0 6 0 6 0 6");
   for (const char *options : {"shape linear transfer flip 1.0", "shape gimp transfer flip 1.0",
                               "transfer xpic 3", "transfer polypic", "transfer apic"})
-    EXPECT_THAT(error_of(scene + "fix grid all mpm 1.0 edges modified " + options + "\n"),
-                ::testing::HasSubstr("edges modified is for shape quadratic and cubic"));
-  EXPECT_THAT(error_of(scene +
-                       "fix grid all mpm 1.0 edges modified transfer flip 1.0 origin 0.5 0 0\n"
-                       "create_points 1 box ppc 2\nfix m all mpm/material density 1 neohookean "
-                       "10 0.3\ntimestep 0.01\nrun 0\n"),
-              ::testing::HasSubstr("the fixed face xlo must be in a plane of nodes"));
+    expect_error(scene + "fix grid all mpm 1.0 edges modified " + options + "\n",
+                 "edges modified is for shape quadratic and cubic");
+  expect_error(scene +
+                   "fix grid all mpm 1.0 edges modified transfer flip 1.0 origin 0.5 0 0\n"
+                   "create_points 1 box ppc 2\nfix m all mpm/material density 1 neohookean "
+                   "10 0.3\ntimestep 0.01\nrun 0\n",
+               "the fixed face xlo must be in a plane of nodes");
 }

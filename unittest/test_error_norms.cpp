@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: physics input
 // mpi: 1 2
@@ -14,20 +9,12 @@
 
 #include "mpm_lammps.h"
 
-#include "gtest/gtest.h"
-
-#include <cmath>
 #include <fstream>
 #include <sstream>
 
 using namespace MPM_TEST;
 
-static const char *const block = R"(
-units lj
-boundary p p p
-atom_style mpm
-region box block 0 4 0 4 0 4
-create_box 1 box
+static const std::string block = space("lj", "p p p", "0 4 0 4 0 4") + R"(
 fix grid all mpm 1.0
 region part block 1 3 0 4 0 4
 create_points 1 region part ppc 2
@@ -44,11 +31,10 @@ compute d all displace/atom
 
 TEST(ErrorNorms, AreThoseOfTheDefinition)
 {
-  Scene run;
-  run.commands(std::string(block) +
-               "compute e all mpm/error vx v_one vy v_two\n"
-               "compute x all mpm/error x v_right\nthermo_style custom step c_e "
-               "c_e[1] c_e[2] c_e[3] c_e[4] c_e[5] c_x\nrun 0\n");
+  Scene run(block +
+            "compute e all mpm/error vx v_one vy v_two\n"
+            "compute x all mpm/error x v_right\nthermo_style custom step c_e "
+            "c_e[1] c_e[2] c_e[3] c_e[4] c_e[5] c_x\nrun 0\n");
   EXPECT_NEAR(run.evaluate("c_e"), 0.1 * std::sqrt(0.5), 1e-14);    // half of the points are off
   EXPECT_NEAR(run.evaluate("c_e[2]"), 0.1, 1e-14);
   EXPECT_NEAR(run.evaluate("c_e[3]"), std::sqrt(0.09 + 0.5 * (0.16 + 0.09)), 1e-14);
@@ -65,16 +51,9 @@ TEST(ErrorNorms, AreThoseOfTheDefinition)
 
 // points of the group only, with their volumes as weights, at unwrapped positions; an error that is not a
 // number stays one, whichever point has it
-
 TEST(ErrorNorms, VolumesGroupsAndImages)
 {
-  Scene run;
-  run.commands(R"(
-units lj
-boundary p p p
-atom_style mpm
-region box block 0 4 0 4 0 4
-create_box 3 box
+  Scene run(space("lj", "p p p", "0 4 0 4 0 4", 3) + R"(
 fix grid all mpm 1.0
 region left block 0 1 0 4 0 4
 region middle block 1 2 0 4 0 4
@@ -117,9 +96,8 @@ static double vortex(int n, const std::string &settings = "", double angle = 0.1
   std::stringstream text;
   text << file.rdbuf();
   EXPECT_GT(text.str().size(), 100u);
-  Scene run;
-  run.commands("variable n index " + std::to_string(n) + "\nvariable G index " +
-               std::to_string(angle) + "\n");
+  Scene run("variable n index " + std::to_string(n) + "\nvariable G index " +
+            std::to_string(angle) + "\n");
   if (!settings.empty()) run.commands("variable options index \"" + settings + "\"\n");
   std::string line;
   while (std::getline(text, line))

@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: physics
 // mpi: 1 2
@@ -12,10 +7,6 @@
 // Keyword every of fix mpm: K steps of the run under one of the points.
 
 #include "mpm_lammps.h"
-
-#include "gtest/gtest.h"
-
-#include <cmath>
 
 using namespace MPM_TEST;
 
@@ -49,8 +40,7 @@ static std::vector<std::array<double, 7>> places(Scene &run)
    at the start, whose place in the middle of the steps is that at their start.
 ------------------------------------------------------------------------- */
 
-static const std::string head = "units lj\nboundary p p f\natom_style mpm\nneighbor 0.3 bin\n"
-                                "region box block 0 8 0 8 0 12\ncreate_box 2 box\n";
+static const std::string head = space("lj", "p p f", "0 8 0 8 0 12", 2);
 static const std::string block = "region b block 2 6 2 6 0 4\ncreate_points 1 region b ppc 2\n";
 static const std::string rubber = "fix m all mpm/material density 1.0 neohookean 40.0 0.3\nfix g "
                                   "all gravity 0.5 vector 0.6 0 -1\n";
@@ -73,15 +63,13 @@ TEST_P(LargerStep, IsTheSame)
   const auto scene = [](int every) {
     return head +
         replaced(GetParam().text, "EVERY", every == 1 ? "" : strprintf("every %d", every)) +
-        strprintf("timestep %.17g\nthermo 1000\n", 0.04 / every);
+        strprintf("timestep %.17g\n", 0.04 / every);
   };
-  Scene one;
-  one.commands(scene(1) + "run 60\n");
+  Scene one(scene(1) + "run 60\n");
   const auto expected = places(one);
   for (const int every : {2, 5}) {
-    Scene many;
-    many.commands(scene(every) + strprintf("run %d\n", 23 * every + 1) +
-                  strprintf("run %d\n", 37 * every - 1));
+    Scene many(scene(every) + strprintf("run %d\n", 23 * every + 1) +
+               strprintf("run %d\n", 37 * every - 1));
     EXPECT_NEAR(many.time(), one.time(), 1.0e-12);
     const auto found = places(many);
     ASSERT_EQ(found.size(), expected.size());
@@ -123,7 +111,6 @@ INSTANTIATE_TEST_SUITE_P(Every, LargerStep, ::testing::ValuesIn(features), [](co
 });
 
 // A restart file that is written between two steps of the points: bitwise as without
-
 TEST(LargerStep, GoesOnFromARestartFile)
 {
   for (const auto &feature : features) {
@@ -132,20 +119,17 @@ TEST(LargerStep, GoesOnFromARestartFile)
     const std::string scene = replaced(feature.text, "EVERY", "every 5");
     // variables and regions are not in the file, points are
     const auto fixes = replaced(scene, "create_points 1 region b ppc 2\n", "");
-    const std::string steps = "timestep 0.008\nthermo 1000\n";
+    const std::string steps = "timestep 0.008\n";
     Continued run(head + scene + steps, 53, "neighbor 0.3 bin\n" + fixes + steps, 49);
     EXPECT_TRUE(identical(run.whole.gather(), run.again.gather())) << feature.name;
   }
 }
 
 // Points that fail are deleted in the same steps of the cycle.
-
 TEST(LargerStep, DeletesTheSamePoints)
 {
   const auto scene = [](int every) {
-    return std::string("units lj\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.3 bin\n"
-                       "region box block -2 30 -2 8 -0.5 0.5\ncreate_box 1 box\n"
-                       "region bar block 0 20 1 5 INF INF\n") +
+    return plane("lj", "f f", "-2 30 -2 8") + "region bar block 0 20 1 5 INF INF\n" +
         strprintf("fix grid all mpm 1.0 failed delete every %d\n", every) +
         "create_points 1 region bar ppc 2\n"
         "fix m all mpm/material density 1.0 eos linear 100.0 strength elastic 60.0 damage rankine "
@@ -154,7 +138,7 @@ TEST(LargerStep, DeletesTheSamePoints)
         "INF INF\n"
         "fix l all mpm/boundary region left stick\n"
         "fix r all mpm/boundary region right stick velocity 0.5 0 0\n" +
-        strprintf("timestep %.17g\nthermo 1000\n", 0.02 / every);
+        strprintf("timestep %.17g\n", 0.02 / every);
   };
   Scene one, many;
   one.commands(scene(1) + "run 250\n");
@@ -176,17 +160,15 @@ TEST(LargerStep, DeletesTheSamePoints)
    force, that are where and as fast as they should be at the time of each step of the cycle
 ------------------------------------------------------------------------- */
 
-TEST(Seen, MotionIsThatOfTheTime)
+SERIAL_TEST(Seen, MotionIsThatOfTheTime)
 {
-  if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
   const double dt = 0.01, v0 = 0.4, a = -0.25;
   for (const int every : {1, 2, 5, 20}) {
-    Scene run;
-    run.commands(replaced(head, "p p f", "p p p") +
-                 strprintf("fix grid all mpm 1.0 every %d\n", every) +
-                 "region b block 2 6 2 6 3 7\ncreate_points 1 region b ppc 2\n"
-                 "fix m all mpm/material density 1.0 neohookean 10.0 0.3\n" +
-                 strprintf("velocity all set %g 0 0\ntimestep %g\nthermo 1000\n", v0, dt));
+    Scene run(replaced(head, "p p f", "p p p") +
+              strprintf("fix grid all mpm 1.0 every %d\n", every) +
+              "region b block 2 6 2 6 3 7\ncreate_points 1 region b ppc 2\n"
+              "fix m all mpm/material density 1.0 neohookean 10.0 0.3\n" +
+              strprintf("velocity all set %g 0 0\ntimestep %g\n", v0, dt));
     const double start = run.evaluate("xcm(all,x)"), height = run.evaluate("xcm(all,z)");
     double worst = 0.0;
     bool first = true;
@@ -217,17 +199,15 @@ TEST(Seen, MotionIsThatOfTheTime)
    phase is theta in each step with cos(theta) = 1 - (omega dt)^2/2.
 ------------------------------------------------------------------------- */
 
-TEST(Seen, SpringIsNotDamped)
+SERIAL_TEST(Seen, SpringIsNotDamped)
 {
-  if (nranks() > 1) GTEST_SKIP() << "physics of one rank";
   const double omega = 1.0, step = 0.5;
   for (const int every : {1, 2, 5, 10}) {
-    Scene run;
-    run.commands(
-        replaced(head, "p p f", "p p p") + strprintf("fix grid all mpm 1.0 every %d\n", every) +
-        "region b block 2 6 2 6 3 7\ncreate_points 1 region b ppc 2\n"
-        "fix m all mpm/material density 1.0 neohookean 1.0 0.3\n" +
-        strprintf("velocity all set 0.3 0 0\ntimestep %.17g\nthermo 100000\n", step / every));
+    Scene run(replaced(head, "p p f", "p p p") +
+              strprintf("fix grid all mpm 1.0 every %d\n", every) +
+              "region b block 2 6 2 6 3 7\ncreate_points 1 region b ppc 2\n"
+              "fix m all mpm/material density 1.0 neohookean 1.0 0.3\n" +
+              strprintf("velocity all set 0.3 0 0\ntimestep %.17g\n", step / every));
     run.set_reference();
     const auto seen = [&](int i) {
       double x[3];
@@ -257,16 +237,14 @@ TEST(Seen, SpringIsNotDamped)
 }
 
 // Time steps that change between two steps of the points: each force acts as long as its step lasts.
-
 TEST(Seen, ImpulseIsThatOfAllSteps)
 {
   const double a = -0.25;
-  Scene run;
-  run.commands(
+  Scene run(
       replaced(head, "p p f", "p p p") +
       "fix grid all mpm 1.0 every 5\nregion b block 2 6 2 6 3 7\n"
       "create_points 1 region b ppc 2\nfix m all mpm/material density 1.0 neohookean 10.0 0.3\n"
-      "timestep 0.001\nthermo 1000\n");
+      "timestep 0.001\n");
   run.each_step([&](double **force) {
     for (int i = 0; i < run.n(); i++) force[i][2] = a * run.mass()[i];
   });
@@ -279,12 +257,10 @@ TEST(Seen, ImpulseIsThatOfAllSteps)
    angular momentum. What is lost of the sum is a small part of these torques.
 ------------------------------------------------------------------------- */
 
-TEST(Seen, TorquesAreThoseOfAllSteps)
+SERIAL_TEST(Seen, TorquesAreThoseOfAllSteps)
 {
-  if (nranks() > 1) GTEST_SKIP() << "sums of one rank";
   for (const int every : {1, 3}) {
-    Scene run;
-    run.commands(
+    Scene run(
         "units lj\nboundary f f f\natom_style hybrid sphere mpm\nneighbor 0.3 bin\n"
         "comm_modify vel yes\nregion box block -4 14 -4 14 -4 14\ncreate_box 2 box\n" +
         strprintf("fix grid all mpm 1.0 every %d\n", every) +
@@ -294,7 +270,7 @@ TEST(Seen, TorquesAreThoseOfAllSteps)
         "fix m block mpm/material density 1.0 neohookean 60.0 0.3\nfix move grain nve/sphere\n"
         "pair_style granular\n"
         "pair_coeff * * hooke 60.0 2.0 tangential linear_nohistory 1.0 0.5\n"
-        "neigh_modify exclude type 1 1\ntimestep 0.01\nthermo 1000\n");
+        "neigh_modify exclude type 1 1\ntimestep 0.01\n");
     double torque = 0.0;
     run.each_step([&](double **) {
       for (int i = 0; i < run.n(); i++)
@@ -314,13 +290,10 @@ TEST(Seen, TorquesAreThoseOfAllSteps)
 
 // A torque on a point that leaves the group of the neighbor lists before it is time for the cycle, here
 // one inside that counts as failed during the first step only.
-
-TEST(Seen, TorqueIsNotLostWithTheGroup)
+SERIAL_TEST(Seen, TorqueIsNotLostWithTheGroup)
 {
-  if (nranks() > 1) GTEST_SKIP() << "sums of one rank";
   const double dt = 0.01, T = 0.3;
-  Scene run;
-  run.commands(
+  Scene run(
       "units lj\nboundary f f f\natom_style hybrid sphere mpm\nneighbor 0.3 bin\n"
       "neigh_modify every 1 delay 0 check no\ncomm_modify vel yes\n"
       "region box block -4 14 -4 14 -4 14\ncreate_box 2 box\nfix grid all mpm 1.0 every 3\n"
@@ -331,7 +304,7 @@ TEST(Seen, TorqueIsNotLostWithTheGroup)
       "fix m block mpm/material density 1.0 eos linear 10.0 strength elastic 5.0 damage rankine "
       "100.0\n"
       "pair_style granular\npair_coeff * * hooke 60.0 2.0 tangential linear_nohistory 1.0 0.5\n"
-      "neigh_modify exclude type 1 1\ntimestep 0.01\nthermo 1000\nrun 0\n");
+      "neigh_modify exclude type 1 1\ntimestep 0.01\nrun 0\n");
   const auto *material = run.material();
   const auto inside = [&] {
     int i = 0;

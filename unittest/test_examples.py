@@ -2,9 +2,13 @@
 # General Public License, version 2; see the file LICENSE.
 #
 # labels: examples
-# timeout: 2400
+# parts: 1 1 2
+# timeout: 1200
 """Every example runs to its end without a warning, makes its pictures, and gives the numbers of
-its reference log (log.*.g++.1) where there is one; two processes give the numbers of one."""
+its reference log (log.*.g++.1) where there is one; two processes give the numbers of one.
+
+Parts 1 and 2 are the runs of half of the examples each, part 3 the runs with two processes, of which
+half of the steps will do."""
 
 import glob
 import math
@@ -62,16 +66,16 @@ def coarse_arguments(path):
 
 
 class Example:
-    """One input, run in a temporary copy of its folder."""
+    """One input, run in a temporary copy of its folder; steps: instead of those in its only command run."""
 
-    def __init__(self, path, processes=0):
+    def __init__(self, path, processes=0, steps=None):
         self.path, self.text = path, read(path)
         source = os.path.dirname(path)
         self.folder = tempfile.mkdtemp(prefix="mpm_example_")
         for name in os.listdir(source):
             if not re.search(r"\.(png|vt[pu]|pvd)$|^log\.", name):
                 shutil.copy(os.path.join(source, name), self.folder)
-        steps = FEWER_STEPS.get(os.path.basename(source))
+        steps = steps or FEWER_STEPS.get(os.path.basename(source))
         text = re.sub(r"^run\s.*", "run %d" % steps, self.text, flags=re.M) if steps else self.text
         with open(os.path.join(self.folder, os.path.basename(path)), "w") as file:
             file.write(re.sub(r"^run\s", "thermo_modify format float %.15g\nrun ", text, flags=re.M))
@@ -151,14 +155,22 @@ def check_files(example):
         assert example.files(pattern), pattern
 
 
-def compare(found, expected, tolerance, what, all_rows=False):
-    """Last or all rows of all tables, each column relative to its range of values; returns the largest difference."""
+def compare(found, expected, tolerance, what, which="last"):
+    """The last rows of all tables, all rows, or those until the found run ends ("first"); each column relative to
+    its range of values. Returns the largest difference."""
     a, b = mt.thermo(found), mt.thermo(expected)
     most = 0.0
     assert len(a) == len(b), "%s: %d runs, not %d" % (what, len(a), len(b))
     for (names, rows), (other_names, other_rows) in zip(a, b):
         assert names == other_names, "%s: columns %s, not %s" % (what, names, other_names)
-        assert not all_rows or len(rows) == len(other_rows), "%s: %d rows, not %d" % (what, len(rows), len(other_rows))
+        pairs = [(rows[-1], other_rows[-1])]
+        if which != "last":
+            step = names.index("Step")
+            others = {row[step]: row for row in other_rows}
+            pairs = [(row, others[row[step]]) for row in rows if row[step] in others]
+            wanted = len(rows) if which == "all" else max(1, len(rows) - 1)    # its end may be between two rows
+            assert len(pairs) >= wanted and (which == "first" or len(rows) == len(other_rows)), \
+                "%s: %d rows, %d in the other run, %d of the same steps" % (what, len(rows), len(other_rows), len(pairs))
         for k, name in enumerate(names):
             if name in UNIMPORTANT or name in ("Step", "Time", "Dt"):
                 continue
@@ -167,10 +179,10 @@ def compare(found, expected, tolerance, what, all_rows=False):
             if largest < 1.0e-14:    # nothing but rounding errors
                 continue
             scale = max(max(values) - min(values), 1.0e-3 * largest)
-            for row, value in zip(rows if all_rows else rows[-1:], values if all_rows else values[-1:]):
-                difference = abs(float(row[k]) - value) / scale
-                assert difference <= tolerance, "%s: at step %s, %s is %s, not %.15g: %.2g of its range" % (
-                    what, row[names.index("Step")], name, row[k], value, difference)
+            for row, other in pairs:
+                difference = abs(float(row[k]) - float(other[k])) / scale
+                assert difference <= tolerance, "%s: at step %s, %s is %s, not %s: %.2g of its range" % (
+                    what, row[names.index("Step")], name, row[k], other[k], difference)
                 most = max(most, difference)
     return most
 
@@ -184,10 +196,36 @@ def points_made(output):
     return re.findall(r"Created (\d+) (?:material points|atoms)", output)
 
 
-def make_test(path):
+def half_of_the_steps(path, output):
+    """For a run with two processes: of the steps that one process took; None where that is not clear."""
+    if len(re.findall(r"^run\s", read(path), re.M)) != 1:
+        return None
+    names, rows = mt.thermo(output)[-1]
+    return int(rows[-1][names.index("Step")]) // 2
+
+
+def output_of(path):
+    """Where the output with one process is kept for part 3, in the folder of the build."""
+    return "example-%s.out" % os.path.basename(path)[3:]
+
+
+def with_one_process(path):
+    """That output, from part 1 or 2, or from a run now where it is older than what it comes from."""
+    kept = output_of(path)
+    if not os.path.exists(kept) or any(os.path.getmtime(kept) < os.path.getmtime(x) for x in (path, mt.LMP, __file__)):
+        with Example(path) as example:
+            check_run(example)
+            return example.result.output
+    with open(kept) as file:
+        return file.read()
+
+
+def make_tests(path, part):
     name = os.path.basename(path)[3:].replace("-", "_")
 
     def one_process():
+        if os.path.exists(output_of(path)):
+            os.remove(output_of(path))
         with Example(path) as example:
             check_run(example)
             check_files(example)
@@ -196,20 +234,20 @@ def make_test(path):
             output = example.result.output
             if log and not shortened and points_made(read(log)) == points_made(output):
                 compare(output, read(log), REFERENCE_TOLERANCE, log)
-            outputs[path] = example.result
+            with open(output_of(path), "w") as file:
+                file.write(output)
 
     def two_processes():
-        if path not in outputs:
-            raise mt.Skip("failed with one process")
-        with Example(path, processes=2) as example:
+        expected = with_one_process(path)
+        steps = half_of_the_steps(path, expected)
+        with Example(path, processes=2, steps=steps) as example:
             check_run(example)
-            most = compare(example.result.output, outputs[path].output, PROCESSES_TOLERANCE, name, all_rows=True)
+            most = compare(example.result.output, expected, PROCESSES_TOLERANCE, name, "first" if steps else "all")
             print("largest difference: %.1e of the range of a column" % most)
 
-    return {"test_" + name: one_process, "test_" + name + "_with_two_processes": two_processes}
-
-
-outputs = {}
+    for which, suffix, test in ((part, "", one_process), (3, "_with_two_processes", two_processes)):
+        if mt.PART in (0, which):
+            yield "test_" + name + suffix, test
 
 
 def test_there_are_examples():
@@ -223,7 +261,7 @@ def test_logs_name_no_folders_of_a_machine():
     assert not wrong, "\n".join(wrong)
 
 
-for _path in inputs():
-    globals().update(make_test(_path))
+for _k, _path in enumerate(inputs()):
+    globals().update(make_tests(_path, 1 + _k % 2))
 
 mt.main(globals())

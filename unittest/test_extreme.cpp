@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: physics extreme
 // timeout: 300
@@ -15,11 +10,6 @@
 #include "mpm_lammps.h"
 
 #include "error.h"
-
-#include "gtest/gtest.h"
-
-#include <cmath>
-#include <cstring>
 
 using namespace MPM_TEST;
 
@@ -33,13 +23,11 @@ static double release(const std::string &options, double shift)
 {
   Scene run;
   const std::string error = run.error(
-      strprintf("units lj\ndimension 2\nboundary f p p\natom_style mpm\nneighbor 0.5 bin\n"
-                "region box block 0 16 0 2 -0.5 0.5\ncreate_box 1 box\n"
-                "fix grid all mpm 1.0 %s\nregion body block 3 13 0 2 -0.5 0.5\n"
-                "create_points 1 region body ppc 2\n"
-                "displace_atoms all move %.17g 0 0\n"
-                "fix m all mpm/material density 1.0 eos stiffened/gas 2.0 0.49 "
-                "pressure 0.01\ntimestep 0.2\nrun 0\n",
+      plane("lj", "f p", "0 16 0 2", 1, 0.5) +
+      strprintf("fix grid all mpm 1.0 %s\nregion body block 3 13 0 2 -0.5 0.5\n"
+                "create_points 1 region body ppc 2\ndisplace_atoms all move %.17g 0 0\n"
+                "fix m all mpm/material density 1.0 eos stiffened/gas 2.0 0.49 pressure 0.01\n"
+                "timestep 0.2\nrun 0\n",
                 options.c_str(), shift));
   EXPECT_EQ(error, "");
   const double momentum = run.sums().p[0];
@@ -139,16 +127,14 @@ TEST(LightNodes3d, BallInFlight)
        {"transfer flip 1.0 scheme usl", "transfer apic", "transfer apic scheme musl",
         "transfer apic scheme musl locking both", "transfer flip 1.0 scheme usl locking fbar"}) {
     SCOPED_TRACE(options);
-    Scene run;
-    run.commands(strprintf("units si\nboundary f f f\natom_style mpm\nneighbor 0.3 bin\n"
-                           "region box block 0 20 0 20 0 20\ncreate_box 1 box\n"
-                           "fix grid all mpm 1.0 shape linear %s light 0.5\n"
-                           "region body sphere 4.3 5.2 5 1.9\ncreate_points 1 region body ppc 2\n"
-                           "displace_atoms all move 0.137 0.211 0.173\n"
-                           "fix elastic all mpm/material density 2.0 linear 1000 0.3\n"
-                           "velocity all set 1.7 0.9 1.1\ntimestep 0.01\ncompute e all mpm/energy\n"
-                           "thermo_style custom step c_e\nrun 0\n",
-                           options));
+    Scene run(space("si", "f f f", "0 20 0 20 0 20", 1, 0.3) +
+              strprintf("fix grid all mpm 1.0 shape linear %s light 0.5\n"
+                        "region body sphere 4.3 5.2 5 1.9\ncreate_points 1 region body ppc 2\n"
+                        "displace_atoms all move 0.137 0.211 0.173\n"
+                        "fix elastic all mpm/material density 2.0 linear 1000 0.3\n"
+                        "velocity all set 1.7 0.9 1.1\ntimestep 0.01\ncompute e all mpm/energy\n"
+                        "thermo_style custom step c_e\nrun 0\n",
+                        options));
     const double start = run.evaluate("c_e");
     const auto before = run.sums();
     run.commands("run 500\n");
@@ -166,15 +152,12 @@ TEST(LightNodes, ShareIsThatOfTheVolume)
 {
   const double fx = 0.3, fy = 0.4, V = 0.25, light = 0.5, dt = 0.1, p = 0.01, rho = 3.0;
   for (const char *scheme : {"usl", "musl"}) {
-    Scene run;
-    run.commands(
-        strprintf("units lj\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.5 bin\n"
-                  "region box block 0 6 0 6 -0.5 0.5\ncreate_box 1 box\n"
-                  "fix grid all mpm 1.0 shape linear transfer apic scheme %s light %g\n"
-                  "create_atoms 1 single %g %g 0\nset atom 1 volume %g mass %g\n"
-                  "fix m all mpm/material density %g eos stiffened/gas 2.0 0.49 pressure %g\n"
-                  "timestep %g\nrun 1\n",
-                  scheme, light, 2.0 + fx, 3.0 + fy, V, rho * V, rho, p, dt));
+    Scene run(plane("lj", "f f", "0 6 0 6", 1, 0.5) +
+              strprintf("fix grid all mpm 1.0 shape linear transfer apic scheme %s light %g\n"
+                        "create_atoms 1 single %g %g 0\nset atom 1 volume %g mass %g\n"
+                        "fix m all mpm/material density %g eos stiffened/gas 2.0 0.49 pressure %g\n"
+                        "timestep %g\nrun 1\n",
+                        scheme, light, 2.0 + fx, 3.0 + fy, V, rho * V, rho, p, dt));
     const double *C = run.affine()[0];
     const double scale = V / light * dt * p / rho;
     EXPECT_NEAR(C[0] / scale, 2.0 * ((1.0 - fy) * (1.0 - fy) + fy * fy), 1.0e-9);
@@ -196,11 +179,9 @@ TEST(LightRings, ShareIsThatOfTheArea)
   for (const double cell : {0.0, 2.0, 20.0})
     for (const char *transfer : {"apic", "tpic"}) {
       const double r = cell + fx, V = 6.283185307179586 * r * A;
-      Scene run;
-      run.commands(
-          strprintf("units lj\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.5 bin\n"
-                    "region box block 0 24 0 6 -0.5 0.5\ncreate_box 1 box\n"
-                    "fix grid all mpm 1.0 shape linear axisymmetric yes light %g transfer %s\n"
+      Scene run(
+          plane("lj", "f f", "0 24 0 6", 1, 0.5) +
+          strprintf("fix grid all mpm 1.0 shape linear axisymmetric yes light %g transfer %s\n"
                     "create_atoms 1 single %.17g %.17g 0\nset atom 1 volume %.17g mass %.17g\n"
                     "fix m all mpm/material density %g eos stiffened/gas 2.0 0.49 pressure %g\n"
                     "fix axis all mpm/boundary xlo slip\ntimestep %g\nrun 1\n",
@@ -225,17 +206,13 @@ TEST(LightNodes, PeriodicFace)
 {
   std::vector<double> found[2];
   for (int across : {0, 1}) {
-    Scene run;
-    run.commands(
-        strprintf("units lj\ndimension 2\nboundary p p p\natom_style mpm\nneighbor 0.4 bin\n"
-                  "region box block 0 16 0 16 -0.5 0.5\ncreate_box 1 box\n"
-                  "fix grid all mpm 1.0 shape linear transfer apic light 0.5\n"
-                  "region b block 6 10 7 9 INF INF\ncreate_points 1 region b ppc 2\n"
-                  "fix m all mpm/material density 1 neohookean 0.742857142857 0.3\n"
-                  "variable vx atom 0.02*(y-8)\nvariable vy atom -0.03*(x-8)\n"
-                  "velocity all set v_vx v_vy NULL\ndisplace_atoms all move %g %g 0\n"
-                  "timestep 0.25\nthermo 100000\nrun 200\n",
-                  0.3 + 8.0 * across, 0.28 + 8.0 * across));
+    Scene run(plane("lj", "p p", "0 16 0 16", 1, 0.4) +
+              body("block 6 10 7 9 INF INF", "density 1 neohookean 0.742857142857 0.3",
+                   "1.0 shape linear transfer apic light 0.5") +
+              strprintf("variable vx atom 0.02*(y-8)\nvariable vy atom -0.03*(x-8)\n"
+                        "velocity all set v_vx v_vy NULL\ndisplace_atoms all move %g %g 0\n"
+                        "timestep 0.25\nrun 200\n",
+                        0.3 + 8.0 * across, 0.28 + 8.0 * across));
     for (const auto &s : run.gather())    // by tag
       found[across].insert(found[across].end(), {s.v[0], s.v[1], s.F[1], s.F[4]});
   }
@@ -245,32 +222,31 @@ TEST(LightNodes, PeriodicFace)
 
 TEST(LightNodesInput, IsRefusedWhereItIsOfNoUse)
 {
-  const std::string scene = "units lj\nboundary p p p\natom_style mpm\n"
-                            "region box block 0 8 0 8 0 8\ncreate_box 1 box\n"
-                            "create_points 1 box spacing 1.0\n";
+  const std::string scene =
+      space("lj", "p p p", "0 8 0 8 0 8") + "create_points 1 box spacing 1.0\n";
   const std::string material = "fix m all mpm/material density 1.0 linear 1.0 0.3\nrun 0\n";
   for (const char *options : {"light 0.5", "shape linear transfer flip 1.0 scheme musl light 0.5",
                               "shape linear frame total light 0.5", "shape gimp light 0.5"}) {
     Scene run;
     EXPECT_THAT(run.error(scene + "fix grid all mpm 1.0 " + options + "\n" + material),
-                ::testing::HasSubstr("remove light"));
+                HasSubstr("remove light"));
   }
   for (const char *transfer : {"apic", "aflip 1.0", "tpic"}) {
     Scene run;
     EXPECT_THAT(run.error(scene +
                           "fix grid all mpm 1.0 shape linear light 0.5 locking pressure transfer " +
                           transfer + "\n" + material),
-                ::testing::HasSubstr("use scheme musl, or transfer flip"));
+                HasSubstr("use scheme musl, or transfer flip"));
   }
-  EXPECT_THAT(error_of("dimension 2\n" +
-                       replaced(replaced(scene, "p p p", "f p p"), "0 8 0 8 0 8", "0 8 0 8 -1 1") +
-                       "fix grid all mpm 1.0 shape linear light 0.5 scheme usf axisymmetric yes\n"
-                       "fix axis all mpm/boundary xlo slip\n" +
-                       material),
-              ::testing::HasSubstr("use scheme usl or musl"));
+  expect_error(plane("lj", "f p", "0 8 0 8 -1 1") +
+                   "create_points 1 box spacing 1.0\n"
+                   "fix grid all mpm 1.0 shape linear light 0.5 scheme usf axisymmetric yes\n"
+                   "fix axis all mpm/boundary xlo slip\n" +
+                   material,
+               "use scheme usl or musl");
   Scene run;
   EXPECT_THAT(run.error(scene + "fix grid all mpm 1.0 shape linear light 1.5\n"),
-              ::testing::HasSubstr("within 0 and 1"));
+              HasSubstr("within 0 and 1"));
 }
 
 /* ----------------------------------------------------------------------
@@ -284,15 +260,12 @@ TEST_P(OnNodes, KeepMomentum)
 {
   for (const char *shift : {"0.25 0", "0.25 0.25", "0.75 0.25"})
     for (const char *kernels : {"auto", "reference"}) {
-      Scene run;
-      run.commands(
-          strprintf("units lj\ndimension 2\nboundary f f p\natom_style mpm\n"
-                    "neighbor 0.5 bin\nregion box block 0 12 0 12 -0.5 0.5\n"
-                    "create_box 1 box\nfix grid all mpm 1.0 %s kernels %s\n"
-                    "region body block 3 7 4 6 -0.5 0.5\ncreate_points 1 region body ppc 2\n"
-                    "displace_atoms all move %s 0\n"
-                    "fix m all mpm/material density 1.0 eos stiffened/gas 2.0 0.49 "
-                    "pressure 0.01\ntimestep 0.2\nrun 1\n",
+      Scene run(
+          plane("lj", "f f", "0 12 0 12", 1, 0.5) +
+          strprintf("fix grid all mpm 1.0 %s kernels %s\nregion body block 3 7 4 6 -0.5 0.5\n"
+                    "create_points 1 region body ppc 2\ndisplace_atoms all move %s 0\n"
+                    "fix m all mpm/material density 1.0 eos stiffened/gas 2.0 0.49 pressure 0.01\n"
+                    "timestep 0.2\nrun 1\n",
                     GetParam(), kernels, shift));
       const auto s = run.sums();
       for (int d = 0; d < 2; d++) EXPECT_NEAR(s.p[d], 0.0, 1.0e-15) << shift << " " << kernels;
@@ -307,9 +280,7 @@ INSTANTIATE_TEST_SUITE_P(Options, OnNodes,
                                            "shape quadratic", "shape cubic", "shape gimp",
                                            "shape cpgimp"));
 
-/* ----------------------------------------------------------------------
-   the largest stable time step: random velocities, all energy is kinetic at the start
-------------------------------------------------------------------------- */
+/* ---------- the largest stable time step: random velocities, all energy is kinetic at the start */
 
 struct Limit {
   const char *options;
@@ -321,23 +292,21 @@ class TimeStep : public ::testing::TestWithParam<Limit> {};
 static std::string bar(const char *options, double shift, double dt, bool check)
 {
   const bool round = strstr(options, "axisymmetric");    // from the axis on
-  return strprintf("units lj\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.5 bin\n"
-                   "region box block 0 16 0 9 -0.5 0.5\ncreate_box 1 box\n"
-                   "fix grid all mpm 1.0 %s dtcheck %s\nregion body block %s 3 6 -0.5 0.5\n"
-                   "create_points 1 region body ppc 2\ndisplace_atoms all move %g %g 0\n"
-                   "fix axis all mpm/boundary xlo slip\nfix m all mpm/material density 1.0 "
-                   "neohookean 0.742857142857 0.3\n"
-                   "variable vx atom random(-1e-4,1e-4,4711)\n"
-                   "variable vy atom random(-1e-4,1e-4,815)\nvelocity all set v_vx v_vy NULL\n"
-                   "timestep %.10g\nthermo 100000\n",
-                   options, check ? "yes" : "no", round ? "0 10" : "3 13", round ? 0.0 : shift,
-                   shift, dt);
+  return plane("lj", "f f", "0 16 0 9", 1, 0.5) +
+      strprintf("fix grid all mpm 1.0 %s dtcheck %s\nregion body block %s 3 6 -0.5 0.5\n"
+                "create_points 1 region body ppc 2\ndisplace_atoms all move %g %g 0\n"
+                "fix axis all mpm/boundary xlo slip\n"
+                "fix m all mpm/material density 1.0 neohookean 0.742857142857 0.3\n"
+                "variable vx atom random(-1e-4,1e-4,4711)\n"
+                "variable vy atom random(-1e-4,1e-4,815)\nvelocity all set v_vx v_vy NULL\n"
+                "timestep %.10g\n",
+                options, check ? "yes" : "no", round ? "0 10" : "3 13", round ? 0.0 : shift, shift,
+                dt);
 }
 
 static bool is_stable(const char *options, double shift, double dt)
 {
-  Scene run;
-  run.commands(bar(options, shift, dt, false) + "run 0\n");
+  Scene run(bar(options, shift, dt, false) + "run 0\n");
   const double start = run.sums().kinetic;
   for (int k = 0; k < 100; k++) {
     if (!run.error("run 10 post no\n").empty() || !(run.sums().kinetic < 2.0 * start)) return false;
@@ -353,24 +322,24 @@ TEST_P(TimeStep, IsWithinTheTable)
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Options, TimeStep,
-    ::testing::Values(Limit{"transfer flip 1.0 scheme usl", 0.64, 0.9},
-                      Limit{"transfer flip 1.0 scheme musl", 1.9, 2.15},
-                      Limit{"transfer apic scheme usl", 1.05, 1.2},
-                      Limit{"transfer apic scheme musl", 1.15, 1.35},
-                      Limit{"shape cubic transfer apic scheme usl", 1.25, 1.4},
-                      Limit{"shape cpgimp transfer flip 1.0 scheme usl", 0.55, 0.75},
-                      Limit{"shape linear transfer apic scheme usl light 0.5", 0.8, 1.1},
-                      Limit{"shape linear transfer flip 1.0 scheme usl light 0.5 "
-                            "locking fbar",
-                            0.8, 1.1},
-                      Limit{"shape linear transfer flip 1.0 scheme usl light 0.5 "
-                            "axisymmetric yes",
-                            0.7, 1.0},
-                      Limit{"shape linear transfer apic scheme usl light 0.5 "
-                            "axisymmetric yes",
-                            0.8, 1.1}));
+static const Limit time_step_cases[] = {
+    {"transfer flip 1.0 scheme usl", 0.64, 0.9},
+    {"transfer flip 1.0 scheme musl", 1.9, 2.15},
+    {"transfer apic scheme usl", 1.05, 1.2},
+    {"transfer apic scheme musl", 1.15, 1.35},
+    {"shape cubic transfer apic scheme usl", 1.25, 1.4},
+    {"shape cpgimp transfer flip 1.0 scheme usl", 0.55, 0.75},
+    {"shape linear transfer apic scheme usl light 0.5", 0.8, 1.1},
+    {"shape linear transfer flip 1.0 scheme usl light 0.5 "
+     "locking fbar",
+     0.8, 1.1},
+    {"shape linear transfer flip 1.0 scheme usl light 0.5 "
+     "axisymmetric yes",
+     0.7, 1.0},
+    {"shape linear transfer apic scheme usl light 0.5 "
+     "axisymmetric yes",
+     0.8, 1.1}};
+INSTANTIATE_TEST_SUITE_P(Options, TimeStep, ::testing::ValuesIn(time_step_cases));
 
 /** Energy that comes in bursts does so late: 6000 steps at the usual half of the limit. */
 TEST(LightNodes, KeepEnergyWithTheCuresForLocking)
@@ -381,8 +350,7 @@ TEST(LightNodes, KeepEnergyWithTheCuresForLocking)
         "transfer flip 1.0 locking both axisymmetric yes", "transfer apic axisymmetric yes",
         "transfer apic scheme musl locking both axisymmetric yes"}) {
     const auto words = "shape linear light 0.5 " + std::string(options);
-    Scene run;
-    run.commands(bar(words.c_str(), 0.250001, 0.5, false) + "run 0\n");
+    Scene run(bar(words.c_str(), 0.250001, 0.5, false) + "run 0\n");
     const double start = run.sums().kinetic;
     double most = 0.0;
     for (int k = 0; k < 30; k++) {
@@ -412,8 +380,7 @@ TEST(TotalLightNodes, LimitIsThatOfTheWarning)
       EXPECT_TRUE(is_stable(options, 0.25 + shift, 0.9 * limit)) << shift;
       EXPECT_FALSE(is_stable(options, 0.25 + shift, mistake * limit)) << shift;
       for (double share : {0.8, 1.3}) {
-        Scene run;
-        run.commands(bar(options, 0.25 + shift, share * limit, true));
+        Scene run(bar(options, 0.25 + shift, share * limit, true));
         const int warnings = run.lmp->error->get_numwarn();
         run.commands("run 1 post no\n");
         EXPECT_EQ(run.lmp->error->get_numwarn() - warnings, share > 1.0) << share;
@@ -426,20 +393,15 @@ TEST(TimeStepBeyond, EndsWithAnError)
 {
   for (const char *options : {"transfer flip 1.0 scheme usl",
                               "shape cpgimp transfer flip 1.0 scheme usl", "transfer fmpm 2"}) {
-    Scene run;
-    run.commands(
-        strprintf("units lj\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.5 bin\n"
-                  "region box block 0 16 0 9 -0.5 0.5\ncreate_box 1 box\n"
-                  "fix grid all mpm 1.0 %s\nregion body block 3 13 3 6 -0.5 0.5\n"
-                  "create_points 1 region body ppc 2\n"
-                  "fix m all mpm/material density 1.0 neohookean 0.742857142857 0.3\n"
-                  "variable vx atom random(-1e-4,1e-4,4711)\nvelocity all set v_vx 0 NULL\n"
-                  "timestep 0.99\nthermo 100000\n",
-                  options));
+    Scene run(plane("lj", "f f", "0 16 0 9", 1, 0.5) +
+              body("block 3 13 3 6 -0.5 0.5", "density 1.0 neohookean 0.742857142857 0.3",
+                   strprintf("1.0 %s", options)) +
+              "variable vx atom random(-1e-4,1e-4,4711)\nvelocity all set v_vx 0 NULL\n"
+              "timestep 0.99\n");
     const int warnings = run.lmp->error->get_numwarn();
     const std::string error = run.error("run 10000\n");
     EXPECT_GT(run.lmp->error->get_numwarn(), warnings) << options;
-    EXPECT_THAT(error, ::testing::HasSubstr("Material point")) << options;
+    EXPECT_THAT(error, HasSubstr("Material point")) << options;
   }
 }
 
@@ -452,18 +414,16 @@ TEST(ManySteps, EnergyAndMomentum)
 {
   for (const char *options : {"transfer flip 0.99 scheme musl", "transfer apic"}) {
     SCOPED_TRACE(options);
-    Scene run;
-    run.commands(
-        strprintf("units lj\ndimension 2\nboundary p p p\natom_style mpm\nneighbor 0.4 bin\n"
-                  "neigh_modify every 10\nregion box block 0 8 0 8 -0.5 0.5\n"
-                  "create_box 1 box\nfix grid all mpm 1.0 %s\n"
-                  "region body block 2 6 3 4 -0.5 0.5\ncreate_points 1 region body ppc 2\n"
-                  "fix m all mpm/material density 1.0 neohookean 0.742857142857 0.3\n"
-                  "variable vy atom 0.005+0.002*(x-4)+0.02*cos(2*PI*(x-4)/4)\n"
-                  "velocity all set 0.01 v_vy NULL\ntimestep 0.5\ncompute e all mpm/energy\n"
-                  "variable mech equal c_e[1]+c_e[2]\nthermo_style custom step v_mech\n"
-                  "thermo 1000000\nrun 0\n",
-                  options));
+    Scene run(strprintf("units lj\ndimension 2\nboundary p p p\natom_style mpm\nneighbor 0.4 bin\n"
+                        "neigh_modify every 10\nregion box block 0 8 0 8 -0.5 0.5\n"
+                        "create_box 1 box\nfix grid all mpm 1.0 %s\n"
+                        "region body block 2 6 3 4 -0.5 0.5\ncreate_points 1 region body ppc 2\n"
+                        "fix m all mpm/material density 1.0 neohookean 0.742857142857 0.3\n"
+                        "variable vy atom 0.005+0.002*(x-4)+0.02*cos(2*PI*(x-4)/4)\n"
+                        "velocity all set 0.01 v_vy NULL\ntimestep 0.5\ncompute e all mpm/energy\n"
+                        "variable mech equal c_e[1]+c_e[2]\nthermo_style custom step v_mech\n"
+                        "run 0\n",
+                        options));
     const double start = run.evaluate("v_mech");
     const auto before = run.sums();
     double most = 0.0;
@@ -477,22 +437,15 @@ TEST(ManySteps, EnergyAndMomentum)
   }
 }
 
-/* ----------------------------------------------------------------------
-   gravity from nothing to c^2/h: free fall is exact, no stress
-------------------------------------------------------------------------- */
+/* --------------------------------- gravity from nothing to c^2/h: free fall is exact, no stress */
 
 TEST(Gravity, FreeFall)
 {
   for (double g : {0.0, 1.0e-6, 1.0e-3, 1.0}) {
-    Scene run;
-    run.commands(
-        strprintf("units lj\ndimension 2\nboundary p p p\natom_style mpm\nneighbor 0.4 bin\n"
-                  "region box block 0 10 0 20 -0.5 0.5\ncreate_box 1 box\n"
-                  "fix grid all mpm 1.0\nregion b block 2 8 INF 6 INF INF\n"
-                  "create_points 1 region b ppc 2\n"
-                  "fix m all mpm/material density 1 neohookean 0.742857142857 0.3\n"
-                  "fix g all gravity %g vector 0 -1 0\nfix dt all mpm/dt 0.5 every 1\n"
-                  "thermo 100000\nrun 400\n",
+    Scene run(
+        plane("lj", "p p", "0 10 0 20", 1, 0.4) +
+        body("block 2 8 INF 6 INF INF", "density 1 neohookean 0.742857142857 0.3") +
+        strprintf("fix g all gravity %g vector 0 -1 0\nfix dt all mpm/dt 0.5 every 1\nrun 400\n",
                   g));
     const auto s = run.sums();
     EXPECT_NEAR(s.p[1] / s.mass, -g * run.time(), 1.0e-12 * (1.0 + g * run.time()));
@@ -503,18 +456,13 @@ TEST(Gravity, FreeFall)
   }
 }
 
-/* ----------------------------------------------------------------------
-   the time step follows a wave speed that jumps by 100 within one step
-------------------------------------------------------------------------- */
+/* ------------------------- the time step follows a wave speed that jumps by 100 within one step */
 
 TEST(AdaptiveTimeStep, FollowsWithinOneStep)
 {
-  Scene run;
-  run.commands("units lj\ndimension 2\nboundary p p p\natom_style mpm\nneighbor 0.4 bin\n"
-               "region box block 0 8 0 8 -0.5 0.5\ncreate_box 1 box\nfix grid all mpm 1.0\n"
-               "region b block 2 6 2 6 INF INF\ncreate_points 1 region b ppc 2\n"
-               "fix m all mpm/material density 1 eos ideal/gas 1.4 energy 1.0\n"
-               "fix dt all mpm/dt 0.5 every 1\nthermo 100000\nrun 1\n");
+  Scene run(plane("lj", "p p", "0 8 0 8", 1, 0.4) +
+            body("block 2 6 2 6 INF INF", "density 1 eos ideal/gas 1.4 energy 1.0") +
+            "fix dt all mpm/dt 0.5 every 1\nrun 1\n");
   const double before = run.lmp->update->dt;
   auto *material = run.material();
   const int energy = material->find_history("energy");

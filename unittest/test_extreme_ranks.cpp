@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: physics extreme
 // mpi: 2 4
@@ -15,8 +10,6 @@
 
 #include "mpm_lammps.h"
 
-#include "gtest/gtest.h"
-
 using namespace MPM_TEST;
 
 class AtSpeed : public ::testing::TestWithParam<const char *> {};
@@ -26,14 +19,13 @@ class AtSpeed : public ::testing::TestWithParam<const char *> {};
 TEST_P(AtSpeed, AcrossPeriodicFacesAndCorners)
 {
   OnRanks both(
-      strprintf("units lj\ndimension 2\nboundary p p p\natom_style mpm\nneighbor 0.4 bin\n"
-                "region box block 0 16 0 16 -0.5 0.5\ncreate_box 1 box\n"
-                "fix grid all mpm 1.0 %s\nregion b block 3 7 3 7 INF INF\n"
-                "create_points 1 region b ppc 2\ndisplace_atoms all move 0.25 0.25 0\n"
-                "fix m all mpm/material density 1 neohookean 0.742857142857 0.3\n"
-                "variable vx atom 0.35+0.02*(y-5.25)\nvariable vy atom 0.35-0.02*(x-5.25)\n"
-                "velocity all set v_vx v_vy NULL\ntimestep 0.25\nthermo 100000\n",
-                GetParam()),
+      plane("lj", "p p", "0 16 0 16", 1, 0.4) +
+          strprintf("fix grid all mpm 1.0 %s\nregion b block 3 7 3 7 INF INF\n"
+                    "create_points 1 region b ppc 2\ndisplace_atoms all move 0.25 0.25 0\n"
+                    "fix m all mpm/material density 1 neohookean 0.742857142857 0.3\n"
+                    "variable vx atom 0.35+0.02*(y-5.25)\nvariable vy atom 0.35-0.02*(x-5.25)\n"
+                    "velocity all set v_vx v_vy NULL\ntimestep 0.25\n",
+                    GetParam()),
       "run 550\n");
   EXPECT_LT(measured(std::string(GetParam()) + ": difference to one rank", both.difference()),
             1.0e-9);

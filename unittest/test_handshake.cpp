@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: physics
 // mpi: 1 2
@@ -13,8 +8,6 @@
 // A crystal of atoms that turns into material points along x (fix mpm/handshake).
 
 #include "mpm_lammps.h"
-
-#include "gtest/gtest.h"
 
 using namespace MPM_TEST;
 
@@ -32,7 +25,6 @@ static const Substance LJ = {"lj/cut", "lj/cut 2.5", "1.0 1.0", 97.7121, 55.6266
 
 // an embedded-atom potential with the same lattice constant: that of A.P. Sutton, J. Chen, Philos. Mag.
 // Lett. 61 (1990) 139, with exponents 9 and 6, cut off smoothly. Embedding: -c rho^(1/2)
-
 static constexpr double EAM_CUTOFF = 1.95, EAM_PAIR = 8.0;
 static double taper(double r)
 {
@@ -163,7 +155,7 @@ static std::string crystal(double one, double zone, double end, const std::strin
       "region end block EDGE " +
       strprintf("%.15g", (pad - 0.1) * ax) +
       " EDGE EDGE EDGE EDGE units box\ngroup end region end\ngroup mobile subtract atoms end\n"
-      "timestep 0.005\nthermo 100000\nthermo_modify norm no\n";
+      "timestep 0.005\nthermo_modify norm no\n";
 }
 
 static const char *const energies =
@@ -195,7 +187,6 @@ static std::array<double, 4> momentum(Scene &run)
 }
 
 // the tables of elastic constants are those of the potentials
-
 TEST(Handshake, ElasticConstants)
 {
   const auto C = elastic_constants(lj_pair, nothing, 0.0);
@@ -230,10 +221,8 @@ static double way_of_the_pulse(double s, double zone, double c, double t)
 }
 
 // a long wave enters the material points: what comes back, what arrives, and when
-
-TEST(Handshake, LongPulsePasses)
+SERIAL_TEST(Handshake, LongPulsePasses)
 {
-  if (nranks() > 1) GTEST_SKIP();
   const ScratchFile file("eam", eam_file());
   for (const auto &made : {LJ, embedded(file.name)}) {
     Scene run;
@@ -283,21 +272,18 @@ TEST(Handshake, LongPulsePasses)
 }
 
 // uniaxial strain between fixed ends, settled with friction
-
-TEST(Handshake, SameStressOnBothSides)
+SERIAL_TEST(Handshake, SameStressOnBothSides)
 {
-  if (nranks() > 1) GTEST_SKIP();
   const double strain = 0.002, stretch = 1.0 + strain;
   const ScratchFile file("eam", eam_file());
   for (const auto &made : {LJ, embedded(file.name)}) {
     const double C11 = made.C11, C12 = made.C12;
-    Scene run;
-    run.commands(crystal(20.0, 12.0, 50.0, "", strain, made) +
-                 "fix wall all mpm/boundary xhi stick\nfix drag all viscous 0.4\n"
-                 "fix move mobile nve\ncompute s atoms stress/atom NULL virial\n"
-                 "region inner block 6 18 EDGE EDGE EDGE EDGE\ngroup inner region inner\n"
-                 "compute virial inner reduce sum c_s[1] c_s[2]\n"
-                 "thermo_style custom step c_virial[*]\n");
+    Scene run(crystal(20.0, 12.0, 50.0, "", strain, made) +
+              "fix wall all mpm/boundary xhi stick\nfix drag all viscous 0.4\n"
+              "fix move mobile nve\ncompute s atoms stress/atom NULL virial\n"
+              "region inner block 6 18 EDGE EDGE EDGE EDGE\ngroup inner region inner\n"
+              "compute virial inner reduce sum c_s[1] c_s[2]\n"
+              "thermo_style custom step c_virial[*]\n");
     const double E = strain + 0.5 * strain * strain;
     for (int i = 0; i < run.n(); i++)
       if (run.lmp->atom->type[i] == 2) {
@@ -337,7 +323,6 @@ TEST(Handshake, SameStressOnBothSides)
 }
 
 // hot atoms, free ends: momentum to round-off, with and without damping, in all systems of units
-
 TEST(Handshake, KeepsMomentum)
 {
   const ScratchFile file("eam", eam_file());
@@ -373,10 +358,8 @@ TEST(Handshake, KeepsMomentum)
 
 // energy of hot atoms and of the points that they shake: what is lost is known, up to what the
 // integrator of the atoms leaves, which falls with the square of the time step
-
-TEST(Handshake, KnowsTheEnergyThatHotAtomsLose)
+SERIAL_TEST(Handshake, KnowsTheEnergyThatHotAtomsLose)
 {
-  if (nranks() > 1) GTEST_SKIP();
   for (const std::string options : {"", "damp 5.0"}) {
     double error[2];
     for (int fine = 0; fine < 2; fine++) {
@@ -409,7 +392,6 @@ TEST(Handshake, KnowsTheEnergyThatHotAtomsLose)
 }
 
 // the numbers of atoms depend on the ranks that create them, hence all go on from one file
-
 TEST(Handshake, SameOnRanksAndAfterRestart)
 {
   const ScratchFile eam("eam", eam_file());
@@ -462,7 +444,7 @@ TEST(Handshake, RefusesWhatItCannotDo)
   const auto refused = [&](const std::string &word, const std::string &by,
                            const std::string &message) {
     const std::string changed = replaced(scene, word, by) + move + "run 0\n";
-    EXPECT_THAT(error_of(changed), ::testing::HasSubstr(message)) << by;
+    EXPECT_THAT(error_of(changed), HasSubstr(message)) << by;
   };
   refused("transfer flip 1.0", "transfer apic", "needs a field with transfer flip");
   refused("transfer flip 1.0", "transfer flip 1.0 scheme musl", "needs a field with scheme usl");

@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: physics
 // timeout: 600
@@ -14,16 +9,9 @@
 
 #include "mpm_lammps.h"
 
-#include "gtest/gtest.h"
-
-#include <cmath>
-#include <functional>
 #include <utility>
-#include <vector>
 
 using namespace MPM_TEST;
-
-static constexpr double PI = 3.14159265358979323846;
 
 /** An elastic block of width W (radius or edge) and depth D between walls without friction, except for
  *  its upper face, into which a rigid paraboloid of radius R is pressed. Modulus 1, density 1. */
@@ -57,7 +45,6 @@ struct Block {
   // The indentation is the displacement of the surface at the center. That of a half-space would be
   // a^2/R; walls and floor change it by a relative amount of the order of a/D, which these series have,
   // but the shape of the surface, and with it force and pressure, by (a/D)^3 only.
-
   double indentation_round(double a) const    // in a cylinder
   {
     double sum = force(a) * D / (PI * W * W * wave_modulus());
@@ -136,7 +123,6 @@ static Errors press(Scene &run, const Block &block, double (Block::*indentation)
 
 // The exact solution itself: in a deep and wide block the indentation is that of a half-space, less
 // F a0/(pi E* D) for a wide layer, with a0 = 1.16757, the integral of 1 - L
-
 TEST(Hertz, SeriesHaveTheKnownLimits)
 {
   const Block wide = {0.3, 10.0, 60.0, 10.0};
@@ -148,15 +134,13 @@ TEST(Hertz, SeriesHaveTheKnownLimits)
 }
 
 // a body of revolution on another one, on one lattice
-
 TEST(Hertz, OnOneLattice)
 {
   const Block block = {0.3, 10.0, 8.0, 8.0};
   Errors error[2];
   for (int k = 0; k < 2; k++) {
     const double h = 0.25 / (1 << k);
-    Scene run;
-    run.commands(strprintf("variable h equal %g\n", h) + R"(
+    Scene run(strprintf("variable h equal %g\n", h) + R"(
 units lj
 dimension 2
 boundary f f p
@@ -179,13 +163,11 @@ fix m1 one mpm/material density 1.0 linear 1.0 0.3
 fix m2 two mpm/material density 1.0e9 linear 1.0 0.3
 fix axis all mpm/boundary xlo xhi ylo slip
 fix c all mpm/contact two one
-thermo 100000000
 timestep $(0.4*v_h/1.16)
 )");
     // The stress of single points is uneven down to some cells below the contact, its mean over four
     // layers is not. At depth z the mean of r^2 with the stress as weight is 2/5 a^2 + 2 z^2, of
     // which 3 z^3/s is beyond the radius s, with a share (z/s)^3 of the force
-
     std::vector<std::pair<tagint, double>> layers;
     for (int i = 0; i < run.n(); i++) {
       const double z = 8.0 - run.x()[i][1];
@@ -229,15 +211,13 @@ timestep $(0.4*v_h/1.16)
 // in three dimensions, on two lattices: a quarter. Spheres of points touch late where they face gaps of
 // the other lattice, and the layer of contact yields: the force is too small by what both are of the
 // indentation, which is of first order in the spacing of points
-
 TEST(Hertz, OnTwoLattices)
 {
   const Block block = {0.3, 4.0, 4.0, 4.0};
   Errors error[2];
   for (int k = 0; k < 2; k++) {
     const double h = k ? 0.2 : 1.0 / 3.0;
-    Scene run;
-    run.commands(strprintf("variable h equal %.17g\n", h) + R"(
+    Scene run(strprintf("variable h equal %.17g\n", h) + R"(
 units lj
 boundary f f f
 atom_style mpm
@@ -264,11 +244,9 @@ pair_style mpm/penalty
 pair_coeff 1 2 1.0
 compute f two reduce sum fz
 thermo_style custom step c_f
-thermo 100000000
 timestep $(0.4*v_h/1.16)
 )");
     // forces on the points of the paraboloid: the mean of r^2 is 2/5 a^2
-
     const Probe probe = {2, 0.25,
                          [](Scene &r) {
                            return r.evaluate("c_f");

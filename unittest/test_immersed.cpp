@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: physics restart
 // mpi: 1 4
@@ -15,11 +10,7 @@
 
 #include "group.h"
 
-#include <cmath>
-
 using namespace MPM_TEST;
-
-static const double PI = 3.14159265358979323846;
 
 static std::string head(const std::string &box, const std::string &boundary = "p p p",
                         const std::string &grid = "transfer apic")
@@ -36,7 +27,7 @@ static std::string rest(const std::string &fix, const std::string &fluid = "eos 
   return "group water type 1\ngroup grains type 2\nfix drag grains mpm/immersed grid 1.0 " + fix +
       "\nfix fluid water mpm/material density 1.0 " + fluid +
       "\nneigh_modify exclude type 1 1 exclude type 1 2\npair_style zero 0.5\npair_coeff * *\n"
-      "thermo 1000\nthermo_modify norm no\n";
+      "thermo_modify norm no\n";
 }
 
 /** Pressure of the points of fluid over their height along an axis, in a part of a column that is periodic
@@ -84,10 +75,8 @@ static double spline(double x)
 }
 
 // Terminal velocity of a single sphere, by the law of Schiller and Naumann
-
-TEST(Immersed, SinksWithTheTerminalVelocity)
+SERIAL_TEST(Immersed, SinksWithTheTerminalVelocity)
 {
-  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
   struct Case {
     double diameter, viscosity;
     bool before;    // the fix that moves the grain comes before fix mpm
@@ -107,16 +96,15 @@ TEST(Immersed, SinksWithTheTerminalVelocity)
     const std::string move = "fix move grains nve/sphere\n",
                       start_of_box = head("0 8 0 8 0 12", "p p p",
                                           strprintf("transfer apic every %d", c.every));
-    Scene run;
-    run.commands(
-        (c.before ? replaced(start_of_box, "fix grid", "group grains type 2\n" + move + "fix grid")
-                  : start_of_box) +
-        "create_points 1 box ppc 2\ncreate_atoms 2 single 4.1 4.2 8.3\n" +
-        strprintf("set type 2 diameter %g density 3.0\n", d) +
-        rest(strprintf("%g drag schiller gravity 0 0 -1", mu),
-             strprintf("eos tait 500.0 7 viscosity newtonian %g", mu)) +
-        (c.before ? "" : move) + "fix g grains gravity 1.0 vector 0 0 -1\n" +
-        strprintf("timestep %.17g\nrun %d\n", 0.01 / c.every, 350 * c.every));
+    Scene run((c.before
+                   ? replaced(start_of_box, "fix grid", "group grains type 2\n" + move + "fix grid")
+                   : start_of_box) +
+              "create_points 1 box ppc 2\ncreate_atoms 2 single 4.1 4.2 8.3\n" +
+              strprintf("set type 2 diameter %g density 3.0\n", d) +
+              rest(strprintf("%g drag schiller gravity 0 0 -1", mu),
+                   strprintf("eos tait 500.0 7 viscosity newtonian %g", mu)) +
+              (c.before ? "" : move) + "fix g grains gravity 1.0 vector 0 0 -1\n" +
+              strprintf("timestep %.17g\nrun %d\n", 0.01 / c.every, 350 * c.every));
     const double start = run.evaluate("xcm(grains,z)");
     run.commands(strprintf("run %d\n", 50 * c.every));
     const double v = (start - run.evaluate("xcm(grains,z)")) / 0.5 + run.evaluate("vcm(water,z)");
@@ -128,12 +116,9 @@ TEST(Immersed, SinksWithTheTerminalVelocity)
 
 // A column of water at rest under gravity: the force on a grain is its volume times the gradient of the
 // pressure of the points; the floor carries it; a grain of the density of water stays where it is
-
-TEST(Immersed, BuoyancyIsTheGradientOfPressure)
+SERIAL_TEST(Immersed, BuoyancyIsTheGradientOfPressure)
 {
-  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
-  Scene run;
-  run.commands(
+  Scene run(
       replaced(head("0 4 0 4 0 20", "p p f", "transfer pic"), "create_box 2", "create_box 3") +
       "region water block 0 4 0 4 0 14\ncreate_points 1 region water ppc 2\n"
       "create_atoms 2 single 1.1 1.3 7.2\ncreate_atoms 2 single 3.2 2.9 5.4\n"
@@ -168,20 +153,17 @@ TEST(Immersed, BuoyancyIsTheGradientOfPressure)
 
 // Fluid that accelerates pushes grains with the force of Archimedes in it: what is as dense as the fluid
 // goes along, without drag
-
-TEST(Immersed, ArchimedesInFluidThatAccelerates)
+SERIAL_TEST(Immersed, ArchimedesInFluidThatAccelerates)
 {
-  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
   for (const char *scheme : {"transfer apic", "transfer flip 1.0 scheme musl",
                              "transfer apic scheme usf", "transfer xpic 2"}) {
-    Scene run;
-    run.commands(head("0 6 0 6 0 6", "p p p", scheme) +
-                 "create_points 1 box ppc 2\ncreate_atoms 2 single 2.1 2.2 3.3\n"
-                 "create_atoms 2 single 5.1 5.3 1.7\nset type 2 diameter 0.5 density 1.0\n"
-                 "set atom 1730 density 4.0\n" +
-                 rest("1.0 drag none gravity 0 0 -1") +
-                 "fix move grains nve/sphere\nfix push water gravity 0.5 vector 1 0 0\n"
-                 "fix g all gravity 1.0 vector 0 0 -1\ntimestep 0.01\nrun 1\n");
+    Scene run(head("0 6 0 6 0 6", "p p p", scheme) +
+              "create_points 1 box ppc 2\ncreate_atoms 2 single 2.1 2.2 3.3\n"
+              "create_atoms 2 single 5.1 5.3 1.7\nset type 2 diameter 0.5 density 1.0\n"
+              "set atom 1730 density 4.0\n" +
+              rest("1.0 drag none gravity 0 0 -1") +
+              "fix move grains nve/sphere\nfix push water gravity 0.5 vector 1 0 0\n"
+              "fix g all gravity 1.0 vector 0 0 -1\ntimestep 0.01\nrun 1\n");
     // what a grain takes from the fluid slows down the fluid around it, by its share of the nodes
     const double volume = PI / 6.0 * 0.125;
     const auto squares = [](double x) {
@@ -210,10 +192,8 @@ TEST(Immersed, ArchimedesInFluidThatAccelerates)
 }
 
 // Drag on held grains in a lattice, in fluid that moves past them
-
-TEST(Immersed, LawsOfDrag)
+SERIAL_TEST(Immersed, LawsOfDrag)
 {
-  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
   const double d = 0.5, w = 1.0, volume = PI / 6.0 * d * d * d;
   struct Case {
     const char *law;
@@ -246,12 +226,11 @@ TEST(Immersed, LawsOfDrag)
       force = volume / (1.0 - eps) *
           (150.0 * mu * pow(1.0 - eps, 2.0) * w / (d * d) + 1.75 * (1.0 - eps) * w * w / d) /
           pow(eps, 3.0);
-    Scene run;
-    run.commands(head("0 5 0 5 0 5") + "create_points 1 box ppc 2\n" +
-                 strprintf("lattice sc %.10g\ncreate_atoms 2 box\n", 1.0 / pow(c.cell, 3.0)) +
-                 strprintf("set type 2 diameter %g density 3\n", d) +
-                 rest(strprintf("%g drag %s", mu, c.law)) +
-                 "velocity water set 0 1 0 units box\ntimestep 1.0e-6\nrun 1\n");
+    Scene run(head("0 5 0 5 0 5") + "create_points 1 box ppc 2\n" +
+              strprintf("lattice sc %.10g\ncreate_atoms 2 box\n", 1.0 / pow(c.cell, 3.0)) +
+              strprintf("set type 2 diameter %g density 3\n", d) +
+              rest(strprintf("%g drag %s", mu, c.law)) +
+              "velocity water set 0 1 0 units box\ntimestep 1.0e-6\nrun 1\n");
     const double grains = run.lmp->group->count(run.lmp->group->find("grains"));
     EXPECT_NEAR(measured(strprintf("drag %s, Re %g, porosity %.2f", c.law, Re, eps),
                          run.fix_vector("drag", 6)[1] / (grains * force)),
@@ -261,17 +240,14 @@ TEST(Immersed, LawsOfDrag)
 
 // Grains at random places have no ends of beds among them: their drag is that of the mean porosity, but for
 // what the mapped porosity scatters
-
-TEST(Immersed, RandomPlacesAreNoEndsOfBeds)
+SERIAL_TEST(Immersed, RandomPlacesAreNoEndsOfBeds)
 {
-  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
   const double d = 0.4, volume = PI / 6.0 * d * d * d;
   const int grains = 3000;
-  Scene run;
-  run.commands(head("0 10 0 10 0 10") + "create_points 1 box ppc 2\n" +
-               strprintf("create_atoms 2 random %d 4711 NULL\n", grains) +
-               strprintf("set type 2 diameter %g density 3\n", d) + rest("0.1 drag difelice") +
-               "velocity water set 0 1 0 units box\ntimestep 1.0e-5\nrun 1\n");
+  Scene run(head("0 10 0 10 0 10") + "create_points 1 box ppc 2\n" +
+            strprintf("create_atoms 2 random %d 4711 NULL\n", grains) +
+            strprintf("set type 2 diameter %g density 3\n", d) + rest("0.1 drag difelice") +
+            "velocity water set 0 1 0 units box\ntimestep 1.0e-5\nrun 1\n");
   const double eps = 1.0 - grains * volume / 1000.0, Re = d / 0.1;
   const double force = 0.125 * PI * d * d * pow(0.63 + 4.8 / sqrt(Re), 2.0) *
       pow(eps, -4.7 + 0.65 * exp(-0.5 * pow(1.5 - log10(Re), 2.0)));
@@ -279,18 +255,15 @@ TEST(Immersed, RandomPlacesAreNoEndsOfBeds)
 }
 
 // Above the surface of the fluid, buoyancy falls with the mass around the grain
-
-TEST(Immersed, EndsAtTheSurface)
+SERIAL_TEST(Immersed, EndsAtTheSurface)
 {
-  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
   const double volume = PI / 6.0 * 0.125;
   for (double z : {5.4, 7.0, 7.3, 7.9, 8.6, 10.2}) {
-    Scene run;
-    run.commands(head("0 4 0 4 0 20", "p p f") +
-                 "region water block 0 4 0 4 0 7\ncreate_points 1 region water ppc 2\n" +
-                 strprintf("create_atoms 2 single 2.1 1.7 %g\n", z) +
-                 "set type 2 diameter 0.5 density 1.0\n" + rest("0.5 drag none gravity 0 0 -1") +
-                 "timestep 1.0e-3\nrun 1\n");
+    Scene run(head("0 4 0 4 0 20", "p p f") +
+              "region water block 0 4 0 4 0 7\ncreate_points 1 region water ppc 2\n" +
+              strprintf("create_atoms 2 single 2.1 1.7 %g\n", z) +
+              "set type 2 diameter 0.5 density 1.0\n" + rest("0.5 drag none gravity 0 0 -1") +
+              "timestep 1.0e-3\nrun 1\n");
     double mass = 0.0;    // of full space
     for (int n = 0; n < 20; n++)
       for (int k = 0; k < 14; k++) mass += 0.5 * spline(z - n) * spline(0.25 + 0.5 * k - n);
@@ -302,20 +275,17 @@ TEST(Immersed, EndsAtTheSurface)
 
 // A dense suspension at rest as a whole: drag carries what the weight of its grains is above that of
 // displaced fluid, though the fluid carries the rest, too
-
-TEST(Immersed, SuspensionSettlesWithTheLaw)
+SERIAL_TEST(Immersed, SuspensionSettlesWithTheLaw)
 {
-  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
   const double d = 0.5, volume = PI / 6.0 * d * d * d, cell = 0.625, density = 3.0, mu = 0.1;
   const double solid = volume / (cell * cell * cell), eps = 1.0 - solid;
-  Scene run;
-  run.commands(head("0 5 0 5 0 5") + "create_points 1 box ppc 2\n" +
-               strprintf("lattice sc %.10g\ncreate_atoms 2 box\n", 1.0 / (cell * cell * cell)) +
-               strprintf("set type 2 diameter %g density %g\n", d, density) +
-               rest(strprintf("%g gravity 0 0 -1", mu)) +
-               "fix move grains nve/sphere\nfix g all gravity 1.0 vector 0 0 -1\n" +
-               strprintf("fix lift water gravity %.15g vector 0 0 1\n", 1.0 + density * solid) +
-               "timestep 0.01\nrun 100\n");
+  Scene run(head("0 5 0 5 0 5") + "create_points 1 box ppc 2\n" +
+            strprintf("lattice sc %.10g\ncreate_atoms 2 box\n", 1.0 / (cell * cell * cell)) +
+            strprintf("set type 2 diameter %g density %g\n", d, density) +
+            rest(strprintf("%g gravity 0 0 -1", mu)) +
+            "fix move grains nve/sphere\nfix g all gravity 1.0 vector 0 0 -1\n" +
+            strprintf("fix lift water gravity %.15g vector 0 0 1\n", 1.0 + density * solid) +
+            "timestep 0.01\nrun 100\n");
   const double start = run.evaluate("xcm(grains,z)");
   run.commands("run 50\n");
   const double slip = run.evaluate("vcm(water,z)") + (start - run.evaluate("xcm(grains,z)")) / 0.5;
@@ -331,24 +301,20 @@ TEST(Immersed, SuspensionSettlesWithTheLaw)
 
 // Flow through a bed that fills half of a periodic column, driven by a force on the fluid: its pressure
 // falls as Ergun's equation has it for the flux, inside and over all of it.
-
-TEST(Immersed, PressureDropOfABedIsErgun)
+SERIAL_TEST(Immersed, PressureDropOfABedIsErgun)
 {
-  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
   struct Case {
     double viscosity, force;
   };
   for (const auto &c : {Case{0.01, 0.5}, Case{0.0001, 0.5}}) {
     const double d = 0.5;
-    Scene run;
-    run.commands(
-        head("0 4 0 4 0 16") +
-        "create_points 1 box ppc 2\nlattice sc 8.0 origin 0.5 0.5 0.5\n"
-        "region bed block 0 4 0 4 4 12 units box\ncreate_atoms 2 region bed\n"
-        "set type 2 diameter 0.5 density 3.0\ngroup bed type 2\n"
-        "displace_atoms bed random 0.1 0.1 0.1 4711 units box\n" +
-        rest(strprintf("%g drag ergun", c.viscosity)) +
-        strprintf("fix g water gravity %g vector 0 0 1\ntimestep 0.01\nrun 800\n", c.force));
+    Scene run(head("0 4 0 4 0 16") +
+              "create_points 1 box ppc 2\nlattice sc 8.0 origin 0.5 0.5 0.5\n"
+              "region bed block 0 4 0 4 4 12 units box\ncreate_atoms 2 region bed\n"
+              "set type 2 diameter 0.5 density 3.0\ngroup bed type 2\n"
+              "displace_atoms bed random 0.1 0.1 0.1 4711 units box\n" +
+              rest(strprintf("%g drag ergun", c.viscosity)) +
+              strprintf("fix g water gravity %g vector 0 0 1\ntimestep 0.01\nrun 800\n", c.force));
     const double flux = run.evaluate("vcm(water,z)");
     const Drop drop(run, 2, c.force);
     const bigint grains = run.lmp->group->count(run.lmp->group->find("bed"));
@@ -388,16 +354,13 @@ static std::string cloud_with(const std::string &law, const std::string &grid = 
 }
 
 // Momentum of fluid and grains together stays, and stiff drag leaves no slip
-
-TEST(Immersed, KeepsMomentum)
+SERIAL_TEST(Immersed, KeepsMomentum)
 {
-  if (nranks() > 1) GTEST_SKIP() << "sums are those of one rank";
   for (const char *law :
        {"0.1 drag gidaspow", "0.1 drag difelice", "0.01 drag schiller gravity 0 0 -0.2",
         "1.0e5 drag ergun", "1.0e5 drag stokes"})
     for (const char *grid : {"transfer apic", "transfer flip 1.0 scheme musl"}) {
-      Scene run;
-      run.commands(cloud_with(law, grid));
+      Scene run(cloud_with(law, grid));
       const auto start = run.sums();
       const auto grains = run.sums(2);
       double scale = 0.0, worst = 0.0;
@@ -417,15 +380,10 @@ TEST(Immersed, KeepsMomentum)
 /** On one rank and on several, and when it goes on after a restart, with what no restart has. */
 static void expect_the_same(const std::string &scene, const std::string &again)
 {
-  OnRanks ranks(scene, "run 60\n");
-  EXPECT_LT(measured("ranks", ranks.difference()), 1.0e-10);
+  Twins run(scene, 30, "comm_modify vel yes\nfix grid all mpm 1.0 transfer apic\n" + again, 30,
+            1.0e-10);
   for (int k = 0; k < 6; k++)
-    EXPECT_NEAR(ranks.serial.fix_vector("drag", 6)[k], ranks.parallel.fix_vector("drag", 6)[k],
-                1.0e-10);
-  Continued run(
-      scene, 30,
-      "neighbor 0.3 bin\ncomm_modify vel yes\nfix grid all mpm 1.0 transfer apic\n" + again, 30);
-  EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
+    EXPECT_NEAR(run.serial.fix_vector("drag", 6)[k], run.whole.fix_vector("drag", 6)[k], 1.0e-10);
 }
 
 TEST(Immersed, IsTheSameOnAnyNumberOfRanksAndAfterARestart)
@@ -435,12 +393,9 @@ TEST(Immersed, IsTheSameOnAnyNumberOfRanksAndAfterARestart)
 }
 
 // What the grains do to the fluid is in the ledger of its energy
-
-TEST(Immersed, ClosesTheLedger)
+SERIAL_TEST(Immersed, ClosesTheLedger)
 {
-  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
-  Scene run;
-  run.commands(cloud_with("0.1 drag gidaspow gravity 0 0 -0.2") + "compute e all mpm/energy\n");
+  Scene run(cloud_with("0.1 drag gidaspow gravity 0 0 -0.2") + "compute e all mpm/energy\n");
   run.commands("run 100\n");
   auto *e = run.lmp->modify->get_compute_by_id("e");
   e->compute_vector();
@@ -448,9 +403,8 @@ TEST(Immersed, ClosesTheLedger)
   EXPECT_LT(fabs(measured("imbalance", e->vector[10])), 1.0e-12);
 }
 
-TEST(Immersed, RefusesBadInput)
+SERIAL_TEST(Immersed, RefusesBadInput)
 {
-  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
   const std::string start = head("0 4 0 4 0 4", "p p f", "GRID") +
       "create_points 1 box ppc 2\ncreate_atoms 2 single 2 2 2\ncreate_atoms 2 single 1 2 2\n"
       "set type 2 diameter 0.5 density 3.0\ngroup g type 2\ngroup w type 1\nfix m w mpm/material "
@@ -477,18 +431,16 @@ TEST(Immersed, RefusesBadInput)
   expect_refused(replaced(start, "GRID", "transfer fmpm 2"), {{good, "use xpic"}}, "run 0\n");
   expect_refused(replaced(start, "GRID", "transfer flip 1.0 edges modified"),
                  {{good, "use edges plain"}}, "run 0\n");
-  EXPECT_THAT(error_of("units lj\natom_style mpm\nregion box block 0 4 0 4 0 4\ncreate_box 1 box\n"
-                       "fix grid all mpm 1.0\n" +
-                       fix.substr(0, 6) + "all mpm/immersed grid 1.0 1.0\n"),
-              ::testing::HasSubstr("use atom_style hybrid sphere mpm"));
+  expect_error("units lj\natom_style mpm\nregion box block 0 4 0 4 0 4\ncreate_box 1 box\n"
+               "fix grid all mpm 1.0\n" +
+                   fix.substr(0, 6) + "all mpm/immersed grid 1.0 1.0\n",
+               "use atom_style hybrid sphere mpm");
 }
 
-/* ----------------------------------------------------------------------
-   2d: a grain is a disc of unit depth, with the drag of spheres of its diameter and of as much volume
-------------------------------------------------------------------------- */
+/* ---- 2d: a grain is a disc of unit depth, with the drag of spheres of its diameter and of as much volume */
 
-static std::string plane(const std::string &box, const std::string &boundary = "p p p",
-                         const std::string &grid = "transfer apic")
+static std::string flat(const std::string &box, const std::string &boundary = "p p p",
+                        const std::string &grid = "transfer apic")
 {
   return replaced(head(box + " -0.5 0.5", boundary, grid), "units lj", "units lj\ndimension 2");
 }
@@ -497,17 +449,15 @@ static const std::string move_discs = "fix move grains nve/sphere disc\nfix flat
 /** Square array of discs that are held, per disc. */
 static double drag_on_disc(double cell, double diameter, const std::string &law, double speed)
 {
-  Scene run;
-  run.commands(plane("0 5 0 5") + "create_points 1 box ppc 2\n" +
-               strprintf("lattice sq %.10g\ncreate_atoms 2 box\n", 1.0 / (cell * cell)) +
-               strprintf("set type 2 diameter %.10g density/disc 3\n", diameter) + rest(law) +
-               strprintf("velocity water set 0 %g 0 units box\ntimestep 1e-10\nrun 1\n", speed));
+  Scene run(flat("0 5 0 5") + "create_points 1 box ppc 2\n" +
+            strprintf("lattice sq %.10g\ncreate_atoms 2 box\n", 1.0 / (cell * cell)) +
+            strprintf("set type 2 diameter %.10g density/disc 3\n", diameter) + rest(law) +
+            strprintf("velocity water set 0 %g 0 units box\ntimestep 1e-10\nrun 1\n", speed));
   return run.fix_vector("drag", 6)[1] / run.lmp->group->count(run.lmp->group->find("grains"));
 }
 
-TEST(ImmersedPlane, LawsOfDrag)
+SERIAL_TEST(ImmersedPlane, LawsOfDrag)
 {
-  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
   const double d = 0.5, w = 1.0, area = 0.25 * PI * d * d;
   // the last one is denser than any packing
   for (const double cell : {1.0, 0.625, 5.0 / 9.0, 5.0 / 11.0})
@@ -538,10 +488,8 @@ TEST(ImmersedPlane, LawsOfDrag)
 
 // That of Ergun is not far from what cylinders across slow flow feel: A.S. Sangani, A. Acrivos, Int. J.
 // Multiphase Flow 8 (1982) 193, table 1, force / (viscosity velocity)
-
-TEST(ImmersedPlane, ErgunIsNearCylindersInSlowFlow)
+SERIAL_TEST(ImmersedPlane, ErgunIsNearCylindersInSlowFlow)
 {
-  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
   const struct {
     double solid, force, error;
   } rows[] = {{0.2, 51.53, 0.13}, {0.3, 102.90, 0.01}, {0.4, 217.89, 0.01}, {0.5, 532.55, 0.14}};
@@ -556,19 +504,16 @@ TEST(ImmersedPlane, ErgunIsNearCylindersInSlowFlow)
 }
 
 // The force on a disc in water at rest is its volume times the gradient of the pressure of the points
-
-TEST(ImmersedPlane, BuoyancyIsTheGradientOfPressure)
+SERIAL_TEST(ImmersedPlane, BuoyancyIsTheGradientOfPressure)
 {
-  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
-  Scene run;
-  run.commands(plane("0 8 0 20", "p f p", "transfer pic") +
-               "region water block 0 8 0 14 INF INF\ncreate_points 1 region water ppc 2\n"
-               "create_atoms 2 single 1.1 7.2 0\ncreate_atoms 2 single 3.2 5.4 0\n"
-               "set type 2 diameter 0.3 density/disc 1.0\n" +
-               rest("0.5 drag stokes gravity 0 -1 0", "eos tait 2000.0 7") + move_discs +
-               "fix floor all mpm/boundary ylo slip\nfix g all gravity 1.0 vector 0 -1 0\n"
-               "timestep 0.008\nrun 2500\n"
-               "fix mean all ave/time 1 500 500 f_drag[5] f_drag[2]\nrun 500\n");
+  Scene run(flat("0 8 0 20", "p f p", "transfer pic") +
+            "region water block 0 8 0 14 INF INF\ncreate_points 1 region water ppc 2\n"
+            "create_atoms 2 single 1.1 7.2 0\ncreate_atoms 2 single 3.2 5.4 0\n"
+            "set type 2 diameter 0.3 density/disc 1.0\n" +
+            rest("0.5 drag stokes gravity 0 -1 0", "eos tait 2000.0 7") + move_discs +
+            "fix floor all mpm/boundary ylo slip\nfix g all gravity 1.0 vector 0 -1 0\n"
+            "timestep 0.008\nrun 2500\n"
+            "fix mean all ave/time 1 500 500 f_drag[5] f_drag[2]\nrun 500\n");
   const double volume = 0.25 * PI * 0.3 * 0.3;
   for (const auto &s : run.gather())
     if (s.type == 2) {    // as dense as water
@@ -585,20 +530,17 @@ TEST(ImmersedPlane, BuoyancyIsTheGradientOfPressure)
 }
 
 // A column of fluid that is driven through a bed: the pressure falls as Ergun's equation has it for the flux
-
-TEST(ImmersedPlane, PressureDropOfABedIsErgun)
+SERIAL_TEST(ImmersedPlane, PressureDropOfABedIsErgun)
 {
-  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
   for (const double mu : {0.01, 0.0001}) {
     const double d = 0.25, pull = 0.5;
-    Scene run;
-    run.commands(plane("0 4 0 16") +
-                 "create_points 1 box ppc 2\nlattice sq 12.25 origin 0.5 0.5 0\n"
-                 "region bed block 0 4 4 12 INF INF units box\ncreate_atoms 2 region bed\n"
-                 "set type 2 diameter 0.25 density/disc 3.0\ngroup bed type 2\n"
-                 "displace_atoms bed random 0.025 0.025 0 4711 units box\n" +
-                 rest(strprintf("%g drag ergun", mu)) +
-                 strprintf("fix g water gravity %g vector 0 1 0\ntimestep 0.01\nrun 800\n", pull));
+    Scene run(flat("0 4 0 16") +
+              "create_points 1 box ppc 2\nlattice sq 12.25 origin 0.5 0.5 0\n"
+              "region bed block 0 4 4 12 INF INF units box\ncreate_atoms 2 region bed\n"
+              "set type 2 diameter 0.25 density/disc 3.0\ngroup bed type 2\n"
+              "displace_atoms bed random 0.025 0.025 0 4711 units box\n" +
+              rest(strprintf("%g drag ergun", mu)) +
+              strprintf("fix g water gravity %g vector 0 1 0\ntimestep 0.01\nrun 800\n", pull));
     const double flux = run.evaluate("vcm(water,y)");
     const Drop drop(run, 1, pull);
     const bigint grains = run.lmp->group->count(run.lmp->group->find("bed"));
@@ -615,18 +557,15 @@ TEST(ImmersedPlane, PressureDropOfABedIsErgun)
 }
 
 // Discs at random places have no ends of beds among them
-
-TEST(ImmersedPlane, RandomPlacesAreNoEndsOfBeds)
+SERIAL_TEST(ImmersedPlane, RandomPlacesAreNoEndsOfBeds)
 {
-  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
   const double d = 0.1, area = 0.25 * PI * d * d;
   const int grains = 16000;
-  Scene run;
-  run.commands(
-      plane("0 30 0 30") + "create_points 1 box ppc 2\n" +
-      strprintf("create_atoms 2 random %d 4711 NULL\nset type 2 diameter %g density/disc 3\n",
-                grains, d) +
-      rest("0.1 drag difelice") + "velocity water set 0 1 0 units box\ntimestep 1.0e-5\nrun 1\n");
+  Scene run(flat("0 30 0 30") + "create_points 1 box ppc 2\n" +
+            strprintf("create_atoms 2 random %d 4711 NULL\nset type 2 diameter %g density/disc 3\n",
+                      grains, d) +
+            rest("0.1 drag difelice") +
+            "velocity water set 0 1 0 units box\ntimestep 1.0e-5\nrun 1\n");
   const double eps = 1.0 - grains * area / 900.0, Re = d / 0.1;
   const double force = area * 0.75 / d * pow(0.63 + 4.8 / sqrt(Re), 2.0) *
       pow(eps, -4.7 + 0.65 * exp(-0.5 * pow(1.5 - log10(Re), 2.0)));
@@ -635,7 +574,7 @@ TEST(ImmersedPlane, RandomPlacesAreNoEndsOfBeds)
 
 static std::string plane_cloud(const std::string &law, const std::string &grid = "transfer apic")
 {
-  std::string text = plane("0 10 0 10", "p p p", grid) +
+  std::string text = flat("0 10 0 10", "p p p", grid) +
       "region blob block 1 9 1 8 INF INF\ncreate_points 1 region blob ppc 2\n";
   for (int k = 0; k < 64; k++)
     text +=
@@ -648,15 +587,13 @@ static std::string plane_cloud(const std::string &law, const std::string &grid =
       rest(law) + move_discs + "compute e all mpm/energy\ntimestep 0.01\n";
 }
 
-TEST(ImmersedPlane, KeepsMomentumAndTheLedger)
+SERIAL_TEST(ImmersedPlane, KeepsMomentumAndTheLedger)
 {
-  if (nranks() > 1) GTEST_SKIP() << "sums are those of one rank";
   for (const char *law :
        {"0.1 drag gidaspow", "0.01 drag schiller gravity 0 -0.2 0", "1e5 drag ergun"})
     for (const char *grid :
          {"transfer apic", "transfer flip 1.0 scheme musl", "shape cubic transfer apic"}) {
-      Scene run;
-      run.commands(plane_cloud(law, grid));
+      Scene run(plane_cloud(law, grid));
       const auto start = run.sums(), grains = run.sums(2);
       double worst = 0.0;
       const double scale = fabs(grains.p[0]) + fabs(grains.p[1]);
@@ -682,15 +619,13 @@ TEST(ImmersedPlane, IsTheSameOnAnyNumberOfRanksAndAfterARestart)
                   rest(law) + move_discs + "compute e all mpm/energy\ntimestep 0.01\n");
 }
 
-TEST(ImmersedPlane, RefusesBadInput)
+SERIAL_TEST(ImmersedPlane, RefusesBadInput)
 {
-  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
   const std::string fix = "group g type 2\nfix d g mpm/immersed grid 1.0 1.0";
-  EXPECT_THAT(error_of(plane("0 4 0 4") + fix + " gravity 0 0 -1\n"),
-              ::testing::HasSubstr("x and y in 2d"));
-  EXPECT_THAT(error_of(plane("0 4 0 4", "f f p", "axisymmetric yes") +
-                       "create_points 1 box ppc 2\nfix w all mpm/boundary xlo slip\n"
-                       "fix m all mpm/material density 1.0 neohookean 30.0 0.3\n" +
-                       fix + "\nrun 0\n"),
-              ::testing::HasSubstr("would be a ring"));
+  expect_error(flat("0 4 0 4") + fix + " gravity 0 0 -1\n", "x and y in 2d");
+  expect_error(flat("0 4 0 4", "f f p", "axisymmetric yes") +
+                   "create_points 1 box ppc 2\nfix w all mpm/boundary xlo slip\n"
+                   "fix m all mpm/material density 1.0 neohookean 30.0 0.3\n" +
+                   fix + "\nrun 0\n",
+               "would be a ring");
 }

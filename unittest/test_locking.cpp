@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: physics
 // timeout: 900
@@ -12,10 +7,6 @@
 // Volumetric locking and its cures: keyword locking of fix mpm.
 
 #include "mpm_lammps.h"
-
-#include "gtest/gtest.h"
-
-#include <cmath>
 
 using namespace MPM_TEST;
 
@@ -38,17 +29,14 @@ static Cook cook(const char *options, double h, double nu, double cfl = 0.75)
   const double dt = cfl * h / sqrt(lambda + 2.0 * mu), F = 100.0;
   const double u_expected = nu > 0.4 ? 7.0 : 19.0;
   const double omega = sqrt(F / u_expected / 400.0), ramp = 4.0 / omega, end = 12.0 / omega;
-  Scene run;
-  run.commands(
-      strprintf("units si\ndimension 2\nboundary f f p\natom_style mpm\nneighbor %.17g bin\n"
-                "region box block 0 60 0 90 -0.5 0.5\ncreate_box 1 box\n"
-                "fix grid all mpm %.17g %s dtcheck no\n"
-                "region lower plane 0 0 0 -44 48 0\nregion upper plane 0 44 0 16 -48 0\n"
-                "region span block 0 48 0 60 INF INF\nregion plate intersect 3 span lower upper\n"
-                "create_points 1 region plate ppc 2\n"
-                "fix m all mpm/material density 1 neohookean %.17g %.17g\n"
-                "fix clamp all mpm/boundary xlo stick\nthermo 1000000\n",
-                0.4 * h, h, options, E, nu));
+  Scene run(plane("si", "f f", "0 60 0 90", 1, 0.4 * h) +
+            strprintf("fix grid all mpm %.17g %s dtcheck no\nregion lower plane 0 0 0 -44 48 0\n"
+                      "region upper plane 0 44 0 16 -48 0\nregion span block 0 48 0 60 INF INF\n"
+                      "region plate intersect 3 span lower upper\n"
+                      "create_points 1 region plate ppc 2\n"
+                      "fix m all mpm/material density 1 neohookean %.17g %.17g\n"
+                      "fix clamp all mpm/boundary xlo stick\n",
+                      h, options, E, nu));
   run.set_reference();
   double edge = 0.0;
   for (int i = 0; i < run.n(); i++)
@@ -64,7 +52,6 @@ static Cook cook(const char *options, double h, double nu, double cfl = 0.75)
   run.commands(strprintf("timestep %.17g\nrun %ld\n", dt, std::lround(end / dt)));
 
   // the last two columns of points, next to y = 52, extrapolated
-
   double u[2] = {0.0, 0.0}, n[2] = {0.0, 0.0};
   for (int i = 0; i < run.n(); i++) {
     const double *X = run.reference(i);
@@ -77,7 +64,6 @@ static Cook cook(const char *options, double h, double nu, double cfl = 0.75)
   out.u = 1.5 * u[0] / n[0] - 0.5 * u[1] / n[1];
 
   // pressures in the cells that the points began in, away from the singular corners
-
   std::vector<std::array<double, 3>> cells(100 * 100);
   for (auto &cell : cells) cell = {0.0, 0.0, 0.0};
   double square = 0.0;
@@ -112,7 +98,6 @@ TEST(CookMembrane, LocksWithoutCure)
 }
 
 // both cures have the same stiffness, as long as the bulk modulus is uniform
-
 TEST(CookMembrane, PressureAgrees)
 {
   const Cook fbar = cook("locking fbar", 4.0, 0.4999),
@@ -130,7 +115,6 @@ TEST(CookMembrane, CompressibleStays)
 
 // in the updated frame, averaged volumes part from the motion while points vibrate over the lattice: 4 %
 // too soft above. On the lattice of the undeformed panel this cannot be, and the time step does not matter
-
 TEST(CookMembrane, CompressibleDoesNotCreepInTheTotalFrame)
 {
   const double none = cook("frame total", 4.0, 1.0 / 3.0).u;
@@ -149,17 +133,15 @@ TEST(CookMembrane, CompressibleDoesNotCreepInTheTotalFrame)
 static double punch(const char *options)
 {
   const double h = 0.1, dt = 0.4 * h / 37.0;
-  Scene run;
-  run.commands(
-      strprintf("units si\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.04 bin\n"
-                "region box block 0 5 -3 1 -0.5 0.5\ncreate_box 1 box\nfix grid all mpm %g %s\n"
-                "region soil block 0 5 -3 0 INF INF\ncreate_points 1 region soil ppc 2\n"
-                "fix m all mpm/material density 1 eos linear 833.33 strength j2 384.6 1.0\n"
-                "fix sides all mpm/boundary xlo xhi slip\nfix floor all mpm/boundary ylo stick\n"
-                "region punch block -1 1.001 -0.001 1 INF INF\n"
-                "fix punch all mpm/boundary region punch stick velocity 0 -0.04 0\n"
-                "fix slow all viscous %g\nthermo 1000000\ntimestep %.17g\nrun %ld\n",
-                h, options, 0.75 * h * h, dt, std::lround(0.9 / dt)));
+  Scene run(plane("si", "f f", "0 5 -3 1", 1, 0.04) +
+            body("block 0 5 -3 0 INF INF", "density 1 eos linear 833.33 strength j2 384.6 1.0",
+                 strprintf("%g %s", h, options)) +
+            strprintf("fix sides all mpm/boundary xlo xhi slip\n"
+                      "fix floor all mpm/boundary ylo stick\n"
+                      "region punch block -1 1.001 -0.001 1 INF INF\n"
+                      "fix punch all mpm/boundary region punch stick velocity 0 -0.04 0\n"
+                      "fix slow all viscous %g\ntimestep %.17g\nrun %ld\n",
+                      0.75 * h * h, dt, std::lround(0.9 / dt)));
   const double exact = (2.0 + 3.14159265358979) / sqrt(3.0) * (1.0 + 0.5 * h);
   return measured(std::string("punch, ") + options + ": force/limit load",
                   std::abs(run.fix_vector("punch", 3)[1]) / exact);
@@ -178,27 +160,21 @@ TEST(Punch, LimitLoad)
   }
 }
 
-/* ----------------------------------------------------------------------
-   A body whose velocity is linear in position deforms uniformly in a step, averaged or not.
-------------------------------------------------------------------------- */
+/* ---- A body whose velocity is linear in position deforms uniformly in a step, averaged or not. */
 
 class Uniform : public ::testing::TestWithParam<const char *> {};
 
 TEST_P(Uniform, StretchIsExact)
 {
   for (int dim : {2, 3}) {
-    Scene run;
-    run.commands(
-        strprintf("units lj\ndimension %d\nboundary f f p\natom_style mpm\n"
-                  "region box block -5 5 -5 5 %s\ncreate_box 2 box\n"
-                  "fix grid all mpm 0.5 %s\n"
-                  "region body block -1.1 1.2 -1.3 1 %s\ncreate_points 1 region body ppc 2\n"
-                  "region half block 0.1 INF INF INF INF INF\n"
-                  "set region half type 2\ngroup one type 1\ngroup two type 2\n"
-                  "fix m1 one mpm/material density 1 neohookean 1e-14 0.3\n"
-                  "fix m2 two mpm/material density 1 linear 1e-14 0.3\n"
-                  "timestep 0.2\nthermo 1000\n",
-                  dim, dim == 2 ? "-0.5 0.5" : "-5 5", GetParam(), dim == 2 ? "INF INF" : "-1 1"));
+    Scene run(box(dim, "lj", "f f p", "-5 5 -5 5 -5 5", 2) +
+              strprintf("fix grid all mpm 0.5 %s\nregion body block -1.1 1.2 -1.3 1 %s\n"
+                        "create_points 1 region body ppc 2\n"
+                        "region half block 0.1 INF INF INF INF INF\nset region half type 2\n"
+                        "group one type 1\ngroup two type 2\n"
+                        "fix m1 one mpm/material density 1 neohookean 1e-14 0.3\n"
+                        "fix m2 two mpm/material density 1 linear 1e-14 0.3\ntimestep 0.2\n",
+                        GetParam(), dim == 2 ? "INF INF" : "-1 1"));
     const double G[3][3] = {{0.3, 0.1, -0.2}, {0.4, -0.2, 0.1}, {0.1, -0.3, 0.5}};
     for (int step = 0; step < 5; step++) {
       run.set_velocity([&](const double *x, double *v) {
@@ -237,15 +213,10 @@ TEST_P(Volume, SumIsThatOfTheMotion)
   for (int dim : {2, 3}) {
     double volume[2], largest[2];
     for (int averaged : {0, 1}) {
-      Scene run;
-      run.commands(strprintf("units si\ndimension %d\nboundary f f p\natom_style mpm\n"
-                             "region box block -5 5 -5 5 %s\ncreate_box 1 box\n"
-                             "fix grid all mpm 0.5 %s\nregion body block -1 1 -1 1 %s\n"
-                             "create_points 1 region body ppc 2\n"
-                             "fix m all mpm/material density 1 neohookean 1e-10 0.3\n"
-                             "timestep 0.05\nthermo 1000\n",
-                             dim, dim == 2 ? "-0.5 0.5" : "-5 5", GetParam(),
-                             dim == 2 ? "INF INF" : "-1 1"));
+      Scene run(box(dim, "si", "f f p", "-5 5 -5 5 -5 5") +
+                body(strprintf("block -1 1 -1 1 %s", dim == 2 ? "INF INF" : "-1 1"),
+                     "density 1 neohookean 1e-10 0.3", strprintf("0.5 %s", GetParam())) +
+                "timestep 0.05\n");
       run.set_velocity([&](const double *x, double *v) {
         v[0] = sin(x[0] + 2.0 * x[1]);
         v[1] = sin(x[1] - x[0]) * cos(x[1]);
@@ -267,26 +238,20 @@ TEST_P(Volume, SumIsThatOfTheMotion)
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Options, Volume,
-                         ::testing::Values("locking fbar",
-                                           "locking fbar transfer flip 1.0 scheme musl",
-                                           "locking fbar frame total"));
+static const char *const volume_cases[] = {
+    "locking fbar", "locking fbar transfer flip 1.0 scheme musl", "locking fbar frame total"};
+INSTANTIATE_TEST_SUITE_P(Options, Volume, ::testing::ValuesIn(volume_cases));
 
-/* ----------------------------------------------------------------------
-   A pressure that is the same everywhere is its own average, however much points are compressed.
-------------------------------------------------------------------------- */
+/* ---- A pressure that is the same everywhere is its own average, however much points are compressed. */
 
 TEST(AveragedPressure, KeepsAUniformOne)
 {
   std::vector<Scene::State> states[2];
   for (const int averaged : {0, 1}) {
-    Scene run;
-    run.commands(std::string("units si\ndimension 2\nboundary f f p\natom_style mpm\n"
-                             "region box block -5 5 -5 5 -0.5 0.5\ncreate_box 1 box\n"
-                             "fix grid all mpm 0.5 ") +
-                 (averaged ? "locking pressure" : "") +
-                 "\nregion body block -1 1 -1 1 INF INF\ncreate_points 1 region body ppc 2\n"
-                 "fix m all mpm/material density 1 linear 1.0 0.3\ntimestep 0.01\nthermo 1000\n");
+    Scene run(plane("si", "f f", "-5 5 -5 5") + "fix grid all mpm 0.5 " +
+              (averaged ? "locking pressure" : "") +
+              "\nregion body block -1 1 -1 1 INF INF\ncreate_points 1 region body ppc 2\n"
+              "fix m all mpm/material density 1 linear 1.0 0.3\ntimestep 0.01\n");
     for (int i = 0; i < run.n(); i++) {
       const double J = 1.0 + 0.3 * sin(3.0 * run.x()[i][0] + 5.0 * run.x()[i][1]);
       run.points().F[i][4] = J;
@@ -318,16 +283,13 @@ TEST_P(Bar, ConfinedOscillation)
   const double lambda = E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), mu = 0.5 * E / (1.0 + nu);
   const double speed = sqrt(lambda + 2.0 * mu), omega = k * speed;
   const int steps = 4000, periods = 8;
-  Scene run;
-  run.commands(
-      strprintf("units si\ndimension 2\nboundary f f p\natom_style mpm\nneighbor %.17g bin\n"
-                "region box block 0 0.2 0 1.5 -0.5 0.5\ncreate_box 1 box\n"
-                "fix grid all mpm %.17g transfer flip 1.0 scheme musl %s\n"
-                "region bar block INF INF 0 1 INF INF\ncreate_points 1 region bar ppc 2\n"
-                "fix m all mpm/material density 1 neohookean %.17g %.17g\n"
-                "fix sides all mpm/boundary xlo xhi ylo slip\nthermo 1000000\n"
-                "compute e all mpm/energy\ntimestep %.17g\n",
-                0.5 * h, h, GetParam(), E, nu, periods * 4.0 * k / omega / steps));
+  Scene run(plane("si", "f f", "0 0.2 0 1.5", 1, 0.5 * h) +
+            strprintf("fix grid all mpm %.17g transfer flip 1.0 scheme musl %s\n"
+                      "region bar block INF INF 0 1 INF INF\ncreate_points 1 region bar ppc 2\n"
+                      "fix m all mpm/material density 1 neohookean %.17g %.17g\n"
+                      "fix sides all mpm/boundary xlo xhi ylo slip\n"
+                      "compute e all mpm/energy\ntimestep %.17g\n",
+                      h, GetParam(), E, nu, periods * 4.0 * k / omega / steps));
   run.set_reference();
   run.set_velocity([&](const double *x, double *v) {
     v[1] = v0 * sin(k * x[1]);
@@ -348,7 +310,6 @@ TEST_P(Bar, ConfinedOscillation)
             1.0e-12);
 
   // laws see what points do on their own if only the pressure in the force is averaged
-
   const double integration = measured(name + "integration", run.evaluate("c_e[10]") / start);
   if (std::string(GetParam()) == "locking pressure")
     EXPECT_LT(std::abs(integration), 0.15);
@@ -373,14 +334,12 @@ struct Oscillation {
 
 static Oscillation block(const char *options, double nu)
 {
-  Scene run;
-  run.commands(
-      strprintf("units si\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.05 bin\n"
-                "region box block -1 1 -1 1 -0.5 0.5\ncreate_box 1 box\nfix grid all mpm 0.1 %s\n"
-                "region bar block -0.5 0.5 -0.5 0.5 INF INF\ncreate_points 1 region bar ppc 2\n"
-                "fix m all mpm/material density 1 neohookean 1 %g\nthermo 1000000\n"
-                "compute e all mpm/energy\ntimestep 0.001\n",
-                options, nu));
+  Scene run(plane("si", "f f", "-1 1 -1 1", 1, 0.05) +
+            strprintf("fix grid all mpm 0.1 %s\nregion bar block -0.5 0.5 -0.5 0.5 INF INF\n"
+                      "create_points 1 region bar ppc 2\n"
+                      "fix m all mpm/material density 1 neohookean 1 %g\n"
+                      "compute e all mpm/energy\ntimestep 0.001\n",
+                      options, nu));
   run.set_velocity([&](const double *x, double *v) {
     v[0] = 0.1 * x[0];
     v[1] = -0.1 * x[1];
@@ -416,7 +375,6 @@ TEST(Block, MovesAsWithoutLocking)
 
 // F-bar with averaged pressure does as much work as the law says, also when points move over the
 // lattice; with F-bar alone a body without any damping gains energy
-
 TEST(Block, EnergyWithoutDamping)
 {
   const std::string flip = "transfer flip 1.0 scheme musl locking ";

@@ -1,9 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 /* ----------------------------------------------------------------------
    main() of all tests, with one or more MPI processes.  Process 0 reports;
@@ -23,7 +19,6 @@
 bool verbose = false;
 
 // an error of LAMMPS on one process only leaves the others waiting for it: end them all
-
 class EndAllProcesses : public ::testing::EmptyTestEventListener {
   void OnTestPartResult(const ::testing::TestPartResult &result) override
   {

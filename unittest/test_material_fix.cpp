@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: unit input restart
 // mpi: 1 2
@@ -14,13 +9,8 @@
 
 #include "mpm_lammps.h"
 
-#include "gtest/gtest.h"
-
 #include <Eigen/Dense>
 
-#include <array>
-#include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -33,13 +23,7 @@ const std::string STEEL = "density 7830 eos linear 172e9 strength johnson/cook 7
                           "0.168 0.0089 1 1.1 1540 20 thermal adiabatic 460 20 0.9";
 
 /** Two blocks of points, types 1 and 2, and no material yet. */
-const std::string scene = R"(
-units si
-boundary p p p
-atom_style mpm
-neighbor 0.3 bin
-region box block 0 8 0 8 0 8
-create_box 2 box
+const std::string scene = space("si", "p p p", "0 8 0 8 0 8", 2, 0.3) + R"(
 fix grid all mpm 1.0
 region one block 1 3 1 3 1 3
 region two block 5 7 5 7 5 7
@@ -106,7 +90,7 @@ TEST(MaterialFix, ErrorsNameValueAndRemedy)
       {"file Cu_OFHC_J2.mpm density 8000", "after file Cu_OFHC_J2.mpm: density is given twice"},
   };
   for (const auto &c : cases)
-    EXPECT_THAT(error_of_material(c.lines), ::testing::HasSubstr(c.message)) << c.lines;
+    EXPECT_THAT(error_of_material(c.lines), HasSubstr(c.message)) << c.lines;
 }
 
 TEST(MaterialFix, NeedsMaterialPoints)
@@ -123,8 +107,7 @@ TEST(MaterialFix, FilesOfThePackage)
     SCOPED_TRACE(entry.path().string());
     ASSERT_EQ(entry.path().extension(), ".mpm");
     files++;
-    Scene run;
-    run.commands(scene);
+    Scene run(scene);
     run.commands("fix m one mpm/material file " + entry.path().string() + "\n");
     auto *m = material(run, "m");
     std::vector<MPM_NS::HistoryVariable> history = m->material->history();
@@ -138,8 +121,7 @@ TEST(MaterialFix, FilesOfThePackage)
   EXPECT_GE(files, 28);
   // found in the folders of LAMMPS_POTENTIALS, same as in the input
   setenv("LAMMPS_POTENTIALS", (std::string(MPM_SOURCE_DIR) + "/potentials").c_str(), 1);
-  Scene run;
-  run.commands(scene);
+  Scene run(scene);
   run.commands("fix m one mpm/material file Water_Tait.mpm\n"
                "fix n two mpm/material density 998.2 eos tait 2.192e9 7 cutoff -9.9e4 &\n"
                "viscosity newtonian 1.002e-3 range pressure -INF 2.5e9\n");
@@ -208,7 +190,6 @@ double strain_rate(const double *F0, const double *F1, double dt)
 
 // Two blocks, on two ranks when there are two, change their shape. Each warning names the first step, and of the points outside in this
 // step the first one: found here from the state of all points after each step.
-
 TEST(MaterialFix, LeavingARangeWarnsOnce)
 {
   const double dt = 1.0e-6;
@@ -224,8 +205,7 @@ TEST(MaterialFix, LeavingARangeWarnsOnce)
   std::vector<std::array<double, N>> reference;    // of all points of all steps
   int npoints = 0;
   {
-    Scene run;
-    run.commands(start + "\nrun 0 post no\n");
+    Scene run(start + "\nrun 0 post no\n");
     auto before = run.gather();
     for (int step = 1; step <= STEPS; step++) {
       run.commands("run 1 post no\n");
@@ -298,8 +278,7 @@ TEST(MaterialFix, LeavingARangeWarnsOnce)
 
 TEST(MaterialFix, MassIsDensityTimesVolumeUnlessSet)
 {
-  Scene run;
-  run.commands(scene);
+  Scene run(scene);
   run.commands("fix a one mpm/material density 1000 linear 1e6 0.3\n");
   for (int i = 0; i < run.n(); i++)
     EXPECT_EQ(run.mass()[i], run.lmp->atom->type[i] == 1 ? 1000 * 0.125 : 0.0);
@@ -322,8 +301,7 @@ TEST(MaterialFix, MassIsDensityTimesVolumeUnlessSet)
 
 TEST(MaterialFix, NewPointsStartWithInitialHistory)
 {
-  Scene run;
-  run.commands(scene);
+  Scene run(scene);
   run.commands("fix m all mpm/material " + STEEL + "\nregion late block 1 3 5 7 1 3\n" +
                "create_points 1 region late ppc 2\nrun 0 post no\n");
   auto *m = material(run, "m");
@@ -337,8 +315,7 @@ TEST(MaterialFix, NewPointsStartWithInitialHistory)
 
 TEST(MaterialFix, HistoryMovesWithThePoints)
 {
-  Scene run;
-  run.commands(scene);
+  Scene run(scene);
   run.commands("fix a one mpm/material " + STEEL +
                "\nfix b all mpm/material density 1 eos shock 1 1 1\n" + "atom_modify sort 1 1.0\n");
   auto *a = material(run, "a"), *b = material(run, "b");
@@ -377,8 +354,7 @@ TEST(MaterialFix, RestartKeepsHistoryAndWork)
       STEEL + "\nfix b two mpm/material density 1 linear 1 0\n";
   const ScratchFile file("restart");
   {
-    Scene run;
-    run.commands(scene + "unfix grid\n" + fixes);
+    Scene run(scene + "unfix grid\n" + fixes);
     auto *a = material(run, "a");
     EXPECT_EQ(material(run, "b")->history, nullptr);
     for (int i = 0; i < run.n(); i++)
@@ -386,8 +362,7 @@ TEST(MaterialFix, RestartKeepsHistoryAndWork)
     for (int k = 0; k < MPM_NS::NWORK; k++) a->work[k] = (k + 1) * (rank() + 1);
     run.commands("run 0 post no\nwrite_restart " + file.name + "\n");
   }
-  Scene run;
-  run.commands("read_restart " + file.name + "\nneighbor 0.3 bin\n" + fixes + "run 0 post no\n");
+  Scene run("read_restart " + file.name + "\nneighbor 0.3 bin\n" + fixes + "run 0 post no\n");
   auto *a = material(run, "a");
   EXPECT_EQ(sum(run.n()), 128);
   for (int i = 0; i < run.n(); i++)

@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: unit output smoke
 // mpi: 1 2
@@ -13,30 +8,18 @@
 
 #include "mpm_lammps.h"
 
-#include "fix_mpm.h"
-#include "fix_mpm_material.h"
 #include "grid2d.h"
 #include "grid3d.h"
-#include "material/material.h"
 #include "mpm_vtk.h"
 #include "output.h"
 
-#include "gmock/gmock.h"
-#include "gtest/gtest.h"
-
-#include <array>
-#include <cmath>
-#include <cstdio>
-#include <cstring>
 #include <fstream>
-#include <map>
 #include <sstream>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 using namespace MPM_TEST;
 using State = Scene::State;
-using ::testing::HasSubstr;
 
 // ---------------------------------------------------------------- helpers
 
@@ -149,20 +132,16 @@ class ByHand : public ::testing::Test {
 
   void SetUp() override
   {
-    run.commands("units lj\nboundary f f f\natom_style mpm\nneighbor 0.3 bin\n"
-                 "region box block 0 8 0 8 0 8\ncreate_box 3 box\n"
-                 "create_atoms 1 single 1.3 2.2 3.1\n"
-                 "create_atoms 1 single 6.2 2.5 3.6\n"
-                 "create_atoms 2 single 2.7 4.4 3.3\n"
-                 "create_atoms 2 single 6.9 4.1 3.8\n"
-                 "create_atoms 3 single 3.5 6.0 6.0\n"
-                 "set type 1*2 volume 0.125\nset type 1 mass 0.125\nset type 2 mass 0.25\n"
-                 "group points type 1 2\ngroup one type 1\ngroup two type 2\n"
-                 "fix grid points mpm 1.0\n"
+    run.commands(space("lj", "f f f", "0 8 0 8 0 8", 3) +
+                 "create_atoms 1 single 1.3 2.2 3.1\ncreate_atoms 1 single 6.2 2.5 3.6\n"
+                 "create_atoms 2 single 2.7 4.4 3.3\ncreate_atoms 2 single 6.9 4.1 3.8\n"
+                 "create_atoms 3 single 3.5 6.0 6.0\nset type 1*2 volume 0.125\n"
+                 "set type 1 mass 0.125\nset type 2 mass 0.25\ngroup points type 1 2\n"
+                 "group one type 1\ngroup two type 2\nfix grid points mpm 1.0\n"
                  "fix m1 one mpm/material density 1.0 neohookean 10.0 0.25\n"
-                 "fix m2 two mpm/material density 2.0 eos linear 20.0 "
-                 "strength j2 5.0 0.05 hardening linear 0.5\n"
-                 "timestep 1.0e-6\nthermo 1000\n");
+                 "fix m2 two mpm/material density 2.0 eos linear 20.0 strength j2 5.0 0.05 "
+                 "hardening linear 0.5\n"
+                 "timestep 1.0e-6\n");
   }
 
   /** Give all points a state that differs in all components. */
@@ -399,7 +378,6 @@ TEST_F(ByHand, UnknownNamesAreRefused)
   EXPECT_THAT(run.error("compute q all mpm/atom strain/*\n"), HasSubstr("wildcards are F/*"));
 
   // a history variable may come with a material that is defined later, so that run tells
-
   EXPECT_EQ(run.error("compute q all mpm/atom vonmises eplastik\n"), "");
   const auto text = run.error("run 0\n");
   EXPECT_THAT(text, HasSubstr("eplastik"));
@@ -409,13 +387,11 @@ TEST_F(ByHand, UnknownNamesAreRefused)
 
 TEST(Output, NeedsMaterialPoints)
 {
-  Scene run;
-  run.commands("region box block 0 8 0 8 0 8\ncreate_box 1 box\n");
+  Scene run("region box block 0 8 0 8 0 8\ncreate_box 1 box\n");
   EXPECT_THAT(run.error("compute q all mpm/atom vonmises\n"), HasSubstr("atom_style mpm"));
 }
 
 // ---------------------------------------------------------------- dump mpm/vtk
-
 TEST_F(ByHand, PointFile)
 {
   run.commands("compute c all property/atom vx vy\n"
@@ -538,25 +514,18 @@ TEST(Output, CollectionNames)
 }
 
 // ---------------------------------------------------------------- a moving body
-
-static const std::string scene =
-    "units lj\nboundary p f f\natom_style mpm\nneighbor 0.3 bin\n"
-    "region box block 0 8 0 8 0 8\ncreate_box 1 box\n"
-    "fix grid all mpm 1.0\n"
-    "region body block 2.5 5.5 2 5 1.5 4.5\ncreate_points 1 region body ppc 2\n"
-    "fix m all mpm/material density 1.0 neohookean 50.0 0.3\n"
+static const std::string scene = space("lj", "p f f", "0 8 0 8 0 8") +
+    body("block 2.5 5.5 2 5 1.5 4.5", "density 1.0 neohookean 50.0 0.3") +
     "fix floor all mpm/boundary zlo slip\n"
-    "fix pull all gravity 1.0 vector 0 0 -1\n"
-    "velocity all set 0.7 0.1 -1.5\n"
-    "timestep 0.01\nthermo 1000\n";
+    "fix pull all gravity 1.0 vector 0 0 -1\nvelocity all set 0.7 0.1 -1.5\n"
+    "timestep 0.01\n";
 
 /** Times in the list of files are physical, also when the time step changes between runs. */
 TEST(Output, CollectionOfFiles)
 {
-  Scene run;
-  run.commands(scene + "dump d all mpm/vtk 5 " + name("s.*.vtp") +
-               " vonmises\n"
-               "dump_modify d pad 4\nrun 10\ntimestep 0.005\nrun 10\n");
+  Scene run(scene + "dump d all mpm/vtk 5 " + name("s.*.vtp") +
+            " vonmises\n"
+            "dump_modify d pad 4\nrun 10\ntimestep 0.005\nrun 10\n");
   MPI_Barrier(MPI_COMM_WORLD);
   const std::string expected = "<DataSet timestep=\"0\" file=\"" + name("s.0000.vtp") +
       "\"/>\n"
@@ -580,7 +549,6 @@ TEST(Output, CollectionOfFiles)
   }
 
   // a new dump starts a new list, unless it is to append
-
   run.commands("undump d\ndump d all mpm/vtk 5 " + name("s.*.vtp") +
                "\n"
                "dump_modify d append yes pad 4\nrun 5\n");
@@ -609,11 +577,10 @@ TEST(Output, CollectionOfFiles)
 /** Every node once over all processes: mass and momentum are those of the points. */
 TEST(Output, GridFile)
 {
-  Scene run;
-  run.commands(scene +
-               "unfix pull\nunfix floor\n"
-               "dump g all mpm/grid/vtk 20 " +
-               name("g.*.vtu") + " grid mass velocity momentum index\nrun 20\n");
+  Scene run(scene +
+            "unfix pull\nunfix floor\n"
+            "dump g all mpm/grid/vtk 20 " +
+            name("g.*.vtu") + " grid mass velocity momentum index\nrun 20\n");
   const auto points = run.gather();
   MPI_Barrier(MPI_COMM_WORLD);
   if (rank() > 0) return;
@@ -644,7 +611,6 @@ TEST(Output, GridFile)
   for (int d = 0; d < 3; d++) EXPECT_NEAR(momentum[d], momentum_points[d], 1e-12 * mass_points);
 
   // cells are unit cubes with the corners in VTK's order
-
   static const int corner[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
                                    {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
   for (long c = 0; c < ncell; c++) {
@@ -664,8 +630,7 @@ TEST(Output, GridFile)
 
 TEST(Output, GridFileErrors)
 {
-  Scene run;
-  run.commands(scene);
+  Scene run(scene);
   auto dump = [&](const std::string &rest) {
     return run.error("dump g " + rest + "\n");
   };
@@ -677,15 +642,9 @@ TEST(Output, GridFileErrors)
 }
 
 // ---------------------------------------------------------------- fix mpm/cells
-
-static const std::string scene_2d =
-    "units lj\ndimension 2\nboundary p f p\natom_style mpm\nneighbor 0.3 bin\n"
-    "region box block 0 8 0 6 -0.5 0.5\ncreate_box 1 box\n"
-    "fix grid all mpm 0.5\n"
-    "region body block 5.5 8 2 5 -0.5 0.5\ncreate_points 1 region body ppc 2\n"
-    "fix m all mpm/material density 1.0 neohookean 50.0 0.3\n"
-    "velocity all set 0.7 0.1 0\n"
-    "timestep 0.01\nthermo 1000\n";
+static const std::string scene_2d = plane("lj", "p f", "0 8 0 6") +
+    body("block 5.5 8 2 5 -0.5 0.5", "density 1.0 neohookean 50.0 0.3", "0.5") +
+    "velocity all set 0.7 0.1 0\ntimestep 0.01\n";
 
 /** Averages in cells by hand, also through fix ave/grid, which has a grid of its own. */
 static void check_cells(const std::string &input, int dim, const int *n)
@@ -719,7 +678,6 @@ static void check_cells(const std::string &input, int dim, const int *n)
   for (int d = 0; d < dim; d++) EXPECT_EQ(size_of_grid[d], n[d]);
 
   // mass, momentum, volume, volume * stress of each cell
-
   std::vector<std::array<double, 11>> sum((std::size_t) n[0] * n[1] * n[2]);
   double volume = 1.0;
   for (int d = 0; d < dim; d++) volume *= lmp->domain->prd[d] / n[d];
@@ -806,15 +764,13 @@ TEST(Output, CellAveragesWithBalancing)
 
 TEST(Output, CellErrors)
 {
-  Scene run;
-  run.commands(scene);
+  Scene run(scene);
   EXPECT_THAT(run.error("fix cells all mpm/cells\n"), HasSubstr("mpm/cells"));
   EXPECT_THAT(run.error("fix cells all mpm/cells floor\n"), HasSubstr("needs a fix mpm"));
   EXPECT_THAT(run.error("fix cells all mpm/cells grid density\n"), HasSubstr("density"));
 }
 
 // ---------------------------------------------------------------- compute mpm/energy
-
 struct Entry {
   /** Right-hand side of the balance. */
   static double gained(const double *v)
@@ -838,10 +794,9 @@ struct Entry {
 
 TEST(Energy, BalanceCloses)
 {
-  Scene run;
-  run.commands(scene +
-               "compute e all mpm/energy\nthermo_style custom step c_e c_e[*]\nthermo 10\n"
-               "run 0\n");
+  Scene run(scene +
+            "compute e all mpm/energy\nthermo_style custom step c_e c_e[*]\nthermo 10\n"
+            "run 0\n");
   auto *e = run.lmp->modify->get_compute_by_id("e");
   const double start = e->compute_scalar();
   EXPECT_NEAR(start, 0.5 * 27.0 * (0.49 + 0.01 + 2.25), 1e-12);
@@ -887,8 +842,7 @@ TEST(Energy, IntegrationErrorVanishesWithTheTimeStep)
 
 TEST(Energy, StartsWithTheFirstRunAfterItsDefinition)
 {
-  Scene run;
-  run.commands(scene + "run 20\ncompute e all mpm/energy\nrun 0\n");
+  Scene run(scene + "run 20\ncompute e all mpm/energy\nrun 0\n");
   auto *e = run.lmp->modify->get_compute_by_id("e");
   const double start = e->compute_scalar();
   run.commands("run 20\n");
@@ -899,8 +853,7 @@ TEST(Energy, StartsWithTheFirstRunAfterItsDefinition)
 
 TEST(Energy, Errors)
 {
-  Scene run;
-  run.commands(scene);
+  Scene run(scene);
   run.commands("region left block 0 4 0 8 0 8\ngroup left region left\n");
   EXPECT_THAT(run.error("compute e left mpm/energy\n"), HasSubstr("group all"));
   EXPECT_THAT(run.error("compute e all mpm/energy kinetic\n"), HasSubstr("kinetic"));

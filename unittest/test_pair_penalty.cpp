@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: physics mpi input restart
 // mpi: 1 3
@@ -14,10 +9,6 @@
 // test_hertz.cpp.
 
 #include "mpm_lammps.h"
-
-#include "gtest/gtest.h"
-
-#include <cmath>
 
 using namespace MPM_TEST;
 
@@ -32,14 +23,7 @@ static bool first_rank()
 // ---------------------------------------------------------------------- head-on impact of two bars
 
 /** Bars of length 1 at a gap of 0.01, each with speed 0.05, with spacings 0.02 and 0.016. */
-static const char *const bars = R"(
-units si
-dimension 2
-boundary f p p
-atom_style mpm
-neighbor 0.01 bin
-region box block -0.3 2.6 0 0.08 -0.05 0.05
-create_box 2 box
+static const std::string bars = plane("si", "f p", "-0.3 2.6 0 0.08 -0.05 0.05", 2, 0.01) + R"(
 region b1 block 0 1 0 0.08 -0.05 0.05
 region b2 block 1.01 2.01 0 0.08 -0.05 0.05
 group one type 1
@@ -64,7 +48,6 @@ variable v1 equal vcm(one,x)
 variable v2 equal vcm(two,x)
 variable p equal v_v1*mass(one)+v_v2*mass(two)
 thermo_style custom step c_e c_pair c_f
-thermo 100000
 )";
 
 static std::string two_bars(const std::string &modulus, const std::string &penalty,
@@ -77,8 +60,7 @@ static std::string two_bars(const std::string &modulus, const std::string &penal
 // stress rho c v = 0.5 at the interface for 2 L/c = 0.2, then the bars part with their old speeds
 TEST(Bars, StressAndRebound)
 {
-  Scene run;
-  run.commands(two_bars("100", "50", "2e-4"));
+  Scene run(two_bars("100", "50", "2e-4"));
   run.commands("run 0\n");
   const double energy = run.evaluate("c_e");
   double worst = 0.0, drift = 0.0, before = 0.0, after = 0.0;
@@ -99,11 +81,10 @@ TEST(Bars, StressAndRebound)
 }
 
 // bars that are stiff compared with the contact: all energy goes through the contact
-TEST(Bars, EnergyOfTheContact)
+SERIAL_TEST(Bars, EnergyOfTheContact)
 {
   if (!first_rank()) return;
-  Scene run(MPI_COMM_SELF);
-  run.commands(two_bars("500", "1", "8e-5"));
+  Scene run(two_bars("500", "1", "8e-5"), MPI_COMM_SELF);
   run.commands("run 0\n");
   const double energy = run.evaluate("c_e");
   double drift = 0.0, most = 0.0;
@@ -118,11 +99,10 @@ TEST(Bars, EnergyOfTheContact)
 }
 
 // damping takes energy, and says how much: c_pair[2] is its power
-TEST(Bars, DampingDissipates)
+SERIAL_TEST(Bars, DampingDissipates)
 {
   if (!first_rank()) return;
-  Scene run(MPI_COMM_SELF);
-  run.commands("comm_modify vel yes\n" + two_bars("500", "1 damping 3", "8e-5"));
+  Scene run("comm_modify vel yes\n" + two_bars("500", "1 damping 3", "8e-5"), MPI_COMM_SELF);
   run.commands("fix sum all vector 1 c_pair[2]\nvariable lost equal 8e-5*sum(f_sum)\nrun 0\n");
   const double energy = run.evaluate("c_e");
   run.commands("run 4800\n");
@@ -133,11 +113,10 @@ TEST(Bars, DampingDissipates)
 }
 
 // two points of volumes 1 and 0.8^3: radii 0.5 and 0.4, face of the smaller one 0.64
-TEST(TwoPoints, ForceEnergyAndPower)
+SERIAL_TEST(TwoPoints, ForceEnergyAndPower)
 {
   if (!first_rank()) return;
-  Scene run(MPI_COMM_SELF);
-  run.commands(R"(
+  Scene run(R"(
 units lj
 boundary f f f
 atom_style mpm
@@ -162,7 +141,8 @@ compute f one reduce sum fx fy
 thermo_style custom step c_pair c_f[1] c_f[2]
 timestep 0.001
 run 0
-)");
+)",
+            MPI_COMM_SELF);
   const double force = 50.0 * 0.64 * 0.1 / 0.9;
   EXPECT_NEAR(run.evaluate("c_f[1]"), -force, 1e-12);
   EXPECT_NEAR(run.evaluate("c_f[2]"), -0.3 * force, 1e-12);
@@ -205,18 +185,17 @@ variable x equal xcm(body,x)
 variable v equal vcm(body,x)
 compute f body reduce sum fx fy
 thermo_style custom step c_f[1] c_f[2]
-thermo 100000
 )";
 
-TEST(Friction, BlockSlidesOrSticks)
+SERIAL_TEST(Friction, BlockSlidesOrSticks)
 {
   if (!first_rank()) return;
   const double g = 9.81, sine = 0.5, cosine = std::sqrt(0.75), slip = 0.02;
   for (const double mu : {0.0, 0.1, 0.3, 0.8}) {
     SCOPED_TRACE(mu);
-    Scene run(MPI_COMM_SELF);
-    run.commands(replaced(incline, "FRICTION",
-                          mu > 0.0 ? strprintf("friction %g %g", mu, slip) : std::string()));
+    Scene run(replaced(incline, "FRICTION",
+                       mu > 0.0 ? strprintf("friction %g %g", mu, slip) : std::string()),
+              MPI_COMM_SELF);
     run.commands("run 500\n");
     const double t0 = run.evaluate("time"), v0 = run.evaluate("v_v"), x0 = run.evaluate("v_x");
     run.commands("run 1000\n");
@@ -230,7 +209,6 @@ TEST(Friction, BlockSlidesOrSticks)
 }
 
 // ---------------------------------------------------------------------- ranks, periodic faces, restart
-
 static const char *const disks = R"(
 units lj
 dimension 2
@@ -262,38 +240,30 @@ variable v equal vcm(one,x)
 compute e all pe/atom pair
 compute esum all reduce sum c_e
 thermo_style custom step pe c_esum
-thermo 1000
 )";
 
-TEST(Parallel, RanksAgreeAcrossAPeriodicFace)
+TEST(Parallel, RanksAgreeAcrossAPeriodicFaceAndAfterARestart)
 {
-  for (const char *newton : {"newton on\n", "newton off\n"}) {
-    OnRanks both(newton + std::string(disks), "run 300\n");
-    EXPECT_LT(both.difference(), 1e-10);
-    EXPECT_GT(both.parallel.evaluate("v_v"), -0.25);    // they have met through the face
-  }
+  Twins run(disks, 160,
+            "comm_modify vel yes\nfix F1 one mpm 0.5\nfix F2 two mpm 0.6\n"
+            "fix m all mpm/material density 1 neohookean 50 0.3\n",
+            140, 1e-10);
+  EXPECT_GT(run.again.evaluate("pe"), 0.0);
+  OnRanks off("newton off\n" + std::string(disks), "run 300\n");
+  EXPECT_LT(off.difference(), 1e-10);
+  for (Scene *one : {&run.whole, &off.parallel})
+    EXPECT_GT(one->evaluate("v_v"), -0.25);    // they have met through the face
 }
 
 TEST(Parallel, MomentumAndEnergyOfAtoms)
 {
-  Scene run;
-  run.commands(std::string(disks) + "run 0\n");
+  Scene run(std::string(disks) + "run 0\n");
   const double p[2] = {run.evaluate("v_px"), run.evaluate("v_py")};
   run.commands("run 250\n");
   EXPECT_GT(run.evaluate("pe"), 0.0);
   EXPECT_NEAR(run.evaluate("c_esum"), run.evaluate("pe*atoms"), 1e-12);
   EXPECT_NEAR(run.evaluate("v_px"), p[0], 1e-12);
   EXPECT_NEAR(run.evaluate("v_py"), p[1], 1e-12);
-}
-
-TEST(Restart, ContinuesExactly)
-{
-  Continued runs(disks, 160,
-                 "comm_modify vel yes\nneighbor 0.3 bin\nfix F1 one mpm 0.5\nfix F2 two mpm 0.6\n"
-                 "fix m all mpm/material density 1 neohookean 50 0.3\nthermo 1000\n",
-                 80);
-  EXPECT_GT(runs.again.evaluate("pe"), 0.0);
-  EXPECT_TRUE(identical(runs.whole.gather(), runs.again.gather()));
 }
 
 // ---------------------------------------------------------------------- who feels whom
@@ -319,8 +289,7 @@ TEST(Lists, ContactDoesNotDependOnThem)
   };
   for (const auto &text : variants) {
     SCOPED_TRACE(text);
-    Scene run;
-    run.commands(text + "run 250\n");
+    Scene run(text + "run 250\n");
     const auto state = run.gather();
     if (reference.empty()) reference = state;
     ASSERT_EQ(state.size(), reference.size());
@@ -340,8 +309,7 @@ TEST(Lists, NoContact)
   const std::string contact = "fix c all mpm/contact F1 F2 law coulomb 0.3\n";
   for (const auto &text : {replaced(scene, "pair_coeff 1 2 50", "pair_coeff 1 2 0"), same + contact,
                            same + contact + "pair_coeff 1 1 50\n"}) {
-    Scene run;
-    run.commands(text + "compute pair all pair mpm/penalty\nrun 200\n");
+    Scene run(text + "compute pair all pair mpm/penalty\nrun 200\n");
     EXPECT_EQ(run.evaluate("c_pair[1]"), 0.0);
     EXPECT_EQ(run.evaluate("pe"), 0.0);
   }
@@ -356,8 +324,7 @@ TEST(Lists, TotalFrame)
     if (total)
       text = replaced(replaced(text, "mpm 0.5", "mpm 0.5 frame total"), "mpm 0.6",
                       "mpm 0.6 frame total");
-    Scene run;
-    run.commands(text + "run 400\n");
+    Scene run(text + "run 400\n");
     v[total] = run.evaluate("v_v");
     EXPECT_EQ(run.evaluate("pe"), 0.0);    // they have parted
   }
@@ -403,7 +370,6 @@ TEST(Radii, FollowTheVolume)
 }
 
 // ---------------------------------------------------------------------- input that cannot work
-
 TEST(BadInput, IsRefused)
 {
   const std::vector<Mistake> cases = {
@@ -433,25 +399,21 @@ TEST(BadInput, IsRefused)
             std::string::npos);
 }
 
-/* ----------------------------------------------------------------------
-   axisymmetric: rings that are in contact along their circle
-------------------------------------------------------------------------- */
+/* ----------------------------------- axisymmetric: rings that are in contact along their circle */
 
 static std::string rings(const std::string &more)
 {
-  return "units si\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.1 bin\n"
-         "region box block 0 6 0 12 -0.5 0.5\ncreate_box 2 box\ngroup one type 1\ngroup two type "
-         "2\n"
-         "fix F1 one mpm 0.5 axisymmetric yes transfer flip 1.0 scheme musl\n"
-         "fix F2 two mpm 0.4 axisymmetric yes transfer flip 1.0 scheme musl\n"
-         "fix axis all mpm/boundary xlo slip\npair_style mpm/penalty\n" +
+  return plane("si", "f f", "0 6 0 12", 2, 0.1) +
+      "group one type 1\ngroup two type 2\n"
+      "fix F1 one mpm 0.5 axisymmetric yes transfer flip 1.0 scheme musl\n"
+      "fix F2 two mpm 0.4 axisymmetric yes transfer flip 1.0 scheme musl\n"
+      "fix axis all mpm/boundary xlo slip\npair_style mpm/penalty\n" +
       more;
 }
 
 // the force on each point is minus the slope of the energy, along both axes, while the area of a ring in the
 // plane stays: F_zz goes with its radius
-
-TEST(Rings, ForceIsTheSlopeOfTheEnergy)
+SERIAL_TEST(Rings, ForceIsTheSlopeOfTheEnergy)
 {
   if (!first_rank()) return;
   const double r[2] = {1.0, 1.14}, y[2] = {5.0, 5.1}, area = 0.04, E = 3.0, step = 1e-5;
@@ -494,18 +456,17 @@ TEST(Rings, ForceIsTheSlopeOfTheEnergy)
 
 // a rod that swells in a sleeve on another lattice pushes it outward. Its work is the energy of the contact, up
 // to what changes of the radii take: of that energy, the modulus of the contact over the bulk modulus
-
-TEST(Rings, RodSwellsInASleeve)
+SERIAL_TEST(Rings, RodSwellsInASleeve)
 {
   if (!first_rank()) return;
-  Scene run(MPI_COMM_SELF);
-  run.commands(
+  Scene run(
       rings("region one block 0 2 4 8 INF INF\nregion two block 2.05 3.25 4 8 INF INF\n"
             "create_points 1 region one ppc 2 fix F1\ncreate_points 2 region two ppc 2 fix F2\n"
             "group one type 1\ngroup two type 2\npair_coeff 1 2 2.0\n"
             "fix m all mpm/material density 1 neohookean 10.0 0.3\ncompute e all mpm/energy\n"
             "compute pair all pair mpm/penalty\nthermo_style custom step c_e c_pair\n"
-            "timestep 0.01\nthermo 100000\n"));
+            "timestep 0.01\n"),
+      MPI_COMM_SELF);
   run.set_velocity([](const double *x, double *v) {
     v[0] = x[0] < 2.02 ? 0.3 * x[0] : 0.0;
   });
@@ -536,8 +497,7 @@ TEST(Rings, RodSwellsInASleeve)
 }
 
 // two rods that collide along the axis: the stress is rho c v, as in the plane
-
-TEST(Rings, RodsCollide)
+SERIAL_TEST(Rings, RodsCollide)
 {
   if (!first_rank()) return;
   Scene run(MPI_COMM_SELF);
@@ -548,7 +508,7 @@ TEST(Rings, RodsCollide)
             "group one type 1\ngroup two type 2\npair_coeff 1 2 20.0\n"
             "fix m all mpm/material density 1 linear 100.0 0\ncompute e all mpm/energy\n"
             "compute pair all pair mpm/penalty\nthermo_style custom step c_e c_pair\n"
-            "timestep 0.004\nthermo 100000\nvelocity one set 0 0.05 0\nvelocity two set 0 -0.05 0\n"
+            "timestep 0.004\nvelocity one set 0 0.05 0\nvelocity two set 0 -0.05 0\n"
             "variable p equal mass(one)*vcm(one,y)\nrun 0\n"));
   const double start = run.evaluate("c_e"), all = run.sums().p[1];
   double before = 0.0, drift = 0.0;

@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: mpi physics
 // mpi: 1 2 3 4
@@ -14,20 +9,9 @@
 
 #include "mpm_lammps.h"
 
-#include "gtest/gtest.h"
-
-#include <cmath>
-
 using namespace MPM_TEST;
 
-static const char *const scene2d = R"(
-units lj
-dimension 2
-boundary p f p
-atom_style mpm
-neighbor 0.3 bin
-region box block 0 15 0 11 -0.5 0.5
-create_box 2 box
+static const std::string scene2d = plane("lj", "p f", "0 15 0 11", 2) + R"(
 fix grid all mpm 0.5 MPM_OPTIONS
 region one cylinder z 3.0 4.0 1.9 INF INF
 region two block 7.0 12.0 2.0 6.0 INF INF
@@ -42,7 +26,6 @@ fix g all gravity 0.05 vector 0 -1 0
 velocity one set 0.6 -0.3 0
 velocity two set -0.5 -0.1 0
 timestep 0.03
-thermo 1000
 )";
 
 class Ranks : public ::testing::TestWithParam<std::string> {
@@ -89,7 +72,6 @@ INSTANTIATE_TEST_SUITE_P(Options, Ranks,
                                            "shape cubic locking pressure"));
 
 // rings: two bodies that meet on an axis
-
 class AxisymmetricRanks : public Ranks {};
 
 TEST_P(AxisymmetricRanks, ShiftedBrick)
@@ -110,7 +92,6 @@ INSTANTIATE_TEST_SUITE_P(Options, AxisymmetricRanks,
                                            "frame total locking fbar"));
 
 // in the total frame, the two bodies are one, and neighbors on the lattice come to be far apart
-
 class TotalRanks : public Ranks {};
 
 TEST_P(TotalRanks, Bricks)
@@ -132,16 +113,9 @@ INSTANTIATE_TEST_SUITE_P(Options, TotalRanks,
                                            "frame total locking both"));
 
 // slabs along one axis: with 4 ranks some have no points at all
-
 TEST(RanksWithoutPoints, Slabs)
 {
-  const std::string scene = R"(
-units lj
-boundary f f f
-atom_style mpm
-neighbor 0.3 bin
-region box block 0 40 0 8 0 8
-create_box 1 box
+  const std::string scene = space("lj", "f f f", "0 40 0 8 0 8") + R"(
 fix grid all mpm 1.0
 region one block 1 6 2 6 2 6
 create_points 1 region one ppc 2
@@ -156,19 +130,12 @@ timestep 0.05
 
 // walls of all kinds, plasticity, variable time step and energies: what they add up must not
 // depend on which rank has which node
-
-static const char *const walls = R"(
-units lj
-boundary f f f
-atom_style mpm
-neighbor 0.3 bin
-region box block 0 12 0 8 0 8
-create_box 1 box
-fix grid all mpm 1.0 MPM_OPTIONS
-region body block 1 11 1 7 0 4
-create_points 1 region body ppc 2
-fix metal all mpm/material density 1.0 eos linear 20.0 strength j2 10.0 0.3 hardening linear 1.0 &
-  viscosity artificial 1.5 0.06
+static const std::string walls = space("lj", "f f f", "0 12 0 8 0 8") +
+    body("block 1 11 1 7 0 4",
+         "density 1.0 eos linear 20.0 strength j2 10.0 0.3 hardening linear 1.0 viscosity "
+         "artificial 1.5 0.06",
+         "1.0 MPM_OPTIONS") +
+    R"(
 fix floor all mpm/boundary zlo stick
 fix side all mpm/boundary xlo xhi slip friction 0.3
 region ball sphere 5.7 4.2 6.5 2.0
@@ -228,16 +195,9 @@ INSTANTIATE_TEST_SUITE_P(Options, Walls,
                                            "transfer apic scheme usf"));
 
 // two fields with lattices of their own, which know nothing of each other but use the same halo
-
 TEST(TwoFields, DifferentLattices)
 {
-  const std::string scene = R"(
-units lj
-boundary p p f
-atom_style mpm
-neighbor 0.2 bin
-region box block 0 12 0 8 0 8
-create_box 2 box
+  const std::string scene = space("lj", "p p f", "0 12 0 8 0 8", 2, 0.2) + R"(
 fix all_points all mpm 1.0
 region one block 1 5 1 5 1 4
 region two sphere 8.5 5 4 2.4
@@ -255,7 +215,6 @@ fix ground all mpm/boundary zlo slip field fine
 fix step all mpm/dt 0.3
 velocity one set 0.6 0.35 -0.4
 velocity two set -0.5 -0.4 -1.5
-thermo 1000
 )";
   for (const char *layout : {"", "comm_style tiled\nfix lb all balance 20 1.0 rcb\n"}) {
     OnRanks run(scene, "run 200\n", layout);
@@ -270,7 +229,6 @@ thermo 1000
 
 // grains of pair style granular that fall on a soft block. LAMMPS sums pair forces in the order of
 // its neighbor lists, and a contact that closes a rounding error earlier is amplified: looser.
-
 static const char *const grains = R"(
 units lj
 boundary p p f
@@ -301,7 +259,6 @@ thermo 50
 TEST(Grains, OnABlock)
 {
   // one by one: IDs that create_atoms gives to many depend on the number of ranks
-
   std::string rain;
   for (int k = 0; k < 48; k++)
     rain += strprintf("create_atoms 2 single %.3f %.3f %.3f\n", 1.5 + 2.9 * (k % 4) + 0.2 * sin(k),
@@ -325,15 +282,12 @@ TEST(Grains, OnABlock)
 
 // shifting everything by a fraction of h changes only what theory says: nothing for a periodic
 // box whose lattice is shifted along
-
 TEST(Translation, LatticeAndBodyTogether)
 {
   auto scene = [](double s) {
     std::string t = std::to_string(s);
-    return "units lj\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
-           "region box block 0 8 0 8 0 8\ncreate_box 1 box\n"
-           "fix grid all mpm 1.0 origin " +
-        t + " " + t + " " + t +
+    return space("lj", "p p p", "0 8 0 8 0 8") + "fix grid all mpm 1.0 origin " + t + " " + t +
+        " " + t +
         "\n"
         "region one sphere 4 4 4 1.9\ncreate_points 1 region one ppc 2\n"
         "displace_atoms all move " +

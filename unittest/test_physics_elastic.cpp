@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: physics
 // timeout: 900
@@ -13,9 +8,6 @@
 
 #include "mpm_lammps.h"
 
-#include "gtest/gtest.h"
-
-#include <cmath>
 #include <ostream>
 
 using namespace MPM_TEST;
@@ -79,16 +71,13 @@ static double hanging_bar(const HangingCase &c)
   const double h = 1.0 / c.cells, speed = sqrt((LAMBDA + 2.0 * MU) / RHO);
   const HangingBar exact(c.g);
   const double tip = exact.displacement(1.0);
-  Scene run;
-  run.commands(
-      strprintf("units si\ndimension 2\nboundary f f p\natom_style mpm\nneighbor %.17g bin\n"
-                "region box block 0 %.17g -1.5 0 -0.5 0.5\ncreate_box 1 box\n"
-                "fix grid all mpm %.17g %s\nregion bar block INF INF -1 0 INF INF\n"
-                "create_points 1 region bar ppc 2\n"
-                "fix m all mpm/material density %g neohookean %g %g\n"
-                "fix sides all mpm/boundary xlo xhi slip\n"
-                "fix top all mpm/boundary yhi stick\nthermo 1000000\n",
-                0.4 * h, 4.0 * h, h, c.options, RHO, E, NU));
+  Scene run(plane("si", "f f", strprintf("0 %.17g -1.5 0", 4.0 * h), 1, 0.4 * h) +
+            strprintf("fix grid all mpm %.17g %s\nregion bar block INF INF -1 0 INF INF\n"
+                      "create_points 1 region bar ppc 2\n"
+                      "fix m all mpm/material density %g neohookean %g %g\n"
+                      "fix sides all mpm/boundary xlo xhi slip\n"
+                      "fix top all mpm/boundary yhi stick\n",
+                      h, c.options, RHO, E, NU));
   run.set_reference();
   // load ramped over one period of the first mode, damped critically for that mode
   const double omega = 0.5 * 3.14159265358979 * speed, ramp = 6.28 / omega;
@@ -130,19 +119,18 @@ TEST_P(Hanging, Displacement)
   EXPECT_LT(hanging_bar(GetParam()), GetParam().tolerance);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Options, Hanging,
-    ::testing::Values(HangingCase{"shape quadratic transfer apic", 9.81, 20, .005},
-                      HangingCase{"shape quadratic transfer apic", 50, 20, .005},
-                      HangingCase{"shape quadratic transfer apic", 100, 20, .005},
-                      HangingCase{"shape quadratic transfer apic", 250, 20, .005},
-                      HangingCase{"shape quadratic transfer flip 1.0 scheme musl", 100, 20, .005},
-                      HangingCase{"shape quadratic transfer pic", 100, 20, .005},
-                      HangingCase{"shape linear transfer flip 1.0 scheme musl", 9.81, 20, .005},
-                      HangingCase{"shape cubic transfer apic", 250, 20, .005}));
+static const HangingCase hanging_cases[] = {
+    {"shape quadratic transfer apic", 9.81, 20, .005},
+    {"shape quadratic transfer apic", 50, 20, .005},
+    {"shape quadratic transfer apic", 100, 20, .005},
+    {"shape quadratic transfer apic", 250, 20, .005},
+    {"shape quadratic transfer flip 1.0 scheme musl", 100, 20, .005},
+    {"shape quadratic transfer pic", 100, 20, .005},
+    {"shape linear transfer flip 1.0 scheme musl", 9.81, 20, .005},
+    {"shape cubic transfer apic", 250, 20, .005}};
+INSTANTIATE_TEST_SUITE_P(Options, Hanging, ::testing::ValuesIn(hanging_cases));
 
 // linear functions: points cross cells, the bar breaks
-
 TEST(HangingLinear, Breaks)
 {
   EXPECT_GT(hanging_bar({"shape linear transfer flip 1.0 scheme musl", 250, 20, 0.0}), 0.1);
@@ -171,16 +159,10 @@ TEST_P(Beam, Tip)
 {
   const auto &c = GetParam();
   const double h = c.h, speed = sqrt((LAMBDA + 2.0 * MU) / RHO);
-  Scene run;
-  run.commands(
-      strprintf("units si\ndimension 2\nboundary f f p\natom_style mpm\nneighbor %.17g bin\n"
-                "region box block 0 5 -5 2 -0.5 0.5\ncreate_box 1 box\n"
-                "fix grid all mpm %.17g %s\nregion beam block 0 4 0 1 INF INF\n"
-                "create_points 1 region beam ppc %d\n"
-                "fix m all mpm/material density %g neohookean %g %g\n"
-                "fix clamp all mpm/boundary xlo stick\nfix g all gravity 10 vector 0 -1 0\n"
-                "thermo 1000000\n",
-                0.4 * h, h, c.options, c.ppc, RHO, E, NU));
+  Scene run(plane("si", "f f", "0 5 -5 2", 1, 0.4 * h) +
+            body("block 0 4 0 1 INF INF", strprintf("density %g neohookean %g %g", RHO, E, NU),
+                 strprintf("%.17g %s", h, c.options), std::to_string(c.ppc)) +
+            "fix clamp all mpm/boundary xlo stick\nfix g all gravity 10 vector 0 -1 0\n");
   run.set_reference();
   double lowest = 0.0, t_lowest = 0.0, highest = -1.0e300, t_highest = 0.0, along = 0.0;
   run.each_step(
@@ -219,10 +201,10 @@ TEST_P(Beam, Tip)
 // The bar at the clamp stretches to 1.9 locally: 2 points per cell and axis part there (numerical
 // fracture at t = 1), 3 do not.
 
-INSTANTIATE_TEST_SUITE_P(Options, Beam,
-                         ::testing::Values(BeamCase{"shape quadratic transfer apic", 0.2, 3, 1.2},
-                                           BeamCase{"shape quadratic transfer apic", 0.1, 3, 1.2},
-                                           BeamCase{"shape cubic transfer apic", 0.1, 3, 1.2}));
+static const BeamCase beam_cases[] = {{"shape quadratic transfer apic", 0.2, 3, 1.2},
+                                      {"shape quadratic transfer apic", 0.1, 3, 1.2},
+                                      {"shape cubic transfer apic", 0.1, 3, 1.2}};
+INSTANTIATE_TEST_SUITE_P(Options, Beam, ::testing::ValuesIn(beam_cases));
 
 /* ----------------------------------------------------------------------
    D1, dynamic: a cube of 1 m hung at its top (free to slide), 1000 m/s^2 applied suddenly. Finite
@@ -240,16 +222,15 @@ TEST(Block, SuddenLoad)
   const double h = 1.0 / cells;
   Scene run;
   // a quarter of the cube, symmetric about x = 0 and y = 0
-  run.commands(
-      strprintf("units si\nboundary f f f\natom_style mpm\nneighbor %.17g bin\n"
-                "region box block 0 1 0 1 -3 0\ncreate_box 1 box\n"
-                "fix grid all mpm %.17g\nregion cube block 0 0.5 0 0.5 -1 0\n"
-                "create_points 1 region cube ppc %d\n"
-                "fix m all mpm/material density %g neohookean %g %g\n"
-                "fix top all mpm/boundary zhi xlo ylo slip\nfix g all gravity 1000 vector 0 0 -1\n"
-                "fix step all mpm/dt 0.2 every 1\nthermo 1000000\n"
-                "variable t equal time\nfix end all halt 10 v_t > 0.095 error continue\n",
-                0.4 * h, h, ppc, RHO, E, NU));
+  run.commands(space("si", "f f f", "0 1 0 1 -3 0", 1, 0.4 * h) +
+               strprintf("fix grid all mpm %.17g\nregion cube block 0 0.5 0 0.5 -1 0\n"
+                         "create_points 1 region cube ppc %d\n"
+                         "fix m all mpm/material density %g neohookean %g %g\n"
+                         "fix top all mpm/boundary zhi xlo ylo slip\n"
+                         "fix g all gravity 1000 vector 0 0 -1\nfix step all mpm/dt 0.2 every 1\n"
+                         "variable t equal time\n"
+                         "fix end all halt 10 v_t > 0.095 error continue\n",
+                         h, ppc, RHO, E, NU));
   run.set_reference();
   double lowest = 0.0, t_lowest = 0.0, stretch = 0.0;
   run.each_step(

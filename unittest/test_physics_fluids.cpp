@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: physics
 // timeout: 900
@@ -13,11 +8,6 @@
 // against exact solutions.
 
 #include "mpm_lammps.h"
-
-#include "gtest/gtest.h"
-
-#include <cmath>
-#include <functional>
 
 using namespace MPM_TEST;
 
@@ -75,9 +65,7 @@ class RiemannSolution {
   double g;
 };
 
-/* ----------------------------------------------------------------------
-   A5: Sod's shock tube (G.A. Sod, J. Comput. Phys. 27 (1978) 1)
-------------------------------------------------------------------------- */
+/* -------------------------------- A5: Sod's shock tube (G.A. Sod, J. Comput. Phys. 27 (1978) 1) */
 
 struct SodErrors {
   double density, plateau, shock, energy;
@@ -87,18 +75,18 @@ SodErrors sod(int cells, const std::string &options)
 {
   const double h = 1.0 / cells, t = 0.2;
   const RiemannSolution exact({1, 0, 1}, {0.125, 0, 0.1}, 1.4);
-  Scene run;
-  run.commands(strprintf(
-      "units si\ndimension 2\nboundary f p p\natom_style mpm\nneighbor %.17g bin\n"
-      "region box block 0 1 0 %.17g -0.5 0.5\ncreate_box 2 box\nfix grid all mpm %.17g %s\n"
-      "region left block 0 0.5 INF INF INF INF\nregion right block 0.5 1 INF INF INF INF\n"
-      "create_points 1 region left ppc 3 1\ncreate_points 2 region right ppc 3 1\n"
-      "group left type 1\ngroup right type 2\n"
-      "fix l left mpm/material density 1 eos ideal/gas 1.4 pressure 1 viscosity artificial 2 1\n"
-      "fix r right mpm/material density 0.125 eos ideal/gas 1.4 pressure 0.1 viscosity artificial "
-      "2 1\nfix ends all mpm/boundary xlo xhi slip\ncompute e all mpm/energy\nthermo 1000000\n"
-      "thermo_style custom step c_e\ntimestep %.17g\nrun 0\n",
-      0.4 * h, h, h, options.c_str(), 0.02 * h));
+  Scene run(plane("si", "f p", strprintf("0 1 0 %.17g", h), 2, 0.4 * h) +
+            strprintf("fix grid all mpm %.17g %s\nregion left block 0 0.5 INF INF INF INF\n"
+                      "region right block 0.5 1 INF INF INF INF\n"
+                      "create_points 1 region left ppc 3 1\ncreate_points 2 region right ppc 3 1\n"
+                      "group left type 1\ngroup right type 2\n"
+                      "fix l left mpm/material density 1 eos ideal/gas 1.4 pressure 1 viscosity "
+                      "artificial 2 1\n"
+                      "fix r right mpm/material density 0.125 eos ideal/gas 1.4 pressure 0.1 "
+                      "viscosity artificial 2 1\n"
+                      "fix ends all mpm/boundary xlo xhi slip\ncompute e all mpm/energy\n"
+                      "thermo_style custom step c_e\ntimestep %.17g\nrun 0\n",
+                      h, options.c_str(), 0.02 * h));
   const double start = run.evaluate("c_e");
   EXPECT_NEAR(start, (2.5 * 0.5 + 0.25 * 0.5) * h, 1e-9 * h);
   run.commands(strprintf("run %d\n", (int) std::lround(t / (0.02 * h))));
@@ -167,15 +155,12 @@ TEST(Sod, LinearShapeFunctionsDoNotConverge)
 TEST(GasAtRest, NoiseDoesNotGrowOffTheEdgesOfFunctions)
 {
   const auto growth = [](const char *ppc, const char *options) {
-    Scene run;
-    run.commands(strprintf(
-        "units si\ndimension 2\nboundary p p p\natom_style mpm\nneighbor 0.4 bin\n"
-        "region box block 0 16 0 16 -0.5 0.5\ncreate_box 1 box\n"
-        "fix grid all mpm 1.0 %s\ncreate_points 1 box ppc %s\n"
-        "fix m all mpm/material density 1.0 eos ideal/gas 1.4 pressure 1.0 viscosity artificial "
-        "2.0 1.0\nvariable u atom random(-1e-6,1e-6,4711)\nvariable v atom "
-        "random(-1e-6,1e-6,4712)\nvelocity all set v_u v_v 0\ntimestep 0.2\nthermo 1000000\n",
-        options, ppc));
+    Scene run(plane("si", "p p", "0 16 0 16", 1, 0.4) +
+              body("box", "density 1.0 eos ideal/gas 1.4 pressure 1.0 viscosity artificial 2.0 1.0",
+                   strprintf("1.0 %s", options), ppc) +
+              "variable u atom random(-1e-6,1e-6,4711)\n"
+              "variable v atom random(-1e-6,1e-6,4712)\nvelocity all set v_u v_v 0\n"
+              "timestep 0.2\n");
     const double start = run.sums().kinetic;
     run.commands("run 1200\n");
     return measured(std::string(options) + " ppc " + ppc, run.sums().kinetic / start);
@@ -194,17 +179,15 @@ TEST(GasAtRest, NoiseDoesNotGrowOffTheEdgesOfFunctions)
 TEST(Noh, Planar)
 {
   const double h = 0.01, t = 0.6;
-  Scene run;
-  run.commands(
-      strprintf("units si\ndimension 2\nboundary f p p\natom_style mpm\nneighbor %.17g bin\n"
-                "region box block 0 1.1 0 %.17g -0.5 0.5\ncreate_box 1 box\n"
-                "fix grid all mpm %.17g transfer flip 1.0 scheme musl\n"
-                "region gas block 0 1 INF INF INF INF\ncreate_points 1 region gas ppc 3 1\n"
-                "velocity all set -1 0 0\nfix gas all mpm/material density 1 eos ideal/gas %.17g "
-                "pressure 1e-6 viscosity artificial 2 1\nfix wall all mpm/boundary xlo slip\n"
-                "compute e all mpm/energy\nthermo 1000000\nthermo_style custom step c_e\n"
-                "timestep 0.0005\nrun 0\n",
-                0.4 * h, h, h, 5.0 / 3));
+  Scene run(plane("si", "f p", strprintf("0 1.1 0 %.17g", h), 1, 0.4 * h) +
+            strprintf("fix grid all mpm %.17g transfer flip 1.0 scheme musl\n"
+                      "region gas block 0 1 INF INF INF INF\ncreate_points 1 region gas ppc 3 1\n"
+                      "velocity all set -1 0 0\n"
+                      "fix gas all mpm/material density 1 eos ideal/gas %.17g pressure 1e-6 "
+                      "viscosity artificial 2 1\n"
+                      "fix wall all mpm/boundary xlo slip\ncompute e all mpm/energy\n"
+                      "thermo_style custom step c_e\ntimestep 0.0005\nrun 0\n",
+                      h, 5.0 / 3));
   const double start = run.evaluate("c_e");
   run.commands(strprintf("run %d\n", (int) std::lround(t / 0.0005)));
   EXPECT_NEAR(measured("Noh energy", run.evaluate("c_e") / start), 1.0, 0.01);
@@ -230,12 +213,9 @@ TEST(Noh, Planar)
 // the pressure of a gas is there before the first step: at rest between walls it stays at rest
 TEST(Gas, RestsFromTheFirstStep)
 {
-  Scene run;
-  run.commands("units si\nboundary f f p\natom_style mpm\nneighbor 0.1 bin\n"
-               "region box block 0 6 0 6 0 1\ncreate_box 1 box\nfix grid all mpm 1\n"
-               "create_points 1 box ppc 2\n"
-               "fix air all mpm/material density 1.2 eos ideal/gas 1.4 pressure 1e5\n"
-               "fix walls all mpm/boundary xlo xhi ylo yhi slip\ntimestep 5e-4\nrun 0\n");
+  Scene run(space("si", "f f p", "0 6 0 6 0 1", 1, 0.1) +
+            body("box", "density 1.2 eos ideal/gas 1.4 pressure 1e5", "1") +
+            "fix walls all mpm/boundary xlo xhi ylo yhi slip\ntimestep 5e-4\nrun 0\n");
   for (const auto &s : run.gather())
     for (int c = 0; c < 6; c++) EXPECT_DOUBLE_EQ(s.stress[c], c < 3 ? -1e5 : 0.0);
   run.commands("run 100\n");
@@ -248,12 +228,9 @@ TEST(Gas, RestsFromTheFirstStep)
 // but a stress that points have is left alone
 TEST(Gas, InitialStressOfPointsStays)
 {
-  Scene run;
-  run.commands("units si\nboundary p p p\natom_style mpm\nneighbor 0.1 bin\n"
-               "region box block 0 4 0 4 0 4\ncreate_box 1 box\nfix grid all mpm 1\n"
-               "create_points 1 box ppc 1\n"
-               "fix air all mpm/material density 1.2 eos ideal/gas 1.4 pressure 1e5\n"
-               "timestep 1e-4\n");
+  Scene run(space("si", "p p p", "0 4 0 4 0 4", 1, 0.1) +
+            body("box", "density 1.2 eos ideal/gas 1.4 pressure 1e5", "1", "1") +
+            "timestep 1e-4\n");
   for (int i = 0; i < run.n(); i += 2) run.points().tau[i][3] = 7.0;
   run.commands("run 0\n");
   int kept = 0;
@@ -275,8 +252,7 @@ TEST(Detonation, GoesOnAfterRestart)
   const auto run_on = "timestep 1e-7\nrun 60\n";
   Scene whole, first, second;
   for (Scene *run : {&whole, &first}) {
-    run->commands("units si\ndimension 2\nboundary f p p\natom_style mpm\nneighbor 0.004 bin\n"
-                  "region box block -0.4 0.4 0 0.02 -0.5 0.5\ncreate_box 1 box\n"
+    run->commands(plane("si", "f p", "-0.4 0.4 0 0.02", 1, 0.004) +
                   "region tnt block -0.1 0.1 INF INF INF INF\n");
     run->commands(fixes.substr(0, fixes.find('\n') + 1) + "create_points 1 region tnt ppc 2\n" +
                   fixes.substr(fixes.find('\n') + 1));
@@ -296,12 +272,9 @@ TEST(Detonation, GoesOnAfterRestart)
 // energy per mass in units in which velocity^2 is not its unit
 TEST(Gas, InitialEnergyInMetalUnits)
 {
-  Scene run;
-  run.commands("units metal\nboundary p p p\natom_style mpm\nneighbor 0.1 bin\n"
-               "region box block 0 4 0 4 0 4\ncreate_box 1 box\nfix grid all mpm 1\n"
-               "create_points 1 box ppc 1\n"
-               "fix air all mpm/material density 0.01 eos ideal/gas 1.5 energy 0.2\n"
-               "timestep 1e-4\nrun 0\n");
+  Scene run(space("metal", "p p p", "0 4 0 4 0 4", 1, 0.1) +
+            body("box", "density 0.01 eos ideal/gas 1.5 energy 0.2", "1", "1") +
+            "timestep 1e-4\nrun 0\n");
   // eV/Angstrom^3 in bar
   EXPECT_NEAR(run.gather()[0].stress[0], -0.5 * 0.01 * 0.2 * run.lmp->force->nktv2p, 1e-6);
 }
@@ -314,17 +287,16 @@ TEST(Gas, InitialEnergyInMetalUnits)
 TEST(Hugoniot, SymmetricImpactAt7KilometersPerSecond)
 {
   const double h = 1e-4, u = 3500, U = 10040, rho = 2703, t = 6e-7;
-  Scene run;
-  run.commands(strprintf(
-      "units si\ndimension 2\nboundary f p p\natom_style mpm\nneighbor %.17g bin\n"
-      "region box block 0 0.011 0 %.17g -0.5 0.5\ncreate_box 1 box\n"
-      "fix grid all mpm %.17g transfer flip 1.0 scheme musl\n"
-      "region al block 0 0.01 INF INF INF INF\ncreate_points 1 region al ppc 2 1\n"
-      "velocity all set %.17g 0 0\nfix al all mpm/material density %.17g eos shock 5350 1.34 2 "
-      "viscosity artificial 2 1\nfix wall all mpm/boundary xlo slip\n"
-      "compute e all mpm/energy\nthermo 1000000\nthermo_style custom step c_e\n"
-      "timestep 2e-9\nrun 0\n",
-      0.4 * h, h, h, -u, rho));
+  Scene run(
+      plane("si", "f p", strprintf("0 0.011 0 %.17g", h), 1, 0.4 * h) +
+      strprintf(
+          "fix grid all mpm %.17g transfer flip 1.0 scheme musl\n"
+          "region al block 0 0.01 INF INF INF INF\ncreate_points 1 region al ppc 2 1\n"
+          "velocity all set %.17g 0 0\n"
+          "fix al all mpm/material density %.17g eos shock 5350 1.34 2 viscosity artificial 2 1\n"
+          "fix wall all mpm/boundary xlo slip\ncompute e all mpm/energy\n"
+          "thermo_style custom step c_e\ntimestep 2e-9\nrun 0\n",
+          h, -u, rho));
   const double start = run.evaluate("c_e");
   const auto pressure = [](const Scene::State &s) {
     return -(s.stress[0] + s.stress[1] + s.stress[2]) / 3;
@@ -361,9 +333,7 @@ TEST(Hugoniot, SymmetricImpactAt7KilometersPerSecond)
   EXPECT_LT(measured("J1 overshoot", top / 94.983e9), 1.1);
 }
 
-/* ----------------------------------------------------------------------
-   a charge of TNT, lit at a wall: front on time, Chapman-Jouguet pressure, energy
-------------------------------------------------------------------------- */
+/* -------------- a charge of TNT, lit at a wall: front on time, Chapman-Jouguet pressure, energy */
 
 TEST(Detonation, OfTnt)
 {
@@ -371,17 +341,15 @@ TEST(Detonation, OfTnt)
   double peak[2];
   for (int level = 0; level < 2; level++) {
     const double h = 1e-3 / (1 << level), t = 0.09 / D, dt = 0.2 * h / D;
-    Scene run;
-    run.commands(strprintf(
-        "units si\ndimension 2\nboundary f p p\natom_style mpm\nneighbor %.17g bin\n"
-        "region box block 0 0.12 0 %.17g -0.5 0.5\ncreate_box 1 box\n"
-        "fix grid all mpm %.17g transfer flip 1.0 scheme musl\n"
-        "region tnt block 0 %.17g INF INF INF INF\ncreate_points 1 region tnt ppc 2 1\n"
-        "fix tnt all mpm/material density 1630 eos jwl 371.2e9 3.231e9 4.15 0.95 0.30 7.0e9 6930 "
-        "detonate 0 0 0 0 viscosity artificial 1.5 0.06\nfix wall all mpm/boundary xlo slip\n"
-        "compute e all mpm/energy\nthermo 1000000\nthermo_style custom step c_e\n"
-        "timestep %.17g\nrun 0\n",
-        0.4 * h, h, h, length, dt));
+    Scene run(plane("si", "f p", strprintf("0 0.12 0 %.17g", h), 1, 0.4 * h) +
+              strprintf("fix grid all mpm %.17g transfer flip 1.0 scheme musl\n"
+                        "region tnt block 0 %.17g INF INF INF INF\n"
+                        "create_points 1 region tnt ppc 2 1\n"
+                        "fix tnt all mpm/material density 1630 eos jwl 371.2e9 3.231e9 4.15 0.95 "
+                        "0.30 7.0e9 6930 detonate 0 0 0 0 viscosity artificial 1.5 0.06\n"
+                        "fix wall all mpm/boundary xlo slip\ncompute e all mpm/energy\n"
+                        "thermo_style custom step c_e\ntimestep %.17g\nrun 0\n",
+                        h, length, dt));
     const double start = run.evaluate("c_e");
     EXPECT_NEAR(start, 7.0e9 * length * h, 1e-6 * start);
     run.commands(strprintf("run %d\n", (int) std::lround(t / dt)));
@@ -416,15 +384,15 @@ TEST(Detonation, OfTnt)
 TEST(Hydrostatic, Column)
 {
   const double H = 1.0, h = 1.0 / 32, K = 400, g = 1.0;
-  Scene run;
-  run.commands(strprintf(
-      "units si\ndimension 2\nboundary p f p\natom_style mpm\nneighbor %.17g bin\n"
-      "region box block 0 %.17g 0 1.125 -0.5 0.5\ncreate_box 1 box\nfix grid all mpm %.17g\n"
-      "region water block INF INF 0 1 INF INF\ncreate_points 1 region water ppc 2\n"
-      "fix water all mpm/material density 1 eos linear %.17g viscosity newtonian 0 bulk 12\n"
-      "fix floor all mpm/boundary ylo slip\nfix g all gravity %.17g vector 0 -1 0\n"
-      "thermo 1000000\ntimestep 3e-5\nrun 50000\n",
-      0.4 * h, h, h, K, g));
+  Scene run(
+      plane("si", "p f", strprintf("0 %.17g 0 1.125", h), 1, 0.4 * h) +
+      strprintf(
+          "fix grid all mpm %.17g\nregion water block INF INF 0 1 INF INF\n"
+          "create_points 1 region water ppc 2\n"
+          "fix water all mpm/material density 1 eos linear %.17g viscosity newtonian 0 bulk 12\n"
+          "fix floor all mpm/boundary ylo slip\nfix g all gravity %.17g vector 0 -1 0\n"
+          "timestep 3e-5\nrun 50000\n",
+          h, K, g));
   double sum = 0.0, n = 0.0;
   for (const auto &s : run.gather()) {
     const double p = -(s.stress[0] + s.stress[1] + s.stress[2]) / 3;
@@ -463,15 +431,12 @@ double poiseuille(double y, double t)
 double channel(bool driven, int cells, double t, double *amplitude)
 {
   const double h = 1.0 / cells, dt = 0.1 * h * h;
-  Scene run;
-  run.commands(strprintf(
-      "units si\ndimension 2\nboundary p f p\natom_style mpm\nneighbor %.17g bin\n"
-      "region box block 0 %.17g 0 1 -0.5 0.5\ncreate_box 1 box\nfix grid all mpm %.17g\n"
-      "create_points 1 box ppc 2\n"
-      "fix oil all mpm/material density 1 eos linear 400 viscosity newtonian 1\n"
-      "fix floor all mpm/boundary ylo stick\nfix lid all mpm/boundary yhi stick velocity %d 0 0\n"
-      "fix g all gravity %d vector 1 0 0\nthermo 1000000\ntimestep %.17g\nrun %d\n",
-      0.4 * h, h, h, driven ? 1 : 0, driven ? 0 : 8, dt, (int) std::lround(t / dt)));
+  Scene run(plane("si", "p f", strprintf("0 %.17g 0 1", h), 1, 0.4 * h) +
+            body("box", "density 1 eos linear 400 viscosity newtonian 1", strprintf("%.17g", h)) +
+            strprintf("fix floor all mpm/boundary ylo stick\n"
+                      "fix lid all mpm/boundary yhi stick velocity %d 0 0\n"
+                      "fix g all gravity %d vector 1 0 0\ntimestep %.17g\nrun %d\n",
+                      driven ? 1 : 0, driven ? 0 : 8, dt, (int) std::lround(t / dt)));
   double sum = 0.0, n = 0.0, a = 0.0, b = 0.0;
   for (const auto &s : run.gather()) {
     // velocities belong to the middle of the last step
@@ -510,15 +475,12 @@ double steady(const std::string &viscosity, double time, double dt,
 {
   const int cells = 10;
   const double h = 1.0 / cells;
-  Scene run;
-  run.commands(
-      strprintf("units si\ndimension 2\nboundary p f p\natom_style mpm\nneighbor %.17g bin\n"
-                "region box block 0 %.17g -1 1 -0.5 0.5\ncreate_box 1 box\n"
-                "fix grid all mpm %.17g transfer flip 1.0\ncreate_points 1 box ppc 2\nfix mud all "
-                "mpm/material density 1 eos linear 400 viscosity %s\n"
-                "fix walls all mpm/boundary ylo yhi stick\n"
-                "fix g all gravity 1 vector 1 0 0\nthermo 1000000\ntimestep %.17g\n",
-                0.4 * h, h, h, viscosity.c_str(), dt));
+  Scene run(plane("si", "p f", strprintf("0 %.17g -1 1", h), 1, 0.4 * h) +
+            body("box", strprintf("density 1 eos linear 400 viscosity %s", viscosity.c_str()),
+                 strprintf("%.17g transfer flip 1.0", h)) +
+            strprintf("fix walls all mpm/boundary ylo yhi stick\nfix g all gravity 1 vector 1 0 0\n"
+                      "timestep %.17g\n",
+                      dt));
   run.set_velocity([&](const double *x, double *v) {
     v[0] = 0.9 * u(std::fabs(x[1]));
   });
@@ -567,14 +529,12 @@ constexpr double SHEAR = 0.5, DT = 0.02, DENSITY = 1.5, BULK = 150.0;
 std::string drop(int dim, int n, const std::string &material, const char *options = "")
 {
   const double end = 8.0 + 0.5 * n;
-  return strprintf("units lj\ndimension %d\nboundary p p p\natom_style mpm\nneighbor 0.4 bin\n"
-                   "region box block 0 16 0 16 %s\ncreate_box 1 box\nfix grid all mpm 1.0 %s\n"
-                   "region drop block 8 %g 8 %g %s\ncreate_points 1 region drop ppc 2\n"
-                   "fix m all mpm/material density %g %s\n"
-                   "timestep %.17g\nthermo 1000000\n",
-                   dim, dim == 3 ? "0 16" : "-0.5 0.5", options, end, end,
-                   dim == 3 ? strprintf("8 %g", end).c_str() : "INF INF", DENSITY, material.c_str(),
-                   DT);
+  return box(dim, "lj", "p p p", "0 16 0 16 0 16", 1, 0.4) +
+      strprintf("fix grid all mpm 1.0 %s\nregion drop block 8 %g 8 %g %s\n"
+                "create_points 1 region drop ppc 2\nfix m all mpm/material density %g %s\n"
+                "timestep %.17g\n",
+                options, end, end, dim == 3 ? strprintf("8 %g", end).c_str() : "INF INF", DENSITY,
+                material.c_str(), DT);
 }
 
 const std::string water = strprintf("eos tait %g 7", BULK);
@@ -612,7 +572,6 @@ TEST(FreeFlight, SinglePointOscillatesWithoutEnd)
       const double start = energy_of_drop(run);
 
       // the same point by itself, with J instead of F
-
       double a = rate, J = 1.0, low = 1.0, high = 1.0, wrong = 0.0;    // L_xx = L_yy = L_zz = a
       run.each_step([&](double **) {
         if (run.lmp->update->ntimestep == 0) return;
@@ -638,8 +597,7 @@ TEST(FreeFlight, DropThatIsTornGainsNoEnergy)
 {
   for (int dim : {2, 3}) {
     SCOPED_TRACE(dim);
-    Scene run;
-    run.commands(drop(dim, 2, water));
+    Scene run(drop(dim, 2, water));
     ASSERT_EQ(run.n(), 1 << dim);
     run.set_velocity([&](const double *x, double *v) {
       v[0] = 0.3 + SHEAR * (x[1] - 8.5) + 0.2 * (x[0] - 8.5);
@@ -661,7 +619,6 @@ TEST(FreeFlight, DropThatIsTornGainsNoEnergy)
 
 // Far from rest that oscillator is not harmonic: compressed water is stiff, so that the time step must
 // be small when it comes back from its largest volume, where its waves are slow
-
 TEST(FreeFlight, StrainOfAStepIsLimited)
 {
   for (const char *limit : {"", " strain 0.05"})
@@ -669,8 +626,7 @@ TEST(FreeFlight, StrainOfAStepIsLimited)
       for (double mach : {0.1, 0.2, 0.5}) {
         SCOPED_TRACE(strprintf("%dd, %g%s", dim, mach, limit));
         const std::string step = std::string("fix step all mpm/dt 0.5") + limit;
-        Scene run;
-        run.commands(drop(dim, 1, water) + step + " max 1e-6\nrun 0\n");
+        Scene run(drop(dim, 1, water) + step + " max 1e-6\nrun 0\n");
         set_gradient(run, -2.0 * mach * sqrt(BULK / DENSITY / dim));
         run.commands("run 1\nunfix step\n" + step + "\n");
         const double start = energy_of_drop(run);
@@ -689,15 +645,13 @@ TEST(FreeFlight, StrainOfAStepIsLimited)
 }
 
 // what is forgotten there matters to a law that knows all of F, and to the lattice in the total frame
-
 TEST(FreeFlight, SolidsForgetNothing)
 {
   for (int dim : {2, 3}) {
     SCOPED_TRACE(dim);
     for (const char *material : {"neohookean 1e-20 0.0", "eos tait 1e-20 7"}) {
       SCOPED_TRACE(material);
-      Scene run;
-      run.commands(drop(dim, 1, material) + "run 0\n");
+      Scene run(drop(dim, 1, material) + "run 0\n");
       set_gradient(run, 0.0);
       run.commands("run 1000\n");
       const double F = run.points().F[0][1];    // powers of I + dt L
@@ -708,8 +662,7 @@ TEST(FreeFlight, SolidsForgetNothing)
         EXPECT_LT(fabs(F), 100.0);
     }
 
-    Scene run;
-    run.commands(drop(dim, 1, "eos tait 1e-20 7", "frame total") + "run 0\n");
+    Scene run(drop(dim, 1, "eos tait 1e-20 7", "frame total") + "run 0\n");
     run.affine()[0][dim] = 50.0;    // L_xy
     run.commands("run 1000\n");
     EXPECT_NEAR(run.points().F[0][1], 1000 * DT * 50.0, 1e-9);

@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: physics
 // timeout: 900
@@ -18,14 +13,9 @@
 
 #include "mpm_lammps.h"
 
-#include "gtest/gtest.h"
-
-#include <cmath>
 #include <ostream>
 
 using namespace MPM_TEST;
-
-static constexpr double PI = 3.14159265358979323846;
 
 struct Solution {
   double G, E, nu, rho;
@@ -49,7 +39,6 @@ struct Solution {
 };
 
 // the body force against finite differences of the motion: rho a - dP/dX
-
 TEST(Solution, BodyForce)
 {
   for (const int dim : {1, 2}) {
@@ -90,15 +79,13 @@ static double mms_error(int dim, int ne, double G, const std::string &options, b
   const Solution s = {G, 1.0e7, dim == 1 ? 0.0 : 0.3, 1000.0, dim};
   const double h = 1.0 / ne, c = sqrt(s.E / s.rho);
   const double speed = c * sqrt((1.0 - s.nu) / ((1.0 + s.nu) * (1.0 - 2.0 * s.nu)));
-  Scene run;
-  run.commands(
-      strprintf("units si\ndimension 2\nboundary %s p\natom_style mpm\nneighbor %.17g bin\n"
-                "region box block %d 1 %g %.17g -0.5 0.5\n"
-                "create_box 1 box\nfix grid all mpm %.17g %s\ncreate_points 1 box ppc 2 %d\n"
-                "fix m all mpm/material density 1000 neohookean 1.0e7 %g\nthermo 1000000\n",
-                !walls ? "p p" : (dim == 1 ? "f p" : "f f"), 0.4 * h, walls ? 0 : -1,
-                dim == 1 || walls ? 0.0 : -1.0, dim == 1 ? h : 1.0, h, options.c_str(),
-                dim == 1 ? 1 : 2, s.nu));
+  Scene run(plane("si", !walls ? "p p" : (dim == 1 ? "f p" : "f f"),
+                  strprintf("%d 1 %g %.17g", walls ? 0 : -1, dim == 1 || walls ? 0.0 : -1.0,
+                            dim == 1 ? h : 1.0),
+                  1, 0.4 * h) +
+            strprintf("fix grid all mpm %.17g %s\ncreate_points 1 box ppc 2 %d\n"
+                      "fix m all mpm/material density 1000 neohookean 1.0e7 %g\n",
+                      h, options.c_str(), dim == 1 ? 1 : 2, s.nu));
   if (walls)
     run.commands(
         strprintf("fix sides all mpm/boundary xlo xhi %s slip\n", dim == 1 ? "" : "ylo yhi"));
@@ -167,71 +154,65 @@ TEST_P(Interval, Error)
 // G = 0.05, and diverge then, but not in the total frame; for motions without crossings, frames agree.
 // Quadratic: it has open knot vectors at the ends, which matters for less than 16 and 8 cells.
 
-INSTANTIATE_TEST_SUITE_P(
-    Table, Interval,
-    ::testing::Values(
-        Row{"shape linear transfer flip 1.0 scheme usl",
-            1e-4,
-            .03,
-            4,
-            {3.115e-5, 8.917e-6, 2.278e-6, 5.721e-7, 1.432e-7}},
-        Row{"shape linear transfer flip 1.0 scheme musl",
-            1e-4,
-            .03,
-            4,
-            {3.317e-5, 8.999e-6, 2.282e-6, 5.722e-7, 1.432e-7}},
-        Row{"shape linear transfer flip 1.0 scheme usf",
-            1e-4,
-            .03,
-            4,
-            {3.396e-5, 9.016e-6, 4.488e-6, 2.499e-6, 1.318e-6}},
-        Row{"shape linear transfer flip 1.0 scheme musl",
-            .05,
-            .1,
-            4,
-            {1.741e-2, 8.310e-3, 8.666e-3, 1.390e-2}},
-        Row{"shape quadratic transfer flip 1.0 scheme usl",
-            1e-4,
-            .03,
-            16,
-            {4.288e-6, 1.091e-6, 2.750e-7}},
-        Row{"shape quadratic transfer flip 1.0 scheme musl",
-            1e-4,
-            .03,
-            16,
-            {4.324e-6, 1.093e-6, 2.751e-7}},
-        Row{"frame total shape linear transfer flip 1.0",
-            1e-4,
-            .03,
-            4,
-            {3.115e-5, 8.917e-6, 2.278e-6, 5.721e-7}},
-        Row{"frame total shape linear transfer flip 1.0 scheme musl",
-            .05,
-            .03,
-            4,
-            {1.653e-2, 4.478e-3, 1.135e-3, 2.847e-4}},
-        Row{"shape quadratic transfer flip 1.0 scheme usl",
-            .05,
-            .1,
-            8,
-            {7.716e-3, 2.099e-3, 5.791e-4, 2.421e-4}},
-        Row{"shape cpgimp aspect 1 2 transfer flip 1.0 scheme usl",
-            .05,
-            .1,
-            8,
-            {6.45e-3, 1.61e-3, 4.01e-4}},
-        Row{"shape cpgimp aspect 1 2 transfer flip 1.0 scheme usl", 1e-4, .03, 16, {2.286e-6}},
-        Row{"shape gimp aspect 1 2 transfer flip 1.0 scheme usl", 1e-4, .03, 16, {2.286e-6}},
-        Row{"shape quadratic transfer flip 1.0 scheme musl",
-            .05,
-            .1,
-            8,
-            {8.330e-3, 2.152e-3, 6.080e-4, 2.841e-4}}));
+static const Row interval_cases[] = {
+    {"shape linear transfer flip 1.0 scheme usl",
+     1e-4,
+     .03,
+     4,
+     {3.115e-5, 8.917e-6, 2.278e-6, 5.721e-7, 1.432e-7}},
+    {"shape linear transfer flip 1.0 scheme musl",
+     1e-4,
+     .03,
+     4,
+     {3.317e-5, 8.999e-6, 2.282e-6, 5.722e-7, 1.432e-7}},
+    {"shape linear transfer flip 1.0 scheme usf",
+     1e-4,
+     .03,
+     4,
+     {3.396e-5, 9.016e-6, 4.488e-6, 2.499e-6, 1.318e-6}},
+    {"shape linear transfer flip 1.0 scheme musl",
+     .05,
+     .1,
+     4,
+     {1.741e-2, 8.310e-3, 8.666e-3, 1.390e-2}},
+    {"shape quadratic transfer flip 1.0 scheme usl", 1e-4, .03, 16, {4.288e-6, 1.091e-6, 2.750e-7}},
+    {"shape quadratic transfer flip 1.0 scheme musl",
+     1e-4,
+     .03,
+     16,
+     {4.324e-6, 1.093e-6, 2.751e-7}},
+    {"frame total shape linear transfer flip 1.0",
+     1e-4,
+     .03,
+     4,
+     {3.115e-5, 8.917e-6, 2.278e-6, 5.721e-7}},
+    {"frame total shape linear transfer flip 1.0 scheme musl",
+     .05,
+     .03,
+     4,
+     {1.653e-2, 4.478e-3, 1.135e-3, 2.847e-4}},
+    {"shape quadratic transfer flip 1.0 scheme usl",
+     .05,
+     .1,
+     8,
+     {7.716e-3, 2.099e-3, 5.791e-4, 2.421e-4}},
+    {"shape cpgimp aspect 1 2 transfer flip 1.0 scheme usl",
+     .05,
+     .1,
+     8,
+     {6.45e-3, 1.61e-3, 4.01e-4}},
+    {"shape cpgimp aspect 1 2 transfer flip 1.0 scheme usl", 1e-4, .03, 16, {2.286e-6}},
+    {"shape gimp aspect 1 2 transfer flip 1.0 scheme usl", 1e-4, .03, 16, {2.286e-6}},
+    {"shape quadratic transfer flip 1.0 scheme musl",
+     .05,
+     .1,
+     8,
+     {8.330e-3, 2.152e-3, 6.080e-4, 2.841e-4}}};
+INSTANTIATE_TEST_SUITE_P(Table, Interval, ::testing::ValuesIn(interval_cases));
 
 // Second order, in one and two dimensions, between walls. The table's cubic splines, with open
 // knots, have order 1.5 only (5.71e-6, 1.77e-6, 5.23e-7 for 16, 32, 64 cells); mirror walls keep 2.
 // Quadratic functions and 2 points per cell stall at 64 cells for G = 0.05.
-
 struct OrderCase {
   const char *options;
   double G;
@@ -255,28 +236,27 @@ TEST_P(Order, Two)
   EXPECT_LT(fine, c.largest);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Options, Order,
-    ::testing::Values(
-        // cpdi samples at corners what cpgimp integrates: same order, errors a tenth larger
-        OrderCase{"shape cpdi aspect 1 2 transfer flip 1.0 scheme usl", .05, 1, 16, 32, 5.791e-4},
-        OrderCase{"shape quadratic transfer apic", 1e-4, 1, 16, 64, 2.75e-7},
-        OrderCase{"shape cubic transfer apic", 1e-4, 1, 16, 64, 5.23e-7},
-        OrderCase{"shape quadratic transfer apic", .05, 1, 8, 32, 5.8e-4},
-        OrderCase{"shape cubic transfer apic", .05, 1, 16, 128, 1.2e-4},
-        OrderCase{"shape cubic transfer flip 1.0 scheme musl", 1e-4, 1, 16, 64, 5.23e-7},
-        OrderCase{"shape cubic transfer flip 1.0 scheme musl", .05, 1, 16, 64, 3.4e-4},
-        OrderCase{"shape quadratic transfer apic", 1e-4, 2, 8, 16, 4.3e-6},
-        OrderCase{"shape cubic transfer apic", 1e-4, 2, 8, 16, 5.7e-6},
-        OrderCase{"shape quadratic transfer apic", .05, 2, 8, 16, 2.1e-3},
-        OrderCase{"shape cubic transfer apic", .05, 2, 8, 16, 3.2e-3},
-        OrderCase{"shape quadratic transfer flip 1.0 scheme musl", .05, 2, 8, 16, 3.5e-3},
-        OrderCase{"shape quadratic transfer apic stress gradient", 1e-4, 1, 16, 64, 2.75e-7},
-        OrderCase{"shape cubic transfer apic stress gradient", 1e-4, 1, 16, 64, 5.23e-7},
-        OrderCase{"shape quadratic transfer apic stress gradient", .05, 2, 8, 16, 2.1e-3},
-        OrderCase{"shape cubic transfer aflip 0.95 stress gradient", .05, 2, 8, 16, 3.2e-3},
-        OrderCase{"frame total shape bernstein transfer flip 1.0", .05, 2, 8, 16, 3.8e-3},
-        OrderCase{"frame total shape bernstein transfer apic", .05, 2, 16, 32, 4.5e-4}));
+static const OrderCase order_cases[] = {
+    // cpdi samples at corners what cpgimp integrates: same order, errors a tenth larger
+    {"shape cpdi aspect 1 2 transfer flip 1.0 scheme usl", .05, 1, 16, 32, 5.791e-4},
+    {"shape quadratic transfer apic", 1e-4, 1, 16, 64, 2.75e-7},
+    {"shape cubic transfer apic", 1e-4, 1, 16, 64, 5.23e-7},
+    {"shape quadratic transfer apic", .05, 1, 8, 32, 5.8e-4},
+    {"shape cubic transfer apic", .05, 1, 16, 128, 1.2e-4},
+    {"shape cubic transfer flip 1.0 scheme musl", 1e-4, 1, 16, 64, 5.23e-7},
+    {"shape cubic transfer flip 1.0 scheme musl", .05, 1, 16, 64, 3.4e-4},
+    {"shape quadratic transfer apic", 1e-4, 2, 8, 16, 4.3e-6},
+    {"shape cubic transfer apic", 1e-4, 2, 8, 16, 5.7e-6},
+    {"shape quadratic transfer apic", .05, 2, 8, 16, 2.1e-3},
+    {"shape cubic transfer apic", .05, 2, 8, 16, 3.2e-3},
+    {"shape quadratic transfer flip 1.0 scheme musl", .05, 2, 8, 16, 3.5e-3},
+    {"shape quadratic transfer apic stress gradient", 1e-4, 1, 16, 64, 2.75e-7},
+    {"shape cubic transfer apic stress gradient", 1e-4, 1, 16, 64, 5.23e-7},
+    {"shape quadratic transfer apic stress gradient", .05, 2, 8, 16, 2.1e-3},
+    {"shape cubic transfer aflip 0.95 stress gradient", .05, 2, 8, 16, 3.2e-3},
+    {"frame total shape bernstein transfer flip 1.0", .05, 2, 8, 16, 3.8e-3},
+    {"frame total shape bernstein transfer apic", .05, 2, 16, 32, 4.5e-4}};
+INSTANTIATE_TEST_SUITE_P(Options, Order, ::testing::ValuesIn(order_cases));
 
 TEST(OrderLinear, DivergesWithCellCrossing)
 {
@@ -289,7 +269,6 @@ TEST(OrderLinear, DivergesWithCellCrossing)
 // do as well as symmetry. Expected: a small code of its own in one dimension with such walls. With nodes
 // at and within the walls only, as in the table, the functions of these points do not sum to one, and
 // it has 7.5e-3, 2.28e-3, 7.8e-4; contiguous boxes never reach beyond, and agree with the table.
-
 TEST(FixedGimp, WallsAgainstSymmetry)
 {
   const std::string options = "shape gimp aspect 1 2 transfer flip 1.0 scheme usl";
@@ -316,7 +295,6 @@ struct ShapeOrder {
 // Crossing: linear functions do not converge (-0.69 by another code, whose other transfers are not known);
 // quadratic functions and gimp approach the error at which they stall, 1.86 and 1.87 by other codes: the
 // table above and FixedGimp
-
 static const ShapeOrder shapes[] = {
     {"shape linear", -0.69, 3.0 / 16.0},
     {"shape quadratic", 1.86, 1.0 / 4.0},
@@ -403,7 +381,6 @@ INSTANTIATE_TEST_SUITE_P(All, Sweep, ::testing::ValuesIn(shapes));
 // the mirror image -f_1 are the same: what differs is the lumped mass of the first node inside alone, by
 // twice that of its image. With v = sin(pi x) this is a part of order h (pi h)^2 of the mass of the
 // motion, so that the two differ by one order more than each of them from the exact solution.
-
 TEST(MMS, EdgesModified)
 {
   for (const char *options : {"shape cubic transfer flip 1.0 scheme musl",
@@ -422,7 +399,6 @@ TEST(MMS, EdgesModified)
 }
 
 // a mirror wall is the same thing as symmetry
-
 TEST(Walls, AgainstSymmetry)
 {
   for (const int dim : {1, 2})

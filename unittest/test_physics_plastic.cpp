@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: physics
 // timeout: 900
@@ -13,13 +8,7 @@
 
 #include "mpm_lammps.h"
 
-#include "gtest/gtest.h"
-
-#include <cmath>
-
 using namespace MPM_TEST;
-
-static constexpr double PI = 3.14159265358979323846;
 
 /* ----------------------------------------------------------------------
    E1(f): a bar in uniaxial strain hits a wall at 100 m/s. An elastic precursor runs ahead of the
@@ -52,16 +41,13 @@ TEST(PlasticWave, TwoWaveStructure)
   EXPECT_NEAR(s2, 1471.52e6, 0.02 * 1471.52e6);
   EXPECT_NEAR(C1, 6197.82, 0.01 * 6197.82);
 
-  Scene run;
-  run.commands(
-      strprintf("units si\ndimension 2\nboundary f p p\natom_style mpm\nneighbor %.17g bin\n"
-                "region box block 0 %.17g 0 %.17g -0.5 0.5\ncreate_box 1 box\n"
-                "fix grid all mpm %.17g shape quadratic transfer apic\n"
-                "region bar block 0 %.17g INF INF INF INF\ncreate_points 1 region bar ppc 2\n"
-                "fix m all mpm/material density %.17g eos linear %.17g strength j2 %.17g %.17g "
-                "viscosity artificial 1.5 0.06\n"
-                "velocity all set -%.17g 0 0\nfix wall all mpm/boundary xlo slip\nthermo 100000\n",
-                0.4 * h, L + 10 * h, h, h, L, rho, K, G, sigmay, up));
+  Scene run(plane("si", "f p", strprintf("0 %.17g 0 %.17g", L + 10 * h, h), 1, 0.4 * h) +
+            strprintf("fix grid all mpm %.17g shape quadratic transfer apic\n"
+                      "region bar block 0 %.17g INF INF INF INF\ncreate_points 1 region bar ppc 2\n"
+                      "fix m all mpm/material density %.17g eos linear %.17g strength j2 %.17g "
+                      "%.17g viscosity artificial 1.5 0.06\n"
+                      "velocity all set -%.17g 0 0\nfix wall all mpm/boundary xlo slip\n",
+                      h, L, rho, K, G, sigmay, up));
   run.set_reference();
   const double time = 0.75 * L / cl, dt = 0.4 * h / cl;
   const int steps = (int) std::lround(time / dt);
@@ -120,16 +106,13 @@ static Tube tube(double h, double p, double nu, double yield)
   const double d = 0.5 * h;
   const int nr = std::lround((b - a) / d), nt = std::lround(0.5 * PI * 1.5 / d);
   const double time = 100.0, c = sqrt(K + 4.0 / 3.0 * G);
-  Scene run;
-  run.commands(strprintf(
-      "units lj\ndimension 2\nboundary f f p\natom_style mpm\nneighbor %.17g bin\n"
-      "region box block 0 %.17g 0 %.17g -0.5 0.5\ncreate_box 1 box\n"
-      "fix grid all mpm %.17g shape quadratic transfer apic\n"
-      "region strip block 0 %.17g 0 %.17g INF INF\n"
-      "create_points 1 region strip spacing %.17g %.17g outside ignore\n"
-      "fix m all mpm/material density 1 eos linear %.17g strength j2 %.17g %.17g\n"
-      "fix walls all mpm/boundary xlo ylo slip\ncompute e all mpm/atom eplastic\nthermo 100000\n",
-      0.4 * h, 2.0 + 4 * h, 2.0 + 4 * h, h, nr * 0.01, nt * 0.01, 0.01, 0.01, K, G, yield));
+  Scene run(plane("lj", "f f", strprintf("0 %.17g 0 %.17g", 2.0 + 4 * h, 2.0 + 4 * h), 1, 0.4 * h) +
+            strprintf("fix grid all mpm %.17g shape quadratic transfer apic\n"
+                      "region strip block 0 %.17g 0 %.17g INF INF\n"
+                      "create_points 1 region strip spacing %.17g %.17g outside ignore\n"
+                      "fix m all mpm/material density 1 eos linear %.17g strength j2 %.17g %.17g\n"
+                      "fix walls all mpm/boundary xlo ylo slip\ncompute e all mpm/atom eplastic\n",
+                      h, nr * 0.01, nt * 0.01, 0.01, 0.01, K, G, yield));
   EXPECT_EQ(run.n(), nr * nt);
   auto *atom = run.lmp->atom;
   for (int i = 0; i < run.n(); i++) {
@@ -207,19 +190,19 @@ TEST(Tube, InternalPressure)
 TEST(TaylorBar, SteelThatHeats)
 {
   const double h = 0.0004, d = 0.25 * h;    // d: half the spacing of points
-  Scene run;
-  run.commands(strprintf("units si\nboundary f f f\natom_style mpm\nneighbor %.17g bin\n"
-                         "region box block 0 %.17g 0 %.17g 0 %.17g\ncreate_box 1 box\n"
-                         "fix grid all mpm %.17g\nregion bar cylinder z 0 0 0.0032 0 0.0324\n"
-                         "create_points 1 region bar ppc 2 outside ignore\n"
-                         "fix steel all mpm/material density 7830 eos linear 172.41667e9 "
-                         "strength johnson/cook 79.5769e9 806e6 614e6 0.168 0.0089 1 1.1 1540 20 "
-                         "thermal adiabatic 460 20 0.9\n"
-                         "velocity all set 0 0 -287\nfix anvil all mpm/boundary zlo xlo ylo slip\n"
-                         "fix step all mpm/dt 0.5\nvariable t equal time\n"
-                         "fix end all halt 1 v_t > 8.0e-5 error continue\n"
-                         "compute p all mpm/atom eplastic temperature\nthermo 1000000\nrun 20000\n",
-                         0.5 * h, 19 * h, 19 * h, 86 * h, h));
+  Scene run(
+      space("si", "f f f", strprintf("0 %.17g 0 %.17g 0 %.17g", 19 * h, 19 * h, 86 * h), 1,
+            0.5 * h) +
+      strprintf(
+          "fix grid all mpm %.17g\nregion bar cylinder z 0 0 0.0032 0 0.0324\n"
+          "create_points 1 region bar ppc 2 outside ignore\n"
+          "fix steel all mpm/material density 7830 eos linear 172.41667e9 strength johnson/cook "
+          "79.5769e9 806e6 614e6 0.168 0.0089 1 1.1 1540 20 thermal adiabatic 460 20 0.9\n"
+          "velocity all set 0 0 -287\nfix anvil all mpm/boundary zlo xlo ylo slip\n"
+          "fix step all mpm/dt 0.5\nvariable t equal time\n"
+          "fix end all halt 1 v_t > 8.0e-5 error continue\n"
+          "compute p all mpm/atom eplastic temperature\nrun 20000\n",
+          h));
   EXPECT_NEAR(run.time(), 8.0e-5, 1.0e-7);
   auto *history = run.lmp->modify->get_compute_by_id("p");
   history->compute_peratom();

@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: physics
 // timeout: 900
@@ -12,10 +7,6 @@
 // Scenes with several pieces at work: impact, flow, grains on a block.
 
 #include "mpm_lammps.h"
-
-#include "gtest/gtest.h"
-
-#include <cmath>
 
 using namespace MPM_TEST;
 
@@ -30,15 +21,14 @@ TEST(TaylorBar, OfhcCopper)
   Scene run;
   // a quarter of the bar
   run.commands(
-      strprintf("units si\nboundary f f f\natom_style mpm\nneighbor %.17g bin\n"
-                "region box block 0 0.0085 0 0.0085 0 0.027\ncreate_box 1 box\n"
-                "fix grid all mpm %.17g\nregion bar cylinder z 0 0 0.0038 0 0.0254\n"
+      space("si", "f f f", "0 0.0085 0 0.0085 0 0.027", 1, 0.5 * h) +
+      strprintf("fix grid all mpm %.17g\nregion bar cylinder z 0 0 0.0038 0 0.0254\n"
                 "create_points 1 region bar ppc 2 outside ignore\n"
                 "fix copper all mpm/material file Cu_OFHC_J2.mpm\nvelocity all set 0 0 -190\n"
                 "fix anvil all mpm/boundary zlo xlo ylo slip\nfix step all mpm/dt 0.5\n"
                 "variable t equal time\nfix end all halt 10 v_t > 8.0e-5 error continue\n"
-                "thermo 1000000\nrun 4000\n",
-                0.5 * h, h));
+                "run 4000\n",
+                h));
   EXPECT_NEAR(run.time(), 8.0e-5, 2.0e-6);
   double top = 0.0, foot = 0.0, waist = 0.0;
   for (int i = 0; i < run.n(); i++) {
@@ -76,18 +66,16 @@ TEST(DamBreak, MartinMoyce)
                                      {1.28, .72}, {1.46, .67}, {1.66, .61}, {1.84, .56},
                                      {2.00, .50}, {2.21, .44}, {2.45, .39}};
   const double a = 0.05715, g = 9.81, h = a / 10.0;
-  Scene run;
-  run.commands(strprintf(
-      "units si\ndimension 2\nboundary f f p\natom_style mpm\nneighbor %.17g bin\n"
-      "region box block 0 %.17g 0 %.17g -0.5 0.5\ncreate_box 1 box\n"
-      "fix grid all mpm %.17g\nregion column block 0 %.17g 0 %.17g INF INF\n"
-      "create_points 1 region column ppc 2\n"
-      "fix water all mpm/material density 1000 eos tait 225000 7 viscosity newtonian 0.001\n"
-      "fix walls all mpm/boundary xlo xhi ylo slip\n"
-      "fix g all gravity %.17g vector 0 -1 0\nfix step all mpm/dt 0.4\n"
-      "variable t equal time\nfix end all halt 10 v_t > 0.19 error continue\n"
-      "thermo 1000000\n",
-      0.5 * h, 6.0 * a, 3.0 * a, h, a, 2.0 * a, g));
+  Scene run(
+      plane("si", "f f", strprintf("0 %.17g 0 %.17g", 6.0 * a, 3.0 * a), 1, 0.5 * h) +
+      strprintf(
+          "fix grid all mpm %.17g\nregion column block 0 %.17g 0 %.17g INF INF\n"
+          "create_points 1 region column ppc 2\n"
+          "fix water all mpm/material density 1000 eos tait 225000 7 viscosity newtonian 0.001\n"
+          "fix walls all mpm/boundary xlo xhi ylo slip\n"
+          "fix g all gravity %.17g vector 0 -1 0\nfix step all mpm/dt 0.4\n"
+          "variable t equal time\nfix end all halt 10 v_t > 0.19 error continue\n",
+          h, a, 2.0 * a, g));
   const auto start = run.sums();
   std::vector<double> time, Z, H;
   double volume0 = 0.0, volume_error = 0.0, speed = 0.0;
@@ -138,25 +126,19 @@ TEST(DamBreak, MartinMoyce)
   EXPECT_DOUBLE_EQ(run.sums().mass, start.mass);
 }
 
-/* ----------------------------------------------------------------------
-   pitfall 9: the wave speed of a Tait liquid, and a time step that is stable
-------------------------------------------------------------------------- */
+/* ------------------- pitfall 9: the wave speed of a Tait liquid, and a time step that is stable */
 
 TEST(Tait, WaveSpeed)
 {
   // K = 100, gamma = 7, density 1: c = 10 at rest, c^2 = K (density ratio)^(gamma - 1)
   for (const double J : {1.0, 0.9}) {
     const double h = 0.01, A = 1.0e-5, width = 0.3, speed = 10.0 * pow(J, -3.0);
-    Scene run;
-    run.commands(
-        strprintf("units si\ndimension 2\nboundary f p p\natom_style mpm\nneighbor %g bin\n"
-                  "region box block 0 3 0 %g -0.5 0.5\ncreate_box 1 box\n"
-                  "fix grid all mpm %g\ncreate_points 1 box ppc 2 1\n"
-                  "fix m all mpm/material density 1 eos tait 100 7\n"
-                  "fix ends all mpm/boundary xlo xhi slip\n"
-                  "compute c all mpm/atom wavespeed\ncompute cmax all reduce max c_c\n"
-                  "thermo_style custom step c_cmax\n",
-                  0.4 * h, h, h));
+    Scene run(plane("si", "f p", strprintf("0 3 0 %g", h), 1, 0.4 * h) +
+              strprintf("fix grid all mpm %g\ncreate_points 1 box ppc 2 1\n"
+                        "fix m all mpm/material density 1 eos tait 100 7\n"
+                        "fix ends all mpm/boundary xlo xhi slip\ncompute c all mpm/atom wavespeed\n"
+                        "compute cmax all reduce max c_c\nthermo_style custom step c_cmax\n",
+                        h));
     for (int i = 0; i < run.n(); i++) {
       const double X = run.x()[i][0], gauss = exp(-pow((X - 0.9) / width, 2));
       const double strain = -2.0 * A * (X - 0.9) / (width * width) * gauss, JJ = J * (1.0 + strain);
@@ -194,20 +176,16 @@ TEST(Tait, WaveSpeed)
 }
 
 // two halves of a liquid collide at half the wave speed, time step 0.8 of the limit
-
 TEST(Tait, TimeStepIsStable)
 {
   for (auto *options :
        {"shape quadratic transfer apic", "shape quadratic transfer flip 1.0 scheme musl"}) {
-    Scene run;
-    run.commands(
-        strprintf("units si\ndimension 2\nboundary f p p\natom_style mpm\nneighbor 0.01 bin\n"
-                  "region box block 0 3 0 0.02 -0.5 0.5\ncreate_box 1 box\n"
-                  "fix grid all mpm 0.02 %s\nregion liquid block 1 2 INF INF INF INF\n"
-                  "create_points 1 region liquid ppc 2 1\n"
-                  "fix m all mpm/material density 1000 eos tait 225000 7\n"
-                  "fix step all mpm/dt 0.8\nthermo 1000000\n",
-                  options));
+    Scene run(plane("si", "f p", "0 3 0 0.02", 1, 0.01) +
+              strprintf("fix grid all mpm 0.02 %s\nregion liquid block 1 2 INF INF INF INF\n"
+                        "create_points 1 region liquid ppc 2 1\n"
+                        "fix m all mpm/material density 1000 eos tait 225000 7\n"
+                        "fix step all mpm/dt 0.8\n",
+                        options));
     run.set_velocity([](const double *x, double *v) {
       v[0] = x[0] < 1.5 ? 4.0 : -4.0;
     });
@@ -225,9 +203,7 @@ TEST(Tait, TimeStepIsStable)
   }
 }
 
-/* ----------------------------------------------------------------------
-   K1(a): a grain (pair style granular) hits a free block of material points off its centre
-------------------------------------------------------------------------- */
+/* ----- K1(a): a grain (pair style granular) hits a free block of material points off its centre */
 
 static std::string grain_on_block(const std::string &options, const std::string &tangential)
 {
@@ -242,7 +218,7 @@ static std::string grain_on_block(const std::string &options, const std::string 
                    "velocity grains set 0.05 0.03 -0.5\n"
                    "pair_style granular\npair_coeff * * hertz 1.0e5 0.0 %s\n"
                    "neigh_modify exclude type 1 1\nfix move grains nve/sphere\n"
-                   "timestep 2.5e-5\nthermo 1000000\n",
+                   "timestep 2.5e-5\n",
                    options.c_str(), tangential.c_str());
 }
 
@@ -252,10 +228,9 @@ TEST_P(GrainOnBlock, Momentum)
 {
   for (const bool friction : {false, true}) {
     SCOPED_TRACE(friction ? "friction" : "no friction");
-    Scene run;
-    run.commands(grain_on_block(GetParam(),
-                                friction ? "tangential linear_history 300.0 0.0 0.5"
-                                         : "tangential linear_nohistory 0.0 0.0"));
+    Scene run(grain_on_block(GetParam(),
+                             friction ? "tangential linear_history 300.0 0.0 0.5"
+                                      : "tangential linear_nohistory 0.0 0.0"));
     const auto start = run.sums();
     const double scale = run.sums(2).mass * 0.5;
     double p = 0.0, L = 0.0;
@@ -332,8 +307,7 @@ TEST_P(GrainOnColumn, Restitution)
 
   const double R = 0.002, Rp = 0.00125, Reff = R * Rp / (R + Rp);
   const double density = m / (4.0 / 3.0 * 3.14159265358979323846 * R * R * R);
-  Scene run;
-  run.commands(strprintf(
+  Scene run(strprintf(
       "units si\nboundary f f f\natom_style hybrid sphere mpm\ncomm_modify vel yes\n"
       "neighbor 0.002 bin\nregion box block 0 0.005 0 0.005 -0.16 0.02\n"
       "create_box 2 box\nfix grid all mpm 0.005 every %d\n"
@@ -347,7 +321,7 @@ TEST_P(GrainOnColumn, Restitution)
       "pair_style granular\n"
       "pair_coeff * * hertz %.17g 0.0 tangential linear_nohistory 0.0 0.0\n"
       "neigh_modify exclude type 1 1\nfix move grains nve/sphere\ncompute e all mpm/energy\n"
-      "timestep 1.0e-6\nthermo 1000000\nthermo_style custom step c_e[6]\n",
+      "timestep 1.0e-6\nthermo_style custom step c_e[6]\n",
       GetParam(), -0.00125 + R + Rp + 1.0e-5, 2.0 * R, density, k / sqrt(Reff)));
   ASSERT_NEAR(run.sums(2).mass / m, 1.0, 1.0e-12);
   double largest = 0.0, first = -1.0, last = 0.0;
@@ -365,7 +339,6 @@ TEST_P(GrainOnColumn, Restitution)
   run.commands("run 1600\n");
 
   // what the grain has lost and the column has not received
-
   const double energy = 0.5 * m;
   const double lost =
       energy - run.sums(2).kinetic - run.lmp->modify->get_compute_by_id("e")->vector[5];

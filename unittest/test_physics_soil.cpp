@@ -1,21 +1,11 @@
 // labels: physics
 // timeout: 900
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // Soil in motion: slopes, flow of grains on an incline, collapse of a column.
 
 #include "mpm_lammps.h"
-
-#include "gtest/gtest.h"
-
-#include <algorithm>
-#include <cmath>
 
 using namespace MPM_TEST;
 
@@ -28,16 +18,16 @@ constexpr double DEG = M_PI / 180.0, g = 9.81;
 std::string layer(double depth, double h, int cells, double angle, double ramp,
                   const std::string &material, const std::string &velocity)
 {
-  return strprintf("units si\ndimension 2\nboundary p f p\natom_style mpm\nneighbor %.17g bin\n"
-                   "region box block 0 %.17g 0 %.17g -0.1 0.1\ncreate_box 1 box\n"
-                   "fix grid all mpm %.17g\nregion layer block INF INF 0 %.17g INF INF\n"
-                   "create_points 1 region layer ppc 2\n",
-                   0.5 * h, cells * h, depth + 4.0 * h, h, depth) +
+  return plane("si", "p f", strprintf("0 %.17g 0 %.17g -0.1 0.1", cells * h, depth + 4.0 * h), 1,
+               0.5 * h) +
+      strprintf("fix grid all mpm %.17g\nregion layer block INF INF 0 %.17g INF INF\n"
+                "create_points 1 region layer ppc 2\n",
+                h, depth) +
       "fix soil all mpm/material " + material + "\n" + velocity +
       strprintf("fix floor all mpm/boundary ylo stick\n"
                 "variable g equal %.17g*(1-(time<%.17g)*(1-time/%.17g))\n"
                 "fix g all gravity v_g vector %.17g %.17g 0\nfix step all mpm/dt 0.4\n"
-                "variable t equal time\nthermo 1000000\n",
+                "variable t equal time\n",
                 g, ramp, ramp, std::sin(angle), -std::cos(angle));
 }
 
@@ -61,14 +51,13 @@ Incline flow(double degrees, int cells, double start, double time)
         (std::pow(depth, 1.5) - std::pow(std::max(depth - y, 0.0), 1.5));
   };
   const double us = exact(depth);
-  Scene run;
-  run.commands(layer(depth, depth / cells, 4, a, 0.02,
-                     strprintf("density 1500 mui 1.5e5 0.3 %.17g %.17g %.17g %.17g fraction 0.6",
-                               mus, mu2, I0, d),
-                     strprintf("variable u atom %.17g*(1-(1-y/%.17g)^1.5)\n"
-                               "velocity all set v_u 0 0\n",
-                               start, depth)) +
-               strprintf("fix end all halt 10 v_t > %.17g error continue\nrun 1000000\n", time));
+  Scene run(layer(depth, depth / cells, 4, a, 0.02,
+                  strprintf("density 1500 mui 1.5e5 0.3 %.17g %.17g %.17g %.17g fraction 0.6", mus,
+                            mu2, I0, d),
+                  strprintf("variable u atom %.17g*(1-(1-y/%.17g)^1.5)\n"
+                            "velocity all set v_u 0 0\n",
+                            start, depth)) +
+            strprintf("fix end all halt 10 v_t > %.17g error continue\nrun 1000000\n", time));
   Incline result{0.0, 0.0, 0.0};
   double n = 0.0, top = 0.0;
   for (int i = 0; i < run.n(); i++) {
@@ -109,8 +98,7 @@ TEST(InfiniteSlope, SlidesWhenTooSteep)
   for (const char *law : {"drucker/prager 1e7 0.3 30 plane", "mohr/coulomb 1e7 0.3 30 0"})
     for (const double angle : {26.0 * DEG, 32.0 * DEG}) {
       SCOPED_TRACE(law);
-      Scene run;
-      run.commands(layer(depth, h, 4, angle, 0.3, std::string("density 1600 ") + law, ""));
+      Scene run(layer(depth, h, 4, angle, 0.3, std::string("density 1600 ") + law, ""));
       run.commands("fix end all halt 10 v_t > 0.8 error continue\nrun 100000\n");
       double ratio = 0.0, speed = 0.0, n = 0.0;
       for (int i = 0; i < run.n(); i++) {
@@ -146,18 +134,15 @@ TEST(ColumnCollapse, RunOut)
                {"drucker/prager 1e6 0.3 35.26 plane", 2.0},
                {"mui 1e6 0.3 0.577 0.8 0.3 1e-3", 2.0}};
   for (const auto &k : cases) {
-    Scene run;
-    run.commands(
-        strprintf("units si\ndimension 2\nboundary f f p\natom_style mpm\nneighbor %.17g bin\n"
-                  "region box block 0 0.5 0 0.25 -0.1 0.1\ncreate_box 1 box\n"
-                  "fix grid all mpm %.17g\nregion column block 0 %.17g 0 %.17g INF INF\n"
-                  "create_points 1 region column ppc 2\n"
-                  "fix sand all mpm/material density 1600 %s\n"
-                  "fix wall all mpm/boundary xlo slip\nfix floor all mpm/boundary ylo stick\n"
-                  "fix g all gravity 9.81 vector 0 -1 0\nfix step all mpm/dt 0.4\n"
-                  "variable t equal time\nfix end all halt 10 v_t > %.17g error continue\n"
-                  "thermo 1000000\nrun 1000000\n",
-                  0.5 * h, h, L0, k.a * L0, k.law, 3.0 * std::sqrt(2.0 * k.a * L0 / g)));
+    Scene run(plane("si", "f f", "0 0.5 0 0.25 -0.1 0.1", 1, 0.5 * h) +
+              strprintf("fix grid all mpm %.17g\nregion column block 0 %.17g 0 %.17g INF INF\n"
+                        "create_points 1 region column ppc 2\n"
+                        "fix sand all mpm/material density 1600 %s\n"
+                        "fix wall all mpm/boundary xlo slip\nfix floor all mpm/boundary ylo stick\n"
+                        "fix g all gravity 9.81 vector 0 -1 0\nfix step all mpm/dt 0.4\n"
+                        "variable t equal time\nfix end all halt 10 v_t > %.17g error continue\n"
+                        "run 1000000\n",
+                        h, L0, k.a * L0, k.law, 3.0 * std::sqrt(2.0 * k.a * L0 / g)));
     double front = 0.0, fastest = 0.0, volume = 0.0;
     for (int i = 0; i < run.n(); i++) {
       front = std::max(front, run.x()[i][0] + 0.25 * h);

@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: physics
 
@@ -13,14 +8,9 @@
 
 #include "mpm_lammps.h"
 
-#include "gtest/gtest.h"
-
-#include <cmath>
 #include <ostream>
 
 using namespace MPM_TEST;
-
-static constexpr double PI = 3.14159265358979323846;
 
 /** Displacement u, velocity v, strains q of Maxwell elements of the mode exp(i k x):
  *  density v' = -k^2 (M u + eta v + sum 4/3 G q), q' = v - q/tau, by the classical Runge-Kutta
@@ -77,19 +67,10 @@ TEST_P(StandingWave, AmplitudeAndEnergy)
 {
   const Case &c = GetParam();
   const double h = 1.0 / 96.0, k = 2.0 * PI, v0 = 1.0e-3;
-  Scene run;
-  run.commands(strprintf("units si\n"
-                         "dimension 2\n"
-                         "boundary p p p\n"
-                         "atom_style mpm\n"
-                         "neighbor %.17g bin\n"
-                         "region box block 0 1 0 %.17g -0.5 0.5\n"
-                         "create_box 2 box\n"
-                         "fix grid all mpm %.17g shape quadratic transfer flip 1.0 scheme musl\n"
-                         "create_points 1 box ppc 2\n"
-                         "fix solid all mpm/material density 1 %s\n"
-                         "thermo 1000000\n",
-                         0.4 * h, h, h, c.law));
+  Scene run(plane("si", "p p", strprintf("0 1 0 %.17g", h), 2, 0.4 * h) +
+            strprintf("fix grid all mpm %.17g shape quadratic transfer flip 1.0 scheme musl\n"
+                      "create_points 1 box ppc 2\nfix solid all mpm/material density 1 %s\n",
+                      h, c.law));
   run.set_reference();
   const int n = run.n();
   for (int i = 0; i < n; i++) run.v()[i][0] = v0 * std::sin(k * run.x()[i][0]);

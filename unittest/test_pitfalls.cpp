@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: physics smoke
 // mpi: 1 2 4
@@ -18,27 +13,17 @@
 
 #include "lattice/grid.h"
 
-#include "gtest/gtest.h"
-
-#include <cmath>
-#include <map>
-#include <set>
-
 using namespace MPM_TEST;
 
 // a soft body that deforms and spins, crossing the middle of a periodic box
-
 static std::string soft_body(const std::string &options, const std::string &steps = "run 40\n")
 {
-  return "units lj\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
-         "region box block 0 8 0 8 0 8\ncreate_box 1 box\n"
-         "fix grid all mpm 1.0 " +
-      options +
+  return space("lj", "p p p", "0 8 0 8 0 8") + "fix grid all mpm 1.0 " + options +
       "\n"
       "region body block 2 5 2.5 5 3 5\ncreate_points 1 region body ppc 2\n"
       "fix soft all mpm/material density 1.0 neohookean 10.0 0.3\n"
       "velocity all set 0.5 0.2 0.1\nvelocity all ramp vy -0.8 0.8 x 2 5 sum yes\n"
-      "timestep 0.05\nthermo 1000\n" +
+      "timestep 0.05\n" +
       steps;
 }
 
@@ -50,15 +35,13 @@ static double momentum(const std::vector<Scene::State> &points, int axis)
 }
 
 // a region larger than the domain changed the box after the grid existed
-
 TEST(Pitfall, RegionLargerThanTheBoxLeavesTheBoxAlone)
 {
-  Scene run;
-  run.commands("units lj\nboundary f f f\natom_style mpm\nneighbor 0.3 bin\n"
-               "region box block 0 8 0 8 0 8\ncreate_box 1 box\nfix grid all mpm 1.0\n"
-               "region body block -3 4 2 30 2 4\n"
-               "create_points 1 region body ppc 2 outside ignore\n"
-               "fix soft all mpm/material density 1.0 neohookean 10.0 0.3\ntimestep 0.05\nrun 1\n");
+  Scene run(space("lj", "f f f", "0 8 0 8 0 8") +
+            "fix grid all mpm 1.0\nregion body block -3 4 2 30 2 4\n"
+            "create_points 1 region body ppc 2 outside ignore\n"
+            "fix soft all mpm/material density 1.0 neohookean 10.0 0.3\ntimestep 0.05\n"
+            "run 1\n");
   for (int d = 0; d < 3; d++) {
     EXPECT_EQ(run.lmp->domain->boxlo[d], 0.0);
     EXPECT_EQ(run.lmp->domain->boxhi[d], 8.0);
@@ -67,15 +50,13 @@ TEST(Pitfall, RegionLargerThanTheBoxLeavesTheBoxAlone)
 }
 
 // numbers went through single precision
-
 TEST(Pitfall, NumbersKeepDoublePrecision)
 {
-  Scene run;
-  run.commands("units lj\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
-               "region box block 0 8 0 8 0 8\ncreate_box 1 box\nfix grid all mpm 0.1\n"
-               "region body block 2 3 2 3 2 3\ncreate_points 1 region body spacing 0.1\n"
-               "fix soft all mpm/material density 0.1 neohookean 10.0 0.3\n"
-               "velocity all set 0.1 0.2 0.3\ntimestep 0.001\nrun 0\n");
+  Scene run(space("lj", "p p p", "0 8 0 8 0 8") +
+            "fix grid all mpm 0.1\nregion body block 2 3 2 3 2 3\n"
+            "create_points 1 region body spacing 0.1\n"
+            "fix soft all mpm/material density 0.1 neohookean 10.0 0.3\n"
+            "velocity all set 0.1 0.2 0.3\ntimestep 0.001\nrun 0\n");
   const auto before = run.gather();
   ASSERT_EQ(before.size(), 1000u);
   run.commands("run 100\n");
@@ -104,7 +85,6 @@ TEST(Pitfall, NumbersKeepDoublePrecision)
 }
 
 // options parsed and ignored: in every combination, each one must make a difference
-
 TEST(Pitfall, NoOptionIsIgnored)
 {
   std::vector<std::string> all;
@@ -142,8 +122,7 @@ TEST(Pitfall, NoOptionIsIgnored)
     all.push_back(other);
   std::map<std::string, std::vector<Scene::State>> results;
   for (const auto &options : all) {
-    Scene run;
-    run.commands(soft_body(options, "run 10\n"));
+    Scene run(soft_body(options, "run 10\n"));
     results[options] = run.gather();
     ASSERT_EQ(results[options].size(), 6u * 5u * 4u) << options;
   }
@@ -165,13 +144,11 @@ TEST(Pitfall, OriginIsNotIgnored)
 }
 
 // kernels give the same result to round-off; that the named ones are used is in the log
-
 TEST(Pitfall, KernelsAreThoseThatWereAskedFor)
 {
   std::vector<Scene::State> reference;
   for (const char *name : {"reference", "baseline", "auto"}) {
-    Scene run;
-    run.commands(soft_body(std::string("kernels ") + name, "log kernels.log\nrun 40\nlog none\n"));
+    Scene run(soft_body(std::string("kernels ") + name, "log kernels.log\nrun 40\nlog none\n"));
     const auto found = run.gather();
     if (reference.empty()) reference = found;
     EXPECT_LT(difference(reference, found), 1.0e-12) << name;
@@ -190,16 +167,13 @@ TEST(Pitfall, KernelsAreThoseThatWereAskedFor)
 }
 
 // points on a rank boundary created on both ranks
-
 TEST(Pitfall, PointsOnRankBoundariesExistOnce)
 {
   // 12 divides by 1, 2, 3 and 4: rank boundaries go through points in all directions
-  Scene run;
-  run.commands("units lj\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
-               "region box block 0 12 0 12 0 12\ncreate_box 1 box\n"
-               "fix grid all mpm 1.0 origin 0.5 0.5 0.5\ncreate_points 1 box ppc 1\n"
-               "fix soft all mpm/material density 2.0 neohookean 10.0 0.3\n"
-               "velocity all set 1.0 1.0 1.0\ntimestep 0.125\nthermo 1000\nrun 0\n");
+  Scene run(space("lj", "p p p", "0 12 0 12 0 12") +
+            "fix grid all mpm 1.0 origin 0.5 0.5 0.5\ncreate_points 1 box ppc 1\n"
+            "fix soft all mpm/material density 2.0 neohookean 10.0 0.3\n"
+            "velocity all set 1.0 1.0 1.0\ntimestep 0.125\nrun 0\n");
   for (int k = 0; k < 3; k++) {
     const auto points = run.gather();
     ASSERT_EQ(points.size(), 1728u);
@@ -217,19 +191,11 @@ TEST(Pitfall, PointsOnRankBoundariesExistOnce)
 }
 
 // contact force in 2d with the wrong dimension: disks passed through each other
-
 TEST(Pitfall, DisksDoNotPassThroughEachOther)
 {
   double v[2];
   for (int k = 0; k < 2; k++) {    // whatever the thickness of the box
-    Scene run;
-    run.commands(replaced(R"(
-units lj
-dimension 2
-boundary f f p
-atom_style mpm
-region box block 0 24 0 8 -DEEP DEEP
-create_box 2 box
+    Scene run(replaced(plane("lj", "f f", "0 24 0 8 -DEEP DEEP", 2) + R"(
 region one cylinder z 8.3 4.2 2.5 INF INF
 region two cylinder z 15.6 3.9 2.5 INF INF
 create_points 1 region one spacing 0.25
@@ -243,9 +209,8 @@ fix c all mpm/contact F1 F2
 velocity one set 0.5 0 0
 velocity two set -0.5 0 0
 timestep 0.01
-thermo 1000
 )",
-                          "DEEP", k ? "7.0" : "0.05"));
+                       "DEEP", k ? "7.0" : "0.05"));
     double nearest = 24.0;
     for (int n = 0; n < 30; n++) {
       run.commands("run 20 post no\n");
@@ -260,31 +225,22 @@ thermo 1000
 }
 
 // rigid nodes flagged once and never cleared: a trail behind the moving body
-
 TEST(Pitfall, MovingWallLeavesNoTrail)
 {
-  const std::string scene = R"(
-units lj
-dimension 2
-boundary f f p
-atom_style mpm
-region box block 0 24 0 12 -0.5 0.5
-create_box 1 box
+  const std::string scene = plane("lj", "f f", "0 24 0 12") + R"(
 region body block 5 8 6.5 9.5 -0.5 0.5
 fix grid all mpm 0.5
 create_points 1 region body ppc 2
 fix m all mpm/material density 1 neohookean 50 0.3
 velocity all set 0 -0.5 0
 timestep 0.01
-thermo 1000
 variable x equal vdisplace(0,SPEED)
 region tool block 3 10 1 5 -0.5 0.5 move v_x NULL NULL
 )";
   const std::string wall = "fix wall all mpm/boundary region tool stick\n", go = "run 800\n";
   std::vector<Scene::State> state[3];    // no wall; a wall that has left in time; one that stays
   for (int k = 0; k < 3; k++) {
-    Scene run;
-    run.commands(replaced(scene, "SPEED", k == 2 ? "0.0" : "6.0") + (k ? wall : "") + go);
+    Scene run(replaced(scene, "SPEED", k == 2 ? "0.0" : "6.0") + (k ? wall : "") + go);
     state[k] = run.gather();
   }
   EXPECT_LT(difference(state[0], state[1]), 1.0e-12);
@@ -293,16 +249,14 @@ region tool block 3 10 1 5 -0.5 0.5 move v_x NULL NULL
 }
 
 // node forces and reactions counted nodes of other ranks, too: 1000 N became 1907 N on 2 ranks
-
 TEST(Pitfall, ReactionsCountEachNodeOnce)
 {
-  const std::string scene =
-      "units lj\nboundary f f f\natom_style mpm\nneighbor 0.3 bin\n"
-      "region box block 0 8 0 8 0 8\ncreate_box 1 box\nfix grid all mpm 1.0\n"
-      "region body block 1 7 1 7 0 4\ncreate_points 1 region body ppc 2\n"
+  const std::string scene = space("lj", "f f f", "0 8 0 8 0 8") +
+      "fix grid all mpm 1.0\nregion body block 1 7 1 7 0 4\n"
+      "create_points 1 region body ppc 2\n"
       "fix soft all mpm/material density 1.0 neohookean 100.0 0.3\n"
       "fix floor all mpm/boundary zlo slip\nfix g all gravity 1.0 vector 0 0 -1\n"
-      "timestep 0.02\nthermo 1000\n";
+      "timestep 0.02\n";
   const double weight = 6.0 * 6.0 * 4.0, dt = 0.02;
   OnRanks both(scene, "run 0\n");
   auto &run = both.parallel, &serial = both.serial;
@@ -322,18 +276,16 @@ TEST(Pitfall, ReactionsCountEachNodeOnce)
 }
 
 // no contact between points of different ranks
-
 TEST(Pitfall, BodiesOfDifferentRanksCollide)
 {
-  Scene run;
-  run.commands("units lj\nboundary f f f\natom_style mpm\nneighbor 0.3 bin\n"
-               "region box block 0 16 0 4 0 4\nprocessors * 1 1\ncreate_box 2 box\n"
-               "fix grid all mpm 1.0\nregion one block 5 7 1 3 1 3\nregion two block 9 11 1 3 1 3\n"
-               "create_points 1 region one ppc 2\ncreate_points 2 region two ppc 2\n"
-               "fix soft all mpm/material density 1.0 neohookean 10.0 0.3\n"
-               "group one type 1\ngroup two type 2\n"
-               "velocity one set 0.5 0 0\nvelocity two set -0.5 0 0\n"
-               "timestep 0.05\nthermo 1000\nrun 200\n");
+  Scene run("units lj\nboundary f f f\natom_style mpm\nneighbor 0.3 bin\n"
+            "region box block 0 16 0 4 0 4\nprocessors * 1 1\ncreate_box 2 box\n"
+            "fix grid all mpm 1.0\nregion one block 5 7 1 3 1 3\nregion two block 9 11 1 3 1 3\n"
+            "create_points 1 region one ppc 2\ncreate_points 2 region two ppc 2\n"
+            "fix soft all mpm/material density 1.0 neohookean 10.0 0.3\n"
+            "group one type 1\ngroup two type 2\n"
+            "velocity one set 0.5 0 0\nvelocity two set -0.5 0 0\n"
+            "timestep 0.05\nrun 200\n");
   double p[2] = {0.0, 0.0};
   for (const auto &point : run.gather()) p[(int) point.type - 1] += point.mass * point.v[0];
   EXPECT_LT(p[0], -0.5);    // was 4: they have bounced
@@ -342,7 +294,6 @@ TEST(Pitfall, BodiesOfDifferentRanksCollide)
 }
 
 // per-point state that did not migrate: the affine term and history were lost at rank boundaries
-
 TEST(Pitfall, AllStateMigrates)
 {
   // the body yields while it passes through all ranks, and spins: affine matrix and history matter
@@ -356,7 +307,7 @@ TEST(Pitfall, AllStateMigrates)
       "velocity all ramp vz 0.5 -0.5 y 1 4 sum yes\n"
       "compute h all mpm/atom eplastic\ncompute sum all reduce sum c_h\ncompute max all reduce max "
       "c_h\n"
-      "timestep 0.05\nthermo 1000\nthermo_style custom step c_sum c_max\n";
+      "timestep 0.05\nthermo_style custom step c_sum c_max\n";
   OnRanks both(scene, "run 160\n");
   auto &run = both.parallel, &serial = both.serial;
   EXPECT_LT(both.difference(), 1.0e-12);
@@ -367,20 +318,18 @@ TEST(Pitfall, AllStateMigrates)
 }
 
 // memory followed the box, not the body
-
-TEST(Pitfall, EmptyCellsCostNoMemory)
+SERIAL_TEST(Pitfall, EmptyCellsCostNoMemory)
 {
   double bytes[2], blocks[2];
   for (int k = 0; k < 2; k++) {
     const int size = k ? 512 : 8;
-    Scene run(MPI_COMM_SELF);
-    run.commands(
-        fmt::format("units lj\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
-                    "region box block 0 {0} 0 {0} 0 {0}\ncreate_box 1 box\nfix grid all mpm 1.0\n"
-                    "region body block 2 6 2 6 2 6\ncreate_points 1 region body ppc 2\n"
-                    "fix soft all mpm/material density 1.0 neohookean 10.0 0.3\n"
-                    "velocity all ramp vy -0.1 0.1 x 2 6\ntimestep 0.05\nthermo 1000\nrun 20\n",
-                    size));
+    Scene run(fmt::format(space("lj", "p p p", "0 {0} 0 {0} 0 {0}") +
+                              "fix grid all mpm 1.0\nregion body block 2 6 2 6 2 6\n"
+                              "create_points 1 region body ppc 2\n"
+                              "fix soft all mpm/material density 1.0 neohookean 10.0 0.3\n"
+                              "velocity all ramp vy -0.1 0.1 x 2 6\ntimestep 0.05\nrun 20\n",
+                          size),
+              MPI_COMM_SELF);
     auto *grid = run.fix("grid");
     bytes[k] = grid->memory_usage();
     blocks[k] = grid->compute_vector(1);
@@ -392,7 +341,6 @@ TEST(Pitfall, EmptyCellsCostNoMemory)
 
 // ghost exchange in six phases: here two ranks that share blocks send them to each other once for
 // each sum over ranks, and a step of USL has one sum
-
 TEST(Pitfall, SharedNodesTravelOncePerSum)
 {
   const struct {
@@ -403,15 +351,12 @@ TEST(Pitfall, SharedNodesTravelOncePerSum)
                {"transfer apic scheme musl", 8},
                {"transfer apic scheme usf", 8}};
   for (const auto &c : cases) {
-    Scene run;
-    run.commands("units lj\nboundary f f f\natom_style mpm\nneighbor 0.3 bin\n"
-                 "region box block 0 12 0 12 0 12\ncreate_box 1 box\n"
-                 "fix grid all mpm 1.0 " +
-                 std::string(c.options) +
-                 "\n"
-                 "region body block 2 10 2 10 2 10\ncreate_points 1 region body ppc 2\n"
-                 "fix soft all mpm/material density 1.0 neohookean 10.0 0.3\n"
-                 "timestep 0.05\nthermo 1000\nrun 10\n");
+    Scene run(space("lj", "f f f", "0 12 0 12 0 12") + "fix grid all mpm 1.0 " +
+              std::string(c.options) +
+              "\n"
+              "region body block 2 10 2 10 2 10\ncreate_points 1 region body ppc 2\n"
+              "fix soft all mpm/material density 1.0 neohookean 10.0 0.3\n"
+              "timestep 0.05\nrun 10\n");
 
     // blocks that several ranks have, counted independently of the code under test
     std::vector<uint64_t> mine;
@@ -427,7 +372,6 @@ TEST(Pitfall, SharedNodesTravelOncePerSum)
 }
 
 // order of points in memory and checks for drift: what neigh_modify says must not matter
-
 TEST(Pitfall, RareNeighborListsLoseNoPoint)
 {
   Scene usual, rare;
@@ -437,17 +381,14 @@ TEST(Pitfall, RareNeighborListsLoseNoPoint)
 }
 
 // the adaptive time step went to zero when a body had turned by 90 degrees
-
 class TurnedBody : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(TurnedBody, HasTheTimeStepOfTheBodyAtRest)
 {
-  Scene run;
-  run.commands("units lj\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
-               "region box block 0 8 0 8 0 8\ncreate_box 1 box\nfix grid all mpm 1.0\n"
-               "region body block 2 5 2.5 5 3 5\ncreate_points 1 region body ppc 2\n"
-               "fix m all mpm/material density 1.0 " +
-               GetParam() + "\ntimestep 0.001\nrun 0\n");
+  Scene run(space("lj", "p p p", "0 8 0 8 0 8") +
+            "fix grid all mpm 1.0\nregion body block 2 5 2.5 5 3 5\n"
+            "create_points 1 region body ppc 2\nfix m all mpm/material density 1.0 " +
+            GetParam() + "\ntimestep 0.001\nrun 0\n");
   auto *points = MPMPoints::get(run.lmp->atom);
   const double at_rest = run.stable_dt();
   if (run.lmp->atom->nlocal) EXPECT_LT(at_rest, 1.0);
@@ -467,21 +408,17 @@ INSTANTIATE_TEST_SUITE_P(Pitfall, TurnedBody,
 
 // MUSL with an affine transfer re-used the old affine matrix in the second mapping: the energy of
 // a sheared block doubled in 240 steps. Here that defect shows from a CFL number of 0.5 on.
-
 class MuslApic : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(MuslApic, ShearedBlockGainsNoEnergy)
 {
-  Scene run;
-  run.commands("units lj\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
-               "region box block 0 16 0 16 0 16\ncreate_box 1 box\n"
-               "fix grid all mpm 1.0 scheme musl " +
-               GetParam() +
-               "\n"
-               "region body block 5 11 5 11 5 11\ncreate_points 1 region body ppc 2\n"
-               "fix m all mpm/material density 1.0 neohookean 100.0 0.3\n"
-               "velocity all ramp vx -1.0 1.0 y 5 11\ntimestep 0.06\n"
-               "compute e all mpm/energy\nthermo_style custom step c_e\nthermo 1000\nrun 0\n");
+  Scene run(space("lj", "p p p", "0 16 0 16 0 16") + "fix grid all mpm 1.0 scheme musl " +
+            GetParam() +
+            "\n"
+            "region body block 5 11 5 11 5 11\ncreate_points 1 region body ppc 2\n"
+            "fix m all mpm/material density 1.0 neohookean 100.0 0.3\n"
+            "velocity all ramp vx -1.0 1.0 y 5 11\ntimestep 0.06\n"
+            "compute e all mpm/energy\nthermo_style custom step c_e\nrun 0\n");
   auto *energy = run.lmp->modify->get_compute_by_id("e");
   const double start = energy->compute_scalar();
   double most = start;
@@ -501,19 +438,17 @@ INSTANTIATE_TEST_SUITE_P(Pitfall, MuslApic,
 
 // points that cross their block without leaving its tile, while neighbor lists are not made, came to
 // reach into a block that did not exist
-
 TEST(Pitfall, LongDriftWithinATile)
 {
   for (const int dim : {2, 3}) {
-    Scene run;
-    run.commands(strprintf("units lj\ndimension %d\nboundary f f %s\natom_style mpm\n"
-                           "neighbor 0.3 bin\nneigh_modify every 1000 check no\n"
-                           "region box block 0 40 0 40 %s\ncreate_box 1 box\nfix grid all mpm 1.0\n"
-                           "region body block 8 9 8 9 %s\ncreate_points 1 region body ppc 2\n"
-                           "fix m all mpm/material density 1.0 neohookean 1.0e-6 0.3\n"
-                           "velocity all set 0.3 0.4 0.0\ntimestep 0.5\nthermo 1000\nrun 40\n",
-                           dim, dim == 2 ? "p" : "f", dim == 2 ? "-0.5 0.5" : "0 40",
-                           dim == 2 ? "INF INF" : "8 9"));
+    Scene run(strprintf("units lj\ndimension %d\nboundary f f %s\natom_style mpm\n"
+                        "neighbor 0.3 bin\nneigh_modify every 1000 check no\n"
+                        "region box block 0 40 0 40 %s\ncreate_box 1 box\nfix grid all mpm 1.0\n"
+                        "region body block 8 9 8 9 %s\ncreate_points 1 region body ppc 2\n"
+                        "fix m all mpm/material density 1.0 neohookean 1.0e-6 0.3\n"
+                        "velocity all set 0.3 0.4 0.0\ntimestep 0.5\nrun 40\n",
+                        dim, dim == 2 ? "p" : "f", dim == 2 ? "-0.5 0.5" : "0 40",
+                        dim == 2 ? "INF INF" : "8 9"));
     for (const auto &p : run.gather()) {
       EXPECT_NEAR(p.v[0], 0.3, 1e-12);
       EXPECT_NEAR(p.v[1], 0.4, 1e-12);
@@ -523,22 +458,18 @@ TEST(Pitfall, LongDriftWithinATile)
 
 // the first-order update of F, applied to the gradient of a rotation, inflates J by
 // (1 + (2 pi/N)^2)^N in a turn of N steps: 4 % with 1000. Here J stays where elasticity has it
-
 class Turn : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(Turn, InflatesNothing)
 {
   const int N = 1000;
-  Scene run;
-  run.commands("units lj\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.3 bin\n"
-               "region box block -8 8 -8 8 -0.5 0.5\ncreate_box 1 box\nfix grid all mpm 1.0 " +
-               GetParam() +
-               "\nregion disk cylinder z 0 0 4 INF INF\ncreate_points 1 region disk ppc 2\n"
-               "fix m all mpm/material density 1.0 neohookean 1000.0 0.3\n"
-               "variable vx atom -y\nvariable vy atom x\nvelocity all set v_vx v_vy 0\n"
-               "compute J all mpm/atom J\ncompute mean all reduce ave c_J\n"
-               "thermo_style custom step c_mean\nthermo 10000\n" +
-               fmt::format("timestep {:.17g}\nrun {}\n", 2.0 * M_PI / N, N));
+  Scene run(plane("lj", "f f", "-8 8 -8 8") + "fix grid all mpm 1.0 " + GetParam() +
+            "\nregion disk cylinder z 0 0 4 INF INF\ncreate_points 1 region disk ppc 2\n"
+            "fix m all mpm/material density 1.0 neohookean 1000.0 0.3\n"
+            "variable vx atom -y\nvariable vy atom x\nvelocity all set v_vx v_vy 0\n"
+            "compute J all mpm/atom J\ncompute mean all reduce ave c_J\n"
+            "thermo_style custom step c_mean\n" +
+            fmt::format("timestep {:.17g}\nrun {}\n", 2.0 * M_PI / N, N));
   const double J = run.evaluate("c_mean");
 
   // in equilibrium a spinning disk has J - 1 = (1 - 2 nu)(1 + nu) rho w^2 R^2/(2 E) = 0.0042 in the
@@ -556,13 +487,11 @@ INSTANTIATE_TEST_SUITE_P(
 // a tetrahedron with a volume of (1/6) in integers had no mass; sizes of points that do not add up
 // to the body make its mass depend on the variant. Momentum of CPDI was not conserved: that of all
 // variants is measured in test_variants.cpp
-
 TEST(Pitfall, MassIsThatOfTheBodyInEveryVariant)
 {
   for (const char *options : {"shape linear", "shape quadratic", "shape cubic", "shape gimp",
                               "shape cpgimp", "shape gimp aspect 1 2 2", "frame total"}) {
-    Scene run;
-    run.commands(soft_body(std::string("transfer flip 1.0 scheme musl ") + options, "run 1\n"));
+    Scene run(soft_body(std::string("transfer flip 1.0 scheme musl ") + options, "run 1\n"));
     double mass = 0.0, volume = 0.0;
     for (const auto &s : run.gather()) {
       mass += s.mass;

@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: physics mpi restart
 // mpi: 1 2 4
@@ -15,21 +10,14 @@
 
 #include "mpm_lammps.h"
 
-#include "gtest/gtest.h"
-
-#include <cmath>
-
 using namespace MPM_TEST;
 
 static std::string body(int dim, const std::string &options, const std::string &law)
 {
-  return strprintf("units lj\ndimension %d\nboundary f f %s\natom_style mpm\nneighbor 0.2 bin\n"
-                   "region box block -10 30 -10 20 %s\ncreate_box 1 box\n"
-                   "fix grid all mpm 0.5 frame total %s\nregion body block 2 6 2 5 %s\n"
-                   "create_points 1 region body ppc 2\nfix m all mpm/material density 1.0 %s\n"
-                   "thermo 1000000\n",
-                   dim, dim == 2 ? "p" : "f", dim == 2 ? "-0.5 0.5" : "-10 20", options.c_str(),
-                   dim == 2 ? "INF INF" : "2 4", law.c_str());
+  return box(dim, "lj", "f f f", "-10 30 -10 20 -10 20", 1, 0.2) +
+      body(strprintf("block 2 6 2 5 %s", dim == 2 ? "INF INF" : "2 4"),
+           strprintf("density 1.0 %s", law.c_str()),
+           strprintf("0.5 frame total %s", options.c_str()));
 }
 
 /* ----------------------------------------------------------------------
@@ -37,15 +25,15 @@ static std::string body(int dim, const std::string &options, const std::string &
    round-off whenever the reference is made anew, and stress is that of F
 ------------------------------------------------------------------------- */
 
-TEST(ReferenceUpdate, AffineMotionIsExact)
+SERIAL_TEST(ReferenceUpdate, AffineMotionIsExact)
 {
   for (const int dim : {2, 3})
     for (const char *rest :
          {"transfer apic", "transfer apic scheme musl", "shape cubic transfer apic",
           "shape linear transfer apic scheme usf", "transfer apic locking both"}) {
-      Scene run{MPI_COMM_SELF};
-      run.commands(body(dim, std::string(rest) + " reference update 1.5", "neohookean 1.0e-9 0.3") +
-                   "timestep 0.02\n");
+      Scene run(body(dim, std::string(rest) + " reference update 1.5", "neohookean 1.0e-9 0.3") +
+                    "timestep 0.02\n",
+                MPI_COMM_SELF);
       run.set_reference();
       run.set_velocity([](const double *x, double *v) {
         v[0] = 1.0 * x[1] + 0.1 * x[0];
@@ -73,14 +61,13 @@ TEST(ReferenceUpdate, AffineMotionIsExact)
 
 // The same for points that are deformed already when they get their reference configuration, in a way that does
 // not commute with what follows: F = (I + t A) F0
-
-TEST(ReferenceUpdate, DeformedAtTheStart)
+SERIAL_TEST(ReferenceUpdate, DeformedAtTheStart)
 {
   const double F0[4] = {1.3, 0.5, 0.0, 0.8}, A[4] = {0.1, 1.0, -0.1, 0.0};
   for (const int dim : {2, 3}) {
-    Scene run{MPI_COMM_SELF};
-    run.commands(body(dim, "transfer apic reference update 1.5", "neohookean 1.0e-9 0.3") +
-                 "timestep 0.02\n");
+    Scene run(body(dim, "transfer apic reference update 1.5", "neohookean 1.0e-9 0.3") +
+                  "timestep 0.02\n",
+              MPI_COMM_SELF);
     run.set_reference();
     for (int i = 0; i < run.n(); i++)
       for (int a = 0; a < 2; a++)
@@ -111,15 +98,14 @@ TEST(ReferenceUpdate, DeformedAtTheStart)
 }
 
 // a threshold that is never met changes nothing but round-off
-
-TEST(ReferenceUpdate, NoneIsTheTotalFrame)
+SERIAL_TEST(ReferenceUpdate, NoneIsTheTotalFrame)
 {
   for (const char *rest :
        {"transfer apic", "transfer flip 1.0 scheme musl", "transfer apic locking fbar"}) {
     const auto state = [&](const std::string &more) {
-      Scene run{MPI_COMM_SELF};
-      run.commands(body(3, rest + more, "neohookean 10.0 0.3") +
-                   "velocity all ramp vx 0.0 1.0 y 2 5\ntimestep 0.02\nrun 100\n");
+      Scene run(body(3, rest + more, "neohookean 10.0 0.3") +
+                    "velocity all ramp vx 0.0 1.0 y 2 5\ntimestep 0.02\nrun 100\n",
+                MPI_COMM_SELF);
       return run.gather();
     };
     EXPECT_LT(difference(state(""), state(" reference update 1000")), 1e-12) << rest;
@@ -128,11 +114,10 @@ TEST(ReferenceUpdate, NoneIsTheTotalFrame)
 
 // The lattice sees a body of the volume V0 det R: inside, its share of the volume of a node is one, however
 // much the body has expanded since the start.
-
-TEST(ReferenceUpdate, VolumeOnTheLattice)
+SERIAL_TEST(ReferenceUpdate, VolumeOnTheLattice)
 {
-  Scene run{MPI_COMM_SELF};
-  run.commands(body(2, "reference update 1.2", "neohookean 1.0e-9 0.3") + "timestep 0.02\n");
+  Scene run(body(2, "reference update 1.2", "neohookean 1.0e-9 0.3") + "timestep 0.02\n",
+            MPI_COMM_SELF);
   run.set_velocity([](const double *x, double *v) {
     v[0] = 0.5 * (x[0] - 4.0);
   });
@@ -156,15 +141,15 @@ TEST(ReferenceUpdate, VolumeOnTheLattice)
    motion is that of a frame without updates up to the error of both
 ------------------------------------------------------------------------- */
 
-TEST(ReferenceUpdate, MomentumAndEnergy)
+SERIAL_TEST(ReferenceUpdate, MomentumAndEnergy)
 {
   double angle[2], energy[2];
   for (const bool updates : {false, true}) {
-    Scene run{MPI_COMM_SELF};
-    run.commands(body(2, std::string("transfer apic") + (updates ? " reference update 1.15" : ""),
-                      "neohookean 10.0 0.3") +
-                 "velocity all set 0.5 0.2 0.0\nvelocity all ramp vx 0.0 2.0 y 2 5 sum yes\n"
-                 "compute e all mpm/energy\nthermo_style custom step c_e\ntimestep 0.01\nrun 0\n");
+    Scene run(body(2, std::string("transfer apic") + (updates ? " reference update 1.15" : ""),
+                   "neohookean 10.0 0.3") +
+                  "velocity all set 0.5 0.2 0.0\nvelocity all ramp vx 0.0 2.0 y 2 5 sum yes\n"
+                  "compute e all mpm/energy\nthermo_style custom step c_e\ntimestep 0.01\nrun 0\n",
+              MPI_COMM_SELF);
     const auto before = run.sums();
     auto *e = run.lmp->modify->get_compute_by_id("e");
     const double start = e->compute_scalar();
@@ -186,7 +171,6 @@ TEST(ReferenceUpdate, MomentumAndEnergy)
 }
 
 // any number of ranks, and after a restart
-
 static const char *const thrown = "velocity all ramp vx 0.0 2.0 y 2 5\ntimestep 0.01\n";
 
 TEST(ReferenceUpdate, Ranks)
@@ -204,7 +188,6 @@ TEST(ReferenceUpdate, Ranks)
 }
 
 // steps at which the distortion is looked at do not depend on where a run starts
-
 TEST(ReferenceUpdate, Restart)
 {
   const std::string fixes = "fix grid all mpm 0.5 frame total transfer apic reference update 1.2\n"
@@ -220,16 +203,12 @@ TEST(ReferenceUpdate, Restart)
 
 TEST(ReferenceUpdate, Refused)
 {
-  const std::string head =
-      "units lj\nboundary f f f\natom_style mpm\nregion box block 0 8 0 8 0 8\n"
-      "create_box 1 box\n";
-  EXPECT_THAT(error_of(head + "fix grid all mpm 1.0 reference update 2.0\n"),
-              ::testing::HasSubstr("is for frame total"));
-  EXPECT_THAT(error_of(head + "fix grid all mpm 1.0 frame total reference update 1.0\n"),
-              ::testing::HasSubstr("above 1"));
-  EXPECT_THAT(error_of(head +
-                       "fix grid all mpm 1.0 frame total reference update 2.0\n"
-                       "create_points 1 box ppc 2\nfix m all mpm/material density 1 linear 1 0.3\n"
-                       "fix w all mpm/boundary xlo stick velocity 1 0 0\nrun 0\n"),
-              ::testing::HasSubstr("would leave it"));
+  const std::string head = space("lj", "f f f", "0 8 0 8 0 8");
+  expect_error(head + "fix grid all mpm 1.0 reference update 2.0\n", "is for frame total");
+  expect_error(head + "fix grid all mpm 1.0 frame total reference update 1.0\n", "above 1");
+  expect_error(head +
+                   "fix grid all mpm 1.0 frame total reference update 2.0\n"
+                   "create_points 1 box ppc 2\nfix m all mpm/material density 1 linear 1 0.3\n"
+                   "fix w all mpm/boundary xlo stick velocity 1 0 0\nrun 0\n",
+               "would leave it");
 }

@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: restart smoke
 // mpi: 1 2 3
@@ -15,12 +10,9 @@
 
 #include "mpm_lammps.h"
 
-#include "gtest/gtest.h"
-
 using namespace MPM_TEST;
 
-static const std::string head = "units lj\nboundary p p f\natom_style mpm\nneighbor 0.3 bin\n"
-                                "region box block 0 8 0 8 0 8\ncreate_box 2 box\n";
+static const std::string head = space("lj", "p p f", "0 8 0 8 0 8", 2);
 
 static std::string fixes(const std::string &options)
 {
@@ -30,8 +22,7 @@ static std::string fixes(const std::string &options)
       "fix m2 two mpm/material density 2.0 eos linear 20.0 "
       "strength j2 5.0 0.05 hardening linear 0.5\n"
       "fix floor all mpm/boundary zlo slip\n"
-      "fix step all mpm/dt 0.3\n"
-      "thermo 1000\n";
+      "fix step all mpm/dt 0.3\n";
 }
 
 static const std::string points = "region one sphere 2.6 3.0 3.2 1.9\n"
@@ -51,24 +42,19 @@ TEST_P(Restart, ContinuesBitwise)
 {
   const std::string options = GetParam();
   const ScratchFile half("100.bin"), end("200.bin");
-  Scene whole;
-  whole.commands(head + "fix grid all mpm 1.0 " + options + "\n" + points + "unfix grid\n" +
-                 fixes(options) +
-                 (options.find("total") == std::string::npos ? start : start_level) +
-                 "restart 100 " + replaced(half.name, "100", "*") + "\nrun 200\n");
+  Scene whole(head + "fix grid all mpm 1.0 " + options + "\n" + points + "unfix grid\n" +
+              fixes(options) + (options.find("total") == std::string::npos ? start : start_level) +
+              "restart 100 " + replaced(half.name, "100", "*") + "\nrun 200\n");
   const std::string next =
       "read_restart " + half.name + "\nneighbor 0.3 bin\n" + fixes(options) + "run 100\n";
-  Scene again;
-  again.commands(next);
+  Scene again(next);
   const auto expected = whole.gather();
   EXPECT_TRUE(identical(expected, again.gather()));
   EXPECT_EQ(again.lmp->update->ntimestep, 200);
   EXPECT_EQ(again.time(), whole.time());
 
   // one rank reads the file of many
-
-  Scene serial(MPI_COMM_SELF);
-  serial.commands(next);
+  Scene serial(next, MPI_COMM_SELF);
   EXPECT_LT(difference(expected, serial.gather()), 1.0e-11);
 }
 
@@ -81,7 +67,6 @@ INSTANTIATE_TEST_SUITE_P(
                       "transfer aflip 0.99 scheme musl", "shape cpgimp transfer tpic", "every 3"));
 
 // the write_restart command between runs, and a file of one rank read by many
-
 class RestartCommand : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(RestartCommand, ContinuesBitwiseAndOnOtherRanks)
@@ -96,12 +81,10 @@ TEST_P(RestartCommand, ContinuesBitwiseAndOnOtherRanks)
 
   const ScratchFile file("serial");
   if (rank() == 0) {
-    Scene serial(MPI_COMM_SELF);
-    serial.commands(scene + "run 70\nwrite_restart " + file.name + "\n");
+    Scene serial(scene + "run 70\nwrite_restart " + file.name + "\n", MPI_COMM_SELF);
   }
   MPI_Barrier(MPI_COMM_WORLD);
-  Scene many;
-  many.commands("read_restart " + file.name + "\n" + next + "run 60\n");
+  Scene many("read_restart " + file.name + "\n" + next + "run 60\n");
   EXPECT_LT(difference(expected, many.gather()), 1.0e-11);
 }
 
@@ -110,17 +93,14 @@ INSTANTIATE_TEST_SUITE_P(Options, RestartCommand,
                                            "shape cubic transfer flip 1.0 scheme usf"));
 
 // points that are rings
-
 class AxisymmetricRestart : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(AxisymmetricRestart, ContinuesBitwise)
 {
   const std::string fixes = "fix grid all mpm 1.0 axisymmetric yes " + GetParam() +
       "\nfix m all mpm/material density 1.0 neohookean 10.0 0.3\n"
-      "fix walls all mpm/boundary xlo ylo slip\nfix step all mpm/dt 0.3\nthermo 1000\n";
-  Continued run("units lj\ndimension 2\nboundary f f p\natom_style mpm\nneighbor 0.3 bin\n"
-                "region box block 0 8 0 8 -0.5 0.5\ncreate_box 1 box\n" +
-                    fixes +
+      "fix walls all mpm/boundary xlo ylo slip\nfix step all mpm/dt 0.3\n";
+  Continued run(plane("lj", "f f", "0 8 0 8") + fixes +
                     "region body sphere 0 3.5 0 3\ncreate_points 1 region body ppc 2\n"
                     "velocity all set 0.3 -0.4 0\n",
                 70, "neighbor 0.3 bin\n" + fixes, 60);
@@ -132,16 +112,14 @@ INSTANTIATE_TEST_SUITE_P(Options, AxisymmetricRestart,
                                            "transfer apic scheme musl locking both"));
 
 // the state is more than positions and velocities: without a part of it the run goes on differently
-
 TEST(RestartState, AffineMatrixAndHistoryAreInTheFile)
 {
   const ScratchFile file("state");
-  Scene whole;
-  whole.commands(head + "fix grid all mpm 1.0\n" + points + fixes("") +
-                 "velocity one set 0.6 0.35 -0.4\nvelocity two set -1.5 0.1 -1.0\n"
-                 "compute h two mpm/atom eplastic\ncompute sum two reduce sum c_h\n"
-                 "thermo_style custom step c_sum\nrun 100\nwrite_restart " +
-                 file.name + "\nrun 50\n");
+  Scene whole(head + "fix grid all mpm 1.0\n" + points + fixes("") +
+              "velocity one set 0.6 0.35 -0.4\nvelocity two set -1.5 0.1 -1.0\n"
+              "compute h two mpm/atom eplastic\ncompute sum two reduce sum c_h\n"
+              "thermo_style custom step c_sum\nrun 100\nwrite_restart " +
+              file.name + "\nrun 50\n");
   const auto expected = whole.gather();
   const double eplastic = whole.evaluate("c_sum");
   EXPECT_GT(eplastic, 0.01);
@@ -166,22 +144,19 @@ TEST(RestartState, AffineMatrixAndHistoryAreInTheFile)
 }
 
 // time and energies go on where they were
-
 TEST(RestartState, WorkIsInTheFile)
 {
   const ScratchFile file("work");
   const std::string watch = "compute e all mpm/energy\nthermo_style custom step c_e[3]\n";
-  Scene whole;
-  whole.commands(head + "fix grid all mpm 1.0\n" + points + fixes("") + watch +
-                 "fix g all gravity 0.3 vector 0 0 -1\n"
-                 "velocity one set 0.6 0.35 -0.4\nvelocity two set -1.5 0.1 -1.0\nrun 100\n"
-                 "write_restart " +
-                 file.name + "\nrun 50\n");
+  Scene whole(head + "fix grid all mpm 1.0\n" + points + fixes("") + watch +
+              "fix g all gravity 0.3 vector 0 0 -1\n"
+              "velocity one set 0.6 0.35 -0.4\nvelocity two set -1.5 0.1 -1.0\nrun 100\n"
+              "write_restart " +
+              file.name + "\nrun 50\n");
   const double plastic = whole.evaluate("c_e[3]");
   EXPECT_GT(plastic, 1.0e-3);
-  Scene again;
-  again.commands("read_restart " + file.name + "\nneighbor 0.3 bin\n" + fixes("") +
-                 "fix g all gravity 0.3 vector 0 0 -1\n" + watch + "run 50\n");
+  Scene again("read_restart " + file.name + "\nneighbor 0.3 bin\n" + fixes("") +
+              "fix g all gravity 0.3 vector 0 0 -1\n" + watch + "run 50\n");
   EXPECT_NEAR(again.evaluate("c_e[3]"), plastic, 1.0e-12 * plastic);
   EXPECT_EQ(again.time(), whole.time());
 
@@ -205,7 +180,6 @@ TEST(RestartState, WorkIsInTheFile)
 
 // velocities that are changed between runs change the affine matrices, also after a restart file,
 // and on any number of ranks; otherwise both continue
-
 TEST(RestartState, NewVelocitiesAreSeen)
 {
   const ScratchFile file("fit");
@@ -220,9 +194,8 @@ TEST(RestartState, NewVelocitiesAreSeen)
   EXPECT_LT(difference(expected, serial.gather()), 1.0e-11);
   EXPECT_GT(difference(expected, without.gather()), 1.0e-3);
   for (const bool before_fixes : {true, false}) {
-    Scene again;
-    again.commands("read_restart " + file.name + "\nneighbor 0.3 bin\n" +
-                   (before_fixes ? spin + fixes("") : fixes("") + spin) + "run 20\n");
+    Scene again("read_restart " + file.name + "\nneighbor 0.3 bin\n" +
+                (before_fixes ? spin + fixes("") : fixes("") + spin) + "run 20\n");
     EXPECT_LT(difference(expected, again.gather()), 1.0e-11);
   }
 }

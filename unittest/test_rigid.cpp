@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: physics
 // mpi: 1 2
@@ -13,23 +8,17 @@
 
 #include "mesh/stl_testing.h"
 
-#include "gtest/gtest.h"
-
-#include <map>
-
 using namespace MPM_TEST;
 
-static const std::string head =
-    "units lj\nboundary p p f\natom_style mpm\nneighbor 0.3 bin\n"
-    "region box block 0 10 0 10 0 12\ncreate_box 1 box\n"
-    "fix grid all mpm 0.5 GRID\n"
-    "region body block 3 7 3 7 2 5\ncreate_points 1 region body ppc 2\n";
+static const std::string head = space("lj", "p p f", "0 10 0 10 0 12") +
+    "fix grid all mpm 0.5 GRID\nregion body block 3 7 3 7 2 5\n"
+    "create_points 1 region body ppc 2\n";
 static const std::string fixes =
     "fix m all mpm/material density 1.0 neohookean 30.0 0.3\n"
     "region shape mpm/mesh FILE 1.0 4.2 5.7 6.4\n"
     "fix tool all mpm/rigid shape density 2.0 CONTACT velocity 0.1 -0.2 -1.0 "
     "omega 0.3 0.8 0.5\n"
-    "timestep 0.01\nthermo 1000\n";
+    "timestep 0.01\n";
 
 static std::string scene(const std::string &file, const std::string &grid = "")
 {
@@ -44,14 +33,12 @@ static std::string with(const std::string &text, const std::string &contact)
 class Rigid : public ::testing::TestWithParam<const char *> {};
 
 // A body that turns hits a block: momentum and angular momentum of both stay, to round-off.
-
 TEST_P(Rigid, KeepsMomentum)
 {
   if (nranks() > 1) GTEST_SKIP() << "sums are those of one rank";
   const ScratchFile file("torus.stl", binary_of(torus(1.0, 0.5, 24)));
   for (const char *grid : {"", "scheme musl"}) {
-    Scene run;
-    run.commands(with(scene(file.name, grid), GetParam()));
+    Scene run(with(scene(file.name, grid), GetParam()));
     auto *body = run.fix("tool");
     const MPM_NS::SurfaceMesh mesh(binary_of(torus(1.0, 0.5, 24)), "torus", 1.0, {0.0, 0.0, 0.0});
     const double mass = 2.0 * mesh.volume;
@@ -100,35 +87,24 @@ TEST_P(Rigid, IsTheSameOnAnyNumberOfRanksAndAfterARestart)
 {
   const ScratchFile file("torus.stl", binary_of(torus(1.0, 0.5, 24)));
   const std::string text = with(scene(file.name), GetParam());
-  OnRanks ranks(text, "run 150\n");
-  EXPECT_LT(ranks.difference(), 1.0e-9);
-  for (int k = 0; k < 24; k++) {
-    const auto value = [&](Scene &s) {
-      return s.fix("tool")->compute_vector(k);
-    };
-    EXPECT_NEAR(value(ranks.serial), value(ranks.parallel), 1.0e-9);
-  }
-  Continued run(text, 80,
-                "neighbor 0.3 bin\nfix grid all mpm 0.5\n" +
-                    with(replaced(fixes, "FILE", file.name), GetParam()),
-                70);
-  EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
+  Twins run(text, 80,
+            "fix grid all mpm 0.5\n" + with(replaced(fixes, "FILE", file.name), GetParam()), 70,
+            1.0e-9);
+  for (int k = 0; k < 24; k++)
+    EXPECT_NEAR(run.serial.fix("tool")->compute_vector(k), run.whole.fix("tool")->compute_vector(k),
+                1.0e-9);
 }
 
 INSTANTIATE_TEST_SUITE_P(Contact, Rigid,
                          ::testing::Values("stick", "slip", "separate", "separate friction 0.3"));
 
 // Without contact an unequal box turns about no fixed axis: its energy stays, to second order.
-
-TEST(RigidBody, TurnsFreely)
+SERIAL_TEST(RigidBody, TurnsFreely)
 {
-  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
   const ScratchFile file("box.stl", text_of(box({0.0, 0.0, 0.0}, {0.5, 1.0, 1.5})));
   double drift[2];
   for (int k = 0; k < 2; k++) {
-    Scene run;
-    run.commands(
-        with(replaced(scene(file.name), "omega 0.3 0.8 0.5", "omega 0.3 2.0 0.2"), "slip"));
+    Scene run(with(replaced(scene(file.name), "omega 0.3 0.8 0.5", "omega 0.3 2.0 0.2"), "slip"));
     run.commands(
         strprintf("region shape delete\nunfix tool\nregion shape mpm/mesh %s 1.0 4.2 5.7 9.0\n"
                   "fix tool all mpm/rigid shape density 2.0 slip omega 0.2 2.0 0.1\n"
@@ -150,10 +126,8 @@ TEST(RigidBody, TurnsFreely)
 }
 
 // A body on the end of an elastic column: beta tan beta = m/M with beta = omega l/c.
-
-TEST(RigidBody, SwingsOnAColumn)
+SERIAL_TEST(RigidBody, SwingsOnAColumn)
 {
-  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
   const ScratchFile file("box.stl", text_of(box({-1.0, -1.0, 0.0}, {3.0, 3.0, 3.0})));
   const double length = 10.0, M = 25.0, column = length;
   double beta = 0.5;
@@ -164,18 +138,16 @@ TEST(RigidBody, SwingsOnAColumn)
   double error[2];
   for (int k = 0; k < 2; k++) {
     const double h = 0.5 / (1 << k), dt = 0.02 * h;
-    Scene run;
-    run.commands(strprintf(
-        "units lj\nboundary f f f\natom_style mpm\nneighbor 0.3 bin\nregion box block 0 1 0 1 0 "
-        "14\n"
-        "create_box 1 box\nfix grid all mpm %g transfer flip 1.0 scheme musl\n"
-        "region body block 0 1 0 1 0 10.5\n"
-        "create_points 1 region body ppc 2\nfix m all mpm/material density 1.0 linear 100.0 0.3\n"
-        "fix floor all mpm/boundary zlo stick\nfix sides all mpm/boundary xlo xhi ylo yhi slip\n"
-        "region shape mpm/mesh %s 1.0 0 0 9.99\n"
-        "fix tool all mpm/rigid shape mass %g stick velocity 0 0 0.02 hold x y rx ry rz\n"
-        "timestep %g\nthermo 1000\n",
-        h, file.name.c_str(), M, dt));
+    Scene run(
+        space("lj", "f f f", "0 1 0 1 0 14") +
+        body("block 0 1 0 1 0 10.5", "density 1.0 linear 100.0 0.3",
+             strprintf("%g transfer flip 1.0 scheme musl", h)) +
+        strprintf("fix floor all mpm/boundary zlo stick\n"
+                  "fix sides all mpm/boundary xlo xhi ylo yhi slip\n"
+                  "region shape mpm/mesh %s 1.0 0 0 9.99\n"
+                  "fix tool all mpm/rigid shape mass %g stick velocity 0 0 0.02 hold x y rx ry rz\n"
+                  "timestep %g\n",
+                  file.name.c_str(), M, dt));
     auto *body = run.fix("tool");
     std::vector<double> crossings;
     double before = 0.0;
@@ -194,12 +166,10 @@ TEST(RigidBody, SwingsOnAColumn)
 }
 
 // A body that weighs nothing goes with the material.
-
 TEST(RigidBody, MayBeLight)
 {
   const ScratchFile file("box.stl", text_of(box({0.0, 0.0, 0.0}, {1.2, 1.2, 1.2})));
-  Scene run;
-  run.commands(with(scene(file.name), "slip"));
+  Scene run(with(scene(file.name), "slip"));
   run.commands("region shape delete\nunfix tool\nregion shape mpm/mesh " + file.name +
                " 1.0 4.4 4.4 2.9\nfix tool all mpm/rigid shape density 1.0e-9 stick\n"
                "velocity all set 0.1 0.2 0.3\nrun 200\n");
@@ -208,12 +178,10 @@ TEST(RigidBody, MayBeLight)
 }
 
 // Weight, forces, and held directions.
-
 TEST(RigidBody, FallsAndIsHeld)
 {
   const ScratchFile file("box.stl", text_of(box({0.0, 0.0, 0.0}, {1.0, 1.0, 1.0})));
-  Scene run;
-  run.commands(with(scene(file.name), "slip"));
+  Scene run(with(scene(file.name), "slip"));
   run.commands("region shape delete\nunfix tool\nregion shape mpm/mesh " + file.name +
                " 1.0 4.4 4.4 8.0\nvariable f equal 3.0\n"
                "fix tool all mpm/rigid shape density 2.0 slip gravity 0 0 -0.5 force v_f 1.0 0 "
@@ -227,14 +195,11 @@ TEST(RigidBody, FallsAndIsHeld)
 
 // A body that is held in its turns about x and y turns about z as its moment of inertia about z says,
 // also if the axis is none of its principal axes
-
-TEST(RigidBody, TurnsAboutAHeldAxis)
+SERIAL_TEST(RigidBody, TurnsAboutAHeldAxis)
 {
-  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
   const Soup soup = sheared(box({0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}), 0.8);
   const ScratchFile file("sheared.stl", text_of(soup));
-  Scene run;
-  run.commands(with(scene(file.name), "slip"));
+  Scene run(with(scene(file.name), "slip"));
   run.commands("region shape delete\nunfix tool\nregion shape mpm/mesh " + file.name +
                " 1.0 4.4 4.4 8.0\nfix tool all mpm/rigid shape density 2.0 slip omega 0 0 0.3 "
                "torque 0 0 0.5 hold rx ry\nrun 300\n");
@@ -250,35 +215,29 @@ TEST(RigidBody, TurnsAboutAHeldAxis)
 }
 
 // A thick plate that lies on a block, which is smaller than it, with friction
-
 static std::string plate(double h, const std::string &file, const std::string &words,
                          double timestep)
 {
-  return strprintf("units lj\nboundary p p f\natom_style mpm\nneighbor 0.3 bin\n"
-                   "region box block 0 8 0 8 0 4\ncreate_box 1 box\nfix grid all mpm %g\n"
-                   "region body block 2.5 5.5 2.5 5.5 0 1\ncreate_points 1 region body ppc 2\n"
-                   "fix m all mpm/material density 1.0 neohookean 2000.0 0.3\n"
-                   "fix floor all mpm/boundary zlo stick\n"
-                   "region shape mpm/mesh %s 1.0 1.0 1.0 0.95\n"
-                   "fix tool all mpm/rigid shape %s\ntimestep %g\nthermo 1000\n",
-                   h, file.c_str(), words.c_str(), timestep);
+  return space("lj", "p p f", "0 8 0 8 0 4") +
+      body("block 2.5 5.5 2.5 5.5 0 1", "density 1.0 neohookean 2000.0 0.3", strprintf("%g", h)) +
+      strprintf("fix floor all mpm/boundary zlo stick\n"
+                "region shape mpm/mesh %s 1.0 1.0 1.0 0.95\nfix tool all mpm/rigid shape %s\n"
+                "timestep %g\n",
+                file.c_str(), words.c_str(), timestep);
 }
 
 // As long as it slides, each impulse along the block is the coefficient times the one across, also when the
 // plate weighs less than the nodes below it. In the end it sticks.
-
-TEST(RigidBody, SlidesUntilItSticks)
+SERIAL_TEST(RigidBody, SlidesUntilItSticks)
 {
-  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
   const ScratchFile file("box.stl", text_of(box({0.0, 0.0, 0.0}, {6.0, 6.0, 3.0})));
   const double mu = 0.4, v0 = 0.5, g = 0.5;
   for (const double density : {0.4, 0.01}) {
-    Scene run;
-    run.commands(plate(0.5, file.name,
-                       strprintf("density %g separate friction %g velocity %g 0 0 gravity 0 0 %g "
-                                 "hold rx ry rz",
-                                 density, mu, v0, -g),
-                       0.002));
+    Scene run(plate(0.5, file.name,
+                    strprintf("density %g separate friction %g velocity %g 0 0 gravity 0 0 %g "
+                              "hold rx ry rz",
+                              density, mu, v0, -g),
+                    0.002));
     auto *body = run.fix("tool");
     double worst = 0.0, largest = 0.0;
     run.each_step([&](double **) {
@@ -297,18 +256,15 @@ TEST(RigidBody, SlidesUntilItSticks)
 
 // When it spins, the moment of friction is mu N times the mean distance of a square from its center, which
 // is (sqrt(2) + asinh(1)) / 6 of its side for a uniform pressure.
-
-TEST(RigidBody, SpinsUntilItSticks)
+SERIAL_TEST(RigidBody, SpinsUntilItSticks)
 {
-  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
   const ScratchFile file("box.stl", text_of(box({0.0, 0.0, 0.0}, {6.0, 6.0, 3.0})));
   const double mu = 0.8, g = 2.0, omega = 0.5;
-  Scene run;
-  run.commands(plate(0.25, file.name,
-                     strprintf("density 1.0 separate friction %g omega 0 0 %g gravity 0 0 %g "
-                               "hold x y rx ry",
-                               mu, omega, -g),
-                     0.001));
+  Scene run(plate(0.25, file.name,
+                  strprintf("density 1.0 separate friction %g omega 0 0 %g gravity 0 0 %g "
+                            "hold x y rx ry",
+                            mu, omega, -g),
+                  0.001));
   auto *body = run.fix("tool");
   const double arm = 3.0 * (sqrt(2.0) + asinh(1.0)) / 6.0, inertia = 36.0 / 6.0;    // per mass
   double along = 0.0, across = 0.0;
@@ -326,7 +282,6 @@ TEST(RigidBody, SpinsUntilItSticks)
 // Each step by itself: with the velocity that the body has after the step, no node goes through its surface,
 // and friction is at its limit and against the sliding, or there is none. A light plate on a block that
 // comes up and turns, so that nodes stick and slide into all directions.
-
 static std::map<std::array<int, 3>, Scene::Node> nodes_of(Scene &run)
 {
   std::map<std::array<int, 3>, Scene::Node> all;
@@ -336,9 +291,8 @@ static std::map<std::array<int, 3>, Scene::Node> nodes_of(Scene &run)
   return all;
 }
 
-TEST(RigidBody, FrictionIsThatOfTheVelocityAfterTheStep)
+SERIAL_TEST(RigidBody, FrictionIsThatOfTheVelocityAfterTheStep)
 {
-  if (nranks() > 1) GTEST_SKIP() << "the same on one rank";
   const Soup soup = box({0.0, 0.0, 0.0}, {6.0, 6.0, 3.0});
   const ScratchFile file("box.stl", text_of(soup));
   const MPM_NS::SurfaceMesh mesh(binary_of(soup), "box", 1.0, {0.0, 0.0, 0.0});

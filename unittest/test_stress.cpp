@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: physics mpi input
 // mpi: 1 3
@@ -13,10 +8,6 @@
 // squares (fix mpm stress gradient). Convergence: test_physics_mms.
 
 #include "mpm_lammps.h"
-
-#include "gtest/gtest.h"
-
-#include <cmath>
 
 using namespace MPM_TEST;
 
@@ -49,7 +40,6 @@ static const char *const cases[] = {
 
 // patch: a linear field of velocities deforms points inside the body by exactly that gradient, with
 // either
-
 TEST(Stress, LinearField)
 {
   for (const int dim : {2, 3})
@@ -57,15 +47,9 @@ TEST(Stress, LinearField)
       for (const char *stress : {" stress mls", " stress gradient"}) {
         SCOPED_TRACE(options + stress);
         if (dim == 3 && options.find("locking") != std::string::npos) continue;
-        Scene run;
-        run.commands(text(dim, options + stress));
-        run.commands(R"(
-variable vx atom 0.3*(x-5)-0.2*(y-5)
-variable vy atom 0.1*(x-5)+0.4*(y-5)
-velocity all set v_vx v_vy 0
-timestep 1e-6
-run 1
-)");
+        Scene run(text(dim, options + stress));
+        run.commands("variable vx atom 0.3*(x-5)-0.2*(y-5)\nvariable vy atom 0.1*(x-5)+0.4*(y-5)\n"
+                     "velocity all set v_vx v_vy 0\ntimestep 1e-6\nrun 1\n");
         const double L[2][2] = {{0.3, -0.2}, {0.1, 0.4}};
         int n = 0;
         for (const auto &s : run.gather()) {
@@ -81,14 +65,12 @@ run 1
 
 // momentum, that the ledger closes, and that force and strain belong together: the integration entry
 // is the difference of their works
-
 TEST(Stress, Conservation)
 {
   for (const std::string options : cases) {
     if (options.find("locking") != std::string::npos) continue;
     SCOPED_TRACE(options);
-    Scene run;
-    run.commands(text(2, options + " stress gradient"));
+    Scene run(text(2, options + " stress gradient"));
     run.commands(R"(
 compute e all mpm/energy
 variable vx atom -0.3*(y-5)+0.1*(x-5)
@@ -115,19 +97,11 @@ run 4000
 }
 
 // the two differ, and are close: a rod between walls under its weight
-
 TEST(Stress, DifferenceIsSmall)
 {
   std::vector<double> bottom;
   for (const char *stress : {"stress mls", "stress gradient"}) {
-    Scene run;
-    run.commands(replaced(R"(
-units lj
-dimension 2
-boundary p f p
-atom_style mpm
-region box block 0 4 0 16 -0.5 0.5
-create_box 1 box
+    Scene run(replaced(plane("lj", "p f", "0 4 0 16") + R"(
 fix g all mpm 1.0 OPTIONS
 region r block INF INF 0 10 INF INF
 create_points 1 region r ppc 2
@@ -138,7 +112,7 @@ fix gr all gravity 0.5 vector 0 -1 0
 timestep 0.02
 run 3000
 )",
-                          "OPTIONS", stress));
+                       "OPTIONS", stress));
     double lowest = 0.0;
     for (const auto &s : run.gather()) lowest = std::min(lowest, s.stress[1]);
     bottom.push_back(lowest);
@@ -153,7 +127,6 @@ run 3000
 
 TEST(Stress, Refused)
 {
-  using ::testing::HasSubstr;
   const std::string head =
       "units lj\ndimension 2\natom_style mpm\nregion b block 0 4 0 4 -0.5 0.5\n"
       "create_box 1 b\nfix g all mpm 1.0 ";

@@ -1,22 +1,14 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: physics
 // mpi: 1 2
 
 // Fix mpm/surface: which points carry a contact radius, and what grains feel of it.
 
-#include "fix_mpm_material.h"
 #include "mpm_lammps.h"
 #include "neigh_list.h"
 #include "pair.h"
-
-#include "gtest/gtest.h"
 
 using namespace LAMMPS_NS;
 using namespace MPM_TEST;
@@ -41,19 +33,17 @@ static double surface_points(Scene &run)
 }
 
 // A slab of 12 layers of 24 x 24 points anywhere on the lattice: the first and the last layer.
-
 class Surface : public ::testing::TestWithParam<const char *> {};
 
 TEST_P(Surface, IsTheOutermostLayer)
 {
   for (const char *shift : {"0 0 0", "0.13 0.31 0.47", "0.5 0.25 0.7", "5.1 0 0"}) {
-    Scene run;
-    run.commands(head + "fix grid all mpm 1.0 " + GetParam() +
-                 "\nregion slab block INF INF INF INF 1 7\n" +
-                 "create_points 1 region slab ppc 2\ngroup slab type 1\nfix m slab mpm/material "
-                 "density 1.0 neohookean 10.0 0.3\n" +
-                 "displace_atoms all move " + shift + " units box\nfix surf slab mpm/surface\n" +
-                 contact + "timestep 0.01\nthermo 1000\n");
+    Scene run(head + "fix grid all mpm 1.0 " + GetParam() +
+              "\nregion slab block INF INF INF INF 1 7\n" +
+              "create_points 1 region slab ppc 2\ngroup slab type 1\nfix m slab mpm/material "
+              "density 1.0 neohookean 10.0 0.3\n" +
+              "displace_atoms all move " + shift + " units box\nfix surf slab mpm/surface\n" +
+              contact + "timestep 0.01\n");
     EXPECT_EQ(surface_points(run), 2 * 24 * 24) << shift;
   }
 }
@@ -63,7 +53,6 @@ INSTANTIATE_TEST_SUITE_P(Options, Surface,
                                            "shape cubic", "shape cpgimp", "frame total"));
 
 // On a fixed face of the box nothing can be between it and the body, but a gap has a surface.
-
 TEST(Surface, IsNotOnAFixedFace)
 {
   const std::string box =
@@ -80,28 +69,24 @@ TEST(Surface, IsNotOnAFixedFace)
                      {"frame total", "0 0 0",
                       2 * 24 * 24 + (2 * 10 + 4) * 24}};    // may move away; next to the edges
   for (const auto &c : cases) {
-    Scene run;
-    run.commands(box + "fix grid all mpm 1.0 " + c.options +
-                 "\nregion slab block INF INF INF INF 0 6\ncreate_points 1 region slab ppc 2\n"
-                 "group slab type 1\nfix m slab mpm/material density 1.0 neohookean 10.0 0.3\n"
-                 "displace_atoms all move " +
-                 c.gap + " units box\nfix surf slab mpm/surface\n" + contact +
-                 "timestep 0.01\nthermo 1000\n");
+    Scene run(box + "fix grid all mpm 1.0 " + c.options +
+              "\nregion slab block INF INF INF INF 0 6\ncreate_points 1 region slab ppc 2\n"
+              "group slab type 1\nfix m slab mpm/material density 1.0 neohookean 10.0 0.3\n"
+              "displace_atoms all move " +
+              c.gap + " units box\nfix surf slab mpm/surface\n" + contact + "timestep 0.01\n");
     EXPECT_EQ(measured("points", surface_points(run)), c.expected) << c.options << " " << c.gap;
   }
 }
 
 // Points that have failed are no longer inside of anything, and their neighbors have a surface.
-
 TEST(Surface, OpensWherePointsHaveFailed)
 {
-  Scene run;
-  run.commands(head +
-               "fix grid all mpm 1.0\nregion slab block INF INF INF INF 1 7\n"
-               "create_points 1 region slab ppc 2\ngroup slab type 1\n"
-               "fix m slab mpm/material density 1.0 eos linear 10.0 strength elastic 5.0 damage "
-               "rankine 100.0\nfix surf slab mpm/surface\n" +
-               contact + "timestep 0.01\nthermo 1000\nrun 0 post no\n");
+  Scene run(head +
+            "fix grid all mpm 1.0\nregion slab block INF INF INF INF 1 7\n"
+            "create_points 1 region slab ppc 2\ngroup slab type 1\n"
+            "fix m slab mpm/material density 1.0 eos linear 10.0 strength elastic 5.0 damage "
+            "rankine 100.0\nfix surf slab mpm/surface\n" +
+            contact + "timestep 0.01\nrun 0 post no\n");
   auto *material = run.material();
   ASSERT_GE(material->damage, 0);
   for (int i = 0; i < run.n(); i++)    // two layers in the middle
@@ -111,13 +96,12 @@ TEST(Surface, OpensWherePointsHaveFailed)
 
 TEST(Surface, FailedPointsHaveARadius)
 {
-  Scene run;
-  run.commands(head +
-               "fix grid all mpm 1.0\nregion slab block INF INF INF INF 1 7\n"
-               "create_points 1 region slab ppc 2\ngroup slab type 1\n"
-               "fix m slab mpm/material density 1.0 eos linear 10.0 strength elastic 5.0 damage "
-               "rankine 100.0\nfix surf slab mpm/surface depth 0.3\n" +
-               contact + "timestep 0.01\nthermo 1000\nrun 0 post no\n");
+  Scene run(head +
+            "fix grid all mpm 1.0\nregion slab block INF INF INF INF 1 7\n"
+            "create_points 1 region slab ppc 2\ngroup slab type 1\n"
+            "fix m slab mpm/material density 1.0 eos linear 10.0 strength elastic 5.0 damage "
+            "rankine 100.0\nfix surf slab mpm/surface depth 0.3\n" +
+            contact + "timestep 0.01\nrun 0 post no\n");
   double n = -1.0;
   run.each_step([&](double **) {
     n = run.fix("surf")->compute_scalar();
@@ -139,13 +123,12 @@ TEST(Surface, FailedPointsHaveARadius)
 
 TEST(Surface, RadiusFollowsTheVolume)
 {
-  Scene run;
-  run.commands(head +
-               "fix grid all mpm 1.0\nregion slab block INF INF INF INF 1 7\n"
-               "create_points 1 region slab ppc 2\ngroup slab type 1\n"
-               "fix m slab mpm/material density 1.0 neohookean 10.0 0.3\n"
-               "fix surf slab mpm/surface scale 1.1 grow 1.03\n" +
-               contact + "timestep 0.01\nthermo 1000\nrun 0 post no\n");
+  Scene run(head +
+            "fix grid all mpm 1.0\nregion slab block INF INF INF INF 1 7\n"
+            "create_points 1 region slab ppc 2\ngroup slab type 1\n"
+            "fix m slab mpm/material density 1.0 neohookean 10.0 0.3\n"
+            "fix surf slab mpm/surface scale 1.1 grow 1.03\n" +
+            contact + "timestep 0.01\nrun 0 post no\n");
   double mine = 0.0, worst = 0.0, expected = 1.0;
   int n = 0;
   run.each_step([&](double **) {
@@ -172,7 +155,6 @@ TEST(Surface, RadiusFollowsTheVolume)
 }
 
 // Grains on the surface feel the same with and without the points inside; lists are shorter.
-
 static const std::string grains =
     "fix grid all mpm 1.0\nregion block block INF INF INF INF INF 5\n"
     "create_points 1 region block ppc 2\ngroup block type 1\n"
@@ -188,10 +170,9 @@ TEST(SurfaceContact, IsThatOfAllPoints)
 {
   double force[2][3] = {{0.0}}, pairs[2] = {0.0, 0.0};
   for (int all = 0; all < 2; all++) {
-    Scene run;
-    run.commands(replaced(head, "neighbor 0.3", "neighbor 0.8") + grains + fixes +
-                 (all ? "set type 1 diameter 0.5\n" : "fix surf block mpm/surface grow 1.0\n") +
-                 contact + "timestep 0.01\nthermo 1000\n");
+    Scene run(replaced(head, "neighbor 0.3", "neighbor 0.8") + grains + fixes +
+              (all ? "set type 1 diameter 0.5\n" : "fix surf block mpm/surface grow 1.0\n") +
+              contact + "timestep 0.01\n");
     double mine[4] = {0.0}, sum[4];
     bool first = true;
     run.each_step([&](double **) {    // then radii follow the volume
@@ -216,21 +197,19 @@ TEST(SurfaceContact, IsThatOfAllPoints)
 // At set-up all points have the largest radius, and then those at the surface that of their volume:
 // ghosts, too. With plain bins a pair is found with the lower of the two as the owner, which is the grain
 // for a grain below the slab: what it touches are ghosts, where it is on a corner of the periodic box.
-
 TEST(SurfaceContact, IsTheSameAcrossPeriodicFacesFromSetUpOn)
 {
   std::array<double, 3> force[2];
   for (const int corner : {0, 1}) {
-    Scene run;
-    run.commands(replaced(replaced(head, "0.3 multi", "0.3 bin"), "mode multi", "mode single") +
-                 "fix grid all mpm 1.0\nregion slab block INF INF INF INF 1 7\n"
-                 "create_points 1 region slab ppc 2\ncreate_atoms 2 single " +
-                 (corner ? "0.1 0.2 0.1\n" : "6.1 6.2 0.1\n") +
-                 "group slab type 1\ngroup grains type 2\n"
-                 "set type 2 diameter 2.0 density 2.0\nfix m slab mpm/material density 1.0 "
-                 "neohookean 10.0 0.3\n"
-                 "fix move grains nve/sphere\nfix surf slab mpm/surface\n" +
-                 contact + "timestep 0.01\nthermo 1000\n");
+    Scene run(replaced(replaced(head, "0.3 multi", "0.3 bin"), "mode multi", "mode single") +
+              "fix grid all mpm 1.0\nregion slab block INF INF INF INF 1 7\n"
+              "create_points 1 region slab ppc 2\ncreate_atoms 2 single " +
+              (corner ? "0.1 0.2 0.1\n" : "6.1 6.2 0.1\n") +
+              "group slab type 1\ngroup grains type 2\n"
+              "set type 2 diameter 2.0 density 2.0\nfix m slab mpm/material density 1.0 "
+              "neohookean 10.0 0.3\n"
+              "fix move grains nve/sphere\nfix surf slab mpm/surface\n" +
+              contact + "timestep 0.01\n");
     double mine[3] = {0.0};
     run.each_step([&](double **) {
       auto *atom = run.lmp->atom;
@@ -245,13 +224,11 @@ TEST(SurfaceContact, IsTheSameAcrossPeriodicFacesFromSetUpOn)
 }
 
 // A group of grains and surface alone can be in the neighbor lists and be the ghosts of other ranks.
-
 static const std::string plain = "fix surf block mpm/surface\n";
 static const std::string skin = "group skin union grains block\natom_modify first skin\n"
                                 "fix surf block mpm/surface group skin\n"
                                 "neigh_modify include skin\ncomm_modify group skin\n";
-static const std::string rest =
-    contact + "fix g all gravity 1.0 vector 0 0 -1\ntimestep 0.01\nthermo 1000\n";
+static const std::string rest = contact + "fix g all gravity 1.0 vector 0 0 -1\ntimestep 0.01\n";
 
 // with every, torques and forces of the steps between are those of several neighbor lists
 static const std::string every3 = replaced(grains, "mpm 1.0\n", "mpm 1.0 every 3\n");
@@ -300,22 +277,20 @@ TEST(SurfaceContact, GoesOnFromARestartFile)
 
 // Clumps of spheres that LAMMPS moves as rigid bodies: what they lose of momentum, the block has. When
 // forces are known, velocities of grains and points are those of half steps.
-
 class Clump : public ::testing::TestWithParam<const char *> {};
 
 TEST_P(Clump, PushesWithConstantMomentum)
 {
-  Scene run;
-  run.commands(replaced(head, "neighbor 0.3", "atom_modify map array\nneighbor 0.3") +
-               replaced(grains,
-                        "create_atoms 2 single 3.1 3.2 5.95\ncreate_atoms 2 single 8.9 "
-                        "3.7 6.1\ncreate_atoms 2 single 6.4 9.2 5.9\n",
-                        "create_atoms 2 single 5.0 5.5 6.2\ncreate_atoms 2 single 6.2 5.5 6.0\n"
-                        "create_atoms 2 single 5.6 6.6 6.6\n") +
-               replaced(replaced(fixes, "fix floor all mpm/boundary zlo stick\n", ""),
-                        "fix move grains nve/sphere\n",
-                        GetParam() + std::string("\nneigh_modify exclude type 2 2\n")) +
-               plain + contact + "timestep 0.005\nthermo 1000\n");
+  Scene run(replaced(head, "neighbor 0.3", "atom_modify map array\nneighbor 0.3") +
+            replaced(grains,
+                     "create_atoms 2 single 3.1 3.2 5.95\ncreate_atoms 2 single 8.9 "
+                     "3.7 6.1\ncreate_atoms 2 single 6.4 9.2 5.9\n",
+                     "create_atoms 2 single 5.0 5.5 6.2\ncreate_atoms 2 single 6.2 5.5 6.0\n"
+                     "create_atoms 2 single 5.6 6.6 6.6\n") +
+            replaced(replaced(fixes, "fix floor all mpm/boundary zlo stick\n", ""),
+                     "fix move grains nve/sphere\n",
+                     GetParam() + std::string("\nneigh_modify exclude type 2 2\n")) +
+            plain + contact + "timestep 0.005\n");
   auto *atom = run.lmp->atom;
   double start[4] = {0.0}, pushed = 0.0, worst = 0.0;    // the last: of the points along z
   bool first = true;
@@ -354,7 +329,7 @@ TEST(Surface, RefusesMistakes)
                    "use fix mpm/surface with keyword group g"},
                   {"fix surf block mpm/surface\nset type 1 diameter 0.1", "define the fix after"}},
                  "timestep 0.01\nrun 0\n");
-  EXPECT_THAT(error_of("units lj\natom_style mpm\nregion box block 0 4 0 4 0 4\ncreate_box 1 box\n"
-                       "fix grid all mpm 1.0\nfix surf all mpm/surface\n"),
-              ::testing::HasSubstr("use atom_style hybrid sphere mpm"));
+  expect_error("units lj\natom_style mpm\nregion box block 0 4 0 4 0 4\ncreate_box 1 box\n"
+               "fix grid all mpm 1.0\nfix surf all mpm/surface\n",
+               "use atom_style hybrid sphere mpm");
 }

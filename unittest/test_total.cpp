@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: physics
 // timeout: 900
@@ -18,18 +13,12 @@
 
 #include "exceptions.h"
 
-#include "gtest/gtest.h"
-
-#include <cmath>
-#include <memory>
 #include <random>
 
 using namespace MPM_TEST;
 using MPM_NS::Batch;
 using MPM_NS::BATCH;
 using MPM_NS::BatchKernels;
-
-static constexpr double PI = 3.14159265358979323846;
 
 /** Product of 3x3 matrices in row-major order. */
 static std::array<double, 9> times(const double *a, const double *b)
@@ -52,7 +41,6 @@ static std::array<double, 9> full(const double *s)
 }
 
 // A F_old = dt L, F = F_old + dt L, and P F^T = tau, for numbers of points with and without a rest
-
 TEST(TotalKinematics, LoadAndStress)
 {
   std::mt19937 generator(7);
@@ -95,16 +83,13 @@ TEST(TotalKinematics, LoadAndStress)
 }
 
 // a deformed and stressed point that turns by 0.3 rad per step: the stress turns with it
-
 TEST(TotalKinematics, RigidRotationTurnsTheStress)
 {
   for (const char *law : {"neohookean 10.0 0.3", "linear 10.0 0.3"}) {
-    Scene run;
-    run.commands(std::string("units lj\nboundary f f f\natom_style mpm\nneighbor 0.3 bin\n"
-                             "region box block 0 4 0 4 0 4\ncreate_box 1 box\n"
-                             "fix grid all mpm 1.0 frame total\ncreate_points 1 box ppc 1\n"
-                             "fix m all mpm/material density 1.0 ") +
-                 law + "\nrun 0\n");
+    Scene run(space("lj", "f f f", "0 4 0 4 0 4") +
+              "fix grid all mpm 1.0 frame total\ncreate_points 1 box ppc 1\n"
+              "fix m all mpm/material density 1.0 " +
+              law + "\nrun 0\n");
     const auto &material = *run.material()->material;
     auto batch = std::make_unique<Batch>();
     std::vector<double> history(BATCH * 16, 0.0);
@@ -153,17 +138,13 @@ struct Stretched {
 
 static Stretched stretch(const std::string &options)
 {
-  Scene run;
-  run.commands("units si\ndimension 2\nboundary f p p\natom_style mpm\nneighbor 0.1 bin\n"
-               "region box block 0 12 0 1 -0.5 0.5\ncreate_box 1 box\n"
-               "fix grid all mpm 0.25 " +
-               options +
-               "\n"
-               "region body block 0 1 INF INF INF INF\nregion grip block 1 12 INF INF INF INF\n"
-               "create_points 1 region body ppc 2\n"
-               "fix m all mpm/material density 1000 neohookean 1.0e6 0.3\n"
-               "fix left all mpm/boundary xlo slip\n"
-               "fix right all mpm/boundary region grip slip velocity 10 0 0\nthermo 100000\n");
+  Scene run(plane("si", "f p", "0 12 0 1", 1, 0.1) + "fix grid all mpm 0.25 " + options +
+            "\n"
+            "region body block 0 1 INF INF INF INF\nregion grip block 1 12 INF INF INF INF\n"
+            "create_points 1 region body ppc 2\n"
+            "fix m all mpm/material density 1000 neohookean 1.0e6 0.3\n"
+            "fix left all mpm/boundary xlo slip\n"
+            "fix right all mpm/boundary region grip slip velocity 10 0 0\n");
   run.set_reference();
   run.set_velocity([](const double *x, double *v) {
     v[0] = 10.0 * x[0];
@@ -210,14 +191,11 @@ class TotalFree : public ::testing::TestWithParam<const char *> {};
 
 TEST_P(TotalFree, Invariants)
 {
-  Scene run;
-  run.commands(std::string("units si\nboundary f f f\natom_style mpm\nneighbor 0.3 bin\n"
-                           "region box block -5 15 -5 15 -5 15\ncreate_box 1 box\n"
-                           "fix grid all mpm 0.5 ") +
-               GetParam() +
-               "\n"
-               "region body block 0.1 4.1 0.2 3.2 0.0 2.0\ncreate_points 1 region body ppc 2\n"
-               "fix m all mpm/material density 1000 neohookean 1.0e6 0.3\nthermo 100000\n");
+  Scene run(space("si", "f f f", "-5 15 -5 15 -5 15", 1, 0.3) + "fix grid all mpm 0.5 " +
+            GetParam() +
+            "\n"
+            "region body block 0.1 4.1 0.2 3.2 0.0 2.0\ncreate_points 1 region body ppc 2\n"
+            "fix m all mpm/material density 1000 neohookean 1.0e6 0.3\n");
   run.set_velocity([](const double *x, double *v) {
     v[0] = 3.0 - 4.0 * x[1] + 2.0 * x[2];
     v[1] = -2.0 + 5.0 * x[0];
@@ -242,12 +220,11 @@ TEST_P(TotalFree, Invariants)
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Options, TotalFree,
-                         ::testing::Values("frame total transfer apic",
-                                           "frame total transfer flip 1.0 scheme musl",
-                                           "frame total transfer flip 1.0 scheme usavg",
-                                           "frame total transfer xpic 5",
-                                           "frame total transfer fmpm 5"));
+static const char *const total_free_cases[] = {
+    "frame total transfer apic", "frame total transfer flip 1.0 scheme musl",
+    "frame total transfer flip 1.0 scheme usavg", "frame total transfer xpic 5",
+    "frame total transfer fmpm 5"};
+INSTANTIATE_TEST_SUITE_P(Options, TotalFree, ::testing::ValuesIn(total_free_cases));
 
 /* ----------------------------------------------------------------------
    C2: a spinning disk, one revolution. APIC keeps the moments of velocity and reference position,
@@ -257,14 +234,11 @@ INSTANTIATE_TEST_SUITE_P(Options, TotalFree,
 static double spin(const std::string &options, double revolutions)
 {
   const double h = 0.025, omega = 10.0;
-  Scene run;
-  run.commands(strprintf("units si\ndimension 2\nboundary f f p\natom_style mpm\nneighbor %g bin\n"
-                         "region box block -0.5 0.5 -0.5 0.5 -0.5 0.5\ncreate_box 1 box\n"
-                         "fix grid all mpm %.17g %s\nregion disk cylinder z 0 0 0.25 INF INF\n"
-                         "create_points 1 region disk ppc 2\n"
-                         "fix m all mpm/material density 1000 neohookean 1.0e6 0.3\n"
-                         "thermo 1000000\n",
-                         0.4 * h, h, options.c_str()));
+  Scene run(plane("si", "f f", "-0.5 0.5 -0.5 0.5", 1, 0.4 * h) +
+            strprintf("fix grid all mpm %.17g %s\nregion disk cylinder z 0 0 0.25 INF INF\n"
+                      "create_points 1 region disk ppc 2\n"
+                      "fix m all mpm/material density 1000 neohookean 1.0e6 0.3\n",
+                      h, options.c_str()));
   run.set_velocity([=](const double *x, double *v) {
     v[0] = -omega * x[1];
     v[1] = omega * x[0];
@@ -290,12 +264,8 @@ TEST(TotalSpin, AngularMomentum)
 TEST(TotalTimeStep, FromTheSmallestStretch)
 {
   for (const int dim : {2, 3}) {
-    Scene run;
-    run.commands(strprintf("units lj\ndimension %d\nboundary f f %s\natom_style mpm\n"
-                           "region box block 0 4 0 4 -0.5 0.5\ncreate_box 1 box\n"
-                           "fix grid all mpm 0.5 frame total\ncreate_points 1 box ppc 2\n"
-                           "fix m all mpm/material density 1.0 linear 10.0 0.0\nrun 0\n",
-                           dim, dim == 3 ? "f" : "p"));
+    Scene run(box(dim, "lj", "f f f", "0 4 0 4 -0.5 0.5") +
+              body("box", "density 1.0 linear 10.0 0.0", "0.5 frame total") + "run 0\n");
     tagint tag;
     double c;
     EXPECT_NEAR(run.stable_dt(&tag, &c), 0.5 / sqrt(10.0), 1e-12);
@@ -316,19 +286,14 @@ TEST(TotalTimeStep, FromTheSmallestStretch)
   }
 }
 
-/* ----------------------------------------------------------------------
-   periodic axes: a bar that spans the box and moves through it is the bar at rest
-------------------------------------------------------------------------- */
+/* -------------- periodic axes: a bar that spans the box and moves through it is the bar at rest */
 
 TEST(TotalPeriodic, MovingIsAtRest)
 {
   auto wave = [](double speed) {
-    Scene run;
-    run.commands("units lj\ndimension 2\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
-                 "region box block 0 8 0 2 -0.5 0.5\ncreate_box 1 box\n"
-                 "fix grid all mpm 1.0 frame total\ncreate_points 1 box ppc 2\n"
-                 "fix m all mpm/material density 1.0 neohookean 10.0 0.3\nthermo 10000\n"
-                 "timestep 0.02\n");
+    Scene run(plane("lj", "p p", "0 8 0 2") +
+              body("box", "density 1.0 neohookean 10.0 0.3", "1.0 frame total") +
+              "timestep 0.02\n");
     run.set_velocity([=](const double *x, double *v) {
       v[0] = speed + 0.5 * sin(0.25 * PI * x[0]);
       v[1] = 0.1 * cos(0.25 * PI * x[0]);
@@ -345,11 +310,9 @@ TEST(TotalPeriodic, MovingIsAtRest)
 }
 
 // ---------------------------------------------------------------------- what is refused
-
 TEST(TotalInput, IsRefused)
 {
-  const std::string head = "units lj\nboundary f f f\natom_style mpm\nneighbor 0.3 bin\n"
-                           "region box block 0 8 0 8 0 8\ncreate_box 1 box\n",
+  const std::string head = space("lj", "f f f", "0 8 0 8 0 8"),
                     body = "region body block 2 5 2 5 2 5\ncreate_points 1 region body ppc 2\n"
                            "fix m all mpm/material density 1.0 neohookean 10.0 0.3\n"
                            "velocity all ramp vx 0 0.5 x 2 5\ntimestep 0.01\n",

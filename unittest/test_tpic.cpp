@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: physics
 
@@ -26,10 +21,6 @@
 // the distance f h from a node, and both are the same: the difference of the nodes over h.
 
 #include "mpm_lammps.h"
-
-#include "gtest/gtest.h"
-
-#include <cmath>
 
 using namespace MPM_TEST;
 
@@ -97,20 +88,18 @@ double amplification(int n, bool tpic, int ppc, double k = K)
 
 std::string medium(int dim, int n, bool tpic, int ppc, const std::string &more = "")
 {
-  return strprintf(
-      "units lj\ndimension %d\nboundary p p p\natom_style mpm\n"
-      "region box block 0 %d 0 4 %s\ncreate_box 1 box\n"
-      "fix grid all mpm 1.0 dtcheck no shape %s transfer %s%s\ncreate_points 1 box ppc %d\n"
-      "fix m all mpm/material density 2 neohookean 1e-12 0.3\ntimestep 1e-12\nrun 0\n",
-      dim, CELLS, dim == 2 ? "-0.5 0.5" : "0 4", names[n], tpic ? "tpic" : "apic", more.c_str(),
-      ppc);
+  return box(dim, "lj", "p p p", strprintf("0 %d 0 4 0 4", CELLS)) +
+      body("box", "density 2 neohookean 1e-12 0.3",
+           strprintf("1.0 dtcheck no shape %s transfer %s%s", names[n], tpic ? "tpic" : "apic",
+                     more.c_str()),
+           std::to_string(ppc)) +
+      "timestep 1e-12\nrun 0\n";
 }
 
 }    // namespace
 
 // a shear wave that points have from nodes: after a step all velocities and matrices are A times what they
 // were, to round-off, with either transfer; what they would be with the other one differs by a percent
-
 TEST(Tpic, ShearWave)
 {
   for (const int dim : {2, 3})
@@ -119,9 +108,7 @@ TEST(Tpic, ShearWave)
         for (const char *more : {"", " kernels reference", " scheme musl"})
           for (const int ppc : {2, 3}) {
             SCOPED_TRACE(strprintf("%dd %s tpic %d ppc %d%s", dim, names[n], tpic, ppc, more));
-            Scene run;
-            run.commands(
-                medium(dim, n, tpic, ppc, (n == 1 ? " light 0.5" : "") + std::string(more)));
+            Scene run(medium(dim, n, tpic, ppc, (n == 1 ? " light 0.5" : "") + std::string(more)));
             double **C = run.affine();
             for (int p = 0; p < run.n(); p++) {
               const AtPoint point(n, tpic, run.x()[p][0], wave);
@@ -150,7 +137,6 @@ TEST(Tpic, ShearWave)
 }
 
 // the sums above against the expansions for long waves
-
 TEST(Tpic, TheoryOfLongWaves)
 {
   const double x = 0.5 * K;
@@ -176,7 +162,6 @@ TEST(Tpic, TheoryOfLongWaves)
 }
 
 // internal forces: tpic has the gradients of the functions, apic their moments
-
 TEST(Tpic, Force)
 {
   const double dt = 1e-12, density = 2.0;
@@ -185,8 +170,7 @@ TEST(Tpic, Force)
     for (const int n : {2, 3})
       for (const bool tpic : {false, true}) {
         SCOPED_TRACE(strprintf("%dd %s tpic %d", dim, names[n], tpic));
-        Scene run;
-        run.commands(medium(dim, n, tpic, ppc));
+        Scene run(medium(dim, n, tpic, ppc));
         for (int p = 0; p < run.n(); p++)
           run.points().tau[p][3] = std::cos(K * run.x()[p][0]);    // xy
         run.commands("run 1 pre no post no\n");
@@ -214,7 +198,6 @@ TEST(Tpic, Force)
 // A free block whose velocity is a cubic polynomial: both give the points the same velocities; apic keeps the
 // angular momentum, tpic changes it by D times the difference of the matrices. With cubic functions, whose
 // third moments are zero, that is h^2/60 v_xxx inside the block. Both keep that of an affine motion.
-
 TEST(Tpic, AngularMomentum)
 {
   for (const int n : {2, 3})
@@ -225,13 +208,11 @@ TEST(Tpic, AngularMomentum)
       std::vector<Scene::State> state[2];
       for (const int tpic : {0, 1}) {
         auto &r = run[tpic];
-        r.commands(strprintf(
-            "units lj\ndimension 2\nboundary p p p\natom_style mpm\n"
-            "region box block 0 20 0 20 -0.5 0.5\ncreate_box 1 box\n"
-            "fix grid all mpm 1.0 shape %s transfer %s\n"
-            "region body block 4 16 4 16 INF INF\ncreate_points 1 region body ppc 4\n"
-            "fix m all mpm/material density 2 neohookean 1e-12 0.3\ntimestep 1e-14\nrun 0\n",
-            names[n], tpic ? "tpic" : "apic"));
+        r.commands(plane("lj", "p p", "0 20 0 20") +
+                   body("block 4 16 4 16 INF INF", "density 2 neohookean 1e-12 0.3",
+                        strprintf("1.0 shape %s transfer %s", names[n], tpic ? "tpic" : "apic"),
+                        "4") +
+                   "timestep 1e-14\nrun 0\n");
         for (int p = 0; p < r.n(); p++) {
           const double x = r.x()[p][0] - 10.0, y = r.x()[p][1] - 10.0, cubic = affine ? 0.0 : 0.01;
           r.v()[p][0] = 0.2 * x - 0.3 * y;

@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: unit smoke
 
@@ -12,10 +7,6 @@
 // converted by LAMMPS's own constants, must give the same motion, and energies in energy units.
 
 #include "mesh/stl_testing.h"
-
-#include "force.h"
-
-#include "gtest/gtest.h"
 
 using namespace MPM_TEST;
 
@@ -48,8 +39,7 @@ static std::string converted(const std::string &text, Force *force)
  *  forces are compared. */
 static Result simulate(const std::string &units, const std::string &scene)
 {
-  Scene run;
-  run.commands("units " + units + "\n");
+  Scene run("units " + units + "\n");
   auto *force = run.lmp->force;
   run.commands(converted(scene, force) +
                "compute e all mpm/energy\ncompute c all mpm/atom wavespeed energy\n"
@@ -125,7 +115,6 @@ INSTANTIATE_TEST_SUITE_P(Laws, Units,
                                            "viscosity artificial 1.5 0.06"));
 
 // the parts of fix mpm that convert units on their own
-
 class UnitsOfOptions : public ::testing::TestWithParam<const char *> {};
 
 TEST_P(UnitsOfOptions, SameMotionInAllUnitStyles)
@@ -144,18 +133,16 @@ INSTANTIATE_TEST_SUITE_P(All, UnitsOfOptions,
                                            "every 3 transfer flip 0.99 edges modified"));
 
 // density and modulus eight times as large: the same motion to the last bit, as factors of two are exact
-
 TEST_P(UnitsOfOptions, DensityAndModulusTogether)
 {
   std::vector<Scene::State> states[2];
   for (const int k : {0, 1}) {
-    Scene run;
-    run.commands("units lj\n" + box3d + "fix grid all mpm 1.0 " + GetParam() +
-                 "\nregion one block 2 6 2 6 0 4\ncreate_points 1 region one ppc 2\n" +
-                 fmt::format("fix m all mpm/material density {} neohookean {} 0.3\n",
-                             k ? 12.0 : 1.5, k ? 800.0 : 100.0) +
-                 "fix floor all mpm/boundary zlo slip\nvelocity all ramp vz 0.0 -1.0 z 0 4\n"
-                 "velocity all ramp vx 0.0 0.5 y 0 4 sum yes\ntimestep 0.02\nrun 60\n");
+    Scene run("units lj\n" + box3d + "fix grid all mpm 1.0 " + GetParam() +
+              "\nregion one block 2 6 2 6 0 4\ncreate_points 1 region one ppc 2\n" +
+              fmt::format("fix m all mpm/material density {} neohookean {} 0.3\n", k ? 12.0 : 1.5,
+                          k ? 800.0 : 100.0) +
+              "fix floor all mpm/boundary zlo slip\nvelocity all ramp vz 0.0 -1.0 z 0 4\n"
+              "velocity all ramp vx 0.0 0.5 y 0 4 sum yes\ntimestep 0.02\nrun 60\n");
     states[k] = run.gather();
     for (auto &s : states[k]) {
       s.mass /= k ? 8.0 : 1.0;

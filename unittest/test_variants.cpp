@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: physics
 // timeout: 900
@@ -17,15 +12,10 @@
 
 #include "lattice/grid.h"
 
-#include "gtest/gtest.h"
-
-#include <cmath>
 #include <ostream>
 #include <random>
 
 using namespace MPM_TEST;
-
-static constexpr double PI = 3.14159265358979323846;
 
 struct Variant {
   const char *shape;     // for points that are cubes
@@ -58,7 +48,6 @@ static std::vector<std::string> all_variants()
 }
 
 // what the lists above leave out: the other schemes, polypic, domains, light nodes, the total frame
-
 static std::vector<std::string> more_variants()
 {
   std::vector<std::string> all = {"shape cubic transfer polypic",
@@ -87,22 +76,17 @@ static void PrintTo(const Variant &v, std::ostream *out)
   *out << v.shape;
 }
 
-/* ----------------------------------------------------------------------
-   a rectangle that is thrown, spins, and vibrates: mass and momentum
-------------------------------------------------------------------------- */
+/* --------------------------- a rectangle that is thrown, spins, and vibrates: mass and momentum */
 
-static const char *const plane = "units si\ndimension 2\nboundary f f p\natom_style mpm\n"
-                                 "neighbor 0.04 bin\nregion box block -3 3 -3 3 -0.5 0.5\n"
-                                 "create_box 1 box\nthermo 1000000\n";
+static const std::string wide = plane("si", "f f", "-3 3 -3 3", 1, 0.04);
 
 class Conservation : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(Conservation, MassAndMomentum)
 {
-  Scene run;
-  run.commands(plane + ("fix grid all mpm 0.1 " + GetParam()) +
-               "\nregion body block -0.4 0.4 -0.2 0.2 INF INF\ncreate_points 1 region body ppc 2\n"
-               "fix m all mpm/material density 1000 neohookean 1.0e6 0.3\n");
+  Scene run(wide + ("fix grid all mpm 0.1 " + GetParam()) +
+            "\nregion body block -0.4 0.4 -0.2 0.2 INF INF\ncreate_points 1 region body ppc 2\n"
+            "fix m all mpm/material density 1000 neohookean 1.0e6 0.3\n");
   run.set_velocity([](const double *x, double *v) {
     v[0] = 3.0 - 10.0 * x[1] + 4.0 * x[0];
     v[1] = -2.0 + 10.0 * x[0];
@@ -132,12 +116,10 @@ class NoiseAtRest : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(NoiseAtRest, DoesNotGrow)
 {
-  Scene run;
-  run.commands(
-      plane + ("fix grid all mpm 0.1 " + GetParam()) +
-      "\nregion body block -0.43 0.37 -0.2 0.2 INF INF\n"
-      "create_points 1 region body ppc 2\n"
-      "fix m all mpm/material density 1000 neohookean 1.0e6 0.3\ncompute e all mpm/energy\n");
+  Scene run(wide + ("fix grid all mpm 0.1 " + GetParam()) +
+            "\nregion body block -0.43 0.37 -0.2 0.2 INF INF\n"
+            "create_points 1 region body ppc 2\n"
+            "fix m all mpm/material density 1000 neohookean 1.0e6 0.3\ncompute e all mpm/energy\n");
   std::mt19937 generator(7);
   std::uniform_real_distribution<double> uniform(-1.0e-3, 1.0e-3);
   run.set_velocity([&](const double *, double *v) {
@@ -185,11 +167,10 @@ class CrossingNoise : public ::testing::TestWithParam<Crossing> {
   void medium(Scene &run, const char *transfer, double V)
   {
     run.commands(
-        strprintf("units lj\ndimension 2\nboundary p p p\natom_style mpm\nneighbor 0.3 bin\n"
-                  "region box block 0 7 0 7 -0.5 0.5\ncreate_box 1 box\n"
-                  "fix grid all mpm 1.0 %s %s\ncreate_points 1 box spacing 0.7 0.7\n"
-                  "fix m all mpm/material density 1.0 eos stiffened/gas 2.0 0.49 "
-                  "pressure %g\nvelocity all set %g %g 0\ntimestep 0.25\nthermo 100000\n",
+        plane("lj", "p p", "0 7 0 7") +
+        strprintf("fix grid all mpm 1.0 %s %s\ncreate_points 1 box spacing 0.7 0.7\n"
+                  "fix m all mpm/material density 1.0 eos stiffened/gas 2.0 0.49 pressure %g\n"
+                  "velocity all set %g %g 0\ntimestep 0.25\n",
                   GetParam().shape, transfer, P, V, 0.7 * V));
     ASSERT_EQ(run.n(), 100);
   }
@@ -272,14 +253,12 @@ TEST_P(CrossingNoise, VelocityInFlight)
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, CrossingNoise,
-                         ::testing::Values(Crossing{"shape linear", 1, 2.0, 1.0e300, 0.0},
-                                           Crossing{"shape quadratic", 2, 0.0, 2.0, 0.015},
-                                           Crossing{"shape cubic", 3, 0.0, 0.15, 0.001},
-                                           Crossing{"shape gimp", 0, 0.0, 1.0e-11, 1.0e-11},
-                                           Crossing{"shape cpgimp", 0, 0.0, 1.0e-11, 1.0e-11},
-                                           Crossing{"shape cpdi", 0, 0.0, 1.0e-11, 1.0e-11},
-                                           Crossing{"shape cpdi2", 0, 0.0, 1.0e-11, 1.0e-11}));
+static const Crossing crossing_noise_cases[] = {
+    {"shape linear", 1, 2.0, 1.0e300, 0.0},     {"shape quadratic", 2, 0.0, 2.0, 0.015},
+    {"shape cubic", 3, 0.0, 0.15, 0.001},       {"shape gimp", 0, 0.0, 1.0e-11, 1.0e-11},
+    {"shape cpgimp", 0, 0.0, 1.0e-11, 1.0e-11}, {"shape cpdi", 0, 0.0, 1.0e-11, 1.0e-11},
+    {"shape cpdi2", 0, 0.0, 1.0e-11, 1.0e-11}};
+INSTANTIATE_TEST_SUITE_P(Shapes, CrossingNoise, ::testing::ValuesIn(crossing_noise_cases));
 
 /* ----------------------------------------------------------------------
    A free rectangle begins to stretch along its own axis. What it has reached after about a quarter
@@ -289,14 +268,13 @@ INSTANTIATE_TEST_SUITE_P(Shapes, CrossingNoise,
 
 static double extension(const std::string &options, double shift, double degrees)
 {
-  Scene run;
-  run.commands(plane +
-               strprintf("fix grid all mpm 0.1 %s\nregion body block -0.8 0.8 -0.4 0.4 INF INF\n"
-                         "create_points 1 region body ppc 2\n"
-                         "displace_atoms all rotate 0 0 0 0 0 1 %g\n"
-                         "displace_atoms all move %.17g %.17g 0\n"
-                         "fix m all mpm/material density 1000 neohookean 1.0e6 0.3\n",
-                         options.c_str(), degrees, shift, 0.7 * shift));
+  Scene run(wide +
+            strprintf("fix grid all mpm 0.1 %s\nregion body block -0.8 0.8 -0.4 0.4 INF INF\n"
+                      "create_points 1 region body ppc 2\n"
+                      "displace_atoms all rotate 0 0 0 0 0 1 %g\n"
+                      "displace_atoms all move %.17g %.17g 0\n"
+                      "fix m all mpm/material density 1000 neohookean 1.0e6 0.3\n",
+                      options.c_str(), degrees, shift, 0.7 * shift));
   const double a[2] = {cos(degrees * PI / 180.0), sin(degrees * PI / 180.0)};
   auto along = [&](const double *x) {
     return (x[0] - shift) * a[0] + (x[1] - 0.7 * shift) * a[1];
@@ -339,13 +317,14 @@ INSTANTIATE_TEST_SUITE_P(All, GridInvariance, ::testing::ValuesIn(all_shapes()))
 
 // Fracture: not asked for here. With gradients that jump at the faces of cells (linear, bernstein), the largest
 // extension is that of the first shift, which puts layers of points on faces and into otherwise empty cells.
-INSTANTIATE_TEST_SUITE_P(
-    More, GridInvariance,
-    ::testing::Values(Variant{"shape cpdi", 0.01, 0.0, 0.0}, Variant{"shape cpdi2", 0.01, 0.0, 0.0},
-                      Variant{"shape linear scheme musl frame total", 0.08, 0.0, 0.0},
-                      Variant{"shape quadratic frame total", 0.01, 0.0, 0.0},
-                      Variant{"shape cubic frame total", 0.01, 0.0, 0.0},
-                      Variant{"shape bernstein scheme musl frame total", 0.08, 0.0, 0.0}));
+static const Variant grid_invariance_cases[] = {
+    {"shape cpdi", 0.01, 0.0, 0.0},
+    {"shape cpdi2", 0.01, 0.0, 0.0},
+    {"shape linear scheme musl frame total", 0.08, 0.0, 0.0},
+    {"shape quadratic frame total", 0.01, 0.0, 0.0},
+    {"shape cubic frame total", 0.01, 0.0, 0.0},
+    {"shape bernstein scheme musl frame total", 0.08, 0.0, 0.0}};
+INSTANTIATE_TEST_SUITE_P(More, GridInvariance, ::testing::ValuesIn(grid_invariance_cases));
 
 /* ----------------------------------------------------------------------
    A bar in uniaxial strain, 12 cells between the grips, is pulled at constant velocity. The total
@@ -357,20 +336,16 @@ static double fracture(const std::string &options)
 {
   const double E = 1.0e6, nu = 0.3, rate = 2.5, dt = 5.0e-4;
   const double lambda = E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), mu = 0.5 * E / (1.0 + nu);
-  Scene run;
-  run.commands(
-      strprintf("units si\ndimension 2\nboundary f p p\natom_style mpm\nneighbor 0.1 bin\n"
-                "region box block -2 46 0 0.25 -0.5 0.5\ncreate_box 1 box\n"
-                "fix grid all mpm 0.25 transfer flip 1.0 dtcheck no bad warn %s\n"
-                "region body block 0 4 INF INF INF INF\ncreate_points 1 region body ppc 2\n"
-                "fix m all mpm/material density 1000 neohookean %.17g %.17g\n"
-                "region left block -2 0.5 INF INF INF INF\n"
-                "variable move equal %.17g*step*dt\n"
-                "region right block 3.5 46 INF INF INF INF move v_move NULL NULL\n"
-                "fix left all mpm/boundary region left stick\n"
-                "fix right all mpm/boundary region right stick\nthermo 1000000\n"
-                "timestep %.17g\n",
-                options.c_str(), E, nu, 3.0 * rate, dt));
+  Scene run(plane("si", "f p", "-2 46 0 0.25", 1, 0.1) +
+            body("block 0 4 INF INF INF INF",
+                 strprintf("density 1000 neohookean %.17g %.17g", E, nu),
+                 strprintf("0.25 transfer flip 1.0 dtcheck no bad warn %s", options.c_str())) +
+            strprintf("region left block -2 0.5 INF INF INF INF\n"
+                      "variable move equal %.17g*step*dt\n"
+                      "region right block 3.5 46 INF INF INF INF move v_move NULL NULL\n"
+                      "fix left all mpm/boundary region left stick\n"
+                      "fix right all mpm/boundary region right stick\ntimestep %.17g\n",
+                      3.0 * rate, dt));
   run.set_reference();
   run.set_velocity([=](const double *x, double *v) {
     v[0] = rate * std::min(std::max(x[0] - 0.5, 0.0), 3.0);
@@ -407,41 +382,34 @@ TEST_P(Fracture, Stretch)
 
 INSTANTIATE_TEST_SUITE_P(All, Fracture, ::testing::ValuesIn(all_shapes()));
 
-/* ----------------------------------------------------------------------
-   equivalences
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- equivalences */
 
 // flip 0 is pic
-
 TEST(Equivalent, FlipZeroIsPic)
 {
   std::vector<Scene::State> found[2];
   for (const int k : {0, 1}) {
-    Scene run;
-    run.commands(replaced(two_bodies, "MPM_OPTIONS", k ? "transfer pic" : "transfer flip 0.0") +
-                 "run 50\n");
+    Scene run(replaced(two_bodies, "MPM_OPTIONS", k ? "transfer pic" : "transfer flip 0.0") +
+              "run 50\n");
     found[k] = run.gather();
   }
   EXPECT_LT(difference(found[0], found[1]), 1.0e-14);
 }
 
 // plane strain is a slice of a body between two walls that slip, one cell thick
-
 TEST(Equivalent, PlaneStrainIsASlice)
 {
   for (const auto &shape : shapes) {
     std::vector<Scene::State> found[2];
     for (const int dim : {2, 3}) {
-      Scene run;
-      run.commands(strprintf(
-          "units si\ndimension %d\nboundary f f %s\natom_style mpm\nneighbor 0.04 bin\n"
-          "region box block -1 1 -1 1 -0.05 0.05\ncreate_box 1 box\nthermo 1000000\n"
-          "fix grid all mpm 0.1 origin 0 0 %stransfer flip 1.0 %s\n"
-          "region body block -0.43 0.37 -0.21 0.19 INF INF\ncreate_points 1 region body %s\n"
-          "fix m all mpm/material density 1000 neohookean 1.0e6 0.3\n%stimestep 2.0e-4\n",
-          dim, dim == 3 ? "f" : "p", dim == 3 ? "-0.05 " : "", shape.shape,
-          dim == 3 ? "ppc 2 2 2" : "ppc 2",
-          dim == 3 ? "fix w all mpm/boundary zlo zhi slip\n" : ""));
+      Scene run(box(dim, "si", "f f f", "-1 1 -1 1 -0.05 0.05", 1, 0.04) +
+                strprintf("fix grid all mpm 0.1 origin 0 0 %stransfer flip 1.0 %s\n"
+                          "region body block -0.43 0.37 -0.21 0.19 INF INF\n"
+                          "create_points 1 region body %s\n"
+                          "fix m all mpm/material density 1000 neohookean 1.0e6 0.3\n"
+                          "%stimestep 2.0e-4\n",
+                          dim == 3 ? "-0.05 " : "", shape.shape, dim == 3 ? "ppc 2 2 2" : "ppc 2",
+                          dim == 3 ? "fix w all mpm/boundary zlo zhi slip\n" : ""));
       run.set_velocity([](const double *x, double *v) {
         v[0] = 4.0 * x[0] - 5.0 * x[1];
         v[1] = 5.0 * x[0] - 2.0 * x[1] * x[0];
@@ -467,17 +435,15 @@ TEST(Equivalent, PlaneStrainIsASlice)
 }
 
 // schemes differ by the order of the time step only: half the step, half the difference
-
 TEST(Equivalent, SchemesAgreeForSmallSteps)
 {
   auto end = [](const char *scheme, int steps) {
-    Scene run;
-    run.commands(plane +
-                 strprintf("fix grid all mpm 0.1 transfer flip 1.0 %s\n"
-                           "region body block -0.4 0.4 -0.2 0.2 INF INF\n"
-                           "create_points 1 region body ppc 2\n"
-                           "fix m all mpm/material density 1000 neohookean 1.0e6 0.3\n",
-                           scheme));
+    Scene run(wide +
+              strprintf("fix grid all mpm 0.1 transfer flip 1.0 %s\n"
+                        "region body block -0.4 0.4 -0.2 0.2 INF INF\n"
+                        "create_points 1 region body ppc 2\n"
+                        "fix m all mpm/material density 1000 neohookean 1.0e6 0.3\n",
+                        scheme));
     run.set_velocity([](const double *x, double *v) {
       v[0] = 2.0 * x[0];
       v[1] = -2.0 * x[1];

@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: unit
 
@@ -83,7 +78,6 @@ TEST(Grid, NeighbourTable)
 }
 
 // any number of cells along a period: multiples of the block side and not, fewer than a block
-
 TEST(Grid, PeriodicImagesFoldOntoOneCanonicalNode)
 {
   for (int dim : {2, 3})
@@ -101,7 +95,6 @@ TEST(Grid, PeriodicImagesFoldOntoOneCanonicalNode)
       grid.allocate(4);
 
       // each node gets 1: a canonical node must end with the number of its images
-
       std::set<int64_t> canonical_seen;
       for (int64_t k = 0; k < grid.nnodes(); k++) grid.nodes()[4 * k + 2] = 1.0;
       grid.fold_aliases(grid.nodes(), 4, 2, 1);
@@ -112,7 +105,6 @@ TEST(Grid, PeriodicImagesFoldOntoOneCanonicalNode)
       EXPECT_EQ(total, (double) grid.nnodes()) << "dim " << dim << " n " << n;
 
       // owned nodes are the nodes of one period, each once
-
       int64_t owned = 0, expected = 1;
       for (const auto &block : grid.blocks)
         for (int k = 0; k < NODES_PER_BLOCK; k++) owned += block.owned >> k & 1;
@@ -120,7 +112,6 @@ TEST(Grid, PeriodicImagesFoldOntoOneCanonicalNode)
       EXPECT_EQ(owned, expected) << "dim " << dim << " n " << n;
 
       // and images get the canonical record back
-
       for (std::size_t s = 0; s < grid.blocks.size(); s++)
         for (int k = 0; k < NODES_PER_BLOCK; k++) {
           int index[3];

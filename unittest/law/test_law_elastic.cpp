@@ -1,26 +1,12 @@
 // labels: unit physics
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // Hyperelastic laws, isotropic and anisotropic, at a point against closed forms.
 
 #include "material/material_testing.h"
 
-#include "gtest/gtest.h"
-
 #include <Eigen/Dense>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <random>
-#include <string>
-#include <vector>
 
 using namespace MPM_NS;
 using namespace material_testing;

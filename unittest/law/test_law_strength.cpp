@@ -1,26 +1,11 @@
 // labels: unit physics
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // Strengths and thermal parts, point by point, against closed forms and ordinary differential
 // equations that are solved here.
 
 #include "material/material_testing.h"
-
-#include "gtest/gtest.h"
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <random>
-#include <sstream>
-#include <string>
-#include <vector>
 
 using namespace MPM_NS;
 using namespace material_testing;
@@ -33,8 +18,7 @@ const double ROOT3 = std::sqrt(3.0);
 void shear(MaterialPoint &p, double strain, double time, int n = 1)
 {
   const double g = 0.5 * ROOT3 * strain / time;
-  const Matrix L = {0, g, 0, g, 0, 0, 0, 0, 0};
-  for (int i = 0; i < n; i++) p.step(L.data(), time / n);
+  steps(p, {0, g, 0, g, 0, 0, 0, 0, 0}, time / n, n);
 }
 
 /** Equivalent stress in pure shear, with sign. */
@@ -123,25 +107,13 @@ const HardeningCase hardenings[] = {
 TEST(J2Hardening, ReturnEndsOnTheYieldSurface)
 {
   std::mt19937 random(2);
-  std::normal_distribution<double> normal;
   for (const auto &h : hardenings) {
     SCOPED_TRACE(h.text);
-    const auto material = make(J2 + h.text);
-    for (const double scale : {1e-6, 1e-3, 1e-2, 0.1, 1.0})
-      for (int repeat = 0; repeat < 20; repeat++) {
-        MaterialPoint p(*material);
-        for (int i = 0; i < 4; i++) {
-          Matrix L;
-          for (double &x : L) x = 0.4 * scale * normal(random);
-          p.step(L.data(), 1.0);
-          const double Y = h.Y(p.history(0));
-          if (p.batch.work[PLASTIC] > 0)
-            EXPECT_NEAR(p.vonmises() / Y, 1.0, 1e-10) << "strain " << scale;
-          else
-            EXPECT_LE(p.vonmises(), Y * (1 + 1e-12));
-          EXPECT_EQ(p.batch.plastic[0] > 0, p.batch.work[PLASTIC] > 0);
-        }
-      }
+    random_steps(*make(J2 + h.text), random, {1e-6, 1e-3, 1e-2, 0.1, 1.0}, {1.0}, 20, 4,
+                 [&](const MaterialPoint &p, double, double) {
+                   expect_on_surface(p, h.Y(p.history(0)));
+                   EXPECT_EQ(p.batch.plastic[0] > 0, p.batch.work[PLASTIC] > 0);
+                 });
   }
 }
 
@@ -173,10 +145,8 @@ TEST(J2Hardening, StraightPath)
 TEST(J2Hardening, ConsidereLoad)
 {
   const double E = 211e9, nu = 0.33;
-  const auto material =
-      make(text_of("density 7750 eos linear", {E / (3 * (1 - 2 * nu))}) +
-           text_of(" strength j2", {E / (2 * (1 + nu)), 499e6}) + " hardening power 382e6 0.458");
-  MaterialPoint p(*material);
+  Point p(text_of("density 7750 eos linear", {E / (3 * (1 - 2 * nu))}) +
+          text_of(" strength j2", {E / (2 * (1 + nu)), 499e6}) + " hardening power 382e6 0.458");
   double load = 0.0, at = 0.0, e = 0.0, J = 0.0;
   for (int i = 0; i < 3000; i++) {
     p.step_uniaxial_stress(1.0, 5e-5);
@@ -195,25 +165,17 @@ TEST(J2Hardening, ConsidereLoad)
 
 TEST(J2Hardening, BadInputIsRefused)
 {
-  struct {
-    const char *text, *message;
-  } bad[] = {{"hardening voce 1e8 1", "HVOCE is missing"},
-             {"hardening swift 0 0.2", "out of range"},
-             {"point 0.1 5e8 hardening linear 1e9", "points of the flow stress do not go with"},
-             {"point 0.1 5e8 point 0.1 6e8", "must increase"},
-             {"point 0 3e8", "out of range"},
-             {"point 0.001 1e8", "must not fall faster than G/2"},
-             {"rate perzyna 1e8 1 0.5", "out of range"},
-             {"rate perzyna 1e8 1 1 rate cowper/symonds 40 5", "'rate' is given twice"},
-             {"kinematic 0 1", "out of range"}};
-  for (const auto &b : bad) {
-    try {
-      make(J2 + b.text);
-      ADD_FAILURE() << "accepted: " << b.text;
-    } catch (const MaterialError &e) {
-      EXPECT_NE(std::string(e.what()).find(b.message), std::string::npos) << e.what();
-    }
-  }
+  expect_refused(
+      {{"hardening voce 1e8 1", -1, "HVOCE is missing"},
+       {"hardening swift 0 0.2", -1, "out of range"},
+       {"point 0.1 5e8 hardening linear 1e9", -1, "points of the flow stress do not go with"},
+       {"point 0.1 5e8 point 0.1 6e8", -1, "must increase"},
+       {"point 0 3e8", -1, "out of range"},
+       {"point 0.001 1e8", -1, "must not fall faster than G/2"},
+       {"rate perzyna 1e8 1 0.5", -1, "out of range"},
+       {"rate perzyna 1e8 1 1 rate cowper/symonds 40 5", -1, "'rate' is given twice"},
+       {"kinematic 0 1", -1, "out of range"}},
+      J2);
 }
 
 /* ---------------------------------------------------------------------- j2: back stress */
@@ -256,8 +218,7 @@ TEST(J2Kinematic, LoopInClosedForm)
 // the reverse yield stress of linear kinematic hardening is 2 SIGMAY below
 TEST(J2Kinematic, ReverseYieldInTension)
 {
-  const auto material = make(J2 + "kinematic 5e9 0");
-  MaterialPoint p(*material);
+  Point p(J2 + "kinematic 5e9 0");
   for (int i = 0; i < 500; i++) p.step_uniaxial_stress(1.0, 1e-4);
   const double top = p.stress(0), e = p.history(0);
   EXPECT_NEAR(top, SIGMAY + 5e9 * e / p.batch.J[0], 1e-6 * top);
@@ -273,8 +234,7 @@ TEST(J2Kinematic, ReverseYieldInTension)
 TEST(J2Kinematic, StabilizedCycle)
 {
   const double C = 40e9, gamma = 200;
-  const auto material = make(text_of(J2 + "kinematic", {C, gamma}));
-  MaterialPoint p(*material);
+  Point p(text_of(J2 + "kinematic", {C, gamma}));
   const double strain = 0.01;
   double e = 0.0, range = 0.0, top = 0.0;
   for (int half = 0; half < 40; half++) {
@@ -337,33 +297,27 @@ TEST(J2Kinematic, TurnsWithThePoint)
 TEST(J2Kinematic, ReturnEndsOnTheYieldSurface)
 {
   std::mt19937 random(3);
-  std::normal_distribution<double> normal;
   for (const auto &h : hardenings)
     for (const double gamma : {0.0, 10.0, 1000.0}) {
-      const auto material = make(J2 + h.text + text_of(" kinematic", {30e9, gamma}));
-      for (const double scale : {1e-6, 1e-3, 1e-2, 0.1, 1.0})
-        for (int repeat = 0; repeat < 10; repeat++) {
-          MaterialPoint p(*material);
-          for (int i = 0; i < 4; i++) {
-            Matrix L;
-            for (double &x : L) x = 0.4 * scale * normal(random);
-            p.step(L.data(), 1.0);
-            double xi2 = 0.0;
-            for (int k = 0; k < 6; k++) {
-              const double s = p.stress(k) + (k < 3 ? p.pressure() : 0.0);
-              const double d = s - p.history(1 + k) / p.batch.J[0];
-              xi2 += (k < 3 ? 1.5 : 3.0) * d * d;
-            }
-            const double Y = h.Y(p.history(0)), q = std::sqrt(xi2);
-            ASSERT_TRUE(std::isfinite(q));
-            const double sum = std::max(p.vonmises(), Y);    // digits of s and X
-            if (p.batch.plastic[0] > 0)
-              EXPECT_NEAR(q, Y, 1e-10 * sum) << h.text << " " << gamma << " strain " << scale;
-            else
-              EXPECT_LE(q, Y + 1e-12 * sum);
-            EXPECT_GE(p.batch.work[PLASTIC], 0.0);
-          }
-        }
+      SCOPED_TRACE(std::string(h.text) + " " + std::to_string(gamma));
+      random_steps(*make(J2 + h.text + text_of(" kinematic", {30e9, gamma})), random,
+                   {1e-6, 1e-3, 1e-2, 0.1, 1.0}, {1.0}, 10, 4,
+                   [&](const MaterialPoint &p, double, double) {
+                     double xi2 = 0.0;
+                     for (int k = 0; k < 6; k++) {
+                       const double s = p.stress(k) + (k < 3 ? p.pressure() : 0.0);
+                       const double d = s - p.history(1 + k) / p.batch.J[0];
+                       xi2 += (k < 3 ? 1.5 : 3.0) * d * d;
+                     }
+                     const double Y = h.Y(p.history(0)), q = std::sqrt(xi2);
+                     ASSERT_TRUE(std::isfinite(q));
+                     const double sum = std::max(p.vonmises(), Y);    // digits of s and X
+                     if (p.batch.plastic[0] > 0)
+                       EXPECT_NEAR(q, Y, 1e-10 * sum);
+                     else
+                       EXPECT_LE(q, Y + 1e-12 * sum);
+                     EXPECT_GE(p.batch.work[PLASTIC], 0.0);
+                   });
     }
 }
 
@@ -413,29 +367,17 @@ TEST(J2Rate, SteadyOverstress)
 TEST(J2Rate, ReturnEndsOnTheYieldSurface)
 {
   std::mt19937 random(4);
-  std::normal_distribution<double> normal;
   for (const auto &c : rates)
     for (const auto &h : hardenings) {
       const std::string text = J2 + h.text + " " + c.text;
       SCOPED_TRACE(text);
-      const auto material = make(text);
-      for (const double scale : {1e-4, 1e-2, 0.1, 1.0})
-        for (const double rate : {1e-6, 1.0, 1e4, 1e8}) {
-          MaterialPoint p(*material);
-          for (int i = 0; i < 3; i++) {
-            Matrix L;
-            for (double &x : L) x = 0.4 * rate * normal(random);
-            const double e = p.history(0), dt = scale / rate;
-            p.step(L.data(), dt);
-            ASSERT_TRUE(std::isfinite(p.vonmises()));
-            const double Y = c.stress(h.Y(p.history(0)), p.batch.plastic[0] / dt);
-            EXPECT_NEAR(p.history(0) - e, p.batch.plastic[0], 1e-12);
-            if (p.batch.plastic[0] > 0)
-              EXPECT_NEAR(p.vonmises() / Y, 1.0, 1e-10) << "strain " << scale << " rate " << rate;
-            else
-              EXPECT_LE(p.vonmises(), Y * (1 + 1e-12));
-          }
-        }
+      for (const double rate : {1e-6, 1.0, 1e4, 1e8})
+        for (const double scale : {1e-4, 1e-2, 0.1, 1.0})
+          random_steps(*make(text), random, {scale}, {scale / rate}, 1, 3,
+                       [&](const MaterialPoint &p, double e, double dt) {
+                         EXPECT_NEAR(p.history(0) - e, p.batch.plastic[0], 1e-12);
+                         expect_on_surface(p, c.stress(h.Y(p.history(0)), p.batch.plastic[0] / dt));
+                       });
     }
 }
 
@@ -475,8 +417,7 @@ TEST(J2Rate, AgainstDifferentialEquation)
       if (level == 2) EXPECT_NEAR(p.history(0), exact[1], 0.01 * exact[1]);
     }
     EXPECT_LT(error[2], 2e-3);
-    EXPECT_NEAR(std::log2(error[0] / error[1]), 1.0, 0.15);
-    EXPECT_NEAR(std::log2(error[1] / error[2]), 1.0, 0.15);
+    expect_order(error, 1.0, 0.15);
   }
 }
 
@@ -484,8 +425,7 @@ TEST(J2Rate, AgainstDifferentialEquation)
 TEST(J2Rate, Relaxation)
 {
   const double S = 1e8, rate = 10;
-  const auto material = make(text_of(J2 + "rate perzyna", {S, rate, 1}));
-  MaterialPoint p(*material);
+  Point p(text_of(J2 + "rate perzyna", {S, rate, 1}));
   shear(p, 0.01, 1e-9);    // too fast for plastic strain
   const double start = shear_stress(p);
   EXPECT_GT(start, 5 * SIGMAY);
@@ -546,8 +486,7 @@ TEST(ZerilliArmstrongLaw, FlowStress)
     for (int k = 0; k < 4; k++) {
       const double Y = set.law(e[k], rate[k], T[k]), D = 1e-3;
       EXPECT_NEAR(Y, set.known[k] * MPa, 1e-3 * MPa);
-      const auto material = make(set.law.text(450, T[k], 0.0));
-      MaterialPoint p(*material);
+      Point p(set.law.text(450, T[k], 0.0));
       p.batch.history[0][0] = e[k] - D;
       shear(p, D + Y / (3 * 80e9), D / rate[k]);
       EXPECT_NEAR(shear_stress(p), Y, 1e-8 * Y);
@@ -558,26 +497,20 @@ TEST(ZerilliArmstrongLaw, FlowStress)
 TEST(ZerilliArmstrongLaw, ReturnEndsOnTheYieldSurface)
 {
   std::mt19937 random(5);
-  std::normal_distribution<double> normal;
   for (const auto &law : {iron, copper})
     for (const double T : {0.0, 1.0, 77.0, 300.0, 1000.0, 4000.0}) {
+      SCOPED_TRACE(law.form + std::string(" T ") + std::to_string(T));
       const auto material = make(law.text(450, T, 0.9));
-      for (const double scale : {1e-4, 1e-2, 0.1, 1.0})
-        for (const double rate : {1e-6, 1.0, 1e4, 1e8}) {
-          MaterialPoint p(*material);
-          for (int i = 0; i < 3; i++) {
-            Matrix L;
-            for (double &x : L) x = 0.4 * rate * normal(random);
-            const double dt = scale / rate;
-            p.step(L.data(), dt);
-            ASSERT_TRUE(std::isfinite(p.vonmises()) && std::isfinite(p.history(1)));
-            const double r = p.batch.plastic[0] / dt, Y = law(p.history(0), r, p.history(1));
-            if (r > 0)
-              EXPECT_NEAR(p.vonmises() / Y, 1.0, 1e-10)
-                  << law.form << " T " << T << " strain " << scale << " rate " << rate;
-            EXPECT_GE(p.history(1), T);
-          }
-        }
+      for (const double rate : {1e-6, 1.0, 1e4, 1e8})
+        for (const double scale : {1e-4, 1e-2, 0.1, 1.0})
+          random_steps(*material, random, {scale}, {scale / rate}, 1, 3,
+                       [&](const MaterialPoint &p, double, double dt) {
+                         ASSERT_TRUE(std::isfinite(p.history(1)));
+                         const double r = p.batch.plastic[0] / dt;
+                         const double Y = law(p.history(0), r, p.history(1));
+                         if (r > 0) EXPECT_NEAR(p.vonmises() / Y, 1.0, 1e-10);
+                         EXPECT_GE(p.history(1), T);
+                       });
     }
 }
 
@@ -616,8 +549,7 @@ TEST(ZerilliArmstrongLaw, Melting)
       "density 8960 eos linear 137e9 strength zerilli/armstrong 46e9 65e6 form fcc 890e6 2.8e-3 "
       "1.15e-4 melt 1356 thermal constant ";
   for (const char *T : {"1355", "1357"}) {
-    const auto material = make(text + T);
-    MaterialPoint p(*material);
+    Point p(text + T);
     for (int i = 0; i < 5; i++) shear(p, 0.02, 1.0);
     if (T == std::string("1355"))
       EXPECT_GT(p.vonmises(), 65e6);
@@ -688,13 +620,10 @@ TEST(SteinbergLaw, ModulusAndFlowStress)
 }
 
 // the flow stress begins where strain before the start has left it, and TREF is where G0 and Y0 are meant
-
 TEST(SteinbergLaw, PrestrainAndReferenceTemperature)
 {
-  const auto material = make(
-      "density 8930 eos linear 137e9 strength steinberg 47.7e9 0.12e9 36 0.45 0.64e9 0 3.77e-4 "
-      "prestrain 0.05 tref 400 thermal constant 300");
-  MaterialPoint p(*material);
+  Point p("density 8930 eos linear 137e9 strength steinberg 47.7e9 0.12e9 36 0.45 0.64e9 0 3.77e-4 "
+          "prestrain 0.05 tref 400 thermal constant 300");
   const double f = 1 + 3.77e-4 * 100;
   const Matrix small = {0, 1e-6, 0, 1e-6, 0, 0, 0, 0, 0};
   MaterialPoint q(p);
@@ -813,8 +742,7 @@ TEST(Strengths, UniaxialStress)
 // uniaxial strain: the deviator is at the flow stress, the pressure that of the equation of state
 TEST(Strengths, UniaxialStrain)
 {
-  const auto material = make(J2 + "hardening voce 2e8 15 1e8 kinematic 20e9 0");
-  MaterialPoint p(*material);
+  Point p(J2 + "hardening voce 2e8 15 1e8 kinematic 20e9 0");
   for (int i = 1; i <= 200; i++) move_to(p, {1 - 0.001 * i, 0, 0, 0, 1, 0, 0, 0, 1});
   const double e = p.history(0), J = 0.8;
   EXPECT_NEAR(p.batch.J[0], J, 1e-12);
@@ -929,12 +857,10 @@ TEST(Thermal, HeatOfFusion)
 // all viscous work becomes heat, whatever CHI
 TEST(Thermal, ViscousWorkHeats)
 {
-  const auto material = make("density 1000 eos linear 1e9 viscosity newtonian 1000 "
-                             "thermal adiabatic 4000 300 0.9");
-  MaterialPoint p(*material);
+  Point p("density 1000 eos linear 1e9 viscosity newtonian 1000 "
+          "thermal adiabatic 4000 300 0.9");
   const double rate = 1e3, time = 1e-3;
-  const Matrix L = {0, 0.5 * rate, 0, 0.5 * rate, 0, 0, 0, 0, 0};
-  for (int i = 0; i < 10; i++) p.step(L.data(), time / 10);
+  steps(p, {0, 0.5 * rate, 0, 0.5 * rate, 0, 0, 0, 0, 0}, time / 10, 10);
   const double heat = 1000 * rate * rate * time;    // mu (2 D12)^2
   EXPECT_NEAR(p.work[VISCOUS], heat, 1e-9 * heat);
   EXPECT_NEAR(p.history(0) - 300, heat / (1000 * 4000), 1e-9);
@@ -945,8 +871,7 @@ TEST(Thermal, ViscousWorkHeats)
 /** Flow stress in MPa after shear at a rate, from the temperature of the file. */
 double flow_stress(const std::string &name, double strain, double rate)
 {
-  const auto material = make(definition(name));
-  MaterialPoint p(*material);
+  Point p(definition(name));
   shear(p, strain, strain / rate, 200);
   return shear_stress(p) / MPa;
 }

@@ -1,20 +1,10 @@
 // labels: unit physics
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // Kelvin-Voigt damping and Maxwell elements at a point, with any elastic law.
 
 #include "material/material_testing.h"
-
-#include "gtest/gtest.h"
-
-#include <cmath>
-#include <string>
 
 using namespace MPM_NS;
 using namespace material_testing;
@@ -68,8 +58,7 @@ TEST(KelvinVoigt, AddsToAnyLaw)
 
 TEST(KelvinVoigt, InitialStressIsKept)
 {
-  const auto material = make("density 1000 linear 1e6 0.3 viscosity newtonian 300");
-  MaterialPoint p(*material);
+  Point p("density 1000 linear 1e6 0.3 viscosity newtonian 300");
   for (int k = 0; k < 6; k++) p.batch.stress[k][0] = 100.0 * (k + 1);
   const Matrix L = {0, 0.1, 0, 0.1, 0, 0, 0, 0, 0};
   p.step(L.data(), 1e-9);
@@ -84,8 +73,7 @@ TEST(KelvinVoigt, OscillatingShear)
 {
   const double G = 1e6 / 2.6, eta = 2e4, omega = 7.0, g0 = 1e-4;
   for (const std::string solid : {"linear 1e6 0.3", "neohookean 1e6 0.3"}) {
-    const auto material = make("density 1000 " + solid + " viscosity newtonian 2e4");
-    MaterialPoint p(*material);
+    Point p("density 1000 " + solid + " viscosity newtonian 2e4");
     const int n = 2000;
     const double dt = 2 * M_PI / omega / n;
     double in_phase = 0.0, out_of_phase = 0.0;
@@ -108,9 +96,8 @@ TEST(KelvinVoigt, StableTimeStep)
 {
   const double M = 1e6 * 0.7 / (1.3 * 0.4), rho = 1000, h = 0.1;
   for (const double eta : {10.0, 1e3, 1e5}) {
-    const auto material =
-        make("density 1000 linear 1e6 0.3 viscosity newtonian " + std::to_string(eta) + " bulk 5");
-    MaterialPoint p(*material, 1, h);
+    Point p("density 1000 linear 1e6 0.3 viscosity newtonian " + std::to_string(eta) + " bulk 5", 1,
+            h);
     for (const bool stable : {true, false}) {
       const double dt = (stable ? 0.999 : 1.001) * h / p.wave_speed();
       const double k2 = 4 / (h * h) / rho, damping = 4.0 / 3 * eta + 5;
@@ -260,8 +247,7 @@ TEST(Maxwell, OscillatingShear)
 TEST(Maxwell, AnyTimeStep)
 {
   for (const char *tau : {"1e-12", "1e-3", "1", "1e12"}) {
-    const auto material = make(std::string(FLUID) + "term 3e5 " + tau);
-    MaterialPoint p(*material);
+    Point p(std::string(FLUID) + "term 3e5 " + tau);
     for (int i = 0; i < 12; i++) {
       const Matrix L = some_motion(0.1 * i);
       p.step(L.data(), 0.5);
@@ -275,7 +261,6 @@ TEST(Maxwell, AnyTimeStep)
 
 // a rotation on top of the motion turns the stress and changes nothing else
 // what an element has stored becomes heat when it relaxes, in many steps or in one
-
 TEST(Maxwell, DissipatesWhatItHasStored)
 {
   const auto material = make("density 1000 neohookean 1e5 0.45 viscosity maxwell term 5e4 1e-3");

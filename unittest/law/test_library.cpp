@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: unit physics
 
@@ -15,19 +10,11 @@
 #include "law/law.h"
 #include "material/material_testing.h"
 
-#include "gtest/gtest.h"
-
-#include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <regex>
-#include <set>
-#include <sstream>
 
 using namespace MPM_NS;
 using namespace material_testing;
@@ -161,7 +148,6 @@ TEST(Library, MaterialFilesAreComplete)
 
 // where a file says that its moduli come from E and nu, they do, to the digits that it has; the bulk
 // modulus of a shock equation of state has sources of its own
-
 TEST(Library, ModuliAreThoseOfEAndNu)
 {
   const std::regex words("E = ([0-9.]+) ([GM])Pa, nu = ([0-9]\\.[0-9]+)"), shock("\\neos +shock ");
@@ -191,7 +177,6 @@ TEST(Library, ModuliAreThoseOfEAndNu)
 // CRC Handbook of Chemistry and Physics): density, bulk and shear modulus of the files come from
 // tests at high rates, and must be those of the material all the same. (Not so in PMMA_elastic, with
 // a slow modulus, and in Water_shock, a line for strong shocks.)
-
 TEST(Library, SpeedsOfSoundAreThoseOfHandbooks)
 {
   const struct {
@@ -227,7 +212,6 @@ TEST(Library, SpeedsOfSoundAreThoseOfHandbooks)
 }
 
 // wet sand, gelatin, and the failure of Weldox: what the laws make of the values is what the sources say
-
 TEST(Library, WetSandIsAtCriticalState)
 {
   const auto material = make(definition("Sand_Toyoura_wet_DP"));

@@ -1,23 +1,26 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 #ifndef MATERIAL_TESTING_H
 #define MATERIAL_TESTING_H
 
-// What tests of constitutive laws share: 3x3 matrices, motions of a point, and samples of all laws.
+// What tests of constitutive laws share: 3x3 matrices, motions of a point, and samples of all laws. This
+// header brings the standard ones that they need.
 
 #include "material/material_point.h"
 
+#include "gtest/gtest.h"
+
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <functional>
 #include <memory>
+#include <random>
+#include <regex>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -31,13 +34,25 @@ using MPM_NS::MaterialPoint;
 using Matrix = std::array<double, 9>;
 constexpr Matrix IDENTITY = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 
-std::unique_ptr<Material> make(const std::string &text, const char *isa = nullptr)
+inline std::unique_ptr<Material> make(const std::string &text, const char *isa = nullptr)
 {
   std::istringstream in(text);
   std::vector<std::string> words;
   for (std::string word; in >> word;) words.push_back(word);
   return Material::create(words, isa);
 }
+
+/** A point that brings its material. */
+struct Held {
+  std::unique_ptr<Material> held;
+};
+struct Point : private Held, public MaterialPoint {
+  template <class... Args>
+  explicit Point(const std::string &text, Args... args) :
+      Held{make(text)}, MaterialPoint(*held, args...)
+  {
+  }
+};
 
 /** The definition in a file of the folder potentials. */
 inline std::string definition(const std::string &name)
@@ -118,6 +133,74 @@ inline void move_to(MaterialPoint &p, const Matrix &F, double dt = 1.0)
   Matrix A = F * inverse(old);
   for (int k = 0; k < 9; k++) A[k] -= IDENTITY[k];
   p.move(A.data(), dt);
+}
+
+/** n steps with a velocity gradient. */
+inline void steps(MaterialPoint &p, const Matrix &L, double dt, int n)
+{
+  for (int i = 0; i < n; i++) p.step(L.data(), dt);
+}
+
+/** Points that take n steps into any direction, some for each strain and duration of a step, and
+ *  check(p, e, dt) after each; e: of the first history variable before it. */
+template <class Check>
+void random_steps(const Material &material, std::mt19937 &random,
+                  const std::vector<double> &strains, const std::vector<double> &durations,
+                  int repeats, int n, const Check &check)
+{
+  std::normal_distribution<double> normal;
+  for (const double strain : strains)
+    for (const double dt : durations)
+      for (int repeat = 0; repeat < repeats; repeat++) {
+        SCOPED_TRACE("strain " + std::to_string(strain) + " dt " + std::to_string(dt));
+        MaterialPoint p(material);
+        for (int i = 0; i < n; i++) {
+          Matrix L;
+          for (double &x : L) x = 0.4 * strain / dt * normal(random);
+          const double e = material.history().empty() ? 0.0 : p.history(0);
+          p.step(L.data(), dt);
+          ASSERT_TRUE(std::isfinite(p.vonmises()));
+          check(p, e, dt);
+        }
+      }
+}
+
+/** The equivalent stress is at the flow stress Y in plastic flow, and else not above it. */
+inline void expect_on_surface(const MaterialPoint &p, double Y, double digits_of = 0.0)
+{
+  if (p.batch.plastic[0] > 0.0)
+    EXPECT_NEAR(p.vonmises(), Y, 1e-10 * (Y + digits_of));
+  else
+    EXPECT_LE(p.vonmises(), Y * (1 + 1e-12));
+}
+
+/** Definitions that are wrong at a word (-1: not looked at), each with words or a pattern of the message. */
+struct Refusal {
+  std::string text;
+  int word;
+  const char *message;
+};
+inline void expect_refused(const std::vector<Refusal> &refusals, const std::string &start = "")
+{
+  for (const auto &bad : refusals) {
+    try {
+      make(start + bad.text);
+      ADD_FAILURE() << "accepted: " << bad.text;
+    } catch (const MPM_NS::MaterialError &e) {
+      if (bad.word >= 0) EXPECT_EQ(e.word, bad.word) << bad.text << ": " << e.what();
+      const std::string found = e.what();
+      EXPECT_TRUE(found.find(bad.message) != std::string::npos ||
+                  std::regex_search(found, std::regex(bad.message)))
+          << bad.text << ": " << found;
+    }
+  }
+}
+
+/** Errors at steps that are halved each time fall with this order. */
+template <std::size_t N> void expect_order(const double (&error)[N], double order, double tolerance)
+{
+  for (std::size_t k = 1; k < N; k++)
+    EXPECT_NEAR(std::log2(error[k - 1] / error[k]), order, tolerance);
 }
 
 /** Steps with a velocity gradient that depends on time. */

@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: unit physics input
 // mpi: 1 2
@@ -15,11 +10,7 @@
 #include "material/material_testing.h"
 #include "mpm_lammps.h"
 
-#include "gtest/gtest.h"
-
-#include <cstdio>
 #include <fstream>
-#include <map>
 #include <numeric>
 
 using namespace material_testing;
@@ -89,8 +80,7 @@ std::map<std::string, std::vector<double>> drive(const std::string &path,
 {
   const MPM_TEST::ScratchFile file("table");
   {
-    Scene run;
-    run.commands(before + "mpm_point " + file.name + " " + path + "\n");
+    Scene run(before + "mpm_point " + file.name + " " + path + "\n");
   }
   MPI_Barrier(MPI_COMM_WORLD);
   auto table = read_table(file.name);
@@ -133,11 +123,9 @@ TEST(MixedControl, NeoHookeanInUniaxialStress)
 }
 
 // shear stress at given shear rate is free: simple shear with free normal stress
-
 TEST(MixedControl, ShearWithFreeFaces)
 {
-  const auto material = make(RUBBER);
-  MaterialPoint p(*material);
+  Point p(RUBBER);
   MixedControl c;
   c.L[1] = 0.1;
   c.stress_given[1] = c.stress_given[2] = true;
@@ -149,11 +137,9 @@ TEST(MixedControl, ShearWithFreeFaces)
 }
 
 // a rotation of the frame changes nothing in it, for any path
-
 TEST(MixedControl, SuperposedRotation)
 {
-  const auto material = make(RUBBER);
-  MaterialPoint p(*material), q(*material);
+  Point p(RUBBER), q(RUBBER);
   MixedControl c;
   c.L[0] = 0.4;
   c.L[1] = 0.3;
@@ -176,8 +162,7 @@ TEST(MixedControl, SuperposedRotation)
 TEST(MixedControl, ViscousFluidUnderShearStress)
 {
   const double viscosity = 3.0, tau = 12.0;
-  const auto material = make("density 1000 eos linear 1e6 viscosity newtonian 3");
-  MaterialPoint p(*material);
+  Point p("density 1000 eos linear 1e6 viscosity newtonian 3");
   MixedControl c;
   c.stress_given[3] = true;
   c.stress[3] = tau;
@@ -187,12 +172,9 @@ TEST(MixedControl, ViscousFluidUnderShearStress)
 }
 
 // all unknowns at once, far in the plastic range, and a strength that ends
-
 TEST(MixedControl, PlasticFlow)
 {
-  const auto material =
-      make("density 7800 eos linear 160e9 strength j2 80e9 300e6 hardening linear 2e9");
-  MaterialPoint p(*material);
+  Point p("density 7800 eos linear 160e9 strength j2 80e9 300e6 hardening linear 2e9");
   MixedControl c;
   for (bool &given : c.stress_given) given = true;
   const int n = 50;
@@ -205,8 +187,7 @@ TEST(MixedControl, PlasticFlow)
   EXPECT_NEAR(p.pressure(), 1e9, 1e-2);
   EXPECT_NEAR(p.history(0), (500e6 - 300e6) / 2e9, 1e-9);
 
-  const auto perfect = make("density 7800 eos linear 160e9 strength j2 80e9 300e6");
-  MaterialPoint q(*perfect);
+  Point q("density 7800 eos linear 160e9 strength j2 80e9 300e6");
   MixedControl tension;
   tension.stress_given[0] = tension.stress_given[1] = tension.stress_given[2] = true;
   tension.stress[0] = 299e6;
@@ -288,7 +269,6 @@ TEST(Point, BiaxialAndTriaxial)
 }
 
 // tension first, then compression, and back to no strain; the plastic strain goes on
-
 TEST(Point, Cycle)
 {
   auto t = drive("uniaxial/stress 1 cycle 0.01 2 steps 800 every 100 material density 7800 "
@@ -306,7 +286,6 @@ TEST(Point, Cycle)
 }
 
 // the Hugoniot that the equation of state was made from; energy by the jump condition
-
 TEST(Point, Shock)
 {
   auto t = drive("shock -1e6 strain 0.3 steps 30 material density 8930 eos shock 3940 1.49 1.96");
@@ -362,7 +341,6 @@ TEST(Point, FormulasOfTime)
 }
 
 // density is in mass/distance^3 units: here g/mol/Angstrom^3, velocity in Angstrom/ps, stress in bar
-
 TEST(Point, Units)
 {
   auto si = drive("uniaxial/strain -1e9 strain 0.1 material density 2700 eos shock 5350 1.34 2");
@@ -376,7 +354,6 @@ TEST(Point, Units)
 
 // a path that leaves two ranges of the material, one of them in many steps: one warning each, with the
 // first step; a path inside: none
-
 TEST(Point, LeavingARangeWarnsOnce)
 {
   const std::string material = " material density 1000 eos linear 1e9 strength elastic 1e8 "
@@ -384,9 +361,8 @@ TEST(Point, LeavingARangeWarnsOnce)
   const auto warnings = [&](const std::string &path) {
     const MPM_TEST::ScratchFile log("point.log");
     {
-      Scene run;
-      run.commands("log " + log.name + "\nunits si\nmpm_point NULL " + path + material +
-                   "\nlog none\n");
+      Scene run("log " + log.name + "\nunits si\nmpm_point NULL " + path + material +
+                "\nlog none\n");
     }
     MPI_Barrier(MPI_COMM_WORLD);
     std::vector<std::string> lines;

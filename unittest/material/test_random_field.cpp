@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: unit physics restart
 // mpi: 1 2
@@ -15,10 +10,6 @@
 #include "material/material_testing.h"
 #include "material/random_field.h"
 #include "mpm_lammps.h"
-
-#include "gtest/gtest.h"
-
-#include <cstdio>
 
 using namespace material_testing;
 using MPM_NS::RandomField;
@@ -105,7 +96,6 @@ TEST(RandomDefinition, Errors)
 }
 
 // points far apart: mean, variance, and distribution; pairs at a distance: correlation
-
 TEST_F(Random, MomentsAndCorrelation)
 {
   const double length = 0.1;
@@ -194,7 +184,6 @@ TEST_F(Random, IsSmoothAndTheSameFromAnywhere)
 }
 
 // factors have mean 1 and the coefficient of variation that was asked for
-
 TEST_F(Random, FactorsOfAMaterial)
 {
   const RandomField field(0.1, 7);
@@ -248,7 +237,6 @@ TEST_F(Random, FactorsOfAMaterial)
 }
 
 // each point of a batch is as with a material that has its value for all
-
 TEST_F(Random, EveryPointHasItsOwnMaterial)
 {
   const struct {
@@ -313,8 +301,7 @@ TEST_F(Random, EveryPointHasItsOwnMaterial)
     for (int i = 0; i < 5; i++) {
       char value[40];
       snprintf(value, sizeof(value), "%.17g", c.mean * factor[i]);
-      const auto plain = make(definition(value));
-      MaterialPoint p(*plain);
+      Point p(definition(value));
       follow(p, motion, 0.5, 20);
       for (int k = 0; k < 6; k++)
         EXPECT_NEAR(all.batch.stress[k][i], p.stress(k), 1e-11 * (c.mean + std::fabs(p.stress(k))));
@@ -331,7 +318,6 @@ TEST_F(Random, EveryPointHasItsOwnMaterial)
 }
 
 // the initial temperature, which is the start of a history variable
-
 TEST_F(Random, InitialTemperature)
 {
   for (const char *thermal : {"constant 300", "adiabatic 460 300 0.9"}) {
@@ -356,7 +342,6 @@ TEST_F(Random, InitialTemperature)
 }
 
 // laws that make their initial state themselves do so with the parameters of the point
-
 TEST_F(Random, InitialStateOfALaw)
 {
   const auto gas = make("density 1.2 eos ideal/gas 1.4 pressure 1e5 random P0 lognormal 0.3 1.0 5");
@@ -380,7 +365,6 @@ TEST_F(Random, InitialStateOfALaw)
 }
 
 // a range of the density looks at that of the point, and so does whoever asks for it
-
 TEST_F(Random, DensityOfAPoint)
 {
   const auto material =
@@ -402,14 +386,11 @@ TEST_F(Random, DensityOfAPoint)
 
 // factors are those of the field at the places where points are made, on any number of ranks; they
 // stay with their points, also through a restart file
-
 TEST_F(Random, FixAndRestart)
 {
-  const std::string scene = "units si\nboundary f f f\natom_style mpm\nneighbor 0.3 bin\n"
-                            "region box block 0 8 0 8 0 8\ncreate_box 1 box\n"
-                            "fix grid all mpm 1.0\n"
-                            "region body block 1 7 1 7 1 7\n"
-                            "create_points 1 region body ppc 2\n";
+  const std::string scene = MPM_TEST::space("si", "f f f", "0 8 0 8 0 8", 1, 0.3) +
+      "fix grid all mpm 1.0\nregion body block 1 7 1 7 1 7\n"
+      "create_points 1 region body ppc 2\n";
   const std::string material =
       "fix m all mpm/material density 7800 eos linear 160e9 strength j2 80e9 "
       "300e6 random SIGMAY lognormal 0.3 1.5 11\n";
@@ -431,8 +412,7 @@ TEST_F(Random, FixAndRestart)
   };
   std::vector<double> before;
   {
-    Scene run;
-    run.commands(scene + material);
+    Scene run(scene + material);
     double low = 10, high = 0;
     for (int i = 0; i < run.lmp->atom->nlocal; i++) {
       ASSERT_NEAR(row(run, i), expected(run.lmp->atom->x[i]), 1e-14);
@@ -452,9 +432,8 @@ TEST_F(Random, FixAndRestart)
     EXPECT_DOUBLE_EQ(run.evaluate("c_max[1]"), *std::max_element(before.begin(), before.end()));
   }
   {
-    Scene run;
-    run.commands("read_restart " + file.name + "\nneighbor 0.3 bin\nfix grid all mpm 1.0\n" +
-                 material + "run 0\n");
+    Scene run("read_restart " + file.name + "\nneighbor 0.3 bin\nfix grid all mpm 1.0\n" +
+              material + "run 0\n");
     EXPECT_EQ(gather(run), before);
     // points that come later are in the same field
     const LAMMPS_NS::bigint n = run.lmp->atom->natoms;
@@ -467,16 +446,13 @@ TEST_F(Random, FixAndRestart)
 
 // parameters of all kinds, each point with its own: the temperature that the same plastic work gives,
 // the stress of a term, and the mass
-
 TEST_F(Random, FixWithEveryKindOfParameter)
 {
-  Scene run;
-  run.commands("units si\nboundary f f f\natom_style mpm\nneighbor 0.3 bin\n"
-               "region box block 0 10 0 10 0 10\ncreate_box 1 box\nfix grid all mpm 1.0\n"
-               "region body block 1 9 1 9 1 9\ncreate_points 1 region body ppc 2\n"
-               "fix m all mpm/material density 2000 ogden 1e7 term 1e6 2 thermal adiabatic 500 300 "
-               "random density lognormal 0.1 0.5 1 random MU1 lognormal 0.2 0.5 2 "
-               "random T0 normal 0.05 0.5 3\n");
+  Scene run(MPM_TEST::space("si", "f f f", "0 10 0 10 0 10", 1, 0.3) +
+            MPM_TEST::body(
+                "block 1 9 1 9 1 9",
+                "density 2000 ogden 1e7 term 1e6 2 thermal adiabatic 500 300 random density "
+                "lognormal 0.1 0.5 1 random MU1 lognormal 0.2 0.5 2 random T0 normal 0.05 0.5 3"));
   const RandomField density(0.5, 1), modulus(0.5, 2), temperature(0.5, 3);
   const auto lognormal = [](double g, double c) {
     return std::exp(std::sqrt(std::log1p(c * c)) * g - 0.5 * std::log1p(c * c));

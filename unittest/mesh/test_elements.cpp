@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 3
@@ -14,10 +9,6 @@
 
 #include "fix_mpm_elements.h"
 #include "mpm_lammps.h"
-
-#include "gtest/gtest.h"
-
-#include <cmath>
 
 using namespace MPM_TEST;
 
@@ -167,15 +158,13 @@ double sum_over_ranks(double x)
 
 // Volume and mass, and the patch test: with an affine deformation forces on inner nodes vanish on an
 // irregular mesh, each node has F and the stress of the law, and the stored energy is that of the law
-
 TEST(Elements, Patch)
 {
   for (const auto &kind : kinds) {
     SCOPED_TRACE(
         strprintf("%dd %s%s", kind.dim, kind.simplices ? "simplices" : "cubes", kind.options));
     ScratchFile file("patch.msh", block_mesh(kind));
-    Scene run;
-    run.commands(block(kind, file.name));
+    Scene run(block(kind, file.name));
     run.commands("run 0\n");
     double mass = 0.0;
     const auto reference = positions(run);
@@ -230,7 +219,6 @@ TEST(Elements, Patch)
 }
 
 // forces are minus the gradient of the stored energy, and do not change with a rotation of the body
-
 TEST(Elements, ForcesAreTheGradientOfEnergy)
 {
   for (const auto &kind : kinds) {
@@ -246,14 +234,12 @@ TEST(Elements, ForcesAreTheGradientOfEnergy)
     };
     double energy[2], work = 0.0;
     for (int side = 0; side < 2; side++) {
-      Scene run;
-      run.commands(block(kind, file.name));
+      Scene run(block(kind, file.name));
       displace(run, side ? 1e-5 : -1e-5);
       run.commands("run 0\n");
       energy[side] = sum_over_ranks(elements(run)->stored_energy());
     }
-    Scene run;
-    run.commands(block(kind, file.name));
+    Scene run(block(kind, file.name));
     displace(run, 0.0);
     run.commands("run 0\n");
     double square = 0.0;
@@ -268,8 +254,7 @@ TEST(Elements, ForcesAreTheGradientOfEnergy)
     // turned by a finite angle
     const double turn[3][3] = {
         {cos(2.0), -sin(2.0), 0.0}, {sin(2.0), cos(2.0), 0.0}, {0.0, 0.0, 1.0}};
-    Scene turned;
-    turned.commands(block(kind, file.name));
+    Scene turned(block(kind, file.name));
     displace(turned, 0.0);
     deform(turned, turn);
     turned.commands("run 0\n");
@@ -284,17 +269,14 @@ TEST(Elements, ForcesAreTheGradientOfEnergy)
 }
 
 // free flight through cells and periodic faces: nothing happens to the body
-
-TEST(Elements, FreeFlight)
+SERIAL_TEST(Elements, FreeFlight)
 {
-  if (nranks() > 1) GTEST_SKIP() << "on one rank only";
   for (const auto &kind : kinds)
     for (const char *transfer : {"", "transfer flip 1.0"}) {
       SCOPED_TRACE(strprintf("%dd %s%s %s", kind.dim, kind.simplices ? "simplices" : "cubes",
                              kind.options, transfer));
       ScratchFile file("flight.msh", block_mesh(kind));
-      Scene run;
-      run.commands(block(kind, file.name, transfer));
+      Scene run(block(kind, file.name, transfer));
       run.commands(std::string("velocity all set 3.1 -2.3 ") + (kind.dim == 3 ? "1.7" : "0") +
                    "\ntimestep 0.02\ncompute e all mpm/energy\nthermo_style custom step c_e[2]\n"
                    "run 200\n");
@@ -310,17 +292,14 @@ TEST(Elements, FreeFlight)
 
 // a spinning elastic block keeps momentum, and angular momentum and energy nearly; the ledger closes,
 // and its integration entry decreases with the time step
-
-TEST(Elements, Spin)
+SERIAL_TEST(Elements, Spin)
 {
-  if (nranks() > 1) GTEST_SKIP() << "on one rank only";
   for (const char *locking : {"", " locking fbar"}) {
     const Kind kind = {2, false, locking};
     ScratchFile file("spin.msh", block_mesh(kind));
     double integration[2];
     for (int fine = 0; fine < 2; fine++) {
-      Scene run;
-      run.commands(block(kind, file.name, "transfer flip 1.0"));
+      Scene run(block(kind, file.name, "transfer flip 1.0"));
       run.commands(strprintf(R"(
 variable vx atom -0.8*(y-3.5)
 variable vy atom 0.8*(x-4)
@@ -362,15 +341,8 @@ static double beam(int ny, double h, bool simplices, const char *locking, double
   const int n[2] = {4 * ny, ny};
   const double l[2] = {4.0, 1.0};
   ScratchFile file("beam.msh", box_mesh(2, n, l, simplices, 0.0));
-  Scene run;
-  run.commands(strprintf(R"(
-units si
-dimension 2
-boundary f f p
-atom_style mpm
-neighbor %g bin
-region box block 0 6 -6 2 -0.5 0.5
-create_box 1 box
+  Scene run(plane("si", "f f", "0 6 -6 2", 1, 0.3 * h) +
+            strprintf(R"(
 fix grid all mpm %g transfer flip 1.0
 create_points 1 mesh %s
 fix m all mpm/material density 1050 neohookean 1e6 0.3
@@ -379,11 +351,10 @@ fix e all mpm/elements %s%s
 fix clamp all mpm/boundary xlo stick
 fix g all gravity 10 vector 0 -1 0
 fix step all mpm/dt 0.5
-thermo 100000
 variable t equal time
 fix end all halt 10 v_t > 1.15 error continue
 )",
-                         0.3 * h, h, file.name.c_str(), file.name.c_str(), locking));
+                      h, file.name.c_str(), file.name.c_str(), locking));
   double lowest = 0.0;
   const int corner = n[0] + 1;    // the ID of the node at 4 0
   run.each_step([&](double **) {
@@ -400,9 +371,8 @@ fix end all halt 10 v_t > 1.15 error continue
   return lowest;
 }
 
-TEST(Elements, Cantilever)
+SERIAL_TEST(Elements, Cantilever)
 {
-  if (nranks() > 1) GTEST_SKIP() << "on one rank only";
   double t;
   EXPECT_NEAR(measured("quadrangles 1/10, lattice 1/20, lowest", beam(10, 0.05, false, "", t)),
               -3.2958, 1e-3);
@@ -424,21 +394,14 @@ TEST(Elements, Cantilever)
 // lumped masses have omega = 2 c/l sin(k l/2). Forces reach the nodes through the lattice and back,
 // with FLIP velocities move them in the same way; each way is an average over a B-spline of the
 // variance h^2/4, so that omega is less by the factor exp(-k^2 h^2/4)
-
-TEST(Elements, Vibration)
+SERIAL_TEST(Elements, Vibration)
 {
-  if (nranks() > 1) GTEST_SKIP() << "on one rank only";
   const int n[3] = {16, 2, 2};
   const double l[3] = {16.0, 2.0, 2.0};
   for (const double h : {1.0, 0.5}) {
     ScratchFile file("bar.msh", box_mesh(3, n, l, false, 0.0));
-    Scene run;
-    run.commands(strprintf(R"(
-units lj
-boundary f f f
-atom_style mpm
-region box block 0 16 0 2 0 2
-create_box 1 box
+    Scene run(space("lj", "f f f", "0 16 0 2 0 2") +
+              strprintf(R"(
 fix g all mpm %g transfer flip 1.0
 create_points 1 mesh %s scale 0.9999999
 fix m all mpm/material density 1 linear 10 0
@@ -452,7 +415,7 @@ compute q all reduce sum v_q
 thermo_style custom step c_q
 timestep 0.01
 )",
-                           h, file.name.c_str(), file.name.c_str()));
+                        h, file.name.c_str(), file.name.c_str()));
     run.commands("run 0\n");
     double last = run.evaluate("c_q"), t = 0.0, period = 0.0;
     int crossings = 0;
@@ -472,24 +435,14 @@ timestep 0.01
 
 // a disk of triangles meets a disk of material points: momentum, energy, and what two disks of
 // material points do
-
-TEST(Elements, Impact)
+SERIAL_TEST(Elements, Impact)
 {
-  if (nranks() > 1) GTEST_SKIP() << "on one rank only";
   double rebound[2], together[2];
   for (const bool mesh : {false, true}) {
     ScratchFile file("disk.msh", disk_mesh(6, 3.0));
-    Scene run;
-    run.commands(R"(
-units lj
-dimension 2
-boundary f f p
-atom_style mpm
-region box block -10 10 -6 6 -0.5 0.5
-create_box 2 box
-region left cylinder z -3.5 0.1 3 INF INF
-region right cylinder z 3.5 -0.1 3 INF INF
-)");
+    Scene run(plane("lj", "f f", "-10 10 -6 6", 2) +
+              "region left cylinder z -3.5 0.1 3 INF INF\n"
+              "region right cylinder z 3.5 -0.1 3 INF INF\n");
     run.commands("group left type 1\ngroup right type 2\n"
                  "fix a left mpm 0.5 transfer flip 1.0\nfix b right mpm 0.5 transfer flip 1.0\n");
     run.commands(mesh ? "create_points 1 mesh " + file.name + " move -3.5 0.1\n"
@@ -530,7 +483,6 @@ timestep 0.01
 
 // A body too heavy to be stopped is sheared: past yield, the shear stress rises with the plastic strain of
 // all steps before, t = (s_y + H e)/sqrt(3) with e = (g - t/G)/sqrt(3).
-
 TEST(Elements, HardeningIsRemembered)
 {
   const double G = 10.0, sy = 0.05, H = 3.0, g = 0.1;
@@ -540,8 +492,7 @@ TEST(Elements, HardeningIsRemembered)
         strprintf("%dd %s%s", kind.dim, kind.simplices ? "simplices" : "cubes", kind.options));
     ScratchFile file("sheared.msh", block_mesh(kind), MPI_COMM_SELF);
     if (nranks() > 1) GTEST_SKIP() << "on one rank only";
-    Scene run;
-    run.commands(replaced(
+    Scene run(replaced(
         replaced(block(kind, file.name), "neohookean 30 0.3",
                  strprintf("eos linear 30 strength j2 %g %g hardening linear %g", G, sy, H)),
         "density 2 ", "density 2e8 "));
@@ -572,8 +523,7 @@ TEST(Elements, RanksAndRestart)
       serial.commands(replaced(start, file.name, own.name) + motion + "run 300\n");
       reference = serial.gather();
     }
-    Scene run;
-    run.commands(start + motion + "run 150\nwrite_restart " + restart.name + "\nrun 150\n");
+    Scene run(start + motion + "run 150\nwrite_restart " + restart.name + "\nrun 150\n");
     const auto state = run.gather();
     EXPECT_LT(measured("ranks", difference(reference, state)), 1e-9);
     double strain = 0.0;
@@ -589,23 +539,19 @@ TEST(Elements, RanksAndRestart)
   }
 }
 
-TEST(Elements, TimeStepAndErrors)
+SERIAL_TEST(Elements, TimeStepAndErrors)
 {
-  if (nranks() > 1) GTEST_SKIP() << "on one rank only";
-  using ::testing::HasSubstr;
   const Kind kind = {2, true, ""};
   ScratchFile file("errors.msh", block_mesh(kind, 0.0));
   {
-    Scene run;
-    run.commands(block(kind, file.name));
+    Scene run(block(kind, file.name));
     run.commands("fix dt all mpm/dt 1.0\nrun 0\n");
     // c^2 = (lambda + 2 mu)/rho; right triangles with two edges of 1: 2/sqrt(3 * 3) c
     const double c = sqrt((30.0 * 0.3 / (1.3 * 0.4) + 30.0 / 1.3) / 2.0);
     EXPECT_NEAR(run.lmp->update->dt * c, 2.0 / 3.0, 1e-9);
   }
   {
-    Scene run;
-    run.commands(block(kind, file.name) + "timestep 0.2\n");
+    Scene run(block(kind, file.name) + "timestep 0.2\n");
     EXPECT_THAT(run.error("run 1"), HasSubstr("is above the limit"));
   }
   const auto failure = [&](const std::string &from, const std::string &to) {
@@ -629,8 +575,7 @@ TEST(Elements, TimeStepAndErrors)
   EXPECT_THAT(failure("mpm/elements " + file.name, "mpm/elements none.msh"),
               HasSubstr("cannot open"));
   {
-    Scene run;
-    run.commands(block(kind, file.name) + "run 0\n");
+    Scene run(block(kind, file.name) + "run 0\n");
     for (int i = 0; i < run.n(); i++)
       if (run.lmp->atom->tag[i] == 7) run.x()[i][0] += 1.5;
     EXPECT_THAT(run.error("run 0\n"), HasSubstr("deformation gradient of determinant"));

@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
 
 // labels: smoke
 // mpi: 1 2
@@ -12,10 +7,6 @@
 // Closed surfaces of triangles, and the region that they bound.
 
 #include "mesh/stl_testing.h"
-
-#include "gtest/gtest.h"
-
-#include <cstring>
 
 using namespace MPM_TEST;
 using MPM_NS::SurfaceMesh;
@@ -56,7 +47,6 @@ TEST(SurfaceMesh, BoxHasExactDistances)
 }
 
 // at equally close faces the mean of their normals, at the surface that of the face, edge or corner
-
 TEST(SurfaceMesh, NormalsHaveTheSymmetryOfTheBody)
 {
   const SurfaceMesh mesh(text_of(box({-1.0, -1.0, -2.0}, {1.0, 1.0, 2.0})), "box", 1.0,
@@ -83,7 +73,6 @@ TEST(SurfaceMesh, NormalsHaveTheSymmetryOfTheBody)
 }
 
 // in the corners of a box all of its faces, outside of its edges the edge, never the far face of a plate
-
 TEST(SurfaceMesh, TouchesEachPartOnce)
 {
   const SurfaceMesh mesh(text_of(box({0.0, 0.0, 0.0}, {4.0, 4.0, 1.0})), "box", 1.0,
@@ -117,7 +106,6 @@ TEST(SurfaceMesh, TouchesEachPartOnce)
 }
 
 // x = u + s w, y = v + s/2 w with u, v, w independent and uniform over the edges of the box
-
 TEST(SurfaceMesh, ShearedBoxHasExactInertia)
 {
   const double a = 2.0, b = 1.5, c = 0.75, s = 0.8, mass = a * b * c;
@@ -134,7 +122,6 @@ TEST(SurfaceMesh, ShearedBoxHasExactInertia)
 }
 
 // at sharp edges, beyond which a point is behind one of the two triangles though it is outside
-
 TEST(SurfaceMesh, SharpEdges)
 {
   const double share = 3.0;
@@ -192,29 +179,22 @@ TEST(SurfaceMesh, RefusesWhatIsNotClosed)
   };
   Soup open = box({0, 0, 0}, {1, 1, 1});
   open.pop_back();
-  EXPECT_THAT(message(text_of(open)), ::testing::HasSubstr("not closed"));
+  EXPECT_THAT(message(text_of(open)), HasSubstr("not closed"));
   Soup turned = box({0, 0, 0}, {1, 1, 1});
   std::swap(turned[3][1], turned[3][2]);
-  EXPECT_THAT(message(binary_of(turned)), ::testing::HasSubstr("look outward"));
-  EXPECT_THAT(message("something else"), ::testing::HasSubstr("no STL file"));
-  EXPECT_THAT(message("solid x\nendsolid x\n"), ::testing::HasSubstr("no triangles"));
-  EXPECT_THAT(message("solid x\nvertex 0 0\n"), ::testing::HasSubstr("three coordinates"));
+  EXPECT_THAT(message(binary_of(turned)), HasSubstr("look outward"));
+  EXPECT_THAT(message("something else"), HasSubstr("no STL file"));
+  EXPECT_THAT(message("solid x\nendsolid x\n"), HasSubstr("no triangles"));
+  EXPECT_THAT(message("solid x\nvertex 0 0\n"), HasSubstr("three coordinates"));
   EXPECT_THAT(message("solid x\nvertex 0 0 nan\nvertex 0 0 1\nvertex 1 0 0\n"),
-              ::testing::HasSubstr("no three coordinates"));
+              HasSubstr("no three coordinates"));
   std::string cut = binary_of(box({0, 0, 0}, {1, 1, 1}));
   cut.resize(cut.size() - 7);
-  EXPECT_THAT(message(cut), ::testing::HasSubstr("no STL file"));
+  EXPECT_THAT(message(cut), HasSubstr("no STL file"));
 }
 
 // The region does all that a block of LAMMPS does: it is filled with points, and is a wall.
-
-static const char *const scene = R"(
-units lj
-boundary f f f
-atom_style mpm
-neighbor 0.3 bin
-region box block 0 8 0 8 0 8
-create_box 1 box
+static const std::string scene = space("lj", "f f f", "0 8 0 8 0 8") + R"(
 fix grid all mpm 1.0
 REGIONS
 create_points 1 region body ppc 2
@@ -223,7 +203,6 @@ velocity all set 0 0 -0.5
 fix w1 all mpm/boundary region wall slip
 fix w2 all mpm/boundary region tool stick
 timestep 0.02
-thermo 1000
 run 150
 )";
 
@@ -255,7 +234,6 @@ TEST(RegionMesh, ActsLikeABlock)
 // Grains that fall into a corner of three walls, and into an edge with friction and its history. (With history and three
 // walls at once, fix wall/gran/region takes the history of one wall for another when they are touched in another order
 // than the region lists them.)
-
 TEST(RegionMesh, HoldsGrainsLikeABlock)
 {
   const ScratchFile room("room.stl", text_of(box({1.0, 1.0, 1.0}, {9.0, 9.0, 9.0})));
@@ -279,7 +257,6 @@ fix wall all wall/gran/region granular hooke 500.0 20.0 tangential FRICTION regi
 fix pull all gravity 2.0 vector PULL
 timestep 0.002
 compute all all reduce sumsq x y z vx vy vz
-thermo 1000
 thermo_style custom step atoms c_all[*]
 run 1500
 )";
@@ -303,20 +280,14 @@ run 1500
 }
 
 // What a tool takes of the angular momentum of a body is its torque over time.
-
-TEST(RegionMesh, HasATorque)
+SERIAL_TEST(RegionMesh, HasATorque)
 {
-  if (nranks() > 1) GTEST_SKIP() << "sums are those of one rank";
   const ScratchFile tool("torus.stl", binary_of(torus(1.0, 0.4, 30)));
-  Scene run;
-  run.commands("units lj\nboundary f f f\natom_style mpm\nneighbor 0.3 bin\n"
-               "region box block 0 10 0 10 0 10\ncreate_box 1 box\nfix grid all mpm 0.5\n"
-               "region body block 3 6 4 7 2 4\ncreate_points 1 region body ppc 2\n"
-               "fix m all mpm/material density 1.0 neohookean 20.0 0.3\n"
-               "velocity all set 0.1 0.2 1.0\nregion tool mpm/mesh " +
-               tool.name +
-               " 1.5 4.4 6.1 5.0\nfix w all mpm/boundary region tool separate friction 0.3\n"
-               "timestep 0.01\nthermo 1000\n");
+  Scene run(space("lj", "f f f", "0 10 0 10 0 10") +
+            body("block 3 6 4 7 2 4", "density 1.0 neohookean 20.0 0.3", "0.5") +
+            "velocity all set 0.1 0.2 1.0\nregion tool mpm/mesh " + tool.name +
+            " 1.5 4.4 6.1 5.0\nfix w all mpm/boundary region tool separate friction 0.3\n"
+            "timestep 0.01\n");
   double impulse[6] = {0.0};
   auto *wall = run.fix("w");
   bool first = true;
