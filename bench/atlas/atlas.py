@@ -157,7 +157,7 @@ class Atlas:
         dim, best = sc.SCENES[scene]["dimension"], 0.0
         for r in self.runs:
             if r["scene"] == scene and r["status"] == "ok" and r["frame"] == c[3]:
-                ratio = float(r["h"]) / float(c[7])
+                ratio = float(r["h"]) / float(c[6])
                 points = int(r["points"]) * (ratio * int(c[4]) / int(r["ppc"]))**dim
                 steps = int(r["steps"]) * ratio * float(r["dtfrac"]) / float(c[5])
                 best = max(best, 0) or points * steps * ns * 1e-9
@@ -201,7 +201,7 @@ class Atlas:
         """Cost of all but dtfrac and h, at one spacing of the scene."""
         known = {(r["scene"],) + rs.cost_key(r) for r in self.costs}
         for c in combinations:
-            c = c[:5] + ("0.4", c[6], sc.cost_spacing(scene))
+            c = c[:5] + ("0.4", sc.cost_spacing(scene))
             key = (scene,) + rs.cost_key(dict(zip(sc.SETTINGS, c)))
             if key in known:
                 continue
