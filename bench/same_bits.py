@@ -16,7 +16,7 @@ laws of bench/bench_materials.cpp; the coupling of bench/in.*; and the examples,
 Each scene is run with all instruction sets that the processor has (MPM_ISA) and on 1, 2 and 4 ranks; with
 --quick only with the best one and on 1 and 2. PATTERN is a regular expression that is searched in the name of
 the scene. The command state_hash is a plugin, compiled here from same_bits.cpp for the stock build of LAMMPS
-that --lammps describes (default: the newest under ~/.cache/lammps-mpm). Where hashes differ, --compare shows the
+that --lammps describes (default: the one of the same version under ~/.cache/lammps-mpm). Where hashes differ, --compare shows the
 largest relative difference of the sums of |x|, |v| and the rest, so that round-off can be told from more. Scenes
 with fix balance on more than two ranks may differ by round-off.
 """
@@ -149,6 +149,14 @@ def build_plugin(description, folder):
                    check=True)
 
 
+def stock_build(lmp):
+    """Description of the stock build of LAMMPS that an executable is of; None if there is none."""
+    text = subprocess.run([lmp, "-h"], stdout=subprocess.PIPE, check=True).stdout.decode()
+    version = re.search(r"Simulator - (\d+ \w+ \d+)", text).group(1).replace(" ", "")
+    found = glob.glob(os.path.expanduser("~/.cache/lammps-mpm/build-%s-*/mpm_lammps.cmake" % version))
+    return max(found, key=os.path.getmtime, default=None)
+
+
 def run(lmp, plugins, scenes, name, isa, ranks):
     """Lines of state_hash as lists, and the end of the output if it failed."""
     env = dict(os.environ, MPM_ISA=isa, LAMMPS_PLUGIN_PATH=plugins, OMP_NUM_THREADS="1",
@@ -236,16 +244,18 @@ def main():
     parser.add_argument("--only", default="")
     parser.add_argument("--isa")
     parser.add_argument("--ranks")
-    parser.add_argument("--lammps", default=max(glob.glob(os.path.expanduser(
-        "~/.cache/lammps-mpm/build-*/mpm_lammps.cmake")), key=os.path.getmtime, default=None))
+    parser.add_argument("--lammps")
     parser.add_argument("--compare", nargs=2)
     args = parser.parse_args()
     if args.compare:
         sys.exit(compare(*args.compare))
     if args.write_scenes:
         return write_scenes(args.write_scenes, args.test)
-    if not (args.lmp and args.scenes and args.out and args.lammps):
-        parser.error("give LMP, --scenes, --out, and --lammps if there is no stock build in the usual place")
+    if not (args.lmp and args.scenes and args.out):
+        parser.error("give LMP, --scenes, and --out")
+    args.lammps = args.lammps or stock_build(args.lmp)
+    if not args.lammps:
+        parser.error("give --lammps: there is no stock build of the same version in the usual place")
     return run_all(args)
 
 
