@@ -13,11 +13,14 @@
 #include "compute_mpm_energy.h"
 #include "domain.h"
 #include "error.h"
+#include "fix_mpm_material.h"
 #include "fix_mpm_surface.h"
 #include "force.h"
 #include "group.h"
 #include "modify.h"
 #include "mpm_affine.h"
+#include "mpm_boxes.h"
+#include "mpm_cpdi.h"
 #include "mpm_every.h"
 #include "mpm_field.h"
 #include "mpm_frame.h"
@@ -26,6 +29,7 @@
 #include "mpm_plan.h"
 #include "mpm_point_map.h"
 #include "mpm_points.h"
+#include "mpm_stages.h"
 #include "mpm_time_limit.h"
 #include "neighbor.h"
 #include "output.h"
@@ -177,7 +181,7 @@ void FixMPM::setup_pre_neighbor()
     if (plan) field->guard->check_neighbors();
   }
   field->frame->setup();
-  field->give_initial_stress();
+  MPMStages::give_initial_stress(*field);
   field->map->sort();
   field->map->valid = false;
 }
@@ -229,7 +233,7 @@ void FixMPM::post_run()
   field->running = false;
   field->ledger.start.clear();
   if (field->affine) field->affine->remember_velocities();
-  if (field->counts.steps) field->plan->report(*field);
+  if (field->counts.steps) field->plan->report(*field, bytes_per_point());
 }
 
 /* ----------------------------------------------------------------------
@@ -240,7 +244,8 @@ void FixMPM::post_run()
 
 double FixMPM::compute_scalar()
 {
-  double n = field->npoints_local(), all;
+  double n = 0.0, all;
+  for (int i = 0; i < atom->nlocal; i++) n += field->is_point(i);
   MPI_Allreduce(&n, &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all;
 }
@@ -254,13 +259,25 @@ double FixMPM::compute_vector(int k)
   const auto &map = *field->map;
   if (k == 3) return map.nbuild;
   if (k == 4) return map.nsort;
-  double mine[4] = {(double) map.active.size(), (double) field->grid.blocks.size(),
-                    (double) map.npoints(),
-                    (double) field->halo->bytes_sent / std::max((bigint) 1, field->counts.steps)};
+  double mine[4] = {
+      (double) map.active.size(), (double) field->grid.blocks.size(), (double) map.npoints(),
+      (double) field->nodes.halo->bytes_sent / std::max((bigint) 1, field->counts.steps)};
   double all[4];
   MPI_Allreduce(mine, all, 4, MPI_DOUBLE, MPI_SUM, world);
   if (k == 2) return all[0] > 0.0 ? all[2] / all[0] : 0.0;
   return all[k == 5 ? 3 : k];
+}
+
+/** Per-point state: what LAMMPS keeps of any atom, atom style mpm, affine matrix, history. */
+double FixMPM::bytes_per_point() const
+{
+  double bytes = 9 * sizeof(double) + sizeof(tagint) + 2 * sizeof(int) + sizeof(imageint);
+  bytes += (1 + 1 + 9 + 6) * sizeof(double);    // mass, V0, F, stress
+  bytes += state.size() * sizeof(double) + field->frame->bytes_per_point();
+  if (field->boxes) bytes += 3 * sizeof(double);
+  if (field->domains) bytes += field->domains->bytes_per_point();
+  for (auto *material : field->materials) bytes += material->nhistory * sizeof(double);
+  return bytes;
 }
 
 double FixMPM::memory_usage()

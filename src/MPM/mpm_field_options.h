@@ -59,6 +59,11 @@ struct MPMFieldOptions {
   /** What does the cure for locking average: changes of volume, pressures in the force? */
   bool averages_strain() const { return locking == FBAR || locking == BOTH; }
   bool averages_stress() const { return locking == PRESSURE || locking == BOTH; }
+  /** Do positions of the end of the step have to wait until stress is known? */
+  bool moves_late() const
+  {
+    return stress_after() || light > 0.0 || (averages_strain() && !stress_before());
+  }
   /** Do points have a size, by which they reach nodes? */
   bool has_size() const;
   /** Forces and strains have the gradients of the shape functions, the affine matrix has not. */

@@ -143,7 +143,7 @@ void MPMPlan::find_blocks()
     if (field->map->valid) continue;
     for (auto *action : actions) action->extend_topology(*field);
     field->map->finish_blocks();
-    if (field->edges) field->edges->find(false);
+    if (field->nodes.edges) field->nodes.edges->find(false);
     for (auto *action : actions) action->topology_changed(*field);
   }
   for (auto *field : fields)
@@ -166,7 +166,13 @@ void MPMPlan::start()
   for (auto &stage : stages) std::fill(stage.seconds.begin(), stage.seconds.end(), 0.0);
   wall_start = platform::walltime();
   cpu_start = platform::cputime();
-  for (auto *field : fields) field->start_counting();
+  for (auto *field : fields) {
+    field->counts = {0, 0.0, field->step_dt(), field->step_dt()};
+    field->nodes.halo->bytes_sent = 0;
+    field->map->nbuild = field->map->nsort = 0;
+    field->map->sort_time = 0.0;
+    field->frame->start_counting();
+  }
 
   if (comm->me || std::none_of(fields.begin(), fields.end(), [](auto *field) {
         return field->options.plan;
@@ -200,7 +206,7 @@ std::vector<MPMPlan::Time> MPMPlan::times(const MPMField &field) const
    entry
 ------------------------------------------------------------------------- */
 
-void MPMPlan::report(const MPMField &field) const
+void MPMPlan::report(const MPMField &field, double bytes_per_point) const
 {
   constexpr double IDLE = 0.9;    // of the time is the processor's, or else others have taken it
   const auto &counts = field.counts;
@@ -214,7 +220,7 @@ void MPMPlan::report(const MPMField &field) const
   MPI_Allreduce(&use, &least_use, 1, MPI_DOUBLE, MPI_MIN, world);
   double local[4] = {counts.point_steps, (double) field.map->active.size(),
                      (double) field.grid.blocks.size(),
-                     (double) field.halo->bytes_sent / counts.steps},
+                     (double) field.nodes.halo->bytes_sent / counts.steps},
          sum[4];
   MPI_Allreduce(local, sum, 4, MPI_DOUBLE, MPI_SUM, world);
   if (comm->me) return;
@@ -243,9 +249,9 @@ void MPMPlan::report(const MPMField &field) const
                  "{:.1f} points per block\n"
                  "  {} updates of the topology, {} sorts, {:.0f} halo bytes per step, "
                  "time step {:.6g} to {:.6g}\n",
-                 field.id(), npoints, field.kernels->isa, total, stages_text,
-                 field.bytes_per_point(), sum[1], sum[2], npoints / std::max(1.0, sum[1]),
-                 field.map->nbuild, field.map->nsort, sum[3], counts.dt_min, counts.dt_max);
+                 field.id(), npoints, field.kernels->isa, total, stages_text, bytes_per_point,
+                 sum[1], sum[2], npoints / std::max(1.0, sum[1]), field.map->nbuild,
+                 field.map->nsort, sum[3], counts.dt_min, counts.dt_max);
   if (least_use < IDLE)
     utils::logmesg(lmp,
                    "  the machine was busy: these times are from a run with {:.0f} % CPU use\n",

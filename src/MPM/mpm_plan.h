@@ -59,7 +59,7 @@ class MPMPlan : protected Pointers {
   /** A step of LAMMPS: one of the cycle, if it is time for it. */
   void step();
   /** What the steps of a run have cost a field, to screen and log file. */
-  void report(const MPMField &) const;
+  void report(const MPMField &, double bytes_per_point) const;
 
   /** Blocks in reach of points, of all fields whose points have moved in memory or away. */
   void find_blocks();

@@ -153,7 +153,7 @@ void MPMPointMap::find_blocks()
     if (!field.is_point(i)) continue;
     int base[3], b[3];
     double t[3];
-    if (!base_node(field.place(i), base, t)) {
+    if (!base_node(field.frame->places()[i], base, t)) {
       field.guard->point_is_bad(i, "is far out of reach of the lattice");
       continue;
     }
@@ -238,8 +238,8 @@ void MPMPointMap::finish_blocks()
 {
   field.grid.close_periodic();
   field.grid.finish();
-  field.allocate_nodes();
-  field.halo->setup(field.grid);
+  field.nodes.allocate(field.kernel.nreal);
+  field.nodes.halo->setup(field.grid);
 
   valid = true;
   drifted = 0;
@@ -270,7 +270,7 @@ void MPMPointMap::sort()
   for (int i = 0; i < nlocal; i++) {
     int base[3];
     double t[3];
-    if (!field.is_point(i) || !base_node(field.place(i), base, t)) continue;
+    if (!field.is_point(i) || !base_node(field.frame->places()[i], base, t)) continue;
     std::array<int, 3> block;
     for (int d = 0; d < 3; d++) block[d] = base[d] >> field.grid.shift_bits;
     if (block != last) {

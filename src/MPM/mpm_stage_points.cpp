@@ -32,14 +32,14 @@ using namespace MPM_NS;
 
 void MPMStages::nodes_to_points(MPMField &field, Strain strain)
 {
-  field.complete_velocities();
+  field.nodes.complete_velocities();
   MPMFrame &frame = *field.frame;
-  const bool late = field.moves_late(), strains = strain >= GRADIENTS;
+  const bool late = field.options.moves_late(), strains = strain >= GRADIENTS;
   const bool apart = strains && field.options.strains_apart(), refers = strains && frame.refers();
   const bool in_C = field.kernel.gradient_in_C && !refers;    // what stress needs is there
   const bool keeps = strain == GRADIENTS && !in_C;
   const int nL = field.lattice.dim * field.lattice.dim;
-  if (late) field.work.xnew.resize(3 * (std::size_t) field.nmax());
+  if (late) field.work.xnew.resize(3 * (std::size_t) field.atom->nmax);
   if (strain != ELSEWHERE) frame.begin_strain();
   double *const kept = keeps ? field.locking->room_for_gradients() : nullptr;
 
@@ -73,7 +73,7 @@ void MPMStages::nodes_to_points(MPMField &field, Strain strain)
 
 void MPMStages::move_points(MPMField &field)
 {
-  double **const x = field.positions();
+  double **const x = field.atom->x;
   for (const auto &run : field.map->runs)
     memcpy(&x[run.first][0], &field.work.xnew[3 * (std::size_t) run.first],
            3 * sizeof(double) * (run.last - run.first));
@@ -93,6 +93,11 @@ void MPMStages::checks(MPMField &field)
   field.guard->handle_bad_points();
   field.frame->end_of_step();
   field.time_limit->check();
-  field.count_step();
+  auto &counts = field.counts;
+  const double dt = field.step_dt();
+  counts.dt_min = std::min(counts.dt_min, dt);
+  counts.dt_max = std::max(counts.dt_max, dt);
+  counts.steps++;
+  counts.point_steps += map.npoints();
   if (field.every) field.every->finish();
 }

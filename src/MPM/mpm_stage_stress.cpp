@@ -16,8 +16,11 @@
 #include "mpm_guard.h"
 #include "mpm_locking.h"
 #include "mpm_passes.h"
+#include "mpm_point_batches.h"
+#include "mpm_points.h"
 #include "mpm_stages.h"
 #include "mpm_time_limit.h"
+#include "update.h"
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -30,14 +33,14 @@ using namespace MPM_NS;
 void MPMStages::strain_from_nodes(MPMField &field, double share, double shift_share,
                                   bool move_corners)
 {
-  field.complete_velocities();
+  field.nodes.complete_velocities();
   MPMFrame &frame = *field.frame;
   const double dt = share * field.step_dt(), shift = shift_share * field.step_dt();
   const TransferStep s = field.step_data();
   PointRows r = field.rows();
   PointRows with_corners = r;
   if (field.domains && move_corners) with_corners.corners_new = field.domains->moved(true);
-  const bool fbar = field.locking && field.locking->averages_strain();
+  const bool fbar = field.options.averages_strain();
   double *const kept = fbar ? field.locking->room_for_gradients() : nullptr;
   const int nL = field.lattice.dim * field.lattice.dim;
   frame.begin_strain();
@@ -55,6 +58,13 @@ void MPMStages::strain_from_nodes(MPMField &field, double share, double shift_sh
 
 /* ---------------------------------------------------------------------- */
 
+/** Time at the end of the present step. */
+static double end_of_step(const MPMField &field)
+{
+  const Update &update = *field.lmp->update;
+  return update.atime + (update.ntimestep - update.atimestep) * update.dt;
+}
+
 void MPMStages::update_stress(MPMField &field, const PointRows &r, const MPMPointMap::Run &run,
                               int first, int n, const double *L, double dt)
 {
@@ -64,8 +74,8 @@ void MPMStages::update_stress(MPMField &field, const PointRows &r, const MPMPoin
   if (!material) return;    // nodes of elements
   double *F = r.F + 9 * (bigint) first, *tau = r.tau + 6 * (bigint) first;
   field.frame->load(b, first, n, dt, L, F, tau, r.vol0 + first);
-  b.history = field.history_batch();
-  b.time = field.end_of_step();
+  b.history = reinterpret_cast<double(*)[BATCH]>(field.work.history.data());
+  b.time = end_of_step(field);
 
   const int nhistory = material->nhistory;
   if (nhistory) {
@@ -97,4 +107,41 @@ void MPMStages::update_stress(MPMField &field, const PointRows &r, const MPMPoin
       if (!(b.J[p] > 0.0))
         field.guard->point_is_bad(
             first + p, fmt::format("has a deformation gradient of determinant {}", b.J[p]));
+}
+
+/* ----------------------------------------------------------------------
+   points without any stress get the pressure of their equation of state, so that the first step
+   begins with that of a gas; for points that have come to zero stress this changes nothing;
+   points that have failed keep it
+------------------------------------------------------------------------- */
+
+void MPMStages::give_initial_stress(MPMField &field)
+{
+  Batch &batch = *field.batch;
+  double **const tau = field.points->tau;
+  std::vector<double> room;
+  std::vector<int> list;
+  const FixMPMMaterial *material = nullptr;
+  const auto flush = [&]() {
+    if (list.empty()) return;
+    load_state(field, batch, list.data(), (int) list.size(), material, room);
+    batch.time = end_of_step(field);
+    material->material->initial_stress(batch);
+    for (std::size_t k = 0; k < list.size(); k++)
+      for (int c = 0; c < 6; c++) tau[list[k]][c] = batch.J[k] * batch.stress[c][k];
+    list.clear();
+  };
+
+  for (int i = 0; i < field.atom->nlocal; i++) {
+    if (!field.is_point(i) || std::any_of(tau[i], tau[i] + 6, [](double s) {
+          return s != 0.0;
+        }))
+      continue;
+    const auto *mine = field.material_of(i);
+    if (mine != material || list.size() == BATCH) flush();
+    material = mine;
+    const bool failed = mine && mine->damage >= 0 && mine->history[i][mine->damage] >= 1.0;
+    if (mine && !failed) list.push_back(i);
+  }
+  flush();
 }

@@ -32,11 +32,11 @@ bool has_light_nodes(Field field)
 }
 bool averages_pressure(Field field)
 {
-  return field.locking && field.locking->averages_stress();
+  return field.options.averages_stress();
 }
 bool averages_strain(Field field)
 {
-  return field.locking && field.locking->averages_strain();
+  return field.options.averages_strain();
 }
 
 /** Nodes after the momentum equation: what else changes their velocities, and the energy of that. */
