@@ -75,15 +75,24 @@ struct OptionReader {
   [[noreturn]] void fail(int iarg, const std::string &name, const std::string &text) const;
 };
 
+/** What the manual says of values: their names, separated by blanks, and what they mean. */
+struct OptionNote {
+  std::string names, meaning, unit = "";
+  Range range = ANY_NUMBER;
+};
+
+struct OptionWord;
+
 /** A value after a keyword: made by the functions in namespace option. */
 struct OptionValue {
-  std::string name;                  ///< in messages
-  std::string usage;                 ///< as it is written in the manual
-  std::vector<std::string> lines;    ///< its explanation there
-  int count;                         ///< numbers or words of it
+  std::string name;     ///< in messages
+  std::string usage;    ///< as it is written in the manual; empty: one of the words
+  int count;            ///< numbers or words of it
   bool optional = false;
   std::function<void(OptionReader &)> read;
   std::function<std::string()> text;    ///< present value, as in the input
+  std::vector<OptionNote> notes;
+  std::vector<OptionWord> words;
 };
 
 /** One of the words that a value can be. */
@@ -107,24 +116,29 @@ using OptionRules = std::vector<OptionRule>;
  *  as velocity, "1" for none that has no unit, "" for what needs no mention. */
 namespace option {
 
-  OptionValue number(double &, const std::string &name, const Range &, const std::string &unit = "",
-                     const std::string &meaning = "");
-  OptionValue integer(int &, const std::string &name, const Range &,
-                      const std::string &meaning = "");
-  OptionValue integer(int64_t &, const std::string &name, const Range &,
-                      const std::string &meaning = "");
-  /** n numbers with one meaning; their names are separated by blanks. */
-  OptionValue numbers(double *, int n, const std::string &names, const Range &,
+  /** n numbers (double, int, int64_t) with one meaning; their names are separated by blanks. */
+  template <class Number>
+  OptionValue numbers(Number *, int n, const std::string &names, const Range &,
                       const std::string &unit = "", const std::string &meaning = "");
+  inline OptionValue number(double &to, const std::string &name, const Range &range,
+                            const std::string &unit = "", const std::string &meaning = "")
+  {
+    return numbers(&to, 1, name, range, unit, meaning);
+  }
+  template <class Integer>
+  OptionValue integer(Integer &to, const std::string &name, const Range &range,
+                      const std::string &meaning = "")
+  {
+    return numbers(&to, 1, name, range, "", meaning);
+  }
   /** One for each axis; names are those in 3d. */
   OptionValue axes(double *, int dim, const std::string &names, const Range &,
                    const std::string &unit = "", const std::string &meaning = "");
   /** One for each axis or one for all of them, which has the first of the names. */
-  OptionValue one_or_axes(double *, int dim, const std::string &names, const Range &,
+  template <class Number>
+  OptionValue one_or_axes(Number *, int dim, const std::string &names, const Range &,
                           const std::string &unit, const std::string &meaning,
                           const std::string &meaning_each);
-  OptionValue one_or_axes(int *, int dim, const std::string &names, const Range &,
-                          const std::string &meaning, const std::string &meaning_each);
   OptionValue yes_no(bool &);
   /** Any word, such as an ID. */
   OptionValue text(std::string &, const std::string &name, const std::string &meaning = "");
@@ -166,16 +180,16 @@ class Option {
   /** What the manual says of the default, instead of the value. */
   Option &standard(const std::string &);
 
- private:
-  friend class Options;
   std::string keyword, meaning, preset;
   std::vector<OptionValue> values;
+
+ private:
+  friend class Options;
   bool kept = false, single = false;
   int where = -1;    // the argument with the keyword, as given last
   std::function<void()> after;
 
   std::string text() const;
-  std::vector<std::string> lines() const;
 };
 
 /** All options of a style. */
@@ -215,9 +229,7 @@ class Options {
   /** Where these differ from what kept() returned when the file was written; empty: nowhere. */
   std::string differences(const std::string &kept_then) const;
 
-  /** For the manual: the block of keywords, and the sentence about the defaults. */
-  std::string table() const;
-  std::string defaults() const;
+  const std::vector<Option> &all() const { return options; }
 
  private:
   std::string command;
