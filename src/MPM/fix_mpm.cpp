@@ -26,6 +26,7 @@
 #include "mpm_frame.h"
 #include "mpm_guard.h"
 #include "mpm_halo.h"
+#include "mpm_options.h"
 #include "mpm_plan.h"
 #include "mpm_point_map.h"
 #include "mpm_points.h"
@@ -58,10 +59,12 @@ FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
     error->all(FLERR, 3, "Fix mpm node spacing must be positive: {}", arg[3]);
 
   MPMFieldOptions options;
-  options.read(lmp, narg, arg, 4, domain->dimension);
-  if (!options.has_origin) std::copy_n(domain->boxlo, domain->dimension, options.origin);
+  auto declared = options.declare(domain->dimension);
+  read_options(lmp, declared, narg, arg, 4);
+  if (!declared.given("origin")) std::copy_n(domain->boxlo, domain->dimension, options.origin);
   field.reset(new MPMField(lmp, *this, h, options, state));
-  if (comm->me == 0) utils::logmesg(lmp, "Fix mpm {}: spacing {} {}\n", id, h, options.text());
+  if (comm->me == 0)
+    utils::logmesg(lmp, "Fix mpm {}: spacing {} {}\n", id, h, options.declare(3).text());
 
   time_integrate = 1;
   dynamic_group_allow = 0;
@@ -109,7 +112,8 @@ void FixMPM::init()
                "Fix mpm requires a box of constant size and shape: remove the fix that "
                "changes it");
   if (comm->me == 0)
-    for (const auto &text : field->options.warnings()) error->warning(FLERR, text);
+    for (const auto &text : MPMFieldOptions(field->options).declare(3).warnings())
+      error->warning(FLERR, text);
 
   plan.reset();
   if (drives()) {
@@ -318,7 +322,7 @@ void FixMPM::write_restart(FILE *fp)
   std::vector<double> start = field->ledger.start;
   for (auto *compute : modify->get_compute_by_style("^mpm/energy$"))
     if (start.empty()) start = dynamic_cast<ComputeMPMEnergy *>(compute)->start_sums();
-  const std::string text = field->options.kept();
+  const std::string text = MPMFieldOptions(field->options).declare(3).kept();
   saved.nstart = (int) start.size();
   saved.ntext = (int) text.size();
   if (comm->me) return;
@@ -334,7 +338,8 @@ void FixMPM::restart(char *buf)
   Saved saved;
   memcpy(&saved, buf, sizeof(Saved));
   const char *const start = buf + sizeof(Saved), *text = start + saved.nstart * sizeof(double);
-  const std::string differences = field->options.differences(std::string(text, text + saved.ntext));
+  const std::string differences =
+      MPMFieldOptions(field->options).declare(3).differences(std::string(text, text + saved.ntext));
   if (!differences.empty())
     error->all(
         FLERR, Error::NOLASTLINE,

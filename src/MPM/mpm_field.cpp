@@ -166,7 +166,8 @@ void MPMField::init(MPMPlan *plan_of_all)
 
   // the same instruction set for transfers, batches and laws
 
-  const char *wanted = options.kernels.empty() ? nullptr : options.kernels.c_str();
+  static const char *const sets[] = {nullptr, "reference", "baseline", "avx2", "avx512"};
+  const char *wanted = sets[options.kernels];
   kernels = MPMKernels::select(wanted);
   batch_kernels = BatchKernels::select(lattice.dim, wanted, options.axisymmetric);
   bool can_run = kernels && batch_kernels;

@@ -48,47 +48,40 @@ void MPMPlan::make()
   for (auto *other : physics) other->init_physics(*this);
 
   stages.clear();
-  switch (fields[0]->options.scheme) {
-    case MPMFieldOptions::USL:
-      return make_usl(*this);
-    case MPMFieldOptions::USF:
-      return make_usf(*this);
-    case MPMFieldOptions::MUSL:
-      return make_musl(*this);
-    case MPMFieldOptions::USAVG:
-      return make_usavg(*this);
-  }
+  static void (*const make_list[])(MPMPlan &) = {make_usl, make_usf, make_musl, make_usavg};
+  make_list[fields[0]->options.scheme](*this);    // in the order of MPMFieldOptions::Scheme
 }
 
 /* ---------------------------------------------------------------------- */
 
 void MPMPlan::each(const std::string &name, Each run, Wanted wanted)
 {
-  Stage stage;
-  stage.name = name;
-  stage.each = std::move(run);
+  std::vector<MPMField *> list;
   for (auto *field : fields)
-    if (!wanted || wanted(*field)) stage.fields.push_back(field);
-  if (stage.fields.empty()) return;
-  stage.seconds.assign(stage.fields.size(), 0.0);
-  stages.push_back(std::move(stage));
+    if (!wanted || wanted(*field)) list.push_back(field);
+  const std::vector<double> seconds(list.size(), 0.0);
+  if (!list.empty()) stages.push_back({name, std::move(run), list, false, seconds});
 }
 
-void MPMPlan::together(const std::string &name, std::function<void()> run)
+void MPMPlan::together(const std::string &name, const std::function<void()> &run, Wanted wanted)
 {
-  Stage stage;
-  stage.name = name;
-  stage.once = std::move(run);
-  stage.seconds.assign(1, 0.0);
-  stages.push_back(std::move(stage));
+  const auto once = [run](MPMField &) {
+    run();
+  };
+  const auto wants = [&wanted](const MPMField *field) {
+    return !wanted || wanted(*field);
+  };
+  if (std::any_of(fields.begin(), fields.end(), wants))
+    stages.push_back({name, once, {fields[0]}, true, {0.0}});
 }
 
-void MPMPlan::node_actions(MPMNodeAction::Stage stage)
+void MPMPlan::node_actions(MPMNodeAction::Stage stage, Wanted wanted)
 {
   if (actions.empty()) return;
-  together("node actions", [this, stage]() {
+  const auto act = [this, stage]() {
     act_on_nodes(stage);
-  });
+  };
+  together("node actions", act, std::move(wanted));
 }
 
 void MPMPlan::place(Place at)
@@ -117,10 +110,7 @@ void MPMPlan::step()
   double time = platform::walltime();
   for (auto &stage : stages) {
     for (std::size_t k = 0; k < stage.seconds.size(); k++) {
-      if (stage.fields.empty())
-        stage.once();
-      else
-        stage.each(*stage.fields[k]);
+      stage.run(*stage.fields[k]);
       const double now = platform::walltime();
       stage.seconds[k] += now - time;
       time = now;
@@ -182,7 +172,7 @@ void MPMPlan::start()
   for (const auto &stage : stages) {
     text += "  " + stage.name;
     for (auto *field : stage.fields)
-      if (fields.size() > 1) text += std::string(" ") + field->id();
+      if (fields.size() > 1 && !stage.once) text += std::string(" ") + field->id();
     text += "\n";
   }
   utils::logmesg(lmp, text);
@@ -193,11 +183,9 @@ void MPMPlan::start()
 std::vector<MPMPlan::Time> MPMPlan::times(const MPMField &field) const
 {
   std::vector<Time> list = {{"sort", field.map->sort_time}};
-  for (const auto &stage : stages) {
-    if (stage.fields.empty() && &field == fields[0]) list.push_back({stage.name, stage.seconds[0]});
+  for (const auto &stage : stages)
     for (std::size_t k = 0; k < stage.fields.size(); k++)
       if (stage.fields[k] == &field) list.push_back({stage.name, stage.seconds[k]});
-  }
   return list;
 }
 

@@ -47,10 +47,10 @@ class MPMPlan : protected Pointers {
 
   /** Append a stage that is run for each field that wants it; without these there is no such stage. */
   void each(const std::string &name, Each run, Wanted wanted = nullptr);
-  /** Append a stage that is run once for all fields. */
-  void together(const std::string &name, std::function<void()> run);
+  /** Append a stage that is run once for all fields, if any of them wants it. */
+  void together(const std::string &name, const std::function<void()> &run, Wanted wanted = nullptr);
   /** Append node actions on one kind of velocities, if there are any. */
-  void node_actions(MPMNodeAction::Stage);
+  void node_actions(MPMNodeAction::Stage, Wanted wanted = nullptr);
   /** Append what other physics have at this place. */
   void place(Place);
 
@@ -70,10 +70,10 @@ class MPMPlan : protected Pointers {
  private:
   struct Stage {
     std::string name;
-    std::vector<MPMField *> fields;    // empty: run once
-    Each each;
-    std::function<void()> once;
-    std::vector<double> seconds;
+    Each run;
+    std::vector<MPMField *> fields;    // the first one, if it is run once
+    bool once;
+    std::vector<double> seconds;    // of each of these
   };
   std::vector<Stage> stages;
   double wall_start, cpu_start;    // of the run [s]
