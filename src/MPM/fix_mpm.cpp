@@ -147,15 +147,13 @@ void FixMPM::check_fields() const
   const auto &mine = field->options;
   for (const auto *other : MPMField::all(lmp)) {
     const auto &options = other->options;
-    if (options.every != mine.every)
-      error->all(FLERR, "All fix mpm instances must have the same every: {} and {} differ", id,
-                 other->id());
-    if (options.scheme != mine.scheme)
-      error->all(FLERR, "All fix mpm instances must have the same scheme: {} and {} differ", id,
-                 other->id());
-    if (options.axisymmetric != mine.axisymmetric)
-      error->all(FLERR, "All fix mpm instances must be axisymmetric, or none: {} and {} differ", id,
-                 other->id());
+    const std::pair<bool, const char *> rules[] = {
+        {options.every != mine.every, "have the same every"},
+        {options.scheme != mine.scheme, "have the same scheme"},
+        {options.axisymmetric != mine.axisymmetric, "be axisymmetric, or none"}};
+    for (const auto &[differ, what] : rules)
+      if (differ)
+        error->all(FLERR, "All fix mpm instances must {}: {} and {} differ", what, id, other->id());
   }
   if (!neighbor->includegroup) return;
   for (auto *ifix : modify->get_fix_by_style("^mpm/surface$"))
