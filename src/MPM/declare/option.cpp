@@ -119,16 +119,18 @@ std::string name_of(const std::string &names, int k, int n)
   return n == 1 ? names : split(names, ' ')[k];
 }
 
-OptionValue make(const std::string &name, const std::string &usage, int count,
-                 std::function<void(OptionReader &)> read, std::function<std::string()> text)
+/** Present values, as in the input. */
+std::string text_of(const std::vector<OptionValue> &values)
 {
-  OptionValue value;
-  value.name = name;
-  value.usage = usage;
-  value.count = count;
-  value.read = std::move(read);
-  value.text = std::move(text);
-  return value;
+  Strings parts;
+  for (const auto &value : values) parts.push_back(value.text());
+  return join(parts, " ");
+}
+
+void read_values(const std::vector<OptionValue> &values, OptionReader &r)
+{
+  for (const auto &value : values)
+    if (!value.optional || is_number(r, r.iarg)) value.read(r);
 }
 
 }    // namespace
@@ -148,16 +150,17 @@ void OptionReader::fail(int at, const std::string &name, const std::string &text
 
 // ---------------------------------------------------------------------- kinds of values
 
-template <class Number>
-OptionValue option::numbers(Number *to, int n, const std::string &names, const Range &range,
+OptionValue option::numbers(OptionNumber first, int n, const std::string &names, const Range &range,
                             const std::string &unit, const std::string &meaning)
 {
-  const auto read = [=](OptionReader &r) {
-    for (int k = 0; k < n; k++) take(r, name_of(names, k, n), range, to[k]);
+  const std::vector<OptionNote> notes = {{names, meaning, unit, range}};
+  const auto value_of = [&](auto *to) {
+    const auto read = [=](OptionReader &r) {
+      for (int k = 0; k < n; k++) take(r, name_of(names, k, n), range, to[k]);
+    };
+    return OptionValue{names, n, read, writer(to, n), notes};
   };
-  OptionValue value = make(names, names, n, read, writer(to, n));
-  value.notes = {{names, meaning, unit, range}};
-  return value;
+  return std::visit(value_of, first);
 }
 
 OptionValue option::axes(double *to, int dim, const std::string &names, const Range &range,
@@ -168,52 +171,41 @@ OptionValue option::axes(double *to, int dim, const std::string &names, const Ra
   return value;
 }
 
-template <class Number>
-OptionValue option::one_or_axes(Number *to, int dim, const std::string &names, const Range &range,
-                                const std::string &unit, const std::string &meaning,
-                                const std::string &meaning_each)
+OptionValue option::one_or_axes(OptionNumber first, int dim, const std::string &names,
+                                const Range &range, const std::string &unit,
+                                const std::string &meaning, const std::string &meaning_each)
 {
   const Strings all = split(names, ' ');
   const std::string each = join(Strings(all.begin() + 1, all.end()), " ");
-  const auto read = [=](OptionReader &r) {
-    int n = 0;
-    while (is_number(r, r.iarg + n)) n++;
-    if (r.iarg >= r.input.narg) r.next();
-    const std::string d = std::to_string(dim);
-    if (n != 1 && n != dim)
-      r.fail(r.iarg - 1, "",
-             "expects 1 or " + d + " numbers in a " + d + "d simulation, not " + std::to_string(n));
-    for (int k = 0; k < n; k++) take(r, all[0], range, to[k]);
-    for (int k = n; k < dim; k++) to[k] = to[0];
+  const std::string usage = all[0] + " or " + each + " (in 2d: " + all[1] + " " + all[2] + ")";
+  const std::vector<OptionNote> notes = {{all[0], meaning, unit, range}, {each, meaning_each}};
+  const auto value_of = [&](auto *to) {
+    const auto read = [=](OptionReader &r) {
+      int n = 0;
+      while (is_number(r, r.iarg + n)) n++;
+      if (r.iarg >= r.input.narg) r.next();
+      const std::string d = std::to_string(dim);
+      if (n != 1 && n != dim)
+        r.fail(r.iarg - 1, "",
+               "expects 1 or " + d + " numbers in a " + d + "d simulation, not " +
+                   std::to_string(n));
+      for (int k = 0; k < n; k++) take(r, all[0], range, to[k]);
+      for (int k = n; k < dim; k++) to[k] = to[0];
+    };
+    return OptionValue{usage, 2, read, writer(to, dim), notes};
   };
-  OptionValue value =
-      make(all[0], all[0] + " or " + each + " (in 2d: " + all[1] + " " + all[2] + ")", 2, read,
-           writer(to, dim));
-  value.notes = {{all[0], meaning, unit, range}, {each, meaning_each}};
-  return value;
+  return std::visit(value_of, first);
 }
-
-template OptionValue option::numbers(double *, int, const std::string &, const Range &,
-                                     const std::string &, const std::string &);
-template OptionValue option::numbers(int *, int, const std::string &, const Range &,
-                                     const std::string &, const std::string &);
-template OptionValue option::numbers(int64_t *, int, const std::string &, const Range &,
-                                     const std::string &, const std::string &);
-template OptionValue option::one_or_axes(double *, int, const std::string &, const Range &,
-                                         const std::string &, const std::string &,
-                                         const std::string &);
-template OptionValue option::one_or_axes(int *, int, const std::string &, const Range &,
-                                         const std::string &, const std::string &,
-                                         const std::string &);
 
 OptionValue option::yes_no(bool &to)
 {
   const auto read = [&to](OptionReader &r) {
     to = r.input.yes(r.next());
   };
-  return make("", "*yes* or *no*", 1, read, [&to] {
+  const auto text = [&to] {
     return to ? "yes" : "no";
-  });
+  };
+  return {"*yes* or *no*", 1, read, text};
 }
 
 OptionValue option::text(std::string &to, const std::string &name, const std::string &meaning)
@@ -221,11 +213,10 @@ OptionValue option::text(std::string &to, const std::string &name, const std::st
   const auto read = [&to](OptionReader &r) {
     to = r.input.arg[r.next()];
   };
-  OptionValue value = make(name, name, 1, read, [&to] {
+  const auto text = [&to] {
     return to;
-  });
-  value.notes = {{name, meaning}};
-  return value;
+  };
+  return {name, 1, read, text, {{name, meaning}}};
 }
 
 OptionValue option::variables(NumberOrVariable *to, int n, const std::string &names,
@@ -243,9 +234,7 @@ OptionValue option::variables(NumberOrVariable *to, int n, const std::string &na
         take(r, name_of(names, k, n), ANY_NUMBER, to[k].value);
     }
   };
-  OptionValue value = make(names, names, n, read, writer(to, n));
-  value.notes = {{names, meaning, unit}};
-  return value;
+  return {names, n, read, writer(to, n), {{names, meaning, unit}}};
 }
 
 OptionValue option::word(std::function<int()> get, std::function<void(int)> set,
@@ -260,9 +249,7 @@ OptionValue option::word(std::function<int()> get, std::function<void(int)> set,
       set(w.value);
       r.what += " " + w.word;
       r.several = true;
-      for (const auto &value : w.values)
-        if (!value.optional || is_number(r, r.iarg)) value.read(r);
-      return;
+      return read_values(w.values, r);
     }
     throw OptionError{iarg,
                       "Unknown " + join({r.what, name, r.input.arg[iarg]}, " ") +
@@ -270,17 +257,11 @@ OptionValue option::word(std::function<int()> get, std::function<void(int)> set,
   };
   const auto text = [=] {
     const int present = get();
-    for (const auto &w : words) {
-      if (w.value != present) continue;
-      Strings parts = {w.word};
-      for (const auto &value : w.values) parts.push_back(value.text());
-      return join(parts, " ");
-    }
+    for (const auto &w : words)
+      if (w.value == present) return join({w.word, text_of(w.values)}, " ");
     return std::string();
   };
-  OptionValue value = make(name, "", 1, read, text);
-  value.words = words;
-  return value;
+  return {"", 1, read, text, {}, words};
 }
 
 OptionValue option::any_of(bool *to, const std::vector<std::string> &words,
@@ -302,9 +283,7 @@ OptionValue option::any_of(bool *to, const std::vector<std::string> &words,
       if (to[k]) parts.push_back(words[k]);
     return join(parts, " ");
   };
-  OptionValue value = make("", "one or more of " + join(words, " "), 2, read, text);
-  value.notes = {{"", meaning}};
-  return value;
+  return {"one or more of " + join(words, " "), 2, read, text, {{"", meaning}}};
 }
 
 OptionValue option::optional(OptionValue value)
@@ -313,47 +292,7 @@ OptionValue option::optional(OptionValue value)
   return value;
 }
 
-// ---------------------------------------------------------------------- one option
-
-Option &Option::keep()
-{
-  kept = true;
-  return *this;
-}
-
-Option &Option::once()
-{
-  single = true;
-  return *this;
-}
-
-Option &Option::then(std::function<void()> f)
-{
-  after = std::move(f);
-  return *this;
-}
-
-Option &Option::standard(const std::string &text)
-{
-  preset = text;
-  return *this;
-}
-
-std::string Option::text() const
-{
-  Strings parts;
-  for (const auto &value : values) parts.push_back(value.text());
-  return join(parts, " ");
-}
-
 // ---------------------------------------------------------------------- all options
-
-Options::Options(std::string command_in) : command(std::move(command_in)) {}
-
-void Options::argument(OptionValue value)
-{
-  arguments.push_back(std::move(value));
-}
 
 Option &Options::add(const std::string &keyword, std::vector<OptionValue> values,
                      const std::string &meaning)
@@ -362,19 +301,9 @@ Option &Options::add(const std::string &keyword, std::vector<OptionValue> values
   option.keyword = keyword;
   option.meaning = meaning;
   option.values = std::move(values);
-  option.preset = option.text();
+  option.preset = text_of(option.values);
   options.push_back(option);
   return options.back();
-}
-
-void Options::refuse(std::function<OptionRules()> rules)
-{
-  refusals = std::move(rules);
-}
-
-void Options::warn(std::function<OptionRules()> rules)
-{
-  doubts = std::move(rules);
 }
 
 const Option *Options::find(const std::string &keyword) const
@@ -382,11 +311,6 @@ const Option *Options::find(const std::string &keyword) const
   for (const auto &option : options)
     if (option.keyword == keyword) return &option;
   return nullptr;
-}
-
-bool Options::has(const std::string &keyword) const
-{
-  return find(keyword) != nullptr;
 }
 
 int Options::where(const std::string &keyword) const
@@ -412,12 +336,13 @@ int Options::read(const OptionInput &input, int iarg, const std::string &last)
       throw OptionError{iarg, sentence(full + " is given twice")};
     option->where = iarg;
     OptionReader reader{input, iarg + 1, full, full, option->values.size() > 1};
-    for (const auto &value : option->values)
-      if (!value.optional || is_number(reader, reader.iarg)) value.read(reader);
+    read_values(option->values, reader);
     if (option->after) option->after();
     iarg = reader.iarg;
   }
-  check();
+  for (const auto &rule : refusals ? refusals() : OptionRules())
+    if (rule.broken && (rule.keyword.empty() || given(rule.keyword)))
+      throw OptionError{where(rule.keyword), message(rule)};
   return iarg;
 }
 
@@ -427,25 +352,16 @@ std::string Options::message(const OptionRule &rule) const
   for (const auto &option : options) {
     const std::string name = "{" + option.keyword + "}";
     const auto at = text.find(name);
-    if (at != std::string::npos) text.replace(at, name.size(), option.text());
+    if (at != std::string::npos) text.replace(at, name.size(), text_of(option.values));
   }
   return sentence(text);
-}
-
-void Options::check() const
-{
-  if (!refusals) return;
-  for (const auto &rule : refusals())
-    if (rule.broken && (rule.keyword.empty() || given(rule.keyword)))
-      throw OptionError{where(rule.keyword), message(rule)};
 }
 
 std::vector<std::string> Options::warnings() const
 {
   Strings all;
-  if (doubts)
-    for (const auto &rule : doubts())
-      if (rule.broken) all.push_back(message(rule));
+  for (const auto &rule : doubts ? doubts() : OptionRules())
+    if (rule.broken) all.push_back(message(rule));
   return all;
 }
 
@@ -453,7 +369,7 @@ std::string Options::text() const
 {
   Strings parts;
   for (const auto &option : options) {
-    const std::string text = option.text();
+    const std::string text = text_of(option.values);
     if (!text.empty()) parts.push_back(option.keyword + " " + text);
   }
   return join(parts, " ");
@@ -463,7 +379,7 @@ std::string Options::kept() const
 {
   std::string all;
   for (const auto &option : options)
-    if (option.kept) all += option.keyword + " " + option.text() + "\n";
+    if (option.kept) all += option.keyword + " " + text_of(option.values) + "\n";
   return all;
 }
 
@@ -474,7 +390,7 @@ std::string Options::differences(const std::string &kept_then) const
     const Strings then = split(line, ' ');
     const Option *option = find(then[0]);
     if (!option || then.size() < 2) continue;
-    const Strings now = split(option->text(), ' ');
+    const Strings now = split(text_of(option->values), ' ');
     if (!now.empty() && now[0] != then[1])
       parts.push_back(then[0] + " " + then[1] + " (now " + now[0] + ")");
   }
