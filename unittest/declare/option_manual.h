@@ -22,6 +22,7 @@ using MPM_NS::Option;
 using MPM_NS::OptionNote;
 using MPM_NS::Options;
 using MPM_NS::OptionValue;
+using MPM_NS::OptionWord;
 using MPM_NS::Range;
 using MPM_NS::UNBOUNDED;
 using Strings = std::vector<std::string>;
@@ -63,10 +64,15 @@ inline std::string explain(const OptionNote &note)
       (remark.empty() ? "" : " (" + remark + ")");
 }
 
+inline std::vector<OptionWord> words(const OptionValue &value)
+{
+  return value.words ? *value.words : std::vector<OptionWord>();
+}
+
 inline std::string usage(const OptionValue &value)
 {
   std::string text = value.usage;
-  for (const auto &w : value.words) {
+  for (const auto &w : words(value)) {
     text += (text.empty() ? "*" : " or *") + w.word + "*";
     for (const auto &inner : w.values) text += " " + usage(inner);
   }
@@ -78,7 +84,7 @@ inline Strings lines(const OptionValue &value)
   Strings lines_of, together;
   for (const auto &note : value.notes)
     if (!note.meaning.empty()) lines_of.push_back(explain(note));
-  for (const auto &w : value.words) {
+  for (const auto &w : words(value)) {
     together.push_back("*" + w.word + "*");
     if (!w.meaning.empty()) {
       lines_of.push_back(join(together, ", ") + " = " + w.meaning);

@@ -261,7 +261,7 @@ OptionValue option::word(std::function<int()> get, std::function<void(int)> set,
       if (w.value == present) return join({w.word, text_of(w.values)}, " ");
     return std::string();
   };
-  return {"", 1, read, text, {}, words};
+  return {"", 1, read, text, {}, std::make_shared<const std::vector<OptionWord>>(words)};
 }
 
 OptionValue option::any_of(bool *to, const std::vector<std::string> &words,

@@ -32,6 +32,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <utility>
 #include <variant>
@@ -91,7 +92,7 @@ struct OptionValue {
   std::function<void(OptionReader &)> read;
   std::function<std::string()> text;    ///< present value, as in the input
   std::vector<OptionNote> notes = {};
-  std::vector<OptionWord> words = {};
+  std::shared_ptr<const std::vector<OptionWord>> words = nullptr;    ///< null: it is none of some
   bool optional = false;
 };
 
