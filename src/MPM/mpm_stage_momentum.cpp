@@ -86,38 +86,20 @@ static void to_nodes(MPMField &field, P2G p2g)
   }
 }
 
-void MPMStages::points_to_nodes(MPMField &field)
+void MPMStages::points_to_nodes(MPMField &field, Content content)
 {
-  field.grid.zero();
-  to_nodes(field, field.kernel.p2g);
+  const auto &kernel = field.kernel;
+  if (content != FORCE) field.grid.zero();
+  to_nodes(field,
+           content == FORCE          ? kernel.p2g_force
+               : content == MOMENTUM ? kernel.p2g_momentum
+                                     : kernel.p2g);
 }
 
-void MPMStages::momentum_to_nodes(MPMField &field)
+void MPMStages::sum_nodes(MPMField &field, Content content)
 {
-  field.grid.zero();
-  to_nodes(field, field.kernel.p2g_momentum);
-}
-
-void MPMStages::forces_to_nodes(MPMField &field)
-{
-  to_nodes(field, field.kernel.p2g_force);
-}
-
-/* ---------------------------------------------------------------------- */
-
-void MPMStages::sum_all(MPMField &field)
-{
-  field.nodes.sum(field.grid.nodes(), field.kernel.nreal, 0, field.kernel.nreal);
-}
-
-void MPMStages::sum_momentum(MPMField &field)
-{
-  field.nodes.sum(field.grid.nodes(), field.kernel.nreal, 0, 4);
-}
-
-void MPMStages::sum_forces(MPMField &field)
-{
-  field.nodes.sum(field.grid.nodes(), field.kernel.nreal, 4, 4);
+  const int nreal = field.kernel.nreal;
+  field.nodes.sum(field.grid.nodes(), nreal, content == FORCE ? 4 : 0, content == ALL ? nreal : 4);
 }
 
 /* ---------------------------------------------------------------------- */

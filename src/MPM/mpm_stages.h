@@ -22,15 +22,13 @@ namespace MPMStages {
 
   // mpm_stage_momentum.cpp: points to nodes, and the equation of motion there
 
-  /** Mass, momentum and force of the nodes from this rank's points. */
-  void points_to_nodes(MPMField &);
-  /** Mass and momentum only. */
-  void momentum_to_nodes(MPMField &);
-  /** Forces only, to records that have mass and momentum. */
-  void forces_to_nodes(MPMField &);
-  void sum_all(MPMField &);
-  void sum_momentum(MPMField &);
-  void sum_forces(MPMField &);
+  /** What nodes get of the points: mass, momentum and force; mass and momentum; forces, in records that
+   *  have mass and momentum. */
+  enum Content { ALL, MOMENTUM, FORCE };
+  /** From this rank's points. */
+  void points_to_nodes(MPMField &, Content);
+  /** Over images and ranks. */
+  void sum_nodes(MPMField &, Content);
   /** v = (p + dt f)/m; the old velocity p/m stays in long records. */
   void momentum_equation(MPMField &);
   /** v = p/m. */
@@ -51,8 +49,6 @@ namespace MPMStages {
   void nodes_to_points(MPMField &, Strain);
   /** Positions and corners of the end of the step, where they had to wait. */
   void move_points(MPMField &);
-
-  // mpm_stage_stress.cpp
 
   /** Stress of points from the present velocities of the nodes, for a share of the step; shift: see
    *  MPMFrame::shift_gradients(), as a share of the step. move_corners: corners of domains move with

@@ -59,6 +59,16 @@ bool averages_pressure(Field field)
   return field.options.averages_stress();
 }
 
+void points_to_nodes(MPMPlan &plan, const char *name, Content content)
+{
+  plan.each(name, [content](MPMField &field) {
+    MPMStages::points_to_nodes(field, content);
+  });
+  plan.each("sum over ranks", [content](MPMField &field) {
+    sum_nodes(field, content);
+  });
+}
+
 void nodes_to_points(MPMPlan &plan, const char *name, Strain strain, MPMPlan::Wanted wanted)
 {
   const auto move = [strain](MPMField &field) {
@@ -99,16 +109,14 @@ void begin(MPMPlan &plan)
 void begin_with_stress(MPMPlan &plan, double share, double shift)
 {
   begin(plan);
-  plan.each("points to nodes", momentum_to_nodes);
-  plan.each("sum over ranks", sum_momentum);
+  points_to_nodes(plan, "points to nodes", MOMENTUM);
   plan.place(MPMPlan::BEFORE_SOLVE);
   plan.each("momentum equation", velocities);
   plan.node_actions(MPMNodeAction::START);
   gradients_with_material(plan, share, shift);
   plan.each("momentum equation", back_to_momentum);
   average_pressure(plan);
-  plan.each("points to nodes", forces_to_nodes);
-  plan.each("sum over ranks", sum_forces);
+  points_to_nodes(plan, "points to nodes", FORCE);
 }
 
 /** Mass, momentum and force of the nodes. */
@@ -116,8 +124,7 @@ void begin_with_forces(MPMPlan &plan)
 {
   begin(plan);
   average_pressure(plan);
-  plan.each("points to nodes", points_to_nodes);
-  plan.each("sum over ranks", sum_all);
+  points_to_nodes(plan, "points to nodes", ALL);
   plan.place(MPMPlan::BEFORE_SOLVE);
 }
 
@@ -158,8 +165,7 @@ void solve_and_move(MPMPlan &plan)
  *  this step, never the old one. */
 void map_back(MPMPlan &plan)
 {
-  plan.each("velocities back to nodes", momentum_to_nodes);
-  plan.each("sum over ranks", sum_momentum);
+  points_to_nodes(plan, "velocities back to nodes", MOMENTUM);
   plan.each("momentum equation", velocities);
   plan.node_actions(MPMNodeAction::MAPPED_BACK);
 }
