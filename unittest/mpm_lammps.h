@@ -382,7 +382,7 @@ class Scene {
         const auto &block = nodes.blocks[slot];
         Node node;
         nodes.node_index(block, n, node.index);
-        field(id)->node_position(node.index, node.x);
+        field(id)->lattice.node_position(node.index, node.x);
         const double *record = nodes.record((int) slot, n);
         std::copy(record, record + 3, node.v);
         node.mass = record[3];

@@ -74,7 +74,7 @@ void FixOwnDiffusion::grow_arrays(int nmax)
 void FixOwnDiffusion::init_physics(MPMPlan &plan)
 {
   nodes.clear();
-  for (auto *field : plan.fields) nodes[field] = &field->add_node_field(id, WIDTH);
+  for (auto *field : plan.fields) nodes[field] = &field->nodes.add_field(id, WIDTH);
 }
 
 void FixOwnDiffusion::add_stages(MPMPlan &plan, MPMPlan::Place place)
@@ -106,11 +106,11 @@ void FixOwnDiffusion::scalar_to_nodes(MPMField &field)
         for (int d = 0; d < 3; d++) value -= c[i][1 + d] * n.r[d] * field.lattice.h;
         node.at(n.number)[VALUE] += atom->rmass[i] * n.weight * value;
       });
-  field.sum(node);
+  field.nodes.sum(node);
   const double *record = grid.nodes();    // fourth real: mass
   for (int64_t n = 0; n < grid.nnodes(); n++, record += grid.nreal)
     node.at(n)[VALUE] = record[3] > 0.0 ? node.at(n)[VALUE] / record[3] : 0.0;
-  field.complete(node);    // periodic images
+  field.nodes.complete(node);    // periodic images
 
   for (const auto &run : field.map->runs)
     for (int i = run.first; i < run.last; i++) {
@@ -125,7 +125,7 @@ void FixOwnDiffusion::scalar_to_nodes(MPMField &field)
         node.at(n.number)[CHANGE] -= atom->rmass[i] * D * flux;
       });
     }
-  field.sum(node.values.data(), WIDTH, CHANGE, 1);
+  field.nodes.sum(node.values.data(), WIDTH, CHANGE, 1);
 }
 
 /* ----------------------------------------------------------------------
@@ -141,7 +141,7 @@ void FixOwnDiffusion::scalar_to_points(MPMField &field)
   for (int64_t n = 0; n < grid.nnodes(); n++, record += grid.nreal)
     if (record[3] > 0.0) node.at(n)[CHANGE] *= dt / record[3];
   hold(field);
-  field.complete(node);
+  field.nodes.complete(node);
 
   const MPMStencil stencil(field);
   for (const auto &run : field.map->runs)

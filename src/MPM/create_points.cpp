@@ -162,7 +162,7 @@ Options CreatePointsOptions::declare(int dim, bool has_radius)
   using namespace option;
   Options o("create_points");
   o.add("ppc",
-        {one_or_axes(ppc, dim, "N Nx Ny Nz", {1, MAX_PPC, true},
+        {one_or_axes(ppc, dim, "N Nx Ny Nz", {1, MAX_PPC, true}, "",
                      "number of points along each axis of a cell of fix mpm",
                      "number of points along x, y, z")})
       .standard("2");

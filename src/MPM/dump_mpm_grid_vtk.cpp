@@ -238,7 +238,7 @@ void DumpMPMGridVTK::write_footer()
   for (const double *n : node) {
     const int index[3] = {(int) n[0], (int) n[1], (int) n[2]};
     double x[3];
-    field->node_position(index, x);
+    field->lattice.node_position(index, x);
     values.insert(values.end(), x, x + 3);
   }
   vtk.write(points, 0, nnode, values.data());

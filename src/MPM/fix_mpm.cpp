@@ -13,19 +13,24 @@
 #include "compute_mpm_energy.h"
 #include "domain.h"
 #include "error.h"
+#include "fix_mpm_material.h"
 #include "fix_mpm_surface.h"
 #include "force.h"
 #include "group.h"
 #include "modify.h"
 #include "mpm_affine.h"
+#include "mpm_boxes.h"
+#include "mpm_cpdi.h"
 #include "mpm_every.h"
 #include "mpm_field.h"
 #include "mpm_frame.h"
 #include "mpm_guard.h"
 #include "mpm_halo.h"
+#include "mpm_options.h"
 #include "mpm_plan.h"
 #include "mpm_point_map.h"
 #include "mpm_points.h"
+#include "mpm_stages.h"
 #include "mpm_time_limit.h"
 #include "neighbor.h"
 #include "output.h"
@@ -54,10 +59,12 @@ FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
     error->all(FLERR, 3, "Fix mpm node spacing must be positive: {}", arg[3]);
 
   MPMFieldOptions options;
-  options.read(lmp, narg, arg, 4, domain->dimension);
-  if (!options.has_origin) std::copy_n(domain->boxlo, domain->dimension, options.origin);
+  auto declared = options.declare(domain->dimension);
+  read_options(lmp, declared, narg, arg, 4);
+  if (!declared.given("origin")) std::copy_n(domain->boxlo, domain->dimension, options.origin);
   field.reset(new MPMField(lmp, *this, h, options, state));
-  if (comm->me == 0) utils::logmesg(lmp, "Fix mpm {}: spacing {} {}\n", id, h, options.text());
+  if (comm->me == 0)
+    utils::logmesg(lmp, "Fix mpm {}: spacing {} {}\n", id, h, options.declare(3).text());
 
   time_integrate = 1;
   dynamic_group_allow = 0;
@@ -105,7 +112,8 @@ void FixMPM::init()
                "Fix mpm requires a box of constant size and shape: remove the fix that "
                "changes it");
   if (comm->me == 0)
-    for (const auto &text : field->options.warnings()) error->warning(FLERR, text);
+    for (const auto &text : MPMFieldOptions(field->options).declare(3).warnings())
+      error->warning(FLERR, text);
 
   plan.reset();
   if (drives()) {
@@ -139,15 +147,13 @@ void FixMPM::check_fields() const
   const auto &mine = field->options;
   for (const auto *other : MPMField::all(lmp)) {
     const auto &options = other->options;
-    if (options.every != mine.every)
-      error->all(FLERR, "All fix mpm instances must have the same every: {} and {} differ", id,
-                 other->id());
-    if (options.scheme != mine.scheme)
-      error->all(FLERR, "All fix mpm instances must have the same scheme: {} and {} differ", id,
-                 other->id());
-    if (options.axisymmetric != mine.axisymmetric)
-      error->all(FLERR, "All fix mpm instances must be axisymmetric, or none: {} and {} differ", id,
-                 other->id());
+    const std::pair<bool, const char *> rules[] = {
+        {options.every != mine.every, "have the same every"},
+        {options.scheme != mine.scheme, "have the same scheme"},
+        {options.axisymmetric != mine.axisymmetric, "be axisymmetric, or none"}};
+    for (const auto &[differ, what] : rules)
+      if (differ)
+        error->all(FLERR, "All fix mpm instances must {}: {} and {} differ", what, id, other->id());
   }
   if (!neighbor->includegroup) return;
   for (auto *ifix : modify->get_fix_by_style("^mpm/surface$"))
@@ -177,7 +183,7 @@ void FixMPM::setup_pre_neighbor()
     if (plan) field->guard->check_neighbors();
   }
   field->frame->setup();
-  field->give_initial_stress();
+  MPMStages::give_initial_stress(*field);
   field->map->sort();
   field->map->valid = false;
 }
@@ -229,7 +235,7 @@ void FixMPM::post_run()
   field->running = false;
   field->ledger.start.clear();
   if (field->affine) field->affine->remember_velocities();
-  if (field->counts.steps) field->plan->report(*field);
+  if (field->counts.steps) field->plan->report(*field, bytes_per_point());
 }
 
 /* ----------------------------------------------------------------------
@@ -240,7 +246,8 @@ void FixMPM::post_run()
 
 double FixMPM::compute_scalar()
 {
-  double n = field->npoints_local(), all;
+  double n = 0.0, all;
+  for (int i = 0; i < atom->nlocal; i++) n += field->is_point(i);
   MPI_Allreduce(&n, &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all;
 }
@@ -254,13 +261,25 @@ double FixMPM::compute_vector(int k)
   const auto &map = *field->map;
   if (k == 3) return map.nbuild;
   if (k == 4) return map.nsort;
-  double mine[4] = {(double) map.active.size(), (double) field->grid.blocks.size(),
-                    (double) map.npoints(),
-                    (double) field->halo->bytes_sent / std::max((bigint) 1, field->counts.steps)};
+  double mine[4] = {
+      (double) map.active.size(), (double) field->grid.blocks.size(), (double) map.npoints(),
+      (double) field->nodes.halo->bytes_sent / std::max((bigint) 1, field->counts.steps)};
   double all[4];
   MPI_Allreduce(mine, all, 4, MPI_DOUBLE, MPI_SUM, world);
   if (k == 2) return all[0] > 0.0 ? all[2] / all[0] : 0.0;
   return all[k == 5 ? 3 : k];
+}
+
+/** Per-point state: what LAMMPS keeps of any atom, atom style mpm, affine matrix, history. */
+double FixMPM::bytes_per_point() const
+{
+  double bytes = 9 * sizeof(double) + sizeof(tagint) + 2 * sizeof(int) + sizeof(imageint);
+  bytes += (1 + 1 + 9 + 6) * sizeof(double);    // mass, V0, F, stress
+  bytes += state.size() * sizeof(double) + field->frame->bytes_per_point();
+  if (field->boxes) bytes += 3 * sizeof(double);
+  if (field->domains) bytes += field->domains->bytes_per_point();
+  for (auto *material : field->materials) bytes += material->nhistory * sizeof(double);
+  return bytes;
 }
 
 double FixMPM::memory_usage()
@@ -301,7 +320,7 @@ void FixMPM::write_restart(FILE *fp)
   std::vector<double> start = field->ledger.start;
   for (auto *compute : modify->get_compute_by_style("^mpm/energy$"))
     if (start.empty()) start = dynamic_cast<ComputeMPMEnergy *>(compute)->start_sums();
-  const std::string text = field->options.kept();
+  const std::string text = MPMFieldOptions(field->options).declare(3).kept();
   saved.nstart = (int) start.size();
   saved.ntext = (int) text.size();
   if (comm->me) return;
@@ -317,7 +336,8 @@ void FixMPM::restart(char *buf)
   Saved saved;
   memcpy(&saved, buf, sizeof(Saved));
   const char *const start = buf + sizeof(Saved), *text = start + saved.nstart * sizeof(double);
-  const std::string differences = field->options.differences(std::string(text, text + saved.ntext));
+  const std::string differences =
+      MPMFieldOptions(field->options).declare(3).differences(std::string(text, text + saved.ntext));
   if (!differences.empty())
     error->all(
         FLERR, Error::NOLASTLINE,

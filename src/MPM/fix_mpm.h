@@ -55,6 +55,7 @@ class FixMPM : public FixMPMState {
 
   bool drives() const;
   void check_fields() const;
+  double bytes_per_point() const;
 };
 
 }    // namespace LAMMPS_NS

@@ -733,9 +733,9 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
     double first[3], last[3], mid[3];
     int index[3];
     grid.node_index(block, 0, index);
-    field.node_position(index, first);
+    field.lattice.node_position(index, first);
     grid.node_index(block, NODES_PER_BLOCK - 1, index);
-    field.node_position(index, last);
+    field.lattice.node_position(index, last);
     bool near = true;
     for (int d = 0; d < 3; d++) {
       mid[d] = 0.5 * (first[d] + last[d]);
@@ -752,7 +752,7 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
       if (block.alias >> n & 1) continue;
       double x[3];
       grid.node_index(block, n, index);
-      field.node_position(index, x);
+      field.lattice.node_position(index, x);
       bool inside = region->match(x[0], x[1], x[2]);
       if (!inside) {
         region->interior ^= 1;
@@ -854,7 +854,7 @@ void FixMPMBoundary::update_motion(double dt)
           double x[3];
           field.grid.node_index(field.grid.blocks[s.node / NODES_PER_BLOCK],
                                 s.node % NODES_PER_BLOCK, index);
-          field.node_position(index, x);
+          field.lattice.node_position(index, x);
           const double distance = surface_distance(x), far = FAR * field.lattice.h;
           s.growth = 0.0;
           if (distance >= far || s.distance >= far) continue;
@@ -877,7 +877,7 @@ static void node_position(const MPMField &field, int64_t node, double *x)
   const Grid &grid = field.grid;
   int index[3];
   grid.node_index(grid.blocks[node / NODES_PER_BLOCK], node % NODES_PER_BLOCK, index);
-  field.node_position(index, x);
+  field.lattice.node_position(index, x);
 }
 
 void FixMPMBoundary::wall_velocity(const MPMField &field, int64_t node, double *v) const

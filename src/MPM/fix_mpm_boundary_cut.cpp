@@ -25,6 +25,7 @@
 #include "fix_mpm_boundary.h"
 
 #include "mpm_field.h"
+#include "mpm_stencil.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,8 +41,8 @@ static constexpr double MIN_WEIGHT[4] = {0.0, 0.5, 0.02, 0.0045};
 void FixMPMBoundary::cut_weights(const MPMField &field, double x, Face &face)
 {
   face.cut = true;
-  face.nweight = field.weights((x - field.lattice.origin[face.axis]) / field.lattice.h, face.first,
-                               face.weight);
+  face.nweight = MPMStencil(field).weights((x - field.lattice.origin[face.axis]) / field.lattice.h,
+                                           face.first, face.weight);
   if (stencil_order(field.options.shape) > 1) return;
   face.nweight = 3;    // and the next node inside
   face.weight[2] = 0.0;

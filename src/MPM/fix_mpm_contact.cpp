@@ -464,7 +464,7 @@ void FixMPMContact::warn_overlap()
       const MPMField &field = *fields[body[0]];
       int index[3];
       field.grid.node_index(field.grid.blocks[c.slot[body[0]]], n, index);
-      field.node_position(index, place);
+      field.lattice.node_position(index, place);
       place[3] = body[0];
       place[4] = body[1];
     }

@@ -99,7 +99,7 @@ void FixMPMContact::separate_points()
           each([](double &mine, double &node) {
             node = mine;
           });
-          fields[a]->halo->sum(shared.data(), NREAL, 0, NREAL);
+          fields[a]->nodes.halo->sum(shared.data(), NREAL, 0, NREAL);
           each([](double &mine, double &node) {
             mine = node;
           });

@@ -15,6 +15,7 @@
 
 #include "domain.h"
 #include "mpm_field.h"
+#include "mpm_stencil.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,7 +46,7 @@ void FixMPMContact::find_room()
           sum += std::max(0.0, 1.0 - std::fabs(t - node)) / SAMPLES;
           continue;
         }
-        const int n = field.weights(t, first, w);
+        const int n = MPMStencil(field).weights(t, first, w);
         if (node >= first && node < first + n) sum += w[node - first] / SAMPLES;
       }
       return sum;

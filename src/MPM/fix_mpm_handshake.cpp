@@ -63,6 +63,7 @@
 #include "modify.h"
 #include "mpm_field.h"
 #include "mpm_options.h"
+#include "mpm_stencil.h"
 #include "neigh_list.h"
 #include "neighbor.h"
 #include "pair_hybrid.h"
@@ -448,9 +449,9 @@ void FixMPMHandshake::extend_topology(MPMField &which)
       const double t = (atom->x[i][d] - lattice.origin[d]) / lattice.h;
       int first;
       double w[4];
-      field->weights(t - drift, first, w);
+      MPMStencil(*field).weights(t - drift, first, w);
       lo[d] = first >> grid.shift_bits;
-      const int n = field->weights(t + drift, first, w);
+      const int n = MPMStencil(*field).weights(t + drift, first, w);
       hi[d] = (first + n - 1) >> grid.shift_bits;
     }
     for (int bx = lo[0]; bx <= hi[0]; bx++)
@@ -548,7 +549,7 @@ void FixMPMHandshake::act(double dt, Stage stage)
   find_nodes();
   map_members(dt);
   map_forces();
-  field->sum(sums.data(), NREAL, 0, NREAL);
+  field->nodes.sum(sums.data(), NREAL, 0, NREAL);
   lost += kinetic_energy();
   if (damping > 0.0) damp(dt);
   tie(dt);
@@ -593,7 +594,7 @@ void FixMPMHandshake::find_nodes()
       if (!(fabs(t) < 4.0e6))
         error->one(FLERR, "Fix mpm/handshake {}: atom {} is far out of reach of the lattice", id,
                    atom->tag[members[k]]);
-      field->weights(t, base[d], w[d]);
+      MPMStencil(*field).weights(t, base[d], w[d]);
       b[d] = base[d] >> grid.shift_bits;
     }
     if (slot < 0 || memcmp(b, last, sizeof(b)) != 0) slot = grid.find(b);
@@ -681,7 +682,7 @@ void FixMPMHandshake::damp(double dt)
     for (std::size_t j = k * nreach; j < (k + 1) * nreach; j++)
       for (int d = 0; d < 3; d++) taken[4 * (std::size_t) nodes[j] + d] += shares[j] * p[d];
   }
-  field->sum(taken.data(), 4, 0, 3);
+  field->nodes.sum(taken.data(), 4, 0, 3);
   const double inverse = 1.0 / (dt * force->ftm2v);
   for (std::size_t n = 0; n < nnodes; n++)
     for (int d = 0; d < 3; d++) sums[NREAL * n + FORCE + d] -= inverse * taken[4 * n + d];
@@ -704,7 +705,7 @@ void FixMPMHandshake::smooth_points(std::vector<double> &p)
     for (std::size_t j = k * nreach; j < (k + 1) * nreach; j++)
       for (int d = 0; d < 3; d++) p[4 * (std::size_t) nodes[j] + d] += shares[j] * m * v[d];
   }
-  field->sum(p.data(), 4, 0, 3);
+  field->nodes.sum(p.data(), 4, 0, 3);
 }
 
 /* ----------------------------------------------------------------------

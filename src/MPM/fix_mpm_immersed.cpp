@@ -50,6 +50,7 @@
 #include "mpm_field.h"
 #include "mpm_options.h"
 #include "mpm_point_map.h"
+#include "mpm_stencil.h"
 #include "update.h"
 
 #include <algorithm>
@@ -223,7 +224,7 @@ template <class F> bool FixMPMImmersed::visit(int i, const F &f) const
   int n = 0;
   for (int d = 0; d < dim; d++) {
     t[d] = (atom->x[i][d] - grid.lattice.origin[d]) / grid.lattice.h;
-    n = field->weights(t[d], first[d], w[d]);
+    n = MPMStencil(*field).weights(t[d], first[d], w[d]);
   }
   // one look-up per grain, neighbors from the table of its first block
   int b[3];
@@ -278,7 +279,7 @@ void FixMPMImmersed::extend_topology(MPMField &extended)
                    "Fix mpm/immersed {}: grain {} is far out of reach of the "
                    "lattice",
                    id, atom->tag[i]);
-      const int n = field->weights(t, lo[d], w);
+      const int n = MPMStencil(*field).weights(t, lo[d], w);
       hi[d] = (lo[d] + n) >> grid.shift_bits;    // one more on each side: grains move
       lo[d] = (lo[d] - 1) >> grid.shift_bits;
     }
@@ -471,7 +472,7 @@ void FixMPMImmersed::find_grains(double dt)
 
 void FixMPMImmersed::sum_nodes(int lane, int nlane)
 {
-  field->sum(sums.data(), NREAL, lane, nlane);
+  field->nodes.sum(sums.data(), NREAL, lane, nlane);
   field->grid.copy_aliases(sums.data(), NREAL);
 }
 

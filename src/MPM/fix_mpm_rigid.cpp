@@ -240,7 +240,7 @@ void FixMPMRigid::find_contacts()
       int index[3];
       double at[3];
       grid.node_index(block, 0, index);
-      field->node_position(index, at);
+      field->lattice.node_position(index, at);
       for (int d = 0; d < 3; d++) at[d] += half - x[d];
       nearest_image(*domain, at);
       if (MathExtra::len3(at) > radius + 1.8 * half) continue;
@@ -250,7 +250,7 @@ void FixMPMRigid::find_contacts()
         if (!(record[3] > 0.0)) continue;
         grid.node_index(block, n, index);
         Contact c;
-        field->node_position(index, c.r);
+        field->lattice.node_position(index, c.r);
         for (int d = 0; d < 3; d++) c.r[d] -= x[d];
         nearest_image(*domain, c.r);
         double local[3];

@@ -151,7 +151,7 @@ void MPMAffine::fit()
         }
       });
   field.grid.fold_aliases(sums.data(), NREAL, 0, NREAL);
-  field.halo->sum(sums.data(), NREAL, 0, NREAL);
+  field.nodes.halo->sum(sums.data(), NREAL, 0, NREAL);
   field.grid.copy_aliases(sums.data(), NREAL);
 
   // about the means
@@ -291,7 +291,7 @@ void MPMAffine::angular_momentum(int i, double L[3]) const
   for (int c = 0; c < ncorner; c++) {
     double first_moment[3] = {0.0}, second_moment[3] = {0.0};
     for (int d = 0; d < dim; d++) {
-      const double at = (field.place(i)[d] - field.lattice.origin[d]) / field.lattice.h;
+      const double at = (field.frame->places()[i][d] - field.lattice.origin[d]) / field.lattice.h;
       const double t = at + corner[dim * c + d] / field.lattice.h;
       int node;
       double w[4];

@@ -25,13 +25,11 @@
 #include "mpm_every.h"
 #include "mpm_frame.h"
 #include "mpm_guard.h"
-#include "mpm_halo.h"
 #include "mpm_locking.h"
 #include "mpm_plan.h"
 #include "mpm_point_map.h"
 #include "mpm_points.h"
 #include "mpm_state.h"
-#include "mpm_stencil.h"
 #include "mpm_time_limit.h"
 #include "update.h"
 
@@ -62,11 +60,10 @@ static MPM_NS::Lattice lattice_of(const Domain &domain, double h, const MPMField
 
 MPMField::MPMField(LAMMPS *lmp, Fix &fix, double h, const Options &options, MPMPointState &state) :
     Pointers(lmp), fix(fix), options(options), grid(lattice_of(*domain, h, options)),
-    lattice(grid.lattice), halo(new MPMHalo(lmp)), points(MPMPoints::get(atom)), plan(nullptr),
+    lattice(grid.lattice), nodes(lmp, *this, grid), points(MPMPoints::get(atom)), plan(nullptr),
     kernels(nullptr), batch_kernels(nullptr), batch(new Batch()), ledger(lmp, *this),
-    keep_old(false), running(false), counts({0, 0.0, 0.0, 0.0}), state(state)
+    keep_old(false), running(false), counts({0, 0.0, 0.0, 0.0})
 {
-  if (options.modified_edges) edges.reset(new MPMEdges(lmp, *this));
   check_box();
   frame = MPMFrame::create(lmp, *this, state);
   if (is_affine(options.transfer)) affine.reset(new MPMAffine(lmp, *this, state));
@@ -144,7 +141,7 @@ void MPMField::check_box()
     lattice.periodic[2] = false;
     lattice.ncell[2] = 1;
   }
-  if (edges) edges->check();
+  if (nodes.edges) nodes.edges->check();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -156,7 +153,7 @@ void MPMField::init(MPMPlan *plan_of_all)
   check_box();
   frame->check();
   ledger.on = !modify->get_compute_by_style("^mpm/energy$").empty();
-  node_fields.clear();
+  nodes.clear_fields();
 
   materials.clear();
   for (auto *ifix : modify->get_fix_by_style("^mpm/material$"))
@@ -169,7 +166,8 @@ void MPMField::init(MPMPlan *plan_of_all)
 
   // the same instruction set for transfers, batches and laws
 
-  const char *wanted = options.kernels.empty() ? nullptr : options.kernels.c_str();
+  static const char *const sets[] = {nullptr, "reference", "baseline", "avx2", "avx512"};
+  const char *wanted = sets[options.kernels];
   kernels = MPMKernels::select(wanted);
   batch_kernels = BatchKernels::select(lattice.dim, wanted, options.axisymmetric);
   bool can_run = kernels && batch_kernels;
@@ -182,7 +180,7 @@ void MPMField::init(MPMPlan *plan_of_all)
   if (!can_run)
     error->all(FLERR, "Fix mpm kernels {} cannot run on this CPU or were not compiled",
                wanted ? wanted : "named by the environment variable MPM_ISA");
-  history.resize((std::size_t) nhistory * BATCH);
+  work.history.resize((std::size_t) nhistory * BATCH);
 }
 
 /* ----------------------------------------------------------------------
@@ -235,33 +233,6 @@ FixMPMMaterial *MPMField::material_of(int i) const
   return nullptr;
 }
 
-int MPMField::npoints_local() const
-{
-  int n = 0;
-  for (int i = 0; i < atom->nlocal; i++) n += is_point(i);
-  return n;
-}
-
-int MPMField::nmax() const
-{
-  return atom->nmax;
-}
-
-double **MPMField::positions() const
-{
-  return atom->x;
-}
-
-const double *MPMField::place(int i) const
-{
-  return frame->places()[i];
-}
-
-double MPMField::volume(int i) const
-{
-  return atom->vfrac[i] * points->jacobian(i);
-}
-
 /* ---------------------------------------------------------------------- */
 
 double MPMField::step_dt() const
@@ -269,25 +240,9 @@ double MPMField::step_dt() const
   return every ? every->step_dt() : update->dt;
 }
 
-double MPMField::end_of_step() const
-{
-  return update->atime + (update->ntimestep - update->atimestep) * update->dt;
-}
-
 int MPMField::steps_to_next() const
 {
   return every ? every->steps_to_next() : 1;
-}
-
-int MPMField::weights(double t, int &first, double w[4]) const
-{
-  return MPMStencil(*this).weights(t, first, w);
-}
-
-bool MPMField::moves_late() const
-{
-  return options.stress_after() || options.light > 0.0 ||
-      (locking && locking->averages_strain() && !options.stress_before());
 }
 
 /* ---------------------------------------------------------------------- */
@@ -307,7 +262,7 @@ PointRows MPMField::rows() const
   r.guarded = atom->nmax - 1;
   r.size = boxes ? boxes->sizes.data() : nullptr;
   if (domains) r.domain = domains->rows();
-  r.xnew = moves_late() ? const_cast<double *>(work.xnew.data()) : &atom->x[0][0];
+  r.xnew = options.moves_late() ? const_cast<double *>(work.xnew.data()) : &atom->x[0][0];
   return r;
 }
 
@@ -335,160 +290,16 @@ TransferStep MPMField::step_data() const
   return s;
 }
 
-int MPMField::domain_size() const
-{
-  return domains ? domains->size() : 0;
-}
-
-double (*MPMField::history_batch())[BATCH]
-{
-  return reinterpret_cast<double(*)[BATCH]>(history.data());
-}
-
-/* ---------------------------------------------------------------------- */
-
-void MPMField::load_state(Batch &b, const int *list, int n, const FixMPMMaterial *material,
-                          std::vector<double> &room) const
-{
-  b.n = n;
-  b.dt = step_dt();
-  b.h = lattice.h;
-  room.resize((std::size_t) MAX(1, material->nhistory) * BATCH);
-  b.history = reinterpret_cast<double(*)[BATCH]>(room.data());
-  for (int p = 0; p < n; p++) {
-    const int i = list[p];
-    const double *F = points->F[i];
-    for (int c = 0; c < 9; c++) b.F[c][p] = F[c];
-    b.J[p] = points->jacobian(i);
-    for (int c = 0; c < 6; c++) b.stress[c][p] = points->tau[i][c] / b.J[p];
-    b.vol0[p] = atom->vfrac[i];
-    for (int k = 0; k < material->nhistory; k++) b.history[k][p] = material->history[i][k];
-  }
-}
-
-/* ----------------------------------------------------------------------
-   points without any stress get the pressure of their equation of state, so that the first step
-   begins with that of a gas; for points that have come to zero stress this changes nothing;
-   points that have failed keep it
-------------------------------------------------------------------------- */
-
-void MPMField::give_initial_stress()
-{
-  std::vector<double> room;
-  std::vector<int> list;
-  const FixMPMMaterial *material = nullptr;
-  const auto flush = [&]() {
-    if (list.empty()) return;
-    load_state(*batch, list.data(), list.size(), material, room);
-    batch->time = end_of_step();
-    material->material->initial_stress(*batch);
-    for (std::size_t k = 0; k < list.size(); k++)
-      for (int c = 0; c < 6; c++) points->tau[list[k]][c] = batch->J[k] * batch->stress[c][k];
-    list.clear();
-  };
-
-  for (int i = 0; i < atom->nlocal; i++) {
-    const double *s = points->tau[i];
-    if (!is_point(i) || s[0] != 0.0 || s[1] != 0.0 || s[2] != 0.0 || s[3] != 0.0 || s[4] != 0.0 ||
-        s[5] != 0.0)
-      continue;
-    const auto *mine = material_of(i);
-    if (mine != material || list.size() == BATCH) flush();
-    material = mine;
-    const bool failed = mine && mine->damage >= 0 && mine->history[i][mine->damage] >= 1.0;
-    if (mine && !failed) list.push_back(i);
-  }
-  flush();
-}
-
-/* ---------------------------------------------------------------------- */
-
-NodeField &MPMField::add_node_field(const std::string &name, int width)
-{
-  node_fields.push_back({name, width, {}});
-  return node_fields.back();
-}
-
-void MPMField::allocate_nodes()
-{
-  grid.allocate(kernel.nreal);
-  for (auto &nodes : node_fields) nodes.values.assign(grid.nnodes() * nodes.width, 0.0);
-}
-
-void MPMField::sum(double *nodes, int nreal, int lane, int nlane) const
-{
-  if (edges) edges->fold(nodes, nreal, lane, nlane);
-  grid.fold_aliases(nodes, nreal, lane, nlane);
-  halo->sum(nodes, nreal, lane, nlane);
-}
-
-void MPMField::sum(NodeField &nodes) const
-{
-  sum(nodes.values.data(), nodes.width, 0, nodes.width);
-}
-
-void MPMField::complete(NodeField &nodes) const
-{
-  grid.copy_aliases(nodes.values.data(), nodes.width);
-  if (edges) edges->extend(nodes.values.data(), nodes.width, 0, nodes.width);
-}
-
-void MPMField::complete_velocities()
-{
-  grid.copy_aliases();
-  if (!edges) return;
-  edges->extend(grid.nodes(), kernel.nreal, 0, 3);
-  if (kernel.nreal == 8) edges->extend(grid.nodes(), kernel.nreal, 4, 3);
-}
-
-/* ---------------------------------------------------------------------- */
-
-void MPMField::start_counting()
-{
-  counts = {0, 0.0, step_dt(), step_dt()};
-  halo->bytes_sent = 0;
-  map->nbuild = map->nsort = 0;
-  map->sort_time = 0.0;
-  frame->start_counting();
-}
-
-void MPMField::count_step()
-{
-  const double dt = step_dt();
-  counts.dt_min = std::min(counts.dt_min, dt);
-  counts.dt_max = std::max(counts.dt_max, dt);
-  counts.steps++;
-  counts.point_steps += map->npoints();
-}
-
-/* ----------------------------------------------------------------------
-   per-point state: what LAMMPS keeps of any atom, atom style mpm, affine matrix, history
-------------------------------------------------------------------------- */
-
-double MPMField::bytes_per_point() const
-{
-  double bytes = 9 * sizeof(double) + sizeof(tagint) + 2 * sizeof(int) + sizeof(imageint);
-  bytes += (1 + 1 + 9 + 6) * sizeof(double);    // mass, V0, F, stress
-  bytes += state.size() * sizeof(double) + frame->bytes_per_point();
-  if (boxes) bytes += 3 * sizeof(double);
-  if (domains) bytes += domains->bytes_per_point();
-  for (auto *material : materials) bytes += material->nhistory * sizeof(double);
-  return bytes;
-}
-
 double MPMField::memory_usage() const
 {
-  double bytes = grid.memory_usage() + halo->memory_usage() + map->memory_usage() +
-      frame->memory_usage() + history.capacity() * sizeof(double);
-  if (edges) bytes += edges->memory_usage();
+  double bytes = nodes.memory_usage() + map->memory_usage() + frame->memory_usage();
   if (locking) bytes += locking->memory_usage();
   if (domains) bytes += domains->memory_usage();
   if (boxes) bytes += boxes->sizes.capacity() * sizeof(double);
   if (every)
     bytes += (every->mean_force.capacity() + every->mean_torque.capacity()) * sizeof(double);
-  for (const auto &nodes : node_fields) bytes += nodes.values.capacity() * sizeof(double);
   for (const auto *list : {&work.nodes, &work.node_velocities, &work.vectors, &work.weights,
-                           &work.stress, &work.no_volume, &work.xnew})
+                           &work.stress, &work.no_volume, &work.xnew, &work.history})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

@@ -9,14 +9,12 @@
 #ifndef LMP_MPM_FIELD_H
 #define LMP_MPM_FIELD_H
 
-#include "lattice/grid.h"
-#include "lattice/node_field.h"
 #include "mpm_field_options.h"
 #include "mpm_ledger.h"
+#include "mpm_nodes.h"
 #include "pointers.h"
 #include "transfer/kernels.h"
 
-#include <list>
 #include <memory>
 #include <string>
 #include <vector>
@@ -33,11 +31,9 @@ class FixMPMMaterial;
 class MPMAffine;
 class MPMBoxes;
 class MPMCpdi;
-class MPMEdges;
 class MPMEvery;
 class MPMFrame;
 class MPMGuard;
-class MPMHalo;
 class MPMLocking;
 class MPMPlan;
 class MPMPointMap;
@@ -51,13 +47,15 @@ class MPMField : protected Pointers {
  public:
   using Options = MPMFieldOptions;
 
+  using Pointers::atom;
+  using Pointers::lmp;
+
   Fix &fix;    ///< the fix mpm: its ID, its group, its requests for new neighbor lists
   const Options options;
   MPM_NS::Grid grid;    ///< records of momentum: velocity and mass after the momentum equation
   MPM_NS::Lattice &lattice;    ///< that of the grid
-  const std::unique_ptr<MPMHalo> halo;
+  MPMNodes nodes;
   MPMPoints *const points;
-  std::list<MPM_NS::NodeField> node_fields;    ///< of other physics, with a width of their own
 
   std::vector<FixMPMMaterial *> materials;    ///< all of them, set in init()
   std::vector<FixMPMElements *> elements;     ///< all of them, set in init()
@@ -84,7 +82,6 @@ class MPMField : protected Pointers {
   std::unique_ptr<MPMBoxes> boxes;
   std::unique_ptr<MPMCpdi> domains;
   std::unique_ptr<MPMEvery> every;
-  std::unique_ptr<MPMEdges> edges;
   std::unique_ptr<MPMLocking> locking;
 
   /** Memory that stages share; nothing in it outlives a stage. */
@@ -96,6 +93,7 @@ class MPMField : protected Pointers {
     std::vector<double> stress;             ///< [n][6]
     std::vector<double> no_volume;          ///< [n] zero
     std::vector<double> xnew;    ///< [n][3] positions of the end of the step, when points move late
+    std::vector<double> history;    ///< [variable][BATCH]
   } work;
 
   /** The per-point arrays that the options ask for are declared in state. */
@@ -114,84 +112,28 @@ class MPMField : protected Pointers {
   /** The lattice must fit the box, which may have changed since the last run. */
   void check_box();
 
-  /** Points without any stress get the pressure of their equation of state. */
-  void give_initial_stress();
-
   const char *id() const;
-  LAMMPS *lammps() const { return lmp; }
   bool is_point(int i) const;
   /** Is atom i a node of finite elements, without stress and material of its own? */
   bool is_element_node(int i) const;
   FixMPMMaterial *material_of(int i) const;
-  int npoints_local() const;
-  /** Where a point is on the lattice. */
-  const double *place(int i) const;
-  double **positions() const;
-  double volume(int i) const;    ///< present volume of a point
-  int nmax() const;              ///< room of per-point arrays
 
   /** Duration of a step of the cycle. */
   double step_dt() const;
-  double end_of_step() const;    ///< time at the end of the present step
   /** Steps of LAMMPS until the next step of the cycle ends, seen from the end of this step. */
   int steps_to_next() const;
-  /** Nodes along an axis that a position reaches, see MPMStencil. */
-  int weights(double t, int &first, double w[4]) const;
   MPM_NS::PointRows rows() const;
   /** Rows for transfers of other values and weights, in which points stay (the time step is zero). */
   MPM_NS::PointRows rows_at_rest(double *values, const double *weights) const;
   MPM_NS::TransferStep step_data() const;
-  /** Do positions of the end of the step have to wait until stress is known? */
-  bool moves_late() const;
-
-  /** Load the present state of the n <= BATCH points in list, all of one material, into a batch
-   *  (for wave speed and stored energy). history: room for nhistory*BATCH reals. */
-  void load_state(MPM_NS::Batch &, const int *list, int n, const FixMPMMaterial *,
-                  std::vector<double> &history) const;
-
-  /** Room for history variables of a batch. */
-  double (*history_batch())[MPM_NS::BATCH];
-  int domain_size() const;    ///< reals of a domain
-
-  /** A node field of other physics, with the given number of reals for each node. */
-  MPM_NS::NodeField &add_node_field(const std::string &name, int width);
-  /** Make room for all nodes; called when the blocks are new. */
-  void allocate_nodes();
-  /** Add what the edges, periodic images and other ranks hold of reals [lane, lane+nlane). */
-  void sum(double *nodes, int nreal, int lane, int nlane) const;
-  void sum(MPM_NS::NodeField &) const;
-  /** Values of periodic images and edges, before values go to points. */
-  void complete(MPM_NS::NodeField &) const;
-  /** Velocities of the nodes, also old ones, where interpolation needs them: images and edges. */
-  void complete_velocities();
-
-  /** Position of a node. */
-  void node_position(const int index[3], double x[3]) const
-  {
-    for (int d = 0; d < 3; d++)
-      x[d] = d < lattice.dim ? lattice.origin[d] + index[d] * lattice.h : 0.0;
-  }
-  /** Volume of a cell: of the part of a body that belongs to a node. */
-  double cell_volume() const
-  {
-    const double h = lattice.h;
-    return lattice.dim == 3 ? h * h * h : h * h;
-  }
 
   /** Of the present run. */
   struct {
     bigint steps;
     double point_steps, dt_min, dt_max;
   } counts;
-  void start_counting();
-  void count_step();
 
-  double bytes_per_point() const;
   double memory_usage() const;
-
- private:
-  const MPMPointState &state;
-  std::vector<double> history;    // of a batch
 };
 
 }    // namespace LAMMPS_NS

@@ -8,24 +8,10 @@
 
 #include "mpm_field_options.h"
 
-#include "mpm_options.h"
-
 #include <cmath>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
-
-bool MPMFieldOptions::has_size() const
-{
-  return shape == GIMP || shape == CPGIMP || has_domain(shape);
-}
-
-bool MPMFieldOptions::strains_apart() const
-{
-  return stress == GRADIENT_STRESS && is_mls(shape, transfer);
-}
-
-// ---------------------------------------------------------------------- declaration
 
 Options MPMFieldOptions::declare(int dim)
 {
@@ -51,7 +37,6 @@ Options MPMFieldOptions::declare(int dim)
         double product = 1.0;
         for (int d = 0; d < dim; d++) product *= aspect[d];
         for (int d = 0; d < dim; d++) aspect[d] /= pow(product, 1.0 / dim);
-        has_aspect = true;
       });
 
   enum { XPIC_WORD = 5, FMPM_WORD, POLYPIC_WORD };    // after those of enum Transfer
@@ -130,9 +115,6 @@ Options MPMFieldOptions::declare(int dim)
           "share of a full cell below which the velocity of a node does not count for gradients")});
   o.add("origin",
         {axes(origin, dim, "x y z", ANY_NUMBER, "distance", "position of one node of the lattice")})
-      .then([this] {
-        has_origin = true;
-      })
       .standard("lower corner of the simulation box");
   o.add("bad", {word(bad, {{"error", ERROR}, {"warn", WARN}, {"delete", DELETE}})},
         "what to do with a point that is inverted, not finite, or has left the box");
@@ -146,19 +128,10 @@ Options MPMFieldOptions::declare(int dim)
   o.add("dtcheck", {yes_no(dt_check)}, "stop when the time step is above the limit");
   o.add("plan", {yes_no(plan)}, "print the stages of the step, and at the end what each has cost");
 
-  static const char *const sets[] = {"", "reference", "baseline", "avx2", "avx512"};
-  o.add("kernels",
-        {word(
-            [this] {
-              int k = 0;
-              while (k < 4 && kernels != sets[k]) k++;
-              return k;
-            },
-            [this](int k) {
-              kernels = sets[k];
-            },
-            {{"auto", 0}, {"reference", 1}, {"baseline", 2}, {"avx2", 3}, {"avx512", 4}})},
-        "instruction set of the transfers and the materials");
+  o.add(
+      "kernels",
+      {word(kernels, {{"auto", 0}, {"reference", 1}, {"baseline", 2}, {"avx2", 3}, {"avx512", 4}})},
+      "instruction set of the transfers and the materials");
 
   // what does not go together
 
@@ -171,7 +144,7 @@ Options MPMFieldOptions::declare(int dim)
         {most_distorted > 0.0 && !total, "reference",
          "update is for frame total: in the updated frame, the reference is the present "
          "configuration in each step"},
-        {has_aspect && !has_size(), "aspect",
+        {!has_size(), "aspect",
          "is for points of finite size: use shape gimp, cpgimp, cpdi or cpdi2"},
         {total && (has_size() || transfer == AFLIP || transfer == TPIC), "frame",
          "total cannot be used with shape gimp, cpgimp, cpdi and cpdi2, which points that cross "
@@ -217,36 +190,4 @@ Options MPMFieldOptions::declare(int dim)
          "tiny mass: use transfer flip with scheme musl, quadratic functions, or light 0.5"}};
   });
   return o;
-}
-
-// ---------------------------------------------------------------------- use
-
-void MPMFieldOptions::read(LAMMPS *lmp, int narg, char **arg, int iarg, int dimension)
-{
-  Options o = declare(dimension);
-  read_options(lmp, o, narg, arg, iarg);
-}
-
-std::vector<std::string> MPMFieldOptions::warnings() const
-{
-  MPMFieldOptions copy = *this;
-  return copy.declare(axisymmetric ? 2 : 3).warnings();
-}
-
-std::string MPMFieldOptions::text() const
-{
-  MPMFieldOptions copy = *this;
-  return copy.declare(3).text();
-}
-
-std::string MPMFieldOptions::kept() const
-{
-  MPMFieldOptions copy = *this;
-  return copy.declare(3).kept();
-}
-
-std::string MPMFieldOptions::differences(const std::string &kept_then) const
-{
-  MPMFieldOptions copy = *this;
-  return copy.declare(3).differences(kept_then);
 }

@@ -12,11 +12,7 @@
 #include "declare/option.h"
 #include "transfer/kernels.h"
 
-#include <string>
-#include <vector>
-
 namespace LAMMPS_NS {
-class LAMMPS;
 
 /** The options of fix mpm, as given in the input. */
 struct MPMFieldOptions {
@@ -29,8 +25,7 @@ struct MPMFieldOptions {
   enum Policy { ERROR, WARN, DELETE };               ///< what to do with a point that goes bad
 
   MPM_NS::Shape shape = MPM_NS::QUADRATIC;
-  double aspect[3] = {1.0, 1.0, 1.0};    ///< edges of an undeformed point; their product is 1
-  bool has_aspect = false;
+  double aspect[3] = {1.0, 1.0, 1.0};          ///< edges of an undeformed point; their product is 1
   MPM_NS::Transfer transfer = MPM_NS::APIC;    ///< polypic is APIC, xpic and fmpm are FLIP
   double flip = 0.0;                           ///< FLIP share, 0: PIC
   bool polypic = false;                        ///< bilinear modes of the velocity, too
@@ -43,15 +38,14 @@ struct MPMFieldOptions {
   bool axisymmetric = false;      ///< 2d: x is the distance from the axis y, points are rings
   Locking locking = NO_CURE;
   double light = 0.0;    ///< nodes with less than this share of a full cell are light; 0: none
-  double origin[3] = {0.0, 0.0, 0.0};
-  bool has_origin = false;    ///< else it is the lower corner of the box
+  double origin[3] = {0.0, 0.0, 0.0};    ///< if not given: the lower corner of the box
   Policy bad = ERROR;
   bool delete_failed = false;     ///< remove points whose damage is 1
   bool modified_edges = false;    ///< functions next to fixed faces need no nodes outside
   int every = 1;                  ///< steps of LAMMPS in a step of the cycle
   bool dt_check = true;           ///< stop when the time step is above the stable limit
   bool plan = false;              ///< print the plan of the step with the cost of each stage
-  std::string kernels;            ///< wanted instruction set, empty: the best
+  int kernels = 0;                ///< wanted instruction set, 0: the best
 
   /** Does the scheme update stress at the start, at the end of the step, or (neither) in between? */
   bool stress_before() const { return scheme == USF || scheme == USAVG; }
@@ -59,23 +53,21 @@ struct MPMFieldOptions {
   /** What does the cure for locking average: changes of volume, pressures in the force? */
   bool averages_strain() const { return locking == FBAR || locking == BOTH; }
   bool averages_stress() const { return locking == PRESSURE || locking == BOTH; }
+  /** Do positions of the end of the step have to wait until stress is known? */
+  bool moves_late() const
+  {
+    return stress_after() || light > 0.0 || (averages_strain() && !stress_before());
+  }
   /** Do points have a size, by which they reach nodes? */
-  bool has_size() const;
+  bool has_size() const
+  {
+    return shape == MPM_NS::GIMP || shape == MPM_NS::CPGIMP || MPM_NS::has_domain(shape);
+  }
   /** Forces and strains have the gradients of the shape functions, the affine matrix has not. */
-  bool strains_apart() const;
-
-  /** Reads the arguments from iarg on and applies all refusals that concern options alone. */
-  void read(LAMMPS *, int narg, char **arg, int iarg, int dimension);
-
-  /** What can be run with these options but is likely to be a mistake. */
-  std::vector<std::string> warnings() const;
-  /** All keywords with their present values, in one line. */
-  std::string text() const;
-  /** For restart files: the options that a run must go on with. */
-  std::string kept() const;
-  /** Which of them differ from what kept() returned when the file was written, with both values;
-   *  empty: none. */
-  std::string differences(const std::string &kept_then) const;
+  bool strains_apart() const
+  {
+    return stress == GRADIENT_STRESS && MPM_NS::is_mls(shape, transfer);
+  }
 
   /** The declaration; refers to this object. */
   MPM_NS::Options declare(int dimension);

@@ -73,7 +73,7 @@ class MPMFrame : protected Pointers {
                                double /*shift*/)
   {
   }
-  /** Gradients at the start of a step from those of another time in it, see mpm_stage_stress.cpp. */
+  /** Gradients at the start of a step from those of another time in it, see mpm_frame.cpp. */
   virtual void shift_gradients(int n, double shift, double *L) const;
   /** L is not yet what the laws need: gradients must go through refer_gradients(). */
   virtual bool refers() const { return false; }

@@ -139,7 +139,7 @@ template <class Plane> double MPMFrameAxisymmetric<Plane>::speed(int i, double &
 {
   const double h = this->field.lattice.h;
   if (this->domain->boxlo[0] > AT_AXIS * h) {
-    const double ratio = 0.5 * h / this->field.place(i)[0];
+    const double ratio = 0.5 * h / this->field.frame->places()[i][0];
     c *= sqrt(1.0 + ratio * ratio);
   }
   return Plane::speed(i, c);

@@ -21,6 +21,7 @@
 #include "modify.h"
 #include "mpm_boxes.h"
 #include "mpm_field.h"
+#include "mpm_point_batches.h"
 #include "mpm_point_map.h"
 #include "mpm_points.h"
 #include "neighbor.h"
@@ -149,7 +150,7 @@ void MPMGuard::delete_points(const std::vector<tagint> &list, bool warn)
       const double kinetic = 0.5 * force->mvv2e * m * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
       const FixMPMMaterial *material = field.material_of(i);
       double w[BATCH];
-      field.load_state(*field.batch, &i, 1, material, history);
+      load_state(field, *field.batch, &i, 1, material, history);
       material->material->stored_energy(*field.batch, w);
       field.ledger.remove(kinetic, atom->vfrac[i] * w[0] / force->nktv2p);
     }

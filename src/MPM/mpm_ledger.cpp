@@ -107,7 +107,7 @@ double MPMLedger::external_work(const double *force_on) const
               run_to_tile(field, field.kernel.p2g_force, r, s, run, base, box);
             });
   const int nreal = field.kernel.nreal;
-  field.sum(nodes.data(), nreal, 4, 3);
+  field.nodes.sum(nodes.data(), nreal, 4, 3);
 
   Grid &grid = field.grid;
   double work = 0.0;

@@ -12,7 +12,6 @@
 
 #include "atom.h"
 #include "fix_mpm_material.h"
-#include "mpm_edges.h"
 #include "mpm_field.h"
 #include "mpm_frame.h"
 #include "mpm_passes.h"
@@ -48,16 +47,6 @@ using namespace MPM_NS;
    another change of volume next to them for good reasons.
 ------------------------------------------------------------------------- */
 
-bool MPMLocking::averages_strain() const
-{
-  return field.options.locking != MPMFieldOptions::PRESSURE;
-}
-
-bool MPMLocking::averages_stress() const
-{
-  return field.options.locking != MPMFieldOptions::FBAR;
-}
-
 double *MPMLocking::room_for_gradients()
 {
   gradients.resize(field.lattice.dim * field.lattice.dim * (std::size_t) atom->nmax);
@@ -78,7 +67,6 @@ void MPMLocking::average_around_points()
 {
   auto &work = field.work;
   const auto &pic = field.pic;
-  Grid &grid = field.grid;
   const PointRows r = field.rows_at_rest(work.vectors.data(), work.weights.data());
   TransferStep s = field.step_data();
   s.dt = 0.0;
@@ -88,10 +76,9 @@ void MPMLocking::average_around_points()
       if (run.material == material)
         pic.p2g_momentum(r, s, run.first, run.last, base, field.map->tile, box);
     });
-    field.sum(work.nodes.data(), pic.nreal, 0, 4);
-    field.kernels->solve_nodes(work.nodes.data(), (int) grid.nnodes(), pic.nreal, 0.0);
-    grid.copy_aliases(work.nodes.data(), pic.nreal);
-    if (field.edges) field.edges->extend(work.nodes.data(), pic.nreal, 0, 1);
+    field.nodes.sum(work.nodes.data(), pic.nreal, 0, 4);
+    field.kernels->solve_nodes(work.nodes.data(), (int) field.grid.nnodes(), pic.nreal, 0.0);
+    field.nodes.complete(work.nodes.data(), pic.nreal, 1);
     points_from(work.nodes, field, pic, [&](const MPMPointMap::Run &run, const int *base) {
       if (run.material == material)
         pic.g2p(r, s, run.first, run.last, base, field.map->tile_load, nullptr);
@@ -120,7 +107,7 @@ void MPMLocking::strain(const double *L, double dt)
       const bool good = mine > -1.0 && std::isfinite(mine);    // or else it is a bad point
       change[3 * i] = good ? mine : 0.0;
       change[3 * i + 1] = change[3 * i + 2] = 0.0;
-      volume[i] = good ? field.volume((int) i) : 0.0;
+      volume[i] = good ? atom->vfrac[i] * field.points->jacobian(i) : 0.0;
     }
   average_around_points();
 

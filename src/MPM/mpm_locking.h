@@ -21,9 +21,6 @@ class MPMLocking : protected Pointers {
  public:
   MPMLocking(class LAMMPS *lmp, MPMField &field) : Pointers(lmp), field(field) {}
 
-  bool averages_strain() const;
-  bool averages_stress() const;
-
   /** [n][dim*dim] for velocity gradients of all points. */
   double *room_for_gradients();
   /** F-bar: strain and stress of all points with velocity gradients L whose change of volume is

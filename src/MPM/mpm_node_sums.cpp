@@ -44,7 +44,7 @@ static void map_some(MPMField &field, const PointRows &r, const TransferStep &s,
               for (int i = run.first; i < run.last; i++) weigh(i);
               p2g(r, s, run.first, run.last, base, field.map->tile, box);
             });
-  field.sum(field.work.nodes.data(), field.kernel.nreal, lane, nlane);
+  field.nodes.sum(field.work.nodes.data(), field.kernel.nreal, lane, nlane);
 }
 
 /* ----------------------------------------------------------------------
@@ -56,7 +56,7 @@ void LAMMPS_NS::map_gradient(MPMField &field, Weight content, const std::vector<
                              std::vector<double> &gradient)
 {
   const MPMFrame &frame = *field.frame;
-  field.work.stress.resize(6 * (std::size_t) field.nmax());
+  field.work.stress.resize(6 * (std::size_t) field.atom->nmax);
   PointRows r = field.rows();
   r.tau = field.work.stress.data();
   TransferStep s = field.step_data();
@@ -69,7 +69,7 @@ void LAMMPS_NS::map_gradient(MPMField &field, Weight content, const std::vector<
     double *const tau = r.tau + 6 * (std::size_t) i;
     const double weight =
         (content == Weight::MASS ? r.mass[i] / r.vol0[i] : field.points->jacobian(i)) /
-        frame.circle(field.positions()[i][0]);
+        frame.circle(field.atom->x[i][0]);
     for (int k = 0; k < 6; k++) tau[k] = k < 3 ? -weight : 0.0;
   });
   gradient.resize(3 * field.grid.nnodes());
@@ -87,13 +87,14 @@ void LAMMPS_NS::map_volume(MPMField &field, const std::vector<char> &near,
                            std::vector<double> &share)
 {
   auto &volumes = field.work.weights;
-  volumes.resize(std::max(volumes.size(), (std::size_t) field.nmax()));
+  volumes.resize(std::max(volumes.size(), (std::size_t) field.atom->nmax));
   PointRows r = field.rows();
   r.mass = volumes.data();
   map_some(field, r, field.step_data(), field.kernel.p2g_momentum, near, 3, 1, [&](int i) {
-    volumes[i] = field.volume(i) / field.frame->circle(field.positions()[i][0]);
+    volumes[i] =
+        field.atom->vfrac[i] * field.points->jacobian(i) / field.frame->circle(field.atom->x[i][0]);
   });
-  const double inverse = 1.0 / field.cell_volume();
+  const double inverse = 1.0 / field.lattice.cell_volume();
   share.resize(field.grid.nnodes());
   for (int64_t n = 0; n < field.grid.nnodes(); n++)
     share[n] = inverse * field.work.nodes[n * field.kernel.nreal + 3];
@@ -129,7 +130,7 @@ void LAMMPS_NS::volume_at_points(MPMField &field, std::vector<double> &share)
   const auto &pic = field.pic;
   MPMPointMap &map = *field.map;
   auto &nodes = field.work.nodes;
-  const std::size_t nmax = field.nmax();
+  const std::size_t nmax = field.atom->nmax;
   std::vector<double> values(3 * nmax), weights(nmax);
   const PointRows r = field.rows_at_rest(values.data(), weights.data());
   TransferStep s = field.step_data();
@@ -148,22 +149,21 @@ void LAMMPS_NS::volume_at_points(MPMField &field, std::vector<double> &share)
 
   const int nreal = pic.nreal;
   double *const volume = nodes.data() + 3;
-  MPMEdges faces(field.lammps(), field);
-  if (!field.frame->is_total() && !field.edges) faces.find(true);
+  MPMEdges faces(field.lmp, field);
+  if (!field.frame->is_total() && !field.nodes.edges) faces.find(true);
   for (int a = field.lattice.dim - 1; a >= 0; a--)
     for (const auto &e : faces.lists[a]) {
       volume[e.face * nreal] *= 2.0;
       if (e.outside >= 0) volume[e.inside * nreal] += volume[e.outside * nreal];
     }
-  field.sum(nodes.data(), nreal, 3, 1);
+  field.nodes.sum(nodes.data(), nreal, 3, 1);
   for (int a = 0; a < field.lattice.dim; a++)
     for (const auto &e : faces.lists[a])
       if (e.outside >= 0) volume[e.outside * nreal] = volume[e.inside * nreal];
-  const double inverse = 1.0 / field.cell_volume();
+  const double inverse = 1.0 / field.lattice.cell_volume();
   for (int64_t n = 0; n < field.grid.nnodes(); n++)
     nodes[n * nreal] = inverse * nodes[n * nreal + 3];
-  field.grid.copy_aliases(nodes.data(), nreal);
-  if (field.edges) field.edges->extend(nodes.data(), nreal, 0, 1);
+  field.nodes.complete(nodes.data(), nreal, 1);
   points_from(nodes, field, pic, [&](const MPMPointMap::Run &run, const int *base) {
     pic.g2p(r, s, run.first, run.last, base, map.tile_load, nullptr);
   });

@@ -26,7 +26,7 @@ class MPMField;
  *  mpm at the start of each run. examples/own-physics has one, line by line. */
 class MPMPhysics {
  public:
-  /** Start of a run: check, and declare node fields (MPMField::add_node_field). */
+  /** Start of a run: check, and declare node fields (MPMNodes::add_field). */
   virtual void init_physics(MPMPlan &) = 0;
 
   /** Append the stages for a place in the step to the plan (MPMPlan::each, MPMPlan::together). */

@@ -48,47 +48,40 @@ void MPMPlan::make()
   for (auto *other : physics) other->init_physics(*this);
 
   stages.clear();
-  switch (fields[0]->options.scheme) {
-    case MPMFieldOptions::USL:
-      return make_usl(*this);
-    case MPMFieldOptions::USF:
-      return make_usf(*this);
-    case MPMFieldOptions::MUSL:
-      return make_musl(*this);
-    case MPMFieldOptions::USAVG:
-      return make_usavg(*this);
-  }
+  static void (*const make_list[])(MPMPlan &) = {make_usl, make_usf, make_musl, make_usavg};
+  make_list[fields[0]->options.scheme](*this);    // in the order of MPMFieldOptions::Scheme
 }
 
 /* ---------------------------------------------------------------------- */
 
 void MPMPlan::each(const std::string &name, Each run, Wanted wanted)
 {
-  Stage stage;
-  stage.name = name;
-  stage.each = std::move(run);
+  std::vector<MPMField *> list;
   for (auto *field : fields)
-    if (!wanted || wanted(*field)) stage.fields.push_back(field);
-  if (stage.fields.empty()) return;
-  stage.seconds.assign(stage.fields.size(), 0.0);
-  stages.push_back(std::move(stage));
+    if (!wanted || wanted(*field)) list.push_back(field);
+  const std::vector<double> seconds(list.size(), 0.0);
+  if (!list.empty()) stages.push_back({name, std::move(run), list, false, seconds});
 }
 
-void MPMPlan::together(const std::string &name, std::function<void()> run)
+void MPMPlan::together(const std::string &name, const std::function<void()> &run, Wanted wanted)
 {
-  Stage stage;
-  stage.name = name;
-  stage.once = std::move(run);
-  stage.seconds.assign(1, 0.0);
-  stages.push_back(std::move(stage));
+  const auto once = [run](MPMField &) {
+    run();
+  };
+  const auto wants = [&wanted](const MPMField *field) {
+    return !wanted || wanted(*field);
+  };
+  if (std::any_of(fields.begin(), fields.end(), wants))
+    stages.push_back({name, once, {fields[0]}, true, {0.0}});
 }
 
-void MPMPlan::node_actions(MPMNodeAction::Stage stage)
+void MPMPlan::node_actions(MPMNodeAction::Stage stage, Wanted wanted)
 {
   if (actions.empty()) return;
-  together("node actions", [this, stage]() {
+  const auto act = [this, stage]() {
     act_on_nodes(stage);
-  });
+  };
+  together("node actions", act, std::move(wanted));
 }
 
 void MPMPlan::place(Place at)
@@ -117,10 +110,7 @@ void MPMPlan::step()
   double time = platform::walltime();
   for (auto &stage : stages) {
     for (std::size_t k = 0; k < stage.seconds.size(); k++) {
-      if (stage.fields.empty())
-        stage.once();
-      else
-        stage.each(*stage.fields[k]);
+      stage.run(*stage.fields[k]);
       const double now = platform::walltime();
       stage.seconds[k] += now - time;
       time = now;
@@ -143,7 +133,7 @@ void MPMPlan::find_blocks()
     if (field->map->valid) continue;
     for (auto *action : actions) action->extend_topology(*field);
     field->map->finish_blocks();
-    if (field->edges) field->edges->find(false);
+    if (field->nodes.edges) field->nodes.edges->find(false);
     for (auto *action : actions) action->topology_changed(*field);
   }
   for (auto *field : fields)
@@ -166,7 +156,13 @@ void MPMPlan::start()
   for (auto &stage : stages) std::fill(stage.seconds.begin(), stage.seconds.end(), 0.0);
   wall_start = platform::walltime();
   cpu_start = platform::cputime();
-  for (auto *field : fields) field->start_counting();
+  for (auto *field : fields) {
+    field->counts = {0, 0.0, field->step_dt(), field->step_dt()};
+    field->nodes.halo->bytes_sent = 0;
+    field->map->nbuild = field->map->nsort = 0;
+    field->map->sort_time = 0.0;
+    field->frame->start_counting();
+  }
 
   if (comm->me || std::none_of(fields.begin(), fields.end(), [](auto *field) {
         return field->options.plan;
@@ -176,7 +172,7 @@ void MPMPlan::start()
   for (const auto &stage : stages) {
     text += "  " + stage.name;
     for (auto *field : stage.fields)
-      if (fields.size() > 1) text += std::string(" ") + field->id();
+      if (fields.size() > 1 && !stage.once) text += std::string(" ") + field->id();
     text += "\n";
   }
   utils::logmesg(lmp, text);
@@ -187,11 +183,9 @@ void MPMPlan::start()
 std::vector<MPMPlan::Time> MPMPlan::times(const MPMField &field) const
 {
   std::vector<Time> list = {{"sort", field.map->sort_time}};
-  for (const auto &stage : stages) {
-    if (stage.fields.empty() && &field == fields[0]) list.push_back({stage.name, stage.seconds[0]});
+  for (const auto &stage : stages)
     for (std::size_t k = 0; k < stage.fields.size(); k++)
       if (stage.fields[k] == &field) list.push_back({stage.name, stage.seconds[k]});
-  }
   return list;
 }
 
@@ -200,7 +194,7 @@ std::vector<MPMPlan::Time> MPMPlan::times(const MPMField &field) const
    entry
 ------------------------------------------------------------------------- */
 
-void MPMPlan::report(const MPMField &field) const
+void MPMPlan::report(const MPMField &field, double bytes_per_point) const
 {
   constexpr double IDLE = 0.9;    // of the time is the processor's, or else others have taken it
   const auto &counts = field.counts;
@@ -214,7 +208,7 @@ void MPMPlan::report(const MPMField &field) const
   MPI_Allreduce(&use, &least_use, 1, MPI_DOUBLE, MPI_MIN, world);
   double local[4] = {counts.point_steps, (double) field.map->active.size(),
                      (double) field.grid.blocks.size(),
-                     (double) field.halo->bytes_sent / counts.steps},
+                     (double) field.nodes.halo->bytes_sent / counts.steps},
          sum[4];
   MPI_Allreduce(local, sum, 4, MPI_DOUBLE, MPI_SUM, world);
   if (comm->me) return;
@@ -243,9 +237,9 @@ void MPMPlan::report(const MPMField &field) const
                  "{:.1f} points per block\n"
                  "  {} updates of the topology, {} sorts, {:.0f} halo bytes per step, "
                  "time step {:.6g} to {:.6g}\n",
-                 field.id(), npoints, field.kernels->isa, total, stages_text,
-                 field.bytes_per_point(), sum[1], sum[2], npoints / std::max(1.0, sum[1]),
-                 field.map->nbuild, field.map->nsort, sum[3], counts.dt_min, counts.dt_max);
+                 field.id(), npoints, field.kernels->isa, total, stages_text, bytes_per_point,
+                 sum[1], sum[2], npoints / std::max(1.0, sum[1]), field.map->nbuild,
+                 field.map->nsort, sum[3], counts.dt_min, counts.dt_max);
   if (least_use < IDLE)
     utils::logmesg(lmp,
                    "  the machine was busy: these times are from a run with {:.0f} % CPU use\n",

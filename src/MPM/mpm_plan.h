@@ -47,10 +47,10 @@ class MPMPlan : protected Pointers {
 
   /** Append a stage that is run for each field that wants it; without these there is no such stage. */
   void each(const std::string &name, Each run, Wanted wanted = nullptr);
-  /** Append a stage that is run once for all fields. */
-  void together(const std::string &name, std::function<void()> run);
+  /** Append a stage that is run once for all fields, if any of them wants it. */
+  void together(const std::string &name, const std::function<void()> &run, Wanted wanted = nullptr);
   /** Append node actions on one kind of velocities, if there are any. */
-  void node_actions(MPMNodeAction::Stage);
+  void node_actions(MPMNodeAction::Stage, Wanted wanted = nullptr);
   /** Append what other physics have at this place. */
   void place(Place);
 
@@ -59,7 +59,7 @@ class MPMPlan : protected Pointers {
   /** A step of LAMMPS: one of the cycle, if it is time for it. */
   void step();
   /** What the steps of a run have cost a field, to screen and log file. */
-  void report(const MPMField &) const;
+  void report(const MPMField &, double bytes_per_point) const;
 
   /** Blocks in reach of points, of all fields whose points have moved in memory or away. */
   void find_blocks();
@@ -70,10 +70,10 @@ class MPMPlan : protected Pointers {
  private:
   struct Stage {
     std::string name;
-    std::vector<MPMField *> fields;    // empty: run once
-    Each each;
-    std::function<void()> once;
-    std::vector<double> seconds;
+    Each run;
+    std::vector<MPMField *> fields;    // the first one, if it is run once
+    bool once;
+    std::vector<double> seconds;    // of each of these
   };
   std::vector<Stage> stages;
   double wall_start, cpu_start;    // of the run [s]

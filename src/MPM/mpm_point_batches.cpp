@@ -13,12 +13,36 @@
 #include "material/material.h"
 #include "modify.h"
 #include "mpm_field.h"
+#include "mpm_points.h"
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+
+void LAMMPS_NS::load_state(const MPMField &field, Batch &b, const int *list, int n,
+                           const FixMPMMaterial *material, std::vector<double> &room)
+{
+  const MPMPoints &points = *field.points;
+  b.n = n;
+  b.dt = field.step_dt();
+  b.h = field.lattice.h;
+  room.resize((std::size_t) std::max(1, material->nhistory) * BATCH);
+  b.history = reinterpret_cast<double(*)[BATCH]>(room.data());
+  for (int p = 0; p < n; p++) {
+    const int i = list[p];
+    const double *F = points.F[i];
+    for (int c = 0; c < 9; c++) b.F[c][p] = F[c];
+    b.J[p] = points.jacobian(i);
+    for (int c = 0; c < 6; c++) b.stress[c][p] = points.tau[i][c] / b.J[p];
+    b.vol0[p] = field.atom->vfrac[i];
+    for (int k = 0; k < material->nhistory; k++) b.history[k][p] = material->history[i][k];
+  }
+}
+
+/* ---------------------------------------------------------------------- */
 
 void LAMMPS_NS::visit_point_batches(LAMMPS *lmp, int groupbit, const BatchVisitor &visit)
 {
@@ -32,7 +56,7 @@ void LAMMPS_NS::visit_point_batches(LAMMPS *lmp, int groupbit, const BatchVisito
     for (auto *material : field->materials) {
       auto flush = [&]() {
         if (list.empty()) return;
-        field->load_state(*batch, list.data(), (int) list.size(), material, history);
+        load_state(*field, *batch, list.data(), (int) list.size(), material, history);
         visit(*batch, list.data(), *material);
         list.clear();
       };

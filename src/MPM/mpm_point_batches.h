@@ -10,6 +10,7 @@
 #define LMP_MPM_POINT_BATCHES_H
 
 #include <functional>
+#include <vector>
 
 namespace MPM_NS {
 struct Batch;
@@ -17,6 +18,12 @@ struct Batch;
 
 namespace LAMMPS_NS {
 class FixMPMMaterial;
+class MPMField;
+
+/** Load the present state of the n <= BATCH points in list, all of one material, into a batch (for wave
+ *  speed and stored energy). history: room for nhistory*BATCH reals. */
+void load_state(const MPMField &, MPM_NS::Batch &, const int *list, int n, const FixMPMMaterial *,
+                std::vector<double> &history);
 
 /** What is done with a batch of points: their state, local indices, and material. */
 using BatchVisitor =

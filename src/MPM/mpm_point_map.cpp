@@ -19,6 +19,7 @@
 #include "mpm_frame.h"
 #include "mpm_guard.h"
 #include "mpm_halo.h"
+#include "mpm_passes.h"
 #include "neighbor.h"
 #include "platform.h"
 
@@ -147,32 +148,25 @@ void MPMPointMap::find_blocks()
     double lo[3], hi[3];
   };
   std::vector<Range> ranges;
-  int last_base[3] = {INT_MAX, INT_MAX, INT_MAX}, last_block[3] = {INT_MAX, INT_MAX, INT_MAX};
+  std::array<int, 3> last_base = {INT_MAX, INT_MAX, INT_MAX}, last_block = last_base;
   const int nlocal = atom->nlocal;
   for (int i = 0; i < nlocal; i++) {
     if (!field.is_point(i)) continue;
-    int base[3], b[3];
+    std::array<int, 3> base, b;
     double t[3];
-    if (!base_node(field.place(i), base, t)) {
+    if (!base_node(field.frame->places()[i], base.data(), t)) {
       field.guard->point_is_bad(i, "is far out of reach of the lattice");
       continue;
     }
     for (int d = 0; d < 3; d++) b[d] = base[d] >> grid.shift_bits;
-    if (base[0] != last_base[0] || base[1] != last_base[1] || base[2] != last_base[2]) switches++;
+    if (base != last_base) switches++;
     FixMPMMaterial *material = field.is_element_node(i) ? nullptr : field.material_of(i);
-    const bool same_block = b[0] == last_block[0] && b[1] == last_block[1] && b[2] == last_block[2];
+    const bool same_block = b == last_block;
     if (same_block && runs.back().last == i && runs.back().material == material) {
       runs.back().last++;
     } else {
-      const int slot = same_block ? runs.back().slot : grid.activate(b);
-      if (slot == (int) ranges.size()) {
-        Range r;
-        for (int d = 0; d < 3; d++) {
-          r.lo[d] = t[d];
-          r.hi[d] = t[d];
-        }
-        ranges.push_back(r);
-      }
+      const int slot = same_block ? runs.back().slot : grid.activate(b.data());
+      if (slot == (int) ranges.size()) ranges.push_back({{t[0], t[1], t[2]}, {t[0], t[1], t[2]}});
       runs.push_back({i, i + 1, slot, material});
     }
     Range &r = ranges[runs.back().slot];
@@ -181,25 +175,18 @@ void MPMPointMap::find_blocks()
     for (int d = 0; d < 3; d++) {
       r.lo[d] = std::min(r.lo[d], t[d] + reach_lo[d]);
       r.hi[d] = std::max(r.hi[d], t[d] + reach_hi[d]);
-      last_base[d] = base[d];
-      last_block[d] = b[d];
     }
+    last_base = base;
+    last_block = b;
   }
   std::stable_sort(runs.begin(), runs.end(), [](const Run &a, const Run &b) {
     return a.slot < b.slot;
   });
 
   for (int k = 0, end; k < (int) runs.size(); k = end) {
-    ActiveBlock a;
     for (end = k; end < (int) runs.size() && runs[end].slot == runs[k].slot;) end++;
-    a.slot = runs[k].slot;
-    a.first_run = k;
-    a.last_run = end;
-    for (int d = 0; d < 3; d++) {
-      a.box[d] = 127;
-      a.box[3 + d] = -127;
-    }
-    active.push_back(a);
+    active.push_back({runs[k].slot, k, end, {}, {}, {}, {}});
+    reset_box(active.back().box);
   }
 
   // blocks that the points can reach before the next update, which comes when a point leaves its tile
@@ -212,16 +199,12 @@ void MPMPointMap::find_blocks()
   const int nactive = active.size(), order = stencil_order(field.options.shape);
   for (int k = 0; k < nactive; k++) {
     const Range &r = ranges[k];
-    int b[3], lo[3] = {0, 0, 0}, hi[3] = {0, 0, 0};
-    for (int d = 0; d < 3; d++) b[d] = grid.blocks[k].b[d];
+    int b[3], *const lo = active[k].low, *const hi = active[k].high;
+    std::copy_n(grid.blocks[k].b, 3, b);
     for (int d = 0; d < grid.lattice.dim; d++) {
       const int first = b[d] * grid.side;
       if ((int) std::floor(r.lo[d] - drift) < first) lo[d] = -1;
       if ((int) std::floor(r.hi[d] + drift) + order >= first + grid.side) hi[d] = 1;
-    }
-    for (int d = 0; d < 3; d++) {
-      active[k].low[d] = lo[d];
-      active[k].high[d] = hi[d];
     }
     for (int dx = lo[0]; dx <= hi[0]; dx++)
       for (int dy = lo[1]; dy <= hi[1]; dy++)
@@ -238,8 +221,8 @@ void MPMPointMap::finish_blocks()
 {
   field.grid.close_periodic();
   field.grid.finish();
-  field.allocate_nodes();
-  field.halo->setup(field.grid);
+  field.nodes.allocate(field.kernel.nreal);
+  field.nodes.halo->setup(field.grid);
 
   valid = true;
   drifted = 0;
@@ -270,7 +253,7 @@ void MPMPointMap::sort()
   for (int i = 0; i < nlocal; i++) {
     int base[3];
     double t[3];
-    if (!field.is_point(i) || !base_node(field.place(i), base, t)) continue;
+    if (!field.is_point(i) || !base_node(field.frame->places()[i], base, t)) continue;
     std::array<int, 3> block;
     for (int d = 0; d < 3; d++) block[d] = base[d] >> field.grid.shift_bits;
     if (block != last) {
@@ -320,8 +303,7 @@ void MPMPointMap::sort()
   // map must forget them before
 
   const bool mapped = atom->map_style != Atom::MAP_NONE;
-  bool moves = false;
-  for (int i = 0; i < nlocal; i++) moves = moves || permute[i] != i;
+  const bool moves = !std::is_sorted(permute.begin(), permute.end());
   bigint renew = atom->nghost + (moves && mapped), renew_all;
   MPI_Allreduce(&renew, &renew_all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   if (renew_all) {

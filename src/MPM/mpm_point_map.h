@@ -62,8 +62,6 @@ class MPMPointMap : protected Pointers {
   void tile_base(const ActiveBlock &, int base[3]) const;
   /** Nodes of a block to the tile, and those of the next block towards the cache. */
   void load_tile(const ActiveBlock &, int base[3]);
-  /** Calls f(first, n, run) for all points, up to BATCH of one run at a time. */
-  template <class F> void for_batches(const F &f) const;
 
   bigint npoints() const;
   std::size_t tile_reals() const;

@@ -58,19 +58,20 @@ void MPMStages::blend_light_nodes(MPMField &field)
 {
   auto &nodes = field.work.nodes, &volumes = field.work.weights;
   MPMPointMap &map = *field.map;
-  volumes.resize(field.nmax());
+  volumes.resize(field.atom->nmax);
   for (const auto &run : map.runs)
     for (int i = run.first; i < run.last; i++)
-      volumes[i] = field.volume(i) / field.frame->circle(field.positions()[i][0]);
+      volumes[i] = field.atom->vfrac[i] * field.points->jacobian(i) /
+          field.frame->circle(field.atom->x[i][0]);
   PointRows r = field.rows();
   r.mass = volumes.data();
   const TransferStep s = field.step_data();
   points_to(nodes, field, field.pic, [&](const MPMPointMap::Run &run, const int *base, int *box) {
     field.pic.p2g_momentum(r, s, run.first, run.last, base, map.tile, box);
   });
-  field.sum(nodes.data(), field.pic.nreal, 0, 4);
+  field.nodes.sum(nodes.data(), field.pic.nreal, 0, 4);
 
-  const double full = field.options.light * field.cell_volume();
+  const double full = field.options.light * field.lattice.cell_volume();
   double *record = field.grid.nodes();
   const double *mapped = nodes.data();
   for (int64_t n = field.grid.nnodes(); n > 0;
@@ -89,7 +90,7 @@ void MPMStages::blend_light_nodes(MPMField &field)
 static void gradients(MPMField &field, bool stress)
 {
   field.grid.copy_aliases();
-  const bool fbar = stress && field.locking && field.locking->averages_strain();
+  const bool fbar = stress && field.options.averages_strain();
   double *const of_all = field.affine ? field.affine->rows()
       : fbar                          ? field.locking->room_for_gradients()
                                       : nullptr;

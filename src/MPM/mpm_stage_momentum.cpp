@@ -10,6 +10,7 @@
 
 #include "atom.h"
 #include "mpm_affine.h"
+#include "mpm_cpdi.h"
 #include "mpm_field.h"
 #include "mpm_frame.h"
 #include "mpm_locking.h"
@@ -49,7 +50,7 @@ void LAMMPS_NS::run_to_tile(MPMField &field, P2G p2g, const PointRows &rows,
     b.guarded -= (int) i;
     b.tau += 6 * i;
     if (b.size) b.size += 3 * i;
-    if (b.domain) b.domain += field.domain_size() * i;
+    if (b.domain) b.domain += field.domains->size() * i;
     frame.forces(b, (int) i, n, room);
     p2g(b, step, 0, n, base, tile, box);
   }
@@ -61,11 +62,11 @@ static void to_nodes(MPMField &field, P2G p2g)
 {
   MPMPointMap &map = *field.map;
   PointRows r = field.rows();
-  if (field.locking && field.locking->averages_stress()) r.tau = field.locking->stress();
+  if (field.options.averages_stress()) r.tau = field.locking->stress();
   const TransferStep s = field.step_data();
   PointRows stressless = r;    // nodes of elements
   if (!field.elements.empty()) {
-    field.work.no_volume.assign(field.nmax(), 0.0);
+    field.work.no_volume.assign(field.atom->nmax, 0.0);
     stressless.vol0 = field.work.no_volume.data();
   }
   double *const nodes = field.grid.nodes();
@@ -85,38 +86,20 @@ static void to_nodes(MPMField &field, P2G p2g)
   }
 }
 
-void MPMStages::points_to_nodes(MPMField &field)
+void MPMStages::points_to_nodes(MPMField &field, Content content)
 {
-  field.grid.zero();
-  to_nodes(field, field.kernel.p2g);
+  const auto &kernel = field.kernel;
+  if (content != FORCE) field.grid.zero();
+  to_nodes(field,
+           content == FORCE          ? kernel.p2g_force
+               : content == MOMENTUM ? kernel.p2g_momentum
+                                     : kernel.p2g);
 }
 
-void MPMStages::momentum_to_nodes(MPMField &field)
+void MPMStages::sum_nodes(MPMField &field, Content content)
 {
-  field.grid.zero();
-  to_nodes(field, field.kernel.p2g_momentum);
-}
-
-void MPMStages::forces_to_nodes(MPMField &field)
-{
-  to_nodes(field, field.kernel.p2g_force);
-}
-
-/* ---------------------------------------------------------------------- */
-
-void MPMStages::sum_all(MPMField &field)
-{
-  field.sum(field.grid.nodes(), field.kernel.nreal, 0, field.kernel.nreal);
-}
-
-void MPMStages::sum_momentum(MPMField &field)
-{
-  field.sum(field.grid.nodes(), field.kernel.nreal, 0, 4);
-}
-
-void MPMStages::sum_forces(MPMField &field)
-{
-  field.sum(field.grid.nodes(), field.kernel.nreal, 4, 4);
+  const int nreal = field.kernel.nreal;
+  field.nodes.sum(field.grid.nodes(), nreal, content == FORCE ? 4 : 0, content == ALL ? nreal : 4);
 }
 
 /* ---------------------------------------------------------------------- */

@@ -6,9 +6,10 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Stages: nodes to points.
+// Stages: nodes to points, strain and stress of the points.
 
 #include "atom.h"
+#include "fix_mpm_material.h"
 #include "mpm_affine.h"
 #include "mpm_cpdi.h"
 #include "mpm_every.h"
@@ -17,8 +18,11 @@
 #include "mpm_guard.h"
 #include "mpm_locking.h"
 #include "mpm_passes.h"
+#include "mpm_point_batches.h"
+#include "mpm_points.h"
 #include "mpm_stages.h"
 #include "mpm_time_limit.h"
+#include "update.h"
 
 #include <cstring>
 
@@ -32,14 +36,14 @@ using namespace MPM_NS;
 
 void MPMStages::nodes_to_points(MPMField &field, Strain strain)
 {
-  field.complete_velocities();
+  field.nodes.complete_velocities();
   MPMFrame &frame = *field.frame;
-  const bool late = field.moves_late(), strains = strain >= GRADIENTS;
+  const bool late = field.options.moves_late(), strains = strain >= GRADIENTS;
   const bool apart = strains && field.options.strains_apart(), refers = strains && frame.refers();
   const bool in_C = field.kernel.gradient_in_C && !refers;    // what stress needs is there
   const bool keeps = strain == GRADIENTS && !in_C;
   const int nL = field.lattice.dim * field.lattice.dim;
-  if (late) field.work.xnew.resize(3 * (std::size_t) field.nmax());
+  if (late) field.work.xnew.resize(3 * (std::size_t) field.atom->nmax);
   if (strain != ELSEWHERE) frame.begin_strain();
   double *const kept = keeps ? field.locking->room_for_gradients() : nullptr;
 
@@ -73,12 +77,133 @@ void MPMStages::nodes_to_points(MPMField &field, Strain strain)
 
 void MPMStages::move_points(MPMField &field)
 {
-  double **const x = field.positions();
+  double **const x = field.atom->x;
   for (const auto &run : field.map->runs)
     memcpy(&x[run.first][0], &field.work.xnew[3 * (std::size_t) run.first],
            3 * sizeof(double) * (run.last - run.first));
   if (field.domains)
     for (const auto &run : field.map->runs) field.domains->take_late(run.first, run.last);
+}
+
+/* ----------------------------------------------------------------------
+   With MUSL, corners move with the velocities that were mapped back: domains that stress does not see
+   are not held by it
+------------------------------------------------------------------------- */
+
+void MPMStages::strain_from_nodes(MPMField &field, double share, double shift_share,
+                                  bool move_corners)
+{
+  field.nodes.complete_velocities();
+  MPMFrame &frame = *field.frame;
+  const double dt = share * field.step_dt(), shift = shift_share * field.step_dt();
+  const TransferStep s = field.step_data();
+  PointRows r = field.rows();
+  PointRows with_corners = r;
+  if (field.domains && move_corners) with_corners.corners_new = field.domains->moved(true);
+  const bool fbar = field.options.averages_strain();
+  double *const kept = fbar ? field.locking->room_for_gradients() : nullptr;
+  const int nL = field.lattice.dim * field.lattice.dim;
+  frame.begin_strain();
+  double batch_gradients[9 * BATCH];
+  points_from_step(field, [&](const MPMPointMap::Run &run, int i, int n, const int *base) {
+    double *const L = fbar ? kept + (bigint) nL * i : batch_gradients;
+    field.kernel.g2p_gradient(with_corners, s, i, i + n, base, field.map->tile_load, L);
+    if (shift != 0.0) frame.shift_gradients(n, shift, L);
+    frame.refer_gradients(i, n, L);
+    frame.strain_of_nodes(r, s, i, i + n, base, dt, shift);
+    if (!fbar) update_stress(field, r, run, i, n, L, dt);
+  });
+  if (fbar) field.locking->strain(kept, dt);
+}
+
+/* ---------------------------------------------------------------------- */
+
+/** Time at the end of the present step. */
+static double end_of_step(const MPMField &field)
+{
+  const Update &update = *field.lmp->update;
+  return update.atime + (update.ntimestep - update.atimestep) * update.dt;
+}
+
+void MPMStages::update_stress(MPMField &field, const PointRows &r, const MPMPointMap::Run &run,
+                              int first, int n, const double *L, double dt)
+{
+  // not through row pointers: one of them per batch is always a cache miss
+  Batch &b = *field.batch;
+  FixMPMMaterial *material = run.material;
+  if (!material) return;    // nodes of elements
+  double *F = r.F + 9 * (bigint) first, *tau = r.tau + 6 * (bigint) first;
+  field.frame->load(b, first, n, dt, L, F, tau, r.vol0 + first);
+  b.history = reinterpret_cast<double(*)[BATCH]>(field.work.history.data());
+  b.time = end_of_step(field);
+
+  const int nhistory = material->nhistory;
+  if (nhistory) {
+    const double *h = &material->history[0][0] + nhistory * (bigint) first;
+    for (int p = 0; p < n; p++)
+      for (int k = 0; k < nhistory; k++) b.history[k][p] = h[nhistory * p + k];
+  }
+
+  material->material->update(b);
+  if (material->watching) material->watch_ranges(b, first);
+  if (field.time_limit->watch_volume) field.time_limit->note_volume_rate(b, first);
+  if (!field.options.total && !material->material->uses_F()) field.batch_kernels->forget_shape(b);
+
+  const int bad = field.batch_kernels->store(b, F, tau);
+  if (nhistory) {
+    double *h = &material->history[0][0] + nhistory * (bigint) first;
+    for (int p = 0; p < n; p++) {
+      if (bad && !(b.J[p] > 0.0)) continue;
+      for (int k = 0; k < nhistory; k++) h[nhistory * p + k] = b.history[k][p];
+    }
+  }
+  for (int k = 0; k < NWORK; k++) material->work[k] += b.work[k];
+  if (field.options.delete_failed && material->damage >= 0)
+    for (int p = 0; p < n; p++)
+      if (b.history[material->damage][p] >= 1.0) field.guard->point_has_failed(first + p);
+
+  if (bad)
+    for (int p = 0; p < n; p++)
+      if (!(b.J[p] > 0.0))
+        field.guard->point_is_bad(
+            first + p, fmt::format("has a deformation gradient of determinant {}", b.J[p]));
+}
+
+/* ----------------------------------------------------------------------
+   points without any stress get the pressure of their equation of state, so that the first step
+   begins with that of a gas; for points that have come to zero stress this changes nothing;
+   points that have failed keep it
+------------------------------------------------------------------------- */
+
+void MPMStages::give_initial_stress(MPMField &field)
+{
+  Batch &batch = *field.batch;
+  double **const tau = field.points->tau;
+  std::vector<double> room;
+  std::vector<int> list;
+  const FixMPMMaterial *material = nullptr;
+  const auto flush = [&]() {
+    if (list.empty()) return;
+    load_state(field, batch, list.data(), (int) list.size(), material, room);
+    batch.time = end_of_step(field);
+    material->material->initial_stress(batch);
+    for (std::size_t k = 0; k < list.size(); k++)
+      for (int c = 0; c < 6; c++) tau[list[k]][c] = batch.J[k] * batch.stress[c][k];
+    list.clear();
+  };
+
+  for (int i = 0; i < field.atom->nlocal; i++) {
+    if (!field.is_point(i) || std::any_of(tau[i], tau[i] + 6, [](double s) {
+          return s != 0.0;
+        }))
+      continue;
+    const auto *mine = field.material_of(i);
+    if (mine != material || list.size() == BATCH) flush();
+    material = mine;
+    const bool failed = mine && mine->damage >= 0 && mine->history[i][mine->damage] >= 1.0;
+    if (mine && !failed) list.push_back(i);
+  }
+  flush();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -93,6 +218,11 @@ void MPMStages::checks(MPMField &field)
   field.guard->handle_bad_points();
   field.frame->end_of_step();
   field.time_limit->check();
-  field.count_step();
+  auto &counts = field.counts;
+  const double dt = field.step_dt();
+  counts.dt_min = std::min(counts.dt_min, dt);
+  counts.dt_max = std::max(counts.dt_max, dt);
+  counts.steps++;
+  counts.point_steps += map.npoints();
   if (field.every) field.every->finish();
 }

@@ -66,7 +66,7 @@ static void add_term(MPMField &field, int lane)
   const auto &saved = field.work.node_velocities;
   MPMPointMap &map = *field.map;
   const double before = field.ledger.on ? field.ledger.nodal_kinetic_energy(0) : 0.0;
-  field.work.vectors.assign(3 * (std::size_t) field.nmax(), 0.0);
+  field.work.vectors.assign(3 * (std::size_t) field.atom->nmax, 0.0);
   const PointRows r = field.rows_at_rest(field.work.vectors.data(), field.rows().mass);
   TransferStep s = field.step_data();
   s.dt = 0.0;
@@ -82,7 +82,7 @@ static void add_term(MPMField &field, int lane)
   points_to(nodes, field, field.pic, [&](const MPMPointMap::Run &run, const int *base, int *box) {
     field.pic.p2g_momentum(r, s, run.first, run.last, base, map.tile, box);
   });
-  field.sum(nodes.data(), NREAL, 0, 3);
+  field.nodes.sum(nodes.data(), NREAL, 0, 3);
 
   for (int64_t n = 0; n < nnodes; n++) {
     const double m = record[NREAL * n + 3];

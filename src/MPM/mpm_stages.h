@@ -22,15 +22,13 @@ namespace MPMStages {
 
   // mpm_stage_momentum.cpp: points to nodes, and the equation of motion there
 
-  /** Mass, momentum and force of the nodes from this rank's points. */
-  void points_to_nodes(MPMField &);
-  /** Mass and momentum only. */
-  void momentum_to_nodes(MPMField &);
-  /** Forces only, to records that have mass and momentum. */
-  void forces_to_nodes(MPMField &);
-  void sum_all(MPMField &);
-  void sum_momentum(MPMField &);
-  void sum_forces(MPMField &);
+  /** What nodes get of the points: mass, momentum and force; mass and momentum; forces, in records that
+   *  have mass and momentum. */
+  enum Content { ALL, MOMENTUM, FORCE };
+  /** From this rank's points. */
+  void points_to_nodes(MPMField &, Content);
+  /** Over images and ranks. */
+  void sum_nodes(MPMField &, Content);
   /** v = (p + dt f)/m; the old velocity p/m stays in long records. */
   void momentum_equation(MPMField &);
   /** v = p/m. */
@@ -52,8 +50,6 @@ namespace MPMStages {
   /** Positions and corners of the end of the step, where they had to wait. */
   void move_points(MPMField &);
 
-  // mpm_stage_stress.cpp
-
   /** Stress of points from the present velocities of the nodes, for a share of the step; shift: see
    *  MPMFrame::shift_gradients(), as a share of the step. move_corners: corners of domains move with
    *  these velocities. */
@@ -61,6 +57,8 @@ namespace MPMStages {
   /** Strain and stress of n <= BATCH consecutive points of a run; L: their velocity gradients. */
   void update_stress(MPMField &, const MPM_NS::PointRows &, const MPMPointMap::Run &, int first,
                      int n, const double *L, double dt);
+  /** Start of a run: points without any stress get the pressure of their equation of state. */
+  void give_initial_stress(MPMField &);
 
   // mpm_stage_light.cpp: nodes with next to no mass
 

@@ -13,7 +13,7 @@
 #include "memory.h"
 #include "modify.h"
 
-#include <cstring>
+#include <algorithm>
 
 using namespace LAMMPS_NS;
 
@@ -66,36 +66,31 @@ void MPMPointState::grow(int nmax)
 
 void MPMPointState::copy(int from, int to)
 {
-  for (auto &array : arrays) memcpy(array.row(to), array.row(from), array.width * sizeof(double));
+  for (auto &array : arrays) std::copy_n(array.row(from), array.width, array.row(to));
 }
 
 void MPMPointState::fresh(int i)
 {
   for (auto &array : arrays) {
     double *const row = array.row(i);
-    memset(row, 0, array.width * sizeof(double));
+    std::fill_n(row, array.width, 0.0);
     if (array.fresh) array.fresh(i, row);
   }
 }
 
 int MPMPointState::pack(int i, double *buf) const
 {
-  double *at = buf;
-  for (const auto &array : arrays) {
-    memcpy(at, array.row(i), array.width * sizeof(double));
-    at += array.width;
-  }
-  return (int) (at - buf);
+  for (const auto &array : arrays) buf = std::copy_n(array.row(i), array.width, buf);
+  return size();
 }
 
 int MPMPointState::unpack(int i, const double *buf)
 {
-  const double *at = buf;
   for (auto &array : arrays) {
-    memcpy(array.row(i), at, array.width * sizeof(double));
-    at += array.width;
+    std::copy_n(buf, array.width, array.row(i));
+    buf += array.width;
   }
-  return (int) (at - buf);
+  return size();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -131,31 +126,6 @@ double FixMPMState::memory_usage()
   return (double) state.size() * atom->nmax * sizeof(double);
 }
 
-void FixMPMState::grow_arrays(int nmax)
-{
-  state.grow(nmax);
-}
-
-void FixMPMState::copy_arrays(int i, int j, int)
-{
-  state.copy(i, j);
-}
-
-void FixMPMState::set_arrays(int i)
-{
-  state.fresh(i);
-}
-
-int FixMPMState::pack_exchange(int i, double *buf)
-{
-  return state.pack(i, buf);
-}
-
-int FixMPMState::unpack_exchange(int i, double *buf)
-{
-  return state.unpack(i, buf);
-}
-
 int FixMPMState::pack_restart(int i, double *buf)
 {
   buf[0] = 1 + pack_exchange(i, buf + 1);
@@ -181,14 +151,4 @@ void FixMPMState::unpack_restart(int i, int nth)
         "fix the options with which the file was written",
         n, id, style, state.size(), state.layout());
   state.unpack(i, values);
-}
-
-int FixMPMState::size_restart(int)
-{
-  return 1 + state.size();
-}
-
-int FixMPMState::maxsize_restart()
-{
-  return 1 + state.size();
 }

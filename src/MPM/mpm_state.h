@@ -66,15 +66,15 @@ class FixMPMState : public Fix {
   FixMPMState(class LAMMPS *, int, char **);
   ~FixMPMState() override;
   double memory_usage() override;
-  void grow_arrays(int) override;
-  void copy_arrays(int, int, int) override;
-  void set_arrays(int) override;
-  int pack_exchange(int, double *) override;
-  int unpack_exchange(int, double *) override;
+  void grow_arrays(int nmax) override { state.grow(nmax); }
+  void copy_arrays(int i, int j, int) override { state.copy(i, j); }
+  void set_arrays(int i) override { state.fresh(i); }
+  int pack_exchange(int i, double *buf) override { return state.pack(i, buf); }
+  int unpack_exchange(int i, double *buf) override { return state.unpack(i, buf); }
   int pack_restart(int, double *) override;
   void unpack_restart(int, int) override;
-  int size_restart(int) override;
-  int maxsize_restart() override;
+  int size_restart(int) override { return 1 + state.size(); }
+  int maxsize_restart() override { return 1 + state.size(); }
 
  protected:
   MPMPointState state;

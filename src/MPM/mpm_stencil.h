@@ -13,6 +13,7 @@
 // the only loops over the nodes of a point outside of transfer/.
 
 #include "mpm_field.h"
+#include "mpm_frame.h"
 
 #include <cstdint>
 
@@ -41,7 +42,7 @@ class MPMStencil {
   {
     double corner[24], share[8], slope[24];
     const int n = corners(i, corner, share, slope), dim = field.lattice.dim;
-    const double *const place = field.place(i);
+    const double *const place = field.frame->places()[i];
     for (int c = 0; c < n; c++) {
       double x[3] = {0.0, 0.0, 0.0};
       for (int d = 0; d < dim; d++) x[d] = n > 1 ? place[d] + corner[dim * c + d] : place[d];
@@ -67,7 +68,7 @@ class MPMStencil {
     double at[3] = {0.0, 0.0, 0.0}, w[3][4] = {{0.0}, {0.0}, {1.0}}, dw[3][4] = {{0.0}};
     for (int d = 0; d < lattice.dim; d++) {
       const double t = (x[d] - lattice.origin[d]) / lattice.h;
-      at[d] = (field.place(i)[d] - lattice.origin[d]) / lattice.h;
+      at[d] = (field.frame->places()[i][d] - lattice.origin[d]) / lattice.h;
       count[d] = weights(t, base[d], w[d], dw[d]);
       if (field.boxes) weights_of_size(i, d, t, base[d], w[d], dw[d]);
     }

@@ -30,60 +30,66 @@ bool has_light_nodes(Field field)
 {
   return field.options.light > 0.0;
 }
+bool strains_while_moving(Field field)
+{
+  return !has_light_nodes(field) && !field.options.averages_strain();
+}
+bool averages_after_motion(Field field)
+{
+  return !has_light_nodes(field) && field.options.averages_strain();
+}
+bool has_fmpm(Field field)
+{
+  return field.options.series == MPMFieldOptions::FMPM;
+}
+bool has_xpic(Field field)
+{
+  return field.options.series == MPMFieldOptions::XPIC;
+}
+bool has_ledger(Field field)
+{
+  return field.ledger.on;
+}
+bool takes_torques(Field field)
+{
+  return field.affine && field.affine->takes_torques();
+}
 bool averages_pressure(Field field)
 {
-  return field.locking && field.locking->averages_stress();
-}
-bool averages_strain(Field field)
-{
-  return field.locking && field.locking->averages_strain();
+  return field.options.averages_stress();
 }
 
-/** Nodes after the momentum equation: what else changes their velocities, and the energy of that. */
-void finish_nodes(MPMPlan &plan)
+void points_to_nodes(MPMPlan &plan, const char *name, Content content)
 {
-  plan.node_actions(MPMNodeAction::STEP);
-  const auto is_fmpm = [](const MPMField *f) {
-    return f->options.series == MPMFieldOptions::FMPM;
-  };
-  if (std::any_of(plan.fields.begin(), plan.fields.end(), is_fmpm))
-    plan.together("FMPM", [&plan]() {
-      fmpm(plan);
-    });
-  plan.each(
-      "energy of nodes",
-      [](MPMField &f) {
-        f.ledger.account_for_nodes();
-      },
-      [](Field f) {
-        return f.ledger.on;
-      });
-  plan.each("XPIC", xpic, [](Field f) {
-    return f.options.series == MPMFieldOptions::XPIC;
+  plan.each(name, [content](MPMField &field) {
+    MPMStages::points_to_nodes(field, content);
   });
-  plan.place(MPMPlan::AFTER_SOLVE);
+  plan.each("sum over ranks", [content](MPMField &field) {
+    sum_nodes(field, content);
+  });
 }
 
-/** The other way to affine matrices where nodes may be light; stress is made elsewhere. */
-void add_light_nodes(MPMPlan &plan, MPMPlan::Each gradients)
+void nodes_to_points(MPMPlan &plan, const char *name, Strain strain, MPMPlan::Wanted wanted)
 {
-  if (std::none_of(plan.fields.begin(), plan.fields.end(), [](const MPMField *f) {
-        return has_light_nodes(*f);
-      }))
-    return;
-  plan.each("light nodes", blend_light_nodes, has_light_nodes);
-  plan.node_actions(MPMNodeAction::MAPPED_BACK);
-  plan.each("gradients with light nodes", gradients, has_light_nodes);
+  const auto move = [strain](MPMField &field) {
+    MPMStages::nodes_to_points(field, strain);
+  };
+  plan.each(name, move, std::move(wanted));
 }
 
-/** The velocities of the points once more to the nodes, at the old positions. An affine matrix is that of
- *  this step, never the old one. */
-void map_back(MPMPlan &plan)
+void gradients_with_material(MPMPlan &plan, double share, double shift, bool move_corners = false)
 {
-  plan.each("velocities back to nodes", momentum_to_nodes);
-  plan.each("sum over ranks", sum_momentum);
-  plan.each("momentum equation", velocities);
-  plan.node_actions(MPMNodeAction::MAPPED_BACK);
+  plan.each("gradients with material", [=](MPMField &field) {
+    strain_from_nodes(field, share, shift, move_corners);
+  });
+}
+
+void average_pressure(MPMPlan &plan)
+{
+  const auto average = [](MPMField &field) {
+    field.locking->average_pressure();
+  };
+  plan.each("averaged pressure", average, averages_pressure);
 }
 
 /** What all schemes begin with. */
@@ -93,58 +99,81 @@ void begin(MPMPlan &plan)
     plan.find_blocks();
   });
   plan.place(MPMPlan::BEFORE_POINTS_TO_NODES);
-  plan.each(
-      "torques on points",
-      [](MPMField &f) {
-        f.affine->add_torques();
-      },
-      [](Field f) {
-        return f.affine && f.affine->takes_torques();
-      });
-}
-
-void end(MPMPlan &plan)
-{
-  plan.place(MPMPlan::AFTER_MOTION);
-  plan.each("checks", checks);
+  const auto add_torques = [](MPMField &field) {
+    field.affine->add_torques();
+  };
+  plan.each("torques on points", add_torques, takes_torques);
 }
 
 /** Mass, momentum and velocity of the start of the step, which USF and USAVG strain points with. */
 void begin_with_stress(MPMPlan &plan, double share, double shift)
 {
   begin(plan);
-  plan.each("points to nodes", momentum_to_nodes);
-  plan.each("sum over ranks", sum_momentum);
+  points_to_nodes(plan, "points to nodes", MOMENTUM);
   plan.place(MPMPlan::BEFORE_SOLVE);
   plan.each("momentum equation", velocities);
   plan.node_actions(MPMNodeAction::START);
-  plan.each("gradients with material", [=](MPMField &f) {
-    strain_from_nodes(f, share, shift);
-  });
+  gradients_with_material(plan, share, shift);
   plan.each("momentum equation", back_to_momentum);
-  plan.each(
-      "averaged pressure",
-      [](MPMField &f) {
-        f.locking->average_pressure();
-      },
-      averages_pressure);
-  plan.each("points to nodes", forces_to_nodes);
-  plan.each("sum over ranks", sum_forces);
+  average_pressure(plan);
+  points_to_nodes(plan, "points to nodes", FORCE);
 }
 
 /** Mass, momentum and force of the nodes. */
 void begin_with_forces(MPMPlan &plan)
 {
   begin(plan);
-  plan.each(
-      "averaged pressure",
-      [](MPMField &f) {
-        f.locking->average_pressure();
-      },
-      averages_pressure);
-  plan.each("points to nodes", points_to_nodes);
-  plan.each("sum over ranks", sum_all);
+  average_pressure(plan);
+  points_to_nodes(plan, "points to nodes", ALL);
   plan.place(MPMPlan::BEFORE_SOLVE);
+}
+
+/** The momentum equation, what else changes the velocities of the nodes, and the energy of that. */
+void solve(MPMPlan &plan)
+{
+  plan.each("momentum equation", momentum_equation);
+  plan.node_actions(MPMNodeAction::STEP);
+  const auto refine = [&plan]() {
+    fmpm(plan);
+  };
+  plan.together("FMPM", refine, has_fmpm);
+  const auto account = [](MPMField &field) {
+    field.ledger.account_for_nodes();
+  };
+  plan.each("energy of nodes", account, has_ledger);
+  plan.each("XPIC", xpic, has_xpic);
+  plan.place(MPMPlan::AFTER_SOLVE);
+}
+
+/** The other way to affine matrices where nodes may be light; stress is made elsewhere. */
+void add_light_nodes(MPMPlan &plan, MPMPlan::Each gradients)
+{
+  plan.each("light nodes", blend_light_nodes, has_light_nodes);
+  plan.node_actions(MPMNodeAction::MAPPED_BACK, has_light_nodes);
+  plan.each("gradients with light nodes", std::move(gradients), has_light_nodes);
+}
+
+/** The momentum equation and new velocities of the points; stress is made before or after this. */
+void solve_and_move(MPMPlan &plan)
+{
+  solve(plan);
+  nodes_to_points(plan, "nodes to points", ELSEWHERE, nullptr);
+  add_light_nodes(plan, affine_with_light_nodes);
+}
+
+/** The velocities of the points once more to the nodes, at the old positions. An affine matrix is that of
+ *  this step, never the old one. */
+void map_back(MPMPlan &plan)
+{
+  points_to_nodes(plan, "velocities back to nodes", MOMENTUM);
+  plan.each("momentum equation", velocities);
+  plan.node_actions(MPMNodeAction::MAPPED_BACK);
+}
+
+void end(MPMPlan &plan)
+{
+  plan.place(MPMPlan::AFTER_MOTION);
+  plan.each("checks", checks);
 }
 
 }    // namespace
@@ -156,30 +185,10 @@ void begin_with_forces(MPMPlan &plan)
 void LAMMPS_NS::make_usl(MPMPlan &plan)
 {
   begin_with_forces(plan);
-  plan.each("momentum equation", momentum_equation);
-  finish_nodes(plan);
-  plan.each(
-      "nodes to points with material",
-      [](MPMField &f) {
-        nodes_to_points(f, STRESS);
-      },
-      [](Field f) {
-        return !has_light_nodes(f) && !averages_strain(f);
-      });
-  plan.each(
-      "nodes to points with averaged strain",
-      [](MPMField &f) {
-        nodes_to_points(f, GRADIENTS);
-      },
-      [](Field f) {
-        return !has_light_nodes(f) && averages_strain(f);
-      });
-  plan.each(
-      "nodes to points",
-      [](MPMField &f) {
-        nodes_to_points(f, FRAME);
-      },
-      has_light_nodes);
+  solve(plan);
+  nodes_to_points(plan, "nodes to points with material", STRESS, strains_while_moving);
+  nodes_to_points(plan, "nodes to points with averaged strain", GRADIENTS, averages_after_motion);
+  nodes_to_points(plan, "nodes to points", FRAME, has_light_nodes);
   add_light_nodes(plan, stress_with_light_nodes);
   end(plan);
 }
@@ -191,12 +200,7 @@ void LAMMPS_NS::make_usl(MPMPlan &plan)
 void LAMMPS_NS::make_usf(MPMPlan &plan)
 {
   begin_with_stress(plan, 1.0, 1.0);
-  plan.each("momentum equation", momentum_equation);
-  finish_nodes(plan);
-  plan.each("nodes to points", [](MPMField &f) {
-    nodes_to_points(f, ELSEWHERE);
-  });
-  add_light_nodes(plan, affine_with_light_nodes);
+  solve_and_move(plan);
   plan.each("motion of points", move_points, has_light_nodes);
   end(plan);
 }
@@ -208,16 +212,9 @@ void LAMMPS_NS::make_usf(MPMPlan &plan)
 void LAMMPS_NS::make_musl(MPMPlan &plan)
 {
   begin_with_forces(plan);
-  plan.each("momentum equation", momentum_equation);
-  finish_nodes(plan);
-  plan.each("nodes to points", [](MPMField &f) {
-    nodes_to_points(f, ELSEWHERE);
-  });
-  add_light_nodes(plan, affine_with_light_nodes);
+  solve_and_move(plan);
   map_back(plan);
-  plan.each("gradients with material", [](MPMField &f) {
-    strain_from_nodes(f, 1.0, 0.0, true);
-  });
+  gradients_with_material(plan, 1.0, 0.0, true);
   plan.each("motion of points", move_points);
   end(plan);
 }
@@ -229,16 +226,9 @@ void LAMMPS_NS::make_musl(MPMPlan &plan)
 void LAMMPS_NS::make_usavg(MPMPlan &plan)
 {
   begin_with_stress(plan, 0.5, 0.75);
-  plan.each("momentum equation", momentum_equation);
-  finish_nodes(plan);
-  plan.each("nodes to points", [](MPMField &f) {
-    nodes_to_points(f, ELSEWHERE);
-  });
-  add_light_nodes(plan, affine_with_light_nodes);
+  solve_and_move(plan);
   map_back(plan);
-  plan.each("gradients with material", [](MPMField &f) {
-    strain_from_nodes(f, 0.5, -0.25);
-  });
+  gradients_with_material(plan, 0.5, -0.25);
   plan.each("motion of points", move_points);
   end(plan);
 }

@@ -225,7 +225,7 @@ double MPMTimeLimit::share_of_thin_nodes() const
         sums[node.number * NREAL] += atom->vfrac[i] * weight;
         sums[node.number * NREAL + 1] += atom->vfrac[i] * weight * weight * slope;
       });
-  field.sum(sums.data(), NREAL, 0, NREAL);
+  field.nodes.sum(sums.data(), NREAL, 0, NREAL);
   double mine = 0.0, all;
   for (std::size_t k = 0; k < sums.size(); k += NREAL)
     if (sums[k] > 0.0) mine = std::max(mine, sums[k + 1] / sums[k]);

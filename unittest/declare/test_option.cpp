@@ -8,7 +8,7 @@
 
 // Declared options: reading, messages, refusals, comparison with a restart file, text for the manual.
 
-#include "declare/option.h"
+#include "declare/option_manual.h"
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -50,7 +50,7 @@ struct Paint {
     o.add("coats", {integer(coats, "N", POSITIVE, "number of coats")}).keep();
     o.add("shares", {axes(shares, 3, "a b c", POSITIVE)}, "of each pigment");
     o.add("cells",
-          {one_or_axes(cells, 2, "n nx ny nz", {1, 9, true}, "cells", "cells along x, y, z")});
+          {one_or_axes(cells, 2, "n nx ny nz", {1, 9, true}, "", "cells", "cells along x, y, z")});
     o.add("wet", {yes_no(wet)});
     o.add("name", {text(name, "ID")}).once().standard("none");
     o.add("speed", {variables(speed, 2, "u v", "velocity", "of the brush", true)});
@@ -167,7 +167,7 @@ TEST(Option, RestartKeepsFirstWords)
 TEST(Option, ManualAndWarnings)
 {
   Paint p;
-  const std::string table = p.declare().table();
+  const std::string table = MPM_TEST::table(p.declare());
   EXPECT_THAT(table, HasSubstr("* keyword = *color* or *coats* or "));
   EXPECT_THAT(table,
               HasSubstr("       *color* value = *red* or *green* or *blue* [gloss]\n"
@@ -176,7 +176,7 @@ TEST(Option, ManualAndWarnings)
                         "           gloss = shine (unitless, 0 to 1)\n"));
   EXPECT_THAT(table, HasSubstr("*shares* values = a b c (in 2d: a b)\n         of each pigment\n"));
   EXPECT_THAT(table, HasSubstr("u,v = of the brush (velocity units)\n"));
-  EXPECT_THAT(p.declare().defaults(), HasSubstr("*name* = none"));
+  EXPECT_THAT(MPM_TEST::defaults(p.declare()), HasSubstr("*name* = none"));
   p.size = 2.0;
   EXPECT_EQ(p.declare().warnings(), (std::vector<std::string>{"Fix paint size is large"}));
 }

@@ -11,6 +11,7 @@
 // The keywords of all styles in the manual are those that the styles declare: a page includes
 // options/PAGE.inc, and options/PAGE_default.inc for the defaults.
 
+#include "declare/option_manual.h"
 #include "declare/table_testing.h"
 
 #include "create_points.h"
@@ -37,8 +38,8 @@ std::map<std::string, std::string> files()
   const auto add = [&](const std::string &page, const Options &o) {
     const std::string from =
         ".. made from the declaration of the options by test_option_tables\n\n";
-    all[page + ".inc"] = from + o.table();
-    all[page + "_default.inc"] = from + o.defaults();
+    all[page + ".inc"] = from + MPM_TEST::table(o);
+    all[page + "_default.inc"] = from + MPM_TEST::defaults(o);
   };
   add("create_points", CreatePointsOptions().declare(3, true));
   add("create_points_mesh", CreatePointsMeshOptions().declare("create_points mesh", 3, true));

@@ -28,12 +28,7 @@ std::string format(double x)
   return text;
 }
 
-std::string format(int64_t n)
-{
-  return std::to_string(n);
-}
-
-std::string format(int n)
+template <class Integer> std::string format(Integer n)
 {
   return std::to_string(n);
 }
@@ -81,28 +76,6 @@ std::string required(const Range &r)
   return "must be " + join(parts, " and ");
 }
 
-/** The same, for the manual. */
-std::string interval(const Range &r)
-{
-  if (r.low != -UNBOUNDED && r.high != UNBOUNDED && r.closed && r.closed_above)
-    return format(r.low) + " to " + format(r.high);
-  Strings parts;
-  if (r.low != -UNBOUNDED) parts.push_back((r.closed ? ">= " : "> ") + format(r.low));
-  if (r.high != UNBOUNDED) parts.push_back((r.closed_above ? "<= " : "< ") + format(r.high));
-  return join(parts, " and ");
-}
-
-/** "name = meaning (unit, interval)", or nothing when there is nothing to say. */
-Strings explain(const std::string &names, const std::string &meaning, const std::string &unit,
-                const std::string &interval)
-{
-  const std::string units = unit.empty() ? "" : (unit == "1" ? "unitless" : unit + " units");
-  const std::string remark = join({units, interval}, ", ");
-  if (meaning.empty()) return {};
-  return {join(split(names, ' '), ",") + " = " + meaning +
-          (remark.empty() ? "" : " (" + remark + ")")};
-}
-
 void take(OptionReader &r, const std::string &name, const Range &range, double &to)
 {
   const int iarg = r.next();
@@ -146,41 +119,18 @@ std::string name_of(const std::string &names, int k, int n)
   return n == 1 ? names : split(names, ' ')[k];
 }
 
-template <class Number>
-OptionValue make_numbers(Number *to, int n, const std::string &names, const Range &range,
-                         const std::string &unit, const std::string &meaning)
+/** Present values, as in the input. */
+std::string text_of(const std::vector<OptionValue> &values)
 {
-  const auto read = [=](OptionReader &r) {
-    for (int k = 0; k < n; k++) take(r, name_of(names, k, n), range, to[k]);
-  };
-  return {names, names,        explain(names, meaning, unit, interval(range)), n, false,
-          read,  writer(to, n)};
+  Strings parts;
+  for (const auto &value : values) parts.push_back(value.text());
+  return join(parts, " ");
 }
 
-template <class Number>
-OptionValue make_one_or_axes(Number *to, int dim, const std::string &names, const Range &range,
-                             const std::string &unit, const std::string &meaning,
-                             const std::string &meaning_each)
+void read_values(const std::vector<OptionValue> &values, OptionReader &r)
 {
-  const Strings all = split(names, ' ');
-  const std::string each = join(Strings(all.begin() + 1, all.end()), " ");
-  Strings lines = explain(all[0], meaning, unit, interval(range));
-  for (const auto &line : explain(each, meaning_each, "", "")) lines.push_back(line);
-  const auto read = [=](OptionReader &r) {
-    int n = 0;
-    while (is_number(r, r.iarg + n)) n++;
-    if (r.iarg >= r.input.narg) r.next();
-    const std::string d = std::to_string(dim);
-    if (n != 1 && n != dim)
-      r.fail(r.iarg - 1, "",
-             "expects 1 or " + d + " numbers in a " + d + "d simulation, not " + std::to_string(n));
-    for (int k = 0; k < n; k++) take(r, all[0], range, to[k]);
-    for (int k = n; k < dim; k++) to[k] = to[0];
-  };
-  return {all[0],         all[0] + " or " + each + " (in 2d: " + all[1] + " " + all[2] + ")",
-          lines,          2,
-          false,          read,
-          writer(to, dim)};
+  for (const auto &value : values)
+    if (!value.optional || is_number(r, r.iarg)) value.read(r);
 }
 
 }    // namespace
@@ -200,28 +150,17 @@ void OptionReader::fail(int at, const std::string &name, const std::string &text
 
 // ---------------------------------------------------------------------- kinds of values
 
-OptionValue option::number(double &to, const std::string &name, const Range &range,
-                           const std::string &unit, const std::string &meaning)
-{
-  return make_numbers(&to, 1, name, range, unit, meaning);
-}
-
-OptionValue option::integer(int &to, const std::string &name, const Range &range,
-                            const std::string &meaning)
-{
-  return make_numbers(&to, 1, name, range, "", meaning);
-}
-
-OptionValue option::integer(int64_t &to, const std::string &name, const Range &range,
-                            const std::string &meaning)
-{
-  return make_numbers(&to, 1, name, range, "", meaning);
-}
-
-OptionValue option::numbers(double *to, int n, const std::string &names, const Range &range,
+OptionValue option::numbers(OptionNumber first, int n, const std::string &names, const Range &range,
                             const std::string &unit, const std::string &meaning)
 {
-  return make_numbers(to, n, names, range, unit, meaning);
+  const std::vector<OptionNote> notes = {{names, meaning, unit, range}};
+  const auto value_of = [&](auto *to) {
+    const auto read = [=](OptionReader &r) {
+      for (int k = 0; k < n; k++) take(r, name_of(names, k, n), range, to[k]);
+    };
+    return OptionValue{names, n, read, writer(to, n), notes};
+  };
+  return std::visit(value_of, first);
 }
 
 OptionValue option::axes(double *to, int dim, const std::string &names, const Range &range,
@@ -232,47 +171,52 @@ OptionValue option::axes(double *to, int dim, const std::string &names, const Ra
   return value;
 }
 
-OptionValue option::one_or_axes(double *to, int dim, const std::string &names, const Range &range,
-                                const std::string &unit, const std::string &meaning,
-                                const std::string &meaning_each)
-{
-  return make_one_or_axes(to, dim, names, range, unit, meaning, meaning_each);
-}
-
-OptionValue option::one_or_axes(int *to, int dim, const std::string &names, const Range &range,
+OptionValue option::one_or_axes(OptionNumber first, int dim, const std::string &names,
+                                const Range &range, const std::string &unit,
                                 const std::string &meaning, const std::string &meaning_each)
 {
-  return make_one_or_axes(to, dim, names, range, "", meaning, meaning_each);
+  const Strings all = split(names, ' ');
+  const std::string each = join(Strings(all.begin() + 1, all.end()), " ");
+  const std::string usage = all[0] + " or " + each + " (in 2d: " + all[1] + " " + all[2] + ")";
+  const std::vector<OptionNote> notes = {{all[0], meaning, unit, range}, {each, meaning_each}};
+  const auto value_of = [&](auto *to) {
+    const auto read = [=](OptionReader &r) {
+      int n = 0;
+      while (is_number(r, r.iarg + n)) n++;
+      if (r.iarg >= r.input.narg) r.next();
+      const std::string d = std::to_string(dim);
+      if (n != 1 && n != dim)
+        r.fail(r.iarg - 1, "",
+               "expects 1 or " + d + " numbers in a " + d + "d simulation, not " +
+                   std::to_string(n));
+      for (int k = 0; k < n; k++) take(r, all[0], range, to[k]);
+      for (int k = n; k < dim; k++) to[k] = to[0];
+    };
+    return OptionValue{usage, 2, read, writer(to, dim), notes};
+  };
+  return std::visit(value_of, first);
 }
 
 OptionValue option::yes_no(bool &to)
 {
-  return {"",
-          "*yes* or *no*",
-          {},
-          1,
-          false,
-          [&to](OptionReader &r) {
-            to = r.input.yes(r.next());
-          },
-          [&to] {
-            return to ? "yes" : "no";
-          }};
+  const auto read = [&to](OptionReader &r) {
+    to = r.input.yes(r.next());
+  };
+  const auto text = [&to] {
+    return to ? "yes" : "no";
+  };
+  return {"*yes* or *no*", 1, read, text};
 }
 
 OptionValue option::text(std::string &to, const std::string &name, const std::string &meaning)
 {
-  return {name,
-          name,
-          explain(name, meaning, "", ""),
-          1,
-          false,
-          [&to](OptionReader &r) {
-            to = r.input.arg[r.next()];
-          },
-          [&to] {
-            return to;
-          }};
+  const auto read = [&to](OptionReader &r) {
+    to = r.input.arg[r.next()];
+  };
+  const auto text = [&to] {
+    return to;
+  };
+  return {name, 1, read, text, {{name, meaning}}};
 }
 
 OptionValue option::variables(NumberOrVariable *to, int n, const std::string &names,
@@ -290,28 +234,12 @@ OptionValue option::variables(NumberOrVariable *to, int n, const std::string &na
         take(r, name_of(names, k, n), ANY_NUMBER, to[k].value);
     }
   };
-  return {names, names, explain(names, meaning, unit, ""), n, false, read, writer(to, n)};
+  return {names, n, read, writer(to, n), {{names, meaning, unit}}};
 }
 
 OptionValue option::word(std::function<int()> get, std::function<void(int)> set,
                          const std::vector<OptionWord> &words, const std::string &name)
 {
-  Strings usage, lines, together;
-  for (const auto &w : words) {
-    std::string one = "*" + w.word + "*";
-    together.push_back(one);
-    for (const auto &value : w.values) one += " " + value.usage;
-    usage.push_back(one);
-    if (!w.meaning.empty()) {
-      lines.push_back(join(together, ", ") + " = " + w.meaning);
-      together.clear();
-    }
-    for (const auto &value : w.values)
-      for (const auto &line : value.lines) {
-        const std::string inner = (w.meaning.empty() ? "" : "  ") + line;
-        if (std::find(lines.begin(), lines.end(), inner) == lines.end()) lines.push_back(inner);
-      }
-  }
   const auto read = [=](OptionReader &r) {
     const int iarg = r.next();
     std::string known;
@@ -321,9 +249,7 @@ OptionValue option::word(std::function<int()> get, std::function<void(int)> set,
       set(w.value);
       r.what += " " + w.word;
       r.several = true;
-      for (const auto &value : w.values)
-        if (!value.optional || is_number(r, r.iarg)) value.read(r);
-      return;
+      return read_values(w.values, r);
     }
     throw OptionError{iarg,
                       "Unknown " + join({r.what, name, r.input.arg[iarg]}, " ") +
@@ -331,15 +257,11 @@ OptionValue option::word(std::function<int()> get, std::function<void(int)> set,
   };
   const auto text = [=] {
     const int present = get();
-    for (const auto &w : words) {
-      if (w.value != present) continue;
-      Strings parts = {w.word};
-      for (const auto &value : w.values) parts.push_back(value.text());
-      return join(parts, " ");
-    }
+    for (const auto &w : words)
+      if (w.value == present) return join({w.word, text_of(w.values)}, " ");
     return std::string();
   };
-  return {name, join(usage, " or "), lines, 1, false, read, text};
+  return {"", 1, read, text, {}, std::make_shared<const std::vector<OptionWord>>(words)};
 }
 
 OptionValue option::any_of(bool *to, const std::vector<std::string> &words,
@@ -361,73 +283,16 @@ OptionValue option::any_of(bool *to, const std::vector<std::string> &words,
       if (to[k]) parts.push_back(words[k]);
     return join(parts, " ");
   };
-  return {"", "one or more of " + join(words, " "), {meaning}, 2, false, read, text};
+  return {"one or more of " + join(words, " "), 2, read, text, {{"", meaning}}};
 }
 
 OptionValue option::optional(OptionValue value)
 {
   value.optional = true;
-  value.usage = "[" + value.usage + "]";
   return value;
 }
 
-// ---------------------------------------------------------------------- one option
-
-Option &Option::keep()
-{
-  kept = true;
-  return *this;
-}
-
-Option &Option::once()
-{
-  single = true;
-  return *this;
-}
-
-Option &Option::then(std::function<void()> f)
-{
-  after = std::move(f);
-  return *this;
-}
-
-Option &Option::standard(const std::string &text)
-{
-  preset = text;
-  return *this;
-}
-
-std::string Option::text() const
-{
-  Strings parts;
-  for (const auto &value : values) parts.push_back(value.text());
-  return join(parts, " ");
-}
-
-/** Its part of the block of keywords in the manual, after the keyword. */
-std::vector<std::string> Option::lines() const
-{
-  int count = 0;
-  Strings usage, all;
-  for (const auto &value : values) {
-    count += value.count;
-    usage.push_back(value.usage);
-  }
-  all.push_back(std::string(" value") + (count > 1 ? "s" : "") + " = " + join(usage, " "));
-  for (const auto &line : split(meaning, '\n')) all.push_back("  " + line);
-  for (const auto &value : values)
-    for (const auto &line : value.lines) all.push_back("  " + line);
-  return all;
-}
-
 // ---------------------------------------------------------------------- all options
-
-Options::Options(std::string command_in) : command(std::move(command_in)) {}
-
-void Options::argument(OptionValue value)
-{
-  arguments.push_back(std::move(value));
-}
 
 Option &Options::add(const std::string &keyword, std::vector<OptionValue> values,
                      const std::string &meaning)
@@ -436,19 +301,9 @@ Option &Options::add(const std::string &keyword, std::vector<OptionValue> values
   option.keyword = keyword;
   option.meaning = meaning;
   option.values = std::move(values);
-  option.preset = option.text();
+  option.preset = text_of(option.values);
   options.push_back(option);
   return options.back();
-}
-
-void Options::refuse(std::function<OptionRules()> rules)
-{
-  refusals = std::move(rules);
-}
-
-void Options::warn(std::function<OptionRules()> rules)
-{
-  doubts = std::move(rules);
 }
 
 const Option *Options::find(const std::string &keyword) const
@@ -456,11 +311,6 @@ const Option *Options::find(const std::string &keyword) const
   for (const auto &option : options)
     if (option.keyword == keyword) return &option;
   return nullptr;
-}
-
-bool Options::has(const std::string &keyword) const
-{
-  return find(keyword) != nullptr;
 }
 
 int Options::where(const std::string &keyword) const
@@ -486,12 +336,13 @@ int Options::read(const OptionInput &input, int iarg, const std::string &last)
       throw OptionError{iarg, sentence(full + " is given twice")};
     option->where = iarg;
     OptionReader reader{input, iarg + 1, full, full, option->values.size() > 1};
-    for (const auto &value : option->values)
-      if (!value.optional || is_number(reader, reader.iarg)) value.read(reader);
+    read_values(option->values, reader);
     if (option->after) option->after();
     iarg = reader.iarg;
   }
-  check();
+  for (const auto &rule : refusals ? refusals() : OptionRules())
+    if (rule.broken && (rule.keyword.empty() || given(rule.keyword)))
+      throw OptionError{where(rule.keyword), message(rule)};
   return iarg;
 }
 
@@ -501,25 +352,16 @@ std::string Options::message(const OptionRule &rule) const
   for (const auto &option : options) {
     const std::string name = "{" + option.keyword + "}";
     const auto at = text.find(name);
-    if (at != std::string::npos) text.replace(at, name.size(), option.text());
+    if (at != std::string::npos) text.replace(at, name.size(), text_of(option.values));
   }
   return sentence(text);
-}
-
-void Options::check() const
-{
-  if (!refusals) return;
-  for (const auto &rule : refusals())
-    if (rule.broken && (rule.keyword.empty() || given(rule.keyword)))
-      throw OptionError{where(rule.keyword), message(rule)};
 }
 
 std::vector<std::string> Options::warnings() const
 {
   Strings all;
-  if (doubts)
-    for (const auto &rule : doubts())
-      if (rule.broken) all.push_back(message(rule));
+  for (const auto &rule : doubts ? doubts() : OptionRules())
+    if (rule.broken) all.push_back(message(rule));
   return all;
 }
 
@@ -527,7 +369,7 @@ std::string Options::text() const
 {
   Strings parts;
   for (const auto &option : options) {
-    const std::string text = option.text();
+    const std::string text = text_of(option.values);
     if (!text.empty()) parts.push_back(option.keyword + " " + text);
   }
   return join(parts, " ");
@@ -537,7 +379,7 @@ std::string Options::kept() const
 {
   std::string all;
   for (const auto &option : options)
-    if (option.kept) all += option.keyword + " " + option.text() + "\n";
+    if (option.kept) all += option.keyword + " " + text_of(option.values) + "\n";
   return all;
 }
 
@@ -548,52 +390,9 @@ std::string Options::differences(const std::string &kept_then) const
     const Strings then = split(line, ' ');
     const Option *option = find(then[0]);
     if (!option || then.size() < 2) continue;
-    const Strings now = split(option->text(), ' ');
+    const Strings now = split(text_of(option->values), ' ');
     if (!now.empty() && now[0] != then[1])
       parts.push_back(then[0] + " " + then[1] + " (now " + now[0] + ")");
   }
   return join(parts, ", ");
-}
-
-std::string Options::table() const
-{
-  std::string text = "* keyword =", line = text;
-  text.clear();
-  for (const auto &option : options) {
-    const std::string next = (&option == &options.front() ? " *" : " or *") + option.keyword + "*";
-    if (line.size() + next.size() > 100) {
-      text += line + "\n";
-      line = " ";
-    }
-    line += next;
-  }
-  text += line + "\n\n  .. parsed-literal::\n\n";
-  std::string names;    // of options with the same values: they are explained once
-  for (std::size_t k = 0; k < options.size(); k++) {
-    const Strings lines = options[k].lines();
-    names += (names.empty() ? "*" : ",\\ *") + options[k].keyword + "*";
-    if (k + 1 < options.size() && options[k + 1].lines() == lines) continue;
-    for (const auto &one : lines)
-      text += "       " + (&one == &lines.front() ? names : "") + one + "\n";
-    names.clear();
-  }
-  return text;
-}
-
-std::string Options::defaults() const
-{
-  Strings parts;
-  for (const auto &option : options)
-    if (!option.preset.empty()) parts.push_back("*" + option.keyword + "* = " + option.preset);
-  std::string text = parts.size() > 1 ? "The option defaults are" : "The option default is";
-  for (std::size_t k = 0; k < parts.size(); k++) {
-    const std::string next = " " + std::string(k > 0 && k + 1 == parts.size() ? "and " : "") +
-        parts[k] + (k + 1 == parts.size() ? "." : (parts.size() > 2 ? "," : ""));
-    const auto start = text.rfind('\n') + 1;    // of the line; 0 when it is the first
-    if (text.size() - start + next.size() > 100)
-      text += "\n" + next.substr(1);
-    else
-      text += next;
-  }
-  return text + "\n";
 }

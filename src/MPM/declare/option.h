@@ -32,8 +32,10 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace MPM_NS {
@@ -75,15 +77,23 @@ struct OptionReader {
   [[noreturn]] void fail(int iarg, const std::string &name, const std::string &text) const;
 };
 
+/** What the manual says of values: their names, separated by blanks, and what they mean. */
+struct OptionNote {
+  std::string names, meaning, unit = "";
+  Range range = ANY_NUMBER;
+};
+
+struct OptionWord;
+
 /** A value after a keyword: made by the functions in namespace option. */
 struct OptionValue {
-  std::string name;                  ///< in messages
-  std::string usage;                 ///< as it is written in the manual
-  std::vector<std::string> lines;    ///< its explanation there
-  int count;                         ///< numbers or words of it
-  bool optional = false;
+  std::string usage;    ///< as it is written in the manual; empty: one of the words
+  int count;            ///< numbers or words of it
   std::function<void(OptionReader &)> read;
   std::function<std::string()> text;    ///< present value, as in the input
+  std::vector<OptionNote> notes = {};
+  std::shared_ptr<const std::vector<OptionWord>> words = nullptr;    ///< null: it is none of some
+  bool optional = false;
 };
 
 /** One of the words that a value can be. */
@@ -107,24 +117,29 @@ using OptionRules = std::vector<OptionRule>;
  *  as velocity, "1" for none that has no unit, "" for what needs no mention. */
 namespace option {
 
-  OptionValue number(double &, const std::string &name, const Range &, const std::string &unit = "",
-                     const std::string &meaning = "");
-  OptionValue integer(int &, const std::string &name, const Range &,
-                      const std::string &meaning = "");
-  OptionValue integer(int64_t &, const std::string &name, const Range &,
-                      const std::string &meaning = "");
-  /** n numbers with one meaning; their names are separated by blanks. */
-  OptionValue numbers(double *, int n, const std::string &names, const Range &,
+  using OptionNumber = std::variant<double *, int *, int64_t *>;
+
+  /** n numbers with one meaning, from the first on; their names are separated by blanks. */
+  OptionValue numbers(OptionNumber, int n, const std::string &names, const Range &,
                       const std::string &unit = "", const std::string &meaning = "");
+  inline OptionValue number(double &to, const std::string &name, const Range &range,
+                            const std::string &unit = "", const std::string &meaning = "")
+  {
+    return numbers(&to, 1, name, range, unit, meaning);
+  }
+  template <class Integer>
+  OptionValue integer(Integer &to, const std::string &name, const Range &range,
+                      const std::string &meaning = "")
+  {
+    return numbers(&to, 1, name, range, "", meaning);
+  }
   /** One for each axis; names are those in 3d. */
   OptionValue axes(double *, int dim, const std::string &names, const Range &,
                    const std::string &unit = "", const std::string &meaning = "");
   /** One for each axis or one for all of them, which has the first of the names. */
-  OptionValue one_or_axes(double *, int dim, const std::string &names, const Range &,
+  OptionValue one_or_axes(OptionNumber, int dim, const std::string &names, const Range &,
                           const std::string &unit, const std::string &meaning,
                           const std::string &meaning_each);
-  OptionValue one_or_axes(int *, int dim, const std::string &names, const Range &,
-                          const std::string &meaning, const std::string &meaning_each);
   OptionValue yes_no(bool &);
   /** Any word, such as an ID. */
   OptionValue text(std::string &, const std::string &name, const std::string &meaning = "");
@@ -158,50 +173,54 @@ namespace option {
 class Option {
  public:
   /** Another value than in the restart file is an error: of several words, another first one. */
-  Option &keep();
+  Option &keep() { return set(kept, true); }
   /** Must not be given twice. */
-  Option &once();
+  Option &once() { return set(single, true); }
   /** Called after each time the values have been read: they may be given again, for another one. */
-  Option &then(std::function<void()>);
+  Option &then(const std::function<void()> &f) { return set(after, f); }
   /** What the manual says of the default, instead of the value. */
-  Option &standard(const std::string &);
+  Option &standard(const std::string &text) { return set(preset, text); }
+
+  std::string keyword, meaning, preset;
+  std::vector<OptionValue> values;
 
  private:
   friend class Options;
-  std::string keyword, meaning, preset;
-  std::vector<OptionValue> values;
   bool kept = false, single = false;
   int where = -1;    // the argument with the keyword, as given last
   std::function<void()> after;
 
-  std::string text() const;
-  std::vector<std::string> lines() const;
+  template <class T> Option &set(T &member, const T &value)
+  {
+    member = value;
+    return *this;
+  }
 };
 
 /** All options of a style. */
 class Options {
  public:
   /** command: in messages, for example fix mpm/dt. */
-  explicit Options(std::string command);
+  explicit Options(std::string command) : command(std::move(command)) {}
 
   /** A value that must be given: these come first, in the order of their declaration. */
-  void argument(OptionValue);
+  void argument(const OptionValue &value) { arguments.push_back(value); }
   /** A keyword. meaning: lines for the manual, in addition to those of the values. */
   Option &add(const std::string &keyword, std::vector<OptionValue>,
               const std::string &meaning = "");
 
   /** The rules, evaluated when the values are read, that the input must not break; those without the
    *  keyword of a rule in the input are not looked at. */
-  void refuse(std::function<OptionRules()>);
+  void refuse(const std::function<OptionRules()> &rules) { refusals = rules; }
   /** The rules of warnings(). */
-  void warn(std::function<OptionRules()>);
+  void warn(const std::function<OptionRules()> &rules) { doubts = rules; }
 
   /** Reads arguments from iarg on, up to the end or the word last, whose index is returned, and
    *  applies the refusals; throws OptionError. */
   int read(const OptionInput &, int iarg, const std::string &last = "");
 
   /** Is this word a keyword; the index of its argument, -1 when it was not given. */
-  bool has(const std::string &keyword) const;
+  bool has(const std::string &keyword) const { return find(keyword) != nullptr; }
   int where(const std::string &keyword) const;
   bool given(const std::string &keyword) const { return where(keyword) >= 0; }
 
@@ -215,9 +234,7 @@ class Options {
   /** Where these differ from what kept() returned when the file was written; empty: nowhere. */
   std::string differences(const std::string &kept_then) const;
 
-  /** For the manual: the block of keywords, and the sentence about the defaults. */
-  std::string table() const;
-  std::string defaults() const;
+  const std::vector<Option> &all() const { return options; }
 
  private:
   std::string command;
@@ -226,7 +243,6 @@ class Options {
   std::function<OptionRules()> refusals, doubts;
 
   const Option *find(const std::string &keyword) const;
-  void check() const;
   std::string message(const OptionRule &) const;
 };
 

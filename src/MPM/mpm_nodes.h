@@ -1,0 +1,75 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_NODES_H
+#define LMP_MPM_NODES_H
+
+#include "lattice/grid.h"
+#include "pointers.h"
+
+#include <algorithm>
+#include <list>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace MPM_NS {
+
+/** Reals of the nodes besides mass and momentum: width of them for each node of a Grid, in the order of
+ *  its blocks: node slot*64 + n. */
+struct NodeField {
+  const std::string name;
+  const int width;
+  std::vector<double> values;
+
+  double *at(int64_t node) { return values.data() + node * width; }
+  const double *at(int64_t node) const { return values.data() + node * width; }
+  void zero() { std::fill(values.begin(), values.end(), 0.0); }
+};
+
+}    // namespace MPM_NS
+
+namespace LAMMPS_NS {
+class MPMEdges;
+class MPMField;
+class MPMHalo;
+
+/** Values at the nodes of a field: those of other physics, and for all of them what is missing in the
+ *  sums of this rank, and at nodes that are copies of others. */
+class MPMNodes : protected Pointers {
+ public:
+  const std::unique_ptr<MPMHalo> halo;
+  const std::unique_ptr<MPMEdges> edges;    ///< null: the functions next to fixed faces are plain
+
+  MPMNodes(class LAMMPS *, const MPMField &, MPM_NS::Grid &);
+  ~MPMNodes();
+
+  /** Values of other physics, with the given number of reals for each node. */
+  MPM_NS::NodeField &add_field(const std::string &name, int width);
+  void clear_fields() { fields.clear(); }
+  /** Make room for all nodes; called when the blocks are new. */
+  void allocate(int nreal);
+
+  /** Add what the edges, periodic images and other ranks hold of reals [lane, lane+nlane). */
+  void sum(double *values, int nreal, int lane, int nlane) const;
+  void sum(MPM_NS::NodeField &) const;
+  /** Values of periodic images, and the first nlane reals of edges, before values go to points. */
+  void complete(double *values, int nreal, int nlane) const;
+  void complete(MPM_NS::NodeField &) const;
+  /** Velocities of the step, also old ones. */
+  void complete_velocities();
+
+  double memory_usage() const;
+
+ private:
+  MPM_NS::Grid &grid;
+  std::list<MPM_NS::NodeField> fields;
+};
+
+}    // namespace LAMMPS_NS
+#endif
