@@ -47,8 +47,6 @@ class MPMAffine : protected Pointers {
   bool takes_torques() const;
   /** Torques of pair styles on points change their affine velocity. */
   void add_torques();
-  /** C <- C M for a new reference configuration. */
-  void refer(int i, const double M[3][3]);
   /** Angular momentum of the affine motion of a point about itself (mass distance velocity units):
    *  zero before the first step. */
   void angular_momentum(int i, double L[3]) const;
