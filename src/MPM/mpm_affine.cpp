@@ -23,7 +23,6 @@
 #include "math/random.h"
 #include "math_eigen.h"
 #include "math_extra.h"
-#include "mpm_boxes.h"
 #include "mpm_cpdi.h"
 #include "mpm_every.h"
 #include "mpm_field.h"
@@ -33,7 +32,6 @@
 #include "mpm_point_map.h"
 #include "mpm_stencil.h"
 #include "neighbor.h"
-#include "transfer/cpdi.h"
 #include "transfer/shape.h"
 
 #include <algorithm>
@@ -256,16 +254,15 @@ void MPMAffine::angular_momentum(int i, double L[3]) const
   // the functions at the point or, of domains, at their corners
 
   int ncorner = 1;
-  double corner[24] = {0.0}, share[8] = {1.0}, edge[9], gradient[24], size[3];
+  double corner[24] = {0.0}, share[8] = {1.0}, size[3];
   if (field.domains) {
     ncorner = 1 << dim;
     std::fill(share, share + ncorner, 1.0 / ncorner);
     if (!field.domains->corners || std::isnan(field.domains->corners[i][0])) {
-      field.domains->box(i, edge);
-      dim == 2 ? PointDomain<2>::box(edge, corner, gradient)
-               : PointDomain<3>::box(edge, corner, gradient);
-    } else
+      field.domains->corners_of_box(i, corner);
+    } else {
       field.domains->corners_of(i, corner, share);
+    }
   }
   if (field.boxes) field.boxes->size_of(i, size);
   const MPMStencil stencil(field);

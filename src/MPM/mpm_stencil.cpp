@@ -8,7 +8,6 @@
 
 #include "mpm_stencil.h"
 
-#include "mpm_boxes.h"
 #include "mpm_cpdi.h"
 #include "transfer/shape.h"
 

@@ -14,7 +14,7 @@
 #include "fix_mpm_elements.h"
 #include "fix_mpm_material.h"
 #include "material/batch.h"
-#include "mpm_boxes.h"
+#include "mpm_cpdi.h"
 #include "mpm_field.h"
 #include "mpm_frame.h"
 #include "mpm_guard.h"
