@@ -28,8 +28,7 @@ using namespace MPM_NS;
 
 /* ---------------------------------------------------------------------- */
 
-ComputeMPMEnergy::ComputeMPMEnergy(LAMMPS *lmp, int narg, char **arg) :
-    Compute(lmp, narg, arg), started(false)
+ComputeMPMEnergy::ComputeMPMEnergy(LAMMPS *lmp, int narg, char **arg) : Compute(lmp, narg, arg)
 {
   if (narg > 3) error->all(FLERR, 3, "Unknown compute mpm/energy argument: {}", arg[3]);
   if (igroup != 0)
@@ -38,19 +37,12 @@ ComputeMPMEnergy::ComputeMPMEnergy(LAMMPS *lmp, int narg, char **arg) :
                "by group; for the stored energy of a group use compute mpm/atom energy with "
                "compute reduce");
 
-  physics = find_physics(lmp);
-  accounts = names_of_accounts(physics);
+  accounts = find_accounts();
   scalar_flag = vector_flag = 1;
   extscalar = extvector = 1;
   size_vector = NENTRY + (int) accounts.size();
-  vector = new double[size_vector]();
-}
-
-/* ---------------------------------------------------------------------- */
-
-ComputeMPMEnergy::~ComputeMPMEnergy()
-{
-  delete[] vector;
+  entries.assign(size_vector, 0.0);
+  vector = entries.data();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -59,8 +51,7 @@ void ComputeMPMEnergy::init()
 {
   if (modify->get_fix_by_style("^mpm$").empty())
     error->all(FLERR, Error::NOLASTLINE, "Compute {} of style mpm/energy requires a fix mpm", id);
-  physics = find_physics(lmp);
-  if (names_of_accounts(physics) != accounts)
+  if (find_accounts() != accounts)
     error->all(FLERR, Error::NOLASTLINE,
                "Compute {} of style mpm/energy does not have the entries of all physics: define it "
                "after the fixes, and again when one of them was removed",
@@ -70,11 +61,6 @@ void ComputeMPMEnergy::init()
 /* ----------------------------------------------------------------------
    the ledger starts with the first run after the definition, or goes on from a restart file
 ------------------------------------------------------------------------- */
-
-void ComputeMPMEnergy::setup()
-{
-  begin();
-}
 
 void ComputeMPMEnergy::begin()
 {
@@ -104,9 +90,9 @@ std::vector<double> ComputeMPMEnergy::start_sums() const
    other physics: a letter for each account tells stored energy from energy that came to the bodies
 ------------------------------------------------------------------------- */
 
-std::vector<std::string>
-ComputeMPMEnergy::names_of_accounts(const std::vector<MPMPhysics *> &physics)
+std::vector<std::string> ComputeMPMEnergy::find_accounts()
 {
+  physics = find_physics(lmp);
   std::vector<std::string> names;
   for (const auto *other : physics)
     for (const auto &account : other->accounts())

@@ -34,9 +34,8 @@ namespace LAMMPS_NS {
 class ComputeMPMEnergy : public Compute {
  public:
   ComputeMPMEnergy(class LAMMPS *, int, char **);
-  ~ComputeMPMEnergy() override;
   void init() override;
-  void setup() override;
+  void setup() override { begin(); }
   double compute_scalar() override;
   void compute_vector() override;
 
@@ -73,7 +72,8 @@ class ComputeMPMEnergy : public Compute {
 
   static constexpr std::size_t NSUMS = sizeof(Sums) / sizeof(double);
 
-  bool started;
+  bool started = false;
+  std::vector<double> entries;
   Sums start;                            // at the start of the ledger
   std::vector<std::string> accounts;     // of other physics, when this was defined
   std::vector<double> accounts_start;    // at the start of the ledger
@@ -81,7 +81,7 @@ class ComputeMPMEnergy : public Compute {
 
   Sums evaluate() const;
   std::vector<double> evaluate_accounts() const;
-  static std::vector<std::string> names_of_accounts(const std::vector<class MPMPhysics *> &);
+  std::vector<std::string> find_accounts();
   void begin();
 };
 

@@ -23,16 +23,14 @@
 #include "math/random.h"
 #include "math_eigen.h"
 #include "math_extra.h"
-#include "mpm_cpdi.h"
 #include "mpm_every.h"
-#include "mpm_field.h"
 #include "mpm_frame.h"
 #include "mpm_halo.h"
 #include "mpm_plan.h"
 #include "mpm_point_map.h"
+#include "mpm_state.h"
 #include "mpm_stencil.h"
 #include "neighbor.h"
-#include "transfer/shape.h"
 
 #include <algorithm>
 #include <cfloat>
@@ -48,17 +46,12 @@ static constexpr double MIN_EXTENT = 1.0e-4;
 /* ---------------------------------------------------------------------- */
 
 MPMAffine::MPMAffine(LAMMPS *lmp, MPMField &field, MPMPointState &state) :
-    Pointers(lmp), C(nullptr), Q(nullptr), velocities({0, 0}), field(field)
+    Pointers(lmp), field(field)
 {
   state.declare(C, "mpm:C", size(), [this](int, double *row) {
     if (!this->field.running) row[0] = NAN;    // not known, for fit()
   });
   if (field.options.polypic) state.declare(Q, "mpm:Q", poly_size(field.lattice.dim));
-}
-
-int MPMAffine::size() const
-{
-  return field.lattice.dim * field.lattice.dim;
 }
 
 /* ----------------------------------------------------------------------
@@ -84,11 +77,6 @@ uint64_t MPMAffine::velocity_hash() const
 }
 
 /* ---------------------------------------------------------------------- */
-
-void MPMAffine::remember_velocities()
-{
-  velocities = {velocity_hash(), 1};
-}
 
 void MPMAffine::check_velocities()
 {

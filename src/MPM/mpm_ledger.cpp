@@ -20,16 +20,6 @@ using namespace MPM_NS;
 
 /* ---------------------------------------------------------------------- */
 
-MPMLedger::MPMLedger(LAMMPS *lmp, MPMField &field) :
-    Pointers(lmp), MPMEnergies(), on(false), field(field), before_actions(0.0), kinetic_points(0.0)
-{
-}
-
-void MPMLedger::setup()
-{
-  if (on) kinetic_points = point_kinetic_energy();
-}
-
 void MPMLedger::remove(double kinetic, double stored)
 {
   deleted_kinetic -= kinetic;

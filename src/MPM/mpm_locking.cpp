@@ -6,14 +6,11 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Cures for volumetric locking of fix mpm: averages over the points around each point.
-
 #include "mpm_locking.h"
 
 #include "atom.h"
 #include "fix_mpm_material.h"
 #include "mpm_edges.h"
-#include "mpm_field.h"
 #include "mpm_frame.h"
 #include "mpm_passes.h"
 #include "mpm_points.h"
@@ -48,25 +45,10 @@ using namespace MPM_NS;
    another change of volume next to them for good reasons.
 ------------------------------------------------------------------------- */
 
-bool MPMLocking::averages_strain() const
-{
-  return field.options.locking != MPMFieldOptions::PRESSURE;
-}
-
-bool MPMLocking::averages_stress() const
-{
-  return field.options.locking != MPMFieldOptions::FBAR;
-}
-
 double *MPMLocking::room_for_gradients()
 {
   gradients.resize(field.lattice.dim * field.lattice.dim * (std::size_t) atom->nmax);
   return gradients.data();
-}
-
-double MPMLocking::memory_usage() const
-{
-  return (gradients.capacity() + tau.capacity()) * sizeof(double);
 }
 
 /* ----------------------------------------------------------------------

@@ -9,20 +9,17 @@
 #ifndef LMP_MPM_LOCKING_H
 #define LMP_MPM_LOCKING_H
 
-#include "pointers.h"
-
-#include <vector>
+#include "mpm_field.h"
 
 namespace LAMMPS_NS {
-class MPMField;
 
 /** Cures for volumetric locking: averages over the points around each point. */
 class MPMLocking : protected Pointers {
  public:
   MPMLocking(class LAMMPS *lmp, MPMField &field) : Pointers(lmp), field(field) {}
 
-  bool averages_strain() const;
-  bool averages_stress() const;
+  bool averages_strain() const { return field.options.locking != MPMFieldOptions::PRESSURE; }
+  bool averages_stress() const { return field.options.locking != MPMFieldOptions::FBAR; }
 
   /** [n][dim*dim] for velocity gradients of all points. */
   double *room_for_gradients();
@@ -35,7 +32,7 @@ class MPMLocking : protected Pointers {
   /** Kirchhoff stress with averaged pressure, [n][6]. */
   double *stress() { return tau.data(); }
 
-  double memory_usage() const;
+  double memory_usage() const { return (gradients.capacity() + tau.capacity()) * sizeof(double); }
 
  private:
   MPMField &field;
