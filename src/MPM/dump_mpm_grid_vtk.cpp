@@ -82,45 +82,29 @@ void DumpMPMGridVTK::init_style()
 }
 
 /* ----------------------------------------------------------------------
-   visit(block, number in block, record) for all nodes with mass that this process owns
+   rows of all nodes with mass that this process owns
 ------------------------------------------------------------------------- */
-
-template <typename Visitor> void DumpMPMGridVTK::visit_nodes(Visitor visit) const
-{
-  auto *grid = &field->grid;
-  if (grid->nreal == 0) return;
-  for (std::size_t slot = 0; slot < grid->blocks.size(); slot++) {
-    const auto &block = grid->blocks[slot];
-    for (int n = 0; n < NODES_PER_BLOCK; n++) {
-      if (!(block.owned >> n & 1)) continue;
-      const double *record = grid->record((int) slot, n);
-      if (record[3] > 0.0) visit(block, n, record);
-    }
-  }
-}
 
 int DumpMPMGridVTK::count()
 {
-  int nnode = 0;
-  visit_nodes([&](const Grid::Block &, int, const double *) {
-    nnode++;
-  });
-  return nnode;
+  rows.clear();
+  auto &grid = field->grid;
+  for (std::size_t slot = 0; slot < grid.blocks.size() && grid.nreal; slot++)
+    for (int n = 0; n < NODES_PER_BLOCK; n++) {
+      if (!(grid.blocks[slot].owned >> n & 1)) continue;
+      const double *record = grid.record((int) slot, n);
+      if (!(record[3] > 0.0)) continue;
+      int index[3];
+      grid.node_index(grid.blocks[slot], n, index);
+      rows.insert(rows.end(), index, index + 3);
+      rows.insert(rows.end(), record, record + 4);
+    }
+  return (int) (rows.size() / NCOLUMN);
 }
 
 void DumpMPMGridVTK::pack(tagint *)
 {
-  double *row = buf;
-  visit_nodes([&](const Grid::Block &block, int n, const double *record) {
-    int index[3];
-    field->grid.node_index(block, n, index);
-    for (int d = 0; d < 3; d++) {
-      row[INDEX + d] = index[d];
-      row[VELOCITY + d] = record[d];
-    }
-    row[MASS] = record[3];
-    row += NCOLUMN;
-  });
+  std::copy(rows.begin(), rows.end(), buf);
 }
 
 /* ----------------------------------------------------------------------

@@ -40,7 +40,7 @@ class DumpMPMGridVTK : public DumpVTKSeries<Dump> {
   void write_footer() override;
 
  private:
-  enum Column { INDEX = 0, VELOCITY = 3, MASS = 6, NCOLUMN };    // of the rows that are gathered
+  enum Column { INDEX = 0, VELOCITY = 3, MASS = 6, NCOLUMN };    // of a row, for a node
 
   struct Quantity {
     std::string name;
@@ -51,9 +51,8 @@ class DumpMPMGridVTK : public DumpVTKSeries<Dump> {
   MPMField *field = nullptr;
   static const std::vector<Quantity> known;
   std::vector<Quantity> fields;
-  std::vector<double> rows;    // of the present file
+  std::vector<double> rows;    // of this process, then of the present file
 
-  template <typename Visitor> void visit_nodes(Visitor) const;
   MPMField *find_field() const;
 };
 

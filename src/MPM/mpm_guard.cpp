@@ -306,7 +306,7 @@ void MPMGuard::handle_bad_points()
 
 void MPMGuard::check_inside_box()
 {
-  std::vector<tagint> out;
+  const bool deletes = field.options.bad == MPMFieldOptions::DELETE;
   double **x = atom->x;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!field.is_point(i)) continue;
@@ -315,30 +315,24 @@ void MPMGuard::check_inside_box()
       inside = inside &&
           (domain->periodicity[d] || (x[i][d] >= domain->boxlo[d] && x[i][d] < domain->boxhi[d]));
     if (inside) continue;
-    if (field.options.bad == MPMFieldOptions::DELETE)
-      out.push_back(atom->tag[i]);
+    if (deletes)
+      bad_points.push_back(atom->tag[i]);
     else
       error->one(FLERR,
                  "{} has left the box through a fixed face; enlarge the box, put a "
                  "fix mpm/boundary there, or let it go with fix mpm ... bad delete",
                  describe(i));
   }
-  if (field.options.bad == MPMFieldOptions::DELETE) {
-    out.insert(out.end(), bad_points.begin(), bad_points.end());
-    delete_points(out, true);
-    bad_points.clear();
-  }
-  if (field.options.delete_failed) {
-    delete_points(failed_points, false);
-    failed_points.clear();
-  }
+  if (deletes) delete_points(bad_points, true);
+  if (field.options.delete_failed) delete_points(failed_points, false);
 }
 
 /* ---------------------------------------------------------------------- */
 
-void MPMGuard::delete_points(const std::vector<tagint> &list, bool warn)
+void MPMGuard::delete_points(std::vector<tagint> &list, bool warn)
 {
-  std::vector<tagint> sorted(list);
+  std::vector<tagint> sorted;
+  sorted.swap(list);
   std::sort(sorted.begin(), sorted.end());
   double lost[5] = {0.0}, all[5];    // points, mass, momentum
   std::vector<double> history;

@@ -63,7 +63,7 @@ class MPMGuard : protected Pointers {
   std::vector<tagint> failed_points;    // of this step, to be deleted
   bigint nbad_total = 0;
 
-  void delete_points(const std::vector<tagint> &, bool warn);
+  void delete_points(std::vector<tagint> &, bool warn);    // and forget them
 };
 
 }    // namespace LAMMPS_NS

@@ -33,15 +33,12 @@ double MPMLedger::nodal_kinetic_energy(int lane) const
 {
   Grid &grid = field.grid;
   double sum = 0.0;
-  for (std::size_t s = 0; s < grid.blocks.size(); s++) {
-    const uint64_t owned = grid.blocks[s].owned;
-    const double *record = grid.record(s, 0);
-    for (int n = 0; n < NODES_PER_BLOCK; n++, record += grid.nreal) {
-      if (!(owned >> n & 1)) continue;
-      const double *v = record + lane;
+  for (std::size_t s = 0; s < grid.blocks.size(); s++)
+    for (int n = 0; n < NODES_PER_BLOCK; n++) {
+      if (!(grid.blocks[s].owned >> n & 1)) continue;
+      const double *record = grid.record(s, n), *v = record + lane;
       sum += record[3] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
     }
-  }
   return 0.5 * force->mvv2e * sum;
 }
 

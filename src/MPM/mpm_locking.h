@@ -38,7 +38,7 @@ class MPMLocking : protected Pointers {
   MPMField &field;
   std::vector<double> gradients, tau;
 
-  void average_around_points();
+  template <class Value> void average_around_points(const Value &);
 };
 
 }    // namespace LAMMPS_NS
