@@ -64,26 +64,13 @@ void ComputeMPMEnergy::init()
 
 void ComputeMPMEnergy::begin()
 {
-  if (started) return;
-  started = true;
+  if (!start.empty()) return;
   start = evaluate();
-  accounts_start = evaluate_accounts();
-  for (const auto *field : MPMField::all(lmp)) {
-    const auto &restored = field->ledger.start;
-    if (restored.size() != NSUMS + accounts.size()) continue;
-    memcpy(&start, restored.data(), sizeof(Sums));
-    accounts_start.assign(restored.begin() + NSUMS, restored.end());
-    return;
-  }
-}
-
-std::vector<double> ComputeMPMEnergy::start_sums() const
-{
-  if (!started) return {};
-  std::vector<double> sums(NSUMS);
-  memcpy(sums.data(), &start, sizeof(Sums));
-  sums.insert(sums.end(), accounts_start.begin(), accounts_start.end());
-  return sums;
+  for (const auto *field : MPMField::all(lmp))
+    if (field->ledger.start.size() == start.size()) {
+      start = field->ledger.start;
+      return;
+    }
 }
 
 /* ----------------------------------------------------------------------
@@ -100,21 +87,9 @@ std::vector<std::string> ComputeMPMEnergy::find_accounts()
   return names;
 }
 
-std::vector<double> ComputeMPMEnergy::evaluate_accounts() const
-{
-  std::vector<double> mine(accounts.size(), 0.0), all(accounts.size());
-  std::size_t first = 0;
-  for (const auto *other : physics) {
-    other->account(mine.data() + first);
-    first += other->accounts().size();
-  }
-  MPI_Allreduce(mine.data(), all.data(), (int) mine.size(), MPI_DOUBLE, MPI_SUM, world);
-  return all;
-}
-
 /* ---------------------------------------------------------------------- */
 
-ComputeMPMEnergy::Sums ComputeMPMEnergy::evaluate() const
+std::vector<double> ComputeMPMEnergy::evaluate() const
 {
   Sums mine = {};
 
@@ -158,8 +133,14 @@ ComputeMPMEnergy::Sums ComputeMPMEnergy::evaluate() const
   for (double *energy : {&mine.plastic, &mine.viscous, &mine.heat, &mine.fracture, &mine.stored})
     *energy /= force->nktv2p;
 
-  Sums all;
-  MPI_Allreduce(&mine, &all, sizeof(Sums) / sizeof(double), MPI_DOUBLE, MPI_SUM, world);
+  std::vector<double> local(NSUMS + accounts.size()), all(local.size());
+  memcpy(local.data(), &mine, sizeof(Sums));
+  double *next = local.data() + NSUMS;
+  for (const auto *other : physics) {
+    other->account(next);
+    next += other->accounts().size();
+  }
+  MPI_Allreduce(local.data(), all.data(), (int) all.size(), MPI_DOUBLE, MPI_SUM, world);
   return all;
 }
 
@@ -181,7 +162,10 @@ void ComputeMPMEnergy::compute_vector()
 {
   invoked_vector = update->ntimestep;
   begin();
-  const Sums now = evaluate();
+  const auto present = evaluate();
+  Sums now, old;
+  memcpy(&now, present.data(), sizeof(Sums));
+  memcpy(&old, start.data(), sizeof(Sums));
 
   vector[KINETIC] = now.kinetic;
   vector[STORED] = now.stored;
@@ -189,24 +173,23 @@ void ComputeMPMEnergy::compute_vector()
   vector[VISCOUS] = now.viscous;
   vector[HEAT] = now.heat;
   vector[FRACTURE] = now.fracture;
-  vector[EXTERNAL] = now.external - start.external;
-  vector[BOUNDARY] = now.boundary - start.boundary;
-  vector[CONTACT] = now.contact - start.contact;
-  vector[TRANSFER] = now.transfer - start.transfer;
+  vector[EXTERNAL] = now.external - old.external;
+  vector[BOUNDARY] = now.boundary - old.boundary;
+  vector[CONTACT] = now.contact - old.contact;
+  vector[TRANSFER] = now.transfer - old.transfer;
 
   // the law's account of the energy that internal forces took, against that energy
 
-  const double stored = now.deleted_stored - start.deleted_stored;
-  vector[DELETED] = now.deleted_kinetic - start.deleted_kinetic + stored;
-  vector[INTEGRATION] = now.taken() - start.taken() - stored - (now.internal - start.internal);
-  vector[RESIDUAL] = now.total() - start.total() - vector[DELETED];
+  const double stored = now.deleted_stored - old.deleted_stored;
+  vector[DELETED] = now.deleted_kinetic - old.deleted_kinetic + stored;
+  vector[INTEGRATION] = now.taken() - old.taken() - stored - (now.internal - old.internal);
+  vector[RESIDUAL] = now.total() - old.total() - vector[DELETED];
   for (int k = EXTERNAL; k < RESIDUAL; k++) vector[RESIDUAL] -= vector[k];
 
-  const auto present = evaluate_accounts();
   for (std::size_t k = 0; k < accounts.size(); k++) {
     const bool stored = accounts[k][0] == 'S';
-    const double change = present[k] - accounts_start[k];
-    vector[NENTRY + k] = stored ? present[k] : change;
+    const double value = present[NSUMS + k], change = value - start[NSUMS + k];
+    vector[NENTRY + k] = stored ? value : change;
     vector[RESIDUAL] += stored ? change : -change;
   }
 }

@@ -40,7 +40,7 @@ class ComputeMPMEnergy : public Compute {
   void compute_vector() override;
 
   /** What the ledger started from, for restart files; empty before it has started. */
-  std::vector<double> start_sums() const;
+  const std::vector<double> &start_sums() const { return start; }
 
  private:
   enum Entry {
@@ -60,7 +60,7 @@ class ComputeMPMEnergy : public Compute {
     NENTRY          // those of other physics follow
   };
 
-  /** What the entries are computed from, summed over ranks. */
+  /** What the entries are computed from, summed over ranks; the accounts of other physics follow. */
   struct Sums {
     double kinetic, stored, plastic, viscous, heat, fracture;
     double external, boundary, contact, transfer, internal;
@@ -72,15 +72,12 @@ class ComputeMPMEnergy : public Compute {
 
   static constexpr std::size_t NSUMS = sizeof(Sums) / sizeof(double);
 
-  bool started = false;
   std::vector<double> entries;
-  Sums start;                            // at the start of the ledger
-  std::vector<std::string> accounts;     // of other physics, when this was defined
-  std::vector<double> accounts_start;    // at the start of the ledger
+  std::vector<double> start;            // Sums and accounts; empty: the ledger has not started
+  std::vector<std::string> accounts;    // of other physics, when this was defined
   std::vector<class MPMPhysics *> physics;
 
-  Sums evaluate() const;
-  std::vector<double> evaluate_accounts() const;
+  std::vector<double> evaluate() const;
   std::vector<std::string> find_accounts();
   void begin();
 };
