@@ -13,7 +13,6 @@
 #include "fix_mpm_elements.h"
 #include "fix_mpm_material.h"
 #include "force.h"
-#include "group.h"
 #include "material/material.h"
 #include "modify.h"
 #include "mpm_field.h"

@@ -161,11 +161,7 @@ double MPMFrameTotal::volume_change(int i, const double *L, double dt) const
   }
   const double scale = dt / field.points->jacobian(i);
   const double cofactors[9] = MPM_COFACTORS(F);    // F^-1 transposed, times det F
-  for (int j = 0; j < 3; j++) {
-    const double *const c = cofactors + 3 * j;
-    for (int r = 0; r < 3; r++)
-      A[3 * j + r] = scale * (L[r] * c[0] + L[3 + r] * c[1] + L[6 + r] * c[2]);
-  }
+  for (int c = 0; c < 9; c++) A[c] = scale * product(cofactors, L, c / 3, c % 3);
   return MPMFrame::volume_change(i, A, 1.0);
 }
 
@@ -203,11 +199,8 @@ void MPMFrameTotal::stretches(int i, double &smallest, double &largest) const
     return;
   }
   MathExtra::invert3(f, g);
-  for (int j = 0; j < 3; j++)
-    for (int k = 0; k < 3; k++) {
-      B[j][k] = f[j][0] * f[k][0] + f[j][1] * f[k][1] + f[j][2] * f[k][2];
-      inverse[j][k] = g[0][j] * g[0][k] + g[1][j] * g[1][k] + g[2][j] * g[2][k];
-    }
+  MathExtra::times3_transpose(f, f, B);
+  MathExtra::transpose_times3(g, g, inverse);
   largest = sqrt(largest_eigenvalue(B));
   smallest = 1.0 / sqrt(largest_eigenvalue(inverse));
 }

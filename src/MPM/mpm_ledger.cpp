@@ -11,7 +11,6 @@
 #include "atom.h"
 #include "fix_mpm_elements.h"
 #include "force.h"
-#include "lammps.h"
 #include "mpm_field.h"
 #include "mpm_passes.h"
 
