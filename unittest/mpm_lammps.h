@@ -453,12 +453,12 @@ class Scene {
         const int dim = fix->lattice.dim;
         double CF[9];    // total frame: the velocity C (X - X_p) is at F (X - X_p)
         if (fix->options.total) {
-          double F[9];
+          double F[3][3];
           fix->frame->lattice_F(i, F);
           for (int a = 0; a < dim; a++)
             for (int b = 0; b < dim; b++) {
               CF[dim * b + a] = 0.0;
-              for (int k = 0; k < dim; k++) CF[dim * b + a] += C[dim * k + a] * F[3 * b + k];
+              for (int k = 0; k < dim; k++) CF[dim * b + a] += C[dim * k + a] * F[b][k];
             }
           C = CF;
         }

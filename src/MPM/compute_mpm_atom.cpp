@@ -30,81 +30,51 @@ using namespace MPM_NS;
 
 namespace {
 
-/** State of one point, as its quantities need it. */
+/** State of one point, and its quantities, some of which have several components. */
 struct Point {
-  const double *F;         // row-major
-  const double *stress;    // Cauchy, xx yy zz xy xz yz
+  int i;
+  const MPMField *field;    // that it belongs to, null: none
+  const double *F;          // row-major
+  const double *sigma;      // Cauchy stress, xx yy zz xy xz yz
   const double *v;
-  double mass, volume, volume0;
+  double m, V, V0;
+
+  double deformation(int component) const { return F[component]; }
+  double jacobian(int) const { return MPMPoints::det(F); }
+  double stress(int component) const { return sigma[component]; }
+  double pressure(int) const { return -(sigma[0] + sigma[1] + sigma[2]) / 3.0; }
+  double vonmises(int) const
+  {
+    const double xy = sigma[0] - sigma[1], yz = sigma[1] - sigma[2], zx = sigma[2] - sigma[0];
+    return sqrt(0.5 * (xy * xy + yz * yz + zx * zx) +
+                3.0 * (sigma[3] * sigma[3] + sigma[4] * sigma[4] + sigma[5] * sigma[5]));
+  }
+  double triaxiality(int) const
+  {
+    const double shear = vonmises(0);
+    return shear > 0.0 ? -pressure(0) / shear : 0.0;
+  }
+  double principal(int rank) const
+  {
+    const double matrix[3][3] = {{sigma[0], sigma[3], sigma[4]},
+                                 {sigma[3], sigma[1], sigma[5]},
+                                 {sigma[4], sigma[5], sigma[2]}};
+    double value[3], vector[3][3];
+    MathEigen::jacobi3(matrix, value, vector);    // sorts in decreasing order
+    return value[rank];
+  }
+  double volume(int) const { return V; }
+  double volume0(int) const { return V0; }
+  double mass(int) const { return m; }
+  double density(int) const { return m / V; }
+  double speed(int) const { return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+  double angmom(int component) const
+  {
+    double L[3] = {0.0, 0.0, 0.0};
+    if (field && field->affine) field->affine->angular_momentum(i, L);
+    return L[component];
+  }
 };
-
-double deformation(const Point &p, int component)
-{
-  return p.F[component];
-}
-
-double jacobian(const Point &p, int)
-{
-  return MPMPoints::det(p.F);
-}
-
-double stress(const Point &p, int component)
-{
-  return p.stress[component];
-}
-
-double pressure(const Point &p, int)
-{
-  return -(p.stress[0] + p.stress[1] + p.stress[2]) / 3.0;
-}
-
-double vonmises(const Point &p, int)
-{
-  const double *s = p.stress;
-  const double xy = s[0] - s[1], yz = s[1] - s[2], zx = s[2] - s[0];
-  return sqrt(0.5 * (xy * xy + yz * yz + zx * zx) +
-              3.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
-}
-
-double triaxiality(const Point &p, int)
-{
-  const double shear = vonmises(p, 0);
-  return shear > 0.0 ? -pressure(p, 0) / shear : 0.0;
-}
-
-double principal(const Point &p, int rank)
-{
-  const double *s = p.stress;
-  const double matrix[3][3] = {{s[0], s[3], s[4]}, {s[3], s[1], s[5]}, {s[4], s[5], s[2]}};
-  double value[3], vector[3][3];
-  MathEigen::jacobi3(matrix, value, vector);    // sorts in decreasing order
-  return value[rank];
-}
-
-double volume(const Point &p, int)
-{
-  return p.volume;
-}
-
-double volume0(const Point &p, int)
-{
-  return p.volume0;
-}
-
-double mass(const Point &p, int)
-{
-  return p.mass;
-}
-
-double density(const Point &p, int)
-{
-  return p.mass / p.volume;
-}
-
-double speed(const Point &p, int)
-{
-  return sqrt(p.v[0] * p.v[0] + p.v[1] * p.v[1] + p.v[2] * p.v[2]);
-}
 
 void energy(const Material &material, const Batch &batch, double pressure_to_energy, double *value)
 {
@@ -117,61 +87,51 @@ void wavespeed(const Material &material, const Batch &batch, double, double *val
   material.wave_speed(batch, value);
 }
 
-double angmom(const MPMField &field, int i, int component)
-{
-  double L[3];
-  L[0] = L[1] = L[2] = 0.0;
-  if (field.affine) field.affine->angular_momentum(i, L);
-  return L[component];
-}
-
 }    // namespace
 
-/** A quantity of the table: a function of one point, of a batch of one material, or of what fix mpm knows
- *  of a point. */
+/** A quantity of the table: a function of one point, or of a batch of one material. */
 struct ComputeMPMAtom::Quantity {
   const char *name;
-  double (*of_point)(const Point &, int component);
-  int component;
-  void (*of_batch)(const Material &, const Batch &, double pressure_to_energy, double *);
-  double (*of_field)(const MPMField &, int i, int component) = nullptr;
+  double (Point::*of_point)(int component) const;
+  int component = 0;
+  void (*of_batch)(const Material &, const Batch &, double pressure_to_energy, double *) = nullptr;
 };
 
 // customize by adding a line: names of the form group/component can be asked for as group/*
 
 static const ComputeMPMAtom::Quantity quantities[] = {
-    {"stress/xx", stress, 0, nullptr},
-    {"stress/yy", stress, 1, nullptr},
-    {"stress/zz", stress, 2, nullptr},
-    {"stress/xy", stress, 3, nullptr},
-    {"stress/xz", stress, 4, nullptr},
-    {"stress/yz", stress, 5, nullptr},
-    {"principal/1", principal, 0, nullptr},
-    {"principal/2", principal, 1, nullptr},
-    {"principal/3", principal, 2, nullptr},
-    {"pressure", pressure, 0, nullptr},
-    {"vonmises", vonmises, 0, nullptr},
-    {"triaxiality", triaxiality, 0, nullptr},
-    {"F/xx", deformation, 0, nullptr},
-    {"F/xy", deformation, 1, nullptr},
-    {"F/xz", deformation, 2, nullptr},
-    {"F/yx", deformation, 3, nullptr},
-    {"F/yy", deformation, 4, nullptr},
-    {"F/yz", deformation, 5, nullptr},
-    {"F/zx", deformation, 6, nullptr},
-    {"F/zy", deformation, 7, nullptr},
-    {"F/zz", deformation, 8, nullptr},
-    {"J", jacobian, 0, nullptr},
-    {"volume", volume, 0, nullptr},
-    {"volume0", volume0, 0, nullptr},
-    {"mass", mass, 0, nullptr},
-    {"density", density, 0, nullptr},
-    {"speed", speed, 0, nullptr},
+    {"stress/xx", &Point::stress, 0},
+    {"stress/yy", &Point::stress, 1},
+    {"stress/zz", &Point::stress, 2},
+    {"stress/xy", &Point::stress, 3},
+    {"stress/xz", &Point::stress, 4},
+    {"stress/yz", &Point::stress, 5},
+    {"principal/1", &Point::principal, 0},
+    {"principal/2", &Point::principal, 1},
+    {"principal/3", &Point::principal, 2},
+    {"pressure", &Point::pressure},
+    {"vonmises", &Point::vonmises},
+    {"triaxiality", &Point::triaxiality},
+    {"F/xx", &Point::deformation, 0},
+    {"F/xy", &Point::deformation, 1},
+    {"F/xz", &Point::deformation, 2},
+    {"F/yx", &Point::deformation, 3},
+    {"F/yy", &Point::deformation, 4},
+    {"F/yz", &Point::deformation, 5},
+    {"F/zx", &Point::deformation, 6},
+    {"F/zy", &Point::deformation, 7},
+    {"F/zz", &Point::deformation, 8},
+    {"J", &Point::jacobian},
+    {"volume", &Point::volume},
+    {"volume0", &Point::volume0},
+    {"mass", &Point::mass},
+    {"density", &Point::density},
+    {"speed", &Point::speed},
     {"energy", nullptr, 0, energy},
     {"wavespeed", nullptr, 0, wavespeed},
-    {"angmom/x", nullptr, 0, nullptr, angmom},
-    {"angmom/y", nullptr, 1, nullptr, angmom},
-    {"angmom/z", nullptr, 2, nullptr, angmom},
+    {"angmom/x", &Point::angmom, 0},
+    {"angmom/y", &Point::angmom, 1},
+    {"angmom/z", &Point::angmom, 2},
 };
 
 static const ComputeMPMAtom::Quantity *find_quantity(const std::string &name)
@@ -182,11 +142,6 @@ static const ComputeMPMAtom::Quantity *find_quantity(const std::string &name)
 }
 
 /* ---------------------------------------------------------------------- */
-
-bool ComputeMPMAtom::known(const std::string &name)
-{
-  return find_quantity(expand(name)[0]) != nullptr;
-}
 
 std::vector<std::string> ComputeMPMAtom::expand(const std::string &name)
 {
@@ -229,7 +184,6 @@ ComputeMPMAtom::ComputeMPMAtom(LAMMPS *lmp, int narg, char **arg) :
 
 ComputeMPMAtom::~ComputeMPMAtom()
 {
-  memory->destroy(vector_atom);
   memory->destroy(array_atom);
 }
 
@@ -279,101 +233,65 @@ bool ComputeMPMAtom::is_point(int i) const
   return (atom->mask[i] & groupbit) && atom->vfrac[i] > 0.0;
 }
 
-/** First value of column n; the stride from point to point is the number of columns. */
-double *ComputeMPMAtom::column(int n)
-{
-  return size_peratom_cols == 0 ? vector_atom : (nmax > 0 ? &array_atom[0][n] : nullptr);
-}
-
 /* ---------------------------------------------------------------------- */
 
 void ComputeMPMAtom::compute_peratom()
 {
   invoked_peratom = update->ntimestep;
 
+  const int ncolumn = (int) columns.size();
   if (atom->nmax > nmax) {
     nmax = atom->nmax;
-    if (size_peratom_cols == 0) {
-      memory->destroy(vector_atom);
-      memory->create(vector_atom, nmax, "mpm/atom:vector");
-    } else {
-      memory->destroy(array_atom);
-      memory->create(array_atom, nmax, size_peratom_cols, "mpm/atom:array");
-    }
+    memory->destroy(array_atom);
+    memory->create(array_atom, nmax, ncolumn, "mpm/atom:array");
+    if (size_peratom_cols == 0) vector_atom = array_atom[0];
   }
 
-  const int nlocal = atom->nlocal;
-  const int stride = (int) columns.size();
+  const auto fields = MPMField::all(lmp);
   bool batches = false;
-
-  for (int n = 0; n < stride; n++) {
-    double *out = column(n);
+  for (int n = 0; n < ncolumn; n++) {
     const auto *quantity = columns[n].quantity;
-    if (quantity && quantity->of_point) {
-      for (int i = 0; i < nlocal; i++) {
-        double &value = out[(bigint) i * stride];
-        if (is_point(i)) {
-          double stress[6];
-          points->cauchy(i, stress);
-          const Point p = {points->F[i],
-                           stress,
-                           atom->v[i],
-                           atom->rmass[i],
-                           points->jacobian(i) * atom->vfrac[i],
-                           atom->vfrac[i]};
-          value = quantity->of_point(p, quantity->component);
-        } else {
-          value = 0.0;
-        }
-      }
-    } else {
-      for (int i = 0; i < nlocal; i++) out[(bigint) i * stride] = 0.0;
-      if (quantity && quantity->of_batch)
-        batches = true;
-      else if (quantity)
-        field_column(*quantity, out, stride);
-      else
-        history_column(columns[n].name, out, stride);
+    const bool of_point = quantity && quantity->of_point;
+    for (int i = 0; i < atom->nlocal; i++) {
+      array_atom[i][n] = 0.0;
+      if (!of_point || !is_point(i)) continue;
+      const MPMField *field = nullptr;
+      for (const auto *each : fields)
+        if (each->is_point(i)) field = each;
+      double sigma[6];
+      points->cauchy(i, sigma);
+      const double V0 = atom->vfrac[i], V = points->jacobian(i) * V0;
+      const Point p = {i, field, points->F[i], sigma, atom->v[i], atom->rmass[i], V, V0};
+      array_atom[i][n] = (p.*quantity->of_point)(quantity->component);
     }
+    if (!quantity) history_column(n);
+    batches |= quantity && quantity->of_batch;
   }
 
   if (batches)
     visit_point_batches(
         lmp, groupbit, [&](const Batch &batch, const int *list, const FixMPMMaterial &material) {
           double value[BATCH];
-          for (int n = 0; n < stride; n++) {
+          for (int n = 0; n < ncolumn; n++) {
             const auto *quantity = columns[n].quantity;
             if (!quantity || !quantity->of_batch) continue;
             quantity->of_batch(*material.material, batch, 1.0 / force->nktv2p, value);
-            double *out = column(n);
-            for (int k = 0; k < batch.n; k++) out[(bigint) list[k] * stride] = value[k];
+            for (int k = 0; k < batch.n; k++) array_atom[list[k]][n] = value[k];
           }
         });
 }
 
-/** What fix mpm knows of its points. */
-void ComputeMPMAtom::field_column(const Quantity &quantity, double *out, int stride)
-{
-  for (const auto *each : MPMField::all(lmp)) {
-    const auto &field = *each;
-    for (int i = 0; i < atom->nlocal; i++)
-      if (is_point(i) && field.is_point(i))
-        out[(bigint) i * stride] = quantity.of_field(field, i, quantity.component);
-  }
-}
-
 /** History variable of the points whose material has it; the others keep their value. */
-void ComputeMPMAtom::history_column(const std::string &name, double *out, int stride)
+void ComputeMPMAtom::history_column(int n)
 {
-  for (const auto *field : MPMField::all(lmp)) {
+  for (const auto *field : MPMField::all(lmp))
     for (const auto *material : field->materials) {
-      const int index = material->find_history(name);
+      const int index = material->find_history(columns[n].name);
       if (index < 0) continue;
       for (int i = 0; i < atom->nlocal; i++)
         if (is_point(i) && field->is_point(i) && field->material_of(i) == material)
-          out[(bigint) i * stride] = material->history[i][index];
+          array_atom[i][n] = material->history[i][index];
     }
-  }
 }
 
 /* ---------------------------------------------------------------------- */

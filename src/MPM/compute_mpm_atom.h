@@ -37,9 +37,6 @@ class ComputeMPMAtom : public Compute {
   void compute_peratom() override;
   double memory_usage() override;
 
-  /** True for a name of the table, or a wildcard such as stress or stress/<star>. */
-  static bool known(const std::string &name);
-
   /** The names that a wildcard (stress/<star>) stands for, or the name itself. */
   static std::vector<std::string> expand(const std::string &name);
 
@@ -55,11 +52,9 @@ class ComputeMPMAtom : public Compute {
   std::vector<Column> columns;
   int nmax;
 
-  double *column(int);
   bool is_point(int) const;
   std::string known_names() const;
-  void field_column(const Quantity &, double *, int);
-  void history_column(const std::string &, double *, int);
+  void history_column(int);
 };
 
 }    // namespace LAMMPS_NS

@@ -13,7 +13,6 @@
 #include "fix_mpm_elements.h"
 #include "fix_mpm_material.h"
 #include "force.h"
-#include "group.h"
 #include "material/material.h"
 #include "modify.h"
 #include "mpm_field.h"
@@ -28,8 +27,7 @@ using namespace MPM_NS;
 
 /* ---------------------------------------------------------------------- */
 
-ComputeMPMEnergy::ComputeMPMEnergy(LAMMPS *lmp, int narg, char **arg) :
-    Compute(lmp, narg, arg), started(false)
+ComputeMPMEnergy::ComputeMPMEnergy(LAMMPS *lmp, int narg, char **arg) : Compute(lmp, narg, arg)
 {
   if (narg > 3) error->all(FLERR, 3, "Unknown compute mpm/energy argument: {}", arg[3]);
   if (igroup != 0)
@@ -38,19 +36,12 @@ ComputeMPMEnergy::ComputeMPMEnergy(LAMMPS *lmp, int narg, char **arg) :
                "by group; for the stored energy of a group use compute mpm/atom energy with "
                "compute reduce");
 
-  physics = find_physics(lmp);
-  accounts = names_of_accounts(physics);
+  accounts = find_accounts();
   scalar_flag = vector_flag = 1;
   extscalar = extvector = 1;
   size_vector = NENTRY + (int) accounts.size();
-  vector = new double[size_vector]();
-}
-
-/* ---------------------------------------------------------------------- */
-
-ComputeMPMEnergy::~ComputeMPMEnergy()
-{
-  delete[] vector;
+  entries.assign(size_vector, 0.0);
+  vector = entries.data();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -59,8 +50,7 @@ void ComputeMPMEnergy::init()
 {
   if (modify->get_fix_by_style("^mpm$").empty())
     error->all(FLERR, Error::NOLASTLINE, "Compute {} of style mpm/energy requires a fix mpm", id);
-  physics = find_physics(lmp);
-  if (names_of_accounts(physics) != accounts)
+  if (find_accounts() != accounts)
     error->all(FLERR, Error::NOLASTLINE,
                "Compute {} of style mpm/energy does not have the entries of all physics: define it "
                "after the fixes, and again when one of them was removed",
@@ -71,42 +61,24 @@ void ComputeMPMEnergy::init()
    the ledger starts with the first run after the definition, or goes on from a restart file
 ------------------------------------------------------------------------- */
 
-void ComputeMPMEnergy::setup()
-{
-  begin();
-}
-
 void ComputeMPMEnergy::begin()
 {
-  if (started) return;
-  started = true;
+  if (!start.empty()) return;
   start = evaluate();
-  accounts_start = evaluate_accounts();
-  for (const auto *field : MPMField::all(lmp)) {
-    const auto &restored = field->ledger.start;
-    if (restored.size() != NSUMS + accounts.size()) continue;
-    memcpy(&start, restored.data(), sizeof(Sums));
-    accounts_start.assign(restored.begin() + NSUMS, restored.end());
-    return;
-  }
-}
-
-std::vector<double> ComputeMPMEnergy::start_sums() const
-{
-  if (!started) return {};
-  std::vector<double> sums(NSUMS);
-  memcpy(sums.data(), &start, sizeof(Sums));
-  sums.insert(sums.end(), accounts_start.begin(), accounts_start.end());
-  return sums;
+  for (const auto *field : MPMField::all(lmp))
+    if (field->ledger.start.size() == start.size()) {
+      start = field->ledger.start;
+      return;
+    }
 }
 
 /* ----------------------------------------------------------------------
    other physics: a letter for each account tells stored energy from energy that came to the bodies
 ------------------------------------------------------------------------- */
 
-std::vector<std::string>
-ComputeMPMEnergy::names_of_accounts(const std::vector<MPMPhysics *> &physics)
+std::vector<std::string> ComputeMPMEnergy::find_accounts()
 {
+  physics = find_physics(lmp);
   std::vector<std::string> names;
   for (const auto *other : physics)
     for (const auto &account : other->accounts())
@@ -114,21 +86,9 @@ ComputeMPMEnergy::names_of_accounts(const std::vector<MPMPhysics *> &physics)
   return names;
 }
 
-std::vector<double> ComputeMPMEnergy::evaluate_accounts() const
-{
-  std::vector<double> mine(accounts.size(), 0.0), all(accounts.size());
-  std::size_t first = 0;
-  for (const auto *other : physics) {
-    other->account(mine.data() + first);
-    first += other->accounts().size();
-  }
-  MPI_Allreduce(mine.data(), all.data(), (int) mine.size(), MPI_DOUBLE, MPI_SUM, world);
-  return all;
-}
-
 /* ---------------------------------------------------------------------- */
 
-ComputeMPMEnergy::Sums ComputeMPMEnergy::evaluate() const
+std::vector<double> ComputeMPMEnergy::evaluate() const
 {
   Sums mine = {};
 
@@ -172,8 +132,14 @@ ComputeMPMEnergy::Sums ComputeMPMEnergy::evaluate() const
   for (double *energy : {&mine.plastic, &mine.viscous, &mine.heat, &mine.fracture, &mine.stored})
     *energy /= force->nktv2p;
 
-  Sums all;
-  MPI_Allreduce(&mine, &all, sizeof(Sums) / sizeof(double), MPI_DOUBLE, MPI_SUM, world);
+  std::vector<double> local(NSUMS + accounts.size()), all(local.size());
+  memcpy(local.data(), &mine, sizeof(Sums));
+  double *next = local.data() + NSUMS;
+  for (const auto *other : physics) {
+    other->account(next);
+    next += other->accounts().size();
+  }
+  MPI_Allreduce(local.data(), all.data(), (int) all.size(), MPI_DOUBLE, MPI_SUM, world);
   return all;
 }
 
@@ -195,7 +161,10 @@ void ComputeMPMEnergy::compute_vector()
 {
   invoked_vector = update->ntimestep;
   begin();
-  const Sums now = evaluate();
+  const auto present = evaluate();
+  Sums now, old;
+  memcpy(&now, present.data(), sizeof(Sums));
+  memcpy(&old, start.data(), sizeof(Sums));
 
   vector[KINETIC] = now.kinetic;
   vector[STORED] = now.stored;
@@ -203,24 +172,23 @@ void ComputeMPMEnergy::compute_vector()
   vector[VISCOUS] = now.viscous;
   vector[HEAT] = now.heat;
   vector[FRACTURE] = now.fracture;
-  vector[EXTERNAL] = now.external - start.external;
-  vector[BOUNDARY] = now.boundary - start.boundary;
-  vector[CONTACT] = now.contact - start.contact;
-  vector[TRANSFER] = now.transfer - start.transfer;
+  vector[EXTERNAL] = now.external - old.external;
+  vector[BOUNDARY] = now.boundary - old.boundary;
+  vector[CONTACT] = now.contact - old.contact;
+  vector[TRANSFER] = now.transfer - old.transfer;
 
   // the law's account of the energy that internal forces took, against that energy
 
-  const double stored = now.deleted_stored - start.deleted_stored;
-  vector[DELETED] = now.deleted_kinetic - start.deleted_kinetic + stored;
-  vector[INTEGRATION] = now.taken() - start.taken() - stored - (now.internal - start.internal);
-  vector[RESIDUAL] = now.total() - start.total() - vector[DELETED];
+  const double stored = now.deleted_stored - old.deleted_stored;
+  vector[DELETED] = now.deleted_kinetic - old.deleted_kinetic + stored;
+  vector[INTEGRATION] = now.taken() - old.taken() - stored - (now.internal - old.internal);
+  vector[RESIDUAL] = now.total() - old.total() - vector[DELETED];
   for (int k = EXTERNAL; k < RESIDUAL; k++) vector[RESIDUAL] -= vector[k];
 
-  const auto present = evaluate_accounts();
   for (std::size_t k = 0; k < accounts.size(); k++) {
     const bool stored = accounts[k][0] == 'S';
-    const double change = present[k] - accounts_start[k];
-    vector[NENTRY + k] = stored ? present[k] : change;
+    const double value = present[NSUMS + k], change = value - start[NSUMS + k];
+    vector[NENTRY + k] = stored ? value : change;
     vector[RESIDUAL] += stored ? change : -change;
   }
 }

@@ -34,14 +34,13 @@ namespace LAMMPS_NS {
 class ComputeMPMEnergy : public Compute {
  public:
   ComputeMPMEnergy(class LAMMPS *, int, char **);
-  ~ComputeMPMEnergy() override;
   void init() override;
-  void setup() override;
+  void setup() override { begin(); }
   double compute_scalar() override;
   void compute_vector() override;
 
   /** What the ledger started from, for restart files; empty before it has started. */
-  std::vector<double> start_sums() const;
+  const std::vector<double> &start_sums() const { return start; }
 
  private:
   enum Entry {
@@ -61,7 +60,7 @@ class ComputeMPMEnergy : public Compute {
     NENTRY          // those of other physics follow
   };
 
-  /** What the entries are computed from, summed over ranks. */
+  /** What the entries are computed from, summed over ranks; the accounts of other physics follow. */
   struct Sums {
     double kinetic, stored, plastic, viscous, heat, fracture;
     double external, boundary, contact, transfer, internal;
@@ -73,15 +72,13 @@ class ComputeMPMEnergy : public Compute {
 
   static constexpr std::size_t NSUMS = sizeof(Sums) / sizeof(double);
 
-  bool started;
-  Sums start;                            // at the start of the ledger
-  std::vector<std::string> accounts;     // of other physics, when this was defined
-  std::vector<double> accounts_start;    // at the start of the ledger
+  std::vector<double> entries;
+  std::vector<double> start;            // Sums and accounts; empty: the ledger has not started
+  std::vector<std::string> accounts;    // of other physics, when this was defined
   std::vector<class MPMPhysics *> physics;
 
-  Sums evaluate() const;
-  std::vector<double> evaluate_accounts() const;
-  static std::vector<std::string> names_of_accounts(const std::vector<class MPMPhysics *> &);
+  std::vector<double> evaluate() const;
+  std::vector<std::string> find_accounts();
   void begin();
 };
 

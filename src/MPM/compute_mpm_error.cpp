@@ -20,7 +20,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 
@@ -56,18 +55,9 @@ ComputeMPMError::ComputeMPMError(LAMMPS *lmp, int narg, char **arg) : Compute(lm
 
 ComputeMPMError::Value ComputeMPMError::parse(const char *text, int iarg, bool is_exact)
 {
-  Value value = {VARIABLE, 0, "", -1, iarg};
-  if (!is_exact) {
-    static const char *const coordinate[] = {"x", "y", "z"};
-    static const char *const velocity[] = {"vx", "vy", "vz"};
-    for (int d = 0; d < 3; d++) {
-      value.component = d;
-      value.source = POSITION;
-      if (strcmp(text, coordinate[d]) == 0) return value;
-      value.source = VELOCITY;
-      if (strcmp(text, velocity[d]) == 0) return value;
-    }
-  }
+  static const std::vector<std::string> of_atoms = {"x", "y", "z", "vx", "vy", "vz"};
+  const int k = std::find(of_atoms.begin(), of_atoms.end(), text) - of_atoms.begin();
+  if (!is_exact && k < 6) return {k < 3 ? POSITION : VELOCITY, k % 3, "", -1, iarg};
   const ArgInfo info(
       text, is_exact ? ArgInfo::VARIABLE : ArgInfo::COMPUTE | ArgInfo::FIX | ArgInfo::VARIABLE);
   if (info.get_type() == ArgInfo::UNKNOWN || info.get_type() == ArgInfo::NONE ||
@@ -81,11 +71,10 @@ ComputeMPMError::Value ComputeMPMError::parse(const char *text, int iarg, bool i
                "c_ID[i], f_ID, f_ID[i] or v_NAME",
                text);
   }
-  value.source = info.get_type() == ArgInfo::COMPUTE ? COMPUTE
-      : info.get_type() == ArgInfo::FIX              ? FIX
-                                                     : VARIABLE;
-  value.id = info.get_name();
-  value.component = info.get_index1();
+  const Source source = info.get_type() == ArgInfo::COMPUTE ? COMPUTE
+      : info.get_type() == ArgInfo::FIX                     ? FIX
+                                                            : VARIABLE;
+  Value value = {source, info.get_index1(), info.get_name(), -1, iarg};
   check(value);
   return value;
 }
@@ -96,9 +85,12 @@ ComputeMPMError::Value ComputeMPMError::parse(const char *text, int iarg, bool i
 
 void ComputeMPMError::check(Value &value)
 {
-  const auto check_column = [&](const char *what, bool peratom, int columns) {
-    if (!peratom)
+  const auto check_source = [&](const char *what, const auto *source) {
+    if (!source)
+      error->all(FLERR, value.iarg, "Compute mpm/error: {} {} does not exist", what, value.id);
+    if (!source->peratom_flag)
       error->all(FLERR, value.iarg, "Compute mpm/error: {} {} is not per atom", what, value.id);
+    const int columns = source->size_peratom_cols;
     if (value.component == 0 && columns > 0)
       error->all(FLERR, value.iarg, "Compute mpm/error: {} {} has {} columns: choose one with [i]",
                  what, value.id, columns);
@@ -107,14 +99,9 @@ void ComputeMPMError::check(Value &value)
                  value.component);
   };
   if (value.source == COMPUTE) {
-    auto *compute = modify->get_compute_by_id(value.id);
-    if (!compute)
-      error->all(FLERR, value.iarg, "Compute mpm/error: compute {} does not exist", value.id);
-    check_column("compute", compute->peratom_flag, compute->size_peratom_cols);
+    check_source("compute", modify->get_compute_by_id(value.id));
   } else if (value.source == FIX) {
-    auto *fix = modify->get_fix_by_id(value.id);
-    if (!fix) error->all(FLERR, value.iarg, "Compute mpm/error: fix {} does not exist", value.id);
-    check_column("fix", fix->peratom_flag, fix->size_peratom_cols);
+    check_source("fix", modify->get_fix_by_id(value.id));
   } else if (value.source == VARIABLE) {
     value.variable = input->variable->find(value.id.c_str());
     if (value.variable < 0)
@@ -140,8 +127,11 @@ void ComputeMPMError::get(const Value &value, std::vector<double> &out)
 {
   const int nlocal = atom->nlocal;
   out.resize(nlocal);
-  if (nlocal == 0 && value.source != COMPUTE && value.source != VARIABLE) return;
-
+  const auto take = [&](const auto *source) {
+    for (int i = 0; i < nlocal; i++)
+      out[i] = value.component ? source->array_atom[i][value.component - 1]
+                               : source->vector_atom[i];
+  };
   if (value.source == POSITION) {
     for (int i = 0; i < nlocal; i++) {
       double unwrapped[3];
@@ -153,26 +143,19 @@ void ComputeMPMError::get(const Value &value, std::vector<double> &out)
   } else if (value.source == VARIABLE) {
     double unused;
     input->variable->compute_atom(value.variable, igroup, nlocal ? out.data() : &unused, 1, 0);
-  } else {
-    double *vector_atom, **array_atom;
-    if (value.source == COMPUTE) {
-      auto *compute = modify->get_compute_by_id(value.id);
-      if (!(compute->invoked_flag & Compute::INVOKED_PERATOM)) {
-        compute->compute_peratom();
-        compute->invoked_flag |= Compute::INVOKED_PERATOM;
-      }
-      vector_atom = compute->vector_atom;
-      array_atom = compute->array_atom;
-    } else {
-      auto *fix = modify->get_fix_by_id(value.id);
-      if (update->ntimestep % fix->peratom_freq)
-        error->all(FLERR, Error::NOLASTLINE,
-                   "Compute mpm/error: fix {} is not computed at this time", value.id);
-      vector_atom = fix->vector_atom;
-      array_atom = fix->array_atom;
+  } else if (value.source == COMPUTE) {
+    auto *compute = modify->get_compute_by_id(value.id);
+    if (!(compute->invoked_flag & Compute::INVOKED_PERATOM)) {
+      compute->compute_peratom();
+      compute->invoked_flag |= Compute::INVOKED_PERATOM;
     }
-    for (int i = 0; i < nlocal; i++)
-      out[i] = value.component ? array_atom[i][value.component - 1] : vector_atom[i];
+    take(compute);
+  } else {
+    const auto *fix = modify->get_fix_by_id(value.id);
+    if (update->ntimestep % fix->peratom_freq)
+      error->all(FLERR, Error::NOLASTLINE, "Compute mpm/error: fix {} is not computed at this time",
+                 value.id);
+    take(fix);
   }
 }
 

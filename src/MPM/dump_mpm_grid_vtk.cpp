@@ -8,31 +8,23 @@
 
 #include "dump_mpm_grid_vtk.h"
 
-#include "error.h"
 #include "fix.h"
 #include "modify.h"
 #include "mpm_field.h"
-#include "mpm_options.h"
-#include "mpm_vtk.h"
-#include "update.h"
 
 #include <algorithm>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static const struct {
-  const char *name;
-  int ncomponent;
-} node_fields[] = {{"mass", 1}, {"velocity", 3}, {"momentum", 3}, {"index", 3}};
+const std::vector<DumpMPMGridVTK::Quantity> DumpMPMGridVTK::known = {
+    {"mass", MASS, 1}, {"velocity", VELOCITY, 3}, {"momentum", VELOCITY, 3}, {"index", INDEX, 3}};
 
 /* ----------------------------------------------------------------------
    dump ID all mpm/grid/vtk N file.*.vtu FIXID field ...
 ------------------------------------------------------------------------- */
 
-DumpMPMGridVTK::DumpMPMGridVTK(LAMMPS *lmp, int narg, char **arg) :
-    Dump(lmp, narg, arg), field(nullptr), single(false)
+DumpMPMGridVTK::DumpMPMGridVTK(LAMMPS *lmp, int narg, char **arg) : DumpVTKSeries(lmp, narg, arg)
 {
   if (narg < 7) utils::missing_cmd_args(FLERR, "dump mpm/grid/vtk", error);
   if (igroup != 0)
@@ -40,34 +32,27 @@ DumpMPMGridVTK::DumpMPMGridVTK(LAMMPS *lmp, int narg, char **arg) :
   if (utils::inumeric(FLERR, arg[3], false, lmp) <= 0)
     error->all(FLERR, 3, "Illegal dump mpm/grid/vtk command: output frequency must be > 0");
 
-  const bool series = strcmp(id, "WRITE_DUMP") != 0;
-  const auto wrong = VTKFile::name_error(filename, "vtu", series);
+  const auto wrong = VTKFile::name_error(filename, "vtu", strcmp(id, "WRITE_DUMP") != 0);
   if (!wrong.empty()) error->all(FLERR, 4, "Dump mpm/grid/vtk {}", wrong);
-  if (series) collection.reset(new VTKCollection(VTKCollection::list_name(filename, id, ".grid")));
+  begin_series(".grid");
 
   fix_id = arg[5];
   find_field();
 
   for (int iarg = 6; iarg < narg; iarg++) {
-    int k = 0;
-    while (k <= NODE_INDEX && strcmp(arg[iarg], node_fields[k].name) != 0) k++;
-    if (k > NODE_INDEX)
+    const auto is_named = [&](const Quantity &each) {
+      return each.name == arg[iarg];
+    };
+    const auto found = std::find_if(known.begin(), known.end(), is_named);
+    if (found == known.end())
       error->all(FLERR, iarg,
                  "Unknown dump mpm/grid/vtk field {}: must be one of mass velocity "
                  "momentum index",
                  arg[iarg]);
-    if (std::find(fields.begin(), fields.end(), (Field) k) == fields.end())
-      fields.push_back((Field) k);
+    if (std::none_of(fields.begin(), fields.end(), is_named)) fields.push_back(*found);
   }
-
-  buffer_allow = buffer_flag = 0;
-  binary = 1;
   size_one = NCOLUMN;
 }
-
-/* ---------------------------------------------------------------------- */
-
-DumpMPMGridVTK::~DumpMPMGridVTK() = default;
 
 /* ---------------------------------------------------------------------- */
 
@@ -96,53 +81,30 @@ void DumpMPMGridVTK::init_style()
   if (multifile == 0) openfile();
 }
 
-/* ---------------------------------------------------------------------- */
-
-int DumpMPMGridVTK::modify_param(int narg, char **arg)
-{
-  return read_precision(lmp, narg, arg, single);
-}
-
 /* ----------------------------------------------------------------------
-   visit(block, number in block, record) for all nodes with mass that this process owns
+   rows of all nodes with mass that this process owns
 ------------------------------------------------------------------------- */
-
-template <typename Visitor> void DumpMPMGridVTK::visit_nodes(Visitor visit) const
-{
-  auto *grid = &field->grid;
-  if (grid->nreal == 0) return;
-  for (std::size_t slot = 0; slot < grid->blocks.size(); slot++) {
-    const auto &block = grid->blocks[slot];
-    for (int n = 0; n < NODES_PER_BLOCK; n++) {
-      if (!(block.owned >> n & 1)) continue;
-      const double *record = grid->record((int) slot, n);
-      if (record[3] > 0.0) visit(block, n, record);
-    }
-  }
-}
 
 int DumpMPMGridVTK::count()
 {
-  int nnode = 0;
-  visit_nodes([&](const Grid::Block &, int, const double *) {
-    nnode++;
-  });
-  return nnode;
+  rows.clear();
+  auto &grid = field->grid;
+  for (std::size_t slot = 0; slot < grid.blocks.size() && grid.nreal; slot++)
+    for (int n = 0; n < NODES_PER_BLOCK; n++) {
+      if (!(grid.blocks[slot].owned >> n & 1)) continue;
+      const double *record = grid.record((int) slot, n);
+      if (!(record[3] > 0.0)) continue;
+      int index[3];
+      grid.node_index(grid.blocks[slot], n, index);
+      rows.insert(rows.end(), index, index + 3);
+      rows.insert(rows.end(), record, record + 4);
+    }
+  return (int) (rows.size() / NCOLUMN);
 }
 
 void DumpMPMGridVTK::pack(tagint *)
 {
-  double *row = buf;
-  visit_nodes([&](const Grid::Block &block, int n, const double *record) {
-    int index[3];
-    field->grid.node_index(block, n, index);
-    for (int d = 0; d < 3; d++) {
-      row[INDEX + d] = index[d];
-      row[VELOCITY + d] = record[d];
-    }
-    row[MASS] = record[3];
-    row += NCOLUMN;
-  });
+  std::copy(rows.begin(), rows.end(), buf);
 }
 
 /* ----------------------------------------------------------------------
@@ -166,15 +128,12 @@ void DumpMPMGridVTK::write_footer()
 {
   const int dim = field->lattice.dim;
   const bigint nnode = (bigint) rows.size() / NCOLUMN;
-  auto row = [&](bigint i) {
-    return &rows[i * NCOLUMN];
-  };
   auto before = [](const double *a, const double *b) {
     return std::lexicographical_compare(a, a + 3, b, b + 3);
   };
 
   std::vector<const double *> node(nnode);
-  for (bigint i = 0; i < nnode; i++) node[i] = row(i);
+  for (bigint i = 0; i < nnode; i++) node[i] = &rows[i * NCOLUMN];
   std::sort(node.begin(), node.end(), before);
 
   // cells: a node and those one step up in all directions, in the order of VTK
@@ -201,9 +160,8 @@ void DumpMPMGridVTK::write_footer()
 
   const auto real = single ? VTKFile::FLOAT32 : VTKFile::FLOAT64;
   VTKFile vtk("UnstructuredGrid");
-  for (Field f : fields)
-    vtk.add("PointData", node_fields[f].name, f == NODE_INDEX ? VTKFile::INT64 : real,
-            node_fields[f].ncomponent, nnode);
+  for (const auto &f : fields)
+    vtk.add("PointData", f.name, f.column == INDEX ? VTKFile::INT64 : real, f.ncomponent, nnode);
   const int points = vtk.add("Points", "Points", real, 3, nnode);
   const int cells = vtk.add("Cells", "connectivity", VTKFile::INT64, 1, ncell * ncorner);
   vtk.add("Cells", "offsets", VTKFile::INT64, 1, ncell);
@@ -213,24 +171,11 @@ void DumpMPMGridVTK::write_footer()
 
   std::vector<double> values;
   for (std::size_t k = 0; k < fields.size(); k++) {
+    const bool momentum = fields[k].name == "momentum";
     values.clear();
     for (const double *n : node)
-      for (int d = 0; d < node_fields[fields[k]].ncomponent; d++) {
-        switch (fields[k]) {
-          case NODE_MASS:
-            values.push_back(n[MASS]);
-            break;
-          case NODE_VELOCITY:
-            values.push_back(n[VELOCITY + d]);
-            break;
-          case NODE_MOMENTUM:
-            values.push_back(n[MASS] * n[VELOCITY + d]);
-            break;
-          case NODE_INDEX:
-            values.push_back(n[INDEX + d]);
-            break;
-        }
-      }
+      for (int d = 0; d < fields[k].ncomponent; d++)
+        values.push_back((momentum ? n[MASS] : 1.0) * n[fields[k].column + d]);
     vtk.write((int) k, 0, nnode, values.data());
   }
 
@@ -248,10 +193,5 @@ void DumpMPMGridVTK::write_footer()
   vtk.write(cells + 1, 0, ncell, offsets.data());
   values.assign(ncell, dim == 3 ? VTK_HEXAHEDRON : VTK_QUAD);
   vtk.write(cells + 2, 0, ncell, values.data());
-  fflush(fp);
-
-  if (!collection) return;
-  const auto wrong = collection->add(utils::star_subst(filename, update->ntimestep, padflag),
-                                     compute_time(), maxfiles, append_flag);
-  if (!wrong.empty()) error->one(FLERR, Error::NOLASTLINE, "Dump {} {}", id, wrong);
+  DumpVTKSeries::write_footer();
 }

@@ -16,14 +16,7 @@ DumpStyle(mpm/grid/vtk,DumpMPMGridVTK);
 #define LMP_DUMP_MPM_GRID_VTK_H
 
 #include "dump.h"
-
-#include <memory>
-#include <string>
-#include <vector>
-
-namespace MPM_NS {
-class VTKCollection;
-}
+#include "mpm_vtk.h"
 
 namespace LAMMPS_NS {
 class MPMField;
@@ -34,14 +27,12 @@ class MPMField;
  *  are. Every node comes from the one process that owns it, in order of its indices, so that the
  *  file does not depend on the number of processes.
  */
-class DumpMPMGridVTK : public Dump {
+class DumpMPMGridVTK : public DumpVTKSeries<Dump> {
  public:
   DumpMPMGridVTK(class LAMMPS *, int, char **);
-  ~DumpMPMGridVTK() override;
 
  protected:
   void init_style() override;
-  int modify_param(int, char **) override;
   int count() override;
   void pack(tagint *) override;
   void write_header(bigint) override;
@@ -49,17 +40,19 @@ class DumpMPMGridVTK : public Dump {
   void write_footer() override;
 
  private:
-  enum Column { INDEX = 0, VELOCITY = 3, MASS = 6, NCOLUMN };    // of the rows that are gathered
-  enum Field { NODE_MASS, NODE_VELOCITY, NODE_MOMENTUM, NODE_INDEX };
+  enum Column { INDEX = 0, VELOCITY = 3, MASS = 6, NCOLUMN };    // of a row, for a node
+
+  struct Quantity {
+    std::string name;
+    int column, ncomponent;    // in the rows
+  };
 
   std::string fix_id;
-  MPMField *field;
-  std::vector<Field> fields;
-  bool single;
-  std::unique_ptr<MPM_NS::VTKCollection> collection;
-  std::vector<double> rows;    // of the present file
+  MPMField *field = nullptr;
+  static const std::vector<Quantity> known;
+  std::vector<Quantity> fields;
+  std::vector<double> rows;    // of this process, then of the present file
 
-  template <typename Visitor> void visit_nodes(Visitor) const;
   MPMField *find_field() const;
 };
 

@@ -10,15 +10,11 @@
 
 #include "compute.h"
 #include "compute_mpm_atom.h"
-#include "error.h"
 #include "memory.h"
 #include "modify.h"
-#include "mpm_options.h"
-#include "mpm_vtk.h"
-#include "update.h"
 
-#include <cstring>
 #include <map>
+#include <set>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -40,22 +36,15 @@ static const std::map<std::string, std::vector<std::string>> composed = {
 
 // numbers that dump custom knows and compute mpm/atom does not
 
-static const std::vector<std::string> attributes = {
+static const std::set<std::string> attributes = {
     "mol",    "proc",   "procp1",  "x",       "y",       "z",      "xs",       "ys",
     "zs",     "xu",     "yu",      "zu",      "xsu",     "ysu",    "zsu",      "ix",
     "iy",     "iz",     "vx",      "vy",      "vz",      "fx",     "fy",       "fz",
     "q",      "mux",    "muy",     "muz",     "mu",      "radius", "diameter", "omegax",
     "omegay", "omegaz", "angmomx", "angmomy", "angmomz", "tqx",    "tqy",      "tqz"};
 
-static const std::vector<std::string> integers = {"id",     "type", "mol", "proc",
-                                                  "procp1", "ix",   "iy",  "iz"};
-
-static bool contains(const std::vector<std::string> &list, const std::string &word)
-{
-  for (const auto &item : list)
-    if (item == word) return true;
-  return false;
-}
+static const std::set<std::string> integers = {"id",     "type", "mol", "proc",
+                                               "procp1", "ix",   "iy",  "iz"};
 
 static const char PREFIX[] = "quantity:";    // marks a name of compute mpm/atom
 
@@ -97,21 +86,20 @@ DumpMPMVTK::Request::Request(LAMMPS *lmp_in, int narg, char **arg) : lmp(lmp_in)
   // the names of compute mpm/atom become columns of an internal compute
 
   std::string names;
-  int ncolumn = 0;
-  for (const auto &word : words)
+  std::vector<std::string *> quantities;
+  for (auto &word : words)
     if (utils::strmatch(word, "^quantity:")) {
       names += " " + word.substr(strlen(PREFIX));
-      ncolumn++;
+      quantities.push_back(&word);
     }
-  if (ncolumn > 0) {
+  if (!quantities.empty()) {
     int n = 1;
     while (lmp->modify->get_compute_by_id(fmt::format("MPM_VTK_{}", n))) n++;
     compute = fmt::format("MPM_VTK_{}", n);
     lmp->modify->add_compute(fmt::format("{} {} mpm/atom{}", compute, arg[1], names));
     int k = 0;
-    for (auto &word : words)
-      if (utils::strmatch(word, "^quantity:"))
-        word = ncolumn == 1 ? fmt::format("c_{}", compute) : fmt::format("c_{}[{}]", compute, ++k);
+    for (auto *word : quantities)
+      *word = quantities.size() == 1 ? "c_" + compute : fmt::format("c_{}[{}]", compute, ++k);
   }
 
   for (auto &word : words) args.push_back(const_cast<char *>(word.c_str()));
@@ -119,7 +107,8 @@ DumpMPMVTK::Request::Request(LAMMPS *lmp_in, int narg, char **arg) : lmp(lmp_in)
 
 DumpMPMVTK::Request::~Request()
 {
-  if (!compute.empty()) lmp->modify->delete_compute(compute);
+  auto *modify = lmp->modify;
+  if (modify && modify->get_compute_by_id(compute)) modify->delete_compute(compute);
 }
 
 /** Number of the column of an attribute, made when there is none. */
@@ -141,9 +130,9 @@ void DumpMPMVTK::Request::add_field(const std::string &name, int iarg)
     lmp->error->all(FLERR, iarg, "Dump mpm/vtk writes numbers only: use type instead of {}", name);
 
   auto source = [](const std::string &word) {
-    return contains(attributes, word) ? word : PREFIX + word;
+    return attributes.count(word) ? word : PREFIX + word;
   };
-  Field field = {name, {}, contains(integers, name) || name == "image"};
+  Field field = {name, {}, integers.count(name) || name == "image"};
   const auto parts = composed.find(name);
   if (parts == composed.end())
     field.columns.push_back(column(source(name)));
@@ -154,33 +143,15 @@ void DumpMPMVTK::Request::add_field(const std::string &name, int iarg)
 
 /* ---------------------------------------------------------------------- */
 
-DumpMPMVTK::DumpMPMVTK(LAMMPS *lmp, int narg, char **arg) : DumpMPMVTK(lmp, Request(lmp, narg, arg))
+DumpMPMVTK::DumpMPMVTK(LAMMPS *lmp, int narg, char **arg) :
+    DumpMPMVTK(lmp, std::make_unique<Request>(lmp, narg, arg))
 {
 }
 
-DumpMPMVTK::DumpMPMVTK(LAMMPS *lmp, Request &&request) :
-    DumpCustom(lmp, (int) request.args.size(), request.args.data()),
-    fields(std::move(request.fields)), position(std::move(request.position)), single(false),
-    nwritten(0)
+DumpMPMVTK::DumpMPMVTK(LAMMPS *lmp, std::unique_ptr<Request> custom) :
+    DumpVTKSeries(lmp, (int) custom->args.size(), custom->args.data()), request(std::move(custom))
 {
-  compute_id = std::move(request.compute);
-  request.compute.clear();
-
-  // rows of numbers are gathered, not text
-
-  buffer_allow = buffer_flag = 0;
-  binary = 1;
-
-  if (strcmp(id, "WRITE_DUMP") != 0)
-    collection.reset(new VTKCollection(VTKCollection::list_name(filename, id)));
-}
-
-/* ---------------------------------------------------------------------- */
-
-DumpMPMVTK::~DumpMPMVTK()
-{
-  if (!compute_id.empty() && modify && modify->get_compute_by_id(compute_id))
-    modify->delete_compute(compute_id);
+  begin_series();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -189,8 +160,8 @@ void DumpMPMVTK::init_style()
 {
   // a dump that is made between runs may use the internal compute at once
 
-  if (!compute_id.empty() && update->first_update) {
-    auto *quantities = modify->get_compute_by_id(compute_id);
+  if (update->first_update) {
+    auto *quantities = modify->get_compute_by_id(request->compute);
     if (quantities && !quantities->is_initialized()) {
       quantities->init();
       quantities->init_flags();
@@ -201,33 +172,25 @@ void DumpMPMVTK::init_style()
   DumpCustom::init_style();
 }
 
-/* ---------------------------------------------------------------------- */
-
-int DumpMPMVTK::modify_param(int narg, char **arg)
-{
-  const int n = read_precision(lmp, narg, arg, single);
-  return n > 0 ? n : DumpCustom::modify_param(narg, arg);
-}
-
 /* ----------------------------------------------------------------------
    only called by the process that writes
 ------------------------------------------------------------------------- */
 
 void DumpMPMVTK::write_header(bigint npoint)
 {
-  vtk.reset(new VTKFile("PolyData"));
+  vtk = VTKFile("PolyData");
   const auto real = single ? VTKFile::FLOAT32 : VTKFile::FLOAT64;
-  for (const auto &field : fields)
-    vtk->add("PointData", field.name, field.integer ? VTKFile::INT64 : real,
-             (int) field.columns.size(), npoint);
-  vtk->add("Points", position.name, real, 3, npoint);
-  vtk->add("Verts", "connectivity", VTKFile::INT64, 1, npoint);
-  vtk->add("Verts", "offsets", VTKFile::INT64, 1, npoint);
-  vtk->begin(fp,
-             fmt::format("NumberOfPoints=\"{0}\" NumberOfVerts=\"{0}\" NumberOfLines=\"0\" "
-                         "NumberOfStrips=\"0\" NumberOfPolys=\"0\"",
-                         npoint),
-             compute_time(), update->ntimestep);
+  for (const auto &field : request->fields)
+    vtk.add("PointData", field.name, field.integer ? VTKFile::INT64 : real,
+            (int) field.columns.size(), npoint);
+  vtk.add("Points", request->position.name, real, 3, npoint);
+  vtk.add("Verts", "connectivity", VTKFile::INT64, 1, npoint);
+  vtk.add("Verts", "offsets", VTKFile::INT64, 1, npoint);
+  vtk.begin(fp,
+            fmt::format("NumberOfPoints=\"{0}\" NumberOfVerts=\"{0}\" NumberOfLines=\"0\" "
+                        "NumberOfStrips=\"0\" NumberOfPolys=\"0\"",
+                        npoint),
+            compute_time(), update->ntimestep);
   nwritten = 0;
 }
 
@@ -240,7 +203,7 @@ void DumpMPMVTK::write_field(const Field &field, int array, int n, const double 
   double *value = values.data();
   for (int i = 0; i < n; i++)
     for (int column : field.columns) *value++ = rows[(bigint) i * size_one + column];
-  vtk->write(array, nwritten, n, values.data());
+  vtk.write(array, nwritten, n, values.data());
 }
 
 /* ----------------------------------------------------------------------
@@ -250,28 +213,16 @@ void DumpMPMVTK::write_field(const Field &field, int array, int n, const double 
 void DumpMPMVTK::write_data(int n, double *rows)
 {
   int array = 0;
-  for (const auto &field : fields) write_field(field, array++, n, rows);
-  write_field(position, array++, n, rows);
+  for (const auto &field : request->fields) write_field(field, array++, n, rows);
+  write_field(request->position, array++, n, rows);
 
   // every point is a cell of one vertex: its number, and the end of its list of vertices
 
   values.resize(n);
   for (int i = 0; i < n; i++) values[i] = (double) (nwritten + i);
-  vtk->write(array++, nwritten, n, values.data());
+  vtk.write(array++, nwritten, n, values.data());
   for (int i = 0; i < n; i++) values[i] += 1.0;
-  vtk->write(array, nwritten, n, values.data());
+  vtk.write(array, nwritten, n, values.data());
 
   nwritten += n;
-}
-
-/* ---------------------------------------------------------------------- */
-
-void DumpMPMVTK::write_footer()
-{
-  vtk.reset();
-  fflush(fp);
-  if (!collection) return;
-  const auto wrong = collection->add(utils::star_subst(filename, update->ntimestep, padflag),
-                                     compute_time(), maxfiles, append_flag);
-  if (!wrong.empty()) error->one(FLERR, Error::NOLASTLINE, "Dump {} {}", id, wrong);
 }

@@ -16,15 +16,7 @@ DumpStyle(mpm/vtk,DumpMPMVTK);
 #define LMP_DUMP_MPM_VTK_H
 
 #include "dump_custom.h"
-
-#include <memory>
-#include <string>
-#include <vector>
-
-namespace MPM_NS {
-class VTKCollection;
-class VTKFile;
-}    // namespace MPM_NS
+#include "mpm_vtk.h"
 
 namespace LAMMPS_NS {
 
@@ -34,17 +26,14 @@ namespace LAMMPS_NS {
  *  of an internal compute, so that selection of atoms, sorting, and communication are those of
  *  dump custom.
  */
-class DumpMPMVTK : public DumpCustom {
+class DumpMPMVTK : public DumpVTKSeries<DumpCustom> {
  public:
   DumpMPMVTK(class LAMMPS *, int, char **);
-  ~DumpMPMVTK() override;
 
  protected:
   void init_style() override;
-  int modify_param(int, char **) override;
   void write_header(bigint) override;
   void write_data(int, double *) override;
-  void write_footer() override;
 
  private:
   /** An array of the file: columns of dump custom that are its components. */
@@ -64,25 +53,21 @@ class DumpMPMVTK : public DumpCustom {
     std::string compute;    // ID of the internal compute mpm/atom, empty: none
 
     Request(LAMMPS *, int, char **);
-    ~Request();    // deletes the compute when it still has its ID
+    ~Request();
     Request(const Request &) = delete;
     Request &operator=(const Request &) = delete;
     int column(const std::string &);
     void add_field(const std::string &, int iarg);
   };
 
-  std::vector<Field> fields;
-  Field position;
-  std::string compute_id;
-  bool single;                             // precision of reals
-  std::unique_ptr<MPM_NS::VTKFile> vtk;    // arrays: fields, position, connectivity, offsets
-  std::unique_ptr<MPM_NS::VTKCollection> collection;
-  bigint nwritten;    // points of the present file
+  const std::unique_ptr<Request> request;
+  MPM_NS::VTKFile vtk{"PolyData"};    // arrays: fields, position, connectivity, offsets
+  bigint nwritten = 0;                // points of the present file
   std::vector<double> values;
 
   void write_field(const Field &, int array, int n, const double *rows);
 
-  DumpMPMVTK(LAMMPS *, Request &&);
+  DumpMPMVTK(LAMMPS *, std::unique_ptr<Request>);
 };
 
 }    // namespace LAMMPS_NS

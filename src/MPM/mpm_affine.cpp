@@ -23,18 +23,14 @@
 #include "math/random.h"
 #include "math_eigen.h"
 #include "math_extra.h"
-#include "mpm_boxes.h"
-#include "mpm_cpdi.h"
 #include "mpm_every.h"
-#include "mpm_field.h"
 #include "mpm_frame.h"
 #include "mpm_halo.h"
 #include "mpm_plan.h"
 #include "mpm_point_map.h"
+#include "mpm_state.h"
 #include "mpm_stencil.h"
 #include "neighbor.h"
-#include "transfer/cpdi.h"
-#include "transfer/shape.h"
 
 #include <algorithm>
 #include <cfloat>
@@ -50,17 +46,12 @@ static constexpr double MIN_EXTENT = 1.0e-4;
 /* ---------------------------------------------------------------------- */
 
 MPMAffine::MPMAffine(LAMMPS *lmp, MPMField &field, MPMPointState &state) :
-    Pointers(lmp), C(nullptr), Q(nullptr), velocities({0, 0}), field(field)
+    Pointers(lmp), field(field)
 {
   state.declare(C, "mpm:C", size(), [this](int, double *row) {
     if (!this->field.running) row[0] = NAN;    // not known, for fit()
   });
   if (field.options.polypic) state.declare(Q, "mpm:Q", poly_size(field.lattice.dim));
-}
-
-int MPMAffine::size() const
-{
-  return field.lattice.dim * field.lattice.dim;
 }
 
 /* ----------------------------------------------------------------------
@@ -86,11 +77,6 @@ uint64_t MPMAffine::velocity_hash() const
 }
 
 /* ---------------------------------------------------------------------- */
-
-void MPMAffine::remember_velocities()
-{
-  velocities = {velocity_hash(), 1};
-}
 
 void MPMAffine::check_velocities()
 {
@@ -219,42 +205,24 @@ void MPMAffine::add_torques()
       const double *torque = field.every ? &field.every->mean_torque[3 * (std::size_t) i]
                                          : atom->torque[i];
       if (torque[0] == 0.0 && torque[1] == 0.0 && torque[2] == 0.0) continue;    // most points
-      double W[9] = {0.0};    // what a gradient in space would change by, row-major
+      double W[3][3] = {{0.0}};    // what a gradient in space would change by
       const double scale = 0.5 * field.step_dt() * force->ftm2v * inv_moment / atom->rmass[i];
       for (int d = dim == 3 ? 0 : 2; d < 3; d++) {
         const int e = (d + 1) % 3, f = (d + 2) % 3;
-        W[3 * f + e] = scale * torque[d];
-        W[3 * e + f] = -scale * torque[d];
+        W[f][e] = scale * torque[d];
+        W[e][f] = -scale * torque[d];
       }
       if (field.frame->is_total()) {
         // the velocity C (X - X_p) is at F (X - X_p): the part of C F^T is the same as without F
-        double inverse[3][3], F[3][3];
-        field.frame->lattice_F(i, &F[0][0]);
+        double F[3][3], inverse[3][3], G[3][3];
+        field.frame->lattice_F(i, F);
         MathExtra::invert3(F, inverse);
-        double G[9];
-        for (int a = 0; a < 3; a++)
-          for (int b = 0; b < 3; b++)
-            G[3 * a + b] = W[3 * a] * inverse[b][0] + W[3 * a + 1] * inverse[b][1] +
-                W[3 * a + 2] * inverse[b][2];
+        MathExtra::times3_transpose(W, inverse, G);
         memcpy(W, G, sizeof(W));
       }
       for (int a = 0; a < dim; a++)
-        for (int b = 0; b < dim; b++) C[i][dim * b + a] += W[3 * a + b];
+        for (int b = 0; b < dim; b++) C[i][dim * b + a] += W[a][b];
     }
-}
-
-/* ---------------------------------------------------------------------- */
-
-void MPMAffine::refer(int i, const double M[3][3])
-{
-  const int dim = field.lattice.dim;
-  double product[9];
-  for (int c = 0; c < dim; c++)
-    for (int r = 0; r < dim; r++) {
-      product[dim * c + r] = 0.0;
-      for (int k = 0; k < dim; k++) product[dim * c + r] += C[i][dim * k + r] * M[k][c];
-    }
-  memcpy(C[i], product, dim * dim * sizeof(double));
 }
 
 /* ----------------------------------------------------------------------
@@ -274,16 +242,15 @@ void MPMAffine::angular_momentum(int i, double L[3]) const
   // the functions at the point or, of domains, at their corners
 
   int ncorner = 1;
-  double corner[24] = {0.0}, share[8] = {1.0}, edge[9], gradient[24], size[3];
+  double corner[24] = {0.0}, share[8] = {1.0}, size[3];
   if (field.domains) {
     ncorner = 1 << dim;
     std::fill(share, share + ncorner, 1.0 / ncorner);
     if (!field.domains->corners || std::isnan(field.domains->corners[i][0])) {
-      field.domains->box(i, edge);
-      dim == 2 ? PointDomain<2>::box(edge, corner, gradient)
-               : PointDomain<3>::box(edge, corner, gradient);
-    } else
+      field.domains->corners_of_box(i, corner);
+    } else {
       field.domains->corners_of(i, corner, share);
+    }
   }
   if (field.boxes) field.boxes->size_of(i, size);
   const MPMStencil stencil(field);
@@ -309,7 +276,7 @@ void MPMAffine::angular_momentum(int i, double L[3]) const
   }
 
   double F[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}, moment[3][3] = {{0.0}};
-  if (field.frame->is_total()) field.frame->lattice_F(i, &F[0][0]);
+  if (field.frame->is_total()) field.frame->lattice_F(i, F);
   for (int e = 0; e < dim; e++)
     for (int f = 0; f < dim; f++)
       for (int a = 0; a < dim; a++)

@@ -9,36 +9,33 @@
 #ifndef LMP_MPM_AFFINE_H
 #define LMP_MPM_AFFINE_H
 
-#include "mpm_state.h"
-#include "pointers.h"
+#include "mpm_field.h"
 #include "transfer/polypic.h"
 
-#include <cstdint>
-
 namespace LAMMPS_NS {
-class MPMField;
 
 /** Affine matrices of the points (transfers apic, aflip, tpic, polypic). */
 class MPMAffine : protected Pointers {
  public:
-  double **C;    ///< [n][dim*dim] column-major: C[dim*j+i] = d v_i / d x_j
-  double **Q;    ///< [n][poly_size(dim)] bilinear modes of the velocity; null: transfer without
+  double **C = nullptr;    ///< [n][dim*dim] column-major: C[dim*j+i] = d v_i / d x_j
+  double **Q =
+      nullptr;    ///< [n][poly_size(dim)] bilinear modes of the velocity; null: transfer without
   MPM_NS::PolyKernels modes;    ///< transfers of Q
 
   /** Which velocities the matrices belong to, between runs; as in restart files. */
   struct Velocities {
     uint64_t hash;
     int known;
-  } velocities;
+  } velocities = {0, 0};
 
   MPMAffine(class LAMMPS *, MPMField &, MPMPointState &);
 
   /** Row of a point in the arrays that kernels read. */
   double *rows() const { return &C[0][0]; }
-  int size() const;
+  int size() const { return field.lattice.dim * field.lattice.dim; }
 
   /** Between runs: note the velocities that the matrices belong to; forget matrices of others. */
-  void remember_velocities();
+  void remember_velocities() { velocities = {velocity_hash(), 1}; }
   void check_velocities();
   /** Matrices of points that have none. */
   void fit();
@@ -47,8 +44,6 @@ class MPMAffine : protected Pointers {
   bool takes_torques() const;
   /** Torques of pair styles on points change their affine velocity. */
   void add_torques();
-  /** C <- C M for a new reference configuration. */
-  void refer(int i, const double M[3][3]);
   /** Angular momentum of the affine motion of a point about itself (mass distance velocity units):
    *  zero before the first step. */
   void angular_momentum(int i, double L[3]) const;

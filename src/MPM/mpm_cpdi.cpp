@@ -6,9 +6,10 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Domains of the points of fix mpm (shapes cpdi and cpdi2), see transfer/cpdi.h.
+// Points of fix mpm that have a size: boxes along the axes (gimp and cpgimp), and domains (cpdi and
+// cpdi2), see transfer/cpdi.h.
 //
-// Those of cpdi are made from F in each step, half edges F r_0; those of cpdi2 are corners that move
+// Domains of cpdi are made from F in each step, half edges F r_0; those of cpdi2 are corners that move
 // with the nodes' velocities. Domains stay the same throughout a step. A tile has the neighbors of
 // its block on all sides, but only those blocks are active that corners can reach soon: whether
 // they still do is checked at the start of each step.
@@ -16,14 +17,12 @@
 #include "mpm_cpdi.h"
 
 #include "atom.h"
-#include "error.h"
-#include "mpm_boxes.h"
-#include "mpm_field.h"
+#include "mpm_frame.h"
 #include "mpm_guard.h"
 #include "mpm_point_map.h"
 #include "mpm_points.h"
+#include "mpm_state.h"
 #include "transfer/cpdi.h"
-#include "update.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,25 +32,76 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
+// half sizes of boxes, in node spacings: more would reach more nodes than the stencil has
+static constexpr double MAX_SIZE = 0.5;
+
 // of the places of corners, in node spacings
 static constexpr double ROUND_OFF = 1.0e-9;
 
 /* ---------------------------------------------------------------------- */
 
-MPMCpdi::MPMCpdi(LAMMPS *lmp, MPMField &field, MPMPointState &state) :
-    Pointers(lmp), corners(nullptr), field(field)
+double LAMMPS_NS::half_size(const MPMField &field, int i)
+{
+  const double section = field.frame->section(i);
+  return 0.5 * (field.lattice.dim == 3 ? cbrt(section) : sqrt(section)) / field.lattice.h;
+}
+
+/* ----------------------------------------------------------------------
+   Sizes stay the same throughout a step. At the start a point is a box of its volume. A contiguous one
+   follows F: what was a box of half sizes l has the second moments F diag(l^2) F^T/3, along axis d
+   those of an interval with the half size [sum_e (F_de l_e)^2]^1/2. Without shear and rotation this is
+   F_dd l_d, and a cube that just turns keeps its size.
+------------------------------------------------------------------------- */
+
+void MPMBoxes::update()
+{
+  sizes.resize(3 * (std::size_t) atom->nmax, MAX_SIZE);
+  for (const auto &run : field.map->runs)
+    for (int i = run.first; i < run.last; i++) size_of(i, &sizes[3 * (std::size_t) i]);
+}
+
+void MPMBoxes::size_of(int i, double *size) const
+{
+  constexpr double MIN_SIZE = 1.0e-4;
+  const int dim = field.lattice.dim;
+  const double *const aspect = field.options.aspect;
+  const double half = half_size(field, i), *F = field.points->F[i];
+  for (int d = 0; d < dim; d++, F += 3) {
+    double edge = aspect[d];
+    if (field.options.shape == CPGIMP) {
+      double square = 0.0;
+      for (int e = 0; e < dim; e++) square += F[e] * F[e] * aspect[e] * aspect[e];
+      edge = sqrt(square);
+    }
+    size[d] = std::max(MIN_SIZE, std::min(MAX_SIZE, half * edge));
+  }
+}
+
+bool MPMBoxes::is_too_large(int i) const
+{
+  const double half = half_size(field, i);
+  for (int d = 0; d < field.lattice.dim; d++)
+    if (half * field.options.aspect[d] > MAX_SIZE * (1.0 + 1.0e-6)) return true;
+  return false;
+}
+
+double MPMBoxes::smallest() const
+{
+  double least = MAX_SIZE;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (field.is_point(i)) least = std::min(least, half_size(field, i));
+  return least;
+}
+
+/* ---------------------------------------------------------------------- */
+
+MPMCpdi::MPMCpdi(LAMMPS *lmp, MPMField &field, MPMPointState &state) : Pointers(lmp), field(field)
 {
   if (field.options.shape == CPDI2)
     state.declare(corners, "mpm:corners", field.lattice.dim << field.lattice.dim,
                   [](int, double *row) {
                     row[0] = NAN;
                   });    // not known, for update()
-}
-
-int MPMCpdi::size() const
-{
-  const int dim = field.lattice.dim;
-  return field.options.shape == CPDI2 ? dim << dim : dim * dim;
 }
 
 double *MPMCpdi::moved(bool late)
@@ -69,16 +119,6 @@ void MPMCpdi::take_late(int first, int last)
            size() * sizeof(double) * (last - first));
 }
 
-double MPMCpdi::memory_usage() const
-{
-  return (edges.capacity() + corners_late.capacity()) * sizeof(double);
-}
-
-double MPMCpdi::bytes_per_point() const
-{
-  return corners ? 0.0 : size() * sizeof(double);
-}
-
 /* ----------------------------------------------------------------------
    half edges of the box that an undeformed point is, after the deformation F
 ------------------------------------------------------------------------- */
@@ -94,8 +134,15 @@ void MPMCpdi::box(int i, double *edge) const
 {
   const double half = half_size(field, i) * field.lattice.h, *F = field.points->F[i],
                *aspect = field.options.aspect;
-  field.lattice.dim == 2 ? half_edges<2>(half, aspect, F, edge)
-                         : half_edges<3>(half, aspect, F, edge);
+  (field.lattice.dim == 2 ? half_edges<2> : half_edges<3>) (half, aspect, F, edge);
+}
+
+void MPMCpdi::corners_of_box(int i, double *x) const
+{
+  double edge[9], gradient[24];
+  box(i, edge);
+  field.lattice.dim == 2 ? PointDomain<2>::box(edge, x, gradient)
+                         : PointDomain<3>::box(edge, x, gradient);
 }
 
 /* ----------------------------------------------------------------------
@@ -122,23 +169,7 @@ template <int DIM> static void reach_of_corners(const double *x, double *low, do
   }
 }
 
-/* ----------------------------------------------------------------------
-   cpdi2: the corners of that box
-------------------------------------------------------------------------- */
-
-void MPMCpdi::reset_corners(int i)
-{
-  double edge[9], gradient[24];
-  box(i, edge);
-  if (field.lattice.dim == 2)
-    PointDomain<2>::box(edge, corners[i], gradient);
-  else
-    PointDomain<3>::box(edge, corners[i], gradient);
-}
-
-/* ----------------------------------------------------------------------
-   corners of the domain relative to the point, and their weights; returns the size
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
 double MPMCpdi::corners_of(int i, double *x, double *w, double *g) const
 {
@@ -146,29 +177,23 @@ double MPMCpdi::corners_of(int i, double *x, double *w, double *g) const
   double unused[24];
   if (!g) g = unused;
   if (follows_F()) {
-    const double *edge = &edges[size() * (std::size_t) i];
     std::fill(w, w + n, 1.0 / n);
-    return field.lattice.dim == 2 ? PointDomain<2>::box(edge, x, g)
-                                  : PointDomain<3>::box(edge, x, g);
+    return field.lattice.dim == 2 ? PointDomain<2>::box(row(i), x, g)
+                                  : PointDomain<3>::box(row(i), x, g);
   }
   std::copy(corners[i], corners[i] + size(), x);
   return field.lattice.dim == 2 ? PointDomain<2>::free(x, w, g) : PointDomain<3>::free(x, w, g);
 }
 
-/* ----------------------------------------------------------------------
-   how far a domain reaches from its point along each axis, in node spacings
-------------------------------------------------------------------------- */
-
 void MPMCpdi::reach(int i, double low[3], double high[3]) const
 {
-  const double *row = follows_F() ? &edges[size() * (std::size_t) i] : corners[i];
+  const int dim = field.lattice.dim;
   low[2] = high[2] = 0.0;
   if (follows_F())
-    field.lattice.dim == 2 ? reach_of_edges<2>(row, low, high) : reach_of_edges<3>(row, low, high);
+    (dim == 2 ? reach_of_edges<2> : reach_of_edges<3>) (row(i), low, high);
   else
-    field.lattice.dim == 2 ? reach_of_corners<2>(row, low, high)
-                           : reach_of_corners<3>(row, low, high);
-  for (int d = 0; d < field.lattice.dim; d++) {
+    (dim == 2 ? reach_of_corners<2> : reach_of_corners<3>) (row(i), low, high);
+  for (int d = 0; d < dim; d++) {
     low[d] /= field.lattice.h;
     high[d] /= field.lattice.h;
   }
@@ -194,15 +219,12 @@ void MPMCpdi::limit(int i)
           ", the limit is {}: use smaller points or a larger node spacing; with fix mpm ... bad "
           "warn the domain is made smaller, with bad delete the point is removed",
           room));
-  const int n = size();
-  double *row = corners ? corners[i] : &edges[n * (std::size_t) i];
   const double scale = std::isfinite(far) ? limit / far : 0.0;
-  for (int k = 0; k < n; k++) row[k] = scale > 0.0 ? scale * row[k] : 0.0;
+  for (double *k = row(i), *const end = k + size(); k < end; k++)
+    *k = scale > 0.0 ? scale * *k : 0.0;
 }
 
-/* ----------------------------------------------------------------------
-   cpdi2: points whose domain is inverted; with policy warn it becomes that of F
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
 void MPMCpdi::check_corners()
 {
@@ -214,7 +236,7 @@ void MPMCpdi::check_corners()
       if (size > 0.0 && *std::min_element(w, w + n) >= 0.0) continue;
       field.guard->point_is_bad(i, "has a domain that is turned inside out",
                                 "it becomes the parallelogram of F");
-      if (field.options.bad == MPMFieldOptions::WARN) reset_corners(i);
+      if (field.options.bad == MPMFieldOptions::WARN) corners_of_box(i, corners[i]);
     }
 }
 
@@ -273,9 +295,9 @@ void MPMCpdi::update()
   for (int i = 0; i < atom->nlocal; i++) {
     if (!field.is_point(i)) continue;
     if (follows_F())
-      box(i, &edges[size() * (std::size_t) i]);
+      box(i, row(i));
     else if (std::isnan(corners[i][0]))    // has not moved yet
-      reset_corners(i);
+      corners_of_box(i, corners[i]);
     limit(i);
   }
 }

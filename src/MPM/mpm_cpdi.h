@@ -9,26 +9,51 @@
 #ifndef LMP_MPM_CPDI_H
 #define LMP_MPM_CPDI_H
 
-#include "mpm_state.h"
-#include "pointers.h"
+// Points of finite size.
 
-#include <vector>
+#include "mpm_field.h"
 
 namespace LAMMPS_NS {
-class MPMField;
+
+/** Half of the edge of a cube (2d: square) with the initial volume of the point, in node spacings. */
+double half_size(const MPMField &, int i);
+
+/** Points of finite size along the axes: GIMP with fixed sizes or with those of deformed points. */
+class MPMBoxes : protected Pointers {
+ public:
+  std::vector<double> sizes;    ///< half sizes in node spacings, [n][3]
+
+  MPMBoxes(class LAMMPS *lmp, MPMField &field) : Pointers(lmp), field(field) {}
+
+  /** Sizes of this step. */
+  void update();
+  void size_of(int i, double size[3]) const;
+  /** Is an undeformed point larger than a cell? */
+  bool is_too_large(int i) const;
+  /** Smallest half size of the undeformed points of this rank, in node spacings, at most that of a
+   *  cell. */
+  double smallest() const;
+
+ private:
+  MPMField &field;
+};
 
 /** Domains of the points (shapes cpdi and cpdi2), see transfer/cpdi.h. */
 class MPMCpdi : protected Pointers {
  public:
-  double *
-      *corners;    ///< cpdi2: [n][2^dim][dim] from the point, in the order of transfer/cpdi.h, NAN
-                   ///< before the first step; null: cpdi
+  /** cpdi2: [n][2^dim][dim] from the point, in the order of transfer/cpdi.h, NAN before the first step;
+   *  null: cpdi. */
+  double **corners = nullptr;
   std::vector<double> corners_late;    ///< the same at the end of the step, when points move late
 
   MPMCpdi(class LAMMPS *, MPMField &, MPMPointState &);
 
   /** Reals that describe a domain. */
-  int size() const;
+  int size() const
+  {
+    const int dim = field.lattice.dim;
+    return field.options.shape == MPM_NS::CPDI2 ? dim << dim : dim * dim;
+  }
   /** Domains of all points, as kernels read them. */
   const double *rows() const { return corners ? &corners[0][0] : edges.data(); }
   /** Where G2P puts corners that have moved; null: domains have no corners of their own. */
@@ -46,18 +71,23 @@ class MPMCpdi : protected Pointers {
   double corners_of(int i, double *x, double *w, double *g = nullptr) const;
   /** How far a domain reaches from its point along each axis, in node spacings. */
   void reach(int i, double low[3], double high[3]) const;
-  /** Half edges of the box that an undeformed point is, after the deformation F. */
-  void box(int i, double *edge) const;
+  /** Corners of the box that an undeformed point is, after the deformation F. */
+  void corners_of_box(int i, double *x) const;
 
-  double memory_usage() const;
-  double bytes_per_point() const;
+  double memory_usage() const
+  {
+    return (edges.capacity() + corners_late.capacity()) * sizeof(double);
+  }
+  double bytes_per_point() const { return corners ? 0.0 : size() * sizeof(double); }
 
  private:
   MPMField &field;
   std::vector<double> edges;    // cpdi: half edges of the domains, [n][dim][dim]
 
   bool follows_F() const { return !corners; }
-  void reset_corners(int i);
+  double *row(int i) { return corners ? corners[i] : &edges[size() * (std::size_t) i]; }
+  const double *row(int i) const { return const_cast<MPMCpdi *>(this)->row(i); }
+  void box(int i, double *edge) const;
   void limit(int i);
 };
 

@@ -17,9 +17,7 @@
 
 #include "mpm_every.h"
 
-#include "atom.h"
-#include "mpm_field.h"
-#include "update.h"
+#include "mpm_state.h"
 
 #include <cstring>
 
@@ -27,27 +25,9 @@ using namespace LAMMPS_NS;
 
 /* ---------------------------------------------------------------------- */
 
-MPMEvery::MPMEvery(LAMMPS *lmp, MPMField &field, MPMPointState &state) :
-    Pointers(lmp), progress({0, 0.0}), field(field)
+MPMEvery::MPMEvery(LAMMPS *lmp, MPMField &field, MPMPointState &state) : Pointers(lmp), field(field)
 {
   state.declare(waiting, "mpm:waiting", width());
-}
-
-int MPMEvery::width() const
-{
-  return atom->torque_flag ? 9 : 6;
-}
-
-/** All steps of the cycle so far have ended when no step of LAMMPS waits. */
-double MPMEvery::step_dt() const
-{
-  return progress.elapsed + (field.options.every - progress.waited) * update->dt;
-}
-
-int MPMEvery::steps_to_next() const
-{
-  const int every = field.options.every;
-  return progress.waited < every ? every - progress.waited : every;
 }
 
 /* ----------------------------------------------------------------------
@@ -107,5 +87,5 @@ void MPMEvery::finish()
       atom->x[i][d] += w[3 + d];
     }
   }
-  progress = {0, 0.0};
+  progress = {};
 }

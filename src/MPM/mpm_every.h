@@ -9,24 +9,22 @@
 #ifndef LMP_MPM_EVERY_H
 #define LMP_MPM_EVERY_H
 
-#include "mpm_state.h"
-#include "pointers.h"
-
-#include <vector>
+#include "atom.h"
+#include "mpm_field.h"
+#include "update.h"
 
 namespace LAMMPS_NS {
-class MPMField;
 
 /** Steps of LAMMPS between the steps of the cycle (keyword every). */
 class MPMEvery : protected Pointers {
  public:
-  std::vector<double> mean_force,
-      mean_torque;    ///< [n][3] on points since the last step of the cycle
+  /** [n][3] on points since the last step of the cycle. */
+  std::vector<double> mean_force, mean_torque;
 
   /** What goes to restart files. */
   struct {
-    int waited;        ///< steps of LAMMPS since the last step of the cycle
-    double elapsed;    ///< and their duration
+    int waited = 0;          ///< steps of LAMMPS since the last step of the cycle
+    double elapsed = 0.0;    ///< and their duration
   } progress;
 
   MPMEvery(class LAMMPS *, MPMField &, MPMPointState &);
@@ -36,19 +34,27 @@ class MPMEvery : protected Pointers {
   /** End of a step of the cycle. */
   void finish();
 
-  /** Duration of the present step of the cycle. */
-  double step_dt() const;
+  /** Duration of the present step of the cycle. All of them so far have ended when no step of LAMMPS
+   *  waits. */
+  double step_dt() const
+  {
+    return progress.elapsed + (field.options.every - progress.waited) * update->dt;
+  }
   /** Steps of LAMMPS until the next step of the cycle ends, seen from the end of this step. */
-  int steps_to_next() const;
+  int steps_to_next() const
+  {
+    const int every = field.options.every;
+    return progress.waited < every ? every - progress.waited : every;
+  }
   /** From the place of a point on the lattice to where it is, along axis d. */
   double displacement(int i, int d) const { return waiting[i][3 + d]; }
 
  private:
   MPMField &field;
-  double *
-      *waiting;    // [n][6 or 9] impulse since the last step of the cycle, displacement from the
-                   // place on the lattice, angular impulse if atoms have torques
-  int width() const;
+  // [n][6 or 9] impulse since the last step of the cycle, displacement from the place on the lattice,
+  // angular impulse if atoms have torques
+  double **waiting = nullptr;
+  int width() const { return atom->torque_flag ? 9 : 6; }
 };
 
 }    // namespace LAMMPS_NS

@@ -19,7 +19,6 @@
 #include "material/batch.h"
 #include "modify.h"
 #include "mpm_affine.h"
-#include "mpm_boxes.h"
 #include "mpm_cpdi.h"
 #include "mpm_edges.h"
 #include "mpm_every.h"

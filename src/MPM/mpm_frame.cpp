@@ -8,11 +8,7 @@
 
 #include "mpm_frame.h"
 
-#include "atom.h"
 #include "material/batch.h"
-#include "mpm_field.h"
-#include "mpm_frame_axisymmetric.h"
-#include "mpm_frame_total.h"
 #include "mpm_points.h"
 
 #include <cmath>
@@ -23,32 +19,18 @@ using namespace MPM_NS;
 
 /* ---------------------------------------------------------------------- */
 
-std::unique_ptr<MPMFrame> MPMFrame::create(LAMMPS *lmp, MPMField &field, MPMPointState &state)
-{
-  const auto &options = field.options;
-  if (options.axisymmetric && options.total)
-    return std::make_unique<MPMFrameAxisymmetric<MPMFrameTotal>>(lmp, field, state);
-  if (options.axisymmetric) return std::make_unique<MPMFrameAxisymmetric<MPMFrame>>(lmp, field);
-  if (options.total) return std::make_unique<MPMFrameTotal>(lmp, field, state);
-  return std::make_unique<MPMFrame>(lmp, field);
-}
-
-/* ---------------------------------------------------------------------- */
-
-double **MPMFrame::places() const
-{
-  return atom->x;
-}
-
 TransferKernels MPMFrame::kernels(const MPMKernels &all, Transfer transfer, bool split) const
 {
-  return all.transfer(field.lattice.dim, field.options.shape, transfer, split);
+  const int dim = field.lattice.dim;
+  return is_total() ? all.transfer_total(dim, field.options.shape, transfer, split)
+                    : all.transfer(dim, field.options.shape, transfer, split);
 }
 
-void MPMFrame::load(Batch &b, int, int n, double dt, const double *L, const double *F,
+void MPMFrame::load(Batch &b, int first, int n, double dt, const double *L, const double *F,
                     const double *tau, const double *vol0) const
 {
-  field.batch_kernels->load(b, n, dt, L, F, tau, vol0, nullptr);
+  const auto &batches = *field.batch_kernels;
+  (is_total() ? batches.load_total : batches.load)(b, n, dt, L, F, tau, vol0, hoop_strain(first));
 }
 
 /* ----------------------------------------------------------------------
@@ -77,58 +59,44 @@ void MPMFrame::shift_gradients(int n, double dt, double *gradients) const
     return;
   }
   for (double *L = gradients; n > 0; n--, L += 9) {    // 3x3, order of storage does not matter
-    double M[9], inv[9], LM[9];
+    double M[9], LM[9];
     for (int c = 0; c < 9; c++) M[c] = (c % 4 == 0 ? 1.0 : 0.0) - dt * L[c];
-    for (int i = 0; i < 3; i++)
-      for (int j = 0; j < 3; j++) {
-        const int a = (j + 1) % 3, b = (j + 2) % 3, c = (i + 1) % 3, d = (i + 2) % 3;
-        inv[3 * i + j] = M[3 * a + c] * M[3 * b + d] - M[3 * a + d] * M[3 * b + c];
-      }
-    const double det = M[0] * inv[0] + M[1] * inv[3] + M[2] * inv[6];
-    for (int i = 0; i < 3; i++)
-      for (int j = 0; j < 3; j++)
-        LM[3 * i + j] =
-            (L[3 * i] * inv[j] + L[3 * i + 1] * inv[3 + j] + L[3 * i + 2] * inv[6 + j]) / det;
-    for (int c = 0; c < 9; c++) L[c] = LM[c];
+    const double cofactors[9] = MPM_COFACTORS(M);    // M^-1 transposed, times det M
+    const double det = dot(M, cofactors);
+    for (int c = 0; c < 9; c++) LM[c] = dot(L + 3 * (c / 3), cofactors + 3 * (c % 3)) / det;
+    memcpy(L, LM, sizeof(LM));
   }
 }
 
 /* ----------------------------------------------------------------------
-   det(I + A) - 1 without the loss of digits of that difference
+   det(I + dt L) - 1 without the loss of digits of that difference
 ------------------------------------------------------------------------- */
-
-static double dilatation(int dim, const double *A)
-{
-  if (dim == 2) return A[0] + A[3] + (A[0] * A[3] - A[1] * A[2]);
-  const double minors =
-      A[0] * A[4] - A[1] * A[3] + A[0] * A[8] - A[2] * A[6] + A[4] * A[8] - A[5] * A[7];
-  return A[0] + A[4] + A[8] + minors + MPMPoints::det(A);
-}
 
 double MPMFrame::volume_change(int, const double *L, double dt) const
 {
   const int dim = field.lattice.dim;
   double A[9];
   for (int c = 0; c < dim * dim; c++) A[c] = dt * L[c];
-  return dilatation(dim, A);
+  if (dim == 2) return A[0] + A[3] + (A[0] * A[3] - A[1] * A[2]);
+  const double minors =
+      A[0] * A[4] - A[1] * A[3] + A[0] * A[8] - A[2] * A[6] + A[4] * A[8] - A[5] * A[7];
+  return A[0] + A[4] + A[8] + minors + determinant(A);
 }
 
-void MPMFrame::stretch(int, double more, double dt, double *L)
+/** What is stretched is I + dt L or, in the total frame, F + dt L. */
+void MPMFrame::stretch(int i, double more, double dt, double *L)
 {
+  static const double unit[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
   const int dim = field.lattice.dim;
+  const double *const F = is_total() ? field.points->F[i] : unit;
   for (int c = 0; c < dim * dim; c++) L[c] = (1.0 + more) * L[c];
   for (int r = 0; r < dim; r++)
-    for (int c = 0; c < dim; c++) L[dim * c + r] += more / dt * (r == c);
-}
-
-bool MPMFrame::is_plane() const
-{
-  return field.lattice.dim == 2;
+    for (int c = 0; c < dim; c++) L[dim * c + r] += more / dt * F[3 * r + c];
 }
 
 /* ---------------------------------------------------------------------- */
 
-void MPMFrame::lattice_F(int i, double F[9]) const
+void MPMFrame::lattice_F(int i, double F[3][3]) const
 {
   memcpy(F, field.points->F[i], 9 * sizeof(double));
 }
@@ -142,9 +110,4 @@ double MPMFrame::speed(int i, double &c) const
 {
   const double *v = atom->v[i];
   return c + sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
-double MPMFrame::section(int i) const
-{
-  return atom->vfrac[i];
 }

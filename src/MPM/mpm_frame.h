@@ -9,22 +9,14 @@
 #ifndef LMP_MPM_FRAME_H
 #define LMP_MPM_FRAME_H
 
-#include "mpm_state.h"
-#include "pointers.h"
-#include "transfer/kernels.h"
-
-#include <memory>
-
-namespace MPM_NS {
-struct Batch;
-}    // namespace MPM_NS
+#include "atom.h"
+#include "mpm_field.h"
 
 namespace LAMMPS_NS {
-class MPMField;
 
 /** The configuration that the nodes belong to, and how points strain in it. This class is the updated
  *  Lagrangian frame: nodes are places in space. Others derive from it; an axis of symmetry is a frame
- *  around one of these, see mpm_frame_axisymmetric.h.
+ *  around one of these, see mpm_frame_axisymmetric.cpp.
  *
  *  Functions with a range of points are called once for each batch. */
 class MPMFrame : protected Pointers {
@@ -46,9 +38,8 @@ class MPMFrame : protected Pointers {
   /** Nodes are places of a reference configuration, which points do not leave. */
   virtual bool is_total() const { return false; }
   /** Where points are on the lattice, [n][3]. */
-  virtual double **places() const;
-  virtual MPM_NS::TransferKernels kernels(const MPM_NS::MPMKernels &, MPM_NS::Transfer,
-                                          bool split) const;
+  virtual double **places() const { return atom->x; }
+  MPM_NS::TransferKernels kernels(const MPM_NS::MPMKernels &, MPM_NS::Transfer, bool split) const;
 
   // points to nodes: does a batch need rows of its own for its forces, with room for them
 
@@ -79,8 +70,8 @@ class MPMFrame : protected Pointers {
   virtual bool refers() const { return false; }
   virtual void refer_gradients(int /*first*/, int /*n*/, double * /*L*/) const {}
   /** Kinematics of n points from first on; F, tau: rows of the first. */
-  virtual void load(MPM_NS::Batch &, int first, int n, double dt, const double *L, const double *F,
-                    const double *tau, const double *vol0) const;
+  void load(MPM_NS::Batch &, int first, int n, double dt, const double *L, const double *F,
+            const double *tau, const double *vol0) const;
 
   /** Relative change of the volume of a point in a step. */
   virtual double volume_change(int i, const double *L, double dt) const;
@@ -88,10 +79,10 @@ class MPMFrame : protected Pointers {
    *  held. */
   virtual void stretch(int i, double more, double dt, double *L);
   /** Is the third direction held, in plane strain? */
-  virtual bool is_plane() const;
+  virtual bool is_plane() const { return field.lattice.dim == 2; }
 
-  /** Deformation gradient with respect to the places of the lattice, row-major. */
-  virtual void lattice_F(int i, double F[9]) const;
+  /** Deformation gradient with respect to the places of the lattice. */
+  virtual void lattice_F(int i, double F[3][3]) const;
   /** Ratio of the volume at the places of the lattice to the initial volume. */
   virtual double lattice_jacobian(int i) const;
 
@@ -103,7 +94,7 @@ class MPMFrame : protected Pointers {
   /** The same of a node: at the axis and beyond that of a quarter of a cell from it. */
   virtual double node_circle(int /*slot*/, int /*node*/) const { return 1.0; }
   /** Volume of a point before deformation for each unit of length around the axis. */
-  virtual double section(int i) const;
+  virtual double section(int i) const { return atom->vfrac[i]; }
 
   /** Start of a run, and what there is to tell about it at its end: lines, or nothing. */
   virtual void start_counting() {}
@@ -116,6 +107,8 @@ class MPMFrame : protected Pointers {
 
   /** Distance of a point from the axis; x: its first coordinate at the start of the step. */
   virtual double radius(int /*i*/, double x) const { return x; }
+  /** Strain around the axis in this step, of the points from first on; null: there is no axis. */
+  virtual const double *hoop_strain(int /*first*/) const { return nullptr; }
 };
 
 }    // namespace LAMMPS_NS

@@ -23,15 +23,14 @@
 
 #include "mpm_frame_total.h"
 
-#include "atom.h"
 #include "error.h"
 #include "fix.h"
 #include "material/batch.h"
 #include "math/matrix.h"
 #include "math_extra.h"
 #include "mpm_affine.h"
-#include "mpm_field.h"
 #include "mpm_points.h"
+#include "mpm_state.h"
 #include "update.h"
 
 #include <algorithm>
@@ -46,7 +45,7 @@ static constexpr int CHECK_EVERY = 10;    // steps between looks at the distorti
 /* ---------------------------------------------------------------------- */
 
 MPMFrameTotal::MPMFrameTotal(LAMMPS *lmp, MPMField &field, MPMPointState &state) :
-    MPMFrame(lmp, field), X(nullptr), R(nullptr), nupdate(0), refer_anew(false)
+    MPMFrame(lmp, field)
 {
   state.declare(X, "mpm:X", 3, [this](int i, double *row) {
     memcpy(row, atom->x[i], 3 * sizeof(double));
@@ -84,13 +83,6 @@ void MPMFrameTotal::setup()
         field.id(), deformed_all);
 }
 
-/* ---------------------------------------------------------------------- */
-
-TransferKernels MPMFrameTotal::kernels(const MPMKernels &all, Transfer transfer, bool split) const
-{
-  return all.transfer_total(field.lattice.dim, field.options.shape, transfer, split);
-}
-
 /* ----------------------------------------------------------------------
    The first Piola-Kirchhoff stress is made here, a batch at a time: to read F and tau costs less than
    to write and read another matrix
@@ -98,32 +90,23 @@ TransferKernels MPMFrameTotal::kernels(const MPMKernels &all, Transfer transfer,
 
 void MPMFrameTotal::forces(PointRows &rows, int first, int n, ForceRows &room) const
 {
-  double F[9 * BATCH];
-  for (int p = 0; p < n && R; p++) lattice_F(first + p, F + 9 * p);
-  field.batch_kernels->first_piola(n, R ? F : rows.F, rows.tau, room.P);
+  double F[BATCH][3][3];
+  for (int p = 0; p < n && R; p++) lattice_F(first + p, F[p]);
+  field.batch_kernels->first_piola(n, R ? &F[0][0][0] : rows.F, rows.tau, room.P);
   rows.P = room.P;
 }
 
-void MPMFrameTotal::load(Batch &b, int, int n, double dt, const double *L, const double *F,
-                         const double *tau, const double *vol0) const
-{
-  field.batch_kernels->load_total(b, n, dt, L, F, tau, vol0, nullptr);
-}
-
 /* ----------------------------------------------------------------------
-   deformation gradient with respect to the reference configuration, row-major
+   deformation gradient with respect to the reference configuration
 ------------------------------------------------------------------------- */
 
-void MPMFrameTotal::lattice_F(int i, double F[9]) const
+void MPMFrameTotal::lattice_F(int i, double F[3][3]) const
 {
-  MPMFrame::lattice_F(i, F);
-  if (!R) return;
-  double f[3][3], r[3][3], inverse[3][3], product[3][3];
-  memcpy(f, F, sizeof(f));
-  memcpy(r, R[i], sizeof(r));
-  MathExtra::invert3(r, inverse);
-  MathExtra::times3(f, inverse, product);
-  memcpy(F, product, sizeof(product));
+  if (!R) return MPMFrame::lattice_F(i, F);
+  using Rows = const double(*)[3];
+  double inverse[3][3];
+  MathExtra::invert3((Rows) R[i], inverse);
+  MathExtra::times3((Rows) field.points->F[i], inverse, F);
 }
 
 double MPMFrameTotal::lattice_jacobian(int i) const
@@ -137,6 +120,18 @@ double MPMFrameTotal::radius(int i, double) const
   return X[i][0] * field.points->F[i][8] / (R ? R[i][8] : 1.0);
 }
 
+/** A <- A M, for A column-major with dim*dim and M row-major with 3*3 reals. */
+static void multiply(int dim, double *A, const double *M)
+{
+  double product[9];
+  for (int c = 0; c < dim; c++)
+    for (int r = 0; r < dim; r++) {
+      product[dim * c + r] = 0.0;
+      for (int k = 0; k < dim; k++) product[dim * c + r] += A[dim * k + r] * M[3 * k + c];
+    }
+  memcpy(A, product, dim * dim * sizeof(double));
+}
+
 /* ----------------------------------------------------------------------
    gradients with respect to X, column-major, of the points first ... become those with respect to
    the undeformed body: L <- L R
@@ -144,17 +139,8 @@ double MPMFrameTotal::radius(int i, double) const
 
 void MPMFrameTotal::refer_gradients(int first, int n, double *L) const
 {
-  if (!R) return;
   const int dim = field.lattice.dim;
-  for (int i = first; i < first + n; i++, L += dim * dim) {
-    double product[9];
-    for (int c = 0; c < dim; c++)
-      for (int r = 0; r < dim; r++) {
-        product[dim * c + r] = 0.0;
-        for (int k = 0; k < dim; k++) product[dim * c + r] += L[dim * k + r] * R[i][3 * k + c];
-      }
-    memcpy(L, product, dim * dim * sizeof(double));
-  }
+  for (int p = 0; p < n && R; p++) multiply(dim, L + dim * dim * p, R[first + p]);
 }
 
 /* ----------------------------------------------------------------------
@@ -175,22 +161,8 @@ double MPMFrameTotal::volume_change(int i, const double *L, double dt) const
   }
   const double scale = dt / field.points->jacobian(i);
   const double cofactors[9] = MPM_COFACTORS(F);    // F^-1 transposed, times det F
-  for (int j = 0; j < 3; j++) {
-    const double *const c = cofactors + 3 * j;
-    for (int r = 0; r < 3; r++)
-      A[3 * j + r] = scale * (L[r] * c[0] + L[3 + r] * c[1] + L[6 + r] * c[2]);
-  }
+  for (int c = 0; c < 9; c++) A[c] = scale * product(cofactors, L, c / 3, c % 3);
   return MPMFrame::volume_change(i, A, 1.0);
-}
-
-/** What is stretched is F + dt L. */
-void MPMFrameTotal::stretch(int i, double more, double dt, double *L)
-{
-  const int dim = field.lattice.dim;
-  const double *F = field.points->F[i];
-  for (int c = 0; c < dim * dim; c++) L[c] = (1.0 + more) * L[c];
-  for (int r = 0; r < dim; r++)
-    for (int c = 0; c < dim; c++) L[dim * c + r] += more / dt * F[3 * r + c];
 }
 
 /* ----------------------------------------------------------------------
@@ -218,21 +190,17 @@ static double largest_eigenvalue(double B[3][3])
 
 void MPMFrameTotal::stretches(int i, double &smallest, double &largest) const
 {
-  double F[9];
-  lattice_F(i, F);
+  double f[3][3], g[3][3], B[3][3], inverse[3][3];
+  lattice_F(i, f);
   if (field.lattice.dim == 2) {
-    largest = 0.5 * (hypot(F[0] + F[4], F[3] - F[1]) + hypot(F[0] - F[4], F[3] + F[1]));
-    smallest = fabs(F[0] * F[4] - F[1] * F[3]) / largest;
+    largest = 0.5 *
+        (hypot(f[0][0] + f[1][1], f[1][0] - f[0][1]) + hypot(f[0][0] - f[1][1], f[1][0] + f[0][1]));
+    smallest = fabs(f[0][0] * f[1][1] - f[0][1] * f[1][0]) / largest;
     return;
   }
-  double f[3][3], g[3][3], B[3][3], inverse[3][3];
-  memcpy(f, F, sizeof(f));
   MathExtra::invert3(f, g);
-  for (int j = 0; j < 3; j++)
-    for (int k = 0; k < 3; k++) {
-      B[j][k] = f[j][0] * f[k][0] + f[j][1] * f[k][1] + f[j][2] * f[k][2];
-      inverse[j][k] = g[0][j] * g[0][k] + g[1][j] * g[1][k] + g[2][j] * g[2][k];
-    }
+  MathExtra::times3_transpose(f, f, B);
+  MathExtra::transpose_times3(g, g, inverse);
   largest = sqrt(largest_eigenvalue(B));
   smallest = 1.0 / sqrt(largest_eigenvalue(inverse));
 }
@@ -275,11 +243,10 @@ bool MPMFrameTotal::renew_places()
   for (int i = 0; i < atom->nlocal; i++) {
     if (!field.is_point(i)) continue;
     if (field.affine) {
-      double F[9], f[3][3], inverse[3][3];
+      double F[3][3], inverse[3][3];
       lattice_F(i, F);
-      memcpy(f, F, sizeof(f));
-      MathExtra::invert3(f, inverse);
-      field.affine->refer(i, inverse);
+      MathExtra::invert3(F, inverse);
+      multiply(field.lattice.dim, field.affine->C[i], inverse[0]);
     }
     memcpy(X[i], atom->x[i], 3 * sizeof(double));
     memcpy(R[i], field.points->F[i], 9 * sizeof(double));

@@ -16,8 +16,9 @@ namespace LAMMPS_NS {
 /** Total Lagrangian frame: nodes are places of a reference configuration, which may be made anew. */
 class MPMFrameTotal : public MPMFrame {
  public:
-  double **X;    ///< [n][3] reference position, NAN before it is known
-  double **R;    ///< [n][9] F at the last update of the reference, row-major; null: there is none
+  double **X = nullptr;    ///< [n][3] reference position, NAN before it is known
+  double **R =
+      nullptr;    ///< [n][9] F at the last update of the reference, row-major; null: there is none
 
   MPMFrameTotal(class LAMMPS *, MPMField &, MPMPointState &);
 
@@ -26,18 +27,13 @@ class MPMFrameTotal : public MPMFrame {
   void end_of_step() override;
   bool is_total() const override { return true; }
   double **places() const override { return X; }
-  MPM_NS::TransferKernels kernels(const MPM_NS::MPMKernels &, MPM_NS::Transfer,
-                                  bool split) const override;
   bool changes_forces() const override { return true; }
   void forces(MPM_NS::PointRows &, int first, int n, ForceRows &) const override;
   void shift_gradients(int, double, double *) const override {}
   bool refers() const override { return R != nullptr; }
   void refer_gradients(int first, int n, double *L) const override;
-  void load(MPM_NS::Batch &, int first, int n, double dt, const double *L, const double *F,
-            const double *tau, const double *vol0) const override;
   double volume_change(int i, const double *L, double dt) const override;
-  void stretch(int i, double more, double dt, double *L) override;
-  void lattice_F(int i, double F[9]) const override;
+  void lattice_F(int i, double F[3][3]) const override;
   double lattice_jacobian(int i) const override;
   double speed(int i, double &c) const override;
   void start_counting() override { nupdate = 0; }
@@ -47,8 +43,8 @@ class MPMFrameTotal : public MPMFrame {
   double radius(int i, double x) const override;
 
  private:
-  bigint nupdate;     // of the reference in this run
-  bool refer_anew;    // the present configuration is to become the reference
+  bigint nupdate = 0;         // of the reference in this run
+  bool refer_anew = false;    // the present configuration is to become the reference
 
   void stretches(int i, double &smallest, double &largest) const;
 };

@@ -8,7 +8,6 @@
 
 #include "mpm_guard.h"
 
-#include "atom.h"
 #include "atom_vec.h"
 #include "comm.h"
 #include "domain.h"
@@ -19,7 +18,7 @@
 #include "group.h"
 #include "material/material.h"
 #include "modify.h"
-#include "mpm_boxes.h"
+#include "mpm_cpdi.h"
 #include "mpm_field.h"
 #include "mpm_point_batches.h"
 #include "mpm_point_map.h"
@@ -35,17 +34,227 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
+/* ----------------------------------------------------------------------
+   a point must have one integrator; fixes of this style may hide from LAMMPS that they are one,
+   see init()
+------------------------------------------------------------------------- */
+
+void MPMGuard::check_integrators() const
+{
+  for (auto *other : modify->get_fix_list()) {
+    if (other == &field.fix || !(other->time_integrate || utils::strmatch(other->style, "^mpm$")))
+      continue;
+    bigint n = 0, all;
+    for (int i = 0; i < atom->nlocal; i++)
+      if (field.is_point(i) && (atom->mask[i] & other->groupbit)) n++;
+    MPI_Allreduce(&n, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+    if (all)
+      error->all(FLERR,
+                 "{} material points of fix {} (style mpm) are also integrated by fix {} "
+                 "(style {}): give the fixes disjoint groups",
+                 all, field.id(), other->id, other->style);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   each point must have one material, positive volume and mass, and a finite state
+------------------------------------------------------------------------- */
+
+void MPMGuard::check_points() const
+{
+  enum { POINT, NONE, SEVERAL, MASS, STATE, AXIS, SIZE, NKINDS };
+  bigint count[NKINDS] = {0}, all[NKINDS];
+  tagint example[NKINDS] = {0}, example_all[NKINDS];
+  auto note = [&](int kind, int i) {
+    count[kind]++;
+    example[kind] = std::max(example[kind], atom->tag[i]);
+  };
+
+  for (auto *material : field.materials) material->assign_mass();
+
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!field.is_point(i)) continue;
+    note(POINT, i);
+    int n = 0;
+    for (auto *material : field.materials) n += (atom->mask[i] & material->groupbit) != 0;
+    if (n == 0) note(NONE, i);
+    if (n > 1) note(SEVERAL, i);
+    if (n == 1 && !(atom->rmass[i] > 0.0 && std::isfinite(atom->rmass[i]))) note(MASS, i);
+
+    const double J = field.points->jacobian(i), *v = atom->v[i], *x = atom->x[i];
+    double sum = J;
+    for (int d = 0; d < 3; d++) sum += fabs(x[d]) + fabs(v[d]);
+    for (int c = 0; c < 6; c++) sum += fabs(field.points->tau[i][c]);
+    if (!std::isfinite(sum) || !(J > 0.0)) note(STATE, i);
+    if (field.options.axisymmetric && !(x[0] > 0.0)) note(AXIS, i);
+    if (field.boxes && field.boxes->is_too_large(i)) note(SIZE, i);
+  }
+  MPI_Allreduce(count, all, NKINDS, MPI_LMP_BIGINT, MPI_SUM, world);
+  MPI_Allreduce(example, example_all, NKINDS, MPI_LMP_TAGINT, MPI_MAX, world);
+
+  if (all[POINT] == 0)
+    error->all(FLERR,
+               "Fix mpm {} has no material points: its group {} has no atoms with a volume; "
+               "make points with create_points, or give atoms a volume with set ... volume",
+               field.id(), group->names[field.fix.igroup]);
+  static const char *const refusals[NKINDS] = {
+      nullptr,
+      "{0} material points have no material, for instance point {1}: "
+      "define a fix mpm/material for their group",
+      "{0} material points have more than one material, for instance point {1}: "
+      "the groups of the mpm/material fixes must be disjoint",
+      "{0} material points have no positive mass, for instance point {1}: "
+      "check the density of their material or their set mass",
+      "{0} material points have a position, velocity, deformation or stress that is "
+      "not finite or is inverted, for instance point {1}",
+      "{0} material points of fix mpm {2} axisymmetric are not at positive x, for "
+      "instance point {1}: x is the distance from the axis",
+      "{0} material points are larger than the cells of fix mpm {2}, for instance point "
+      "{1}: shape gimp and cpgimp need at least one point per cell, and aspect if points "
+      "are not cubes"};
+  for (int kind = NONE; kind < NKINDS; kind++)
+    if (all[kind]) error->all(FLERR, refusals[kind], all[kind], example_all[kind], field.id());
+}
+
+/* ----------------------------------------------------------------------
+   Neighbor lists of points and grains: the two settings that make them slow. Pairs of points do
+   nothing but cost time, unless pair style mpm/penalty is there for them; and with bins of the size
+   of a grain, each point tests all points within reach of a grain.
+------------------------------------------------------------------------- */
+
+void MPMGuard::check_neighbors() const
+{
+  constexpr bigint MANY = 1000;    // points for which it matters
+  constexpr double RATIO = 2.0;
+  const int ntypes = atom->ntypes;
+  std::vector<int> mine(2 * (ntypes + 1), 0), all(2 * (ntypes + 1));    // points, other atoms
+  bigint npoints = 0, npoints_all;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const bool point = atom->vfrac[i] > 0.0;
+    mine[2 * atom->type[i] + !point] = 1;
+    npoints += point;
+  }
+  MPI_Allreduce(mine.data(), all.data(), mine.size(), MPI_INT, MPI_MAX, world);
+  MPI_Allreduce(&npoints, &npoints_all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (npoints_all < MANY) return;
+
+  double cut_points = 0.0, cut_others = 0.0;    // squares
+  for (int t = 1; t <= ntypes; t++) {
+    const double cut = force->pair->cutsq[t][t];
+    if (all[2 * t]) cut_points = std::max(cut_points, cut);
+    if (all[2 * t + 1]) cut_others = std::max(cut_others, cut);
+    if (!all[2 * t] || cut == 0.0 || force->pair_match("mpm/penalty", 0)) continue;
+
+    bool excluded = false;
+    for (int k = 0; k < neighbor->nex_type; k++)
+      excluded = excluded || (neighbor->ex1_type[k] == t && neighbor->ex2_type[k] == t);
+    for (int k = 0; k < neighbor->nex_group; k++) {
+      const int bits = neighbor->ex1_bit[k] | neighbor->ex2_bit[k];
+      int in = 1, in_all;
+      for (int i = 0; i < atom->nlocal; i++)
+        if (atom->type[i] == t && atom->vfrac[i] > 0.0 && (atom->mask[i] & bits) != bits) in = 0;
+      MPI_Allreduce(&in, &in_all, 1, MPI_INT, MPI_MIN, world);
+      excluded = excluded || in_all;
+    }
+    if (!excluded && comm->me == 0)
+      error->warning(FLERR,
+                     "Fix mpm: pairs of material points of type {} are in the neighbor lists, "
+                     "at great cost and for nothing but pair forces between them: use neigh_modify "
+                     "exclude type {} {}",
+                     t, t, t);
+  }
+  if (cut_others > RATIO * RATIO * cut_points && neighbor->style != Neighbor::MULTI &&
+      comm->me == 0)
+    error->warning(FLERR,
+                   "Fix mpm: neighbor lists of points and of grains {:.1f} times as large are "
+                   "many times faster with neighbor ... multi and comm_modify mode multi",
+                   sqrt(cut_others / std::max(cut_points, 1.0e-300)));
+}
+
+/* ----------------------------------------------------------------------
+   Pair style granular takes its cutoffs from the radii, but what tells it to do so is not in restart
+   files: with the settings of a file alone cutoffs are anything, mostly 0. Then there are no ghosts,
+   and contacts across ranks and periodic faces are missed without a word.
+------------------------------------------------------------------------- */
+
+static void check_cutoffs(LAMMPS *lmp)
+{
+  const Atom *atom = lmp->atom;
+  const int ntypes = atom->ntypes;
+  std::vector<double> mine(2 * (ntypes + 1), -1.0),
+      all(2 * (ntypes + 1));    // of points, of others
+  for (int i = 0; i < atom->nlocal; i++) {
+    double &largest = mine[2 * atom->type[i] + !(atom->vfrac[i] > 0.0)];
+    largest = std::max(largest, atom->radius[i]);
+  }
+  MPI_Allreduce(mine.data(), all.data(), mine.size(), MPI_DOUBLE, MPI_MAX, lmp->world);
+  for (int i = 1; i <= ntypes; i++)
+    for (int j = 1; j <= ntypes; j++) {
+      const double sum = all[2 * i] + all[2 * j + 1], cut = sqrt(lmp->force->pair->cutsq[i][j]);
+      if (all[2 * i] > 0.0 && all[2 * j + 1] > 0.0 && !(cut >= sum * (1.0 - 1.0e-10)))
+        lmp->error->all(
+            FLERR, Error::NOLASTLINE,
+            "Cutoff {:.6g} of pair style granular between points of type {} and grains of "
+            "type {} is below the sum {:.6g} of their largest radii. Read_restart loses the "
+            "cutoffs of this pair style: give pair_style and pair_coeff again after it",
+            cut, i, j, sum);
+    }
+}
+
+/* ----------------------------------------------------------------------
+   Grains see points by their radius. LAMMPS gives no error for a radius of zero, where no force
+   or one between centers remains, nor for one of 0.5, its default, in other units.
+------------------------------------------------------------------------- */
+
+void MPMGuard::check_radii() const
+{
+  if (!atom->radius_flag) return;
+  if (!utils::strmatch(force->pair_style, "^gran") && !force->pair_match("^gran", 0)) return;
+  if (strcmp(force->pair_style, "granular") == 0) check_cutoffs(lmp);
+  if (!modify->get_fix_by_style("^mpm/surface$").empty()) return;
+  const int ntypes = atom->ntypes;
+  std::vector<int> grains(ntypes + 1, 0), grains_all(ntypes + 1);    // types of other atoms
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->vfrac[i] == 0.0) grains[atom->type[i]] = 1;
+  MPI_Allreduce(grains.data(), grains_all.data(), ntypes + 1, MPI_INT, MPI_MAX, world);
+
+  bigint mine[3] = {0, 0, 0}, all[3];    // points that meet them, without radius, too large
+  tagint example = 0, example_all;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!field.is_point(i)) continue;
+    bool meets = false;
+    for (int t = 1; t <= ntypes; t++)
+      meets = meets || (grains_all[t] && force->pair->cutsq[atom->type[i]][t] > 0.0);
+    if (!meets) continue;
+    mine[0]++;
+    mine[1] += atom->radius[i] == 0.0;
+    if (atom->radius[i] <= 2.0 * field.lattice.h) continue;
+    mine[2]++;
+    example = std::max(example, atom->tag[i]);
+  }
+  MPI_Allreduce(mine, all, 3, MPI_LMP_BIGINT, MPI_SUM, world);
+  MPI_Allreduce(&example, &example_all, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  if (all[0] == 0) return;
+  if (field.options.axisymmetric)
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Points of fix mpm {} axisymmetric cannot meet grains through pair style {}: a "
+        "grain would be a ring; let bodies meet through fix mpm/contact, or use 3d for grains",
+        field.id(), force->pair_style);
+  if (all[1] == all[0])
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Points of fix mpm {} have no radius, by which pair style {} couples them to grains: "
+        "use fix mpm/surface, or set ... diameter",
+        field.id(), force->pair_style);
+  if (all[2])
+    error->all(FLERR, Error::NOLASTLINE,
+               "{} points of fix mpm {} have a radius of more than two node spacings, for instance "
+               "point {}: use fix mpm/surface, or set ... diameter",
+               all[2], field.id(), example_all);
+}
+
 /* ---------------------------------------------------------------------- */
-
-MPMGuard::MPMGuard(LAMMPS *lmp, MPMField &field) :
-    Pointers(lmp), deleted(), field(field), nbad_total(0)
-{
-}
-
-bool MPMGuard::may_delete() const
-{
-  return field.options.bad == MPMFieldOptions::DELETE || field.options.delete_failed;
-}
 
 std::string MPMGuard::describe(int i) const
 {
@@ -65,11 +274,6 @@ void MPMGuard::point_is_bad(int i, const std::string &what, const std::string &c
   if (field.options.bad == MPMFieldOptions::WARN && nbad_total + (bigint) bad_points.size() < 10)
     error->warning(FLERR, "{} {} at step {}: {}", describe(i), what, update->ntimestep, cure);
   bad_points.push_back(atom->tag[i]);
-}
-
-void MPMGuard::point_has_failed(int i)
-{
-  failed_points.push_back(atom->tag[i]);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -104,7 +308,7 @@ void MPMGuard::handle_bad_points()
 
 void MPMGuard::check_inside_box()
 {
-  std::vector<tagint> out;
+  const bool deletes = field.options.bad == MPMFieldOptions::DELETE;
   double **x = atom->x;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!field.is_point(i)) continue;
@@ -113,30 +317,24 @@ void MPMGuard::check_inside_box()
       inside = inside &&
           (domain->periodicity[d] || (x[i][d] >= domain->boxlo[d] && x[i][d] < domain->boxhi[d]));
     if (inside) continue;
-    if (field.options.bad == MPMFieldOptions::DELETE)
-      out.push_back(atom->tag[i]);
+    if (deletes)
+      bad_points.push_back(atom->tag[i]);
     else
       error->one(FLERR,
                  "{} has left the box through a fixed face; enlarge the box, put a "
                  "fix mpm/boundary there, or let it go with fix mpm ... bad delete",
                  describe(i));
   }
-  if (field.options.bad == MPMFieldOptions::DELETE) {
-    out.insert(out.end(), bad_points.begin(), bad_points.end());
-    delete_points(out, true);
-    bad_points.clear();
-  }
-  if (field.options.delete_failed) {
-    delete_points(failed_points, false);
-    failed_points.clear();
-  }
+  if (deletes) delete_points(bad_points, true);
+  if (field.options.delete_failed) delete_points(failed_points, false);
 }
 
 /* ---------------------------------------------------------------------- */
 
-void MPMGuard::delete_points(const std::vector<tagint> &list, bool warn)
+void MPMGuard::delete_points(std::vector<tagint> &list, bool warn)
 {
-  std::vector<tagint> sorted(list);
+  std::vector<tagint> sorted;
+  sorted.swap(list);
   std::sort(sorted.begin(), sorted.end());
   double lost[5] = {0.0}, all[5];    // points, mass, momentum
   std::vector<double> history;

@@ -9,13 +9,10 @@
 #ifndef LMP_MPM_GUARD_H
 #define LMP_MPM_GUARD_H
 
-#include "pointers.h"
-
-#include <string>
-#include <vector>
+#include "atom.h"
+#include "mpm_field.h"
 
 namespace LAMMPS_NS {
-class MPMField;
 
 /** Points of a field that go bad or fail, and what is done about it (keywords bad and failed). */
 class MPMGuard : protected Pointers {
@@ -23,9 +20,9 @@ class MPMGuard : protected Pointers {
   /** What was deleted so far, on all ranks; as in restart files. */
   struct Deleted {
     double points, mass, momentum[3];
-  } deleted;
+  } deleted = {};
 
-  MPMGuard(class LAMMPS *, MPMField &);
+  MPMGuard(class LAMMPS *lmp, MPMField &field) : Pointers(lmp), field(field) {}
 
   /** Set-up of a run: each point must have one material, one integrator, positive volume and mass, and
    *  a finite state; pair styles must know its radius. */
@@ -45,7 +42,7 @@ class MPMGuard : protected Pointers {
                    ": try a smaller time step (fix mpm/dt), more points per cell, or a smoother "
                    "shape function; fix mpm ... bad warn|delete goes on");
   /** A point has failed and is to be deleted. */
-  void point_has_failed(int i);
+  void point_has_failed(int i) { failed_points.push_back(atom->tag[i]); }
   /** The kernels must never see a position that is not finite. */
   void check_positions();
   /** End of a step: count bad points, and ask for an exchange that deletes points. */
@@ -54,16 +51,19 @@ class MPMGuard : protected Pointers {
    *  that are to be deleted go. */
   void check_inside_box();
 
-  bool may_delete() const;
+  bool may_delete() const
+  {
+    return field.options.bad == MPMFieldOptions::DELETE || field.options.delete_failed;
+  }
   bigint nbad() const { return nbad_total; }
 
  private:
   MPMField &field;
   std::vector<tagint> bad_points;       // of this step, policies warn and delete
   std::vector<tagint> failed_points;    // of this step, to be deleted
-  bigint nbad_total;
+  bigint nbad_total = 0;
 
-  void delete_points(const std::vector<tagint> &, bool warn);
+  void delete_points(std::vector<tagint> &, bool warn);    // and forget them
 };
 
 }    // namespace LAMMPS_NS

@@ -21,19 +21,12 @@ static constexpr int RVOUS = 1;    // 0 for irregular, 1 for all2all
 static constexpr int HALO_TAG = 4711;
 
 namespace {
-struct KeyOfRank {    // to the rendezvous: this rank has this block active
-  uint64_t key;
-  int rank;
-};
-struct Sharer {    // back: this other rank has the block, too
+/** To the rendezvous: this rank has this block active. Back: this other rank has the block, too. */
+struct Sharer {
   uint64_t key;
   int rank, pad;
 };
 }    // namespace
-
-/* ---------------------------------------------------------------------- */
-
-MPMHalo::MPMHalo(LAMMPS *lmp) : Pointers(lmp), bytes_sent(0) {}
 
 /* ----------------------------------------------------------------------
    at the rendezvous rank of a set of keys: tell each sharer of a block about all others
@@ -42,8 +35,8 @@ MPMHalo::MPMHalo(LAMMPS *lmp) : Pointers(lmp), bytes_sent(0) {}
 static int match_keys(int n, char *inbuf, int &flag, int *&proclist, char *&outbuf, void *ptr)
 {
   auto *memory = (Memory *) ptr;
-  auto *in = (KeyOfRank *) inbuf;
-  std::sort(in, in + n, [](const KeyOfRank &a, const KeyOfRank &b) {
+  auto *in = (Sharer *) inbuf;
+  std::sort(in, in + n, [](const Sharer &a, const Sharer &b) {
     return a.key < b.key || (a.key == b.key && a.rank < b.rank);
   });
 
@@ -61,9 +54,7 @@ static int match_keys(int n, char *inbuf, int &flag, int *&proclist, char *&outb
       for (int other = i; other < j; other++) {
         if (to == other) continue;
         proclist[nout] = in[to].rank;
-        out[nout].key = in[i].key;
-        out[nout].rank = in[other].rank;
-        out[nout++].pad = 0;
+        out[nout++] = in[other];
       }
   }
   outbuf = (char *) out;
@@ -85,19 +76,17 @@ void MPMHalo::setup(Grid &grid)
   // all canonical blocks go to the rank that their key hashes to
 
   const int nblocks = grid.blocks.size();
-  std::vector<KeyOfRank> mine;
+  std::vector<Sharer> mine;
   std::vector<int> procs;
   for (int s = 0; s < nblocks; s++) {
     const auto &block = grid.blocks[s];
     if (block.alias == ~uint64_t(0)) continue;
-    KeyOfRank k;
-    k.key = Grid::block_key(block);
-    k.rank = comm->me;
-    mine.push_back(k);
-    procs.push_back((int) ((k.key * UINT64_C(0x9E3779B97F4A7C15) >> 33) % comm->nprocs));
+    const uint64_t key = Grid::block_key(block);
+    mine.push_back({key, comm->me, 0});
+    procs.push_back((int) ((key * UINT64_C(0x9E3779B97F4A7C15) >> 33) % comm->nprocs));
   }
   char *outbuf = nullptr;
-  const int n = comm->rendezvous(RVOUS, mine.size(), (char *) mine.data(), sizeof(KeyOfRank), 0,
+  const int n = comm->rendezvous(RVOUS, mine.size(), (char *) mine.data(), sizeof(Sharer), 0,
                                  procs.data(), match_keys, 0, outbuf, sizeof(Sharer), memory, 0);
   auto *sharer = (Sharer *) outbuf;
 
@@ -124,17 +113,14 @@ void MPMHalo::setup(Grid &grid)
   for (int s = 0; s < nblocks; s++) {
     if (of_slot[s].empty()) continue;
     shared.push_back(s);
-    bool me_done = false;
-    for (const auto &c : of_slot[s]) {    // ascending by rank
-      if (!me_done && ranks[c.from] > comm->me) {
-        contributions.push_back({-1, 0});
-        me_done = true;
-      }
-      contributions.push_back(c);
-    }
-    if (!me_done) contributions.push_back({-1, 0});
+    auto &list = of_slot[s];    // ascending by rank
+    const auto next = std::find_if(list.begin(), list.end(), [&](const Contribution &c) {
+      return ranks[c.from] > comm->me;
+    });
+    if (next != list.begin()) grid.blocks[s].owned = 0;
+    list.insert(next, {-1, 0});
+    contributions.insert(contributions.end(), list.begin(), list.end());
     first.push_back(contributions.size());
-    if (ranks[of_slot[s][0].from] < comm->me) grid.blocks[s].owned = 0;
   }
   send.resize(ranks.size());
   recv.resize(ranks.size());

@@ -27,7 +27,7 @@ namespace LAMMPS_NS {
  */
 class MPMHalo : protected Pointers {
  public:
-  explicit MPMHalo(class LAMMPS *);
+  explicit MPMHalo(class LAMMPS *lmp) : Pointers(lmp) {}
 
   /** Find the sharers of the canonical blocks of the grid, and who owns a block (lowest rank). */
   void setup(MPM_NS::Grid &);
@@ -35,8 +35,7 @@ class MPMHalo : protected Pointers {
   /** Sum reals [lane, lane+nlane) of all node records of shared blocks. */
   void sum(double *nodes, int nreal, int lane, int nlane);
 
-  bigint bytes_sent;    ///< since the last reset by the caller
-  int nneighbors() const { return (int) ranks.size(); }
+  bigint bytes_sent = 0;    ///< since the last reset by the caller
   double memory_usage() const;
 
  private:

@@ -11,7 +11,6 @@
 #include "atom.h"
 #include "fix_mpm_elements.h"
 #include "force.h"
-#include "lammps.h"
 #include "mpm_field.h"
 #include "mpm_passes.h"
 
@@ -19,16 +18,6 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 /* ---------------------------------------------------------------------- */
-
-MPMLedger::MPMLedger(LAMMPS *lmp, MPMField &field) :
-    Pointers(lmp), MPMEnergies(), on(false), field(field), before_actions(0.0), kinetic_points(0.0)
-{
-}
-
-void MPMLedger::setup()
-{
-  if (on) kinetic_points = point_kinetic_energy();
-}
 
 void MPMLedger::remove(double kinetic, double stored)
 {
@@ -43,15 +32,12 @@ double MPMLedger::nodal_kinetic_energy(int lane) const
 {
   Grid &grid = field.grid;
   double sum = 0.0;
-  for (std::size_t s = 0; s < grid.blocks.size(); s++) {
-    const uint64_t owned = grid.blocks[s].owned;
-    const double *record = grid.record(s, 0);
-    for (int n = 0; n < NODES_PER_BLOCK; n++, record += grid.nreal) {
-      if (!(owned >> n & 1)) continue;
-      const double *v = record + lane;
+  for (std::size_t s = 0; s < grid.blocks.size(); s++)
+    for (int n = 0; n < NODES_PER_BLOCK; n++) {
+      if (!(grid.blocks[s].owned >> n & 1)) continue;
+      const double *record = grid.record(s, n), *v = record + lane;
       sum += record[3] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
     }
-  }
   return 0.5 * force->mvv2e * sum;
 }
 

@@ -29,13 +29,16 @@ struct MPMEnergies {
 /** The energy accounts of a field. */
 class MPMLedger : protected Pointers, public MPMEnergies {
  public:
-  bool on;                      ///< a compute mpm/energy exists; set in init()
+  bool on = false;              ///< a compute mpm/energy exists; set in init()
   std::vector<double> start;    ///< of compute mpm/energy, until the end of the next run
 
-  MPMLedger(class LAMMPS *, MPMField &);
+  MPMLedger(class LAMMPS *lmp, MPMField &field) : Pointers(lmp), MPMEnergies(), field(field) {}
 
   /** Start of a run. */
-  void setup();
+  void setup()
+  {
+    if (on) kinetic_points = point_kinetic_energy();
+  }
   /** After the momentum equation, before node actions. */
   void nodes_solved() { before_actions = boundary + contact + transfer; }
   /** Before points get what forces and node actions have done to the nodes. */
@@ -56,8 +59,8 @@ class MPMLedger : protected Pointers, public MPMEnergies {
 
  private:
   MPMField &field;
-  double before_actions;    // sum of entries before node actions
-  double kinetic_points;    // at the end of the last step
+  double before_actions = 0.0;    // sum of entries before node actions
+  double kinetic_points = 0.0;    // at the end of the last step
 
   double external_work(const double *force_on) const;
 };

@@ -6,12 +6,11 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Cures for volumetric locking of fix mpm: averages over the points around each point.
-
 #include "mpm_locking.h"
 
 #include "atom.h"
 #include "fix_mpm_material.h"
+#include "mpm_field.h"
 #include "mpm_field.h"
 #include "mpm_frame.h"
 #include "mpm_passes.h"
@@ -53,19 +52,22 @@ double *MPMLocking::room_for_gradients()
   return gradients.data();
 }
 
-double MPMLocking::memory_usage() const
-{
-  return (gradients.capacity() + tau.capacity()) * sizeof(double);
-}
-
 /* ----------------------------------------------------------------------
-   q <- S q with q = vectors[3*i] and V = weights[i], for all points of this field, at the
-   positions in rows(): the transfers of PIC with volumes for masses
+   q <- S q with q = vectors[3*i] and V = weights[i], which value(i, q, V) sets, for all points of this
+   field, at the positions in rows(): the transfers of PIC with volumes for masses
 ------------------------------------------------------------------------- */
 
-void MPMLocking::average_around_points()
+template <class Value> void MPMLocking::average_around_points(const Value &value)
 {
   auto &work = field.work;
+  work.vectors.resize(3 * (std::size_t) atom->nmax);
+  work.weights.resize(std::max(work.weights.size(), (std::size_t) atom->nmax));
+  for (const auto &run : field.map->runs)
+    for (bigint i = run.first; i < run.last; i++) {
+      value(i, work.vectors[3 * i], work.weights[i]);
+      work.vectors[3 * i + 1] = work.vectors[3 * i + 2] = 0.0;
+    }
+
   const auto &pic = field.pic;
   const PointRows r = field.rows_at_rest(work.vectors.data(), work.weights.data());
   TransferStep s = field.step_data();
@@ -95,21 +97,16 @@ void MPMLocking::average_around_points()
 void MPMLocking::strain(const double *L, double dt)
 {
   MPMFrame &frame = *field.frame;
-  auto &change = field.work.vectors, &volume = field.work.weights;
+  const auto &change = field.work.vectors, &volume = field.work.weights;
   const int nL = field.lattice.dim * field.lattice.dim;
   const bool plane = frame.is_plane();
-  change.resize(3 * (std::size_t) atom->nmax);
-  volume.resize(std::max(volume.size(), (std::size_t) atom->nmax));
 
-  for (const auto &run : field.map->runs)
-    for (bigint i = run.first; i < run.last; i++) {
-      const double mine = frame.volume_change((int) i, L + nL * i, dt);
-      const bool good = mine > -1.0 && std::isfinite(mine);    // or else it is a bad point
-      change[3 * i] = good ? mine : 0.0;
-      change[3 * i + 1] = change[3 * i + 2] = 0.0;
-      volume[i] = good ? atom->vfrac[i] * field.points->jacobian(i) : 0.0;
-    }
-  average_around_points();
+  average_around_points([&](bigint i, double &q, double &V) {
+    const double mine = frame.volume_change((int) i, L + nL * i, dt);
+    const bool good = mine > -1.0 && std::isfinite(mine);    // or else it is a bad point
+    q = good ? mine : 0.0;
+    V = good ? atom->vfrac[i] * field.points->jacobian(i) : 0.0;
+  });
 
   const PointRows r = field.rows();
   double averaged[9 * BATCH];
@@ -138,23 +135,18 @@ void MPMLocking::strain(const double *L, double dt)
 
 void MPMLocking::average_pressure()
 {
-  auto &pressure = field.work.vectors, &volume = field.work.weights;
-  pressure.resize(3 * (std::size_t) atom->nmax);
-  volume.resize(std::max(volume.size(), (std::size_t) atom->nmax));
+  const auto &pressure = field.work.vectors, &volume = field.work.weights;
   tau.resize(6 * (std::size_t) atom->nmax);
   const auto mean = [](const double *t) {
     return (t[0] + t[1] + t[2]) / 3.0;
   };
   double **const own = field.points->tau;
 
-  for (const auto &run : field.map->runs)
-    for (bigint i = run.first; i < run.last; i++) {
-      const double J = field.points->jacobian((int) i);
-      pressure[3 * i] = mean(own[i]) / J;
-      pressure[3 * i + 1] = pressure[3 * i + 2] = 0.0;
-      volume[i] = atom->vfrac[i] * J;
-    }
-  average_around_points();
+  average_around_points([&](bigint i, double &q, double &V) {
+    const double J = field.points->jacobian((int) i);
+    q = mean(own[i]) / J;
+    V = atom->vfrac[i] * J;
+  });
 
   for (const auto &run : field.map->runs)
     for (bigint i = run.first; i < run.last; i++) {

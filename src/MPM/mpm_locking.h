@@ -9,12 +9,9 @@
 #ifndef LMP_MPM_LOCKING_H
 #define LMP_MPM_LOCKING_H
 
-#include "pointers.h"
-
-#include <vector>
+#include "mpm_field.h"
 
 namespace LAMMPS_NS {
-class MPMField;
 
 /** Cures for volumetric locking: averages over the points around each point. */
 class MPMLocking : protected Pointers {
@@ -32,13 +29,13 @@ class MPMLocking : protected Pointers {
   /** Kirchhoff stress with averaged pressure, [n][6]. */
   double *stress() { return tau.data(); }
 
-  double memory_usage() const;
+  double memory_usage() const { return (gradients.capacity() + tau.capacity()) * sizeof(double); }
 
  private:
   MPMField &field;
   std::vector<double> gradients, tau;
 
-  void average_around_points();
+  template <class Value> void average_around_points(const Value &);
 };
 
 }    // namespace LAMMPS_NS

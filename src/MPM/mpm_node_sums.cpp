@@ -8,7 +8,6 @@
 
 #include "mpm_node_sums.h"
 
-#include "atom.h"
 #include "fix_mpm_material.h"
 #include "mpm_edges.h"
 #include "mpm_frame.h"

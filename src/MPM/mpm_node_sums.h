@@ -11,7 +11,6 @@
 
 // Sums over the points of a field that others than its step need: contact, surfaces, couplings.
 
-#include <cstdint>
 #include <functional>
 #include <vector>
 

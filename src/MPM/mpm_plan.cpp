@@ -10,7 +10,6 @@
 
 #include "comm.h"
 #include "modify.h"
-#include "mpm_boxes.h"
 #include "mpm_cpdi.h"
 #include "mpm_edges.h"
 #include "mpm_every.h"

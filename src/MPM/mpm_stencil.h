@@ -12,10 +12,10 @@
 // The nodes that a point reaches, one by one: for sums that the fast transfers do not make. These are
 // the only loops over the nodes of a point outside of transfer/.
 
-#include "mpm_field.h"
+#include "mpm_cpdi.h"
 #include "mpm_frame.h"
 
-#include <cstdint>
+#include <cmath>
 
 namespace LAMMPS_NS {
 
@@ -35,63 +35,77 @@ class MPMStencil {
   /** Nodes along one axis that a position reaches (in node spacings from the origin): their number,
    *  the first one, the weights and, if asked for, their slopes for one node spacing. Points of finite
    *  size: those of the spline with their stencil. */
-  int weights(double t, int &first, double w[4], double *slopes = nullptr) const;
+  int weights(double t, int &first, double w[4], double *slopes = nullptr) const
+  {
+    const MPM_NS::Shape shape = field.options.shape;
+    if (shape == MPM_NS::BERNSTEIN) return evaluate<MPM_NS::Bernstein>(t, first, w, slopes);
+    const int order = MPM_NS::stencil_order(shape);
+    if (order == 1) return evaluate<MPM_NS::BSpline<1>>(t, first, w, slopes);
+    if (order == 2) return evaluate<MPM_NS::BSpline<2>>(t, first, w, slopes);
+    return evaluate<MPM_NS::BSpline<3>>(t, first, w, slopes);
+  }
 
   /** Calls f(Node) for all nodes of point i, which is in the given block. */
   template <class F> void visit(const MPM_NS::Grid::Block &block, int i, const F &f) const
   {
-    double corner[24], share[8], slope[24];
-    const int n = corners(i, corner, share, slope), dim = field.lattice.dim;
+    const auto &lattice = field.lattice;
+    const int dim = lattice.dim;
     const double *const place = field.frame->places()[i];
-    for (int c = 0; c < n; c++) {
-      double x[3] = {0.0, 0.0, 0.0};
-      for (int d = 0; d < dim; d++) x[d] = n > 1 ? place[d] + corner[dim * c + d] : place[d];
-      visit_at(block, i, x, share[c], n > 1 ? slope + dim * c : nullptr, f);
+
+    // corners of the domain of the point, relative to it, their shares, and the gradients of these;
+    // a point without domain is the only one
+
+    const int ncorner = field.domains ? 1 << dim : 1;
+    double corner[24] = {0.0}, share[8] = {1.0}, slope[24];
+    if (field.domains) field.domains->corners_of(i, corner, share, slope);
+
+    for (int c = 0; c < ncorner; c++) {
+      int base[3] = {0, 0, 0}, count[3] = {1, 1, 1}, k[3];
+      double at[3] = {0.0, 0.0, 0.0}, w[3][4] = {{0.0}, {0.0}, {1.0}}, dw[3][4] = {{0.0}};
+      for (int d = 0; d < dim; d++) {
+        const double x = field.domains ? place[d] + corner[dim * c + d] : place[d];
+        const double t = (x - lattice.origin[d]) / lattice.h;
+        at[d] = (place[d] - lattice.origin[d]) / lattice.h;
+        count[d] = weights(t, base[d], w[d], dw[d]);
+        if (!field.boxes) continue;
+        const double size = field.boxes->sizes[3 * (std::size_t) i + d];
+        MPM_NS::Gimp::weights(t - MPM_NS::Gimp::shift - base[d], size, w[d]);
+        MPM_NS::Gimp::gradients(t - MPM_NS::Gimp::shift - base[d], size, dw[d]);
+      }
+      Node node;
+      for (k[0] = 0; k[0] < count[0]; k[0]++)
+        for (k[1] = 0; k[1] < count[1]; k[1]++)
+          for (k[2] = 0; k[2] < count[2]; k[2]++) {
+            int index[3] = {0, 0, 0};
+            const double N = w[0][k[0]] * w[1][k[1]] * w[2][k[2]];
+            for (int d = 0; d < 3; d++) {
+              node.r[d] = node.gradient[d] = 0.0;
+              if (d >= dim) continue;
+              const int e = (d + 1) % 3, other = (d + 2) % 3;
+              index[d] = base[d] + k[d];
+              node.r[d] = at[d] - index[d];
+              node.gradient[d] = field.domains
+                  ? slope[dim * c + d] * N
+                  : dw[d][k[d]] * w[e][k[e]] * w[other][k[other]] / lattice.h;
+            }
+            node.number = field.grid.locate_near(block, index);
+            node.weight = share[c] * w[0][k[0]] * w[1][k[1]] * w[2][k[2]];
+            f(node);
+          }
     }
   }
 
  private:
   const MPMField &field;
 
-  /** Corners of the domain of a point relative to it, their weights, and the gradients of these; a
-   *  point without domain is the only one. */
-  int corners(int i, double *x, double *w, double *g) const;
-  void weights_of_size(int i, int axis, double t, int first, double w[4], double slopes[4]) const;
-
-  /** Functions at x. g: gradient of a corner, null: that of the functions. */
-  template <class F>
-  void visit_at(const MPM_NS::Grid::Block &block, int i, const double *x, double share,
-                const double *g, const F &f) const
+  template <class Functions> static int evaluate(double t, int &first, double w[4], double *slopes)
   {
-    const auto &lattice = field.lattice;
-    int base[3] = {0, 0, 0}, count[3] = {1, 1, 1};
-    double at[3] = {0.0, 0.0, 0.0}, w[3][4] = {{0.0}, {0.0}, {1.0}}, dw[3][4] = {{0.0}};
-    for (int d = 0; d < lattice.dim; d++) {
-      const double t = (x[d] - lattice.origin[d]) / lattice.h;
-      at[d] = (field.frame->places()[i][d] - lattice.origin[d]) / lattice.h;
-      count[d] = weights(t, base[d], w[d], dw[d]);
-      if (field.boxes) weights_of_size(i, d, t, base[d], w[d], dw[d]);
-    }
-    Node node;
-    int k[3];
-    for (k[0] = 0; k[0] < count[0]; k[0]++)
-      for (k[1] = 0; k[1] < count[1]; k[1]++)
-        for (k[2] = 0; k[2] < count[2]; k[2]++) {
-          int index[3] = {0, 0, 0};
-          const double N = w[0][k[0]] * w[1][k[1]] * w[2][k[2]];
-          for (int d = 0; d < 3; d++) {
-            node.r[d] = node.gradient[d] = 0.0;
-            if (d >= lattice.dim) continue;
-            const int e = (d + 1) % 3, other = (d + 2) % 3;
-            index[d] = base[d] + k[d];
-            node.r[d] = at[d] - index[d];
-            node.gradient[d] = g ? g[d] * N
-                                 : dw[d][k[d]] * w[e][k[e]] * w[other][k[other]] / lattice.h;
-          }
-          node.number = field.grid.locate_near(block, index);
-          node.weight = share * w[0][k[0]] * w[1][k[1]] * w[2][k[2]];
-          f(node);
-        }
+    const double cell = std::floor(t / Functions::cell - Functions::shift);
+    const double f = t / Functions::cell - Functions::shift - cell;
+    first = Functions::cell * (int) cell;
+    Functions::weights(f, w);
+    if (slopes) Functions::gradients(f, slopes);
+    return Functions::nodes;
   }
 };
 

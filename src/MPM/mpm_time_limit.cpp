@@ -14,7 +14,7 @@
 #include "fix_mpm_elements.h"
 #include "fix_mpm_material.h"
 #include "material/batch.h"
-#include "mpm_boxes.h"
+#include "mpm_cpdi.h"
 #include "mpm_field.h"
 #include "mpm_frame.h"
 #include "mpm_guard.h"
@@ -35,11 +35,6 @@ static constexpr int CHECK_EVERY = 20;    // steps between checks of the time st
 
 /* ---------------------------------------------------------------------- */
 
-MPMTimeLimit::MPMTimeLimit(LAMMPS *lmp, MPMField &field) :
-    Pointers(lmp), volume_rate({0.0, 0}), watch_volume(false), field(field), next_check(0)
-{
-}
-
 void MPMTimeLimit::setup()
 {
   next_check = update->ntimestep;
@@ -48,11 +43,7 @@ void MPMTimeLimit::setup()
   warn();
 }
 
-/* ----------------------------------------------------------------------
-   smallest h/(c + |v|) over this rank's points. Total frame: points stay where they are on the
-   lattice, but waves cross it faster where it is compressed: a plane wave with wave vector K there
-   has k = F^-T K in space, |k| <= |K|/s with the smallest singular value s of F: s h/c
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
 double MPMTimeLimit::stable_dt(tagint &id_min, double &wave_speed) const
 {

@@ -25,10 +25,10 @@ class MPMTimeLimit : protected Pointers {
   struct VolumeRate {
     double most;
     tagint tag;
-  } volume_rate;
-  bool watch_volume;    ///< keep volume_rate; set at the start of a run by fix mpm/dt
+  } volume_rate = {0.0, 0};
+  bool watch_volume = false;    ///< keep volume_rate; set at the start of a run by fix mpm/dt
 
-  MPMTimeLimit(class LAMMPS *, MPMField &);
+  MPMTimeLimit(class LAMMPS *lmp, MPMField &field) : Pointers(lmp), field(field) {}
 
   /** Start of a run. */
   void setup();
@@ -41,7 +41,7 @@ class MPMTimeLimit : protected Pointers {
 
  private:
   MPMField &field;
-  bigint next_check;
+  bigint next_check = 0;
 
   double stable_share(double size) const;
   double share_of_thin_nodes() const;

@@ -20,11 +20,23 @@ using namespace LAMMPS_NS;
 
 static constexpr int64_t CHUNK = 65536;    // values converted at a time
 
-static int width(VTKFile::Type type)
+template <typename T> static void convert(const double *from, int64_t n, char *to)
 {
-  static const int bytes[] = {8, 4, 1, 8, 4};
-  return bytes[type];
+  for (int64_t k = 0; k < n; k++) {
+    const T value = static_cast<T>(from[k]);
+    memcpy(to + k * sizeof(T), &value, sizeof(T));
+  }
 }
+
+// in the order of VTKFile::Type
+static const struct {
+  const char *name;
+  int bytes;
+  void (*convert)(const double *, int64_t, char *);
+} types[] = {{"Int64", 8, convert<int64_t>},
+             {"UInt8", 1, convert<uint8_t>},
+             {"Float64", 8, convert<double>},
+             {"Float32", 4, convert<float>}};
 
 static const char *byte_order()
 {
@@ -57,7 +69,7 @@ std::string VTKFile::name_error(const std::string &name, const std::string &exte
 int VTKFile::add(const std::string &section, const std::string &name, Type type, int ncomponent,
                  int64_t ntuple)
 {
-  Array a = {section, name, type, ncomponent, ntuple, 0, ntuple * ncomponent * width(type)};
+  Array a = {section, name, type, ncomponent, ntuple, 0, ntuple * ncomponent * types[type].bytes};
   if (!arrays.empty())
     a.offset = arrays.back().offset + (int64_t) sizeof(uint64_t) + arrays.back().bytes;
   arrays.push_back(a);
@@ -69,8 +81,6 @@ int VTKFile::add(const std::string &section, const std::string &name, Type type,
 void VTKFile::begin(FILE *fp_in, const std::string &piece, double time, int64_t step)
 {
   fp = fp_in;
-
-  static const char *const type_name[] = {"Int64", "Int32", "UInt8", "Float64", "Float32"};
   std::string text = fmt::format(
       "<?xml version=\"1.0\"?>\n"
       "<VTKFile type=\"{0}\" version=\"1.0\" byte_order=\"{1}\" header_type=\"UInt64\">\n"
@@ -93,7 +103,7 @@ void VTKFile::begin(FILE *fp_in, const std::string &piece, double time, int64_t 
     }
     text += fmt::format("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" "
                         "format=\"appended\" offset=\"{}\"/>\n",
-                        type_name[a.type], a.name, a.ncomponent, a.offset);
+                        types[a.type].name, a.name, a.ncomponent, a.offset);
   }
   if (!section.empty()) text += fmt::format("</{}>\n", section);
   text += fmt::format("</Piece>\n</{}>\n<AppendedData encoding=\"raw\">\n_", kind);
@@ -115,41 +125,17 @@ void VTKFile::begin(FILE *fp_in, const std::string &piece, double time, int64_t 
 
 /* ---------------------------------------------------------------------- */
 
-template <typename T> static void convert(const double *from, int64_t n, char *to)
-{
-  for (int64_t k = 0; k < n; k++) {
-    const T value = static_cast<T>(from[k]);
-    memcpy(to + k * sizeof(T), &value, sizeof(T));
-  }
-}
-
 void VTKFile::write(int array, int64_t first, int64_t n, const double *values)
 {
   const Array &a = arrays[array];
-  const int bytes = width(a.type);
+  const int bytes = types[a.type].bytes;
   platform::fseek(fp, start + a.offset + (int64_t) sizeof(uint64_t) + first * a.ncomponent * bytes);
 
   const int64_t total = n * a.ncomponent;
   buffer.resize(std::min(total, CHUNK) * bytes);
   for (int64_t done = 0; done < total; done += CHUNK) {
     const int64_t count = std::min(total - done, CHUNK);
-    switch (a.type) {
-      case INT64:
-        convert<int64_t>(values + done, count, buffer.data());
-        break;
-      case INT32:
-        convert<int32_t>(values + done, count, buffer.data());
-        break;
-      case UINT8:
-        convert<uint8_t>(values + done, count, buffer.data());
-        break;
-      case FLOAT64:
-        convert<double>(values + done, count, buffer.data());
-        break;
-      case FLOAT32:
-        convert<float>(values + done, count, buffer.data());
-        break;
-    }
+    types[a.type].convert(values + done, count, buffer.data());
     fwrite(buffer.data(), bytes, count, fp);
   }
 }

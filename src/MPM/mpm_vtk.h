@@ -11,8 +11,14 @@
 
 // VTK XML files for the dump styles. Nothing here knows about points or grids.
 
+#include "error.h"
+#include "mpm_options.h"
+#include "update.h"
+
 #include <cstdint>
 #include <cstdio>
+#include <cstring>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -22,10 +28,10 @@ namespace MPM_NS {
  *  when the header is written: the values may come in any order and in pieces. */
 class VTKFile {
  public:
-  enum Type { INT64, INT32, UINT8, FLOAT64, FLOAT32 };
+  enum Type { INT64, UINT8, FLOAT64, FLOAT32 };
 
   /** kind: of data set, PolyData or UnstructuredGrid. */
-  explicit VTKFile(const std::string &kind) : kind(kind), fp(nullptr), start(0) {}
+  explicit VTKFile(const std::string &kind) : kind(kind) {}
 
   /** What is wrong with the name of a dump file and how to mend it; empty: nothing.
    *  series: one file per snapshot, with a * for the time step. */
@@ -52,8 +58,8 @@ class VTKFile {
   };
   std::string kind;
   std::vector<Array> arrays;
-  FILE *fp;
-  int64_t start;    // of the appended data in the file
+  FILE *fp = nullptr;
+  int64_t start = 0;    // of the appended data in the file
   std::vector<char> buffer;
 };
 
@@ -65,7 +71,7 @@ class VTKCollection {
   static std::string list_name(const std::string &pattern, const std::string &fallback,
                                const std::string &suffix = "");
 
-  explicit VTKCollection(const std::string &list) : list(list), is_read(false) {}
+  explicit VTKCollection(const std::string &list) : list(list) {}
 
   /** Add a file (path as opened, in the directory of the list) and write the list; only the last
    *  keep entries stay (0 or less: all). A file that is listed already gets the new time.
@@ -79,10 +85,49 @@ class VTKCollection {
   };
   std::string list;
   std::vector<Entry> entries;
-  bool is_read;
+  bool is_read = false;
 
   void read();
 };
 
 }    // namespace MPM_NS
+
+namespace LAMMPS_NS {
+
+/** What dump styles that write VTK files share, whichever dump of LAMMPS they derive from. */
+template <class Base> class DumpVTKSeries : public Base {
+ protected:
+  bool single = false;    // precision of reals
+  std::unique_ptr<MPM_NS::VTKCollection> collection;
+
+  using Base::Base;
+
+  /** End of the constructor: rows of numbers are gathered, not text, and files go to a list. */
+  void begin_series(const std::string &suffix = "")
+  {
+    this->buffer_allow = this->buffer_flag = 0;
+    this->binary = 1;
+    if (strcmp(this->id, "WRITE_DUMP") == 0) return;
+    const auto list = MPM_NS::VTKCollection::list_name(this->filename, this->id, suffix);
+    collection = std::make_unique<MPM_NS::VTKCollection>(list);
+  }
+
+  int modify_param(int narg, char **arg) override
+  {
+    const int n = read_precision(this->lmp, narg, arg, single);
+    return n > 0 ? n : Base::modify_param(narg, arg);
+  }
+
+  void write_footer() override
+  {
+    fflush(this->fp);
+    if (!collection) return;
+    const auto step = this->update->ntimestep;
+    const auto wrong = collection->add(utils::star_subst(this->filename, step, this->padflag),
+                                       this->compute_time(), this->maxfiles, this->append_flag);
+    if (!wrong.empty()) this->error->one(FLERR, Error::NOLASTLINE, "Dump {} {}", this->id, wrong);
+  }
+};
+
+}    // namespace LAMMPS_NS
 #endif
