@@ -171,6 +171,12 @@ class MPMField : protected Pointers {
     for (int d = 0; d < 3; d++)
       x[d] = d < lattice.dim ? lattice.origin[d] + index[d] * lattice.h : 0.0;
   }
+  void node_position(int64_t node, double x[3]) const
+  {
+    int index[3];
+    grid.node_index(node, index);
+    node_position(index, x);
+  }
   /** Volume of a cell: of the part of a body that belongs to a node. */
   double cell_volume() const
   {
