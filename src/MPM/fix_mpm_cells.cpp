@@ -14,7 +14,6 @@
 #include "grid2d.h"
 #include "grid3d.h"
 #include "memory.h"
-#include "modify.h"
 #include "mpm_field.h"
 #include "mpm_frame.h"
 #include "mpm_points.h"
