@@ -66,7 +66,6 @@
 #include "domain.h"
 #include "error.h"
 #include "force.h"
-#include "group.h"
 #include "math_extra.h"
 #include "modify.h"
 #include "mpm_field.h"
@@ -83,6 +82,8 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 static const char *const FACE_NAME[6] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
+static constexpr const char *PERIODIC =
+    "Fix mpm/boundary face {} belongs to a periodic axis: use boundary f there";
 static constexpr double ON_SURFACE = 1.0e-6;    // in node spacings
 static constexpr double FAR = 1.0e8;            // in node spacings
 
@@ -139,10 +140,7 @@ Options MPMBoundaryOptions::declare(int dim)
   return o;
 }
 
-FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), region(nullptr), rotating(false), acted(false), region_was{},
-    motion_step(-1), work(0.0), dt_last(0.0), reaction_known(true), counting(false), decided(false),
-    kinetic(0.0)
+FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
 {
   if (igroup != 0)
     error->all(FLERR, 1,
@@ -163,11 +161,7 @@ FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) :
         error->all(FLERR, iarg, "Fix mpm/boundary face {} is given twice", arg[iarg]);
       if (face >= 4 && domain->dimension == 2)
         error->all(FLERR, iarg, "Fix mpm/boundary face {} does not exist in 2d", arg[iarg]);
-      if (domain->periodicity[face / 2])
-        error->all(FLERR, iarg,
-                   "Fix mpm/boundary face {} belongs to a periodic axis: "
-                   "use boundary f there",
-                   arg[iarg]);
+      if (domain->periodicity[face / 2]) error->all(FLERR, iarg, PERIODIC, arg[iarg]);
       face_list.push_back(face);
       iarg++;
     }
@@ -182,23 +176,15 @@ FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) :
 
   Options options = declare(domain->dimension);
   read_options(lmp, options, narg, arg, iarg);
-  rotating = options.given("rotate");
-  const bool moving = rotating || options.given("velocity");
   const double length = MathExtra::len3(axis);
-  for (int d = 0; d < 3 && rotating; d++) axis[d] /= length;
-  for (int d = 0; d < 3; d++) {
-    constrained[d] = velocity[d].given;
-    impulse[d] = reaction[d] = impulse[3 + d] = reaction[3 + d] = 0.0;
-  }
-  memset(&wall, 0, sizeof(Wall));
-  memset(before, 0, sizeof(before));
+  for (int d = 0; d < 3 && rotating(); d++) axis[d] /= length;
 
   if (!region_id.empty()) {
     region = domain->get_region_by_id(region_id);
     if (!region)
       error->all(FLERR, 4, "Region {} for fix mpm/boundary does not exist: define it before",
                  region_id);
-    if (moving && region->dynamic)
+    if ((options.given("rotate") || options.given("velocity")) && region->dynamic)
       error->all(FLERR,
                  "Fix mpm/boundary takes the velocity of region {} from its own motion: "
                  "drop velocity and rotate, or the motion of the region",
@@ -211,13 +197,6 @@ FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) :
   extscalar = extvector = 1;
   restart_global = 1;
   dynamic_group_allow = 0;
-}
-
-/* ---------------------------------------------------------------------- */
-
-int FixMPMBoundary::setmask()
-{
-  return 0;    // called by fix mpm
 }
 
 /* ---------------------------------------------------------------------- */
@@ -235,7 +214,7 @@ bool FixMPMBoundary::acts_on(const MPMField &field) const
 bool FixMPMBoundary::holds_axis(const MPMField &field) const
 {
   return acts_on(field) && std::count(face_list.begin(), face_list.end(), 0) && !decides() &&
-      !rotating && constrained[0] && velocity[0].variable.empty() && velocity[0].value == 0.0;
+      !rotating() && velocity[0].given && velocity[0].variable.empty() && velocity[0].value == 0.0;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -247,18 +226,19 @@ void FixMPMBoundary::init()
   const auto fields = MPMField::all(lmp);
   if (fields.empty())
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/boundary needs a fix mpm to act on");
-  bool found = false;
+  const bool moves = std::any_of(velocity, velocity + 3, [](const NumberOrVariable &v) {
+    return !v.variable.empty() || v.value != 0.0;
+  });
+  nodes.clear();    // listed with the topology
   for (auto *field : fields) {
     if (!acts_on(*field)) continue;
-    found = true;
-    bool moves = false;
-    for (const auto &v : velocity) moves = moves || !v.variable.empty() || v.value != 0.0;
+    nodes.push_back({field, faces_on_lattice(*field), {}, {}, {}, {}});
     const std::string keeps = "its nodes keep to the same material wherever it goes: instead of ";
     refuse_field(lmp, *this, *field,
                  {{field->options.total && kind == SEPARATE, "frame total",
                    keeps + "separate, use fix wall/gran or a pair style"},
-                  {field->options.total && (rotating || region_moves()), "frame total",
-                   keeps + (rotating ? "rotate" : "a moving region") +
+                  {field->options.total && (rotating() || region_moves()), "frame total",
+                   keeps + (rotating() ? "rotate" : "a moving region") +
                        ", use stick velocity with variables"},
                   {field->options.most_distorted > 0.0 && moves, "reference update",
                    "the material that a wall with velocity holds would leave it with the first "
@@ -266,10 +246,9 @@ void FixMPMBoundary::init()
                   {field->options.stress_before() && decides(), "scheme usf and usavg",
                    "separate and friction need the contact before it is known: use usl or musl"}});
   }
-  if (!found)
+  if (nodes.empty())
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/boundary field {} is not the ID of a fix mpm",
                field_id);
-  nodes.clear();    // made again with the topology
 
   for (auto &v : velocity) find_variable(lmp, v, "fix mpm/boundary velocity");
   find_variable(lmp, rate, "fix mpm/boundary rotate");
@@ -281,13 +260,11 @@ void FixMPMBoundary::init()
                  region_id);
     if (region->openflag)
       error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/boundary cannot use region {}: open faces have "
-                 "no inside",
-                 region_id);
+                 "Fix mpm/boundary cannot use region {}: open faces have no inside", region_id);
     if (region->dynamic_check() && region->nregion > 1)
       error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/boundary cannot use region {}: a union or "
-                 "intersection must not move; use one fix mpm/boundary for each member",
+                 "Fix mpm/boundary cannot use region {}: a union or intersection must not move; "
+                 "use one fix mpm/boundary for each member",
                  region_id);
   }
 
@@ -295,60 +272,45 @@ void FixMPMBoundary::init()
 
   for (int face : face_list) {
     if (domain->periodicity[face / 2])
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/boundary face {} belongs to a periodic axis: "
-                 "use boundary f there",
-                 FACE_NAME[face]);
+      error->all(FLERR, Error::NOLASTLINE, PERIODIC, FACE_NAME[face]);
     for (auto *ifix : modify->get_fix_by_style("^mpm/boundary$")) {
       auto *other = dynamic_cast<FixMPMBoundary *>(ifix);
       if (other == this) continue;
       if (!field_id.empty() && !other->field_id.empty() && field_id != other->field_id) continue;
       if (std::count(other->face_list.begin(), other->face_list.end(), face))
         error->all(FLERR, Error::NOLASTLINE,
-                   "Face {} belongs to fix mpm/boundary {} and {}: remove "
-                   "one, or give them different fields",
+                   "Face {} belongs to fix mpm/boundary {} and {}: remove one, or give them "
+                   "different fields",
                    FACE_NAME[face], id, other->id);
 
       // opposite face
 
-      if (std::count(other->face_list.begin(), other->face_list.end(), face ^ 1))
-        for (auto *each : fields) {
-          const auto &field = *each;
-          if (!acts_on(field) || !other->acts_on(field)) continue;
-          if (narrow({face_on_lattice(field, face), face_on_lattice(field, face ^ 1)}, face / 2))
-            error->all(FLERR, Error::NOLASTLINE,
-                       "Faces {} and {} are less than 3 cells apart, or 5 when they are "
-                       "not in planes of nodes: they must be in the same fix mpm/boundary",
-                       FACE_NAME[face], FACE_NAME[face ^ 1]);
-        }
+      if (!std::count(other->face_list.begin(), other->face_list.end(), face ^ 1)) continue;
+      for (const auto &list : nodes) {
+        const auto &field = *list.field;
+        if (other->acts_on(field) &&
+            narrow({face_on_lattice(field, face), face_on_lattice(field, face ^ 1)}, face / 2))
+          error->all(FLERR, Error::NOLASTLINE,
+                     "Faces {} and {} are less than 3 cells apart, or 5 when they are not in "
+                     "planes of nodes: they must be in the same fix mpm/boundary",
+                     FACE_NAME[face], FACE_NAME[face ^ 1]);
+      }
     }
-    for (auto *each : fields) {
-      const auto &field = *each;
-      if (!acts_on(field)) continue;
-      const auto faces = faces_on_lattice(field);
-      if (decides() && narrow(faces, face / 2))
+    for (const auto &list : nodes) {
+      if (!narrow(list.faces, face / 2)) continue;
+      if (decides())
         error->all(FLERR, Error::NOLASTLINE,
-                   "Fix mpm/boundary separate and friction need at least "
-                   "3 cells between opposite faces, or 5 when they are not in planes of nodes");
-      for (const auto &f : faces)
-        if (f.cut && f.axis == face / 2 && narrow(faces, f.axis))
+                   "Fix mpm/boundary separate and friction need at least 3 cells between opposite "
+                   "faces, or 5 when they are not in planes of nodes");
+      for (const auto &f : list.faces)
+        if (f.cut && f.axis == face / 2)
           error->all(FLERR, Error::NOLASTLINE,
                      "Fix mpm/boundary faces that are not in planes of nodes of fix mpm {} must be "
                      "at least 5 cells apart: change its spacing or origin",
-                     field.id());
+                     list.field->id());
     }
   }
   motion_step = -1;
-}
-
-/* ----------------------------------------------------------------------
-   when variables are needed again
-------------------------------------------------------------------------- */
-
-bigint FixMPMBoundary::next_step() const
-{
-  const auto *field = MPMField::all(lmp)[0];
-  return update->ntimestep + field->steps_to_next();
 }
 
 /* ----------------------------------------------------------------------
@@ -359,9 +321,9 @@ bigint FixMPMBoundary::next_step() const
 void FixMPMBoundary::setup(int)
 {
   if (!region_moves()) return;
-  modify->clearstep_compute();
-  region->prematch();
-  modify->addstep_compute(next_step());
+  evaluate_in_step(lmp, true, [&] {
+    region->prematch();
+  });
   const auto *field = MPMField::all(lmp)[0];
   if (!acted || field->steps_to_next() == field->options.every) note_region();
 }
@@ -391,13 +353,13 @@ FixMPMBoundary::Face FixMPMBoundary::face_on_lattice(const MPMField &field, int 
   const double plane_x = origin + f.plane * h;
   f.cut = false;
   f.first = f.nweight = 0;
-  if (fabs(x - plane_x) > ON_SURFACE * h) cut_weights(field, x, f);
+  if (fabs(x - plane_x) > ON_SURFACE * h) f.cut_weights(field, x);
   return f;
 }
 
-std::vector<FixMPMBoundary::Face> FixMPMBoundary::faces_on_lattice(const MPMField &field) const
+FixMPMBoundary::Faces FixMPMBoundary::faces_on_lattice(const MPMField &field) const
 {
-  std::vector<Face> faces;
+  Faces faces;
   for (int face : face_list) faces.push_back(face_on_lattice(field, face));
   return faces;
 }
@@ -406,7 +368,7 @@ std::vector<FixMPMBoundary::Face> FixMPMBoundary::faces_on_lattice(const MPMFiel
    true when the planes of both faces of an axis have images inside that are the same nodes
 ------------------------------------------------------------------------- */
 
-bool FixMPMBoundary::narrow(const std::vector<Face> &faces, int axis) const
+bool FixMPMBoundary::narrow(const Faces &faces, int axis)
 {
   const Face *lo = nullptr, *hi = nullptr;
   for (const auto &f : faces)
@@ -454,25 +416,14 @@ void FixMPMBoundary::extend_topology(MPMField &field)
 
 void FixMPMBoundary::topology_changed(MPMField &field)
 {
-  if (!acts_on(field)) return;
-  FieldNodes *mine = nullptr;
-  for (auto &n : nodes)
-    if (n.field == &field) mine = &n;
-  if (!mine) {
-    nodes.emplace_back();
-    mine = &nodes.back();
-    mine->field = &field;
+  for (auto &list : nodes) {
+    if (list.field != &field) continue;
+    list = {&field, faces_on_lattice(field), {}, {}, {}, {}};
+    if (!region)
+      list_face_nodes(list);
+    else if (!region_moves())
+      list_region_nodes(list);
   }
-  mine->faces = faces_on_lattice(field);
-  mine->columns.clear();
-  mine->cuts.clear();
-  mine->members.clear();
-  mine->orbits.clear();
-  mine->singles.clear();
-  if (!region)
-    list_face_nodes(*mine);
-  else if (!region_moves())
-    list_region_nodes(*mine);
 }
 
 /* ----------------------------------------------------------------------
@@ -488,23 +439,17 @@ void FixMPMBoundary::list_face_nodes(FieldNodes &list)
       const Face &face = list.faces[f];
       const int last = face.plane - face.inward * (DEPTH + 1);
       const int lo = block.b[face.axis] * grid.side, hi = lo + grid.side - 1;
-      const bool cut = face.cut && face.first >= lo && face.first <= hi;
+      const int start = face.cut ? face.first : face.plane;
+      const bool line = (face.cut || decides()) && start >= lo && start <= hi;
       const bool beyond = !face.cut && (face.inward > 0 ? lo <= last : hi >= last);
-      const bool plane = !face.cut && decides() && face.plane >= lo && face.plane <= hi;
-      if (!beyond && !plane && !cut) continue;
+      if (!line && !beyond) continue;
       for (int n = 0; n < NODES_PER_BLOCK; n++) {
         if (block.alias >> n & 1) continue;
         int index[3];
         grid.node_index(block, n, index);
-        if (cut && index[face.axis] == face.first) list_cut(list, f, index);
-        if (plane && index[face.axis] == face.plane) list_column(list, f, index);
+        if (line && index[face.axis] == start) list.list_line(f, index);
         if (beyond && (last - index[face.axis]) * face.inward >= 0) {
-          Single s = {(int64_t) ib * NODES_PER_BLOCK + n,
-                      {0.0, 0.0, 0.0},
-                      0.0,
-                      0.0,
-                      (bool) (block.owned >> n & 1),
-                      FREE};
+          Single s = {(int64_t) ib * NODES_PER_BLOCK + n};
           s.normal[face.axis] = face.inward;
           list.singles.push_back(s);
         }
@@ -512,75 +457,70 @@ void FixMPMBoundary::list_face_nodes(FieldNodes &list)
     }
   }
 
-  // columns of one face share no nodes, those of two do, at edges: all ranks in the same order
+  // lines of one face share no nodes, those of two do, at edges: all ranks in the same order
 
-  std::stable_sort(list.columns.begin(), list.columns.end(), [](const Column &a, const Column &b) {
-    return a.face < b.face;
-  });
-  std::stable_sort(list.cuts.begin(), list.cuts.end(), [](const Cut &a, const Cut &b) {
+  std::stable_sort(list.lines.begin(), list.lines.end(), [](const Line &a, const Line &b) {
     return a.face < b.face;
   });
 
   // stick: a component is odd about all faces; slip: the normal one about its own
 
-  std::vector<Face> mirrors;
+  Faces mirrors;
   for (const auto &face : list.faces)
     if (!face.cut) mirrors.push_back(face);
   if (kind == STICK) {
-    if (!mirrors.empty()) list_orbits(list, mirrors, constrained);
+    const bool prescribed[3] = {velocity[0].given, velocity[1].given, velocity[2].given};
+    list.list_orbits(mirrors, prescribed);
   } else if (!decides()) {
     for (int d = 0; d < grid.lattice.dim; d++) {
-      std::vector<Face> faces;
+      Faces faces;
       for (const auto &face : mirrors)
         if (face.axis == d) faces.push_back(face);
       const bool prescribed[3] = {d == 0, d == 1, d == 2};
-      if (!faces.empty()) list_orbits(list, faces, prescribed);
+      list.list_orbits(faces, prescribed);
     }
   }
 }
 
-void FixMPMBoundary::list_column(FieldNodes &list, int f, const int *index)
+/* ----------------------------------------------------------------------
+   the line of nodes along the normal that has this node, of a cut the first one, else in the plane
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::FieldNodes::list_line(int f, const int *index)
 {
-  const Grid &grid = list.field->grid;
-  const Face &face = list.faces[f];
-  auto owned = [&](int64_t node) {
-    return (int) (grid.blocks[node / NODES_PER_BLOCK].owned >> (node % NODES_PER_BLOCK) & 1);
-  };
-  Column column;
-  column.face = f;
-  column.contact = FREE;
-  column.plane = grid.locate(index);
-  column.owned = owned(column.plane);
-  for (int j = 0; j < DEPTH; j++) {
+  const Face &face = faces[f];
+  auto at = [&](int along) {
     int k[3] = {index[0], index[1], index[2]};
-    k[face.axis] = face.plane + face.inward * (j + 1);
-    column.inside[j] = grid.locate(k);
-    k[face.axis] = face.plane - face.inward * (j + 1);
-    column.image[j] = grid.locate(k);
-    if (column.inside[j] < 0 || column.image[j] < 0) {
-      column.inside[j] = column.image[j] = -1;    // both out of reach of points
-      continue;
+    k[face.axis] = along;
+    return field->grid.locate(k);
+  };
+  Line line = {f, FREE, {}};
+  if (face.cut) {
+    for (int j = 0; j < face.nweight; j++) {
+      line.node[j] = at(face.first + j);
+      if (line.node[j] < 0) return;    // not all in reach of points: nor is the face
     }
-    column.owned |= owned(column.inside[j]) << (1 + j);
-    column.owned |= owned(column.image[j]) << (1 + DEPTH + j);
+  } else {
+    line.node[0] = at(face.plane);
+    for (int j = 1; j <= DEPTH; j++) {
+      int64_t &inside = line.node[j], &image = line.node[DEPTH + j];
+      inside = at(face.plane + face.inward * j);
+      image = at(face.plane - face.inward * j);
+      if (inside < 0 || image < 0) inside = image = -1;    // both out of reach of points
+    }
   }
-  list.columns.push_back(column);
+  lines.push_back(line);
 }
 
 /* ----------------------------------------------------------------------
    nodes between the mirrors, each with all the images that it has in them
 ------------------------------------------------------------------------- */
 
-void FixMPMBoundary::list_orbits(FieldNodes &list, const std::vector<Face> &faces,
-                                 const bool *prescribed)
+void FixMPMBoundary::FieldNodes::list_orbits(const Faces &mirrors, const bool *prescribed)
 {
-  const Grid &grid = list.field->grid;
-  bool has[3][2] = {{false}};
-  int plane[3][2] = {{0}};
-  for (const auto &face : faces) {
-    has[face.axis][face.inward < 0] = true;
-    plane[face.axis][face.inward < 0] = face.plane;
-  }
+  const Grid &grid = field->grid;
+  const Face *mirror[3][2] = {};    // [axis][side], null: none
+  for (const auto &face : mirrors) mirror[face.axis][face.inward < 0] = &face;
 
   struct Image {
     int index, sign;
@@ -588,11 +528,10 @@ void FixMPMBoundary::list_orbits(FieldNodes &list, const std::vector<Face> &face
   std::vector<Image> images[3];
   for (std::size_t ib = 0; ib < grid.blocks.size(); ib++) {
     const auto &block = grid.blocks[ib];
-    bool near = false;
-    for (const auto &face : faces) {
+    const bool near = std::any_of(mirrors.begin(), mirrors.end(), [&](const Face &face) {
       const int lo = block.b[face.axis] * grid.side;
-      near = near || (lo <= face.plane + DEPTH && lo + grid.side > face.plane - DEPTH);
-    }
+      return lo <= face.plane + DEPTH && lo + grid.side > face.plane - DEPTH;
+    });
     if (!near) continue;
     for (int n = 0; n < NODES_PER_BLOCK; n++) {
       if (block.alias >> n & 1) continue;
@@ -603,21 +542,22 @@ void FixMPMBoundary::list_orbits(FieldNodes &list, const std::vector<Face> &face
         images[d].assign(1, {index[d], 1});
         wall[d] = inner[d] = index[d];
         for (int side = 0; side < 2; side++) {
-          if (!has[d][side]) continue;
-          const int depth = (side ? -1 : 1) * (index[d] - plane[d][side]);
+          const Face *const face = mirror[d][side], *const opposite = mirror[d][1 - side];
+          if (!face) continue;
+          const int depth = face->inward * (index[d] - face->plane);
           inside = inside && depth >= 0;
           fixed = fixed || depth == 0;
-          if (depth == 0) inner[d] += side ? -1 : 1;
-          held = held || (depth == 0 && has[d][1 - side] && inner[d] == plane[d][1 - side]);
-          if (depth <= DEPTH) wall[d] = plane[d][side];
+          if (depth == 0) inner[d] += face->inward;
+          held = held || (depth == 0 && opposite && inner[d] == opposite->plane);
+          if (depth <= DEPTH) wall[d] = face->plane;
         }
         // images of images, too: the list grows
         for (std::size_t k = 0; inside && k < images[d].size(); k++)
-          for (int side = 0; side < 2; side++) {
-            if (!has[d][side]) continue;
-            const Image image = {2 * plane[d][side] - images[d][k].index, -images[d][k].sign};
-            bool skip = (side ? -1 : 1) * (plane[d][side] - image.index) > DEPTH ||
-                (side ? -1 : 1) * (plane[d][side] - image.index) <= 0;
+          for (const Face *face : mirror[d]) {
+            if (!face) continue;
+            const Image image = {2 * face->plane - images[d][k].index, -images[d][k].sign};
+            const int depth = face->inward * (face->plane - image.index);
+            bool skip = depth > DEPTH || depth <= 0;
             for (const auto &known : images[d]) skip = skip || known.index == image.index;
             if (!skip) images[d].push_back(image);
           }
@@ -625,27 +565,25 @@ void FixMPMBoundary::list_orbits(FieldNodes &list, const std::vector<Face> &face
       if (!inside) continue;
 
       Orbit orbit;
-      orbit.first = (int) list.members.size();
+      orbit.first = (int) members.size();
       orbit.fixed = fixed;
-      for (int d = 0; d < 3; d++) orbit.prescribed[d] = prescribed[d];
+      std::copy_n(prescribed, 3, orbit.prescribed);
       for (const auto &x : images[0])
         for (const auto &y : images[1])
           for (const auto &z : images[2]) {
             const int k[3] = {x.index, y.index, z.index};
             const int64_t node = grid.locate(k);
-            if (node < 0) continue;    // out of reach of points
-            const bool owned =
-                grid.blocks[node / NODES_PER_BLOCK].owned >> (node % NODES_PER_BLOCK) & 1;
-            list.members.push_back({node, x.sign * y.sign * z.sign, owned});
+            if (node >= 0)    // else out of reach of points
+              members.push_back({node, x.sign * y.sign * z.sign});
           }
-      orbit.last = (int) list.members.size();
+      orbit.last = (int) members.size();
       orbit.inner = held ? -1 : grid.locate(inner);
       orbit.wall = grid.locate(wall);
-      if (orbit.wall < 0) orbit.wall = list.members[orbit.first].node;
+      if (orbit.wall < 0) orbit.wall = members[orbit.first].node;
       if (fixed || orbit.last > orbit.first + 1)
-        list.orbits.push_back(orbit);
+        orbits.push_back(orbit);
       else
-        list.members.pop_back();
+        members.pop_back();
     }
   }
 }
@@ -669,22 +607,21 @@ double FixMPMBoundary::surface_distance(const double *x) const
   double distance = far;
   for (int i = 0; i < n; i++) {
     const auto &c = region->contact[i];
-    if (domain->dimension == 2 && fabs(c.delz) > 0.5 * c.r) continue;
-    distance = std::min(distance, c.r);
+    if (domain->dimension == 3 || !(fabs(c.delz) > 0.5 * c.r)) distance = std::min(distance, c.r);
   }
   return inside && distance < far ? -distance : distance;
 }
 
 /* ----------------------------------------------------------------------
    direction out of the region: gradient of the distance, from differences (one-sided where the
-   region does not answer). Not defined at centers and where it is not known: false
+   region does not answer). Zero at centers and where it is not known
 ------------------------------------------------------------------------- */
 
-bool FixMPMBoundary::surface_normal(const double *x, double step, int dim, double *normal) const
+void FixMPMBoundary::surface_normal(const double *x, double step, int dim, double *normal) const
 {
   const double far = FAR * nodes.front().field->lattice.h;
   const double here = surface_distance(x);
-  normal[0] = normal[1] = normal[2] = 0.0;
+  MathExtra::zero3(normal);
   for (int d = 0; d < dim; d++) {
     double y[3] = {x[0], x[1], x[2]};
     y[d] = x[d] + step;
@@ -699,12 +636,7 @@ bool FixMPMBoundary::surface_normal(const double *x, double step, int dim, doubl
       normal[d] = 2.0 * (here - down);
   }
   const double length = MathExtra::len3(normal);
-  if (!(length > 0.2 * step)) {
-    normal[0] = normal[1] = normal[2] = 0.0;
-    return false;
-  }
-  for (int d = 0; d < 3; d++) normal[d] /= length;
-  return true;
+  for (int d = 0; d < 3; d++) normal[d] = length > 0.2 * step ? normal[d] / length : 0.0;
 }
 
 /* ----------------------------------------------------------------------
@@ -760,12 +692,7 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
         region->interior ^= 1;
       }
       if (!inside) continue;
-      Single s = {(int64_t) ib * NODES_PER_BLOCK + n,
-                  {0.0, 0.0, 0.0},
-                  0.0,
-                  0.0,
-                  (bool) (block.owned >> n & 1),
-                  FREE};
+      Single s = {(int64_t) ib * NODES_PER_BLOCK + n};
       if (kind != STICK || region->varshape) surface_normal(x, 1.0e-4 * h, dim, s.normal);
       if (region->varshape) s.distance = surface_distance(x);
       list.singles.push_back(s);
@@ -774,17 +701,19 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
 }
 
 /* ----------------------------------------------------------------------
-   (R - I)/dt for a rotation about a unit axis
+   gradient = (R - I)/dt for a rotation about a unit axis through o
 ------------------------------------------------------------------------- */
 
-void FixMPMBoundary::set_rotation(double angle, const double *u, double dt)
+void FixMPMBoundary::Wall::rotate(double angle, const double *u, const double *o, double dt)
 {
+  uniform = false;
+  MathExtra::copy3(o, origin);
   const double s = sin(angle) / dt, half = sin(0.5 * angle);
   const double c = 2.0 * half * half / dt;    // (1 - cos)/dt
   const double K[3][3] = {{0.0, -u[2], u[1]}, {u[2], 0.0, -u[0]}, {-u[1], u[0], 0.0}};
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
-      wall.gradient[i][j] = s * K[i][j] + c * (u[i] * u[j] - (i == j ? 1.0 : 0.0));
+      gradient[i][j] = s * K[i][j] + c * (u[i] * u[j] - (i == j ? 1.0 : 0.0));
 }
 
 /* ----------------------------------------------------------------------
@@ -792,14 +721,26 @@ void FixMPMBoundary::set_rotation(double angle, const double *u, double dt)
    x = y + dt (s + G (y - o)): with R = 1 + dt G, s + G R^T (x - o - dt s), G R^T = -G^T.
 ------------------------------------------------------------------------- */
 
-void FixMPMBoundary::end_of_step(Wall &w, double dt)
+FixMPMBoundary::Wall FixMPMBoundary::Wall::at_end_of_step(double dt) const
 {
-  double g[3][3];
-  memcpy(g, w.gradient, sizeof(g));
+  Wall end = *this;
   for (int i = 0; i < 3; i++) {
-    w.origin[i] += dt * w.shift[i];
-    for (int j = 0; j < 3; j++) w.gradient[i][j] = -g[j][i];
+    end.origin[i] += dt * shift[i];
+    for (int j = 0; j < 3; j++) end.gradient[i][j] = -gradient[j][i];
   }
+  return end;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMBoundary::Wall::velocity(const MPMField &field, int64_t node, double *v) const
+{
+  MathExtra::copy3(shift, v);
+  if (uniform) return;
+  double x[3];
+  field.grid.node_position(node, x);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) v[i] += gradient[i][j] * (x[j] - origin[j]);
 }
 
 /* ----------------------------------------------------------------------
@@ -814,7 +755,7 @@ void FixMPMBoundary::update_motion(double dt)
   motion_step = update->ntimestep;
 
   memcpy(before, wall.shift, sizeof(before));
-  memset(&wall, 0, sizeof(Wall));
+  wall = {};
   wall.uniform = true;
   const bool variables = region_moves() || !velocity[0].variable.empty() ||
       !velocity[1].variable.empty() || !velocity[2].variable.empty() || !rate.variable.empty();
@@ -827,34 +768,25 @@ void FixMPMBoundary::update_motion(double dt)
     for (auto &list : nodes) list_region_nodes(list);
   }
 
-  if (variables) modify->clearstep_compute();
-  if (region_moves()) region->prematch();
-  for (int d = 0; d < 3; d++) wall.shift[d] = evaluate(lmp, velocity[d]);
-  const double omega = rotating ? evaluate(lmp, rate) : 0.0;
-  if (variables) modify->addstep_compute(next_step());
-
-  if (rotating) {
-    wall.uniform = false;
-    for (int d = 0; d < 3; d++) wall.origin[d] = center[d];
-    set_rotation(omega * dt, axis, dt);
-  }
+  evaluate_in_step(lmp, variables, [&] {
+    if (region_moves()) region->prematch();
+    for (int d = 0; d < 3; d++) wall.shift[d] = evaluate(lmp, velocity[d]);
+    if (rotating()) wall.rotate(evaluate(lmp, rate) * dt, axis, center, dt);
+  });
   if (region_moves()) {
-    const double now[3] = {region->dx, region->dy, region->dz};
-    for (int d = 0; d < 3; d++) wall.shift[d] = (now[d] - old[d]) / dt;
+    const double shift[3] = {region->dx, region->dy, region->dz};
+    for (int d = 0; d < 3; d++) wall.shift[d] = (shift[d] - old[d]) / dt;
     if (region->rotateflag) {
-      wall.uniform = false;
-      for (int d = 0; d < 3; d++) wall.origin[d] = RegionMotion::point_of(region)[d] + old[d];
-      set_rotation(region->theta - old[3], RegionMotion::axis_of(region), dt);
+      double origin[3];
+      MathExtra::add3(RegionMotion::point_of(region), old, origin);
+      wall.rotate(region->theta - old[3], RegionMotion::axis_of(region), origin, dt);
     }
     if (region->varshape)
       for (auto &list : nodes)
         for (auto &s : list.singles) {
           const MPMField &field = *list.field;
-          int index[3];
           double x[3];
-          field.grid.node_index(field.grid.blocks[s.node / NODES_PER_BLOCK],
-                                s.node % NODES_PER_BLOCK, index);
-          field.lattice.node_position(index, x);
+          field.grid.node_position(s.node, x);
           const double distance = surface_distance(x), far = FAR * field.lattice.h;
           s.growth = 0.0;
           if (distance >= far || s.distance >= far) continue;
@@ -862,7 +794,7 @@ void FixMPMBoundary::update_motion(double dt)
           // the normal speed of the surface in place of that of the rigid motion
 
           double v[3];
-          wall_velocity(field, s.node, v);
+          wall.velocity(field, s.node, v);
           s.growth = (s.distance - distance) / dt - MathExtra::dot3(v, s.normal);
         }
     note_region();
@@ -872,56 +804,60 @@ void FixMPMBoundary::update_motion(double dt)
 
 /* ---------------------------------------------------------------------- */
 
-static void node_position(const MPMField &field, int64_t node, double *x)
-{
-  const Grid &grid = field.grid;
-  int index[3];
-  grid.node_index(grid.blocks[node / NODES_PER_BLOCK], node % NODES_PER_BLOCK, index);
-  field.lattice.node_position(index, x);
-}
-
-void FixMPMBoundary::wall_velocity(const MPMField &field, int64_t node, double *v) const
-{
-  for (int d = 0; d < 3; d++) v[d] = wall.shift[d];
-  if (wall.uniform) return;
-  double x[3];
-  node_position(field, node, x);
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) v[i] += wall.gradient[i][j] * (x[j] - wall.origin[j]);
-}
-
-/* ---------------------------------------------------------------------- */
-
 void FixMPMBoundary::act(double dt, Stage stage)
 {
   const bool count = stage == STEP;
   update_motion(dt);
-  counting = count;
   if (count) {
-    for (double &i : impulse) i = 0.0;
+    std::fill_n(impulse, 6, 0.0);
     dt_last = dt;
     reaction_known = false;
   }
-  const bool at_end = stage == START && !wall.uniform;
-  const Wall now = wall;
-  if (at_end) end_of_step(wall, dt);
+  const Wall in_step = wall;
+  if (stage == START && !wall.uniform) wall = wall.at_end_of_step(dt);
   for (auto &list : nodes) {
-    const MPMField &field = *list.field;
-    kinetic = collided = 0.0;
-    ledger_lanes = field.ledger.on;
-    old_share = count && wall.uniform ? field.options.flip : 0.0;
-    decided = stage == MAPPED_BACK || stage == AGAIN;
-    act_on_cuts(list);
-    for (auto &column : list.columns) act_on_column(list, column);
+    const auto &faces = list.faces;
+    auto &ledger = list.field->ledger;
+    now = {count, stage == MAPPED_BACK || stage == AGAIN, ledger.on, 0.0, 0.0, 0.0};
+    if (count && wall.uniform) now.old_share = list.field->options.flip;
+
+    // cuts: at edges, tangential components of one face are normal ones of another: these come last, so
+    // that no material gets out
+
+    for (const bool last : {false, true})
+      for (auto &line : list.lines)
+        if (faces[line.face].cut && (!last || kind == STICK || friction > 0.0))
+          act_on_cut(list, line, last);
+    for (auto &line : list.lines)
+      if (!faces[line.face].cut) act_on_column(list, line);
     for (const auto &orbit : list.orbits) act_on_orbit(list, orbit);
     for (auto &single : list.singles) act_on_single(list, single);
-    if (count && field.ledger.on) {
-      list.field->ledger.boundary += kinetic * force->mvv2e;
-      list.field->ledger.transfer += collided * force->mvv2e;
+    if (count && ledger.on) {
+      ledger.boundary += now.kinetic * force->mvv2e;
+      ledger.transfer += now.collided * force->mvv2e;
     }
   }
-  if (at_end) wall = now;
+  wall = in_step;
   if (count) acted = true;
+}
+
+/* ----------------------------------------------------------------------
+   what the wall does to nodes on which it pushes with an impulse along the normal, when another one
+   would be needed for the material to stick. Returns the share of the latter that friction gives
+------------------------------------------------------------------------- */
+
+double FixMPMBoundary::slide_share(Contact &contact, double push, double needed) const
+{
+  if (!now.decided) {
+    contact = SLIDING;
+    if (kind == SEPARATE && push <= 0.0) {
+      contact = FREE;
+    } else if (friction > 0.0 && push > 0.0) {
+      if (needed > friction * push) return friction * push / needed;
+      contact = STUCK;
+    }
+  }
+  return contact == STUCK ? 1.0 : 0.0;
 }
 
 /* ----------------------------------------------------------------------
@@ -931,122 +867,106 @@ void FixMPMBoundary::act(double dt, Stage stage)
    what is not work is lost, most of it energy that forces had given to nodes that cannot move.
 ------------------------------------------------------------------------- */
 
-void FixMPMBoundary::set_velocity(double *record, const double *v, const double *old, int dim,
-                                  bool owned)
+void FixMPMBoundary::set_velocity(Grid &grid, int64_t node, const double *v, const double *old)
 {
-  if (counting && owned) {
+  double *const record = grid.record(node);
+  const int dim = grid.lattice.dim;
+  if (now.counting && grid.owns(node)) {
     double moved = 0.0, gained = 0.0;
     for (int d = 0; d < dim; d++) {
       const double change = v[d] - record[d], change_old = old ? old[d] - record[4 + d] : 0.0;
-      const double push = change - old_share * change_old;
+      const double push = change - now.old_share * change_old;
       impulse[d] += record[3] * push;
       moved += push * v[d];
-      if (ledger_lanes)
+      if (now.ledger_lanes)
         gained += 0.5 * (change - change_old) * (v[d] + (old ? old[d] : record[4 + d]));
     }
     work += record[3] * moved;
-    kinetic += record[3] * moved;
-    collided += record[3] * (gained - moved);
+    now.kinetic += record[3] * moved;
+    now.collided += record[3] * (gained - moved);
   }
-  for (int d = 0; d < dim; d++) record[d] = v[d];
-  if (old)
-    for (int d = 0; d < dim; d++) record[4 + d] = old[d];
+  std::copy_n(v, dim, record);
+  if (old) std::copy_n(old, dim, record + 4);
 }
 
 /* ----------------------------------------------------------------------
    what of old velocities relative to the wall is taken as consistent with it, see FLIP above
 ------------------------------------------------------------------------- */
 
-static double limited(double w, double limit)
-{
-  return std::max(-limit, std::min(w, limit));
-}
-
 static void first_inside(const double *record, const double *wall, int dim, double *limit)
 {
   for (int d = 0; d < dim; d++) limit[d] = record[3] > 0.0 ? fabs(record[4 + d] - wall[d]) : 0.0;
 }
 
+double FixMPMBoundary::old_relative(const double *record, int d, double limit) const
+{
+  return std::max(-limit, std::min(record[4 + d] - before[d], limit));
+}
+
 /* ---------------------------------------------------------------------- */
 
-void FixMPMBoundary::act_on_column(const FieldNodes &list, Column &column)
+void FixMPMBoundary::act_on_column(const FieldNodes &list, Line &column)
 {
   Grid &grid = list.field->grid;
   const Face &face = list.faces[column.face];
   const int dim = grid.lattice.dim, a = face.axis;
-  auto record = [&](int64_t node) {
-    return grid.nodes() + node * grid.nreal;
-  };
-
+  const double *plane = grid.record(column.node[0]);
   double V[3];
-  wall_velocity(*list.field, column.plane, V);
-  const double *B = before;
-  double *plane = record(column.plane);
+  wall.velocity(*list.field, column.node[0], V);
+
+  struct {
+    int64_t inside, image;
+    const double *in, *out;    // their records
+    double mass;
+  } pairs[DEPTH];
+  int npairs = 0;
+  for (int j = 1; j <= DEPTH; j++) {
+    const int64_t inside = column.node[j], image = column.node[DEPTH + j];
+    if (inside < 0) continue;
+    const double *in = grid.record(inside), *out = grid.record(image);
+    if (in[3] <= 0.0 || out[3] <= 0.0) continue;
+    pairs[npairs++] = {inside, image, in, out, 2.0 * in[3] * out[3] / (in[3] + out[3])};
+  }
 
   // impulse that would bring all components to the velocity of the wall
 
   double to_stick[3] = {0.0, 0.0, 0.0};
-  for (int d = 0; d < dim; d++) to_stick[d] = -plane[3] * (plane[d] - V[d]);
-  for (int j = 0; j < DEPTH; j++) {
-    if (column.inside[j] < 0) continue;
-    const double *in = record(column.inside[j]), *out = record(column.image[j]);
-    if (in[3] <= 0.0 || out[3] <= 0.0) continue;
-    const double mass = 2.0 * in[3] * out[3] / (in[3] + out[3]);
-    for (int d = 0; d < dim; d++) to_stick[d] -= mass * (in[d] + out[d] - 2.0 * V[d]);
+  for (int d = 0; d < dim; d++) {
+    to_stick[d] = -plane[3] * (plane[d] - V[d]);
+    for (int p = 0; p < npairs; p++)
+      to_stick[d] -= pairs[p].mass * (pairs[p].in[d] + pairs[p].out[d] - 2.0 * V[d]);
   }
 
   // slip: the old normal velocity is constrained, too, which is no impulse
 
-  const bool hold = kind == SLIP && old_share > 0.0;
+  const bool hold = kind == SLIP && now.old_share > 0.0;
   double limit[3] = {0.0, 0.0, 0.0};
   if (hold) {
-    if (column.inside[0] >= 0) first_inside(record(column.inside[0]), B, dim, limit);
-    to_stick[a] += old_share * plane[3] * limited(plane[4 + a] - B[a], limit[a]);
-    for (int j = 0; j < DEPTH; j++) {
-      if (column.inside[j] < 0) continue;
-      const double *in = record(column.inside[j]), *out = record(column.image[j]);
-      if (in[3] <= 0.0 || out[3] <= 0.0) continue;
-      const double mass = 2.0 * in[3] * out[3] / (in[3] + out[3]);
-      to_stick[a] += old_share * mass *
-          (limited(in[4 + a] - B[a], limit[a]) + limited(out[4 + a] - B[a], limit[a]));
-    }
+    if (column.node[1] >= 0) first_inside(grid.record(column.node[1]), before, dim, limit);
+    to_stick[a] += now.old_share * plane[3] * old_relative(plane, a, limit[a]);
+    for (int p = 0; p < npairs; p++)
+      to_stick[a] += now.old_share * pairs[p].mass *
+          (old_relative(pairs[p].in, a, limit[a]) + old_relative(pairs[p].out, a, limit[a]));
   }
 
   // share of the projection that the tangential components get
 
-  double slide = 0.0;
-  if (!decided) {
-    const double push = face.inward * to_stick[a];
-    column.contact = SLIDING;
-    if (kind == SEPARATE && push <= 0.0) {
-      column.contact = FREE;
-    } else if (friction > 0.0 && push > 0.0) {
-      double needed = 0.0;
-      for (int d = 0; d < dim; d++)
-        if (d != a) needed += to_stick[d] * to_stick[d];
-      needed = sqrt(needed);
-      if (needed > friction * push)
-        slide = friction * push / needed;
-      else
-        column.contact = STUCK;
-    }
-  }
+  double needed = 0.0;
+  for (int d = 0; d < dim; d++)
+    if (d != a) needed += to_stick[d] * to_stick[d];
+  const double slide = slide_share(column.contact, face.inward * to_stick[a], sqrt(needed));
   if (column.contact == FREE) return;
-  if (column.contact == STUCK) slide = 1.0;
 
-  double share[3];
-  for (int d = 0; d < dim; d++) share[d] = d == a ? 1.0 : slide;
-  double v[3], old[3];
+  double share[3], v[3], old[3];
   for (int d = 0; d < dim; d++) {
+    share[d] = d == a ? 1.0 : slide;
     v[d] = share[d] == 1.0 ? V[d] : plane[d] + share[d] * (V[d] - plane[d]);
-    if (hold) old[d] = plane[4 + d] - (d == a ? limited(plane[4 + d] - B[d], limit[d]) : 0.0);
+    if (hold) old[d] = plane[4 + d] - (d == a ? old_relative(plane, d, limit[d]) : 0.0);
   }
-  set_velocity(plane, v, hold ? old : nullptr, dim, column.owned & 1);
+  set_velocity(grid, column.node[0], v, hold ? old : nullptr);
 
-  for (int j = 0; j < DEPTH; j++) {
-    if (column.inside[j] < 0) continue;
-    double *in = record(column.inside[j]), *out = record(column.image[j]);
-    if (in[3] <= 0.0 || out[3] <= 0.0) continue;
+  for (int p = 0; p < npairs; p++) {
+    const double *in = pairs[p].in, *out = pairs[p].out;
     double v_in[3], v_out[3], old_in[3], old_out[3];
     for (int d = 0; d < dim; d++) {
       const double w = (in[3] * (in[d] - V[d]) - out[3] * (out[d] - V[d])) / (in[3] + out[3]);
@@ -1057,19 +977,17 @@ void FixMPMBoundary::act_on_column(const FieldNodes &list, Column &column)
         v_in[d] = in[d] + share[d] * (V[d] + w - in[d]);
         v_out[d] = out[d] + share[d] * (V[d] - w - out[d]);
       }
-      if (!hold) continue;
-      old_in[d] = in[4 + d];
-      old_out[d] = out[4 + d];
     }
     if (hold) {
-      const double w_in = limited(old_in[a] - B[a], limit[a]);
-      const double w_out = limited(old_out[a] - B[a], limit[a]);
+      const double w_in = old_relative(in, a, limit[a]), w_out = old_relative(out, a, limit[a]);
       const double w = (in[3] * w_in - out[3] * w_out) / (in[3] + out[3]);
+      std::copy_n(in + 4, dim, old_in);
+      std::copy_n(out + 4, dim, old_out);
       old_in[a] += w - w_in;
       old_out[a] += -w - w_out;
     }
-    set_velocity(in, v_in, hold ? old_in : nullptr, dim, column.owned >> (1 + j) & 1);
-    set_velocity(out, v_out, hold ? old_out : nullptr, dim, column.owned >> (1 + DEPTH + j) & 1);
+    set_velocity(grid, pairs[p].inside, v_in, hold ? old_in : nullptr);
+    set_velocity(grid, pairs[p].image, v_out, hold ? old_out : nullptr);
   }
 }
 
@@ -1079,26 +997,22 @@ void FixMPMBoundary::act_on_orbit(const FieldNodes &list, const Orbit &orbit)
 {
   Grid &grid = list.field->grid;
   const int dim = grid.lattice.dim;
-  auto record = [&](int64_t node) {
-    return grid.nodes() + node * grid.nreal;
-  };
   double V[3], limit[3] = {0.0, 0.0, 0.0};
-  wall_velocity(*list.field, orbit.wall, V);
-  const double *B = before;
-  const bool hold = old_share > 0.0;
-  if (hold && orbit.inner >= 0) first_inside(record(orbit.inner), B, dim, limit);
+  wall.velocity(*list.field, orbit.wall, V);
+  const bool hold = now.old_share > 0.0;
+  if (hold && orbit.inner >= 0) first_inside(grid.record(orbit.inner), before, dim, limit);
 
   double mass = 0.0, w[3] = {0.0, 0.0, 0.0}, w_old[3] = {0.0, 0.0, 0.0};
   int massive = 0;
   for (int k = orbit.first; k < orbit.last; k++) {
     const Member &member = list.members[k];
-    const double *r = record(member.node);
+    const double *r = grid.record(member.node);
     if (r[3] <= 0.0) continue;
     massive++;
     mass += r[3];
     for (int d = 0; d < dim; d++) {
       w[d] += member.sign * r[3] * (r[d] - V[d]);
-      if (hold) w_old[d] += member.sign * r[3] * limited(r[4 + d] - B[d], limit[d]);
+      if (hold) w_old[d] += member.sign * r[3] * old_relative(r, d, limit[d]);
     }
   }
   if (massive == 0 || (massive == 1 && !orbit.fixed)) return;
@@ -1109,16 +1023,15 @@ void FixMPMBoundary::act_on_orbit(const FieldNodes &list, const Orbit &orbit)
 
   for (int k = orbit.first; k < orbit.last; k++) {
     const Member &member = list.members[k];
-    double *r = record(member.node);
+    const double *r = grid.record(member.node);
     double v[3], old[3];
     for (int d = 0; d < dim; d++) {
       v[d] = orbit.prescribed[d] ? V[d] + member.sign * w[d] : r[d];
       if (!hold) continue;
       old[d] = r[4 + d];
-      if (orbit.prescribed[d])
-        old[d] += member.sign * w_old[d] - limited(r[4 + d] - B[d], limit[d]);
+      if (orbit.prescribed[d]) old[d] += member.sign * w_old[d] - old_relative(r, d, limit[d]);
     }
-    set_velocity(r, v, hold ? old : nullptr, dim, member.owned);
+    set_velocity(grid, member.node, v, hold ? old : nullptr);
   }
 }
 
@@ -1128,50 +1041,35 @@ void FixMPMBoundary::act_on_single(const FieldNodes &list, Single &single)
 {
   Grid &grid = list.field->grid;
   const int dim = grid.lattice.dim;
-  double *r = grid.nodes() + single.node * grid.nreal;
+  const double *r = grid.record(single.node), *n = single.normal;
   if (r[3] <= 0.0) return;
 
-  const double *n = single.normal;
   double V[3], v[3];
-  wall_velocity(*list.field, single.node, V);
+  wall.velocity(*list.field, single.node, V);
   for (int d = 0; d < dim; d++) V[d] += single.growth * n[d];
 
   if (kind == STICK || (n[0] == 0.0 && n[1] == 0.0 && n[2] == 0.0)) {
-    for (int d = 0; d < dim; d++) v[d] = constrained[d] ? V[d] : r[d];
+    for (int d = 0; d < dim; d++) v[d] = velocity[d].given ? V[d] : r[d];
   } else {
     double normal = 0.0;    // speed of the node away from the wall
     for (int d = 0; d < dim; d++) normal += (r[d] - V[d]) * n[d];
-    double slide[3], length = 0.0, keep = 1.0;
+    double slide[3], length = 0.0;
     for (int d = 0; d < dim; d++) {
       slide[d] = r[d] - V[d] - normal * n[d];
       length += slide[d] * slide[d];
     }
-    if (!decided) {
-      single.contact = SLIDING;
-      if (kind == SEPARATE && normal >= 0.0) {
-        single.contact = FREE;
-      } else if (friction > 0.0 && normal < 0.0) {
-        length = sqrt(length);
-        if (length > -friction * normal)
-          keep = 1.0 + friction * normal / length;
-        else
-          single.contact = STUCK;
-      }
-    }
+    const double keep = 1.0 - slide_share(single.contact, -normal, sqrt(length));
     if (single.contact == FREE) return;
-    if (single.contact == STUCK) keep = 0.0;
     for (int d = 0; d < dim; d++) v[d] = V[d] + keep * slide[d];
   }
-  if (counting && single.owned) {
-    double x[3], push[3] = {0.0, 0.0, 0.0};
-    node_position(*list.field, single.node, x);
+  if (now.counting && grid.owns(single.node)) {
+    double x[3], push[3] = {0.0, 0.0, 0.0}, moment[3];
+    list.field->grid.node_position(single.node, x);
     for (int d = 0; d < dim; d++) push[d] = r[3] * (v[d] - r[d]);
-    for (int d = 0; d < 3; d++) {
-      const int e = (d + 1) % 3, f = (d + 2) % 3;
-      impulse[3 + d] += x[e] * push[f] - x[f] * push[e];
-    }
+    MathExtra::cross3(x, push, moment);
+    for (int d = 0; d < 3; d++) impulse[3 + d] += moment[d];
   }
-  set_velocity(r, v, nullptr, dim, single.owned);
+  set_velocity(grid, single.node, v, nullptr);
 }
 
 /* ----------------------------------------------------------------------
@@ -1231,8 +1129,7 @@ double FixMPMBoundary::memory_usage()
 {
   double bytes = 0.0;
   for (const auto &list : nodes)
-    bytes += list.columns.capacity() * sizeof(Column) + list.cuts.capacity() * sizeof(Cut) +
-        list.members.capacity() * sizeof(Member) + list.orbits.capacity() * sizeof(Orbit) +
-        list.singles.capacity() * sizeof(Single);
+    bytes += list.lines.capacity() * sizeof(Line) + list.members.capacity() * sizeof(Member) +
+        list.orbits.capacity() * sizeof(Orbit) + list.singles.capacity() * sizeof(Single);
   return bytes;
 }

@@ -23,6 +23,10 @@ FixStyle(mpm/boundary,FixMPMBoundary);
 #include <string>
 #include <vector>
 
+namespace MPM_NS {
+class Grid;
+}
+
 namespace LAMMPS_NS {
 class MPMField;
 class Region;
@@ -32,11 +36,14 @@ struct MPMBoundaryOptions {
 
   Kind kind = STICK;
   double friction = 0.0;
-  MPM_NS::NumberOrVariable velocity[3], rate;
+  MPM_NS::NumberOrVariable velocity[3], rate;    ///< of those not given, material is free
   double center[3] = {0.0, 0.0, 0.0}, axis[3] = {0.0, 0.0, 0.0};    ///< of the rotation
   std::string field_id;                                             ///< empty: all fields
 
   bool all_given() const { return velocity[0].given && velocity[1].given && velocity[2].given; }
+  /** Does contact depend on the impulse? */
+  bool decides() const { return kind == SEPARATE || friction > 0.0; }
+  bool rotating() const { return axis[0] != 0.0 || axis[1] != 0.0 || axis[2] != 0.0; }
   MPM_NS::Options declare(int dimension);
 };
 
@@ -49,7 +56,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
  public:
   Turn turn() const override { return WALLS; }
   FixMPMBoundary(class LAMMPS *, int, char **);
-  int setmask() override;
+  int setmask() override { return 0; }    // called by fix mpm
   void init() override;
   void setup(int) override;
   void write_restart(FILE *) override;
@@ -75,25 +82,22 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
     bool cut;      // lies between planes: nweight nodes from first on make the velocity there
     int first, nweight;
     double weight[4];
-  };
-  enum Contact { FREE, SLIDING, STUCK };    // what a wall does to a column or node
 
-  struct Column {    // nodes along the normal of a face with friction or separation
-    int64_t plane, inside[DEPTH], image[DEPTH];
-    int face;     // index into faces
-    int owned;    // bit 0: plane, 1...: inside, 1 + DEPTH ...: images
-    Contact contact;
+    void cut_weights(const MPMField &, double x);
   };
-  struct Cut {    // nodes along the normal of a face that cuts cells
-    int face;     // index into faces
-    int64_t node[4];
-    int owned;    // bits
+  using Faces = std::vector<Face>;
+  enum Contact { FREE, SLIDING, STUCK };    // what a wall does to a line or node
+
+  struct
+      Line {     // nodes along the normal of a face with friction or separation, or that cuts cells
+    int face;    // index into faces
     Contact contact;
+    // cut: from first on; else: plane, those inside, their images; -1: out of reach of points
+    int64_t node[1 + 2 * DEPTH];
   };
   struct Member {
     int64_t node;
     int sign;
-    bool owned;
   };
   struct Orbit {           // a node with all its images: in one face, in two at an edge, ...
     int64_t wall;          // node at the wall whose velocity counts
@@ -104,24 +108,30 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   };
   struct Single {    // a node on its own
     int64_t node;
-    double normal[3];    // from the wall to the body; zero: not known
-    double growth;       // regions that change their shape: speed of the surface along the normal
-    double distance;     // from the surface at the start of the step, for growth
-    bool owned;
-    Contact contact;
+    double normal[3] = {0.0, 0.0, 0.0};    // from the wall to the body; zero: not known
+    double growth =
+        0.0;    // regions that change their shape: speed of the surface along the normal
+    double distance = 0.0;    // from the surface at the start of the step, for growth
+    Contact contact = FREE;
   };
   struct FieldNodes {
     MPMField *field;
-    std::vector<Face> faces;
-    std::vector<Column> columns;
-    std::vector<Cut> cuts;
+    Faces faces;
+    std::vector<Line> lines;
     std::vector<Member> members;
     std::vector<Orbit> orbits;
     std::vector<Single> singles;
+
+    void list_line(int face, const int *index);
+    void list_orbits(const Faces &, const bool *prescribed);
   };
-  struct Wall {    // its motion in this step: velocity shift + gradient (x - origin)
+  struct Wall {    // its motion in a step: velocity shift + gradient (x - origin)
     double shift[3], gradient[3][3], origin[3];
     bool uniform;
+
+    void rotate(double angle, const double *axis, const double *center, double dt);
+    Wall at_end_of_step(double dt) const;
+    void velocity(const MPMField &, int64_t node, double *v) const;
   };
   struct Saved {    // in restart files
     double work, shift[3], region_was[4];
@@ -130,53 +140,45 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
 
   std::vector<int> face_list;    // 2 * axis + (0: lo, 1: hi)
   std::string region_id;
-  Region *region;
-  bool rotating;
-  bool constrained[3];    // stick: components that are prescribed
+  Region *region = nullptr;
 
-  std::vector<FieldNodes> nodes;
-  Wall wall;               // in this step
-  double before[3];        // its velocity in the last step, when it does not turn
-  bool acted;              // there was a last step
-  double region_was[4];    // shift and angle of the region at the end of the last step
-  bigint motion_step;      // step for which the motion of the wall is known
-  double impulse[6],
-      work;    // on the body, with its moment, this rank's share: of the last step; of all steps
-  double dt_last;
-  bool reaction_known;
-  double reaction[6];    // force and, of regions, torque
+  std::vector<FieldNodes> nodes;    // of the fields to act on
+  Wall wall = {};                   // in this step
+  double before[3] = {};            // its velocity in the last step, when it does not turn
+  bool acted = false;               // there was a last step
+  double region_was[4] = {};        // shift and angle of the region at the end of the last step
+  bigint motion_step = -1;          // step for which the motion of the wall is known
+  double impulse[6] = {};    // on the body, with its moment, in the last step: this rank's share
+  double work = 0.0;         // on the body in all steps, this rank's share
+  double dt_last = 0.0;
+  bool reaction_known = true;
+  double reaction[6] = {};    // force and, of regions, torque
 
-  bool counting;
-  bool decided;         // contact was decided before in this step (MUSL)
-  double collided;      // ledger: kinetic energy lost where nodes cannot keep their velocity
-  bool ledger_lanes;    // records have the old velocity in reals 4..6
-  double old_share;     // FLIP share when old velocities are constrained, too; otherwise 0
-  double kinetic;       // gained by the nodes of a field in the present act()
+  struct {                // what act() does now to the nodes of a field
+    bool counting;        // reactions and work
+    bool decided;         // contact was decided before in this step (MUSL)
+    bool ledger_lanes;    // records have the old velocity in reals 4..6
+    double old_share;     // FLIP share when old velocities are constrained, too; otherwise 0
+    double kinetic;       // gained by the nodes
+    double collided;      // ledger: kinetic energy lost where nodes cannot keep their velocity
+  } now;
 
   bool region_moves() const;
   bool acts_on(const MPMField &) const;
   Face face_on_lattice(const MPMField &, int face) const;
-  std::vector<Face> faces_on_lattice(const MPMField &) const;
+  Faces faces_on_lattice(const MPMField &) const;
+  static bool narrow(const Faces &, int axis);
   void list_face_nodes(FieldNodes &);
-  void list_column(FieldNodes &, int face, const int *index);
-  void list_orbits(FieldNodes &, const std::vector<Face> &, const bool *prescribed);
-  bigint next_step() const;
   void list_region_nodes(FieldNodes &);
-  bool decides() const { return kind == SEPARATE || friction > 0.0; }
-  bool narrow(const std::vector<Face> &, int axis) const;
-  static void cut_weights(const MPMField &, double x, Face &);
-  void list_cut(FieldNodes &, int face, const int *index);
-  void act_on_cuts(FieldNodes &);
-  void act_on_cut(const FieldNodes &, Cut &, bool last);
   double surface_distance(const double *x) const;
-  bool surface_normal(const double *x, double step, int dim, double *normal) const;
+  void surface_normal(const double *x, double step, int dim, double *normal) const;
   void update_motion(double dt);
   void note_region();
-  void set_rotation(double angle, const double *unit, double dt);
-  static void end_of_step(Wall &, double dt);
-  void wall_velocity(const MPMField &, int64_t node, double *v) const;
-  void set_velocity(double *record, const double *v, const double *old, int dim, bool owned);
-  void act_on_column(const FieldNodes &, Column &);
+  double slide_share(Contact &, double push, double needed) const;
+  double old_relative(const double *record, int d, double limit) const;
+  void set_velocity(MPM_NS::Grid &, int64_t node, const double *v, const double *old);
+  void act_on_column(const FieldNodes &, Line &);
+  void act_on_cut(const FieldNodes &, Line &, bool last);
   void act_on_orbit(const FieldNodes &, const Orbit &);
   void act_on_single(const FieldNodes &, Single &);
 };

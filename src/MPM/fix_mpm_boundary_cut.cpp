@@ -38,85 +38,54 @@ static constexpr double MIN_WEIGHT[4] = {0.0, 0.5, 0.02, 0.0045};
 
 /* ---------------------------------------------------------------------- */
 
-void FixMPMBoundary::cut_weights(const MPMField &field, double x, Face &face)
+void FixMPMBoundary::Face::cut_weights(const MPMField &field, double x)
 {
-  face.cut = true;
-  face.nweight = MPMStencil(field).weights((x - field.lattice.origin[face.axis]) / field.lattice.h,
-                                           face.first, face.weight);
+  cut = true;
+  nweight = MPMStencil(field).weights((x - field.lattice.origin[axis]) / field.lattice.h, first,
+                                      weight);
   if (stencil_order(field.options.shape) > 1) return;
-  face.nweight = 3;    // and the next node inside
-  face.weight[2] = 0.0;
-  if (face.inward > 0) return;
-  face.first--;
-  face.weight[2] = face.weight[1];
-  face.weight[1] = face.weight[0];
-  face.weight[0] = 0.0;
+  nweight = 3;    // and the next node inside
+  weight[2] = 0.0;
+  if (inward > 0) return;
+  first--;
+  weight[2] = weight[1];
+  weight[1] = weight[0];
+  weight[0] = 0.0;
 }
 
-/* ----------------------------------------------------------------------
-   the line of nodes along the normal that has this node, the first of the line
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
-void FixMPMBoundary::list_cut(FieldNodes &list, int f, const int *index)
-{
-  const Grid &grid = list.field->grid;
-  const Face &face = list.faces[f];
-  Cut cut;
-  cut.face = f;
-  cut.contact = FREE;
-  cut.owned = 0;
-  int k[3] = {index[0], index[1], index[2]};
-  for (int j = 0; j < face.nweight; j++) {
-    k[face.axis] = face.first + j;
-    cut.node[j] = grid.locate(k);
-    if (cut.node[j] < 0) return;    // not all in reach of points: nor is the face
-    const auto &block = grid.blocks[cut.node[j] / NODES_PER_BLOCK];
-    cut.owned |= (int) (block.owned >> (cut.node[j] % NODES_PER_BLOCK) & 1) << j;
-  }
-  list.cuts.push_back(cut);
-}
-
-/* ----------------------------------------------------------------------
-   At edges, tangential components of one face are normal ones of another: these come last, so that
-   no material gets out.
-------------------------------------------------------------------------- */
-
-void FixMPMBoundary::act_on_cuts(FieldNodes &list)
-{
-  for (auto &cut : list.cuts) act_on_cut(list, cut, false);
-  if (kind == STICK || friction > 0.0)
-    for (auto &cut : list.cuts) act_on_cut(list, cut, true);
-}
-
-void FixMPMBoundary::act_on_cut(const FieldNodes &list, Cut &cut, bool last)
+void FixMPMBoundary::act_on_cut(const FieldNodes &list, Line &cut, bool last)
 {
   Grid &grid = list.field->grid;
   const Face &face = list.faces[cut.face];
   const int dim = grid.lattice.dim, a = face.axis, n = face.nweight;
-  const bool hold = old_share > 0.0 && (kind == STICK || (kind == SLIP && !last));
+  const int order = stencil_order(list.field->options.shape);
+  const bool hold = now.old_share > 0.0 && (kind == STICK || (kind == SLIP && !last));
   if (last && kind != STICK && cut.contact == FREE) return;
 
   // nodes from outside to inside, those with points
 
-  const double least = MIN_WEIGHT[stencil_order(list.field->options.shape)];
-  double *r[4], A[4], B[4] = {0.0, 0.0, 0.0, 0.0}, V[4][3], total = 0.0;
-  int owned[4], m = 0;
+  const double *r[4];
+  double A[4], B[4] = {0.0, 0.0, 0.0, 0.0}, V[4][3], total = 0.0, extrapolated = 0.0;
+  int64_t node[4];
+  int m = 0;
   bool reached = false;
-  double extrapolated = 0.0;
   for (int j = 0; j < n; j++) {
     const int k = face.inward > 0 ? j : n - 1 - j;
-    double *record = grid.nodes() + cut.node[k] * grid.nreal;
+    const double *record = grid.record(cut.node[k]);
+    const bool matters = face.weight[k] >= MIN_WEIGHT[order];
     if (record[3] <= 0.0) {
-      if (!reached && face.weight[k] >= least) return;
-      if (stencil_order(list.field->options.shape) == 1 && j == 0) extrapolated = face.weight[k];
+      if (!reached && matters) return;
+      if (order == 1 && j == 0) extrapolated = face.weight[k];
       continue;
     }
-    reached = reached || face.weight[k] >= least;
+    reached = reached || matters;
+    node[m] = cut.node[k];
     r[m] = record;
     A[m] = face.weight[k];
     total += A[m];
-    owned[m] = cut.owned >> k & 1;
-    wall_velocity(*list.field, cut.node[k], V[m]);
+    wall.velocity(*list.field, node[m], V[m]);
     m++;
   }
   if (!reached) return;
@@ -139,6 +108,10 @@ void FixMPMBoundary::act_on_cut(const FieldNodes &list, Cut &cut, bool last)
   // of old velocities as much is consistent with the wall as the innermost node has, see
   // fix_mpm_boundary.cpp
 
+  // components that stick prescribes now
+  const auto prescribed = [&](int d) {
+    return velocity[d].given && (d == a) == last;
+  };
   double lambda[3], mu[3], lambda_old[3] = {0.0, 0.0, 0.0}, mu_old[3] = {0.0, 0.0, 0.0};
   auto project = [&](auto velocity, double &l, double &u) {
     double a_sum = 0.0, b_sum = 0.0;
@@ -156,40 +129,27 @@ void FixMPMBoundary::act_on_cut(const FieldNodes &list, Cut &cut, bool last)
           return r[k][d] - V[k][d];
         },
         lambda[d], mu[d]);
-    if (!hold || !(kind == STICK ? constrained[d] && (d == a) == last : d == a)) continue;
+    if (!hold || !(kind == STICK ? prescribed(d) : d == a)) continue;
     const double limit = fabs(r[m - 1][4 + d] - before[d]);
     project(
         [&](int k) {
-          return std::max(-limit, std::min(r[k][4 + d] - before[d], limit));
+          return old_relative(r[k], d, limit);
         },
         lambda_old[d], mu_old[d]);
   }
 
   double share[3] = {0.0, 0.0, 0.0};
   if (kind == STICK) {
-    for (int d = 0; d < dim; d++) share[d] = constrained[d] && (d == a) == last ? 1.0 : 0.0;
+    for (int d = 0; d < dim; d++) share[d] = prescribed(d) ? 1.0 : 0.0;
   } else if (last) {
     share[a] = 1.0;
   } else {
-    const double push = face.inward * total * (lambda[a] - old_share * lambda_old[a]);
-    double slide = 0.0;
-    if (!decided) {
-      cut.contact = SLIDING;
-      if (kind == SEPARATE && push <= 0.0) {
-        cut.contact = FREE;
-      } else if (friction > 0.0 && push > 0.0) {
-        double needed = 0.0;
-        for (int d = 0; d < dim; d++)
-          if (d != a) needed += lambda[d] * lambda[d];
-        needed = total * sqrt(needed);
-        if (needed > friction * push)
-          slide = friction * push / needed;
-        else
-          cut.contact = STUCK;
-      }
-    }
+    const double push = face.inward * total * (lambda[a] - now.old_share * lambda_old[a]);
+    double needed = 0.0;
+    for (int d = 0; d < dim; d++)
+      if (d != a) needed += lambda[d] * lambda[d];
+    const double slide = slide_share(cut.contact, push, total * sqrt(needed));
     if (cut.contact == FREE) return;
-    if (cut.contact == STUCK) slide = 1.0;
     for (int d = 0; d < dim; d++) share[d] = d == a ? 1.0 : slide;
   }
 
@@ -199,6 +159,6 @@ void FixMPMBoundary::act_on_cut(const FieldNodes &list, Cut &cut, bool last)
       v[d] = r[k][d] + share[d] * (lambda[d] * A[k] + mu[d] * B[k]) / r[k][3];
       if (hold) old[d] = r[k][4 + d] + (lambda_old[d] * A[k] + mu_old[d] * B[k]) / r[k][3];
     }
-    set_velocity(r[k], v, hold ? old : nullptr, dim, owned[k]);
+    set_velocity(grid, node[k], v, hold ? old : nullptr);
   }
 }

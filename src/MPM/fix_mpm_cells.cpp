@@ -14,7 +14,6 @@
 #include "grid2d.h"
 #include "grid3d.h"
 #include "memory.h"
-#include "modify.h"
 #include "mpm_field.h"
 #include "mpm_frame.h"
 #include "mpm_points.h"
@@ -41,9 +40,7 @@ static const struct {
    fix ID group mpm/cells FIXID
 ------------------------------------------------------------------------- */
 
-FixMPMCells::FixMPMCells(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), grid2d(nullptr), grid3d(nullptr), skin(0.0), buf1(nullptr), buf2(nullptr),
-    filled(-1)
+FixMPMCells::FixMPMCells(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
 {
   if (narg < 4) utils::missing_cmd_args(FLERR, "fix mpm/cells", error);
   if (narg > 4) error->all(FLERR, 4, "Unknown fix mpm/cells argument: {}", arg[4]);
@@ -54,13 +51,6 @@ FixMPMCells::FixMPMCells(LAMMPS *lmp, int narg, char **arg) :
   field_id = arg[3];
   set_size();
   allocate();
-}
-
-/* ---------------------------------------------------------------------- */
-
-FixMPMCells::~FixMPMCells()
-{
-  deallocate();
 }
 
 /* ----------------------------------------------------------------------
@@ -117,23 +107,18 @@ void FixMPMCells::allocate()
                        all.lo[0], all.hi[0], all.lo[1], all.hi[1], all.lo[2], all.hi[2]);
     grid3d->setup_comm(nbuf1, nbuf2);
   }
-  memory->create(buf1, nbuf1 * NSUM, "mpm/cells:buf1");
-  memory->create(buf2, nbuf2 * NSUM, "mpm/cells:buf2");
+  buf1.resize(nbuf1 * NSUM);
+  buf2.resize(nbuf2 * NSUM);
 
-  averages.assign(NAVERAGE, {nullptr, nullptr, nullptr});
+  averages.assign(NAVERAGE, {nullptr, nullptr});
   for (int k = 0; k < NAVERAGE; k++) {
-    const int n = fields[k].ncolumn;
-    const int *lo = owned.lo, *hi = owned.hi;
+    const int n = fields[k].ncolumn, *lo = owned.lo, *hi = owned.hi;
     const char *name = "mpm/cells:average";
     auto &a = averages[k];
-    if (dim == 2 && n == 0)
-      memory->create2d_offset(a.a2, lo[1], hi[1], lo[0], hi[0], name);
-    else if (dim == 2)
-      memory->create3d_offset_last(a.a3, lo[1], hi[1], lo[0], hi[0], n, name);
-    else if (n == 0)
-      memory->create3d_offset(a.a3, lo[2], hi[2], lo[1], hi[1], lo[0], hi[0], name);
+    if (n == 0)
+      memory->create3d_offset(a.scalar, lo[2], hi[2], lo[1], hi[1], lo[0], hi[0], name);
     else
-      memory->create4d_offset_last(a.a4, lo[2], hi[2], lo[1], hi[1], lo[0], hi[0], n, name);
+      memory->create4d_offset_last(a.vector, lo[2], hi[2], lo[1], hi[1], lo[0], hi[0], n, name);
   }
   filled = -1;
 }
@@ -144,20 +129,10 @@ void FixMPMCells::deallocate()
   delete grid3d;
   grid2d = nullptr;
   grid3d = nullptr;
-  memory->destroy(buf1);
-  memory->destroy(buf2);
   const int *lo = owned.lo;
-  for (std::size_t k = 0; k < averages.size(); k++) {
-    auto &a = averages[k];
-    const bool scalar = fields[k].ncolumn == 0;
-    if (dim == 2 && scalar)
-      memory->destroy2d_offset(a.a2, lo[1], lo[0]);
-    else if (dim == 2)
-      memory->destroy3d_offset_last(a.a3, lo[1], lo[0]);
-    else if (scalar)
-      memory->destroy3d_offset(a.a3, lo[2], lo[1], lo[0]);
-    else
-      memory->destroy4d_offset_last(a.a4, lo[2], lo[1], lo[0]);
+  for (auto &a : averages) {
+    memory->destroy3d_offset(a.scalar, lo[2], lo[1], lo[0]);
+    memory->destroy4d_offset_last(a.vector, lo[2], lo[1], lo[0]);
   }
   averages.clear();
 }
@@ -166,8 +141,7 @@ void FixMPMCells::deallocate()
 double *FixMPMCells::value(int k, int x, int y, int z)
 {
   const auto &a = averages[k];
-  if (fields[k].ncolumn == 0) return dim == 2 ? &a.a2[y][x] : &a.a3[z][y][x];
-  return dim == 2 ? a.a3[y][x] : a.a4[z][y][x];
+  return a.scalar ? &a.scalar[z][y][x] : a.vector[z][y][x];
 }
 
 /* ---------------------------------------------------------------------- */
@@ -199,15 +173,17 @@ void FixMPMCells::sum_points()
   }
   if (outside)
     error->one(FLERR, Error::NOLASTLINE,
-               "Fix {} (style mpm/cells): {} points are more than half "
-               "the neighbor skin away from the part of their process: use a larger neighbor skin "
-               "or neigh_modify every 1 delay 0 check yes",
+               "Fix {} (style mpm/cells): {} points are more than half the neighbor skin away from "
+               "the part of their process: use a larger neighbor skin or neigh_modify every 1 "
+               "delay 0 check yes",
                id, outside);
 
   if (dim == 2)
-    grid2d->reverse_comm(Grid2d::FIX, this, 0, NSUM, sizeof(double), buf1, buf2, MPI_DOUBLE);
+    grid2d->reverse_comm(Grid2d::FIX, this, 0, NSUM, sizeof(double), buf1.data(), buf2.data(),
+                         MPI_DOUBLE);
   else
-    grid3d->reverse_comm(Grid3d::FIX, this, 0, NSUM, sizeof(double), buf1, buf2, MPI_DOUBLE);
+    grid3d->reverse_comm(Grid3d::FIX, this, 0, NSUM, sizeof(double), buf1.data(), buf2.data(),
+                         MPI_DOUBLE);
 }
 
 void FixMPMCells::pack_reverse_grid(int, void *vbuf, int nlist, int *list)
@@ -286,9 +262,10 @@ void *FixMPMCells::get_griddata_by_index(int index)
     sum_points();
     average();
   }
-  const auto &a = averages[index];
-  if (fields[index].ncolumn == 0) return dim == 2 ? (void *) a.a2 : (void *) a.a3;
-  return dim == 2 ? (void *) a.a3 : (void *) a.a4;
+  const auto &a = averages[index];    // both null on a process without cells
+  if (dim == 3) return a.scalar ? (void *) a.scalar : (void *) a.vector;
+  if (a.scalar) return a.scalar[0];
+  return a.vector ? a.vector[0] : nullptr;
 }
 
 /* ---------------------------------------------------------------------- */

@@ -31,7 +31,7 @@ namespace LAMMPS_NS {
 class FixMPMCells : public Fix {
  public:
   FixMPMCells(class LAMMPS *, int, char **);
-  ~FixMPMCells() override;
+  ~FixMPMCells() override { deallocate(); }
   int setmask() override { return 0; }
   void init() override;
   void reset_grid() override;
@@ -57,23 +57,22 @@ class FixMPMCells : public Fix {
           lo[0];
     }
   };
-  /** An average, in the array that LAMMPS knows: [y][x] or [z][y][x], and [column] if ncolumn. */
+  /** An average with one value or with columns, null: the other. In 2d LAMMPS knows the part z = 0. */
   struct Average {
-    double **a2;
-    double ***a3;
-    double ****a4;
+    double ***scalar;     // [z][y][x]
+    double ****vector;    // [z][y][x][column]
   };
 
   std::string field_id;
   int dim, ncell[3];
-  class Grid2d *grid2d;
-  class Grid3d *grid3d;
-  Cells owned, all;    // of this rank: without and with ghost cells
-  double skin;         // when the grid was made
-  double *buf1, *buf2;
+  class Grid2d *grid2d = nullptr;
+  class Grid3d *grid3d = nullptr;
+  Cells owned, all;     // of this rank: without and with ghost cells
+  double skin = 0.0;    // when the grid was made
+  std::vector<double> buf1, buf2;
   std::vector<double> sums;    // [all][NSUM]
   std::vector<Average> averages;
-  bigint filled;    // time step of the averages, -1: none
+  bigint filled = -1;    // time step of the averages, -1: none
 
   void set_size();
   void allocate();

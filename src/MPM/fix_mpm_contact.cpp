@@ -132,9 +132,7 @@ Options MPMContactOptions::declare()
   return o;
 }
 
-FixMPMContact::FixMPMContact(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), lists_valid(false), may_touch(false), look(true), dt_last(0.0),
-    force_now(), count_now(), friction_work(), array(), array_step(-1)
+FixMPMContact::FixMPMContact(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
 {
   if (igroup != 0)
     error->all(FLERR, 1,
@@ -168,16 +166,9 @@ FixMPMContact::FixMPMContact(LAMMPS *lmp, int narg, char **arg) :
 
 /* ---------------------------------------------------------------------- */
 
-int FixMPMContact::setmask()
-{
-  return 0;    // called by fix mpm
-}
-
-/* ---------------------------------------------------------------------- */
-
 void FixMPMContact::init()
 {
-  fields.clear();
+  bodies.clear();
   for (const auto &name : names) {
     auto *field = MPMField::find(lmp, name);
     if (!field)
@@ -185,13 +176,14 @@ void FixMPMContact::init()
                  "Fix mpm/contact {}: {} is not the ID of a fix mpm: define one fix mpm for each "
                  "body",
                  id, name);
-    fields.push_back(field);
+    bodies.push_back({field, {}, {}, {}, {}, {}, {}});
   }
-  const MPMField &first = *fields[0];
-  for (const auto *field : fields) {
-    bool same = field->lattice.h == first.lattice.h && field->options.shape == first.options.shape;
-    for (int d = 0; d < 3; d++) same = same && field->lattice.origin[d] == first.lattice.origin[d];
-    if (!same)
+  const MPMField &first = *bodies[0].field;
+  for (const auto &body : bodies) {
+    const MPMField *field = body.field;
+    const auto &lattice = field->lattice;
+    if (lattice.h != first.lattice.h || field->options.shape != first.options.shape ||
+        !std::equal(lattice.origin, lattice.origin + 3, first.lattice.origin))
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/contact {}: fields {} and {} must have the same lattice (node spacing "
                  "and origin) and shape function; bodies on different lattices meet through a pair "
@@ -223,12 +215,6 @@ void FixMPMContact::init()
                id, 2.0 * release_work / normal_strength, first.lattice.h);
 
   find_room();
-  reach.assign(fields.size(), Blocks());
-  extent.assign(fields.size(), std::array<int, 6>());
-  gradient.assign(fields.size(), std::vector<double>());
-  share.assign(fields.size(), std::vector<double>());
-  near.assign(fields.size(), std::vector<char>());
-  images.assign(fields.size(), std::vector<int>());
   lists_valid = false;
   look = true;
 }
@@ -245,15 +231,15 @@ bool FixMPMContact::couples(const std::string &a, const std::string &b) const
 
 int FixMPMContact::index_of(const MPMField &field) const
 {
-  for (std::size_t k = 0; k < fields.size(); k++)
-    if (fields[k] == &field) return (int) k;
+  for (std::size_t k = 0; k < bodies.size(); k++)
+    if (bodies[k].field == &field) return (int) k;
   return -1;
 }
 
 /** Row of the output for fields a < b: (0,1), (0,2), ..., (1,2), ... */
 int FixMPMContact::pair_index(int a, int b) const
 {
-  const int n = (int) fields.size();
+  const int n = (int) bodies.size();
   return a * n - a * (a + 1) / 2 + b - a - 1;
 }
 
@@ -261,12 +247,17 @@ int FixMPMContact::pair_index(int a, int b) const
    each field has blocks for the sake of the others: all are renewed together
 ------------------------------------------------------------------------- */
 
+bool FixMPMContact::stale() const
+{
+  return std::any_of(bodies.begin(), bodies.end(), [](const Body &body) {
+    return !body.field->map->valid;
+  });
+}
+
 void FixMPMContact::couple_topology()
 {
-  bool stale = false;
-  for (const auto *field : fields) stale = stale || !field->map->valid;
-  if (stale)
-    for (auto *field : fields) field->map->valid = false;
+  if (stale())
+    for (const auto &body : bodies) body.field->map->valid = false;
 }
 
 /* ----------------------------------------------------------------------
@@ -275,17 +266,16 @@ void FixMPMContact::couple_topology()
 
 void FixMPMContact::blocks_found()
 {
-  bool stale = false;
-  for (const auto *field : fields) stale = stale || !field->map->valid;
-  if (!stale) return;
+  if (!stale()) return;
   lists_valid = false;
 
-  for (std::size_t k = 0; k < fields.size(); k++) {
-    const Grid &grid = fields[k]->grid;
+  for (auto &body : bodies) {
+    const Grid &grid = body.field->grid;
     const MPM_NS::Lattice &lattice = grid.lattice;
-    reach[k].clear();
+    auto &reach = body.reach;
+    reach.clear();
     int range[6];    // low, and minus high
-    for (int &r : range) r = INT_MAX;
+    std::fill_n(range, 6, INT_MAX);
     for (const auto &block : grid.blocks) {
       // an image on a periodic axis belongs to one or two canonical blocks
       int first[3], last[3];
@@ -298,17 +288,17 @@ void FixMPMContact::blocks_found()
       for (int corner = 0; corner < 8; corner++) {
         std::array<int, 3> b;
         for (int d = 0; d < 3; d++) b[d] = corner >> d & 1 ? last[d] : first[d];
-        reach[k].push_back(b);
+        reach.push_back(b);
       }
     }
-    std::sort(reach[k].begin(), reach[k].end());
-    reach[k].erase(std::unique(reach[k].begin(), reach[k].end()), reach[k].end());
-    for (const auto &b : reach[k])
+    std::sort(reach.begin(), reach.end());
+    reach.erase(std::unique(reach.begin(), reach.end()), reach.end());
+    for (const auto &b : reach)
       for (int d = 0; d < 3; d++) {
         range[d] = std::min(range[d], b[d]);
         range[3 + d] = std::min(range[3 + d], -b[d]);
       }
-    MPI_Allreduce(range, extent[k].data(), 6, MPI_INT, MPI_MIN, world);
+    MPI_Allreduce(range, body.extent, 6, MPI_INT, MPI_MIN, world);
   }
 }
 
@@ -320,12 +310,12 @@ void FixMPMContact::extend_topology(MPMField &field)
 {
   const int k = index_of(field);
   if (k < 0) return;
-  for (std::size_t j = 0; j < fields.size(); j++) {
-    if ((int) j == k) continue;
-    for (const auto &b : reach[j]) {
+  const int *const extent = bodies[k].extent;
+  for (const auto &other : bodies) {
+    if (other.field == &field) continue;
+    for (const auto &b : other.reach) {
       bool inside = true;
-      for (int d = 0; d < 3; d++)
-        inside = inside && b[d] >= extent[k][d] && b[d] <= -extent[k][3 + d];
+      for (int d = 0; d < 3; d++) inside = inside && b[d] >= extent[d] && b[d] <= -extent[3 + d];
       if (inside) field.grid.activate(b.data());
     }
   }
@@ -343,18 +333,18 @@ void FixMPMContact::topology_changed(MPMField &field)
 void FixMPMContact::list_common_blocks()
 {
   common.clear();
-  const int n = (int) fields.size();
+  const int n = (int) bodies.size();
   for (int k = 0; k < n; k++) {
-    const Grid &grid = fields[k]->grid;
-    images[k].clear();
+    const Grid &grid = bodies[k].field->grid;
+    bodies[k].images.clear();
     for (std::size_t slot = 0; slot < grid.blocks.size(); slot++)
-      if (grid.blocks[slot].alias) images[k].push_back((int) slot);
+      if (grid.blocks[slot].alias) bodies[k].images.push_back((int) slot);
     for (const auto &block : grid.blocks) {
       Common c;
       int count = 0;
       bool listed = false;
       for (int j = 0; j < n; j++) {
-        c.slot[j] = fields[j]->grid.find(block.b);
+        c.slot[j] = bodies[j].field->grid.find(block.b);
         if (c.slot[j] < 0) continue;
         count++;
         listed = listed || j < k;
@@ -377,12 +367,13 @@ void FixMPMContact::list_common_blocks()
 
 void FixMPMContact::mark_near(int k, int slot)
 {
-  near[k][slot] = 1;
-  const Grid &grid = fields[k]->grid;
+  auto &near = bodies[k].near;
+  near[slot] = 1;
+  const Grid &grid = bodies[k].field->grid;
   const MPM_NS::Lattice &lattice = grid.lattice;
   if (!lattice.periodic[0] && !lattice.periodic[1] && !lattice.periodic[2]) return;
-  for (const int image : images[k])
-    for (int corner = 0; corner < 8 && !near[k][image]; corner++) {
+  for (const int image : bodies[k].images)
+    for (int corner = 0; corner < 8 && !near[image]; corner++) {
       bool same = true;
       for (int d = 0; d < 3; d++) {
         const int b = grid.blocks[image].b[d];
@@ -391,7 +382,7 @@ void FixMPMContact::mark_near(int k, int slot)
         same = same &&
             (d >= lattice.dim ? b == wanted : lattice.wrap(d, node) >> grid.shift_bits == wanted);
       }
-      if (same) near[k][image] = 1;
+      if (same) near[image] = 1;
     }
 }
 
@@ -401,32 +392,39 @@ void FixMPMContact::mark_near(int k, int slot)
 
 bool FixMPMContact::map_bodies()
 {
-  const int nfields = (int) fields.size();
-  for (int k = 0; k < nfields; k++) near[k].assign(fields[k]->grid.blocks.size(), 0);
+  for (auto &body : bodies) body.near.assign(body.field->grid.blocks.size(), 0);
   int any = 0, all;
+  double *record[MAX_FIELDS];
   for (const auto &c : common) {
     bool meet = false;
-    for (int n = 0; n < NODES_PER_BLOCK && !meet; n++) {
-      if (!(c.canonical >> n & 1)) continue;
-      int massive = 0;
-      for (int k = 0; k < nfields; k++)
-        massive += c.slot[k] >= 0 && fields[k]->grid.record(c.slot[k], n)[3] > 0.0;
-      meet = massive > 1;
-    }
+    for (int n = 0; n < NODES_PER_BLOCK && !meet; n++)
+      meet = (c.canonical >> n & 1) && records(c, n, record) > 1;
     if (!meet) continue;
     any = 1;
-    for (int k = 0; k < nfields; k++)
-      if (c.slot[k] >= 0) mark_near(k, c.slot[k]);
+    for (std::size_t k = 0; k < bodies.size(); k++)
+      if (c.slot[k] >= 0) mark_near((int) k, c.slot[k]);
   }
   MPI_Allreduce(&any, &all, 1, MPI_INT, MPI_MAX, world);
   if (!all) return false;
 
-  for (std::size_t k = 0; k < fields.size(); k++) {
-    map_gradient(*fields[k], normal_by == MASS ? Weight::MASS : Weight::VOLUME, near[k],
-                 gradient[k]);
-    if (gap || look) map_volume(*fields[k], near[k], share[k]);
+  for (auto &body : bodies) {
+    map_gradient(*body.field, normal_by == MASS ? Weight::MASS : Weight::VOLUME, body.near,
+                 body.gradient);
+    if (gap || look) map_volume(*body.field, body.near, body.share);
   }
   return true;
+}
+
+/** Records of the bodies that have mass at node n of a block, null: it has none; how many have. */
+int FixMPMContact::records(const Common &c, int n, double *record[MAX_FIELDS])
+{
+  int massive = 0;
+  for (std::size_t k = 0; k < bodies.size(); k++) {
+    record[k] = c.slot[k] < 0 ? nullptr : bodies[k].field->grid.record(c.slot[k], n);
+    if (record[k] && !(record[k][3] > 0.0)) record[k] = nullptr;
+    massive += record[k] != nullptr;
+  }
+  return massive;
 }
 
 /* ----------------------------------------------------------------------
@@ -446,9 +444,9 @@ void FixMPMContact::warn_overlap()
       if (!(c.canonical >> n & 1)) continue;
       double sum = 0.0, most[2] = {0.0, 0.0};
       int body[2] = {-1, -1};
-      for (int k = 0; k < (int) fields.size(); k++) {
+      for (int k = 0; k < (int) bodies.size(); k++) {
         if (c.slot[k] < 0) continue;
-        const double s = share[k][(int64_t) c.slot[k] * NODES_PER_BLOCK + n];
+        const double s = bodies[k].share[(int64_t) c.slot[k] * NODES_PER_BLOCK + n];
         sum += s;
         const int at = s > most[0] ? 0 : 1;
         if (s <= most[at]) continue;
@@ -461,7 +459,7 @@ void FixMPMContact::warn_overlap()
       }
       if (most[1] < OVERLAP_EACH || sum < OVERLAP || sum <= mine.value) continue;
       mine.value = sum;
-      const MPMField &field = *fields[body[0]];
+      const MPMField &field = *bodies[body[0]].field;
       int index[3];
       field.grid.node_index(field.grid.blocks[c.slot[body[0]]], n, index);
       field.lattice.node_position(index, place);
@@ -473,8 +471,10 @@ void FixMPMContact::warn_overlap()
   MPI_Bcast(place, 5, MPI_DOUBLE, worst.rank, world);
 
   tagint tags[2];
+  const char *ids[2];
   for (int b = 0; b < 2; b++) {
-    const MPMField &field = *fields[(int) place[3 + b]];
+    const MPMField &field = *bodies[(int) place[3 + b]].field;
+    ids[b] = field.id();
     mine.value = 1.0e300;
     tags[b] = 0;
     for (int i = 0; i < atom->nlocal; i++) {
@@ -495,8 +495,7 @@ void FixMPMContact::warn_overlap()
                    "Fix mpm/contact {}: bodies {} and {} overlap at the start of the run, for "
                    "instance points {} and {} near {:.6g} {:.6g} {:.6g}: contact keeps bodies from "
                    "approaching each other, but does not part them",
-                   id, fields[(int) place[3]]->id(), fields[(int) place[4]]->id(), tags[0], tags[1],
-                   place[0], place[1], place[2]);
+                   id, ids[0], ids[1], tags[0], tags[1], place[0], place[1], place[2]);
 }
 
 /* ----------------------------------------------------------------------
@@ -505,30 +504,27 @@ void FixMPMContact::warn_overlap()
 
 bool FixMPMContact::make_pair(const Common &c, int n, int a, int b, double volume_share, Pair &pair)
 {
-  const int dim = fields[a]->lattice.dim;
-  const double h = fields[a]->lattice.h;
-  const double *ga = &gradient[a][3 * ((int64_t) c.slot[a] * NODES_PER_BLOCK + n)];
-  const double *gb = &gradient[b][3 * ((int64_t) c.slot[b] * NODES_PER_BLOCK + n)];
+  MPMField &field = *bodies[a].field;
+  const double *ga = &bodies[a].gradient[3 * ((int64_t) c.slot[a] * NODES_PER_BLOCK + n)];
+  const double *gb = &bodies[b].gradient[3 * ((int64_t) c.slot[b] * NODES_PER_BLOCK + n)];
   const double la = MathExtra::len3(ga), lb = MathExtra::len3(gb);
   if (la == 0.0 && lb == 0.0) return false;
   const double wa = normal_by == COLINEAR ? (la > 0.0 ? 1.0 / la : 0.0) : 1.0;
   const double wb = normal_by == COLINEAR ? (lb > 0.0 ? 1.0 / lb : 0.0) : 1.0;
-  for (int d = 0; d < 3; d++) pair.n[d] = d < dim ? wa * ga[d] - wb * gb[d] : 0.0;
+  for (int d = 0; d < 3; d++) pair.n[d] = d < field.lattice.dim ? wa * ga[d] - wb * gb[d] : 0.0;
   const double length = MathExtra::len3(pair.n);
   if (!(length > 1.0e-10 * (wa * la + wb * lb))) return false;
   for (double &x : pair.n) x /= length;
 
   pair.a = a;
   pair.b = b;
-  pair.ra = fields[a]->grid.record(c.slot[a], n);
-  pair.rb = fields[b]->grid.record(c.slot[b], n);
+  pair.ra = field.grid.record(c.slot[a], n);
+  pair.rb = bodies[b].field->grid.record(c.slot[b], n);
   pair.area = 0.5 * (la + lb);
   pair.fade = 0.0;
   pair.state = OPEN;
-  pair.normal = pair.tangential[0] = pair.tangential[1] = pair.tangential[2] = 0.0;
   if (law == ADHESIVE && pair.area > 0.0) {
-    const double cell =
-        (dim == 3 ? h * h * h : h * h) * fields[a]->frame->node_circle(c.slot[a], n);
+    const double cell = field.cell_volume() * field.frame->node_circle(c.slot[a], n);
     const double opening = std::max(0.0, full - volume_share) * cell / pair.area;
     pair.fade = std::max(0.0, 1.0 - opening * normal_strength / (2.0 * release_work));
   }
@@ -541,21 +537,12 @@ void FixMPMContact::find_contacts()
 {
   nodes.clear();
   pairs.clear();
-  const int nfields = (int) fields.size();
+  const int nfields = (int) bodies.size();
   for (const auto &c : common)
     for (int n = 0; n < NODES_PER_BLOCK; n++) {
       if (!(c.canonical >> n & 1)) continue;
       Node node;
-      int massive = 0;
-      for (int k = 0; k < nfields; k++) {
-        node.record[k] = nullptr;
-        if (c.slot[k] < 0) continue;
-        double *record = fields[k]->grid.record(c.slot[k], n);
-        if (!(record[3] > 0.0)) continue;
-        node.record[k] = record;
-        massive++;
-      }
-      if (massive < 2) continue;
+      if (records(c, n, node.record) < 2) continue;
       const double volume_share = gap ? filled(c, n) : full;
       node.first = (int) pairs.size();
       node.owned = c.owned >> n & 1;
@@ -577,7 +564,7 @@ void FixMPMContact::find_contacts()
 
 void FixMPMContact::apply(Pair &pair, double m, double &largest, double dt, bool decided)
 {
-  const int dim = fields[pair.a]->lattice.dim;
+  const int dim = bodies[pair.a].field->lattice.dim;
   double u[3] = {0.0, 0.0, 0.0}, un = 0.0;
   for (int d = 0; d < dim; d++) {
     u[d] = pair.ra[d] - pair.rb[d];
@@ -626,7 +613,7 @@ void FixMPMContact::apply(Pair &pair, double m, double &largest, double dt, bool
 
 void FixMPMContact::resolve(Node &node, double dt, bool decided)
 {
-  const int nfields = (int) fields.size(), dim = fields[0]->lattice.dim;
+  const int nfields = (int) bodies.size(), dim = bodies[0].field->lattice.dim;
   double start[MAX_FIELDS][3];
   int bodies = 0;
   for (int k = 0; k < nfields; k++)
@@ -635,9 +622,10 @@ void FixMPMContact::resolve(Node &node, double dt, bool decided)
       for (int d = 0; d < dim; d++) start[k][d] = node.record[k][d];
     }
 
-  for (int p = node.first; p < node.last; p++)
-    pairs[p].normal = pairs[p].tangential[0] = pairs[p].tangential[1] = pairs[p].tangential[2] =
-        0.0;
+  for (int p = node.first; p < node.last; p++) {
+    pairs[p].normal = 0.0;
+    MathExtra::zero3(pairs[p].tangential);
+  }
   for (int it = 0; it < (bodies == 2 ? 1 : MAX_ITERATIONS); it++) {
     double largest = 0.0;
     for (int p = node.first; p < node.last; p++) {
@@ -667,7 +655,7 @@ void FixMPMContact::resolve(Node &node, double dt, bool decided)
 
 void FixMPMContact::account(const Node &node, const double start[][3])
 {
-  const int dim = fields[0]->lattice.dim;
+  const int dim = bodies[0].field->lattice.dim;
   for (int p = node.first; p < node.last; p++) {
     const Pair &pair = pairs[p];
     if (pair.state == OPEN) continue;
@@ -679,12 +667,12 @@ void FixMPMContact::account(const Node &node, const double start[][3])
       friction_work[row] += pair.tangential[d] * (pair.rb[d] - pair.ra[d]);
     }
   }
-  for (std::size_t k = 0; k < fields.size(); k++) {
+  for (std::size_t k = 0; k < bodies.size(); k++) {
     const double *record = node.record[k];
     if (!record) continue;
     double change[3] = {0.0, 0.0, 0.0};
     for (int d = 0; d < dim; d++) change[d] = record[d] - start[k][d];
-    fields[k]->ledger.count_push(record, change);
+    bodies[k].field->ledger.count_push(record, change);
   }
 }
 
@@ -776,7 +764,7 @@ double FixMPMContact::memory_usage()
 {
   double bytes = pairs.capacity() * sizeof(Pair) + nodes.capacity() * sizeof(Node) +
       common.capacity() * sizeof(Common);
-  for (std::size_t k = 0; k < gradient.size(); k++)
-    bytes += (gradient[k].capacity() + share[k].capacity()) * sizeof(double);
+  for (const auto &body : bodies)
+    bytes += (body.gradient.capacity() + body.share.capacity()) * sizeof(double);
   return bytes;
 }

@@ -47,7 +47,7 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
  public:
   Turn turn() const override { return BETWEEN_BODIES; }
   FixMPMContact(class LAMMPS *, int, char **);
-  int setmask() override;
+  int setmask() override { return 0; }    // called by fix mpm
   void init() override;
   void write_restart(FILE *) override;
   void restart(char *) override;
@@ -88,44 +88,47 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
   struct Node {         // a node where bodies are in contact
     int first, last;    // range in pairs
     bool owned;
-    double *record[MAX_FIELDS];    // null: the body is not here
+    double *record[MAX_FIELDS];    // null: the body has no mass here
   };
-  struct
-      Room {    // along an axis, for nodes near a fixed face: share of their volume inside of the box
+  // along an axis, for nodes near a fixed face: share of their volume inside of the box
+  struct Room {
     int plane;                  // index of the plane of nodes at the face
     bool fixed;                 // else there is no such face
     double share[REACH + 1];    // from the plane on inward
   };
-  using Blocks = std::vector<std::array<int, 3>>;
+  struct Body {
+    MPMField *field;
+    std::vector<std::array<int, 3>> reach;    // blocks in reach of its points, canonical
+    int extent[6];                            // low, and minus high, of these over all ranks
+    std::vector<int> images;                  // blocks with periodic images
+    std::vector<char> near;                   // [slot] a block where bodies share nodes
+    std::vector<double> gradient;             // of the volume (or mass) at the nodes
+    std::vector<double> share;                // volume at the nodes / node volume
+  };
 
   std::vector<std::string> names;
   Room room[3][2];    // [axis][side]
 
-  std::vector<MPMField *> fields;
-  std::vector<Blocks> reach;                 // [field] blocks in reach of its points, canonical
-  std::vector<std::array<int, 6>> extent;    // [field] their range over all ranks
+  std::vector<Body> bodies;
   std::vector<Common> common;
-  std::vector<std::vector<char>> near;     // [field][slot] a block where bodies share nodes
-  std::vector<std::vector<int>> images;    // [field] blocks with periodic images
-  bool lists_valid, may_touch;
-  bool look;    // for bodies that overlap, in the first step of a run
-
-  std::vector<std::vector<double>> gradient;    // [field] of the volume (or mass) at the nodes
-  std::vector<std::vector<double>> share;       // [field] volume at the nodes / node volume
+  bool lists_valid = false, may_touch = false;
+  bool look = true;    // for bodies that overlap, in the first step of a run
   std::vector<Node> nodes;
   std::vector<Pair> pairs;
 
-  double dt_last;
-  double force_now[MAX_PAIRS][3], count_now[MAX_PAIRS], friction_work[MAX_PAIRS];
-  double array[MAX_PAIRS][5];
-  bigint array_step;
+  double dt_last = 0.0;
+  double force_now[MAX_PAIRS][3] = {}, count_now[MAX_PAIRS] = {}, friction_work[MAX_PAIRS] = {};
+  double array[MAX_PAIRS][5] = {};
+  bigint array_step = -1;
 
+  bool stale() const;
   void find_room();
   double filled(const Common &, int n) const;
   int index_of(const MPMField &) const;
   int pair_index(int a, int b) const;
   void list_common_blocks();
   void mark_near(int k, int slot);
+  int records(const Common &, int n, double *record[MAX_FIELDS]);
   bool map_bodies();
   void warn_overlap();
   void find_contacts();

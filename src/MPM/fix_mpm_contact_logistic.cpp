@@ -39,18 +39,17 @@ void FixMPMContact::separate_points()
   constexpr int ROUNDS = 6,
                 NREAL = 14;    // converged to 1e-4; 4 of the gradient, 10 second derivatives
   constexpr double RIDGE = 1.0e-3;
-  const int dim = fields[0]->lattice.dim, nfields = (int) fields.size();
+  const int dim = bodies[0].field->lattice.dim, nfields = (int) bodies.size();
 
   // contact nodes by their places in the grids of the fields; images on periodic axes are the same node
 
   std::vector<std::vector<int>> wanted(nfields);
   for (int k = 0; k < nfields; k++) {
-    const Grid &grid = fields[k]->grid;
+    Grid &grid = bodies[k].field->grid;
     wanted[k].assign(grid.nnodes(), -1);
     for (std::size_t m = 0; m < nodes.size(); m++)
-      if (nodes[m].record[k])
-        wanted[k][(nodes[m].record[k] - const_cast<Grid &>(grid).nodes()) / grid.nreal] = (int) m;
-    for (const int slot : images[k])
+      if (nodes[m].record[k]) wanted[k][(nodes[m].record[k] - grid.nodes()) / grid.nreal] = (int) m;
+    for (const int slot : bodies[k].images)
       for (int n = 0; n < NODES_PER_BLOCK; n++) {
         if (!(grid.blocks[slot].alias >> n & 1)) continue;
         int index[3];
@@ -66,32 +65,33 @@ void FixMPMContact::separate_points()
   for (int round = 0; round < ROUNDS; round++) {
     sums.assign(sums.size(), 0.0);
     for (int k = 0; k < nfields; k++)
-      visit_points(*fields[k], wanted[k], [&](int, int which, double weight, const double *r) {
-        const Node &node = nodes[which];
-        for (int p = node.first; p < node.last; p++) {
-          const Pair &pair = pairs[p];
-          if (pair.a != k && pair.b != k) continue;
-          double c[4] = {r[0], r[1], r[2], 1.0}, z = 0.0;
-          for (int i = 0; i < 4; i++) z += phi[p][i] * c[i];
-          const double s = 1.0 / (1.0 + std::exp(-z)), slope = weight * s * (1.0 - s);
-          double *const to = &sums[(std::size_t) p * NREAL];
-          for (int i = 0, m = 4; i < 4; i++) {
-            to[i] += weight * (s - (pair.b == k)) * c[i];
-            for (int j = 0; j <= i; j++) to[m++] += slope * c[i] * c[j];
-          }
-        }
-      });
+      visit_points(*bodies[k].field, wanted[k],
+                   [&](int, int which, double weight, const double *r) {
+                     const Node &node = nodes[which];
+                     for (int p = node.first; p < node.last; p++) {
+                       const Pair &pair = pairs[p];
+                       if (pair.a != k && pair.b != k) continue;
+                       double c[4] = {r[0], r[1], r[2], 1.0}, z = 0.0;
+                       for (int i = 0; i < 4; i++) z += phi[p][i] * c[i];
+                       const double s = 1.0 / (1.0 + std::exp(-z)), slope = weight * s * (1.0 - s);
+                       double *const to = &sums[(std::size_t) p * NREAL];
+                       for (int i = 0, m = 4; i < 4; i++) {
+                         to[i] += weight * (s - (pair.b == k)) * c[i];
+                         for (int j = 0; j <= i; j++) to[m++] += slope * c[i] * c[j];
+                       }
+                     }
+                   });
 
     if (comm->nprocs > 1)    // by pairs of bodies, on the nodes of the first of them
       for (int a = 0; a < nfields; a++) {
-        const Grid &grid = fields[a]->grid;
+        Grid &grid = bodies[a].field->grid;
         for (int b = a + 1; b < nfields; b++) {
           shared.assign(grid.nnodes() * NREAL, 0.0);
           const auto each = [&](const auto &act) {
             for (const Node &node : nodes)
               for (int p = node.first; p < node.last; p++) {
                 if (pairs[p].a != a || pairs[p].b != b) continue;
-                const auto n = (node.record[a] - const_cast<Grid &>(grid).nodes()) / grid.nreal;
+                const auto n = (node.record[a] - grid.nodes()) / grid.nreal;
                 for (int i = 0; i < NREAL; i++)
                   act(sums[(std::size_t) p * NREAL + i], shared[(std::size_t) n * NREAL + i]);
               }
@@ -99,7 +99,7 @@ void FixMPMContact::separate_points()
           each([](double &mine, double &node) {
             node = mine;
           });
-          fields[a]->nodes.halo->sum(shared.data(), NREAL, 0, NREAL);
+          bodies[a].field->nodes.halo->sum(shared.data(), NREAL, 0, NREAL);
           each([](double &mine, double &node) {
             mine = node;
           });

@@ -26,7 +26,7 @@ using namespace MPM_NS;
 void FixMPMContact::find_room()
 {
   constexpr int FIXED = 1, SAMPLES = 48;    // boundary f; places per cell
-  const MPMField &field = *fields[0];
+  const MPMField &field = *bodies[0].field;
   for (int d = 0; d < field.lattice.dim; d++) {
     double face[2] = {-1.0e300, 1.0e300};    // in node spacings
     const double h = field.lattice.h, origin = field.lattice.origin[d];
@@ -74,7 +74,7 @@ double FixMPMContact::filled(const Common &c, int n) const
 {
   int any = 0, index[3];
   while (c.slot[any] < 0) any++;
-  const Grid &grid = fields[any]->grid;
+  const Grid &grid = bodies[any].field->grid;
   grid.node_index(grid.blocks[c.slot[any]], n, index);
   double most = 1.0;
   bool image = false;
@@ -94,10 +94,10 @@ double FixMPMContact::filled(const Common &c, int n) const
     most *= least;
   }
   double sum = 0.0;
-  for (std::size_t k = 0; k < fields.size(); k++) {
+  for (std::size_t k = 0; k < bodies.size(); k++) {
     int64_t node = c.slot[k] < 0 ? -1 : (int64_t) c.slot[k] * NODES_PER_BLOCK + n;
-    if (image) node = fields[k]->grid.locate(index);
-    if (node >= 0) sum += share[k][node];
+    if (image) node = bodies[k].field->grid.locate(index);
+    if (node >= 0) sum += bodies[k].share[node];
   }
   return most > 0.0 ? sum / most : 0.0;
 }

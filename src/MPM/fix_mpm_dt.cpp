@@ -99,9 +99,8 @@ void FixMPMDt::init()
     const std::string other = ifix->style;
     if (other == "dt/reset" || other == "mpm/dt" || other == "smd/adjust_dt")
       error->all(FLERR, Error::NOLASTLINE,
-                 "Fix {} {} and fix {} {} both set the time step: "
-                 "remove one",
-                 style, id, other, ifix->id);
+                 "Fix {} {} and fix {} {} both set the time step: remove one", style, id, other,
+                 ifix->id);
   }
 }
 
@@ -204,14 +203,12 @@ void FixMPMDt::set_dt(double dt)
   const auto tag = (tagint) limit.tag;
   if (limit.dt == 0.0)
     error->all(FLERR, Error::NOLASTLINE,
-               "Fix mpm/dt: point {} has no valid wave speed or velocity "
-               "at step {}",
-               tag, update->ntimestep);
+               "Fix mpm/dt: point {} has no valid wave speed or velocity at step {}", tag,
+               update->ntimestep);
   if (dt < dt_min)
     error->all(FLERR, Error::NOLASTLINE,
-               "Fix mpm/dt: time step {:.6g} needed by point {} (wave "
-               "speed {:.6g}) at step {} is below min {:.6g}; see what happened to that point, or "
-               "lower min",
+               "Fix mpm/dt: time step {:.6g} needed by point {} (wave speed {:.6g}) at step {} is "
+               "below min {:.6g}; see what happened to that point, or lower min",
                dt, tag, limit.speed, update->ntimestep, dt_min);
   if (dt == update->dt) return;
 

@@ -29,12 +29,10 @@
 #include "force.h"
 #include "math_extra.h"
 #include "mesh/surface_mesh.h"
-#include "modify.h"
 #include "mpm_field.h"
 #include "mpm_image.h"
 #include "mpm_options.h"
 #include "region_mpm_mesh.h"
-#include "update.h"
 
 #include <Eigen/Dense>
 
@@ -91,8 +89,7 @@ Options MPMRigidOptions::declare()
   return o;
 }
 
-FixMPMRigid::FixMPMRigid(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), mesh(nullptr), L{0.0, 0.0, 0.0}, dt_last(0.0)
+FixMPMRigid::FixMPMRigid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
 {
   if (igroup != 0)
     error->all(FLERR, 1, "Fix mpm/rigid acts on nodes, which have no group: use group all");
@@ -106,20 +103,17 @@ FixMPMRigid::FixMPMRigid(LAMMPS *lmp, int narg, char **arg) :
                "Fix mpm/rigid requires 3d, as surfaces are of triangles: in 2d, move a region with "
                "fix mpm/boundary, or use a thin 3d box that is periodic");
   mesh = &region->surface_mesh();
-  density = by_mass ? amount / mesh->volume : amount;
+  const double density = by_mass ? amount / mesh->volume : amount;
   mass = density * mesh->volume;
-  for (int k = 0; k < 6; k++) {
-    body_inertia[k] = density * mesh->inertia[k];
-    impulse[k] = 0.0;
-  }
+  constexpr int VOIGT[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
   for (int d = 0; d < 3; d++) {
     x[d] = mesh->center[d];
-    for (int e = 0; e < 3; e++) Q[d][e] = d == e;
+    for (int e = 0; e < 3; e++) {
+      Q[d][e] = d == e;
+      body_inertia[d][e] = density * mesh->inertia[VOIGT[d][e]];
+    }
   }
-  double I[3][3] = {{body_inertia[0], body_inertia[3], body_inertia[4]},
-                    {body_inertia[3], body_inertia[1], body_inertia[5]},
-                    {body_inertia[4], body_inertia[5], body_inertia[2]}};
-  MathExtra::matvec(I, omega, L);
+  MathExtra::matvec(body_inertia, omega, L);
   spin();
 
   scalar_flag = vector_flag = 1;
@@ -134,32 +128,25 @@ FixMPMRigid::FixMPMRigid(LAMMPS *lmp, int narg, char **arg) :
                    x[1], x[2]);
 }
 
-int FixMPMRigid::setmask()
-{
-  return 0;
-}
-
 /* ---------------------------------------------------------------------- */
 
 void FixMPMRigid::init()
 {
   auto *region = dynamic_cast<RegMPMMesh *>(domain->get_region_by_id(region_id));
   if (!region || region->dynamic_check() || !region->interior)
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm/rigid {} needs its region {} at rest and with side in: the fix moves a copy "
-        "of it",
-        id, region_id);
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/rigid {} needs its region {} at rest and with side in: the fix moves a "
+               "copy of it",
+               id, region_id);
   mesh = &region->surface_mesh();
   const auto fields = MPMField::all(lmp);
   if (fields.empty()) error->all(FLERR, Error::NOLASTLINE, "Fix mpm/rigid needs a fix mpm");
-  for (const auto *field : fields) {
+  for (const auto *field : fields)
     refuse_field(lmp, *this, *field,
                  {{field->options.total, "frame total",
                    "its nodes are not where the body is: use frame updated"},
                   {field->options.stress_before(), "scheme usf and usavg",
                    "these need the contact before it is known: use usl or musl"}});
-  }
   for (int d = 0; d < 3; d++) {
     find_variable(lmp, load[d], "fix mpm/rigid force");
     find_variable(lmp, moment[d], "fix mpm/rigid torque");
@@ -172,11 +159,8 @@ void FixMPMRigid::init()
 
 void FixMPMRigid::inertia(double out[3][3]) const
 {
-  const double I[3][3] = {{body_inertia[0], body_inertia[3], body_inertia[4]},
-                          {body_inertia[3], body_inertia[1], body_inertia[5]},
-                          {body_inertia[4], body_inertia[5], body_inertia[2]}};
   double half[3][3];
-  MathExtra::times3(Q, I, half);
+  MathExtra::times3(Q, body_inertia, half);
   MathExtra::times3_transpose(half, Q, out);
 }
 
@@ -208,15 +192,12 @@ void FixMPMRigid::load_impulse(double dt)
   bool variables = false;
   for (int d = 0; d < 3; d++)
     variables = variables || !load[d].variable.empty() || !moment[d].variable.empty();
-  if (variables) modify->clearstep_compute();
-  for (int d = 0; d < 3; d++) {
-    v[d] += dt * (gravity[d] + evaluate(lmp, load[d]) * force->ftm2v / mass);
-    L[d] += dt * evaluate(lmp, moment[d]) * force->ftm2v;
-  }
-  if (variables) {
-    const auto *field = MPMField::all(lmp)[0];
-    modify->addstep_compute(update->ntimestep + field->steps_to_next());
-  }
+  evaluate_in_step(lmp, variables, [&] {
+    for (int d = 0; d < 3; d++) {
+      v[d] += dt * (gravity[d] + evaluate(lmp, load[d]) * force->ftm2v / mass);
+      L[d] += dt * evaluate(lmp, moment[d]) * force->ftm2v;
+    }
+  });
 }
 
 /* ----------------------------------------------------------------------
@@ -226,12 +207,10 @@ void FixMPMRigid::load_impulse(double dt)
 void FixMPMRigid::find_contacts()
 {
   contacts.clear();
-  double radius = 0.0;    // of a sphere about the center
-  for (int d = 0; d < 3; d++) {
-    const double far = std::max(mesh->hi[d] - mesh->center[d], mesh->center[d] - mesh->lo[d]);
-    radius += far * far;
-  }
-  radius = sqrt(radius);
+  double far[3];
+  for (int d = 0; d < 3; d++)
+    far[d] = std::max(mesh->hi[d] - mesh->center[d], mesh->center[d] - mesh->lo[d]);
+  const double radius = MathExtra::len3(far);    // of a sphere about the center
   for (auto *field : MPMField::all(lmp)) {
     auto &grid = field->grid;
     const double half = 0.5 * (grid.side - 1) * field->lattice.h;
@@ -246,10 +225,10 @@ void FixMPMRigid::find_contacts()
       if (MathExtra::len3(at) > radius + 1.8 * half) continue;
       for (int n = 0; n < NODES_PER_BLOCK; n++) {
         if (block.alias >> n & 1) continue;
-        const double *record = grid.record((int) slot, n);
-        if (!(record[3] > 0.0)) continue;
-        grid.node_index(block, n, index);
         Contact c;
+        c.record = grid.record((int) slot, n);
+        if (!(c.record[3] > 0.0)) continue;
+        grid.node_index(block, n, index);
         field->lattice.node_position(index, c.r);
         for (int d = 0; d < 3; d++) c.r[d] -= x[d];
         nearest_image(*domain, c.r);
@@ -260,17 +239,16 @@ void FixMPMRigid::find_contacts()
         if (mesh->bound(p) > 0.0) continue;
         SurfaceMesh::Point out;
         if (mesh->distance_and_normal(p, out) > 0.0) continue;
-        MathExtra::copy3(record, c.v);
+        MathExtra::copy3(c.record, c.v);
         MathExtra::matvec(Q, out.data(), c.n);
-        if (!(MathExtra::lensq3(c.n) >
-              0.0)) {    // no way out is shorter: along the motion of the body
+        if (!(MathExtra::lensq3(c.n) > 0.0)) {
+          // no way out is shorter: along the motion of the body
           const double u[6] = {v[0], v[1], v[2], omega[0], omega[1], omega[2]};
           c.relative_velocity(u, c.n);
           if (!(MathExtra::lensq3(c.n) > 0.0)) continue;
           MathExtra::norm3(c.n);
         }
         c.field = field;
-        c.node = (int64_t) slot * NODES_PER_BLOCK + n;
         c.owned = block.owned >> n & 1;
         c.state = kind == STICK ? Contact::STICKS : Contact::SLIDES;
         MathExtra::zero3(c.pull);
@@ -282,26 +260,10 @@ void FixMPMRigid::find_contacts()
 
 /* ---------------------------------------------------------------------- */
 
-double *FixMPMRigid::Contact::record() const
-{
-  return field->grid.nodes() + node * field->grid.nreal;
-}
-
-/* ---------------------------------------------------------------------- */
-
 void FixMPMRigid::Contact::relative_velocity(const double *u, double *w) const
 {
   MathExtra::cross3(u + 3, r, w);
   for (int d = 0; d < 3; d++) w[d] += u[d] - v[d];
-}
-
-/* ---------------------------------------------------------------------- */
-
-void FixMPMRigid::Contact::impulse(double m, const double *w, double *push) const
-{
-  const double normal = MathExtra::dot3(w, n);
-  for (int d = 0; d < 3; d++)
-    push[d] = state == APART ? 0.0 : m * (state == STICKS ? w[d] : normal * (n[d] + pull[d]));
 }
 
 /* ----------------------------------------------------------------------
@@ -320,7 +282,7 @@ void FixMPMRigid::solve()
     double mine[42] = {0.0}, all[42];    // matrix, right-hand side
     for (const auto &c : contacts) {
       if (!c.owned || c.state == Contact::APART) continue;
-      const double m = c.record()[3];
+      const double m = c.record[3];
       // N_i as sum of products of a direction of the impulse and one of the velocity: each with r x it
       const int products = c.state == Contact::STICKS ? 3 : 1;
       for (int k = 0; k < products; k++) {
@@ -339,12 +301,8 @@ void FixMPMRigid::solve()
       }
     }
     MPI_Allreduce(mine, all, 42, MPI_DOUBLE, MPI_SUM, world);
-    Matrix6 A;
-    Vector6 b;
-    for (int i = 0; i < 6; i++) {
-      for (int j = 0; j < 6; j++) A(i, j) = all[6 * i + j];
-      b(i) = all[36 + i];
-    }
+    Matrix6 A = Eigen::Map<Matrix6>(all).transpose();    // by rows
+    Vector6 b = Eigen::Map<Vector6>(all + 36);
     for (int d = 0; d < 3; d++) {
       A(d, d) += mass;
       b(d) += mass * v[d];
@@ -365,11 +323,10 @@ void FixMPMRigid::solve()
     int changed = 0, changed_all;
     for (auto &c : contacts) {
       if (kind == STICK) break;
-      double w[3];
+      double w[3], slide[3];
       c.relative_velocity(u.data(), w);
       const double normal = MathExtra::dot3(w, c.n);
-      double slide[3];
-      for (int d = 0; d < 3; d++) slide[d] = w[d] - normal * c.n[d];
+      MathExtra::scaleadd3(-normal, c.n, w, slide);
       const double length = MathExtra::len3(slide), most = friction * fabs(normal);
       const Contact before = c;
       MathExtra::zero3(c.pull);
@@ -394,19 +351,20 @@ void FixMPMRigid::solve()
     // to round-off even if the rounds have not converged
 
     double sum[6] = {0.0}, total[6];
-    for (auto &c : contacts) {
-      double w[3], push[3];
+    for (const auto &c : contacts) {
+      if (c.state == Contact::APART) continue;
+      double w[3], push[3], moment[3];
       c.relative_velocity(u.data(), w);
-      c.impulse(c.record()[3], w, push);
-      if (c.owned) {
-        double moment[3];
-        MathExtra::cross3(c.r, push, moment);
+      const double m = c.record[3], normal = MathExtra::dot3(w, c.n);
+      for (int d = 0; d < 3; d++)
+        push[d] = m * (c.state == Contact::STICKS ? w[d] : normal * (c.n[d] + c.pull[d]));
+      MathExtra::cross3(c.r, push, moment);
+      if (c.owned)
         for (int d = 0; d < 3; d++) {
           sum[d] -= push[d];
           sum[3 + d] -= moment[d];
         }
-      }
-      if (c.state != Contact::APART) c.field->ledger.push_node(c.record(), c.owned, push);
+      c.field->ledger.push_node(c.record, c.owned, push);
     }
     MPI_Allreduce(sum, total, 6, MPI_DOUBLE, MPI_SUM, world);
     for (int d = 0; d < 3; d++) {
@@ -445,11 +403,11 @@ void FixMPMRigid::move(double dt)
   memcpy(start, Q, sizeof(Q));
   for (int round = 0; round < 3; round++) {
     spin();
-    for (int d = 0; d < 3; d++) angle[d] = 0.5 * dt * omega[d];
+    MathExtra::scale3(0.5 * dt, omega, angle);
     rotate(angle, start, Q);
   }
   spin();
-  for (int d = 0; d < 3; d++) angle[d] = dt * omega[d];
+  MathExtra::scale3(dt, omega, angle);
   rotate(angle, start, moved);
   memcpy(Q, moved, sizeof(Q));
   spin();
@@ -477,12 +435,11 @@ void FixMPMRigid::act(double dt, Stage stage)
 
   for (const auto &c : contacts) {
     if (c.state == Contact::APART) continue;
-    double *record = c.record();
     double w[3];
     MathExtra::cross3(omega, c.r, w);
-    for (int d = 0; d < 3; d++) w[d] += v[d] - record[d];
+    for (int d = 0; d < 3; d++) w[d] += v[d] - c.record[d];
     const double normal = MathExtra::dot3(w, c.n);
-    for (int d = 0; d < 3; d++) record[d] += kind == STICK ? w[d] : normal * c.n[d];
+    for (int d = 0; d < 3; d++) c.record[d] += kind == STICK ? w[d] : normal * c.n[d];
   }
 }
 
@@ -510,37 +467,16 @@ double FixMPMRigid::compute_vector(int i)
 
 /* ---------------------------------------------------------------------- */
 
-namespace {
-struct Saved {
-  double x[3], v[3], L[3], Q[3][3], omega[3], impulse[6], dt;
-};
-}    // namespace
-
 void FixMPMRigid::write_restart(FILE *fp)
 {
   if (comm->me) return;
-  Saved saved;
-  memcpy(saved.x, x, sizeof(x));
-  memcpy(saved.v, v, sizeof(v));
-  memcpy(saved.L, L, sizeof(L));
-  memcpy(saved.Q, Q, sizeof(Q));
-  memcpy(saved.omega, omega, sizeof(omega));
-  memcpy(saved.impulse, impulse, sizeof(impulse));
-  saved.dt = dt_last;
-  const int size = sizeof(Saved);
+  const MPMRigidMotion &motion = *this;
+  const int size = sizeof(motion);
   fwrite(&size, sizeof(int), 1, fp);
-  fwrite(&saved, size, 1, fp);
+  fwrite(&motion, size, 1, fp);
 }
 
 void FixMPMRigid::restart(char *buf)
 {
-  Saved saved;
-  memcpy(&saved, buf, sizeof(Saved));
-  memcpy(x, saved.x, sizeof(x));
-  memcpy(v, saved.v, sizeof(v));
-  memcpy(L, saved.L, sizeof(L));
-  memcpy(Q, saved.Q, sizeof(Q));
-  memcpy(omega, saved.omega, sizeof(omega));
-  memcpy(impulse, saved.impulse, sizeof(impulse));
-  dt_last = saved.dt;
+  memcpy(static_cast<MPMRigidMotion *>(this), buf, sizeof(MPMRigidMotion));
 }

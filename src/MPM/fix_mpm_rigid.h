@@ -19,7 +19,6 @@ FixStyle(mpm/rigid,FixMPMRigid);
 #include "fix.h"
 #include "mpm_node_action.h"
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -30,15 +29,25 @@ class SurfaceMesh;
 namespace LAMMPS_NS {
 class MPMField;
 
-struct MPMRigidOptions {
+/** What restart files keep of a rigid body. */
+struct MPMRigidMotion {
+  double x[3], v[3], L[3];       ///< center, its velocity, angular momentum
+  double Q[3][3];                ///< from the frame of the mesh to space
+  double omega[3];               ///< angular velocity
+  double impulse[6], dt_last;    ///< of the material on the body in the last step
+};
+
+/** Options; v and omega of the motion are read as those at the start. */
+struct MPMRigidOptions : MPMRigidMotion {
   enum Kind { STICK, SLIP, SEPARATE };
+
+  MPMRigidOptions() : MPMRigidMotion() {}
 
   std::string region_id;
   bool by_mass = false;
   double amount = 0.0;    ///< mass or density
   Kind kind = STICK;
   double friction = 0.0;
-  double v[3] = {0.0, 0.0, 0.0}, omega[3] = {0.0, 0.0, 0.0};    ///< at the start
   double gravity[3] = {0.0, 0.0, 0.0};
   MPM_NS::NumberOrVariable load[3], moment[3];                   ///< force and torque
   bool fixed[6] = {false, false, false, false, false, false};    ///< velocities that stay zero
@@ -53,7 +62,7 @@ class FixMPMRigid : public Fix, public MPMNodeAction, private MPMRigidOptions {
  public:
   Turn turn() const override { return RIGID_BODIES; }
   FixMPMRigid(class LAMMPS *, int, char **);
-  int setmask() override;
+  int setmask() override { return 0; }    // called by fix mpm
   void init() override;
   void write_restart(FILE *) override;
   void restart(char *) override;
@@ -66,7 +75,7 @@ class FixMPMRigid : public Fix, public MPMNodeAction, private MPMRigidOptions {
   struct Contact {    // a node inside of the body
     enum State { APART, SLIDES, STICKS };
     MPMField *field;
-    int64_t node;
+    double *record;    // of the node: its velocity and mass
     bool owned;
     State state;
     double r[3];       // from the center of the body
@@ -74,20 +83,13 @@ class FixMPMRigid : public Fix, public MPMNodeAction, private MPMRigidOptions {
     double v[3];       // before the contact
     double pull[3];    // impulse of friction on the node, for an impulse of 1 along n
 
-    double *record() const;    ///< of the node: its velocity and mass
     /** Velocity of the body (u: its velocity and angular velocity) at the node, relative to v. */
     void relative_velocity(const double *u, double *w) const;
-    /** Impulse on the node (mass m) if it had the velocity w of the body, relative to its own. */
-    void impulse(double m, const double *w, double *push) const;
   };
 
   const MPM_NS::SurfaceMesh *mesh;
-  double mass, density;
-  double body_inertia[6];    // about the center, in the frame of the mesh
-
-  double x[3], L[3];             // center, angular momentum; v, omega: of now
-  double Q[3][3];                // from the frame of the mesh to space
-  double impulse[6], dt_last;    // of the material on the body in the last step
+  double mass;
+  double body_inertia[3][3];    // about the center, in the frame of the mesh
   std::vector<Contact> contacts;
 
   void load_impulse(double dt);

@@ -57,13 +57,12 @@ Options MPMSurfaceOptions::declare()
 }
 
 FixMPMSurface::FixMPMSurface(LAMMPS *lmp, int narg, char **arg) :
-    FixMPMState(lmp, narg, arg), surface_group(-1), known(false), no_torques(false),
-    at_surface(nullptr), points(MPMPoints::get(atom))
+    FixMPMState(lmp, narg, arg), points(MPMPoints::get(atom))
 {
   if (!points || !atom->radius_flag)
     error->all(FLERR,
-               "Fix mpm/surface requires material points with a radius: use atom_style "
-               "hybrid sphere mpm");
+               "Fix mpm/surface requires material points with a radius: use atom_style hybrid "
+               "sphere mpm");
   Options options = declare();
   read_options(lmp, options, narg, arg, 3);
   if (options.given("group")) {
@@ -210,15 +209,6 @@ void FixMPMSurface::keep_first()
   for (auto *field : MPMField::all(lmp)) field->map->valid = false;
 }
 
-/* ----------------------------------------------------------------------
-   the next run takes its cutoffs from the radii
-------------------------------------------------------------------------- */
-
-void FixMPMSurface::post_run()
-{
-  give_largest();
-}
-
 /* ---------------------------------------------------------------------- */
 
 bool FixMPMSurface::has_radius(int i) const
@@ -226,10 +216,14 @@ bool FixMPMSurface::has_radius(int i) const
   return (atom->mask[i] & groupbit) && atom->vfrac[i] > 0.0;
 }
 
+double FixMPMSurface::radius_of(double V, double growth) const
+{
+  return 0.5 * scale * growth * (domain->dimension == 3 ? std::cbrt(V) : std::sqrt(V));
+}
+
 double FixMPMSurface::largest_radius(int i) const
 {
-  const double V = atom->vfrac[i];
-  return 0.5 * scale * grow * (domain->dimension == 3 ? std::cbrt(V) : std::sqrt(V));
+  return radius_of(atom->vfrac[i], grow);
 }
 
 void FixMPMSurface::give_largest()
@@ -257,18 +251,16 @@ void FixMPMSurface::give_radius(int i, bool surface, double radius)
 void FixMPMSurface::find_surface()
 {
   known = true;
-  for (auto *each : MPMField::all(lmp)) {
-    auto &field = *each;
-    volume_at_points(field, share);
-    const double deviation = std::sqrt((stencil_order(field.options.shape) + 1) / 6.0);
+  for (auto *field : MPMField::all(lmp)) {
+    volume_at_points(*field, share);
+    const double deviation = std::sqrt((stencil_order(field->options.shape) + 1) / 6.0);
     const double limit = 0.5 * std::erfc(-depth / (deviation * std::sqrt(2.0)));
     for (int i = 0; i < atom->nlocal; i++) {
-      if (!has_radius(i) || !field.is_point(i)) continue;
-      const auto *material = field.material_of(i);
+      if (!has_radius(i) || !field->is_point(i)) continue;
+      const auto *material = field->material_of(i);
       const bool failed =
           material && material->damage >= 0 && material->history[i][material->damage] >= 1.0;
-      const double V = atom->vfrac[i] * points->jacobian(i);
-      const double radius = 0.5 * scale * (domain->dimension == 3 ? std::cbrt(V) : std::sqrt(V));
+      const double radius = radius_of(atom->vfrac[i] * points->jacobian(i), 1.0);
       give_radius(i, failed || share[i] < limit, std::min(radius, largest_radius(i)));
     }
   }

@@ -44,7 +44,7 @@ class FixMPMSurface : public FixMPMState, private MPMSurfaceOptions {
   void setup_pre_force(int) override;
   void pre_exchange() override;
   void pre_force(int) override;
-  void post_run() override;
+  void post_run() override { give_largest(); }    // the next run takes its cutoffs from the radii
   double compute_scalar() override;
 
   /** Are points members of this group only if they have a radius? */
@@ -56,14 +56,15 @@ class FixMPMSurface : public FixMPMState, private MPMSurfaceOptions {
   void unpack_forward_comm(int, int, double *) override;
 
  private:
-  int surface_group;            // that points with a radius are in, -1: none
-  bool known;                   // radii are those of the surface, not the largest ones
-  bool no_torques;              // of atoms that are not in neighbor lists, since these were made
+  int surface_group = -1;       // that points with a radius are in, -1: none
+  bool known = false;           // radii are those of the surface, not the largest ones
+  bool no_torques = false;      // of atoms that are not in neighbor lists, since these were made
   double *at_surface;           // [n] 1: has a radius, 0: has not
   std::vector<double> share;    // of the volume, at the points of a field
   struct MPMPoints *points;
 
   bool has_radius(int i) const;
+  double radius_of(double volume, double growth) const;
   double largest_radius(int i) const;
   void give_radius(int i, bool at_surface, double radius);
   void give_largest();

@@ -11,7 +11,9 @@
 #include "error.h"
 #include "fix.h"
 #include "input.h"
+#include "modify.h"
 #include "mpm_field.h"
+#include "update.h"
 #include "utils.h"
 #include "variable.h"
 
@@ -86,4 +88,13 @@ void LAMMPS_NS::find_variable(LAMMPS *lmp, NumberOrVariable &v, const std::strin
 double LAMMPS_NS::evaluate(LAMMPS *lmp, const NumberOrVariable &v)
 {
   return v.variable.empty() ? v.value : lmp->input->variable->compute_equal(v.index);
+}
+
+void LAMMPS_NS::evaluate_in_step(LAMMPS *lmp, bool any, const std::function<void()> &f)
+{
+  if (any) lmp->modify->clearstep_compute();
+  f();
+  if (!any) return;
+  const int steps = MPMField::all(lmp)[0]->steps_to_next();
+  lmp->modify->addstep_compute(lmp->update->ntimestep + steps);
 }

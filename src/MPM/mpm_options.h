@@ -41,5 +41,9 @@ void find_variable(LAMMPS *, MPM_NS::NumberOrVariable &, const std::string &user
 /** The number, or the present value of the variable. */
 double evaluate(LAMMPS *, const MPM_NS::NumberOrVariable &);
 
+/** Calls f(), which evaluates variables if any are set, and asks for these in the next step of the
+ *  cycle. */
+void evaluate_in_step(LAMMPS *, bool any, const std::function<void()> &f);
+
 }    // namespace LAMMPS_NS
 #endif

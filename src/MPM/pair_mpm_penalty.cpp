@@ -36,23 +36,17 @@ static constexpr int NOTHING = -1;    // field of an atom that is no point
 
 /* ---------------------------------------------------------------------- */
 
-PairMPMPenalty::PairMPMPenalty(LAMMPS *lmp) :
-    Pair(lmp), points(nullptr), rings(false), velocities(false), damped(false), look(true),
-    warned(false), warned_deep(false), nmax(0), radius(nullptr), mass(nullptr)
+PairMPMPenalty::PairMPMPenalty(LAMMPS *lmp) : Pair(lmp)
 {
   single_enable = 0;
   nextra = 2;
   pvector = new double[nextra]();
 }
 
-/* ---------------------------------------------------------------------- */
-
 PairMPMPenalty::~PairMPMPenalty()
 {
   if (copymode) return;
   delete[] pvector;
-  memory->destroy(radius);
-  memory->destroy(mass);
   if (allocated) {
     memory->destroy(setflag);
     memory->destroy(cutsq);
@@ -64,7 +58,7 @@ PairMPMPenalty::~PairMPMPenalty()
 void PairMPMPenalty::compute(int eflag, int vflag)
 {
   ev_init(eflag, vflag);
-  if (neighbor->ago == 0 || nmax < atom->nmax) find_pairs();
+  if (neighbor->ago == 0 || (int) radius.size() < atom->nmax) find_pairs();
   for (const int i : near) radius[i] = current_radius(i);
   comm->forward_comm(this);
 
@@ -155,17 +149,13 @@ void PairMPMPenalty::compute(int eflag, int vflag)
 
 void PairMPMPenalty::find_pairs()
 {
-  if (nmax < atom->nmax) {
-    nmax = atom->nmax;
-    memory->destroy(radius);
-    memory->destroy(mass);
-    memory->create(radius, nmax, "pair:radius");
-    if (damped) memory->create(mass, nmax, "pair:mass");
-  }
   const int nlocal = atom->nlocal, nall = nlocal + atom->nghost, ntypes = atom->ntypes;
   const int nfields = (int) fields.size();
-  std::fill(radius, radius + nall, 0.0);
-  if (damped) std::copy(atom->rmass, atom->rmass + nlocal, mass);
+  radius.assign(atom->nmax, 0.0);
+  if (damped) {
+    mass.resize(atom->nmax);
+    std::copy_n(atom->rmass, nlocal, mass.begin());
+  }
 
   std::vector<int> field(nall);
   for (int i = 0; i < nall; i++) field[i] = field_of(i);
@@ -174,9 +164,9 @@ void PairMPMPenalty::find_pairs()
     const int t = atom->type[i];
     if (!present[field[i] * (ntypes + 1) + t] || initial_radius(i) > largest[t] * (1.0 + 1e-10))
       error->one(FLERR, Error::NOLASTLINE,
-                 "Pair style mpm/penalty: point {} has changed its type or "
-                 "field, or is larger than the points of its type were at the start of the run: "
-                 "begin a new run after such changes",
+                 "Pair style mpm/penalty: point {} has changed its type or field, or is larger "
+                 "than the points of its type were at the start of the run: begin a new run after "
+                 "such changes",
                  atom->tag[i]);
   }
 
@@ -216,10 +206,10 @@ void PairMPMPenalty::warn_about_list(double same, double all)
   if (comm->me || sum[0] < 0.5 * sum[1] || sum[0] < 1000.0) return;
   error->warning(
       FLERR,
-      "Pair style mpm/penalty: {:.0f} of {:.0f} pairs in the neighbor list are of "
-      "points of one field, which costs much time and memory: give each field atom types "
-      "of its own, and with neighbor multi or pair hybrid exclude pairs within each field "
-      "with neigh_modify exclude type I I",
+      "Pair style mpm/penalty: {:.0f} of {:.0f} pairs in the neighbor list are of points of one "
+      "field, which costs much time and memory: give each field atom types of its own, and with "
+      "neighbor multi or pair hybrid exclude pairs within each field with neigh_modify exclude "
+      "type I I",
       sum[0], sum[1]);
 }
 
@@ -381,13 +371,12 @@ void PairMPMPenalty::init_style()
   points = MPMPoints::get(atom);
   if (!points)
     error->all(FLERR, Error::NOLASTLINE,
-               "Pair style mpm/penalty requires material points: use "
-               "atom_style mpm, or hybrid with mpm");
+               "Pair style mpm/penalty requires material points: use atom_style mpm, or hybrid "
+               "with mpm");
   fields = MPMField::all(lmp);
   if (fields.size() < 2)
     error->all(FLERR, Error::NOLASTLINE,
-               "Pair style mpm/penalty acts between fields, but there {}: "
-               "give each body a fix mpm",
+               "Pair style mpm/penalty acts between fields, but there {}: give each body a fix mpm",
                fields.empty() ? "is no fix mpm" : "is only one fix mpm");
 
   rings = fields[0]->options.axisymmetric;    // all fields are, or none
@@ -415,17 +404,18 @@ void PairMPMPenalty::init_style()
   MPI_Allreduce(mine.data(), present.data(), (int) mine.size(), MPI_CHAR, MPI_MAX, world);
   MPI_Allreduce(mine_largest.data(), largest.data(), (int) n, MPI_DOUBLE, MPI_MAX, world);
 
-  velocities = damped = false;
+  bool velocities = false;
+  damped = false;
   for (const auto &c : coeffs) {
     velocities = velocities || c.friction > 0.0 || c.damping > 0.0;
     damped = damped || c.damping > 0.0;
   }
   if (velocities && !comm->ghost_velocity)
     error->all(FLERR, Error::NOLASTLINE,
-               "Pair style mpm/penalty with friction or damping needs the "
-               "velocities of ghost atoms: use comm_modify vel yes");
+               "Pair style mpm/penalty with friction or damping needs the velocities of ghost "
+               "atoms: use comm_modify vel yes");
   comm_forward = damped ? 2 : 1;
-  nmax = 0;
+  radius.clear();
   look = true;
   warned = warned_deep = false;
 
@@ -459,9 +449,8 @@ double PairMPMPenalty::init_one(int i, int j)
     if (!c.set)
       error->all(
           FLERR, Error::NOLASTLINE,
-          "Pair style mpm/penalty has no pair_coeff for types {} and "
-          "{}, but fields {} and {} have such points: give one, with modulus 0 if they shall "
-          "not touch",
+          "Pair style mpm/penalty has no pair_coeff for types {} and {}, but fields {} and {} have "
+          "such points: give one, with modulus 0 if they shall not touch",
           i, j, fields[a]->id(), fields[b]->id());
     if (c.modulus > 0.0) return reach;
   }
@@ -508,6 +497,6 @@ void PairMPMPenalty::read_restart_settings(FILE *fp)
 
 double PairMPMPenalty::memory_usage()
 {
-  return Pair::memory_usage() + (damped ? 2.0 : 1.0) * nmax * sizeof(double) +
+  return Pair::memory_usage() + (radius.capacity() + mass.capacity()) * sizeof(double) +
       pairs.capacity() * sizeof(pairs[0]) + near.capacity() * sizeof(int);
 }

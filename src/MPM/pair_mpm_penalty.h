@@ -72,20 +72,19 @@ class PairMPMPenalty : public Pair, private MPMPenaltyOptions {
  private:
   using Coeff = MPMPenaltyCoeff;
 
-  MPMPoints *points;
+  MPMPoints *points = nullptr;
   std::vector<Coeff> coeffs;    // [ntypes+1][ntypes+1]
   std::vector<MPMField *> fields;
   std::vector<char> coupled;      // [field][field] same field, or left to fix mpm/contact
   std::vector<char> present;      // [field][type]
   std::vector<double> largest;    // [type] initial radius of the largest point
-  bool rings;                     // axisymmetric: x is the distance from the axis
-  bool velocities, damped;        // some coefficients need velocities, masses
-  bool look;                      // at what the neighbor list consists of
-  bool warned;                    // that points outgrow their limit
-  bool warned_deep;               // that bodies penetrate each other
+  bool rings = false;             // axisymmetric: x is the distance from the axis
+  bool damped = false;            // some coefficients need masses
+  bool look = true;               // at what the neighbor list consists of
+  bool warned = false;            // that points outgrow their limit
+  bool warned_deep = false;       // that bodies penetrate each other
 
-  int nmax;
-  double *radius, *mass;                     // current, [nlocal+nghost]; mass with damping only
+  std::vector<double> radius, mass;          // current, [nmax]; mass with damping only
   std::vector<std::pair<int, int>> pairs;    // in reach of each other: of different fields
   std::vector<int> near;                     // local points in them
 

@@ -77,7 +77,8 @@ class Grid {
   void allocate(int nreal);          ///< node records for all blocks, zeroed
 
   double *nodes() { return node; }
-  double *record(int slot, int n) { return node + ((int64_t) slot * NODES_PER_BLOCK + n) * nreal; }
+  double *record(int slot, int n) { return record((int64_t) slot * NODES_PER_BLOCK + n); }
+  double *record(int64_t which) { return node + which * nreal; }    ///< which: slot*64 + n
   int64_t nnodes() const { return (int64_t) blocks.size() * NODES_PER_BLOCK; }
   void zero();
 
@@ -99,6 +100,21 @@ class Grid {
       index[1] = 8 * block.b[1] + (n & 7);
       index[2] = 0;
     }
+  }
+  void node_index(int64_t which, int index[3]) const
+  {
+    node_index(blocks[which / NODES_PER_BLOCK], which % NODES_PER_BLOCK, index);
+  }
+  void node_position(int64_t which, double x[3]) const
+  {
+    int index[3];
+    node_index(which, index);
+    lattice.node_position(index, x);
+  }
+  /** Is the node (slot*64 + n) canonical, and does this rank count it in sums over nodes? */
+  bool owns(int64_t which) const
+  {
+    return blocks[which / NODES_PER_BLOCK].owned >> (which % NODES_PER_BLOCK) & 1;
   }
   /** Number of a node in its block, from its global index. */
   int number(const int index[3]) const
