@@ -13,6 +13,7 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "fix.h"
 #include "irregular.h"
 #include "math/random.h"
 #include "modify.h"

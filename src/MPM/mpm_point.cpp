@@ -40,7 +40,7 @@ static const char *const path_name[] = {"uniaxial/stress", "uniaxial/strain", "s
 
 /* ---------------------------------------------------------------------- */
 
-MPMPoint::MPMPoint(LAMMPS *lmp) : Command(lmp), fp(nullptr), iterations(0) {}
+MPMPoint::MPMPoint(LAMMPS *lmp) : Command(lmp) {}
 
 MPMPoint::~MPMPoint()
 {
