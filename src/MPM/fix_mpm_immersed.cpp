@@ -46,10 +46,12 @@
 #include "error.h"
 #include "force.h"
 #include "math_const.h"
+#include "math_extra.h"
 #include "modify.h"
 #include "mpm_field.h"
 #include "mpm_options.h"
 #include "mpm_point_map.h"
+#include "mpm_stencil.h"
 #include "update.h"
 
 #include <algorithm>
@@ -95,8 +97,7 @@ Options MPMImmersedOptions::declare(int dim)
   return o;
 }
 
-FixMPMImmersed::FixMPMImmersed(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), field(nullptr), force_now{}, count(0), dt_last(0.0)
+FixMPMImmersed::FixMPMImmersed(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
 {
   Options options = declare(domain->dimension);
   read_options(lmp, options, narg, arg, 3);
@@ -123,7 +124,8 @@ int FixMPMImmersed::setmask()
 
 void FixMPMImmersed::init()
 {
-  if (!MPMField::find(lmp, field_id))
+  field = MPMField::find(lmp, field_id);
+  if (!field)
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/immersed {}: there is no fix mpm {}", id,
                field_id);
 }
@@ -134,10 +136,7 @@ void FixMPMImmersed::init()
 
 void FixMPMImmersed::init_action()
 {
-  field = MPMField::find(lmp, field_id);
-  if (!field)
-    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/immersed {}: there is no fix mpm {}", id,
-               field_id);
+  FixMPMImmersed::init();
   refuse_field(lmp, *this, *field,
                {{field->options.total, "frame total",
                  "its nodes are not where the grains are: use frame updated"},
@@ -148,6 +147,13 @@ void FixMPMImmersed::init_action()
 
   field->keep_old = true;    // for the acceleration of the fluid
 
+  const auto count_all = [&](const auto &counts) {
+    bigint mine = 0, all;
+    for (int i = 0; i < atom->nlocal; i++) mine += counts(i);
+    MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+    return all;
+  };
+
   // Who moves the grains, and which of the two half steps with forces are still to come?
 
   movers.clear();
@@ -155,39 +161,36 @@ void FixMPMImmersed::init_action()
   for (int k = 0; k < modify->nfix; k++) {
     const Fix *ifix = modify->fix[k];
     if (utils::strmatch(ifix->style, "^rigid")) {
-      bigint mine = 0, all;
-      for (int i = 0; i < atom->nlocal; i++)
-        if (is_grain(i) && (atom->mask[i] & ifix->groupbit)) mine++;
-      MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-      if (all)
+      const bigint n = count_all([&](int i) {
+        return is_grain(i) && (atom->mask[i] & ifix->groupbit);
+      });
+      if (n)
         error->all(
             FLERR, Error::NOLASTLINE,
             "Fix mpm/immersed {}: {} grains of fix {} ({}) have no velocity of their own: use "
             "single spheres",
-            id, all, ifix->id, ifix->style);
+            id, n, ifix->id, ifix->style);
     }
     if (ifix->time_integrate && !utils::strmatch(ifix->style, "^mpm$"))
       movers.push_back({ifix->groupbit, k < driver ? 1.0 : 0.5});
   }
 
-  bigint points = 0, all;
-  for (int i = 0; i < atom->nlocal; i++)
-    if ((atom->mask[i] & groupbit) && atom->vfrac[i] > 0.0) points++;
-  MPI_Allreduce(&points, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  if (all)
+  const bigint points = count_all([&](int i) {
+    return (atom->mask[i] & groupbit) && atom->vfrac[i] > 0.0;
+  });
+  if (points)
     error->all(
         FLERR, Error::NOLASTLINE,
         "Fix mpm/immersed {}: {} atoms of its group are material points: use a group of grains", id,
-        all);
-  bigint large = 0, largest;
-  for (int i = 0; i < atom->nlocal; i++)
-    if (is_grain(i) && 2.0 * atom->radius[i] > 2.0 * field->lattice.h) large++;
-  MPI_Allreduce(&large, &largest, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  if (largest && comm->me == 0)
+        points);
+  const bigint large = count_all([&](int i) {
+    return is_grain(i) && 2.0 * atom->radius[i] > 2.0 * field->lattice.h;
+  });
+  if (large && comm->me == 0)
     error->warning(FLERR,
                    "Fix mpm/immersed {}: {} grains are larger than two node spacings: for "
                    "them, contact through a pair style resolves the flow",
-                   id, largest);
+                   id, large);
 }
 
 bool FixMPMImmersed::is_grain(int i) const
@@ -202,51 +205,6 @@ double FixMPMImmersed::volume(int i) const
   return field->lattice.dim == 3 ? 4.0 / 3.0 * MY_PI * r * r * r : MY_PI * r * r;
 }
 
-/** Space that belongs to a node. */
-double FixMPMImmersed::space() const
-{
-  const double h = field->lattice.h;
-  return field->lattice.dim == 3 ? h * h * h : h * h;
-}
-
-/* ----------------------------------------------------------------------
-   f(node, N_i, r) for the nodes around a grain, r from the grain in node spacings; false: some of them
-   are not there
-------------------------------------------------------------------------- */
-
-template <class F> bool FixMPMImmersed::visit(int i, const F &f) const
-{
-  const auto &grid = field->grid;
-  const int dim = field->lattice.dim;
-  int first[3] = {0, 0, 0}, k[3];
-  double w[3][4] = {{0.0}, {0.0}, {1.0}}, t[3] = {0.0, 0.0, 0.0};
-  int n = 0;
-  for (int d = 0; d < dim; d++) {
-    t[d] = (atom->x[i][d] - grid.lattice.origin[d]) / grid.lattice.h;
-    n = field->weights(t[d], first[d], w[d]);
-  }
-  // one look-up per grain, neighbors from the table of its first block
-  int b[3];
-  for (int d = 0; d < 3; d++) b[d] = first[d] >> grid.shift_bits;
-  const int start = grid.find(b);
-  if (start < 0) return false;
-  const auto &block = grid.blocks[start];
-  for (k[0] = 0; k[0] < n; k[0]++)
-    for (k[1] = 0; k[1] < n; k[1]++)
-      for (k[2] = 0; k[2] < (dim == 3 ? n : 1); k[2]++) {
-        int index[3];
-        double r[3];
-        for (int d = 0; d < 3; d++) {
-          index[d] = first[d] + k[d];
-          r[d] = index[d] - t[d];
-        }
-        const int64_t node = grid.locate_near(block, index);
-        if (node < 0) return false;
-        f(node, w[0][k[0]] * w[1][k[1]] * w[2][k[2]], r);
-      }
-  return true;
-}
-
 /* ----------------------------------------------------------------------
    blocks around the grains of this rank, and when they need others
 ------------------------------------------------------------------------- */
@@ -254,11 +212,12 @@ template <class F> bool FixMPMImmersed::visit(int i, const F &f) const
 void FixMPMImmersed::couple_topology()
 {
   int missing = 0, any;
+  MPMStencil stencil(*field);
+  const auto nothing = [](int64_t, double, const double *) {
+  };
   if (field->map->valid)
     for (int i = 0; i < atom->nlocal && !missing; i++)
-      if (is_grain(i) && !visit(i, [](int64_t, double, const double *) {
-          }))
-        missing = 1;
+      missing = is_grain(i) && !stencil.visit_around(atom->x[i], nothing);
   MPI_Allreduce(&missing, &any, 1, MPI_INT, MPI_MAX, world);
   if (any) field->map->valid = false;
 }
@@ -304,10 +263,9 @@ double FixMPMImmersed::end_of_bed(double solid, const double *moment, double own
   const double p1 = stencil_order(field->options.shape) + 1.0, width = sqrt(p1 / 6.0),
                n = field->lattice.dim;
   const double slope = width * 12.0 / p1 / solid;    // sum N r^2 = (p+1)/12, of moment
-  const double chance = 0.5 * n * pow(4.0 * MY_PI * width * width, -0.5 * n) * own / space();
-  const double q2 =
-      slope * slope * (moment[0] * moment[0] + moment[1] * moment[1] + moment[2] * moment[2]) -
-      chance / solid;
+  const double chance =
+      0.5 * n * pow(4.0 * MY_PI * width * width, -0.5 * n) * own / field->cell_volume();
+  const double q2 = slope * slope * MathExtra::lensq3(moment) - chance / solid;
   if (!(q2 > 0.0)) return solid;
   return solid / (1.0 - 0.64 * pow(std::min(q2, 2.0 / MY_PI), 0.56));
 }
@@ -391,7 +349,7 @@ bool FixMPMImmersed::is_inner(int64_t node)
   char &known = inner[node];
   if (known) return known == INNER;
   auto &grid = field->grid;
-  const double least = 0.6 * density * space();
+  const double least = 0.6 * density * field->cell_volume();
   const auto full = [&](int64_t n) {
     return grid.nodes()[n * grid.nreal + 3] > least;
   };
@@ -418,9 +376,10 @@ void FixMPMImmersed::find_grains(double dt)
   grains.clear();
   entries.clear();
   inner.assign(field->grid.nnodes(), 0);
-  const double full = density * space();
+  const double full = density * field->cell_volume();
   const double *records = field->grid.nodes();    // vx vy vz m, old velocity
   const int nreal = field->grid.nreal;
+  MPMStencil stencil(*field);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!is_grain(i)) continue;
     Grain g;
@@ -428,7 +387,7 @@ void FixMPMImmersed::find_grains(double dt)
     g.first = (int) entries.size();
     double mass = 0.0, inside = 0.0;
     for (int d = 0; d < 3; d++) g.gain[d] = 0.0;
-    visit(i, [&](int64_t node, double w, const double *r) {
+    stencil.visit_around(atom->x[i], [&](int64_t node, double w, const double *r) {
       const double *const record = records + node * nreal;
       const double m = w * record[3];
       mass += m;
@@ -500,7 +459,7 @@ void FixMPMImmersed::act(double dt, Stage stage)
   };
 
   for (std::size_t g = 0; g < grains.size(); g++) {
-    const double share = volume(grains[g].i) / space();
+    const double share = volume(grains[g].i) / field->cell_volume();
     around(g, [&](const Entry &e, double *sum) {
       sum[0] += e.w * share;
     });
@@ -528,8 +487,7 @@ void FixMPMImmersed::act(double dt, Stage stage)
     }
     const double part = g.part * g.immersed;
     g.coefficient = part *
-        drag_after_step(2.0 * atom->radius[g.i],
-                        sqrt(slip[0] * slip[0] + slip[1] * slip[1] + slip[2] * slip[2]),
+        drag_after_step(2.0 * atom->radius[g.i], MathExtra::len3(slip),
                         end_of_bed(solid, moment, volume(g.i)),
                         dt * part * (1.0 / g.mass + of_fluid));
   }
