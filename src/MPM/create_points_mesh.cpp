@@ -26,7 +26,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <stdexcept>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -72,12 +71,7 @@ Mesh CreatePoints::read_mesh(int narg, char **arg)
   read_options(lmp, options, narg, arg, 3);
   diameter = given.diameter;
 
-  Mesh mesh;
-  try {
-    mesh = read_body(lmp, arg[2], given.part);
-  } catch (const std::runtime_error &e) {
-    error->all(FLERR, 2, "Create_points: {}", e.what());
-  }
+  Mesh mesh = read_body(lmp, arg[2], given.part, "Create_points", 2);
   for (auto &x : mesh.nodes)
     for (int d = 0; d < 3; d++) x[d] = d < dim ? given.move[d] + given.scale * x[d] : 0.0;
   return mesh;

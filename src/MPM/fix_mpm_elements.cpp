@@ -91,12 +91,7 @@ FixMPMElements::FixMPMElements(LAMMPS *lmp, int narg, char **arg) :
   global_freq = 1;
   extscalar = 1;
 
-  Mesh mesh;
-  try {
-    mesh = read_body(lmp, file, part);
-  } catch (const std::runtime_error &e) {
-    error->all(FLERR, 3, "Fix mpm/elements: {}", e.what());
-  }
+  const Mesh mesh = read_body(lmp, file, part, "Fix mpm/elements", 3);
   for (const auto &e : mesh.elements) {
     const auto &rule = ElementRule::of(e.type);
     maxnode = std::max(maxnode, rule.nnode);
