@@ -138,22 +138,9 @@ void CreatePoints::find_nodes(const Mesh &mesh, const char *file)
    an element is the domain of its point
 ------------------------------------------------------------------------- */
 
-static const int *corner_nodes(ElementType type)
-{
-  static constexpr int triangle[] = {0, 1, 2, 2}, quad[] = {0, 1, 3, 2},
-                       tetrahedron[] = {0, 1, 2, 2, 3, 3, 3, 3},
-                       hexahedron[] = {0, 1, 3, 2, 4, 5, 7, 6};
-  switch (type) {
-    case ElementType::TRIANGLE:
-      return triangle;
-    case ElementType::QUAD:
-      return quad;
-    case ElementType::TETRAHEDRON:
-      return tetrahedron;
-    default:
-      return hexahedron;
-  }
-}
+/** Nodes as corners of the domain, by ElementType. */
+static constexpr int corner_nodes[][8] = {
+    {0, 1, 2, 2}, {0, 1, 3, 2}, {0, 1, 2, 2, 3, 3, 3, 3}, {0, 1, 3, 2, 4, 5, 7, 6}};
 
 void CreatePoints::find_elements(const Mesh &mesh, const char *file)
 {
@@ -161,7 +148,7 @@ void CreatePoints::find_elements(const Mesh &mesh, const char *file)
   for (const auto &e : mesh.elements) {
     Site site = {{0.0, 0.0, 0.0}, 0.0, 0};
     Corners corner;
-    const int *node = corner_nodes(e.type);
+    const int *node = corner_nodes[static_cast<int>(e.type)];
     double w[8], g[24];
     for (int c = 0; c < ncorner; c++)
       for (int d = 0; d < dim; d++) corner[dim * c + d] = mesh.nodes[e.node[node[c]]][d];
