@@ -263,7 +263,7 @@ double FixMPMImmersed::end_of_bed(double solid, const double *moment, double own
                n = field->lattice.dim;
   const double slope = width * 12.0 / p1 / solid;    // sum N r^2 = (p+1)/12, of moment
   const double chance =
-      0.5 * n * pow(4.0 * MY_PI * width * width, -0.5 * n) * own / field->cell_volume();
+      0.5 * n * pow(4.0 * MY_PI * width * width, -0.5 * n) * own / field->lattice.cell_volume();
   const double q2 = slope * slope * MathExtra::lensq3(moment) - chance / solid;
   if (!(q2 > 0.0)) return solid;
   return solid / (1.0 - 0.64 * pow(std::min(q2, 2.0 / MY_PI), 0.56));
@@ -348,7 +348,7 @@ bool FixMPMImmersed::is_inner(int64_t node)
   char &known = inner[node];
   if (known) return known == INNER;
   auto &grid = field->grid;
-  const double least = 0.6 * density * field->cell_volume();
+  const double least = 0.6 * density * field->lattice.cell_volume();
   const auto full = [&](int64_t n) {
     return grid.nodes()[n * grid.nreal + 3] > least;
   };
@@ -375,17 +375,16 @@ void FixMPMImmersed::find_grains(double dt)
   grains.clear();
   entries.clear();
   inner.assign(field->grid.nnodes(), 0);
-  const double full = density * field->cell_volume();
+  const double full = density * field->lattice.cell_volume();
   const double *records = field->grid.nodes();    // vx vy vz m, old velocity
   const int nreal = field->grid.nreal;
   MPMStencil stencil(*field);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!is_grain(i)) continue;
-    Grain g;
+    Grain g = {};
     g.i = i;
     g.first = (int) entries.size();
     double mass = 0.0, inside = 0.0;
-    for (int d = 0; d < 3; d++) g.gain[d] = 0.0;
     stencil.visit_around(atom->x[i], [&](int64_t node, double w, const double *r) {
       const double *const record = records + node * nreal;
       const double m = w * record[3];
@@ -400,7 +399,8 @@ void FixMPMImmersed::find_grains(double dt)
       entries.resize(g.first);
       continue;
     }
-    for (std::size_t e = g.first; e < entries.size(); e++) entries[e].share /= mass;
+    g.last = (int) entries.size();
+    for (int e = g.first; e < g.last; e++) entries[e].share /= mass;
     g.part = inside > 0.0 ? 0.0 : 1.0;    // without an acceleration its term is left out
     if (inside > 0.0)
       for (int d = 0; d < 3; d++) g.gain[d] /= inside;
@@ -451,24 +451,21 @@ void FixMPMImmersed::act(double dt, Stage stage)
   grid.copy_aliases();
   find_grains(dt);
   sums.assign(NREAL * grid.nnodes(), 0.0);
-  entries.push_back({-1, 0.0, 0.0, {0.0, 0.0, 0.0}, false});    // so that each grain has an end
-  const auto around = [&](std::size_t g, const auto &f) {
-    const int last = g + 1 < grains.size() ? grains[g + 1].first : (int) entries.size() - 1;
-    for (int e = grains[g].first; e < last; e++) f(entries[e], &sums[NREAL * entries[e].node]);
+  const auto around = [&](const Grain &g, const auto &f) {
+    for (int e = g.first; e < g.last; e++) f(entries[e], &sums[NREAL * entries[e].node]);
   };
 
-  for (std::size_t g = 0; g < grains.size(); g++) {
-    const double share = volume(grains[g].i) / field->cell_volume();
+  for (const Grain &g : grains) {
+    const double share = volume(g.i) / field->lattice.cell_volume();
     around(g, [&](const Entry &e, double *sum) {
       sum[0] += e.w * share;
     });
   }
   sum_nodes(0, 1);
 
-  for (std::size_t k = 0; k < grains.size(); k++) {
-    Grain &g = grains[k];
+  for (Grain &g : grains) {
     double solid = 0.0, moment[3] = {0.0, 0.0, 0.0}, slip[3] = {0.0, 0.0, 0.0};
-    around(k, [&](const Entry &e, const double *sum) {
+    around(g, [&](const Entry &e, const double *sum) {
       const double *record = grid.nodes() + e.node * nreal;
       solid += e.w * sum[0];
       for (int d = 0; d < 3; d++) {
@@ -490,19 +487,18 @@ void FixMPMImmersed::act(double dt, Stage stage)
                         end_of_bed(solid, moment, volume(g.i)),
                         dt * part * (1.0 / g.mass + of_fluid));
   }
-  for (std::size_t k = 0; k < grains.size(); k++)
-    around(k, [&](const Entry &e, double *sum) {
-      for (int d = 0; d < 3; d++) sum[1 + d] -= e.share * grains[k].buoyancy[d];
-      sum[4] += e.share * grains[k].coefficient;
+  for (const Grain &g : grains)
+    around(g, [&](const Entry &e, double *sum) {
+      for (int d = 0; d < 3; d++) sum[1 + d] -= e.share * g.buoyancy[d];
+      sum[4] += e.share * g.coefficient;
     });
   sum_nodes(1, 4);
 
   std::fill(force_now, force_now + 6, 0.0);
-  for (std::size_t k = 0; k < grains.size(); k++) {
-    const Grain &g = grains[k];
+  for (const Grain &g : grains) {
     double slip[3] = {-g.velocity[0], -g.velocity[1], -g.velocity[2]};
     double slowing = g.coefficient / g.mass;    // rate of the slip
-    around(k, [&](const Entry &e, const double *sum) {
+    around(g, [&](const Entry &e, const double *sum) {
       const double *record = grid.nodes() + e.node * nreal;
       if (!(record[3] > 0.0)) return;
       for (int d = 0; d < 3; d++)
@@ -518,7 +514,7 @@ void FixMPMImmersed::act(double dt, Stage stage)
       force_now[d] += drag[d] / g.part;
       force_now[3 + d] += drag[d] + g.buoyancy[d] - drag[d] / g.part;
     }
-    around(k, [&](const Entry &e, double *sum) {
+    around(g, [&](const Entry &e, double *sum) {
       for (int d = 0; d < 3; d++) sum[5 + d] -= e.share * drag[d];
     });
   }

@@ -59,7 +59,7 @@ class FixMPMImmersed : public Fix, public MPMNodeAction, private MPMImmersedOpti
     double ahead;    // steps that forces still act before the grain moves
   };
   struct Grain {
-    int i, first;          // atom, and its first stencil entry
+    int i, first, last;    // atom, and its stencil entries
     double mass;           // infinite: held
     double immersed;       // share of it that is in the fluid
     double gain[3];        // of the velocity of the fluid in this step

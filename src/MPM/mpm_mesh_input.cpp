@@ -52,7 +52,6 @@ Mesh LAMMPS_NS::read_body(LAMMPS *lmp, const std::string &file, const std::strin
   if (!message.empty())
     lmp->error->all(FLERR, iarg, "{}: {}", user, std::string(message.begin(), message.end()));
   broadcast(mesh.nodes, lmp->world);
-  broadcast(mesh.labels, lmp->world);
   broadcast(mesh.elements, lmp->world);
   return mesh;
 }

@@ -35,6 +35,11 @@ struct Lattice {
     const int r = i % ncell[axis];
     return r < 0 ? r + ncell[axis] : r;
   }
+  void node_position(const int index[3], double x[3]) const
+  {
+    for (int d = 0; d < 3; d++) x[d] = d < dim ? origin[d] + index[d] * h : 0.0;
+  }
+  double cell_volume() const { return dim == 3 ? h * h * h : h * h; }
 };
 
 /** The blocks of nodes within reach of this rank's points, and their node records.

@@ -125,7 +125,6 @@ struct Reader {
     if (!place.emplace(label, (int) mesh.nodes.size()).second)
       in.fail("node " + std::to_string(label) + " is defined twice");
     mesh.nodes.push_back(x);
-    mesh.labels.push_back(label);
   }
 
   void nodes_2()
@@ -319,15 +318,6 @@ Mesh MPM_NS::read_gmsh(const std::string &file)
 
 /* ---------------------------------------------------------------------- */
 
-int Mesh::dimension() const
-{
-  int dim = 0;
-  for (const auto &e : elements) dim = std::max(dim, element_dimension(e.type));
-  return dim;
-}
-
-/* ---------------------------------------------------------------------- */
-
 void Mesh::keep(int dim, const std::string &group)
 {
   int tag = 0;
@@ -359,11 +349,9 @@ void Mesh::keep(int dim, const std::string &group)
   for (std::size_t i = 0; i < nodes.size(); i++) {
     if (place[i] < 0) continue;
     nodes[next] = nodes[i];
-    labels[next] = labels[i];
     place[i] = next++;
   }
   nodes.resize(next);
-  labels.resize(next);
   for (auto &e : elements)
     for (int k = 0; k < element_nodes(e.type); k++) e.node[k] = place[e.node[k]];
 }
