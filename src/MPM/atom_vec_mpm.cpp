@@ -15,47 +15,40 @@
 #include "mpm_points.h"
 
 #include <algorithm>
-#include <cstring>
+#include <iterator>
+#include <list>
 
 using namespace LAMMPS_NS;
 
-// names for compute property/atom; tensor components start at F11 and stress11
+// names for compute property/atom, in the order of their indices; stress is symmetric
 
-enum { VOLUME0, VOLUME, JACOBIAN, DENSITY, F11, STRESS11 = F11 + 9 };
+enum { VOLUME0, VOLUME, JACOBIAN, DENSITY, F11, STRESS11 = F11 + 9, STRESS21 = STRESS11 + 6 };
 
-static constexpr struct {
-  const char *name;
-  int index;
-} properties[] = {
-    {"mpm_volume0", VOLUME0},
-    {"mpm_volume", VOLUME},
-    {"mpm_J", JACOBIAN},
-    {"mpm_density", DENSITY},
-    {"mpm_F11", F11},
-    {"mpm_F12", F11 + 1},
-    {"mpm_F13", F11 + 2},
-    {"mpm_F21", F11 + 3},
-    {"mpm_F22", F11 + 4},
-    {"mpm_F23", F11 + 5},
-    {"mpm_F31", F11 + 6},
-    {"mpm_F32", F11 + 7},
-    {"mpm_F33", F11 + 8},
-    {"mpm_stress11", STRESS11},
-    {"mpm_stress22", STRESS11 + 1},
-    {"mpm_stress33", STRESS11 + 2},
-    {"mpm_stress12", STRESS11 + 3},
-    {"mpm_stress13", STRESS11 + 4},
-    {"mpm_stress23", STRESS11 + 5},
-    {"mpm_stress21", STRESS11 + 3},
-    {"mpm_stress31", STRESS11 + 4},
-    {"mpm_stress32", STRESS11 + 5},
-};
+static constexpr const char *properties[] = {
+    "mpm_volume0",  "mpm_volume",   "mpm_J",        "mpm_density",  "mpm_F11",      "mpm_F12",
+    "mpm_F13",      "mpm_F21",      "mpm_F22",      "mpm_F23",      "mpm_F31",      "mpm_F32",
+    "mpm_F33",      "mpm_stress11", "mpm_stress22", "mpm_stress33", "mpm_stress12", "mpm_stress13",
+    "mpm_stress23", "mpm_stress21", "mpm_stress31", "mpm_stress32"};
 
 /* ---------------------------------------------------------------------- */
 
-AtomVecMPM::AtomVecMPM(LAMMPS *lmp) :
-    AtomVec(lmp), rmass(nullptr), vfrac(nullptr), radius(nullptr), after_sphere(false),
-    rmass_one(0.0)
+MPMPoints *MPMPoints::get(Atom *atom, bool create)
+{
+  for (auto &field : atom->peratom)
+    if (field.name == "mpm_F") return reinterpret_cast<MPMPoints *>(field.address);
+  if (!create) return nullptr;
+
+  static std::list<MPMPoints> pool;    // addresses stay valid, and stay reachable for leak checkers
+  pool.emplace_back();
+  auto *points = &pool.back();
+  atom->add_peratom("mpm_F", &points->F, Atom::DOUBLE, 9);
+  atom->add_peratom("mpm_tau", &points->tau, Atom::DOUBLE, 6);
+  return points;
+}
+
+/* ---------------------------------------------------------------------- */
+
+AtomVecMPM::AtomVecMPM(LAMMPS *lmp) : AtomVec(lmp)
 {
   molecular = Atom::ATOMIC;
   mass_type = PER_ATOM;
@@ -65,11 +58,8 @@ AtomVecMPM::AtomVecMPM(LAMMPS *lmp) :
   // border: ghost points need nothing of this style (a sphere style sends radius and mass)
   // data_vel: must not have more columns than comm_vel, write_data relies on it
 
-  fields_grow = {"rmass", "vfrac", "mpm_F", "mpm_tau"};
-  fields_copy = {"rmass", "vfrac", "mpm_F", "mpm_tau"};
-  fields_exchange = {"rmass", "vfrac", "mpm_F", "mpm_tau"};
-  fields_restart = {"rmass", "vfrac", "mpm_F", "mpm_tau"};
-  fields_create = {"rmass", "vfrac", "mpm_F", "mpm_tau"};
+  fields_grow = fields_copy = fields_exchange = fields_restart =
+      fields_create = {"rmass", "vfrac", "mpm_F", "mpm_tau"};
   fields_data_atom = {"id", "type", "rmass", "vfrac", "x"};
   fields_data_vel = {"id", "v"};
 }
@@ -178,7 +168,7 @@ void AtomVecMPM::data_atom_post(int ilocal)
 
   double *F = points->F[ilocal], *tau = points->tau[ilocal];
   for (int k = 0; k < 9; k++) F[k] = (k % 4 == 0) ? 1.0 : 0.0;
-  for (int k = 0; k < 6; k++) tau[k] = 0.0;
+  std::fill_n(tau, 6, 0.0);
 }
 
 /* ----------------------------------------------------------------------
@@ -218,9 +208,8 @@ void AtomVecMPM::pack_data_post(int ilocal)
 
 int AtomVecMPM::property_atom(const std::string &name)
 {
-  for (const auto &property : properties)
-    if (name == property.name) return property.index;
-  return -1;
+  const auto *const end = std::end(properties), *const found = std::find(properties, end, name);
+  return found == end ? -1 : (int) (found - properties);
 }
 
 /* ----------------------------------------------------------------------
@@ -245,7 +234,7 @@ void AtomVecMPM::pack_property_atom(int index, double *buf, int nvalues, int gro
       else if (index == DENSITY)
         value = rmass[i] / (J * vfrac[i]);
       else if (index >= STRESS11)
-        value = points->tau[i][index - STRESS11] / J;
+        value = points->tau[i][index - (index < STRESS21 ? STRESS11 : STRESS11 + 3)] / J;
       else
         value = points->F[i][index - F11];
     }

@@ -41,8 +41,8 @@ class AtomVecMPM : public AtomVec {
 
  private:
   MPMPoints *points;    // never owned: several styles and Atoms may refer to the same arrays
-  double *rmass, *vfrac, *radius;
-  bool after_sphere;    // a sphere style converts density to mass before this style does
+  double *rmass = nullptr, *vfrac = nullptr, *radius = nullptr;
+  bool after_sphere = false;    // a sphere style converts density to mass before this style does
   double rmass_one;
 
   void check_companions();

@@ -20,7 +20,6 @@
 #include "mpm_field.h"
 #include "mpm_frame.h"
 #include "mpm_options.h"
-#include "mpm_points.h"
 #include "region.h"
 
 #include <algorithm>
@@ -43,13 +42,6 @@ static const char axis_name[] = "xyz";
 
 /* ---------------------------------------------------------------------- */
 
-CreatePoints::CreatePoints(LAMMPS *lmp) :
-    Command(lmp), type(0), region(nullptr), fix(nullptr), volume(0.0)
-{
-}
-
-/* ---------------------------------------------------------------------- */
-
 void CreatePoints::command(int narg, char **arg)
 {
   if (domain->box_exist == 0)
@@ -68,15 +60,15 @@ void CreatePoints::command(int narg, char **arg)
                "Cannot create_points after reading a restart file with per-atom info of fixes: "
                "define these fixes and use run 0 first");
 
-  const bool at_nodes = narg > 1 && strcmp(arg[1], "mesh") == 0;
-  const bool in_elements = narg > 1 && strcmp(arg[1], "elements") == 0;
-  const bool mesh = at_nodes || in_elements;
+  const int iarg = 0;
+  if (narg < 2) utils::missing_cmd_args(FLERR, "create_points", error);
+  type = utils::expand_type_int(FLERR, arg[0], Atom::ATOM, lmp);
+  if (type < 1 || type > atom->ntypes)
+    error->all(FLERR, iarg, "Invalid atom type {} in create_points command, the box has {} type{}",
+               arg[0], atom->ntypes, atom->ntypes > 1 ? "s" : "");
+  const bool mesh = strcmp(arg[1], "mesh") == 0 || strcmp(arg[1], "elements") == 0;
   if (mesh) {
-    parse_type(narg, arg);
-    if (at_nodes)
-      parse_mesh(narg, arg);
-    else
-      parse_elements(narg, arg);
+    parse_mesh(narg, arg);
   } else {
     parse(narg, arg);
     find_ranges();
@@ -95,11 +87,10 @@ void CreatePoints::command(int narg, char **arg)
 
   const bigint natoms_previous = atom->natoms;
   const int nlocal_previous = atom->nlocal;
-  const bigint npoints = at_nodes ? make_mesh_points()
-                                  : (in_elements ? make_element_points() : make_points());
+  const bigint npoints = mesh ? make_mesh_points() : make_points();
 
   atom->data_fix_compute_variable(nlocal_previous, atom->nlocal);
-  if (in_elements) set_domains(nlocal_previous);
+  set_domains(nlocal_previous);
 
   bigint nblocal = atom->nlocal;
   MPI_Allreduce(&nblocal, &atom->natoms, 1, MPI_LMP_BIGINT, MPI_SUM, world);
@@ -145,18 +136,6 @@ void CreatePoints::command(int narg, char **arg)
    settings, lattice of sites
 ------------------------------------------------------------------------- */
 
-void CreatePoints::parse_type(int narg, char **arg)
-{
-  const int iarg = 0;
-  if (narg < 2) utils::missing_cmd_args(FLERR, "create_points", error);
-  type = utils::expand_type_int(FLERR, arg[0], Atom::ATOM, lmp);
-  if (type < 1 || type > atom->ntypes)
-    error->all(FLERR, iarg, "Invalid atom type {} in create_points command, the box has {} type{}",
-               arg[0], atom->ntypes, atom->ntypes > 1 ? "s" : "");
-}
-
-/* ---------------------------------------------------------------------- */
-
 Options CreatePointsOptions::declare(int dim, bool has_radius)
 {
   using namespace option;
@@ -196,7 +175,6 @@ Options CreatePointsOptions::declare(int dim, bool has_radius)
 void CreatePoints::parse(int narg, char **arg)
 {
   const int dim = domain->dimension;
-  parse_type(narg, arg);
   int iarg = 2;
   if (strcmp(arg[1], "region") == 0) {
     if (narg < 3) utils::missing_cmd_args(FLERR, "create_points region", error);
@@ -247,7 +225,6 @@ void CreatePoints::parse(int narg, char **arg)
     origin[2] = -0.5;
   }
   volume = spacing[0] * spacing[1] * spacing[2];
-  if (diameter == 0.0) diameter = dim == 3 ? cbrt(volume) : sqrt(volume);
   if (!std::isnormal(volume))
     error->all(FLERR, Error::NOPOINTER, "Create_points spacing gives points of volume {}", volume);
 
@@ -571,11 +548,9 @@ void CreatePoints::send_and_make(std::vector<Site> &made)
   } else {
     Irregular irregular(lmp);
     comm->coord2proc_setup();
-    std::vector<int> owner(made.size());
-    int unused[3];
-    for (std::size_t k = 0; k < made.size(); k++)
-      owner[k] = comm->coord2proc(made[k].x, unused[0], unused[1], unused[2]);
-    received.resize(irregular.create_data((int) made.size(), owner.data(), 1));
+    std::vector<int> owners;
+    for (auto &site : made) owners.push_back(owner(site.x));
+    received.resize(irregular.create_data((int) made.size(), owners.data(), 1));
     irregular.exchange_data((char *) made.data(), sizeof(Site), (char *) received.data());
     irregular.destroy_data();
   }
@@ -583,6 +558,14 @@ void CreatePoints::send_and_make(std::vector<Site> &made)
   const bigint need = (bigint) atom->nlocal + received.size();
   if (need > atom->nmax) atom->avec->grow(atom->avec->roundup(need));
   for (const auto &site : received) make_point(site);
+}
+
+/* ---------------------------------------------------------------------- */
+
+int CreatePoints::owner(double *x) const
+{
+  int unused[3];
+  return comm->nprocs == 1 ? 0 : comm->coord2proc(x, unused[0], unused[1], unused[2]);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -596,5 +579,6 @@ void CreatePoints::make_point(const Site &site)
   atom->tag[i] = site.tag;
   atom->vfrac[i] = site.volume * (fix ? fix->frame->circle(site.x[0]) : 1.0);
   atom->rmass[i] = 0.0;    // not known yet, see fix mpm/material
-  if (atom->radius_flag) atom->radius[i] = 0.5 * diameter;
+  const double edge = domain->dimension == 3 ? cbrt(site.volume) : sqrt(site.volume);
+  if (atom->radius_flag) atom->radius[i] = 0.5 * (diameter > 0.0 ? diameter : edge);
 }

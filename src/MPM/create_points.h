@@ -18,6 +18,7 @@ CommandStyle(create_points,CreatePoints);
 #include "command.h"
 #include "declare/option.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -61,7 +62,7 @@ struct CreatePointsMeshOptions {
  */
 class CreatePoints : public Command, private CreatePointsOptions {
  public:
-  CreatePoints(class LAMMPS *);
+  using Command::Command;
   void command(int, char **) override;
 
  private:
@@ -70,11 +71,8 @@ class CreatePoints : public Command, private CreatePointsOptions {
     double volume;
     tagint tag;
   };
-  struct
-      Element {    // of a mesh: center, volume, corners relative to the center, see transfer/cpdi.h
-    double x[3], volume, corners[24];
-  };
-  struct Range {    // consecutive sites along an axis
+  using Corners = std::array<double, 24>;    // of an element from its center, see transfer/cpdi.h
+  struct Range {                             // consecutive sites along an axis
     bigint first, n;
     bool contains(bigint s) const { return s >= first && s < first + n; }
   };
@@ -82,25 +80,26 @@ class CreatePoints : public Command, private CreatePointsOptions {
   // settings
 
   int type;
-  class Region *region;    // null: the whole box
-  class MPMField *fix;     // whose lattice the sites refer to; null: none
+  class Region *region = nullptr;    // null: the whole box
+  class MPMField *fix = nullptr;     // whose lattice the sites refer to; null: none
   double origin[3];
 
   // derived
 
-  double volume;      // of a point
+  double volume;      // of a point, or the mean of all
   Range box[3];       // sites in the simulation box
   Range search[3];    // sites that can be in the region, also outside the box
 
-  std::vector<Site> mesh_sites;     // nodes of a mesh
-  std::vector<Element> elements;    // of all ranks; at last those that are points here
+  std::vector<Site> mesh_sites;    // nodes of a mesh, or its elements,
+  std::vector<Corners> corners;    // and the domains of these; at last those of the points here
 
-  void parse_type(int, char **);
   void parse(int, char **);
   void parse_mesh(int, char **);
-  void parse_elements(int, char **);
   MPM_NS::Mesh read_mesh(int, char **);
+  void find_nodes(const MPM_NS::Mesh &, const char *file);
+  void find_elements(const MPM_NS::Mesh &, const char *file);
   bool put_into_box(double *x) const;
+  int owner(double *x) const;
   tagint largest_tag() const;
   void check_tags(tagint largest, bigint nmore) const;
   void find_lattice();
@@ -110,7 +109,6 @@ class CreatePoints : public Command, private CreatePointsOptions {
   bigint make_points();
   bigint make_mesh_points();
   void send_and_make(std::vector<Site> &);
-  bigint make_element_points();
   void set_domains(int first);
   void make_point(const Site &);
 

@@ -524,7 +524,7 @@ bool FixMPMContact::make_pair(const Common &c, int n, int a, int b, double volum
   pair.fade = 0.0;
   pair.state = OPEN;
   if (law == ADHESIVE && pair.area > 0.0) {
-    const double cell = field.cell_volume() * field.frame->node_circle(c.slot[a], n);
+    const double cell = field.lattice.cell_volume() * field.frame->node_circle(c.slot[a], n);
     const double opening = std::max(0.0, full - volume_share) * cell / pair.area;
     pair.fade = std::max(0.0, 1.0 - opening * normal_strength / (2.0 * release_work));
   }

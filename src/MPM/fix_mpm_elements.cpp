@@ -18,7 +18,6 @@
 #include "material/batch.h"
 #include "material/material.h"
 #include "math/matrix.h"
-#include "memory.h"
 #include "mesh/element.h"
 #include "modify.h"
 #include "mpm_field.h"
@@ -39,13 +38,24 @@ using namespace MPM_NS;
 
 /** Elements whose integration points are in the batch. */
 struct FixMPMElements::Work {
-  int n, nelement;
-  std::size_t element[BATCH];
-  int start[BATCH];                         // first point of an element
+  struct Element {
+    std::size_t number;
+    double *row;
+    const ElementRule &rule;
+    int start;    // its first point
+  };
+  std::vector<Element> elements;
+  int n;                                    // points
+  double *state[BATCH];                     // F tau history
   double g[BATCH][MAX_ELEMENT_NODES][3];    // gradients of the functions in space
   double volume[BATCH];                     // reference volume
   double J[BATCH];                          // without F-bar
 };
+
+static const ElementRule &rule_of(const double *row)
+{
+  return ElementRule::of((ElementType) (int) row[1]);
+}
 
 /* ----------------------------------------------------------------------
    fix ID group mpm/elements FILE keyword value ...
@@ -65,31 +75,23 @@ Options MPMElementsOptions::declare()
 }
 
 FixMPMElements::FixMPMElements(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), dim(domain->dimension), maxnode(0), maxpoint(0), nhistory(0), stride(0),
-    max_of_node(0), nelements(0), nnodes(0), lowest(0), shortest(0.0), material(nullptr),
-    points(nullptr), batch(nullptr), work(nullptr), first(nullptr), count(nullptr), width(0)
+    FixMPMState(lmp, narg, arg), dim(domain->dimension), points(MPMPoints::get(atom)),
+    batch(std::make_unique<Batch>()), work(new Work)    // the batch is zero, see material/batch.h
 {
   Options options = declare();
   read_options(lmp, options, narg, arg, 3);
-  points = MPMPoints::get(atom);
   if (!points)
     error->all(FLERR,
                "Fix mpm/elements requires material points: use atom_style mpm, or hybrid "
                "with mpm");
   if (!atom->tag_enable) error->all(FLERR, "Fix mpm/elements requires atom IDs");
 
-  restart_global = restart_peratom = 1;
-  create_attribute = 1;
+  restart_global = 1;
   scalar_flag = 1;
   global_freq = 1;
   extscalar = 1;
 
-  Mesh mesh;
-  try {
-    mesh = read_body(lmp, file, part);
-  } catch (const std::runtime_error &e) {
-    error->all(FLERR, 3, "Fix mpm/elements: {}", e.what());
-  }
+  const Mesh mesh = read_body(lmp, file, part, "Fix mpm/elements", 3);
   for (const auto &e : mesh.elements) {
     const auto &rule = ElementRule::of(e.type);
     maxnode = std::max(maxnode, rule.nnode);
@@ -113,33 +115,14 @@ FixMPMElements::FixMPMElements(LAMMPS *lmp, int narg, char **arg) :
   stride = 2 + maxnode * (1 + dim) + maxpoint * (15 + nhistory);
   width = 18 + nhistory;
   comm_reverse = width;
-  batch = new Batch();    // zero, see material/batch.h
-  work = new Work;
   history.resize((std::size_t) std::max(1, nhistory) * BATCH);
-
-  FixMPMElements::grow_arrays(atom->nmax);
-  atom->add_callback(Atom::GROW);
-  atom->add_callback(Atom::RESTART);
-  for (int i = 0; i < atom->nlocal; i++) FixMPMElements::set_arrays(i);
+  state.declare(first, "mpm/elements:first");
+  state.declare(count, "mpm/elements:count");
   make_elements(mesh);
   maxexchange = 1 + max_of_node * stride;
 }
 
-/* ---------------------------------------------------------------------- */
-
-FixMPMElements::~FixMPMElements()
-{
-  if (first && modify) {
-    atom->delete_callback(id, Atom::GROW);
-    atom->delete_callback(id, Atom::RESTART);
-  }
-  memory->destroy(first);
-  memory->destroy(count);
-  delete batch;
-  delete work;
-}
-
-/* ---------------------------------------------------------------------- */
+FixMPMElements::~FixMPMElements() = default;
 
 int FixMPMElements::setmask()
 {
@@ -240,13 +223,11 @@ void FixMPMElements::make_elements(const Mesh &mesh)
   pool.assign(here.size() * stride, 0.0);
   double least = std::numeric_limits<double>::max(), volume[2] = {0.0, 0.0}, volumes[2];
   for (std::size_t k = 0; k < here.size(); k++) {
-    const int i = here[k].first;
     const auto &element = mesh.elements[here[k].second];
-    if (count[i]++ == 0) first[i] = (int) k;
     double *const r = row(k);
     r[0] = (double) element.label;
     r[1] = (double) static_cast<int>(element.type);
-    const auto &rule = ElementRule::of(element.type);
+    const auto &rule = rule_of(r);
     double X[MAX_ELEMENT_NODES][3];
     for (int m = 0; m < rule.nnode; m++) {
       const double *const origin = &x[3 * (std::size_t) element.node[0]];
@@ -258,17 +239,14 @@ void FixMPMElements::make_elements(const Mesh &mesh)
     }
     double frequency = 0.0, size = 0.0;
     for (int q = 0; q < rule.npoint; q++) {
-      double g[MAX_ELEMENT_NODES][3], G[3][3] = {{0.0}};
+      double g[MAX_ELEMENT_NODES][3];
       const double w = rule.gradients(q, X, g);
       if (!(w > 0.0))
         error->one(FLERR, "Fix mpm/elements {}: element {} of the mesh is inverted", id,
                    element.label);
-      for (int m = 0; m < rule.nnode; m++)
-        for (int a = 0; a < 3; a++)
-          for (int b = 0; b < 3; b++) G[a][b] += g[m][a] * g[m][b];
-      frequency += w * rule.nnode * largest_eigenvalue(dim, G);
+      frequency += w * rule.nnode * rule.largest_eigenvalue(g);
       size += w;
-      double at[3], *const s = state(r, q);
+      double at[3], *const s = state_of(r, q);
       for (int d = 0; d < 3; d++) {
         at[d] = x[3 * (std::size_t) element.node[0] + d];
         for (int m = 0; m < rule.nnode; m++) at[d] += rule.N[q][m] * X[m][d];
@@ -285,12 +263,8 @@ void FixMPMElements::make_elements(const Mesh &mesh)
 
   for_batches(false, [&](Work &w) {
     material->material->initial_stress(*batch);
-    for (int k = 0; k < w.nelement; k++) {
-      double *const r = row(w.element[k]);
-      const int end = k + 1 < w.nelement ? w.start[k + 1] : w.n;
-      for (int p = w.start[k]; p < end; p++)
-        for (int c = 0; c < 6; c++) state(r, p - w.start[k])[9 + c] = batch->stress[c][p];
-    }
+    for (int p = 0; p < w.n; p++)
+      for (int c = 0; c < 6; c++) w.state[p][9 + c] = batch->stress[c][p];
   });
 
   for (int i = 0; i < atom->nlocal; i++)
@@ -301,6 +275,10 @@ void FixMPMElements::make_elements(const Mesh &mesh)
                "Fix mpm/elements {}: the elements have a volume of {:.8g}, their nodes of {:.8g}: "
                "points that create_points ... mesh made must not be deformed before",
                id, volumes[0], volumes[1]);
+
+  keep_arrays();
+  for (std::size_t k = 0; k < here.size(); k++)
+    if (count[here[k].first]++ == 0.0) first[here[k].first] = (double) k;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -323,26 +301,20 @@ void FixMPMElements::init()
       mine |= (atom->mask[i] & groupbit) && (atom->mask[i] & field->fix.groupbit);
     MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
     if (!any) continue;
-    if (field->options.locking != MPMFieldOptions::NO_CURE)
-      error->all(FLERR,
-                 "Fix mpm {} locking is not for nodes of elements: use fix mpm/elements {} "
-                 "locking fbar",
-                 field->id(), id);
-    if (field->options.bad == MPMFieldOptions::DELETE || field->options.delete_failed)
-      error->all(FLERR,
-                 "Fix mpm {} bad delete and failed delete cannot be used with fix mpm/elements "
-                 "{}, whose nodes must not be deleted: give them a fix mpm of their own",
-                 field->id(), id);
-    if (field->options.axisymmetric)
-      error->all(FLERR,
-                 "Fix mpm {} axisymmetric cannot be used with fix mpm/elements {}, whose elements "
-                 "are of plane strain: use create_points elements with shape cpdi2",
-                 field->id(), id);
-    if (field->options.every > 1)
-      error->all(FLERR,
-                 "Fix mpm {} every cannot be used with fix mpm/elements {}, which strains elements "
-                 "in each step: use every 1",
-                 field->id(), id);
+    const auto refuse = [&](bool broken, const std::string &what, const std::string &why) {
+      if (broken)
+        error->all(FLERR, "Fix mpm {} {} fix mpm/elements {}{}", field->id(), what, id, why);
+    };
+    const auto &given = field->options;
+    refuse(given.locking != MPMFieldOptions::NO_CURE, "locking is not for nodes of elements: use",
+           " locking fbar");
+    refuse(given.bad == MPMFieldOptions::DELETE || given.delete_failed,
+           "bad delete and failed delete cannot be used with",
+           ", whose nodes must not be deleted: give them a fix mpm of their own");
+    refuse(given.axisymmetric, "axisymmetric cannot be used with",
+           ", whose elements are of plane strain: use create_points elements with shape cpdi2");
+    refuse(given.every > 1, "every cannot be used with",
+           ", which strains elements in each step: use every 1");
   }
 
   // nodes of elements may be ghosts; what has been stretched since is asked for with comm_modify
@@ -361,7 +333,7 @@ double FixMPMElements::largest_extent() const
   double largest = 0.0, all;
   for (std::size_t e = 0; e < pool.size() / stride; e++) {
     double *const r = row(e);
-    const auto &rule = ElementRule::of((ElementType) (int) r[1]);
+    const auto &rule = rule_of(r);
     const double *const X = r + 2 + maxnode;
     double square = 0.0, stretch = 0.0;
     for (int k = 0; k < rule.nnode; k++)
@@ -373,7 +345,8 @@ double FixMPMElements::largest_extent() const
       }
     for (int q = 0; q < rule.npoint; q++) {
       double s = 0.0;
-      for (int c = 0; c < (dim == 3 ? 9 : 5); c++) s += state(r, q)[c] * state(r, q)[c];
+      const double *const F = state_of(r, q);
+      for (int c = 0; c < (dim == 3 ? 9 : 5); c++) s += F[c] * F[c];
       stretch = std::max(stretch, s);
     }
     largest = std::max(largest, sqrt(square * stretch));
@@ -396,19 +369,17 @@ void FixMPMElements::setup_post_neighbor()
 void FixMPMElements::post_neighbor()
 {
   const int nlocal = atom->nlocal;
-  std::size_t n = 0;
-  for (int i = 0; i < nlocal; i++) n += count[i];
-  std::vector<double> sorted(n * stride);
-  nodes.resize(n);
-  n = 0;
+  std::vector<double> sorted;
+  sorted.reserve(pool.size());
+  nodes.clear();
   for (int i = 0; i < nlocal; i++) {
     if (count[i] == 0) continue;
-    memcpy(&sorted[n * stride], row(first[i]), sizeof(double) * stride * count[i]);
-    first[i] = (int) n;
-    for (int k = 0; k < count[i]; k++, n++) {
-      const double *const r = &sorted[n * stride];
-      const int nnode = element_nodes((ElementType) (int) r[1]);
-      for (int m = 0; m < nnode; m++) {
+    const double *r = row(first[i]);
+    first[i] = (double) nodes.size();
+    sorted.insert(sorted.end(), r, r + (int) count[i] * stride);
+    for (int k = 0; k < count[i]; k++, r += stride) {
+      nodes.emplace_back();
+      for (int m = 0; m < rule_of(r).nnode; m++) {
         const int j = atom->map((tagint) r[2 + m]);
         if (j < 0)
           error->one(
@@ -417,7 +388,7 @@ void FixMPMElements::post_neighbor()
               "use comm_modify cutoff with more than the present {:.6g}, the element may have "
               "been stretched",
               id, (tagint) r[2 + m], (bigint) r[0], update->ntimestep, comm->get_comm_cutoff());
-        nodes[n].i[m] = domain->closest_image(i, j);
+        nodes.back()[m] = domain->closest_image(i, j);
       }
     }
   }
@@ -472,7 +443,10 @@ void FixMPMElements::compute(bool starting)
 template <class Visit> void FixMPMElements::for_batches(bool moved, Visit visit) const
 {
   Work &w = *work;
-  w.n = w.nelement = 0;
+  const auto clear = [&]() {
+    w.n = 0;
+    w.elements.clear();
+  };
   const auto flush = [&]() {
     if (w.n == 0) return;
     batch->n = w.n;
@@ -481,11 +455,11 @@ template <class Visit> void FixMPMElements::for_batches(bool moved, Visit visit)
     batch->time = update->atime + (update->ntimestep - update->atimestep) * update->dt;
     batch->history = reinterpret_cast<double(*)[BATCH]>(history.data());
     visit(w);
-    w.n = w.nelement = 0;
+    clear();
   };
-  const std::size_t n = pool.size() / stride;
-  for (std::size_t e = 0; e < n; e++) {
-    if (w.n + ElementRule::of((ElementType) (int) row(e)[1]).npoint > BATCH) flush();
+  clear();
+  for (std::size_t e = 0; e < pool.size() / stride; e++) {
+    if (w.n + rule_of(row(e)).npoint > BATCH) flush();
     load(w, e, moved);
   }
   flush();
@@ -500,22 +474,22 @@ template <class Visit> void FixMPMElements::for_batches(bool moved, Visit visit)
 void FixMPMElements::load(Work &w, std::size_t e, bool moved) const
 {
   double *const r = row(e);
-  const auto &rule = ElementRule::of((ElementType) (int) r[1]);
+  const auto &rule = rule_of(r);
   double X[MAX_ELEMENT_NODES][3], x[MAX_ELEMENT_NODES][3];
   for (int m = 0; m < rule.nnode; m++) {
     X[m][2] = 0.0;
     for (int d = 0; d < dim; d++) X[m][d] = r[2 + maxnode + m * dim + d];
     if (!moved) continue;
-    const double *const at = atom->x[nodes[e].i[m]], *const origin = atom->x[nodes[e].i[0]];
+    const double *const at = atom->x[nodes[e][m]], *const origin = atom->x[nodes[e][0]];
     for (int d = 0; d < 3; d++) x[m][d] = at[d] - origin[d];
   }
 
   double F[MAX_ELEMENT_POINTS][9], mean = 0.0, size = 0.0;
-  w.element[w.nelement] = e;
-  w.start[w.nelement++] = w.n;
+  w.elements.push_back({e, r, rule, w.n});
   for (int q = 0; q < rule.npoint; q++) {
     const int p = w.n + q;
     double g[MAX_ELEMENT_NODES][3];
+    w.state[p] = state_of(r, q);
     w.volume[p] = rule.gradients(q, X, g);
     double *const f = F[q];
     if (moved) {
@@ -526,7 +500,7 @@ void FixMPMElements::load(Work &w, std::size_t e, bool moved) const
             f[3 * a + b] += x[m][a] * g[m][b];
         }
     } else {
-      memcpy(f, state(r, q), 9 * sizeof(double));
+      memcpy(f, w.state[p], 9 * sizeof(double));
     }
     const double J = w.J[p] = MPMPoints::det(f);
     if (!(J > 0.0))
@@ -548,7 +522,7 @@ void FixMPMElements::load(Work &w, std::size_t e, bool moved) const
   for (int q = 0; q < rule.npoint; q++) {
     const int p = w.n + q;
     double *const f = F[q];
-    const double *const s = state(r, q);    // F tau history
+    const double *const s = w.state[p];
     b.J[p] = w.J[p];
     if (fbar && moved && rule.npoint > 1) {
       const double J = mean / size, scale = dim == 2 ? sqrt(J / w.J[p]) : cbrt(J / w.J[p]);
@@ -588,15 +562,11 @@ void FixMPMElements::material_update(Work &w, bool starting)
   }
   material->material->update(b);
   for (int k = 0; k < NWORK; k++) material->work[k] += b.work[k];
-  for (int k = 0; k < w.nelement; k++) {
-    double *const r = row(w.element[k]);
-    const int end = k + 1 < w.nelement ? w.start[k + 1] : w.n;
-    for (int p = w.start[k]; p < end; p++) {
-      double *const s = state(r, p - w.start[k]);
-      for (int c = 0; c < 9; c++) s[c] = b.F[c][p];
-      for (int c = 0; c < 6; c++) s[9 + c] = b.J[p] * b.stress[c][p];
-      for (int h = 0; h < nhistory; h++) s[15 + h] = history[h * BATCH + p];
-    }
+  for (int p = 0; p < w.n; p++) {
+    double *const s = w.state[p];
+    for (int c = 0; c < 9; c++) s[c] = b.F[c][p];
+    for (int c = 0; c < 6; c++) s[9 + c] = b.J[p] * b.stress[c][p];
+    for (int h = 0; h < nhistory; h++) s[15 + h] = history[h * BATCH + p];
   }
 }
 
@@ -611,17 +581,14 @@ void FixMPMElements::add_sums(const Work &w)
 {
   const double scale = 1.0 / force->nktv2p;
   std::vector<double> &mean = element_mean;
-  for (int k = 0; k < w.nelement; k++) {
-    const std::size_t e = w.element[k];
-    double *const r = row(e);
-    const auto &rule = ElementRule::of((ElementType) (int) r[1]);
+  for (const auto &[number, row, rule, start] : w.elements) {
     const bool average = fbar && rule.npoint > 1;
     double f[MAX_ELEMENT_NODES][3] = {{0.0}}, share[MAX_ELEMENT_NODES] = {0.0};
     double size = 0.0, volume = 0.0, pressure = 0.0;
     mean.assign(15 + nhistory, 0.0);
     for (int q = 0; q < rule.npoint; q++) {
-      const int p = w.start[k] + q;
-      const double *const s = state(r, q), V = w.volume[p];
+      const int p = start + q;
+      const double *const s = w.state[p], V = w.volume[p];
       double t[6];
       for (int c = 0; c < 6; c++) t[c] = V * s[9 + c];
       if (average) {
@@ -641,17 +608,17 @@ void FixMPMElements::add_sums(const Work &w)
     }
     if (average)
       for (int q = 0; q < rule.npoint; q++) {
-        const int p = w.start[k] + q;
+        const int p = start + q;
         const double factor = pressure * w.volume[p] * w.J[p] / volume;
         for (int m = 0; m < rule.nnode; m++)
           for (int d = 0; d < dim; d++) f[m][d] += factor * w.g[p][m][d];
       }
     for (int q = 0; q < rule.npoint; q++) {
-      const double *const s = state(r, q), weight = w.volume[w.start[k] + q] / size;
+      const double *const s = w.state[start + q], weight = w.volume[start + q] / size;
       for (int c = 0; c < 15 + nhistory; c++) mean[c] += weight * s[c];
     }
     for (int m = 0; m < rule.nnode; m++) {
-      double *const sum = &sums[(std::size_t) nodes[e].i[m] * width];
+      double *const sum = &sums[(std::size_t) nodes[number][m] * width];
       for (int d = 0; d < dim; d++) sum[d] -= scale * f[m][d];
       for (int c = 0; c < 15 + nhistory; c++) sum[3 + c] += share[m] * mean[c];
     }
@@ -685,24 +652,18 @@ double FixMPMElements::stable_dt_local(tagint &tag, double &speed) const
   speed = 0.0;
   for_batches(false, [&](Work &w) {
     material->material->wave_speed(*batch, c);
-    for (int k = 0; k < w.nelement; k++) {
-      const double *const r = row(w.element[k]);
-      const auto &rule = ElementRule::of((ElementType) (int) r[1]);
+    for (const auto &[number, row, rule, start] : w.elements) {
       double sum = 0.0, size = 0.0, largest = 0.0;
       for (int q = 0; q < rule.npoint; q++) {
-        const int p = w.start[k] + q;
-        double G[3][3] = {{0.0}};
-        for (int m = 0; m < rule.nnode; m++)
-          for (int a = 0; a < 3; a++)
-            for (int b = 0; b < 3; b++) G[a][b] += w.g[p][m][a] * w.g[p][m][b];
-        sum += w.volume[p] * c[p] * c[p] * rule.nnode * largest_eigenvalue(dim, G);
+        const int p = start + q;
+        sum += w.volume[p] * c[p] * c[p] * rule.nnode * rule.largest_eigenvalue(w.g[p]);
         size += w.volume[p];
         largest = std::max(largest, c[p]);
       }
       const double dt = 2.0 * sqrt(size / sum);
       if (std::isnan(smallest) || dt >= smallest) continue;    // NaN does not pass unseen
       smallest = dt;
-      tag = (tagint) r[2];
+      tag = (tagint) row[2];
       speed = largest;
     }
   });
@@ -734,7 +695,7 @@ double FixMPMElements::compute_scalar()
 
 double FixMPMElements::memory_usage()
 {
-  return (double) atom->nmax * 2 * sizeof(int) + (double) nodes.capacity() * sizeof(Nodes) +
+  return FixMPMState::memory_usage() + (double) nodes.capacity() * sizeof(nodes[0]) +
       (double) (pool.capacity() + sums.capacity() + force_on.capacity() + history.capacity()) *
       sizeof(double);
 }
@@ -743,59 +704,37 @@ double FixMPMElements::memory_usage()
    elements go where their atom goes. Rows that nobody has any more are dropped by post_neighbor()
 ------------------------------------------------------------------------- */
 
-void FixMPMElements::grow_arrays(int nmax)
-{
-  memory->grow(first, nmax, "mpm/elements:first");
-  memory->grow(count, nmax, "mpm/elements:count");
-}
-
-void FixMPMElements::copy_arrays(int i, int j, int)
-{
-  first[j] = first[i];
-  count[j] = count[i];
-}
-
-void FixMPMElements::set_arrays(int i)
-{
-  first[i] = count[i] = 0;
-}
-
 int FixMPMElements::pack_exchange(int i, double *buf)
 {
+  const int n = (int) count[i] * stride;
   buf[0] = count[i];
-  if (count[i]) memcpy(buf + 1, row(first[i]), sizeof(double) * stride * count[i]);
-  return 1 + count[i] * stride;
+  if (n) std::copy_n(row(first[i]), n, buf + 1);
+  return 1 + n;
 }
 
 int FixMPMElements::unpack_exchange(int i, double *buf)
 {
-  count[i] = (int) buf[0];
-  first[i] = (int) (pool.size() / stride);
-  pool.insert(pool.end(), buf + 1, buf + 1 + count[i] * stride);
-  return 1 + count[i] * stride;
-}
-
-int FixMPMElements::pack_restart(int i, double *buf)
-{
-  buf[0] = 2 + count[i] * stride;
-  return 1 + pack_exchange(i, buf + 1);
+  const int n = (int) buf[0] * stride;
+  count[i] = buf[0];
+  first[i] = (double) (pool.size() / stride);
+  pool.insert(pool.end(), buf + 1, buf + 1 + n);
+  return 1 + n;
 }
 
 void FixMPMElements::unpack_restart(int i, int nth)
 {
-  double *extra = atom->extra[i];
-  for (int k = 0; k < nth; k++) extra += static_cast<int>(*extra);
-  const int n = static_cast<int>(extra[0]), elements = static_cast<int>(extra[1]);
-  if (n != 2 + elements * stride)
+  int n;
+  const double *const values = from_restart(i, nth, n);
+  if (n != 1 + (int) values[0] * stride)
     error->one(FLERR,
                "Fix mpm/elements {}: the restart file was written with another mesh or material",
                id);
-  unpack_exchange(i, extra + 1);
+  unpack_exchange(i, const_cast<double *>(values));
 }
 
 int FixMPMElements::size_restart(int i)
 {
-  return 2 + count[i] * stride;
+  return 2 + (int) count[i] * stride;
 }
 
 int FixMPMElements::maxsize_restart()

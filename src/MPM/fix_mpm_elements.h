@@ -16,15 +16,16 @@ FixStyle(mpm/elements,FixMPMElements);
 #define LMP_FIX_MPM_ELEMENTS_H
 
 #include "declare/option.h"
-#include "fix.h"
-#include "mesh/gmsh.h"
+#include "mpm_state.h"
 
+#include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace MPM_NS {
 struct Batch;
-struct ElementRule;
+struct Mesh;
 }    // namespace MPM_NS
 
 namespace LAMMPS_NS {
@@ -44,7 +45,7 @@ struct MPMElementsOptions {
  *
  *  An element belongs to one of its nodes and migrates with it; the others may be ghosts.
  */
-class FixMPMElements : public Fix, private MPMElementsOptions {
+class FixMPMElements : public FixMPMState, private MPMElementsOptions {
  public:
   FixMPMElements(class LAMMPS *, int, char **);
   ~FixMPMElements() override;
@@ -56,12 +57,8 @@ class FixMPMElements : public Fix, private MPMElementsOptions {
   void post_force(int) override;
   double compute_scalar() override;
   double memory_usage() override;
-  void grow_arrays(int) override;
-  void copy_arrays(int, int, int) override;
-  void set_arrays(int) override;
   int pack_exchange(int, double *) override;
   int unpack_exchange(int, double *) override;
-  int pack_restart(int, double *) override;
   void unpack_restart(int, int) override;
   int size_restart(int) override;
   int maxsize_restart() override;
@@ -85,35 +82,32 @@ class FixMPMElements : public Fix, private MPMElementsOptions {
 
  private:
   struct Work;
-  struct Nodes {
-    int i[8];
-  };
 
-  int dim, maxnode, maxpoint;    // of the largest element of the mesh
+  int dim, maxnode = 0, maxpoint = 0;    // of the largest element of the mesh
   int nhistory, stride;
-  int max_of_node;             // largest number of elements that belong to one node
+  int max_of_node = 0;         // largest number of elements that belong to one node
   bigint nelements, nnodes;    // of the mesh
   tagint lowest;               // ID of its first node
-  double shortest;             // length of the smallest element, for artificial viscosity
+  double shortest = 0.0;       // length of the smallest element, for artificial viscosity
   class FixMPMMaterial *material;
   struct MPMPoints *points;
-  MPM_NS::Batch *batch;
-  Work *work;
+  std::unique_ptr<MPM_NS::Batch> batch;
+  std::unique_ptr<Work> work;
 
   // A row of the pool: label and type of an element, tags of its nodes [maxnode], their reference
   // positions relative to the first one [maxnode][dim], and for each integration point F [9],
   // tau [6], and history.
 
-  int *first, *count;    // of an atom: its elements in the pool
+  double *first, *count;    // of an atom: its elements in the pool
   std::vector<double> pool;
-  std::vector<Nodes> nodes;    // local indices, after post_neighbor()
-  int width;                   // of rows of sums
-  std::vector<double> sums;    // forces and averages of nodes
+  std::vector<std::array<int, 8>> nodes;    // local indices, after post_neighbor()
+  int width;                                // of rows of sums
+  std::vector<double> sums;                 // forces and averages of nodes
   std::vector<double> force_on, element_mean;
   mutable std::vector<double> history;    // of a batch
 
   double *row(std::size_t e) const { return const_cast<double *>(pool.data()) + e * stride; }
-  double *state(double *row, int q) const
+  double *state_of(double *row, int q) const
   {
     return row + 2 + maxnode * (1 + dim) + q * (15 + nhistory);
   }

@@ -60,6 +60,7 @@
 #include "error.h"
 #include "fix_mpm_material.h"
 #include "force.h"
+#include "math_extra.h"
 #include "modify.h"
 #include "mpm_field.h"
 #include "mpm_options.h"
@@ -123,9 +124,7 @@ Options MPMHandshakeOptions::declare()
   return o;
 }
 
-FixMPMHandshake::FixMPMHandshake(LAMMPS *lmp, int narg, char **arg) :
-    FixMPMState(lmp, narg, arg), field(nullptr), list(nullptr), weight(nullptr), role(nullptr),
-    natoms(0), nreach(0), heat(0.0), lost(0.0), impulse(), dt_last(0.0), eam(nullptr), flaw(0.0)
+FixMPMHandshake::FixMPMHandshake(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
 {
   Options options = declare();
   read_options(lmp, options, narg, arg, 3);
@@ -154,35 +153,35 @@ int FixMPMHandshake::setmask()
 
 /* ---------------------------------------------------------------------- */
 
+void FixMPMHandshake::refuse(bool broken, const std::string &why) const
+{
+  if (broken) error->all(FLERR, Error::NOLASTLINE, "Fix mpm/handshake {} {}", id, why);
+}
+
 void FixMPMHandshake::init()
 {
-  const auto refuse = [&](const std::string &why) {
-    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/handshake {} {}", id, why);
-  };
   field = MPMField::find(lmp, field_name);
-  if (!field) refuse("needs the ID of a fix mpm, not " + field_name);
+  refuse(!field, "needs the ID of a fix mpm, not " + field_name);
   for (const auto &zone : zones) {
-    if (zone.axis >= field->lattice.dim) refuse("cannot have a zone along z in 2d");
-    if (fabs(zone.one - zone.zero) < field->lattice.h)
-      refuse(
-          fmt::format("has a zone of the width {}, less than the node spacing {}: make it several "
-                      "node spacings wide",
-                      fabs(zone.one - zone.zero), field->lattice.h));
+    const double width = fabs(zone.one - zone.zero);
+    refuse(zone.axis >= field->lattice.dim, "cannot have a zone along z in 2d");
+    refuse(width < field->lattice.h,
+           fmt::format("has a zone of the width {}, less than the node spacing {}: make it several "
+                       "node spacings wide",
+                       width, field->lattice.h));
   }
-  if (is_affine(field->options.transfer) || field->options.series != MPMFieldOptions::LUMPED ||
-      field->options.flip < 1.0)
-    refuse("needs a field with transfer flip (1.0), which maps points as it maps atoms");
-  if (field->options.has_size())
-    refuse("cannot be used with points of finite size (gimp): use a spline");
-  if (field->options.scheme != MPMFieldOptions::USL || field->options.light > 0.0)
-    refuse("needs a field with scheme usl and without light nodes");
-  if (field->options.total || field->options.axisymmetric)
-    refuse("cannot be used with frame total or axisymmetric of fix mpm: atoms are in space");
-  if (field->options.every > 1)
-    refuse("cannot be used with fix mpm every: atoms and points share each step");
+  const auto &given = field->options;
+  refuse(is_affine(given.transfer) || given.series != MPMFieldOptions::LUMPED || given.flip < 1.0,
+         "needs a field with transfer flip (1.0), which maps points as it maps atoms");
+  refuse(given.has_size(), "cannot be used with points of finite size (gimp): use a spline");
+  refuse(given.scheme != MPMFieldOptions::USL || given.light > 0.0,
+         "needs a field with scheme usl and without light nodes");
+  refuse(given.total || given.axisymmetric,
+         "cannot be used with frame total or axisymmetric of fix mpm: atoms are in space");
+  refuse(given.every > 1, "cannot be used with fix mpm every: atoms and points share each step");
   for (auto *other : modify->get_fix_by_style("^mpm/handshake$"))
-    if (other != this && dynamic_cast<FixMPMHandshake *>(other)->field_name == field_name)
-      refuse(fmt::format("and {} have the same field: give one of them all zones", other->id));
+    refuse(other != this && dynamic_cast<FixMPMHandshake *>(other)->field_name == field_name,
+           fmt::format("and {} have the same field: give one of them all zones", other->id));
   check_pair();
 
   // atoms are moved by fix nve, after the step of the points
@@ -190,9 +189,9 @@ void FixMPMHandshake::init()
   bool before = true;
   for (auto *ifix : modify->get_fix_list()) {
     if (utils::strmatch(ifix->style, "^mpm$")) before = false;
-    if (before && ifix->time_integrate && !utils::strmatch(ifix->style, "^mpm"))
-      refuse(fmt::format("needs positions of the start of the step: define fix {} after fix mpm",
-                         ifix->id));
+    refuse(before && ifix->time_integrate && !utils::strmatch(ifix->style, "^mpm"),
+           fmt::format("needs positions of the start of the step: define fix {} after fix mpm",
+                       ifix->id));
   }
   neighbor->add_request(this, NeighConst::REQ_FULL);
 }
@@ -223,22 +222,20 @@ void FixMPMHandshake::check_pair()
   static const char *const embedded[] = {"eam",           "eam/alloy",     "eam/fs",     "eam/he",
                                          "eam/opt",       "eam/alloy/opt", "eam/fs/opt", "eam/omp",
                                          "eam/alloy/omp", "eam/fs/omp"};
-  const auto refuse = [&](const std::string &why) {
-    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/handshake {} {}", id, why);
-  };
-  if (!force->pair) refuse("needs a pair style between the atoms");
+  refuse(!force->pair, "needs a pair style between the atoms");
   auto *const hybrid = dynamic_cast<PairHybrid *>(force->pair);
   eam = nullptr;
   for (int k = 0; k < (hybrid ? SubStyles::number(*hybrid) : 1); k++) {
     Pair *const pair = hybrid ? SubStyles::style(*hybrid, k) : force->pair;
     const std::string style = hybrid ? SubStyles::name(*hybrid, k) : force->pair_style;
     if (std::find(std::begin(embedded), std::end(embedded), style) != std::end(embedded)) {
-      if (eam) refuse("cannot be used with two pair styles eam: use one for all elements");
+      refuse(eam, "cannot be used with two pair styles eam: use one for all elements");
       eam = pair;
-    } else if (pair->manybody_flag || !pair->single_enable)
-      refuse("cannot be used with pair style " + style +
-             ", whose forces are not known pair by pair: use a pair potential or eam for the atoms "
-             "of the zone");
+    } else
+      refuse(pair->manybody_flag || !pair->single_enable,
+             "cannot be used with pair style " + style +
+                 ", whose forces are not known pair by pair: use a pair potential or eam for the "
+                 "atoms of the zone");
   }
 }
 
@@ -270,9 +267,7 @@ void FixMPMHandshake::check_embedding()
       const int j = list->firstneigh[i][jj] & NEIGHMASK;
       const int itype = atom->type[i], jtype = atom->type[j];
       if (j >= atom->nlocal || role[j] != COUPLED) continue;
-      const double *const x = atom->x[i], *const y = atom->x[j];
-      const double rsq = (x[0] - y[0]) * (x[0] - y[0]) + (x[1] - y[1]) * (x[1] - y[1]) +
-          (x[2] - y[2]) * (x[2] - y[2]);
+      const double rsq = MathExtra::distsq3(atom->x[i], atom->x[j]);
       const double difference = share - embedding_share(j);
       if (rsq >= eam->cutsq[itype][jtype] || fabs(difference) < 1.0e-3 * fabs(share)) continue;
       double one, other;
@@ -454,12 +449,10 @@ void FixMPMHandshake::extend_topology(MPMField &which)
       const int n = MPMStencil(*field).weights(t + drift, first, w);
       hi[d] = (first + n - 1) >> grid.shift_bits;
     }
-    for (int bx = lo[0]; bx <= hi[0]; bx++)
-      for (int by = lo[1]; by <= hi[1]; by++)
-        for (int bz = lo[2]; bz <= hi[2]; bz++) {
-          const int b[3] = {bx, by, bz};
-          grid.activate(b);
-        }
+    int b[3];
+    for (b[0] = lo[0]; b[0] <= hi[0]; b[0]++)
+      for (b[1] = lo[1]; b[1] <= hi[1]; b[1]++)
+        for (b[2] = lo[2]; b[2] <= hi[2]; b[2]++) grid.activate(b);
   }
 }
 
@@ -501,8 +494,9 @@ void FixMPMHandshake::find_pushes()
                    id, atom->tag[i], atom->tag[j]);
       const double difference = (role[j] == COUPLED ? weight[j] : 1.0) - weight[i];
       if (difference == 0.0) continue;
-      const double r[3] = {x[i][0] - x[j][0], x[i][1] - x[j][1], x[i][2] - x[j][2]};
-      const double rsq = r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
+      double r[3];
+      MathExtra::sub3(x[i], x[j], r);
+      const double rsq = MathExtra::lensq3(r);
       if (rsq >= pair->cutsq[type[i]][type[j]]) continue;
       double f_over_r;
       pair->single(i, j, type[i], type[j], rsq, 1.0, 1.0, f_over_r);
@@ -533,8 +527,8 @@ double FixMPMHandshake::kinetic_energy() const
 {
   double sum = 0.0;
   for (std::size_t k = 0; k < natoms; k++) {
-    const double *const v = atom->v[members[k]];
-    sum += weight[members[k]] * atom->rmass[members[k]] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    const int i = members[k];
+    sum += weight[i] * atom->rmass[i] * MathExtra::lensq3(atom->v[i]);
   }
   return 0.5 * force->mvv2e * sum;
 }
@@ -569,10 +563,9 @@ template <class Function> void FixMPMHandshake::each_node(std::size_t k, const F
 /** Which nodes do atoms and points reach, and with which weights? */
 void FixMPMHandshake::find_nodes()
 {
-  Grid &grid = field->grid;
-  const auto &lattice = grid.lattice;
-  const int n = stencil_order(field->options.shape) + 1, dim = lattice.dim;
-  nreach = dim == 3 ? n * n * n : n * n;
+  const auto &lattice = field->lattice;
+  const int n = stencil_order(field->options.shape) + 1;
+  nreach = lattice.dim == 3 ? n * n * n : n * n;
 
   members.clear();
   for (int i = 0; i < atom->nlocal; i++)
@@ -584,33 +577,20 @@ void FixMPMHandshake::find_nodes()
   nodes.resize(members.size() * nreach);
   shares.resize(members.size() * nreach);
 
-  int slot = -1, last[3] = {0, 0, 0};
-  for (std::size_t k = 0; k < members.size(); k++) {
-    const double *const x = atom->x[members[k]];
-    int base[3] = {0, 0, 0}, b[3] = {0, 0, 0};
-    double w[3][4] = {{1.0}, {1.0}, {1.0}};
-    for (int d = 0; d < dim; d++) {
-      const double t = (x[d] - lattice.origin[d]) / lattice.h;
-      if (!(fabs(t) < 4.0e6))
+  MPMStencil stencil(*field);
+  std::size_t m = 0;
+  for (const int i : members) {
+    const double *const x = atom->x[i];
+    for (int d = 0; d < lattice.dim; d++)
+      if (!(fabs((x[d] - lattice.origin[d]) / lattice.h) < 4.0e6))
         error->one(FLERR, "Fix mpm/handshake {}: atom {} is far out of reach of the lattice", id,
-                   atom->tag[members[k]]);
-      MPMStencil(*field).weights(t, base[d], w[d]);
-      b[d] = base[d] >> grid.shift_bits;
-    }
-    if (slot < 0 || memcmp(b, last, sizeof(b)) != 0) slot = grid.find(b);
-    memcpy(last, b, sizeof(b));
-    std::size_t m = k * nreach;
-    for (int kx = 0; kx < n; kx++)
-      for (int ky = 0; ky < n; ky++)
-        for (int kz = 0; kz < (dim == 3 ? n : 1); kz++, m++) {
-          const int index[3] = {base[0] + kx, base[1] + ky, base[2] + kz};
-          const int64_t node = slot < 0 ? -1 : grid.locate_near(grid.blocks[slot], index);
-          if (node < 0)
-            error->one(FLERR, "Fix mpm/handshake {}: atom {} has left the active blocks", id,
-                       atom->tag[members[k]]);
+                   atom->tag[i]);
+    if (!stencil.visit_around(x, [&](int64_t node, double share, const double *) {
           nodes[m] = (int) node;
-          shares[m] = w[0][kx] * w[1][ky] * w[2][kz];
-        }
+          shares[m++] = share;
+        }))
+      error->one(FLERR, "Fix mpm/handshake {}: atom {} has left the active blocks", id,
+                 atom->tag[i]);
   }
 }
 

@@ -70,26 +70,27 @@ class FixMPMHandshake : public FixMPMState, public MPMNodeAction, private MPMHan
  private:
   enum Role { UNKNOWN, APART, COUPLED, POINT, NEAR_POINT };    // near: at the nodes of the zone
 
-  MPMField *field;
-  class NeighList *list;
+  MPMField *field = nullptr;
+  class NeighList *list = nullptr;
   double *weight;    // [n] share of the mass and energy of an atom or point that counts
   double *role;      // [n] a Role
 
   // of the present step
 
-  std::vector<int> members;      // local atoms that are coupled, then points near the zone
-  std::size_t natoms;            // the former
-  std::vector<double> pushes;    // [natoms][3] their forces g by the gradient of the weight
-  std::vector<int> nodes;        // of each of them: the nodes that it reaches,
-  std::vector<double> shares;    // and their weights
-  int nreach;                    // number of these
-  std::vector<double> sums;      // at the nodes
-  double heat, lost;             // energy taken so far by damping, and in all, on this rank
-  double impulse[3], dt_last;
+  std::vector<int> members;         // local atoms that are coupled, then points near the zone
+  std::size_t natoms = 0;           // the former
+  std::vector<double> pushes;       // [natoms][3] their forces g by the gradient of the weight
+  std::vector<int> nodes;           // of each of them: the nodes that it reaches,
+  std::vector<double> shares;       // and their weights
+  int nreach = 0;                   // number of these
+  std::vector<double> sums;         // at the nodes
+  double heat = 0.0, lost = 0.0;    // energy taken so far by damping, and in all, on this rank
+  double impulse[3] = {}, dt_last = 0.0;
 
-  class Pair *eam;    // the style of embedded atoms, if there is one
-  double flaw;        // 1: its single() has the embedding energy in the force
+  class Pair *eam = nullptr;    // the style of embedded atoms, if there is one
+  double flaw = 0.0;            // 1: its single() has the embedding energy in the force
 
+  void refuse(bool broken, const std::string &why) const;
   void check_pair();
   void check_embedding();
   double embedding_share(int i) const;

@@ -46,6 +46,7 @@
 #include "error.h"
 #include "force.h"
 #include "math_const.h"
+#include "math_extra.h"
 #include "modify.h"
 #include "mpm_field.h"
 #include "mpm_options.h"
@@ -55,7 +56,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -96,8 +96,7 @@ Options MPMImmersedOptions::declare(int dim)
   return o;
 }
 
-FixMPMImmersed::FixMPMImmersed(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), field(nullptr), force_now{}, count(0), dt_last(0.0)
+FixMPMImmersed::FixMPMImmersed(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
 {
   Options options = declare(domain->dimension);
   read_options(lmp, options, narg, arg, 3);
@@ -124,7 +123,8 @@ int FixMPMImmersed::setmask()
 
 void FixMPMImmersed::init()
 {
-  if (!MPMField::find(lmp, field_id))
+  field = MPMField::find(lmp, field_id);
+  if (!field)
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/immersed {}: there is no fix mpm {}", id,
                field_id);
 }
@@ -135,10 +135,7 @@ void FixMPMImmersed::init()
 
 void FixMPMImmersed::init_action()
 {
-  field = MPMField::find(lmp, field_id);
-  if (!field)
-    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/immersed {}: there is no fix mpm {}", id,
-               field_id);
+  FixMPMImmersed::init();
   refuse_field(lmp, *this, *field,
                {{field->options.total, "frame total",
                  "its nodes are not where the grains are: use frame updated"},
@@ -149,6 +146,13 @@ void FixMPMImmersed::init_action()
 
   field->keep_old = true;    // for the acceleration of the fluid
 
+  const auto count_all = [&](const auto &counts) {
+    bigint mine = 0, all;
+    for (int i = 0; i < atom->nlocal; i++) mine += counts(i);
+    MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+    return all;
+  };
+
   // Who moves the grains, and which of the two half steps with forces are still to come?
 
   movers.clear();
@@ -156,39 +160,36 @@ void FixMPMImmersed::init_action()
   for (int k = 0; k < modify->nfix; k++) {
     const Fix *ifix = modify->fix[k];
     if (utils::strmatch(ifix->style, "^rigid")) {
-      bigint mine = 0, all;
-      for (int i = 0; i < atom->nlocal; i++)
-        if (is_grain(i) && (atom->mask[i] & ifix->groupbit)) mine++;
-      MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-      if (all)
+      const bigint n = count_all([&](int i) {
+        return is_grain(i) && (atom->mask[i] & ifix->groupbit);
+      });
+      if (n)
         error->all(
             FLERR, Error::NOLASTLINE,
             "Fix mpm/immersed {}: {} grains of fix {} ({}) have no velocity of their own: use "
             "single spheres",
-            id, all, ifix->id, ifix->style);
+            id, n, ifix->id, ifix->style);
     }
     if (ifix->time_integrate && !utils::strmatch(ifix->style, "^mpm$"))
       movers.push_back({ifix->groupbit, k < driver ? 1.0 : 0.5});
   }
 
-  bigint points = 0, all;
-  for (int i = 0; i < atom->nlocal; i++)
-    if ((atom->mask[i] & groupbit) && atom->vfrac[i] > 0.0) points++;
-  MPI_Allreduce(&points, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  if (all)
+  const bigint points = count_all([&](int i) {
+    return (atom->mask[i] & groupbit) && atom->vfrac[i] > 0.0;
+  });
+  if (points)
     error->all(
         FLERR, Error::NOLASTLINE,
         "Fix mpm/immersed {}: {} atoms of its group are material points: use a group of grains", id,
-        all);
-  bigint large = 0, largest;
-  for (int i = 0; i < atom->nlocal; i++)
-    if (is_grain(i) && 2.0 * atom->radius[i] > 2.0 * field->lattice.h) large++;
-  MPI_Allreduce(&large, &largest, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  if (largest && comm->me == 0)
+        points);
+  const bigint large = count_all([&](int i) {
+    return is_grain(i) && 2.0 * atom->radius[i] > 2.0 * field->lattice.h;
+  });
+  if (large && comm->me == 0)
     error->warning(FLERR,
                    "Fix mpm/immersed {}: {} grains are larger than two node spacings: for "
                    "them, contact through a pair style resolves the flow",
-                   id, largest);
+                   id, large);
 }
 
 bool FixMPMImmersed::is_grain(int i) const
@@ -203,51 +204,6 @@ double FixMPMImmersed::volume(int i) const
   return field->lattice.dim == 3 ? 4.0 / 3.0 * MY_PI * r * r * r : MY_PI * r * r;
 }
 
-/** Space that belongs to a node. */
-double FixMPMImmersed::space() const
-{
-  const double h = field->lattice.h;
-  return field->lattice.dim == 3 ? h * h * h : h * h;
-}
-
-/* ----------------------------------------------------------------------
-   f(node, N_i, r) for the nodes around a grain, r from the grain in node spacings; false: some of them
-   are not there
-------------------------------------------------------------------------- */
-
-template <class F> bool FixMPMImmersed::visit(int i, const F &f) const
-{
-  const auto &grid = field->grid;
-  const int dim = field->lattice.dim;
-  int first[3] = {0, 0, 0}, k[3];
-  double w[3][4] = {{0.0}, {0.0}, {1.0}}, t[3] = {0.0, 0.0, 0.0};
-  int n = 0;
-  for (int d = 0; d < dim; d++) {
-    t[d] = (atom->x[i][d] - grid.lattice.origin[d]) / grid.lattice.h;
-    n = MPMStencil(*field).weights(t[d], first[d], w[d]);
-  }
-  // one look-up per grain, neighbors from the table of its first block
-  int b[3];
-  for (int d = 0; d < 3; d++) b[d] = first[d] >> grid.shift_bits;
-  const int start = grid.find(b);
-  if (start < 0) return false;
-  const auto &block = grid.blocks[start];
-  for (k[0] = 0; k[0] < n; k[0]++)
-    for (k[1] = 0; k[1] < n; k[1]++)
-      for (k[2] = 0; k[2] < (dim == 3 ? n : 1); k[2]++) {
-        int index[3];
-        double r[3];
-        for (int d = 0; d < 3; d++) {
-          index[d] = first[d] + k[d];
-          r[d] = index[d] - t[d];
-        }
-        const int64_t node = grid.locate_near(block, index);
-        if (node < 0) return false;
-        f(node, w[0][k[0]] * w[1][k[1]] * w[2][k[2]], r);
-      }
-  return true;
-}
-
 /* ----------------------------------------------------------------------
    blocks around the grains of this rank, and when they need others
 ------------------------------------------------------------------------- */
@@ -255,11 +211,12 @@ template <class F> bool FixMPMImmersed::visit(int i, const F &f) const
 void FixMPMImmersed::couple_topology()
 {
   int missing = 0, any;
+  MPMStencil stencil(*field);
+  const auto nothing = [](int64_t, double, const double *) {
+  };
   if (field->map->valid)
     for (int i = 0; i < atom->nlocal && !missing; i++)
-      if (is_grain(i) && !visit(i, [](int64_t, double, const double *) {
-          }))
-        missing = 1;
+      missing = is_grain(i) && !stencil.visit_around(atom->x[i], nothing);
   MPI_Allreduce(&missing, &any, 1, MPI_INT, MPI_MAX, world);
   if (any) field->map->valid = false;
 }
@@ -305,10 +262,9 @@ double FixMPMImmersed::end_of_bed(double solid, const double *moment, double own
   const double p1 = stencil_order(field->options.shape) + 1.0, width = sqrt(p1 / 6.0),
                n = field->lattice.dim;
   const double slope = width * 12.0 / p1 / solid;    // sum N r^2 = (p+1)/12, of moment
-  const double chance = 0.5 * n * pow(4.0 * MY_PI * width * width, -0.5 * n) * own / space();
-  const double q2 =
-      slope * slope * (moment[0] * moment[0] + moment[1] * moment[1] + moment[2] * moment[2]) -
-      chance / solid;
+  const double chance =
+      0.5 * n * pow(4.0 * MY_PI * width * width, -0.5 * n) * own / field->lattice.cell_volume();
+  const double q2 = slope * slope * MathExtra::lensq3(moment) - chance / solid;
   if (!(q2 > 0.0)) return solid;
   return solid / (1.0 - 0.64 * pow(std::min(q2, 2.0 / MY_PI), 0.56));
 }
@@ -392,7 +348,7 @@ bool FixMPMImmersed::is_inner(int64_t node)
   char &known = inner[node];
   if (known) return known == INNER;
   auto &grid = field->grid;
-  const double least = 0.6 * density * space();
+  const double least = 0.6 * density * field->lattice.cell_volume();
   const auto full = [&](int64_t n) {
     return grid.nodes()[n * grid.nreal + 3] > least;
   };
@@ -419,17 +375,17 @@ void FixMPMImmersed::find_grains(double dt)
   grains.clear();
   entries.clear();
   inner.assign(field->grid.nnodes(), 0);
-  const double full = density * space();
+  const double full = density * field->lattice.cell_volume();
   const double *records = field->grid.nodes();    // vx vy vz m, old velocity
   const int nreal = field->grid.nreal;
+  MPMStencil stencil(*field);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!is_grain(i)) continue;
-    Grain g;
+    Grain g = {};
     g.i = i;
     g.first = (int) entries.size();
     double mass = 0.0, inside = 0.0;
-    for (int d = 0; d < 3; d++) g.gain[d] = 0.0;
-    visit(i, [&](int64_t node, double w, const double *r) {
+    stencil.visit_around(atom->x[i], [&](int64_t node, double w, const double *r) {
       const double *const record = records + node * nreal;
       const double m = w * record[3];
       mass += m;
@@ -443,7 +399,8 @@ void FixMPMImmersed::find_grains(double dt)
       entries.resize(g.first);
       continue;
     }
-    for (std::size_t e = g.first; e < entries.size(); e++) entries[e].share /= mass;
+    g.last = (int) entries.size();
+    for (int e = g.first; e < g.last; e++) entries[e].share /= mass;
     g.part = inside > 0.0 ? 0.0 : 1.0;    // without an acceleration its term is left out
     if (inside > 0.0)
       for (int d = 0; d < 3; d++) g.gain[d] /= inside;
@@ -494,24 +451,21 @@ void FixMPMImmersed::act(double dt, Stage stage)
   grid.copy_aliases();
   find_grains(dt);
   sums.assign(NREAL * grid.nnodes(), 0.0);
-  entries.push_back({-1, 0.0, 0.0, {0.0, 0.0, 0.0}, false});    // so that each grain has an end
-  const auto around = [&](std::size_t g, const auto &f) {
-    const int last = g + 1 < grains.size() ? grains[g + 1].first : (int) entries.size() - 1;
-    for (int e = grains[g].first; e < last; e++) f(entries[e], &sums[NREAL * entries[e].node]);
+  const auto around = [&](const Grain &g, const auto &f) {
+    for (int e = g.first; e < g.last; e++) f(entries[e], &sums[NREAL * entries[e].node]);
   };
 
-  for (std::size_t g = 0; g < grains.size(); g++) {
-    const double share = volume(grains[g].i) / space();
+  for (const Grain &g : grains) {
+    const double share = volume(g.i) / field->lattice.cell_volume();
     around(g, [&](const Entry &e, double *sum) {
       sum[0] += e.w * share;
     });
   }
   sum_nodes(0, 1);
 
-  for (std::size_t k = 0; k < grains.size(); k++) {
-    Grain &g = grains[k];
+  for (Grain &g : grains) {
     double solid = 0.0, moment[3] = {0.0, 0.0, 0.0}, slip[3] = {0.0, 0.0, 0.0};
-    around(k, [&](const Entry &e, const double *sum) {
+    around(g, [&](const Entry &e, const double *sum) {
       const double *record = grid.nodes() + e.node * nreal;
       solid += e.w * sum[0];
       for (int d = 0; d < 3; d++) {
@@ -529,24 +483,22 @@ void FixMPMImmersed::act(double dt, Stage stage)
     }
     const double part = g.part * g.immersed;
     g.coefficient = part *
-        drag_after_step(2.0 * atom->radius[g.i],
-                        sqrt(slip[0] * slip[0] + slip[1] * slip[1] + slip[2] * slip[2]),
+        drag_after_step(2.0 * atom->radius[g.i], MathExtra::len3(slip),
                         end_of_bed(solid, moment, volume(g.i)),
                         dt * part * (1.0 / g.mass + of_fluid));
   }
-  for (std::size_t k = 0; k < grains.size(); k++)
-    around(k, [&](const Entry &e, double *sum) {
-      for (int d = 0; d < 3; d++) sum[1 + d] -= e.share * grains[k].buoyancy[d];
-      sum[4] += e.share * grains[k].coefficient;
+  for (const Grain &g : grains)
+    around(g, [&](const Entry &e, double *sum) {
+      for (int d = 0; d < 3; d++) sum[1 + d] -= e.share * g.buoyancy[d];
+      sum[4] += e.share * g.coefficient;
     });
   sum_nodes(1, 4);
 
   std::fill(force_now, force_now + 6, 0.0);
-  for (std::size_t k = 0; k < grains.size(); k++) {
-    const Grain &g = grains[k];
+  for (const Grain &g : grains) {
     double slip[3] = {-g.velocity[0], -g.velocity[1], -g.velocity[2]};
     double slowing = g.coefficient / g.mass;    // rate of the slip
-    around(k, [&](const Entry &e, const double *sum) {
+    around(g, [&](const Entry &e, const double *sum) {
       const double *record = grid.nodes() + e.node * nreal;
       if (!(record[3] > 0.0)) return;
       for (int d = 0; d < 3; d++)
@@ -562,7 +514,7 @@ void FixMPMImmersed::act(double dt, Stage stage)
       force_now[d] += drag[d] / g.part;
       force_now[3 + d] += drag[d] + g.buoyancy[d] - drag[d] / g.part;
     }
-    around(k, [&](const Entry &e, double *sum) {
+    around(g, [&](const Entry &e, double *sum) {
       for (int d = 0; d < 3; d++) sum[5 + d] -= e.share * drag[d];
     });
   }

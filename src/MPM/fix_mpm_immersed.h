@@ -59,7 +59,7 @@ class FixMPMImmersed : public Fix, public MPMNodeAction, private MPMImmersedOpti
     double ahead;    // steps that forces still act before the grain moves
   };
   struct Grain {
-    int i, first;          // atom, and its first stencil entry
+    int i, first, last;    // atom, and its stencil entries
     double mass;           // infinite: held
     double immersed;       // share of it that is in the fluid
     double gain[3];        // of the velocity of the fluid in this step
@@ -71,25 +71,23 @@ class FixMPMImmersed : public Fix, public MPMNodeAction, private MPMImmersedOpti
   struct Entry {    // a node next to a grain
     int64_t node;
     double w, share;    // shape function; share of the impulse
-    double r[3];        // from the grain, in node spacings
+    double r[3];        // to the grain, in node spacings
     bool inner;         // there is fluid around the node
   };
 
-  MPMField *field;
+  MPMField *field = nullptr;
   std::vector<Mover> movers;
   std::vector<Grain> grains;
   std::vector<Entry> entries;
   std::vector<char> inner;     // [node] of is_inner(): 0 as long as it was not asked
   std::vector<double> sums;    // [node][8] volume of grains; buoyancy; coefficients; drag
-  double force_now[6];         // drag and buoyancy on the grains of this rank, impulses
-  int count;
-  double dt_last;
+  double force_now[6] = {};    // drag and buoyancy on the grains of this rank, impulses
+  int count = 0;
+  double dt_last = 0.0;
 
   bool is_grain(int i) const;
   double volume(int i) const;
-  double space() const;
   bool is_inner(int64_t node);
-  template <class F> bool visit(int i, const F &) const;
   void find_grains(double dt);
   void sum_nodes(int lane, int nlane);
   double end_of_bed(double solid, const double *moment, double own) const;

@@ -10,6 +10,7 @@
 
 #include "comm.h"
 #include "domain.h"
+#include "error.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -32,7 +33,8 @@ template <class T> void broadcast(std::vector<T> &data, MPI_Comm world)
 
 }    // namespace
 
-Mesh LAMMPS_NS::read_body(LAMMPS *lmp, const std::string &file, const std::string &part)
+Mesh LAMMPS_NS::read_body(LAMMPS *lmp, const std::string &file, const std::string &part,
+                          const std::string &user, int iarg)
 {
   Mesh mesh;
   std::vector<char> message;
@@ -47,9 +49,9 @@ Mesh LAMMPS_NS::read_body(LAMMPS *lmp, const std::string &file, const std::strin
     }
   }
   broadcast(message, lmp->world);
-  if (!message.empty()) throw std::runtime_error(std::string(message.begin(), message.end()));
+  if (!message.empty())
+    lmp->error->all(FLERR, iarg, "{}: {}", user, std::string(message.begin(), message.end()));
   broadcast(mesh.nodes, lmp->world);
-  broadcast(mesh.labels, lmp->world);
   broadcast(mesh.elements, lmp->world);
   return mesh;
 }

@@ -15,9 +15,10 @@
 namespace LAMMPS_NS {
 
 /** The elements of a body in a Gmsh file on all ranks: those of the dimension of the simulation
- *  and, when not empty, of a physical group, numbered in the positive sense. Throws
- *  std::runtime_error on all ranks. */
-MPM_NS::Mesh read_body(LAMMPS *, const std::string &file, const std::string &part);
+ *  and, when not empty, of a physical group, numbered in the positive sense. Stops with an error
+ *  of this user, which points to its argument. */
+MPM_NS::Mesh read_body(LAMMPS *, const std::string &file, const std::string &part,
+                       const std::string &user, int iarg);
 
 }    // namespace LAMMPS_NS
 #endif

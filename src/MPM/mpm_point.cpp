@@ -35,12 +35,13 @@ using namespace MPM_NS;
 
 static constexpr int CONSOLIDATION_STEPS = 100;
 static const char *const component_name[6] = {"xx", "yy", "zz", "xy", "xz", "yz"};
+static constexpr int place[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};    // of these
 static const char *const path_name[] = {"uniaxial/stress", "uniaxial/strain", "shear", "biaxial",
                                         "triaxial",        "volumetric",      "shock", "mixed"};
 
 /* ---------------------------------------------------------------------- */
 
-MPMPoint::MPMPoint(LAMMPS *lmp) : Command(lmp), fp(nullptr), iterations(0) {}
+MPMPoint::MPMPoint(LAMMPS *lmp) : Command(lmp) {}
 
 MPMPoint::~MPMPoint()
 {
@@ -84,20 +85,13 @@ Options MPMPointOptions::declare()
 {
   using namespace option;
   Options o("mpm_point");
-  const auto any = number(rate, "rate", ANY_NUMBER);
-  o.argument(word(path,
-                  {{path_name[UNIAXIAL_STRESS], UNIAXIAL_STRESS, "", {any}},
-                   {path_name[UNIAXIAL_STRAIN], UNIAXIAL_STRAIN, "", {any}},
-                   {path_name[SHEAR], SHEAR, "", {any}},
-                   {path_name[BIAXIAL], BIAXIAL, "", {any}},
-                   {path_name[TRIAXIAL],
-                    TRIAXIAL,
-                    "",
-                    {any, number(pressure, "confining pressure", NOT_NEGATIVE)}},
-                   {path_name[VOLUMETRIC], VOLUMETRIC, "", {any}},
-                   {path_name[SHOCK], SHOCK, "", {number(rate, "rate", {-UNBOUNDED, 0.0, false})}},
-                   {path_name[MIXED], MIXED}},
-                  "path"));
+  std::vector<OptionWord> paths;
+  for (int k = 0; k <= MIXED; k++)
+    paths.push_back({path_name[k], k, "", {number(rate, "rate", ANY_NUMBER)}});
+  paths[TRIAXIAL].values.push_back(number(pressure, "confining pressure", NOT_NEGATIVE));
+  paths[SHOCK].values = {number(rate, "rate", {-UNBOUNDED, 0.0, false})};
+  paths[MIXED].values.clear();
+  o.argument(word(path, paths, "path"));
   o.add("time", {number(duration, "T", POSITIVE, "time", "duration of the path")}).standard("");
   o.add("strain", {number(strain, "E", POSITIVE, "1", "size of the strain at which the path ends")})
       .standard("");
@@ -253,13 +247,13 @@ MixedControl MPMPoint::control(double t0, double t1, bool started, double share)
       c.L[0] = r;    // uniaxial strain
   }
 
-  static constexpr int place[6][2] = {{0, 0}, {4, 4}, {8, 8}, {1, 3}, {2, 6}, {5, 7}};
   const double middle = 0.5 * (t0 + t1);
   for (int k = 0; k < 6; k++) {
     if (component[k].kind == Component::AS_PATH) continue;
     const bool is_rate = component[k].kind == Component::RATE;
     const double value = value_at(component[k].value, is_rate ? middle : t1);
-    for (const int p : place[k]) c.L[p] = is_rate ? value : 0.0;
+    const auto [i, j] = place[k];
+    c.L[3 * i + j] = c.L[3 * j + i] = is_rate ? value : 0.0;
     c.stress_given[k] = !is_rate;
     c.stress[k] = is_rate ? 0.0 : value;
   }
@@ -395,13 +389,14 @@ std::vector<std::pair<std::string, double>> MPMPoint::row(const MaterialPoint &p
   const Eigen::Matrix3d &axes = b.eigenvectors();
   const Eigen::Vector3d e = 0.5 * b.eigenvalues().array().log();
   const Eigen::Matrix3d E = axes * e.asDiagonal() * axes.transpose();
-  static constexpr int place[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
-  for (int k = 0; k < 6; k++)
-    add(std::string("e") + component_name[k], E(place[k][0], place[k][1]));
+  Eigen::Matrix3d s;
+  for (int k = 0; k < 6; k++) {
+    const auto [i, j] = place[k];
+    add(std::string("e") + component_name[k], E(i, j));
+    s(i, j) = s(j, i) = stress[k];
+  }
   for (int k = 0; k < 6; k++) add(std::string("s") + component_name[k], stress[k]);
 
-  Eigen::Matrix3d s;
-  for (int k = 0; k < 6; k++) s(place[k][0], place[k][1]) = s(place[k][1], place[k][0]) = stress[k];
   const double mises = point.vonmises();
   s -= Eigen::Matrix3d::Identity() * (s.trace() / 3.0);
   add("pressure", point.pressure());
@@ -436,16 +431,14 @@ void MPMPoint::write(const MaterialPoint &point, bigint step)
   if (!in_table && !in_log) return;
 
   const auto columns = row(point, step);
-  const auto line = [](const std::vector<std::string> &words) {
-    return utils::join_words(words, " ") + "\n";
-  };
   if (in_table) {
-    std::vector<std::string> words;
-    for (const auto &c : columns) words.push_back(c.first);
-    if (first) utils::print(fp, "{}", line(words));
-    words.clear();
-    for (const auto &c : columns) words.push_back(fmt::format("{:.15g}", c.second));
-    utils::print(fp, "{}", line(words));
+    std::vector<std::string> names, values;
+    for (const auto &[name, value] : columns) {
+      names.push_back(name);
+      values.push_back(fmt::format("{:.15g}", value));
+    }
+    if (first) utils::print(fp, "{}\n", utils::join_words(names, " "));
+    utils::print(fp, "{}\n", utils::join_words(values, " "));
   }
   if (in_log) {
     std::string names = "   Step          Time     ",

@@ -45,8 +45,7 @@ struct MPMPointOptions {
     TRIAXIAL,
     VOLUMETRIC,
     SHOCK,
-    MIXED,
-    NPATHS
+    MIXED
   };
   static constexpr double NOT_GIVEN = -1.0;
 
@@ -76,8 +75,8 @@ class MPMPoint : public Command, private MPMPointOptions {
 
   std::unique_ptr<MPM_NS::Material> material;
   std::vector<bool> range_left;
-  FILE *fp;
-  bigint iterations;
+  FILE *fp = nullptr;
+  bigint iterations = 0;
 
   void parse(int, char **);
   double value_at(const MPM_NS::NumberOrVariable &, double time);

@@ -15,6 +15,7 @@
 #include "mpm_cpdi.h"
 #include "mpm_frame.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace LAMMPS_NS {
@@ -95,8 +96,36 @@ class MPMStencil {
     }
   }
 
+  /** Calls f(number, weight, r) for the nodes that a position of no size reaches, such as that of an atom
+   *  which is no point; false: not all of them are active. The blocks must stay while this object is used:
+   *  it remembers the last one. */
+  template <class F> bool visit_around(const double *x, const F &f)
+  {
+    const auto &grid = field.grid;
+    int base[3] = {0, 0, 0}, count[3] = {1, 1, 1}, b[3], k[3];
+    double t[3] = {0.0, 0.0, 0.0}, w[3][4] = {{0.0}, {0.0}, {1.0}};
+    for (int d = 0; d < field.lattice.dim; d++) {
+      t[d] = (x[d] - field.lattice.origin[d]) / field.lattice.h;
+      count[d] = weights(t[d], base[d], w[d]);
+    }
+    for (int d = 0; d < 3; d++) b[d] = base[d] >> grid.shift_bits;
+    if (slot < 0 || !std::equal(b, b + 3, grid.blocks[slot].b)) slot = grid.find(b);
+    if (slot < 0) return false;
+    for (k[0] = 0; k[0] < count[0]; k[0]++)
+      for (k[1] = 0; k[1] < count[1]; k[1]++)
+        for (k[2] = 0; k[2] < count[2]; k[2]++) {
+          const int index[3] = {base[0] + k[0], base[1] + k[1], base[2] + k[2]};
+          const double r[3] = {t[0] - index[0], t[1] - index[1], t[2] - index[2]};
+          const int64_t node = grid.locate_near(grid.blocks[slot], index);
+          if (node < 0) return false;
+          f(node, w[0][k[0]] * w[1][k[1]] * w[2][k[2]], r);
+        }
+    return true;
+  }
+
  private:
   const MPMField &field;
+  int slot = -1;    // of the last block
 
   template <class Functions> static int evaluate(double t, int &first, double w[4], double *slopes)
   {

@@ -49,7 +49,7 @@ TEST(Mesh, Format22)
   Mesh mesh = read(FLAT);
   ASSERT_EQ(mesh.nodes.size(), 7u);
   ASSERT_EQ(mesh.elements.size(), 3u);
-  EXPECT_EQ(mesh.dimension(), 2);
+  for (const auto &e : mesh.elements) EXPECT_EQ(element_dimension(e.type), 2);
   EXPECT_EQ(mesh.groups.at({2, 5}), "left part");
   EXPECT_EQ(mesh.elements[2].type, ElementType::QUAD);
   EXPECT_EQ(mesh.elements[2].physical, 6);
@@ -70,7 +70,7 @@ TEST(Mesh, Format22)
   named.keep(2, "left part");
   EXPECT_EQ(named.elements.size(), 2u);
   ASSERT_EQ(named.nodes.size(), 4u);
-  EXPECT_EQ(named.labels[3], 14);
+  EXPECT_EQ(named.nodes[3], (std::array<double, 3>{1.0, 1.0, 0.0}));
   EXPECT_EQ(named.nodes[named.elements[0].node[2]][1], 1.0);
   tagged.keep(2, "6");
   EXPECT_EQ(tagged.elements.size(), 1u);
@@ -95,7 +95,7 @@ TEST(Mesh, Format41)
            "$NodeData\n1 \"$x\" 3 4\n$EndNodeData\n");
   ASSERT_EQ(mesh.elements.size(), 3u);
   EXPECT_EQ(mesh.nodes.size(), 9u);
-  EXPECT_EQ(mesh.dimension(), 3);
+  EXPECT_EQ(element_dimension(mesh.elements[1].type), 3);
   EXPECT_EQ(mesh.elements[0].physical, 4);
   EXPECT_EQ(mesh.elements[1].physical, 2);
   EXPECT_EQ(mesh.elements[2].physical, 0);

@@ -103,8 +103,12 @@ double ElementRule::gradients(int q, const double (*x)[3], double (*g)[3]) const
    3d: trigonometric form of the cubic equation
 ------------------------------------------------------------------------- */
 
-double MPM_NS::largest_eigenvalue(int dim, const double (*G)[3])
+double ElementRule::largest_eigenvalue(const double (*g)[3]) const
 {
+  double G[3][3] = {{0.0}};
+  for (int k = 0; k < nnode; k++)
+    for (int a = 0; a < 3; a++)
+      for (int b = 0; b < 3; b++) G[a][b] += g[k][a] * g[k][b];
   if (dim == 2) {
     const double mean = 0.5 * (G[0][0] + G[1][1]);
     return mean + hypot(0.5 * (G[0][0] - G[1][1]), G[0][1]);

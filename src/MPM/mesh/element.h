@@ -30,11 +30,11 @@ struct ElementRule {
    *  nodes; returns the weight of the point as area or volume, negative for an inverted element. */
   double gradients(int q, const double (*x)[3], double (*g)[3]) const;
 
+  /** Largest eigenvalue of the sum over the nodes of g x g, with the gradients g[nnode][3]. */
+  double largest_eigenvalue(const double (*g)[3]) const;
+
   static const ElementRule &of(ElementType);
 };
-
-/** Largest eigenvalue of a symmetric, positive semidefinite matrix [dim][dim]. */
-double largest_eigenvalue(int dim, const double (*G)[3]);
 
 }    // namespace MPM_NS
 #endif

@@ -6,7 +6,7 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-#include "mesh/gmsh.h"
+#include "mesh/element.h"
 
 #include <algorithm>
 #include <cmath>
@@ -73,6 +73,8 @@ class Words {
   }
 
   int64_t count() { return integer(0, MAX_COUNT); }
+  int tag() { return (int) integer(-MAX_COUNT, MAX_COUNT); }
+  std::array<double, 3> position() { return {real(), real(), real()}; }
   void skip(int64_t n)
   {
     for (; n > 0; n--) need();
@@ -108,7 +110,7 @@ struct Reader {
   void physical_names()
   {
     for (int64_t n = in.count(); n > 0; n--) {
-      const int dim = in.integer(0, 3), tag = in.integer(-MAX_COUNT, MAX_COUNT);
+      const int dim = in.integer(0, 3), tag = in.tag();
       std::string rest;
       in.rest_of_line(rest);
       const auto first = rest.find('"'), last = rest.rfind('"');
@@ -123,15 +125,13 @@ struct Reader {
     if (!place.emplace(label, (int) mesh.nodes.size()).second)
       in.fail("node " + std::to_string(label) + " is defined twice");
     mesh.nodes.push_back(x);
-    mesh.labels.push_back(label);
   }
 
   void nodes_2()
   {
     for (int64_t n = in.count(); n > 0; n--) {
       const int64_t label = in.integer();
-      const double x = in.real(), y = in.real(), z = in.real();
-      add_node(label, {x, y, z});
+      add_node(label, in.position());
     }
   }
 
@@ -141,11 +141,11 @@ struct Reader {
     for (auto &k : n) k = in.count();
     for (int dim = 0; dim < 4; dim++)
       for (; n[dim] > 0; n[dim]--) {
-        const int tag = in.integer(-MAX_COUNT, MAX_COUNT);
+        const int tag = in.tag();
         for (int k = 0; k < (dim ? 6 : 3); k++) in.real();
         const int64_t ngroups = in.count();
         for (int64_t k = 0; k < ngroups; k++) {
-          const int group = in.integer(-MAX_COUNT, MAX_COUNT);
+          const int group = in.tag();
           if (k == 0) of_entity[{dim, tag}] = std::abs(group);    // negative: reversed
         }
         if (dim) in.skip(in.count());
@@ -164,21 +164,28 @@ struct Reader {
       labels.resize(in.count());
       for (auto &label : labels) label = in.integer();
       for (const auto label : labels) {
-        const double x = in.real(), y = in.real(), z = in.real();
+        const auto x = in.position();
         if (parametric) in.skip(dim);
-        add_node(label, {x, y, z});
+        add_node(label, x);
       }
     }
   }
 
-  /** Number of nodes of a type of element in Gmsh's numbering; wanted: is it kept? */
-  int read_type(int type, bool &wanted, ElementType &kept) const
+  /** A type of elements, which has another number in Gmsh. */
+  struct Kind {
+    int nnodes;
+    bool kept;
+    ElementType type;    // of those that are kept
+  };
+
+  Kind kind()
   {
-    wanted = type >= 2 && type <= 5;
-    if (wanted) kept = static_cast<ElementType>(type - 2);
-    if (wanted) return element_nodes(kept);
-    if (type == 15) return 1;
-    if (type == 1) return 2;
+    const int type = (int) in.count();
+    if (type >= 2 && type <= 5) {
+      const auto kept = static_cast<ElementType>(type - 2);
+      return {element_nodes(kept), true, kept};
+    }
+    if (type == 1 || type == 15) return {type == 1 ? 2 : 1, false, {}};    // a line, a point
     const std::string have = ", which is not supported: only triangles, quadrangles, tetrahedra, "
                              "and hexahedra of first order are";
     if (type == 6 || type == 7)
@@ -187,12 +194,12 @@ struct Reader {
             " (Gmsh's option Mesh.ElementOrder = 1)");
   }
 
-  void element(int64_t label, int physical, bool wanted, ElementType type, int n)
+  void element(int64_t label, int physical, const Kind &kind)
   {
-    MeshElement e = {type, physical, label, {0, 0, 0, 0, 0, 0, 0, 0}};
-    for (int k = 0; k < n; k++) {
+    MeshElement e = {kind.type, physical, label, {0, 0, 0, 0, 0, 0, 0, 0}};
+    for (int k = 0; k < kind.nnodes; k++) {
       const int64_t node = in.integer();
-      if (!wanted) continue;
+      if (!kind.kept) continue;
       const auto found = place.find(node);
       if (found == place.end())
         in.fail("element " + std::to_string(label) + " has the node " + std::to_string(node) +
@@ -203,20 +210,18 @@ struct Reader {
           in.fail("element " + std::to_string(label) + " has the node " + std::to_string(node) +
                   " twice");
     }
-    if (wanted) mesh.elements.push_back(e);
+    if (kind.kept) mesh.elements.push_back(e);
   }
 
   void elements_2()
   {
     for (int64_t n = in.count(); n > 0; n--) {
       const int64_t label = in.integer();
-      bool wanted;
-      ElementType type = ElementType::TRIANGLE;
-      const int nnodes = read_type((int) in.count(), wanted, type);
+      const Kind type = kind();
       const int64_t ntags = in.count();
-      const int physical = ntags ? (int) in.integer(-MAX_COUNT, MAX_COUNT) : 0;
+      const int physical = ntags ? in.tag() : 0;
       in.skip(ntags - 1);
-      element(label, physical, wanted, type, nnodes);
+      element(label, physical, type);
     }
   }
 
@@ -225,14 +230,11 @@ struct Reader {
     const int64_t nblocks = in.count();
     in.skip(3);
     for (int64_t b = 0; b < nblocks; b++) {
-      const int dim = in.integer(0, 3), entity = in.integer(-MAX_COUNT, MAX_COUNT);
-      bool wanted;
-      ElementType type = ElementType::TRIANGLE;
-      const int nnodes = read_type((int) in.count(), wanted, type);
+      const int dim = in.integer(0, 3), entity = in.tag();
+      const Kind type = kind();
       const auto found = of_entity.find({dim, entity});
       const int physical = found == of_entity.end() ? 0 : found->second;
-      for (int64_t n = in.count(); n > 0; n--)
-        element(in.integer(), physical, wanted, type, nnodes);
+      for (int64_t n = in.count(); n > 0; n--) element(in.integer(), physical, type);
     }
   }
 
@@ -316,15 +318,6 @@ Mesh MPM_NS::read_gmsh(const std::string &file)
 
 /* ---------------------------------------------------------------------- */
 
-int Mesh::dimension() const
-{
-  int dim = 0;
-  for (const auto &e : elements) dim = std::max(dim, element_dimension(e.type));
-  return dim;
-}
-
-/* ---------------------------------------------------------------------- */
-
 void Mesh::keep(int dim, const std::string &group)
 {
   int tag = 0;
@@ -356,11 +349,9 @@ void Mesh::keep(int dim, const std::string &group)
   for (std::size_t i = 0; i < nodes.size(); i++) {
     if (place[i] < 0) continue;
     nodes[next] = nodes[i];
-    labels[next] = labels[i];
     place[i] = next++;
   }
   nodes.resize(next);
-  labels.resize(next);
   for (auto &e : elements)
     for (int k = 0; k < element_nodes(e.type); k++) e.node[k] = place[e.node[k]];
 }
@@ -380,36 +371,13 @@ void Mesh::orient()
   }
 }
 
-/* ----------------------------------------------------------------------
-   a hexahedron as six tetrahedra around a diagonal, which is exact when its faces are plane
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
 double Mesh::size(const MeshElement &e) const
 {
-  const auto area = [&](int a, int b, int c) {
-    const auto &A = nodes[e.node[a]], &B = nodes[e.node[b]], &C = nodes[e.node[c]];
-    return 0.5 * ((B[0] - A[0]) * (C[1] - A[1]) - (B[1] - A[1]) * (C[0] - A[0]));
-  };
-  const auto volume = [&](int a, int b, int c, int d) {
-    const auto &A = nodes[e.node[a]];
-    double u[3][3];
-    const int other[3] = {b, c, d};
-    for (int k = 0; k < 3; k++)
-      for (int j = 0; j < 3; j++) u[k][j] = nodes[e.node[other[k]]][j] - A[j];
-    return (u[0][0] * (u[1][1] * u[2][2] - u[1][2] * u[2][1]) -
-            u[0][1] * (u[1][0] * u[2][2] - u[1][2] * u[2][0]) +
-            u[0][2] * (u[1][0] * u[2][1] - u[1][1] * u[2][0])) /
-        6.0;
-  };
-  switch (e.type) {
-    case ElementType::TRIANGLE:
-      return area(0, 1, 2);
-    case ElementType::QUAD:
-      return area(0, 1, 2) + area(0, 2, 3);
-    case ElementType::TETRAHEDRON:
-      return volume(0, 1, 2, 3);
-    default:
-      return volume(0, 1, 2, 6) + volume(0, 2, 3, 6) + volume(0, 3, 7, 6) + volume(0, 7, 4, 6) +
-          volume(0, 4, 5, 6) + volume(0, 5, 1, 6);
-  }
+  const auto &rule = ElementRule::of(e.type);
+  double x[MAX_ELEMENT_NODES][3], g[MAX_ELEMENT_NODES][3], sum = 0.0;
+  for (int k = 0; k < rule.nnode; k++) std::copy_n(nodes[e.node[k]].begin(), 3, x[k]);
+  for (int q = 0; q < rule.npoint; q++) sum += rule.gradients(q, x, g);
+  return sum;
 }

@@ -45,12 +45,8 @@ struct MeshElement {
 /** Nodes and elements of a mesh file. */
 struct Mesh {
   std::vector<std::array<double, 3>> nodes;
-  std::vector<int64_t> labels;    ///< numbers of the nodes in the file
   std::vector<MeshElement> elements;
   std::map<std::pair<int, int>, std::string> groups;    ///< (dimension, tag) -> name
-
-  /** The largest dimension of an element, 0 without elements. */
-  int dimension() const;
 
   /** Keep only elements of a dimension (drop the surface of a solid, say) and, when not empty, of a
    *  physical group (a name, or a tag), then only the nodes that these use. Throws

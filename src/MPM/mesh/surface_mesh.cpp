@@ -43,6 +43,25 @@ static Point cross(const Point &a, const Point &b)
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
+/** Make a box larger so that x is in it. */
+static void include(const Point &x, Point &lo, Point &hi)
+{
+  for (int d = 0; d < 3; d++) {
+    lo[d] = std::min(lo[d], x[d]);
+    hi[d] = std::max(hi[d], x[d]);
+  }
+}
+
+static double square_of_distance(const Point &x, const Point &lo, const Point &hi)
+{
+  double sum = 0.0;
+  for (int d = 0; d < 3; d++) {
+    const double out = std::max(0.0, std::max(lo[d] - x[d], x[d] - hi[d]));
+    sum += out * out;
+  }
+  return sum;
+}
+
 /* ----------------------------------------------------------------------
    corners of the triangles of an STL file, three in a row
 ------------------------------------------------------------------------- */
@@ -96,11 +115,7 @@ SurfaceMesh::SurfaceMesh(const std::string &bytes, const std::string &name, doub
       throw std::runtime_error("File " + name + " has a corner that is not finite");
   }
   lo = hi = soup[0];
-  for (const auto &x : soup)
-    for (int d = 0; d < 3; d++) {
-      lo[d] = std::min(lo[d], x[d]);
-      hi[d] = std::max(hi[d], x[d]);
-    }
+  for (const auto &x : soup) include(x, lo, hi);
   weld(soup, name);
   close(name);
   integrate();
@@ -295,20 +310,15 @@ int SurfaceMesh::build(int first, int last)
   constexpr int LEAF = 4;
   const int me = (int) tree.size();
   tree.push_back(Node());
+  const auto center_of = [&](const Triangle &t) {    // times 3
+    return corners[t.corner[0]] + corners[t.corner[1]] + corners[t.corner[2]];
+  };
   Node node;
-  Point low, high;
+  Point low = center_of(triangles[first]), high = low;
+  node.lo = node.hi = corners[triangles[first].corner[0]];
   for (int i = first; i < last; i++) {
-    const auto &t = triangles[i];
-    const Point c = corners[t.corner[0]] + corners[t.corner[1]] + corners[t.corner[2]];
-    for (int d = 0; d < 3; d++) {
-      low[d] = i == first ? c[d] : std::min(low[d], c[d]);
-      high[d] = i == first ? c[d] : std::max(high[d], c[d]);
-      for (int k = 0; k < 3; k++) {
-        const double x = corners[t.corner[k]][d];
-        node.lo[d] = i == first && k == 0 ? x : std::min(node.lo[d], x);
-        node.hi[d] = i == first && k == 0 ? x : std::max(node.hi[d], x);
-      }
-    }
+    include(center_of(triangles[i]), low, high);
+    for (const int c : triangles[i].corner) include(corners[c], node.lo, node.hi);
   }
   node.first = first;
   node.last = last;
@@ -316,18 +326,12 @@ int SurfaceMesh::build(int first, int last)
   for (int i = first; i < last; i++)
     if (triangles[i].part != node.part) node.part = -1;
   if (last - first > LEAF) {
-    int axis = 0;
-    for (int d = 1; d < 3; d++)
-      if (high[d] - low[d] > high[axis] - low[axis]) axis = d;
+    const Point size = high - low;
+    const int axis = (int) (std::max_element(size.begin(), size.end()) - size.begin());
     const int middle = (first + last) / 2;
     std::nth_element(triangles.begin() + first, triangles.begin() + middle,
                      triangles.begin() + last, [&](const Triangle &a, const Triangle &b) {
-                       double x = 0.0, y = 0.0;
-                       for (int k = 0; k < 3; k++) {
-                         x += corners[a.corner[k]][axis];
-                         y += corners[b.corner[k]][axis];
-                       }
-                       return x < y;
+                       return center_of(a)[axis] < center_of(b)[axis];
                      });
     node.last = -1;
     node.child[0] = build(first, middle);
@@ -342,9 +346,9 @@ int SurfaceMesh::build(int first, int last)
    The regions of the plane are told apart by the signs of barycentric products
 ------------------------------------------------------------------------- */
 
-static Point closest_on_triangle(const Point &x, const Point &a, const Point &b, const Point &c,
-                                 int &feature)
+Point SurfaceMesh::closest_on(const int corner[3], const Point &x, int &feature) const
 {
+  const Point &a = corners[corner[0]], &b = corners[corner[1]], &c = corners[corner[2]];
   const Point ab = b - a, ac = c - a, ax = x - a, bx = x - b, cx = x - c;
   const double d1 = dot(ab, ax), d2 = dot(ac, ax), d3 = dot(ab, bx), d4 = dot(ac, bx),
                d5 = dot(ab, cx), d6 = dot(ac, cx);
@@ -376,12 +380,7 @@ template <class Skip, class Visit>
 void SurfaceMesh::search(const Point &x, double &limit, Skip &&skip, Visit &&visit) const
 {
   const auto to_box = [&](const Node &node) {
-    double sum = 0.0;
-    for (int d = 0; d < 3; d++) {
-      const double out = std::max(0.0, std::max(node.lo[d] - x[d], x[d] - node.hi[d]));
-      sum += out * out;
-    }
-    return sum;
+    return square_of_distance(x, node.lo, node.hi);
   };
   int stack[64], depth = 0;
   stack[depth++] = 0;
@@ -398,8 +397,7 @@ void SurfaceMesh::search(const Point &x, double &limit, Skip &&skip, Visit &&vis
       const Triangle &t = triangles[i];
       if (skip(t.part)) continue;
       int feature;
-      const Point p = closest_on_triangle(x, corners[t.corner[0]], corners[t.corner[1]],
-                                          corners[t.corner[2]], feature);
+      const Point p = closest_on(t.corner, x, feature);
       const Point r = x - p;
       const double square = dot(r, r);
       if (square < limit) visit(t, p, feature, square);
@@ -472,8 +470,7 @@ bool SurfaceMesh::is_closest_around(const Point &x, const Triangle &t, int featu
     const int *corner = triangles[around[k]].corner;
     if (corner[0] != other && corner[1] != other && corner[2] != other) continue;
     int unused;
-    const Point r = x -
-        closest_on_triangle(x, corners[corner[0]], corners[corner[1]], corners[corner[2]], unused);
+    const Point r = x - closest_on(corner, x, unused);
     if (dot(r, r) < square * (1.0 - 1.0e-9)) return false;
   }
   return true;
@@ -554,14 +551,8 @@ double SurfaceMesh::bound(const Point &x) const
 {
   Point c;
   const int index = cell_of(x, c);
-  if (index < 0) {    // outside of the grid: not closer than the box of the body
-    double sum = 0.0;
-    for (int d = 0; d < 3; d++) {
-      const double out = std::max(0.0, std::max(lo[d] - x[d], x[d] - hi[d]));
-      sum += out * out;
-    }
-    return std::sqrt(sum);
-  }
+  // outside of the grid: not closer than the box of the body
+  if (index < 0) return std::sqrt(square_of_distance(x, lo, hi));
   const Point r = x - c;
   // single precision in the grid
   const double known = std::abs((double) coarse[index]) * (1.0 - 1.0e-6) - std::sqrt(dot(r, r));

@@ -99,6 +99,7 @@ class SurfaceMesh {
   void find_parts();
   int build(int first, int last);
   void make_coarse();
+  Point closest_on(const int corner[3], const Point &x, int &feature) const;
   template <class Skip, class Visit>
   void search(const Point &x, double &limit, Skip &&skip, Visit &&visit) const;
   const Point &mean_normal(const Triangle &t, int feature) const;
