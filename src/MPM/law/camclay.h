@@ -41,7 +41,6 @@ namespace {
         MPM_ELASTIC_STRAIN_HISTORY,
         PLASTIC_STRAIN,
         {"preconsolidation", CC_PC, "pressure", "preconsolidation pressure (Kirchhoff)"}};
-    static constexpr int nhistory(const LawParameters &) { return ELASTIC_STRAIN_ROWS + 2; }
     static constexpr const char *check(const LawParameters &p)
     {
       return p.value[CC_LAMBDA] <= p.value[CC_KAPPA] ? "LAMBDA must be above KAPPA"

@@ -45,7 +45,6 @@ namespace {
         MPM_ELASTIC_STRAIN_HISTORY,
         PLASTIC_STRAIN,
         {"gap", ZERO, "1", "logarithmic volume strain between separated grains"}};
-    static constexpr int nhistory(const LawParameters &) { return ELASTIC_STRAIN_ROWS + 2; }
     static constexpr const char *check(const LawParameters &p)
     {
       return p.value[DP_PSI] <= p.value[DP_PHI] ? nullptr

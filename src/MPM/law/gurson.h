@@ -74,8 +74,7 @@ namespace {
         {"porosity", GTN_F0, "1", "share of voids in the volume"},
         {"damage", ZERO, "1", "f* Q1, share of the flow stress that is lost, 1: failed"},
         {"gap", ZERO, "1", "logarithmic volume strain that opened after failure"}};
-    enum { EPLASTIC, POROSITY, FAILED, GAP, NROWS };
-    static constexpr int nhistory(const LawParameters &) { return ELASTIC_STRAIN_ROWS + NROWS; }
+    enum { EPLASTIC, POROSITY, FAILED, GAP };
     static constexpr const char *check(const LawParameters &p)
     {
       const double G = p.value[GTN_E] / (2.0 * (1.0 + p.value[GTN_NU]));

@@ -113,7 +113,7 @@ struct LawInfo {
   int ndeclared;                             ///< entries of history
   const HistoryDeclaration *term_history;    ///< one set for each term, names followed by 1, 2, ...
   int nterm_history;
-  /** History variables that a law with these parameters has, those of the terms not counted. */
+  /** How many of the history variables a law with these parameters has. Null: all. */
   int (*nhistory)(const LawParameters &);
   bool uses_speed;    ///< of a viscosity: does update() read batch.speed?
   bool uses_F;        ///< does any kernel read batch.F? Else J and A are all it knows of it
@@ -128,6 +128,9 @@ struct LawInfo {
   /** History of a new point at x (its values one after the other; in: initial values). Null: keep
    *  the initial values. */
   void (*initialize)(const LawParameters &, const double *x, double *history);
+
+  /** Number of history variables, those of the terms not counted. */
+  int count_history(const LawParameters &p) const { return nhistory ? nhistory(p) : ndeclared; }
 };
 
 /** Declarations of all laws for one place: in the order of the lists in law/list.h, then those
@@ -172,7 +175,7 @@ struct LawDefaults {
   static constexpr std::nullptr_t term_parameters = nullptr;
   static constexpr std::nullptr_t history = nullptr;
   static constexpr std::nullptr_t term_history = nullptr;
-  static constexpr int nhistory(const LawParameters &) { return 0; }
+  static constexpr std::nullptr_t nhistory = nullptr;
   static constexpr const char *check(const LawParameters &) { return nullptr; }
   static constexpr bool needs_temperature(const LawParameters &) { return false; }
   static constexpr std::nullptr_t heat_share = nullptr, warming = nullptr;
@@ -209,7 +212,7 @@ struct LawVersion {
   int interface;    ///< raised with each change of what laws and package expect of each other
   int batch, info, kernels, parameters;
 };
-constexpr LawVersion law_version{2, sizeof(Batch), sizeof(LawInfo), sizeof(LawKernels),
+constexpr LawVersion law_version{3, sizeof(Batch), sizeof(LawInfo), sizeof(LawKernels),
                                  sizeof(LawParameters)};
 
 /** A law of a plugin. */

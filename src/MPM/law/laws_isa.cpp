@@ -6,7 +6,7 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// What materials need besides their laws, for one instruction set: see law/kernels.h.
+// What materials need besides their laws, for one instruction set: see law/list.h.
 
 #include "law/kinematics.h"
 #include "transfer/isa.h"

@@ -108,7 +108,6 @@ namespace {
         MPM_ELASTIC_STRAIN_HISTORY,
         PLASTIC_STRAIN,
         {"gap", ZERO, "1", "logarithmic volume strain between separated parts"}};
-    static constexpr int nhistory(const LawParameters &) { return ELASTIC_STRAIN_ROWS + 2; }
     static constexpr const char *check(const LawParameters &p)
     {
       const bool soft = p.value[MC_RATE] > 0.0;

@@ -42,7 +42,6 @@ namespace {
         PLASTIC_STRAIN,
         {"gap", ZERO, "1", "logarithmic volume strain between separated grains"},
         {"inertial", ZERO, "1", "inertial number"}};
-    static constexpr int nhistory(const LawParameters &) { return ELASTIC_STRAIN_ROWS + 3; }
     static constexpr const char *check(const LawParameters &p)
     {
       return p.value[MUI_2] >= p.value[MUI_S] ? nullptr : "MU2 must not be below MUS";

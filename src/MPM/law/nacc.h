@@ -38,7 +38,6 @@ namespace {
         MPM_ELASTIC_STRAIN_HISTORY,
         PLASTIC_STRAIN,
         {"alpha", NACC_ALPHA, "1", "logarithm of the plastic volume ratio"}};
-    static constexpr int nhistory(const LawParameters &) { return ELASTIC_STRAIN_ROWS + 2; }
 
     double Mb, beta, xi;
 

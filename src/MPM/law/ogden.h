@@ -28,10 +28,9 @@ namespace {
     static constexpr Parameter parameters[] = {
         {"", "K", "pressure", POSITIVE, REQUIRED, "bulk modulus"}};
     static constexpr const char *term = "term";
-    static constexpr Range ANY{-UNBOUNDED, UNBOUNDED, false};
     static constexpr Parameter term_parameters[] = {
-        {"term", "MU", "pressure", ANY, REQUIRED, "coefficient, of the sign of ALPHA"},
-        {"term", "ALPHA", "1", ANY, REQUIRED, "exponent of the stretches"}};
+        {"term", "MU", "pressure", ANY_NUMBER, REQUIRED, "coefficient, of the sign of ALPHA"},
+        {"term", "ALPHA", "1", ANY_NUMBER, REQUIRED, "exponent of the stretches"}};
 
     /** R. Hill's sufficient condition for stability, as in Ogden's paper. */
     static const char *check(const LawParameters &p)

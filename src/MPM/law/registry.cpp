@@ -8,7 +8,7 @@
 
 // All laws: those of the package, from law/list.h, and those that plugins have added.
 
-#include "law/kernels.h"
+#include "law/list.h"
 
 #include <cstring>
 #include <memory>

@@ -36,7 +36,6 @@ namespace {
         {"", "XI", "1", NOT_NEGATIVE, REQUIRED, "hardening exponent"}};
     static constexpr HistoryDeclaration history[] = {
         MPM_ELASTIC_STRAIN_HISTORY, {"jplastic", ONE, "1", "plastic volume ratio"}};
-    static constexpr int nhistory(const LawParameters &) { return ELASTIC_STRAIN_ROWS + 1; }
 
     double low, high, xi;
 

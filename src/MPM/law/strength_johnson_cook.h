@@ -101,10 +101,9 @@ namespace {
         {"", "C", "1", NOT_NEGATIVE, REQUIRED, "rate coefficient"},
         {"", "EPSDOT0", "1/time", POSITIVE, REQUIRED, "reference plastic strain rate"},
         {"", "M", "1", NOT_NEGATIVE, 0.0, "exponent of the temperature, 0: no thermal softening"},
-        {"", "TMELT", "temperature", {-UNBOUNDED, UNBOUNDED, false}, 1.0, "melting temperature"},
-        {"", "TREF", "temperature", {-UNBOUNDED, UNBOUNDED, false}, 0.0, "reference temperature"}};
+        {"", "TMELT", "temperature", ANY_NUMBER, 1.0, "melting temperature"},
+        {"", "TREF", "temperature", ANY_NUMBER, 0.0, "reference temperature"}};
     static constexpr HistoryDeclaration history[] = {PLASTIC_STRAIN};
-    static constexpr int nhistory(const LawParameters &) { return 1; }
     static constexpr bool needs_temperature(const LawParameters &p) { return p.value[JC_M] > 0.0; }
     static constexpr const char *check(const LawParameters &p)
     {

@@ -102,7 +102,6 @@ namespace {
         {"melt", "TMELT", "temperature", POSITIVE, 0.0, "melting temperature, 0: none"},
         {"rate", "RATE", "1/time", POSITIVE, 1.0, "unit of the plastic strain rate, 1/s"}};
     static constexpr HistoryDeclaration history[] = {PLASTIC_STRAIN};
-    static constexpr int nhistory(const LawParameters &) { return 1; }
     static constexpr bool needs_temperature(const LawParameters &) { return true; }
     static constexpr const char *check(const LawParameters &p)
     {

@@ -9,10 +9,20 @@
 #ifndef MPM_LAW_VISCOSITY_NEWTONIAN_H
 #define MPM_LAW_VISCOSITY_NEWTONIAN_H
 
-#include "law/viscosity.h"
+#include "law/kinematics.h"
 
 namespace MPM_NS::law {
 namespace {
+
+  /** Speed c raised for a shear and a bulk viscosity. Explicit steps with damping:
+   *  dt = h / (sqrt(c^2 + a^2) + a), a = (4/3 mu + zeta) / (density h), the central-difference limit
+   *  (2/omega)(sqrt(1 + xi^2) - xi) with omega = 2 c/h. */
+  MPM_INLINE double damped_speed(const LawParameters &p, const Batch &b, int i, double c, double mu,
+                                 double zeta)
+  {
+    const double a = ((4.0 / 3.0) * mu + zeta) * b.J[i] / (p.density * b.h);
+    return std::sqrt(c * c + a * a) + a;
+  }
 
   /** Newtonian viscosity: adds 2 MU dev(D) + ZETA tr(D) I, D the strain rate half-way in the step.
    *  With the elasticity of a solid that is the Kelvin-Voigt element. */
@@ -53,5 +63,4 @@ namespace {
 
 }    // namespace
 }    // namespace MPM_NS::law
-
 #endif

@@ -362,7 +362,7 @@ class ComposedMaterial : public Material {
     if (const char *wrong = law.info->check(p))
       throw std::runtime_error(std::string("with the random parameters of a point, ") +
                                law.info->name + ": " + wrong);
-    for (int k = 0; k < law.info->nhistory(p); k++)
+    for (int k = 0; k < law.info->count_history(p); k++)
       if (law.info->history[k].initial >= 0)
         history[law.history + k] = p.value[law.info->history[k].initial];
     if (law.info->initialize) law.info->initialize(p, x, history + law.history);
@@ -456,7 +456,7 @@ class ComposedMaterial : public Material {
       const double initial = h.initial >= 0 ? p.value[h.initial] : h.initial == ONE ? 1.0 : 0.0;
       variables.push_back({h.name + suffix, initial});
     };
-    for (int k = 0; k < info.nhistory(p); k++) declare(info.history[k], "");
+    for (int k = 0; k < info.count_history(p); k++) declare(info.history[k], "");
     for (int term = 0; term < p.nterms; term++)
       for (int k = 0; k < info.nterm_history; k++)
         declare(info.term_history[k], std::to_string(term + 1));
