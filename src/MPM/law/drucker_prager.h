@@ -53,7 +53,7 @@ namespace {
 
     double M, k, flow, T;
 
-    LawDruckerPrager(const LawParameters &p, const Batch &) : HenckyInvariantReturn(p)
+    explicit LawDruckerPrager(const LawParameters &p) : HenckyInvariantReturn(p)
     {
       const double phi = p.value[DP_PHI] * DEGREES, c = p.value[DP_COHESION];
       const double s = std::sin(phi), t = std::sin(p.value[DP_PSI] * DEGREES);

@@ -14,13 +14,6 @@
 namespace MPM_NS::law {
 namespace {
 
-  MPM_INLINE void subtract_pressure(Batch &b, int i, double p)
-  {
-    b.stress[0][i] -= p;
-    b.stress[1][i] -= p;
-    b.stress[2][i] -= p;
-  }
-
   /** Loops of an equation of state p(J) without energy.
    *
    *  Eos has, with the volume ratio J = density_0 / density: pressure(J), bulk(J) = -J^2 dp/dJ (the

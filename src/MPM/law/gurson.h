@@ -92,7 +92,7 @@ namespace {
     static constexpr double CLOSE = 1e-2;     ///< S over y at which a bracket is close enough
     double sigmay, inv_e0, n, q1, q2, fn, en, inv_sn, fc, slope, limit;
 
-    LawGurson(const LawParameters &p, const Batch &) :
+    explicit LawGurson(const LawParameters &p) :
         HenckyInvariantReturn(p), sigmay(p.value[GTN_Y]), inv_e0(1.0 / p.value[GTN_E0]),
         n(p.value[GTN_N]), q1(p.value[GTN_Q1]), q2(p.value[GTN_Q2]), fn(p.value[GTN_FN]),
         en(p.value[GTN_EN]), inv_sn(1.0 / p.value[GTN_SN]), fc(p.value[GTN_FC]), slope(1.0),

@@ -33,8 +33,7 @@ namespace {
       const Displacement H = displacement(b, i);
       Spectral s = spectral(left_strain(H));
       const double logJ = log_volume(H), mean = (1.0 / 3.0) * logJ;
-      for (int a = 0; a < 3; a++)
-        s.value[a] = 2.0 * G * (0.5 * log1p(max(s.value[a], -1.0 + 1e-15)) - mean) + K * logJ;
+      for (int a = 0; a < 3; a++) s.value[a] = 2.0 * G * (log_strain(s.value[a]) - mean) + K * logJ;
       return recompose(s, s.value);
     }
 
@@ -45,7 +44,7 @@ namespace {
       const double logJ = log_volume(H), mean = (1.0 / 3.0) * logJ;
       double square = 0.0;
       for (int a = 0; a < 3; a++) {
-        const double d = 0.5 * log1p(max(s.value[a], -1.0 + 1e-15)) - mean;
+        const double d = log_strain(s.value[a]) - mean;
         square += d * d;
       }
       return G * square + 0.5 * K * logJ * logJ;

@@ -13,7 +13,7 @@
 // are compiled on their own, once for each instruction set (MPM_ISA: base, v3, v4, with the matching
 // -march): the build writes a file for each one of MPM_LAW_FAMILIES, with the line MPM_LAW_FAMILY(family).
 
-#include "law/camclay.h"
+#include "law/critical_state.h"
 #include "law/damage_brittle.h"
 #include "law/damage_ductile.h"
 #include "law/declare.h"
@@ -26,15 +26,11 @@
 #include "law/hencky.h"
 #include "law/linear.h"
 #include "law/mohr_coulomb.h"
-#include "law/mooney_rivlin.h"
 #include "law/mui.h"
-#include "law/nacc.h"
 #include "law/neohookean.h"
-#include "law/neohookean_split.h"
-#include "law/ogden.h"
 #include "law/orthotropic.h"
+#include "law/rubber.h"
 #include "law/snow.h"
-#include "law/strength_elastic.h"
 #include "law/strength_j2.h"
 #include "law/strength_johnson_cook.h"
 #include "law/strength_steinberg.h"

@@ -123,7 +123,7 @@ namespace {
     double phi, c, cr, phir, rate, sin_phi, c_cos_phi;
     MohrCoulombSurface surface;
 
-    LawMohrCoulomb(const LawParameters &p, const Batch &) :
+    explicit LawMohrCoulomb(const LawParameters &p) :
         BulkAndShear(p), phi(p.value[MC_PHI] * DEGREES), c(p.value[MC_COHESION]),
         cr(p.value[MC_RESIDUAL_C]), phir(p.value[MC_RESIDUAL_PHI] * DEGREES),
         rate(p.value[MC_RATE]), sin_phi(std::sin(phi)),
@@ -263,13 +263,6 @@ namespace {
     {
       const double v = e0 + e1 + e2;
       return 0.5 * (K - (2.0 / 3.0) * G) * v * v + G * (e0 * e0 + e1 * e1 + e2 * e2);
-    }
-
-    static void modulus(const LawParameters &p, const Batch &b, History, double *k)
-    {
-      const BulkAndShear m(p);
-      MPM_SIMD
-      for (int i = 0; i < b.n; i++) k[i] += hencky_modulus(m.K, m.G, b.J[i], load_stress(b, i));
     }
   };
 

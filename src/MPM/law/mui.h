@@ -49,7 +49,7 @@ namespace {
 
     double mus, mu2, I0, d, inv_rhos;
 
-    LawMuI(const LawParameters &p, const Batch &) :
+    explicit LawMuI(const LawParameters &p) :
         HenckyInvariantReturn(p), mus(p.value[MUI_S]), mu2(p.value[MUI_2]), I0(p.value[MUI_I0]),
         d(p.value[MUI_D]), inv_rhos(p.value[MUI_FRACTION] / p.density)
     {

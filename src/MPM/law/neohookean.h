@@ -60,16 +60,12 @@ namespace {
       const LawNeoHookean law(p);
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
-        const double xx = b.F[0][i] - 1.0, xy = b.F[1][i], xz = b.F[2][i];
-        const double yx = b.F[3][i], yy = b.F[4][i] - 1.0, yz = b.F[5][i];
-        const double zx = b.F[6][i], zy = b.F[7][i], zz = b.F[8][i] - 1.0;
-        const double square =
-            xx * xx + xy * xy + xz * xz + yx * yx + yy * yy + yz * yz + zx * zx + zy * zy + zz * zz;
-        const double minors = (xx * yy - xy * yx) + (xx * zz - xz * zx) + (yy * zz - yz * zy);
-        const double det =
-            xx * (yy * zz - yz * zy) - xy * (yx * zz - yz * zx) + xz * (yx * zy - yy * zx);
+        const Displacement H = displacement(b, i);
+        const double square = H.xx * H.xx + H.xy * H.xy + H.xz * H.xz + H.yx * H.yx + H.yy * H.yy +
+            H.yz * H.yz + H.zx * H.zx + H.zy * H.zy + H.zz * H.zz;
         const double J = b.J[i], logJ = log(J);
-        w[i] += 0.5 * law.mu * (square - 2.0 * (minors + det) + 2.0 * minus1_minus_log(J)) +
+        w[i] += 0.5 * law.mu *
+                (square - 2.0 * (H.minors() + H.determinant()) + 2.0 * minus1_minus_log(J)) +
             0.5 * law.lambda * logJ * logJ;
       }
     }

@@ -44,7 +44,6 @@ namespace {
         xi(p.value[XI])
     {
     }
-    LawSnow(const LawParameters &p, const Batch &) : LawSnow(p) {}
 
     MPM_INLINE double hardening(double JP) const { return exp(xi * (1.0 - JP)); }
 

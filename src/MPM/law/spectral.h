@@ -86,6 +86,12 @@ namespace {
     return r;
   }
 
+  /** Principal logarithmic strain, from a principal value of b - I. */
+  MPM_INLINE double log_strain(double value)
+  {
+    return 0.5 * log1p(max(value, -1.0 + 1e-15));
+  }
+
   /** f b f^T with f = I + A of this step: how a left Cauchy-Green tensor (or its elastic part, as
    *  trial state) follows the motion; exact and objective. */
   MPM_INLINE Sym push_forward(const Batch &batch, int i, const Sym &b)

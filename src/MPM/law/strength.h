@@ -50,6 +50,21 @@ namespace {
     }
   };
 
+  /** Elastic shear without yield. */
+  struct StrengthElastic : ShearElasticity {
+    static constexpr const char *name = "elastic";
+    static constexpr const char *meaning = "elastic shear, no yield";
+    static constexpr StressShare share = DEVIATOR;
+    static constexpr Parameter parameters[] = {SHEAR_MODULUS};
+
+    static void update(const LawParameters &p, Batch &b, History)
+    {
+      const ElasticDeviator elastic{p.value[0]};
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) store_stress(b, i, elastic.trial(b, i, increment(b, i)));
+    }
+  };
+
 }    // namespace
 }    // namespace MPM_NS::law
 #endif

@@ -39,9 +39,7 @@ namespace {
         const double dJ = b.J[i] - b.Jold[i], sum = b.J[i] + b.Jold[i];
         const double rate = max(-2.0 * dJ / sum * inv_dt, 0.0);
         const double q = 2.0 * scale / sum * rate * (quadratic * rate + linear * b.speed[i]);
-        b.stress[0][i] -= q;
-        b.stress[1][i] -= q;
-        b.stress[2][i] -= q;
+        subtract_pressure(b, i, q);
         const double work = -q * dJ;
         b.heat[i] += work;
         viscous += work * b.vol0[i];
