@@ -14,25 +14,17 @@
 namespace MPM_NS::law {
 namespace {
 
+  // parameters, in lines as the options that they belong to
+  enum { J2_G, J2_SIGMAY, J2_H, J2_B, J2_N };
+  enum { J2_VOCE_Q = J2_N + 1, J2_VOCE_BETA, J2_VOCE_H, J2_SWIFT_E0, J2_SWIFT_N };
   enum {
-    J2_G,
-    J2_SIGMAY,
-    J2_H,
-    J2_B,
-    J2_N,
-    J2_VOCE_Q,
-    J2_VOCE_BETA,
-    J2_VOCE_H,
-    J2_SWIFT_E0,
-    J2_SWIFT_N,
-    J2_COWPER_RATE,
+    J2_COWPER_RATE = J2_SWIFT_N + 1,
     J2_COWPER_P,
     J2_PERZYNA_S,
     J2_PERZYNA_RATE,
-    J2_PERZYNA_M,
-    J2_BACK_C,
-    J2_BACK_GAMMA
+    J2_PERZYNA_M
   };
+  enum { J2_BACK_C = J2_PERZYNA_M + 1, J2_BACK_GAMMA };
 
   /** Flow stress at rest over the plastic strain e: kinds, or the size of a table. */
   enum { HARDENING_POWER, HARDENING_VOCE, SHORT_TABLE = 8, LONG_TABLE = LawParameters::MAX_TERMS };

@@ -14,20 +14,8 @@
 namespace MPM_NS::law {
 namespace {
 
-  enum {
-    SCG_G0,
-    SCG_Y0,
-    SCG_BETA,
-    SCG_N,
-    SCG_YMAX,
-    SCG_A,
-    SCG_B,
-    SCG_PRE,
-    SCG_MELT,
-    SCG_MELT_A,
-    SCG_MELT_GAMMA,
-    SCG_TREF
-  };
+  enum { SCG_G0, SCG_Y0, SCG_BETA, SCG_N, SCG_YMAX, SCG_A, SCG_B, SCG_PRE };
+  enum { SCG_MELT = SCG_PRE + 1, SCG_MELT_A, SCG_MELT_GAMMA, SCG_TREF };
 
   /** G = G0 f and Y = min(Y0 (1 + BETA (e + EPSI))^N, YMAX) f with
    *

@@ -14,20 +14,8 @@
 namespace MPM_NS::law {
 namespace {
 
-  enum {
-    ZA_G,
-    ZA_C0,
-    ZA_BCC_C1,
-    ZA_BCC_C3,
-    ZA_BCC_C4,
-    ZA_BCC_C5,
-    ZA_BCC_N,
-    ZA_FCC_C2,
-    ZA_FCC_C3,
-    ZA_FCC_C4,
-    ZA_MELT,
-    ZA_RATE
-  };
+  enum { ZA_G, ZA_C0, ZA_BCC_C1, ZA_BCC_C3, ZA_BCC_C4, ZA_BCC_C5, ZA_BCC_N };
+  enum { ZA_FCC_C2 = ZA_BCC_N + 1, ZA_FCC_C3, ZA_FCC_C4, ZA_MELT, ZA_RATE };
 
   /** Y = C0 + (C1 + C2 sqrt(e)) exp(-C3 T + C4 T ln(r/RATE)) + C5 e^N of plastic strain e, plastic
    *  strain rate r and temperature T of the end of the step; C2 = 0 (bcc) or C1 = C5 = 0 (fcc). The
