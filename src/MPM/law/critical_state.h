@@ -229,8 +229,8 @@ namespace {
     static constexpr const char *name = "nacc";
     static constexpr const char *meaning = "cohesive Cam-Clay: snow, wet sand, soft rock";
     static constexpr Parameter parameters[] = {
-        {"", "E", "pressure", POSITIVE, REQUIRED, "Young's modulus"},
-        {"", "NU", "1", POISSON_RATIO, REQUIRED, "Poisson's ratio"},
+        YOUNGS_MODULUS,
+        POISSONS_RATIO,
         {"", "M", "1", POSITIVE, REQUIRED, "slope of the critical state line for BETA = 0"},
         {"", "BETA", "1", FRACTION, REQUIRED, "tensile strength over compressive strength"},
         {"", "XI", "1", POSITIVE, REQUIRED, "hardening factor"},

@@ -118,7 +118,7 @@ namespace {
         {"", "K", "1/volume", POSITIVE, REQUIRED, "flaws per volume at unit strain"},
         {"", "M", "1", POSITIVE, REQUIRED, "exponent of the strain"},
         {"", "CG", "velocity", POSITIVE, REQUIRED, "velocity at which cracks grow"},
-        {"", "E", "pressure", POSITIVE, REQUIRED, "Young's modulus"},
+        YOUNGS_MODULUS,
         after_none,
         after_pressure,
         after_friction};

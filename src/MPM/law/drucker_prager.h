@@ -34,8 +34,8 @@ namespace {
     static constexpr const char *name = "drucker/prager";
     static constexpr const char *meaning = "Drucker-Prager plasticity: sand, soil, concrete";
     static constexpr Parameter parameters[] = {
-        {"", "E", "pressure", POSITIVE, REQUIRED, "Young's modulus"},
-        {"", "NU", "1", POISSON_RATIO, REQUIRED, "Poisson's ratio"},
+        YOUNGS_MODULUS,
+        POISSONS_RATIO,
         {"", "PHI", "degrees", {0.0, 80.0, true}, REQUIRED, "friction angle"},
         {"cohesion", "C", "pressure", NOT_NEGATIVE, 0.0, "cohesion"},
         {"dilatancy", "PSI", "degrees", {0.0, 80.0, true}, 0.0, "dilatancy angle"},

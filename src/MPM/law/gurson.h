@@ -40,8 +40,8 @@ namespace {
     enum { YOUNG, POISSON, SIGMAY, F0, E0, N, Q1, Q2, FN, EN, SN, FC, FF };
     static constexpr Range INSIDE = {0.0, 1.0, false};
     static constexpr Parameter parameters[] = {
-        {"", "E", "pressure", POSITIVE, REQUIRED, "Young's modulus"},
-        {"", "NU", "1", POISSON_RATIO, REQUIRED, "Poisson's ratio"},
+        YOUNGS_MODULUS,
+        POISSONS_RATIO,
         {"", "SIGMAY", "pressure", POSITIVE, REQUIRED, "yield stress of the matrix"},
         {"", "F0", "1", {0.0, 0.5, true}, REQUIRED, "initial porosity"},
         {"hardening", "E0", "1", POSITIVE, 1.0, "strain scale of the hardening"},

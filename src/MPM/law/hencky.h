@@ -22,9 +22,7 @@ namespace {
   struct LawHencky : IsotropicHyperelastic<LawHencky>, BulkAndShear {
     static constexpr const char *name = "hencky";
     static constexpr const char *meaning = "hyperelastic, linear in logarithmic strain";
-    static constexpr Parameter parameters[] = {
-        {"", "E", "pressure", POSITIVE, REQUIRED, "Young's modulus"},
-        {"", "NU", "1", POISSON_RATIO, REQUIRED, "Poisson's ratio"}};
+    static constexpr Parameter parameters[] = {YOUNGS_MODULUS, POISSONS_RATIO};
 
     using BulkAndShear::BulkAndShear;
 

@@ -56,6 +56,8 @@ struct Parameter {
 };
 
 /** Declarations that several laws share. */
+constexpr Parameter YOUNGS_MODULUS = {"", "E", "pressure", POSITIVE, REQUIRED, "Young's modulus"};
+constexpr Parameter POISSONS_RATIO = {"", "NU", "1", POISSON_RATIO, REQUIRED, "Poisson's ratio"};
 constexpr Parameter SHEAR_MODULUS = {"", "G", "pressure", POSITIVE, REQUIRED, "shear modulus"};
 
 /** Declaration of one history variable. */

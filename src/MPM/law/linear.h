@@ -26,9 +26,7 @@ namespace {
     static constexpr const char *name = "linear";
     static constexpr const char *meaning = "isotropic linear elastic, rate form";
     static constexpr StressShare share = WHOLE_STRESS;
-    static constexpr Parameter parameters[] = {
-        {"", "E", "pressure", POSITIVE, REQUIRED, "Young's modulus"},
-        {"", "NU", "1", POISSON_RATIO, REQUIRED, "Poisson's ratio"}};
+    static constexpr Parameter parameters[] = {YOUNGS_MODULUS, POISSONS_RATIO};
 
     using BulkAndShear::BulkAndShear;
 

@@ -96,8 +96,8 @@ namespace {
     static constexpr const char *name = "mohr/coulomb";
     static constexpr const char *meaning = "Mohr-Coulomb plasticity with softening: soil, rock";
     static constexpr Parameter parameters[] = {
-        {"", "E", "pressure", POSITIVE, REQUIRED, "Young's modulus"},
-        {"", "NU", "1", POISSON_RATIO, REQUIRED, "Poisson's ratio"},
+        YOUNGS_MODULUS,
+        POISSONS_RATIO,
         {"", "PHI", "degrees", {0.0, 80.0, true}, REQUIRED, "friction angle"},
         {"", "C", "pressure", NOT_NEGATIVE, REQUIRED, "cohesion"},
         {"dilatancy", "PSI", "degrees", {0.0, 80.0, true}, 0.0, "dilatancy angle"},

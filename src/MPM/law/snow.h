@@ -30,7 +30,7 @@ namespace {
     enum { E, NU, THETAC, THETAS, XI };
     static constexpr Parameter parameters[] = {
         {"", "E", "pressure", POSITIVE, REQUIRED, "Young's modulus at the start"},
-        {"", "NU", "1", POISSON_RATIO, REQUIRED, "Poisson's ratio"},
+        POISSONS_RATIO,
         {"", "THETAC", "1", {0.0, 0.9, true}, REQUIRED, "critical compression"},
         {"", "THETAS", "1", {0.0, 0.9, true}, REQUIRED, "critical stretch"},
         {"", "XI", "1", NOT_NEGATIVE, REQUIRED, "hardening exponent"}};

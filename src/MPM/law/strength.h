@@ -29,6 +29,7 @@ namespace {
   /** Wave speed and energy of a strength whose first parameter is the shear modulus. */
   struct ShearElasticity : LawDefaults {
     static constexpr bool uses_F = false;
+    static constexpr StressShare share = DEVIATOR;
 
     /** J ds_nn / d epsilon_nn = 4/3 G - J s_nn */
     static void modulus(const LawParameters &p, const Batch &b, History, double *k)
@@ -54,7 +55,6 @@ namespace {
   struct StrengthElastic : ShearElasticity {
     static constexpr const char *name = "elastic";
     static constexpr const char *meaning = "elastic shear, no yield";
-    static constexpr StressShare share = DEVIATOR;
     static constexpr Parameter parameters[] = {SHEAR_MODULUS};
 
     static void update(const LawParameters &p, Batch &b, History)

@@ -138,11 +138,7 @@ namespace {
         y = y * fast + drag * x;
       }
     }
-    MPM_INLINE double finish(History history, int i, double start, double D, double y, double) const
-    {
-      history[0][i] += D;
-      return 0.5 * (start + y) * D;
-    }
+    MPM_INLINE double begin(double start, double) const { return start; }
   };
 
   /** Von Mises plasticity with isotropic and kinematic hardening and rate dependence. Linear
@@ -150,7 +146,6 @@ namespace {
   struct StrengthJ2 : ShearElasticity {
     static constexpr const char *name = "j2";
     static constexpr const char *meaning = "von Mises plasticity with hardening and rate";
-    static constexpr StressShare share = DEVIATOR;
     static constexpr Parameter parameters[] = {
         SHEAR_MODULUS,
         {"", "SIGMAY", "pressure", NOT_NEGATIVE, REQUIRED, "yield stress in uniaxial tension"},

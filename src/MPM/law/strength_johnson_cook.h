@@ -78,12 +78,10 @@ namespace {
       }
     }
 
-    MPM_INLINE double finish(History history, int i, double start, double D, double y, double) const
+    MPM_INLINE double begin(double start, double D) const
     {
       double slope;
-      const double work = 0.5 * (start * rate(D, slope) + y) * D;
-      history[0][i] += D;
-      return work;
+      return start * rate(D, slope);
     }
   };
 
@@ -92,7 +90,6 @@ namespace {
   struct StrengthJohnsonCook : ShearElasticity {
     static constexpr const char *name = "johnson/cook";
     static constexpr const char *meaning = "Johnson-Cook plasticity with rate and temperature";
-    static constexpr StressShare share = DEVIATOR;
     static constexpr Parameter parameters[] = {
         SHEAR_MODULUS,
         {"", "A", "pressure", NOT_NEGATIVE, REQUIRED, "yield stress"},

@@ -121,7 +121,9 @@ namespace {
         store_rows(back, i, Xnew);
         store_stress(b, i, inv_J * Xnew + (flows ? y / q : 1.0) * xi);
         const double recovery = 0.75 * gamma / C * (norm2(X) + norm2(Xnew)) * d;
-        const double work = J * flow.finish(history, i, start[i], d, y, J) + recovery;
+        const double begin = flow.begin(start[i], d);
+        const double work = J * (0.5 * (begin + y) * d) + recovery;
+        history[0][i] += d;
         plastic += work * b.vol0[i];
         b.plastic[i] = d;
         b.heat[i] += p.chi * work;

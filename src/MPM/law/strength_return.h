@@ -80,11 +80,11 @@ namespace {
    *    r(D) = q - 3 G/J D - Y(D) = 0,   q = trial equivalent stress
    *
    *  Flow has: Flow(parameters, batch); smooth, false when Y(D) has kinks; shear(i), the shear
-   *  modulus of the step; start(history, i), the flow stress for D -> 0; stress(history, i, begin,
-   *  trial state, D, Y, dY/dD); finish(history, i, begin, D, Y, J), which stores the history and
-   *  returns the plastic work per current volume. begin is the stress at which plastic flow begins
-   *  in this step: that of start(), or with goes_on = true that of the last step, unless it was far
-   *  below.
+   *  modulus of the step; start(history, i), the flow stress for D -> 0; stress(history, i, start,
+   *  trial state, D, Y, dY/dD); begin(start, D), the flow stress at the beginning of the step, which
+   *  makes the plastic work with Y. start is the stress at which plastic flow begins in this step:
+   *  that of start(), or with goes_on = true that of the last step, unless it was far below. First
+   *  row of the history: the equivalent plastic strain.
    */
   template <class Flow> struct RadialReturn : ShearElasticity {
     static void update(const LawParameters &p, Batch &b, History history)
@@ -124,7 +124,9 @@ namespace {
         const double scale = D[i] > 0.0 ? yield[i] / trial[i] : 1.0;
         store_stress(b, i, scale * load_stress(b, i));
         const double J = 0.5 * (b.J[i] + b.Jold[i]);
-        const double work = J * flow.finish(history, i, start[i], D[i], yield[i], J);
+        const double begin = flow.begin(start[i], D[i]);
+        const double work = J * (0.5 * (begin + yield[i]) * D[i]);
+        history[0][i] += D[i];
         plastic += work * b.vol0[i];
         b.plastic[i] = D[i];
         b.heat[i] += p.chi * work;

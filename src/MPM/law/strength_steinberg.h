@@ -78,11 +78,7 @@ namespace {
       y = strong[i] * min(hard, ymax);
       dy = hard < ymax ? strong[i] * n * beta * hard / x : 0.0;
     }
-    MPM_INLINE double finish(History history, int i, double start, double D, double y, double) const
-    {
-      history[0][i] += D;
-      return 0.5 * (start + y) * D;
-    }
+    MPM_INLINE double begin(double start, double) const { return start; }
   };
 
   /** Strength at high pressure (D.J. Steinberg, S.G. Cochran, M.W. Guinan, J. Appl. Phys. 51 (1980)
@@ -91,7 +87,6 @@ namespace {
   struct StrengthSteinberg : RadialReturn<SteinbergFlow> {
     static constexpr const char *name = "steinberg";
     static constexpr const char *meaning = "Steinberg-Cochran-Guinan plasticity, with pressure";
-    static constexpr StressShare share = DEVIATOR;
     static constexpr Parameter parameters[] = {
         {"", "G0", "pressure", POSITIVE, REQUIRED, "shear modulus at reference"},
         {"", "Y0", "pressure", NOT_NEGATIVE, REQUIRED, "yield stress at reference"},

@@ -62,11 +62,7 @@ namespace {
           (thermal * dx + thermal * C2 / max(2.0 * root * (C1 + C2 * root), 1e-300) +
            N * power / max(e, 1e-300));
     }
-    MPM_INLINE double finish(History history, int i, double begin, double D, double y, double) const
-    {
-      history[0][i] += D;
-      return 0.5 * (begin + y) * D;
-    }
+    MPM_INLINE double begin(double start, double) const { return start; }
   };
 
   /** Flow stress by thermally activated motion of dislocations (F.J. Zerilli, R.W. Armstrong, J.
@@ -75,7 +71,6 @@ namespace {
   struct StrengthZerilliArmstrong : RadialReturn<ZerilliArmstrongFlow> {
     static constexpr const char *name = "zerilli/armstrong";
     static constexpr const char *meaning = "Zerilli-Armstrong plasticity of bcc and fcc metals";
-    static constexpr StressShare share = DEVIATOR;
     static constexpr Parameter parameters[] = {
         SHEAR_MODULUS,
         {"", "C0", "pressure", NOT_NEGATIVE, REQUIRED, "athermal stress, with that of grain size"},

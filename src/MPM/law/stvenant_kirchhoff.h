@@ -24,9 +24,7 @@ namespace {
   struct LawStVenantKirchhoff : IsotropicHyperelastic<LawStVenantKirchhoff>, LameModuli {
     static constexpr const char *name = "stvenant/kirchhoff";
     static constexpr const char *meaning = "hyperelastic, linear in Green-Lagrange strain";
-    static constexpr Parameter parameters[] = {
-        {"", "E", "pressure", POSITIVE, REQUIRED, "Young's modulus"},
-        {"", "NU", "1", POISSON_RATIO, REQUIRED, "Poisson's ratio"}};
+    static constexpr Parameter parameters[] = {YOUNGS_MODULUS, POISSONS_RATIO};
 
     using LameModuli::LameModuli;
 
