@@ -11,11 +11,11 @@
 
 // What a constitutive law declares (its parameters and history) and the kernels it provides.
 //
-// A law is one header: a struct with the declaration and the loops over a batch, which is added to
+// A law is a struct in a header, with the declaration and the loops over a batch, which is added to
 // its list in law/list.h; nothing else has to change. The headers are compiled once for each
-// instruction set by law/laws_isa.cpp, and once more without special options by material/material.cpp,
-// which reads the declarations only. All of their content is in unnamed namespaces, so that the
-// linker cannot take a function of one instruction set for that of another.
+// instruction set, see law/list.h, and once more without special options by law/registry.cpp, which
+// reads the declarations only. All of their content is in unnamed namespaces, so that the linker
+// cannot take a function of one instruction set for that of another.
 
 #include "declare/range.h"
 #include "material/material.h"
@@ -190,17 +190,12 @@ struct LawDefaults {
 struct LawTable {
   const char *isa;                            ///< "baseline", "AVX2" or "AVX-512"
   std::vector<LawKernels> builtin[NPARTS];    ///< in the order of the lists in law/list.h
-  void (*clear_stress)(Batch &);              ///< stress of a law with no strength
   void (*speed)(int n, double density, const double *k, double *c);    ///< c = sqrt(k / density)
 
   void (*mean_stress)(const Batch &, double *);    ///< a third of the trace
 
-  /** Pressure at the end of a step, and equivalent strain rate sqrt(2/3 D:D) in its middle. */
-  void (*pressure)(const Batch &, double *);
+  /** Equivalent strain rate sqrt(2/3 D:D) in the middle of a step. */
   void (*strain_rate)(const Batch &, double *);
-
-  /** Number of values below low or above high. */
-  int (*outside)(int n, const double *value, double low, double high);
 
   /** The table for this CPU, or the one with this name: as MPMKernels::select(). */
   static const LawTable *select(const char *name = nullptr);
@@ -226,6 +221,56 @@ struct PluginLaw {
 
 /** Adds laws to declared_laws(); returns what is wrong, or nothing. */
 std::string add_laws(const LawVersion &, const PluginLaw *, int n);
+
+// from the struct of a law to its declaration and its kernels
+
+namespace law {
+  namespace {
+
+    template <class T, int N> constexpr int count(const T (&)[N])
+    {
+      return N;
+    }
+    constexpr int count(std::nullptr_t)
+    {
+      return 0;
+    }
+
+    template <class Law> LawInfo declaration()
+    {
+      LawInfo info;
+      info.name = Law::name;
+      info.meaning = Law::meaning;
+      info.share = Law::share;
+      info.parameters = Law::parameters;
+      info.nparameters = count(Law::parameters);
+      info.term = Law::term;
+      info.term_parameters = Law::term_parameters;
+      info.nterm_parameters = count(Law::term_parameters);
+      info.history = Law::history;
+      info.ndeclared = count(Law::history);
+      info.term_history = Law::term_history;
+      info.nterm_history = count(Law::term_history);
+      info.nhistory = Law::nhistory;
+      info.uses_speed = Law::uses_speed;
+      info.uses_F = Law::uses_F;
+      info.check = Law::check;
+      info.needs_temperature = Law::needs_temperature;
+      info.heat_share = Law::heat_share;
+      info.warming = Law::warming;
+      info.initialize = Law::initialize;
+      static_assert(count(Law::parameters) <= LawParameters::MAX);
+      static_assert(count(Law::term_parameters) <= LawParameters::TERM);
+      return info;
+    }
+
+    template <class Law> constexpr LawKernels kernels()
+    {
+      return {Law::update, Law::modulus, Law::energy, Law::raise_speed, Law::prepare};
+    }
+
+  }    // namespace
+}    // namespace law
 
 }    // namespace MPM_NS
 #endif

@@ -9,7 +9,7 @@
 #ifndef MPM_LAW_STRENGTH_J2_H
 #define MPM_LAW_STRENGTH_J2_H
 
-#include "law/strength_kinematic.h"
+#include "law/strength.h"
 
 namespace MPM_NS::law {
 namespace {

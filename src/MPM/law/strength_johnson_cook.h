@@ -9,7 +9,7 @@
 #ifndef MPM_LAW_STRENGTH_JOHNSON_COOK_H
 #define MPM_LAW_STRENGTH_JOHNSON_COOK_H
 
-#include "law/strength_return.h"
+#include "law/strength.h"
 
 namespace MPM_NS::law {
 namespace {

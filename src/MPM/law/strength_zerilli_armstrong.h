@@ -9,7 +9,7 @@
 #ifndef MPM_LAW_STRENGTH_ZERILLI_ARMSTRONG_H
 #define MPM_LAW_STRENGTH_ZERILLI_ARMSTRONG_H
 
-#include "law/strength_return.h"
+#include "law/strength.h"
 
 namespace MPM_NS::law {
 namespace {

@@ -9,7 +9,7 @@
 #ifndef MPM_LAW_VISCOSITY_GENERALIZED_H
 #define MPM_LAW_VISCOSITY_GENERALIZED_H
 
-#include "law/viscosity_newtonian.h"
+#include "law/viscosity.h"
 
 namespace MPM_NS::law {
 namespace {

@@ -104,7 +104,7 @@ class ComposedMaterial : public Material {
       b.Jold[i] = b.J[i];
       for (auto &row : b.A) row[i] = 0.0;
     }
-    table->clear_stress(b);
+    clear_stress(b);
     for (const auto &law : laws[EOS]) call(law.kernels->update, law, b);
   }
 
@@ -126,7 +126,7 @@ class ComposedMaterial : public Material {
     if (base)
       run(*base);
     else
-      table->clear_stress(b);
+      clear_stress(b);
     if (damage) account_of_strength(b);
     if (viscous >= 0) begin_viscous_stress(b);
     for (const auto &law : laws[VISCOSITY]) run(law);
@@ -144,10 +144,10 @@ class ComposedMaterial : public Material {
 
   int outside(const Batch &b, int k, double *value) const override
   {
-    const double *v = value;
     switch (source[k]) {
       case UsedRange::PRESSURE_OF_STRESS:
-        table->pressure(b, value);
+        table->mean_stress(b, value);
+        for (int i = 0; i < b.n; i++) value[i] = -value[i];
         break;
       case UsedRange::STRAIN_RATE:
         table->strain_rate(b, value);
@@ -158,10 +158,11 @@ class ComposedMaterial : public Material {
           for (int i = 0; i < b.n; i++) value[i] *= b.history[random_density->row][i];
         break;
       default:
-        v = b.history[source[k]];
-        std::copy(v, v + b.n, value);
+        std::copy(b.history[source[k]], b.history[source[k]] + b.n, value);
     }
-    return table->outside(b.n, v, valid[k].low, valid[k].high);
+    return std::count_if(value, value + b.n, [&range = valid[k]](double x) {
+      return x < range.low || x > range.high;
+    });
   }
 
   void wave_speed(const Batch &state, double *c) const override
@@ -200,6 +201,12 @@ class ComposedMaterial : public Material {
   std::vector<ValidRange> valid;
   std::vector<int> source;    ///< of the quantities of these, as in UsedRange
   std::string text;
+
+  /** Stress of a material without strength. */
+  static void clear_stress(Batch &b)
+  {
+    for (auto &row : b.stress) std::fill(row, row + b.n, 0.0);
+  }
 
   void take_viscous_stress(Batch &b) const
   {

@@ -6,13 +6,60 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-#ifndef MPM_LAW_VISCOSITY_ARTIFICIAL_H
-#define MPM_LAW_VISCOSITY_ARTIFICIAL_H
+#ifndef MPM_LAW_VISCOSITY_H
+#define MPM_LAW_VISCOSITY_H
 
 #include "law/kinematics.h"
 
 namespace MPM_NS::law {
 namespace {
+
+  /** Speed c raised for a shear and a bulk viscosity. Explicit steps with damping:
+   *  dt = h / (sqrt(c^2 + a^2) + a), a = (4/3 mu + zeta) / (density h), the central-difference limit
+   *  (2/omega)(sqrt(1 + xi^2) - xi) with omega = 2 c/h. */
+  MPM_INLINE double damped_speed(const LawParameters &p, const Batch &b, int i, double c, double mu,
+                                 double zeta)
+  {
+    const double a = ((4.0 / 3.0) * mu + zeta) * b.J[i] / (p.density * b.h);
+    return std::sqrt(c * c + a * a) + a;
+  }
+
+  /** Newtonian viscosity: adds 2 MU dev(D) + ZETA tr(D) I, D the strain rate half-way in the step.
+   *  With the elasticity of a solid that is the Kelvin-Voigt element. */
+  struct ViscosityNewtonian : LawDefaults {
+    static constexpr bool uses_F = false;
+    static constexpr const char *name = "newtonian";
+    static constexpr const char *meaning = "Newtonian viscosity; damping of solids (Kelvin-Voigt)";
+    static constexpr StressShare share = WHOLE_STRESS;
+    static constexpr bool uses_speed = false;
+    static constexpr Parameter parameters[] = {
+        {"", "MU", "pressure time", NOT_NEGATIVE, REQUIRED, "dynamic viscosity"},
+        {"bulk", "ZETA", "pressure time", NOT_NEGATIVE, 0.0, "bulk viscosity"}};
+
+    static void update(const LawParameters &p, Batch &b, History)
+    {
+      const double inv_dt = b.dt > 0.0 ? 1.0 / b.dt : 0.0;
+      const double twomu = 2.0 * p.value[0] * inv_dt, zeta = p.value[1] * inv_dt;
+      double viscous = 0.0;
+      MPM_SIMD_SUM(viscous)
+      for (int i = 0; i < b.n; i++) {
+        const Increment inc = increment(b, i);
+        const Sym e = deviator(inc.strain);
+        const double tr = trace(inc.strain);
+        store_stress(b, i, add_diagonal(load_stress(b, i) + twomu * e, zeta * tr));
+        const double work = 0.5 * (b.J[i] + b.Jold[i]) * (twomu * norm2(e) + zeta * tr * tr);
+        b.heat[i] += work;
+        viscous += work * b.vol0[i];
+      }
+      b.work[VISCOUS] += viscous;
+    }
+
+    static void raise_speed(const LawParameters &p, const Batch &b, History, double *c)
+    {
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) c[i] = damped_speed(p, b, i, c[i], p.value[0], p.value[1]);
+    }
+  };
 
   /** Artificial bulk viscosity, in compression only (J. von Neumann, R.D. Richtmyer, J. Appl. Phys.
    *  21 (1950) 232; linear term R. Landshoff, LA-1930, 1955): the pressure rises by
