@@ -48,17 +48,6 @@ namespace {
         2.0 * (s.xy * x * y + s.xz * x * z + s.yz * y * z);
   }
 
-  /** sum_a value_a n_a x n_a, with the axes n_a of point i as [component][axis][point]. */
-  MPM_INLINE Sym along_axes(const double (&axes)[3][3][BATCH], int i, double value0, double value1,
-                            double value2)
-  {
-    Sym r = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-    add_dyad(r, axes[0][0][i], axes[1][0][i], axes[2][0][i], value0);
-    add_dyad(r, axes[0][1][i], axes[1][1][i], axes[2][1][i], value1);
-    add_dyad(r, axes[0][2][i], axes[1][2][i], axes[2][2][i], value2);
-    return r;
-  }
-
   /** A batch along the principal axes of the elastic trial state, values as [axis][point]. */
   struct PrincipalStates {
     alignas(64) double before[3][BATCH];    ///< elastic strain at the start of the step

@@ -194,7 +194,7 @@ namespace {
     static void update(const LawParameters &p, Batch &b, History)
     {
       const VolumeEnergy volume{p.value[0]};
-      alignas(64) double e[3][BATCH], tau[3][BATCH], axis[9][BATCH];
+      alignas(64) double e[3][BATCH], tau[3][BATCH], axes[3][3][BATCH];
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
         const Displacement H = displacement(b, i);
@@ -204,9 +204,7 @@ namespace {
         for (int a = 0; a < 3; a++) {
           e[a][i] = log_strain(s.value[a]) - mean;
           tau[a][i] = pressure;
-          axis[a][i] = s.vector[0][a];
-          axis[a + 3][i] = s.vector[1][a];
-          axis[a + 6][i] = s.vector[2][a];
+          for (int k = 0; k < 3; k++) axes[k][a][i] = s.vector[k][a];
         }
       }
       for (int k = 0; k < p.nterms; k++) {
@@ -221,13 +219,8 @@ namespace {
         }
       }
       MPM_SIMD
-      for (int i = 0; i < b.n; i++) {
-        Sym r = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-        add_dyad(r, axis[0][i], axis[3][i], axis[6][i], tau[0][i]);
-        add_dyad(r, axis[1][i], axis[4][i], axis[7][i], tau[1][i]);
-        add_dyad(r, axis[2][i], axis[5][i], axis[8][i], tau[2][i]);
-        store_stress(b, i, (1.0 / b.J[i]) * r);
-      }
+      for (int i = 0; i < b.n; i++)
+        store_stress(b, i, (1.0 / b.J[i]) * along_axes(axes, i, tau[0][i], tau[1][i], tau[2][i]));
     }
 
     static void energy(const LawParameters &p, const Batch &b, History, double *w)

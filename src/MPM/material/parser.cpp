@@ -26,6 +26,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
+#include <sstream>
 
 using namespace MPM_NS;
 
@@ -39,14 +41,8 @@ bool looks_numeric(const std::string &word)
 /** Words separated by blanks. */
 std::vector<std::string> split(const std::string &text)
 {
-  std::vector<std::string> words(1);
-  for (const char c : text) {
-    if (c == ' ')
-      words.emplace_back();
-    else
-      words.back() += c;
-  }
-  return words;
+  std::istringstream stream(text);
+  return {std::istream_iterator<std::string>(stream), {}};
 }
 
 std::string join(const std::vector<std::string> &words, const char *between)
@@ -316,41 +312,45 @@ class Parser {
   void check() const
   {
     const int end = words.size();
+    const auto has = [&](Part part) {
+      return !material.laws[part].empty();
+    };
+    const auto refuse = [&](Part part, const std::string &why) {
+      const UsedLaw &law = material.laws[part][0];
+      fail(law.word, "'" + title(part, *law.info) + "'" + why);
+    };
     if (material.density <= 0.0) fail(end, "density is missing: add 'density RHO'");
-    if (!material.laws[CLOSED].empty()) {
-      const std::string name = material.laws[CLOSED][0].info->name;
+    if (has(CLOSED)) {
+      const std::string name = title(CLOSED, *material.laws[CLOSED][0].info);
       for (const Part part : {EOS, STRENGTH, DAMAGE})
-        if (!material.laws[part].empty())
-          fail(material.laws[part][0].word,
-               "'" + title(part, *material.laws[part][0].info) + "': '" + name +
-                   "' is a complete law; use either '" + name + "' or eos and strength");
-    } else if (material.laws[EOS].empty()) {
-      if (!material.laws[STRENGTH].empty())
-        fail(material.laws[STRENGTH][0].word,
-             "'" + title(STRENGTH, *material.laws[STRENGTH][0].info) +
-                 "' makes the stress deviator only: add an equation of state, such as "
-                 "'eos linear K' with the bulk modulus");
+        if (has(part))
+          refuse(part,
+                 ": '" + name + "' is a complete law; use either '" + name +
+                     "' or eos and strength");
+    } else if (!has(EOS)) {
+      if (has(STRENGTH))
+        refuse(STRENGTH,
+               " makes the stress deviator only: add an equation of state, such as "
+               "'eos linear K' with the bulk modulus");
       fail(end,
            "no law: add " + join(names(declared_laws(CLOSED)), ", ") +
                ", or eos with strength or viscosity");
     }
-    if (!material.laws[DAMAGE].empty() && material.laws[STRENGTH].empty())
-      fail(material.laws[DAMAGE][0].word,
-           "'" + title(DAMAGE, *material.laws[DAMAGE][0].info) +
-               "' reduces the stress of a solid: add a strength, such as 'strength elastic G'");
+    if (has(DAMAGE) && !has(STRENGTH))
+      refuse(DAMAGE,
+             " reduces the stress of a solid: add a strength, such as 'strength elastic G'");
     for (const auto &part : material.laws)
       for (const auto &law : part)
-        if (law.info->needs_temperature(law.parameters) && material.laws[THERMAL].empty())
+        if (law.info->needs_temperature(law.parameters) && !has(THERMAL))
           fail(law.word,
                std::string("'") + law.info->name +
                    "' with these parameters depends on the temperature: add 'thermal adiabatic' "
                    "with the specific heat, or 'thermal constant'");
-    if (!material.laws[DAMAGE].empty() && material.shares_stress())
-      fail(material.laws[DAMAGE][0].word,
-           "'" + title(DAMAGE, *material.laws[DAMAGE][0].info) +
-               "' does not go with a viscosity that adds to the stress on which a strength or law "
-               "builds in the next step: leave out the viscosity, or use viscosity artificial with "
-               "eos and strength");
+    if (has(DAMAGE) && material.shares_stress())
+      refuse(DAMAGE,
+             " does not go with a viscosity that adds to the stress on which a strength or law "
+             "builds in the next step: leave out the viscosity, or use viscosity artificial with "
+             "eos and strength");
   }
 };
 
