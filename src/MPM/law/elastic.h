@@ -73,7 +73,7 @@ namespace {
    *    w = mu/2 (tr b - 3 - 2 ln J) + lambda/2 ln^2 J
    *    sigma = [mu (b - I) + lambda ln J I] / J
    */
-  struct LawNeoHookean : LawDefaults, LameModuli {
+  struct LawNeoHookean : Hyperelastic<LawNeoHookean>, LameModuli {
     static constexpr const char *name = "neohookean";
     static constexpr const char *meaning = "compressible neo-Hookean hyperelastic";
     static constexpr Parameter parameters[] = {
@@ -108,19 +108,15 @@ namespace {
 
     /** With H = F - I and det F - 1 = tr H + minors + det H, the terms of first order in H are
      *  taken out of tr b - 3 - 2 ln J by hand: small strains keep full relative precision. */
-    static void energy(const LawParameters &p, const Batch &b, History, double *w)
+    MPM_INLINE double stored(const Batch &b, int i) const
     {
-      const LawNeoHookean law(p);
-      MPM_SIMD
-      for (int i = 0; i < b.n; i++) {
-        const Displacement H = displacement(b, i);
-        const double square = H.xx * H.xx + H.xy * H.xy + H.xz * H.xz + H.yx * H.yx + H.yy * H.yy +
-            H.yz * H.yz + H.zx * H.zx + H.zy * H.zy + H.zz * H.zz;
-        const double J = b.J[i], logJ = log(J);
-        w[i] += 0.5 * law.mu *
-                (square - 2.0 * (H.minors() + H.determinant()) + 2.0 * minus1_minus_log(J)) +
-            0.5 * law.lambda * logJ * logJ;
-      }
+      const Displacement H = displacement(b, i);
+      const double square = H.xx * H.xx + H.xy * H.xy + H.xz * H.xz + H.yx * H.yx + H.yy * H.yy +
+          H.yz * H.yz + H.zx * H.zx + H.zy * H.zy + H.zz * H.zz;
+      const double J = b.J[i], logJ = log(J);
+      return 0.5 * mu *
+          (square - 2.0 * (H.minors() + H.determinant()) + 2.0 * minus1_minus_log(J)) +
+          0.5 * lambda * logJ * logJ;
     }
   };
 

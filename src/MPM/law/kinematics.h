@@ -139,17 +139,11 @@ namespace {
     const double yy = t * f - (e * c + f * f + g * k), yz = t * g - (e * d + f * g + g * l);
     const double zx = t * h - (h * a + k * e + l * h), zy = t * k - (h * c + k * f + l * k);
     const double zz = t * l - (h * d + k * g + l * l);
-    Increment inc;
-    inc.strain.xx = 2.0 * q * (xx + det);
-    inc.strain.yy = 2.0 * q * (yy + det);
-    inc.strain.zz = 2.0 * q * (zz + det);
-    inc.strain.xy = q * (xy + yx);
-    inc.strain.xz = q * (xz + zx);
-    inc.strain.yz = q * (yz + zy);
-    inc.wx = q * (zy - yz);
-    inc.wy = q * (xz - zx);
-    inc.wz = q * (yx - xy);
-    return inc;
+    return {{2.0 * q * (xx + det), 2.0 * q * (yy + det), 2.0 * q * (zz + det), q * (xy + yx),
+             q * (xz + zx), q * (yz + zy)},
+            q * (zy - yz),
+            q * (xz - zx),
+            q * (yx - xy)};
   }
 
   /** Displacement gradient H. */

@@ -58,14 +58,11 @@ namespace {
       }
       MPM_SIMD
       for (int i = 0; i < b.n; i++) T[i] += warm * b.heat[i];
-      if (nhistory(p) > 1) melt(p.value[TMELT], p.value[LATENT] / p.value[CP], b, T, history[1]);
-    }
-
-   private:
-    /** range: the latent heat as a difference of temperatures. */
-    static MPM_INLINE void melt(double melting, double range, const Batch &b, double *T,
-                                double *molten)
-    {
+      if (nhistory(p) == 1) return;
+      const double melting = p.value[TMELT];
+      const double range =
+          p.value[LATENT] / p.value[CP];    // latent heat as a difference of temperatures
+      double *const molten = history[1];
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
         const double all = T[i] + range * molten[i];    // had it not melted

@@ -485,6 +485,9 @@ class ComposedMaterial : public Material {
   void add(const UsedRandom &random)
   {
     const std::string what = "random " + random.name;
+    const auto refuse = [&](const std::string &why) {
+      throw MaterialError(random.word, what + ": " + why);
+    };
     UsedLaw *owner = nullptr;
     RandomParameter r = {
         -1, -1, static_cast<int>(variables.size()), random.lognormal, random.variation, nullptr};
@@ -499,9 +502,7 @@ class ComposedMaterial : public Material {
       choice += ", " + (by_law ? of_law : of_part);
       if (random.name != name && random.name != of_part && !(by_law && random.name == of_law))
         return;
-      if (owner)
-        throw MaterialError(random.word,
-                            what + ": several laws of this material have it: choose " + choice);
+      if (owner) refuse("several laws of this material have it: choose " + choice);
       owner = &law;
       r.term = term;
       r.parameter = k;
@@ -515,18 +516,16 @@ class ComposedMaterial : public Material {
             consider(static_cast<Part>(part), law, term, k);
       }
     const bool of_density = random.name == "density";
-    if (!owner && !of_density)
-      throw MaterialError(random.word, what + ": no such parameter: choose one of " + choice);
+    if (!owner && !of_density) refuse("no such parameter: choose one of " + choice);
     const double mean = of_density ? rho : r.of(owner->parameters);
     if (mean == 0.0 || !std::isfinite(mean))
-      throw MaterialError(random.word,
-                          what + ": its value is " + number(mean) +
-                              ", which a factor does not change: give it another one");
+      refuse("its value is " + number(mean) +
+             ", which a factor does not change: give it another one");
     bool twice = of_density && random_density;
     if (owner)
       for (const auto &other : owner->random)
         twice = twice || (other.term == r.term && other.parameter == r.parameter);
-    if (twice) throw MaterialError(random.word, what + ": is given twice");
+    if (twice) refuse("is given twice");
     r.field = std::make_shared<const RandomField>(random.length, random.seed);
     if (of_density)
       random_density = std::make_unique<const RandomParameter>(r);

@@ -27,6 +27,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <iterator>
+#include <set>
 #include <sstream>
 
 using namespace MPM_NS;
@@ -245,7 +246,7 @@ class Parser {
       if (tail) value[k] = parse_number(what, p.name, p.unit, p.meaning, p.range);
     }
 
-    std::vector<std::string> given;    // first words of the options so far
+    std::set<std::string> given;    // first words of the options so far
     while (!at_end() &&
            (parse_term(what, info, parameters) || parse_option(what, info, value, given))) {}
     if (!at_end() && looks_numeric(words[next]))
@@ -272,7 +273,7 @@ class Parser {
 
   /** Reads one option of the law, false when the next word is none. */
   bool parse_option(const std::string &what, const LawInfo &info, double *value,
-                    std::vector<std::string> &given)
+                    std::set<std::string> &given)
   {
     const int here = next;
     std::vector<std::string> choices;
@@ -281,29 +282,25 @@ class Parser {
       if (!*info.parameters[k].option) continue;
       const auto option = split(info.parameters[k].option);
       if (option[0] != words[here]) continue;
-      if (option.size() == 1) {
-        if (match < 0) match = k;
-      } else {
-        if (choices.empty() || choices.back() != option[1]) choices.push_back(option[1]);
-        if (here + 1 < static_cast<int>(words.size()) && option[1] == words[here + 1] && match < 0)
-          match = k;
-      }
+      const bool fits = option.size() == 1 ||
+          (here + 1 < static_cast<int>(words.size()) && option[1] == words[here + 1]);
+      if (match < 0 && fits) match = k;
+      if (option.size() > 1 && (choices.empty() || choices.back() != option[1]))
+        choices.push_back(option[1]);
     }
     if (match < 0 && choices.empty()) return false;
     if (match < 0)
       fail(here + 1, what + ": '" + words[here] + "' must be followed by " + join(choices, " or "));
-    for (const auto &word : given)
-      if (word == words[here]) fail(here, what + ": '" + words[here] + "' is given twice");
-    given.push_back(words[here]);
+    if (!given.insert(words[here]).second)
+      fail(here, what + ": '" + words[here] + "' is given twice");
 
     const char *option = info.parameters[match].option;
     next += split(option).size();
     for (int k = match; k < info.nparameters; k++) {
       const Parameter &p = info.parameters[k];
-      if (!strcmp(p.option, option) && !strcmp(p.unit, FLAG))
-        value[k] = 1.0;
-      else if (!strcmp(p.option, option))
-        value[k] = parse_number(what + " " + option, p.name, p.unit, p.meaning, p.range);
+      if (strcmp(p.option, option) != 0) continue;
+      const bool flag = !strcmp(p.unit, FLAG);
+      value[k] = flag ? 1.0 : parse_number(what + " " + option, p.name, p.unit, p.meaning, p.range);
     }
     return true;
   }
