@@ -139,12 +139,6 @@ namespace {
     }
   };
 
-  /** Mises equivalent stress. */
-  MPM_INLINE double equivalent(const Intact &intact)
-  {
-    return std::sqrt(1.5 * norm2(intact.s));
-  }
-
   /** Largest principal stress. */
   MPM_INLINE double principal(const Intact &intact)
   {

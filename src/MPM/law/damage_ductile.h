@@ -100,7 +100,7 @@ namespace {
     MPM_INLINE double grow(const Batch &b, History history, int i, const Intact &intact) const
     {
       const double de = b.plastic[i];
-      const double triaxiality = min(intact.mean / max(equivalent(intact), 1e-300), 1.5);
+      const double triaxiality = min(intact.mean / max(equivalent(intact.s), 1e-300), 1.5);
       const double fast = 1.0 + d4 * log(max(de * inv_rate, 1.0));
       const double T = min(max((temperature[i] - Tref) * inv_range, 0.0), 1.0);
       const double limit = (d1 + d2 * exp(min(d3 * triaxiality, 300.0))) * fast * (1.0 + d5 * T);

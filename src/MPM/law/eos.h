@@ -67,13 +67,13 @@ namespace {
   constexpr Range TENSION{-UNBOUNDED, 0.0, true};
   constexpr Parameter cutoff = {"cutoff", "PMIN",     "pressure",
                                 TENSION,  -UNBOUNDED, "lowest pressure, not positive"};
-  constexpr Parameter spall = {
-      "spall",
-      "PSPALL",
-      "pressure",
-      TENSION,
-      -UNBOUNDED,
-      "pressure, not positive, below which the material breaks and bears no tension any more"};
+  constexpr Parameter spall = {"spall",
+                               "PSPALL",
+                               "pressure",
+                               TENSION,
+                               -UNBOUNDED,
+                               "pressure, not positive, below which the material breaks and "
+                               "bears no tension any more"};
   constexpr HistoryDeclaration spalled = {"spalled", ZERO, "1", "1 when the material has broken"};
 
   /** Tension that an equation of state bears: all, a pressure of at least PMIN, or, when the

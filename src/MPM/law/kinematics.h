@@ -54,6 +54,12 @@ namespace {
         2.0 * (a.xy * a.xy + a.xz * a.xz + a.yz * a.yz);
   }
 
+  /** Von Mises equivalent of a deviator. */
+  MPM_INLINE double equivalent(const Sym &s)
+  {
+    return std::sqrt(1.5 * norm2(s));
+  }
+
   /** Invariants of a symmetric tensor. */
   MPM_INLINE double minors(const Sym &a)
   {

@@ -188,7 +188,6 @@ struct LawDefaults {
 
 /** Kernels of all laws for one instruction set. */
 struct LawTable {
-  const char *isa;                            ///< "baseline", "AVX2" or "AVX-512"
   std::vector<LawKernels> builtin[NPARTS];    ///< in the order of the lists in law/list.h
   void (*speed)(int n, double density, const double *k, double *c);    ///< c = sqrt(k / density)
 

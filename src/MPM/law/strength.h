@@ -14,17 +14,12 @@
 namespace MPM_NS::law {
 namespace {
 
-  /** Elastic deviator that all strengths share: hypoelastic, see LawLinear. */
-  struct ElasticDeviator {
-    double G;
-
-    /** Cauchy stress deviator at the end of the step if the step is elastic. */
-    MPM_INLINE Sym trial(const Batch &b, int i, const Increment &inc) const
-    {
-      const Sym old = b.Jold[i] * deviator(load_stress(b, i));
-      return (1.0 / b.J[i]) * jaumann(inc, old, 2.0 * G * deviator(inc.strain));
-    }
-  };
+  /** Cauchy stress deviator at the end of the step if the step is elastic: hypoelastic, see LawLinear. */
+  MPM_INLINE Sym elastic_trial(double G, const Batch &b, int i, const Increment &inc)
+  {
+    const Sym old = b.Jold[i] * deviator(load_stress(b, i));
+    return (1.0 / b.J[i]) * jaumann(inc, old, 2.0 * G * deviator(inc.strain));
+  }
 
   /** Wave speed and energy of a strength whose first parameter is the shear modulus. */
   struct ShearElasticity : LawDefaults {
@@ -59,9 +54,9 @@ namespace {
 
     static void update(const LawParameters &p, Batch &b, History)
     {
-      const ElasticDeviator elastic{p.value[0]};
+      const double G = p.value[0];
       MPM_SIMD
-      for (int i = 0; i < b.n; i++) store_stress(b, i, elastic.trial(b, i, increment(b, i)));
+      for (int i = 0; i < b.n; i++) store_stress(b, i, elastic_trial(G, b, i, increment(b, i)));
     }
   };
 
@@ -71,12 +66,6 @@ namespace {
     double stiff;    ///< 3 G/J
     double J;        ///< mean volume ratio of the step
   };
-
-  /** Von Mises equivalent of a deviator. */
-  MPM_INLINE double equivalent(const Sym &s)
-  {
-    return std::sqrt(1.5 * norm2(s));
-  }
 
   /** Solves r(D) = q - stiff D - Y(D) = 0 for the points with D > 0, which is the first guess; most:
    *  upper bound of D. Iteration, the whole batch at a time: r is convex in D for power hardening
@@ -150,7 +139,7 @@ namespace {
         const Increment inc = increment(b, i);
         const double G = flow.shear(i);
         const double last = Flow::goes_on ? equivalent(deviator(load_stress(b, i))) : 0.0;
-        const Sym s = ElasticDeviator{G}.trial(b, i, inc);
+        const Sym s = elastic_trial(G, b, i, inc);
         store_stress(b, i, s);
         const double q = equivalent(s);
         const double modulus = 3.0 * G / b.J[i];
@@ -257,7 +246,7 @@ namespace {
         const double G = flow.shear(i), inv_J = 1.0 / b.J[i];
         const Sym before = deviator(load_stress(b, i)) + (-1.0 / b.Jold[i]) * load_rows(back, i);
         const double last = Flow::goes_on ? equivalent(before) : 0.0;
-        const Sym s = ElasticDeviator{G}.trial(b, i, inc);
+        const Sym s = elastic_trial(G, b, i, inc);
         const Sym X = rotate(inc, load_rows(back, i)), x = inv_J * X, xi = s + (-1.0) * x;
         store_stress(b, i, s);
         store_rows(back, i, X);

@@ -249,12 +249,11 @@ namespace {
     static MPM_INLINE void linear(const LawParameters &p, Batch &b, History history)
     {
       const double G = p.value[J2_G], sigmay = p.value[J2_SIGMAY], H = p.value[J2_H];
-      const ElasticDeviator elastic{G};
       double plastic = 0.0;
       MPM_SIMD_SUM(plastic)
       for (int i = 0; i < b.n; i++) {
         const Increment inc = increment(b, i);
-        const Sym s = elastic.trial(b, i, inc);
+        const Sym s = elastic_trial(G, b, i, inc);
         const double q = std::sqrt(1.5 * norm2(s));
         const double e = history[0][i], y = sigmay + H * e;
         const double J = b.J[i];

@@ -75,14 +75,11 @@ class ComposedMaterial : public Material {
           set_factor(r, (r.term < 0 ? info.parameters : info.term_parameters)[r.parameter],
                      r.of(law.parameters), x, history);
         }
-    const auto factor = [history](int row) {
-      return history[row];
-    };
     for (const auto &part : laws)
       for (const auto &law : part)
         if (law.varies) {
           LocalParameters local(*this, law);
-          initialize(law, local.at(factor), x, history);
+          initialize(law, local.at(history, 1), x, history);
         } else if (law.info->initialize) {
           law.info->initialize(law.parameters, x, history + law.history);
         }
@@ -269,16 +266,16 @@ class ComposedMaterial : public Material {
       if (material.random_heat) heat = material.thermal->parameters;
     }
 
-    /** factor(row): the value of that row of history at the point. */
-    template <class Factor> const LawParameters &at(Factor factor)
+    /** At the point with the values history[0], history[stride], ... of its history variables. */
+    const LawParameters &at(const double *history, int stride)
     {
-      replace(law, p, factor);
+      replace(law, p, history, stride);
       if (const auto &r = material.random_density) {
-        p.density = law.parameters.density * factor(r->row);
-        p.heat_density = law.parameters.heat_density * factor(r->row);
+        p.density = law.parameters.density * history[r->row * stride];
+        p.heat_density = law.parameters.heat_density * history[r->row * stride];
       }
       if (material.random_heat) {
-        replace(*material.thermal, heat, factor);
+        replace(*material.thermal, heat, history, stride);
         heat.heat_density = p.heat_density;
         share_heat(*material.thermal->info, heat, law.heats_alone, p);
       }
@@ -290,9 +287,9 @@ class ComposedMaterial : public Material {
     const UsedLaw &law;
     LawParameters p, heat;
 
-    template <class Factor> static void replace(const UsedLaw &law, LawParameters &p, Factor factor)
+    static void replace(const UsedLaw &law, LawParameters &p, const double *history, int stride)
     {
-      for (const auto &r : law.random) r.of(p) = r.of(law.parameters) * factor(r.row);
+      for (const auto &r : law.random) r.of(p) = r.of(law.parameters) * history[r.row * stride];
     }
   };
 
@@ -341,10 +338,7 @@ class ComposedMaterial : public Material {
       for (double &w : one.work) w = 0.0;
       for (const auto row : single_rows) (one.*row)[0] = (b.*row)[i];
       one.history = reinterpret_cast<History>(&b.history[0][i]);
-      work(local.at([&](int row) {
-        return b.history[row][i];
-      }),
-           one, one.history + law.history, i);
+      work(local.at(&b.history[0][i], BATCH), one, one.history + law.history, i);
     }
   }
 
@@ -444,12 +438,7 @@ class ComposedMaterial : public Material {
     if (random_heat) {
       LocalParameters local(*this, *damage);
       for (int i = 0; i < b.n; i++)
-        b.heat[i] = local
-                        .at([&](int row) {
-                          return b.history[row][i];
-                        })
-                        .chi *
-            b.kept[i] * b.plastic_work[i];
+        b.heat[i] = local.at(&b.history[0][i], BATCH).chi * b.kept[i] * b.plastic_work[i];
     }
     add_energy(STRENGTH, b, b.shear_energy);
   }

@@ -57,16 +57,6 @@ struct RandomField::Transforms {
   }
 };
 
-bool RandomField::available()
-{
-  return true;
-}
-
-RandomField::RandomField(double length, uint64_t seed) :
-    spacing(length / PER_LENGTH), seed(seed), transforms(new Transforms)
-{
-}
-
 /* ----------------------------------------------------------------------
    coefficients of the splines with support in a tile
 ------------------------------------------------------------------------- */
@@ -102,17 +92,9 @@ std::vector<double> RandomField::make_tile(const Index &tile) const
 
 #else
 
-struct RandomField::Transforms {};
-
-bool RandomField::available()
-{
-  return false;
-}
-
-RandomField::RandomField(double length, uint64_t seed) : spacing(length), seed(seed)
-{
-  throw std::runtime_error("no random fields without FFTW");
-}
+struct RandomField::Transforms {
+  Transforms() { throw std::runtime_error("no random fields without FFTW"); }
+};
 
 std::vector<double> RandomField::make_tile(const Index &) const
 {
@@ -120,6 +102,20 @@ std::vector<double> RandomField::make_tile(const Index &) const
 }
 
 #endif
+
+bool RandomField::available()
+{
+#ifdef MPM_FFTW
+  return true;
+#else
+  return false;
+#endif
+}
+
+RandomField::RandomField(double length, uint64_t seed) :
+    spacing(length / PER_LENGTH), seed(seed), transforms(new Transforms)
+{
+}
 
 RandomField::~RandomField() = default;
 
