@@ -60,6 +60,16 @@ function(mpm_write file text)
   file(WRITE ${file} "${text}")
 endfunction()
 
+# The laws of a family are compiled on their own: a file of two lines for each one of law/list.h.
+file(STRINGS ${MPM_DIR}/law/list.h families REGEX "^  X\\(")
+string(REGEX MATCHALL "[a-z]+" families "${families}")
+foreach(family ${families})
+  set(source ${CMAKE_CURRENT_BINARY_DIR}/mpm_laws/laws_${family}_isa.cpp)
+  mpm_write(${source} "#include \"law/list.h\"\nMPM_LAW_FAMILY(${family})\n")
+  list(APPEND MPM_ISA_SOURCES ${source})
+endforeach()
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${MPM_DIR}/law/list.h)
+
 # add "MPM" to the packages that 'lmp -h' lists as installed
 function(mpm_installed_packages lammps_styles dir)
   file(READ ${lammps_styles}/lmpinstalledpkgs.h text)

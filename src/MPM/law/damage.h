@@ -139,54 +139,11 @@ namespace {
     }
   };
 
-  /** Mises equivalent stress. */
-  MPM_INLINE double equivalent(const Intact &intact)
-  {
-    return std::sqrt(1.5 * norm2(intact.s));
-  }
-
   /** Largest principal stress. */
   MPM_INLINE double principal(const Intact &intact)
   {
     return intact.mean + largest_eigenvalue(intact.s);
   }
-
-  // a ductile law measures how much of its ductility is used (row USED of its history, 1: all), and
-  // what follows from that for the stress is the same for all of them
-
-  constexpr Parameter soften_from = {
-      "soften from",    "START", "1",
-      {0.0, 1.0, true}, 1.0,     "used share of the ductility at which the stress begins to drop"};
-  constexpr Parameter soften_energy = {
-      "soften energy", "GC", "pressure*length",
-      POSITIVE,        0.0,  "plastic work per area of crack, after all ductility is used"};
-  enum { USED = NDAMAGE, NDUCTILE };
-  constexpr HistoryDeclaration ductility_used = {"used", ZERO, "1",
-                                                 "share of the ductility that is used"};
-
-  /** Stress as a function of what is used: lost at once at 1; or linearly from START on; or, from 1
-   *  on, linearly with the plastic work of one cell, which adds up to GC per area: a crack is one
-   *  cell wide whatever the spacing h of the nodes (A. Hillerborg, M. Modeer, P.-E. Petersson, Cem.
-   *  Concr. Res. 6 (1976) 773; Z.P. Bazant, B.H. Oh, Mater. Struct. 16 (1983) 155). */
-  struct Ductile {
-    double start, inv_range, per_work;
-
-    Ductile(const LawParameters &p, const Batch &b, int soften) :
-        start(p.value[soften]), inv_range(1.0 / max(1.0 - start, 1e-12)),
-        per_work(p.value[soften + 1] > 0.0 ? 0.5 * b.h / p.value[soften + 1] : 0.0)
-    {
-    }
-
-    /** Adds to what is used; returns the damage. */
-    MPM_INLINE double use(const Batch &b, History history, int i, double more) const
-    {
-      const double used = min(history[USED][i] + more, 1.0);
-      history[USED][i] = used;
-      const double direct = used >= 1.0 ? 1.0 : (used - start) * inv_range;
-      const double by_work = used >= 1.0 ? history[DAMAGED][i] + per_work * b.plastic_work[i] : 0.0;
-      return per_work > 0.0 ? by_work : direct;
-    }
-  };
 
 }    // namespace
 }    // namespace MPM_NS::law

@@ -31,19 +31,7 @@ namespace {
   /** f b f^T - I for b = I + c, with f = I + A of this step: f c f^T + A + A^T + A A^T. */
   MPM_INLINE Sym push_forward_strain(const Batch &b, int i, const Sym &c)
   {
-    const double xx = b.A[0][i], xy = b.A[1][i], xz = b.A[2][i];
-    const double yx = b.A[3][i], yy = b.A[4][i], yz = b.A[5][i];
-    const double zx = b.A[6][i], zy = b.A[7][i], zz = b.A[8][i];
-    const Sym f = {2.0 * xx + xx * xx + xy * xy + xz * xz, 2.0 * yy + yx * yx + yy * yy + yz * yz,
-                   2.0 * zz + zx * zx + zy * zy + zz * zz, xy + yx + xx * yx + xy * yy + xz * yz,
-                   xz + zx + xx * zx + xy * zy + xz * zz,  yz + zy + yx * zx + yy * zy + yz * zz};
-    return push_forward(b, i, c) + f;
-  }
-
-  /** Principal logarithmic strain, from a principal value of be - I. */
-  MPM_INLINE double log_strain(double value)
-  {
-    return 0.5 * log1p(max(value, -1.0 + 1e-15));
+    return push_forward(b, i, c) + left_strain(step_displacement(b, i));
   }
 
   /** det(I + c) - 1 */
@@ -60,17 +48,6 @@ namespace {
         2.0 * (s.xy * x * y + s.xz * x * z + s.yz * y * z);
   }
 
-  /** sum_a value_a n_a x n_a, with the axes n_a of point i as [component][axis][point]. */
-  MPM_INLINE Sym along_axes(const double (&axes)[3][3][BATCH], int i, double value0, double value1,
-                            double value2)
-  {
-    Sym r = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-    add_dyad(r, axes[0][0][i], axes[1][0][i], axes[2][0][i], value0);
-    add_dyad(r, axes[0][1][i], axes[1][1][i], axes[2][1][i], value1);
-    add_dyad(r, axes[0][2][i], axes[1][2][i], axes[2][2][i], value2);
-    return r;
-  }
-
   /** A batch along the principal axes of the elastic trial state, values as [axis][point]. */
   struct PrincipalStates {
     alignas(64) double before[3][BATCH];    ///< elastic strain at the start of the step
@@ -79,15 +56,35 @@ namespace {
     alignas(64) double work[BATCH];         ///< out: dissipated work per reference volume
   };
 
+  /** Work of a plastic strain increment: the mean of the stresses at start and end of the step. The
+   *  old stress counts only if it does work in this direction: otherwise the step began elastic. */
+  MPM_INLINE double plastic_work(double by_old, double by_new)
+  {
+    return max(0.5 * (max(by_old, 0.0) + by_new), 0.0);
+  }
+
+  /** Upper bound of the acoustic modulus of Hencky elasticity, J d sigma_nn / d strain_nn: along a
+   *  principal axis K + 4/3 G - tau_nn, between two axes G grows to G x coth(x) <= G (1 + x^2/3)
+   *  with the difference x of their logarithmic strains. */
+  MPM_INLINE double hencky_modulus(double K, double G, double J, const Sym &stress)
+  {
+    const Sym s = deviator(stress);
+    const double s2 = J * J * norm2(s), x2 = 2.0 * s2 / (4.0 * G * G);
+    return max(K + (4.0 / 3.0) * G * (1.0 + (1.0 / 3.0) * x2) - (1.0 / 3.0) * J * trace(stress) +
+                   std::sqrt((2.0 / 3.0) * s2),
+               LEAST_MODULUS * (K + (4.0 / 3.0) * G));
+  }
+
   /** Update of an isotropic law by F = Fe Fp with the history be = Fe Fe^T (J.C. Simo, Comput.
    *  Methods Appl. Mech. Eng. 99 (1992) 61; E.A. de Souza Neto, D. Peric, D.R.J. Owen,
    *  Computational Methods for Plasticity, 2008, ch. 14.4): the trial state f be f^T is exact for
    *  any rotation, its principal logarithmic strains ln(be)/2 are returned as in small strain, and
    *  the axes stay. Stresses of the law are Kirchhoff stresses, J times Cauchy.
    *
-   *  Law has, besides its declaration: Law(parameters, batch), map(batch, history, states), which
-   *  returns the strains and makes the rest, with the history rows behind those of be, and
-   *  stored(history, i, strain, strain, strain), the energy per reference volume.
+   *  Law has, besides its declaration: Law(parameters), map(batch, history, states), which returns
+   *  the strains and makes the rest, with the history rows behind those of be, and
+   *  stored(history, i, strain, strain, strain), the energy per reference volume; and modulus(),
+   *  unless its elasticity is Hencky's with Young's modulus and Poisson's ratio.
    *
    *  Strains at the start of the step are those of the trial state less the strain increment along
    *  its axes; the work of a step is then right to third order. */
@@ -96,7 +93,7 @@ namespace {
 
     static void update(const LawParameters &p, Batch &b, History history)
     {
-      const Law law(p, b);
+      const Law law(p);
       alignas(64) double axes[3][3][BATCH];
       PrincipalStates s;
       MPM_SIMD
@@ -129,7 +126,7 @@ namespace {
 
     static void energy(const LawParameters &p, const Batch &b, History history, double *w)
     {
-      const Law law(p, b);
+      const Law law(p);
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
         const Spectral s = spectral(load_rows(history, i));
@@ -137,26 +134,14 @@ namespace {
                            log_strain(s.value[1]), log_strain(s.value[2]));
       }
     }
+
+    static void modulus(const LawParameters &p, const Batch &b, History, double *k)
+    {
+      const BulkAndShear m(p);
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) k[i] += hencky_modulus(m.K, m.G, b.J[i], load_stress(b, i));
+    }
   };
-
-  /** Work of a plastic strain increment: the mean of the stresses at start and end of the step. The
-   *  old stress counts only if it does work in this direction: otherwise the step began elastic. */
-  MPM_INLINE double plastic_work(double by_old, double by_new)
-  {
-    return max(0.5 * (max(by_old, 0.0) + by_new), 0.0);
-  }
-
-  /** Upper bound of the acoustic modulus of Hencky elasticity, J d sigma_nn / d strain_nn: along a
-   *  principal axis K + 4/3 G - tau_nn, between two axes G grows to G x coth(x) <= G (1 + x^2/3)
-   *  with the difference x of their logarithmic strains. */
-  MPM_INLINE double hencky_modulus(double K, double G, double J, const Sym &stress)
-  {
-    const Sym s = deviator(stress);
-    const double s2 = J * J * norm2(s), x2 = 2.0 * s2 / (4.0 * G * G);
-    return max(K + (4.0 / 3.0) * G * (1.0 + (1.0 / 3.0) * x2) - (1.0 / 3.0) * J * trace(stress) +
-                   std::sqrt((2.0 / 3.0) * s2),
-               LEAST_MODULUS * (K + (4.0 / 3.0) * G));
-  }
 
   /** A batch in invariants. */
   struct InvariantStates {
@@ -225,13 +210,6 @@ namespace {
     using BulkAndShear::BulkAndShear;
     MPM_INLINE double pressure(double v) const { return -K * v; }
     MPM_INLINE double volume_energy(double v) const { return 0.5 * K * v * v; }
-
-    static void modulus(const LawParameters &p, const Batch &b, History, double *k)
-    {
-      const BulkAndShear m(p);
-      MPM_SIMD
-      for (int i = 0; i < b.n; i++) k[i] += hencky_modulus(m.K, m.G, b.J[i], load_stress(b, i));
-    }
   };
 
   /** Grains that separated: the volume strain that opened between them without stress ("gap") must

@@ -14,13 +14,6 @@
 namespace MPM_NS::law {
 namespace {
 
-  MPM_INLINE void subtract_pressure(Batch &b, int i, double p)
-  {
-    b.stress[0][i] -= p;
-    b.stress[1][i] -= p;
-    b.stress[2][i] -= p;
-  }
-
   /** Loops of an equation of state p(J) without energy.
    *
    *  Eos has, with the volume ratio J = density_0 / density: pressure(J), bulk(J) = -J^2 dp/dJ (the
@@ -51,6 +44,38 @@ namespace {
     }
   };
 
+  /** What equations of state with an internal energy E share: its declaration (initial: as in
+   *  HistoryDeclaration) and that of its dissipated part. */
+  constexpr HistoryDeclaration internal_energy(int initial)
+  {
+    return {"energy", initial, "pressure", "internal energy per reference volume"};
+  }
+  constexpr HistoryDeclaration dissipated = {"heat", ZERO, "pressure",
+                                             "part of it that was dissipated"};
+  struct InternalEnergy : LawDefaults {
+    static constexpr bool uses_F = false;
+    enum { ENERGY, HEATED };
+
+    /** Internal energy less the dissipated part, which counts as plastic and viscous work. */
+    static void energy(const LawParameters &, const Batch &b, History history, double *w)
+    {
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) w[i] += history[ENERGY][i] - history[HEATED][i];
+    }
+  };
+
+  constexpr Range TENSION{-UNBOUNDED, 0.0, true};
+  constexpr Parameter cutoff = {"cutoff", "PMIN",     "pressure",
+                                TENSION,  -UNBOUNDED, "lowest pressure, not positive"};
+  constexpr Parameter spall = {"spall",
+                               "PSPALL",
+                               "pressure",
+                               TENSION,
+                               -UNBOUNDED,
+                               "pressure, not positive, below which the material breaks and "
+                               "bears no tension any more"};
+  constexpr HistoryDeclaration spalled = {"spalled", ZERO, "1", "1 when the material has broken"};
+
   /** Tension that an equation of state bears: all, a pressure of at least PMIN, or, when the
    *  pressure has fallen below PMIN once, none (spall). */
   struct Tension {
@@ -64,32 +89,32 @@ namespace {
         spall(spalls > -UNBOUNDED)
     {
     }
-
-    static constexpr const char *check(double cutoff, double spalls)
-    {
-      return cutoff > -UNBOUNDED && spalls > -UNBOUNDED
-          ? "cutoff and spall exclude each other: leave one of them out"
-          : nullptr;
-    }
   };
-  constexpr Range TENSION{-UNBOUNDED, 0.0, true};
 
   /** Loops of an equation of state p = cold(J) + gamma(J) E, with the internal energy E per
    *  reference volume.
    *
    *  Eos has cold(J), gamma(J), slope(J, E) = -dp/dJ at constant E, least, the smallest
-   *  density_0 (sound speed)^2 that is believed, and tension. E follows from
+   *  density_0 (sound speed)^2 that is believed, and tension; CUTOFF and SPALL are the indices of
+   *  its parameters cutoff and spall. E follows from
    *
    *    E = E_old - (p_old + p)/2 (J - J_old) + heat
    *
    *  solved together with p: second order in the strain increment, and one step from the reference
    *  state lands exactly on the Hugoniot. A pressure that is limited by tension is the one that
-   *  does the work. History: energy, heat (the dissipated part of it), and with spall a mark.
-   */
-  template <class Eos> struct LinearInEnergy : LawDefaults {
-    static constexpr bool uses_F = false;
-
-    enum { ENERGY, HEATED, SPALLED };
+   *  does the work. History: internal_energy, dissipated, and with spall a mark, spalled. */
+  template <class Eos> struct LinearInEnergy : InternalEnergy {
+    enum { SPALLED = HEATED + 1 };
+    static constexpr int nhistory(const LawParameters &p)
+    {
+      return p.value[Eos::SPALL] > -UNBOUNDED ? 3 : 2;
+    }
+    static constexpr const char *check(const LawParameters &p)
+    {
+      return p.value[Eos::CUTOFF] > -UNBOUNDED && p.value[Eos::SPALL] > -UNBOUNDED
+          ? "cutoff and spall exclude each other: leave one of them out"
+          : nullptr;
+    }
 
     static void update(const LawParameters &p, Batch &b, History history)
     {
@@ -110,13 +135,6 @@ namespace {
         const double pressure = max(eos.cold(J) + gamma * E, eos.tension.pmin);
         k[i] += max(J * J * (eos.slope(J, E) + gamma * pressure), eos.least);
       }
-    }
-
-    /** Internal energy less the dissipated part, which counts as plastic and viscous work. */
-    static void energy(const LawParameters &, const Batch &b, History history, double *w)
-    {
-      MPM_SIMD
-      for (int i = 0; i < b.n; i++) w[i] += history[ENERGY][i] - history[HEATED][i];
     }
 
    private:

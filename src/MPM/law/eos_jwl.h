@@ -25,15 +25,13 @@ namespace {
    *  from it over D, the earliest of all detonation points, at the position where the point is
    *  made. Without detonation points all has burnt from the start. E is E0 from the start and
    *  changes by the work of the pressure and by heat only: the chemical energy is released once. */
-  struct EosJWL : LawDefaults {
-    static constexpr bool uses_F = false;
+  struct EosJWL : InternalEnergy {
     static constexpr const char *name = "jwl";
     static constexpr const char *meaning = "Jones-Wilkins-Lee detonation products";
     enum { A, B, R1, R2, OMEGA, E0, D, WIDTH };
-    static constexpr Range ANY{-UNBOUNDED, UNBOUNDED, false};
     static constexpr Parameter parameters[] = {
         {"", "A", "pressure", NOT_NEGATIVE, REQUIRED, "coefficient of the first exponential"},
-        {"", "B", "pressure", ANY, REQUIRED, "coefficient of the second exponential"},
+        {"", "B", "pressure", ANY_NUMBER, REQUIRED, "coefficient of the second exponential"},
         {"", "R1", "1", POSITIVE, REQUIRED, "rate of the first exponential"},
         {"", "R2", "1", POSITIVE, REQUIRED, "rate of the second exponential"},
         {"", "OMEGA", "1", POSITIVE, REQUIRED, "Gruneisen parameter of the products"},
@@ -42,17 +40,16 @@ namespace {
         {"width", "WIDTH", "1", POSITIVE, 3.0, "width of the burn in node spacings"}};
     static constexpr const char *term = "detonate";
     static constexpr Parameter term_parameters[] = {
-        {"detonate", "X", "length", ANY, REQUIRED, "detonation point"},
-        {"detonate", "Y", "length", ANY, REQUIRED, "detonation point"},
-        {"detonate", "Z", "length", ANY, REQUIRED, "detonation point"},
-        {"detonate", "T", "time", ANY, REQUIRED, "time of its detonation"}};
+        {"detonate", "X", "length", ANY_NUMBER, REQUIRED, "detonation point"},
+        {"detonate", "Y", "length", ANY_NUMBER, REQUIRED, "detonation point"},
+        {"detonate", "Z", "length", ANY_NUMBER, REQUIRED, "detonation point"},
+        {"detonate", "T", "time", ANY_NUMBER, REQUIRED, "time of its detonation"}};
     static constexpr HistoryDeclaration history[] = {
-        {"energy", E0, "pressure", "internal energy per reference volume"},
-        {"heat", ZERO, "pressure", "part of it that was dissipated"},
+        internal_energy(E0),
+        dissipated,
         {"burn", INITIALIZED, "1", "burn fraction"},
         {"lighting", INITIALIZED, "time", "time at which the detonation arrives"}};
-    enum { ENERGY, HEATED, BURN, LIGHTING };
-    static constexpr int nhistory(const LawParameters &) { return 4; }
+    enum { BURN = HEATED + 1, LIGHTING };
     static void initialize(const LawParameters &p, const double *x, double *history)
     {
       for (int k = 0; k < p.nterms; k++) {
@@ -121,16 +118,8 @@ namespace {
         k[i] += max(burn * J * J * slope, burn < 1.0 ? front : 0.0);
       }
     }
-
-    /** Internal energy less the dissipated part, which counts as plastic and viscous work. */
-    static void energy(const LawParameters &, const Batch &batch, History history, double *w)
-    {
-      MPM_SIMD
-      for (int i = 0; i < batch.n; i++) w[i] += history[ENERGY][i] - history[HEATED][i];
-    }
   };
 
 }    // namespace
 }    // namespace MPM_NS::law
-
 #endif

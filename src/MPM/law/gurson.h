@@ -14,22 +14,6 @@
 namespace MPM_NS::law {
 namespace {
 
-  enum {
-    GTN_E,
-    GTN_NU,
-    GTN_Y,
-    GTN_F0,
-    GTN_E0,
-    GTN_N,
-    GTN_Q1,
-    GTN_Q2,
-    GTN_FN,
-    GTN_EN,
-    GTN_SN,
-    GTN_FC,
-    GTN_FF
-  };
-
   /** Ductile metal with voids (A.L. Gurson, J. Eng. Mater. Technol. 99 (1977) 2; V. Tvergaard,
    *  A. Needleman, Acta Metall. 32 (1984) 157): with the Cauchy mean stress m, equivalent stress q,
    *  porosity f, and the flow stress y = SIGMAY (1 + e/E0)^N of the matrix at its plastic strain e,
@@ -53,10 +37,11 @@ namespace {
   struct LawGurson : HenckyInvariantReturn<LawGurson> {
     static constexpr const char *name = "gurson";
     static constexpr const char *meaning = "Gurson-Tvergaard-Needleman: ductile metal with voids";
+    enum { YOUNG, POISSON, SIGMAY, F0, E0, N, Q1, Q2, FN, EN, SN, FC, FF };
     static constexpr Range INSIDE = {0.0, 1.0, false};
     static constexpr Parameter parameters[] = {
-        {"", "E", "pressure", POSITIVE, REQUIRED, "Young's modulus"},
-        {"", "NU", "1", POISSON_RATIO, REQUIRED, "Poisson's ratio"},
+        YOUNGS_MODULUS,
+        POISSONS_RATIO,
         {"", "SIGMAY", "pressure", POSITIVE, REQUIRED, "yield stress of the matrix"},
         {"", "F0", "1", {0.0, 0.5, true}, REQUIRED, "initial porosity"},
         {"hardening", "E0", "1", POSITIVE, 1.0, "strain scale of the hardening"},
@@ -71,20 +56,17 @@ namespace {
     static constexpr HistoryDeclaration history[] = {
         MPM_ELASTIC_STRAIN_HISTORY,
         {"eplastic", ZERO, "1", "equivalent plastic strain of the matrix"},
-        {"porosity", GTN_F0, "1", "share of voids in the volume"},
+        {"porosity", F0, "1", "share of voids in the volume"},
         {"damage", ZERO, "1", "f* Q1, share of the flow stress that is lost, 1: failed"},
         {"gap", ZERO, "1", "logarithmic volume strain that opened after failure"}};
-    enum { EPLASTIC, POROSITY, FAILED, GAP, NROWS };
-    static constexpr int nhistory(const LawParameters &) { return ELASTIC_STRAIN_ROWS + NROWS; }
+    enum { EPLASTIC, POROSITY, FAILED, GAP };
     static constexpr const char *check(const LawParameters &p)
     {
-      const double G = p.value[GTN_E] / (2.0 * (1.0 + p.value[GTN_NU]));
-      if (p.value[GTN_FF] > 0.0 && !(p.value[GTN_FF] > p.value[GTN_FC]))
-        return "FF must be above FC";
-      if (p.value[GTN_FF] > 0.0 && !(p.value[GTN_FC] < 1.0 / p.value[GTN_Q1]))
-        return "FC must be below 1/Q1";
-      if (!(p.value[GTN_F0] * p.value[GTN_Q1] < 1.0)) return "F0 must be below 1/Q1";
-      return p.value[GTN_Y] * p.value[GTN_N] <= 3.0 * G * p.value[GTN_E0]
+      const double G = p.value[YOUNG] / (2.0 * (1.0 + p.value[POISSON]));
+      if (p.value[FF] > 0.0 && !(p.value[FF] > p.value[FC])) return "FF must be above FC";
+      if (p.value[FF] > 0.0 && !(p.value[FC] < 1.0 / p.value[Q1])) return "FC must be below 1/Q1";
+      if (!(p.value[F0] * p.value[Q1] < 1.0)) return "F0 must be below 1/Q1";
+      return p.value[SIGMAY] * p.value[N] <= 3.0 * G * p.value[E0]
           ? nullptr
           : "SIGMAY N/E0, the slope of the hardening at its start, must not exceed 3 G";
     }
@@ -93,13 +75,12 @@ namespace {
     static constexpr double CLOSE = 1e-2;     ///< S over y at which a bracket is close enough
     double sigmay, inv_e0, n, q1, q2, fn, en, inv_sn, fc, slope, limit;
 
-    LawGurson(const LawParameters &p, const Batch &) :
-        HenckyInvariantReturn(p), sigmay(p.value[GTN_Y]), inv_e0(1.0 / p.value[GTN_E0]),
-        n(p.value[GTN_N]), q1(p.value[GTN_Q1]), q2(p.value[GTN_Q2]), fn(p.value[GTN_FN]),
-        en(p.value[GTN_EN]), inv_sn(1.0 / p.value[GTN_SN]), fc(p.value[GTN_FC]), slope(1.0),
-        limit(1.0 / q1)
+    explicit LawGurson(const LawParameters &p) :
+        HenckyInvariantReturn(p), sigmay(p.value[SIGMAY]), inv_e0(1.0 / p.value[E0]), n(p.value[N]),
+        q1(p.value[Q1]), q2(p.value[Q2]), fn(p.value[FN]), en(p.value[EN]),
+        inv_sn(1.0 / p.value[SN]), fc(p.value[FC]), slope(1.0), limit(1.0 / q1)
     {
-      if (p.value[GTN_FF] > 0.0) slope = (limit - fc) / (p.value[GTN_FF] - fc);
+      if (p.value[FF] > 0.0) slope = (limit - fc) / (p.value[FF] - fc);
     }
 
     MPM_INLINE double flow_stress(double e) const

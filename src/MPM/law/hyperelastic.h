@@ -14,66 +14,6 @@
 namespace MPM_NS::law {
 namespace {
 
-  /** Displacement gradient F - I of a point. */
-  struct Displacement {
-    double xx, xy, xz, yx, yy, yz, zx, zy, zz;
-  };
-
-  MPM_INLINE Displacement displacement(const Batch &b, int i)
-  {
-    return {b.F[0][i] - 1.0, b.F[1][i], b.F[2][i], b.F[3][i],      b.F[4][i] - 1.0,
-            b.F[5][i],       b.F[6][i], b.F[7][i], b.F[8][i] - 1.0};
-  }
-
-  /** b - I = H + H^T + H H^T: small strains keep full relative precision. */
-  MPM_INLINE Sym left_strain(const Displacement &H)
-  {
-    return {2.0 * H.xx + H.xx * H.xx + H.xy * H.xy + H.xz * H.xz,
-            2.0 * H.yy + H.yx * H.yx + H.yy * H.yy + H.yz * H.yz,
-            2.0 * H.zz + H.zx * H.zx + H.zy * H.zy + H.zz * H.zz,
-            H.xy + H.yx + H.xx * H.yx + H.xy * H.yy + H.xz * H.yz,
-            H.xz + H.zx + H.xx * H.zx + H.xy * H.zy + H.xz * H.zz,
-            H.yz + H.zy + H.yx * H.zx + H.yy * H.zy + H.yz * H.zz};
-  }
-
-  /** Green-Lagrange strain (F^T F - I)/2. */
-  MPM_INLINE Sym green_lagrange(const Displacement &H)
-  {
-    return 0.5 * left_strain({H.xx, H.yx, H.zx, H.xy, H.yy, H.zy, H.xz, H.yz, H.zz});
-  }
-
-  /** ln J, from J - 1 = tr H + minors + det H. */
-  MPM_INLINE double log_volume(const Displacement &H)
-  {
-    const double minors =
-        (H.xx * H.yy - H.xy * H.yx) + (H.xx * H.zz - H.xz * H.zx) + (H.yy * H.zz - H.yz * H.zy);
-    const double det = H.xx * (H.yy * H.zz - H.yz * H.zy) - H.xy * (H.yx * H.zz - H.yz * H.zx) +
-        H.xz * (H.yx * H.zy - H.yy * H.zx);
-    return log1p(H.xx + H.yy + H.zz + (minors + det));
-  }
-
-  /** Change of shape: z = J^(-2/3) b - I. */
-  struct Isochoric {
-    Sym z;
-    double logJ;
-
-    MPM_INLINE Isochoric(const Batch &b, int i)
-    {
-      const Displacement H = displacement(b, i);
-      logJ = log_volume(H);
-      const double change = expm1((-2.0 / 3.0) * logJ);
-      z = add_diagonal((1.0 + change) * left_strain(H), change);
-    }
-
-    /** tr(z) = first invariant - 3, of second order in the strain: since det(I + z) = 1, it is also
-     *  minus the sum of the other two invariants of z, which does not cancel for small strains. */
-    MPM_INLINE double first() const
-    {
-      const double t = trace(z);
-      return t > 0.01 ? t : -(minors(z) + determinant(z));
-    }
-  };
-
   /** Loops of a law whose stress is a function of F. Law has: Law(parameters);
    *  kirchhoff(batch, i), the Kirchhoff stress J sigma; stored(batch, i), the energy per reference
    *  volume. */
@@ -143,12 +83,12 @@ namespace {
       for (int i = 0; i < b.n; i++) {
         const Displacement H = displacement(b, i);
         const Sym strain = left_strain(H);
-        const double mean = (1.0 / 3.0) * trace(strain), least = -1.0 + 1e-15;
+        const double mean = (1.0 / 3.0) * trace(strain);
         const DeviatorRoots root(deviator(strain));
         r.logJ[i] = log_volume(H);
-        r.e[0][i] = 0.5 * log1p(max(mean + root.first, least));
-        r.e[1][i] = 0.5 * log1p(max(mean - 0.5 * root.first + root.half, least));
-        r.e[2][i] = 0.5 * log1p(max(mean - 0.5 * root.first - root.half, least));
+        r.e[0][i] = log_strain(mean + root.first);
+        r.e[1][i] = log_strain(mean - 0.5 * root.first + root.half);
+        r.e[2][i] = log_strain(mean - 0.5 * root.first - root.half);
         for (int a = 0; a < 3; a++) {
           r.tau[a][i] = 0.0;
           r.A[a][i] = r.A[a + 3][i] = 0.0;
@@ -166,24 +106,6 @@ namespace {
     }
   };
 
-  /** Adds a term MU/ALPHA (sum_a exp(ALPHA (e_a - ln J/3)) - 3) of the energy, Ogden's. */
-  MPM_INLINE void respond_ogden(double mu, double alpha, PrincipalResponse &r, int i)
-  {
-    const double mean = (1.0 / 3.0) * r.logJ[i];
-    const double x = exp(alpha * (r.e[0][i] - mean)), y = exp(alpha * (r.e[1][i] - mean));
-    const double z = exp(alpha * (r.e[2][i] - mean)), average = (1.0 / 3.0) * (x + y + z);
-    const double third = (1.0 / 3.0) * mu * alpha;
-    r.tau[0][i] += mu * (x - average);
-    r.tau[1][i] += mu * (y - average);
-    r.tau[2][i] += mu * (z - average);
-    r.A[0][i] += third * (x + average);
-    r.A[1][i] += third * (y + average);
-    r.A[2][i] += third * (z + average);
-    r.A[3][i] -= third * (x + y - average);
-    r.A[4][i] -= third * (x + z - average);
-    r.A[5][i] -= third * (y + z - average);
-  }
-
   /** Adds a mean Kirchhoff stress with its derivative with respect to ln J. */
   MPM_INLINE void respond_mean(double tau, double derivative, PrincipalResponse &r, int i)
   {
@@ -193,15 +115,6 @@ namespace {
       r.A[a + 3][i] += derivative;
     }
   }
-
-  /** Resistance to change of volume, U = K/4 (J^2 - 1 - 2 ln J): convex, and infinite for J -> 0
-   *  (J.C. Simo, T.J.R. Hughes, Computational Inelasticity, 1998, eq. 9.2.5). */
-  struct VolumeEnergy {
-    double K;
-    MPM_INLINE double stress(double logJ) const { return 0.5 * K * expm1(2.0 * logJ); }
-    MPM_INLINE double derivative(double logJ) const { return K * exp(2.0 * logJ); }
-    MPM_INLINE double stored(double logJ) const { return 0.25 * K * expm1_minus(2.0 * logJ); }
-  };
 
 }    // namespace
 }    // namespace MPM_NS::law

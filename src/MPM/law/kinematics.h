@@ -54,6 +54,12 @@ namespace {
         2.0 * (a.xy * a.xy + a.xz * a.xz + a.yz * a.yz);
   }
 
+  /** Von Mises equivalent of a deviator. */
+  MPM_INLINE double equivalent(const Sym &s)
+  {
+    return std::sqrt(1.5 * norm2(s));
+  }
+
   /** Invariants of a symmetric tensor. */
   MPM_INLINE double minors(const Sym &a)
   {
@@ -66,23 +72,7 @@ namespace {
         a.xz * (a.xy * a.yz - a.yy * a.xz);
   }
 
-  MPM_INLINE Sym load_stress(const Batch &b, int i)
-  {
-    return {b.stress[0][i], b.stress[1][i], b.stress[2][i],
-            b.stress[3][i], b.stress[4][i], b.stress[5][i]};
-  }
-
-  MPM_INLINE void store_stress(Batch &b, int i, const Sym &s)
-  {
-    b.stress[0][i] = s.xx;
-    b.stress[1][i] = s.yy;
-    b.stress[2][i] = s.zz;
-    b.stress[3][i] = s.xy;
-    b.stress[4][i] = s.xz;
-    b.stress[5][i] = s.yz;
-  }
-
-  MPM_INLINE Sym load_rows(History rows, int i)
+  MPM_INLINE Sym load_rows(const double (*rows)[BATCH], int i)
   {
     return {rows[0][i], rows[1][i], rows[2][i], rows[3][i], rows[4][i], rows[5][i]};
   }
@@ -95,6 +85,23 @@ namespace {
     rows[3][i] = s.xy;
     rows[4][i] = s.xz;
     rows[5][i] = s.yz;
+  }
+
+  MPM_INLINE Sym load_stress(const Batch &b, int i)
+  {
+    return load_rows(b.stress, i);
+  }
+
+  MPM_INLINE void store_stress(Batch &b, int i, const Sym &s)
+  {
+    store_rows(b.stress, i, s);
+  }
+
+  MPM_INLINE void subtract_pressure(Batch &b, int i, double p)
+  {
+    b.stress[0][i] -= p;
+    b.stress[1][i] -= p;
+    b.stress[2][i] -= p;
   }
 
   /** Isotropic moduli of a law whose first parameters are Young's modulus and Poisson's ratio. */
@@ -138,17 +145,79 @@ namespace {
     const double yy = t * f - (e * c + f * f + g * k), yz = t * g - (e * d + f * g + g * l);
     const double zx = t * h - (h * a + k * e + l * h), zy = t * k - (h * c + k * f + l * k);
     const double zz = t * l - (h * d + k * g + l * l);
-    Increment inc;
-    inc.strain.xx = 2.0 * q * (xx + det);
-    inc.strain.yy = 2.0 * q * (yy + det);
-    inc.strain.zz = 2.0 * q * (zz + det);
-    inc.strain.xy = q * (xy + yx);
-    inc.strain.xz = q * (xz + zx);
-    inc.strain.yz = q * (yz + zy);
-    inc.wx = q * (zy - yz);
-    inc.wy = q * (xz - zx);
-    inc.wz = q * (yx - xy);
-    return inc;
+    return {{2.0 * q * (xx + det), 2.0 * q * (yy + det), 2.0 * q * (zz + det), q * (xy + yx),
+             q * (xz + zx), q * (yz + zy)},
+            q * (zy - yz),
+            q * (xz - zx),
+            q * (yx - xy)};
+  }
+
+  /** Displacement gradient H. */
+  struct Displacement {
+    double xx, xy, xz, yx, yy, yz, zx, zy, zz;
+
+    MPM_INLINE double minors() const
+    {
+      return (xx * yy - xy * yx) + (xx * zz - xz * zx) + (yy * zz - yz * zy);
+    }
+    MPM_INLINE double determinant() const
+    {
+      return xx * (yy * zz - yz * zy) - xy * (yx * zz - yz * zx) + xz * (yx * zy - yy * zx);
+    }
+  };
+
+  /** H = F - I of a point. */
+  MPM_INLINE Displacement displacement(const Batch &b, int i)
+  {
+    return {b.F[0][i] - 1.0, b.F[1][i], b.F[2][i], b.F[3][i],      b.F[4][i] - 1.0,
+            b.F[5][i],       b.F[6][i], b.F[7][i], b.F[8][i] - 1.0};
+  }
+
+  /** H = A of this step. */
+  MPM_INLINE Displacement step_displacement(const Batch &b, int i)
+  {
+    return {b.A[0][i], b.A[1][i], b.A[2][i], b.A[3][i], b.A[4][i],
+            b.A[5][i], b.A[6][i], b.A[7][i], b.A[8][i]};
+  }
+
+  /** b - I = H + H^T + H H^T: small strains keep full relative precision. */
+  MPM_INLINE Sym left_strain(const Displacement &H)
+  {
+    return {2.0 * H.xx + H.xx * H.xx + H.xy * H.xy + H.xz * H.xz,
+            2.0 * H.yy + H.yx * H.yx + H.yy * H.yy + H.yz * H.yz,
+            2.0 * H.zz + H.zx * H.zx + H.zy * H.zy + H.zz * H.zz,
+            H.xy + H.yx + H.xx * H.yx + H.xy * H.yy + H.xz * H.yz,
+            H.xz + H.zx + H.xx * H.zx + H.xy * H.zy + H.xz * H.zz,
+            H.yz + H.zy + H.yx * H.zx + H.yy * H.zy + H.yz * H.zz};
+  }
+
+  /** Green-Lagrange strain (F^T F - I)/2. */
+  MPM_INLINE Sym green_lagrange(const Displacement &H)
+  {
+    return 0.5 * left_strain({H.xx, H.yx, H.zx, H.xy, H.yy, H.zy, H.xz, H.yz, H.zz});
+  }
+
+  /** ln J, from J - 1 = tr H + minors + det H. */
+  MPM_INLINE double log_volume(const Displacement &H)
+  {
+    return log1p(H.xx + H.yy + H.zz + (H.minors() + H.determinant()));
+  }
+
+  /** M s M^T with a row-major matrix M. */
+  MPM_INLINE Sym congruence(const double *M, const Sym &s)
+  {
+    const double txx = M[0] * s.xx + M[1] * s.xy + M[2] * s.xz;
+    const double txy = M[0] * s.xy + M[1] * s.yy + M[2] * s.yz;
+    const double txz = M[0] * s.xz + M[1] * s.yz + M[2] * s.zz;
+    const double tyx = M[3] * s.xx + M[4] * s.xy + M[5] * s.xz;
+    const double tyy = M[3] * s.xy + M[4] * s.yy + M[5] * s.yz;
+    const double tyz = M[3] * s.xz + M[4] * s.yz + M[5] * s.zz;
+    const double tzx = M[6] * s.xx + M[7] * s.xy + M[8] * s.xz;
+    const double tzy = M[6] * s.xy + M[7] * s.yy + M[8] * s.yz;
+    const double tzz = M[6] * s.xz + M[7] * s.yz + M[8] * s.zz;
+    return {txx * M[0] + txy * M[1] + txz * M[2], tyx * M[3] + tyy * M[4] + tyz * M[5],
+            tzx * M[6] + tzy * M[7] + tzz * M[8], txx * M[3] + txy * M[4] + txz * M[5],
+            txx * M[6] + txy * M[7] + txz * M[8], tyx * M[6] + tyy * M[7] + tyz * M[8]};
   }
 
   /** Q s Q^T with the incremental rotation Q = (I - W/2)^-1 (I + W/2)
@@ -158,22 +227,10 @@ namespace {
     const double x = inc.wx, y = inc.wy, z = inc.wz;
     const double w2 = x * x + y * y + z * z;
     const double c = 1.0 / (1.0 + 0.25 * w2), h = 0.5 * c, d = 1.0 - h * w2;
-    const double qxx = d + h * x * x, qxy = h * x * y - c * z, qxz = h * x * z + c * y;
-    const double qyx = h * x * y + c * z, qyy = d + h * y * y, qyz = h * y * z - c * x;
-    const double qzx = h * x * z - c * y, qzy = h * y * z + c * x, qzz = d + h * z * z;
-    // T = Q s
-    const double txx = qxx * s.xx + qxy * s.xy + qxz * s.xz;
-    const double txy = qxx * s.xy + qxy * s.yy + qxz * s.yz;
-    const double txz = qxx * s.xz + qxy * s.yz + qxz * s.zz;
-    const double tyx = qyx * s.xx + qyy * s.xy + qyz * s.xz;
-    const double tyy = qyx * s.xy + qyy * s.yy + qyz * s.yz;
-    const double tyz = qyx * s.xz + qyy * s.yz + qyz * s.zz;
-    const double tzx = qzx * s.xx + qzy * s.xy + qzz * s.xz;
-    const double tzy = qzx * s.xy + qzy * s.yy + qzz * s.yz;
-    const double tzz = qzx * s.xz + qzy * s.yz + qzz * s.zz;
-    return {txx * qxx + txy * qxy + txz * qxz, tyx * qyx + tyy * qyy + tyz * qyz,
-            tzx * qzx + tzy * qzy + tzz * qzz, txx * qyx + txy * qyy + txz * qyz,
-            txx * qzx + txy * qzy + txz * qzz, tyx * qzx + tyy * qzy + tyz * qzz};
+    const double Q[9] = {d + h * x * x,     h * x * y - c * z, h * x * z + c * y,
+                         h * x * y + c * z, d + h * y * y,     h * y * z - c * x,
+                         h * x * z - c * y, h * y * z + c * x, d + h * z * z};
+    return congruence(Q, s);
   }
 
   /** Jaumann rate over one step: Q (old + rate/2) Q^T + rate/2, where rate belongs to the middle
@@ -195,23 +252,6 @@ namespace {
             xx * yx + xy * yy + xz * yz, xx * zx + xy * zy + xz * zz, yx * zx + yy * zy + yz * zz};
   }
 
-  /** M s M^T with a row-major matrix M. */
-  MPM_INLINE Sym congruence(const double *M, const Sym &s)
-  {
-    const double txx = M[0] * s.xx + M[1] * s.xy + M[2] * s.xz;
-    const double txy = M[0] * s.xy + M[1] * s.yy + M[2] * s.yz;
-    const double txz = M[0] * s.xz + M[1] * s.yz + M[2] * s.zz;
-    const double tyx = M[3] * s.xx + M[4] * s.xy + M[5] * s.xz;
-    const double tyy = M[3] * s.xy + M[4] * s.yy + M[5] * s.yz;
-    const double tyz = M[3] * s.xz + M[4] * s.yz + M[5] * s.zz;
-    const double tzx = M[6] * s.xx + M[7] * s.xy + M[8] * s.xz;
-    const double tzy = M[6] * s.xy + M[7] * s.yy + M[8] * s.yz;
-    const double tzz = M[6] * s.xz + M[7] * s.yz + M[8] * s.zz;
-    return {txx * M[0] + txy * M[1] + txz * M[2], tyx * M[3] + tyy * M[4] + tyz * M[5],
-            tzx * M[6] + tzy * M[7] + tzz * M[8], txx * M[3] + txy * M[4] + txz * M[5],
-            txx * M[6] + txy * M[7] + txz * M[8], tyx * M[6] + tyy * M[7] + tyz * M[8]};
-  }
-
   /** a a */
   MPM_INLINE Sym square(const Sym &a)
   {
@@ -230,8 +270,7 @@ namespace {
     MPM_INLINE explicit DeviatorRoots(const Sym &d)
     {
       const double r = std::sqrt((1.0 / 6.0) * norm2(d)), r3 = r * r * r;
-      const double det = d.xx * (d.yy * d.zz - d.yz * d.yz) - d.xy * (d.xy * d.zz - d.yz * d.xz) +
-          d.xz * (d.xy * d.yz - d.yy * d.xz);
+      const double det = determinant(d);
       const double c = max(-1.0, min(1.0, r3 > 0.0 ? 0.5 * det / r3 : 0.0));
       const double a = c < 0.0 ? -c : c;
       double t = std::sqrt(3.0 + a);

@@ -11,11 +11,11 @@
 
 // What a constitutive law declares (its parameters and history) and the kernels it provides.
 //
-// A law is one header: a struct with the declaration and the loops over a batch, which is added to
+// A law is a struct in a header, with the declaration and the loops over a batch, which is added to
 // its list in law/list.h; nothing else has to change. The headers are compiled once for each
-// instruction set by law/laws_isa.cpp, and once more without special options by material/material.cpp,
-// which reads the declarations only. All of their content is in unnamed namespaces, so that the
-// linker cannot take a function of one instruction set for that of another.
+// instruction set, see law/list.h, and once more without special options by law/registry.cpp, which
+// reads the declarations only. All of their content is in unnamed namespaces, so that the linker
+// cannot take a function of one instruction set for that of another.
 
 #include "declare/range.h"
 #include "material/material.h"
@@ -56,6 +56,8 @@ struct Parameter {
 };
 
 /** Declarations that several laws share. */
+constexpr Parameter YOUNGS_MODULUS = {"", "E", "pressure", POSITIVE, REQUIRED, "Young's modulus"};
+constexpr Parameter POISSONS_RATIO = {"", "NU", "1", POISSON_RATIO, REQUIRED, "Poisson's ratio"};
 constexpr Parameter SHEAR_MODULUS = {"", "G", "pressure", POSITIVE, REQUIRED, "shear modulus"};
 
 /** Declaration of one history variable. */
@@ -113,7 +115,7 @@ struct LawInfo {
   int ndeclared;                             ///< entries of history
   const HistoryDeclaration *term_history;    ///< one set for each term, names followed by 1, 2, ...
   int nterm_history;
-  /** History variables that a law with these parameters has, those of the terms not counted. */
+  /** How many of the history variables a law with these parameters has. Null: all. */
   int (*nhistory)(const LawParameters &);
   bool uses_speed;    ///< of a viscosity: does update() read batch.speed?
   bool uses_F;        ///< does any kernel read batch.F? Else J and A are all it knows of it
@@ -128,6 +130,9 @@ struct LawInfo {
   /** History of a new point at x (its values one after the other; in: initial values). Null: keep
    *  the initial values. */
   void (*initialize)(const LawParameters &, const double *x, double *history);
+
+  /** Number of history variables, those of the terms not counted. */
+  int count_history(const LawParameters &p) const { return nhistory ? nhistory(p) : ndeclared; }
 };
 
 /** Declarations of all laws for one place: in the order of the lists in law/list.h, then those
@@ -172,7 +177,7 @@ struct LawDefaults {
   static constexpr std::nullptr_t term_parameters = nullptr;
   static constexpr std::nullptr_t history = nullptr;
   static constexpr std::nullptr_t term_history = nullptr;
-  static constexpr int nhistory(const LawParameters &) { return 0; }
+  static constexpr std::nullptr_t nhistory = nullptr;
   static constexpr const char *check(const LawParameters &) { return nullptr; }
   static constexpr bool needs_temperature(const LawParameters &) { return false; }
   static constexpr std::nullptr_t heat_share = nullptr, warming = nullptr;
@@ -183,19 +188,13 @@ struct LawDefaults {
 
 /** Kernels of all laws for one instruction set. */
 struct LawTable {
-  const char *isa;                            ///< "baseline", "AVX2" or "AVX-512"
   std::vector<LawKernels> builtin[NPARTS];    ///< in the order of the lists in law/list.h
-  void (*clear_stress)(Batch &);              ///< stress of a law with no strength
   void (*speed)(int n, double density, const double *k, double *c);    ///< c = sqrt(k / density)
 
   void (*mean_stress)(const Batch &, double *);    ///< a third of the trace
 
-  /** Pressure at the end of a step, and equivalent strain rate sqrt(2/3 D:D) in its middle. */
-  void (*pressure)(const Batch &, double *);
+  /** Equivalent strain rate sqrt(2/3 D:D) in the middle of a step. */
   void (*strain_rate)(const Batch &, double *);
-
-  /** Number of values below low or above high. */
-  int (*outside)(int n, const double *value, double low, double high);
 
   /** The table for this CPU, or the one with this name: as MPMKernels::select(). */
   static const LawTable *select(const char *name = nullptr);
@@ -209,7 +208,7 @@ struct LawVersion {
   int interface;    ///< raised with each change of what laws and package expect of each other
   int batch, info, kernels, parameters;
 };
-constexpr LawVersion law_version{2, sizeof(Batch), sizeof(LawInfo), sizeof(LawKernels),
+constexpr LawVersion law_version{3, sizeof(Batch), sizeof(LawInfo), sizeof(LawKernels),
                                  sizeof(LawParameters)};
 
 /** A law of a plugin. */
@@ -221,6 +220,56 @@ struct PluginLaw {
 
 /** Adds laws to declared_laws(); returns what is wrong, or nothing. */
 std::string add_laws(const LawVersion &, const PluginLaw *, int n);
+
+// from the struct of a law to its declaration and its kernels
+
+namespace law {
+  namespace {
+
+    template <class T, int N> constexpr int count(const T (&)[N])
+    {
+      return N;
+    }
+    constexpr int count(std::nullptr_t)
+    {
+      return 0;
+    }
+
+    template <class Law> LawInfo declaration()
+    {
+      LawInfo info;
+      info.name = Law::name;
+      info.meaning = Law::meaning;
+      info.share = Law::share;
+      info.parameters = Law::parameters;
+      info.nparameters = count(Law::parameters);
+      info.term = Law::term;
+      info.term_parameters = Law::term_parameters;
+      info.nterm_parameters = count(Law::term_parameters);
+      info.history = Law::history;
+      info.ndeclared = count(Law::history);
+      info.term_history = Law::term_history;
+      info.nterm_history = count(Law::term_history);
+      info.nhistory = Law::nhistory;
+      info.uses_speed = Law::uses_speed;
+      info.uses_F = Law::uses_F;
+      info.check = Law::check;
+      info.needs_temperature = Law::needs_temperature;
+      info.heat_share = Law::heat_share;
+      info.warming = Law::warming;
+      info.initialize = Law::initialize;
+      static_assert(count(Law::parameters) <= LawParameters::MAX);
+      static_assert(count(Law::term_parameters) <= LawParameters::TERM);
+      return info;
+    }
+
+    template <class Law> constexpr LawKernels kernels()
+    {
+      return {Law::update, Law::modulus, Law::energy, Law::raise_speed, Law::prepare};
+    }
+
+  }    // namespace
+}    // namespace law
 
 }    // namespace MPM_NS
 #endif

@@ -6,21 +6,13 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// What materials need besides their laws, for one instruction set: see law/kernels.h.
+// What materials need besides their laws, for one instruction set: see law/list.h.
 
 #include "law/kinematics.h"
 #include "transfer/isa.h"
 
 namespace MPM_NS::law {
 namespace {
-
-  void clear_stress(Batch &b)
-  {
-    for (int k = 0; k < 6; k++) {
-      MPM_SIMD
-      for (int i = 0; i < b.n; i++) b.stress[k][i] = 0.0;
-    }
-  }
 
   void speed(int n, double density, const double *k, double *c)
   {
@@ -35,26 +27,11 @@ namespace {
     for (int i = 0; i < b.n; i++) mean[i] = (1.0 / 3.0) * trace(load_stress(b, i));
   }
 
-  void pressure(const Batch &b, double *p)
-  {
-    mean_stress(b, p);
-    MPM_SIMD
-    for (int i = 0; i < b.n; i++) p[i] = -p[i];
-  }
-
   void strain_rate(const Batch &b, double *rate)
   {
     const double c = (2.0 / 3.0) / (b.dt * b.dt);
     MPM_SIMD
     for (int i = 0; i < b.n; i++) rate[i] = std::sqrt(c * norm2(increment(b, i).strain));
-  }
-
-  int outside(int n, const double *value, double low, double high)
-  {
-    int count = 0;
-    MPM_SIMD_SUM(count)
-    for (int i = 0; i < n; i++) count += value[i] < low || value[i] > high ? 1 : 0;
-    return count;
   }
 
 }    // namespace
@@ -64,11 +41,8 @@ namespace MPM_NS {
 void MPM_OF_ISA(mpm_laws_common)(LawTable &);
 void MPM_OF_ISA(mpm_laws_common)(LawTable &table)
 {
-  table.clear_stress = law::clear_stress;
   table.speed = law::speed;
   table.mean_stress = law::mean_stress;
-  table.pressure = law::pressure;
   table.strain_rate = law::strain_rate;
-  table.outside = law::outside;
 }
 }    // namespace MPM_NS

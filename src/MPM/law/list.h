@@ -9,49 +9,38 @@
 #ifndef MPM_LAW_LIST_H
 #define MPM_LAW_LIST_H
 
-// All constitutive laws. A new law is one header and one entry here.
+// All constitutive laws by family. A new law is one header and one entry here. The kernels of a family
+// are compiled on their own, once for each instruction set (MPM_ISA: base, v3, v4, with the matching
+// -march): the build writes a file for each one of MPM_LAW_FAMILIES, with the line MPM_LAW_FAMILY(family).
 
-#include "law/camclay.h"
-#include "law/damage_cockcroft_latham.h"
-#include "law/damage_grady_kipp.h"
-#include "law/damage_johnson_cook.h"
-#include "law/damage_rankine.h"
-#include "law/drucker_prager.h"
+#include "law/critical_state.h"
+#include "law/damage_brittle.h"
+#include "law/damage_ductile.h"
+#include "law/elastic.h"
+#include "law/eos_barotropic.h"
 #include "law/eos_gas.h"
 #include "law/eos_jwl.h"
-#include "law/eos_linear.h"
-#include "law/eos_polynomial.h"
-#include "law/eos_shock.h"
-#include "law/eos_tait.h"
+#include "law/eos_linear_in_energy.h"
+#include "law/granular.h"
 #include "law/gurson.h"
-#include "law/hencky.h"
-#include "law/linear.h"
 #include "law/mohr_coulomb.h"
-#include "law/mooney_rivlin.h"
-#include "law/mui.h"
-#include "law/nacc.h"
-#include "law/neohookean.h"
-#include "law/neohookean_split.h"
-#include "law/ogden.h"
 #include "law/orthotropic.h"
+#include "law/rubber.h"
 #include "law/snow.h"
-#include "law/strength_elastic.h"
 #include "law/strength_j2.h"
 #include "law/strength_johnson_cook.h"
 #include "law/strength_steinberg.h"
 #include "law/strength_zerilli_armstrong.h"
-#include "law/stvenant_kirchhoff.h"
 #include "law/thermal.h"
-#include "law/viscosity_artificial.h"
+#include "law/viscosity.h"
+#include "law/viscosity_generalized.h"
 #include "law/viscosity_maxwell.h"
-#include "law/viscosity_newtonian.h"
-#include "law/viscosity_power.h"
-#include "law/viscosity_yield.h"
+#include "transfer/isa.h"
 
 namespace MPM_NS::law {
 namespace {
 
-  /** Laws for one place in a material that are compiled in one file, laws_<family>_isa.cpp. */
+  /** Laws for one place in a material that are compiled in one file. */
   template <Part PART, class... Laws> struct Family {
     static constexpr Part part = PART;
     static constexpr int size = sizeof...(Laws);
@@ -74,10 +63,27 @@ namespace {
       Family<DAMAGE, DamageJohnsonCook, DamageCockcroftLatham, DamageRankine, DamageGradyKipp>;
   using thermal = Family<THERMAL, ThermalAdiabatic, ThermalConstant>;
 
+  template <class Laws> struct KernelTable;
+  template <Part PART, class... Laws> struct KernelTable<Family<PART, Laws...>> {
+    // one more, as there is no empty array
+    static constexpr LawKernels table[] = {kernels<Laws>()..., LawKernels{}};
+  };
+
+}    // namespace
+}    // namespace MPM_NS::law
+
 // in the order in which laws are listed in messages
 #define MPM_LAW_FAMILIES(X) \
   X(elastic) X(viscoelastic) X(soil) X(porous) X(eos) X(strength) X(viscosity) X(damage) X(thermal)
 
-}    // namespace
-}    // namespace MPM_NS::law
+/** Defines mpm_laws_<family>_<isa>(), which returns the kernels of the family in the order of its list. */
+#define MPM_LAW_FAMILY(family)                         \
+  namespace MPM_NS {                                   \
+    const LawKernels *MPM_OF_ISA(mpm_laws_##family)(); \
+    const LawKernels *MPM_OF_ISA(mpm_laws_##family)()  \
+    {                                                  \
+      return law::KernelTable<law::family>::table;     \
+    }                                                  \
+  }
+
 #endif

@@ -45,6 +45,14 @@ namespace {
     return a < b ? a : b;
   }
 
+  /** Polynomial of x, its coefficients from that of the highest power down. */
+  template <class... Rest> MPM_INLINE double polynomial(double x, double first, Rest... rest)
+  {
+    double sum = first;
+    ((sum = sum * x + rest), ...);
+    return sum;
+  }
+
   /** x = 2^k (1 + f) with 1 + f between sqrt(1/2) and sqrt(2), and log(1 + f) = 2 s + tail. */
   struct LogParts {
     double k, f, s, tail;
@@ -62,13 +70,9 @@ namespace {
     p.f = from_bits((u & MANTISSA) + SQRT_HALF) - 1.0;
     p.s = p.f / (2.0 + p.f);
     const double z = p.s * p.s;    // log(1 + f) = 2 atanh(s)
-    double g = 0.073082248425217029;
-    g = g * z + 0.076658608002780206;
-    g = g * z + 0.090914445626308610;
-    g = g * z + 0.111111055673975399;
-    g = g * z + 0.142857143129877425;
-    g = g * z + 0.199999999999497522;
-    g = g * z + 0.333333333333333485;
+    const double g = polynomial(z, 0.073082248425217029, 0.076658608002780206, 0.090914445626308610,
+                                0.111111055673975399, 0.142857143129877425, 0.199999999999497522,
+                                0.333333333333333485);
     p.tail = 2.0 * p.s * z * g;
     return p;
   }
@@ -107,16 +111,10 @@ namespace {
     const double t = x * 1.44269504088896340736 + ROUND;
     const double k = t - ROUND;
     const double r = (x - k * 0.693147180369123816490) - k * 1.90821492927058770002e-10;
-    double h = 2.5100385495510319e-8;
-    h = h * r + 2.7620088445409748e-7;
-    h = h * r + 2.7557268459997065e-6;
-    h = h * r + 2.4801521295954375e-5;
-    h = h * r + 1.9841269863053617e-4;
-    h = h * r + 1.3888888917213717e-3;
-    h = h * r + 8.3333333333300618e-3;
-    h = h * r + 4.1666666666624128e-2;
-    h = h * r + 1.6666666666666667e-1;
-    h = h * r + 5.0000000000000010e-1;
+    const double h = polynomial(r, 2.5100385495510319e-8, 2.7620088445409748e-7,
+                                2.7557268459997065e-6, 2.4801521295954375e-5, 1.9841269863053617e-4,
+                                1.3888888917213717e-3, 8.3333333333300618e-3, 4.1666666666624128e-2,
+                                1.6666666666666667e-1, 5.0000000000000010e-1);
     ExpParts p;
     p.scale = from_bits((to_bits(t) << 52) + 0x3ff0000000000000);
     p.tail = r * r * h;
@@ -149,16 +147,10 @@ namespace {
   MPM_INLINE double sin(double x)
   {
     const double z = -x * x;
-    double h = 1.0 / 51090942171709440000.0;
-    h = h * z + 1.0 / 121645100408832000.0;
-    h = h * z + 1.0 / 355687428096000.0;
-    h = h * z + 1.0 / 1307674368000.0;
-    h = h * z + 1.0 / 6227020800.0;
-    h = h * z + 1.0 / 39916800.0;
-    h = h * z + 1.0 / 362880.0;
-    h = h * z + 1.0 / 5040.0;
-    h = h * z + 1.0 / 120.0;
-    h = h * z + 1.0 / 6.0;
+    const double h =
+        polynomial(z, 1.0 / 51090942171709440000.0, 1.0 / 121645100408832000.0,
+                   1.0 / 355687428096000.0, 1.0 / 1307674368000.0, 1.0 / 6227020800.0,
+                   1.0 / 39916800.0, 1.0 / 362880.0, 1.0 / 5040.0, 1.0 / 120.0, 1.0 / 6.0);
     return x + x * z * h;
   }
 

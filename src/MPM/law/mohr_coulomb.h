@@ -96,8 +96,8 @@ namespace {
     static constexpr const char *name = "mohr/coulomb";
     static constexpr const char *meaning = "Mohr-Coulomb plasticity with softening: soil, rock";
     static constexpr Parameter parameters[] = {
-        {"", "E", "pressure", POSITIVE, REQUIRED, "Young's modulus"},
-        {"", "NU", "1", POISSON_RATIO, REQUIRED, "Poisson's ratio"},
+        YOUNGS_MODULUS,
+        POISSONS_RATIO,
         {"", "PHI", "degrees", {0.0, 80.0, true}, REQUIRED, "friction angle"},
         {"", "C", "pressure", NOT_NEGATIVE, REQUIRED, "cohesion"},
         {"dilatancy", "PSI", "degrees", {0.0, 80.0, true}, 0.0, "dilatancy angle"},
@@ -108,7 +108,6 @@ namespace {
         MPM_ELASTIC_STRAIN_HISTORY,
         PLASTIC_STRAIN,
         {"gap", ZERO, "1", "logarithmic volume strain between separated parts"}};
-    static constexpr int nhistory(const LawParameters &) { return ELASTIC_STRAIN_ROWS + 2; }
     static constexpr const char *check(const LawParameters &p)
     {
       const bool soft = p.value[MC_RATE] > 0.0;
@@ -124,7 +123,7 @@ namespace {
     double phi, c, cr, phir, rate, sin_phi, c_cos_phi;
     MohrCoulombSurface surface;
 
-    LawMohrCoulomb(const LawParameters &p, const Batch &) :
+    explicit LawMohrCoulomb(const LawParameters &p) :
         BulkAndShear(p), phi(p.value[MC_PHI] * DEGREES), c(p.value[MC_COHESION]),
         cr(p.value[MC_RESIDUAL_C]), phir(p.value[MC_RESIDUAL_PHI] * DEGREES),
         rate(p.value[MC_RATE]), sin_phi(std::sin(phi)),
@@ -264,13 +263,6 @@ namespace {
     {
       const double v = e0 + e1 + e2;
       return 0.5 * (K - (2.0 / 3.0) * G) * v * v + G * (e0 * e0 + e1 * e1 + e2 * e2);
-    }
-
-    static void modulus(const LawParameters &p, const Batch &b, History, double *k)
-    {
-      const BulkAndShear m(p);
-      MPM_SIMD
-      for (int i = 0; i < b.n; i++) k[i] += hencky_modulus(m.K, m.G, b.J[i], load_stress(b, i));
     }
   };
 

@@ -14,8 +14,6 @@
 namespace MPM_NS::law {
 namespace {
 
-  constexpr Range ANY_NUMBER{-UNBOUNDED, UNBOUNDED, false};
-
   /** Elastic constants of a material with three orthogonal planes of symmetry. */
   struct Orthotropic {
     double E1, E2, E3, nu12, nu13, nu23, G12, G13, G23;

@@ -22,7 +22,7 @@
 #define MPM_ISA plugin
 #endif
 
-#include "law/declare.h"
+#include "law/law.h"
 
 namespace MPM_NS {
 

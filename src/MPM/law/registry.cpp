@@ -8,7 +8,7 @@
 
 // All laws: those of the package, from law/list.h, and those that plugins have added.
 
-#include "law/kernels.h"
+#include "law/list.h"
 
 #include <cstring>
 #include <memory>
@@ -88,7 +88,6 @@ MPM_LAW_FAMILIES(MPM_DECLARE_KERNELS)
 static LawTable make_table(InstructionSet set)
 {
   LawTable table;
-  table.isa = isa_name(set == REFERENCE ? BASE : set);
   void (*const common[])(LawTable &) = MPM_ALL_ISA(mpm_laws_common);
   common[set](table);
 #define MPM_ADD_KERNELS(family)                                         \

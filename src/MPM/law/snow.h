@@ -30,13 +30,12 @@ namespace {
     enum { E, NU, THETAC, THETAS, XI };
     static constexpr Parameter parameters[] = {
         {"", "E", "pressure", POSITIVE, REQUIRED, "Young's modulus at the start"},
-        {"", "NU", "1", POISSON_RATIO, REQUIRED, "Poisson's ratio"},
+        POISSONS_RATIO,
         {"", "THETAC", "1", {0.0, 0.9, true}, REQUIRED, "critical compression"},
         {"", "THETAS", "1", {0.0, 0.9, true}, REQUIRED, "critical stretch"},
         {"", "XI", "1", NOT_NEGATIVE, REQUIRED, "hardening exponent"}};
     static constexpr HistoryDeclaration history[] = {
         MPM_ELASTIC_STRAIN_HISTORY, {"jplastic", ONE, "1", "plastic volume ratio"}};
-    static constexpr int nhistory(const LawParameters &) { return ELASTIC_STRAIN_ROWS + 1; }
 
     double low, high, xi;
 
@@ -45,7 +44,6 @@ namespace {
         xi(p.value[XI])
     {
     }
-    LawSnow(const LawParameters &p, const Batch &) : LawSnow(p) {}
 
     MPM_INLINE double hardening(double JP) const { return exp(xi * (1.0 - JP)); }
 

@@ -86,6 +86,23 @@ namespace {
     return r;
   }
 
+  /** Principal logarithmic strain, from a principal value of b - I. */
+  MPM_INLINE double log_strain(double value)
+  {
+    return 0.5 * log1p(max(value, -1.0 + 1e-15));
+  }
+
+  /** sum_a value_a n_a x n_a, with the axes n_a of point i as [component][axis][point]. */
+  MPM_INLINE Sym along_axes(const double (&axes)[3][3][BATCH], int i, double value0, double value1,
+                            double value2)
+  {
+    Sym r = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    add_dyad(r, axes[0][0][i], axes[1][0][i], axes[2][0][i], value0);
+    add_dyad(r, axes[0][1][i], axes[1][1][i], axes[2][1][i], value1);
+    add_dyad(r, axes[0][2][i], axes[1][2][i], axes[2][2][i], value2);
+    return r;
+  }
+
   /** f b f^T with f = I + A of this step: how a left Cauchy-Green tensor (or its elastic part, as
    *  trial state) follows the motion; exact and objective. */
   MPM_INLINE Sym push_forward(const Batch &batch, int i, const Sym &b)

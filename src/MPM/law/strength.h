@@ -14,21 +14,17 @@
 namespace MPM_NS::law {
 namespace {
 
-  /** Elastic deviator that all strengths share: hypoelastic, see LawLinear. */
-  struct ElasticDeviator {
-    double G;
-
-    /** Cauchy stress deviator at the end of the step if the step is elastic. */
-    MPM_INLINE Sym trial(const Batch &b, int i, const Increment &inc) const
-    {
-      const Sym old = b.Jold[i] * deviator(load_stress(b, i));
-      return (1.0 / b.J[i]) * jaumann(inc, old, 2.0 * G * deviator(inc.strain));
-    }
-  };
+  /** Cauchy stress deviator at the end of the step if the step is elastic: hypoelastic, see LawLinear. */
+  MPM_INLINE Sym elastic_trial(double G, const Batch &b, int i, const Increment &inc)
+  {
+    const Sym old = b.Jold[i] * deviator(load_stress(b, i));
+    return (1.0 / b.J[i]) * jaumann(inc, old, 2.0 * G * deviator(inc.strain));
+  }
 
   /** Wave speed and energy of a strength whose first parameter is the shear modulus. */
   struct ShearElasticity : LawDefaults {
     static constexpr bool uses_F = false;
+    static constexpr StressShare share = DEVIATOR;
 
     /** J ds_nn / d epsilon_nn = 4/3 G - J s_nn */
     static void modulus(const LawParameters &p, const Batch &b, History, double *k)
@@ -49,6 +45,262 @@ namespace {
       }
     }
   };
+
+  /** Elastic shear without yield. */
+  struct StrengthElastic : ShearElasticity {
+    static constexpr const char *name = "elastic";
+    static constexpr const char *meaning = "elastic shear, no yield";
+    static constexpr Parameter parameters[] = {SHEAR_MODULUS};
+
+    static void update(const LawParameters &p, Batch &b, History)
+    {
+      const double G = p.value[0];
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) store_stress(b, i, elastic_trial(G, b, i, increment(b, i)));
+    }
+  };
+
+  /** A point after the elastic trial step. */
+  struct TrialState {
+    double q;        ///< equivalent stress
+    double stiff;    ///< 3 G/J
+    double J;        ///< mean volume ratio of the step
+  };
+
+  /** Solves r(D) = q - stiff D - Y(D) = 0 for the points with D > 0, which is the first guess; most:
+   *  upper bound of D. Iteration, the whole batch at a time: r is convex in D for power hardening
+   *  (n < 1), logarithmic or power rate dependence, and both together, and concave in log D. So
+   *  Newton in D from the left and Newton in log D from the right approach the root from their side
+   *  only, also with infinite slope at D = 0 and when D is smaller than any strain that is ever
+   *  seen (small exponents). A bracket catches all else (thermal softening). */
+  template <class Flow>
+  MPM_INLINE void solve_return(const Batch &b, const Flow &flow, History history,
+                               const double *trial, const double *stiff, const double *start,
+                               const double *most, double *yield, double *D)
+  {
+    constexpr int MAX_ITERATIONS = 100;
+    alignas(64) double low[BATCH], high[BATCH];
+    MPM_SIMD
+    for (int i = 0; i < b.n; i++) {
+      low[i] = 0.0;
+      high[i] = most[i];
+    }
+    for (int iteration = 0; iteration < MAX_ITERATIONS; iteration++) {
+      double busy = 0.0;
+      MPM_SIMD_SUM(busy)
+      for (int i = 0; i < b.n; i++) {
+        const double d = D[i];
+        const TrialState t{trial[i], stiff[i], 0.5 * (b.J[i] + b.Jold[i])};
+        double y, dy;
+        flow.stress(history, i, start[i], t, d, y, dy);
+        const double r = t.q - t.stiff * d - y;
+        const double s = t.stiff + dy;    // -dr/dD
+        const double lo = r > 0.0 ? d : low[i], hi = r > 0.0 ? high[i] : d;
+        const double newton = r > 0.0 ? d + r / s : d * exp(r / (d * s));
+        const double half = 0.5 * (lo + hi);
+        const double next = s > 0.0 && newton > lo && newton < hi ? newton : half;
+        const bool active = d > 0.0;
+        const bool done = d <= 1e-300 || max(r, -r) <= 1e-13 * y + 1e-15 * t.q;
+        const double step = active && !done ? next - d : 0.0;
+        low[i] = lo;
+        high[i] = hi;
+        yield[i] = min(y + dy * step, t.q);
+        D[i] = d + step;
+        // the error left by a small Newton step is its square: no need to look again
+        busy += step * step > (Flow::smooth ? 1e-14 * d * d : 0.0) ? 1.0 : 0.0;
+      }
+      if (busy == 0.0) return;
+    }
+  }
+
+  /** Loops of a von Mises strength: radial return to the flow stress at the end of the step
+   *  (M.L. Wilkins, Methods Comput. Phys. 3 (1964) 211; J.C. Simo, T.J.R. Hughes, Computational
+   *  Inelasticity, 1998, ch. 3), with an unknown increment D of the equivalent plastic strain:
+   *
+   *    r(D) = q - 3 G/J D - Y(D) = 0,   q = trial equivalent stress
+   *
+   *  Flow has: Flow(parameters, batch); smooth, false when Y(D) has kinks; shear(i), the shear
+   *  modulus of the step; start(history, i), the flow stress for D -> 0; stress(history, i, start,
+   *  trial state, D, Y, dY/dD); begin(start, D), the flow stress at the beginning of the step, which
+   *  makes the plastic work with Y. start is the stress at which plastic flow begins in this step:
+   *  that of start(), or with goes_on = true that of the last step, unless it was far below. First
+   *  row of the history: the equivalent plastic strain.
+   */
+  template <class Flow> struct RadialReturn : ShearElasticity {
+    static void update(const LawParameters &p, Batch &b, History history)
+    {
+      const Flow flow(p, b);
+      alignas(64) double trial[BATCH], stiff[BATCH], start[BATCH], yield[BATCH], D[BATCH];
+      alignas(64) double most[BATCH];
+
+      double yielding = 0.0;
+      MPM_SIMD_SUM(yielding)
+      for (int i = 0; i < b.n; i++) {
+        const Increment inc = increment(b, i);
+        const double G = flow.shear(i);
+        const double last = Flow::goes_on ? equivalent(deviator(load_stress(b, i))) : 0.0;
+        const Sym s = elastic_trial(G, b, i, inc);
+        store_stress(b, i, s);
+        const double q = equivalent(s);
+        const double modulus = 3.0 * G / b.J[i];
+        const double y = flow.start(history, i);
+        const double excess = (q - y) / modulus;
+        // first guess: all strain is plastic, when that is possible
+        const double strain = std::sqrt((2.0 / 3.0) * norm2(deviator(inc.strain)));
+        const double guess = min(excess, max(strain, 1e-3 * excess));
+        trial[i] = q;
+        stiff[i] = modulus;
+        most[i] = q / modulus;
+        start[i] = last > 0.5 * y ? last : y;
+        D[i] = excess > 0.0 ? guess : 0.0;
+        yielding += excess > 0.0 ? 1.0 : 0.0;
+      }
+      if (yielding == 0.0) return;
+      solve_return(b, flow, history, trial, stiff, start, most, yield, D);
+
+      double plastic = 0.0;
+      MPM_SIMD_SUM(plastic)
+      for (int i = 0; i < b.n; i++) {
+        const double scale = D[i] > 0.0 ? yield[i] / trial[i] : 1.0;
+        store_stress(b, i, scale * load_stress(b, i));
+        const double J = 0.5 * (b.J[i] + b.Jold[i]);
+        const double begin = flow.begin(start[i], D[i]);
+        const double work = J * (0.5 * (begin + yield[i]) * D[i]);
+        history[0][i] += D[i];
+        plastic += work * b.vol0[i];
+        b.plastic[i] = D[i];
+        b.heat[i] += p.chi * work;
+      }
+      b.work[PLASTIC] += plastic;
+      b.work[HEAT] += p.chi * plastic;
+    }
+  };
+
+  /** a:b */
+  MPM_INLINE double contract(const Sym &a, const Sym &b)
+  {
+    return a.xx * b.xx + a.yy * b.yy + a.zz * b.zz +
+        2.0 * (a.xy * b.xy + a.xz * b.xz + a.yz * b.yz);
+  }
+
+  /** A flow stress and a back stress X/J that is part of the flow: seen from the elastic trial state
+   *  of s - X/J, what resists D is Y, the growth C g/J of the back stress along the flow, and the
+   *  fading of the old back stress, which turns s - w X/J. */
+  template <class Flow> struct KinematicFlow {
+    static constexpr bool smooth = Flow::smooth;
+    const Flow &flow;
+    double C, gamma;
+    alignas(64) double trial[BATCH];     ///< equivalent value of xi = s - X/J
+    alignas(64) double mixed[BATCH];     ///< 3/2 xi : X/J
+    alignas(64) double square[BATCH];    ///< 3/2 X/J : X/J
+    alignas(64) double slope[BATCH];     ///< C/J
+
+    KinematicFlow(const Flow &flow, double C, double gamma) : flow(flow), C(C), gamma(gamma) {}
+
+    /** Growth g of the back stress / C along the flow; faded = 1 - w. */
+    MPM_INLINE double growth(double D, double &faded) const
+    {
+      faded = -expm1(-gamma * D);
+      return gamma > 0.0 ? faded / gamma : D;
+    }
+    /** Equivalent value of s - w X/J. */
+    MPM_INLINE double equivalent(int i, double faded) const
+    {
+      const double q2 = trial[i] * trial[i] + faded * (2.0 * mixed[i] + faded * square[i]);
+      return std::sqrt(max(q2, 1e-30 * trial[i] * trial[i]));
+    }
+    MPM_INLINE void stress(History history, int i, double start, const TrialState t, double D,
+                           double &y, double &dy) const
+    {
+      flow.stress(history, i, start, t, D, y, dy);
+      double faded;
+      const double g = growth(D, faded), q = equivalent(i, faded), w = 1.0 - faded;
+      y += slope[i] * g + (trial[i] - q);
+      dy += slope[i] * w - gamma * w * (mixed[i] + faded * square[i]) / q;
+    }
+  };
+
+  /** Radial return with the back stress of P.J. Armstrong, C.O. Frederick (CEGB Report RD/B/N731,
+   *  1966; Mater. High Temp. 24 (2007) 1), linear (W. Prager, Proc. IMechE 169 (1955) 41) when
+   *  GAMMA = 0: X = J times the back stress follows, besides its Jaumann rotation,
+   *
+   *    dX = 2/3 C de_p - GAMMA X de,   integrated with constant direction of de_p = de N:
+   *    X_new = w X + 2/3 C g N,        w = exp(-GAMMA D), g = (1 - w)/GAMMA
+   *
+   *  which is exact on straight paths. N is along s_new - X_new/J, and so along s - w X/J of the
+   *  trial state: one equation for D remains. Stored: 3/4 X:X/C; the rest of the plastic work,
+   *  Y de + 3/2 GAMMA/C X:X de, is dissipated.
+   */
+  template <class Flow> struct KinematicReturn : RadialReturn<Flow> {
+    static void update(const LawParameters &p, double C, double gamma, Batch &b, History history,
+                       History back)
+    {
+      const Flow flow(p, b);
+      KinematicFlow<Flow> kinematic(flow, C, gamma);
+      alignas(64) double stiff[BATCH], start[BATCH], yield[BATCH], D[BATCH], most[BATCH];
+
+      double yielding = 0.0;
+      MPM_SIMD_SUM(yielding)
+      for (int i = 0; i < b.n; i++) {
+        const Increment inc = increment(b, i);
+        const double G = flow.shear(i), inv_J = 1.0 / b.J[i];
+        const Sym before = deviator(load_stress(b, i)) + (-1.0 / b.Jold[i]) * load_rows(back, i);
+        const double last = Flow::goes_on ? equivalent(before) : 0.0;
+        const Sym s = elastic_trial(G, b, i, inc);
+        const Sym X = rotate(inc, load_rows(back, i)), x = inv_J * X, xi = s + (-1.0) * x;
+        store_stress(b, i, s);
+        store_rows(back, i, X);
+        const double q = equivalent(xi), square = 1.5 * norm2(x);
+        kinematic.trial[i] = q;
+        kinematic.mixed[i] = 1.5 * contract(xi, x);
+        kinematic.square[i] = square;
+        kinematic.slope[i] = C * inv_J;
+        const double modulus = 3.0 * G * inv_J;
+        const double y = flow.start(history, i);
+        const double excess = (q - y) / modulus;
+        const double strain = std::sqrt((2.0 / 3.0) * norm2(deviator(inc.strain)));
+        const double guess = min(excess, max(strain, 1e-3 * excess));
+        most[i] = (q + std::sqrt(square)) / modulus;
+        stiff[i] = modulus;
+        start[i] = last > 0.5 * y ? last : y;
+        D[i] = excess > 0.0 ? guess : 0.0;
+        yielding += excess > 0.0 ? 1.0 : 0.0;
+      }
+      if (yielding == 0.0) return;
+      solve_return(b, kinematic, history, kinematic.trial, stiff, start, most, yield, D);
+
+      double plastic = 0.0;
+      MPM_SIMD_SUM(plastic)
+      for (int i = 0; i < b.n; i++) {
+        const double d = D[i], inv_J = 1.0 / b.J[i], J = 0.5 * (b.J[i] + b.Jold[i]);
+        double faded;
+        const double g = kinematic.growth(d, faded), q = kinematic.equivalent(i, faded);
+        const Sym X = load_rows(back, i), kept = (1.0 - faded) * X;
+        const Sym xi = load_stress(b, i) + (-inv_J) * kept;
+        const double y = yield[i] - kinematic.slope[i] * g - (kinematic.trial[i] - q);
+        const bool flows = d > 0.0;
+        const Sym Xnew = flows ? kept + (C * g / q) * xi : X;
+        store_rows(back, i, Xnew);
+        store_stress(b, i, inv_J * Xnew + (flows ? y / q : 1.0) * xi);
+        const double recovery = 0.75 * gamma / C * (norm2(X) + norm2(Xnew)) * d;
+        const double begin = flow.begin(start[i], d);
+        const double work = J * (0.5 * (begin + y) * d) + recovery;
+        history[0][i] += d;
+        plastic += work * b.vol0[i];
+        b.plastic[i] = d;
+        b.heat[i] += p.chi * work;
+      }
+      b.work[PLASTIC] += plastic;
+      b.work[HEAT] += p.chi * plastic;
+    }
+  };
+
+  /** Energy that the back stress stores. */
+  MPM_INLINE void back_stress_energy(const Batch &b, History back, double C, double *w)
+  {
+    MPM_SIMD
+    for (int i = 0; i < b.n; i++) w[i] += 0.75 / C * norm2(load_rows(back, i));
+  }
 
 }    // namespace
 }    // namespace MPM_NS::law

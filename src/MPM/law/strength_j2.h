@@ -9,30 +9,22 @@
 #ifndef MPM_LAW_STRENGTH_J2_H
 #define MPM_LAW_STRENGTH_J2_H
 
-#include "law/strength_kinematic.h"
+#include "law/strength.h"
 
 namespace MPM_NS::law {
 namespace {
 
+  // parameters, in lines as the options that they belong to
+  enum { J2_G, J2_SIGMAY, J2_H, J2_B, J2_N };
+  enum { J2_VOCE_Q = J2_N + 1, J2_VOCE_BETA, J2_VOCE_H, J2_SWIFT_E0, J2_SWIFT_N };
   enum {
-    J2_G,
-    J2_SIGMAY,
-    J2_H,
-    J2_B,
-    J2_N,
-    J2_VOCE_Q,
-    J2_VOCE_BETA,
-    J2_VOCE_H,
-    J2_SWIFT_E0,
-    J2_SWIFT_N,
-    J2_COWPER_RATE,
+    J2_COWPER_RATE = J2_SWIFT_N + 1,
     J2_COWPER_P,
     J2_PERZYNA_S,
     J2_PERZYNA_RATE,
-    J2_PERZYNA_M,
-    J2_BACK_C,
-    J2_BACK_GAMMA
+    J2_PERZYNA_M
   };
+  enum { J2_BACK_C = J2_PERZYNA_M + 1, J2_BACK_GAMMA };
 
   /** Flow stress at rest over the plastic strain e: kinds, or the size of a table. */
   enum { HARDENING_POWER, HARDENING_VOCE, SHORT_TABLE = 8, LONG_TABLE = LawParameters::MAX_TERMS };
@@ -146,11 +138,7 @@ namespace {
         y = y * fast + drag * x;
       }
     }
-    MPM_INLINE double finish(History history, int i, double start, double D, double y, double) const
-    {
-      history[0][i] += D;
-      return 0.5 * (start + y) * D;
-    }
+    MPM_INLINE double begin(double start, double) const { return start; }
   };
 
   /** Von Mises plasticity with isotropic and kinematic hardening and rate dependence. Linear
@@ -158,7 +146,6 @@ namespace {
   struct StrengthJ2 : ShearElasticity {
     static constexpr const char *name = "j2";
     static constexpr const char *meaning = "von Mises plasticity with hardening and rate";
-    static constexpr StressShare share = DEVIATOR;
     static constexpr Parameter parameters[] = {
         SHEAR_MODULUS,
         {"", "SIGMAY", "pressure", NOT_NEGATIVE, REQUIRED, "yield stress in uniaxial tension"},
@@ -262,12 +249,11 @@ namespace {
     static MPM_INLINE void linear(const LawParameters &p, Batch &b, History history)
     {
       const double G = p.value[J2_G], sigmay = p.value[J2_SIGMAY], H = p.value[J2_H];
-      const ElasticDeviator elastic{G};
       double plastic = 0.0;
       MPM_SIMD_SUM(plastic)
       for (int i = 0; i < b.n; i++) {
         const Increment inc = increment(b, i);
-        const Sym s = elastic.trial(b, i, inc);
+        const Sym s = elastic_trial(G, b, i, inc);
         const double q = std::sqrt(1.5 * norm2(s));
         const double e = history[0][i], y = sigmay + H * e;
         const double J = b.J[i];

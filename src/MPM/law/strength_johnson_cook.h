@@ -9,7 +9,7 @@
 #ifndef MPM_LAW_STRENGTH_JOHNSON_COOK_H
 #define MPM_LAW_STRENGTH_JOHNSON_COOK_H
 
-#include "law/strength_return.h"
+#include "law/strength.h"
 
 namespace MPM_NS::law {
 namespace {
@@ -78,12 +78,10 @@ namespace {
       }
     }
 
-    MPM_INLINE double finish(History history, int i, double start, double D, double y, double) const
+    MPM_INLINE double begin(double start, double D) const
     {
       double slope;
-      const double work = 0.5 * (start * rate(D, slope) + y) * D;
-      history[0][i] += D;
-      return work;
+      return start * rate(D, slope);
     }
   };
 
@@ -92,7 +90,6 @@ namespace {
   struct StrengthJohnsonCook : ShearElasticity {
     static constexpr const char *name = "johnson/cook";
     static constexpr const char *meaning = "Johnson-Cook plasticity with rate and temperature";
-    static constexpr StressShare share = DEVIATOR;
     static constexpr Parameter parameters[] = {
         SHEAR_MODULUS,
         {"", "A", "pressure", NOT_NEGATIVE, REQUIRED, "yield stress"},
@@ -101,10 +98,9 @@ namespace {
         {"", "C", "1", NOT_NEGATIVE, REQUIRED, "rate coefficient"},
         {"", "EPSDOT0", "1/time", POSITIVE, REQUIRED, "reference plastic strain rate"},
         {"", "M", "1", NOT_NEGATIVE, 0.0, "exponent of the temperature, 0: no thermal softening"},
-        {"", "TMELT", "temperature", {-UNBOUNDED, UNBOUNDED, false}, 1.0, "melting temperature"},
-        {"", "TREF", "temperature", {-UNBOUNDED, UNBOUNDED, false}, 0.0, "reference temperature"}};
+        {"", "TMELT", "temperature", ANY_NUMBER, 1.0, "melting temperature"},
+        {"", "TREF", "temperature", ANY_NUMBER, 0.0, "reference temperature"}};
     static constexpr HistoryDeclaration history[] = {PLASTIC_STRAIN};
-    static constexpr int nhistory(const LawParameters &) { return 1; }
     static constexpr bool needs_temperature(const LawParameters &p) { return p.value[JC_M] > 0.0; }
     static constexpr const char *check(const LawParameters &p)
     {

@@ -9,25 +9,13 @@
 #ifndef MPM_LAW_STRENGTH_STEINBERG_H
 #define MPM_LAW_STRENGTH_STEINBERG_H
 
-#include "law/strength_return.h"
+#include "law/strength.h"
 
 namespace MPM_NS::law {
 namespace {
 
-  enum {
-    SCG_G0,
-    SCG_Y0,
-    SCG_BETA,
-    SCG_N,
-    SCG_YMAX,
-    SCG_A,
-    SCG_B,
-    SCG_PRE,
-    SCG_MELT,
-    SCG_MELT_A,
-    SCG_MELT_GAMMA,
-    SCG_TREF
-  };
+  enum { SCG_G0, SCG_Y0, SCG_BETA, SCG_N, SCG_YMAX, SCG_A, SCG_B, SCG_PRE };
+  enum { SCG_MELT = SCG_PRE + 1, SCG_MELT_A, SCG_MELT_GAMMA, SCG_TREF };
 
   /** G = G0 f and Y = min(Y0 (1 + BETA (e + EPSI))^N, YMAX) f with
    *
@@ -90,11 +78,7 @@ namespace {
       y = strong[i] * min(hard, ymax);
       dy = hard < ymax ? strong[i] * n * beta * hard / x : 0.0;
     }
-    MPM_INLINE double finish(History history, int i, double start, double D, double y, double) const
-    {
-      history[0][i] += D;
-      return 0.5 * (start + y) * D;
-    }
+    MPM_INLINE double begin(double start, double) const { return start; }
   };
 
   /** Strength at high pressure (D.J. Steinberg, S.G. Cochran, M.W. Guinan, J. Appl. Phys. 51 (1980)
@@ -103,7 +87,6 @@ namespace {
   struct StrengthSteinberg : RadialReturn<SteinbergFlow> {
     static constexpr const char *name = "steinberg";
     static constexpr const char *meaning = "Steinberg-Cochran-Guinan plasticity, with pressure";
-    static constexpr StressShare share = DEVIATOR;
     static constexpr Parameter parameters[] = {
         {"", "G0", "pressure", POSITIVE, REQUIRED, "shear modulus at reference"},
         {"", "Y0", "pressure", NOT_NEGATIVE, REQUIRED, "yield stress at reference"},
@@ -119,7 +102,6 @@ namespace {
         {"tref", "TREF", "temperature", NOT_NEGATIVE, 300.0, "reference temperature"}};
     static constexpr HistoryDeclaration history[] = {
         PLASTIC_STRAIN, {"shear_energy", ZERO, "pressure", "elastic energy of the deviator"}};
-    static constexpr int nhistory(const LawParameters &) { return 2; }
     static constexpr bool needs_temperature(const LawParameters &p)
     {
       return p.value[SCG_B] > 0.0 || p.value[SCG_MELT] > 0.0;

@@ -9,25 +9,13 @@
 #ifndef MPM_LAW_STRENGTH_ZERILLI_ARMSTRONG_H
 #define MPM_LAW_STRENGTH_ZERILLI_ARMSTRONG_H
 
-#include "law/strength_return.h"
+#include "law/strength.h"
 
 namespace MPM_NS::law {
 namespace {
 
-  enum {
-    ZA_G,
-    ZA_C0,
-    ZA_BCC_C1,
-    ZA_BCC_C3,
-    ZA_BCC_C4,
-    ZA_BCC_C5,
-    ZA_BCC_N,
-    ZA_FCC_C2,
-    ZA_FCC_C3,
-    ZA_FCC_C4,
-    ZA_MELT,
-    ZA_RATE
-  };
+  enum { ZA_G, ZA_C0, ZA_BCC_C1, ZA_BCC_C3, ZA_BCC_C4, ZA_BCC_C5, ZA_BCC_N };
+  enum { ZA_FCC_C2 = ZA_BCC_N + 1, ZA_FCC_C3, ZA_FCC_C4, ZA_MELT, ZA_RATE };
 
   /** Y = C0 + (C1 + C2 sqrt(e)) exp(-C3 T + C4 T ln(r/RATE)) + C5 e^N of plastic strain e, plastic
    *  strain rate r and temperature T of the end of the step; C2 = 0 (bcc) or C1 = C5 = 0 (fcc). The
@@ -74,11 +62,7 @@ namespace {
           (thermal * dx + thermal * C2 / max(2.0 * root * (C1 + C2 * root), 1e-300) +
            N * power / max(e, 1e-300));
     }
-    MPM_INLINE double finish(History history, int i, double begin, double D, double y, double) const
-    {
-      history[0][i] += D;
-      return 0.5 * (begin + y) * D;
-    }
+    MPM_INLINE double begin(double start, double) const { return start; }
   };
 
   /** Flow stress by thermally activated motion of dislocations (F.J. Zerilli, R.W. Armstrong, J.
@@ -87,7 +71,6 @@ namespace {
   struct StrengthZerilliArmstrong : RadialReturn<ZerilliArmstrongFlow> {
     static constexpr const char *name = "zerilli/armstrong";
     static constexpr const char *meaning = "Zerilli-Armstrong plasticity of bcc and fcc metals";
-    static constexpr StressShare share = DEVIATOR;
     static constexpr Parameter parameters[] = {
         SHEAR_MODULUS,
         {"", "C0", "pressure", NOT_NEGATIVE, REQUIRED, "athermal stress, with that of grain size"},
@@ -102,7 +85,6 @@ namespace {
         {"melt", "TMELT", "temperature", POSITIVE, 0.0, "melting temperature, 0: none"},
         {"rate", "RATE", "1/time", POSITIVE, 1.0, "unit of the plastic strain rate, 1/s"}};
     static constexpr HistoryDeclaration history[] = {PLASTIC_STRAIN};
-    static constexpr int nhistory(const LawParameters &) { return 1; }
     static constexpr bool needs_temperature(const LawParameters &) { return true; }
     static constexpr const char *check(const LawParameters &p)
     {

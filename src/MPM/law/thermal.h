@@ -31,15 +31,10 @@ namespace {
     enum { CP, T0, CHI, GAMMA, TMELT, LATENT };
     static constexpr Parameter parameters[] = {
         {"", "CP", "energy/(mass temperature)", POSITIVE, REQUIRED, "specific heat"},
-        {"", "T0", "temperature", {-UNBOUNDED, UNBOUNDED, false}, REQUIRED, "initial temperature"},
+        {"", "T0", "temperature", ANY_NUMBER, REQUIRED, "initial temperature"},
         {"", "CHI", "1", FRACTION, 0.9, "share of the plastic work that becomes heat"},
         {"gruneisen", "GAMMA", "1", NOT_NEGATIVE, 0.0, "Gruneisen parameter at reference density"},
-        {"melt",
-         "TMELT",
-         "temperature",
-         {-UNBOUNDED, UNBOUNDED, false},
-         0.0,
-         "melting temperature"},
+        {"melt", "TMELT", "temperature", ANY_NUMBER, 0.0, "melting temperature"},
         {"melt", "LATENT", "energy/mass", POSITIVE, 0.0, "heat of fusion, 0: none"}};
     static constexpr HistoryDeclaration history[] = {
         {"temperature", T0, "temperature", "temperature"},
@@ -63,14 +58,11 @@ namespace {
       }
       MPM_SIMD
       for (int i = 0; i < b.n; i++) T[i] += warm * b.heat[i];
-      if (nhistory(p) > 1) melt(p.value[TMELT], p.value[LATENT] / p.value[CP], b, T, history[1]);
-    }
-
-   private:
-    /** range: the latent heat as a difference of temperatures. */
-    static MPM_INLINE void melt(double melting, double range, const Batch &b, double *T,
-                                double *molten)
-    {
+      if (nhistory(p) == 1) return;
+      const double melting = p.value[TMELT];
+      const double range =
+          p.value[LATENT] / p.value[CP];    // latent heat as a difference of temperatures
+      double *const molten = history[1];
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
         const double all = T[i] + range * molten[i];    // had it not melted
@@ -87,10 +79,9 @@ namespace {
     static constexpr const char *name = "constant";
     static constexpr const char *meaning = "constant temperature";
     static constexpr Parameter parameters[] = {
-        {"", "T0", "temperature", {-UNBOUNDED, UNBOUNDED, false}, REQUIRED, "temperature"}};
+        {"", "T0", "temperature", ANY_NUMBER, REQUIRED, "temperature"}};
     static constexpr HistoryDeclaration history[] = {
         {"temperature", 0, "temperature", "temperature"}};
-    static constexpr int nhistory(const LawParameters &) { return 1; }
     static double heat_share(const LawParameters &) { return 1.0; }
     static double warming(const LawParameters &) { return 0.0; }
     static void update(const LawParameters &, Batch &, History) {}

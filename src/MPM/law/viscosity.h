@@ -24,69 +24,85 @@ namespace {
     return std::sqrt(c * c + a * a) + a;
   }
 
-  /** Declarations and viscous stress of fluids with a power of the shear rate. */
-  constexpr Parameter CONSISTENCY = {"", "K", "pressure time^N", POSITIVE, REQUIRED, "consistency"};
-  struct PowerOfRate {
-    double k, n, steepness;
+  /** Newtonian viscosity: adds 2 MU dev(D) + ZETA tr(D) I, D the strain rate half-way in the step.
+   *  With the elasticity of a solid that is the Kelvin-Voigt element. */
+  struct ViscosityNewtonian : LawDefaults {
+    static constexpr bool uses_F = false;
+    static constexpr const char *name = "newtonian";
+    static constexpr const char *meaning = "Newtonian viscosity; damping of solids (Kelvin-Voigt)";
+    static constexpr StressShare share = WHOLE_STRESS;
+    static constexpr bool uses_speed = false;
+    static constexpr Parameter parameters[] = {
+        {"", "MU", "pressure time", NOT_NEGATIVE, REQUIRED, "dynamic viscosity"},
+        {"bulk", "ZETA", "pressure time", NOT_NEGATIVE, 0.0, "bulk viscosity"}};
 
-    PowerOfRate(double k, double n) : k(k), n(n), steepness(max(n, 1.0)) {}
-
-    /** Apparent viscosity of the stress yield + K rate^N. */
-    MPM_INLINE double viscosity(double rate, double yield) const
+    static void update(const LawParameters &p, Batch &b, History)
     {
-      const double g = max(rate, 1e-100);
-      return (yield + k * pow(g, n)) / g;
-    }
-  };
-
-  /** History of a generalized Newtonian fluid; at rest it has the viscosity of this parameter. */
-  constexpr HistoryDeclaration apparent_viscosity(int parameter)
-  {
-    return {"viscosity", parameter, "pressure time", "apparent viscosity"};
-  }
-
-  /** Loops of a generalized Newtonian fluid (R.B. Bird, R.C. Armstrong, O. Hassager, Dynamics of
-   *  Polymeric Liquids 1, 1987, ch. 4): adds 2 eta dev(D) with an apparent viscosity eta of the
-   *  shear rate sqrt(2 dev(D):dev(D)), D the strain rate half-way in the step.
-   *
-   *  Fluid is made from the parameters and has apparent(rate), the viscosity at a rate, and steepness,
-   *  a bound of the slope of stress over rate in units of the apparent viscosity. History: the
-   *  apparent viscosity of the last step, which the stable time step needs, and for output. */
-  template <class Fluid> struct GeneralizedNewtonian : LawDefaults {
-    static constexpr StressShare share = DEVIATOR;
-    static constexpr bool uses_speed = false, uses_F = false;
-    static constexpr int nhistory(const LawParameters &) { return 1; }
-
-    static void update(const LawParameters &p, Batch &b, History history)
-    {
-      const Fluid fluid(p);
       const double inv_dt = b.dt > 0.0 ? 1.0 / b.dt : 0.0;
+      const double twomu = 2.0 * p.value[0] * inv_dt, zeta = p.value[1] * inv_dt;
       double viscous = 0.0;
       MPM_SIMD_SUM(viscous)
       for (int i = 0; i < b.n; i++) {
         const Increment inc = increment(b, i);
-        const Sym D = inv_dt * deviator(inc.strain);
-        const double D2 = norm2(D);
-        const double eta = fluid.apparent(std::sqrt(2.0 * D2));
-        store_stress(b, i, load_stress(b, i) + 2.0 * eta * D);
-        const double work = (b.J[i] + b.Jold[i]) * eta * D2 * b.dt;
-        history[0][i] = eta;
+        const Sym e = deviator(inc.strain);
+        const double tr = trace(inc.strain);
+        store_stress(b, i, add_diagonal(load_stress(b, i) + twomu * e, zeta * tr));
+        const double work = 0.5 * (b.J[i] + b.Jold[i]) * (twomu * norm2(e) + zeta * tr * tr);
         b.heat[i] += work;
         viscous += work * b.vol0[i];
       }
       b.work[VISCOUS] += viscous;
     }
 
-    static void raise_speed(const LawParameters &p, const Batch &b, History history, double *c)
+    static void raise_speed(const LawParameters &p, const Batch &b, History, double *c)
     {
-      const double steepness = Fluid(p).steepness;
       MPM_SIMD
-      for (int i = 0; i < b.n; i++)
-        c[i] = damped_speed(p, b, i, c[i], steepness * history[0][i], 0.0);
+      for (int i = 0; i < b.n; i++) c[i] = damped_speed(p, b, i, c[i], p.value[0], p.value[1]);
+    }
+  };
+
+  /** Artificial bulk viscosity, in compression only (J. von Neumann, R.D. Richtmyer, J. Appl. Phys.
+   *  21 (1950) 232; linear term R. Landshoff, LA-1930, 1955): the pressure rises by
+   *
+   *    q = density h |tr D| (CQ h |tr D| + CL c),   tr D < 0
+   *
+   *  with node spacing h, wave speed c. Shocks spread over a few h. */
+  struct ViscosityArtificial : LawDefaults {
+    static constexpr bool uses_F = false;
+    static constexpr const char *name = "artificial";
+    static constexpr const char *meaning = "artificial bulk viscosity for shocks";
+    static constexpr StressShare share = PRESSURE;
+    static constexpr Parameter parameters[] = {
+        {"", "CQ", "1", NOT_NEGATIVE, REQUIRED, "quadratic coefficient (about 1.5)"},
+        {"", "CL", "1", NOT_NEGATIVE, REQUIRED, "linear coefficient (about 0.06)"}};
+
+    static void update(const LawParameters &p, Batch &b, History)
+    {
+      const double inv_dt = b.dt > 0.0 ? 1.0 / b.dt : 0.0;
+      const double quadratic = p.value[0] * b.h, linear = p.value[1], scale = p.density * b.h;
+      double viscous = 0.0;
+      MPM_SIMD_SUM(viscous)
+      for (int i = 0; i < b.n; i++) {
+        const double dJ = b.J[i] - b.Jold[i], sum = b.J[i] + b.Jold[i];
+        const double rate = max(-2.0 * dJ / sum * inv_dt, 0.0);
+        const double q = 2.0 * scale / sum * rate * (quadratic * rate + linear * b.speed[i]);
+        subtract_pressure(b, i, q);
+        const double work = -q * dJ;
+        b.heat[i] += work;
+        viscous += work * b.vol0[i];
+      }
+      b.work[VISCOUS] += viscous;
+    }
+
+    /** The linear term only: the quadratic one is left to the fraction of the limit that is run. */
+    static void raise_speed(const LawParameters &p, const Batch &b, History, double *c)
+    {
+      const double xi = p.value[1], factor = std::sqrt(1.0 + xi * xi) + xi;
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) c[i] *= factor;
     }
   };
 
 }    // namespace
 }    // namespace MPM_NS::law
-
 #endif

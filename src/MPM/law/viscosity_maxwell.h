@@ -9,7 +9,7 @@
 #ifndef MPM_LAW_VISCOSITY_MAXWELL_H
 #define MPM_LAW_VISCOSITY_MAXWELL_H
 
-#include "law/hyperelastic.h"
+#include "law/spectral.h"
 
 namespace MPM_NS::law {
 namespace {
@@ -77,8 +77,7 @@ namespace {
         const double first = 0.5 * (1.0 - decay), second = x - first;
         MPM_SIMD_SUM(viscous)
         for (int i = 0; i < b.n; i++) {
-          const Displacement H = {b.A[0][i], b.A[1][i], b.A[2][i], b.A[3][i], b.A[4][i],
-                                  b.A[5][i], b.A[6][i], b.A[7][i], b.A[8][i]};
+          const Displacement H = step_displacement(b, i);
           const double change = expm1((-2.0 / 3.0) * log_volume(H)), scale = 1.0 + change;
           const Sym old = load_rows(h, i);
           const Sym z = (decay * scale) * push_forward(b, i, old) +

@@ -33,23 +33,35 @@ MPM_INLINE void transpose(Vec<4> r[4])
   r[3] = shuffle<2, 3, 6, 7>(b, d);
 }
 
-/** Four columns of the points p..p+3 from rows of WIDTH reals, times scale. */
-template <int WIDTH>
+/** The first COLUMNS columns of the points p..p+3 from rows of WIDTH reals, times scale. */
+template <int WIDTH, int COLUMNS = WIDTH>
 MPM_INLINE void rows_to_columns(const double *row, Column *column, int p, double scale)
 {
-  Vec<4> r[4];
-  for (int k = 0; k < 4; k++) r[k] = scale * Vec<4>::load(row + WIDTH * (p + k));
-  transpose(r);
-  for (int k = 0; k < 4; k++) r[k].store(column[k] + p);
+  for (int c = 0; c + 4 <= COLUMNS; c += 4) {
+    Vec<4> r[4];
+    for (int k = 0; k < 4; k++) r[k] = scale * Vec<4>::load(row + WIDTH * (p + k) + c);
+    transpose(r);
+    for (int k = 0; k < 4; k++) r[k].store(column[c + k] + p);
+  }
+  for (int c = COLUMNS / 4 * 4; c < COLUMNS; c++)
+    for (int k = p; k < p + 4; k++) column[c][k] = scale * row[WIDTH * k + c];
 }
 
-template <int WIDTH> MPM_INLINE void columns_to_rows(const Column *column, double *row, int p)
+template <int WIDTH, int COLUMNS = WIDTH>
+MPM_INLINE void columns_to_rows(const Column *column, double *row, int p)
 {
-  Vec<4> r[4];
-  for (int k = 0; k < 4; k++) r[k] = Vec<4>::load(column[k] + p);
-  transpose(r);
-  for (int k = 0; k < 4; k++) r[k].store(row + WIDTH * (p + k));
+  for (int c = 0; c + 4 <= COLUMNS; c += 4) {
+    Vec<4> r[4];
+    for (int k = 0; k < 4; k++) r[k] = Vec<4>::load(column[c + k] + p);
+    transpose(r);
+    for (int k = 0; k < 4; k++) r[k].store(row + WIDTH * (p + k) + c);
+  }
+  for (int c = COLUMNS / 4 * 4; c < COLUMNS; c++)
+    for (int k = p; k < p + 4; k++) row[WIDTH * k + c] = column[c][k];
 }
+
+/** Columns of the stress that change. */
+template <int DIM> constexpr int NTAU = DIM == 3 ? 6 : 4;
 
 /** Columns of F in plane strain that change: the 2x2 block. */
 constexpr int planar[4] = {0, 1, 3, 4};
@@ -60,17 +72,9 @@ MPM_INLINE void load_four(Batch &batch, Column *A, int p, double dt, const doubl
                           const double *F, const double *tau)
 {
   rows_to_columns<DIM * DIM>(L, A, p, dt);
-  rows_to_columns<6>(tau, batch.stress, p, 1.0);
+  rows_to_columns<6, NTAU<DIM>>(tau, batch.stress, p, 1.0);
   if constexpr (DIM == 3) {
-    rows_to_columns<9>(L + 4, A + 4, p, dt);
     rows_to_columns<9>(F, batch.F, p, 1.0);
-    rows_to_columns<9>(F + 4, batch.F + 4, p, 1.0);
-    for (int k = p; k < p + 4; k++) {
-      A[8][k] = dt * L[9 * k + 8];
-      batch.F[8][k] = F[9 * k + 8];
-      batch.stress[4][k] = tau[6 * k + 4];
-      batch.stress[5][k] = tau[6 * k + 5];
-    }
   } else {
     Vec<4> r[4];
     for (int k = 0; k < 4; k++) {
@@ -226,15 +230,9 @@ template <int DIM, bool HOOP>
 MPM_INLINE void store_four(const Batch &batch, const Column *tau_columns, int p, double *F,
                            double *tau)
 {
-  columns_to_rows<6>(tau_columns, tau, p);
+  columns_to_rows<6, NTAU<DIM>>(tau_columns, tau, p);
   if constexpr (DIM == 3) {
     columns_to_rows<9>(batch.F, F, p);
-    columns_to_rows<9>(batch.F + 4, F + 4, p);
-    for (int k = p; k < p + 4; k++) {
-      F[9 * k + 8] = batch.F[8][k];
-      tau[6 * k + 4] = tau_columns[4][k];
-      tau[6 * k + 5] = tau_columns[5][k];
-    }
   } else {
     Vec<4> r[4];
     for (int c = 0; c < 4; c++) r[c] = Vec<4>::load(batch.F[planar[c]] + p);
@@ -250,14 +248,13 @@ MPM_INLINE void store_four(const Batch &batch, const Column *tau_columns, int p,
 
 template <int DIM, bool HOOP> int store(const Batch &batch, double *F, double *tau)
 {
-  constexpr int NTAU = DIM == 3 ? 6 : 4;
-  alignas(64) double tau_columns[NTAU][BATCH];
+  alignas(64) double tau_columns[NTAU<DIM>][BATCH];
   const int n = batch.n;
   int bad = 0;
 #pragma omp simd reduction(+ : bad)
   for (int p = 0; p < n; p++) {
     bad += !(batch.J[p] > 0.0);
-    for (int c = 0; c < NTAU; c++) tau_columns[c][p] = batch.J[p] * batch.stress[c][p];
+    for (int c = 0; c < NTAU<DIM>; c++) tau_columns[c][p] = batch.J[p] * batch.stress[c][p];
   }
 
   int p = 0;
@@ -266,7 +263,7 @@ template <int DIM, bool HOOP> int store(const Batch &batch, double *F, double *t
   for (; p < n; p++) {
     if (bad && !(batch.J[p] > 0.0)) continue;
     for (int c = 0; c < 9; c++) F[9 * p + c] = batch.F[c][p];
-    for (int c = 0; c < NTAU; c++) tau[6 * p + c] = tau_columns[c][p];
+    for (int c = 0; c < NTAU<DIM>; c++) tau[6 * p + c] = tau_columns[c][p];
   }
   return bad;
 }
@@ -279,15 +276,8 @@ template <int DIM> void first_piola(int n, const double *F, const double *tau, d
 
   int p = 0;
   for (; p + 4 <= n; p += 4) {
-    rows_to_columns<9>(F, f, p, 1.0);
-    rows_to_columns<9>(F + 4, f + 4, p, 1.0);
-    rows_to_columns<6>(tau, s, p, 1.0);
-    if constexpr (DIM == 3)
-      for (int k = p; k < p + 4; k++) {
-        f[8][k] = F[9 * k + 8];
-        s[4][k] = tau[6 * k + 4];
-        s[5][k] = tau[6 * k + 5];
-      }
+    rows_to_columns<9, DIM == 3 ? 9 : 8>(F, f, p, 1.0);
+    rows_to_columns<6, NTAU<DIM>>(tau, s, p, 1.0);
   }
   for (; p < n; p++) {
     for (int k = 0; k < 9; k++) f[k][p] = F[9 * p + k];
@@ -322,13 +312,7 @@ template <int DIM> void first_piola(int n, const double *F, const double *tau, d
     }
   }
 
-  for (p = 0; p + 4 <= n; p += 4) {
-    columns_to_rows<SIZE>(c, P, p);
-    if constexpr (DIM == 3) {
-      columns_to_rows<SIZE>(c + 4, P + 4, p);
-      for (int k = p; k < p + 4; k++) P[9 * k + 8] = c[8][k];
-    }
-  }
+  for (p = 0; p + 4 <= n; p += 4) columns_to_rows<SIZE>(c, P, p);
   for (; p < n; p++)
     for (int k = 0; k < SIZE; k++) P[SIZE * p + k] = c[k][p];
 }

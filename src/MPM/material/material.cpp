@@ -75,14 +75,11 @@ class ComposedMaterial : public Material {
           set_factor(r, (r.term < 0 ? info.parameters : info.term_parameters)[r.parameter],
                      r.of(law.parameters), x, history);
         }
-    const auto factor = [history](int row) {
-      return history[row];
-    };
     for (const auto &part : laws)
       for (const auto &law : part)
         if (law.varies) {
           LocalParameters local(*this, law);
-          initialize(law, local.at(factor), x, history);
+          initialize(law, local.at(history, 1), x, history);
         } else if (law.info->initialize) {
           law.info->initialize(law.parameters, x, history + law.history);
         }
@@ -104,7 +101,7 @@ class ComposedMaterial : public Material {
       b.Jold[i] = b.J[i];
       for (auto &row : b.A) row[i] = 0.0;
     }
-    table->clear_stress(b);
+    clear_stress(b);
     for (const auto &law : laws[EOS]) call(law.kernels->update, law, b);
   }
 
@@ -126,7 +123,7 @@ class ComposedMaterial : public Material {
     if (base)
       run(*base);
     else
-      table->clear_stress(b);
+      clear_stress(b);
     if (damage) account_of_strength(b);
     if (viscous >= 0) begin_viscous_stress(b);
     for (const auto &law : laws[VISCOSITY]) run(law);
@@ -144,10 +141,10 @@ class ComposedMaterial : public Material {
 
   int outside(const Batch &b, int k, double *value) const override
   {
-    const double *v = value;
     switch (source[k]) {
       case UsedRange::PRESSURE_OF_STRESS:
-        table->pressure(b, value);
+        table->mean_stress(b, value);
+        for (int i = 0; i < b.n; i++) value[i] = -value[i];
         break;
       case UsedRange::STRAIN_RATE:
         table->strain_rate(b, value);
@@ -158,10 +155,11 @@ class ComposedMaterial : public Material {
           for (int i = 0; i < b.n; i++) value[i] *= b.history[random_density->row][i];
         break;
       default:
-        v = b.history[source[k]];
-        std::copy(v, v + b.n, value);
+        std::copy(b.history[source[k]], b.history[source[k]] + b.n, value);
     }
-    return table->outside(b.n, v, valid[k].low, valid[k].high);
+    return std::count_if(value, value + b.n, [&range = valid[k]](double x) {
+      return x < range.low || x > range.high;
+    });
   }
 
   void wave_speed(const Batch &state, double *c) const override
@@ -200,6 +198,12 @@ class ComposedMaterial : public Material {
   std::vector<ValidRange> valid;
   std::vector<int> source;    ///< of the quantities of these, as in UsedRange
   std::string text;
+
+  /** Stress of a material without strength. */
+  static void clear_stress(Batch &b)
+  {
+    for (auto &row : b.stress) std::fill(row, row + b.n, 0.0);
+  }
 
   void take_viscous_stress(Batch &b) const
   {
@@ -262,16 +266,16 @@ class ComposedMaterial : public Material {
       if (material.random_heat) heat = material.thermal->parameters;
     }
 
-    /** factor(row): the value of that row of history at the point. */
-    template <class Factor> const LawParameters &at(Factor factor)
+    /** At the point with the values history[0], history[stride], ... of its history variables. */
+    const LawParameters &at(const double *history, int stride)
     {
-      replace(law, p, factor);
+      replace(law, p, history, stride);
       if (const auto &r = material.random_density) {
-        p.density = law.parameters.density * factor(r->row);
-        p.heat_density = law.parameters.heat_density * factor(r->row);
+        p.density = law.parameters.density * history[r->row * stride];
+        p.heat_density = law.parameters.heat_density * history[r->row * stride];
       }
       if (material.random_heat) {
-        replace(*material.thermal, heat, factor);
+        replace(*material.thermal, heat, history, stride);
         heat.heat_density = p.heat_density;
         share_heat(*material.thermal->info, heat, law.heats_alone, p);
       }
@@ -283,9 +287,9 @@ class ComposedMaterial : public Material {
     const UsedLaw &law;
     LawParameters p, heat;
 
-    template <class Factor> static void replace(const UsedLaw &law, LawParameters &p, Factor factor)
+    static void replace(const UsedLaw &law, LawParameters &p, const double *history, int stride)
     {
-      for (const auto &r : law.random) r.of(p) = r.of(law.parameters) * factor(r.row);
+      for (const auto &r : law.random) r.of(p) = r.of(law.parameters) * history[r.row * stride];
     }
   };
 
@@ -334,10 +338,7 @@ class ComposedMaterial : public Material {
       for (double &w : one.work) w = 0.0;
       for (const auto row : single_rows) (one.*row)[0] = (b.*row)[i];
       one.history = reinterpret_cast<History>(&b.history[0][i]);
-      work(local.at([&](int row) {
-        return b.history[row][i];
-      }),
-           one, one.history + law.history, i);
+      work(local.at(&b.history[0][i], BATCH), one, one.history + law.history, i);
     }
   }
 
@@ -362,7 +363,7 @@ class ComposedMaterial : public Material {
     if (const char *wrong = law.info->check(p))
       throw std::runtime_error(std::string("with the random parameters of a point, ") +
                                law.info->name + ": " + wrong);
-    for (int k = 0; k < law.info->nhistory(p); k++)
+    for (int k = 0; k < law.info->count_history(p); k++)
       if (law.info->history[k].initial >= 0)
         history[law.history + k] = p.value[law.info->history[k].initial];
     if (law.info->initialize) law.info->initialize(p, x, history + law.history);
@@ -437,12 +438,7 @@ class ComposedMaterial : public Material {
     if (random_heat) {
       LocalParameters local(*this, *damage);
       for (int i = 0; i < b.n; i++)
-        b.heat[i] = local
-                        .at([&](int row) {
-                          return b.history[row][i];
-                        })
-                        .chi *
-            b.kept[i] * b.plastic_work[i];
+        b.heat[i] = local.at(&b.history[0][i], BATCH).chi * b.kept[i] * b.plastic_work[i];
     }
     add_energy(STRENGTH, b, b.shear_energy);
   }
@@ -456,7 +452,7 @@ class ComposedMaterial : public Material {
       const double initial = h.initial >= 0 ? p.value[h.initial] : h.initial == ONE ? 1.0 : 0.0;
       variables.push_back({h.name + suffix, initial});
     };
-    for (int k = 0; k < info.nhistory(p); k++) declare(info.history[k], "");
+    for (int k = 0; k < info.count_history(p); k++) declare(info.history[k], "");
     for (int term = 0; term < p.nterms; term++)
       for (int k = 0; k < info.nterm_history; k++)
         declare(info.term_history[k], std::to_string(term + 1));
@@ -478,6 +474,9 @@ class ComposedMaterial : public Material {
   void add(const UsedRandom &random)
   {
     const std::string what = "random " + random.name;
+    const auto refuse = [&](const std::string &why) {
+      throw MaterialError(random.word, what + ": " + why);
+    };
     UsedLaw *owner = nullptr;
     RandomParameter r = {
         -1, -1, static_cast<int>(variables.size()), random.lognormal, random.variation, nullptr};
@@ -492,9 +491,7 @@ class ComposedMaterial : public Material {
       choice += ", " + (by_law ? of_law : of_part);
       if (random.name != name && random.name != of_part && !(by_law && random.name == of_law))
         return;
-      if (owner)
-        throw MaterialError(random.word,
-                            what + ": several laws of this material have it: choose " + choice);
+      if (owner) refuse("several laws of this material have it: choose " + choice);
       owner = &law;
       r.term = term;
       r.parameter = k;
@@ -508,18 +505,16 @@ class ComposedMaterial : public Material {
             consider(static_cast<Part>(part), law, term, k);
       }
     const bool of_density = random.name == "density";
-    if (!owner && !of_density)
-      throw MaterialError(random.word, what + ": no such parameter: choose one of " + choice);
+    if (!owner && !of_density) refuse("no such parameter: choose one of " + choice);
     const double mean = of_density ? rho : r.of(owner->parameters);
     if (mean == 0.0 || !std::isfinite(mean))
-      throw MaterialError(random.word,
-                          what + ": its value is " + number(mean) +
-                              ", which a factor does not change: give it another one");
+      refuse("its value is " + number(mean) +
+             ", which a factor does not change: give it another one");
     bool twice = of_density && random_density;
     if (owner)
       for (const auto &other : owner->random)
         twice = twice || (other.term == r.term && other.parameter == r.parameter);
-    if (twice) throw MaterialError(random.word, what + ": is given twice");
+    if (twice) refuse("is given twice");
     r.field = std::make_shared<const RandomField>(random.length, random.seed);
     if (of_density)
       random_density = std::make_unique<const RandomParameter>(r);

@@ -26,6 +26,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
+#include <set>
+#include <sstream>
 
 using namespace MPM_NS;
 
@@ -39,14 +42,8 @@ bool looks_numeric(const std::string &word)
 /** Words separated by blanks. */
 std::vector<std::string> split(const std::string &text)
 {
-  std::vector<std::string> words(1);
-  for (const char c : text) {
-    if (c == ' ')
-      words.emplace_back();
-    else
-      words.back() += c;
-  }
-  return words;
+  std::istringstream stream(text);
+  return {std::istream_iterator<std::string>(stream), {}};
 }
 
 std::string join(const std::vector<std::string> &words, const char *between)
@@ -249,7 +246,7 @@ class Parser {
       if (tail) value[k] = parse_number(what, p.name, p.unit, p.meaning, p.range);
     }
 
-    std::vector<std::string> given;    // first words of the options so far
+    std::set<std::string> given;    // first words of the options so far
     while (!at_end() &&
            (parse_term(what, info, parameters) || parse_option(what, info, value, given))) {}
     if (!at_end() && looks_numeric(words[next]))
@@ -276,7 +273,7 @@ class Parser {
 
   /** Reads one option of the law, false when the next word is none. */
   bool parse_option(const std::string &what, const LawInfo &info, double *value,
-                    std::vector<std::string> &given)
+                    std::set<std::string> &given)
   {
     const int here = next;
     std::vector<std::string> choices;
@@ -285,29 +282,25 @@ class Parser {
       if (!*info.parameters[k].option) continue;
       const auto option = split(info.parameters[k].option);
       if (option[0] != words[here]) continue;
-      if (option.size() == 1) {
-        if (match < 0) match = k;
-      } else {
-        if (choices.empty() || choices.back() != option[1]) choices.push_back(option[1]);
-        if (here + 1 < static_cast<int>(words.size()) && option[1] == words[here + 1] && match < 0)
-          match = k;
-      }
+      const bool fits = option.size() == 1 ||
+          (here + 1 < static_cast<int>(words.size()) && option[1] == words[here + 1]);
+      if (match < 0 && fits) match = k;
+      if (option.size() > 1 && (choices.empty() || choices.back() != option[1]))
+        choices.push_back(option[1]);
     }
     if (match < 0 && choices.empty()) return false;
     if (match < 0)
       fail(here + 1, what + ": '" + words[here] + "' must be followed by " + join(choices, " or "));
-    for (const auto &word : given)
-      if (word == words[here]) fail(here, what + ": '" + words[here] + "' is given twice");
-    given.push_back(words[here]);
+    if (!given.insert(words[here]).second)
+      fail(here, what + ": '" + words[here] + "' is given twice");
 
     const char *option = info.parameters[match].option;
     next += split(option).size();
     for (int k = match; k < info.nparameters; k++) {
       const Parameter &p = info.parameters[k];
-      if (!strcmp(p.option, option) && !strcmp(p.unit, FLAG))
-        value[k] = 1.0;
-      else if (!strcmp(p.option, option))
-        value[k] = parse_number(what + " " + option, p.name, p.unit, p.meaning, p.range);
+      if (strcmp(p.option, option) != 0) continue;
+      const bool flag = !strcmp(p.unit, FLAG);
+      value[k] = flag ? 1.0 : parse_number(what + " " + option, p.name, p.unit, p.meaning, p.range);
     }
     return true;
   }
@@ -316,41 +309,45 @@ class Parser {
   void check() const
   {
     const int end = words.size();
+    const auto has = [&](Part part) {
+      return !material.laws[part].empty();
+    };
+    const auto refuse = [&](Part part, const std::string &why) {
+      const UsedLaw &law = material.laws[part][0];
+      fail(law.word, "'" + title(part, *law.info) + "'" + why);
+    };
     if (material.density <= 0.0) fail(end, "density is missing: add 'density RHO'");
-    if (!material.laws[CLOSED].empty()) {
-      const std::string name = material.laws[CLOSED][0].info->name;
+    if (has(CLOSED)) {
+      const std::string name = title(CLOSED, *material.laws[CLOSED][0].info);
       for (const Part part : {EOS, STRENGTH, DAMAGE})
-        if (!material.laws[part].empty())
-          fail(material.laws[part][0].word,
-               "'" + title(part, *material.laws[part][0].info) + "': '" + name +
-                   "' is a complete law; use either '" + name + "' or eos and strength");
-    } else if (material.laws[EOS].empty()) {
-      if (!material.laws[STRENGTH].empty())
-        fail(material.laws[STRENGTH][0].word,
-             "'" + title(STRENGTH, *material.laws[STRENGTH][0].info) +
-                 "' makes the stress deviator only: add an equation of state, such as "
-                 "'eos linear K' with the bulk modulus");
+        if (has(part))
+          refuse(part,
+                 ": '" + name + "' is a complete law; use either '" + name +
+                     "' or eos and strength");
+    } else if (!has(EOS)) {
+      if (has(STRENGTH))
+        refuse(STRENGTH,
+               " makes the stress deviator only: add an equation of state, such as "
+               "'eos linear K' with the bulk modulus");
       fail(end,
            "no law: add " + join(names(declared_laws(CLOSED)), ", ") +
                ", or eos with strength or viscosity");
     }
-    if (!material.laws[DAMAGE].empty() && material.laws[STRENGTH].empty())
-      fail(material.laws[DAMAGE][0].word,
-           "'" + title(DAMAGE, *material.laws[DAMAGE][0].info) +
-               "' reduces the stress of a solid: add a strength, such as 'strength elastic G'");
+    if (has(DAMAGE) && !has(STRENGTH))
+      refuse(DAMAGE,
+             " reduces the stress of a solid: add a strength, such as 'strength elastic G'");
     for (const auto &part : material.laws)
       for (const auto &law : part)
-        if (law.info->needs_temperature(law.parameters) && material.laws[THERMAL].empty())
+        if (law.info->needs_temperature(law.parameters) && !has(THERMAL))
           fail(law.word,
                std::string("'") + law.info->name +
                    "' with these parameters depends on the temperature: add 'thermal adiabatic' "
                    "with the specific heat, or 'thermal constant'");
-    if (!material.laws[DAMAGE].empty() && material.shares_stress())
-      fail(material.laws[DAMAGE][0].word,
-           "'" + title(DAMAGE, *material.laws[DAMAGE][0].info) +
-               "' does not go with a viscosity that adds to the stress on which a strength or law "
-               "builds in the next step: leave out the viscosity, or use viscosity artificial with "
-               "eos and strength");
+    if (has(DAMAGE) && material.shares_stress())
+      refuse(DAMAGE,
+             " does not go with a viscosity that adds to the stress on which a strength or law "
+             "builds in the next step: leave out the viscosity, or use viscosity artificial with "
+             "eos and strength");
   }
 };
 

@@ -71,8 +71,7 @@ struct UsedLaw {
 /** A range of validity in a definition. */
 struct UsedRange : ValidRange {
   int word;    ///< of its quantity in the definition
-  /** How the quantity is found: one of these, or a row of history. */
-  int source;
+  /** How the quantity is found, if not in a row of history. */
   enum { PRESSURE_OF_STRESS = -3, STRAIN_RATE = -2, DENSITY_OF_J = -1 };
 };
 

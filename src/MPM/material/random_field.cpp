@@ -57,16 +57,6 @@ struct RandomField::Transforms {
   }
 };
 
-bool RandomField::available()
-{
-  return true;
-}
-
-RandomField::RandomField(double length, uint64_t seed) :
-    spacing(length / PER_LENGTH), seed(seed), transforms(new Transforms)
-{
-}
-
 /* ----------------------------------------------------------------------
    coefficients of the splines with support in a tile
 ------------------------------------------------------------------------- */
@@ -74,7 +64,7 @@ RandomField::RandomField(double length, uint64_t seed) :
 std::vector<double> RandomField::make_tile(const Index &tile) const
 {
   const Transforms &t = *transforms;
-  const int64_t first[3] = {TILE * tile.i - MARGIN, TILE * tile.j - MARGIN, TILE * tile.k - MARGIN};
+  const Index first = {TILE * tile[0] - MARGIN, TILE * tile[1] - MARGIN, TILE * tile[2] - MARGIN};
   double *real = t.real;
   for (int i = 0; i < WINDOW; i++)
     for (int j = 0; j < WINDOW; j++)
@@ -102,17 +92,9 @@ std::vector<double> RandomField::make_tile(const Index &tile) const
 
 #else
 
-struct RandomField::Transforms {};
-
-bool RandomField::available()
-{
-  return false;
-}
-
-RandomField::RandomField(double length, uint64_t seed) : spacing(length), seed(seed)
-{
-  throw std::runtime_error("no random fields without FFTW");
-}
+struct RandomField::Transforms {
+  Transforms() { throw std::runtime_error("no random fields without FFTW"); }
+};
 
 std::vector<double> RandomField::make_tile(const Index &) const
 {
@@ -120,6 +102,20 @@ std::vector<double> RandomField::make_tile(const Index &) const
 }
 
 #endif
+
+bool RandomField::available()
+{
+#ifdef MPM_FFTW
+  return true;
+#else
+  return false;
+#endif
+}
+
+RandomField::RandomField(double length, uint64_t seed) :
+    spacing(length / PER_LENGTH), seed(seed), transforms(new Transforms)
+{
+}
 
 RandomField::~RandomField() = default;
 
@@ -143,7 +139,7 @@ void RandomField::noise(int64_t i, int64_t j, int64_t k, double *pair) const
 
 double RandomField::value(const double *x) const
 {
-  int64_t tile[3];
+  Index tile;
   int first[3];
   double w[3][4];
   for (int d = 0; d < 3; d++) {
@@ -155,11 +151,10 @@ double RandomField::value(const double *x) const
     w[d][3] = t * t * t / 6.0;
     w[d][2] = 1.0 - w[d][0] - w[d][1] - w[d][3];
   }
-  const Index index{tile[0], tile[1], tile[2]};
-  auto found = tiles.find(index);
+  auto found = tiles.find(tile);
   if (found == tiles.end()) {
     if (tiles.size() >= MAX_TILES) tiles.clear();
-    found = tiles.emplace(index, make_tile(index)).first;
+    found = tiles.emplace(tile, make_tile(tile)).first;
   }
   const double *c = found->second.data();
   double sum = 0.0;

@@ -9,6 +9,7 @@
 #ifndef MPM_MATERIAL_RANDOM_FIELD_H
 #define MPM_MATERIAL_RANDOM_FIELD_H
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -51,13 +52,7 @@ class RandomField {
   static constexpr int KEPT = TILE + 3;            ///< nodes with a spline in the tile
   static constexpr std::size_t MAX_TILES = 128;    ///< in memory: 1 MB each
 
-  struct Index {
-    int64_t i, j, k;
-    bool operator<(const Index &o) const
-    {
-      return i != o.i ? i < o.i : j != o.j ? j < o.j : k < o.k;
-    }
-  };
+  using Index = std::array<int64_t, 3>;
   struct Transforms;
 
   double spacing;

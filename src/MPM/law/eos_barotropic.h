@@ -6,13 +6,29 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-#ifndef MPM_LAW_EOS_TAIT_H
-#define MPM_LAW_EOS_TAIT_H
+#ifndef MPM_LAW_EOS_BAROTROPIC_H
+#define MPM_LAW_EOS_BAROTROPIC_H
 
 #include "law/eos.h"
 
 namespace MPM_NS::law {
 namespace {
+
+  /** p = K (density/density_0 - 1) = K (1/J - 1): the linear term of the polynomial equation of
+   *  state of hydrocodes. Sound speed sqrt(K/density_0) at any density; tension stays below K. */
+  struct EosLinear : Barotropic<EosLinear> {
+    static constexpr const char *name = "linear";
+    static constexpr const char *meaning = "pressure linear in density";
+    static constexpr Parameter parameters[] = {
+        {"", "K", "pressure", POSITIVE, REQUIRED, "bulk modulus"}};
+
+    double K;
+
+    explicit EosLinear(const LawParameters &p) : K(p.value[0]) {}
+    MPM_INLINE double pressure(double J) const { return K * (1.0 - J) / J; }
+    MPM_INLINE double bulk(double) const { return K; }
+    MPM_INLINE double stored(double J) const { return K * minus1_minus_log(J); }
+  };
 
   /** Tait-Murnaghan p = K/gamma (J^-gamma - 1), not below the cavitation pressure
    *  (F.D. Murnaghan, Proc. Natl. Acad. Sci. 30 (1944) 244; J.J. Monaghan, J. Comput. Phys. 110
@@ -24,11 +40,7 @@ namespace {
     static constexpr Parameter parameters[] = {
         {"", "K", "pressure", POSITIVE, REQUIRED, "bulk modulus at reference density"},
         {"", "GAMMA", "1", POSITIVE, REQUIRED, "exponent (water: 7)"},
-        {"cutoff",
-         "PMIN",
-         "pressure",
-         {-UNBOUNDED, 0.0, true},
-         -UNBOUNDED,
+        {"cutoff", "PMIN", "pressure", TENSION, -UNBOUNDED,
          "lowest pressure, not positive; the liquid cavitates there"}};
     static constexpr const char *check(const LawParameters &p)
     {

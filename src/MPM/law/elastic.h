@@ -1,0 +1,225 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MPM_LAW_ELASTIC_H
+#define MPM_LAW_ELASTIC_H
+
+#include "law/hyperelastic.h"
+
+namespace MPM_NS::law {
+namespace {
+
+  /** Isotropic hypoelasticity: Jaumann rate of the Kirchhoff stress tau = J sigma,
+   *
+   *    tau^J = 2 mu dev(D) + K tr(D) I,   the integral of tr(D) over a step being ln(J/J_old)
+   *
+   *  The rate of tau, not of sigma, makes tau_m^2/(2 K) + dev(tau):dev(tau)/(4 mu) a stored energy
+   *  whose change is the stress power on any path. Small strain: Hooke's law. Old stress is kept.
+   */
+  struct LawLinear : LawDefaults, BulkAndShear {
+    static constexpr bool uses_F = false;
+    static constexpr const char *name = "linear";
+    static constexpr const char *meaning = "isotropic linear elastic, rate form";
+    static constexpr StressShare share = WHOLE_STRESS;
+    static constexpr Parameter parameters[] = {YOUNGS_MODULUS, POISSONS_RATIO};
+
+    using BulkAndShear::BulkAndShear;
+
+    static void update(const LawParameters &p, Batch &b, History)
+    {
+      const LawLinear law(p);
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const Increment inc = increment(b, i);
+        const double J = b.J[i], Jold = b.Jold[i];
+        const Sym tau = jaumann(inc, Jold * load_stress(b, i), 2.0 * law.G * deviator(inc.strain));
+        store_stress(b, i, (1.0 / J) * add_diagonal(tau, law.K * log(J / Jold)));
+      }
+    }
+
+    /** J d sigma_nn / d epsilon_nn = lambda + 2 mu - tau_nn; bound of -tau_nn over directions n. In
+     *  strong expansion it is negative: the law then has no waves at all. */
+    static void modulus(const LawParameters &p, const Batch &b, History, double *k)
+    {
+      const LawLinear law(p);
+      const double rest = law.K + (4.0 / 3.0) * law.G, least = LEAST_MODULUS * rest;
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const Sym tau = b.J[i] * load_stress(b, i);
+        k[i] += max(rest - (1.0 / 3.0) * trace(tau) + eigenvalue_bound(deviator(tau)), least);
+      }
+    }
+
+    static void energy(const LawParameters &p, const Batch &b, History, double *w)
+    {
+      const LawLinear law(p);
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const Sym tau = b.J[i] * load_stress(b, i);
+        const double mean = (1.0 / 3.0) * trace(tau);
+        w[i] += mean * mean / (2.0 * law.K) + norm2(deviator(tau)) / (4.0 * law.G);
+      }
+    }
+  };
+
+  /** Compressible neo-Hookean solid in the logarithmic form (J. Simo, K. Pister, Comput. Methods
+   *  Appl. Mech. Eng. 46 (1984) 201; J. Bonet, R. Wood, Nonlinear Continuum Mechanics, eq. 6.27):
+   *
+   *    w = mu/2 (tr b - 3 - 2 ln J) + lambda/2 ln^2 J
+   *    sigma = [mu (b - I) + lambda ln J I] / J
+   */
+  struct LawNeoHookean : Hyperelastic<LawNeoHookean>, LameModuli {
+    static constexpr const char *name = "neohookean";
+    static constexpr const char *meaning = "compressible neo-Hookean hyperelastic";
+    static constexpr Parameter parameters[] = {
+        {"", "E", "pressure", POSITIVE, REQUIRED, "Young's modulus at small strain"},
+        {"", "NU", "1", POISSON_RATIO, REQUIRED, "Poisson's ratio at small strain"}};
+
+    using LameModuli::LameModuli;
+
+    static void update(const LawParameters &p, Batch &b, History)
+    {
+      const LawNeoHookean law(p);
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const double J = b.J[i], inv = 1.0 / J;
+        const Sym bb = left_cauchy_green(b, i);
+        store_stress(b, i, add_diagonal(law.mu * inv * bb, (law.lambda * log(J) - law.mu) * inv));
+      }
+    }
+
+    /** Acoustic tensor: J rho c^2 = mu n.b.n + mu + lambda (1 - ln J), largest along the longest
+     *  principal stretch. */
+    static void modulus(const LawParameters &p, const Batch &b, History, double *k)
+    {
+      const LawNeoHookean law(p);
+      const double least = LEAST_MODULUS * (law.lambda + 2.0 * law.mu);
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++)
+        k[i] += max(law.mu * (largest_principal(left_cauchy_green(b, i)) + 1.0) +
+                        law.lambda * (1.0 - log(b.J[i])),
+                    least);
+    }
+
+    /** With H = F - I and det F - 1 = tr H + minors + det H, the terms of first order in H are
+     *  taken out of tr b - 3 - 2 ln J by hand: small strains keep full relative precision. */
+    MPM_INLINE double stored(const Batch &b, int i) const
+    {
+      const Displacement H = displacement(b, i);
+      const double square = H.xx * H.xx + H.xy * H.xy + H.xz * H.xz + H.yx * H.yx + H.yy * H.yy +
+          H.yz * H.yz + H.zx * H.zx + H.zy * H.zy + H.zz * H.zz;
+      const double J = b.J[i], logJ = log(J);
+      return 0.5 * mu *
+          (square - 2.0 * (H.minors() + H.determinant()) + 2.0 * minus1_minus_log(J)) +
+          0.5 * lambda * logJ * logJ;
+    }
+  };
+
+  /** Second Piola-Kirchhoff stress linear in the Green-Lagrange strain E = (F^T F - I)/2
+   *  (R.W. Ogden, Non-Linear Elastic Deformations, 1984, ch. 4.4):
+   *
+   *    w = lambda/2 tr^2(E) + mu E:E,   J sigma = F [lambda tr(E) I + 2 mu E] F^T
+   *
+   *  with F E F^T = (b^2 - b)/2. It softens in compression, and under uniaxial compression below a
+   *  stretch of 1/sqrt(3) the stress falls. */
+  struct LawStVenantKirchhoff : IsotropicHyperelastic<LawStVenantKirchhoff>, LameModuli {
+    static constexpr const char *name = "stvenant/kirchhoff";
+    static constexpr const char *meaning = "hyperelastic, linear in Green-Lagrange strain";
+    static constexpr Parameter parameters[] = {YOUNGS_MODULUS, POISSONS_RATIO};
+
+    using LameModuli::LameModuli;
+
+    MPM_INLINE Sym kirchhoff(const Batch &b, int i) const
+    {
+      const Sym g = left_strain(displacement(b, i));    // b - I; b^2 - b = b g = g + g^2
+      const double t = 0.5 * lambda * trace(g);
+      return add_diagonal((t + mu) * g + mu * square(g), t);
+    }
+
+    MPM_INLINE double stored(const Batch &b, int i) const
+    {
+      const Sym e = green_lagrange(displacement(b, i));
+      const double t = trace(e);
+      return 0.5 * lambda * t * t + mu * norm2(e);
+    }
+
+    static void respond(const LawParameters &p, int n, PrincipalResponse &r)
+    {
+      const LawStVenantKirchhoff law(p);
+      MPM_SIMD
+      for (int i = 0; i < n; i++) {
+        const double x = exp(2.0 * r.e[0][i]), y = exp(2.0 * r.e[1][i]);
+        const double z = exp(2.0 * r.e[2][i]), t = 0.5 * law.lambda * (x + y + z - 3.0);
+        // second Piola-Kirchhoff stresses
+        const double Sx = t + law.mu * (x - 1.0), Sy = t + law.mu * (y - 1.0);
+        const double Sz = t + law.mu * (z - 1.0), M = law.lambda + 2.0 * law.mu;
+        r.tau[0][i] = x * Sx;
+        r.tau[1][i] = y * Sy;
+        r.tau[2][i] = z * Sz;
+        r.A[0][i] = x * (2.0 * Sx + M * x);
+        r.A[1][i] = y * (2.0 * Sy + M * y);
+        r.A[2][i] = z * (2.0 * Sz + M * z);
+        r.A[3][i] = law.lambda * x * y;
+        r.A[4][i] = law.lambda * x * z;
+        r.A[5][i] = law.lambda * y * z;
+      }
+    }
+  };
+
+  /** Hyperelastic solid that is linear in the logarithmic (Hencky) strain e = ln(b)/2
+   *  (H. Hencky, Z. Techn. Phys. 9 (1928) 215; L. Anand, J. Appl. Mech. 46 (1979) 78):
+   *
+   *    w = G dev(e):dev(e) + K/2 ln^2 J,   J sigma = 2 G dev(e) + K ln J I
+   */
+  struct LawHencky : IsotropicHyperelastic<LawHencky>, BulkAndShear {
+    static constexpr const char *name = "hencky";
+    static constexpr const char *meaning = "hyperelastic, linear in logarithmic strain";
+    static constexpr Parameter parameters[] = {YOUNGS_MODULUS, POISSONS_RATIO};
+
+    using BulkAndShear::BulkAndShear;
+
+    MPM_INLINE Sym kirchhoff(const Batch &b, int i) const
+    {
+      const Displacement H = displacement(b, i);
+      Spectral s = spectral(left_strain(H));
+      const double logJ = log_volume(H), mean = (1.0 / 3.0) * logJ;
+      for (int a = 0; a < 3; a++) s.value[a] = 2.0 * G * (log_strain(s.value[a]) - mean) + K * logJ;
+      return recompose(s, s.value);
+    }
+
+    MPM_INLINE double stored(const Batch &b, int i) const
+    {
+      const Displacement H = displacement(b, i);
+      const Spectral s = spectral(left_strain(H));
+      const double logJ = log_volume(H), mean = (1.0 / 3.0) * logJ;
+      double square = 0.0;
+      for (int a = 0; a < 3; a++) {
+        const double d = log_strain(s.value[a]) - mean;
+        square += d * d;
+      }
+      return G * square + 0.5 * K * logJ * logJ;
+    }
+
+    static void respond(const LawParameters &p, int n, PrincipalResponse &r)
+    {
+      const LawHencky law(p);
+      MPM_SIMD
+      for (int i = 0; i < n; i++) {
+        for (int a = 0; a < 3; a++) {
+          r.tau[a][i] = 2.0 * law.G * (r.e[a][i] - (1.0 / 3.0) * r.logJ[i]);
+          r.A[a][i] = (4.0 / 3.0) * law.G;
+          r.A[a + 3][i] = -(2.0 / 3.0) * law.G;
+        }
+        respond_mean(law.K * r.logJ[i], law.K, r, i);
+      }
+    }
+  };
+
+}    // namespace
+}    // namespace MPM_NS::law
+#endif
