@@ -703,18 +703,16 @@ TEST(Damage, NeutralWithoutGrowth)
 TEST(Damage, BadInputIsRefused)
 {
   expect_refused(
-      {{"damage rankine 1", -1, "add a strength, such as 'strength elastic G'"},
-       {"strength elastic 1 damage foo 1", -1,
+      {{"damage rankine 1", "add a strength, such as 'strength elastic G'"},
+       {"strength elastic 1 damage foo 1",
         "unknown damage 'foo': choose johnson/cook, cockcroft/latham, rankine, grady/kipp"},
-       {"strength elastic 1 damage rankine 1 after foo", -1,
+       {"strength elastic 1 damage rankine 1 after foo",
         "followed by none or pressure or friction"},
-       {"strength elastic 1 damage rankine 1 after none after pressure", -1,
-        "'after' is given twice"},
-       {"strength elastic 1 damage rankine 1 after none 1", -1, "too many values"},
-       {"strength elastic 1 damage rankine 1 damage rankine 1", -1,
-        "has 'damage rankine' already"}},
+       {"strength elastic 1 damage rankine 1 after none after pressure", "'after' is given twice"},
+       {"strength elastic 1 damage rankine 1 after none 1", "too many values"},
+       {"strength elastic 1 damage rankine 1 damage rankine 1", "has 'damage rankine' already"}},
       "density 1 eos linear 1 ");
-  expect_refused({{"density 1 linear 1 0 damage rankine 1", -1, "'linear' is a complete law"}});
+  expect_refused({{"density 1 linear 1 0 damage rankine 1", "'linear' is a complete law"}});
   EXPECT_EQ(
       make("density 1 eos linear 1 strength elastic 1 damage rankine 7 after none")->describe(),
       "density 1, eos linear K=1, strength elastic G=1, damage rankine SIGMA=7 after none");

@@ -415,17 +415,17 @@ TEST(EveryEos, FiniteInHugeSteps)
 TEST(Definition, BadInputIsRefused)
 {
   expect_refused(
-      {{"density 1 eos shock 1 1 1 cutoff -1 spall -1", 3, "exclude each other"},
-       {"density 1 eos shock 1 1 1 cutoff 1", 8, "VALUE <= 0"},
-       {"density 1 eos polynomial 1 0 0 0 0 cutoff -1 spall -1", 3, "exclude each other"},
-       {"density 1 eos polynomial 1 0 0 0 0 1", 10, "T2 is missing"},
-       {"density 1 eos ideal/gas 1 pressure 1", 4, "GAMMA = 1"},
-       {"density 1 eos ideal/gas 1.4", 3, "give the initial state"},
-       {"density 1 eos ideal/gas 1.4 pressure 1 energy 1", 3, "give the initial state"},
-       {"density 1 eos ideal/gas 1.4 pressure 0", 6, "out of range"},
-       {"density 1 eos stiffened/gas 4 1 cutoff -2", 3, "never reached"},
-       {"density 1 eos jwl 1 1 1 1 1 1", 10, "D is missing"},
-       {"density 1 eos jwl 1 1 1 1 1 1 1 detonate 0 0 0", 15, "T is missing"}});
+      {{"density 1 eos shock 1 1 1 cutoff -1 spall -1", "exclude each other", 3},
+       {"density 1 eos shock 1 1 1 cutoff 1", "VALUE <= 0", 8},
+       {"density 1 eos polynomial 1 0 0 0 0 cutoff -1 spall -1", "exclude each other", 3},
+       {"density 1 eos polynomial 1 0 0 0 0 1", "T2 is missing", 10},
+       {"density 1 eos ideal/gas 1 pressure 1", "GAMMA = 1", 4},
+       {"density 1 eos ideal/gas 1.4", "give the initial state", 3},
+       {"density 1 eos ideal/gas 1.4 pressure 1 energy 1", "give the initial state", 3},
+       {"density 1 eos ideal/gas 1.4 pressure 0", "out of range", 6},
+       {"density 1 eos stiffened/gas 4 1 cutoff -2", "never reached", 3},
+       {"density 1 eos jwl 1 1 1 1 1 1", "D is missing", 10},
+       {"density 1 eos jwl 1 1 1 1 1 1 1 detonate 0 0 0", "T is missing", 15}});
 }
 
 }    // namespace

@@ -170,11 +170,11 @@ TEST(Extremes, AreFinite)
 
 TEST(Definition, BadInputIsRefused)
 {
-  expect_refused({{"density 1 eos linear 1 viscosity bingham 1 1 1", -1, "MUMAX must be above MU"},
-                  {"density 1 eos linear 1 viscosity bingham 1 1", -1, "MUMAX is missing"},
-                  {"density 1 eos linear 1 viscosity power 1 1 2 1", -1, "must not be below MUMIN"},
-                  {"density 1 eos linear 1 viscosity herschel/bulkley 1 0 0 1", -1, "N = 0"},
-                  {"density 1 eos linear 1 viscosity newtonian 1 bulk -1", -1, "ZETA = -1"}});
+  expect_refused({{"density 1 eos linear 1 viscosity bingham 1 1 1", "MUMAX must be above MU"},
+                  {"density 1 eos linear 1 viscosity bingham 1 1", "MUMAX is missing"},
+                  {"density 1 eos linear 1 viscosity power 1 1 2 1", "must not be below MUMIN"},
+                  {"density 1 eos linear 1 viscosity herschel/bulkley 1 0 0 1", "N = 0"},
+                  {"density 1 eos linear 1 viscosity newtonian 1 bulk -1", "ZETA = -1"}});
 }
 
 }    // namespace

@@ -743,22 +743,21 @@ TEST(SoilFiles, GiveThePublishedStrength)
 
 TEST(SoilLaws, BadDefinitionsAreRefused)
 {
-  expect_refused(
-      {{"drucker/prager 1 0 30 dilatancy 31", -1, "PSI must not exceed PHI"},
-       {"drucker/prager 1 0 90", -1, "out of range"},
-       {"drucker/prager 1 0 30 plane 1", -1, "too many values"},
-       {"drucker/prager 1 0 30 plane plane", -1, "given twice"},
-       {"mohr/coulomb 1 0 30", -1, "C is missing"},
-       {"mohr/coulomb 1 0 30 1 residual 2 20 1", -1, "CR and PHIR must not exceed"},
-       {"mohr/coulomb 1 0 30 1 residual 0.5", -1, "PHIR is missing"},
-       {"mohr/coulomb 1 0 30 1 dilatancy 25 residual 0.5 20 1", -1, "PSI must not exceed"},
-       {"mui 1 0 0.5 0.4 0.3 1", -1, "MU2 must not be below"},
-       {"camclay 1 1 0.1 0.1 1 1 1", -1, "LAMBDA must be above"},
-       {"camclay 1 1 0.2 0.1 1 2 1", -1, "PC must not be below"},
-       {"nacc 1 0 1 1.5 1 0", -1, "out of range"},
-       {"nacc 1 0 1 1 1 0.1", -1, "out of range"},
-       {"snow 1 0 1 0 1", -1, "out of range"}},
-      "density 1 ");
+  expect_refused({{"drucker/prager 1 0 30 dilatancy 31", "PSI must not exceed PHI"},
+                  {"drucker/prager 1 0 90", "out of range"},
+                  {"drucker/prager 1 0 30 plane 1", "too many values"},
+                  {"drucker/prager 1 0 30 plane plane", "given twice"},
+                  {"mohr/coulomb 1 0 30", "C is missing"},
+                  {"mohr/coulomb 1 0 30 1 residual 2 20 1", "CR and PHIR must not exceed"},
+                  {"mohr/coulomb 1 0 30 1 residual 0.5", "PHIR is missing"},
+                  {"mohr/coulomb 1 0 30 1 dilatancy 25 residual 0.5 20 1", "PSI must not exceed"},
+                  {"mui 1 0 0.5 0.4 0.3 1", "MU2 must not be below"},
+                  {"camclay 1 1 0.1 0.1 1 1 1", "LAMBDA must be above"},
+                  {"camclay 1 1 0.2 0.1 1 2 1", "PC must not be below"},
+                  {"nacc 1 0 1 1.5 1 0", "out of range"},
+                  {"nacc 1 0 1 1 1 0.1", "out of range"},
+                  {"snow 1 0 1 0 1", "out of range"}},
+                 "density 1 ");
 }
 
 }    // namespace

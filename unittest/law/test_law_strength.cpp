@@ -133,15 +133,15 @@ TEST(J2Hardening, ConsidereLoad)
 TEST(J2Hardening, BadInputIsRefused)
 {
   expect_refused(
-      {{"hardening voce 1e8 1", -1, "HVOCE is missing"},
-       {"hardening swift 0 0.2", -1, "out of range"},
-       {"point 0.1 5e8 hardening linear 1e9", -1, "points of the flow stress do not go with"},
-       {"point 0.1 5e8 point 0.1 6e8", -1, "must increase"},
-       {"point 0 3e8", -1, "out of range"},
-       {"point 0.001 1e8", -1, "must not fall faster than G/2"},
-       {"rate perzyna 1e8 1 0.5", -1, "out of range"},
-       {"rate perzyna 1e8 1 1 rate cowper/symonds 40 5", -1, "'rate' is given twice"},
-       {"kinematic 0 1", -1, "out of range"}},
+      {{"hardening voce 1e8 1", "HVOCE is missing"},
+       {"hardening swift 0 0.2", "out of range"},
+       {"point 0.1 5e8 hardening linear 1e9", "points of the flow stress do not go with"},
+       {"point 0.1 5e8 point 0.1 6e8", "must increase"},
+       {"point 0 3e8", "out of range"},
+       {"point 0.001 1e8", "must not fall faster than G/2"},
+       {"rate perzyna 1e8 1 0.5", "out of range"},
+       {"rate perzyna 1e8 1 1 rate cowper/symonds 40 5", "'rate' is given twice"},
+       {"kinematic 0 1", "out of range"}},
       J2);
 }
 

@@ -265,11 +265,11 @@ inline void expect_on_surface(const MaterialPoint &p, double Y, double digits_of
     EXPECT_LE(p.vonmises(), Y * (1 + 1e-12));
 }
 
-/** Definitions that are wrong at a word (-1: not looked at), each with words or a pattern of the message. */
+/** A definition that is wrong, with words or a pattern of the message, and the word that it is about (-1: not looked at). */
 struct Refusal {
   std::string text;
-  int word;
   const char *message;
+  int word = -1;
 };
 inline void expect_refused(const std::vector<Refusal> &refusals, const std::string &start = "")
 {
