@@ -83,7 +83,7 @@ int g2p(MPM_NS::G2P kernel, Points &points, const double *tile, double *L = null
   return kernel(points.rows(), points.step, points.first, points.last, points.base, tile, L);
 }
 
-/** A tile with zeros: the nodes in front of the block, the last base node, and how many nodes the
+/** A tile with the nodes in front of the block, the last base node, and how many nodes the
  *  stencil has behind a base node. */
 struct TileShape {
   int dim, stride_x, stride_y, margin, last, reach;
@@ -143,12 +143,14 @@ inline void expect_box_moves(const MPM_NS::TransferKernels &kernels, const TileS
     ASSERT_EQ(Reals(t.tile, t.tile + t.reals), values);
     kernels.flush(t.tile, store.data(), slot, box);
     ASSERT_EQ(store, expected);
-    for (int i = 0; i < t.reals; i++) ASSERT_EQ(t.tile[i], 0.0);
+    ASSERT_EQ(Reals(t.tile, t.tile + t.reals), Reals(t.reals, 0.0));
     kernels.load(t.tile, store.data(), slot, box);
     ASSERT_EQ(store, expected);
+    bool loaded = true;
     for_box([&](int in_tile, int in_store) {
-      ASSERT_EQ(t.tile[in_tile], store[in_store]);
+      loaded = loaded && t.tile[in_tile] == store[in_store];
     });
+    ASSERT_TRUE(loaded);
   }
 }
 
