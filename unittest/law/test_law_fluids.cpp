@@ -20,17 +20,14 @@ struct Flow {
 Flow flow(const Material &material, double rate, double dt = 1e-9)
 {
   Flow f;
-  MaterialPoint p(material);
-  const Matrix shear = {0, rate, 0, 0, 0, 0, 0, 0, 0};
-  p.step(shear.data(), dt);
+  MaterialPoint p(material), q(material);
+  steps(p, {0, rate, 0, 0, 0, 0, 0, 0, 0}, dt);
   f.shear = p.stress(3);
   f.viscous = p.work[VISCOUS] / dt;
   f.apparent = p.history(0);
-  MaterialPoint q(material);
   // plane extension, turned, with spin: sqrt(2 D:D) is the rate
   const double e = 0.3 * rate, s = 0.4 * rate, w = 7.0 * rate;
-  const Matrix mixed = {e, s + w, 0, s - w, -e, 0, 0, 0, 0};
-  q.step(mixed.data(), dt);
+  steps(q, {e, s + w, 0, s - w, -e, 0, 0, 0, 0}, dt);
   f.mixed = q.vonmises() / std::sqrt(3.0);
   return f;
 }
@@ -117,19 +114,16 @@ TEST(Rest, RotationIsNoFlow)
 {
   Point p("density 1000 eos linear 1e9 viscosity bingham 0.5 20 1000");
   for (int i = 1; i <= 20; i++) {
-    move_to(p, rotation({0.48, 0.6, 0.64}, 0.7 * i), 1e-3);
+    move_to(p, rotation(AXIS, 0.7 * i), 1e-3);
     EXPECT_LT(p.vonmises(), 1e-8);
   }
 }
 
 TEST(Newtonian, BulkViscosity)
 {
-  const auto material = make("density 1000 eos linear 1e9 viscosity newtonian 2 bulk 5");
-  const auto plain = make("density 1000 eos linear 1e9");
-  MaterialPoint p(*material), q(*plain);
-  const Matrix L = {-3, 1, 0, 1, 1, 0, 0, 0, 0.5};
-  p.step(L.data(), 1e-6);
-  q.step(L.data(), 1e-6);
+  Point p("density 1000 eos linear 1e9 viscosity newtonian 2 bulk 5"),
+      q("density 1000 eos linear 1e9");
+  for (auto *point : {&p, &q}) steps(*point, {-3, 1, 0, 1, 1, 0, 0, 0, 0.5}, 1e-6);
   const double tr = -1.5;
   EXPECT_NEAR(p.pressure() - q.pressure(), -5 * tr, 1e-6);
   EXPECT_NEAR(p.stress(3), 2 * 2 * 1.0, 1e-9);
@@ -148,8 +142,7 @@ TEST(StableStep, FollowsTheApparentViscosity)
   };
   const auto speed = [&](const std::string &text, double rate) {
     Point p("density 1000 eos linear 1e6 viscosity " + text, 1, h);
-    const Matrix L = {0, rate, 0, 0, 0, 0, 0, 0, 0};
-    if (rate > 0.0) p.step(L.data(), 1e-9);
+    if (rate > 0.0) steps(p, {0, rate, 0, 0, 0, 0, 0, 0, 0}, 1e-9);
     return p.wave_speed();
   };
   EXPECT_NEAR(speed("newtonian 200 bulk 100", 0), limit(4.0 / 3 * 200 + 100), 1e-9);
@@ -168,22 +161,20 @@ TEST(Extremes, AreFinite)
     for (const double rate : {1e-6, 1.0, 1e8})
       for (const double strain : {1e-12, 0.1, 1.0}) {
         Point p(std::string("density 1000 eos tait 1e9 7 viscosity ") + text, 1, 1e-3);
-        const double dt = strain / rate;
-        const Matrix A = {0.3 * strain, strain, 0, 0.2 * strain, -0.4 * strain, 0, 0, strain, 0};
-        p.move(A.data(), dt);
-        EXPECT_TRUE(std::isfinite(p.vonmises()));
-        EXPECT_TRUE(std::isfinite(p.wave_speed()));
+        moves(p, {0.3 * strain, strain, 0, 0.2 * strain, -0.4 * strain, 0, 0, strain, 0},
+              strain / rate);
+        expect_finite(p);
         EXPECT_GE(p.work[VISCOUS], 0.0);
       }
 }
 
 TEST(Definition, BadInputIsRefused)
 {
-  expect_refused({{"density 1 eos linear 1 viscosity bingham 1 1 1", -1, "MUMAX must be above MU"},
-                  {"density 1 eos linear 1 viscosity bingham 1 1", -1, "MUMAX is missing"},
-                  {"density 1 eos linear 1 viscosity power 1 1 2 1", -1, "must not be below MUMIN"},
-                  {"density 1 eos linear 1 viscosity herschel/bulkley 1 0 0 1", -1, "N = 0"},
-                  {"density 1 eos linear 1 viscosity newtonian 1 bulk -1", -1, "ZETA = -1"}});
+  expect_refused({{"density 1 eos linear 1 viscosity bingham 1 1 1", "MUMAX must be above MU"},
+                  {"density 1 eos linear 1 viscosity bingham 1 1", "MUMAX is missing"},
+                  {"density 1 eos linear 1 viscosity power 1 1 2 1", "must not be below MUMIN"},
+                  {"density 1 eos linear 1 viscosity herschel/bulkley 1 0 0 1", "N = 0"},
+                  {"density 1 eos linear 1 viscosity newtonian 1 bulk -1", "ZETA = -1"}});
 }
 
 }    // namespace

@@ -23,11 +23,11 @@ void step_lateral(MaterialPoint &p, double axial, double lateral_stress, double 
                   bool plane = false)
 {
   const auto motion = [&](double rate) {
-    return Matrix{axial, 0, 0, 0, rate, 0, 0, 0, plane ? 0.0 : rate};
+    return diagonal(axial, rate, plane ? 0.0 : rate);
   };
   const auto residual = [&](double rate) {
     MaterialPoint trial(p);
-    trial.step(motion(rate).data(), dt);
+    steps(trial, motion(rate), dt);
     return trial.stress(1) - lateral_stress;
   };
   const double size = std::fabs(axial) + 1e-300;
@@ -49,7 +49,7 @@ void step_lateral(MaterialPoint &p, double axial, double lateral_stress, double 
       if (it % 2) f_low *= 0.5;
     }
   }
-  p.step(motion(rate).data(), dt);
+  steps(p, motion(rate), dt);
 }
 
 /** Isotropic compression until the Cauchy pressure is reached. */
@@ -58,8 +58,7 @@ void consolidate(MaterialPoint &p, double pressure, int n = 20)
   const MaterialPoint start(p);
   const auto compress = [&](double strain) {
     MaterialPoint q(start);
-    const Matrix L = {-strain / 3, 0, 0, 0, -strain / 3, 0, 0, 0, -strain / 3};
-    for (int i = 0; i < n; i++) q.step(L.data(), 1.0 / n);
+    steps(q, isotropic(-strain / 3), 1.0 / n, n);
     return q;
   };
   double low = 0.0, high = 1e-6;
@@ -68,21 +67,8 @@ void consolidate(MaterialPoint &p, double pressure, int n = 20)
     const double half = 0.5 * (low + high);
     (compress(half).pressure() < pressure ? low : high) = half;
   }
-  steps(p, {-high / 3, 0, 0, 0, -high / 3, 0, 0, 0, -high / 3}, 1.0 / n, n);
+  steps(p, isotropic(-high / 3), 1.0 / n, n);
   EXPECT_NEAR(p.pressure(), pressure, 1e-9 * pressure);
-}
-
-int row(const Material &material, const std::string &name)
-{
-  for (size_t k = 0; k < material.history().size(); k++)
-    if (material.history()[k].name == name) return k;
-  ADD_FAILURE() << "no history " << name;
-  return 0;
-}
-
-double value(const MaterialPoint &p, const std::string &name)
-{
-  return p.history(row(p.material, name));
 }
 
 /** Kirchhoff pressure and equivalent stress. */
@@ -114,31 +100,27 @@ const char *const all[] = {
 // the trial state follows any rotation exactly: same stress, history, work
 TEST(SoilLaws, RotationOnTopOfShear)
 {
-  const std::array<double, 3> axis = {0.48, 0.6, 0.64};
+  const auto shear = [](double t) {
+    return Matrix{1 - 0.3 * t, 0.8 * t, 0, 0, 1 + 0.1 * t, 0, 0, 0, 1 - 0.05 * t};
+  };
   for (const char *text : all) {
     SCOPED_TRACE(text);
-    const auto material = make(text);
-    MaterialPoint plain(*material), turned(*material);
-    for (int i = 1; i <= 50; i++) {
-      const double t = 0.02 * i;
-      const Matrix F = {1 - 0.3 * t, 0.8 * t, 0, 0, 1 + 0.1 * t, 0, 0, 0, 1 - 0.05 * t};
-      const Matrix R = rotation(axis, 12.6 * t);
-      move_to(plain, F, 0.02);
-      move_to(turned, R * F, 0.02);
-      const Matrix expected = R * stress_of(plain) * transpose(R);
-      EXPECT_LT(distance(stress_of(turned), expected), 1e-9 * size(expected));
-      EXPECT_NEAR(turned.stored_energy(), plain.stored_energy(), 1e-9 * plain.stored_energy());
-      for (size_t k = 6; k < material->history().size(); k++)
-        EXPECT_NEAR(turned.history(k), plain.history(k), 1e-10 * (1 + std::fabs(plain.history(k))));
-    }
+    turn_on_top(*make(text), shear, 12.6, 50,
+                [](const MaterialPoint &plain, const MaterialPoint &turned, double difference) {
+                  EXPECT_LT(difference, 1e-9 * size(stress_of(plain)));
+                  EXPECT_NEAR(turned.stored_energy(), plain.stored_energy(),
+                              1e-9 * plain.stored_energy());
+                  for (size_t k = 6; k < plain.material.history().size(); k++)
+                    EXPECT_NEAR(turned.history(k), plain.history(k),
+                                1e-10 * (1 + std::fabs(plain.history(k))));
+                });
   }
 }
 
 // steps of any size and direction: finite, and dissipation is never negative
 TEST(SoilLaws, LargeSteps)
 {
-  std::mt19937 random(7);
-  std::normal_distribution<double> normal;
+  RandomMatrix random(7);
   for (const char *text : all) {
     SCOPED_TRACE(text);
     const auto material = make(text);
@@ -150,20 +132,16 @@ TEST(SoilLaws, LargeSteps)
           for (int i = 0; i < 6; i++) {
             Matrix A;
             do {
-              for (double &x : A) x = 0.4 * scale * normal(random);
+              A = random(0.4 * scale);
               Matrix f = A;
               for (int k = 0; k < 9; k += 4) f[k] += 1.0;
               grown = det(f);
             } while (grown < 0.2);
             if (p.batch.J[0] * grown < 0.02 || p.batch.J[0] * grown > 50) break;
-            p.move(A.data(), dt);
-
-            ASSERT_TRUE(std::isfinite(p.vonmises()) && std::isfinite(p.pressure()))
-                << "strain " << scale << " dt " << dt;
-            ASSERT_TRUE(std::isfinite(p.wave_speed()) && p.wave_speed() >= 0.0);
-            ASSERT_TRUE(std::isfinite(p.stored_energy()));
-            for (size_t k = 0; k < material->history().size(); k++)
-              ASSERT_TRUE(std::isfinite(p.history(k))) << material->history()[k].name;
+            moves(p, A, dt);
+            expect_finite(p);
+            ASSERT_GE(p.wave_speed(), 0.0) << "strain " << scale << " dt " << dt;
+            ASSERT_FALSE(HasFailure());
             if (!strstr(text, "snow")) ASSERT_GE(p.batch.work[PLASTIC], 0.0);
           }
         }
@@ -222,19 +200,14 @@ TEST(DruckerPrager, SeparatedSandDoesNotGainVolume)
   const double K = 1e6 / (3 * 0.4);
   Point p("density 1600 drucker/prager 1e6 0.3 30");
   const double a = 0.1;
-  for (int i = 1; i <= 20; i++) {
-    const double F = 1 + a * i / 20;
-    move_to(p, {F, 0.3 * i / 20, 0, 0, F, 0, 0, 0, F});
+  for (int i = 1; i < 40; i++) {    // out and back
+    const int k = std::min(i, 40 - i);
+    const double F = 1 + a * k / 20;
+    move_to(p, {F, 0.3 * k / 20, 0, 0, F, 0, 0, 0, F});
     EXPECT_NEAR(p.vonmises() + std::fabs(p.pressure()), 0.0, 1e-6);
-    EXPECT_NEAR(value(p, "gap"), 3 * std::log(F), 1e-12);
+    if (i <= 20) EXPECT_NEAR(value(p, "gap"), 3 * std::log(F), 1e-12);
   }
-  for (int i = 19; i >= 1; i--) {
-    const double F = 1 + a * i / 20;
-    move_to(p, {F, 0.3 * i / 20, 0, 0, F, 0, 0, 0, F});
-    EXPECT_NEAR(p.vonmises() + std::fabs(p.pressure()), 0.0, 1e-6);
-  }
-  move_to(p, {1.001, 0, 0, 0, 1.001, 0, 0, 0, 1.001});
-  move_to(p, {0.998, 0, 0, 0, 0.998, 0, 0, 0, 0.998});
+  for (const double F : {1.001, 0.998}) move_to(p, isotropic(F));
   EXPECT_NEAR(pressure(p), -3 * K * std::log(0.998), 1e-9 * K);
   EXPECT_NEAR(value(p, "gap"), 0.0, 1e-15);
   EXPECT_NEAR(p.work[PLASTIC], 0.0, 1e-7 * K);
@@ -250,19 +223,13 @@ TEST(DruckerPrager, Tension)
   } cases[] = {{"", c / std::tan(phi)}, {" tension 5e3", 5e3}, {" tension 1e6", c / std::tan(phi)}};
   for (const auto &k : cases) {
     Point p(std::string("density 1600 drucker/prager 1e7 0.3 35 cohesion 2e4") + k.text);
-    for (int i = 1; i <= 100; i++) {
-      const double F = 1 + 1e-3 * i;
-      move_to(p, {F, 0, 0, 0, F, 0, 0, 0, F});
-    }
+    for (int i = 1; i <= 100; i++) move_to(p, isotropic(1 + 1e-3 * i));
     EXPECT_NEAR(-pressure(p), k.limit, 1e-9 * k.limit) << k.text;
     const double gap = value(p, "gap"), K = 1e7 / 1.2;
     EXPECT_NEAR(gap, 3 * std::log(1.1) - k.limit / K, 1e-12);
     EXPECT_NEAR(p.work[PLASTIC], k.limit * gap, 0.01 * k.limit * gap);
     const double work = p.work[PLASTIC];
-    for (int i = 99; i >= 0; i--) {
-      const double F = 1 + 1e-3 * i;
-      move_to(p, {F, 0, 0, 0, F, 0, 0, 0, F});
-    }
+    for (int i = 99; i >= 0; i--) move_to(p, isotropic(1 + 1e-3 * i));
     EXPECT_NEAR(p.work[PLASTIC], work, 1e-9 * work);
     EXPECT_NEAR(p.pressure(), 0.0, 1e-6);
   }
@@ -270,8 +237,7 @@ TEST(DruckerPrager, Tension)
 
 TEST(DruckerPrager, ReturnEndsOnTheYieldSurface)
 {
-  std::mt19937 random(4);
-  std::normal_distribution<double> normal;
+  RandomMatrix random(4);
   const double s = std::sin(35 * DEG), M = 6 * s / (3 - s),
                k = 6 * 2e4 * std::cos(35 * DEG) / (3 - s);
   const auto material =
@@ -281,11 +247,10 @@ TEST(DruckerPrager, ReturnEndsOnTheYieldSurface)
     for (int repeat = 0; repeat < 100; repeat++) {
       MaterialPoint p(*material);
       for (int i = 0; i < 3; i++) {
-        Matrix A;
-        for (double &x : A) x = (repeat % 2 ? 0.2 : 0.02) * scale * normal(random);
+        Matrix A = random((repeat % 2 ? 0.2 : 0.02) * scale);
         if (repeat % 4 == 0)
           for (int d = 0; d < 9; d += 4) A[d] += 0.1 * scale;
-        p.move(A.data(), 1.0);
+        moves(p, A, 1.0);
         if (p.batch.J[0] < 0.05) break;
         const double q = shear(p), pr = pressure(p), size = k + std::fabs(pr);
         EXPECT_LE(q - M * pr - k, 1e-10 * size);
@@ -309,13 +274,12 @@ TEST(DruckerPrager, OrderOfTheReturn)
   const auto sheared = [&](int n, bool turning) {
     MaterialPoint p(*material);
     consolidate(p, 1e5);
-    for (int i = 0; i < n; i++) {
-      const double t = (i + 0.5) / n;
+    const auto L = [turning](double t) {
       const double a = turning ? 0.5 * M_PI * t : 0.0;
       const double x = 0.05 * std::cos(a), y = 0.05 * std::sin(a);
-      const Matrix L = {-x, y, 0, y, x, 0, 0, 0, 0};
-      p.step(L.data(), 1.0 / n);
-    }
+      return Matrix{-x, y, 0, y, x, 0, 0, 0, 0};
+    };
+    follow(p, L, 1.0, n);
     return stress_of(p);
   };
   const Matrix straight = sheared(1000, false);
@@ -323,9 +287,9 @@ TEST(DruckerPrager, OrderOfTheReturn)
   EXPECT_LT(distance(sheared(1, false), straight), 1e-3 * size(straight));
   EXPECT_LT(distance(sheared(10, false), straight), 1e-5 * size(straight));
   const Matrix exact = sheared(20000, true);
-  double error[3];
-  for (int level = 0; level < 3; level++)
-    error[level] = distance(sheared(100 << level, true), exact);
+  const auto error = refined(100, [&](int n) {
+    return distance(sheared(n, true), exact);
+  });
   expect_order(error, 1.0, 0.1);
   EXPECT_LT(error[0], 0.02 * size(exact));
 }
@@ -335,10 +299,10 @@ TEST(DruckerPrager, OrderOfTheReturn)
 /** Principal Kirchhoff stresses, largest first. */
 std::array<double, 3> principal(const MaterialPoint &p)
 {
-  const double J = p.batch.J[0];
-  const law::Spectral s = law::spectral({J * p.stress(0), J * p.stress(1), J * p.stress(2),
-                                         J * p.stress(3), J * p.stress(4), J * p.stress(5)});
-  std::array<double, 3> v = {s.value[0], s.value[1], s.value[2]};
+  const law::Spectral s =
+      law::spectral({p.stress(0), p.stress(1), p.stress(2), p.stress(3), p.stress(4), p.stress(5)});
+  std::array<double, 3> v;
+  for (int k = 0; k < 3; k++) v[k] = p.batch.J[0] * s.value[k];
   std::sort(v.begin(), v.end(), std::greater<>());
   return v;
 }
@@ -470,8 +434,7 @@ TEST(CamClay, IsotropicCompressionAndSwelling)
 {
   Point p(clay + std::string("2e5"));
   const auto squeeze = [&](double J) {
-    const double F = std::cbrt(J);
-    move_to(p, {F, 0, 0, 0, F, 0, 0, 0, F});
+    move_to(p, isotropic(std::cbrt(J)));
     EXPECT_LT(p.vonmises(), 1e-6 * p.pressure());
   };
   const auto expect_pressure = [&](double exact) {
@@ -489,16 +452,19 @@ TEST(CamClay, IsotropicCompressionAndSwelling)
   expect_pressure(2e5);
 }
 
+/** n steps in which the length along x shrinks by the share a, and the volume stays exactly. */
+void shorten(MaterialPoint &p, double a, int n)
+{
+  const double lateral = 1 / std::sqrt(1 - a) - 1;
+  moves(p, diagonal(-a, lateral, lateral), 1.0, n);
+}
+
 // closed form of the strength at constant volume: p = P0 (OCR/2)^(1 - kappa/lambda), q = M p
 TEST(CamClay, UndrainedStrength)
 {
   for (const double ocr : {1.0, 1.5, 2.0, 4.0, 10.0}) {
     Point p(clay + std::to_string(1e5 * ocr));
-    for (int i = 0; i < 4000; i++) {
-      const double a = 1e-4;    // volume stays exactly
-      const Matrix A = {-a, 0, 0, 0, 1 / std::sqrt(1 - a) - 1, 0, 0, 0, 1 / std::sqrt(1 - a) - 1};
-      p.move(A.data(), 1.0);
-    }
+    shorten(p, 1e-4, 4000);
     const double exact = 1e5 * std::pow(ocr / 2, 1 - CC_KAPPA / CC_LAMBDA);
     EXPECT_NEAR(p.pressure(), exact, 2e-4 * exact) << ocr;
     EXPECT_NEAR(p.vonmises(), CC_M * exact, 2e-4 * exact) << ocr;
@@ -506,27 +472,17 @@ TEST(CamClay, UndrainedStrength)
 }
 
 /** Pressure, equivalent stress and preconsolidation pressure of the rate equations on a straight
- *  strain path from the yield surface, by the method of Runge and Kutta. */
-std::array<double, 3> clay_ode(std::array<double, 3> y, double volume, double strain, int n)
+ *  strain path from the yield surface. */
+State clay_ode(const State &start, double volume, double strain, int n)
 {
-  using State = std::array<double, 3>;
-  const auto rate = [&](const State &s) {
+  const auto rate = [&](double, const State &s) {
     const double p = s[0], q = s[1], pc = s[2], K = p / CC_KAPPA;
     const double fp = 2 * p - pc, fq = 2 * q / (CC_M * CC_M), H = pc / (CC_LAMBDA - CC_KAPPA);
     const double flow = (fp * K * volume + fq * 3 * CC_G * strain) /
         (fp * fp * K + fq * fq * 3 * CC_G + p * H * fp);
     return State{K * (volume - flow * fp), 3 * CC_G * (strain - flow * fq), H * flow * fp};
   };
-  const auto add = [](const State &a, double h, const State &b) {
-    return State{a[0] + h * b[0], a[1] + h * b[1], a[2] + h * b[2]};
-  };
-  const double h = 1.0 / n;
-  for (int i = 0; i < n; i++) {
-    const State k1 = rate(y), k2 = rate(add(y, h / 2, k1)), k3 = rate(add(y, h / 2, k2)),
-                k4 = rate(add(y, h, k3));
-    for (int j = 0; j < 3; j++) y[j] += h / 6 * (k1[j] + 2 * k2[j] + 2 * k3[j] + k4[j]);
-  }
-  return y;
+  return runge_kutta(rate, start, 1.0, n);
 }
 
 // undrained, drained-like (wet side) and dilating (dry side) paths, first order in the step
@@ -539,21 +495,18 @@ TEST(CamClay, PathsFollowTheRateEquations)
     // elastic shear at constant volume up to the yield surface
     const double q0 = CC_M * 1e5 * std::sqrt(ocr - 1.0), strain = 0.1;
     const auto shear_by = [](MaterialPoint &p, double v, double e, int n) {
-      Matrix A{};
-      A[0] = std::expm1((-v / 3 - e) / n);
-      A[4] = A[8] = std::expm1((-v / 3 + e / 2) / n);
-      for (int i = 0; i < n; i++) p.move(A.data(), 1.0);
+      const double lateral = std::expm1((-v / 3 + e / 2) / n);
+      moves(p, diagonal(std::expm1((-v / 3 - e) / n), lateral, lateral), 1.0, n);
     };
     const auto exact = clay_ode({1e5, q0, 1e5 * ocr}, volume, strain, 4000);
-    double error[3];
-    for (int level = 0; level < 3; level++) {
+    const auto error = refined(200, [&](int n) {
       MaterialPoint p(*material);
       shear_by(p, 0.0, q0 / (3 * CC_G), 1);
       EXPECT_NEAR(shear(p), q0, 1e-9 * q0 + 1e-6);
-      shear_by(p, volume, strain, 200 << level);
-      error[level] = std::fabs(pressure(p) / exact[0] - 1) + std::fabs(shear(p) / exact[1] - 1) +
+      shear_by(p, volume, strain, n);
+      return std::fabs(pressure(p) / exact[0] - 1) + std::fabs(shear(p) / exact[1] - 1) +
           std::fabs(value(p, "preconsolidation") / exact[2] - 1);
-    }
+    });
     EXPECT_LT(error[2], 5e-3);
     expect_order(error, 1.0, 0.25);
   }
@@ -564,8 +517,7 @@ TEST(CamClay, DrainedTriaxialReachesCriticalState)
 {
   for (const double ocr : {1.1, 5.0}) {
     Point p(clay + std::to_string(1e5 * ocr));
-    const Matrix none{};
-    p.step(none.data(), 1.0);
+    steps(p, {}, 1.0);
     EXPECT_NEAR(p.pressure(), 1e5, 1e-6);
     for (int i = 0; i < 600; i++) step_lateral(p, -2e-3, -1e5, 1.0);
     EXPECT_NEAR(p.vonmises() / p.pressure(), CC_M, 1e-3 * CC_M) << ocr;
@@ -583,15 +535,15 @@ TEST(CriticalState, ReturnIsOnTheSurfaceAndAssociated)
 {
   std::mt19937 random(10);
   std::normal_distribution<double> normal;
-  const double nuK = 1e6 / (3 * 0.4), nuG = 1e6 / 2.6;
+  const double nuK = 1e6 / (3 * 0.4);
   struct {
     const char *text;
-    double M, beta, G;
-  } cases[] = {{"density 250 nacc 1e6 0.3 1.85 0.3 3 -0.05", 1.85, 0.3, nuG},
-               {"density 250 nacc 1e6 0.3 1.2 0 10 -0.02", 1.2, 0.0, nuG},
-               {"density 250 nacc 1e6 0.3 2.36 1 1 -0.5", 2.36, 1.0, nuG},
-               {"density 1900 camclay 5e6 0.9 0.2 0.04 0.8 1e5 1.5e5", 0.9, 0.0, 5e6},
-               {"density 1900 camclay 5e6 1.4 0.1 0.005 0 1e5 2e6", 1.4, 0.0, 5e6}};
+    double M, beta, xi = 0.0;
+  } cases[] = {{"density 250 nacc 1e6 0.3 1.85 0.3 3 -0.05", 1.85, 0.3, 3},
+               {"density 250 nacc 1e6 0.3 1.2 0 10 -0.02", 1.2, 0.0, 10},
+               {"density 250 nacc 1e6 0.3 2.36 1 1 -0.5", 2.36, 1.0, 1},
+               {"density 1900 camclay 5e6 0.9 0.2 0.04 0.8 1e5 1.5e5", 0.9, 0.0},
+               {"density 1900 camclay 5e6 1.4 0.1 0.005 0 1e5 2e6", 1.4, 0.0}};
   for (const auto &k : cases) {
     SCOPED_TRACE(k.text);
     const auto material = make(k.text);
@@ -602,22 +554,14 @@ TEST(CriticalState, ReturnIsOnTheSurfaceAndAssociated)
         MaterialPoint p(*material);
         for (int i = 0; i < 4; i++) {
           const double mean = 0.3 * scale * normal(random);
-          double e[3];
           Matrix A{};
-          for (int a = 0; a < 3; a++) {
-            e[a] = 0.5 * scale * normal(random) + mean;
-            A[4 * a] = std::expm1(e[a]);
-          }
+          for (int a = 0; a < 3; a++) A[4 * a] = std::expm1(0.5 * scale * normal(random) + mean);
           const double hard = cc ? std::log(value(p, "preconsolidation")) : value(p, "alpha");
           const double made = value(p, "eplastic");
-          p.move(A.data(), 1.0);
+          moves(p, A, 1.0);
           const double pr = pressure(p), q = shear(p);
           const double p0 = cc ? value(p, "preconsolidation")
-                               : nuK *
-                  std::sinh((k.beta == 0.3       ? 3
-                                 : k.beta == 0.0 ? 10
-                                                 : 1) *
-                            std::max(-value(p, "alpha"), 0.0));
+                               : nuK * std::sinh(k.xi * std::max(-value(p, "alpha"), 0.0));
           const double f = q * q * (1 + 2 * k.beta) + k.M * k.M * (pr + k.beta * p0) * (pr - p0);
           const double size = p0 * p0 + 1e-12 * nuK * nuK;
           EXPECT_LE(f, 1e-10 * size);
@@ -649,20 +593,18 @@ TEST(Nacc, BreaksInTension)
   Point p("density 250 nacc 1e6 0.3 1.85 0.3 3 -0.05");
   double strongest = 0.0;
   for (int i = 1; i <= 2000; i++) {
-    const double F = std::exp(1e-4 * i);
-    move_to(p, {F, 0, 0, 0, F, 0, 0, 0, F});
+    move_to(p, isotropic(std::exp(1e-4 * i)));
     strongest = std::max(strongest, -pressure(p));
     if (3e-4 * i * K < 0.299 * p0) EXPECT_EQ(value(p, "alpha"), -0.05);
   }
   EXPECT_NEAR(strongest, 0.3 * p0, 0.01 * p0);
   EXPECT_NEAR(pressure(p), 0.0, 1e-9 * K);
   EXPECT_NEAR(value(p, "alpha"), 0.6 - 0.05, 1e-12);
-  const double F = std::exp(0.2 - 0.5 / 3);
-  move_to(p, {F, 0, 0, 0, F, 0, 0, 0, F});
+  move_to(p, isotropic(std::exp(0.2 - 0.5 / 3)));
   EXPECT_NEAR(pressure(p), 0.0, 1e-9 * K);
   EXPECT_NEAR(value(p, "alpha"), 0.05, 1e-12);
-  const double c = std::exp(-0.02);    // beyond the volume at which it has no strength
-  move_to(p, {c, 0, 0, 0, c, 0, 0, 0, c});
+  // beyond the volume at which it has no strength
+  move_to(p, isotropic(std::exp(-0.02)));
   EXPECT_GT(pressure(p), 1e-3 * K);
   EXPECT_NEAR(pressure(p), K * std::sinh(3 * -value(p, "alpha")), 1e-9 * K);
 }
@@ -698,11 +640,9 @@ TEST(MuI, OtherUnits)
   const auto small = make("density 1.5 mui 1 0.3 0.38 0.64 0.3 0.5");
   ASSERT_TRUE(small->configure(nullptr, 1e-3, 1e-3));
   MaterialPoint p(*si), q(*small);
-  for (int i = 0; i < 500; i++) {
-    const Matrix A = {-1e-6, 1e-3, 0, 0, -1e-6, 0, 0, 0, 0};
-    p.move(A.data(), 1e-5);
-    q.move(A.data(), 1e-2);
-  }
+  const Matrix A = {-1e-6, 1e-3, 0, 0, -1e-6, 0, 0, 0, 0};
+  moves(p, A, 1e-5, 500);
+  moves(q, A, 1e-2, 500);
   EXPECT_GT(value(p, "inertial"), 0.05);
   EXPECT_NEAR(value(q, "inertial"), value(p, "inertial"), 1e-9);
   EXPECT_NEAR(1e6 * q.stress(3), p.stress(3), 1e-9 * p.stress(3));
@@ -720,7 +660,7 @@ TEST(Snow, HardensInCompressionAndFallsApartInTension)
     const double s = tension ? 1.0075 : 0.975;
     for (int i = 1; i <= 50; i++) {
       const double J = 1 + (tension ? 0.01 : -0.01) * i;
-      move_to(p, {J, 0, 0, 0, 1, 0, 0, 0, 1});
+      move_to(p, uniaxial_stretch(J));
       const double stretch = tension ? std::min(J, s) : std::max(J, s), JP = J / stretch;
       const double h = std::exp(10 * (1 - JP));
       const double exact =
@@ -734,7 +674,7 @@ TEST(Snow, HardensInCompressionAndFallsApartInTension)
   }
   // energy that hardening adds to the strain comes from the plastic work
   MaterialPoint p(*material);
-  for (int i = 1; i <= 3000; i++) move_to(p, {1 - 1e-4 * i, 0, 0, 0, 1, 0, 0, 0, 1});
+  compress(p, 0.7, 3000);
   EXPECT_GT(p.stored_energy(), 0.1 * p.power);
   EXPECT_NEAR(p.stored_energy() + p.work[PLASTIC], p.power, 1e-4 * p.power);
 }
@@ -760,9 +700,9 @@ TEST(SoilLaws, FirstOrderOnACurvedPath)
       return stress_of(p);
     };
     const Matrix exact = path(12800);
-    double error[3];
-    for (int level = 0; level < 3; level++)
-      error[level] = distance(path(100 << level), exact) / size(exact);
+    const auto error = refined(100, [&](int n) {
+      return distance(path(n), exact) / size(exact);
+    });
     EXPECT_LT(error[2], 5e-3);
     if (error[2] > 1e-6)
       EXPECT_GT(std::log2(error[0] / error[2]) / 2, 0.85) << error[0] << " " << error[2];
@@ -790,9 +730,7 @@ TEST(SoilFiles, GiveThePublishedStrength)
   } clays[] = {{"Clay_Weald_CC", 0.95, 0.093, 0.035}, {"Clay_London_CC", 0.888, 0.161, 0.062}};
   for (const auto &k : clays) {
     Point p(definition(k.name));
-    const double a = 1e-3, lateral = 1 / std::sqrt(1 - a) - 1;
-    const Matrix A = {-a, 0, 0, 0, lateral, 0, 0, 0, lateral};
-    for (int i = 0; i < 600; i++) p.move(A.data(), 1.0);
+    shorten(p, 1e-3, 600);
     const double q = k.M * 1e5 * std::pow(0.5, 1 - k.kappa / k.lambda);
     EXPECT_NEAR(p.vonmises(), q, 2e-3 * q) << k.name;
   }
@@ -805,22 +743,21 @@ TEST(SoilFiles, GiveThePublishedStrength)
 
 TEST(SoilLaws, BadDefinitionsAreRefused)
 {
-  expect_refused(
-      {{"drucker/prager 1 0 30 dilatancy 31", -1, "PSI must not exceed PHI"},
-       {"drucker/prager 1 0 90", -1, "out of range"},
-       {"drucker/prager 1 0 30 plane 1", -1, "too many values"},
-       {"drucker/prager 1 0 30 plane plane", -1, "given twice"},
-       {"mohr/coulomb 1 0 30", -1, "C is missing"},
-       {"mohr/coulomb 1 0 30 1 residual 2 20 1", -1, "CR and PHIR must not exceed"},
-       {"mohr/coulomb 1 0 30 1 residual 0.5", -1, "PHIR is missing"},
-       {"mohr/coulomb 1 0 30 1 dilatancy 25 residual 0.5 20 1", -1, "PSI must not exceed"},
-       {"mui 1 0 0.5 0.4 0.3 1", -1, "MU2 must not be below"},
-       {"camclay 1 1 0.1 0.1 1 1 1", -1, "LAMBDA must be above"},
-       {"camclay 1 1 0.2 0.1 1 2 1", -1, "PC must not be below"},
-       {"nacc 1 0 1 1.5 1 0", -1, "out of range"},
-       {"nacc 1 0 1 1 1 0.1", -1, "out of range"},
-       {"snow 1 0 1 0 1", -1, "out of range"}},
-      "density 1 ");
+  expect_refused({{"drucker/prager 1 0 30 dilatancy 31", "PSI must not exceed PHI"},
+                  {"drucker/prager 1 0 90", "out of range"},
+                  {"drucker/prager 1 0 30 plane 1", "too many values"},
+                  {"drucker/prager 1 0 30 plane plane", "given twice"},
+                  {"mohr/coulomb 1 0 30", "C is missing"},
+                  {"mohr/coulomb 1 0 30 1 residual 2 20 1", "CR and PHIR must not exceed"},
+                  {"mohr/coulomb 1 0 30 1 residual 0.5", "PHIR is missing"},
+                  {"mohr/coulomb 1 0 30 1 dilatancy 25 residual 0.5 20 1", "PSI must not exceed"},
+                  {"mui 1 0 0.5 0.4 0.3 1", "MU2 must not be below"},
+                  {"camclay 1 1 0.1 0.1 1 1 1", "LAMBDA must be above"},
+                  {"camclay 1 1 0.2 0.1 1 2 1", "PC must not be below"},
+                  {"nacc 1 0 1 1.5 1 0", "out of range"},
+                  {"nacc 1 0 1 1 1 0.1", "out of range"},
+                  {"snow 1 0 1 0 1", "out of range"}},
+                 "density 1 ");
 }
 
 }    // namespace

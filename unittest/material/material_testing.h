@@ -8,6 +8,7 @@
 // header brings the standard ones that they need.
 
 #include "material/material_point.h"
+#include "math/matrix.h"
 
 #include "gtest/gtest.h"
 
@@ -34,12 +35,26 @@ using MPM_NS::MaterialPoint;
 using Matrix = std::array<double, 9>;
 constexpr Matrix IDENTITY = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 
-inline std::unique_ptr<Material> make(const std::string &text, const char *isa = nullptr)
+/** Texts and numbers one after the other, numbers with all their digits. */
+template <class... Parts> std::string joined(const Parts &...parts)
+{
+  std::ostringstream text;
+  text.precision(17);
+  (text << ... << parts);
+  return text.str();
+}
+
+inline std::vector<std::string> words_of(const std::string &text)
 {
   std::istringstream in(text);
   std::vector<std::string> words;
   for (std::string word; in >> word;) words.push_back(word);
-  return Material::create(words, isa);
+  return words;
+}
+
+inline std::unique_ptr<Material> make(const std::string &text, const char *isa = nullptr)
+{
+  return Material::create(words_of(text), isa);
 }
 
 /** A point that brings its material. */
@@ -78,10 +93,22 @@ inline Matrix transpose(const Matrix &a)
   return {a[0], a[3], a[6], a[1], a[4], a[7], a[2], a[5], a[8]};
 }
 
+inline Matrix diagonal(double x, double y, double z)
+{
+  return {x, 0, 0, 0, y, 0, 0, 0, z};
+}
+inline Matrix isotropic(double x)
+{
+  return diagonal(x, x, x);
+}
+inline Matrix uniaxial_stretch(double l)
+{
+  return diagonal(l, 1, 1);
+}
+
 inline double det(const Matrix &F)
 {
-  return F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
-      F[2] * (F[3] * F[7] - F[4] * F[6]);
+  return MPM_NS::determinant(F.data());
 }
 
 inline Matrix inverse(const Matrix &M)
@@ -93,6 +120,8 @@ inline Matrix inverse(const Matrix &M)
   return c;
 }
 
+constexpr std::array<double, 3> AXIS = {0.48, 0.6, 0.64};    ///< of rotations, for most tests
+
 /** Rotation by an angle about a unit axis. */
 inline Matrix rotation(const std::array<double, 3> &n, double angle)
 {
@@ -103,6 +132,13 @@ inline Matrix rotation(const std::array<double, 3> &n, double angle)
     for (int j = 0; j < 3; j++)
       R[3 * i + j] = (i == j ? c : 0.0) + (1.0 - c) * n[i] * n[j] + s * skew[3 * i + j];
   return R;
+}
+
+/** Velocity gradient that turns by an angle about AXIS in a unit of time, in one step. */
+inline Matrix spin(double angle)
+{
+  const double w = 2.0 * std::tan(0.5 * angle);
+  return {0, -w * AXIS[2], w * AXIS[1], w * AXIS[2], 0, -w * AXIS[0], -w * AXIS[1], w * AXIS[0], 0};
 }
 
 inline Matrix stress_of(const MaterialPoint &p)
@@ -125,6 +161,19 @@ inline double distance(const Matrix &a, const Matrix &b)
   return size(d);
 }
 
+/** Row of a history variable. */
+inline int row(const Material &material, const std::string &name)
+{
+  for (size_t k = 0; k < material.history().size(); k++)
+    if (material.history()[k].name == name) return k;
+  ADD_FAILURE() << "no history variable " << name;
+  return 0;
+}
+inline double value(const MaterialPoint &p, const std::string &name)
+{
+  return p.history(row(p.material, name));
+}
+
 /** Moves a point to a new deformation gradient in one step. */
 inline void move_to(MaterialPoint &p, const Matrix &F, double dt = 1.0)
 {
@@ -135,11 +184,53 @@ inline void move_to(MaterialPoint &p, const Matrix &F, double dt = 1.0)
   p.move(A.data(), dt);
 }
 
+/** n steps of equal size with strain along x, to the stretch l. */
+inline void compress(MaterialPoint &p, double l, int n, double dt = 1.0)
+{
+  const double start = p.batch.F[0][0];
+  for (int i = 1; i <= n; i++) move_to(p, uniaxial_stretch(start + (l - start) * i / n), dt);
+}
+
 /** n steps with a velocity gradient. */
-inline void steps(MaterialPoint &p, const Matrix &L, double dt, int n)
+inline void steps(MaterialPoint &p, const Matrix &L, double dt, int n = 1)
 {
   for (int i = 0; i < n; i++) p.step(L.data(), dt);
 }
+
+/** n steps of the motion F_new = (I + A) F. */
+inline void moves(MaterialPoint &p, const Matrix &A, double dt, int n = 1)
+{
+  for (int i = 0; i < n; i++) p.move(A.data(), dt);
+}
+
+/** n steps of a motion F(t), t from 0 to 1, of one point, and of another on top of which a rotation
+ *  turns it by an angle; check(plain, turned, difference of the stresses) after each. */
+template <class Motion, class Check>
+void turn_on_top(const Material &material, const Motion &F, double angle, int n, const Check &check)
+{
+  MaterialPoint plain(material), turned(material);
+  for (int i = 1; i <= n; i++) {
+    const double t = 1.0 * i / n;
+    const Matrix R = rotation(AXIS, angle * t);
+    move_to(plain, F(t), 1.0 / n);
+    move_to(turned, R * F(t), 1.0 / n);
+    check(plain, turned, distance(stress_of(turned), R * stress_of(plain) * transpose(R)));
+  }
+}
+
+/** Matrices of random numbers with a normal distribution. */
+struct RandomMatrix {
+  std::mt19937 random;
+  std::normal_distribution<double> normal;
+  explicit RandomMatrix(unsigned seed) : random(seed) {}
+
+  Matrix operator()(double deviation)
+  {
+    Matrix a;
+    for (double &x : a) x = deviation * normal(random);
+    return a;
+  }
+};
 
 /** Points that take n steps into any direction, some for each strain and duration of a step, and
  *  check(p, e, dt) after each; e: of the first history variable before it. */
@@ -174,11 +265,11 @@ inline void expect_on_surface(const MaterialPoint &p, double Y, double digits_of
     EXPECT_LE(p.vonmises(), Y * (1 + 1e-12));
 }
 
-/** Definitions that are wrong at a word (-1: not looked at), each with words or a pattern of the message. */
+/** A definition that is wrong, with words or a pattern of the message, and the word that it is about (-1: not looked at). */
 struct Refusal {
   std::string text;
-  int word;
   const char *message;
+  int word = -1;
 };
 inline void expect_refused(const std::vector<Refusal> &refusals, const std::string &start = "")
 {
@@ -196,8 +287,27 @@ inline void expect_refused(const std::vector<Refusal> &refusals, const std::stri
   }
 }
 
+/** Stress, wave speed, energy, and history are numbers. */
+inline void expect_finite(const MaterialPoint &p)
+{
+  for (int k = 0; k < 6; k++) EXPECT_TRUE(std::isfinite(p.stress(k))) << "stress " << k;
+  EXPECT_TRUE(std::isfinite(p.wave_speed()));
+  EXPECT_TRUE(std::isfinite(p.stored_energy()));
+  for (size_t k = 0; k < p.material.history().size(); k++)
+    EXPECT_TRUE(std::isfinite(p.history(k))) << p.material.history()[k].name;
+}
+
+/** The errors error(n) of n, 2 n, 4 n, ... steps. */
+template <std::size_t N = 3, class Error> std::array<double, N> refined(int n, const Error &error)
+{
+  std::array<double, N> result;
+  for (std::size_t k = 0; k < N; k++) result[k] = error(n << k);
+  return result;
+}
+
 /** Errors at steps that are halved each time fall with this order. */
-template <std::size_t N> void expect_order(const double (&error)[N], double order, double tolerance)
+template <std::size_t N>
+void expect_order(const std::array<double, N> &error, double order, double tolerance)
 {
   for (std::size_t k = 1; k < N; k++)
     EXPECT_NEAR(std::log2(error[k - 1] / error[k]), order, tolerance);
@@ -208,6 +318,26 @@ inline void follow(MaterialPoint &p, const std::function<Matrix(double)> &L, dou
 {
   const double dt = time / n;
   for (int i = 0; i < n; i++) p.step(L((i + 0.5) * dt).data(), dt);
+}
+
+/** Integrates dy/dt = f(t, y) from t = 0 on by the classical method of Runge and Kutta. */
+using State = std::vector<double>;
+inline State runge_kutta(const std::function<State(double, const State &)> &f, State y, double time,
+                         int n)
+{
+  const double h = time / n;
+  const auto shifted = [](const State &y, double h, const State &k) {
+    State z = y;
+    for (size_t i = 0; i < y.size(); i++) z[i] += h * k[i];
+    return z;
+  };
+  for (int i = 0; i < n; i++) {
+    const double t = i * h;
+    const State a = f(t, y), b = f(t + h / 2, shifted(y, h / 2, a)),
+                c = f(t + h / 2, shifted(y, h / 2, b)), d = f(t + h, shifted(y, h, c));
+    for (size_t k = 0; k < y.size(); k++) y[k] += h / 6 * (a[k] + 2 * b[k] + 2 * c[k] + d[k]);
+  }
+  return y;
 }
 
 constexpr double MPa = 1e6, GPa = 1e9;

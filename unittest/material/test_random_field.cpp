@@ -28,14 +28,32 @@ class Random : public ::testing::Test {
 const std::string STEEL =
     "density 7800 eos linear 160e9 strength j2 80e9 300e6 hardening linear 2e9 ";
 
-std::string error_of(const std::string &text)
-{
-  try {
-    make(text);
-  } catch (const MPM_NS::MaterialError &e) {
-    return e.what();
+/** Mean and standard deviation of values; expect() allows for multiples of deviation/sqrt(n). */
+struct Moments {
+  double n = 0.0, sum = 0.0, square = 0.0;
+  void add(double x)
+  {
+    n++;
+    sum += x;
+    square += x * x;
   }
-  return "";
+  void expect(double mean, double deviation, double means = 4.0, double deviations = 5.0) const
+  {
+    const double m = sum / n;
+    EXPECT_NEAR(m, mean, means * deviation / std::sqrt(n));
+    EXPECT_NEAR(std::sqrt(square / n - m * m), deviation, deviations * deviation / std::sqrt(n));
+  }
+};
+
+/** check(x) at the places of a lattice of 11^3 points. */
+template <class Check> void at_places(double spacing, const Check &check)
+{
+  const int side = 11;
+  for (int i = 0; i < side * side * side; i++) {
+    const double x[3] = {spacing * (i % side), spacing * (i / side % side),
+                         spacing * (i / side / side)};
+    check(x);
+  }
 }
 
 }    // namespace
@@ -43,56 +61,47 @@ std::string error_of(const std::string &text)
 TEST(RandomDefinition, Errors)
 {
   if (!RandomField::available()) {
-    EXPECT_NE(error_of(STEEL + "random SIGMAY normal 0.1 1 1").find("without FFTW"),
-              std::string::npos);
+    expect_refused({{STEEL + "random SIGMAY normal 0.1 1 1", "without FFTW"}});
     return;
   }
-  const char *cases[][2] = {
-      {"random", "random: name of the parameter is missing"},
-      {"random SIGMA normal 0.1 1 1",
-       "random SIGMA: no such parameter: choose one of density, eos.K, strength.G, "
-       "strength.SIGMAY"},
-      {"random SIGMAY weibull 0.1 1 1", "the distribution must be lognormal or normal"},
-      {"random SIGMAY normal -0.1 1 1", "COV = -0.1 (coefficient of variation) is out of range"},
-      {"random SIGMAY normal 0.1 0 1", "LENGTH = 0 (correlation length) is out of range"},
-      {"random SIGMAY normal 0.1 1", "random SIGMAY: SEED is missing"},
-      {"random SIGMAY normal 0.1 1 1.5", "SEED must be an integer"},
-      {"random SIGMAY normal 0.1 1 1 random strength.SIGMAY normal 0.1 1 2", "is given twice"},
-      {"random strength.H normal 0.1 1 1 random K normal 0.1 1 1 random eos.K normal 0.1 1 1",
-       "random eos.K: is given twice"},
-      {"random B normal 0.1 1 1", "its value is 0, which a factor does not change"},
-      {"thermal adiabatic 460 300 random LATENT normal 0.1 1 1", "its value is 0"},
-      {"random density normal 0.1 1 1 random density normal 0.1 1 2", "is given twice"},
-      {"viscosity maxwell term 1e9 1 term 2e9 2 random G3 normal 0.1 1 1",
-       "no such parameter: choose one of density, eos.K, strength.G, strength.SIGMAY"},
-      {"viscosity maxwell term 1e9 1 term 2e9 2 random G2 normal 0.1 1 1 random maxwell.G2 normal "
-       "0.1 1 1",
-       "random maxwell.G2: is given twice"},
-  };
-  for (const auto &c : cases) {
-    const std::string error = error_of(STEEL + c[0]);
-    EXPECT_NE(error.find(c[1]), std::string::npos) << c[0] << "\n" << error;
-  }
+  expect_refused(
+      {{"random", "random: name of the parameter is missing"},
+       {"random SIGMA normal 0.1 1 1",
+        "random SIGMA: no such parameter: choose one of density, eos.K, strength.G, "
+        "strength.SIGMAY"},
+       {"random SIGMAY weibull 0.1 1 1", "the distribution must be lognormal or normal"},
+       {"random SIGMAY normal -0.1 1 1", "COV = -0.1 (coefficient of variation) is out of range"},
+       {"random SIGMAY normal 0.1 0 1", "LENGTH = 0 (correlation length) is out of range"},
+       {"random SIGMAY normal 0.1 1", "random SIGMAY: SEED is missing"},
+       {"random SIGMAY normal 0.1 1 1.5", "SEED must be an integer"},
+       {"random SIGMAY normal 0.1 1 1 random strength.SIGMAY normal 0.1 1 2", "is given twice"},
+       {"random strength.H normal 0.1 1 1 random K normal 0.1 1 1 random eos.K normal 0.1 1 1",
+        "random eos.K: is given twice"},
+       {"random B normal 0.1 1 1", "its value is 0, which a factor does not change"},
+       {"thermal adiabatic 460 300 random LATENT normal 0.1 1 1", "its value is 0"},
+       {"random density normal 0.1 1 1 random density normal 0.1 1 2", "is given twice"},
+       {"viscosity maxwell term 1e9 1 term 2e9 2 random G3 normal 0.1 1 1",
+        "no such parameter: choose one of density, eos.K, strength.G, strength.SIGMAY"},
+       {"viscosity maxwell term 1e9 1 term 2e9 2 random G2 normal 0.1 1 1 random maxwell.G2 normal "
+        "0.1 1 1",
+        "random maxwell.G2: is given twice"}},
+      STEEL);
+  expect_refused({{"density 1000 eos tait 2.2e9 7 random PMIN normal 0.1 1 1",
+                   "PMIN: its value is -"}});    // no limit
   // the same name in two laws
   const std::string two = "density 1 eos linear 1e9 viscosity newtonian 1 bulk 2 "
                           "viscosity bingham 1 1 10 ";
-  const std::string error = error_of(two + "random viscosity.MU normal 0.1 1 1");
-  EXPECT_NE(error.find("several laws of this material have it: choose density, eos.K, "
-                       "newtonian.MU, newtonian.ZETA, bingham.MU"),
-            std::string::npos)
-      << error;
-  EXPECT_EQ(error_of(two +
-                     "random newtonian.MU normal 0.1 1 1 random viscosity.ZETA normal 0.1 1 "
-                     "1 random bingham.MU normal 0.1 1 1 random TAUY normal 0.1 1 1"),
-            "");
-  EXPECT_NE(error_of("density 1000 eos tait 2.2e9 7 random PMIN normal 0.1 1 1")
-                .find("PMIN: its value is -"),
-            std::string::npos);    // no limit
+  expect_refused({{"random viscosity.MU normal 0.1 1 1",
+                   "several laws of this material have it: choose density, eos.K, "
+                   "newtonian.MU, newtonian.ZETA, bingham.MU"}},
+                 two);
+  EXPECT_NO_THROW(make(two +
+                       "random newtonian.MU normal 0.1 1 1 random viscosity.ZETA normal 0.1 1 1 "
+                       "random bingham.MU normal 0.1 1 1 random TAUY normal 0.1 1 1"));
   // the same parameter of two terms
-  EXPECT_EQ(error_of(STEEL +
-                     "viscosity maxwell term 1e9 1 term 2e9 2 random G1 normal 0.1 1 1 random G2 "
-                     "normal 0.1 1 1"),
-            "");
+  EXPECT_NO_THROW(make(STEEL +
+                       "viscosity maxwell term 1e9 1 term 2e9 2 random G1 normal 0.1 1 1 "
+                       "random G2 normal 0.1 1 1"));
 }
 
 // points far apart: mean, variance, and distribution; pairs at a distance: correlation
@@ -194,23 +203,20 @@ TEST_F(Random, FactorsOfAMaterial)
     EXPECT_NE(
         material->describe().find(std::string("random strength.SIGMAY ") + kind + " 0.2 0.1 7"),
         std::string::npos);
-    double mean = 0.0, square = 0.0, lowest = 1.0;
-    const int side = 11;
-    const double n = side * side * side;
-    for (int i = 0; i < side * side * side; i++) {
-      const double x[3] = {0.21 * (i % side), 0.21 * (i / side % side), 0.21 * (i / side / side)};
+    SCOPED_TRACE(kind);
+    Moments factors;
+    double lowest = 1.0;
+    at_places(0.21, [&](const double *x) {
       double history[2];
       material->initialize(x, history);
       const double s2 = std::log(1.04), g = field.value(x);    // 1.04: 1 + 0.2^2
       EXPECT_NEAR(history[1], kind[0] == 'l' ? std::exp(std::sqrt(s2) * g - 0.5 * s2) : 1 + 0.2 * g,
                   1e-12);
-      mean += history[1] / n;
-      square += history[1] * history[1] / n;
+      factors.add(history[1]);
       lowest = std::min(lowest, history[1]);
-    }
-    EXPECT_NEAR(mean, 1.0, 4 * 0.2 / std::sqrt(n)) << kind;
-    EXPECT_NEAR(std::sqrt(square - mean * mean), 0.2, 5 * 0.2 / std::sqrt(n)) << kind;
-    EXPECT_GT(lowest, kind[0] == 'l' ? 0.4 : 0.0) << kind;
+    });
+    factors.expect(1.0, 0.2);
+    EXPECT_GT(lowest, kind[0] == 'l' ? 0.4 : 0.0);
   }
   // a value that its law cannot have
   const auto error_at_points = [](const std::string &text) -> std::string {
@@ -282,8 +288,7 @@ TEST_F(Random, EveryPointHasItsOwnMaterial)
   };
   for (const auto &c : cases) {
     const auto definition = [&](const std::string &value) {
-      std::string text = c.law;
-      return text.replace(text.find("VALUE"), 5, value);
+      return MPM_TEST::replaced(c.law, "VALUE", value);
     };
     const auto random = make(definition(c.value) + " random " + c.name + " lognormal 0.3 1.0 5");
     const int row = random->history().size() - 1;
@@ -299,9 +304,7 @@ TEST_F(Random, EveryPointHasItsOwnMaterial)
     random->wave_speed(all.batch, c0);
     random->stored_energy(all.batch, w0);
     for (int i = 0; i < 5; i++) {
-      char value[40];
-      snprintf(value, sizeof(value), "%.17g", c.mean * factor[i]);
-      Point p(definition(value));
+      Point p(definition(joined(c.mean * factor[i])));
       follow(p, motion, 0.5, 20);
       for (int k = 0; k < 6; k++)
         EXPECT_NEAR(all.batch.stress[k][i], p.stress(k), 1e-11 * (c.mean + std::fabs(p.stress(k))));
@@ -322,22 +325,15 @@ TEST_F(Random, InitialTemperature)
 {
   for (const char *thermal : {"constant 300", "adiabatic 460 300 0.9"}) {
     const auto material = make(STEEL + "thermal " + thermal + " random T0 normal 0.1 0.1 3");
-    const auto &variables = material->history();
-    size_t row = 0;
-    while (variables[row].name != "temperature") row++;
-    double mean = 0.0, square = 0.0;
-    const int side = 11;
-    const double n = side * side * side;
-    std::vector<double> history(variables.size());
-    for (int i = 0; i < n; i++) {
-      const double x[3] = {0.21 * (i % side), 0.21 * (i / side % side), 0.21 * (i / side / side)};
+    const int at = row(*material, "temperature");
+    Moments temperatures;
+    std::vector<double> history(material->history().size());
+    at_places(0.21, [&](const double *x) {
       material->initialize(x, history.data());
-      mean += history[row] / n;
-      square += history[row] * history[row] / n;
-      EXPECT_NEAR(history[row], 300.0 * history.back(), 1e-10);
-    }
-    EXPECT_NEAR(mean, 300.0, 4 * 30.0 / std::sqrt(n));
-    EXPECT_NEAR(std::sqrt(square - mean * mean), 30.0, 5 * 30.0 / std::sqrt(n));
+      temperatures.add(history[at]);
+      EXPECT_NEAR(history[at], 300.0 * history.back(), 1e-10);
+    });
+    temperatures.expect(300.0, 30.0);
   }
 }
 
@@ -457,35 +453,22 @@ TEST_F(Random, FixWithEveryKindOfParameter)
   const auto lognormal = [](double g, double c) {
     return std::exp(std::sqrt(std::log1p(c * c)) * g - 0.5 * std::log1p(c * c));
   };
-  struct Moments {
-    double n = 0.0, sum = 0.0, square = 0.0;
-    void add(double x)
-    {
-      n++;
-      sum += x;
-      square += x * x;
-    }
-    // neighboring points are one length apart: as good as one in six independent ones
-    void expect(double mean, double deviation) const
-    {
-      const double m = sum / n;
-      EXPECT_NEAR(m, mean, 8 * deviation / std::sqrt(n));
-      EXPECT_NEAR(std::sqrt(square / n - m * m), deviation, 10 * deviation / std::sqrt(n));
-    }
-  } mass, warmth, stiffness;
+  Moments mass, warmth, stiffness;
+  // neighboring points are one length apart: as good as one in six independent ones
+  const double means = 8.0, deviations = 10.0;
   const auto before = run.gather();
   ASSERT_EQ(before.size(), 4096);
   for (const auto &p : before) {
     mass.add(p.mass / p.vol / 2000.0);
     ASSERT_NEAR(p.mass / p.vol / 2000.0, lognormal(density.value(p.x), 0.1), 1e-13);
   }
-  mass.expect(1.0, 0.1);
+  mass.expect(1.0, 0.1, means, deviations);
 
   run.commands("compute t all mpm/atom temperature\ncompute low all reduce min c_t\n"
                "compute high all reduce max c_t\ncompute mean all reduce ave c_t\n"
                "thermo_style custom step c_low c_high c_mean\nrun 0\n");
   for (const auto &p : before) warmth.add(300 * (1 + 0.05 * temperature.value(p.x)));
-  warmth.expect(300.0, 15.0);
+  warmth.expect(300.0, 15.0, means, deviations);
   EXPECT_NEAR(run.evaluate("c_mean"), warmth.sum / warmth.n, 1e-9);
   EXPECT_LT(run.evaluate("c_low"), 255);
   EXPECT_GT(run.evaluate("c_high"), 345);
@@ -497,5 +480,5 @@ TEST_F(Random, FixWithEveryKindOfParameter)
     stiffness.add(p.stress[3] / (1e6 * 2e-5));
     ASSERT_NEAR(p.stress[3] / (1e6 * 2e-5), lognormal(modulus.value(p.x), 0.2), 1e-3);
   }
-  stiffness.expect(1.0, 0.2);
+  stiffness.expect(1.0, 0.2, means, deviations);
 }

@@ -16,6 +16,7 @@
 #include "gtest/gtest.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -31,6 +32,10 @@ inline std::mt19937 generator(20260704);
 inline double uniform(double low, double high)
 {
   return std::uniform_real_distribution<double>(low, high)(generator);
+}
+inline int integer(int low, int high)
+{
+  return std::uniform_int_distribution<int>(low, high)(generator);
 }
 inline void fill(Reals &a, double size = 1.0)
 {
@@ -62,10 +67,92 @@ inline MPM_NS::TransferStep random_step()
   return step;
 }
 
-/** As P2G wants it before the first call. */
-struct Box {
-  int b[6] = {1000, 1000, 1000, -1000, -1000, -1000};
+/** Range of base nodes; as P2G wants it before the first call. */
+using Box = std::array<int, 6>;
+constexpr Box NO_BOX = {1000, 1000, 1000, -1000, -1000, -1000};
+
+/** From the points [first,last) of a test to a tile, and back. */
+template <class Points> Box p2g(MPM_NS::P2G kernel, Points &points, double *tile, Box box = NO_BOX)
+{
+  kernel(points.rows(), points.step, points.first, points.last, points.base, tile, box.data());
+  return box;
+}
+template <class Points>
+int g2p(MPM_NS::G2P kernel, Points &points, const double *tile, double *L = nullptr)
+{
+  return kernel(points.rows(), points.step, points.first, points.last, points.base, tile, L);
+}
+
+/** A tile with the nodes in front of the block, the last base node, and how many nodes the
+ *  stencil has behind a base node. */
+struct TileShape {
+  int dim, stride_x, stride_y, margin, last, reach;
+  double *tile;
+  int reals;
 };
+
+/** Boxes of a tile go to blocks and back. */
+inline void expect_box_moves(const MPM_NS::TransferKernels &kernels, const TileShape &t)
+{
+  const int side = MPM_NS::block_side(t.dim), shift = side - t.margin, nreal = kernels.nreal;
+  const auto block = [=](int node) {    // 0, 1, 2
+    return (node + shift) / side;
+  };
+  for (int trial = 0; trial < 60; trial++) {
+    int box[6], slot[27];
+    for (int a = 0; a < 3; a++) {
+      box[a] = integer(0, t.last);
+      box[3 + a] = integer(box[a], t.last);
+    }
+    // blocks that the box touches have a slot in a random order, the others do not exist
+    for (int i = 0; i < 27; i++) slot[i] = i;
+    std::shuffle(slot, slot + 27, generator);
+    for (int i = 0; i < 27; i++) {
+      const int b[3] = {i / 9, i / 3 % 3, i % 3};
+      for (int a = 0; a < 3; a++)
+        if (a < t.dim ? b[a] < block(box[a]) || b[a] > block(box[3 + a] + t.reach) : b[a] != 1)
+          slot[i] = -1000000;
+    }
+    const auto for_box = [&](auto act) {    // all reals of the box in the tile and in the store
+      const int depth = t.dim == 3 ? box[5] + t.reach : 0;
+      for (int i = box[0]; i <= box[3] + t.reach; i++)
+        for (int j = box[1]; j <= box[4] + t.reach; j++)
+          for (int k = t.dim == 3 ? box[2] : 0; k <= depth; k++) {
+            const int n[3] = {i, j, k};
+            int s = 0, index = 0;
+            for (int a = 0; a < 3; a++) s = 3 * s + (a < t.dim ? block(n[a]) : 1);
+            for (int a = 0; a < t.dim; a++) index = side * index + (n[a] + shift) % side;
+            for (int r = 0; r < nreal; r++)
+              act(nreal * (i * t.stride_x + j * t.stride_y + k) + r,
+                  nreal * (64 * slot[s] + index) + r);
+          }
+    };
+
+    std::fill(t.tile, t.tile + t.reals, 0.0);
+    Reals store(27 * 64 * nreal);
+    fill(store);
+    const Reals before = store;
+    Reals expected = store;
+    for_box([&](int in_tile, int in_store) {
+      t.tile[in_tile] = uniform(-1.0, 1.0);
+      expected[in_store] += t.tile[in_tile];
+    });
+    const Reals values(t.tile, t.tile + t.reals);
+    kernels.prefetch(t.tile, store.data(), slot, box);
+    ASSERT_EQ(store, before);
+    ASSERT_EQ(Reals(t.tile, t.tile + t.reals), values);
+    kernels.flush(t.tile, store.data(), slot, box);
+    ASSERT_EQ(store, expected);
+    ASSERT_EQ(Reals(t.tile, t.tile + t.reals), Reals(t.reals, 0.0));
+    kernels.load(t.tile, store.data(), slot, box);
+    ASSERT_EQ(store, expected);
+    bool loaded = true;
+    for_box([&](int in_tile, int in_store) {
+      loaded = loaded && t.tile[in_tile] == store[in_store];
+    });
+    ASSERT_TRUE(loaded);
+  }
+}
 
 /** A combination of kernels. */
 struct Case {

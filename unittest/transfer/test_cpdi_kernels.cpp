@@ -158,15 +158,16 @@ TEST(Weights, ParallelepipedIsAHexahedron)
 
 /** Points in the middle block of a tile, with domains that reach up to 3 cells. */
 struct Points {
-  int dim, n, N, row;
+  int dim, first, last, n, N, row;
   TransferStep step = random_step();
   int base[3];
   Reals x, v, f, C, tau, vol0, mass, xnew, domain, corners_new;
 
   Points(int dim, Shape shape, int n) :
-      dim(dim), n(n), N(1 << dim), row(shape == CPDI ? dim * dim : dim << dim), base{-7, 5, 11},
-      x(3 * n), v(3 * n), f(3 * n), C(dim * dim * n), tau(6 * n), vol0(n), mass(n), xnew(3 * n),
-      domain(row * n), corners_new(row * n)
+      dim(dim), first(0), last(n), n(n), N(1 << dim),
+      row(shape == CPDI ? dim * dim : dim << dim), base{-7, 5, 11}, x(3 * n), v(3 * n), f(3 * n),
+      C(dim * dim * n), tau(6 * n), vol0(n), mass(n), xnew(3 * n), domain(row * n),
+      corners_new(row * n)
   {
     fill(v), fill(f), fill(C), fill(tau);
     for (double &a : vol0) a = uniform(0.5, 1.5) * std::pow(step.h, dim);
@@ -251,16 +252,13 @@ TEST_P(Kernels, AgreeWithTheReference)
       const P2G mine[] = {kernels.p2g, kernels.p2g_momentum, kernels.p2g_force};
       const P2G theirs[] = {reference.p2g, reference.p2g_momentum, reference.p2g_force};
       Reals s = tile(), t = tile();
-      Box box_s, box_t;
-      mine[k](a.rows(), a.step, 0, n, a.base, s.data(), box_s.b);
-      theirs[k](b.rows(), b.step, 0, n, b.base, t.data(), box_t.b);
+      ASSERT_EQ(p2g(mine[k], a, s.data()), p2g(theirs[k], b, t.data()));
       ASSERT_LT(difference(s, t), 1e-13) << k;
-      for (int i = 0; i < 6; i++) ASSERT_EQ(box_s.b[i], box_t.b[i]);
     }
     Reals field = tile(), La(dim * dim * n), Lb(La);
     fill(field);
-    EXPECT_EQ(kernels.g2p(a.rows(), a.step, 0, n, a.base, field.data(), La.data()), 0);
-    EXPECT_EQ(reference.g2p(b.rows(), b.step, 0, n, b.base, field.data(), Lb.data()), 0);
+    EXPECT_EQ(g2p(kernels.g2p, a, field.data(), La.data()), 0);
+    EXPECT_EQ(g2p(reference.g2p, b, field.data(), Lb.data()), 0);
     EXPECT_LT(difference(La, Lb), 1e-12);
     EXPECT_LT(difference(a.v, b.v), 1e-13);
     EXPECT_LT(difference(a.C, b.C), 1e-12);
@@ -268,7 +266,7 @@ TEST_P(Kernels, AgreeWithTheReference)
     EXPECT_LT(difference(a.xnew, b.xnew), 1e-13);
     EXPECT_LT(difference(a.corners_new, b.corners_new), 1e-12);
     std::fill(Lb.begin(), Lb.end(), 0.0);
-    kernels.g2p_gradient(b.rows(), b.step, 0, n, b.base, field.data(), Lb.data());
+    g2p(kernels.g2p_gradient, b, field.data(), Lb.data());
     EXPECT_LT(difference(La, Lb), 1e-13);
   }
 }
@@ -278,9 +276,7 @@ TEST_P(Kernels, MassMomentumAndForceAreConserved)
   Points points(dim, shape, 50);
   for (const bool force : {false, true}) {
     Reals t = tile();
-    Box box;
-    (force ? kernels.p2g_force : kernels.p2g_momentum)(points.rows(), points.step, 0, points.n,
-                                                       points.base, t.data(), box.b);
+    p2g(force ? kernels.p2g_force : kernels.p2g_momentum, points, t.data());
     const int lane = force && nreal == 8 ? 4 : 0;
     double sum[4] = {0.0}, exact[4] = {0.0}, torque[3] = {0.0}, size = 1.0;
     for (int n = 0; n < nodes; n++) {
@@ -332,7 +328,7 @@ TEST_P(Kernels, LinearFieldsAreExact)
       for (int old = 0; old < nreal; old += 4) t[nreal * n + old + i] = field(x, i);
   }
   const Points before = points;
-  kernels.g2p(points.rows(), points.step, 0, points.n, points.base, t.data(), L.data());
+  g2p(kernels.g2p, points, t.data(), L.data());
   const double size = 100.0 * points.step.h + 10.0;
   for (int p = 0; p < points.n; p++) {
     const auto c = before.corners(p);
@@ -366,8 +362,7 @@ TEST_P(Kernels, LinearFieldsAreExact)
     }
   }
   Reals back = tile();
-  Box box;
-  kernels.p2g_momentum(points.rows(), points.step, 0, points.n, points.base, back.data(), box.b);
+  p2g(kernels.p2g_momentum, points, back.data());
   for (int n = 0; n < nodes; n++) {
     double x[3];
     points.node_position(n, x);
@@ -413,14 +408,13 @@ TEST_P(Kernels, ApicKeepsAngularMomentum)
       points.x[3 * p + d] =
           points.step.origin[d] + (block_side(dim) * (1.0 + uniform(0.0, 1.0))) * points.step.h;
   Reals t = tile();
-  Box box;
-  kernels.p2g_momentum(points.rows(), points.step, 0, points.n, points.base, t.data(), box.b);
+  p2g(kernels.p2g_momentum, points, t.data());
   const NodeSums before(points, t, nreal, nodes);
   for (int n = 0; n < nodes; n++)
     for (int i = 0; i < 3 && t[nreal * n + 3] > 0.0; i++) t[nreal * n + i] /= t[nreal * n + 3];
-  kernels.g2p(points.rows(), points.step, 0, points.n, points.base, t.data(), nullptr);
+  g2p(kernels.g2p, points, t.data());
   t = tile();
-  kernels.p2g_momentum(points.rows(), points.step, 0, points.n, points.base, t.data(), box.b);
+  p2g(kernels.p2g_momentum, points, t.data());
   const NodeSums after(points, t, nreal, nodes);
   EXPECT_LT(after.energy, before.energy);
   for (int d = 0; d < 3; d++)
@@ -457,8 +451,7 @@ TEST_P(Kernels, ShearedDomainsGainNoEnergy)
   double energy = 0.0, first = 0.0;
   for (int round = 0; round < 30; round++) {
     Reals t = tile();
-    Box box;
-    kernels.p2g_momentum(points.rows(), points.step, 0, n, points.base, t.data(), box.b);
+    p2g(kernels.p2g_momentum, points, t.data());
     const double now = NodeSums(points, t, nreal, nodes).energy;
     if (round == 0) first = now;
     if (round > 0 && transfer != TPIC) { ASSERT_LE(now, energy * (1.0 + 1e-14)) << round; }
@@ -466,7 +459,7 @@ TEST_P(Kernels, ShearedDomainsGainNoEnergy)
     for (int k = 0; k < nodes; k++)
       for (int i = 0; i < 3; i++)
         t[nreal * k + i] = t[nreal * k + 3] > 0.0 ? t[nreal * k + i] / t[nreal * k + 3] : 0.0;
-    kernels.g2p(points.rows(), points.step, 0, n, points.base, t.data(), nullptr);
+    g2p(kernels.g2p, points, t.data());
   }
   if (transfer == TPIC) EXPECT_GT(energy, first);
 }
@@ -484,9 +477,7 @@ TEST_P(Kernels, InvertedDomainsAreReported)
           std::swap(domain[dim * k + d], domain[dim * (k + 1) + d]);
     }
     Reals field = tile();
-    EXPECT_NE(
-        kernels.g2p(points.rows(), points.step, 0, points.n, points.base, field.data(), nullptr),
-        0);
+    EXPECT_NE(g2p(kernels.g2p, points, field.data()), 0);
   }
 }
 
@@ -505,61 +496,16 @@ TEST_P(Kernels, FoldedDomainsAreReported)
     ASSERT_GT(dim == 2 ? PointDomain<2>::free(x, w, g) : PointDomain<3>::free(x, w, g), 0.0);
     ASSERT_LT(*std::min_element(w, w + points.N), 0.0);
     const Reals field = tile();
-    EXPECT_NE(
-        kernels.g2p(points.rows(), points.step, 0, points.n, points.base, field.data(), nullptr),
-        0);
+    EXPECT_NE(g2p(kernels.g2p, points, field.data()), 0);
   }
 }
 
-/** Tile and nodes: the box goes to blocks and back. */
 TEST_P(Kernels, TileMovesItsBox)
 {
-  const int side = block_side(dim), width = domain_tile_side(dim);
-  for (int trial = 0; trial < 20; trial++) {
-    int box[6];
-    for (int a = 0; a < 3; a++) {
-      const int i = generator() % (width - 1), j = generator() % (width - 1);
-      box[a] = std::min(i, j);
-      box[3 + a] = std::max(i, j);
-    }
-    int slot[27];
-    for (int i = 0; i < 27; i++) {
-      const int b[3] = {i / 9, i / 3 % 3, i % 3};
-      bool touched = true;
-      for (int a = 0; a < 3; a++)
-        touched = touched &&
-            (a < dim ? b[a] >= box[a] / side && b[a] <= (box[3 + a] + 1) / side : b[a] == 1);
-      slot[i] = touched ? 26 - i : -1000000;
-    }
-    Reals t = tile(), store(27 * 64 * nreal), expected;
-    fill(store);
-    expected = store;
-    const auto for_box = [&](auto act) {
-      for (int i = box[0]; i <= box[3] + 1; i++)
-        for (int j = box[1]; j <= box[4] + 1; j++)
-          for (int k = dim == 3 ? box[2] : 0; k <= (dim == 3 ? box[5] + 1 : 0); k++) {
-            const int block = 9 * (i / side) + 3 * (j / side) + (dim == 3 ? k / side : 1);
-            const int index = dim == 3 ? (i % side * side + j % side) * side + k % side
-                                       : i % side * side + j % side;
-            for (int r = 0; r < nreal; r++)
-              act(nreal * (i * domain_stride_x(dim) + j * domain_stride_y(dim) + k) + r,
-                  nreal * (64 * slot[block] + index) + r);
-          }
-    };
-    for_box([&](int in_tile, int in_store) {
-      t[in_tile] = uniform(-1.0, 1.0);
-      expected[in_store] += t[in_tile];
-    });
-    kernels.prefetch(t.data(), store.data(), slot, box);
-    kernels.flush(t.data(), store.data(), slot, box);
-    ASSERT_EQ(store, expected);
-    for (double a : t) ASSERT_EQ(a, 0.0);
-    kernels.load(t.data(), store.data(), slot, box);
-    ASSERT_EQ(store, expected);
-    for_box([&](int in_tile, int in_store) {
-      ASSERT_EQ(t[in_tile], store[in_store]);
-    });
-  }
+  Reals t = tile();
+  expect_box_moves(kernels,
+                   {dim, domain_stride_x(dim), domain_stride_y(dim), block_side(dim),
+                    domain_tile_side(dim) - 2, 1, t.data(), nodes * nreal});
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Kernels, ::testing::ValuesIn(all_cases({CPDI, CPDI2})), case_name);

@@ -13,6 +13,7 @@
 // do whatever the implementation (conservation, exact fields, rows left alone).
 
 #include "material/batch.h"
+#include "math/matrix.h"
 #include "transfer/kernel_testing.h"
 #include "transfer/kernels.h"
 #include "transfer/shape.h"
@@ -35,15 +36,12 @@ using namespace MPM_TEST;
 
 namespace {
 
-int integer(int low, int high)
-{
-  return std::uniform_int_distribution<int>(low, high)(generator);
-}
 /** Points of which the rows [first,last) lie in the tile of a block; arrays are not padded. */
 struct Points {
   int dim, order, first, last, n;
-  int nC;         // reals of a matrix C
-  int guarded;    // as in PointRows: the last row exists, no more
+  int nC;                  // reals of a matrix C
+  int guarded;             // as in PointRows: the last row exists, no more
+  bool in_place = true;    // new positions replace the old ones
   TransferStep step = random_step();
   int base[3];
   Reals x, v, f, C, tau, vol0, mass, xnew, size;
@@ -79,8 +77,7 @@ struct Points {
     xnew = x;
   }
 
-  /** in_place: new positions replace the old ones. */
-  PointRows rows(bool in_place = true)
+  PointRows rows()
   {
     return {x.data(),   v.data(),    f.data(),    C.data(),
             tau.data(), vol0.data(), mass.data(), in_place ? x.data() : xnew.data(),
@@ -126,6 +123,12 @@ struct Tile {
   }
 };
 
+/** Component i of a + B x. */
+double at(const Reals &a, const Reals &B, const double *x, int i)
+{
+  return a[i] + B[i] * x[0] + B[3 + i] * x[1] + B[6 + i] * x[2];
+}
+
 class Kernels : public KernelTest {
  protected:
   int order;
@@ -144,17 +147,16 @@ class Kernels : public KernelTest {
   }
 
   /** Field on the tile's nodes as solve_nodes leaves it: velocity a + B x, old velocity b + D x. */
-  Tile linear_field(const Points &points, const double *a, const double *B, const double *b,
-                    const double *D) const
+  Tile linear_field(const Points &points, const Reals &a, const Reals &B, const Reals &b,
+                    const Reals &D) const
   {
     Tile tile(dim, order, nreal);
     for (int n = 0; n < tile.nodes; n++) {
       double x[3];
       points.node_position(n, x);
       for (int i = 0; i < 3; i++) {
-        tile.real[nreal * n + i] = a[i] + B[i] * x[0] + B[3 + i] * x[1] + B[6 + i] * x[2];
-        if (split)
-          tile.real[nreal * n + 4 + i] = b[i] + D[i] * x[0] + D[3 + i] * x[1] + D[6 + i] * x[2];
+        tile.real[nreal * n + i] = at(a, B, x, i);
+        if (split) tile.real[nreal * n + 4 + i] = at(b, D, x, i);
       }
       tile.real[nreal * n + 3] = 1.0;
     }
@@ -191,15 +193,10 @@ TEST_P(Kernels, P2GAgreesWithReference)
       Tile a(dim, order, nreal), b(dim, order, nreal);
       fill(a.room);    // a transfer adds to what is there
       std::memcpy(b.real, a.real, sizeof(double) * a.nodes * nreal);
-      Box box_a, box_b;
-      mine[which](points.rows(), points.step, points.first, points.last, points.base, a.real,
-                  box_a.b);
-      theirs[which](points.rows(), points.step, points.first, points.last, points.base, b.real,
-                    box_b.b);
+      ASSERT_EQ(p2g(mine[which], points, a.real), p2g(theirs[which], points, b.real));
       for (int c = 0; c < nreal; c++)
         ASSERT_LT(difference(a.column(c), b.column(c)), SAME)
             << "kernel " << which << ", " << count << " points, real " << c;
-      for (int i = 0; i < 6; i++) ASSERT_EQ(box_a.b[i], box_b.b[i]) << "box entry " << i;
     }
 }
 
@@ -207,23 +204,18 @@ TEST_P(Kernels, P2GBoxIsThatOfTheBaseNodesAndOnlyWidens)
 {
   for (int count : {1, 2, 5, 64}) {
     Points points = random_points(count);
-    Box expected, box, wide;
+    Box expected = NO_BOX;
     for (int p = points.first; p < points.last; p++)
       for (int i = 0; i < dim; i++) {
         const double t = (points.x[3 * p + i] - points.step.origin[i]) / points.step.h -
             0.5 * (order - 1) - points.base[i];
-        expected.b[i] = std::min(expected.b[i], static_cast<int>(std::floor(t)));
-        expected.b[3 + i] = std::max(expected.b[3 + i], static_cast<int>(std::floor(t)));
+        expected[i] = std::min(expected[i], static_cast<int>(std::floor(t)));
+        expected[3 + i] = std::max(expected[3 + i], static_cast<int>(std::floor(t)));
       }
     Tile tile(dim, order, nreal);
-    kernels.p2g(points.rows(), points.step, points.first, points.last, points.base, tile.real,
-                box.b);
-    for (int i = 0; i < 6; i++) ASSERT_EQ(box.b[i], expected.b[i]) << "entry " << i;
-
-    for (int i = 0; i < 6; i++) wide.b[i] = i < 3 ? -7 : 77;
-    kernels.p2g(points.rows(), points.step, points.first, points.last, points.base, tile.real,
-                wide.b);
-    for (int i = 0; i < 6; i++) ASSERT_EQ(wide.b[i], i < 3 ? -7 : 77);
+    ASSERT_EQ(p2g(kernels.p2g, points, tile.real), expected);
+    const Box wide = {-7, -7, -7, 77, 77, 77};
+    ASSERT_EQ(p2g(kernels.p2g, points, tile.real, wide), wide);
   }
 }
 
@@ -251,18 +243,21 @@ TEST_P(Kernels, TotalFrame)
               P[points.nC * p + dim * j + i] = points.tau[6 * p + place[i][j]];
       }
       const TransferKernels &other = symmetric ? reference : plain;
-      PointRows rows = points.rows(false);
+      points.in_place = false;
+      PointRows rows = points.rows();
       rows.P = P.data();
       rows.from = from.data();
       const P2G mine[] = {total.p2g, total.p2g_force}, theirs[] = {other.p2g, other.p2g_force};
       for (int which : {0, 1}) {
         Tile a(dim, order, nreal), b(dim, order, nreal);
-        Box box_a, box_b;
-        mine[which](rows, points.step, points.first, points.last, points.base, a.real, box_a.b);
-        theirs[which](rows, points.step, points.first, points.last, points.base, b.real, box_b.b);
+        Box box_a = NO_BOX, box_b = NO_BOX;
+        mine[which](rows, points.step, points.first, points.last, points.base, a.real,
+                    box_a.data());
+        theirs[which](rows, points.step, points.first, points.last, points.base, b.real,
+                      box_b.data());
         for (int r = 0; r < nreal; r++)
           ASSERT_LT(difference(a.column(r), b.column(r)), SAME) << count << " points, real " << r;
-        for (int i = 0; i < 6; i++) ASSERT_EQ(box_a.b[i], box_b.b[i]);
+        ASSERT_EQ(box_a, box_b);
       }
 
       // far away from the tile is as good as anywhere, but not nowhere
@@ -272,7 +267,7 @@ TEST_P(Kernels, TotalFrame)
       EXPECT_EQ(total.g2p(rows, points.step, points.first, points.last, points.base, field.real,
                           L.data()),
                 0);
-      PointRows expected = before.rows(false);
+      PointRows expected = before.rows();
       expected.from = from.data();
       other.g2p(expected, points.step, points.first, points.last, points.base, field.real,
                 L_other.data());
@@ -291,10 +286,9 @@ TEST_P(Kernels, NoPointsNoChange)
 {
   Points points = random_points(3);
   Tile tile(dim, order, nreal);
-  Box box;
-  kernels.p2g(points.rows(), points.step, 2, 2, points.base, tile.real, box.b);
-  EXPECT_EQ(kernels.g2p(points.rows(), points.step, 2, 2, points.base, tile.real, nullptr), 0);
-  EXPECT_EQ(box.b[0], 1000);
+  points.first = points.last = 2;
+  EXPECT_EQ(p2g(kernels.p2g, points, tile.real), NO_BOX);
+  EXPECT_EQ(g2p(kernels.g2p, points, tile.real), 0);
   EXPECT_EQ(tile.sum(3), 0.0);
 }
 
@@ -302,17 +296,14 @@ TEST_P(Kernels, MomentumAndForceMakeTheWhole)
 {
   Points points = random_points(50);
   Tile a(dim, order, nreal), b(dim, order, nreal);
-  Box box;
-  kernels.p2g(points.rows(), points.step, points.first, points.last, points.base, a.real, box.b);
-  kernels.p2g_momentum(points.rows(), points.step, points.first, points.last, points.base, b.real,
-                       box.b);
+  p2g(kernels.p2g, points, a.real);
+  p2g(kernels.p2g_momentum, points, b.real);
   if (split) {
     for (int c = 4; c < 8; c++)
       for (double f : b.column(c)) ASSERT_EQ(f, 0.0);
   }
   const double mass = b.sum(3);
-  kernels.p2g_force(points.rows(), points.step, points.first, points.last, points.base, b.real,
-                    box.b);
+  p2g(kernels.p2g_force, points, b.real);
   EXPECT_LT(difference(a.values(), b.values()), SAME);
   EXPECT_EQ(b.sum(3), mass);
 }
@@ -321,14 +312,13 @@ TEST_P(Kernels, G2PAgreesWithReference)
 {
   for (int count : counts())
     for (int variant = 0; variant < 3; variant++) {
-      const bool in_place = variant != 1, with_L = variant != 2;
+      const bool with_L = variant != 2;
       Points a = random_points(count), b = a;
       const Tile tile = random_field();
       Reals La(a.nC * count), Lb(a.nC * count);
-      const int left_a = kernels.g2p(a.rows(in_place), a.step, a.first, a.last, a.base, tile.real,
-                                     with_L ? La.data() : nullptr);
-      const int left_b = reference.g2p(b.rows(in_place), b.step, b.first, b.last, b.base, tile.real,
-                                       with_L ? Lb.data() : nullptr);
+      a.in_place = b.in_place = variant != 1;
+      const int left_a = g2p(kernels.g2p, a, tile.real, with_L ? La.data() : nullptr);
+      const int left_b = g2p(reference.g2p, b, tile.real, with_L ? Lb.data() : nullptr);
       const std::string what =
           std::to_string(count) + " points, variant " + std::to_string(variant);
       ASSERT_LT(difference(a.v, b.v), SAME) << what;
@@ -346,15 +336,14 @@ TEST_P(Kernels, GradientAgreesWithReferenceAndG2P)
     Points a = random_points(count), before = a;
     const Tile tile = random_field();
     Reals La(a.nC * count), Lb(a.nC * count), Lc(a.nC * count);
-    ASSERT_EQ(kernels.g2p_gradient(a.rows(), a.step, a.first, a.last, a.base, tile.real, La.data()),
-              0);
-    reference.g2p_gradient(a.rows(), a.step, a.first, a.last, a.base, tile.real, Lb.data());
+    ASSERT_EQ(g2p(kernels.g2p_gradient, a, tile.real, La.data()), 0);
+    g2p(reference.g2p_gradient, a, tile.real, Lb.data());
     ASSERT_LT(difference(La, Lb), SAME);
     ASSERT_EQ(a.x, before.x);
     ASSERT_EQ(a.v, before.v);
     ASSERT_EQ(a.C, before.C);
     ASSERT_EQ(a.xnew, before.xnew);
-    kernels.g2p(a.rows(), a.step, a.first, a.last, a.base, tile.real, Lc.data());
+    g2p(kernels.g2p, a, tile.real, Lc.data());
     ASSERT_LT(difference(La, Lc), SAME);
   }
 }
@@ -369,8 +358,8 @@ TEST_P(Kernels, OtherRowsAreLeftAlone)
     const Tile tile = random_field();
     // room behind the rows of L stands for the memory of somebody else
     Reals L(points.nC * (count + 1), 3.25);
-    kernels.g2p(points.rows(false), points.step, points.first, points.last, points.base, tile.real,
-                L.data());
+    points.in_place = false;
+    g2p(kernels.g2p, points, tile.real, L.data());
     auto check = [&](const Reals &now, const Reals &then, int width, const char *what) {
       for (int i = 0; i < width * points.n; i++)
         if (i < width * points.first || i >= width * points.last) {
@@ -389,9 +378,7 @@ TEST_P(Kernels, MassAndMomentumAreConserved)
 {
   Points points = random_points(173);
   Tile tile(dim, order, nreal);
-  Box box;
-  kernels.p2g_momentum(points.rows(), points.step, points.first, points.last, points.base,
-                       tile.real, box.b);
+  p2g(kernels.p2g_momentum, points, tile.real);
   double mass = 0.0, momentum[3] = {0.0, 0.0, 0.0};
   for (int p = points.first; p < points.last; p++) {
     mass += points.mass[p];
@@ -406,9 +393,7 @@ TEST_P(Kernels, TotalForceIsTheExternalForce)
 {
   Points points = random_points(173);
   Tile tile(dim, order, nreal);
-  Box box;
-  kernels.p2g_force(points.rows(), points.step, points.first, points.last, points.base, tile.real,
-                    box.b);
+  p2g(kernels.p2g_force, points, tile.real);
   const double scale = split ? 1.0 : points.step.dt;
   double force[3] = {0.0, 0.0, 0.0}, size = 0.0;
   for (int p = points.first; p < points.last; p++) {
@@ -424,9 +409,7 @@ TEST_P(Kernels, AngularMomentumIsConserved)
 {
   Points points = random_points(101);
   Tile tile(dim, order, nreal);
-  Box box;
-  kernels.p2g_momentum(points.rows(), points.step, points.first, points.last, points.base,
-                       tile.real, box.b);
+  p2g(kernels.p2g_momentum, points, tile.real);
   const double reach = 100.0 * points.step.h;    // of positions, for the tolerance
   for (int k = dim == 3 ? 0 : 2; k < 3; k++) {
     const int i = (k + 1) % 3, j = (k + 2) % 3;
@@ -466,9 +449,7 @@ TEST_P(Kernels, StressMakesNoTorque)
   Points points = random_points(101);
   std::fill(points.f.begin(), points.f.end(), 0.0);
   Tile tile(dim, order, nreal);
-  Box box;
-  kernels.p2g_force(points.rows(), points.step, points.first, points.last, points.base, tile.real,
-                    box.b);
+  p2g(kernels.p2g_force, points, tile.real);
   const int at = split ? 4 : 0;
   for (int k = dim == 3 ? 0 : 2; k < 3; k++) {
     const int i = (k + 1) % 3, j = (k + 2) % 3;
@@ -492,23 +473,18 @@ TEST_P(Kernels, ConstantAndLinearFieldsAreExact)
     points.step.dt = 1.0e-3 * points.step.h;
     Reals a(3), B(9), b(3), D(9);
     fill(a), fill(B), fill(b), fill(D);
-    if (constant) {
-      std::fill(B.begin(), B.end(), 0.0);
-      std::fill(D.begin(), D.end(), 0.0);
-    }
+    if (constant) B = D = Reals(9, 0.0);
     if (dim == 2)
       for (int i : {2, 5, 6, 7, 8}) B[i] = D[i] = 0.0;
-    const Tile tile = linear_field(points, a.data(), B.data(), b.data(), D.data());
+    const Tile tile = linear_field(points, a, B, b, D);
     const Points before = points;
     Reals L(points.nC * 64);
-    kernels.g2p(points.rows(), points.step, points.first, points.last, points.base, tile.real,
-                L.data());
+    g2p(kernels.g2p, points, tile.real, L.data());
     for (int p = points.first; p < points.last; p++) {
       const double *x = &before.x[3 * p];
       for (int i = 0; i < dim; i++) {
-        double v = a[i] + B[i] * x[0] + B[3 + i] * x[1];
-        double v_old = b[i] + D[i] * x[0] + D[3 + i] * x[1];
-        if (dim == 3) v += B[6 + i] * x[2], v_old += D[6 + i] * x[2];
+        double v = at(a, B, x, i);
+        const double v_old = at(b, D, x, i);
         const double size = 200.0 * points.step.h + 10.0;    // of the terms in the field
         EXPECT_NEAR(points.x[3 * p + i], x[i] + points.step.dt * v, 1e-12 * size);
         if (adds_change(transfer))
@@ -539,17 +515,14 @@ TEST_P(Kernels, AffineFieldSurvivesTheRoundTrip)
     for (int i : {2, 5, 6, 7, 8}) B[i] = 0.0;
   for (int p = 0; p < points.n; p++) {
     const double *x = &points.x[3 * p];
-    for (int i = 0; i < 3; i++)
-      points.v[3 * p + i] = a[i] + B[i] * x[0] + B[3 + i] * x[1] + B[6 + i] * x[2];
+    for (int i = 0; i < 3; i++) points.v[3 * p + i] = at(a, B, x, i);
     for (int j = 0; j < dim; j++)
       for (int i = 0; i < dim; i++) points.C[dim * (dim * p + j) + i] = B[3 * j + i];
   }
   Tile tile(dim, order, nreal);
-  Box box;
-  kernels.p2g_momentum(points.rows(), points.step, points.first, points.last, points.base,
-                       tile.real, box.b);
+  p2g(kernels.p2g_momentum, points, tile.real);
   table->solve_nodes(tile.real, tile.nodes, nreal, points.step.dt);
-  const Tile exact = linear_field(points, a.data(), B.data(), a.data(), B.data());
+  const Tile exact = linear_field(points, a, B, a, B);
   const double size = 200.0 * points.step.h + 10.0;
   for (int n = 0; n < tile.nodes; n++) {
     if (tile.real[nreal * n + 3] < 1e-3) continue;
@@ -565,14 +538,13 @@ TEST_P(Kernels, SplitEqualsMerged)
   ASSERT_EQ(merged.nreal, 4);
   Points a = random_points(150), b = a;
   Tile tile_a(dim, order, 8), tile_b(dim, order, 4);
-  Box box;
-  kernels.p2g(a.rows(), a.step, a.first, a.last, a.base, tile_a.real, box.b);
-  merged.p2g(b.rows(), b.step, b.first, b.last, b.base, tile_b.real, box.b);
+  p2g(kernels.p2g, a, tile_a.real);
+  p2g(merged.p2g, b, tile_b.real);
   table->solve_nodes(tile_a.real, tile_a.nodes, 8, a.step.dt);
   table->solve_nodes(tile_b.real, tile_b.nodes, 4, b.step.dt);
   Reals La(a.nC * 150), Lb(a.nC * 150);
-  kernels.g2p(a.rows(), a.step, a.first, a.last, a.base, tile_a.real, La.data());
-  merged.g2p(b.rows(), b.step, b.first, b.last, b.base, tile_b.real, Lb.data());
+  g2p(kernels.g2p, a, tile_a.real, La.data());
+  g2p(merged.g2p, b, tile_b.real, Lb.data());
   // velocities of nodes with tiny mass lose digits and count little
   EXPECT_LT(difference(a.v, b.v), 1e-12);
   EXPECT_LT(difference(a.x, b.x), 1e-12);
@@ -604,10 +576,9 @@ TEST_P(Kernels, PointsThatLeaveTheTileAreReported)
           a[axis] = target;
         else
           points.x[3 * p + axis] = x - points.step.dt * a[axis];
-        const Tile tile = linear_field(points, a.data(), zero.data(), a.data(), zero.data());
-        EXPECT_EQ(kernels.g2p(points.rows(), points.step, points.first, points.last, points.base,
-                              tile.real, Reals(points.nC * count).data()) != 0,
-                  outside)
+        const Tile tile = linear_field(points, a, zero, a, zero);
+        Reals L(points.nC * count);
+        EXPECT_EQ(g2p(kernels.g2p, points, tile.real, L.data()) != 0, outside)
             << "target " << target;
       }
 }
@@ -618,99 +589,26 @@ TEST_P(Kernels, TwoDimensionsLeaveZAlone)
   Points points = random_points(33);
   const Points before = points;
   Tile tile(dim, order, nreal);
-  Box box;
-  kernels.p2g(points.rows(), points.step, points.first, points.last, points.base, tile.real, box.b);
-  EXPECT_EQ(box.b[2], 1000);
-  EXPECT_EQ(box.b[5], -1000);
+  const Box box = p2g(kernels.p2g, points, tile.real);
+  EXPECT_EQ(box[2], 1000);
+  EXPECT_EQ(box[5], -1000);
   for (double pz : tile.column(2)) ASSERT_EQ(pz, 0.0);
 
   const Tile field = random_field();
-  kernels.g2p(points.rows(false), points.step, points.first, points.last, points.base, field.real,
-              nullptr);
+  points.in_place = false;
+  g2p(kernels.g2p, points, field.real);
   for (int p = points.first; p < points.last; p++) {
     EXPECT_EQ(points.v[3 * p + 2], before.v[3 * p + 2]);
     EXPECT_EQ(points.xnew[3 * p + 2], before.x[3 * p + 2]);
   }
 }
 
-/** Tile and nodes against a dense array that stands for the lattice around the block. */
 TEST_P(Kernels, TileMovesItsBox)
 {
-  const int side = block_side(dim), nodes = tile_side(dim, order);
-  const int depth = dim == 3 ? nodes : 1;
-  for (int trial = 0; trial < 60; trial++) {
-    int box[6];
-    for (int a = 0; a < 3; a++) {
-      box[a] = integer(0, side + 1);
-      box[3 + a] = integer(box[a], side + 1);
-    }
-    // blocks that the box touches have a slot in a random order, the others do not exist
-    std::vector<int> order_of_slots(27);
-    for (int i = 0; i < 27; i++) order_of_slots[i] = i;
-    std::shuffle(order_of_slots.begin(), order_of_slots.end(), generator);
-    auto block = [side](int tile_node) {
-      return (tile_node + side - 1) / side;
-    };    // 0, 1, 2
-    int slot[27];
-    for (int i = 0; i < 27; i++) {
-      const int b[3] = {i / 9, i / 3 % 3, i % 3};
-      bool touched = true;
-      for (int a = 0; a < 3; a++)
-        touched = touched &&
-            (a < dim ? b[a] >= block(box[a]) && b[a] <= block(box[3 + a] + order) : b[a] == 1);
-      slot[i] = touched ? order_of_slots[i] : -1000000;
-    }
-
-    Tile tile(dim, order, nreal);
-    Reals store(27 * 64 * nreal), before;
-    fill(store);
-    before = store;
-    // where a tile node is in the store: -1 outside the box
-    auto place = [&](int i, int j, int k) {
-      const int n[3] = {i, j, k};
-      int s = 0, index = 0;
-      for (int a = 0; a < 3; a++) {
-        if (a < dim && (n[a] < box[a] || n[a] > box[3 + a] + order)) return -1;
-        s = 3 * s + (a < dim ? block(n[a]) : 1);
-        if (a < dim) index = side * index + (n[a] + side - 1) % side;
-      }
-      return (slot[s] * 64 + index) * nreal;
-    };
-    auto tile_place = [&](int i, int j, int k) {
-      return (i * tile_stride_x(dim, order) + j * tile_stride_y(dim, order) + k) * nreal;
-    };
-
-    // what a P2G leaves: values in the box, zero elsewhere
-    for (int i = 0; i < nodes; i++)
-      for (int j = 0; j < nodes; j++)
-        for (int k = 0; k < depth; k++)
-          if (place(i, j, k) >= 0)
-            for (int c = 0; c < nreal; c++) tile.real[tile_place(i, j, k) + c] = uniform(-1.0, 1.0);
-    const Reals values = tile.values();
-    kernels.prefetch(tile.real, store.data(), slot, box);
-    ASSERT_EQ(store, before);
-    ASSERT_EQ(tile.values(), values);
-    kernels.flush(tile.real, store.data(), slot, box);
-    Reals expected = before;
-    for (int i = 0; i < nodes; i++)
-      for (int j = 0; j < nodes; j++)
-        for (int k = 0; k < depth; k++)
-          if (place(i, j, k) >= 0)
-            for (int c = 0; c < nreal; c++)
-              expected[place(i, j, k) + c] += values[tile_place(i, j, k) + c];
-    ASSERT_EQ(store, expected);
-    for (double a : tile.values()) ASSERT_EQ(a, 0.0);
-
-    kernels.load(tile.real, store.data(), slot, box);
-    ASSERT_EQ(store, expected);
-    for (int i = 0; i < nodes; i++)
-      for (int j = 0; j < nodes; j++)
-        for (int k = 0; k < depth; k++) {
-          if (place(i, j, k) < 0) continue;
-          for (int c = 0; c < nreal; c++)
-            ASSERT_EQ(tile.real[tile_place(i, j, k) + c], store[place(i, j, k) + c]);
-        }
-  }
+  Tile tile(dim, order, nreal);
+  expect_box_moves(kernels,
+                   {dim, tile_stride_x(dim, order), tile_stride_y(dim, order), 1,
+                    block_side(dim) + 1, order, tile.real, tile.nodes * nreal});
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Kernels,
@@ -748,10 +646,6 @@ TEST_P(Tables, BatchesAgreeWithMatrixAlgebra)
       const int inverted = n > 8 ? integer(0, n - 1) : -1;
       if (inverted >= 0) L[nL * inverted] = -1000.0;
 
-      auto det = [](const double *f) {
-        return f[0] * (f[4] * f[8] - f[5] * f[7]) - f[1] * (f[3] * f[8] - f[5] * f[6]) +
-            f[2] * (f[3] * f[7] - f[4] * f[6]);
-      };
       auto b = std::make_unique<Batch>();
       kernels->load(*b, n, dt, L.data(), F.data(), tau.data(), vol0.data(), nullptr);
       EXPECT_EQ(b->n, n);
@@ -773,11 +667,11 @@ TEST_P(Tables, BatchesAgreeWithMatrixAlgebra)
           EXPECT_NEAR(b->A[c][p], A[c], 1e-15 * size);
           EXPECT_NEAR(b->F[c][p], expected[p][c], 1e-14 * size);
         }
-        EXPECT_NEAR(b->Jold[p], det(f), 1e-14);
-        EXPECT_NEAR(b->J[p], det(expected[p].data()), 1e-13 * size);
+        EXPECT_NEAR(b->Jold[p], determinant(f), 1e-14);
+        EXPECT_NEAR(b->J[p], determinant(expected[p].data()), 1e-13 * size);
         EXPECT_EQ(b->vol0[p], vol0[p]);
         for (int c = 0; c < 6; c++)
-          EXPECT_NEAR(b->stress[c][p], tau[6 * p + c] / det(f), 1e-14 / det(f));
+          EXPECT_NEAR(b->stress[c][p], tau[6 * p + c] / determinant(f), 1e-14 / determinant(f));
       }
 
       for (int p = 0; p < n; p++)
@@ -831,42 +725,30 @@ TEST_P(Tables, FarShapesAreForgotten)
     }
 }
 
-TEST_P(Tables, SolveNodesMerged)
-{
-  const int n = 37;
-  Reals nodes(4 * n);
-  fill(nodes);
-  for (int i = 0; i < n; i++) nodes[4 * i + 3] = i % 5 ? uniform(0.1, 1.0) : 0.0;
-  const Reals before = nodes;
-  table->solve_nodes(nodes.data(), n, 4, 0.25);
-  for (int i = 0; i < n; i++) {
-    const double m = before[4 * i + 3];
-    for (int a = 0; a < 3; a++)
-      EXPECT_NEAR(nodes[4 * i + a], m > 0.0 ? before[4 * i + a] / m : 0.0, 1e-14);
-    EXPECT_EQ(nodes[4 * i + 3], m);
-  }
-}
-
-TEST_P(Tables, SolveNodesSplit)
+TEST_P(Tables, SolveNodes)
 {
   const int n = 37;
   const double dt = 0.25;
-  Reals nodes(8 * n);
-  fill(nodes);
-  for (int i = 0; i < n; i++) {
-    nodes[8 * i + 3] = i % 5 ? uniform(0.1, 1.0) : 0.0;
-    nodes[8 * i + 7] = 0.0;
-  }
-  const Reals before = nodes;
-  table->solve_nodes(nodes.data(), n, 8, dt);
-  for (int i = 0; i < n; i++) {
-    const double *p = &before[8 * i], m = p[3];
-    for (int a = 0; a < 3; a++) {
-      EXPECT_NEAR(nodes[8 * i + a], m > 0.0 ? (p[a] + dt * p[4 + a]) / m : 0.0, 1e-14);
-      EXPECT_NEAR(nodes[8 * i + 4 + a], m > 0.0 ? p[a] / m : 0.0, 1e-14);
+  for (const int nreal : {4, 8}) {
+    const bool split = nreal == 8;
+    Reals nodes(nreal * n);
+    fill(nodes);
+    for (int i = 0; i < n; i++) {
+      nodes[nreal * i + 3] = i % 5 ? uniform(0.1, 1.0) : 0.0;
+      if (split) nodes[nreal * i + 7] = 0.0;
     }
-    EXPECT_EQ(nodes[8 * i + 3], m);
-    EXPECT_EQ(nodes[8 * i + 7], 0.0);
+    const Reals before = nodes;
+    table->solve_nodes(nodes.data(), n, nreal, dt);
+    for (int i = 0; i < n; i++) {
+      const double *p = &before[nreal * i], *v = &nodes[nreal * i], m = p[3];
+      for (int a = 0; a < 3; a++) {
+        const double new_p = split ? p[a] + dt * p[4 + a] : p[a];
+        EXPECT_NEAR(v[a], m > 0.0 ? new_p / m : 0.0, 1e-14);
+        if (split) { EXPECT_NEAR(v[4 + a], m > 0.0 ? p[a] / m : 0.0, 1e-14); }
+      }
+      EXPECT_EQ(v[3], m);
+      if (split) { EXPECT_EQ(v[7], 0.0); }
+    }
   }
 }
 

@@ -190,37 +190,22 @@ TEST(Polypic, LessDissipation)
 TEST(Polypic, RanksAndRestart)
 {
   for (const int dim : {2, 3}) {
-    ScratchFile restart("poly.restart");
     const std::string text = block(dim, "transfer polypic"),
                       motion =
                           "variable v atom 0.6*sin(0.7*x)*cos(0.5*y)\nvelocity all set v_v v_v 0\n";
-    std::vector<Scene::State> reference;
-    {
-      Scene serial(MPI_COMM_SELF);
-      serial.commands(text + motion + "run 60\n");
-      reference = serial.gather();
-    }
-    Scene run;
-    run.commands(text + motion + "run 30\nwrite_restart " + restart.name + "\nrun 30\n");
-    const auto state = run.gather();
-    EXPECT_LT(measured("ranks", difference(reference, state)), 1e-10);
-    Scene again;
+    Scene serial(text + motion + "run 60\n", MPI_COMM_SELF);
     const auto first = text.find("fix g "), body = text.find("region body"),
                mat = text.find("fix m ");
-    again.commands("read_restart " + restart.name + "\n" + text.substr(first, body - first) +
-                   text.substr(mat) + "run 30\n");
-    EXPECT_LT(measured("restart", difference(state, again.gather())), 1e-10);
+    Continued run(text + motion, 30, text.substr(first, body - first) + text.substr(mat), 30);
+    const auto state = run.whole.gather();
+    EXPECT_LT(measured("ranks", difference(serial.gather(), state)), 1e-10);
+    EXPECT_LT(measured("restart", difference(state, run.again.gather())), 1e-10);
   }
 }
 
 TEST(Polypic, Refused)
 {
-  using ::testing::HasSubstr;
-  for (const char *options : {"shape linear", "shape gimp", "frame total"}) {
-    Scene run;
-    EXPECT_THAT(run.error("units lj\ndimension 2\natom_style mpm\nregion b block 0 4 0 4 -0.5 0.5\n"
-                          "create_box 1 b\nfix g all mpm 1.0 transfer polypic " +
-                          std::string(options)),
-                HasSubstr("needs shape quadratic or cubic and frame updated"));
-  }
+  for (const std::string options : {"shape linear", "shape gimp", "frame total"})
+    expect_error(plane("lj", "p p", "0 4 0 4") + "fix g all mpm 1.0 transfer polypic " + options,
+                 "needs shape quadratic or cubic and frame updated");
 }

@@ -68,129 +68,118 @@ static void check_linear_fields(const double (&w)[N], const double (&dw)[N], dou
 
 template <class T> class Spline : public ::testing::Test {
 };
-template <int N> struct Order {
-  static constexpr int value = N;
-};
-using Orders = ::testing::Types<Order<1>, Order<2>, Order<3>>;
+using Splines = ::testing::Types<BSpline<1>, BSpline<2>, BSpline<3>>;
 
 struct OrderName {
   template <class T> static std::string GetName(int)
   {
-    return T::value == 1 ? "linear" : (T::value == 2 ? "quadratic" : "cubic");
+    return T::order == 1 ? "linear" : (T::order == 2 ? "quadratic" : "cubic");
   }
 };
-TYPED_TEST_SUITE(Spline, Orders, OrderName);
+TYPED_TEST_SUITE(Spline, Splines, OrderName);
 
 TYPED_TEST(Spline, IsTheBSpline)
 {
-  using Function = BSpline<TypeParam::value>;
-  at_positions<Function>([](double x, double base, double f) {
+  at_positions<TypeParam>([](double x, double base, double f) {
     double w[4];
-    Function::weights(f, w);
-    for (int i = 0; i < Function::nodes; i++)
-      ASSERT_NEAR(w[i], bspline(TypeParam::value, x - (base + i)), TOLERANCE) << "x = " << x;
+    TypeParam::weights(f, w);
+    for (int i = 0; i < TypeParam::nodes; i++)
+      ASSERT_NEAR(w[i], bspline(TypeParam::order, x - (base + i)), TOLERANCE) << "x = " << x;
   });
 }
 
 TYPED_TEST(Spline, BaseIsTheFirstNodeInReach)
 {
-  using Function = BSpline<TypeParam::value>;
-  at_positions<Function>([](double x, double base, double f) {
+  at_positions<TypeParam>([](double x, double base, double f) {
     ASSERT_GE(f, 0.0);
     ASSERT_LT(f, 1.0);
     double w[4];
-    Function::weights(f, w);
-    for (int i = 0; i < Function::nodes; i++) ASSERT_GE(w[i], 0.0) << "x = " << x;
-    ASSERT_LE(x - base, 0.5 * (TypeParam::value + 1) + TOLERANCE);
+    TypeParam::weights(f, w);
+    for (int i = 0; i < TypeParam::nodes; i++) ASSERT_GE(w[i], 0.0) << "x = " << x;
+    ASSERT_LE(x - base, 0.5 * (TypeParam::order + 1) + TOLERANCE);
   });
 }
 
 TYPED_TEST(Spline, LinearFieldsAreExact)
 {
-  using Function = BSpline<TypeParam::value>;
-  at_positions<Function>([](double, double, double f) {
+  at_positions<TypeParam>([](double, double, double f) {
     double w[4], dw[4];
-    Function::weights(f, w);
-    Function::gradients(f, dw);
-    check_linear_fields(w, dw, -Function::shift - f, Function::nodes, TOLERANCE);
+    TypeParam::weights(f, w);
+    TypeParam::gradients(f, dw);
+    check_linear_fields(w, dw, -TypeParam::shift - f, TypeParam::nodes, TOLERANCE);
   });
 }
 
 TYPED_TEST(Spline, SecondMoment)
 {
-  using Function = BSpline<TypeParam::value>;
-  at_positions<Function>([](double x, double, double f) {
+  at_positions<TypeParam>([](double x, double, double f) {
     double w[4], moment = 0.0;
-    Function::weights(f, w);
-    for (int i = 0; i < Function::nodes; i++) {
-      const double distance = i - Function::shift - f;
+    TypeParam::weights(f, w);
+    for (int i = 0; i < TypeParam::nodes; i++) {
+      const double distance = i - TypeParam::shift - f;
       moment += w[i] * distance * distance;
     }
     // 1/4 for quadratic, 1/3 for cubic; that of the linear function depends on the position
-    const double exact = TypeParam::value == 1 ? f * (1.0 - f) : 1.0 / Function::inv_moment;
+    const double exact = TypeParam::order == 1 ? f * (1.0 - f) : 1.0 / TypeParam::inv_moment;
     ASSERT_NEAR(moment, exact, TOLERANCE) << "x = " << x;
   });
   const double exact[] = {0.0, 0.0, 4.0, 3.0};
-  EXPECT_EQ(Function::inv_moment, exact[TypeParam::value]);
+  EXPECT_EQ(TypeParam::inv_moment, exact[TypeParam::order]);
 }
 
 TYPED_TEST(Spline, GradientIsTheDerivative)
 {
-  using Function = BSpline<TypeParam::value>;
-  at_positions<Function>([](double x, double, double f) {
+  at_positions<TypeParam>([](double x, double, double f) {
     // Central differences with the step d are exact up to d^2/6 times the third derivative (at most
     // 3, cubic only) and the rounding error 1e-16 / d.
     const double d = 1.0e-5;
     double low[4], high[4], dw[4];
-    Function::weights(f - d, low);
-    Function::weights(f + d, high);
-    Function::gradients(f, dw);
-    for (int i = 0; i < Function::nodes; i++)
+    TypeParam::weights(f - d, low);
+    TypeParam::weights(f + d, high);
+    TypeParam::gradients(f, dw);
+    for (int i = 0; i < TypeParam::nodes; i++)
       ASSERT_NEAR(dw[i], (high[i] - low[i]) / (2.0 * d), 2.0e-10) << "x = " << x;
   });
 }
 
 TYPED_TEST(Spline, Symmetry)
 {
-  using Function = BSpline<TypeParam::value>;
-  at_positions<Function>([](double x, double, double f) {
+  at_positions<TypeParam>([](double x, double, double f) {
     double w[4], mirrored[4], dw[4], dmirrored[4];
-    Function::weights(f, w);
-    Function::weights(1.0 - f, mirrored);
-    Function::gradients(f, dw);
-    Function::gradients(1.0 - f, dmirrored);
-    for (int i = 0; i < Function::nodes; i++) {
-      ASSERT_NEAR(w[i], mirrored[Function::nodes - 1 - i], TOLERANCE) << "x = " << x;
-      ASSERT_NEAR(dw[i], -dmirrored[Function::nodes - 1 - i], TOLERANCE) << "x = " << x;
+    TypeParam::weights(f, w);
+    TypeParam::weights(1.0 - f, mirrored);
+    TypeParam::gradients(f, dw);
+    TypeParam::gradients(1.0 - f, dmirrored);
+    for (int i = 0; i < TypeParam::nodes; i++) {
+      ASSERT_NEAR(w[i], mirrored[TypeParam::nodes - 1 - i], TOLERANCE) << "x = " << x;
+      ASSERT_NEAR(dw[i], -dmirrored[TypeParam::nodes - 1 - i], TOLERANCE) << "x = " << x;
     }
   });
 }
 
 TYPED_TEST(Spline, ContinuousFromIntervalToInterval)
 {
-  using Function = BSpline<TypeParam::value>;
   double left[4], right[4], dleft[4], dright[4];
-  Function::weights(1.0, left);
-  Function::weights(0.0, right);
-  Function::gradients(1.0, dleft);
-  Function::gradients(0.0, dright);
+  TypeParam::weights(1.0, left);
+  TypeParam::weights(0.0, right);
+  TypeParam::gradients(1.0, dleft);
+  TypeParam::gradients(0.0, dright);
   EXPECT_EQ(left[0], 0.0);
-  EXPECT_EQ(right[Function::nodes - 1], 0.0);
-  for (int i = 1; i < Function::nodes; i++) {
+  EXPECT_EQ(right[TypeParam::nodes - 1], 0.0);
+  for (int i = 1; i < TypeParam::nodes; i++) {
     EXPECT_NEAR(left[i], right[i - 1], TOLERANCE);
-    if (TypeParam::value > 1) { EXPECT_NEAR(dleft[i], dright[i - 1], TOLERANCE); }
+    if (TypeParam::order > 1) { EXPECT_NEAR(dleft[i], dright[i - 1], TOLERANCE); }
   }
 }
 
 TYPED_TEST(Spline, IsConstexpr)
 {
-  using Function = BSpline<TypeParam::value>;
   struct Sum {
     static constexpr double at(double f)
     {
       double w[4] = {}, sum = 0.0;
-      Function::weights(f, w);
-      for (int i = 0; i < Function::nodes; i++) sum += w[i];
+      TypeParam::weights(f, w);
+      for (int i = 0; i < TypeParam::nodes; i++) sum += w[i];
       return sum;
     }
   };
