@@ -39,16 +39,12 @@ ComputeMPMError::ComputeMPMError(LAMMPS *lmp, int narg, char **arg) : Compute(lm
         "Compute mpm/error: value {} has no exact solution next to it: values and atom-style "
         "variables come in pairs",
         arg[narg - 1]);
-  for (int iarg = 3; iarg < narg; iarg += 2) {
-    values.push_back(parse(arg[iarg], iarg, false));
-    exact.push_back(parse(arg[iarg + 1], iarg + 1, true));
-  }
+  for (int iarg = 3; iarg < narg; iarg++) values.push_back(parse(arg[iarg], iarg, (iarg - 3) % 2));
 
   scalar_flag = vector_flag = 1;
   size_vector = NVALUES;
   extscalar = extvector = 0;
-  norms.assign(NVALUES, 0.0);
-  vector = norms.data();
+  vector = norms;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -116,7 +112,6 @@ void ComputeMPMError::check(Value &value)
 void ComputeMPMError::init()
 {
   for (auto &value : values) check(value);
-  for (auto &value : exact) check(value);
 }
 
 /* ----------------------------------------------------------------------
@@ -167,9 +162,9 @@ void ComputeMPMError::compute_vector()
   const int nlocal = atom->nlocal;
   difference2.assign(nlocal, 0.0);
   exact2.assign(nlocal, 0.0);
-  for (std::size_t k = 0; k < values.size(); k++) {
+  for (std::size_t k = 0; k < values.size(); k += 2) {
     get(values[k], computed);
-    get(exact[k], wanted);
+    get(values[k + 1], wanted);
     for (int i = 0; i < nlocal; i++) {
       difference2[i] += (computed[i] - wanted[i]) * (computed[i] - wanted[i]);
       exact2[i] += wanted[i] * wanted[i];

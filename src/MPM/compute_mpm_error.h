@@ -43,9 +43,9 @@ class ComputeMPMError : public Compute {
     int iarg;
   };
 
-  std::vector<Value> values, exact;    // side by side
+  std::vector<Value> values;    // each with its exact solution behind it
   std::vector<double> computed, wanted, difference2, exact2;
-  std::vector<double> norms;
+  double norms[NVALUES] = {0.0};
 
   Value parse(const char *, int iarg, bool exact);
   void check(Value &);

@@ -18,8 +18,8 @@ namespace LAMMPS_NS {
 class MPMAffine : protected Pointers {
  public:
   double **C = nullptr;    ///< [n][dim*dim] column-major: C[dim*j+i] = d v_i / d x_j
-  double **Q =
-      nullptr;    ///< [n][poly_size(dim)] bilinear modes of the velocity; null: transfer without
+  /** [n][poly_size(dim)] bilinear modes of the velocity; null: transfer without. */
+  double **Q = nullptr;
   MPM_NS::PolyKernels modes;    ///< transfers of Q
 
   /** Which velocities the matrices belong to, between runs; as in restart files. */

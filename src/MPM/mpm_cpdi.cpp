@@ -134,7 +134,8 @@ void MPMCpdi::box(int i, double *edge) const
 {
   const double half = half_size(field, i) * field.lattice.h, *F = field.points->F[i],
                *aspect = field.options.aspect;
-  (field.lattice.dim == 2 ? half_edges<2> : half_edges<3>) (half, aspect, F, edge);
+  field.lattice.dim == 2 ? half_edges<2>(half, aspect, F, edge)
+                         : half_edges<3>(half, aspect, F, edge);
 }
 
 void MPMCpdi::corners_of_box(int i, double *x) const
@@ -220,8 +221,8 @@ void MPMCpdi::limit(int i)
           "warn the domain is made smaller, with bad delete the point is removed",
           room));
   const double scale = std::isfinite(far) ? limit / far : 0.0;
-  for (double *k = row(i), *const end = k + size(); k < end; k++)
-    *k = scale > 0.0 ? scale * *k : 0.0;
+  double *const domain = row(i);
+  for (int k = 0; k < size(); k++) domain[k] = scale > 0.0 ? scale * domain[k] : 0.0;
 }
 
 /* ---------------------------------------------------------------------- */

@@ -96,9 +96,7 @@ void MPMFrameTotal::forces(PointRows &rows, int first, int n, ForceRows &room) c
   rows.P = room.P;
 }
 
-/* ----------------------------------------------------------------------
-   deformation gradient with respect to the reference configuration
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
 void MPMFrameTotal::lattice_F(int i, double F[3][3]) const
 {

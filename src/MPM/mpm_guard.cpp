@@ -287,10 +287,7 @@ void MPMGuard::check_positions()
     }
 }
 
-/* ----------------------------------------------------------------------
-   policies warn and delete: count; points to delete, also those that have failed, go at the next
-   exchange, made to happen now
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
 void MPMGuard::handle_bad_points()
 {
@@ -302,9 +299,7 @@ void MPMGuard::handle_bad_points()
   if ((all[0] && deletes) || all[1]) field.fix.next_reneighbor = update->ntimestep;
 }
 
-/* ----------------------------------------------------------------------
-   points outside fixed faces would silently be lost by the exchange that follows
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
 void MPMGuard::check_inside_box()
 {

@@ -45,7 +45,8 @@ class MPMGuard : protected Pointers {
   void point_has_failed(int i) { failed_points.push_back(atom->tag[i]); }
   /** The kernels must never see a position that is not finite. */
   void check_positions();
-  /** End of a step: count bad points, and ask for an exchange that deletes points. */
+  /** End of a step: count bad points, and ask for an exchange, at which points that are bad or have
+   *  failed are deleted. */
   void handle_bad_points();
   /** Before an exchange, which would lose points outside of fixed faces silently: these are bad. Points
    *  that are to be deleted go. */

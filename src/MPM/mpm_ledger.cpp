@@ -19,15 +19,6 @@ using namespace MPM_NS;
 
 /* ---------------------------------------------------------------------- */
 
-void MPMLedger::remove(double kinetic, double stored)
-{
-  deleted_kinetic -= kinetic;
-  deleted_stored -= stored;
-  kinetic_points -= kinetic;
-}
-
-/* ---------------------------------------------------------------------- */
-
 double MPMLedger::nodal_kinetic_energy(int lane) const
 {
   Grid &grid = field.grid;

@@ -46,7 +46,12 @@ class MPMLedger : protected Pointers, public MPMEnergies {
   /** End of a step: what the way from nodes to points has changed. */
   void account_for_points();
   /** Points are about to be deleted. */
-  void remove(double kinetic, double stored);
+  void remove(double kinetic, double stored)
+  {
+    deleted_kinetic -= kinetic;
+    deleted_stored -= stored;
+    kinetic_points -= kinetic;
+  }
 
   /** Change the velocity of a node by an impulse, which counts as contact where the node is owned. */
   void push_node(double *record, bool owned, const double *impulse);
