@@ -903,6 +903,50 @@ double FixMPMBoundary::old_relative(const double *record, int d, double limit) c
   return std::max(-limit, std::min(record[4 + d] - before[d], limit));
 }
 
+/* ----------------------------------------------------------------------
+   velocities of a node and its images, as far as they are prescribed: odd about the wall, and in its
+   plane (fixed) those of the wall
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::project(Grid &grid, const Member *members, int n, bool fixed,
+                             const Prescribed &p)
+{
+  const int dim = grid.lattice.dim;
+  const bool hold = p.hold[0] || p.hold[1] || p.hold[2];
+  double mass = 0.0, w[3] = {0.0, 0.0, 0.0}, w_old[3] = {0.0, 0.0, 0.0};
+  int massive = 0;
+  for (int k = 0; k < n; k++) {
+    const int sign = members[k].sign;
+    const double *r = grid.record(members[k].node);
+    if (r[3] <= 0.0) continue;
+    massive++;
+    mass += r[3];
+    for (int d = 0; d < dim; d++) {
+      w[d] += sign * r[3] * (r[d] - p.V[d]);
+      if (hold) w_old[d] += sign * r[3] * old_relative(r, d, p.limit[d]);
+    }
+  }
+  if (massive == 0 || (massive == 1 && !fixed)) return;
+  for (int d = 0; d < dim; d++) {
+    w[d] = fixed ? 0.0 : w[d] / mass;
+    w_old[d] = fixed ? 0.0 : w_old[d] / mass;
+  }
+
+  for (int k = 0; k < n; k++) {
+    const int sign = members[k].sign;
+    const double *r = grid.record(members[k].node);
+    double v[3], old[3];
+    for (int d = 0; d < dim; d++) {
+      const double odd = p.V[d] + sign * w[d];
+      v[d] = p.share[d] == 1.0 ? odd : r[d] + p.share[d] * (odd - r[d]);
+      if (!hold) continue;
+      old[d] = r[4 + d];
+      if (p.hold[d]) old[d] += sign * w_old[d] - old_relative(r, d, p.limit[d]);
+    }
+    set_velocity(grid, members[k].node, v, hold ? old : nullptr);
+  }
+}
+
 /* ---------------------------------------------------------------------- */
 
 void FixMPMBoundary::act_on_column(const FieldNodes &list, Line &column)
@@ -910,12 +954,14 @@ void FixMPMBoundary::act_on_column(const FieldNodes &list, Line &column)
   Grid &grid = list.field->grid;
   const Face &face = list.faces[column.face];
   const int dim = grid.lattice.dim, a = face.axis;
-  const double *plane = grid.record(column.node[0]);
-  double V[3];
-  wall.velocity(*list.field, column.node[0], V);
+  const Member plane = {column.node[0], 1};
+  const double *r = grid.record(plane.node);
+  Prescribed prescribed = {};
+  const double *V = prescribed.V, *limit = prescribed.limit;
+  wall.velocity(*list.field, plane.node, prescribed.V);
 
   struct {
-    int64_t inside, image;
+    Member members[2];         // inside, image
     const double *in, *out;    // their records
     double mass;
   } pairs[DEPTH];
@@ -925,70 +971,39 @@ void FixMPMBoundary::act_on_column(const FieldNodes &list, Line &column)
     if (inside < 0) continue;
     const double *in = grid.record(inside), *out = grid.record(image);
     if (in[3] <= 0.0 || out[3] <= 0.0) continue;
-    pairs[npairs++] = {inside, image, in, out, 2.0 * in[3] * out[3] / (in[3] + out[3])};
+    const double mass = 2.0 * in[3] * out[3] / (in[3] + out[3]);
+    pairs[npairs++] = {{{inside, 1}, {image, -1}}, in, out, mass};
   }
 
   // impulse that would bring all components to the velocity of the wall
 
   double to_stick[3] = {0.0, 0.0, 0.0};
   for (int d = 0; d < dim; d++) {
-    to_stick[d] = -plane[3] * (plane[d] - V[d]);
-    for (int p = 0; p < npairs; p++)
-      to_stick[d] -= pairs[p].mass * (pairs[p].in[d] + pairs[p].out[d] - 2.0 * V[d]);
+    to_stick[d] = -r[3] * (r[d] - V[d]);
+    for (int k = 0; k < npairs; k++)
+      to_stick[d] -= pairs[k].mass * (pairs[k].in[d] + pairs[k].out[d] - 2.0 * V[d]);
   }
 
   // slip: the old normal velocity is constrained, too, which is no impulse
 
-  const bool hold = kind == SLIP && now.old_share > 0.0;
-  double limit[3] = {0.0, 0.0, 0.0};
-  if (hold) {
-    if (column.node[1] >= 0) first_inside(grid.record(column.node[1]), before, dim, limit);
-    to_stick[a] += now.old_share * plane[3] * old_relative(plane, a, limit[a]);
-    for (int p = 0; p < npairs; p++)
-      to_stick[a] += now.old_share * pairs[p].mass *
-          (old_relative(pairs[p].in, a, limit[a]) + old_relative(pairs[p].out, a, limit[a]));
+  if (kind == SLIP && now.old_share > 0.0) {
+    prescribed.hold[a] = true;
+    if (column.node[1] >= 0)
+      first_inside(grid.record(column.node[1]), before, dim, prescribed.limit);
+    to_stick[a] += now.old_share * r[3] * old_relative(r, a, limit[a]);
+    for (int k = 0; k < npairs; k++)
+      to_stick[a] += now.old_share * pairs[k].mass *
+          (old_relative(pairs[k].in, a, limit[a]) + old_relative(pairs[k].out, a, limit[a]));
   }
-
-  // share of the projection that the tangential components get
 
   double needed = 0.0;
   for (int d = 0; d < dim; d++)
     if (d != a) needed += to_stick[d] * to_stick[d];
   const double slide = slide_share(column.contact, face.inward * to_stick[a], sqrt(needed));
   if (column.contact == FREE) return;
-
-  double share[3], v[3], old[3];
-  for (int d = 0; d < dim; d++) {
-    share[d] = d == a ? 1.0 : slide;
-    v[d] = share[d] == 1.0 ? V[d] : plane[d] + share[d] * (V[d] - plane[d]);
-    if (hold) old[d] = plane[4 + d] - (d == a ? old_relative(plane, d, limit[d]) : 0.0);
-  }
-  set_velocity(grid, column.node[0], v, hold ? old : nullptr);
-
-  for (int p = 0; p < npairs; p++) {
-    const double *in = pairs[p].in, *out = pairs[p].out;
-    double v_in[3], v_out[3], old_in[3], old_out[3];
-    for (int d = 0; d < dim; d++) {
-      const double w = (in[3] * (in[d] - V[d]) - out[3] * (out[d] - V[d])) / (in[3] + out[3]);
-      if (share[d] == 1.0) {
-        v_in[d] = V[d] + w;
-        v_out[d] = V[d] - w;
-      } else {
-        v_in[d] = in[d] + share[d] * (V[d] + w - in[d]);
-        v_out[d] = out[d] + share[d] * (V[d] - w - out[d]);
-      }
-    }
-    if (hold) {
-      const double w_in = old_relative(in, a, limit[a]), w_out = old_relative(out, a, limit[a]);
-      const double w = (in[3] * w_in - out[3] * w_out) / (in[3] + out[3]);
-      std::copy_n(in + 4, dim, old_in);
-      std::copy_n(out + 4, dim, old_out);
-      old_in[a] += w - w_in;
-      old_out[a] += -w - w_out;
-    }
-    set_velocity(grid, pairs[p].inside, v_in, hold ? old_in : nullptr);
-    set_velocity(grid, pairs[p].image, v_out, hold ? old_out : nullptr);
-  }
+  for (int d = 0; d < dim; d++) prescribed.share[d] = d == a ? 1.0 : slide;
+  project(grid, &plane, 1, true, prescribed);
+  for (int k = 0; k < npairs; k++) project(grid, pairs[k].members, 2, false, prescribed);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -997,42 +1012,16 @@ void FixMPMBoundary::act_on_orbit(const FieldNodes &list, const Orbit &orbit)
 {
   Grid &grid = list.field->grid;
   const int dim = grid.lattice.dim;
-  double V[3], limit[3] = {0.0, 0.0, 0.0};
-  wall.velocity(*list.field, orbit.wall, V);
+  Prescribed prescribed = {};
+  wall.velocity(*list.field, orbit.wall, prescribed.V);
   const bool hold = now.old_share > 0.0;
-  if (hold && orbit.inner >= 0) first_inside(grid.record(orbit.inner), before, dim, limit);
-
-  double mass = 0.0, w[3] = {0.0, 0.0, 0.0}, w_old[3] = {0.0, 0.0, 0.0};
-  int massive = 0;
-  for (int k = orbit.first; k < orbit.last; k++) {
-    const Member &member = list.members[k];
-    const double *r = grid.record(member.node);
-    if (r[3] <= 0.0) continue;
-    massive++;
-    mass += r[3];
-    for (int d = 0; d < dim; d++) {
-      w[d] += member.sign * r[3] * (r[d] - V[d]);
-      if (hold) w_old[d] += member.sign * r[3] * old_relative(r, d, limit[d]);
-    }
-  }
-  if (massive == 0 || (massive == 1 && !orbit.fixed)) return;
+  if (hold && orbit.inner >= 0)
+    first_inside(grid.record(orbit.inner), before, dim, prescribed.limit);
   for (int d = 0; d < dim; d++) {
-    w[d] = orbit.fixed ? 0.0 : w[d] / mass;
-    w_old[d] = orbit.fixed ? 0.0 : w_old[d] / mass;
+    prescribed.share[d] = orbit.prescribed[d] ? 1.0 : 0.0;
+    prescribed.hold[d] = hold && orbit.prescribed[d];
   }
-
-  for (int k = orbit.first; k < orbit.last; k++) {
-    const Member &member = list.members[k];
-    const double *r = grid.record(member.node);
-    double v[3], old[3];
-    for (int d = 0; d < dim; d++) {
-      v[d] = orbit.prescribed[d] ? V[d] + member.sign * w[d] : r[d];
-      if (!hold) continue;
-      old[d] = r[4 + d];
-      if (orbit.prescribed[d]) old[d] += member.sign * w_old[d] - old_relative(r, d, limit[d]);
-    }
-    set_velocity(grid, member.node, v, hold ? old : nullptr);
-  }
+  project(grid, &list.members[orbit.first], orbit.last - orbit.first, orbit.fixed, prescribed);
 }
 
 /* ---------------------------------------------------------------------- */

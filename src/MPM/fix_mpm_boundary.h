@@ -133,6 +133,10 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
     Wall at_end_of_step(double dt) const;
     void velocity(const MPMField &, int64_t node, double *v) const;
   };
+  struct Prescribed {                   // what nodes get of a wall
+    double V[3], share[3], limit[3];    // its velocity, how much of the way to it, of the old one
+    bool hold[3];                       // is the old velocity constrained, too?
+  };
   struct Saved {    // in restart files
     double work, shift[3], region_was[4];
     bool acted;
@@ -177,6 +181,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   double slide_share(Contact &, double push, double needed) const;
   double old_relative(const double *record, int d, double limit) const;
   void set_velocity(MPM_NS::Grid &, int64_t node, const double *v, const double *old);
+  void project(MPM_NS::Grid &, const Member *, int n, bool fixed, const Prescribed &);
   void act_on_column(const FieldNodes &, Line &);
   void act_on_cut(const FieldNodes &, Line &, bool last);
   void act_on_orbit(const FieldNodes &, const Orbit &);
