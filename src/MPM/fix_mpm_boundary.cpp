@@ -7,29 +7,21 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Mirror planes (for faces between planes of nodes see fix_mpm_boundary_cut.cpp). B-splines of order 2 and 3 reach beyond the wall, so that holding the nodes up to
-   the wall does not hold the material at the wall: with quadratic splines its velocity there would
-   be 1/8 of that of the first free node. Instead the nodes k0 - j beyond the plane k0 are images
-   of the nodes k0 + j: a component that the wall prescribes is odd about the wall,
-     v(k0) = V,   v(k0 + j) = V + w,   v(k0 - j) = V - w,   w = (m1 w1 - m2 w2) / (m1 + m2)
-   with w1, w2 the velocities relative to V that the momentum equation gave. This is the projection,
-   in the norm of the kinetic energy, onto the velocity fields that are exactly V at the wall; of
-   these, it leaves uniform and linear ones alone. Its impulse on the body is
-     -m(k0) w(k0) - sum_j 2 m1 m2/(m1 + m2) (w1 + w2),
-   which for an unconstrained component is minus the mean velocity at the wall times a mass. Stick
-   prescribes all components, slip the normal one. At edges, a node and its images in all faces of
-   the fix that prescribe a component form an orbit with signs; the projection is the mean over the
-   orbit, and zero when it meets a plane. The same holds in channels of one or two cells, where an
-   image has an image in the face opposite. The tangential components of slip are left to
-   the momentum equation, not made even: an even field has no shear at the wall, but a body that
-   slides with friction, or was thrown with a shear flow, has.
+   Mirror planes: see "Mirrored boundaries" in Developer_mpm.rst, which has the projection; for faces
+   between planes of nodes see fix_mpm_boundary_cut.cpp. The nodes k0 - j beyond the plane k0 are images
+   of the nodes k0 + j; a component that the wall prescribes becomes odd about the wall. The impulse of
+   this projection on the body is
+     -m(k0) w(k0) - sum_j 2 m1 m2/(m1 + m2) (w1 + w2)
+   with w1, w2 the velocities relative to the wall that the momentum equation gave, which for an
+   unconstrained component is minus the mean velocity at the wall times a mass. Stick prescribes all
+   components, slip the normal one. At edges, a node and its images in all faces of the fix that
+   prescribe a component form an orbit with signs.
 
    A column of nodes along the normal decides alone: a separating wall lets go of it when the
    impulse would pull; friction scales the tangential projection so that its impulse is at most
    mu times the normal one (return mapping of Coulomb's law). With MUSL, the velocity that is mapped
-   back for the gradient follows the decision of the momentum equation: a gradient that lets go
-   where the motion does not, or the reverse, creates energy (a block that bounced had 1.4 times
-   its energy). USF needs the gradient before there is a decision and is refused.
+   back for the gradient follows this decision, or energy is created (a block that bounced had 1.4
+   times its energy).
 
    FLIP. Points change their velocity by the sum of N (v_new - v_old). Stick, and slip along the
    normal, hold the material for good: they constrain v_old like v_new, which is to constrain both
@@ -37,20 +29,15 @@
    rest is zero, as it is when the body is continued by its mirror image. With v_old as it is, the
    prescribed component would be updated as in PIC, because the velocity that a node at the wall
    gets from the points on one side of it is a mean over some distance, not zero; a bar of 16 cells
-   lost 2.3 % of its energy in 10 periods. With the projection P and the FLIP share f, the wall's
-   impulse on a node, which is all that points get beside the forces, is
-     m [(P v_new - v_new) - f (P v_old - v_old)].
-   A point that arrives at the wall would keep for good what it arrives with, as the nodes that could
-   tell it do not change; a block of water that fell on the floor kept four times the energy.
-   Hence of v_old relative to the wall only as much is taken as consistent with the wall, in each
-   component, as the first node inside has of it (a field that rises from the wall has less at the
-   wall than there); what is above remains in v_old, and the points lose it.
+   lost 2.3 % of its energy in 10 periods. A point that arrives at the wall would keep for good what it
+   arrives with, as the nodes that could tell it do not change; a block of water that fell on the floor
+   kept four times the energy. Hence of v_old relative to the wall only as much is taken as consistent
+   with the wall, in each component, as the first node inside has of it (a field that rises from the
+   wall has less at the wall than there); what is above remains in v_old, and the points lose it.
    v_old relative to the wall means: to its velocity in the last step. In its first step, a wall
-   counts as having moved like this before.
-   Separating walls leave v_old alone, too: they see where points are going, and do not hold on to
-   bodies that bounce. So do regions, which nodes enter and leave, walls that turn, at which the mean
-   over points has errors of its own, and friction for tangential components. What these prescribe is
-   updated as in PIC next to them. PIC and APIC have no use for v_old.
+   counts as having moved like this before. Separating walls, regions, walls that turn, and friction
+   leave v_old alone; what these prescribe is updated as in PIC next to them. PIC and APIC have no use
+   for v_old.
 
    Rotation. The velocity given to a node at x is the chord ((R(dt) - I)(x - o))/dt and not the
    tangent omega x (x - o): positions are updated by x += dt v, so that the tangent would carry
@@ -155,7 +142,7 @@ FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, nar
     region_id = arg[iarg + 1];
     iarg += 2;
   } else {
-    while (iarg < narg && face_index(arg[iarg]) >= 0) {
+    for (; iarg < narg && face_index(arg[iarg]) >= 0; iarg++) {
       const int face = face_index(arg[iarg]);
       if (std::count(face_list.begin(), face_list.end(), face))
         error->all(FLERR, iarg, "Fix mpm/boundary face {} is given twice", arg[iarg]);
@@ -163,7 +150,6 @@ FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, nar
         error->all(FLERR, iarg, "Fix mpm/boundary face {} does not exist in 2d", arg[iarg]);
       if (domain->periodicity[face / 2]) error->all(FLERR, iarg, PERIODIC, arg[iarg]);
       face_list.push_back(face);
-      iarg++;
     }
     if (face_list.empty())
       error->all(FLERR, iarg,
