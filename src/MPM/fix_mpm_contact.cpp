@@ -260,6 +260,17 @@ void FixMPMContact::couple_topology()
     for (const auto &body : bodies) body.field->map->valid = false;
 }
 
+/** The canonical block that has a corner of this block, which periodic axes repeat. */
+static std::array<int, 3> canonical_block(const Grid &grid, const Grid::Block &block, int corner)
+{
+  std::array<int, 3> b = {block.b[0], block.b[1], block.b[2]};
+  for (int d = 0; d < grid.lattice.dim; d++) {
+    const int node = b[d] * grid.side + (corner >> d & 1 ? grid.side - 1 : 0);
+    b[d] = grid.lattice.wrap(d, node) >> grid.shift_bits;
+  }
+  return b;
+}
+
 /* ----------------------------------------------------------------------
    blocks in reach of each body, and the range that they take up over all ranks
 ------------------------------------------------------------------------- */
@@ -271,26 +282,13 @@ void FixMPMContact::blocks_found()
 
   for (auto &body : bodies) {
     const Grid &grid = body.field->grid;
-    const MPM_NS::Lattice &lattice = grid.lattice;
     auto &reach = body.reach;
     reach.clear();
     int range[6];    // low, and minus high
     std::fill_n(range, 6, INT_MAX);
-    for (const auto &block : grid.blocks) {
-      // an image on a periodic axis belongs to one or two canonical blocks
-      int first[3], last[3];
-      for (int d = 0; d < 3; d++) {
-        first[d] = last[d] = block.b[d];
-        if (d >= lattice.dim || !lattice.periodic[d]) continue;
-        first[d] = lattice.wrap(d, block.b[d] * grid.side) >> grid.shift_bits;
-        last[d] = lattice.wrap(d, block.b[d] * grid.side + grid.side - 1) >> grid.shift_bits;
-      }
-      for (int corner = 0; corner < 8; corner++) {
-        std::array<int, 3> b;
-        for (int d = 0; d < 3; d++) b[d] = corner >> d & 1 ? last[d] : first[d];
-        reach.push_back(b);
-      }
-    }
+    for (const auto &block : grid.blocks)    // an image belongs to one or two on each axis
+      for (int corner = 0; corner < 8; corner++)
+        reach.push_back(canonical_block(grid, block, corner));
     std::sort(reach.begin(), reach.end());
     reach.erase(std::unique(reach.begin(), reach.end()), reach.end());
     for (const auto &b : reach)
@@ -370,19 +368,11 @@ void FixMPMContact::mark_near(int k, int slot)
   auto &near = bodies[k].near;
   near[slot] = 1;
   const Grid &grid = bodies[k].field->grid;
-  const MPM_NS::Lattice &lattice = grid.lattice;
-  if (!lattice.periodic[0] && !lattice.periodic[1] && !lattice.periodic[2]) return;
+  const int *const b = grid.blocks[slot].b;
   for (const int image : bodies[k].images)
     for (int corner = 0; corner < 8 && !near[image]; corner++) {
-      bool same = true;
-      for (int d = 0; d < 3; d++) {
-        const int b = grid.blocks[image].b[d];
-        const int node = b * grid.side + (corner >> d & 1 ? grid.side - 1 : 0);
-        const int wanted = grid.blocks[slot].b[d];
-        same = same &&
-            (d >= lattice.dim ? b == wanted : lattice.wrap(d, node) >> grid.shift_bits == wanted);
-      }
-      if (same) near[image] = 1;
+      const auto canonical = canonical_block(grid, grid.blocks[image], corner);
+      near[image] = std::equal(canonical.begin(), canonical.end(), b);
     }
 }
 

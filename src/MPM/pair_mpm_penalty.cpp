@@ -423,37 +423,24 @@ void PairMPMPenalty::init_style()
 }
 
 /* ----------------------------------------------------------------------
-   do points of these types meet, and in which fields?
-------------------------------------------------------------------------- */
-
-bool PairMPMPenalty::meet(int itype, int jtype, int &a, int &b) const
-{
-  const int nfields = (int) fields.size(), n = atom->ntypes + 1;
-  for (a = 0; a < nfields; a++)
-    for (b = 0; b < nfields; b++)
-      if (!coupled[a * nfields + b] && present[a * n + itype] && present[b * n + jtype])
-        return true;
-  return false;
-}
-
-/* ----------------------------------------------------------------------
    no cutoff, and no pairs in the neighbor list, for types that do not meet
 ------------------------------------------------------------------------- */
 
 double PairMPMPenalty::init_one(int i, int j)
 {
-  int a, b;
   const Coeff &c = coeff_of(i, j);
   const double reach = growth * (largest[i] + largest[j]);
-  if (meet(i, j, a, b)) {
-    if (!c.set)
-      error->all(
-          FLERR, Error::NOLASTLINE,
-          "Pair style mpm/penalty has no pair_coeff for types {} and {}, but fields {} and {} have "
-          "such points: give one, with modulus 0 if they shall not touch",
-          i, j, fields[a]->id(), fields[b]->id());
-    if (c.modulus > 0.0) return reach;
-  }
+  const std::size_t nfields = fields.size(), n = atom->ntypes + 1;
+  for (std::size_t a = 0; a < nfields; a++)
+    for (std::size_t b = 0; b < nfields; b++) {
+      if (coupled[a * nfields + b] || !present[a * n + i] || !present[b * n + j]) continue;
+      if (!c.set)
+        error->all(FLERR, Error::NOLASTLINE,
+                   "Pair style mpm/penalty has no pair_coeff for types {} and {}, but fields {} "
+                   "and {} have such points: give one, with modulus 0 if they shall not touch",
+                   i, j, fields[a]->id(), fields[b]->id());
+      if (c.modulus > 0.0) return reach;
+    }
 
   // lists by collection make a single bin of a collection without a cutoff
 
