@@ -644,16 +644,12 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
   list.singles.clear();
   if (!moves) region->prematch();
   for (std::size_t ib = 0; ib < grid.blocks.size(); ib++) {
-    const auto &block = grid.blocks[ib];
-
     // most blocks are out of reach
 
+    const int64_t first_node = (int64_t) ib * NODES_PER_BLOCK;
     double first[3], last[3], mid[3];
-    int index[3];
-    grid.node_index(block, 0, index);
-    field.node_position(index, first);
-    grid.node_index(block, NODES_PER_BLOCK - 1, index);
-    field.node_position(index, last);
+    field.node_position(first_node, first);
+    field.node_position(first_node + NODES_PER_BLOCK - 1, last);
     bool near = true;
     for (int d = 0; d < 3; d++) {
       mid[d] = 0.5 * (first[d] + last[d]);
@@ -667,10 +663,9 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
     if (!near) continue;
 
     for (int n = 0; n < NODES_PER_BLOCK; n++) {
-      if (block.alias >> n & 1) continue;
+      if (grid.blocks[ib].alias >> n & 1) continue;
       double x[3];
-      grid.node_index(block, n, index);
-      field.node_position(index, x);
+      field.node_position(first_node + n, x);
       bool inside = region->match(x[0], x[1], x[2]);
       if (!inside) {
         region->interior ^= 1;
@@ -678,7 +673,7 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
         region->interior ^= 1;
       }
       if (!inside) continue;
-      Single s = {(int64_t) ib * NODES_PER_BLOCK + n};
+      Single s = {first_node + n};
       if (kind != STICK || region->varshape) surface_normal(x, 1.0e-4 * h, dim, s.normal);
       if (region->varshape) s.distance = surface_distance(x);
       list.singles.push_back(s);

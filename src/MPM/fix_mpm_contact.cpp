@@ -450,9 +450,7 @@ void FixMPMContact::warn_overlap()
       if (most[1] < OVERLAP_EACH || sum < OVERLAP || sum <= mine.value) continue;
       mine.value = sum;
       const MPMField &field = *bodies[body[0]].field;
-      int index[3];
-      field.grid.node_index(field.grid.blocks[c.slot[body[0]]], n, index);
-      field.node_position(index, place);
+      field.node_position((int64_t) c.slot[body[0]] * NODES_PER_BLOCK + n, place);
       place[3] = body[0];
       place[4] = body[1];
     }
