@@ -182,7 +182,6 @@ FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, nar
   global_freq = 1;
   extscalar = extvector = 1;
   restart_global = 1;
-  dynamic_group_allow = 0;
 }
 
 /* ---------------------------------------------------------------------- */

@@ -223,17 +223,8 @@ void FixMPMContact::init()
 
 bool FixMPMContact::couples(const std::string &a, const std::string &b) const
 {
-  const auto has = [&](const std::string &name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
-  };
-  return a != b && has(a) && has(b);
-}
-
-int FixMPMContact::index_of(const MPMField &field) const
-{
-  for (std::size_t k = 0; k < bodies.size(); k++)
-    if (bodies[k].field == &field) return (int) k;
-  return -1;
+  return a != b && std::count(names.begin(), names.end(), a) &&
+      std::count(names.begin(), names.end(), b);
 }
 
 /** Row of the output for fields a < b: (0,1), (0,2), ..., (1,2), ... */
@@ -306,24 +297,16 @@ void FixMPMContact::blocks_found()
 
 void FixMPMContact::extend_topology(MPMField &field)
 {
-  const int k = index_of(field);
-  if (k < 0) return;
-  const int *const extent = bodies[k].extent;
-  for (const auto &other : bodies) {
-    if (other.field == &field) continue;
-    for (const auto &b : other.reach) {
-      bool inside = true;
-      for (int d = 0; d < 3; d++) inside = inside && b[d] >= extent[d] && b[d] <= -extent[3 + d];
-      if (inside) field.grid.activate(b.data());
-    }
+  for (const auto &body : bodies) {
+    if (body.field != &field) continue;
+    const int *const extent = body.extent;
+    for (const auto &other : bodies)
+      for (const auto &b : other.reach) {
+        bool inside = &other != &body;
+        for (int d = 0; d < 3; d++) inside = inside && b[d] >= extent[d] && b[d] <= -extent[3 + d];
+        if (inside) field.grid.activate(b.data());
+      }
   }
-}
-
-/* ---------------------------------------------------------------------- */
-
-void FixMPMContact::topology_changed(MPMField &field)
-{
-  if (index_of(field) >= 0) lists_valid = false;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -689,10 +672,10 @@ void FixMPMContact::resolve(Node &node, double dt, bool decided)
 {
   const int nfields = (int) bodies.size(), dim = bodies[0].field->lattice.dim;
   double start[MAX_FIELDS][3];
-  int bodies = 0;
+  int nbodies = 0;
   for (int k = 0; k < nfields; k++)
     if (node.record[k]) {
-      bodies++;
+      nbodies++;
       for (int d = 0; d < dim; d++) start[k][d] = node.record[k][d];
     }
 
@@ -700,12 +683,12 @@ void FixMPMContact::resolve(Node &node, double dt, bool decided)
     pairs[p].normal = 0.0;
     MathExtra::zero3(pairs[p].tangential);
   }
-  for (int it = 0; it < (bodies == 2 ? 1 : MAX_ITERATIONS); it++) {
+  for (int it = 0; it < (nbodies == 2 ? 1 : MAX_ITERATIONS); it++) {
     double largest = 0.0;
     for (int p = node.first; p < node.last; p++) {
       Pair &pair = pairs[p];
       const double m = pair.ra[3] * pair.rb[3] / (pair.ra[3] + pair.rb[3]);
-      apply(pair, m / (bodies - 1), largest, dt, decided);
+      apply(pair, m / (nbodies - 1), largest, dt, decided);
     }
     for (int k = 0; k < nfields; k++)
       if (node.record[k])

@@ -122,7 +122,6 @@ FixMPMRigid::FixMPMRigid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
   extscalar = 1;
   extvector = 0;
   restart_global = 1;
-  dynamic_group_allow = 0;
   if (comm->me == 0)
     utils::logmesg(lmp, "Rigid body {}: mass {:.8g}, center {:.8g} {:.8g} {:.8g}\n", id, mass, x[0],
                    x[1], x[2]);
