@@ -88,11 +88,11 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   using Faces = std::vector<Face>;
   enum Contact { FREE, SLIDING, STUCK };    // what a wall does to a line or node
 
-  struct
-      Line {     // nodes along the normal of a face with friction or separation, or that cuts cells
+  // nodes along the normal of a face that cuts cells, from its first one on, or of a face with friction
+  // or separation: in the plane, inside, and their images; -1: out of reach of points
+  struct Line {
     int face;    // index into faces
     Contact contact;
-    // cut: from first on; else: plane, those inside, their images; -1: out of reach of points
     int64_t node[1 + 2 * DEPTH];
   };
   struct Member {
@@ -109,8 +109,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   struct Single {    // a node on its own
     int64_t node;
     double normal[3] = {0.0, 0.0, 0.0};    // from the wall to the body; zero: not known
-    double growth =
-        0.0;    // regions that change their shape: speed of the surface along the normal
+    double growth = 0.0;      // speed of the surface of a region that changes its shape
     double distance = 0.0;    // from the surface at the start of the step, for growth
     Contact contact = FREE;
   };
@@ -133,9 +132,11 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
     Wall at_end_of_step(double dt) const;
     void velocity(const MPMField &, int64_t node, double *v) const;
   };
-  struct Prescribed {                   // what nodes get of a wall
-    double V[3], share[3], limit[3];    // its velocity, how much of the way to it, of the old one
-    bool hold[3];                       // is the old velocity constrained, too?
+  struct Prescribed {    // velocity that a wall gives to nodes
+    double V[3];
+    double share[3];    // of the way to it that nodes go
+    double limit[3];    // of old velocities relative to the wall, where these are constrained, too
+    bool hold[3];       // are these?
   };
   struct Saved {    // in restart files
     double work, shift[3], region_was[4];
