@@ -26,7 +26,6 @@
 
 #include "mpm_field.h"
 
-#include <algorithm>
 #include <cmath>
 
 using namespace LAMMPS_NS;
