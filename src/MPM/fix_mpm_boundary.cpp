@@ -310,17 +310,17 @@ void FixMPMBoundary::setup(int)
     region->prematch();
   });
   const auto *field = MPMField::all(lmp)[0];
-  if (!acted || field->steps_to_next() == field->options.every) note_region();
+  if (!past.acted || field->steps_to_next() == field->options.every) note_region();
 }
 
 /* ---------------------------------------------------------------------- */
 
 void FixMPMBoundary::note_region()
 {
-  region_was[0] = region->dx;
-  region_was[1] = region->dy;
-  region_was[2] = region->dz;
-  region_was[3] = region->theta;
+  past.region[0] = region->dx;
+  past.region[1] = region->dy;
+  past.region[2] = region->dz;
+  past.region[3] = region->theta;
 }
 
 /* ----------------------------------------------------------------------
@@ -734,12 +734,12 @@ void FixMPMBoundary::update_motion(double dt)
   if (motion_step == update->ntimestep) return;
   motion_step = update->ntimestep;
 
-  memcpy(before, wall.shift, sizeof(before));
+  MathExtra::copy3(past.shift, before);
   wall = {};
   wall.uniform = true;
   const bool variables = region_moves() || !velocity[0].variable.empty() ||
       !velocity[1].variable.empty() || !velocity[2].variable.empty() || !rate.variable.empty();
-  const double *const old = region_was;
+  const double *const old = past.region;
   if (region_moves()) {
     region->dx = old[0];    // others may have looked at the region since then
     region->dy = old[1];
@@ -779,7 +779,8 @@ void FixMPMBoundary::update_motion(double dt)
         }
     note_region();
   }
-  if (!acted) memcpy(before, wall.shift, sizeof(before));
+  if (!past.acted) MathExtra::copy3(wall.shift, before);
+  MathExtra::copy3(wall.shift, past.shift);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -818,7 +819,7 @@ void FixMPMBoundary::act(double dt, Stage stage)
     }
   }
   wall = in_step;
-  if (count) acted = true;
+  if (count) past.acted = 1;
 }
 
 /* ----------------------------------------------------------------------
@@ -861,7 +862,7 @@ void FixMPMBoundary::set_velocity(Grid &grid, int64_t node, const double *v, con
       if (now.ledger_lanes)
         gained += 0.5 * (change - change_old) * (v[d] + (old ? old[d] : record[4 + d]));
     }
-    work += record[3] * moved;
+    past.work += record[3] * moved;
     now.kinetic += record[3] * moved;
     now.collided += record[3] * (gained - moved);
   }
@@ -1048,7 +1049,7 @@ void FixMPMBoundary::act_on_single(const FieldNodes &list, Single &single)
 double FixMPMBoundary::compute_scalar()
 {
   double all;
-  MPI_Allreduce(&work, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(&past.work, &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all * force->mvv2e;
 }
 
@@ -1070,26 +1071,18 @@ double FixMPMBoundary::compute_vector(int i)
 
 void FixMPMBoundary::write_restart(FILE *fp)
 {
-  Saved saved;
-  memset(&saved, 0, sizeof(Saved));    // padding, too: files of equal states are equal
-  saved.work = FixMPMBoundary::compute_scalar();
-  memcpy(saved.shift, wall.shift, sizeof(saved.shift));
-  memcpy(saved.region_was, region_was, sizeof(saved.region_was));
-  saved.acted = acted;
+  Past all = past;
+  all.work = FixMPMBoundary::compute_scalar();
   if (comm->me) return;
-  const int size = sizeof(Saved);
+  const int size = sizeof(Past);
   fwrite(&size, sizeof(int), 1, fp);
-  fwrite(&saved, size, 1, fp);
+  fwrite(&all, size, 1, fp);
 }
 
 void FixMPMBoundary::restart(char *buf)
 {
-  Saved saved;
-  memcpy(&saved, buf, sizeof(Saved));
-  work = comm->me == 0 ? saved.work / force->mvv2e : 0.0;
-  memcpy(wall.shift, saved.shift, sizeof(saved.shift));
-  memcpy(region_was, saved.region_was, sizeof(region_was));
-  acted = saved.acted;
+  memcpy(&past, buf, sizeof(Past));
+  past.work = comm->me == 0 ? past.work / force->mvv2e : 0.0;
 }
 
 /* ---------------------------------------------------------------------- */

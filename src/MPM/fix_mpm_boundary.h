@@ -138,9 +138,11 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
     double limit[3];    // of old velocities relative to the wall, where these are constrained, too
     bool hold[3];       // are these?
   };
-  struct Saved {    // in restart files
-    double work, shift[3], region_was[4];
-    bool acted;
+  struct Past {          // of the steps before, as restart files keep it, without padding
+    double work;         // on the body, this rank's share; in files that of all, as energy
+    double shift[3];     // velocity of the wall in the last step, when it does not turn
+    double region[4];    // shift and angle of the region at the end of the last step
+    int64_t acted;       // there was a last step
   };
 
   std::vector<int> face_list;    // 2 * axis + (0: lo, 1: hi)
@@ -149,12 +151,10 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
 
   std::vector<FieldNodes> nodes;    // of the fields to act on
   Wall wall = {};                   // in this step
-  double before[3] = {};            // its velocity in the last step, when it does not turn
-  bool acted = false;               // there was a last step
-  double region_was[4] = {};        // shift and angle of the region at the end of the last step
-  bigint motion_step = -1;          // step for which the motion of the wall is known
-  double impulse[6] = {};    // on the body, with its moment, in the last step: this rank's share
-  double work = 0.0;         // on the body in all steps, this rank's share
+  double before[3] = {};            // its velocity in the last step
+  Past past = {};
+  bigint motion_step = -1;    // step for which the motion of the wall is known
+  double impulse[6] = {};     // on the body, with its moment, in the last step: this rank's share
   double dt_last = 0.0;
   bool reaction_known = true;
   double reaction[6] = {};    // force and, of regions, torque

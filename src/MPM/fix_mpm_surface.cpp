@@ -108,7 +108,7 @@ void FixMPMSurface::init()
   for (int i = 0; i < atom->nlocal; i++) {
     if (!has_radius(i)) continue;
     mine[0]++;
-    mine[1] += atom->radius[i] < largest_radius(i) * (1.0 - 1.0e-10);
+    mine[1] += atom->radius[i] < radius_of(atom->vfrac[i], grow) * (1.0 - 1.0e-10);
   }
   MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
   if (all[0] == 0)
@@ -221,16 +221,11 @@ double FixMPMSurface::radius_of(double V, double growth) const
   return 0.5 * scale * growth * (domain->dimension == 3 ? std::cbrt(V) : std::sqrt(V));
 }
 
-double FixMPMSurface::largest_radius(int i) const
-{
-  return radius_of(atom->vfrac[i], grow);
-}
-
 void FixMPMSurface::give_largest()
 {
   known = false;
   for (int i = 0; i < atom->nlocal; i++)
-    if (has_radius(i)) give_radius(i, true, largest_radius(i));
+    if (has_radius(i)) give_radius(i, true, radius_of(atom->vfrac[i], grow));
 }
 
 void FixMPMSurface::give_radius(int i, bool surface, double radius)
@@ -260,8 +255,9 @@ void FixMPMSurface::find_surface()
       const auto *material = field->material_of(i);
       const bool failed =
           material && material->damage >= 0 && material->history[i][material->damage] >= 1.0;
-      const double radius = radius_of(atom->vfrac[i] * points->jacobian(i), 1.0);
-      give_radius(i, failed || share[i] < limit, std::min(radius, largest_radius(i)));
+      const double V = atom->vfrac[i];
+      const double radius = std::min(radius_of(V * points->jacobian(i), 1.0), radius_of(V, grow));
+      give_radius(i, failed || share[i] < limit, radius);
     }
   }
 }
