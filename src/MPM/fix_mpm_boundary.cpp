@@ -7,29 +7,21 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Mirror planes (for faces between planes of nodes see fix_mpm_boundary_cut.cpp). B-splines of order 2 and 3 reach beyond the wall, so that holding the nodes up to
-   the wall does not hold the material at the wall: with quadratic splines its velocity there would
-   be 1/8 of that of the first free node. Instead the nodes k0 - j beyond the plane k0 are images
-   of the nodes k0 + j: a component that the wall prescribes is odd about the wall,
-     v(k0) = V,   v(k0 + j) = V + w,   v(k0 - j) = V - w,   w = (m1 w1 - m2 w2) / (m1 + m2)
-   with w1, w2 the velocities relative to V that the momentum equation gave. This is the projection,
-   in the norm of the kinetic energy, onto the velocity fields that are exactly V at the wall; of
-   these, it leaves uniform and linear ones alone. Its impulse on the body is
-     -m(k0) w(k0) - sum_j 2 m1 m2/(m1 + m2) (w1 + w2),
-   which for an unconstrained component is minus the mean velocity at the wall times a mass. Stick
-   prescribes all components, slip the normal one. At edges, a node and its images in all faces of
-   the fix that prescribe a component form an orbit with signs; the projection is the mean over the
-   orbit, and zero when it meets a plane. The same holds in channels of one or two cells, where an
-   image has an image in the face opposite. The tangential components of slip are left to
-   the momentum equation, not made even: an even field has no shear at the wall, but a body that
-   slides with friction, or was thrown with a shear flow, has.
+   Mirror planes: see "Mirrored boundaries" in Developer_mpm.rst, which has the projection; for faces
+   between planes of nodes see fix_mpm_boundary_cut.cpp. The nodes k0 - j beyond the plane k0 are images
+   of the nodes k0 + j; a component that the wall prescribes becomes odd about the wall. The impulse of
+   this projection on the body is
+     -m(k0) w(k0) - sum_j 2 m1 m2/(m1 + m2) (w1 + w2)
+   with w1, w2 the velocities relative to the wall that the momentum equation gave, which for an
+   unconstrained component is minus the mean velocity at the wall times a mass. Stick prescribes all
+   components, slip the normal one. At edges, a node and its images in all faces of the fix that
+   prescribe a component form an orbit with signs.
 
    A column of nodes along the normal decides alone: a separating wall lets go of it when the
    impulse would pull; friction scales the tangential projection so that its impulse is at most
    mu times the normal one (return mapping of Coulomb's law). With MUSL, the velocity that is mapped
-   back for the gradient follows the decision of the momentum equation: a gradient that lets go
-   where the motion does not, or the reverse, creates energy (a block that bounced had 1.4 times
-   its energy). USF needs the gradient before there is a decision and is refused.
+   back for the gradient follows this decision, or energy is created (a block that bounced had 1.4
+   times its energy).
 
    FLIP. Points change their velocity by the sum of N (v_new - v_old). Stick, and slip along the
    normal, hold the material for good: they constrain v_old like v_new, which is to constrain both
@@ -37,20 +29,15 @@
    rest is zero, as it is when the body is continued by its mirror image. With v_old as it is, the
    prescribed component would be updated as in PIC, because the velocity that a node at the wall
    gets from the points on one side of it is a mean over some distance, not zero; a bar of 16 cells
-   lost 2.3 % of its energy in 10 periods. With the projection P and the FLIP share f, the wall's
-   impulse on a node, which is all that points get beside the forces, is
-     m [(P v_new - v_new) - f (P v_old - v_old)].
-   A point that arrives at the wall would keep for good what it arrives with, as the nodes that could
-   tell it do not change; a block of water that fell on the floor kept four times the energy.
-   Hence of v_old relative to the wall only as much is taken as consistent with the wall, in each
-   component, as the first node inside has of it (a field that rises from the wall has less at the
-   wall than there); what is above remains in v_old, and the points lose it.
+   lost 2.3 % of its energy in 10 periods. A point that arrives at the wall would keep for good what it
+   arrives with, as the nodes that could tell it do not change; a block of water that fell on the floor
+   kept four times the energy. Hence of v_old relative to the wall only as much is taken as consistent
+   with the wall, in each component, as the first node inside has of it (a field that rises from the
+   wall has less at the wall than there); what is above remains in v_old, and the points lose it.
    v_old relative to the wall means: to its velocity in the last step. In its first step, a wall
-   counts as having moved like this before.
-   Separating walls leave v_old alone, too: they see where points are going, and do not hold on to
-   bodies that bounce. So do regions, which nodes enter and leave, walls that turn, at which the mean
-   over points has errors of its own, and friction for tangential components. What these prescribe is
-   updated as in PIC next to them. PIC and APIC have no use for v_old.
+   counts as having moved like this before. Separating walls, regions, walls that turn, and friction
+   leave v_old alone; what these prescribe is updated as in PIC next to them. PIC and APIC have no use
+   for v_old.
 
    Rotation. The velocity given to a node at x is the chord ((R(dt) - I)(x - o))/dt and not the
    tangent omega x (x - o): positions are updated by x += dt v, so that the tangent would carry
@@ -155,7 +142,7 @@ FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, nar
     region_id = arg[iarg + 1];
     iarg += 2;
   } else {
-    while (iarg < narg && face_index(arg[iarg]) >= 0) {
+    for (; iarg < narg && face_index(arg[iarg]) >= 0; iarg++) {
       const int face = face_index(arg[iarg]);
       if (std::count(face_list.begin(), face_list.end(), face))
         error->all(FLERR, iarg, "Fix mpm/boundary face {} is given twice", arg[iarg]);
@@ -163,7 +150,6 @@ FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, nar
         error->all(FLERR, iarg, "Fix mpm/boundary face {} does not exist in 2d", arg[iarg]);
       if (domain->periodicity[face / 2]) error->all(FLERR, iarg, PERIODIC, arg[iarg]);
       face_list.push_back(face);
-      iarg++;
     }
     if (face_list.empty())
       error->all(FLERR, iarg,
@@ -196,7 +182,6 @@ FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, nar
   global_freq = 1;
   extscalar = extvector = 1;
   restart_global = 1;
-  dynamic_group_allow = 0;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -325,17 +310,17 @@ void FixMPMBoundary::setup(int)
     region->prematch();
   });
   const auto *field = MPMField::all(lmp)[0];
-  if (!acted || field->steps_to_next() == field->options.every) note_region();
+  if (!past.acted || field->steps_to_next() == field->options.every) note_region();
 }
 
 /* ---------------------------------------------------------------------- */
 
 void FixMPMBoundary::note_region()
 {
-  region_was[0] = region->dx;
-  region_was[1] = region->dy;
-  region_was[2] = region->dz;
-  region_was[3] = region->theta;
+  past.region[0] = region->dx;
+  past.region[1] = region->dy;
+  past.region[2] = region->dz;
+  past.region[3] = region->theta;
 }
 
 /* ----------------------------------------------------------------------
@@ -658,16 +643,12 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
   list.singles.clear();
   if (!moves) region->prematch();
   for (std::size_t ib = 0; ib < grid.blocks.size(); ib++) {
-    const auto &block = grid.blocks[ib];
-
     // most blocks are out of reach
 
+    const int64_t first_node = (int64_t) ib * NODES_PER_BLOCK;
     double first[3], last[3], mid[3];
-    int index[3];
-    grid.node_index(block, 0, index);
-    field.lattice.node_position(index, first);
-    grid.node_index(block, NODES_PER_BLOCK - 1, index);
-    field.lattice.node_position(index, last);
+    field.grid.node_position(first_node, first);
+    field.grid.node_position(first_node + NODES_PER_BLOCK - 1, last);
     bool near = true;
     for (int d = 0; d < 3; d++) {
       mid[d] = 0.5 * (first[d] + last[d]);
@@ -681,10 +662,9 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
     if (!near) continue;
 
     for (int n = 0; n < NODES_PER_BLOCK; n++) {
-      if (block.alias >> n & 1) continue;
+      if (grid.blocks[ib].alias >> n & 1) continue;
       double x[3];
-      grid.node_index(block, n, index);
-      field.lattice.node_position(index, x);
+      field.grid.node_position(first_node + n, x);
       bool inside = region->match(x[0], x[1], x[2]);
       if (!inside) {
         region->interior ^= 1;
@@ -692,7 +672,7 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
         region->interior ^= 1;
       }
       if (!inside) continue;
-      Single s = {(int64_t) ib * NODES_PER_BLOCK + n};
+      Single s = {first_node + n};
       if (kind != STICK || region->varshape) surface_normal(x, 1.0e-4 * h, dim, s.normal);
       if (region->varshape) s.distance = surface_distance(x);
       list.singles.push_back(s);
@@ -754,12 +734,12 @@ void FixMPMBoundary::update_motion(double dt)
   if (motion_step == update->ntimestep) return;
   motion_step = update->ntimestep;
 
-  memcpy(before, wall.shift, sizeof(before));
+  MathExtra::copy3(past.shift, before);
   wall = {};
   wall.uniform = true;
   const bool variables = region_moves() || !velocity[0].variable.empty() ||
       !velocity[1].variable.empty() || !velocity[2].variable.empty() || !rate.variable.empty();
-  const double *const old = region_was;
+  const double *const old = past.region;
   if (region_moves()) {
     region->dx = old[0];    // others may have looked at the region since then
     region->dy = old[1];
@@ -799,7 +779,8 @@ void FixMPMBoundary::update_motion(double dt)
         }
     note_region();
   }
-  if (!acted) memcpy(before, wall.shift, sizeof(before));
+  if (!past.acted) MathExtra::copy3(wall.shift, before);
+  MathExtra::copy3(wall.shift, past.shift);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -838,7 +819,7 @@ void FixMPMBoundary::act(double dt, Stage stage)
     }
   }
   wall = in_step;
-  if (count) acted = true;
+  if (count) past.acted = 1;
 }
 
 /* ----------------------------------------------------------------------
@@ -881,7 +862,7 @@ void FixMPMBoundary::set_velocity(Grid &grid, int64_t node, const double *v, con
       if (now.ledger_lanes)
         gained += 0.5 * (change - change_old) * (v[d] + (old ? old[d] : record[4 + d]));
     }
-    work += record[3] * moved;
+    past.work += record[3] * moved;
     now.kinetic += record[3] * moved;
     now.collided += record[3] * (gained - moved);
   }
@@ -903,6 +884,50 @@ double FixMPMBoundary::old_relative(const double *record, int d, double limit) c
   return std::max(-limit, std::min(record[4 + d] - before[d], limit));
 }
 
+/* ----------------------------------------------------------------------
+   velocities of a node and its images, as far as they are prescribed: odd about the wall, and in its
+   plane (fixed) those of the wall
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::project(Grid &grid, const Member *members, int n, bool fixed,
+                             const Prescribed &p)
+{
+  const int dim = grid.lattice.dim;
+  const bool hold = p.hold[0] || p.hold[1] || p.hold[2];
+  double mass = 0.0, w[3] = {0.0, 0.0, 0.0}, w_old[3] = {0.0, 0.0, 0.0};
+  int massive = 0;
+  for (int k = 0; k < n; k++) {
+    const int sign = members[k].sign;
+    const double *r = grid.record(members[k].node);
+    if (r[3] <= 0.0) continue;
+    massive++;
+    mass += r[3];
+    for (int d = 0; d < dim; d++) {
+      w[d] += sign * r[3] * (r[d] - p.V[d]);
+      if (hold) w_old[d] += sign * r[3] * old_relative(r, d, p.limit[d]);
+    }
+  }
+  if (massive == 0 || (massive == 1 && !fixed)) return;
+  for (int d = 0; d < dim; d++) {
+    w[d] = fixed ? 0.0 : w[d] / mass;
+    w_old[d] = fixed ? 0.0 : w_old[d] / mass;
+  }
+
+  for (int k = 0; k < n; k++) {
+    const int sign = members[k].sign;
+    const double *r = grid.record(members[k].node);
+    double v[3], old[3];
+    for (int d = 0; d < dim; d++) {
+      const double odd = p.V[d] + sign * w[d];
+      v[d] = p.share[d] == 1.0 ? odd : r[d] + p.share[d] * (odd - r[d]);
+      if (!hold) continue;
+      old[d] = r[4 + d];
+      if (p.hold[d]) old[d] += sign * w_old[d] - old_relative(r, d, p.limit[d]);
+    }
+    set_velocity(grid, members[k].node, v, hold ? old : nullptr);
+  }
+}
+
 /* ---------------------------------------------------------------------- */
 
 void FixMPMBoundary::act_on_column(const FieldNodes &list, Line &column)
@@ -910,12 +935,14 @@ void FixMPMBoundary::act_on_column(const FieldNodes &list, Line &column)
   Grid &grid = list.field->grid;
   const Face &face = list.faces[column.face];
   const int dim = grid.lattice.dim, a = face.axis;
-  const double *plane = grid.record(column.node[0]);
-  double V[3];
-  wall.velocity(*list.field, column.node[0], V);
+  const Member plane = {column.node[0], 1};
+  const double *r = grid.record(plane.node);
+  Prescribed prescribed = {};
+  const double *V = prescribed.V, *limit = prescribed.limit;
+  wall.velocity(*list.field, plane.node, prescribed.V);
 
   struct {
-    int64_t inside, image;
+    Member members[2];         // inside, image
     const double *in, *out;    // their records
     double mass;
   } pairs[DEPTH];
@@ -925,70 +952,39 @@ void FixMPMBoundary::act_on_column(const FieldNodes &list, Line &column)
     if (inside < 0) continue;
     const double *in = grid.record(inside), *out = grid.record(image);
     if (in[3] <= 0.0 || out[3] <= 0.0) continue;
-    pairs[npairs++] = {inside, image, in, out, 2.0 * in[3] * out[3] / (in[3] + out[3])};
+    const double mass = 2.0 * in[3] * out[3] / (in[3] + out[3]);
+    pairs[npairs++] = {{{inside, 1}, {image, -1}}, in, out, mass};
   }
 
   // impulse that would bring all components to the velocity of the wall
 
   double to_stick[3] = {0.0, 0.0, 0.0};
   for (int d = 0; d < dim; d++) {
-    to_stick[d] = -plane[3] * (plane[d] - V[d]);
-    for (int p = 0; p < npairs; p++)
-      to_stick[d] -= pairs[p].mass * (pairs[p].in[d] + pairs[p].out[d] - 2.0 * V[d]);
+    to_stick[d] = -r[3] * (r[d] - V[d]);
+    for (int k = 0; k < npairs; k++)
+      to_stick[d] -= pairs[k].mass * (pairs[k].in[d] + pairs[k].out[d] - 2.0 * V[d]);
   }
 
   // slip: the old normal velocity is constrained, too, which is no impulse
 
-  const bool hold = kind == SLIP && now.old_share > 0.0;
-  double limit[3] = {0.0, 0.0, 0.0};
-  if (hold) {
-    if (column.node[1] >= 0) first_inside(grid.record(column.node[1]), before, dim, limit);
-    to_stick[a] += now.old_share * plane[3] * old_relative(plane, a, limit[a]);
-    for (int p = 0; p < npairs; p++)
-      to_stick[a] += now.old_share * pairs[p].mass *
-          (old_relative(pairs[p].in, a, limit[a]) + old_relative(pairs[p].out, a, limit[a]));
+  if (kind == SLIP && now.old_share > 0.0) {
+    prescribed.hold[a] = true;
+    if (column.node[1] >= 0)
+      first_inside(grid.record(column.node[1]), before, dim, prescribed.limit);
+    to_stick[a] += now.old_share * r[3] * old_relative(r, a, limit[a]);
+    for (int k = 0; k < npairs; k++)
+      to_stick[a] += now.old_share * pairs[k].mass *
+          (old_relative(pairs[k].in, a, limit[a]) + old_relative(pairs[k].out, a, limit[a]));
   }
-
-  // share of the projection that the tangential components get
 
   double needed = 0.0;
   for (int d = 0; d < dim; d++)
     if (d != a) needed += to_stick[d] * to_stick[d];
   const double slide = slide_share(column.contact, face.inward * to_stick[a], sqrt(needed));
   if (column.contact == FREE) return;
-
-  double share[3], v[3], old[3];
-  for (int d = 0; d < dim; d++) {
-    share[d] = d == a ? 1.0 : slide;
-    v[d] = share[d] == 1.0 ? V[d] : plane[d] + share[d] * (V[d] - plane[d]);
-    if (hold) old[d] = plane[4 + d] - (d == a ? old_relative(plane, d, limit[d]) : 0.0);
-  }
-  set_velocity(grid, column.node[0], v, hold ? old : nullptr);
-
-  for (int p = 0; p < npairs; p++) {
-    const double *in = pairs[p].in, *out = pairs[p].out;
-    double v_in[3], v_out[3], old_in[3], old_out[3];
-    for (int d = 0; d < dim; d++) {
-      const double w = (in[3] * (in[d] - V[d]) - out[3] * (out[d] - V[d])) / (in[3] + out[3]);
-      if (share[d] == 1.0) {
-        v_in[d] = V[d] + w;
-        v_out[d] = V[d] - w;
-      } else {
-        v_in[d] = in[d] + share[d] * (V[d] + w - in[d]);
-        v_out[d] = out[d] + share[d] * (V[d] - w - out[d]);
-      }
-    }
-    if (hold) {
-      const double w_in = old_relative(in, a, limit[a]), w_out = old_relative(out, a, limit[a]);
-      const double w = (in[3] * w_in - out[3] * w_out) / (in[3] + out[3]);
-      std::copy_n(in + 4, dim, old_in);
-      std::copy_n(out + 4, dim, old_out);
-      old_in[a] += w - w_in;
-      old_out[a] += -w - w_out;
-    }
-    set_velocity(grid, pairs[p].inside, v_in, hold ? old_in : nullptr);
-    set_velocity(grid, pairs[p].image, v_out, hold ? old_out : nullptr);
-  }
+  for (int d = 0; d < dim; d++) prescribed.share[d] = d == a ? 1.0 : slide;
+  project(grid, &plane, 1, true, prescribed);
+  for (int k = 0; k < npairs; k++) project(grid, pairs[k].members, 2, false, prescribed);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -997,42 +993,16 @@ void FixMPMBoundary::act_on_orbit(const FieldNodes &list, const Orbit &orbit)
 {
   Grid &grid = list.field->grid;
   const int dim = grid.lattice.dim;
-  double V[3], limit[3] = {0.0, 0.0, 0.0};
-  wall.velocity(*list.field, orbit.wall, V);
+  Prescribed prescribed = {};
+  wall.velocity(*list.field, orbit.wall, prescribed.V);
   const bool hold = now.old_share > 0.0;
-  if (hold && orbit.inner >= 0) first_inside(grid.record(orbit.inner), before, dim, limit);
-
-  double mass = 0.0, w[3] = {0.0, 0.0, 0.0}, w_old[3] = {0.0, 0.0, 0.0};
-  int massive = 0;
-  for (int k = orbit.first; k < orbit.last; k++) {
-    const Member &member = list.members[k];
-    const double *r = grid.record(member.node);
-    if (r[3] <= 0.0) continue;
-    massive++;
-    mass += r[3];
-    for (int d = 0; d < dim; d++) {
-      w[d] += member.sign * r[3] * (r[d] - V[d]);
-      if (hold) w_old[d] += member.sign * r[3] * old_relative(r, d, limit[d]);
-    }
-  }
-  if (massive == 0 || (massive == 1 && !orbit.fixed)) return;
+  if (hold && orbit.inner >= 0)
+    first_inside(grid.record(orbit.inner), before, dim, prescribed.limit);
   for (int d = 0; d < dim; d++) {
-    w[d] = orbit.fixed ? 0.0 : w[d] / mass;
-    w_old[d] = orbit.fixed ? 0.0 : w_old[d] / mass;
+    prescribed.share[d] = orbit.prescribed[d] ? 1.0 : 0.0;
+    prescribed.hold[d] = hold && orbit.prescribed[d];
   }
-
-  for (int k = orbit.first; k < orbit.last; k++) {
-    const Member &member = list.members[k];
-    const double *r = grid.record(member.node);
-    double v[3], old[3];
-    for (int d = 0; d < dim; d++) {
-      v[d] = orbit.prescribed[d] ? V[d] + member.sign * w[d] : r[d];
-      if (!hold) continue;
-      old[d] = r[4 + d];
-      if (orbit.prescribed[d]) old[d] += member.sign * w_old[d] - old_relative(r, d, limit[d]);
-    }
-    set_velocity(grid, member.node, v, hold ? old : nullptr);
-  }
+  project(grid, &list.members[orbit.first], orbit.last - orbit.first, orbit.fixed, prescribed);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -1079,7 +1049,7 @@ void FixMPMBoundary::act_on_single(const FieldNodes &list, Single &single)
 double FixMPMBoundary::compute_scalar()
 {
   double all;
-  MPI_Allreduce(&work, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(&past.work, &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all * force->mvv2e;
 }
 
@@ -1101,26 +1071,18 @@ double FixMPMBoundary::compute_vector(int i)
 
 void FixMPMBoundary::write_restart(FILE *fp)
 {
-  Saved saved;
-  memset(&saved, 0, sizeof(Saved));    // padding, too: files of equal states are equal
-  saved.work = FixMPMBoundary::compute_scalar();
-  memcpy(saved.shift, wall.shift, sizeof(saved.shift));
-  memcpy(saved.region_was, region_was, sizeof(saved.region_was));
-  saved.acted = acted;
+  Past all = past;
+  all.work = FixMPMBoundary::compute_scalar();
   if (comm->me) return;
-  const int size = sizeof(Saved);
+  const int size = sizeof(Past);
   fwrite(&size, sizeof(int), 1, fp);
-  fwrite(&saved, size, 1, fp);
+  fwrite(&all, size, 1, fp);
 }
 
 void FixMPMBoundary::restart(char *buf)
 {
-  Saved saved;
-  memcpy(&saved, buf, sizeof(Saved));
-  work = comm->me == 0 ? saved.work / force->mvv2e : 0.0;
-  memcpy(wall.shift, saved.shift, sizeof(saved.shift));
-  memcpy(region_was, saved.region_was, sizeof(region_was));
-  acted = saved.acted;
+  memcpy(&past, buf, sizeof(Past));
+  past.work = comm->me == 0 ? past.work / force->mvv2e : 0.0;
 }
 
 /* ---------------------------------------------------------------------- */

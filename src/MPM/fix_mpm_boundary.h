@@ -88,11 +88,11 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   using Faces = std::vector<Face>;
   enum Contact { FREE, SLIDING, STUCK };    // what a wall does to a line or node
 
-  struct
-      Line {     // nodes along the normal of a face with friction or separation, or that cuts cells
+  // nodes along the normal of a face that cuts cells, from its first one on, or of a face with friction
+  // or separation: in the plane, inside, and their images; -1: out of reach of points
+  struct Line {
     int face;    // index into faces
     Contact contact;
-    // cut: from first on; else: plane, those inside, their images; -1: out of reach of points
     int64_t node[1 + 2 * DEPTH];
   };
   struct Member {
@@ -109,8 +109,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   struct Single {    // a node on its own
     int64_t node;
     double normal[3] = {0.0, 0.0, 0.0};    // from the wall to the body; zero: not known
-    double growth =
-        0.0;    // regions that change their shape: speed of the surface along the normal
+    double growth = 0.0;      // speed of the surface of a region that changes its shape
     double distance = 0.0;    // from the surface at the start of the step, for growth
     Contact contact = FREE;
   };
@@ -133,9 +132,17 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
     Wall at_end_of_step(double dt) const;
     void velocity(const MPMField &, int64_t node, double *v) const;
   };
-  struct Saved {    // in restart files
-    double work, shift[3], region_was[4];
-    bool acted;
+  struct Prescribed {    // velocity that a wall gives to nodes
+    double V[3];
+    double share[3];    // of the way to it that nodes go
+    double limit[3];    // of old velocities relative to the wall, where these are constrained, too
+    bool hold[3];       // are these?
+  };
+  struct Past {          // of the steps before, as restart files keep it, without padding
+    double work;         // on the body, this rank's share; in files that of all, as energy
+    double shift[3];     // velocity of the wall in the last step, when it does not turn
+    double region[4];    // shift and angle of the region at the end of the last step
+    int64_t acted;       // there was a last step
   };
 
   std::vector<int> face_list;    // 2 * axis + (0: lo, 1: hi)
@@ -144,12 +151,10 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
 
   std::vector<FieldNodes> nodes;    // of the fields to act on
   Wall wall = {};                   // in this step
-  double before[3] = {};            // its velocity in the last step, when it does not turn
-  bool acted = false;               // there was a last step
-  double region_was[4] = {};        // shift and angle of the region at the end of the last step
-  bigint motion_step = -1;          // step for which the motion of the wall is known
-  double impulse[6] = {};    // on the body, with its moment, in the last step: this rank's share
-  double work = 0.0;         // on the body in all steps, this rank's share
+  double before[3] = {};            // its velocity in the last step
+  Past past = {};
+  bigint motion_step = -1;    // step for which the motion of the wall is known
+  double impulse[6] = {};     // on the body, with its moment, in the last step: this rank's share
   double dt_last = 0.0;
   bool reaction_known = true;
   double reaction[6] = {};    // force and, of regions, torque
@@ -177,6 +182,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   double slide_share(Contact &, double push, double needed) const;
   double old_relative(const double *record, int d, double limit) const;
   void set_velocity(MPM_NS::Grid &, int64_t node, const double *v, const double *old);
+  void project(MPM_NS::Grid &, const Member *, int n, bool fixed, const Prescribed &);
   void act_on_column(const FieldNodes &, Line &);
   void act_on_cut(const FieldNodes &, Line &, bool last);
   void act_on_orbit(const FieldNodes &, const Orbit &);

@@ -27,7 +27,6 @@
 #include "mpm_field.h"
 #include "mpm_stencil.h"
 
-#include <algorithm>
 #include <cmath>
 
 using namespace LAMMPS_NS;
@@ -41,8 +40,8 @@ static constexpr double MIN_WEIGHT[4] = {0.0, 0.5, 0.02, 0.0045};
 void FixMPMBoundary::Face::cut_weights(const MPMField &field, double x)
 {
   cut = true;
-  nweight = MPMStencil(field).weights((x - field.lattice.origin[axis]) / field.lattice.h, first,
-                                      weight);
+  nweight =
+      MPMStencil(field).weights((x - field.lattice.origin[axis]) / field.lattice.h, first, weight);
   if (stencil_order(field.options.shape) > 1) return;
   nweight = 3;    // and the next node inside
   weight[2] = 0.0;
@@ -112,7 +111,8 @@ void FixMPMBoundary::act_on_cut(const FieldNodes &list, Line &cut, bool last)
   const auto prescribed = [&](int d) {
     return velocity[d].given && (d == a) == last;
   };
-  double lambda[3], mu[3], lambda_old[3] = {0.0, 0.0, 0.0}, mu_old[3] = {0.0, 0.0, 0.0};
+  double lambda[3] = {0.0, 0.0, 0.0}, mu[3], lambda_old[3] = {0.0, 0.0, 0.0},
+         mu_old[3] = {0.0, 0.0, 0.0};
   auto project = [&](auto velocity, double &l, double &u) {
     double a_sum = 0.0, b_sum = 0.0;
     for (int k = 0; k < m; k++) {

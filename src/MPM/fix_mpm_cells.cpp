@@ -50,7 +50,7 @@ FixMPMCells::FixMPMCells(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
   dim = domain->dimension;
   field_id = arg[3];
   set_size();
-  allocate();
+  FixMPMCells::reset_grid();
 }
 
 /* ----------------------------------------------------------------------
@@ -84,13 +84,6 @@ void FixMPMCells::init()
 void FixMPMCells::reset_grid()
 {
   deallocate();
-  allocate();
-}
-
-/* ---------------------------------------------------------------------- */
-
-void FixMPMCells::allocate()
-{
   skin = neighbor->skin;
   owned = all = {{0, 0, 0}, {0, 0, 0}};
   int nbuf1, nbuf2;

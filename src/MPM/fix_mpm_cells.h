@@ -75,7 +75,6 @@ class FixMPMCells : public Fix {
   bigint filled = -1;    // time step of the averages, -1: none
 
   void set_size();
-  void allocate();
   void deallocate();
   void sum_points();
   void average();

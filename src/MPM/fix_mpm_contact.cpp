@@ -31,7 +31,7 @@
    would stand in its way. The volumes of all bodies at a node, as a share of the volume that belongs
    to a node, add up to one where they touch, whatever the position of the interface relative to the
    nodes, and to less while there is a gap or beyond the end of one of them. What of this volume is
-   outside of fixed faces of the box does not count (fix_mpm_contact_room.cpp).
+   outside of fixed faces of the box does not count (find_room()).
 ------------------------------------------------------------------------- */
 
 #include "fix_mpm_contact.h"
@@ -49,6 +49,7 @@
 #include "mpm_node_sums.h"
 #include "mpm_options.h"
 #include "mpm_point_map.h"
+#include "mpm_stencil.h"
 #include "update.h"
 
 #include <algorithm>
@@ -223,17 +224,8 @@ void FixMPMContact::init()
 
 bool FixMPMContact::couples(const std::string &a, const std::string &b) const
 {
-  const auto has = [&](const std::string &name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
-  };
-  return a != b && has(a) && has(b);
-}
-
-int FixMPMContact::index_of(const MPMField &field) const
-{
-  for (std::size_t k = 0; k < bodies.size(); k++)
-    if (bodies[k].field == &field) return (int) k;
-  return -1;
+  return a != b && std::count(names.begin(), names.end(), a) &&
+      std::count(names.begin(), names.end(), b);
 }
 
 /** Row of the output for fields a < b: (0,1), (0,2), ..., (1,2), ... */
@@ -260,6 +252,17 @@ void FixMPMContact::couple_topology()
     for (const auto &body : bodies) body.field->map->valid = false;
 }
 
+/** The canonical block that has a corner of this block, which periodic axes repeat. */
+static std::array<int, 3> canonical_block(const Grid &grid, const Grid::Block &block, int corner)
+{
+  std::array<int, 3> b = {block.b[0], block.b[1], block.b[2]};
+  for (int d = 0; d < grid.lattice.dim; d++) {
+    const int node = b[d] * grid.side + (corner >> d & 1 ? grid.side - 1 : 0);
+    b[d] = grid.lattice.wrap(d, node) >> grid.shift_bits;
+  }
+  return b;
+}
+
 /* ----------------------------------------------------------------------
    blocks in reach of each body, and the range that they take up over all ranks
 ------------------------------------------------------------------------- */
@@ -271,26 +274,13 @@ void FixMPMContact::blocks_found()
 
   for (auto &body : bodies) {
     const Grid &grid = body.field->grid;
-    const MPM_NS::Lattice &lattice = grid.lattice;
     auto &reach = body.reach;
     reach.clear();
     int range[6];    // low, and minus high
     std::fill_n(range, 6, INT_MAX);
-    for (const auto &block : grid.blocks) {
-      // an image on a periodic axis belongs to one or two canonical blocks
-      int first[3], last[3];
-      for (int d = 0; d < 3; d++) {
-        first[d] = last[d] = block.b[d];
-        if (d >= lattice.dim || !lattice.periodic[d]) continue;
-        first[d] = lattice.wrap(d, block.b[d] * grid.side) >> grid.shift_bits;
-        last[d] = lattice.wrap(d, block.b[d] * grid.side + grid.side - 1) >> grid.shift_bits;
-      }
-      for (int corner = 0; corner < 8; corner++) {
-        std::array<int, 3> b;
-        for (int d = 0; d < 3; d++) b[d] = corner >> d & 1 ? last[d] : first[d];
-        reach.push_back(b);
-      }
-    }
+    for (const auto &block : grid.blocks)    // an image belongs to one or two on each axis
+      for (int corner = 0; corner < 8; corner++)
+        reach.push_back(canonical_block(grid, block, corner));
     std::sort(reach.begin(), reach.end());
     reach.erase(std::unique(reach.begin(), reach.end()), reach.end());
     for (const auto &b : reach)
@@ -308,24 +298,16 @@ void FixMPMContact::blocks_found()
 
 void FixMPMContact::extend_topology(MPMField &field)
 {
-  const int k = index_of(field);
-  if (k < 0) return;
-  const int *const extent = bodies[k].extent;
-  for (const auto &other : bodies) {
-    if (other.field == &field) continue;
-    for (const auto &b : other.reach) {
-      bool inside = true;
-      for (int d = 0; d < 3; d++) inside = inside && b[d] >= extent[d] && b[d] <= -extent[3 + d];
-      if (inside) field.grid.activate(b.data());
-    }
+  for (const auto &body : bodies) {
+    if (body.field != &field) continue;
+    const int *const extent = body.extent;
+    for (const auto &other : bodies)
+      for (const auto &b : other.reach) {
+        bool inside = &other != &body;
+        for (int d = 0; d < 3; d++) inside = inside && b[d] >= extent[d] && b[d] <= -extent[3 + d];
+        if (inside) field.grid.activate(b.data());
+      }
   }
-}
-
-/* ---------------------------------------------------------------------- */
-
-void FixMPMContact::topology_changed(MPMField &field)
-{
-  if (index_of(field) >= 0) lists_valid = false;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -370,19 +352,11 @@ void FixMPMContact::mark_near(int k, int slot)
   auto &near = bodies[k].near;
   near[slot] = 1;
   const Grid &grid = bodies[k].field->grid;
-  const MPM_NS::Lattice &lattice = grid.lattice;
-  if (!lattice.periodic[0] && !lattice.periodic[1] && !lattice.periodic[2]) return;
+  const int *const b = grid.blocks[slot].b;
   for (const int image : bodies[k].images)
     for (int corner = 0; corner < 8 && !near[image]; corner++) {
-      bool same = true;
-      for (int d = 0; d < 3; d++) {
-        const int b = grid.blocks[image].b[d];
-        const int node = b * grid.side + (corner >> d & 1 ? grid.side - 1 : 0);
-        const int wanted = grid.blocks[slot].b[d];
-        same = same &&
-            (d >= lattice.dim ? b == wanted : lattice.wrap(d, node) >> grid.shift_bits == wanted);
-      }
-      if (same) near[image] = 1;
+      const auto canonical = canonical_block(grid, grid.blocks[image], corner);
+      near[image] = std::equal(canonical.begin(), canonical.end(), b);
     }
 }
 
@@ -460,9 +434,7 @@ void FixMPMContact::warn_overlap()
       if (most[1] < OVERLAP_EACH || sum < OVERLAP || sum <= mine.value) continue;
       mine.value = sum;
       const MPMField &field = *bodies[body[0]].field;
-      int index[3];
-      field.grid.node_index(field.grid.blocks[c.slot[body[0]]], n, index);
-      field.lattice.node_position(index, place);
+      field.grid.node_position((int64_t) c.slot[body[0]] * NODES_PER_BLOCK + n, place);
       place[3] = body[0];
       place[4] = body[1];
     }
@@ -496,6 +468,92 @@ void FixMPMContact::warn_overlap()
                    "instance points {} and {} near {:.6g} {:.6g} {:.6g}: contact keeps bodies from "
                    "approaching each other, but does not part them",
                    id, ids[0], ids[1], tags[0], tags[1], place[0], place[1], place[2]);
+}
+
+/* ----------------------------------------------------------------------
+   Volumes of bodies at nodes next to fixed faces of the box, and to an axis of symmetry, where there
+   are no points in a part of the volume that belongs to a node: bodies that touch there fill the
+   rest. A node in the plane of a face has room for half of its volume. Nodes outside are images of
+   those inside (fix_mpm_boundary.cpp), and in contact when these are.
+------------------------------------------------------------------------- */
+
+void FixMPMContact::find_room()
+{
+  constexpr int FIXED = 1, SAMPLES = 48;    // boundary f; places per cell
+  const MPMField &field = *bodies[0].field;
+  for (int d = 0; d < field.lattice.dim; d++) {
+    double face[2] = {-1.0e300, 1.0e300};    // in node spacings
+    const double h = field.lattice.h, origin = field.lattice.origin[d];
+    if (domain->boundary[d][0] == FIXED) face[0] = (domain->boxlo[d] - origin) / h;
+    if (domain->boundary[d][1] == FIXED) face[1] = (domain->boxhi[d] - origin) / h;
+
+    // share of the function of a node that is between the faces. Points with a size fill the cells, and
+    // have the mean of the linear function
+
+    const auto inside = [&](int node) {
+      int first;
+      double w[4], sum = 0.0;
+      for (int k = -REACH * SAMPLES; k < REACH * SAMPLES; k++) {
+        const double t = node + (k + 0.5) / SAMPLES;
+        if (t < face[0] || t > face[1]) continue;
+        if (field.options.has_size()) {
+          sum += std::max(0.0, 1.0 - std::fabs(t - node)) / SAMPLES;
+          continue;
+        }
+        const int n = MPMStencil(field).weights(t, first, w);
+        if (node >= first && node < first + n) sum += w[node - first] / SAMPLES;
+      }
+      return sum;
+    };
+    for (int side = 0; side < 2; side++) {
+      Room &near = room[d][side];
+      near.fixed = domain->boundary[d][side] == FIXED;
+      if (!near.fixed) continue;
+      near.plane = (int) std::lround(face[side]);
+      const int inward = side ? -1 : 1;
+      for (int k = 0; k <= REACH; k++) near.share[k] = inside(near.plane + inward * k);
+      if (!field.options.modified_edges) continue;
+      const double outside = inside(near.plane - inward);    // see MPMEdges::fold()
+      near.share[0] += 2.0 * outside;
+      near.share[1] -= outside;
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   share of the volume of node n, as far as it is inside of the box, that all bodies fill
+------------------------------------------------------------------------- */
+
+double FixMPMContact::filled(const Common &c, int n) const
+{
+  int any = 0, index[3];
+  while (c.slot[any] < 0) any++;
+  const Grid &grid = bodies[any].field->grid;
+  grid.node_index(grid.blocks[c.slot[any]], n, index);
+  double most = 1.0;
+  bool image = false;
+  for (int d = 0; d < grid.lattice.dim; d++) {
+    double least = 1.0;    // a narrow box: two faces are near
+    for (int side = 0; side < 2; side++) {
+      const Room &near = room[d][side];
+      if (!near.fixed) continue;
+      int depth = (side ? -1 : 1) * (index[d] - near.plane);
+      if (depth < 0) {
+        index[d] = 2 * near.plane - index[d];
+        depth = -depth;
+        image = true;
+      }
+      if (depth <= REACH) least = std::min(least, near.share[depth]);
+    }
+    most *= least;
+  }
+  double sum = 0.0;
+  for (std::size_t k = 0; k < bodies.size(); k++) {
+    int64_t node = c.slot[k] < 0 ? -1 : (int64_t) c.slot[k] * NODES_PER_BLOCK + n;
+    if (image) node = bodies[k].field->grid.locate(index);
+    if (node >= 0) sum += bodies[k].share[node];
+  }
+  return most > 0.0 ? sum / most : 0.0;
 }
 
 /* ----------------------------------------------------------------------
@@ -615,10 +673,10 @@ void FixMPMContact::resolve(Node &node, double dt, bool decided)
 {
   const int nfields = (int) bodies.size(), dim = bodies[0].field->lattice.dim;
   double start[MAX_FIELDS][3];
-  int bodies = 0;
+  int nbodies = 0;
   for (int k = 0; k < nfields; k++)
     if (node.record[k]) {
-      bodies++;
+      nbodies++;
       for (int d = 0; d < dim; d++) start[k][d] = node.record[k][d];
     }
 
@@ -626,12 +684,12 @@ void FixMPMContact::resolve(Node &node, double dt, bool decided)
     pairs[p].normal = 0.0;
     MathExtra::zero3(pairs[p].tangential);
   }
-  for (int it = 0; it < (bodies == 2 ? 1 : MAX_ITERATIONS); it++) {
+  for (int it = 0; it < (nbodies == 2 ? 1 : MAX_ITERATIONS); it++) {
     double largest = 0.0;
     for (int p = node.first; p < node.last; p++) {
       Pair &pair = pairs[p];
       const double m = pair.ra[3] * pair.rb[3] / (pair.ra[3] + pair.rb[3]);
-      apply(pair, m / (bodies - 1), largest, dt, decided);
+      apply(pair, m / (nbodies - 1), largest, dt, decided);
     }
     for (int k = 0; k < nfields; k++)
       if (node.record[k])

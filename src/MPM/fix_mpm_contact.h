@@ -58,7 +58,6 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
   void couple_topology() override;
   void blocks_found() override;
   void extend_topology(MPMField &) override;
-  void topology_changed(MPMField &) override;
   void act(double dt, Stage) override;
 
   /** Is contact between these two fields (IDs) left to this fix? */
@@ -124,7 +123,6 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
   bool stale() const;
   void find_room();
   double filled(const Common &, int n) const;
-  int index_of(const MPMField &) const;
   int pair_index(int a, int b) const;
   void list_common_blocks();
   void mark_near(int k, int slot);

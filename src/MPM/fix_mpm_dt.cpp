@@ -24,13 +24,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace MPM_NS;
-
-static constexpr double NO_POINTS = std::numeric_limits<double>::max();
 
 /* ----------------------------------------------------------------------
    fix ID all mpm/dt FRACTION keyword value ...
@@ -59,9 +56,7 @@ Options MPMDtOptions::declare()
   return o;
 }
 
-FixMPMDt::FixMPMDt(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), limit({0.0, 0.0, 0.0}), nchanges(0), continues(false), dt_left(0.0),
-    limit_left(0.0), carried({NO_POINTS, 0.0, 0.0})
+FixMPMDt::FixMPMDt(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
 {
   if (igroup != 0)
     error->all(FLERR, 1, "Fix mpm/dt looks at the points of all fix mpm: use group all");
@@ -171,7 +166,7 @@ void FixMPMDt::setup_pre_force(int)
     update->dt_default = 0;
     return;
   }
-  if (limit.dt < NO_POINTS) set_dt(fraction * limit.dt);
+  if (limit.dt < NO_POINTS.dt) set_dt(fraction * limit.dt);
 }
 
 /* ----------------------------------------------------------------------
@@ -188,9 +183,9 @@ void FixMPMDt::end_of_step()
     return;
   }
   limit = find_limit();
-  carried = {NO_POINTS, 0.0, 0.0};
+  carried = NO_POINTS;
   for (auto *field : MPMField::all(lmp)) field->time_limit->volume_rate = {0.0, 0};
-  if (limit.dt < NO_POINTS) set_dt(std::min(fraction * limit.dt, grow * update->dt));
+  if (limit.dt < NO_POINTS.dt) set_dt(std::min(fraction * limit.dt, grow * update->dt));
 }
 
 /* ----------------------------------------------------------------------

@@ -18,6 +18,8 @@ FixStyle(mpm/dt,FixMPMDt);
 #include "declare/option.h"
 #include "fix.h"
 
+#include <limits>
+
 namespace LAMMPS_NS {
 
 struct MPMDtOptions {
@@ -50,13 +52,14 @@ class FixMPMDt : public Fix, private MPMDtOptions {
     double speed;    // its wave speed, 0: limit of strain
     double tag;
   };
-  Limit limit;
-  bigint nchanges;
+  static constexpr Limit NO_POINTS = {std::numeric_limits<double>::max(), 0.0, 0.0};
+  Limit limit = {0.0, 0.0, 0.0};
+  bigint nchanges = 0;
 
   // what the last run left, to see whether anything was changed since
-  bool continues;
-  double dt_left, limit_left;
-  Limit carried;    // strain since the last look, from the restart file
+  bool continues = false;
+  double dt_left = 0.0, limit_left = 0.0;
+  Limit carried = NO_POINTS;    // strain since the last look, from the restart file
 
   Limit find_limit() const;
   Limit strain_limit_local() const;

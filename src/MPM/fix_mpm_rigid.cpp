@@ -122,7 +122,6 @@ FixMPMRigid::FixMPMRigid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
   extscalar = 1;
   extvector = 0;
   restart_global = 1;
-  dynamic_group_allow = 0;
   if (comm->me == 0)
     utils::logmesg(lmp, "Rigid body {}: mass {:.8g}, center {:.8g} {:.8g} {:.8g}\n", id, mass, x[0],
                    x[1], x[2]);
@@ -216,20 +215,18 @@ void FixMPMRigid::find_contacts()
     const double half = 0.5 * (grid.side - 1) * field->lattice.h;
     for (std::size_t slot = 0; slot < grid.blocks.size(); slot++) {
       const auto &block = grid.blocks[slot];
-      int index[3];
+      const int64_t first = (int64_t) slot * NODES_PER_BLOCK;
       double at[3];
-      grid.node_index(block, 0, index);
-      field->lattice.node_position(index, at);
+      field->grid.node_position(first, at);
       for (int d = 0; d < 3; d++) at[d] += half - x[d];
       nearest_image(*domain, at);
       if (MathExtra::len3(at) > radius + 1.8 * half) continue;
       for (int n = 0; n < NODES_PER_BLOCK; n++) {
         if (block.alias >> n & 1) continue;
         Contact c;
-        c.record = grid.record((int) slot, n);
+        c.record = grid.record(first + n);
         if (!(c.record[3] > 0.0)) continue;
-        grid.node_index(block, n, index);
-        field->lattice.node_position(index, c.r);
+        field->grid.node_position(first + n, c.r);
         for (int d = 0; d < 3; d++) c.r[d] -= x[d];
         nearest_image(*domain, c.r);
         double local[3];

@@ -104,10 +104,14 @@ void FixMPMSurface::init()
                  {{field->options.axisymmetric, "axisymmetric",
                    "a grain would be a ring: let bodies meet through fix mpm/contact, or use 3d "
                    "for grains"}});
-  bigint n = 0, nall;
-  for (int i = 0; i < atom->nlocal; i++) n += has_radius(i);
-  MPI_Allreduce(&n, &nall, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  if (nall == 0)
+  bigint mine[2] = {0, 0}, all[2];    // points, those with a radius below the largest one
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!has_radius(i)) continue;
+    mine[0]++;
+    mine[1] += atom->radius[i] < radius_of(atom->vfrac[i], grow) * (1.0 - 1.0e-10);
+  }
+  MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (all[0] == 0)
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/surface {} has no material points: its group {} has no atoms with a volume",
                id, group->names[igroup]);
@@ -125,11 +129,7 @@ void FixMPMSurface::init()
 
   // pair styles have taken their cutoffs from the radii of this moment
 
-  int small = 0, small_all;
-  for (int i = 0; i < atom->nlocal; i++)
-    if (has_radius(i) && atom->radius[i] < largest_radius(i) * (1.0 - 1.0e-10)) small = 1;
-  MPI_Allreduce(&small, &small_all, 1, MPI_INT, MPI_MAX, world);
-  if (small_all)
+  if (all[1])
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/surface {}: points were created, or their radius set, after the fix, which "
                "sets it: define the fix after them",
@@ -221,16 +221,11 @@ double FixMPMSurface::radius_of(double V, double growth) const
   return 0.5 * scale * growth * (domain->dimension == 3 ? std::cbrt(V) : std::sqrt(V));
 }
 
-double FixMPMSurface::largest_radius(int i) const
-{
-  return radius_of(atom->vfrac[i], grow);
-}
-
 void FixMPMSurface::give_largest()
 {
   known = false;
   for (int i = 0; i < atom->nlocal; i++)
-    if (has_radius(i)) give_radius(i, true, largest_radius(i));
+    if (has_radius(i)) give_radius(i, true, radius_of(atom->vfrac[i], grow));
 }
 
 void FixMPMSurface::give_radius(int i, bool surface, double radius)
@@ -260,8 +255,9 @@ void FixMPMSurface::find_surface()
       const auto *material = field->material_of(i);
       const bool failed =
           material && material->damage >= 0 && material->history[i][material->damage] >= 1.0;
-      const double radius = radius_of(atom->vfrac[i] * points->jacobian(i), 1.0);
-      give_radius(i, failed || share[i] < limit, std::min(radius, largest_radius(i)));
+      const double V = atom->vfrac[i];
+      const double radius = std::min(radius_of(V * points->jacobian(i), 1.0), radius_of(V, grow));
+      give_radius(i, failed || share[i] < limit, radius);
     }
   }
 }

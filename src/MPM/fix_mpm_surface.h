@@ -65,7 +65,6 @@ class FixMPMSurface : public FixMPMState, private MPMSurfaceOptions {
 
   bool has_radius(int i) const;
   double radius_of(double volume, double growth) const;
-  double largest_radius(int i) const;
   void give_radius(int i, bool at_surface, double radius);
   void give_largest();
   void find_surface();

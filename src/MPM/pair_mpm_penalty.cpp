@@ -15,6 +15,7 @@
 #include "fix_mpm_contact.h"
 #include "force.h"
 #include "math_const.h"
+#include "math_extra.h"
 #include "memory.h"
 #include "modify.h"
 #include "mpm_field.h"
@@ -72,9 +73,9 @@ void PairMPMPenalty::compute(int eflag, int vflag)
 
   for (const auto &pair : pairs) {
     const int i = pair.first, j = pair.second;
-    const double d[3] = {x[i][0] - x[j][0], x[i][1] - x[j][1], x[i][2] - x[j][2]};
-    const double rsq = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-    const double reach = radius[i] + radius[j];
+    double d[3];
+    MathExtra::sub3(x[i], x[j], d);
+    const double rsq = MathExtra::lensq3(d), reach = radius[i] + radius[j];
     if (rsq >= reach * reach || rsq == 0.0 || radius[i] == 0.0 || radius[j] == 0.0) continue;
 
     const Coeff &c = coeff_of(type[i], type[j]);
@@ -88,11 +89,9 @@ void PairMPMPenalty::compute(int eflag, int vflag)
     double force_i[3] = {0.0, 0.0, 0.0};
 
     if (c.damping > 0.0 || c.friction > 0.0) {
-      double u[3], un = 0.0, slip = 0.0;
-      for (int k = 0; k < 3; k++) {
-        u[k] = v[i][k] - v[j][k];
-        un += u[k] * n[k];
-      }
+      double u[3];
+      MathExtra::sub3(v[i], v[j], u);
+      const double un = MathExtra::dot3(u, n);
       if (c.damping > 0.0) {
         const double m = force->mvv2e * mass[i] * mass[j] / (mass[i] + mass[j]);
         const double damper = -2.0 * c.damping * sqrt(stiffness * m) * un;
@@ -101,13 +100,10 @@ void PairMPMPenalty::compute(int eflag, int vflag)
         power -= (normal - elastic) * un;
       }
       if (c.friction > 0.0) {
-        for (int k = 0; k < 3; k++) {
-          u[k] -= un * n[k];
-          slip += u[k] * u[k];
-        }
-        slip = sqrt(slip);
+        MathExtra::scaleadd3(-un, n, u, u);
+        const double slip = MathExtra::len3(u);
         const double drag = c.friction * normal / std::max(slip, c.slip);
-        for (int k = 0; k < 3; k++) force_i[k] = -drag * u[k];
+        MathExtra::scale3(-drag, u, force_i);
         power += drag * slip * slip;
       }
     }
@@ -423,37 +419,24 @@ void PairMPMPenalty::init_style()
 }
 
 /* ----------------------------------------------------------------------
-   do points of these types meet, and in which fields?
-------------------------------------------------------------------------- */
-
-bool PairMPMPenalty::meet(int itype, int jtype, int &a, int &b) const
-{
-  const int nfields = (int) fields.size(), n = atom->ntypes + 1;
-  for (a = 0; a < nfields; a++)
-    for (b = 0; b < nfields; b++)
-      if (!coupled[a * nfields + b] && present[a * n + itype] && present[b * n + jtype])
-        return true;
-  return false;
-}
-
-/* ----------------------------------------------------------------------
    no cutoff, and no pairs in the neighbor list, for types that do not meet
 ------------------------------------------------------------------------- */
 
 double PairMPMPenalty::init_one(int i, int j)
 {
-  int a, b;
   const Coeff &c = coeff_of(i, j);
   const double reach = growth * (largest[i] + largest[j]);
-  if (meet(i, j, a, b)) {
-    if (!c.set)
-      error->all(
-          FLERR, Error::NOLASTLINE,
-          "Pair style mpm/penalty has no pair_coeff for types {} and {}, but fields {} and {} have "
-          "such points: give one, with modulus 0 if they shall not touch",
-          i, j, fields[a]->id(), fields[b]->id());
-    if (c.modulus > 0.0) return reach;
-  }
+  const std::size_t nfields = fields.size(), n = atom->ntypes + 1;
+  for (std::size_t a = 0; a < nfields; a++)
+    for (std::size_t b = 0; b < nfields; b++) {
+      if (coupled[a * nfields + b] || !present[a * n + i] || !present[b * n + j]) continue;
+      if (!c.set)
+        error->all(FLERR, Error::NOLASTLINE,
+                   "Pair style mpm/penalty has no pair_coeff for types {} and {}, but fields {} "
+                   "and {} have such points: give one, with modulus 0 if they shall not touch",
+                   i, j, fields[a]->id(), fields[b]->id());
+      if (c.modulus > 0.0) return reach;
+    }
 
   // lists by collection make a single bin of a collection without a cutoff
 

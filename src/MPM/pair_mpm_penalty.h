@@ -92,7 +92,6 @@ class PairMPMPenalty : public Pair, private MPMPenaltyOptions {
   void find_pairs();
   void warn_about_list(double same, double all);
   int field_of(int i) const;
-  bool meet(int itype, int jtype, int &a, int &b) const;
   double initial_radius(int i) const;
   double current_radius(int i);
   Coeff &coeff_of(int i, int j);
