@@ -94,9 +94,9 @@ namespace {
   /** Loops of an equation of state p = cold(J) + gamma(J) E, with the internal energy E per
    *  reference volume.
    *
-   *  Eos has cold(J), gamma(J), slope(J, E) = -dp/dJ at constant E, least, the smallest
-   *  density_0 (sound speed)^2 that is believed, and tension; CUTOFF and SPALL are the indices of
-   *  its parameters cutoff and spall. E follows from
+   *  Eos has cold(J), gamma(J), slope(J, E) = -dp/dJ at constant E, and least, the smallest
+   *  density_0 (sound speed)^2 that is believed; CUTOFF and SPALL are the indices of its parameters
+   *  cutoff and spall. E follows from
    *
    *    E = E_old - (p_old + p)/2 (J - J_old) + heat
    *
@@ -119,34 +119,37 @@ namespace {
     static void update(const LawParameters &p, Batch &b, History history)
     {
       const Eos eos(p);
-      if (eos.tension.spall)
-        loop<true>(eos, b, history);
+      const Tension tension(p.value[Eos::CUTOFF], p.value[Eos::SPALL]);
+      if (tension.spall)
+        loop<true>(eos, tension, b, history);
       else
-        loop<false>(eos, b, history);
+        loop<false>(eos, tension, b, history);
     }
 
     /** Isentropic -J^2 dp/dJ = J^2 (-(dp/dJ)_E + gamma p). */
     static void modulus(const LawParameters &p, const Batch &b, History history, double *k)
     {
       const Eos eos(p);
+      const Tension tension(p.value[Eos::CUTOFF], p.value[Eos::SPALL]);
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
         const double J = b.J[i], E = history[ENERGY][i], gamma = eos.gamma(J);
-        const double pressure = max(eos.cold(J) + gamma * E, eos.tension.pmin);
+        const double pressure = max(eos.cold(J) + gamma * E, tension.pmin);
         k[i] += max(J * J * (eos.slope(J, E) + gamma * pressure), eos.least);
       }
     }
 
    private:
-    template <bool SPALL> static MPM_INLINE void loop(const Eos &eos, Batch &b, History history)
+    template <bool SPALL>
+    static MPM_INLINE void loop(const Eos &eos, const Tension &tension, Batch &b, History history)
     {
-      const double after = eos.tension.after;
+      const double after = tension.after;
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
         const double J = b.J[i], Jold = b.Jold[i], dJ = J - Jold;
         const double Eold = history[ENERGY][i];
         const bool broken = SPALL && history[SPALLED][i] > 0.0;
-        const double lowest = broken ? 0.0 : eos.tension.pmin;
+        const double lowest = broken ? 0.0 : tension.pmin;
         const double cold = eos.cold(J), gamma = eos.gamma(J);
         const double pold = max(eos.cold(Jold) + eos.gamma(Jold) * Eold, lowest);
         const double E =
