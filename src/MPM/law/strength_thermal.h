@@ -9,6 +9,8 @@
 #ifndef MPM_LAW_STRENGTH_THERMAL_H
 #define MPM_LAW_STRENGTH_THERMAL_H
 
+// Flow stresses of metals that depend on rate and temperature.
+
 #include "law/strength.h"
 
 namespace MPM_NS::law {
