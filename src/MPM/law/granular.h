@@ -16,8 +16,6 @@
 namespace MPM_NS::law {
 namespace {
 
-  enum { DP_E, DP_NU, DP_PHI, DP_COHESION, DP_PSI, DP_TENSION, DP_PLANE };
-
   /** Elastic-perfectly plastic solid with friction and cohesion (D.C. Drucker, W. Prager, Q. Appl.
    *  Math. 10 (1952) 157), in Kirchhoff stress with pressure p and equivalent stress q:
    *
@@ -35,6 +33,7 @@ namespace {
   struct LawDruckerPrager : HenckyInvariantReturn<LawDruckerPrager> {
     static constexpr const char *name = "drucker/prager";
     static constexpr const char *meaning = "Drucker-Prager plasticity: sand, soil, concrete";
+    enum { E, NU, PHI, COHESION, PSI, MEAN_TENSION, PLANE };
     static constexpr Parameter parameters[] = {
         YOUNGS_MODULUS,
         POISSONS_RATIO,
@@ -49,17 +48,17 @@ namespace {
         {"gap", ZERO, "1", "logarithmic volume strain between separated grains"}};
     static constexpr const char *check(const LawParameters &p)
     {
-      return p.value[DP_PSI] <= p.value[DP_PHI] ? nullptr
-                                                : "PSI must not exceed PHI, or flow makes energy";
+      return p.value[PSI] <= p.value[PHI] ? nullptr
+                                          : "PSI must not exceed PHI, or flow makes energy";
     }
 
     double M, k, flow, T;
 
     explicit LawDruckerPrager(const LawParameters &p) : HenckyInvariantReturn(p)
     {
-      const double phi = p.value[DP_PHI] * DEGREES, c = p.value[DP_COHESION];
-      const double s = std::sin(phi), t = std::sin(p.value[DP_PSI] * DEGREES);
-      if (p.value[DP_PLANE] > 0.0) {
+      const double phi = p.value[PHI] * DEGREES, c = p.value[COHESION];
+      const double s = std::sin(phi), t = std::sin(p.value[PSI] * DEGREES);
+      if (p.value[PLANE] > 0.0) {
         const double root3 = std::sqrt(3.0), root = std::sqrt(1.0 + t * t / 3.0);
         M = root3 * s * root / (1.0 + s * t / 3.0);
         k = root3 * c * std::cos(phi) * root / (1.0 + s * t / 3.0);
@@ -69,7 +68,7 @@ namespace {
         k = 6.0 * c * std::cos(phi) / (3.0 - s);
         flow = 6.0 * t / (3.0 - t);
       }
-      T = min(min(p.value[DP_TENSION], 1e200), k / max(M, 1e-200));
+      T = min(min(p.value[MEAN_TENSION], 1e200), k / max(M, 1e-200));
     }
 
     MPM_INLINE void solve(Batch &b, History history, InvariantStates &s) const
@@ -95,8 +94,6 @@ namespace {
     }
   };
 
-  enum { MUI_E, MUI_NU, MUI_S, MUI_2, MUI_I0, MUI_D, MUI_FRACTION };
-
   /** Dense flow of grains with the friction coefficient mu(I) (P. Jop, Y. Forterre, O. Pouliquen,
    *  Nature 441 (2006) 727), elastic below yield (S. Dunatunga, K. Kamrin, J. Fluid Mech. 779 (2015)
    *  483): with the shear stress t = q/sqrt(3) and the plastic shear rate g = sqrt(2 D:D),
@@ -111,6 +108,7 @@ namespace {
   struct LawMuI : HenckyInvariantReturn<LawMuI> {
     static constexpr const char *name = "mui";
     static constexpr const char *meaning = "mu(I) rheology of dense granular flow";
+    enum { E, NU, MUS, MU2, INERTIAL, DIAMETER, SOLID };
     static constexpr Parameter parameters[] = {
         {"", "E", "pressure", POSITIVE, REQUIRED, "Young's modulus of the bulk"},
         {"", "NU", "1", POISSON_RATIO, REQUIRED, "Poisson's ratio of the bulk"},
@@ -126,14 +124,14 @@ namespace {
         {"inertial", ZERO, "1", "inertial number"}};
     static constexpr const char *check(const LawParameters &p)
     {
-      return p.value[MUI_2] >= p.value[MUI_S] ? nullptr : "MU2 must not be below MUS";
+      return p.value[MU2] >= p.value[MUS] ? nullptr : "MU2 must not be below MUS";
     }
 
     double mus, mu2, I0, d, inv_rhos;
 
     explicit LawMuI(const LawParameters &p) :
-        HenckyInvariantReturn(p), mus(p.value[MUI_S]), mu2(p.value[MUI_2]), I0(p.value[MUI_I0]),
-        d(p.value[MUI_D]), inv_rhos(p.value[MUI_FRACTION] / p.density)
+        HenckyInvariantReturn(p), mus(p.value[MUS]), mu2(p.value[MU2]), I0(p.value[INERTIAL]),
+        d(p.value[DIAMETER]), inv_rhos(p.value[SOLID] / p.density)
     {
     }
 
