@@ -36,15 +36,12 @@ namespace {
     }
   };
 
-  constexpr Parameter cutoff = {"cutoff", "PMIN",     "pressure",
-                                TENSION,  -UNBOUNDED, "lowest pressure, not positive"};
-  constexpr Parameter spall = {"spall",
-                               "PSPALL",
-                               "pressure",
-                               TENSION,
-                               -UNBOUNDED,
-                               "pressure, not positive, below which the material breaks and "
-                               "bears no tension any more"};
+  // options for the tension that an equation of state bears
+  constexpr Parameter limits[] = {
+      {"cutoff", "PMIN", "pressure", TENSION, -UNBOUNDED, "lowest pressure, not positive"},
+      {"spall", "PSPALL", "pressure", TENSION, -UNBOUNDED,
+       "pressure, not positive, below which the material breaks and bears no tension any more"}};
+  constexpr Parameter cutoff = limits[0], spall = limits[1];
   constexpr HistoryDeclaration spalled = {"spalled", ZERO, "1", "1 when the material has broken"};
 
   /** Tension that an equation of state bears: all, a pressure of at least PMIN, or, when the

@@ -9,9 +9,9 @@
 #ifndef MPM_LAW_LIST_H
 #define MPM_LAW_LIST_H
 
-// All constitutive laws by family. A new law is a struct in a header and one entry here. The kernels of
-// a family are compiled on their own, once for each instruction set (MPM_ISA: base, v3, v4, with the
-// matching -march): the build writes a file with MPM_LAW_FAMILY(family) for each of MPM_LAW_FAMILIES.
+// All constitutive laws by family. A new law is a struct in a header and one entry here. The kernels
+// of a family are compiled on their own, once for each instruction set (MPM_ISA: base, v3, v4, with
+// the matching -march): the build writes a file with MPM_LAW_FAMILY(family) for each family.
 
 #include "law/critical_state.h"
 #include "law/damage_brittle.h"

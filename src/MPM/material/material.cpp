@@ -58,7 +58,10 @@ class ComposedMaterial : public Material {
   }
 
   double density() const override { return rho; }
-  double density(const double *history) const override { return rho * density_factor(history); }
+  double density(const double *history) const override
+  {
+    return random_density ? rho * history[random_density->row] : rho;
+  }
   const std::vector<HistoryVariable> &history() const override { return variables; }
   bool uses_F() const override { return shape_matters; }
   std::string describe() const override { return text; }
@@ -252,11 +255,6 @@ class ComposedMaterial : public Material {
                                                             &Batch::volume_energy};
   static_assert(sizeof(Batch) < (9 + 9 + 6 + std::size(single_rows) + 1) * BATCH * sizeof(double),
                 "all rows are listed");
-
-  double density_factor(const double *history) const
-  {
-    return random_density ? history[random_density->row] : 1.0;
-  }
 
   /** Parameters of a law at one point after the other. */
   class LocalParameters {
