@@ -214,8 +214,6 @@ namespace {
     }
   };
 
-  enum { NACC_E, NACC_NU, NACC_M, NACC_BETA, NACC_XI, NACC_ALPHA };
-
   /** Cohesive Cam-Clay (J. Gaume, T. Gast, J. Teran, A. van Herwijnen, C. Jiang, Nat. Commun. 9
    *  (2018) 3047; J. Wolper et al., ACM Trans. Graph. 38 (2019) 119): elliptic yield surface with
    *  tensile strength BETA p0 and hardening
@@ -228,6 +226,7 @@ namespace {
   struct LawNacc : CriticalStateReturn<LawNacc, HenckyInvariantReturn<LawNacc>> {
     static constexpr const char *name = "nacc";
     static constexpr const char *meaning = "cohesive Cam-Clay: snow, wet sand, soft rock";
+    enum { E, NU, M, BETA, XI, ALPHA };
     static constexpr Parameter parameters[] = {
         YOUNGS_MODULUS,
         POISSONS_RATIO,
@@ -238,13 +237,13 @@ namespace {
     static constexpr HistoryDeclaration history[] = {
         MPM_ELASTIC_STRAIN_HISTORY,
         PLASTIC_STRAIN,
-        {"alpha", NACC_ALPHA, "1", "logarithm of the plastic volume ratio"}};
+        {"alpha", ALPHA, "1", "logarithm of the plastic volume ratio"}};
 
     double Mb, beta, xi;
 
     explicit LawNacc(const LawParameters &p) :
-        CriticalStateReturn(p), Mb(p.value[NACC_M] / std::sqrt(1.0 + 2.0 * p.value[NACC_BETA])),
-        beta(p.value[NACC_BETA]), xi(p.value[NACC_XI])
+        CriticalStateReturn(p), Mb(p.value[M] / std::sqrt(1.0 + 2.0 * p.value[BETA])),
+        beta(p.value[BETA]), xi(p.value[XI])
     {
     }
 

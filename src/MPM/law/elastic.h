@@ -9,6 +9,8 @@
 #ifndef MPM_LAW_ELASTIC_H
 #define MPM_LAW_ELASTIC_H
 
+// Isotropic elastic solids with Young's modulus and Poisson's ratio.
+
 #include "law/hyperelastic.h"
 
 namespace MPM_NS::law {

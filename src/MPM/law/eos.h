@@ -9,10 +9,14 @@
 #ifndef MPM_LAW_EOS_H
 #define MPM_LAW_EOS_H
 
+// Equations of state without energy, and what all of them share.
+
 #include "law/kinematics.h"
 
 namespace MPM_NS::law {
 namespace {
+
+  constexpr Range TENSION{-UNBOUNDED, 0.0, true};
 
   /** Loops of an equation of state p(J) without energy.
    *
@@ -44,120 +48,79 @@ namespace {
     }
   };
 
-  /** What equations of state with an internal energy E share: its declaration (initial: as in
-   *  HistoryDeclaration) and that of its dissipated part. */
-  constexpr HistoryDeclaration internal_energy(int initial)
-  {
-    return {"energy", initial, "pressure", "internal energy per reference volume"};
-  }
-  constexpr HistoryDeclaration dissipated = {"heat", ZERO, "pressure",
-                                             "part of it that was dissipated"};
-  struct InternalEnergy : LawDefaults {
-    static constexpr bool uses_F = false;
-    enum { ENERGY, HEATED };
+  /** p = K (density/density_0 - 1) = K (1/J - 1): the linear term of the polynomial equation of
+   *  state of hydrocodes. Sound speed sqrt(K/density_0) at any density; tension stays below K. */
+  struct EosLinear : Barotropic<EosLinear> {
+    static constexpr const char *name = "linear";
+    static constexpr const char *meaning = "pressure linear in density";
+    static constexpr Parameter parameters[] = {
+        {"", "K", "pressure", POSITIVE, REQUIRED, "bulk modulus"}};
 
-    /** Internal energy less the dissipated part, which counts as plastic and viscous work. */
-    static void energy(const LawParameters &, const Batch &b, History history, double *w)
-    {
-      MPM_SIMD
-      for (int i = 0; i < b.n; i++) w[i] += history[ENERGY][i] - history[HEATED][i];
-    }
+    double K;
+
+    explicit EosLinear(const LawParameters &p) : K(p.value[0]) {}
+    MPM_INLINE double pressure(double J) const { return K * (1.0 - J) / J; }
+    MPM_INLINE double bulk(double) const { return K; }
+    MPM_INLINE double stored(double J) const { return K * minus1_minus_log(J); }
   };
 
-  constexpr Range TENSION{-UNBOUNDED, 0.0, true};
-  constexpr Parameter cutoff = {"cutoff", "PMIN",     "pressure",
-                                TENSION,  -UNBOUNDED, "lowest pressure, not positive"};
-  constexpr Parameter spall = {"spall",
-                               "PSPALL",
-                               "pressure",
-                               TENSION,
-                               -UNBOUNDED,
-                               "pressure, not positive, below which the material breaks and "
-                               "bears no tension any more"};
-  constexpr HistoryDeclaration spalled = {"spalled", ZERO, "1", "1 when the material has broken"};
-
-  /** Tension that an equation of state bears: all, a pressure of at least PMIN, or, when the
-   *  pressure has fallen below PMIN once, none (spall). */
-  struct Tension {
-    double pmin;     ///< lowest pressure, minus infinity without limit
-    double after;    ///< pressure instead of one that would be lower
-    bool spall;
-
-    /** Values of the options; minus infinity: not given. */
-    Tension(double cutoff, double spalls) :
-        pmin(max(cutoff, spalls)), after(spalls > -UNBOUNDED ? 0.0 : cutoff),
-        spall(spalls > -UNBOUNDED)
-    {
-    }
-  };
-
-  /** Loops of an equation of state p = cold(J) + gamma(J) E, with the internal energy E per
-   *  reference volume.
-   *
-   *  Eos has cold(J), gamma(J), slope(J, E) = -dp/dJ at constant E, least, the smallest
-   *  density_0 (sound speed)^2 that is believed, and tension; CUTOFF and SPALL are the indices of
-   *  its parameters cutoff and spall. E follows from
-   *
-   *    E = E_old - (p_old + p)/2 (J - J_old) + heat
-   *
-   *  solved together with p: second order in the strain increment, and one step from the reference
-   *  state lands exactly on the Hugoniot. A pressure that is limited by tension is the one that
-   *  does the work. History: internal_energy, dissipated, and with spall a mark, spalled. */
-  template <class Eos> struct LinearInEnergy : InternalEnergy {
-    enum { SPALLED = HEATED + 1 };
-    static constexpr int nhistory(const LawParameters &p)
-    {
-      return p.value[Eos::SPALL] > -UNBOUNDED ? 3 : 2;
-    }
+  /** Tait-Murnaghan p = K/gamma (J^-gamma - 1), not below the cavitation pressure
+   *  (F.D. Murnaghan, Proc. Natl. Acad. Sci. 30 (1944) 244; J.J. Monaghan, J. Comput. Phys. 110
+   *  (1994) 399). Density_0 c^2 = K J^(1-gamma), also in the cavitated state: ready for closure. */
+  struct EosTait : Barotropic<EosTait> {
+    static constexpr const char *name = "tait";
+    static constexpr const char *meaning = "Tait-Murnaghan liquid";
+    enum { BULK, GAMMA, CUTOFF };
+    static constexpr Parameter parameters[] = {
+        {"", "K", "pressure", POSITIVE, REQUIRED, "bulk modulus at reference density"},
+        {"", "GAMMA", "1", POSITIVE, REQUIRED, "exponent (water: 7)"},
+        {"cutoff", "PMIN", "pressure", TENSION, -UNBOUNDED,
+         "lowest pressure, not positive; the liquid cavitates there"}};
     static constexpr const char *check(const LawParameters &p)
     {
-      return p.value[Eos::CUTOFF] > -UNBOUNDED && p.value[Eos::SPALL] > -UNBOUNDED
-          ? "cutoff and spall exclude each other: leave one of them out"
+      return p.value[CUTOFF] != -UNBOUNDED && p.value[CUTOFF] <= -p.value[BULK] / p.value[GAMMA]
+          ? "PMIN is never reached: pressure stays above -K/GAMMA; leave cutoff out or raise PMIN"
           : nullptr;
     }
 
-    static void update(const LawParameters &p, Batch &b, History history)
+    double K, gamma, pmin;
+    double inv_a, linear;    ///< integral of J^-gamma: power, or logarithm for gamma = 1
+    double logJc, Jc, Uc;    ///< start of cavitation, with energy there
+
+    explicit EosTait(const LawParameters &p) :
+        K(p.value[BULK]), gamma(p.value[GAMMA]), pmin(p.value[CUTOFF])
     {
-      const Eos eos(p);
-      if (eos.tension.spall)
-        loop<true>(eos, b, history);
-      else
-        loop<false>(eos, b, history);
+      const double a = 1.0 - gamma;
+      const bool one = a < 1e-9 && a > -1e-9;
+      inv_a = one ? 0.0 : 1.0 / a;
+      linear = one ? 1.0 : 0.0;
+      logJc = 709.0;
+      Jc = Uc = 0.0;
+      if (pmin == -UNBOUNDED) return;
+      logJc = -log(1.0 + gamma * pmin / K) / gamma;
+      Jc = exp(logJc);
+      Uc = liquid_energy(Jc, logJc);
     }
 
-    /** Isentropic -J^2 dp/dJ = J^2 (-(dp/dJ)_E + gamma p). */
-    static void modulus(const LawParameters &p, const Batch &b, History history, double *k)
+    MPM_INLINE double pressure(double J) const
     {
-      const Eos eos(p);
-      MPM_SIMD
-      for (int i = 0; i < b.n; i++) {
-        const double J = b.J[i], E = history[ENERGY][i], gamma = eos.gamma(J);
-        const double pressure = max(eos.cold(J) + gamma * E, eos.tension.pmin);
-        k[i] += max(J * J * (eos.slope(J, E) + gamma * pressure), eos.least);
-      }
+      const double x = log(J);
+      const double p = (K / gamma) * expm1(-gamma * x);
+      return x > logJc ? pmin : p;
     }
+    MPM_INLINE double bulk(double J) const { return K * exp((1.0 - gamma) * log(J)); }
 
-   private:
-    template <bool SPALL> static MPM_INLINE void loop(const Eos &eos, Batch &b, History history)
+    /** -K/gamma [(J^(1-gamma) - 1)/(1-gamma) - (J - 1)] */
+    MPM_INLINE double liquid_energy(double J, double x) const
     {
-      const double after = eos.tension.after;
-      MPM_SIMD
-      for (int i = 0; i < b.n; i++) {
-        const double J = b.J[i], Jold = b.Jold[i], dJ = J - Jold;
-        const double Eold = history[ENERGY][i];
-        const bool broken = SPALL && history[SPALLED][i] > 0.0;
-        const double lowest = broken ? 0.0 : eos.tension.pmin;
-        const double cold = eos.cold(J), gamma = eos.gamma(J);
-        const double pold = max(eos.cold(Jold) + eos.gamma(Jold) * Eold, lowest);
-        const double E =
-            (Eold - 0.5 * (pold + cold) * dJ + b.heat[i]) / max(1.0 + 0.5 * gamma * dJ, 0.1);
-        const double pressure = cold + gamma * E;
-        const bool below = pressure < lowest;
-        subtract_pressure(b, i, below ? after : pressure);
-        history[ENERGY][i] = below ? Eold - 0.5 * (pold + after) * dJ + b.heat[i] : E;
-        history[HEATED][i] += b.heat[i];
-        if (SPALL) history[SPALLED][i] = broken || below ? 1.0 : 0.0;
-      }
+      const double a = 1.0 - gamma;
+      return -(K / gamma) * (inv_a * expm1(a * x) + linear * x - (J - 1.0));
+    }
+    MPM_INLINE double stored(double J) const
+    {
+      const double x = log(J);
+      const double u = liquid_energy(J, x);
+      return x > logJc ? Uc - pmin * (J - Jc) : u;
     }
   };
 

@@ -25,7 +25,7 @@
 
 #define MPM_INLINE inline __attribute__((always_inline))
 
-// Loops over the points of a batch, without and with sums; MPM_ISA is set for law/laws_isa.cpp.
+// Loops over the points of a batch, without and with sums; MPM_ISA is set when kernels are compiled.
 #ifdef MPM_ISA
 #define MPM_PRAGMA(x) _Pragma(#x)
 #define MPM_SIMD MPM_PRAGMA(omp simd)

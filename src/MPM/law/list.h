@@ -9,28 +9,22 @@
 #ifndef MPM_LAW_LIST_H
 #define MPM_LAW_LIST_H
 
-// All constitutive laws by family. A new law is one header and one entry here. The kernels of a family
-// are compiled on their own, once for each instruction set (MPM_ISA: base, v3, v4, with the matching
-// -march): the build writes a file for each one of MPM_LAW_FAMILIES, with the line MPM_LAW_FAMILY(family).
+// All constitutive laws by family. A new law is a struct in a header and one entry here. The kernels
+// of a family are compiled on their own, once for each instruction set (MPM_ISA: base, v3, v4, with
+// the matching -march): the build writes a file with MPM_LAW_FAMILY(family) for each family.
 
 #include "law/critical_state.h"
 #include "law/damage_brittle.h"
 #include "law/damage_ductile.h"
 #include "law/elastic.h"
-#include "law/eos_barotropic.h"
-#include "law/eos_gas.h"
-#include "law/eos_jwl.h"
-#include "law/eos_linear_in_energy.h"
+#include "law/eos_energy.h"
 #include "law/granular.h"
 #include "law/gurson.h"
 #include "law/mohr_coulomb.h"
 #include "law/orthotropic.h"
 #include "law/rubber.h"
-#include "law/snow.h"
 #include "law/strength_j2.h"
-#include "law/strength_johnson_cook.h"
-#include "law/strength_steinberg.h"
-#include "law/strength_zerilli_armstrong.h"
+#include "law/strength_thermal.h"
 #include "law/thermal.h"
 #include "law/viscosity.h"
 #include "law/viscosity_generalized.h"
@@ -44,6 +38,8 @@ namespace {
   template <Part PART, class... Laws> struct Family {
     static constexpr Part part = PART;
     static constexpr int size = sizeof...(Laws);
+    static constexpr LawKernels table[size + 1] = {
+        kernels<Laws>()...};    // there is no empty array
   };
 
   using elastic =
@@ -63,12 +59,6 @@ namespace {
       Family<DAMAGE, DamageJohnsonCook, DamageCockcroftLatham, DamageRankine, DamageGradyKipp>;
   using thermal = Family<THERMAL, ThermalAdiabatic, ThermalConstant>;
 
-  template <class Laws> struct KernelTable;
-  template <Part PART, class... Laws> struct KernelTable<Family<PART, Laws...>> {
-    // one more, as there is no empty array
-    static constexpr LawKernels table[] = {kernels<Laws>()..., LawKernels{}};
-  };
-
 }    // namespace
 }    // namespace MPM_NS::law
 
@@ -82,7 +72,7 @@ namespace {
     const LawKernels *MPM_OF_ISA(mpm_laws_##family)(); \
     const LawKernels *MPM_OF_ISA(mpm_laws_##family)()  \
     {                                                  \
-      return law::KernelTable<law::family>::table;     \
+      return law::family::table;                       \
     }                                                  \
   }
 

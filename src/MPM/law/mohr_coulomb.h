@@ -13,8 +13,6 @@
 namespace MPM_NS::law {
 namespace {
 
-  enum { MC_E, MC_NU, MC_PHI, MC_COHESION, MC_PSI, MC_RESIDUAL_C, MC_RESIDUAL_PHI, MC_RATE };
-
   /** Principal Kirchhoff stresses, largest first. */
   struct Ordered {
     double s1, s2, s3;
@@ -95,6 +93,7 @@ namespace {
   struct LawMohrCoulomb : PrincipalReturn<LawMohrCoulomb>, BulkAndShear {
     static constexpr const char *name = "mohr/coulomb";
     static constexpr const char *meaning = "Mohr-Coulomb plasticity with softening: soil, rock";
+    enum { E, NU, PHI, COHESION, PSI, RESIDUAL_C, RESIDUAL_PHI, RATE };
     static constexpr Parameter parameters[] = {
         YOUNGS_MODULUS,
         POISSONS_RATIO,
@@ -110,12 +109,10 @@ namespace {
         {"gap", ZERO, "1", "logarithmic volume strain between separated parts"}};
     static constexpr const char *check(const LawParameters &p)
     {
-      const bool soft = p.value[MC_RATE] > 0.0;
-      if (p.value[MC_PSI] > p.value[MC_PHI] || (soft && p.value[MC_PSI] > p.value[MC_RESIDUAL_PHI]))
+      const bool soft = p.value[RATE] > 0.0;
+      if (p.value[PSI] > p.value[PHI] || (soft && p.value[PSI] > p.value[RESIDUAL_PHI]))
         return "PSI must not exceed PHI and PHIR, or flow makes energy";
-      if (soft &&
-          (p.value[MC_RESIDUAL_C] > p.value[MC_COHESION] ||
-           p.value[MC_RESIDUAL_PHI] > p.value[MC_PHI]))
+      if (soft && (p.value[RESIDUAL_C] > p.value[COHESION] || p.value[RESIDUAL_PHI] > p.value[PHI]))
         return "CR and PHIR must not exceed C and PHI";
       return nullptr;
     }
@@ -124,10 +121,9 @@ namespace {
     MohrCoulombSurface surface;
 
     explicit LawMohrCoulomb(const LawParameters &p) :
-        BulkAndShear(p), phi(p.value[MC_PHI] * DEGREES), c(p.value[MC_COHESION]),
-        cr(p.value[MC_RESIDUAL_C]), phir(p.value[MC_RESIDUAL_PHI] * DEGREES),
-        rate(p.value[MC_RATE]), sin_phi(std::sin(phi)),
-        c_cos_phi(c * std::cos(phi)), surface{K, G, std::sin(p.value[MC_PSI] * DEGREES)}
+        BulkAndShear(p), phi(p.value[PHI] * DEGREES), c(p.value[COHESION]), cr(p.value[RESIDUAL_C]),
+        phir(p.value[RESIDUAL_PHI] * DEGREES), rate(p.value[RATE]), sin_phi(std::sin(phi)),
+        c_cos_phi(c * std::cos(phi)), surface{K, G, std::sin(p.value[PSI] * DEGREES)}
     {
     }
 

@@ -9,6 +9,8 @@
 #ifndef MPM_LAW_RUBBER_H
 #define MPM_LAW_RUBBER_H
 
+// Hyperelastic laws in which change of volume is uncoupled from change of shape.
+
 #include "law/hyperelastic.h"
 
 namespace MPM_NS::law {

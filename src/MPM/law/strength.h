@@ -14,7 +14,7 @@
 namespace MPM_NS::law {
 namespace {
 
-  /** Cauchy stress deviator at the end of the step if the step is elastic: hypoelastic, see LawLinear. */
+  /** Cauchy stress deviator after an elastic step: hypoelastic, see LawLinear. */
   MPM_INLINE Sym elastic_trial(double G, const Batch &b, int i, const Increment &inc)
   {
     const Sym old = b.Jold[i] * deviator(load_stress(b, i));

@@ -17,13 +17,8 @@ namespace {
   // parameters, in lines as the options that they belong to
   enum { J2_G, J2_SIGMAY, J2_H, J2_B, J2_N };
   enum { J2_VOCE_Q = J2_N + 1, J2_VOCE_BETA, J2_VOCE_H, J2_SWIFT_E0, J2_SWIFT_N };
-  enum {
-    J2_COWPER_RATE = J2_SWIFT_N + 1,
-    J2_COWPER_P,
-    J2_PERZYNA_S,
-    J2_PERZYNA_RATE,
-    J2_PERZYNA_M
-  };
+  enum { J2_COWPER_RATE = J2_SWIFT_N + 1, J2_COWPER_P };
+  enum { J2_PERZYNA_S = J2_COWPER_P + 1, J2_PERZYNA_RATE, J2_PERZYNA_M };
   enum { J2_BACK_C = J2_PERZYNA_M + 1, J2_BACK_GAMMA };
 
   /** Flow stress at rest over the plastic strain e: kinds, or the size of a table. */
@@ -116,9 +111,9 @@ namespace {
     J2Flow(const LawParameters &p, const Batch &b) : hardening(p), G(p.value[J2_G])
     {
       const bool perzyna = p.value[J2_PERZYNA_S] > 0.0;
-      const double rate = p.value[perzyna ? J2_PERZYNA_RATE : J2_COWPER_RATE];
+      const double rate = perzyna ? p.value[J2_PERZYNA_RATE] : p.value[J2_COWPER_RATE];
       inv_rate = 1.0 / max(rate * b.dt, 1e-300);
-      exponent = 1.0 / p.value[perzyna ? J2_PERZYNA_M : J2_COWPER_P];
+      exponent = 1.0 / (perzyna ? p.value[J2_PERZYNA_M] : p.value[J2_COWPER_P]);
       factor = perzyna ? 0.0 : 1.0;
       drag = p.value[J2_PERZYNA_S];
     }

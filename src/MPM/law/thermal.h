@@ -59,9 +59,8 @@ namespace {
       MPM_SIMD
       for (int i = 0; i < b.n; i++) T[i] += warm * b.heat[i];
       if (nhistory(p) == 1) return;
-      const double melting = p.value[TMELT];
-      const double range =
-          p.value[LATENT] / p.value[CP];    // latent heat as a difference of temperatures
+      // range: the latent heat as a difference of temperatures
+      const double melting = p.value[TMELT], range = p.value[LATENT] / p.value[CP];
       double *const molten = history[1];
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {

@@ -33,14 +33,13 @@ class ComposedMaterial : public Material {
   {
     std::copy(definition.laws, definition.laws + NPARTS, laws);
     text = "density " + number(rho);
-    for (int part = 0; part < NPARTS; part++)
-      for (auto &law : laws[part]) {
-        add(static_cast<Part>(part), law);
+    for (auto &part : laws)
+      for (auto &law : part) {
+        add(law);
         shape_matters = shape_matters || law.info->uses_F;
       }
     for (const auto &r : definition.random) add(r);
     for (const auto &range : definition.ranges) add(range);
-    viscous = -1;
     if (definition.shares_stress()) {
       viscous = variables.size();
       for (const char *name : {"xx", "yy", "zz", "xy", "xz", "yz"})
@@ -59,7 +58,10 @@ class ComposedMaterial : public Material {
   }
 
   double density() const override { return rho; }
-  double density(const double *history) const override { return rho * density_factor(history); }
+  double density(const double *history) const override
+  {
+    return random_density ? rho * history[random_density->row] : rho;
+  }
   const std::vector<HistoryVariable> &history() const override { return variables; }
   bool uses_F() const override { return shape_matters; }
   std::string describe() const override { return text; }
@@ -176,8 +178,10 @@ class ComposedMaterial : public Material {
     Batch copy;
     const Batch &b = without_viscous_stress(state, copy);
     for (int i = 0; i < b.n; i++) w[i] = 0.0;
-    for (int part = 0; part < NPARTS; part++)
-      if (!damage || part != STRENGTH) add_energy(static_cast<Part>(part), b, w);
+    for (const auto &part : laws)
+      for (const auto &law : part)
+        if (law.kernels->energy && !(damage && law.part == STRENGTH))
+          call(law.kernels->energy, law, b, w);
   }
 
  private:
@@ -193,7 +197,7 @@ class ComposedMaterial : public Material {
   bool random_heat = false;    ///< does what the thermal part tells the others, too?
   /** First of six history variables with what viscosities added to the stress in the last step, for
    *  a closed law or strength that builds on that stress and must not see it; -1 when not needed. */
-  int viscous;
+  int viscous = -1;
   std::vector<HistoryVariable> variables;
   std::vector<ValidRange> valid;
   std::vector<int> source;    ///< of the quantities of these, as in UsedRange
@@ -251,11 +255,6 @@ class ComposedMaterial : public Material {
                                                             &Batch::volume_energy};
   static_assert(sizeof(Batch) < (9 + 9 + 6 + std::size(single_rows) + 1) * BATCH * sizeof(double),
                 "all rows are listed");
-
-  double density_factor(const double *history) const
-  {
-    return random_density ? history[random_density->row] : 1.0;
-  }
 
   /** Parameters of a law at one point after the other. */
   class LocalParameters {
@@ -390,11 +389,11 @@ class ComposedMaterial : public Material {
     thermal = laws[THERMAL].empty() ? nullptr : laws[THERMAL].data();
     for (auto &law : laws[THERMAL]) law.parameters.heat_density = rho * energy_scale;
     random_heat = thermal && random_heats();
-    for (int part = 0; part < NPARTS; part++)
-      for (auto &law : laws[part]) {
+    for (auto &part : laws)
+      for (auto &law : part) {
         LawParameters &p = law.parameters;
-        law.kernels = &table->kernels(static_cast<Part>(part), law.index);
-        law.heats_alone = damage && part == STRENGTH;
+        law.kernels = &table->kernels(law.part, law.index);
+        law.heats_alone = damage && law.part == STRENGTH;
         law.varies = !law.random.empty() || random_density || random_heat;
         p.density = rho_pressure;
         p.heat_density = rho * energy_scale;
@@ -443,7 +442,7 @@ class ComposedMaterial : public Material {
     add_energy(STRENGTH, b, b.shear_energy);
   }
 
-  void add(Part part, UsedLaw &law)
+  void add(UsedLaw &law)
   {
     const LawInfo &info = *law.info;
     const LawParameters &p = law.parameters;
@@ -457,7 +456,7 @@ class ComposedMaterial : public Material {
       for (int k = 0; k < info.nterm_history; k++)
         declare(info.term_history[k], std::to_string(term + 1));
 
-    text += ", " + title(part, info);
+    text += ", " + title(law);
     for (int k = 0; k < info.nparameters; k++)
       if (p.value[k] != info.parameters[k].standard)
         text += !strcmp(info.parameters[k].unit, FLAG)
@@ -481,13 +480,13 @@ class ComposedMaterial : public Material {
     RandomParameter r = {
         -1, -1, static_cast<int>(variables.size()), random.lognormal, random.variation, nullptr};
     std::string choice = "density";
-    const auto consider = [&](Part part, UsedLaw &law, int term, int k) {
+    const auto consider = [&](UsedLaw &law, int term, int k) {
       const LawInfo &info = *law.info;
       const std::string name = term < 0 ? std::string(info.parameters[k].name)
                                         : info.term_parameters[k].name + std::to_string(term + 1);
-      const std::string of_part = std::string(part_name[part]) + "." + name;
+      const std::string of_part = std::string(part_name[law.part]) + "." + name;
       const std::string of_law = std::string(info.name) + "." + name;
-      const bool by_law = part == CLOSED || part == VISCOSITY;
+      const bool by_law = law.part == CLOSED || law.part == VISCOSITY;
       choice += ", " + (by_law ? of_law : of_part);
       if (random.name != name && random.name != of_part && !(by_law && random.name == of_law))
         return;
@@ -496,13 +495,11 @@ class ComposedMaterial : public Material {
       r.term = term;
       r.parameter = k;
     };
-    for (int part = 0; part < NPARTS; part++)
-      for (auto &law : laws[part]) {
-        for (int k = 0; k < law.info->nparameters; k++)
-          consider(static_cast<Part>(part), law, -1, k);
+    for (auto &part : laws)
+      for (auto &law : part) {
+        for (int k = 0; k < law.info->nparameters; k++) consider(law, -1, k);
         for (int term = 0; term < law.parameters.nterms; term++)
-          for (int k = 0; k < law.info->nterm_parameters; k++)
-            consider(static_cast<Part>(part), law, term, k);
+          for (int k = 0; k < law.info->nterm_parameters; k++) consider(law, term, k);
       }
     const bool of_density = random.name == "density";
     if (!owner && !of_density) refuse("no such parameter: choose one of " + choice);

@@ -22,8 +22,7 @@ using namespace MPM_NS;
 /* ---------------------------------------------------------------------- */
 
 MaterialPoint::MaterialPoint(const Material &material, int n, double h) :
-    material(material), batch(), storage(material.history().size() * BATCH), time(0.0), power(0.0),
-    work(), rotation{1, 0, 0, 0, 1, 0, 0, 0, 1}, guess()
+    material(material), storage(material.history().size() * BATCH)
 {
   batch.n = n;
   batch.h = h;

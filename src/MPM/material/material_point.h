@@ -50,12 +50,13 @@ class MaterialPoint {
   void step_uniaxial_stress(double rate, double dt);
 
   const Material &material;
-  Batch batch;
+  Batch batch = {};
   std::vector<double> storage;    ///< history of the batch
-  double time;
-  double power;          ///< stress power so far, integral of P:dF by the trapezoidal rule
-  double work[NWORK];    ///< so far, per reference volume
-  double rotation[9];    ///< of the frame in which motion is controlled, see step()
+  double time = 0.0;
+  double power = 0.0;         ///< stress power so far, integral of P:dF by the trapezoidal rule
+  double work[NWORK] = {};    ///< so far, per reference volume
+  /** Of the frame in which motion is controlled, see step(). */
+  double rotation[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 
   /** Deformation gradient and Cauchy stress in the frame in which motion is controlled. */
   void frame_state(double *F, double *stress) const;
@@ -70,7 +71,7 @@ class MaterialPoint {
   double stored_energy() const;
 
  private:
-  double guess[6];    ///< rate of deformation found in the last step with mixed control
+  double guess[6] = {};    ///< rate of deformation found in the last step with mixed control
 };
 
 }    // namespace MPM_NS

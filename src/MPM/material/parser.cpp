@@ -211,6 +211,7 @@ class Parser {
     if (here >= static_cast<int>(words.size()))
       fail(here, std::string(part_name[part]) + ": name is missing, " + choice);
     UsedLaw law;
+    law.part = part;
     law.index = find(laws, words[here]);
     law.word = here;
     if (law.index < 0)
@@ -218,13 +219,13 @@ class Parser {
     law.info = &laws[law.index];
     if (part != VISCOSITY && !material.laws[part].empty())
       fail(here,
-           "'" + title(part, *law.info) + "': the material has '" +
-               title(part, *material.laws[part][0].info) + "' already");
+           "'" + title(law) + "': the material has '" + title(material.laws[part][0]) +
+               "' already");
     for (const auto &other : material.laws[part])
-      if (other.index == law.index) fail(here, "'" + title(part, *law.info) + "' is given twice");
-    parse_parameters(title(part, *law.info), *law.info, law.parameters);
+      if (other.index == law.index) fail(here, "'" + title(law) + "' is given twice");
+    parse_parameters(title(law), *law.info, law.parameters);
     const char *wrong = law.info->check(law.parameters);
-    if (wrong) fail(here, title(part, *law.info) + ": " + wrong);
+    if (wrong) fail(here, title(law) + ": " + wrong);
     material.laws[part].push_back(law);
   }
 
@@ -314,11 +315,11 @@ class Parser {
     };
     const auto refuse = [&](Part part, const std::string &why) {
       const UsedLaw &law = material.laws[part][0];
-      fail(law.word, "'" + title(part, *law.info) + "'" + why);
+      fail(law.word, "'" + title(law) + "'" + why);
     };
     if (material.density <= 0.0) fail(end, "density is missing: add 'density RHO'");
     if (has(CLOSED)) {
-      const std::string name = title(CLOSED, *material.laws[CLOSED][0].info);
+      const std::string name = title(material.laws[CLOSED][0]);
       for (const Part part : {EOS, STRENGTH, DAMAGE})
         if (has(part))
           refuse(part,

@@ -53,6 +53,7 @@ struct UsedRandom {
 
 /** A law with its parameters in a material. */
 struct UsedLaw {
+  Part part;
   const LawInfo *info;
   int index;    ///< in its list
   int word;     ///< of its name in the definition
@@ -64,8 +65,8 @@ struct UsedLaw {
   const LawKernels *kernels = nullptr;    ///< for the instruction set that runs
   std::vector<RandomParameter> random;    ///< its own parameters that differ from point to point
   bool varies = false;                    ///< do its LawParameters differ from point to point?
-  bool heats_alone =
-      false;    ///< a strength whose plastic work is all turned into heat by the damage
+  /** Is it a strength whose plastic work is all turned into heat by the damage? */
+  bool heats_alone = false;
 };
 
 /** A range of validity in a definition. */
@@ -105,9 +106,9 @@ inline std::string number(double x)
 }
 
 /** Name of a law with that of its part in front. */
-inline std::string title(Part part, const LawInfo &info)
+inline std::string title(const UsedLaw &law)
 {
-  return std::string(part_name[part]) + (part == CLOSED ? "" : " ") + info.name;
+  return std::string(part_name[law.part]) + (law.part == CLOSED ? "" : " ") + law.info->name;
 }
 
 }    // namespace MPM_NS

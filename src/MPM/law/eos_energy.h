@@ -1,0 +1,447 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MPM_LAW_EOS_ENERGY_H
+#define MPM_LAW_EOS_ENERGY_H
+
+// Equations of state with an internal energy.
+
+#include "law/eos.h"
+
+namespace MPM_NS::law {
+namespace {
+
+  /** What equations of state with an internal energy E share: its declaration (initial: as in
+   *  HistoryDeclaration) and that of its dissipated part. */
+  constexpr HistoryDeclaration internal_energy(int initial)
+  {
+    return {"energy", initial, "pressure", "internal energy per reference volume"};
+  }
+  constexpr HistoryDeclaration dissipated = {"heat", ZERO, "pressure",
+                                             "part of it that was dissipated"};
+  struct InternalEnergy : LawDefaults {
+    static constexpr bool uses_F = false;
+    enum { ENERGY, HEATED };
+
+    /** Internal energy less the dissipated part, which counts as plastic and viscous work. */
+    static void energy(const LawParameters &, const Batch &b, History history, double *w)
+    {
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) w[i] += history[ENERGY][i] - history[HEATED][i];
+    }
+  };
+
+  // options for the tension that an equation of state bears
+  constexpr Parameter limits[] = {
+      {"cutoff", "PMIN", "pressure", TENSION, -UNBOUNDED, "lowest pressure, not positive"},
+      {"spall", "PSPALL", "pressure", TENSION, -UNBOUNDED,
+       "pressure, not positive, below which the material breaks and bears no tension any more"}};
+  constexpr Parameter cutoff = limits[0], spall = limits[1];
+  constexpr HistoryDeclaration spalled = {"spalled", ZERO, "1", "1 when the material has broken"};
+
+  /** Tension that an equation of state bears: all, a pressure of at least PMIN, or, when the
+   *  pressure has fallen below PMIN once, none (spall). */
+  struct Tension {
+    double pmin;     ///< lowest pressure, minus infinity without limit
+    double after;    ///< pressure instead of one that would be lower
+    bool spall;
+
+    /** Values of the options; minus infinity: not given. */
+    Tension(double cutoff, double spalls) :
+        pmin(max(cutoff, spalls)), after(spalls > -UNBOUNDED ? 0.0 : cutoff),
+        spall(spalls > -UNBOUNDED)
+    {
+    }
+  };
+
+  /** Loops of an equation of state p = cold(J) + gamma(J) E, with the internal energy E per
+   *  reference volume.
+   *
+   *  Eos has cold(J), gamma(J), slope(J, E) = -dp/dJ at constant E, and least, the smallest
+   *  density_0 (sound speed)^2 that is believed; CUTOFF and SPALL are the indices of its parameters
+   *  cutoff and spall. E follows from
+   *
+   *    E = E_old - (p_old + p)/2 (J - J_old) + heat
+   *
+   *  solved together with p: second order in the strain increment, and one step from the reference
+   *  state lands exactly on the Hugoniot. A pressure that is limited by tension is the one that
+   *  does the work. History: internal_energy, dissipated, and with spall a mark, spalled. */
+  template <class Eos> struct LinearInEnergy : InternalEnergy {
+    enum { SPALLED = HEATED + 1 };
+    static constexpr int nhistory(const LawParameters &p)
+    {
+      return p.value[Eos::SPALL] > -UNBOUNDED ? 3 : 2;
+    }
+    static constexpr const char *check(const LawParameters &p)
+    {
+      return p.value[Eos::CUTOFF] > -UNBOUNDED && p.value[Eos::SPALL] > -UNBOUNDED
+          ? "cutoff and spall exclude each other: leave one of them out"
+          : nullptr;
+    }
+
+    static void update(const LawParameters &p, Batch &b, History history)
+    {
+      const Eos eos(p);
+      const Tension tension(p.value[Eos::CUTOFF], p.value[Eos::SPALL]);
+      if (tension.spall)
+        loop<true>(eos, tension, b, history);
+      else
+        loop<false>(eos, tension, b, history);
+    }
+
+    /** Isentropic -J^2 dp/dJ = J^2 (-(dp/dJ)_E + gamma p). */
+    static void modulus(const LawParameters &p, const Batch &b, History history, double *k)
+    {
+      const Eos eos(p);
+      const Tension tension(p.value[Eos::CUTOFF], p.value[Eos::SPALL]);
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const double J = b.J[i], E = history[ENERGY][i], gamma = eos.gamma(J);
+        const double pressure = max(eos.cold(J) + gamma * E, tension.pmin);
+        k[i] += max(J * J * (eos.slope(J, E) + gamma * pressure), eos.least);
+      }
+    }
+
+   private:
+    template <bool SPALL>
+    static MPM_INLINE void loop(const Eos &eos, const Tension &tension, Batch &b, History history)
+    {
+      const double after = tension.after;
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const double J = b.J[i], Jold = b.Jold[i], dJ = J - Jold;
+        const double Eold = history[ENERGY][i];
+        const bool broken = SPALL && history[SPALLED][i] > 0.0;
+        const double lowest = broken ? 0.0 : tension.pmin;
+        const double cold = eos.cold(J), gamma = eos.gamma(J);
+        const double pold = max(eos.cold(Jold) + eos.gamma(Jold) * Eold, lowest);
+        const double E =
+            (Eold - 0.5 * (pold + cold) * dJ + b.heat[i]) / max(1.0 + 0.5 * gamma * dJ, 0.1);
+        const double pressure = cold + gamma * E;
+        const bool below = pressure < lowest;
+        subtract_pressure(b, i, below ? after : pressure);
+        history[ENERGY][i] = below ? Eold - 0.5 * (pold + after) * dJ + b.heat[i] : E;
+        history[HEATED][i] += b.heat[i];
+        if (SPALL) history[SPALLED][i] = broken || below ? 1.0 : 0.0;
+      }
+    }
+  };
+
+  /** Mie-Gruneisen with the shock Hugoniot U_s = C0 + S u_p (M.H. Rice, R.G. McQueen, J.M. Walsh,
+   *  Solid State Physics 6 (1958) 1; M.L. Wilkins, Computer Simulation of Dynamic Phenomena, 1999),
+   *  with density * Gruneisen parameter constant. With eta = 1 - J, E the internal energy per
+   *  reference volume and K = density_0 C0^2:
+   *
+   *    compression  p = p_H (1 - GAMMA0 eta / 2) + GAMMA0 E,   p_H = K eta / (1 - S eta)^2
+   *    tension      p = K (1/J - 1) + GAMMA0 E
+   *
+   *  1 - S eta is kept above 0.05, which is a pressure of hundreds of K. */
+  struct EosShock : LinearInEnergy<EosShock> {
+    static constexpr const char *name = "shock";
+    static constexpr const char *meaning = "Mie-Gruneisen with linear shock Hugoniot";
+    enum { C0, S, GAMMA0, CUTOFF, SPALL };
+    static constexpr Parameter parameters[] = {
+        {"", "C0", "velocity", POSITIVE, REQUIRED, "bulk sound speed at reference density"},
+        {"", "S", "1", NOT_NEGATIVE, REQUIRED, "slope dU_s/du_p of the Hugoniot"},
+        {"", "GAMMA0", "1", NOT_NEGATIVE, REQUIRED, "Gruneisen parameter at reference density"},
+        cutoff,
+        spall};
+    static constexpr HistoryDeclaration history[] = {internal_energy(ZERO), dissipated, spalled};
+
+    double K, s, gamma0, least;
+
+    explicit EosShock(const LawParameters &p) :
+        K(p.density * p.value[C0] * p.value[C0]), s(p.value[S]), gamma0(p.value[GAMMA0]),
+        least(LEAST_MODULUS * K)
+    {
+    }
+
+    MPM_INLINE double gap(double eta) const { return max(1.0 - s * eta, 0.05); }
+    MPM_INLINE double gamma(double) const { return gamma0; }
+
+    MPM_INLINE double cold(double J) const
+    {
+      const double eta = 1.0 - J, g = gap(eta);
+      return K * eta * (J < 1.0 ? (1.0 - 0.5 * gamma0 * eta) / (g * g) : 1.0 / J);
+    }
+
+    MPM_INLINE double slope(double J, double) const
+    {
+      const double eta = 1.0 - J, g = gap(eta);
+      const double ph = K * eta / (g * g);
+      const double dph = K * (1.0 + s * eta) / (g * g * g);
+      const double squeezed = dph * (1.0 - 0.5 * gamma0 * eta) - 0.5 * gamma0 * ph;
+      return J < 1.0 ? squeezed : K / (J * J);
+    }
+  };
+
+  /** Polynomial in mu = density/density_0 - 1, with the internal energy E per reference volume: the
+   *  linear polynomial of hydrocodes (J.O. Hallquist, LS-DYNA Theory Manual, 2006, chapter on
+   *  equations of state) with coefficients of its own in tension, as in AUTODYN:
+   *
+   *    compression  p = A1 mu + A2 mu^2 + A3 mu^3 + (B0 + B1 mu) E
+   *    tension      p = T1 mu + T2 mu^2 + B0 E
+   */
+  struct EosPolynomial : LinearInEnergy<EosPolynomial> {
+    static constexpr const char *name = "polynomial";
+    static constexpr const char *meaning = "polynomial in density, linear in energy";
+    enum { A1, A2, A3, B0, B1, T1, T2, E0, CUTOFF, SPALL };
+    static constexpr Parameter parameters[] = {
+        {"", "A1", "pressure", POSITIVE, REQUIRED, "bulk modulus"},
+        {"", "A2", "pressure", ANY_NUMBER, REQUIRED, "coefficient of the square in compression"},
+        {"", "A3", "pressure", ANY_NUMBER, REQUIRED, "coefficient of the cube in compression"},
+        {"", "B0", "1", NOT_NEGATIVE, REQUIRED, "coefficient of the energy"},
+        {"", "B1", "1", ANY_NUMBER, REQUIRED, "coefficient of mu times energy in compression"},
+        {"", "T1", "pressure", NOT_NEGATIVE, 0.0, "linear coefficient in tension, 0: A1"},
+        {"", "T2", "pressure", ANY_NUMBER, 0.0, "coefficient of the square in tension"},
+        {"energy", "E0", "pressure", NOT_NEGATIVE, 0.0, "initial energy per reference volume"},
+        cutoff,
+        spall};
+    static constexpr HistoryDeclaration history[] = {internal_energy(E0), dissipated, spalled};
+
+    double a1, a2, a3, b0, b1, t1, t2, least;
+
+    explicit EosPolynomial(const LawParameters &p) :
+        a1(p.value[A1]), a2(p.value[A2]), a3(p.value[A3]), b0(p.value[B0]), b1(p.value[B1]),
+        t1(p.value[T1] > 0.0 ? p.value[T1] : a1), t2(p.value[T2]), least(LEAST_MODULUS * a1)
+    {
+    }
+
+    MPM_INLINE double gamma(double J) const { return b0 + b1 * max((1.0 - J) / J, 0.0); }
+
+    MPM_INLINE double cold(double J) const
+    {
+      const double mu = (1.0 - J) / J;
+      const double squeezed = a1 + mu * (a2 + mu * a3), stretched = t1 + mu * t2;
+      return mu * (J < 1.0 ? squeezed : stretched);
+    }
+
+    MPM_INLINE double slope(double J, double E) const
+    {
+      const double mu = (1.0 - J) / J;
+      const double squeezed = a1 + mu * (2.0 * a2 + 3.0 * mu * a3) + b1 * E;
+      const double stretched = t1 + 2.0 * mu * t2;
+      return (J < 1.0 ? squeezed : stretched) / (J * J);
+    }
+  };
+
+  /** Gas with p + PINF = (GAMMA - 1) e / J, e = E - PINF J, where E is the internal energy per
+   *  reference volume; PINF = 0 for an ideal gas. */
+  struct Gas {
+    double g;    ///< GAMMA - 1
+    double pinf;
+    double pmin;    ///< lowest pressure, which does the work when it acts
+
+    /** Energy of the reference state at a pressure. */
+    double energy_at(double pressure) const { return (pressure + pinf) / g + pinf; }
+
+    MPM_INLINE double pressure(double J, double E) const
+    {
+      return max(g * (E - pinf * J) / J - pinf, pmin);
+    }
+  };
+
+  /** Loops of a gas. Law has: gas(parameters).
+   *
+   *  Along an isentrope e ~ J^(1 - GAMMA), which the update follows exactly for any increment of J,
+   *  so that no expansion makes the energy negative. Half of the heat of a step comes before and
+   *  half of it after the change of volume: second order. */
+  template <class Law> struct GasLaw : InternalEnergy {
+    static constexpr HistoryDeclaration history[] = {internal_energy(INITIALIZED), dissipated};
+
+    static void update(const LawParameters &p, Batch &b, History history)
+    {
+      const Gas gas = Law::gas(p);
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const double J = b.J[i], Jold = b.Jold[i], half = 0.5 * b.heat[i];
+        const double Eold = history[ENERGY][i];
+        const double ratio = exp(gas.g * log(Jold / J));
+        const double e = (Eold - gas.pinf * Jold + half) * ratio + half;
+        const double end = gas.g * e / J - gas.pinf;
+        const double mean = 0.5 * (gas.pressure(Jold, Eold) + gas.pmin);
+        const bool below = end < gas.pmin;
+        subtract_pressure(b, i, below ? gas.pmin : end);
+        history[ENERGY][i] = below ? Eold - mean * (J - Jold) + 2.0 * half : e + gas.pinf * J;
+        history[HEATED][i] += b.heat[i];
+      }
+    }
+
+    /** -J^2 dp/dJ = GAMMA (p + PINF) J */
+    static void modulus(const LawParameters &p, const Batch &b, History history, double *k)
+    {
+      const Gas gas = Law::gas(p);
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const double J = b.J[i];
+        k[i] += (gas.g + 1.0) * (gas.pressure(J, history[ENERGY][i]) + gas.pinf) * J;
+      }
+    }
+  };
+
+  /** Ideal gas of constant specific heats, p = (GAMMA - 1) density e (for instance E.F. Toro,
+   *  Riemann Solvers and Numerical Methods for Fluid Dynamics, 2009, ch. 1). The pressure is
+   *  absolute and positive from the start: points have the stress -P0 before the first step. */
+  struct EosIdealGas : GasLaw<EosIdealGas> {
+    static constexpr const char *name = "ideal/gas";
+    static constexpr const char *meaning = "ideal gas";
+    enum { GAMMA, P0, E0 };
+    static constexpr Parameter parameters[] = {
+        {"", "GAMMA", "1", {1.0, UNBOUNDED, false}, REQUIRED, "ratio of specific heats"},
+        {"pressure", "P0", "pressure", POSITIVE, 0.0, "initial pressure"},
+        {"energy", "E0", "energy/mass", POSITIVE, 0.0, "initial internal energy per mass"}};
+    static constexpr const char *check(const LawParameters &p)
+    {
+      return (p.value[P0] > 0.0) == (p.value[E0] > 0.0)
+          ? "give the initial state by either 'pressure P0' or 'energy E0'"
+          : nullptr;
+    }
+    static Gas gas(const LawParameters &p) { return {p.value[GAMMA] - 1.0, 0.0, 0.0}; }
+    static void initialize(const LawParameters &p, const double *, double *history)
+    {
+      history[0] = gas(p).energy_at(p.value[P0]) + p.heat_density * p.value[E0];
+    }
+  };
+
+  /** Stiffened gas p = (GAMMA - 1) density e - GAMMA PINF for liquids and solids under high
+   *  pressure (F.H. Harlow, A.A. Amsden, LA-4700, 1971; R. Menikoff, B.J. Plohr, Rev. Mod. Phys. 61
+   *  (1989) 75). */
+  struct EosStiffenedGas : GasLaw<EosStiffenedGas> {
+    static constexpr const char *name = "stiffened/gas";
+    static constexpr const char *meaning = "stiffened gas";
+    enum { GAMMA, PINF, P0, CUTOFF };
+    static constexpr Parameter parameters[] = {
+        {"", "GAMMA", "1", {1.0, UNBOUNDED, false}, REQUIRED, "ratio of specific heats"},
+        {"", "PINF", "pressure", POSITIVE, REQUIRED, "pressure that is added"},
+        {"pressure", "P0", "pressure", NOT_NEGATIVE, 0.0, "initial pressure"},
+        cutoff};
+    static constexpr const char *check(const LawParameters &p)
+    {
+      return p.value[CUTOFF] != -UNBOUNDED && p.value[CUTOFF] <= -p.value[PINF]
+          ? "PMIN is never reached: pressure stays above -PINF; leave cutoff out or raise PMIN"
+          : nullptr;
+    }
+    static Gas gas(const LawParameters &p)
+    {
+      return {p.value[GAMMA] - 1.0, p.value[PINF], max(p.value[CUTOFF], -p.value[PINF])};
+    }
+    static void initialize(const LawParameters &p, const double *, double *history)
+    {
+      history[0] = gas(p).energy_at(p.value[P0]);
+    }
+  };
+
+  /** Detonation products after Jones, Wilkins and Lee (E.L. Lee, H.C. Hornig, J.W. Kury, UCRL-50422,
+   *  1968), with programmed burn (M.L. Wilkins, UCRL-7322, 1963; E.L. Giroux, HEMP User's Manual,
+   *  UCRL-51079, 1973). With the internal energy E per reference volume:
+   *
+   *    p = f [A (1 - OMEGA/(R1 J)) exp(-R1 J) + B (1 - OMEGA/(R2 J)) exp(-R2 J) + OMEGA E / J]
+   *    f = D (t - t_light) / (WIDTH h) within 0 and 1, never decreasing
+   *
+   *  The detonation reaches a point at t_light: the time of a detonation point plus the distance
+   *  from it over D, the earliest of all detonation points, at the position where the point is
+   *  made. Without detonation points all has burnt from the start. E is E0 from the start and
+   *  changes by the work of the pressure and by heat only: the chemical energy is released once. */
+  struct EosJWL : InternalEnergy {
+    static constexpr const char *name = "jwl";
+    static constexpr const char *meaning = "Jones-Wilkins-Lee detonation products";
+    enum { A, B, R1, R2, OMEGA, E0, D, WIDTH };
+    static constexpr Parameter parameters[] = {
+        {"", "A", "pressure", NOT_NEGATIVE, REQUIRED, "coefficient of the first exponential"},
+        {"", "B", "pressure", ANY_NUMBER, REQUIRED, "coefficient of the second exponential"},
+        {"", "R1", "1", POSITIVE, REQUIRED, "rate of the first exponential"},
+        {"", "R2", "1", POSITIVE, REQUIRED, "rate of the second exponential"},
+        {"", "OMEGA", "1", POSITIVE, REQUIRED, "Gruneisen parameter of the products"},
+        {"", "E0", "pressure", POSITIVE, REQUIRED, "chemical energy per reference volume"},
+        {"", "D", "velocity", POSITIVE, REQUIRED, "detonation velocity"},
+        {"width", "WIDTH", "1", POSITIVE, 3.0, "width of the burn in node spacings"}};
+    static constexpr const char *term = "detonate";
+    static constexpr Parameter term_parameters[] = {
+        {"detonate", "X", "length", ANY_NUMBER, REQUIRED, "detonation point"},
+        {"detonate", "Y", "length", ANY_NUMBER, REQUIRED, "detonation point"},
+        {"detonate", "Z", "length", ANY_NUMBER, REQUIRED, "detonation point"},
+        {"detonate", "T", "time", ANY_NUMBER, REQUIRED, "time of its detonation"}};
+    static constexpr HistoryDeclaration history[] = {
+        internal_energy(E0),
+        dissipated,
+        {"burn", INITIALIZED, "1", "burn fraction"},
+        {"lighting", INITIALIZED, "time", "time at which the detonation arrives"}};
+    enum { BURN = HEATED + 1, LIGHTING };
+    static void initialize(const LawParameters &p, const double *x, double *history)
+    {
+      for (int k = 0; k < p.nterms; k++) {
+        const double *d = p.term[k];
+        const double r2 = (x[0] - d[0]) * (x[0] - d[0]) + (x[1] - d[1]) * (x[1] - d[1]) +
+            (x[2] - d[2]) * (x[2] - d[2]);
+        const double light = d[3] + std::sqrt(r2) / p.value[D];
+        history[LIGHTING] = k == 0 ? light : min(history[LIGHTING], light);
+      }
+      history[BURN] = p.nterms ? 0.0 : 1.0;
+    }
+
+    double a, b, r1, r2, omega;
+
+    explicit EosJWL(const LawParameters &p) :
+        a(p.value[A]), b(p.value[B]), r1(p.value[R1]), r2(p.value[R2]), omega(p.value[OMEGA])
+    {
+    }
+
+    /** Pressure of the products at zero internal energy, and its slope -dp/dJ. */
+    MPM_INLINE double cold(double J) const
+    {
+      return a * (1.0 - omega / (r1 * J)) * exp(-r1 * J) +
+          b * (1.0 - omega / (r2 * J)) * exp(-r2 * J);
+    }
+    MPM_INLINE double slope(double J) const
+    {
+      const double w = omega / J;
+      return a * (r1 - w - w / (r1 * J)) * exp(-r1 * J) +
+          b * (r2 - w - w / (r2 * J)) * exp(-r2 * J);
+    }
+
+    static void update(const LawParameters &p, Batch &batch, History history)
+    {
+      const EosJWL eos(p);
+      const double time = batch.time, rate = p.value[D] / (p.value[WIDTH] * batch.h);
+      MPM_SIMD
+      for (int i = 0; i < batch.n; i++) {
+        const double J = batch.J[i], Jold = batch.Jold[i], dJ = J - Jold;
+        const double Eold = history[ENERGY][i], before = history[BURN][i];
+        const double burn = min(max((time - history[LIGHTING][i]) * rate, before), 1.0);
+        const double cold = burn * eos.cold(J), gamma = burn * eos.omega / J;
+        const double pold = max(before * (eos.cold(Jold) + eos.omega / Jold * Eold), 0.0);
+        const double E =
+            (Eold - 0.5 * (pold + cold) * dJ + batch.heat[i]) / max(1.0 + 0.5 * gamma * dJ, 0.1);
+        const double pressure = cold + gamma * E;
+        const bool below = pressure < 0.0;
+        subtract_pressure(batch, i, below ? 0.0 : pressure);
+        history[ENERGY][i] = below ? Eold - 0.5 * pold * dJ + batch.heat[i] : E;
+        history[HEATED][i] += batch.heat[i];
+        history[BURN][i] = burn;
+      }
+    }
+
+    /** Isentropic -J^2 dp/dJ. While the explosive burns at least density_0 D^2: the front is no
+     *  slower, and the pressure still has to come. */
+    static void modulus(const LawParameters &p, const Batch &batch, History history, double *k)
+    {
+      const EosJWL eos(p);
+      const double front = p.density * p.value[D] * p.value[D];
+      MPM_SIMD
+      for (int i = 0; i < batch.n; i++) {
+        const double J = batch.J[i], E = history[ENERGY][i], burn = history[BURN][i];
+        const double gamma = eos.omega / J, pressure = max(burn * (eos.cold(J) + gamma * E), 0.0);
+        const double slope = eos.slope(J) + gamma / J * E + gamma * pressure;
+        k[i] += max(burn * J * J * slope, burn < 1.0 ? front : 0.0);
+      }
+    }
+  };
+
+}    // namespace
+}    // namespace MPM_NS::law
+#endif
