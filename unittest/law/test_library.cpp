@@ -7,17 +7,17 @@
 // and of the benchmark, depends on no units, and stands fast and large motions; each material file
 // tells what it is, where its values come from, and where they are valid.
 
+#include "declare/table_testing.h"
 #include "law/law.h"
 #include "material/material_testing.h"
 
 #include <cctype>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <regex>
 
 using namespace MPM_NS;
 using namespace material_testing;
+using MPM_TEST::text_of_file;
 
 namespace {
 
@@ -45,13 +45,6 @@ void expect_all(const std::set<std::string> &used, const std::string &where)
           << PART_NAME[part] << " " << info.name << " is not in " << where;
 }
 
-std::string text_of(const std::filesystem::path &path)
-{
-  std::stringstream text;
-  text << std::ifstream(path).rdbuf();
-  return text.str();
-}
-
 /** The material files. */
 std::vector<std::filesystem::path> material_files()
 {
@@ -74,7 +67,8 @@ TEST(Library, AllLawsAreTested)
 TEST(Library, AllLawsAreTimed)
 {
   // definitions are strings that begin with the density, and may go on over several lines
-  const std::string source = text_of(std::string(MPM_SOURCE_DIR) + "/bench/bench_materials.cpp");
+  const std::string source =
+      text_of_file(std::string(MPM_SOURCE_DIR) + "/bench/bench_materials.cpp");
   std::set<std::string> used;
   for (size_t at = source.find("\"density "); at != std::string::npos;
        at = source.find("\"density ", at + 1)) {
@@ -97,7 +91,7 @@ TEST(Library, MaterialFilesAreComplete)
 {
   std::set<std::string> names;
   for (const auto &path : material_files()) {
-    const std::string name = path.stem().string(), text = text_of(path);
+    const std::string name = path.stem().string(), text = text_of_file(path);
     SCOPED_TRACE(name);
     names.insert(name);
     const std::string header = text.substr(0, text.find('\n'));
@@ -129,7 +123,7 @@ TEST(Library, ModuliAreThoseOfEAndNu)
   const std::regex words("E = ([0-9.]+) ([GM])Pa, nu = ([0-9]\\.[0-9]+)"), shock("\\neos +shock ");
   int files = 0;
   for (const auto &path : material_files()) {
-    const std::string name = path.stem().string(), text = text_of(path);
+    const std::string name = path.stem().string(), text = text_of_file(path);
     std::smatch found;
     if (!std::regex_search(text, found, words) || text.find("\nstrength") == std::string::npos)
       continue;

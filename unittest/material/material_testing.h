@@ -218,6 +218,21 @@ void turn_on_top(const Material &material, const Motion &F, double angle, int n,
   }
 }
 
+/** A rotation on top of a motion turns the stress and leaves the energy alone, to a tolerance; more:
+ *  other checks of the point as it is and of the one that turns. */
+template <class Motion, class More>
+void expect_objective(const Material &material, const Motion &F, double angle, double tolerance,
+                      const More &more)
+{
+  turn_on_top(material, F, angle, 50,
+              [&](const MaterialPoint &plain, const MaterialPoint &turned, double difference) {
+                EXPECT_LT(difference, tolerance * size(stress_of(plain)));
+                EXPECT_NEAR(turned.stored_energy(), plain.stored_energy(),
+                            tolerance * plain.stored_energy());
+                more(plain, turned);
+              });
+}
+
 /** Matrices of random numbers with a normal distribution. */
 struct RandomMatrix {
   std::mt19937 random;

@@ -14,15 +14,6 @@
 
 #include "transfer/cpdi.h"
 #include "transfer/kernel_testing.h"
-#include "transfer/kernels.h"
-
-#include "gtest/gtest.h"
-
-#include <algorithm>
-#include <cmath>
-#include <random>
-#include <string>
-#include <vector>
 
 using namespace MPM_NS;
 using namespace MPM_TEST;

@@ -15,21 +15,11 @@
 #include "material/batch.h"
 #include "math/matrix.h"
 #include "transfer/kernel_testing.h"
-#include "transfer/kernels.h"
 #include "transfer/shape.h"
 
-#include "gtest/gtest.h"
-
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <limits>
 #include <memory>
-#include <random>
-#include <string>
-#include <vector>
 
 using namespace MPM_NS;
 using namespace MPM_TEST;

@@ -13,10 +13,6 @@
 
 #include "mpm_lammps.h"
 
-#include "gtest/gtest.h"
-
-#include <cmath>
-
 using namespace MPM_TEST;
 
 namespace {
@@ -80,8 +76,7 @@ TEST(Polypic, RoundTrip)
               " transfer polypic kernels reference", " transfer apic"}) {
           const bool poly = transfer != " transfer apic";
           SCOPED_TRACE(strprintf("%dd %s %s %s", dim, shape.c_str(), transfer.c_str(), ledger));
-          Scene run;
-          run.commands(block(dim, shape + transfer) + ledger + "timestep 1e-14\nrun 0\n");
+          Scene run(block(dim, shape + transfer) + ledger + "timestep 1e-14\nrun 0\n");
           double **C = run.affine("g"), **Q = run.modes("g");
           ASSERT_EQ(Q != nullptr, poly);
           const int nmode = dim == 2 ? 1 : 4;
@@ -149,8 +144,7 @@ TEST(Polypic, Conservation)
 
 static double viscosity(const std::string &options)
 {
-  Scene run;
-  run.commands(replaced(R"(
+  Scene run(replaced(R"(
 units lj
 dimension 2
 boundary p p p
@@ -170,7 +164,7 @@ thermo_style custom step c_e
 timestep 0.04
 run 0
 )",
-                        "OPTIONS", options));
+                     "OPTIONS", options));
   const double E = run.evaluate("c_e"), k = M_PI / 8.0, t = 0.04 * 150;
   run.commands("run 150\n");
   return -log(run.evaluate("c_e") / E) / (4.0 * k * k * t);
