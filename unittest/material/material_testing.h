@@ -81,10 +81,8 @@ inline std::string definition(const std::string &name)
 
 inline Matrix operator*(const Matrix &a, const Matrix &b)
 {
-  Matrix c{};
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++)
-      for (int k = 0; k < 3; k++) c[3 * i + j] += a[3 * i + k] * b[3 * k + j];
+  Matrix c;
+  for (int k = 0; k < 9; k++) c[k] = MPM_NS::product(a.data(), b.data(), k / 3, k % 3);
   return c;
 }
 
@@ -113,11 +111,9 @@ inline double det(const Matrix &F)
 
 inline Matrix inverse(const Matrix &M)
 {
-  Matrix c = {M[4] * M[8] - M[5] * M[7], M[2] * M[7] - M[1] * M[8], M[1] * M[5] - M[2] * M[4],
-              M[5] * M[6] - M[3] * M[8], M[0] * M[8] - M[2] * M[6], M[2] * M[3] - M[0] * M[5],
-              M[3] * M[7] - M[4] * M[6], M[1] * M[6] - M[0] * M[7], M[0] * M[4] - M[1] * M[3]};
+  Matrix c = MPM_COFACTORS(M);
   for (double &x : c) x /= det(M);
-  return c;
+  return transpose(c);
 }
 
 constexpr std::array<double, 3> AXIS = {0.48, 0.6, 0.64};    ///< of rotations, for most tests
