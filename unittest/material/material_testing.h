@@ -276,7 +276,8 @@ inline void expect_on_surface(const MaterialPoint &p, double Y, double digits_of
     EXPECT_LE(p.vonmises(), Y * (1 + 1e-12));
 }
 
-/** A definition that is wrong, with words or a pattern of the message, and the word that it is about (-1: not looked at). */
+/** A definition that is wrong, with words or a pattern of the message, and the word that it is
+ *  about (-1: not looked at). */
 struct Refusal {
   std::string text;
   const char *message;
