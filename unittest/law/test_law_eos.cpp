@@ -4,7 +4,6 @@
 
 // Equations of state, point by point: shock states, isentropes, detonation, tension, energy.
 
-#include "law/law.h"
 #include "material/material_testing.h"
 
 using namespace MPM_NS;

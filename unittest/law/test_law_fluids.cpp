@@ -4,7 +4,6 @@
 
 // Viscosities of fluids, point by point: flow curves, yield, dissipation, stable time step.
 
-#include "law/law.h"
 #include "material/material_testing.h"
 
 using namespace MPM_NS;

@@ -11,7 +11,6 @@
 #include "law/law.h"
 #include "material/material_testing.h"
 
-#include <cctype>
 #include <cstdlib>
 #include <filesystem>
 
