@@ -16,22 +16,20 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <dirent.h>
+#include <filesystem>
+#include <fstream>
 #include <map>
 #include <set>
+#include <sstream>
 #include <string>
-#include <sys/stat.h>
 
 namespace MPM_TEST {
 
 inline std::string text_of_file(const std::string &path)
 {
-  std::string text;
-  if (FILE *fp = fopen(path.c_str(), "r")) {
-    for (int c; (c = fgetc(fp)) != EOF;) text += static_cast<char>(c);
-    fclose(fp);
-  }
-  return text;
+  std::stringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
 }
 
 /** The files in a folder of doc/src are these: name, contents. */
@@ -48,24 +46,19 @@ inline void expect_up_to_date(const std::string &name,
       wrong += " " + file;
       continue;
     }
-    mkdir(folder.c_str(), 0777);
-    FILE *fp = fopen(path.c_str(), "w");
-    ASSERT_NE(fp, nullptr) << path;
-    fputs(text.c_str(), fp);
-    fclose(fp);
+    std::filesystem::create_directories(folder);
+    ASSERT_TRUE(std::ofstream(path) << text) << path;
     printf("wrote %s\n", path.c_str());
   }
-  if (DIR *dir = opendir(folder.c_str())) {
-    while (const dirent *entry = readdir(dir)) {
-      const std::string file = entry->d_name;
+  if (std::filesystem::exists(folder))
+    for (const auto &entry : std::filesystem::directory_iterator(folder)) {
+      const std::string file = entry.path().filename().string();
       if (file[0] == '.' || wanted.count(file)) continue;
       if (write)
-        remove((folder + "/" + file).c_str());
+        std::filesystem::remove(entry.path());
       else
         wrong += " " + file + " (of nothing)";
     }
-    closedir(dir);
-  }
   EXPECT_EQ(wrong, "") << "files in doc/src/" << name << " differ from the declarations: run\n"
                        << "  tools/tables.sh";
 }

@@ -24,6 +24,12 @@ static Lattice make_lattice(int dim, int n, bool periodic)
   return lattice;
 }
 
+static int activate(Grid &grid, int x, int y, int z)
+{
+  const int b[3] = {x, y, z};
+  return grid.activate(b);
+}
+
 TEST(Grid, NodeIndexAndLocateAreInverse)
 {
   for (int dim : {2, 3}) {
@@ -55,10 +61,7 @@ TEST(Grid, NeighbourTable)
 {
   Grid grid(make_lattice(3, 10, false));
   for (int x = 0; x < 3; x++)
-    for (int y = 0; y < 3; y++) {
-      const int b[3] = {x, y, 5};
-      grid.activate(b);
-    }
+    for (int y = 0; y < 3; y++) activate(grid, x, y, 5);
   grid.finish();
   const int middle[3] = {1, 1, 5};
   const auto &block = grid.blocks[grid.find(middle)];
@@ -84,10 +87,7 @@ TEST(Grid, PeriodicImagesFoldOntoOneCanonicalNode)
       const int nb = n / grid.side + 1;
       for (int x = -1; x <= nb; x++)
         for (int y = -1; y <= nb; y++)
-          for (int z = -1; z <= nb; z++) {
-            const int b[3] = {x, y, dim == 3 ? z : 0};
-            grid.activate(b);
-          }
+          for (int z = -1; z <= nb; z++) activate(grid, x, y, dim == 3 ? z : 0);
       grid.close_periodic();
       grid.finish();
       grid.allocate(4);
@@ -131,10 +131,7 @@ TEST(Grid, MemoryFollowsBlocksNotTheBox)
 {
   Grid small(make_lattice(3, 16, false)), large(make_lattice(3, 100000, false));
   for (auto *grid : {&small, &large}) {
-    for (int x = 0; x < 10; x++) {
-      const int b[3] = {x, 0, 0};
-      grid->activate(b);
-    }
+    for (int x = 0; x < 10; x++) activate(*grid, x, 0, 0);
     grid->finish();
     grid->allocate(4);
   }

@@ -6,7 +6,6 @@
 // Damage at a single point: failure strains and stresses against closed forms, energy balance.
 
 #include "material/material_testing.h"
-#include "transfer/kernels.h"
 
 using namespace MPM_NS;
 using namespace material_testing;

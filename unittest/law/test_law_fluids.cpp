@@ -4,7 +4,6 @@
 
 // Viscosities of fluids, point by point: flow curves, yield, dissipation, stable time step.
 
-#include "law/law.h"
 #include "material/material_testing.h"
 
 using namespace MPM_NS;
@@ -34,10 +33,10 @@ Flow flow(const Material &material, double rate, double dt = 1e-9)
 
 // flow curves over fourteen decades of the rate
 
-void expect_curve(const char *text, const std::function<double(double)> &tau)
+void expect_curve(const std::string &text, const std::function<double(double)> &tau)
 {
   SCOPED_TRACE(text);
-  const auto material = make(std::string("density 1000 eos linear 1e9 viscosity ") + text);
+  const auto material = make("density 1000 eos linear 1e9 viscosity " + text);
   for (double rate = 1e-6; rate < 2e8; rate *= 3.0) {
     const double dt = 1e-4 / rate, expected = tau(rate);
     const Flow f = flow(*material, rate, dt);
@@ -48,43 +47,34 @@ void expect_curve(const char *text, const std::function<double(double)> &tau)
   }
 }
 
-TEST(FlowCurve, Bingham)
-{
-  expect_curve("bingham 0.5 20 1000", [](double g) {
-    return std::min(1000 * g, 20 + 0.5 * g);
-  });
-  expect_curve("bingham 0 20 1000", [](double g) {
-    return std::min(1000 * g, 20.0);
-  });
-  expect_curve("bingham 0.5 0 1000", [](double g) {
-    return 0.5 * g;
-  });
-}
+struct Fluid {
+  double k, n, yield, limit;    ///< consistency, exponent, yield stress, viscosity at rest
+};
 
-TEST(FlowCurve, HerschelBulkley)
+TEST(FlowCurve, WithAYieldStress)
 {
-  expect_curve("herschel/bulkley 3 0.4 20 1000", [](double g) {
-    return std::min(1000 * g, 20 + 3 * std::pow(g, 0.4));
-  });
-  expect_curve("herschel/bulkley 3 0.4 0 1000", [](double g) {
-    return std::min(1000 * g, 3 * std::pow(g, 0.4));
-  });
-  expect_curve("herschel/bulkley 3 1.5 20 1e9", [](double g) {
-    return std::min(1e9 * g, 20 + 3 * std::pow(g, 1.5));
-  });
+  for (const Fluid &f : {Fluid{0.5, 1, 20, 1000},
+                         {0, 1, 20, 1000},
+                         {0.5, 1, 0, 1000},
+                         {3, 0.4, 20, 1000},
+                         {3, 0.4, 0, 1000},
+                         {3, 1.5, 20, 1e9}})
+    expect_curve(joined(f.n == 1 ? "bingham " : "herschel/bulkley ", f.k, " ",
+                        f.n == 1 ? "" : joined(f.n, " "), f.yield, " ", f.limit),
+                 [&](double g) {
+                   return std::min(f.limit * g, f.yield + f.k * std::pow(g, f.n));
+                 });
 }
 
 TEST(FlowCurve, PowerLaw)
 {
-  expect_curve("power 2 0.6 1e-2 1e2", [](double g) {
-    return g * std::min(std::max(2 * std::pow(g, -0.4), 1e-2), 1e2);
-  });
-  expect_curve("power 2 1.4 1e-2 1e2", [](double g) {
-    return g * std::min(std::max(2 * std::pow(g, 0.4), 1e-2), 1e2);
-  });
-  expect_curve("power 2 1 0 1e2", [](double g) {
-    return 2 * g;
-  });
+  struct {
+    double n, low;
+  } fluids[] = {{0.6, 1e-2}, {1.4, 1e-2}, {1, 0}};
+  for (const auto &f : fluids)
+    expect_curve(joined("power 2 ", f.n, " ", f.low, " 1e2"), [&](double g) {
+      return g * std::min(std::max(2 * std::pow(g, f.n - 1), f.low), 1e2);
+    });
 }
 
 // below yield next to nothing moves; beyond yield the stress is on the surface

@@ -15,13 +15,9 @@
 #include "declare/table_testing.h"
 #include "law/law.h"
 
-#include "gtest/gtest.h"
-
 #include <cctype>
 #include <cmath>
 #include <cstring>
-#include <map>
-#include <set>
 
 using namespace MPM_NS;
 
@@ -193,20 +189,20 @@ TEST(LawTables, DeclarationsAreComplete)
   for (int part = 0; part < NPARTS; part++)
     for (const auto &info : declared_laws(static_cast<Part>(part))) {
       const std::string law = std::string(PART_NAME[part]) + " " + info.name;
-      const auto check = [&](const char *name, const char *unit, const char *meaning) {
-        EXPECT_GT(strlen(name), 0) << law;
-        EXPECT_GT(strlen(meaning), 0) << law << ": " << name;
-        EXPECT_TRUE(known(unit)) << law << ": " << name << " has unit '" << unit << "'";
+      const auto check = [&](const auto *declared, int n) {
+        for (int k = 0; k < n; k++) {
+          const auto &d = declared[k];
+          EXPECT_GT(strlen(d.name), 0) << law;
+          EXPECT_GT(strlen(d.meaning), 0) << law << ": " << d.name;
+          EXPECT_TRUE(known(d.unit)) << law << ": " << d.name << " has unit '" << d.unit << "'";
+        }
       };
       EXPECT_GT(strlen(info.meaning), 0) << law;
+      check(info.parameters, info.nparameters);
+      check(info.term_parameters, info.nterm_parameters);
+      check(info.history, info.ndeclared);
+      check(info.term_history, info.nterm_history);
       for (int k = 0; k < info.nparameters; k++)
-        check(info.parameters[k].name, info.parameters[k].unit, info.parameters[k].meaning);
-      for (int k = 0; k < info.nterm_parameters; k++)
-        check(info.term_parameters[k].name, info.term_parameters[k].unit,
-              info.term_parameters[k].meaning);
-      for (int k = 0; k < info.ndeclared; k++)
-        check(info.history[k].name, info.history[k].unit, info.history[k].meaning);
-      for (int k = 0; k < info.nterm_history; k++)
-        check(info.term_history[k].name, info.term_history[k].unit, info.term_history[k].meaning);
+        EXPECT_LT(info.parameters[k].range.low, info.parameters[k].range.high) << law << " " << k;
     }
 }

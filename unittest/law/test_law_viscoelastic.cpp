@@ -269,13 +269,11 @@ TEST(Maxwell, Objectivity)
   const auto shear = [](double t) {
     return Matrix{1 + 0.3 * t, 2 * t, 0, 0, 1, -t, 0, 0, 1 - 0.4 * t};
   };
-  turn_on_top(*material, shear, 30.0, 50,
-              [](const MaterialPoint &plain, const MaterialPoint &turned, double difference) {
-                EXPECT_LT(difference, 1e-11 * size(stress_of(plain)));
-                EXPECT_NEAR(turned.stored_energy(), plain.stored_energy(),
-                            1e-11 * plain.stored_energy());
-                EXPECT_NEAR(turned.work[VISCOUS], plain.work[VISCOUS], 1e-11 * plain.work[VISCOUS]);
-              });
+  expect_objective(*material, shear, 30.0, 1e-11,
+                   [](const MaterialPoint &plain, const MaterialPoint &turned) {
+                     const double work = plain.work[VISCOUS];
+                     EXPECT_NEAR(turned.work[VISCOUS], work, 1e-11 * work);
+                   });
 }
 
 // the instantaneous modulus, and a step that is stable for any relaxation time

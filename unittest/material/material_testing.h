@@ -15,7 +15,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <functional>
@@ -81,10 +80,8 @@ inline std::string definition(const std::string &name)
 
 inline Matrix operator*(const Matrix &a, const Matrix &b)
 {
-  Matrix c{};
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++)
-      for (int k = 0; k < 3; k++) c[3 * i + j] += a[3 * i + k] * b[3 * k + j];
+  Matrix c;
+  for (int k = 0; k < 9; k++) c[k] = MPM_NS::product(a.data(), b.data(), k / 3, k % 3);
   return c;
 }
 
@@ -113,11 +110,9 @@ inline double det(const Matrix &F)
 
 inline Matrix inverse(const Matrix &M)
 {
-  Matrix c = {M[4] * M[8] - M[5] * M[7], M[2] * M[7] - M[1] * M[8], M[1] * M[5] - M[2] * M[4],
-              M[5] * M[6] - M[3] * M[8], M[0] * M[8] - M[2] * M[6], M[2] * M[3] - M[0] * M[5],
-              M[3] * M[7] - M[4] * M[6], M[1] * M[6] - M[0] * M[7], M[0] * M[4] - M[1] * M[3]};
+  Matrix c = MPM_COFACTORS(M);
   for (double &x : c) x /= det(M);
-  return c;
+  return transpose(c);
 }
 
 constexpr std::array<double, 3> AXIS = {0.48, 0.6, 0.64};    ///< of rotations, for most tests
@@ -218,6 +213,21 @@ void turn_on_top(const Material &material, const Motion &F, double angle, int n,
   }
 }
 
+/** A rotation on top of a motion turns the stress and leaves the energy alone, to a tolerance; more:
+ *  other checks of the point as it is and of the one that turns. */
+template <class Motion, class More>
+void expect_objective(const Material &material, const Motion &F, double angle, double tolerance,
+                      const More &more)
+{
+  turn_on_top(material, F, angle, 50,
+              [&](const MaterialPoint &plain, const MaterialPoint &turned, double difference) {
+                EXPECT_LT(difference, tolerance * size(stress_of(plain)));
+                EXPECT_NEAR(turned.stored_energy(), plain.stored_energy(),
+                            tolerance * plain.stored_energy());
+                more(plain, turned);
+              });
+}
+
 /** Matrices of random numbers with a normal distribution. */
 struct RandomMatrix {
   std::mt19937 random;
@@ -265,7 +275,8 @@ inline void expect_on_surface(const MaterialPoint &p, double Y, double digits_of
     EXPECT_LE(p.vonmises(), Y * (1 + 1e-12));
 }
 
-/** A definition that is wrong, with words or a pattern of the message, and the word that it is about (-1: not looked at). */
+/** A definition that is wrong, with words or a pattern of the message, and the word that it is
+ *  about (-1: not looked at). */
 struct Refusal {
   std::string text;
   const char *message;

@@ -10,9 +10,6 @@
 #include "material/material_testing.h"
 #include "mpm_lammps.h"
 
-#include <fstream>
-#include <numeric>
-
 using namespace material_testing;
 using MPM_NS::MixedControl;
 using MPM_TEST::Scene;

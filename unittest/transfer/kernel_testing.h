@@ -9,7 +9,8 @@
 #ifndef MPM_KERNEL_TESTING_H
 #define MPM_KERNEL_TESTING_H
 
-// Random numbers, comparisons, and all combinations for tests of the kernels.
+// Random numbers, comparisons, and all combinations for tests of the kernels, with the standard
+// headers that they need.
 
 #include "transfer/kernels.h"
 

@@ -14,15 +14,6 @@
 
 #include "transfer/cpdi.h"
 #include "transfer/kernel_testing.h"
-#include "transfer/kernels.h"
-
-#include "gtest/gtest.h"
-
-#include <algorithm>
-#include <cmath>
-#include <random>
-#include <string>
-#include <vector>
 
 using namespace MPM_NS;
 using namespace MPM_TEST;
@@ -111,13 +102,10 @@ template <int DIM> void check_weights()
   }
 }
 
-TEST(Weights, QuadrilateralsAndTriangles)
+TEST(Weights, OfFreeDomains)
 {
-  check_weights<2>();
-}
-TEST(Weights, HexahedraAndTetrahedra)
-{
-  check_weights<3>();
+  check_weights<2>();    // quadrilaterals and triangles
+  check_weights<3>();    // hexahedra and tetrahedra
 }
 
 // of integers: volume 1/6 (0 in integers), each corner a fourth
@@ -147,12 +135,9 @@ template <int DIM> void check_box()
   }
 }
 
-TEST(Weights, ParallelogramIsAQuadrilateral)
+TEST(Weights, BoxesAreFreeDomains)
 {
   check_box<2>();
-}
-TEST(Weights, ParallelepipedIsAHexahedron)
-{
   check_box<3>();
 }
 

@@ -15,21 +15,11 @@
 #include "material/batch.h"
 #include "math/matrix.h"
 #include "transfer/kernel_testing.h"
-#include "transfer/kernels.h"
 #include "transfer/shape.h"
 
-#include "gtest/gtest.h"
-
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <limits>
 #include <memory>
-#include <random>
-#include <string>
-#include <vector>
 
 using namespace MPM_NS;
 using namespace MPM_TEST;
@@ -39,9 +29,10 @@ namespace {
 /** Points of which the rows [first,last) lie in the tile of a block; arrays are not padded. */
 struct Points {
   int dim, order, first, last, n;
-  int nC;                  // reals of a matrix C
-  int guarded;             // as in PointRows: the last row exists, no more
-  bool in_place = true;    // new positions replace the old ones
+  int nC;                                        // reals of a matrix C
+  int guarded;                                   // as in PointRows: the last row exists, no more
+  bool in_place = true;                          // new positions replace the old ones
+  const double *from = nullptr, *P = nullptr;    // as in PointRows
   TransferStep step = random_step();
   int base[3];
   Reals x, v, f, C, tau, vol0, mass, xnew, size;
@@ -81,7 +72,7 @@ struct Points {
   {
     return {x.data(),   v.data(),    f.data(),    C.data(),
             tau.data(), vol0.data(), mass.data(), in_place ? x.data() : xnew.data(),
-            nullptr,    guarded,     nullptr,     nullptr,
+            nullptr,    guarded,     from,        P,
             size.data()};
   }
 
@@ -161,6 +152,22 @@ class Kernels : public KernelTest {
       tile.real[nreal * n + 3] = 1.0;
     }
     return tile;
+  }
+
+  /** Moment about axis k of the vectors from this real of the nodes on, and of their sizes. */
+  std::pair<double, double> moment_of_nodes(const Points &points, const Tile &tile, int first,
+                                            int k) const
+  {
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    double moment = 0.0, size = 0.0;
+    for (int n = 0; n < tile.nodes; n++) {
+      double x[3];
+      points.node_position(n, x);
+      const double *p = tile.real + nreal * n + first;
+      moment += x[i] * p[j] - x[j] * p[i];
+      size += std::abs(x[i] * p[j]) + std::abs(x[j] * p[i]);
+    }
+    return {moment, size};
   }
 
   Tile random_field() const
@@ -244,41 +251,28 @@ TEST_P(Kernels, TotalFrame)
       }
       const TransferKernels &other = symmetric ? reference : plain;
       points.in_place = false;
-      PointRows rows = points.rows();
-      rows.P = P.data();
-      rows.from = from.data();
+      points.from = from.data();
+      points.P = P.data();
       const P2G mine[] = {total.p2g, total.p2g_force}, theirs[] = {other.p2g, other.p2g_force};
       for (int which : {0, 1}) {
         Tile a(dim, order, nreal), b(dim, order, nreal);
-        Box box_a = NO_BOX, box_b = NO_BOX;
-        mine[which](rows, points.step, points.first, points.last, points.base, a.real,
-                    box_a.data());
-        theirs[which](rows, points.step, points.first, points.last, points.base, b.real,
-                      box_b.data());
+        ASSERT_EQ(p2g(mine[which], points, a.real), p2g(theirs[which], points, b.real));
         for (int r = 0; r < nreal; r++)
           ASSERT_LT(difference(a.column(r), b.column(r)), SAME) << count << " points, real " << r;
-        ASSERT_EQ(box_a, box_b);
       }
 
       // far away from the tile is as good as anywhere, but not nowhere
       const Tile field = random_field();
       Reals L(points.nC * count), L_other(L);
       Points before = points;
-      EXPECT_EQ(total.g2p(rows, points.step, points.first, points.last, points.base, field.real,
-                          L.data()),
-                0);
-      PointRows expected = before.rows();
-      expected.from = from.data();
-      other.g2p(expected, points.step, points.first, points.last, points.base, field.real,
-                L_other.data());
+      EXPECT_EQ(g2p(total.g2p, points, field.real, L.data()), 0);
+      g2p(other.g2p, before, field.real, L_other.data());
       EXPECT_LT(difference(points.xnew, before.xnew), SAME);
       EXPECT_LT(difference(points.v, before.v), SAME);
       EXPECT_LT(difference(points.C, before.C), SAME);
       EXPECT_LT(difference(L, L_other), SAME);
       from[3 * (points.last - 1)] = std::numeric_limits<double>::quiet_NaN();
-      EXPECT_NE(total.g2p(rows, points.step, points.first, points.last, points.base, field.real,
-                          L.data()),
-                0);
+      EXPECT_NE(g2p(total.g2p, points, field.real, L.data()), 0);
     }
 }
 
@@ -413,12 +407,7 @@ TEST_P(Kernels, AngularMomentumIsConserved)
   const double reach = 100.0 * points.step.h;    // of positions, for the tolerance
   for (int k = dim == 3 ? 0 : 2; k < 3; k++) {
     const int i = (k + 1) % 3, j = (k + 2) % 3;
-    double nodes = 0.0, expected = 0.0;
-    for (int n = 0; n < tile.nodes; n++) {
-      double x[3];
-      points.node_position(n, x);
-      nodes += x[i] * tile.real[nreal * n + j] - x[j] * tile.real[nreal * n + i];
-    }
+    double expected = 0.0;
     for (int p = points.first; p < points.last; p++) {
       const double *x = &points.x[3 * p], *v = &points.v[3 * p];
       const double *C = &points.C[points.nC * p];
@@ -440,7 +429,8 @@ TEST_P(Kernels, AngularMomentumIsConserved)
       }
       expected += points.mass[p] * (C[dim * i + j] * moment[i] - C[dim * j + i] * moment[j]);
     }
-    EXPECT_NEAR(nodes, expected, 1e-13 * reach * 101) << "axis " << k;
+    EXPECT_NEAR(moment_of_nodes(points, tile, 0, k).first, expected, 1e-13 * reach * 101)
+        << "axis " << k;
   }
 }
 
@@ -450,17 +440,8 @@ TEST_P(Kernels, StressMakesNoTorque)
   std::fill(points.f.begin(), points.f.end(), 0.0);
   Tile tile(dim, order, nreal);
   p2g(kernels.p2g_force, points, tile.real);
-  const int at = split ? 4 : 0;
   for (int k = dim == 3 ? 0 : 2; k < 3; k++) {
-    const int i = (k + 1) % 3, j = (k + 2) % 3;
-    double torque = 0.0, size = 0.0;
-    for (int n = 0; n < tile.nodes; n++) {
-      double x[3];
-      points.node_position(n, x);
-      const double *f = tile.real + nreal * n + at;
-      torque += x[i] * f[j] - x[j] * f[i];
-      size += std::abs(x[i] * f[j]) + std::abs(x[j] * f[i]);
-    }
+    const auto [torque, size] = moment_of_nodes(points, tile, split ? 4 : 0, k);
     EXPECT_NEAR(torque, 0.0, 1e-13 * size) << "axis " << k;
   }
 }

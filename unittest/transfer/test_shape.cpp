@@ -48,23 +48,32 @@ static double bspline(int order, double x)
       order;
 }
 
-/** Weights at the distances d of the nodes: sum w = 1, sum w d = 0, sum w' = 0, sum w' d = 1. */
-template <int N>
-static void check_linear_fields(const double (&w)[N], const double (&dw)[N], double first,
-                                int nodes, double tolerance)
-{
-  double sum = 0.0, mean = 0.0, dsum = 0.0, dmean = 0.0;
-  for (int i = 0; i < nodes; i++) {
-    sum += w[i];
-    dsum += dw[i];
-    mean += w[i] * (first + i);
-    dmean += dw[i] * (first + i);
+/** Weights and gradients for the fraction f, and the half size of a point that has one. */
+template <class Function> struct Nodes {
+  double w[4], dw[4];
+
+  template <class... Size> explicit Nodes(double f, Size... s)
+  {
+    Function::weights(f, s..., w);
+    Function::gradients(f, s..., dw);
   }
-  ASSERT_NEAR(sum, 1.0, TOLERANCE);
-  ASSERT_NEAR(mean, 0.0, tolerance);
-  ASSERT_NEAR(dsum, 0.0, tolerance);
-  ASSERT_NEAR(dmean, 1.0, tolerance);
-}
+
+  /** At the distances d of the nodes: sum w = 1, sum w d = 0, sum w' = 0, sum w' d = 1. */
+  void check_linear_fields(double first, double tolerance) const
+  {
+    double sum = 0.0, mean = 0.0, dsum = 0.0, dmean = 0.0;
+    for (int i = 0; i < Function::nodes; i++) {
+      sum += w[i];
+      dsum += dw[i];
+      mean += w[i] * (first + i);
+      dmean += dw[i] * (first + i);
+    }
+    ASSERT_NEAR(sum, 1.0, TOLERANCE);
+    ASSERT_NEAR(mean, 0.0, tolerance);
+    ASSERT_NEAR(dsum, 0.0, tolerance);
+    ASSERT_NEAR(dmean, 1.0, tolerance);
+  }
+};
 
 template <class T> class Spline : public ::testing::Test {
 };
@@ -81,10 +90,9 @@ TYPED_TEST_SUITE(Spline, Splines, OrderName);
 TYPED_TEST(Spline, IsTheBSpline)
 {
   at_positions<TypeParam>([](double x, double base, double f) {
-    double w[4];
-    TypeParam::weights(f, w);
+    const Nodes<TypeParam> at(f);
     for (int i = 0; i < TypeParam::nodes; i++)
-      ASSERT_NEAR(w[i], bspline(TypeParam::order, x - (base + i)), TOLERANCE) << "x = " << x;
+      ASSERT_NEAR(at.w[i], bspline(TypeParam::order, x - (base + i)), TOLERANCE) << "x = " << x;
   });
 }
 
@@ -93,9 +101,8 @@ TYPED_TEST(Spline, BaseIsTheFirstNodeInReach)
   at_positions<TypeParam>([](double x, double base, double f) {
     ASSERT_GE(f, 0.0);
     ASSERT_LT(f, 1.0);
-    double w[4];
-    TypeParam::weights(f, w);
-    for (int i = 0; i < TypeParam::nodes; i++) ASSERT_GE(w[i], 0.0) << "x = " << x;
+    const Nodes<TypeParam> at(f);
+    for (int i = 0; i < TypeParam::nodes; i++) ASSERT_GE(at.w[i], 0.0) << "x = " << x;
     ASSERT_LE(x - base, 0.5 * (TypeParam::order + 1) + TOLERANCE);
   });
 }
@@ -103,21 +110,18 @@ TYPED_TEST(Spline, BaseIsTheFirstNodeInReach)
 TYPED_TEST(Spline, LinearFieldsAreExact)
 {
   at_positions<TypeParam>([](double, double, double f) {
-    double w[4], dw[4];
-    TypeParam::weights(f, w);
-    TypeParam::gradients(f, dw);
-    check_linear_fields(w, dw, -TypeParam::shift - f, TypeParam::nodes, TOLERANCE);
+    Nodes<TypeParam>(f).check_linear_fields(-TypeParam::shift - f, TOLERANCE);
   });
 }
 
 TYPED_TEST(Spline, SecondMoment)
 {
   at_positions<TypeParam>([](double x, double, double f) {
-    double w[4], moment = 0.0;
-    TypeParam::weights(f, w);
+    const Nodes<TypeParam> at(f);
+    double moment = 0.0;
     for (int i = 0; i < TypeParam::nodes; i++) {
       const double distance = i - TypeParam::shift - f;
-      moment += w[i] * distance * distance;
+      moment += at.w[i] * distance * distance;
     }
     // 1/4 for quadratic, 1/3 for cubic; that of the linear function depends on the position
     const double exact = TypeParam::order == 1 ? f * (1.0 - f) : 1.0 / TypeParam::inv_moment;
@@ -133,42 +137,31 @@ TYPED_TEST(Spline, GradientIsTheDerivative)
     // Central differences with the step d are exact up to d^2/6 times the third derivative (at most
     // 3, cubic only) and the rounding error 1e-16 / d.
     const double d = 1.0e-5;
-    double low[4], high[4], dw[4];
-    TypeParam::weights(f - d, low);
-    TypeParam::weights(f + d, high);
-    TypeParam::gradients(f, dw);
+    const Nodes<TypeParam> low(f - d), at(f), high(f + d);
     for (int i = 0; i < TypeParam::nodes; i++)
-      ASSERT_NEAR(dw[i], (high[i] - low[i]) / (2.0 * d), 2.0e-10) << "x = " << x;
+      ASSERT_NEAR(at.dw[i], (high.w[i] - low.w[i]) / (2.0 * d), 2.0e-10) << "x = " << x;
   });
 }
 
 TYPED_TEST(Spline, Symmetry)
 {
   at_positions<TypeParam>([](double x, double, double f) {
-    double w[4], mirrored[4], dw[4], dmirrored[4];
-    TypeParam::weights(f, w);
-    TypeParam::weights(1.0 - f, mirrored);
-    TypeParam::gradients(f, dw);
-    TypeParam::gradients(1.0 - f, dmirrored);
+    const Nodes<TypeParam> at(f), mirrored(1.0 - f);
     for (int i = 0; i < TypeParam::nodes; i++) {
-      ASSERT_NEAR(w[i], mirrored[TypeParam::nodes - 1 - i], TOLERANCE) << "x = " << x;
-      ASSERT_NEAR(dw[i], -dmirrored[TypeParam::nodes - 1 - i], TOLERANCE) << "x = " << x;
+      ASSERT_NEAR(at.w[i], mirrored.w[TypeParam::nodes - 1 - i], TOLERANCE) << "x = " << x;
+      ASSERT_NEAR(at.dw[i], -mirrored.dw[TypeParam::nodes - 1 - i], TOLERANCE) << "x = " << x;
     }
   });
 }
 
 TYPED_TEST(Spline, ContinuousFromIntervalToInterval)
 {
-  double left[4], right[4], dleft[4], dright[4];
-  TypeParam::weights(1.0, left);
-  TypeParam::weights(0.0, right);
-  TypeParam::gradients(1.0, dleft);
-  TypeParam::gradients(0.0, dright);
-  EXPECT_EQ(left[0], 0.0);
-  EXPECT_EQ(right[TypeParam::nodes - 1], 0.0);
+  const Nodes<TypeParam> left(1.0), right(0.0);
+  EXPECT_EQ(left.w[0], 0.0);
+  EXPECT_EQ(right.w[TypeParam::nodes - 1], 0.0);
   for (int i = 1; i < TypeParam::nodes; i++) {
-    EXPECT_NEAR(left[i], right[i - 1], TOLERANCE);
-    if (TypeParam::order > 1) { EXPECT_NEAR(dleft[i], dright[i - 1], TOLERANCE); }
+    EXPECT_NEAR(left.w[i], right.w[i - 1], TOLERANCE);
+    if (TypeParam::order > 1) { EXPECT_NEAR(left.dw[i], right.dw[i - 1], TOLERANCE); }
   }
 }
 
@@ -217,12 +210,11 @@ TEST_P(GimpShape, IsTheMean)
 {
   const double s = GetParam();
   at_positions([s](double c, double f) {
-    double w[3];
-    Gimp::weights(f, s, w);
+    const Nodes<Gimp> at(f, s);
     for (int i = 0; i < 3; i++) {
       const double r = c - (i - 1), mean = (integral(r + s) - integral(r - s)) / (2.0 * s);
-      ASSERT_NEAR(w[i], mean, TOLERANCE / s) << "c = " << c;
-      ASSERT_GE(w[i], 0.0);
+      ASSERT_NEAR(at.w[i], mean, TOLERANCE / s) << "c = " << c;
+      ASSERT_GE(at.w[i], 0.0);
     }
   });
 }
@@ -231,10 +223,7 @@ TEST_P(GimpShape, LinearFieldsAreExact)
 {
   const double s = GetParam();
   at_positions([s](double c, double f) {
-    double w[3], dw[3];
-    Gimp::weights(f, s, w);
-    Gimp::gradients(f, s, dw);
-    check_linear_fields(w, dw, -1.0 - c, 3, TOLERANCE / s);
+    Nodes<Gimp>(f, s).check_linear_fields(-1.0 - c, TOLERANCE / s);
   });
 }
 
@@ -245,12 +234,9 @@ TEST_P(GimpShape, GradientIsTheDerivative)
   const double s = GetParam(), d = 1.0e-8;
   at_positions([=](double c, double f) {
     if (std::abs(c) > 0.5 - d) return;
-    double low[3], high[3], dw[3];
-    Gimp::weights(f - d, s, low);
-    Gimp::weights(f + d, s, high);
-    Gimp::gradients(f, s, dw);
+    const Nodes<Gimp> low(f - d, s), at(f, s), high(f + d, s);
     for (int i = 0; i < 3; i++)
-      ASSERT_NEAR(dw[i], (high[i] - low[i]) / (2.0 * d), 1.0e-7 / std::min(1.0, 10.0 * s))
+      ASSERT_NEAR(at.dw[i], (high.w[i] - low.w[i]) / (2.0 * d), 1.0e-7 / std::min(1.0, 10.0 * s))
           << "c = " << c;
   });
 }
@@ -259,14 +245,12 @@ TEST_P(GimpShape, WeightAndGradientVanishTogether)
 {
   const double s = GetParam();
   at_positions([s](double c, double f) {
-    double w[3], dw[3];
-    Gimp::weights(f, s, w);
-    Gimp::gradients(f, s, dw);
+    const Nodes<Gimp> at(f, s);
     for (const int i : {0, 2}) {
-      if (w[i] == 0.0) { ASSERT_EQ(dw[i], 0.0) << "c = " << c; }
+      if (at.w[i] == 0.0) { ASSERT_EQ(at.dw[i], 0.0) << "c = " << c; }
     }
-    if (c >= s) { ASSERT_EQ(w[0], 0.0); }
-    if (c <= -s) { ASSERT_EQ(w[2], 0.0); }
+    if (c >= s) { ASSERT_EQ(at.w[0], 0.0); }
+    if (c <= -s) { ASSERT_EQ(at.w[2], 0.0); }
   });
 }
 
@@ -275,17 +259,13 @@ INSTANTIATE_TEST_SUITE_P(HalfSizes, GimpShape, ::testing::Values(0.5, 0.37, 0.25
 TEST(BernsteinShape, LinearFieldsAreExact)
 {
   for (double f = 0.0; f <= 1.0; f += 0.01) {
-    double w[3], dw[3], low[3], high[3];
     const double d = 1.0e-4;
-    Bernstein::weights(f, w);
-    Bernstein::gradients(f, dw);
-    Bernstein::weights(f - d, low);
-    Bernstein::weights(f + d, high);
-    check_linear_fields(w, dw, -2.0 * f, 3, TOLERANCE);
+    const Nodes<Bernstein> low(f - d), at(f), high(f + d);
+    at.check_linear_fields(-2.0 * f, TOLERANCE);
     for (int i = 0; i < 3; i++) {
-      EXPECT_GE(w[i], 0.0);
+      EXPECT_GE(at.w[i], 0.0);
       // a cell is two spacings
-      EXPECT_NEAR(dw[i], 0.5 * (high[i] - low[i]) / (2.0 * d), 1.0e-11);
+      EXPECT_NEAR(at.dw[i], 0.5 * (high.w[i] - low.w[i]) / (2.0 * d), 1.0e-11);
     }
   }
 }
