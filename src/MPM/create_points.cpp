@@ -499,9 +499,8 @@ bigint CreatePoints::make_points()
     const bigint first = std::min(base + SHARE * comm->me, n);
     for_sites(range, first, std::min(first + SHARE, n), [&](const bigint *s) {
       if (!in_region(s)) return;
-      made.emplace_back();
+      made.push_back({{}, volume, 0});
       point_position(s, made.back().x);
-      made.back().volume = volume;
     });
 
     // IDs

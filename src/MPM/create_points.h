@@ -95,7 +95,6 @@ class CreatePoints : public Command, private CreatePointsOptions {
 
   void parse(int, char **);
   void parse_mesh(int, char **);
-  MPM_NS::Mesh read_mesh(int, char **);
   void find_nodes(const MPM_NS::Mesh &, const char *file);
   void find_elements(const MPM_NS::Mesh &, const char *file);
   bool put_into_box(double *x) const;

@@ -28,9 +28,7 @@ static constexpr int RESTART_VERSION = 2;
 
 /* ---------------------------------------------------------------------- */
 
-FixMPMMaterial::FixMPMMaterial(LAMMPS *lmp, int narg, char **arg) :
-    FixMPMState(lmp, narg, arg), material(nullptr), nhistory(0), history(nullptr), work(),
-    watching(false)
+FixMPMMaterial::FixMPMMaterial(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
 {
   static_assert(NWORK <= sizeof(work) / sizeof(double), "room for all kinds of work");
   if (narg < 4) utils::missing_cmd_args(FLERR, "fix mpm/material", error);

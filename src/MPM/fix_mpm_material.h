@@ -38,9 +38,9 @@ class FixMPMMaterial : public FixMPMState {
 
   MPM_NS::Material *material;    ///< owned
   int nhistory;                  ///< columns of history
-  double **history;              ///< [n][nhistory] or null when the law has none
+  double **history = nullptr;    ///< [n][nhistory] or null when the law has none
   int damage;                    ///< column of the damage, 1 in points that have failed; -1: none
-  double work[8];                ///< energy of each MPM_NS::Work kind so far, this rank's share
+  double work[8] = {};           ///< energy of each MPM_NS::Work kind so far, this rank's share
 
   /** mass = density * initial volume for the points of the group that have no mass yet. */
   void assign_mass();
