@@ -277,11 +277,7 @@ void CreatePoints::find_ranges()
   // half of what is on the axis
   if (fix && fix->options.axisymmetric && lo[0] > -INFINITE) lo[0] = std::max(lo[0], 0.0);
 
-  for (int d = 0; d < 3; d++) {
-    if (d == domain->dimension) {
-      box[d] = search[d] = {0, 1};
-      break;
-    }
+  for (int d = 0; d < domain->dimension; d++) {
     const double boxlo = domain->boxlo[d], boxhi = domain->boxhi[d];
     const bool periodic = domain->periodicity[d];
 
@@ -315,7 +311,6 @@ void CreatePoints::find_ranges()
     }
     box[d] = {first, std::max(end - first, (bigint) 0)};
 
-    search[d] = box[d];
     if (lo[d] > -INFINITE) first = first_from(lo[d]);
     if (hi[d] < INFINITE) end = first_from(hi[d] + 2.0 * TOLERANCE * spacing[d]);
     search[d] = {first, std::max(end - first, (bigint) 0)};

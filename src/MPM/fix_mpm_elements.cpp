@@ -217,9 +217,7 @@ void FixMPMElements::make_elements(const Mesh &mesh)
     max_of_node = std::max(max_of_node, ++owned[owner]);
     if (local[owner] >= 0) here.emplace_back(local[owner], e);
   }
-  std::stable_sort(here.begin(), here.end(), [](const auto &a, const auto &b) {
-    return a.first < b.first;
-  });
+  std::sort(here.begin(), here.end());
   pool.assign(here.size() * stride, 0.0);
   double least = std::numeric_limits<double>::max(), volume[2] = {0.0, 0.0}, volumes[2];
   for (std::size_t k = 0; k < here.size(); k++) {
