@@ -120,7 +120,7 @@ void AtomVecMPM::check_companions()
 
 /* ---------------------------------------------------------------------- */
 
-double AtomVecMPM::sphere_volume(double r) const
+static double sphere_volume(double r)
 {
   return r > 0.0 ? MathConst::MY_4PI3 * r * r * r : 1.0;
 }

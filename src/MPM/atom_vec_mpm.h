@@ -46,7 +46,6 @@ class AtomVecMPM : public AtomVec {
   double rmass_one;
 
   void check_companions();
-  double sphere_volume(double r) const;
 };
 
 }    // namespace LAMMPS_NS

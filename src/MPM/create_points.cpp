@@ -287,9 +287,7 @@ void CreatePoints::find_ranges()
       const double s = (x - origin[d]) / spacing[d] - 0.5;
       if (!(fabs(s) < MAX_INDEX))
         error->all(FLERR, Error::NOLASTLINE,
-                   "Create_points spacing {:.8g} is too fine for this "
-                   "box or region",
-                   spacing[d]);
+                   "Create_points spacing {:.8g} is too fine for this box or region", spacing[d]);
       return (bigint) ceil(s - TOLERANCE);
     };
 
@@ -300,9 +298,8 @@ void CreatePoints::find_ranges()
         end = first + (bigint) round(nsite);
       } else if (lo[d] < position(d, first) && hi[d] > position(d, end - 1) && comm->me == 0) {
         error->warning(FLERR,
-                       "Create_points spacing {:.8g} does not divide the length {:.8g} of "
-                       "the box along periodic axis {}: points across the boundary are not at this "
-                       "spacing",
+                       "Create_points spacing {:.8g} does not divide the length {:.8g} of the box "
+                       "along periodic axis {}: points across the boundary are not at this spacing",
                        spacing[d], domain->prd[d], axis_name[d]);
       }
     } else {

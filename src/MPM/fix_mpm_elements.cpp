@@ -82,8 +82,7 @@ FixMPMElements::FixMPMElements(LAMMPS *lmp, int narg, char **arg) :
   read_options(lmp, options, narg, arg, 3);
   if (!points)
     error->all(FLERR,
-               "Fix mpm/elements requires material points: use atom_style mpm, or hybrid "
-               "with mpm");
+               "Fix mpm/elements requires material points: use atom_style mpm, or hybrid with mpm");
   if (!atom->tag_enable) error->all(FLERR, "Fix mpm/elements requires atom IDs");
 
   restart_global = 1;

@@ -295,16 +295,6 @@ void FixMPMHandshake::init_list(int /*id*/, NeighList *ptr)
   list = ptr;
 }
 
-/* ----------------------------------------------------------------------
-   weights
-------------------------------------------------------------------------- */
-
-/** Atoms this far from the zone may be neighbors of those in it. */
-double FixMPMHandshake::margin() const
-{
-  return force->pair->cutforce + neighbor->skin;
-}
-
 /** Weight of an atom at x; if it is 1, how far inside of the atoms x is; if it is 0, how far it is
  *  beyond the zone. */
 double FixMPMHandshake::weight_at(const double *x, double &inside, double &beyond) const
@@ -325,7 +315,8 @@ double FixMPMHandshake::weight_at(const double *x, double &inside, double &beyon
 /** Atoms and points that have no weight yet get that of the place where they are. */
 void FixMPMHandshake::weigh()
 {
-  const double reach = margin(),
+  // atoms this far from the zone may be neighbors of those in it, points may share nodes with them
+  const double reach = force->pair->cutforce + neighbor->skin,
                reach_nodes = 2.0 * (stencil_order(field->options.shape) + 1) * field->lattice.h;
   bigint none = 0, wrong = 0, all;
   for (int i = 0; i < atom->nlocal; i++) {
@@ -786,9 +777,7 @@ double FixMPMHandshake::memory_usage()
       sizeof(int) * (double) (nodes.capacity() + members.capacity());
 }
 
-/* ----------------------------------------------------------------------
-   weights and roles of atoms and points
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
 void FixMPMHandshake::grow_arrays(int nmax)
 {

@@ -94,7 +94,6 @@ class FixMPMHandshake : public FixMPMState, public MPMNodeAction, private MPMHan
   void check_pair();
   void check_embedding();
   double embedding_share(int i) const;
-  double margin() const;
   double weight_at(const double *x, double &inside, double &beyond) const;
   void weigh();
   void check_weights();

@@ -233,9 +233,8 @@ void FixMPMImmersed::extend_topology(MPMField &extended)
       const double t = (atom->x[i][d] - grid.lattice.origin[d]) / grid.lattice.h;
       if (!(fabs(t) < 4.0e6))
         error->one(FLERR, Error::NOLASTLINE,
-                   "Fix mpm/immersed {}: grain {} is far out of reach of the "
-                   "lattice",
-                   id, atom->tag[i]);
+                   "Fix mpm/immersed {}: grain {} is far out of reach of the lattice", id,
+                   atom->tag[i]);
       const int n = field->weights(t, lo[d], w);
       hi[d] = (lo[d] + n) >> grid.shift_bits;    // one more on each side: grains move
       lo[d] = (lo[d] - 1) >> grid.shift_bits;
@@ -424,16 +423,6 @@ void FixMPMImmersed::find_grains(double dt)
 }
 
 /* ----------------------------------------------------------------------
-   reals [lane, lane+nlane) of all nodes, from images and other ranks, too; images get the sums
-------------------------------------------------------------------------- */
-
-void FixMPMImmersed::sum_nodes(int lane, int nlane)
-{
-  field->sum(sums.data(), NREAL, lane, nlane);
-  field->grid.copy_aliases(sums.data(), NREAL);
-}
-
-/* ----------------------------------------------------------------------
    Impulses of this step. That of drag acts on the slip which it leaves: with one grain, by the
    implicit Euler method; when grains share nodes, the sum of all coefficients at these is what their
    fluid is taken to be slowed down with. That is at least what it is, so that the slip of no grain
@@ -451,6 +440,10 @@ void FixMPMImmersed::act(double dt, Stage stage)
   grid.copy_aliases();
   find_grains(dt);
   sums.assign(NREAL * grid.nnodes(), 0.0);
+  const auto sum_nodes = [&](int lane, int nlane) {    // images get the sums, too
+    field->sum(sums.data(), NREAL, lane, nlane);
+    grid.copy_aliases(sums.data(), NREAL);
+  };
   const auto around = [&](const Grain &g, const auto &f) {
     for (int e = g.first; e < g.last; e++) f(entries[e], &sums[NREAL * entries[e].node]);
   };

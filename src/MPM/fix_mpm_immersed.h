@@ -89,7 +89,6 @@ class FixMPMImmersed : public Fix, public MPMNodeAction, private MPMImmersedOpti
   double volume(int i) const;
   bool is_inner(int64_t node);
   void find_grains(double dt);
-  void sum_nodes(int lane, int nlane);
   double end_of_bed(double solid, const double *moment, double own) const;
   double drag_coefficient(double diameter, double slip, double solid) const;
   double drag_after_step(double diameter, double slip, double solid, double slowing) const;

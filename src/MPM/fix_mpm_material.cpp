@@ -46,7 +46,11 @@ FixMPMMaterial::FixMPMMaterial(LAMMPS *lmp, int narg, char **arg) : FixMPMState(
   damage = find_history("damage");
   if (nhistory > 0)
     state.declare(history, "mpm/material:history", nhistory, [this](int i, double *row) {
-      initialize(i, row);
+      try {
+        material->initialize(atom->x[i], row);
+      } catch (const std::runtime_error &e) {
+        error->one(FLERR, Error::NOLASTLINE, "Fix mpm/material {}: {}", id, e.what());
+      }
     });
   keep_arrays();
 
@@ -186,16 +190,6 @@ int FixMPMMaterial::find_history(const std::string &name) const
   for (int k = 0; k < nhistory; k++)
     if (variables[k].name == name) return k;
   return -1;
-}
-
-/** History of a new point. */
-void FixMPMMaterial::initialize(int i, double *row) const
-{
-  try {
-    material->initialize(atom->x[i], row);
-  } catch (const std::runtime_error &e) {
-    error->one(FLERR, Error::NOLASTLINE, "Fix mpm/material {}: {}", id, e.what());
-  }
 }
 
 /** Names of the history variables, for the comparison with those of a restart file. */

@@ -67,7 +67,6 @@ class FixMPMMaterial : public FixMPMState {
   };
   std::vector<Exit> exits;    ///< for each range of the material
   void report_exits();
-  void initialize(int i, double *row) const;
   std::string names() const;
 };
 
