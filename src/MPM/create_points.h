@@ -97,7 +97,6 @@ class CreatePoints : public Command, private CreatePointsOptions {
   void parse_mesh(int, char **);
   void find_nodes(const MPM_NS::Mesh &, const char *file);
   void find_elements(const MPM_NS::Mesh &, const char *file);
-  bool put_into_box(double *x) const;
   int owner(double *x) const;
   tagint largest_tag() const;
   void check_tags(tagint largest, bigint nmore) const;

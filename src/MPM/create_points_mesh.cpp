@@ -31,19 +31,6 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 /* ----------------------------------------------------------------------
-   wrap a position into the box; false: it is outside
-------------------------------------------------------------------------- */
-
-bool CreatePoints::put_into_box(double *x) const
-{
-  for (int d = 0; d < 3; d++)
-    if (!domain->periodicity[d] && !(x[d] >= domain->boxlo[d] && x[d] < domain->boxhi[d]))
-      return false;
-  domain->remap(x);
-  return true;
-}
-
-/* ----------------------------------------------------------------------
    TYPE mesh|elements FILE keyword value ...
 ------------------------------------------------------------------------- */
 
@@ -97,7 +84,15 @@ void CreatePoints::parse_mesh(int narg, char **arg)
   volume /= mesh_sites.size();
 
   bigint outside = 0;
-  for (auto &site : mesh_sites) outside += !put_into_box(site.x);
+  for (auto &site : mesh_sites) {
+    bool inside = true;
+    for (int d = 0; d < 3; d++)
+      inside = inside &&
+          (domain->periodicity[d] ||
+           (site.x[d] >= domain->boxlo[d] && site.x[d] < domain->boxhi[d]));
+    outside += !inside;
+    domain->remap(site.x);
+  }
   if (outside)
     error->all(FLERR, 2,
                "Create_points: {} {} of {} are outside of the simulation box; enlarge the "

@@ -527,25 +527,18 @@ void SurfaceMesh::make_coarse()
       }
 }
 
-int SurfaceMesh::cell_of(const Point &x, Point &c) const
+double SurfaceMesh::bound(const Point &x) const
 {
   int index = 0;
+  Point c;    // center of the cell
   for (int d = 0; d < 3; d++) {
     const double t = (x[d] - lo[d]) / cell;
-    if (!(t >= 0.0 && t < ncells[d])) return -1;
+    // outside of the grid: not closer than the box of the body
+    if (!(t >= 0.0 && t < ncells[d])) return std::sqrt(square_of_distance(x, lo, hi));
     const int i = (int) t;
     c[d] = lo[d] + (i + 0.5) * cell;
     index = index * ncells[d] + i;
   }
-  return index;
-}
-
-double SurfaceMesh::bound(const Point &x) const
-{
-  Point c;
-  const int index = cell_of(x, c);
-  // outside of the grid: not closer than the box of the body
-  if (index < 0) return std::sqrt(square_of_distance(x, lo, hi));
   const Point r = x - c;
   // single precision in the grid
   const double known = std::abs((double) coarse[index]) * (1.0 - 1.0e-6) - std::sqrt(dot(r, r));
