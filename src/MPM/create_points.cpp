@@ -316,13 +316,6 @@ void CreatePoints::find_ranges()
 
 /* ---------------------------------------------------------------------- */
 
-bool CreatePoints::in_box(const bigint *s) const
-{
-  return box[0].contains(s[0]) && box[1].contains(s[1]) && box[2].contains(s[2]);
-}
-
-/* ---------------------------------------------------------------------- */
-
 bool CreatePoints::in_region(const bigint *s) const
 {
   return !region || region->match(position(0, s[0]), position(1, s[1]), position(2, s[2]));

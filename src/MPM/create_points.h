@@ -111,7 +111,10 @@ class CreatePoints : public Command, private CreatePointsOptions {
   void make_point(const Site &);
 
   double position(int d, bigint s) const { return origin[d] + (s + 0.5) * spacing[d]; }
-  bool in_box(const bigint *s) const;
+  bool in_box(const bigint *s) const
+  {
+    return box[0].contains(s[0]) && box[1].contains(s[1]) && box[2].contains(s[2]);
+  }
   bool in_region(const bigint *s) const;
   void point_position(const bigint *s, double *x) const;
   template <class F> void for_sites(const Range *range, bigint first, bigint last, F &&visit) const;

@@ -33,7 +33,6 @@
 #include <limits>
 
 using namespace LAMMPS_NS;
-using namespace FixConst;
 using namespace MPM_NS;
 
 /** Elements whose integration points are in the batch. */
@@ -122,11 +121,6 @@ FixMPMElements::FixMPMElements(LAMMPS *lmp, int narg, char **arg) :
 }
 
 FixMPMElements::~FixMPMElements() = default;
-
-int FixMPMElements::setmask()
-{
-  return POST_NEIGHBOR | POST_FORCE;
-}
 
 /* ----------------------------------------------------------------------
    the material of the nodes is that of the elements
@@ -352,13 +346,6 @@ double FixMPMElements::largest_extent() const
   return all;
 }
 
-/* ---------------------------------------------------------------------- */
-
-void FixMPMElements::setup_post_neighbor()
-{
-  post_neighbor();
-}
-
 /* ----------------------------------------------------------------------
    rows in the order of atoms, and where their nodes are
 ------------------------------------------------------------------------- */
@@ -390,18 +377,6 @@ void FixMPMElements::post_neighbor()
     }
   }
   pool.swap(sorted);
-}
-
-/* ---------------------------------------------------------------------- */
-
-void FixMPMElements::setup(int)
-{
-  compute(true);
-}
-
-void FixMPMElements::post_force(int)
-{
-  compute(false);
 }
 
 /* ----------------------------------------------------------------------
@@ -685,11 +660,6 @@ void FixMPMElements::check_dt() const
 
 /* ---------------------------------------------------------------------- */
 
-double FixMPMElements::compute_scalar()
-{
-  return (double) nelements;
-}
-
 double FixMPMElements::memory_usage()
 {
   return FixMPMState::memory_usage() + (double) nodes.capacity() * sizeof(nodes[0]) +
@@ -727,16 +697,6 @@ void FixMPMElements::unpack_restart(int i, int nth)
                "Fix mpm/elements {}: the restart file was written with another mesh or material",
                id);
   unpack_exchange(i, const_cast<double *>(values));
-}
-
-int FixMPMElements::size_restart(int i)
-{
-  return 2 + (int) count[i] * stride;
-}
-
-int FixMPMElements::maxsize_restart()
-{
-  return 2 + max_of_node * stride;
 }
 
 /* ---------------------------------------------------------------------- */

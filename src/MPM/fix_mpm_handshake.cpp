@@ -77,7 +77,6 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
-using namespace FixConst;
 
 // lanes of a node: with full masses momentum and mass of the atoms, and of the points; with weights
 // mass and force of the atoms, and of the forces the part without the gradient of the weights;
@@ -144,11 +143,6 @@ FixMPMHandshake::FixMPMHandshake(LAMMPS *lmp, int narg, char **arg) : FixMPMStat
   });
   keep_arrays();
   vector_atom = weight;
-}
-
-int FixMPMHandshake::setmask()
-{
-  return PRE_NEIGHBOR | POST_NEIGHBOR | POST_FORCE;    // the rest is called by fix mpm
 }
 
 /* ---------------------------------------------------------------------- */
@@ -288,13 +282,6 @@ void FixMPMHandshake::check_embedding()
                id);
 }
 
-/* ---------------------------------------------------------------------- */
-
-void FixMPMHandshake::init_list(int /*id*/, NeighList *ptr)
-{
-  list = ptr;
-}
-
 /** Weight of an atom at x; if it is 1, how far inside of the atoms x is; if it is 0, how far it is
  *  beyond the zone. */
 double FixMPMHandshake::weight_at(const double *x, double &inside, double &beyond) const
@@ -406,11 +393,6 @@ void FixMPMHandshake::setup_pre_neighbor()
 {
   weigh();
   check_weights();
-}
-
-void FixMPMHandshake::setup_post_neighbor()
-{
-  post_neighbor();
 }
 
 void FixMPMHandshake::post_neighbor()

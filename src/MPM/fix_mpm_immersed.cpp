@@ -112,11 +112,6 @@ FixMPMImmersed::FixMPMImmersed(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, nar
   dynamic_group_allow = 1;
 }
 
-int FixMPMImmersed::setmask()
-{
-  return 0;
-}
-
 /* ----------------------------------------------------------------------
    a missing field is found here; with one, it calls init_action()
 ------------------------------------------------------------------------- */

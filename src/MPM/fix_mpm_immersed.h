@@ -42,7 +42,7 @@ struct MPMImmersedOptions {
 class FixMPMImmersed : public Fix, public MPMNodeAction, private MPMImmersedOptions {
  public:
   FixMPMImmersed(class LAMMPS *, int, char **);
-  int setmask() override;
+  int setmask() override { return 0; }    // called by fix mpm
   void init() override;
   double compute_scalar() override;
   double compute_vector(int) override;

@@ -70,13 +70,6 @@ FixMPMMaterial::~FixMPMMaterial()
 
 /* ---------------------------------------------------------------------- */
 
-int FixMPMMaterial::setmask()
-{
-  return watching ? FixConst::PRE_NEIGHBOR : 0;
-}
-
-/* ---------------------------------------------------------------------- */
-
 void FixMPMMaterial::init()
 {
   material->initialized();
@@ -117,16 +110,6 @@ void FixMPMMaterial::watch_ranges(const Batch &b, int first)
       e = {false, update->ntimestep, tag, value[i]};
     }
   }
-}
-
-void FixMPMMaterial::pre_neighbor()
-{
-  report_exits();
-}
-
-void FixMPMMaterial::post_run()
-{
-  report_exits();
 }
 
 /* ----------------------------------------------------------------------

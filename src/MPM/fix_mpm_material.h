@@ -29,10 +29,10 @@ class FixMPMMaterial : public FixMPMState {
  public:
   FixMPMMaterial(class LAMMPS *, int, char **);
   ~FixMPMMaterial() override;
-  int setmask() override;
+  int setmask() override { return watching ? FixConst::PRE_NEIGHBOR : 0; }
   void init() override;
-  void pre_neighbor() override;
-  void post_run() override;
+  void pre_neighbor() override { report_exits(); }
+  void post_run() override { report_exits(); }
   void write_restart(FILE *) override;
   void restart(char *) override;
 
