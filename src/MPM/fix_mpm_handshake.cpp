@@ -305,7 +305,7 @@ void FixMPMHandshake::weigh()
   // atoms this far from the zone may be neighbors of those in it, points may share nodes with them
   const double reach = force->pair->cutforce + neighbor->skin,
                reach_nodes = 2.0 * (stencil_order(field->options.shape) + 1) * field->lattice.h;
-  bigint none = 0, wrong = 0, all;
+  bigint none = 0, wrong = 0;
   for (int i = 0; i < atom->nlocal; i++) {
     if (role[i] != UNKNOWN) continue;
     double inside, beyond;
@@ -327,22 +327,20 @@ void FixMPMHandshake::weigh()
       weight[i] = 1.0;
     }
   }
-  MPI_Allreduce(&none, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  if (all)
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm/handshake {}: {} material points are where atoms have the full weight: create "
-        "points in the zone and beyond it only",
-        id, all);
-  MPI_Allreduce(&wrong, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  if (all)
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm/handshake {}: {} material points do not have the mass of their density, which is "
-        "that of the crystal (pair_coeff of eam gives the mass of its element to all that are "
-        "there: "
-        "define it before create_points, or NULL for the type of points with pair_style hybrid)",
-        id, all);
+  const auto refuse_points = [&](bigint mine, const std::string &which) {
+    bigint all;
+    MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+    if (all)
+      error->all(FLERR, Error::NOLASTLINE, "Fix mpm/handshake {}: {} material points {}", id, all,
+                 which);
+  };
+  refuse_points(none,
+                "are where atoms have the full weight: create points in the zone and beyond it "
+                "only");
+  refuse_points(wrong,
+                "do not have the mass of their density, which is that of the crystal (pair_coeff "
+                "of eam gives the mass of its element to all that are there: define it before "
+                "create_points, or NULL for the type of points with pair_style hybrid)");
 }
 
 /* ---------------------------------------------------------------------- */
