@@ -75,7 +75,8 @@ void AtomVecMPM::process_args(int narg, char **arg)
 }
 
 /* ----------------------------------------------------------------------
-   set local copies of the arrays, also when this is a sub-style of hybrid
+   set local copies of the arrays, also when this is a sub-style of hybrid. Of other sub-styles that
+   use mass or volume in their own way, only spheres are fine, when they come first
 ------------------------------------------------------------------------- */
 
 void AtomVecMPM::grow_pointers()
@@ -83,16 +84,7 @@ void AtomVecMPM::grow_pointers()
   rmass = atom->rmass;
   vfrac = atom->vfrac;
   radius = atom->radius;
-  check_companions();
-}
 
-/* ----------------------------------------------------------------------
-   other sub-styles of hybrid that use mass or volume in their own way:
-   only spheres are fine, when they come first
-------------------------------------------------------------------------- */
-
-void AtomVecMPM::check_companions()
-{
   after_sphere = false;
   auto *hybrid = dynamic_cast<AtomVecHybrid *>(atom->avec);
   if (!hybrid) return;

@@ -44,8 +44,6 @@ class AtomVecMPM : public AtomVec {
   double *rmass = nullptr, *vfrac = nullptr, *radius = nullptr;
   bool after_sphere = false;    // a sphere style converts density to mass before this style does
   double rmass_one;
-
-  void check_companions();
 };
 
 }    // namespace LAMMPS_NS
