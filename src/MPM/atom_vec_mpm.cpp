@@ -173,16 +173,13 @@ void AtomVecMPM::pack_data_pre(int ilocal)
   rmass_one = rmass[ilocal];
   if (!(vfrac[ilocal] > 0.0)) return;
 
-  if (after_sphere) {
-    if (rmass_one == 0.0)
-      error->one(FLERR,
-                 "Material point {} has no mass yet, and atom style sphere cannot read such "
-                 "atoms from a data file: define fix mpm/material before write_data",
-                 atom->tag[ilocal]);
-    rmass[ilocal] = rmass_one * sphere_volume(0.5 * radius[ilocal]) / vfrac[ilocal];
-  } else {
-    rmass[ilocal] = rmass_one / vfrac[ilocal];
-  }
+  if (after_sphere && rmass_one == 0.0)
+    error->one(FLERR,
+               "Material point {} has no mass yet, and atom style sphere cannot read such "
+               "atoms from a data file: define fix mpm/material before write_data",
+               atom->tag[ilocal]);
+  const double sphere = after_sphere ? sphere_volume(0.5 * radius[ilocal]) : 1.0;
+  rmass[ilocal] = rmass_one * sphere / vfrac[ilocal];
 }
 
 /* ----------------------------------------------------------------------
