@@ -269,14 +269,8 @@ double FixMPMImmersed::end_of_bed(double solid, const double *moment, double own
    Chem. Eng. Prog. 48 (1952) 89; Ergun below the porosity 0.8 and C.Y. Wen, Y.H. Yu, Chem. Eng. Prog.
    Symp. Ser. 62 (1966) 100 above: D. Gidaspow, Multiphase Flow and Fluidization (1994);
    R. Di Felice, Int. J. Multiphase Flow 20 (1994) 153. Those that exclude the gradient of pressure
-   along the bed are divided by the porosity. For a disc of unit depth, times its volume over the sphere's.
+   along the bed are divided by the porosity.
 ------------------------------------------------------------------------- */
-
-double FixMPMImmersed::drag_coefficient(double diameter, double slip, double solid) const
-{
-  if (field->lattice.dim == 2) return 1.5 / diameter * drag_on_sphere(diameter, slip, solid);
-  return drag_on_sphere(diameter, slip, solid);
-}
 
 double FixMPMImmersed::drag_on_sphere(double diameter, double slip, double solid) const
 {
@@ -321,9 +315,12 @@ double FixMPMImmersed::drag_on_sphere(double diameter, double slip, double solid
 double FixMPMImmersed::drag_after_step(double diameter, double slip, double solid,
                                        double slowing) const
 {
-  const double most = drag_coefficient(diameter, slip, solid);
+  // a disc of unit depth has the drag of a sphere times its volume over that of the sphere
+  const double share = field->lattice.dim == 2 ? 1.5 / diameter : 1.0;
+  const double most = share * drag_on_sphere(diameter, slip, solid);
   if (!(slowing * most > 0.0)) return most;
-  const double low = slip / (1.0 + slowing * most), least = drag_coefficient(diameter, low, solid);
+  const double low = slip / (1.0 + slowing * most),
+               least = share * drag_on_sphere(diameter, low, solid);
   const double rise = slip > low ? (most - least) / (slip - low) : 0.0;
   const double linear = 1.0 + slowing * (least - rise * low);
   const double w = 2.0 * slip / (linear + sqrt(linear * linear + 4.0 * slowing * rise * slip));

@@ -90,7 +90,6 @@ class FixMPMImmersed : public Fix, public MPMNodeAction, private MPMImmersedOpti
   bool is_inner(int64_t node);
   void find_grains(double dt);
   double end_of_bed(double solid, const double *moment, double own) const;
-  double drag_coefficient(double diameter, double slip, double solid) const;
   double drag_after_step(double diameter, double slip, double solid, double slowing) const;
   double drag_on_sphere(double diameter, double slip, double solid) const;
 };
