@@ -75,7 +75,8 @@ void AtomVecMPM::process_args(int narg, char **arg)
 }
 
 /* ----------------------------------------------------------------------
-   set local copies of the arrays, also when this is a sub-style of hybrid
+   set local copies of the arrays, also when this is a sub-style of hybrid. Of other sub-styles that
+   use mass or volume in their own way, only spheres are fine, when they come first
 ------------------------------------------------------------------------- */
 
 void AtomVecMPM::grow_pointers()
@@ -83,16 +84,7 @@ void AtomVecMPM::grow_pointers()
   rmass = atom->rmass;
   vfrac = atom->vfrac;
   radius = atom->radius;
-  check_companions();
-}
 
-/* ----------------------------------------------------------------------
-   other sub-styles of hybrid that use mass or volume in their own way:
-   only spheres are fine, when they come first
-------------------------------------------------------------------------- */
-
-void AtomVecMPM::check_companions()
-{
   after_sphere = false;
   auto *hybrid = dynamic_cast<AtomVecHybrid *>(atom->avec);
   if (!hybrid) return;
@@ -120,7 +112,7 @@ void AtomVecMPM::check_companions()
 
 /* ---------------------------------------------------------------------- */
 
-double AtomVecMPM::sphere_volume(double r) const
+static double sphere_volume(double r)
 {
   return r > 0.0 ? MathConst::MY_4PI3 * r * r * r : 1.0;
 }
@@ -181,16 +173,13 @@ void AtomVecMPM::pack_data_pre(int ilocal)
   rmass_one = rmass[ilocal];
   if (!(vfrac[ilocal] > 0.0)) return;
 
-  if (after_sphere) {
-    if (rmass_one == 0.0)
-      error->one(FLERR,
-                 "Material point {} has no mass yet, and atom style sphere cannot read such "
-                 "atoms from a data file: define fix mpm/material before write_data",
-                 atom->tag[ilocal]);
-    rmass[ilocal] = rmass_one * sphere_volume(0.5 * radius[ilocal]) / vfrac[ilocal];
-  } else {
-    rmass[ilocal] = rmass_one / vfrac[ilocal];
-  }
+  if (after_sphere && rmass_one == 0.0)
+    error->one(FLERR,
+               "Material point {} has no mass yet, and atom style sphere cannot read such "
+               "atoms from a data file: define fix mpm/material before write_data",
+               atom->tag[ilocal]);
+  const double sphere = after_sphere ? sphere_volume(0.5 * radius[ilocal]) : 1.0;
+  rmass[ilocal] = rmass_one * sphere / vfrac[ilocal];
 }
 
 /* ----------------------------------------------------------------------

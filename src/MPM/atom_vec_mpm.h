@@ -44,9 +44,6 @@ class AtomVecMPM : public AtomVec {
   double *rmass = nullptr, *vfrac = nullptr, *radius = nullptr;
   bool after_sphere = false;    // a sphere style converts density to mass before this style does
   double rmass_one;
-
-  void check_companions();
-  double sphere_volume(double r) const;
 };
 
 }    // namespace LAMMPS_NS

@@ -277,11 +277,7 @@ void CreatePoints::find_ranges()
   // half of what is on the axis
   if (fix && fix->options.axisymmetric && lo[0] > -INFINITE) lo[0] = std::max(lo[0], 0.0);
 
-  for (int d = 0; d < 3; d++) {
-    if (d == domain->dimension) {
-      box[d] = search[d] = {0, 1};
-      break;
-    }
+  for (int d = 0; d < domain->dimension; d++) {
     const double boxlo = domain->boxlo[d], boxhi = domain->boxhi[d];
     const bool periodic = domain->periodicity[d];
 
@@ -291,9 +287,7 @@ void CreatePoints::find_ranges()
       const double s = (x - origin[d]) / spacing[d] - 0.5;
       if (!(fabs(s) < MAX_INDEX))
         error->all(FLERR, Error::NOLASTLINE,
-                   "Create_points spacing {:.8g} is too fine for this "
-                   "box or region",
-                   spacing[d]);
+                   "Create_points spacing {:.8g} is too fine for this box or region", spacing[d]);
       return (bigint) ceil(s - TOLERANCE);
     };
 
@@ -304,9 +298,8 @@ void CreatePoints::find_ranges()
         end = first + (bigint) round(nsite);
       } else if (lo[d] < position(d, first) && hi[d] > position(d, end - 1) && comm->me == 0) {
         error->warning(FLERR,
-                       "Create_points spacing {:.8g} does not divide the length {:.8g} of "
-                       "the box along periodic axis {}: points across the boundary are not at this "
-                       "spacing",
+                       "Create_points spacing {:.8g} does not divide the length {:.8g} of the box "
+                       "along periodic axis {}: points across the boundary are not at this spacing",
                        spacing[d], domain->prd[d], axis_name[d]);
       }
     } else {
@@ -315,18 +308,10 @@ void CreatePoints::find_ranges()
     }
     box[d] = {first, std::max(end - first, (bigint) 0)};
 
-    search[d] = box[d];
     if (lo[d] > -INFINITE) first = first_from(lo[d]);
     if (hi[d] < INFINITE) end = first_from(hi[d] + 2.0 * TOLERANCE * spacing[d]);
     search[d] = {first, std::max(end - first, (bigint) 0)};
   }
-}
-
-/* ---------------------------------------------------------------------- */
-
-bool CreatePoints::in_box(const bigint *s) const
-{
-  return box[0].contains(s[0]) && box[1].contains(s[1]) && box[2].contains(s[2]);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -499,9 +484,8 @@ bigint CreatePoints::make_points()
     const bigint first = std::min(base + SHARE * comm->me, n);
     for_sites(range, first, std::min(first + SHARE, n), [&](const bigint *s) {
       if (!in_region(s)) return;
-      made.emplace_back();
+      made.push_back({{}, volume, 0});
       point_position(s, made.back().x);
-      made.back().volume = volume;
     });
 
     // IDs

@@ -73,7 +73,7 @@ class CreatePoints : public Command, private CreatePointsOptions {
   };
   using Corners = std::array<double, 24>;    // of an element from its center, see transfer/cpdi.h
   struct Range {                             // consecutive sites along an axis
-    bigint first, n;
+    bigint first = 0, n = 1;
     bool contains(bigint s) const { return s >= first && s < first + n; }
   };
 
@@ -95,10 +95,8 @@ class CreatePoints : public Command, private CreatePointsOptions {
 
   void parse(int, char **);
   void parse_mesh(int, char **);
-  MPM_NS::Mesh read_mesh(int, char **);
   void find_nodes(const MPM_NS::Mesh &, const char *file);
   void find_elements(const MPM_NS::Mesh &, const char *file);
-  bool put_into_box(double *x) const;
   int owner(double *x) const;
   tagint largest_tag() const;
   void check_tags(tagint largest, bigint nmore) const;
@@ -113,7 +111,10 @@ class CreatePoints : public Command, private CreatePointsOptions {
   void make_point(const Site &);
 
   double position(int d, bigint s) const { return origin[d] + (s + 0.5) * spacing[d]; }
-  bool in_box(const bigint *s) const;
+  bool in_box(const bigint *s) const
+  {
+    return box[0].contains(s[0]) && box[1].contains(s[1]) && box[2].contains(s[2]);
+  }
   bool in_region(const bigint *s) const;
   void point_position(const bigint *s, double *x) const;
   template <class F> void for_sites(const Range *range, bigint first, bigint last, F &&visit) const;

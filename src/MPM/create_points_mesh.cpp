@@ -31,7 +31,7 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 /* ----------------------------------------------------------------------
-   TYPE mesh|elements FILE keyword value ...: the mesh, scaled and moved
+   TYPE mesh|elements FILE keyword value ...
 ------------------------------------------------------------------------- */
 
 Options CreatePointsMeshOptions::declare(const std::string &command, int dim, bool has_radius)
@@ -53,13 +53,14 @@ Options CreatePointsMeshOptions::declare(const std::string &command, int dim, bo
   return o;
 }
 
-Mesh CreatePoints::read_mesh(int narg, char **arg)
+void CreatePoints::parse_mesh(int narg, char **arg)
 {
   const std::string what = std::string("create_points ") + arg[1];
   if (narg < 3) utils::missing_cmd_args(FLERR, what, error);
   for (auto *field : MPMField::all(lmp))
     if (field->options.axisymmetric) fix = field;
-  if (fix && strcmp(arg[1], "mesh") == 0)
+  const bool in_elements = strcmp(arg[1], "elements") == 0;
+  if (fix && !in_elements)
     error->all(FLERR, 1,
                "Create_points mesh cannot be used with axisymmetric fix mpm {}: elements, to "
                "which its points belong, are of plane strain; use create_points elements or region",
@@ -74,28 +75,7 @@ Mesh CreatePoints::read_mesh(int narg, char **arg)
   Mesh mesh = read_body(lmp, arg[2], given.part, "Create_points", 2);
   for (auto &x : mesh.nodes)
     for (int d = 0; d < 3; d++) x[d] = d < dim ? given.move[d] + given.scale * x[d] : 0.0;
-  return mesh;
-}
 
-/* ----------------------------------------------------------------------
-   wrap a position into the box; false: it is outside
-------------------------------------------------------------------------- */
-
-bool CreatePoints::put_into_box(double *x) const
-{
-  for (int d = 0; d < 3; d++)
-    if (!domain->periodicity[d] && !(x[d] >= domain->boxlo[d] && x[d] < domain->boxhi[d]))
-      return false;
-  domain->remap(x);
-  return true;
-}
-
-/* ---------------------------------------------------------------------- */
-
-void CreatePoints::parse_mesh(int narg, char **arg)
-{
-  const Mesh mesh = read_mesh(narg, arg);
-  const bool in_elements = strcmp(arg[1], "elements") == 0;
   volume = 0.0;
   if (in_elements)
     find_elements(mesh, arg[2]);
@@ -104,7 +84,15 @@ void CreatePoints::parse_mesh(int narg, char **arg)
   volume /= mesh_sites.size();
 
   bigint outside = 0;
-  for (auto &site : mesh_sites) outside += !put_into_box(site.x);
+  for (auto &site : mesh_sites) {
+    bool inside = true;
+    for (int d = 0; d < 3; d++)
+      inside = inside &&
+          (domain->periodicity[d] ||
+           (site.x[d] >= domain->boxlo[d] && site.x[d] < domain->boxhi[d]));
+    outside += !inside;
+    domain->remap(site.x);
+  }
   if (outside)
     error->all(FLERR, 2,
                "Create_points: {} {} of {} are outside of the simulation box; enlarge the "

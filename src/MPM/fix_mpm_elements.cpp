@@ -33,7 +33,6 @@
 #include <limits>
 
 using namespace LAMMPS_NS;
-using namespace FixConst;
 using namespace MPM_NS;
 
 /** Elements whose integration points are in the batch. */
@@ -82,8 +81,7 @@ FixMPMElements::FixMPMElements(LAMMPS *lmp, int narg, char **arg) :
   read_options(lmp, options, narg, arg, 3);
   if (!points)
     error->all(FLERR,
-               "Fix mpm/elements requires material points: use atom_style mpm, or hybrid "
-               "with mpm");
+               "Fix mpm/elements requires material points: use atom_style mpm, or hybrid with mpm");
   if (!atom->tag_enable) error->all(FLERR, "Fix mpm/elements requires atom IDs");
 
   restart_global = 1;
@@ -123,11 +121,6 @@ FixMPMElements::FixMPMElements(LAMMPS *lmp, int narg, char **arg) :
 }
 
 FixMPMElements::~FixMPMElements() = default;
-
-int FixMPMElements::setmask()
-{
-  return POST_NEIGHBOR | POST_FORCE;
-}
 
 /* ----------------------------------------------------------------------
    the material of the nodes is that of the elements
@@ -217,9 +210,7 @@ void FixMPMElements::make_elements(const Mesh &mesh)
     max_of_node = std::max(max_of_node, ++owned[owner]);
     if (local[owner] >= 0) here.emplace_back(local[owner], e);
   }
-  std::stable_sort(here.begin(), here.end(), [](const auto &a, const auto &b) {
-    return a.first < b.first;
-  });
+  std::sort(here.begin(), here.end());
   pool.assign(here.size() * stride, 0.0);
   double least = std::numeric_limits<double>::max(), volume[2] = {0.0, 0.0}, volumes[2];
   for (std::size_t k = 0; k < here.size(); k++) {
@@ -355,13 +346,6 @@ double FixMPMElements::largest_extent() const
   return all;
 }
 
-/* ---------------------------------------------------------------------- */
-
-void FixMPMElements::setup_post_neighbor()
-{
-  post_neighbor();
-}
-
 /* ----------------------------------------------------------------------
    rows in the order of atoms, and where their nodes are
 ------------------------------------------------------------------------- */
@@ -393,18 +377,6 @@ void FixMPMElements::post_neighbor()
     }
   }
   pool.swap(sorted);
-}
-
-/* ---------------------------------------------------------------------- */
-
-void FixMPMElements::setup(int)
-{
-  compute(true);
-}
-
-void FixMPMElements::post_force(int)
-{
-  compute(false);
 }
 
 /* ----------------------------------------------------------------------
@@ -688,11 +660,6 @@ void FixMPMElements::check_dt() const
 
 /* ---------------------------------------------------------------------- */
 
-double FixMPMElements::compute_scalar()
-{
-  return (double) nelements;
-}
-
 double FixMPMElements::memory_usage()
 {
   return FixMPMState::memory_usage() + (double) nodes.capacity() * sizeof(nodes[0]) +
@@ -730,16 +697,6 @@ void FixMPMElements::unpack_restart(int i, int nth)
                "Fix mpm/elements {}: the restart file was written with another mesh or material",
                id);
   unpack_exchange(i, const_cast<double *>(values));
-}
-
-int FixMPMElements::size_restart(int i)
-{
-  return 2 + (int) count[i] * stride;
-}
-
-int FixMPMElements::maxsize_restart()
-{
-  return 2 + max_of_node * stride;
 }
 
 /* ---------------------------------------------------------------------- */

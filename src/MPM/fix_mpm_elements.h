@@ -49,19 +49,19 @@ class FixMPMElements : public FixMPMState, private MPMElementsOptions {
  public:
   FixMPMElements(class LAMMPS *, int, char **);
   ~FixMPMElements() override;
-  int setmask() override;
+  int setmask() override { return FixConst::POST_NEIGHBOR | FixConst::POST_FORCE; }
   void init() override;
-  void setup_post_neighbor() override;
-  void setup(int) override;
+  void setup_post_neighbor() override { post_neighbor(); }
+  void setup(int) override { compute(true); }
   void post_neighbor() override;
-  void post_force(int) override;
-  double compute_scalar() override;
+  void post_force(int) override { compute(false); }
+  double compute_scalar() override { return (double) nelements; }
   double memory_usage() override;
   int pack_exchange(int, double *) override;
   int unpack_exchange(int, double *) override;
   void unpack_restart(int, int) override;
-  int size_restart(int) override;
-  int maxsize_restart() override;
+  int size_restart(int i) override { return 2 + (int) count[i] * stride; }
+  int maxsize_restart() override { return 2 + max_of_node * stride; }
   void write_restart(FILE *) override;
   void restart(char *) override;
   int pack_reverse_comm(int, int, double *) override;

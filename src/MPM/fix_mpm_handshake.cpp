@@ -77,7 +77,6 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
-using namespace FixConst;
 
 // lanes of a node: with full masses momentum and mass of the atoms, and of the points; with weights
 // mass and force of the atoms, and of the forces the part without the gradient of the weights;
@@ -144,11 +143,6 @@ FixMPMHandshake::FixMPMHandshake(LAMMPS *lmp, int narg, char **arg) : FixMPMStat
   });
   keep_arrays();
   vector_atom = weight;
-}
-
-int FixMPMHandshake::setmask()
-{
-  return PRE_NEIGHBOR | POST_NEIGHBOR | POST_FORCE;    // the rest is called by fix mpm
 }
 
 /* ---------------------------------------------------------------------- */
@@ -288,23 +282,6 @@ void FixMPMHandshake::check_embedding()
                id);
 }
 
-/* ---------------------------------------------------------------------- */
-
-void FixMPMHandshake::init_list(int /*id*/, NeighList *ptr)
-{
-  list = ptr;
-}
-
-/* ----------------------------------------------------------------------
-   weights
-------------------------------------------------------------------------- */
-
-/** Atoms this far from the zone may be neighbors of those in it. */
-double FixMPMHandshake::margin() const
-{
-  return force->pair->cutforce + neighbor->skin;
-}
-
 /** Weight of an atom at x; if it is 1, how far inside of the atoms x is; if it is 0, how far it is
  *  beyond the zone. */
 double FixMPMHandshake::weight_at(const double *x, double &inside, double &beyond) const
@@ -325,9 +302,10 @@ double FixMPMHandshake::weight_at(const double *x, double &inside, double &beyon
 /** Atoms and points that have no weight yet get that of the place where they are. */
 void FixMPMHandshake::weigh()
 {
-  const double reach = margin(),
+  // atoms this far from the zone may be neighbors of those in it, points may share nodes with them
+  const double reach = force->pair->cutforce + neighbor->skin,
                reach_nodes = 2.0 * (stencil_order(field->options.shape) + 1) * field->lattice.h;
-  bigint none = 0, wrong = 0, all;
+  bigint none = 0, wrong = 0;
   for (int i = 0; i < atom->nlocal; i++) {
     if (role[i] != UNKNOWN) continue;
     double inside, beyond;
@@ -349,22 +327,20 @@ void FixMPMHandshake::weigh()
       weight[i] = 1.0;
     }
   }
-  MPI_Allreduce(&none, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  if (all)
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm/handshake {}: {} material points are where atoms have the full weight: create "
-        "points in the zone and beyond it only",
-        id, all);
-  MPI_Allreduce(&wrong, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  if (all)
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm/handshake {}: {} material points do not have the mass of their density, which is "
-        "that of the crystal (pair_coeff of eam gives the mass of its element to all that are "
-        "there: "
-        "define it before create_points, or NULL for the type of points with pair_style hybrid)",
-        id, all);
+  const auto refuse_points = [&](bigint mine, const std::string &which) {
+    bigint all;
+    MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+    if (all)
+      error->all(FLERR, Error::NOLASTLINE, "Fix mpm/handshake {}: {} material points {}", id, all,
+                 which);
+  };
+  refuse_points(none,
+                "are where atoms have the full weight: create points in the zone and beyond it "
+                "only");
+  refuse_points(wrong,
+                "do not have the mass of their density, which is that of the crystal (pair_coeff "
+                "of eam gives the mass of its element to all that are there: define it before "
+                "create_points, or NULL for the type of points with pair_style hybrid)");
 }
 
 /* ---------------------------------------------------------------------- */
@@ -415,11 +391,6 @@ void FixMPMHandshake::setup_pre_neighbor()
 {
   weigh();
   check_weights();
-}
-
-void FixMPMHandshake::setup_post_neighbor()
-{
-  post_neighbor();
 }
 
 void FixMPMHandshake::post_neighbor()
@@ -786,9 +757,7 @@ double FixMPMHandshake::memory_usage()
       sizeof(int) * (double) (nodes.capacity() + members.capacity());
 }
 
-/* ----------------------------------------------------------------------
-   weights and roles of atoms and points
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
 void FixMPMHandshake::grow_arrays(int nmax)
 {

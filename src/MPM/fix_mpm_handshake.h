@@ -47,11 +47,14 @@ struct MPMHandshakeOptions {
 class FixMPMHandshake : public FixMPMState, public MPMNodeAction, private MPMHandshakeOptions {
  public:
   FixMPMHandshake(class LAMMPS *, int, char **);
-  int setmask() override;
+  int setmask() override    // the rest is called by fix mpm
+  {
+    return FixConst::PRE_NEIGHBOR | FixConst::POST_NEIGHBOR | FixConst::POST_FORCE;
+  }
   void init() override;
-  void init_list(int, class NeighList *) override;
+  void init_list(int, class NeighList *ptr) override { list = ptr; }
   void setup_pre_neighbor() override;
-  void setup_post_neighbor() override;
+  void setup_post_neighbor() override { post_neighbor(); }
   void post_neighbor() override;
   void setup(int) override;
   void post_force(int) override;
@@ -94,7 +97,6 @@ class FixMPMHandshake : public FixMPMState, public MPMNodeAction, private MPMHan
   void check_pair();
   void check_embedding();
   double embedding_share(int i) const;
-  double margin() const;
   double weight_at(const double *x, double &inside, double &beyond) const;
   void weigh();
   void check_weights();

@@ -112,11 +112,6 @@ FixMPMImmersed::FixMPMImmersed(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, nar
   dynamic_group_allow = 1;
 }
 
-int FixMPMImmersed::setmask()
-{
-  return 0;
-}
-
 /* ----------------------------------------------------------------------
    a missing field is found here; with one, it calls init_action()
 ------------------------------------------------------------------------- */
@@ -233,9 +228,8 @@ void FixMPMImmersed::extend_topology(MPMField &extended)
       const double t = (atom->x[i][d] - grid.lattice.origin[d]) / grid.lattice.h;
       if (!(fabs(t) < 4.0e6))
         error->one(FLERR, Error::NOLASTLINE,
-                   "Fix mpm/immersed {}: grain {} is far out of reach of the "
-                   "lattice",
-                   id, atom->tag[i]);
+                   "Fix mpm/immersed {}: grain {} is far out of reach of the lattice", id,
+                   atom->tag[i]);
       const int n = MPMStencil(*field).weights(t, lo[d], w);
       hi[d] = (lo[d] + n) >> grid.shift_bits;    // one more on each side: grains move
       lo[d] = (lo[d] - 1) >> grid.shift_bits;
@@ -275,14 +269,8 @@ double FixMPMImmersed::end_of_bed(double solid, const double *moment, double own
    Chem. Eng. Prog. 48 (1952) 89; Ergun below the porosity 0.8 and C.Y. Wen, Y.H. Yu, Chem. Eng. Prog.
    Symp. Ser. 62 (1966) 100 above: D. Gidaspow, Multiphase Flow and Fluidization (1994);
    R. Di Felice, Int. J. Multiphase Flow 20 (1994) 153. Those that exclude the gradient of pressure
-   along the bed are divided by the porosity. For a disc of unit depth, times its volume over the sphere's.
+   along the bed are divided by the porosity.
 ------------------------------------------------------------------------- */
-
-double FixMPMImmersed::drag_coefficient(double diameter, double slip, double solid) const
-{
-  if (field->lattice.dim == 2) return 1.5 / diameter * drag_on_sphere(diameter, slip, solid);
-  return drag_on_sphere(diameter, slip, solid);
-}
 
 double FixMPMImmersed::drag_on_sphere(double diameter, double slip, double solid) const
 {
@@ -327,9 +315,12 @@ double FixMPMImmersed::drag_on_sphere(double diameter, double slip, double solid
 double FixMPMImmersed::drag_after_step(double diameter, double slip, double solid,
                                        double slowing) const
 {
-  const double most = drag_coefficient(diameter, slip, solid);
+  // a disc of unit depth has the drag of a sphere times its volume over that of the sphere
+  const double share = field->lattice.dim == 2 ? 1.5 / diameter : 1.0;
+  const double most = share * drag_on_sphere(diameter, slip, solid);
   if (!(slowing * most > 0.0)) return most;
-  const double low = slip / (1.0 + slowing * most), least = drag_coefficient(diameter, low, solid);
+  const double low = slip / (1.0 + slowing * most),
+               least = share * drag_on_sphere(diameter, low, solid);
   const double rise = slip > low ? (most - least) / (slip - low) : 0.0;
   const double linear = 1.0 + slowing * (least - rise * low);
   const double w = 2.0 * slip / (linear + sqrt(linear * linear + 4.0 * slowing * rise * slip));
@@ -424,16 +415,6 @@ void FixMPMImmersed::find_grains(double dt)
 }
 
 /* ----------------------------------------------------------------------
-   reals [lane, lane+nlane) of all nodes, from images and other ranks, too; images get the sums
-------------------------------------------------------------------------- */
-
-void FixMPMImmersed::sum_nodes(int lane, int nlane)
-{
-  field->nodes.sum(sums.data(), NREAL, lane, nlane);
-  field->grid.copy_aliases(sums.data(), NREAL);
-}
-
-/* ----------------------------------------------------------------------
    Impulses of this step. That of drag acts on the slip which it leaves: with one grain, by the
    implicit Euler method; when grains share nodes, the sum of all coefficients at these is what their
    fluid is taken to be slowed down with. That is at least what it is, so that the slip of no grain
@@ -451,6 +432,10 @@ void FixMPMImmersed::act(double dt, Stage stage)
   grid.copy_aliases();
   find_grains(dt);
   sums.assign(NREAL * grid.nnodes(), 0.0);
+  const auto sum_nodes = [&](int lane, int nlane) {    // images get the sums, too
+    field->nodes.sum(sums.data(), NREAL, lane, nlane);
+    grid.copy_aliases(sums.data(), NREAL);
+  };
   const auto around = [&](const Grain &g, const auto &f) {
     for (int e = g.first; e < g.last; e++) f(entries[e], &sums[NREAL * entries[e].node]);
   };

@@ -42,7 +42,7 @@ struct MPMImmersedOptions {
 class FixMPMImmersed : public Fix, public MPMNodeAction, private MPMImmersedOptions {
  public:
   FixMPMImmersed(class LAMMPS *, int, char **);
-  int setmask() override;
+  int setmask() override { return 0; }    // called by fix mpm
   void init() override;
   double compute_scalar() override;
   double compute_vector(int) override;
@@ -89,9 +89,7 @@ class FixMPMImmersed : public Fix, public MPMNodeAction, private MPMImmersedOpti
   double volume(int i) const;
   bool is_inner(int64_t node);
   void find_grains(double dt);
-  void sum_nodes(int lane, int nlane);
   double end_of_bed(double solid, const double *moment, double own) const;
-  double drag_coefficient(double diameter, double slip, double solid) const;
   double drag_after_step(double diameter, double slip, double solid, double slowing) const;
   double drag_on_sphere(double diameter, double slip, double solid) const;
 };

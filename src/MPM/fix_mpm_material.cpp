@@ -28,9 +28,7 @@ static constexpr int RESTART_VERSION = 2;
 
 /* ---------------------------------------------------------------------- */
 
-FixMPMMaterial::FixMPMMaterial(LAMMPS *lmp, int narg, char **arg) :
-    FixMPMState(lmp, narg, arg), material(nullptr), nhistory(0), history(nullptr), work(),
-    watching(false)
+FixMPMMaterial::FixMPMMaterial(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
 {
   static_assert(NWORK <= sizeof(work) / sizeof(double), "room for all kinds of work");
   if (narg < 4) utils::missing_cmd_args(FLERR, "fix mpm/material", error);
@@ -48,7 +46,11 @@ FixMPMMaterial::FixMPMMaterial(LAMMPS *lmp, int narg, char **arg) :
   damage = find_history("damage");
   if (nhistory > 0)
     state.declare(history, "mpm/material:history", nhistory, [this](int i, double *row) {
-      initialize(i, row);
+      try {
+        material->initialize(atom->x[i], row);
+      } catch (const std::runtime_error &e) {
+        error->one(FLERR, Error::NOLASTLINE, "Fix mpm/material {}: {}", id, e.what());
+      }
     });
   keep_arrays();
 
@@ -64,13 +66,6 @@ FixMPMMaterial::FixMPMMaterial(LAMMPS *lmp, int narg, char **arg) :
 FixMPMMaterial::~FixMPMMaterial()
 {
   delete material;
-}
-
-/* ---------------------------------------------------------------------- */
-
-int FixMPMMaterial::setmask()
-{
-  return watching ? FixConst::PRE_NEIGHBOR : 0;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -115,16 +110,6 @@ void FixMPMMaterial::watch_ranges(const Batch &b, int first)
       e = {false, update->ntimestep, tag, value[i]};
     }
   }
-}
-
-void FixMPMMaterial::pre_neighbor()
-{
-  report_exits();
-}
-
-void FixMPMMaterial::post_run()
-{
-  report_exits();
 }
 
 /* ----------------------------------------------------------------------
@@ -188,16 +173,6 @@ int FixMPMMaterial::find_history(const std::string &name) const
   for (int k = 0; k < nhistory; k++)
     if (variables[k].name == name) return k;
   return -1;
-}
-
-/** History of a new point. */
-void FixMPMMaterial::initialize(int i, double *row) const
-{
-  try {
-    material->initialize(atom->x[i], row);
-  } catch (const std::runtime_error &e) {
-    error->one(FLERR, Error::NOLASTLINE, "Fix mpm/material {}: {}", id, e.what());
-  }
 }
 
 /** Names of the history variables, for the comparison with those of a restart file. */

@@ -29,18 +29,18 @@ class FixMPMMaterial : public FixMPMState {
  public:
   FixMPMMaterial(class LAMMPS *, int, char **);
   ~FixMPMMaterial() override;
-  int setmask() override;
+  int setmask() override { return watching ? FixConst::PRE_NEIGHBOR : 0; }
   void init() override;
-  void pre_neighbor() override;
-  void post_run() override;
+  void pre_neighbor() override { report_exits(); }
+  void post_run() override { report_exits(); }
   void write_restart(FILE *) override;
   void restart(char *) override;
 
   MPM_NS::Material *material;    ///< owned
   int nhistory;                  ///< columns of history
-  double **history;              ///< [n][nhistory] or null when the law has none
+  double **history = nullptr;    ///< [n][nhistory] or null when the law has none
   int damage;                    ///< column of the damage, 1 in points that have failed; -1: none
-  double work[8];                ///< energy of each MPM_NS::Work kind so far, this rank's share
+  double work[8] = {};           ///< energy of each MPM_NS::Work kind so far, this rank's share
 
   /** mass = density * initial volume for the points of the group that have no mass yet. */
   void assign_mass();
@@ -67,7 +67,6 @@ class FixMPMMaterial : public FixMPMState {
   };
   std::vector<Exit> exits;    ///< for each range of the material
   void report_exits();
-  void initialize(int i, double *row) const;
   std::string names() const;
 };
 

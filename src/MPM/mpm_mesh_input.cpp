@@ -21,14 +21,14 @@ using namespace MPM_NS;
 namespace {
 
 /** Send plain data of rank 0 to all. */
-template <class T> void broadcast(std::vector<T> &data, MPI_Comm world)
+template <class Data> void broadcast(Data &data, MPI_Comm world)
 {
   bigint n = data.size();
   MPI_Bcast(&n, 1, MPI_LMP_BIGINT, 0, world);
   data.resize(n);
-  constexpr bigint PIECE = (1 << 30) / sizeof(T);
+  constexpr bigint SIZE = sizeof(typename Data::value_type), PIECE = (1 << 30) / SIZE;
   for (bigint k = 0; k < n; k += PIECE)
-    MPI_Bcast(data.data() + k, (int) (std::min(PIECE, n - k) * sizeof(T)), MPI_BYTE, 0, world);
+    MPI_Bcast(data.data() + k, (int) (std::min(PIECE, n - k) * SIZE), MPI_BYTE, 0, world);
 }
 
 }    // namespace
@@ -37,20 +37,18 @@ Mesh LAMMPS_NS::read_body(LAMMPS *lmp, const std::string &file, const std::strin
                           const std::string &user, int iarg)
 {
   Mesh mesh;
-  std::vector<char> message;
+  std::string message;
   if (lmp->comm->me == 0) {
     try {
       mesh = read_gmsh(file);
       mesh.keep(lmp->domain->dimension, part);
       mesh.orient();
     } catch (const std::runtime_error &e) {
-      const std::string what = e.what();
-      message.assign(what.begin(), what.end());
+      message = e.what();
     }
   }
   broadcast(message, lmp->world);
-  if (!message.empty())
-    lmp->error->all(FLERR, iarg, "{}: {}", user, std::string(message.begin(), message.end()));
+  if (!message.empty()) lmp->error->all(FLERR, iarg, "{}: {}", user, message);
   broadcast(mesh.nodes, lmp->world);
   broadcast(mesh.elements, lmp->world);
   return mesh;

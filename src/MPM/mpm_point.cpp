@@ -61,7 +61,12 @@ void MPMPoint::command(int narg, char **arg)
   range_left.assign(material->ranges().size(), false);
   MaterialPoint point(*material, 1, length);
   set_temperature(point);
-  open_table();
+  if (comm->me == 0 && !file.empty()) {
+    fp = fopen(file.c_str(), "w");
+    if (!fp) error->one(FLERR, "Cannot write table {}: {}", file, utils::getsyserror());
+    utils::print(fp, "# mpm_point, path {}, units {}\n# {}\n", path_name[path], update->unit_style,
+                 material->describe());
+  }
   if (path == SHOCK)
     run_shock(point);
   else
@@ -360,15 +365,6 @@ void MPMPoint::check(const MaterialPoint &point, bigint step)
 /* ----------------------------------------------------------------------
    table: comment lines with what it is, names of the columns, one row per output
 ------------------------------------------------------------------------- */
-
-void MPMPoint::open_table()
-{
-  if (comm->me != 0 || file.empty()) return;
-  fp = fopen(file.c_str(), "w");
-  if (!fp) error->one(FLERR, "Cannot write table {}: {}", file, utils::getsyserror());
-  utils::print(fp, "# mpm_point, path {}, units {}\n# {}\n", path_name[path], update->unit_style,
-               material->describe());
-}
 
 /** All that is known of a point, in the order of the columns. */
 std::vector<std::pair<std::string, double>> MPMPoint::row(const MaterialPoint &point, bigint step)

@@ -86,7 +86,6 @@ class MPMPoint : public Command, private MPMPointOptions {
   void run_shock(MPM_NS::MaterialPoint &);
   void set_temperature(MPM_NS::MaterialPoint &);
   void check(const MPM_NS::MaterialPoint &, bigint step);
-  void open_table();
   std::vector<std::pair<std::string, double>> row(const MPM_NS::MaterialPoint &, bigint step);
   void write(const MPM_NS::MaterialPoint &, bigint step);
 };

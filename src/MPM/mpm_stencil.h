@@ -96,9 +96,9 @@ class MPMStencil {
     }
   }
 
-  /** Calls f(number, weight, r) for the nodes that a position of no size reaches, such as that of an atom
-   *  which is no point; false: not all of them are active. The blocks must stay while this object is used:
-   *  it remembers the last one. */
+  /** Calls f(number, weight, r) for the nodes that a position reaches, such as that of an atom which
+   *  is no point, with r from the node to the position, in node spacings. Returns false when not all
+   *  nodes are active. The blocks must stay while this object is used: it remembers the last one. */
   template <class F> bool visit_around(const double *x, const F &f)
   {
     const auto &grid = field.grid;

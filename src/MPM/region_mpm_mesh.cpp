@@ -96,16 +96,6 @@ int RegMPMMesh::inside(double x, double y, double z)
   return mesh->inside({x, y, z});
 }
 
-int RegMPMMesh::surface_interior(double *x, double cutoff)
-{
-  return touch(x, cutoff, -1.0);
-}
-
-int RegMPMMesh::surface_exterior(double *x, double cutoff)
-{
-  return touch(x, cutoff, 1.0);
-}
-
 /* ----------------------------------------------------------------------
    the closest point of each part of the surface, if x is on the given side and it is within the cutoff
 ------------------------------------------------------------------------- */

@@ -31,8 +31,8 @@ class RegMPMMesh : public Region {
   RegMPMMesh(class LAMMPS *, int, char **);
   ~RegMPMMesh() override;
   int inside(double, double, double) override;
-  int surface_interior(double *, double) override;
-  int surface_exterior(double *, double) override;
+  int surface_interior(double *x, double cutoff) override { return touch(x, cutoff, -1.0); }
+  int surface_exterior(double *x, double cutoff) override { return touch(x, cutoff, 1.0); }
 
   const MPM_NS::SurfaceMesh &surface_mesh() const { return *mesh; }
 

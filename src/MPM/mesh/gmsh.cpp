@@ -105,8 +105,6 @@ struct Reader {
   std::unordered_map<int64_t, int> place;          // of the nodes, by number
   std::map<std::pair<int, int>, int> of_entity;    // 4.1: (dimension, entity) -> physical group
 
-  Reader(Words &in, Mesh &mesh) : in(in), mesh(mesh) {}
-
   void physical_names()
   {
     for (int64_t n = in.count(); n > 0; n--) {
@@ -266,7 +264,7 @@ Mesh MPM_NS::read_gmsh(std::istream &stream, const std::string &name)
 {
   Mesh mesh;
   Words in(stream, name);
-  Reader reader(in, mesh);
+  Reader reader = {in, mesh, {}, {}};
   std::string word;
 
   if (!in.next(word) || word != "$MeshFormat")

@@ -247,11 +247,7 @@ void SurfaceMesh::integrate()
 
 void SurfaceMesh::normals()
 {
-  std::map<std::pair<int, int>, Point> at_edge;
   corner_normals.assign(corners.size(), {0.0, 0.0, 0.0});
-  const auto edge = [](int a, int b) {
-    return std::make_pair(std::min(a, b), std::max(a, b));
-  };
   for (auto &t : triangles) {
     const Point *p[3];
     for (int c = 0; c < 3; c++) p[c] = &corners[t.corner[c]];
@@ -264,18 +260,12 @@ void SurfaceMesh::normals()
       const double angle = std::atan2(std::sqrt(dot(ab, ab)), dot(a, b));
       auto &corner = corner_normals[t.corner[c]];
       corner = corner + angle * t.normal;
-      auto &sum = at_edge.emplace(edge(t.corner[c], t.corner[(c + 1) % 3]), Point{0.0, 0.0, 0.0})
-                      .first->second;
-      sum = sum + t.normal;
     }
   }
-  for (auto &t : triangles)
-    for (int c = 0; c < 3; c++)
-      t.edge_normal[c] = at_edge[edge(t.corner[c], t.corner[(c + 1) % 3])];
 }
 
 /* ----------------------------------------------------------------------
-   parts of the surface that hang together without crossing a sharp edge
+   normals of edges, and parts of the surface that hang together without crossing a sharp edge
 ------------------------------------------------------------------------- */
 
 void SurfaceMesh::find_parts()
@@ -291,10 +281,13 @@ void SurfaceMesh::find_parts()
   for (int i = 0; i < (int) triangles.size(); i++)
     for (int c = 0; c < 3; c++)
       edges[{triangles[i].corner[c], triangles[i].corner[(c + 1) % 3]}] = i;
-  for (const auto &edge : edges) {
-    const int i = edge.second, j = edges.at({edge.first.second, edge.first.first});
-    if (dot(triangles[i].normal, triangles[j].normal) > sharp) parent[root(i)] = root(j);
-  }
+  for (int i = 0; i < (int) triangles.size(); i++)
+    for (int c = 0; c < 3; c++) {
+      auto &t = triangles[i];
+      const int j = edges.at({t.corner[(c + 1) % 3], t.corner[c]});
+      t.edge_normal[c] = t.normal + triangles[j].normal;
+      if (dot(t.normal, triangles[j].normal) > sharp) parent[root(i)] = root(j);
+    }
   std::map<int, int> number;
   for (int i = 0; i < (int) triangles.size(); i++)
     triangles[i].part = number.emplace(root(i), (int) number.size()).first->second;
@@ -534,25 +527,18 @@ void SurfaceMesh::make_coarse()
       }
 }
 
-int SurfaceMesh::cell_of(const Point &x, Point &c) const
+double SurfaceMesh::bound(const Point &x) const
 {
   int index = 0;
+  Point c;    // center of the cell
   for (int d = 0; d < 3; d++) {
     const double t = (x[d] - lo[d]) / cell;
-    if (!(t >= 0.0 && t < ncells[d])) return -1;
+    // outside of the grid: not closer than the box of the body
+    if (!(t >= 0.0 && t < ncells[d])) return std::sqrt(square_of_distance(x, lo, hi));
     const int i = (int) t;
     c[d] = lo[d] + (i + 0.5) * cell;
     index = index * ncells[d] + i;
   }
-  return index;
-}
-
-double SurfaceMesh::bound(const Point &x) const
-{
-  Point c;
-  const int index = cell_of(x, c);
-  // outside of the grid: not closer than the box of the body
-  if (index < 0) return std::sqrt(square_of_distance(x, lo, hi));
   const Point r = x - c;
   // single precision in the grid
   const double known = std::abs((double) coarse[index]) * (1.0 - 1.0e-6) - std::sqrt(dot(r, r));

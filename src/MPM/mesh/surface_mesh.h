@@ -104,7 +104,6 @@ class SurfaceMesh {
   void search(const Point &x, double &limit, Skip &&skip, Visit &&visit) const;
   const Point &mean_normal(const Triangle &t, int feature) const;
   bool is_closest_around(const Point &x, const Triangle &t, int feature, double square) const;
-  int cell_of(const Point &x, Point &center_of_cell) const;
 };
 
 }    // namespace MPM_NS
