@@ -38,7 +38,7 @@ ComputeMPMEnergy::ComputeMPMEnergy(LAMMPS *lmp, int narg, char **arg) :
                "by group; for the stored energy of a group use compute mpm/atom energy with "
                "compute reduce");
 
-  physics = find_physics(lmp);
+  physics = find_fixes<MPMPhysics>(lmp);
   accounts = names_of_accounts(physics);
   scalar_flag = vector_flag = 1;
   extscalar = extvector = 1;
@@ -59,7 +59,7 @@ void ComputeMPMEnergy::init()
 {
   if (modify->get_fix_by_style("^mpm$").empty())
     error->all(FLERR, Error::NOLASTLINE, "Compute {} of style mpm/energy requires a fix mpm", id);
-  physics = find_physics(lmp);
+  physics = find_fixes<MPMPhysics>(lmp);
   if (names_of_accounts(physics) != accounts)
     error->all(FLERR, Error::NOLASTLINE,
                "Compute {} of style mpm/energy does not have the entries of all physics: define it "

@@ -26,7 +26,7 @@
 #include "mpm_frame.h"
 #include "mpm_guard.h"
 #include "mpm_locking.h"
-#include "mpm_plan.h"
+#include "mpm_physics.h"
 #include "mpm_point_map.h"
 #include "mpm_points.h"
 #include "mpm_state.h"
@@ -60,9 +60,8 @@ static MPM_NS::Lattice lattice_of(const Domain &domain, double h, const MPMField
 
 MPMField::MPMField(LAMMPS *lmp, Fix &fix, double h, const Options &options, MPMPointState &state) :
     Pointers(lmp), fix(fix), options(options), grid(lattice_of(*domain, h, options)),
-    lattice(grid.lattice), nodes(lmp, *this, grid), points(MPMPoints::get(atom)), plan(nullptr),
-    kernels(nullptr), batch_kernels(nullptr), batch(new Batch()), ledger(lmp, *this),
-    keep_old(false), running(false), counts({0, 0.0, 0.0, 0.0})
+    lattice(grid.lattice), nodes(lmp, *this, grid), points(MPMPoints::get(atom)),
+    batch(new Batch()), ledger(lmp, *this)
 {
   check_box();
   frame = MPMFrame::create(lmp, *this, state);
@@ -83,8 +82,7 @@ MPMField::~MPMField() = default;
 std::vector<MPMField *> MPMField::all(LAMMPS *lmp)
 {
   std::vector<MPMField *> list;
-  for (auto *ifix : lmp->modify->get_fix_by_style("^mpm$"))
-    list.push_back(dynamic_cast<FixMPM *>(ifix)->field.get());
+  for (auto *ifix : find_fixes<FixMPM>(lmp)) list.push_back(ifix->field.get());
   return list;
 }
 
@@ -155,12 +153,8 @@ void MPMField::init(MPMPlan *plan_of_all)
   ledger.on = !modify->get_compute_by_style("^mpm/energy$").empty();
   nodes.clear_fields();
 
-  materials.clear();
-  for (auto *ifix : modify->get_fix_by_style("^mpm/material$"))
-    materials.push_back(dynamic_cast<FixMPMMaterial *>(ifix));
-  elements.clear();
-  for (auto *ifix : modify->get_fix_by_style("^mpm/elements$"))
-    elements.push_back(dynamic_cast<FixMPMElements *>(ifix));
+  materials = find_fixes<FixMPMMaterial>(lmp);
+  elements = find_fixes<FixMPMElements>(lmp);
   if (materials.empty())
     error->all(FLERR, "Fix mpm found no material: define one with fix mpm/material");
 

@@ -77,12 +77,6 @@ class MPMPlan : protected Pointers {
   };
   std::vector<Stage> stages;
   double wall_start, cpu_start;    // of the run [s]
-
-  struct Time {
-    std::string name;
-    double seconds;
-  };
-  std::vector<Time> times(const MPMField &) const;
 };
 
 /** The lists of the schemes. */

@@ -145,12 +145,15 @@ void solve(MPMPlan &plan)
   plan.place(MPMPlan::AFTER_SOLVE);
 }
 
-/** The other way to affine matrices where nodes may be light; stress is made elsewhere. */
-void add_light_nodes(MPMPlan &plan, MPMPlan::Each gradients)
+/** The other way to affine matrices, and with stress also to that, where nodes may be light. */
+void add_light_nodes(MPMPlan &plan, bool stress)
 {
+  const auto gradients = [stress](MPMField &field) {
+    gradients_with_light_nodes(field, stress);
+  };
   plan.each("light nodes", blend_light_nodes, has_light_nodes);
   plan.node_actions(MPMNodeAction::MAPPED_BACK, has_light_nodes);
-  plan.each("gradients with light nodes", std::move(gradients), has_light_nodes);
+  plan.each("gradients with light nodes", gradients, has_light_nodes);
 }
 
 /** The momentum equation and new velocities of the points; stress is made before or after this. */
@@ -158,7 +161,7 @@ void solve_and_move(MPMPlan &plan)
 {
   solve(plan);
   nodes_to_points(plan, "nodes to points", ELSEWHERE, nullptr);
-  add_light_nodes(plan, affine_with_light_nodes);
+  add_light_nodes(plan, false);
 }
 
 /** The velocities of the points once more to the nodes, at the old positions. An affine matrix is that of
@@ -189,7 +192,7 @@ void LAMMPS_NS::make_usl(MPMPlan &plan)
   nodes_to_points(plan, "nodes to points with material", STRESS, strains_while_moving);
   nodes_to_points(plan, "nodes to points with averaged strain", GRADIENTS, averages_after_motion);
   nodes_to_points(plan, "nodes to points", FRAME, has_light_nodes);
-  add_light_nodes(plan, stress_with_light_nodes);
+  add_light_nodes(plan, true);
   end(plan);
 }
 
