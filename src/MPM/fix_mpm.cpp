@@ -19,7 +19,6 @@
 #include "group.h"
 #include "modify.h"
 #include "mpm_affine.h"
-#include "mpm_boxes.h"
 #include "mpm_cpdi.h"
 #include "mpm_every.h"
 #include "mpm_field.h"

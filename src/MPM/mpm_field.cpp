@@ -9,7 +9,6 @@
 #include "mpm_field.h"
 
 #include "atom.h"
-#include "comm.h"
 #include "domain.h"
 #include "error.h"
 #include "fix_mpm.h"
@@ -29,7 +28,6 @@
 #include "mpm_physics.h"
 #include "mpm_point_map.h"
 #include "mpm_points.h"
-#include "mpm_state.h"
 #include "mpm_time_limit.h"
 #include "update.h"
 
@@ -92,9 +90,7 @@ MPMField *MPMField::find(LAMMPS *lmp, const std::string &id)
   return ifix ? ifix->field.get() : nullptr;
 }
 
-/* ----------------------------------------------------------------------
-   the lattice must fit the box
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
 void MPMField::check_box()
 {

@@ -243,7 +243,7 @@ void MPMPointMap::sort()
 
   // key of a point: (block in order of first appearance, material, cell)
 
-  const int nmaterials = MAX(1, (int) field.materials.size());
+  const int nmaterials = std::max(1, (int) field.materials.size());
   const int keys_per_block = nmaterials * NODES_PER_BLOCK;
   const int mask = field.grid.side - 1;
   std::map<std::array<int, 3>, int> index_of_block;    // ordered: gives the order of blocks
@@ -264,8 +264,7 @@ void MPMPointMap::sort()
         ? ((base[0] & mask) << 2 | (base[1] & mask)) << 2 | (base[2] & mask)
         : (base[0] & mask) << 3 | (base[1] & mask);
     int m = 0;
-    if (nmaterials > 1)
-      while (m < nmaterials - 1 && !(atom->mask[i] & field.materials[m]->groupbit)) m++;
+    while (m < nmaterials - 1 && !(atom->mask[i] & field.materials[m]->groupbit)) m++;
     key[i] = index * keys_per_block + m * NODES_PER_BLOCK + cell;
   }
 

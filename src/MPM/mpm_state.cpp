@@ -11,7 +11,6 @@
 #include "atom.h"
 #include "error.h"
 #include "memory.h"
-#include "modify.h"
 
 #include <algorithm>
 

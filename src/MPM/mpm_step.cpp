@@ -12,7 +12,6 @@
 
 #include "mpm_affine.h"
 #include "mpm_field.h"
-#include "mpm_frame.h"
 #include "mpm_locking.h"
 #include "mpm_plan.h"
 #include "mpm_stages.h"
