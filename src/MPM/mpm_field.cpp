@@ -42,15 +42,8 @@ static constexpr double MAX_NODE = 4.0e6;
 
 static MPM_NS::Lattice lattice_of(const Domain &domain, double h, const MPMFieldOptions &options)
 {
-  MPM_NS::Lattice lattice;
-  lattice.dim = domain.dimension;
-  lattice.h = h;
-  for (int d = 0; d < 3; d++) {
-    lattice.origin[d] = d < lattice.dim ? options.origin[d] : domain.boxlo[d];
-    lattice.periodic[d] = false;
-    lattice.ncell[d] = 1;
-  }
-  if (lattice.dim == 2) lattice.origin[2] = 0.0;
+  MPM_NS::Lattice lattice = {domain.dimension, h, {0.0, 0.0, 0.0}, {}, {1, 1, 1}};
+  std::copy_n(options.origin, lattice.dim, lattice.origin);
   return lattice;
 }
 
@@ -131,10 +124,6 @@ void MPMField::check_box()
     error->all(FLERR,
                "Fix mpm axisymmetric: x is the distance from the axis: the box must not reach "
                "below x = 0 or be periodic along x");
-  if (lattice.dim == 2) {
-    lattice.periodic[2] = false;
-    lattice.ncell[2] = 1;
-  }
   if (nodes.edges) nodes.edges->check();
 }
 

@@ -28,10 +28,6 @@ using namespace LAMMPS_NS;
 
 /* ---------------------------------------------------------------------- */
 
-MPMPlan::MPMPlan(LAMMPS *lmp) : Pointers(lmp), wall_start(0.0), cpu_start(0.0) {}
-
-/* ---------------------------------------------------------------------- */
-
 void MPMPlan::make()
 {
   fields = MPMField::all(lmp);

@@ -35,9 +35,7 @@ using namespace MPM_NS;
 
 /* ---------------------------------------------------------------------- */
 
-MPMPointMap::MPMPointMap(LAMMPS *lmp, MPMField &field) :
-    Pointers(lmp), valid(false), drifted(0), sort_time(0.0), nsort(0), nbuild(0), field(field),
-    watch_drift(false), decayed(false), switches(0), switches_sorted(0)
+MPMPointMap::MPMPointMap(LAMMPS *lmp, MPMField &field) : Pointers(lmp), field(field)
 {
   for (double **memory_of : {&tile, &tile_load}) {
     *memory_of = (double *) memory->smalloc(tile_reals() * sizeof(double), "mpm:tile");

@@ -94,11 +94,6 @@ int MPMPointState::unpack(int i, const double *buf)
 
 /* ---------------------------------------------------------------------- */
 
-FixMPMState::FixMPMState(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), state(memory), restarts(false), callbacks(false)
-{
-}
-
 FixMPMState::~FixMPMState()
 {
   if (!callbacks || !modify) return;
