@@ -89,12 +89,6 @@ int FixMPM::setmask()
   return INITIAL_INTEGRATE | PRE_EXCHANGE | PRE_NEIGHBOR;
 }
 
-/** All fields step together, driven by the first one. */
-bool FixMPM::drives() const
-{
-  return modify->get_fix_by_style("^mpm$")[0] == this;
-}
-
 /* ---------------------------------------------------------------------- */
 
 void FixMPM::init()
@@ -114,8 +108,10 @@ void FixMPM::init()
     for (const auto &text : MPMFieldOptions(field->options).declare(3).warnings())
       error->warning(FLERR, text);
 
+  // all fields step together, driven by the first one
+
   plan.reset();
-  if (drives()) {
+  if (modify->get_fix_by_style("^mpm$")[0] == this) {
     check_fields();
     plan.reset(new MPMPlan(lmp));
     plan->make();
