@@ -56,7 +56,7 @@ struct MPMFieldOptions {
   /** What does the cure for locking average: changes of volume, pressures in the force? */
   bool averages_strain() const { return locking == FBAR || locking == BOTH; }
   bool averages_stress() const { return locking == PRESSURE || locking == BOTH; }
-  /** Where stress comes last: is it made while points move, or after that? Neither: with light nodes. */
+  /** With scheme usl: is stress made while points move, or after that? Neither with light nodes. */
   bool strains_while_moving() const { return !has_light_nodes() && !averages_strain(); }
   bool strains_after_motion() const { return !has_light_nodes() && averages_strain(); }
   /** Do positions of the end of the step have to wait until stress is known? */

@@ -39,8 +39,8 @@ class MPMEdges;
 class MPMField;
 class MPMHalo;
 
-/** Values at the nodes of a field: those of other physics, and for all of them what is missing in the
- *  sums of this rank, and at nodes that are copies of others. */
+/** Values at the nodes of a field: this rank's sums over points become those of all ranks here, with
+ *  periodic images and edges, and other physics has its values here. */
 class MPMNodes : protected Pointers {
  public:
   const std::unique_ptr<MPMHalo> halo;

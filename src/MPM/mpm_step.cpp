@@ -26,7 +26,7 @@ namespace {
 using Field = const MPMField &;
 using Options = MPMFieldOptions;
 
-/** Is an option of the field, as a condition for a stage. */
+/** An option of the field as the condition of a stage. */
 template <bool (MPMFieldOptions::*OPTION)() const> bool with(Field field)
 {
   return (field.options.*OPTION)();
