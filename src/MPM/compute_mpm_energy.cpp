@@ -78,7 +78,7 @@ void ComputeMPMEnergy::begin()
 
 std::vector<std::string> ComputeMPMEnergy::find_accounts()
 {
-  physics = find_physics(lmp);
+  physics = find_fixes<MPMPhysics>(lmp);
   std::vector<std::string> names;
   for (const auto *other : physics)
     for (const auto &account : other->accounts())

@@ -89,12 +89,6 @@ int FixMPM::setmask()
   return INITIAL_INTEGRATE | PRE_EXCHANGE | PRE_NEIGHBOR;
 }
 
-/** All fields step together, driven by the first one. */
-bool FixMPM::drives() const
-{
-  return modify->get_fix_by_style("^mpm$")[0] == this;
-}
-
 /* ---------------------------------------------------------------------- */
 
 void FixMPM::init()
@@ -114,8 +108,10 @@ void FixMPM::init()
     for (const auto &text : MPMFieldOptions(field->options).declare(3).warnings())
       error->warning(FLERR, text);
 
+  // all fields step together, driven by the first one
+
   plan.reset();
-  if (drives()) {
+  if (modify->get_fix_by_style("^mpm$")[0] == this) {
     check_fields();
     plan.reset(new MPMPlan(lmp));
     plan->make();
@@ -293,7 +289,9 @@ double FixMPM::memory_usage()
 
 namespace {
 struct Saved {
-  double ledger[7], deleted[5], elapsed;
+  MPMEnergies ledger;
+  MPMGuard::Deleted deleted;
+  double elapsed;
   MPMAffine::Velocities velocities;
   int waited, nstart, ntext;    // nstart reals and ntext characters follow
 };
@@ -311,11 +309,10 @@ void FixMPM::write_restart(FILE *fp)
     saved.waited = field->every->progress.waited;
     saved.elapsed = field->every->progress.elapsed;
   }
-  static_assert(sizeof(MPMEnergies) == sizeof(saved.ledger), "MPMEnergies holds 7 doubles");
-  static_assert(sizeof(MPMGuard::Deleted) == sizeof(saved.deleted), "Deleted holds 5 doubles");
-  memcpy(saved.deleted, &field->guard->deleted, sizeof(saved.deleted));
+  saved.deleted = field->guard->deleted;
   const MPMEnergies &energies = field->ledger;
-  MPI_Reduce(&energies, saved.ledger, 7, MPI_DOUBLE, MPI_SUM, 0, world);
+  MPI_Reduce(&energies, &saved.ledger, sizeof(MPMEnergies) / sizeof(double), MPI_DOUBLE, MPI_SUM, 0,
+             world);
   std::vector<double> start = field->ledger.start;
   for (auto *compute : modify->get_compute_by_style("^mpm/energy$"))
     if (start.empty()) start = dynamic_cast<ComputeMPMEnergy *>(compute)->start_sums();
@@ -345,8 +342,8 @@ void FixMPM::restart(char *buf)
         id, differences);
 
   MPMEnergies &energies = field->ledger;
-  if (comm->me == 0) memcpy(&energies, saved.ledger, sizeof(saved.ledger));
-  memcpy(&field->guard->deleted, saved.deleted, sizeof(saved.deleted));
+  if (comm->me == 0) energies = saved.ledger;
+  field->guard->deleted = saved.deleted;
   if (field->affine) field->affine->velocities = saved.velocities;
   if (field->every) {
     field->every->progress.waited = saved.waited;

@@ -53,7 +53,6 @@ class FixMPM : public FixMPMState {
  private:
   std::unique_ptr<MPMPlan> plan;    // in the driving instance
 
-  bool drives() const;
   void check_fields() const;
   double bytes_per_point() const;
 };

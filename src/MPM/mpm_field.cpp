@@ -9,7 +9,6 @@
 #include "mpm_field.h"
 
 #include "atom.h"
-#include "comm.h"
 #include "domain.h"
 #include "error.h"
 #include "fix_mpm.h"
@@ -25,10 +24,9 @@
 #include "mpm_frame.h"
 #include "mpm_guard.h"
 #include "mpm_locking.h"
-#include "mpm_plan.h"
+#include "mpm_physics.h"
 #include "mpm_point_map.h"
 #include "mpm_points.h"
-#include "mpm_state.h"
 #include "mpm_time_limit.h"
 #include "update.h"
 
@@ -43,15 +41,8 @@ static constexpr double MAX_NODE = 4.0e6;
 
 static MPM_NS::Lattice lattice_of(const Domain &domain, double h, const MPMFieldOptions &options)
 {
-  MPM_NS::Lattice lattice;
-  lattice.dim = domain.dimension;
-  lattice.h = h;
-  for (int d = 0; d < 3; d++) {
-    lattice.origin[d] = d < lattice.dim ? options.origin[d] : domain.boxlo[d];
-    lattice.periodic[d] = false;
-    lattice.ncell[d] = 1;
-  }
-  if (lattice.dim == 2) lattice.origin[2] = 0.0;
+  MPM_NS::Lattice lattice = {domain.dimension, h, {0.0, 0.0, 0.0}, {}, {1, 1, 1}};
+  std::copy_n(options.origin, lattice.dim, lattice.origin);
   return lattice;
 }
 
@@ -59,9 +50,8 @@ static MPM_NS::Lattice lattice_of(const Domain &domain, double h, const MPMField
 
 MPMField::MPMField(LAMMPS *lmp, Fix &fix, double h, const Options &options, MPMPointState &state) :
     Pointers(lmp), fix(fix), options(options), grid(lattice_of(*domain, h, options)),
-    lattice(grid.lattice), nodes(lmp, *this, grid), points(MPMPoints::get(atom)), plan(nullptr),
-    kernels(nullptr), batch_kernels(nullptr), batch(new Batch()), ledger(lmp, *this),
-    keep_old(false), running(false), counts({0, 0.0, 0.0, 0.0})
+    lattice(grid.lattice), nodes(lmp, *this, grid), points(MPMPoints::get(atom)),
+    batch(new Batch()), ledger(lmp, *this)
 {
   check_box();
   frame = MPMFrame::create(lmp, *this, state);
@@ -82,8 +72,7 @@ MPMField::~MPMField() = default;
 std::vector<MPMField *> MPMField::all(LAMMPS *lmp)
 {
   std::vector<MPMField *> list;
-  for (auto *ifix : lmp->modify->get_fix_by_style("^mpm$"))
-    list.push_back(dynamic_cast<FixMPM *>(ifix)->field.get());
+  for (auto *ifix : find_fixes<FixMPM>(lmp)) list.push_back(ifix->field.get());
   return list;
 }
 
@@ -93,9 +82,7 @@ MPMField *MPMField::find(LAMMPS *lmp, const std::string &id)
   return ifix ? ifix->field.get() : nullptr;
 }
 
-/* ----------------------------------------------------------------------
-   the lattice must fit the box
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
 void MPMField::check_box()
 {
@@ -136,10 +123,6 @@ void MPMField::check_box()
     error->all(FLERR,
                "Fix mpm axisymmetric: x is the distance from the axis: the box must not reach "
                "below x = 0 or be periodic along x");
-  if (lattice.dim == 2) {
-    lattice.periodic[2] = false;
-    lattice.ncell[2] = 1;
-  }
   if (nodes.edges) nodes.edges->check();
 }
 
@@ -154,12 +137,8 @@ void MPMField::init(MPMPlan *plan_of_all)
   ledger.on = !modify->get_compute_by_style("^mpm/energy$").empty();
   nodes.clear_fields();
 
-  materials.clear();
-  for (auto *ifix : modify->get_fix_by_style("^mpm/material$"))
-    materials.push_back(dynamic_cast<FixMPMMaterial *>(ifix));
-  elements.clear();
-  for (auto *ifix : modify->get_fix_by_style("^mpm/elements$"))
-    elements.push_back(dynamic_cast<FixMPMElements *>(ifix));
+  materials = find_fixes<FixMPMMaterial>(lmp);
+  elements = find_fixes<FixMPMElements>(lmp);
   if (materials.empty())
     error->all(FLERR, "Fix mpm found no material: define one with fix mpm/material");
 

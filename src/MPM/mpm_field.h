@@ -59,18 +59,19 @@ class MPMField : protected Pointers {
 
   std::vector<FixMPMMaterial *> materials;    ///< all of them, set in init()
   std::vector<FixMPMElements *> elements;     ///< all of them, set in init()
-  MPMPlan *plan;                              ///< of all fields, set in init()
+  MPMPlan *plan = nullptr;                    ///< of all fields, set in init()
 
-  const MPM_NS::MPMKernels *kernels;
-  const MPM_NS::BatchKernels *batch_kernels;
+  const MPM_NS::MPMKernels *kernels = nullptr;
+  const MPM_NS::BatchKernels *batch_kernels = nullptr;
   MPM_NS::TransferKernels kernel;    ///< of the step
   MPM_NS::TransferKernels pic;       ///< of other sums over points, with records of 8 reals
   std::unique_ptr<MPM_NS::Batch> batch;
 
   MPMLedger ledger;
-  bool keep_old;    ///< a node action reads what nodes had before the momentum equation; set by its
-                    ///< init_action()
-  bool running;     ///< between the set-up and the end of a run
+  bool keep_old =
+      false;    ///< a node action reads what nodes had before the momentum equation; set by its
+                ///< init_action()
+  bool running = false;    ///< between the set-up and the end of a run
 
   // what depends on the options; null: not with these
 
@@ -129,8 +130,8 @@ class MPMField : protected Pointers {
 
   /** Of the present run. */
   struct {
-    bigint steps;
-    double point_steps, dt_min, dt_max;
+    bigint steps = 0;
+    double point_steps = 0.0, dt_min = 0.0, dt_max = 0.0;
   } counts;
 
   double memory_usage() const;

@@ -50,13 +50,19 @@ struct MPMFieldOptions {
   /** Does the scheme update stress at the start, at the end of the step, or (neither) in between? */
   bool stress_before() const { return scheme == USF || scheme == USAVG; }
   bool stress_after() const { return scheme == MUSL || scheme == USAVG; }
+  bool has_xpic() const { return series == XPIC; }
+  bool has_fmpm() const { return series == FMPM; }
+  bool has_light_nodes() const { return light > 0.0; }
   /** What does the cure for locking average: changes of volume, pressures in the force? */
   bool averages_strain() const { return locking == FBAR || locking == BOTH; }
   bool averages_stress() const { return locking == PRESSURE || locking == BOTH; }
+  /** With scheme usl: is stress made while points move, or after that? Neither with light nodes. */
+  bool strains_while_moving() const { return !has_light_nodes() && !averages_strain(); }
+  bool strains_after_motion() const { return !has_light_nodes() && averages_strain(); }
   /** Do positions of the end of the step have to wait until stress is known? */
   bool moves_late() const
   {
-    return stress_after() || light > 0.0 || (averages_strain() && !stress_before());
+    return stress_after() || has_light_nodes() || (averages_strain() && !stress_before());
   }
   /** Do points have a size, by which they reach nodes? */
   bool has_size() const

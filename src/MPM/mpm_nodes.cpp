@@ -42,20 +42,10 @@ void MPMNodes::sum(double *values, int nreal, int lane, int nlane) const
   halo->sum(values, nreal, lane, nlane);
 }
 
-void MPMNodes::sum(NodeField &nodes) const
-{
-  sum(nodes.values.data(), nodes.width, 0, nodes.width);
-}
-
 void MPMNodes::complete(double *values, int nreal, int nlane) const
 {
   grid.copy_aliases(values, nreal);
   if (edges) edges->extend(values, nreal, 0, nlane);
-}
-
-void MPMNodes::complete(NodeField &nodes) const
-{
-  complete(nodes.values.data(), nodes.width, nodes.width);
 }
 
 void MPMNodes::complete_velocities()

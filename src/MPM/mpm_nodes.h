@@ -39,8 +39,8 @@ class MPMEdges;
 class MPMField;
 class MPMHalo;
 
-/** Values at the nodes of a field: those of other physics, and for all of them what is missing in the
- *  sums of this rank, and at nodes that are copies of others. */
+/** Values at the nodes of a field: this rank's sums over points become those of all ranks here, with
+ *  periodic images and edges, and other physics has its values here. */
 class MPMNodes : protected Pointers {
  public:
   const std::unique_ptr<MPMHalo> halo;
@@ -57,10 +57,10 @@ class MPMNodes : protected Pointers {
 
   /** Add what the edges, periodic images and other ranks hold of reals [lane, lane+nlane). */
   void sum(double *values, int nreal, int lane, int nlane) const;
-  void sum(MPM_NS::NodeField &) const;
+  void sum(MPM_NS::NodeField &of) const { sum(of.values.data(), of.width, 0, of.width); }
   /** Values of periodic images, and the first nlane reals of edges, before values go to points. */
   void complete(double *values, int nreal, int nlane) const;
-  void complete(MPM_NS::NodeField &) const;
+  void complete(MPM_NS::NodeField &of) const { complete(of.values.data(), of.width, of.width); }
   /** Velocities of the step, also old ones. */
   void complete_velocities();
 

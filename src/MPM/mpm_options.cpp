@@ -22,35 +22,25 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-void LAMMPS_NS::explain_errors(LAMMPS *lmp, const std::function<void()> &f)
-{
-  Error *error = lmp->error;
-  try {
-    f();
-  } catch (const OptionError &e) {
-    if (e.missing) utils::missing_cmd_args(FLERR, e.text, error);
-    error->all(FLERR, e.iarg >= 0 ? e.iarg : Error::NOPOINTER, e.text);
-  }
-}
-
 int LAMMPS_NS::read_options(LAMMPS *lmp, Options &options, int narg, char **arg, int iarg,
                             const std::string &last)
 {
-  OptionInput input;
-  input.narg = narg;
-  input.arg = arg;
-  input.number = [=](int i) {
+  const auto number = [=](int i) {
     return utils::numeric(FLERR, arg[i], false, lmp);
   };
-  input.integer = [=](int i) {
+  const auto integer = [=](int i) {
     return utils::bnumeric(FLERR, arg[i], false, lmp);
   };
-  input.yes = [=](int i) {
+  const auto yes = [=](int i) {
     return utils::logical(FLERR, arg[i], false, lmp) != 0;
   };
-  explain_errors(lmp, [&] {
-    iarg = options.read(input, iarg, last);
-  });
+  const OptionInput input{narg, arg, number, integer, yes};
+  try {
+    return options.read(input, iarg, last);
+  } catch (const OptionError &e) {
+    if (e.missing) utils::missing_cmd_args(FLERR, e.text, lmp->error);
+    lmp->error->all(FLERR, e.iarg >= 0 ? e.iarg : Error::NOPOINTER, e.text);
+  }
   return iarg;
 }
 
@@ -77,12 +67,9 @@ void LAMMPS_NS::find_variable(LAMMPS *lmp, NumberOrVariable &v, const std::strin
 {
   if (v.variable.empty()) return;
   v.index = lmp->input->variable->find(v.variable.c_str());
-  if (v.index < 0)
-    lmp->error->all(FLERR, Error::NOLASTLINE, "Variable {} for {} does not exist", v.variable,
-                    user);
-  if (!lmp->input->variable->equalstyle(v.index))
-    lmp->error->all(FLERR, Error::NOLASTLINE, "Variable {} for {} is not equal-style", v.variable,
-                    user);
+  if (v.index < 0 || !lmp->input->variable->equalstyle(v.index))
+    lmp->error->all(FLERR, Error::NOLASTLINE, "Variable {} for {} {}", v.variable, user,
+                    v.index < 0 ? "does not exist" : "is not equal-style");
 }
 
 double LAMMPS_NS::evaluate(LAMMPS *lmp, const NumberOrVariable &v)

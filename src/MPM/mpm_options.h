@@ -24,9 +24,6 @@ class MPMField;
 int read_options(LAMMPS *, MPM_NS::Options &, int narg, char **arg, int iarg,
                  const std::string &last = "");
 
-/** Runs f(), which may throw an OptionError, and makes an error of LAMMPS of that. */
-void explain_errors(LAMMPS *, const std::function<void()> &f);
-
 /** Reads precision single|double of dump_modify and returns 2, or 0 for any other keyword. */
 int read_precision(LAMMPS *, int narg, char **arg, bool &single);
 

@@ -23,10 +23,8 @@ namespace LAMMPS_NS {
 
 inline void reset_box(int box[6])
 {
-  for (int d = 0; d < 3; d++) {
-    box[d] = 127;
-    box[3 + d] = -127;
-  }
+  std::fill_n(box, 3, 127);
+  std::fill_n(box + 3, 3, -127);
 }
 
 /** nodes = what map(run, base, box) puts into the tile of each block with its kernel P2G, before copies

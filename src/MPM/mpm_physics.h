@@ -51,12 +51,12 @@ class MPMPhysics {
   ~MPMPhysics() = default;    // owned and deleted as a Fix
 };
 
-/** All physics, in the order of definition of their fixes. */
-inline std::vector<MPMPhysics *> find_physics(LAMMPS *lmp)
+/** All fixes that derive from a class, in the order of their definition. */
+template <class T> std::vector<T *> find_fixes(LAMMPS *lmp)
 {
-  std::vector<MPMPhysics *> list;
+  std::vector<T *> list;
   for (auto *ifix : lmp->modify->get_fix_list())
-    if (auto *physics = dynamic_cast<MPMPhysics *>(ifix)) list.push_back(physics);
+    if (auto *found = dynamic_cast<T *>(ifix)) list.push_back(found);
   return list;
 }
 

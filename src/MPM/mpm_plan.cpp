@@ -27,17 +27,11 @@ using namespace LAMMPS_NS;
 
 /* ---------------------------------------------------------------------- */
 
-MPMPlan::MPMPlan(LAMMPS *lmp) : Pointers(lmp), wall_start(0.0), cpu_start(0.0) {}
-
-/* ---------------------------------------------------------------------- */
-
 void MPMPlan::make()
 {
   fields = MPMField::all(lmp);
-  actions.clear();
-  for (auto *ifix : modify->get_fix_list())
-    if (auto *action = dynamic_cast<MPMNodeAction *>(ifix)) actions.push_back(action);
-  physics = find_physics(lmp);
+  actions = find_fixes<MPMNodeAction>(lmp);
+  physics = find_fixes<MPMPhysics>(lmp);
   std::stable_sort(actions.begin(), actions.end(), [](auto *a, auto *b) {
     return a->turn() < b->turn();
   });
@@ -177,31 +171,25 @@ void MPMPlan::start()
   utils::logmesg(lmp, text);
 }
 
-/** Times of a field by stage, in order of the list; stages of all fields count for the first one. Sorts
- *  come before the step. */
-std::vector<MPMPlan::Time> MPMPlan::times(const MPMField &field) const
-{
-  std::vector<Time> list = {{"sort", field.map->sort_time}};
-  for (const auto &stage : stages)
-    for (std::size_t k = 0; k < stage.fields.size(); k++)
-      if (stage.fields[k] == &field) list.push_back({stage.name, stage.seconds[k]});
-  return list;
-}
-
 /* ----------------------------------------------------------------------
-   A stage costs what it costs the slowest rank. Without keyword plan, stages of the same name are one
-   entry
+   A stage costs what it costs the slowest rank; stages of all fields count for the first one. Sorts come
+   before the step. Without keyword plan, stages of the same name are one entry
 ------------------------------------------------------------------------- */
 
 void MPMPlan::report(const MPMField &field, double bytes_per_point) const
 {
   constexpr double IDLE = 0.9;    // of the time is the processor's, or else others have taken it
   const auto &counts = field.counts;
-  const auto list = times(field);
-  const std::size_t n = list.size();
-  std::vector<double> mine(n), slowest(n);
-  for (std::size_t k = 0; k < n; k++) mine[k] = list[k].seconds;
-  MPI_Allreduce(mine.data(), slowest.data(), (int) n, MPI_DOUBLE, MPI_MAX, world);
+  std::vector<std::string> names = {"sort"};
+  std::vector<double> mine = {field.map->sort_time};
+  for (const auto &stage : stages)
+    for (std::size_t k = 0; k < stage.fields.size(); k++)
+      if (stage.fields[k] == &field) {
+        names.push_back(stage.name);
+        mine.push_back(stage.seconds[k]);
+      }
+  std::vector<double> slowest(mine.size());
+  MPI_Allreduce(mine.data(), slowest.data(), (int) mine.size(), MPI_DOUBLE, MPI_MAX, world);
   const double wall = platform::walltime() - wall_start;
   double use = wall > 0.0 ? (platform::cputime() - cpu_start) / wall : 1.0, least_use;
   MPI_Allreduce(&use, &least_use, 1, MPI_DOUBLE, MPI_MIN, world);
@@ -213,23 +201,19 @@ void MPMPlan::report(const MPMField &field, double bytes_per_point) const
   if (comm->me) return;
 
   const double scale = 1.0e9 * comm->nprocs / sum[0], npoints = sum[0] / counts.steps;
+  const bool each = field.options.plan;
   double total = 0.0;
-  std::vector<Time> entries;
-  for (std::size_t k = 0; k < n; k++) {
+  std::string stages_text = each ? "  plan of the step:" : "  of these:";
+  for (std::size_t k = 0; k < names.size(); k++) {
     total += slowest[k] * scale;
-    const auto same = std::find_if(entries.begin(), entries.end(), [&](const Time &t) {
-      return t.name == list[k].name;
-    });
-    if (same == entries.end() || field.options.plan)
-      entries.push_back({list[k].name, slowest[k] * scale});
-    else
-      same->seconds += slowest[k] * scale;
+    if (!each && std::find(names.begin(), names.begin() + k, names[k]) != names.begin() + k)
+      continue;
+    double time = 0.0;
+    for (std::size_t l = k; l < (each ? k + 1 : names.size()); l++)
+      if (names[l] == names[k]) time += slowest[l] * scale;
+    stages_text += fmt::format(each ? "\n    {:<40} {:8.2f}" : "{} {:.2f}",
+                               (each || k == 0 ? " " : ", ") + names[k], time);
   }
-  std::string stages_text = field.options.plan ? "  plan of the step:" : "  of these:";
-  for (std::size_t k = 0; k < entries.size(); k++)
-    stages_text += fmt::format(field.options.plan ? "\n    {:<40} {:8.2f}" : "{} {:.2f}",
-                               (field.options.plan || k == 0 ? " " : ", ") + entries[k].name,
-                               entries[k].seconds);
   utils::logmesg(lmp,
                  "MPM {}: {:.0f} points, {} kernels, {:.2f} ns per point-step and core\n{}\n"
                  "  {:.0f} bytes per point; {:.0f} blocks with points of {:.0f} active, "

@@ -40,7 +40,7 @@ class MPMPlan : protected Pointers {
   std::vector<MPMNodeAction *> actions;    ///< in the order in which they act
   std::vector<MPMPhysics *> physics;       ///< in the order of definition
 
-  explicit MPMPlan(class LAMMPS *);
+  explicit MPMPlan(class LAMMPS *lmp) : Pointers(lmp) {}
 
   /** Find all fields, node actions and physics, and make the list. */
   void make();
@@ -76,13 +76,7 @@ class MPMPlan : protected Pointers {
     std::vector<double> seconds;    // of each of these
   };
   std::vector<Stage> stages;
-  double wall_start, cpu_start;    // of the run [s]
-
-  struct Time {
-    std::string name;
-    double seconds;
-  };
-  std::vector<Time> times(const MPMField &) const;
+  double wall_start = 0.0, cpu_start = 0.0;    // of the run [s]
 };
 
 /** The lists of the schemes. */

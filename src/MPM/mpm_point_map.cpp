@@ -35,9 +35,7 @@ using namespace MPM_NS;
 
 /* ---------------------------------------------------------------------- */
 
-MPMPointMap::MPMPointMap(LAMMPS *lmp, MPMField &field) :
-    Pointers(lmp), valid(false), drifted(0), sort_time(0.0), nsort(0), nbuild(0), field(field),
-    watch_drift(false), decayed(false), switches(0), switches_sorted(0)
+MPMPointMap::MPMPointMap(LAMMPS *lmp, MPMField &field) : Pointers(lmp), field(field)
 {
   for (double **memory_of : {&tile, &tile_load}) {
     *memory_of = (double *) memory->smalloc(tile_reals() * sizeof(double), "mpm:tile");
@@ -243,7 +241,7 @@ void MPMPointMap::sort()
 
   // key of a point: (block in order of first appearance, material, cell)
 
-  const int nmaterials = MAX(1, (int) field.materials.size());
+  const int nmaterials = std::max(1, (int) field.materials.size());
   const int keys_per_block = nmaterials * NODES_PER_BLOCK;
   const int mask = field.grid.side - 1;
   std::map<std::array<int, 3>, int> index_of_block;    // ordered: gives the order of blocks
@@ -264,8 +262,7 @@ void MPMPointMap::sort()
         ? ((base[0] & mask) << 2 | (base[1] & mask)) << 2 | (base[2] & mask)
         : (base[0] & mask) << 3 | (base[1] & mask);
     int m = 0;
-    if (nmaterials > 1)
-      while (m < nmaterials - 1 && !(atom->mask[i] & field.materials[m]->groupbit)) m++;
+    while (m < nmaterials - 1 && !(atom->mask[i] & field.materials[m]->groupbit)) m++;
     key[i] = index * keys_per_block + m * NODES_PER_BLOCK + cell;
   }
 

@@ -36,8 +36,8 @@ class MPMPointMap : protected Pointers {
   std::vector<Run> runs;    ///< grouped by block
   std::vector<ActiveBlock> active;
   double *tile, *tile_load;    ///< one that points add to, one that they read
-  bool valid;                  ///< the blocks are those of the present points
-  int drifted;                 ///< a point has left the range of its tile
+  bool valid = false;          ///< the blocks are those of the present points
+  int drifted = 0;             ///< a point has left the range of its tile
 
   MPMPointMap(class LAMMPS *, MPMField &);
   ~MPMPointMap();
@@ -67,15 +67,15 @@ class MPMPointMap : protected Pointers {
   std::size_t tile_reals() const;
   double memory_usage() const;
 
-  double sort_time;    ///< in this run [s]
-  bigint nsort, nbuild;
+  double sort_time = 0.0;    ///< in this run [s]
+  bigint nsort = 0, nbuild = 0;
 
  private:
   MPMField &field;
-  bool watch_drift;    // rebuilds of neighbor lists do not bound the drift: check each step
-  bool decayed;
-  bigint switches;           // neighbors in memory that are in different cells, now
-  bigint switches_sorted;    // and right after the last sort; negative: not counted yet
+  bool watch_drift = false;    // rebuilds of neighbor lists do not bound the drift: check each step
+  bool decayed = false;
+  bigint switches = 0;           // neighbors in memory that are in different cells, now
+  bigint switches_sorted = 0;    // and right after the last sort; negative: not counted yet
 };
 
 }    // namespace LAMMPS_NS

@@ -87,7 +87,7 @@ void MPMStages::blend_light_nodes(MPMField &field)
    gradients go to the affine matrices of transfers that have them
 ------------------------------------------------------------------------- */
 
-static void gradients(MPMField &field, bool stress)
+void MPMStages::gradients_with_light_nodes(MPMField &field, bool stress)
 {
   field.grid.copy_aliases();
   const bool fbar = stress && field.options.averages_strain();
@@ -101,18 +101,8 @@ static void gradients(MPMField &field, bool stress)
   points_from_step(field, [&](const MPMPointMap::Run &run, int i, int n, const int *base) {
     double *const L = of_all ? of_all + (bigint) nL * i : batch_gradients;
     field.kernel.g2p_gradient(r, s, i, i + n, base, field.map->tile_load, L);
-    if (stress && !fbar) MPMStages::update_stress(field, r, run, i, n, L, field.step_dt());
+    if (stress && !fbar) update_stress(field, r, run, i, n, L, field.step_dt());
   });
   if (fbar) field.locking->strain(of_all, field.step_dt());
-}
-
-void MPMStages::affine_with_light_nodes(MPMField &field)
-{
-  gradients(field, false);
-}
-
-void MPMStages::stress_with_light_nodes(MPMField &field)
-{
-  gradients(field, true);
-  move_points(field);
+  if (stress) move_points(field);
 }

@@ -89,11 +89,9 @@ static void to_nodes(MPMField &field, P2G p2g)
 void MPMStages::points_to_nodes(MPMField &field, Content content)
 {
   const auto &kernel = field.kernel;
+  const P2G maps[] = {kernel.p2g, kernel.p2g_momentum, kernel.p2g_force};    // as in enum Content
   if (content != FORCE) field.grid.zero();
-  to_nodes(field,
-           content == FORCE          ? kernel.p2g_force
-               : content == MOMENTUM ? kernel.p2g_momentum
-                                     : kernel.p2g);
+  to_nodes(field, maps[content]);
 }
 
 void MPMStages::sum_nodes(MPMField &field, Content content)

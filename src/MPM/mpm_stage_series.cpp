@@ -114,14 +114,13 @@ void MPMStages::fmpm(MPMPlan &plan)
 {
   int terms = 1;
   for (auto *field : plan.fields)
-    if (field->options.series == MPMFieldOptions::FMPM) {
+    if (field->options.has_fmpm()) {
       save_velocities(*field, 0);
       terms = std::max(terms, field->options.order);
     }
   for (int n = 2; n <= terms; n++) {
     for (auto *field : plan.fields)
-      if (field->options.series == MPMFieldOptions::FMPM && n <= field->options.order)
-        add_term(*field, 0);
+      if (field->options.has_fmpm() && n <= field->options.order) add_term(*field, 0);
     plan.act_on_nodes(MPMNodeAction::AGAIN);
   }
 }

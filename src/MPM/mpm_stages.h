@@ -64,10 +64,8 @@ namespace MPMStages {
 
   /** Their velocities, for gradients only. */
   void blend_light_nodes(MPMField &);
-  /** Affine matrices by gradients of these velocities. */
-  void affine_with_light_nodes(MPMField &);
-  /** Stress, too; then points move. */
-  void stress_with_light_nodes(MPMField &);
+  /** Affine matrices by gradients of these velocities. stress: also stress; then points move. */
+  void gradients_with_light_nodes(MPMField &, bool stress);
 
   // mpm_stage_series.cpp: more terms of the inverse of the mass matrix
 

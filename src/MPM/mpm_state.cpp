@@ -11,7 +11,6 @@
 #include "atom.h"
 #include "error.h"
 #include "memory.h"
-#include "modify.h"
 
 #include <algorithm>
 
@@ -94,11 +93,6 @@ int MPMPointState::unpack(int i, const double *buf)
 }
 
 /* ---------------------------------------------------------------------- */
-
-FixMPMState::FixMPMState(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), state(memory), restarts(false), callbacks(false)
-{
-}
 
 FixMPMState::~FixMPMState()
 {

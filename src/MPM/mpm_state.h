@@ -63,7 +63,7 @@ class MPMPointState {
 /** A fix with per-point arrays: the callbacks of LAMMPS, which go to its MPMPointState. */
 class FixMPMState : public Fix {
  public:
-  FixMPMState(class LAMMPS *, int, char **);
+  FixMPMState(class LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), state(memory) {}
   ~FixMPMState() override;
   double memory_usage() override;
   void grow_arrays(int nmax) override { state.grow(nmax); }
@@ -86,7 +86,7 @@ class FixMPMState : public Fix {
   const double *from_restart(int i, int nth, int &n) const;
 
  private:
-  bool restarts, callbacks;
+  bool restarts = false, callbacks = false;
 };
 
 }    // namespace LAMMPS_NS

@@ -12,7 +12,6 @@
 
 #include "mpm_affine.h"
 #include "mpm_field.h"
-#include "mpm_frame.h"
 #include "mpm_locking.h"
 #include "mpm_plan.h"
 #include "mpm_stages.h"
@@ -25,26 +24,12 @@ using namespace MPMStages;
 namespace {
 
 using Field = const MPMField &;
+using Options = MPMFieldOptions;
 
-bool has_light_nodes(Field field)
+/** An option of the field as the condition of a stage. */
+template <bool (MPMFieldOptions::*OPTION)() const> bool with(Field field)
 {
-  return field.options.light > 0.0;
-}
-bool strains_while_moving(Field field)
-{
-  return !has_light_nodes(field) && !field.options.averages_strain();
-}
-bool averages_after_motion(Field field)
-{
-  return !has_light_nodes(field) && field.options.averages_strain();
-}
-bool has_fmpm(Field field)
-{
-  return field.options.series == MPMFieldOptions::FMPM;
-}
-bool has_xpic(Field field)
-{
-  return field.options.series == MPMFieldOptions::XPIC;
+  return (field.options.*OPTION)();
 }
 bool has_ledger(Field field)
 {
@@ -53,10 +38,6 @@ bool has_ledger(Field field)
 bool takes_torques(Field field)
 {
   return field.affine && field.affine->takes_torques();
-}
-bool averages_pressure(Field field)
-{
-  return field.options.averages_stress();
 }
 
 void points_to_nodes(MPMPlan &plan, const char *name, Content content)
@@ -89,7 +70,7 @@ void average_pressure(MPMPlan &plan)
   const auto average = [](MPMField &field) {
     field.locking->average_pressure();
   };
-  plan.each("averaged pressure", average, averages_pressure);
+  plan.each("averaged pressure", average, with<&Options::averages_stress>);
 }
 
 /** What all schemes begin with. */
@@ -136,21 +117,24 @@ void solve(MPMPlan &plan)
   const auto refine = [&plan]() {
     fmpm(plan);
   };
-  plan.together("FMPM", refine, has_fmpm);
+  plan.together("FMPM", refine, with<&Options::has_fmpm>);
   const auto account = [](MPMField &field) {
     field.ledger.account_for_nodes();
   };
   plan.each("energy of nodes", account, has_ledger);
-  plan.each("XPIC", xpic, has_xpic);
+  plan.each("XPIC", xpic, with<&Options::has_xpic>);
   plan.place(MPMPlan::AFTER_SOLVE);
 }
 
-/** The other way to affine matrices where nodes may be light; stress is made elsewhere. */
-void add_light_nodes(MPMPlan &plan, MPMPlan::Each gradients)
+/** The other way to affine matrices, and with stress also to that, where nodes may be light. */
+void add_light_nodes(MPMPlan &plan, bool stress)
 {
-  plan.each("light nodes", blend_light_nodes, has_light_nodes);
-  plan.node_actions(MPMNodeAction::MAPPED_BACK, has_light_nodes);
-  plan.each("gradients with light nodes", std::move(gradients), has_light_nodes);
+  const auto gradients = [stress](MPMField &field) {
+    gradients_with_light_nodes(field, stress);
+  };
+  plan.each("light nodes", blend_light_nodes, with<&Options::has_light_nodes>);
+  plan.node_actions(MPMNodeAction::MAPPED_BACK, with<&Options::has_light_nodes>);
+  plan.each("gradients with light nodes", gradients, with<&Options::has_light_nodes>);
 }
 
 /** The momentum equation and new velocities of the points; stress is made before or after this. */
@@ -158,7 +142,7 @@ void solve_and_move(MPMPlan &plan)
 {
   solve(plan);
   nodes_to_points(plan, "nodes to points", ELSEWHERE, nullptr);
-  add_light_nodes(plan, affine_with_light_nodes);
+  add_light_nodes(plan, false);
 }
 
 /** The velocities of the points once more to the nodes, at the old positions. An affine matrix is that of
@@ -186,10 +170,12 @@ void LAMMPS_NS::make_usl(MPMPlan &plan)
 {
   begin_with_forces(plan);
   solve(plan);
-  nodes_to_points(plan, "nodes to points with material", STRESS, strains_while_moving);
-  nodes_to_points(plan, "nodes to points with averaged strain", GRADIENTS, averages_after_motion);
-  nodes_to_points(plan, "nodes to points", FRAME, has_light_nodes);
-  add_light_nodes(plan, stress_with_light_nodes);
+  nodes_to_points(plan, "nodes to points with material", STRESS,
+                  with<&Options::strains_while_moving>);
+  nodes_to_points(plan, "nodes to points with averaged strain", GRADIENTS,
+                  with<&Options::strains_after_motion>);
+  nodes_to_points(plan, "nodes to points", FRAME, with<&Options::has_light_nodes>);
+  add_light_nodes(plan, true);
   end(plan);
 }
 
@@ -201,7 +187,7 @@ void LAMMPS_NS::make_usf(MPMPlan &plan)
 {
   begin_with_stress(plan, 1.0, 1.0);
   solve_and_move(plan);
-  plan.each("motion of points", move_points, has_light_nodes);
+  plan.each("motion of points", move_points, with<&Options::has_light_nodes>);
   end(plan);
 }
 

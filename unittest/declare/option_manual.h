@@ -110,11 +110,7 @@ inline Strings lines(const Option &option)
     usages.push_back(usage(value));
   }
   all[0] = std::string(" value") + (count > 1 ? "s" : "") + " = " + join(usages, " ");
-  std::size_t end = 0;
-  for (std::size_t at = 0; at < option.meaning.size(); at = end + 1) {
-    end = std::min(option.meaning.find('\n', at), option.meaning.size());
-    all.push_back("  " + option.meaning.substr(at, end - at));
-  }
+  if (!option.meaning.empty()) all.push_back("  " + option.meaning);
   for (const auto &value : option.values)
     for (const auto &line : lines(value)) all.push_back("  " + line);
   return all;

@@ -269,11 +269,10 @@ OptionValue option::any_of(bool *to, const std::vector<std::string> &words,
 {
   const auto read = [=](OptionReader &r) {
     const int first = r.iarg;
-    for (bool more = true; more && r.iarg < r.input.narg;) {
+    for (; r.iarg < r.input.narg; r.iarg++) {
       const auto found = std::find(words.begin(), words.end(), r.input.arg[r.iarg]);
-      more = found != words.end();
-      if (more) to[found - words.begin()] = true;
-      r.iarg += more;
+      if (found == words.end()) break;
+      to[found - words.begin()] = true;
     }
     if (r.iarg == first) r.fail(first - 1, "", "needs one or more of " + join(words, " "));
   };

@@ -92,7 +92,7 @@ struct OptionValue {
   std::function<void(OptionReader &)> read;
   std::function<std::string()> text;    ///< present value, as in the input
   std::vector<OptionNote> notes = {};
-  std::shared_ptr<const std::vector<OptionWord>> words = nullptr;    ///< null: it is none of some
+  std::shared_ptr<const std::vector<OptionWord>> words = nullptr;    ///< null: any other value
   bool optional = false;
 };
 
