@@ -42,6 +42,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
 #include <functional>
 #include <map>
 #include <memory>
@@ -55,6 +56,8 @@ namespace MPM_TEST {
 
 using namespace LAMMPS_NS;
 using ::testing::HasSubstr;
+using ::testing::Values;
+using ::testing::ValuesIn;
 
 constexpr double PI = 3.14159265358979323846;
 
@@ -68,6 +71,12 @@ constexpr double PI = 3.14159265358979323846;
   }                                                         \
   static void suite##_##name()
 
+/** A test for each of some parameters: Values(...) or ValuesIn(...). */
+#define PARAMETER_TEST(suite, name, type, ...)            \
+  class suite : public ::testing::TestWithParam<type> {}; \
+  INSTANTIATE_TEST_SUITE_P(All, suite, __VA_ARGS__);      \
+  TEST_P(suite, name)
+
 inline int nranks(MPI_Comm comm = MPI_COMM_WORLD)
 {
   int n;
@@ -80,6 +89,18 @@ inline int rank(MPI_Comm comm = MPI_COMM_WORLD)
   int me;
   MPI_Comm_rank(comm, &me);
   return me;
+}
+
+/** Sums over all ranks, or what else these are to be reduced to. */
+inline std::vector<double> over_ranks(std::vector<double> values, MPI_Op op = MPI_SUM,
+                                      MPI_Comm comm = MPI_COMM_WORLD)
+{
+  MPI_Allreduce(MPI_IN_PLACE, values.data(), (int) values.size(), MPI_DOUBLE, op, comm);
+  return values;
+}
+inline double over_ranks(double value, MPI_Op op = MPI_SUM)
+{
+  return over_ranks(std::vector<double>{value}, op)[0];
 }
 
 /** The rows of all ranks, one rank after the other. */
@@ -144,6 +165,13 @@ struct ScratchFile {
   }
 };
 
+/** What a file has in it, nothing if there is none. */
+inline std::string file_text(const std::string &name)
+{
+  std::ifstream file(name, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
 /** Text with the arguments of printf in it. */
 template <class... Args> std::string strprintf(const char *text, Args... args)
 {
@@ -190,6 +218,38 @@ inline std::string body(const std::string &region, const std::string &material,
   return "fix grid all mpm " + grid + "\n" + (fills ? "" : "region body " + region + "\n") +
       "create_points 1 " + (fills ? "box" : "region body") + " ppc " + ppc + "\n" +
       "fix m all mpm/material " + material + "\n";
+}
+
+/** A body of points: region and group have its name. lattice: spacing and options of its fix mpm. */
+struct Part {
+  std::string name, region, lattice = "";
+};
+
+/** Bodies of types 1, 2, ... */
+inline std::string bodies(const std::vector<Part> &parts, const std::string &sites = "ppc 2")
+{
+  std::string text;
+  for (const auto &part : parts) {
+    const auto type = std::to_string(&part - parts.data() + 1);
+    text += "region " + part.name + " " + part.region + "\ncreate_points " + type + " region " +
+        part.name + " " + sites + "\ngroup " + part.name + " type " + type + "\n";
+  }
+  return text;
+}
+
+/** Bodies of types 1, 2, ..., each in a field of its own, which are fixes F1, F2, ...; lattice: of those that
+ *  have none. */
+inline std::string fields(const std::vector<Part> &parts, const std::string &lattice = "1.0")
+{
+  std::string fixes, points;
+  for (const auto &part : parts) {
+    const auto type = std::to_string(&part - parts.data() + 1);
+    fixes += "group " + part.name + " type " + type + "\nfix F" + type + " " + part.name + " mpm " +
+        (part.lattice.empty() ? lattice : part.lattice) + "\n";
+    points += "region " + part.name + " " + part.region + "\ncreate_points " + type + " region " +
+        part.name + " ppc 2 fix F" + type + "\ngroup " + part.name + " type " + type + "\n";
+  }
+  return fixes + points;
 }
 
 /** A LAMMPS instance: what a test drives. (Not named Run, which is a member of ::testing::Test.) */
@@ -254,9 +314,22 @@ class Scene {
     return lmp->input->variable->compute_equal(formula);
   }
 
+  /** Values of a compute, by default of a compute e all mpm/energy. */
+  const double *compute_vector(const std::string &id = "e")
+  {
+    auto *compute = lmp->modify->get_compute_by_id(id);
+    compute->compute_vector();
+    return compute->vector;
+  }
+  double compute_scalar(const std::string &id = "e")
+  {
+    return lmp->modify->get_compute_by_id(id)->compute_scalar();
+  }
+
   /** State of one point, gathered on all ranks, in order of tags. */
   struct State {
     double tag, type, x[3], v[3], F[9], stress[6], vol, mass;
+    double pressure() const { return -(stress[0] + stress[1] + stress[2]) / 3.0; }
   };
   std::vector<State> gather()
   {
@@ -509,6 +582,19 @@ inline std::string replaced(std::string scene, const std::string &word, const st
   return scene;
 }
 
+/** Mass and momentum of points. */
+struct Totals {
+  double mass = 0.0, p[3] = {0.0, 0.0, 0.0};
+
+  explicit Totals(const std::vector<Scene::State> &points)
+  {
+    for (const auto &point : points) {
+      mass += point.mass;
+      for (int d = 0; d < 3; d++) p[d] += point.mass * point.v[d];
+    }
+  }
+};
+
 /** Show a measured number in the output of the test. */
 inline double measured(const std::string &what, double value)
 {
@@ -620,12 +706,17 @@ inline std::string error_of(const std::string &input)
   return scene.error(input);
 }
 
-/** An input gives an error with these words. */
+/** Lines of input give an error with these words. */
+inline void expect_error(Scene &scene, const std::string &lines, const std::string &words)
+{
+  const auto found = scene.error(lines);
+  EXPECT_THAT(found, HasSubstr(words)) << lines;
+  EXPECT_NE(found, "") << lines;
+}
 inline void expect_error(const std::string &input, const std::string &words)
 {
-  const auto found = error_of(input);
-  EXPECT_THAT(found, HasSubstr(words)) << input;
-  EXPECT_NE(found, "") << input;
+  Scene scene;
+  expect_error(scene, input, words);
 }
 
 /** Mistakes in the input, each with words of its message. */
@@ -638,11 +729,8 @@ inline void expect_refused(const std::string &scene, const std::vector<Mistake> 
                            const std::string &run = "")
 {
   for (const auto &mistake : mistakes) {
-    Scene instance;
-    instance.commands(scene);
-    const auto found = instance.error(mistake.lines + "\n" + run);
-    EXPECT_THAT(found, HasSubstr(mistake.message)) << mistake.lines;
-    EXPECT_NE(found, "") << mistake.lines;
+    Scene instance(scene);
+    expect_error(instance, mistake.lines + "\n" + run, mistake.message);
   }
 }
 

@@ -143,8 +143,8 @@ TEST(CreatePoints, WhichLattice)
 {
   Scene scene(box3d);
   scene.commands("fix fine all mpm 0.05\nregion r block 0.2 0.3 0.2 0.3 0.2 0.3");
-  EXPECT_THAT(scene.error("create_points 1 region r ppc 1"),
-              HasSubstr("Fixes mpm grid and fine have different lattices"));
+  expect_error(scene, "create_points 1 region r ppc 1",
+               "Fixes mpm grid and fine have different lattices");
   scene.commands("create_points 1 region r ppc 1 fix fine");
   EXPECT_EQ(atoms(scene).size(), 8u);
 
@@ -311,8 +311,8 @@ TEST(CreatePoints, SitesOnFaces)
   Scene scene(box3d);
   scene.commands("unfix grid\nfix grid all mpm 0.125 origin 0.0625 0.0625 0.0625\n"
                  "region r block 0 1 0 1 0 1");
-  EXPECT_THAT(scene.error("create_points 1 region r ppc 1"),
-              HasSubstr(std::to_string(9 * 9 * 9 - 512) + " points would be outside"));
+  expect_error(scene, "create_points 1 region r ppc 1",
+               std::to_string(9 * 9 * 9 - 512) + " points would be outside");
 }
 
 // origins that put sites on a periodic face up to rounding: one of the two images, always
@@ -460,11 +460,11 @@ TEST(CreatePoints, Overlap)
 
   // a face through the sites belongs to both regions
   scene.commands("region c block 0.475 0.6 0 0.1 0 0.1");
-  EXPECT_THAT(scene.error("create_points 2 region c ppc 2"), HasSubstr("4 existing"));
+  expect_error(scene, "create_points 2 region c ppc 2", "4 existing");
 
   // at another spacing, finer and coarser
-  EXPECT_THAT(scene.error("create_points 2 region b ppc 3"), HasSubstr("existing"));
-  EXPECT_THAT(scene.error("create_points 2 region b ppc 1"), HasSubstr("16 existing"));
+  expect_error(scene, "create_points 2 region b ppc 3", "existing");
+  expect_error(scene, "create_points 2 region b ppc 1", "16 existing");
 
   scene.commands("create_points 2 region b ppc 2 overlap yes");
   EXPECT_EQ(atoms(scene).size(), 80u);
@@ -497,15 +497,14 @@ TEST(CreatePoints, OutsideTheBox)
   EXPECT_THAT(scene.error("create_points 1 region r ppc 2"),
               AllOf(HasSubstr("region r reaches beyond the simulation box"),
                     HasSubstr("80 points would be outside"), HasSubstr("outside ignore")));
-  EXPECT_THAT(scene.error("create_points 1 region far ppc 1"), HasSubstr("would be outside"));
-  EXPECT_THAT(scene.error("create_points 1 region huge ppc 1"),
-              HasSubstr("an unknown number of points would be outside"));
+  expect_error(scene, "create_points 1 region far ppc 1", "would be outside");
+  expect_error(scene, "create_points 1 region huge ppc 1",
+               "an unknown number of points would be outside");
   EXPECT_EQ(atoms(scene).size(), 0u);
 
   scene.commands("create_points 1 region r ppc 2 outside ignore");
   EXPECT_EQ(atoms(scene).size(), 40u);
-  EXPECT_THAT(scene.error("create_points 1 region far ppc 1 outside ignore"),
-              HasSubstr("made no points"));
+  expect_error(scene, "create_points 1 region far ppc 1 outside ignore", "made no points");
 
   // INF is no mistake, nor is a region that is too large by less than half a spacing
   scene.commands("create_points 1 region in ppc 1");
@@ -575,36 +574,35 @@ TEST(CreatePoints, BadInput)
 TEST(CreatePoints, BadSetting)
 {
   Scene early;
-  EXPECT_THAT(early.error("atom_style mpm\ncreate_points 1 box"),
-              HasSubstr("before the simulation box is defined"));
+  expect_error(early, "atom_style mpm\ncreate_points 1 box",
+               "before the simulation box is defined");
   Scene atomic;
   EXPECT_THAT(atomic.error("atom_style mpm\natom_style atomic\nregion box block 0 1 0 1 0 1\n"
                            "create_box 1 box\ncreate_points 1 box"),
               AllOf(HasSubstr("needs atom_style mpm"), HasSubstr("atom style is atomic")));
   Scene tilted;
-  EXPECT_THAT(tilted.error("atom_style mpm\nregion box prism 0 1 0 1 0 1 0.1 0 0\n"
-                           "create_box 1 box\ncreate_points 1 box spacing 0.1"),
-              HasSubstr("orthogonal"));
+  expect_error(tilted,
+               "atom_style mpm\nregion box prism 0 1 0 1 0 1 0.1 0 0\n"
+               "create_box 1 box\ncreate_points 1 box spacing 0.1",
+               "orthogonal");
   Scene gridless;
   EXPECT_THAT(gridless.error("atom_style mpm\nregion box block 0 1 0 1 0 1\ncreate_box 1 box\n"
                              "create_points 1 box ppc 2"),
               AllOf(HasSubstr("define fix mpm first"), HasSubstr("create_points spacing")));
   Scene flat(box2d);
-  EXPECT_THAT(flat.error("fix grid all mpm 0.1\ncreate_points 1 box ppc 2 2 2"),
-              HasSubstr("expects 1 or 2 numbers in a 2d simulation, not 3"));
+  expect_error(flat, "fix grid all mpm 0.1\ncreate_points 1 box ppc 2 2 2",
+               "expects 1 or 2 numbers in a 2d simulation, not 3");
 }
 
 TEST(AtomStyle, BadInput)
 {
   Scene scene;
-  EXPECT_THAT(scene.error("atom_style mpm 3"), HasSubstr("Atom style mpm takes no arguments"));
-  EXPECT_THAT(scene.error("atom_style hybrid mpm sphere"),
-              HasSubstr("Atom style mpm must come after sphere"));
-  EXPECT_THAT(scene.error("atom_style hybrid ellipsoid mpm"),
-              HasSubstr("cannot be combined with atom style ellipsoid"));
-  EXPECT_THAT(scene.error("atom_style hybrid mpm line"),
-              HasSubstr("cannot be combined with atom style line"));
-  EXPECT_THAT(scene.error("atom_style hybrid mpm unknown"), HasSubstr("unknown"));
+  expect_error(scene, "atom_style mpm 3", "Atom style mpm takes no arguments");
+  expect_error(scene, "atom_style hybrid mpm sphere", "Atom style mpm must come after sphere");
+  expect_error(scene, "atom_style hybrid ellipsoid mpm",
+               "cannot be combined with atom style ellipsoid");
+  expect_error(scene, "atom_style hybrid mpm line", "cannot be combined with atom style line");
+  expect_error(scene, "atom_style hybrid mpm unknown", "unknown");
   scene.commands("atom_style mpm\natom_style hybrid sphere mpm\natom_style mpm");
 }
 
@@ -641,7 +639,7 @@ TEST(AtomStyle, NewAtoms)
     EXPECT_EQ(p.volume0, p.x[0] < 1.5 ? 0.25 : 0.0);
     EXPECT_EQ(p.mass, p.x[0] < 1.5 ? 3.0 : 1.0);
   }
-  EXPECT_THAT(scene.error("set type 1 volume -1"), HasSubstr("volume"));
+  expect_error(scene, "set type 1 volume -1", "volume");
 }
 
 TEST(AtomStyle, MemoryPerPoint)
@@ -813,7 +811,7 @@ TEST(AtomStyle, PropertyAtom)
     for (int c = 0; c < 6; c++) EXPECT_NEAR(a[7 + c], tau[c] / J, 1.0e-14 * fabs(a[7 + c]));
     EXPECT_EQ(a[13], a[12]);
   }
-  EXPECT_THAT(scene.error("compute q all property/atom mpm_F14"), HasSubstr("mpm_F14"));
+  expect_error(scene, "compute q all property/atom mpm_F14", "mpm_F14");
 }
 
 // ---------------------------------------------------------------- data files
@@ -871,7 +869,7 @@ TEST(DataFile, Columns)
                             "Atoms # mpm\n\n1 1 8960 1e-6 .1 .1 .1\n"
                             "2 1 0 1e-6 .2 .1 .1\n3 2 0.5 0 .9 .9 .9\n4 2 2 3 .5 .9 .4 0 1 0\n");
   Scene scene("units si\natom_style mpm");
-  EXPECT_THAT(scene.error("read_data " + bad.name), HasSubstr("Incorrect format"));
+  expect_error(scene, "read_data " + bad.name, "Incorrect format");
   const ScratchFile in("good",
                        std::string(header) +
                            "Atoms # mpm\n\n1 1 8960 1e-6 .1 .1 .1\n"
@@ -972,7 +970,7 @@ TEST(DataFile, BadInput)
   scene.commands("region r block 0.2 0.8 0.2 0.8 0.2 0.8\ncreate_points 2 region r diameter 0.02");
   for (const auto &p : atoms(scene)) EXPECT_EQ(p.radius, 0.01);
   const ScratchFile file(name, MPI_COMM_SELF);
-  EXPECT_THAT(scene.error("write_data " + file.name + " noinit"), HasSubstr("has no mass yet"));
+  expect_error(scene, "write_data " + file.name + " noinit", "has no mass yet");
 }
 
 TEST(AtomStyle, GrainsNextToPoints)

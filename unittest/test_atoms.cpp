@@ -42,9 +42,7 @@ timestep 0.004
 // second half of the last impulse given to the points, is constant to round-off.
 
 // With every K, points take a step in every K of the atoms, with the mean of the K forces.
-class Atoms : public ::testing::TestWithParam<int> {};
-
-TEST_P(Atoms, HitABodyWithConstantMomentum)
+PARAMETER_TEST(Atoms, HitABodyWithConstantMomentum, int, Values(1, 2, 5))
 {
   Scene run(replaced(scene, "mpm 1.0\n", strprintf("mpm 1.0 every %d\n", GetParam())));
   run.commands("run 0 post no\n");
@@ -73,8 +71,6 @@ TEST_P(Atoms, HitABodyWithConstantMomentum)
   }
   EXPECT_LT(pushed, 0.5 * start[2]);    // the atoms did hit the body
 }
-
-INSTANTIATE_TEST_SUITE_P(Every, Atoms, ::testing::Values(1, 2, 5));
 
 /* ----------------------------------------------------------------------
    A plate of points hits a crystal of atoms, twice as both are periodic: fcc, lj/cut 2.5, and a plate of its

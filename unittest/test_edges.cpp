@@ -162,9 +162,11 @@ static const std::string moving = "fix w1 all mpm/boundary xlo xhi stick\n"
                                   "velocity all ramp vy 0.0 1.0 x 0 6 units box\n"
                                   "velocity all ramp vz 0.0 0.5 y 0 5 units box\n";
 
-class EdgesRun : public ::testing::TestWithParam<const char *> {};
+static const char *const edges_run_cases[] = {
+    "transfer flip 1.0 scheme musl", "shape cubic transfer flip 1.0 scheme musl",
+    "transfer flip 0.99 scheme usf", "transfer flip 1.0 frame total"};
 
-TEST_P(EdgesRun, AgreesOnRanksAndAfterARestart)
+PARAMETER_TEST(EdgesRun, AgreesOnRanksAndAfterARestart, const char *, ValuesIn(edges_run_cases))
 {
   const std::string scene = replaced(full, "OPTIONS", GetParam()) + moving;
   Twins(replaced(scene, "0.001", "0.05"), 50,
@@ -173,11 +175,6 @@ TEST_P(EdgesRun, AgreesOnRanksAndAfterARestart)
             "fix w1 all mpm/boundary xlo xhi stick\nfix w2 all mpm/boundary zlo zhi slip\n",
         50, 1.0e-11);
 }
-
-static const char *const edges_run_cases[] = {
-    "transfer flip 1.0 scheme musl", "shape cubic transfer flip 1.0 scheme musl",
-    "transfer flip 0.99 scheme usf", "transfer flip 1.0 frame total"};
-INSTANTIATE_TEST_SUITE_P(Options, EdgesRun, ::testing::ValuesIn(edges_run_cases));
 
 TEST(Edges, RefuseMistakes)
 {

@@ -49,16 +49,32 @@ static const std::string floors = "fix floor all mpm/boundary zlo stick\n";
 struct Feature {
   const char *name;
   std::string text;
+  friend void PrintTo(const Feature &feature, std::ostream *out) { *out << feature.name; }
 };
 
-static void PrintTo(const Feature &feature, std::ostream *out)
-{
-  *out << feature.name;
-}
+static const Feature features[] = {
+    {"Apic", "fix grid all mpm 1.0 EVERY\n" + block + rubber + floors},
+    {"FlipMusl",
+     "fix grid all mpm 1.0 transfer flip 0.99 scheme musl EVERY\n" + block + rubber + floors},
+    {"Usavg", "fix grid all mpm 1.0 shape cubic scheme usavg EVERY\n" + block + rubber + floors},
+    {"Total", "fix grid all mpm 1.0 frame total EVERY\n" + block + rubber + floors},
+    {"Cpdi2", "fix grid all mpm 1.0 shape cpdi2 EVERY\n" + block + rubber + floors},
+    {"MovingFace",
+     "variable v equal 0.3*sin(3*time)\nfix grid all mpm 1.0 EVERY\n" + block + rubber +
+         "fix floor all mpm/boundary zlo stick velocity v_v 0 0\n"},
+    {"MovingRegion",
+     "variable up equal 0.1*time^2\nregion plate block INF INF INF INF -2 0.3 move NULL NULL v_up\n"
+     "fix grid all mpm 1.0 EVERY\nregion b block 2 6 2 6 0.5 4\ncreate_points 1 region b ppc 2\n" +
+         rubber + "fix push all mpm/boundary region plate separate friction 0.2\n"},
+    {"Contact",
+     "region b block 2 6 2 6 0 3\nregion c block 3 5 2.5 4.5 3 5\n"
+     "create_points 1 region b spacing 0.5\ncreate_points 2 region c spacing 0.5\n"
+     "group low type 1\ngroup high type 2\n"
+     "fix low low mpm 1.0 EVERY\nfix high high mpm 1.0 EVERY\n" +
+         rubber + floors + "fix c all mpm/contact low high law coulomb 0.2\n"},
+};
 
-class LargerStep : public ::testing::TestWithParam<Feature> {};
-
-TEST_P(LargerStep, IsTheSame)
+PARAMETER_TEST(LargerStep, IsTheSame, Feature, ValuesIn(features))
 {
   const auto scene = [](int every) {
     return head +
@@ -83,32 +99,6 @@ TEST_P(LargerStep, IsTheSame)
     EXPECT_GT(moved, 0.05);
   }
 }
-
-static const Feature features[] = {
-    {"Apic", "fix grid all mpm 1.0 EVERY\n" + block + rubber + floors},
-    {"FlipMusl",
-     "fix grid all mpm 1.0 transfer flip 0.99 scheme musl EVERY\n" + block + rubber + floors},
-    {"Usavg", "fix grid all mpm 1.0 shape cubic scheme usavg EVERY\n" + block + rubber + floors},
-    {"Total", "fix grid all mpm 1.0 frame total EVERY\n" + block + rubber + floors},
-    {"Cpdi2", "fix grid all mpm 1.0 shape cpdi2 EVERY\n" + block + rubber + floors},
-    {"MovingFace",
-     "variable v equal 0.3*sin(3*time)\nfix grid all mpm 1.0 EVERY\n" + block + rubber +
-         "fix floor all mpm/boundary zlo stick velocity v_v 0 0\n"},
-    {"MovingRegion",
-     "variable up equal 0.1*time^2\nregion plate block INF INF INF INF -2 0.3 move NULL NULL v_up\n"
-     "fix grid all mpm 1.0 EVERY\nregion b block 2 6 2 6 0.5 4\ncreate_points 1 region b ppc 2\n" +
-         rubber + "fix push all mpm/boundary region plate separate friction 0.2\n"},
-    {"Contact",
-     "region b block 2 6 2 6 0 3\nregion c block 3 5 2.5 4.5 3 5\n"
-     "create_points 1 region b spacing 0.5\ncreate_points 2 region c spacing 0.5\n"
-     "group low type 1\ngroup high type 2\n"
-     "fix low low mpm 1.0 EVERY\nfix high high mpm 1.0 EVERY\n" +
-         rubber + floors + "fix c all mpm/contact low high law coulomb 0.2\n"},
-};
-
-INSTANTIATE_TEST_SUITE_P(Every, LargerStep, ::testing::ValuesIn(features), [](const auto &info) {
-  return std::string(info.param.name);
-});
 
 // A restart file that is written between two steps of the points: bitwise as without
 TEST(LargerStep, GoesOnFromARestartFile)

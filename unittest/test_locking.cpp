@@ -162,9 +162,10 @@ TEST(Punch, LimitLoad)
 
 /* ---- A body whose velocity is linear in position deforms uniformly in a step, averaged or not. */
 
-class Uniform : public ::testing::TestWithParam<const char *> {};
-
-TEST_P(Uniform, StretchIsExact)
+PARAMETER_TEST(Uniform, StretchIsExact, const char *,
+               Values("locking fbar", "locking pressure", "locking both",
+                      "locking fbar shape cubic", "locking fbar scheme musl",
+                      "locking fbar scheme usf", "locking fbar frame total"))
 {
   for (int dim : {2, 3}) {
     Scene run(box(dim, "lj", "f f p", "-5 5 -5 5 -5 5", 2) +
@@ -196,19 +197,15 @@ TEST_P(Uniform, StretchIsExact)
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Options, Uniform,
-                         ::testing::Values("locking fbar", "locking pressure", "locking both",
-                                           "locking fbar shape cubic", "locking fbar scheme musl",
-                                           "locking fbar scheme usf", "locking fbar frame total"));
-
 /* ----------------------------------------------------------------------
    In a step, averages change volumes of points, but not their sum; the next step with and without
    averages after some steps with them.
 ------------------------------------------------------------------------- */
 
-class Volume : public ::testing::TestWithParam<const char *> {};
+static const char *const volume_cases[] = {
+    "locking fbar", "locking fbar transfer flip 1.0 scheme musl", "locking fbar frame total"};
 
-TEST_P(Volume, SumIsThatOfTheMotion)
+PARAMETER_TEST(Volume, SumIsThatOfTheMotion, const char *, ValuesIn(volume_cases))
 {
   for (int dim : {2, 3}) {
     double volume[2], largest[2];
@@ -237,10 +234,6 @@ TEST_P(Volume, SumIsThatOfTheMotion)
     EXPECT_NEAR(volume[1], volume[0], 1.0e-13);
   }
 }
-
-static const char *const volume_cases[] = {
-    "locking fbar", "locking fbar transfer flip 1.0 scheme musl", "locking fbar frame total"};
-INSTANTIATE_TEST_SUITE_P(Options, Volume, ::testing::ValuesIn(volume_cases));
 
 /* ---- A pressure that is the same everywhere is its own average, however much points are compressed. */
 
@@ -275,9 +268,8 @@ TEST(AveragedPressure, KeepsAUniformOne)
    frequency, by (kh)^2/8 of the part of the bulk modulus in lambda + 2 mu.
 ------------------------------------------------------------------------- */
 
-class Bar : public ::testing::TestWithParam<const char *> {};
-
-TEST_P(Bar, ConfinedOscillation)
+PARAMETER_TEST(Bar, ConfinedOscillation, const char *,
+               Values("locking none", "locking fbar", "locking pressure", "locking both"))
 {
   const double h = 0.05, E = 1.0, nu = 0.4999, k = 0.5 * 3.14159265358979, v0 = 1.0e-2;
   const double lambda = E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), mu = 0.5 * E / (1.0 + nu);
@@ -318,10 +310,6 @@ TEST_P(Bar, ConfinedOscillation)
     EXPECT_NEAR(measured(name + "energy after 8 periods", run.evaluate("c_e") / start), 1.0, 0.01);
   }
 }
-
-INSTANTIATE_TEST_SUITE_P(Options, Bar,
-                         ::testing::Values("locking none", "locking fbar", "locking pressure",
-                                           "locking both"));
 
 /* ----------------------------------------------------------------------
    Free oscillation of a block in plane strain, nu = 0.4999. With APIC, the energy that is left

@@ -393,10 +393,9 @@ TEST(BadInput, IsRefused)
       {"unfix F1\nunfix F2", "no fix mpm"},
   };
   expect_refused(disks, cases, "run 1\n");
-  EXPECT_NE(error_of("region box block 0 1 0 1 0 1\ncreate_box 1 box\npair_style mpm/penalty\n"
-                     "pair_coeff * * 1\nmass 1 1\nrun 0\n")
-                .find("requires material points"),
-            std::string::npos);
+  expect_error("region box block 0 1 0 1 0 1\ncreate_box 1 box\npair_style mpm/penalty\n"
+               "pair_coeff * * 1\nmass 1 1\nrun 0\n",
+               "requires material points");
 }
 
 /* ----------------------------------- axisymmetric: rings that are in contact along their circle */

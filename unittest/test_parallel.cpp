@@ -150,9 +150,9 @@ thermo 50
 thermo_style custom step dt c_yield c_e
 )";
 
-class Walls : public ::testing::TestWithParam<std::string> {};
-
-TEST_P(Walls, ReactionsAndEnergiesAgree)
+PARAMETER_TEST(Walls, ReactionsAndEnergiesAgree, std::string,
+               Values("transfer apic", "transfer flip 0.98",
+                      "transfer apic scheme musl shape cubic", "transfer apic scheme usf"))
 {
   std::string scene = replaced(walls, "MPM_OPTIONS", GetParam());
   if (GetParam().find("usf") != std::string::npos)    // which refuses these
@@ -188,11 +188,6 @@ TEST_P(Walls, ReactionsAndEnergiesAgree)
     }
   }
 }
-
-INSTANTIATE_TEST_SUITE_P(Options, Walls,
-                         ::testing::Values("transfer apic", "transfer flip 0.98",
-                                           "transfer apic scheme musl shape cubic",
-                                           "transfer apic scheme usf"));
 
 // two fields with lattices of their own, which know nothing of each other but use the same halo
 TEST(TwoFields, DifferentLattices)

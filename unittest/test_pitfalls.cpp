@@ -381,9 +381,9 @@ TEST(Pitfall, RareNeighborListsLoseNoPoint)
 }
 
 // the adaptive time step went to zero when a body had turned by 90 degrees
-class TurnedBody : public ::testing::TestWithParam<std::string> {};
-
-TEST_P(TurnedBody, HasTheTimeStepOfTheBodyAtRest)
+PARAMETER_TEST(TurnedBody, HasTheTimeStepOfTheBodyAtRest, std::string,
+               Values("neohookean 10.0 0.3", "linear 10.0 0.3",
+                      "eos shock 4.0 1.5 2.0 strength j2 4.0 0.1"))
 {
   Scene run(space("lj", "p p p", "0 8 0 8 0 8") +
             "fix grid all mpm 1.0\nregion body block 2 5 2.5 5 3 5\n"
@@ -402,15 +402,12 @@ TEST_P(TurnedBody, HasTheTimeStepOfTheBodyAtRest)
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Pitfall, TurnedBody,
-                         ::testing::Values("neohookean 10.0 0.3", "linear 10.0 0.3",
-                                           "eos shock 4.0 1.5 2.0 strength j2 4.0 0.1"));
-
 // MUSL with an affine transfer re-used the old affine matrix in the second mapping: the energy of
 // a sheared block doubled in 240 steps. Here that defect shows from a CFL number of 0.5 on.
-class MuslApic : public ::testing::TestWithParam<std::string> {};
-
-TEST_P(MuslApic, ShearedBlockGainsNoEnergy)
+PARAMETER_TEST(MuslApic, ShearedBlockGainsNoEnergy, std::string,
+               Values("transfer apic shape quadratic", "transfer apic shape cubic",
+                      "transfer aflip 1.0", "transfer tpic shape cubic", "transfer tpic",
+                      "transfer apic shape cpgimp"))
 {
   Scene run(space("lj", "p p p", "0 16 0 16 0 16") + "fix grid all mpm 1.0 scheme musl " +
             GetParam() +
@@ -429,12 +426,6 @@ TEST_P(MuslApic, ShearedBlockGainsNoEnergy)
   EXPECT_GT(start, 0.0);
   EXPECT_LT(most, 1.002 * start);
 }
-
-INSTANTIATE_TEST_SUITE_P(Pitfall, MuslApic,
-                         ::testing::Values("transfer apic shape quadratic",
-                                           "transfer apic shape cubic", "transfer aflip 1.0",
-                                           "transfer tpic shape cubic", "transfer tpic",
-                                           "transfer apic shape cpgimp"));
 
 // points that cross their block without leaving its tile, while neighbor lists are not made, came to
 // reach into a block that did not exist
@@ -458,9 +449,10 @@ TEST(Pitfall, LongDriftWithinATile)
 
 // the first-order update of F, applied to the gradient of a rotation, inflates J by
 // (1 + (2 pi/N)^2)^N in a turn of N steps: 4 % with 1000. Here J stays where elasticity has it
-class Turn : public ::testing::TestWithParam<std::string> {};
-
-TEST_P(Turn, InflatesNothing)
+PARAMETER_TEST(Turn, InflatesNothing, std::string,
+               Values("transfer apic", "transfer flip 1.0", "transfer flip 1.0 scheme usf",
+                      "transfer flip 1.0 scheme usavg", "transfer apic scheme musl",
+                      "shape cpgimp transfer apic", "frame total transfer apic"))
 {
   const int N = 1000;
   Scene run(plane("lj", "f f", "-8 8 -8 8") + "fix grid all mpm 1.0 " + GetParam() +
@@ -477,12 +469,6 @@ TEST_P(Turn, InflatesNothing)
   EXPECT_GT(measured(GetParam() + ": J after a turn", J), 1.0 - 1.0e-3);
   EXPECT_LT(J, 1.0 + 2.0 * 0.0042 + 1.0e-3);
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    Pitfall, Turn,
-    ::testing::Values("transfer apic", "transfer flip 1.0", "transfer flip 1.0 scheme usf",
-                      "transfer flip 1.0 scheme usavg", "transfer apic scheme musl",
-                      "shape cpgimp transfer apic", "frame total transfer apic"));
 
 // a tetrahedron with a volume of (1/6) in integers had no mass; sizes of points that do not add up
 // to the body make its mass depend on the variant. Momentum of CPDI was not conserved: that of all

@@ -36,9 +36,12 @@ static const std::string start = "velocity one set 0.6 0.35 -0.4\n"
 // a body of the total frame would fall through a floor that it does not touch at first
 static const std::string start_level = "velocity one set 0.6 0.35 0\nvelocity two set -0.5 0.1 0\n";
 
-class Restart : public ::testing::TestWithParam<std::string> {};
-
-TEST_P(Restart, ContinuesBitwise)
+PARAMETER_TEST(Restart, ContinuesBitwise, std::string,
+               Values("transfer apic", "shape linear transfer flip 0.99 scheme musl",
+                      "shape cubic transfer apic scheme musl", "transfer pic scheme usf",
+                      "frame total transfer apic", "frame total transfer flip 0.99 scheme musl",
+                      "locking fbar", "scheme musl locking pressure",
+                      "transfer aflip 0.99 scheme musl", "shape cpgimp transfer tpic", "every 3"))
 {
   const std::string options = GetParam();
   const ScratchFile half("100.bin"), end("200.bin");
@@ -58,18 +61,9 @@ TEST_P(Restart, ContinuesBitwise)
   EXPECT_LT(difference(expected, serial.gather()), 1.0e-11);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Options, Restart,
-    ::testing::Values("transfer apic", "shape linear transfer flip 0.99 scheme musl",
-                      "shape cubic transfer apic scheme musl", "transfer pic scheme usf",
-                      "frame total transfer apic", "frame total transfer flip 0.99 scheme musl",
-                      "locking fbar", "scheme musl locking pressure",
-                      "transfer aflip 0.99 scheme musl", "shape cpgimp transfer tpic", "every 3"));
-
 // the write_restart command between runs, and a file of one rank read by many
-class RestartCommand : public ::testing::TestWithParam<std::string> {};
-
-TEST_P(RestartCommand, ContinuesBitwiseAndOnOtherRanks)
+PARAMETER_TEST(RestartCommand, ContinuesBitwiseAndOnOtherRanks, std::string,
+               Values("transfer apic", "shape cubic transfer flip 1.0 scheme usf"))
 {
   const std::string options = GetParam();
   const std::string scene = head + "fix grid all mpm 1.0 " + options + "\n" + points +
@@ -88,14 +82,10 @@ TEST_P(RestartCommand, ContinuesBitwiseAndOnOtherRanks)
   EXPECT_LT(difference(expected, many.gather()), 1.0e-11);
 }
 
-INSTANTIATE_TEST_SUITE_P(Options, RestartCommand,
-                         ::testing::Values("transfer apic",
-                                           "shape cubic transfer flip 1.0 scheme usf"));
-
 // points that are rings
-class AxisymmetricRestart : public ::testing::TestWithParam<std::string> {};
-
-TEST_P(AxisymmetricRestart, ContinuesBitwise)
+PARAMETER_TEST(AxisymmetricRestart, ContinuesBitwise, std::string,
+               Values("transfer apic", "shape cpgimp transfer flip 1.0",
+                      "transfer apic scheme musl locking both"))
 {
   const std::string fixes = "fix grid all mpm 1.0 axisymmetric yes " + GetParam() +
       "\nfix m all mpm/material density 1.0 neohookean 10.0 0.3\n"
@@ -106,10 +96,6 @@ TEST_P(AxisymmetricRestart, ContinuesBitwise)
                 70, "neighbor 0.3 bin\n" + fixes, 60);
   EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
 }
-
-INSTANTIATE_TEST_SUITE_P(Options, AxisymmetricRestart,
-                         ::testing::Values("transfer apic", "shape cpgimp transfer flip 1.0",
-                                           "transfer apic scheme musl locking both"));
 
 // the state is more than positions and velocities: without a part of it the run goes on differently
 TEST(RestartState, AffineMatrixAndHistoryAreInTheFile)

@@ -33,9 +33,9 @@ static double surface_points(Scene &run)
 }
 
 // A slab of 12 layers of 24 x 24 points anywhere on the lattice: the first and the last layer.
-class Surface : public ::testing::TestWithParam<const char *> {};
-
-TEST_P(Surface, IsTheOutermostLayer)
+PARAMETER_TEST(Surface, IsTheOutermostLayer, const char *,
+               Values("", "shape linear transfer flip 1.0 scheme musl", "shape cubic",
+                      "shape cpgimp", "frame total"))
 {
   for (const char *shift : {"0 0 0", "0.13 0.31 0.47", "0.5 0.25 0.7", "5.1 0 0"}) {
     Scene run(head + "fix grid all mpm 1.0 " + GetParam() +
@@ -47,10 +47,6 @@ TEST_P(Surface, IsTheOutermostLayer)
     EXPECT_EQ(surface_points(run), 2 * 24 * 24) << shift;
   }
 }
-
-INSTANTIATE_TEST_SUITE_P(Options, Surface,
-                         ::testing::Values("", "shape linear transfer flip 1.0 scheme musl",
-                                           "shape cubic", "shape cpgimp", "frame total"));
 
 // On a fixed face of the box nothing can be between it and the body, but a gap has a surface.
 TEST(Surface, IsNotOnAFixedFace)
@@ -277,9 +273,11 @@ TEST(SurfaceContact, GoesOnFromARestartFile)
 
 // Clumps of spheres that LAMMPS moves as rigid bodies: what they lose of momentum, the block has. When
 // forces are known, velocities of grains and points are those of half steps.
-class Clump : public ::testing::TestWithParam<const char *> {};
-
-TEST_P(Clump, PushesWithConstantMomentum)
+PARAMETER_TEST(Clump, PushesWithConstantMomentum, const char *,
+               Values("fix move grains rigid single",
+                      "fix body all property/atom i_body ghost yes\n"
+                      "set type 2 i_body 1\nset type 1 i_body 0\n"
+                      "fix move grains rigid/small custom i_body"))
 {
   Scene run(replaced(head, "neighbor 0.3", "atom_modify map array\nneighbor 0.3") +
             replaced(grains,
@@ -310,12 +308,6 @@ TEST_P(Clump, PushesWithConstantMomentum)
   EXPECT_LT(measured("momentum", worst / fabs(start[2])), 1.0e-12);
   EXPECT_LT(pushed, 0.5 * start[2]);    // it did hit the block
 }
-
-INSTANTIATE_TEST_SUITE_P(Fixes, Clump,
-                         ::testing::Values("fix move grains rigid single",
-                                           "fix body all property/atom i_body ghost yes\n"
-                                           "set type 2 i_body 1\nset type 1 i_body 0\n"
-                                           "fix move grains rigid/small custom i_body"));
 
 TEST(Surface, RefusesMistakes)
 {

@@ -187,9 +187,12 @@ TEST(TotalStretch, TenfoldWithoutFracture)
    conserved exactly, angular momentum as far as the motion is affine over the reach of a function
 ------------------------------------------------------------------------- */
 
-class TotalFree : public ::testing::TestWithParam<const char *> {};
+static const char *const total_free_cases[] = {
+    "frame total transfer apic", "frame total transfer flip 1.0 scheme musl",
+    "frame total transfer flip 1.0 scheme usavg", "frame total transfer xpic 5",
+    "frame total transfer fmpm 5"};
 
-TEST_P(TotalFree, Invariants)
+PARAMETER_TEST(TotalFree, Invariants, const char *, ValuesIn(total_free_cases))
 {
   Scene run(space("si", "f f f", "-5 15 -5 15 -5 15", 1, 0.3) + "fix grid all mpm 0.5 " +
             GetParam() +
@@ -219,12 +222,6 @@ TEST_P(TotalFree, Invariants)
     EXPECT_LT(change, options.find("apic") == std::string::npos ? 4e-2 : 1e-3);
   }
 }
-
-static const char *const total_free_cases[] = {
-    "frame total transfer apic", "frame total transfer flip 1.0 scheme musl",
-    "frame total transfer flip 1.0 scheme usavg", "frame total transfer xpic 5",
-    "frame total transfer fmpm 5"};
-INSTANTIATE_TEST_SUITE_P(Options, TotalFree, ::testing::ValuesIn(total_free_cases));
 
 /* ----------------------------------------------------------------------
    C2: a spinning disk, one revolution. APIC keeps the moments of velocity and reference position,

@@ -96,9 +96,10 @@ static const std::string box2d = "dimension 2\nboundary f f p\natom_style mpm\nn
                                  "region box block 0 8 0 8 -0.5 0.5\ncreate_box 2 box\n";
 static const std::string soft = "fix m all mpm/material density 1.5 neohookean {100 P} 0.3\n";
 
-class Units : public ::testing::TestWithParam<std::string> {};
-
-TEST_P(Units, SameMotionInAllUnitStyles)
+PARAMETER_TEST(Units, SameMotionInAllUnitStyles, std::string,
+               Values("neohookean {100 P} 0.3", "eos shock 8.0 1.5 2.0 strength j2 {40 P} {1 P}",
+                      "eos tait {100 P} 7 viscosity newtonian {1 P} "
+                      "viscosity artificial 1.5 0.06"))
 {
   compare(box3d +
           "fix grid all mpm 1.0\nregion one block 2 6 2 6 0 4\ncreate_points 1 region one ppc 2\n"
@@ -107,12 +108,6 @@ TEST_P(Units, SameMotionInAllUnitStyles)
           "\nfix floor all mpm/boundary zlo separate friction 0.3\n"
           "fix g all gravity {0.5 A} vector 0.2 0 -1\nvelocity all set 0.3 0.1 -0.5\n");
 }
-
-INSTANTIATE_TEST_SUITE_P(Laws, Units,
-                         ::testing::Values("neohookean {100 P} 0.3",
-                                           "eos shock 8.0 1.5 2.0 strength j2 {40 P} {1 P}",
-                                           "eos tait {100 P} 7 viscosity newtonian {1 P} "
-                                           "viscosity artificial 1.5 0.06"));
 
 // the parts of fix mpm that convert units on their own
 class UnitsOfOptions : public ::testing::TestWithParam<const char *> {};

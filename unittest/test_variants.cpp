@@ -12,7 +12,6 @@
 
 #include "lattice/grid.h"
 
-#include <ostream>
 #include <random>
 
 using namespace MPM_TEST;
@@ -21,6 +20,7 @@ struct Variant {
   const char *shape;     // for points that are cubes
   double spread;         // of a result over places of the body on the lattice, see GridInvariance
   double least, most;    // stretch at which it comes apart, see Fracture
+  friend void PrintTo(const Variant &v, std::ostream *out) { *out << v.shape; }
 };
 
 static const Variant shapes[] = {
@@ -69,11 +69,6 @@ static std::vector<std::string> more_variants()
 static std::vector<Variant> all_shapes()
 {
   return {std::begin(shapes), std::end(shapes)};
-}
-
-static void PrintTo(const Variant &v, std::ostream *out)
-{
-  *out << v.shape;
 }
 
 /* --------------------------- a rectangle that is thrown, spins, and vibrates: mass and momentum */
@@ -153,12 +148,8 @@ struct Crossing {
   const char *shape;
   int order;                                // of B-splines, 0: none
   double flip_low, flip_high, apic_high;    // noise in flight over 10 cells, in p/(rho c)
+  friend void PrintTo(const Crossing &c, std::ostream *out) { *out << c.shape; }
 };
-
-static void PrintTo(const Crossing &c, std::ostream *out)
-{
-  *out << c.shape;
-}
 
 class CrossingNoise : public ::testing::TestWithParam<Crossing> {
  protected:
@@ -370,17 +361,13 @@ static double fracture(const std::string &options)
   return 1.0 + rate * dt * 2000;
 }
 
-class Fracture : public ::testing::TestWithParam<Variant> {};
-
-TEST_P(Fracture, Stretch)
+PARAMETER_TEST(Fracture, Stretch, Variant, ValuesIn(all_shapes()))
 {
   const double stretch =
       measured(std::string(GetParam().shape) + ": comes apart at", fracture(GetParam().shape));
   EXPECT_GT(stretch, GetParam().least);
   EXPECT_LT(stretch, GetParam().most);
 }
-
-INSTANTIATE_TEST_SUITE_P(All, Fracture, ::testing::ValuesIn(all_shapes()));
 
 /* ---------------------------------------------------------------------- equivalences */
 
