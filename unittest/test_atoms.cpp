@@ -44,8 +44,8 @@ timestep 0.004
 // With every K, points take a step in every K of the atoms, with the mean of the K forces.
 PARAMETER_TEST(Atoms, HitABodyWithConstantMomentum, int, Values(1, 2, 5))
 {
-  Scene run(replaced(scene, "mpm 1.0\n", strprintf("mpm 1.0 every %d\n", GetParam())));
-  run.commands("run 0 post no\n");
+  Scene run(replaced(scene, "mpm 1.0\n", strprintf("mpm 1.0 every %d\n", GetParam())) +
+            "run 0 post no\n");
   auto *atom = run.lmp->atom;
 
   auto momentum = [&](double *p) {

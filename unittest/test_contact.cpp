@@ -199,11 +199,11 @@ SERIAL_TEST(Friction, BlockSlidesOrSticks)
   for (const char *transfer : {"apic", "flip 1.0"})
     for (const double mu : {0.0, 0.1, 0.3, 0.55, 0.6}) {
       SCOPED_TRACE(std::string(transfer) + " " + std::to_string(mu));
-      Scene run(on_incline("block 0.5 1.5 0.5 1.0 -0.05 0.05", "0.1", transfer, mu));
-      run.commands("unfix c\nfix c all mpm/contact F1 F2 law stick\nfix damp body viscous 750\n"
-                   "run 500\nunfix damp\nunfix c\n" +
-                   strprintf("fix c all mpm/contact F1 F2 law coulomb %g\n", mu) +
-                   "run 900 post no\n");
+      Scene run(on_incline("block 0.5 1.5 0.5 1.0 -0.05 0.05", "0.1", transfer, mu) +
+                "unfix c\nfix c all mpm/contact F1 F2 law stick\nfix damp body viscous 750\n"
+                "run 500\nunfix damp\nunfix c\n" +
+                strprintf("fix c all mpm/contact F1 F2 law coulomb %g\n", mu) +
+                "run 900 post no\n");
       double t[3], x[3], work[3];
       for (int k = 0; k < 3; k++) {
         if (k) run.commands("run 450 post no\n");
@@ -232,8 +232,7 @@ SERIAL_TEST(Friction, DiskRollsOrSlips)
   const double g = 9.81, sine = 0.5, cosine = std::sqrt(0.75);
   for (const double mu : {0.1, 0.17, 0.22, 0.3}) {    // it rolls from 0.192 on
     SCOPED_TRACE(mu);
-    Scene run(on_incline("cylinder z 0.7 1.0 0.5 -0.05 0.05", "0.05", "apic", mu));
-    run.commands("run 4000\n");
+    Scene run(on_incline("cylinder z 0.7 1.0 0.5 -0.05 0.05", "0.05", "apic", mu) + "run 4000\n");
     const double t = run.evaluate("time");
     const bool rolls = std::tan(M_PI / 6) <= 3 * mu;
     const double a = rolls ? 2.0 / 3.0 * g * sine : g * (sine - mu * cosine);
@@ -349,8 +348,7 @@ TEST(ManyBodies, OrderOfNamesDoesNotMatter)
 {
   std::vector<Scene::State> reference;
   for (const char *names : {"F1 F2 F3", "F3 F1 F2", "F2 F3 F1"}) {
-    Scene run(replaced(corner, "FIELDS", names));
-    run.commands("run 0\n");
+    Scene run(replaced(corner, "FIELDS", names) + "run 0\n");
     const double px = run.evaluate("v_px"), py = run.evaluate("v_py");
     run.commands("run 200\n");
     EXPECT_NEAR(run.evaluate("v_px"), px, 1e-11);

@@ -69,10 +69,9 @@ SERIAL_TEST(Conservation, MomentumIsKeptAndNoEnergyGained)
 {
   for (const char *options : variants) {
     SCOPED_TRACE(options);
-    Scene run(replaced(two_bodies, "MPM_OPTIONS", options));
-    run.commands(
-        "compute e all mpm/energy\nvariable px equal vcm(all,x)\nvariable m equal mass(all)\n"
-        "thermo_style custom step c_e[*] v_px\nrun 0\n");
+    Scene run(replaced(two_bodies, "MPM_OPTIONS", options) +
+              "compute e all mpm/energy\nvariable px equal vcm(all,x)\nvariable m equal mass(all)\n"
+              "thermo_style custom step c_e[*] v_px\nrun 0\n");
     const double p = run.evaluate("v_px*v_m"), kinetic = run.evaluate("c_e[1]");
     run.commands("run 150\n");
     EXPECT_NEAR(run.evaluate("v_px*v_m"), p, 1e-11 * run.evaluate("v_m"));
@@ -507,9 +506,9 @@ TEST(Elements, BecomeDomains)
       scene = replaced(scene, "MPM_FILE", file.name);
 
       // volume and mass, and those of domains; a field that is linear is exact
-      Scene run(replaced(scene, "MPM_OPTIONS", "transfer apic"));
-      run.commands("variable vx atom 0.1*x+0.02*y\nvariable vy atom -0.05*x+0.03*y\n"
-                   "velocity all set v_vx v_vy 0\ntimestep 1e-7\nrun 1\n");
+      Scene run(replaced(scene, "MPM_OPTIONS", "transfer apic") +
+                "variable vx atom 0.1*x+0.02*y\nvariable vy atom -0.05*x+0.03*y\n"
+                "velocity all set v_vx v_vy 0\ntimestep 1e-7\nrun 1\n");
       const auto state = run.gather();
       const double volume = pow(4.2, dim);
       double sum = 0.0, mass = 0.0;

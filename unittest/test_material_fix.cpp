@@ -107,8 +107,7 @@ TEST(MaterialFix, FilesOfThePackage)
     SCOPED_TRACE(entry.path().string());
     ASSERT_EQ(entry.path().extension(), ".mpm");
     files++;
-    Scene run(scene);
-    run.commands("fix m one mpm/material file " + entry.path().string() + "\n");
+    Scene run(scene + "fix m one mpm/material file " + entry.path().string() + "\n");
     auto *m = material(run, "m");
     std::vector<MPM_NS::HistoryVariable> history = m->material->history();
     EXPECT_EQ(m->nhistory, (int) history.size());
@@ -121,10 +120,10 @@ TEST(MaterialFix, FilesOfThePackage)
   EXPECT_GE(files, 28);
   // found in the folders of LAMMPS_POTENTIALS, same as in the input
   setenv("LAMMPS_POTENTIALS", (std::string(MPM_SOURCE_DIR) + "/potentials").c_str(), 1);
-  Scene run(scene);
-  run.commands("fix m one mpm/material file Water_Tait.mpm\n"
-               "fix n two mpm/material density 998.2 eos tait 2.192e9 7 cutoff -9.9e4 &\n"
-               "viscosity newtonian 1.002e-3 range pressure -INF 2.5e9\n");
+  Scene run(scene +
+            "fix m one mpm/material file Water_Tait.mpm\n"
+            "fix n two mpm/material density 998.2 eos tait 2.192e9 7 cutoff -9.9e4 &\n"
+            "viscosity newtonian 1.002e-3 range pressure -INF 2.5e9\n");
   EXPECT_EQ(material(run, "m")->material->describe(), material(run, "n")->material->describe());
 }
 
@@ -278,8 +277,7 @@ TEST(MaterialFix, LeavingARangeWarnsOnce)
 
 TEST(MaterialFix, MassIsDensityTimesVolumeUnlessSet)
 {
-  Scene run(scene);
-  run.commands("fix a one mpm/material density 1000 linear 1e6 0.3\n");
+  Scene run(scene + "fix a one mpm/material density 1000 linear 1e6 0.3\n");
   for (int i = 0; i < run.n(); i++)
     EXPECT_EQ(run.mass()[i], run.lmp->atom->type[i] == 1 ? 1000 * 0.125 : 0.0);
   run.commands("set type 2 mass 7.5\nfix b two mpm/material density 1000 linear 1e6 0.3\n");
@@ -301,9 +299,8 @@ TEST(MaterialFix, MassIsDensityTimesVolumeUnlessSet)
 
 TEST(MaterialFix, NewPointsStartWithInitialHistory)
 {
-  Scene run(scene);
-  run.commands("fix m all mpm/material " + STEEL + "\nregion late block 1 3 5 7 1 3\n" +
-               "create_points 1 region late ppc 2\nrun 0 post no\n");
+  Scene run(scene + "fix m all mpm/material " + STEEL + "\nregion late block 1 3 5 7 1 3\n" +
+            "create_points 1 region late ppc 2\nrun 0 post no\n");
   auto *m = material(run, "m");
   ASSERT_EQ(m->nhistory, 2);
   EXPECT_EQ(run.lmp->atom->natoms, 192);
@@ -315,9 +312,8 @@ TEST(MaterialFix, NewPointsStartWithInitialHistory)
 
 TEST(MaterialFix, HistoryMovesWithThePoints)
 {
-  Scene run(scene);
-  run.commands("fix a one mpm/material " + STEEL +
-               "\nfix b all mpm/material density 1 eos shock 1 1 1\n" + "atom_modify sort 1 1.0\n");
+  Scene run(scene + "fix a one mpm/material " + STEEL +
+            "\nfix b all mpm/material density 1 eos shock 1 1 1\n" + "atom_modify sort 1 1.0\n");
   auto *a = material(run, "a"), *b = material(run, "b");
   run.commands("group half type 1\n");
   const auto value = [&](int i, int k) {

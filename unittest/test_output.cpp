@@ -731,8 +731,7 @@ TEST(Energy, StartsWithTheFirstRunAfterItsDefinition)
 
 TEST(Energy, Errors)
 {
-  Scene run(scene);
-  run.commands("region left block 0 4 0 8 0 8\ngroup left region left\n");
+  Scene run(scene + "region left block 0 4 0 8 0 8\ngroup left region left\n");
   expect_error(run, "compute e left mpm/energy\n", "group all");
   expect_error(run, "compute e all mpm/energy kinetic\n", "kinetic");
   run.commands("compute e all mpm/energy\nunfix grid\n");

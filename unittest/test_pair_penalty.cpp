@@ -60,8 +60,7 @@ static std::string two_bars(const std::string &modulus, const std::string &penal
 // stress rho c v = 0.5 at the interface for 2 L/c = 0.2, then the bars part with their old speeds
 TEST(Bars, StressAndRebound)
 {
-  Scene run(two_bars("100", "50", "2e-4"));
-  run.commands("run 0\n");
+  Scene run(two_bars("100", "50", "2e-4") + "run 0\n");
   const double energy = run.evaluate("c_e");
   double worst = 0.0, drift = 0.0, before = 0.0, after = 0.0;
   for (int k = 1; k <= 40; k++) {

@@ -104,8 +104,8 @@ SERIAL_TEST(RigidBody, TurnsFreely)
   const ScratchFile file("box.stl", text_of(box({0.0, 0.0, 0.0}, {0.5, 1.0, 1.5})));
   double drift[2];
   for (int k = 0; k < 2; k++) {
-    Scene run(with(replaced(scene(file.name), "omega 0.3 0.8 0.5", "omega 0.3 2.0 0.2"), "slip"));
-    run.commands(
+    Scene run(
+        with(replaced(scene(file.name), "omega 0.3 0.8 0.5", "omega 0.3 2.0 0.2"), "slip") +
         strprintf("region shape delete\nunfix tool\nregion shape mpm/mesh %s 1.0 4.2 5.7 9.0\n"
                   "fix tool all mpm/rigid shape density 2.0 slip omega 0.2 2.0 0.1\n"
                   "timestep %g\n",
@@ -169,10 +169,10 @@ SERIAL_TEST(RigidBody, SwingsOnAColumn)
 TEST(RigidBody, MayBeLight)
 {
   const ScratchFile file("box.stl", text_of(box({0.0, 0.0, 0.0}, {1.2, 1.2, 1.2})));
-  Scene run(with(scene(file.name), "slip"));
-  run.commands("region shape delete\nunfix tool\nregion shape mpm/mesh " + file.name +
-               " 1.0 4.4 4.4 2.9\nfix tool all mpm/rigid shape density 1.0e-9 stick\n"
-               "velocity all set 0.1 0.2 0.3\nrun 200\n");
+  Scene run(with(scene(file.name), "slip") +
+            "region shape delete\nunfix tool\nregion shape mpm/mesh " + file.name +
+            " 1.0 4.4 4.4 2.9\nfix tool all mpm/rigid shape density 1.0e-9 stick\n"
+            "velocity all set 0.1 0.2 0.3\nrun 200\n");
   auto *body = run.fix("tool");
   for (int d = 0; d < 3; d++) EXPECT_NEAR(body->compute_vector(3 + d), 0.1 * (d + 1), 1.0e-6);
 }
@@ -181,11 +181,11 @@ TEST(RigidBody, MayBeLight)
 TEST(RigidBody, FallsAndIsHeld)
 {
   const ScratchFile file("box.stl", text_of(box({0.0, 0.0, 0.0}, {1.0, 1.0, 1.0})));
-  Scene run(with(scene(file.name), "slip"));
-  run.commands("region shape delete\nunfix tool\nregion shape mpm/mesh " + file.name +
-               " 1.0 4.4 4.4 8.0\nvariable f equal 3.0\n"
-               "fix tool all mpm/rigid shape density 2.0 slip gravity 0 0 -0.5 force v_f 1.0 0 "
-               "torque 0 0 0.1 hold y\nrun 100\n");
+  Scene run(with(scene(file.name), "slip") +
+            "region shape delete\nunfix tool\nregion shape mpm/mesh " + file.name +
+            " 1.0 4.4 4.4 8.0\nvariable f equal 3.0\n"
+            "fix tool all mpm/rigid shape density 2.0 slip gravity 0 0 -0.5 force v_f 1.0 0 "
+            "torque 0 0 0.1 hold y\nrun 100\n");
   auto *body = run.fix("tool");
   EXPECT_NEAR(body->compute_vector(3), 1.5, 1.0e-12);
   EXPECT_EQ(body->compute_vector(4), 0.0);
@@ -199,10 +199,10 @@ SERIAL_TEST(RigidBody, TurnsAboutAHeldAxis)
 {
   const Soup soup = sheared(box({0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}), 0.8);
   const ScratchFile file("sheared.stl", text_of(soup));
-  Scene run(with(scene(file.name), "slip"));
-  run.commands("region shape delete\nunfix tool\nregion shape mpm/mesh " + file.name +
-               " 1.0 4.4 4.4 8.0\nfix tool all mpm/rigid shape density 2.0 slip omega 0 0 0.3 "
-               "torque 0 0 0.5 hold rx ry\nrun 300\n");
+  Scene run(with(scene(file.name), "slip") +
+            "region shape delete\nunfix tool\nregion shape mpm/mesh " + file.name +
+            " 1.0 4.4 4.4 8.0\nfix tool all mpm/rigid shape density 2.0 slip omega 0 0 0.3 "
+            "torque 0 0 0.5 hold rx ry\nrun 300\n");
   auto *body = run.fix("tool");
   const double inertia = 2.0 * (2.0 + 1.25 * 0.64) / 12.0, t = 3.0;
   EXPECT_EQ(body->compute_vector(6), 0.0);

@@ -47,9 +47,9 @@ TEST(Stress, LinearField)
       for (const char *stress : {" stress mls", " stress gradient"}) {
         SCOPED_TRACE(options + stress);
         if (dim == 3 && options.find("locking") != std::string::npos) continue;
-        Scene run(text(dim, options + stress));
-        run.commands("variable vx atom 0.3*(x-5)-0.2*(y-5)\nvariable vy atom 0.1*(x-5)+0.4*(y-5)\n"
-                     "velocity all set v_vx v_vy 0\ntimestep 1e-6\nrun 1\n");
+        Scene run(text(dim, options + stress) +
+                  "variable vx atom 0.3*(x-5)-0.2*(y-5)\nvariable vy atom 0.1*(x-5)+0.4*(y-5)\n"
+                  "velocity all set v_vx v_vy 0\ntimestep 1e-6\nrun 1\n");
         const double L[2][2] = {{0.3, -0.2}, {0.1, 0.4}};
         int n = 0;
         for (const auto &s : run.gather()) {

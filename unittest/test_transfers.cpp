@@ -37,8 +37,7 @@ struct Spin {
 
 static Spin spin(const std::string &options, int steps)
 {
-  Scene run(replaced(disk, "OPTIONS", options));
-  run.commands("run 0\n");
+  Scene run(replaced(disk, "OPTIONS", options) + "run 0\n");
   const double L = run.evaluate("c_L"), E = run.evaluate("c_e[1]");
   const double px = run.evaluate("v_px"), py = run.evaluate("v_py");
   run.commands("run " + std::to_string(steps) + "\n");
@@ -52,8 +51,7 @@ TEST(Refined, FirstOrderIsPic)
 {
   std::vector<Scene::State> reference;
   for (const char *transfer : {"pic", "xpic 1", "fmpm 1"}) {
-    Scene run(replaced(disk, "OPTIONS", std::string("transfer ") + transfer));
-    run.commands("run 100\n");
+    Scene run(replaced(disk, "OPTIONS", std::string("transfer ") + transfer) + "run 100\n");
     const auto state = run.gather();
     if (reference.empty()) reference = state;
     for (std::size_t i = 0; i < state.size(); i++)
