@@ -221,12 +221,12 @@ inline std::string body(const std::string &region, const std::string &material,
 }
 
 /** A body of points: region and group have its name. lattice: spacing and options of its fix mpm. */
-struct Part {
+struct Body {
   std::string name, region, lattice = "";
 };
 
 /** Bodies of types 1, 2, ... */
-inline std::string bodies(const std::vector<Part> &parts, const std::string &sites = "ppc 2")
+inline std::string bodies(const std::vector<Body> &parts, const std::string &sites = "ppc 2")
 {
   std::string text;
   for (const auto &part : parts) {
@@ -239,7 +239,7 @@ inline std::string bodies(const std::vector<Part> &parts, const std::string &sit
 
 /** Bodies of types 1, 2, ..., each in a field of its own, which are fixes F1, F2, ...; lattice: of those that
  *  have none. */
-inline std::string fields(const std::vector<Part> &parts, const std::string &lattice = "1.0")
+inline std::string fields(const std::vector<Body> &parts, const std::string &lattice = "1.0")
 {
   std::string fixes, points;
   for (const auto &part : parts) {

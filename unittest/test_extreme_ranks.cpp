@@ -32,11 +32,6 @@ PARAMETER_TEST(AtSpeed, AcrossPeriodicFacesAndCorners, const char *,
       "run 550\n");
   EXPECT_LT(measured(std::string(GetParam()) + ": difference to one rank", both.difference()),
             1.0e-9);
-  const auto s = both.parallel.gather();
-  double p[2] = {0.0, 0.0}, mass = 0.0;
-  for (const auto &point : s) {
-    mass += point.mass;
-    for (int d = 0; d < 2; d++) p[d] += point.mass * point.v[d];
-  }
-  for (int d = 0; d < 2; d++) EXPECT_NEAR(p[d], 0.35 * mass, 1.0e-12 * mass);
+  const Totals all(both.parallel.gather());
+  for (int d = 0; d < 2; d++) EXPECT_NEAR(all.p[d], 0.35 * all.mass, 1.0e-12 * all.mass);
 }

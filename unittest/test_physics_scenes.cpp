@@ -170,8 +170,7 @@ TEST(Tait, WaveSpeed)
     EXPECT_NEAR(measured(strprintf("Tait wave speed/exact, J = %g", J),
                          (position - first) / (n * dt) / speed),
                 1.0, 0.01);
-    auto *compute = run.lmp->modify->get_compute_by_id("cmax");
-    EXPECT_NEAR(compute->compute_scalar() / speed, 1.0, 1.0e-3);
+    EXPECT_NEAR(run.compute_scalar("cmax") / speed, 1.0, 1.0e-3);
   }
 }
 
@@ -333,9 +332,7 @@ PARAMETER_TEST(GrainOnColumn, Restitution, int, Values(1, 2, 5, 10, 20))
   run.commands("run 1600\n");
 
   // what the grain has lost and the column has not received
-  const double energy = 0.5 * m;
-  const double lost =
-      energy - run.sums(2).kinetic - run.lmp->modify->get_compute_by_id("e")->vector[5];
+  const double energy = 0.5 * m, lost = energy - run.sums(2).kinetic - run.evaluate("c_e[6]");
   // of first order in the step of the points
   EXPECT_LT(std::abs(measured("K1(b) energy lost between grain and points/exact", lost / energy)),
             3.4e-5 * (3 + GetParam()));

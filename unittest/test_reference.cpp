@@ -151,12 +151,11 @@ SERIAL_TEST(ReferenceUpdate, MomentumAndEnergy)
                   "compute e all mpm/energy\nthermo_style custom step c_e\ntimestep 0.01\nrun 0\n",
               MPI_COMM_SELF);
     const auto before = run.sums();
-    auto *e = run.lmp->modify->get_compute_by_id("e");
-    const double start = e->compute_scalar();
+    const double start = run.compute_scalar();
     double last = start, jump = 0.0;
     for (int k = 0; k < 60; k++) {
       run.commands("run 10 post no\n");
-      const double now = e->compute_scalar();
+      const double now = run.compute_scalar();
       jump = std::max(jump, std::abs(now - last));
       last = now;
     }

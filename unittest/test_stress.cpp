@@ -11,26 +11,15 @@
 
 using namespace MPM_TEST;
 
-static const char *const scene = R"(
-units lj
-dimension DIM
-boundary p p p
-atom_style mpm
-region box block -3 13 -3 13 EXTENT
-create_box 1 box
-fix g all mpm 1.0 origin ORIGIN OPTIONS
+static std::string text(int dim, const std::string &options)
+{
+  const bool flat = dim == 2;
+  return box(dim, "lj", "p p p", "-3 13 -3 13 -8 8") + "fix g all mpm 1.0 origin 0.1 0.2 " +
+      (flat ? "" : "0.3 ") + options + R"(
 region body sphere 5 5 0 3.9
 create_points 1 region body spacing 0.5 jitter 0.3 817
 fix m all mpm/material density 2 neohookean 3 0.3
 )";
-
-static std::string text(int dim, const std::string &options)
-{
-  const bool flat = dim == 2;
-  std::string text = replaced(scene, "OPTIONS", options);
-  text = replaced(text, "ORIGIN", flat ? "0.1 0.2" : "0.1 0.2 0.3");
-  text = replaced(text, "DIM", flat ? "2" : "3");
-  return replaced(text, "EXTENT", flat ? "-0.5 0.5" : "-8 8");
 }
 
 static const char *const cases[] = {
@@ -87,12 +76,8 @@ run 4000
     EXPECT_LT(measured("integration", std::fabs(run.evaluate("c_e[10]")) / scale),
               options.find("musl") == std::string::npos ? 2e-5
                                                         : 2e-4);    // with other forces: 4e-5
-    double p[2] = {0.0, 0.0}, m = 0.0;
-    for (const auto &s : run.gather()) {
-      m += s.mass;
-      for (int d = 0; d < 2; d++) p[d] += s.mass * s.v[d];
-    }
-    for (int d = 0; d < 2; d++) EXPECT_NEAR(p[d] / m, 0.0, 1e-14);
+    const Totals all(run.gather());
+    for (int d = 0; d < 2; d++) EXPECT_NEAR(all.p[d] / all.mass, 0.0, 1e-14);
   }
 }
 

@@ -56,12 +56,11 @@ static Result simulate(const std::string &units, const std::string &scene)
   r.energies.push_back(total / force->mvv2e);
   for (auto *fix : run.lmp->modify->get_fix_by_style("^mpm/boundary$"))
     for (int d = 0; d < 3; d++) r.forces.push_back(fix->compute_vector(d) * force->ftm2v);
-  r.wavespeed = run.lmp->modify->get_compute_by_id("cmax")->compute_scalar();
+  r.wavespeed = run.compute_scalar("cmax");
   r.inconsistency = std::abs(force->mvv2e * force->ftm2v - 1.0);
   EXPECT_LT(std::abs(energy->vector[10]), 1.0e-10 * total) << units;
   if (run.lmp->modify->get_fix_by_style("^mpm/elements$").empty()) {
-    const double stored = run.lmp->modify->get_compute_by_id("sum")->compute_scalar();
-    EXPECT_NEAR(stored, energy->vector[1], 1.0e-10 * total) << units;
+    EXPECT_NEAR(run.compute_scalar("sum"), energy->vector[1], 1.0e-10 * total) << units;
   }
   for (auto &s : r.states)
     for (double &stress : s.stress) stress /= force->mvv2e * force->nktv2p;
