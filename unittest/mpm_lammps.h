@@ -595,6 +595,23 @@ struct Totals {
   }
 };
 
+/** B-splines of order 1 to 3 at a distance from their node, in spacings, and their slopes. */
+inline double bspline(int order, double u)
+{
+  const double a = std::fabs(u);
+  if (order == 1) return std::max(1.0 - a, 0.0);
+  if (order == 2) return a < 0.5 ? 0.75 - a * a : (a < 1.5 ? 0.5 * (1.5 - a) * (1.5 - a) : 0.0);
+  return a < 1.0 ? 2.0 / 3.0 - a * a + 0.5 * a * a * a
+                 : (a < 2.0 ? (2.0 - a) * (2.0 - a) * (2.0 - a) / 6.0 : 0.0);
+}
+inline double bspline_slope(int order, double u)
+{
+  const double a = std::fabs(u), sign = u < 0.0 ? -1.0 : 1.0;
+  if (order == 1) return a < 1.0 ? -sign : 0.0;
+  if (order == 2) return a < 0.5 ? -2.0 * u : (a < 1.5 ? -sign * (1.5 - a) : 0.0);
+  return sign * (a < 1.0 ? -2.0 * a + 1.5 * a * a : (a < 2.0 ? -0.5 * (2.0 - a) * (2.0 - a) : 0.0));
+}
+
 /** Show a measured number in the output of the test. */
 inline double measured(const std::string &what, double value)
 {
@@ -667,12 +684,8 @@ struct Continued {
 /** Two soft bodies that cross all rank boundaries of a periodic box, collide, and deform. */
 inline const std::string two_bodies = space("lj", "p p p", "0 8 0 8 0 8", 2) + R"(
 fix grid all mpm 1.0 MPM_OPTIONS
-region one sphere 2.6 3.0 3.2 1.9
-region two block 4.8 7.3 2.0 5.0 2.5 5.5
-create_points 1 region one ppc 2
-create_points 2 region two ppc 2
-group one type 1
-group two type 2
+)" + bodies({{"one", "sphere 2.6 3.0 3.2 1.9"}, {"two", "block 4.8 7.3 2.0 5.0 2.5 5.5"}}) +
+    R"(
 fix m1 one mpm/material density 1.0 neohookean 10.0 0.3
 fix m2 two mpm/material density 2.0 linear 20.0 0.2
 velocity one set 0.6 0.35 -0.4
@@ -732,6 +745,13 @@ inline void expect_refused(const std::string &scene, const std::vector<Mistake> 
     Scene instance(scene);
     expect_error(instance, mistake.lines + "\n" + run, mistake.message);
   }
+}
+
+/** Options of fix mpm that are refused for two bodies. */
+inline void expect_options_refused(const std::vector<Mistake> &mistakes)
+{
+  for (const auto &mistake : mistakes)
+    expect_error(replaced(two_bodies, "MPM_OPTIONS", mistake.lines) + "run 1\n", mistake.message);
 }
 
 }    // namespace MPM_TEST

@@ -48,8 +48,8 @@ PARAMETER_TEST(Atoms, HitABodyWithConstantMomentum, int, Values(1, 2, 5))
             "run 0 post no\n");
   auto *atom = run.lmp->atom;
 
-  auto momentum = [&](double *p) {
-    double mine[4] = {0.0, 0.0, 0.0, 0.0};    // the last: momentum of the points along z
+  const auto momentum = [&]() {
+    std::vector<double> mine(4);    // the last: momentum of the points along z
     for (int i = 0; i < atom->nlocal; i++) {
       for (int d = 0; d < 3; d++) {
         mine[d] += atom->rmass[i] * atom->v[i][d];
@@ -57,15 +57,15 @@ PARAMETER_TEST(Atoms, HitABodyWithConstantMomentum, int, Values(1, 2, 5))
       }
       if (atom->type[i] == 1) mine[3] += atom->rmass[i] * atom->v[i][2];
     }
-    MPI_Allreduce(mine, p, 4, MPI_DOUBLE, MPI_SUM, run.lmp->world);
+    return over_ranks(mine);
   };
 
-  double start[4], now[4], pushed = 0.0;
-  momentum(start);
+  const auto start = momentum();
+  double pushed = 0.0;
   EXPECT_DOUBLE_EQ(start[3], 0.0);
   for (int k = 0; k < 10; k++) {
     run.commands("run 60 post no\n");
-    momentum(now);
+    const auto now = momentum();
     for (int d = 0; d < 3; d++) EXPECT_NEAR(now[d], start[d], 1.0e-12 * std::abs(start[2]));
     pushed = std::min(pushed, now[3]);
   }

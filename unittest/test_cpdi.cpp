@@ -14,13 +14,6 @@
 
 using namespace MPM_TEST;
 
-/** Start of a 2d scene. */
-static std::string plane(const std::string &boundary, const std::string &box)
-{
-  return "units lj\ndimension 2\nboundary " + boundary + "\natom_style mpm\nregion box block " +
-      box + " -0.5 0.5\ncreate_box 1 box\n";
-}
-
 static const std::vector<const char *> variants = {
     "shape cpdi transfer apic",
     "shape cpdi transfer flip 1.0 scheme musl",
@@ -87,7 +80,7 @@ SERIAL_TEST(Equivalence, BoxesInOneCellAreThoseOfCpgimp)
   for (const char *transfer : {"transfer flip 1.0 scheme musl", "transfer apic"}) {
     std::vector<Scene::State> states[2];
     for (const int k : {0, 1}) {
-      Scene run(plane("p p p", "0 16 0 4") + std::string("fix g all mpm 1.0 shape ") +
+      Scene run(plane("lj", "p p", "0 16 0 4") + std::string("fix g all mpm 1.0 shape ") +
                 (k ? "cpdi " : "cpgimp ") + transfer +
                 "\ncreate_points 1 region box ppc 2\n"
                 "fix m all mpm/material density 1 neohookean 100 0.3\n"
@@ -104,7 +97,7 @@ SERIAL_TEST(Equivalence, BoxesInOneCellAreThoseOfCpgimp)
 TEST(UniformPressure, PointsOfTwoSizes)
 {
   for (const char *shape : {"cpdi", "cpdi2"}) {
-    Scene run(plane("p p p", "0 8 0 8") +
+    Scene run(plane("lj", "p p", "0 8 0 8") +
               strprintf(R"(
 fix g all mpm 1.0 shape %s transfer apic
 region left block 0 4 0 8 -0.5 0.5
@@ -127,7 +120,7 @@ run 20
 SERIAL_TEST(Stretch, ElevenfoldWithoutFracture)
 {
   const auto error = [](const std::string &shape) {
-    Scene run(plane("f p p", "-70 70 0 4") +
+    Scene run(plane("lj", "f p", "-70 70 0 4") +
               "fix g all mpm 1.0 transfer flip 1.0 scheme musl shape " + shape + R"(
 region bar block -6 6 0 4 -0.5 0.5
 create_points 1 region bar ppc 2
@@ -258,7 +251,7 @@ timestep 6e-4
 
 SERIAL_TEST(Size, Limit)
 {
-  const std::string scene = plane("f p p", "-200 200 0 4") + R"(
+  const std::string scene = plane("lj", "f p", "-200 200 0 4") + R"(
 fix g all mpm 1.0 transfer flip 1.0 scheme musl shape MPM_SHAPE
 region bar block -3 3 0 4 -0.5 0.5
 create_points 1 region bar ppc 2
@@ -306,7 +299,7 @@ SERIAL_TEST(Periodic, DomainsAreWiderThanTheBox)
     SCOPED_TRACE(options);
     double shear[2];
     for (const int k : {0, 1}) {
-      Scene run(plane("p p p", k ? "0 12 0 8" : "0 3 0 8") +
+      Scene run(plane("lj", "p p", k ? "0 12 0 8" : "0 3 0 8") +
                 strprintf(R"(
 fix g all mpm 1.0 %s
 create_points 1 region box ppc 2
@@ -362,7 +355,7 @@ SERIAL_TEST(Inverted, BadDecides)
   for (const char *policy : {"error", "warn", "delete"}) {
     SCOPED_TRACE(policy);
     Scene run(
-        plane("p p p", "0 8 0 8") +
+        plane("lj", "p p", "0 8 0 8") +
         strprintf("fix grid all mpm 1.0 shape cpdi2 bad %s\n"
                   "region block block 2 4 2 4 -0.5 0.5\ncreate_points 1 region block ppc 2\n"
                   "fix m all mpm/material density 3.0 neohookean 1.0 0.3\ntimestep 1e-9\nrun 1\n",
@@ -391,7 +384,7 @@ SERIAL_TEST(Boundaries, WallsAndContactHold)
   for (const char *options : {"shape cpdi", "shape cpdi2 transfer flip 1.0 scheme musl"})
     for (const char *face : {"slip", "separate"}) {
       SCOPED_TRACE(std::string(options) + " " + face);
-      Scene run(plane("p f p", "0 8 0 12") +
+      Scene run(plane("lj", "p f", "0 8 0 12") +
                 strprintf(R"(
 fix g all mpm 1.0 origin 0 0.5 %s
 region column block 0 8 0 6 -0.5 0.5
@@ -481,18 +474,12 @@ static std::string box_mesh(int dim, int n, bool simplices)
   return text + "$EndElements\n";
 }
 
-static const char *const mesh_scene = R"(
-units lj
-dimension MPM_DIM
-boundary p p p
-atom_style mpm
-region box block 0 8 0 8 MPM_Z
-create_box 1 box
-fix grid all mpm 1.0 shape cpdi2 MPM_OPTIONS
-create_points 1 elements MPM_FILE scale 4.2 move 1.9 2.1 MPM_UP
-fix m all mpm/material density 2.0 neohookean 100 0.3
-timestep 0.02
-)";
+static std::string mesh_scene(int dim, const std::string &file, const std::string &options)
+{
+  return box(dim, "lj", "p p p", "0 8 0 8 0 8") + "fix grid all mpm 1.0 shape cpdi2 " + options +
+      "\ncreate_points 1 elements " + file + " scale 4.2 move 1.9 2.1 " + (dim == 3 ? "2.05" : "") +
+      "\nfix m all mpm/material density 2.0 neohookean 100 0.3\ntimestep 0.02\n";
+}
 
 TEST(Elements, BecomeDomains)
 {
@@ -500,13 +487,8 @@ TEST(Elements, BecomeDomains)
     for (bool simplices : {false, true}) {
       SCOPED_TRACE(strprintf("%dd %s", dim, simplices ? "simplices" : "cubes"));
       const ScratchFile file("msh", box_mesh(dim, 5, simplices));
-      std::string scene = replaced(mesh_scene, "MPM_DIM", std::to_string(dim));
-      scene = replaced(scene, "MPM_Z", dim == 3 ? "0 8" : "-0.5 0.5");
-      scene = replaced(scene, "MPM_UP", dim == 3 ? "2.05" : "");
-      scene = replaced(scene, "MPM_FILE", file.name);
-
       // volume and mass, and those of domains; a field that is linear is exact
-      Scene run(replaced(scene, "MPM_OPTIONS", "transfer apic") +
+      Scene run(mesh_scene(dim, file.name, "transfer apic") +
                 "variable vx atom 0.1*x+0.02*y\nvariable vy atom -0.05*x+0.03*y\n"
                 "velocity all set v_vx v_vy 0\ntimestep 1e-7\nrun 1\n");
       const auto state = run.gather();
@@ -523,24 +505,20 @@ TEST(Elements, BecomeDomains)
       const std::size_t cells = dim == 2 ? 25 : 125;
       EXPECT_EQ(state.size(), cells * (simplices ? (dim == 2 ? 2 : 6) : 1));
 
-      OnRanks ranks(replaced(scene, "MPM_OPTIONS", "transfer flip 1.0 scheme musl") +
+      OnRanks ranks(mesh_scene(dim, file.name, "transfer flip 1.0 scheme musl") +
                         "variable vx atom 2*sin(PI*x/4)\nvelocity all set v_vx 1 0\n",
                     "run 60\n");
       EXPECT_LT(ranks.difference(), 1e-12);
     }
-  expect_error(
-      replaced(replaced(replaced(mesh_scene, "MPM_DIM", "3"), "MPM_Z", "0 8"), "MPM_OPTIONS", ""),
-      "MPM_FILE");
+  expect_error(mesh_scene(3, "no.msh", ""), "no.msh");
 }
 
 TEST(BadInput, IsRefused)
 {
-  const Mistake cases[] = {
+  expect_options_refused({
       {"shape cpdi3", "must be one of"},
       {"shape cpdi frame total", "use B-splines with transfer apic or flip"},
       {"shape cpdi2 frame total", "use B-splines with transfer apic or flip"},
       {"shape cpdi stress mls", "needs shape quadratic or cubic"},
-  };
-  for (const auto &bad : cases)
-    expect_error(replaced(two_bodies, "MPM_OPTIONS", bad.lines) + "run 1\n", bad.message);
+  });
 }

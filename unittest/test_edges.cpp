@@ -18,15 +18,10 @@ static const std::string full = space("lj", "f p f", "0 6 0 5 0 4") +
 /** B-spline of a node at the place i next to a face at 0, at the distance x from the face. */
 static double modified(int order, int i, double x)
 {
-  const auto plain = [order](double r) {
-    r = fabs(r);
-    if (order == 2) return r < 0.5 ? 0.75 - r * r : (r < 1.5 ? 0.5 * (1.5 - r) * (1.5 - r) : 0.0);
-    return r < 1.0 ? 2.0 / 3.0 - r * r + 0.5 * r * r * r : (r < 2.0 ? pow(2.0 - r, 3) / 6.0 : 0.0);
-  };
   const double range = order == 2 ? 0.5 : 1.0;
   if (i == 0 && x < range) return order == 2 ? 1.0 - x : 1.0 - x + x * x * x / 6.0;
   if (i == 1 && x < range) return order == 2 ? x : x - x * x * x / 3.0;
-  return plain(x - i);
+  return bspline(order, x - i);
 }
 
 // The mass of the nodes is that of these functions, and there is none outside.

@@ -216,25 +216,19 @@ TEST(LightNodesInput, IsRefusedWhereItIsOfNoUse)
       space("lj", "p p p", "0 8 0 8 0 8") + "create_points 1 box spacing 1.0\n";
   const std::string material = "fix m all mpm/material density 1.0 linear 1.0 0.3\nrun 0\n";
   for (const char *options : {"light 0.5", "shape linear transfer flip 1.0 scheme musl light 0.5",
-                              "shape linear frame total light 0.5", "shape gimp light 0.5"}) {
-    Scene run;
-    expect_error(run, scene + "fix grid all mpm 1.0 " + options + "\n" + material, "remove light");
-  }
-  for (const char *transfer : {"apic", "aflip 1.0", "tpic"}) {
-    Scene run;
-    expect_error(run,
-                 scene + "fix grid all mpm 1.0 shape linear light 0.5 locking pressure transfer " +
+                              "shape linear frame total light 0.5", "shape gimp light 0.5"})
+    expect_error(scene + "fix grid all mpm 1.0 " + options + "\n" + material, "remove light");
+  for (const char *transfer : {"apic", "aflip 1.0", "tpic"})
+    expect_error(scene + "fix grid all mpm 1.0 shape linear light 0.5 locking pressure transfer " +
                      transfer + "\n" + material,
                  "use scheme musl, or transfer flip");
-  }
   expect_error(plane("lj", "f p", "0 8 0 8 -1 1") +
                    "create_points 1 box spacing 1.0\n"
                    "fix grid all mpm 1.0 shape linear light 0.5 scheme usf axisymmetric yes\n"
                    "fix axis all mpm/boundary xlo slip\n" +
                    material,
                "use scheme usl or musl");
-  Scene run;
-  expect_error(run, scene + "fix grid all mpm 1.0 shape linear light 1.5\n", "within 0 and 1");
+  expect_error(scene + "fix grid all mpm 1.0 shape linear light 1.5\n", "within 0 and 1");
 }
 
 /* ----------------------------------------------------------------------
@@ -394,16 +388,12 @@ TEST(ManySteps, EnergyAndMomentum)
 {
   for (const char *options : {"transfer flip 0.99 scheme musl", "transfer apic"}) {
     SCOPED_TRACE(options);
-    Scene run(strprintf("units lj\ndimension 2\nboundary p p p\natom_style mpm\nneighbor 0.4 bin\n"
-                        "neigh_modify every 10\nregion box block 0 8 0 8 -0.5 0.5\n"
-                        "create_box 1 box\nfix grid all mpm 1.0 %s\n"
-                        "region body block 2 6 3 4 -0.5 0.5\ncreate_points 1 region body ppc 2\n"
-                        "fix m all mpm/material density 1.0 neohookean 0.742857142857 0.3\n"
-                        "variable vy atom 0.005+0.002*(x-4)+0.02*cos(2*PI*(x-4)/4)\n"
-                        "velocity all set 0.01 v_vy NULL\ntimestep 0.5\ncompute e all mpm/energy\n"
-                        "variable mech equal c_e[1]+c_e[2]\nthermo_style custom step v_mech\n"
-                        "run 0\n",
-                        options));
+    Scene run(plane("lj", "p p", "0 8 0 8", 1, 0.4) +
+              body("block 2 6 3 4 -0.5 0.5", "density 1.0 neohookean 0.742857142857 0.3",
+                   strprintf("1.0 %s", options)) +
+              "neigh_modify every 10\nvariable vy atom 0.005+0.002*(x-4)+0.02*cos(2*PI*(x-4)/4)\n"
+              "velocity all set 0.01 v_vy NULL\ntimestep 0.5\ncompute e all mpm/energy\n"
+              "variable mech equal c_e[1]+c_e[2]\nthermo_style custom step v_mech\nrun 0\n");
     const double start = run.evaluate("v_mech");
     const auto before = run.sums();
     double most = 0.0;

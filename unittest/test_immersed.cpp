@@ -97,13 +97,6 @@ static double drag_per_volume(const std::string &law, double mu, double d, doubl
   return (150.0 * mu * (1.0 - eps) * w / (d * d) + 1.75 * w * w / d) / (eps * eps * eps);
 }
 
-/** The quadratic spline around zero. */
-static double spline(double x)
-{
-  x = fabs(x);
-  return x < 0.5 ? 0.75 - x * x : x < 1.5 ? 0.5 * pow(1.5 - x, 2.0) : 0.0;
-}
-
 // Terminal velocity of a single sphere, by the law of Schiller and Naumann
 SERIAL_TEST(Immersed, SinksWithTheTerminalVelocity)
 {
@@ -202,7 +195,7 @@ SERIAL_TEST(Immersed, ArchimedesInFluidThatAccelerates)
     const double volume = PI / 6.0 * 0.125;
     const auto squares = [](double x) {
       double sum = 0.0;
-      for (int n = -1; n < 8; n++) sum += pow(spline(x - n), 2.0);
+      for (int n = -1; n < 8; n++) sum += pow(bspline(2, x - n), 2.0);
       return sum;
     };
     for (const auto &s : run.gather())
@@ -286,7 +279,7 @@ SERIAL_TEST(Immersed, EndsAtTheSurface)
               "timestep 1.0e-3\nrun 1\n");
     double mass = 0.0;    // of full space
     for (int n = 0; n < 20; n++)
-      for (int k = 0; k < 14; k++) mass += 0.5 * spline(z - n) * spline(0.25 + 0.5 * k - n);
+      for (int k = 0; k < 14; k++) mass += 0.5 * bspline(2, z - n) * bspline(2, 0.25 + 0.5 * k - n);
     const double *const f = run.fix_vector("drag", 6);
     EXPECT_NEAR(measured(strprintf("buoyancy at %g", z), f[5] / volume), std::min(1.0, 2.0 * mass),
                 z < 6.0 ? 0.02 : 1.0e-10);

@@ -315,9 +315,8 @@ TEST(TotalInput, IsRefused)
                            "velocity all ramp vx 0 0.5 x 2 5\ntimestep 0.01\n",
                     total = head + "fix grid all mpm 1.0 frame total\n" + body;
   EXPECT_EQ(error_of(total + "run 2\n"), "");
-  const struct {
-    std::string input, message;
-  } cases[] = {
+  const ScratchFile file("bin");
+  const Mistake cases[] = {
       {head + "fix grid all mpm 1.0 frame other\n", "must be one of updated total"},
       {total + "fix w all mpm/boundary zlo separate\nrun 1\n", "frame total"},
       {total + "fix w all mpm/boundary zlo stick rotate 0 0 0 0 0 1 1\nrun 1\n", "frame total"},
@@ -336,14 +335,9 @@ TEST(TotalInput, IsRefused)
            "group b subtract all a\nunfix grid\nfix ga a mpm 1.0 frame total\n"
            "fix gb b mpm 1.0 frame total\nfix c all mpm/contact ga gb\nrun 1\n",
        "frame total"},
-      {total +
-           "run 1\nwrite_restart mpm_total.bin\nclear\nread_restart mpm_total.bin\n"
-           "fix grid all mpm 1.0\n",
+      {total + "run 1\nwrite_restart " + file.name + "\nclear\nread_restart " + file.name +
+           "\nfix grid all mpm 1.0\n",
        "frame total (now updated)"},
   };
-  for (const auto &c : cases) {
-    const std::string text = error_of(c.input);
-    EXPECT_NE(text.find(c.message), std::string::npos) << c.input << "\nsays: " << text;
-  }
-  remove("mpm_total.bin");
+  for (const auto &c : cases) expect_error(c.lines, c.message);
 }

@@ -195,7 +195,7 @@ TEST(Parallel, RanksAgree)
 
 TEST(BadInput, IsRefused)
 {
-  const Mistake cases[] = {
+  expect_options_refused({
       {"transfer xpic", "Illegal fix mpm transfer"},
       {"transfer xpic 0", "order must be within 1 and 100"},
       {"transfer fmpm 101", "order must be within 1 and 100"},
@@ -210,7 +210,5 @@ TEST(BadInput, IsRefused)
       {"shape quadratic aspect 1 2 1", "use shape gimp, cpgimp"},
       {"shape cpgimp aspect 1 1 16", "need at least one point per cell"},
       {"scheme average", "must be one of usl usf musl usavg"},
-  };
-  for (const auto &bad : cases)
-    expect_error(replaced(two_bodies, "MPM_OPTIONS", bad.lines) + "run 1\n", bad.message);
+  });
 }
