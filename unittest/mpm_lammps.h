@@ -180,6 +180,14 @@ template <class... Args> std::string strprintf(const char *text, Args... args)
   return buffer.data();
 }
 
+/** Scene with its words in capitals, MPM_<name>, replaced. */
+inline std::string replaced(std::string scene, const std::string &word, const std::string &text)
+{
+  for (std::size_t at = 0; (at = scene.find(word, at)) != std::string::npos; at += text.size())
+    scene.replace(at, word.size(), text);
+  return scene;
+}
+
 /** The first lines of a scene: a box, and material points as atoms. faces: "f f f", extent: "xlo xhi ylo yhi zlo zhi";
  *  in 2d without those of z, which are periodic, -0.5 and 0.5. skin: of neighbor lists, 0: LAMMPS's default. */
 inline std::string space(const std::string &units, const std::string &faces,
@@ -225,31 +233,30 @@ struct Body {
   std::string name, region, lattice = "";
 };
 
-/** Bodies of types 1, 2, ... */
-inline std::string bodies(const std::vector<Body> &parts, const std::string &sites = "ppc 2")
+/** Bodies of types 1, 2, ...; sites: options of create_points, in which # is the type. */
+inline std::string bodies(const std::vector<Body> &all, const std::string &sites = "ppc 2")
 {
   std::string text;
-  for (const auto &part : parts) {
-    const auto type = std::to_string(&part - parts.data() + 1);
-    text += "region " + part.name + " " + part.region + "\ncreate_points " + type + " region " +
-        part.name + " " + sites + "\ngroup " + part.name + " type " + type + "\n";
+  for (const auto &body : all) {
+    const auto type = std::to_string(&body - all.data() + 1);
+    text += "region " + body.name + " " + body.region + "\ncreate_points " + type + " region " +
+        body.name + " " + replaced(sites, "#", type) + "\ngroup " + body.name + " type " + type +
+        "\n";
   }
   return text;
 }
 
 /** Bodies of types 1, 2, ..., each in a field of its own, which are fixes F1, F2, ...; lattice: of those that
  *  have none. */
-inline std::string fields(const std::vector<Body> &parts, const std::string &lattice = "1.0")
+inline std::string fields(const std::vector<Body> &all, const std::string &lattice = "1.0")
 {
-  std::string fixes, points;
-  for (const auto &part : parts) {
-    const auto type = std::to_string(&part - parts.data() + 1);
-    fixes += "group " + part.name + " type " + type + "\nfix F" + type + " " + part.name + " mpm " +
-        (part.lattice.empty() ? lattice : part.lattice) + "\n";
-    points += "region " + part.name + " " + part.region + "\ncreate_points " + type + " region " +
-        part.name + " ppc 2 fix F" + type + "\ngroup " + part.name + " type " + type + "\n";
+  std::string fixes;
+  for (const auto &body : all) {
+    const auto type = std::to_string(&body - all.data() + 1);
+    fixes += "group " + body.name + " type " + type + "\nfix F" + type + " " + body.name + " mpm " +
+        (body.lattice.empty() ? lattice : body.lattice) + "\n";
   }
-  return fixes + points;
+  return fixes + bodies(all, "ppc 2 fix F#");
 }
 
 /** A LAMMPS instance: what a test drives. (Not named Run, which is a member of ::testing::Test.) */
@@ -573,14 +580,6 @@ class Scene {
   std::vector<std::array<double, 3>> references;
   std::function<void(double **)> callback;
 };
-
-/** Scene with its words in capitals, MPM_<name>, replaced. */
-inline std::string replaced(std::string scene, const std::string &word, const std::string &text)
-{
-  for (std::size_t at = 0; (at = scene.find(word, at)) != std::string::npos; at += text.size())
-    scene.replace(at, word.size(), text);
-  return scene;
-}
 
 /** Mass and momentum of points. */
 struct Totals {

@@ -360,9 +360,8 @@ static std::string rings(const std::string &more)
 
 static std::string rods(const std::string &one, const std::string &two, const std::string &more)
 {
-  return rings("region one block " + one + " INF INF\nregion two block " + two +
-               " INF INF\ncreate_points 1 region one ppc 2 fix F1\n"
-               "create_points 2 region two ppc 2 fix F2\ngroup one type 1\ngroup two type 2\n"
+  return rings(bodies({{"one", "block " + one + " INF INF"}, {"two", "block " + two + " INF INF"}},
+                      "ppc 2 fix F#") +
                "compute e all mpm/energy\ncompute pair all pair mpm/penalty\n"
                "thermo_style custom step c_e c_pair\n" +
                more);
