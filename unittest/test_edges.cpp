@@ -66,7 +66,7 @@ SERIAL_TEST(Edges, LinearFieldsAreExact)
 {
   for (const char *options :
        {"transfer flip 1.0", "transfer pic scheme musl", "shape cubic transfer flip 1.0"}) {
-    Scene run{MPI_COMM_SELF};
+    Scene run;
     const double a = 0.02, dt = 0.01;
     run.commands(
         replaced(full, "OPTIONS", options) +
@@ -94,8 +94,7 @@ SERIAL_TEST(Edges, UniformMotionIsKept)
 {
   for (const char *options : {"transfer flip 1.0", "transfer flip 1.0 scheme musl", "transfer pic",
                               "shape cubic transfer flip 0.5 scheme usf"}) {
-    Scene run(replaced(full, "OPTIONS", options) + "velocity all set 0 0.5 0\nrun 5\n",
-              MPI_COMM_SELF);
+    Scene run(replaced(full, "OPTIONS", options) + "velocity all set 0 0.5 0\nrun 5\n");
     for (int i = 0; i < run.n(); i++) {
       EXPECT_NEAR(run.v()[i][0], 0.0, 1.0e-14) << options;
       EXPECT_NEAR(run.v()[i][1], 0.5, 1.0e-14) << options;
@@ -112,8 +111,7 @@ SERIAL_TEST(Edges, UniformPressureMakesNoForce)
   for (const char *options : {"transfer flip 1.0", "transfer flip 1.0 scheme usf",
                               "transfer flip 1.0 locking pressure"}) {
     Scene run(replaced(full, "OPTIONS", options) +
-                  "fix box all mpm/boundary xlo xhi zlo zhi slip\n",
-              MPI_COMM_SELF);
+              "fix box all mpm/boundary xlo xhi zlo zhi slip\n");
     for (int i = 0; i < run.n(); i++)
       for (int c = 0; c < 3; c++) run.points().tau[i][c] = -1.0;
     run.commands("run 1\n");
@@ -132,9 +130,8 @@ SERIAL_TEST(Edges, KeepMomentum)
         "shape cubic transfer pic scheme usf"}) {
     SCOPED_TRACE(options);
     Scene run(replaced(replaced(full, "OPTIONS", options), "0.001", "0.05") +
-                  "displace_atoms all random 0.05 0.05 0.05 4711 units box\n"
-                  "variable v atom random(-0.1,0.1,4711)\nvelocity all set v_v v_v v_v\n",
-              MPI_COMM_SELF);
+              "displace_atoms all random 0.05 0.05 0.05 4711 units box\n"
+              "variable v atom random(-0.1,0.1,4711)\nvelocity all set v_v v_v v_v\n");
     const auto before = run.sums();
     run.commands("run 20\n");
     const auto after = run.sums();
@@ -144,9 +141,8 @@ SERIAL_TEST(Edges, KeepMomentum)
     EXPECT_GT(stress, 0.01);
   }
   Scene run(replaced(full, "OPTIONS", "transfer flip 1.0 scheme usavg") +
-                "displace_atoms all random 0.05 0.05 0.05 4711 units box\nvelocity all set 0.3 0.2 "
-                "0.1\nrun 20\n",
-            MPI_COMM_SELF);
+            "displace_atoms all random 0.05 0.05 0.05 4711 units box\nvelocity all set 0.3 0.2 "
+            "0.1\nrun 20\n");
   for (int i = 0; i < run.n(); i++)
     for (int c = 0; c < 6; c++) ASSERT_NEAR(run.points().tau[i][c], 0.0, 1.0e-12);
 }

@@ -148,14 +148,18 @@ TEST(LargerStep, DeletesTheSamePoints)
    force, that are where and as fast as they should be at the time of each step of the cycle
 ------------------------------------------------------------------------- */
 
+static std::string free_block(int every, double modulus)
+{
+  return replaced(head, "p p f", "p p p") +
+      body("block 2 6 2 6 3 7", strprintf("density 1.0 neohookean %g 0.3", modulus),
+           strprintf("1.0 every %d", every));
+}
+
 SERIAL_TEST(Seen, MotionIsThatOfTheTime)
 {
   const double dt = 0.01, v0 = 0.4, a = -0.25;
   for (const int every : {1, 2, 5, 20}) {
-    Scene run(replaced(head, "p p f", "p p p") +
-              strprintf("fix grid all mpm 1.0 every %d\n", every) +
-              "region b block 2 6 2 6 3 7\ncreate_points 1 region b ppc 2\n"
-              "fix m all mpm/material density 1.0 neohookean 10.0 0.3\n" +
+    Scene run(free_block(every, 10.0) +
               strprintf("velocity all set %g 0 0\ntimestep %g\n", v0, dt));
     const double start = run.evaluate("xcm(all,x)"), height = run.evaluate("xcm(all,z)");
     double worst = 0.0;
@@ -191,10 +195,7 @@ SERIAL_TEST(Seen, SpringIsNotDamped)
 {
   const double omega = 1.0, step = 0.5;
   for (const int every : {1, 2, 5, 10}) {
-    Scene run(replaced(head, "p p f", "p p p") +
-              strprintf("fix grid all mpm 1.0 every %d\n", every) +
-              "region b block 2 6 2 6 3 7\ncreate_points 1 region b ppc 2\n"
-              "fix m all mpm/material density 1.0 neohookean 1.0 0.3\n" +
+    Scene run(free_block(every, 1.0) +
               strprintf("velocity all set 0.3 0 0\ntimestep %.17g\n", step / every));
     run.set_reference();
     const auto seen = [&](int i) {
@@ -228,11 +229,7 @@ SERIAL_TEST(Seen, SpringIsNotDamped)
 TEST(Seen, ImpulseIsThatOfAllSteps)
 {
   const double a = -0.25;
-  Scene run(
-      replaced(head, "p p f", "p p p") +
-      "fix grid all mpm 1.0 every 5\nregion b block 2 6 2 6 3 7\n"
-      "create_points 1 region b ppc 2\nfix m all mpm/material density 1.0 neohookean 10.0 0.3\n"
-      "timestep 0.001\n");
+  Scene run(free_block(5, 10.0) + "timestep 0.001\n");
   run.each_step([&](double **force) {
     for (int i = 0; i < run.n(); i++) force[i][2] = a * run.mass()[i];
   });

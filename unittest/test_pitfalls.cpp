@@ -299,8 +299,7 @@ SERIAL_TEST(Pitfall, EmptyCellsCostNoMemory)
                               "create_points 1 region body ppc 2\n"
                               "fix soft all mpm/material density 1.0 neohookean 10.0 0.3\n"
                               "velocity all ramp vy -0.1 0.1 x 2 6\ntimestep 0.05\nrun 20\n",
-                          size),
-              MPI_COMM_SELF);
+                          size));
     auto *grid = run.fix("grid");
     bytes[k] = grid->memory_usage();
     blocks[k] = grid->compute_vector(1);

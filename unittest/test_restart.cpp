@@ -130,17 +130,14 @@ TEST(RestartState, AffineMatrixAndHistoryAreInTheFile)
 // time and energies go on where they were
 TEST(RestartState, WorkIsInTheFile)
 {
-  const ScratchFile file("work");
-  const std::string watch = "compute e all mpm/energy\nthermo_style custom step c_e[3]\n";
-  Scene whole(head + "fix grid all mpm 1.0\n" + points + fixes("") + watch +
-              "fix g all gravity 0.3 vector 0 0 -1\n"
-              "velocity one set 0.6 0.35 -0.4\nvelocity two set -1.5 0.1 -1.0\nrun 100\n"
-              "write_restart " +
-              file.name + "\nrun 50\n");
+  const std::string watch = "compute e all mpm/energy\nthermo_style custom step c_e[3]\n",
+                    gravity = "fix g all gravity 0.3 vector 0 0 -1\n";
+  Continued run(head + "fix grid all mpm 1.0\n" + points + fixes("") + watch + gravity +
+                    "velocity one set 0.6 0.35 -0.4\nvelocity two set -1.5 0.1 -1.0\n",
+                100, "neighbor 0.3 bin\n" + fixes("") + gravity + watch, 50);
+  auto &whole = run.whole, &again = run.again;
   const double plastic = whole.evaluate("c_e[3]");
   EXPECT_GT(plastic, 1.0e-3);
-  Scene again("read_restart " + file.name + "\nneighbor 0.3 bin\n" + fixes("") +
-              "fix g all gravity 0.3 vector 0 0 -1\n" + watch + "run 50\n");
   EXPECT_NEAR(again.evaluate("c_e[3]"), plastic, 1.0e-12 * plastic);
   EXPECT_EQ(again.time(), whole.time());
 
