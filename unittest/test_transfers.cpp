@@ -85,9 +85,8 @@ TEST(Refined, OrderReducesTheLoss)
 TEST(Refined, NoiseIsRemoved)
 {
   const auto noise_left = [](const std::string &options) {
-    Scene run(plane("lj", "p p", "0 8 0 8") + "fix g all mpm 1.0 " + options + R"(
-create_points 1 region box ppc 2
-fix m all mpm/material density 1 neohookean 1e-12 0.3
+    Scene run(plane("lj", "p p", "0 8 0 8") +
+              body("box", "density 1 neohookean 1e-12 0.3", "1.0 " + options) + R"(
 variable v atom 0.1*(2*((floor(2*x)+floor(2*y))%2)-1)
 velocity all set v_v 0 0
 variable e atom vx*vx
@@ -108,11 +107,10 @@ run 50
 TEST(Refined, LedgerTellsWorkFromLoss)
 {
   for (const char *transfer : {"flip 1.0", "xpic 2", "xpic 5", "fmpm 5"}) {
-    Scene run(plane("si", "f f", "0 1 0 1 -0.1 0.1", 1, 0.05) + "fix g all mpm 0.05 transfer " +
-              std::string(transfer) + R"(
-region b block 0.3 0.7 0.4 0.8 INF INF
-create_points 1 region b ppc 2
-fix m all mpm/material density 1000 neohookean 1e5 0.3
+    Scene run(plane("si", "f f", "0 1 0 1 -0.1 0.1", 1, 0.05) +
+              body("block 0.3 0.7 0.4 0.8 INF INF", "density 1000 neohookean 1e5 0.3",
+                   strprintf("0.05 transfer %s", transfer)) +
+              R"(
 fix f all gravity 10 vector 0 -1 0
 variable v atom 0.2*cos(PI*(x-0.3)/0.4)
 velocity all set v_v -0.5 0
@@ -151,10 +149,10 @@ TEST(Refined, WallsHold)
 {
   for (const char *transfer : {"xpic 3", "fmpm 3"}) {
     SCOPED_TRACE(transfer);
-    Scene run(plane("lj", "p f", "0 4 0 12") + "fix g all mpm 1.0 transfer " + transfer + R"(
-region column block 0 4 0 8 -0.5 0.5
-create_points 1 region column ppc 2
-fix m all mpm/material density 1 neohookean 100 0.3
+    Scene run(plane("lj", "p f", "0 4 0 12") +
+              body("block 0 4 0 8 -0.5 0.5", "density 1 neohookean 100 0.3",
+                   strprintf("1.0 transfer %s", transfer)) +
+              R"(
 fix w all mpm/boundary ylo stick
 fix f all gravity 0.5 vector 0 -1 0
 timestep 0.01

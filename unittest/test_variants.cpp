@@ -62,13 +62,15 @@ static std::vector<std::string> all_variants()
 
 /* --------------------------- a rectangle that is thrown, spins, and vibrates: mass and momentum */
 
-static const std::string wide = plane("si", "f f", "-3 3 -3 3", 1, 0.04);
+static std::string rectangle(const std::string &block, const std::string &options)
+{
+  return plane("si", "f f", "-3 3 -3 3", 1, 0.04) +
+      body("block " + block + " INF INF", "density 1000 neohookean 1.0e6 0.3", "0.1 " + options);
+}
 
 PARAMETER_TEST(Conservation, MassAndMomentum, std::string, ValuesIn(all_variants()))
 {
-  Scene run(wide + ("fix grid all mpm 0.1 " + GetParam()) +
-            "\nregion body block -0.4 0.4 -0.2 0.2 INF INF\ncreate_points 1 region body ppc 2\n"
-            "fix m all mpm/material density 1000 neohookean 1.0e6 0.3\n");
+  Scene run(rectangle("-0.4 0.4 -0.2 0.2", GetParam()));
   run.set_velocity([](const double *x, double *v) {
     v[0] = 3.0 - 10.0 * x[1] + 4.0 * x[0];
     v[1] = -2.0 + 10.0 * x[0];
@@ -93,10 +95,7 @@ PARAMETER_TEST(Conservation, MassAndMomentum, std::string, ValuesIn(all_variants
 
 PARAMETER_TEST(NoiseAtRest, DoesNotGrow, std::string, ValuesIn(all_variants()))
 {
-  Scene run(wide + ("fix grid all mpm 0.1 " + GetParam()) +
-            "\nregion body block -0.43 0.37 -0.2 0.2 INF INF\n"
-            "create_points 1 region body ppc 2\n"
-            "fix m all mpm/material density 1000 neohookean 1.0e6 0.3\ncompute e all mpm/energy\n");
+  Scene run(rectangle("-0.43 0.37 -0.2 0.2", GetParam()) + "compute e all mpm/energy\n");
   std::mt19937 generator(7);
   std::uniform_real_distribution<double> uniform(-1.0e-3, 1.0e-3);
   run.set_velocity([&](const double *, double *v) {
@@ -221,13 +220,10 @@ INSTANTIATE_TEST_SUITE_P(Shapes, CrossingNoise, ::testing::ValuesIn(crossing_noi
 
 static double extension(const std::string &options, double shift, double degrees)
 {
-  Scene run(wide +
-            strprintf("fix grid all mpm 0.1 %s\nregion body block -0.8 0.8 -0.4 0.4 INF INF\n"
-                      "create_points 1 region body ppc 2\n"
-                      "displace_atoms all rotate 0 0 0 0 0 1 %g\n"
-                      "displace_atoms all move %.17g %.17g 0\n"
-                      "fix m all mpm/material density 1000 neohookean 1.0e6 0.3\n",
-                      options.c_str(), degrees, shift, 0.7 * shift));
+  Scene run(rectangle("-0.8 0.8 -0.4 0.4", options) +
+            strprintf("displace_atoms all rotate 0 0 0 0 0 1 %g\n"
+                      "displace_atoms all move %.17g %.17g 0\n",
+                      degrees, shift, 0.7 * shift));
   const double a[2] = {cos(degrees * PI / 180.0), sin(degrees * PI / 180.0)};
   auto along = [&](const double *x) {
     return (x[0] - shift) * a[0] + (x[1] - 0.7 * shift) * a[1];
@@ -387,12 +383,7 @@ TEST(Equivalent, PlaneStrainIsASlice)
 TEST(Equivalent, SchemesAgreeForSmallSteps)
 {
   auto end = [](const char *scheme, int steps) {
-    Scene run(wide +
-              strprintf("fix grid all mpm 0.1 transfer flip 1.0 %s\n"
-                        "region body block -0.4 0.4 -0.2 0.2 INF INF\n"
-                        "create_points 1 region body ppc 2\n"
-                        "fix m all mpm/material density 1000 neohookean 1.0e6 0.3\n",
-                        scheme));
+    Scene run(rectangle("-0.4 0.4 -0.2 0.2", std::string("transfer flip 1.0 ") + scheme));
     run.set_velocity([](const double *x, double *v) {
       v[0] = 2.0 * x[0];
       v[1] = -2.0 * x[1];
