@@ -241,50 +241,45 @@ TEST(WallKinds, Equivalences)
 
 /* ---------------------------------------------------------------------- momentum and work */
 
-static const std::string balance_cases[] = {
-    "transfer apic|fix w all mpm/boundary xlo ylo stick",
-    "transfer apic origin 0.3 0.4 0.2|fix w all mpm/boundary xlo ylo stick",
-    "transfer flip 0.9 origin 0.3 0.4 0.2|fix w all mpm/boundary xlo ylo stick velocity 0.1 "
-    "0.2 "
-    "0",
-    "transfer flip 1.0 origin 0.3 0.4 0.2|fix w all mpm/boundary xlo ylo slip friction 0.2",
-    "transfer apic origin 0.3 0.4 0.2|fix w all mpm/boundary xlo ylo separate friction 0.2",
-    "transfer apic|fix w all mpm/boundary ylo slip friction 0.2",
-    "transfer apic|fix w all mpm/boundary xlo ylo separate friction 0.2",
-    "transfer flip 1.0|fix w all mpm/boundary xlo ylo slip",
-    "transfer flip 0.9 scheme musl|fix w all mpm/boundary xlo ylo stick velocity 0.1 0.2 0",
-    "transfer pic shape linear|fix w all mpm/boundary xlo ylo separate",
-    "shape cubic scheme musl|fix w all mpm/boundary xlo ylo separate friction 0.5",
-    "transfer flip 1.0 scheme usf|fix w all mpm/boundary ylo stick",
-    "|fix w all mpm/boundary xlo ylo separate friction 0.3\nfix w2 all mpm/boundary region "
-    "ball slip",
-    "transfer apic|fix w all mpm/boundary region ball stick\nfix w2 all mpm/boundary ylo slip",
-    "transfer apic|fix w all mpm/boundary region ball slip friction 0.1\nfix w2 all "
-    "mpm/boundary ylo slip",
-    "transfer flip 1.0|fix w all mpm/boundary region ball separate\nfix w2 all mpm/boundary "
-    "ylo slip"};
+/** Options of fix mpm, and one or two walls. */
+struct WallsCase {
+  const char *options, *first, *second = "";
+  std::string walls() const
+  {
+    return std::string("fix w all mpm/boundary ") + first + "\n" +
+        (*second ? std::string("fix w2 all mpm/boundary ") + second + "\n" : "");
+  }
+  friend void PrintTo(const WallsCase &c, std::ostream *out) { *out << c.options << c.walls(); }
+};
 
-PARAMETER_TEST(Balance, ReactionIsTheChangeOfMomentum, std::string, ValuesIn(balance_cases))
+static const WallsCase balance_cases[] = {
+    {"transfer apic", "xlo ylo stick"},
+    {"transfer apic origin 0.3 0.4 0.2", "xlo ylo stick"},
+    {"transfer flip 0.9 origin 0.3 0.4 0.2", "xlo ylo stick velocity 0.1 0.2 0"},
+    {"transfer flip 1.0 origin 0.3 0.4 0.2", "xlo ylo slip friction 0.2"},
+    {"transfer apic origin 0.3 0.4 0.2", "xlo ylo separate friction 0.2"},
+    {"transfer apic", "ylo slip friction 0.2"},
+    {"transfer apic", "xlo ylo separate friction 0.2"},
+    {"transfer flip 1.0", "xlo ylo slip"},
+    {"transfer flip 0.9 scheme musl", "xlo ylo stick velocity 0.1 0.2 0"},
+    {"transfer pic shape linear", "xlo ylo separate"},
+    {"shape cubic scheme musl", "xlo ylo separate friction 0.5"},
+    {"transfer flip 1.0 scheme usf", "ylo stick"},
+    {"", "xlo ylo separate friction 0.3", "region ball slip"},
+    {"transfer apic", "region ball stick", "ylo slip"},
+    {"transfer apic", "region ball slip friction 0.1", "ylo slip"},
+    {"transfer flip 1.0", "region ball separate", "ylo slip"}};
+
+PARAMETER_TEST(Balance, ReactionIsTheChangeOfMomentum, WallsCase, ValuesIn(balance_cases))
 {
-  const std::string param = GetParam();
-  const std::size_t bar = param.find('|');
-  const std::string options = param.substr(0, bar), walls = param.substr(bar + 1);
-  Scene run(replaced(
-      replaced(space("lj", "f f f", "0 8 0 8 0 8") +
-                   body("block 0.5 5 0 3.5 2 6", "density 1.5 neohookean 10.0 0.3", "1.0 OPTIONS") +
-                   R"(
-region ball sphere 6 2 4 2
-WALLS
-fix g all gravity 0.3 vector 1 -2 0.5
-velocity all set -0.3 -0.2 0.1
-velocity all ramp vx -0.2 0.2 y 0 4 sum yes
-timestep 0.03
-compute e all mpm/energy
-thermo_style custom step c_e
-run 0
-)",
-               "WALLS", walls),
-      "OPTIONS", options));
+  const auto &c = GetParam();
+  Scene run(space("lj", "f f f", "0 8 0 8 0 8") +
+            body("block 0.5 5 0 3.5 2 6", "density 1.5 neohookean 10.0 0.3",
+                 strprintf("1.0 %s", c.options)) +
+            "region ball sphere 6 2 4 2\n" + c.walls() +
+            "fix g all gravity 0.3 vector 1 -2 0.5\nvelocity all set -0.3 -0.2 0.1\n"
+            "velocity all ramp vx -0.2 0.2 y 0 4 sum yes\ntimestep 0.03\n"
+            "compute e all mpm/energy\nthermo_style custom step c_e\nrun 0\n");
 
   const Totals start(run.gather());
   double expected[3] = {start.p[0], start.p[1], start.p[2]};
@@ -442,11 +437,11 @@ TEST_P(Separate, AThrownBodyRebounds)
 }
 
 INSTANTIATE_TEST_SUITE_P(Transfer, Separate,
-                         ::testing::Values("transfer apic", "transfer flip 1.0",
-                                           "transfer flip 0.98", "transfer flip 1.0 scheme musl",
-                                           "transfer pic", "shape cubic transfer apic",
-                                           "shape linear transfer flip 1.0 scheme musl",
-                                           "transfer apic origin 0 0.02"));
+                         Values("transfer apic", "transfer flip 1.0", "transfer flip 0.98",
+                                "transfer flip 1.0 scheme musl", "transfer pic",
+                                "shape cubic transfer apic",
+                                "shape linear transfer flip 1.0 scheme musl",
+                                "transfer apic origin 0 0.02"));
 
 /* ------------------------------- benchmark G3: elastic column under gravity that is switched on */
 
@@ -800,21 +795,10 @@ TEST(Regions, NoTrailBehindAMovingBody)
 
 /* ---------------------------------------------------------------------- ranks and restart */
 
-/** Parameter: options of fix mpm | walls */
-class Decomposition : public ::testing::TestWithParam<std::string> {
+class Decomposition : public ::testing::TestWithParam<WallsCase> {
  protected:
-  static std::string options(const std::string &param) { return param.substr(0, param.find('|')); }
-  std::string scene(const std::string &param)
-  {
-    return space("lj", "f f p", "0 12 0 12 0 8") + "fix grid all mpm 1.0 " + options(param) +
-        "\nregion body block 0 5.5 0 5 1 7\ncreate_points 1 region body ppc 2\n" +
-        definitions(param) +
-        "velocity all set -0.3 -0.4 0.35\n"
-        "velocity all ramp vx -0.4 0.4 y 0 5 sum yes\ntimestep 0.04\n";
-  }
-  std::string definitions(const std::string &param)
-  {
-    return R"(
+  const std::string grid = strprintf("fix grid all mpm 1.0 %s\n", GetParam().options);
+  const std::string fixes = R"(
 fix m all mpm/material density 1.0 neohookean 10.0 0.3
 fix g all gravity 0.2 vector 1 -2 0.5
 variable shift equal -0.3*time
@@ -822,14 +806,17 @@ variable angle equal 0.3*time
 variable speed equal 0.1*sin(3*time)
 region paddle block 5 9 3 8 INF INF move v_shift NULL NULL rotate v_angle 7 5 4 0 0 1
 region knob sphere 3 1 4 1.7
-)" + param.substr(param.find('|') + 1);
-  }
+)" + GetParam().walls();
+  const std::string scene = space("lj", "f f p", "0 12 0 12 0 8") + grid +
+      "region body block 0 5.5 0 5 1 7\ncreate_points 1 region body ppc 2\n" + fixes +
+      "velocity all set -0.3 -0.4 0.35\nvelocity all ramp vx -0.4 0.4 y 0 5 sum yes\n"
+      "timestep 0.04\n";
 };
 
 TEST_P(Decomposition, AnyRanksGiveTheSame)
 {
-  OnRanks brick(scene(GetParam()), "run 100\n");
-  Scene tiled(scene(GetParam()) +
+  OnRanks brick(scene, "run 100\n");
+  Scene tiled(scene +
               "comm_style tiled\nbalance 1.0 rcb\nfix lb all balance 20 1.0 rcb\nrun 100\n");
   auto &serial = brick.serial;
   EXPECT_LT(brick.difference(), 1.0e-11);
@@ -846,33 +833,27 @@ TEST_P(Decomposition, AnyRanksGiveTheSame)
 TEST_P(Decomposition, RestartContinues)
 {
   const ScratchFile file("restart");
-  Scene whole(scene(GetParam()) + "run 60\n");
-  Scene parts(scene(GetParam()) + "run 33\nwrite_restart " + file.name + "\nclear\nread_restart " +
-              file.name + "\nfix grid all mpm 1.0 " + options(GetParam()) + "\n" +
-              definitions(GetParam()) + "run 27\n");
+  Scene whole(scene + "run 60\n");
+  Scene parts(scene + "run 33\nwrite_restart " + file.name + "\nclear\nread_restart " + file.name +
+              "\n" + grid + fixes + "run 27\n");
   EXPECT_LT(difference(whole.gather(), parts.gather()), 1.0e-11);
   for (auto *fix : whole.lmp->modify->get_fix_by_style("^mpm/boundary$"))
     EXPECT_NEAR(parts.fix(fix->id)->compute_scalar(), fix->compute_scalar(), 1.0e-9);
 }
 
-static const std::string decomposition_cases[] = {
-    "|fix w all mpm/boundary xlo ylo stick\n",
-    "|fix w all mpm/boundary ylo separate friction 0.3\nfix x all mpm/boundary xlo slip\n",
-    "|fix w all mpm/boundary xlo ylo slip\nfix k all mpm/boundary region knob separate "
-    "friction "
-    "0.2\n",
-    "|fix w all mpm/boundary xlo ylo slip velocity v_speed 0 0\nfix p all mpm/boundary region "
-    "paddle stick\n",
-    "|fix w all mpm/boundary xlo ylo stick\nfix p all mpm/boundary region paddle slip friction "
-    "0.2\n",
-    "origin 0.3 0.4 0.2|fix w all mpm/boundary xlo ylo separate friction 0.3\n",
-    "transfer flip 1.0 scheme musl origin 0.3 0.4 0.2|fix w all mpm/boundary xlo ylo stick\n",
-    "transfer flip 1.0 scheme musl|fix w all mpm/boundary xlo ylo stick velocity v_speed 0 0 "
-    "rotate 1 2 0 0 0 1 v_speed\n",
-    "|fix w all mpm/boundary xlo ylo separate friction 0.3\n",
-    "transfer flip 0.95|fix w all mpm/boundary xlo ylo slip friction 0.2 velocity v_speed 0 "
-    "0\n"};
-INSTANTIATE_TEST_SUITE_P(Walls, Decomposition, ::testing::ValuesIn(decomposition_cases));
+static const WallsCase decomposition_cases[] = {
+    {"", "xlo ylo stick"},
+    {"", "ylo separate friction 0.3", "xlo slip"},
+    {"", "xlo ylo slip", "region knob separate friction 0.2"},
+    {"", "xlo ylo slip velocity v_speed 0 0", "region paddle stick"},
+    {"", "xlo ylo stick", "region paddle slip friction 0.2"},
+    {"origin 0.3 0.4 0.2", "xlo ylo separate friction 0.3"},
+    {"transfer flip 1.0 scheme musl origin 0.3 0.4 0.2", "xlo ylo stick"},
+    {"transfer flip 1.0 scheme musl",
+     "xlo ylo stick velocity v_speed 0 0 rotate 1 2 0 0 0 1 v_speed"},
+    {"", "xlo ylo separate friction 0.3"},
+    {"transfer flip 0.95", "xlo ylo slip friction 0.2 velocity v_speed 0 0"}};
+INSTANTIATE_TEST_SUITE_P(Walls, Decomposition, ValuesIn(decomposition_cases));
 
 /* ---------------------------------------------------------------------- several fields */
 

@@ -203,10 +203,9 @@ PARAMETER_TEST(Uniform, StretchIsExact, const char *,
    averages after some steps with them.
 ------------------------------------------------------------------------- */
 
-static const char *const volume_cases[] = {
-    "locking fbar", "locking fbar transfer flip 1.0 scheme musl", "locking fbar frame total"};
-
-PARAMETER_TEST(Volume, SumIsThatOfTheMotion, const char *, ValuesIn(volume_cases))
+PARAMETER_TEST(Volume, SumIsThatOfTheMotion, const char *,
+               Values("locking fbar", "locking fbar transfer flip 1.0 scheme musl",
+                      "locking fbar frame total"))
 {
   for (int dim : {2, 3}) {
     double volume[2], largest[2];

@@ -184,12 +184,10 @@ TEST(TotalStretch, TenfoldWithoutFracture)
    conserved exactly, angular momentum as far as the motion is affine over the reach of a function
 ------------------------------------------------------------------------- */
 
-static const char *const total_free_cases[] = {
-    "frame total transfer apic", "frame total transfer flip 1.0 scheme musl",
-    "frame total transfer flip 1.0 scheme usavg", "frame total transfer xpic 5",
-    "frame total transfer fmpm 5"};
-
-PARAMETER_TEST(TotalFree, Invariants, const char *, ValuesIn(total_free_cases))
+PARAMETER_TEST(TotalFree, Invariants, const char *,
+               Values("frame total transfer apic", "frame total transfer flip 1.0 scheme musl",
+                      "frame total transfer flip 1.0 scheme usavg", "frame total transfer xpic 5",
+                      "frame total transfer fmpm 5"))
 {
   Scene run(space("si", "f f f", "-5 15 -5 15 -5 15", 1, 0.3) +
             body("block 0.1 4.1 0.2 3.2 0.0 2.0", "density 1000 neohookean 1.0e6 0.3",
