@@ -9,7 +9,6 @@
 
 #include "mpm_lammps.h"
 
-#include <ostream>
 #include <regex>
 #include <string>
 #include <unistd.h>
@@ -41,12 +40,18 @@ inline std::string changed(std::string text, const std::string &from, const std:
 
 /** A mistake: this part of the good scene becomes that, and the error matches a pattern. */
 struct Change {
-  const char *name, *from, *to, *error;
+  std::string name, from, to, error;
+  friend void PrintTo(const Change &mistake, std::ostream *out) { *out << mistake.to; }
 };
 
-inline void PrintTo(const Change &mistake, std::ostream *out)
+/** Mistakes in one line of the scene: what comes after its first words. */
+inline std::vector<Change> mistakes_in(const std::string &line, const std::string &words,
+                                       const std::vector<std::array<const char *, 3>> &rows)
 {
-  *out << mistake.to;
+  std::vector<Change> all;
+  for (const auto &[name, rest, error] : rows)
+    all.push_back({name, line, words + " " + rest + "\n", error});
+  return all;
 }
 
 inline std::string case_name(const ::testing::TestParamInfo<Change> &info)

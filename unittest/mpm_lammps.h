@@ -42,6 +42,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
 #include <functional>
 #include <map>
 #include <memory>
@@ -55,6 +56,8 @@ namespace MPM_TEST {
 
 using namespace LAMMPS_NS;
 using ::testing::HasSubstr;
+using ::testing::Values;
+using ::testing::ValuesIn;
 
 constexpr double PI = 3.14159265358979323846;
 
@@ -68,6 +71,12 @@ constexpr double PI = 3.14159265358979323846;
   }                                                         \
   static void suite##_##name()
 
+/** A test for each of some parameters: Values(...) or ValuesIn(...). */
+#define PARAMETER_TEST(suite, name, type, ...)            \
+  class suite : public ::testing::TestWithParam<type> {}; \
+  INSTANTIATE_TEST_SUITE_P(All, suite, __VA_ARGS__);      \
+  TEST_P(suite, name)
+
 inline int nranks(MPI_Comm comm = MPI_COMM_WORLD)
 {
   int n;
@@ -80,6 +89,18 @@ inline int rank(MPI_Comm comm = MPI_COMM_WORLD)
   int me;
   MPI_Comm_rank(comm, &me);
   return me;
+}
+
+/** Sums over all ranks, or what else these are to be reduced to. */
+inline std::vector<double> over_ranks(std::vector<double> values, MPI_Op op = MPI_SUM,
+                                      MPI_Comm comm = MPI_COMM_WORLD)
+{
+  MPI_Allreduce(MPI_IN_PLACE, values.data(), (int) values.size(), MPI_DOUBLE, op, comm);
+  return values;
+}
+inline double over_ranks(double value, MPI_Op op = MPI_SUM)
+{
+  return over_ranks(std::vector<double>{value}, op)[0];
 }
 
 /** The rows of all ranks, one rank after the other. */
@@ -144,12 +165,27 @@ struct ScratchFile {
   }
 };
 
+/** What a file has in it, nothing if there is none. */
+inline std::string file_text(const std::string &name)
+{
+  std::ifstream file(name, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
 /** Text with the arguments of printf in it. */
 template <class... Args> std::string strprintf(const char *text, Args... args)
 {
   std::vector<char> buffer(snprintf(nullptr, 0, text, args...) + 1);
   snprintf(buffer.data(), buffer.size(), text, args...);
   return buffer.data();
+}
+
+/** Scene with its words in capitals, MPM_<name>, replaced. */
+inline std::string replaced(std::string scene, const std::string &word, const std::string &text)
+{
+  for (std::size_t at = 0; (at = scene.find(word, at)) != std::string::npos; at += text.size())
+    scene.replace(at, word.size(), text);
+  return scene;
 }
 
 /** The first lines of a scene: a box, and material points as atoms. faces: "f f f", extent: "xlo xhi ylo yhi zlo zhi";
@@ -190,6 +226,37 @@ inline std::string body(const std::string &region, const std::string &material,
   return "fix grid all mpm " + grid + "\n" + (fills ? "" : "region body " + region + "\n") +
       "create_points 1 " + (fills ? "box" : "region body") + " ppc " + ppc + "\n" +
       "fix m all mpm/material " + material + "\n";
+}
+
+/** A body of points: region and group have its name. lattice: spacing and options of its fix mpm. */
+struct Body {
+  std::string name, region, lattice = "";
+};
+
+/** Bodies of types 1, 2, ...; sites: options of create_points, in which # is the type. */
+inline std::string bodies(const std::vector<Body> &all, const std::string &sites = "ppc 2")
+{
+  std::string text;
+  for (const auto &body : all) {
+    const auto type = std::to_string(&body - all.data() + 1);
+    text += "region " + body.name + " " + body.region + "\ncreate_points " + type + " region " +
+        body.name + " " + replaced(sites, "#", type) + "\ngroup " + body.name + " type " + type +
+        "\n";
+  }
+  return text;
+}
+
+/** Bodies of types 1, 2, ..., each in a field of its own, which are fixes F1, F2, ...; lattice: of those that
+ *  have none. */
+inline std::string fields(const std::vector<Body> &all, const std::string &lattice = "1.0")
+{
+  std::string fixes;
+  for (const auto &body : all) {
+    const auto type = std::to_string(&body - all.data() + 1);
+    fixes += "group " + body.name + " type " + type + "\nfix F" + type + " " + body.name + " mpm " +
+        (body.lattice.empty() ? lattice : body.lattice) + "\n";
+  }
+  return fixes + bodies(all, "ppc 2 fix F#");
 }
 
 /** A LAMMPS instance: what a test drives. (Not named Run, which is a member of ::testing::Test.) */
@@ -254,9 +321,22 @@ class Scene {
     return lmp->input->variable->compute_equal(formula);
   }
 
+  /** Values of a compute, by default of a compute e all mpm/energy. */
+  const double *compute_vector(const std::string &id = "e")
+  {
+    auto *compute = lmp->modify->get_compute_by_id(id);
+    compute->compute_vector();
+    return compute->vector;
+  }
+  double compute_scalar(const std::string &id = "e")
+  {
+    return lmp->modify->get_compute_by_id(id)->compute_scalar();
+  }
+
   /** State of one point, gathered on all ranks, in order of tags. */
   struct State {
     double tag, type, x[3], v[3], F[9], stress[6], vol, mass;
+    double pressure() const { return -(stress[0] + stress[1] + stress[2]) / 3.0; }
   };
   std::vector<State> gather()
   {
@@ -501,12 +581,34 @@ class Scene {
   std::function<void(double **)> callback;
 };
 
-/** Scene with its words in capitals, MPM_<name>, replaced. */
-inline std::string replaced(std::string scene, const std::string &word, const std::string &text)
+/** Mass and momentum of points. */
+struct Totals {
+  double mass = 0.0, p[3] = {0.0, 0.0, 0.0};
+
+  explicit Totals(const std::vector<Scene::State> &points)
+  {
+    for (const auto &point : points) {
+      mass += point.mass;
+      for (int d = 0; d < 3; d++) p[d] += point.mass * point.v[d];
+    }
+  }
+};
+
+/** B-splines of order 1 to 3 at a distance from their node, in spacings, and their slopes. */
+inline double bspline(int order, double u)
 {
-  for (std::size_t at = 0; (at = scene.find(word, at)) != std::string::npos; at += text.size())
-    scene.replace(at, word.size(), text);
-  return scene;
+  const double a = std::fabs(u);
+  if (order == 1) return std::max(1.0 - a, 0.0);
+  if (order == 2) return a < 0.5 ? 0.75 - a * a : (a < 1.5 ? 0.5 * (1.5 - a) * (1.5 - a) : 0.0);
+  return a < 1.0 ? 2.0 / 3.0 - a * a + 0.5 * a * a * a
+                 : (a < 2.0 ? (2.0 - a) * (2.0 - a) * (2.0 - a) / 6.0 : 0.0);
+}
+inline double bspline_slope(int order, double u)
+{
+  const double a = std::fabs(u), sign = u < 0.0 ? -1.0 : 1.0;
+  if (order == 1) return a < 1.0 ? -sign : 0.0;
+  if (order == 2) return a < 0.5 ? -2.0 * u : (a < 1.5 ? -sign * (1.5 - a) : 0.0);
+  return sign * (a < 1.0 ? -2.0 * a + 1.5 * a * a : (a < 2.0 ? -0.5 * (2.0 - a) * (2.0 - a) : 0.0));
 }
 
 /** Show a measured number in the output of the test. */
@@ -581,12 +683,8 @@ struct Continued {
 /** Two soft bodies that cross all rank boundaries of a periodic box, collide, and deform. */
 inline const std::string two_bodies = space("lj", "p p p", "0 8 0 8 0 8", 2) + R"(
 fix grid all mpm 1.0 MPM_OPTIONS
-region one sphere 2.6 3.0 3.2 1.9
-region two block 4.8 7.3 2.0 5.0 2.5 5.5
-create_points 1 region one ppc 2
-create_points 2 region two ppc 2
-group one type 1
-group two type 2
+)" + bodies({{"one", "sphere 2.6 3.0 3.2 1.9"}, {"two", "block 4.8 7.3 2.0 5.0 2.5 5.5"}}) +
+    R"(
 fix m1 one mpm/material density 1.0 neohookean 10.0 0.3
 fix m2 two mpm/material density 2.0 linear 20.0 0.2
 velocity one set 0.6 0.35 -0.4
@@ -620,12 +718,17 @@ inline std::string error_of(const std::string &input)
   return scene.error(input);
 }
 
-/** An input gives an error with these words. */
+/** Lines of input give an error with these words. */
+inline void expect_error(Scene &scene, const std::string &lines, const std::string &words)
+{
+  const auto found = scene.error(lines);
+  EXPECT_THAT(found, HasSubstr(words)) << lines;
+  EXPECT_NE(found, "") << lines;
+}
 inline void expect_error(const std::string &input, const std::string &words)
 {
-  const auto found = error_of(input);
-  EXPECT_THAT(found, HasSubstr(words)) << input;
-  EXPECT_NE(found, "") << input;
+  Scene scene;
+  expect_error(scene, input, words);
 }
 
 /** Mistakes in the input, each with words of its message. */
@@ -638,12 +741,16 @@ inline void expect_refused(const std::string &scene, const std::vector<Mistake> 
                            const std::string &run = "")
 {
   for (const auto &mistake : mistakes) {
-    Scene instance;
-    instance.commands(scene);
-    const auto found = instance.error(mistake.lines + "\n" + run);
-    EXPECT_THAT(found, HasSubstr(mistake.message)) << mistake.lines;
-    EXPECT_NE(found, "") << mistake.lines;
+    Scene instance(scene);
+    expect_error(instance, mistake.lines + "\n" + run, mistake.message);
   }
+}
+
+/** Options of fix mpm that are refused for two bodies. */
+inline void expect_options_refused(const std::vector<Mistake> &mistakes)
+{
+  for (const auto &mistake : mistakes)
+    expect_error(replaced(two_bodies, "MPM_OPTIONS", mistake.lines) + "run 1\n", mistake.message);
 }
 
 }    // namespace MPM_TEST

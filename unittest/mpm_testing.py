@@ -5,12 +5,15 @@
 A test file defines functions test_*() and ends with mpm_testing.main(globals()).
 """
 
+import atexit
 import json
 import os
 import re
 import shlex
+import shutil
 import subprocess
 import sys
+import tempfile
 import time
 import traceback
 
@@ -62,6 +65,60 @@ def lammps(folder, text=None, file="in.test", arguments=(), processes=0, executa
         mpiexec = shlex.split(os.environ.get("MPM_MPIEXEC", "mpirun -np"))
         command = mpiexec + [str(processes)] + command
     return run(command, folder, **options)
+
+
+def ok(result):
+    """The result of a command that has gone well."""
+    assert result.code == 0, result.tail()
+    return result
+
+
+def lammps_once(text, **options):
+    """Run an input in a folder of its own."""
+    with tempfile.TemporaryDirectory() as folder:
+        return lammps(folder, text, **options)
+
+
+def scratch_folder():
+    """A folder that is there until the tests of the file have ended."""
+    folder = tempfile.mkdtemp(prefix="mpm_test_")
+    atexit.register(shutil.rmtree, folder)
+    return folder
+
+
+def build_example(name, folder, *settings):
+    """A copy of an example that must be built first, built without warnings."""
+    source = os.path.join(ROOT, "examples", name)
+    for file in os.listdir(source):
+        if os.path.isfile(os.path.join(source, file)):
+            shutil.copy(os.path.join(source, file), folder)
+    settings += ("MPM_DIR=" + os.path.join(ROOT, "src", "MPM"),)
+    ok(run(["cmake", "-S", ".", "-B", "build"] + [word for s in settings for word in ("-D", s)], folder))
+    result = run(["cmake", "--build", "build"], folder)
+    assert result.code == 0 and "warning" not in result.output, result.output
+
+
+def lammps_sources():
+    """The source trees of the LAMMPS that is tested, mostly one."""
+    cache, trees = os.path.join(os.path.dirname(LMP), "CMakeCache.txt"), []
+    for key in ("LAMMPS_BUILD_DIR", "LAMMPS_SOURCE_DIR"):
+        found = os.path.exists(cache) and re.search(r"^%s:\w+=(\S+)" % key, read(cache), re.M)
+        if found:
+            export = os.path.join(found.group(1), "mpm_lammps.cmake")
+            trees.append(re.search(r'set\(LAMMPS_DIR "(.*?)"\)', read(export)).group(1)
+                         if os.path.exists(export) else found.group(1))
+    return trees
+
+
+def read(path):
+    with open(path, encoding="utf-8") as file:
+        return file.read()
+
+
+def table(path):
+    """Rows of a table of numbers with the names of its columns in the first line."""
+    lines = [line.split() for line in read(path).splitlines() if not line.startswith("#")]
+    return [dict(zip(lines[0], map(float, line))) for line in lines[1:]]
 
 
 def thermo(output):

@@ -79,8 +79,7 @@ static const std::string box2d = plane("si", "f f", "0 1 0 1", 3);
 // ---------------------------------------------------------------- sampling of regions
 TEST(CreatePoints, BlockOfCells)
 {
-  Scene scene(box3d);
-  scene.commands("region r block 0.2 0.8 0.2 0.5 0 0.1\ncreate_points 2 region r ppc 2");
+  Scene scene(box3d + "region r block 0.2 0.8 0.2 0.5 0 0.1\ncreate_points 2 region r ppc 2");
   auto points = atoms(scene);
   ASSERT_EQ(points.size(), 12 * 6 * 2);
   EXPECT_EQ(scene.lmp->atom->natoms, 144);
@@ -107,8 +106,7 @@ TEST(CreatePoints, BlockOfCells)
 
 TEST(CreatePoints, PointsPerCell)
 {
-  Scene scene(box3d);
-  scene.commands("create_points 1 box ppc 1 2 3");
+  Scene scene(box3d + "create_points 1 box ppc 1 2 3");
   auto points = atoms(scene);
   ASSERT_EQ(points.size(), 10 * 20 * 30);
   EXPECT_NEAR(total_volume(points), 1.0, 1.0e-12);
@@ -116,24 +114,23 @@ TEST(CreatePoints, PointsPerCell)
   EXPECT_NEAR(points[0].x[1], 0.025, 1.0e-15);
   EXPECT_NEAR(points[0].x[2], 0.1 / 6.0, 1.0e-15);
 
-  Scene implied(box3d);
-  implied.commands("create_points 1 box");
+  Scene implied(box3d + "create_points 1 box");
   EXPECT_EQ(atoms(implied).size(), 8000u);    // 2 along each axis
 }
 
 TEST(CreatePoints, ExplicitSpacing)
 {
-  Scene scene(box3d);
-  scene.commands("unfix grid\nregion r block 0.25 0.75 0.2 0.7 0.25 0.75\n"
-                 "create_points 1 region r spacing 0.05 0.1 0.25");
+  Scene scene(box3d +
+              "unfix grid\nregion r block 0.25 0.75 0.2 0.7 0.25 0.75\n"
+              "create_points 1 region r spacing 0.05 0.1 0.25");
   auto points = atoms(scene);
   ASSERT_EQ(points.size(), 10 * 5 * 2);
   for (const auto &p : points) EXPECT_DOUBLE_EQ(p.volume0, 0.05 * 0.1 * 0.25);
 
   // with a fix mpm, from its origin
-  Scene shifted(box3d);
-  shifted.commands("unfix grid\nfix grid all mpm 0.1 origin 0.03 0 0\n"
-                   "region r block 0.2 0.8 0.2 0.3 0.2 0.3\ncreate_points 1 region r spacing 0.1");
+  Scene shifted(box3d +
+                "unfix grid\nfix grid all mpm 0.1 origin 0.03 0 0\n"
+                "region r block 0.2 0.8 0.2 0.3 0.2 0.3\ncreate_points 1 region r spacing 0.1");
   points = atoms(shifted);
   ASSERT_EQ(points.size(), 6u);
   EXPECT_NEAR(points[0].x[0], 0.28, 1.0e-15);
@@ -141,16 +138,15 @@ TEST(CreatePoints, ExplicitSpacing)
 
 TEST(CreatePoints, WhichLattice)
 {
-  Scene scene(box3d);
-  scene.commands("fix fine all mpm 0.05\nregion r block 0.2 0.3 0.2 0.3 0.2 0.3");
-  EXPECT_THAT(scene.error("create_points 1 region r ppc 1"),
-              HasSubstr("Fixes mpm grid and fine have different lattices"));
+  Scene scene(box3d + "fix fine all mpm 0.05\nregion r block 0.2 0.3 0.2 0.3 0.2 0.3");
+  expect_error(scene, "create_points 1 region r ppc 1",
+               "Fixes mpm grid and fine have different lattices");
   scene.commands("create_points 1 region r ppc 1 fix fine");
   EXPECT_EQ(atoms(scene).size(), 8u);
 
-  Scene same(box3d);
-  same.commands("fix second all mpm 0.1\nregion r block 0.2 0.3 0.2 0.3 0.2 0.3\n"
-                "create_points 1 region r ppc 1");
+  Scene same(box3d +
+             "fix second all mpm 0.1\nregion r block 0.2 0.3 0.2 0.3 0.2 0.3\n"
+             "create_points 1 region r ppc 1");
   EXPECT_EQ(atoms(same).size(), 1u);
 }
 
@@ -160,10 +156,10 @@ TEST(CreatePoints, Disk2d)
   const double h[] = {0.05, 0.025, 0.0125}, excess[] = {0.0345, 0.0097, 0.0034};
   const unsigned count[] = {208, 812, 3228};
   for (int k = 0; k < 3; k++) {
-    Scene scene(box2d);
-    scene.commands(fmt::format("fix grid all mpm {}\nregion r cylinder z 0.5 0.5 0.2 INF INF\n"
-                               "create_points 1 region r ppc 2",
-                               h[k]));
+    Scene scene(box2d +
+                fmt::format("fix grid all mpm {}\nregion r cylinder z 0.5 0.5 0.2 INF INF\n"
+                            "create_points 1 region r ppc 2",
+                            h[k]));
     auto points = atoms(scene);
     EXPECT_EQ(points.size(), count[k]);
     EXPECT_NEAR(total_volume(points) / (M_PI * 0.04) - 1.0, excess[k], 1.0e-4);
@@ -177,9 +173,9 @@ TEST(CreatePoints, Disk2d)
     EXPECT_NEAR(centroid[1], 0.5, 1.0e-14);
   }
 
-  Scene scene(box2d);
-  scene.commands("fix grid all mpm 0.1\nregion r block 0 1 0 0.5 INF INF\n"
-                 "create_points 1 region r ppc 3 2");
+  Scene scene(box2d +
+              "fix grid all mpm 0.1\nregion r block 0 1 0 0.5 INF INF\n"
+              "create_points 1 region r ppc 3 2");
   EXPECT_EQ(atoms(scene).size(), 30 * 10);
 }
 
@@ -198,31 +194,21 @@ TEST(CreatePoints, CurvedBodies)
   };
   for (const auto &body : bodies)
     for (double h : {0.1, 0.05, 0.025}) {
-      Scene scene(box3d);
-      scene.commands("unfix grid\nfix grid all mpm " + std::to_string(h) + "\n" + body.region +
-                     "\ncreate_points 1 region r ppc 2");
-      double mine = 0.0, volume = 0.0;
-      for (int i = 0; i < scene.lmp->atom->nlocal; i++) mine += scene.lmp->atom->vfrac[i];
-      MPI_Allreduce(&mine, &volume, 1, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
-      EXPECT_NEAR(volume, body.volume, body.surface * h * h) << body.region;
+      Scene scene(box3d + "unfix grid\nfix grid all mpm " + std::to_string(h) + "\n" + body.region +
+                  "\ncreate_points 1 region r ppc 2");
+      double volume = 0.0;
+      for (int i = 0; i < scene.n(); i++) volume += scene.lmp->atom->vfrac[i];
+      EXPECT_NEAR(over_ranks(volume), body.volume, body.surface * h * h) << body.region;
     }
 }
 
 TEST(CreatePoints, ReportsWhatItMade)
 {
-  Scene scene(box2d);
-  scene.commands("fix grid all mpm 0.05\nregion r cylinder z 0.5 0.5 0.2 INF INF");
+  Scene scene(box2d + "fix grid all mpm 0.05\nregion r cylinder z 0.5 0.5 0.2 INF INF");
   const ScratchFile log("log");
-  if (rank() == 0) scene.lmp->logfile = fopen(log.name.c_str(), "w");
-  scene.commands("create_points 2 region r ppc 2");
+  scene.commands("log " + log.name + "\ncreate_points 2 region r ppc 2\nlog none");
   if (rank() == 0) {
-    fclose(scene.lmp->logfile);
-    scene.lmp->logfile = nullptr;
-    std::string text;
-    char line[256];
-    FILE *fp = fopen(log.name.c_str(), "r");
-    while (fgets(line, 256, fp)) text += line;
-    fclose(fp);
+    const auto text = file_text(log.name);
     EXPECT_THAT(text, HasSubstr("Created 208 material points of type 2\n"));
     EXPECT_THAT(text, HasSubstr("spacing = 0.025 0.025\n"));
     EXPECT_THAT(text, HasSubstr("volume = 0.000625 per point, 0.13 in total (per unit thickness)"));
@@ -234,23 +220,19 @@ TEST(CreatePoints, ReportsWhatItMade)
 
 // two far spheres in one bounding box of more sites than a rank looks at in one go, with jitter
 static const char *const far_spheres =
-    "region one sphere 0.13 0.13 0.13 0.1\nregion two sphere 0.87 0.87 0.8 0.07\n"
+    "unfix grid\nfix grid all mpm 0.02\nregion one sphere 0.13 0.13 0.13 0.1\nregion two sphere "
+    "0.87 0.87 0.8 0.07\n"
     "region r union 2 one two\ncreate_points 1 region r ppc 3 jitter 0.4 98765\n";
 
 TEST(CreatePoints, AnyNumberOfRanks)
 {
-  Scene serial(box3d, MPI_COMM_SELF);
-  serial.commands("unfix grid\nfix grid all mpm 0.02");
-  serial.commands(far_spheres);
+  Scene serial(box3d + far_spheres, MPI_COMM_SELF);
   const auto expected = atoms(serial);
   EXPECT_NEAR(expected.size(), 4.0 / 3.0 * M_PI * (1.0e-3 + 3.43e-4) / 8.0e-6 * 27.0, 300);
 
   for (const char *layout :
        {"", "processors 1 1 *", "processors 1 * 1", "processors * 1 1", "comm_style tiled"}) {
-    Scene parallel(layout);
-    parallel.commands(box3d);
-    parallel.commands("unfix grid\nfix grid all mpm 0.02");
-    parallel.commands(far_spheres);
+    Scene parallel(layout + ("\n" + box3d) + far_spheres);
     const auto points = atoms(parallel);
     ASSERT_EQ(points.size(), expected.size()) << layout;
     EXPECT_TRUE(points == expected) << layout;
@@ -269,12 +251,10 @@ TEST(CreatePoints, AnyNumberOfRanks)
 TEST(CreatePoints, BalancedBox)
 {
   auto build = [](Scene &scene, const std::string &balance) {
-    scene.commands(balance.find("rcb") != std::string::npos ? "comm_style tiled" : "");
-    scene.commands(box3d);
-    scene.commands("region c block 0 0.3 0 0.2 0 0.1\ncreate_points 1 region c ppc 2");
-    scene.commands("region r block 0.1 1 0.2 1 0 1");
-    scene.commands("unfix grid\n" + balance + "\nfix grid all mpm 0.1");
-    scene.commands("create_points 2 region r ppc 2");
+    scene.commands((balance.find("rcb") != std::string::npos ? "comm_style tiled\n" : "") + box3d +
+                   "region c block 0 0.3 0 0.2 0 0.1\ncreate_points 1 region c ppc 2\n"
+                   "region r block 0.1 1 0.2 1 0 1\nunfix grid\n" +
+                   balance + "\nfix grid all mpm 0.1\ncreate_points 2 region r ppc 2");
     return atoms(scene);
   };
   Scene serial(MPI_COMM_SELF), rcb, shift;
@@ -308,22 +288,22 @@ TEST(CreatePoints, SitesOnFaces)
   }
 
   // the upper faces of a fixed box are outside
-  Scene scene(box3d);
-  scene.commands("unfix grid\nfix grid all mpm 0.125 origin 0.0625 0.0625 0.0625\n"
-                 "region r block 0 1 0 1 0 1");
-  EXPECT_THAT(scene.error("create_points 1 region r ppc 1"),
-              HasSubstr(std::to_string(9 * 9 * 9 - 512) + " points would be outside"));
+  Scene scene(box3d +
+              "unfix grid\nfix grid all mpm 0.125 origin 0.0625 0.0625 0.0625\n"
+              "region r block 0 1 0 1 0 1");
+  expect_error(scene, "create_points 1 region r ppc 1",
+               std::to_string(9 * 9 * 9 - 512) + " points would be outside");
 }
 
 // origins that put sites on a periodic face up to rounding: one of the two images, always
 TEST(CreatePoints, PeriodicFaceRounding)
 {
   for (double origin : {-0.05, 0.05, 0.15, 0.35, 1.0 / 3.0, 0.45 + 1.0e-17, -7.65}) {
-    Scene scene("units si\natom_style mpm\nregion box block 0 1.3 0 0.7 0 0.1\n"
-                "create_box 1 box");
-    scene.commands(fmt::format("fix grid all mpm 0.1 origin {0:.17g} {0:.17g} {0:.17g}\n"
-                               "create_points 1 box ppc 1",
-                               origin));
+    const auto fill_box = fmt::format("region box block 0 1.3 0 0.7 0 0.1\ncreate_box 1 box\n"
+                                      "fix grid all mpm 0.1 origin {0:.17g} {0:.17g} {0:.17g}\n"
+                                      "create_points 1 box ppc 1",
+                                      origin);
+    Scene scene("units si\natom_style mpm\n" + fill_box);
     auto points = atoms(scene);
     EXPECT_EQ(points.size(), 13u * 7u) << origin;
     for (std::size_t i = 0; i < points.size(); i++) {
@@ -343,11 +323,7 @@ TEST(CreatePoints, PeriodicFaceRounding)
     }
 
     // in a fixed box a site is in or out, and all that are in are made
-    Scene fixed("units si\nboundary f f f\natom_style mpm\n"
-                "region box block 0 1.3 0 0.7 0 0.1\ncreate_box 1 box");
-    fixed.commands(fmt::format("fix grid all mpm 0.1 origin {0:.17g} {0:.17g} {0:.17g}\n"
-                               "create_points 1 box ppc 1",
-                               origin));
+    Scene fixed("units si\nboundary f f f\natom_style mpm\n" + fill_box);
     points = atoms(fixed);
     std::size_t expected = 1;
     for (int d = 0; d < 3; d++) {
@@ -373,9 +349,7 @@ TEST(CreatePoints, PeriodicFaceRounding)
 // ---------------------------------------------------------------- jitter
 static std::vector<Point> jittered(const std::string &options, MPI_Comm comm = MPI_COMM_WORLD)
 {
-  Scene scene(comm);
-  scene.commands(box3d);
-  scene.commands("create_points 1 box ppc 2 " + options);
+  Scene scene(box3d + "create_points 1 box ppc 2 " + options, comm);
   return atoms(scene);
 }
 
@@ -419,9 +393,9 @@ TEST(CreatePoints, Jitter)
 // sites near the faces of a fixed box whose cells stick out of it
 TEST(CreatePoints, JitterStaysInBox)
 {
-  Scene scene(box3d);
-  scene.commands("unfix grid\nfix grid all mpm 0.1 origin 0.045 0.05 -0.03\n"
-                 "create_points 1 box ppc 1 jitter 0.5 3");
+  Scene scene(box3d +
+              "unfix grid\nfix grid all mpm 0.1 origin 0.045 0.05 -0.03\n"
+              "create_points 1 box ppc 1 jitter 0.5 3");
   auto points = atoms(scene);
   EXPECT_EQ(points.size(), 1000u);
   for (const auto &p : points)
@@ -431,17 +405,17 @@ TEST(CreatePoints, JitterStaysInBox)
 // ---------------------------------------------------------------- overlap and outside
 TEST(CreatePoints, AbuttingRegions)
 {
-  Scene scene(box3d);
-  scene.commands("region a block 0.1 0.5 0.1 0.6 0.1 0.4\nregion b block 0.5 0.9 0.1 0.6 0.1 0.4\n"
-                 "region ab block 0.1 0.9 0.1 0.6 0.1 0.4\n"
-                 "create_points 1 region a jitter 0.5 1\ncreate_points 2 region b jitter 0.5 1");
+  Scene scene(box3d +
+              "region a block 0.1 0.5 0.1 0.6 0.1 0.4\nregion b block 0.5 0.9 0.1 0.6 0.1 0.4\n"
+              "region ab block 0.1 0.9 0.1 0.6 0.1 0.4\n"
+              "create_points 1 region a jitter 0.5 1\ncreate_points 2 region b jitter 0.5 1");
   auto two = atoms(scene);
   EXPECT_EQ(two.size(), 16u * 10 * 6);
 
   // the same points as of one body
-  Scene whole(box3d);
-  whole.commands("region ab block 0.1 0.9 0.1 0.6 0.1 0.4\n"
-                 "create_points 1 region ab jitter 0.5 1");
+  Scene whole(box3d +
+              "region ab block 0.1 0.9 0.1 0.6 0.1 0.4\n"
+              "create_points 1 region ab jitter 0.5 1");
   std::set<std::array<double, 3>> places, one;
   for (const auto &p : two) places.insert({p.x[0], p.x[1], p.x[2]});
   for (const auto &p : atoms(whole)) one.insert({p.x[0], p.x[1], p.x[2]});
@@ -450,9 +424,9 @@ TEST(CreatePoints, AbuttingRegions)
 
 TEST(CreatePoints, Overlap)
 {
-  Scene scene(box3d);
-  scene.commands("region a block 0 0.5 0 0.1 0 0.1\nregion b block 0.3 0.8 0 0.1 0 0.1\n"
-                 "create_points 1 region a ppc 2");
+  Scene scene(box3d +
+              "region a block 0 0.5 0 0.1 0 0.1\nregion b block 0.3 0.8 0 0.1 0 0.1\n"
+              "create_points 1 region a ppc 2");
   EXPECT_THAT(scene.error("create_points 2 region b ppc 2"),
               AllOf(HasSubstr("16 existing material points are (the first has ID 7)"),
                     HasSubstr("overlap yes")));
@@ -460,11 +434,11 @@ TEST(CreatePoints, Overlap)
 
   // a face through the sites belongs to both regions
   scene.commands("region c block 0.475 0.6 0 0.1 0 0.1");
-  EXPECT_THAT(scene.error("create_points 2 region c ppc 2"), HasSubstr("4 existing"));
+  expect_error(scene, "create_points 2 region c ppc 2", "4 existing");
 
   // at another spacing, finer and coarser
-  EXPECT_THAT(scene.error("create_points 2 region b ppc 3"), HasSubstr("existing"));
-  EXPECT_THAT(scene.error("create_points 2 region b ppc 1"), HasSubstr("16 existing"));
+  expect_error(scene, "create_points 2 region b ppc 3", "existing");
+  expect_error(scene, "create_points 2 region b ppc 1", "16 existing");
 
   scene.commands("create_points 2 region b ppc 2 overlap yes");
   EXPECT_EQ(atoms(scene).size(), 80u);
@@ -474,38 +448,36 @@ TEST(CreatePoints, OverlapAcrossPeriodicFaceAndRanks)
 {
   // sites on the faces of the box, and sites whose cells are cut by them
   for (double origin : {0.0625, -0.08, 0.08}) {
-    Scene scene("units si\natom_style mpm\nregion box block 0 1 0 1 0 1\ncreate_box 2 box");
-    scene.commands(fmt::format("fix grid all mpm 0.125 origin {0} {0} {0}\n"
-                               "create_points 1 box ppc 1\ndisplace_atoms all move -0.06 0.06 0.06",
-                               origin));
+    Scene scene("units si\natom_style mpm\nregion box block 0 1 0 1 0 1\ncreate_box 2 box\n" +
+                fmt::format("fix grid all mpm 0.125 origin {0} {0} {0}\n"
+                            "create_points 1 box ppc 1\ndisplace_atoms all move -0.06 0.06 0.06",
+                            origin));
     EXPECT_THAT(scene.error("create_points 2 box ppc 1"), HasSubstr("512 existing")) << origin;
   }
 
   // atoms that are no material points are not in the way
-  Scene mixed(box3d);
-  mixed.commands("create_atoms 1 single 0.525 0.525 0.525 units box\ncreate_points 2 box");
+  Scene mixed(box3d + "create_atoms 1 single 0.525 0.525 0.525 units box\ncreate_points 2 box");
   EXPECT_EQ(atoms(mixed).size(), 8001u);
   EXPECT_EQ(atoms(mixed)[0].volume0, 0.0);
 }
 
 TEST(CreatePoints, OutsideTheBox)
 {
-  Scene scene(box3d);
-  scene.commands("region r block 0.5 1.25 -0.1 0.1 0 0.1\nregion in block INF INF 0.5 0.6 0.5 0.6\n"
-                 "region far sphere 5 5 5 1\nregion huge block 0 1e9 0 1e9 0 1e9\n"
-                 "region near block 0 1.01 0.2 0.3 0.2 0.3");
+  Scene scene(box3d +
+              "region r block 0.5 1.25 -0.1 0.1 0 0.1\nregion in block INF INF 0.5 0.6 0.5 0.6\n"
+              "region far sphere 5 5 5 1\nregion huge block 0 1e9 0 1e9 0 1e9\n"
+              "region near block 0 1.01 0.2 0.3 0.2 0.3");
   EXPECT_THAT(scene.error("create_points 1 region r ppc 2"),
               AllOf(HasSubstr("region r reaches beyond the simulation box"),
                     HasSubstr("80 points would be outside"), HasSubstr("outside ignore")));
-  EXPECT_THAT(scene.error("create_points 1 region far ppc 1"), HasSubstr("would be outside"));
-  EXPECT_THAT(scene.error("create_points 1 region huge ppc 1"),
-              HasSubstr("an unknown number of points would be outside"));
+  expect_error(scene, "create_points 1 region far ppc 1", "would be outside");
+  expect_error(scene, "create_points 1 region huge ppc 1",
+               "an unknown number of points would be outside");
   EXPECT_EQ(atoms(scene).size(), 0u);
 
   scene.commands("create_points 1 region r ppc 2 outside ignore");
   EXPECT_EQ(atoms(scene).size(), 40u);
-  EXPECT_THAT(scene.error("create_points 1 region far ppc 1 outside ignore"),
-              HasSubstr("made no points"));
+  expect_error(scene, "create_points 1 region far ppc 1 outside ignore", "made no points");
 
   // INF is no mistake, nor is a region that is too large by less than half a spacing
   scene.commands("create_points 1 region in ppc 1");
@@ -558,9 +530,9 @@ TEST(CreatePoints, BadInput)
       {"create_points 1 region r pcc 2", "Unknown create_points keyword: pcc"},
       {"create_points 1 region slit ppc 1", "made no points"},
   };
-  Scene scene(box3d);
-  scene.commands("fix n all nve\nregion r block 0.2 0.3 0.2 0.3 0.2 0.3\n"
-                 "region slit block 0.41 0.42 0 1 0 1");
+  Scene scene(box3d +
+              "fix n all nve\nregion r block 0.2 0.3 0.2 0.3 0.2 0.3\n"
+              "region slit block 0.41 0.42 0 1 0 1");
   for (const auto &input : inputs) {
     const auto message = scene.error(input.line);
     EXPECT_THAT(message, AllOf(HasSubstr("ERROR"), HasSubstr(input.message))) << input.line;
@@ -575,43 +547,42 @@ TEST(CreatePoints, BadInput)
 TEST(CreatePoints, BadSetting)
 {
   Scene early;
-  EXPECT_THAT(early.error("atom_style mpm\ncreate_points 1 box"),
-              HasSubstr("before the simulation box is defined"));
+  expect_error(early, "atom_style mpm\ncreate_points 1 box",
+               "before the simulation box is defined");
   Scene atomic;
   EXPECT_THAT(atomic.error("atom_style mpm\natom_style atomic\nregion box block 0 1 0 1 0 1\n"
                            "create_box 1 box\ncreate_points 1 box"),
               AllOf(HasSubstr("needs atom_style mpm"), HasSubstr("atom style is atomic")));
   Scene tilted;
-  EXPECT_THAT(tilted.error("atom_style mpm\nregion box prism 0 1 0 1 0 1 0.1 0 0\n"
-                           "create_box 1 box\ncreate_points 1 box spacing 0.1"),
-              HasSubstr("orthogonal"));
+  expect_error(tilted,
+               "atom_style mpm\nregion box prism 0 1 0 1 0 1 0.1 0 0\n"
+               "create_box 1 box\ncreate_points 1 box spacing 0.1",
+               "orthogonal");
   Scene gridless;
   EXPECT_THAT(gridless.error("atom_style mpm\nregion box block 0 1 0 1 0 1\ncreate_box 1 box\n"
                              "create_points 1 box ppc 2"),
               AllOf(HasSubstr("define fix mpm first"), HasSubstr("create_points spacing")));
   Scene flat(box2d);
-  EXPECT_THAT(flat.error("fix grid all mpm 0.1\ncreate_points 1 box ppc 2 2 2"),
-              HasSubstr("expects 1 or 2 numbers in a 2d simulation, not 3"));
+  expect_error(flat, "fix grid all mpm 0.1\ncreate_points 1 box ppc 2 2 2",
+               "expects 1 or 2 numbers in a 2d simulation, not 3");
 }
 
 TEST(AtomStyle, BadInput)
 {
   Scene scene;
-  EXPECT_THAT(scene.error("atom_style mpm 3"), HasSubstr("Atom style mpm takes no arguments"));
-  EXPECT_THAT(scene.error("atom_style hybrid mpm sphere"),
-              HasSubstr("Atom style mpm must come after sphere"));
-  EXPECT_THAT(scene.error("atom_style hybrid ellipsoid mpm"),
-              HasSubstr("cannot be combined with atom style ellipsoid"));
-  EXPECT_THAT(scene.error("atom_style hybrid mpm line"),
-              HasSubstr("cannot be combined with atom style line"));
-  EXPECT_THAT(scene.error("atom_style hybrid mpm unknown"), HasSubstr("unknown"));
+  expect_error(scene, "atom_style mpm 3", "Atom style mpm takes no arguments");
+  expect_error(scene, "atom_style hybrid mpm sphere", "Atom style mpm must come after sphere");
+  expect_error(scene, "atom_style hybrid ellipsoid mpm",
+               "cannot be combined with atom style ellipsoid");
+  expect_error(scene, "atom_style hybrid mpm line", "cannot be combined with atom style line");
+  expect_error(scene, "atom_style hybrid mpm unknown", "unknown");
   scene.commands("atom_style mpm\natom_style hybrid sphere mpm\natom_style mpm");
 }
 
 // ---------------------------------------------------------------- what LAMMPS does to atoms
-static const char *const moving = R"(
-units lj
-atom_style mpm
+static std::string moving_points(const std::string &style)
+{
+  return "units lj\natom_style " + style + R"(
 atom_modify map array sort 3 1.0
 region box block 0 4 0 4 0 4
 create_box 2 box
@@ -619,6 +590,18 @@ region r block 0 4 0 2 0 2.5
 create_points 1 region r spacing 0.5
 set type 1 mass 1.0
 )";
+}
+static const std::string moving = moving_points("mpm");
+static const char *const styles[] = {"mpm", "hybrid sphere mpm", "hybrid atomic mpm"};
+
+/** With an atom, and with velocities. */
+static void with_an_atom(Scene &scene, const std::string &style)
+{
+  scene.commands("lattice none 1.0\n" + moving_points(style));
+  if (scene.lmp->atom->mass) scene.commands("mass * 1.0");
+  scene.commands("create_atoms 2 single 3.3 3.3 3.3 units box\n"
+                 "velocity all create 20.0 4711 loop all");
+}
 
 TEST(AtomStyle, NewAtoms)
 {
@@ -641,7 +624,7 @@ TEST(AtomStyle, NewAtoms)
     EXPECT_EQ(p.volume0, p.x[0] < 1.5 ? 0.25 : 0.0);
     EXPECT_EQ(p.mass, p.x[0] < 1.5 ? 3.0 : 1.0);
   }
-  EXPECT_THAT(scene.error("set type 1 volume -1"), HasSubstr("volume"));
+  expect_error(scene, "set type 1 volume -1", "volume");
 }
 
 TEST(AtomStyle, MemoryPerPoint)
@@ -658,17 +641,14 @@ TEST(AtomStyle, MemoryPerPoint)
 TEST(AtomStyle, MigrationAndSorting)
 {
   for (const char *style : {"mpm", "hybrid sphere mpm"}) {
-    Scene scene;
-    const auto lines = replaced(moving, "atom_style mpm", std::string("atom_style ") + style);
-    scene.commands(lines);
-    scene.commands("velocity all create 20.0 4711 loop all\nset type 1 image 0 0 0");
+    Scene scene(moving_points(style) +
+                "velocity all create 20.0 4711 loop all\nset type 1 image 0 0 0");
     fill(scene);
     const auto before = atoms(scene);
     ASSERT_EQ(before.size(), 8u * 4 * 5);
 
     scene.commands("fix n all nve\ntimestep 0.01\nneighbor 0.2 bin\ncomm_modify cutoff 0.5\n"
-                   "thermo 100");
-    scene.commands("run 300");
+                   "thermo 100\nrun 300");
     const auto after = atoms(scene);
     ASSERT_EQ(after.size(), before.size());
     int travelled = 0;
@@ -688,14 +668,9 @@ TEST(AtomStyle, MigrationAndSorting)
 
 TEST(AtomStyle, Restart)
 {
-  for (const char *style : {"mpm", "hybrid sphere mpm", "hybrid atomic mpm"}) {
+  for (const char *style : styles) {
     Scene scene;
-    const auto lines = replaced(moving, "atom_style mpm", std::string("atom_style ") + style);
-    scene.commands("lattice none 1.0");
-    scene.commands(lines);
-    if (scene.lmp->atom->mass) scene.commands("mass * 1.0");
-    scene.commands("create_atoms 2 single 3.3 3.3 3.3 units box\n"
-                   "velocity all create 20.0 4711 loop all");
+    with_an_atom(scene, style);
     fill(scene);
     const auto before = atoms(scene);
     const ScratchFile file("restart");
@@ -776,17 +751,16 @@ TEST(AtomStyle, Clear)
 // fixes and computes are told about new points
 TEST(AtomStyle, NewPointsInComputes)
 {
-  Scene scene(moving);
-  scene.commands("compute moved all displace/atom\ncompute far all reduce max c_moved[4]\n"
-                 "region s block 0 4 2 4 0 1\ncreate_points 2 region s spacing 0.5\n"
-                 "set type 2 mass 1.0\nfix n all nve\nthermo_style custom step c_far\nrun 0");
+  Scene scene(moving +
+              "compute moved all displace/atom\ncompute far all reduce max c_moved[4]\n"
+              "region s block 0 4 2 4 0 1\ncreate_points 2 region s spacing 0.5\n"
+              "set type 2 mass 1.0\nfix n all nve\nthermo_style custom step c_far\nrun 0");
   EXPECT_EQ(scene.evaluate("c_far"), 0.0);
 }
 
 TEST(AtomStyle, PropertyAtom)
 {
-  Scene scene("lattice none 1.0");
-  scene.commands(moving);
+  Scene scene("lattice none 1.0\n" + moving);
   fill(scene);
   scene.commands("create_atoms 2 single 3.3 3.3 3.3 units box\n"
                  "compute p all property/atom mpm_volume0 mpm_volume mpm_J mpm_density mpm_F12 "
@@ -813,7 +787,7 @@ TEST(AtomStyle, PropertyAtom)
     for (int c = 0; c < 6; c++) EXPECT_NEAR(a[7 + c], tau[c] / J, 1.0e-14 * fabs(a[7 + c]));
     EXPECT_EQ(a[13], a[12]);
   }
-  EXPECT_THAT(scene.error("compute q all property/atom mpm_F14"), HasSubstr("mpm_F14"));
+  expect_error(scene, "compute q all property/atom mpm_F14", "mpm_F14");
 }
 
 // ---------------------------------------------------------------- data files
@@ -838,12 +812,8 @@ static void round_trip(Scene &scene)
   const auto before = atoms(scene);
   const ScratchFile file("data");
   scene.commands("write_data " + file.name + " noinit\n");
-  Scene again("units si");
-  again.commands(std::string("atom_style ") +
-                 (scene.lmp->atom->radius_flag ? "hybrid sphere mpm"
-                      : scene.lmp->atom->mass  ? "hybrid atomic mpm"
-                                               : "mpm"));
-  again.commands("read_data " + file.name);
+  const char *style = styles[scene.lmp->atom->radius_flag ? 1 : scene.lmp->atom->mass ? 2 : 0];
+  Scene again(std::string("units si\natom_style ") + style + "\nread_data " + file.name);
   const auto after = atoms(again);
   ASSERT_EQ(after.size(), before.size());
   for (std::size_t k = 0; k < after.size(); k++) {
@@ -866,16 +836,12 @@ static void round_trip(Scene &scene)
 // id type density volume x y z; without volume: mass in place of density
 TEST(DataFile, Columns)
 {
-  const ScratchFile bad("bad",
-                        std::string(header) +
-                            "Atoms # mpm\n\n1 1 8960 1e-6 .1 .1 .1\n"
-                            "2 1 0 1e-6 .2 .1 .1\n3 2 0.5 0 .9 .9 .9\n4 2 2 3 .5 .9 .4 0 1 0\n");
+  const auto atoms_section = std::string(header) +
+      "Atoms # mpm\n\n1 1 8960 1e-6 .1 .1 .1\n"
+      "2 1 0 1e-6 .2 .1 .1\n3 2 0.5 0 .9 .9 .9\n4 2 2 3 .5 .9 .4";
+  const ScratchFile bad("bad", atoms_section + " 0 1 0\n"), in("good", atoms_section + "\n");
   Scene scene("units si\natom_style mpm");
-  EXPECT_THAT(scene.error("read_data " + bad.name), HasSubstr("Incorrect format"));
-  const ScratchFile in("good",
-                       std::string(header) +
-                           "Atoms # mpm\n\n1 1 8960 1e-6 .1 .1 .1\n"
-                           "2 1 0 1e-6 .2 .1 .1\n3 2 0.5 0 .9 .9 .9\n4 2 2 3 .5 .9 .4\n");
+  expect_error(scene, "read_data " + bad.name, "Incorrect format");
   Scene good("units si\natom_style mpm\nread_data " + in.name);
   auto p = atoms(good);
   ASSERT_EQ(p.size(), 4u);
@@ -913,14 +879,9 @@ TEST(DataFile, ColumnsWithSpheres)
 
 TEST(DataFile, RoundTrip)
 {
-  for (const char *style : {"mpm", "hybrid sphere mpm", "hybrid atomic mpm"}) {
+  for (const char *style : styles) {
     Scene scene;
-    const auto lines = replaced(moving, "atom_style mpm", std::string("atom_style ") + style);
-    scene.commands("lattice none 1.0");
-    scene.commands(lines);
-    if (scene.lmp->atom->mass) scene.commands("mass * 1.0");
-    scene.commands("create_atoms 2 single 3.3 3.3 3.3 units box\n"
-                   "velocity all create 20.0 4711 loop all");
+    with_an_atom(scene, style);
     if (scene.lmp->atom->radius_flag) scene.commands("set type 2 diameter 0.3");
     fill(scene);
     for (int i = 0; i < scene.lmp->atom->nlocal; i++)
@@ -932,8 +893,8 @@ TEST(DataFile, RoundTrip)
 // points without mass yet: can be stored by atom style mpm alone
 TEST(DataFile, PointsWithoutMass)
 {
-  Scene scene(box3d);
-  scene.commands("region r block 0.2 0.8 0.2 0.8 0.2 0.8\ncreate_points 2 region r jitter 0.3 5");
+  Scene scene(box3d +
+              "region r block 0.2 0.8 0.2 0.8 0.2 0.8\ncreate_points 2 region r jitter 0.3 5");
   round_trip(scene);
 }
 
@@ -967,21 +928,17 @@ TEST(DataFile, BadInput)
 
   // atom style sphere would refuse to read this file
   Scene scene(MPI_COMM_SELF);
-  const auto lines = replaced(box3d, "atom_style mpm", "atom_style hybrid sphere mpm");
-  scene.commands(lines);
-  scene.commands("region r block 0.2 0.8 0.2 0.8 0.2 0.8\ncreate_points 2 region r diameter 0.02");
+  scene.commands(replaced(box3d, "atom_style mpm", "atom_style hybrid sphere mpm") +
+                 "region r block 0.2 0.8 0.2 0.8 0.2 0.8\ncreate_points 2 region r diameter 0.02");
   for (const auto &p : atoms(scene)) EXPECT_EQ(p.radius, 0.01);
   const ScratchFile file(name, MPI_COMM_SELF);
-  EXPECT_THAT(scene.error("write_data " + file.name + " noinit"), HasSubstr("has no mass yet"));
+  expect_error(scene, "write_data " + file.name + " noinit", "has no mass yet");
 }
 
 TEST(AtomStyle, GrainsNextToPoints)
 {
-  Scene scene;
-  const auto lines = replaced(moving, "atom_style mpm", "atom_style hybrid sphere mpm");
-  scene.commands("lattice none 1.0");
-  scene.commands(lines);
-  scene.commands("create_atoms 2 single 3.3 3.3 3.3 units box");
+  Scene scene("lattice none 1.0\n" + moving_points("hybrid sphere mpm") +
+              "create_atoms 2 single 3.3 3.3 3.3 units box");
   for (const auto &p : atoms(scene))
     if (p.type == 2) EXPECT_DOUBLE_EQ(p.mass, M_PI / 6.0);    // of atom style sphere
   scene.commands("set type 2 diameter 0.4\nset type 2 density 2.0");

@@ -42,16 +42,14 @@ timestep 0.004
 // second half of the last impulse given to the points, is constant to round-off.
 
 // With every K, points take a step in every K of the atoms, with the mean of the K forces.
-class Atoms : public ::testing::TestWithParam<int> {};
-
-TEST_P(Atoms, HitABodyWithConstantMomentum)
+PARAMETER_TEST(Atoms, HitABodyWithConstantMomentum, int, Values(1, 2, 5))
 {
-  Scene run(replaced(scene, "mpm 1.0\n", strprintf("mpm 1.0 every %d\n", GetParam())));
-  run.commands("run 0 post no\n");
+  Scene run(replaced(scene, "mpm 1.0\n", strprintf("mpm 1.0 every %d\n", GetParam())) +
+            "run 0 post no\n");
   auto *atom = run.lmp->atom;
 
-  auto momentum = [&](double *p) {
-    double mine[4] = {0.0, 0.0, 0.0, 0.0};    // the last: momentum of the points along z
+  const auto momentum = [&]() {
+    std::vector<double> mine(4);    // the last: momentum of the points along z
     for (int i = 0; i < atom->nlocal; i++) {
       for (int d = 0; d < 3; d++) {
         mine[d] += atom->rmass[i] * atom->v[i][d];
@@ -59,22 +57,20 @@ TEST_P(Atoms, HitABodyWithConstantMomentum)
       }
       if (atom->type[i] == 1) mine[3] += atom->rmass[i] * atom->v[i][2];
     }
-    MPI_Allreduce(mine, p, 4, MPI_DOUBLE, MPI_SUM, run.lmp->world);
+    return over_ranks(mine);
   };
 
-  double start[4], now[4], pushed = 0.0;
-  momentum(start);
+  const auto start = momentum();
+  double pushed = 0.0;
   EXPECT_DOUBLE_EQ(start[3], 0.0);
   for (int k = 0; k < 10; k++) {
     run.commands("run 60 post no\n");
-    momentum(now);
+    const auto now = momentum();
     for (int d = 0; d < 3; d++) EXPECT_NEAR(now[d], start[d], 1.0e-12 * std::abs(start[2]));
     pushed = std::min(pushed, now[3]);
   }
   EXPECT_LT(pushed, 0.5 * start[2]);    // the atoms did hit the body
 }
-
-INSTANTIATE_TEST_SUITE_P(Every, Atoms, ::testing::Values(1, 2, 5));
 
 /* ----------------------------------------------------------------------
    A plate of points hits a crystal of atoms, twice as both are periodic: fcc, lj/cut 2.5, and a plate of its

@@ -76,7 +76,7 @@ TEST_P(BadCoupling, IsExplained)
   expect_explained(good_scene, GetParam());
 }
 
-static const Change fields[] = {
+static const Change field_mistakes[] = {
     {"LatticesDiffer", F2, "fix F2 high mpm 0.5\n",
      "F1 and F2 must have the same lattice.*pair style"},
     {"OriginsDiffer", F2, "fix F2 high mpm 1.0 origin 0.5 0 0\n",
@@ -115,7 +115,7 @@ static const Change fields[] = {
      "fix w all mpm/boundary region w stick\nregion w block 0 8 0 8 0 1\nrun 3\n",
      "Region w for fix mpm/boundary does not exist: define it before"},
 };
-INSTANTIATE_TEST_SUITE_P(Fields, BadCoupling, ::testing::ValuesIn(fields), case_name);
+INSTANTIATE_TEST_SUITE_P(Fields, BadCoupling, ValuesIn(field_mistakes), case_name);
 
 static const Change grains[] = {
     {"NoVelocitiesOfGhosts", VEL, "comm_modify mode multi\n",
@@ -160,7 +160,7 @@ static const Change grains[] = {
     {"Respa", RUN, "run_style respa 2 2\nrun 3\n", "requires run_style verlet"},
     {"Minimize", RUN, "minimize 0 0 10 10\n", "minimize before the fix is defined"},
 };
-INSTANTIATE_TEST_SUITE_P(Grains, BadCoupling, ::testing::ValuesIn(grains), case_name);
+INSTANTIATE_TEST_SUITE_P(Grains, BadCoupling, ValuesIn(grains), case_name);
 
 // material files of two bodies: each must be in the units of the input
 TEST(MaterialFiles, OfMixedUnits)

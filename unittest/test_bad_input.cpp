@@ -11,9 +11,6 @@
 
 #include "exceptions.h"
 
-#include <fstream>
-#include <sstream>
-
 using namespace MPM_TEST;
 
 static const std::string good_scene = space("lj", "f f f", "0 8 0 8 0 8", 2) + R"(
@@ -31,14 +28,6 @@ run 10
 static std::string before_run(const std::string &lines, const std::string &run = "run 10\n")
 {
   return changed(good_scene, "run 10\n", lines + "\n" + run);
-}
-
-static std::string file_text(const std::string &name)
-{
-  std::ifstream file(name);
-  std::stringstream text;
-  text << file.rdbuf();
-  return text.str();
 }
 
 class BadInput : public ::testing::TestWithParam<Change> {};
@@ -64,60 +53,47 @@ static const char *const MATERIAL = "fix soft all mpm/material density 1.0 neoho
 static const char *const TIMESTEP = "timestep 0.01\n";
 static const char *const RUN = "run 10\n";
 
-static const Change keywords[] = {
-    {"HMissing", FIX, "fix grid all mpm\n", "Illegal fix mpm command: missing argument"},
-    {"HText", FIX, "fix grid all mpm coarse\n", "[Ee]xpected floating.point.*coarse"},
-    {"HZero", FIX, "fix grid all mpm 0\n", "node spacing must be positive: 0"},
-    {"HNegative", FIX, "fix grid all mpm -1.0\n", "node spacing must be positive: -1"},
-    {"HNan", FIX, "fix grid all mpm nan\n", "nan"},
-    {"HInfinite", FIX, "fix grid all mpm 1e999\n", "positive|out of range"},
-    {"HLargerThanBox", FIX, "fix grid all mpm 8.5\n",
-     "spacing 8\\.5 is larger than the box length 8 along x"},
-    {"HTiny", FIX, "fix grid all mpm 1e-12\n", "spacing 1e-12 is too small for the box length 8"},
-    {"KeywordTypo", FIX, "fix grid all mpm 1.0 shap linear\n", "Unknown fix mpm keyword: shap"},
-    {"KeywordExtra", FIX, "fix grid all mpm 1.0 shape linear 3\n", "Unknown fix mpm keyword: 3"},
-    {"ShapeMissing", FIX, "fix grid all mpm 1.0 shape\n",
-     "Illegal fix mpm shape command: missing argument"},
-    {"ShapeUnknown", FIX, "fix grid all mpm 1.0 shape quintic\n",
-     "Unknown fix mpm shape quintic: must be one of linear quadratic cubic"},
-    {"TransferMissing", FIX, "fix grid all mpm 1.0 transfer\n",
-     "Illegal fix mpm transfer command: missing argument"},
-    {"TransferUnknown", FIX, "fix grid all mpm 1.0 transfer xflip\n",
-     "Unknown fix mpm transfer xflip: must be one of pic flip apic"},
-    {"FlipShareMissing", FIX, "fix grid all mpm 1.0 transfer flip\n",
-     "Illegal fix mpm transfer command: missing argument"},
-    {"FlipShareText", FIX, "fix grid all mpm 1.0 transfer flip shape linear\n",
-     "[Ee]xpected floating.point.*shape"},
-    {"FlipShareTooLarge", FIX, "fix grid all mpm 1.0 transfer flip 1.5\n",
-     "flip share must be within 0 and 1: 1\\.5"},
-    {"FlipShareNegative", FIX, "fix grid all mpm 1.0 transfer flip -0.1\n",
-     "flip share must be within 0 and 1: -0\\.1"},
-    {"SchemeMissing", FIX, "fix grid all mpm 1.0 scheme\n",
-     "Illegal fix mpm scheme command: missing argument"},
-    {"SchemeUnknown", FIX, "fix grid all mpm 1.0 scheme verlet\n",
-     "Unknown fix mpm scheme verlet: must be one of usl usf musl"},
-    {"OriginMissing", FIX, "fix grid all mpm 1.0 origin 0 0\n",
-     "Illegal fix mpm origin command: missing argument"},
-    {"OriginText", FIX, "fix grid all mpm 1.0 origin 0 0 middle\n",
-     "[Ee]xpected floating.point.*middle"},
-    {"OriginFarAway", FIX, "fix grid all mpm 1.0 origin 1e30 0 0\n",
-     "its origin 1e\\+?30 is too far away"},
-    {"PolicyMissing", FIX, "fix grid all mpm 1.0 bad\n",
-     "Illegal fix mpm bad command: missing argument"},
-    {"PolicyUnknown", FIX, "fix grid all mpm 1.0 bad ignore\n",
-     "Unknown fix mpm bad ignore: must be one of error warn delete"},
-    {"DtcheckMissing", FIX, "fix grid all mpm 1.0 dtcheck\n",
-     "Illegal fix mpm dtcheck command: missing argument"},
-    {"DtcheckNoBoolean", FIX, "fix grid all mpm 1.0 dtcheck maybe\n", "[Ee]xpected boolean.*maybe"},
-    {"KernelsMissing", FIX, "fix grid all mpm 1.0 kernels\n",
-     "Illegal fix mpm kernels command: missing argument"},
-    {"KernelsUnknown", FIX, "fix grid all mpm 1.0 kernels sse9\n",
-     "Unknown fix mpm kernels sse9: must be one of auto reference baseline avx2 avx512"},
-    {"GroupUnknown", FIX, "fix grid nobody mpm 1.0\n", "group ID.*nobody"},
-    {"GroupDynamic", FIX, "group moving dynamic all every 10\nfix grid moving mpm 1.0\n",
-     "dynamic group"},
-};
-INSTANTIATE_TEST_SUITE_P(Keywords, BadInput, ::testing::ValuesIn(keywords), case_name);
+static const auto keywords = mistakes_in(
+    FIX, "fix grid all mpm",
+    {
+        {"HMissing", "", "Illegal fix mpm command: missing argument"},
+        {"HText", "coarse", "[Ee]xpected floating.point.*coarse"},
+        {"HZero", "0", "node spacing must be positive: 0"},
+        {"HNegative", "-1.0", "node spacing must be positive: -1"},
+        {"HNan", "nan", "nan"},
+        {"HInfinite", "1e999", "positive|out of range"},
+        {"HLargerThanBox", "8.5", "spacing 8\\.5 is larger than the box length 8 along x"},
+        {"HTiny", "1e-12", "spacing 1e-12 is too small for the box length 8"},
+        {"KeywordTypo", "1.0 shap linear", "Unknown fix mpm keyword: shap"},
+        {"KeywordExtra", "1.0 shape linear 3", "Unknown fix mpm keyword: 3"},
+        {"ShapeMissing", "1.0 shape", "Illegal fix mpm shape command: missing argument"},
+        {"ShapeUnknown", "1.0 shape quintic",
+         "Unknown fix mpm shape quintic: must be one of linear quadratic cubic"},
+        {"TransferMissing", "1.0 transfer", "Illegal fix mpm transfer command: missing argument"},
+        {"TransferUnknown", "1.0 transfer xflip",
+         "Unknown fix mpm transfer xflip: must be one of pic flip apic"},
+        {"FlipShareMissing", "1.0 transfer flip",
+         "Illegal fix mpm transfer command: missing argument"},
+        {"FlipShareText", "1.0 transfer flip shape linear", "[Ee]xpected floating.point.*shape"},
+        {"FlipShareTooLarge", "1.0 transfer flip 1.5", "flip share must be within 0 and 1: 1\\.5"},
+        {"FlipShareNegative", "1.0 transfer flip -0.1",
+         "flip share must be within 0 and 1: -0\\.1"},
+        {"SchemeMissing", "1.0 scheme", "Illegal fix mpm scheme command: missing argument"},
+        {"SchemeUnknown", "1.0 scheme verlet",
+         "Unknown fix mpm scheme verlet: must be one of usl usf musl"},
+        {"OriginMissing", "1.0 origin 0 0", "Illegal fix mpm origin command: missing argument"},
+        {"OriginText", "1.0 origin 0 0 middle", "[Ee]xpected floating.point.*middle"},
+        {"OriginFarAway", "1.0 origin 1e30 0 0", "its origin 1e\\+?30 is too far away"},
+        {"PolicyMissing", "1.0 bad", "Illegal fix mpm bad command: missing argument"},
+        {"PolicyUnknown", "1.0 bad ignore",
+         "Unknown fix mpm bad ignore: must be one of error warn delete"},
+        {"DtcheckMissing", "1.0 dtcheck", "Illegal fix mpm dtcheck command: missing argument"},
+        {"DtcheckNoBoolean", "1.0 dtcheck maybe", "[Ee]xpected boolean.*maybe"},
+        {"KernelsMissing", "1.0 kernels", "Illegal fix mpm kernels command: missing argument"},
+        {"KernelsUnknown", "1.0 kernels sse9",
+         "Unknown fix mpm kernels sse9: must be one of auto reference baseline avx2 avx512"},
+    });
+INSTANTIATE_TEST_SUITE_P(Keywords, BadInput, ValuesIn(keywords), case_name);
 
 static const Change boxes[] = {
     {"NoBox", BOX, "region box block 0 8 0 8 0 8\n", "before simulation box is defined"},
@@ -149,9 +125,30 @@ static const Change boxes[] = {
     {"Respa", RUN, "run_style respa 2 2\nrun 10\n", "requires run_style verlet"},
     {"Minimize", RUN, "minimize 0 0 10 10\n", "[Ff]ix mpm.*minimiz"},
 };
-INSTANTIATE_TEST_SUITE_P(Boxes, BadInput, ::testing::ValuesIn(boxes), case_name);
+INSTANTIATE_TEST_SUITE_P(Boxes, BadInput, ValuesIn(boxes), case_name);
+
+static const auto materials = mistakes_in(
+    MATERIAL, "fix soft all mpm/material",
+    {
+        {"DensityZero", "density 0 linear 10.0 0.3", "RHO = 0 .*out of range: 0 < VALUE"},
+        {"DensityNegative", "density -1 linear 10.0 0.3", "RHO = -1 .*out of range: 0 < VALUE"},
+        {"DensityMissing", "linear 10.0 0.3", "density is missing: add 'density RHO'"},
+        {"ParameterMissing", "density 1.0 linear 10.0",
+         "linear: NU is missing \\(Poisson's ratio\\)"},
+        {"ParameterOutOfRange", "density 1.0 linear 10.0 0.5",
+         "NU = 0\\.5 .*out of range: -1 < VALUE < 0\\.5"},
+        {"LawUnknown", "density 1.0 cheese 10.0 0.3",
+         "unknown keyword 'cheese': expected density, "},
+        {"MaterialFileMissing", "file nothing.mpm",
+         "cannot read file nothing\\.mpm: .*LAMMPS_POTENTIALS"},
+    });
+INSTANTIATE_TEST_SUITE_P(Materials, BadInput, ValuesIn(materials), case_name);
 
 static const Change definitions[] = {
+    {"GroupUnknown", FIX, "fix grid nobody mpm 1.0\n", "group ID.*nobody"},
+    {"GroupDynamic", FIX, "group moving dynamic all every 10\nfix grid moving mpm 1.0\n",
+     "dynamic group"},
+
     {"NoMaterial", MATERIAL, "", "found no material: define one with fix mpm/material"},
     {"MaterialRemoved", RUN, "run 1\nunfix soft\nrun 1\n", "found no material"},
     {"NoMaterialForSome", MATERIAL,
@@ -161,20 +158,6 @@ static const Change definitions[] = {
     {"TwoMaterials", RUN,
      "group half id <= 100\nfix hard half mpm/material density 1.0 linear 99.0 0.3\nrun 10\n",
      "100 material points have more than one material, for instance point [0-9]+: .*disjoint"},
-    {"DensityZero", MATERIAL, "fix soft all mpm/material density 0 linear 10.0 0.3\n",
-     "RHO = 0 .*out of range: 0 < VALUE"},
-    {"DensityNegative", MATERIAL, "fix soft all mpm/material density -1 linear 10.0 0.3\n",
-     "RHO = -1 .*out of range: 0 < VALUE"},
-    {"DensityMissing", MATERIAL, "fix soft all mpm/material linear 10.0 0.3\n",
-     "density is missing: add 'density RHO'"},
-    {"ParameterMissing", MATERIAL, "fix soft all mpm/material density 1.0 linear 10.0\n",
-     "linear: NU is missing \\(Poisson's ratio\\)"},
-    {"ParameterOutOfRange", MATERIAL, "fix soft all mpm/material density 1.0 linear 10.0 0.5\n",
-     "NU = 0\\.5 .*out of range: -1 < VALUE < 0\\.5"},
-    {"LawUnknown", MATERIAL, "fix soft all mpm/material density 1.0 cheese 10.0 0.3\n",
-     "unknown keyword 'cheese': expected density, "},
-    {"MaterialFileMissing", MATERIAL, "fix soft all mpm/material file nothing.mpm\n",
-     "cannot read file nothing\\.mpm: .*LAMMPS_POTENTIALS"},
     {"MassNotFinite", RUN, "variable big atom 1e308*10\nset group all mass v_big\nrun 10\n",
      "216 material points have no positive mass, for instance point [0-9]+: "
      "check the density of their material or their set mass"},
@@ -197,7 +180,7 @@ static const Change definitions[] = {
     {"AtomsAreNoPoints", POINTS, "create_atoms 1 random 10 4711 body\n",
      "no material points.*set \\.\\.\\. volume"},
 };
-INSTANTIATE_TEST_SUITE_P(Definitions, BadInput, ::testing::ValuesIn(definitions), case_name);
+INSTANTIATE_TEST_SUITE_P(Definitions, BadInput, ValuesIn(definitions), case_name);
 
 static const Change steps[] = {
     {"TimeStepZero", TIMESTEP, "timestep 0.0\n", "positive time step: 0"},
@@ -223,7 +206,7 @@ static const Change steps[] = {
      "Material point [0-9]+ at .*has a deformation gradient of determinant -.* at step 1: try a "
      "smaller time step \\(fix mpm/dt\\)"},
 };
-INSTANTIATE_TEST_SUITE_P(Steps, BadInput, ::testing::ValuesIn(steps), case_name);
+INSTANTIATE_TEST_SUITE_P(Steps, BadInput, ValuesIn(steps), case_name);
 
 static const Change companions[] = {
     {"PointsBeforeFix", FIX, "", "define fix mpm first, or use create_points spacing"},
@@ -263,57 +246,35 @@ static const Change companions[] = {
     {"DumpOfUnknownFix", RUN, "dump d all mpm/grid/vtk 5 nodes.*.vtu grud mass\nrun 10\n",
      "fix ID grud does not exist"},
 };
-INSTANTIATE_TEST_SUITE_P(Companions, BadInput, ::testing::ValuesIn(companions), case_name);
+INSTANTIATE_TEST_SUITE_P(Companions, BadInput, ValuesIn(companions), case_name);
 
-// material files
-static std::string answer_to(const ScratchFile &file)
+// files: what takes the place of a line of the scene, with FILE, and what the file has in it
+TEST(Files, AreExplained)
 {
-  return answer(
-      changed(good_scene, MATERIAL, "fix soft all mpm/material file " + file.name + "\n"));
-}
-
-TEST(MaterialFile, UnitsMustBeThoseOfTheInput)
-{
-  const ScratchFile file("bad_units.mpm",
-                         "# DATE: 2026-07-04 UNITS: si CONTRIBUTOR: nobody\n"
-                         "density 1.0 linear 10.0 0.3\n");
-  const std::string text = answer_to(file);
-  EXPECT_TRUE(contains(text,
-                       "bad_units\\.mpm is in si units but the input uses lj units: convert "
-                       "the file or use units si"))
-      << text;
-}
-
-TEST(MaterialFile, MustGiveItsUnits)
-{
-  const ScratchFile file("no_units.mpm", "# a material\ndensity 1.0 linear 10.0 0.3\n");
-  const std::string text = answer_to(file);
-  EXPECT_TRUE(contains(text, "first line of file .*no_units\\.mpm must give its units")) << text;
-}
-
-TEST(MaterialFile, ErrorsNameTheLine)
-{
-  const ScratchFile file("bad_line.mpm",
-                         "# DATE: 2026-07-04 UNITS: lj CONTRIBUTOR: nobody\n"
-                         "density 1.0\n\nlinear 10.0 0.7\n");
-  const std::string text = answer_to(file);
-  EXPECT_TRUE(contains(text, "file .*bad_line\\.mpm line 4: .*NU = 0\\.7")) << text;
-}
-
-TEST(MaterialFile, EmptyFile)
-{
-  const ScratchFile file("empty.mpm", "# DATE: 2026-07-04 UNITS: lj CONTRIBUTOR: nobody\n");
-  const std::string text = answer_to(file);
-  EXPECT_TRUE(contains(text, "density is missing")) << text;
-}
-
-TEST(DataFile, VolumeMustNotBeNegative)
-{
-  const ScratchFile file("bad.data",
-                         "negative volume\n\n1 atoms\n2 atom types\n0 8 xlo xhi\n"
-                         "0 8 ylo yhi\n0 8 zlo zhi\n\nAtoms # mpm\n\n1 1 1.0 -0.1 1 1 1\n");
-  const std::string text = answer(changed(good_scene, BOX, "read_data " + file.name + "\n"));
-  EXPECT_TRUE(contains(text, "Invalid volume -0\\.1 of atom 1 in Atoms section")) << text;
+  const std::string material = "fix soft all mpm/material file FILE\n",
+                    header = "# DATE: 2026-07-04 UNITS: lj CONTRIBUTOR: nobody\n";
+  const struct {
+    Change change;
+    std::string text;
+  } cases[] = {
+      {{"bad_units.mpm", MATERIAL, material,
+        "bad_units\\.mpm is in si units but the input uses lj units: convert the file or use units "
+        "si"},
+       replaced(header, "lj", "si") + "density 1.0 linear 10.0 0.3\n"},
+      {{"no_units.mpm", MATERIAL, material,
+        "first line of file .*no_units\\.mpm must give its units"},
+       "# a material\ndensity 1.0 linear 10.0 0.3\n"},
+      {{"bad_line.mpm", MATERIAL, material, "file .*bad_line\\.mpm line 4: .*NU = 0\\.7"},
+       header + "density 1.0\n\nlinear 10.0 0.7\n"},
+      {{"empty.mpm", MATERIAL, material, "density is missing"}, header},
+      {{"bad.data", BOX, "read_data FILE\n", "Invalid volume -0\\.1 of atom 1 in Atoms section"},
+       "negative volume\n\n1 atoms\n2 atom types\n0 8 xlo xhi\n0 8 ylo yhi\n0 8 zlo zhi\n\n"
+       "Atoms # mpm\n\n1 1 1.0 -0.1 1 1 1\n"}};
+  for (auto [change, text] : cases) {
+    const ScratchFile file(change.name, text);
+    change.to = replaced(change.to, "FILE", file.name);
+    expect_explained(good_scene, change);
+  }
 }
 
 // policies for points that go bad
@@ -349,12 +310,10 @@ TEST_F(Policy, WarnGoesOnAndCounts)
   ASSERT_EQ(points.size(), 216u);
   int kept = 0;
   for (const auto &p : points) {
-    const double *F = p.F;
-    const double J = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
-        F[2] * (F[3] * F[7] - F[4] * F[6]);
+    const double J = MPMPoints::det(p.F);
     EXPECT_GT(J, 0.0);
     EXPECT_GT(p.vol, 0.0);
-    kept += J == 1.0 && F[0] == 1.0;
+    kept += J == 1.0 && p.F[0] == 1.0;
   }
   EXPECT_EQ(kept, std::stoi(found[1]));
   EXPECT_GT(kept, 0);

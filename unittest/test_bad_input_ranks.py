@@ -6,8 +6,6 @@
 """An error on any of several ranks ends the whole run: message, exit code, no waiting."""
 
 import re
-import shutil
-import tempfile
 
 import mpm_testing as mt
 
@@ -31,13 +29,12 @@ run 200
 """
 
 
-def error_of(lines, body="2 10 2 6 2 6", processes=2):
-    folder = tempfile.mkdtemp(prefix="mpm_bad_")
-    try:
-        result = mt.lammps(folder, SCENE.format(lines=lines, body=body), processes=processes,
-                           timeout=60)
-    finally:
-        shutil.rmtree(folder)
+def result_of(lines, body="2 10 2 6 2 6", processes=2):
+    return mt.lammps_once(SCENE.format(lines=lines, body=body), processes=processes, timeout=60)
+
+
+def error_of(*args, **options):
+    result = result_of(*args, **options)
     assert result.code is not None, "hangs:\n" + result.tail()
     assert result.code != 0, "exit code 0:\n" + result.tail()
     return result.output
@@ -49,10 +46,7 @@ def expect(pattern, *args, **options):
 
 
 def test_good_scene_runs():
-    folder = tempfile.mkdtemp(prefix="mpm_good_")
-    result = mt.lammps(folder, SCENE.format(lines="", body="2 10 2 6 2 6"), processes=2, timeout=60)
-    shutil.rmtree(folder)
-    assert result.code == 0, result.tail()
+    mt.ok(result_of(""))
 
 
 def test_point_leaves_on_one_rank():

@@ -146,13 +146,11 @@ SERIAL_TEST(Bernstein, PeriodicTranslation)
 
 TEST(Bernstein, RefusedWhere)
 {
-  const Mistake cases[] = {
+  expect_options_refused({
       {"shape bernstein", "needs frame total"},
       {"shape bernstein frame total transfer aflip 1.0",
        "use B-splines with transfer apic or flip"},
-  };
-  for (const auto &bad : cases)
-    expect_error(replaced(two_bodies, "MPM_OPTIONS", bad.lines) + "run 1\n", bad.message);
+  });
   expect_error(space("lj", "p p p", "0 9 0 8 0 8") +
                    "fix grid all mpm 1.0 frame total shape bernstein\n",
                "9 spacings along periodic axis x: use an even number");

@@ -36,8 +36,7 @@ def check(name, quantity, exact, goal):
     path = os.path.join(SCENES, "in." + name)
     with tempfile.TemporaryDirectory() as folder:
         out = os.path.join(folder, "choice.json")
-        result = choose(path, "-q", quantity, "--json", out, *goal)
-        assert result.code == 0, result.tail()
+        mt.ok(choose(path, "-q", quantity, "--json", out, *goal))
         with open(out) as file:
             choice = json.load(file)
         with open(os.path.join(folder, "in.check"), "w") as file:
@@ -45,8 +44,7 @@ def check(name, quantity, exact, goal):
         needed = []
         for _ in range(3 if TIMES else 1):
             before = reference_seconds(mt.LMP)
-            final = mt.lammps(folder, file="in.check", arguments=choice["arguments"])
-            assert final.code == 0, final.tail()
+            final = mt.ok(mt.lammps(folder, file="in.check", arguments=choice["arguments"]))
             seconds = loop_seconds(final.output)
             needed.append(2 * seconds / (before + reference_seconds(mt.LMP)))
     predicted, needed = choice["time"] / choice["reference"], statistics.median(needed)
@@ -82,31 +80,25 @@ def test_block_that_is_pulled_apart():
 
 def test_most_accurate_within_a_time():
     path = os.path.join(SCENES, "in.channel")
-    result = choose(path, "-q", "flow", "--time", "2", "--levels", "2", "--try", "quadratic apic usl updated",
-                    "--try", "linear flip 1.0 musl updated")
-    assert result.code == 0, result.tail()
+    result = mt.ok(choose(path, "-q", "flow", "--time", "2", "--levels", "2", "--try", "quadratic apic usl updated",
+                          "--try", "linear flip 1.0 musl updated"))
     times = [float(t) for t in re.findall(r"^ *(\S+) +\S+ +\S+ +\S+  \w+ \w+", result.output, re.M)]
     errors = [float(e) for e in re.findall(r"^ *\S+ +(\S+) +\S+ +\S+  \w+ \w+", result.output, re.M)]
     assert len(times) == 2 and max(times) <= 2 and errors == sorted(errors), result.output
 
 
 def test_input_without_what_is_needed():
+    x, h = "variable x equal 1\n", "variable h index 1\n"
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "in.none")
-        with open(path, "w") as file:
-            file.write("variable x equal 1\n")
-        result = choose(path, "-q", "x", "--error", "1")
-        assert result.code != 0 and "variable h index" in result.output, result.output
-        with open(path, "w") as file:
-            file.write("variable h index 1\n")
-        result = choose(path, "-q", "x", "--error", "1")
-        assert result.code != 0 and "no equal-style variable x" in result.output, result.output
-        with open(path, "w") as file:
-            file.write("variable h index 1\nvariable x equal 1\n")
-        result = choose(path, "-q", "x", "--error", "1", "--try", "linear apic usl updated")
-        assert result.code != 0 and "no variables for: linear apic usl updated" in result.output, result.output
-        result = choose(path, "-q", "x", "--error", "1", "--try", "quadratic apic usl updated")
-        assert result.code != 0 and "failed" in result.output, result.output
+        for text, options, words in (
+                (x, "", "variable h index"), (h, "", "no equal-style variable x"),
+                (h + x, "linear apic usl updated", "no variables for: linear apic usl updated"),
+                (h + x, "quadratic apic usl updated", "failed")):
+            with open(path, "w") as file:
+                file.write(text)
+            result = choose(path, "-q", "x", "--error", "1", *(["--try", options] if options else []))
+            assert result.code != 0 and words in result.output, result.output
 
 
 mt.main(globals())

@@ -14,17 +14,10 @@ using namespace MPM_TEST;
 // ---------------------------------------------------------------------- head-on impact of two bars
 
 /** Bars of length 1 at a distance of 2.5 node spacings, each with speed 0.05; c = 10. */
-static const std::string bars = plane("si", "f p", "-0.3 2.6 0 0.08 -0.05 0.05", 2) + R"(
-region b1 block 0 1 0 0.08 -0.05 0.05
-region b2 block 1.05 2.05 0 0.08 -0.05 0.05
-group one type 1
-group two type 2
-fix F1 one mpm 0.02 OPTIONS
-fix F2 two mpm 0.02 OPTIONS
-create_points 1 region b1 spacing 0.01
-create_points 2 region b2 spacing 0.01
-group one type 1
-group two type 2
+static const std::string bars = plane("si", "f p", "-0.3 2.6 0 0.08 -0.05 0.05", 2) +
+    fields({{"one", "block 0 1 0 0.08 -0.05 0.05"}, {"two", "block 1.05 2.05 0 0.08 -0.05 0.05"}},
+           "0.02 OPTIONS") +
+    R"(
 fix m1 one mpm/material density 1 linear 100 0
 fix m2 two mpm/material density RHO2 linear E2 0
 velocity one set 0.05 0 0
@@ -161,17 +154,10 @@ SERIAL_TEST(Contact, DifferentImpedances)
 // ---------------------------------------------------------------------- friction
 
 /** A block or a disk on a plane, gravity tilted by 30 degrees; F2 of the literature. */
-static const std::string incline = plane("si", "f f", "0 3 0 2 -0.05 0.05", 2) + R"(
-region plane block 0 3 0 0.5 -0.05 0.05
-region body BODY
-group plane type 1
-group body type 2
-fix F1 plane mpm SPACING transfer TRANSFER
-fix F2 body mpm SPACING transfer TRANSFER
-create_points 1 region plane ppc 2
-create_points 2 region body ppc 2
-group plane type 1
-group body type 2
+static const std::string incline = plane("si", "f f", "0 3 0 2 -0.05 0.05", 2) +
+    fields({{"plane", "block 0 3 0 0.5 -0.05 0.05"}, {"body", "BODY"}},
+           "SPACING transfer TRANSFER") +
+    R"(
 fix m1 plane mpm/material density 1000 neohookean 4.2e7 0.4
 fix m2 body mpm/material density 1000 neohookean 4.2e6 0.4
 fix floor all mpm/boundary ylo stick field F1
@@ -191,6 +177,34 @@ static std::string on_incline(const std::string &body, const std::string &spacin
   return replaced(replaced(text, "TRANSFER", transfer), "FRICTION", std::to_string(mu));
 }
 
+/** The scene when the block has settled on the plane, damped and stuck, and is let go with this friction. */
+static std::string settled(const std::string &transfer, const std::string &friction)
+{
+  return on_incline("block 0.5 1.5 0.5 1.0 -0.05 0.05", "0.1", transfer, 0.0) +
+      "unfix c\nfix c all mpm/contact F1 F2 law stick\nfix damp body viscous 750\n"
+      "run 500\nunfix damp\nunfix c\nfix c all mpm/contact F1 F2 law coulomb " +
+      friction + "\n";
+}
+
+/** Places, and work of friction, at three times. */
+struct Slide {
+  double t[3], x[3], work[3];
+
+  explicit Slide(Scene &run)
+  {
+    for (int k = 0; k < 3; k++) {
+      if (k) run.commands("run 450 post no\n");
+      t[k] = run.evaluate("time");
+      x[k] = run.evaluate("v_x");
+      work[k] = run.evaluate("f_c");
+    }
+  }
+  double acceleration() const
+  {
+    return 2.0 * ((x[2] - x[1]) / (t[2] - t[1]) - (x[1] - x[0]) / (t[1] - t[0])) / (t[2] - t[0]);
+  }
+};
+
 // The block settles on the plane, damped and stuck; then it is let go, with friction from zero across the
 // limit of sticking, tan(30 degrees) = 0.577. Its elasticity makes it jump a little at first
 SERIAL_TEST(Friction, BlockSlidesOrSticks)
@@ -199,31 +213,21 @@ SERIAL_TEST(Friction, BlockSlidesOrSticks)
   for (const char *transfer : {"apic", "flip 1.0"})
     for (const double mu : {0.0, 0.1, 0.3, 0.55, 0.6}) {
       SCOPED_TRACE(std::string(transfer) + " " + std::to_string(mu));
-      Scene run(on_incline("block 0.5 1.5 0.5 1.0 -0.05 0.05", "0.1", transfer, mu));
-      run.commands("unfix c\nfix c all mpm/contact F1 F2 law stick\nfix damp body viscous 750\n"
-                   "run 500\nunfix damp\nunfix c\n" +
-                   strprintf("fix c all mpm/contact F1 F2 law coulomb %g\n", mu) +
-                   "run 900 post no\n");
-      double t[3], x[3], work[3];
-      for (int k = 0; k < 3; k++) {
-        if (k) run.commands("run 450 post no\n");
-        t[k] = run.evaluate("time");
-        x[k] = run.evaluate("v_x");
-        work[k] = run.evaluate("f_c");
-      }
-      const double exact = std::max(0.0, g * (sine - mu * cosine));
+      Scene run(settled(transfer, std::to_string(mu)) + "run 900 post no\n");
+      const Slide slide(run);
+      const double exact = std::max(0.0, g * (sine - mu * cosine)), way = slide.x[2] - slide.x[0];
       if (exact > 0.0) {
-        const double a =
-            2.0 * ((x[2] - x[1]) / (t[2] - t[1]) - (x[1] - x[0]) / (t[1] - t[0])) / (t[2] - t[0]);
-        EXPECT_NEAR(measured(strprintf("%s, mu = %g: acceleration", transfer, mu), a), exact,
-                    0.005 * g);
+        EXPECT_NEAR(
+            measured(strprintf("%s, mu = %g: acceleration", transfer, mu), slide.acceleration()),
+            exact, 0.005 * g);
         // the work of friction is friction times the way
-        const double friction = mu * 1000 * 0.5 * g * cosine, way = x[2] - x[0];
-        EXPECT_NEAR(measured("work", work[2] - work[0]), -friction * way,
+        const double friction = mu * 1000 * 0.5 * g * cosine;
+        EXPECT_NEAR(measured("work", slide.work[2] - slide.work[0]), -friction * way,
                     0.01 * friction * way + 1e-12);
       } else
-        EXPECT_NEAR(measured(strprintf("%s, mu = %g: creep", transfer, mu), x[2] - x[1]), 0.0,
-                    5e-4);
+        EXPECT_NEAR(
+            measured(strprintf("%s, mu = %g: creep", transfer, mu), slide.x[2] - slide.x[1]), 0.0,
+            5e-4);
     }
 }
 
@@ -232,8 +236,7 @@ SERIAL_TEST(Friction, DiskRollsOrSlips)
   const double g = 9.81, sine = 0.5, cosine = std::sqrt(0.75);
   for (const double mu : {0.1, 0.17, 0.22, 0.3}) {    // it rolls from 0.192 on
     SCOPED_TRACE(mu);
-    Scene run(on_incline("cylinder z 0.7 1.0 0.5 -0.05 0.05", "0.05", "apic", mu));
-    run.commands("run 4000\n");
+    Scene run(on_incline("cylinder z 0.7 1.0 0.5 -0.05 0.05", "0.05", "apic", mu) + "run 4000\n");
     const double t = run.evaluate("time");
     const bool rolls = std::tan(M_PI / 6) <= 3 * mu;
     const double a = rolls ? 2.0 / 3.0 * g * sine : g * (sine - mu * cosine);
@@ -243,17 +246,10 @@ SERIAL_TEST(Friction, DiskRollsOrSlips)
   }
 }
 
-static const std::string disks = plane("lj", "p p", "0 24 0 12", 2) + R"(
-region one cylinder z 3.1 6.2 2.5 INF INF
-region two cylinder z 20.9 5.3 2.5 INF INF
-group one type 1
-group two type 2
-fix F1 one mpm 0.5
-fix F2 two mpm 0.5
-create_points 1 region one ppc 2
-create_points 2 region two ppc 2
-group one type 1
-group two type 2
+static const std::string disks = plane("lj", "p p", "0 24 0 12", 2) +
+    fields({{"one", "cylinder z 3.1 6.2 2.5 INF INF"}, {"two", "cylinder z 20.9 5.3 2.5 INF INF"}},
+           "0.5") +
+    R"(
 fix m all mpm/material density 1 neohookean 50 0.3
 fix c all mpm/contact F1 F2 law coulomb 0.3
 velocity one set -0.5 0.02 0
@@ -265,16 +261,11 @@ timestep 0.01
 static const std::string tilted = plane("si", "f f", "0 4 0 3 -0.05 0.05", 2) + R"(
 variable s equal sin(ANGLE*PI/180)
 variable c equal cos(ANGLE*PI/180)
-region slab block 0.6 3.4 0.8 1.3 -0.05 0.05
-region body block 0.9 1.4 1.3 1.7 -0.05 0.05
-group plane type 1
-group body type 2
-fix F1 plane mpm 0.1
-fix F2 body mpm 0.1
-create_points 1 region slab ppc 2
-create_points 2 region body ppc 2
-group plane type 1
-group body type 2
+)" +
+    fields({{"plane", "block 0.6 3.4 0.8 1.3 -0.05 0.05"},
+            {"body", "block 0.9 1.4 1.3 1.7 -0.05 0.05"}},
+           "0.1") +
+    R"(
 displace_atoms all rotate 2 1.3 0 0 0 1 -ANGLE units box
 region hold plane $(2-0.25*v_s) $(1.3-0.25*v_c) 0 $(-v_s) $(-v_c) 0
 fix m1 plane mpm/material density 1000 neohookean 4.2e7 0.4
@@ -319,22 +310,11 @@ TEST(Normals, LogisticRegressionIsTheSameOnAnyNumberOfRanks)
 }
 
 // ---------------------------------------------------------------------- three bodies at a node
-static const std::string corner = plane("lj", "p p", "0 16 0 16", 3) + R"(
-region b1 block 2 8 2 8 -0.5 0.5
-region b2 block 8 14 2 8 -0.5 0.5
-region b3 block 5 11 8 14 -0.5 0.5
-group one type 1
-group two type 2
-group three type 3
-fix F1 one mpm 1.0
-fix F2 two mpm 1.0
-fix F3 three mpm 1.0
-create_points 1 region b1 ppc 2
-create_points 2 region b2 ppc 2
-create_points 3 region b3 ppc 2
-group one type 1
-group two type 2
-group three type 3
+static const std::string corner = plane("lj", "p p", "0 16 0 16", 3) +
+    fields({{"one", "block 2 8 2 8 -0.5 0.5"},
+            {"two", "block 8 14 2 8 -0.5 0.5"},
+            {"three", "block 5 11 8 14 -0.5 0.5"}}) +
+    R"(
 fix m all mpm/material density 1 neohookean 100 0.3
 velocity one set 0.3 0.1 0
 velocity two set -0.2 0.2 0
@@ -349,8 +329,7 @@ TEST(ManyBodies, OrderOfNamesDoesNotMatter)
 {
   std::vector<Scene::State> reference;
   for (const char *names : {"F1 F2 F3", "F3 F1 F2", "F2 F3 F1"}) {
-    Scene run(replaced(corner, "FIELDS", names));
-    run.commands("run 0\n");
+    Scene run(replaced(corner, "FIELDS", names) + "run 0\n");
     const double px = run.evaluate("v_px"), py = run.evaluate("v_py");
     run.commands("run 200\n");
     EXPECT_NEAR(run.evaluate("v_px"), px, 1e-11);
@@ -369,13 +348,11 @@ TEST(ManyBodies, OrderOfNamesDoesNotMatter)
 // each other, at any node, and their momentum is what it was
 SERIAL_TEST(ManyBodies, NoneApproaches)
 {
-  Scene run(
-      replaced(replaced(replaced(replaced(replaced(corner, "b1 block 2 8 2 8", "b1 block 2 8 0 16"),
-                                          "b2 block 8 14 2 8", "b2 block 8.5 14 0 16"),
-                                 "b3 block 5 11 8 14", "b3 block 8 8.5 0 16"),
-                        "FIELDS law coulomb 0.4", "F1 F2 F3 gap no"),
-               "velocity three set 0.1 -0.5 0", "velocity three set 0.1 0.3 0"));
-  run.commands("run 1\n");
+  std::string scene = replaced(corner, "block 2 8 2 8", "block 2 8 0 16");
+  scene = replaced(scene, "block 8 14 2 8", "block 8.5 14 0 16");
+  scene = replaced(scene, "block 5 11 8 14", "block 8 8.5 0 16");
+  scene = replaced(scene, "FIELDS law coulomb 0.4", "F1 F2 F3 gap no");
+  Scene run(replaced(scene, "three set 0.1 -0.5 0", "three set 0.1 0.3 0") + "run 1\n");
   int all = 0;
   const auto look = [&](const Scene::Node &node) {
     if (node.alias) return;
@@ -456,24 +433,14 @@ TEST(Restart, RefusesAnotherNumberOfBodies)
 SERIAL_TEST(Friction, StaticAndKinetic)
 {
   for (const double v : {0.0, 0.2}) {
-    Scene run(on_incline("block 0.5 1.5 0.5 1.0 -0.05 0.05", "0.1", "apic", 0.0));
-    run.commands(
-        "unfix c\nfix c all mpm/contact F1 F2 law stick\nfix damp body viscous 750\n"
-        "run 500\nunfix damp\nunfix c\n" +
-        strprintf("fix c all mpm/contact F1 F2 law coulomb 0.3 %g\n", v > 0.0 ? 0.9 : 5.0) +
-        strprintf("velocity body set %g NULL NULL sum yes\nrun 450 post no\n", v));
-    double t[3], x[3];
-    for (int k = 0; k < 3; k++) {
-      if (k) run.commands("run 450 post no\n");
-      t[k] = run.evaluate("time");
-      x[k] = run.evaluate("v_x");
-    }
-    const double a =
-        2.0 * ((x[2] - x[1]) / (t[2] - t[1]) - (x[1] - x[0]) / (t[1] - t[0])) / (t[2] - t[0]);
+    Scene run(settled("apic", v > 0.0 ? "0.3 0.9" : "0.3 5.0") +
+              strprintf("velocity body set %g NULL NULL sum yes\nrun 450 post no\n", v));
+    const Slide slide(run);
     if (v > 0.0)
-      EXPECT_NEAR(measured("acceleration", a), 9.81 * (0.5 - 0.3 * std::sqrt(0.75)), 0.005 * 9.81);
+      EXPECT_NEAR(measured("acceleration", slide.acceleration()),
+                  9.81 * (0.5 - 0.3 * std::sqrt(0.75)), 0.005 * 9.81);
     else
-      EXPECT_NEAR(measured("creep", x[2] - x[1]), 0.0, 5e-4);
+      EXPECT_NEAR(measured("creep", slide.x[2] - slide.x[1]), 0.0, 5e-4);
   }
 }
 
@@ -484,15 +451,13 @@ SERIAL_TEST(Friction, StaticAndKinetic)
 // them: they do not touch, and do not slide freely. Two fields touch where they are, and do
 // slide
 static const std::string lobes = plane("lj", "p p", "0 16 0 4", 2) + R"(
-region one block 2 7 0 4 -0.5 0.5
-region two block 9 14 0 4 -0.5 0.5
 group one type 1
 group two type 2
 FIELDS
-create_points 1 region one ppc 2 fix FIRST
-create_points 2 region two ppc 2 fix FIRST
-group one type 1
-group two type 2
+)" +
+    bodies({{"one", "block 2 7 0 4 -0.5 0.5"}, {"two", "block 9 14 0 4 -0.5 0.5"}},
+           "ppc 2 fix F1") +
+    R"(
 group both type 1 2
 fix m all mpm/material density 1 neohookean 50 0.3
 velocity one set 0.2 0.2 0
@@ -509,7 +474,7 @@ SERIAL_TEST(SelfContact, LobesStick)
     const std::string fields = k
         ? "fix F1 one mpm 0.5\nfix F2 two mpm 0.5\nfix c all mpm/contact F1 F2"
         : "group both type 1 2\nfix F1 both mpm 0.5";
-    Scene run(replaced(replaced(lobes, "FIRST", "F1"), "FIELDS", fields));
+    Scene run(replaced(lobes, "FIELDS", fields));
     for (int n = 0; n < 80; n++) {
       run.commands("run 10 post no\n");
       gap[k] = std::min(gap[k], run.evaluate("v_gap/0.5"));
@@ -537,7 +502,7 @@ SERIAL_TEST(SelfContact, LobesStick)
 static std::string drawn_bars(const std::string &law, const std::string &velocity)
 {
   std::string text = two_bars("transfer apic", law);
-  text = replaced(text, "b2 block 1.05 2.05", "b2 block 1.0 2.0");
+  text = replaced(text, "block 1.05 2.05", "block 1.0 2.0");
   text = replaced(text, "velocity one set 0.05 0 0",
                   "region left block -1 0.1 0 0.08 -0.05 0.05\n"
                   "fix hold all mpm/boundary region left stick field F1");

@@ -16,7 +16,7 @@ using namespace MPM_TEST;
 // the left end is 0.3 long.
 static constexpr double PULSE = 0.03, WIDTH = 0.16;
 
-static const char *const bars = R"(
+static const std::string bars = R"(
 units si
 dimension 2
 boundary f p p
@@ -24,14 +24,10 @@ atom_style mpm
 neighbor $(0.5*v_h) bin
 region box block -0.5 2.9 0 0.16 -0.05 0.05
 create_box 2 box
-region b1 block 0 1 0 0.16 -0.05 0.05
-region b2 block 1 2 0 0.16 -0.05 0.05
-create_points 1 region b1 spacing $(0.5*v_h)
-create_points 2 region b2 spacing $(0.5*v_h)
-group one type 1
-group two type 2
-fix F1 one mpm ${h} OPTIONS
-fix F2 two mpm ${h} OPTIONS
+)" +
+    fields({{"one", "block 0 1 0 0.16 -0.05 0.05"}, {"two", "block 1 2 0 0.16 -0.05 0.05"}},
+           "${h} OPTIONS") +
+    R"(
 fix m1 one mpm/material density 1 linear 100 0
 fix m2 two mpm/material density RATIO linear $(100*RATIO) 0
 fix c all mpm/contact F1 F2

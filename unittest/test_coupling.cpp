@@ -20,15 +20,13 @@ neighbor 0.3 multi
 comm_modify vel yes mode multi
 region box block 0 10 0 10 0 14
 create_box 3 box
-region b1 block 1.5 8.5 1.5 8.5 0 3
-region b2 cylinder z 5.1 4.8 2.4 3 6
-create_points 1 region b1 spacing 0.5
-create_points 2 region b2 spacing 0.5
+)" +
+    bodies({{"low", "block 1.5 8.5 1.5 8.5 0 3"}, {"high", "cylinder z 5.1 4.8 2.4 3 6"}},
+           "spacing 0.5") +
+    R"(
 create_atoms 3 single 4.2 4.3 7.1
 create_atoms 3 single 6.4 5.7 7.3
 create_atoms 3 single 4.9 6.6 7.6
-group low type 1
-group high type 2
 group body type 1 2
 group grain type 3
 set group grain diameter 2 density 2
@@ -141,15 +139,11 @@ SERIAL_TEST(Friction, OscillationDecaysLinearly)
   const double k = mass * omega * omega, drop = 2.0 * mu * mass * gravity / k;
   for (const char *transfer : {"apic", "flip 1.0"}) {
     SCOPED_TRACE(transfer);
-    Scene run(replaced(plane("si", "f f", "0 2 0 1.5 -0.05 0.05", 2) + R"(
-region plane block 0 2 0 0.5 -0.05 0.05
-region body block 0.5 1.5 0.5 1.0 -0.05 0.05
-create_points 1 region plane spacing 0.05
-create_points 2 region body spacing 0.05
-group plane type 1
-group body type 2
-fix F1 plane mpm 0.1 transfer TRANSFER
-fix F2 body mpm 0.1 transfer TRANSFER
+    Scene run(plane("si", "f f", "0 2 0 1.5 -0.05 0.05", 2) +
+              fields({{"plane", "block 0 2 0 0.5 -0.05 0.05"},
+                      {"body", "block 0.5 1.5 0.5 1.0 -0.05 0.05"}},
+                     std::string("0.1 transfer ") + transfer) +
+              R"(
 fix m1 plane mpm/material density 1000 neohookean 4.2e7 0.4
 fix m2 body mpm/material density 1000 neohookean 4.2e6 0.4
 fix floor all mpm/boundary ylo stick field F1
@@ -159,8 +153,7 @@ fix g body gravity 9.81 vector 0 -1 0
 fix dt all mpm/dt 0.5
 variable x equal xcm(body,x)
 run 3000
-)",
-                       "TRANSFER", transfer));
+)");
     run.commands(strprintf("variable rest equal %.17g\n", run.evaluate("v_x") - 0.05) +
                  strprintf("variable f equal %.17g*(v_rest-xcm(body,x))\n", k / 200.0) +
                  "fix spring body addforce v_f 0 0\nrun 0\n");

@@ -14,13 +14,6 @@
 
 using namespace MPM_TEST;
 
-/** Start of a 2d scene. */
-static std::string plane(const std::string &boundary, const std::string &box)
-{
-  return "units lj\ndimension 2\nboundary " + boundary + "\natom_style mpm\nregion box block " +
-      box + " -0.5 0.5\ncreate_box 1 box\n";
-}
-
 static const std::vector<const char *> variants = {
     "shape cpdi transfer apic",
     "shape cpdi transfer flip 1.0 scheme musl",
@@ -61,18 +54,17 @@ TEST(Restart, GoesOnBitByBit)
   const ScratchFile file("other");
   Scene first(scene + "run 1\nwrite_restart " + file.name + "\n");
   Scene second;
-  EXPECT_THAT(second.error("read_restart " + file.name + "\nfix grid all mpm 1.0 shape cpdi\n"),
-              HasSubstr("shape cpdi2 (now cpdi)"));
+  expect_error(second, "read_restart " + file.name + "\nfix grid all mpm 1.0 shape cpdi\n",
+               "shape cpdi2 (now cpdi)");
 }
 
 SERIAL_TEST(Conservation, MomentumIsKeptAndNoEnergyGained)
 {
   for (const char *options : variants) {
     SCOPED_TRACE(options);
-    Scene run(replaced(two_bodies, "MPM_OPTIONS", options));
-    run.commands(
-        "compute e all mpm/energy\nvariable px equal vcm(all,x)\nvariable m equal mass(all)\n"
-        "thermo_style custom step c_e[*] v_px\nrun 0\n");
+    Scene run(replaced(two_bodies, "MPM_OPTIONS", options) +
+              "compute e all mpm/energy\nvariable px equal vcm(all,x)\nvariable m equal mass(all)\n"
+              "thermo_style custom step c_e[*] v_px\nrun 0\n");
     const double p = run.evaluate("v_px*v_m"), kinetic = run.evaluate("c_e[1]");
     run.commands("run 150\n");
     EXPECT_NEAR(run.evaluate("v_px*v_m"), p, 1e-11 * run.evaluate("v_m"));
@@ -88,7 +80,7 @@ SERIAL_TEST(Equivalence, BoxesInOneCellAreThoseOfCpgimp)
   for (const char *transfer : {"transfer flip 1.0 scheme musl", "transfer apic"}) {
     std::vector<Scene::State> states[2];
     for (const int k : {0, 1}) {
-      Scene run(plane("p p p", "0 16 0 4") + std::string("fix g all mpm 1.0 shape ") +
+      Scene run(plane("lj", "p p", "0 16 0 4") + std::string("fix g all mpm 1.0 shape ") +
                 (k ? "cpdi " : "cpgimp ") + transfer +
                 "\ncreate_points 1 region box ppc 2\n"
                 "fix m all mpm/material density 1 neohookean 100 0.3\n"
@@ -105,17 +97,12 @@ SERIAL_TEST(Equivalence, BoxesInOneCellAreThoseOfCpgimp)
 TEST(UniformPressure, PointsOfTwoSizes)
 {
   for (const char *shape : {"cpdi", "cpdi2"}) {
-    Scene run(plane("p p p", "0 8 0 8") +
-              strprintf(R"(
-fix g all mpm 1.0 shape %s transfer apic
-region left block 0 4 0 8 -0.5 0.5
-region right block 4 8 0 8 -0.5 0.5
-create_points 1 region left ppc 2
-create_points 1 region right ppc 3
-fix m all mpm/material density 1 camclay 10 1 0.2 0.05 1 1 2
-timestep 0.01
-run 20
-)",
+    Scene run(plane("lj", "p p", "0 8 0 8") +
+              strprintf("fix g all mpm 1.0 shape %s transfer apic\n"
+                        "region left block 0 4 0 8 -0.5 0.5\nregion right block 4 8 0 8 -0.5 0.5\n"
+                        "create_points 1 region left ppc 2\ncreate_points 1 region right ppc 3\n"
+                        "fix m all mpm/material density 1 camclay 10 1 0.2 0.05 1 1 2\n"
+                        "timestep 0.01\nrun 20\n",
                         shape));
     EXPECT_NEAR(run.points().F[0][0], 1.0, 1e-12);
     for (int i = 0; i < run.n(); i++)
@@ -123,21 +110,21 @@ run 20
   }
 }
 
+/** A bar without stiffness, from the lattice on. */
+static std::string stretching_bar(const std::string &region, const std::string &shape)
+{
+  return body(region, "density 1 neohookean 1e-10 0.3",
+              "1.0 transfer flip 1.0 scheme musl shape " + shape) +
+      "variable v atom 0.1*x\nvelocity all set v_v 0 0\n";
+}
+
 // each point flies on with v = 2 x t^-1, eleven times as long in the end. Points of FLIP that are alone
 // on their nodes would not notice that they are stretched
 SERIAL_TEST(Stretch, ElevenfoldWithoutFracture)
 {
   const auto error = [](const std::string &shape) {
-    Scene run(plane("f p p", "-70 70 0 4") +
-              "fix g all mpm 1.0 transfer flip 1.0 scheme musl shape " + shape + R"(
-region bar block -6 6 0 4 -0.5 0.5
-create_points 1 region bar ppc 2
-fix m all mpm/material density 1 neohookean 1e-10 0.3
-variable v atom 0.1*x
-velocity all set v_v 0 0
-timestep 0.05
-run 2000
-)");
+    Scene run(plane("lj", "f p", "-70 70 0 4") + stretching_bar("block -6 6 0 4 -0.5 0.5", shape) +
+              "timestep 0.05\nrun 2000\n");
     double worst = 0.0;    // points at the ends have nothing outside that goes on faster
     for (const auto &s : run.gather())
       if (std::fabs(s.x[0]) < 44.0) worst = std::max(worst, std::fabs(s.F[0] - 11.0));
@@ -203,9 +190,8 @@ timestep %.17g
   return measured(strprintf("B2, G = %g, %s, %d cells", G, options.c_str(), n), worst);
 }
 
-class Vortex : public ::testing::TestWithParam<const char *> {};
-
-TEST_P(Vortex, Converges)
+PARAMETER_TEST(Vortex, Converges, const char *,
+               Values("shape cpdi transfer apic", "shape cpdi transfer flip 1.0 scheme musl"))
 {
   if (nranks() > 1) GTEST_SKIP() << "forces are those of one rank";
   const std::string options = GetParam();
@@ -213,10 +199,6 @@ TEST_P(Vortex, Converges)
   EXPECT_GT(measured("order", log2(coarse / fine)), 1.5);
   EXPECT_LT(fine, 0.065);
 }
-
-INSTANTIATE_TEST_SUITE_P(Shapes, Vortex,
-                         ::testing::Values("shape cpdi transfer apic",
-                                           "shape cpdi transfer flip 1.0 scheme musl"));
 
 // with 5 cells across the ring, the ragged rim turns free corners inside out; and the volume of
 // domains is that of F
@@ -231,9 +213,8 @@ SERIAL_TEST(VortexVolume, FreeCorners)
 }
 
 // D2: cantilever of 4 x 1 m under its weight; finite elements: -3.3027 m
-class Cantilever : public ::testing::TestWithParam<const char *> {};
-
-TEST_P(Cantilever, BendsAsFiniteElements)
+PARAMETER_TEST(Cantilever, BendsAsFiniteElements, const char *,
+               Values("shape cpdi transfer apic", "shape cpdi2 transfer apic"))
 {
   if (nranks() > 1) GTEST_SKIP() << "one is enough";
   Scene run(plane("si", "f f", "0 5 -5 2 -0.1 0.1", 1, 0.05) +
@@ -263,28 +244,18 @@ timestep 6e-4
   EXPECT_NEAR(measured(std::string("D2 ") + GetParam(), lowest), -3.27, 0.09);
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, Cantilever,
-                         ::testing::Values("shape cpdi transfer apic",
-                                           "shape cpdi2 transfer apic"));
-
 SERIAL_TEST(Size, Limit)
 {
-  const std::string scene = plane("f p p", "-200 200 0 4") + R"(
-fix g all mpm 1.0 transfer flip 1.0 scheme musl shape MPM_SHAPE
-region bar block -3 3 0 4 -0.5 0.5
-create_points 1 region bar ppc 2
-fix m all mpm/material density 1 neohookean 1e-10 0.3
-variable v atom 0.1*x
-velocity all set v_v 0 0
-timestep 0.5
-)";
-  for (const char *shape : {"cpdi", "cpdi2"}) {
-    const auto s = replaced(scene, "MPM_SHAPE", shape);
-    expect_error(s + "run 700\n", "has a domain with a corner 7.");
-    Scene warned(replaced(s, "1.0 transfer", "1.0 bad warn transfer") + "run 700\n");
-    EXPECT_EQ(warned.evaluate("f_g"), 96.0);
-    Scene deleted(replaced(s, "1.0 transfer", "1.0 bad delete transfer") + "run 700\n");
-    EXPECT_LT(deleted.evaluate("f_g"), 96.0);
+  for (const std::string shape : {"cpdi", "cpdi2"}) {
+    const auto scene = [&](const std::string &policy) {
+      return plane("lj", "f p", "-200 200 0 4") +
+          stretching_bar("block -3 3 0 4 -0.5 0.5", shape + policy) + "timestep 0.5\nrun 700\n";
+    };
+    expect_error(scene(""), "has a domain with a corner 7.");
+    Scene warned(scene(" bad warn"));
+    EXPECT_EQ(warned.evaluate("f_grid"), 96.0);
+    Scene deleted(scene(" bad delete"));
+    EXPECT_LT(deleted.evaluate("f_grid"), 96.0);
   }
 }
 
@@ -294,17 +265,7 @@ SERIAL_TEST(Size, LimitIn3d)
   for (const char *shape : {"cpdi", "cpdi2"})
     EXPECT_THAT(
         error_of(space("lj", "f p p", "-40 40 0 2 0 2") +
-                 strprintf(R"(
-fix g all mpm 1.0 transfer flip 1.0 scheme musl shape %s
-region bar block -2 2 0 2 0 2
-create_points 1 region bar ppc 2
-fix m all mpm/material density 1 neohookean 1e-10 0.3
-variable v atom 0.1*x
-velocity all set v_v 0 0
-timestep 0.5
-run 400
-)",
-                           shape)),
+                 stretching_bar("block -2 2 0 2 0 2", shape) + "timestep 0.5\nrun 400\n"),
         ::testing::ContainsRegex("Material point [0-9]+ at .* has a domain with a corner "
                                  "3\\.[0-9]* node spacings away at step [0-9]+, the limit is 3"));
 }
@@ -317,19 +278,12 @@ SERIAL_TEST(Periodic, DomainsAreWiderThanTheBox)
     SCOPED_TRACE(options);
     double shear[2];
     for (const int k : {0, 1}) {
-      Scene run(plane("p p p", k ? "0 12 0 8" : "0 3 0 8") +
-                strprintf(R"(
-fix g all mpm 1.0 %s
-create_points 1 region box ppc 2
-fix m all mpm/material density 3.0 neohookean 0.001 0.3
-variable vx atom 0.4*sin(PI*y/4)+0.03*cos(PI*y/4)
-variable vy atom 0.02*cos(PI*y/4)
-velocity all set v_vx v_vy 0
-timestep 0.05
-%s
-run 480
-)",
-                          options, k ? "neigh_modify every 40 check no" : ""));
+      Scene run(plane("lj", "p p", k ? "0 12 0 8" : "0 3 0 8") +
+                body("box", "density 3.0 neohookean 0.001 0.3", strprintf("1.0 %s", options)) +
+                "variable vx atom 0.4*sin(PI*y/4)+0.03*cos(PI*y/4)\n"
+                "variable vy atom 0.02*cos(PI*y/4)\nvelocity all set v_vx v_vy 0\n"
+                "timestep 0.05\n" +
+                (k ? "neigh_modify every 40 check no\n" : "") + "run 480\n");
       shear[k] = 0.0;
       for (const auto &s : run.gather()) shear[k] = std::max(shear[k], s.F[1]);
     }
@@ -345,17 +299,11 @@ SERIAL_TEST(Reach, BodiesLeaveActiveBlocks)
     for (const char *velocity : {"1 0 0", "-1 0 0", "0 1 0", "0 -1 0", "0 0 1", "0 0 -1"}) {
       SCOPED_TRACE(std::string(shape) + " " + velocity);
       Scene run(space("lj", "p p p", "0 12 0 12 0 12") +
-                strprintf(R"(
-fix g all mpm 1.0 shape %s
-region body block 5 7 5 7 5 7
-create_points 1 region body ppc 1
-fix m all mpm/material density 3.0 neohookean 1.0 0.3
-velocity all set %s
-neigh_modify delay 0 every 1000 check no
-timestep 0.1
-run 20
-)",
-                          shape, velocity));
+                body("block 5 7 5 7 5 7", "density 3.0 neohookean 1.0 0.3",
+                     strprintf("1.0 shape %s", shape), "1") +
+                strprintf("velocity all set %s\nneigh_modify delay 0 every 1000 check no\n"
+                          "timestep 0.1\nrun 20\n",
+                          velocity));
       double v[3];
       sscanf(velocity, "%lf %lf %lf", v, v + 1, v + 2);
       for (const auto &s : run.gather())
@@ -372,12 +320,10 @@ SERIAL_TEST(Inverted, BadDecides)
 {
   for (const char *policy : {"error", "warn", "delete"}) {
     SCOPED_TRACE(policy);
-    Scene run(
-        plane("p p p", "0 8 0 8") +
-        strprintf("fix grid all mpm 1.0 shape cpdi2 bad %s\n"
-                  "region block block 2 4 2 4 -0.5 0.5\ncreate_points 1 region block ppc 2\n"
-                  "fix m all mpm/material density 3.0 neohookean 1.0 0.3\ntimestep 1e-9\nrun 1\n",
-                  policy));
+    Scene run(plane("lj", "p p", "0 8 0 8") +
+              body("block 2 4 2 4 -0.5 0.5", "density 3.0 neohookean 1.0 0.3",
+                   strprintf("1.0 shape cpdi2 bad %s", policy)) +
+              "timestep 1e-9\nrun 1\n");
     double *corner = run.corners()[5];
     for (int d = 0; d < 2; d++)
       std::swap(corner[d], corner[2 + d]), std::swap(corner[4 + d], corner[6 + d]);
@@ -402,19 +348,12 @@ SERIAL_TEST(Boundaries, WallsAndContactHold)
   for (const char *options : {"shape cpdi", "shape cpdi2 transfer flip 1.0 scheme musl"})
     for (const char *face : {"slip", "separate"}) {
       SCOPED_TRACE(std::string(options) + " " + face);
-      Scene run(plane("p f p", "0 8 0 12") +
-                strprintf(R"(
-fix g all mpm 1.0 origin 0 0.5 %s
-region column block 0 8 0 6 -0.5 0.5
-create_points 1 region column ppc 2
-fix m all mpm/material density 1 neohookean 100 0.3
-fix w all mpm/boundary ylo %s
-fix f all gravity 0.5 vector 0 -1 0
-timestep 0.01
-fix mean all ave/time 1 1000 1000 f_w[2]
-run 2000
-)",
-                          options, face));
+      Scene run(plane("lj", "p f", "0 8 0 12") +
+                body("block 0 8 0 6 -0.5 0.5", "density 1 neohookean 100 0.3",
+                     strprintf("1.0 origin 0 0.5 %s", options)) +
+                strprintf("fix w all mpm/boundary ylo %s\nfix f all gravity 0.5 vector 0 -1 0\n"
+                          "timestep 0.01\nfix mean all ave/time 1 1000 1000 f_w[2]\nrun 2000\n",
+                          face));
       EXPECT_NEAR(run.evaluate("f_mean"), -0.5 * 48, 0.15 * 0.5 * 48);
       EXPECT_GT(run.evaluate("bound(all,ymin)"), 0.1);
     }
@@ -422,25 +361,10 @@ run 2000
   for (const char *options : {"shape cpdi", "shape cpdi2 transfer flip 1.0 scheme musl"}) {
     SCOPED_TRACE(options);
     Scene run(plane("lj", "p p", "0 32 0 8", 2) +
-              strprintf(R"(
-group a type 1
-group b type 2
-fix a a mpm 1.0 %s
-fix b b mpm 1.0 %s
-region a block 4 12 0 8 -0.5 0.5
-region b block 16 24 0 8 -0.5 0.5
-create_points 1 region a ppc 2
-create_points 2 region b ppc 2
-group a type 1
-group b type 2
-fix m all mpm/material density 1 neohookean 100 0.3
-fix c all mpm/contact a b
-velocity a set 1 0 0
-velocity b set -1 0 0
-timestep 0.02
-run 500
-)",
-                        options, options));
+              fields({{"a", "block 4 12 0 8 -0.5 0.5"}, {"b", "block 16 24 0 8 -0.5 0.5"}},
+                     std::string("1.0 ") + options) +
+              "fix m all mpm/material density 1 neohookean 100 0.3\nfix c all mpm/contact F1 F2\n"
+              "velocity a set 1 0 0\nvelocity b set -1 0 0\ntimestep 0.02\nrun 500\n");
     EXPECT_LT(run.evaluate("vcm(a,x)"), -0.5);
     EXPECT_NEAR(run.evaluate("vcm(a,x)"), run.evaluate("-vcm(b,x)"), 1e-10);
     EXPECT_LT(run.evaluate("bound(a,xmax)"), run.evaluate("bound(b,xmin)"));
@@ -492,18 +416,12 @@ static std::string box_mesh(int dim, int n, bool simplices)
   return text + "$EndElements\n";
 }
 
-static const char *const mesh_scene = R"(
-units lj
-dimension MPM_DIM
-boundary p p p
-atom_style mpm
-region box block 0 8 0 8 MPM_Z
-create_box 1 box
-fix grid all mpm 1.0 shape cpdi2 MPM_OPTIONS
-create_points 1 elements MPM_FILE scale 4.2 move 1.9 2.1 MPM_UP
-fix m all mpm/material density 2.0 neohookean 100 0.3
-timestep 0.02
-)";
+static std::string mesh_scene(int dim, const std::string &file, const std::string &options)
+{
+  return box(dim, "lj", "p p p", "0 8 0 8 0 8") + "fix grid all mpm 1.0 shape cpdi2 " + options +
+      "\ncreate_points 1 elements " + file + " scale 4.2 move 1.9 2.1 " + (dim == 3 ? "2.05" : "") +
+      "\nfix m all mpm/material density 2.0 neohookean 100 0.3\ntimestep 0.02\n";
+}
 
 TEST(Elements, BecomeDomains)
 {
@@ -511,15 +429,10 @@ TEST(Elements, BecomeDomains)
     for (bool simplices : {false, true}) {
       SCOPED_TRACE(strprintf("%dd %s", dim, simplices ? "simplices" : "cubes"));
       const ScratchFile file("msh", box_mesh(dim, 5, simplices));
-      std::string scene = replaced(mesh_scene, "MPM_DIM", std::to_string(dim));
-      scene = replaced(scene, "MPM_Z", dim == 3 ? "0 8" : "-0.5 0.5");
-      scene = replaced(scene, "MPM_UP", dim == 3 ? "2.05" : "");
-      scene = replaced(scene, "MPM_FILE", file.name);
-
       // volume and mass, and those of domains; a field that is linear is exact
-      Scene run(replaced(scene, "MPM_OPTIONS", "transfer apic"));
-      run.commands("variable vx atom 0.1*x+0.02*y\nvariable vy atom -0.05*x+0.03*y\n"
-                   "velocity all set v_vx v_vy 0\ntimestep 1e-7\nrun 1\n");
+      Scene run(mesh_scene(dim, file.name, "transfer apic") +
+                "variable vx atom 0.1*x+0.02*y\nvariable vy atom -0.05*x+0.03*y\n"
+                "velocity all set v_vx v_vy 0\ntimestep 1e-7\nrun 1\n");
       const auto state = run.gather();
       const double volume = pow(4.2, dim);
       double sum = 0.0, mass = 0.0;
@@ -534,24 +447,20 @@ TEST(Elements, BecomeDomains)
       const std::size_t cells = dim == 2 ? 25 : 125;
       EXPECT_EQ(state.size(), cells * (simplices ? (dim == 2 ? 2 : 6) : 1));
 
-      OnRanks ranks(replaced(scene, "MPM_OPTIONS", "transfer flip 1.0 scheme musl") +
+      OnRanks ranks(mesh_scene(dim, file.name, "transfer flip 1.0 scheme musl") +
                         "variable vx atom 2*sin(PI*x/4)\nvelocity all set v_vx 1 0\n",
                     "run 60\n");
       EXPECT_LT(ranks.difference(), 1e-12);
     }
-  expect_error(
-      replaced(replaced(replaced(mesh_scene, "MPM_DIM", "3"), "MPM_Z", "0 8"), "MPM_OPTIONS", ""),
-      "MPM_FILE");
+  expect_error(mesh_scene(3, "no.msh", ""), "no.msh");
 }
 
 TEST(BadInput, IsRefused)
 {
-  const Mistake cases[] = {
+  expect_options_refused({
       {"shape cpdi3", "must be one of"},
       {"shape cpdi frame total", "use B-splines with transfer apic or flip"},
       {"shape cpdi2 frame total", "use B-splines with transfer apic or flip"},
       {"shape cpdi stress mls", "needs shape quadratic or cubic"},
-  };
-  for (const auto &bad : cases)
-    expect_error(replaced(two_bodies, "MPM_OPTIONS", bad.lines) + "run 1\n", bad.message);
+  });
 }

@@ -20,10 +20,9 @@ std::vector<double> history(Scene &run, const std::string &name)
       dynamic_cast<FixMPMMaterial *>(run.lmp->modify->get_fix_by_style("^mpm/material$")[0]);
   const int column = material->find_history(name);
   EXPECT_GE(column, 0) << name;
-  std::vector<double> mine(run.lmp->atom->map_tag_max + 1, 0.0), all(mine.size());
+  std::vector<double> mine(run.lmp->atom->map_tag_max + 1, 0.0);
   for (int i = 0; i < run.n(); i++) mine[run.lmp->atom->tag[i]] = material->history[i][column];
-  MPI_Allreduce(mine.data(), all.data(), mine.size(), MPI_DOUBLE, MPI_SUM, run.lmp->world);
-  return all;
+  return over_ranks(mine, MPI_SUM, run.lmp->world);
 }
 
 const std::string head = "units lj\ndimension 2\nboundary f f p\natom_style mpm\n"
@@ -51,34 +50,25 @@ TEST(Deletion, MassAndMomentumAreTold)
     Scene run(plate("failed delete scheme " + scheme, brittle) +
               "compute e all mpm/energy\nthermo_style custom step c_e\nrun 0\n");
     const auto start = run.gather();
-    double before[4] = {}, after[4] = {};
-    for (const auto &s : start) {
-      before[0] += s.mass;
-      for (int d = 0; d < 3; d++) before[1 + d] += s.mass * s.v[d];
-    }
-    const double start_energy = run.lmp->modify->get_compute_by_id("e")->compute_scalar();
+    const double start_energy = run.compute_scalar();
     run.commands("run 150\n");
     const auto end = run.gather();
-    for (const auto &s : end) {
-      after[0] += s.mass;
-      for (int d = 0; d < 3; d++) after[1 + d] += s.mass * s.v[d];
-    }
+    const Totals before(start), after(end);
     const double *told = run.fix_vector("grid", 11) + 6;
     EXPECT_EQ(told[0], start.size() - end.size());
     EXPECT_GT(told[0], 8);
     EXPECT_LT(told[0], 0.8 * start.size());
-    EXPECT_NEAR(told[1], before[0] - after[0], 1e-12 * before[0]);
-    for (int d = 0; d < 3; d++) EXPECT_NEAR(told[2 + d], before[1 + d] - after[1 + d], 1e-11);
+    EXPECT_NEAR(told[1], before.mass - after.mass, 1e-12 * before.mass);
+    for (int d = 0; d < 3; d++) EXPECT_NEAR(told[2 + d], before.p[d] - after.p[d], 1e-11);
     EXPECT_EQ(run.lmp->atom->natoms, end.size());
     for (const double D : history(run, "damage")) EXPECT_LT(D, 1.0);
 
     // the ledger knows what has gone
-    auto *e = run.lmp->modify->get_compute_by_id("e");
-    e->compute_vector();
-    EXPECT_LT(e->vector[12], 0.0);
-    EXPECT_NEAR(e->vector[10], 0.0, 1e-12 * e->vector[0]);
-    EXPECT_GT(e->vector[11], 0.0);
-    EXPECT_LT(std::fabs(e->vector[9]), 0.03 * start_energy) << "integration";
+    const double *e = run.compute_vector();
+    EXPECT_LT(e[12], 0.0);
+    EXPECT_NEAR(e[10], 0.0, 1e-12 * e[0]);
+    EXPECT_GT(e[11], 0.0);
+    EXPECT_LT(std::fabs(e[9]), 0.03 * start_energy) << "integration";
   }
 }
 
@@ -169,9 +159,7 @@ double crack_energy(const std::string &options, double h, const std::string &res
               "thermo_style custom step time c_e[12]\nfix step all mpm/dt 0.5\nrun %d\n",
               h, options.c_str(), h, rest.c_str(), GC, (int) (30.0 / (0.5 * h / 13.5))),
       MPI_COMM_SELF);
-  auto *e = run.lmp->modify->get_compute_by_id("e");
-  e->compute_vector();
-  return e->vector[11] / (2 * h * GC);
+  return run.compute_vector()[11] / (2 * h * GC);
 }
 
 TEST(Crack, EnergyDoesNotDependOnTheSpacing)

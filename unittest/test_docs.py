@@ -16,6 +16,8 @@ import tempfile
 
 import mpm_testing as mt
 
+read = mt.read
+
 ROOT = mt.ROOT
 PAGES = os.path.join(ROOT, "doc", "src")
 SOURCES = os.path.join(ROOT, "src", "MPM")
@@ -31,11 +33,6 @@ KINDS = {
     "RegionStyle": ("region_", "region"),
 }
 SECTIONS = ["Syntax", "Examples", "Description", "Restrictions", "Related commands", "Default"]
-
-
-def read(path):
-    with open(path, encoding="utf-8") as file:
-        return file.read()
 
 
 def relative(path):
@@ -241,23 +238,13 @@ def test_links_lead_somewhere():
             if not re.match(r"\w+:", target) and not os.path.exists(file):
                 wrong.append("%s: no %s" % (relative(path), target))
 
-    manual = None
-    for cache in glob.glob(os.path.join(os.path.dirname(mt.LMP), "CMakeCache.txt")):
-        for key in ("LAMMPS_BUILD_DIR", "LAMMPS_SOURCE_DIR"):
-            found = re.search(r"^%s:\w+=(\S+)" % key, read(cache), re.M)
-            if not found:
-                continue
-            export = os.path.join(found.group(1), "mpm_lammps.cmake")
-            tree = found.group(1)
-            if os.path.exists(export):
-                tree = re.search(r'set\(LAMMPS_DIR "(.*?)"\)', read(export)).group(1)
-            if os.path.isdir(os.path.join(tree, "doc", "src")):
-                manual = os.path.join(tree, "doc", "src")
-    if manual:
+    manuals = [os.path.join(tree, "doc", "src") for tree in mt.lammps_sources()]
+    manuals = [folder for folder in manuals if os.path.isdir(folder)]
+    if manuals:
         for path in pages():
             for target in re.findall(r":doc:`[^`<]*<([^>`]*)>`", read(path)):
                 if not any(os.path.exists(os.path.join(folder, target + ".rst"))
-                           for folder in (PAGES, manual)):
+                           for folder in (PAGES, manuals[-1])):
                     wrong.append("%s: no page %s in the LAMMPS manual" % (relative(path), target))
     check(wrong)
 

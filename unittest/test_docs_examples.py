@@ -9,7 +9,6 @@ a scene that has the groups, regions and variables it speaks of."""
 import glob
 import os
 import re
-import shutil
 import tempfile
 
 import mpm_testing as mt
@@ -57,7 +56,7 @@ $Nodes
 $EndNodes
 $Elements
 1
-1 %s 1 2 3 4
+1 4 2 1 1 1 2 3 4
 $EndElements
 """
 BODIES = ["left", "right", "plane", "disk", "block", "pad", "disc"]    # each with a fix mpm
@@ -210,18 +209,15 @@ run             2
 
 
 def run_scene(scene, timeout=60):
-    folder = tempfile.mkdtemp(prefix="mpm_docs_")
-    os.mkdir(os.path.join(folder, "out"))
     # in units of the file or of the scene
     size = 10.0 if "scale" in scene else 0.01
-    with open(os.path.join(folder, "ring.msh"), "w") as file:
-        file.write(MESH_FILE % (size, size, size, "4 2 1 1"))
-    with open(os.path.join(folder, "tool.stl"), "w") as out:
-        out.write(TOOL)
-    try:
+    with tempfile.TemporaryDirectory() as folder:
+        os.mkdir(os.path.join(folder, "out"))
+        with open(os.path.join(folder, "ring.msh"), "w") as file:
+            file.write(MESH_FILE % (size, size, size))
+        with open(os.path.join(folder, "tool.stl"), "w") as out:
+            out.write(TOOL)
         return mt.lammps(folder, scene, timeout=timeout)
-    finally:
-        shutil.rmtree(folder)
 
 
 def test_examples_are_found():

@@ -18,15 +18,10 @@ static const std::string full = space("lj", "f p f", "0 6 0 5 0 4") +
 /** B-spline of a node at the place i next to a face at 0, at the distance x from the face. */
 static double modified(int order, int i, double x)
 {
-  const auto plain = [order](double r) {
-    r = fabs(r);
-    if (order == 2) return r < 0.5 ? 0.75 - r * r : (r < 1.5 ? 0.5 * (1.5 - r) * (1.5 - r) : 0.0);
-    return r < 1.0 ? 2.0 / 3.0 - r * r + 0.5 * r * r * r : (r < 2.0 ? pow(2.0 - r, 3) / 6.0 : 0.0);
-  };
   const double range = order == 2 ? 0.5 : 1.0;
   if (i == 0 && x < range) return order == 2 ? 1.0 - x : 1.0 - x + x * x * x / 6.0;
   if (i == 1 && x < range) return order == 2 ? x : x - x * x * x / 3.0;
-  return plain(x - i);
+  return bspline(order, x - i);
 }
 
 // The mass of the nodes is that of these functions, and there is none outside.
@@ -71,7 +66,7 @@ SERIAL_TEST(Edges, LinearFieldsAreExact)
 {
   for (const char *options :
        {"transfer flip 1.0", "transfer pic scheme musl", "shape cubic transfer flip 1.0"}) {
-    Scene run{MPI_COMM_SELF};
+    Scene run;
     const double a = 0.02, dt = 0.01;
     run.commands(
         replaced(full, "OPTIONS", options) +
@@ -99,8 +94,7 @@ SERIAL_TEST(Edges, UniformMotionIsKept)
 {
   for (const char *options : {"transfer flip 1.0", "transfer flip 1.0 scheme musl", "transfer pic",
                               "shape cubic transfer flip 0.5 scheme usf"}) {
-    Scene run(replaced(full, "OPTIONS", options) + "velocity all set 0 0.5 0\nrun 5\n",
-              MPI_COMM_SELF);
+    Scene run(replaced(full, "OPTIONS", options) + "velocity all set 0 0.5 0\nrun 5\n");
     for (int i = 0; i < run.n(); i++) {
       EXPECT_NEAR(run.v()[i][0], 0.0, 1.0e-14) << options;
       EXPECT_NEAR(run.v()[i][1], 0.5, 1.0e-14) << options;
@@ -117,8 +111,7 @@ SERIAL_TEST(Edges, UniformPressureMakesNoForce)
   for (const char *options : {"transfer flip 1.0", "transfer flip 1.0 scheme usf",
                               "transfer flip 1.0 locking pressure"}) {
     Scene run(replaced(full, "OPTIONS", options) +
-                  "fix box all mpm/boundary xlo xhi zlo zhi slip\n",
-              MPI_COMM_SELF);
+              "fix box all mpm/boundary xlo xhi zlo zhi slip\n");
     for (int i = 0; i < run.n(); i++)
       for (int c = 0; c < 3; c++) run.points().tau[i][c] = -1.0;
     run.commands("run 1\n");
@@ -137,9 +130,8 @@ SERIAL_TEST(Edges, KeepMomentum)
         "shape cubic transfer pic scheme usf"}) {
     SCOPED_TRACE(options);
     Scene run(replaced(replaced(full, "OPTIONS", options), "0.001", "0.05") +
-                  "displace_atoms all random 0.05 0.05 0.05 4711 units box\n"
-                  "variable v atom random(-0.1,0.1,4711)\nvelocity all set v_v v_v v_v\n",
-              MPI_COMM_SELF);
+              "displace_atoms all random 0.05 0.05 0.05 4711 units box\n"
+              "variable v atom random(-0.1,0.1,4711)\nvelocity all set v_v v_v v_v\n");
     const auto before = run.sums();
     run.commands("run 20\n");
     const auto after = run.sums();
@@ -149,9 +141,8 @@ SERIAL_TEST(Edges, KeepMomentum)
     EXPECT_GT(stress, 0.01);
   }
   Scene run(replaced(full, "OPTIONS", "transfer flip 1.0 scheme usavg") +
-                "displace_atoms all random 0.05 0.05 0.05 4711 units box\nvelocity all set 0.3 0.2 "
-                "0.1\nrun 20\n",
-            MPI_COMM_SELF);
+            "displace_atoms all random 0.05 0.05 0.05 4711 units box\nvelocity all set 0.3 0.2 "
+            "0.1\nrun 20\n");
   for (int i = 0; i < run.n(); i++)
     for (int c = 0; c < 6; c++) ASSERT_NEAR(run.points().tau[i][c], 0.0, 1.0e-12);
 }
@@ -162,9 +153,9 @@ static const std::string moving = "fix w1 all mpm/boundary xlo xhi stick\n"
                                   "velocity all ramp vy 0.0 1.0 x 0 6 units box\n"
                                   "velocity all ramp vz 0.0 0.5 y 0 5 units box\n";
 
-class EdgesRun : public ::testing::TestWithParam<const char *> {};
-
-TEST_P(EdgesRun, AgreesOnRanksAndAfterARestart)
+PARAMETER_TEST(EdgesRun, AgreesOnRanksAndAfterARestart, const char *,
+               Values("transfer flip 1.0 scheme musl", "shape cubic transfer flip 1.0 scheme musl",
+                      "transfer flip 0.99 scheme usf", "transfer flip 1.0 frame total"))
 {
   const std::string scene = replaced(full, "OPTIONS", GetParam()) + moving;
   Twins(replaced(scene, "0.001", "0.05"), 50,
@@ -173,11 +164,6 @@ TEST_P(EdgesRun, AgreesOnRanksAndAfterARestart)
             "fix w1 all mpm/boundary xlo xhi stick\nfix w2 all mpm/boundary zlo zhi slip\n",
         50, 1.0e-11);
 }
-
-static const char *const edges_run_cases[] = {
-    "transfer flip 1.0 scheme musl", "shape cubic transfer flip 1.0 scheme musl",
-    "transfer flip 0.99 scheme usf", "transfer flip 1.0 frame total"};
-INSTANTIATE_TEST_SUITE_P(Options, EdgesRun, ::testing::ValuesIn(edges_run_cases));
 
 TEST(Edges, RefuseMistakes)
 {

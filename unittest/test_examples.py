@@ -123,7 +123,7 @@ def picture_colors(path):
 def check_run(example):
     result = example.result
     assert result.code is not None, "more than %d s: make it coarser in COARSER" % SECONDS
-    assert result.code == 0, result.tail()
+    mt.ok(result)
     unexpected = [line for line in mt.warnings(result.output)
                   if not any(text in line for text in ALLOWED)]
     assert not unexpected, "\n".join(unexpected)

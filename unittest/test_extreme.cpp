@@ -40,21 +40,8 @@ static double release(const std::string &options, double shift)
   return fastest;
 }
 
-class LightNodes : public ::testing::TestWithParam<const char *> {};
-
-TEST_P(LightNodes, DoNotKickPoints)
-{
-  double worst = 0.0;
-  for (double shift : {0.0, 0.1, 0.2, 0.25, 0.25 + 1e-3, 0.25 + 1e-6, 0.25 + 1e-9, 0.25 + 1e-12,
-                       0.4, 0.6, 0.75 + 1e-3, 0.75 + 1e-6, 0.75 + 1e-9, 0.9})
-    worst = std::max(worst, release(GetParam(), shift));
-  EXPECT_LT(measured(std::string(GetParam()) + ": largest speed of a point in p/(rho c)", worst),
-            2.0);
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    Options, LightNodes,
-    ::testing::Values("transfer apic", "transfer flip 1.0", "transfer flip 1.0 scheme musl",
+PARAMETER_TEST(LightNodes, DoNotKickPoints, const char *,
+               Values("transfer apic", "transfer flip 1.0", "transfer flip 1.0 scheme musl",
                       "shape cubic transfer apic", "shape cpgimp transfer apic",
                       "shape linear transfer flip 1.0 scheme musl",
                       "shape linear transfer flip 1.0 scheme usl light 0.5",
@@ -65,14 +52,24 @@ INSTANTIATE_TEST_SUITE_P(
                       "shape linear transfer xpic 2 scheme usl light 0.5",
                       "shape linear transfer apic scheme musl light 0.5 locking fbar",
                       "shape linear transfer apic scheme usf light 0.5 locking pressure",
-                      "shape linear transfer flip 1.0 scheme usl light 0.5 locking both"));
+                      "shape linear transfer flip 1.0 scheme usl light 0.5 locking both"))
+{
+  double worst = 0.0;
+  for (double shift : {0.0, 0.1, 0.2, 0.25, 0.25 + 1e-3, 0.25 + 1e-6, 0.25 + 1e-9, 0.25 + 1e-12,
+                       0.4, 0.6, 0.75 + 1e-3, 0.75 + 1e-6, 0.75 + 1e-9, 0.9})
+    worst = std::max(worst, release(GetParam(), shift));
+  EXPECT_LT(measured(std::string(GetParam()) + ": largest speed of a point in p/(rho c)", worst),
+            2.0);
+}
 
 /* The same in a body of revolution: a rod in a sleeve has the waves of the plane along its axis; of a
    thick tube the speed of the outer face grows as (13/r)^1/2 while its wave goes inward, by 8 % here */
 
-class LightRings : public ::testing::TestWithParam<const char *> {};
-
-TEST_P(LightRings, DoNotKickPoints)
+PARAMETER_TEST(LightRings, DoNotKickPoints, const char *,
+               Values("transfer apic", "shape linear transfer flip 1.0 scheme usl light 0.5",
+                      "shape linear transfer apic scheme usl light 0.5",
+                      "shape linear transfer apic scheme musl light 0.5",
+                      "shape linear transfer aflip 1.0 scheme musl light 0.5 locking both"))
 {
   const std::string rod = "boundary f f p\nregion box block 0 4 0 16 -0.5 0.5",
                     tube = "boundary f p p\nregion box block 0 16 0 2 -0.5 0.5";
@@ -105,13 +102,6 @@ TEST_P(LightRings, DoNotKickPoints)
               along ? 2.0 : 2.0 * 1.08);
   }
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    Options, LightRings,
-    ::testing::Values("transfer apic", "shape linear transfer flip 1.0 scheme usl light 0.5",
-                      "shape linear transfer apic scheme usl light 0.5",
-                      "shape linear transfer apic scheme musl light 0.5",
-                      "shape linear transfer aflip 1.0 scheme musl light 0.5 locking both"));
 
 TEST(LightNodesWithout, LinearFunctionsBreak)
 {
@@ -226,27 +216,19 @@ TEST(LightNodesInput, IsRefusedWhereItIsOfNoUse)
       space("lj", "p p p", "0 8 0 8 0 8") + "create_points 1 box spacing 1.0\n";
   const std::string material = "fix m all mpm/material density 1.0 linear 1.0 0.3\nrun 0\n";
   for (const char *options : {"light 0.5", "shape linear transfer flip 1.0 scheme musl light 0.5",
-                              "shape linear frame total light 0.5", "shape gimp light 0.5"}) {
-    Scene run;
-    EXPECT_THAT(run.error(scene + "fix grid all mpm 1.0 " + options + "\n" + material),
-                HasSubstr("remove light"));
-  }
-  for (const char *transfer : {"apic", "aflip 1.0", "tpic"}) {
-    Scene run;
-    EXPECT_THAT(run.error(scene +
-                          "fix grid all mpm 1.0 shape linear light 0.5 locking pressure transfer " +
-                          transfer + "\n" + material),
-                HasSubstr("use scheme musl, or transfer flip"));
-  }
+                              "shape linear frame total light 0.5", "shape gimp light 0.5"})
+    expect_error(scene + "fix grid all mpm 1.0 " + options + "\n" + material, "remove light");
+  for (const char *transfer : {"apic", "aflip 1.0", "tpic"})
+    expect_error(scene + "fix grid all mpm 1.0 shape linear light 0.5 locking pressure transfer " +
+                     transfer + "\n" + material,
+                 "use scheme musl, or transfer flip");
   expect_error(plane("lj", "f p", "0 8 0 8 -1 1") +
                    "create_points 1 box spacing 1.0\n"
                    "fix grid all mpm 1.0 shape linear light 0.5 scheme usf axisymmetric yes\n"
                    "fix axis all mpm/boundary xlo slip\n" +
                    material,
                "use scheme usl or musl");
-  Scene run;
-  EXPECT_THAT(run.error(scene + "fix grid all mpm 1.0 shape linear light 1.5\n"),
-              HasSubstr("within 0 and 1"));
+  expect_error(scene + "fix grid all mpm 1.0 shape linear light 1.5\n", "within 0 and 1");
 }
 
 /* ----------------------------------------------------------------------
@@ -254,9 +236,12 @@ TEST(LightNodesInput, IsRefusedWhereItIsOfNoUse)
    functions a force, whose momentum was lost
 ------------------------------------------------------------------------- */
 
-class OnNodes : public ::testing::TestWithParam<const char *> {};
-
-TEST_P(OnNodes, KeepMomentum)
+PARAMETER_TEST(OnNodes, KeepMomentum, const char *,
+               Values("shape linear transfer flip 1.0 scheme musl",
+                      "shape linear transfer pic scheme usf",
+                      "shape linear transfer flip 1.0 light 0.5",
+                      "shape linear transfer apic light 0.5", "shape quadratic", "shape cubic",
+                      "shape gimp", "shape cpgimp"))
 {
   for (const char *shift : {"0.25 0", "0.25 0.25", "0.75 0.25"})
     for (const char *kernels : {"auto", "reference"}) {
@@ -272,22 +257,12 @@ TEST_P(OnNodes, KeepMomentum)
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Options, OnNodes,
-                         ::testing::Values("shape linear transfer flip 1.0 scheme musl",
-                                           "shape linear transfer pic scheme usf",
-                                           "shape linear transfer flip 1.0 light 0.5",
-                                           "shape linear transfer apic light 0.5",
-                                           "shape quadratic", "shape cubic", "shape gimp",
-                                           "shape cpgimp"));
-
 /* ---------- the largest stable time step: random velocities, all energy is kinetic at the start */
 
 struct Limit {
   const char *options;
   double stable, unstable;    // in h/c
 };
-
-class TimeStep : public ::testing::TestWithParam<Limit> {};
 
 static std::string bar(const char *options, double shift, double dt, bool check)
 {
@@ -314,14 +289,6 @@ static bool is_stable(const char *options, double shift, double dt)
   return true;
 }
 
-TEST_P(TimeStep, IsWithinTheTable)
-{
-  for (double shift : {0.0, 0.249, 0.250001}) {
-    EXPECT_TRUE(is_stable(GetParam().options, shift, GetParam().stable)) << shift;
-    EXPECT_FALSE(is_stable(GetParam().options, shift, GetParam().unstable)) << shift;
-  }
-}
-
 static const Limit time_step_cases[] = {
     {"transfer flip 1.0 scheme usl", 0.64, 0.9},
     {"transfer flip 1.0 scheme musl", 1.9, 2.15},
@@ -339,7 +306,14 @@ static const Limit time_step_cases[] = {
     {"shape linear transfer apic scheme usl light 0.5 "
      "axisymmetric yes",
      0.8, 1.1}};
-INSTANTIATE_TEST_SUITE_P(Options, TimeStep, ::testing::ValuesIn(time_step_cases));
+
+PARAMETER_TEST(TimeStep, IsWithinTheTable, Limit, ValuesIn(time_step_cases))
+{
+  for (double shift : {0.0, 0.249, 0.250001}) {
+    EXPECT_TRUE(is_stable(GetParam().options, shift, GetParam().stable)) << shift;
+    EXPECT_FALSE(is_stable(GetParam().options, shift, GetParam().unstable)) << shift;
+  }
+}
 
 /** Energy that comes in bursts does so late: 6000 steps at the usual half of the limit. */
 TEST(LightNodes, KeepEnergyWithTheCuresForLocking)
@@ -414,16 +388,12 @@ TEST(ManySteps, EnergyAndMomentum)
 {
   for (const char *options : {"transfer flip 0.99 scheme musl", "transfer apic"}) {
     SCOPED_TRACE(options);
-    Scene run(strprintf("units lj\ndimension 2\nboundary p p p\natom_style mpm\nneighbor 0.4 bin\n"
-                        "neigh_modify every 10\nregion box block 0 8 0 8 -0.5 0.5\n"
-                        "create_box 1 box\nfix grid all mpm 1.0 %s\n"
-                        "region body block 2 6 3 4 -0.5 0.5\ncreate_points 1 region body ppc 2\n"
-                        "fix m all mpm/material density 1.0 neohookean 0.742857142857 0.3\n"
-                        "variable vy atom 0.005+0.002*(x-4)+0.02*cos(2*PI*(x-4)/4)\n"
-                        "velocity all set 0.01 v_vy NULL\ntimestep 0.5\ncompute e all mpm/energy\n"
-                        "variable mech equal c_e[1]+c_e[2]\nthermo_style custom step v_mech\n"
-                        "run 0\n",
-                        options));
+    Scene run(plane("lj", "p p", "0 8 0 8", 1, 0.4) +
+              body("block 2 6 3 4 -0.5 0.5", "density 1.0 neohookean 0.742857142857 0.3",
+                   strprintf("1.0 %s", options)) +
+              "neigh_modify every 10\nvariable vy atom 0.005+0.002*(x-4)+0.02*cos(2*PI*(x-4)/4)\n"
+              "velocity all set 0.01 v_vy NULL\ntimestep 0.5\ncompute e all mpm/energy\n"
+              "variable mech equal c_e[1]+c_e[2]\nthermo_style custom step v_mech\nrun 0\n");
     const double start = run.evaluate("v_mech");
     const auto before = run.sums();
     double most = 0.0;

@@ -42,10 +42,8 @@ def make(folder, *arguments):
     made = mt.run([sys.executable, TOOL, arguments[0], "lj.pot"] + list(arguments[1:]) +
                   ["-o", "made.mpm", "--units", "lj", "--cells", "4", "--lmp", mt.LMP],
                   folder, timeout=500)
-    print(made.output)
-    assert made.code == 0
-    with open(os.path.join(folder, "made.mpm")) as text:
-        return text.read()
+    print(mt.ok(made).output)
+    return mt.read(os.path.join(folder, "made.mpm"))
 
 
 def numbers(text, pattern):
@@ -136,8 +134,7 @@ def root(f, low, high):
 
 
 def usable(folder):
-    done = mt.lammps(folder, POINT)
-    assert done.code == 0, done.tail()
+    done = mt.ok(mt.lammps(folder, POINT))
     near(1.0 + float(mt.thermo(done.output)[-1][1][-1][1]), 1.0, 1.0e-10)
 
 

@@ -168,12 +168,12 @@ static const char *const energies =
     "thermo_style custom step c_k c_u c_ledger[*]\n";
 
 /** Weighted momentum at the middle of the last step; the last: of magnitudes. */
-static std::array<double, 4> momentum(Scene &run)
+static std::vector<double> momentum(Scene &run)
 {
   auto *atom = run.lmp->atom;
   const auto *bridge = run.fix("bridge");
   const double half = 0.5 * run.lmp->update->dt * run.lmp->force->ftm2v;
-  double p[4] = {0.0}, all[4];
+  std::vector<double> p(4);
   for (int i = 0; i < atom->nlocal; i++)
     for (int d = 0; d < 3; d++) {
       const bool is_atom = atom->type[i] == 1;
@@ -182,8 +182,7 @@ static std::array<double, 4> momentum(Scene &run)
       p[d] += q;
       p[3] += std::abs(q);
     }
-  MPI_Allreduce(p, all, 4, MPI_DOUBLE, MPI_SUM, run.lmp->world);
-  return {all[0], all[1], all[2], all[3]};
+  return over_ranks(p);
 }
 
 // the tables of elastic constants are those of the potentials
@@ -443,8 +442,7 @@ TEST(Handshake, RefusesWhatItCannotDo)
       "run 1\n");
   const auto refused = [&](const std::string &word, const std::string &by,
                            const std::string &message) {
-    const std::string changed = replaced(scene, word, by) + move + "run 0\n";
-    EXPECT_THAT(error_of(changed), HasSubstr(message)) << by;
+    expect_error(replaced(scene, word, by) + move + "run 0\n", message);
   };
   refused("transfer flip 1.0", "transfer apic", "needs a field with transfer flip");
   refused("transfer flip 1.0", "transfer flip 1.0 scheme musl", "needs a field with scheme usl");

@@ -140,7 +140,8 @@ TEST(Hertz, OnOneLattice)
   Errors error[2];
   for (int k = 0; k < 2; k++) {
     const double h = 0.25 / (1 << k);
-    Scene run(strprintf("variable h equal %g\n", h) + R"(
+    Scene run(
+        strprintf("variable h equal %g\n", h) + R"(
 units lj
 dimension 2
 boundary f f p
@@ -149,20 +150,14 @@ atom_modify map array
 neighbor $(0.3*v_h) bin
 region box block 0 8 0 11 -0.5 0.5
 create_box 2 box
-fix all all mpm ${h} axisymmetric yes
-region one block 0 8 0 8 INF INF
-region two block 0 2.5 8 $(8+3*v_h) INF INF
-create_points 1 region one ppc 2
-create_points 2 region two ppc 2
-unfix all
-group one type 1
-group two type 2
-fix one one mpm ${h} axisymmetric yes transfer flip 1.0 scheme musl
-fix two two mpm ${h} axisymmetric yes transfer flip 1.0 scheme musl
+)" +
+        fields({{"one", "block 0 8 0 8 INF INF"}, {"two", "block 0 2.5 8 $(8+3*v_h) INF INF"}},
+               "${h} axisymmetric yes transfer flip 1.0 scheme musl") +
+        R"(
 fix m1 one mpm/material density 1.0 linear 1.0 0.3
 fix m2 two mpm/material density 1.0e9 linear 1.0 0.3
 fix axis all mpm/boundary xlo xhi ylo slip
-fix c all mpm/contact two one
+fix c all mpm/contact F2 F1
 timestep $(0.4*v_h/1.16)
 )");
     // The stress of single points is uneven down to some cells below the contact, its mean over four
@@ -173,30 +168,27 @@ timestep $(0.4*v_h/1.16)
       const double z = 8.0 - run.x()[i][1];
       if (z > h && z < 3.0 * h) layers.emplace_back(run.lmp->atom->tag[i], z);
     }
-    const Probe probe = {1, 1.0,
-                         [](Scene &r) {
-                           return r.evaluate("-f_c[1][2]");
-                         },
-                         [&](Scene &r) {
-                           const double s = 4.0;
-                           double force = 0.0, first = 0.0, second = 0.0, part = 0.0, square = 0.0;
-                           for (const auto &p : layers) {
-                             const int i = r.lmp->atom->map(p.first);
-                             const double radius = r.x()[i][0], z = p.second;
-                             if (radius > s) continue;
-                             double stress[6];
-                             r.points().cauchy(i, stress);
-                             force -= stress[1] * radius;
-                             first -= stress[1] * radius * radius * radius;
-                           }
-                           for (const auto &p : layers) {
-                             const double z = p.second;
-                             square += 2.0 * z * z - 3.0 * z * z * z / s;
-                             part += 1.0 - z * z * z / (s * s * s);
-                           }
-                           second = first / force * part - square;
-                           return std::sqrt(std::max(0.0, 2.5 * second / layers.size()));
-                         }};
+    const auto force = [](Scene &r) {
+      return r.evaluate("-f_c[1][2]");
+    };
+    const auto radius = [&](Scene &r) {
+      const double s = 4.0;
+      double force = 0.0, first = 0.0, part = 0.0, square = 0.0;
+      for (const auto &[tag, z] : layers) {
+        square += 2.0 * z * z - 3.0 * z * z * z / s;
+        part += 1.0 - z * z * z / (s * s * s);
+        const int i = r.lmp->atom->map(tag);
+        const double x = r.x()[i][0];
+        if (x > s) continue;
+        double stress[6];
+        r.points().cauchy(i, stress);
+        force -= stress[1] * x;
+        first -= stress[1] * x * x * x;
+      }
+      const double second = first / force * part - square;
+      return std::sqrt(std::max(0.0, 2.5 * second / layers.size()));
+    };
+    const Probe probe = {1, 1.0, force, radius};
     error[k] = press(run, block, &Block::indentation_round, probe, h, 15.0);
   }
   for (int n = 0; n < 3; n++) {
@@ -225,18 +217,11 @@ atom_modify map array
 neighbor $(0.3*v_h) bin
 region box block 0 4 0 4 0 7
 create_box 2 box
-fix one all mpm ${h}
-fix two all mpm $(0.8*v_h) origin 0 0 4
-region one block 0 4 0 4 0 4
-region two block 0 1.6 0 1.6 4 $(4+2.4*v_h)
-create_points 1 region one ppc 2 fix one
-create_points 2 region two ppc 2 fix two
-unfix one
-unfix two
-group one type 1
-group two type 2
-fix one one mpm ${h} transfer flip 1.0 scheme musl
-fix two two mpm $(0.8*v_h) origin 0 0 4 transfer flip 1.0 scheme musl
+)" +
+              fields({{"one", "block 0 4 0 4 0 4", "${h} transfer flip 1.0 scheme musl"},
+                      {"two", "block 0 1.6 0 1.6 4 $(4+2.4*v_h)",
+                       "$(0.8*v_h) origin 0 0 4 transfer flip 1.0 scheme musl"}}) +
+              R"(
 fix m1 one mpm/material density 1.0 linear 1.0 0.3
 fix m2 two mpm/material density 1.0e9 linear 1.0 0.3
 fix sides all mpm/boundary xlo xhi ylo yhi zlo slip
@@ -247,20 +232,20 @@ thermo_style custom step c_f
 timestep $(0.4*v_h/1.16)
 )");
     // forces on the points of the paraboloid: the mean of r^2 is 2/5 a^2
-    const Probe probe = {2, 0.25,
-                         [](Scene &r) {
-                           return r.evaluate("c_f");
-                         },
-                         [](Scene &r) {
-                           double sum = 0.0, second = 0.0;
-                           for (int i = 0; i < r.n(); i++) {
-                             if (r.lmp->atom->type[i] != 2) continue;
-                             const double *x = r.x()[i], f = r.lmp->atom->f[i][2];
-                             sum += f;
-                             second += f * (x[0] * x[0] + x[1] * x[1]);
-                           }
-                           return std::sqrt(2.5 * second / sum);
-                         }};
+    const auto force = [](Scene &r) {
+      return r.evaluate("c_f");
+    };
+    const auto radius = [](Scene &r) {
+      double sum = 0.0, second = 0.0;
+      for (int i = 0; i < r.n(); i++) {
+        if (r.lmp->atom->type[i] != 2) continue;
+        const double *x = r.x()[i], f = r.lmp->atom->f[i][2];
+        sum += f;
+        second += f * (x[0] * x[0] + x[1] * x[1]);
+      }
+      return std::sqrt(2.5 * second / sum);
+    };
+    const Probe probe = {2, 0.25, force, radius};
     error[k] = press(run, block, &Block::indentation_square, probe, h, 8.0);
   }
   for (int n = 0; n < 3; n++) {

@@ -21,6 +21,13 @@ static std::string head(const std::string &box, const std::string &boundary = "p
       box + "\ncreate_box 2 box\nfix grid all mpm 1.0 " + grid + "\n";
 }
 
+static std::string flat(const std::string &box, const std::string &boundary = "p p p",
+                        const std::string &grid = "transfer apic")
+{
+  return replaced(head(box + " -0.5 0.5", boundary, grid), "units lj", "units lj\ndimension 2");
+}
+static const std::string move_discs = "fix move grains nve/sphere disc\nfix flat all enforce2d\n";
+
 // the fluid of density 1 and the grains; no contact between them
 static std::string rest(const std::string &fix, const std::string &fluid = "eos tait 500.0 7")
 {
@@ -41,12 +48,11 @@ struct Pressure {
     for (const auto &s : run.gather()) {
       const double x = fmod(s.x[axis], length);
       if (s.type != 1 || x < low || x > high) continue;
-      const double p = -(s.stress[0] + s.stress[1] + s.stress[2]) / 3.0;
       n++;
       height += x;
-      mean += p;
+      mean += s.pressure();
       xx += x * x;
-      xp += x * p;
+      xp += x * s.pressure();
     }
     height /= n;
     mean /= n;
@@ -67,11 +73,28 @@ struct Drop {
   }
 };
 
-/** The quadratic spline around zero. */
-static double spline(double x)
+static double count(Scene &run, const char *group)
 {
-  x = fabs(x);
-  return x < 0.5 ? 0.75 - x * x : x < 1.5 ? 0.5 * pow(1.5 - x, 2.0) : 0.0;
+  return run.lmp->group->count(run.lmp->group->find(group));
+}
+
+/** Forces of the laws of drag on spheres, per volume of a sphere: diameter d, velocity w relative to the
+ *  fluid, porosity eps. */
+static double drag_per_volume(const std::string &law, double mu, double d, double w, double eps)
+{
+  const double Re = w * d / mu;
+  // coefficients for the area of the sphere and the superficial velocity
+  const double single = Re < 1000.0 ? 24.0 / Re * (1.0 + 0.15 * pow(Re, 0.687)) : 0.44;
+  const double square = 0.75 * w * w / d;
+  if (law == "stokes") return 18.0 * mu * w / (d * d);
+  if (law == "schiller") return square * single;
+  if (law == "difelice")
+    return square * pow(0.63 + 4.8 / sqrt(Re), 2.0) / eps *
+        pow(eps, -(3.7 - 0.65 * exp(-0.5 * pow(1.5 - log10(Re), 2.0))));
+  if (law == "gidaspow" && eps > 0.8)    // Wen and Yu with the gradient of pressure: / eps
+    return square * single * pow(eps, -4.65);
+  // gradient of pressure over the share of grains in a volume
+  return (150.0 * mu * (1.0 - eps) * w / (d * d) + 1.75 * w * w / d) / (eps * eps * eps);
 }
 
 // Terminal velocity of a single sphere, by the law of Schiller and Naumann
@@ -114,6 +137,22 @@ SERIAL_TEST(Immersed, SinksWithTheTerminalVelocity)
   }
 }
 
+/** Two grains as dense as water stay where they are; mean: of their buoyancy and of their drag. */
+static void expect_buoyancy(Scene &run, int axis, double volume, const double *mean)
+{
+  const double slope = Pressure(run, axis, 3.0, 11.0, 20.0).slope;    // in the middle of the column
+  const double buoyancy = 0.5 * mean[0], all = buoyancy + 0.5 * mean[1];
+  EXPECT_NEAR(measured("buoyancy / (volume * gradient of pressure)", -buoyancy / (slope * volume)),
+              1.0, 0.02);
+  EXPECT_NEAR(measured("buoyancy / weight of the displaced water", buoyancy / volume), 1.0, 0.01);
+  EXPECT_NEAR(measured("the same with drag", all / volume), 1.0, 0.002);
+  for (const auto &s : run.gather())
+    if (s.type == 2) {
+      EXPECT_NEAR(measured("height", s.x[axis]), s.x[0] < 2.0 ? 7.2 : 5.4, 0.1);
+      EXPECT_LT(fabs(s.v[axis]), 0.02);
+    }
+}
+
 // A column of water at rest under gravity: the force on a grain is its volume times the gradient of the
 // pressure of the points; the floor carries it; a grain of the density of water stays where it is
 SERIAL_TEST(Immersed, BuoyancyIsTheGradientOfPressure)
@@ -131,24 +170,12 @@ SERIAL_TEST(Immersed, BuoyancyIsTheGradientOfPressure)
       "fix g all gravity 1.0 vector 0 0 -1\ntimestep 0.008\nrun 2500\n"
       "fix mean all ave/time 1 500 500 f_drag[6] f_drag[3] f_low[6] f_low[3]\nrun 500\n");
   const double volume = PI / 6.0 * 0.6 * 0.6 * 0.6;
-  const double slope = Pressure(run, 2, 3.0, 11.0, 20.0).slope;    // in the middle of the column
   const double *const mean = run.fix_vector("mean", 4);
-  const double buoyancy = mean[0] / 2.0, all = buoyancy + mean[1] / 2.0;
-  EXPECT_NEAR(measured("buoyancy / (volume * gradient of pressure)", -buoyancy / (slope * volume)),
-              1.0, 0.02);
-  EXPECT_NEAR(measured("buoyancy / weight of the displaced water", buoyancy / volume), 1.0, 0.01);
-  EXPECT_NEAR(measured("the same with drag", all / volume), 1.0, 0.002);
+  expect_buoyancy(run, 2, volume, mean);
   EXPECT_NEAR(measured("the same of a grain that is held at the floor, where nodes are held",
                        mean[2] / volume),
               1.0, 0.02);
   EXPECT_NEAR(measured("its drag", mean[3] / volume), 0.0, 0.02);
-  const auto state = run.gather();
-  for (const auto &s : state)
-    if (s.type == 2) {
-      EXPECT_NEAR(measured("height of a grain as dense as water", s.x[2]), s.x[0] < 2.0 ? 7.2 : 5.4,
-                  0.1);
-      EXPECT_LT(fabs(s.v[2]), 0.02);
-    }
 }
 
 // Fluid that accelerates pushes grains with the force of Archimedes in it: what is as dense as the fluid
@@ -168,7 +195,7 @@ SERIAL_TEST(Immersed, ArchimedesInFluidThatAccelerates)
     const double volume = PI / 6.0 * 0.125;
     const auto squares = [](double x) {
       double sum = 0.0;
-      for (int n = -1; n < 8; n++) sum += pow(spline(x - n), 2.0);
+      for (int n = -1; n < 8; n++) sum += pow(bspline(2, x - n), 2.0);
       return sum;
     };
     for (const auto &s : run.gather())
@@ -205,53 +232,39 @@ SERIAL_TEST(Immersed, LawsOfDrag)
         Case{"gidaspow", 0.05, 0.625}, Case{"gidaspow", 0.05, 1.0}, Case{"gidaspow", 1.0e-4, 1.0},
         Case{"difelice", 1.0, 1.0}, Case{"difelice", 0.02, 0.625},
         Case{"difelice", 1.0e-4, 0.625}}) {
-    const std::string law = c.law;
-    const double mu = c.viscosity, Re = w * d / mu;
+    const double mu = c.viscosity;
     const double eps =
         std::max(0.26, 1.0 - volume / pow(c.cell, 3.0));    // not below dense packing
-    // coefficients for the area of the sphere and the superficial velocity
-    const double single = Re < 1000.0 ? 24.0 / Re * (1.0 + 0.15 * pow(Re, 0.687)) : 0.44;
-    const double square = 0.125 * PI * d * d * w * w;
-    double force = 0.0;
-    if (law == "stokes")
-      force = 3.0 * PI * mu * d * w;
-    else if (law == "schiller")
-      force = square * single;
-    else if (law == "difelice")
-      force = square * pow(0.63 + 4.8 / sqrt(Re), 2.0) / eps *
-          pow(eps, -(3.7 - 0.65 * exp(-0.5 * pow(1.5 - log10(Re), 2.0))));
-    else if (law == "gidaspow" && eps > 0.8)    // Wen and Yu with the gradient of pressure: / eps
-      force = square * single * pow(eps, -4.65);
-    else    // gradient of pressure over the number of grains in a volume
-      force = volume / (1.0 - eps) *
-          (150.0 * mu * pow(1.0 - eps, 2.0) * w / (d * d) + 1.75 * (1.0 - eps) * w * w / d) /
-          pow(eps, 3.0);
+    const double force = volume * drag_per_volume(c.law, mu, d, w, eps);
     Scene run(head("0 5 0 5 0 5") + "create_points 1 box ppc 2\n" +
               strprintf("lattice sc %.10g\ncreate_atoms 2 box\n", 1.0 / pow(c.cell, 3.0)) +
               strprintf("set type 2 diameter %g density 3\n", d) +
               rest(strprintf("%g drag %s", mu, c.law)) +
               "velocity water set 0 1 0 units box\ntimestep 1.0e-6\nrun 1\n");
-    const double grains = run.lmp->group->count(run.lmp->group->find("grains"));
-    EXPECT_NEAR(measured(strprintf("drag %s, Re %g, porosity %.2f", c.law, Re, eps),
-                         run.fix_vector("drag", 6)[1] / (grains * force)),
+    EXPECT_NEAR(measured(strprintf("drag %s, Re %g, porosity %.2f", c.law, w * d / mu, eps),
+                         run.fix_vector("drag", 6)[1] / (count(run, "grains") * force)),
                 1.0, 0.002);
   }
 }
 
 // Grains at random places have no ends of beds among them: their drag is that of the mean porosity, but for
 // what the mapped porosity scatters
+static void random_places(const std::string &box, const std::string &density, int grains, double d,
+                          double volume, double share)
+{
+  Scene run(box + "create_points 1 box ppc 2\n" +
+            strprintf("create_atoms 2 random %d 4711 NULL\nset type 2 diameter %g %s 3\n", grains,
+                      d, density.c_str()) +
+            rest("0.1 drag difelice") +
+            "velocity water set 0 1 0 units box\ntimestep 1.0e-5\nrun 1\n");
+  const double force = volume * drag_per_volume("difelice", 0.1, d, 1.0, 1.0 - share);
+  EXPECT_NEAR(measured("drag", run.fix_vector("drag", 6)[1] / (grains * force)), 1.0, 0.06);
+}
+
 SERIAL_TEST(Immersed, RandomPlacesAreNoEndsOfBeds)
 {
   const double d = 0.4, volume = PI / 6.0 * d * d * d;
-  const int grains = 3000;
-  Scene run(head("0 10 0 10 0 10") + "create_points 1 box ppc 2\n" +
-            strprintf("create_atoms 2 random %d 4711 NULL\n", grains) +
-            strprintf("set type 2 diameter %g density 3\n", d) + rest("0.1 drag difelice") +
-            "velocity water set 0 1 0 units box\ntimestep 1.0e-5\nrun 1\n");
-  const double eps = 1.0 - grains * volume / 1000.0, Re = d / 0.1;
-  const double force = 0.125 * PI * d * d * pow(0.63 + 4.8 / sqrt(Re), 2.0) *
-      pow(eps, -4.7 + 0.65 * exp(-0.5 * pow(1.5 - log10(Re), 2.0)));
-  EXPECT_NEAR(measured("drag", run.fix_vector("drag", 6)[1] / (grains * force)), 1.0, 0.06);
+  random_places(head("0 10 0 10 0 10"), "density", 3000, d, volume, 3000 * volume / 1000.0);
 }
 
 // Above the surface of the fluid, buoyancy falls with the mass around the grain
@@ -266,7 +279,7 @@ SERIAL_TEST(Immersed, EndsAtTheSurface)
               "timestep 1.0e-3\nrun 1\n");
     double mass = 0.0;    // of full space
     for (int n = 0; n < 20; n++)
-      for (int k = 0; k < 14; k++) mass += 0.5 * spline(z - n) * spline(0.25 + 0.5 * k - n);
+      for (int k = 0; k < 14; k++) mass += 0.5 * bspline(2, z - n) * bspline(2, 0.25 + 0.5 * k - n);
     const double *const f = run.fix_vector("drag", 6);
     EXPECT_NEAR(measured(strprintf("buoyancy at %g", z), f[5] / volume), std::min(1.0, 2.0 * mass),
                 z < 6.0 ? 0.02 : 1.0e-10);
@@ -293,43 +306,50 @@ SERIAL_TEST(Immersed, SuspensionSettlesWithTheLaw)
       PI / 6.0 * d / (eps * eps * eps) * (150.0 * mu * solid + 1.75 * d * slip) * slip;
   EXPECT_NEAR(measured("drag of the law / weight less buoyancy", drag / (volume * (density - 1.0))),
               1.0, 0.01);
-  const double *const f = run.fix_vector("drag", 6);
   EXPECT_NEAR(measured("buoyancy / weight of displaced water",
                        run.fix_vector("drag", 6)[5] / (512.0 * volume)),
               1.0, 0.002);
 }
 
-// Flow through a bed that fills half of a periodic column, driven by a force on the fluid: its pressure
-// falls as Ergun's equation has it for the flux, inside and over all of it.
+/** Flow through a bed that fills half of a periodic column, driven by a force on the fluid: its pressure falls as
+ *  Ergun's equation has it for the flux, inside and over all of it. */
+static void flow_through_a_bed(int dim, double mu, double d, const std::string &box,
+                               const std::string &grains, double volume)
+{
+  const double pull = 0.5, wide = pow(4.0, dim - 1);    // across the column
+  const int axis = dim - 1;
+  Scene run(box + "create_points 1 box ppc 2\n" + grains + rest(strprintf("%g drag ergun", mu)) +
+            strprintf("fix g water gravity %g vector 0 %s\ntimestep 0.01\nrun 800\n", pull,
+                      dim == 3 ? "0 1" : "1 0"));
+  const double flux = run.evaluate(dim == 3 ? "vcm(water,z)" : "vcm(water,y)");
+  const Drop drop(run, axis, pull);
+  const double solid = count(run, "bed") * volume / (8.0 * wide), eps = 1.0 - solid;
+  if (dim == 3) {
+    EXPECT_NEAR(measured("share of volume of the grains", solid), PI / 6.0, 1.0e-6);
+  } else {
+    ASSERT_EQ(count(run, "bed"), 14 * 28);
+  }
+  const double ergun = solid * drag_per_volume("ergun", mu, d, flux, eps);
+  const auto at = strprintf(" / Ergun at Re %.3g", flux * d / mu);
+  EXPECT_NEAR(measured("pressure gradient in the bed" + at, drop.gradient / ergun), 1.0, 0.02);
+  EXPECT_NEAR(measured("pressure drop over the bed" + at, drop.all / (8.0 * ergun)), 1.0, 0.05);
+  // in the end all of the force on the fluid is on the bed
+  const double *const on_bed = run.fix_vector("drag", 6);
+  EXPECT_NEAR(
+      measured("force on the bed", (on_bed[axis] + on_bed[3 + axis]) / (16.0 * wide * pull)), 1.0,
+      0.02);
+}
+
 SERIAL_TEST(Immersed, PressureDropOfABedIsErgun)
 {
-  struct Case {
-    double viscosity, force;
-  };
-  for (const auto &c : {Case{0.01, 0.5}, Case{0.0001, 0.5}}) {
-    const double d = 0.5;
-    Scene run(head("0 4 0 4 0 16") +
-              "create_points 1 box ppc 2\nlattice sc 8.0 origin 0.5 0.5 0.5\n"
-              "region bed block 0 4 0 4 4 12 units box\ncreate_atoms 2 region bed\n"
-              "set type 2 diameter 0.5 density 3.0\ngroup bed type 2\n"
-              "displace_atoms bed random 0.1 0.1 0.1 4711 units box\n" +
-              rest(strprintf("%g drag ergun", c.viscosity)) +
-              strprintf("fix g water gravity %g vector 0 0 1\ntimestep 0.01\nrun 800\n", c.force));
-    const double flux = run.evaluate("vcm(water,z)");
-    const Drop drop(run, 2, c.force);
-    const bigint grains = run.lmp->group->count(run.lmp->group->find("bed"));
-    const double solid = grains * PI / 6.0 * d * d * d / (4.0 * 4.0 * 8.0), eps = 1.0 - solid;
-    EXPECT_NEAR(measured("share of volume of the grains", solid), PI / 6.0, 1.0e-6);
-    const double ergun = 1.0 / (eps * eps * eps) *
-        (150.0 * c.viscosity * solid * solid * flux / (d * d) + 1.75 * solid * flux * flux / d);
-    const auto at = strprintf(" / Ergun at Re %.3g", flux * d / c.viscosity);
-    EXPECT_NEAR(measured("pressure gradient in the bed" + at, drop.gradient / ergun), 1.0, 0.02);
-    EXPECT_NEAR(measured("pressure drop over the bed" + at, drop.all / (8.0 * ergun)), 1.0, 0.05);
-    // in the end all of the force on the fluid is on the bed
-    const double *const on_bed = run.fix_vector("drag", 6);
-    EXPECT_NEAR(measured("force on the bed", (on_bed[2] + on_bed[5]) / (256.0 * c.force)), 1.0,
-                0.02);
-  }
+  const double d = 0.5;
+  for (const double mu : {0.01, 0.0001})
+    flow_through_a_bed(
+        3, mu, d, head("0 4 0 4 0 16"),
+        "lattice sc 8.0 origin 0.5 0.5 0.5\nregion bed block 0 4 0 4 4 12 units box\n"
+        "create_atoms 2 region bed\nset type 2 diameter 0.5 density 3.0\n"
+        "group bed type 2\ndisplace_atoms bed random 0.1 0.1 0.1 4711 units box\n",
+        PI / 6.0 * d * d * d);
 }
 
 // single ones: their tags do not depend on the number of ranks
@@ -353,27 +373,38 @@ static std::string cloud_with(const std::string &law, const std::string &grid = 
       "fix move grains nve/sphere\ntimestep 0.01\n";
 }
 
-// Momentum of fluid and grains together stays, and stiff drag leaves no slip
+/** Momentum of fluid and grains together stays, and stiff drag leaves no slip. */
+static void keeps_momentum(Scene &run, const std::string &name)
+{
+  const auto start = run.sums(), grains = run.sums(2);
+  double scale = 0.0, worst = 0.0;
+  for (int d = 0; d < 3; d++) scale += fabs(grains.p[d]);
+  run.each_step([&](double **) {
+    const auto now = run.sums();
+    for (int d = 0; d < 3; d++) worst = std::max(worst, fabs(now.p[d] - start.p[d]) / scale);
+    EXPECT_LT(now.kinetic, 1.05 * start.kinetic);
+  });
+  run.commands("run 100\n");
+  EXPECT_LT(measured("momentum, " + name, worst), 1.0e-12);
+  EXPECT_GT(fabs(run.sums(1).p[0]), 0.01 * scale);    // the fluid has got some of it
+}
+
+/** What the grains do to the fluid is in the ledger of its energy. */
+static void closes_the_ledger(Scene &run)
+{
+  const double *e = run.compute_vector();
+  EXPECT_GT(fabs(e[7]), 0.01);
+  EXPECT_LT(fabs(measured("imbalance", e[10])), 1.0e-12);
+}
+
 SERIAL_TEST(Immersed, KeepsMomentum)
 {
-  for (const char *law :
+  for (const std::string law :
        {"0.1 drag gidaspow", "0.1 drag difelice", "0.01 drag schiller gravity 0 0 -0.2",
         "1.0e5 drag ergun", "1.0e5 drag stokes"})
     for (const char *grid : {"transfer apic", "transfer flip 1.0 scheme musl"}) {
       Scene run(cloud_with(law, grid));
-      const auto start = run.sums();
-      const auto grains = run.sums(2);
-      double scale = 0.0, worst = 0.0;
-      for (int d = 0; d < 3; d++) scale += fabs(grains.p[d]);
-      const double energy = start.kinetic;
-      run.each_step([&](double **) {
-        const auto now = run.sums();
-        for (int d = 0; d < 3; d++) worst = std::max(worst, fabs(now.p[d] - start.p[d]) / scale);
-        EXPECT_LT(now.kinetic, 1.05 * energy);
-      });
-      run.commands("run 100\n");
-      EXPECT_LT(measured(std::string("momentum, ") + law + ", " + grid, worst), 1.0e-12);
-      EXPECT_GT(fabs(run.sums(1).p[0]), 0.01 * scale);    // the fluid has got some of it
+      keeps_momentum(run, law + ", " + grid);
     }
 }
 
@@ -392,15 +423,11 @@ TEST(Immersed, IsTheSameOnAnyNumberOfRanksAndAfterARestart)
   expect_the_same(cloud_with(law), rest(law) + "fix move grains nve/sphere\ntimestep 0.01\n");
 }
 
-// What the grains do to the fluid is in the ledger of its energy
 SERIAL_TEST(Immersed, ClosesTheLedger)
 {
-  Scene run(cloud_with("0.1 drag gidaspow gravity 0 0 -0.2") + "compute e all mpm/energy\n");
-  run.commands("run 100\n");
-  auto *e = run.lmp->modify->get_compute_by_id("e");
-  e->compute_vector();
-  EXPECT_GT(fabs(e->vector[7]), 0.01);
-  EXPECT_LT(fabs(measured("imbalance", e->vector[10])), 1.0e-12);
+  Scene run(cloud_with("0.1 drag gidaspow gravity 0 0 -0.2") +
+            "compute e all mpm/energy\nrun 100\n");
+  closes_the_ledger(run);
 }
 
 SERIAL_TEST(Immersed, RefusesBadInput)
@@ -439,13 +466,6 @@ SERIAL_TEST(Immersed, RefusesBadInput)
 
 /* ---- 2d: a grain is a disc of unit depth, with the drag of spheres of its diameter and of as much volume */
 
-static std::string flat(const std::string &box, const std::string &boundary = "p p p",
-                        const std::string &grid = "transfer apic")
-{
-  return replaced(head(box + " -0.5 0.5", boundary, grid), "units lj", "units lj\ndimension 2");
-}
-static const std::string move_discs = "fix move grains nve/sphere disc\nfix flat all enforce2d\n";
-
 /** Square array of discs that are held, per disc. */
 static double drag_on_disc(double cell, double diameter, const std::string &law, double speed)
 {
@@ -453,7 +473,7 @@ static double drag_on_disc(double cell, double diameter, const std::string &law,
             strprintf("lattice sq %.10g\ncreate_atoms 2 box\n", 1.0 / (cell * cell)) +
             strprintf("set type 2 diameter %.10g density/disc 3\n", diameter) + rest(law) +
             strprintf("velocity water set 0 %g 0 units box\ntimestep 1e-10\nrun 1\n", speed));
-  return run.fix_vector("drag", 6)[1] / run.lmp->group->count(run.lmp->group->find("grains"));
+  return run.fix_vector("drag", 6)[1] / count(run, "grains");
 }
 
 SERIAL_TEST(ImmersedPlane, LawsOfDrag)
@@ -462,27 +482,12 @@ SERIAL_TEST(ImmersedPlane, LawsOfDrag)
   // the last one is denser than any packing
   for (const double cell : {1.0, 0.625, 5.0 / 9.0, 5.0 / 11.0})
     for (const double mu : {1.0, 0.05, 1.0e-4}) {
-      const double eps = std::max(1.0 - PI / sqrt(12.0), 1.0 - area / (cell * cell)),
-                   Re = w * d / mu;
-      const double single = Re < 1000.0 ? 24.0 / Re * (1.0 + 0.15 * pow(Re, 0.687)) : 0.44;
-      const double square =
-          0.75 * w * w / d;    // of a coefficient to the force on a sphere per volume
-      const double ergun =
-          (150.0 * mu * (1.0 - eps) * w / (d * d) + 1.75 * w * w / d) / (eps * eps * eps);
-      const struct {
-        const char *law;
-        double force;    // per volume
-      } laws[] = {{"stokes", 18.0 * mu * w / (d * d)},
-                  {"schiller", square * single},
-                  {"ergun", ergun},
-                  {"gidaspow", eps < 0.8 ? ergun : square * single * pow(eps, -4.65)},
-                  {"difelice",
-                   square * pow(0.63 + 4.8 / sqrt(Re), 2.0) / eps *
-                       pow(eps, -(3.7 - 0.65 * exp(-0.5 * pow(1.5 - log10(Re), 2.0))))}};
-      for (const auto &l : laws)
-        EXPECT_NEAR(drag_on_disc(cell, d, strprintf("%g drag %s", mu, l.law), w) / (area * l.force),
+      const double eps = std::max(1.0 - PI / sqrt(12.0), 1.0 - area / (cell * cell));
+      for (const char *law : {"stokes", "schiller", "ergun", "gidaspow", "difelice"})
+        EXPECT_NEAR(drag_on_disc(cell, d, strprintf("%g drag %s", mu, law), w) /
+                        (area * drag_per_volume(law, mu, d, w, eps)),
                     1.0, 0.002)
-            << l.law << ", cell " << cell << ", viscosity " << mu;
+            << law << ", cell " << cell << ", viscosity " << mu;
     }
 }
 
@@ -515,61 +520,26 @@ SERIAL_TEST(ImmersedPlane, BuoyancyIsTheGradientOfPressure)
             "timestep 0.008\nrun 2500\n"
             "fix mean all ave/time 1 500 500 f_drag[5] f_drag[2]\nrun 500\n");
   const double volume = 0.25 * PI * 0.3 * 0.3;
-  for (const auto &s : run.gather())
-    if (s.type == 2) {    // as dense as water
-      EXPECT_NEAR(s.x[1], s.x[0] < 2.0 ? 7.2 : 5.4, 0.1);
-      EXPECT_LT(fabs(s.v[1]), 0.02);
-    }
-  const double slope = Pressure(run, 1, 3.0, 11.0, 20.0).slope;
-  const double *const mean = run.fix_vector("mean", 2);
-  const double buoyancy = 0.5 * mean[0], all = buoyancy + 0.5 * mean[1];
-  EXPECT_NEAR(measured("buoyancy / (volume * gradient of pressure)", -buoyancy / (slope * volume)),
-              1.0, 0.02);
-  EXPECT_NEAR(measured("buoyancy / weight of the displaced water", buoyancy / volume), 1.0, 0.01);
-  EXPECT_NEAR(measured("the same with drag", all / volume), 1.0, 0.002);
+  expect_buoyancy(run, 1, volume, run.fix_vector("mean", 2));
 }
 
-// A column of fluid that is driven through a bed: the pressure falls as Ergun's equation has it for the flux
 SERIAL_TEST(ImmersedPlane, PressureDropOfABedIsErgun)
 {
-  for (const double mu : {0.01, 0.0001}) {
-    const double d = 0.25, pull = 0.5;
-    Scene run(flat("0 4 0 16") +
-              "create_points 1 box ppc 2\nlattice sq 12.25 origin 0.5 0.5 0\n"
-              "region bed block 0 4 4 12 INF INF units box\ncreate_atoms 2 region bed\n"
-              "set type 2 diameter 0.25 density/disc 3.0\ngroup bed type 2\n"
-              "displace_atoms bed random 0.025 0.025 0 4711 units box\n" +
-              rest(strprintf("%g drag ergun", mu)) +
-              strprintf("fix g water gravity %g vector 0 1 0\ntimestep 0.01\nrun 800\n", pull));
-    const double flux = run.evaluate("vcm(water,y)");
-    const Drop drop(run, 1, pull);
-    const bigint grains = run.lmp->group->count(run.lmp->group->find("bed"));
-    ASSERT_EQ(grains, 14 * 28);
-    const double solid = grains * 0.25 * PI * d * d / (4.0 * 8.0), eps = 1.0 - solid;
-    const double ergun = 1.0 / (eps * eps * eps) *
-        (150.0 * mu * solid * solid * flux / (d * d) + 1.75 * solid * flux * flux / d);
-    const auto at = strprintf(" / Ergun at Re %.3g", flux * d / mu);
-    EXPECT_NEAR(measured("pressure gradient in the bed" + at, drop.gradient / ergun), 1.0, 0.02);
-    EXPECT_NEAR(measured("pressure drop over the bed" + at, drop.all / (8.0 * ergun)), 1.0, 0.05);
-    const double *const on_bed = run.fix_vector("drag", 6);
-    EXPECT_NEAR(measured("force on the bed", (on_bed[1] + on_bed[4]) / (64.0 * pull)), 1.0, 0.02);
-  }
+  const double d = 0.25;
+  for (const double mu : {0.01, 0.0001})
+    flow_through_a_bed(
+        2, mu, d, flat("0 4 0 16"),
+        "lattice sq 12.25 origin 0.5 0.5 0\nregion bed block 0 4 4 12 INF INF units box\n"
+        "create_atoms 2 region bed\nset type 2 diameter 0.25 density/disc 3.0\n"
+        "group bed type 2\ndisplace_atoms bed random 0.025 0.025 0 4711 units box\n",
+        0.25 * PI * d * d);
 }
 
 // Discs at random places have no ends of beds among them
 SERIAL_TEST(ImmersedPlane, RandomPlacesAreNoEndsOfBeds)
 {
   const double d = 0.1, area = 0.25 * PI * d * d;
-  const int grains = 16000;
-  Scene run(flat("0 30 0 30") + "create_points 1 box ppc 2\n" +
-            strprintf("create_atoms 2 random %d 4711 NULL\nset type 2 diameter %g density/disc 3\n",
-                      grains, d) +
-            rest("0.1 drag difelice") +
-            "velocity water set 0 1 0 units box\ntimestep 1.0e-5\nrun 1\n");
-  const double eps = 1.0 - grains * area / 900.0, Re = d / 0.1;
-  const double force = area * 0.75 / d * pow(0.63 + 4.8 / sqrt(Re), 2.0) *
-      pow(eps, -4.7 + 0.65 * exp(-0.5 * pow(1.5 - log10(Re), 2.0)));
-  EXPECT_NEAR(measured("drag", run.fix_vector("drag", 6)[1] / (grains * force)), 1.0, 0.06);
+  random_places(flat("0 30 0 30"), "density/disc", 16000, d, area, 16000 * area / 900.0);
 }
 
 static std::string plane_cloud(const std::string &law, const std::string &grid = "transfer apic")
@@ -589,26 +559,13 @@ static std::string plane_cloud(const std::string &law, const std::string &grid =
 
 SERIAL_TEST(ImmersedPlane, KeepsMomentumAndTheLedger)
 {
-  for (const char *law :
+  for (const std::string law :
        {"0.1 drag gidaspow", "0.01 drag schiller gravity 0 -0.2 0", "1e5 drag ergun"})
     for (const char *grid :
          {"transfer apic", "transfer flip 1.0 scheme musl", "shape cubic transfer apic"}) {
       Scene run(plane_cloud(law, grid));
-      const auto start = run.sums(), grains = run.sums(2);
-      double worst = 0.0;
-      const double scale = fabs(grains.p[0]) + fabs(grains.p[1]);
-      run.each_step([&](double **) {
-        const auto now = run.sums();
-        for (int d = 0; d < 3; d++) worst = std::max(worst, fabs(now.p[d] - start.p[d]) / scale);
-        EXPECT_LT(now.kinetic, 1.05 * start.kinetic);
-      });
-      run.commands("run 100\n");
-      EXPECT_LT(measured(std::string("momentum, ") + law + ", " + grid, worst), 1.0e-12);
-      EXPECT_GT(fabs(run.sums(1).p[0]), 0.01 * scale);
-      auto *e = run.lmp->modify->get_compute_by_id("e");
-      e->compute_vector();
-      EXPECT_GT(fabs(e->vector[7]), 0.01);
-      EXPECT_LT(fabs(e->vector[10]), 1.0e-12);
+      keeps_momentum(run, law + ", " + grid);
+      closes_the_ledger(run);
     }
 }
 

@@ -130,12 +130,12 @@ TEST(CookMembrane, CompressibleDoesNotCreepInTheTotalFrame)
    lattice, the edge of the punch is half a cell beyond its last node.
 ------------------------------------------------------------------------- */
 
-static double punch(const char *options)
+static double punch(const std::string &options)
 {
   const double h = 0.1, dt = 0.4 * h / 37.0;
   Scene run(plane("si", "f f", "0 5 -3 1", 1, 0.04) +
             body("block 0 5 -3 0 INF INF", "density 1 eos linear 833.33 strength j2 384.6 1.0",
-                 strprintf("%g %s", h, options)) +
+                 strprintf("%g %s", h, options.c_str())) +
             strprintf("fix sides all mpm/boundary xlo xhi slip\n"
                       "fix floor all mpm/boundary ylo stick\n"
                       "region punch block -1 1.001 -0.001 1 INF INF\n"
@@ -143,17 +143,18 @@ static double punch(const char *options)
                       "fix slow all viscous %g\ntimestep %.17g\nrun %ld\n",
                       0.75 * h * h, dt, std::lround(0.9 / dt)));
   const double exact = (2.0 + 3.14159265358979) / sqrt(3.0) * (1.0 + 0.5 * h);
-  return measured(std::string("punch, ") + options + ": force/limit load",
+  return measured("punch, " + options + ": force/limit load",
                   std::abs(run.fix_vector("punch", 3)[1]) / exact);
 }
 
 TEST(Punch, LimitLoad)
 {
-  for (const char *shape : {"shape quadratic ", "shape linear transfer flip 0.99 scheme musl ",
-                            "shape linear transfer apic scheme musl light 0.5 "}) {
-    const double without = punch((std::string(shape) + "locking none").c_str());
+  for (const std::string shape :
+       {"shape quadratic ", "shape linear transfer flip 0.99 scheme musl ",
+        "shape linear transfer apic scheme musl light 0.5 "}) {
+    const double without = punch(shape + "locking none");
     for (const char *cure : {"locking fbar", "locking pressure", "locking both"}) {
-      const double with = punch((std::string(shape) + cure).c_str());
+      const double with = punch(shape + cure);
       EXPECT_NEAR(with, 1.0, 0.08) << shape << cure;
       EXPECT_LT(with, without - 0.03) << shape << cure;
     }
@@ -162,9 +163,10 @@ TEST(Punch, LimitLoad)
 
 /* ---- A body whose velocity is linear in position deforms uniformly in a step, averaged or not. */
 
-class Uniform : public ::testing::TestWithParam<const char *> {};
-
-TEST_P(Uniform, StretchIsExact)
+PARAMETER_TEST(Uniform, StretchIsExact, const char *,
+               Values("locking fbar", "locking pressure", "locking both",
+                      "locking fbar shape cubic", "locking fbar scheme musl",
+                      "locking fbar scheme usf", "locking fbar frame total"))
 {
   for (int dim : {2, 3}) {
     Scene run(box(dim, "lj", "f f p", "-5 5 -5 5 -5 5", 2) +
@@ -196,19 +198,14 @@ TEST_P(Uniform, StretchIsExact)
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Options, Uniform,
-                         ::testing::Values("locking fbar", "locking pressure", "locking both",
-                                           "locking fbar shape cubic", "locking fbar scheme musl",
-                                           "locking fbar scheme usf", "locking fbar frame total"));
-
 /* ----------------------------------------------------------------------
    In a step, averages change volumes of points, but not their sum; the next step with and without
    averages after some steps with them.
 ------------------------------------------------------------------------- */
 
-class Volume : public ::testing::TestWithParam<const char *> {};
-
-TEST_P(Volume, SumIsThatOfTheMotion)
+PARAMETER_TEST(Volume, SumIsThatOfTheMotion, const char *,
+               Values("locking fbar", "locking fbar transfer flip 1.0 scheme musl",
+                      "locking fbar frame total"))
 {
   for (int dim : {2, 3}) {
     double volume[2], largest[2];
@@ -238,20 +235,16 @@ TEST_P(Volume, SumIsThatOfTheMotion)
   }
 }
 
-static const char *const volume_cases[] = {
-    "locking fbar", "locking fbar transfer flip 1.0 scheme musl", "locking fbar frame total"};
-INSTANTIATE_TEST_SUITE_P(Options, Volume, ::testing::ValuesIn(volume_cases));
-
 /* ---- A pressure that is the same everywhere is its own average, however much points are compressed. */
 
 TEST(AveragedPressure, KeepsAUniformOne)
 {
   std::vector<Scene::State> states[2];
   for (const int averaged : {0, 1}) {
-    Scene run(plane("si", "f f", "-5 5 -5 5") + "fix grid all mpm 0.5 " +
-              (averaged ? "locking pressure" : "") +
-              "\nregion body block -1 1 -1 1 INF INF\ncreate_points 1 region body ppc 2\n"
-              "fix m all mpm/material density 1 linear 1.0 0.3\ntimestep 0.01\n");
+    Scene run(plane("si", "f f", "-5 5 -5 5") +
+              body("block -1 1 -1 1 INF INF", "density 1 linear 1.0 0.3",
+                   averaged ? "0.5 locking pressure" : "0.5") +
+              "timestep 0.01\n");
     for (int i = 0; i < run.n(); i++) {
       const double J = 1.0 + 0.3 * sin(3.0 * run.x()[i][0] + 5.0 * run.x()[i][1]);
       run.points().F[i][4] = J;
@@ -275,9 +268,8 @@ TEST(AveragedPressure, KeepsAUniformOne)
    frequency, by (kh)^2/8 of the part of the bulk modulus in lambda + 2 mu.
 ------------------------------------------------------------------------- */
 
-class Bar : public ::testing::TestWithParam<const char *> {};
-
-TEST_P(Bar, ConfinedOscillation)
+PARAMETER_TEST(Bar, ConfinedOscillation, const char *,
+               Values("locking none", "locking fbar", "locking pressure", "locking both"))
 {
   const double h = 0.05, E = 1.0, nu = 0.4999, k = 0.5 * 3.14159265358979, v0 = 1.0e-2;
   const double lambda = E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), mu = 0.5 * E / (1.0 + nu);
@@ -319,10 +311,6 @@ TEST_P(Bar, ConfinedOscillation)
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Options, Bar,
-                         ::testing::Values("locking none", "locking fbar", "locking pressure",
-                                           "locking both"));
-
 /* ----------------------------------------------------------------------
    Free oscillation of a block in plane strain, nu = 0.4999. With APIC, the energy that is left
    after some time tells whether the block moves like one of nu = 0.49, which does not lock yet.
@@ -332,14 +320,12 @@ struct Oscillation {
   double energy, spread, residual;    // by the energy at the start; of J, from smallest to largest
 };
 
-static Oscillation block(const char *options, double nu)
+static Oscillation block(const std::string &options, double nu)
 {
   Scene run(plane("si", "f f", "-1 1 -1 1", 1, 0.05) +
-            strprintf("fix grid all mpm 0.1 %s\nregion bar block -0.5 0.5 -0.5 0.5 INF INF\n"
-                      "create_points 1 region bar ppc 2\n"
-                      "fix m all mpm/material density 1 neohookean 1 %g\n"
-                      "compute e all mpm/energy\ntimestep 0.001\n",
-                      options, nu));
+            body("block -0.5 0.5 -0.5 0.5 INF INF", strprintf("density 1 neohookean 1 %g", nu),
+                 "0.1 " + options) +
+            "compute e all mpm/energy\ntimestep 0.001\n");
   run.set_velocity([&](const double *x, double *v) {
     v[0] = 0.1 * x[0];
     v[1] = -0.1 * x[1];
@@ -352,12 +338,10 @@ static Oscillation block(const char *options, double nu)
     least = std::min(least, run.points().jacobian(i));
     most = std::max(most, run.points().jacobian(i));
   }
-  Oscillation out;
-  const std::string name = strprintf("block, nu = %g, %s: ", nu, options);
-  out.energy = measured(name + "energy left", run.evaluate("c_e") / start);
-  out.spread = measured(name + "spread of J", most - least);
-  out.residual = measured(name + "residual of the ledger", run.evaluate("c_e[11]") / start);
-  return out;
+  const std::string name = strprintf("block, nu = %g, %s: ", nu, options.c_str());
+  return {measured(name + "energy left", run.evaluate("c_e") / start),
+          measured(name + "spread of J", most - least),
+          measured(name + "residual of the ledger", run.evaluate("c_e[11]") / start)};
 }
 
 TEST(Block, MovesAsWithoutLocking)
@@ -378,6 +362,6 @@ TEST(Block, MovesAsWithoutLocking)
 TEST(Block, EnergyWithoutDamping)
 {
   const std::string flip = "transfer flip 1.0 scheme musl locking ";
-  EXPECT_NEAR(block((flip + "both").c_str(), 0.4999).energy, 1.0, 0.01);
-  EXPECT_LT(block((flip + "fbar").c_str(), 0.4999).energy, 1.6);
+  EXPECT_NEAR(block(flip + "both", 0.4999).energy, 1.0, 0.01);
+  EXPECT_LT(block(flip + "fbar", 0.4999).energy, 1.6);
 }

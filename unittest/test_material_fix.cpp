@@ -34,11 +34,6 @@ group two type 2
 timestep 1.0e-9
 )";
 
-FixMPMMaterial *material(Scene &run, const std::string &id)
-{
-  return run.material(id);
-}
-
 /** The error that a definition gives: what follows "fix m one mpm/material". */
 std::string error_of_material(const std::string &definition)
 {
@@ -48,13 +43,6 @@ std::string error_of_material(const std::string &definition)
 bool contains(const std::string &text, const std::string &part)
 {
   return text.find(part) != std::string::npos;
-}
-
-double sum(double x)
-{
-  double total;
-  MPI_Allreduce(&x, &total, 1, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
-  return total;
 }
 
 }    // namespace
@@ -107,9 +95,8 @@ TEST(MaterialFix, FilesOfThePackage)
     SCOPED_TRACE(entry.path().string());
     ASSERT_EQ(entry.path().extension(), ".mpm");
     files++;
-    Scene run(scene);
-    run.commands("fix m one mpm/material file " + entry.path().string() + "\n");
-    auto *m = material(run, "m");
+    Scene run(scene + "fix m one mpm/material file " + entry.path().string() + "\n");
+    auto *m = run.material("m");
     std::vector<MPM_NS::HistoryVariable> history = m->material->history();
     EXPECT_EQ(m->nhistory, (int) history.size());
     const std::string text = m->material->describe();
@@ -121,59 +108,40 @@ TEST(MaterialFix, FilesOfThePackage)
   EXPECT_GE(files, 28);
   // found in the folders of LAMMPS_POTENTIALS, same as in the input
   setenv("LAMMPS_POTENTIALS", (std::string(MPM_SOURCE_DIR) + "/potentials").c_str(), 1);
-  Scene run(scene);
-  run.commands("fix m one mpm/material file Water_Tait.mpm\n"
-               "fix n two mpm/material density 998.2 eos tait 2.192e9 7 cutoff -9.9e4 &\n"
-               "viscosity newtonian 1.002e-3 range pressure -INF 2.5e9\n");
-  EXPECT_EQ(material(run, "m")->material->describe(), material(run, "n")->material->describe());
+  Scene run(scene +
+            "fix m one mpm/material file Water_Tait.mpm\n"
+            "fix n two mpm/material density 998.2 eos tait 2.192e9 7 cutoff -9.9e4 &\n"
+            "viscosity newtonian 1.002e-3 range pressure -INF 2.5e9\n");
+  EXPECT_EQ(run.material("m")->material->describe(), run.material("n")->material->describe());
 }
 
 TEST(MaterialFix, BadFiles)
 {
-  const std::string header = "# DATE: 2026-01-01 UNITS: si CONTRIBUTOR: a CITATION: b\n";
-  {
-    const ScratchFile file("wrong_line.mpm", header + "\ndensity 1000 # fine\n\nlinear 1e6 0.7\n");
-    const std::string text = error_of_material("file " + file.name);
-    EXPECT_TRUE(contains(text, "file " + file.name + " line 5: linear: NU = 0.7")) << text;
-  }
-  {
-    const ScratchFile file("other_units.mpm",
-                           "# DATE: 2026-01-01 UNITS: lj\ndensity 1 linear 1 0.3\n");
-    const std::string text = error_of_material("file " + file.name);
-    EXPECT_TRUE(contains(text, file.name + " is in lj units but the input uses si units")) << text;
-  }
-  {
-    const ScratchFile file("no_units.mpm", "density 1000\nlinear 1e6 0.3\n");
-    const std::string text = error_of_material("file " + file.name);
-    EXPECT_TRUE(contains(text, "the first line of file " + file.name + " must give its units"))
-        << text;
-  }
-  {
-    const ScratchFile file("empty.mpm", header);
-    const std::string text = error_of_material("file " + file.name);
-    EXPECT_TRUE(contains(text, "file " + file.name + " line 1: density is missing")) << text;
-  }
-  {
-    const ScratchFile file("good.mpm", header + "density\n 1000\n\n  linear 1e6\n0.3");
-    EXPECT_EQ(error_of_material("file " + file.name), "");
-    // parts of the input are added to those of the file
-    EXPECT_EQ(error_of_material("file " + file.name + " thermal constant 300"), "");
-    const std::string text = error_of_material("file " + file.name + " thermal constant hot");
-    EXPECT_TRUE(
-        contains(text, "after file " + file.name + ": thermal constant: T0 must be a number"))
-        << text;
-  }
-  {
-    // and options to the last part in the file
-    const ScratchFile file("gas.mpm", header + "density 1.2\neos ideal/gas 1.4\n");
-    EXPECT_TRUE(contains(error_of_material("file " + file.name),
-                         "file " + file.name + " line 3: eos ideal/gas: give"));
-    EXPECT_EQ(error_of_material("file " + file.name + " pressure 1e5 viscosity artificial 2 1"),
-              "");
-  }
-  {
-    const ScratchFile file("plain_header.mpm", header.substr(2) + "density 1000 linear 1e6 0.3\n");
-    EXPECT_EQ(error_of_material("file " + file.name), "");
+  const std::string header = "# DATE: 2026-01-01 UNITS: si CONTRIBUTOR: a CITATION: b\n",
+                    good = header + "density\n 1000\n\n  linear 1e6\n0.3",
+                    gas = header + "density 1.2\neos ideal/gas 1.4\n";
+  const struct {
+    std::string text, more, message;    // more: after the name of the file
+  } cases[] = {
+      {header + "\ndensity 1000 # fine\n\nlinear 1e6 0.7\n", "",
+       "file FILE line 5: linear: NU = 0.7"},
+      {"# DATE: 2026-01-01 UNITS: lj\ndensity 1 linear 1 0.3\n", "",
+       "FILE is in lj units but the input uses si units"},
+      {"density 1000\nlinear 1e6 0.3\n", "", "the first line of file FILE must give its units"},
+      {header, "", "file FILE line 1: density is missing"},
+      {good, "", ""},
+      // parts of the input are added to those of the file
+      {good, " thermal constant 300", ""},
+      {good, " thermal constant hot", "after file FILE: thermal constant: T0 must be a number"},
+      // and options to the last part in the file
+      {gas, "", "file FILE line 3: eos ideal/gas: give"},
+      {gas, " pressure 1e5 viscosity artificial 2 1", ""},
+      {header.substr(2) + "density 1000 linear 1e6 0.3\n", "", ""}};
+  for (const auto &c : cases) {
+    const ScratchFile file("made.mpm", c.text);
+    const auto found = error_of_material("file " + file.name + c.more);
+    EXPECT_THAT(found, HasSubstr(replaced(c.message, "FILE", file.name))) << c.text << c.more;
+    EXPECT_EQ(found.empty(), c.message.empty()) << found;
   }
 }
 
@@ -225,12 +193,10 @@ TEST(MaterialFix, LeavingARangeWarnsOnce)
     for (std::size_t n = 0; n < reference.size(); n++) {
       const double value = reference[n][quantity];
       if (value >= low && value <= high) continue;
-      char text[200];
-      snprintf(text, sizeof(text),
-               "Fix mpm/material a: %s %.6g of point %d at step %d is out of the range of this "
-               "material, %.6g to %.6g",
-               name[quantity], value, int(n % npoints + 1), int(n / npoints + 1), low, high);
-      return text;
+      return strprintf(
+          "Fix mpm/material a: %s %.6g of point %d at step %d is out of the range of this "
+          "material, %.6g to %.6g",
+          name[quantity], value, int(n % npoints + 1), int(n / npoints + 1), low, high);
     }
     return "";
   };
@@ -278,8 +244,7 @@ TEST(MaterialFix, LeavingARangeWarnsOnce)
 
 TEST(MaterialFix, MassIsDensityTimesVolumeUnlessSet)
 {
-  Scene run(scene);
-  run.commands("fix a one mpm/material density 1000 linear 1e6 0.3\n");
+  Scene run(scene + "fix a one mpm/material density 1000 linear 1e6 0.3\n");
   for (int i = 0; i < run.n(); i++)
     EXPECT_EQ(run.mass()[i], run.lmp->atom->type[i] == 1 ? 1000 * 0.125 : 0.0);
   run.commands("set type 2 mass 7.5\nfix b two mpm/material density 1000 linear 1e6 0.3\n");
@@ -287,7 +252,7 @@ TEST(MaterialFix, MassIsDensityTimesVolumeUnlessSet)
     auto *atom = run.lmp->atom;
     for (int i = 0; i < atom->nlocal; i++)
       EXPECT_EQ(atom->rmass[i], atom->type[i] == 1 ? 1000 * 0.125 : 7.5);
-    EXPECT_EQ(sum(atom->nlocal), run.lmp->atom->natoms);
+    EXPECT_EQ(over_ranks(atom->nlocal), run.lmp->atom->natoms);
   };
   check();
   // points that come later get theirs before the run
@@ -301,10 +266,9 @@ TEST(MaterialFix, MassIsDensityTimesVolumeUnlessSet)
 
 TEST(MaterialFix, NewPointsStartWithInitialHistory)
 {
-  Scene run(scene);
-  run.commands("fix m all mpm/material " + STEEL + "\nregion late block 1 3 5 7 1 3\n" +
-               "create_points 1 region late ppc 2\nrun 0 post no\n");
-  auto *m = material(run, "m");
+  Scene run(scene + "fix m all mpm/material " + STEEL + "\nregion late block 1 3 5 7 1 3\n" +
+            "create_points 1 region late ppc 2\nrun 0 post no\n");
+  auto *m = run.material("m");
   ASSERT_EQ(m->nhistory, 2);
   EXPECT_EQ(run.lmp->atom->natoms, 192);
   for (int i = 0; i < run.n(); i++) {
@@ -315,10 +279,9 @@ TEST(MaterialFix, NewPointsStartWithInitialHistory)
 
 TEST(MaterialFix, HistoryMovesWithThePoints)
 {
-  Scene run(scene);
-  run.commands("fix a one mpm/material " + STEEL +
-               "\nfix b all mpm/material density 1 eos shock 1 1 1\n" + "atom_modify sort 1 1.0\n");
-  auto *a = material(run, "a"), *b = material(run, "b");
+  Scene run(scene + "fix a one mpm/material " + STEEL +
+            "\nfix b all mpm/material density 1 eos shock 1 1 1\n" + "atom_modify sort 1 1.0\n");
+  auto *a = run.material("a"), *b = run.material("b");
   run.commands("group half type 1\n");
   const auto value = [&](int i, int k) {
     return 1000.0 * k + run.lmp->atom->tag[i];
@@ -355,18 +318,18 @@ TEST(MaterialFix, RestartKeepsHistoryAndWork)
   const ScratchFile file("restart");
   {
     Scene run(scene + "unfix grid\n" + fixes);
-    auto *a = material(run, "a");
-    EXPECT_EQ(material(run, "b")->history, nullptr);
+    auto *a = run.material("a");
+    EXPECT_EQ(run.material("b")->history, nullptr);
     for (int i = 0; i < run.n(); i++)
       for (int k = 0; k < 2; k++) a->history[i][k] = 0.1 * run.lmp->atom->tag[i] + 1000 * k;
     for (int k = 0; k < MPM_NS::NWORK; k++) a->work[k] = (k + 1) * (rank() + 1);
     run.commands("run 0 post no\nwrite_restart " + file.name + "\n");
   }
   Scene run("read_restart " + file.name + "\nneighbor 0.3 bin\n" + fixes + "run 0 post no\n");
-  auto *a = material(run, "a");
-  EXPECT_EQ(sum(run.n()), 128);
+  auto *a = run.material("a");
+  EXPECT_EQ(over_ranks(run.n()), 128);
   for (int i = 0; i < run.n(); i++)
     for (int k = 0; k < 2; k++) ASSERT_EQ(a->history[i][k], 0.1 * run.lmp->atom->tag[i] + 1000 * k);
   for (int k = 0; k < MPM_NS::NWORK; k++)
-    EXPECT_EQ(sum(a->work[k]), (k + 1) * (nranks() == 1 ? 1 : 3));
+    EXPECT_EQ(over_ranks(a->work[k]), (k + 1) * (nranks() == 1 ? 1 : 3));
 }

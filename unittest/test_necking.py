@@ -22,15 +22,13 @@ STRENGTH, STRAIN = 570.3, 0.1023
 
 def pull(*changes):
     """Strain, force at the grip, and force in the middle (MPa of the initial section)."""
-    with open(BAR) as file:    # without pictures
-        text = "\n".join(line for line in file.read().split("\n")
-                         if not re.match(r"(dump|dump_modify) +pic|  +(box no|amap)", line))
+    text = "\n".join(line for line in mt.read(BAR).split("\n")    # without pictures
+                     if not re.match(r"(dump|dump_modify) +pic|  +(box no|amap)", line))
     for old, new in changes:
         assert old in text, old
         text = text.replace(old, new)
     with tempfile.TemporaryDirectory() as folder:
-        result = mt.lammps(folder, text, timeout=200)
-        assert result.code == 0, result.tail()
+        mt.ok(mt.lammps(folder, text, timeout=200))
         rows = np.loadtxt(os.path.join(folder, "curve.txt"))
     return rows[:, 1], rows[:, 2], rows[:, 3]
 
@@ -67,7 +65,6 @@ def test_strength_and_necking():
     late = np.interp(0.16, strain[4:-4], smooth)
     print("strain 0.16: %.1f MPa" % late)
     assert 500.9 < late < 559.7
-
 
 
 def test_failure():

@@ -5,9 +5,6 @@
 """Neighbor lists of points and grains: warnings for the settings that make them slow, and none for
 those that do not."""
 
-import shutil
-import tempfile
-
 import mpm_testing as mt
 
 PAIRS = "pairs of material points of type %d are in the neighbor lists"
@@ -76,12 +73,7 @@ def check(expected, processes=0, **settings):
     values["more"] = values["more"].replace("%s", str(settings.get("other", 0.5)))
     values["ghosts"] = "multi" if values["lists"] == "multi" else "single"
     values["exclude"] = "\n".join("neigh_modify " + line for line in values["exclude"].split("\n") if line)
-    folder = tempfile.mkdtemp(prefix="mpm_neighbor_")
-    try:
-        result = mt.lammps(folder, SCENE % values, processes=processes)
-    finally:
-        shutil.rmtree(folder)
-    assert result.code == 0, result.tail()
+    result = mt.ok(mt.lammps_once(SCENE % values, processes=processes))
     for warning in expected:
         assert result.output.count(warning) == 1, "%s: %s" % (settings, warning)
     for warning in ALL:

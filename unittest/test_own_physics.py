@@ -10,45 +10,20 @@ through a restart. Nothing of the package was edited for it."""
 import math
 import os
 import re
-import shutil
-import tempfile
 
 import mpm_testing as mt
 
-EXAMPLE = os.path.join(mt.ROOT, "examples", "own-physics")
-folder = tempfile.mkdtemp(prefix="mpm_physics_")
+folder = mt.scratch_folder()
 OWN = os.path.join(folder, "build", "ownplugin.so")
 
 
-def lammps_sources():
-    """The source tree of the LAMMPS that is tested, or None."""
-    cache = os.path.join(os.path.dirname(mt.LMP), "CMakeCache.txt")
-    if not os.path.exists(cache):
-        return None
-    with open(cache) as file:
-        text = file.read()
-    for key in ("LAMMPS_BUILD_DIR", "LAMMPS_SOURCE_DIR"):
-        found = re.search(r"^%s:\w+=(\S+)" % key, text, re.M)
-        if not found:
-            continue
-        export = os.path.join(found.group(1), "mpm_lammps.cmake")
-        if os.path.exists(export):
-            with open(export) as file:
-                return re.search(r'set\(LAMMPS_DIR "(.*?)"\)', file.read()).group(1)
-        return found.group(1)
-    return None
-
-
 def run(text, processes=0):
-    result = mt.lammps(folder, "plugin load %s\n" % OWN + text, processes=processes)
-    assert result.code == 0, result.tail()
-    return result
+    return mt.ok(mt.lammps(folder, "plugin load %s\n" % OWN + text, processes=processes))
 
 
 def rows(name):
     """Numbers of a dump file in order of the IDs in its first column."""
-    with open(os.path.join(folder, name)) as file:
-        lines = file.read().splitlines()
+    lines = mt.read(os.path.join(folder, name)).splitlines()
     start = max(k for k, line in enumerate(lines) if line.startswith("ITEM: ATOMS")) + 1
     return sorted([float(word) for word in line.split()] for line in lines[start:])
 
@@ -59,23 +34,15 @@ def difference(a, b):
 
 
 def test_builds():
-    sources = lammps_sources()
+    sources = mt.lammps_sources()
     if not sources:
         raise mt.Skip("no sources of LAMMPS")
-    for name in os.listdir(EXAMPLE):
-        if os.path.isfile(os.path.join(EXAMPLE, name)):
-            shutil.copy(os.path.join(EXAMPLE, name), folder)
-    result = mt.run(["cmake", "-S", ".", "-B", "build", "-D", "LAMMPS_SOURCE_DIR=" + sources,
-                     "-D", "MPM_DIR=" + os.path.join(mt.ROOT, "src", "MPM")], folder)
-    assert result.code == 0, result.output
-    result = mt.run(["cmake", "--build", "build"], folder)
-    assert result.code == 0 and "warning" not in result.output, result.output
+    mt.build_example("own-physics", folder, "LAMMPS_SOURCE_DIR=" + sources[0])
 
 
 def profile_error(h):
     """Largest difference from erfc(x / sqrt(4 D t)) in the example with this node spacing."""
-    result = mt.lammps(folder, file="in.own-physics", arguments=["-v", "h", str(h)])
-    assert result.code == 0, result.tail()
+    result = mt.ok(mt.lammps(folder, file="in.own-physics", arguments=["-v", "h", str(h)]))
     assert not mt.warnings(result.output), result.output
     (names, table), = mt.thermo(result.output)
     time = float(table[-1][names.index("Time")])
@@ -152,18 +119,18 @@ def test_restarts_bit_by_bit():
     assert float(ledger[-1][1][0][2]) > 0.0, "what came through the wall is forgotten"
 
 
+def refused(text, words):
+    found = mt.lammps(folder, "plugin load %s\n" % OWN + text)
+    assert found.code != 0 and words in found.output, found.tail()
+
+
 def test_limits_the_time_step():
-    found = mt.lammps(folder, "plugin load %s\n" % OWN + scene("") + "timestep 0.6\nrun 1\n")
-    assert found.code != 0 and "Time step 0.6 is above the limit" in found.output, found.tail()
+    refused(scene("") + "timestep 0.6\nrun 1\n", "Time step 0.6 is above the limit")
 
 
 def test_its_ledger_must_be_defined_after_it():
     text = scene("").replace("fix s all", "compute before all mpm/energy\nfix s all")
-    found = mt.lammps(folder, "plugin load %s\n" % OWN + text + "run 0\n")
-    assert found.code != 0 and "define it after the fixes" in found.output, found.tail()
+    refused(text + "run 0\n", "define it after the fixes")
 
 
-try:
-    mt.main(globals())
-finally:
-    shutil.rmtree(folder)
+mt.main(globals())

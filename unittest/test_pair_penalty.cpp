@@ -12,28 +12,14 @@
 
 using namespace MPM_TEST;
 
-/** What takes long is done by one rank. */
-static bool first_rank()
-{
-  int me;
-  MPI_Comm_rank(MPI_COMM_WORLD, &me);
-  return me == 0;
-}
-
 // ---------------------------------------------------------------------- head-on impact of two bars
 
 /** Bars of length 1 at a gap of 0.01, each with speed 0.05, with spacings 0.02 and 0.016. */
-static const std::string bars = plane("si", "f p", "-0.3 2.6 0 0.08 -0.05 0.05", 2, 0.01) + R"(
-region b1 block 0 1 0 0.08 -0.05 0.05
-region b2 block 1.01 2.01 0 0.08 -0.05 0.05
-group one type 1
-group two type 2
-fix F1 one mpm 0.02 transfer flip 1.0 scheme musl
-fix F2 two mpm 0.016 origin 1.01 0 transfer flip 1.0 scheme musl
-create_points 1 region b1 ppc 2 fix F1
-create_points 2 region b2 ppc 2 fix F2
-group one type 1
-group two type 2
+static const std::string bars = plane("si", "f p", "-0.3 2.6 0 0.08 -0.05 0.05", 2, 0.01) +
+    fields({{"one", "block 0 1 0 0.08 -0.05 0.05", "0.02 transfer flip 1.0 scheme musl"},
+            {"two", "block 1.01 2.01 0 0.08 -0.05 0.05",
+             "0.016 origin 1.01 0 transfer flip 1.0 scheme musl"}}) +
+    R"(
 fix m1 one mpm/material density 1 linear MODULUS 0
 fix m2 two mpm/material density 1 linear MODULUS 0
 velocity one set 0.05 0 0
@@ -60,8 +46,7 @@ static std::string two_bars(const std::string &modulus, const std::string &penal
 // stress rho c v = 0.5 at the interface for 2 L/c = 0.2, then the bars part with their old speeds
 TEST(Bars, StressAndRebound)
 {
-  Scene run(two_bars("100", "50", "2e-4"));
-  run.commands("run 0\n");
+  Scene run(two_bars("100", "50", "2e-4") + "run 0\n");
   const double energy = run.evaluate("c_e");
   double worst = 0.0, drift = 0.0, before = 0.0, after = 0.0;
   for (int k = 1; k <= 40; k++) {
@@ -83,8 +68,7 @@ TEST(Bars, StressAndRebound)
 // bars that are stiff compared with the contact: all energy goes through the contact
 SERIAL_TEST(Bars, EnergyOfTheContact)
 {
-  if (!first_rank()) return;
-  Scene run(two_bars("500", "1", "8e-5"), MPI_COMM_SELF);
+  Scene run(two_bars("500", "1", "8e-5"));
   run.commands("run 0\n");
   const double energy = run.evaluate("c_e");
   double drift = 0.0, most = 0.0;
@@ -101,8 +85,7 @@ SERIAL_TEST(Bars, EnergyOfTheContact)
 // damping takes energy, and says how much: c_pair[2] is its power
 SERIAL_TEST(Bars, DampingDissipates)
 {
-  if (!first_rank()) return;
-  Scene run("comm_modify vel yes\n" + two_bars("500", "1 damping 3", "8e-5"), MPI_COMM_SELF);
+  Scene run("comm_modify vel yes\n" + two_bars("500", "1 damping 3", "8e-5"));
   run.commands("fix sum all vector 1 c_pair[2]\nvariable lost equal 8e-5*sum(f_sum)\nrun 0\n");
   const double energy = run.evaluate("c_e");
   run.commands("run 4800\n");
@@ -115,7 +98,6 @@ SERIAL_TEST(Bars, DampingDissipates)
 // two points of volumes 1 and 0.8^3: radii 0.5 and 0.4, face of the smaller one 0.64
 SERIAL_TEST(TwoPoints, ForceEnergyAndPower)
 {
-  if (!first_rank()) return;
   Scene run(R"(
 units lj
 boundary f f f
@@ -141,8 +123,7 @@ compute f one reduce sum fx fy
 thermo_style custom step c_pair c_f[1] c_f[2]
 timestep 0.001
 run 0
-)",
-            MPI_COMM_SELF);
+)");
   const double force = 50.0 * 0.64 * 0.1 / 0.9;
   EXPECT_NEAR(run.evaluate("c_f[1]"), -force, 1e-12);
   EXPECT_NEAR(run.evaluate("c_f[2]"), -0.3 * force, 1e-12);
@@ -154,25 +135,11 @@ run 0
 // ---------------------------------------------------------------------- friction
 
 /** A block on a plane of other spacing, gravity tilted by 30 degrees. */
-static const char *const incline = R"(
-units si
-dimension 2
-boundary f f p
-atom_style mpm
-neighbor 0.03 bin
+static const std::string incline = plane("si", "f f", "0 3 0 1.4 -0.05 0.05", 2, 0.03) +
+    fields({{"plane", "block 0 3 0 0.4 -0.05 0.05", "0.1"},
+            {"body", "block 0.5 1.5 0.4 0.8 -0.05 0.05", "0.07 origin 0.5 0.4"}}) +
+    R"(
 comm_modify vel yes
-region box block 0 3 0 1.4 -0.05 0.05
-create_box 2 box
-region plane block 0 3 0 0.4 -0.05 0.05
-region body block 0.5 1.5 0.4 0.8 -0.05 0.05
-group plane type 1
-group body type 2
-fix F1 plane mpm 0.1
-fix F2 body mpm 0.07 origin 0.5 0.4
-create_points 1 region plane ppc 2 fix F1
-create_points 2 region body ppc 2 fix F2
-group plane type 1
-group body type 2
 fix m1 plane mpm/material density 1000 neohookean 4.2e6 0.4
 fix m2 body mpm/material density 1000 neohookean 4.2e6 0.4
 fix floor all mpm/boundary ylo stick field F1
@@ -189,13 +156,11 @@ thermo_style custom step c_f[1] c_f[2]
 
 SERIAL_TEST(Friction, BlockSlidesOrSticks)
 {
-  if (!first_rank()) return;
   const double g = 9.81, sine = 0.5, cosine = std::sqrt(0.75), slip = 0.02;
   for (const double mu : {0.0, 0.1, 0.3, 0.8}) {
     SCOPED_TRACE(mu);
     Scene run(replaced(incline, "FRICTION",
-                       mu > 0.0 ? strprintf("friction %g %g", mu, slip) : std::string()),
-              MPI_COMM_SELF);
+                       mu > 0.0 ? strprintf("friction %g %g", mu, slip) : std::string()));
     run.commands("run 500\n");
     const double t0 = run.evaluate("time"), v0 = run.evaluate("v_v"), x0 = run.evaluate("v_x");
     run.commands("run 1000\n");
@@ -209,25 +174,12 @@ SERIAL_TEST(Friction, BlockSlidesOrSticks)
 }
 
 // ---------------------------------------------------------------------- ranks, periodic faces, restart
-static const char *const disks = R"(
-units lj
-dimension 2
-boundary p p p
-atom_style mpm
+static const std::string disks = plane("lj", "p p", "0 24 0 12", 2) +
+    fields({{"one", "cylinder z 3.1 6.2 2.5 INF INF", "0.5"},
+            {"two", "cylinder z 20.9 5.3 2.5 INF INF", "0.6"}}) +
+    R"(
 neighbor 0.3 bin
 comm_modify vel yes
-region box block 0 24 0 12 -0.5 0.5
-create_box 2 box
-region one cylinder z 3.1 6.2 2.5 INF INF
-region two cylinder z 20.9 5.3 2.5 INF INF
-group one type 1
-group two type 2
-fix F1 one mpm 0.5
-fix F2 two mpm 0.6
-create_points 1 region one ppc 2 fix F1
-create_points 2 region two ppc 2 fix F2
-group one type 1
-group two type 2
 fix m all mpm/material density 1 neohookean 50 0.3
 pair_style mpm/penalty growth 1.3
 pair_coeff 1 2 50 friction 0.3 0.05 damping 0.1
@@ -249,7 +201,7 @@ TEST(Parallel, RanksAgreeAcrossAPeriodicFaceAndAfterARestart)
             "fix m all mpm/material density 1 neohookean 50 0.3\n",
             140, 1e-10);
   EXPECT_GT(run.again.evaluate("pe"), 0.0);
-  OnRanks off("newton off\n" + std::string(disks), "run 300\n");
+  OnRanks off("newton off\n" + disks, "run 300\n");
   EXPECT_LT(off.difference(), 1e-10);
   for (Scene *one : {&run.whole, &off.parallel})
     EXPECT_GT(one->evaluate("v_v"), -0.25);    // they have met through the face
@@ -257,7 +209,7 @@ TEST(Parallel, RanksAgreeAcrossAPeriodicFaceAndAfterARestart)
 
 TEST(Parallel, MomentumAndEnergyOfAtoms)
 {
-  Scene run(std::string(disks) + "run 0\n");
+  Scene run(disks + "run 0\n");
   const double p[2] = {run.evaluate("v_px"), run.evaluate("v_py")};
   run.commands("run 250\n");
   EXPECT_GT(run.evaluate("pe"), 0.0);
@@ -272,17 +224,16 @@ TEST(Parallel, MomentumAndEnergyOfAtoms)
 TEST(Lists, ContactDoesNotDependOnThem)
 {
   std::vector<Scene::State> reference;
-  const std::string scene = disks;
   const std::string penalty = "pair_style mpm/penalty growth 1.3\n"
                               "pair_coeff 1 2 50 friction 0.3 0.05 damping 0.1\n";
   const std::string variants[] = {
-      scene,
-      replaced(scene, penalty,
+      disks,
+      replaced(disks, penalty,
                "set type 2 type 1\npair_style mpm/penalty growth 1.3\n"
                "pair_coeff 1 1 50 friction 0.3 0.05 damping 0.1\n"),
-      replaced(scene, "neighbor 0.3 bin", "neighbor 0.3 multi\ncomm_modify mode multi") +
+      replaced(disks, "neighbor 0.3 bin", "neighbor 0.3 multi\ncomm_modify mode multi") +
           "neigh_modify exclude type 1 1 exclude type 2 2\n",
-      replaced(scene, penalty,
+      replaced(disks, penalty,
                "pair_style hybrid/overlay zero 1.0 mpm/penalty growth 1.3\n"
                "pair_coeff * * zero\n"
                "pair_coeff 1 2 mpm/penalty 50 friction 0.3 0.05 damping 0.1\n"),
@@ -304,10 +255,9 @@ TEST(Lists, ContactDoesNotDependOnThem)
 // a body that is one field feels nothing; modulus 0 is no contact; fix mpm/contact has precedence
 TEST(Lists, NoContact)
 {
-  const std::string scene = disks;
-  const std::string same = replaced(scene, "mpm 0.6", "mpm 0.5");
+  const std::string same = replaced(disks, "mpm 0.6", "mpm 0.5");
   const std::string contact = "fix c all mpm/contact F1 F2 law coulomb 0.3\n";
-  for (const auto &text : {replaced(scene, "pair_coeff 1 2 50", "pair_coeff 1 2 0"), same + contact,
+  for (const auto &text : {replaced(disks, "pair_coeff 1 2 50", "pair_coeff 1 2 0"), same + contact,
                            same + contact + "pair_coeff 1 1 50\n"}) {
     Scene run(text + "compute pair all pair mpm/penalty\nrun 200\n");
     EXPECT_EQ(run.evaluate("c_pair[1]"), 0.0);
@@ -335,9 +285,7 @@ TEST(Lists, TotalFrame)
 // a grain between two bodies: the granular style moves it, this one couples the bodies only
 TEST(Lists, GrainsNextToBodies)
 {
-  Scene run;
-  std::string text = disks;
-  text = replaced(text, "atom_style mpm", "atom_style hybrid sphere mpm");
+  std::string text = replaced(disks, "atom_style mpm", "atom_style hybrid sphere mpm");
   text = replaced(text, "create_box 2 box", "create_box 3 box");
   text = replaced(text, "pair_style mpm/penalty growth 1.3\npair_coeff 1 2",
                   "create_atoms 3 single 17.6 5.3 0\nset type 3 diameter 1 density 1\n"
@@ -346,7 +294,7 @@ TEST(Lists, GrainsNextToBodies)
                   "pair_coeff * * none\n"
                   "pair_coeff 1*3 3 granular hooke 50 0 tangential linear_nohistory 0 0\n"
                   "pair_coeff 1 2 mpm/penalty");
-  run.commands(text + "compute pair all pair mpm/penalty\nrun 0\n");
+  Scene run(text + "compute pair all pair mpm/penalty\nrun 0\n");
   const double p = run.evaluate("v_px");
   run.commands("run 250\n");
   EXPECT_GT(run.evaluate("c_pair[1]"), 0.0);
@@ -393,10 +341,9 @@ TEST(BadInput, IsRefused)
       {"unfix F1\nunfix F2", "no fix mpm"},
   };
   expect_refused(disks, cases, "run 1\n");
-  EXPECT_NE(error_of("region box block 0 1 0 1 0 1\ncreate_box 1 box\npair_style mpm/penalty\n"
-                     "pair_coeff * * 1\nmass 1 1\nrun 0\n")
-                .find("requires material points"),
-            std::string::npos);
+  expect_error("region box block 0 1 0 1 0 1\ncreate_box 1 box\npair_style mpm/penalty\n"
+               "pair_coeff * * 1\nmass 1 1\nrun 0\n",
+               "requires material points");
 }
 
 /* ----------------------------------- axisymmetric: rings that are in contact along their circle */
@@ -411,13 +358,21 @@ static std::string rings(const std::string &more)
       more;
 }
 
+static std::string rods(const std::string &one, const std::string &two, const std::string &more)
+{
+  return rings(bodies({{"one", "block " + one + " INF INF"}, {"two", "block " + two + " INF INF"}},
+                      "ppc 2 fix F#") +
+               "compute e all mpm/energy\ncompute pair all pair mpm/penalty\n"
+               "thermo_style custom step c_e c_pair\n" +
+               more);
+}
+
 // the force on each point is minus the slope of the energy, along both axes, while the area of a ring in the
 // plane stays: F_zz goes with its radius
 SERIAL_TEST(Rings, ForceIsTheSlopeOfTheEnergy)
 {
-  if (!first_rank()) return;
   const double r[2] = {1.0, 1.14}, y[2] = {5.0, 5.1}, area = 0.04, E = 3.0, step = 1e-5;
-  Scene run(MPI_COMM_SELF);
+  Scene run;
   std::string scene;
   for (int k = 0; k < 2; k++)
     scene += strprintf("create_atoms %d single %.17g %.17g 0\nset type %d volume %.17g\n", k + 1,
@@ -458,15 +413,9 @@ SERIAL_TEST(Rings, ForceIsTheSlopeOfTheEnergy)
 // to what changes of the radii take: of that energy, the modulus of the contact over the bulk modulus
 SERIAL_TEST(Rings, RodSwellsInASleeve)
 {
-  if (!first_rank()) return;
-  Scene run(
-      rings("region one block 0 2 4 8 INF INF\nregion two block 2.05 3.25 4 8 INF INF\n"
-            "create_points 1 region one ppc 2 fix F1\ncreate_points 2 region two ppc 2 fix F2\n"
-            "group one type 1\ngroup two type 2\npair_coeff 1 2 2.0\n"
-            "fix m all mpm/material density 1 neohookean 10.0 0.3\ncompute e all mpm/energy\n"
-            "compute pair all pair mpm/penalty\nthermo_style custom step c_e c_pair\n"
-            "timestep 0.01\n"),
-      MPI_COMM_SELF);
+  Scene run(rods("0 2 4 8", "2.05 3.25 4 8",
+                 "pair_coeff 1 2 2.0\nfix m all mpm/material density 1 neohookean 10.0 0.3\n"
+                 "timestep 0.01\n"));
   run.set_velocity([](const double *x, double *v) {
     v[0] = x[0] < 2.02 ? 0.3 * x[0] : 0.0;
   });
@@ -499,17 +448,12 @@ SERIAL_TEST(Rings, RodSwellsInASleeve)
 // two rods that collide along the axis: the stress is rho c v, as in the plane
 SERIAL_TEST(Rings, RodsCollide)
 {
-  if (!first_rank()) return;
-  Scene run(MPI_COMM_SELF);
+  Scene run;
   const double v = 0.05, c = 10.0;
-  run.commands(
-      rings("region one block 0 2 0.5 5.5 INF INF\nregion two block 0 2 5.6 10.4 INF INF\n"
-            "create_points 1 region one ppc 2 fix F1\ncreate_points 2 region two ppc 2 fix F2\n"
-            "group one type 1\ngroup two type 2\npair_coeff 1 2 20.0\n"
-            "fix m all mpm/material density 1 linear 100.0 0\ncompute e all mpm/energy\n"
-            "compute pair all pair mpm/penalty\nthermo_style custom step c_e c_pair\n"
-            "timestep 0.004\nvelocity one set 0 0.05 0\nvelocity two set 0 -0.05 0\n"
-            "variable p equal mass(one)*vcm(one,y)\nrun 0\n"));
+  run.commands(rods("0 2 0.5 5.5", "0 2 5.6 10.4",
+                    "pair_coeff 1 2 20.0\nfix m all mpm/material density 1 linear 100.0 0\n"
+                    "timestep 0.004\nvelocity one set 0 0.05 0\nvelocity two set 0 -0.05 0\n"
+                    "variable p equal mass(one)*vcm(one,y)\nrun 0\n"));
   const double start = run.evaluate("c_e"), all = run.sums().p[1];
   double before = 0.0, drift = 0.0;
   for (int k = 1; k <= 100; k++) {    // until 2.0: contact lasts from 1.0 to 2.0

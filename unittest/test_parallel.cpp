@@ -13,12 +13,9 @@ using namespace MPM_TEST;
 
 static const std::string scene2d = plane("lj", "p f", "0 15 0 11", 2) + R"(
 fix grid all mpm 0.5 MPM_OPTIONS
-region one cylinder z 3.0 4.0 1.9 INF INF
-region two block 7.0 12.0 2.0 6.0 INF INF
-create_points 1 region one ppc 2
-create_points 2 region two ppc 2
-group one type 1
-group two type 2
+)" +
+    bodies({{"one", "cylinder z 3.0 4.0 1.9 INF INF"}, {"two", "block 7.0 12.0 2.0 6.0 INF INF"}}) +
+    R"(
 fix m1 one mpm/material density 1.0 neohookean 10.0 0.3
 fix m2 two mpm/material density 2.0 linear 20.0 0.2
 fix floor all mpm/boundary ylo slip
@@ -115,15 +112,10 @@ INSTANTIATE_TEST_SUITE_P(Options, TotalRanks,
 // slabs along one axis: with 4 ranks some have no points at all
 TEST(RanksWithoutPoints, Slabs)
 {
-  const std::string scene = space("lj", "f f f", "0 40 0 8 0 8") + R"(
-fix grid all mpm 1.0
-region one block 1 6 2 6 2 6
-create_points 1 region one ppc 2
-fix m1 all mpm/material density 1.0 neohookean 10.0 0.3
-velocity all set 1.0 0.0 0.0
-velocity all ramp vy -0.8 0.8 x 1 6 sum yes
-timestep 0.05
-)";
+  const std::string scene = space("lj", "f f f", "0 40 0 8 0 8") +
+      body("block 1 6 2 6 2 6", "density 1.0 neohookean 10.0 0.3") +
+      "velocity all set 1.0 0.0 0.0\nvelocity all ramp vy -0.8 0.8 x 1 6 sum yes\n"
+      "timestep 0.05\n";
   OnRanks run(scene, "run 400\n", "processors " + std::to_string(nranks()) + " 1 1\n");
   EXPECT_LT(measured("other ranks", run.difference()), 1.0e-12);
 }
@@ -150,9 +142,9 @@ thermo 50
 thermo_style custom step dt c_yield c_e
 )";
 
-class Walls : public ::testing::TestWithParam<std::string> {};
-
-TEST_P(Walls, ReactionsAndEnergiesAgree)
+PARAMETER_TEST(Walls, ReactionsAndEnergiesAgree, std::string,
+               Values("transfer apic", "transfer flip 0.98",
+                      "transfer apic scheme musl shape cubic", "transfer apic scheme usf"))
 {
   std::string scene = replaced(walls, "MPM_OPTIONS", GetParam());
   if (GetParam().find("usf") != std::string::npos)    // which refuses these
@@ -188,11 +180,6 @@ TEST_P(Walls, ReactionsAndEnergiesAgree)
     }
   }
 }
-
-INSTANTIATE_TEST_SUITE_P(Options, Walls,
-                         ::testing::Values("transfer apic", "transfer flip 0.98",
-                                           "transfer apic scheme musl shape cubic",
-                                           "transfer apic scheme usf"));
 
 // two fields with lattices of their own, which know nothing of each other but use the same halo
 TEST(TwoFields, DifferentLattices)
@@ -284,30 +271,17 @@ TEST(Grains, OnABlock)
 // box whose lattice is shifted along
 TEST(Translation, LatticeAndBodyTogether)
 {
-  auto scene = [](double s) {
-    std::string t = std::to_string(s);
-    return space("lj", "p p p", "0 8 0 8 0 8") + "fix grid all mpm 1.0 origin " + t + " " + t +
-        " " + t +
-        "\n"
-        "region one sphere 4 4 4 1.9\ncreate_points 1 region one ppc 2\n"
-        "displace_atoms all move " +
-        t + " " + t + " " + t +
-        "\n"
-        "fix m1 all mpm/material density 1.0 neohookean 10.0 0.3\n"
-        "velocity all set 0.6 0.35 -0.4\nvelocity all ramp vx -0.5 0.5 y 2 6 sum yes\n"
-        "timestep 0.05\nrun 200\n";
-  };
-  Scene a, b;
-  a.commands(scene(0.0));
   // points of create_points follow the lattice, so that both bodies are the same set of points
-  std::string shifted = scene(0.375);
-  shifted.replace(shifted.find("sphere 4 4 4"), 12, "sphere 4.375 4.375 4.375");
-  shifted.replace(shifted.find("displace_atoms"),
-                  shifted.find("\n", shifted.find("displace_atoms")) -
-                      shifted.find("displace_atoms"),
-                  "displace_atoms all move 0 0 0");
-  shifted.replace(shifted.find("y 2 6"), 5, "y 2.375 6.375");
-  b.commands(shifted);
+  const auto scene = [](double s) {
+    return space("lj", "p p p", "0 8 0 8 0 8") +
+        strprintf("fix grid all mpm 1.0 origin %g %g %g\nregion one sphere %g %g %g 1.9\n"
+                  "create_points 1 region one ppc 2\n"
+                  "fix m1 all mpm/material density 1.0 neohookean 10.0 0.3\n"
+                  "velocity all set 0.6 0.35 -0.4\nvelocity all ramp vx -0.5 0.5 y %g %g sum yes\n"
+                  "timestep 0.05\nrun 200\n",
+                  s, s, s, 4 + s, 4 + s, 4 + s, 2 + s, 6 + s);
+  };
+  Scene a(scene(0.0)), b(scene(0.375));
   auto sa = a.gather(), sb = b.gather();
   ASSERT_EQ(sa.size(), sb.size());
   for (auto &s : sb)

@@ -8,8 +8,6 @@
 
 #include "mpm_lammps.h"
 
-#include <ostream>
-
 using namespace MPM_TEST;
 
 static constexpr double E = 1.0e6, NU = 0.3, RHO = 1050.0;
@@ -63,6 +61,10 @@ struct HangingCase {
   double g;
   int cells;
   double tolerance;    // of the displacements, relative to that of the tip
+  friend void PrintTo(const HangingCase &c, std::ostream *out)
+  {
+    *out << c.options << ", g = " << c.g;
+  }
 };
 
 /** Largest displacement error of the points at rest, relative to the tip's displacement. */
@@ -107,18 +109,6 @@ static double hanging_bar(const HangingCase &c)
   return measured(name + "largest error/tip", worst / tip);
 }
 
-void PrintTo(const HangingCase &c, std::ostream *out)
-{
-  *out << c.options << ", g = " << c.g;
-}
-
-class Hanging : public ::testing::TestWithParam<HangingCase> {};
-
-TEST_P(Hanging, Displacement)
-{
-  EXPECT_LT(hanging_bar(GetParam()), GetParam().tolerance);
-}
-
 static const HangingCase hanging_cases[] = {
     {"shape quadratic transfer apic", 9.81, 20, .005},
     {"shape quadratic transfer apic", 50, 20, .005},
@@ -128,7 +118,11 @@ static const HangingCase hanging_cases[] = {
     {"shape quadratic transfer pic", 100, 20, .005},
     {"shape linear transfer flip 1.0 scheme musl", 9.81, 20, .005},
     {"shape cubic transfer apic", 250, 20, .005}};
-INSTANTIATE_TEST_SUITE_P(Options, Hanging, ::testing::ValuesIn(hanging_cases));
+
+PARAMETER_TEST(Hanging, Displacement, HangingCase, ValuesIn(hanging_cases))
+{
+  EXPECT_LT(hanging_bar(GetParam()), GetParam().tolerance);
+}
 
 // linear functions: points cross cells, the bar breaks
 TEST(HangingLinear, Breaks)
@@ -146,16 +140,19 @@ struct BeamCase {
   double h;
   int ppc;
   double t_end;
+  friend void PrintTo(const BeamCase &c, std::ostream *out)
+  {
+    *out << c.options << ", h = " << c.h;
+  }
 };
 
-void PrintTo(const BeamCase &c, std::ostream *out)
-{
-  *out << c.options << ", h = " << c.h;
-}
+// The bar at the clamp stretches to 1.9 locally: 2 points per cell and axis part there (numerical
+// fracture at t = 1), 3 do not.
+static const BeamCase beam_cases[] = {{"shape quadratic transfer apic", 0.2, 3, 1.2},
+                                      {"shape quadratic transfer apic", 0.1, 3, 1.2},
+                                      {"shape cubic transfer apic", 0.1, 3, 1.2}};
 
-class Beam : public ::testing::TestWithParam<BeamCase> {};
-
-TEST_P(Beam, Tip)
+PARAMETER_TEST(Beam, Tip, BeamCase, ValuesIn(beam_cases))
 {
   const auto &c = GetParam();
   const double h = c.h, speed = sqrt((LAMBDA + 2.0 * MU) / RHO);
@@ -197,14 +194,6 @@ TEST_P(Beam, Tip)
   EXPECT_NEAR(lowest, -3.3027, 0.02 * 4.0);
   EXPECT_NEAR(t_lowest, 1.048, 0.02 * 1.048);
 }
-
-// The bar at the clamp stretches to 1.9 locally: 2 points per cell and axis part there (numerical
-// fracture at t = 1), 3 do not.
-
-static const BeamCase beam_cases[] = {{"shape quadratic transfer apic", 0.2, 3, 1.2},
-                                      {"shape quadratic transfer apic", 0.1, 3, 1.2},
-                                      {"shape cubic transfer apic", 0.1, 3, 1.2}};
-INSTANTIATE_TEST_SUITE_P(Options, Beam, ::testing::ValuesIn(beam_cases));
 
 /* ----------------------------------------------------------------------
    D1, dynamic: a cube of 1 m hung at its top (free to slide), 1000 m/s^2 applied suddenly. Finite

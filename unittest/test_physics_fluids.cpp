@@ -65,6 +65,15 @@ class RiemannSolution {
   double g;
 };
 
+/** A strip that is one cell wide, up to x = length; the lattice has the options, and the ledger is on. */
+std::string strip(double length, double h, const std::string &options, int types = 1)
+{
+  return plane("si", "f p", strprintf("0 %.17g 0 %.17g", length, h), types, 0.4 * h) +
+      strprintf("fix grid all mpm %.17g %s\ncompute e all mpm/energy\n"
+                "thermo_style custom step c_e\n",
+                h, options.c_str());
+}
+
 /* -------------------------------- A5: Sod's shock tube (G.A. Sod, J. Comput. Phys. 27 (1978) 1) */
 
 struct SodErrors {
@@ -75,18 +84,16 @@ SodErrors sod(int cells, const std::string &options)
 {
   const double h = 1.0 / cells, t = 0.2;
   const RiemannSolution exact({1, 0, 1}, {0.125, 0, 0.1}, 1.4);
-  Scene run(plane("si", "f p", strprintf("0 1 0 %.17g", h), 2, 0.4 * h) +
-            strprintf("fix grid all mpm %.17g %s\nregion left block 0 0.5 INF INF INF INF\n"
-                      "region right block 0.5 1 INF INF INF INF\n"
-                      "create_points 1 region left ppc 3 1\ncreate_points 2 region right ppc 3 1\n"
-                      "group left type 1\ngroup right type 2\n"
-                      "fix l left mpm/material density 1 eos ideal/gas 1.4 pressure 1 viscosity "
-                      "artificial 2 1\n"
-                      "fix r right mpm/material density 0.125 eos ideal/gas 1.4 pressure 0.1 "
-                      "viscosity artificial 2 1\n"
-                      "fix ends all mpm/boundary xlo xhi slip\ncompute e all mpm/energy\n"
-                      "thermo_style custom step c_e\ntimestep %.17g\nrun 0\n",
-                      h, options.c_str(), 0.02 * h));
+  Scene run(
+      strip(1.0, h, options, 2) +
+      bodies({{"left", "block 0 0.5 INF INF INF INF"}, {"right", "block 0.5 1 INF INF INF INF"}},
+             "ppc 3 1") +
+      strprintf("fix l left mpm/material density 1 eos ideal/gas 1.4 pressure 1 viscosity "
+                "artificial 2 1\n"
+                "fix r right mpm/material density 0.125 eos ideal/gas 1.4 pressure 0.1 "
+                "viscosity artificial 2 1\n"
+                "fix ends all mpm/boundary xlo xhi slip\ntimestep %.17g\nrun 0\n",
+                0.02 * h));
   const double start = run.evaluate("c_e");
   EXPECT_NEAR(start, (2.5 * 0.5 + 0.25 * 0.5) * h, 1e-9 * h);
   run.commands(strprintf("run %d\n", (int) std::lround(t / (0.02 * h))));
@@ -99,7 +106,7 @@ SodErrors sod(int cells, const std::string &options)
     error.density += s.vol / h * std::fabs(rho - exact(xi).rho);
     mass += s.mass;
     if (xi > exact.tail + 0.3 && xi < exact.shock - 0.3) {
-      plateau -= s.vol * (s.stress[0] + s.stress[1] + s.stress[2]) / 3;
+      plateau += s.vol * s.pressure();
       volume += s.vol;
     }
     if (rho > 0.5 * (exact.rho_r + 0.125)) last = std::max(last, s.x[0]);
@@ -179,15 +186,13 @@ TEST(GasAtRest, NoiseDoesNotGrowOffTheEdgesOfFunctions)
 TEST(Noh, Planar)
 {
   const double h = 0.01, t = 0.6;
-  Scene run(plane("si", "f p", strprintf("0 1.1 0 %.17g", h), 1, 0.4 * h) +
-            strprintf("fix grid all mpm %.17g transfer flip 1.0 scheme musl\n"
-                      "region gas block 0 1 INF INF INF INF\ncreate_points 1 region gas ppc 3 1\n"
+  Scene run(strip(1.1, h, "transfer flip 1.0 scheme musl") +
+            strprintf("region gas block 0 1 INF INF INF INF\ncreate_points 1 region gas ppc 3 1\n"
                       "velocity all set -1 0 0\n"
                       "fix gas all mpm/material density 1 eos ideal/gas %.17g pressure 1e-6 "
                       "viscosity artificial 2 1\n"
-                      "fix wall all mpm/boundary xlo slip\ncompute e all mpm/energy\n"
-                      "thermo_style custom step c_e\ntimestep 0.0005\nrun 0\n",
-                      h, 5.0 / 3));
+                      "fix wall all mpm/boundary xlo slip\ntimestep 0.0005\nrun 0\n",
+                      5.0 / 3));
   const double start = run.evaluate("c_e");
   run.commands(strprintf("run %d\n", (int) std::lround(t / 0.0005)));
   EXPECT_NEAR(measured("Noh energy", run.evaluate("c_e") / start), 1.0, 0.01);
@@ -196,7 +201,7 @@ TEST(Noh, Planar)
     const double density = s.mass / s.vol;
     if (s.x[0] > 0.06 && s.x[0] < 0.16) {
       rho += density;
-      p -= (s.stress[0] + s.stress[1] + s.stress[2]) / 3;
+      p += s.pressure();
       n++;
     }
     if (s.x[0] < 0.02) wall = std::min(wall, density);
@@ -242,26 +247,20 @@ TEST(Gas, InitialStressOfPointsStays)
   EXPECT_EQ(kept, run.n() / 2);
 }
 
+const char *const tnt =
+    "fix tnt all mpm/material density 1630 eos jwl 371.2e9 3.231e9 4.15 0.95 0.30 7.0e9 6930 "
+    "detonate 0 0 0 0 viscosity artificial 1.5 0.06\n";
+
 // a detonation goes on after a restart: times of arrival belong to where the points were made
 TEST(Detonation, GoesOnAfterRestart)
 {
-  const std::string fixes =
-      "fix grid all mpm 0.01\n"
-      "fix tnt all mpm/material density 1630 eos jwl 371.2e9 3.231e9 4.15 0.95 0.30 7.0e9 6930 "
-      "detonate 0 0 0 0 viscosity artificial 1.5 0.06\n";
-  const auto run_on = "timestep 1e-7\nrun 60\n";
-  Scene whole, first, second;
-  for (Scene *run : {&whole, &first}) {
-    run->commands(plane("si", "f p", "-0.4 0.4 0 0.02", 1, 0.004) +
-                  "region tnt block -0.1 0.1 INF INF INF INF\n");
-    run->commands(fixes.substr(0, fixes.find('\n') + 1) + "create_points 1 region tnt ppc 2\n" +
-                  fixes.substr(fixes.find('\n') + 1));
-    run->commands(run_on);
-  }
+  const std::string grid = "fix grid all mpm 0.01\n",
+                    start = plane("si", "f p", "-0.4 0.4 0 0.02", 1, 0.004) + grid +
+      "region tnt block -0.1 0.1 INF INF INF INF\ncreate_points 1 region tnt ppc 2\n" + tnt +
+      "timestep 1e-7\nrun 60\n";
   const ScratchFile file("restart");
-  first.commands("write_restart " + file.name + "\n");
-  second.commands("read_restart " + file.name + "\n" + fixes + run_on);
-  whole.commands("run 60\n");
+  Scene whole(start + "run 60\n"), first(start + "write_restart " + file.name + "\n");
+  Scene second("read_restart " + file.name + "\n" + grid + tnt + "timestep 1e-7\nrun 60\n");
   EXPECT_LT(measured("difference after restart", difference(second.gather(), whole.gather())),
             1e-12);
   double fastest = 0.0;
@@ -287,24 +286,17 @@ TEST(Gas, InitialEnergyInMetalUnits)
 TEST(Hugoniot, SymmetricImpactAt7KilometersPerSecond)
 {
   const double h = 1e-4, u = 3500, U = 10040, rho = 2703, t = 6e-7;
-  Scene run(
-      plane("si", "f p", strprintf("0 0.011 0 %.17g", h), 1, 0.4 * h) +
-      strprintf(
-          "fix grid all mpm %.17g transfer flip 1.0 scheme musl\n"
-          "region al block 0 0.01 INF INF INF INF\ncreate_points 1 region al ppc 2 1\n"
-          "velocity all set %.17g 0 0\n"
-          "fix al all mpm/material density %.17g eos shock 5350 1.34 2 viscosity artificial 2 1\n"
-          "fix wall all mpm/boundary xlo slip\ncompute e all mpm/energy\n"
-          "thermo_style custom step c_e\ntimestep 2e-9\nrun 0\n",
-          h, -u, rho));
+  Scene run(strip(0.011, h, "transfer flip 1.0 scheme musl") +
+            strprintf("region al block 0 0.01 INF INF INF INF\ncreate_points 1 region al ppc 2 1\n"
+                      "velocity all set %.17g 0 0\nfix al all mpm/material density %.17g "
+                      "eos shock 5350 1.34 2 viscosity artificial 2 1\n"
+                      "fix wall all mpm/boundary xlo slip\ntimestep 2e-9\nrun 0\n",
+                      -u, rho));
   const double start = run.evaluate("c_e");
-  const auto pressure = [](const Scene::State &s) {
-    return -(s.stress[0] + s.stress[1] + s.stress[2]) / 3;
-  };
   const auto front = [&]() {
     double edge = 0.0;
     for (const auto &s : run.gather())
-      if (pressure(s) > 0.5 * 94.983e9) edge = std::max(edge, s.x[0]);
+      if (s.pressure() > 0.5 * 94.983e9) edge = std::max(edge, s.x[0]);
     return edge;
   };
   const int n = std::lround(t / 2e-9);
@@ -315,12 +307,12 @@ TEST(Hugoniot, SymmetricImpactAt7KilometersPerSecond)
   EXPECT_NEAR(measured("J1 energy", run.evaluate("c_e") / start), 1.0, 0.01);
   double density = 0.0, p = 0.0, count = 0.0, top = 0.0, energy = 0.0;
   for (const auto &s : run.gather()) {
-    ASSERT_TRUE(std::isfinite(pressure(s)));
+    ASSERT_TRUE(std::isfinite(s.pressure()));
     if (s.x[0] < 8e-4) continue;    // where the plates have hit each other, the shock had no width
-    top = std::max(top, pressure(s));
+    top = std::max(top, s.pressure());
     if (s.x[0] > 4e-3) continue;
     density += s.mass / s.vol / rho;
-    p += pressure(s);
+    p += s.pressure();
     count++;
   }
   auto *material = run.material("al");
@@ -341,15 +333,11 @@ TEST(Detonation, OfTnt)
   double peak[2];
   for (int level = 0; level < 2; level++) {
     const double h = 1e-3 / (1 << level), t = 0.09 / D, dt = 0.2 * h / D;
-    Scene run(plane("si", "f p", strprintf("0 0.12 0 %.17g", h), 1, 0.4 * h) +
-              strprintf("fix grid all mpm %.17g transfer flip 1.0 scheme musl\n"
-                        "region tnt block 0 %.17g INF INF INF INF\n"
-                        "create_points 1 region tnt ppc 2 1\n"
-                        "fix tnt all mpm/material density 1630 eos jwl 371.2e9 3.231e9 4.15 0.95 "
-                        "0.30 7.0e9 6930 detonate 0 0 0 0 viscosity artificial 1.5 0.06\n"
-                        "fix wall all mpm/boundary xlo slip\ncompute e all mpm/energy\n"
-                        "thermo_style custom step c_e\ntimestep %.17g\nrun 0\n",
-                        h, length, dt));
+    Scene run(strip(0.12, h, "transfer flip 1.0 scheme musl") +
+              strprintf("region tnt block 0 %.17g INF INF INF INF\n"
+                        "create_points 1 region tnt ppc 2 1\n%s"
+                        "fix wall all mpm/boundary xlo slip\ntimestep %.17g\nrun 0\n",
+                        length, tnt, dt));
     const double start = run.evaluate("c_e");
     EXPECT_NEAR(start, 7.0e9 * length * h, 1e-6 * start);
     run.commands(strprintf("run %d\n", (int) std::lround(t / dt)));
@@ -357,10 +345,9 @@ TEST(Detonation, OfTnt)
     double front = 0.0, at = 0.0;
     peak[level] = 0.0;
     for (const auto &s : run.gather()) {
-      const double pressure = -(s.stress[0] + s.stress[1] + s.stress[2]) / 3;
-      if (pressure > 0.02 * pcj) front = std::max(front, s.x[0]);
-      if (pressure > peak[level]) {
-        peak[level] = pressure;
+      if (s.pressure() > 0.02 * pcj) front = std::max(front, s.x[0]);
+      if (s.pressure() > peak[level]) {
+        peak[level] = s.pressure();
         at = s.x[0];
       }
     }
@@ -395,7 +382,7 @@ TEST(Hydrostatic, Column)
           h, K, g));
   double sum = 0.0, n = 0.0;
   for (const auto &s : run.gather()) {
-    const double p = -(s.stress[0] + s.stress[1] + s.stress[2]) / 3;
+    const double p = s.pressure();
     const double a = g / K, top = std::log(1 + a * H) / a;    // mass is conserved
     const double exact = K * (std::exp(a * (top - s.x[1])) - 1.0);
     sum += (p - exact) * (p - exact);
@@ -549,6 +536,16 @@ double energy_of_drop(Scene &run)
   return sum;
 }
 
+/** Measures the largest energy in the steps to come, in units of that at the start. */
+void watch_energy(Scene &run, double &most)
+{
+  const double start = energy_of_drop(run);
+  most = 0.0;
+  run.each_step([&run, &most, start](double **) {
+    most = std::max(most, energy_of_drop(run) / start);
+  });
+}
+
 /** L of a single point: expansion, and a shear without rotation. Column-major. */
 void set_gradient(Scene &run, double rate)
 {
@@ -606,11 +603,8 @@ TEST(FreeFlight, DropThatIsTornGainsNoEnergy)
     });
     run.commands("run 0\n");
     const auto before = run.sums();
-    const double start = energy_of_drop(run);
-    double most = 0.0;
-    run.each_step([&](double **) {
-      most = std::max(most, energy_of_drop(run) / start);
-    });
+    double most;
+    watch_energy(run, most);
     run.commands("run 10000\n");
     EXPECT_LT(measured("largest energy", most), 1.1);
     for (int d = 0; d < 3; d++) EXPECT_NEAR(run.sums().p[d], before.p[d], 1e-12);
@@ -629,11 +623,8 @@ TEST(FreeFlight, StrainOfAStepIsLimited)
         Scene run(drop(dim, 1, water) + step + " max 1e-6\nrun 0\n");
         set_gradient(run, -2.0 * mach * sqrt(BULK / DENSITY / dim));
         run.commands("run 1\nunfix step\n" + step + "\n");
-        const double start = energy_of_drop(run);
-        double most = 0.0;
-        run.each_step([&](double **) {
-          most = std::max(most, energy_of_drop(run) / start);
-        });
+        double most;
+        watch_energy(run, most);
         const bool stopped = !run.error("run 10000\n").empty();
         measured(strprintf("%dd, Mach %g%s: energy", dim, mach, limit), most);
         if (*limit) {

@@ -13,8 +13,6 @@
 
 #include "mpm_lammps.h"
 
-#include <ostream>
-
 using namespace MPM_TEST;
 
 struct Solution {
@@ -126,89 +124,41 @@ static double mms_error(int dim, int ne, double G, const std::string &options, b
 }
 
 struct Row {
-  const char *options;
+  const char *options;    // besides transfer flip 1.0
   double G, tolerance;
   int first;                     // number of cells of the first entry
   std::vector<double> errors;    // for first, 2 first, 4 first, ... cells
+  friend void PrintTo(const Row &c, std::ostream *out) { *out << c.options << ", G = " << c.G; }
 };
-
-void PrintTo(const Row &c, std::ostream *out)
-{
-  *out << c.options << ", G = " << c.G;
-}
-
-class Interval : public ::testing::TestWithParam<Row> {};
-
-TEST_P(Interval, Error)
-{
-  const auto &row = GetParam();
-  int ne = row.first;
-  for (const double expected : row.errors) {
-    const double error = mms_error(1, ne, row.G, row.options, true);
-    EXPECT_NEAR(error / expected, 1.0, row.tolerance) << row.options << ", " << ne << " cells";
-    ne *= 2;
-  }
-}
 
 // Errors of an independent code, to 3 % or 10 %. Linear functions converge until points cross cells,
 // G = 0.05, and diverge then, but not in the total frame; for motions without crossings, frames agree.
 // Quadratic: it has open knot vectors at the ends, which matters for less than 16 and 8 cells.
-
 static const Row interval_cases[] = {
-    {"shape linear transfer flip 1.0 scheme usl",
-     1e-4,
-     .03,
-     4,
-     {3.115e-5, 8.917e-6, 2.278e-6, 5.721e-7, 1.432e-7}},
-    {"shape linear transfer flip 1.0 scheme musl",
-     1e-4,
-     .03,
-     4,
-     {3.317e-5, 8.999e-6, 2.282e-6, 5.722e-7, 1.432e-7}},
-    {"shape linear transfer flip 1.0 scheme usf",
-     1e-4,
-     .03,
-     4,
-     {3.396e-5, 9.016e-6, 4.488e-6, 2.499e-6, 1.318e-6}},
-    {"shape linear transfer flip 1.0 scheme musl",
-     .05,
-     .1,
-     4,
-     {1.741e-2, 8.310e-3, 8.666e-3, 1.390e-2}},
-    {"shape quadratic transfer flip 1.0 scheme usl", 1e-4, .03, 16, {4.288e-6, 1.091e-6, 2.750e-7}},
-    {"shape quadratic transfer flip 1.0 scheme musl",
-     1e-4,
-     .03,
-     16,
-     {4.324e-6, 1.093e-6, 2.751e-7}},
-    {"frame total shape linear transfer flip 1.0",
-     1e-4,
-     .03,
-     4,
-     {3.115e-5, 8.917e-6, 2.278e-6, 5.721e-7}},
-    {"frame total shape linear transfer flip 1.0 scheme musl",
-     .05,
-     .03,
-     4,
-     {1.653e-2, 4.478e-3, 1.135e-3, 2.847e-4}},
-    {"shape quadratic transfer flip 1.0 scheme usl",
-     .05,
-     .1,
-     8,
-     {7.716e-3, 2.099e-3, 5.791e-4, 2.421e-4}},
-    {"shape cpgimp aspect 1 2 transfer flip 1.0 scheme usl",
-     .05,
-     .1,
-     8,
-     {6.45e-3, 1.61e-3, 4.01e-4}},
-    {"shape cpgimp aspect 1 2 transfer flip 1.0 scheme usl", 1e-4, .03, 16, {2.286e-6}},
-    {"shape gimp aspect 1 2 transfer flip 1.0 scheme usl", 1e-4, .03, 16, {2.286e-6}},
-    {"shape quadratic transfer flip 1.0 scheme musl",
-     .05,
-     .1,
-     8,
-     {8.330e-3, 2.152e-3, 6.080e-4, 2.841e-4}}};
-INSTANTIATE_TEST_SUITE_P(Table, Interval, ::testing::ValuesIn(interval_cases));
+    {"shape linear scheme usl", 1e-4, .03, 4, {3.115e-5, 8.917e-6, 2.278e-6, 5.721e-7, 1.432e-7}},
+    {"shape linear scheme musl", 1e-4, .03, 4, {3.317e-5, 8.999e-6, 2.282e-6, 5.722e-7, 1.432e-7}},
+    {"shape linear scheme usf", 1e-4, .03, 4, {3.396e-5, 9.016e-6, 4.488e-6, 2.499e-6, 1.318e-6}},
+    {"shape linear scheme musl", .05, .1, 4, {1.741e-2, 8.310e-3, 8.666e-3, 1.390e-2}},
+    {"shape quadratic scheme usl", 1e-4, .03, 16, {4.288e-6, 1.091e-6, 2.750e-7}},
+    {"shape quadratic scheme musl", 1e-4, .03, 16, {4.324e-6, 1.093e-6, 2.751e-7}},
+    {"frame total shape linear", 1e-4, .03, 4, {3.115e-5, 8.917e-6, 2.278e-6, 5.721e-7}},
+    {"frame total shape linear scheme musl", .05, .03, 4, {1.653e-2, 4.478e-3, 1.135e-3, 2.847e-4}},
+    {"shape quadratic scheme usl", .05, .1, 8, {7.716e-3, 2.099e-3, 5.791e-4, 2.421e-4}},
+    {"shape cpgimp aspect 1 2 scheme usl", .05, .1, 8, {6.45e-3, 1.61e-3, 4.01e-4}},
+    {"shape cpgimp aspect 1 2 scheme usl", 1e-4, .03, 16, {2.286e-6}},
+    {"shape gimp aspect 1 2 scheme usl", 1e-4, .03, 16, {2.286e-6}},
+    {"shape quadratic scheme musl", .05, .1, 8, {8.330e-3, 2.152e-3, 6.080e-4, 2.841e-4}}};
+
+PARAMETER_TEST(Interval, Error, Row, ValuesIn(interval_cases))
+{
+  const auto &row = GetParam();
+  const std::string options = std::string("transfer flip 1.0 ") + row.options;
+  int ne = row.first;
+  for (const double expected : row.errors) {
+    EXPECT_NEAR(mms_error(1, ne, row.G, options, true) / expected, 1.0, row.tolerance) << ne;
+    ne *= 2;
+  }
+}
 
 // Second order, in one and two dimensions, between walls. The table's cubic splines, with open
 // knots, have order 1.5 only (5.71e-6, 1.77e-6, 5.23e-7 for 16, 32, 64 cells); mirror walls keep 2.
@@ -218,23 +168,11 @@ struct OrderCase {
   double G;
   int dim, coarse, fine;
   double largest;    // error on the fine grid: from the table, or the quadratic FLIP entry there
+  friend void PrintTo(const OrderCase &c, std::ostream *out)
+  {
+    *out << c.options << ", G = " << c.G << ", " << c.dim << "d";
+  }
 };
-
-void PrintTo(const OrderCase &c, std::ostream *out)
-{
-  *out << c.options << ", G = " << c.G << ", " << c.dim << "d";
-}
-
-class Order : public ::testing::TestWithParam<OrderCase> {};
-
-TEST_P(Order, Two)
-{
-  const auto &c = GetParam();
-  const double coarse = mms_error(c.dim, c.coarse, c.G, c.options, true);
-  const double fine = mms_error(c.dim, c.fine, c.G, c.options, true);
-  EXPECT_GT(measured("order", log(coarse / fine) / log((double) c.fine / c.coarse)), 1.9);
-  EXPECT_LT(fine, c.largest);
-}
 
 static const OrderCase order_cases[] = {
     // cpdi samples at corners what cpgimp integrates: same order, errors a tenth larger
@@ -256,7 +194,15 @@ static const OrderCase order_cases[] = {
     {"shape cubic transfer aflip 0.95 stress gradient", .05, 2, 8, 16, 3.2e-3},
     {"frame total shape bernstein transfer flip 1.0", .05, 2, 8, 16, 3.8e-3},
     {"frame total shape bernstein transfer apic", .05, 2, 16, 32, 4.5e-4}};
-INSTANTIATE_TEST_SUITE_P(Options, Order, ::testing::ValuesIn(order_cases));
+
+PARAMETER_TEST(Order, Two, OrderCase, ValuesIn(order_cases))
+{
+  const auto &c = GetParam();
+  const double coarse = mms_error(c.dim, c.coarse, c.G, c.options, true);
+  const double fine = mms_error(c.dim, c.fine, c.G, c.options, true);
+  EXPECT_GT(measured("order", log(coarse / fine) / log((double) c.fine / c.coarse)), 1.9);
+  EXPECT_LT(fine, c.largest);
+}
 
 TEST(OrderLinear, DivergesWithCellCrossing)
 {
@@ -290,6 +236,7 @@ struct ShapeOrder {
   const char *options;
   double crossing;    // order when points cross cells, in the updated frame, within 0.2
   double D;           // second moment of the functions about points, mean over points, over h^2
+  friend void PrintTo(const ShapeOrder &c, std::ostream *out) { *out << c.options; }
 };
 
 // Crossing: linear functions do not converge (-0.69 by another code, whose other transfers are not known);
@@ -332,13 +279,6 @@ static double pic_error(double D, int ne)
   return error / sqrt(2.0);
 }
 
-class Sweep : public ::testing::TestWithParam<ShapeOrder> {};
-
-void PrintTo(const ShapeOrder &c, std::ostream *out)
-{
-  *out << c.options;
-}
-
 static double order(const std::string &options, double G)
 {
   const double coarse = mms_error(1, 16, G, options, true);
@@ -346,7 +286,7 @@ static double order(const std::string &options, double G)
   return measured(options + ": order", log2(coarse / fine));
 }
 
-TEST_P(Sweep, EveryTransferAndFrame)
+PARAMETER_TEST(Sweep, EveryTransferAndFrame, ShapeOrder, ValuesIn(shapes))
 {
   const auto &shape = GetParam();
   const std::string name = shape.options;
@@ -373,8 +313,6 @@ TEST_P(Sweep, EveryTransferAndFrame)
         EXPECT_NEAR(order(options + " frame total", G), expected, 0.2) << options << ", total";
   }
 }
-
-INSTANTIATE_TEST_SUITE_P(All, Sweep, ::testing::ValuesIn(shapes));
 
 // Functions that are modified at the walls and need no nodes outside are of second order, too. Between
 // walls that slip the solution is odd about them, so that the linear continuation f_-1 = 2 f_0 - f_1 and

@@ -170,8 +170,7 @@ TEST(Tait, WaveSpeed)
     EXPECT_NEAR(measured(strprintf("Tait wave speed/exact, J = %g", J),
                          (position - first) / (n * dt) / speed),
                 1.0, 0.01);
-    auto *compute = run.lmp->modify->get_compute_by_id("cmax");
-    EXPECT_NEAR(compute->compute_scalar() / speed, 1.0, 1.0e-3);
+    EXPECT_NEAR(run.compute_scalar("cmax") / speed, 1.0, 1.0e-3);
   }
 }
 
@@ -222,9 +221,9 @@ static std::string grain_on_block(const std::string &options, const std::string 
                    options.c_str(), tangential.c_str());
 }
 
-class GrainOnBlock : public ::testing::TestWithParam<const char *> {};
-
-TEST_P(GrainOnBlock, Momentum)
+PARAMETER_TEST(GrainOnBlock, Momentum, const char *,
+               Values("transfer apic", "transfer flip 1.0 scheme musl",
+                      "frame total transfer apic"))
 {
   for (const bool friction : {false, true}) {
     SCOPED_TRACE(friction ? "friction" : "no friction");
@@ -268,10 +267,6 @@ TEST_P(GrainOnBlock, Momentum)
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Options, GrainOnBlock,
-                         ::testing::Values("transfer apic", "transfer flip 1.0 scheme musl",
-                                           "frame total transfer apic"));
-
 /* ----------------------------------------------------------------------
    K1(b): a grain hits the end of a column between slipping sides: v' = -F/m - F'/Z with
    F = k delta^(3/2), Z = density c A. k^.4 m^.6 v^.2/Z = .102252: e = .840153, t = .904748 ms.
@@ -279,9 +274,7 @@ INSTANTIATE_TEST_SUITE_P(Options, GrainOnBlock,
    mass and stiffness are those of the case with 20 x 20 mm, times the ratio of the faces.
 ------------------------------------------------------------------------- */
 
-class GrainOnColumn : public ::testing::TestWithParam<int> {};
-
-TEST_P(GrainOnColumn, Restitution)
+PARAMETER_TEST(GrainOnColumn, Restitution, int, Values(1, 2, 5, 10, 20))
 {
   const double ratio = 25.0e-6 / 400.0e-6;
   const double m = 1.308997e-3 * ratio, k = 1.03584e6 * ratio, Z = 46.40955 * ratio;
@@ -339,9 +332,7 @@ TEST_P(GrainOnColumn, Restitution)
   run.commands("run 1600\n");
 
   // what the grain has lost and the column has not received
-  const double energy = 0.5 * m;
-  const double lost =
-      energy - run.sums(2).kinetic - run.lmp->modify->get_compute_by_id("e")->vector[5];
+  const double energy = 0.5 * m, lost = energy - run.sums(2).kinetic - run.evaluate("c_e[6]");
   // of first order in the step of the points
   EXPECT_LT(std::abs(measured("K1(b) energy lost between grain and points/exact", lost / energy)),
             3.4e-5 * (3 + GetParam()));
@@ -351,4 +342,3 @@ TEST_P(GrainOnColumn, Restitution)
 }
 
 // the points take a step in every K of the grain
-INSTANTIATE_TEST_SUITE_P(Every, GrainOnColumn, ::testing::Values(1, 2, 5, 10, 20));

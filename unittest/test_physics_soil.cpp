@@ -98,8 +98,8 @@ TEST(InfiniteSlope, SlidesWhenTooSteep)
   for (const char *law : {"drucker/prager 1e7 0.3 30 plane", "mohr/coulomb 1e7 0.3 30 0"})
     for (const double angle : {26.0 * DEG, 32.0 * DEG}) {
       SCOPED_TRACE(law);
-      Scene run(layer(depth, h, 4, angle, 0.3, std::string("density 1600 ") + law, ""));
-      run.commands("fix end all halt 10 v_t > 0.8 error continue\nrun 100000\n");
+      Scene run(layer(depth, h, 4, angle, 0.3, std::string("density 1600 ") + law, "") +
+                "fix end all halt 10 v_t > 0.8 error continue\nrun 100000\n");
       double ratio = 0.0, speed = 0.0, n = 0.0;
       for (int i = 0; i < run.n(); i++) {
         double s[6];

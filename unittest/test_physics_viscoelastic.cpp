@@ -8,8 +8,6 @@
 
 #include "mpm_lammps.h"
 
-#include <ostream>
-
 using namespace MPM_TEST;
 
 /** Displacement u, velocity v, strains q of Maxwell elements of the mode exp(i k x):
@@ -61,9 +59,7 @@ static const Case cases[] = {
      {0.02, 0.003}},
 };
 
-class StandingWave : public ::testing::TestWithParam<Case> {};
-
-TEST_P(StandingWave, AmplitudeAndEnergy)
+PARAMETER_TEST(StandingWave, AmplitudeAndEnergy, Case, ValuesIn(cases))
 {
   const Case &c = GetParam();
   const double h = 1.0 / 96.0, k = 2.0 * PI, v0 = 1.0e-3;
@@ -96,7 +92,3 @@ TEST_P(StandingWave, AmplitudeAndEnergy)
   measured(std::string(c.name) + " viscous work", viscous / energy0);
   EXPECT_NEAR((left + viscous) / energy0, 1.0, 0.01);
 }
-
-INSTANTIATE_TEST_SUITE_P(Laws, StandingWave, ::testing::ValuesIn(cases), [](const auto &info) {
-  return info.param.name;
-});

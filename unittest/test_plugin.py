@@ -7,7 +7,6 @@
 
 import glob
 import os
-import shutil
 import tempfile
 
 import mpm_testing as mt
@@ -71,36 +70,21 @@ def need(*files):
             raise mt.Skip("not built: '%s'" % file)
 
 
-def in_folder(function):
-    folder = tempfile.mkdtemp(prefix="mpm_plugin_")
-    try:
-        return function(folder)
-    finally:
-        shutil.rmtree(folder)
-
-
 def same_thermo(text, in_tree_text, environment):
-    def check(folder):
-        expected = mt.lammps(folder, in_tree_text)
-        assert expected.code == 0, expected.tail()
-        for name in os.listdir(folder):
-            os.remove(os.path.join(folder, name))
-        found = mt.lammps(folder, text, executable=STOCK, environment=environment)
-        assert found.code == 0, found.tail()
-        a, b = mt.thermo(expected.output), mt.thermo(found.output)
-        assert len(a) == 2, expected.tail(200)
-        assert a == b, "%s\n\n%s" % (a, b)
-        for (names, rows), steps in zip(a, (11, 11)):
-            assert len(rows) == steps, rows
-            assert len(names) >= 10
-        return found
-
-    return in_folder(check)
+    expected = mt.ok(mt.lammps_once(in_tree_text))
+    found = mt.ok(mt.lammps_once(text, executable=STOCK, environment=environment))
+    a, b = mt.thermo(expected.output), mt.thermo(found.output)
+    assert len(a) == 2, expected.tail(200)
+    assert a == b, "%s\n\n%s" % (a, b)
+    for names, rows in a:
+        assert len(rows) == 11, rows
+        assert len(names) >= 10
+    return found
 
 
 def test_stock_lammps_has_no_mpm():
     need(STOCK)
-    found = in_folder(lambda folder: mt.lammps(folder, "atom_style mpm\n", executable=STOCK))
+    found = mt.lammps_once("atom_style mpm\n", executable=STOCK)
     assert found.code != 0 and "Unrecognized atom style 'mpm'" in found.output, found.tail()
 
 
@@ -122,27 +106,21 @@ def test_plugin_load_command():
 def test_dumps_are_those_of_the_package():
     need(PLUGIN, STOCK)
 
-    def check(folder):
-        files = []
-        for executable, path in ((mt.LMP, ""), (STOCK, os.path.dirname(PLUGIN))):
-            result = mt.lammps(folder, scene(), executable=executable,
-                               environment={"LAMMPS_PLUGIN_PATH": path})
-            assert result.code == 0, result.tail()
+    files = []
+    for executable, path in ((mt.LMP, ""), (STOCK, os.path.dirname(PLUGIN))):
+        with tempfile.TemporaryDirectory() as folder:
+            mt.ok(mt.lammps(folder, scene(), executable=executable, environment={"LAMMPS_PLUGIN_PATH": path}))
             names = sorted(glob.glob(os.path.join(folder, "points.*.vtp")))
             assert len(names) == 3, names
             files.append([open(name, "rb").read() for name in names])
-            for name in names:
-                os.remove(name)
-        assert files[0] == files[1]
-
-    in_folder(check)
+    assert files[0] == files[1]
 
 
 def test_unload_while_in_use():
     need(PLUGIN, STOCK)
     text = "plugin load %s\n" % PLUGIN + scene().split("write_restart")[0]
     text += "plugin unload fix mpm\nplugin clear\nprint 'still here'\n"
-    found = in_folder(lambda folder: mt.lammps(folder, text, executable=STOCK))
+    found = mt.lammps_once(text, executable=STOCK)
     assert found.code == 0 and "still here" in found.output, found.tail()
 
 
@@ -155,7 +133,7 @@ def test_another_version_is_refused():
         raise mt.Skip("no stock LAMMPS of another version in " + os.path.dirname(own))
     for lmp in others:
         text = "plugin load %s\nprint 'loaded'\n" % PLUGIN + scene()
-        found = in_folder(lambda folder: mt.lammps(folder, text, executable=lmp))
+        found = mt.lammps_once(text, executable=lmp)
         assert found.code is not None and found.code > 0, "%s\n%s" % (found.code, found.tail())
         assert "mpmplugin was compiled for LAMMPS" in found.output or \
             "Open of file %s failed" % PLUGIN in found.output, found.tail()

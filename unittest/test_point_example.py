@@ -6,7 +6,6 @@
 
 import os
 import shutil
-import tempfile
 
 import mpm_testing as mt
 
@@ -14,28 +13,20 @@ EXAMPLE = os.path.join(mt.ROOT, "examples", "point")
 TOOL = os.path.join(mt.ROOT, "tools", "plot_point.py")
 PYTHONS = ("python3", "/usr/bin/python3")
 
-folder = tempfile.mkdtemp(prefix="mpm_point_")
-
-
-def table(name):
-    with open(os.path.join(folder, name)) as file:
-        lines = [line.split() for line in file if not line.startswith("#")]
-    rows = [[float(word) for word in line] for line in lines[1:]]
-    return [dict(zip(lines[0], row)) for row in rows]
+folder = mt.scratch_folder()
 
 
 def test_runs():
     potential = os.path.join(mt.ROOT, "potentials", "Cu_OFHC_JC.mpm")
     shutil.copy(os.path.join(EXAMPLE, "in.point"), folder)
-    result = mt.lammps(folder, file="in.point", arguments=["-v", "copper", potential])
-    assert result.code == 0, result.tail()
+    mt.ok(mt.lammps(folder, file="in.point", arguments=["-v", "copper", potential]))
 
 
 def test_flow_curves():
     import math
     for name, rate, start in (("rate1", 1.0, 298), ("rate1e3", 1.0e3, 298), ("rate1e5", 1.0e5, 298),
                               ("hot500", 1.0e3, 500), ("hot800", 1.0e3, 800)):
-        rows = table(name + ".table")
+        rows = mt.table(os.path.join(folder, name + ".table"))
         assert len(rows) == 501 and rows[0]["temperature"] == start
         assert abs(rows[-1]["exx"] - 0.5) < 1e-12
         for old, row in zip(rows[10:], rows[11:]):
@@ -57,15 +48,10 @@ def test_plot():
     else:
         raise mt.Skip("matplotlib is not installed")
     picture = os.path.join(folder, "out.png")
-    result = mt.run([python, TOOL, "-y", "vonmises/1e6", "-o", picture, "rate1.table", "cycle.table"],
-                    folder)
-    assert result.code == 0, result.output
+    mt.ok(mt.run([python, TOOL, "-y", "vonmises/1e6", "-o", picture, "rate1.table", "cycle.table"], folder))
     assert os.path.getsize(picture) > 10000
     result = mt.run([python, TOOL, "-y", "nonsense", "-o", picture, "rate1.table"], folder)
     assert result.code != 0 and "columns are step, time" in result.output, result.output
 
 
-try:
-    mt.main(globals())
-finally:
-    shutil.rmtree(folder)
+mt.main(globals())

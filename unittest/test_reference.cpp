@@ -32,8 +32,7 @@ SERIAL_TEST(ReferenceUpdate, AffineMotionIsExact)
          {"transfer apic", "transfer apic scheme musl", "shape cubic transfer apic",
           "shape linear transfer apic scheme usf", "transfer apic locking both"}) {
       Scene run(body(dim, std::string(rest) + " reference update 1.5", "neohookean 1.0e-9 0.3") +
-                    "timestep 0.02\n",
-                MPI_COMM_SELF);
+                "timestep 0.02\n");
       run.set_reference();
       run.set_velocity([](const double *x, double *v) {
         v[0] = 1.0 * x[1] + 0.1 * x[0];
@@ -66,8 +65,7 @@ SERIAL_TEST(ReferenceUpdate, DeformedAtTheStart)
   const double F0[4] = {1.3, 0.5, 0.0, 0.8}, A[4] = {0.1, 1.0, -0.1, 0.0};
   for (const int dim : {2, 3}) {
     Scene run(body(dim, "transfer apic reference update 1.5", "neohookean 1.0e-9 0.3") +
-                  "timestep 0.02\n",
-              MPI_COMM_SELF);
+              "timestep 0.02\n");
     run.set_reference();
     for (int i = 0; i < run.n(); i++)
       for (int a = 0; a < 2; a++)
@@ -104,8 +102,7 @@ SERIAL_TEST(ReferenceUpdate, NoneIsTheTotalFrame)
        {"transfer apic", "transfer flip 1.0 scheme musl", "transfer apic locking fbar"}) {
     const auto state = [&](const std::string &more) {
       Scene run(body(3, rest + more, "neohookean 10.0 0.3") +
-                    "velocity all ramp vx 0.0 1.0 y 2 5\ntimestep 0.02\nrun 100\n",
-                MPI_COMM_SELF);
+                "velocity all ramp vx 0.0 1.0 y 2 5\ntimestep 0.02\nrun 100\n");
       return run.gather();
     };
     EXPECT_LT(difference(state(""), state(" reference update 1000")), 1e-12) << rest;
@@ -116,8 +113,7 @@ SERIAL_TEST(ReferenceUpdate, NoneIsTheTotalFrame)
 // much the body has expanded since the start.
 SERIAL_TEST(ReferenceUpdate, VolumeOnTheLattice)
 {
-  Scene run(body(2, "reference update 1.2", "neohookean 1.0e-9 0.3") + "timestep 0.02\n",
-            MPI_COMM_SELF);
+  Scene run(body(2, "reference update 1.2", "neohookean 1.0e-9 0.3") + "timestep 0.02\n");
   run.set_velocity([](const double *x, double *v) {
     v[0] = 0.5 * (x[0] - 4.0);
   });
@@ -147,16 +143,14 @@ SERIAL_TEST(ReferenceUpdate, MomentumAndEnergy)
   for (const bool updates : {false, true}) {
     Scene run(body(2, std::string("transfer apic") + (updates ? " reference update 1.15" : ""),
                    "neohookean 10.0 0.3") +
-                  "velocity all set 0.5 0.2 0.0\nvelocity all ramp vx 0.0 2.0 y 2 5 sum yes\n"
-                  "compute e all mpm/energy\nthermo_style custom step c_e\ntimestep 0.01\nrun 0\n",
-              MPI_COMM_SELF);
+              "velocity all set 0.5 0.2 0.0\nvelocity all ramp vx 0.0 2.0 y 2 5 sum yes\n"
+              "compute e all mpm/energy\nthermo_style custom step c_e\ntimestep 0.01\nrun 0\n");
     const auto before = run.sums();
-    auto *e = run.lmp->modify->get_compute_by_id("e");
-    const double start = e->compute_scalar();
+    const double start = run.compute_scalar();
     double last = start, jump = 0.0;
     for (int k = 0; k < 60; k++) {
       run.commands("run 10 post no\n");
-      const double now = e->compute_scalar();
+      const double now = run.compute_scalar();
       jump = std::max(jump, std::abs(now - last));
       last = now;
     }

@@ -36,9 +36,12 @@ static const std::string start = "velocity one set 0.6 0.35 -0.4\n"
 // a body of the total frame would fall through a floor that it does not touch at first
 static const std::string start_level = "velocity one set 0.6 0.35 0\nvelocity two set -0.5 0.1 0\n";
 
-class Restart : public ::testing::TestWithParam<std::string> {};
-
-TEST_P(Restart, ContinuesBitwise)
+PARAMETER_TEST(Restart, ContinuesBitwise, std::string,
+               Values("transfer apic", "shape linear transfer flip 0.99 scheme musl",
+                      "shape cubic transfer apic scheme musl", "transfer pic scheme usf",
+                      "frame total transfer apic", "frame total transfer flip 0.99 scheme musl",
+                      "locking fbar", "scheme musl locking pressure",
+                      "transfer aflip 0.99 scheme musl", "shape cpgimp transfer tpic", "every 3"))
 {
   const std::string options = GetParam();
   const ScratchFile half("100.bin"), end("200.bin");
@@ -58,18 +61,9 @@ TEST_P(Restart, ContinuesBitwise)
   EXPECT_LT(difference(expected, serial.gather()), 1.0e-11);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Options, Restart,
-    ::testing::Values("transfer apic", "shape linear transfer flip 0.99 scheme musl",
-                      "shape cubic transfer apic scheme musl", "transfer pic scheme usf",
-                      "frame total transfer apic", "frame total transfer flip 0.99 scheme musl",
-                      "locking fbar", "scheme musl locking pressure",
-                      "transfer aflip 0.99 scheme musl", "shape cpgimp transfer tpic", "every 3"));
-
 // the write_restart command between runs, and a file of one rank read by many
-class RestartCommand : public ::testing::TestWithParam<std::string> {};
-
-TEST_P(RestartCommand, ContinuesBitwiseAndOnOtherRanks)
+PARAMETER_TEST(RestartCommand, ContinuesBitwiseAndOnOtherRanks, std::string,
+               Values("transfer apic", "shape cubic transfer flip 1.0 scheme usf"))
 {
   const std::string options = GetParam();
   const std::string scene = head + "fix grid all mpm 1.0 " + options + "\n" + points +
@@ -80,22 +74,16 @@ TEST_P(RestartCommand, ContinuesBitwiseAndOnOtherRanks)
   EXPECT_TRUE(identical(expected, run.again.gather()));
 
   const ScratchFile file("serial");
-  if (rank() == 0) {
-    Scene serial(scene + "run 70\nwrite_restart " + file.name + "\n", MPI_COMM_SELF);
-  }
+  if (rank() == 0) Scene(scene + "run 70\nwrite_restart " + file.name + "\n", MPI_COMM_SELF);
   MPI_Barrier(MPI_COMM_WORLD);
   Scene many("read_restart " + file.name + "\n" + next + "run 60\n");
   EXPECT_LT(difference(expected, many.gather()), 1.0e-11);
 }
 
-INSTANTIATE_TEST_SUITE_P(Options, RestartCommand,
-                         ::testing::Values("transfer apic",
-                                           "shape cubic transfer flip 1.0 scheme usf"));
-
 // points that are rings
-class AxisymmetricRestart : public ::testing::TestWithParam<std::string> {};
-
-TEST_P(AxisymmetricRestart, ContinuesBitwise)
+PARAMETER_TEST(AxisymmetricRestart, ContinuesBitwise, std::string,
+               Values("transfer apic", "shape cpgimp transfer flip 1.0",
+                      "transfer apic scheme musl locking both"))
 {
   const std::string fixes = "fix grid all mpm 1.0 axisymmetric yes " + GetParam() +
       "\nfix m all mpm/material density 1.0 neohookean 10.0 0.3\n"
@@ -106,10 +94,6 @@ TEST_P(AxisymmetricRestart, ContinuesBitwise)
                 70, "neighbor 0.3 bin\n" + fixes, 60);
   EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
 }
-
-INSTANTIATE_TEST_SUITE_P(Options, AxisymmetricRestart,
-                         ::testing::Values("transfer apic", "shape cpgimp transfer flip 1.0",
-                                           "transfer apic scheme musl locking both"));
 
 // the state is more than positions and velocities: without a part of it the run goes on differently
 TEST(RestartState, AffineMatrixAndHistoryAreInTheFile)
@@ -146,36 +130,30 @@ TEST(RestartState, AffineMatrixAndHistoryAreInTheFile)
 // time and energies go on where they were
 TEST(RestartState, WorkIsInTheFile)
 {
-  const ScratchFile file("work");
-  const std::string watch = "compute e all mpm/energy\nthermo_style custom step c_e[3]\n";
-  Scene whole(head + "fix grid all mpm 1.0\n" + points + fixes("") + watch +
-              "fix g all gravity 0.3 vector 0 0 -1\n"
-              "velocity one set 0.6 0.35 -0.4\nvelocity two set -1.5 0.1 -1.0\nrun 100\n"
-              "write_restart " +
-              file.name + "\nrun 50\n");
+  const std::string watch = "compute e all mpm/energy\nthermo_style custom step c_e[3]\n",
+                    gravity = "fix g all gravity 0.3 vector 0 0 -1\n";
+  Continued run(head + "fix grid all mpm 1.0\n" + points + fixes("") + watch + gravity +
+                    "velocity one set 0.6 0.35 -0.4\nvelocity two set -1.5 0.1 -1.0\n",
+                100, "neighbor 0.3 bin\n" + fixes("") + gravity + watch, 50);
+  auto &whole = run.whole, &again = run.again;
   const double plastic = whole.evaluate("c_e[3]");
   EXPECT_GT(plastic, 1.0e-3);
-  Scene again("read_restart " + file.name + "\nneighbor 0.3 bin\n" + fixes("") +
-              "fix g all gravity 0.3 vector 0 0 -1\n" + watch + "run 50\n");
   EXPECT_NEAR(again.evaluate("c_e[3]"), plastic, 1.0e-12 * plastic);
   EXPECT_EQ(again.time(), whole.time());
 
   // the ledger: kinetic ... external, boundary, contact, transfer, integration; and it closes
-  auto *expected = whole.lmp->modify->get_compute_by_id("e");
-  auto *found = again.lmp->modify->get_compute_by_id("e");
-  for (auto *compute : {expected, found}) compute->compute_vector();
-  const double scale = expected->vector[0];
-  EXPECT_GT(std::abs(expected->vector[5]), 1.0e-3 * scale);
-  EXPECT_LT(expected->vector[8], -1.0e-3 * scale);
-  for (int k = 0; k < 10; k++) EXPECT_NEAR(found->vector[k], expected->vector[k], 1.0e-11 * scale);
-  EXPECT_LT(std::abs(found->vector[10]), 1.0e-11 * scale);
+  const double *expected = whole.compute_vector(), *found = again.compute_vector();
+  const double scale = expected[0];
+  EXPECT_GT(std::abs(expected[5]), 1.0e-3 * scale);
+  EXPECT_LT(expected[8], -1.0e-3 * scale);
+  for (int k = 0; k < 10; k++) EXPECT_NEAR(found[k], expected[k], 1.0e-11 * scale);
+  EXPECT_LT(std::abs(found[10]), 1.0e-11 * scale);
 
   // a ledger that is defined later starts where it is defined
   again.commands("compute late all mpm/energy\nthermo_style custom step c_e c_late\nrun 1\n");
-  auto *late = again.lmp->modify->get_compute_by_id("late");
-  late->compute_vector();
-  EXPECT_LT(std::abs(late->vector[8]), 0.1 * std::abs(expected->vector[8]));
-  EXPECT_LT(std::abs(late->vector[10]), 1.0e-11 * scale);
+  const double *late = again.compute_vector("late");
+  EXPECT_LT(std::abs(late[8]), 0.1 * std::abs(expected[8]));
+  EXPECT_LT(std::abs(late[10]), 1.0e-11 * scale);
 }
 
 // velocities that are changed between runs change the affine matrices, also after a restart file,

@@ -6,7 +6,6 @@
 their contacts.  Each run is a process of its own: in the ID of the fix with that history LAMMPS
 counts the pair styles of the process, so that a second instance does not find its history."""
 
-import shutil
 import tempfile
 
 import mpm_testing as mt
@@ -58,8 +57,7 @@ fix             grid all mpm 1.0
 
 
 def last_table(folder, text, processes):
-    result = mt.lammps(folder, text, processes=processes)
-    assert result.code == 0, result.tail()
+    result = mt.ok(mt.lammps(folder, text, processes=processes))
     names, rows = mt.thermo(result.output)[-1]
     assert len(names) == 5 and len(rows) == 7, rows
     return [[float(word) for word in row] for row in rows], result
@@ -72,8 +70,7 @@ def compare(a, b, tolerance):
 
 
 def check(processes, readers):
-    folder = tempfile.mkdtemp(prefix="mpm_grains_")
-    try:
+    with tempfile.TemporaryDirectory() as folder:
         text = HEAD + REST + "run 60\nwrite_restart grains.restart\nrun 60\n"
         whole, _ = last_table(folder, text, processes)
         assert abs(whole[0][1] - whole[-1][1]) > 0.01 * whole[0][1], whole
@@ -83,8 +80,6 @@ def check(processes, readers):
             found = "All restart file peratom fix info was re-assigned" in result.output
             assert found, result.output
             compare(whole, again, 1.0e-9)
-    finally:
-        shutil.rmtree(folder)
 
 
 def test_file_of_one_process():

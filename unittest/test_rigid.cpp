@@ -13,21 +13,23 @@ using namespace MPM_TEST;
 static const std::string head = space("lj", "p p f", "0 10 0 10 0 12") +
     "fix grid all mpm 0.5 GRID\nregion body block 3 7 3 7 2 5\n"
     "create_points 1 region body ppc 2\n";
-static const std::string fixes =
-    "fix m all mpm/material density 1.0 neohookean 30.0 0.3\n"
-    "region shape mpm/mesh FILE 1.0 4.2 5.7 6.4\n"
-    "fix tool all mpm/rigid shape density 2.0 CONTACT velocity 0.1 -0.2 -1.0 "
-    "omega 0.3 0.8 0.5\n"
-    "timestep 0.01\n";
 
-static std::string scene(const std::string &file, const std::string &grid = "")
+/** tool: its density and the options of fix mpm/rigid. */
+static std::string fixes(const std::string &file, const std::string &tool,
+                         const std::string &place = "4.2 5.7 6.4")
 {
-  return replaced(replaced(head, "GRID", grid) + fixes, "FILE", file);
+  return "fix m all mpm/material density 1.0 neohookean 30.0 0.3\nregion shape mpm/mesh " + file +
+      " 1.0 " + place + "\nfix tool all mpm/rigid shape density " + tool + "\ntimestep 0.01\n";
 }
 
-static std::string with(const std::string &text, const std::string &contact)
+static std::string scene(const std::string &file, const std::string &tool, const std::string &place)
 {
-  return replaced(text, "CONTACT", contact);
+  return replaced(head, "GRID", "") + fixes(file, tool, place);
+}
+
+static std::string thrown(const std::string &contact)
+{
+  return "2.0 " + contact + " velocity 0.1 -0.2 -1.0 omega 0.3 0.8 0.5";
 }
 
 class Rigid : public ::testing::TestWithParam<const char *> {};
@@ -38,27 +40,21 @@ TEST_P(Rigid, KeepsMomentum)
   if (nranks() > 1) GTEST_SKIP() << "sums are those of one rank";
   const ScratchFile file("torus.stl", binary_of(torus(1.0, 0.5, 24)));
   for (const char *grid : {"", "scheme musl"}) {
-    Scene run(with(scene(file.name, grid), GetParam()));
-    auto *body = run.fix("tool");
+    Scene run(replaced(head, "GRID", grid) + fixes(file.name, thrown(GetParam())));
     const MPM_NS::SurfaceMesh mesh(binary_of(torus(1.0, 0.5, 24)), "torus", 1.0, {0.0, 0.0, 0.0});
     const double mass = 2.0 * mesh.volume;
     double p[3], L[3], p_start[3], L_start[3], pushed = 0.0, worst = 0.0;
     const auto total = [&]() {
       const auto s = run.sums();
-      double x[3], v[3], w[3], Q[3][3], l[3];
-      for (int d = 0; d < 3; d++) {
-        x[d] = body->compute_vector(d);
-        v[d] = body->compute_vector(3 + d);
-        w[d] = body->compute_vector(6 + d);
-        for (int e = 0; e < 3; e++) Q[d][e] = body->compute_vector(15 + 3 * d + e);
-      }
+      const double *x = run.fix_vector("tool", 24), *v = x + 3, *w = x + 6, *Q = x + 15;
+      double l[3];
       const double *J = mesh.inertia;
       const double I[3][3] = {{J[0], J[3], J[4]}, {J[3], J[1], J[5]}, {J[4], J[5], J[2]}};
       for (int d = 0; d < 3; d++) {
         l[d] = 0.0;
         for (int a = 0; a < 3; a++)
           for (int b = 0; b < 3; b++)
-            for (int e = 0; e < 3; e++) l[d] += 2.0 * Q[d][a] * I[a][b] * Q[e][b] * w[e];
+            for (int e = 0; e < 3; e++) l[d] += 2.0 * Q[3 * d + a] * I[a][b] * Q[3 * e + b] * w[e];
       }
       for (int d = 0; d < 3; d++) {
         const int e = (d + 1) % 3, f = (d + 2) % 3;
@@ -86,17 +82,14 @@ TEST_P(Rigid, KeepsMomentum)
 TEST_P(Rigid, IsTheSameOnAnyNumberOfRanksAndAfterARestart)
 {
   const ScratchFile file("torus.stl", binary_of(torus(1.0, 0.5, 24)));
-  const std::string text = with(scene(file.name), GetParam());
-  Twins run(text, 80,
-            "fix grid all mpm 0.5\n" + with(replaced(fixes, "FILE", file.name), GetParam()), 70,
-            1.0e-9);
-  for (int k = 0; k < 24; k++)
-    EXPECT_NEAR(run.serial.fix("tool")->compute_vector(k), run.whole.fix("tool")->compute_vector(k),
-                1.0e-9);
+  const auto tool = fixes(file.name, thrown(GetParam()));
+  Twins run(replaced(head, "GRID", "") + tool, 80, "fix grid all mpm 0.5\n" + tool, 70, 1.0e-9);
+  const double *a = run.serial.fix_vector("tool", 24), *b = run.whole.fix_vector("tool", 24);
+  for (int k = 0; k < 24; k++) EXPECT_NEAR(a[k], b[k], 1.0e-9);
 }
 
 INSTANTIATE_TEST_SUITE_P(Contact, Rigid,
-                         ::testing::Values("stick", "slip", "separate", "separate friction 0.3"));
+                         Values("stick", "slip", "separate", "separate friction 0.3"));
 
 // Without contact an unequal box turns about no fixed axis: its energy stays, to second order.
 SERIAL_TEST(RigidBody, TurnsFreely)
@@ -104,12 +97,8 @@ SERIAL_TEST(RigidBody, TurnsFreely)
   const ScratchFile file("box.stl", text_of(box({0.0, 0.0, 0.0}, {0.5, 1.0, 1.5})));
   double drift[2];
   for (int k = 0; k < 2; k++) {
-    Scene run(with(replaced(scene(file.name), "omega 0.3 0.8 0.5", "omega 0.3 2.0 0.2"), "slip"));
-    run.commands(
-        strprintf("region shape delete\nunfix tool\nregion shape mpm/mesh %s 1.0 4.2 5.7 9.0\n"
-                  "fix tool all mpm/rigid shape density 2.0 slip omega 0.2 2.0 0.1\n"
-                  "timestep %g\n",
-                  file.name.c_str(), 0.02 / (1 << k)));
+    Scene run(scene(file.name, "2.0 slip omega 0.2 2.0 0.1", "4.2 5.7 9.0") +
+              strprintf("timestep %g\n", 0.02 / (1 << k)));
     auto *body = run.fix("tool");
     const double start = body->compute_scalar();
     double worst = 0.0, most = 0.0;
@@ -169,10 +158,8 @@ SERIAL_TEST(RigidBody, SwingsOnAColumn)
 TEST(RigidBody, MayBeLight)
 {
   const ScratchFile file("box.stl", text_of(box({0.0, 0.0, 0.0}, {1.2, 1.2, 1.2})));
-  Scene run(with(scene(file.name), "slip"));
-  run.commands("region shape delete\nunfix tool\nregion shape mpm/mesh " + file.name +
-               " 1.0 4.4 4.4 2.9\nfix tool all mpm/rigid shape density 1.0e-9 stick\n"
-               "velocity all set 0.1 0.2 0.3\nrun 200\n");
+  Scene run(scene(file.name, "1.0e-9 stick", "4.4 4.4 2.9") +
+            "velocity all set 0.1 0.2 0.3\nrun 200\n");
   auto *body = run.fix("tool");
   for (int d = 0; d < 3; d++) EXPECT_NEAR(body->compute_vector(3 + d), 0.1 * (d + 1), 1.0e-6);
 }
@@ -181,11 +168,10 @@ TEST(RigidBody, MayBeLight)
 TEST(RigidBody, FallsAndIsHeld)
 {
   const ScratchFile file("box.stl", text_of(box({0.0, 0.0, 0.0}, {1.0, 1.0, 1.0})));
-  Scene run(with(scene(file.name), "slip"));
-  run.commands("region shape delete\nunfix tool\nregion shape mpm/mesh " + file.name +
-               " 1.0 4.4 4.4 8.0\nvariable f equal 3.0\n"
-               "fix tool all mpm/rigid shape density 2.0 slip gravity 0 0 -0.5 force v_f 1.0 0 "
-               "torque 0 0 0.1 hold y\nrun 100\n");
+  Scene run("variable f equal 3.0\n" +
+            scene(file.name, "2.0 slip gravity 0 0 -0.5 force v_f 1.0 0 torque 0 0 0.1 hold y",
+                  "4.4 4.4 8.0") +
+            "run 100\n");
   auto *body = run.fix("tool");
   EXPECT_NEAR(body->compute_vector(3), 1.5, 1.0e-12);
   EXPECT_EQ(body->compute_vector(4), 0.0);
@@ -199,10 +185,8 @@ SERIAL_TEST(RigidBody, TurnsAboutAHeldAxis)
 {
   const Soup soup = sheared(box({0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}), 0.8);
   const ScratchFile file("sheared.stl", text_of(soup));
-  Scene run(with(scene(file.name), "slip"));
-  run.commands("region shape delete\nunfix tool\nregion shape mpm/mesh " + file.name +
-               " 1.0 4.4 4.4 8.0\nfix tool all mpm/rigid shape density 2.0 slip omega 0 0 0.3 "
-               "torque 0 0 0.5 hold rx ry\nrun 300\n");
+  Scene run(scene(file.name, "2.0 slip omega 0 0 0.3 torque 0 0 0.5 hold rx ry", "4.4 4.4 8.0") +
+            "run 300\n");
   auto *body = run.fix("tool");
   const double inertia = 2.0 * (2.0 + 1.25 * 0.64) / 12.0, t = 3.0;
   EXPECT_EQ(body->compute_vector(6), 0.0);
@@ -301,7 +285,7 @@ SERIAL_TEST(RigidBody, FrictionIsThatOfTheVelocityAfterTheStep)
   for (const double density : {1.0, 0.01, 1.0e-4})
     for (const char *hold : {"hold rx ry rz", ""}) {
       SCOPED_TRACE(strprintf("density %g %s", density, hold));
-      const auto state = [&](Scene &run) {
+      const auto prepare = [&](Scene &run) {
         run.commands(plate(
             0.5, file.name,
             strprintf("density %g separate friction %g velocity 0.1 0.05 -0.2 ", density, mu) +
@@ -314,30 +298,26 @@ SERIAL_TEST(RigidBody, FrictionIsThatOfTheVelocityAfterTheStep)
         });
       };
       Scene alone, run;
-      state(alone);
+      prepare(alone);
       alone.commands("unfix tool\nrun 1 post no\n");
       auto before = nodes_of(alone);
-      state(run);
-      auto *body = run.fix("tool");
+      prepare(run);
       const double center[3] = {4.0, 4.0, 2.45};
       run.commands("run 1 post no\n");
       // its angular momentum is known at the end of the step; the inertia here, that of the start
-      double omega[3], Q[3][3], I[3] = {mesh.inertia[0], mesh.inertia[1], mesh.inertia[2]};
-      for (int d = 0; d < 3; d++) {
-        omega[d] = body->compute_vector(6 + d);
-        for (int e = 0; e < 3; e++) Q[d][e] = body->compute_vector(15 + 3 * d + e);
-      }
+      const double *state = run.fix_vector("tool", 24), *Q = state + 15, *I = mesh.inertia;
       double spin[3] = {0.0};
       for (int d = 0; d < 3; d++)
         for (int a = 0; a < 3; a++)
-          for (int e = 0; e < 3; e++) spin[d] += Q[d][a] * I[a] * Q[e][a] * omega[e] / I[d];
+          for (int e = 0; e < 3; e++)
+            spin[d] += Q[3 * d + a] * I[a] * Q[3 * e + a] * state[6 + e] / I[d];
       for (const auto &[index, node] : nodes_of(run)) {
         if (node.x[2] < bottom) continue;
         double r[3], w[3], push[3];
         for (int d = 0; d < 3; d++) r[d] = node.x[d] - center[d];
         for (int d = 0; d < 3; d++) {
           const int e = (d + 1) % 3, f = (d + 2) % 3;
-          w[d] = body->compute_vector(3 + d) + spin[e] * r[f] - spin[f] * r[e] - node.v[d];
+          w[d] = state[3 + d] + spin[e] * r[f] - spin[f] * r[e] - node.v[d];
           push[d] = node.v[d] - before.at(index).v[d];
         }
         if (push[2] == 0.0) {

@@ -11,26 +11,15 @@
 
 using namespace MPM_TEST;
 
-static const char *const scene = R"(
-units lj
-dimension DIM
-boundary p p p
-atom_style mpm
-region box block -3 13 -3 13 EXTENT
-create_box 1 box
-fix g all mpm 1.0 origin ORIGIN OPTIONS
+static std::string text(int dim, const std::string &options)
+{
+  const bool flat = dim == 2;
+  return box(dim, "lj", "p p p", "-3 13 -3 13 -8 8") + "fix g all mpm 1.0 origin 0.1 0.2 " +
+      (flat ? "" : "0.3 ") + options + R"(
 region body sphere 5 5 0 3.9
 create_points 1 region body spacing 0.5 jitter 0.3 817
 fix m all mpm/material density 2 neohookean 3 0.3
 )";
-
-static std::string text(int dim, const std::string &options)
-{
-  const bool flat = dim == 2;
-  std::string text = replaced(scene, "OPTIONS", options);
-  text = replaced(text, "ORIGIN", flat ? "0.1 0.2" : "0.1 0.2 0.3");
-  text = replaced(text, "DIM", flat ? "2" : "3");
-  return replaced(text, "EXTENT", flat ? "-0.5 0.5" : "-8 8");
 }
 
 static const char *const cases[] = {
@@ -47,9 +36,9 @@ TEST(Stress, LinearField)
       for (const char *stress : {" stress mls", " stress gradient"}) {
         SCOPED_TRACE(options + stress);
         if (dim == 3 && options.find("locking") != std::string::npos) continue;
-        Scene run(text(dim, options + stress));
-        run.commands("variable vx atom 0.3*(x-5)-0.2*(y-5)\nvariable vy atom 0.1*(x-5)+0.4*(y-5)\n"
-                     "velocity all set v_vx v_vy 0\ntimestep 1e-6\nrun 1\n");
+        Scene run(text(dim, options + stress) +
+                  "variable vx atom 0.3*(x-5)-0.2*(y-5)\nvariable vy atom 0.1*(x-5)+0.4*(y-5)\n"
+                  "velocity all set v_vx v_vy 0\ntimestep 1e-6\nrun 1\n");
         const double L[2][2] = {{0.3, -0.2}, {0.1, 0.4}};
         int n = 0;
         for (const auto &s : run.gather()) {
@@ -87,12 +76,8 @@ run 4000
     EXPECT_LT(measured("integration", std::fabs(run.evaluate("c_e[10]")) / scale),
               options.find("musl") == std::string::npos ? 2e-5
                                                         : 2e-4);    // with other forces: 4e-5
-    double p[2] = {0.0, 0.0}, m = 0.0;
-    for (const auto &s : run.gather()) {
-      m += s.mass;
-      for (int d = 0; d < 2; d++) p[d] += s.mass * s.v[d];
-    }
-    for (int d = 0; d < 2; d++) EXPECT_NEAR(p[d] / m, 0.0, 1e-14);
+    const Totals all(run.gather());
+    for (int d = 0; d < 2; d++) EXPECT_NEAR(all.p[d] / all.mass, 0.0, 1e-14);
   }
 }
 
@@ -132,11 +117,10 @@ TEST(Stress, Refused)
       "create_box 1 b\nfix g all mpm 1.0 ";
   for (const char *options : {"transfer flip 1.0", "shape linear", "transfer tpic", "shape gimp"}) {
     Scene run;
-    EXPECT_THAT(run.error(head + options + " stress mls"),
-                HasSubstr("needs shape quadratic or cubic"));
+    expect_error(run, head + options + " stress mls", "needs shape quadratic or cubic");
     Scene other;
     EXPECT_EQ(other.error(head + options + " stress gradient"), "");
   }
   Scene run;
-  EXPECT_THAT(run.error(head + "frame total stress gradient"), HasSubstr("frame total needs"));
+  expect_error(run, head + "frame total stress gradient", "frame total needs");
 }

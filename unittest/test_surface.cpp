@@ -22,6 +22,17 @@ static const std::string contact =
     "pair_coeff * * hooke 100.0 0.5 tangential linear_nohistory 0.5 0.4\n"
     "neigh_modify exclude type 1 1\n";
 
+/** A slab of 12 layers of 24 x 24 points. */
+static std::string slab(const std::string &options, const std::string &more = "",
+                        const std::string &law = "neohookean 10.0 0.3")
+{
+  return "fix grid all mpm 1.0 " + options +
+      "\nregion slab block INF INF INF INF 1 7\ncreate_points 1 region slab ppc 2\n"
+      "group slab type 1\nfix m slab mpm/material density 1.0 " +
+      law + "\n" + more + "\n" + contact + "timestep 0.01\n";
+}
+static const std::string brittle = "eos linear 10.0 strength elastic 5.0 damage rankine 100.0";
+
 static double surface_points(Scene &run)
 {
   double n = -1.0;
@@ -33,24 +44,18 @@ static double surface_points(Scene &run)
 }
 
 // A slab of 12 layers of 24 x 24 points anywhere on the lattice: the first and the last layer.
-class Surface : public ::testing::TestWithParam<const char *> {};
-
-TEST_P(Surface, IsTheOutermostLayer)
+PARAMETER_TEST(Surface, IsTheOutermostLayer, const char *,
+               Values("", "shape linear transfer flip 1.0 scheme musl", "shape cubic",
+                      "shape cpgimp", "frame total"))
 {
   for (const char *shift : {"0 0 0", "0.13 0.31 0.47", "0.5 0.25 0.7", "5.1 0 0"}) {
-    Scene run(head + "fix grid all mpm 1.0 " + GetParam() +
-              "\nregion slab block INF INF INF INF 1 7\n" +
-              "create_points 1 region slab ppc 2\ngroup slab type 1\nfix m slab mpm/material "
-              "density 1.0 neohookean 10.0 0.3\n" +
-              "displace_atoms all move " + shift + " units box\nfix surf slab mpm/surface\n" +
-              contact + "timestep 0.01\n");
+    Scene run(head +
+              slab(GetParam(),
+                   std::string("displace_atoms all move ") + shift +
+                       " units box\nfix surf slab mpm/surface"));
     EXPECT_EQ(surface_points(run), 2 * 24 * 24) << shift;
   }
 }
-
-INSTANTIATE_TEST_SUITE_P(Options, Surface,
-                         ::testing::Values("", "shape linear transfer flip 1.0 scheme musl",
-                                           "shape cubic", "shape cpgimp", "frame total"));
 
 // On a fixed face of the box nothing can be between it and the body, but a gap has a surface.
 TEST(Surface, IsNotOnAFixedFace)
@@ -69,11 +74,11 @@ TEST(Surface, IsNotOnAFixedFace)
                      {"frame total", "0 0 0",
                       2 * 24 * 24 + (2 * 10 + 4) * 24}};    // may move away; next to the edges
   for (const auto &c : cases) {
-    Scene run(box + "fix grid all mpm 1.0 " + c.options +
-              "\nregion slab block INF INF INF INF 0 6\ncreate_points 1 region slab ppc 2\n"
-              "group slab type 1\nfix m slab mpm/material density 1.0 neohookean 10.0 0.3\n"
-              "displace_atoms all move " +
-              c.gap + " units box\nfix surf slab mpm/surface\n" + contact + "timestep 0.01\n");
+    Scene run(box +
+              replaced(slab(c.options,
+                            std::string("displace_atoms all move ") + c.gap +
+                                " units box\nfix surf slab mpm/surface"),
+                       "1 7", "0 6"));
     EXPECT_EQ(measured("points", surface_points(run)), c.expected) << c.options << " " << c.gap;
   }
 }
@@ -81,12 +86,7 @@ TEST(Surface, IsNotOnAFixedFace)
 // Points that have failed are no longer inside of anything, and their neighbors have a surface.
 TEST(Surface, OpensWherePointsHaveFailed)
 {
-  Scene run(head +
-            "fix grid all mpm 1.0\nregion slab block INF INF INF INF 1 7\n"
-            "create_points 1 region slab ppc 2\ngroup slab type 1\n"
-            "fix m slab mpm/material density 1.0 eos linear 10.0 strength elastic 5.0 damage "
-            "rankine 100.0\nfix surf slab mpm/surface\n" +
-            contact + "timestep 0.01\nrun 0 post no\n");
+  Scene run(head + slab("", "fix surf slab mpm/surface", brittle) + "run 0 post no\n");
   auto *material = run.material();
   ASSERT_GE(material->damage, 0);
   for (int i = 0; i < run.n(); i++)    // two layers in the middle
@@ -96,12 +96,7 @@ TEST(Surface, OpensWherePointsHaveFailed)
 
 TEST(Surface, FailedPointsHaveARadius)
 {
-  Scene run(head +
-            "fix grid all mpm 1.0\nregion slab block INF INF INF INF 1 7\n"
-            "create_points 1 region slab ppc 2\ngroup slab type 1\n"
-            "fix m slab mpm/material density 1.0 eos linear 10.0 strength elastic 5.0 damage "
-            "rankine 100.0\nfix surf slab mpm/surface depth 0.3\n" +
-            contact + "timestep 0.01\nrun 0 post no\n");
+  Scene run(head + slab("", "fix surf slab mpm/surface depth 0.3", brittle) + "run 0 post no\n");
   double n = -1.0;
   run.each_step([&](double **) {
     n = run.fix("surf")->compute_scalar();
@@ -109,27 +104,21 @@ TEST(Surface, FailedPointsHaveARadius)
   run.commands("run 0 post no\n");
   const double before = n;
   auto *material = run.material();
-  double deep = 0.0, all;
+  double deep = 0.0;
   for (int i = 0; i < run.n(); i++) {    // one point inside
     if (run.lmp->atom->tag[i] != 12 * 24 * 12 + 6 * 24 + 6) continue;
     material->history[i][material->damage] = 1.0;
     deep = std::min(7.0 - run.x()[i][2], run.x()[i][2] - 1.0);
   }
-  MPI_Allreduce(&deep, &all, 1, MPI_DOUBLE, MPI_SUM, run.lmp->world);
-  EXPECT_GT(all, 1.0);
+  EXPECT_GT(over_ranks(deep), 1.0);
   run.commands("run 0 post no\n");
   EXPECT_EQ(n, before + 1.0);
 }
 
 TEST(Surface, RadiusFollowsTheVolume)
 {
-  Scene run(head +
-            "fix grid all mpm 1.0\nregion slab block INF INF INF INF 1 7\n"
-            "create_points 1 region slab ppc 2\ngroup slab type 1\n"
-            "fix m slab mpm/material density 1.0 neohookean 10.0 0.3\n"
-            "fix surf slab mpm/surface scale 1.1 grow 1.03\n" +
-            contact + "timestep 0.01\nrun 0 post no\n");
-  double mine = 0.0, worst = 0.0, expected = 1.0;
+  Scene run(head + slab("", "fix surf slab mpm/surface scale 1.1 grow 1.03") + "run 0 post no\n");
+  double mine = 0.0, expected = 1.0;
   int n = 0;
   run.each_step([&](double **) {
     for (int i = 0; i < run.n(); i++) {
@@ -149,8 +138,7 @@ TEST(Surface, RadiusFollowsTheVolume)
     mine = n = 0;
     run.commands("run 0 post no\n");
     EXPECT_GT(n, 0);
-    MPI_Allreduce(&mine, &worst, 1, MPI_DOUBLE, MPI_MAX, run.lmp->world);
-    EXPECT_LT(worst, 1.0e-12) << J;
+    EXPECT_LT(over_ranks(mine, MPI_MAX), 1.0e-12) << J;
   }
 }
 
@@ -173,7 +161,7 @@ TEST(SurfaceContact, IsThatOfAllPoints)
     Scene run(replaced(head, "neighbor 0.3", "neighbor 0.8") + grains + fixes +
               (all ? "set type 1 diameter 0.5\n" : "fix surf block mpm/surface grow 1.0\n") +
               contact + "timestep 0.01\n");
-    double mine[4] = {0.0}, sum[4];
+    std::vector<double> mine(4);
     bool first = true;
     run.each_step([&](double **) {    // then radii follow the volume
       auto *atom = run.lmp->atom;
@@ -185,7 +173,7 @@ TEST(SurfaceContact, IsThatOfAllPoints)
     run.commands("run 1 post no\n");
     const auto *list = run.lmp->force->pair->list;
     for (int k = 0; k < list->inum; k++) mine[3] += list->numneigh[list->ilist[k]];
-    MPI_Allreduce(mine, sum, 4, MPI_DOUBLE, MPI_SUM, run.lmp->world);
+    const auto sum = over_ranks(mine);
     for (int d = 0; d < 3; d++) force[all][d] = sum[d];
     pairs[all] = sum[3];
   }
@@ -199,7 +187,7 @@ TEST(SurfaceContact, IsThatOfAllPoints)
 // for a grain below the slab: what it touches are ghosts, where it is on a corner of the periodic box.
 TEST(SurfaceContact, IsTheSameAcrossPeriodicFacesFromSetUpOn)
 {
-  std::array<double, 3> force[2];
+  std::vector<double> force[2];
   for (const int corner : {0, 1}) {
     Scene run(replaced(replaced(head, "0.3 multi", "0.3 bin"), "mode multi", "mode single") +
               "fix grid all mpm 1.0\nregion slab block INF INF INF INF 1 7\n"
@@ -210,14 +198,14 @@ TEST(SurfaceContact, IsTheSameAcrossPeriodicFacesFromSetUpOn)
               "neohookean 10.0 0.3\n"
               "fix move grains nve/sphere\nfix surf slab mpm/surface\n" +
               contact + "timestep 0.01\n");
-    double mine[3] = {0.0};
+    std::vector<double> mine(3);
     run.each_step([&](double **) {
       auto *atom = run.lmp->atom;
       for (int i = 0; i < run.n(); i++)
-        if (atom->type[i] == 2) std::copy(atom->f[i], atom->f[i] + 3, mine);
+        if (atom->type[i] == 2) mine.assign(atom->f[i], atom->f[i] + 3);
     });
     run.commands("run 0 post no\n");
-    MPI_Allreduce(mine, force[corner].data(), 3, MPI_DOUBLE, MPI_SUM, run.lmp->world);
+    force[corner] = over_ranks(mine);
   }
   EXPECT_LT(force[0][2], -1.0);
   for (int d = 0; d < 3; d++) EXPECT_NEAR(force[1][d], force[0][d], 1.0e-12 * -force[0][2]);
@@ -277,9 +265,11 @@ TEST(SurfaceContact, GoesOnFromARestartFile)
 
 // Clumps of spheres that LAMMPS moves as rigid bodies: what they lose of momentum, the block has. When
 // forces are known, velocities of grains and points are those of half steps.
-class Clump : public ::testing::TestWithParam<const char *> {};
-
-TEST_P(Clump, PushesWithConstantMomentum)
+PARAMETER_TEST(Clump, PushesWithConstantMomentum, const char *,
+               Values("fix move grains rigid single",
+                      "fix body all property/atom i_body ghost yes\n"
+                      "set type 2 i_body 1\nset type 1 i_body 0\n"
+                      "fix move grains rigid/small custom i_body"))
 {
   Scene run(replaced(head, "neighbor 0.3", "atom_modify map array\nneighbor 0.3") +
             replaced(grains,
@@ -292,16 +282,17 @@ TEST_P(Clump, PushesWithConstantMomentum)
                      GetParam() + std::string("\nneigh_modify exclude type 2 2\n")) +
             plain + contact + "timestep 0.005\n");
   auto *atom = run.lmp->atom;
-  double start[4] = {0.0}, pushed = 0.0, worst = 0.0;    // the last: of the points along z
+  std::vector<double> start;    // the last: of the points along z
+  double pushed = 0.0, worst = 0.0;
   bool first = true;
   run.each_step([&](double **) {
-    double mine[4] = {0.0, 0.0, 0.0, 0.0}, now[4];
+    std::vector<double> mine(4);
     for (int i = 0; i < atom->nlocal; i++) {
       for (int d = 0; d < 3; d++) mine[d] += atom->rmass[i] * atom->v[i][d];
       if (atom->type[i] == 1) mine[3] += atom->rmass[i] * atom->v[i][2];
     }
-    MPI_Allreduce(mine, now, 4, MPI_DOUBLE, MPI_SUM, run.lmp->world);
-    if (first) std::copy(now, now + 4, start);
+    const auto now = over_ranks(mine);
+    if (first) start = now;
     first = false;
     for (int d = 0; d < 3; d++) worst = std::max(worst, fabs(now[d] - start[d]));
     pushed = std::min(pushed, now[3]);
@@ -310,12 +301,6 @@ TEST_P(Clump, PushesWithConstantMomentum)
   EXPECT_LT(measured("momentum", worst / fabs(start[2])), 1.0e-12);
   EXPECT_LT(pushed, 0.5 * start[2]);    // it did hit the block
 }
-
-INSTANTIATE_TEST_SUITE_P(Fixes, Clump,
-                         ::testing::Values("fix move grains rigid single",
-                                           "fix body all property/atom i_body ghost yes\n"
-                                           "set type 2 i_body 1\nset type 1 i_body 0\n"
-                                           "fix move grains rigid/small custom i_body"));
 
 TEST(Surface, RefusesMistakes)
 {

@@ -21,15 +21,12 @@ FINITE_ELEMENTS = {"length": (16.27, 1.5), "diameter": (13.48, 4.0), "width": (1
 def measure(h, demo=False):
     """Length, diameter, width in mm, and the output of tools/taylor_table.py."""
     with tempfile.TemporaryDirectory() as folder:
-        with open(BAR) as f:
-            text = f.read()
+        text = mt.read(BAR)
         if not demo:    # pictures take time
             text = "\n".join(line for line in text.split("\n")
                              if not re.match(r"(dump|dump_modify) +(pic|vtk)|  +(box no|amap)", line))
-        result = mt.lammps(folder, text, arguments=["-v", "h", str(h)], timeout=200)
-        assert result.code == 0, result.tail()
-        table = mt.run([sys.executable, os.path.join(mt.ROOT, "tools", "taylor_table.py"), folder])
-        assert table.code == 0, table.tail()
+        mt.ok(mt.lammps(folder, text, arguments=["-v", "h", str(h)], timeout=200))
+        table = mt.ok(mt.run([sys.executable, os.path.join(mt.ROOT, "tools", "taylor_table.py"), folder]))
     values = [float(v) for v in re.findall(r"\[mm\] +([0-9.]+)", table.output)]
     assert len(values) == 3, table.output
     return dict(zip(("length", "diameter", "width"), values)), table.output
@@ -61,12 +58,10 @@ def test_body_of_revolution():
     """The axisymmetric bar at twice the resolution, about as many points as 3d has at a third of it."""
     scene = os.path.join(mt.ROOT, "examples", "taylor-bar-axisymmetric")
     with tempfile.TemporaryDirectory() as folder:
-        with open(os.path.join(scene, "in.taylor-bar-axisymmetric")) as f:
-            text = re.sub(r"\ndump .*?cf .*?\n", "\n", f.read(), flags=re.S)    # no pictures
-        result = mt.lammps(folder, text, arguments=["-v", "h", "0.00038"], timeout=200)
-        assert result.code == 0, result.tail()
-        table = mt.run([sys.executable, os.path.join(scene, "plot.py"), folder])
-        assert table.code == 0, table.tail()
+        text = mt.read(os.path.join(scene, "in.taylor-bar-axisymmetric"))
+        text = re.sub(r"\ndump .*?cf .*?\n", "\n", text, flags=re.S)    # no pictures
+        mt.ok(mt.lammps(folder, text, arguments=["-v", "h", "0.00038"], timeout=200))
+        table = mt.ok(mt.run([sys.executable, os.path.join(scene, "plot.py"), folder]))
     print(table.output)
     values = [float(v) for v in re.findall(r" ([0-9.]+)(?: mm|$)", table.output.strip())]
     for (key, (value, _)), found, percent in zip(FINITE_ELEMENTS.items(), values, (0.5, 3.0, 0.5)):

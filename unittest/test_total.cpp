@@ -87,9 +87,7 @@ TEST(TotalKinematics, RigidRotationTurnsTheStress)
 {
   for (const char *law : {"neohookean 10.0 0.3", "linear 10.0 0.3"}) {
     Scene run(space("lj", "f f f", "0 4 0 4 0 4") +
-              "fix grid all mpm 1.0 frame total\ncreate_points 1 box ppc 1\n"
-              "fix m all mpm/material density 1.0 " +
-              law + "\nrun 0\n");
+              body("box", std::string("density 1.0 ") + law, "1.0 frame total", "1") + "run 0\n");
     const auto &material = *run.material()->material;
     auto batch = std::make_unique<Batch>();
     std::vector<double> history(BATCH * 16, 0.0);
@@ -138,13 +136,12 @@ struct Stretched {
 
 static Stretched stretch(const std::string &options)
 {
-  Scene run(plane("si", "f p", "0 12 0 1", 1, 0.1) + "fix grid all mpm 0.25 " + options +
-            "\n"
-            "region body block 0 1 INF INF INF INF\nregion grip block 1 12 INF INF INF INF\n"
-            "create_points 1 region body ppc 2\n"
-            "fix m all mpm/material density 1000 neohookean 1.0e6 0.3\n"
-            "fix left all mpm/boundary xlo slip\n"
-            "fix right all mpm/boundary region grip slip velocity 10 0 0\n");
+  Scene run(
+      plane("si", "f p", "0 12 0 1", 1, 0.1) +
+      body("block 0 1 INF INF INF INF", "density 1000 neohookean 1.0e6 0.3", "0.25 " + options) +
+      "region grip block 1 12 INF INF INF INF\n"
+      "fix left all mpm/boundary xlo slip\n"
+      "fix right all mpm/boundary region grip slip velocity 10 0 0\n");
   run.set_reference();
   run.set_velocity([](const double *x, double *v) {
     v[0] = 10.0 * x[0];
@@ -187,15 +184,14 @@ TEST(TotalStretch, TenfoldWithoutFracture)
    conserved exactly, angular momentum as far as the motion is affine over the reach of a function
 ------------------------------------------------------------------------- */
 
-class TotalFree : public ::testing::TestWithParam<const char *> {};
-
-TEST_P(TotalFree, Invariants)
+PARAMETER_TEST(TotalFree, Invariants, const char *,
+               Values("frame total transfer apic", "frame total transfer flip 1.0 scheme musl",
+                      "frame total transfer flip 1.0 scheme usavg", "frame total transfer xpic 5",
+                      "frame total transfer fmpm 5"))
 {
-  Scene run(space("si", "f f f", "-5 15 -5 15 -5 15", 1, 0.3) + "fix grid all mpm 0.5 " +
-            GetParam() +
-            "\n"
-            "region body block 0.1 4.1 0.2 3.2 0.0 2.0\ncreate_points 1 region body ppc 2\n"
-            "fix m all mpm/material density 1000 neohookean 1.0e6 0.3\n");
+  Scene run(space("si", "f f f", "-5 15 -5 15 -5 15", 1, 0.3) +
+            body("block 0.1 4.1 0.2 3.2 0.0 2.0", "density 1000 neohookean 1.0e6 0.3",
+                 strprintf("0.5 %s", GetParam())));
   run.set_velocity([](const double *x, double *v) {
     v[0] = 3.0 - 4.0 * x[1] + 2.0 * x[2];
     v[1] = -2.0 + 5.0 * x[0];
@@ -220,12 +216,6 @@ TEST_P(TotalFree, Invariants)
   }
 }
 
-static const char *const total_free_cases[] = {
-    "frame total transfer apic", "frame total transfer flip 1.0 scheme musl",
-    "frame total transfer flip 1.0 scheme usavg", "frame total transfer xpic 5",
-    "frame total transfer fmpm 5"};
-INSTANTIATE_TEST_SUITE_P(Options, TotalFree, ::testing::ValuesIn(total_free_cases));
-
 /* ----------------------------------------------------------------------
    C2: a spinning disk, one revolution. APIC keeps the moments of velocity and reference position,
    hence the angular momentum of a rotation. FLIP with linear functions: .99839 by another code.
@@ -235,10 +225,8 @@ static double spin(const std::string &options, double revolutions)
 {
   const double h = 0.025, omega = 10.0;
   Scene run(plane("si", "f f", "-0.5 0.5 -0.5 0.5", 1, 0.4 * h) +
-            strprintf("fix grid all mpm %.17g %s\nregion disk cylinder z 0 0 0.25 INF INF\n"
-                      "create_points 1 region disk ppc 2\n"
-                      "fix m all mpm/material density 1000 neohookean 1.0e6 0.3\n",
-                      h, options.c_str()));
+            body("cylinder z 0 0 0.25 INF INF", "density 1000 neohookean 1.0e6 0.3",
+                 strprintf("%.17g %s", h, options.c_str())));
   run.set_velocity([=](const double *x, double *v) {
     v[0] = -omega * x[1];
     v[1] = omega * x[0];
@@ -318,9 +306,8 @@ TEST(TotalInput, IsRefused)
                            "velocity all ramp vx 0 0.5 x 2 5\ntimestep 0.01\n",
                     total = head + "fix grid all mpm 1.0 frame total\n" + body;
   EXPECT_EQ(error_of(total + "run 2\n"), "");
-  const struct {
-    std::string input, message;
-  } cases[] = {
+  const ScratchFile file("bin");
+  const Mistake cases[] = {
       {head + "fix grid all mpm 1.0 frame other\n", "must be one of updated total"},
       {total + "fix w all mpm/boundary zlo separate\nrun 1\n", "frame total"},
       {total + "fix w all mpm/boundary zlo stick rotate 0 0 0 0 0 1 1\nrun 1\n", "frame total"},
@@ -339,14 +326,9 @@ TEST(TotalInput, IsRefused)
            "group b subtract all a\nunfix grid\nfix ga a mpm 1.0 frame total\n"
            "fix gb b mpm 1.0 frame total\nfix c all mpm/contact ga gb\nrun 1\n",
        "frame total"},
-      {total +
-           "run 1\nwrite_restart mpm_total.bin\nclear\nread_restart mpm_total.bin\n"
-           "fix grid all mpm 1.0\n",
+      {total + "run 1\nwrite_restart " + file.name + "\nclear\nread_restart " + file.name +
+           "\nfix grid all mpm 1.0\n",
        "frame total (now updated)"},
   };
-  for (const auto &c : cases) {
-    const std::string text = error_of(c.input);
-    EXPECT_NE(text.find(c.message), std::string::npos) << c.input << "\nsays: " << text;
-  }
-  remove("mpm_total.bin");
+  for (const auto &c : cases) expect_error(c.lines, c.message);
 }

@@ -26,23 +26,6 @@ using namespace MPM_TEST;
 
 namespace {
 
-/** B-spline of order n and its derivative at the distance u of a point from a node, in spacings. */
-double spline(int n, double u)
-{
-  const double a = std::fabs(u);
-  if (n == 1) return std::max(1.0 - a, 0.0);
-  if (n == 2) return a < 0.5 ? 0.75 - a * a : (a < 1.5 ? 0.5 * (1.5 - a) * (1.5 - a) : 0.0);
-  return a < 1.0 ? 2.0 / 3.0 - a * a + 0.5 * a * a * a
-                 : (a < 2.0 ? (2.0 - a) * (2.0 - a) * (2.0 - a) / 6.0 : 0.0);
-}
-double slope(int n, double u)
-{
-  const double a = std::fabs(u), sign = u < 0.0 ? -1.0 : 1.0;
-  if (n == 1) return a < 1.0 ? -sign : 0.0;
-  if (n == 2) return a < 0.5 ? -2.0 * u : (a < 1.5 ? -sign * (1.5 - a) : 0.0);
-  return sign * (a < 1.0 ? -2.0 * a + 1.5 * a * a : (a < 2.0 ? -0.5 * (2.0 - a) * (2.0 - a) : 0.0));
-}
-
 const char *const names[] = {"", "linear", "quadratic", "cubic"};
 
 /** What a field of nodes (h = 1) is at a point: velocity and gradient of tpic or apic. */
@@ -53,11 +36,11 @@ struct AtPoint {
   {
     double moment = 0.0, D = 0.0;
     for (int i = std::floor(x) - 3; i <= x + 3; i++) {
-      const double w = spline(n, x - i);
+      const double w = bspline(n, x - i);
       v += w * field(i);
       moment += w * (i - x) * field(i);
       D += w * (i - x) * (i - x);
-      if (tpic) C += slope(n, x - i) * field(i);
+      if (tpic) C += bspline_slope(n, x - i) * field(i);
     }
     if (!tpic) C = moment / D;
   }
@@ -76,7 +59,7 @@ double amplification(int n, bool tpic, int ppc, double k = K)
 {
   double sum = 0.0, mass = 0.0;
   for (int p = -3 * ppc; p < 3 * ppc; p++) {
-    const double x = (p + 0.5) / ppc, w = spline(n, x);
+    const double x = (p + 0.5) / ppc, w = bspline(n, x);
     const AtPoint point(n, tpic, x, [k](double node) {
       return std::cos(k * node);
     });
@@ -178,8 +161,8 @@ TEST(Tpic, Force)
         const auto node = [&](int i) {
           double f = 0.0, mass = 0.0;
           for (int p = -3 * ppc; p < 3 * ppc; p++) {
-            const double x = i + (p + 0.5) / ppc, w = spline(n, x - i);
-            f -= std::cos(K * x) * (tpic ? slope(n, x - i) : w * (i - x) / D);
+            const double x = i + (p + 0.5) / ppc, w = bspline(n, x - i);
+            f -= std::cos(K * x) * (tpic ? bspline_slope(n, x - i) : w * (i - x) / D);
             mass += density * w;
           }
           return f / mass;

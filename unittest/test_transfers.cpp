@@ -37,8 +37,7 @@ struct Spin {
 
 static Spin spin(const std::string &options, int steps)
 {
-  Scene run(replaced(disk, "OPTIONS", options));
-  run.commands("run 0\n");
+  Scene run(replaced(disk, "OPTIONS", options) + "run 0\n");
   const double L = run.evaluate("c_L"), E = run.evaluate("c_e[1]");
   const double px = run.evaluate("v_px"), py = run.evaluate("v_py");
   run.commands("run " + std::to_string(steps) + "\n");
@@ -52,8 +51,7 @@ TEST(Refined, FirstOrderIsPic)
 {
   std::vector<Scene::State> reference;
   for (const char *transfer : {"pic", "xpic 1", "fmpm 1"}) {
-    Scene run(replaced(disk, "OPTIONS", std::string("transfer ") + transfer));
-    run.commands("run 100\n");
+    Scene run(replaced(disk, "OPTIONS", std::string("transfer ") + transfer) + "run 100\n");
     const auto state = run.gather();
     if (reference.empty()) reference = state;
     for (std::size_t i = 0; i < state.size(); i++)
@@ -87,9 +85,8 @@ TEST(Refined, OrderReducesTheLoss)
 TEST(Refined, NoiseIsRemoved)
 {
   const auto noise_left = [](const std::string &options) {
-    Scene run(plane("lj", "p p", "0 8 0 8") + "fix g all mpm 1.0 " + options + R"(
-create_points 1 region box ppc 2
-fix m all mpm/material density 1 neohookean 1e-12 0.3
+    Scene run(plane("lj", "p p", "0 8 0 8") +
+              body("box", "density 1 neohookean 1e-12 0.3", "1.0 " + options) + R"(
 variable v atom 0.1*(2*((floor(2*x)+floor(2*y))%2)-1)
 velocity all set v_v 0 0
 variable e atom vx*vx
@@ -110,11 +107,10 @@ run 50
 TEST(Refined, LedgerTellsWorkFromLoss)
 {
   for (const char *transfer : {"flip 1.0", "xpic 2", "xpic 5", "fmpm 5"}) {
-    Scene run(plane("si", "f f", "0 1 0 1 -0.1 0.1", 1, 0.05) + "fix g all mpm 0.05 transfer " +
-              std::string(transfer) + R"(
-region b block 0.3 0.7 0.4 0.8 INF INF
-create_points 1 region b ppc 2
-fix m all mpm/material density 1000 neohookean 1e5 0.3
+    Scene run(plane("si", "f f", "0 1 0 1 -0.1 0.1", 1, 0.05) +
+              body("block 0.3 0.7 0.4 0.8 INF INF", "density 1000 neohookean 1e5 0.3",
+                   strprintf("0.05 transfer %s", transfer)) +
+              R"(
 fix f all gravity 10 vector 0 -1 0
 variable v atom 0.2*cos(PI*(x-0.3)/0.4)
 velocity all set v_v -0.5 0
@@ -153,10 +149,10 @@ TEST(Refined, WallsHold)
 {
   for (const char *transfer : {"xpic 3", "fmpm 3"}) {
     SCOPED_TRACE(transfer);
-    Scene run(plane("lj", "p f", "0 4 0 12") + "fix g all mpm 1.0 transfer " + transfer + R"(
-region column block 0 4 0 8 -0.5 0.5
-create_points 1 region column ppc 2
-fix m all mpm/material density 1 neohookean 100 0.3
+    Scene run(plane("lj", "p f", "0 4 0 12") +
+              body("block 0 4 0 8 -0.5 0.5", "density 1 neohookean 100 0.3",
+                   strprintf("1.0 transfer %s", transfer)) +
+              R"(
 fix w all mpm/boundary ylo stick
 fix f all gravity 0.5 vector 0 -1 0
 timestep 0.01
@@ -197,7 +193,7 @@ TEST(Parallel, RanksAgree)
 
 TEST(BadInput, IsRefused)
 {
-  const Mistake cases[] = {
+  expect_options_refused({
       {"transfer xpic", "Illegal fix mpm transfer"},
       {"transfer xpic 0", "order must be within 1 and 100"},
       {"transfer fmpm 101", "order must be within 1 and 100"},
@@ -212,7 +208,5 @@ TEST(BadInput, IsRefused)
       {"shape quadratic aspect 1 2 1", "use shape gimp, cpgimp"},
       {"shape cpgimp aspect 1 1 16", "need at least one point per cell"},
       {"scheme average", "must be one of usl usf musl usavg"},
-  };
-  for (const auto &bad : cases)
-    expect_error(replaced(two_bodies, "MPM_OPTIONS", bad.lines) + "run 1\n", bad.message);
+  });
 }

@@ -56,12 +56,11 @@ static Result simulate(const std::string &units, const std::string &scene)
   r.energies.push_back(total / force->mvv2e);
   for (auto *fix : run.lmp->modify->get_fix_by_style("^mpm/boundary$"))
     for (int d = 0; d < 3; d++) r.forces.push_back(fix->compute_vector(d) * force->ftm2v);
-  r.wavespeed = run.lmp->modify->get_compute_by_id("cmax")->compute_scalar();
+  r.wavespeed = run.compute_scalar("cmax");
   r.inconsistency = std::abs(force->mvv2e * force->ftm2v - 1.0);
   EXPECT_LT(std::abs(energy->vector[10]), 1.0e-10 * total) << units;
   if (run.lmp->modify->get_fix_by_style("^mpm/elements$").empty()) {
-    const double stored = run.lmp->modify->get_compute_by_id("sum")->compute_scalar();
-    EXPECT_NEAR(stored, energy->vector[1], 1.0e-10 * total) << units;
+    EXPECT_NEAR(run.compute_scalar("sum"), energy->vector[1], 1.0e-10 * total) << units;
   }
   for (auto &s : r.states)
     for (double &stress : s.stress) stress /= force->mvv2e * force->nktv2p;
@@ -96,31 +95,29 @@ static const std::string box2d = "dimension 2\nboundary f f p\natom_style mpm\nn
                                  "region box block 0 8 0 8 -0.5 0.5\ncreate_box 2 box\n";
 static const std::string soft = "fix m all mpm/material density 1.5 neohookean {100 P} 0.3\n";
 
-class Units : public ::testing::TestWithParam<std::string> {};
-
-TEST_P(Units, SameMotionInAllUnitStyles)
+/** A block on a lattice with these options. */
+static std::string block(const std::string &options = "")
 {
-  compare(box3d +
-          "fix grid all mpm 1.0\nregion one block 2 6 2 6 0 4\ncreate_points 1 region one ppc 2\n"
-          "fix m all mpm/material density 1.5 " +
-          GetParam() +
+  return box3d + "fix grid all mpm 1.0 " + options +
+      "\nregion one block 2 6 2 6 0 4\ncreate_points 1 region one ppc 2\n";
+}
+
+PARAMETER_TEST(Units, SameMotionInAllUnitStyles, std::string,
+               Values("neohookean {100 P} 0.3", "eos shock 8.0 1.5 2.0 strength j2 {40 P} {1 P}",
+                      "eos tait {100 P} 7 viscosity newtonian {1 P} "
+                      "viscosity artificial 1.5 0.06"))
+{
+  compare(block() + "fix m all mpm/material density 1.5 " + GetParam() +
           "\nfix floor all mpm/boundary zlo separate friction 0.3\n"
           "fix g all gravity {0.5 A} vector 0.2 0 -1\nvelocity all set 0.3 0.1 -0.5\n");
 }
-
-INSTANTIATE_TEST_SUITE_P(Laws, Units,
-                         ::testing::Values("neohookean {100 P} 0.3",
-                                           "eos shock 8.0 1.5 2.0 strength j2 {40 P} {1 P}",
-                                           "eos tait {100 P} 7 viscosity newtonian {1 P} "
-                                           "viscosity artificial 1.5 0.06"));
 
 // the parts of fix mpm that convert units on their own
 class UnitsOfOptions : public ::testing::TestWithParam<const char *> {};
 
 TEST_P(UnitsOfOptions, SameMotionInAllUnitStyles)
 {
-  compare(box3d + "fix grid all mpm 1.0 " + GetParam() +
-          "\nregion one block 2 6 2 6 0 4\ncreate_points 1 region one ppc 2\n" + soft +
+  compare(block(GetParam()) + soft +
           "fix floor all mpm/boundary zlo slip\nfix g all gravity {0.5 A} vector 0.2 0 -1\n"
           "velocity all ramp vz 0.0 -1.0 z 0 4\n");
 }
@@ -137,8 +134,7 @@ TEST_P(UnitsOfOptions, DensityAndModulusTogether)
 {
   std::vector<Scene::State> states[2];
   for (const int k : {0, 1}) {
-    Scene run("units lj\n" + box3d + "fix grid all mpm 1.0 " + GetParam() +
-              "\nregion one block 2 6 2 6 0 4\ncreate_points 1 region one ppc 2\n" +
+    Scene run("units lj\n" + block(GetParam()) +
               fmt::format("fix m all mpm/material density {} neohookean {} 0.3\n", k ? 12.0 : 1.5,
                           k ? 800.0 : 100.0) +
               "fix floor all mpm/boundary zlo slip\nvelocity all ramp vz 0.0 -1.0 z 0 4\n"
@@ -164,21 +160,16 @@ TEST(Units, Axisymmetric)
 TEST(Units, Contact)
 {
   for (const char *law : {"coulomb 0.3", "adhesive {5 P} {3 P} {1 P}"})
-    compare(box2d +
-            "fix lattice all mpm 1.0\nregion one block 1 4 1 4 INF INF\n"
-            "region two block 4 7 1 5 INF INF\ncreate_points 1 region one ppc 2\n"
-            "create_points 2 region two ppc 2\nunfix lattice\ngroup one type 1\ngroup two type 2\n"
-            "fix a one mpm 1.0\nfix b two mpm 1.0\n" +
-            soft + "fix touch all mpm/contact a b law " + law +
+    compare(box2d + fields({{"one", "block 1 4 1 4 INF INF"}, {"two", "block 4 7 1 5 INF INF"}}) +
+            soft + "fix touch all mpm/contact F1 F2 law " + law +
             "\nvelocity one set 0.6 0.3 0\nvelocity two set -0.6 -0.1 0\n");
 }
 
 TEST(Units, Rigid)
 {
   const ScratchFile stl("box.stl", binary_of(box({-0.8, -0.8, -0.8}, {0.8, 0.8, 0.8})));
-  compare(box3d +
-          "fix grid all mpm 1.0\nregion one block 2 6 2 6 0 4\ncreate_points 1 region one ppc 2\n" +
-          soft + "fix floor all mpm/boundary zlo stick\nregion shape mpm/mesh " + stl.name +
+  compare(block() + soft + "fix floor all mpm/boundary zlo stick\nregion shape mpm/mesh " +
+          stl.name +
           " 1.0 4.1 3.8 5.2\nfix tool all mpm/rigid shape density 2.0 separate friction 0.2 "
           "gravity 0 0 -0.5 force {0.3 F} 0 0 velocity 0 0 -0.8\n");
 }

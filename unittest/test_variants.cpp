@@ -12,7 +12,6 @@
 
 #include "lattice/grid.h"
 
-#include <ostream>
 #include <random>
 
 using namespace MPM_TEST;
@@ -21,6 +20,7 @@ struct Variant {
   const char *shape;     // for points that are cubes
   double spread;         // of a result over places of the body on the lattice, see GridInvariance
   double least, most;    // stretch at which it comes apart, see Fracture
+  friend void PrintTo(const Variant &v, std::ostream *out) { *out << v.shape; }
 };
 
 static const Variant shapes[] = {
@@ -41,15 +41,7 @@ static const char *const transfers[] = {"transfer pic",
 
 static std::vector<std::string> all_variants()
 {
-  std::vector<std::string> all;
-  for (const auto &shape : shapes)
-    for (const char *transfer : transfers) all.push_back(std::string(shape.shape) + " " + transfer);
-  return all;
-}
-
-// what the lists above leave out: the other schemes, polypic, domains, light nodes, the total frame
-static std::vector<std::string> more_variants()
-{
+  // what the lists above leave out: the other schemes, polypic, domains, light nodes, the total frame
   std::vector<std::string> all = {"shape cubic transfer polypic",
                                   "shape linear light 0.5 transfer apic",
                                   "shape linear light 0.5 transfer aflip 1.0 scheme musl",
@@ -63,30 +55,22 @@ static std::vector<std::string> more_variants()
     for (const char *shape : {"cpdi", "cpdi2"})
       all.push_back(strprintf("shape %s transfer %s", shape, transfer));
   }
+  for (const auto &shape : shapes)
+    for (const char *transfer : transfers) all.push_back(std::string(shape.shape) + " " + transfer);
   return all;
-}
-
-static std::vector<Variant> all_shapes()
-{
-  return {std::begin(shapes), std::end(shapes)};
-}
-
-static void PrintTo(const Variant &v, std::ostream *out)
-{
-  *out << v.shape;
 }
 
 /* --------------------------- a rectangle that is thrown, spins, and vibrates: mass and momentum */
 
-static const std::string wide = plane("si", "f f", "-3 3 -3 3", 1, 0.04);
-
-class Conservation : public ::testing::TestWithParam<std::string> {};
-
-TEST_P(Conservation, MassAndMomentum)
+static std::string rectangle(const std::string &block, const std::string &options)
 {
-  Scene run(wide + ("fix grid all mpm 0.1 " + GetParam()) +
-            "\nregion body block -0.4 0.4 -0.2 0.2 INF INF\ncreate_points 1 region body ppc 2\n"
-            "fix m all mpm/material density 1000 neohookean 1.0e6 0.3\n");
+  return plane("si", "f f", "-3 3 -3 3", 1, 0.04) +
+      body("block " + block + " INF INF", "density 1000 neohookean 1.0e6 0.3", "0.1 " + options);
+}
+
+PARAMETER_TEST(Conservation, MassAndMomentum, std::string, ValuesIn(all_variants()))
+{
+  Scene run(rectangle("-0.4 0.4 -0.2 0.2", GetParam()));
   run.set_velocity([](const double *x, double *v) {
     v[0] = 3.0 - 10.0 * x[1] + 4.0 * x[0];
     v[1] = -2.0 + 10.0 * x[0];
@@ -103,23 +87,15 @@ TEST_P(Conservation, MassAndMomentum)
     EXPECT_NEAR(end.x[d], start.x[d] + 300 * 2.0e-4 * start.p[d] / start.mass, exact);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Conservation, ::testing::ValuesIn(all_variants()));
-INSTANTIATE_TEST_SUITE_P(More, Conservation, ::testing::ValuesIn(more_variants()));
-
 /* ----------------------------------------------------------------------
    Noise at rest: a free body whose points have small random velocities, which the lattice sees in
    part only. It must not grow, whatever the transfer leaves of it, as the null space of the
    transfers gives way to forces that points cannot see, or the reverse.
 ------------------------------------------------------------------------- */
 
-class NoiseAtRest : public ::testing::TestWithParam<std::string> {};
-
-TEST_P(NoiseAtRest, DoesNotGrow)
+PARAMETER_TEST(NoiseAtRest, DoesNotGrow, std::string, ValuesIn(all_variants()))
 {
-  Scene run(wide + ("fix grid all mpm 0.1 " + GetParam()) +
-            "\nregion body block -0.43 0.37 -0.2 0.2 INF INF\n"
-            "create_points 1 region body ppc 2\n"
-            "fix m all mpm/material density 1000 neohookean 1.0e6 0.3\ncompute e all mpm/energy\n");
+  Scene run(rectangle("-0.43 0.37 -0.2 0.2", GetParam()) + "compute e all mpm/energy\n");
   std::mt19937 generator(7);
   std::uniform_real_distribution<double> uniform(-1.0e-3, 1.0e-3);
   run.set_velocity([&](const double *, double *v) {
@@ -138,9 +114,6 @@ TEST_P(NoiseAtRest, DoesNotGrow)
   EXPECT_EQ(left < 0.01, !keeps);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, NoiseAtRest, ::testing::ValuesIn(all_variants()));
-INSTANTIATE_TEST_SUITE_P(More, NoiseAtRest, ::testing::ValuesIn(more_variants()));
-
 /* ----------------------------------------------------------------------
    Noise of points that change cells: a periodic medium under the uniform pressure p = 0.01 K, with points
    0.7 node spacings apart along both axes. Nothing should happen, at rest or in flight over the lattice.
@@ -153,12 +126,8 @@ struct Crossing {
   const char *shape;
   int order;                                // of B-splines, 0: none
   double flip_low, flip_high, apic_high;    // noise in flight over 10 cells, in p/(rho c)
+  friend void PrintTo(const Crossing &c, std::ostream *out) { *out << c.shape; }
 };
-
-static void PrintTo(const Crossing &c, std::ostream *out)
-{
-  *out << c.shape;
-}
 
 class CrossingNoise : public ::testing::TestWithParam<Crossing> {
  protected:
@@ -175,23 +144,6 @@ class CrossingNoise : public ::testing::TestWithParam<Crossing> {
     ASSERT_EQ(run.n(), 100);
   }
 };
-
-/** B-splines of order 1 to 3 at the distance t, and their slopes. */
-static double spline(int order, double t, double &slope)
-{
-  const double s = t < 0.0 ? -1.0 : 1.0, a = std::abs(t), b = 0.5 * (order + 1) - a;
-  if (b <= 0.0) return slope = 0.0;
-  if (order == 1) {
-    slope = -s;
-    return b;
-  }
-  if (order == 2) {
-    slope = a < 0.5 ? -2.0 * t : -s * b;
-    return a < 0.5 ? 0.75 - a * a : 0.5 * b * b;
-  }
-  slope = a < 1.0 ? (1.5 * a - 2.0) * t : -0.5 * s * b * b;
-  return a < 1.0 ? 2.0 / 3.0 - a * a + 0.5 * a * a * a : b * b * b / 6.0;
-}
 
 TEST_P(CrossingNoise, ForcesOnNodes)
 {
@@ -214,10 +166,10 @@ TEST_P(CrossingNoise, ForcesOnNodes)
   double exact = 0.0, wave = 0.0;
   const double k = 2.0 * PI / 0.7;
   for (int node = 0; node < 7; node++) {
-    double sum = 0.0, slopes = 0.0, waves = 0.0, slope;
+    double sum = 0.0, slopes = 0.0, waves = 0.0;
     for (int p = -5; p < 15; p++) {
-      sum += spline(order, node - 0.35 - 0.7 * p, slope);
-      slopes += slope;
+      sum += bspline(order, node - 0.35 - 0.7 * p);
+      slopes += bspline_slope(order, node - 0.35 - 0.7 * p);
     }
     for (int m = 1; m < 2000; m++)
       waves += 2.0 * m * k * pow(sin(0.5 * m * k) / (0.5 * m * k), order + 1) *
@@ -268,13 +220,10 @@ INSTANTIATE_TEST_SUITE_P(Shapes, CrossingNoise, ::testing::ValuesIn(crossing_noi
 
 static double extension(const std::string &options, double shift, double degrees)
 {
-  Scene run(wide +
-            strprintf("fix grid all mpm 0.1 %s\nregion body block -0.8 0.8 -0.4 0.4 INF INF\n"
-                      "create_points 1 region body ppc 2\n"
-                      "displace_atoms all rotate 0 0 0 0 0 1 %g\n"
-                      "displace_atoms all move %.17g %.17g 0\n"
-                      "fix m all mpm/material density 1000 neohookean 1.0e6 0.3\n",
-                      options.c_str(), degrees, shift, 0.7 * shift));
+  Scene run(rectangle("-0.8 0.8 -0.4 0.4", options) +
+            strprintf("displace_atoms all rotate 0 0 0 0 0 1 %g\n"
+                      "displace_atoms all move %.17g %.17g 0\n",
+                      degrees, shift, 0.7 * shift));
   const double a[2] = {cos(degrees * PI / 180.0), sin(degrees * PI / 180.0)};
   auto along = [&](const double *x) {
     return (x[0] - shift) * a[0] + (x[1] - 0.7 * shift) * a[1];
@@ -313,7 +262,7 @@ TEST_P(GridInvariance, ShiftsAndRotations)
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, GridInvariance, ::testing::ValuesIn(all_shapes()));
+INSTANTIATE_TEST_SUITE_P(All, GridInvariance, ::testing::ValuesIn(shapes));
 
 // Fracture: not asked for here. With gradients that jump at the faces of cells (linear, bernstein), the largest
 // extension is that of the first shift, which puts layers of points on faces and into otherwise empty cells.
@@ -370,17 +319,13 @@ static double fracture(const std::string &options)
   return 1.0 + rate * dt * 2000;
 }
 
-class Fracture : public ::testing::TestWithParam<Variant> {};
-
-TEST_P(Fracture, Stretch)
+PARAMETER_TEST(Fracture, Stretch, Variant, ValuesIn(shapes))
 {
   const double stretch =
       measured(std::string(GetParam().shape) + ": comes apart at", fracture(GetParam().shape));
   EXPECT_GT(stretch, GetParam().least);
   EXPECT_LT(stretch, GetParam().most);
 }
-
-INSTANTIATE_TEST_SUITE_P(All, Fracture, ::testing::ValuesIn(all_shapes()));
 
 /* ---------------------------------------------------------------------- equivalences */
 
@@ -438,12 +383,7 @@ TEST(Equivalent, PlaneStrainIsASlice)
 TEST(Equivalent, SchemesAgreeForSmallSteps)
 {
   auto end = [](const char *scheme, int steps) {
-    Scene run(wide +
-              strprintf("fix grid all mpm 0.1 transfer flip 1.0 %s\n"
-                        "region body block -0.4 0.4 -0.2 0.2 INF INF\n"
-                        "create_points 1 region body ppc 2\n"
-                        "fix m all mpm/material density 1000 neohookean 1.0e6 0.3\n",
-                        scheme));
+    Scene run(rectangle("-0.4 0.4 -0.2 0.2", std::string("transfer flip 1.0 ") + scheme));
     run.set_velocity([](const double *x, double *v) {
       v[0] = 2.0 * x[0];
       v[1] = -2.0 * x[1];
