@@ -443,7 +443,12 @@ class Scene {
   }
   /** Work of the walls on this rank. */
   double work_of_boundaries() { return field()->ledger.boundary; }
-  void switch_locking_off() { field()->locking.reset(); }
+  /** From the next run on. Another fix mpm would lose its reference configuration. */
+  void switch_locking_off()
+  {
+    const_cast<LAMMPS_NS::MPMFieldOptions &>(field()->options).locking =
+        LAMMPS_NS::MPMFieldOptions::NO_CURE;
+  }
 
   MPM_NS::Grid &grid(const std::string &id = "grid") { return field(id)->grid; }
 
