@@ -12,7 +12,7 @@
 #include "mpm_physics.h"
 #include "mpm_state.h"
 
-#include "lattice/node_field.h"
+#include "lattice/grid.h"
 
 #include <map>
 

@@ -10,7 +10,6 @@
 #define LMP_MPM_FIELD_H
 
 #include "lattice/grid.h"
-#include "lattice/node_field.h"
 #include "mpm_field_options.h"
 #include "mpm_ledger.h"
 #include "pointers.h"

@@ -11,8 +11,11 @@
 
 // Block-sparse computing lattice. Knows nothing of physics, points or LAMMPS.
 
-#include <cmath>
+#include <algorithm>
 #include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <string>
 #include <unordered_map>
 #include <vector>
 
@@ -37,6 +40,18 @@ struct Lattice {
   }
 };
 
+/** width reals for each node of a Grid besides mass and momentum, in the order of its blocks: node
+ *  slot*64 + n. */
+struct NodeField {
+  const std::string name;
+  const int width;
+  std::vector<double> values;
+
+  double *at(int64_t node) { return values.data() + node * width; }
+  const double *at(int64_t node) const { return values.data() + node * width; }
+  void zero() { std::fill(values.begin(), values.end(), 0.0); }
+};
+
 /** The blocks of nodes within reach of this rank's points, and their node records.
  *
  *  A block holds 4x4x4 nodes in 3d and 8x8 in 2d; block b of an axis holds nodes b*side ...
@@ -48,21 +63,21 @@ struct Lattice {
 class Grid {
  public:
   struct Block {
-    int b[3];          ///< block coordinates
-    int slot[27];      ///< neighbours at [9*(dx+1)+3*(dy+1)+(dz+1)], -1: not active
-    uint64_t alias;    ///< bit n: node n is a periodic image of a canonical node
-    uint64_t owned;    ///< bit n: canonical, and this rank counts it in sums over nodes
+    int b[3];              ///< block coordinates
+    int slot[27];          ///< neighbours at [9*(dx+1)+3*(dy+1)+(dz+1)], -1: not active
+    uint64_t alias = 0;    ///< bit n: node n is a periodic image of a canonical node
+    uint64_t owned = 0;    ///< bit n: canonical, and this rank counts it in sums over nodes
   };
 
   Lattice lattice;
   int side, shift_bits;    ///< nodes along a block side, log2 of it
   std::vector<Block> blocks;
-  int nreal;    ///< reals of a node record
+  int nreal = 0;    ///< reals of a node record
 
-  explicit Grid(const Lattice &);
-  Grid(const Grid &) = delete;
-  Grid &operator=(const Grid &) = delete;
-  ~Grid();
+  explicit Grid(const Lattice &lattice) :
+      lattice(lattice), side(lattice.dim == 3 ? 4 : 8), shift_bits(lattice.dim == 3 ? 2 : 3)
+  {
+  }
 
   void clear();                      ///< forget all blocks
   int activate(const int b[3]);      ///< slot of a block, made active when it is not
@@ -71,8 +86,11 @@ class Grid {
   void finish();                     ///< neighbour tables, owned masks (all canonical)
   void allocate(int nreal);          ///< node records for all blocks, zeroed
 
-  double *nodes() { return node; }
-  double *record(int slot, int n) { return node + ((int64_t) slot * NODES_PER_BLOCK + n) * nreal; }
+  double *nodes() { return node.get(); }
+  double *record(int slot, int n)
+  {
+    return nodes() + ((int64_t) slot * NODES_PER_BLOCK + n) * nreal;
+  }
   int64_t nnodes() const { return (int64_t) blocks.size() * NODES_PER_BLOCK; }
   void zero();
 
@@ -80,7 +98,7 @@ class Grid {
   void fold_aliases(double *nodes, int nreal, int lane, int nlane) const;
   /** Canonical node to its images, all reals. */
   void copy_aliases(double *nodes, int nreal) const;
-  void copy_aliases() { copy_aliases(node, nreal); }
+  void copy_aliases() { copy_aliases(nodes(), nreal); }
 
   /** Global node index of node n of a block. */
   void node_index(const Block &block, int n, int index[3]) const
@@ -120,8 +138,11 @@ class Grid {
  private:
   std::unordered_map<uint64_t, int> table;
   std::vector<int64_t> alias_node, alias_of;    // parallel lists of node numbers slot*64+n
-  double *node;
-  int64_t capacity;    // reals
+  struct Free {
+    void operator()(double *memory) const { std::free(memory); }
+  };
+  std::unique_ptr<double[], Free> node;
+  int64_t capacity = 0;    // reals
 
   static uint64_t key(const int b[3])
   {
