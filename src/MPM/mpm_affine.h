@@ -11,7 +11,7 @@
 
 #include "mpm_state.h"
 #include "pointers.h"
-#include "transfer/polypic.h"
+#include "transfer/kernels.h"
 
 #include <cstdint>
 

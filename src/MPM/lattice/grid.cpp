@@ -72,10 +72,9 @@ void Grid::close_periodic()
       if (same) continue;
       const int b[3] = {canonical[0] >> shift_bits, canonical[1] >> shift_bits,
                         lattice.dim == 3 ? canonical[2] >> shift_bits : 0};
-      activate(b);
-      blocks[ib].alias |= uint64_t(1) << n;
       alias_node.push_back((int64_t) ib * NODES_PER_BLOCK + n);
-      alias_of.push_back(locate(canonical));
+      alias_of.push_back((int64_t) activate(b) * NODES_PER_BLOCK + number(canonical));
+      blocks[ib].alias |= uint64_t(1) << n;
     }
   }
 }

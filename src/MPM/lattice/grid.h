@@ -87,10 +87,7 @@ class Grid {
   void allocate(int nreal);          ///< node records for all blocks, zeroed
 
   double *nodes() { return node.get(); }
-  double *record(int slot, int n)
-  {
-    return nodes() + ((int64_t) slot * NODES_PER_BLOCK + n) * nreal;
-  }
+  double *record(int slot, int n) { return &node[((int64_t) slot * NODES_PER_BLOCK + n) * nreal]; }
   int64_t nnodes() const { return (int64_t) blocks.size() * NODES_PER_BLOCK; }
   void zero();
 
@@ -135,6 +132,12 @@ class Grid {
 
   int64_t memory_usage() const;
 
+  static uint64_t block_key(const Block &block) { return key(block.b); }
+  static int key_coordinate(uint64_t key, int axis)
+  {
+    return (int) ((key >> (42 - 21 * axis)) & ((1u << 21) - 1)) - (1 << 20);
+  }
+
  private:
   std::unordered_map<uint64_t, int> table;
   std::vector<int64_t> alias_node, alias_of;    // parallel lists of node numbers slot*64+n
@@ -148,13 +151,6 @@ class Grid {
   {
     constexpr uint64_t bias = 1u << 20, mask = (1u << 21) - 1;
     return (((b[0] + bias) & mask) << 42) | (((b[1] + bias) & mask) << 21) | ((b[2] + bias) & mask);
-  }
-
- public:
-  static uint64_t block_key(const Block &block) { return key(block.b); }
-  static int key_coordinate(uint64_t key, int axis)
-  {
-    return (int) ((key >> (42 - 21 * axis)) & ((1u << 21) - 1)) - (1 << 20);
   }
 };
 
