@@ -40,6 +40,17 @@ template <int N> MPM_INLINE Vec<4> first_four(Vec<N> a)
     return half<0>(a);
 }
 
+/** Places in the tile in node spacings from its first node. */
+struct TileFrame {
+  double origin[3], low[3], inv_h;
+
+  TileFrame(const TransferStep &step, const int *base) : inv_h(step.inv_h)
+  {
+    for (int d = 0; d < 3; d++) origin[d] = step.origin[d];
+    for (int d = 0; d < 3; d++) low[d] = base[d];
+  }
+};
+
 /** Four numbers of each of the points side by side to rows of four. */
 template <int N> MPM_INLINE void transpose(Vec<N> a, Vec<N> b, Vec<N> c, Vec<N> d, double (*row)[4])
 {
@@ -92,7 +103,7 @@ template <int DIM, Shape SHAPE, bool STENCIL, bool MOMENT> struct Domains {
 
   /** The n points from p on. Returns true when weights are not positive. */
   __attribute__((noinline)) bool set(const PointRows &points, Index p, int n,
-                                     const TransferStep &step, const int *base)
+                                     const TileFrame &frame)
   {
     for (int l = 0; l < GROUP; l++) {
       const Index i = p + (l < n ? l : n - 1);
@@ -140,8 +151,8 @@ template <int DIM, Shape SHAPE, bool STENCIL, bool MOMENT> struct Domains {
       for (int k = 0; k < N; k++)
         transpose(w[k], g[DIM * k], g[DIM * k + 1], DIM == 3 ? g[DIM * k + DIM - 1] : V{},
                   wg[k] + l);
-      locate(l, step, base);
-      if constexpr (MOMENT) find_moment(l, w, step.inv_h);
+      locate(l, frame);
+      if constexpr (MOMENT) find_moment(l, w, frame.inv_h);
     }
     double sum = 0.0;
     for (int l = 0; l < REGISTER; l++) sum += bad.lane(l);
@@ -175,7 +186,7 @@ template <int DIM, Shape SHAPE, bool STENCIL, bool MOMENT> struct Domains {
   }
 
   /** Where the corners of a vector of points are. */
-  MPM_INLINE void locate(int l, const TransferStep &step, const int *base)
+  MPM_INLINE void locate(int l, const TileFrame &frame)
   {
     constexpr double in_tile[3] = {domain_stride_x(DIM), domain_stride_y(DIM), 1.0};
     constexpr double in_stencil[3] = {DIM == 3 ? 48.0 : 16.0, DIM == 3 ? 16.0 : 8.0, 8.0};
@@ -183,12 +194,12 @@ template <int DIM, Shape SHAPE, bool STENCIL, bool MOMENT> struct Domains {
     int ints[REGISTER];
     MPM_UNROLL
     for (int d = 0; d < DIM; d++) {
-      const V at = (V::load(center[d] + l) - step.origin[d]) * step.inv_h - double(base[d]);
+      const V at = (V::load(center[d] + l) - frame.origin[d]) * frame.inv_h - frame.low[d];
       at.store(place[d] + l);
       V whole[N], least, most;
       MPM_UNROLL
       for (int k = 0; k < N; k++) {
-        const V t = at + step.inv_h * V::load(x[DIM * k + d] + l);
+        const V t = at + frame.inv_h * V::load(x[DIM * k + d] + l);
         whole[k] = truncate(t, ints);
         (t - whole[k]).store(f[DIM * k + d] + l);
         least = k ? min(least, whole[k]) : whole[k];
@@ -374,6 +385,7 @@ void p2g(const PointRows &rows, const TransferStep &transfer, int first, int las
   // copies, so that the compiler knows that no store changes them
   const PointRows points = rows;
   const TransferStep step = transfer;
+  const TileFrame frame(step, base);
   double *const entry = tile + (NREAL == 8 && PARTS == FORCE ? 4 : 0);
   const double scale = NREAL == 4 ? step.dt : 1.0;
   Domains<DIM, SHAPE, true, false> domains;
@@ -391,7 +403,7 @@ void p2g(const PointRows &rows, const TransferStep &transfer, int first, int las
     prefetch<domains.ROW>(points.domain, ahead);
     prefetch<3>(points.x, ahead);
     prefetch_momentum_and_force<DIM, PARTS, AFFINE, false>(points, ahead);
-    domains.set(points, p, n, step, base);
+    domains.set(points, p, n, frame);
     for (int d = 0; d < DIM; d++) {
       lowest[d] = min(lowest[d], Vec<GROUP>::load(domains.low[d]));
       highest[d] = max(highest[d], Vec<GROUP>::load(domains.high[d]));
@@ -451,7 +463,7 @@ void p2g(const PointRows &rows, const TransferStep &transfer, int first, int las
         if constexpr (affine)
           for (int a = 0; a < DIM; a++) {
             const int k = DIM * c + a;
-            corner += (step.inv_h * domains.x[k][l] - domains.f[k][l]) * A[a];
+            corner += (frame.inv_h * domains.x[k][l] - domains.f[k][l]) * A[a];
             wA[a] = wg[0] * A[a];
           }
         corner = wg[0] * corner;
@@ -483,6 +495,7 @@ int g2p(const PointRows &rows, const TransferStep &transfer, int first, int last
   constexpr int WIDTH = increment ? 8 : 4;
   const PointRows points = rows;
   const TransferStep step = transfer;
+  const TileFrame frame(step, base);
   Domains<DIM, SHAPE, false, fit> domains;
   constexpr int N = domains.N;
   bool bad = false;
@@ -502,7 +515,7 @@ int g2p(const PointRows &rows, const TransferStep &transfer, int first, int last
       prefetch<6, 1>(points.tau, ahead);
       prefetch<1>(points.vol0, ahead);
     }
-    bad |= domains.set(points, p, n, step, base);
+    bad |= domains.set(points, p, n, frame);
     for (int l = 0; l < n; l++) {
       const Index i = p + l;
       Vec<WIDTH> v{};
@@ -526,17 +539,20 @@ int g2p(const PointRows &rows, const TransferStep &transfer, int first, int last
         }
       }
 
-      for (int a = 0; a < DIM; a++) {
-        Vec<4> C = gradient[a];
-        if constexpr (fit) {
-          C = Vec<4>{};
+      if constexpr (fit) {
+        for (int a = 0; a < DIM; a++) {
+          Vec<4> C{};
           MPM_UNROLL
           for (int b = 0; b < DIM; b++)
-            C += (step.inv_h * domains.inverse[PointDomain<DIM>::component(a, b)][l]) * B[b];
+            C += (frame.inv_h * domains.inverse[PointDomain<DIM>::component(a, b)][l]) * B[b];
+          store_lanes<DIM>(points.C + DIM * (DIM * i + a), C);
         }
-        if (affine) store_lanes<DIM>(points.C + DIM * (DIM * i + a), C);
-        if (L) store_lanes<DIM>(L + DIM * (DIM * (i - first) + a), gradient[a]);
+      } else if constexpr (affine) {
+        for (int a = 0; a < DIM; a++) store_lanes<DIM>(points.C + DIM * (DIM * i + a), gradient[a]);
       }
+      if (L)
+        for (int a = 0; a < DIM; a++)
+          store_lanes<DIM>(L + DIM * (DIM * (i - first) + a), gradient[a]);
 
       const Vec<4> mean = first_four(v);
       Vec<4> add{};

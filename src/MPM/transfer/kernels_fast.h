@@ -941,23 +941,20 @@ template <int N, TileMove MOVE> MPM_INLINE void move_reals(double *tile, double 
   }
 }
 
-/** Flush, load or prefetch, a row of nodes along the last axis at a time. A row has the last nodes of the
- *  block before, all of its own block, and the first nodes of the block after; each of these parts is
- *  moved whole if the box touches it. */
+/** Flush, load or prefetch, a row of nodes along the last axis at a time. A row has one node in the block
+ *  before, all of its own block and ORDER + 1 nodes in the block after; with domains it has all nodes of
+ *  the three blocks. Each of these parts is moved whole if the box touches it. */
 template <int DIM, Shape SHAPE, int NREAL, TileMove MOVE>
 void tile_io(double *tile, double *nodes, const int slot[27], const int box[6])
 {
-  constexpr int side = block_side(DIM), order = stencil_order(SHAPE);
-  constexpr int before = margin<DIM, SHAPE>(), after = has_domain(SHAPE) ? side : order + 1;
+  constexpr int ORDER = stencil_order(SHAPE), side = block_side(DIM);
+  constexpr int before = margin<DIM, SHAPE>(), after = ORDER + 1;
   constexpr int sx = stride<DIM, SHAPE>(0), sy = stride<DIM, SHAPE>(1);
-  const int low = box[DIM - 1], high = box[3 + DIM - 1] + order;
-  const bool touches_before = low < before;
-  const bool touches_own = low < before + side && high >= before;
-  const bool touches_after = high >= before + side;
+  const int low = box[DIM - 1], high = box[3 + DIM - 1] + ORDER;
 
   const int ylow = DIM == 3 ? box[1] : 0;
-  const int yhigh = DIM == 3 ? box[4] + order : 0;
-  for (int i = box[0]; i <= box[3] + order; i++)
+  const int yhigh = DIM == 3 ? box[4] + ORDER : 0;
+  for (int i = box[0]; i <= box[3] + ORDER; i++)
     for (int j = ylow; j <= yhigh; j++) {
       // the first nodes of the tile are the last ones of the block before
       const int x = i + side - before, y = j + side - before;
@@ -969,10 +966,15 @@ void tile_io(double *tile, double *nodes, const int slot[27], const int box[6])
       const auto record = [&](int which, int node) {
         return nodes + (Index(64) * block[which * next + middle] + node) * NREAL;
       };
-      if (touches_before) move_reals<before * NREAL, MOVE>(row, record(0, index + side - before));
-      if (touches_own) move_reals<side * NREAL, MOVE>(row + NREAL * before, record(1, index));
-      if (touches_after)
-        move_reals<after * NREAL, MOVE>(row + NREAL * (before + side), record(2, index));
+      if constexpr (has_domain(SHAPE)) {
+        for (int b = low / side; b <= high / side; b++)
+          move_reals<side * NREAL, MOVE>(row + NREAL * side * b, record(b, index));
+      } else {
+        if (low == 0) move_reals<NREAL, MOVE>(row, record(0, index + side - 1));
+        if (low <= side) move_reals<side * NREAL, MOVE>(row + NREAL, record(1, index));
+        if (high > side)
+          move_reals<after * NREAL, MOVE>(row + NREAL * (side + 1), record(2, index));
+      }
     }
 }
 
