@@ -45,11 +45,12 @@ compile() {
     { rm -f "$object"; echo "cannot compile $source"; exit 1; }
 }
 
-# kernels of polypic take long to compile; no test here calls them
+# kernels of Bernstein polynomials and of polypic take long to compile; no test here calls them
 cat >others.cpp <<'CODE'
 #include "transfer/kernels_isa.h"
 #include <cstdlib>
 using namespace MPM_NS;
+TransferKernels MPM_NS::MPM_OF_ISA(mpm_kernels_bernstein)(const KernelChoice &) { abort(); }
 PolyKernels MPM_NS::MPM_OF_ISA(mpm_kernels_poly)(int, Shape, int) { abort(); }
 CODE
 
@@ -76,7 +77,7 @@ for isa in "${sets[@]}"; do
   # the optimizer needs minutes for these with sanitizers
   for kernels in "$src"/transfer/*_isa.cpp; do
     name=$(basename "$kernels" .cpp)
-    [ "$name" = polypic_isa ] && continue
+    case $name in bernstein_* | polypic_*) continue ;; esac
     compile "$kernels" "${name}_$isa.o" -DMPM_ISA="$isa" "${march[@]}" -O0 -g0
   done
 done

@@ -52,8 +52,9 @@ TransferKernels choose_among_files(int dim, Shape shape, Transfer transfer, bool
 {
   const KernelChoice choice = {dim, shape, transfer, split, TOTAL};
   TransferKernels kernels = kernels_of_file<MAIN_FILE>(choice);
-  if (!kernels.p2g) kernels = MPM_OF_ISA(mpm_kernels_more)(choice);
-  if (!kernels.p2g) kernels = MPM_OF_ISA(mpm_kernels_cpdi)(choice);
+  for (const auto of_file : {MPM_OF_ISA(mpm_kernels_aflip_tpic), MPM_OF_ISA(mpm_kernels_gimp),
+                             MPM_OF_ISA(mpm_kernels_bernstein), MPM_OF_ISA(mpm_kernels_cpdi)})
+    if (!kernels.p2g) kernels = of_file(choice);
   return kernels;
 }
 

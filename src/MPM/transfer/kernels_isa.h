@@ -43,7 +43,9 @@ const MPMKernels *mpm_kernels_reference();
 const MPMKernels *MPM_OF_ISA(mpm_kernels)(const char *isa);
 
 // files that are compiled side by side, each with its share of the combinations
-TransferKernels MPM_OF_ISA(mpm_kernels_more)(const KernelChoice &);
+TransferKernels MPM_OF_ISA(mpm_kernels_aflip_tpic)(const KernelChoice &);
+TransferKernels MPM_OF_ISA(mpm_kernels_gimp)(const KernelChoice &);
+TransferKernels MPM_OF_ISA(mpm_kernels_bernstein)(const KernelChoice &);
 TransferKernels MPM_OF_ISA(mpm_kernels_cpdi)(const KernelChoice &);
 PolyKernels MPM_OF_ISA(mpm_kernels_poly)(int dim, Shape, int nreal);
 
@@ -61,8 +63,8 @@ template <class T, T FIRST, T... OTHERS, class Use> auto with(T value, Use use)
   return use(std::integral_constant<T, FIRST>());
 }
 
-/** Files of fast kernels: kernels_isa.cpp, kernels_more_isa.cpp, cpdi_isa.cpp. */
-enum File { NO_FILE, MAIN_FILE, MORE_FILE, CPDI_FILE };
+/** Files of fast kernels, see above; the first is kernels_isa.cpp itself. */
+enum File { NO_FILE, MAIN_FILE, AFLIP_TPIC_FILE, GIMP_FILE, BERNSTEIN_FILE, CPDI_FILE };
 
 /** A combination of constants that kernels are compiled for. */
 template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct Combination {
@@ -77,7 +79,9 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
     const bool others = TRANSFER == AFLIP || TRANSFER == TPIC;
     if (TOTAL && (others || has_size(SHAPE) || has_domain(SHAPE))) return NO_FILE;
     if (has_domain(SHAPE)) return CPDI_FILE;
-    return others || has_size(SHAPE) || SHAPE == BERNSTEIN ? MORE_FILE : MAIN_FILE;
+    if (has_size(SHAPE)) return GIMP_FILE;
+    if (SHAPE == BERNSTEIN) return BERNSTEIN_FILE;
+    return others ? AFLIP_TPIC_FILE : MAIN_FILE;
   }
 };
 

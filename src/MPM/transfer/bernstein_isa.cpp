@@ -6,8 +6,7 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Fast transfers aflip and tpic with B-splines, and those of points of finite size (GIMP) and of Bernstein
-// polynomials (in the total frame); see transfer/kernels_isa.cpp.
+// Fast transfers with Bernstein polynomials, in the total frame; see transfer/kernels_isa.cpp.
 
 #include "transfer/kernels_isa.h"
 
@@ -15,9 +14,9 @@
 
 #include "transfer/kernels_fast.h"
 
-TransferKernels MPM_NS::MPM_OF_ISA(mpm_kernels_more)(const KernelChoice &choice)
+TransferKernels MPM_NS::MPM_OF_ISA(mpm_kernels_bernstein)(const KernelChoice &choice)
 {
-  return kernels_of_file<MORE_FILE>(choice);
+  return kernels_of_file<BERNSTEIN_FILE>(choice);
 }
 
 #endif

@@ -1,0 +1,22 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// Fast transfers of points of finite size (GIMP), see transfer/kernels_isa.cpp.
+
+#include "transfer/kernels_isa.h"
+
+#if defined(MPM_HAVE_VECTORS)
+
+#include "transfer/kernels_fast.h"
+
+TransferKernels MPM_NS::MPM_OF_ISA(mpm_kernels_gimp)(const KernelChoice &choice)
+{
+  return kernels_of_file<GIMP_FILE>(choice);
+}
+
+#endif
