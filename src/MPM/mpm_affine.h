@@ -10,7 +10,7 @@
 #define LMP_MPM_AFFINE_H
 
 #include "mpm_field.h"
-#include "transfer/polypic.h"
+#include "transfer/kernels.h"
 
 namespace LAMMPS_NS {
 

@@ -8,23 +8,10 @@
 
 #include "lattice/grid.h"
 
-#include <algorithm>
-#include <cstdlib>
 #include <cstring>
 #include <new>
 
 using namespace MPM_NS;
-
-Grid::Grid(const Lattice &lattice_in) : lattice(lattice_in), nreal(0), node(nullptr), capacity(0)
-{
-  side = lattice.dim == 3 ? 4 : 8;
-  shift_bits = lattice.dim == 3 ? 2 : 3;
-}
-
-Grid::~Grid()
-{
-  free(node);
-}
 
 void Grid::clear()
 {
@@ -45,10 +32,8 @@ int Grid::activate(const int b[3])
   auto inserted = table.emplace(key(b), (int) blocks.size());
   if (inserted.second) {
     Block block;
-    for (int d = 0; d < 3; d++) block.b[d] = b[d];
-    for (int &s : block.slot) s = -1;
-    block.alias = 0;
-    block.owned = 0;
+    std::copy(b, b + 3, block.b);
+    std::fill(block.slot, block.slot + 27, -1);
     blocks.push_back(block);
   }
   return inserted.first->second;
@@ -87,10 +72,9 @@ void Grid::close_periodic()
       if (same) continue;
       const int b[3] = {canonical[0] >> shift_bits, canonical[1] >> shift_bits,
                         lattice.dim == 3 ? canonical[2] >> shift_bits : 0};
-      activate(b);
-      blocks[ib].alias |= uint64_t(1) << n;
       alias_node.push_back((int64_t) ib * NODES_PER_BLOCK + n);
-      alias_of.push_back(locate(canonical));
+      alias_of.push_back((int64_t) activate(b) * NODES_PER_BLOCK + number(canonical));
+      blocks[ib].alias |= uint64_t(1) << n;
     }
   }
 }
@@ -99,13 +83,10 @@ void Grid::finish()
 {
   for (auto &block : blocks) {
     block.owned = ~block.alias;
-    for (int dx = -1; dx <= 1; dx++)
-      for (int dy = -1; dy <= 1; dy++)
-        for (int dz = -1; dz <= 1; dz++) {
-          const int b[3] = {block.b[0] + dx, block.b[1] + dy, block.b[2] + dz};
-          block.slot[9 * (dx + 1) + 3 * (dy + 1) + dz + 1] = (lattice.dim == 3 || dz == 0) ? find(b)
-                                                                                           : -1;
-        }
+    for (int s = 0; s < 27; s++) {
+      const int b[3] = {block.b[0] + s / 9 - 1, block.b[1] + s / 3 % 3 - 1, block.b[2] + s % 3 - 1};
+      block.slot[s] = lattice.dim == 3 || s % 3 == 1 ? find(b) : -1;
+    }
   }
 }
 
@@ -114,18 +95,18 @@ void Grid::allocate(int nreal_in)
   nreal = nreal_in;
   const int64_t need = nnodes() * nreal;
   if (need > capacity) {
-    free(node);
+    node.reset();    // never both at a time, to save memory
     capacity = need + need / 8 + 512;
-    void *mem = nullptr;
-    if (posix_memalign(&mem, 64, capacity * sizeof(double)) != 0) throw std::bad_alloc();
-    node = static_cast<double *>(mem);
+    void *memory = nullptr;
+    if (posix_memalign(&memory, 64, capacity * sizeof(double)) != 0) throw std::bad_alloc();
+    node.reset(static_cast<double *>(memory));
   }
   zero();
 }
 
 void Grid::zero()
 {
-  if (node) memset(node, 0, nnodes() * nreal * sizeof(double));
+  if (node) memset(nodes(), 0, nnodes() * nreal * sizeof(double));
 }
 
 void Grid::fold_aliases(double *nodes, int nreals, int lane, int nlane) const

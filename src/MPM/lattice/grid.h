@@ -11,8 +11,9 @@
 
 // Block-sparse computing lattice. Knows nothing of physics, points or LAMMPS.
 
-#include <cmath>
 #include <cstdint>
+#include <cstdlib>
+#include <memory>
 #include <unordered_map>
 #include <vector>
 
@@ -53,21 +54,21 @@ struct Lattice {
 class Grid {
  public:
   struct Block {
-    int b[3];          ///< block coordinates
-    int slot[27];      ///< neighbours at [9*(dx+1)+3*(dy+1)+(dz+1)], -1: not active
-    uint64_t alias;    ///< bit n: node n is a periodic image of a canonical node
-    uint64_t owned;    ///< bit n: canonical, and this rank counts it in sums over nodes
+    int b[3];              ///< block coordinates
+    int slot[27];          ///< neighbours at [9*(dx+1)+3*(dy+1)+(dz+1)], -1: not active
+    uint64_t alias = 0;    ///< bit n: node n is a periodic image of a canonical node
+    uint64_t owned = 0;    ///< bit n: canonical, and this rank counts it in sums over nodes
   };
 
   Lattice lattice;
   int side, shift_bits;    ///< nodes along a block side, log2 of it
   std::vector<Block> blocks;
-  int nreal;    ///< reals of a node record
+  int nreal = 0;    ///< reals of a node record
 
-  explicit Grid(const Lattice &);
-  Grid(const Grid &) = delete;
-  Grid &operator=(const Grid &) = delete;
-  ~Grid();
+  explicit Grid(const Lattice &lattice) :
+      lattice(lattice), side(lattice.dim == 3 ? 4 : 8), shift_bits(lattice.dim == 3 ? 2 : 3)
+  {
+  }
 
   void clear();                      ///< forget all blocks
   int activate(const int b[3]);      ///< slot of a block, made active when it is not
@@ -76,9 +77,9 @@ class Grid {
   void finish();                     ///< neighbour tables, owned masks (all canonical)
   void allocate(int nreal);          ///< node records for all blocks, zeroed
 
-  double *nodes() { return node; }
+  double *nodes() { return node.get(); }
   double *record(int slot, int n) { return record((int64_t) slot * NODES_PER_BLOCK + n); }
-  double *record(int64_t which) { return node + which * nreal; }    ///< which: slot*64 + n
+  double *record(int64_t which) { return node.get() + which * nreal; }    ///< which: slot*64 + n
   int64_t nnodes() const { return (int64_t) blocks.size() * NODES_PER_BLOCK; }
   void zero();
 
@@ -86,7 +87,7 @@ class Grid {
   void fold_aliases(double *nodes, int nreal, int lane, int nlane) const;
   /** Canonical node to its images, all reals. */
   void copy_aliases(double *nodes, int nreal) const;
-  void copy_aliases() { copy_aliases(node, nreal); }
+  void copy_aliases() { copy_aliases(nodes(), nreal); }
 
   /** Global node index of node n of a block. */
   void node_index(const Block &block, int n, int index[3]) const
@@ -138,23 +139,25 @@ class Grid {
 
   int64_t memory_usage() const;
 
+  static uint64_t block_key(const Block &block) { return key(block.b); }
+  static int key_coordinate(uint64_t key, int axis)
+  {
+    return (int) ((key >> (42 - 21 * axis)) & ((1u << 21) - 1)) - (1 << 20);
+  }
+
  private:
   std::unordered_map<uint64_t, int> table;
   std::vector<int64_t> alias_node, alias_of;    // parallel lists of node numbers slot*64+n
-  double *node;
-  int64_t capacity;    // reals
+  struct Free {
+    void operator()(double *memory) const { std::free(memory); }
+  };
+  std::unique_ptr<double[], Free> node;
+  int64_t capacity = 0;    // reals
 
   static uint64_t key(const int b[3])
   {
     constexpr uint64_t bias = 1u << 20, mask = (1u << 21) - 1;
     return (((b[0] + bias) & mask) << 42) | (((b[1] + bias) & mask) << 21) | ((b[2] + bias) & mask);
-  }
-
- public:
-  static uint64_t block_key(const Block &block) { return key(block.b); }
-  static int key_coordinate(uint64_t key, int axis)
-  {
-    return (int) ((key >> (42 - 21 * axis)) & ((1u << 21) - 1)) - (1 << 20);
   }
 };
 

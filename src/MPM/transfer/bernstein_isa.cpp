@@ -6,8 +6,7 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Fast transfers pic, flip, apic with Bernstein polynomials, in the total frame; see
-// transfer/kernels_isa.cpp. The affine matrix is the gradient, as the second moment depends on the position.
+// Fast transfers with Bernstein polynomials, in the total frame; see transfer/kernels_isa.cpp.
 
 #include "transfer/kernels_isa.h"
 

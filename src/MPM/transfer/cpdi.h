@@ -13,14 +13,6 @@
 
 namespace MPM_NS {
 
-/** The linear function at the corners of domains; members are those of BSpline. */
-struct DomainCorner {
-  static constexpr int order = 1, nodes = 2;
-  static constexpr int cell = 1;
-  static constexpr double shift = 0.0, inv_moment = 0.0;
-  static constexpr bool has_size = false, has_domain = true;
-};
-
 /** Domain of a point in convected particle domain interpolation: the image of a square or cube
  *  [-1,1]^DIM under the (bi- or tri-) linear map that has given corners.
  *
@@ -37,7 +29,7 @@ struct DomainCorner {
  *  function. So triangles are quadrilaterals (a, b, c, c), tetrahedra and other bodies hexahedra
  *  (a, b, c, c, d, d, d, d).
  *
- *  As in transfer/bspline.h functions take numbers or vectors of points T, and must be inlined.
+ *  As in transfer/shape.h functions take numbers or vectors of points T, and must be inlined.
  */
 template <int DIM> struct PointDomain {
   static constexpr int corners = 1 << DIM;

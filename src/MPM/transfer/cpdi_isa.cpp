@@ -25,19 +25,19 @@ namespace {
 constexpr int GROUP = 8;    ///< points whose domains are prepared together
 static_assert(GROUP % REGISTER == 0 && GROUP == STAGE);
 
-/** Four reals in a vector. */
-MPM_INLINE Vec<4> quad(double a, double b, double c, double d)
-{
-  Vec<2> low, high;
-  low.r = Raw<2>::Reals{a, b};
-  high.r = Raw<2>::Reals{c, d};
-  return join(low, high);
-}
-
 /** DIM reals that are STRIDE apart, and zeros. */
 template <int DIM, int STRIDE> MPM_INLINE Vec<4> strided(const double *p)
 {
   return quad(p[0], p[STRIDE], DIM == 3 ? p[2 * STRIDE] : 0.0, 0.0);
+}
+
+/** The first four reals. */
+template <int N> MPM_INLINE Vec<4> first_four(Vec<N> a)
+{
+  if constexpr (N == 4)
+    return a;
+  else
+    return half<0>(a);
 }
 
 /** Places in the tile in node spacings from its first node. */
@@ -402,16 +402,7 @@ void p2g(const PointRows &rows, const TransferStep &transfer, int first, int las
     const Index ahead = p + AHEAD;
     prefetch<domains.ROW>(points.domain, ahead);
     prefetch<3>(points.x, ahead);
-    if (momentum) {
-      prefetch<3>(points.v, ahead);
-      prefetch<1>(points.mass, ahead);
-      if (AFFINE) prefetch<DIM * DIM>(points.C, ahead);
-    }
-    if (force) {
-      prefetch<3>(points.f, ahead);
-      prefetch<6>(points.tau, ahead);
-      prefetch<1>(points.vol0, ahead);
-    }
+    prefetch_momentum_and_force<DIM, PARTS, AFFINE, false>(points, ahead);
     domains.set(points, p, n, frame);
     for (int d = 0; d < DIM; d++) {
       lowest[d] = min(lowest[d], Vec<GROUP>::load(domains.low[d]));
@@ -493,10 +484,10 @@ void p2g(const PointRows &rows, const TransferStep &transfer, int first, int las
     }
 }
 
-/** G2P and velocity gradient. */
+/** Velocity gradient and, if UPDATE, G2P. */
 template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool UPDATE>
-int gather(const PointRows &rows, const TransferStep &transfer, int first, int last,
-           const int base[3], const double *tile, double *L)
+int g2p(const PointRows &rows, const TransferStep &transfer, int first, int last, const int base[3],
+        const double *tile, double *L)
 {
   constexpr bool increment = UPDATE && adds_change(TRANSFER),
                  affine = UPDATE && is_affine(TRANSFER);
@@ -534,10 +525,7 @@ int gather(const PointRows &rows, const TransferStep &transfer, int first, int l
         Vec<WIDTH> face[DIM];
         const Vec<WIDTH> here = in_cell<DIM, NREAL, fit>(tile + NREAL * domains.corner[c][l],
                                                          domains.f[DIM * c] + l, face);
-        if constexpr (increment)
-          at[c] = half<0>(here);
-        else
-          at[c] = here;
+        at[c] = first_four(here);
         const double *const wg = domains.wg[c][l];
         v += wg[0] * here;
         for (int a = 0; a < DIM; a++) gradient[a] += wg[1 + a] * at[c];
@@ -545,11 +533,7 @@ int gather(const PointRows &rows, const TransferStep &transfer, int first, int l
           MPM_UNROLL
           for (int a = 0; a < DIM; a++) {
             const int k = DIM * c + a;
-            Vec<4> upper;
-            if constexpr (increment)
-              upper = half<0>(face[a]);
-            else
-              upper = face[a];
+            const Vec<4> upper = first_four(face[a]);
             B[a] += wg[0] * (domains.offset[k][l] * at[c] + domains.f[k][l] * upper);
           }
         }
@@ -570,12 +554,9 @@ int gather(const PointRows &rows, const TransferStep &transfer, int first, int l
         for (int a = 0; a < DIM; a++)
           store_lanes<DIM>(L + DIM * (DIM * (i - first) + a), gradient[a]);
 
-      Vec<4> mean, add{};
-      if constexpr (increment) {
-        mean = half<0>(v);
-        add = step.flip * (strided<DIM, 1>(points.v + 3 * i) - half<1>(v));
-      } else
-        mean = v;
+      const Vec<4> mean = first_four(v);
+      Vec<4> add{};
+      if constexpr (increment) add = step.flip * (strided<DIM, 1>(points.v + 3 * i) - half<1>(v));
       if constexpr (UPDATE) {
         // the point goes to its center if its corners may move along
         const bool stays = SHAPE == CPDI2 && !points.corners_new;
@@ -596,53 +577,18 @@ int gather(const PointRows &rows, const TransferStep &transfer, int first, int l
     }
   }
   for (int a = 0; a < DIM; a++) bad = bad || outside.lane(a) != 0.0;
-  return bad;
+  return UPDATE && bad;
 }
 
-template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL>
-int g2p_gradient(const PointRows &points, const TransferStep &step, int first, int last,
-                 const int base[3], const double *tile, double *L)
+template <class C> TransferKernels domain_kernels()
 {
-  gather<DIM, SHAPE, TRANSFER, NREAL, false>(points, step, first, last, base, tile, L);
-  return 0;
-}
-
-/** Flush, load or prefetch, see tile_io(): whole sides of those blocks that the box touches. */
-template <int DIM, int NREAL, TileMove MOVE>
-void domain_tile_io(double *tile, double *nodes, const int slot[27], const int box[6])
-{
-  constexpr int side = block_side(DIM), last = DIM - 1;
-  const int first = box[last] / side, end = (box[3 + last] + 1) / side;
-  const int ylow = DIM == 3 ? box[1] : 0, yhigh = DIM == 3 ? box[4] + 1 : 0;
-  for (int i = box[0]; i <= box[3] + 1; i++)
-    for (int j = ylow; j <= yhigh; j++) {
-      double *row =
-          tile + NREAL * (i * domain_stride_x(DIM) + (DIM == 3 ? j * domain_stride_y(DIM) : 0));
-      const int *block = slot + 9 * (i / side) + (DIM == 3 ? 3 * (j / side) : 1);
-      const int index = DIM == 3 ? (i % side * side + j % side) * side : i % side * side;
-      for (int b = first; b <= end; b++)
-        move_reals<side * NREAL, MOVE>(
-            row + NREAL * side * b,
-            nodes + (Index(64) * block[DIM == 3 ? b : 3 * b] + index) * NREAL);
-    }
-}
-
-template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL> TransferKernels domain_kernels()
-{
-  constexpr bool affine = is_affine(TRANSFER);
-  TransferKernels k;
-  k.nreal = NREAL;
-  k.margin = block_side(DIM);
-  k.affine = affine;
-  k.gradient_in_C = is_gradient(SHAPE, TRANSFER);
-  k.p2g = p2g<DIM, SHAPE, affine, NREAL, ALL>;
-  k.p2g_momentum = p2g<DIM, SHAPE, affine, NREAL, MOMENTUM>;
-  k.p2g_force = p2g<DIM, SHAPE, affine, NREAL, FORCE>;
-  k.g2p = gather<DIM, SHAPE, TRANSFER, NREAL, true>;
-  k.g2p_gradient = g2p_gradient<DIM, SHAPE, TRANSFER, NREAL>;
-  k.flush = domain_tile_io<DIM, NREAL, FLUSH>;
-  k.load = domain_tile_io<DIM, NREAL, LOAD>;
-  k.prefetch = domain_tile_io<DIM, NREAL, PREFETCH>;
+  constexpr bool affine = is_affine(C::transfer);
+  TransferKernels k = table_with_tiles<C>();
+  k.p2g = p2g<C::dim, C::shape, affine, C::nreal, ALL>;
+  k.p2g_momentum = p2g<C::dim, C::shape, affine, C::nreal, MOMENTUM>;
+  k.p2g_force = p2g<C::dim, C::shape, affine, C::nreal, FORCE>;
+  k.g2p = g2p<C::dim, C::shape, C::transfer, C::nreal, true>;
+  k.g2p_gradient = g2p<C::dim, C::shape, C::transfer, C::nreal, false>;
   return k;
 }
 
@@ -652,7 +598,7 @@ TransferKernels MPM_NS::MPM_OF_ISA(mpm_kernels_cpdi)(const KernelChoice &choice)
 {
   return choose(choice, [](auto c) {
     if constexpr (c.file() == CPDI_FILE)
-      return domain_kernels<c.dim, c.shape, c.transfer, c.nreal>();
+      return domain_kernels<decltype(c)>();
     else
       return TransferKernels();
   });

@@ -108,11 +108,11 @@ struct PointRows {
   const double *P = nullptr;       ///< [n][dim*dim] total frame: first Piola-Kirchhoff stress, the
                                    ///< place of tau, column-major: P[dim*j+i] = P_ij
   const double *size = nullptr;    ///< [n][3] GIMP: half size along each axis in node spacings
-  const double *domain =
-      nullptr;    ///< CPDI: [n][dim][dim] half edges; CPDI2: [n][2^dim][dim] corners
-                  ///< relative to x, in the order of transfer/cpdi.h
-  double *corners_new =
-      nullptr;    ///< CPDI2: where G2P puts them, the point at the center; null: not
+  /** CPDI: [n][dim][dim] half edges; CPDI2: [n][2^dim][dim] corners relative to x, in the order of
+   *  transfer/cpdi.h. */
+  const double *domain = nullptr;
+  /** CPDI2: where G2P puts them, the point at the center; null: not. */
+  double *corners_new = nullptr;
 };
 
 /** What a transfer needs to know about the lattice and the step. */
@@ -176,7 +176,30 @@ struct TransferKernels {
   TileIO prefetch;    ///< nodes of the box into the cache, for a flush or load some time later
 };
 
-struct PolyKernels;
+/** Transfers of the modes of a velocity field around a point that are products of two or three
+ *  coordinates: polynomial particle in cell (C. Fu, Q. Guo, T. Gast, C. Jiang, J. Teran, ACM Trans.
+ *  Graph. 36 (2017) 222) with 4 modes in 2d, 8 in 3d. The constant and the linear ones are those of
+ *  APIC.
+ *
+ *  With weights w of quadratic or cubic B-splines and distances d of nodes from the point, moments along
+ *  each axis are sum w = 1, sum w d = 0, sum w d^2 = D, whatever the position. Products of 1 and d over
+ *  the axes are therefore orthogonal, and the best coefficient of a mode s is sum_i w_i s(d_i) v_i
+ *  over sum_i w_i s(d_i)^2 = D or D^2 or D^3.
+ */
+struct PolyKernels {
+  /** Adds the momentum of the modes Q [n][poly_size] to the tile, to which P2G has gone. */
+  void (*p2g)(const PointRows &, const double *Q, const TransferStep &, int first, int last,
+              const int base[3], double *tile);
+  /** Fits the modes to the velocities of the nodes; to be called before G2P moves the points. */
+  void (*g2p)(const PointRows &, double *Q, const TransferStep &, int first, int last,
+              const int base[3], const double *tile);
+};
+
+/** Numbers per point: modes xy, in 3d xy, xz, yz, xyz, each a vector of dim components. */
+constexpr int poly_size(int dim)
+{
+  return dim == 3 ? 12 : 2;
+}
 
 /** Kernel table of one instruction set. */
 struct MPMKernels {

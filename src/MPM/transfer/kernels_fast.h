@@ -85,17 +85,16 @@ template <int DIM, Shape SHAPE, int L> struct Frame {
 
   MPM_INLINE Frame(const TransferStep &step, const int *base)
   {
-    alignas(64) double o[4 * L] = {}, i[4 * L] = {}, b[4 * L] = {};
-    for (int l = 0; l < L; l++)
-      for (int a = 0; a < DIM; a++) {
-        o[4 * l + a] = step.origin[a];
-        i[4 * l + a] = step.inv_h / CELL;
-        before[a] = base[a] & (CELL - 1);
-        b[4 * l + a] = Function::shift + (base[a] - before[a]) / CELL;
-      }
-    origin = Quads<L>::load(o);
-    inv_h = Quads<L>::load(i);
-    low = Quads<L>::load(b);
+    alignas(32) double o[4] = {}, i[4] = {}, b[4] = {};
+    for (int a = 0; a < DIM; a++) {
+      o[a] = step.origin[a];
+      i[a] = step.inv_h / CELL;
+      before[a] = base[a] & (CELL - 1);
+      b[a] = Function::shift + (base[a] - before[a]) / CELL;
+    }
+    origin = repeat<4 * L>(Vec<4>::load(o));
+    inv_h = repeat<4 * L>(Vec<4>::load(i));
+    low = repeat<4 * L>(Vec<4>::load(b));
   }
 
   /** Position in units of h from tile node 0, less the shift: its whole part is the base node. */
@@ -176,6 +175,22 @@ struct LastPoints {
     for (Index i = 0; i < WIDTH * (last - first); i++) to[WIDTH * first + i] = from[i];
   }
 };
+
+/** Brings the rows into the cache that P2G of PARTS reads, but for the places of points. */
+template <int DIM, int PARTS, bool AFFINE, bool TOTAL>
+MPM_INLINE void prefetch_momentum_and_force(const PointRows &points, Index ahead)
+{
+  if (PARTS & MOMENTUM) {
+    prefetch<3>(points.v, ahead);
+    prefetch<1>(points.mass, ahead);
+    if (AFFINE) prefetch<DIM * DIM>(points.C, ahead);
+  }
+  if (PARTS & FORCE) {
+    prefetch<3>(points.f, ahead);
+    if (!TOTAL) prefetch<6>(points.tau, ahead);    // P has just been made
+    prefetch<1>(points.vol0, ahead);
+  }
+}
 
 /** Weights of the nodes for the fractions of L points and, if asked for, their gradients. */
 template <Shape SHAPE, bool GRADIENT, int L, class Weights>
@@ -301,8 +316,6 @@ template <int DIM, int ORDER, int WIDTH, int L, bool AFFINE, bool GRADIENT> stru
   }
 };
 
-enum Parts { MOMENTUM = 1, FORCE = 2, ALL = 3 };
-
 /** P2G of what PARTS says; AFFINE: uses C; MLS: stress as an affine term; TOTAL: first
  *  Piola-Kirchhoff instead of Kirchhoff stress. */
 template <int DIM, Shape SHAPE, bool AFFINE, bool MLS, int NREAL, int PARTS, bool TOTAL>
@@ -316,7 +329,6 @@ struct PointsToNodes {
   // linear functions where it is faster, the force is scattered after the momentum.
   static constexpr bool both = NREAL == 8 && PARTS == ALL;
   static constexpr bool wide = both && REGISTER == 8 && ORDER > 1;
-  static constexpr int N = ORDER + 1;
 
   /** L points ready to be scattered. */
   static constexpr bool affine = (AFFINE && momentum) || (MLS && force && !(both && !wide));
@@ -327,16 +339,17 @@ struct PointsToNodes {
     AxisWeights<ORDER, L> weights, gradients;
     int place[L];
   };
-  /** Columns of a full matrix; lanes that are no axis are arbitrary. */
+  /** Columns of a full matrix times a factor; lanes that are no axis are arbitrary. */
   template <int L>
-  static MPM_INLINE void matrix_columns(const double *matrix, Index p, Quads<L> *column)
+  static MPM_INLINE void matrix_columns(const double *matrix, Index p, Quads<L> factor,
+                                        Quads<L> *column)
   {
     if constexpr (DIM == 2) {
-      column[0] = load_rows<L, 4>(matrix, p);
+      column[0] = factor * load_rows<L, 4>(matrix, p);
       column[1] = shuffle<2, 3, 2, 3>(column[0], column[0]);
     } else {
       MPM_UNROLL
-      for (int a = 0; a < 3; a++) column[a] = load_rows<L, 9>(matrix + 3 * a, p);
+      for (int a = 0; a < 3; a++) column[a] = factor * load_rows<L, 9>(matrix + 3 * a, p);
     }
   }
 
@@ -372,17 +385,8 @@ struct PointsToNodes {
   {
     const Quads<L> mass = load_numbers<L>(points.mass, p, 1.0);
     const Quads<L> v = load_rows<L, 3>(points.v, p);
-    q = blend<DIM>(v, repeat<4 * L>(0.0, 0.0, 0.0, 1.0)) * mass;
-    if constexpr (AFFINE) {
-      if constexpr (DIM == 2) {
-        const Quads<L> C = (h * mass) * load_rows<L, 4>(points.C, p);
-        A[0] = C;
-        A[1] = shuffle<2, 3, 2, 3>(C, C);
-      } else {
-        MPM_UNROLL
-        for (int a = 0; a < 3; a++) A[a] = (h * mass) * load_rows<L, 9>(points.C + 3 * a, p);
-      }
-    }
+    q = blend<DIM>(v, repeat<4 * L>(quad(0.0, 0.0, 0.0, 1.0))) * mass;
+    if constexpr (AFFINE) matrix_columns<L>(points.C, p, h * mass, A);
   }
 
   /** Force times scale: external, and columns of -stress that an affine or gradient term takes. */
@@ -395,7 +399,7 @@ struct PointsToNodes {
         -scale * step.stress_scale * step.inv_h * (MLS ? FunctionOf<SHAPE>::inv_moment : 1.0);
     const Quads<L> volume = load_numbers<L>(points.vol0, p, factor);
     if constexpr (TOTAL)
-      matrix_columns<L>(points.P, p, A);
+      matrix_columns<L>(points.P, p, Quads<L>::all(1.0), A);
     else
       stress_columns<L>(points.tau, p, A);
     MPM_UNROLL
@@ -424,16 +428,14 @@ struct PointsToNodes {
                                  const Frame<DIM, SHAPE, L> &frame, Prepared<L> &out,
                                  Quads<L> &lowest, Quads<L> &highest)
   {
-    using P = Quads<L>;
-
     const Quads<L> t = frame.position(load_rows<L, 3>(points.x, p));
     lowest = min(lowest, t);
     highest = max(highest, t);
-    const P fraction = frame.locate(t, out.place);
+    const Quads<L> fraction = frame.locate(t, out.place);
     axis_weights<SHAPE, gradient, L>(points, p, fraction, out.weights, out.gradients);
 
     // Am is an affine term, Af an affine or a gradient term
-    P qm, qf, Am[DIM], Af[DIM];
+    Quads<L> qm, qf, Am[DIM], Af[DIM];
     if constexpr (momentum) momentum_terms<L>(points, p, step.h, qm, Am);
     if constexpr (force) force_terms<L>(points, p, step, NREAL == 4 ? step.dt : 1.0, qf, Af);
 
@@ -448,8 +450,8 @@ struct PointsToNodes {
         out.main.q = side_by_side(qm, qf);
         MPM_UNROLL
         for (int a = 0; a < DIM; a++) {
-          if constexpr (AFFINE) out.main.A[a] = side_by_side(Am[a], MLS ? Af[a] : P{});
-          if constexpr (!MLS) out.main.S[a] = side_by_side(P{}, Af[a]);
+          if constexpr (AFFINE) out.main.A[a] = side_by_side(Am[a], MLS ? Af[a] : Quads<L>{});
+          if constexpr (!MLS) out.main.S[a] = side_by_side(Quads<L>{}, Af[a]);
         }
       } else {
         out.main.q = qm;
@@ -465,10 +467,10 @@ struct PointsToNodes {
         MPM_UNROLL
         for (int a = 0; a < DIM; a++) Am[a] += Af[a];
       }
-      P q = momentum ? qm : qf;
+      Quads<L> q = momentum ? qm : qf;
       if constexpr (momentum && force) q += qf;
       if constexpr (AFFINE && (momentum || MLS)) {
-        P *A = momentum ? Am : Af;
+        Quads<L> *A = momentum ? Am : Af;
         clear_lanes(A);
         to_base_node(q, A, fraction);
         MPM_UNROLL
@@ -516,16 +518,7 @@ struct PointsToNodes {
       const Index ahead = p + AHEAD;
       prefetch<3>(points.x, ahead);
       if (has_size(SHAPE)) prefetch<3>(points.size, ahead);
-      if (momentum) {
-        prefetch<3>(points.v, ahead);
-        prefetch<1>(points.mass, ahead);
-        if (AFFINE) prefetch<DIM * DIM>(points.C, ahead);
-      }
-      if (force) {
-        prefetch<3>(points.f, ahead);
-        if (!TOTAL) prefetch<6>(points.tau, ahead);    // P has just been made
-        prefetch<1>(points.vol0, ahead);
-      }
+      prefetch_momentum_and_force<DIM, PARTS, AFFINE, TOTAL>(points, ahead);
       for (Index i = 0; i < n; i++, p += L)
         prepare<L>(points, p, step, frame, stage[i], lowest, highest);
       for (Index i = 0; i < n; i++) {
@@ -724,12 +717,6 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
     int place[L];
   };
 
-  /** L points have the same base node. */
-  template <int L> static MPM_INLINE bool same(const int (&place)[L])
-  {
-    return place[0] == place[L - 1];
-  }
-
   /** Loads L points and computes what gather needs. */
   template <bool UPDATE, bool GRADIENT, int L>
   static MPM_INLINE void prepare(const PointRows &points, Index p,
@@ -803,7 +790,6 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
                                              Index first, Index last, const int *base,
                                              const double *tile, double *gradients)
   {
-    using P = Quads<L>;
     // copies, so that the compiler knows that no store changes them
     const PointRows points = rows;
     const TransferStep step = transfer;
@@ -838,8 +824,8 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
         const double *node[L];
         MPM_UNROLL
         for (int l = 0; l < L; l++) node[l] = tile + NREAL * in.place[l];
-        P v, D[DIM], v_old;
-        if (__builtin_expect(same(in.place), 1)) {
+        Quads<L> v, D[DIM], v_old;
+        if (__builtin_expect(in.place[0] == in.place[L - 1], 1)) {
           gather<true, GRADIENT, 0>(in, node, v, D);
           if constexpr (UPDATE && increment) gather<true, false, 4>(in, node, v_old, D);
         } else {
@@ -853,7 +839,7 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
           const double factor = mls ? FunctionOf<SHAPE>::inv_moment * step.inv_h : step.inv_h;
           if constexpr (mls) {
             // moments about the point instead of the base node
-            const P distance = P::load(in.fraction) + FunctionOf<SHAPE>::shift;
+            const Quads<L> distance = Quads<L>::load(in.fraction) + FunctionOf<SHAPE>::shift;
             D[0] -= broadcast<0>(distance) * v;
             D[1] -= broadcast<1>(distance) * v;
             if constexpr (DIM == 3) D[2] -= broadcast<2>(distance) * v;
@@ -883,7 +869,7 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
     return left;
   }
 
-  /** All points; the last of all through padded copies. */
+  /** All points; the last of all through padded copies. Without UPDATE none has left its tile. */
   template <bool UPDATE, bool GRADIENT>
   static int run(const PointRows &points, const TransferStep &step, int first, int last,
                  const int *base, const double *tile, double *gradients)
@@ -924,16 +910,9 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
   static int g2p(const PointRows &points, const TransferStep &step, int first, int last,
                  const int base[3], const double *tile, double *L)
   {
-    if (affine || L) return run<true, true>(points, step, first, last, base, tile, L);
-    if constexpr (!affine) return run<true, false>(points, step, first, last, base, tile, L);
-    return 0;
-  }
-
-  static int g2p_gradient(const PointRows &points, const TransferStep &step, int first, int last,
-                          const int base[3], const double *tile, double *L)
-  {
-    run<false, true>(points, step, first, last, base, tile, L);
-    return 0;
+    if constexpr (!affine)
+      if (!L) return run<true, false>(points, step, first, last, base, tile, L);
+    return run<true, true>(points, step, first, last, base, tile, L);
   }
 };
 
@@ -963,23 +942,22 @@ template <int N, TileMove MOVE> MPM_INLINE void move_reals(double *tile, double 
 }
 
 /** Flush, load or prefetch, a row of nodes along the last axis at a time. A row has one node in the block
- *  before, all of its own block and ORDER + 1 nodes in the block after; each of these parts is
- *  moved whole if the box touches it. */
-template <int DIM, int ORDER, int NREAL, TileMove MOVE>
+ *  before, all of its own block and ORDER + 1 nodes in the block after; with domains it has all nodes of
+ *  the three blocks. Each of these parts is moved whole if the box touches it. */
+template <int DIM, Shape SHAPE, int NREAL, TileMove MOVE>
 void tile_io(double *tile, double *nodes, const int slot[27], const int box[6])
 {
-  constexpr int side = block_side(DIM), last = DIM - 1, after = ORDER + 1;
-  constexpr int sx = tile_stride_x(DIM, ORDER), sy = tile_stride_y(DIM, ORDER);
-  const bool touches_before = box[last] == 0;
-  const bool touches_own = box[last] <= side;
-  const bool touches_after = box[3 + last] + ORDER > side;
+  constexpr int ORDER = stencil_order(SHAPE), side = block_side(DIM);
+  constexpr int before = margin<DIM, SHAPE>(), after = ORDER + 1;
+  constexpr int sx = stride<DIM, SHAPE>(0), sy = stride<DIM, SHAPE>(1);
+  const int low = box[DIM - 1], high = box[3 + DIM - 1] + ORDER;
 
   const int ylow = DIM == 3 ? box[1] : 0;
   const int yhigh = DIM == 3 ? box[4] + ORDER : 0;
   for (int i = box[0]; i <= box[3] + ORDER; i++)
     for (int j = ylow; j <= yhigh; j++) {
-      // tile node 0 is the last node of the block before
-      const int x = i + side - 1, y = j + side - 1;
+      // the first nodes of the tile are the last ones of the block before
+      const int x = i + side - before, y = j + side - before;
       double *row = tile + NREAL * (DIM == 3 ? i * sx + j * sy : i * sx);
       const int *block = slot + (DIM == 3 ? 9 * (x / side) + 3 * (y / side) : 9 * (x / side));
       const int index = DIM == 3 ? (x % side * side + y % side) * side : x % side * side;
@@ -988,34 +966,41 @@ void tile_io(double *tile, double *nodes, const int slot[27], const int box[6])
       const auto record = [&](int which, int node) {
         return nodes + (Index(64) * block[which * next + middle] + node) * NREAL;
       };
-      if (touches_before) move_reals<NREAL, MOVE>(row, record(0, index + side - 1));
-      if (touches_own) move_reals<side * NREAL, MOVE>(row + NREAL, record(1, index));
-      if (touches_after)
-        move_reals<after * NREAL, MOVE>(row + NREAL * (side + 1), record(2, index));
+      if constexpr (has_domain(SHAPE)) {
+        for (int b = low / side; b <= high / side; b++)
+          move_reals<side * NREAL, MOVE>(row + NREAL * side * b, record(b, index));
+      } else {
+        if (low == 0) move_reals<NREAL, MOVE>(row, record(0, index + side - 1));
+        if (low <= side) move_reals<side * NREAL, MOVE>(row + NREAL, record(1, index));
+        if (high > side)
+          move_reals<after * NREAL, MOVE>(row + NREAL * (side + 1), record(2, index));
+      }
     }
 }
 
 // ---------------------------------------------------------------------- table
 
-/** All of one dimension, shape, transfer, size of records, and frame. */
-template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> TransferKernels kernels()
+/** The same with the functions that move tiles. */
+template <class C> TransferKernels table_with_tiles()
 {
-  constexpr int ORDER = FunctionOf<SHAPE>::order;
-  constexpr bool affine = is_affine(TRANSFER), mls = is_mls(SHAPE, TRANSFER);
-  using G2P = NodesToPoints<DIM, SHAPE, TRANSFER, NREAL, TOTAL>;
-  TransferKernels k;
-  k.nreal = NREAL;
-  k.margin = 1;
-  k.affine = affine;
-  k.gradient_in_C = is_gradient(SHAPE, TRANSFER);
-  k.p2g = PointsToNodes<DIM, SHAPE, affine, mls, NREAL, ALL, TOTAL>::p2g;
-  k.p2g_momentum = PointsToNodes<DIM, SHAPE, affine, mls, NREAL, MOMENTUM, false>::p2g;
-  k.p2g_force = PointsToNodes<DIM, SHAPE, affine, mls, NREAL, FORCE, TOTAL>::p2g;
-  k.g2p = G2P::g2p;
-  k.g2p_gradient = NodesToPoints<DIM, SHAPE, TRANSFER, NREAL, false>::g2p_gradient;
-  k.flush = tile_io<DIM, ORDER, NREAL, FLUSH>;
-  k.load = tile_io<DIM, ORDER, NREAL, LOAD>;
-  k.prefetch = tile_io<DIM, ORDER, NREAL, PREFETCH>;
+  TransferKernels k = table_of<C>();
+  k.flush = tile_io<C::dim, C::shape, C::nreal, FLUSH>;
+  k.load = tile_io<C::dim, C::shape, C::nreal, LOAD>;
+  k.prefetch = tile_io<C::dim, C::shape, C::nreal, PREFETCH>;
+  return k;
+}
+
+/** The table of the transfers above. */
+template <class C> TransferKernels kernels()
+{
+  constexpr bool affine = is_affine(C::transfer), mls = is_mls(C::shape, C::transfer);
+  TransferKernels k = table_with_tiles<C>();
+  k.p2g = PointsToNodes<C::dim, C::shape, affine, mls, C::nreal, ALL, C::total>::p2g;
+  k.p2g_momentum = PointsToNodes<C::dim, C::shape, affine, mls, C::nreal, MOMENTUM, false>::p2g;
+  k.p2g_force = PointsToNodes<C::dim, C::shape, affine, mls, C::nreal, FORCE, C::total>::p2g;
+  k.g2p = NodesToPoints<C::dim, C::shape, C::transfer, C::nreal, C::total>::g2p;
+  k.g2p_gradient =
+      NodesToPoints<C::dim, C::shape, C::transfer, C::nreal, false>::template run<false, true>;
   return k;
 }
 
@@ -1024,7 +1009,7 @@ template <File FILE> TransferKernels kernels_of_file(const KernelChoice &choice)
 {
   return choose(choice, [](auto c) {
     if constexpr (c.file() == FILE)
-      return kernels<c.dim, c.shape, c.transfer, c.nreal, c.total>();
+      return kernels<decltype(c)>();
     else
       return TransferKernels();
   });

@@ -24,8 +24,6 @@ const MPM_NS::MPMKernels *MPM_NS::MPM_OF_ISA(mpm_kernels)(const char *)
 
 #include "transfer/kernels_fast.h"
 
-#include <initializer_list>
-
 namespace {
 
 constexpr double SMALLEST = 2.3e-308;    ///< the inverse of a smaller mass may overflow
@@ -53,21 +51,14 @@ template <bool TOTAL>
 TransferKernels choose_among_files(int dim, Shape shape, Transfer transfer, bool split)
 {
   const KernelChoice choice = {dim, shape, transfer, split, TOTAL};
-  for (const auto of_file : {MPM_OF_ISA(mpm_kernels_splines), MPM_OF_ISA(mpm_kernels_aflip_tpic),
-                             MPM_OF_ISA(mpm_kernels_gimp), MPM_OF_ISA(mpm_kernels_cpdi),
-                             MPM_OF_ISA(mpm_kernels_bernstein)}) {
-    const TransferKernels kernels = of_file(choice);
-    if (kernels.p2g) return kernels;
-  }
-  return TransferKernels();
+  TransferKernels kernels = kernels_of_file<MAIN_FILE>(choice);
+  for (const auto of_file : {MPM_OF_ISA(mpm_kernels_aflip_tpic), MPM_OF_ISA(mpm_kernels_gimp),
+                             MPM_OF_ISA(mpm_kernels_bernstein), MPM_OF_ISA(mpm_kernels_cpdi)})
+    if (!kernels.p2g) kernels = of_file(choice);
+  return kernels;
 }
 
 }    // namespace
-
-TransferKernels MPM_NS::MPM_OF_ISA(mpm_kernels_splines)(const KernelChoice &choice)
-{
-  return kernels_of_file<SPLINE_FILE>(choice);
-}
 
 const MPMKernels *MPM_NS::MPM_OF_ISA(mpm_kernels)(const char *isa)
 {

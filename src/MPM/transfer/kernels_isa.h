@@ -14,7 +14,6 @@
 
 #include "transfer/isa.h"
 #include "transfer/kernels.h"
-#include "transfer/polypic.h"
 
 #include <type_traits>
 
@@ -44,11 +43,10 @@ const MPMKernels *mpm_kernels_reference();
 const MPMKernels *MPM_OF_ISA(mpm_kernels)(const char *isa);
 
 // files that are compiled side by side, each with its share of the combinations
-TransferKernels MPM_OF_ISA(mpm_kernels_splines)(const KernelChoice &);
 TransferKernels MPM_OF_ISA(mpm_kernels_aflip_tpic)(const KernelChoice &);
 TransferKernels MPM_OF_ISA(mpm_kernels_gimp)(const KernelChoice &);
-TransferKernels MPM_OF_ISA(mpm_kernels_cpdi)(const KernelChoice &);
 TransferKernels MPM_OF_ISA(mpm_kernels_bernstein)(const KernelChoice &);
+TransferKernels MPM_OF_ISA(mpm_kernels_cpdi)(const KernelChoice &);
 PolyKernels MPM_OF_ISA(mpm_kernels_poly)(int dim, Shape, int nreal);
 
 }    // namespace MPM_NS
@@ -65,8 +63,8 @@ template <class T, T FIRST, T... OTHERS, class Use> auto with(T value, Use use)
   return use(std::integral_constant<T, FIRST>());
 }
 
-/** Files of fast kernels, see above. */
-enum File { NO_FILE, SPLINE_FILE, AFLIP_TPIC_FILE, GIMP_FILE, CPDI_FILE, BERNSTEIN_FILE };
+/** Files of fast kernels, see above; the first is kernels_isa.cpp itself. */
+enum File { NO_FILE, MAIN_FILE, AFLIP_TPIC_FILE, GIMP_FILE, BERNSTEIN_FILE, CPDI_FILE };
 
 /** A combination of constants that kernels are compiled for. */
 template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct Combination {
@@ -80,12 +78,40 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
   {
     const bool others = TRANSFER == AFLIP || TRANSFER == TPIC;
     if (TOTAL && (others || has_size(SHAPE) || has_domain(SHAPE))) return NO_FILE;
-    if (has_size(SHAPE)) return GIMP_FILE;
     if (has_domain(SHAPE)) return CPDI_FILE;
+    if (has_size(SHAPE)) return GIMP_FILE;
     if (SHAPE == BERNSTEIN) return BERNSTEIN_FILE;
-    return others ? AFLIP_TPIC_FILE : SPLINE_FILE;
+    return others ? AFLIP_TPIC_FILE : MAIN_FILE;
   }
 };
+
+/** Nodes of a tile from one to the next along an axis. */
+template <int DIM, Shape SHAPE> constexpr int stride(int axis)
+{
+  constexpr int order = stencil_order(SHAPE);
+  if (axis == 2) return DIM == 3;
+  if (has_domain(SHAPE)) return axis ? domain_stride_y(DIM) : domain_stride_x(DIM);
+  return axis ? tile_stride_y(DIM, order) : tile_stride_x(DIM, order);
+}
+/** Nodes of a tile in front of its block. */
+template <int DIM, Shape SHAPE> constexpr int margin()
+{
+  return has_domain(SHAPE) ? block_side(DIM) : 1;
+}
+
+/** What P2G transfers. */
+enum Parts { MOMENTUM = 1, FORCE = 2, ALL = 3 };
+
+/** The table of a combination, still without functions. */
+template <class C> TransferKernels table_of()
+{
+  TransferKernels k = {};
+  k.nreal = C::nreal;
+  k.margin = margin<C::dim, C::shape>();
+  k.affine = is_affine(C::transfer);
+  k.gradient_in_C = is_gradient(C::shape, C::transfer);
+  return k;
+}
 
 /** make(Combination) of a choice. */
 template <class Make> TransferKernels choose(KernelChoice c, Make make)

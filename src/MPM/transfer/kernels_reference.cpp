@@ -9,6 +9,7 @@
 // Kernels in plain scalar loops: the statement of what a transfer is. The tests compare every
 // instruction set with them, and they run where nothing else does.
 
+#include "transfer/cpdi.h"
 #include "transfer/kernels_isa.h"
 
 #include <algorithm>
@@ -25,14 +26,6 @@ struct Node {
   double grad[3];    ///< gradient of the weight
   double d[3];    ///< position of the node minus that of the point, or of the center of its domain
 };
-
-template <int DIM, Shape SHAPE> constexpr int stride(int axis)
-{
-  constexpr int order = stencil_order(SHAPE);
-  if (axis == 2) return DIM == 3;
-  if (has_domain(SHAPE)) return axis ? domain_stride_y(DIM) : domain_stride_x(DIM);
-  return axis ? tile_stride_y(DIM, order) : tile_stride_x(DIM, order);
-}
 
 /** Position from tile node 0 in cells, less the shift: its floor is the cell of a point. */
 template <Shape SHAPE>
@@ -139,27 +132,6 @@ template <class C>
 using Stencil = std::conditional_t<has_domain(C::shape), DomainStencil<C::dim, C::shape>,
                                    PointStencil<C::dim, C::shape>>;
 
-/** Full matrix, column-major, times a vector. */
-template <int DIM> void matrix_times(const double *m, const double *a, double *b)
-{
-  for (int i = 0; i < DIM; i++) {
-    b[i] = 0.0;
-    for (int j = 0; j < DIM; j++) b[i] += m[DIM * j + i] * a[j];
-  }
-}
-
-/** Symmetric tensor (xx yy zz xy xz yz) times a vector. */
-template <int DIM> void stress_times(const double *s, const double *a, double *b)
-{
-  constexpr int place[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
-  for (int i = 0; i < DIM; i++) {
-    b[i] = 0.0;
-    for (int j = 0; j < DIM; j++) b[i] += s[place[i][j]] * a[j];
-  }
-}
-
-enum Parts { MOMENTUM = 1, FORCE = 2, ALL = 3 };
-
 /** Points to nodes; C: a Combination, PARTS: what is transferred. */
 template <class C, int PARTS>
 void p2g(const PointRows &points, const TransferStep &step, int first, int last, const int base[3],
@@ -171,6 +143,10 @@ void p2g(const PointRows &points, const TransferStep &step, int first, int last,
 
   for (int p = first; p < last; p++) {
     const Stencil<C> stencil(points, p, step, base);
+    const auto stress = [&](int i, int j) {
+      constexpr int place[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+      return C::total ? points.P[DIM * DIM * p + DIM * j + i] : points.tau[6 * p + place[i][j]];
+    };
     for (int a = 0; a < DIM; a++) {
       box[a] = std::min(box[a], stencil.low[a]);
       box[3 + a] = std::max(box[3 + a], stencil.high[a]);
@@ -179,22 +155,22 @@ void p2g(const PointRows &points, const TransferStep &step, int first, int last,
       double *real = tile + NREAL * node.index;
       if (PARTS & MOMENTUM) {
         const double wm = node.w * points.mass[p];
-        double affine[3] = {0.0, 0.0, 0.0};
-        if (is_affine(C::transfer)) matrix_times<DIM>(points.C + DIM * DIM * p, node.d, affine);
-        for (int i = 0; i < DIM; i++) real[i] += wm * (points.v[3 * p + i] + affine[i]);
+        for (int i = 0; i < DIM; i++) {
+          double affine = 0.0;
+          for (int j = 0; is_affine(C::transfer) && j < DIM; j++)
+            affine += points.C[DIM * DIM * p + DIM * j + i] * node.d[j];
+          real[i] += wm * (points.v[3 * p + i] + affine);
+        }
         real[3] += wm;
       }
       if (PARTS & FORCE) {
-        double internal[3];
         const double *a = mls ? node.d : node.grad;
-        if (C::total)
-          matrix_times<DIM>(points.P + DIM * DIM * p, a, internal);
-        else
-          stress_times<DIM>(points.tau + 6 * p, a, internal);
         const double scale =
             -step.stress_scale * points.vol0[p] * (mls ? inv_moment * node.w : 1.0);
         for (int i = 0; i < DIM; i++) {
-          const double f = scale * internal[i] + step.force_scale * node.w * points.f[3 * p + i];
+          double internal = 0.0;
+          for (int j = 0; j < DIM; j++) internal += stress(i, j) * a[j];
+          const double f = scale * internal + step.force_scale * node.w * points.f[3 * p + i];
           if (NREAL == 8)
             real[4 + i] += f;
           else
@@ -311,19 +287,12 @@ int g2p(const PointRows &points, const TransferStep &step, int first, int last, 
   return left;
 }
 
-template <class C>
-int g2p_gradient(const PointRows &points, const TransferStep &step, int first, int last,
-                 const int base[3], const double *tile, double *L)
-{
-  return g2p<C, false>(points, step, first, last, base, tile, L);
-}
-
 /** Adds the nodes of the box to the nodes of the blocks and clears them, or loads them from there. */
 template <class C, bool FLUSH>
 void move_box(double *tile, double *nodes, const int slot[27], const int box[6])
 {
   constexpr int DIM = C::dim, NREAL = C::nreal, side = block_side(DIM);
-  constexpr int order = stencil_order(C::shape), before = has_domain(C::shape) ? side : 1;
+  constexpr int order = stencil_order(C::shape), before = margin<DIM, C::shape>();
   const int zlow = DIM == 3 ? box[2] : 0, zhigh = DIM == 3 ? box[5] + order : 0;
   for (int i = box[0]; i <= box[3] + order; i++)
     for (int j = box[1]; j <= box[4] + order; j++)
@@ -409,24 +378,22 @@ template <bool TOTAL>
 TransferKernels choose_plain(int dim, Shape shape, Transfer transfer, bool split)
 {
   return choose({dim, shape, transfer, split, TOTAL}, [](auto c) {
-    TransferKernels k = {};
-    if constexpr (!(c.total && has_domain(c.shape))) {
+    if constexpr (c.total && has_domain(c.shape)) {
+      return TransferKernels();
+    } else {
       using C = decltype(c);
-      k.nreal = c.nreal;
-      k.margin = has_domain(c.shape) ? block_side(c.dim) : 1;
-      k.affine = is_affine(c.transfer);
-      k.gradient_in_C = is_gradient(c.shape, c.transfer);
+      TransferKernels k = table_of<C>();
       k.p2g = p2g<C, ALL>;
       k.p2g_momentum = p2g<C, MOMENTUM>;
       k.p2g_force = p2g<C, FORCE>;
       k.g2p = g2p<C, true>;
-      k.g2p_gradient = g2p_gradient<C>;
+      k.g2p_gradient = g2p<C, false>;
       k.flush = move_box<C, true>;
       k.load = move_box<C, false>;
       k.prefetch = [](double *, double *, const int *, const int *) {
       };
+      return k;
     }
-    return k;
   });
 }
 

@@ -6,7 +6,7 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// The modes of polypic, see transfer/polypic.h; compiled once for each instruction set.
+// The modes of polypic, see PolyKernels; compiled once for each instruction set.
 
 #include "transfer/kernels_isa.h"
 

@@ -34,26 +34,14 @@ constexpr int REGISTER = 4;
 constexpr int REGISTER = 2;
 #endif
 
-template <int N> constexpr bool fits()
-{
-  return N <= REGISTER;
-}
+template <int N> constexpr bool fits = N <= REGISTER;
 
-template <int N> struct Raw;
-template <> struct Raw<2> {
-  typedef double Reals __attribute__((vector_size(16)));
-  typedef int Ints __attribute__((vector_size(8)));
-};
-template <> struct Raw<4> {
-  typedef double Reals __attribute__((vector_size(32)));
-  typedef int Ints __attribute__((vector_size(16)));
-};
-template <> struct Raw<8> {
-  typedef double Reals __attribute__((vector_size(64)));
-  typedef int Ints __attribute__((vector_size(32)));
+template <int N> struct Raw {
+  typedef double Reals __attribute__((vector_size(8 * N)));
+  typedef int Ints __attribute__((vector_size(4 * N)));
 };
 
-template <int N, bool FITS = fits<N>()> struct Vec;
+template <int N, bool FITS = fits<N>> struct Vec;
 
 /** N reals in one register. */
 template <int N> struct Vec<N, true> {
@@ -100,84 +88,50 @@ template <int N> struct Vec<N, false> {
   MPM_INLINE double lane(int i) const { return i < N / 2 ? lo.lane(i) : hi.lane(i - N / 2); }
 };
 
-template <int N> MPM_INLINE Vec<N> operator+(Vec<N> a, Vec<N> b)
-{
-  if constexpr (fits<N>())
-    return {a.r + b.r};
-  else
-    return {a.lo + b.lo, a.hi + b.hi};
-}
-template <int N> MPM_INLINE Vec<N> operator-(Vec<N> a, Vec<N> b)
-{
-  if constexpr (fits<N>())
-    return {a.r - b.r};
-  else
-    return {a.lo - b.lo, a.hi - b.hi};
-}
+/** An operator lane by lane, for two vectors or a vector and a number. */
+#define MPM_LANEWISE(op)                                               \
+  template <int N> MPM_INLINE Vec<N> operator op(Vec<N> a, Vec<N> b)   \
+  {                                                                    \
+    if constexpr (fits<N>)                                             \
+      return {a.r op b.r};                                             \
+    else                                                               \
+      return {a.lo op b.lo, a.hi op b.hi};                             \
+  }                                                                    \
+  template <int N> MPM_INLINE Vec<N> operator op(double s, Vec<N> a)   \
+  {                                                                    \
+    return Vec<N>::all(s) op a;                                        \
+  }                                                                    \
+  template <int N> MPM_INLINE Vec<N> operator op(Vec<N> a, double s)   \
+  {                                                                    \
+    return a op Vec<N>::all(s);                                        \
+  }                                                                    \
+  template <int N> MPM_INLINE void operator op##=(Vec<N> &a, Vec<N> b) \
+  {                                                                    \
+    a = a op b;                                                        \
+  }
+MPM_LANEWISE(+)
+MPM_LANEWISE(-)
+MPM_LANEWISE(*)
+MPM_LANEWISE(/)
+#undef MPM_LANEWISE
+
 template <int N> MPM_INLINE Vec<N> operator-(Vec<N> a)
 {
-  if constexpr (fits<N>())
+  if constexpr (fits<N>)
     return {-a.r};
   else
     return {-a.lo, -a.hi};
 }
-template <int N> MPM_INLINE Vec<N> operator*(Vec<N> a, Vec<N> b)
-{
-  if constexpr (fits<N>())
-    return {a.r * b.r};
-  else
-    return {a.lo * b.lo, a.hi * b.hi};
-}
-template <int N> MPM_INLINE Vec<N> operator/(Vec<N> a, Vec<N> b)
-{
-  if constexpr (fits<N>())
-    return {a.r / b.r};
-  else
-    return {a.lo / b.lo, a.hi / b.hi};
-}
-template <int N> MPM_INLINE Vec<N> operator+(double s, Vec<N> a)
-{
-  return Vec<N>::all(s) + a;
-}
-template <int N> MPM_INLINE Vec<N> operator-(double s, Vec<N> a)
-{
-  return Vec<N>::all(s) - a;
-}
-template <int N> MPM_INLINE Vec<N> operator*(double s, Vec<N> a)
-{
-  return Vec<N>::all(s) * a;
-}
-template <int N> MPM_INLINE Vec<N> operator+(Vec<N> a, double s)
-{
-  return a + Vec<N>::all(s);
-}
-template <int N> MPM_INLINE Vec<N> operator-(Vec<N> a, double s)
-{
-  return a - Vec<N>::all(s);
-}
-template <int N> MPM_INLINE Vec<N> operator*(Vec<N> a, double s)
-{
-  return a * Vec<N>::all(s);
-}
-template <int N> MPM_INLINE void operator+=(Vec<N> &a, Vec<N> b)
-{
-  a = a + b;
-}
-template <int N> MPM_INLINE void operator-=(Vec<N> &a, Vec<N> b)
-{
-  a = a - b;
-}
-
 template <int N> MPM_INLINE Vec<N> min(Vec<N> a, Vec<N> b)
 {
-  if constexpr (fits<N>())
+  if constexpr (fits<N>)
     return {a.r < b.r ? a.r : b.r};
   else
     return {min(a.lo, b.lo), min(a.hi, b.hi)};
 }
 template <int N> MPM_INLINE Vec<N> max(Vec<N> a, Vec<N> b)
 {
-  if constexpr (fits<N>())
+  if constexpr (fits<N>)
     return {a.r > b.r ? a.r : b.r};
   else
     return {max(a.lo, b.lo), max(a.hi, b.hi)};
@@ -186,7 +140,7 @@ template <int N> MPM_INLINE Vec<N> max(Vec<N> a, Vec<N> b)
 /** flag, with 1 where a is not in [0,limit); not a number is never inside. */
 template <int N> MPM_INLINE Vec<N> flag_outside(Vec<N> flag, Vec<N> a, double limit)
 {
-  if constexpr (fits<N>())
+  if constexpr (fits<N>)
     return {((a.r >= 0.0) & (a.r < limit)) ? flag.r : Vec<N>::all(1.0).r};
   else
     return {flag_outside(flag.lo, a.lo, limit), flag_outside(flag.hi, a.hi, limit)};
@@ -195,7 +149,7 @@ template <int N> MPM_INLINE Vec<N> flag_outside(Vec<N> flag, Vec<N> a, double li
 /** Cuts off the fraction; the whole numbers also go to index[N]. */
 template <int N> MPM_INLINE Vec<N> truncate(Vec<N> a, int *index)
 {
-  if constexpr (fits<N>()) {
+  if constexpr (fits<N>) {
     const auto whole = __builtin_convertvector(a.r, typename Raw<N>::Ints);
     __builtin_memcpy(index, &whole, sizeof(whole));
     return {__builtin_convertvector(whole, typename Raw<N>::Reals)};
@@ -207,12 +161,18 @@ template <int N> MPM_INLINE Vec<N> truncate(Vec<N> a, int *index)
 /** Concatenation. */
 template <int N> MPM_INLINE Vec<2 * N> join(Vec<N> a, Vec<N> b)
 {
-  if constexpr (!fits<2 * N>())
+  if constexpr (!fits<2 * N>)
     return {a, b};
   else if constexpr (N == 2)
     return {__builtin_shufflevector(a.r, b.r, 0, 1, 2, 3)};
   else
     return {__builtin_shufflevector(a.r, b.r, 0, 1, 2, 3, 4, 5, 6, 7)};
+}
+
+/** Four reals in a vector. */
+MPM_INLINE Vec<4> quad(double a, double b, double c, double d)
+{
+  return join(Vec<2>{Raw<2>::Reals{a, b}}, Vec<2>{Raw<2>::Reals{c, d}});
 }
 
 /** The same four reals in each group of four. */
@@ -223,16 +183,11 @@ template <int N> MPM_INLINE Vec<N> repeat(Vec<4> four)
   else
     return join(repeat<N / 2>(four), repeat<N / 2>(four));
 }
-template <int N> MPM_INLINE Vec<N> repeat(double a, double b, double c, double d)
-{
-  const double four[4] = {a, b, c, d};
-  return repeat<N>(Vec<4>::load(four));
-}
 
 /** First (H = 0) or second (H = 1) half. */
 template <int H, int N> MPM_INLINE Vec<N / 2> half(Vec<N> a)
 {
-  if constexpr (!fits<N>())
+  if constexpr (!fits<N>)
     return H ? a.hi : a.lo;
   else if constexpr (N == 4)
     return {__builtin_shufflevector(a.r, a.r, 2 * H, 2 * H + 1)};
@@ -251,9 +206,9 @@ template <int I, int J> MPM_INLINE Vec<2> pick(Vec<4> a, Vec<4> b)
 /** In each group of four lanes: lanes I, J, K, L of the eight lanes of a (0-3) and b (4-7). */
 template <int I, int J, int K, int L, int N> MPM_INLINE Vec<N> shuffle(Vec<N> a, Vec<N> b)
 {
-  if constexpr (!fits<N>() && N > 4) {
+  if constexpr (!fits<N> && N > 4) {
     return {shuffle<I, J, K, L>(a.lo, b.lo), shuffle<I, J, K, L>(a.hi, b.hi)};
-  } else if constexpr (!fits<N>()) {
+  } else if constexpr (!fits<N>) {
     return {pick<I, J>(a, b), pick<K, L>(a, b)};
   } else if constexpr (N == 4) {
     return {__builtin_shufflevector(a.r, b.r, I, J, K, L)};
