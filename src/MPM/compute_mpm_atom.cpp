@@ -22,6 +22,7 @@
 #include "mpm_points.h"
 #include "update.h"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -246,8 +247,7 @@ void ComputeMPMAtom::compute_peratom()
       const Point p = {i, field, points->F[i], sigma, atom->v[i], atom->rmass[i], V, V0};
       array_atom[i][n] = (p.*quantity->of_point)(columns[n].component);
     }
-    if (!quantity) history_column(n);
-    batches |= quantity && quantity->of_batch;
+    batches |= !of_point;
   }
 
   if (batches)
@@ -256,24 +256,16 @@ void ComputeMPMAtom::compute_peratom()
           double value[BATCH];
           for (int n = 0; n < ncolumn; n++) {
             const auto *quantity = columns[n].quantity;
-            if (!quantity || !quantity->of_batch) continue;
-            quantity->of_batch(*material.material, batch, 1.0 / force->nktv2p, value);
+            const int index = quantity ? -1 : material.find_history(columns[n].name);
+            if (quantity && quantity->of_batch)
+              quantity->of_batch(*material.material, batch, 1.0 / force->nktv2p, value);
+            else if (index >= 0)
+              std::copy_n(batch.history[index], batch.n, value);
+            else
+              continue;
             for (int k = 0; k < batch.n; k++) array_atom[list[k]][n] = value[k];
           }
         });
-}
-
-/** History variable of the points whose material has it; the others keep their value. */
-void ComputeMPMAtom::history_column(int n)
-{
-  for (const auto *field : MPMField::all(lmp))
-    for (const auto *material : field->materials) {
-      const int index = material->find_history(columns[n].name);
-      if (index < 0) continue;
-      for (int i = 0; i < atom->nlocal; i++)
-        if (is_point(i) && field->is_point(i) && field->material_of(i) == material)
-          array_atom[i][n] = material->history[i][index];
-    }
 }
 
 /* ---------------------------------------------------------------------- */

@@ -56,7 +56,6 @@ class ComputeMPMAtom : public Compute {
   static Column find_column(const std::string &name);
   bool is_point(int) const;
   std::string known_names() const;
-  void history_column(int);
 };
 
 }    // namespace LAMMPS_NS
