@@ -22,6 +22,7 @@
 #include "mpm_points.h"
 #include "update.h"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -89,71 +90,53 @@ void wavespeed(const Material &material, const Batch &batch, double, double *val
 
 }    // namespace
 
-/** A quantity of the table: a function of one point, or of a batch of one material. */
+/** Quantities of the table: functions of one point, or of a batch of one material. */
 struct ComputeMPMAtom::Quantity {
-  const char *name;
+  std::string name;
   double (Point::*of_point)(int component) const;
-  int component = 0;
+  std::vector<std::string> components = {""};    // what follows the name
   void (*of_batch)(const Material &, const Batch &, double pressure_to_energy, double *) = nullptr;
 };
 
 // customize by adding a line: names of the form group/component can be asked for as group/*
 
 static const ComputeMPMAtom::Quantity quantities[] = {
-    {"stress/xx", &Point::stress, 0},
-    {"stress/yy", &Point::stress, 1},
-    {"stress/zz", &Point::stress, 2},
-    {"stress/xy", &Point::stress, 3},
-    {"stress/xz", &Point::stress, 4},
-    {"stress/yz", &Point::stress, 5},
-    {"principal/1", &Point::principal, 0},
-    {"principal/2", &Point::principal, 1},
-    {"principal/3", &Point::principal, 2},
+    {"stress", &Point::stress, {"/xx", "/yy", "/zz", "/xy", "/xz", "/yz"}},
+    {"principal", &Point::principal, {"/1", "/2", "/3"}},
     {"pressure", &Point::pressure},
     {"vonmises", &Point::vonmises},
     {"triaxiality", &Point::triaxiality},
-    {"F/xx", &Point::deformation, 0},
-    {"F/xy", &Point::deformation, 1},
-    {"F/xz", &Point::deformation, 2},
-    {"F/yx", &Point::deformation, 3},
-    {"F/yy", &Point::deformation, 4},
-    {"F/yz", &Point::deformation, 5},
-    {"F/zx", &Point::deformation, 6},
-    {"F/zy", &Point::deformation, 7},
-    {"F/zz", &Point::deformation, 8},
+    {"F", &Point::deformation, {"/xx", "/xy", "/xz", "/yx", "/yy", "/yz", "/zx", "/zy", "/zz"}},
     {"J", &Point::jacobian},
     {"volume", &Point::volume},
     {"volume0", &Point::volume0},
     {"mass", &Point::mass},
     {"density", &Point::density},
     {"speed", &Point::speed},
-    {"energy", nullptr, 0, energy},
-    {"wavespeed", nullptr, 0, wavespeed},
-    {"angmom/x", &Point::angmom, 0},
-    {"angmom/y", &Point::angmom, 1},
-    {"angmom/z", &Point::angmom, 2},
+    {"energy", nullptr, {""}, energy},
+    {"wavespeed", nullptr, {""}, wavespeed},
+    {"angmom", &Point::angmom, {"/x", "/y", "/z"}},
 };
-
-static const ComputeMPMAtom::Quantity *find_quantity(const std::string &name)
-{
-  for (const auto &quantity : quantities)
-    if (name == quantity.name) return &quantity;
-  return nullptr;
-}
 
 /* ---------------------------------------------------------------------- */
 
 std::vector<std::string> ComputeMPMAtom::expand(const std::string &name)
 {
   std::vector<std::string> names;
-  if (name.size() > 2 && name.compare(name.size() - 2, 2, "/*") == 0) {
-    const std::string group = name.substr(0, name.size() - 1);
-    for (const auto &quantity : quantities)
-      if (group.compare(0, group.size(), quantity.name, 0, group.size()) == 0)
-        names.emplace_back(quantity.name);
-  }
+  for (const auto &quantity : quantities)
+    if (quantity.components.size() > 1 && name == quantity.name + "/*")
+      for (const auto &component : quantity.components) names.push_back(quantity.name + component);
   if (names.empty()) names.push_back(name);
   return names;
+}
+
+/** The column of a name, one of the table or else of a history variable. */
+ComputeMPMAtom::Column ComputeMPMAtom::find_column(const std::string &name)
+{
+  for (const auto &quantity : quantities)
+    for (std::size_t k = 0; k < quantity.components.size(); k++)
+      if (name == quantity.name + quantity.components[k]) return {name, &quantity, (int) k};
+  return {name, nullptr, 0};
 }
 
 /* ---------------------------------------------------------------------- */
@@ -167,13 +150,12 @@ ComputeMPMAtom::ComputeMPMAtom(LAMMPS *lmp, int narg, char **arg) :
 
   for (int iarg = 3; iarg < narg; iarg++)
     for (const auto &name : expand(arg[iarg])) {
-      const auto *quantity = find_quantity(name);
-      if (!quantity && name.find('*') != std::string::npos)
+      columns.push_back(find_column(name));
+      if (!columns.back().quantity && name.find('*') != std::string::npos)
         error->all(FLERR, iarg,
                    "Unknown compute mpm/atom quantities {}: wildcards are F/*, "
                    "stress/*, principal/*, and angmom/*",
                    name);
-      columns.push_back({name, quantity});
     }
 
   peratom_flag = 1;
@@ -192,7 +174,8 @@ ComputeMPMAtom::~ComputeMPMAtom()
 std::string ComputeMPMAtom::known_names() const
 {
   std::string text;
-  for (const auto &quantity : quantities) text += fmt::format(" {}", quantity.name);
+  for (const auto &quantity : quantities)
+    for (const auto &component : quantity.components) text += " " + quantity.name + component;
 
   std::set<std::string> history;
   for (const auto &fix : modify->get_fix_by_style("^mpm/material$"))
@@ -262,10 +245,9 @@ void ComputeMPMAtom::compute_peratom()
       points->cauchy(i, sigma);
       const double V0 = atom->vfrac[i], V = points->jacobian(i) * V0;
       const Point p = {i, field, points->F[i], sigma, atom->v[i], atom->rmass[i], V, V0};
-      array_atom[i][n] = (p.*quantity->of_point)(quantity->component);
+      array_atom[i][n] = (p.*quantity->of_point)(columns[n].component);
     }
-    if (!quantity) history_column(n);
-    batches |= quantity && quantity->of_batch;
+    batches |= !of_point;
   }
 
   if (batches)
@@ -274,24 +256,16 @@ void ComputeMPMAtom::compute_peratom()
           double value[BATCH];
           for (int n = 0; n < ncolumn; n++) {
             const auto *quantity = columns[n].quantity;
-            if (!quantity || !quantity->of_batch) continue;
-            quantity->of_batch(*material.material, batch, 1.0 / force->nktv2p, value);
+            const int index = quantity ? -1 : material.find_history(columns[n].name);
+            if (quantity && quantity->of_batch)
+              quantity->of_batch(*material.material, batch, 1.0 / force->nktv2p, value);
+            else if (index >= 0)
+              std::copy_n(batch.history[index], batch.n, value);
+            else
+              continue;
             for (int k = 0; k < batch.n; k++) array_atom[list[k]][n] = value[k];
           }
         });
-}
-
-/** History variable of the points whose material has it; the others keep their value. */
-void ComputeMPMAtom::history_column(int n)
-{
-  for (const auto *field : MPMField::all(lmp))
-    for (const auto *material : field->materials) {
-      const int index = material->find_history(columns[n].name);
-      if (index < 0) continue;
-      for (int i = 0; i < atom->nlocal; i++)
-        if (is_point(i) && field->is_point(i) && field->material_of(i) == material)
-          array_atom[i][n] = material->history[i][index];
-    }
 }
 
 /* ---------------------------------------------------------------------- */

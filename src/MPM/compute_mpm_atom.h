@@ -46,15 +46,16 @@ class ComputeMPMAtom : public Compute {
   struct Column {
     std::string name;
     const Quantity *quantity;    // null: history variable
+    int component;               // of the quantity
   };
 
   MPMPoints *points;
   std::vector<Column> columns;
   int nmax;
 
+  static Column find_column(const std::string &name);
   bool is_point(int) const;
   std::string known_names() const;
-  void history_column(int);
 };
 
 }    // namespace LAMMPS_NS

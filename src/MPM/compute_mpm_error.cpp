@@ -53,7 +53,7 @@ ComputeMPMError::Value ComputeMPMError::parse(const char *text, int iarg, bool i
 {
   static const std::vector<std::string> of_atoms = {"x", "y", "z", "vx", "vy", "vz"};
   const int k = std::find(of_atoms.begin(), of_atoms.end(), text) - of_atoms.begin();
-  if (!is_exact && k < 6) return {k < 3 ? POSITION : VELOCITY, k % 3, "", -1, iarg};
+  if (!is_exact && k < 6) return {k < 3 ? ArgInfo::X : ArgInfo::V, k % 3, "", -1, iarg};
   const ArgInfo info(
       text, is_exact ? ArgInfo::VARIABLE : ArgInfo::COMPUTE | ArgInfo::FIX | ArgInfo::VARIABLE);
   if (info.get_type() == ArgInfo::UNKNOWN || info.get_type() == ArgInfo::NONE ||
@@ -67,10 +67,7 @@ ComputeMPMError::Value ComputeMPMError::parse(const char *text, int iarg, bool i
                "c_ID[i], f_ID, f_ID[i] or v_NAME",
                text);
   }
-  const Source source = info.get_type() == ArgInfo::COMPUTE ? COMPUTE
-      : info.get_type() == ArgInfo::FIX                     ? FIX
-                                                            : VARIABLE;
-  Value value = {source, info.get_index1(), info.get_name(), -1, iarg};
+  Value value = {info.get_type(), info.get_index1(), info.get_name(), -1, iarg};
   check(value);
   return value;
 }
@@ -94,11 +91,11 @@ void ComputeMPMError::check(Value &value)
       error->all(FLERR, value.iarg, "Compute mpm/error: {} {} has no column {}", what, value.id,
                  value.component);
   };
-  if (value.source == COMPUTE) {
+  if (value.type == ArgInfo::COMPUTE) {
     check_source("compute", modify->get_compute_by_id(value.id));
-  } else if (value.source == FIX) {
+  } else if (value.type == ArgInfo::FIX) {
     check_source("fix", modify->get_fix_by_id(value.id));
-  } else if (value.source == VARIABLE) {
+  } else if (value.type == ArgInfo::VARIABLE) {
     value.variable = input->variable->find(value.id.c_str());
     if (value.variable < 0)
       error->all(FLERR, value.iarg, "Compute mpm/error: variable {} does not exist", value.id);
@@ -127,18 +124,18 @@ void ComputeMPMError::get(const Value &value, std::vector<double> &out)
       out[i] = value.component ? source->array_atom[i][value.component - 1]
                                : source->vector_atom[i];
   };
-  if (value.source == POSITION) {
+  if (value.type == ArgInfo::X) {
     for (int i = 0; i < nlocal; i++) {
       double unwrapped[3];
       domain->unmap(atom->x[i], atom->image[i], unwrapped);
       out[i] = unwrapped[value.component];
     }
-  } else if (value.source == VELOCITY) {
+  } else if (value.type == ArgInfo::V) {
     for (int i = 0; i < nlocal; i++) out[i] = atom->v[i][value.component];
-  } else if (value.source == VARIABLE) {
+  } else if (value.type == ArgInfo::VARIABLE) {
     double unused;
     input->variable->compute_atom(value.variable, igroup, nlocal ? out.data() : &unused, 1, 0);
-  } else if (value.source == COMPUTE) {
+  } else if (value.type == ArgInfo::COMPUTE) {
     auto *compute = modify->get_compute_by_id(value.id);
     if (!(compute->invoked_flag & Compute::INVOKED_PERATOM)) {
       compute->compute_peratom();

@@ -32,11 +32,10 @@ class ComputeMPMError : public Compute {
   double memory_usage() override;
 
  private:
-  enum Source { POSITION, VELOCITY, COMPUTE, FIX, VARIABLE };
   enum { L2, LARGEST, EXACT, L2_SO_FAR, LARGEST_SO_FAR, NVALUES };
 
-  struct Value {    // a per-atom quantity
-    Source source;
+  struct Value {      // a per-atom quantity
+    int type;         // ArgInfo::X, V, COMPUTE, FIX, or VARIABLE
     int component;    // of x, v; column of a compute or fix, 0: its vector
     std::string id;
     int variable;

@@ -20,7 +20,7 @@
 #include "mesh/element.h"
 #include "mpm_cpdi.h"
 #include "mpm_field.h"
-#include "mpm_mesh_input.h"
+#include "mpm_input.h"
 #include "mpm_options.h"
 #include "transfer/cpdi.h"
 

@@ -22,7 +22,7 @@
 #include "modify.h"
 #include "mpm_field.h"
 #include "mpm_image.h"
-#include "mpm_mesh_input.h"
+#include "mpm_input.h"
 #include "mpm_options.h"
 #include "mpm_points.h"
 #include "update.h"

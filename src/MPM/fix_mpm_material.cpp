@@ -9,7 +9,7 @@
 #include "fix_mpm_material.h"
 
 #include "material/material.h"
-#include "mpm_material_input.h"
+#include "mpm_input.h"
 
 #include "atom.h"
 #include "comm.h"

@@ -10,7 +10,7 @@
 
 #include "law/law.h"
 #include "material/material_point.h"
-#include "mpm_material_input.h"
+#include "mpm_input.h"
 #include "mpm_options.h"
 
 #include "comm.h"

@@ -11,7 +11,6 @@
 #include "atom.h"
 #include "fix_mpm_material.h"
 #include "material/material.h"
-#include "modify.h"
 #include "mpm_field.h"
 #include "mpm_points.h"
 

@@ -69,7 +69,7 @@ std::string VTKFile::name_error(const std::string &name, const std::string &exte
 int VTKFile::add(const std::string &section, const std::string &name, Type type, int ncomponent,
                  int64_t ntuple)
 {
-  Array a = {section, name, type, ncomponent, ntuple, 0, ntuple * ncomponent * types[type].bytes};
+  Array a = {section, name, type, ncomponent, 0, ntuple * ncomponent * types[type].bytes};
   if (!arrays.empty())
     a.offset = arrays.back().offset + (int64_t) sizeof(uint64_t) + arrays.back().bytes;
   arrays.push_back(a);

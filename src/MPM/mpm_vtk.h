@@ -52,7 +52,6 @@ class VTKFile {
     std::string section, name;
     Type type;
     int ncomponent;
-    int64_t ntuple;
     int64_t offset;    // of the length that precedes the values, in the appended data
     int64_t bytes;     // of the values
   };

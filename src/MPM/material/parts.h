@@ -14,7 +14,6 @@
 #include "law/law.h"
 
 #include <cstdio>
-#include <cstring>
 
 namespace MPM_NS {
 
@@ -32,11 +31,8 @@ struct RandomParameter {
   double variation;    ///< standard deviation over mean
   std::shared_ptr<const RandomField> field;
 
-  double &of(LawParameters &p) const
-  {
-    return term < 0 ? p.value[parameter] : p.term[term][parameter];
-  }
-  double of(const LawParameters &p) const
+  /** The parameter among those of its law, constant or not. */
+  template <class Parameters> auto &of(Parameters &p) const
   {
     return term < 0 ? p.value[parameter] : p.term[term][parameter];
   }

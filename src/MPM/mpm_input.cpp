@@ -6,11 +6,12 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-#include "mpm_material_input.h"
+#include "mpm_input.h"
 
 #include "law/plugin.h"
 
 #include "comm.h"
+#include "domain.h"
 #include "error.h"
 #include "lammps.h"
 #include "update.h"
@@ -18,10 +19,24 @@
 
 #include "fmt/format.h"
 
+#include <algorithm>
 #include <cstring>
+#include <stdexcept>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+
+/** Sends plain data of rank 0, in a vector or string, to all ranks. */
+template <class Data> static void broadcast(Data &data, MPI_Comm world)
+{
+  constexpr std::size_t SIZE = sizeof(typename Data::value_type);
+  constexpr bigint PIECE = (1 << 30) / SIZE;
+  bigint n = data.size();
+  MPI_Bcast(&n, 1, MPI_LMP_BIGINT, 0, world);
+  data.resize(n);
+  for (bigint k = 0; k < n; k += PIECE)
+    MPI_Bcast(data.data() + k, (int) (std::min(PIECE, n - k) * SIZE), MPI_BYTE, 0, world);
+}
 
 /* ----------------------------------------------------------------------
    words of a file after its header, and the line of each; returns what is wrong, or nothing
@@ -79,19 +94,11 @@ static std::unique_ptr<Material> read_file(LAMMPS *lmp, const std::string &calle
   std::vector<int> lines;
   if (lmp->comm->me == 0) problem = read_words(lmp, name, text, lines);
 
-  const auto broadcast = [lmp](std::string &s) {
-    int size = s.size();
-    MPI_Bcast(&size, 1, MPI_INT, 0, lmp->world);
-    s.resize(size);
-    if (size) MPI_Bcast(&s[0], size, MPI_CHAR, 0, lmp->world);
-  };
-  broadcast(problem);
+  broadcast(problem, lmp->world);
   if (!problem.empty()) error->all(FLERR, iarg, "{}: {}", caller, problem);
-  broadcast(text);
-  int nwords = lines.size();
-  MPI_Bcast(&nwords, 1, MPI_INT, 0, lmp->world);
-  lines.resize(nwords);
-  MPI_Bcast(lines.data(), nwords, MPI_INT, 0, lmp->world);
+  broadcast(text, lmp->world);
+  broadcast(lines, lmp->world);
+  const int nwords = lines.size();
 
   std::vector<std::string> words = utils::split_words(text);
   words.insert(words.end(), arg + iarg + 1, arg + narg);
@@ -108,8 +115,8 @@ static std::unique_ptr<Material> read_file(LAMMPS *lmp, const std::string &calle
 
 /* ---------------------------------------------------------------------- */
 
-std::unique_ptr<Material> MPM_NS::read_material(LAMMPS *lmp, const std::string &caller, int first,
-                                                int narg, char **arg)
+std::unique_ptr<Material> LAMMPS_NS::read_material(LAMMPS *lmp, const std::string &caller,
+                                                   int first, int narg, char **arg)
 {
   if (first < narg && strcmp(arg[first], "file") == 0)
     return read_file(lmp, caller, first, narg, arg);
@@ -125,6 +132,29 @@ std::unique_ptr<Material> MPM_NS::read_material(LAMMPS *lmp, const std::string &
   } catch (const MaterialError &e) {
     lmp->error->all(FLERR, std::min(e.word + first, narg - 1), "{}: {}", caller, e.what());
   }
+}
+
+/* ---------------------------------------------------------------------- */
+
+Mesh LAMMPS_NS::read_body(LAMMPS *lmp, const std::string &file, const std::string &part,
+                          const std::string &user, int iarg)
+{
+  Mesh mesh;
+  std::string message;
+  if (lmp->comm->me == 0) {
+    try {
+      mesh = read_gmsh(file);
+      mesh.keep(lmp->domain->dimension, part);
+      mesh.orient();
+    } catch (const std::runtime_error &e) {
+      message = e.what();
+    }
+  }
+  broadcast(message, lmp->world);
+  if (!message.empty()) lmp->error->all(FLERR, iarg, "{}: {}", user, message);
+  broadcast(mesh.nodes, lmp->world);
+  broadcast(mesh.elements, lmp->world);
+  return mesh;
 }
 
 /* ---------------------------------------------------------------------- */

@@ -6,13 +6,22 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-#ifndef LMP_MPM_MESH_INPUT_H
-#define LMP_MPM_MESH_INPUT_H
+#ifndef LMP_MPM_INPUT_H
+#define LMP_MPM_INPUT_H
 
+// Materials and meshes that the input defines, also by files, which rank 0 reads for all.
+
+#include "material/material.h"
 #include "mesh/gmsh.h"
-#include "pointers.h"
 
 namespace LAMMPS_NS {
+class LAMMPS;
+
+/** The material that the words arg[first], ... to the last one define: "density RHO <parts>" or
+ *  "file NAME <more parts>"; errors name the word, or file and line. caller: for messages, as "Fix mpm/material".
+ *  To be called by all ranks. */
+std::unique_ptr<MPM_NS::Material> read_material(LAMMPS *, const std::string &caller, int first,
+                                                int narg, char **arg);
 
 /** The elements of a body in a Gmsh file on all ranks: those of the dimension of the simulation
  *  and, when not empty, of a physical group, numbered in the positive sense. Stops with an error
