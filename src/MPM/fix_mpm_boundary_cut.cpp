@@ -130,10 +130,10 @@ void FixMPMBoundary::act_on_cut(const FieldNodes &list, Line &cut, bool last)
         },
         lambda[d], mu[d]);
     if (!hold || !(kind == STICK ? prescribed(d) : d == a)) continue;
-    const double limit = fabs(r[m - 1][4 + d] - before[d]);
+    const double limit = fabs(r[m - 1][4 + d] - wall.before[d]);
     project(
         [&](int k) {
-          return old_relative(r[k], d, limit);
+          return wall.old_relative(r[k], d, limit);
         },
         lambda_old[d], mu_old[d]);
   }
