@@ -8,20 +8,17 @@
 
 /* ----------------------------------------------------------------------
    Mirror planes: see "Mirrored boundaries" in Developer_mpm.rst, which has the projection; for faces
-   between planes of nodes see fix_mpm_boundary_cut.cpp. The nodes k0 - j beyond the plane k0 are images
-   of the nodes k0 + j; a component that the wall prescribes becomes odd about the wall. The impulse of
-   this projection on the body is
+   between planes of nodes see fix_mpm_boundary_cut.cpp. The impulse of this projection on the body is
      -m(k0) w(k0) - sum_j 2 m1 m2/(m1 + m2) (w1 + w2)
-   with w1, w2 the velocities relative to the wall that the momentum equation gave, which for an
-   unconstrained component is minus the mean velocity at the wall times a mass. Stick prescribes all
-   components, slip the normal one. At edges, a node and its images in all faces of the fix that
-   prescribe a component form an orbit with signs.
+   with w1, w2 the velocities relative to the wall that the momentum equation gave to the nodes k0 + j
+   and to their images k0 - j, which for an unconstrained component is minus the mean velocity at the
+   wall times a mass. Stick prescribes all components, slip the normal one. At edges, a node and its
+   images in all faces of the fix that prescribe a component form an orbit with signs.
 
-   A column of nodes along the normal decides alone: a separating wall lets go of it when the
-   impulse would pull; friction scales the tangential projection so that its impulse is at most
-   mu times the normal one (return mapping of Coulomb's law). With MUSL, the velocity that is mapped
-   back for the gradient follows this decision, or energy is created (a block that bounced had 1.4
-   times its energy).
+   Friction scales the tangential projection of a column of nodes so that its impulse is at most mu
+   times the normal one (return mapping of Coulomb's law). If with MUSL the velocity that is mapped back
+   for the gradient did not follow what the column has decided, a block that bounced had 1.4 times its
+   energy.
 
    FLIP. Points change their velocity by the sum of N (v_new - v_old). Stick, and slip along the
    normal, hold the material for good: they constrain v_old like v_new, which is to constrain both

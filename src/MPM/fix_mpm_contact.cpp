@@ -320,19 +320,13 @@ void FixMPMContact::list_common_blocks()
     for (std::size_t slot = 0; slot < grid.blocks.size(); slot++)
       if (grid.blocks[slot].alias) bodies[k].images.push_back((int) slot);
     for (const auto &block : grid.blocks) {
-      Common c;
-      int count = 0;
-      bool listed = false;
-      for (int j = 0; j < n; j++) {
-        c.slot[j] = bodies[j].field->grid.find(block.b);
-        if (c.slot[j] < 0) continue;
-        count++;
-        listed = listed || j < k;
-      }
-      if (listed || count < 2) continue;
-      c.canonical = ~block.alias;
-      c.owned = block.owned;
-      common.push_back(c);
+      Common c = {{}, ~block.alias, block.owned};
+      for (int j = 0; j < n; j++) c.slot[j] = bodies[j].field->grid.find(block.b);
+      const auto has = [](int slot) {
+        return slot >= 0;
+      };
+      const bool listed = std::any_of(c.slot, c.slot + k, has);
+      if (!listed && std::any_of(c.slot + k + 1, c.slot + n, has)) common.push_back(c);
     }
   }
   int any = !common.empty(), all;
@@ -597,8 +591,6 @@ bool FixMPMContact::make_pair(const Common &c, int n, int a, int b, double volum
 
 void FixMPMContact::find_contacts()
 {
-  nodes.clear();
-  pairs.clear();
   const int nfields = (int) bodies.size();
   for (const auto &c : common)
     for (int n = 0; n < NODES_PER_BLOCK; n++) {

@@ -111,8 +111,10 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
 
     void mark_near(int slot);
   };
-  struct Account {                     // of two bodies, this rank's share
-    double impulse[3], count, work;    // on the second, nodes in contact, of friction so far
+  struct Account {        // of two bodies, this rank's share
+    double impulse[3];    // on the second one in the last step
+    double count;         // nodes in contact
+    double work;          // of friction so far
   };
 
   std::vector<std::string> names;
