@@ -627,8 +627,8 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
 
     const int64_t first_node = (int64_t) ib * NODES_PER_BLOCK;
     double first[3], last[3], mid[3];
-    field.grid.node_position(first_node, first);
-    field.grid.node_position(first_node + NODES_PER_BLOCK - 1, last);
+    grid.node_position(first_node, first);
+    grid.node_position(first_node + NODES_PER_BLOCK - 1, last);
     bool near = true;
     for (int d = 0; d < 3; d++) {
       mid[d] = 0.5 * (first[d] + last[d]);
@@ -644,7 +644,7 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
     for (int n = 0; n < NODES_PER_BLOCK; n++) {
       if (grid.blocks[ib].alias >> n & 1) continue;
       double x[3];
-      field.grid.node_position(first_node + n, x);
+      grid.node_position(first_node + n, x);
       bool inside = region->match(x[0], x[1], x[2]);
       if (!inside) {
         region->interior ^= 1;
@@ -1014,7 +1014,7 @@ void FixMPMBoundary::act_on_single(const FieldNodes &list, Single &single)
   }
   if (now.counting && grid.owns(single.node)) {
     double x[3], push[3] = {0.0, 0.0, 0.0}, moment[3];
-    list.field->grid.node_position(single.node, x);
+    grid.node_position(single.node, x);
     for (int d = 0; d < dim; d++) push[d] = r[3] * (v[d] - r[d]);
     MathExtra::cross3(x, push, moment);
     for (int d = 0; d < 3; d++) impulse[3 + d] += moment[d];

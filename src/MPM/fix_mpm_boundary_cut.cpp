@@ -113,7 +113,7 @@ void FixMPMBoundary::act_on_cut(const FieldNodes &list, Line &cut, bool last)
   };
   double lambda[3] = {0.0, 0.0, 0.0}, mu[3], lambda_old[3] = {0.0, 0.0, 0.0},
          mu_old[3] = {0.0, 0.0, 0.0};
-  double relative[4];    // velocities of the nodes to that of the wall
+  double relative[4];    // of the nodes to the wall
   auto project = [&](double &l, double &u) {
     double a_sum = 0.0, b_sum = 0.0;
     for (int k = 0; k < m; k++) {

@@ -511,8 +511,8 @@ void FixMPMContact::Room::find(const MPMField &field, const Domain &box)
 }
 
 /* ----------------------------------------------------------------------
-   share of the volume of a node that is inside of the box. For a node outside: of its image, whose index
-   it gets
+   share of the volume of a node that is inside of the box. A node outside is replaced by its image, in
+   index
 ------------------------------------------------------------------------- */
 
 double FixMPMContact::Room::at(int *index, int dim, bool &image) const
@@ -713,11 +713,11 @@ void FixMPMContact::account(const Node &node, const double start[][3])
   for (int p = node.first; p < node.last; p++) {
     const Pair &pair = pairs[p];
     if (pair.state == OPEN) continue;
-    Account &account = accounts[pair_index(pair.a, pair.b, (int) bodies.size())];
-    account.count += 1.0;
+    Account &entry = accounts[pair_index(pair.a, pair.b, (int) bodies.size())];
+    entry.count += 1.0;
     for (int d = 0; d < dim; d++) {
-      account.impulse[d] += pair.normal * pair.n[d] + pair.tangential[d];
-      account.work += pair.tangential[d] * (pair.rb[d] - pair.ra[d]);
+      entry.impulse[d] += pair.normal * pair.n[d] + pair.tangential[d];
+      entry.work += pair.tangential[d] * (pair.rb[d] - pair.ra[d]);
     }
   }
   for (std::size_t k = 0; k < bodies.size(); k++) {
@@ -736,7 +736,7 @@ void FixMPMContact::act(double dt, Stage stage)
   const bool count = stage == STEP;
   if (!lists_valid) list_common_blocks();
   if (count) {
-    for (auto &account : accounts) account = {{0.0, 0.0, 0.0}, 0.0, account.work};
+    for (auto &entry : accounts) entry = {{0.0, 0.0, 0.0}, 0.0, entry.work};
     dt_last = dt;
     nodes.clear();
     pairs.clear();
@@ -757,7 +757,7 @@ void FixMPMContact::act(double dt, Stage stage)
 double FixMPMContact::compute_scalar()
 {
   double mine = 0.0, all;
-  for (const auto &account : accounts) mine += account.work;
+  for (const auto &entry : accounts) mine += entry.work;
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all * force->mvv2e;
 }
@@ -809,7 +809,7 @@ void FixMPMContact::restart(char *buf)
                "Fix mpm/contact {} had another number of fields when the restart file was written: "
                "name as many, or give the fix another ID to begin anew",
                id);
-  for (int p = 0; p < size_array_rows && comm->me == 0; p++) accounts[p].work = from[1 + p];
+  for (int p = 0; p < size_array_rows; p++) accounts[p].work = comm->me == 0 ? from[1 + p] : 0.0;
 }
 
 /* ---------------------------------------------------------------------- */

@@ -394,8 +394,7 @@ void FixMPMRigid::move(double dt)
 {
   double start[3][3], angle[3];
   memcpy(start, Q, sizeof(Q));
-  for (const double share :
-       {0.5, 0.5, 0.5, 1.0}) {    // the middle of the step is found in three rounds
+  for (const double share : {0.5, 0.5, 0.5, 1.0}) {    // three rounds find the middle of the step
     spin();
     MathExtra::scale3(share * dt, omega, angle);
     rotate(angle, start, Q);
