@@ -85,11 +85,6 @@ struct Surface {
   int dim;
   double far;    // stands for a distance that is not known
 
-  Surface(Region *region, const MPMField &field) :
-      region(region), dim(field.lattice.dim), far(FAR * field.lattice.h)
-  {
-  }
-
   /** Signed distance of x, negative inside. */
   double distance(const double *x) const
   {
@@ -613,7 +608,7 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
   const Grid &grid = field.grid;
   const int dim = field.lattice.dim;
   const double h = field.lattice.h;
-  const Surface surface(region, field);
+  const Surface surface = {region, dim, FAR * h};
   const bool moves = region_moves();
   const bool box_known = region->bboxflag && !moves;
   const double lo[3] = {region->extent_xlo, region->extent_ylo, region->extent_zlo};
@@ -743,7 +738,7 @@ void FixMPMBoundary::update_motion(double dt)
       for (auto &list : nodes)
         for (auto &s : list.singles) {
           const MPMField &field = *list.field;
-          const Surface surface(region, field);
+          const Surface surface = {region, field.lattice.dim, FAR * field.lattice.h};
           double x[3];
           field.grid.node_position(s.node, x);
           const double distance = surface.distance(x);

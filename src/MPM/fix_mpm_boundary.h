@@ -28,7 +28,6 @@ class Grid;
 }
 
 namespace LAMMPS_NS {
-class Domain;
 class MPMField;
 class Region;
 

@@ -25,7 +25,6 @@ FixStyle(mpm/contact,FixMPMContact);
 #include <vector>
 
 namespace LAMMPS_NS {
-class Domain;
 class MPMField;
 
 struct MPMContactOptions {
