@@ -16,9 +16,9 @@
    images in all faces of the fix that prescribe a component form an orbit with signs.
 
    Friction scales the tangential projection of a column of nodes so that its impulse is at most mu
-   times the normal one (return mapping of Coulomb's law). If with MUSL the velocity that is mapped back
-   for the gradient did not follow what the column has decided, a block that bounced had 1.4 times its
-   energy.
+   times the normal one (return mapping of Coulomb's law). With MUSL, the velocity that is mapped back
+   for the gradient must follow what the column has decided: when it did not, a block that bounced had
+   1.4 times its energy.
 
    FLIP. Points change their velocity by the sum of N (v_new - v_old). Stick, and slip along the
    normal, hold the material for good: they constrain v_old like v_new, which is to constrain both
