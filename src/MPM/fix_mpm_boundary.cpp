@@ -8,20 +8,17 @@
 
 /* ----------------------------------------------------------------------
    Mirror planes: see "Mirrored boundaries" in Developer_mpm.rst, which has the projection; for faces
-   between planes of nodes see fix_mpm_boundary_cut.cpp. The nodes k0 - j beyond the plane k0 are images
-   of the nodes k0 + j; a component that the wall prescribes becomes odd about the wall. The impulse of
-   this projection on the body is
+   between planes of nodes see fix_mpm_boundary_cut.cpp. The impulse of this projection on the body is
      -m(k0) w(k0) - sum_j 2 m1 m2/(m1 + m2) (w1 + w2)
-   with w1, w2 the velocities relative to the wall that the momentum equation gave, which for an
-   unconstrained component is minus the mean velocity at the wall times a mass. Stick prescribes all
-   components, slip the normal one. At edges, a node and its images in all faces of the fix that
-   prescribe a component form an orbit with signs.
+   with w1, w2 the velocities relative to the wall that the momentum equation gave to the nodes k0 + j
+   and to their images k0 - j, which for an unconstrained component is minus the mean velocity at the
+   wall times a mass. Stick prescribes all components, slip the normal one. At edges, a node and its
+   images in all faces of the fix that prescribe a component form an orbit with signs.
 
-   A column of nodes along the normal decides alone: a separating wall lets go of it when the
-   impulse would pull; friction scales the tangential projection so that its impulse is at most
-   mu times the normal one (return mapping of Coulomb's law). With MUSL, the velocity that is mapped
-   back for the gradient follows this decision, or energy is created (a block that bounced had 1.4
-   times its energy).
+   Friction scales the tangential projection of a column of nodes so that its impulse is at most mu
+   times the normal one (return mapping of Coulomb's law). With MUSL, the velocity that is mapped back
+   for the gradient must follow what the column has decided: when it did not, a block that bounced had
+   1.4 times its energy.
 
    FLIP. Points change their velocity by the sum of N (v_new - v_old). Stick, and slip along the
    normal, hold the material for good: they constrain v_old like v_new, which is to constrain both
@@ -62,6 +59,7 @@
 #include "update.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -74,19 +72,67 @@ static constexpr const char *PERIODIC =
 static constexpr double ON_SURFACE = 1.0e-6;    // in node spacings
 static constexpr double FAR = 1.0e8;            // in node spacings
 
-static int face_index(const std::string &name)
-{
-  for (int f = 0; f < 6; f++)
-    if (name == FACE_NAME[f]) return f;
-  return -1;
-}
-
 namespace {
 /** Center and unit axis of a region's rotation, which are protected members. */
 struct RegionMotion : public Region {
   static const double *point_of(const Region *r) { return r->*(&RegionMotion::point); }
   static const double *axis_of(const Region *r) { return r->*(&RegionMotion::runit); }
 };
+
+/** The surface of a region in its present state. */
+struct Surface {
+  Region *region;
+  int dim;
+  double far;    // stands for a distance that is not known
+
+  /** Signed distance of x, negative inside. */
+  double distance(const double *x) const
+  {
+    const bool inside = region->match(x[0], x[1], x[2]);
+    const int interior = region->interior;
+    if (!inside) region->interior = !interior;    // Region::surface() answers for one side only
+    auto *mesh = dynamic_cast<RegMPMMesh *>(region);
+    if (mesh && dim == 3) mesh->most_touches = 1;    // in 2d the closest one may be along z
+    const int n = region->surface(x[0], x[1], x[2], far);
+    region->interior = interior;
+    if (mesh) mesh->most_touches = mesh->tmax;
+    double distance = far;
+    for (int i = 0; i < n; i++) {
+      const auto &c = region->contact[i];
+      if (dim == 3 || !(fabs(c.delz) > 0.5 * c.r)) distance = std::min(distance, c.r);
+    }
+    return inside && distance < far ? -distance : distance;
+  }
+
+  /** Direction out of the region: gradient of the distance, from differences (one-sided where the
+   *  region does not answer). Zero at centers and where it is not known. */
+  void normal(const double *x, double step, double *normal) const
+  {
+    const double here = distance(x);
+    MathExtra::zero3(normal);
+    for (int d = 0; d < dim; d++) {
+      double y[3] = {x[0], x[1], x[2]};
+      y[d] = x[d] + step;
+      const double up = distance(y);
+      y[d] = x[d] - step;
+      const double down = distance(y);
+      if (up < far && down < far)
+        normal[d] = up - down;
+      else if (up < far && here < far)
+        normal[d] = 2.0 * (up - here);
+      else if (down < far && here < far)
+        normal[d] = 2.0 * (here - down);
+    }
+    const double length = MathExtra::len3(normal);
+    for (int d = 0; d < 3; d++) normal[d] = length > 0.2 * step ? normal[d] / length : 0.0;
+  }
+};
+
+/** Shift and angle of a region, as restart files keep them. */
+std::array<double *, 4> motion_of(Region *region)
+{
+  return {&region->dx, &region->dy, &region->dz, &region->theta};
+}
 }    // namespace
 
 /* ----------------------------------------------------------------------
@@ -142,8 +188,10 @@ FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, nar
     region_id = arg[iarg + 1];
     iarg += 2;
   } else {
-    for (; iarg < narg && face_index(arg[iarg]) >= 0; iarg++) {
-      const int face = face_index(arg[iarg]);
+    for (; iarg < narg; iarg++) {
+      const auto *const name = std::find(FACE_NAME, FACE_NAME + 6, std::string(arg[iarg]));
+      const int face = (int) (name - FACE_NAME);
+      if (face == 6) break;
       if (std::count(face_list.begin(), face_list.end(), face))
         error->all(FLERR, iarg, "Fix mpm/boundary face {} is given twice", arg[iarg]);
       if (face >= 4 && domain->dimension == 2)
@@ -274,7 +322,7 @@ void FixMPMBoundary::init()
       for (const auto &list : nodes) {
         const auto &field = *list.field;
         if (other->acts_on(field) &&
-            narrow({face_on_lattice(field, face), face_on_lattice(field, face ^ 1)}, face / 2))
+            narrow({{field, *domain, face}, {field, *domain, face ^ 1}}, face / 2))
           error->all(FLERR, Error::NOLASTLINE,
                      "Faces {} and {} are less than 3 cells apart, or 5 when they are not in "
                      "planes of nodes: they must be in the same fix mpm/boundary",
@@ -310,42 +358,28 @@ void FixMPMBoundary::setup(int)
     region->prematch();
   });
   const auto *field = MPMField::all(lmp)[0];
-  if (!past.acted || field->steps_to_next() == field->options.every) note_region();
-}
-
-/* ---------------------------------------------------------------------- */
-
-void FixMPMBoundary::note_region()
-{
-  past.region[0] = region->dx;
-  past.region[1] = region->dy;
-  past.region[2] = region->dz;
-  past.region[3] = region->theta;
+  if (!past.acted || field->steps_to_next() == field->options.every)
+    for (int k = 0; k < 4; k++) past.region[k] = *motion_of(region)[k];
 }
 
 /* ----------------------------------------------------------------------
    faces of the box in terms of nodes
 ------------------------------------------------------------------------- */
 
-FixMPMBoundary::Face FixMPMBoundary::face_on_lattice(const MPMField &field, int face) const
+FixMPMBoundary::Face::Face(const MPMField &field, const Domain &box, int face) :
+    axis(face / 2), inward(face % 2 ? -1 : 1)
 {
-  Face f;
-  f.axis = face / 2;
-  f.inward = face % 2 ? -1 : 1;
-  const double x = face % 2 ? domain->boxhi[f.axis] : domain->boxlo[f.axis];
-  const double h = field.lattice.h, origin = field.lattice.origin[f.axis];
-  f.plane = (int) std::lround((x - origin) / h);
-  const double plane_x = origin + f.plane * h;
-  f.cut = false;
-  f.first = f.nweight = 0;
-  if (fabs(x - plane_x) > ON_SURFACE * h) f.cut_weights(field, x);
-  return f;
+  const double x = face % 2 ? box.boxhi[axis] : box.boxlo[axis];
+  const double h = field.lattice.h, origin = field.lattice.origin[axis];
+  plane = (int) std::lround((x - origin) / h);
+  const double plane_x = origin + plane * h;
+  if (fabs(x - plane_x) > ON_SURFACE * h) cut_weights(field, x);
 }
 
 FixMPMBoundary::Faces FixMPMBoundary::faces_on_lattice(const MPMField &field) const
 {
   Faces faces;
-  for (int face : face_list) faces.push_back(face_on_lattice(field, face));
+  for (int face : face_list) faces.emplace_back(field, *domain, face);
   return faces;
 }
 
@@ -377,20 +411,14 @@ void FixMPMBoundary::extend_topology(MPMField &field)
   for (std::size_t ib = 0; ib < grid.blocks.size(); ib++)
     for (const auto &face : faces) {
       int b[3] = {grid.blocks[ib].b[0], grid.blocks[ib].b[1], grid.blocks[ib].b[2]};
-      if (face.cut) {
-        const int lo = b[face.axis] * grid.side, end = face.first + face.nweight - 1;
-        if (lo > end || lo + grid.side <= face.first) continue;
-        for (int k : {face.first, end}) {
-          b[face.axis] = k >> grid.shift_bits;
-          grid.activate(b);
-        }
-        continue;
-      }
-      const int first = std::max(b[face.axis] * grid.side, face.plane - DEPTH);
-      const int last = std::min(b[face.axis] * grid.side + grid.side - 1, face.plane + DEPTH);
+      const int begin = face.cut ? face.first : face.plane - DEPTH;
+      const int end = face.cut ? face.first + face.nweight - 1 : face.plane + DEPTH;
+      const int first = std::max(b[face.axis] * grid.side, begin);
+      const int last = std::min(b[face.axis] * grid.side + grid.side - 1, end);
       if (first > last) continue;
-      const int image_first = 2 * face.plane - last, image_last = 2 * face.plane - first;
-      for (int k : {image_first, image_last, face.plane}) {
+      std::array<int, 3> needed = {2 * face.plane - last, 2 * face.plane - first, face.plane};
+      if (face.cut) needed = {begin, end, end};
+      for (const int k : needed) {
         b[face.axis] = k >> grid.shift_bits;
         grid.activate(b);
       }
@@ -450,19 +478,13 @@ void FixMPMBoundary::list_face_nodes(FieldNodes &list)
 
   // stick: a component is odd about all faces; slip: the normal one about its own
 
-  Faces mirrors;
-  for (const auto &face : list.faces)
-    if (!face.cut) mirrors.push_back(face);
   if (kind == STICK) {
     const bool prescribed[3] = {velocity[0].given, velocity[1].given, velocity[2].given};
-    list.list_orbits(mirrors, prescribed);
+    list.list_orbits(prescribed, -1);
   } else if (!decides()) {
     for (int d = 0; d < grid.lattice.dim; d++) {
-      Faces faces;
-      for (const auto &face : mirrors)
-        if (face.axis == d) faces.push_back(face);
       const bool prescribed[3] = {d == 0, d == 1, d == 2};
-      list.list_orbits(faces, prescribed);
+      list.list_orbits(prescribed, d);
     }
   }
 }
@@ -498,14 +520,16 @@ void FixMPMBoundary::FieldNodes::list_line(int f, const int *index)
 }
 
 /* ----------------------------------------------------------------------
-   nodes between the mirrors, each with all the images that it has in them
+   nodes between the mirrors of this axis, or of all axes (-1), each with all the images that it has
+   in them
 ------------------------------------------------------------------------- */
 
-void FixMPMBoundary::FieldNodes::list_orbits(const Faces &mirrors, const bool *prescribed)
+void FixMPMBoundary::FieldNodes::list_orbits(const bool *prescribed, int axis)
 {
   const Grid &grid = field->grid;
   const Face *mirror[3][2] = {};    // [axis][side], null: none
-  for (const auto &face : mirrors) mirror[face.axis][face.inward < 0] = &face;
+  for (const auto &face : faces)
+    if (!face.cut && (axis < 0 || axis == face.axis)) mirror[face.axis][face.inward < 0] = &face;
 
   struct Image {
     int index, sign;
@@ -513,9 +537,10 @@ void FixMPMBoundary::FieldNodes::list_orbits(const Faces &mirrors, const bool *p
   std::vector<Image> images[3];
   for (std::size_t ib = 0; ib < grid.blocks.size(); ib++) {
     const auto &block = grid.blocks[ib];
-    const bool near = std::any_of(mirrors.begin(), mirrors.end(), [&](const Face &face) {
+    const bool near = std::any_of(faces.begin(), faces.end(), [&](const Face &face) {
       const int lo = block.b[face.axis] * grid.side;
-      return lo <= face.plane + DEPTH && lo + grid.side > face.plane - DEPTH;
+      return &face == mirror[face.axis][face.inward < 0] && lo <= face.plane + DEPTH &&
+          lo + grid.side > face.plane - DEPTH;
     });
     if (!near) continue;
     for (int n = 0; n < NODES_PER_BLOCK; n++) {
@@ -574,57 +599,6 @@ void FixMPMBoundary::FieldNodes::list_orbits(const Faces &mirrors, const bool *p
 }
 
 /* ----------------------------------------------------------------------
-   signed distance of x from the surface of the region, negative inside; FAR: not known
-------------------------------------------------------------------------- */
-
-double FixMPMBoundary::surface_distance(const double *x) const
-{
-  const double far = FAR * nodes.front().field->lattice.h;
-  const bool inside = region->match(x[0], x[1], x[2]);
-  const int interior = region->interior;
-  if (!inside) region->interior = !interior;    // Region::surface() answers for one side only
-  auto *mesh = dynamic_cast<RegMPMMesh *>(region);
-  if (mesh && domain->dimension == 3)
-    mesh->most_touches = 1;    // in 2d the closest one may be along z
-  const int n = region->surface(x[0], x[1], x[2], far);
-  region->interior = interior;
-  if (mesh) mesh->most_touches = mesh->tmax;
-  double distance = far;
-  for (int i = 0; i < n; i++) {
-    const auto &c = region->contact[i];
-    if (domain->dimension == 3 || !(fabs(c.delz) > 0.5 * c.r)) distance = std::min(distance, c.r);
-  }
-  return inside && distance < far ? -distance : distance;
-}
-
-/* ----------------------------------------------------------------------
-   direction out of the region: gradient of the distance, from differences (one-sided where the
-   region does not answer). Zero at centers and where it is not known
-------------------------------------------------------------------------- */
-
-void FixMPMBoundary::surface_normal(const double *x, double step, int dim, double *normal) const
-{
-  const double far = FAR * nodes.front().field->lattice.h;
-  const double here = surface_distance(x);
-  MathExtra::zero3(normal);
-  for (int d = 0; d < dim; d++) {
-    double y[3] = {x[0], x[1], x[2]};
-    y[d] = x[d] + step;
-    const double up = surface_distance(y);
-    y[d] = x[d] - step;
-    const double down = surface_distance(y);
-    if (up < far && down < far)
-      normal[d] = up - down;
-    else if (up < far && here < far)
-      normal[d] = 2.0 * (up - here);
-    else if (down < far && here < far)
-      normal[d] = 2.0 * (here - down);
-  }
-  const double length = MathExtra::len3(normal);
-  for (int d = 0; d < 3; d++) normal[d] = length > 0.2 * step ? normal[d] / length : 0.0;
-}
-
-/* ----------------------------------------------------------------------
    nodes inside the region or on its surface, for the state of the region that it has now
 ------------------------------------------------------------------------- */
 
@@ -634,6 +608,7 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
   const Grid &grid = field.grid;
   const int dim = field.lattice.dim;
   const double h = field.lattice.h;
+  const Surface surface = {region, dim, FAR * h};
   const bool moves = region_moves();
   const bool box_known = region->bboxflag && !moves;
   const double lo[3] = {region->extent_xlo, region->extent_ylo, region->extent_zlo};
@@ -647,8 +622,8 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
 
     const int64_t first_node = (int64_t) ib * NODES_PER_BLOCK;
     double first[3], last[3], mid[3];
-    field.grid.node_position(first_node, first);
-    field.grid.node_position(first_node + NODES_PER_BLOCK - 1, last);
+    grid.node_position(first_node, first);
+    grid.node_position(first_node + NODES_PER_BLOCK - 1, last);
     bool near = true;
     for (int d = 0; d < 3; d++) {
       mid[d] = 0.5 * (first[d] + last[d]);
@@ -656,15 +631,15 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
         near = false;
     }
     if (near && region->nregion == 1) {
-      const double distance = surface_distance(mid);
-      near = distance <= radius + h || distance >= FAR * h;
+      const double distance = surface.distance(mid);
+      near = distance <= radius + h || distance >= surface.far;
     }
     if (!near) continue;
 
     for (int n = 0; n < NODES_PER_BLOCK; n++) {
       if (grid.blocks[ib].alias >> n & 1) continue;
       double x[3];
-      field.grid.node_position(first_node + n, x);
+      grid.node_position(first_node + n, x);
       bool inside = region->match(x[0], x[1], x[2]);
       if (!inside) {
         region->interior ^= 1;
@@ -673,8 +648,8 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
       }
       if (!inside) continue;
       Single s = {first_node + n};
-      if (kind != STICK || region->varshape) surface_normal(x, 1.0e-4 * h, dim, s.normal);
-      if (region->varshape) s.distance = surface_distance(x);
+      if (kind != STICK || region->varshape) surface.normal(x, 1.0e-4 * h, s.normal);
+      if (region->varshape) s.distance = surface.distance(x);
       list.singles.push_back(s);
     }
   }
@@ -734,17 +709,15 @@ void FixMPMBoundary::update_motion(double dt)
   if (motion_step == update->ntimestep) return;
   motion_step = update->ntimestep;
 
-  MathExtra::copy3(past.shift, before);
   wall = {};
   wall.uniform = true;
+  MathExtra::copy3(past.shift, wall.before);
   const bool variables = region_moves() || !velocity[0].variable.empty() ||
       !velocity[1].variable.empty() || !velocity[2].variable.empty() || !rate.variable.empty();
-  const double *const old = past.region;
+  double *const old = past.region;
   if (region_moves()) {
-    region->dx = old[0];    // others may have looked at the region since then
-    region->dy = old[1];
-    region->dz = old[2];
-    region->theta = old[3];
+    // others may have looked at the region since then
+    for (int k = 0; k < 4; k++) *motion_of(region)[k] = old[k];
     for (auto &list : nodes) list_region_nodes(list);
   }
 
@@ -754,8 +727,8 @@ void FixMPMBoundary::update_motion(double dt)
     if (rotating()) wall.rotate(evaluate(lmp, rate) * dt, axis, center, dt);
   });
   if (region_moves()) {
-    const double shift[3] = {region->dx, region->dy, region->dz};
-    for (int d = 0; d < 3; d++) wall.shift[d] = (shift[d] - old[d]) / dt;
+    const auto motion = motion_of(region);
+    for (int d = 0; d < 3; d++) wall.shift[d] = (*motion[d] - old[d]) / dt;
     if (region->rotateflag) {
       double origin[3];
       MathExtra::add3(RegionMotion::point_of(region), old, origin);
@@ -765,11 +738,12 @@ void FixMPMBoundary::update_motion(double dt)
       for (auto &list : nodes)
         for (auto &s : list.singles) {
           const MPMField &field = *list.field;
+          const Surface surface = {region, field.lattice.dim, FAR * field.lattice.h};
           double x[3];
           field.grid.node_position(s.node, x);
-          const double distance = surface_distance(x), far = FAR * field.lattice.h;
+          const double distance = surface.distance(x);
           s.growth = 0.0;
-          if (distance >= far || s.distance >= far) continue;
+          if (distance >= surface.far || s.distance >= surface.far) continue;
 
           // the normal speed of the surface in place of that of the rigid motion
 
@@ -777,9 +751,9 @@ void FixMPMBoundary::update_motion(double dt)
           wall.velocity(field, s.node, v);
           s.growth = (s.distance - distance) / dt - MathExtra::dot3(v, s.normal);
         }
-    note_region();
+    for (int k = 0; k < 4; k++) old[k] = *motion[k];
   }
-  if (!past.acted) MathExtra::copy3(wall.shift, before);
+  if (!past.acted) MathExtra::copy3(wall.shift, wall.before);
   MathExtra::copy3(wall.shift, past.shift);
 }
 
@@ -879,7 +853,7 @@ static void first_inside(const double *record, const double *wall, int dim, doub
   for (int d = 0; d < dim; d++) limit[d] = record[3] > 0.0 ? fabs(record[4 + d] - wall[d]) : 0.0;
 }
 
-double FixMPMBoundary::old_relative(const double *record, int d, double limit) const
+double FixMPMBoundary::Wall::old_relative(const double *record, int d, double limit) const
 {
   return std::max(-limit, std::min(record[4 + d] - before[d], limit));
 }
@@ -904,7 +878,7 @@ void FixMPMBoundary::project(Grid &grid, const Member *members, int n, bool fixe
     mass += r[3];
     for (int d = 0; d < dim; d++) {
       w[d] += sign * r[3] * (r[d] - p.V[d]);
-      if (hold) w_old[d] += sign * r[3] * old_relative(r, d, p.limit[d]);
+      if (hold) w_old[d] += sign * r[3] * wall.old_relative(r, d, p.limit[d]);
     }
   }
   if (massive == 0 || (massive == 1 && !fixed)) return;
@@ -922,7 +896,7 @@ void FixMPMBoundary::project(Grid &grid, const Member *members, int n, bool fixe
       v[d] = p.share[d] == 1.0 ? odd : r[d] + p.share[d] * (odd - r[d]);
       if (!hold) continue;
       old[d] = r[4 + d];
-      if (p.hold[d]) old[d] += sign * w_old[d] - old_relative(r, d, p.limit[d]);
+      if (p.hold[d]) old[d] += sign * w_old[d] - wall.old_relative(r, d, p.limit[d]);
     }
     set_velocity(grid, members[k].node, v, hold ? old : nullptr);
   }
@@ -970,11 +944,12 @@ void FixMPMBoundary::act_on_column(const FieldNodes &list, Line &column)
   if (kind == SLIP && now.old_share > 0.0) {
     prescribed.hold[a] = true;
     if (column.node[1] >= 0)
-      first_inside(grid.record(column.node[1]), before, dim, prescribed.limit);
-    to_stick[a] += now.old_share * r[3] * old_relative(r, a, limit[a]);
+      first_inside(grid.record(column.node[1]), wall.before, dim, prescribed.limit);
+    to_stick[a] += now.old_share * r[3] * wall.old_relative(r, a, limit[a]);
     for (int k = 0; k < npairs; k++)
       to_stick[a] += now.old_share * pairs[k].mass *
-          (old_relative(pairs[k].in, a, limit[a]) + old_relative(pairs[k].out, a, limit[a]));
+          (wall.old_relative(pairs[k].in, a, limit[a]) +
+           wall.old_relative(pairs[k].out, a, limit[a]));
   }
 
   double needed = 0.0;
@@ -997,7 +972,7 @@ void FixMPMBoundary::act_on_orbit(const FieldNodes &list, const Orbit &orbit)
   wall.velocity(*list.field, orbit.wall, prescribed.V);
   const bool hold = now.old_share > 0.0;
   if (hold && orbit.inner >= 0)
-    first_inside(grid.record(orbit.inner), before, dim, prescribed.limit);
+    first_inside(grid.record(orbit.inner), wall.before, dim, prescribed.limit);
   for (int d = 0; d < dim; d++) {
     prescribed.share[d] = orbit.prescribed[d] ? 1.0 : 0.0;
     prescribed.hold[d] = hold && orbit.prescribed[d];
@@ -1034,7 +1009,7 @@ void FixMPMBoundary::act_on_single(const FieldNodes &list, Single &single)
   }
   if (now.counting && grid.owns(single.node)) {
     double x[3], push[3] = {0.0, 0.0, 0.0}, moment[3];
-    list.field->grid.node_position(single.node, x);
+    grid.node_position(single.node, x);
     for (int d = 0; d < dim; d++) push[d] = r[3] * (v[d] - r[d]);
     MathExtra::cross3(x, push, moment);
     for (int d = 0; d < 3; d++) impulse[3 + d] += moment[d];

@@ -77,12 +77,13 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
 
   struct Face {    // a face of the box on the lattice of a field
     int axis;
-    int inward;    // direction from the face into the box along the axis: 1 or -1
-    int plane;     // index of its plane of nodes, or the nearest one
-    bool cut;      // lies between planes: nweight nodes from first on make the velocity there
-    int first, nweight;
+    int inward;          // direction from the face into the box along the axis: 1 or -1
+    int plane;           // index of its plane of nodes, or the nearest one
+    bool cut = false;    // lies between planes: nweight nodes from first on make the velocity there
+    int first = 0, nweight = 0;
     double weight[4];
 
+    Face(const MPMField &, const Domain &, int face);
     void cut_weights(const MPMField &, double x);
   };
   using Faces = std::vector<Face>;
@@ -122,15 +123,17 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
     std::vector<Single> singles;
 
     void list_line(int face, const int *index);
-    void list_orbits(const Faces &, const bool *prescribed);
+    void list_orbits(const bool *prescribed, int axis);
   };
   struct Wall {    // its motion in a step: velocity shift + gradient (x - origin)
     double shift[3], gradient[3][3], origin[3];
+    double before[3];    // velocity in the last step
     bool uniform;
 
     void rotate(double angle, const double *axis, const double *center, double dt);
     Wall at_end_of_step(double dt) const;
     void velocity(const MPMField &, int64_t node, double *v) const;
+    double old_relative(const double *record, int d, double limit) const;
   };
   struct Prescribed {    // velocity that a wall gives to nodes
     double V[3];
@@ -151,7 +154,6 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
 
   std::vector<FieldNodes> nodes;    // of the fields to act on
   Wall wall = {};                   // in this step
-  double before[3] = {};            // its velocity in the last step
   Past past = {};
   bigint motion_step = -1;    // step for which the motion of the wall is known
   double impulse[6] = {};     // on the body, with its moment, in the last step: this rank's share
@@ -170,17 +172,12 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
 
   bool region_moves() const;
   bool acts_on(const MPMField &) const;
-  Face face_on_lattice(const MPMField &, int face) const;
   Faces faces_on_lattice(const MPMField &) const;
   static bool narrow(const Faces &, int axis);
   void list_face_nodes(FieldNodes &);
   void list_region_nodes(FieldNodes &);
-  double surface_distance(const double *x) const;
-  void surface_normal(const double *x, double step, int dim, double *normal) const;
   void update_motion(double dt);
-  void note_region();
   double slide_share(Contact &, double push, double needed) const;
-  double old_relative(const double *record, int d, double limit) const;
   void set_velocity(MPM_NS::Grid &, int64_t node, const double *v, const double *old);
   void project(MPM_NS::Grid &, const Member *, int n, bool fixed, const Prescribed &);
   void act_on_column(const FieldNodes &, Line &);

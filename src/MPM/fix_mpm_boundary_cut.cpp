@@ -113,29 +113,24 @@ void FixMPMBoundary::act_on_cut(const FieldNodes &list, Line &cut, bool last)
   };
   double lambda[3] = {0.0, 0.0, 0.0}, mu[3], lambda_old[3] = {0.0, 0.0, 0.0},
          mu_old[3] = {0.0, 0.0, 0.0};
-  auto project = [&](auto velocity, double &l, double &u) {
+  double relative[4];    // of the nodes to the wall
+  auto project = [&](double &l, double &u) {
     double a_sum = 0.0, b_sum = 0.0;
     for (int k = 0; k < m; k++) {
-      a_sum -= A[k] * velocity(k);
-      b_sum -= B[k] * velocity(k);
+      a_sum -= A[k] * relative[k];
+      b_sum -= B[k] * relative[k];
     }
     const double det = AA * BB - AB * AB;
     l = BB > 0.0 ? (BB * a_sum - AB * b_sum) / det : a_sum / AA;
     u = BB > 0.0 ? (AA * b_sum - AB * a_sum) / det : 0.0;
   };
   for (int d = 0; d < dim; d++) {
-    project(
-        [&](int k) {
-          return r[k][d] - V[k][d];
-        },
-        lambda[d], mu[d]);
+    for (int k = 0; k < m; k++) relative[k] = r[k][d] - V[k][d];
+    project(lambda[d], mu[d]);
     if (!hold || !(kind == STICK ? prescribed(d) : d == a)) continue;
-    const double limit = fabs(r[m - 1][4 + d] - before[d]);
-    project(
-        [&](int k) {
-          return old_relative(r[k], d, limit);
-        },
-        lambda_old[d], mu_old[d]);
+    const double limit = fabs(r[m - 1][4 + d] - wall.before[d]);
+    for (int k = 0; k < m; k++) relative[k] = wall.old_relative(r[k], d, limit);
+    project(lambda_old[d], mu_old[d]);
   }
 
   double share[3] = {0.0, 0.0, 0.0};

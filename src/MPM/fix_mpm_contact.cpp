@@ -31,7 +31,7 @@
    would stand in its way. The volumes of all bodies at a node, as a share of the volume that belongs
    to a node, add up to one where they touch, whatever the position of the interface relative to the
    nodes, and to less while there is a gap or beyond the end of one of them. What of this volume is
-   outside of fixed faces of the box does not count (find_room()).
+   outside of fixed faces of the box does not count (Room).
 ------------------------------------------------------------------------- */
 
 #include "fix_mpm_contact.h"
@@ -55,7 +55,6 @@
 #include <algorithm>
 #include <climits>
 #include <cmath>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -215,7 +214,7 @@ void FixMPMContact::init()
                "more than the node spacing {}: raise the strength or the node spacing",
                id, 2.0 * release_work / normal_strength, first.lattice.h);
 
-  find_room();
+  room.find(first, *domain);
   lists_valid = false;
   look = true;
 }
@@ -228,10 +227,9 @@ bool FixMPMContact::couples(const std::string &a, const std::string &b) const
       std::count(names.begin(), names.end(), b);
 }
 
-/** Row of the output for fields a < b: (0,1), (0,2), ..., (1,2), ... */
-int FixMPMContact::pair_index(int a, int b) const
+/** Row of the output for fields a < b of n: (0,1), (0,2), ..., (1,2), ... */
+static int pair_index(int a, int b, int n)
 {
-  const int n = (int) bodies.size();
   return a * n - a * (a + 1) / 2 + b - a - 1;
 }
 
@@ -322,19 +320,13 @@ void FixMPMContact::list_common_blocks()
     for (std::size_t slot = 0; slot < grid.blocks.size(); slot++)
       if (grid.blocks[slot].alias) bodies[k].images.push_back((int) slot);
     for (const auto &block : grid.blocks) {
-      Common c;
-      int count = 0;
-      bool listed = false;
-      for (int j = 0; j < n; j++) {
-        c.slot[j] = bodies[j].field->grid.find(block.b);
-        if (c.slot[j] < 0) continue;
-        count++;
-        listed = listed || j < k;
-      }
-      if (listed || count < 2) continue;
-      c.canonical = ~block.alias;
-      c.owned = block.owned;
-      common.push_back(c);
+      Common c = {{}, ~block.alias, block.owned};
+      for (int j = 0; j < n; j++) c.slot[j] = bodies[j].field->grid.find(block.b);
+      const auto has = [](int slot) {
+        return slot >= 0;
+      };
+      const bool listed = std::any_of(c.slot, c.slot + k, has);
+      if (!listed && std::any_of(c.slot + k + 1, c.slot + n, has)) common.push_back(c);
     }
   }
   int any = !common.empty(), all;
@@ -347,13 +339,12 @@ void FixMPMContact::list_common_blocks()
    a block whose nodes are wanted, and those that hold periodic images of its nodes
 ------------------------------------------------------------------------- */
 
-void FixMPMContact::mark_near(int k, int slot)
+void FixMPMContact::Body::mark_near(int slot)
 {
-  auto &near = bodies[k].near;
   near[slot] = 1;
-  const Grid &grid = bodies[k].field->grid;
+  const Grid &grid = field->grid;
   const int *const b = grid.blocks[slot].b;
-  for (const int image : bodies[k].images)
+  for (const int image : images)
     for (int corner = 0; corner < 8 && !near[image]; corner++) {
       const auto canonical = canonical_block(grid, grid.blocks[image], corner);
       near[image] = std::equal(canonical.begin(), canonical.end(), b);
@@ -376,7 +367,7 @@ bool FixMPMContact::map_bodies()
     if (!meet) continue;
     any = 1;
     for (std::size_t k = 0; k < bodies.size(); k++)
-      if (c.slot[k] >= 0) mark_near((int) k, c.slot[k]);
+      if (c.slot[k] >= 0) bodies[k].mark_near(c.slot[k]);
   }
   MPI_Allreduce(&any, &all, 1, MPI_INT, MPI_MAX, world);
   if (!all) return false;
@@ -416,27 +407,27 @@ void FixMPMContact::warn_overlap()
   for (const auto &c : common)
     for (int n = 0; n < NODES_PER_BLOCK; n++) {
       if (!(c.canonical >> n & 1)) continue;
-      double sum = 0.0, most[2] = {0.0, 0.0};
-      int body[2] = {-1, -1};
+      double sum = 0.0;
+      struct {
+        double share;
+        int body;
+      } most = {0.0, -1}, next = most;
       for (int k = 0; k < (int) bodies.size(); k++) {
         if (c.slot[k] < 0) continue;
         const double s = bodies[k].share[(int64_t) c.slot[k] * NODES_PER_BLOCK + n];
         sum += s;
-        const int at = s > most[0] ? 0 : 1;
-        if (s <= most[at]) continue;
-        if (at == 0) {
-          most[1] = most[0];
-          body[1] = body[0];
-        }
-        most[at] = s;
-        body[at] = k;
+        if (s > most.share) {
+          next = most;
+          most = {s, k};
+        } else if (s > next.share)
+          next = {s, k};
       }
-      if (most[1] < OVERLAP_EACH || sum < OVERLAP || sum <= mine.value) continue;
+      if (next.share < OVERLAP_EACH || sum < OVERLAP || sum <= mine.value) continue;
       mine.value = sum;
-      const MPMField &field = *bodies[body[0]].field;
-      field.grid.node_position((int64_t) c.slot[body[0]] * NODES_PER_BLOCK + n, place);
-      place[3] = body[0];
-      place[4] = body[1];
+      const int64_t node = (int64_t) c.slot[most.body] * NODES_PER_BLOCK + n;
+      bodies[most.body].field->grid.node_position(node, place);
+      place[3] = most.body;
+      place[4] = next.body;
     }
   MPI_Allreduce(&mine, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
   if (worst.value == 0.0) return;
@@ -477,15 +468,14 @@ void FixMPMContact::warn_overlap()
    those inside (fix_mpm_boundary.cpp), and in contact when these are.
 ------------------------------------------------------------------------- */
 
-void FixMPMContact::find_room()
+void FixMPMContact::Room::find(const MPMField &field, const Domain &box)
 {
   constexpr int FIXED = 1, SAMPLES = 48;    // boundary f; places per cell
-  const MPMField &field = *bodies[0].field;
   for (int d = 0; d < field.lattice.dim; d++) {
     double face[2] = {-1.0e300, 1.0e300};    // in node spacings
     const double h = field.lattice.h, origin = field.lattice.origin[d];
-    if (domain->boundary[d][0] == FIXED) face[0] = (domain->boxlo[d] - origin) / h;
-    if (domain->boundary[d][1] == FIXED) face[1] = (domain->boxhi[d] - origin) / h;
+    if (box.boundary[d][0] == FIXED) face[0] = (box.boxlo[d] - origin) / h;
+    if (box.boundary[d][1] == FIXED) face[1] = (box.boxhi[d] - origin) / h;
 
     // share of the function of a node that is between the faces. Points with a size fill the cells, and
     // have the mean of the linear function
@@ -506,8 +496,8 @@ void FixMPMContact::find_room()
       return sum;
     };
     for (int side = 0; side < 2; side++) {
-      Room &near = room[d][side];
-      near.fixed = domain->boundary[d][side] == FIXED;
+      Side &near = sides[d][side];
+      near.fixed = box.boundary[d][side] == FIXED;
       if (!near.fixed) continue;
       near.plane = (int) std::lround(face[side]);
       const int inward = side ? -1 : 1;
@@ -521,21 +511,17 @@ void FixMPMContact::find_room()
 }
 
 /* ----------------------------------------------------------------------
-   share of the volume of node n, as far as it is inside of the box, that all bodies fill
+   share of the volume of a node that is inside of the box. A node outside is replaced by its image, in
+   index
 ------------------------------------------------------------------------- */
 
-double FixMPMContact::filled(const Common &c, int n) const
+double FixMPMContact::Room::at(int *index, int dim, bool &image) const
 {
-  int any = 0, index[3];
-  while (c.slot[any] < 0) any++;
-  const Grid &grid = bodies[any].field->grid;
-  grid.node_index(grid.blocks[c.slot[any]], n, index);
   double most = 1.0;
-  bool image = false;
-  for (int d = 0; d < grid.lattice.dim; d++) {
+  for (int d = 0; d < dim; d++) {
     double least = 1.0;    // a narrow box: two faces are near
     for (int side = 0; side < 2; side++) {
-      const Room &near = room[d][side];
+      const Side &near = sides[d][side];
       if (!near.fixed) continue;
       int depth = (side ? -1 : 1) * (index[d] - near.plane);
       if (depth < 0) {
@@ -547,6 +533,18 @@ double FixMPMContact::filled(const Common &c, int n) const
     }
     most *= least;
   }
+  return most;
+}
+
+/** Share of the volume of node n, as far as it is inside of the box, that all bodies fill. */
+double FixMPMContact::filled(const Common &c, int n) const
+{
+  int any = 0, index[3];
+  while (c.slot[any] < 0) any++;
+  const Grid &grid = bodies[any].field->grid;
+  grid.node_index(grid.blocks[c.slot[any]], n, index);
+  bool image = false;
+  const double most = room.at(index, grid.lattice.dim, image);
   double sum = 0.0;
   for (std::size_t k = 0; k < bodies.size(); k++) {
     int64_t node = c.slot[k] < 0 ? -1 : (int64_t) c.slot[k] * NODES_PER_BLOCK + n;
@@ -593,8 +591,6 @@ bool FixMPMContact::make_pair(const Common &c, int n, int a, int b, double volum
 
 void FixMPMContact::find_contacts()
 {
-  nodes.clear();
-  pairs.clear();
   const int nfields = (int) bodies.size();
   for (const auto &c : common)
     for (int n = 0; n < NODES_PER_BLOCK; n++) {
@@ -717,12 +713,11 @@ void FixMPMContact::account(const Node &node, const double start[][3])
   for (int p = node.first; p < node.last; p++) {
     const Pair &pair = pairs[p];
     if (pair.state == OPEN) continue;
-    const int row = pair_index(pair.a, pair.b);
-    count_now[row] += 1.0;
+    Account &entry = accounts[pair_index(pair.a, pair.b, (int) bodies.size())];
+    entry.count += 1.0;
     for (int d = 0; d < dim; d++) {
-      const double impulse = pair.normal * pair.n[d] + pair.tangential[d];
-      force_now[row][d] += impulse;
-      friction_work[row] += pair.tangential[d] * (pair.rb[d] - pair.ra[d]);
+      entry.impulse[d] += pair.normal * pair.n[d] + pair.tangential[d];
+      entry.work += pair.tangential[d] * (pair.rb[d] - pair.ra[d]);
     }
   }
   for (std::size_t k = 0; k < bodies.size(); k++) {
@@ -741,8 +736,7 @@ void FixMPMContact::act(double dt, Stage stage)
   const bool count = stage == STEP;
   if (!lists_valid) list_common_blocks();
   if (count) {
-    memset(force_now, 0, sizeof(force_now));
-    memset(count_now, 0, sizeof(count_now));
+    for (auto &entry : accounts) entry = {{0.0, 0.0, 0.0}, 0.0, entry.work};
     dt_last = dt;
     nodes.clear();
     pairs.clear();
@@ -763,7 +757,7 @@ void FixMPMContact::act(double dt, Stage stage)
 double FixMPMContact::compute_scalar()
 {
   double mine = 0.0, all;
-  for (const double w : friction_work) mine += w;
+  for (const auto &entry : accounts) mine += entry.work;
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all * force->mvv2e;
 }
@@ -779,10 +773,11 @@ double FixMPMContact::compute_array(int row, int column)
     array_step = update->ntimestep;
     double mine[MAX_PAIRS][5];
     for (int p = 0; p < size_array_rows; p++) {
+      const auto &[impulse, count, work] = accounts[p];
       for (int d = 0; d < 3; d++)
-        mine[p][d] = dt_last > 0.0 ? force_now[p][d] / (dt_last * force->ftm2v) : 0.0;
-      mine[p][3] = count_now[p];
-      mine[p][4] = friction_work[p] * force->mvv2e;
+        mine[p][d] = dt_last > 0.0 ? impulse[d] / (dt_last * force->ftm2v) : 0.0;
+      mine[p][3] = count;
+      mine[p][4] = work * force->mvv2e;
     }
     MPI_Allreduce(mine, array, 5 * size_array_rows, MPI_DOUBLE, MPI_SUM, world);
   }
@@ -793,8 +788,9 @@ double FixMPMContact::compute_array(int row, int column)
 
 void FixMPMContact::write_restart(FILE *fp)
 {
-  std::vector<double> total(1 + size_array_rows, size_array_rows);
-  MPI_Reduce(friction_work, &total[1], size_array_rows, MPI_DOUBLE, MPI_SUM, 0, world);
+  std::vector<double> work, total(1 + size_array_rows, size_array_rows);
+  for (int p = 0; p < size_array_rows; p++) work.push_back(accounts[p].work);
+  MPI_Reduce(work.data(), &total[1], size_array_rows, MPI_DOUBLE, MPI_SUM, 0, world);
   if (comm->me) return;
   const int size = (int) (total.size() * sizeof(double));
   fwrite(&size, sizeof(int), 1, fp);
@@ -813,7 +809,7 @@ void FixMPMContact::restart(char *buf)
                "Fix mpm/contact {} had another number of fields when the restart file was written: "
                "name as many, or give the fix another ID to begin anew",
                id);
-  if (comm->me == 0) std::copy(from + 1, from + 1 + size_array_rows, friction_work);
+  for (int p = 0; p < size_array_rows; p++) accounts[p].work = comm->me == 0 ? from[1 + p] : 0.0;
 }
 
 /* ---------------------------------------------------------------------- */

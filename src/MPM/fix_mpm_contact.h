@@ -68,7 +68,6 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
  private:
   static constexpr int MAX_PAIRS = MAX_FIELDS * (MAX_FIELDS - 1) / 2;
 
-  static constexpr int REACH = 2;    // of the function of a node, in nodes
   enum State : char { OPEN, SLIDING, STUCK };
 
   struct Common {            // a block of nodes that several fields have
@@ -89,11 +88,16 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
     bool owned;
     double *record[MAX_FIELDS];    // null: the body has no mass here
   };
-  // along an axis, for nodes near a fixed face: share of their volume inside of the box
-  struct Room {
-    int plane;                  // index of the plane of nodes at the face
-    bool fixed;                 // else there is no such face
-    double share[REACH + 1];    // from the plane on inward
+  struct Room {    // for nodes near fixed faces: share of their volume inside of the box
+    static constexpr int REACH = 2;    // of the function of a node, in nodes
+    struct Side {
+      int plane;                  // index of the plane of nodes at the face
+      bool fixed;                 // else there is no such face
+      double share[REACH + 1];    // from the plane on inward
+    } sides[3][2];                // [axis][side]
+
+    void find(const MPMField &, const Domain &);
+    double at(int *index, int dim, bool &image) const;
   };
   struct Body {
     MPMField *field;
@@ -103,10 +107,17 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
     std::vector<char> near;                   // [slot] a block where bodies share nodes
     std::vector<double> gradient;             // of the volume (or mass) at the nodes
     std::vector<double> share;                // volume at the nodes / node volume
+
+    void mark_near(int slot);
+  };
+  struct Account {        // of two bodies, this rank's share
+    double impulse[3];    // on the second one in the last step
+    double count;         // nodes in contact
+    double work;          // of friction so far
   };
 
   std::vector<std::string> names;
-  Room room[3][2];    // [axis][side]
+  Room room;
 
   std::vector<Body> bodies;
   std::vector<Common> common;
@@ -116,16 +127,13 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
   std::vector<Pair> pairs;
 
   double dt_last = 0.0;
-  double force_now[MAX_PAIRS][3] = {}, count_now[MAX_PAIRS] = {}, friction_work[MAX_PAIRS] = {};
+  Account accounts[MAX_PAIRS] = {};
   double array[MAX_PAIRS][5] = {};
   bigint array_step = -1;
 
   bool stale() const;
-  void find_room();
   double filled(const Common &, int n) const;
-  int pair_index(int a, int b) const;
   void list_common_blocks();
-  void mark_near(int k, int slot);
   int records(const Common &, int n, double *record[MAX_FIELDS]);
   bool map_bodies();
   void warn_overlap();

@@ -29,6 +29,7 @@
 
 #include <Eigen/Dense>
 
+#include <algorithm>
 #include <cmath>
 
 using namespace LAMMPS_NS;
@@ -87,22 +88,15 @@ void FixMPMContact::separate_points()
         Grid &grid = bodies[a].field->grid;
         for (int b = a + 1; b < nfields; b++) {
           shared.assign(grid.nnodes() * NREAL, 0.0);
-          const auto each = [&](const auto &act) {
-            for (const Node &node : nodes)
-              for (int p = node.first; p < node.last; p++) {
-                if (pairs[p].a != a || pairs[p].b != b) continue;
-                const auto n = (node.record[a] - grid.nodes()) / grid.nreal;
-                for (int i = 0; i < NREAL; i++)
-                  act(sums[(std::size_t) p * NREAL + i], shared[(std::size_t) n * NREAL + i]);
-              }
-          };
-          each([](double &mine, double &node) {
-            node = mine;
-          });
-          bodies[a].field->nodes.halo->sum(shared.data(), NREAL, 0, NREAL);
-          each([](double &mine, double &node) {
-            mine = node;
-          });
+          for (const bool summed : {false, true}) {
+            if (summed) bodies[a].field->nodes.halo->sum(shared.data(), NREAL, 0, NREAL);
+            for (std::size_t p = 0; p < pairs.size(); p++) {
+              if (pairs[p].a != a || pairs[p].b != b) continue;
+              double *const mine = &sums[p * NREAL];
+              double *const node = &shared[(pairs[p].ra - grid.nodes()) / grid.nreal * NREAL];
+              std::copy_n(summed ? node : mine, NREAL, summed ? mine : node);
+            }
+          }
         }
       }
 

@@ -124,20 +124,16 @@ FixMPMDt::Limit FixMPMDt::strain_limit_local() const
 FixMPMDt::Limit FixMPMDt::find_limit() const
 {
   Limit mine = strain_limit_local();
-  for (auto *field : MPMField::all(lmp)) {
-    tagint tag = 0;
-    double speed = 0.0;
-    double dt = field->time_limit->stable_dt(tag, speed) / field->options.every;
+  tagint tag = 0;
+  double speed = 0.0;
+  const auto consider = [&](double dt) {
     if (!(dt > 0.0)) dt = 0.0;    // also NaN
     if (dt < mine.dt) mine = {dt, speed, (double) tag};
-  }
-  for (auto *ifix : modify->get_fix_by_style("^mpm/elements$")) {
-    tagint tag = 0;
-    double speed = 0.0;
-    double dt = dynamic_cast<FixMPMElements *>(ifix)->stable_dt_local(tag, speed);
-    if (!(dt > 0.0)) dt = 0.0;    // also NaN
-    if (dt < mine.dt) mine = {dt, speed, (double) tag};
-  }
+  };
+  for (auto *field : MPMField::all(lmp))
+    consider(field->time_limit->stable_dt(tag, speed) / field->options.every);
+  for (auto *ifix : modify->get_fix_by_style("^mpm/elements$"))
+    consider(dynamic_cast<FixMPMElements *>(ifix)->stable_dt_local(tag, speed));
   return smallest(mine);
 }
 

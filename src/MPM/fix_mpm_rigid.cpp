@@ -41,7 +41,6 @@
 #include <cstring>
 
 using namespace LAMMPS_NS;
-using namespace FixConst;
 using namespace MPM_NS;
 
 /* ----------------------------------------------------------------------
@@ -248,7 +247,6 @@ void FixMPMRigid::find_contacts()
         c.field = field;
         c.owned = block.owned >> n & 1;
         c.state = kind == STICK ? Contact::STICKS : Contact::SLIDES;
-        MathExtra::zero3(c.pull);
         contacts.push_back(c);
       }
     }
@@ -347,7 +345,7 @@ void FixMPMRigid::solve()
     // The impulses themselves, with the friction of the last round, and their sum to the body: opposite
     // to round-off even if the rounds have not converged
 
-    double sum[6] = {0.0}, total[6];
+    double sum[6] = {0.0};
     for (const auto &c : contacts) {
       if (c.state == Contact::APART) continue;
       double w[3], push[3], moment[3];
@@ -363,12 +361,10 @@ void FixMPMRigid::solve()
         }
       c.field->ledger.push_node(c.record, c.owned, push);
     }
-    MPI_Allreduce(sum, total, 6, MPI_DOUBLE, MPI_SUM, world);
+    MPI_Allreduce(sum, impulse, 6, MPI_DOUBLE, MPI_SUM, world);
     for (int d = 0; d < 3; d++) {
-      impulse[d] = total[d];
-      impulse[3 + d] = total[3 + d];
-      if (!fixed[d]) v[d] += total[d] / mass;
-      if (!fixed[3 + d]) L[d] += total[3 + d];
+      if (!fixed[d]) v[d] += impulse[d] / mass;
+      if (!fixed[3 + d]) L[d] += impulse[3 + d];
     }
     return;
   }
@@ -396,17 +392,13 @@ static void rotate(const double *angle, const double from[3][3], double to[3][3]
 
 void FixMPMRigid::move(double dt)
 {
-  double start[3][3], angle[3], moved[3][3];
+  double start[3][3], angle[3];
   memcpy(start, Q, sizeof(Q));
-  for (int round = 0; round < 3; round++) {
+  for (const double share : {0.5, 0.5, 0.5, 1.0}) {    // three rounds find the middle of the step
     spin();
-    MathExtra::scale3(0.5 * dt, omega, angle);
+    MathExtra::scale3(share * dt, omega, angle);
     rotate(angle, start, Q);
   }
-  spin();
-  MathExtra::scale3(dt, omega, angle);
-  rotate(angle, start, moved);
-  memcpy(Q, moved, sizeof(Q));
   spin();
   for (int d = 0; d < 3; d++) x[d] += dt * v[d];
 }

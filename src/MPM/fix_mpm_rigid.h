@@ -78,10 +78,10 @@ class FixMPMRigid : public Fix, public MPMNodeAction, private MPMRigidOptions {
     double *record;    // of the node: its velocity and mass
     bool owned;
     State state;
-    double r[3];       // from the center of the body
-    double n[3];       // out of the body
-    double v[3];       // before the contact
-    double pull[3];    // impulse of friction on the node, for an impulse of 1 along n
+    double r[3];            // from the center of the body
+    double n[3];            // out of the body
+    double v[3];            // before the contact
+    double pull[3] = {};    // impulse of friction on the node, for an impulse of 1 along n
 
     /** Velocity of the body (u: its velocity and angular velocity) at the node, relative to v. */
     void relative_velocity(const double *u, double *w) const;
