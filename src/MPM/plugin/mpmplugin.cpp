@@ -65,7 +65,8 @@ struct Registrar {
   void *lmp, *handle;
   lammpsplugin_regfunc regfunc;
 
-  lammpsplugin_t entry(const char *style, const char *name) const
+  template <class... Arguments, class Base>
+  void add(const char *style, const char *name, Base *(*creator)(LAMMPS *, Arguments...)) const
   {
     lammpsplugin_t plugin = {};
     plugin.version = LAMMPS_VERSION;
@@ -73,22 +74,11 @@ struct Registrar {
     plugin.name = name;
     plugin.info = "material point method";
     plugin.author = "the authors of the MPM package";
+    if constexpr (sizeof...(Arguments) == 0)
+      plugin.creator.v1 = (lammpsplugin_factory1 *) creator;
+    else
+      plugin.creator.v2 = (lammpsplugin_factory2 *) creator;
     plugin.handle = handle;
-    return plugin;
-  }
-
-  template <class Base> void add(const char *style, const char *name, Base *(*creator)(LAMMPS *)) const
-  {
-    auto plugin = entry(style, name);
-    plugin.creator.v1 = (lammpsplugin_factory1 *) creator;
-    (*regfunc)(&plugin, lmp);
-  }
-
-  template <class Base>
-  void add(const char *style, const char *name, Base *(*creator)(LAMMPS *, int, char **)) const
-  {
-    auto plugin = entry(style, name);
-    plugin.creator.v2 = (lammpsplugin_factory2 *) creator;
     (*regfunc)(&plugin, lmp);
   }
 };
@@ -114,14 +104,10 @@ extern "C" void lammpsplugin_init(void *ptr, void *handle, void *regfunc)
 #define ATOM_CLASS
 #define AtomStyle(key, Class) (*lmp->atom->avec_map)[#key] = &create1<AtomVec, Class>
 #include "mpm_style_atom.h"
-#undef AtomStyle
-#undef ATOM_CLASS
 
 #define DUMP_CLASS
 #define DumpStyle(key, Class) (*lmp->output->dump_map)[#key] = &create3<Dump, Class>
 #include "mpm_style_dump.h"
-#undef DumpStyle
-#undef DUMP_CLASS
 
   // commands directly, too: they outlive 'clear', after which the API would warn of overriding
   // them, and 'plugin unload' would remove LAMMPS's own replicate together with ours
@@ -131,30 +117,20 @@ extern "C" void lammpsplugin_init(void *ptr, void *handle, void *regfunc)
 #define COMMAND_CLASS
 #define CommandStyle(key, Class) (*lmp->input->command_map)[#key] = &create1<Command, Class>
 #include "mpm_style_command.h"
-#undef CommandStyle
-#undef COMMAND_CLASS
 
 #define COMPUTE_CLASS
 #define ComputeStyle(key, Class) registrar.add("compute", #key, &create3<Compute, Class>)
 #include "mpm_style_compute.h"
-#undef ComputeStyle
-#undef COMPUTE_CLASS
 
 #define FIX_CLASS
 #define FixStyle(key, Class) registrar.add("fix", #key, &create3<Fix, Class>)
 #include "mpm_style_fix.h"
-#undef FixStyle
-#undef FIX_CLASS
 
 #define PAIR_CLASS
 #define PairStyle(key, Class) registrar.add("pair", #key, &create1<Pair, Class>)
 #include "mpm_style_pair.h"
-#undef PairStyle
-#undef PAIR_CLASS
 
 #define REGION_CLASS
 #define RegionStyle(key, Class) registrar.add("region", #key, &create3<Region, Class>)
 #include "mpm_style_region.h"
-#undef RegionStyle
-#undef REGION_CLASS
 }
