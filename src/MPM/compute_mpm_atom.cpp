@@ -142,7 +142,7 @@ ComputeMPMAtom::Column ComputeMPMAtom::find_column(const std::string &name)
 /* ---------------------------------------------------------------------- */
 
 ComputeMPMAtom::ComputeMPMAtom(LAMMPS *lmp, int narg, char **arg) :
-    Compute(lmp, narg, arg), points(MPMPoints::get(atom)), nmax(0)
+    Compute(lmp, narg, arg), points(MPMPoints::get(atom))
 {
   if (narg < 4) utils::missing_cmd_args(FLERR, "compute mpm/atom", error);
   if (!points)
@@ -211,13 +211,6 @@ void ComputeMPMAtom::init()
 
 /* ---------------------------------------------------------------------- */
 
-bool ComputeMPMAtom::is_point(int i) const
-{
-  return (atom->mask[i] & groupbit) && atom->vfrac[i] > 0.0;
-}
-
-/* ---------------------------------------------------------------------- */
-
 void ComputeMPMAtom::compute_peratom()
 {
   invoked_peratom = update->ntimestep;
@@ -237,7 +230,7 @@ void ComputeMPMAtom::compute_peratom()
     const bool of_point = quantity && quantity->of_point;
     for (int i = 0; i < atom->nlocal; i++) {
       array_atom[i][n] = 0.0;
-      if (!of_point || !is_point(i)) continue;
+      if (!of_point || !(atom->mask[i] & groupbit) || !(atom->vfrac[i] > 0.0)) continue;
       const MPMField *field = nullptr;
       for (const auto *each : fields)
         if (each->is_point(i)) field = each;

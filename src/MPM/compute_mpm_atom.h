@@ -51,10 +51,9 @@ class ComputeMPMAtom : public Compute {
 
   MPMPoints *points;
   std::vector<Column> columns;
-  int nmax;
+  int nmax = 0;
 
   static Column find_column(const std::string &name);
-  bool is_point(int) const;
   std::string known_names() const;
 };
 

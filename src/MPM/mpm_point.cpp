@@ -8,7 +8,6 @@
 
 #include "mpm_point.h"
 
-#include "law/law.h"
 #include "material/material_point.h"
 #include "mpm_input.h"
 #include "mpm_options.h"

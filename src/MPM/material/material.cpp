@@ -127,9 +127,12 @@ class ComposedMaterial : public Material {
     else
       clear_stress(b);
     if (damage) account_of_strength(b);
-    if (viscous >= 0) begin_viscous_stress(b);
+    // what the viscosities add: stress after them minus stress before them
+    for (int k = 0; k < 6 && viscous >= 0; k++)
+      for (int i = 0; i < b.n; i++) b.history[viscous + k][i] = -b.stress[k][i];
     for (const auto &law : laws[VISCOSITY]) run(law);
-    if (viscous >= 0) end_viscous_stress(b);
+    for (int k = 0; k < 6 && viscous >= 0; k++)
+      for (int i = 0; i < b.n; i++) b.history[viscous + k][i] += b.stress[k][i];
     if (damage) table->mean_stress(b, b.viscous_mean);
     for (const auto &law : laws[EOS]) run(law);
     if (damage) {
@@ -213,19 +216,6 @@ class ComposedMaterial : public Material {
   {
     for (int k = 0; k < 6; k++)
       for (int i = 0; i < b.n; i++) b.stress[k][i] -= b.history[viscous + k][i];
-  }
-
-  // around the viscosities: stress after them minus stress before them
-  void begin_viscous_stress(Batch &b) const
-  {
-    for (int k = 0; k < 6; k++)
-      for (int i = 0; i < b.n; i++) b.history[viscous + k][i] = -b.stress[k][i];
-  }
-
-  void end_viscous_stress(Batch &b) const
-  {
-    for (int k = 0; k < 6; k++)
-      for (int i = 0; i < b.n; i++) b.history[viscous + k][i] += b.stress[k][i];
   }
 
   const Batch &without_viscous_stress(const Batch &b, Batch &copy) const
@@ -477,8 +467,7 @@ class ComposedMaterial : public Material {
       throw MaterialError(random.word, what + ": " + why);
     };
     UsedLaw *owner = nullptr;
-    RandomParameter r = {
-        -1, -1, static_cast<int>(variables.size()), random.lognormal, random.variation, nullptr};
+    RandomParameter r = {random, -1, -1, static_cast<int>(variables.size()), nullptr};
     std::string choice = "density";
     const auto consider = [&](UsedLaw &law, int term, int k) {
       const LawInfo &info = *law.info;

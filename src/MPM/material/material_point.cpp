@@ -324,11 +324,6 @@ double MaterialPoint::density() const
   return material.density(row.data());
 }
 
-double MaterialPoint::pressure() const
-{
-  return -(stress(0) + stress(1) + stress(2)) / 3.0;
-}
-
 double MaterialPoint::vonmises() const
 {
   const double p = pressure();

@@ -65,7 +65,7 @@ class MaterialPoint {
   double stress(int k) const { return batch.stress[k][0]; }
   double history(int k) const { return batch.history[k][0]; }
   double density() const;    ///< reference density
-  double pressure() const;
+  double pressure() const { return -(stress(0) + stress(1) + stress(2)) / 3.0; }
   double vonmises() const;
   double wave_speed() const;
   double stored_energy() const;

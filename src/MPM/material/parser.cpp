@@ -23,6 +23,7 @@
 #include "material/parts.h"
 #include "material/random_field.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -87,6 +88,8 @@ class Parser {
     while (!at_end()) {
       const int here = next;
       const std::string keyword = words[next++];
+      // closed laws have no keyword in front of their name
+      const int part = std::find(part_name + 1, part_name + NPARTS, keyword) - part_name;
       if (keyword == "density")
         parse_density(here);
       else if (keyword == "range")
@@ -95,7 +98,7 @@ class Parser {
         parse_random(here);
       else if (find(declared_laws(CLOSED), keyword) >= 0)
         parse_law(CLOSED, here);
-      else if (const int part = find_part(keyword))
+      else if (part < NPARTS)
         parse_law(static_cast<Part>(part), next++);
       else
         fail(here,
@@ -121,14 +124,6 @@ class Parser {
   MaterialDefinition material;
 
   bool at_end() const { return next >= static_cast<int>(words.size()); }
-
-  /** The part that a keyword introduces, 0 (closed laws have no such keyword): none. */
-  static int find_part(const std::string &keyword)
-  {
-    for (int part = NPARTS - 1; part > 0; part--)
-      if (keyword == part_name[part]) return part;
-    return 0;
-  }
 
   [[noreturn]] static void fail(int word, const std::string &message)
   {

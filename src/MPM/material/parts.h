@@ -21,14 +21,22 @@ class RandomField;
 
 constexpr const char *part_name[NPARTS] = {"", "eos", "strength", "viscosity", "damage", "thermal"};
 
+/** A random parameter in a definition. */
+struct UsedRandom {
+  int word;    ///< of the name in the definition
+  std::string name;
+  bool lognormal;
+  double variation;    ///< standard deviation over mean
+  double length;
+  long seed;
+};
+
 /** A parameter that differs from point to point: its value is the mean times a factor, which is a
  *  history variable. */
-struct RandomParameter {
+struct RandomParameter : UsedRandom {
   int term;         ///< of the option that is given several times, -1: not of a term
   int parameter;    ///< in the declaration of its law
   int row;          ///< of the factor in the history of the material
-  bool lognormal;
-  double variation;    ///< standard deviation over mean
   std::shared_ptr<const RandomField> field;
 
   /** The parameter among those of its law, constant or not. */
@@ -36,15 +44,6 @@ struct RandomParameter {
   {
     return term < 0 ? p.value[parameter] : p.term[term][parameter];
   }
-};
-
-/** A random parameter in a definition. */
-struct UsedRandom {
-  int word;    ///< of the name in the definition
-  std::string name;
-  bool lognormal;
-  double variation, length;
-  long seed;
 };
 
 /** A law with its parameters in a material. */

@@ -166,8 +166,3 @@ double RandomField::value(const double *x) const
     }
   return sum;
 }
-
-void RandomField::release() const
-{
-  tiles.clear();
-}

@@ -41,7 +41,7 @@ class RandomField {
   double value(const double *x) const;
 
   /** Frees the tiles, which are made again when needed. */
-  void release() const;
+  void release() const { tiles.clear(); }
 
  private:
   static constexpr int PER_LENGTH = 4;    ///< nodes per length
