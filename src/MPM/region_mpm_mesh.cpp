@@ -13,10 +13,10 @@
 #include "mesh/surface_mesh.h"
 #include "utils.h"
 
-#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <string>
+#include <utility>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -108,9 +108,9 @@ int RegMPMMesh::touch(const double *x, double cutoff, double side)
   const int n = mesh->touches(here, cutoff, touches, most_touches);
   if (n == 0 || side * touches[0].distance < 0.0) return 0;
   // the same order in every step, as other regions have it
-  std::sort(touches, touches + n, [](const auto &a, const auto &b) {
-    return a.part < b.part;
-  });
+  for (int i = 1; i < n; i++)
+    for (int j = i; j > 0 && touches[j].part < touches[j - 1].part; j--)
+      std::swap(touches[j], touches[j - 1]);
   for (int i = 0; i < n; i++) {
     const auto &touch = touches[i];
     contact[i].r = std::fabs(touch.distance);
