@@ -13,6 +13,7 @@
 #include "mesh/surface_mesh.h"
 #include "utils.h"
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <string>
