@@ -266,13 +266,12 @@ void CreatePoints::find_lattice()
 
 void CreatePoints::find_ranges()
 {
-  const double inf = 10.0 * INFINITE;
-  double lo[3] = {-inf, -inf, -inf}, hi[3] = {inf, inf, inf};
+  std::array<double, 3> lo, hi;
+  lo.fill(-10.0 * INFINITE);
+  hi.fill(10.0 * INFINITE);
   if (region && region->bboxflag && !region->dynamic && !region->varshape) {
-    const double region_lo[3] = {region->extent_xlo, region->extent_ylo, region->extent_zlo};
-    const double region_hi[3] = {region->extent_xhi, region->extent_yhi, region->extent_zhi};
-    std::copy_n(region_lo, 3, lo);
-    std::copy_n(region_hi, 3, hi);
+    lo = {region->extent_xlo, region->extent_ylo, region->extent_zlo};
+    hi = {region->extent_xhi, region->extent_yhi, region->extent_zhi};
   }
   // half of what is on the axis
   if (fix && fix->options.axisymmetric && lo[0] > -INFINITE) lo[0] = std::max(lo[0], 0.0);
@@ -334,12 +333,10 @@ void CreatePoints::for_sites(const Range *range, bigint first, bigint last, F &&
   for (bigint n = first; n < last; n++) {
     const bigint s[3] = {range[0].first + k[0], range[1].first + k[1], range[2].first + k[2]};
     visit(s);
-    if (++k[0] == range[0].n) {
-      k[0] = 0;
-      if (++k[1] == range[1].n) {
-        k[1] = 0;
-        k[2]++;
-      }
+    k[0]++;
+    for (int d = 0; d < 2 && k[d] == range[d].n; d++) {
+      k[d] = 0;
+      k[d + 1]++;
     }
   }
 }

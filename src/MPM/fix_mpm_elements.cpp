@@ -18,6 +18,7 @@
 #include "material/batch.h"
 #include "material/material.h"
 #include "math/matrix.h"
+#include "math_extra.h"
 #include "mesh/element.h"
 #include "modify.h"
 #include "mpm_field.h"
@@ -221,9 +222,8 @@ void FixMPMElements::make_elements(const Mesh &mesh)
     const auto &rule = rule_of(r);
     double X[MAX_ELEMENT_NODES][3];
     for (int m = 0; m < rule.nnode; m++) {
-      const double *const origin = &x[3 * (std::size_t) element.node[0]];
-      const double *const at = &x[3 * (std::size_t) element.node[m]];
-      for (int d = 0; d < 3; d++) X[m][d] = at[d] - origin[d];
+      MathExtra::sub3(&x[3 * (std::size_t) element.node[m]], &x[3 * (std::size_t) element.node[0]],
+                      X[m]);
       nearest_image(*domain, X[m]);
       r[2 + m] = (double) (ids.low + element.node[m]);
       for (int d = 0; d < dim; d++) r[2 + maxnode + m * dim + d] = X[m][d];
@@ -413,10 +413,6 @@ void FixMPMElements::compute(bool starting)
 template <class Visit> void FixMPMElements::for_batches(bool moved, Visit visit) const
 {
   Work &w = *work;
-  const auto clear = [&]() {
-    w.n = 0;
-    w.elements.clear();
-  };
   const auto flush = [&]() {
     if (w.n == 0) return;
     w.batch.n = w.n;
@@ -425,9 +421,11 @@ template <class Visit> void FixMPMElements::for_batches(bool moved, Visit visit)
     w.batch.time = update->atime + (update->ntimestep - update->atimestep) * update->dt;
     w.batch.history = reinterpret_cast<double(*)[BATCH]>(w.history.data());
     visit(w);
-    clear();
+    w.n = 0;
+    w.elements.clear();
   };
-  clear();
+  w.n = 0;
+  w.elements.clear();
   for (std::size_t e = 0; e < pool.size() / stride; e++) {
     if (w.n + rule_of(row(e)).npoint > BATCH) flush();
     load(w, e, moved);
@@ -449,9 +447,7 @@ void FixMPMElements::load(Work &w, std::size_t e, bool moved) const
   for (int m = 0; m < rule.nnode; m++) {
     X[m][2] = 0.0;
     for (int d = 0; d < dim; d++) X[m][d] = r[2 + maxnode + m * dim + d];
-    if (!moved) continue;
-    const double *const at = atom->x[nodes[e][m]], *const origin = atom->x[nodes[e][0]];
-    for (int d = 0; d < 3; d++) x[m][d] = at[d] - origin[d];
+    if (moved) MathExtra::sub3(atom->x[nodes[e][m]], atom->x[nodes[e][0]], x[m]);
   }
 
   double F[MAX_ELEMENT_POINTS][9], mean = 0.0, size = 0.0;
