@@ -422,20 +422,17 @@ void CreatePoints::check_overlap()
 }
 
 /* ----------------------------------------------------------------------
-   position of the point of a site: the site's, displaced by jitter, inside the box
+   position of the point of a site: the site's, displaced by jitter, inside the box. The random
+   number comes from the site and the seed alone
 ------------------------------------------------------------------------- */
 
 void CreatePoints::point_position(const bigint *s, double *x) const
 {
-  // a random number from the site and the seed alone
-  const auto mix = [](uint64_t h) {
-    return MPM_NS::mix_bits(h + MPM_NS::RANDOM_STEP);
-  };
   for (int d = 0; d < 3; d++) {
     x[d] = position(d, s[d]);
     if (jitter == 0.0 || d >= domain->dimension) continue;
-    uint64_t h = mix((uint64_t) seed * 4 + d);
-    for (int k = 0; k < 3; k++) h = mix(h ^ (uint64_t) s[k]);
+    uint64_t h = mix_bits((uint64_t) seed * 4 + d + RANDOM_STEP);
+    for (int k = 0; k < 3; k++) h = mix_bits((h ^ (uint64_t) s[k]) + RANDOM_STEP);
     const double u = (h >> 11) * 0x1.0p-53;
     const double move = (2.0 * u - 1.0) * jitter * spacing[d];
     for (double xnew : {x[d] + move, x[d] - move})
