@@ -553,10 +553,9 @@ int CreatePoints::owner(double *x) const
 
 /* ---------------------------------------------------------------------- */
 
-void CreatePoints::make_point(const Site &site)
+void CreatePoints::make_point(Site site)
 {
-  double x[3] = {site.x[0], site.x[1], site.x[2]};
-  atom->avec->create_atom(type, x);
+  atom->avec->create_atom(type, site.x);
 
   const int i = atom->nlocal - 1;
   atom->tag[i] = site.tag;

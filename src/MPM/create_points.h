@@ -108,7 +108,7 @@ class CreatePoints : public Command, private CreatePointsOptions {
   bigint make_mesh_points();
   void send_and_make(std::vector<Site> &);
   void set_domains(int first);
-  void make_point(const Site &);
+  void make_point(Site);
 
   double position(int d, bigint s) const { return origin[d] + (s + 0.5) * spacing[d]; }
   bool in_box(const bigint *s) const

@@ -15,7 +15,6 @@
 #include "fix_mpm_material.h"
 #include "force.h"
 #include "group.h"
-#include "material/batch.h"
 #include "material/material.h"
 #include "math/matrix.h"
 #include "math_extra.h"

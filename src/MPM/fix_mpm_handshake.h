@@ -19,7 +19,6 @@ FixStyle(mpm/handshake,FixMPMHandshake);
 #include "mpm_node_action.h"
 #include "mpm_state.h"
 
-#include <cstdint>
 #include <string>
 #include <vector>
 

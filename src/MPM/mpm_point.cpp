@@ -8,7 +8,6 @@
 
 #include "mpm_point.h"
 
-#include "law/law.h"
 #include "material/material_point.h"
 #include "mpm_material_input.h"
 #include "mpm_options.h"
@@ -436,12 +435,11 @@ void MPMPoint::write(const MaterialPoint &point, bigint step)
                 values = fmt::format("{:10d}   {:<14.8g}", step, point.time);
     static const char *const shown[] = {"exx",      "exy",    "sxx", "sxy", "pressure",
                                         "vonmises", "stored", "us",  "up"};
-    for (const auto &c : columns)
-      for (const char *name : shown)
-        if (c.first == name) {
-          names += fmt::format(" {:^14}", name);
-          values += fmt::format(" {:<14.8g}", c.second);
-        }
+    for (const auto &[name, value] : columns)
+      if (std::find(std::begin(shown), std::end(shown), name) != std::end(shown)) {
+        names += fmt::format(" {:^14}", name);
+        values += fmt::format(" {:<14.8g}", value);
+      }
     if (first) utils::logmesg(lmp, "{}\n", names);
     utils::logmesg(lmp, "{}\n", values);
   }
