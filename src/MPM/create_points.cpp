@@ -355,8 +355,7 @@ void CreatePoints::check_outside()
   bool exceeds = false;
   double nsearch = 1.0;
   for (int d = 0; d < domain->dimension; d++) {
-    exceeds = exceeds || search[d].first < box[d].first ||
-        search[d].first + search[d].n > box[d].first + box[d].n;
+    exceeds = exceeds || search[d].first < box[d].first || search[d].end() > box[d].end();
     nsearch *= search[d].n;
   }
   if (!exceeds || nsearch == 0.0) return;
@@ -404,7 +403,7 @@ void CreatePoints::check_overlap()
       s[d] = (bigint) floor((x[i][d] - origin[d]) / spacing[d]);
       if (domain->periodicity[d] && box[d].n > 0) {
         if (s[d] < box[d].first) s[d] += box[d].n;
-        if (s[d] >= box[d].first + box[d].n) s[d] -= box[d].n;
+        if (s[d] >= box[d].end()) s[d] -= box[d].n;
       }
     }
     if (!in_box(s) || !in_region(s)) continue;
@@ -460,7 +459,7 @@ bigint CreatePoints::make_points()
   double nsite = 1.0;
   for (int d = 0; d < 3; d++) {
     const bigint first = std::max(search[d].first, box[d].first);
-    const bigint end = std::min(search[d].first + search[d].n, box[d].first + box[d].n);
+    const bigint end = std::min(search[d].end(), box[d].end());
     range[d] = {first, std::max(end - first, (bigint) 0)};
     nsite *= range[d].n;
   }

@@ -74,7 +74,8 @@ class CreatePoints : public Command, private CreatePointsOptions {
   using Corners = std::array<double, 24>;    // of an element from its center, see transfer/cpdi.h
   struct Range {                             // consecutive sites along an axis
     bigint first = 0, n = 1;
-    bool contains(bigint s) const { return s >= first && s < first + n; }
+    bigint end() const { return first + n; }
+    bool contains(bigint s) const { return s >= first && s < end(); }
   };
 
   // settings

@@ -307,8 +307,7 @@ void FixMPMElements::init()
 
   // nodes of elements may be ghosts; what has been stretched since is asked for with comm_modify
 
-  const double extent = largest_extent();
-  comm->cutghostuser = std::max(comm->cutghostuser, extent);
+  comm->cutghostuser = std::max(comm->cutghostuser, largest_extent());
 }
 
 /* ----------------------------------------------------------------------

@@ -411,7 +411,7 @@ void FixMPMHandshake::extend_topology(MPMField &which)
   const double drift = MIN(1.0, 0.5 * neighbor->skin / lattice.h);
   for (int i = 0; i < atom->nlocal; i++) {
     if (role[i] != COUPLED) continue;
-    int lo[3] = {0, 0, 0}, hi[3] = {0, 0, 0};
+    int lo[3] = {0, 0, 0}, hi[3] = {0, 0, 0}, b[3];
     for (int d = 0; d < lattice.dim; d++) {
       const double t = (atom->x[i][d] - lattice.origin[d]) / lattice.h;
       int first;
@@ -421,7 +421,6 @@ void FixMPMHandshake::extend_topology(MPMField &which)
       const int n = MPMStencil(*field).weights(t + drift, first, w);
       hi[d] = (first + n - 1) >> grid.shift_bits;
     }
-    int b[3];
     for (b[0] = lo[0]; b[0] <= hi[0]; b[0]++)
       for (b[1] = lo[1]; b[1] <= hi[1]; b[1]++)
         for (b[2] = lo[2]; b[2] <= hi[2]; b[2]++) grid.activate(b);
