@@ -566,8 +566,8 @@ void CreatePoints::make_point(Site site)
 
 /* ----------------------------------------------------------------------
    create_points TYPE mesh FILE keyword value ...: a point at each node of a mesh of finite elements
-   create_points TYPE elements FILE keyword value ...: a point for each element of a mesh, which is its
-   domain with shape cpdi2 of fix mpm
+   create_points TYPE elements FILE keyword value ...: a point for each element of a mesh, which is
+   its domain with shape cpdi2 of fix mpm
 ------------------------------------------------------------------------- */
 
 Options CreatePointsMeshOptions::declare(const std::string &command, int dim, bool has_radius)
