@@ -207,12 +207,9 @@ int AtomVecMPM::property_atom(const std::string &name)
 
 void AtomVecMPM::pack_property_atom(int index, double *buf, int nvalues, int groupbit)
 {
-  const int *mask = atom->mask;
-  const int nlocal = atom->nlocal;
-
-  for (int i = 0; i < nlocal; i++) {
+  for (int i = 0; i < atom->nlocal; i++) {
     double value = 0.0;
-    if ((mask[i] & groupbit) && vfrac[i] > 0.0) {
+    if ((atom->mask[i] & groupbit) && vfrac[i] > 0.0) {
       const double J = points->jacobian(i);
       if (index == VOLUME0)
         value = vfrac[i];

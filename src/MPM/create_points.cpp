@@ -16,11 +16,16 @@
 #include "fix.h"
 #include "irregular.h"
 #include "math/random.h"
+#include "math_extra.h"
+#include "mesh/element.h"
 #include "modify.h"
+#include "mpm_cpdi.h"
 #include "mpm_field.h"
 #include "mpm_frame.h"
+#include "mpm_input.h"
 #include "mpm_options.h"
 #include "region.h"
+#include "transfer/cpdi.h"
 
 #include <algorithm>
 #include <cmath>
@@ -266,13 +271,12 @@ void CreatePoints::find_lattice()
 
 void CreatePoints::find_ranges()
 {
-  const double inf = 10.0 * INFINITE;
-  double lo[3] = {-inf, -inf, -inf}, hi[3] = {inf, inf, inf};
+  std::array<double, 3> lo, hi;
+  lo.fill(-10.0 * INFINITE);
+  hi.fill(10.0 * INFINITE);
   if (region && region->bboxflag && !region->dynamic && !region->varshape) {
-    const double region_lo[3] = {region->extent_xlo, region->extent_ylo, region->extent_zlo};
-    const double region_hi[3] = {region->extent_xhi, region->extent_yhi, region->extent_zhi};
-    std::copy_n(region_lo, 3, lo);
-    std::copy_n(region_hi, 3, hi);
+    lo = {region->extent_xlo, region->extent_ylo, region->extent_zlo};
+    hi = {region->extent_xhi, region->extent_yhi, region->extent_zhi};
   }
   // half of what is on the axis
   if (fix && fix->options.axisymmetric && lo[0] > -INFINITE) lo[0] = std::max(lo[0], 0.0);
@@ -334,12 +338,10 @@ void CreatePoints::for_sites(const Range *range, bigint first, bigint last, F &&
   for (bigint n = first; n < last; n++) {
     const bigint s[3] = {range[0].first + k[0], range[1].first + k[1], range[2].first + k[2]};
     visit(s);
-    if (++k[0] == range[0].n) {
-      k[0] = 0;
-      if (++k[1] == range[1].n) {
-        k[1] = 0;
-        k[2]++;
-      }
+    k[0]++;
+    for (int d = 0; d < 2 && k[d] == range[d].n; d++) {
+      k[d] = 0;
+      k[d + 1]++;
     }
   }
 }
@@ -353,8 +355,7 @@ void CreatePoints::check_outside()
   bool exceeds = false;
   double nsearch = 1.0;
   for (int d = 0; d < domain->dimension; d++) {
-    exceeds = exceeds || search[d].first < box[d].first ||
-        search[d].first + search[d].n > box[d].first + box[d].n;
+    exceeds = exceeds || search[d].first < box[d].first || search[d].end() > box[d].end();
     nsearch *= search[d].n;
   }
   if (!exceeds || nsearch == 0.0) return;
@@ -402,7 +403,7 @@ void CreatePoints::check_overlap()
       s[d] = (bigint) floor((x[i][d] - origin[d]) / spacing[d]);
       if (domain->periodicity[d] && box[d].n > 0) {
         if (s[d] < box[d].first) s[d] += box[d].n;
-        if (s[d] >= box[d].first + box[d].n) s[d] -= box[d].n;
+        if (s[d] >= box[d].end()) s[d] -= box[d].n;
       }
     }
     if (!in_box(s) || !in_region(s)) continue;
@@ -425,20 +426,17 @@ void CreatePoints::check_overlap()
 }
 
 /* ----------------------------------------------------------------------
-   position of the point of a site: the site's, displaced by jitter, inside the box
+   position of the point of a site: the site's, displaced by jitter, inside the box. The random
+   number comes from the site and the seed alone
 ------------------------------------------------------------------------- */
 
 void CreatePoints::point_position(const bigint *s, double *x) const
 {
-  // a random number from the site and the seed alone
-  const auto mix = [](uint64_t h) {
-    return MPM_NS::mix_bits(h + MPM_NS::RANDOM_STEP);
-  };
   for (int d = 0; d < 3; d++) {
     x[d] = position(d, s[d]);
     if (jitter == 0.0 || d >= domain->dimension) continue;
-    uint64_t h = mix((uint64_t) seed * 4 + d);
-    for (int k = 0; k < 3; k++) h = mix(h ^ (uint64_t) s[k]);
+    uint64_t h = mix_bits((uint64_t) seed * 4 + d + RANDOM_STEP);
+    for (int k = 0; k < 3; k++) h = mix_bits((h ^ (uint64_t) s[k]) + RANDOM_STEP);
     const double u = (h >> 11) * 0x1.0p-53;
     const double move = (2.0 * u - 1.0) * jitter * spacing[d];
     for (double xnew : {x[d] + move, x[d] - move})
@@ -461,7 +459,7 @@ bigint CreatePoints::make_points()
   double nsite = 1.0;
   for (int d = 0; d < 3; d++) {
     const bigint first = std::max(search[d].first, box[d].first);
-    const bigint end = std::min(search[d].first + search[d].n, box[d].first + box[d].n);
+    const bigint end = std::min(search[d].end(), box[d].end());
     range[d] = {first, std::max(end - first, (bigint) 0)};
     nsite *= range[d].n;
   }
@@ -554,10 +552,9 @@ int CreatePoints::owner(double *x) const
 
 /* ---------------------------------------------------------------------- */
 
-void CreatePoints::make_point(const Site &site)
+void CreatePoints::make_point(Site site)
 {
-  double x[3] = {site.x[0], site.x[1], site.x[2]};
-  atom->avec->create_atom(type, x);
+  atom->avec->create_atom(type, site.x);
 
   const int i = atom->nlocal - 1;
   atom->tag[i] = site.tag;
@@ -565,4 +562,172 @@ void CreatePoints::make_point(const Site &site)
   atom->rmass[i] = 0.0;    // not known yet, see fix mpm/material
   const double edge = domain->dimension == 3 ? cbrt(site.volume) : sqrt(site.volume);
   if (atom->radius_flag) atom->radius[i] = 0.5 * (diameter > 0.0 ? diameter : edge);
+}
+
+/* ----------------------------------------------------------------------
+   create_points TYPE mesh FILE keyword value ...: a point at each node of a mesh of finite elements
+   create_points TYPE elements FILE keyword value ...: a point for each element of a mesh, which is
+   its domain with shape cpdi2 of fix mpm
+------------------------------------------------------------------------- */
+
+Options CreatePointsMeshOptions::declare(const std::string &command, int dim, bool has_radius)
+{
+  using namespace option;
+  Options o(command);
+  o.add("scale", {number(scale, "factor", POSITIVE, "", "factor on the coordinates of the file")});
+  o.add("move",
+        {axes(move, dim, "x y z", ANY_NUMBER, "distance", "added to the scaled coordinates")});
+  o.add("part", {text(part, "name", "name or tag of a physical group of the mesh")})
+      .standard("all elements of the dimension of the simulation");
+  o.add("diameter",
+        {number(diameter, "D", POSITIVE, "distance",
+                "diameter of the points in contact with grains")})
+      .standard("edge of a cube (2d: square) of the volume");
+  o.refuse([=] {
+    return OptionRules{{!has_radius, "diameter", "needs atom_style hybrid sphere mpm"}};
+  });
+  return o;
+}
+
+void CreatePoints::parse_mesh(int narg, char **arg)
+{
+  const std::string what = std::string("create_points ") + arg[1];
+  if (narg < 3) utils::missing_cmd_args(FLERR, what, error);
+  for (auto *field : MPMField::all(lmp))
+    if (field->options.axisymmetric) fix = field;
+  const bool in_elements = strcmp(arg[1], "elements") == 0;
+  if (fix && !in_elements)
+    error->all(FLERR, 1,
+               "Create_points mesh cannot be used with axisymmetric fix mpm {}: elements, to "
+               "which its points belong, are of plane strain; use create_points elements or region",
+               fix->id());
+
+  const int dim = domain->dimension;
+  CreatePointsMeshOptions given;
+  Options options = given.declare(what, dim, atom->radius_flag);
+  read_options(lmp, options, narg, arg, 3);
+  diameter = given.diameter;
+
+  Mesh mesh = read_body(lmp, arg[2], given.part, "Create_points", 2);
+  for (auto &x : mesh.nodes)
+    for (int d = 0; d < 3; d++) x[d] = d < dim ? given.move[d] + given.scale * x[d] : 0.0;
+
+  volume = 0.0;
+  if (in_elements)
+    find_elements(mesh, arg[2]);
+  else
+    find_nodes(mesh, arg[2]);
+  volume /= mesh_sites.size();
+
+  bigint outside = 0;
+  for (auto &site : mesh_sites) {
+    bool inside = true;
+    for (int d = 0; d < 3; d++)
+      inside = inside &&
+          (domain->periodicity[d] ||
+           (site.x[d] >= domain->boxlo[d] && site.x[d] < domain->boxhi[d]));
+    outside += !inside;
+    domain->remap(site.x);
+  }
+  if (outside)
+    error->all(FLERR, 2,
+               "Create_points: {} {} of {} are outside of the simulation box; enlarge the "
+               "box, or use the keywords scale and move",
+               outside, in_elements ? "elements" : "nodes", arg[2]);
+}
+
+/* ----------------------------------------------------------------------
+   a node has its share of the volume of the elements around it
+------------------------------------------------------------------------- */
+
+static constexpr char bad_element[] = "Create_points: element {} of {} has no volume or is twisted";
+
+void CreatePoints::find_nodes(const Mesh &mesh, const char *file)
+{
+  for (const auto &x : mesh.nodes) mesh_sites.push_back({{x[0], x[1], x[2]}, 0.0, 0});
+  for (const auto &e : mesh.elements) {
+    const auto &rule = ElementRule::of(e.type);
+    double x[MAX_ELEMENT_NODES][3], g[MAX_ELEMENT_NODES][3];
+    for (int k = 0; k < rule.nnode; k++) MathExtra::copy3(mesh.nodes[e.node[k]].data(), x[k]);
+    for (int q = 0; q < rule.npoint; q++) {
+      const double w = rule.gradients(q, x, g);
+      if (!(w > 0.0)) error->all(FLERR, 2, bad_element, e.label, file);
+      volume += w;
+      for (int k = 0; k < rule.nnode; k++) mesh_sites[e.node[k]].volume += w * rule.N[q][k];
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   an element is the domain of its point
+------------------------------------------------------------------------- */
+
+/** Nodes as corners of the domain, by ElementType. */
+static constexpr int corner_nodes[][8] = {
+    {0, 1, 2, 2}, {0, 1, 3, 2}, {0, 1, 2, 2, 3, 3, 3, 3}, {0, 1, 3, 2, 4, 5, 7, 6}};
+
+void CreatePoints::find_elements(const Mesh &mesh, const char *file)
+{
+  const int dim = domain->dimension, ncorner = 1 << dim;
+  for (const auto &e : mesh.elements) {
+    Site site = {{0.0, 0.0, 0.0}, 0.0, 0};
+    Corners corner;
+    const int *node = corner_nodes[static_cast<int>(e.type)];
+    double w[8], g[24];
+    for (int c = 0; c < ncorner; c++)
+      for (int d = 0; d < dim; d++) corner[dim * c + d] = mesh.nodes[e.node[node[c]]][d];
+    site.volume = dim == 2 ? PointDomain<2>::free(corner.data(), w, g)
+                           : PointDomain<3>::free(corner.data(), w, g);
+    if (!(site.volume > 0.0 && *std::min_element(w, w + ncorner) >= 0.0))
+      error->all(FLERR, 2, bad_element, e.label, file);
+    for (int c = 0; c < ncorner && fix; c++)
+      if (corner[dim * c] < -1.0e-10 * domain->xprd)
+        error->all(FLERR, 2,
+                   "Create_points: element {} of {} reaches below x = 0, which is the axis of "
+                   "fix mpm {}",
+                   e.label, file, fix->id());
+    for (int d = 0; d < dim; d++) {
+      for (int c = 0; c < ncorner; c++) site.x[d] += w[c] * corner[dim * c + d];
+      for (int c = 0; c < ncorner; c++) corner[dim * c + d] -= site.x[d];
+    }
+    volume += site.volume;
+    mesh_sites.push_back(site);
+    corners.push_back(corner);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   all ranks have all sites, and IDs follow their order in the file; returns the number of points
+------------------------------------------------------------------------- */
+
+bigint CreatePoints::make_mesh_points()
+{
+  const bigint n = mesh_sites.size();
+  const tagint maxtag = largest_tag();
+  check_tags(maxtag, n);
+  if (comm->nprocs > 1) comm->coord2proc_setup();
+  std::vector<Corners> mine;
+  for (bigint k = 0; k < n; k++) {
+    auto &site = mesh_sites[k];
+    if (owner(site.x) != comm->me) continue;
+    site.tag = atom->tag_enable ? maxtag + k + 1 : 0;
+    make_point(site);
+    if (!corners.empty()) mine.push_back(corners[k]);
+  }
+  corners.swap(mine);
+  return n;
+}
+
+/* ----------------------------------------------------------------------
+   once fixes know of the points
+------------------------------------------------------------------------- */
+
+void CreatePoints::set_domains(int first)
+{
+  const int n = domain->dimension << domain->dimension;
+  for (auto *field : MPMField::all(lmp)) {
+    if (!field->domains || !field->domains->corners) continue;
+    for (std::size_t k = 0; k < corners.size(); k++)
+      std::copy_n(corners[k].data(), n, field->domains->corners[first + k]);
+  }
 }

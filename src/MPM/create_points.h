@@ -74,7 +74,8 @@ class CreatePoints : public Command, private CreatePointsOptions {
   using Corners = std::array<double, 24>;    // of an element from its center, see transfer/cpdi.h
   struct Range {                             // consecutive sites along an axis
     bigint first = 0, n = 1;
-    bool contains(bigint s) const { return s >= first && s < first + n; }
+    bigint end() const { return first + n; }
+    bool contains(bigint s) const { return s >= first && s < end(); }
   };
 
   // settings
@@ -108,7 +109,7 @@ class CreatePoints : public Command, private CreatePointsOptions {
   bigint make_mesh_points();
   void send_and_make(std::vector<Site> &);
   void set_domains(int first);
-  void make_point(const Site &);
+  void make_point(Site);
 
   double position(int d, bigint s) const { return origin[d] + (s + 0.5) * spacing[d]; }
   bool in_box(const bigint *s) const

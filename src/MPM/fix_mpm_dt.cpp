@@ -26,7 +26,6 @@
 #include <cstring>
 
 using namespace LAMMPS_NS;
-using namespace FixConst;
 using namespace MPM_NS;
 
 /* ----------------------------------------------------------------------
@@ -74,15 +73,6 @@ FixMPMDt::FixMPMDt(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
   dynamic_group_allow = 1;
 }
 
-/* ----------------------------------------------------------------------
-   PRE_FORCE for setup_pre_force(): before the setup() of fix mpm, which checks the time step
-------------------------------------------------------------------------- */
-
-int FixMPMDt::setmask()
-{
-  return PRE_FORCE | END_OF_STEP | POST_RUN;
-}
-
 /* ---------------------------------------------------------------------- */
 
 void FixMPMDt::init()
@@ -126,14 +116,14 @@ FixMPMDt::Limit FixMPMDt::find_limit() const
   Limit mine = strain_limit_local();
   tagint tag = 0;
   double speed = 0.0;
-  const auto consider = [&](double dt) {
+  const auto compare = [&](double dt) {
     if (!(dt > 0.0)) dt = 0.0;    // also NaN
     if (dt < mine.dt) mine = {dt, speed, (double) tag};
   };
   for (auto *field : MPMField::all(lmp))
-    consider(field->time_limit->stable_dt(tag, speed) / field->options.every);
+    compare(field->time_limit->stable_dt(tag, speed) / field->options.every);
   for (auto *ifix : modify->get_fix_by_style("^mpm/elements$"))
-    consider(dynamic_cast<FixMPMElements *>(ifix)->stable_dt_local(tag, speed));
+    compare(dynamic_cast<FixMPMElements *>(ifix)->stable_dt_local(tag, speed));
   return smallest(mine);
 }
 
@@ -175,8 +165,7 @@ void FixMPMDt::end_of_step()
     const Limit steps = smallest(strain_limit_local());
     if (!(fraction * steps.dt < update->dt)) return;
     limit = steps;
-    set_dt(fraction * limit.dt);
-    return;
+    return set_dt(fraction * limit.dt);
   }
   limit = find_limit();
   carried = NO_POINTS;
@@ -244,7 +233,7 @@ void FixMPMDt::write_restart(FILE *fp)
   if (comm->me) return;
   const int size = sizeof(state);
   fwrite(&size, sizeof(int), 1, fp);
-  fwrite(state, sizeof(double), 5, fp);
+  fwrite(state, size, 1, fp);
 }
 
 void FixMPMDt::restart(char *buf)

@@ -35,7 +35,10 @@ struct MPMDtOptions {
 class FixMPMDt : public Fix, private MPMDtOptions {
  public:
   FixMPMDt(class LAMMPS *, int, char **);
-  int setmask() override;
+  int setmask() override    // setup_pre_force() comes before fix mpm checks the time step
+  {
+    return FixConst::PRE_FORCE | FixConst::END_OF_STEP | FixConst::POST_RUN;
+  }
   void init() override;
   void setup_pre_force(int) override;
   void end_of_step() override;

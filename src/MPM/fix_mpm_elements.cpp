@@ -15,9 +15,9 @@
 #include "fix_mpm_material.h"
 #include "force.h"
 #include "group.h"
-#include "material/batch.h"
 #include "material/material.h"
 #include "math/matrix.h"
+#include "math_extra.h"
 #include "mesh/element.h"
 #include "modify.h"
 #include "mpm_field.h"
@@ -49,6 +49,8 @@ struct FixMPMElements::Work {
   double g[BATCH][MAX_ELEMENT_NODES][3];    // gradients of the functions in space
   double volume[BATCH];                     // reference volume
   double J[BATCH];                          // without F-bar
+  Batch batch = {};                         // must start from zero, see material/batch.h
+  std::vector<double> history, mean;        // of the batch, of an element
 };
 
 static const ElementRule &rule_of(const double *row)
@@ -75,7 +77,7 @@ Options MPMElementsOptions::declare()
 
 FixMPMElements::FixMPMElements(LAMMPS *lmp, int narg, char **arg) :
     FixMPMState(lmp, narg, arg), dim(domain->dimension), points(MPMPoints::get(atom)),
-    batch(std::make_unique<Batch>()), work(new Work)    // the batch is zero, see material/batch.h
+    work(new Work)
 {
   Options options = declare();
   read_options(lmp, options, narg, arg, 3);
@@ -89,6 +91,7 @@ FixMPMElements::FixMPMElements(LAMMPS *lmp, int narg, char **arg) :
   global_freq = 1;
   extscalar = 1;
 
+  int maxpoint = 0;
   const Mesh mesh = read_body(lmp, file, part, "Fix mpm/elements", 3);
   for (const auto &e : mesh.elements) {
     const auto &rule = ElementRule::of(e.type);
@@ -108,12 +111,12 @@ FixMPMElements::FixMPMElements(LAMMPS *lmp, int narg, char **arg) :
     atom->map_set();
   }
 
-  find_material();
+  material = find_material();
   nhistory = material->nhistory;
   stride = 2 + maxnode * (1 + dim) + maxpoint * (15 + nhistory);
   width = 18 + nhistory;
   comm_reverse = width;
-  history.resize((std::size_t) std::max(1, nhistory) * BATCH);
+  work->history.resize((std::size_t) std::max(1, nhistory) * BATCH);
   state.declare(first, "mpm/elements:first");
   state.declare(count, "mpm/elements:count");
   make_elements(mesh);
@@ -126,7 +129,7 @@ FixMPMElements::~FixMPMElements() = default;
    the material of the nodes is that of the elements
 ------------------------------------------------------------------------- */
 
-void FixMPMElements::find_material()
+FixMPMMaterial *FixMPMElements::find_material() const
 {
   const auto all = modify->get_fix_by_style("^mpm/material$");
   int mine = -1, index;
@@ -139,35 +142,33 @@ void FixMPMElements::find_material()
                "Fix mpm/elements {}: the points of group {} have no material: define a fix "
                "mpm/material for them before",
                id, group->names[igroup]);
-  material = dynamic_cast<FixMPMMaterial *>(all[index]);
   bigint other = 0, others;
   for (int i = 0; i < atom->nlocal; i++)
-    other += (atom->mask[i] & groupbit) && !(atom->mask[i] & material->groupbit);
+    other += (atom->mask[i] & groupbit) && !(atom->mask[i] & all[index]->groupbit);
   MPI_Allreduce(&other, &others, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   if (others)
     error->all(FLERR,
                "Fix mpm/elements {}: the points of group {} must have one material: use a "
                "fix mpm/elements and a mesh for each",
                id, group->names[igroup]);
+  return dynamic_cast<FixMPMMaterial *>(all[index]);
 }
 
-/* ----------------------------------------------------------------------
-   atoms of the group, and the range of their IDs
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
-void FixMPMElements::count_nodes(bigint &n, tagint &low, tagint &high) const
+FixMPMElements::IDs FixMPMElements::count_nodes() const
 {
-  bigint mine = 0;
-  tagint least = MAXTAGINT, most = 0;
+  IDs mine = {0, MAXTAGINT, 0}, all;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
-    mine++;
-    least = std::min(least, atom->tag[i]);
-    most = std::max(most, atom->tag[i]);
+    mine.n++;
+    mine.low = std::min(mine.low, atom->tag[i]);
+    mine.high = std::max(mine.high, atom->tag[i]);
   }
-  MPI_Allreduce(&mine, &n, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  MPI_Allreduce(&least, &low, 1, MPI_LMP_TAGINT, MPI_MIN, world);
-  MPI_Allreduce(&most, &high, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  MPI_Allreduce(&mine.n, &all.n, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  MPI_Allreduce(&mine.low, &all.low, 1, MPI_LMP_TAGINT, MPI_MIN, world);
+  MPI_Allreduce(&mine.high, &all.high, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  return all;
 }
 
 /* ----------------------------------------------------------------------
@@ -177,23 +178,22 @@ void FixMPMElements::count_nodes(bigint &n, tagint &low, tagint &high) const
 
 void FixMPMElements::make_elements(const Mesh &mesh)
 {
-  nnodes = (bigint) mesh.nodes.size();
-  bigint all;
-  tagint highest;
-  count_nodes(all, lowest, highest);
-  if (all != nnodes || (bigint) highest - lowest + 1 != nnodes)
+  const auto nnodes = (bigint) mesh.nodes.size();
+  ids = count_nodes();
+  if (ids.n != nnodes || (bigint) ids.high - ids.low + 1 != nnodes)
     error->all(FLERR,
                "Fix mpm/elements {}: group {} has {} atoms with IDs from {} to {}, the mesh has "
                "{} nodes: its group must be the points that one create_points ... mesh made from "
                "the same mesh",
-               id, group->names[igroup], all, all ? lowest : 0, highest, nnodes);
+               id, group->names[igroup], ids.n, ids.n ? ids.low : 0, ids.high, nnodes);
 
   std::vector<double> mine(3 * nnodes, 0.0), x(3 * nnodes);
   std::vector<int> local(nnodes, -1);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
-    local[atom->tag[i] - lowest] = i;
-    for (int d = 0; d < 3; d++) mine[3 * (atom->tag[i] - lowest) + d] = atom->x[i][d];
+    const tagint k = atom->tag[i] - ids.low;
+    local[k] = i;
+    for (int d = 0; d < 3; d++) mine[3 * k + d] = atom->x[i][d];
   }
   MPI_Allreduce(mine.data(), x.data(), (int) (3 * nnodes), MPI_DOUBLE, MPI_SUM, world);
 
@@ -221,11 +221,10 @@ void FixMPMElements::make_elements(const Mesh &mesh)
     const auto &rule = rule_of(r);
     double X[MAX_ELEMENT_NODES][3];
     for (int m = 0; m < rule.nnode; m++) {
-      const double *const origin = &x[3 * (std::size_t) element.node[0]];
-      const double *const at = &x[3 * (std::size_t) element.node[m]];
-      for (int d = 0; d < 3; d++) X[m][d] = at[d] - origin[d];
+      MathExtra::sub3(&x[3 * (std::size_t) element.node[m]], &x[3 * (std::size_t) element.node[0]],
+                      X[m]);
       nearest_image(*domain, X[m]);
-      r[2 + m] = (double) (lowest + element.node[m]);
+      r[2 + m] = (double) (ids.low + element.node[m]);
       for (int d = 0; d < dim; d++) r[2 + maxnode + m * dim + d] = X[m][d];
     }
     double frequency = 0.0, size = 0.0;
@@ -253,9 +252,9 @@ void FixMPMElements::make_elements(const Mesh &mesh)
   // pressure of an equation of state
 
   for_batches(false, [&](Work &w) {
-    material->material->initial_stress(*batch);
+    material->material->initial_stress(w.batch);
     for (int p = 0; p < w.n; p++)
-      for (int c = 0; c < 6; c++) w.state[p][9 + c] = batch->stress[c][p];
+      for (int c = 0; c < 6; c++) w.state[p][9 + c] = w.batch.stress[c][p];
   });
 
   for (int i = 0; i < atom->nlocal; i++)
@@ -276,15 +275,13 @@ void FixMPMElements::make_elements(const Mesh &mesh)
 
 void FixMPMElements::init()
 {
-  bigint n;
-  tagint low, high;
-  count_nodes(n, low, high);
-  if (n != nnodes || low != lowest || (bigint) high - low + 1 != nnodes)
+  const IDs now = count_nodes();
+  if (now.n != ids.n || now.low != ids.low || now.high != ids.high)
     error->all(
         FLERR, Error::NOLASTLINE,
         "Fix mpm/elements {}: group {} has {} atoms with IDs from {} to {}, but had {} from {} "
         "on: nodes of elements must not be added, deleted or renumbered; unfix it before",
-        id, group->names[igroup], n, n ? low : 0, high, nnodes, lowest);
+        id, group->names[igroup], now.n, now.n ? now.low : 0, now.high, ids.n, ids.low);
 
   for (const auto *field : MPMField::all(lmp)) {
     int mine = 0, any;
@@ -310,8 +307,7 @@ void FixMPMElements::init()
 
   // nodes of elements may be ghosts; what has been stretched since is asked for with comm_modify
 
-  const double extent = largest_extent();
-  comm->cutghostuser = std::max(comm->cutghostuser, extent);
+  comm->cutghostuser = std::max(comm->cutghostuser, largest_extent());
 }
 
 /* ----------------------------------------------------------------------
@@ -415,21 +411,19 @@ void FixMPMElements::compute(bool starting)
 template <class Visit> void FixMPMElements::for_batches(bool moved, Visit visit) const
 {
   Work &w = *work;
-  const auto clear = [&]() {
+  const auto flush = [&]() {
+    if (w.n == 0) return;
+    w.batch.n = w.n;
+    w.batch.dt = update->dt;
+    w.batch.h = shortest;
+    w.batch.time = update->atime + (update->ntimestep - update->atimestep) * update->dt;
+    w.batch.history = reinterpret_cast<double(*)[BATCH]>(w.history.data());
+    visit(w);
     w.n = 0;
     w.elements.clear();
   };
-  const auto flush = [&]() {
-    if (w.n == 0) return;
-    batch->n = w.n;
-    batch->dt = update->dt;
-    batch->h = shortest;
-    batch->time = update->atime + (update->ntimestep - update->atimestep) * update->dt;
-    batch->history = reinterpret_cast<double(*)[BATCH]>(history.data());
-    visit(w);
-    clear();
-  };
-  clear();
+  w.n = 0;
+  w.elements.clear();
   for (std::size_t e = 0; e < pool.size() / stride; e++) {
     if (w.n + rule_of(row(e)).npoint > BATCH) flush();
     load(w, e, moved);
@@ -451,9 +445,7 @@ void FixMPMElements::load(Work &w, std::size_t e, bool moved) const
   for (int m = 0; m < rule.nnode; m++) {
     X[m][2] = 0.0;
     for (int d = 0; d < dim; d++) X[m][d] = r[2 + maxnode + m * dim + d];
-    if (!moved) continue;
-    const double *const at = atom->x[nodes[e][m]], *const origin = atom->x[nodes[e][0]];
-    for (int d = 0; d < 3; d++) x[m][d] = at[d] - origin[d];
+    if (moved) MathExtra::sub3(atom->x[nodes[e][m]], atom->x[nodes[e][0]], x[m]);
   }
 
   double F[MAX_ELEMENT_POINTS][9], mean = 0.0, size = 0.0;
@@ -490,7 +482,7 @@ void FixMPMElements::load(Work &w, std::size_t e, bool moved) const
       for (int a = 0; a < 3; a++) w.g[p][m][a] = dot(g[m], inverse + 3 * a);
   }
 
-  Batch &b = *batch;
+  Batch &b = w.batch;
   for (int q = 0; q < rule.npoint; q++) {
     const int p = w.n + q;
     double *const f = F[q];
@@ -513,7 +505,7 @@ void FixMPMElements::load(Work &w, std::size_t e, bool moved) const
       }
     for (int c = 0; c < 6; c++) b.stress[c][p] = inv * s[9 + c];
     b.vol0[p] = w.volume[p];
-    for (int k = 0; k < nhistory; k++) history[k * BATCH + p] = s[15 + k];
+    for (int k = 0; k < nhistory; k++) w.history[k * BATCH + p] = s[15 + k];
   }
   w.n += rule.npoint;
 }
@@ -525,7 +517,7 @@ void FixMPMElements::load(Work &w, std::size_t e, bool moved) const
 
 void FixMPMElements::material_update(Work &w, bool starting)
 {
-  Batch &b = *batch;
+  Batch &b = w.batch;
   if (starting) {
     double largest = 0.0;
     for (int c = 0; c < 9; c++)
@@ -538,7 +530,7 @@ void FixMPMElements::material_update(Work &w, bool starting)
     double *const s = w.state[p];
     for (int c = 0; c < 9; c++) s[c] = b.F[c][p];
     for (int c = 0; c < 6; c++) s[9 + c] = b.J[p] * b.stress[c][p];
-    for (int h = 0; h < nhistory; h++) s[15 + h] = history[h * BATCH + p];
+    for (int h = 0; h < nhistory; h++) s[15 + h] = w.history[h * BATCH + p];
   }
 }
 
@@ -549,15 +541,14 @@ void FixMPMElements::material_update(Work &w, bool starting)
    strain belong together, and an elastic body keeps its energy
 ------------------------------------------------------------------------- */
 
-void FixMPMElements::add_sums(const Work &w)
+void FixMPMElements::add_sums(Work &w)
 {
   const double scale = 1.0 / force->nktv2p;
-  std::vector<double> &mean = element_mean;
   for (const auto &[number, row, rule, start] : w.elements) {
     const bool average = fbar && rule.npoint > 1;
     double f[MAX_ELEMENT_NODES][3] = {{0.0}}, share[MAX_ELEMENT_NODES] = {0.0};
     double size = 0.0, volume = 0.0, pressure = 0.0;
-    mean.assign(15 + nhistory, 0.0);
+    w.mean.assign(15 + nhistory, 0.0);
     for (int q = 0; q < rule.npoint; q++) {
       const int p = start + q;
       const double *const s = w.state[p], V = w.volume[p];
@@ -587,12 +578,12 @@ void FixMPMElements::add_sums(const Work &w)
       }
     for (int q = 0; q < rule.npoint; q++) {
       const double *const s = w.state[start + q], weight = w.volume[start + q] / size;
-      for (int c = 0; c < 15 + nhistory; c++) mean[c] += weight * s[c];
+      for (int c = 0; c < 15 + nhistory; c++) w.mean[c] += weight * s[c];
     }
     for (int m = 0; m < rule.nnode; m++) {
       double *const sum = &sums[(std::size_t) nodes[number][m] * width];
       for (int d = 0; d < dim; d++) sum[d] -= scale * f[m][d];
-      for (int c = 0; c < 15 + nhistory; c++) sum[3 + c] += share[m] * mean[c];
+      for (int c = 0; c < 15 + nhistory; c++) sum[3 + c] += share[m] * w.mean[c];
     }
   }
 }
@@ -603,7 +594,7 @@ double FixMPMElements::stored_energy() const
 {
   double sum = 0.0, energy[BATCH];
   for_batches(false, [&](Work &w) {
-    material->material->stored_energy(*batch, energy);
+    material->material->stored_energy(w.batch, energy);
     for (int p = 0; p < w.n; p++) sum += w.volume[p] * energy[p];
   });
   return sum;
@@ -623,7 +614,7 @@ double FixMPMElements::stable_dt_local(tagint &tag, double &speed) const
   tag = 0;
   speed = 0.0;
   for_batches(false, [&](Work &w) {
-    material->material->wave_speed(*batch, c);
+    material->material->wave_speed(w.batch, c);
     for (const auto &[number, row, rule, start] : w.elements) {
       double sum = 0.0, size = 0.0, largest = 0.0;
       for (int q = 0; q < rule.npoint; q++) {
@@ -663,7 +654,8 @@ void FixMPMElements::check_dt() const
 double FixMPMElements::memory_usage()
 {
   return FixMPMState::memory_usage() + (double) nodes.capacity() * sizeof(nodes[0]) +
-      (double) (pool.capacity() + sums.capacity() + force_on.capacity() + history.capacity()) *
+      (double) (pool.capacity() + sums.capacity() + force_on.capacity() +
+                work->history.capacity()) *
       sizeof(double);
 }
 

@@ -24,9 +24,8 @@ FixStyle(mpm/elements,FixMPMElements);
 #include <vector>
 
 namespace MPM_NS {
-struct Batch;
 struct Mesh;
-}    // namespace MPM_NS
+}
 
 namespace LAMMPS_NS {
 
@@ -82,16 +81,19 @@ class FixMPMElements : public FixMPMState, private MPMElementsOptions {
 
  private:
   struct Work;
+  struct IDs {    // of the nodes: their number and range
+    bigint n;
+    tagint low, high;
+  };
 
-  int dim, maxnode = 0, maxpoint = 0;    // of the largest element of the mesh
+  int dim, maxnode = 0;    // of the largest element of the mesh
   int nhistory, stride;
-  int max_of_node = 0;         // largest number of elements that belong to one node
-  bigint nelements, nnodes;    // of the mesh
-  tagint lowest;               // ID of its first node
-  double shortest = 0.0;       // length of the smallest element, for artificial viscosity
+  int max_of_node = 0;    // largest number of elements that belong to one node
+  bigint nelements;       // of the mesh
+  IDs ids;
+  double shortest = 0.0;    // length of the smallest element, for artificial viscosity
   class FixMPMMaterial *material;
   struct MPMPoints *points;
-  std::unique_ptr<MPM_NS::Batch> batch;
   std::unique_ptr<Work> work;
 
   // A row of the pool: label and type of an element, tags of its nodes [maxnode], their reference
@@ -103,23 +105,22 @@ class FixMPMElements : public FixMPMState, private MPMElementsOptions {
   std::vector<std::array<int, 8>> nodes;    // local indices, after post_neighbor()
   int width;                                // of rows of sums
   std::vector<double> sums;                 // forces and averages of nodes
-  std::vector<double> force_on, element_mean;
-  mutable std::vector<double> history;    // of a batch
+  std::vector<double> force_on;
 
   double *row(std::size_t e) const { return const_cast<double *>(pool.data()) + e * stride; }
   double *state_of(double *row, int q) const
   {
     return row + 2 + maxnode * (1 + dim) + q * (15 + nhistory);
   }
-  void find_material();
+  FixMPMMaterial *find_material() const;
   void make_elements(const MPM_NS::Mesh &);
-  void count_nodes(bigint &n, tagint &low, tagint &high) const;
+  IDs count_nodes() const;
   double largest_extent() const;
   void compute(bool starting);
   void load(Work &, std::size_t e, bool moved) const;
   template <class Visit> void for_batches(bool moved, Visit) const;
   void material_update(Work &, bool starting);
-  void add_sums(const Work &);
+  void add_sums(Work &);
 };
 
 }    // namespace LAMMPS_NS

@@ -218,13 +218,13 @@ void FixMPMHandshake::check_pair()
                                          "eam/alloy/omp", "eam/fs/omp"};
   refuse(!force->pair, "needs a pair style between the atoms");
   auto *const hybrid = dynamic_cast<PairHybrid *>(force->pair);
-  eam = nullptr;
+  eam = {};
   for (int k = 0; k < (hybrid ? SubStyles::number(*hybrid) : 1); k++) {
     Pair *const pair = hybrid ? SubStyles::style(*hybrid, k) : force->pair;
     const std::string style = hybrid ? SubStyles::name(*hybrid, k) : force->pair_style;
     if (std::find(std::begin(embedded), std::end(embedded), style) != std::end(embedded)) {
-      refuse(eam, "cannot be used with two pair styles eam: use one for all elements");
-      eam = pair;
+      refuse(eam.pair, "cannot be used with two pair styles eam: use one for all elements");
+      eam.pair = pair;
     } else
       refuse(pair->manybody_flag || !pair->single_enable,
              "cannot be used with pair style " + style +
@@ -240,33 +240,33 @@ void FixMPMHandshake::check_pair()
    whether this is so; the share alone is what is left at distances far beyond the cutoff.
 ------------------------------------------------------------------------- */
 
-double FixMPMHandshake::embedding_share(int i) const
+double FixMPMHandshake::Embedded::share(int i, int type) const
 {
-  const int type = atom->type[i];
-  const double far = 1.0e4 * eam->cutsq[type][type];
+  const double far = 1.0e4 * pair->cutsq[type][type];
   double unused;
-  const double near = eam->single(i, i, type, type, far, 1.0, 1.0, unused);
-  return 2.0 * eam->single(i, i, type, type, 4.0 * far, 1.0, 1.0, unused) - near;
+  const double near = pair->single(i, i, type, type, far, 1.0, 1.0, unused);
+  return 2.0 * pair->single(i, i, type, type, 4.0 * far, 1.0, 1.0, unused) - near;
 }
 
 void FixMPMHandshake::check_embedding()
 {
-  flaw = 0.0;
-  if (!eam) return;
+  eam.flaw = 0.0;
+  if (!eam.pair) return;
   double found[2] = {-1.0e300, -1.0e300}, all[2];    // largest of it and of its negative
   for (int i = 0; i < atom->nlocal; i++) {
     if (role[i] != COUPLED) continue;
-    const double share = embedding_share(i);
+    const int itype = atom->type[i];
+    const double share = eam.share(i, itype);
     for (int jj = 0; jj < list->numneigh[i]; jj++) {
       const int j = list->firstneigh[i][jj] & NEIGHMASK;
-      const int itype = atom->type[i], jtype = atom->type[j];
+      const int jtype = atom->type[j];
       if (j >= atom->nlocal || role[j] != COUPLED) continue;
       const double rsq = MathExtra::distsq3(atom->x[i], atom->x[j]);
-      const double difference = share - embedding_share(j);
-      if (rsq >= eam->cutsq[itype][jtype] || fabs(difference) < 1.0e-3 * fabs(share)) continue;
+      const double difference = share - eam.share(j, jtype);
+      if (rsq >= eam.pair->cutsq[itype][jtype] || fabs(difference) < 1.0e-3 * fabs(share)) continue;
       double one, other;
-      eam->single(i, j, itype, jtype, rsq, 1.0, 1.0, one);
-      eam->single(j, i, jtype, itype, rsq, 1.0, 1.0, other);
+      eam.pair->single(i, j, itype, jtype, rsq, 1.0, 1.0, one);
+      eam.pair->single(j, i, jtype, itype, rsq, 1.0, 1.0, other);
       const double ratio = (one - other) * rsq / difference;
       found[0] = MAX(found[0], ratio);
       found[1] = MAX(found[1], -ratio);
@@ -274,8 +274,8 @@ void FixMPMHandshake::check_embedding()
     }
   }
   MPI_Allreduce(found, all, 2, MPI_DOUBLE, MPI_MAX, world);
-  flaw = all[0] > 0.5 ? 1.0 : 0.0;
-  if (!(fabs(all[0] - flaw) < 1.0e-6) || !(fabs(all[1] + flaw) < 1.0e-6))
+  eam.flaw = all[0] > 0.5 ? 1.0 : 0.0;
+  if (!(fabs(all[0] - eam.flaw) < 1.0e-6) || !(fabs(all[1] + eam.flaw) < 1.0e-6))
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/handshake {} does not understand the forces of pair style eam of this "
                "LAMMPS: use a pair potential",
@@ -284,7 +284,8 @@ void FixMPMHandshake::check_embedding()
 
 /** Weight of an atom at x; if it is 1, how far inside of the atoms x is; if it is 0, how far it is
  *  beyond the zone. */
-double FixMPMHandshake::weight_at(const double *x, double &inside, double &beyond) const
+static double weight_at(const double *x, const std::vector<MPMHandshakeOptions::Zone> &zones,
+                        double &inside, double &beyond)
 {
   double w = 1.0;
   inside = 1.0e300;
@@ -303,13 +304,13 @@ double FixMPMHandshake::weight_at(const double *x, double &inside, double &beyon
 void FixMPMHandshake::weigh()
 {
   // atoms this far from the zone may be neighbors of those in it, points may share nodes with them
-  const double reach = force->pair->cutforce + neighbor->skin,
+  const double reach_atoms = force->pair->cutforce + neighbor->skin,
                reach_nodes = 2.0 * (stencil_order(field->options.shape) + 1) * field->lattice.h;
   bigint none = 0, wrong = 0;
   for (int i = 0; i < atom->nlocal; i++) {
     if (role[i] != UNKNOWN) continue;
     double inside, beyond;
-    const double w = weight_at(atom->x[i], inside, beyond);
+    const double w = weight_at(atom->x[i], zones, inside, beyond);
     if (field->is_point(i)) {
       role[i] = beyond < reach_nodes ? NEAR_POINT : POINT;
       weight[i] = 1.0 - w;
@@ -320,7 +321,7 @@ void FixMPMHandshake::weigh()
       atom->rmass[i] *= weight[i];
       atom->vfrac[i] *= weight[i];
     } else if ((atom->mask[i] & groupbit) && atom->vfrac[i] == 0.0) {
-      role[i] = inside < reach ? COUPLED : APART;
+      role[i] = inside < reach_atoms ? COUPLED : APART;
       weight[i] = w;
     } else {
       role[i] = APART;
@@ -410,7 +411,7 @@ void FixMPMHandshake::extend_topology(MPMField &which)
   const double drift = MIN(1.0, 0.5 * neighbor->skin / lattice.h);
   for (int i = 0; i < atom->nlocal; i++) {
     if (role[i] != COUPLED) continue;
-    int lo[3] = {0, 0, 0}, hi[3] = {0, 0, 0};
+    int lo[3] = {0, 0, 0}, hi[3] = {0, 0, 0}, b[3];
     for (int d = 0; d < lattice.dim; d++) {
       const double t = (atom->x[i][d] - lattice.origin[d]) / lattice.h;
       int first;
@@ -420,7 +421,6 @@ void FixMPMHandshake::extend_topology(MPMField &which)
       const int n = MPMStencil(*field).weights(t + drift, first, w);
       hi[d] = (first + n - 1) >> grid.shift_bits;
     }
-    int b[3];
     for (b[0] = lo[0]; b[0] <= hi[0]; b[0]++)
       for (b[1] = lo[1]; b[1] <= hi[1]; b[1]++)
         for (b[2] = lo[2]; b[2] <= hi[2]; b[2]++) grid.activate(b);
@@ -441,7 +441,8 @@ void FixMPMHandshake::setup(int /*vflag*/)
 void FixMPMHandshake::post_force(int /*vflag*/)
 {
   find_pushes();
-  lost += work_of_pushes(update->dt, 0.0);    // second half of the way; v is that of its middle
+  // second half of the way; v is that of its middle
+  energy.lost += work_of_pushes(update->dt, 0.0);
 }
 
 void FixMPMHandshake::find_pushes()
@@ -454,7 +455,7 @@ void FixMPMHandshake::find_pushes()
   for (int i = 0; i < atom->nlocal; i++) {
     if (role[i] != COUPLED) continue;
     const int *const neighbors = list->firstneigh[i];
-    const double share = flaw > 0.0 ? embedding_share(i) : 0.0;
+    const double share = eam.flaw > 0.0 ? eam.share(i, type[i]) : 0.0;
     double g[3] = {0.0, 0.0, 0.0};
     for (int jj = 0; jj < list->numneigh[i]; jj++) {
       const int j = neighbors[jj] & NEIGHMASK;
@@ -471,7 +472,7 @@ void FixMPMHandshake::find_pushes()
       if (rsq >= pair->cutsq[type[i]][type[j]]) continue;
       double f_over_r;
       pair->single(i, j, type[i], type[j], rsq, 1.0, 1.0, f_over_r);
-      if (flaw > 0.0 && rsq < eam->cutsq[type[i]][type[j]]) f_over_r -= share / rsq;
+      if (eam.flaw > 0.0 && rsq < eam.pair->cutsq[type[i]][type[j]]) f_over_r -= share / rsq;
       for (int d = 0; d < 3; d++) g[d] += 0.5 * difference * f_over_r * r[d];
     }
     natoms++;
@@ -513,22 +514,21 @@ void FixMPMHandshake::act(double dt, Stage stage)
   if (stage != STEP) return;
   find_nodes();
   map_members(dt);
-  map_forces();
-  field->nodes.sum(sums.data(), NREAL, 0, NREAL);
-  lost += kinetic_energy();
+  field->nodes.sum(reach.sums.data(), NREAL, 0, NREAL);
+  energy.lost += kinetic_energy();
   if (damping > 0.0) damp(dt);
   tie(dt);
   move_atoms(dt);
-  lost += work_of_pushes(dt, 0.5 * dt) - kinetic_energy();
+  energy.lost += work_of_pushes(dt, 0.5 * dt) - kinetic_energy();
 }
 
 /* ---------------------------------------------------------------------- */
 
-template <class Function> void FixMPMHandshake::each_node(std::size_t k, const Function &f)
+template <class Function> void FixMPMHandshake::Reach::each_node(std::size_t k, const Function &f)
 {
-  const int *const node = &nodes[k * nreach];
-  const double *const share = &shares[k * nreach];
-  for (int j = 0; j < nreach; j++) f(&sums[(std::size_t) node[j] * NREAL], share[j]);
+  const int *const node = &nodes[k * n];
+  const double *const share = &shares[k * n];
+  for (int j = 0; j < n; j++) f(&sums[(std::size_t) node[j] * NREAL], share[j]);
 }
 
 /** Which nodes do atoms and points reach, and with which weights? */
@@ -536,7 +536,7 @@ void FixMPMHandshake::find_nodes()
 {
   const auto &lattice = field->lattice;
   const int n = stencil_order(field->options.shape) + 1;
-  nreach = lattice.dim == 3 ? n * n * n : n * n;
+  reach.n = lattice.dim == 3 ? n * n * n : n * n;
 
   members.clear();
   for (int i = 0; i < atom->nlocal; i++)
@@ -545,8 +545,8 @@ void FixMPMHandshake::find_nodes()
     error->one(FLERR, "Fix mpm/handshake {}: atoms have changed since their forces were found", id);
   for (int i = 0; i < atom->nlocal; i++)
     if (role[i] == NEAR_POINT) members.push_back(i);
-  nodes.resize(members.size() * nreach);
-  shares.resize(members.size() * nreach);
+  reach.nodes.resize(members.size() * reach.n);
+  reach.shares.resize(members.size() * reach.n);
 
   MPMStencil stencil(*field);
   std::size_t m = 0;
@@ -557,19 +557,20 @@ void FixMPMHandshake::find_nodes()
         error->one(FLERR, "Fix mpm/handshake {}: atom {} is far out of reach of the lattice", id,
                    atom->tag[i]);
     if (!stencil.visit_around(x, [&](int64_t node, double share, const double *) {
-          nodes[m] = (int) node;
-          shares[m++] = share;
+          reach.nodes[m] = (int) node;
+          reach.shares[m++] = share;
         }))
       error->one(FLERR, "Fix mpm/handshake {}: atom {} has left the active blocks", id,
                  atom->tag[i]);
   }
 }
 
-/** Masses and momenta of atoms and points at the start of the step. */
+/** Masses and momenta of atoms and points at the start of the step; force of the weighted energy of
+ *  the atoms. */
 void FixMPMHandshake::map_members(double dt)
 {
   const double half = 0.5 * dt * force->ftm2v;
-  sums.assign(field->grid.nnodes() * NREAL, 0.0);
+  reach.sums.assign(field->grid.nnodes() * NREAL, 0.0);
   for (std::size_t k = 0; k < members.size(); k++) {
     const int i = members[k];
     const bool is_atom = k < natoms;
@@ -580,22 +581,17 @@ void FixMPMHandshake::map_members(double dt)
     for (int d = 0; d < 3; d++)
       p[d] = full * atom->v[i][d] - (is_atom ? half * atom->f[i][d] : 0.0);
     const int lane = is_atom ? ATOMS : POINTS;
-    each_node(k, [&](double *s, double share) {
+    reach.each_node(k, [&](double *s, double share) {
       for (int d = 0; d < 3; d++) s[lane + d] += share * p[d];
       s[lane + 3] += share * full;
       s[MASS] += share * weighted;
       s[PRESENCE] += share * present;
     });
   }
-}
-
-/** Force of the weighted energy of the atoms. */
-void FixMPMHandshake::map_forces()
-{
   for (std::size_t k = 0; k < natoms; k++) {
     const double w = weight[members[k]], *const f = atom->f[members[k]], *const g = &pushes[3 * k];
     const bool pushed = g[0] != 0.0 || g[1] != 0.0 || g[2] != 0.0;
-    each_node(k, [&](double *s, double share) {
+    reach.each_node(k, [&](double *s, double share) {
       for (int d = 0; d < 3; d++) {
         s[FORCE + d] += share * (w * f[d] + g[d]);
         s[PLAIN + d] += share * w * f[d];
@@ -613,50 +609,53 @@ void FixMPMHandshake::damp(double dt)
 {
   const std::size_t nnodes = field->grid.nnodes();
   const double half = 0.5 * dt * force->ftm2v;
-  field->grid.copy_aliases(sums.data(), NREAL);
+  field->grid.copy_aliases(reach.sums.data(), NREAL);
   std::vector<double> taken(nnodes * 4, 0.0);
   for (std::size_t k = 0; k < natoms; k++) {
     const int i = members[k];
     const double w = weight[i], m = atom->rmass[i];
     if (w == 0.0 || w == 1.0) continue;
     double coarse[3] = {0.0, 0.0, 0.0}, p[3];
-    each_node(k, [&](const double *s, double share) {
+    reach.each_node(k, [&](const double *s, double share) {
       for (int d = 0; d < 3; d++) coarse[d] += share * s[ATOMS + d] / s[ATOMS + 3];
     });
     const double part = -expm1(-damping * (1.0 - w) * dt);
     for (int d = 0; d < 3; d++) {
       const double v = atom->v[i][d] - half / m * atom->f[i][d], dv = part * (coarse[d] - v);
-      heat -= force->mvv2e * w * m * dv * (atom->v[i][d] + 0.5 * dv);
+      energy.heat -= force->mvv2e * w * m * dv * (atom->v[i][d] + 0.5 * dv);
       atom->v[i][d] += dv;
       p[d] = w * m * dv;
     }
-    for (std::size_t j = k * nreach; j < (k + 1) * nreach; j++)
-      for (int d = 0; d < 3; d++) taken[4 * (std::size_t) nodes[j] + d] += shares[j] * p[d];
+    for (std::size_t j = k * reach.n; j < (k + 1) * reach.n; j++)
+      for (int d = 0; d < 3; d++)
+        taken[4 * (std::size_t) reach.nodes[j] + d] += reach.shares[j] * p[d];
   }
   field->nodes.sum(taken.data(), 4, 0, 3);
   const double inverse = 1.0 / (dt * force->ftm2v);
   for (std::size_t n = 0; n < nnodes; n++)
-    for (int d = 0; d < 3; d++) sums[NREAL * n + FORCE + d] -= inverse * taken[4 * n + d];
+    for (int d = 0; d < 3; d++) reach.sums[NREAL * n + FORCE + d] -= inverse * taken[4 * n + d];
 }
 
 /* ----------------------------------------------------------------------
    momentum with full masses of the velocity with which points move, [node][4]
 ------------------------------------------------------------------------- */
 
-void FixMPMHandshake::smooth_points(std::vector<double> &p)
+std::vector<double> FixMPMHandshake::smooth_points()
 {
-  field->grid.copy_aliases(sums.data(), NREAL);
-  p.assign(4 * field->grid.nnodes(), 0.0);
+  field->grid.copy_aliases(reach.sums.data(), NREAL);
+  std::vector<double> p(4 * field->grid.nnodes(), 0.0);
   for (std::size_t k = natoms; k < members.size(); k++) {
     const double m = atom->rmass[members[k]] / weight[members[k]];
     double v[3] = {0.0, 0.0, 0.0};
-    each_node(k, [&](const double *s, double share) {
+    reach.each_node(k, [&](const double *s, double share) {
       for (int d = 0; d < 3; d++) v[d] += share * s[POINTS + d] / s[POINTS + 3];
     });
-    for (std::size_t j = k * nreach; j < (k + 1) * nreach; j++)
-      for (int d = 0; d < 3; d++) p[4 * (std::size_t) nodes[j] + d] += shares[j] * m * v[d];
+    for (std::size_t j = k * reach.n; j < (k + 1) * reach.n; j++)
+      for (int d = 0; d < 3; d++)
+        p[4 * (std::size_t) reach.nodes[j] + d] += reach.shares[j] * m * v[d];
   }
   field->nodes.sum(p.data(), 4, 0, 3);
+  return p;
 }
 
 /* ----------------------------------------------------------------------
@@ -667,17 +666,14 @@ void FixMPMHandshake::tie(double dt)
 {
   Grid &grid = field->grid;
   const double dtf = dt * force->ftm2v;
-  std::vector<double> smooth;
-  smooth_points(smooth);
-  double work = 0.0;
-  for (int d = 0; d < 3; d++) impulse[d] = 0.0;
-  dt_last = dt;
+  const std::vector<double> smooth = smooth_points();
+  double work = 0.0, impulse[3] = {0.0, 0.0, 0.0};
   for (std::size_t slot = 0; slot < grid.blocks.size(); slot++) {
     const auto &block = grid.blocks[slot];
     for (int n = 0; n < NODES_PER_BLOCK; n++) {
       if (block.alias >> n & 1) continue;
       double *const r = grid.record((int) slot, n);    // vx vy vz m, old velocity
-      double *const s = &sums[(slot * NODES_PER_BLOCK + n) * NREAL];
+      double *const s = &reach.sums[(slot * NODES_PER_BLOCK + n) * NREAL];
       const double ma = s[MASS], mc = r[3], inverse = 1.0 / (ma + mc);
       const bool tied = s[PRESENCE] > 0.0 && ma + mc > 0.0, owned = block.owned >> n & 1;
       if (!tied) {
@@ -704,19 +700,20 @@ void FixMPMHandshake::tie(double dt)
     }
   }
   if (field->ledger.on) field->ledger.contact += force->mvv2e * work;
-  lost -= force->mvv2e * work;
+  energy.lost -= force->mvv2e * work;
+  for (int d = 0; d < 3; d++) force_on_points[d] = dtf > 0.0 ? impulse[d] / dtf : 0.0;
 }
 
 /** Atoms: the change of the velocity of the nodes, or where they have no weight, this velocity. */
 void FixMPMHandshake::move_atoms(double dt)
 {
-  field->grid.copy_aliases(sums.data(), NREAL);
+  field->grid.copy_aliases(reach.sums.data(), NREAL);
   const double half = 0.5 * dt * force->ftm2v;
   for (std::size_t k = 0; k < natoms; k++) {
     const int i = members[k];
     double *const v = atom->v[i], sum[3] = {0.0, 0.0, 0.0};
     const int lane = weight[i] == 0.0 ? VELOCITY : CHANGE;
-    each_node(k, [&](const double *s, double share) {
+    reach.each_node(k, [&](const double *s, double share) {
       for (int d = 0; d < 3; d++) sum[d] += share * s[lane + d];
     });
     for (int d = 0; d < 3; d++)
@@ -737,14 +734,13 @@ void FixMPMHandshake::move_atoms(double dt)
 double FixMPMHandshake::compute_scalar()
 {
   double all;
-  MPI_Allreduce(&heat, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(&energy.heat, &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all;
 }
 
 double FixMPMHandshake::compute_vector(int d)
 {
-  if (d < 3 && dt_last == 0.0) return 0.0;
-  const double mine = d < 3 ? impulse[d] / (dt_last * force->ftm2v) : lost - heat;
+  const double mine = d < 3 ? force_on_points[d] : energy.lost - energy.heat;
   double all;
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all;
@@ -753,8 +749,9 @@ double FixMPMHandshake::compute_vector(int d)
 double FixMPMHandshake::memory_usage()
 {
   return FixMPMState::memory_usage() +
-      sizeof(double) * (double) (sums.capacity() + shares.capacity() + pushes.capacity()) +
-      sizeof(int) * (double) (nodes.capacity() + members.capacity());
+      sizeof(double) *
+      (double) (reach.sums.capacity() + reach.shares.capacity() + pushes.capacity()) +
+      sizeof(int) * (double) (reach.nodes.capacity() + members.capacity());
 }
 
 /* ---------------------------------------------------------------------- */
@@ -785,18 +782,15 @@ void FixMPMHandshake::unpack_forward_comm(int n, int first, double *buf)
 
 void FixMPMHandshake::write_restart(FILE *fp)
 {
-  const double mine[2] = {heat, lost};
-  double all[2];
-  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
+  decltype(energy) all;
+  MPI_Allreduce(&energy, &all, 2, MPI_DOUBLE, MPI_SUM, world);
   if (comm->me) return;
   const int size = sizeof(all);
   fwrite(&size, sizeof(int), 1, fp);
-  fwrite(all, size, 1, fp);
+  fwrite(&all, size, 1, fp);
 }
 
 void FixMPMHandshake::restart(char *buf)
 {
-  if (comm->me) return;
-  memcpy(&heat, buf, sizeof(double));
-  memcpy(&lost, buf + sizeof(double), sizeof(double));
+  if (comm->me == 0) memcpy(&energy, buf, sizeof(energy));
 }

@@ -19,7 +19,6 @@ FixStyle(mpm/handshake,FixMPMHandshake);
 #include "mpm_node_action.h"
 #include "mpm_state.h"
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -73,44 +72,52 @@ class FixMPMHandshake : public FixMPMState, public MPMNodeAction, private MPMHan
  private:
   enum Role { UNKNOWN, APART, COUPLED, POINT, NEAR_POINT };    // near: at the nodes of the zone
 
+  /** The style of embedded atoms, if there is one. */
+  struct Embedded {
+    class Pair *pair = nullptr;
+    double flaw = 0.0;    // 1: its single() has the embedding energy in the force
+    double share(int i, int type) const;
+  };
+  /** The nodes that each of the members reaches, and sums at all nodes. */
+  struct Reach {
+    int n = 0;                     // nodes of a member
+    std::vector<int> nodes;        // [members][n]
+    std::vector<double> shares;    // [members][n] their weights
+    std::vector<double> sums;
+    template <class Function> void each_node(std::size_t k, const Function &);
+  };
+
   MPMField *field = nullptr;
   class NeighList *list = nullptr;
   double *weight;    // [n] share of the mass and energy of an atom or point that counts
   double *role;      // [n] a Role
+  Embedded eam;
 
   // of the present step
 
-  std::vector<int> members;         // local atoms that are coupled, then points near the zone
-  std::size_t natoms = 0;           // the former
-  std::vector<double> pushes;       // [natoms][3] their forces g by the gradient of the weight
-  std::vector<int> nodes;           // of each of them: the nodes that it reaches,
-  std::vector<double> shares;       // and their weights
-  int nreach = 0;                   // number of these
-  std::vector<double> sums;         // at the nodes
-  double heat = 0.0, lost = 0.0;    // energy taken so far by damping, and in all, on this rank
-  double impulse[3] = {}, dt_last = 0.0;
-
-  class Pair *eam = nullptr;    // the style of embedded atoms, if there is one
-  double flaw = 0.0;            // 1: its single() has the embedding energy in the force
+  std::vector<int> members;      // local atoms that are coupled, then points near the zone
+  std::size_t natoms = 0;        // the former
+  std::vector<double> pushes;    // [natoms][3] their forces g by the gradient of the weight
+  Reach reach;
+  struct {
+    double heat, lost;    // taken so far by damping, and in all, on this rank
+  } energy = {0.0, 0.0};
+  double force_on_points[3] = {};
 
   void refuse(bool broken, const std::string &why) const;
   void check_pair();
   void check_embedding();
-  double embedding_share(int i) const;
-  double weight_at(const double *x, double &inside, double &beyond) const;
   void weigh();
   void check_weights();
   void find_nodes();
   void find_pushes();
   void map_members(double dt);
-  void map_forces();
   double work_of_pushes(double dt, double ahead) const;
   double kinetic_energy() const;
   void damp(double dt);
-  void smooth_points(std::vector<double> &);
+  std::vector<double> smooth_points();
   void tie(double dt);
   void move_atoms(double dt);
-  template <class Function> void each_node(std::size_t k, const Function &);
 };
 
 }    // namespace LAMMPS_NS

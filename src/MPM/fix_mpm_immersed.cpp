@@ -505,15 +505,12 @@ void FixMPMImmersed::act(double dt, Stage stage)
   }
   sum_nodes(5, 3);
 
-  for (std::size_t slot = 0; slot < grid.blocks.size(); slot++)
-    for (int n = 0; n < NODES_PER_BLOCK; n++) {
-      const int64_t node = (int64_t) slot * NODES_PER_BLOCK + n;
-      const double *sum = &sums[NREAL * node];
-      const double push[3] = {sum[1] + sum[5], sum[2] + sum[6], sum[3] + sum[7]};
-      if (push[0] != 0.0 || push[1] != 0.0 || push[2] != 0.0)
-        field->ledger.push_node(grid.nodes() + node * grid.nreal, grid.blocks[slot].owned >> n & 1,
-                                push);
-    }
+  for (int64_t node = 0; node < grid.nnodes(); node++) {
+    const double *sum = &sums[NREAL * node];
+    const double push[3] = {sum[1] + sum[5], sum[2] + sum[6], sum[3] + sum[7]};
+    if (push[0] != 0.0 || push[1] != 0.0 || push[2] != 0.0)
+      field->ledger.push_node(grid.record(node), grid.owns(node), push);
+  }
   count = (int) grains.size();
   dt_last = dt;
 }

@@ -36,7 +36,7 @@ FixMPMMaterial::FixMPMMaterial(LAMMPS *lmp, int narg, char **arg) : FixMPMState(
     error->all(FLERR,
                "Fix mpm/material needs material points: use atom_style mpm, alone or in a hybrid");
 
-  material = read_material(lmp, "Fix mpm/material", 3, narg, arg).release();
+  material = read_material(lmp, "Fix mpm/material", 3, narg, arg);
 
   // initial values of history depend on units
   material->configure(nullptr, force->mvv2e * force->nktv2p, force->nktv2p);
@@ -61,12 +61,7 @@ FixMPMMaterial::FixMPMMaterial(LAMMPS *lmp, int narg, char **arg) : FixMPMState(
   assign_mass();
 }
 
-/* ---------------------------------------------------------------------- */
-
-FixMPMMaterial::~FixMPMMaterial()
-{
-  delete material;
-}
+FixMPMMaterial::~FixMPMMaterial() = default;
 
 /* ---------------------------------------------------------------------- */
 

@@ -17,6 +17,8 @@ FixStyle(mpm/material,FixMPMMaterial);
 
 #include "mpm_state.h"
 
+#include <memory>
+
 namespace MPM_NS {
 class Material;
 struct Batch;
@@ -36,7 +38,7 @@ class FixMPMMaterial : public FixMPMState {
   void write_restart(FILE *) override;
   void restart(char *) override;
 
-  MPM_NS::Material *material;    ///< owned
+  std::unique_ptr<MPM_NS::Material> material;
   int nhistory;                  ///< columns of history
   double **history = nullptr;    ///< [n][nhistory] or null when the law has none
   int damage;                    ///< column of the damage, 1 in points that have failed; -1: none

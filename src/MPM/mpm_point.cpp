@@ -219,27 +219,22 @@ MixedControl MPMPoint::control(double t0, double t1, bool started, double share)
 {
   MixedControl c;
   const double r = path == MIXED ? 0.0 : (path_strain(t1) - path_strain(t0)) / (t1 - t0);
-  const auto free = [&c](int k, double stress) {
-    c.stress_given[k] = true;
-    c.stress[k] = stress;
+  const auto free_from = [&c](int axis, double stress) {
+    std::fill(c.stress_given + axis, c.stress_given + 3, true);
+    std::fill(c.stress + axis, c.stress + 3, stress);
   };
   switch (path) {
     case UNIAXIAL_STRESS:
       c.L[0] = r;
-      free(1, 0.0);
-      free(2, 0.0);
+      free_from(1, 0.0);
       break;
     case BIAXIAL:
       c.L[0] = c.L[4] = r;
-      free(2, 0.0);
+      free_from(2, 0.0);
       break;
     case TRIAXIAL:
-      if (started)
-        c.L[0] = r;
-      else
-        free(0, -share * pressure);
-      free(1, -share * pressure);
-      free(2, -share * pressure);
+      if (started) c.L[0] = r;
+      free_from(started ? 1 : 0, -share * pressure);
       break;
     case SHEAR:
       c.L[1] = r;
@@ -440,12 +435,11 @@ void MPMPoint::write(const MaterialPoint &point, bigint step)
                 values = fmt::format("{:10d}   {:<14.8g}", step, point.time);
     static const char *const shown[] = {"exx",      "exy",    "sxx", "sxy", "pressure",
                                         "vonmises", "stored", "us",  "up"};
-    for (const auto &c : columns)
-      for (const char *name : shown)
-        if (c.first == name) {
-          names += fmt::format(" {:^14}", name);
-          values += fmt::format(" {:<14.8g}", c.second);
-        }
+    for (const auto &[name, value] : columns)
+      if (std::find(std::begin(shown), std::end(shown), name) != std::end(shown)) {
+        names += fmt::format(" {:^14}", name);
+        values += fmt::format(" {:<14.8g}", value);
+      }
     if (first) utils::logmesg(lmp, "{}\n", names);
     utils::logmesg(lmp, "{}\n", values);
   }

@@ -57,13 +57,11 @@ RegMPMMesh::RegMPMMesh(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, ar
                utils::getsyserror());
   bytes.resize(size);
   MPI_Bcast(&bytes[0], (int) size, MPI_CHAR, 0, world);
-  std::string message;
   try {
     mesh = std::make_unique<SurfaceMesh>(bytes, arg[2], scale, shift);
   } catch (const std::exception &problem) {
-    message = problem.what();
+    error->all(FLERR, 2, std::string(problem.what()));
   }
-  if (!mesh) error->all(FLERR, 2, message);
 
   if (interior && !dynamic) {
     bboxflag = 1;
@@ -85,8 +83,7 @@ RegMPMMesh::RegMPMMesh(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, ar
 
 RegMPMMesh::~RegMPMMesh()
 {
-  if (copymode) return;
-  delete[] contact;
+  if (!copymode) delete[] contact;
 }
 
 /* ---------------------------------------------------------------------- */

@@ -12,7 +12,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
-#include <sstream>
 #include <stdexcept>
 #include <unordered_map>
 
@@ -362,10 +361,8 @@ void Mesh::orient()
     if (size(e) >= 0.0) continue;
     if (e.type == ElementType::HEXAHEDRON)
       for (int k = 0; k < 4; k++) std::swap(e.node[k], e.node[4 + k]);
-    else if (e.type == ElementType::QUAD)
-      std::swap(e.node[1], e.node[3]);
     else
-      std::swap(e.node[1], e.node[2]);
+      std::swap(e.node[1], e.node[e.type == ElementType::QUAD ? 3 : 2]);
   }
 }
 
@@ -375,8 +372,7 @@ double Mesh::size(const MeshElement &e) const
 {
   const auto &rule = ElementRule::of(e.type);
   double x[MAX_ELEMENT_NODES][3], g[MAX_ELEMENT_NODES][3], sum = 0.0;
-  for (int k = 0; k < rule.nnode; k++)
-    for (int d = 0; d < 3; d++) x[k][d] = nodes[e.node[k]][d];
+  for (int k = 0; k < rule.nnode; k++) std::copy_n(nodes[e.node[k]].data(), 3, x[k]);
   for (int q = 0; q < rule.npoint; q++) sum += rule.gradients(q, x, g);
   return sum;
 }

@@ -127,14 +127,9 @@ SurfaceMesh::SurfaceMesh(const std::string &bytes, const std::string &name, doub
   find_parts();
   tree.reserve(2 * triangles.size());
   build(0, (int) triangles.size());
-  around_first.assign(corners.size() + 1, 0);
-  for (const auto &t : triangles)
-    for (const int c : t.corner) around_first[c + 1]++;
-  std::partial_sum(around_first.begin(), around_first.end(), around_first.begin());
-  around.resize(3 * triangles.size());
-  std::vector<int> next(around_first.begin(), around_first.end() - 1);
+  around.resize(corners.size());
   for (int i = 0; i < (int) triangles.size(); i++)
-    for (const int c : triangles[i].corner) around[next[c]++] = i;
+    for (const int c : triangles[i].corner) around[c].push_back(i);
   make_coarse();
 }
 
@@ -459,8 +454,8 @@ bool SurfaceMesh::is_closest_around(const Point &x, const Triangle &t, int featu
 {
   if (feature == 0) return true;
   const int c = t.corner[(feature - 1) % 3], other = feature < 4 ? t.corner[feature % 3] : c;
-  for (int k = around_first[c]; k < around_first[c + 1]; k++) {
-    const int *corner = triangles[around[k]].corner;
+  for (const int k : around[c]) {
+    const int *corner = triangles[k].corner;
     if (corner[0] != other && corner[1] != other && corner[2] != other) continue;
     int unused;
     const Point r = x - closest_on(corner, x, unused);

@@ -85,7 +85,7 @@ class SurfaceMesh {
 
   std::vector<Point> corners, corner_normals;
   std::vector<Triangle> triangles;
-  std::vector<int> around, around_first;    // triangles at each corner
+  std::vector<std::vector<int>> around;    // triangles at each corner
   std::vector<Node> tree;
   std::vector<float> coarse;    // distances at the centers of cells
   int ncells[3];
