@@ -255,13 +255,13 @@ PointRows MPMField::rows_at_rest(double *values, const double *weights) const
   return r;
 }
 
-TransferStep MPMField::step_data() const
+TransferStep MPMField::step_data(double dt) const
 {
   TransferStep s;
   s.h = lattice.h;
   s.inv_h = 1.0 / lattice.h;
   for (int d = 0; d < 3; d++) s.origin[d] = lattice.origin[d];
-  s.dt = step_dt();
+  s.dt = dt;
   s.flip = options.flip;
   s.force_scale = force->ftm2v;
   s.stress_scale = force->ftm2v / force->nktv2p;

@@ -108,6 +108,5 @@ double MPMFrame::lattice_jacobian(int i) const
 
 double MPMFrame::speed(int i, double &c) const
 {
-  const double *v = atom->v[i];
-  return c + sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  return c + sqrt(dot(atom->v[i], atom->v[i]));
 }

@@ -59,9 +59,8 @@ class MPMFrame : protected Pointers {
   virtual void before_motion(int /*first*/, int /*last*/) {}
   virtual void after_motion(const MPM_NS::PointRows &, int /*first*/, int /*last*/) {}
   /** Strain that has to be interpolated from the nodes, where points do not move. base: of the tile. */
-  virtual void strain_of_nodes(const MPM_NS::PointRows &, const MPM_NS::TransferStep &,
-                               int /*first*/, int /*last*/, const int * /*base*/, double /*dt*/,
-                               double /*shift*/)
+  virtual void strain_of_nodes(const MPM_NS::PointRows &, int /*first*/, int /*last*/,
+                               const int * /*base*/, double /*dt*/, double /*shift*/)
   {
   }
   /** Gradients at the start of a step from those of another time in it, see mpm_frame.cpp. */

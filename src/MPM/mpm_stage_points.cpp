@@ -110,7 +110,7 @@ void MPMStages::strain_from_nodes(MPMField &field, double share, double shift_sh
     field.kernel.g2p_gradient(with_corners, s, i, i + n, base, field.map->tile_load, L);
     if (shift != 0.0) frame.shift_gradients(n, shift, L);
     frame.refer_gradients(i, n, L);
-    frame.strain_of_nodes(r, s, i, i + n, base, dt, shift);
+    frame.strain_of_nodes(r, i, i + n, base, dt, shift);
     if (!fbar) update_stress(field, r, run, i, n, L, dt);
   });
   if (fbar) field.locking->strain(kept, dt);
@@ -179,12 +179,11 @@ void MPMStages::give_initial_stress(MPMField &field)
 {
   Batch &batch = *field.batch;
   double **const tau = field.points->tau;
-  std::vector<double> room;
   std::vector<int> list;
   const FixMPMMaterial *material = nullptr;
   const auto flush = [&]() {
     if (list.empty()) return;
-    load_state(field, batch, list.data(), (int) list.size(), material, room);
+    load_state(field, batch, list.data(), (int) list.size(), material);
     batch.time = end_of_step(field);
     material->material->initial_stress(batch);
     for (std::size_t k = 0; k < list.size(); k++)
