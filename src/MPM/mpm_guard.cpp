@@ -55,9 +55,7 @@ void MPMGuard::check_integrators() const
   }
 }
 
-/* ----------------------------------------------------------------------
-   each point must have one material, positive volume and mass, and a finite state
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
 void MPMGuard::check_points() const
 {
