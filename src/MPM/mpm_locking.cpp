@@ -86,9 +86,9 @@ template <class Value> void MPMLocking::average_around_points(const Value &value
 }
 
 /* ----------------------------------------------------------------------
-   F-bar: the material update of all points with velocity gradients L whose change of volume is
-   averaged. I + dt L (total frame: F + dt L) is multiplied by a number, in plane strain in the plane, so that
-   laws see a motion like any other. What points keep is this F: sum V0 J follows the sum of the true changes of volume.
+   I + dt L (total frame: F + dt L) is multiplied by a number, in plane strain in the plane, so that
+   laws see a motion like any other. What points keep is this F: sum V0 J follows the sum of the true
+   changes of volume.
 ------------------------------------------------------------------------- */
 
 void MPMLocking::strain(const double *L, double dt)

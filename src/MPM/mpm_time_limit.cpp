@@ -38,7 +38,7 @@ static constexpr int CHECK_EVERY = 20;    // steps between checks of the time st
 void MPMTimeLimit::setup()
 {
   next_check = update->ntimestep;
-  if (update->nsteps <= 0) return;
+  if (update->nsteps <= 0 || !field.options.dt_check) return;
   check();
   warn();
 }
@@ -222,7 +222,6 @@ double MPMTimeLimit::share_of_thin_nodes() const
 
 void MPMTimeLimit::warn() const
 {
-  if (!field.options.dt_check) return;
   tagint tag;
   double c, mine[2] = {stable_dt(tag, c), 0.5}, all[2];
   if (field.boxes) mine[1] = field.boxes->smallest();
