@@ -171,10 +171,10 @@ void MPMField::choose_kernels()
 {
   const bool split = ledger.on || keep_old || options.stress_before() ||
       (options.axisymmetric && options.scheme != Options::USL);
-  kernel = frame->kernels(*kernels, options.transfer, split);
+  kernel = frame->kernels(options.transfer, split);
   if (options.strains_apart()) {
     // to the nodes, TPIC differs in nothing but the stress; back, it has the gradient
-    const auto tpic = frame->kernels(*kernels, TPIC, kernel.nreal == 8);
+    const auto tpic = frame->kernels(TPIC, kernel.nreal == 8);
     kernel.p2g = tpic.p2g;
     kernel.p2g_force = tpic.p2g_force;
     kernel.g2p_gradient = tpic.g2p_gradient;

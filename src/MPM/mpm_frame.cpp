@@ -19,11 +19,10 @@ using namespace MPM_NS;
 
 /* ---------------------------------------------------------------------- */
 
-TransferKernels MPMFrame::kernels(const MPMKernels &all, Transfer transfer, bool split) const
+TransferKernels MPMFrame::kernels(Transfer transfer, bool split) const
 {
-  const int dim = field.lattice.dim;
-  return is_total() ? all.transfer_total(dim, field.options.shape, transfer, split)
-                    : all.transfer(dim, field.options.shape, transfer, split);
+  const auto make = is_total() ? field.kernels->transfer_total : field.kernels->transfer;
+  return make(field.lattice.dim, field.options.shape, transfer, split);
 }
 
 void MPMFrame::load(Batch &b, int first, int n, double dt, const double *L, const double *F,

@@ -39,7 +39,7 @@ class MPMFrame : protected Pointers {
   virtual bool is_total() const { return false; }
   /** Where points are on the lattice, [n][3]. */
   virtual double **places() const { return atom->x; }
-  MPM_NS::TransferKernels kernels(const MPM_NS::MPMKernels &, MPM_NS::Transfer, bool split) const;
+  MPM_NS::TransferKernels kernels(MPM_NS::Transfer, bool split) const;
 
   // points to nodes: does a batch need rows of its own for its forces, with room for them
 
