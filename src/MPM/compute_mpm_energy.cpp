@@ -14,6 +14,7 @@
 #include "fix_mpm_material.h"
 #include "force.h"
 #include "material/material.h"
+#include "math/matrix.h"
 #include "modify.h"
 #include "mpm_field.h"
 #include "mpm_physics.h"
@@ -95,8 +96,7 @@ std::vector<double> ComputeMPMEnergy::evaluate() const
   for (const auto *field : MPMField::all(lmp)) {
     for (int i = 0; i < atom->nlocal; i++) {
       if (!field->is_point(i)) continue;
-      const double *v = atom->v[i];
-      mine.kinetic += 0.5 * atom->rmass[i] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+      mine.kinetic += 0.5 * atom->rmass[i] * dot(atom->v[i], atom->v[i]);
     }
     mine.external += field->ledger.external;
     mine.boundary += field->ledger.boundary;
@@ -107,8 +107,7 @@ std::vector<double> ComputeMPMEnergy::evaluate() const
     mine.deleted_stored += field->ledger.deleted_stored;
   }
 
-  for (auto *fix : modify->get_fix_by_style("^mpm/material$")) {
-    const auto *material = dynamic_cast<FixMPMMaterial *>(fix);
+  for (const auto *material : find_fixes<FixMPMMaterial>(lmp)) {
     mine.plastic += material->work[Work::PLASTIC];
     mine.viscous += material->work[Work::VISCOUS];
     mine.heat += material->work[Work::HEAT];
@@ -116,9 +115,9 @@ std::vector<double> ComputeMPMEnergy::evaluate() const
   }
 
   int nodes = 0;    // groups of nodes of elements, which store the energy
-  for (auto *fix : modify->get_fix_by_style("^mpm/elements$")) {
-    nodes |= fix->groupbit;
-    mine.stored += dynamic_cast<FixMPMElements *>(fix)->stored_energy();
+  for (auto *elements : find_fixes<FixMPMElements>(lmp)) {
+    nodes |= elements->groupbit;
+    mine.stored += elements->stored_energy();
   }
   visit_point_batches(lmp, groupbit,
                       [&](const Batch &batch, const int *list, const FixMPMMaterial &material) {

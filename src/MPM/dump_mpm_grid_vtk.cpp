@@ -89,16 +89,14 @@ int DumpMPMGridVTK::count()
 {
   rows.clear();
   auto &grid = field->grid;
-  for (std::size_t slot = 0; slot < grid.blocks.size() && grid.nreal; slot++)
-    for (int n = 0; n < NODES_PER_BLOCK; n++) {
-      if (!(grid.blocks[slot].owned >> n & 1)) continue;
-      const double *record = grid.record((int) slot, n);
-      if (!(record[3] > 0.0)) continue;
-      int index[3];
-      grid.node_index(grid.blocks[slot], n, index);
-      rows.insert(rows.end(), index, index + 3);
-      rows.insert(rows.end(), record, record + 4);
-    }
+  for (int64_t n = 0; n < grid.nnodes() && grid.nreal; n++) {
+    const double *record = grid.record(n);
+    if (!grid.owns(n) || !(record[3] > 0.0)) continue;
+    int index[3];
+    grid.node_index(n, index);
+    rows.insert(rows.end(), index, index + 3);
+    rows.insert(rows.end(), record, record + 4);
+  }
   return (int) (rows.size() / NCOLUMN);
 }
 

@@ -129,15 +129,11 @@ void DumpMPMVTK::Request::add_field(const std::string &name, int iarg)
   if (name == "element" || name == "typelabel")
     lmp->error->all(FLERR, iarg, "Dump mpm/vtk writes numbers only: use type instead of {}", name);
 
-  auto source = [](const std::string &word) {
-    return attributes.count(word) ? word : PREFIX + word;
-  };
-  Field field = {name, {}, integers.count(name) || name == "image"};
-  const auto parts = composed.find(name);
-  if (parts == composed.end())
-    field.columns.push_back(column(source(name)));
-  else
-    for (const auto &part : parts->second) field.columns.push_back(column(source(part)));
+  const auto found = composed.find(name);
+  const auto parts = found == composed.end() ? std::vector<std::string>{name} : found->second;
+  Field field = {name, {}, integers.count(parts[0]) > 0};
+  for (const auto &part : parts)
+    field.columns.push_back(column(attributes.count(part) ? part : PREFIX + part));
   fields.push_back(field);
 }
 

@@ -25,7 +25,6 @@
 #include "math_extra.h"
 #include "mpm_every.h"
 #include "mpm_frame.h"
-#include "mpm_halo.h"
 #include "mpm_plan.h"
 #include "mpm_point_map.h"
 #include "mpm_state.h"
@@ -136,9 +135,8 @@ void MPMAffine::fit()
           for (int b = 0; b <= a; b++) s[XX + k++] += m * r[a] * r[b];
         }
       });
-  field.grid.fold_aliases(sums.data(), NREAL, 0, NREAL);
-  field.nodes.halo->sum(sums.data(), NREAL, 0, NREAL);
-  field.grid.copy_aliases(sums.data(), NREAL);
+  field.nodes.sum(sums.data(), NREAL, 0, NREAL);
+  field.nodes.complete(sums.data(), NREAL, NREAL);
 
   // about the means
 

@@ -241,9 +241,7 @@ void MPMCpdi::check_corners()
     }
 }
 
-/* ----------------------------------------------------------------------
-   the domains of this step; new lists of blocks if corners are beyond those that are active
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
 void MPMCpdi::update()
 {

@@ -9,8 +9,6 @@
 #ifndef LMP_MPM_CPDI_H
 #define LMP_MPM_CPDI_H
 
-// Points of finite size.
-
 #include "mpm_field.h"
 
 namespace LAMMPS_NS {

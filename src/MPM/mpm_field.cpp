@@ -171,10 +171,10 @@ void MPMField::choose_kernels()
 {
   const bool split = ledger.on || keep_old || options.stress_before() ||
       (options.axisymmetric && options.scheme != Options::USL);
-  kernel = frame->kernels(*kernels, options.transfer, split);
+  kernel = frame->kernels(options.transfer, split);
   if (options.strains_apart()) {
     // to the nodes, TPIC differs in nothing but the stress; back, it has the gradient
-    const auto tpic = frame->kernels(*kernels, TPIC, kernel.nreal == 8);
+    const auto tpic = frame->kernels(TPIC, kernel.nreal == 8);
     kernel.p2g = tpic.p2g;
     kernel.p2g_force = tpic.p2g_force;
     kernel.g2p_gradient = tpic.g2p_gradient;
@@ -255,13 +255,13 @@ PointRows MPMField::rows_at_rest(double *values, const double *weights) const
   return r;
 }
 
-TransferStep MPMField::step_data() const
+TransferStep MPMField::step_data(double dt) const
 {
   TransferStep s;
   s.h = lattice.h;
   s.inv_h = 1.0 / lattice.h;
   for (int d = 0; d < 3; d++) s.origin[d] = lattice.origin[d];
-  s.dt = step_dt();
+  s.dt = dt;
   s.flip = options.flip;
   s.force_scale = force->ftm2v;
   s.stress_scale = force->ftm2v / force->nktv2p;

@@ -68,9 +68,8 @@ class MPMField : protected Pointers {
   std::unique_ptr<MPM_NS::Batch> batch;
 
   MPMLedger ledger;
-  bool keep_old =
-      false;    ///< a node action reads what nodes had before the momentum equation; set by its
-                ///< init_action()
+  /** A node action reads what nodes had before the momentum equation; set by its init_action(). */
+  bool keep_old = false;
   bool running = false;    ///< between the set-up and the end of a run
 
   // what depends on the options; null: not with these
@@ -126,7 +125,9 @@ class MPMField : protected Pointers {
   MPM_NS::PointRows rows() const;
   /** Rows for transfers of other values and weights, in which points stay (the time step is zero). */
   MPM_NS::PointRows rows_at_rest(double *values, const double *weights) const;
-  MPM_NS::TransferStep step_data() const;
+  /** With the duration of a step of the cycle, or another one. */
+  MPM_NS::TransferStep step_data() const { return step_data(step_dt()); }
+  MPM_NS::TransferStep step_data(double dt) const;
 
   /** Of the present run. */
   struct {

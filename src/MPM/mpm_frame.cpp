@@ -19,11 +19,10 @@ using namespace MPM_NS;
 
 /* ---------------------------------------------------------------------- */
 
-TransferKernels MPMFrame::kernels(const MPMKernels &all, Transfer transfer, bool split) const
+TransferKernels MPMFrame::kernels(Transfer transfer, bool split) const
 {
-  const int dim = field.lattice.dim;
-  return is_total() ? all.transfer_total(dim, field.options.shape, transfer, split)
-                    : all.transfer(dim, field.options.shape, transfer, split);
+  const auto make = is_total() ? field.kernels->transfer_total : field.kernels->transfer;
+  return make(field.lattice.dim, field.options.shape, transfer, split);
 }
 
 void MPMFrame::load(Batch &b, int first, int n, double dt, const double *L, const double *F,
@@ -108,6 +107,5 @@ double MPMFrame::lattice_jacobian(int i) const
 
 double MPMFrame::speed(int i, double &c) const
 {
-  const double *v = atom->v[i];
-  return c + sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  return c + sqrt(dot(atom->v[i], atom->v[i]));
 }

@@ -39,7 +39,7 @@ class MPMFrame : protected Pointers {
   virtual bool is_total() const { return false; }
   /** Where points are on the lattice, [n][3]. */
   virtual double **places() const { return atom->x; }
-  MPM_NS::TransferKernels kernels(const MPM_NS::MPMKernels &, MPM_NS::Transfer, bool split) const;
+  MPM_NS::TransferKernels kernels(MPM_NS::Transfer, bool split) const;
 
   // points to nodes: does a batch need rows of its own for its forces, with room for them
 
@@ -59,9 +59,8 @@ class MPMFrame : protected Pointers {
   virtual void before_motion(int /*first*/, int /*last*/) {}
   virtual void after_motion(const MPM_NS::PointRows &, int /*first*/, int /*last*/) {}
   /** Strain that has to be interpolated from the nodes, where points do not move. base: of the tile. */
-  virtual void strain_of_nodes(const MPM_NS::PointRows &, const MPM_NS::TransferStep &,
-                               int /*first*/, int /*last*/, const int * /*base*/, double /*dt*/,
-                               double /*shift*/)
+  virtual void strain_of_nodes(const MPM_NS::PointRows &, int /*first*/, int /*last*/,
+                               const int * /*base*/, double /*dt*/, double /*shift*/)
   {
   }
   /** Gradients at the start of a step from those of another time in it, see mpm_frame.cpp. */

@@ -97,14 +97,12 @@ template <class Plane> class MPMFrameAxisymmetric : public Plane {
 
   /** The same from the velocities of the nodes, for the schemes that update stress apart from the
    *  motion; shift: see MPMFrame::shift_gradients(). */
-  void strain_of_nodes(const PointRows &r, const TransferStep &step, int first, int last,
-                       const int *base, double dt, double shift) override
+  void strain_of_nodes(const PointRows &r, int first, int last, const int *base, double dt,
+                       double shift) override
   {
     field.work.vectors.resize(3 * (std::size_t) atom->nmax);
     const PointRows rows = field.rows_at_rest(field.work.vectors.data(), r.mass);
-    TransferStep s = step;
-    s.dt = 0.0;
-    field.pic.g2p(rows, s, first, last, base, field.map->tile_load, nullptr);
+    field.pic.g2p(rows, field.step_data(0.0), first, last, base, field.map->tile_load, nullptr);
     if (this->is_total()) shift = 0.0;
     for (bigint i = first; i < last; i++) {
       const double rate = field.work.vectors[3 * i] / this->radius((int) i, atom->x[i][0]);

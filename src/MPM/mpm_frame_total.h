@@ -17,8 +17,8 @@ namespace LAMMPS_NS {
 class MPMFrameTotal : public MPMFrame {
  public:
   double **X = nullptr;    ///< [n][3] reference position, NAN before it is known
-  double **R =
-      nullptr;    ///< [n][9] F at the last update of the reference, row-major; null: there is none
+  /** [n][9] F at the last update of the reference, row-major; null: there is none. */
+  double **R = nullptr;
 
   MPMFrameTotal(class LAMMPS *, MPMField &, MPMPointState &);
 

@@ -19,7 +19,6 @@
 #include "material/material.h"
 #include "modify.h"
 #include "mpm_cpdi.h"
-#include "mpm_field.h"
 #include "mpm_point_batches.h"
 #include "mpm_point_map.h"
 #include "mpm_points.h"
@@ -56,9 +55,7 @@ void MPMGuard::check_integrators() const
   }
 }
 
-/* ----------------------------------------------------------------------
-   each point must have one material, positive volume and mass, and a finite state
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
 void MPMGuard::check_points() const
 {
@@ -332,7 +329,6 @@ void MPMGuard::delete_points(std::vector<tagint> &list, bool warn)
   sorted.swap(list);
   std::sort(sorted.begin(), sorted.end());
   double lost[5] = {0.0}, all[5];    // points, mass, momentum
-  std::vector<double> history;
   for (int i = atom->nlocal - 1; i >= 0 && !sorted.empty(); i--) {
     if (!std::binary_search(sorted.begin(), sorted.end(), atom->tag[i])) continue;
     const double *v = atom->v[i], m = atom->rmass[i];
@@ -340,10 +336,10 @@ void MPMGuard::delete_points(std::vector<tagint> &list, bool warn)
     lost[1] += m;
     for (int d = 0; d < 3; d++) lost[2 + d] += m * v[d];
     if (field.ledger.on) {
-      const double kinetic = 0.5 * force->mvv2e * m * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+      const double kinetic = 0.5 * force->mvv2e * m * dot(v, v);
       const FixMPMMaterial *material = field.material_of(i);
       double w[BATCH];
-      load_state(field, *field.batch, &i, 1, material, history);
+      load_state(field, *field.batch, &i, 1, material);
       material->material->stored_energy(*field.batch, w);
       field.ledger.remove(kinetic, atom->vfrac[i] * w[0] / force->nktv2p);
     }

@@ -101,10 +101,7 @@ void MPMHalo::setup(Grid &grid)
       ranks.push_back(sharer[i].rank);
       slots.emplace_back();
     }
-    const int b[3] = {Grid::key_coordinate(sharer[i].key, 0),
-                      Grid::key_coordinate(sharer[i].key, 1),
-                      Grid::key_coordinate(sharer[i].key, 2)};
-    const int slot = grid.find(b);
+    const int slot = grid.find(sharer[i].key);
     of_slot[slot].push_back({(int) ranks.size() - 1, (int) slots.back().size()});
     slots.back().push_back(slot);
   }

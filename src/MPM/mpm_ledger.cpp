@@ -11,6 +11,7 @@
 #include "atom.h"
 #include "fix_mpm_elements.h"
 #include "force.h"
+#include "math/matrix.h"
 #include "mpm_field.h"
 #include "mpm_passes.h"
 
@@ -23,12 +24,11 @@ double MPMLedger::nodal_kinetic_energy(int lane) const
 {
   Grid &grid = field.grid;
   double sum = 0.0;
-  for (std::size_t s = 0; s < grid.blocks.size(); s++)
-    for (int n = 0; n < NODES_PER_BLOCK; n++) {
-      if (!(grid.blocks[s].owned >> n & 1)) continue;
-      const double *record = grid.record(s, n), *v = record + lane;
-      sum += record[3] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    }
+  for (int64_t n = 0; n < grid.nnodes(); n++) {
+    if (!grid.owns(n)) continue;
+    const double *record = grid.record(n), *v = record + lane;
+    sum += record[3] * dot(v, v);
+  }
   return 0.5 * force->mvv2e * sum;
 }
 
@@ -88,14 +88,11 @@ double MPMLedger::external_work(const double *force_on) const
 
   Grid &grid = field.grid;
   double work = 0.0;
-  for (std::size_t b = 0; b < grid.blocks.size(); b++)
-    for (int n = 0; n < NODES_PER_BLOCK; n++) {
-      if (!(grid.blocks[b].owned >> n & 1)) continue;
-      const double *record = grid.record(b, n);    // v m | v old
-      const double *f = &nodes[(b * NODES_PER_BLOCK + n) * nreal + 4];
-      if (record[3] <= 0.0) continue;
-      for (int d = 0; d < 3; d++) work += dt * f[d] * 0.5 * (record[d] + record[4 + d]);
-    }
+  for (int64_t n = 0; n < grid.nnodes(); n++) {
+    const double *record = grid.record(n), *f = &nodes[n * nreal + 4];    // v m | v old
+    if (!grid.owns(n) || record[3] <= 0.0) continue;
+    for (int d = 0; d < 3; d++) work += dt * f[d] * 0.5 * (record[d] + record[4 + d]);
+  }
   return force->mvv2e * work;    // nodal forces are mass * acceleration
 }
 

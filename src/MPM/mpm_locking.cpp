@@ -10,8 +10,6 @@
 
 #include "atom.h"
 #include "fix_mpm_material.h"
-#include "mpm_field.h"
-#include "mpm_field.h"
 #include "mpm_frame.h"
 #include "mpm_passes.h"
 #include "mpm_points.h"
@@ -70,8 +68,7 @@ template <class Value> void MPMLocking::average_around_points(const Value &value
 
   const auto &pic = field.pic;
   const PointRows r = field.rows_at_rest(work.vectors.data(), work.weights.data());
-  TransferStep s = field.step_data();
-  s.dt = 0.0;
+  const TransferStep s = field.step_data(0.0);
 
   for (auto *material : field.materials) {
     points_to(work.nodes, field, pic, [&](const MPMPointMap::Run &run, const int *base, int *box) {
@@ -89,9 +86,9 @@ template <class Value> void MPMLocking::average_around_points(const Value &value
 }
 
 /* ----------------------------------------------------------------------
-   F-bar: the material update of all points with velocity gradients L whose change of volume is
-   averaged. I + dt L (total frame: F + dt L) is multiplied by a number, in plane strain in the plane, so that
-   laws see a motion like any other. What points keep is this F: sum V0 J follows the sum of the true changes of volume.
+   I + dt L (total frame: F + dt L) is multiplied by a number, in plane strain in the plane, so that
+   laws see a motion like any other. What points keep is this F: sum V0 J follows the sum of the true
+   changes of volume.
 ------------------------------------------------------------------------- */
 
 void MPMLocking::strain(const double *L, double dt)

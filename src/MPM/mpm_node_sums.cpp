@@ -58,8 +58,7 @@ void LAMMPS_NS::map_gradient(MPMField &field, Weight content, const std::vector<
   field.work.stress.resize(6 * (std::size_t) field.atom->nmax);
   PointRows r = field.rows();
   r.tau = field.work.stress.data();
-  TransferStep s = field.step_data();
-  s.dt = 1.0;
+  TransferStep s = field.step_data(1.0);
   s.force_scale = 0.0;
   s.stress_scale = 1.0;
 
@@ -132,8 +131,7 @@ void LAMMPS_NS::volume_at_points(MPMField &field, std::vector<double> &share)
   const std::size_t nmax = field.atom->nmax;
   std::vector<double> values(3 * nmax), weights(nmax);
   const PointRows r = field.rows_at_rest(values.data(), weights.data());
-  TransferStep s = field.step_data();
-  s.dt = 0.0;
+  const TransferStep s = field.step_data(0.0);
 
   points_to(nodes, field, pic, [&](const MPMPointMap::Run &run, const int *base, int *box) {
     const int damage = run.material ? run.material->damage : -1;

@@ -14,7 +14,6 @@
 
 #include "material/batch.h"
 #include "mpm_field.h"
-#include "mpm_frame.h"
 #include "mpm_point_map.h"
 
 #include <algorithm>

@@ -9,7 +9,6 @@
 #include "mpm_plan.h"
 
 #include "comm.h"
-#include "modify.h"
 #include "mpm_cpdi.h"
 #include "mpm_edges.h"
 #include "mpm_every.h"

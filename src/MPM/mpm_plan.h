@@ -13,7 +13,6 @@
 #include "pointers.h"
 
 #include <functional>
-#include <list>
 #include <string>
 #include <vector>
 

@@ -256,14 +256,12 @@ MixedControl MPMPoint::control(double t0, double t1, bool started, double share)
     c.stress_given[k] = !is_rate;
     c.stress[k] = is_rate ? 0.0 : value;
   }
-  const double x = value_at(spin[0], middle), y = value_at(spin[1], middle),
-               z = value_at(spin[2], middle);
-  c.L[1] -= z;
-  c.L[3] += z;
-  c.L[2] += y;
-  c.L[6] -= y;
-  c.L[5] -= x;
-  c.L[7] += x;
+  for (int d = 0; d < 3; d++) {
+    const int e = (d + 1) % 3, f = (d + 2) % 3;
+    const double w = value_at(spin[d], middle);
+    c.L[3 * e + f] -= w;
+    c.L[3 * f + e] += w;
+  }
   return c;
 }
 

@@ -14,22 +14,20 @@
 #include "mpm_field.h"
 #include "mpm_points.h"
 
-#include <algorithm>
 #include <memory>
 #include <vector>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-void LAMMPS_NS::load_state(const MPMField &field, Batch &b, const int *list, int n,
-                           const FixMPMMaterial *material, std::vector<double> &room)
+void LAMMPS_NS::load_state(MPMField &field, Batch &b, const int *list, int n,
+                           const FixMPMMaterial *material)
 {
   const MPMPoints &points = *field.points;
   b.n = n;
   b.dt = field.step_dt();
   b.h = field.lattice.h;
-  room.resize((std::size_t) std::max(1, material->nhistory) * BATCH);
-  b.history = reinterpret_cast<double(*)[BATCH]>(room.data());
+  b.history = reinterpret_cast<double(*)[BATCH]>(field.work.history.data());
   for (int p = 0; p < n; p++) {
     const int i = list[p];
     const double *F = points.F[i];
@@ -47,15 +45,14 @@ void LAMMPS_NS::visit_point_batches(LAMMPS *lmp, int groupbit, const BatchVisito
 {
   const Atom *atom = lmp->atom;
   auto batch = std::make_unique<Batch>();
-  std::vector<double> history;
   std::vector<int> list;
   list.reserve(BATCH);
 
-  for (const auto *field : MPMField::all(lmp)) {
+  for (auto *field : MPMField::all(lmp)) {
     for (auto *material : field->materials) {
       auto flush = [&]() {
         if (list.empty()) return;
-        load_state(*field, *batch, list.data(), (int) list.size(), material, history);
+        load_state(*field, *batch, list.data(), (int) list.size(), material);
         visit(*batch, list.data(), *material);
         list.clear();
       };

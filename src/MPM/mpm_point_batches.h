@@ -10,7 +10,6 @@
 #define LMP_MPM_POINT_BATCHES_H
 
 #include <functional>
-#include <vector>
 
 namespace MPM_NS {
 struct Batch;
@@ -21,9 +20,8 @@ class FixMPMMaterial;
 class MPMField;
 
 /** Load the present state of the n <= BATCH points in list, all of one material, into a batch (for wave
- *  speed and stored energy). history: room for nhistory*BATCH reals. */
-void load_state(const MPMField &, MPM_NS::Batch &, const int *list, int n, const FixMPMMaterial *,
-                std::vector<double> &history);
+ *  speed and stored energy). */
+void load_state(MPMField &, MPM_NS::Batch &, const int *list, int n, const FixMPMMaterial *);
 
 /** What is done with a batch of points: their state, local indices, and material. */
 using BatchVisitor =

@@ -17,8 +17,6 @@
 #include "mpm_points.h"
 #include "mpm_stages.h"
 
-#include <algorithm>
-
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
@@ -51,8 +49,6 @@ using namespace MPM_NS;
    in 6000 steps at half of the limit of the time step; MUSL, and FLIP, damp as without. The same is seen of USF
    in axisymmetric runs.
 ------------------------------------------------------------------------- */
-
-/* ---------------------------------------------------------------------- */
 
 void MPMStages::blend_light_nodes(MPMField &field)
 {

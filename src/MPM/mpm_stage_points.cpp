@@ -77,12 +77,11 @@ void MPMStages::nodes_to_points(MPMField &field, Strain strain)
 
 void MPMStages::move_points(MPMField &field)
 {
-  double **const x = field.atom->x;
-  for (const auto &run : field.map->runs)
-    memcpy(&x[run.first][0], &field.work.xnew[3 * (std::size_t) run.first],
+  for (const auto &run : field.map->runs) {
+    memcpy(field.atom->x[run.first], &field.work.xnew[3 * (std::size_t) run.first],
            3 * sizeof(double) * (run.last - run.first));
-  if (field.domains)
-    for (const auto &run : field.map->runs) field.domains->take_late(run.first, run.last);
+    if (field.domains) field.domains->take_late(run.first, run.last);
+  }
 }
 
 /* ----------------------------------------------------------------------
@@ -110,7 +109,7 @@ void MPMStages::strain_from_nodes(MPMField &field, double share, double shift_sh
     field.kernel.g2p_gradient(with_corners, s, i, i + n, base, field.map->tile_load, L);
     if (shift != 0.0) frame.shift_gradients(n, shift, L);
     frame.refer_gradients(i, n, L);
-    frame.strain_of_nodes(r, s, i, i + n, base, dt, shift);
+    frame.strain_of_nodes(r, i, i + n, base, dt, shift);
     if (!fbar) update_stress(field, r, run, i, n, L, dt);
   });
   if (fbar) field.locking->strain(kept, dt);
@@ -138,11 +137,9 @@ void MPMStages::update_stress(MPMField &field, const PointRows &r, const MPMPoin
   b.time = end_of_step(field);
 
   const int nhistory = material->nhistory;
-  if (nhistory) {
-    const double *h = &material->history[0][0] + nhistory * (bigint) first;
-    for (int p = 0; p < n; p++)
-      for (int k = 0; k < nhistory; k++) b.history[k][p] = h[nhistory * p + k];
-  }
+  double *const h = nhistory ? &material->history[0][0] + nhistory * (bigint) first : nullptr;
+  for (int p = 0; p < n && nhistory; p++)
+    for (int k = 0; k < nhistory; k++) b.history[k][p] = h[nhistory * p + k];
 
   material->material->update(b);
   if (material->watching) material->watch_ranges(b, first);
@@ -150,12 +147,9 @@ void MPMStages::update_stress(MPMField &field, const PointRows &r, const MPMPoin
   if (!field.options.total && !material->material->uses_F()) field.batch_kernels->forget_shape(b);
 
   const int bad = field.batch_kernels->store(b, F, tau);
-  if (nhistory) {
-    double *h = &material->history[0][0] + nhistory * (bigint) first;
-    for (int p = 0; p < n; p++) {
-      if (bad && !(b.J[p] > 0.0)) continue;
-      for (int k = 0; k < nhistory; k++) h[nhistory * p + k] = b.history[k][p];
-    }
+  for (int p = 0; p < n && nhistory; p++) {
+    if (bad && !(b.J[p] > 0.0)) continue;
+    for (int k = 0; k < nhistory; k++) h[nhistory * p + k] = b.history[k][p];
   }
   for (int k = 0; k < NWORK; k++) material->work[k] += b.work[k];
   if (field.options.delete_failed && material->damage >= 0)
@@ -179,12 +173,11 @@ void MPMStages::give_initial_stress(MPMField &field)
 {
   Batch &batch = *field.batch;
   double **const tau = field.points->tau;
-  std::vector<double> room;
   std::vector<int> list;
   const FixMPMMaterial *material = nullptr;
   const auto flush = [&]() {
     if (list.empty()) return;
-    load_state(field, batch, list.data(), (int) list.size(), material, room);
+    load_state(field, batch, list.data(), (int) list.size(), material);
     batch.time = end_of_step(field);
     material->material->initial_stress(batch);
     for (std::size_t k = 0; k < list.size(); k++)

@@ -41,8 +41,6 @@ using namespace MPM_NS;
    v_old - u_m in the place of v_old; FMPM leaves u_m in that of v_new, with flip = 0.
 ------------------------------------------------------------------------- */
 
-/* ---------------------------------------------------------------------- */
-
 /** Velocities of the nodes, in the reals from lane on, before terms are added. */
 static void save_velocities(MPMField &field, int lane)
 {
@@ -68,8 +66,7 @@ static void add_term(MPMField &field, int lane)
   const double before = field.ledger.on ? field.ledger.nodal_kinetic_energy(0) : 0.0;
   field.work.vectors.assign(3 * (std::size_t) field.atom->nmax, 0.0);
   const PointRows r = field.rows_at_rest(field.work.vectors.data(), field.rows().mass);
-  TransferStep s = field.step_data();
-  s.dt = 0.0;
+  const TransferStep s = field.step_data(0.0);
 
   nodes.assign(nnodes * NREAL, 0.0);
   for (int64_t n = 0; n < nnodes; n++)

@@ -16,8 +16,6 @@
 #include "mpm_plan.h"
 #include "mpm_stages.h"
 
-#include <algorithm>
-
 using namespace LAMMPS_NS;
 using namespace MPMStages;
 

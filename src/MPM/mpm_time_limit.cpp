@@ -38,7 +38,7 @@ static constexpr int CHECK_EVERY = 20;    // steps between checks of the time st
 void MPMTimeLimit::setup()
 {
   next_check = update->ntimestep;
-  if (update->nsteps <= 0) return;
+  if (update->nsteps <= 0 || !field.options.dt_check) return;
   check();
   warn();
 }
@@ -49,7 +49,6 @@ double MPMTimeLimit::stable_dt(tagint &id_min, double &wave_speed) const
 {
   Batch &b = *field.batch;
   static const double no_gradient[9 * BATCH] = {0.0};
-  std::vector<double> history;
   double c[BATCH], smallest = std::numeric_limits<double>::max();
   id_min = 0;
   wave_speed = 0.0;
@@ -62,15 +61,18 @@ double MPMTimeLimit::stable_dt(tagint &id_min, double &wave_speed) const
     }
   }
 
-  for (int i = 0, last; i < atom->nlocal; i = last) {
+  const auto limits = [&](int i, double speed) {
+    if (speed * smallest <= field.lattice.h) return false;    // NaN does not pass unseen
+    smallest = field.lattice.h / speed;
+    id_min = atom->tag[i];
+    return true;
+  };
+
+  for (int i = 0, last; i < atom->nlocal && !std::isnan(smallest); i = last) {
     last = i + 1;
     if (!field.is_point(i)) continue;
     if (field.is_element_node(i)) {    // must not cross a cell in a step; the rest: FixMPMElements
-      const double *v = atom->v[i], speed = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-      if (field.frame->is_total() || speed * smallest <= field.lattice.h) continue;
-      smallest = field.lattice.h / speed;
-      id_min = atom->tag[i];
-      if (std::isnan(smallest)) return smallest;
+      if (!field.frame->is_total()) limits(i, sqrt(dot(atom->v[i], atom->v[i])));
       continue;
     }
 
@@ -83,20 +85,13 @@ double MPMTimeLimit::stable_dt(tagint &id_min, double &wave_speed) const
     const int n = last - i, nhistory = material->nhistory;
     field.batch_kernels->load(b, n, 0.0, no_gradient, field.points->F[i], field.points->tau[i],
                               atom->vfrac + i, no_gradient);
-    history.resize((std::size_t) std::max(1, nhistory) * BATCH);
-    b.history = reinterpret_cast<double(*)[BATCH]>(history.data());
+    b.history = reinterpret_cast<double(*)[BATCH]>(field.work.history.data());
     for (int p = 0; p < n; p++)
       for (int k = 0; k < nhistory; k++) b.history[k][p] = material->history[i + p][k];
     material->material->wave_speed(b, c);
 
-    for (int p = 0; p < n; p++) {
-      const double speed = field.frame->speed(i + p, c[p]);
-      if (speed * smallest <= field.lattice.h) continue;    // NaN does not pass unseen
-      smallest = field.lattice.h / speed;
-      id_min = atom->tag[i + p];
-      wave_speed = c[p];
-      if (std::isnan(smallest)) return smallest;
-    }
+    for (int p = 0; p < n && !std::isnan(smallest); p++)
+      if (limits(i + p, field.frame->speed(i + p, c[p]))) wave_speed = c[p];
   }
   return smallest;
 }
@@ -202,8 +197,7 @@ double MPMTimeLimit::share_of_thin_nodes() const
         if (weight <= 0.0) return;
         double slope = 0.0;    // square of grad N / N
         int index[3];
-        grid.node_index(grid.blocks[node.number / NODES_PER_BLOCK],
-                        (int) (node.number % NODES_PER_BLOCK), index);
+        grid.node_index(node.number, index);
         for (int d = 0; d < field.lattice.dim; d++) {
           const double a = fabs(r[d]);
           if (!bernstein)
@@ -228,7 +222,6 @@ double MPMTimeLimit::share_of_thin_nodes() const
 
 void MPMTimeLimit::warn() const
 {
-  if (!field.options.dt_check) return;
   tagint tag;
   double c, mine[2] = {stable_dt(tag, c), 0.5}, all[2];
   if (field.boxes) mine[1] = field.boxes->smallest();

@@ -51,10 +51,11 @@ TEST(Grid, NodeIndexAndLocateAreInverse)
 TEST(Grid, BlockKeyKeepsSignsAndCoordinates)
 {
   Grid grid(make_lattice(3, 10, false));
-  const int b[3] = {-1048576, 1048575, -3};
-  const int slot = grid.activate(b);
-  const uint64_t key = Grid::block_key(grid.blocks[slot]);
-  for (int d = 0; d < 3; d++) EXPECT_EQ(Grid::key_coordinate(key, d), b[d]);
+  const int b[4][3] = {
+      {-1048576, 1048575, -3}, {1048575, -1048576, -3}, {-1048576, 1048575, 3}, {-3, 1048575, -3}};
+  for (int slot = 0; slot < 4; slot++) EXPECT_EQ(grid.activate(b[slot]), slot);
+  for (int slot = 0; slot < 4; slot++)
+    EXPECT_EQ(grid.find(Grid::block_key(grid.blocks[slot])), slot);
 }
 
 TEST(Grid, NeighbourTable)

@@ -21,9 +21,9 @@ void Grid::clear()
   alias_of.clear();
 }
 
-int Grid::find(const int b[3]) const
+int Grid::find(uint64_t key) const
 {
-  auto found = table.find(key(b));
+  auto found = table.find(key);
   return found == table.end() ? -1 : found->second;
 }
 

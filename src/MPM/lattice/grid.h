@@ -70,12 +70,13 @@ class Grid {
   {
   }
 
-  void clear();                      ///< forget all blocks
-  int activate(const int b[3]);      ///< slot of a block, made active when it is not
-  int find(const int b[3]) const;    ///< slot or -1
-  void close_periodic();             ///< activate canonical blocks, list the aliases
-  void finish();                     ///< neighbour tables, owned masks (all canonical)
-  void allocate(int nreal);          ///< node records for all blocks, zeroed
+  void clear();                    ///< forget all blocks
+  int activate(const int b[3]);    ///< slot of a block, made active when it is not
+  int find(const int b[3]) const { return find(key(b)); }    ///< slot or -1
+  int find(uint64_t key) const;                              ///< the same with its block_key()
+  void close_periodic();       ///< activate canonical blocks, list the aliases
+  void finish();               ///< neighbour tables, owned masks (all canonical)
+  void allocate(int nreal);    ///< node records for all blocks, zeroed
 
   double *nodes() { return node.get(); }
   double *record(int slot, int n) { return record((int64_t) slot * NODES_PER_BLOCK + n); }
@@ -140,10 +141,6 @@ class Grid {
   int64_t memory_usage() const;
 
   static uint64_t block_key(const Block &block) { return key(block.b); }
-  static int key_coordinate(uint64_t key, int axis)
-  {
-    return (int) ((key >> (42 - 21 * axis)) & ((1u << 21) - 1)) - (1 << 20);
-  }
 
  private:
   std::unordered_map<uint64_t, int> table;
