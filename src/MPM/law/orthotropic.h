@@ -10,7 +10,6 @@
 #define MPM_LAW_ORTHOTROPIC_H
 
 #include "law/hyperelastic.h"
-#include "math/matrix.h"
 
 namespace MPM_NS::law {
 namespace {
@@ -94,20 +93,11 @@ namespace {
                            max(G13 + std::fabs(C13 + G13), G23 + std::fabs(C23 + G23)));
       return max(a, b);
     }
-  };
-
-  /** Loops of such a law. Law has, besides its declaration: constants(parameters), and Axes, made from
-   *  the parameters, with the orthonormal vectors axis. */
-  template <class Law> struct Anisotropic : Hyperelastic<Law>, AnisotropicKirchhoff {
-    explicit Anisotropic(const LawParameters &p) :
-        AnisotropicKirchhoff(Law::constants(p), typename Law::Axes(p).axis)
-    {
-    }
 
     /** With N = F^T n and M = F^T m, J density c^2 = (M N):C:(M N) + n.tau.n. */
-    static void modulus(const LawParameters &p, const Batch &b, History, double *k)
+    static MPM_INLINE void bound(const AnisotropicKirchhoff &law, const Batch &b, double *k)
     {
-      const double stiff = Law(p).stiffest();
+      const double stiff = law.stiffest();
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
         const double longest = largest_principal(left_cauchy_green(b, i));
@@ -118,8 +108,7 @@ namespace {
   };
 
   /** Law by nine engineering constants. */
-  struct LawOrthotropic : Anisotropic<LawOrthotropic> {
-    using Anisotropic::Anisotropic;
+  struct LawOrthotropic : Hyperelastic<LawOrthotropic>, AnisotropicKirchhoff {
     static constexpr const char *name = "orthotropic";
     static constexpr const char *meaning = "orthotropic elastic, linear in Green-Lagrange strain";
     static constexpr Parameter parameters[] = {
@@ -160,7 +149,10 @@ namespace {
           axis[0][k] = c * one[k] + s * two[k];
           axis[1][k] = c * two[k] - s * one[k];
         }
-        cross(one, two, axis[2]);
+        for (int k = 0; k < 3; k++) {
+          const int m = (k + 1) % 3, n = (k + 2) % 3;
+          axis[2][k] = one[m] * two[n] - one[n] * two[m];
+        }
       }
     };
 
@@ -186,11 +178,20 @@ namespace {
         return "the energy is not positive for all strains: check E1, E2, E3 and NU12, NU13, NU23";
       return nullptr;
     }
+
+    explicit LawOrthotropic(const LawParameters &p) :
+        AnisotropicKirchhoff(constants(p), Axes(p).axis)
+    {
+    }
+
+    static void modulus(const LawParameters &p, const Batch &b, History, double *k)
+    {
+      bound(LawOrthotropic(p), b, k);
+    }
   };
 
   /** Law by the five constants of a material with an axis of symmetry, such as fibres. */
-  struct LawTransverselyIsotropic : Anisotropic<LawTransverselyIsotropic> {
-    using Anisotropic::Anisotropic;
+  struct LawTransverselyIsotropic : Hyperelastic<LawTransverselyIsotropic>, AnisotropicKirchhoff {
     static constexpr const char *name = "transversely/isotropic";
     static constexpr const char *meaning = "elastic with one axis, linear in Green-Lagrange strain";
     enum { EA, ET, NUA, NUT, GA, AXIS };
@@ -218,7 +219,10 @@ namespace {
           if (std::fabs(axis[0][k]) < std::fabs(axis[0][far])) far = k;
         const double along = axis[0][far], rest = std::sqrt(1.0 - along * along);
         for (int k = 0; k < 3; k++) axis[1][k] = ((k == far) - along * axis[0][k]) / rest;
-        cross(axis[0], axis[1], axis[2]);
+        for (int k = 0; k < 3; k++) {
+          const int m = (k + 1) % 3, n = (k + 2) % 3;
+          axis[2][k] = axis[0][m] * axis[1][n] - axis[0][n] * axis[1][m];
+        }
       }
     };
 
@@ -236,6 +240,16 @@ namespace {
       if (!constants(p).admissible())
         return "the energy is not positive for all strains: 1 - NUT must be above 2 NUA^2 ET/EA";
       return nullptr;
+    }
+
+    explicit LawTransverselyIsotropic(const LawParameters &p) :
+        AnisotropicKirchhoff(constants(p), Axes(p).axis)
+    {
+    }
+
+    static void modulus(const LawParameters &p, const Batch &b, History, double *k)
+    {
+      bound(LawTransverselyIsotropic(p), b, k);
     }
   };
 

@@ -32,11 +32,8 @@ struct RandomParameter {
   double variation;    ///< standard deviation over mean
   std::shared_ptr<const RandomField> field;
 
-  double &of(LawParameters &p) const
-  {
-    return term < 0 ? p.value[parameter] : p.term[term][parameter];
-  }
-  double of(const LawParameters &p) const
+  /** The parameter in the values p, which may be constant. */
+  template <class Values> auto &of(Values &p) const
   {
     return term < 0 ? p.value[parameter] : p.term[term][parameter];
   }
