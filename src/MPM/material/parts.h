@@ -14,7 +14,6 @@
 #include "law/law.h"
 
 #include <cstdio>
-#include <cstring>
 
 namespace MPM_NS {
 
