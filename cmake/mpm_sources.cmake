@@ -70,6 +70,17 @@ foreach(family ${families})
 endforeach()
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${MPM_DIR}/law/list.h)
 
+# So are transfers that are nothing but instances of transfer/kernels_fast.h.
+foreach(name aflip_tpic gimp bernstein)
+  set(source ${CMAKE_CURRENT_BINARY_DIR}/mpm_kernels/${name}_isa.cpp)
+  string(TOUPPER ${name} upper)
+  set(text "#include \"transfer/kernels_isa.h\"\n#ifdef MPM_HAVE_VECTORS\n")
+  string(APPEND text "#include \"transfer/kernels_fast.h\"\n")
+  string(APPEND text "MPM_KERNELS_OF_FILE(${name}, ${upper}_FILE)\n#endif\n")
+  mpm_write(${source} "${text}")
+  list(APPEND MPM_ISA_SOURCES ${source})
+endforeach()
+
 # add "MPM" to the packages that 'lmp -h' lists as installed
 function(mpm_installed_packages lammps_styles dir)
   file(READ ${lammps_styles}/lmpinstalledpkgs.h text)

@@ -79,8 +79,20 @@ for isa in "${sets[@]}"; do
   # the optimizer needs minutes for these with sanitizers
   for kernels in "$src"/transfer/*_isa.cpp; do
     name=$(basename "$kernels" .cpp)
-    case $name in bernstein_* | polypic_*) continue ;; esac
+    case $name in polypic_*) continue ;; esac
     compile "$kernels" "${name}_$isa.o" -DMPM_ISA="$isa" "${march[@]}" -O0 -g0
+  done
+  # as in cmake/mpm_sources.cmake
+  for name in aflip_tpic gimp; do
+    kernels=kernels_$name.cpp
+    [ -e "$kernels" ] || cat >"$kernels" <<CODE
+#include "transfer/kernels_isa.h"
+#ifdef MPM_HAVE_VECTORS
+#include "transfer/kernels_fast.h"
+MPM_KERNELS_OF_FILE($name, ${name^^}_FILE)
+#endif
+CODE
+    compile "$kernels" "${name}_isa_$isa.o" -DMPM_ISA="$isa" "${march[@]}" -O0 -g0
   done
 done
 

@@ -14,7 +14,11 @@
 namespace MPM_NS::law {
 namespace {
 
-  // parameters that all damages have at the end, in this order
+// Parameters that all damages have at the end, and history variables that all have at the beginning,
+// in this order. Macros, as lists of declarations cannot be joined.
+#define MPM_AFTER_PARAMETERS after_none, after_pressure, after_friction
+#define MPM_DAMAGE_HISTORY damaged, shear_energy, rest_energy
+
   constexpr Parameter after_none = {"after none", "NONE", FLAG,
                                     FRACTION,     0.0,    "failed points bear no stress at all"};
   constexpr Parameter after_pressure = {
@@ -23,7 +27,6 @@ namespace {
       "after friction", "MU", "1",
       NOT_NEGATIVE,     0.0,  "failed points bear pressure and friction, coefficient"};
 
-  // history variables that all damages have at the beginning, in this order
   enum { DAMAGED, SHEAR_ENERGY, REST_ENERGY, NDAMAGE };
   constexpr HistoryDeclaration damaged = {"damage", ZERO, "1",
                                           "share of the stress that is lost, 1: failed"};

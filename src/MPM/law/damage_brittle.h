@@ -38,13 +38,9 @@ namespace {
         {"weibull", "M", "1", POSITIVE, 0.0, "Weibull modulus"},
         {"weibull", "V0", "volume", POSITIVE, 1.0, "reference volume (in 2d per thickness)"},
         {"weibull", "SEED", "1", NOT_NEGATIVE, 0.0, "seed of the random numbers"},
-        after_none,
-        after_pressure,
-        after_friction};
+        MPM_AFTER_PARAMETERS};
     static constexpr HistoryDeclaration history[] = {
-        damaged,
-        shear_energy,
-        rest_energy,
+        MPM_DAMAGE_HISTORY,
         {"random", ZERO, "1", "uniform random number of the point, if weibull is given"},
         {"opening", ZERO, "1", "largest r since the crack began"},
         {"ductility", ZERO, "1", "r at which all stress is lost, 0: no crack yet"}};
@@ -119,13 +115,9 @@ namespace {
         {"", "M", "1", POSITIVE, REQUIRED, "exponent of the strain"},
         {"", "CG", "velocity", POSITIVE, REQUIRED, "velocity at which cracks grow"},
         YOUNGS_MODULUS,
-        after_none,
-        after_pressure,
-        after_friction};
+        MPM_AFTER_PARAMETERS};
     static constexpr HistoryDeclaration history[] = {
-        damaged,
-        shear_energy,
-        rest_energy,
+        MPM_DAMAGE_HISTORY,
         {"fragment", ZERO, "length", "size of fragments, final when the point has failed"}};
     enum { FRAGMENT = NDAMAGE };
 

@@ -74,11 +74,8 @@ namespace {
         {"minimum", "EFMIN", "1", NOT_NEGATIVE, 0.0, "lower limit of the failure strain"},
         soften_from,
         soften_energy,
-        after_none,
-        after_pressure,
-        after_friction};
-    static constexpr HistoryDeclaration history[] = {damaged, shear_energy, rest_energy,
-                                                     ductility_used};
+        MPM_AFTER_PARAMETERS};
+    static constexpr HistoryDeclaration history[] = {MPM_DAMAGE_HISTORY, ductility_used};
     static constexpr bool needs_temperature(const LawParameters &p) { return p.value[D5] != 0.0; }
     static constexpr const char *check(const LawParameters &p)
     {
@@ -120,11 +117,8 @@ namespace {
         {"", "WC", "pressure", POSITIVE, REQUIRED, "critical work per volume"},
         soften_from,
         soften_energy,
-        after_none,
-        after_pressure,
-        after_friction};
-    static constexpr HistoryDeclaration history[] = {damaged, shear_energy, rest_energy,
-                                                     ductility_used};
+        MPM_AFTER_PARAMETERS};
+    static constexpr HistoryDeclaration history[] = {MPM_DAMAGE_HISTORY, ductility_used};
 
     double inv_work;
     Ductile ductile;

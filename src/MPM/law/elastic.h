@@ -150,26 +150,22 @@ namespace {
       return 0.5 * lambda * t * t + mu * norm2(e);
     }
 
-    static void respond(const LawParameters &p, int n, PrincipalResponse &r)
+    MPM_INLINE void respond_at(PrincipalResponse &r, int i) const
     {
-      const LawStVenantKirchhoff law(p);
-      MPM_SIMD
-      for (int i = 0; i < n; i++) {
-        const double x = exp(2.0 * r.e[0][i]), y = exp(2.0 * r.e[1][i]);
-        const double z = exp(2.0 * r.e[2][i]), t = 0.5 * law.lambda * (x + y + z - 3.0);
-        // second Piola-Kirchhoff stresses
-        const double Sx = t + law.mu * (x - 1.0), Sy = t + law.mu * (y - 1.0);
-        const double Sz = t + law.mu * (z - 1.0), M = law.lambda + 2.0 * law.mu;
-        r.tau[0][i] = x * Sx;
-        r.tau[1][i] = y * Sy;
-        r.tau[2][i] = z * Sz;
-        r.A[0][i] = x * (2.0 * Sx + M * x);
-        r.A[1][i] = y * (2.0 * Sy + M * y);
-        r.A[2][i] = z * (2.0 * Sz + M * z);
-        r.A[3][i] = law.lambda * x * y;
-        r.A[4][i] = law.lambda * x * z;
-        r.A[5][i] = law.lambda * y * z;
-      }
+      const double x = exp(2.0 * r.e[0][i]), y = exp(2.0 * r.e[1][i]);
+      const double z = exp(2.0 * r.e[2][i]), t = 0.5 * lambda * (x + y + z - 3.0);
+      // second Piola-Kirchhoff stresses
+      const double Sx = t + mu * (x - 1.0), Sy = t + mu * (y - 1.0);
+      const double Sz = t + mu * (z - 1.0), M = lambda + 2.0 * mu;
+      r.tau[0][i] = x * Sx;
+      r.tau[1][i] = y * Sy;
+      r.tau[2][i] = z * Sz;
+      r.A[0][i] = x * (2.0 * Sx + M * x);
+      r.A[1][i] = y * (2.0 * Sy + M * y);
+      r.A[2][i] = z * (2.0 * Sz + M * z);
+      r.A[3][i] = lambda * x * y;
+      r.A[4][i] = lambda * x * z;
+      r.A[5][i] = lambda * y * z;
     }
   };
 
@@ -207,18 +203,14 @@ namespace {
       return G * square + 0.5 * K * logJ * logJ;
     }
 
-    static void respond(const LawParameters &p, int n, PrincipalResponse &r)
+    MPM_INLINE void respond_at(PrincipalResponse &r, int i) const
     {
-      const LawHencky law(p);
-      MPM_SIMD
-      for (int i = 0; i < n; i++) {
-        for (int a = 0; a < 3; a++) {
-          r.tau[a][i] = 2.0 * law.G * (r.e[a][i] - (1.0 / 3.0) * r.logJ[i]);
-          r.A[a][i] = (4.0 / 3.0) * law.G;
-          r.A[a + 3][i] = -(2.0 / 3.0) * law.G;
-        }
-        respond_mean(law.K * r.logJ[i], law.K, r, i);
+      for (int a = 0; a < 3; a++) {
+        r.tau[a][i] = 2.0 * G * (r.e[a][i] - (1.0 / 3.0) * r.logJ[i]);
+        r.A[a][i] = (4.0 / 3.0) * G;
+        r.A[a + 3][i] = -(2.0 / 3.0) * G;
       }
+      respond_mean(K * r.logJ[i], K, r, i);
     }
   };
 

@@ -53,8 +53,7 @@ namespace {
   struct EosLinear : Barotropic<EosLinear> {
     static constexpr const char *name = "linear";
     static constexpr const char *meaning = "pressure linear in density";
-    static constexpr Parameter parameters[] = {
-        {"", "K", "pressure", POSITIVE, REQUIRED, "bulk modulus"}};
+    static constexpr Parameter parameters[] = {BULK_MODULUS};
 
     double K;
 

@@ -74,8 +74,16 @@ namespace {
     return max(max(max(k0, k1), max(k2, k3)), max(k4, k5));
   }
 
-  /** Hyperelastic law that is isotropic. Law has in addition: respond(parameters, n, response). */
+  /** Hyperelastic law that is isotropic. Law has in addition: respond_at(response, i), or its own
+   *  respond(). */
   template <class Law> struct IsotropicHyperelastic : Hyperelastic<Law> {
+    static void respond(const LawParameters &p, int n, PrincipalResponse &r)
+    {
+      const Law law(p);
+      MPM_SIMD
+      for (int i = 0; i < n; i++) law.respond_at(r, i);
+    }
+
     static void modulus(const LawParameters &p, const Batch &b, History, double *k)
     {
       PrincipalResponse r;

@@ -59,6 +59,7 @@ struct Parameter {
 constexpr Parameter YOUNGS_MODULUS = {"", "E", "pressure", POSITIVE, REQUIRED, "Young's modulus"};
 constexpr Parameter POISSONS_RATIO = {"", "NU", "1", POISSON_RATIO, REQUIRED, "Poisson's ratio"};
 constexpr Parameter SHEAR_MODULUS = {"", "G", "pressure", POSITIVE, REQUIRED, "shear modulus"};
+constexpr Parameter BULK_MODULUS = {"", "K", "pressure", POSITIVE, REQUIRED, "bulk modulus"};
 
 /** Declaration of one history variable. */
 struct HistoryDeclaration {

@@ -96,15 +96,11 @@ namespace {
       return 0.5 * G * shape.first() + 0.5 * K * u * u;
     }
 
-    static void respond(const LawParameters &p, int n, PrincipalResponse &r)
+    MPM_INLINE void respond_at(PrincipalResponse &r, int i) const
     {
-      const LawNeoHookeanSplit law(p);
-      MPM_SIMD
-      for (int i = 0; i < n; i++) {
-        respond_ogden(law.G, 2.0, r, i);
-        const double J = exp(r.logJ[i]);
-        respond_mean(law.K * J * (J - 1.0), law.K * J * (2.0 * J - 1.0), r, i);
-      }
+      respond_ogden(G, 2.0, r, i);
+      const double J = exp(r.logJ[i]);
+      respond_mean(K * J * (J - 1.0), K * J * (2.0 * J - 1.0), r, i);
     }
   };
 
@@ -124,7 +120,7 @@ namespace {
     static constexpr Parameter parameters[] = {
         {"", "C10", "pressure", POSITIVE, REQUIRED, "coefficient of the first invariant"},
         {"", "C01", "pressure", NOT_NEGATIVE, REQUIRED, "coefficient of the second invariant"},
-        {"", "K", "pressure", POSITIVE, REQUIRED, "bulk modulus"}};
+        BULK_MODULUS};
 
     double C10, C01;
     VolumeEnergy volume;
@@ -151,16 +147,12 @@ namespace {
       return C10 * first + C01 * second + volume.stored(shape.logJ);
     }
 
-    static void respond(const LawParameters &p, int n, PrincipalResponse &r)
+    MPM_INLINE void respond_at(PrincipalResponse &r, int i) const
     {
-      const LawMooneyRivlin law(p);
-      MPM_SIMD
-      for (int i = 0; i < n; i++) {
-        respond_ogden(2.0 * law.C10, 2.0, r, i);
-        respond_ogden(-2.0 * law.C01, -2.0, r, i);
-        const double logJ = r.logJ[i];
-        respond_mean(law.volume.stress(logJ), law.volume.derivative(logJ), r, i);
-      }
+      respond_ogden(2.0 * C10, 2.0, r, i);
+      respond_ogden(-2.0 * C01, -2.0, r, i);
+      const double logJ = r.logJ[i];
+      respond_mean(volume.stress(logJ), volume.derivative(logJ), r, i);
     }
   };
 
@@ -175,8 +167,7 @@ namespace {
   struct LawOgden : IsotropicHyperelastic<LawOgden> {
     static constexpr const char *name = "ogden";
     static constexpr const char *meaning = "rubber in powers of the principal stretches";
-    static constexpr Parameter parameters[] = {
-        {"", "K", "pressure", POSITIVE, REQUIRED, "bulk modulus"}};
+    static constexpr Parameter parameters[] = {BULK_MODULUS};
     static constexpr const char *term = "term";
     static constexpr Parameter term_parameters[] = {
         {"term", "MU", "pressure", ANY_NUMBER, REQUIRED, "coefficient, of the sign of ALPHA"},

@@ -31,13 +31,13 @@ class ComposedMaterial : public Material {
   ComposedMaterial(const MaterialDefinition &definition, const LawTable *table) :
       rho(definition.density), table(table)
   {
-    std::copy(definition.laws, definition.laws + NPARTS, laws);
+    for (const auto &part : definition.laws) laws.insert(laws.end(), part.begin(), part.end());
     text = "density " + number(rho);
-    for (auto &part : laws)
-      for (auto &law : part) {
-        add(law);
-        shape_matters = shape_matters || law.info->uses_F;
-      }
+    for (auto &law : laws) {
+      add(law);
+      shape_matters = shape_matters || law.info->uses_F;
+      speed_matters = speed_matters || (law.part == VISCOSITY && law.info->uses_speed);
+    }
     for (const auto &r : definition.random) add(r);
     for (const auto &range : definition.ranges) add(range);
     if (definition.shares_stress()) {
@@ -70,29 +70,26 @@ class ComposedMaterial : public Material {
   {
     for (size_t k = 0; k < variables.size(); k++) history[k] = variables[k].initial;
     if (random_density) set_factor(*random_density, DENSITY, rho, x, history);
-    for (const auto &part : laws)
-      for (const auto &law : part)
-        for (const auto &r : law.random) {
-          const LawInfo &info = *law.info;
-          set_factor(r, (r.term < 0 ? info.parameters : info.term_parameters)[r.parameter],
-                     r.of(law.parameters), x, history);
-        }
-    for (const auto &part : laws)
-      for (const auto &law : part)
-        if (law.varies) {
-          LocalParameters local(*this, law);
-          initialize(law, local.at(history, 1), x, history);
-        } else if (law.info->initialize) {
-          law.info->initialize(law.parameters, x, history + law.history);
-        }
+    for (const auto &law : laws)
+      for (const auto &r : law.random) {
+        const LawInfo &info = *law.info;
+        set_factor(r, (r.term < 0 ? info.parameters : info.term_parameters)[r.parameter],
+                   r.of(law.parameters), x, history);
+      }
+    for (const auto &law : laws)
+      if (law.varies) {
+        LocalParameters local(*this, law);
+        initialize(law, local.at(history, 1), x, history);
+      } else if (law.info->initialize) {
+        law.info->initialize(law.parameters, x, history + law.history);
+      }
   }
 
   void initialized() const override
   {
     if (random_density) random_density->field->release();
-    for (const auto &part : laws)
-      for (const auto &law : part)
-        for (const auto &r : law.random) r.field->release();
+    for (const auto &law : laws)
+      for (const auto &r : law.random) r.field->release();
   }
 
   void initial_stress(Batch &b) const override
@@ -104,7 +101,7 @@ class ComposedMaterial : public Material {
       for (auto &row : b.A) row[i] = 0.0;
     }
     clear_stress(b);
-    for (const auto &law : laws[EOS]) call(law.kernels->update, law, b);
+    run(eos, b);
   }
 
   void update(Batch &b) const override
@@ -112,34 +109,26 @@ class ComposedMaterial : public Material {
     for (int i = 0; i < b.n; i++) b.heat[i] = b.plastic[i] = 0.0;
     for (double &w : b.work) w = 0.0;
 
-    const auto run = [this, &b](const UsedLaw &law) {
-      call(law.kernels->update, law, b);
-    };
     if (damage) call(damage->kernels->prepare, *damage, b);
-    if (viscous >= 0) take_viscous_stress(b);
-    for (const auto &law : laws[VISCOSITY])
-      if (law.info->uses_speed) {
-        plain_speed(b, b.speed);
-        break;
-      }
-    if (base)
-      run(*base);
-    else
-      clear_stress(b);
+    take_viscous_stress(b);
+    if (speed_matters) plain_speed(b, b.speed);
+    if (!base) clear_stress(b);
+    run(base, b);
     if (damage) account_of_strength(b);
-    // what the viscosities add: stress after them minus stress before them
-    for (int k = 0; k < 6 && viscous >= 0; k++)
-      for (int i = 0; i < b.n; i++) b.history[viscous + k][i] = -b.stress[k][i];
-    for (const auto &law : laws[VISCOSITY]) run(law);
-    for (int k = 0; k < 6 && viscous >= 0; k++)
-      for (int i = 0; i < b.n; i++) b.history[viscous + k][i] += b.stress[k][i];
+    // what viscosities add: stress after them minus stress before them
+    with_viscous_stress(b, [](double stress, double &added) {
+      added = -stress;
+    });
+    for (const auto &law : laws)
+      if (law.part == VISCOSITY) run(&law, b);
+    with_viscous_stress(b, [](double stress, double &added) {
+      added += stress;
+    });
     if (damage) table->mean_stress(b, b.viscous_mean);
-    for (const auto &law : laws[EOS]) run(law);
-    if (damage) {
-      add_energy(EOS, b, b.volume_energy);
-      run(*damage);
-    }
-    for (const auto &law : laws[THERMAL]) run(law);
+    run(eos, b);
+    if (damage) add_energy(eos, b, b.volume_energy);
+    run(damage, b);
+    run(thermal, b);
   }
 
   const std::vector<ValidRange> &ranges() const override { return valid; }
@@ -172,7 +161,7 @@ class ComposedMaterial : public Material {
     Batch copy;
     const Batch &b = without_viscous_stress(state, copy);
     plain_speed(b, c);
-    for (const auto &law : laws[VISCOSITY])
+    for (const auto &law : laws)
       if (law.kernels->raise_speed) call(law.kernels->raise_speed, law, b, c);
   }
 
@@ -181,23 +170,21 @@ class ComposedMaterial : public Material {
     Batch copy;
     const Batch &b = without_viscous_stress(state, copy);
     for (int i = 0; i < b.n; i++) w[i] = 0.0;
-    for (const auto &part : laws)
-      for (const auto &law : part)
-        if (law.kernels->energy && !(damage && law.part == STRENGTH))
-          call(law.kernels->energy, law, b, w);
+    for (const auto &law : laws)
+      if (!(damage && law.part == STRENGTH)) add_energy(&law, b, w);
   }
 
  private:
   double rho;
   double rho_pressure;    ///< density in units of pressure over velocity^2, as the laws need it
   const LawTable *table;
-  std::vector<UsedLaw> laws[NPARTS];
+  std::vector<UsedLaw> laws;                                ///< in the order of their parts
   const UsedLaw *base;                                      ///< closed law or strength, or null
-  const UsedLaw *damage;                                    ///< or null
-  const UsedLaw *thermal;                                   ///< or null
+  const UsedLaw *eos, *damage, *thermal;                    ///< or null
   std::unique_ptr<const RandomParameter> random_density;    ///< when it differs from point to point
   bool shape_matters = false;                               ///< does a law look at F?
-  bool random_heat = false;    ///< does what the thermal part tells the others, too?
+  bool speed_matters = false;    ///< does a viscosity look at batch.speed?
+  bool random_heat = false;      ///< does what the thermal part tells the others, too?
   /** First of six history variables with what viscosities added to the stress in the last step, for
    *  a closed law or strength that builds on that stress and must not see it; -1 when not needed. */
   int viscous = -1;
@@ -212,10 +199,18 @@ class ComposedMaterial : public Material {
     for (auto &row : b.stress) std::fill(row, row + b.n, 0.0);
   }
 
+  /** Calls work with the stress and what viscosities added to it, when that is kept apart. */
+  template <class Work> void with_viscous_stress(Batch &b, Work work) const
+  {
+    for (int k = 0; viscous >= 0 && k < 6; k++)
+      for (int i = 0; i < b.n; i++) work(b.stress[k][i], b.history[viscous + k][i]);
+  }
+
   void take_viscous_stress(Batch &b) const
   {
-    for (int k = 0; k < 6; k++)
-      for (int i = 0; i < b.n; i++) b.stress[k][i] -= b.history[viscous + k][i];
+    with_viscous_stress(b, [](double &stress, double added) {
+      stress -= added;
+    });
   }
 
   const Batch &without_viscous_stress(const Batch &b, Batch &copy) const
@@ -281,6 +276,12 @@ class ComposedMaterial : public Material {
       for (const auto &r : law.random) r.of(p) = r.of(law.parameters) * history[r.row * stride];
     }
   };
+
+  /** Update by a law, if there is one. */
+  void run(const UsedLaw *law, Batch &b) const
+  {
+    if (law) call(law->kernels->update, *law, b);
+  }
 
   /** A kernel that changes a batch. */
   void call(void (*kernel)(const LawParameters &, Batch &, History), const UsedLaw &law,
@@ -372,26 +373,24 @@ class ComposedMaterial : public Material {
   void bind(double pressure_scale, double energy_scale)
   {
     rho_pressure = rho * pressure_scale;
-    base = nullptr;
-    for (const Part part : {CLOSED, STRENGTH})
-      if (!laws[part].empty()) base = laws[part].data();
-    damage = laws[DAMAGE].empty() ? nullptr : laws[DAMAGE].data();
-    thermal = laws[THERMAL].empty() ? nullptr : laws[THERMAL].data();
-    for (auto &law : laws[THERMAL]) law.parameters.heat_density = rho * energy_scale;
+    base = eos = damage = thermal = nullptr;
+    const UsedLaw **const place[NPARTS] = {&base, &eos, &base, nullptr, &damage, &thermal};
+    for (auto &law : laws) {
+      if (place[law.part]) *place[law.part] = &law;
+      law.parameters.heat_density = rho * energy_scale;
+    }
     random_heat = thermal && random_heats();
-    for (auto &part : laws)
-      for (auto &law : part) {
-        LawParameters &p = law.parameters;
-        law.kernels = &table->kernels(law.part, law.index);
-        law.heats_alone = damage && law.part == STRENGTH;
-        law.varies = !law.random.empty() || random_density || random_heat;
-        p.density = rho_pressure;
-        p.heat_density = rho * energy_scale;
-        p.chi = 1.0;
-        p.warm = 0.0;
-        p.temperature = thermal ? thermal->history : -1;
-        if (thermal) share_heat(*thermal->info, thermal->parameters, law.heats_alone, p);
-      }
+    for (auto &law : laws) {
+      LawParameters &p = law.parameters;
+      law.kernels = &table->kernels(law.part, law.index);
+      law.heats_alone = damage && law.part == STRENGTH;
+      law.varies = !law.random.empty() || random_density || random_heat;
+      p.density = rho_pressure;
+      p.chi = 1.0;
+      p.warm = 0.0;
+      p.temperature = thermal ? thermal->history : -1;
+      if (thermal) share_heat(*thermal->info, thermal->parameters, law.heats_alone, p);
+    }
   }
 
   /** Does what share_heat() tells differ from point to point? */
@@ -409,11 +408,10 @@ class ComposedMaterial : public Material {
     return false;
   }
 
-  /** Energy stored by one part, added to w. */
-  void add_energy(Part part, const Batch &b, double *w) const
+  /** Energy stored by one law, added to w. */
+  void add_energy(const UsedLaw *law, const Batch &b, double *w) const
   {
-    for (const auto &law : laws[part])
-      if (law.kernels->energy) call(law.kernels->energy, law, b, w);
+    if (law && law->kernels->energy) call(law->kernels->energy, *law, b, w);
   }
 
   /** What the strength has done, for a damage; heat that the equation of state shall have. */
@@ -429,7 +427,7 @@ class ComposedMaterial : public Material {
       for (int i = 0; i < b.n; i++)
         b.heat[i] = local.at(&b.history[0][i], BATCH).chi * b.kept[i] * b.plastic_work[i];
     }
-    add_energy(STRENGTH, b, b.shear_energy);
+    add_energy(base, b, b.shear_energy);
   }
 
   void add(UsedLaw &law)
@@ -484,12 +482,11 @@ class ComposedMaterial : public Material {
       r.term = term;
       r.parameter = k;
     };
-    for (auto &part : laws)
-      for (auto &law : part) {
-        for (int k = 0; k < law.info->nparameters; k++) consider(law, -1, k);
-        for (int term = 0; term < law.parameters.nterms; term++)
-          for (int k = 0; k < law.info->nterm_parameters; k++) consider(law, term, k);
-      }
+    for (auto &law : laws) {
+      for (int k = 0; k < law.info->nparameters; k++) consider(law, -1, k);
+      for (int term = 0; term < law.parameters.nterms; term++)
+        for (int k = 0; k < law.info->nterm_parameters; k++) consider(law, term, k);
+    }
     const bool of_density = random.name == "density";
     if (!owner && !of_density) refuse("no such parameter: choose one of " + choice);
     const double mean = of_density ? rho : r.of(owner->parameters);
@@ -536,9 +533,8 @@ class ComposedMaterial : public Material {
   void plain_speed(const Batch &b, double *c) const
   {
     double k[BATCH] = {};
-    for (const auto &part : laws)
-      for (const auto &law : part)
-        if (law.kernels->modulus) call(law.kernels->modulus, law, b, k);
+    for (const auto &law : laws)
+      if (law.kernels->modulus) call(law.kernels->modulus, law, b, k);
     table->speed(b.n, rho_pressure, k, c);
     if (random_density)
       for (int i = 0; i < b.n; i++) c[i] /= std::sqrt(b.history[random_density->row][i]);

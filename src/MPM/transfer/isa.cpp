@@ -57,16 +57,11 @@ bool MPM_NS::select_isa(const char *name, InstructionSet &set)
   return false;
 }
 
-const char *MPM_NS::isa_name(InstructionSet set)
-{
-  const char *const names[] = {"baseline", "AVX2", "AVX-512", "reference"};
-  return names[set];
-}
-
 const MPMKernels *MPMKernels::select(const char *name)
 {
   const MPMKernels *(*const tables[])(const char *) = MPM_ALL_ISA(mpm_kernels);
   InstructionSet set;
   if (!select_isa(name, set)) return nullptr;
-  return set == REFERENCE ? mpm_kernels_reference() : tables[set](isa_name(set));
+  const char *const names[] = {"baseline", "AVX2", "AVX-512"};
+  return set == REFERENCE ? mpm_kernels_reference() : tables[set](names[set]);
 }

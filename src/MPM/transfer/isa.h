@@ -23,9 +23,6 @@ enum InstructionSet { BASE, V3, V4, REFERENCE };
  *  name, and for a set that was not built or that the CPU lacks. */
 bool select_isa(const char *name, InstructionSet &set);
 
-/** Its name for users: baseline, AVX2, AVX-512, reference. */
-const char *isa_name(InstructionSet set);
-
 }    // namespace MPM_NS
 
 #define MPM_CONCAT_(a, b) a##_##b

@@ -1016,4 +1016,12 @@ template <File FILE> TransferKernels kernels_of_file(const KernelChoice &choice)
 }
 
 }    // namespace
+
+/** Defines mpm_kernels_<name>_<isa>(), which makes the kernels of a file. */
+#define MPM_KERNELS_OF_FILE(name, FILE)                                              \
+  TransferKernels MPM_NS::MPM_OF_ISA(mpm_kernels_##name)(const KernelChoice &choice) \
+  {                                                                                  \
+    return kernels_of_file<FILE>(choice);                                            \
+  }
+
 #endif
