@@ -53,10 +53,7 @@ MPMAffine::MPMAffine(LAMMPS *lmp, MPMField &field, MPMPointState &state) :
   if (field.options.polypic) state.declare(Q, "mpm:Q", poly_size(field.lattice.dim));
 }
 
-/* ----------------------------------------------------------------------
-   a number that tells whether points have other velocities than before, whatever rank has them
-------------------------------------------------------------------------- */
-
+/** A number that tells whether points have other velocities than before, whatever rank has them. */
 uint64_t MPMAffine::velocity_hash() const
 {
   uint64_t mine = 0, all;

@@ -119,10 +119,7 @@ void MPMCpdi::take_late(int first, int last)
            size() * sizeof(double) * (last - first));
 }
 
-/* ----------------------------------------------------------------------
-   half edges of the box that an undeformed point is, after the deformation F
-------------------------------------------------------------------------- */
-
+/** Half edges of the box that an undeformed point is, after the deformation F. */
 template <int DIM>
 static void half_edges(double half, const double *aspect, const double *F, double *edge)
 {
@@ -146,10 +143,7 @@ void MPMCpdi::corners_of_box(int i, double *x) const
                          : PointDomain<3>::box(edge, x, gradient);
 }
 
-/* ----------------------------------------------------------------------
-   how far a domain with these half edges or corners reaches from its point
-------------------------------------------------------------------------- */
-
+/** How far a domain with these half edges or corners reaches from its point. */
 template <int DIM> static void reach_of_edges(const double *edge, double *low, double *high)
 {
   for (int d = 0; d < DIM; d++) {

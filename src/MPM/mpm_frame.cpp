@@ -67,10 +67,7 @@ void MPMFrame::shift_gradients(int n, double dt, double *gradients) const
   }
 }
 
-/* ----------------------------------------------------------------------
-   det(I + dt L) - 1 without the loss of digits of that difference
-------------------------------------------------------------------------- */
-
+/** det(I + dt L) - 1 without the loss of digits of that difference. */
 double MPMFrame::volume_change(int, const double *L, double dt) const
 {
   const int dim = field.lattice.dim;

@@ -141,10 +141,7 @@ void MPMFrameTotal::refer_gradients(int first, int n, double *L) const
   for (int p = 0; p < n && R; p++) multiply(dim, L + dim * dim * p, R[first + p]);
 }
 
-/* ----------------------------------------------------------------------
-   the change of volume of I + A = (F + dt L) F^-1
-------------------------------------------------------------------------- */
-
+/** The change of volume of I + A = (F + dt L) F^-1. */
 double MPMFrameTotal::volume_change(int i, const double *L, double dt) const
 {
   const double *F = field.points->F[i];
@@ -163,10 +160,7 @@ double MPMFrameTotal::volume_change(int i, const double *L, double dt) const
   return MPMFrame::volume_change(i, A, 1.0);
 }
 
-/* ----------------------------------------------------------------------
-   largest eigenvalue of a symmetric matrix, by the trigonometric form of the cubic equation
-------------------------------------------------------------------------- */
-
+/** Largest eigenvalue of a symmetric matrix, by the trigonometric form of the cubic equation. */
 static double largest_eigenvalue(double B[3][3])
 {
   const double mean = (B[0][0] + B[1][1] + B[2][2]) / 3.0;

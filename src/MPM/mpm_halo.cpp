@@ -28,10 +28,7 @@ struct Sharer {
 };
 }    // namespace
 
-/* ----------------------------------------------------------------------
-   at the rendezvous rank of a set of keys: tell each sharer of a block about all others
-------------------------------------------------------------------------- */
-
+/** At the rendezvous rank of a set of keys: tell each sharer of a block about all others. */
 static int match_keys(int n, char *inbuf, int &flag, int *&proclist, char *&outbuf, void *ptr)
 {
   auto *memory = (Memory *) ptr;

@@ -38,10 +38,7 @@ template <class Data> static void broadcast(Data &data, MPI_Comm world)
     MPI_Bcast(data.data() + k, (int) (std::min(PIECE, n - k) * SIZE), MPI_BYTE, 0, world);
 }
 
-/* ----------------------------------------------------------------------
-   words of a file after its header, and the line of each; returns what is wrong, or nothing
-------------------------------------------------------------------------- */
-
+/** Words of a file after its header, and the line of each; returns what is wrong, or nothing. */
 static std::string read_words(LAMMPS *lmp, const std::string &name, std::string &text,
                               std::vector<int> &lines)
 {

@@ -118,10 +118,7 @@ void LAMMPS_NS::visit_points(const MPMField &field, const std::vector<int> &want
   }
 }
 
-/* ----------------------------------------------------------------------
-   volumes on the lattice: in the total frame those of the reference configuration
-------------------------------------------------------------------------- */
-
+/** Volumes on the lattice: in the total frame those of the reference configuration. */
 void LAMMPS_NS::volume_at_points(MPMField &field, std::vector<double> &share)
 {
   field.plan->find_blocks_now();

@@ -89,10 +89,7 @@ void MPMPlan::act_on_nodes(MPMNodeAction::Stage stage)
   for (auto *action : actions) action->act(dt, stage);
 }
 
-/* ----------------------------------------------------------------------
-   each stage for all fields before the next one
-------------------------------------------------------------------------- */
-
+/** Each stage for all fields before the next one. */
 void MPMPlan::step()
 {
   bool waits = false;
@@ -110,10 +107,7 @@ void MPMPlan::step()
   }
 }
 
-/* ----------------------------------------------------------------------
-   blocks of points first, then those that node actions need next to these
-------------------------------------------------------------------------- */
-
+/** Blocks of points first, then those that node actions need next to these. */
 void MPMPlan::find_blocks()
 {
   for (auto *field : fields)

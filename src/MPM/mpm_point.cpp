@@ -198,10 +198,7 @@ double MPMPoint::value_at(const NumberOrVariable &v, double time)
   return evaluate(lmp, v);
 }
 
-/* ----------------------------------------------------------------------
-   strain along the path: steady, or to and fro between amplitude and -amplitude
-------------------------------------------------------------------------- */
-
+/** Strain along the path: steady, or to and fro between amplitude and -amplitude. */
 double MPMPoint::path_strain(double time) const
 {
   if (amplitude < 0.0) return rate * time;
@@ -329,10 +326,7 @@ void MPMPoint::set_temperature(MaterialPoint &point)
              "'thermal constant'");
 }
 
-/* ----------------------------------------------------------------------
-   is the state sound, and in the ranges of validity?
-------------------------------------------------------------------------- */
-
+/** Is the state sound, and in the ranges of validity? */
 void MPMPoint::check(const MaterialPoint &point, bigint step)
 {
   double sum = point.batch.J[0];

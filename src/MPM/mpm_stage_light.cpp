@@ -79,10 +79,7 @@ void MPMStages::blend_light_nodes(MPMField &field)
   }
 }
 
-/* ----------------------------------------------------------------------
-   gradients go to the affine matrices of transfers that have them
-------------------------------------------------------------------------- */
-
+/** Gradients go to the affine matrices of transfers that have them. */
 void MPMStages::gradients_with_light_nodes(MPMField &field, bool stress)
 {
   field.grid.copy_aliases();

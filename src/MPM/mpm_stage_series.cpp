@@ -51,10 +51,7 @@ static void save_velocities(MPMField &field, int lane)
     for (int d = 0; d < 3; d++) saved[k + d] = record[d];
 }
 
-/* ----------------------------------------------------------------------
-   u <- u + (saved - S+ S u) for the velocities u at a place of the records
-------------------------------------------------------------------------- */
-
+/** u <- u + (saved - S+ S u) for the velocities u at a place of the records. */
 static void add_term(MPMField &field, int lane)
 {
   const int NREAL = field.pic.nreal;

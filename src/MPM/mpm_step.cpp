@@ -160,10 +160,7 @@ void end(MPMPlan &plan)
 
 }    // namespace
 
-/* ----------------------------------------------------------------------
-   update stress last, with the velocities that move the points
-------------------------------------------------------------------------- */
-
+/** Update stress last, with the velocities that move the points. */
 void LAMMPS_NS::make_usl(MPMPlan &plan)
 {
   begin_with_forces(plan);
@@ -177,10 +174,7 @@ void LAMMPS_NS::make_usl(MPMPlan &plan)
   end(plan);
 }
 
-/* ----------------------------------------------------------------------
-   update stress first, with the velocities of the start of the step
-------------------------------------------------------------------------- */
-
+/** Update stress first, with the velocities of the start of the step. */
 void LAMMPS_NS::make_usf(MPMPlan &plan)
 {
   begin_with_stress(plan, 1.0, 1.0);
@@ -189,10 +183,7 @@ void LAMMPS_NS::make_usf(MPMPlan &plan)
   end(plan);
 }
 
-/* ----------------------------------------------------------------------
-   modified update stress last, with the new velocities of the points mapped back
-------------------------------------------------------------------------- */
-
+/** Modified update stress last, with the new velocities of the points mapped back. */
 void LAMMPS_NS::make_musl(MPMPlan &plan)
 {
   begin_with_forces(plan);
@@ -203,10 +194,7 @@ void LAMMPS_NS::make_musl(MPMPlan &plan)
   end(plan);
 }
 
-/* ----------------------------------------------------------------------
-   average of the first and the modified last: half of the strain with each
-------------------------------------------------------------------------- */
-
+/** Average of the first and the modified last: half of the strain with each. */
 void LAMMPS_NS::make_usavg(MPMPlan &plan)
 {
   begin_with_stress(plan, 0.5, 0.75);

@@ -96,10 +96,7 @@ double MPMTimeLimit::stable_dt(tagint &id_min, double &wave_speed) const
   return smallest;
 }
 
-/* ----------------------------------------------------------------------
-   change of volume of the points of a batch in this step; inverted ones are errors anyway
-------------------------------------------------------------------------- */
-
+/** Change of volume of the points of a batch in this step; inverted ones are errors anyway. */
 void MPMTimeLimit::note_volume_rate(const Batch &b, int first)
 {
   double most = 0.0;

@@ -48,10 +48,7 @@ const LawList &MPM_NS::declared_laws(Part part)
   return registry().laws[part];
 }
 
-/* ----------------------------------------------------------------------
-   laws of a plugin, which may be loaded several times; deques leave the others where they are
-------------------------------------------------------------------------- */
-
+/** Laws of a plugin, which may be loaded several times; deques leave the others where they are. */
 std::string MPM_NS::add_laws(const LawVersion &version, const PluginLaw *laws, int n)
 {
   if (memcmp(&version, &law_version, sizeof(version)) != 0)

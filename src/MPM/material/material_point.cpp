@@ -51,10 +51,7 @@ MaterialPoint::MaterialPoint(const MaterialPoint &other) :
   batch.history = reinterpret_cast<double(*)[BATCH]>(storage.data());
 }
 
-/* ----------------------------------------------------------------------
-   first Piola-Kirchhoff stress of the first point, sigma cof F
-------------------------------------------------------------------------- */
-
+/** First Piola-Kirchhoff stress of the first point, sigma cof F. */
 static void first_piola(const Batch &b, double *P)
 {
   double F[9], s[9];
@@ -66,10 +63,7 @@ static void first_piola(const Batch &b, double *P)
     for (int j = 0; j < 3; j++) P[3 * i + j] = product(s, cof, i, j);
 }
 
-/* ----------------------------------------------------------------------
-   with G = dt L, the motion is F_new = (I + A) F, A = (I - G/2)^-1 G
-------------------------------------------------------------------------- */
-
+/** With G = dt L, the motion is F_new = (I + A) F, A = (I - G/2)^-1 G. */
 void MaterialPoint::step(const double *L, double dt)
 {
   double M[9], A[9];    // I - G/2 and A

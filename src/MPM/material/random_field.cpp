@@ -57,10 +57,7 @@ struct RandomField::Transforms {
   }
 };
 
-/* ----------------------------------------------------------------------
-   coefficients of the splines with support in a tile
-------------------------------------------------------------------------- */
-
+/** Coefficients of the splines with support in a tile. */
 std::vector<double> RandomField::make_tile(const Index &tile) const
 {
   const Transforms &t = *transforms;

@@ -69,10 +69,7 @@ const ElementRule &ElementRule::of(ElementType type)
   return rules[static_cast<int>(type)];
 }
 
-/* ----------------------------------------------------------------------
-   with the Jacobian matrix J_ab = dx_a/dxi_b: g = J^-T dN
-------------------------------------------------------------------------- */
-
+/** With the Jacobian matrix J_ab = dx_a/dxi_b: g = J^-T dN. */
 double ElementRule::gradients(int q, const double (*x)[3], double (*g)[3]) const
 {
   const double(*d)[3] = dN[q];
@@ -99,10 +96,7 @@ double ElementRule::gradients(int q, const double (*x)[3], double (*g)[3]) const
   return weight[q] * det;
 }
 
-/* ----------------------------------------------------------------------
-   3d: trigonometric form of the cubic equation
-------------------------------------------------------------------------- */
-
+/** 3d: trigonometric form of the cubic equation. */
 double ElementRule::largest_eigenvalue(const double (*g)[3]) const
 {
   double G[3][3] = {{0.0}};

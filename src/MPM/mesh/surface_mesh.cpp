@@ -62,10 +62,7 @@ static double square_of_distance(const Point &x, const Point &lo, const Point &h
   return sum;
 }
 
-/* ----------------------------------------------------------------------
-   corners of the triangles of an STL file, three in a row
-------------------------------------------------------------------------- */
-
+/** Corners of the triangles of an STL file, three in a row. */
 static std::vector<Point> read_stl(const std::string &bytes, const std::string &name)
 {
   std::vector<Point> soup;
@@ -133,10 +130,7 @@ SurfaceMesh::SurfaceMesh(const std::string &bytes, const std::string &name, doub
   make_coarse();
 }
 
-/* ----------------------------------------------------------------------
-   corners at the same place become one; triangles without area go
-------------------------------------------------------------------------- */
-
+/** Corners at the same place become one; triangles without area go. */
 void SurfaceMesh::weld(const std::vector<Point> &soup, const std::string &name)
 {
   const Point size = hi - lo;
@@ -178,10 +172,7 @@ void SurfaceMesh::weld(const std::vector<Point> &soup, const std::string &name)
   }
 }
 
-/* ----------------------------------------------------------------------
-   each edge must belong to two triangles that run along it in opposite directions
-------------------------------------------------------------------------- */
-
+/** Each edge must belong to two triangles that run along it in opposite directions. */
 void SurfaceMesh::close(const std::string &name)
 {
   std::map<std::pair<int, int>, int> edges;
@@ -203,10 +194,7 @@ void SurfaceMesh::close(const std::string &name)
   throw std::runtime_error(text.str());
 }
 
-/* ----------------------------------------------------------------------
-   volume, center, inertia: sums over the tetrahedra of the triangles and one point
-------------------------------------------------------------------------- */
-
+/** Volume, center, inertia: sums over the tetrahedra of the triangles and one point. */
 void SurfaceMesh::integrate()
 {
   const Point origin = 0.5 * (lo + hi);
@@ -259,10 +247,7 @@ void SurfaceMesh::normals()
   }
 }
 
-/* ----------------------------------------------------------------------
-   normals of edges, and parts of the surface that hang together without crossing a sharp edge
-------------------------------------------------------------------------- */
-
+/** Normals of edges, and parts of the surface that hang together without crossing a sharp edge. */
 void SurfaceMesh::find_parts()
 {
   const double sharp = std::sqrt(0.5);
@@ -289,10 +274,7 @@ void SurfaceMesh::find_parts()
   nparts = (int) number.size();
 }
 
-/* ----------------------------------------------------------------------
-   tree of boxes over the triangles [first,last), halves by the longest axis of their centers
-------------------------------------------------------------------------- */
-
+/** Tree of boxes over the triangles [first,last), halves by the longest axis of their centers. */
 int SurfaceMesh::build(int first, int last)
 {
   constexpr int LEAF = 4;
@@ -393,10 +375,7 @@ void SurfaceMesh::search(const Point &x, double &limit, Skip &&skip, Visit &&vis
   }
 }
 
-/* ----------------------------------------------------------------------
-   normal for the sign of a distance from a face, edge, or corner: its length has no meaning
-------------------------------------------------------------------------- */
-
+/** Normal for the sign of a distance from a face, edge, or corner: its length has no meaning. */
 const Point &SurfaceMesh::mean_normal(const Triangle &t, int feature) const
 {
   return feature == 0 ? t.normal
@@ -445,10 +424,7 @@ double SurfaceMesh::distance_and_normal(const Point &x, Point &normal) const
   return d;
 }
 
-/* ----------------------------------------------------------------------
-   is no triangle at this edge or corner of t closer to x than that is?
-------------------------------------------------------------------------- */
-
+/** Is no triangle at this edge or corner of t closer to x than that is? */
 bool SurfaceMesh::is_closest_around(const Point &x, const Triangle &t, int feature,
                                     double square) const
 {
@@ -500,10 +476,7 @@ int SurfaceMesh::touches(const Point &x, double cutoff, Touch *list, int most) c
   return n;
 }
 
-/* ----------------------------------------------------------------------
-   coarse grid over the box of the body
-------------------------------------------------------------------------- */
-
+/** Coarse grid over the box of the body. */
 void SurfaceMesh::make_coarse()
 {
   constexpr int CELLS = 32;    // along the longest axis
