@@ -172,7 +172,7 @@ void MPMField::choose_kernels()
   const bool split = ledger.on || keep_old || options.stress_before() ||
       (options.axisymmetric && options.scheme != Options::USL);
   kernel = frame->kernels(options.transfer, split);
-  if (options.strains_apart()) {
+  if (options.strains_by_gradient()) {
     // to the nodes, TPIC differs in nothing but the stress; back, it has the gradient
     const auto tpic = frame->kernels(TPIC, kernel.nreal == 8);
     kernel.p2g = tpic.p2g;

@@ -155,7 +155,7 @@ Options MPMFieldOptions::declare(int dim)
         {stress == MLS_STRESS && !is_mls(shape, transfer), "stress",
          "mls needs shape quadratic or cubic with transfer apic or aflip: other ones have the "
          "gradients of the shape functions"},
-        {strains_apart() && total, "stress",
+        {strains_by_gradient() && total, "stress",
          "gradient with frame total needs transfer flip or pic: that of transfer apic is stress "
          "mls"},
         {modified_edges &&

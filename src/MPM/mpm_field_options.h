@@ -70,7 +70,7 @@ struct MPMFieldOptions {
     return shape == MPM_NS::GIMP || shape == MPM_NS::CPGIMP || MPM_NS::has_domain(shape);
   }
   /** Forces and strains have the gradients of the shape functions, the affine matrix has not. */
-  bool strains_apart() const
+  bool strains_by_gradient() const
   {
     return stress == GRADIENT_STRESS && MPM_NS::is_mls(shape, transfer);
   }

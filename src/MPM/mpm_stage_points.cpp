@@ -39,7 +39,8 @@ void MPMStages::nodes_to_points(MPMField &field, Strain strain)
   field.nodes.complete_velocities();
   MPMFrame &frame = *field.frame;
   const bool late = field.options.moves_late(), strains = strain >= GRADIENTS;
-  const bool apart = strains && field.options.strains_apart(), refers = strains && frame.refers();
+  const bool by_gradient = strains && field.options.strains_by_gradient(),
+             refers = strains && frame.refers();
   const bool in_C = field.kernel.gradient_in_C && !refers;    // what stress needs is there
   const bool keeps = strain == GRADIENTS && !in_C;
   const int nL = field.lattice.dim * field.lattice.dim;
@@ -59,10 +60,10 @@ void MPMStages::nodes_to_points(MPMField &field, Strain strain)
     const int last = i + n;
     double *const L = keeps ? kept + (bigint) nL * i : batch_gradients;
     if (Q) field.affine->modes.g2p(r, Q, s, i, last, base, tile);
-    if (apart) kernel.g2p_gradient(r, s, i, last, base, tile, L);
+    if (by_gradient) kernel.g2p_gradient(r, s, i, last, base, tile, L);
     if (strain != ELSEWHERE) frame.before_motion(i, last);
     field.map->drifted |=
-        kernel.g2p(r, s, i, last, base, tile, strains && !in_C && !apart ? L : nullptr);
+        kernel.g2p(r, s, i, last, base, tile, strains && !in_C && !by_gradient ? L : nullptr);
     if (strain != ELSEWHERE) frame.after_motion(r, i, last);
     if (refers) frame.refer_gradients(i, n, L);
     if (strain == STRESS) update_stress(field, r, run, i, n, in_C ? r.C + (bigint) nL * i : L, dt);
