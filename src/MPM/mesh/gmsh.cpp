@@ -372,7 +372,8 @@ double Mesh::size(const MeshElement &e) const
 {
   const auto &rule = ElementRule::of(e.type);
   double x[MAX_ELEMENT_NODES][3], g[MAX_ELEMENT_NODES][3], sum = 0.0;
-  for (int k = 0; k < rule.nnode; k++) std::copy_n(nodes[e.node[k]].data(), 3, x[k]);
+  for (int k = 0; k < rule.nnode; k++)
+    for (int d = 0; d < 3; d++) x[k][d] = nodes[e.node[k]][d];
   for (int q = 0; q < rule.npoint; q++) sum += rule.gradients(q, x, g);
   return sum;
 }
