@@ -392,6 +392,20 @@ SERIAL_TEST(Elements, Cantilever)
   EXPECT_NEAR((-3.305 - more) / (-3.305 - few), 0.25, 0.08);
 }
 
+// nodes in contact with grains are as large as the square or cube of their volume, unless told otherwise
+TEST(Elements, Diameter)
+{
+  for (const auto &kind : kinds) {
+    ScratchFile file("radii.msh", block_mesh(kind));
+    const std::string scene =
+        replaced(block(kind, file.name), "atom_style mpm", "atom_style hybrid sphere mpm");
+    Scene run(scene.substr(0, scene.find("fix m all")));
+    const auto *atom = run.lmp->atom;
+    for (int i = 0; i < run.n(); i++)
+      EXPECT_NEAR(2.0 * atom->radius[i], std::pow(atom->vfrac[i], 1.0 / kind.dim), 1e-14);
+  }
+}
+
 // a standing wave along a bar of hexahedra, 16 elements in a wave length. Elements of length l with
 // lumped masses have omega = 2 c/l sin(k l/2). Forces reach the nodes through the lattice and back,
 // with FLIP velocities move them in the same way; each way is an average over a B-spline of the
