@@ -50,7 +50,7 @@ cat >others.cpp <<'CODE'
 #include "transfer/kernels_isa.h"
 #include <cstdlib>
 using namespace MPM_NS;
-TransferKernels MPM_NS::MPM_OF_ISA(mpm_kernels_bernstein)(const KernelChoice &) { abort(); }
+TransferKernels MPM_NS::MPM_OF_ISA(mpm_kernels_bernstein)(const KernelChoice &) { return {}; }
 PolyKernels MPM_NS::MPM_OF_ISA(mpm_kernels_poly)(int, Shape, int) { abort(); }
 CODE
 

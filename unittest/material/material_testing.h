@@ -289,7 +289,7 @@ inline void expect_refused(const std::vector<Refusal> &refusals, const std::stri
       make(start + bad.text);
       ADD_FAILURE() << "accepted: " << bad.text;
     } catch (const MPM_NS::MaterialError &e) {
-      if (bad.word >= 0) EXPECT_EQ(e.word, bad.word) << bad.text << ": " << e.what();
+      if (bad.word >= 0) { EXPECT_EQ(e.word, bad.word) << bad.text << ": " << e.what(); }
       const std::string found = e.what();
       EXPECT_TRUE(found.find(bad.message) != std::string::npos ||
                   std::regex_search(found, std::regex(bad.message)))

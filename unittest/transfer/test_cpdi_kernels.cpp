@@ -446,7 +446,7 @@ TEST_P(Kernels, ShearedDomainsGainNoEnergy)
         t[nreal * k + i] = t[nreal * k + 3] > 0.0 ? t[nreal * k + i] / t[nreal * k + 3] : 0.0;
     g2p(kernels.g2p, points, t.data());
   }
-  if (transfer == TPIC) EXPECT_GT(energy, first);
+  if (transfer == TPIC) { EXPECT_GT(energy, first); }
 }
 
 TEST_P(Kernels, InvertedDomainsAreReported)
