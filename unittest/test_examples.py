@@ -156,8 +156,8 @@ def check_files(example):
 
 
 def compare(found, expected, tolerance, what, which="last"):
-    """The last rows of all tables, all rows, or those until the found run ends ("first"); each column relative to
-    its range of values. Returns the largest difference."""
+    """The last rows of all tables, all rows, or those until the found run ends ("first"), of which there is one after
+    its start; each column relative to its range of values. Returns the largest difference."""
     a, b = mt.thermo(found), mt.thermo(expected)
     most = 0.0
     assert len(a) == len(b), "%s: %d runs, not %d" % (what, len(a), len(b))
@@ -168,8 +168,8 @@ def compare(found, expected, tolerance, what, which="last"):
             step = names.index("Step")
             others = {row[step]: row for row in other_rows}
             pairs = [(row, others[row[step]]) for row in rows if row[step] in others]
-            wanted = len(rows) if which == "all" else max(1, len(rows) - 1)    # its end may be between two rows
-            assert len(pairs) >= wanted and (which == "first" or len(rows) == len(other_rows)), \
+            wanted = 2 if which == "first" else len(other_rows)
+            assert len(pairs) == len(rows) >= wanted, \
                 "%s: %d rows, %d in the other run, %d of the same steps" % (what, len(rows), len(other_rows), len(pairs))
         for k, name in enumerate(names):
             if name in UNIMPORTANT or name in ("Step", "Time", "Dt"):
@@ -197,11 +197,13 @@ def points_made(output):
 
 
 def half_of_the_steps(path, output):
-    """For a run with two processes: of the steps that one process took; None where that is not clear."""
+    """For a run with two processes: those of the first row after half of the steps that one process took, so that
+    the end is compared; None where that is not clear."""
     if len(re.findall(r"^run\s", read(path), re.M)) != 1:
         return None
     names, rows = mt.thermo(output)[-1]
-    return int(rows[-1][names.index("Step")]) // 2
+    steps = [int(row[names.index("Step")]) for row in rows]
+    return next(step for step in steps if 2 * step >= steps[-1])
 
 
 def output_of(path):
