@@ -10,15 +10,15 @@
 
 The scenes are the inputs *.in of a folder, so that both builds run the same ones: all of
 unittest/test_pairs.cpp, each with a restart in its middle, which its executable writes (--test, default:
-build/unittest/test_pairs); shapes, transfers, schemes and precisions on bench/in.block and in.block2d; all
+build/unittest/test_pairs); shapes, transfers, schemes and frames on bench/in.block and in.block2d; all
 laws of bench/bench_materials.cpp; the coupling of bench/in.*; and the examples, coarse and short.
 
 Each scene is run with all instruction sets that the processor has (MPM_ISA) and on 1, 2 and 4 ranks; with
 --quick only with the best one and on 1 and 2. PATTERN is a regular expression that is searched in the name of
 the scene. The command state_hash is a plugin, compiled here from same_bits.cpp for the stock build of LAMMPS
-that --lammps describes (default: the one of the same version under ~/.cache/lammps-mpm). Where hashes differ, --compare shows the
-largest relative difference of the sums of |x|, |v| and the rest, so that round-off can be told from more. Scenes
-with fix balance on more than two ranks may differ by round-off.
+that --lammps describes (default: the one of the same version under ~/.cache/lammps-mpm). Where hashes differ,
+--compare shows the largest relative difference of the sums of |x|, |v| and the rest, so that round-off can be told
+from more. Scenes with fix balance on more than two ranks may differ by round-off.
 """
 import argparse
 import concurrent.futures

@@ -76,13 +76,12 @@ def test_cost_is_measured():
 
 def row(h, q, time_steps, transfer="apic", status="ok"):
     return dict(scene="bar", shape="quadratic", transfer=transfer, scheme="usl", frame="updated", ppc="2",
-                dtfrac="0.4", precision="double", h=h, status=status, q=q, lost="0", steps=time_steps, points="1000",
-                campaign="1")
+                dtfrac="0.4", h=h, status=status, q=q, lost="0", steps=time_steps, points="1000", campaign="1")
 
 
 def test_fronts_and_credited_errors():
     cost = [dict(scene="bar", shape="quadratic", transfer=t, scheme="usl", frame="updated", ppc="2",
-                 precision="double", h="0.03125", ns=ns, reference_ns=pace, bytes="300", campaign="1")
+                 h="0.03125", ns=ns, reference_ns=pace, bytes="300", campaign="1")
             for t, ns, pace in (("apic", "50", "40"), ("pic", "90", "60"), ("flip 1.0", "10", "40"))]
     # apic: an error by chance at the finer spacing; pic: slower and worse; flip: fails
     runs = [row("0.2", "0.4", "100"), row("0.1", "0.001", "200"), row("0.2", "0.9", "100", "pic"),
@@ -95,7 +94,7 @@ def test_fronts_and_credited_errors():
     front = data.front("bar")
     assert [(r["h"], r["transfer"]) for r in front] == [("0.2", "apic"), ("0.1", "apic")], front
     # schemes without a measurement: factor from the scene where all are measured
-    assert data.cost_of("bar", ("quadratic", "apic", "musl", "updated", "2", "double"))[0] is None
+    assert data.cost_of("bar", ("quadratic", "apic", "musl", "updated", "2"))[0] is None
 
 
 def test_tables_of_convergence():

@@ -58,6 +58,14 @@ TEST(Shock, Isentrope)
   });
   EXPECT_LT(std::fabs(error[2]), 2e-5);
   expect_order(error, 2.0, 0.02);
+
+  // and back: the body returns all of the work
+  MaterialPoint p(*material);
+  compress(p, 0.7, 4000);
+  EXPECT_NEAR(p.stored_energy(), p.power, 1e-6 * p.power);
+  compress(p, 1.0, 4000);
+  EXPECT_NEAR(p.pressure(), 0.0, 1e-6 * hugoniot.pressure());
+  EXPECT_NEAR(p.stored_energy(), 0.0, 1e-6 * hugoniot.stored_energy());
 }
 
 TEST(Shock, CutoffHoldsThePressureAndDoesItsWork)
