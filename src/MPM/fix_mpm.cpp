@@ -142,6 +142,7 @@ void FixMPM::check_fields() const
     const auto &options = other->options;
     const std::pair<bool, const char *> rules[] = {
         {options.every != mine.every, "have the same every"},
+        {other->steps_to_next() != field->steps_to_next(), "wait for the same step of every"},
         {options.scheme != mine.scheme, "have the same scheme"},
         {options.axisymmetric != mine.axisymmetric, "be axisymmetric, or none"}};
     for (const auto &[differ, what] : rules)
@@ -308,9 +309,8 @@ void FixMPM::write_restart(FILE *fp)
     saved.elapsed = field->every->progress.elapsed;
   }
   saved.deleted = field->guard->deleted;
-  const MPMEnergies &energies = field->ledger;
-  MPI_Reduce(&energies, &saved.ledger, sizeof(MPMEnergies) / sizeof(double), MPI_DOUBLE, MPI_SUM, 0,
-             world);
+  MPI_Reduce(static_cast<MPMEnergies *>(&field->ledger), &saved.ledger,
+             sizeof(MPMEnergies) / sizeof(double), MPI_DOUBLE, MPI_SUM, 0, world);
   std::vector<double> start = field->ledger.start;
   for (auto *compute : modify->get_compute_by_style("^mpm/energy$"))
     if (start.empty()) start = dynamic_cast<ComputeMPMEnergy *>(compute)->start_sums();
@@ -339,8 +339,7 @@ void FixMPM::restart(char *buf)
         "or another ID to begin anew",
         id, differences);
 
-  MPMEnergies &energies = field->ledger;
-  if (comm->me == 0) energies = saved.ledger;
+  if (comm->me == 0) static_cast<MPMEnergies &>(field->ledger) = saved.ledger;
   field->guard->deleted = saved.deleted;
   if (field->affine) field->affine->velocities = saved.velocities;
   if (field->every) {

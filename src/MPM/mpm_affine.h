@@ -24,8 +24,7 @@ class MPMAffine : protected Pointers {
 
   /** Which velocities the matrices belong to, between runs; as in restart files. */
   struct Velocities {
-    uint64_t hash;
-    int known;
+    uint64_t hash, known;    // no padding, which would go to the file
   } velocities = {0, 0};
 
   MPMAffine(class LAMMPS *, MPMField &, MPMPointState &);

@@ -288,6 +288,7 @@ void MPMGuard::check_positions()
 
 void MPMGuard::handle_bad_points()
 {
+  if (field.options.bad == MPMFieldOptions::ERROR && !may_delete()) return;
   const bool deletes = field.options.bad == MPMFieldOptions::DELETE;
   bigint n[2] = {(bigint) bad_points.size(), (bigint) failed_points.size()}, all[2];
   MPI_Allreduce(n, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
