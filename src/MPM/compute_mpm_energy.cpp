@@ -77,11 +77,10 @@ void ComputeMPMEnergy::begin()
    other physics: a letter for each account tells stored energy from energy that came to the bodies
 ------------------------------------------------------------------------- */
 
-std::vector<std::string> ComputeMPMEnergy::find_accounts()
+std::vector<std::string> ComputeMPMEnergy::find_accounts() const
 {
-  physics = find_fixes<MPMPhysics>(lmp);
   std::vector<std::string> names;
-  for (const auto *other : physics)
+  for (const auto *other : find_fixes<MPMPhysics>(lmp))
     for (const auto &account : other->accounts())
       names.push_back((account.stored ? "S " : "C ") + account.name);
   return names;
@@ -131,13 +130,15 @@ std::vector<double> ComputeMPMEnergy::evaluate() const
   for (double *energy : {&mine.plastic, &mine.viscous, &mine.heat, &mine.fracture, &mine.stored})
     *energy /= force->nktv2p;
 
-  std::vector<double> local(NSUMS + accounts.size()), all(local.size());
+  std::vector<double> local(NSUMS), all(NSUMS + accounts.size());
   memcpy(local.data(), &mine, sizeof(Sums));
-  double *next = local.data() + NSUMS;
-  for (const auto *other : physics) {
-    other->account(next);
-    next += other->accounts().size();
+  // between runs there can be others than in init()
+  for (const auto *other : find_fixes<MPMPhysics>(lmp)) {
+    const std::size_t next = local.size();
+    local.resize(next + other->accounts().size());
+    other->account(local.data() + next);
   }
+  local.resize(all.size());
   MPI_Allreduce(local.data(), all.data(), (int) all.size(), MPI_DOUBLE, MPI_SUM, world);
   return all;
 }

@@ -75,10 +75,9 @@ class ComputeMPMEnergy : public Compute {
   std::vector<double> entries;
   std::vector<double> start;            // Sums and accounts; empty: the ledger has not started
   std::vector<std::string> accounts;    // of other physics, when this was defined
-  std::vector<class MPMPhysics *> physics;
 
   std::vector<double> evaluate() const;
-  std::vector<std::string> find_accounts();
+  std::vector<std::string> find_accounts() const;
   void begin();
 };
 

@@ -39,7 +39,10 @@ int LAMMPS_NS::read_options(LAMMPS *lmp, Options &options, int narg, char **arg,
     return options.read(input, iarg, last);
   } catch (const OptionError &e) {
     if (e.missing) utils::missing_cmd_args(FLERR, e.text, lmp->error);
-    lmp->error->all(FLERR, e.iarg >= 0 ? e.iarg : Error::NOPOINTER, e.text);
+    // the place of the word in the line of the input, of which arg may be the end (dump_modify)
+    char **const line = lmp->input->arg, **const end = line + lmp->input->narg;
+    char **const word = e.iarg < 0 ? end : std::find(line, end, arg[e.iarg]);
+    lmp->error->all(FLERR, word < end ? (int) (word - line) : Error::NOPOINTER, e.text);
   }
   return iarg;
 }

@@ -104,15 +104,16 @@ FixMPMState::~FixMPMState()
 void FixMPMState::keep_arrays(bool in_restart_files)
 {
   if (state.empty()) return;
+  state.grow(atom->nmax);
+  // may end with an error; then there must be no callbacks to a fix that does not exist
+  for (int i = 0; i < atom->nlocal; i++) state.fresh(i);
   callbacks = true;
   restarts = in_restart_files;
-  state.grow(atom->nmax);
   atom->add_callback(Atom::GROW);
   if (restarts) atom->add_callback(Atom::RESTART);
   restart_peratom = restarts;
   create_attribute = 1;
   maxexchange = state.size();
-  for (int i = 0; i < atom->nlocal; i++) state.fresh(i);
 }
 
 double FixMPMState::memory_usage()

@@ -55,7 +55,7 @@ class Grid {
  public:
   struct Block {
     int b[3];              ///< block coordinates
-    int slot[27];          ///< neighbours at [9*(dx+1)+3*(dy+1)+(dz+1)], -1: not active
+    int slot[27];          ///< neighbors at [9*(dx+1)+3*(dy+1)+(dz+1)], -1: not active
     uint64_t alias = 0;    ///< bit n: node n is a periodic image of a canonical node
     uint64_t owned = 0;    ///< bit n: canonical, and this rank counts it in sums over nodes
   };
@@ -75,7 +75,7 @@ class Grid {
   int find(const int b[3]) const { return find(key(b)); }    ///< slot or -1
   int find(uint64_t key) const;                              ///< the same with its block_key()
   void close_periodic();       ///< activate canonical blocks, list the aliases
-  void finish();               ///< neighbour tables, owned masks (all canonical)
+  void finish();               ///< neighbor tables, owned masks (all canonical)
   void allocate(int nreal);    ///< node records for all blocks, zeroed
 
   double *nodes() { return node.get(); }
@@ -126,7 +126,7 @@ class Grid {
   }
   /** Slot*64 + node of a global node index, -1 when its block is not active. */
   int64_t locate(const int index[3]) const;
-  /** The same without a search, for nodes in this block and its neighbours. */
+  /** The same without a search, for nodes in this block and its neighbors. */
   int64_t locate_near(const Block &block, const int index[3]) const
   {
     int neighbor = 0;

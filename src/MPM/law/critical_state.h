@@ -64,9 +64,9 @@ namespace {
         sign[i] = k.p > center * k.p0 ? 1.0 : -1.0;
         double start, end;
         const bool strong = law.bracket(state, sign[i], center * k.p0, start, end);
-        // without strength all goes to the end, no stress, unless shear alone made it yield
+        // without strength x goes to the end, where there is no stress, unless shear alone made it yield
         const bool search = plastic && (strong || (sign[i] < 0.0 && up > 0.0));
-        // a first guess inside, when start is where the surface has no size
+        // where the surface has no size at the start, the first guess is inside of the bracket
         const double guess = a > 0.0 ? start : 0.5 * (start + end);
         x[i] = !plastic ? 0.0 : search ? guess : end;
         from[i] = start;

@@ -15,7 +15,7 @@ namespace MPM_NS::law {
 namespace {
 
 // Parameters that all damages have at the end, and history variables that all have at the beginning,
-// in this order. Macros, as lists of declarations cannot be joined.
+// in this order. These are macros, as lists of declarations cannot be joined.
 #define MPM_AFTER_PARAMETERS after_none, after_pressure, after_friction
 #define MPM_DAMAGE_HISTORY damaged, shear_energy, rest_energy
 

@@ -55,7 +55,7 @@ namespace {
     {
       if (!(p.value[M] > 0.0)) return;
       uint64_t state = RANDOM_STEP;
-      for (const double value : {p.value[SEED], x[0], x[1], x[2]})    // + 0.0: -0 is 0
+      for (const double value : {p.value[SEED], x[0], x[1], x[2]})    // adding 0.0 makes 0 of -0
         state = mix_bits(state + to_bits(value + 0.0) + RANDOM_STEP);
       history[RANDOM] = (static_cast<double>(state >> 11) + 0.5) * 0x1p-53;
     }

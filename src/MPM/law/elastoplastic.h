@@ -17,8 +17,8 @@
 namespace MPM_NS::law {
 namespace {
 
-// First rows of the history of these laws: be - I, so that small strains keep their digits. A macro,
-// as lists of declarations cannot be joined.
+// First rows of the history of these laws: be - I, so that small strains keep their digits. This is a
+// macro, as lists of declarations cannot be joined.
 #define MPM_ELASTIC_STRAIN_HISTORY                                                          \
   {"elastic_xx", ZERO, "1", "elastic left Cauchy-Green tensor less identity, xx"},          \
       {"elastic_yy", ZERO, "1", "the same, yy"}, {"elastic_zz", ZERO, "1", "the same, zz"}, \
@@ -110,7 +110,7 @@ namespace {
       double plastic = 0.0;
       MPM_SIMD_SUM(plastic)
       for (int i = 0; i < b.n; i++) {
-        // written out here and in energy(): small arrays with loops over them do not vectorize
+        // all axes are written out, as in energy(): loops over small arrays do not vectorize
         const double inv = 1.0 / b.J[i];
         store_rows(history, i,
                    along_axes(axes, i, expm1(2.0 * s.strain[0][i]), expm1(2.0 * s.strain[1][i]),

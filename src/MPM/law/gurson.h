@@ -87,7 +87,7 @@ namespace {
     {
       return sigmay * exp(n * log(1.0 + e * inv_e0));
     }
-    /** Truth as a number: conditions that are joined as numbers let loops vectorise. */
+    /** A condition as a number: loops vectorize when conditions are joined as numbers. */
     MPM_INLINE double flag(bool x) const { return x ? 1.0 : 0.0; }
     MPM_INLINE double effective(double f) const
     {
@@ -274,7 +274,7 @@ namespace {
           const double near = flag(off1 < 1.0) * flag(off2 <= 0.0) * flag(off3 <= 0.0);
           const double sure = flag(fi > 1e-3 * begin) * flag(fs < limit) * flag(Q >= 0.0);
 
-          // no more than 2 in the argument of cosh, and some porosity stays
+          // the argument of cosh changes by no more than 2, and some porosity stays
           const double most = 2.0 / (bq * k), least = max(-most, -0.8 * fi / solid);
           const double v1 = vi + min(max(dv, least), most), all = inv_K * mt[i];
           const double v2 = max(min(v1, max(all, 0.0)), min(all, 0.0));
@@ -303,7 +303,7 @@ namespace {
       return left;
     }
 
-    /** Slow and sure, for the points that are open: see the description of the law. */
+    /** The slow and sure way for the points that are open, see the description of the law. */
     MPM_INLINE void search(const Batch &b, History history, const double *mt, const double *qt,
                            double *open, double *m, double *q, double *f, double *more) const
     {
@@ -355,7 +355,7 @@ namespace {
           busy += open[i];
         }
       }
-      // large steps: in what is left y and nucleation stay as they are
+      // after large steps, y and nucleation of the points that are left stay as they are
       if (busy > 0.0) bracket(b, mt, qt, f0, y, open, z, chord, end, 1e-13);
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {

@@ -53,7 +53,7 @@ namespace {
 
   /** Largest density_0 c^2 of all waves in an isotropic elastic point, or little more.
    *
-   *  For a plane wave with normal n and polarisation m, both in principal axes, density_0 c^2 is
+   *  For a plane wave with normal n and polarization m, both in principal axes, density_0 c^2 is
    *  (R.W. Ogden, Non-Linear Elastic Deformations, 1984, ch. 6.3; here with Kirchhoff stresses)
    *
    *    sum_a (A_aa - tau_a) n_a^2 m_a^2

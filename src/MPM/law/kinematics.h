@@ -10,7 +10,7 @@
 #define MPM_LAW_KINEMATICS_H
 
 // Strain increment and rotation of a step, and small tensor functions that the laws share.
-// Formulas are written out by component: that is what the compiler vectorises over the batch.
+// Formulas are written out by component: that is what the compiler vectorizes over the batch.
 
 #include "law/math.h"
 
@@ -234,7 +234,7 @@ namespace {
   }
 
   /** Jaumann rate over one step: Q (old + rate/2) Q^T + rate/2, where rate belongs to the middle
-   *  of the step. Exact under rotation, and of second order; Q old Q^T + rate (Hughes & Winget) is
+   *  of the step. It is exact under rotation and of second order; Q old Q^T + rate (Hughes & Winget) is
    *  of first order as soon as strain and rotation come together. */
   MPM_INLINE Sym jaumann(const Increment &inc, const Sym &old, const Sym &rate)
   {
@@ -260,10 +260,10 @@ namespace {
             a.xx * a.xz + a.xy * a.yz + a.xz * a.zz, a.xy * a.xz + a.yy * a.yz + a.yz * a.zz};
   }
 
-  /** The eigenvalue of largest magnitude of a deviator, and half the distance of the two others:
-   *  to round-off, the latter to 1e-8 of the norm where it vanishes. Scaled by r = sqrt(d:d/6),
-   *  eigenvalues solve t^3 - 3 t - 2 c = 0 with c = det(d)/(2 r^3). The root of largest magnitude
-   *  comes from Newton steps, the others follow from a quadratic. */
+  /** The eigenvalue of largest magnitude of a deviator, and half the distance of the two others. They
+   *  are right to round-off, the latter to 1e-8 of the norm where it vanishes. Scaled by
+   *  r = sqrt(d:d/6), eigenvalues solve t^3 - 3 t - 2 c = 0 with c = det(d)/(2 r^3). The root of
+   *  largest magnitude comes from Newton steps, the others follow from a quadratic. */
   struct DeviatorRoots {
     double first, half;
 

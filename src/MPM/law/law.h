@@ -119,7 +119,7 @@ struct LawInfo {
   /** How many of the history variables a law with these parameters has. Null: all. */
   int (*nhistory)(const LawParameters &);
   bool uses_speed;    ///< of a viscosity: does update() read batch.speed?
-  bool uses_F;        ///< does any kernel read batch.F? Else J and A are all it knows of it
+  bool uses_F;        ///< does any kernel read batch.F? Else J and A are all that it knows
   /** What is wrong with parameters that are each in their range; null when all is well. */
   const char *(*check)(const LawParameters &);
   /** Does a law with these parameters need the temperature, and so a thermal part? */

@@ -9,8 +9,8 @@
 #ifndef MPM_LAW_MATH_H
 #define MPM_LAW_MATH_H
 
-// Elementary functions without branches and library calls, so that loops over them vectorise.
-// Polynomials: Chebyshev fits made with mpmath (chebyfit), truncation below 2e-17.
+// Elementary functions without branches and library calls, so that loops over them vectorize.
+// The polynomials are Chebyshev fits made with mpmath (chebyfit); what they leave out is below 2e-17.
 
 #include "law/law.h"
 

@@ -216,7 +216,8 @@ namespace {
       alignas(64) double open[BATCH];
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
-        // returned - D at both ends: not negative; not positive, when there is no strength in shear
+        // strain of the return less D: not negative at the low end, and not positive at the high one,
+        // where there is no strength in shear
         low[i] = r_low[i] = 0.0;
         high[i] = yields[i] * surface.strain({s1[i], s2[i], s3[i]}, {0.0, 0.0, 0.0});
         r_high[i] = -high[i];
@@ -224,7 +225,7 @@ namespace {
         open[i] = high[i] > 0.0 ? 1.0 : 0.0;
       }
       for (int iteration = 0; iteration < MAX_ITERATIONS; iteration++) {
-        // first D = 0, then a step of the fixed-point iteration, which is close, then secants
+        // D = 0 comes first, then a step of the fixed-point iteration, which comes close, then secants
         const double late = iteration > 1 ? 1.0 : 0.0;
         double busy = 0.0;
         MPM_SIMD_SUM(busy)

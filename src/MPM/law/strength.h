@@ -68,7 +68,7 @@ namespace {
   };
 
   /** Solves r(D) = q - stiff D - Y(D) = 0 for the points with D > 0, which is the first guess; most:
-   *  upper bound of D. Iteration, the whole batch at a time: r is convex in D for power hardening
+   *  upper bound of D. All points of the batch iterate together. r is convex in D for power hardening
    *  (n < 1), logarithmic or power rate dependence, and both together, and concave in log D. So
    *  Newton in D from the left and Newton in log D from the right approach the root from their side
    *  only, also with infinite slope at D = 0 and when D is smaller than any strain that is ever

@@ -25,7 +25,7 @@ namespace {
   enum { HARDENING_POWER, HARDENING_VOCE, SHORT_TABLE = 8, LONG_TABLE = LawParameters::MAX_TERMS };
 
   /** Straight lines between the points, from SIGMAY at e = 0; constant behind the last one. SIZE:
-   *  room for points, as only loops of fixed length vectorise inside of others. */
+   *  room for points, as only loops of fixed length vectorize inside of others. */
   template <int SIZE> struct J2Hardening {
     double sigmay;
     double from[SIZE], length[SIZE], slopes[SIZE];

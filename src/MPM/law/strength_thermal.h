@@ -20,8 +20,8 @@ namespace {
 
   /** Y = (A + B e^N) (1 + C ln max(rate/EPSDOT0, 1)) (1 - T*^M) of plastic strain e, plastic strain
    *  rate and temperature at the end of the step. The temperature rises by the heat of the plastic
-   *  work of the step, (Y_start + Y)/2 D with Y_start at the old e and T and the present rate; that
-   *  of other heat is of the step before. */
+   *  work of the step, (Y_start + Y)/2 D with Y_start at the old e and T and the present rate; other
+   *  heat of the step counts in the next one. */
   template <bool THERMAL> struct JohnsonCookFlow {
     static constexpr bool smooth = true;    // kinks are too small to matter
     static constexpr bool goes_on = false;
@@ -258,7 +258,7 @@ namespace {
   /** Y = C0 + (C1 + C2 sqrt(e)) exp(-C3 T + C4 T ln(r/RATE)) + C5 e^N of plastic strain e, plastic
    *  strain rate r and temperature T of the end of the step; C2 = 0 (bcc) or C1 = C5 = 0 (fcc). The
    *  exponent is at most 0. T rises by the heat of the plastic work of the step,
-   *  (Y_begin + Y)/2 D; that of other heat is of the step before. */
+   *  (Y_begin + Y)/2 D; other heat of the step counts in the next one. */
   struct ZerilliArmstrongFlow {
     static constexpr bool smooth = false, goes_on = true;    // kink of the exponent
     double G, C0, C1, C2, C3, C4, C5, N;

@@ -92,8 +92,8 @@ namespace {
       b.work[VISCOUS] += viscous;
     }
 
-    /** Sudden strain: the elements do not relax. Bound as in largest_modulus(), with the principal
-     *  values of c in place of those of b*. */
+    /** For a sudden strain, in which the elements do not relax. The bound is that of
+     *  largest_modulus(), with the principal values of c in place of those of b*. */
     static void modulus(const LawParameters &p, const Batch &b, History history, double *k)
     {
       for (int term = 0; term < p.nterms; term++) {

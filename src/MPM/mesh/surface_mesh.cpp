@@ -341,9 +341,9 @@ Point SurfaceMesh::closest_on(const int corner[3], const Point &x, int &feature)
 }
 
 /* ----------------------------------------------------------------------
-   visit(triangle, closest point of it, feature, square of its distance) for triangles in boxes whose
-   square of the distance is below limit, near ones first, but for parts with skip(part);
-   visit() may lower the limit
+   calls visit(triangle, its closest point, feature, square of its distance) for triangles in boxes
+   whose square of the distance is below limit, near ones first, but not for those of parts where
+   skip(part) is true; visit() may lower the limit
 ------------------------------------------------------------------------- */
 
 template <class Skip, class Visit>

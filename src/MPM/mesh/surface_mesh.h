@@ -51,9 +51,9 @@ class SurfaceMesh {
     int part;
   };
 
-  /** The closest point of each part of the surface (see nparts) that is seen from the side of x, within
-   *  cutoff, if none next to it beyond the edge of the part is closer; the closest first, most in
-   *  number. Returns how many. */
+  /** Of each part of the surface (see nparts) the closest point that is seen from the side of x, within
+   *  the cutoff, unless one next to it beyond the edge of the part is closer. The list begins with the
+   *  closest of them, and has no more than most. Returns how many there are. */
   int touches(const Point &x, double cutoff, Touch *list, int most) const;
 
   /** Lower bound of the distance, without a search: positive outside, negative inside, 0: unknown. */

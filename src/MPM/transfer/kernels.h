@@ -155,7 +155,7 @@ using G2P = int (*)(const PointRows &, const TransferStep &, int first, int last
 /** Moves the box of a tile between tile and node array, all reals of an entry.
  *  flush: adds the tile to the nodes and clears that part of the tile; load: fills it from the nodes.
  *  nodes: [nblocks][64][nreal], node index in a block (ix*4+iy)*4+iz in 3d, ix*8+iy in 2d.
- *  slot: [27] block index of the neighbours at [9*(bx+1)+3*(by+1)+(bz+1)], b = -1,0,1 (2d: bz = 0);
+ *  slot: [27] block index of the neighbors at [9*(bx+1)+3*(by+1)+(bz+1)], b = -1,0,1 (2d: bz = 0);
  *  those that the box and its stencil touch must be valid.
  *  box: as filled by P2G; the stencil (order nodes upward) is added here. */
 using TileIO = void (*)(double *tile, double *nodes, const int slot[27], const int box[6]);

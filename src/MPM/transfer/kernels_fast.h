@@ -961,7 +961,7 @@ void tile_io(double *tile, double *nodes, const int slot[27], const int box[6])
       double *row = tile + NREAL * (DIM == 3 ? i * sx + j * sy : i * sx);
       const int *block = slot + (DIM == 3 ? 9 * (x / side) + 3 * (y / side) : 9 * (x / side));
       const int index = DIM == 3 ? (x % side * side + y % side) * side : x % side * side;
-      // in 3d slots of a row are neighbours, in 2d three apart, the middle one of three in z
+      // in 3d slots of a row are neighbors, in 2d three apart, the middle one of three in z
       constexpr int next = DIM == 3 ? 1 : 3, middle = DIM == 3 ? 0 : 1;
       const auto record = [&](int which, int node) {
         return nodes + (Index(64) * block[which * next + middle] + node) * NREAL;

@@ -233,7 +233,7 @@ template <int K, int N> MPM_INLINE Vec<N> blend(Vec<N> a, Vec<N> b)
 }
 
 /** Stores the first K lanes. GCC 12 miscompiles stores of single lanes of a long vector in a row
- *  (SLP vectoriser), so pairs of lanes go out as vectors. */
+ *  (SLP vectorizer), so pairs of lanes go out as vectors. */
 template <int K> MPM_INLINE void store_lanes(double *p, Vec<4> a)
 {
   half<0>(a).store(p);
