@@ -9,7 +9,8 @@ repo=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cache=${MPM_CACHE:-$HOME/.cache/lammps-mpm}
 build=${MPM_BUILD_DIR:-$repo/build}
 sizes=${MPM_SIZES:-SMALLBIG}
-jobs=${MPM_JOBS:-$(nproc)}
+# nproc would take OMP_NUM_THREADS for the number of cores
+jobs=${MPM_JOBS:-$(env -u OMP_NUM_THREADS -u OMP_THREAD_LIMIT nproc)}
 
 say() { printf '== %s\n' "$*"; }
 die() { printf 'error: %s\n' "$*" >&2; exit 1; }
