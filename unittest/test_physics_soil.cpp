@@ -155,4 +155,56 @@ TEST(ColumnCollapse, RunOut)
   }
 }
 
+/* ----------------------------------------------------------------------
+   Transfers with an affine matrix create no energy at rough walls. The matrix of a single grain near
+   the floor and its velocity are together projected on the fields that vanish there, v + C d = 0 with
+   the distance d down to the floor: with the kinetic energy v^2 + D C^2 that leaves v s/(1 + s), s = d^2/D.
+------------------------------------------------------------------------- */
+
+TEST(RoughFloor, StopsAGrain)
+{
+  for (const char *shape : {"quadratic", "cubic"})
+    for (const char *transfer : {"apic", "aflip 1.0", "aflip 0.9"})
+      for (const double d : {0.1, 0.3}) {
+        SCOPED_TRACE(strprintf("%s %s, %g cells", shape, transfer, d));
+        Scene run(plane("lj", "p f", "0 20 0 8 -0.5 0.5", 1, 0.3) +
+                  strprintf("fix grid all mpm 1.0 shape %s transfer %s\n"
+                            "region one block 1 1.5 0 0.5 INF INF\n"
+                            "create_points 1 region one ppc 2\n"
+                            "displace_atoms all move 0 %.17g 0\n"
+                            "fix sand all mpm/material density 1 drucker/prager 1e3 0.3 25 plane\n"
+                            "fix floor all mpm/boundary ylo stick\nvelocity all set 1 0 0\n"
+                            "compute e all mpm/energy\nthermo_style custom step c_e\n"
+                            "fix step all mpm/dt 0.4\nrun 30\n",
+                            shape, transfer, d - 0.25));
+        const double s = d * d * (strcmp(shape, "cubic") == 0 ? 3.0 : 4.0);
+        EXPECT_LT(run.v()[0][0], 1.05 * s / (1.0 + s));
+        const double *e = run.compute_vector();
+        EXPECT_LT(e[8] + e[9], 0.01 * 0.5 * run.lmp->atom->rmass[0]);
+      }
+}
+
+TEST(RoughFloor, ColumnGainsNoEnergy)
+{
+  const double L = 0.3, h = 0.02;
+  for (const char *shape : {"quadratic", "cubic"}) {
+    Scene run(plane("si", "f f", "0 4 0 1 -0.1 0.1", 1, 0.5 * h) +
+              strprintf("fix grid all mpm %.17g shape %s transfer aflip 1.0\n"
+                        "region column block 0 %.17g 0 %.17g INF INF\n"
+                        "create_points 1 region column ppc 2\n"
+                        "fix sand all mpm/material density 1600 drucker/prager 1e6 0.3 25 plane\n"
+                        "fix wall all mpm/boundary xlo slip\nfix floor all mpm/boundary ylo stick\n"
+                        "fix g all gravity 9.81 vector 0 -1 0\nfix step all mpm/dt 0.4\n"
+                        "compute e all mpm/energy\nthermo_style custom step c_e[*]\n"
+                        "variable t equal time\nfix end all halt 10 v_t > 0.95 error continue\n"
+                        "run 1000000\n",
+                        h, shape, L, L));
+    const double *e = run.compute_vector();
+    EXPECT_LT(measured("energy created in sand over work of gravity", (e[8] + e[9]) / e[5]), 0.0);
+    double fastest = 0.0;
+    for (int i = 0; i < run.n(); i++) fastest = std::max(fastest, std::abs(run.v()[i][0]));
+    EXPECT_LT(measured("speed of sand at the end", fastest), 1.0);
+  }
+}
+
 }    // namespace
