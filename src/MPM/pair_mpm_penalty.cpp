@@ -246,9 +246,9 @@ double PairMPMPenalty::current_radius(int i)
                      atom->tag[i], J, growth);
     warned = true;
   }
-  const double radius = factor * initial_radius(i);
+  const double now = factor * initial_radius(i);
   // beyond the cutoff only where x/F_zz of a ring is not its initial radius any more
-  return rings ? std::min(radius, growth * (1.0 + 1e-10) * largest[atom->type[i]]) : radius;
+  return rings ? std::min(now, growth * (1.0 + 1e-10) * largest[atom->type[i]]) : now;
 }
 
 /* ----------------------------------------------------------------------
