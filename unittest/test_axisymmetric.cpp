@@ -595,4 +595,26 @@ TEST(Axisymmetric, Refused)
       "linear_nohistory 0 0\n";
   expect_error(grains + "run 0\n", "a grain would be a ring");
   expect_error(grains + "fix skin all mpm/surface\nrun 0\n", "a grain would be a ring");
+  const ScratchFile file("rings.bin");
+  expect_error(scene + "fix axis all mpm/boundary xlo slip\nrun 1\nwrite_restart " + file.name +
+                   "\nclear\nread_restart " + file.name + "\nfix grid all mpm 0.5\n",
+               "axisymmetric yes (now no)");
+}
+
+// points as wide as cells: their size is known before deformation, and a later run does not ask again
+TEST(Axisymmetric, FullCellsGoOn)
+{
+  for (const char *options : {"shape cpgimp transfer flip 1.0 scheme musl",
+                              "shape gimp locking fbar", "shape gimp every 30 dtcheck no"}) {
+    const std::string text = start(8, 8, 1.0, options) +
+        "region body block 0 4 2 6 INF INF\ncreate_points 1 region body ppc 1\n"
+        "fix m all mpm/material density 1.0 neohookean 10.0 0.3\n"
+        "velocity all ramp vx 0 -0.3 x 0 4\ntimestep 0.05\nrun 20\n";
+    Scene run(text);
+    EXPECT_EQ(run.error("run 5\n"), "") << options;
+    // new points that are too large are refused as before
+    expect_error(
+        run, "region more block 5 8 3 6 INF INF\ncreate_points 1 region more spacing 1.5\nrun 1\n",
+        "larger than the cells");
+  }
 }

@@ -9,6 +9,7 @@
 
 #include "bad_input_testing.h"
 
+#include "error.h"
 #include "exceptions.h"
 
 using namespace MPM_TEST;
@@ -108,6 +109,8 @@ static const Change boxes[] = {
     {"WrongAtomStyle", STYLE, "atom_style atomic\n", "use atom_style mpm, or hybrid with mpm"},
     {"HybridWithoutMpm", STYLE, "atom_style hybrid sphere\n",
      "use atom_style mpm, or hybrid with mpm"},
+    {"NoIds", STYLE, "atom_style mpm\natom_modify id no\n",
+     "by their IDs: remove atom_modify id no"},
     {"AtomStyleWithArgument", STYLE, "atom_style mpm 3\n", "takes no arguments, found: 3"},
     {"MpmBeforeSphere", STYLE, "atom_style hybrid mpm sphere\n", "mpm must come after sphere"},
     {"TriclinicLater", RUN, "run 1\nchange_box all triclinic\nrun 1\n",
@@ -382,4 +385,27 @@ TEST(AfterAnError, TheInstanceCanGoOn)
   EXPECT_THROW(run.commands("timestep 5.0\nrun 1\n"), LAMMPSException);
   run.commands("timestep 0.01\nrun 10\n");
   for (const auto &p : run.gather()) EXPECT_NEAR(p.v[0], 0.1, 1.0e-12);
+}
+
+// points that were made after their group, or whose group was not renewed; atoms without volume, and
+// points that another fix moves, are meant to be what they are
+TEST(PointsInNoField, HaveAWarning)
+{
+  const std::string scene = space("lj", "p p p", "0 8 0 8 0 8", 2) +
+      "region b1 block 2 4 2 4 2 4\nregion b2 block 5 7 5 7 5 7\n"
+      "create_points 1 region b1 spacing 0.5\ngroup body type 1 2\nfix grid body mpm 1.0\nMORE"
+      "fix soft body mpm/material density 1.0 neohookean 10.0 0.3\ntimestep 0.01\n";
+  const std::string points = "create_points 2 region b2 spacing 0.5\n";
+  const std::pair<std::string, bool> cases[] = {
+      {"", false},
+      {points, true},
+      {points + "group body type 1 2\n", false},
+      {points + "group rest subtract all body\nfix move rest nve\n", false},
+      {"create_atoms 2 single 6 6 6\n", false}};
+  for (const auto &[more, expected] : cases) {
+    Scene run(replaced(scene, "MORE", more));
+    const int before = run.lmp->error->get_numwarn();
+    run.commands("run 0\n");
+    EXPECT_EQ(run.lmp->error->get_numwarn() - before, rank() == 0 && expected) << more;
+  }
 }

@@ -310,3 +310,57 @@ SERIAL_TEST(Seen, TorqueIsNotLostWithTheGroup)
   EXPECT_FALSE(in_lists[1]);
   EXPECT_NEAR(run.sums().L[1], T * dt, 1.0e-14);
 }
+
+// ---------------------------------------------------------------------- fields step together
+
+static const std::string two_fields = space("lj", "p p p", "0 8 0 8 0 8", 2) +
+    fields({{"one", "block 1 3 2 5 2 5"}, {"two", "block 5 7 2 5 2 5"}}, "1.0 every 3") +
+    "fix m all mpm/material density 1.0 neohookean 10.0 0.3\nvelocity all set 0.1 0 0\n"
+    "timestep 0.01\n";
+
+// a field that begins in the middle of the cycle of another one would never step together with it
+TEST(Phase, IsThatOfAllFields)
+{
+  const std::string first = "fix F1 one mpm 1.0 every 3\n", second = "fix F2 two mpm 1.0 every 3\n";
+  const std::string steps = "must be at the same step of every";
+  expect_refused(two_fields,
+                 {{"run 2\nunfix F1\n" + first, steps},
+                  {"run 2\nunfix F2\n" + second, steps},
+                  {"unfix F2\nrun 2\n" + second, steps},
+                  {"run 4\nunfix F2\n" + second, steps},
+                  {"unfix F2\nfix F2 two mpm 1.0 every 2\n", "must have the same every"}},
+                 "run 4\n");
+  for (const char *lines : {"run 3\nunfix F2\n", "run 2\nunfix F2\nunfix F1\n"}) {
+    Scene run(two_fields + lines + (strstr(lines, "F1") ? first : "") + second);
+    EXPECT_EQ(run.error("run 4\n"), "") << lines;
+  }
+}
+
+TEST(Phase, IsThatOfTheRestartFile)
+{
+  const ScratchFile file("phase.bin");
+  Scene run(two_fields + "run 2\nwrite_restart " + file.name + "\n");
+  const std::string next = "read_restart " + file.name + "\nfix F1 one mpm 1.0 every 3\n",
+                    material = "fix m all mpm/material density 1.0 neohookean 10.0 0.3\n";
+  expect_error(next + "fix G2 two mpm 1.0 every 3\n" + material + "run 4\n",
+               "must be at the same step of every");
+  for (const char *every : {"every 2", "every 4", ""})
+    expect_error(replaced(next, "every 3", every), "every 3 (now ");
+}
+
+// points go on from where an error has left them, with a step as long as any other
+SERIAL_TEST(Phase, BeginsAnewAfterAnError)
+{
+  Scene run(replaced(two_fields, "every 3", "every 3 dtcheck no"));
+  run.commands("velocity all ramp vx 5 -5 x 1 3\ntimestep 0.5\n");
+  expect_error(run, "run 3\n", "determinant");
+  run.commands("velocity all set 0.1 0 0\ntimestep 0.01\n");
+  const auto before = run.gather();
+  run.commands("run 3\n");
+  const auto after = run.gather();
+  ASSERT_EQ(after.size(), before.size());
+  double most = 0.0;
+  for (std::size_t k = 0; k < after.size(); k++)
+    most = std::max(most, std::abs(after[k].x[0] - before[k].x[0]));
+  EXPECT_LT(measured("way of points", most), 0.1);
+}

@@ -535,6 +535,29 @@ TEST(Output, GridFileErrors)
   EXPECT_THAT(dump("all mpm/grid/vtk 5 g.vtu grid mass"), HasSubstr("*"));
 }
 
+// between runs there can be other materials than in the last run, or none
+SERIAL_TEST(Output, MaterialsAreThoseOfNow)
+{
+  const std::string other =
+      "fix m all mpm/material density 1.0 eos linear 20.0 strength j2 5.0 0.05 "
+      "hardening linear 0.5\n";
+  const ScratchFile file("now.vtp");
+  const auto dump = [&](const char *fields) {
+    return "write_dump all mpm/vtk " + file.name + " " + fields + "\n";
+  };
+  const std::string gone = scene + "run 1\nunfix m\n";
+  expect_error(gone + dump("energy"), "has no material: define a fix mpm/material");
+  expect_error(gone + dump("eplastic"), "Unknown quantity eplastic");
+  EXPECT_EQ(error_of(gone + other + dump("energy eplastic")), "");
+
+  // a history variable that is gone
+  Scene run(scene + "compute h all mpm/atom eplastic\nunfix m\n" + other + "run 1\n");
+  auto *h = run.lmp->modify->get_compute_by_id("h");
+  h->compute_peratom();
+  run.commands("unfix m\nfix m all mpm/material density 1.0 neohookean 50.0 0.3\n");
+  EXPECT_THROW(h->compute_peratom(), std::exception);
+}
+
 // ---------------------------------------------------------------- fix mpm/cells
 static const std::string scene_2d = plane("lj", "p f", "0 8 0 6") +
     body("block 5.5 8 2 5 -0.5 0.5", "density 1.0 neohookean 50.0 0.3", "0.5") +
@@ -711,6 +734,25 @@ TEST(Energy, StartsWithTheFirstRunAfterItsDefinition)
   const double total = e->compute_scalar();
   EXPECT_NEAR(e->vector[Entry::RESIDUAL], 0.0, 1e-12 * start);
   EXPECT_NEAR(total - start, Entry::gained(e->vector), 1e-12 * start);
+}
+
+// a fix that is defined again has lost its part of the ledger
+TEST(Energy, StartsAnewWhenAPartIsLost)
+{
+  for (const std::string again : {"fix grid all mpm 1.0 scheme musl\n",
+                                  "fix m all mpm/material density 1.0 neohookean 50.0 0.3\n"}) {
+    Scene run(scene + "compute e all mpm/energy\nthermo_style custom step c_e\nrun 40\n");
+    auto *e = run.lmp->modify->get_compute_by_id("e");
+    e->compute_vector();
+    EXPECT_GT(std::abs(e->vector[Entry::EXTERNAL]), 1.0) << again;
+    run.commands("unfix " + again.substr(4, again.find(' ', 4) - 4) + "\n" + again + "run 0\n");
+    const double start = e->compute_scalar();
+    for (int k = Entry::EXTERNAL; k <= Entry::RESIDUAL; k++) EXPECT_EQ(e->vector[k], 0.0) << again;
+    run.commands("run 20\n");
+    const double total = e->compute_scalar();
+    EXPECT_NEAR(e->vector[Entry::RESIDUAL], 0.0, 1e-12 * start) << again;
+    EXPECT_NEAR(total - start, Entry::gained(e->vector), 1e-12 * start) << again;
+  }
 }
 
 TEST(Energy, Errors)

@@ -10,6 +10,9 @@
 
 #include "mpm_lammps.h"
 
+#include "error.h"
+#include "neighbor.h"
+
 using namespace MPM_TEST;
 
 // ---------------------------------------------------------------------- head-on impact of two bars
@@ -467,4 +470,20 @@ SERIAL_TEST(Rings, RodsCollide)
   }
   EXPECT_LT(measured("work of the contact and its energy", drift), 0.02);
   EXPECT_NEAR(run.sums().p[1], all, 1e-12);
+}
+
+// where stress is made apart from the motion, x/F_zz does not stay the initial radius of a ring
+SERIAL_TEST(Rings, GoOnWithNewNeighborLists)
+{
+  for (const char *options : {"scheme musl", "locking fbar"}) {
+    Scene run(plane("lj", "f f", "0 8 0 16", 2, 0.3) +
+              fields({{"one", "block 0 4 2 6 INF INF"}, {"two", "block 0 4 6 10 INF INF"}},
+                     strprintf("1.0 axisymmetric yes %s", options)) +
+              "fix soft all mpm/material density 1.0 neohookean 10.0 0.3\n"
+              "fix axis all mpm/boundary xlo slip\npair_style mpm/penalty\npair_coeff 1 2 5.0\n"
+              "timestep 0.02\nvelocity all ramp vy 0.1 -0.1 y 2 10\n"
+              "velocity all ramp vx 0 -0.4 x 0 4 sum yes\n");
+    EXPECT_EQ(run.error("run 100\n"), "") << options;
+    EXPECT_GT(run.lmp->neighbor->ncalls, 1) << options;
+  }
 }

@@ -342,10 +342,21 @@ TEST(Pitfall, SharedNodesTravelOncePerSum)
 // order of points in memory and checks for drift: what neigh_modify says must not matter
 TEST(Pitfall, RareNeighborListsLoseNoPoint)
 {
-  Scene usual, rare;
-  usual.commands(soft_body("", "run 100\n"));
-  rare.commands(soft_body("", "neigh_modify every 10 delay 10 check no\nrun 100\n"));
-  EXPECT_LT(difference(usual.gather(), rare.gather()), 1.0e-12);
+  Scene usual(soft_body("", "run 100\n"));
+  for (const char *settings : {"every 10 delay 10 check no", "once yes"}) {
+    Scene rare(soft_body("", strprintf("neigh_modify %s\nrun 100\n", settings)));
+    EXPECT_LT(difference(usual.gather(), rare.gather()), 1.0e-12) << settings;
+  }
+
+  // nor when points have gone by more than the box
+  const auto far = [](const char *settings) {
+    return space("lj", "p p p", "0 8 0 8 0 8", 1, 0.3) +
+        body("block 2 5 2 5 2 5", "density 1.0 neohookean 10.0 0.3") +
+        strprintf("neigh_modify %s\nvelocity all set 3 1 0\ntimestep 0.02\nrun 400\nrun 10\n",
+                  settings);
+  };
+  Scene near(far("once no")), once(far("once yes"));
+  EXPECT_LT(difference(near.gather(), once.gather(), 1.0), 1.0e-11);
 }
 
 // the adaptive time step went to zero when a body had turned by 90 degrees

@@ -177,3 +177,20 @@ TEST(RestartState, NewVelocitiesAreSeen)
     EXPECT_LT(difference(expected, again.gather()), 1.0e-11);
   }
 }
+
+// what was changed before the file is written counts like a change without a file: the next run sets its
+// time step anew
+TEST(RestartState, TimeStepIsThatWithoutTheFile)
+{
+  const ScratchFile file("dt");
+  const std::string fast = "velocity all set 1.5 0 -0.5\n";
+  Scene whole(head + "fix grid all mpm 1.0\n" + points + fixes("") + start + "run 50\n" + fast +
+              "write_restart " + file.name + "\nrun 1\n");
+  Scene again("read_restart " + file.name + "\nneighbor 0.3 bin\n" + fixes("") + "run 1\n");
+  EXPECT_EQ(again.lmp->update->dt, whole.lmp->update->dt);
+
+  // without the set-up of a run, and with other fixes than in the last one
+  Scene early(head + "fix grid all mpm 1.0\n" + points + fixes("") + start + "write_restart " +
+              file.name + " noinit\nrun 1\nunfix m2\n");
+  EXPECT_EQ(early.error("write_restart " + file.name + " noinit\n"), "");
+}

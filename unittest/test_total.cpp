@@ -11,6 +11,7 @@
 
 #include "mpm_lammps.h"
 
+#include "error.h"
 #include "exceptions.h"
 
 #include <random>
@@ -331,4 +332,57 @@ TEST(TotalInput, IsRefused)
        "frame total (now updated)"},
   };
   for (const auto &c : cases) expect_error(c.lines, c.message);
+}
+
+// points where functions end or gradients jump: round-off decides about nodes and strain
+TEST(TotalInput, RoundOffThatDecidesHasAWarning)
+{
+  const auto scene = [](const std::string &options, const char *ppc, const char *x = "5 11 5 11",
+                        const char *faces = "p p") {
+    return plane("lj", faces, "0 16 0 16", 1, 0.5) +
+        body(strprintf("block %s INF INF", x), "density 1.0 neohookean 10.0 0.3",
+             "1.0 frame total " + options, ppc) +
+        "velocity all ramp vx -0.3 0.3 y 5 11\nvelocity all ramp vy 0.2 -0.2 y 5 11 sum yes\n"
+        "timestep 0.05\n";
+  };
+  const std::string flip = "transfer flip 1.0";
+  const auto warns = [](const std::string &text) {
+    Scene run(text);
+    const int before = run.lmp->error->get_numwarn();
+    run.commands("run 0\n");
+    return run.lmp->error->get_numwarn() > before;
+  };
+  if (nranks() == 1) {
+    EXPECT_TRUE(warns(scene(flip, "1")));
+    EXPECT_TRUE(warns(scene("transfer pic", "1", "INF INF 5 11")));
+    EXPECT_FALSE(warns(scene(flip, "1", "INF INF INF INF")));
+    EXPECT_TRUE(warns(scene(flip, "1", "INF INF INF INF", "f p")));
+    EXPECT_FALSE(warns(scene(flip, "2")));
+    EXPECT_FALSE(warns(scene(flip, "3")));
+    EXPECT_FALSE(warns(scene(flip + " scheme musl", "1")));
+    EXPECT_FALSE(warns(scene(flip + " shape cubic", "1")));
+    EXPECT_FALSE(warns(scene("transfer apic", "1")));
+    for (const char *shape : {"linear", "bernstein"}) {
+      const std::string musl = strprintf("shape %s transfer flip 1.0 scheme musl", shape);
+      EXPECT_FALSE(warns(scene(musl, "1"))) << shape;
+      EXPECT_TRUE(warns(scene(musl, "1") + "displace_atoms all move 0.5 0.5 0\n")) << shape;
+    }
+  }
+
+  // what the warning is about
+  const auto change = [&](const std::string &text) {
+    Scene exact(text + "run 200\n"),
+        moved(text + "displace_atoms all random 1e-15 1e-15 0 4711 units box\nrun 200\n");
+    const auto a = exact.gather(), b = moved.gather();
+    double most = 0.0;
+    for (std::size_t k = 0; k < a.size(); k++)
+      for (int d = 0; d < 2; d++) most = std::max(most, std::abs(a[k].v[d] - b[k].v[d]));
+    return measured("change of velocities", most);
+  };
+  EXPECT_GT(change(scene(flip, "1")), 1e-4);
+  EXPECT_GT(change(scene("shape linear transfer flip 1.0 scheme musl", "1") +
+                   "displace_atoms all move 0.5 0.5 0\n"),
+            1e-4);
+  EXPECT_LT(change(scene(flip, "2")), 1e-11);
+  EXPECT_LT(change(scene(flip + " scheme musl", "1")), 1e-11);
 }

@@ -195,7 +195,12 @@ void ComputeMPMAtom::init()
   if (!points)
     error->all(FLERR, Error::NOLASTLINE,
                "Compute {} of style mpm/atom requires material points: use atom_style mpm", id);
+  check_history();
+}
 
+/** A name that is none of the table must be a history variable of a material that there is now. */
+void ComputeMPMAtom::check_history() const
+{
   for (const auto &column : columns) {
     if (column.quantity) continue;
     bool found = false;
@@ -214,6 +219,7 @@ void ComputeMPMAtom::init()
 void ComputeMPMAtom::compute_peratom()
 {
   invoked_peratom = update->ntimestep;
+  check_history();    // between runs there can be other materials than in init()
 
   const int ncolumn = (int) columns.size();
   if (atom->nmax > nmax) {

@@ -54,6 +54,7 @@ class ComputeMPMAtom : public Compute {
   int nmax = 0;
 
   static Column find_column(const std::string &name);
+  void check_history() const;
   std::string known_names() const;
 };
 

@@ -9,6 +9,7 @@
 #include "compute_mpm_energy.h"
 
 #include "atom.h"
+#include "comm.h"
 #include "error.h"
 #include "fix_mpm_elements.h"
 #include "fix_mpm_material.h"
@@ -21,6 +22,7 @@
 #include "mpm_point_batches.h"
 #include "update.h"
 
+#include <algorithm>
 #include <cstring>
 
 using namespace LAMMPS_NS;
@@ -56,6 +58,31 @@ void ComputeMPMEnergy::init()
                "Compute {} of style mpm/energy does not have the entries of all physics: define it "
                "after the fixes, and again when one of them was removed",
                id);
+  forget_lost_parts();
+}
+
+/* ----------------------------------------------------------------------
+   a fix that was removed, or defined again, takes what it has kept of the ledger with it: of the rest
+   there is no balance, and the ledger starts anew
+------------------------------------------------------------------------- */
+
+void ComputeMPMEnergy::forget_lost_parts()
+{
+  std::vector<int> now;
+  for (const auto *ifix : find_fixes<FixMPMState>(lmp))
+    if (utils::strmatch(ifix->style, "^mpm$") || dynamic_cast<const FixMPMMaterial *>(ifix) ||
+        dynamic_cast<const MPMPhysics *>(ifix))
+      now.push_back(ifix->instance());
+  std::sort(now.begin(), now.end());
+  if (!std::includes(now.begin(), now.end(), contributors.begin(), contributors.end())) {
+    start.clear();
+    if (comm->me == 0)
+      utils::logmesg(lmp,
+                     "Compute {}: the ledger starts anew, as a fix that kept a part of it was "
+                     "removed or defined again\n",
+                     id);
+  }
+  contributors = now;
 }
 
 /* ----------------------------------------------------------------------
@@ -64,6 +91,7 @@ void ComputeMPMEnergy::init()
 
 void ComputeMPMEnergy::begin()
 {
+  forget_lost_parts();
   if (!start.empty()) return;
   start = evaluate();
   for (const auto *field : MPMField::all(lmp))

@@ -74,11 +74,13 @@ class ComputeMPMEnergy : public Compute {
 
   std::vector<double> entries;
   std::vector<double> start;            // Sums and accounts; empty: the ledger has not started
+  std::vector<int> contributors;        // fixes that keep a part of these, by their instance
   std::vector<std::string> accounts;    // of other physics, when this was defined
 
   std::vector<double> evaluate() const;
   std::vector<std::string> find_accounts() const;
   void begin();
+  void forget_lost_parts();
 };
 
 }    // namespace LAMMPS_NS

@@ -52,6 +52,9 @@ FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
     error->all(FLERR, "Fix mpm requires material points: use atom_style mpm, or hybrid with mpm");
   if (!domain->box_exist)
     error->all(FLERR, "Fix mpm needs the simulation box: define it with create_box before");
+  if (!atom->tag_enable)
+    error->all(FLERR,
+               "Fix mpm tells points from each other by their IDs: remove atom_modify id no");
   if (narg < 4) utils::missing_cmd_args(FLERR, "fix mpm", error);
   const double h = utils::numeric(FLERR, arg[3], false, lmp);
   if (!(h > 0.0) || !std::isfinite(h))
@@ -112,6 +115,8 @@ void FixMPM::init()
 
   plan.reset();
   if (modify->get_fix_by_style("^mpm$")[0] == this) {
+    for (auto *each : MPMField::all(lmp))
+      if (each->every) each->every->forget_broken_step();
     check_fields();
     plan.reset(new MPMPlan(lmp));
     plan->make();
@@ -142,7 +147,8 @@ void FixMPM::check_fields() const
     const auto &options = other->options;
     const std::pair<bool, const char *> rules[] = {
         {options.every != mine.every, "have the same every"},
-        {other->steps_to_next() != field->steps_to_next(), "wait for the same step of every"},
+        {other->steps_to_next() != field->steps_to_next(),
+         "be at the same step of every, as all are after a multiple of its steps"},
         {options.scheme != mine.scheme, "have the same scheme"},
         {options.axisymmetric != mine.axisymmetric, "be axisymmetric, or none"}};
     for (const auto &[differ, what] : rules)
@@ -172,11 +178,13 @@ void FixMPM::setup_pre_neighbor()
   field->map->setup();
   field->guard->check_integrators();
   field->guard->check_points();
+  if (plan) field->guard->check_other_points();
   if (force->pair) {
     field->guard->check_radii();
     if (plan) field->guard->check_neighbors();
   }
   field->frame->setup();
+  field->guard->check_places();
   MPMStages::give_initial_stress(*field);
   field->map->sort();
   field->map->valid = false;
@@ -227,6 +235,7 @@ void FixMPM::pre_neighbor()
 void FixMPM::post_run()
 {
   field->running = false;
+  field->guard->wrap_far_points();
   field->ledger.start.clear();
   if (field->affine) field->affine->remember_velocities();
   if (field->counts.steps) field->plan->report(*field, bytes_per_point());

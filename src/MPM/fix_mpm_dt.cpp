@@ -226,10 +226,20 @@ double FixMPMDt::compute_vector(int i)
 
 /* ---------------------------------------------------------------------- */
 
+/* ----------------------------------------------------------------------
+   between runs: what the last one has left, as the next run compares with that; the fixes may not be
+   those of the last run
+------------------------------------------------------------------------- */
+
 void FixMPMDt::write_restart(FILE *fp)
 {
+  const auto fields = MPMField::all(lmp);
+  const bool running = std::any_of(fields.begin(), fields.end(), [](const auto *field) {
+    return field->running;
+  });
   const Limit steps = smallest(strain_limit_local());
-  const double state[5] = {update->dt, find_limit().dt, (double) nchanges, steps.dt, steps.tag};
+  const double state[5] = {running ? update->dt : dt_left, running ? find_limit().dt : limit_left,
+                           (double) nchanges, steps.dt, steps.tag};
   if (comm->me) return;
   const int size = sizeof(state);
   fwrite(&size, sizeof(int), 1, fp);

@@ -17,6 +17,7 @@
 #include "mpm_cpdi.h"
 
 #include "atom.h"
+#include "mpm_every.h"
 #include "mpm_frame.h"
 #include "mpm_guard.h"
 #include "mpm_point_map.h"
@@ -77,8 +78,15 @@ void MPMBoxes::size_of(int i, double *size) const
   }
 }
 
+/* ----------------------------------------------------------------------
+   a ring has its initial size at x/F_zz, which is its initial radius until it moves only: with stress
+   apart from the motion (scheme) or averages of strain (locking), F_zz is not quite r/R any more
+------------------------------------------------------------------------- */
+
 bool MPMBoxes::is_too_large(int i) const
 {
+  const bool waits = field.every && field.every->displacement(i, 0) != 0.0;
+  if (field.options.axisymmetric && (waits || field.points->F[i][8] != 1.0)) return false;
   const double half = half_size(field, i);
   for (int d = 0; d < field.lattice.dim; d++)
     if (half * field.options.aspect[d] > MAX_SIZE * (1.0 + 1.0e-6)) return true;

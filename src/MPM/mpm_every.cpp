@@ -89,3 +89,14 @@ void MPMEvery::finish()
   }
   progress = {};
 }
+
+/* ----------------------------------------------------------------------
+   it has left points on the lattice or near to it: they go on from there like new ones
+------------------------------------------------------------------------- */
+
+void MPMEvery::forget_broken_step()
+{
+  if (progress.waited < field.options.every) return;
+  for (int i = 0; i < atom->nlocal; i++) memset(waiting[i], 0, width() * sizeof(double));
+  progress = {};
+}

@@ -33,6 +33,8 @@ class MPMEvery : protected Pointers {
   bool wait();
   /** End of a step of the cycle. */
   void finish();
+  /** Start of a run: a step of the cycle that an error has ended is not gone on with. */
+  void forget_broken_step();
 
   /** Duration of the present step of the cycle. All of them so far have ended when no step of LAMMPS
    *  waits. */

@@ -137,7 +137,7 @@ void MPMField::init(MPMPlan *plan_of_all)
   ledger.on = !modify->get_compute_by_style("^mpm/energy$").empty();
   nodes.clear_fields();
 
-  materials = find_fixes<FixMPMMaterial>(lmp);
+  find_materials();
   elements = find_fixes<FixMPMElements>(lmp);
   if (materials.empty())
     error->all(FLERR, "Fix mpm found no material: define one with fix mpm/material");
@@ -149,15 +149,19 @@ void MPMField::init(MPMPlan *plan_of_all)
   kernels = MPMKernels::select(wanted);
   batch_kernels = BatchKernels::select(lattice.dim, wanted, options.axisymmetric);
   bool can_run = kernels && batch_kernels;
-  int nhistory = 1;
-  for (auto *material : materials) {
+  for (auto *material : materials)
     can_run = can_run &&
         material->material->configure(wanted, force->mvv2e * force->nktv2p, force->nktv2p);
-    nhistory = std::max(nhistory, material->nhistory);
-  }
   if (!can_run)
     error->all(FLERR, "Fix mpm kernels {} cannot run on this CPU or were not compiled",
                wanted ? wanted : "named by the environment variable MPM_ISA");
+}
+
+void MPMField::find_materials()
+{
+  materials = find_fixes<FixMPMMaterial>(lmp);
+  int nhistory = 1;
+  for (const auto *material : materials) nhistory = std::max(nhistory, material->nhistory);
   work.history.resize((std::size_t) nhistory * BATCH);
 }
 

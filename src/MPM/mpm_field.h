@@ -57,7 +57,7 @@ class MPMField : protected Pointers {
   MPMNodes nodes;
   MPMPoints *const points;
 
-  std::vector<FixMPMMaterial *> materials;    ///< all of them, set in init()
+  std::vector<FixMPMMaterial *> materials;    ///< all of them, see find_materials()
   std::vector<FixMPMElements *> elements;     ///< all of them, set in init()
   MPMPlan *plan = nullptr;                    ///< of all fields, set in init()
 
@@ -107,6 +107,8 @@ class MPMField : protected Pointers {
 
   /** Start of a run. */
   void init(MPMPlan *);
+  /** The materials that there are now; also between runs, where those of the last one may be gone. */
+  void find_materials();
   /** Choose the transfers of this run. */
   void choose_kernels();
   /** The lattice must fit the box, which may have changed since the last run. */

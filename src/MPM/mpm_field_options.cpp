@@ -102,7 +102,8 @@ Options MPMFieldOptions::declare(int dim)
         "frame total: reference configuration, which can be made anew where points are distorted")
       .keep();
   o.add("axisymmetric", {yes_no(axisymmetric)},
-        "2d: x is the distance from an axis of symmetry, and points are rings");
+        "2d: x is the distance from an axis of symmetry, and points are rings")
+      .keep();
   o.add(
        "locking",
        {word(locking, {{"none", NO_CURE}, {"fbar", FBAR}, {"pressure", PRESSURE}, {"both", BOTH}})},

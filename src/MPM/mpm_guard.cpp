@@ -19,6 +19,7 @@
 #include "material/material.h"
 #include "modify.h"
 #include "mpm_cpdi.h"
+#include "mpm_frame.h"
 #include "mpm_point_batches.h"
 #include "mpm_point_map.h"
 #include "mpm_points.h"
@@ -29,6 +30,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -52,6 +54,94 @@ void MPMGuard::check_integrators() const
                  "{} material points of fix {} (style mpm) are also integrated by fix {} "
                  "(style {}): give the fixes disjoint groups",
                  all, field.id(), other->id, other->style);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   groups have the atoms that there were at the time of their command: points that were made later are
+   easily forgotten
+------------------------------------------------------------------------- */
+
+void MPMGuard::check_other_points() const
+{
+  int moved = 0;    // groups that something moves
+  for (auto *ifix : modify->get_fix_list())
+    if (ifix->time_integrate || utils::strmatch(ifix->style, "^mpm$")) moved |= ifix->groupbit;
+  bigint n = 0, all;
+  tagint example = 0, example_all;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->vfrac[i] > 0.0) || (atom->mask[i] & moved)) continue;
+    n++;
+    example = std::max(example, atom->tag[i]);
+  }
+  MPI_Allreduce(&n, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (all == 0) return;
+  MPI_Allreduce(&example, &example_all, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "{} material points belong to no fix mpm, for instance point {}: they do not "
+                   "move and have no stress; if they shall, give the group command of a fix mpm "
+                   "again after create_points",
+                   all, example_all);
+}
+
+/* ----------------------------------------------------------------------
+   In the total frame points stay where they are in their cells, also where round-off decides about strain
+   and stress. Linear and Bernstein functions have gradients that jump at faces of cells. Those of quadratic
+   functions do not, but near the end of one (grad N)^2/N does not vanish: as forces are made with one
+   grad N and strain, of new velocities, with another one, a node that only this point reaches, with
+   the mass m_p N, changes its strain by an amount that does not depend on N, unless N is zero. Only
+   the outermost points have such nodes.
+------------------------------------------------------------------------- */
+
+void MPMGuard::check_places() const
+{
+  constexpr double NEAR = 1.0e-9;    // in node spacings
+  const auto &options = field.options;
+  const auto &lattice = field.lattice;
+  const auto &shape = shape_constants[options.shape];
+  const bool quadratic = options.shape == QUADRATIC;
+  if (!options.total || options.shape == CUBIC) return;
+  if (quadratic && (options.scheme != MPMFieldOptions::USL || is_affine(options.transfer))) return;
+
+  const auto is_end = [&](double t) {
+    const double cells = (t - shape.shift) / shape.cell;
+    return fabs(cells - std::round(cells)) < NEAR;
+  };
+  // largest place, largest with the opposite sign, is any at an end: along each axis
+  double mine[9], all[9];
+  std::fill_n(mine, 6, -std::numeric_limits<double>::max());
+  std::fill_n(mine + 6, 3, 0.0);
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!field.is_point(i) || field.is_element_node(i)) continue;
+    for (int d = 0; d < lattice.dim; d++) {
+      const double t = (field.frame->places()[i][d] - lattice.origin[d]) / lattice.h;
+      mine[d] = std::max(mine[d], t);
+      mine[3 + d] = std::max(mine[3 + d], -t);
+      if (is_end(t)) mine[6 + d] = 1.0;
+    }
+  }
+  MPI_Allreduce(mine, all, 9, MPI_DOUBLE, MPI_MAX, world);
+
+  for (int d = 0; d < lattice.dim; d++) {
+    const double high = all[d], low = -all[3 + d];
+    bool bad = all[6 + d] > 0.0;
+    if (quadratic) bad = bad && (is_end(high) || is_end(low));
+    // across a periodic face, the outermost points are next to each other
+    if (quadratic && lattice.periodic[d] && low + lattice.ncell[d] - high < 3.0 - NEAR) bad = false;
+    if (!bad) continue;
+    if (comm->me == 0)
+      error->warning(FLERR,
+                     quadratic
+                         ? "Fix mpm {}: round-off decides whether the outermost points along {} "
+                           "reach the next node, and in frame total with scheme usl and this "
+                           "transfer about their stress, as they are in the middle of cells: "
+                           "use other ones (ppc 2), transfer apic, or scheme musl"
+                         : "Fix mpm {}: round-off decides in which cell points along {} are, and "
+                           "in frame total about their stress, as they are on faces of cells: "
+                           "use other ones (ppc), or another origin",
+                     field.id(), (char) ('x' + d));
+    return;
   }
 }
 
@@ -299,8 +389,29 @@ void MPMGuard::handle_bad_points()
 
 /* ---------------------------------------------------------------------- */
 
+void MPMGuard::wrap_far_points()
+{
+  constexpr double LIMIT = 1.0e6;    // periods; a point that has got so far is lost
+  if (neighbor->dist_check && !neighbor->build_once && neighbor->every == 1 &&
+      neighbor->delay == 0 && !neighbor->includegroup)
+    return;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!field.is_point(i)) continue;
+    double most = 0.0;    // periods from the middle of the box
+    for (int d = 0; d < field.lattice.dim; d++)
+      if (domain->periodicity[d])
+        most = std::max(most,
+                        fabs(atom->x[i][d] - 0.5 * (domain->boxlo[d] + domain->boxhi[d])) /
+                            domain->prd[d]);
+    if (most > 1.5 && most < LIMIT) domain->remap(atom->x[i], atom->image[i]);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
 void MPMGuard::check_inside_box()
 {
+  wrap_far_points();
   const bool deletes = field.options.bad == MPMFieldOptions::DELETE;
   double **x = atom->x;
   for (int i = 0; i < atom->nlocal; i++) {

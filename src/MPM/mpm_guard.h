@@ -28,6 +28,10 @@ class MPMGuard : protected Pointers {
    *  a finite state; pair styles must know its radius. */
   void check_points() const;
   void check_integrators() const;
+  /** Warns of material points that no field moves. */
+  void check_other_points() const;
+  /** Warns where places of points, which must be known, leave it to round-off what stress they get. */
+  void check_places() const;
   /** Settings of LAMMPS that make neighbor lists of points and grains slow; all fields. */
   void check_neighbors() const;
   void check_radii() const;
@@ -51,6 +55,9 @@ class MPMGuard : protected Pointers {
   /** Before an exchange, which would lose points outside of fixed faces silently: these are bad. Points
    *  that are to be deleted go. */
   void check_inside_box();
+  /** Points that have gone by more than a period of the box, come back into it: LAMMPS takes one period
+   *  from them when neighbor lists are made, which it may do rarely. */
+  void wrap_far_points();
 
   bool may_delete() const
   {

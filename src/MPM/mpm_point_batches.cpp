@@ -9,6 +9,7 @@
 #include "mpm_point_batches.h"
 
 #include "atom.h"
+#include "error.h"
 #include "fix_mpm_material.h"
 #include "material/material.h"
 #include "mpm_field.h"
@@ -49,6 +50,14 @@ void LAMMPS_NS::visit_point_batches(LAMMPS *lmp, int groupbit, const BatchVisito
   list.reserve(BATCH);
 
   for (auto *field : MPMField::all(lmp)) {
+    field->find_materials();
+    for (int i = 0; i < atom->nlocal; i++)
+      if ((atom->mask[i] & groupbit) && field->is_point(i) && !field->material_of(i))
+        lmp->error->one(
+            FLERR, Error::NOLASTLINE,
+            "Material point {} of fix mpm {} has no material: define a fix mpm/material "
+            "for its group",
+            atom->tag[i], field->id());
     for (auto *material : field->materials) {
       auto flush = [&]() {
         if (list.empty()) return;

@@ -28,7 +28,8 @@ using BatchVisitor =
     std::function<void(const MPM_NS::Batch &, const int *, const FixMPMMaterial &)>;
 
 /** Hand over the present state of all material points of a group that belong to a fix mpm, in
- *  batches of one field and one material. For output: nothing of the points is changed. */
+ *  batches of one field and one material. For output, also between runs: nothing of the points is
+ *  changed. Points without material are an error. */
 void visit_point_batches(class LAMMPS *, int groupbit, const BatchVisitor &);
 
 }    // namespace LAMMPS_NS

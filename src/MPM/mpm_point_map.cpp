@@ -64,7 +64,7 @@ void MPMPointMap::setup()
 {
   watch_drift = !field.frame->is_total() && !field.domains &&
       (field.every || neighbor->includegroup || neighbor->skin > 2.0 * field.lattice.h ||
-       neighbor->delay > 0 || neighbor->every > 1 || !neighbor->dist_check);
+       neighbor->delay > 0 || neighbor->every > 1 || !neighbor->dist_check || neighbor->build_once);
 }
 
 void MPMPointMap::check_drift()

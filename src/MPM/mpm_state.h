@@ -65,6 +65,8 @@ class FixMPMState : public Fix {
  public:
   FixMPMState(class LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), state(memory) {}
   ~FixMPMState() override;
+  /** A number that no other fix has or had. */
+  int instance() const { return instance_me; }
   double memory_usage() override;
   void grow_arrays(int nmax) override { state.grow(nmax); }
   void copy_arrays(int i, int j, int) override { state.copy(i, j); }

@@ -158,7 +158,7 @@ void PairMPMPenalty::find_pairs()
   for (int i = 0; i < nlocal; i++) {
     if (field[i] == NOTHING) continue;
     const int t = atom->type[i];
-    if (!present[field[i] * (ntypes + 1) + t] || initial_radius(i) > largest[t] * (1.0 + 1e-10))
+    if (!present[field[i] * (ntypes + 1) + t] || atom->vfrac[i] > most_volume[t])
       error->one(FLERR, Error::NOLASTLINE,
                  "Pair style mpm/penalty: point {} has changed its type or field, or is larger "
                  "than the points of its type were at the start of the run: begin a new run after "
@@ -246,7 +246,9 @@ double PairMPMPenalty::current_radius(int i)
                      atom->tag[i], J, growth);
     warned = true;
   }
-  return factor * initial_radius(i);
+  const double now = factor * initial_radius(i);
+  // beyond the cutoff only where x/F_zz of a ring is not its initial radius any more
+  return rings ? std::min(now, growth * (1.0 + 1e-10) * largest[atom->type[i]]) : now;
 }
 
 /* ----------------------------------------------------------------------
@@ -388,17 +390,20 @@ void PairMPMPenalty::init_style()
     }
 
   std::vector<char> mine(nfields * n, 0);
-  std::vector<double> mine_largest(n, 0.0);
+  std::vector<double> mine_largest(n, 0.0), mine_volume(n, 0.0);
   for (int i = 0; i < atom->nlocal; i++) {
     const int k = field_of(i);
     if (k == NOTHING) continue;
     mine[k * n + atom->type[i]] = 1;
     mine_largest[atom->type[i]] = std::max(mine_largest[atom->type[i]], initial_radius(i));
+    mine_volume[atom->type[i]] = std::max(mine_volume[atom->type[i]], atom->vfrac[i]);
   }
   present.resize(mine.size());
   largest.resize(n);
+  most_volume.resize(n);
   MPI_Allreduce(mine.data(), present.data(), (int) mine.size(), MPI_CHAR, MPI_MAX, world);
   MPI_Allreduce(mine_largest.data(), largest.data(), (int) n, MPI_DOUBLE, MPI_MAX, world);
+  MPI_Allreduce(mine_volume.data(), most_volume.data(), (int) n, MPI_DOUBLE, MPI_MAX, world);
 
   bool velocities = false;
   damped = false;

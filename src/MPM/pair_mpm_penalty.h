@@ -75,14 +75,15 @@ class PairMPMPenalty : public Pair, private MPMPenaltyOptions {
   MPMPoints *points = nullptr;
   std::vector<Coeff> coeffs;    // [ntypes+1][ntypes+1]
   std::vector<MPMField *> fields;
-  std::vector<char> coupled;      // [field][field] same field, or left to fix mpm/contact
-  std::vector<char> present;      // [field][type]
-  std::vector<double> largest;    // [type] initial radius of the largest point
-  bool rings = false;             // axisymmetric: x is the distance from the axis
-  bool damped = false;            // some coefficients need masses
-  bool look = true;               // at what the neighbor list consists of
-  bool warned = false;            // that points outgrow their limit
-  bool warned_deep = false;       // that bodies penetrate each other
+  std::vector<char> coupled;          // [field][field] same field, or left to fix mpm/contact
+  std::vector<char> present;          // [field][type]
+  std::vector<double> largest;        // [type] initial radius of the largest point
+  std::vector<double> most_volume;    // [type] of points before deformation
+  bool rings = false;                 // axisymmetric: x is the distance from the axis
+  bool damped = false;                // some coefficients need masses
+  bool look = true;                   // at what the neighbor list consists of
+  bool warned = false;                // that points outgrow their limit
+  bool warned_deep = false;           // that bodies penetrate each other
 
   std::vector<double> radius, mass;          // current, [nmax]; mass with damping only
   std::vector<std::pair<int, int>> pairs;    // in reach of each other: of different fields
