@@ -14,10 +14,12 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_mpm_material.h"
+#include "force.h"
 #include "group.h"
 #include "modify.h"
 #include "mpm_field.h"
 #include "mpm_frame.h"
+#include "mpm_guard.h"
 #include "mpm_node_sums.h"
 #include "mpm_options.h"
 #include "mpm_point_map.h"
@@ -193,6 +195,7 @@ void FixMPMSurface::setup_pre_exchange()
 {
   domain->pbc();    // reference positions of points are inside of the box
   for (auto *field : MPMField::all(lmp)) {
+    if (force->pair) field->guard->check_radii();    // cutoffs are for the largest ones
     field->choose_kernels();
     field->map->setup();
     field->map->valid = false;
