@@ -350,7 +350,11 @@ void SurfaceMesh::check_shells(const std::string &name) const
   }
 }
 
-/** Is a closed part inside of another one? Its edges are followed in steps as long as the distance. */
+/* ----------------------------------------------------------------------
+   Is a closed part inside of another one? Its edges are followed in steps as long as the distance. What
+   is known of a corner, a distance that it has at least, with the sign, tells of edges that are shorter
+------------------------------------------------------------------------- */
+
 bool SurfaceMesh::is_inside(const Shell &shell, const Shell &other, const std::string &name) const
 {
   const auto elsewhere = [&](const Point &low, const Point &high) {
@@ -364,6 +368,7 @@ bool SurfaceMesh::is_inside(const Shell &shell, const Shell &other, const std::s
     return shell_of[part] != number;
   };
   const double least_step = 1.0e3 * near;
+  std::unordered_map<int, double> known;
   bool inside = false, outside = false;
   for (const int i : shell.triangles)
     for (int c = 0; c < 3; c++) {
@@ -373,9 +378,16 @@ bool SurfaceMesh::is_inside(const Shell &shell, const Shell &other, const std::s
       Point low = a, high = a, closest;
       include(b, low, high);
       const double length = std::sqrt(dot(b - a, b - a));
-      bool end = elsewhere(low, high);
-      outside = outside || end;
-      for (double t = 0.0; !end;) {
+      if (elsewhere(low, high)) {
+        outside = true;
+        continue;
+      }
+      double &at_a = known[first], &at_b = known[last];
+      const double rest_a = std::fabs(at_a) - length, rest_b = std::fabs(at_b) - length;
+      if (rest_a > std::fabs(at_b)) at_b = std::copysign(rest_a, at_a);
+      if (rest_b > std::fabs(at_a)) at_a = std::copysign(rest_b, at_b);
+      if (rest_a > 0.0 || rest_b > 0.0) continue;
+      for (double t = 0.0;;) {
         const Point x = a + (t / length) * (b - a);
         const double d = (other.volume > 0.0 ? 1.0 : -1.0) * distance_to(x, closest, skip);
         inside = inside || d < -near;
@@ -384,7 +396,9 @@ bool SurfaceMesh::is_inside(const Shell &shell, const Shell &other, const std::s
           throw std::runtime_error("The surface of file " + name +
                                    " has closed parts that reach into each other, near " +
                                    describe(x) + ": unite them to one where the mesh is made");
-        end = t == length;
+        if (t == 0.0) at_a = d;
+        if (t == length) at_b = d;
+        if (t == length) break;
         t = std::min(length, t + std::max(std::fabs(d), least_step));
       }
     }
