@@ -10,6 +10,7 @@
 
 #include "mpm_lammps.h"
 
+#include "error.h"
 #include "transfer/cpdi.h"
 
 using namespace MPM_TEST;
@@ -453,6 +454,34 @@ TEST(Elements, BecomeDomains)
       EXPECT_LT(ranks.difference(), 1e-12);
     }
   expect_error(mesh_scene(3, "no.msh", ""), "no.msh");
+}
+
+// Domains are those of elements only while the fix is there that they were given to.
+TEST(Elements, AreNotLostWithoutAWord)
+{
+  const ScratchFile file("msh", box_mesh(2, 5, true));
+  const std::string scene = mesh_scene(2, file.name, ""),
+                    fix = "fix grid all mpm 1.0 shape cpdi2 \n",
+                    squash = "velocity all ramp vx 1 -1 x 2 6\nrun 20\n", law = "fix m all";
+  ASSERT_NE(scene.find(fix), std::string::npos);
+  const struct {
+    std::string input;
+    int warnings, boxes;
+  } cases[] = {
+      {scene, 0, 0},
+      {replaced(replaced(scene, fix, ""), law, fix + law), 1, 1},    // create_points was first
+      {replaced(scene, law, fix + law), 0, 1},
+      {scene + squash + fix, 1, 1}};
+  for (const auto &c : cases) {
+    const ScratchFile log("log");
+    Scene run;
+    run.commands("log " + log.name + "\n" + c.input + "run 1\nlog none\n");
+    const double warnings = over_ranks(run.lmp->error->get_numwarn());
+    const auto text = file_text(log.name);
+    const bool told = text.find("50 points begin with boxes of their volume") != std::string::npos;
+    EXPECT_EQ(warnings, c.warnings) << text;
+    EXPECT_EQ(told, c.boxes) << text;
+  }
 }
 
 TEST(BadInput, IsRefused)

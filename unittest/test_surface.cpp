@@ -6,6 +6,7 @@
 
 // Fix mpm/surface: which points carry a contact radius, and what grains feel of it.
 
+#include "error.h"
 #include "mpm_lammps.h"
 #include "neigh_list.h"
 #include "pair.h"
@@ -154,6 +155,23 @@ static const std::string fixes =
     "fix soft block mpm/material density 1.0 neohookean 50.0 0.3\n"
     "fix floor all mpm/boundary zlo stick\nfix move grains nve/sphere\n";
 
+// They come from create_points or set, and are not those of a restart file.
+TEST(Surface, WarnsOfDiametersThatItReplaces)
+{
+  for (const char *before : {"", "set type 1 diameter 0.7\n"})
+    for (const char *options : {"", " scale 1.4"}) {
+      Scene run(head + grains + fixes + before);
+      const auto warnings = [&]() {
+        return over_ranks(run.lmp->error->get_numwarn());
+      };
+      const double start = warnings();
+      run.commands(std::string("fix surf block mpm/surface") + options + "\n");
+      EXPECT_EQ(warnings() - start, *before && !*options) << before << options;
+      run.commands(contact + "timestep 0.01\nrun 20\nfix surf block mpm/surface\n");
+      EXPECT_EQ(warnings() - start, *before || *options) << before << options;
+    }
+}
+
 TEST(SurfaceContact, IsThatOfAllPoints)
 {
   double force[2][3] = {{0.0}}, pairs[2] = {0.0, 0.0};
@@ -263,6 +281,24 @@ TEST(SurfaceContact, GoesOnFromARestartFile)
     }
 }
 
+// The surface, and lists, are those of the step in which the file was written, in both runs. (Without
+// damping and friction: LAMMPS takes velocities of the middle of a step, but at set-up those of its end.)
+TEST(SurfaceContact, GoesOnFromAFileOfTheRestartCommand)
+{
+  const std::string elastic = replaced(rest, "hooke 100.0 0.5 tangential linear_nohistory 0.5 0.4",
+                                       "hooke 100.0 0.0 tangential linear_nohistory 0.0 0.0");
+  for (const auto &start : {grains, every3})
+    for (const auto &surface : {plain, skin}) {
+      const ScratchFile file("later.50");
+      Scene whole(head + start + fixes + surface + elastic + "restart 50 " +
+                  replaced(file.name, ".50", "") + "\nrun 90\n");
+      Scene again("read_restart " + file.name +
+                  "\nneighbor 0.3 multi\ncomm_modify vel yes mode multi\n" +
+                  start.substr(0, start.find('\n') + 1) + fixes + surface + elastic + "run 40\n");
+      EXPECT_TRUE(identical(whole.gather(), again.gather()));
+    }
+}
+
 // Clumps of spheres that LAMMPS moves as rigid bodies: what they lose of momentum, the block has. When
 // forces are known, velocities of grains and points are those of half steps.
 PARAMETER_TEST(Clump, PushesWithConstantMomentum, const char *,
@@ -310,10 +346,18 @@ TEST(Surface, RefusesMistakes)
                   {"fix surf block mpm/surface scale -1", "scale must be positive: -1"},
                   {"fix surf block mpm/surface depth", "depth"},
                   {"fix surf block mpm/surface group none", "static group"},
+                  {"group g union block grains\nfix surf block mpm/surface group g\nrun 0\n"
+                   "group g delete\ngroup h id 1",
+                   "g, which does not exist"},
                   {"group g empty\natom_modify first g\nneigh_modify include g\n",
                    "use fix mpm/surface with keyword group g"},
                   {"fix surf block mpm/surface\nset type 1 diameter 0.1", "define the fix after"}},
                  "timestep 0.01\nrun 0\n");
+  expect_error(head + grains + fixes + skin +
+                   "pair_style granular\n"
+                   "pair_coeff * * hertz/material 50.0 0.5 0.3 tangential mindlin NULL 0.5 0.4\n"
+                   "run 0\n",
+               "must be defined before fix surf mpm/surface");
   expect_error("units lj\natom_style mpm\nregion box block 0 4 0 4 0 4\ncreate_box 1 box\n"
                "fix grid all mpm 1.0\nfix surf all mpm/surface\n",
                "use atom_style hybrid sphere mpm");

@@ -619,21 +619,62 @@ void CreatePoints::parse_mesh(int narg, char **arg)
     find_nodes(mesh, arg[2]);
   volume /= mesh_sites.size();
 
+  check_periodic(mesh, arg[2]);
+  wrap_sites(arg[2], in_elements ? "elements" : "nodes");
+  if (in_elements && MPMField::all(lmp).empty() && comm->me == 0)
+    error->warning(FLERR,
+                   "Create_points elements: only centers and volumes of the elements are used, for "
+                   "there is no fix mpm yet: with shape cpdi2, define it before");
+}
+
+/* ----------------------------------------------------------------------
+   a mesh that is longer than a periodic box would be wrapped onto itself
+------------------------------------------------------------------------- */
+
+void CreatePoints::check_periodic(const Mesh &mesh, const char *file) const
+{
+  for (int d = 0; d < domain->dimension; d++) {
+    if (!domain->periodicity[d]) continue;
+    const auto [first, last] = std::minmax_element(mesh.nodes.begin(), mesh.nodes.end(),
+                                                   [d](const auto &a, const auto &b) {
+                                                     return a[d] < b[d];
+                                                   });
+    const double length = (*last)[d] - (*first)[d];
+    if (length > domain->prd[d] * (1.0 + TOLERANCE))
+      error->all(
+          FLERR, 2,
+          "Create_points: mesh {} is {:.6g} long along {}, longer than the periodic box with "
+          "{:.6g}, and would overlap itself; enlarge the box, or use the keyword scale",
+          file, length, axis_name[d], domain->prd[d]);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   into the box, which may be one of the next periodic images: what is farther away is a mistake, and
+   LAMMPS would go there image by image
+------------------------------------------------------------------------- */
+
+void CreatePoints::wrap_sites(const char *file, const char *what)
+{
   bigint outside = 0;
   for (auto &site : mesh_sites) {
     bool inside = true;
-    for (int d = 0; d < 3; d++)
-      inside = inside &&
-          (domain->periodicity[d] ||
-           (site.x[d] >= domain->boxlo[d] && site.x[d] < domain->boxhi[d]));
-    outside += !inside;
-    domain->remap(site.x);
+    for (int d = 0; d < 3; d++) {
+      const double reach = domain->periodicity[d] ? domain->prd[d] : 0.0;
+      inside =
+          inside && site.x[d] >= domain->boxlo[d] - reach && site.x[d] < domain->boxhi[d] + reach;
+    }
+    if (inside)
+      domain->remap(site.x);
+    else
+      outside++;
   }
   if (outside)
-    error->all(FLERR, 2,
-               "Create_points: {} {} of {} are outside of the simulation box; enlarge the "
-               "box, or use the keywords scale and move",
-               outside, in_elements ? "elements" : "nodes", arg[2]);
+    error->all(
+        FLERR, 2,
+        "Create_points: {} {} of {} are outside of the simulation box, along periodic axes by "
+        "more than its length; enlarge the box, or use the keywords scale and move",
+        outside, what, file);
 }
 
 /* ----------------------------------------------------------------------

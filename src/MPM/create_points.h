@@ -98,6 +98,8 @@ class CreatePoints : public Command, private CreatePointsOptions {
   void parse_mesh(int, char **);
   void find_nodes(const MPM_NS::Mesh &, const char *file);
   void find_elements(const MPM_NS::Mesh &, const char *file);
+  void check_periodic(const MPM_NS::Mesh &, const char *file) const;
+  void wrap_sites(const char *file, const char *what);
   int owner(double *x) const;
   tagint largest_tag() const;
   void check_tags(tagint largest, bigint nmore) const;

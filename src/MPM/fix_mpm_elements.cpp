@@ -112,6 +112,7 @@ FixMPMElements::FixMPMElements(LAMMPS *lmp, int narg, char **arg) :
   }
 
   material = find_material();
+  variables = names_of_history();
   nhistory = material->nhistory;
   stride = 2 + maxnode * (1 + dim) + maxpoint * (15 + nhistory);
   width = 18 + nhistory;
@@ -152,6 +153,13 @@ FixMPMMaterial *FixMPMElements::find_material() const
                "fix mpm/elements and a mesh for each",
                id, group->names[igroup]);
   return dynamic_cast<FixMPMMaterial *>(all[index]);
+}
+
+std::string FixMPMElements::names_of_history() const
+{
+  std::string text;
+  for (const auto &variable : material->material->history()) text += " " + variable.name;
+  return text.empty() ? " none" : text;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -275,6 +283,30 @@ void FixMPMElements::make_elements(const Mesh &mesh)
 
 void FixMPMElements::init()
 {
+  check_nodes();
+  check_fields();
+
+  // the fix mpm/material of the definition may have been removed or defined again
+
+  material = find_material();
+  if (names_of_history() != variables)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/elements {}: its elements have the history variables{}, but the present "
+               "fix mpm/material {} of its points has{}: elements cannot go on with such a law, "
+               "define this fix after their material",
+               id, variables, material->id, names_of_history());
+
+  // nodes of elements may be ghosts; what has been stretched since is asked for with comm_modify
+
+  comm->cutghostuser = std::max(comm->cutghostuser, largest_extent());
+}
+
+/* ----------------------------------------------------------------------
+   the nodes are those of the definition, and of no other mesh, whose forces would be added
+------------------------------------------------------------------------- */
+
+void FixMPMElements::check_nodes() const
+{
   const IDs now = count_nodes();
   if (now.n != ids.n || now.low != ids.low || now.high != ids.high)
     error->all(
@@ -283,12 +315,29 @@ void FixMPMElements::init()
         "on: nodes of elements must not be added, deleted or renumbered; unfix it before",
         id, group->names[igroup], now.n, now.n ? now.low : 0, now.high, ids.n, ids.low);
 
+  for (const auto *other : modify->get_fix_by_style("^mpm/elements$"))
+    if (other != this && has_points_of(other->groupbit))
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/elements {} and {} have points in common, which would feel the forces of "
+                 "both: give them disjoint groups, or unfix one of them",
+                 id, other->id);
+}
+
+bool FixMPMElements::has_points_of(int other_groupbit) const
+{
+  int mine = 0, any;
+  for (int i = 0; i < atom->nlocal; i++)
+    mine |= (atom->mask[i] & groupbit) && (atom->mask[i] & other_groupbit);
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+  return any != 0;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMElements::check_fields() const
+{
   for (const auto *field : MPMField::all(lmp)) {
-    int mine = 0, any;
-    for (int i = 0; i < atom->nlocal; i++)
-      mine |= (atom->mask[i] & groupbit) && (atom->mask[i] & field->fix.groupbit);
-    MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-    if (!any) continue;
+    if (!has_points_of(field->fix.groupbit)) continue;
     const auto refuse = [&](bool broken, const std::string &what, const std::string &why) {
       if (broken)
         error->all(FLERR, "Fix mpm {} {} fix mpm/elements {}{}", field->id(), what, id, why);
@@ -304,10 +353,6 @@ void FixMPMElements::init()
     refuse(given.every > 1, "every cannot be used with",
            ", which strains elements in each step: use every 1");
   }
-
-  // nodes of elements may be ghosts; what has been stretched since is asked for with comm_modify
-
-  comm->cutghostuser = std::max(comm->cutghostuser, largest_extent());
 }
 
 /* ----------------------------------------------------------------------

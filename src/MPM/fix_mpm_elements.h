@@ -91,8 +91,9 @@ class FixMPMElements : public FixMPMState, private MPMElementsOptions {
   int max_of_node = 0;    // largest number of elements that belong to one node
   bigint nelements;       // of the mesh
   IDs ids;
-  double shortest = 0.0;    // length of the smallest element, for artificial viscosity
-  class FixMPMMaterial *material;
+  double shortest = 0.0;             // length of the smallest element, for artificial viscosity
+  class FixMPMMaterial *material;    // found again at the start of each run
+  std::string variables;             // names of its history variables, which rows of the pool have
   struct MPMPoints *points;
   std::unique_ptr<Work> work;
 
@@ -113,6 +114,10 @@ class FixMPMElements : public FixMPMState, private MPMElementsOptions {
     return row + 2 + maxnode * (1 + dim) + q * (15 + nhistory);
   }
   FixMPMMaterial *find_material() const;
+  std::string names_of_history() const;
+  bool has_points_of(int other_groupbit) const;
+  void check_nodes() const;
+  void check_fields() const;
   void make_elements(const MPM_NS::Mesh &);
   IDs count_nodes() const;
   double largest_extent() const;

@@ -14,9 +14,12 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_mpm_material.h"
+#include "force.h"
 #include "group.h"
 #include "modify.h"
 #include "mpm_field.h"
+#include "mpm_frame.h"
+#include "mpm_guard.h"
 #include "mpm_node_sums.h"
 #include "mpm_options.h"
 #include "mpm_point_map.h"
@@ -65,14 +68,7 @@ FixMPMSurface::FixMPMSurface(LAMMPS *lmp, int narg, char **arg) :
                "sphere mpm");
   Options options = declare();
   read_options(lmp, options, narg, arg, 3);
-  if (options.given("group")) {
-    surface_group = group->find(group_id);
-    if (surface_group <= 0 || surface_group == igroup || group->dynamic[surface_group])
-      error->all(
-          FLERR, options.where("group") + 1,
-          "Fix mpm/surface group must be a static group other than all and that of the fix: {}",
-          group_id);
-  }
+  if (options.given("group")) find_group(options.where("group") + 1);
 
   scalar_flag = peratom_flag = 1;
   size_peratom_cols = 0;
@@ -85,7 +81,58 @@ FixMPMSurface::FixMPMSurface(LAMMPS *lmp, int narg, char **arg) :
   state.declare(at_surface, "mpm/surface:at_surface");
   keep_arrays(false);
   vector_atom = at_surface;
+  if (!options.given("scale")) warn_of_diameters();
   give_largest();
+}
+
+/* ----------------------------------------------------------------------
+   groups can be deleted, and their bit given to others: the name decides at the start of each run
+------------------------------------------------------------------------- */
+
+void FixMPMSurface::find_group(int iarg)
+{
+  surface_group = group->find(group_id);
+  if (surface_group <= 0 || surface_group == igroup || group->dynamic[surface_group])
+    error->all(FLERR, iarg,
+               "Fix mpm/surface {} group must be a static group other than all and that of the "
+               "fix: {}{}",
+               id, group_id, surface_group < 0 ? ", which does not exist" : "");
+}
+
+bool FixMPMSurface::keeps_group(int number) const
+{
+  return !group_id.empty() && group->find(group_id) == number;
+}
+
+/* ----------------------------------------------------------------------
+   Diameters that create_points or set gave would go without a word. Those that a restart file has are
+   of this fix: none, the largest, or that of the present volume
+------------------------------------------------------------------------- */
+
+void FixMPMSurface::warn_of_diameters() const
+{
+  const auto differs = [](double a, double b) {
+    return std::fabs(a - b) > 1.0e-6 * b;
+  };
+  bigint mine = 0, all;
+  double ratio = 0.0, largest;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!has_radius(i)) continue;
+    const double r = atom->radius[i], V = atom->vfrac[i], undeformed = radius_of(V, 1.0);
+    if (r == 0.0 || !differs(r, undeformed) || !differs(r, radius_of(V, grow)) ||
+        !differs(r, present_radius(i)))
+      continue;
+    mine++;
+    ratio = std::max(ratio, r / undeformed);
+  }
+  MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  MPI_Allreduce(&ratio, &largest, 1, MPI_DOUBLE, MPI_MAX, world);
+  if (all && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix mpm/surface {} replaces the diameters of {} points, up to {:.6g} times the "
+                   "edge of a cube (2d: square) of their volume, by that edge: set the factor with "
+                   "keyword scale",
+                   id, all, largest);
 }
 
 int FixMPMSurface::setmask()
@@ -99,6 +146,8 @@ void FixMPMSurface::init()
 {
   if (modify->get_fix_by_style("^mpm$").empty())
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/surface needs a fix mpm");
+  if (!group_id.empty()) find_group(Error::NOLASTLINE);
+  pre_exchange_migrate = moves_atoms();    // looked at by the history of pair styles, in its init()
   for (const auto *field : MPMField::all(lmp))
     refuse_field(lmp, *this, *field,
                  {{field->options.axisymmetric, "axisymmetric",
@@ -137,30 +186,36 @@ void FixMPMSurface::init()
 }
 
 /* ----------------------------------------------------------------------
-   start of a run: neighbor lists are made with the largest radii; the surface is found once
-   fix mpm has put points in order, and lists are made with it in the first step
+   Start of a run: as each time that lists are made, so that the step of a restart file, where they are,
+   has the same radii and lists in the run that goes on from it. This comes before fix mpm does what
+   the volume on the lattice needs
 ------------------------------------------------------------------------- */
 
 void FixMPMSurface::setup_pre_exchange()
 {
-  no_torques = false;
-  give_largest();
-}
-
-void FixMPMSurface::setup_pre_force(int)
-{
-  find_surface();
-  comm->forward_comm(this);
-  next_reneighbor = update->ntimestep + 1;    // lists and ghosts with the surface alone
+  domain->pbc();    // reference positions of points are inside of the box
+  for (auto *field : MPMField::all(lmp)) {
+    if (force->pair) field->guard->check_radii();    // cutoffs are for the largest ones
+    field->choose_kernels();
+    field->map->setup();
+    field->map->valid = false;
+    field->frame->setup();
+  }
+  pre_exchange();
 }
 
 /* ----------------------------------------------------------------------
-   a run without set-up ("run pre no") has none of this before its first step
+   a run without set-up ("run pre no") begins with the largest radii, and lists that are not of the
+   surface it finds
 ------------------------------------------------------------------------- */
 
 void FixMPMSurface::pre_force(int)
 {
-  if (!known) setup_pre_force(0);
+  if (!known) {
+    find_surface();
+    comm->forward_comm(this);
+    next_reneighbor = update->ntimestep + 1;
+  }
   if (!neighbor->includegroup) return;
 
   // LAMMPS has set to zero the forces of the atoms in the neighbor lists only. Nothing exerts torques
@@ -181,9 +236,13 @@ void FixMPMSurface::pre_exchange()
 {
   no_torques = false;
   find_surface();
-  if (surface_group >= 0 && atom->firstgroupname &&
-      group->find(atom->firstgroupname) == surface_group)
-    keep_first();
+  if (moves_atoms()) keep_first();
+}
+
+bool FixMPMSurface::moves_atoms() const
+{
+  return surface_group >= 0 && atom->firstgroupname &&
+      group->find(atom->firstgroupname) == surface_group;
 }
 
 /* ----------------------------------------------------------------------
@@ -198,6 +257,11 @@ void FixMPMSurface::keep_first()
   const int *const mask = atom->mask;
   int nfirst = 0;
   for (int i = 0; i < n; i++) nfirst += (mask[i] & bit) != 0;
+
+  // the free place is that of the first ghost, which the map must forget before
+
+  if (atom->map_style != Atom::MAP_NONE) atom->map_clear();
+  atom->nghost = 0;
   for (int out = 0, in = nfirst; out < nfirst; out++) {
     if (mask[out] & bit) continue;
     while (!(mask[in] & bit)) in++;    // as many are in the wrong part on both sides
@@ -219,6 +283,13 @@ bool FixMPMSurface::has_radius(int i) const
 double FixMPMSurface::radius_of(double V, double growth) const
 {
   return 0.5 * scale * growth * (domain->dimension == 3 ? std::cbrt(V) : std::sqrt(V));
+}
+
+/** Of a point at the surface. */
+double FixMPMSurface::present_radius(int i) const
+{
+  const double V = atom->vfrac[i];
+  return std::min(radius_of(V * points->jacobian(i), 1.0), radius_of(V, grow));
 }
 
 void FixMPMSurface::give_largest()
@@ -255,9 +326,7 @@ void FixMPMSurface::find_surface()
       const auto *material = field->material_of(i);
       const bool failed =
           material && material->damage >= 0 && material->history[i][material->damage] >= 1.0;
-      const double V = atom->vfrac[i];
-      const double radius = std::min(radius_of(V * points->jacobian(i), 1.0), radius_of(V, grow));
-      give_radius(i, failed || share[i] < limit, radius);
+      give_radius(i, failed || share[i] < limit, present_radius(i));
     }
   }
 }

@@ -41,14 +41,14 @@ class FixMPMSurface : public FixMPMState, private MPMSurfaceOptions {
   int setmask() override;
   void init() override;
   void setup_pre_exchange() override;
-  void setup_pre_force(int) override;
+  void setup_pre_force(int flag) override { pre_force(flag); }
   void pre_exchange() override;
   void pre_force(int) override;
   void post_run() override { give_largest(); }    // the next run takes its cutoffs from the radii
   double compute_scalar() override;
 
   /** Are points members of this group only if they have a radius? */
-  bool keeps_group(int group) const { return group == surface_group; }
+  bool keeps_group(int group) const;
 
   double memory_usage() override;
   void grow_arrays(int) override;
@@ -56,7 +56,7 @@ class FixMPMSurface : public FixMPMState, private MPMSurfaceOptions {
   void unpack_forward_comm(int, int, double *) override;
 
  private:
-  int surface_group = -1;       // that points with a radius are in, -1: none
+  int surface_group = -1;       // that points with a radius are in, -1: none; of this run
   bool known = false;           // radii are those of the surface, not the largest ones
   bool no_torques = false;      // of atoms that are not in neighbor lists, since these were made
   double *at_surface;           // [n] 1: has a radius, 0: has not
@@ -65,6 +65,10 @@ class FixMPMSurface : public FixMPMState, private MPMSurfaceOptions {
 
   bool has_radius(int i) const;
   double radius_of(double volume, double growth) const;
+  double present_radius(int i) const;
+  void find_group(int iarg);
+  bool moves_atoms() const;
+  void warn_of_diameters() const;
   void give_radius(int i, bool at_surface, double radius);
   void give_largest();
   void find_surface();

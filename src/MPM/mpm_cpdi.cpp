@@ -17,6 +17,8 @@
 #include "mpm_cpdi.h"
 
 #include "atom.h"
+#include "comm.h"
+#include "error.h"
 #include "mpm_every.h"
 #include "mpm_frame.h"
 #include "mpm_guard.h"
@@ -24,6 +26,7 @@
 #include "mpm_points.h"
 #include "mpm_state.h"
 #include "transfer/cpdi.h"
+#include "utils.h"
 
 #include <algorithm>
 #include <cmath>
@@ -293,12 +296,40 @@ void MPMCpdi::update()
     map.valid = false;
   }
 
+  bigint nboxes = 0, ndeformed = 0;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!field.is_point(i)) continue;
-    if (follows_F())
+    if (follows_F()) {
       box(i, row(i));
-    else if (std::isnan(corners[i][0]))    // has not moved yet
+    } else if (std::isnan(corners[i][0])) {    // has not moved yet
       corners_of_box(i, corners[i]);
+      nboxes++;
+      ndeformed += std::fabs(field.points->jacobian(i) - 1.0) > 1.0e-6;
+    }
     limit(i);
   }
+  if (field.options.shape == CPDI2 && !told) tell_of_boxes(nboxes, ndeformed);
+  told = true;
+}
+
+/* ----------------------------------------------------------------------
+   points have corners if create_points elements gave them or the fix has moved them before; they go
+   with the fix, when it is defined again
+------------------------------------------------------------------------- */
+
+void MPMCpdi::tell_of_boxes(bigint nboxes, bigint ndeformed)
+{
+  const bigint mine[2] = {nboxes, ndeformed};
+  bigint all[2];
+  MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (comm->me || all[0] == 0) return;
+  utils::logmesg(lmp, "Fix mpm {}: {} points begin with boxes of their volume as domains\n",
+                 field.id(), all[0]);
+  if (all[1])
+    error->warning(
+        FLERR,
+        "Fix mpm {} shape cpdi2: {} of these points have been deformed before: domains "
+        "that they had, with a fix mpm that is gone, are lost, and become boxes with the "
+        "deformation F",
+        field.id(), all[1]);
 }

@@ -81,12 +81,14 @@ class MPMCpdi : protected Pointers {
  private:
   MPMField &field;
   std::vector<double> edges;    // cpdi: half edges of the domains, [n][dim][dim]
+  bool told = false;            // which points have no corners at the start
 
   bool follows_F() const { return !corners; }
   double *row(int i) { return corners ? corners[i] : &edges[size() * (std::size_t) i]; }
   const double *row(int i) const { return const_cast<MPMCpdi *>(this)->row(i); }
   void box(int i, double *edge) const;
   void limit(int i);
+  void tell_of_boxes(bigint nboxes, bigint ndeformed);
 };
 
 }    // namespace LAMMPS_NS

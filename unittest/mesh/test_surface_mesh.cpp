@@ -167,16 +167,18 @@ TEST(SurfaceMesh, TorusConverges)
   }
 }
 
+static std::string message(const std::string &bytes)
+{
+  try {
+    SurfaceMesh mesh(bytes, "file.stl", 1.0, {0.0, 0.0, 0.0});
+  } catch (const std::exception &e) {
+    return e.what();
+  }
+  return "";
+}
+
 TEST(SurfaceMesh, RefusesWhatIsNotClosed)
 {
-  const auto message = [](const std::string &bytes) -> std::string {
-    try {
-      SurfaceMesh mesh(bytes, "file.stl", 1.0, {0.0, 0.0, 0.0});
-    } catch (const std::exception &e) {
-      return e.what();
-    }
-    return "";
-  };
   Soup open = box({0, 0, 0}, {1, 1, 1});
   open.pop_back();
   EXPECT_THAT(message(text_of(open)), HasSubstr("not closed"));
@@ -191,6 +193,59 @@ TEST(SurfaceMesh, RefusesWhatIsNotClosed)
   std::string cut = binary_of(box({0, 0, 0}, {1, 1, 1}));
   cut.resize(cut.size() - 7);
   EXPECT_THAT(message(cut), HasSubstr("no STL file"));
+  EXPECT_THAT(message(text_of({{{{0, 0, 0}, {0, 0, 0}, {1, 0, 0}}}})), HasSubstr("no triangles"));
+}
+
+static Soup inverted(Soup soup)
+{
+  for (auto &t : soup) std::swap(t[1], t[2]);
+  return soup;
+}
+
+static Soup both(Soup soup, const Soup &other)
+{
+  soup.insert(soup.end(), other.begin(), other.end());
+  return soup;
+}
+
+TEST(SurfaceMesh, RefusesPartsWithoutInsideAndOutside)
+{
+  const Soup one = box({0, 0, 0}, {1, 1, 1}), next = box({1.5, 0.25, 0}, {2.5, 1.25, 1}),
+             hole = inverted(box({0.2, 0.3, 0.4}, {0.6, 0.7, 0.8}));
+  const Soup flat = {{{{3, 0, 0}, {4, 0, 0}, {3, 1, 0}}}, {{{3, 0, 0}, {3, 1, 0}, {4, 0, 0}}}};
+  const struct {
+    Soup soup;
+    const char *error;
+  } cases[] = {
+      {flat, "without volume"},
+      {both(one, flat), "without volume"},
+      {both(one, inverted(next)), "looks inward"},
+      {both(inverted(one), box({1.5, 0, 0}, {4.5, 1, 1})), "looks inward"},
+      {both(one, inverted(hole)), "inside of another one and looks outward"},
+      {both(one, box({0.5, 0.5, 0.5}, {1.5, 1.5, 1.5})), "reach into each other"},
+      {both(one, box({0.3, 0.3, -1}, {0.6, 0.6, 2})), "reach into each other"},    // no corner does
+      {both(one, inverted(box({0.5, 0.5, 0.5}, {1.5, 1.5, 1.5}))), "reach into each other"},
+  };
+  for (const auto &c : cases) {
+    EXPECT_THAT(message(text_of(c.soup)), HasSubstr(c.error));
+    if (c.soup.size() > 2)    // with the closed parts in the other order
+      EXPECT_THAT(message(binary_of(Soup(c.soup.rbegin(), c.soup.rend()))), HasSubstr(c.error));
+  }
+  // side by side, with a face in common of which each has a part
+  EXPECT_EQ(message(text_of(both(one, box({1, 0.5, 0}, {2, 1.5, 1})))), "");
+}
+
+TEST(SurfaceMesh, HasCavities)
+{
+  const Soup room = both(box({0, 0, 0}, {4, 4, 4}), inverted(box({1, 1, 1}, {3, 3, 3})));
+  const Soup ball = box({1.5, 1.5, 1.5}, {2.5, 2.5, 2.5});
+  for (const bool turned : {false, true}) {
+    const Soup soup = both(room, ball);
+    const SurfaceMesh mesh(text_of(turned ? inverted(soup) : soup), "room", 1.0, {0, 0, 0});
+    EXPECT_NEAR(mesh.volume, 64.0 - 8.0 + 1.0, 1.0e-12);
+    for (const double x : {-0.5, 0.5, 1.25, 2.0})
+      EXPECT_EQ(mesh.inside({x, 2.0, 2.0}), x == 0.5 || x == 2.0) << x;
+  }
 }
 
 // The region does all that a block of LAMMPS does: it is filled with points, and is a wall.
@@ -308,9 +363,12 @@ SERIAL_TEST(RegionMesh, HasATorque)
 
 TEST(RegionMesh, RefusesMistakes)
 {
-  const ScratchFile body("mistake.stl", text_of(box({0.0, 0.0, 0.0}, {1.0, 1.0, 1.0})));
+  const ScratchFile body("mistake.stl", text_of(box({0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}))),
+      flat("flat.stl",
+           text_of({{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}, {{{0, 0, 0}, {0, 1, 0}, {1, 0, 0}}}}));
   expect_refused("units lj\natom_style mpm\n",
                  {{"region r mpm/mesh " + body.name + " 1.0 0 0", "region mpm/mesh"},
                   {"region r mpm/mesh " + body.name + " 0.0 0 0 0", "scale must be positive: 0.0"},
-                  {"region r mpm/mesh none.stl 1.0 0 0 0", "Cannot open file none.stl"}});
+                  {"region r mpm/mesh none.stl 1.0 0 0 0", "Cannot open file none.stl"},
+                  {"region r mpm/mesh " + flat.name + " 1.0 0 0 0", "without volume"}});
 }

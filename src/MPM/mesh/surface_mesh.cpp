@@ -62,6 +62,27 @@ static double square_of_distance(const Point &x, const Point &lo, const Point &h
   return sum;
 }
 
+namespace {
+/** Numbers of things that belong together. */
+class Sets {
+ public:
+  explicit Sets(std::size_t n) : parent(n) { std::iota(parent.begin(), parent.end(), 0); }
+  void join(int i, int j) { parent[root(i)] = root(j); }
+  /** Of the set of i, in the order in which sets are asked for. */
+  int number(int i) { return numbers.emplace(root(i), (int) numbers.size()).first->second; }
+  std::size_t size() const { return numbers.size(); }
+
+ private:
+  std::vector<int> parent;
+  std::map<int, int> numbers;
+  int root(int i)
+  {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  }
+};
+}    // namespace
+
 /** Corners of the triangles of an STL file, three in a row. */
 static std::vector<Point> read_stl(const std::string &bytes, const std::string &name)
 {
@@ -114,6 +135,11 @@ SurfaceMesh::SurfaceMesh(const std::string &bytes, const std::string &name, doub
   lo = hi = soup[0];
   for (const auto &x : soup) include(x, lo, hi);
   weld(soup, name);
+  if (triangles.empty())
+    throw std::runtime_error(
+        "File " + name +
+        " has no triangles but slivers: all have corners closer than 1e-6 of the "
+        "distance between the farthest ones");
   close(name);
   integrate();
   if (volume < 0.0) {    // turned inside out
@@ -127,6 +153,7 @@ SurfaceMesh::SurfaceMesh(const std::string &bytes, const std::string &name, doub
   around.resize(corners.size());
   for (int i = 0; i < (int) triangles.size(); i++)
     for (const int c : triangles[i].corner) around[c].push_back(i);
+  check_shells(name);
   make_coarse();
 }
 
@@ -247,16 +274,12 @@ void SurfaceMesh::normals()
   }
 }
 
-/** Normals of edges, and parts of the surface that hang together without crossing a sharp edge. */
+/** Normals of edges, and parts of the surface that hang together, without crossing a sharp edge or at
+ *  all. */
 void SurfaceMesh::find_parts()
 {
   const double sharp = std::sqrt(0.5);
-  std::vector<int> parent(triangles.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
+  Sets parts(triangles.size()), shells(triangles.size());
   std::map<std::pair<int, int>, int> edges;
   for (int i = 0; i < (int) triangles.size(); i++)
     for (int c = 0; c < 3; c++)
@@ -266,12 +289,120 @@ void SurfaceMesh::find_parts()
       auto &t = triangles[i];
       const int j = edges.at({t.corner[(c + 1) % 3], t.corner[c]});
       t.edge_normal[c] = t.normal + triangles[j].normal;
-      if (dot(t.normal, triangles[j].normal) > sharp) parent[root(i)] = root(j);
+      if (dot(t.normal, triangles[j].normal) > sharp) parts.join(i, j);
+      shells.join(i, j);
     }
-  std::map<int, int> number;
-  for (int i = 0; i < (int) triangles.size(); i++)
-    triangles[i].part = number.emplace(root(i), (int) number.size()).first->second;
-  nparts = (int) number.size();
+  for (int i = 0; i < (int) triangles.size(); i++) {
+    triangles[i].part = parts.number(i);
+    shell_of.resize(parts.size());
+    shell_of[triangles[i].part] = shells.number(i);
+  }
+  nparts = (int) parts.size();
+}
+
+std::vector<SurfaceMesh::Shell> SurfaceMesh::find_shells() const
+{
+  const Point origin = 0.5 * (lo + hi);
+  std::vector<Shell> shells(1 + *std::max_element(shell_of.begin(), shell_of.end()));
+  for (int i = 0; i < (int) triangles.size(); i++) {
+    Shell &shell = shells[shell_of[triangles[i].part]];
+    Point p[3];
+    for (int c = 0; c < 3; c++) p[c] = corners[triangles[i].corner[c]];
+    if (shell.triangles.empty()) shell.lo = shell.hi = p[0];
+    for (const auto &x : p) include(x, shell.lo, shell.hi);
+    const Point out = cross(p[1] - p[0], p[2] - p[0]);
+    shell.volume += dot(p[0] - origin, out) / 6.0;
+    shell.area += 0.5 * std::sqrt(dot(out, out));
+    shell.triangles.push_back(i);
+  }
+  return shells;
+}
+
+/* ----------------------------------------------------------------------
+   Volumes add up, and the sign of the closest triangle tells inside from outside, only if closed parts
+   do not reach into each other and look outward, or inward as the walls of cavities
+------------------------------------------------------------------------- */
+
+static std::string describe(const Point &x)
+{
+  std::ostringstream text;
+  text << x[0] << " " << x[1] << " " << x[2];
+  return text.str();
+}
+
+void SurfaceMesh::check_shells(const std::string &name) const
+{
+  const auto shells = find_shells();
+  for (const auto &shell : shells) {
+    const auto at = describe(corners[triangles[shell.triangles[0]].corner[0]]);
+    if (!(2.0 * std::fabs(shell.volume) > near * shell.area))
+      throw std::runtime_error("The surface of file " + name +
+                               " has a closed part without volume, at " + at);
+    int depth = 0;    // in others that look outward, less those that look inward
+    for (const auto &other : shells)
+      if (&other != &shell && is_inside(shell, other, name)) depth += other.volume > 0.0 ? 1 : -1;
+    if (depth == (shell.volume > 0.0 ? 0 : 1)) continue;
+    throw std::runtime_error("The surface of file " + name + " has a closed part, at " + at +
+                             (shell.volume > 0.0
+                                  ? ", that is inside of another one and looks outward"
+                                  : ", that looks inward and is not the wall of a cavity") +
+                             ": turn its triangles, or remove it");
+  }
+}
+
+/* ----------------------------------------------------------------------
+   Is a closed part inside of another one? Its edges are followed in steps as long as the distance. What
+   is known of a corner, a distance that it has at least, with the sign, tells of edges that are shorter
+------------------------------------------------------------------------- */
+
+bool SurfaceMesh::is_inside(const Shell &shell, const Shell &other, const std::string &name) const
+{
+  const auto elsewhere = [&](const Point &low, const Point &high) {
+    for (int d = 0; d < 3; d++)
+      if (low[d] > other.hi[d] || high[d] < other.lo[d]) return true;
+    return false;
+  };
+  if (elsewhere(shell.lo, shell.hi)) return false;
+  const int number = shell_of[triangles[other.triangles[0]].part];
+  const auto skip = [&](int part) {
+    return shell_of[part] != number;
+  };
+  const double least_step = 1.0e3 * near;
+  std::unordered_map<int, double> known;
+  bool inside = false, outside = false;
+  for (const int i : shell.triangles)
+    for (int c = 0; c < 3; c++) {
+      const int first = triangles[i].corner[c], last = triangles[i].corner[(c + 1) % 3];
+      if (first > last) continue;    // the triangle on the other side has it
+      const Point &a = corners[first], &b = corners[last];
+      Point low = a, high = a, closest;
+      include(b, low, high);
+      const double length = std::sqrt(dot(b - a, b - a));
+      if (elsewhere(low, high)) {
+        outside = true;
+        continue;
+      }
+      double &at_a = known[first], &at_b = known[last];
+      const double rest_a = std::fabs(at_a) - length, rest_b = std::fabs(at_b) - length;
+      if (rest_a > std::fabs(at_b)) at_b = std::copysign(rest_a, at_a);
+      if (rest_b > std::fabs(at_a)) at_a = std::copysign(rest_b, at_b);
+      if (rest_a > 0.0 || rest_b > 0.0) continue;
+      for (double t = 0.0;;) {
+        const Point x = a + (t / length) * (b - a);
+        const double d = (other.volume > 0.0 ? 1.0 : -1.0) * distance_to(x, closest, skip);
+        inside = inside || d < -near;
+        outside = outside || d > near;
+        if (inside && outside)
+          throw std::runtime_error("The surface of file " + name +
+                                   " has closed parts that reach into each other, near " +
+                                   describe(x) + ": unite them to one where the mesh is made");
+        if (t == 0.0) at_a = d;
+        if (t == length) at_b = d;
+        if (t == length) break;
+        t = std::min(length, t + std::max(std::fabs(d), least_step));
+      }
+    }
+  return inside;
 }
 
 /** Tree of boxes over the triangles [first,last), halves by the longest axis of their centers. */
@@ -389,15 +520,21 @@ static const auto no_part = [](int) {
 
 /* ---------------------------------------------------------------------- */
 
-double SurfaceMesh::distance(const Point &x, Point &closest) const
+template <class Skip>
+double SurfaceMesh::distance_to(const Point &x, Point &closest, Skip &&skip) const
 {
   double smallest = std::numeric_limits<double>::max(), side = 1.0;
-  search(x, smallest, no_part, [&](const Triangle &t, const Point &p, int feature, double square) {
+  search(x, smallest, skip, [&](const Triangle &t, const Point &p, int feature, double square) {
     smallest = square;
     closest = p;
     side = dot(x - p, mean_normal(t, feature));
   });
   return side < 0.0 ? -std::sqrt(smallest) : std::sqrt(smallest);
+}
+
+double SurfaceMesh::distance(const Point &x, Point &closest) const
+{
+  return distance_to(x, closest, no_part);
 }
 
 /* ---------------------------------------------------------------------- */

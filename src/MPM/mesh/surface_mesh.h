@@ -31,8 +31,9 @@ class SurfaceMesh {
 
   /** From the bytes of an STL file, text or binary, positions times scale plus shift. Corners closer
    *  than 1e-6 of the size of the body become one. Throws std::runtime_error, with name in the
-   *  message, for what is no STL file and when the surface is not closed; a surface whose triangles
-   *  all look inward is turned. */
+   *  message, for what is no STL file, when the surface is not closed, and when its closed parts have
+   *  no volume, reach into each other, or look the wrong way: inward, but for walls of cavities. A
+   *  surface that has all of this inside out is turned. */
   SurfaceMesh(const std::string &bytes, const std::string &name, double scale, const Point &shift);
 
   /** Distance of x from the surface, negative inside; closest: the point there. */
@@ -76,6 +77,11 @@ class SurfaceMesh {
     Point edge_normal[3];    // of the edges 01, 12, 20: sum of the two triangles' normals
     int part;
   };
+  struct Shell {    // a closed part of the surface
+    Point lo, hi;
+    double volume = 0.0, area = 0.0;    // volume: negative when it looks inward
+    std::vector<int> triangles;
+  };
   struct Node {    // of the tree of boxes
     Point lo, hi;
     int first, last;    // triangles of a leaf; else last < 0 and the children are
@@ -85,6 +91,7 @@ class SurfaceMesh {
 
   std::vector<Point> corners, corner_normals;
   std::vector<Triangle> triangles;
+  std::vector<int> shell_of;    // the closed part that a part between sharp edges belongs to
   std::vector<std::vector<int>> around;    // triangles at each corner
   std::vector<Node> tree;
   std::vector<float> coarse;    // distances at the centers of cells
@@ -99,9 +106,13 @@ class SurfaceMesh {
   void find_parts();
   int build(int first, int last);
   void make_coarse();
+  std::vector<Shell> find_shells() const;
+  void check_shells(const std::string &name) const;
+  bool is_inside(const Shell &, const Shell &other, const std::string &name) const;
   Point closest_on(const int corner[3], const Point &x, int &feature) const;
   template <class Skip, class Visit>
   void search(const Point &x, double &limit, Skip &&skip, Visit &&visit) const;
+  template <class Skip> double distance_to(const Point &x, Point &closest, Skip &&skip) const;
   const Point &mean_normal(const Triangle &t, int feature) const;
   bool is_closest_around(const Point &x, const Triangle &t, int feature, double square) const;
 };
