@@ -456,6 +456,7 @@ TEST(Point, ErrorsNameTheRemedy)
       {"mpm_point NULL shear 1 time 1 length 1e-300 material density 1000 eos tait 2e9 7 "
        "viscosity newtonian 1e-3",
        "wavespeed is not finite"},
+      {"mpm_point NULL shear 1 time 1" + rubber + " random E normal 5 1 7", "Mpm_point: random"},
   };
   for (const auto &c : cases) {
     if (MPM_TEST::nranks() > 1 && c.lines.find("no/such") != std::string::npos)
