@@ -142,6 +142,8 @@ static const auto materials = mistakes_in(
          "NU = 0\\.5 .*out of range: -1 < VALUE < 0\\.5"},
         {"RandomOutOfRange", "density 1.0 linear 10.0 0.3 random E normal 0.9 0.5 7",
          "random(: .*FFTW| E is -.*out of range: use lognormal)"},
+        {"RandomTooShort", "density 1.0 linear 10.0 0.3 random E lognormal 0.3 1e-20 7",
+         "random: (.*FFTW|the correlation length is too short)"},
         {"LawUnknown", "density 1.0 cheese 10.0 0.3",
          "unknown keyword 'cheese': expected density, "},
         {"MaterialFileMissing", "file nothing.mpm",

@@ -769,6 +769,30 @@ TEST(Regions, SlipNormals)
   }
 }
 
+// a region that passes over nodes within a step is reported once
+TEST(Regions, FastOnesAreReported)
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  const auto text = [](const std::string &motion) {
+    const ScratchFile log("log");
+    {
+      Scene run("log " + log.name + "\n" + plane("lj", "f f", "0 8 0 8") +
+                body("block 1 3 1 3 INF INF", "density 1.0 neohookean 10.0 0.3") +
+                "variable x equal 128*time\nvariable angle equal 20*time\n"
+                "region tool block 5 6 5 7 INF INF units box " +
+                motion + "\nfix w all mpm/boundary region tool stick\ntimestep 0.01\nrun 3\n");
+    }
+    return file_text(log.name);
+  };
+  EXPECT_THAT(
+      text("move v_x NULL NULL rotate v_angle 5 6 0 0 0 1"),
+      HasSubstr("Fix mpm/boundary w: its region crosses 1.28 cells of fix mpm grid in step 1"));
+  EXPECT_THAT(text("move v_x NULL NULL rotate v_angle 5 6 0 0 0 1"),
+              ::testing::Not(HasSubstr("in step 2")));
+  for (const char *slow : {"rotate v_angle 5 6 0 0 0 1", "move v_angle NULL NULL"})
+    EXPECT_THAT(text(slow), ::testing::Not(HasSubstr("crosses")));
+}
+
 TEST(Regions, NoTrailBehindAMovingBody)
 {
   // pitfall 16: a floor moves along under a falling body; nodes that it has left fall freely
@@ -989,6 +1013,9 @@ TEST(BadInput, IsRefusedWithTheReason)
 variable ok equal 1
 variable text string x
 variable t equal time
+variable big equal 1e308*10
+variable far equal step*1e308*10
+region endless sphere 0 0 0 1 move v_far NULL NULL
 region ball sphere 0 0 0 1
 region moving sphere 0 0 0 1 move v_t NULL NULL
 region open block 0 1 0 1 INF INF open 1
@@ -1011,6 +1038,11 @@ timestep 0.001
        {"fix w all mpm/boundary ylo stick friction 0.1", "needs kind slip or separate"},
        {"fix w all mpm/boundary ylo slip velocity NULL 0 0", "NULL"},
        {"fix w all mpm/boundary ylo stick velocity NULL NULL NULL", "all components free"},
+       {"fix w all mpm/boundary ylo stick velocity 0 0 1000", "must have the component 0 along z"},
+       {"fix w all mpm/boundary ylo stick velocity 0 0 v_ok", "must have the component 0 along z"},
+       {"fix w all mpm/boundary ylo stick velocity NULL NULL 0", "all components free"},
+       {"fix w all mpm/boundary ylo stick velocity v_big 0 0\nrun 1", "Variable big is inf"},
+       {"fix w all mpm/boundary region endless slip\nrun 1", "region endless is not finite"},
        {"fix w all mpm/boundary ylo stick velocity 0 0", "issing"},
        {"fix w all mpm/boundary ylo stick velocity 0 v_no 0\nrun 0", "does not exist"},
        {"fix w all mpm/boundary ylo stick velocity 0 v_text 0\nrun 0", "not equal-style"},

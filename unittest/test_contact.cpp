@@ -97,6 +97,22 @@ SERIAL_TEST(Contact, TouchingIsNotAMatterOfRounding)
     }
 }
 
+// bodies that slide along each other without any approach are free of each other, whatever rounding makes
+// of the velocity across: moved along the interface, or with another common velocity, they still are
+SERIAL_TEST(Contact, SlidingIsNotAMatterOfRounding)
+{
+  const std::string scene =
+      replaced(replaced(replaced(two_bars("transfer apic scheme musl", "law stick"),
+                                 "block 1.05 2.05", "block 1 2"),
+                        "velocity one set 0.05 0 0", "velocity one set VX 0.5 0"),
+               "velocity two set -0.05 0 0", "velocity two set VX -0.1 0");
+  for (const double speed : {0.0, 0.1, 0.3, 0.7}) {
+    Scene run(replaced(scene, "VX", strprintf("%.17g", speed)) + "run 6\n");
+    EXPECT_NEAR(run.evaluate("vcm(one,y)"), 0.5, 1.0e-12) << speed;
+    EXPECT_EQ(run.evaluate("f_c[1][4]"), 0.0) << speed;
+  }
+}
+
 // without the gap rule bodies feel each other more than a node spacing apart
 SERIAL_TEST(Contact, WithoutTheGapRuleContactIsEarly)
 {
@@ -425,7 +441,11 @@ TEST(Restart, RefusesAnotherNumberOfBodies)
       {{"group three empty\nfix F1 one mpm 0.5\nfix F2 two mpm 0.5\nfix F3 three mpm 0.5\n"
         "fix m all mpm/material density 1 neohookean 50 0.3\n"
         "fix c all mpm/contact F1 F2 F3 law coulomb 0.3",
-        "another number of fields"}});
+        "another number of fields"},
+       {"fix F1 one mpm 0.5\nfix F2 two mpm 0.5\n"
+        "fix m all mpm/material density 1 neohookean 50 0.3\n"
+        "fix c all mpm/contact F2 F1 law coulomb 0.3",
+        "was between F1 F2 when the restart file was written, not F2 F1"}});
 }
 
 // friction at rest may be larger: the block stays where it would slide with the other one, and slides with

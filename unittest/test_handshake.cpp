@@ -421,6 +421,58 @@ TEST(Handshake, SameOnRanksAndAfterRestart)
   }
 }
 
+// points get back what they share when the fix is deleted, and share it once when there is another
+TEST(Handshake, CanBeDefinedAgain)
+{
+  const std::string scene = crystal(8.0, 6.0, 24.0, "damp 1.0") + "fix move atoms nve\n";
+  const auto start = scene.find("fix bridge");
+  const auto again = replaced(scene.substr(start, scene.find('\n', start) + 1 - start), "1.0", "0");
+  Scene run(scene);
+  const auto points = [&] {
+    double sum[2] = {0.0, 0.0};
+    const auto *atom = run.lmp->atom;
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!(atom->vfrac[i] > 0.0)) continue;
+      sum[0] += atom->rmass[i];
+      sum[1] += atom->vfrac[i];
+    }
+    return over_ranks({sum[0], sum[1]});
+  };
+  const auto full = points();
+  run.commands("run 0 post no\n");
+  const auto shared = points();
+  EXPECT_LT(shared[0], 0.9 * full[0]);
+  run.commands(again + "run 0 post no\n");    // in its place
+  for (int k = 0; k < 2; k++) EXPECT_NEAR(points()[k], shared[k], 1.0e-12 * full[k]);
+  run.commands("unfix bridge\n");
+  for (int k = 0; k < 2; k++) EXPECT_NEAR(points()[k], full[k], 1.0e-12 * full[k]);
+  run.commands(again + "run 0 post no\n");
+  for (int k = 0; k < 2; k++) EXPECT_NEAR(points()[k], shared[k], 1.0e-12 * full[k]);
+}
+
+// a density that is not that of the crystal gives a warning, also in zones of one node spacing
+SERIAL_TEST(Handshake, WarnsOfAnotherDensity)
+{
+  const auto text = [](const std::string &scene) {
+    const ScratchFile log("log");
+    {
+      Scene run("log " + log.name + "\n" + scene + "fix move atoms nve\nrun 0 post no\n");
+    }
+    return file_text(log.name);
+  };
+  const std::string words = "both must fill the zone with the density of the crystal";
+  for (const double zone : {2.01, 2.5, 3.0, 6.0}) {
+    const auto scene = crystal(8.0, zone, 24.0, "");
+    EXPECT_THAT(text(scene), ::testing::Not(HasSubstr(words))) << zone;
+    for (const char *density : {"0.5", "2.15", "100"})
+      EXPECT_THAT(
+          text(replaced(scene, strprintf("mpm/material density %.15g", 4.0 / (A0 * A0 * A0)),
+                        std::string("mpm/material density ") + density)),
+          HasSubstr(words))
+          << zone << " " << density;
+  }
+}
+
 TEST(Handshake, RefusesWhatItCannotDo)
 {
   const std::string scene = crystal(8.0, 6.0, 24.0, ""), move = "fix move atoms nve\n";

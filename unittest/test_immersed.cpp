@@ -452,6 +452,8 @@ SERIAL_TEST(Immersed, RefusesBadInput)
       replaced(start, "GRID", ""),
       {{"fix d g mpm/immersed other 1.0 1.0", "there is no fix mpm other"},
        {"fix d all mpm/immersed grid 1.0 1.0", "are material points: use a group of grains"},
+       {good + "group one id 513\nfix d2 one mpm/immersed grid 1.0 1.0",
+        "Fix mpm/immersed d and d2 have 1 grains and the field in common"},
        {good + "fix r g rigid/nve single", "use single spheres"}},
       "run 0\n");
   expect_refused(replaced(start, "GRID", "frame total"), {{good, "use frame updated"}}, "run 0\n");

@@ -136,7 +136,10 @@ TEST(MaterialFix, BadFiles)
       // and options to the last part in the file
       {gas, "", "file FILE line 3: eos ideal/gas: give"},
       {gas, " pressure 1e5 viscosity artificial 2 1", ""},
-      {header.substr(2) + "density 1000 linear 1e6 0.3\n", "", ""}};
+      {header.substr(2) + "density 1000 linear 1e6 0.3\n", "", ""},
+      // lines of any length
+      {header + "density 1000 linear 1e6" + std::string(5000, ' ') + "0.7", "",
+       "file FILE line 2: linear: NU = 0.7"}};
   for (const auto &c : cases) {
     const ScratchFile file("made.mpm", c.text);
     const auto found = error_of_material("file " + file.name + c.more);
@@ -308,6 +311,17 @@ TEST(MaterialFix, HistoryMovesWithThePoints)
   run.commands("group odd id 1:64:2\ndelete_atoms group odd compress no\nrun 0 post no\n");
   check();
   EXPECT_GT(before, 0);
+}
+
+// as many history variables, but others
+TEST(MaterialFix, RestartRefusesOtherHistory)
+{
+  const ScratchFile file("restart");
+  const std::string law = "fix m all mpm/material density 1 eos linear 10 strength ";
+  Scene(scene + law + "j2 5 0.02\nrun 0 post no\nwrite_restart " + file.name + "\n");
+  expect_refused("read_restart " + file.name + "\nneighbor 0.3 bin\n",
+                 {{law + "elastic 5 thermal adiabatic 1 300",
+                   "have the history variables eplastic, those of this material are temperature"}});
 }
 
 TEST(MaterialFix, RestartKeepsHistoryAndWork)

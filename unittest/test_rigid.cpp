@@ -342,6 +342,18 @@ SERIAL_TEST(RigidBody, FrictionIsThatOfTheVelocityAfterTheStep)
   EXPECT_GT(sticking, 10);
 }
 
+// Fix mpm/dt follows a body that is much faster than waves: it does not pass through the block unseen.
+SERIAL_TEST(RigidBody, IsNotTooFastForTheBlock)
+{
+  const ScratchFile file("box.stl", text_of(box({0.0, 0.0, 0.0}, {1.0, 1.0, 1.0})));
+  Scene run(scene(file.name, "2.0 slip velocity 0 0 -1000", "4.5 4.5 6.5") +
+            "fix step all mpm/dt 0.5 every 1\nrun 0\n");
+  EXPECT_NEAR(run.lmp->update->dt, 0.5 * 0.5 / 1000.0, 1.0e-12);
+  EXPECT_EQ(run.fix("step")->compute_vector(0), 0.0);    // no point
+  run.commands("run 12\n");
+  EXPECT_LT(run.sums().p[2], -10.0);
+}
+
 TEST(RigidBody, RefusesMistakes)
 {
   const ScratchFile file("box.stl", text_of(box({0.0, 0.0, 0.0}, {1.0, 1.0, 1.0})));
@@ -350,7 +362,8 @@ TEST(RigidBody, RefusesMistakes)
       replaced(head, "GRID", "") + "fix m all mpm/material density 1.0 neohookean 30.0 0.3\n" +
           "region shape mpm/mesh " + file.name +
           " 1.0 4 4 8\ntimestep 0.01\nvariable a atom x\nvariable z equal 0\n" +
-          "region turned mpm/mesh " + file.name + " 1.0 4 4 8 rotate v_z 0 0 0 0 0 1\n",
+          "variable big equal 1e308*10\n" + "region turned mpm/mesh " + file.name +
+          " 1.0 4 4 8 rotate v_z 0 0 0 0 0 1\n",
       {{"fix t all mpm/rigid body density 1.0 slip", "needs a region of style mpm/mesh: body"},
        {"fix t all mpm/rigid shape density 0.0 slip", "density must be positive: 0.0"},
        {"fix t all mpm/rigid shape weight 1.0 slip", "must be one of density mass"},
@@ -362,6 +375,13 @@ TEST(RigidBody, RefusesMistakes)
        {fix + "slip velocity 1 0 0 hold x", "cannot hold x"},
        {fix + "slip sharp", "Unknown fix mpm/rigid keyword: sharp"},
        {fix + "slip force v_a 0 0", "Variable a for fix mpm/rigid force is not equal-style"},
+       {fix + "slip force v_big 0 0", "Variable big is inf"},
+       {"unfix grid\nfix grid all mpm 0.5 dtcheck no\n" + fix +
+            "slip gravity 0 1e308 0\ntimestep 1e9",
+        "position or velocity of the body is not finite at step 1"},
+       {fix + "slip velocity 0 0 -100", "the body crosses 2 cells of fix mpm grid in step 1"},
+       {fix + "slip omega 0 0 100", "the body crosses 1.73 cells of fix mpm grid in step 1"},
+       {fix + "slip\nfix t2 all mpm/rigid shape density 1.0 slip", "have the same region shape"},
        {"unfix grid\nfix grid all mpm 0.5 frame total\n" + fix + "slip", "use frame updated"},
        {"unfix grid\nfix grid all mpm 0.5 scheme usf\n" + fix + "slip", "use usl or musl"}},
       "run 1\n");

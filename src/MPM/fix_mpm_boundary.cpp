@@ -173,8 +173,10 @@ Options MPMBoundaryOptions::declare(int dim)
     return OptionRules{
         {kind == STICK, "friction", "needs kind slip or separate"},
         {kind != STICK && !all_given(), "velocity", "allows NULL only with kind stick"},
-        {!velocity[0].given && !velocity[1].given && !velocity[2].given, "velocity",
+        {!velocity[0].given && !velocity[1].given && (dim == 2 || !velocity[2].given), "velocity",
          "leaves all components free"},
+        {dim == 2 && (!velocity[2].variable.empty() || velocity[2].value != 0.0), "velocity",
+         "must have the component 0 along z in 2d: {velocity}"},
         {MathExtra::len3(axis) == 0.0, "rotate", "needs an axis of non-zero length"},
         {dim == 2 && (axis[0] != 0.0 || axis[1] != 0.0), "rotate", "needs an axis along z in 2d"},
         {!all_given(), "rotate", "prescribes all components of the velocity"}};
@@ -708,6 +710,34 @@ void FixMPMBoundary::Wall::velocity(const MPMField &field, int64_t node, double 
 }
 
 /* ----------------------------------------------------------------------
+   A region acts on nodes that are inside of it at the start of a step: one that crosses more than a
+   cell in a step can pass through a body without touching it. Not all regions tell how far they
+   reach, so that this looks at displacements alone, not at rotations.
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::check_speed(double dt)
+{
+  const double along[3] = {wall.shift[0], wall.shift[1],
+                           domain->dimension == 3 ? wall.shift[2] : 0.0};
+  const double way = dt * MathExtra::len3(along);
+  if (!std::isfinite(way) || !std::isfinite(region->theta))
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/boundary {}: the motion of its region {} is not finite at step {}", id,
+               region_id, update->ntimestep);
+  for (const auto &list : nodes) {
+    const double h = list.field->lattice.h;
+    if (warned || !(way > h)) continue;
+    warned = true;
+    if (comm->me == 0)
+      error->warning(FLERR,
+                     "Fix mpm/boundary {}: its region crosses {:.3g} cells of fix mpm {} in step "
+                     "{} and can pass through material without touching it: use a smaller "
+                     "timestep; this is said only once",
+                     id, way / h, list.field->id(), update->ntimestep);
+  }
+}
+
+/* ----------------------------------------------------------------------
    how the wall moves during this step, and the nodes inside a moving region.
    Regions: nodes are found with the position at the start of the step, to which positions of
    points belong; the motion is that to the end of the step.
@@ -738,6 +768,7 @@ void FixMPMBoundary::update_motion(double dt)
   if (region_moves()) {
     const auto motion = motion_of(region);
     for (int d = 0; d < 3; d++) wall.shift[d] = (*motion[d] - old[d]) / dt;
+    check_speed(dt);
     if (region->rotateflag) {
       double origin[3];
       MathExtra::add3(RegionMotion::point_of(region), old, origin);

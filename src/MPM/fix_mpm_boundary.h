@@ -159,6 +159,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   double impulse[6] = {};     // on the body, with its moment, in the last step: this rank's share
   double dt_last = 0.0;
   bool reaction_known = true;
+  bool warned = false;        // of a region that is too fast
   double reaction[6] = {};    // force and, of regions, torque
 
   struct {                // what act() does now to the nodes of a field
@@ -177,6 +178,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   void list_face_nodes(FieldNodes &);
   void list_region_nodes(FieldNodes &);
   void update_motion(double dt);
+  void check_speed(double dt);
   double slide_share(Contact &, double push, double needed) const;
   void set_velocity(MPM_NS::Grid &, int64_t node, const double *v, const double *old);
   void project(MPM_NS::Grid &, const Member *, int n, bool fixed, const Prescribed &);

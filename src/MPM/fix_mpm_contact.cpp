@@ -73,6 +73,11 @@ static constexpr double OVERLAP = 1.4, OVERLAP_EACH = 0.25;
 
 static constexpr double ROUNDING = 1.0e-8;
 
+// bodies that slide along each other approach each other by rounding, which must not decide whether
+// they stick: at least by this part of their speeds
+
+static constexpr double APPROACH = 1.0e-12;
+
 /* ----------------------------------------------------------------------
    fix ID all mpm/contact FIELD FIELD ...  law ... normal ... gap ...
 ------------------------------------------------------------------------- */
@@ -639,6 +644,14 @@ void FixMPMContact::apply(Pair &pair, double m, double &largest, double dt, bool
   } else {
     const double unit = force->ftm2v / force->nktv2p * pair.area * pair.fade * dt;
     normal = std::max(normal, law == ADHESIVE ? -normal_strength * unit : 0.0);
+    if (law == STICK) {
+      double speeds[2] = {0.0, 0.0};
+      for (int d = 0; d < dim; d++) {
+        speeds[0] += pair.ra[d] * pair.ra[d];
+        speeds[1] += pair.rb[d] * pair.rb[d];
+      }
+      if (normal <= APPROACH * m * (sqrt(speeds[0]) + sqrt(speeds[1]))) normal = 0.0;
+    }
     const double push = std::max(normal, 0.0), bond = shear_strength * unit;
     const double limit = static_friction * push + bond;
     keep = 1.0;
@@ -788,27 +801,37 @@ double FixMPMContact::compute_array(int row, int column)
 
 void FixMPMContact::write_restart(FILE *fp)
 {
-  std::vector<double> work, total(1 + size_array_rows, size_array_rows);
+  std::vector<double> work, total(1 + size_array_rows, -size_array_rows);
   for (int p = 0; p < size_array_rows; p++) work.push_back(accounts[p].work);
   MPI_Reduce(work.data(), &total[1], size_array_rows, MPI_DOUBLE, MPI_SUM, 0, world);
   if (comm->me) return;
-  const int size = (int) (total.size() * sizeof(double));
+  const std::string text = utils::join_words(names, " ");
+  const int numbers = (int) (total.size() * sizeof(double)), size = numbers + (int) text.size() + 1;
   fwrite(&size, sizeof(int), 1, fp);
-  fwrite(total.data(), 1, size, fp);
+  fwrite(total.data(), 1, numbers, fp);
+  fwrite(text.c_str(), 1, text.size() + 1, fp);
 }
 
 /* ----------------------------------------------------------------------
-   rank 0 goes on with the totals
+   rank 0 goes on with the totals. Files of older versions have the number of pairs in place of minus
+   this number, and no names of the fields behind the work
 ------------------------------------------------------------------------- */
 
 void FixMPMContact::restart(char *buf)
 {
   const auto *const from = (const double *) buf;
-  if ((int) from[0] != size_array_rows)
+  if (std::abs((int) from[0]) != size_array_rows)
     error->all(FLERR, Error::NOPOINTER,
                "Fix mpm/contact {} had another number of fields when the restart file was written: "
                "name as many, or give the fix another ID to begin anew",
                id);
+  const std::string ours = utils::join_words(names, " "),
+                    theirs = from[0] < 0.0 ? (const char *) (from + 1 + size_array_rows) : ours;
+  if (theirs != ours)
+    error->all(FLERR, Error::NOPOINTER,
+               "Fix mpm/contact {} was between {} when the restart file was written, not {}: name "
+               "them in this order, or give the fix another ID to begin anew",
+               id, theirs, ours);
   for (int p = 0; p < size_array_rows; p++) accounts[p].work = comm->me == 0 ? from[1 + p] : 0.0;
 }
 

@@ -11,6 +11,7 @@
 #include "comm.h"
 #include "error.h"
 #include "fix_mpm_elements.h"
+#include "fix_mpm_rigid.h"
 #include "force.h"
 #include "integrate.h"
 #include "modify.h"
@@ -124,6 +125,10 @@ FixMPMDt::Limit FixMPMDt::find_limit() const
     compare(field->time_limit->stable_dt(tag, speed) / field->options.every);
   for (auto *ifix : modify->get_fix_by_style("^mpm/elements$"))
     compare(dynamic_cast<FixMPMElements *>(ifix)->stable_dt_local(tag, speed));
+  tag = 0;
+  speed = 0.0;
+  for (auto *ifix : modify->get_fix_by_style("^mpm/rigid$"))
+    compare(dynamic_cast<FixMPMRigid *>(ifix)->stable_dt());
   return smallest(mine);
 }
 
@@ -187,9 +192,12 @@ void FixMPMDt::set_dt(double dt)
                update->ntimestep);
   if (dt < dt_min)
     error->all(FLERR, Error::NOLASTLINE,
-               "Fix mpm/dt: time step {:.6g} needed by point {} (wave speed {:.6g}) at step {} is "
-               "below min {:.6g}; see what happened to that point, or lower min",
-               dt, tag, limit.speed, update->ntimestep, dt_min);
+               "Fix mpm/dt: time step {:.6g} needed by {} at step {} is below min {:.6g}; see what "
+               "happened to it, or lower min",
+               dt,
+               tag ? fmt::format("point {} (wave speed {:.6g})", tag, limit.speed)
+                   : "a rigid body of fix mpm/rigid",
+               update->ntimestep, dt_min);
   if (dt == update->dt) return;
 
   update->update_time();

@@ -85,6 +85,11 @@ using namespace MPM_NS;
 enum { ATOMS = 0, POINTS = 4, FORCE = 8, MASS = 11, PLAIN = 12, PRESENCE = 15, NREAL = 16 };
 enum { CHANGE = 0, VELOCITY = 4 };
 
+// what the masses of atoms and points in the zone may differ by before there is a warning: at the ends of
+// a zone of one node spacing, they need not be in the same place
+
+static constexpr double MASS_DIFFERENCE = 0.3;
+
 /* ----------------------------------------------------------------------
    fix ID atoms mpm/handshake FIELD zone AXIS ONE ZERO ... damp RATE
 ------------------------------------------------------------------------- */
@@ -143,6 +148,16 @@ FixMPMHandshake::FixMPMHandshake(LAMMPS *lmp, int narg, char **arg) : FixMPMStat
   });
   keep_arrays();
   vector_atom = weight;
+}
+
+/** Points get back what they share with atoms, so that another handshake starts from full masses. */
+FixMPMHandshake::~FixMPMHandshake()
+{
+  for (int i = 0; i < atom->nlocal; i++) {
+    if ((role[i] != POINT && role[i] != NEAR_POINT) || !(weight[i] > 0.0)) continue;
+    atom->rmass[i] /= weight[i];
+    atom->vfrac[i] /= weight[i];
+  }
 }
 
 /* ---------------------------------------------------------------------- */
@@ -307,10 +322,16 @@ void FixMPMHandshake::weigh()
   const double reach_atoms = force->pair->cutforce + neighbor->skin,
                reach_nodes = 2.0 * (stencil_order(field->options.shape) + 1) * field->lattice.h;
   bigint none = 0, wrong = 0;
+  struct {
+    double atoms, points, volume, known;
+  } mine = {}, all;    // masses and volume of points in the middle of the zone; who has a weight
   for (int i = 0; i < atom->nlocal; i++) {
-    if (role[i] != UNKNOWN) continue;
+    if (role[i] != UNKNOWN) {
+      mine.known++;
+      continue;
+    }
     double inside, beyond;
-    const double w = weight_at(atom->x[i], zones, inside, beyond);
+    const double w = weight_at(atom->x[i], zones, inside, beyond), middle = w * (1.0 - w);
     if (field->is_point(i)) {
       role[i] = beyond < reach_nodes ? NEAR_POINT : POINT;
       weight[i] = 1.0 - w;
@@ -318,11 +339,14 @@ void FixMPMHandshake::weigh()
       const auto *const material = field->material_of(i);    // none: a node of elements
       const double mass = material ? material->density(i) * atom->vfrac[i] : atom->rmass[i];
       if (fabs(atom->rmass[i] - mass) > 1.0e-3 * mass) wrong++;
+      mine.points += middle * atom->rmass[i];
+      mine.volume += middle * atom->vfrac[i];
       atom->rmass[i] *= weight[i];
       atom->vfrac[i] *= weight[i];
     } else if ((atom->mask[i] & groupbit) && atom->vfrac[i] == 0.0) {
       role[i] = inside < reach_atoms ? COUPLED : APART;
       weight[i] = w;
+      mine.atoms += middle * atom->rmass[i];
     } else {
       role[i] = APART;
       weight[i] = 1.0;
@@ -342,6 +366,15 @@ void FixMPMHandshake::weigh()
                 "do not have the mass of their density, which is that of the crystal (pair_coeff "
                 "of eam gives the mass of its element to all that are there: define it before "
                 "create_points, or NULL for the type of points with pair_style hybrid)");
+  MPI_Allreduce(&mine, &all, 4, MPI_DOUBLE, MPI_SUM, world);
+  if (all.known == 0.0 && all.points > 0.0 && comm->me == 0 &&
+      fabs(all.atoms - all.points) > MASS_DIFFERENCE * std::max(all.atoms, all.points))
+    error->warning(
+        FLERR,
+        "Fix mpm/handshake {}: in the zone, atoms have the mass {:.4g} per volume of the "
+        "material points, and these {:.4g}: both must fill the zone with the density "
+        "of the crystal",
+        id, all.atoms / all.volume, all.points / all.volume);
 }
 
 /* ---------------------------------------------------------------------- */

@@ -46,6 +46,7 @@ struct MPMHandshakeOptions {
 class FixMPMHandshake : public FixMPMState, public MPMNodeAction, private MPMHandshakeOptions {
  public:
   FixMPMHandshake(class LAMMPS *, int, char **);
+  ~FixMPMHandshake() override;
   int setmask() override    // the rest is called by fix mpm
   {
     return FixConst::PRE_NEIGHBOR | FixConst::POST_NEIGHBOR | FixConst::POST_FORCE;

@@ -177,6 +177,18 @@ void FixMPMImmersed::init_action()
         FLERR, Error::NOLASTLINE,
         "Fix mpm/immersed {}: {} atoms of its group are material points: use a group of grains", id,
         points);
+  for (const auto *other : modify->get_fix_by_style("^mpm/immersed$")) {
+    if (other == this || dynamic_cast<const FixMPMImmersed *>(other)->field_id != field_id)
+      continue;
+    const bigint twice = count_all([&](int i) {
+      return is_grain(i) && (atom->mask[i] & other->groupbit);
+    });
+    if (twice)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/immersed {} and {} have {} grains and the field in common: drag and "
+                 "buoyancy would be counted twice",
+                 id, other->id, twice);
+  }
   const bigint large = count_all([&](int i) {
     return is_grain(i) && 2.0 * atom->radius[i] > 2.0 * field->lattice.h;
   });

@@ -29,10 +29,12 @@
 #include "force.h"
 #include "math_extra.h"
 #include "mesh/surface_mesh.h"
+#include "modify.h"
 #include "mpm_field.h"
 #include "mpm_image.h"
 #include "mpm_options.h"
 #include "region_mpm_mesh.h"
+#include "update.h"
 
 #include <Eigen/Dense>
 
@@ -137,6 +139,12 @@ void FixMPMRigid::init()
                "copy of it",
                id, region_id);
   mesh = &region->surface_mesh();
+  for (const auto *other : modify->get_fix_by_style("^mpm/rigid$"))
+    if (other != this && dynamic_cast<const FixMPMRigid *>(other)->region_id == region_id)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/rigid {} and {} have the same region {}: they would be two bodies in the "
+                 "same place, which do not feel each other",
+                 id, other->id, region_id);
   const auto fields = MPMField::all(lmp);
   if (fields.empty()) error->all(FLERR, Error::NOLASTLINE, "Fix mpm/rigid needs a fix mpm");
   for (const auto *field : fields)
@@ -198,6 +206,55 @@ void FixMPMRigid::load_impulse(double dt)
   });
 }
 
+/** Of a sphere about the center. */
+double FixMPMRigid::radius() const
+{
+  double far[3];
+  for (int d = 0; d < 3; d++)
+    far[d] = std::max(mesh->hi[d] - mesh->center[d], mesh->center[d] - mesh->lo[d]);
+  return MathExtra::len3(far);
+}
+
+/** Of the fastest point of the body. */
+double FixMPMRigid::speed() const
+{
+  return MathExtra::len3(v) + radius() * MathExtra::len3(omega);
+}
+
+double FixMPMRigid::stable_dt() const
+{
+  double h = HUGE_VAL;
+  int every = 1;
+  for (const auto *field : MPMField::all(lmp)) {
+    h = std::min(h, field->lattice.h);
+    every = field->options.every;
+  }
+  return h / (speed() * every);
+}
+
+/* ----------------------------------------------------------------------
+   A body touches material where nodes are inside of it at the start of a step. One that crosses more
+   than a cell in a step can pass through a body without touching it. All ranks have the same motion.
+------------------------------------------------------------------------- */
+
+void FixMPMRigid::check_motion(double dt) const
+{
+  double sum = 0.0;
+  for (int d = 0; d < 3; d++) sum += fabs(x[d]) + fabs(v[d]) + fabs(L[d]) + fabs(omega[d]);
+  if (!std::isfinite(sum))
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/rigid {}: position or velocity of the body is not finite at step {}: see "
+               "its force, torque, and gravity, and the material that it touches",
+               id, update->ntimestep);
+  for (const auto *field : MPMField::all(lmp))
+    if (field->options.dt_check && speed() * dt > field->lattice.h)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/rigid {}: the body crosses {:.3g} cells of fix mpm {} in step {} and can "
+                 "pass through material without touching it: use a smaller timestep, fix mpm/dt, "
+                 "or fix mpm ... dtcheck no",
+                 id, speed() * dt / field->lattice.h, field->id(), update->ntimestep);
+}
+
 /* ----------------------------------------------------------------------
    nodes with mass inside of the body, and where its surface is
 ------------------------------------------------------------------------- */
@@ -205,10 +262,7 @@ void FixMPMRigid::load_impulse(double dt)
 void FixMPMRigid::find_contacts()
 {
   contacts.clear();
-  double far[3];
-  for (int d = 0; d < 3; d++)
-    far[d] = std::max(mesh->hi[d] - mesh->center[d], mesh->center[d] - mesh->lo[d]);
-  const double radius = MathExtra::len3(far);    // of a sphere about the center
+  const double radius = FixMPMRigid::radius();
   for (auto *field : MPMField::all(lmp)) {
     auto &grid = field->grid;
     const double half = 0.5 * (grid.side - 1) * field->lattice.h;
@@ -417,6 +471,7 @@ void FixMPMRigid::act(double dt, Stage stage)
     find_contacts();
     solve();
     move(dt);
+    check_motion(dt);
     return;
   }
 

@@ -71,6 +71,9 @@ class FixMPMRigid : public Fix, public MPMNodeAction, private MPMRigidOptions {
 
   void act(double dt, Stage) override;
 
+  /** Largest time step: no point of the body crosses a cell. */
+  double stable_dt() const;
+
  private:
   struct Contact {    // a node inside of the body
     enum State { APART, SLIDES, STICKS };
@@ -96,6 +99,9 @@ class FixMPMRigid : public Fix, public MPMNodeAction, private MPMRigidOptions {
   void find_contacts();
   void solve();
   void move(double dt);
+  double radius() const;
+  double speed() const;
+  void check_motion(double dt) const;
   void inertia(double out[3][3]) const;
   void spin();
 };

@@ -21,6 +21,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <fstream>
 #include <stdexcept>
 
 using namespace LAMMPS_NS;
@@ -59,17 +60,17 @@ static std::string read_words(LAMMPS *lmp, const std::string &name, std::string 
   utils::logmesg(lmp, "Reading material file {} with DATE: {}\n", name,
                  utils::get_potential_date(path, "material"));
 
-  FILE *fp = fopen(path.c_str(), "r");
-  if (!fp) return fmt::format("cannot read file {}: {}", path, utils::getsyserror());
-  char buffer[1024];
-  for (int line = 1; utils::fgets_trunc(buffer, sizeof(buffer), fp); line++) {
+  std::ifstream in(path);
+  if (!in) return fmt::format("cannot read file {}: {}", path, utils::getsyserror());
+  std::string content;
+  for (int line = 1; std::getline(in, content); line++) {
     if (line == 1) continue;
-    for (const auto &word : utils::split_words(utils::trim_comment(buffer))) {
+    for (const auto &word : utils::split_words(utils::trim_comment(content))) {
       text += word + " ";
       lines.push_back(line);
     }
   }
-  fclose(fp);
+  if (in.bad()) return fmt::format("cannot read file {} to its end", path);
   return "";
 }
 

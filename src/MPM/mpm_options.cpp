@@ -18,6 +18,7 @@
 #include "variable.h"
 
 #include <algorithm>
+#include <cmath>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -77,7 +78,13 @@ void LAMMPS_NS::find_variable(LAMMPS *lmp, NumberOrVariable &v, const std::strin
 
 double LAMMPS_NS::evaluate(LAMMPS *lmp, const NumberOrVariable &v)
 {
-  return v.variable.empty() ? v.value : lmp->input->variable->compute_equal(v.index);
+  if (v.variable.empty()) return v.value;
+  const double value = lmp->input->variable->compute_equal(v.index);
+  if (!std::isfinite(value))
+    lmp->error->all(FLERR, Error::NOLASTLINE,
+                    "Variable {} is {} at step {}: it must be a finite number", v.variable, value,
+                    lmp->update->ntimestep);
+  return value;
 }
 
 void LAMMPS_NS::evaluate_in_step(LAMMPS *lmp, bool any, const std::function<void()> &f)

@@ -31,6 +31,7 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+using Matrix3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 static constexpr int CONSOLIDATION_STEPS = 100;
 static const char *const component_name[6] = {"xx", "yy", "zz", "xy", "xz", "yz"};
@@ -58,7 +59,13 @@ void MPMPoint::command(int narg, char **arg)
   // all ranks do the same, rank 0 writes
   material->configure(nullptr, force->mvv2e * force->nktv2p, force->nktv2p);
   range_left.assign(material->ranges().size(), false);
-  MaterialPoint point(*material, 1, length);
+  std::unique_ptr<MaterialPoint> start;
+  try {
+    start = std::make_unique<MaterialPoint>(*material, 1, length);
+  } catch (const std::runtime_error &e) {
+    error->all(FLERR, "Mpm_point: {}", e.what());
+  }
+  MaterialPoint &point = *start;
   set_temperature(point);
   if (comm->me == 0 && !file.empty()) {
     fp = fopen(file.c_str(), "w");
@@ -275,8 +282,7 @@ void MPMPoint::run_path(MaterialPoint &point)
     const bool started = step > 0;
     const double t1 = step * dt, share = started ? 1.0 : double(step + before) / before;
     const double angle = started ? MathConst::MY_2PI * turns * step / nsteps : 0.0;
-    const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rotation =
-        Eigen::AngleAxisd(angle, n).toRotationMatrix();
+    const Matrix3 rotation = Eigen::AngleAxisd(angle, n).toRotationMatrix();
     try {
       const MixedControl c = control(t1 - dt, t1, started, share);
       iterations += point.step(c, dt, turns == 0.0 ? nullptr : rotation.data());
@@ -349,6 +355,42 @@ void MPMPoint::check(const MaterialPoint &point, bigint step)
 }
 
 /* ----------------------------------------------------------------------
+   logarithmic strain (ln b)/2, b = F F^T. Of the eigenvalues of b, rounding of the largest one leaves
+   nothing of one that is smaller by 10^16. So when they differ much, the smallest stretch is the
+   inverse of the largest one of F^-1 = (cof F)^T/J, and that in the middle what these leave of J
+------------------------------------------------------------------------- */
+
+static Eigen::Matrix3d log_strain(const Matrix3 &F, double J)
+{
+  using Solver = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>;
+  const Solver b(F * F.transpose());
+  if (b.eigenvalues()[0] > 1.0e-6 * b.eigenvalues()[2]) {
+    const Eigen::Matrix3d &axes = b.eigenvectors();
+    const Eigen::Vector3d e = 0.5 * b.eigenvalues().array().log();
+    return axes * e.asDiagonal() * axes.transpose();
+  }
+
+  // each over its size, so that squares do not overflow
+  const double size = F.cwiseAbs().maxCoeff();
+  const Matrix3 f = F / size;
+  Matrix3 cof;
+  for (int i = 0; i < 3; i++) cof.row(i) = f.row((i + 1) % 3).cross(f.row((i + 2) % 3));
+  const double cof_size = cof.cwiseAbs().maxCoeff();
+  cof /= cof_size;
+  const Solver stretch(f * f.transpose()), inverse(cof * cof.transpose());
+  const double most = 0.5 * log(stretch.eigenvalues()[2]) + log(size);
+  const double of_two = 0.5 * log(inverse.eigenvalues()[2]) + log(cof_size) + 2.0 * log(size);
+
+  const Eigen::Vector3d first = stretch.eigenvectors().col(2);
+  Eigen::Vector3d last = inverse.eigenvectors().col(2);
+  last = (last - first * first.dot(last)).normalized();
+  Eigen::Matrix3d axes;
+  axes << first, first.cross(last), last;
+  const Eigen::Vector3d e(most, of_two - most, log(J) - of_two);
+  return axes * e.asDiagonal() * axes.transpose();
+}
+
+/* ----------------------------------------------------------------------
    table: comment lines with what it is, names of the columns, one row per output
 ------------------------------------------------------------------------- */
 
@@ -362,15 +404,10 @@ std::vector<std::pair<std::string, double>> MPMPoint::row(const MaterialPoint &p
 
   double F[9], stress[6];
   point.frame_state(F, stress);
-  const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> f(F);
   for (int k = 0; k < 9; k++) add(fmt::format("F{}{}", "xyz"[k / 3], "xyz"[k % 3]), F[k]);
   add("J", point.batch.J[0]);
 
-  // logarithmic strain (ln b)/2
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> b(f * f.transpose());
-  const Eigen::Matrix3d &axes = b.eigenvectors();
-  const Eigen::Vector3d e = 0.5 * b.eigenvalues().array().log();
-  const Eigen::Matrix3d E = axes * e.asDiagonal() * axes.transpose();
+  const Eigen::Matrix3d E = log_strain(Eigen::Map<const Matrix3>(F), point.batch.J[0]);
   Eigen::Matrix3d s;
   for (int k = 0; k < 6; k++) {
     const auto [i, j] = place[k];
@@ -383,7 +420,11 @@ std::vector<std::pair<std::string, double>> MPMPoint::row(const MaterialPoint &p
   s -= Eigen::Matrix3d::Identity() * (s.trace() / 3.0);
   add("pressure", point.pressure());
   add("vonmises", mises);
-  add("lode", mises > 0.0 ? 13.5 * s.determinant() / (mises * mises * mises) : 0.0);
+  const double cube = mises * mises * mises;
+  double lode = 0.0;
+  if (mises > 0.0)
+    lode = 13.5 * (std::isnormal(cube) ? s.determinant() / cube : (s / mises).determinant());
+  add("lode", lode);
 
   add("stored", point.stored_energy());
   add("work", point.power);
@@ -406,13 +447,17 @@ std::vector<std::pair<std::string, double>> MPMPoint::row(const MaterialPoint &p
 
 void MPMPoint::write(const MaterialPoint &point, bigint step)
 {
-  if (comm->me != 0) return;
   const bool first = step == (path == TRIAXIAL && pressure > 0.0 ? -CONSOLIDATION_STEPS : 0);
-  const bool in_table = fp && (step % every == 0 || step == nsteps || first);
+  const bool in_table = !file.empty() && (step % every == 0 || step == nsteps || first);
   const bool in_log = first || step == nsteps || step % std::max<bigint>(1, nsteps / 10) == 0;
   if (!in_table && !in_log) return;
 
   const auto columns = row(point, step);
+  for (const auto &[name, value] : columns)
+    if (!std::isfinite(value))
+      error->all(FLERR, "Mpm_point: step {} at time {:.6g}: {} is not finite", step, point.time,
+                 name);
+  if (comm->me != 0) return;
   if (in_table) {
     std::vector<std::string> names, values;
     for (const auto &[name, value] : columns) {

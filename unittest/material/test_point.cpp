@@ -351,6 +351,34 @@ TEST(Point, Units)
 
 // a path that leaves two ranges of the material, one of them in many steps: one warning each, with the
 // first step; a path inside: none
+// shear that leaves the principal stretches 10^15 apart has the strain of the closed form
+TEST(Point, StrainOfLargeShear)
+{
+  for (const std::string path : {"shear 1 strain 100 steps 50", "shear 1 strain 8.2e7 steps 20"}) {
+    const auto table =
+        drive(path + " material density 1000 eos tait 2e9 7 viscosity newtonian 1e-3");
+    for (size_t i = 0; i < table.at("time").size(); i++) {
+      const double half = 0.5 * table.at("Fxy")[i], e = std::asinh(half),
+                   size = std::sqrt(1.0 + half * half);
+      EXPECT_NEAR(table.at("exx")[i], e * half / size, 1e-9 * e) << path << " " << i;
+      EXPECT_NEAR(table.at("eyy")[i], -e * half / size, 1e-9 * e);
+      EXPECT_NEAR(table.at("exy")[i], e / size, 1e-9 * e);
+      EXPECT_NEAR(table.at("ezz")[i], 0.0, 1e-9 * (1.0 + e));
+    }
+  }
+}
+
+// the Lode parameter of stress whose cube is no number
+TEST(Point, LodeParameterOfAnySize)
+{
+  for (const std::string modulus : {"1e-110", "1e110"}) {
+    const auto table = drive("uniaxial/strain 1 time 0.1 steps 5 material density 1000 linear " +
+                             modulus + " 0.3");
+    for (size_t i = 1; i < table.at("lode").size(); i++)
+      EXPECT_NEAR(table.at("lode")[i], 1.0, 1e-9) << modulus;
+  }
+}
+
 TEST(Point, LeavingARangeWarnsOnce)
 {
   const std::string material = " material density 1000 eos linear 1e9 strength elastic 1e8 "
@@ -419,6 +447,16 @@ TEST(Point, ErrorsNameTheRemedy)
       {"mpm_point NULL mixed time 1 xx stress 1e9 yy stress 0 zz stress 0 material density 7800 "
        "eos linear 160e9 strength j2 80e9 300e6",
        "no motion gives the prescribed stress"},
+      {"mpm_point NULL shear 1e160 time 1 steps 10" + rubber, "the motion is not finite"},
+      {"mpm_point NULL mixed time 1 spin 0 0 1e200" + rubber, "the motion is not finite"},
+      {"mpm_point NULL mixed time 1 xx stress 0 yy rate 1e160" + rubber,
+       "the motion is not finite"},
+      {"variable big equal 1e308*10\nmpm_point NULL shear 1 time 1 zz rate v_big" + rubber,
+       "Variable big is inf"},
+      {"mpm_point NULL shear 1 time 1 length 1e-300 material density 1000 eos tait 2e9 7 "
+       "viscosity newtonian 1e-3",
+       "wavespeed is not finite"},
+      {"mpm_point NULL shear 1 time 1" + rubber + " random E normal 5 1 7", "Mpm_point: random"},
   };
   for (const auto &c : cases) {
     if (MPM_TEST::nranks() > 1 && c.lines.find("no/such") != std::string::npos)

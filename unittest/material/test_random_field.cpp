@@ -379,6 +379,26 @@ TEST_F(Random, DensityOfAPoint)
 
 /* ---------------------------------------------------------------------- through the fix */
 
+// lengths far below the distance of points: each value would take a Fourier transform
+TEST_F(Random, TooShortLengths)
+{
+  const auto message = [](double length, double spacing) {
+    const RandomField field(length, 17);
+    try {
+      at_places(spacing, [&](const double *x) {
+        field.value(x);
+      });
+    } catch (const std::runtime_error &e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(message(0.02, 0.5),
+              ::testing::HasSubstr("the correlation length is too short: with"));
+  EXPECT_THAT(message(1e-20, 1.0), ::testing::HasSubstr("too short for the coordinates"));
+  EXPECT_EQ(message(0.25, 0.5), "");
+}
+
 // factors are those of the field at the places where points are made, on any number of ranks; they
 // stay with their points, also through a restart file
 TEST_F(Random, FixAndRestart)

@@ -116,11 +116,13 @@ constexpr int VOIGT[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
 using Matrix3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 /** exp(X) - I with full relative precision for small X: Taylor series, then doubling of X by
- *  exp(2 X) - I = E (E + 2 I). */
+ *  exp(2 X) - I = E (E + 2 I). Where it is too large to be a number, it is none. */
 Matrix3 exp_minus_identity(Matrix3 X)
 {
   int doublings = 0;
-  for (double size = X.norm(); size > 0.1; size *= 0.5) doublings++;
+  double size = X.norm();
+  if (!std::isfinite(size)) return Matrix3::Constant(NAN);
+  for (; size > 0.1; size *= 0.5) doublings++;
   X *= std::ldexp(1.0, -doublings);
   Matrix3 term = X, E = X;
   for (int k = 2; k < 14; k++) {
@@ -237,6 +239,8 @@ int MaterialPoint::step(const MixedControl &control, double dt, const double *ne
 
   double x[6] = {}, known = 0.0;
   for (int j = 0; j < n; j++) x[j] = dt * guess[trial.free[j]];
+  // laws need not cope with what is no number
+  if (!trial.motion(x).allFinite()) throw std::runtime_error("the motion is not finite");
   for (double l : control.L) known = std::max(known, dt * std::fabs(l));
 
   int iterations = 0;

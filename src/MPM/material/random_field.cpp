@@ -19,6 +19,7 @@
 using namespace MPM_NS;
 
 static constexpr double PI = 3.14159265358979323846;
+static constexpr double LARGEST = 0x1p50;    // number of a cell in which there still are places
 
 #ifdef MPM_FFTW
 
@@ -141,6 +142,9 @@ double RandomField::value(const double *x) const
   double w[3][4];
   for (int d = 0; d < 3; d++) {
     const double s = x[d] / spacing, cell = std::floor(s), t = s - cell;
+    if (!(std::fabs(s) < LARGEST))
+      throw std::runtime_error("random: the correlation length is too short for the coordinates of "
+                               "a point");
     tile[d] = static_cast<int64_t>(std::floor(cell / TILE));
     first[d] = static_cast<int>(static_cast<int64_t>(cell) - TILE * tile[d]);
     w[d][0] = (1.0 - t) * (1.0 - t) * (1.0 - t) / 6.0;
@@ -149,7 +153,11 @@ double RandomField::value(const double *x) const
     w[d][2] = 1.0 - w[d][0] - w[d][1] - w[d][3];
   }
   auto found = tiles.find(tile);
+  nvalues++;
   if (found == tiles.end()) {
+    if (ntiles++ >= TILES_TO_TRY && nvalues < LEAST_VALUES * ntiles)
+      throw std::runtime_error("random: the correlation length is too short: with a fifth of the "
+                               "distance of points, their values are independent already");
     if (tiles.size() >= MAX_TILES) tiles.clear();
     found = tiles.emplace(tile, make_tile(tile)).first;
   }

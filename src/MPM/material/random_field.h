@@ -37,7 +37,8 @@ class RandomField {
   RandomField(const RandomField &) = delete;
   RandomField &operator=(const RandomField &) = delete;
 
-  /** Value at x[3]. */
+  /** Value at x[3]; throws std::runtime_error where the length is too short: nearly each value needs
+   *  a tile of its own, or x is not known that well. */
   double value(const double *x) const;
 
   /** Frees the tiles, which are made again when needed. */
@@ -51,6 +52,8 @@ class RandomField {
   static constexpr int WINDOW = TILE + 2 * MARGIN;
   static constexpr int KEPT = TILE + 3;            ///< nodes with a spline in the tile
   static constexpr std::size_t MAX_TILES = 128;    ///< in memory: 1 MB each
+  /** A tile takes as long as 10^5 values: after some, each must have served several. */
+  static constexpr int64_t TILES_TO_TRY = 32, LEAST_VALUES = 2;
 
   using Index = std::array<int64_t, 3>;
   struct Transforms;
@@ -59,6 +62,7 @@ class RandomField {
   uint64_t seed;
   std::unique_ptr<Transforms> transforms;
   mutable std::map<Index, std::vector<double>> tiles;    ///< coefficients of the splines
+  mutable int64_t ntiles = 0, nvalues = 0;               ///< made so far, asked for so far
 
   void noise(int64_t i, int64_t j, int64_t k, double *pair) const;
   std::vector<double> make_tile(const Index &) const;
