@@ -152,8 +152,8 @@ double MPMTimeLimit::stable_share(double size) const
     return usl ? std::min(share, 1.25 * share / 0.5 * sqrt(size)) : share;
   }
   if (fmpm) return 0.4;
-  if (shape == LINEAR && !options.total) {
-    if (options.light > 0.0) return scheme == MPMFieldOptions::USF ? 0.28 : 0.7;
+  if (shape == LINEAR && options.changes_cells()) {
+    if (options.has_light_nodes()) return scheme == MPMFieldOptions::USF ? 0.28 : 0.7;
     if (usl) return 0.65;
     if (affine) return 0.9;
     return scheme == MPMFieldOptions::USAVG ? 1.0 : (scheme == MPMFieldOptions::USF ? 0.25 : 0.65);
@@ -179,7 +179,8 @@ double MPMTimeLimit::share_of_thin_nodes() const
 {
   const auto &options = field.options;
   const bool bernstein = options.shape == BERNSTEIN;
-  if (!options.total || !(options.scheme == MPMFieldOptions::USL || is_affine(options.transfer)) ||
+  if (!options.total || options.has_light_nodes() ||
+      !(options.scheme == MPMFieldOptions::USL || is_affine(options.transfer)) ||
       !(options.shape == LINEAR || bernstein))
     return 1.0;
   field.plan->find_blocks_now();
