@@ -255,6 +255,47 @@ static const Change companions[] = {
 };
 INSTANTIATE_TEST_SUITE_P(Companions, BadInput, ValuesIn(companions), case_name);
 
+// What runs but does nothing, or harm: one warning in each run, which names the remedy; and next to each
+// mistake an input like it that is fine.
+static const char *const SKIN = "neighbor 0.5 bin\n";
+static const Change doubts[] = {
+    {"None", RUN, RUN, ""},
+    {"NoTimeStep", TIMESTEP, "",
+     "time step 1e-08 is the default of units si, .* limit 0\\.26[0-9]* .*: use fix mpm/dt 0\\.5"},
+    {"SmallTimeStep", TIMESTEP, "timestep 1e-8\n", ""},
+    {"TimeStepOfFix", TIMESTEP, "fix dt all mpm/dt 0.5\n", ""},
+    {"NoSkin", SKIN, "",
+     "skin 0\\.001 is small for the node spacing 1, .*: use neighbor 0\\.5 bin"},
+    {"NoSkinButRareLists", SKIN, "neigh_modify every 10\n", ""},
+    {"SetForce", RUN, "fix hold all setforce 0 0 0\nrun 10\n",
+     "Fix hold \\(style setforce\\) has 216 material points in its group .*use fix mpm/boundary"},
+    {"LineForce", RUN, "fix hold all lineforce 1 0 0\nrun 10\n", "use fix mpm/boundary"},
+    {"SetForceOnOthers", RUN, "group others type 2\nfix hold others setforce 0 0 0\nrun 10\n", ""},
+    {"AddForce", RUN, "fix push all addforce 0.1 0 0\nrun 10\n", ""},
+    {"Thermostat", RUN, "fix heat all langevin 1 1 1 4711\nrun 10\n",
+     "Fix heat \\(style langevin\\) has 216 .* they have no temperature: give it a group without"},
+};
+
+class DoubtfulInput : public ::testing::TestWithParam<Change> {};
+
+TEST_P(DoubtfulInput, HasAWarning)
+{
+  const auto &[name, from, to, warning] = GetParam();
+  const ScratchFile file("doubts.log");
+  const std::string scene =
+      changed(good_scene, "units lj\n", "units si\n" + std::string(SKIN)) + "log none\n";
+  Scene run("log " + file.name + "\n" + changed(scene, from, to));
+  std::vector<std::string> found;
+  std::ifstream log(file.name);
+  for (std::string line; std::getline(log, line);)
+    if (contains(line, "^WARNING")) found.push_back(line);
+  EXPECT_EQ(found.size(), warning.empty() ? 0 : 1) << ::testing::PrintToString(found);
+  if (!warning.empty() && !found.empty()) {
+    EXPECT_TRUE(contains(found[0], warning)) << "expected: " << warning << "\nfound: " << found[0];
+  }
+}
+INSTANTIATE_TEST_SUITE_P(All, DoubtfulInput, ValuesIn(doubts), case_name);
+
 // files: what takes the place of a line of the scene, with FILE, and what the file has in it
 TEST(Files, AreExplained)
 {

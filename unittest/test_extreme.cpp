@@ -52,7 +52,9 @@ PARAMETER_TEST(LightNodes, DoNotKickPoints, const char *,
                       "shape linear transfer xpic 2 scheme usl light 0.5",
                       "shape linear transfer apic scheme musl light 0.5 locking fbar",
                       "shape linear transfer apic scheme usf light 0.5 locking pressure",
-                      "shape linear transfer flip 1.0 scheme usl light 0.5 locking both"))
+                      "shape linear transfer flip 1.0 scheme usl light 0.5 locking both",
+                      "shape linear transfer apic frame total reference update 1.5 light 0.5",
+                      "shape linear transfer flip 1.0 frame total reference update 1.5 light 0.5"))
 {
   double worst = 0.0;
   for (double shift : {0.0, 0.1, 0.2, 0.25, 0.25 + 1e-3, 0.25 + 1e-6, 0.25 + 1e-9, 0.25 + 1e-12,
@@ -216,7 +218,10 @@ TEST(LightNodesInput, IsRefusedWhereItIsOfNoUse)
       space("lj", "p p p", "0 8 0 8 0 8") + "create_points 1 box spacing 1.0\n";
   const std::string material = "fix m all mpm/material density 1.0 linear 1.0 0.3\nrun 0\n";
   for (const char *options : {"light 0.5", "shape linear transfer flip 1.0 scheme musl light 0.5",
-                              "shape linear frame total light 0.5", "shape gimp light 0.5"})
+                              "shape linear frame total light 0.5",
+                              "shape linear frame total reference update 2 transfer flip 1.0 "
+                              "scheme musl light 0.5",
+                              "shape gimp light 0.5"})
     expect_error(scene + "fix grid all mpm 1.0 " + options + "\n" + material, "remove light");
   for (const char *transfer : {"apic", "aflip 1.0", "tpic"})
     expect_error(scene + "fix grid all mpm 1.0 shape linear light 0.5 locking pressure transfer " +
@@ -300,6 +305,7 @@ static const Limit time_step_cases[] = {
     {"shape linear transfer flip 1.0 scheme usl light 0.5 "
      "locking fbar",
      0.8, 1.1},
+    {"shape linear transfer apic scheme usl light 0.5 frame total reference update 1.5", 0.8, 1.1},
     {"shape linear transfer flip 1.0 scheme usl light 0.5 "
      "axisymmetric yes",
      0.7, 1.0},

@@ -10,6 +10,8 @@
 
 #include "mpm_lammps.h"
 
+#include "error.h"
+
 using namespace MPM_TEST;
 
 static std::string body(int dim, const std::string &options, const std::string &law)
@@ -164,12 +166,69 @@ SERIAL_TEST(ReferenceUpdate, MomentumAndEnergy)
   EXPECT_NEAR(energy[1], energy[0], 0.1);
 }
 
+/* ----------------------------------------------------------------------
+   linear functions: after an update points are anywhere in their cells, as in the updated frame
+------------------------------------------------------------------------- */
+
+/** Where all nodes are full, keyword light changes nothing: a periodic box that is sheared. */
+SERIAL_TEST(ReferenceUpdate, NoLightNodesNoChange)
+{
+  for (const char *rest : {"transfer apic", "transfer apic scheme musl", "transfer apic scheme usf",
+                           "transfer flip 1.0", "transfer flip 1.0 locking fbar"}) {
+    const auto state = [&](const std::string &more) {
+      Scene run(
+          plane("lj", "p p", "0 8 0 8", 1, 0.4) +
+          body("box", "density 1.0 neohookean 10.0 0.3",
+               "1.0 frame total reference update 1.2 shape linear " + std::string(rest) + more) +
+          "variable vx atom 1.5*sin(2*PI*y/8)\nvariable vy atom 0.7*sin(2*PI*x/8)\n"
+          "velocity all set v_vx v_vy 0\n"
+          "timestep 0.05\nrun 60\n");
+      double R = 0.0;
+      for (int i = 0; i < run.n(); i++) R = std::max(R, std::abs(run.reference_F()[i][1]));
+      EXPECT_GT(R, 0.1);    // there were updates
+      return run.gather();
+    };
+    EXPECT_LT(difference(state(" light 0.2"), state("")), 1.0e-11) << rest;
+  }
+}
+
+/** A block hits a wall: it stays whole with light nodes, or where linear functions are sound without. */
+SERIAL_TEST(ReferenceUpdate, ImpactWithLinearFunctions)
+{
+  const struct {
+    const char *options;
+    bool sound;
+  } cases[] = {{"transfer apic light 0.5", true},
+               {"transfer flip 1.0 light 0.5", true},
+               {"transfer apic scheme musl light 0.5", true},
+               {"transfer flip 1.0 scheme musl", true},
+               {"transfer apic", false},
+               {"transfer flip 1.0", false},
+               {"transfer apic scheme musl", false}};
+  for (const auto &[options, sound] : cases) {
+    SCOPED_TRACE(options);
+    Scene run(plane("lj", "f f", "-8 24 0 16", 1, 0.4) +
+              body("block 4.3 9.3 0 8 INF INF", "density 1.0 eos linear 20.0 strength j2 10.0 1.0",
+                   "1.0 frame total reference update 1.2 shape linear " + std::string(options)) +
+              "fix floor all mpm/boundary ylo slip\nvelocity all set 0 -1.5 0\n"
+              "compute e all mpm/energy\nthermo_style custom step c_e\nfix dt all mpm/dt 0.5\n");
+    const int before = run.lmp->error->get_numwarn();
+    run.commands("run 0\n");
+    const double start = run.compute_scalar();
+    const std::string error = run.error("run 300\n");
+    EXPECT_EQ(run.lmp->error->get_numwarn() > before, !sound);
+    EXPECT_EQ(error.empty(), sound) << error;
+    if (error.empty()) { EXPECT_LT(run.compute_scalar(), 1.01 * start); }
+  }
+}
+
 // any number of ranks, and after a restart
 static const char *const thrown = "velocity all ramp vx 0.0 2.0 y 2 5\ntimestep 0.01\n";
 
 TEST(ReferenceUpdate, Ranks)
 {
-  for (const char *rest : {"transfer apic", "transfer flip 0.99 scheme musl locking fbar"}) {
+  for (const char *rest : {"transfer apic", "transfer flip 0.99 scheme musl locking fbar",
+                           "shape linear transfer apic light 0.5"}) {
     OnRanks run(body(3, std::string(rest) + " reference update 1.2", "neohookean 10.0 0.3") +
                     thrown,
                 "run 150\n", "");

@@ -10,6 +10,8 @@
 
 #include "mpm_lammps.h"
 
+#include "neighbor.h"
+
 using namespace MPM_TEST;
 
 static const std::string head = space("lj", "p p f", "0 8 0 8 0 8", 2);
@@ -124,6 +126,39 @@ TEST(RestartState, AffineMatrixAndHistoryAreInTheFile)
       EXPECT_GT(difference(expected, again.gather()), 1.0e-6);
       EXPECT_GT(std::abs(again.evaluate("c_sum") - eplastic), 1.0e-6);
     }
+  }
+}
+
+/* Read_restart sets the skin to the default of the units of the file where they were others before: neighbor
+   lists are made at other steps then, and sums have another order. */
+TEST(RestartState, LostSkinHasAWarning)
+{
+  const std::string more = "neighbor 0.3 bin\n", si = replaced(head, "units lj", "units si") + more;
+  const ScratchFile file("skin");
+  Scene whole(si + "fix grid all mpm 1.0\n" + points + fixes("") + start +
+              "run 70\nwrite_restart " + file.name + "\nrun 60\n");
+  const auto expected = whole.gather();
+  const struct {
+    std::string before, after;
+    bool lost;
+  } cases[] = {{more, "", true}, {"units si\n" + more, "", false}, {"", more, false}};
+  for (const auto &[before, after, lost] : cases) {
+    SCOPED_TRACE(before);
+    const ScratchFile log("skin.log");
+    Scene again("log " + log.name + "\n" + before + "read_restart " + file.name + "\n" + after +
+                fixes("") + "run 60\n");
+    const auto found = again.gather();
+    again.commands("run 0\nlog none\n");
+    EXPECT_EQ(again.lmp->neighbor->skin, lost ? 0.001 : 0.3);
+    MPI_Barrier(MPI_COMM_WORLD);
+    const std::string text = file_text(log.name), warning = "give neighbor and neigh_modify after";
+    const auto at = text.find(warning);
+    EXPECT_EQ(at != std::string::npos, lost) << text;
+    if (lost) {
+      EXPECT_THAT(text, HasSubstr("had skin 0.3, every 1 delay 0 check yes once no in the run"));
+      EXPECT_EQ(text.find(warning, at + 1), std::string::npos);
+    }
+    EXPECT_EQ(identical(expected, found), !lost);
   }
 }
 

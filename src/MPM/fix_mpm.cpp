@@ -178,7 +178,10 @@ void FixMPM::setup_pre_neighbor()
   field->map->setup();
   field->guard->check_integrators();
   field->guard->check_points();
-  if (plan) field->guard->check_other_points();
+  if (plan) {
+    field->guard->check_other_points();
+    field->guard->check_commands();
+  }
   if (force->pair) {
     field->guard->check_radii();
     if (plan) field->guard->check_neighbors();
@@ -291,8 +294,8 @@ double FixMPM::memory_usage()
 }
 
 /* ----------------------------------------------------------------------
-   totals of the ledger, what was deleted, which velocities the affine matrices belong to, and the
-   options that a run must go on with
+   totals of the ledger, what was deleted, which velocities the affine matrices belong to, when
+   neighbor lists are made, and the options that a run must go on with
 ------------------------------------------------------------------------- */
 
 namespace {
@@ -301,6 +304,7 @@ struct Saved {
   MPMGuard::Deleted deleted;
   double elapsed;
   MPMAffine::Velocities velocities;
+  MPMGuard::Lists lists;
   int waited, nstart, ntext;    // nstart reals and ntext characters follow
 };
 }    // namespace
@@ -318,6 +322,7 @@ void FixMPM::write_restart(FILE *fp)
     saved.elapsed = field->every->progress.elapsed;
   }
   saved.deleted = field->guard->deleted;
+  saved.lists = field->guard->lists();
   MPI_Reduce(static_cast<MPMEnergies *>(&field->ledger), &saved.ledger,
              sizeof(MPMEnergies) / sizeof(double), MPI_DOUBLE, MPI_SUM, 0, world);
   std::vector<double> start = field->ledger.start;
@@ -350,6 +355,7 @@ void FixMPM::restart(char *buf)
 
   if (comm->me == 0) static_cast<MPMEnergies &>(field->ledger) = saved.ledger;
   field->guard->deleted = saved.deleted;
+  field->guard->lists_of_file = saved.lists;
   if (field->affine) field->affine->velocities = saved.velocities;
   if (field->every) {
     field->every->progress.waited = saved.waited;

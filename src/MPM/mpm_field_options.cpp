@@ -137,7 +137,7 @@ Options MPMFieldOptions::declare(int dim)
   // what does not go together
 
   const auto amplifies = [this] {
-    return !total && shape == LINEAR && (scheme == USL || is_affine(transfer));
+    return changes_cells() && shape == LINEAR && (scheme == USL || is_affine(transfer));
   };
   o.refuse([=] {
     return OptionRules{
@@ -170,8 +170,8 @@ Options MPMFieldOptions::declare(int dim)
          "fmpm moves points with refined velocities, which the gradients of scheme usf, musl and "
          "usavg do not follow: use scheme usl, or transfer xpic"},
         {light > 0.0 && !amplifies(), "light",
-         "is of no use with this shape, transfer and scheme: remove light, which is for shape "
-         "linear with scheme usl or transfer apic, aflip, tpic"},
+         "is of no use with this shape, transfer, scheme and frame: remove light, which is for "
+         "shape linear with scheme usl or transfer apic, aflip, tpic, where points change cells"},
         {light > 0.0 && locking != NO_CURE && scheme == USL && is_affine(transfer), "light",
          "and locking together are unstable with scheme usl and transfer apic, aflip, tpic: use "
          "scheme musl, or transfer flip"},
@@ -188,7 +188,11 @@ Options MPMFieldOptions::declare(int dim)
          "or transfer flip or apic"},
         {light == 0.0 && amplifies(), "shape",
          "linear with scheme usl or transfer apic: linear functions amplify round-off at nodes of "
-         "tiny mass: use transfer flip with scheme musl, quadratic functions, or light 0.5"}};
+         "tiny mass: use transfer flip with scheme musl, quadratic functions, or light 0.5"},
+        {shape == BERNSTEIN && changes_cells() && (scheme == USL || is_affine(transfer)), "shape",
+         "bernstein with reference update and scheme usl or transfer apic: these functions amplify "
+         "round-off at nodes of tiny mass: use transfer flip with scheme musl, quadratic "
+         "functions, or reference fixed"}};
   });
   return o;
 }

@@ -69,6 +69,8 @@ struct MPMFieldOptions {
   {
     return shape == MPM_NS::GIMP || shape == MPM_NS::CPGIMP || MPM_NS::has_domain(shape);
   }
+  /** Can a point come to any place in a cell? Not where the reference configuration stays. */
+  bool changes_cells() const { return !total || most_distorted > 0.0; }
   /** Forces and strains have the gradients of the shape functions, the affine matrix has not. */
   bool strains_by_gradient() const
   {

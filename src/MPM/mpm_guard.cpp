@@ -258,6 +258,85 @@ void MPMGuard::check_neighbors() const
                    sqrt(cut_others / std::max(cut_points, 1.0e-300)));
 }
 
+/* ---------------------------------------------------------------------- */
+
+void MPMGuard::check_commands()
+{
+  check_fixes();
+  check_skin();
+  if (!lists_of_file) return;
+  const auto text = [](const Lists &l) {
+    return fmt::format("skin {}, every {} delay {} check {} once {}", l.skin, l.every, l.delay,
+                       l.check ? "yes" : "no", l.once ? "yes" : "no");
+  };
+  const std::string then = text(*lists_of_file), now = text(lists());
+  lists_of_file.reset();
+  if (comm->me == 0 && now != then)
+    error->warning(
+        FLERR,
+        "Fix mpm: neighbor lists had {} in the run that wrote the restart file, and have "
+        "{} now: what follows differs in the last digits from that run; give neighbor "
+        "and neigh_modify after read_restart, which sets the skin to the default of its "
+        "units where these were others",
+        then, now);
+}
+
+MPMGuard::Lists MPMGuard::lists() const
+{
+  return {neighbor->skin, neighbor->every, neighbor->delay, neighbor->dist_check,
+          neighbor->build_once};
+}
+
+/* ----------------------------------------------------------------------
+   Fixes that are made for atoms: those that set forces do this to external ones, as those of stress never
+   leave the lattice, and thermostats take the motion of points for heat
+------------------------------------------------------------------------- */
+
+void MPMGuard::check_fixes() const
+{
+  static const char *const forces =
+      "sets their external forces only, not those of stress, and does not hold them: use fix "
+      "mpm/boundary, or fix addforce for a load";
+  static const char *const heat =
+      "takes their motion for heat, but they have no temperature: give it a group without them";
+  static const std::pair<const char *, const char *> doubts[] = {
+      {"^setforce", forces},   {"^freeze", forces}, {"^aveforce", forces}, {"^lineforce", forces},
+      {"^planeforce", forces}, {"^langevin", heat}, {"^temp/", heat}};
+  const auto fields = MPMField::all(lmp);
+  for (const auto *other : modify->get_fix_list())
+    for (const auto &[style, what] : doubts) {
+      if (!utils::strmatch(other->style, style)) continue;
+      bigint n = 0, all;
+      for (int i = 0; i < atom->nlocal; i++)
+        for (const auto *one : fields) n += (atom->mask[i] & other->groupbit) && one->is_point(i);
+      MPI_Allreduce(&n, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+      if (all && comm->me == 0)
+        error->warning(FLERR, "Fix {} (style {}) has {} material points in its group and {}",
+                       other->id, other->style, all, what);
+    }
+}
+
+/* ----------------------------------------------------------------------
+   With the default skin of the units, lists and blocks of nodes may be made anew in each step. What is
+   small for grains is not known but for a small part of their size
+------------------------------------------------------------------------- */
+
+void MPMGuard::check_skin() const
+{
+  constexpr double SMALL = 0.1;    // of the node spacing; half of it is a good choice
+  if (neighbor->every > 1 || neighbor->delay > 0 || neighbor->build_once) return;
+  double h = field.lattice.h;
+  for (const auto *other : MPMField::all(lmp)) h = std::min(h, other->lattice.h);
+  const double size = force->pair ? std::min(h, 0.5 * force->pair->cutforce) : h;
+  if (comm->me == 0 && neighbor->skin < SMALL * size)
+    error->warning(
+        FLERR,
+        "Fix mpm: the neighbor skin {:.3g} is small for the node spacing {:.3g}, so that "
+        "lists and blocks of nodes are made anew after next to no motion, at great "
+        "cost: use neighbor {:.3g} {}",
+        neighbor->skin, h, 0.5 * h, neighbor->style == Neighbor::MULTI ? "multi" : "bin");
+}
+
 /* ----------------------------------------------------------------------
    Pair style granular takes its cutoffs from the radii, but what tells it to do so is not in restart
    files: with the settings of a file alone cutoffs are anything, mostly 0. Then there are no ghosts,

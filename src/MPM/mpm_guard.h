@@ -12,6 +12,8 @@
 #include "atom.h"
 #include "mpm_field.h"
 
+#include <optional>
+
 namespace LAMMPS_NS {
 
 /** Points of a field that go bad or fail, and what is done about it (keywords bad and failed). */
@@ -35,6 +37,17 @@ class MPMGuard : protected Pointers {
   /** Settings of LAMMPS that make neighbor lists of points and grains slow; all fields. */
   void check_neighbors() const;
   void check_radii() const;
+  /** Other commands that do nothing to points, or harm, without a word; all fields. */
+  void check_commands();
+
+  /** What decides when neighbor lists are made, and with this the order of sums. */
+  struct Lists {
+    double skin;
+    int every, delay, check, once;
+  };
+  Lists lists() const;
+  /** Those of the restart file that the next set-up of a run goes on from. */
+  std::optional<Lists> lists_of_file;
 
   /** Position, velocity and volume ratio, for messages. */
   std::string describe(int i) const;
@@ -71,6 +84,8 @@ class MPMGuard : protected Pointers {
   std::vector<tagint> failed_points;    // of this step, to be deleted
   bigint nbad_total = 0;
 
+  void check_fixes() const;
+  void check_skin() const;
   void delete_points(std::vector<tagint> &, bool warn);    // and forget them
 };
 

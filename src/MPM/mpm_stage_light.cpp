@@ -54,11 +54,12 @@ void MPMStages::blend_light_nodes(MPMField &field)
 {
   auto &nodes = field.work.nodes, &volumes = field.work.weights;
   MPMPointMap &map = *field.map;
+  const MPMFrame &frame = *field.frame;
+  const double *const *const places = frame.places();
   volumes.resize(field.atom->nmax);
   for (const auto &run : map.runs)
     for (int i = run.first; i < run.last; i++)
-      volumes[i] = field.atom->vfrac[i] * field.points->jacobian(i) /
-          field.frame->circle(field.atom->x[i][0]);
+      volumes[i] = field.atom->vfrac[i] * frame.lattice_jacobian(i) / frame.circle(places[i][0]);
   PointRows r = field.rows();
   r.mass = volumes.data();
   const TransferStep s = field.step_data();
@@ -79,7 +80,8 @@ void MPMStages::blend_light_nodes(MPMField &field)
   }
 }
 
-/** Gradients go to the affine matrices of transfers that have them. */
+/** Gradients go to the affine matrices of transfers that have them, as they are; what stress needs may
+ *  refer to another configuration. */
 void MPMStages::gradients_with_light_nodes(MPMField &field, bool stress)
 {
   field.grid.copy_aliases();
@@ -90,10 +92,16 @@ void MPMStages::gradients_with_light_nodes(MPMField &field, bool stress)
   const PointRows r = field.rows();
   const TransferStep s = field.step_data();
   const int nL = field.lattice.dim * field.lattice.dim;
+  const bool refers = stress && field.frame->refers();
   double batch_gradients[9 * BATCH];
   points_from_step(field, [&](const MPMPointMap::Run &run, int i, int n, const int *base) {
-    double *const L = of_all ? of_all + (bigint) nL * i : batch_gradients;
+    double *L = of_all ? of_all + (bigint) nL * i : batch_gradients;
     field.kernel.g2p_gradient(r, s, i, i + n, base, field.map->tile_load, L);
+    if (refers && field.affine) {
+      std::copy_n(L, nL * n, batch_gradients);
+      L = batch_gradients;
+    }
+    if (refers) field.frame->refer_gradients(i, n, L);
     if (stress && !fbar) update_stress(field, r, run, i, n, L, field.step_dt());
   });
   if (fbar) field.locking->strain(of_all, field.step_dt());

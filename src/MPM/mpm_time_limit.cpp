@@ -13,6 +13,7 @@
 #include "error.h"
 #include "fix_mpm_elements.h"
 #include "fix_mpm_material.h"
+#include "force.h"
 #include "material/batch.h"
 #include "mpm_cpdi.h"
 #include "mpm_field.h"
@@ -41,6 +42,7 @@ void MPMTimeLimit::setup()
   if (update->nsteps <= 0 || !field.options.dt_check) return;
   check();
   warn();
+  if (field.plan->fields[0] == &field) warn_of_default();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -152,8 +154,8 @@ double MPMTimeLimit::stable_share(double size) const
     return usl ? std::min(share, 1.25 * share / 0.5 * sqrt(size)) : share;
   }
   if (fmpm) return 0.4;
-  if (shape == LINEAR && !options.total) {
-    if (options.light > 0.0) return scheme == MPMFieldOptions::USF ? 0.28 : 0.7;
+  if (shape == LINEAR && options.changes_cells()) {
+    if (options.has_light_nodes()) return scheme == MPMFieldOptions::USF ? 0.28 : 0.7;
     if (usl) return 0.65;
     if (affine) return 0.9;
     return scheme == MPMFieldOptions::USAVG ? 1.0 : (scheme == MPMFieldOptions::USF ? 0.25 : 0.65);
@@ -179,7 +181,8 @@ double MPMTimeLimit::share_of_thin_nodes() const
 {
   const auto &options = field.options;
   const bool bernstein = options.shape == BERNSTEIN;
-  if (!options.total || !(options.scheme == MPMFieldOptions::USL || is_affine(options.transfer)) ||
+  if (!options.total || options.has_light_nodes() ||
+      !(options.scheme == MPMFieldOptions::USL || is_affine(options.transfer)) ||
       !(options.shape == LINEAR || bernstein))
     return 1.0;
   field.plan->find_blocks_now();
@@ -232,4 +235,28 @@ void MPMTimeLimit::warn() const
         "use fix mpm/dt {:.2g} or less, or another scheme{}",
         field.id(), field.step_dt() / all[0], share, share,
         field.frame->is_total() ? ", or an origin for which faces of the body are on nodes" : "");
+}
+
+/* ----------------------------------------------------------------------
+   Nobody has set the time step, and the default of the units is that of atoms: for most bodies so small
+   that nothing moves. Where a pair style tells of atoms or grains, it may be right, unless it is tiny
+------------------------------------------------------------------------- */
+
+void MPMTimeLimit::warn_of_default() const
+{
+  if (!update->dt_default) return;
+  tagint tag;
+  double c, mine = std::numeric_limits<double>::max(), limit;
+  for (const auto *other : field.plan->fields)
+    mine = std::min(mine, other->time_limit->stable_dt(tag, c));
+  MPI_Allreduce(&mine, &limit, 1, MPI_DOUBLE, MPI_MIN, world);
+  if (limit == std::numeric_limits<double>::max()) return;    // there are no waves
+  const double dt = field.step_dt();
+  if (comm->me == 0 && dt < (force->pair ? 1.0e-3 : 1.0e-2) * limit)
+    error->warning(
+        FLERR,
+        "Fix mpm: the time step {:.3g} is the default of units {}, next to nothing for the "
+        "limit {:.3g} of these points: use fix mpm/dt 0.5, or timestep (after "
+        "read_restart, which does not keep it)",
+        dt, update->unit_style, limit);
 }

@@ -46,6 +46,7 @@ class MPMTimeLimit : protected Pointers {
   double stable_share(double size) const;
   double share_of_thin_nodes() const;
   void warn() const;
+  void warn_of_default() const;
 };
 
 }    // namespace LAMMPS_NS

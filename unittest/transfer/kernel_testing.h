@@ -170,8 +170,18 @@ inline bool may_be_merged(MPM_NS::Transfer transfer)
   return transfer == MPM_NS::APIC || transfer == MPM_NS::TPIC;
 }
 
-/** Those of all instruction sets with the given shapes. */
-inline std::vector<Case> all_cases(const std::vector<MPM_NS::Shape> &shapes)
+inline bool any_case(const Case &)
+{
+  return true;
+}
+inline bool is_not_reference(const Case &c)
+{
+  return std::string(c.isa) != "reference";
+}
+
+/** Those of all instruction sets with the given shapes that a suite is about. */
+inline auto all_cases(const std::vector<MPM_NS::Shape> &shapes,
+                      bool wanted(const Case &) = any_case)
 {
   using namespace MPM_NS;
   std::vector<Case> cases;
@@ -180,9 +190,9 @@ inline std::vector<Case> all_cases(const std::vector<MPM_NS::Shape> &shapes)
       for (Shape shape : shapes)
         for (Transfer transfer : {PIC, FLIP, APIC, AFLIP, TPIC})
           for (bool split : {true, false})
-            if (split || may_be_merged(transfer))
+            if ((split || may_be_merged(transfer)) && wanted({isa, dim, shape, transfer, split}))
               cases.push_back({isa, dim, shape, transfer, split});
-  return cases;
+  return ::testing::ValuesIn(cases);
 }
 
 inline std::string case_name(const ::testing::TestParamInfo<Case> &info)
