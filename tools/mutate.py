@@ -30,6 +30,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
@@ -191,22 +192,28 @@ def run_test(tree, test, names, executable, folder, limit):
 
 # ---------------------------------------------------------------- mutants
 
-def check_tests(tree, wanted, folder):
+def check_tests(tree, wanted, folder, pool):
     """time that each test takes on the source as it is, where it must pass"""
-    times = {}
-    os.makedirs(folder, exist_ok=True)
-    for test, names in wanted:
-        if test not in tree.tests:
-            sys.exit("there is no test " + test)
-        start = time.time()
+
+    def check(key):
+        test, names = key
         executable = os.path.join(BUILD, "unittest", program(test))
-        status, output = run_test(tree, test, names, executable, folder, 600)
-        if status != 0:
-            sys.exit(output + "\n%s %s fails without any mutant" % (test, names))
-        if not re.search(r"\[  PASSED  \] [1-9]", output):
-            sys.exit("%s has no test %s, or skips it" % (test, names))
-        times[test, names] = time.time() - start
-    return times
+        if test not in tree.tests:
+            return 0.0, "there is no test " + test
+        if "\n  " not in quiet([executable, "--gtest_list_tests", "--gtest_filter=" + names]):
+            return 0.0, "%s has no case %s" % key
+        start = time.time()
+        with tempfile.TemporaryDirectory(dir=folder) as own:    # some cases write files
+            status, output = run_test(tree, test, names, executable, own, 600)
+        if status != 0 or not re.search(r"\[  PASSED  \] [1-9]", output):
+            return 0.0, output + "\n%s %s fails or is skipped without any mutant" % key
+        return time.time() - start, ""
+
+    found = list(pool.map(check, wanted))
+    wrong = [text for _, text in found if text]
+    if wrong:
+        sys.exit("\n".join(wrong))
+    return {key: seconds for key, (seconds, _) in zip(wanted, found)}
 
 
 def try_mutant(tree, mutant, times, keep):
@@ -278,10 +285,12 @@ def main():
 
     wanted = sorted({test for mutant in mutants for test in mutant.tests})
     tree = BuildTree(sorted({program(test) for test, _ in wanted}), not options.no_build)
-    times = check_tests(tree, wanted, os.path.join(BUILD, "mutants"))
-    print("%d tests pass without mutants, in %.0f s" % (len(times), sum(times.values())), flush=True)
-
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+        folder = os.path.join(BUILD, "mutants")
+        os.makedirs(folder, exist_ok=True)
+        times = check_tests(tree, wanted, folder, pool)
+        print("%d tests pass without mutants, in %.0f s" % (len(times), sum(times.values())),
+              flush=True)
         futures = [pool.submit(try_mutant, tree, mutant, times, options.keep) for mutant in mutants]
         wide = max(len(mutant.name) for mutant in mutants)
         results = []
