@@ -443,7 +443,11 @@ TEST_P(Separate, ABodyThatLeavesFeelsNothing)
 
 TEST_P(Separate, AThrownBodyRebounds)
 {
-  Scene run(scene(0.1, "fix w all mpm/boundary ylo separate", -2.0) + "run 1200\n");
+  Scene run(scene(0.1, "fix w all mpm/boundary ylo separate", -2.0) +
+            "compute e all mpm/energy\nthermo_style custom step c_e\nrun 0\n");
+  const double start = run.compute_scalar();
+  run.commands("run 1200\n");
+  EXPECT_LT(measured(GetParam() + ": energy", run.compute_scalar() / start), 1.005);
   const double v = run.variable("v");
   EXPECT_EQ(run.fix_vector("w", 3)[1], 0.0);
   run.commands("run 200\n");
@@ -1032,6 +1036,18 @@ TEST(TimeStep, GrowthMaxAndMin)
   EXPECT_LE(run.lmp->update->dt, 1.05 * dt0);
   run.commands("run 40\n");
   EXPECT_GT(run.lmp->update->dt, 0.5 * dt0);
+
+  // a body that drag brings to rest
+  Scene slowed(dt_scene +
+               "velocity all set 20 0 0\nfix drag all viscous 2.5\n"
+               "fix step all mpm/dt 0.5 every 2 grow 1.02\nrun 0\n");
+  const double fast = slowed.lmp->update->dt;
+  for (int k = 0; k < 20; k++) {
+    const double before = slowed.lmp->update->dt;
+    slowed.commands("run 2\n");
+    EXPECT_LE(slowed.lmp->update->dt, 1.02 * before * (1.0 + 1.0e-12));
+  }
+  EXPECT_GT(slowed.lmp->update->dt, 1.3 * fast);
 
   Scene capped(dt_scene + "fix step all mpm/dt 0.5 max 0.01\nrun 20\n");
   EXPECT_EQ(capped.lmp->update->dt, 0.01);
