@@ -322,6 +322,21 @@ TEST(Work, LedgerAndRestart)
     EXPECT_EQ(fix->compute_vector(0), 0.0);
     EXPECT_NEAR(fix->compute_scalar(), p * V, 1.0e-12);    // a wall at rest does no work
 
+    // the ledger: nodes lose as in an inelastic collision, what meets its image with its reduced mass;
+    // there was no stress, so that only the wall and the transfers have changed the energy
+    const double start = 0.5 * 64.0 * 0.25;
+    const double loss = area * u * u * (0.5 * plane + 2.0 * inside * image / (inside + image));
+    double kinetic = 0.0;
+    run.each_node([&](const Scene::Node &node) {
+      for (int d = 0; d < 3 && node.owned; d++) kinetic += 0.5 * node.mass * node.v[d] * node.v[d];
+    });
+    EXPECT_NEAR(over_ranks(kinetic), start + p * V - loss, 1.0e-12 * start);
+    const double *e = run.compute_vector();
+    enum { KINETIC, STORED, BOUNDARY = 6, TRANSFER = 8, INTEGRATION };
+    EXPECT_NEAR(e[BOUNDARY], p * V, 1.0e-12 * start);
+    EXPECT_NEAR(e[TRANSFER], e[KINETIC] - start - p * V, 1.0e-12 * start);
+    EXPECT_NEAR(e[INTEGRATION], e[STORED], 1.0e-12 * start);
+
     // the work goes on after a restart
     const double before = fix->compute_scalar();
     const ScratchFile file("restart");
@@ -428,7 +443,11 @@ TEST_P(Separate, ABodyThatLeavesFeelsNothing)
 
 TEST_P(Separate, AThrownBodyRebounds)
 {
-  Scene run(scene(0.1, "fix w all mpm/boundary ylo separate", -2.0) + "run 1200\n");
+  Scene run(scene(0.1, "fix w all mpm/boundary ylo separate", -2.0) +
+            "compute e all mpm/energy\nthermo_style custom step c_e\nrun 0\n");
+  const double start = run.compute_scalar();
+  run.commands("run 1200\n");
+  EXPECT_LT(measured(GetParam() + ": energy", run.compute_scalar() / start), 1.005);
   const double v = run.variable("v");
   EXPECT_EQ(run.fix_vector("w", 3)[1], 0.0);
   run.commands("run 200\n");
@@ -628,6 +647,63 @@ TEST(Motion, FlipFollowsTheWalls)
   }
 }
 
+// FLIP: of the old velocities at the wall relative to it, those of the nodes in its plane and the odd part of
+// those of nodes and their images are taken away, but for what is above that of the first node inside
+TEST(Motion, FlipTakesAsMuchOfTheOldVelocityAsTheFirstNodeInsideHas)
+{
+  for (const int order : {2, 3})
+    for (const char *kind : {"stick", "slip", "slip friction 0.3"})
+      for (const double V : {0.0, 0.1}) {
+        SCOPED_TRACE(strprintf("order %d, %s, wall with %g", order, kind, V));
+        Scene run(
+            space("lj", "p f p", "0 4 0 8 0 4") +
+            body("block 0 4 0 3 0 4", "density 1.0 neohookean 1e-9 0.3",
+                 strprintf("1.0 transfer flip 1.0 shape %s", order == 2 ? "quadratic" : "cubic")) +
+            strprintf("fix w all mpm/boundary ylo %s velocity 0 %g 0\ntimestep 1e-4\nrun 0\n", kind,
+                      V));
+        const auto speed = [=](double y) {
+          return V - 0.5 * exp(-2.0 * y);
+        };
+        set_field(run, [&](const double *x, double *v, double[3][3]) {
+          v[0] = v[2] = 0.0;
+          v[1] = speed(x[1]);
+        });
+        run.commands("run 1\n");
+
+        // layers of points at 1/4, 3/4, ... and the nodes along y, relative to the wall
+        constexpr int BELOW = 2, N = 9;
+        double m[N] = {0.0}, old[N] = {0.0}, change[N];
+        for (int k = 0; k < 6; k++)
+          for (int j = 0; j < N; j++) {
+            const double y = 0.25 + 0.5 * k, w = 0.5 * bspline(order, y - (j - BELOW));
+            m[j] += w;
+            old[j] += w * (speed(y) - V);
+          }
+        for (int j = 0; j < N; j++) old[j] = m[j] > 0.0 ? old[j] / m[j] : 0.0;
+        const double limit = fabs(old[BELOW + 1]);
+        EXPECT_LT(limit, 0.6 * fabs(old[BELOW]));    // what this is about
+        const auto taken = [&](int j) {
+          return std::max(-limit, std::min(limit, old[j]));
+        };
+        std::fill_n(change, N, 0.0);    // new velocity minus what the old one has become
+        change[BELOW] = taken(BELOW) - old[BELOW];
+        const int in = BELOW + 1, out = BELOW - 1;    // the only pair with mass
+        const double sum = m[in] + m[out];
+        const double odd = (m[in] * old[in] - m[out] * old[out]) / sum;
+        const double odd_taken = (m[in] * taken(in) - m[out] * taken(out)) / sum;
+        change[in] = odd - (old[in] - taken(in) + odd_taken);
+        change[out] = -odd - (old[out] - taken(out) - odd_taken);
+        double worst = 0.0;
+        for (const auto &s : run.gather()) {
+          const double y = 0.25 + 0.5 * std::lround((s.x[1] - 0.25) / 0.5);
+          double v = speed(y);
+          for (int j = 0; j < N; j++) v += bspline(order, y - (j - BELOW)) * change[j];
+          worst = std::max(worst, std::abs(s.v[1] - v));
+        }
+        EXPECT_LT(worst, 1.0e-12);
+      }
+}
+
 // FLIP: a block that is thrown at a wall returns with its speed (0.59 of it with an update as in PIC
 // at the wall)
 TEST(Rebound, FlipKeepsTheEnergy)
@@ -701,6 +777,47 @@ TEST(Motion, PistonOfChangingShape)
   const double v = measured("mean velocity", run.variable("v"));
   EXPECT_NEAR(v, -0.1, 0.01);
   EXPECT_NEAR(run.fix("w")->compute_scalar(), -0.1 * 16.0 * v, 1.0e-6);
+}
+
+// a ball that moves and grows: its surface has the velocity of its center, and the rate of its radius along
+// the normal
+TEST(Motion, BallThatMovesAndGrows)
+{
+  const double dt = 1.0e-4, center[3] = {5.1, 4.9, 5.2}, V[3] = {0.5, 0.0, -0.3}, rate = 0.4;
+  for (const char *kind : {"stick", "slip"}) {
+    Scene run(space("lj", "f f f", "0 10 0 10 0 10") +
+              body("block 2 8 2 8 2 8", "density 1.0 neohookean 1e-6 0.3") +
+              "velocity all set 0.3 -0.2 0.15\nvariable r equal 2.3+0.4*time\n"
+              "variable dx equal 0.5*time\nvariable dz equal -0.3*time\n"
+              "region ball sphere 5.1 4.9 5.2 v_r move v_dx NULL v_dz\n"
+              "fix w all mpm/boundary region ball " +
+              kind + "\n" + strprintf("timestep %g\nrun 0\n", dt));
+    for (int step = 0; step < 3; step++) {
+      run.commands("run 1\n");
+      int inside = 0;
+      run.each_node([&](const Scene::Node &node) {
+        double n[3], r = 0.0, normal = 0.0, expected = rate;
+        for (int d = 0; d < 3; d++) {
+          n[d] = node.x[d] - center[d] - V[d] * step * dt;
+          r += n[d] * n[d];
+        }
+        r = std::sqrt(r);
+        if (node.mass <= 0.0 || r > 2.299) return;
+        for (int d = 0; d < 3; d++) {
+          n[d] /= r;
+          normal += node.v[d] * n[d];
+          expected += V[d] * n[d];
+        }
+        EXPECT_NEAR(normal, expected, 2.0e-4);
+        for (int d = 0; d < 3; d++)
+          if (*kind == 's' && kind[1] == 't') {
+            EXPECT_NEAR(node.v[d], V[d] + rate * n[d], 2.0e-4);
+          }
+        inside++;
+      });
+      EXPECT_GT(over_ranks(inside), 30);
+    }
+  }
 }
 
 /* ------------------------------ regions: velocity of the nodes inside, against the known normal */
@@ -943,6 +1060,18 @@ TEST(TimeStep, GrowthMaxAndMin)
   EXPECT_LE(run.lmp->update->dt, 1.05 * dt0);
   run.commands("run 40\n");
   EXPECT_GT(run.lmp->update->dt, 0.5 * dt0);
+
+  // a body that drag brings to rest
+  Scene slowed(dt_scene +
+               "velocity all set 20 0 0\nfix drag all viscous 2.5\n"
+               "fix step all mpm/dt 0.5 every 2 grow 1.02\nrun 0\n");
+  const double fast = slowed.lmp->update->dt;
+  for (int k = 0; k < 20; k++) {
+    const double before = slowed.lmp->update->dt;
+    slowed.commands("run 2\n");
+    EXPECT_LE(slowed.lmp->update->dt, 1.02 * before * (1.0 + 1.0e-12));
+  }
+  EXPECT_GT(slowed.lmp->update->dt, 1.3 * fast);
 
   Scene capped(dt_scene + "fix step all mpm/dt 0.5 max 0.01\nrun 20\n");
   EXPECT_EQ(capped.lmp->update->dt, 0.01);

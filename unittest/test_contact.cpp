@@ -113,6 +113,21 @@ SERIAL_TEST(Contact, SlidingIsNotAMatterOfRounding)
   }
 }
 
+// bodies that touch and move apart do not hold each other
+SERIAL_TEST(Contact, DoesNotPull)
+{
+  for (const char *contact : {"", "law coulomb 0.3", "law stick", "gap no"}) {
+    std::string scene =
+        replaced(two_bars("transfer apic", contact), "block 1.05 2.05", "block 1 2");
+    scene = replaced(scene, "one set 0.05 0 0", "one set -0.05 0 0");
+    Scene run(replaced(scene, "two set -0.05 0 0", "two set 0.05 0.02 0") + "run 1\n");
+    EXPECT_EQ(run.evaluate("f_c[1][1]"), 0.0) << contact;
+    EXPECT_EQ(run.evaluate("f_c[1][4]"), 0.0) << contact;
+    EXPECT_NEAR(run.evaluate("v_v1"), -0.05, 1e-13) << contact;
+    EXPECT_NEAR(run.evaluate("v_v2"), 0.05, 1e-13) << contact;
+  }
+}
+
 // without the gap rule bodies feel each other more than a node spacing apart
 SERIAL_TEST(Contact, WithoutTheGapRuleContactIsEarly)
 {
@@ -325,6 +340,129 @@ TEST(Normals, LogisticRegressionIsTheSameOnAnyNumberOfRanks)
   EXPECT_LT(periodic.difference(), 1e-10);
 }
 
+// The impulse at a node is along the sums over the points of both bodies of volume or mass times the
+// gradient of its function, or along the difference of their directions. Gradients are those of splines or,
+// with affine matrices, of moving least squares
+SERIAL_TEST(Normals, AreThoseOfVolumesOrMassesOrColinear)
+{
+  const std::vector<std::string> kinds = {"colinear", "volume", "mass"};
+  for (const bool affine : {false, true})
+    for (std::size_t kind = 0; kind < kinds.size(); kind++) {
+      Scene run(plane("lj", "f f", "0 16 0 14", 2) +
+                replaced(fields({{"one", "cylinder z 6 6 3 INF INF"},
+                                 {"two", "cylinder z 10.9 8.1 2.2 INF INF"}},
+                                affine ? "1.0 transfer apic" : "1.0 transfer flip 1.0"),
+                         "two ppc 2", "two ppc 3") +
+                R"(
+fix m1 one mpm/material density 1 neohookean 50 0.3
+fix m2 two mpm/material density 5 neohookean 50 0.3
+velocity one set 0.5 0 0
+velocity two set -0.5 0 0
+timestep 0.01
+fix c all mpm/contact F1 F2 gap no normal )" +
+                kinds[kind] + "\nrun 0\n");
+      const auto points = run.gather();
+      run.commands("run 1\n");
+      int pushed = 0, differ = 0;
+      const auto look = [&](const Scene::Node &node) {
+        const double *other = run.node(node.index, "F2");
+        if (node.mass == 0.0 || !other) return;
+        double g[3][2][2] = {};    // colinear, volume, mass; of one and two
+        for (const auto &p : points) {
+          const double u = p.x[0] - node.x[0], v = p.x[1] - node.x[1];
+          const double N = bspline(2, u) * bspline(2, v);
+          const double slope[2] = {affine ? -4.0 * u * N : bspline_slope(2, u) * bspline(2, v),
+                                   affine ? -4.0 * v * N : bspline(2, u) * bspline_slope(2, v)};
+          for (int d = 0; d < 2; d++) {
+            g[1][(int) p.type - 1][d] += p.vol * slope[d];
+            g[2][(int) p.type - 1][d] += p.mass * slope[d];
+          }
+        }
+        double n[3][2];
+        for (int k = 0; k < 3; k++) {
+          for (int b = 0; b < 2; b++)
+            for (int d = 0; d < 2 && k == 0; d++)
+              g[0][b][d] = g[1][b][d] / std::hypot(g[1][b][0], g[1][b][1]);
+          for (int d = 0; d < 2; d++) n[k][d] = g[k][0][d] - g[k][1][d];
+          const double length = std::hypot(n[k][0], n[k][1]);
+          for (double &x : n[k]) x /= length;
+        }
+        // they approach each other with 1 along x
+        const double J = node.mass * other[3] / (node.mass + other[3]) * std::max(0.0, n[kind][0]);
+        for (int d = 0; d < 2; d++) {
+          const double v0 = d == 0 ? 0.5 : 0.0;
+          EXPECT_NEAR(node.v[d], v0 - J * n[kind][d] / node.mass, 1e-10) << kinds[kind];
+          EXPECT_NEAR(other[d], -v0 + J * n[kind][d] / other[3], 1e-10) << kinds[kind];
+        }
+        pushed += J > 0.0;
+        bool apart = J > 0.0;
+        for (std::size_t k = 0; k < 3; k++)
+          apart =
+              apart && (k == kind || std::hypot(n[k][0] - n[kind][0], n[k][1] - n[kind][1]) > 0.05);
+        differ += apart;
+      };
+      run.each_node(look, "F1");
+      EXPECT_GT(pushed, 8);
+      EXPECT_GT(differ, 4) << kinds[kind];
+    }
+}
+
+// ---------------------------------------------------------------------- energy
+
+// One step of bodies without stress that touch and approach each other obliquely. A node with the reduced
+// mass m takes the impulses J_n = m u_n, and J_t = m times the sliding that friction stops; what is left of the
+// sliding u_t - J_t/m does the work of friction, and the inelastic collision costs (J_n^2 + J_t^2)/(2 m).
+TEST(Energy, OfACollision)
+{
+  const double normal = 0.1, along = 0.05;    // relative velocity
+  const std::pair<const char *, double> laws[] = {
+      {"law frictionless", 0.0}, {"law coulomb 0.2", 0.2 * normal}, {"law stick", along}};
+  for (const char *options :
+       {"transfer apic", "transfer flip 1.0", "transfer flip 1.0 scheme musl"})
+    for (const auto &[law, stopped] : laws) {
+      SCOPED_TRACE(std::string(options) + " " + law);
+      std::string scene =
+          replaced(two_bars(options, law, "4", "400"), "block 1.05 2.05", "block 1 2");
+      scene = replaced(scene, "one set 0.05 0 0", "one set 0.05 0.03 0");
+      Scene run(replaced(scene, "two set -0.05 0 0", "two set -0.05 -0.02 0") + "run 0\n");
+      const double start = run.compute_vector()[0];
+      EXPECT_NEAR(start, 0.5 * 0.08 * (0.0025 + 0.0009) + 0.5 * 0.32 * (0.0025 + 0.0004), 1e-15);
+      run.commands("run 1\n");
+      double sums[2] = {
+          0.0};    // reduced mass; kinetic energy of the nodes, where they kept their velocity
+      const auto look = [&](const Scene::Node &node) {
+        const double *other = run.node(node.index, "F2");
+        if (!node.owned || node.alias || node.mass == 0.0 || !other) return;
+        sums[0] += node.mass * other[3] / (node.mass + other[3]);
+        // with MUSL, of what was mapped back
+        for (int d = 0; d < (stopped == along ? 2 : 1); d++)
+          EXPECT_NEAR(node.v[d], other[d], 1e-14);
+      };
+      run.each_node(look, "F1");
+      for (const char *id : {"F1", "F2"}) {
+        const auto add = [&](const Scene::Node &node) {
+          for (int d = 0; d < 2 && node.owned; d++)
+            sums[1] += 0.5 * node.mass * node.v[d] * node.v[d];
+        };
+        run.each_node(add, id);
+      }
+      const double m = over_ranks(sums[0]), kinetic = over_ranks(sums[1]);
+      const double work = -m * stopped * (along - stopped);
+      const double loss = 0.5 * m * (normal * normal + stopped * stopped), tiny = 1e-12 * start;
+      EXPECT_GT(loss, 0.005 * start);
+      const double *e = run.compute_vector();
+      enum { KINETIC, STORED, CONTACT = 7, TRANSFER, INTEGRATION, RESIDUAL };
+      EXPECT_NEAR(e[CONTACT], work, tiny);
+      EXPECT_NEAR(run.fix("c")->compute_scalar(), work, tiny);
+      // with MUSL nodes have the velocities of the points once more
+      if (!strstr(options, "musl")) { EXPECT_NEAR(kinetic, start + work - loss, tiny); }
+      // nothing but contact and the transfers did anything, as there was no stress
+      EXPECT_NEAR(e[TRANSFER], e[KINETIC] - start - work, tiny);
+      EXPECT_NEAR(e[INTEGRATION], e[STORED], tiny);
+      EXPECT_NEAR(e[RESIDUAL], 0.0, tiny);
+    }
+}
+
 // ---------------------------------------------------------------------- three bodies at a node
 static const std::string corner = plane("lj", "p p", "0 16 0 16", 3) +
     fields({{"one", "block 2 8 2 8 -0.5 0.5"},
@@ -384,18 +522,38 @@ SERIAL_TEST(ManyBodies, NoneApproaches)
 }
 
 // ---------------------------------------------------------------------- ranks, periodic faces, restart
+static const std::string fixes_of_disks = "fix F1 one mpm 0.5\nfix F2 two mpm 0.5\n"
+                                          "fix m all mpm/material density 1 neohookean 50 0.3\n"
+                                          "fix c all mpm/contact F1 F2 law coulomb 0.3\n";
+
 TEST(Parallel, RanksAgreeAcrossAPeriodicFaceAndAfterARestart)
 {
-  Twins run(disks, 120,
-            "fix F1 one mpm 0.5\nfix F2 two mpm 0.5\n"
-            "fix m all mpm/material density 1 neohookean 50 0.3\n"
-            "fix c all mpm/contact F1 F2 law coulomb 0.3\n",
-            180, 1e-11);
+  Twins run(disks, 120, fixes_of_disks, 180, 1e-11);
   run.serial.commands("variable v equal vcm(one,x)\n");
   EXPECT_GT(run.serial.evaluate("v_v"), -0.25);    // they have met through the face
   const double work = run.whole.evaluate("f_c");
   EXPECT_NE(work, 0.0);
   EXPECT_NEAR(run.again.evaluate("f_c"), work, 1e-12 * std::fabs(work));
+}
+
+// the work that friction has done when the file is written is there again, once, on any number of ranks
+TEST(Restart, WorkOfFrictionGoesOn)
+{
+  const ScratchFile file("restart");
+  Scene whole(disks + "run 200\nwrite_restart " + file.name + "\n");
+  const double work = whole.evaluate("f_c");
+  EXPECT_LT(work, -1e-6);
+  const std::string next = "read_restart " + file.name + "\n" + fixes_of_disks + "run 0\n";
+  Scene again(next), serial(next, MPI_COMM_SELF);
+  for (Scene *run : {&again, &serial}) {
+    EXPECT_NEAR(run->evaluate("f_c"), work, 1e-14 * std::fabs(work));
+    EXPECT_NEAR(run->evaluate("f_c[1][5]"), work, 1e-14 * std::fabs(work));
+  }
+  for (Scene *run : {&whole, &again, &serial}) run->commands("run 20\n");
+  const double later = whole.evaluate("f_c");
+  EXPECT_LT(later, 1.01 * work);
+  for (Scene *run : {&again, &serial})
+    EXPECT_NEAR(run->evaluate("f_c"), later, 1e-9 * std::fabs(later));
 }
 
 // Bodies that meet next to a wall: walls have the last word, wherever they are defined.

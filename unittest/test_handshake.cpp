@@ -355,6 +355,49 @@ TEST(Handshake, KeepsMomentum)
     }
 }
 
+// One step in which planes of atoms move against each other: what each of them has of its velocity relative to
+// the nodes falls by exp(-rate (1 - w) dt), the rate that its place in the zone gives, and the heat is the kinetic
+// energy that it loses by this. There are no forces but at the end of the crystal, where w = 0, and which nodes
+// hardly feel.
+TEST(Handshake, DampingGrowsOverTheZone)
+{
+  const double one = 8.0 * A0, zero = 14.0 * A0, speed = 0.1, rate = 40.0, dt = 0.005, h = 2.0 * A0;
+  Scene run(crystal(8.0, 6.0, 24.0, "damp 40.0") + "fix move atoms nve\n");
+  const auto velocity = [=](double x) {
+    return (int) floor(2.0 * x / A0) % 2 ? -speed : speed;
+  };
+  for (int i = 0; i < run.n(); i++)
+    if (run.lmp->atom->type[i] == 1) run.v()[i][1] = velocity(run.x()[i][0]);
+
+  // velocities of the nodes: from the planes that are coupled, those as far into the atoms as forces reach
+  const auto coarse = [&](double x) {
+    double mean = 0.0;
+    for (int node = 0; node < 20; node++) {
+      double m = 0.0, p = 0.0;
+      for (double at = 0.25 * A0; at < 16.0 * A0; at += 0.5 * A0) {
+        if (at <= one - 2.5 - 0.3) continue;
+        const double share = bspline(2, at / h - node);
+        m += share;
+        p += share * velocity(at);
+      }
+      if (m > 0.0) mean += bspline(2, x / h - node) * p / m;
+    }
+    return mean;
+  };
+  double heat = 0.0;
+  for (int i = 0; i < run.n(); i++) {
+    const double x = run.x()[i][0], w = (zero - x) / (zero - one);
+    if (run.lmp->atom->type[i] != 1 || w <= 0.0 || w >= 1.0) continue;
+    const double mean = coarse(x), start = velocity(x);
+    const double end = mean + (start - mean) * exp(-rate * (1.0 - w) * dt);
+    heat += 0.5 * w * (start * start - end * end);
+  }
+  heat = over_ranks(heat);
+  EXPECT_GT(heat, 0.1);
+  run.commands("run 1 post no\n");
+  EXPECT_NEAR(measured("heat/exact", run.fix("bridge")->compute_scalar() / heat), 1.0, 1.0e-6);
+}
+
 // energy of hot atoms and of the points that they shake: what is lost is known, up to what the
 // integrator of the atoms leaves, which falls with the square of the time step
 SERIAL_TEST(Handshake, KnowsTheEnergyThatHotAtomsLose)

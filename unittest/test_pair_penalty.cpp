@@ -133,6 +133,11 @@ run 0
   EXPECT_NEAR(run.evaluate("c_pair"), 0.05 * force, 1e-12);
   EXPECT_EQ(run.evaluate("c_pair[1]"), 1.0);
   EXPECT_NEAR(run.evaluate("c_pair[2]"), 0.3 * force, 1e-12);
+
+  // damping takes as much as the elastic force, of points that part as fast as they may: no pull
+  run.commands("pair_coeff 1 2 50 damping 0.5\nvelocity one set -100 0 0\nrun 0\n");
+  EXPECT_EQ(run.evaluate("c_f[1]"), 0.0);
+  EXPECT_NEAR(run.evaluate("c_pair[2]"), 100.0 * force, 1e-10);
 }
 
 // ---------------------------------------------------------------------- friction

@@ -191,6 +191,40 @@ TEST(RestartState, WorkIsInTheFile)
   EXPECT_LT(std::abs(late[10]), 1.0e-11 * scale);
 }
 
+// points that leave the box: what is left and what was deleted are what was there, before and after
+TEST(RestartState, WhatWasDeletedIsInTheFile)
+{
+  const ScratchFile file("deleted");
+  const double v[3] = {0.3, 0.2, 2.0}, mass = 2.0 * (64.0 + 4 * 4 * 2.5),
+               moving = mass - 2.0 * 64.0;
+  const std::string fixes = "fix grid all mpm 1.0 bad delete\n"
+                            "fix m all mpm/material density 2.0 neohookean 1.0 0.3\n";
+  Scene whole(head + fixes +
+              "region stays block 0 8 0 8 0 1\nregion goes block 2 6 2 6 4.5 7\n"
+              "create_points 1 region stays ppc 2\ncreate_points 2 region goes ppc 2\n"
+              "group goes type 2\nvelocity goes set 0.3 0.2 2.0\ntimestep 0.04\nrun 30\n"
+              "write_restart " +
+              file.name + "\n");
+  const auto check = [&](Scene &run) {
+    const Totals left(run.gather());
+    const double *deleted = run.fix_vector("grid", 11) + 6;    // points, mass, momentum
+    EXPECT_NEAR(deleted[0] * 0.25, deleted[1], 1.0e-10 * mass);
+    EXPECT_NEAR(left.mass + deleted[1], mass, 1.0e-12 * mass);
+    for (int d = 0; d < 3; d++) {
+      EXPECT_NEAR(deleted[2 + d], v[d] * deleted[1], 1.0e-9 * mass);
+      EXPECT_NEAR(left.p[d] + deleted[2 + d], v[d] * moving, 1.0e-9 * mass);
+    }
+    return deleted[1];
+  };
+  const double before = check(whole);
+  EXPECT_GT(before, 0.2 * moving);
+  EXPECT_LT(before, 0.8 * moving);
+  Scene again("read_restart " + file.name + "\nneighbor 0.3 bin\n" + fixes + "run 0\n");
+  EXPECT_EQ(check(again), before);
+  again.commands("run 50\n");
+  EXPECT_NEAR(check(again), moving, 1.0e-10 * mass);
+}
+
 // velocities that are changed between runs change the affine matrices, also after a restart file,
 // and on any number of ranks; otherwise both continue
 TEST(RestartState, NewVelocitiesAreSeen)

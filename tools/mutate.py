@@ -1,0 +1,310 @@
+#!/usr/bin/env python3
+# This file is part of the MPM package for LAMMPS, distributed under the GNU
+# General Public License, version 2; see the file LICENSE.
+"""Which mistakes in the source do the tests see?
+
+usage: mutate.py [options] [PATTERN ...]   of names or files of mutants, default: all
+
+Each mutant of the list is a small mistake: it is compiled in a copy of src/MPM, linked to the test
+programs that ought to see it, and killed when one of these fails.  Only what depends on its file
+is compiled; the build tree itself (MPM_BUILD_DIR, default ./build) is only brought up to date, by
+tools/build.sh.  Kernels and laws are compiled and run for the baseline instruction set alone.
+
+  --list FILE    mutants (default: tools/mutants.txt, which tells its format)
+  --jobs N       mutants at a time (default: MPM_JOBS, or all cores)
+  --check        only look whether the list fits the source
+  --no-build     the test programs are up to date
+  --keep         leave what was compiled in BUILD/mutants
+
+Ends with a table and the share of mutants that were killed; the exit status is 1 unless it is all.
+"""
+
+import argparse
+import concurrent.futures
+import fnmatch
+import json
+import os
+import re
+import shlex
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+SOURCES = os.path.join(ROOT, "src", "MPM")
+BUILD = os.path.abspath(os.environ.get("MPM_BUILD_DIR") or os.path.join(ROOT, "build"))
+KILLED, SURVIVED, BROKEN, STALE = "killed", "survived", "does not compile", "stale"
+
+
+class Mutant:
+    """name, file in src/MPM, old and new text, and the tests that ought to see it: (test, filter)"""
+
+    def __init__(self, name):
+        self.name, self.file, self.old, self.new, self.tests = name, "", [], [], []
+
+    def source(self):
+        """the mutated file, or None when the old text is not there exactly once"""
+        with open(os.path.join(SOURCES, self.file)) as file:
+            text = file.read()
+        words = r"\s+".join(re.escape(word) for word in " ".join(self.old).split())
+        found = list(re.finditer(words, text))
+        if len(found) != 1:
+            return None
+        return text[:found[0].start()] + "\n".join(self.new) + text[found[0].end():]
+
+
+def read_list(path):
+    mutants = []
+    with open(path) as file:
+        for number, line in enumerate(file, 1):
+            key, _, value = line.rstrip("\n").partition(" ")
+            if key == "mutant":
+                mutants.append(Mutant(value.strip()))
+            elif not key or key.startswith("#"):
+                continue
+            elif not mutants or key not in ("in", "-", "+", "test"):
+                sys.exit("%s:%d: not understood: %s" % (path, number, line.rstrip()))
+            elif key == "in":
+                mutants[-1].file = value.strip()
+            elif key == "test":
+                test, _, names = value.strip().partition(" ")
+                mutants[-1].tests.append((test, names.strip() or "*"))
+            else:
+                (mutants[-1].old if key == "-" else mutants[-1].new).append(value.strip())
+    names = [mutant.name for mutant in mutants]
+    for mutant in mutants:
+        if not (mutant.file and mutant.old and mutant.tests) or names.count(mutant.name) > 1:
+            sys.exit("%s: mutant %s is incomplete, or there twice" % (path, mutant.name))
+    return mutants
+
+
+def program(test):
+    """test_contact.np3 -> test_contact"""
+    return test.partition(".")[0]
+
+
+# ---------------------------------------------------------------- how things are compiled and run
+
+class BuildTree:
+    """commands of the build tree: objects, test programs, tests"""
+
+    def __init__(self, programs, build):
+        if build:
+            quiet([os.path.join(ROOT, "tools", "build.sh")] + programs)
+        database = os.path.join(BUILD, "compile_commands.json")
+        if not os.path.exists(database):
+            quiet(["cmake", "-D", "CMAKE_EXPORT_COMPILE_COMMANDS=on", BUILD])
+        with open(database) as file:
+            entries = json.load(file)
+        self.compile, self.needs = {}, {}    # by object: words and folder; files of src/MPM
+        for entry in entries:
+            words = shlex.split(entry["command"])
+            name = os.path.normpath(os.path.join(entry["directory"], words[words.index("-o") + 1]))
+            self.compile[name] = (words, entry["directory"])
+        self.link = {name: self.read_link(name) for name in programs}
+        shown = quiet(["ctest", "--show-only=json-v1"], cwd=BUILD)
+        self.tests = {test["name"]: test for test in json.loads(shown)["tests"]}
+
+    @staticmethod
+    def read_link(name):
+        with open(os.path.join(BUILD, "unittest", "CMakeFiles", name + ".dir", "link.txt")) as file:
+            return shlex.split(file.readline())
+
+    @staticmethod
+    def linked(word):
+        """path of an object in the command of a link"""
+        return os.path.normpath(os.path.join(BUILD, "unittest", word))
+
+    def depends(self, name, file):
+        """does this object contain the file? Of the instruction sets the baseline is enough"""
+        words, folder = self.compile.get(name, ((), ""))
+        if not words or any("MPM_ISA=v" in word for word in words):
+            return False
+        if name not in self.needs:    # the compiler's list: paths may be relative
+            with open(name + ".d") as rules:
+                self.needs[name] = {os.path.normpath(os.path.join(folder, word))
+                                    for word in rules.read().split() if "MPM" in word}
+        return os.path.join(SOURCES, file) in self.needs[name]
+
+
+def quiet(command, **options):
+    """output of a command, shown only when it fails"""
+    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                          check=False, **options)
+    if done.returncode:
+        sys.exit(done.stdout + "\nfailed: " + " ".join(command))
+    return done.stdout
+
+
+def compile_object(tree, name, sources, out):
+    """one object, with the sources of a folder in place of src/MPM"""
+    words, folder = tree.compile[name]
+    command, skip = [], False
+    for word in words:
+        if skip:
+            skip = False
+        elif word in ("-o", "-MT", "-MF"):
+            skip = True
+        elif word != "-MD":
+            command.append(word.replace(SOURCES, sources))
+    return subprocess.run(command + ["-g0", "-w", "-o", out], cwd=folder, check=False,
+                          stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode == 0
+
+
+def link_program(tree, name, objects, out):
+    command, after_o = [], False
+    for word in tree.link[name]:
+        command.append(out if after_o else objects.get(tree.linked(word), word))
+        after_o = word == "-o"
+    if shutil.which("ld.lld"):
+        command.insert(1, "-fuse-ld=lld")
+    return subprocess.run(command, cwd=os.path.join(BUILD, "unittest"), check=False,
+                          stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode == 0
+
+
+def run_test(tree, test, names, executable, folder, limit):
+    """exit status, None when it took too long, and output"""
+    known = tree.tests[test]
+    command = [executable if os.path.basename(word) == program(test) else word
+               for word in known["command"]]
+    command.append("--gtest_filter=" + names)
+    if ".np" not in test or test.endswith(".np1"):    # or else other ranks would wait
+        command.append("--gtest_fail_fast")
+    environment = dict(os.environ, MPM_ISA="baseline")
+    for entry in known["properties"]:
+        if entry["name"] == "ENVIRONMENT":
+            environment.update(word.split("=", 1) for word in entry["value"])
+    environment.pop("GTEST_OUTPUT", None)
+    process = subprocess.Popen(command, cwd=folder, env=environment, stdin=subprocess.DEVNULL,
+                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                               start_new_session=True)
+    try:
+        output, _ = process.communicate(timeout=limit)
+        return process.returncode, output.decode(errors="replace")
+    except subprocess.TimeoutExpired:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.communicate()
+        return None, ""
+
+
+# ---------------------------------------------------------------- mutants
+
+def check_tests(tree, wanted, folder, pool):
+    """time that each test takes on the source as it is, where it must pass"""
+
+    def check(key):
+        test, names = key
+        executable = os.path.join(BUILD, "unittest", program(test))
+        if test not in tree.tests:
+            return 0.0, "there is no test " + test
+        if "\n  " not in quiet([executable, "--gtest_list_tests", "--gtest_filter=" + names]):
+            return 0.0, "%s has no case %s" % key
+        start = time.time()
+        with tempfile.TemporaryDirectory(dir=folder) as own:    # some cases write files
+            status, output = run_test(tree, test, names, executable, own, 600)
+        if status != 0 or not re.search(r"\[  PASSED  \] [1-9]", output):
+            return 0.0, output + "\n%s %s fails or is skipped without any mutant" % key
+        return time.time() - start, ""
+
+    found = list(pool.map(check, wanted))
+    wrong = [text for _, text in found if text]
+    if wrong:
+        sys.exit("\n".join(wrong))
+    return {key: seconds for key, (seconds, _) in zip(wanted, found)}
+
+
+def try_mutant(tree, mutant, times, keep):
+    """verdict, the test that has killed it, time"""
+    start = time.time()
+    folder = os.path.join(BUILD, "mutants", mutant.name)
+    shutil.rmtree(folder, ignore_errors=True)
+
+    def verdict(what, by=""):
+        if not keep:
+            shutil.rmtree(folder, ignore_errors=True)
+        return what, by, time.time() - start
+
+    text = mutant.source()
+    if text is None:
+        return verdict(STALE)
+    sources = os.path.join(folder, "MPM")
+    shutil.copytree(SOURCES, sources)
+    with open(os.path.join(sources, mutant.file), "w") as file:
+        file.write(text)
+
+    objects, built = {}, set()
+    for test, names in mutant.tests:
+        name = program(test)
+        if name not in built:
+            for word in tree.link[name]:
+                path = tree.linked(word)
+                if not word.endswith(".o") or path in objects or not tree.depends(path, mutant.file):
+                    continue
+                objects[path] = os.path.join(folder, "%d.o" % len(objects))
+                if not compile_object(tree, path, sources, objects[path]):
+                    return verdict(BROKEN)
+            if not link_program(tree, name, objects, os.path.join(folder, name)):
+                return verdict(BROKEN)
+            built.add(name)
+        status, _ = run_test(tree, test, names, os.path.join(folder, name), folder,
+                             30 + 10 * times[test, names])
+        if status != 0:
+            return verdict(KILLED, "%s %s%s" % (test, names, "" if status else " (time)"))
+    return verdict(SURVIVED if objects else STALE)
+
+
+def chosen(mutants, patterns):
+    return [mutant for mutant in mutants if not patterns or any(
+        fnmatch.fnmatch(mutant.name, pattern) or fnmatch.fnmatch(mutant.file, pattern)
+        for pattern in patterns)]
+
+
+def main():
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
+        usage=argparse.SUPPRESS)
+    parser.add_argument("patterns", nargs="*", metavar="PATTERN")
+    parser.add_argument("--list", default=os.path.join(ROOT, "tools", "mutants.txt"))
+    parser.add_argument("--jobs", type=int,
+                        default=int(os.environ.get("MPM_JOBS") or os.cpu_count()))
+    parser.add_argument("--check", action="store_true")
+    parser.add_argument("--no-build", action="store_true")
+    parser.add_argument("--keep", action="store_true")
+    options = parser.parse_args()
+
+    mutants = chosen(read_list(options.list), options.patterns)
+    stale = [mutant for mutant in mutants if mutant.source() is None]
+    for mutant in stale:
+        print("%s: the text is not exactly once in %s" % (mutant.name, mutant.file))
+    if options.check or not mutants:
+        print("%d mutants, %d stale" % (len(mutants), len(stale)))
+        return 1 if stale or not mutants else 0
+
+    wanted = sorted({test for mutant in mutants for test in mutant.tests})
+    tree = BuildTree(sorted({program(test) for test, _ in wanted}), not options.no_build)
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+        folder = os.path.join(BUILD, "mutants")
+        os.makedirs(folder, exist_ok=True)
+        times = check_tests(tree, wanted, folder, pool)
+        print("%d tests pass without mutants, in %.0f s" % (len(times), sum(times.values())),
+              flush=True)
+        futures = [pool.submit(try_mutant, tree, mutant, times, options.keep) for mutant in mutants]
+        wide = max(len(mutant.name) for mutant in mutants)
+        results = []
+        for mutant, future in zip(mutants, futures):
+            what, by, seconds = future.result()
+            results.append(what)
+            print("%-*s  %-16s %5.0f s  %s" % (wide, mutant.name, what, seconds, by), flush=True)
+
+    tried = results.count(KILLED) + results.count(SURVIVED)
+    print("%d of %d mutants killed (%.0f %%), %d survived, %d do not compile, %d stale" % (
+        results.count(KILLED), tried, 100.0 * results.count(KILLED) / max(tried, 1),
+        results.count(SURVIVED), results.count(BROKEN), results.count(STALE)))
+    return 0 if results.count(KILLED) == len(results) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
