@@ -250,7 +250,7 @@ TEST_P(GridInvariance, ShiftsAndRotations)
          options.find("bernstein") != std::string::npos))
       continue;
     double least = 1.0e300, most = 0.0;
-    for (const double shift : {0.0, 0.025, 0.05})
+    for (const double shift : {0.0, 0.026, 0.05})
       for (const double degrees : {0.0, 22.5, 45.0}) {
         const double e = extension(options, shift, degrees);
         least = std::min(least, e);
@@ -265,7 +265,8 @@ TEST_P(GridInvariance, ShiftsAndRotations)
 INSTANTIATE_TEST_SUITE_P(All, GridInvariance, ::testing::ValuesIn(shapes));
 
 // Fracture: not asked for here. With gradients that jump at the faces of cells (linear, bernstein), the largest
-// extension is that of the first shift, which puts layers of points on faces and into otherwise empty cells.
+// extension is that of the first shift, which puts layers of points next to faces and into otherwise empty
+// cells. On faces, with a shift of a quarter of a cell, round-off would decide.
 static const Variant grid_invariance_cases[] = {
     {"shape cpdi", 0.01, 0.0, 0.0},
     {"shape cpdi2", 0.01, 0.0, 0.0},

@@ -565,11 +565,14 @@ TEST(Viscosity, NeverGivesEnergy)
   for (const auto &sample : samples) {
     if (std::string(sample.name) == "snow") continue;    // no associated flow, see LawSnow
     Point p(sample.text, 7, 0.1);
+    double largest = 0.0;
     for (int i = 0; i < 200; i++) {
       steps(p, random(0.01), 1.0);
+      for (const double work : p.batch.work) largest = std::max(largest, std::fabs(work));
+      const double rounding = 1e-14 * largest;    // failed points take back what they had booked
       for (const int kind : {VISCOUS, PLASTIC, FRACTURE, HEAT})
-        EXPECT_GE(p.batch.work[kind], 0.0) << sample.name << " " << kind;
-      EXPECT_LE(p.batch.work[HEAT], p.batch.work[PLASTIC]) << sample.name;
+        EXPECT_GE(p.batch.work[kind], -rounding) << sample.name << " " << kind;
+      EXPECT_LE(p.batch.work[HEAT], p.batch.work[PLASTIC] + rounding) << sample.name;
     }
   }
 }
