@@ -16,7 +16,7 @@ mkdir -p "$folder" && cd "$folder" || exit 1
 
 # functions that are inlined by force are compiled once instead of at each call, which saves minutes
 flags=(-std=c++17 -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all
-       -Dalways_inline=unused -fno-omit-frame-pointer -fopenmp-simd -ffp-contract=fast
+       -DMPM_SANITIZED -Dalways_inline=unused -fno-omit-frame-pointer -fopenmp-simd -ffp-contract=fast
        -fno-math-errno -fno-trapping-math
        -Wall -Wextra -I"$src" -I"$root/unittest" -isystem "${MPM_EIGEN:-/usr/include/eigen3}")
 

@@ -720,7 +720,8 @@ void FixMPMBoundary::check_speed(double dt)
   const double along[3] = {wall.shift[0], wall.shift[1],
                            domain->dimension == 3 ? wall.shift[2] : 0.0};
   const double way = dt * MathExtra::len3(along);
-  if (!std::isfinite(way) || !std::isfinite(region->theta))
+  // LAMMPS of 2025 gives no value to the angle of regions that do not turn
+  if (!std::isfinite(way) || (region->rotateflag && !std::isfinite(region->theta)))
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/boundary {}: the motion of its region {} is not finite at step {}", id,
                region_id, update->ntimestep);

@@ -28,6 +28,13 @@ namespace MPM_TEST {
 
 using Reals = std::vector<double>;
 
+/** With sanitizers (test_sanitize.sh) each place in the code counts, and fewer repetitions will do. */
+#if defined(MPM_SANITIZED)
+constexpr bool SANITIZED = true;
+#else
+constexpr bool SANITIZED = false;
+#endif
+
 inline std::mt19937 generator(20260704);
 
 inline double uniform(double low, double high)
@@ -99,7 +106,7 @@ inline void expect_box_moves(const MPM_NS::TransferKernels &kernels, const TileS
   const auto block = [=](int node) {    // 0, 1, 2
     return (node + shift) / side;
   };
-  for (int trial = 0; trial < 60; trial++) {
+  for (int trial = 0; trial < (SANITIZED ? 10 : 60); trial++) {
     int box[6], slot[27];
     for (int a = 0; a < 3; a++) {
       box[a] = integer(0, t.last);

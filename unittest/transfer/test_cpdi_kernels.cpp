@@ -436,7 +436,8 @@ TEST_P(Kernels, ShearedDomainsGainNoEnergy)
                : PointDomain<3>::box(edge, domain, gradient);
   }
   double energy = 0.0, first = 0.0;
-  for (int round = 0; round < 30; round++) {
+  const int rounds = SANITIZED ? 2 : 30;
+  for (int round = 0; round < rounds; round++) {
     Reals t = tile();
     p2g(kernels.p2g_momentum, points, t.data());
     const double now = NodeSums(points, t, nreal, nodes).energy;
@@ -448,7 +449,7 @@ TEST_P(Kernels, ShearedDomainsGainNoEnergy)
         t[nreal * k + i] = t[nreal * k + 3] > 0.0 ? t[nreal * k + i] / t[nreal * k + 3] : 0.0;
     g2p(kernels.g2p, points, t.data());
   }
-  if (transfer == TPIC) { EXPECT_GT(energy, first); }
+  if (transfer == TPIC && !SANITIZED) { EXPECT_GT(energy, first); }
 }
 
 TEST_P(Kernels, InvertedDomainsAreReported)

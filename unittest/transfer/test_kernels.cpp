@@ -190,6 +190,7 @@ std::vector<int> counts()
 {
   std::vector<int> n = {1, 2, 3, 4, 5, 6, 7, 8, 9, 15, 16, 17, 18, 31, 32, 33, 63, 64, 65};
   for (int i = 0; i < 12; i++) n.push_back(integer(66, 200));
+  if (SANITIZED) n = {1, 5, 8, 17, 65, integer(66, 200)};
   return n;
 }
 
