@@ -21,6 +21,7 @@
 #include "mpm_cpdi.h"
 #include "mpm_edges.h"
 #include "mpm_every.h"
+#include "mpm_fracture_watch.h"
 #include "mpm_frame.h"
 #include "mpm_guard.h"
 #include "mpm_locking.h"
@@ -60,6 +61,7 @@ MPMField::MPMField(LAMMPS *lmp, Fix &fix, double h, const Options &options, MPMP
   if (options.shape == GIMP || options.shape == CPGIMP) boxes.reset(new MPMBoxes(lmp, *this));
   if (has_domain(options.shape)) domains.reset(new MPMCpdi(lmp, *this, state));
   if (options.locking != Options::NO_CURE) locking.reset(new MPMLocking(lmp, *this));
+  if (options.watches_fracture()) fracture_watch.reset(new MPMFractureWatch(lmp, *this));
   guard.reset(new MPMGuard(lmp, *this));
   time_limit.reset(new MPMTimeLimit(lmp, *this));
   map.reset(new MPMPointMap(lmp, *this));

@@ -43,6 +43,7 @@ struct MPMFieldOptions {
   Policy bad = ERROR;
   Gain gain = GAIN_WARN;          ///< what to do when numerical errors add energy
   double most_gain = 0.02;        ///< from this share of the energy in play on
+  bool apart = true;              ///< tell when points under tension are too far apart
   bool delete_failed = false;     ///< remove points whose damage is 1
   bool modified_edges = false;    ///< functions next to fixed faces need no nodes outside
   int every = 1;                  ///< steps of LAMMPS in a step of the cycle
@@ -81,6 +82,9 @@ struct MPMFieldOptions {
   }
 
   bool watches_gain() const { return gain != GAIN_IGNORE; }
+
+  /** Can a body come apart because its points do? Domains with corners cover it. */
+  bool watches_fracture() const { return apart && !total && !MPM_NS::has_domain(shape); }
 
   /** The declaration; refers to this object. */
   MPM_NS::Options declare(int dimension);

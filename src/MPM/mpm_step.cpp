@@ -12,6 +12,7 @@
 
 #include "mpm_affine.h"
 #include "mpm_field.h"
+#include "mpm_fracture_watch.h"
 #include "mpm_locking.h"
 #include "mpm_plan.h"
 #include "mpm_stages.h"
@@ -159,6 +160,10 @@ void map_back(MPMPlan &plan)
 void end(MPMPlan &plan)
 {
   plan.place(MPMPlan::AFTER_MOTION);
+  const auto look = [](MPMField &field) {
+    field.fracture_watch->step();
+  };
+  plan.each("fracture watch", look, with<&Options::watches_fracture>);
   plan.each("checks", checks);
 }
 
