@@ -60,7 +60,7 @@ MPMField::MPMField(LAMMPS *lmp, Fix &fix, double h, const Options &options, MPMP
   if (options.every > 1) every.reset(new MPMEvery(lmp, *this, state));
   if (options.shape == GIMP || options.shape == CPGIMP) boxes.reset(new MPMBoxes(lmp, *this));
   if (has_domain(options.shape)) domains.reset(new MPMCpdi(lmp, *this, state));
-  if (options.locking != Options::NO_CURE) locking.reset(new MPMLocking(lmp, *this));
+  if (options.locking != Options::NO_CURE) locking.reset(new MPMLocking(lmp, *this, state));
   if (options.watches_fracture()) fracture_watch.reset(new MPMFractureWatch(lmp, *this));
   guard.reset(new MPMGuard(lmp, *this));
   time_limit.reset(new MPMTimeLimit(lmp, *this));
@@ -149,7 +149,7 @@ void MPMField::init(MPMPlan *plan_of_all)
   static const char *const sets[] = {nullptr, "reference", "baseline", "avx2", "avx512"};
   const char *wanted = sets[options.kernels];
   kernels = MPMKernels::select(wanted);
-  batch_kernels = BatchKernels::select(lattice.dim, wanted, options.axisymmetric);
+  batch_kernels = BatchKernels::select(lattice.dim, wanted, options.changes_thickness());
   bool can_run = kernels && batch_kernels;
   for (auto *material : materials)
     can_run = can_run &&

@@ -60,6 +60,10 @@ struct MPMFieldOptions {
   /** What does the cure for locking average: changes of volume, pressures in the force? */
   bool averages_strain() const { return locking == FBAR || locking == BOTH; }
   bool averages_stress() const { return locking == PRESSURE || locking == BOTH; }
+  /** Are averages those of volumes, which points keep, and not of their changes in a step? */
+  bool averages_volume() const { return locking == FBAR && !total; }
+  /** In 2d: does F_zz change? */
+  bool changes_thickness() const { return axisymmetric || (averages_strain() && !total); }
   /** With scheme usl: is stress made while points move, or after that? Neither with light nodes. */
   bool strains_while_moving() const { return !has_light_nodes() && !averages_strain(); }
   bool strains_after_motion() const { return !has_light_nodes() && averages_strain(); }
