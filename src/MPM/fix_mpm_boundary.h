@@ -165,7 +165,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   struct {                // what act() does now to the nodes of a field
     bool counting;        // reactions and work
     bool decided;         // contact was decided before in this step (MUSL)
-    bool ledger_lanes;    // records have the old velocity in reals 4..6
+    class MPMLedger *ledger;    // null: there is none; else records have the old velocity in reals 4..6
     double old_share;     // FLIP share when old velocities are constrained, too; otherwise 0
     double kinetic;       // gained by the nodes
     double collided;      // ledger: kinetic energy lost where nodes cannot keep their velocity
