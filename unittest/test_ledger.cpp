@@ -97,7 +97,8 @@ TEST(Wall, StopsALonePoint)
   for (const double V : {0.0, 0.3, -0.1}) {
     Scene run(plane("lj", "f f", "0 8 0 8") +
               "fix grid all mpm 1.0 transfer pic\n"
-              "create_atoms 1 single 4.2 0.0 0.0 units box\nset type 1 volume 0.25\nset type 1 mass 0.75\n");
+              "create_atoms 1 single 4.2 0.0 0.0 units box\n"
+              "set type 1 volume 0.25\nset type 1 mass 0.75\n");
     run.commands(strprintf("fix m all mpm/material density 3.0 neohookean 1.0 0.3\n"
                            "fix w all mpm/boundary ylo stick velocity 0 %g 0\n"
                            "velocity all set 0.7 -0.4 0\ntimestep 0.001\n",
@@ -156,18 +157,20 @@ TEST(Force, WorkIsForceTimesPath)
 SERIAL_TEST(Contact, FrictionTakesForceTimesPath)
 {
   const double mu = 0.3, g = 2.0;
-  Scene run(plane("si", "f f", "0 14 0 7", 2, 0.2) +
-            fields({{"slab", "block 0 14 0 2 INF INF"}, {"block", "block 2 5 2 4 INF INF"}},
-                   "0.5 transfer apic") +
-            strprintf("fix m all mpm/material density 10 neohookean 1e5 0.3\n"
-                      "fix c all mpm/contact F1 F2 law coulomb %g\nfix w all mpm/boundary ylo stick field F1\n"
-                      "fix s all mpm/boundary xlo slip field F1\nfix t all mpm/boundary xhi slip field F1\n"
-                      "variable load equal %g*((time<0.1)*time/0.1+(time>=0.1))\n"
-                      "fix g block gravity v_load vector 0 -1 0\n"
-                      "velocity block set 2.0 0 0\nfix dt all mpm/dt 0.4\n"
-                      "variable x equal xcm(block,x)\n",
-                      mu, g) +
-            watch + "run 0\n");
+  Scene run(
+      plane("si", "f f", "0 14 0 7", 2, 0.2) +
+      fields({{"slab", "block 0 14 0 2 INF INF"}, {"block", "block 2 5 2 4 INF INF"}},
+             "0.5 transfer apic") +
+      strprintf(
+          "fix m all mpm/material density 10 neohookean 1e5 0.3\n"
+          "fix c all mpm/contact F1 F2 law coulomb %g\nfix w all mpm/boundary ylo stick field F1\n"
+          "fix s all mpm/boundary xlo slip field F1\nfix t all mpm/boundary xhi slip field F1\n"
+          "variable load equal %g*((time<0.1)*time/0.1+(time>=0.1))\n"
+          "fix g block gravity v_load vector 0 -1 0\n"
+          "velocity block set 2.0 0 0\nfix dt all mpm/dt 0.4\n"
+          "variable x equal xcm(block,x)\n",
+          mu, g) +
+      watch + "run 0\n");
   const auto go = [&](double until) {
     while (run.evaluate("time") < until) run.commands("run 10 post no\n");
   };
@@ -286,9 +289,8 @@ static std::string corner(const std::string &lattice)
 
 TEST(Balance, HoldsWhereManyActOnANode)
 {
-  for (const char *options :
-       {"transfer apic", "transfer flip 1.0", "transfer flip 0.9 scheme musl", "transfer xpic 3",
-        "transfer fmpm 3"}) {
+  for (const char *options : {"transfer apic", "transfer flip 1.0", "transfer flip 0.9 scheme musl",
+                              "transfer xpic 3", "transfer fmpm 3"}) {
     SCOPED_TRACE(options);
     Scene run(corner(std::string("1.0 ") + options) +
               "fix g all gravity 0.5 vector 0 -1 0\nrun 0 post no\n");

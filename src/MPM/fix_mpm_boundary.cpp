@@ -814,7 +814,8 @@ void FixMPMBoundary::act(double dt, Stage stage)
   for (auto &list : nodes) {
     const auto &faces = list.faces;
     auto &ledger = list.field->ledger;
-    now = {count, stage == MAPPED_BACK || stage == AGAIN, ledger.on ? &ledger : nullptr, 0.0, 0.0, 0.0};
+    now = {count, stage == MAPPED_BACK || stage == AGAIN, ledger.on ? &ledger : nullptr, 0.0, 0.0,
+           0.0};
     if (count && wall.uniform && !list.field->kernel.affine)
       now.old_share = list.field->options.flip;
 

@@ -109,7 +109,8 @@ void MPMLedger::account_for_forces()
     for (int p = 0; p < n; p++) {
       const double *const G = L + nL * p;
       if (b.f != f)    // hoop stress
-        for (int d = 0; d < dim; d++) stress -= (b.f[3 * p + d] - f[3 * p + d]) * v[3 * p + d] * force->nktv2p;
+        for (int d = 0; d < dim; d++)
+          stress -= force->nktv2p * (b.f[3 * p + d] - f[3 * p + d]) * v[3 * p + d];
       double rate = 0.0;
       if (b.P) {
         for (int k = 0; k < nL; k++) rate += b.P[nL * p + k] * G[k];
@@ -124,7 +125,8 @@ void MPMLedger::account_for_forces()
       stress += b.vol0[p] * rate;
     }
   };
-  for (auto &a : field.map->active) std::copy_n(a.box, 6, a.other_box);    // points are where they were
+  // points are where they were
+  for (auto &a : field.map->active) std::copy_n(a.box, 6, a.other_box);
   points_from(nodes, field, field.pic, [&](const MPMPointMap::Run &run, const int *base) {
     for (int i = run.first; i < run.last; i += BATCH)
       add_batch(run, i, std::min(BATCH, run.last - i), base);

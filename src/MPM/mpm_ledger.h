@@ -22,7 +22,7 @@ struct MPMEnergies {
   double boundary;    ///< work of node actions of kind boundary
   double contact;     ///< work of node actions between fields
   double internal;    ///< work of stress at the mean of old and new velocity: taken from the motion
-  double transfer;    ///< kinetic energy gained (mostly lost: negative) by P2G and G2P, and collisions
+  double transfer;    ///< kinetic energy gained (mostly lost: negative) by transfers and collisions
   double deleted_kinetic, deleted_stored;    ///< energy of points that were deleted
 };
 
