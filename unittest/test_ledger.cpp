@@ -150,6 +150,21 @@ TEST(Force, WorkIsForceTimesPath)
   EXPECT_NEAR(e[RESIDUAL], 0.0, 1e-12 * expected);
 }
 
+// A body without strain is slowed down by -gamma v at each of its points: the velocity falls by the factor
+// 1 - gamma dt/m in each step, and the force takes all of what is lost
+TEST(Force, DampingTakesTheEnergy)
+{
+  Scene run(plane("lj", "f f", "0 20 0 8", 1, 0.3) +
+            body("block 2 5 2 6 INF INF", "density 2 neohookean 100 0.3", "1.0 transfer apic") +
+            "fix f all viscous 0.2\ntimestep 0.01\nvelocity all set 1.5 0 0\n" + watch +
+            "run 300\n");
+  const double start = 0.5 * 24.0 * 2.25, end = start * std::pow(1.0 - 0.2 * 0.01 / 0.5, 600);
+  const double *e = run.compute_vector();
+  EXPECT_NEAR(e[KINETIC], end, 1e-11 * start);
+  EXPECT_NEAR(e[EXTERNAL], end - start, 1e-11 * start);
+  EXPECT_NEAR(e[RESIDUAL], 0.0, 1e-12 * start);
+}
+
 // ---------------------------------------------------------------------- contact
 
 // A block slides on a slab that is held: friction takes mu N d, and gives half of m v0^2 less what is left. The
