@@ -72,7 +72,7 @@ class FixMPMMaterial : public FixMPMState {
     double value;
   };
   bool counts_stress = false;    // there is a compute mpm/energy
-  std::vector<Exit> exits;    ///< for each range of the material
+  std::vector<Exit> exits;       ///< for each range of the material
   void report_exits();
   std::string names() const;
 };
