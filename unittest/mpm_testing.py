@@ -131,7 +131,8 @@ def thermo(output):
             tables.append((names, rows))
         elif line.startswith("Loop time"):
             rows = None
-        elif rows is not None and len(words) == len(names) and re.match(r"-?\d", words[0]):
+        elif (rows is not None and len(words) == len(names) and
+              all(re.match(r"[-+]?(\d|nan|inf)", word) for word in words)):
             rows.append(words)
     return tables
 

@@ -47,10 +47,10 @@ def profile_error(h):
     (names, table), = mt.thermo(result.output)
     time = float(table[-1][names.index("Time")])
     ledger = [float(word) for word in table[-1][names.index("c_e[1]"):]]
-    content = float(table[-1][names.index("c_e[14]")])
+    content = float(table[-1][names.index("c_e[15]")])
     assert content > 0.0
     assert abs(ledger[10]) < 1e-9 * content, "residual %g of %g" % (ledger[10], content)
-    assert abs(content - ledger[14]) < 1e-9 * content, "content is not what came through the wall"
+    assert abs(content - ledger[15]) < 1e-9 * content, "content is not what came through the wall"
     for stage in ("scalar to nodes", "scalar to points"):
         assert re.search(r"^ *%s +[0-9.]+$" % stage, result.output, re.M), result.tail(40)
     return max(abs(c - math.erfc(x / math.sqrt(4.0 * time))) for _, x, _, c in rows("own-physics.last"))
@@ -84,7 +84,7 @@ fix s all own/diffusion 0.8 0.1 xlo 1.0
 RUN = """
 compute e all mpm/energy
 thermo 5
-thermo_style custom step c_e[14] c_e[15] c_e[11]
+thermo_style custom step c_e[15] c_e[16] c_e[11]
 thermo_modify format float %.15g
 timestep 0.05
 """

@@ -11,6 +11,7 @@
 #include "comm.h"
 #include "error.h"
 #include "fix_mpm_material.h"
+#include "force.h"
 #include "modify.h"
 #include "mpm_field.h"
 #include "mpm_physics.h"
@@ -123,6 +124,9 @@ std::vector<double> ComputeMPMEnergy::evaluate() const
     mine.deleted_stored += field->ledger.deleted_stored;
   }
 
+  for (const auto *material : find_fixes<FixMPMMaterial>(lmp))
+    mine.stress_work += material->stress_work / force->nktv2p;
+
   std::vector<double> local(NSUMS), all(NSUMS + accounts.size());
   memcpy(local.data(), &mine, sizeof(Sums));
   // between runs there can be others than in init()
@@ -175,6 +179,7 @@ void ComputeMPMEnergy::compute_vector()
   const double stored = now.deleted_stored - old.deleted_stored;
   vector[DELETED] = now.deleted_kinetic - old.deleted_kinetic + stored;
   vector[INTEGRATION] = now.taken() - old.taken() - stored - (now.internal - old.internal);
+  vector[LAWS] = now.taken() - old.taken() - stored - (now.stress_work - old.stress_work);
   vector[RESIDUAL] = now.total() - old.total() - vector[DELETED];
   for (int k = EXTERNAL; k < RESIDUAL; k++) vector[RESIDUAL] -= vector[k];
 

@@ -58,12 +58,13 @@ class ComputeMPMEnergy : public Compute {
     RESIDUAL,       // what the balance misses
     FRACTURE,       // work spent on damage
     DELETED,        // energy of points that were deleted, negative
+    LAWS,           // the part of INTEGRATION that laws have beyond the work of their stress
     NENTRY          // those of other physics follow
   };
 
   /** What the entries are computed from, summed over ranks; the accounts of other physics follow. */
   struct Sums : MPMPointEnergies {
-    double external, boundary, contact, transfer, internal;
+    double external, boundary, contact, transfer, internal, stress_work;
     double deleted_kinetic, deleted_stored;
   };
 

@@ -824,7 +824,8 @@ void FixMPMBoundary::act(double dt, Stage stage)
   for (auto &list : nodes) {
     const auto &faces = list.faces;
     auto &ledger = list.field->ledger;
-    now = {count, stage == MAPPED_BACK || stage == AGAIN, ledger.on, 0.0, 0.0, 0.0};
+    now = {count, stage == MAPPED_BACK || stage == AGAIN, ledger.on ? &ledger : nullptr, 0.0, 0.0,
+           0.0};
     if (count && wall.uniform && !list.field->kernel.affine)
       now.old_share = list.field->options.flip;
 
@@ -879,15 +880,17 @@ void FixMPMBoundary::set_velocity(Grid &grid, int64_t node, const double *v, con
   double *const record = grid.record(node);
   const int dim = grid.lattice.dim;
   if (now.counting && grid.owns(node)) {
-    double moved = 0.0, gained = 0.0;
+    double moved = 0.0, gained = 0.0, change[3] = {0.0}, change_old[3] = {0.0};
     for (int d = 0; d < dim; d++) {
-      const double change = v[d] - record[d], change_old = old ? old[d] - record[4 + d] : 0.0;
-      const double push = change - now.old_share * change_old;
+      change[d] = v[d] - record[d];
+      if (old) change_old[d] = old[d] - record[4 + d];
+      const double push = change[d] - now.old_share * change_old[d];
       impulse[d] += record[3] * push;
       moved += push * (whole ? whole : v)[d];
-      if (now.ledger_lanes)
-        gained += 0.5 * (change - change_old) * (v[d] + (old ? old[d] : record[4 + d]));
+      if (now.ledger)
+        gained += 0.5 * (change[d] - change_old[d]) * (v[d] + (old ? old[d] : record[4 + d]));
     }
+    if (now.ledger) now.ledger->note_push(record, change, change_old);
     past.work += record[3] * moved;
     now.kinetic += record[3] * moved;
     now.collided += record[3] * (gained - moved);

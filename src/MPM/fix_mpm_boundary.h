@@ -163,13 +163,13 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   bool warned = false;        // of a region that is too fast
   double reaction[6] = {};    // force and, of regions, torque
 
-  struct {                // what act() does now to the nodes of a field
-    bool counting;        // reactions and work
-    bool decided;         // contact was decided before in this step (MUSL)
-    bool ledger_lanes;    // records have the old velocity in reals 4..6
-    double old_share;     // FLIP share when old velocities are constrained, too; otherwise 0
-    double kinetic;       // gained by the nodes
-    double collided;      // ledger: kinetic energy lost where nodes cannot keep their velocity
+  struct {                      // what act() does now to the nodes of a field
+    bool counting;              // reactions and work
+    bool decided;               // contact was decided before in this step (MUSL)
+    class MPMLedger *ledger;    // null: none; else old velocities are in reals 4..6
+    double old_share;           // FLIP share when old velocities are constrained, too; otherwise 0
+    double kinetic;             // gained by the nodes
+    double collided;    // ledger: kinetic energy lost where nodes cannot keep their velocity
   } now;
 
   bool region_moves() const;

@@ -569,8 +569,7 @@ void FixMPMElements::material_update(Work &w, bool starting)
       for (int p = 0; p < w.n; p++) largest = std::max(largest, fabs(b.A[c][p]));
     if (largest < 1.0e-10) return;
   }
-  material->material->update(b);
-  for (int k = 0; k < NWORK; k++) material->work[k] += b.work[k];
+  material->update_batch(b);
   for (int p = 0; p < w.n; p++) {
     double *const s = w.state[p];
     for (int c = 0; c < 9; c++) s[c] = b.F[c][p];

@@ -718,6 +718,7 @@ void FixMPMHandshake::tie(double dt)
       }
       const double *const c = &smooth[4 * (slot * NODES_PER_BLOCK + n)];
       const bool both = ma > 0.0 && mc > 0.0;
+      double change[3] = {0.0, 0.0, 0.0};
       for (int d = 0; d < 3; d++) {
         const double own = mc > 0.0 ? r[d] - r[4 + d] : 0.0;
         const double gain = inverse * (mc * own + dtf * s[FORCE + d]);
@@ -726,10 +727,11 @@ void FixMPMHandshake::tie(double dt)
         r[d] = r[4 + d] + gain + ma * inverse * ahead;
         s[VELOCITY + d] = r[d];
         if (!owned || mc == 0.0) continue;
-        const double change = r[d] - r[4 + d] - own;    // by atoms
-        impulse[d] += mc * change;
-        work += mc * change * 0.5 * (r[d] + r[4 + d]);    // like a force
+        change[d] = r[d] - r[4 + d] - own;    // by atoms
+        impulse[d] += mc * change[d];
+        work += mc * change[d] * 0.5 * (r[d] + r[4 + d]);    // like a force
       }
+      if (owned && field->ledger.on) field->ledger.note_push(r, change);
     }
   }
   field->ledger.contact += force->mvv2e * work;

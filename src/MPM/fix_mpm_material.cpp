@@ -9,12 +9,14 @@
 #include "fix_mpm_material.h"
 
 #include "material/material.h"
+#include "math/matrix.h"
 #include "mpm_input.h"
 
 #include "atom.h"
 #include "comm.h"
 #include "error.h"
 #include "force.h"
+#include "modify.h"
 #include "update.h"
 
 #include <algorithm>
@@ -68,6 +70,7 @@ FixMPMMaterial::~FixMPMMaterial() = default;
 void FixMPMMaterial::init()
 {
   material->initialized();
+  counts_stress = !modify->get_compute_by_style("^mpm/energy$").empty();
   assign_mass();
 
   // a mass that create_atoms left, together with a volume that was set, is easily overlooked
@@ -179,15 +182,61 @@ std::string FixMPMMaterial::names() const
 }
 
 /* ----------------------------------------------------------------------
+   The work of the stress in a step, for the ledger: the mean of Kirchhoff stress at its start and end
+   with the gradient at mid-step A (I + A/2)^-1, which is skew if A belongs to a rotation. Laws have their
+   own account of the energy; the two agree to third order in the strain of a step
+------------------------------------------------------------------------- */
+
+static void add_kirchhoff_stress(const Batch &b, const double *J, double (*sum)[BATCH])
+{
+  for (int c = 0; c < 6; c++)
+    for (int p = 0; p < b.n; p++) sum[c][p] += J[p] * b.stress[c][p];
+}
+
+static double work_of(const Batch &b, const double (*twice_tau)[BATCH])
+{
+  static const int place[9] = {0, 3, 4, 3, 1, 5, 4, 5, 2};
+  double work = 0.0;
+  for (int p = 0; p < b.n; p++) {
+    double A[9], mid[9], rate = 0.0;
+    for (int k = 0; k < 9; k++) {
+      A[k] = b.A[k][p];
+      mid[k] = 0.5 * A[k] + (k % 4 == 0);
+    }
+    const double cofactors[9] = MPM_COFACTORS(mid);
+    for (int k = 0; k < 9; k++)
+      rate += twice_tau[place[k]][p] * dot(A + k / 3 * 3, cofactors + k % 3 * 3);
+    if (b.J[p] > 0.0) work += 0.5 * b.vol0[p] * rate / determinant(mid);
+  }
+  return work;
+}
+
+void FixMPMMaterial::update_batch(Batch &b)
+{
+  double twice_tau[6][BATCH];
+  if (counts_stress) {
+    memset(twice_tau, 0, sizeof(twice_tau));
+    add_kirchhoff_stress(b, b.Jold, twice_tau);
+  }
+  material->update(b);
+  for (int k = 0; k < NWORK; k++) work[k] += b.work[k];
+  if (counts_stress) {
+    add_kirchhoff_stress(b, b.J, twice_tau);
+    stress_work += work_of(b, twice_tau);
+  }
+}
+
+/* ----------------------------------------------------------------------
    work so far, summed over ranks, and what the history variables are
 ------------------------------------------------------------------------- */
 
 void FixMPMMaterial::write_restart(FILE *fp)
 {
-  double list[2 + NWORK];
+  double list[3 + NWORK];
   list[0] = RESTART_VERSION;
   list[1] = NWORK;
   MPI_Reduce(work, list + 2, NWORK, MPI_DOUBLE, MPI_SUM, 0, world);
+  MPI_Reduce(&stress_work, list + 2 + NWORK, 1, MPI_DOUBLE, MPI_SUM, 0, world);
   if (comm->me) return;
   const std::string text = names();
   const int size = (int) (sizeof(list) + text.size() + 1);
@@ -202,7 +251,7 @@ void FixMPMMaterial::write_restart(FILE *fp)
 
 void FixMPMMaterial::restart(char *buf)
 {
-  double list[2 + NWORK];
+  double list[3 + NWORK];
   memcpy(list, buf, 2 * sizeof(double));
   if (list[0] != RESTART_VERSION || list[1] != NWORK)
     error->all(
@@ -216,4 +265,5 @@ void FixMPMMaterial::restart(char *buf)
                "those of this material are{}: give the laws with which the file was written",
                id, text, names());
   for (int k = 0; k < NWORK; k++) work[k] = comm->me == 0 ? list[2 + k] : 0.0;
+  stress_work = comm->me == 0 ? list[2 + NWORK] : 0.0;
 }

@@ -43,6 +43,10 @@ class FixMPMMaterial : public FixMPMState {
   double **history = nullptr;    ///< [n][nhistory] or null when the law has none
   int damage;                    ///< column of the damage, 1 in points that have failed; -1: none
   double work[8] = {};           ///< energy of each MPM_NS::Work kind so far, this rank's share
+  double stress_work = 0.0;      ///< work of the stress so far, with a compute mpm/energy only
+
+  /** Stress and history of a batch at the end of the step, and what this has spent. */
+  void update_batch(MPM_NS::Batch &);
 
   /** mass = density * initial volume for the points of the group that have no mass yet. */
   void assign_mass();
@@ -67,7 +71,8 @@ class FixMPMMaterial : public FixMPMState {
     tagint tag;
     double value;
   };
-  std::vector<Exit> exits;    ///< for each range of the material
+  bool counts_stress = false;    // there is a compute mpm/energy
+  std::vector<Exit> exits;       ///< for each range of the material
   void report_exits();
   std::string names() const;
 };

@@ -13,6 +13,7 @@
 #include "force.h"
 #include "math/matrix.h"
 #include "mpm_field.h"
+#include "mpm_locking.h"
 #include "mpm_passes.h"
 
 using namespace LAMMPS_NS;
@@ -46,13 +47,15 @@ double MPMLedger::point_kinetic_energy() const
 
 /* ---------------------------------------------------------------------- */
 
+std::size_t MPMLedger::field_nodes() const
+{
+  return field.grid.nnodes();
+}
+
 void MPMLedger::account_for_nodes()
 {
-  double external_now = external_work(field.rows().f);
-  for (auto *ifix : field.elements) external_now -= external_work(ifix->forces());    // is internal
+  account_for_forces();
   const double old = nodal_kinetic_energy(4), kinetic = nodal_kinetic_energy(0);
-  external += external_now;
-  internal += external_now + boundary + contact + transfer - before_actions - (kinetic - old);
   transfer += old - kinetic_points;
   kinetic_points = kinetic;
 }
@@ -65,35 +68,73 @@ void MPMLedger::account_for_points()
 }
 
 /* ----------------------------------------------------------------------
-   work of forces on points (atom->f, or a part of it) in the momentum equation: nodal external
-   forces times the mean of the old and the final velocity of the node. The forces alone are mapped
-   once more, with zero volumes.
+   work of the forces on points (atom->f) and of their stress, at the mean of the old and the final
+   velocity of the nodes, which go to the points by the weights and gradients with which P2G has
+   brought the forces to the nodes. What elements put on atom->f is internal
 ------------------------------------------------------------------------- */
 
-double MPMLedger::external_work(const double *force_on) const
+void MPMLedger::account_for_forces()
 {
-  const double dt = field.step_dt();
+  const int dim = field.lattice.dim, nL = dim * dim, nreal = field.pic.nreal;
   auto &nodes = field.work.nodes;
-  field.work.no_volume.assign(atom->nmax, 0.0);
-  PointRows r = field.rows();
-  r.vol0 = field.work.no_volume.data();
-  r.f = force_on;
-  const TransferStep s = field.step_data();
-  points_to(nodes, field, field.kernel,
-            [&](const MPMPointMap::Run &run, const int *base, int *box) {
-              run_to_tile(field, field.kernel.p2g_force, r, s, run, base, box);
-            });
-  const int nreal = field.kernel.nreal;
-  field.nodes.sum(nodes.data(), nreal, 4, 3);
+  nodes.assign(nreal * field_nodes(), 0.0);
+  const double *record = field.grid.nodes();    // v m | v old
+  for (double *v = nodes.data(); v < nodes.data() + nodes.size(); v += nreal, record += 8)
+    for (int d = 0; d < dim; d++) v[d] = 0.5 * (record[d] + record[4 + d]);
+  field.nodes.complete(nodes.data(), nreal, 3);
 
-  Grid &grid = field.grid;
-  double work = 0.0;
-  for (int64_t n = 0; n < grid.nnodes(); n++) {
-    const double *record = grid.record(n), *f = &nodes[n * nreal + 4];    // v m | v old
-    if (!grid.owns(n) || record[3] <= 0.0) continue;
-    for (int d = 0; d < 3; d++) work += dt * f[d] * 0.5 * (record[d] + record[4 + d]);
-  }
-  return force->mvv2e * work;    // nodal forces are mass * acceleration
+  field.work.vectors.assign(3 * (std::size_t) atom->nmax, 0.0);
+  const double *const velocity = field.work.vectors.data();
+  PointRows r = field.rows();
+  if (field.options.averages_stress()) r.tau = field.locking->stress();
+  const PointRows at_rest = field.rows_at_rest(field.work.vectors.data(), r.mass);
+  const TransferStep s = field.step_data(), still = field.step_data(0.0);
+  const double *const tile = field.map->tile_load;
+  double outer = 0.0, inner = 0.0, stress = 0.0;
+  double L[9 * BATCH];
+  MPMFrame::ForceRows room;
+
+  const auto add_batch = [&](const MPMPointMap::Run &run, int first, int n, const int *base) {
+    field.pic.g2p(at_rest, still, first, first + n, base, tile, nullptr);
+    const double *const v = velocity + 3 * (bigint) first, *const f = r.f + 3 * (bigint) first;
+    for (int p = 0; p < n; p++) outer += dot(f + 3 * p, v + 3 * p);
+    for (auto *ifix : field.elements) {
+      const double *const mine = ifix->forces() + 3 * (bigint) first;
+      for (int p = 0; p < n; p++) inner += dot(mine + 3 * p, v + 3 * p);
+    }
+    if (!run.material) return;    // nodes of elements
+
+    field.kernel.g2p_gradient(r, s, first, first + n, base, tile, L);
+    const PointRows b = rows_with_forces(field, r, first, n, room);
+    for (int p = 0; p < n; p++) {
+      const double *const G = L + nL * p;
+      if (b.f != f)    // hoop stress
+        for (int d = 0; d < dim; d++)
+          stress -= force->nktv2p * (b.f[3 * p + d] - f[3 * p + d]) * v[3 * p + d];
+      double rate = 0.0;
+      if (b.P) {
+        for (int k = 0; k < nL; k++) rate += b.P[nL * p + k] * G[k];
+      } else {
+        const double *const tau = b.tau + 6 * p;
+        if (dim == 3)
+          rate = tau[0] * G[0] + tau[1] * G[4] + tau[2] * G[8] + tau[3] * (G[1] + G[3]) +
+              tau[4] * (G[2] + G[6]) + tau[5] * (G[5] + G[7]);
+        else
+          rate = tau[0] * G[0] + tau[1] * G[3] + tau[3] * (G[1] + G[2]);
+      }
+      stress += b.vol0[p] * rate;
+    }
+  };
+  // points are where they were
+  for (auto &a : field.map->active) std::copy_n(a.box, 6, a.other_box);
+  points_from(nodes, field, field.pic, [&](const MPMPointMap::Run &run, const int *base) {
+    for (int i = run.first; i < run.last; i += BATCH)
+      add_batch(run, i, std::min(BATCH, run.last - i), base);
+  });
+
+  const double unit = force->mvv2e * s.dt;
+  external += unit * s.force_scale * (outer - inner);
+  internal += unit * (s.stress_scale * stress - s.force_scale * inner);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -111,7 +152,7 @@ void MPMLedger::push_node(double *record, bool owned, const double *impulse)
 
 /* ----------------------------------------------------------------------
    The work of the impulse takes the new velocity: that is what moves points. With the mean of the old
-   and the new one it would be the change of kinetic energy; the rest is part of integration
+   and the new one it would be the change of kinetic energy; the rest is lost in the collision
 ------------------------------------------------------------------------- */
 
 void MPMLedger::count_push(const double *record, const double *change)
@@ -122,4 +163,44 @@ void MPMLedger::count_push(const double *record, const double *change)
   if (!on) return;
   for (int d = 0; d < field.lattice.dim; d++) lost += 0.5 * change[d] * (record[d] - record[4 + d]);
   transfer -= record[3] * lost * force->mvv2e;
+  note_push(record, change);
+}
+
+/* ----------------------------------------------------------------------
+   Where several actions meet at a node, each was counted with the velocity that it left, which the
+   next one changes. The kinetic energy of the node has the mean of its old and its final velocity in
+   all of them: what the change adds to earlier impulses is part of the collision
+------------------------------------------------------------------------- */
+
+double *MPMLedger::impulse(const double *record)
+{
+  return &impulses[3 * ((record - field.grid.nodes()) / field.grid.nreal)];
+}
+
+void MPMLedger::note_push(const double *record, const double *change, const double *change_old)
+{
+  double *const earlier = impulse(record), met = 0.0;
+  for (int d = 0; d < field.lattice.dim; d++) {
+    const double with = change_old ? change_old[d] : 0.0;
+    met += 0.5 * earlier[d] * (change[d] + with);
+    earlier[d] += record[3] * (change[d] - with);
+  }
+  transfer += met * force->mvv2e;
+}
+
+/** The change works as an impulse, which is numerical. */
+void MPMLedger::count_series(const std::vector<double> &velocities)
+{
+  Grid &grid = field.grid;
+  for (int64_t n = 0; n < grid.nnodes(); n++) {
+    if (!grid.owns(n)) continue;
+    const double *const record = grid.record(n);
+    double change[3] = {0.0, 0.0, 0.0}, gained = 0.0;
+    for (int d = 0; d < field.lattice.dim; d++) {
+      change[d] = record[d] - velocities[3 * n + d];
+      gained += 0.5 * change[d] * (record[d] + record[4 + d]);
+    }
+    transfer += record[3] * gained * force->mvv2e;
+    note_push(record, change);
+  }
 }

@@ -21,12 +21,14 @@ struct MPMEnergies {
   double external;    ///< work of atom->f (gravity, contact by pair styles, walls, ...)
   double boundary;    ///< work of node actions of kind boundary
   double contact;     ///< work of node actions between fields
-  double internal;    ///< work of the internal forces on the nodes, minus sign: done by the body
-  double transfer;    ///< kinetic energy gained (mostly lost: negative) by P2G and G2P
+  double internal;    ///< work of stress at the mean of old and new velocity: taken from the motion
+  double transfer;    ///< kinetic energy gained (mostly lost: negative) by transfers and collisions
   double deleted_kinetic, deleted_stored;    ///< energy of points that were deleted
 };
 
-/** The energy accounts of a field. */
+/** The energy accounts of a field. Each of them is a sum of its own: works are forces or impulses times
+ *  velocities, and transfers have kinetic energies before and after. None is what the others leave, so that
+ *  their balance is a check, see "The ledger" in the developer guide. */
 class MPMLedger : protected Pointers, public MPMEnergies {
  public:
   bool on = false;              ///< a compute mpm/energy exists; set in init()
@@ -40,8 +42,8 @@ class MPMLedger : protected Pointers, public MPMEnergies {
     if (on) kinetic_points = point_kinetic_energy();
   }
   /** After the momentum equation, before node actions. */
-  void nodes_solved() { before_actions = boundary + contact + transfer; }
-  /** Before points get what forces and node actions have done to the nodes. */
+  void nodes_solved() { impulses.assign(3 * field_nodes(), 0.0); }
+  /** Work of forces and kinetic energies, before points get what was done to the nodes. */
   void account_for_nodes();
   /** End of a step: what the way from nodes to points has changed. */
   void account_for_points();
@@ -57,6 +59,12 @@ class MPMLedger : protected Pointers, public MPMEnergies {
   void push_node(double *record, bool owned, const double *impulse);
   /** An owned node had its velocity changed by contact: its record has the new one. */
   void count_push(const double *record, const double *change);
+  /** An owned node had its velocity changed by whatever action, after which others may come: its mass times
+   *  the difference of the changes is the impulse. change_old: of the old velocity, null: none. */
+  void note_push(const double *record, const double *change, const double *change_old = nullptr);
+  /** All nodes have had these velocities [node][3] before, which have become those of the records by more
+   *  terms of a series. */
+  void count_series(const std::vector<double> &velocities);
 
   /** Of the nodes that this rank owns; velocity: the reals from lane on. */
   double nodal_kinetic_energy(int lane) const;
@@ -64,10 +72,12 @@ class MPMLedger : protected Pointers, public MPMEnergies {
 
  private:
   MPMField &field;
-  double before_actions = 0.0;    // sum of entries before node actions
-  double kinetic_points = 0.0;    // at the end of the last step
+  double kinetic_points = 0.0;     // at the end of the last step
+  std::vector<double> impulses;    // [node][3] of node actions on owned nodes in this step
 
-  double external_work(const double *force_on) const;
+  std::size_t field_nodes() const;
+  double *impulse(const double *record);
+  void account_for_forces();
 };
 
 }    // namespace LAMMPS_NS

@@ -14,6 +14,7 @@
 
 #include "material/batch.h"
 #include "mpm_field.h"
+#include "mpm_frame.h"
 #include "mpm_point_map.h"
 
 #include <algorithm>
@@ -80,6 +81,9 @@ template <class Gather> void points_from_step(MPMField &field, const Gather &gat
 void run_to_tile(MPMField &field, MPM_NS::P2G p2g, const MPM_NS::PointRows &,
                  const MPM_NS::TransferStep &, const MPMPointMap::Run &, const int base[3],
                  int box[6]);
+/** Rows of n <= BATCH points from first on, as if they were all, with the forces that the frame makes. */
+MPM_NS::PointRows rows_with_forces(const MPMField &, const MPM_NS::PointRows &, int first, int n,
+                                   MPMFrame::ForceRows &);
 
 }    // namespace LAMMPS_NS
 #endif

@@ -12,7 +12,6 @@
 #include "mpm_affine.h"
 #include "mpm_cpdi.h"
 #include "mpm_field.h"
-#include "mpm_frame.h"
 #include "mpm_locking.h"
 #include "mpm_passes.h"
 #include "mpm_stages.h"
@@ -36,24 +35,31 @@ void LAMMPS_NS::run_to_tile(MPMField &field, P2G p2g, const PointRows &rows,
     return;
   }
   MPMFrame::ForceRows room;
-  const int nC = field.lattice.dim * field.lattice.dim;
-  for (bigint i = run.first; i < run.last; i += BATCH) {
-    const int n = (int) std::min<bigint>(BATCH, run.last - i);
-    PointRows b = rows;    // as if the batch were all
-    b.x += 3 * i;
-    b.v += 3 * i;
-    b.f += 3 * i;
-    if (b.C) b.C += nC * i;
-    if (b.F) b.F += 9 * i;
-    b.vol0 += i;
-    b.mass += i;
-    b.guarded -= (int) i;
-    b.tau += 6 * i;
-    if (b.size) b.size += 3 * i;
-    if (b.domain) b.domain += field.domains->size() * i;
-    frame.forces(b, (int) i, n, room);
-    p2g(b, step, 0, n, base, tile, box);
+  for (int i = run.first; i < run.last; i += BATCH) {
+    const int n = std::min(BATCH, run.last - i);
+    p2g(rows_with_forces(field, rows, i, n, room), step, 0, n, base, tile, box);
   }
+}
+
+PointRows LAMMPS_NS::rows_with_forces(const MPMField &field, const PointRows &rows, int first,
+                                      int n, MPMFrame::ForceRows &room)
+{
+  const int nC = field.lattice.dim * field.lattice.dim;
+  const bigint i = first;
+  PointRows b = rows;
+  b.x += 3 * i;
+  b.v += 3 * i;
+  b.f += 3 * i;
+  if (b.C) b.C += nC * i;
+  if (b.F) b.F += 9 * i;
+  b.vol0 += i;
+  b.mass += i;
+  b.guarded -= first;
+  b.tau += 6 * i;
+  if (b.size) b.size += 3 * i;
+  if (b.domain) b.domain += field.domains->size() * i;
+  field.frame->forces(b, first, n, room);
+  return b;
 }
 
 /* ---------------------------------------------------------------------- */

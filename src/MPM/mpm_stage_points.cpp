@@ -142,7 +142,7 @@ void MPMStages::update_stress(MPMField &field, const PointRows &r, const MPMPoin
   for (int p = 0; p < n && nhistory; p++)
     for (int k = 0; k < nhistory; k++) b.history[k][p] = h[nhistory * p + k];
 
-  material->material->update(b);
+  material->update_batch(b);
   if (material->watching) material->watch_ranges(b, first);
   if (field.time_limit->watch_volume) field.time_limit->note_volume_rate(b, first);
   if (!field.options.total && !material->material->uses_F()) field.batch_kernels->forget_shape(b);
@@ -152,7 +152,6 @@ void MPMStages::update_stress(MPMField &field, const PointRows &r, const MPMPoin
     if (bad && !(b.J[p] > 0.0)) continue;
     for (int k = 0; k < nhistory; k++) h[nhistory * p + k] = b.history[k][p];
   }
-  for (int k = 0; k < NWORK; k++) material->work[k] += b.work[k];
   if (field.options.delete_failed && material->damage >= 0)
     for (int p = 0; p < n; p++)
       if (b.history[material->damage][p] >= 1.0) field.guard->point_has_failed(first + p);

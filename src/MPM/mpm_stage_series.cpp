@@ -60,7 +60,6 @@ static void add_term(MPMField &field, int lane)
   auto &nodes = field.work.nodes;
   const auto &saved = field.work.node_velocities;
   MPMPointMap &map = *field.map;
-  const double before = field.ledger.on ? field.ledger.nodal_kinetic_energy(0) : 0.0;
   field.work.vectors.assign(3 * (std::size_t) field.atom->nmax, 0.0);
   const PointRows r = field.rows_at_rest(field.work.vectors.data(), field.rows().mass);
   const TransferStep s = field.step_data(0.0);
@@ -84,7 +83,6 @@ static void add_term(MPMField &field, int lane)
     for (int d = 0; d < 3; d++)
       record[NREAL * n + lane + d] += saved[3 * n + d] - nodes[NREAL * n + d] / m;
   }
-  if (field.ledger.on) field.ledger.transfer += field.ledger.nodal_kinetic_energy(0) - before;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -117,4 +115,7 @@ void MPMStages::fmpm(MPMPlan &plan)
       if (field->options.has_fmpm() && n <= field->options.order) add_term(*field, 0);
     plan.act_on_nodes(MPMNodeAction::AGAIN);
   }
+  for (auto *field : plan.fields)
+    if (field->options.has_fmpm() && field->ledger.on)
+      field->ledger.count_series(field->work.node_velocities);
 }

@@ -1,0 +1,370 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+//
+// labels: unit physics
+// mpi: 1 2
+
+// Each entry of the energy ledger against a closed form or a sum that the test makes itself, and the
+// balance of scenes in which many things happen at once.
+
+#include "mpm_lammps.h"
+
+using namespace MPM_TEST;
+
+enum {
+  KINETIC,
+  STORED,
+  PLASTIC,
+  VISCOUS,
+  HEAT,
+  EXTERNAL,
+  BOUNDARY,
+  CONTACT,
+  TRANSFER,
+  INTEGRATION,
+  RESIDUAL,
+  FRACTURE,
+  DELETED,
+  LAWS
+};
+
+static const std::string watch = "compute e all mpm/energy\nthermo_style custom step c_e c_e[*]\n";
+
+// ---------------------------------------------------------------------- transfers
+
+// Random velocities, and no stress at the start: in the first step a transfer is nothing but a projection,
+// v -> S S+ v for PIC with S+ = m^-1 S^T M, and f v + (1 - f) S S+ v for FLIP with the share f
+TEST(Transfer, LosesWhatTheProjectionRemoves)
+{
+  const std::pair<const char *, double> transfers[] = {
+      {"pic", 0.0}, {"flip 0.7", 0.7}, {"flip 1.0", 1.0}};
+  for (const auto &[transfer, flip] : transfers) {
+    SCOPED_TRACE(transfer);
+    Scene run(plane("si", "f f", "0 10 0 9") +
+              body("block 2.3 6.9 2.4 6.2 INF INF", "density 1.5 neohookean 10 0.3",
+                   std::string("1.0 transfer ") + transfer, "3") +
+              watch + "timestep 0.001\n");
+    run.set_velocity([](const double *x, double *v) {    // without order from point to point
+      for (int d = 0; d < 2; d++) v[d] = std::sin(1e4 * (d + 1) * x[0] + 3e4 * x[1] + d);
+    });
+    run.commands("run 0\n");
+    const auto before = run.gather();
+    double start = 0.0, end = 0.0;
+    std::map<std::array<int, 2>, std::array<double, 3>> nodes;    // momentum, mass
+    const auto each_node = [](const Scene::State &p, const auto &use) {
+      for (int i = std::floor(p.x[0]) - 1; i < p.x[0] + 2; i++)
+        for (int j = std::floor(p.x[1]) - 1; j < p.x[1] + 2; j++) {
+          const double N = bspline(2, p.x[0] - i) * bspline(2, p.x[1] - j);
+          if (N > 0.0) use(std::array<int, 2>{i, j}, N);
+        }
+    };
+    for (const auto &p : before) {
+      start += 0.5 * p.mass * (p.v[0] * p.v[0] + p.v[1] * p.v[1]);
+      each_node(p, [&](const auto &index, double N) {
+        auto &node = nodes[index];
+        for (int d = 0; d < 2; d++) node[d] += N * p.mass * p.v[d];
+        node[2] += N * p.mass;
+      });
+    }
+    for (const auto &p : before) {
+      double u[2] = {0.0, 0.0};
+      each_node(p, [&](const auto &index, double N) {
+        for (int d = 0; d < 2; d++) u[d] += N * nodes[index][d] / nodes[index][2];
+      });
+      for (int d = 0; d < 2; d++)
+        end += 0.5 * p.mass * std::pow(flip * p.v[d] + (1.0 - flip) * u[d], 2);
+    }
+    EXPECT_GT(start, 0.0);
+    run.commands("run 1\n");
+    const double *e = run.compute_vector(), tiny = 1e-12 * start;
+    EXPECT_NEAR(e[KINETIC], end, tiny);
+    EXPECT_NEAR(e[TRANSFER], end - start, tiny);
+    if (flip == 0.0) { EXPECT_LT(e[TRANSFER], -0.3 * start); }
+    for (int k : {EXTERNAL, BOUNDARY, CONTACT, DELETED}) EXPECT_EQ(e[k], 0.0);
+    EXPECT_NEAR(e[INTEGRATION], e[STORED], tiny);    // forces have not worked yet
+    EXPECT_NEAR(e[RESIDUAL], 0.0, tiny);
+  }
+}
+
+// ---------------------------------------------------------------------- walls
+
+// A point in the plane of a wall gives its nodes outside the mass of those inside, so that all of them move
+// with the wall (velocity V) at once: the impulse m (V - v) does the work m (V - v).V, and the collision
+// loses m |V - v|^2/2. With PIC the point then has this velocity.
+TEST(Wall, StopsALonePoint)
+{
+  const double v[2] = {0.7, -0.4}, mass = 3.0 * 0.25;
+  for (const double V : {0.0, 0.3, -0.1}) {
+    Scene run(plane("lj", "f f", "0 8 0 8") +
+              "fix grid all mpm 1.0 transfer pic\n"
+              "create_atoms 1 single 4.2 0.0 0.0 units box\n"
+              "set type 1 volume 0.25\nset type 1 mass 0.75\n");
+    run.commands(strprintf("fix m all mpm/material density 3.0 neohookean 1.0 0.3\n"
+                           "fix w all mpm/boundary ylo stick velocity 0 %g 0\n"
+                           "velocity all set 0.7 -0.4 0\ntimestep 0.001\n",
+                           V) +
+                 watch + "run 1\n");
+    const double dv[2] = {-v[0], V - v[1]};
+    const double *e = run.compute_vector();
+    EXPECT_NEAR(e[KINETIC], 0.5 * mass * V * V, 1e-14);
+    EXPECT_NEAR(e[BOUNDARY], mass * dv[1] * V, 1e-14);
+    EXPECT_NEAR(e[TRANSFER], -0.5 * mass * (dv[0] * dv[0] + dv[1] * dv[1]), 1e-14);
+    EXPECT_NEAR(e[RESIDUAL], 0.0, 1e-14);
+  }
+}
+
+// A piston that moves evenly does the work V.J with the impulse J, which is the momentum of a body that
+// nothing else touches
+TEST(Wall, PistonGivesMomentumTimesItsVelocity)
+{
+  for (const char *options : {"transfer apic", "transfer flip 1.0 scheme musl"}) {
+    Scene run(plane("lj", "f f", "0 6 0 16", 1, 0.3) +
+              body("block 1 5 0 6 INF INF", "density 2 neohookean 100 0.3",
+                   std::string("1.0 ") + options) +
+              "fix w all mpm/boundary ylo slip velocity 0 0.5 0\ntimestep 0.01\n"
+              "variable p equal mass(all)*vcm(all,y)\n" +
+              watch + "run 150\n");
+    const double p = run.variable("p"), *e = run.compute_vector();
+    EXPECT_GT(p, 10.0);
+    EXPECT_NEAR(e[BOUNDARY], 0.5 * p, 1e-12 * p);
+    EXPECT_NEAR(e[RESIDUAL], 0.0, 1e-12 * p);
+  }
+}
+
+// ---------------------------------------------------------------------- forces on points
+
+// A constant force on a body does force times path. In a step of symplectic Euler the path is that with the
+// new velocity, and the kinetic energy has the mean of old and new: they differ by F^2 dt^2/(2 m) in each step
+TEST(Force, WorkIsForceTimesPath)
+{
+  Scene run(plane("lj", "f f", "0 20 0 8", 1, 0.3) +
+            body("block 2 5 2 6 INF INF", "density 2 neohookean 100 0.3", "1.0 transfer apic") +
+            "fix f all addforce 0.2 0 0\ntimestep 0.01\nvelocity all set 0.3 0 0\n" +
+            "variable x equal xcm(all,x)\n" + watch + "run 0\n");
+  const double F = 0.2 * (int) run.lmp->atom->natoms, m = 2 * 12.0, x = run.variable("x");
+  run.commands("run 200\n");
+  const double path = run.variable("x") - x, expected = F * path - 200 * F * F * 1e-4 / (2.0 * m);
+  EXPECT_GT(path, 1.0);
+  const double *e = run.compute_vector();
+  EXPECT_NEAR(e[EXTERNAL], expected, 1e-11 * expected);
+  EXPECT_NEAR(e[RESIDUAL], 0.0, 1e-12 * expected);
+}
+
+// A body without strain is slowed down by -gamma v at each of its points: the velocity falls by the factor
+// 1 - gamma dt/m in each step, and the force takes all of what is lost
+TEST(Force, DampingTakesTheEnergy)
+{
+  Scene run(plane("lj", "f f", "0 20 0 8", 1, 0.3) +
+            body("block 2 5 2 6 INF INF", "density 2 neohookean 100 0.3", "1.0 transfer apic") +
+            "fix f all viscous 0.2\ntimestep 0.01\nvelocity all set 1.5 0 0\n" + watch +
+            "run 300\n");
+  const double start = 0.5 * 24.0 * 2.25, end = start * std::pow(1.0 - 0.2 * 0.01 / 0.5, 600);
+  const double *e = run.compute_vector();
+  EXPECT_NEAR(e[KINETIC], end, 1e-11 * start);
+  EXPECT_NEAR(e[EXTERNAL], end - start, 1e-11 * start);
+  EXPECT_NEAR(e[RESIDUAL], 0.0, 1e-12 * start);
+}
+
+// ---------------------------------------------------------------------- contact
+
+// A block slides on a slab that is held: friction takes mu N d, and gives half of m v0^2 less what is left. The
+// load comes on slowly, so that nothing bounces; 2 % is asked of friction in the benchmark of sliding blocks.
+SERIAL_TEST(Contact, FrictionTakesForceTimesPath)
+{
+  const double mu = 0.3, g = 2.0;
+  Scene run(
+      plane("si", "f f", "0 14 0 7", 2, 0.2) +
+      fields({{"slab", "block 0 14 0 2 INF INF"}, {"block", "block 2 5 2 4 INF INF"}},
+             "0.5 transfer apic") +
+      strprintf(
+          "fix m all mpm/material density 10 neohookean 1e5 0.3\n"
+          "fix c all mpm/contact F1 F2 law coulomb %g\nfix w all mpm/boundary ylo stick field F1\n"
+          "fix s all mpm/boundary xlo slip field F1\nfix t all mpm/boundary xhi slip field F1\n"
+          "variable load equal %g*((time<0.1)*time/0.1+(time>=0.1))\n"
+          "fix g block gravity v_load vector 0 -1 0\n"
+          "velocity block set 2.0 0 0\nfix dt all mpm/dt 0.4\n"
+          "variable x equal xcm(block,x)\n",
+          mu, g) +
+      watch + "run 0\n");
+  const auto go = [&](double until) {
+    while (run.evaluate("time") < until) run.commands("run 10 post no\n");
+  };
+  go(0.2);
+  const double x = run.variable("x"), work = run.compute_vector()[CONTACT];
+  go(0.8);
+  const double path = run.variable("x") - x, *e = run.compute_vector();
+  const double expected = -mu * 10.0 * 6.0 * g * path;
+  EXPECT_GT(path, 0.5);
+  EXPECT_NEAR(measured("work of friction / mu N d", (e[CONTACT] - work) / expected), 1.0, 0.02);
+  EXPECT_NEAR(e[RESIDUAL], 0.0, 1e-12 * 0.5 * 60.0 * 4.0);
+}
+
+// ---------------------------------------------------------------------- points that are deleted
+
+// A body without stress leaves the box and takes its kinetic energy with it
+TEST(Deleted, TakesItsKineticEnergy)
+{
+  Scene run(plane("lj", "f f", "0 12 0 8", 1, 0.3) +
+            body("block 8 10 3 6 INF INF", "density 2 neohookean 1.0 0.3", "1.0 bad delete") +
+            "velocity all set 1.5 0.5 0\ntimestep 0.02\nneigh_modify delay 0 every 1 check yes\n" +
+            watch + "run 0\n");
+  const double start = 0.5 * 12.0 * 2.5;
+  EXPECT_NEAR(run.compute_vector()[KINETIC], start, 1e-13);
+  run.commands("run 110\n");
+  const double *e = run.compute_vector(), left = (double) run.lmp->atom->natoms * 0.5;
+  EXPECT_GT(left, 0.0);
+  EXPECT_LT(left, 12.0);
+  EXPECT_NEAR(e[DELETED], -(12.0 - left) * 1.25, 1e-10);
+  EXPECT_NEAR(e[KINETIC], left * 1.25, 1e-10);
+  EXPECT_NEAR(e[RESIDUAL], 0.0, 1e-11);
+}
+
+// ---------------------------------------------------------------------- heat
+
+// A perfectly plastic bar hits a wall: the share beta of the plastic work becomes heat, and the plastic work
+// is the yield stress times the plastic strain times the volume, up to the change of the volume
+TEST(Heat, IsTheTaylorQuinneyShareOfThePlasticWork)
+{
+  const double Y = 1.0, beta = 0.8;
+  Scene run(plane("si", "f f", "0 8 0 12", 1, 0.3) +
+            body("block 2 6 0 8 INF INF",
+                 strprintf("density 1 eos linear 200 strength j2 100 %g "
+                           "thermal adiabatic 1.0 300 %g",
+                           Y, beta),
+                 "1.0 transfer apic") +
+            "fix w all mpm/boundary ylo slip\nvelocity all set 0 -1.0 0\ntimestep 0.005\n"
+            "compute p all mpm/atom eplastic\n"
+            "compute sum all reduce sum c_p\n" +
+            watch + "thermo_style custom step c_e c_e[*] c_sum\nrun 300\n");
+  const double *e = run.compute_vector();
+  const double expected = Y * 0.25 * run.evaluate("c_sum");
+  EXPECT_GT(e[PLASTIC], 1.0);
+  EXPECT_NEAR(e[HEAT], beta * e[PLASTIC], 1e-12 * e[PLASTIC]);
+  EXPECT_NEAR(measured("plastic work / Y eps V", e[PLASTIC] / expected), 1.0, 0.02);
+}
+
+// ---------------------------------------------------------------------- laws
+
+// What laws account for beyond the work of stress in the updates is the error of the trapezoidal rule, of
+// third order in the strain of a step: a body that vibrates for the same time has a quarter of it with half
+// of the time step. The same scenes have an integration error of first order, which is that of the scheme
+TEST(Laws, HaveTheWorkOfTheirStressToSecondOrder)
+{
+  for (const std::string law : {"neohookean 20 0.3", "eos linear 20 strength elastic 10"})
+    for (const std::string frame : {"updated", "total"}) {
+      double error[2];
+      for (int k = 0; k < 2; k++) {
+        Scene run(plane("lj", "f f", "0 12 0 12", 1, 0.3) +
+                  body("block 3 9 3 9 INF INF", "density 1 " + law,
+                       "1.0 transfer flip 1.0 frame " + frame) +
+                  watch + strprintf("timestep %g\n", k ? 0.01 : 0.02));
+        run.set_velocity([](const double *x, double *v) {
+          v[0] = 0.3 * (x[0] - 6.0) - 0.5 * (x[1] - 6.0);
+          v[1] = 0.1 * (x[1] - 6.0) + 0.2 * (x[0] - 6.0);
+        });
+        run.commands(strprintf("run %d\n", k ? 100 : 50));
+        const double *e = run.compute_vector();
+        EXPECT_GT(e[STORED], 0.5);
+        error[k] = measured(law + ", laws", e[LAWS] / e[STORED]);
+      }
+      EXPECT_NEAR(error[0] / error[1], 4.0, 0.4) << law;
+    }
+}
+
+// ---------------------------------------------------------------------- balance
+
+/** The largest residual in so many steps, by the energy in play, and the entries at the end. */
+static double largest_residual(Scene &run, int steps, std::vector<double> &e)
+{
+  double worst = 0.0, scale = 0.0;
+  for (int k = 0; k < steps / 10; k++) {
+    run.commands("run 10 post no\n");
+    const double *now = run.compute_vector();
+    e.assign(now, now + LAWS + 1);
+    worst = std::max(worst, std::fabs(e[RESIDUAL]));
+    scale = std::max(scale, e[KINETIC] + e[STORED]);
+  }
+  return worst / scale;
+}
+
+/** At the nodes where two blocks, the floor and a wall meet, friction of all of them acts one after the
+ *  other, and with FMPM again for each term. */
+static std::string corner(const std::string &lattice)
+{
+  return plane("si", "f f", "0 10 0 9", 2, 0.3) +
+      fields({{"one", "block 1 5 0.1 4 INF INF"}, {"two", "block 5 9 0.1 4 INF INF"}}, lattice) +
+      "fix m all mpm/material density 1 neohookean 100 0.3\n"
+      "fix c all mpm/contact F1 F2 law coulomb 0.3\n"
+      "fix floor all mpm/boundary ylo separate friction 0.4\n"
+      "fix left all mpm/boundary xlo separate friction 0.2\n"
+      "fix right all mpm/boundary xhi stick\n"
+      "velocity one set 0.5 -0.7 0\nvelocity two set -1.3 -0.4 0\ntimestep 0.01\n" +
+      watch;
+}
+
+TEST(Balance, HoldsWhereManyActOnANode)
+{
+  for (const char *options : {"transfer apic", "transfer flip 1.0", "transfer flip 0.9 scheme musl",
+                              "transfer xpic 3", "transfer fmpm 3"}) {
+    SCOPED_TRACE(options);
+    Scene run(corner(std::string("1.0 ") + options) +
+              "fix g all gravity 0.5 vector 0 -1 0\nrun 0 post no\n");
+    std::vector<double> e;
+    EXPECT_LT(measured(std::string(options) + ", residual", largest_residual(run, 200, e)), 1e-12);
+    for (int k : {EXTERNAL, BOUNDARY, CONTACT}) EXPECT_GT(std::fabs(e[k]), 0.01) << k;
+  }
+}
+
+// The same without stress and gravity: in the first step nothing but walls, contact and transfers is at work,
+// and no part of what they do to each other's impulses is taken for work of stress
+TEST(Balance, CollisionsAreNoWorkOfStress)
+{
+  for (const char *transfer : {"apic", "flip 1.0", "xpic 3", "fmpm 3"}) {
+    SCOPED_TRACE(transfer);
+    Scene run(corner(std::string("1.0 transfer ") + transfer) + "run 1\n");
+    const double *e = run.compute_vector(), tiny = 1e-12 * e[KINETIC];
+    EXPECT_GT(std::fabs(e[BOUNDARY]), 0.01);
+    EXPECT_GT(std::fabs(e[CONTACT]), 0.001);
+    EXPECT_NEAR(e[INTEGRATION], e[STORED], tiny);
+    EXPECT_NEAR(e[RESIDUAL], 0.0, tiny);
+  }
+}
+
+// Work of stress with the gradients, weights and stress of the forces on the nodes: in 2d and 3d, frames,
+// around an axis, with averages against locking, domains, modified functions at faces
+TEST(Balance, HoldsForAllFormsOfForces)
+{
+  const std::pair<int, const char *> cases[] = {
+      {3, "transfer apic"},
+      {3, "transfer apic stress gradient"},
+      {3, "shape cubic transfer flip 0.95 scheme usavg"},
+      {3, "transfer flip 0.95 frame total"},
+      {3, "shape cpdi transfer flip 0.95"},
+      {3, "transfer apic locking both"},
+      {2, "transfer apic frame total scheme musl"},
+      {2, "transfer flip 0.95 edges modified"},
+      {2, "transfer apic axisymmetric yes"},
+      {2, "transfer flip 0.95 axisymmetric yes frame total scheme musl"},
+      {2, "transfer apic locking pressure"},
+      {2, "transfer apic locking fbar"},
+      {2, "shape gimp transfer flip 0.95"},
+      {2, "shape linear transfer apic light 0.5"},
+      {2, "shape cpdi2 transfer flip 0.95 scheme musl"},
+      {2, "transfer polypic"}};
+  for (const auto &[dim, options] : cases) {
+    SCOPED_TRACE(options);
+    const bool axis = strstr(options, "axisymmetric");
+    Scene run(box(dim, "lj", "f f f", "0 8 0 8 0 8", 1, 0.3) +
+              body(dim == 3 ? "block 2 5 0.2 4 2 5" : "block 0 4 0.2 4 INF INF",
+                   "density 1 neohookean 100 0.3", std::string("1.0 ") + options) +
+              std::string(axis ? "fix a all mpm/boundary xlo slip\n" : "") +
+              "fix floor all mpm/boundary ylo slip\nfix g all gravity 0.5 vector 0 -1 0\n"
+              "velocity all set " +
+              (axis ? "0" : "0.4") + (dim == 3 ? " -0.7 0.2" : " -0.7 0") + "\ntimestep 0.01\n" +
+              watch + "run 0 post no\n");
+    std::vector<double> e;
+    EXPECT_LT(measured(std::string(options) + ", residual", largest_residual(run, 100, e)), 1e-12);
+    EXPECT_GT(std::fabs(e[EXTERNAL]), 0.05);
+    EXPECT_GT(e[STORED], 1e-3);
+  }
+}
