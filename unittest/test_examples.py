@@ -55,7 +55,7 @@ LOG_TOLERANCE = 1.0e-5         # another machine, compiler or version: what sums
 # columns that amplify round-off: of the range, and why
 CHAOTIC = {}
 
-STEPS = r"^run\s+(?!0\b).*"    # a command that takes steps
+STEPS = r"^run\s+(?!\s|0\b).*"    # a command that takes steps
 
 UNIMPORTANT = ["CPU", "S/CPU", "CPULeft", "Part"]
 

@@ -97,6 +97,12 @@ TEST(CookMembrane, LocksWithoutCure)
   EXPECT_LT(with.ripple, 0.6 * without.ripple);
 }
 
+// as asked: 3 % at h = 1
+TEST(CookMembrane, FineIsNearTheReference)
+{
+  EXPECT_NEAR(cook("locking fbar", 1.0, 0.4999).u / 6.953, 1.0, 0.03);
+}
+
 // both cures have the same stiffness, as long as the bulk modulus is uniform
 TEST(CookMembrane, PressureAgrees)
 {
