@@ -67,6 +67,7 @@ class Crossings {
 class SinglePoint : public ::testing::TestWithParam<const char *> {
  protected:
   double error_v, energy_min, energy_max, period;
+  double error_usl;    // against the recursion of USL, see TenPeriods
 
   void simulate(double dt)
   {
@@ -81,9 +82,17 @@ class SinglePoint : public ::testing::TestWithParam<const char *> {
     error_v = energy_max = 0.0;
     energy_min = 1.0e300;
     Crossings crossings;
+    const double E = 4.0 * PI * PI;
+    double v_usl = 0.1, strain = 0.0;
+    error_usl = 0.0;
     run.each_step([&](double **) {
       const double t = run.time();
       const double v = run.v()[0][0];
+      error_usl = std::max(error_usl, std::abs(v - v_usl));
+      const double a = -E * strain;
+      const double L = v_usl + dt * a / run.x()[0][0];    // N = x
+      strain += dt * L / (1.0 + 0.5 * dt * L);            // logarithmic, to third order
+      v_usl += dt * a;
       error_v = std::max(error_v, std::abs(v - 0.1 * cos(2.0 * PI * t)));
       crossings.add(t, v);
       const double energy = (run.sums().kinetic + run.stored_energy()) / 0.005;
@@ -105,7 +114,10 @@ TEST_P(SinglePoint, TenPeriods)
   measured("A1 period - 1", period - 1.0);
   if (GetParam() == std::string("usl")) {
     // the strain follows the node, whose velocity changes by 1/N = 2 times that of the point: this
-    // damps, e' = v - (1/N - 1) dt E e, E/E0 = exp(-(1/N - 1) dt E t)
+    // damps, e' = v - (1/N - 1) dt E e, E/E0 = exp(-(1/N - 1) dt E t) = 0.674 after ten periods. The
+    // velocity is then off by 18 %, and the 0.31 % of the other schemes cannot hold: what must be is the
+    // recursion of these two numbers, to the third order of the strain of a step, 1e-4, times 1e4 steps
+    EXPECT_LT(measured("A1 error against the recursion of USL", error_usl / 0.1), 1.0e-8);
     EXPECT_NEAR(energy_min, exp(-1.0e-3 * 4.0 * PI * PI * 10.0), 0.01);
     EXPECT_LT(energy_max, 1.0 + 1.3 * 0.00315);
     EXPECT_NEAR(period - 1.0, 0.0, 1.0e-5);
@@ -160,6 +172,85 @@ static Vibration vibrate(const std::string &options, int cells, int ppc, bool wa
           measured(name + "E/E0", (run.sums().kinetic + run.stored_energy()) / start)};
 }
 
+/** The same bar in a code of its own, one-dimensional and linear, without the package: points stay where
+ *  they are, nodes in rows, from -25 to 25 instead of a wall. Splines of the order, usl or musl; transfers
+ *  flip 1.0; apic with C = B/D and the force of the same moment, but for order 1; tpic with the gradient of
+ *  the functions in both. mode: of vibration, until: the end. Period, and energy at the end, of the points'
+ *  velocities and strains, over those of the continuum and of the start. */
+static Vibration independent(int order, const std::string &transfer, bool musl, int cells,
+                             int mode = 1, double until = 100.0)
+{
+  const double h = 25.0 / cells, E = 100.0, dt = 0.2 * h / 10.0, D = order == 2 ? 0.25 : 1.0 / 3.0;
+  const int n = 4 * cells, nodes = 2 * cells + 9, reach = order + 1;
+  const bool flip = transfer == "flip", gradient = transfer != "apic" || order == 1;
+  const double beta = (2 * mode - 1) * PI / 50.0;
+  struct Point {
+    double x, v, C, strain;
+    int node[4];
+    double w[4], g[4], r[4];    // function, gradient for strain and force, distance
+  };
+  std::vector<Point> points(n);
+  for (int p = 0; p < n; p++) {
+    auto &q = points[p];
+    q.x = (p + 0.5) * 0.5 * h - 25.0;
+    q.v = sin(beta * q.x);
+    q.C = flip ? 0.0 : beta * cos(beta * q.x);
+    q.strain = 0.0;
+    const double s = q.x / h;
+    const int first = (int) std::floor(s - 0.5 * (order - 1));
+    for (int k = 0; k < reach; k++) {
+      const double r = first + k - s;
+      q.node[k] = first + k + cells + 4;
+      q.r[k] = r * h;
+      q.w[k] = bspline(order, -r);
+      q.g[k] = gradient ? bspline_slope(order, -r) / h : q.w[k] * q.r[k] / (D * h * h);
+    }
+  }
+  const auto energy = [&]() {
+    double sum = 0.0;
+    for (const auto &q : points) sum += q.v * q.v + E * q.strain * q.strain;
+    return sum;
+  };
+  const double start = energy();
+  std::vector<double> m(nodes, 0.0), v(nodes), f(nodes), old(nodes);
+  for (const auto &q : points)
+    for (int k = 0; k < reach; k++) m[q.node[k]] += q.w[k];
+  const auto to_nodes = [&]() {
+    std::fill(v.begin(), v.end(), 0.0);
+    for (const auto &q : points)
+      for (int k = 0; k < reach; k++) v[q.node[k]] += q.w[k] * (q.v + (flip ? 0.0 : q.C * q.r[k]));
+    for (int i = 0; i < nodes; i++) v[i] = m[i] > 0.0 ? v[i] / m[i] : 0.0;
+  };
+  const auto steps = std::lround(until / dt);
+  Crossings crossings;
+  for (long step = 0; step < steps; step++) {
+    double sum = 0.0;
+    for (const auto &q : points) sum += q.v * sin(beta * q.x);
+    crossings.add(step * dt, sum);
+    to_nodes();
+    old = v;
+    std::fill(f.begin(), f.end(), 0.0);
+    for (const auto &q : points)
+      for (int k = 0; k < reach; k++) f[q.node[k]] -= E * q.strain * q.g[k];
+    for (int i = 0; i < nodes; i++)
+      if (m[i] > 0.0) v[i] += dt * f[i] / m[i];
+    for (auto &q : points) {
+      double in = 0.0, before = 0.0;
+      q.C = 0.0;
+      for (int k = 0; k < reach; k++) {
+        in += q.w[k] * v[q.node[k]];
+        before += q.w[k] * old[q.node[k]];
+        q.C += q.g[k] * v[q.node[k]];
+      }
+      q.v = flip ? q.v + in - before : in;
+    }
+    if (musl) to_nodes();
+    for (auto &q : points)
+      for (int k = 0; k < reach; k++) q.strain += dt * q.g[k] * v[q.node[k]];
+  }
+  return {crossings.period() * 10.0 * beta / (2.0 * PI), energy() / start};
+}
+
 struct VibrationCase {
   const char *options;
   int cells, ppc;
@@ -172,11 +263,10 @@ struct VibrationCase {
 };
 
 // Linear: an independent code, to 10 % of the period's deviation and 0.002 of the energy (FLIP
-// 0.99: 0.01). Others: the everyday gate of 0.5 % and 1 %. APIC pays per step for what the affine
-// field of a point does not hold: energy 0.991 (quadratic) and 0.985 (cubic) after 3200 steps.
-// Measured: TPIC 0.988, AFLIP 0.997, contiguous GIMP 0.998 with FLIP and 0.997 with APIC. The transfers
-// of a wave with kh = 0.098, 2 points per cell and without forces, take 2.2e-6 (APIC) and 3.0e-6
-// (TPIC) of the amplitude of the velocity per step: 0.9929 and 0.9905; USL takes the rest.
+// 0.99: 0.01). Others: the everyday gate of 0.5 % and 1 %, but for cubic APIC and TPIC, which pay per step
+// for what the affine field of a point does not hold: the code above, which has nothing of the package,
+// has lost more than 1 % after 3200 steps. Of splines, that number is asked, to a tenth of the gate. The transfers alone of a wave with kh = 0.098, 2 points per cell and without forces, take 2.2e-6
+// (APIC) and 3.0e-6 (TPIC) of the amplitude of the velocity per step: 0.9929 and 0.9905; USL takes the rest.
 static const VibrationCase vibrating_bar_cases[] = {
     {"shape linear transfer flip 1.0 scheme usl", 16, 2, 1.00133, 1.3e-4, .9962, .002},
     {"shape linear transfer flip 1.0 scheme musl", 16, 2, 1.00133, 1.3e-4, .9984, .002},
@@ -190,19 +280,76 @@ static const VibrationCase vibrating_bar_cases[] = {
     {"shape quadratic transfer apic", 16, 2, 1.0, .005, 1.0, .011},
     {"shape quadratic transfer pic", 16, 2, 0.0, 0.0, .01, .01},
     {"shape cubic transfer flip 1.0 scheme musl", 16, 2, 1.0, .005, 1.0, .01},
-    {"shape cubic transfer apic", 16, 2, 1.0, .005, .98, .02},
+    {"shape cubic transfer apic", 16, 2, 1.0, .005, 0.0, 0.0},
     {"shape gimp aspect 1 2 transfer flip 1.0 scheme musl", 16, 2, 1.0, .005, 1.0, .01},
     {"shape cpgimp aspect 1 2 transfer flip 1.0 scheme musl", 16, 2, 1.0, .005, 1.0, .01},
     {"shape cpgimp aspect 1 2 transfer apic", 16, 2, 1.0, .005, 1.0, .011},
     {"shape quadratic transfer aflip 1.0", 16, 2, 1.0, .005, 1.0, .01},
-    {"shape quadratic transfer tpic", 16, 2, 1.0, .005, .988, .004}};
+    {"shape quadratic transfer tpic", 16, 2, 1.0, .005, 0.0, 0.0}};
 
 PARAMETER_TEST(VibratingBar, TenPeriods, VibrationCase, ValuesIn(vibrating_bar_cases))
 {
   const auto &c = GetParam();
   const auto v = vibrate(c.options, c.cells, c.ppc, true);
-  EXPECT_NEAR(v.energy, c.energy, c.energy_tolerance);
+  if (c.energy > 0.0) { EXPECT_NEAR(v.energy, c.energy, c.energy_tolerance); }
+  const std::string options = c.options;
+  const auto has = [&](const char *word) {
+    return options.find(word) != std::string::npos;
+  };
+  Vibration expected = {0.0, 0.0};
+  if (!has("linear") && !has("gimp") && !has("pic") && !has("aflip")) {
+    expected = independent(has("cubic") ? 3 : 2, "flip", has("musl"), c.cells);
+  } else if (!has("linear") && !has("gimp") && (has("apic") || has("tpic"))) {
+    expected = independent(has("cubic") ? 3 : 2, has("tpic") ? "tpic" : "apic", false, c.cells);
+  }
+  if (expected.energy > 0.0) {
+    EXPECT_NEAR(v.energy, measured("A2 independent code: E/E0", expected.energy), 1.0e-4);
+    EXPECT_NEAR(v.period, measured("A2 independent code: T/T1", expected.period), 1.0e-4);
+  }
   if (c.period > 0.0) { EXPECT_NEAR(v.period, c.period, c.period_tolerance); }
+}
+
+/* ----------------------------------------------------------------------
+   A2, mode 10 in 64 cells, 6.7 cells in a wave, over 38 periods, by another code: period and energy over
+   the exact ones, 1.0295 and .958 (FLIP with MUSL), 1.0083 and 1.053 (APIC). Of the period, a tenth of the
+   deviation; the energy of a leapfrog scheme is 1 +- omega dt/2 = 1 +- .047 by its phase, and a tenth of
+   the deviation, over 38 periods, is any phase. The code above is asked to four digits.
+------------------------------------------------------------------------- */
+
+TEST(VibratingBarModeTen, PeriodAndEnergy)
+{
+  const double h = 25.0 / 64, beta = 19.0 * PI / 50.0, v0 = 1.0e-5, dt = 0.02 * h;
+  for (const bool apic : {false, true}) {
+    const std::string options =
+        std::string("shape linear transfer ") + (apic ? "apic" : "flip 1.0 scheme musl");
+    Scene run;
+    setup(run,
+          {h, 0.0, 25.0, 0.0, 25.0 + 4.0 * h, options, "fix wall all mpm/boundary xlo stick\n"});
+    run.set_velocity([=](const double *x, double *v) {
+      v[0] = v0 * sin(beta * x[0]);
+    });
+    run.commands("run 0\n");
+    for (int i = 0; i < run.n() && apic; i++)
+      run.affine()[i][0] = v0 * beta * cos(beta * run.x()[i][0]);
+    const double start = run.sums().kinetic;
+    Crossings crossings;
+    run.each_step([&](double **) {
+      double q = 0.0;
+      for (int i = 0; i < run.n(); i++) q += run.v()[i][0] * sin(beta * run.reference(i)[0]);
+      crossings.add(run.time(), q);
+    });
+    run_steps(run, dt, std::lround(20.0 / dt));
+    const std::string name = "A2 mode 10, " + options + ": ";
+    const double period = measured(name + "T/T10", crossings.period() * 10.0 * beta / (2.0 * PI));
+    const double energy =
+        measured(name + "E/E0", (run.sums().kinetic + run.stored_energy()) / start);
+    const double deviation = apic ? .0083 : .0295;
+    EXPECT_NEAR(period - 1.0, deviation, 0.1 * deviation);
+    EXPECT_NEAR(energy, apic ? 1.053 : .958, .002 + 0.5 * 10.0 * beta * dt);
+    const auto other = independent(1, apic ? "apic" : "flip", !apic, 64, 10, 20.0);
+    EXPECT_NEAR(period, measured("A2 independent code: T/T10", other.period), 1.0e-4);
+    EXPECT_NEAR(energy, measured("A2 independent code: E/E0", other.energy), 2.0e-3);
+  }
 }
 
 // a wall is the same thing as symmetry
@@ -231,9 +378,15 @@ struct Impact {
   bool equal;
 };
 
-static void collide(const std::string &options, const Impact &c)
+//
+// Linear functions: a point that goes through a face of a cell changes the forces on the nodes by up to half
+// of its stress (A4), so that nothing can be asked to 2 % where the bars move by cells. Unequal bars do, by
+// 1.5 cells at these velocities; at a tenth of them, with the same answer, no point crosses a face.
+static void collide(const std::string &options, Impact c)
 {
   SCOPED_TRACE(strprintf("second bar: length %g, modulus %g", c.length2, c.E2));
+  if (options.find("linear") != std::string::npos && !c.equal)
+    for (double *v : {&c.v1, &c.v2, &c.v1_after, &c.v2_after, &c.plateau}) *v *= 0.1;
   const double h = 0.01;    // bar 1 from -1 to 0, then bar 2
   Scene run;
   setup(run, {h, -1.0, 0.0, -1.5, c.length2 + 0.5, options});
@@ -266,7 +419,9 @@ static void collide(const std::string &options, const Impact &c)
         for (int i = 0; i < run.n(); i++)
           if (std::abs(run.x()[i][0]) < 0.3) {
             sum += run.points().tau[i][0] / run.points().jacobian(i);
-            lowest = std::min(lowest, run.points().tau[i][0] / run.points().jacobian(i));
+            // where moduli meet, points of one material have strain of the other
+            if (c.E2 == 100.0 || std::abs(run.x()[i][0]) > 2.0 * h)
+              lowest = std::min(lowest, run.points().tau[i][0] / run.points().jacobian(i));
             n++;
           }
         stress += sum / n;
@@ -281,18 +436,13 @@ static void collide(const std::string &options, const Impact &c)
   for (const int type : {1, 2}) {
     const auto body = run.sums(type);
     measured(name + strprintf("v%d after (exact %g)", type, v_after[type]), body.p[0] / body.mass);
-    EXPECT_NEAR(body.p[0] / body.mass / speed, v_after[type] / speed,
-                c.equal || name.find("linear") == std::string::npos ? 0.02 : 0.05);
+    EXPECT_NEAR(body.p[0] / body.mass / speed, v_after[type] / speed, 0.02);
   }
-  // linear functions lose 5 % where points cross cells, which they do unless the bars are equal
-  const bool smooth = c.equal || name.find("linear") == std::string::npos;
-  EXPECT_NEAR(measured(name + "interface stress/exact", stress / samples / c.plateau), 1.0,
-              smooth ? 0.02 : 0.06);
+  EXPECT_NEAR(measured(name + "interface stress/exact", stress / samples / c.plateau), 1.0, 0.02);
+  // 15 %, without viscosity, is for APIC. FLIP damps nothing: the front of a step in a chain of masses and
+  // springs is an integral of the Airy function, whose maximum is 1.2743 however fine the chain is
   const double overshoot = measured(name + "extreme stress of a point/exact", lowest / c.plateau);
-  if (c.E2 == 100.0 && smooth) {
-    // FLIP damps nothing: 1.27 is the overshoot of a chain of masses and springs
-    EXPECT_LT(overshoot, name.find("apic") == std::string::npos ? 1.27 : 1.15);
-  }
+  EXPECT_LT(overshoot, name.find("apic") == std::string::npos ? 1.2743 : 1.15);
   if (c.equal) {
     // kinetic energy of points: APIC has a part of it, within the width of the fronts, in C
     EXPECT_LT(measured(name + "error of KE/KE0", worst),
@@ -327,13 +477,17 @@ class FineBar {
   std::vector<std::vector<double>> u;
 
  public:
-  double energy = 0.0;    // stored at the start, per cross-section
+  double energy = 0.0;    // at the start, stored or kinetic, per cross-section
 
-  FineBar(double dt, int steps)
+  /** moving: from the undeformed bar, with the velocity of a quarter of a period before. */
+  FineBar(double dt, int steps, bool moving)
   {
     const double H = 1.0 / N;
     std::vector<double> now(N + 1), v(N + 1, 0.0), f(N + 1);
-    for (int k = 0; k <= N; k++) now[k] = GALILEAN_A * cos(PI * k * H);
+    for (int k = 0; k <= N; k++)
+      (moving ? v : now)[k] = GALILEAN_A * cos(PI * k * H) * (moving ? 10.0 * PI : 1.0);
+    for (int k = 0; k <= N && moving; k++)
+      energy += 0.5 * v[k] * v[k] * (k == 0 || k == N ? 0.5 * H : H);
     for (int k = 0; k < N; k++) {
       const double F = 1.0 + (now[k + 1] - now[k]) / H;
       energy += H * 0.5 * GALILEAN_E * (0.5 * (F * F - 1.0) - log(F));
@@ -375,14 +529,20 @@ static Galilean galilean_bar(const std::string &options, int cells, double V)
   // one time step for all V: dissipation per step must not look like an effect of V
   const double A = GALILEAN_A, h = 1.0 / cells, dt = 0.2 * h / (10.0 + 5.0);
   const int steps = std::lround(1.0 / dt);
-  static std::map<int, FineBar> exact;
-  if (!exact.count(cells)) exact.emplace(cells, FineBar(dt, steps));
-  const FineBar &fine = exact.at(cells);
+  const bool moving = options.find("total") != std::string::npos;    // which must begin undeformed
+  static std::map<std::pair<int, bool>, FineBar> exact;
+  if (!exact.count({cells, moving}))
+    exact.emplace(std::make_pair(cells, moving), FineBar(dt, steps, moving));
+  const FineBar &fine = exact.at({cells, moving});
 
   Scene run;
   setup(run, {h, 0.0, 1.0, -0.5, 6.5, options, "", GALILEAN_E, "neohookean"});
   for (int i = 0; i < run.n(); i++) {
     const double X = run.x()[i][0], F = 1.0 - A * PI * sin(PI * X);
+    if (moving) {
+      run.v()[i][0] = V + A * 10.0 * PI * cos(PI * X);
+      continue;
+    }
     run.x()[i][0] += A * cos(PI * X);
     run.v()[i][0] = V;
     run.points().F[i][0] = F;
@@ -410,7 +570,7 @@ static Galilean galilean_bar(const std::string &options, int cells, double V)
 
 TEST(FineBar, IsNearTheLinearSolution)
 {
-  FineBar bar(0.05, 20);
+  FineBar bar(0.05, 20, false);
   EXPECT_NEAR(bar.energy, 0.25 * pow(GALILEAN_A * 10.0 * PI, 2), 0.02 * bar.energy);
   for (const int step : {0, 1, 2, 3, 4}) {
     const double exact = GALILEAN_A * cos(PI * 0.3) * cos(10.0 * PI * 0.05 * step);
@@ -427,7 +587,10 @@ PARAMETER_TEST(GalileanBar, ErrorDoesNotDependOnVelocity, const char *,
                       "shape cpgimp aspect 1 2 transfer apic",
                       "shape cpdi aspect 1 2 transfer flip 1.0 scheme musl",
                       "shape cpdi2 aspect 1 2 transfer apic", "shape quadratic transfer aflip 1.0",
-                      "shape quadratic transfer tpic"))
+                      "shape quadratic transfer tpic",
+                      "shape linear transfer flip 1.0 scheme musl frame total",
+                      "shape quadratic transfer flip 1.0 scheme musl frame total",
+                      "shape quadratic transfer apic frame total"))
 {
   const auto at_rest = galilean_bar(GetParam(), 40, 0.0);
   const auto slow = galilean_bar(GetParam(), 40, 1.0);

@@ -297,63 +297,101 @@ PARAMETER_TEST(StressedPatch, InteriorStaysUniform, const char *,
 
 /* ----------------------------------------------------------------------
    ten turns of a stressed block, driven by the nodes: each point ends where it began, with the
-   stress it began with (pitfalls 1 and 13), and J = 1
+   stress it began with (pitfalls 1 and 13), and J is constant
 ------------------------------------------------------------------------- */
 
 struct RotationCase {
   int dim;
-  const char *options;
-  friend void PrintTo(const RotationCase &c, std::ostream *out) { *out << c.options; }
+  const char *options, *law;
+  friend void PrintTo(const RotationCase &c, std::ostream *out) { *out << c.options << c.law; }
 };
 
+static const char *const hypoelastic = "linear 1000 0.3";
+static const char *const plastic =
+    "eos linear 833.33333333333333 strength j2 384.61538461538462 10";
+static const char *const rubber = "neohookean 1000 0.3";
+
 static const RotationCase driven_rotation_cases[] = {
-    {2, "shape quadratic transfer apic"},
-    {3, "shape quadratic transfer apic"},
-    {3, "shape linear transfer flip 1.0 scheme musl"},
-    {3, "shape cubic transfer pic scheme usf"}};
+    {2, "shape quadratic transfer apic", hypoelastic},
+    {3, "shape quadratic transfer apic", hypoelastic},
+    {3, "shape linear transfer flip 1.0 scheme musl", hypoelastic},
+    {3, "shape cubic transfer pic scheme usf", hypoelastic},
+    {2, "shape quadratic transfer apic", plastic},
+    {3, "shape quadratic transfer apic", plastic},
+    {3, "shape linear transfer flip 1.0 scheme musl", plastic},
+    {2, "shape quadratic transfer apic", rubber},
+    {3, "shape quadratic transfer apic", rubber},
+    {3, "shape linear transfer flip 1.0 scheme musl", rubber}};
 
 PARAMETER_TEST(DrivenRotation, TenTurns, RotationCase, ValuesIn(driven_rotation_cases))
 {
   const auto &c = GetParam();
   Scene run(box(c.dim, "si", "f f f", "-6 6 -6 6 -6 6", 1, 0.3) +
             body(strprintf("block -1 2 -1 1 %s", c.dim == 2 ? "INF INF" : "-1 1"),
-                 "density 1.0 linear 1000 0.3", strprintf("1.0 %s dtcheck no", c.options)) +
+                 std::string("density 1.0 ") + c.law, strprintf("1.0 %s dtcheck no", c.options)) +
             strprintf("region everything block -50 50 -50 50 -50 50\n"
                       "fix turn all mpm/boundary region everything stick rotate 0.3 -0.2 0 %s 1.0\n"
                       "timestep %.17g\n",
                       c.dim == 2 ? "0 0 1" : "0.36 0.48 0.8", 2.0 * PI / 100.0));
   run.set_reference();
-  const double s0[6] = {3.0, -1.0, 0.5, 0.7, c.dim == 2 ? 0.0 : -0.4, c.dim == 2 ? 0.0 : 0.2};
+  const double deep = c.dim - 2;
+  double s0[6] = {3.0, -1.0, 0.5, 0.7, -0.4 * deep, 0.2 * deep};
+  if (c.law == plastic)
+    s0[2] = -s0[0] - s0[1];    // below its yield stress, without pressure, as J = 1
+  double F0[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  if (c.law == rubber) {    // which has its stress from F
+    const double stretch[9] = {1.003,  0.001,         -0.0006 * deep,
+                               0.0005, 0.998,         0.0004 * deep,
+                               0.0,    0.0003 * deep, 1.0 + 0.0005 * deep};
+    std::copy(stretch, stretch + 9, F0);
+  }
+  const double J0 = F0[0] * (F0[4] * F0[8] - F0[5] * F0[7]) -
+      F0[1] * (F0[3] * F0[8] - F0[5] * F0[6]) + F0[2] * (F0[3] * F0[7] - F0[4] * F0[6]);
+  if (c.law == rubber) {
+    const double lambda = 1000.0 * 0.3 / (1.3 * 0.4), mu = 1000.0 / 2.6;
+    const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
+    for (int k = 0; k < 6; k++) {
+      s0[k] = k < 3 ? lambda * log(J0) - mu : 0.0;
+      for (int d = 0; d < 3; d++) s0[k] += mu * F0[3 * row[k] + d] * F0[3 * column[k] + d];
+    }
+  }
   const double trace0 = s0[0] + s0[1] + s0[2];
   double norm0 = 0.0;
   for (int k = 0; k < 6; k++) norm0 += (k < 3 ? 1.0 : 2.0) * s0[k] * s0[k];
-  for (int i = 0; i < run.n(); i++)
+  for (int i = 0; i < run.n(); i++) {
     for (int k = 0; k < 6; k++) run.points().tau[i][k] = s0[k];
+    for (int k = 0; k < 9; k++) run.points().F[i][k] = F0[k];
+  }
   double error_J = 0.0, error_invariants = 0.0, turned = 0.0;
   run.each_step([&](double **) {
     for (int i = 0; i < run.n(); i++) {
       const double *s = run.points().tau[i];
       double norm = 0.0;
       for (int k = 0; k < 6; k++) norm += (k < 3 ? 1.0 : 2.0) * s[k] * s[k];
-      error_J = std::max(error_J, std::abs(run.points().jacobian(i) - 1.0));
+      error_J = std::max(error_J, std::abs(run.points().jacobian(i) - J0));
       error_invariants = std::max(error_invariants, std::abs(s[0] + s[1] + s[2] - trace0));
       error_invariants = std::max(error_invariants, std::abs(sqrt(norm) - sqrt(norm0)));
       turned = std::max(turned, std::abs(s[0] - s0[0]));
     }
   });
   run.commands("run 1000\n");
-  double error_x = 0.0, error_s = 0.0;
+  double error_x = 0.0, error_s = 0.0, error_F = 0.0;
   for (int i = 0; i < run.n(); i++) {
+    for (int k = 0; k < 9; k++) error_F = std::max(error_F, std::abs(run.points().F[i][k] - F0[k]));
     for (int d = 0; d < 3; d++)
       error_x = std::max(error_x, std::abs(run.x()[i][d] - run.reference(i)[d]));
     for (int k = 0; k < 6; k++)
       error_s = std::max(error_s, std::abs(run.points().tau[i][k] - s0[k]));
   }
+  // after 1000 steps of 0.06 rad, round-off alone: 1e-10 of the stress, and of the modulus for rubber,
+  // whose stress of 1e-3 of it is what J and F leave
   EXPECT_GT(turned, 1.0);
-  EXPECT_LT(measured("driven rotation, |J - 1|", error_J), 1.0e-11);
+  EXPECT_LT(measured("driven rotation, |J - J0|", error_J), 1.0e-11);
   EXPECT_LT(measured("driven rotation, error of position", error_x), 1.0e-11);
-  EXPECT_LT(measured("driven rotation, error of stress", error_s), 1.0e-9);
-  EXPECT_LT(measured("driven rotation, error of invariants", error_invariants), 1.0e-9);
+  EXPECT_LT(measured("driven rotation, error of F", error_F), 1.0e-11);
+  const double scale = c.law == rubber ? 1000.0 : sqrt(norm0);
+  EXPECT_LT(measured("driven rotation, error of stress", error_s / scale), 1.0e-10);
+  EXPECT_LT(measured("driven rotation, error of invariants", error_invariants / scale), 1.0e-10);
 }
 
 /* --------------------- C1: two elastic disks collide (Sulsky, Chen, Schreyer 1994, section 7.3) */
@@ -362,6 +400,7 @@ struct DisksCase {
   const char *options;
   double energy_low, energy_high;      // E/E0 at t = 3.5
   double kinetic_low, kinetic_high;    // KE/KE0 at t = 3.5
+  const char *law = "linear";
   friend void PrintTo(const DisksCase &c, std::ostream *out) { *out << c.options; }
 };
 
@@ -370,7 +409,7 @@ fix grid all mpm 0.05 MPM_OPTIONS
 )" +
     bodies({{"one", "cylinder z 0.2 0.2 0.2 INF INF"}, {"two", "cylinder z 0.8 0.8 0.2 INF INF"}}) +
     R"(
-fix rubber all mpm/material density 1000 linear 1000 0.3
+fix rubber all mpm/material density 1000 MPM_LAW 1000 0.3
 velocity one set 0.1 0.1 0
 velocity two set -0.1 -0.1 0
 timestep 0.001
@@ -382,12 +421,15 @@ timestep 0.001
 // 2.408 + .187, 2.271 + .337, .857, .043, .279. Law `linear' is in the rate of the Kirchhoff
 // stress, stiffer at the compression of 15 % of this impact, and gives E/E0 .999, .999, .834,
 // .055, .299. Quadratic MUSL has KE/KE0 = .855, .885, .871 with 20, 40, 80 cells (the table's law .873,
-// .905, .898; neohookean .869, .905, .901), so that 20 cells are too few for the gate, see Refined.
+// .905, .898; neohookean .869, .905, .901): with law `linear', 20 cells are too few for the gate, which
+// neohookean passes there, and which is asked of all with 40 cells, see Refined. Cubic functions, 16 nodes
+// in the two halves of a disk of 8 cells, leave more in vibrations: .815 (neohookean .847) with 20 cells.
 // Linear USL is missing: see is_sound(), points pass exactly through nodes here.
 static const DisksCase two_disks_cases[] = {
     {"shape linear transfer flip 1.0 scheme musl", .985, 1.015, .86, .94},
     {"shape quadratic transfer flip 1.0 scheme musl", .985, 1.015, .85, .94},
     {"shape cubic transfer flip 1.0 scheme musl", .985, 1.015, .80, .94},
+    {"shape quadratic transfer flip 1.0 scheme musl", .985, 1.015, .86, .94, "neohookean"},
     {"shape quadratic transfer flip 1.0 scheme usl", .93, .99, .80, .90},
     {"shape linear transfer flip 0.99 scheme musl", .82, .87, .76, .90},
     {"shape linear transfer pic", .03, .065, .03, .065},
@@ -397,7 +439,7 @@ static const DisksCase two_disks_cases[] = {
 PARAMETER_TEST(TwoDisks, Collision, DisksCase, ValuesIn(two_disks_cases))
 {
   const auto &c = GetParam();
-  Scene run(replaced(two_disks, "MPM_OPTIONS", c.options));
+  Scene run(replaced(replaced(two_disks, "MPM_OPTIONS", c.options), "MPM_LAW", c.law));
   ASSERT_EQ(run.n(), 416);
   const double start = run.sums().kinetic;
   EXPECT_NEAR(start, 2.6, 1.0e-10);    // of the lattice of 416 points
@@ -416,7 +458,7 @@ PARAMETER_TEST(TwoDisks, Collision, DisksCase, ValuesIn(two_disks_cases))
   });
   run.commands("run 3500\n");
   const double kinetic = run.sums().kinetic, stored = run.stored_energy();
-  const std::string name = strprintf("C1 %s: ", c.options);
+  const std::string name = strprintf("C1 %s %s: ", c.options, c.law);
   measured(name + "KE end", kinetic);
   measured(name + "SE end", stored);
   measured(name + "KE min", lowest);
@@ -441,17 +483,19 @@ PARAMETER_TEST(TwoDisks, Collision, DisksCase, ValuesIn(two_disks_cases))
 
 TEST(TwoDisks, Refined)
 {
-  Scene run;
-  std::string scene = replaced(two_disks, "MPM_OPTIONS", "transfer flip 1.0 scheme musl");
-  scene = replaced(scene, "mpm 0.05", "mpm 0.025");
-  run.commands(replaced(scene, "timestep 0.001", "timestep 0.0005"));
-  const double start = run.sums().kinetic;
-  run.commands("run 7000\n");
-  const double kinetic = run.sums().kinetic;
-  const double ratio = measured("C1 quadratic, 40 cells: KE/KE0", kinetic / start);
-  EXPECT_GT(ratio, 0.86);
-  EXPECT_LT(ratio, 0.94);
-  EXPECT_NEAR((kinetic + run.stored_energy()) / start, 1.0, 0.015);
+  for (const char *shape : {"quadratic", "cubic"}) {
+    std::string scene = replaced(two_disks, "MPM_OPTIONS",
+                                 strprintf("shape %s transfer flip 1.0 scheme musl", shape));
+    scene = replaced(replaced(scene, "MPM_LAW", "linear"), "mpm 0.05", "mpm 0.025");
+    Scene run(replaced(scene, "timestep 0.001", "timestep 0.0005"));
+    const double start = run.sums().kinetic;
+    run.commands("run 7000\n");
+    const double kinetic = run.sums().kinetic;
+    const double ratio = measured(strprintf("C1 %s, 40 cells: KE/KE0", shape), kinetic / start);
+    EXPECT_GT(ratio, 0.86);
+    EXPECT_LT(ratio, 0.94);
+    EXPECT_NEAR((kinetic + run.stored_energy()) / start, 1.0, 0.015);
+  }
 }
 
 /* ----------------------------------------------------------------------
@@ -512,8 +556,10 @@ TEST(LedgerOnOff, SameTrajectory)
     SCOPED_TRACE(options);
     const char *go = "run 1900\n";    // into the collision
     Scene off, on;
-    off.commands(replaced(two_disks, "MPM_OPTIONS", options) + go);
-    on.commands(replaced(two_disks, "MPM_OPTIONS", options) + "compute e all mpm/energy\n" + go);
+    const std::string scene =
+        replaced(replaced(two_disks, "MPM_OPTIONS", options), "MPM_LAW", "linear");
+    off.commands(scene + go);
+    on.commands(scene + "compute e all mpm/energy\n" + go);
     const auto a = off.gather(), b = on.gather();
     double error = 0.0;
     for (std::size_t k = 0; k < a.size(); k++)
