@@ -385,6 +385,7 @@ FixMPMBoundary::Face::Face(const MPMField &field, const Domain &box, int face) :
   plane = (int) std::lround((x - origin) / h);
   const double plane_x = origin + plane * h;
   if (fabs(x - plane_x) > ON_SURFACE * h) cut_weights(field, x);
+  contact = contact_of(field, x);
 }
 
 FixMPMBoundary::Faces FixMPMBoundary::faces_on_lattice(const MPMField &field) const
@@ -512,7 +513,7 @@ void FixMPMBoundary::FieldNodes::list_line(int f, const int *index)
     k[face.axis] = along;
     return field->grid.locate(k);
   };
-  Line line = {f, FREE, {}};
+  Line line = {f, FREE, true, {}};
   if (face.cut) {
     for (int j = 0; j < face.nweight; j++) {
       line.node[j] = at(face.first + j);
@@ -814,6 +815,7 @@ void FixMPMBoundary::act(double dt, Stage stage)
   for (auto &list : nodes) {
     const auto &faces = list.faces;
     auto &ledger = list.field->ledger;
+    if (count && kind == SEPARATE) find_gaps(list);
     now = {count, stage == MAPPED_BACK || stage == AGAIN, ledger.on, 0.0, 0.0, 0.0};
     if (count && wall.uniform && !list.field->kernel.affine)
       now.old_share = list.field->options.flip;
@@ -995,7 +997,8 @@ void FixMPMBoundary::act_on_column(const FieldNodes &list, Line &column)
   double needed = 0.0;
   for (int d = 0; d < dim; d++)
     if (d != a) needed += to_stick[d] * to_stick[d];
-  const double slide = slide_share(column.contact, face.inward * to_stick[a], sqrt(needed));
+  const double push = column.touched ? face.inward * to_stick[a] : 0.0;
+  const double slide = slide_share(column.contact, push, sqrt(needed));
   if (column.contact == FREE) return;
   for (int d = 0; d < dim; d++) prescribed.share[d] = d == a ? 1.0 : slide;
   project(grid, &plane, 1, true, prescribed);

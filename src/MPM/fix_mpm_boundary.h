@@ -18,6 +18,7 @@ FixStyle(mpm/boundary,FixMPMBoundary);
 #include "declare/option.h"
 #include "fix.h"
 #include "mpm_node_action.h"
+#include "mpm_wall_gap.h"
 
 #include <cstdint>
 #include <string>
@@ -82,9 +83,11 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
     bool cut = false;    // lies between planes: nweight nodes from first on make the velocity there
     int first = 0, nweight = 0;
     double weight[4];
+    MPMWallContact contact;    // of material that touches it
 
     Face(const MPMField &, const Domain &, int face);
     void cut_weights(const MPMField &, double x);
+    MPMWallContact contact_of(const MPMField &, double x) const;
   };
   using Faces = std::vector<Face>;
   enum Contact { FREE, SLIDING, STUCK };    // what a wall does to a line or node
@@ -94,6 +97,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   struct Line {
     int face;    // index into faces
     Contact contact;
+    bool touched;    // separate: by the surface of the material in this step
     int64_t node[1 + 2 * DEPTH];
   };
   struct Member {
@@ -159,6 +163,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   double impulse[6] = {};     // on the body, with its moment, in the last step: this rank's share
   double dt_last = 0.0;
   bool reaction_known = true;
+  MPMWallGap gap;
   bool warned = false;        // of a region that is too fast
   double reaction[6] = {};    // force and, of regions, torque
 
@@ -178,6 +183,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   void list_face_nodes(FieldNodes &);
   void list_region_nodes(FieldNodes &);
   void update_motion(double dt);
+  void find_gaps(FieldNodes &);
   void check_speed(double dt);
   double slide_share(Contact &, double push, double needed) const;
   void set_velocity(MPM_NS::Grid &, int64_t node, const double *v, const double *old);
