@@ -661,10 +661,23 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
       if (!inside) continue;
       Single s = {first_node + n};
       if (kind != STICK || region->varshape) surface.normal(x, 1.0e-4 * h, s.normal);
-      if (region->varshape) s.distance = surface.distance(x);
+      if (region->varshape || kind == SEPARATE) s.distance = surface.distance(x);
       list.singles.push_back(s);
     }
   }
+}
+
+/* ----------------------------------------------------------------------
+   distance of a position at the start of the step from the region then. The region is where it will be at
+   the end: the position is moved with it
+------------------------------------------------------------------------- */
+
+double FixMPMBoundary::distance_from_region(const MPMField &field, const double *x, double dt) const
+{
+  double y[3], v[3] = {0.0, 0.0, 0.0};
+  if (region_moves()) wall.velocity(x, v);
+  for (int d = 0; d < 3; d++) y[d] = x[d] + dt * v[d];
+  return Surface{region, field.lattice.dim, FAR * field.lattice.h}.distance(y);
 }
 
 /* ----------------------------------------------------------------------
@@ -702,10 +715,15 @@ FixMPMBoundary::Wall FixMPMBoundary::Wall::at_end_of_step(double dt) const
 
 void FixMPMBoundary::Wall::velocity(const MPMField &field, int64_t node, double *v) const
 {
+  double x[3];
+  if (!uniform) field.grid.node_position(node, x);
+  velocity(x, v);
+}
+
+void FixMPMBoundary::Wall::velocity(const double *x, double *v) const
+{
   MathExtra::copy3(shift, v);
   if (uniform) return;
-  double x[3];
-  field.grid.node_position(node, x);
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) v[i] += gradient[i][j] * (x[j] - origin[j]);
 }
@@ -815,7 +833,7 @@ void FixMPMBoundary::act(double dt, Stage stage)
   for (auto &list : nodes) {
     const auto &faces = list.faces;
     auto &ledger = list.field->ledger;
-    if (count && kind == SEPARATE) find_gaps(list);
+    if (count && kind == SEPARATE) find_gaps(list, dt);
     now = {count, stage == MAPPED_BACK || stage == AGAIN, ledger.on, 0.0, 0.0, 0.0};
     if (count && wall.uniform && !list.field->kernel.affine)
       now.old_share = list.field->options.flip;
@@ -1046,7 +1064,8 @@ void FixMPMBoundary::act_on_single(const FieldNodes &list, Single &single)
       slide[d] = r[d] - V[d] - normal * n[d];
       length += slide[d] * slide[d];
     }
-    const double keep = 1.0 - slide_share(single.contact, -normal, sqrt(length));
+    const double push = single.touched ? -normal : 0.0;
+    const double keep = 1.0 - slide_share(single.contact, push, sqrt(length));
     if (single.contact == FREE) return;
     for (int d = 0; d < dim; d++) v[d] = V[d] + keep * slide[d];
   }

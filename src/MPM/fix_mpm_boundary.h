@@ -115,8 +115,9 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
     int64_t node;
     double normal[3] = {0.0, 0.0, 0.0};    // from the wall to the body; zero: not known
     double growth = 0.0;      // speed of the surface of a region that changes its shape
-    double distance = 0.0;    // from the surface at the start of the step, for growth
+    double distance = 0.0;    // from the surface at the start of the step, for growth and gaps
     Contact contact = FREE;
+    bool touched = true;    // separate: by the surface of the material in this step
   };
   struct FieldNodes {
     MPMField *field;
@@ -125,6 +126,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
     std::vector<Member> members;
     std::vector<Orbit> orbits;
     std::vector<Single> singles;
+    std::vector<MPMWallContact> contacts = {};    // with nodes at depths in a region
 
     void list_line(int face, const int *index);
     void list_orbits(const bool *prescribed, int axis);
@@ -137,6 +139,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
     void rotate(double angle, const double *axis, const double *center, double dt);
     Wall at_end_of_step(double dt) const;
     void velocity(const MPMField &, int64_t node, double *v) const;
+    void velocity(const double *x, double *v) const;
     double old_relative(const double *record, int d, double limit) const;
   };
   struct Prescribed {    // velocity that a wall gives to nodes
@@ -183,7 +186,9 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   void list_face_nodes(FieldNodes &);
   void list_region_nodes(FieldNodes &);
   void update_motion(double dt);
-  void find_gaps(FieldNodes &);
+  void find_gaps(FieldNodes &, double dt);
+  void find_region_gaps(FieldNodes &, double dt);
+  double distance_from_region(const MPMField &, const double *x, double dt) const;
   void check_speed(double dt);
   double slide_share(Contact &, double push, double needed) const;
   void set_velocity(MPM_NS::Grid &, int64_t node, const double *v, const double *old);

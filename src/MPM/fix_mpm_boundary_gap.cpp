@@ -14,6 +14,10 @@
 
 #include "domain.h"
 #include "mpm_field.h"
+#include "region.h"
+
+#include <algorithm>
+#include <cmath>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -37,8 +41,9 @@ MPMWallContact FixMPMBoundary::Face::contact_of(const MPMField &field, double x)
    which lines of nodes are touched in this step
 ------------------------------------------------------------------------- */
 
-void FixMPMBoundary::find_gaps(FieldNodes &list)
+void FixMPMBoundary::find_gaps(FieldNodes &list, double dt)
 {
+  if (region) return find_region_gaps(list, dt);
   MPMField &field = *list.field;
   const Grid &grid = field.grid;
   std::vector<char> near;
@@ -58,5 +63,34 @@ void FixMPMBoundary::find_gaps(FieldNodes &list)
         if (line.node[k] >= 0) sums.add(face.cut ? face.weight[k] : 1.0, gap.at(line.node[k]));
       line.touched = sums.touches(face.contact);
     }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   which nodes inside of a region are touched in this step
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::find_region_gaps(FieldNodes &list, double dt)
+{
+  MPMField &field = *list.field;
+  const double h = field.lattice.h;
+  std::vector<char> near(field.grid.blocks.size(), 0);
+  for (const auto &single : list.singles) near[single.node / NODES_PER_BLOCK] = 1;
+  if (!region_moves()) region->prematch();
+  gap.map(field, near, [&](const double *x) { return distance_from_region(field, x, dt); });
+
+  constexpr int PER_CELL = 32;
+  constexpr double DEEPEST = 1.25;
+  auto &contacts = list.contacts;
+  for (auto k = contacts.size(); k <= DEEPEST * PER_CELL; k++) {
+    const double at = -(double) k / PER_CELL, weight = 1.0;
+    contacts.emplace_back(field, &at, &weight, 1);
+  }
+  for (auto &single : list.singles) {
+    const double depth = -single.distance / h;
+    single.touched = true;
+    if (depth > DEEPEST || !(depth > -0.01)) continue;    // deep inside, or the distance is not known
+    const auto k = (std::size_t) std::lround(std::max(0.0, depth) * PER_CELL);
+    single.touched = gap.at(single.node).touches(contacts[k]);
   }
 }

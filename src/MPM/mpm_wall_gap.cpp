@@ -22,7 +22,8 @@
    which is .016 h for two points per cell, and .06 h for one, and taken into account. Points with a
    size (GIMP, CPDI) integrate M exactly, but x is that of their center: - s^2/12 M' in place of it.
 
-   What has crossed the wall counts as deep inside of it, so that it touches whatever is behind it.
+   The mean alone would let points of a surface that is curved, or a few grains in front of many, cross
+   the wall. Those that are about to cross it count as deep inside of it: what they belong to touches.
 ------------------------------------------------------------------------- */
 
 #include "mpm_wall_gap.h"
@@ -46,9 +47,10 @@ static constexpr double FARTHEST = 4.0;          // more than a node at the wall
 
 static constexpr double TOLERANCE = 0.01;
 
-// points nearer to the wall than this part of their spacing have crossed it (undeformed: 0.5)
+// points nearer to the wall than this part of their spacing (undeformed: 0.5) are about to cross it: they
+// count as this many cells behind it when they are right at it, and more beyond
 
-static constexpr double CROSSED = 0.1;
+static constexpr double NEAR = 0.25, BEHIND = 100.0;
 
 /* ---------------------------------------------------------------------- */
 
@@ -129,7 +131,8 @@ void MPMWallGap::map(MPMField &field, const std::vector<char> &near,
       const double d = away(x[i]) / h;
       double *const value = &values[3 * (std::size_t) i];
       volumes[i] = volume;
-      value[0] = d < CROSSED * size ? -FARTHEST : std::min(d, FARTHEST);
+      const double crossing = std::max(0.0, 1.0 - d / (NEAR * size));
+      value[0] = std::min(d, FARTHEST) - BEHIND * crossing * crossing;
       value[1] = size * size;
       value[2] = 0.0;    // in 2d there is no third one
     }
