@@ -397,7 +397,7 @@ PARAMETER_TEST(InclinedRegion, Acceleration, double, Values(0.1, 0.3, 0.65))
 fix grid all mpm 0.05
 variable angle equal -PI/6
 variable up equal 3
-region body block 0.5 1.0 0.025 0.275 -0.1 0.1 move NULL v_up NULL rotate v_angle 0 0 0 0 0 1
+region body block 0.5 1.0 0 0.25 -0.1 0.1 move NULL v_up NULL rotate v_angle 0 0 0 0 0 1
 create_points 1 region body ppc 2
 region slope plane 0 3 0 -0.5 -0.86602540378443865 0
 fix m all mpm/material density 1000 neohookean 4.2e6 0.4

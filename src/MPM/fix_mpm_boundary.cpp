@@ -388,6 +388,7 @@ FixMPMBoundary::Face::Face(const MPMField &field, const Domain &box, int face) :
   plane = (int) std::lround((x - origin) / h);
   const double plane_x = origin + plane * h;
   if (fabs(x - plane_x) > ON_SURFACE * h) cut_weights(field, x);
+  contact = contact_of(field, x);
 }
 
 FixMPMBoundary::Faces FixMPMBoundary::faces_on_lattice(const MPMField &field) const
@@ -515,7 +516,7 @@ void FixMPMBoundary::FieldNodes::list_line(int f, const int *index)
     k[face.axis] = along;
     return field->grid.locate(k);
   };
-  Line line = {f, FREE, {}};
+  Line line = {f, FREE, true, {}};
   if (face.cut) {
     for (int j = 0; j < face.nweight; j++) {
       line.node[j] = at(face.first + j);
@@ -670,10 +671,23 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
         if (gap > ON_SURFACE * h) s.share = cube(1.0 - cube(gap / next.far));
       }
       if (kind != STICK || region->varshape) surface.normal(x, 1.0e-4 * h, s.normal);
-      if (region->varshape) s.distance = surface.distance(x);
+      if (region->varshape || kind == SEPARATE) s.distance = surface.distance(x);
       list.singles.push_back(s);
     }
   }
+}
+
+/* ----------------------------------------------------------------------
+   distance of a position at the start of the step from the region then. The region is where it will be at
+   the end: the position is moved with it
+------------------------------------------------------------------------- */
+
+double FixMPMBoundary::distance_from_region(const MPMField &field, const double *x, double dt) const
+{
+  double y[3], v[3] = {0.0, 0.0, 0.0};
+  if (region_moves()) wall.velocity(x, v);
+  for (int d = 0; d < 3; d++) y[d] = x[d] + dt * v[d];
+  return Surface{region, field.lattice.dim, FAR * field.lattice.h}.distance(y);
 }
 
 /* ----------------------------------------------------------------------
@@ -711,10 +725,15 @@ FixMPMBoundary::Wall FixMPMBoundary::Wall::at_end_of_step(double dt) const
 
 void FixMPMBoundary::Wall::velocity(const MPMField &field, int64_t node, double *v) const
 {
+  double x[3];
+  if (!uniform) field.grid.node_position(node, x);
+  velocity(x, v);
+}
+
+void FixMPMBoundary::Wall::velocity(const double *x, double *v) const
+{
   MathExtra::copy3(shift, v);
   if (uniform) return;
-  double x[3];
-  field.grid.node_position(node, x);
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) v[i] += gradient[i][j] * (x[j] - origin[j]);
 }
@@ -824,6 +843,7 @@ void FixMPMBoundary::act(double dt, Stage stage)
   for (auto &list : nodes) {
     const auto &faces = list.faces;
     auto &ledger = list.field->ledger;
+    if (count && kind == SEPARATE) find_gaps(list, dt);
     now = {count, stage == MAPPED_BACK || stage == AGAIN, ledger.on ? &ledger : nullptr, 0.0, 0.0,
            0.0};
     if (count && wall.uniform && !list.field->kernel.affine)
@@ -1010,7 +1030,8 @@ void FixMPMBoundary::act_on_column(const FieldNodes &list, Line &column)
   double needed = 0.0;
   for (int d = 0; d < dim; d++)
     if (d != a) needed += to_stick[d] * to_stick[d];
-  const double slide = slide_share(column.contact, face.inward * to_stick[a], sqrt(needed));
+  const double push = column.touched ? face.inward * to_stick[a] : 0.0;
+  const double slide = slide_share(column.contact, push, sqrt(needed));
   if (column.contact == FREE) return;
   for (int d = 0; d < dim; d++) prescribed.share[d] = d == a ? 1.0 : slide;
   project(grid, &plane, 1, true, prescribed);
@@ -1058,7 +1079,8 @@ void FixMPMBoundary::act_on_single(const FieldNodes &list, Single &single)
       slide[d] = r[d] - V[d] - normal * n[d];
       length += slide[d] * slide[d];
     }
-    const double keep = 1.0 - slide_share(single.contact, -normal, sqrt(length));
+    const double push = single.touched ? -normal : 0.0;
+    const double keep = 1.0 - slide_share(single.contact, push, sqrt(length));
     if (single.contact == FREE) return;
     for (int d = 0; d < dim; d++) v[d] = V[d] + keep * slide[d];
   }

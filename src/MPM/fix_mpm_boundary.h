@@ -18,6 +18,7 @@ FixStyle(mpm/boundary,FixMPMBoundary);
 #include "declare/option.h"
 #include "fix.h"
 #include "mpm_node_action.h"
+#include "mpm_wall_gap.h"
 
 #include <cstdint>
 #include <string>
@@ -82,9 +83,11 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
     bool cut = false;    // lies between planes: nweight nodes from first on make the velocity there
     int first = 0, nweight = 0;
     double weight[4];
+    MPMWallContact contact;    // of material that touches it
 
     Face(const MPMField &, const Domain &, int face);
     void cut_weights(const MPMField &, double x);
+    MPMWallContact contact_of(const MPMField &, double x) const;
   };
   using Faces = std::vector<Face>;
   enum Contact { FREE, SLIDING, STUCK };    // what a wall does to a line or node
@@ -94,6 +97,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   struct Line {
     int face;    // index into faces
     Contact contact;
+    bool touched;    // separate: by the surface of the material in this step
     int64_t node[1 + 2 * DEPTH];
   };
   struct Member {
@@ -111,9 +115,10 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
     int64_t node;
     double normal[3] = {0.0, 0.0, 0.0};    // from the wall to the body; zero: not known
     double growth = 0.0;      // speed of the surface of a region that changes its shape
-    double distance = 0.0;    // from the surface at the start of the step, for growth
+    double distance = 0.0;    // from the surface at the start of the step, for growth and gaps
     double share = 1.0;       // of the way to the velocity of the wall that the node goes
     Contact contact = FREE;
+    bool touched = true;    // separate: by the surface of the material in this step
   };
   struct FieldNodes {
     MPMField *field;
@@ -122,6 +127,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
     std::vector<Member> members;
     std::vector<Orbit> orbits;
     std::vector<Single> singles;
+    std::vector<MPMWallContact> contacts = {};    // with nodes at depths in a region
 
     void list_line(int face, const int *index);
     void list_orbits(const bool *prescribed, int axis);
@@ -134,6 +140,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
     void rotate(double angle, const double *axis, const double *center, double dt);
     Wall at_end_of_step(double dt) const;
     void velocity(const MPMField &, int64_t node, double *v) const;
+    void velocity(const double *x, double *v) const;
     double old_relative(const double *record, int d, double limit) const;
   };
   struct Prescribed {    // velocity that a wall gives to nodes
@@ -160,6 +167,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   double impulse[6] = {};     // on the body, with its moment, in the last step: this rank's share
   double dt_last = 0.0;
   bool reaction_known = true;
+  MPMWallGap gap;
   bool warned = false;        // of a region that is too fast
   double reaction[6] = {};    // force and, of regions, torque
 
@@ -179,6 +187,9 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   void list_face_nodes(FieldNodes &);
   void list_region_nodes(FieldNodes &);
   void update_motion(double dt);
+  void find_gaps(FieldNodes &, double dt);
+  void find_region_gaps(FieldNodes &, double dt);
+  double distance_from_region(const MPMField &, const double *x, double dt) const;
   void check_speed(double dt);
   double slide_share(Contact &, double push, double needed) const;
   void set_velocity(MPM_NS::Grid &, int64_t node, const double *v, const double *old,

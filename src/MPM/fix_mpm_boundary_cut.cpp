@@ -139,7 +139,8 @@ void FixMPMBoundary::act_on_cut(const FieldNodes &list, Line &cut, bool last)
   } else if (last) {
     share[a] = 1.0;
   } else {
-    const double push = face.inward * total * (lambda[a] - now.old_share * lambda_old[a]);
+    const double push =
+        cut.touched ? face.inward * total * (lambda[a] - now.old_share * lambda_old[a]) : 0.0;
     double needed = 0.0;
     for (int d = 0; d < dim; d++)
       if (d != a) needed += lambda[d] * lambda[d];

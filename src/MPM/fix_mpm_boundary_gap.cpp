@@ -1,0 +1,96 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// Separating walls push where the surface of the material has reached them (mpm_wall_gap.cpp), and not
+// as soon as nodes feel it. A disk that rolls toward nodes which hold it from a distance of 1.5 h gets
+// a normal force in front of its center, whose moment is that of the friction and more: it does not spin.
+
+#include "fix_mpm_boundary.h"
+
+#include "domain.h"
+#include "mpm_field.h"
+#include "region.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+/* ---------------------------------------------------------------------- */
+
+MPMWallContact FixMPMBoundary::Face::contact_of(const MPMField &field, double x) const
+{
+  if (!cut) {
+    const bool folded = field.options.modified_edges;    // see MPMEdges::fold()
+    const double at[2] = {0.0, -1.0}, weights[2] = {1.0, 2.0};
+    return {field, at, weights, folded ? 2 : 1};
+  }
+  double at[4];
+  const double face = (x - field.lattice.origin[axis]) / field.lattice.h;
+  for (int k = 0; k < nweight; k++) at[k] = inward * (first + k - face);
+  return {field, at, weight, nweight};
+}
+
+/* ----------------------------------------------------------------------
+   which lines of nodes are touched in this step
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::find_gaps(FieldNodes &list, double dt)
+{
+  if (region) return find_region_gaps(list, dt);
+  MPMField &field = *list.field;
+  const Grid &grid = field.grid;
+  std::vector<char> near;
+  for (int f = 0; f < (int) list.faces.size(); f++) {
+    const Face &face = list.faces[f];
+    const int n = face.cut ? face.nweight : 1;
+    near.assign(grid.blocks.size(), 0);
+    for (const auto &line : list.lines)
+      for (int k = 0; k < n; k++)
+        if (line.face == f && line.node[k] >= 0) near[line.node[k] / NODES_PER_BLOCK] = 1;
+    const double wall = face.inward > 0 ? domain->boxlo[face.axis] : domain->boxhi[face.axis];
+    gap.map(field, near, [&](const double *x) { return face.inward * (x[face.axis] - wall); });
+    for (auto &line : list.lines) {
+      if (line.face != f) continue;
+      MPMWallGap::Sums sums;
+      for (int k = 0; k < n; k++)
+        if (line.node[k] >= 0) sums.add(face.cut ? face.weight[k] : 1.0, gap.at(line.node[k]));
+      line.touched = sums.touches(face.contact);
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   which nodes inside of a region are touched in this step
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::find_region_gaps(FieldNodes &list, double dt)
+{
+  MPMField &field = *list.field;
+  const double h = field.lattice.h;
+  std::vector<char> near(field.grid.blocks.size(), 0);
+  for (const auto &single : list.singles) near[single.node / NODES_PER_BLOCK] = 1;
+  if (!region_moves()) region->prematch();
+  gap.map(field, near, [&](const double *x) { return distance_from_region(field, x, dt); });
+
+  constexpr int PER_CELL = 32;
+  constexpr double DEEPEST = 1.25;
+  auto &contacts = list.contacts;
+  for (auto k = contacts.size(); k <= DEEPEST * PER_CELL; k++) {
+    const double at = -(double) k / PER_CELL, weight = 1.0;
+    contacts.emplace_back(field, &at, &weight, 1);
+  }
+  for (auto &single : list.singles) {
+    const double depth = -single.distance / h;
+    single.touched = true;
+    if (depth > DEEPEST || !(depth > -0.01)) continue;    // deep inside, or the distance is not known
+    const auto k = (std::size_t) std::lround(std::max(0.0, depth) * PER_CELL);
+    single.touched = gap.at(single.node).touches(contacts[k]);
+  }
+}

@@ -1,0 +1,66 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_WALL_GAP_H
+#define LMP_MPM_WALL_GAP_H
+
+// Has the surface of the material reached a wall? Nodes feel points from a distance of 1 to 2 cells.
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace LAMMPS_NS {
+class MPMField;
+
+/** Material that fills the space in front of a plane wall up to its surface, as a weight function
+ *  M of the nodes at the wall sees it; x: distance from the wall in node spacings. */
+class MPMWallContact {
+ public:
+  MPMWallContact() = default;
+  /** M = sum of weights[k] N, with N of nodes at positions[k] relative to the wall (node spacings,
+   *  positive inside the material). */
+  MPMWallContact(const MPMField &, const double *positions, const double *weights, int n);
+
+  /** Largest mean distance (weight M, in node spacings) of the points of material that touches the
+   *  wall, when the square of their spacing has the mean size2. */
+  double distance(double size2) const;
+
+ private:
+  double volume = 0.0, moment = 0.0;    // integrals of M and of x M over x > 0
+  double at_wall = 0.0, slope = 0.0;    // M and its derivative at the wall
+  bool sized = false;                   // points have a size
+};
+
+/** Sums over the points in front of a wall, at the nodes of a field. */
+class MPMWallGap {
+ public:
+  struct Sums {
+    double volume = 0.0;      // sum of V N over the points
+    double distance = 0.0;    // of V N times the distance from the wall, in node spacings
+    double size2 = 0.0;       // of V N times the square of the spacing of points, in node spacings
+
+    void add(double weight, const Sums &);
+    /** Does the material touch the wall? */
+    bool touches(const MPMWallContact &) const;
+  };
+
+  /** Collective. Sums at the nodes of the blocks [slot] that are marked in near (and others); away(x)
+   *  is the distance of a position from the wall, positive on the side of the material. */
+  void map(MPMField &, const std::vector<char> &near,
+           const std::function<double(const double *)> &away);
+
+  Sums at(int64_t node) const;
+
+ private:
+  std::vector<double> nodes, values, volumes;
+  int nreal = 0;
+};
+
+}    // namespace LAMMPS_NS
+#endif
