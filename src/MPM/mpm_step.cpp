@@ -14,6 +14,7 @@
 #include "mpm_field.h"
 #include "mpm_locking.h"
 #include "mpm_plan.h"
+#include "mpm_smoothing.h"
 #include "mpm_stages.h"
 
 using namespace LAMMPS_NS;
@@ -158,6 +159,10 @@ void map_back(MPMPlan &plan)
 
 void end(MPMPlan &plan)
 {
+  const auto smooth = [](MPMField &field) {
+    field.smoothing->smooth();
+  };
+  plan.each("smoother volumes", smooth, with<&Options::smooths_volumes>);
   plan.place(MPMPlan::AFTER_MOTION);
   plan.each("checks", checks);
 }

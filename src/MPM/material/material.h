@@ -109,6 +109,9 @@ class Material {
   /** Does any law look at more of the deformation gradient than its determinant? */
   virtual bool uses_F() const = 0;
 
+  /** A fluid whose pressure depends on its volume only: what points keep is J, and no history. */
+  virtual bool is_barotropic() const = 0;
+
   /** All history variables of a new point at x; throws std::runtime_error when it cannot be. */
   virtual void initialize(const double *x, double *history) const = 0;
 
