@@ -108,13 +108,18 @@ TEST(CookMembrane, PressureAgrees)
 
 TEST(CookMembrane, CompressibleStays)
 {
-  EXPECT_NEAR(cook("", 2.0, 1.0 / 3.0).u / 19.337, 1.0, 0.02);
-  EXPECT_NEAR(cook("locking fbar", 2.0, 1.0 / 3.0).u / 19.337, 1.0, 0.04);
+  const double none = cook("", 2.0, 1.0 / 3.0).u;
+  EXPECT_NEAR(none / 19.337, 1.0, 0.02);
   EXPECT_NEAR(cook("locking pressure", 2.0, 1.0 / 3.0).u / 19.337, 1.0, 0.03);
+
+  // averages make the panel a little softer, in the updated frame by as much as in the total one, where
+  // they are always over the same points. When the averaged volumes parted from the motion while points
+  // vibrated over the lattice, it crept: 2.9 % softer
+  const double total = cook("frame total", 2.0, 1.0 / 3.0).u;
+  const double softer = cook("frame total locking fbar", 2.0, 1.0 / 3.0).u / total;
+  EXPECT_NEAR(cook("locking fbar", 2.0, 1.0 / 3.0).u / none, softer, 0.01);
 }
 
-// in the updated frame, averaged volumes part from the motion while points vibrate over the lattice: 4 %
-// too soft above. On the lattice of the undeformed panel this cannot be, and the time step does not matter
 TEST(CookMembrane, CompressibleDoesNotCreepInTheTotalFrame)
 {
   const double none = cook("frame total", 4.0, 1.0 / 3.0).u;
@@ -199,40 +204,158 @@ PARAMETER_TEST(Uniform, StretchIsExact, const char *,
 }
 
 /* ----------------------------------------------------------------------
-   In a step, averages change volumes of points, but not their sum; the next step with and without
-   averages after some steps with them.
+   Averages change volumes of points, but not their sum. F-bar in the updated frame: after some steps it
+   is that of the motion, which is the same without averages as the stress is next to nothing. Averages
+   of the changes in a step: the sum follows that of the motion in the next step, after some with them.
 ------------------------------------------------------------------------- */
 
-PARAMETER_TEST(Volume, SumIsThatOfTheMotion, const char *,
-               Values("locking fbar", "locking fbar transfer flip 1.0 scheme musl",
-                      "locking fbar frame total"))
+struct Volumes {
+  double mean, largest;    // of J
+};
+
+static Volumes after_five_steps(int dim, const std::string &options, bool last_averaged)
 {
-  for (int dim : {2, 3}) {
-    double volume[2], largest[2];
-    for (int averaged : {0, 1}) {
-      Scene run(box(dim, "si", "f f p", "-5 5 -5 5 -5 5") +
-                body(strprintf("block -1 1 -1 1 %s", dim == 2 ? "INF INF" : "-1 1"),
-                     "density 1 neohookean 1e-10 0.3", strprintf("0.5 %s", GetParam())) +
-                "timestep 0.05\n");
-      run.set_velocity([&](const double *x, double *v) {
-        v[0] = sin(x[0] + 2.0 * x[1]);
-        v[1] = sin(x[1] - x[0]) * cos(x[1]);
-        v[2] = dim == 3 ? cos(x[0]) * sin(x[2] + x[1]) : 0.0;
-      });
-      run.commands("run 4\n");
-      if (!averaged) run.switch_locking_off();
-      run.commands("run 1\n");
-      volume[averaged] = largest[averaged] = 0.0;
-      for (int i = 0; i < run.n(); i++) {
-        const double J = run.points().jacobian(i);
-        volume[averaged] += J / run.n();
-        largest[averaged] = std::max(largest[averaged], J);
-      }
-    }
-    EXPECT_GT(std::abs(volume[1] - 1.0), 0.01);
-    EXPECT_GT(std::abs(largest[1] - largest[0]), 0.001);
-    EXPECT_NEAR(volume[1], volume[0], 1.0e-13);
+  Scene run(box(dim, "si", "f f p", "-5 5 -5 5 -5 5") +
+            body(strprintf("block -1 1 -1 1 %s", dim == 2 ? "INF INF" : "-1 1"),
+                 "density 1 neohookean 1e-10 0.3", "0.5 " + options) +
+            "timestep 0.05\n");
+  run.set_velocity([&](const double *x, double *v) {
+    v[0] = sin(x[0] + 2.0 * x[1]);
+    v[1] = sin(x[1] - x[0]) * cos(x[1]);
+    v[2] = dim == 3 ? cos(x[0]) * sin(x[2] + x[1]) : 0.0;
+  });
+  run.commands("run 4\n");
+  if (!last_averaged) run.switch_locking_off();
+  run.commands("run 1\n");
+  Volumes volumes = {0.0, 0.0};
+  for (int i = 0; i < run.n(); i++) {
+    const double J = run.points().jacobian(i);
+    volumes.mean += J / run.n();
+    volumes.largest = std::max(volumes.largest, J);
   }
+  return volumes;
+}
+
+static void expect_same_volume(const Volumes &averaged, const Volumes &own, double tolerance)
+{
+  EXPECT_GT(std::abs(averaged.mean - 1.0), 0.01);
+  EXPECT_GT(std::abs(averaged.largest - own.largest), 0.001);
+  EXPECT_NEAR(averaged.mean, own.mean, tolerance);
+}
+
+PARAMETER_TEST(Volume, SumIsThatOfTheMotion, const char *,
+               Values("", "transfer flip 1.0 scheme musl", "scheme usf", "shape gimp"))
+{
+  const std::string options = GetParam();
+  for (int dim : {2, 3})
+    expect_same_volume(after_five_steps(dim, options + " locking fbar", true),
+                       after_five_steps(dim, options, true), 1.0e-10);
+}
+
+PARAMETER_TEST(VolumeOfStep, SumFollowsTheMotion, const char *,
+               Values("locking both", "locking fbar frame total"))
+{
+  const std::string options = GetParam();
+  for (int dim : {2, 3})
+    expect_same_volume(after_five_steps(dim, options, true), after_five_steps(dim, options, false),
+                       1.0e-13);
+}
+
+/* ----------------------------------------------------------------------
+   Half of a bar of metal with linear hardening, L long and W wide, or a quarter of one with a square
+   section, which a grip pulls: plastic flow at constant volume, no neck, as the metal hardens faster
+   than the section shrinks. With c = 1, in plane strain 2/sqrt(3), the stress along the bar is
+   s = c (Y + H c e), e the plastic part of the logarithmic strain, c e the equivalent plastic strain.
+   Where the bar is narrow at the grip, within less than W, it is strained less, and so it is
+   strained by at least what is uniform along L, at most what is uniform along L - W. In the second half of
+   the way, when the waves of the start are over, the force must stay within 2 % of this in every step,
+   while the grip crosses 3 to 5 planes of nodes: the motion is much slower than waves are.
+------------------------------------------------------------------------- */
+
+struct Tension {
+  double force, strain;    // by that of the uniform bar; largest plastic strain
+};
+
+static Tension uniform_tension(int dim, double pulled, double L, double W)
+{
+  const double K = 170.0e9, G = 80.0e9, Y = 300.0e6, H = 1.0e9;
+  const double E = 9.0 * K * G / (3.0 * K + G), nu = 0.5 * E / G - 1.0;
+  const double c = dim == 3 ? 1.0 : 2.0 / sqrt(3.0), stiff = dim == 3 ? E : E / (1.0 - nu * nu);
+  const double strain = log(1.0 + pulled / L);
+  const double stress = c * (Y + H * c * strain) / (1.0 + c * c * H / stiff);
+  return {stress * exp(-strain) * (dim == 3 ? W * W : W), c * (strain - stress / stiff)};
+}
+
+static Tension tension(int dim, double h, const std::string &options)
+{
+  const double L = 5.0e-3, W = dim == 3 ? 4.0e-4 : 1.0e-3, pulled = 1.2e-3;
+  const std::string wide = strprintf("0 %g", W + 2.0 * h);
+  Scene run(
+      box(dim, "si", dim == 3 ? "f f f" : "f f p", "0 0.0085 " + wide + " " + wide, 1, 0.5 * h) +
+      body(strprintf("block 0 0.007 0 %g %s", W,
+                     dim == 3 ? strprintf("0 %g", W).c_str() : "INF INF"),
+           "density 7850 eos linear 170e9 strength j2 80e9 300e6 hardening linear 1e9",
+           strprintf("%g %s", h, options.c_str())) +
+      strprintf("variable s equal 12*(time-1e-5*(1-exp(-time/1e-5)))\n"
+                "region grip block %g INF INF INF INF INF move v_s NULL NULL\n"
+                "fix grip all mpm/boundary region grip stick\n"
+                "fix symmetry all mpm/boundary xlo ylo %s slip\nfix step all mpm/dt 0.5\n"
+                "fix end all halt 1 v_s > %g error continue\n"
+                "compute p all mpm/atom eplastic\n",
+                L, dim == 3 ? "zlo" : "", pulled));
+  run.set_reference();
+  Tension out = {0.0, 0.0};
+  double low = 1.0, high = 1.0;    // force by the bounds
+  run.each_step([&](double **) {
+    const double way = 12.0 * (run.time() - 1.0e-5 * (1.0 - exp(-run.time() / 1.0e-5)));
+    out.force = -run.fix_vector("grip", 1)[0];
+    if (way < 0.5 * pulled) return;
+    low = std::min(low, out.force / uniform_tension(dim, way, L, W).force);
+    high = std::max(high, out.force / uniform_tension(dim, way, L - W, W).force);
+  });
+  run.commands("run 100000\n");
+  auto *eplastic = run.lmp->modify->get_compute_by_id("p");
+  eplastic->compute_peratom();
+  for (int i = 0; i < run.n(); i++)
+    if (run.reference(i)[0] < 0.8 * L) out.strain = std::max(out.strain, eplastic->vector_atom[i]);
+  const std::string name = strprintf("tension, %dd, h = %g, %s: ", dim, h, options.c_str());
+  const Tension least = uniform_tension(dim, pulled, L, W),
+                most = uniform_tension(dim, pulled, L - W, W);
+  measured(name + "force/uniform", out.force / least.force);
+  measured(name + "strain/uniform", out.strain / least.strain);
+  EXPECT_GT(measured(name + "smallest force by lower bound", low), 0.98);
+  EXPECT_LT(measured(name + "largest force by upper bound", high), 1.02);
+  EXPECT_GT(out.strain, least.strain);
+  EXPECT_LT(out.strain, 1.05 * most.strain);
+  return out;
+}
+
+PARAMETER_TEST(Tension2d, NoFalseNeck, const char *,
+               Values("locking fbar", "locking fbar shape cubic", "locking fbar transfer tpic",
+                      "locking fbar transfer aflip 0.98",
+                      "locking fbar transfer flip 0.99 scheme musl",
+                      "locking fbar shape gimp transfer flip 0.99", "locking both",
+                      "locking both shape gimp transfer flip 0.99", "locking pressure",
+                      "locking none", "locking none shape gimp transfer flip 0.99"))
+{
+  tension(2, 2.0e-4, GetParam());
+}
+
+TEST(Tension, ResolutionsAgree)
+{
+  const Tension coarse = tension(2, 2.5e-4, "locking fbar"),
+                fine = tension(2, 1.25e-4, "locking fbar");
+  EXPECT_NEAR(coarse.force / fine.force, 1.0, 0.015);
+}
+
+TEST(Tension, NoFalseNeckIn3d)
+{
+  tension(3, 2.0e-4, "locking fbar");
+}
+
+TEST(Tension, ForceIsSmoothWithoutCure)
+{
+  tension(2, 1.25e-4, "locking none");
 }
 
 /* ---- A pressure that is the same everywhere is its own average, however much points are compressed. */
@@ -358,10 +481,10 @@ TEST(Block, MovesAsWithoutLocking)
 }
 
 // F-bar with averaged pressure does as much work as the law says, also when points move over the
-// lattice; with F-bar alone a body without any damping gains energy
+// lattice. With F-bar alone this is so while they stay in their cells
 TEST(Block, EnergyWithoutDamping)
 {
   const std::string flip = "transfer flip 1.0 scheme musl locking ";
   EXPECT_NEAR(block(flip + "both", 0.4999).energy, 1.0, 0.01);
-  EXPECT_LT(block(flip + "fbar", 0.4999).energy, 1.6);
+  EXPECT_NEAR(block(flip + "fbar", 0.4999).energy, 1.0, 0.05);
 }

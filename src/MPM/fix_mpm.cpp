@@ -22,6 +22,7 @@
 #include "mpm_cpdi.h"
 #include "mpm_every.h"
 #include "mpm_field.h"
+#include "mpm_fracture_watch.h"
 #include "mpm_frame.h"
 #include "mpm_guard.h"
 #include "mpm_halo.h"
@@ -239,6 +240,7 @@ void FixMPM::pre_neighbor()
 void FixMPM::post_run()
 {
   if (plan) plan->watch.finish();
+  if (field->fracture_watch) field->fracture_watch->finish();
   field->running = false;
   field->guard->wrap_far_points();
   field->ledger.start.clear();

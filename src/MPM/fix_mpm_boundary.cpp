@@ -60,6 +60,7 @@
 #include "error.h"
 #include "force.h"
 #include "math_extra.h"
+#include "math_special.h"
 #include "modify.h"
 #include "mpm_field.h"
 #include "mpm_options.h"
@@ -74,12 +75,14 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+using MathSpecial::cube;
 
 static const char *const FACE_NAME[6] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
 static constexpr const char *PERIODIC =
     "Fix mpm/boundary face {} belongs to a periodic axis: use boundary f there";
 static constexpr double ON_SURFACE = 1.0e-6;    // in node spacings
 static constexpr double FAR = 1.0e8;            // in node spacings
+static constexpr double HAND_OVER = 0.5;        // in node spacings, see list_region_nodes()
 
 namespace {
 /** Center and unit axis of a region's rotation, which are protected members. */
@@ -610,7 +613,15 @@ void FixMPMBoundary::FieldNodes::list_orbits(const bool *prescribed, int axis)
 }
 
 /* ----------------------------------------------------------------------
-   nodes inside the region or on its surface, for the state of the region that it has now
+   Nodes inside the region or on its surface, for the state of the region that it has now.
+
+   When the surface of a region that moves crosses a plane of nodes, then these are not taken or let go at
+   once, but over half a node spacing outside: a node there goes (1 - s^3)^3 of the way to the velocity
+   of the wall in each step, s = 1 at the end. What is let go at once is not in equilibrium, as material
+   in a grip had no part in the strain of the rest of the body, and the waves that it makes are as high as the
+   force itself; a node that is taken at once gets the momentum that it lacks in one step. With slow
+   motion the node slips behind the wall before it is let go: (1 - share)/share of what its
+   acceleration gives it in each step, little at first because of the power of s.
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::list_region_nodes(FieldNodes &list)
@@ -619,8 +630,9 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
   const Grid &grid = field.grid;
   const int dim = field.lattice.dim;
   const double h = field.lattice.h;
-  const Surface surface = {region, dim, FAR * h};
   const bool moves = region_moves();
+  const Surface surface = {region, dim, FAR * h},
+                next = {region, dim, (moves ? HAND_OVER : ON_SURFACE) * h};
   const bool box_known = region->bboxflag && !moves;
   const double lo[3] = {region->extent_xlo, region->extent_ylo, region->extent_zlo};
   const double hi[3] = {region->extent_xhi, region->extent_yhi, region->extent_zhi};
@@ -651,14 +663,12 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
       if (grid.blocks[ib].alias >> n & 1) continue;
       double x[3];
       grid.node_position(first_node + n, x);
-      bool inside = region->match(x[0], x[1], x[2]);
-      if (!inside) {
-        region->interior ^= 1;
-        inside = region->surface(x[0], x[1], x[2], ON_SURFACE * h) > 0;
-        region->interior ^= 1;
-      }
-      if (!inside) continue;
       Single s = {first_node + n};
+      if (!region->match(x[0], x[1], x[2])) {
+        const double gap = next.distance(x);
+        if (gap >= next.far) continue;
+        if (gap > ON_SURFACE * h) s.share = cube(1.0 - cube(gap / next.far));
+      }
       if (kind != STICK || region->varshape) surface.normal(x, 1.0e-4 * h, s.normal);
       if (region->varshape) s.distance = surface.distance(x);
       list.singles.push_back(s);
@@ -859,10 +869,12 @@ double FixMPMBoundary::slide_share(Contact &contact, double push, double needed)
    velocity of a node, also the old one unless null, and what this does. Work is impulse times the
    velocity with which points are then moved, so that a wall at rest works only by friction. The
    kinetic energy of the nodes changes by the change of velocity times the mean of old and new one;
-   what is not work is lost, most of it energy that forces had given to nodes that cannot move.
+   what is not work is lost, most of it energy that forces had given to nodes that cannot move. A node
+   that goes part of the way only is worked on with the velocity of all of it (whole): it slips.
 ------------------------------------------------------------------------- */
 
-void FixMPMBoundary::set_velocity(Grid &grid, int64_t node, const double *v, const double *old)
+void FixMPMBoundary::set_velocity(Grid &grid, int64_t node, const double *v, const double *old,
+                                  const double *whole)
 {
   double *const record = grid.record(node);
   const int dim = grid.lattice.dim;
@@ -872,7 +884,7 @@ void FixMPMBoundary::set_velocity(Grid &grid, int64_t node, const double *v, con
       const double change = v[d] - record[d], change_old = old ? old[d] - record[4 + d] : 0.0;
       const double push = change - now.old_share * change_old;
       impulse[d] += record[3] * push;
-      moved += push * v[d];
+      moved += push * (whole ? whole : v)[d];
       if (now.ledger_lanes)
         gained += 0.5 * (change - change_old) * (v[d] + (old ? old[d] : record[4 + d]));
     }
@@ -1047,6 +1059,8 @@ void FixMPMBoundary::act_on_single(const FieldNodes &list, Single &single)
     if (single.contact == FREE) return;
     for (int d = 0; d < dim; d++) v[d] = V[d] + keep * slide[d];
   }
+  const double whole[3] = {v[0], v[1], v[2]};
+  for (int d = 0; d < dim && single.share < 1.0; d++) v[d] = r[d] + single.share * (v[d] - r[d]);
   if (now.counting && grid.owns(single.node)) {
     double x[3], push[3] = {0.0, 0.0, 0.0}, moment[3];
     grid.node_position(single.node, x);
@@ -1054,7 +1068,7 @@ void FixMPMBoundary::act_on_single(const FieldNodes &list, Single &single)
     MathExtra::cross3(x, push, moment);
     for (int d = 0; d < 3; d++) impulse[3 + d] += moment[d];
   }
-  set_velocity(grid, single.node, v, nullptr);
+  set_velocity(grid, single.node, v, nullptr, whole);
 }
 
 /* ----------------------------------------------------------------------

@@ -120,6 +120,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
     double normal[3] = {0.0, 0.0, 0.0};    // from the wall to the body; zero: not known
     double growth = 0.0;      // speed of the surface of a region that changes its shape
     double distance = 0.0;    // from the surface at the start of the step, for growth
+    double share = 1.0;       // of the way to the velocity of the wall that the node goes
     Contact contact = FREE;
   };
   struct FieldNodes {
@@ -189,7 +190,8 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   void update_motion(double dt);
   void check_speed(double dt);
   double slide_share(Contact &, double push, double needed) const;
-  void set_velocity(MPM_NS::Grid &, int64_t node, const double *v, const double *old);
+  void set_velocity(MPM_NS::Grid &, int64_t node, const double *v, const double *old,
+                    const double *whole = nullptr);
   void project(MPM_NS::Grid &, const Member *, int n, bool fixed, const Prescribed &);
   void act_on_column(const FieldNodes &, Line &);
   void act_on_cut(const FieldNodes &, Line &, bool last);

@@ -21,6 +21,7 @@
 #include "mpm_cpdi.h"
 #include "mpm_edges.h"
 #include "mpm_every.h"
+#include "mpm_fracture_watch.h"
 #include "mpm_frame.h"
 #include "mpm_guard.h"
 #include "mpm_locking.h"
@@ -62,6 +63,8 @@ MPMField::MPMField(LAMMPS *lmp, Fix &fix, double h, const Options &options, MPMP
   if (has_domain(options.shape)) domains.reset(new MPMCpdi(lmp, *this, state));
   if (options.locking != Options::NO_CURE) locking.reset(new MPMLocking(lmp, *this));
   if (options.smooths_volumes()) smoothing.reset(new MPMSmoothing(lmp, *this));
+  if (options.locking != Options::NO_CURE) locking.reset(new MPMLocking(lmp, *this, state));
+  if (options.watches_fracture()) fracture_watch.reset(new MPMFractureWatch(lmp, *this));
   guard.reset(new MPMGuard(lmp, *this));
   time_limit.reset(new MPMTimeLimit(lmp, *this));
   map.reset(new MPMPointMap(lmp, *this));
@@ -151,7 +154,7 @@ void MPMField::init(MPMPlan *plan_of_all)
   static const char *const sets[] = {nullptr, "reference", "baseline", "avx2", "avx512"};
   const char *wanted = sets[options.kernels];
   kernels = MPMKernels::select(wanted);
-  batch_kernels = BatchKernels::select(lattice.dim, wanted, options.axisymmetric);
+  batch_kernels = BatchKernels::select(lattice.dim, wanted, options.changes_thickness());
   bool can_run = kernels && batch_kernels;
   for (auto *material : materials)
     can_run = can_run &&

@@ -32,6 +32,7 @@ class MPMAffine;
 class MPMBoxes;
 class MPMCpdi;
 class MPMEvery;
+class MPMFractureWatch;
 class MPMFrame;
 class MPMGuard;
 class MPMLocking;
@@ -79,6 +80,7 @@ class MPMField : protected Pointers {
   std::unique_ptr<MPMPointMap> map;
   std::unique_ptr<MPMGuard> guard;
   std::unique_ptr<MPMTimeLimit> time_limit;
+  std::unique_ptr<MPMFractureWatch> fracture_watch;
   std::unique_ptr<MPMAffine> affine;
   std::unique_ptr<MPMBoxes> boxes;
   std::unique_ptr<MPMCpdi> domains;

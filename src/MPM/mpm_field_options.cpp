@@ -131,6 +131,8 @@ Options MPMFieldOptions::declare(int dim)
                {"warn", GAIN_WARN, "", {gained}},
                {"ignore", GAIN_IGNORE}})},
         "what to do when numerical errors have added more than a share of the energy in play");
+  o.add("apart", {word(apart, {{"warn", true}, {"ignore", false}})},
+        "what to do when points of a stretched solid are so far apart that it breaks");
   o.add("failed", {word(delete_failed, {{"keep", false}, {"delete", true}})},
         "what to do with a point whose damage is 1");
   o.add("edges", {word(modified_edges, {{"plain", false}, {"modified", true}})},

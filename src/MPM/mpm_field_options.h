@@ -44,6 +44,7 @@ struct MPMFieldOptions {
   Policy bad = ERROR;
   Gain gain = GAIN_WARN;          ///< what to do when numerical errors add energy
   double most_gain = 0.02;        ///< from this share of the energy in play on
+  bool apart = true;              ///< tell when points under tension are too far apart
   bool delete_failed = false;     ///< remove points whose damage is 1
   bool modified_edges = false;    ///< functions next to fixed faces need no nodes outside
   int every = 1;                  ///< steps of LAMMPS in a step of the cycle
@@ -61,6 +62,10 @@ struct MPMFieldOptions {
   bool averages_strain() const { return locking == FBAR || locking == BOTH; }
   bool averages_stress() const { return locking == PRESSURE || locking == BOTH; }
   bool smooths_volumes() const { return smooth > 0.0; }
+  /** Are averages those of volumes, which points keep, and not of their changes in a step? */
+  bool averages_volume() const { return locking == FBAR && !total; }
+  /** In 2d: does F_zz change? */
+  bool changes_thickness() const { return axisymmetric || (averages_strain() && !total); }
   /** With scheme usl: is stress made while points move, or after that? Neither with light nodes. */
   bool strains_while_moving() const { return !has_light_nodes() && !averages_strain(); }
   bool strains_after_motion() const { return !has_light_nodes() && averages_strain(); }
@@ -83,6 +88,9 @@ struct MPMFieldOptions {
   }
 
   bool watches_gain() const { return gain != GAIN_IGNORE; }
+
+  /** Can a body come apart because its points do? Domains with corners cover it. */
+  bool watches_fracture() const { return apart && !total && !MPM_NS::has_domain(shape); }
 
   /** The declaration; refers to this object. */
   MPM_NS::Options declare(int dimension);

@@ -79,6 +79,11 @@ double MPMFrame::volume_change(int, const double *L, double dt) const
   return A[0] + A[4] + A[8] + minors + determinant(A);
 }
 
+void MPMFrame::begin_strain()
+{
+  if (field.lattice.dim == 2 && field.options.changes_thickness()) across.resize(atom->nmax);
+}
+
 /** What is stretched is I + dt L or, in the total frame, F + dt L. */
 void MPMFrame::stretch(int i, double more, double dt, double *L)
 {
@@ -88,6 +93,7 @@ void MPMFrame::stretch(int i, double more, double dt, double *L)
   for (int c = 0; c < dim * dim; c++) L[c] = (1.0 + more) * L[c];
   for (int r = 0; r < dim; r++)
     for (int c = 0; c < dim; c++) L[dim * c + r] += more / dt * F[3 * r + c];
+  if (!across.empty()) across[i] = more;
 }
 
 /* ---------------------------------------------------------------------- */

@@ -54,7 +54,7 @@ class MPMFrame : protected Pointers {
   // [n][dim*dim], column-major
 
   /** Room for all points, before the first of them. */
-  virtual void begin_strain() {}
+  virtual void begin_strain();
   /** Before and after points [first,last) move. */
   virtual void before_motion(int /*first*/, int /*last*/) {}
   virtual void after_motion(const MPM_NS::PointRows &, int /*first*/, int /*last*/) {}
@@ -78,7 +78,7 @@ class MPMFrame : protected Pointers {
    *  held. */
   virtual void stretch(int i, double more, double dt, double *L);
   /** Is the third direction held, in plane strain? */
-  virtual bool is_plane() const { return field.lattice.dim == 2; }
+  bool is_plane() const { return field.lattice.dim == 2 && !field.options.changes_thickness(); }
 
   /** Deformation gradient with respect to the places of the lattice. */
   virtual void lattice_F(int i, double F[3][3]) const;
@@ -98,7 +98,7 @@ class MPMFrame : protected Pointers {
   /** Start of a run, and what there is to tell about it at its end: lines, or nothing. */
   virtual void start_counting() {}
   virtual std::string report() const { return ""; }
-  virtual double memory_usage() const { return 0.0; }
+  virtual double memory_usage() const { return across.capacity() * sizeof(double); }
   virtual double bytes_per_point() const { return 0.0; }
 
  protected:
@@ -106,8 +106,15 @@ class MPMFrame : protected Pointers {
 
   /** Distance of a point from the axis; x: its first coordinate at the start of the step. */
   virtual double radius(int /*i*/, double x) const { return x; }
-  /** Strain around the axis in this step, of the points from first on; null: there is no axis. */
-  virtual const double *hoop_strain(int /*first*/) const { return nullptr; }
+  /** Strain A_zz of this step in 2d, of the points from first on; null: there is none. Around an axis
+   *  of symmetry, or else what stretch() makes of plane strain. */
+  virtual const double *hoop_strain(int first) const
+  {
+    return across.empty() ? nullptr : &across[first];
+  }
+
+ private:
+  std::vector<double> across;    // [n] A_zz of stretch()
 };
 
 }    // namespace LAMMPS_NS

@@ -120,7 +120,6 @@ template <class Plane> class MPMFrameAxisymmetric : public Plane {
     Plane::stretch(i, more, dt, L);
     hoop[i] += more * (1.0 + hoop[i]);
   }
-  bool is_plane() const override { return false; }
 
   /** Hoop stress can raise the greatest frequency where no wall makes v_r odd: that of a ring alone is
    *  c/r, that of the lattice in the plane 2c/h, and squares add up. */

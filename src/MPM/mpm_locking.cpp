@@ -14,6 +14,7 @@
 #include "mpm_passes.h"
 #include "mpm_points.h"
 #include "mpm_stages.h"
+#include "mpm_state.h"
 
 #include <algorithm>
 #include <cmath>
@@ -28,10 +29,10 @@ using namespace MPM_NS;
 
      S q_p = sum_i N_ip  [sum_q N_iq V_q q_q] / [sum_q N_iq V_q]
 
-   keeps constants and the integral sum V q, and V S is symmetric. F-bar puts S(dJ/J) for the
-   relative change of volume of a step, in the manner of E.A. de Souza Neto et al., Int. J. Solids
-   Struct. 33 (1996) 3277, and, for points, W.M. Coombs et al., Comput. Methods Appl. Mech. Eng. 333
-   (2018) 466; "pressure" puts S p for the pressure in the internal force B^T V sigma.
+   keeps constants and the integral sum V q, and V S is symmetric. F-bar gives laws another change of
+   volume than that of the point, in the manner of E.A. de Souza Neto et al., Int. J. Solids Struct. 33
+   (1996) 3277, and, for points, W.M. Coombs et al., Comput. Methods Appl. Mech. Eng. 333 (2018) 466;
+   "pressure" puts S p for the pressure in the internal force B^T V sigma.
 
    With either, the stiffness of the volume is B^T V K S B: symmetric and not negative where the
    bulk modulus K is uniform, with the energy (B u)^T V K S (B u)/2. What laws account for is
@@ -40,9 +41,33 @@ using namespace MPM_NS;
    wherever the points are on the lattice: p V S B u is the power of the force and of the law. The
    stiffness is B^T V S K S B then.
 
+   In the total frame S is constant, and F-bar averages the relative change of volume in a step,
+   dJ/J <- S(dJ/J). Where points move over the lattice, S changes, and pressures that come from sums of
+   such steps have a part that the S of the present does not see, S n = 0. It pushes the nodes,
+   B^T V n, but what moves because of that, S B v = 0, does not take it away: only the strength of the
+   material resists. Metal that flows does not: the pressure of the points of a bar in tension
+   scattered by ten times its yield stress, and the bar had a neck that was none, the sooner, the
+   smaller its cells were against its elongation. Therefore points keep the ratio J of their own motion there,
+   and laws see J <- S J with initial volumes for V, the volume of the material around the point over
+   its initial volume. This depends on the present state only. With both, n makes no force, S n = 0, and
+   averages are those of dJ/J in both frames, so that the powers stay the same.
+
+   What is put right is (dJ/J) I/3 in all three directions, also in plane strain, where it makes F_zz
+   differ from one. Were it put into two directions, then it would have a part that changes the shape,
+   of which the force knows nothing: a stiffness that is not symmetric, which feeds scatter in the pressures,
+   too. In the total frame, with the same S for ever, two directions have shown no harm.
+
    Averages are taken over the points of one material only, as others have another pressure or
    another change of volume next to them for good reasons.
 ------------------------------------------------------------------------- */
+
+MPMLocking::MPMLocking(LAMMPS *lmp, MPMField &field, MPMPointState &state) :
+    Pointers(lmp), field(field)
+{
+  if (field.options.averages_volume()) state.declare(J, "mpm:J");
+}
+
+/* ---------------------------------------------------------------------- */
 
 double *MPMLocking::room_for_gradients()
 {
@@ -86,23 +111,28 @@ template <class Value> void MPMLocking::average_around_points(const Value &value
 }
 
 /* ----------------------------------------------------------------------
-   I + dt L (total frame: F + dt L) is multiplied by a number, in plane strain in the plane, so that
-   laws see a motion like any other. What points keep is this F: sum V0 J follows the sum of the true
-   changes of volume.
+   I + dt L (total frame: F + dt L) is multiplied by a number, so that laws see a motion like any other.
+   What points keep is this F. The sum of V0 J is that of the true volumes; with averages of dJ/J, it
+   follows the sum of the true changes of volume.
 ------------------------------------------------------------------------- */
 
 void MPMLocking::strain(const double *L, double dt)
 {
   MPMFrame &frame = *field.frame;
-  const auto &change = field.work.vectors, &volume = field.work.weights;
+  const auto &average = field.work.vectors, &volume = field.work.weights;
   const int nL = field.lattice.dim * field.lattice.dim;
   const bool plane = frame.is_plane();
 
   average_around_points([&](bigint i, double &q, double &V) {
     const double mine = frame.volume_change((int) i, L + nL * i, dt);
     const bool good = mine > -1.0 && std::isfinite(mine);    // or else it is a bad point
-    q = good ? mine : 0.0;
-    V = good ? atom->vfrac[i] * field.points->jacobian(i) : 0.0;
+    const double last = field.points->jacobian((int) i);
+    if (J) {
+      if (J[i] == 0.0) J[i] = last;
+      if (good) J[i] *= 1.0 + mine;
+    }
+    q = !good ? 0.0 : J ? J[i] : mine;
+    V = !good ? 0.0 : J ? atom->vfrac[i] : atom->vfrac[i] * last;
   });
 
   const PointRows r = field.rows();
@@ -115,7 +145,9 @@ void MPMLocking::strain(const double *L, double dt)
         const double mine = frame.volume_change(i + p, averaged + nL * p, dt);
         double more = 0.0;    // scale - 1
         if (volume[i + p] > 0.0) {
-          const double q = (change[3 * (bigint) (i + p)] - mine) / (1.0 + mine);
+          const double mean = average[3 * (bigint) (i + p)];
+          const double change = J ? mean / field.points->jacobian(i + p) - 1.0 : mean;
+          const double q = (change - mine) / (1.0 + mine);
           const double root = plane ? std::sqrt(1.0 + q) : std::cbrt(1.0 + q);
           more = q / (plane ? root + 1.0 : root * (root + 1.0) + 1.0);
         }

@@ -16,12 +16,12 @@ namespace LAMMPS_NS {
 /** Cures for volumetric locking: averages over the points around each point. */
 class MPMLocking : protected Pointers {
  public:
-  MPMLocking(class LAMMPS *lmp, MPMField &field) : Pointers(lmp), field(field) {}
+  MPMLocking(class LAMMPS *, MPMField &, class MPMPointState &);
 
   /** [n][dim*dim] for velocity gradients of all points. */
   double *room_for_gradients();
   /** F-bar: strain and stress of all points with velocity gradients L whose change of volume is
-   *  averaged. */
+   *  replaced by that of averages. */
   void strain(const double *L, double dt);
 
   /** Make the stress of internal forces, with averaged pressure. */
@@ -33,6 +33,7 @@ class MPMLocking : protected Pointers {
 
  private:
   MPMField &field;
+  double *J = nullptr;    // [n] ratio of volumes by the motion of the point alone, 0: not yet known
   std::vector<double> gradients, tau;
 
   template <class Value> void average_around_points(const Value &);

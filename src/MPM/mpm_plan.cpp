@@ -13,6 +13,7 @@
 #include "mpm_edges.h"
 #include "mpm_every.h"
 #include "mpm_field.h"
+#include "mpm_fracture_watch.h"
 #include "mpm_frame.h"
 #include "mpm_guard.h"
 #include "mpm_halo.h"
@@ -149,6 +150,7 @@ void MPMPlan::start()
     field->map->nbuild = field->map->nsort = 0;
     field->map->sort_time = 0.0;
     field->frame->start_counting();
+    if (field->fracture_watch) field->fracture_watch->start();
   }
 
   if (comm->me || std::none_of(fields.begin(), fields.end(), [](auto *field) {

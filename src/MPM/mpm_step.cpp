@@ -12,6 +12,7 @@
 
 #include "mpm_affine.h"
 #include "mpm_field.h"
+#include "mpm_fracture_watch.h"
 #include "mpm_locking.h"
 #include "mpm_plan.h"
 #include "mpm_smoothing.h"
@@ -164,6 +165,10 @@ void end(MPMPlan &plan)
   };
   plan.each("smoother volumes", smooth, with<&Options::smooths_volumes>);
   plan.place(MPMPlan::AFTER_MOTION);
+  const auto look = [](MPMField &field) {
+    field.fracture_watch->step();
+  };
+  plan.each("fracture watch", look, with<&Options::watches_fracture>);
   plan.each("checks", checks);
 }
 

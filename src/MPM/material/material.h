@@ -111,6 +111,8 @@ class Material {
 
   /** A fluid whose pressure depends on its volume only: what points keep is J, and no history. */
   virtual bool is_barotropic() const = 0;
+  /** Does it resist a shear at rest? Not an equation of state with or without a viscosity. */
+  virtual bool is_solid() const = 0;
 
   /** All history variables of a new point at x; throws std::runtime_error when it cannot be. */
   virtual void initialize(const double *x, double *history) const = 0;

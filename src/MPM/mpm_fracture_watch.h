@@ -1,0 +1,43 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_FRACTURE_WATCH_H
+#define LMP_MPM_FRACTURE_WATCH_H
+
+#include "pointers.h"
+
+namespace LAMMPS_NS {
+class MPMField;
+
+/** Tells when a body comes apart numerically (keyword apart of fix mpm): a material that resists tension
+ *  is stretched so far that neighboring points no longer share enough nodes. */
+class MPMFractureWatch : protected Pointers {
+ public:
+  MPMFractureWatch(class LAMMPS *lmp, MPMField &field) : Pointers(lmp), field(field) {}
+
+  /** Start of a run. */
+  void start()
+  {
+    steps = 0;
+    told = false;
+  }
+  /** End of a step of the cycle; looks at the points every few hundred steps. */
+  void step();
+  /** End of a run. */
+  void finish() { look(); }
+
+ private:
+  MPMField &field;
+  bigint steps = 0;
+  bool told = false;
+
+  void look();
+};
+
+}    // namespace LAMMPS_NS
+#endif

@@ -1,0 +1,70 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: physics
+// mpi: 1 2
+
+// Keyword apart of fix mpm: a solid whose points no longer share enough nodes is told of, and nothing else is.
+
+#include "bad_input_testing.h"
+
+using namespace MPM_TEST;
+
+namespace {
+
+constexpr const char *SOFT = "neohookean 1e-4 0.3";
+
+struct Told {
+  int warnings = 0;
+  double cells = 0.0;    ///< between points
+};
+
+/** A block of points, two per cell and axis, flies apart along x with a linear velocity; it is so soft that nothing slows
+ *  it down, but the strain in units of which stress counts is that of the stretch. */
+Told told_by(double stretch, const std::string &grid = "", const std::string &material = SOFT,
+             double direction = 0.1)
+{
+  const ScratchFile file("log");
+  Scene run("log " + file.name + "\n" + plane("lj", "p p", "-16 16 0 4", 1, 0.5) +
+            body("block -4 4 INF INF INF INF", "density 1 " + material, "1.0 " + grid) +
+            strprintf("variable pull atom %.17g*x\nvelocity all set v_pull 0 0\ntimestep 0.02\n"
+                      "run %.0f\nlog none\n",
+                      direction, (stretch - 1.0) / (0.02 * direction)));
+  Told told;
+  const std::string text = file_text(file.name);
+  const std::regex message(
+      "WARNING: .* under tension .* ([-+.e0-9]+) node spacings \\(([-+.e0-9]+)\\) apart");
+  for (std::sregex_iterator at(text.begin(), text.end(), message), end; at != end; ++at) {
+    told.warnings++;
+    told.cells = std::stod((*at)[1]);
+    EXPECT_NEAR(std::stod((*at)[2]), told.cells, 0.006);    // the spacing is 1
+  }
+  return told;
+}
+
+TEST(FractureWatch, TellsHowFarPointsAreApart)
+{
+  // half a spacing at the start; the limit is 1.2, or 1.0 for gimp
+  EXPECT_EQ(told_by(2.3).warnings, 0);
+  const Told told = told_by(2.5);
+  EXPECT_EQ(told.warnings, 1);
+  EXPECT_NEAR(told.cells, 1.25, 0.05);    // points at the free ends are stretched a little more
+  EXPECT_EQ(told_by(1.9, "shape gimp").warnings, 0);
+  EXPECT_EQ(told_by(2.1, "shape gimp").warnings, 1);
+  EXPECT_EQ(told_by(2.2, "shape cubic").warnings, 0);
+  EXPECT_EQ(told_by(2.4, "shape cubic").warnings, 1);
+}
+
+TEST(FractureWatch, IsSilentWhereNothingBreaks)
+{
+  EXPECT_EQ(told_by(2.5, "apart ignore").warnings, 0);
+  for (const char *grid : {"frame total", "shape cpdi", "shape cpdi2"})
+    EXPECT_EQ(told_by(2.5, grid).warnings, 0) << grid;
+  // fluids and grains without cohesion part
+  for (const char *material : {"eos linear 1e-4", "eos tait 1e-4 7 viscosity newtonian 1e-4",
+                               "drucker/prager 1e-4 0.3 30"})
+    EXPECT_EQ(told_by(2.5, "", material).warnings, 0) << material;
+  EXPECT_EQ(told_by(0.35, "", SOFT, -0.1).warnings, 0);    // pressed together
+}
+
+}    // namespace
