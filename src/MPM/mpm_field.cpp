@@ -61,7 +61,6 @@ MPMField::MPMField(LAMMPS *lmp, Fix &fix, double h, const Options &options, MPMP
   if (options.every > 1) every.reset(new MPMEvery(lmp, *this, state));
   if (options.shape == GIMP || options.shape == CPGIMP) boxes.reset(new MPMBoxes(lmp, *this));
   if (has_domain(options.shape)) domains.reset(new MPMCpdi(lmp, *this, state));
-  if (options.locking != Options::NO_CURE) locking.reset(new MPMLocking(lmp, *this));
   if (options.smooths_volumes()) smoothing.reset(new MPMSmoothing(lmp, *this));
   if (options.locking != Options::NO_CURE) locking.reset(new MPMLocking(lmp, *this, state));
   if (options.watches_fracture()) fracture_watch.reset(new MPMFractureWatch(lmp, *this));
