@@ -73,6 +73,14 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   /** Keeps the nodes of a field at the face xlo, an axis of symmetry, from moving along x. */
   bool holds_axis(const MPMField &) const;
 
+  /** Components of nodes of a field that this wall keeps at zero, at rest and for good: sets bit d of
+   *  held[node], one entry for each node. */
+  void mark_held(const MPMField &, std::vector<char> &held) const;
+  /** What a mirror at rest will make of the present velocities of the nodes on both sides of it, in blocks
+   *  that are near: sets bit d of foreseen[node] and velocities[3*node+d]. */
+  void foresee(MPMField &, const std::vector<char> &near, std::vector<char> &foreseen,
+               std::vector<double> &velocities) const;
+
  private:
   static constexpr int DEPTH = 3;    // nodes on either side of a mirror plane that are paired
 
@@ -181,6 +189,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   } now;
 
   bool region_moves() const;
+  bool rests() const;
   bool acts_on(const MPMField &) const;
   Faces faces_on_lattice(const MPMField &) const;
   static bool narrow(const Faces &, int axis);

@@ -40,6 +40,7 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "fix_mpm_boundary.h"
 #include "force.h"
 #include "math_extra.h"
 #include "modify.h"
@@ -181,7 +182,7 @@ void FixMPMContact::init()
                  "Fix mpm/contact {}: {} is not the ID of a fix mpm: define one fix mpm for each "
                  "body",
                  id, name);
-    bodies.push_back({field, {}, {}, {}, {}, {}, {}});
+    bodies.push_back({field, {}, {}, {}, {}, {}, {}, {}, {}, {}});
   }
   const MPMField &first = *bodies[0].field;
   for (const auto &body : bodies) {
@@ -236,6 +237,25 @@ bool FixMPMContact::couples(const std::string &a, const std::string &b) const
 static int pair_index(int a, int b, int n)
 {
   return a * n - a * (a + 1) / 2 + b - a - 1;
+}
+
+/* ---------------------------------------------------------------------- */
+
+template <class F>
+void FixMPMContact::Room::images(const Grid &grid, const int *block, const F &f) const
+{
+  for (int d = 0; d < grid.lattice.dim; d++)
+    for (const auto &near : sides[d]) {
+      if (!near.mirror) continue;
+      const int first = std::max(block[d] * grid.side, near.plane - REACH);
+      const int last = std::min(block[d] * grid.side + grid.side - 1, near.plane + REACH);
+      if (first > last) continue;
+      for (const int node : {first, last}) {
+        int image[3] = {block[0], block[1], block[2]};
+        image[d] = (2 * near.plane - node) >> grid.shift_bits;
+        f(image);
+      }
+    }
 }
 
 /* ----------------------------------------------------------------------
@@ -310,6 +330,17 @@ void FixMPMContact::extend_topology(MPMField &field)
         for (int d = 0; d < 3; d++) inside = inside && b[d] >= extent[d] && b[d] <= -extent[3 + d];
         if (inside) field.grid.activate(b.data());
       }
+
+    // and at fixed faces their mirror images; also images of images, as blocks that are added are
+    // looked at, too
+
+    for (std::size_t ib = 0; ib < field.grid.blocks.size(); ib++) {
+      int b[3];
+      std::copy_n(field.grid.blocks[ib].b, 3, b);
+      room.images(field.grid, b, [&](const int *image) {
+        field.grid.activate(image);
+      });
+    }
   }
 }
 
@@ -333,6 +364,15 @@ void FixMPMContact::list_common_blocks()
       const bool listed = std::any_of(c.slot, c.slot + k, has);
       if (!listed && std::any_of(c.slot + k + 1, c.slot + n, has)) common.push_back(c);
     }
+  }
+
+  // what walls do to the nodes after this
+
+  for (auto &body : bodies) {
+    body.held.assign(body.field->grid.nnodes(), 0);
+    body.velocities.resize(3 * body.field->grid.nnodes());
+    for (auto *fix : modify->get_fix_by_style("^mpm/boundary$"))
+      dynamic_cast<FixMPMBoundary *>(fix)->mark_held(*body.field, body.held);
   }
   int any = !common.empty(), all;
   MPI_Allreduce(&any, &all, 1, MPI_INT, MPI_MAX, world);
@@ -378,6 +418,19 @@ bool FixMPMContact::map_bodies()
   if (!all) return false;
 
   for (auto &body : bodies) {
+    const Grid &grid = body.field->grid;
+    for (bool more = true; more;) {    // at edges of the box images of images, too
+      more = false;
+      for (std::size_t slot = 0; slot < grid.blocks.size(); slot++)
+        if (body.near[slot])
+          room.images(grid, grid.blocks[slot].b, [&](const int *image) {
+            const int found = grid.find(image);
+            if (found < 0 || body.near[found]) return;
+            body.mark_near(found);
+            more = true;
+          });
+    }
+    foresee_walls(body);
     map_gradient(*body.field, normal_by == MASS ? Weight::MASS : Weight::VOLUME, body.near,
                  body.gradient);
     if (gap || look) map_volume(*body.field, body.near, body.share);
@@ -503,8 +556,12 @@ void FixMPMContact::Room::find(const MPMField &field, const Domain &box)
     for (int side = 0; side < 2; side++) {
       Side &near = sides[d][side];
       near.fixed = box.boundary[d][side] == FIXED;
+      near.mirror = false;
       if (!near.fixed) continue;
       near.plane = (int) std::lround(face[side]);
+      // an axis of symmetry is none: volumes at its nodes are those of rings
+      near.mirror =
+          std::fabs(face[side] - near.plane) < 1.0e-6 && !(field.options.axisymmetric && d == 0);
       const int inward = side ? -1 : 1;
       for (int k = 0; k <= REACH; k++) near.share[k] = inside(near.plane + inward * k);
       if (!field.options.modified_edges) continue;
@@ -560,14 +617,70 @@ double FixMPMContact::filled(const Common &c, int n) const
 }
 
 /* ----------------------------------------------------------------------
+   Gradient of a body at node n of a block. A body that reaches a fixed face has no surface there that
+   others could touch: it goes on as its mirror image. Without that, its normal would be inclined towards
+   the face, and bodies that lie on each other would be pushed along the face.
+------------------------------------------------------------------------- */
+
+void FixMPMContact::gradient_at(const Body &body, int slot, int n, double *g) const
+{
+  const Grid &grid = body.field->grid;
+  const int dim = grid.lattice.dim;
+  int index[3], axis[3], plane[3], naxis = 0;
+  grid.node_index(grid.blocks[slot], n, index);
+  for (int d = 0; d < dim; d++)
+    for (const auto &near : room.sides[d]) {
+      if (!near.mirror || std::abs(index[d] - near.plane) > Room::REACH) continue;
+      axis[naxis] = d;
+      plane[naxis++] = near.plane;
+      break;    // in a narrow box, one of the two
+    }
+  std::copy_n(&body.gradient[3 * ((int64_t) slot * NODES_PER_BLOCK + n)], 3, g);
+  for (int images = 1; images < 1 << naxis; images++) {
+    int image[3] = {index[0], index[1], index[2]};
+    double sign[3] = {1.0, 1.0, 1.0};
+    for (int k = 0; k < naxis; k++) {
+      if (!(images >> k & 1)) continue;
+      image[axis[k]] = 2 * plane[k] - index[axis[k]];
+      sign[axis[k]] = -1.0;
+    }
+    const int64_t node = grid.locate(image);
+    if (node < 0) continue;
+    for (int d = 0; d < dim; d++) g[d] += sign[d] * body.gradient[3 * node + d];
+  }
+}
+
+/** Of the velocities that the nodes have now, which a stage may have changed since the last call. */
+void FixMPMContact::foresee_walls(Body &body)
+{
+  body.foreseen = body.held;
+  std::fill(body.velocities.begin(), body.velocities.end(), 0.0);
+  for (auto *fix : modify->get_fix_by_style("^mpm/boundary$"))
+    dynamic_cast<FixMPMBoundary *>(fix)->foresee(*body.field, body.near, body.foreseen,
+                                                 body.velocities);
+}
+
+FixMPMContact::Pair::Held FixMPMContact::Body::find_held(const double *record) const
+{
+  Grid &grid = field->grid;
+  const int64_t node = (record - grid.nodes()) / grid.nreal;
+  Pair::Held walls = {foreseen[node], held[node], {0.0, 0.0, 0.0}};
+  for (int d = 0; d < 3 && walls.foreseen; d++)
+    if (walls.foreseen >> d & 1)
+      walls.velocity[d] = velocities[3 * node + d] - (walls.held >> d & 1 ? 0.0 : record[d]);
+  return walls;
+}
+
+/* ----------------------------------------------------------------------
    normal of a pair, and whether it is near enough
 ------------------------------------------------------------------------- */
 
 bool FixMPMContact::make_pair(const Common &c, int n, int a, int b, double volume_share, Pair &pair)
 {
   MPMField &field = *bodies[a].field;
-  const double *ga = &bodies[a].gradient[3 * ((int64_t) c.slot[a] * NODES_PER_BLOCK + n)];
-  const double *gb = &bodies[b].gradient[3 * ((int64_t) c.slot[b] * NODES_PER_BLOCK + n)];
+  double ga[3], gb[3];
+  gradient_at(bodies[a], c.slot[a], n, ga);
+  gradient_at(bodies[b], c.slot[b], n, gb);
   const double la = MathExtra::len3(ga), lb = MathExtra::len3(gb);
   if (la == 0.0 && lb == 0.0) return false;
   const double wa = normal_by == COLINEAR ? (la > 0.0 ? 1.0 / la : 0.0) : 1.0;
@@ -617,17 +730,41 @@ void FixMPMContact::find_contacts()
 
 /* ----------------------------------------------------------------------
    one iteration of a pair: the impulse that its present velocities ask for, within the limits of
-   the law. m: effective mass, divided by the number of bodies that one body may meet.
+   the law. nothers: number of bodies that one body may meet, by which the mass is divided.
    decided (MUSL, second field of velocities): the state of the pair stays
 ------------------------------------------------------------------------- */
 
-void FixMPMContact::apply(Pair &pair, double m, double &largest, double dt, bool decided)
+void FixMPMContact::apply(Pair &pair, int nothers, double &largest, double dt, bool decided)
 {
   const int dim = bodies[pair.a].field->lattice.dim;
   double u[3] = {0.0, 0.0, 0.0}, un = 0.0;
   for (int d = 0; d < dim; d++) {
     u[d] = pair.ra[d] - pair.rb[d];
     un += u[d] * pair.n[d];
+  }
+  double m = pair.ra[3] * pair.rb[3] / (pair.ra[3] + pair.rb[3]) / nothers;
+
+  // A body that a wall holds does not yield: what contact gives to it, the wall takes. If it were taken
+  // for one that does, then the other body would go on into it, a little in each step.
+
+  if (pair.held_a.foreseen != pair.held_b.foreseen) {
+    double yields[2] = {0.0, 0.0}, v[2][3];
+    for (int k = 0; k < 2; k++) {
+      const Pair::Held &walls = k ? pair.held_b : pair.held_a;
+      const double *const r = k ? pair.rb : pair.ra;
+      for (int d = 0; d < dim; d++) {
+        const bool held = walls.held >> d & 1;
+        v[k][d] = (held ? 0.0 : r[d]) + walls.velocity[d];
+        if (!held) yields[k] += pair.n[d] * pair.n[d];
+      }
+    }
+    un = 0.0;
+    for (int d = 0; d < dim; d++) {
+      u[d] = v[0][d] - v[1][d];
+      un += u[d] * pair.n[d];
+    }
+    const double inverse = yields[0] / pair.ra[3] + yields[1] / pair.rb[3];
+    m = inverse * std::max(pair.ra[3], pair.rb[3]) > 1.0e-6 ? 1.0 / inverse / nothers : 0.0;
   }
 
   double normal = pair.normal + m * un, t[3] = {0.0, 0.0, 0.0}, length = 0.0;
@@ -690,6 +827,8 @@ void FixMPMContact::resolve(Node &node, double dt, bool decided)
     }
 
   for (int p = node.first; p < node.last; p++) {
+    pairs[p].held_a = bodies[pairs[p].a].find_held(pairs[p].ra);
+    pairs[p].held_b = bodies[pairs[p].b].find_held(pairs[p].rb);
     pairs[p].normal = 0.0;
     MathExtra::zero3(pairs[p].tangential);
   }
@@ -697,8 +836,7 @@ void FixMPMContact::resolve(Node &node, double dt, bool decided)
     double largest = 0.0;
     for (int p = node.first; p < node.last; p++) {
       Pair &pair = pairs[p];
-      const double m = pair.ra[3] * pair.rb[3] / (pair.ra[3] + pair.rb[3]);
-      apply(pair, m / (nbodies - 1), largest, dt, decided);
+      apply(pair, nbodies - 1, largest, dt, decided);
     }
     for (int k = 0; k < nfields; k++)
       if (node.record[k])
@@ -759,6 +897,8 @@ void FixMPMContact::act(double dt, Stage stage)
       if (normal_by == LOGISTIC) separate_points();
     }
     look = false;
+  } else if (!nodes.empty()) {
+    for (auto &body : bodies) foresee_walls(body);
   }
   for (auto &node : nodes) resolve(node, dt, !count);
 }

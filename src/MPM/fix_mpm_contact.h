@@ -24,6 +24,10 @@ FixStyle(mpm/contact,FixMPMContact);
 #include <string>
 #include <vector>
 
+namespace MPM_NS {
+class Grid;
+}
+
 namespace LAMMPS_NS {
 class MPMField;
 
@@ -74,12 +78,17 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
     int slot[MAX_FIELDS];    // -1: the field does not have it
     uint64_t canonical, owned;
   };
-  struct Pair {         // two bodies at one node
-    int a, b;           // places in fields
-    double *ra, *rb;    // node records
-    double n[3];        // unit normal from a to b
-    double area;        // of the interface at the node
-    double fade;        // share of the adhesive strength that is left at this gap
+  struct Pair {              // two bodies at one node
+    int a, b;                // places in fields
+    double *ra, *rb;         // node records
+    double n[3];             // unit normal from a to b
+    double area;             // of the interface at the node
+    double fade;             // share of the adhesive strength that is left at this gap
+    struct Held {            // what walls will do to a body after contact
+      char foreseen;         // components that they change, bits
+      char held;             // those of them that do not yield
+      double velocity[3];    // to which value, of the others by how much
+    } held_a, held_b;
     State state;
     double normal, tangential[3];    // impulses on b so far, along n and in the plane
   };
@@ -93,11 +102,14 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
     struct Side {
       int plane;                  // index of the plane of nodes at the face
       bool fixed;                 // else there is no such face
+      bool mirror;                // and it is in that plane
       double share[REACH + 1];    // from the plane on inward
     } sides[3][2];                // [axis][side]
 
     void find(const MPMField &, const Domain &);
     double at(int *index, int dim, bool &image) const;
+    /** Blocks with the mirror images of the nodes of a block: calls f(block). */
+    template <class F> void images(const MPM_NS::Grid &, const int *block, const F &f) const;
   };
   struct Body {
     MPMField *field;
@@ -107,6 +119,11 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
     std::vector<char> near;                   // [slot] a block where bodies share nodes
     std::vector<double> gradient;             // of the volume (or mass) at the nodes
     std::vector<double> share;                // volume at the nodes / node volume
+    std::vector<char> held;            // bits: components of the nodes that walls keep at zero
+    std::vector<char> foreseen;        // bits: and those that mirrors change, to ...
+    std::vector<double> velocities;    // these
+
+    Pair::Held find_held(const double *record) const;
 
     void mark_near(int slot);
   };
@@ -136,12 +153,14 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
   void list_common_blocks();
   int records(const Common &, int n, double *record[MAX_FIELDS]);
   bool map_bodies();
+  void foresee_walls(Body &);
+  void gradient_at(const Body &, int slot, int n, double *g) const;
   void warn_overlap();
   void find_contacts();
   void separate_points();
   bool make_pair(const Common &, int n, int a, int b, double volume_share, Pair &);
   void resolve(Node &, double dt, bool decided);
-  void apply(Pair &, double m, double &largest, double dt, bool decided);
+  void apply(Pair &, int nothers, double &largest, double dt, bool decided);
   void account(const Node &, const double start[][3]);
 };
 

@@ -28,6 +28,7 @@
 #include "mpm_physics.h"
 #include "mpm_point_map.h"
 #include "mpm_points.h"
+#include "mpm_smoothing.h"
 #include "mpm_time_limit.h"
 #include "update.h"
 
@@ -60,6 +61,7 @@ MPMField::MPMField(LAMMPS *lmp, Fix &fix, double h, const Options &options, MPMP
   if (options.every > 1) every.reset(new MPMEvery(lmp, *this, state));
   if (options.shape == GIMP || options.shape == CPGIMP) boxes.reset(new MPMBoxes(lmp, *this));
   if (has_domain(options.shape)) domains.reset(new MPMCpdi(lmp, *this, state));
+  if (options.smooths_volumes()) smoothing.reset(new MPMSmoothing(lmp, *this));
   if (options.locking != Options::NO_CURE) locking.reset(new MPMLocking(lmp, *this, state));
   if (options.watches_fracture()) fracture_watch.reset(new MPMFractureWatch(lmp, *this));
   guard.reset(new MPMGuard(lmp, *this));
@@ -143,6 +145,8 @@ void MPMField::init(MPMPlan *plan_of_all)
   elements = find_fixes<FixMPMElements>(lmp);
   if (materials.empty())
     error->all(FLERR, "Fix mpm found no material: define one with fix mpm/material");
+
+  if (smoothing) smoothing->init();
 
   // the same instruction set for transfers, batches and laws
 
@@ -278,6 +282,7 @@ double MPMField::memory_usage() const
 {
   double bytes = nodes.memory_usage() + map->memory_usage() + frame->memory_usage();
   if (locking) bytes += locking->memory_usage();
+  if (smoothing) bytes += smoothing->memory_usage();
   if (domains) bytes += domains->memory_usage();
   if (boxes) bytes += boxes->sizes.capacity() * sizeof(double);
   if (every)

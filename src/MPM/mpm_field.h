@@ -39,6 +39,7 @@ class MPMLocking;
 class MPMPlan;
 class MPMPointMap;
 class MPMPointState;
+class MPMSmoothing;
 class MPMTimeLimit;
 struct MPMPoints;
 
@@ -85,6 +86,7 @@ class MPMField : protected Pointers {
   std::unique_ptr<MPMCpdi> domains;
   std::unique_ptr<MPMEvery> every;
   std::unique_ptr<MPMLocking> locking;
+  std::unique_ptr<MPMSmoothing> smoothing;
 
   /** Memory that stages share; nothing in it outlives a stage. */
   struct {

@@ -110,6 +110,11 @@ Options MPMFieldOptions::declare(int dim)
        "what is averaged over neighboring points against volumetric locking")
       .keep();
   o.add(
+      "smooth",
+      {number(smooth, "share", FRACTION, "",
+              "share of what is rough in the volumes of points of a fluid that is taken away while "
+              "sound crosses a cell")});
+  o.add(
       "light",
       {number(
           light, "share", FRACTION, "",
@@ -178,6 +183,10 @@ Options MPMFieldOptions::declare(int dim)
         {series == FMPM && scheme != USL, "transfer",
          "fmpm moves points with refined velocities, which the gradients of scheme usf, musl and "
          "usavg do not follow: use scheme usl, or transfer xpic"},
+        {smooth > 0.0 && total, "smooth",
+         "is for fluids, which frame total is not: use frame updated"},
+        {smooth > 0.0 && modified_edges, "smooth",
+         "needs the same functions everywhere: use edges plain"},
         {light > 0.0 && !amplifies(), "light",
          "is of no use with this shape, transfer, scheme and frame: remove light, which is for "
          "shape linear with scheme usl or transfer apic, aflip, tpic, where points change cells"},

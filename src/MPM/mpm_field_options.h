@@ -38,7 +38,8 @@ struct MPMFieldOptions {
   double most_distorted = 0.0;    ///< ratio of stretches that asks for a new reference, 0: never
   bool axisymmetric = false;      ///< 2d: x is the distance from the axis y, points are rings
   Locking locking = NO_CURE;
-  double light = 0.0;    ///< nodes with less than this share of a full cell are light; 0: none
+  double smooth = 0.0;    ///< share of rough volumes of fluids that goes in the time h/c; 0: none
+  double light = 0.0;     ///< nodes with less than this share of a full cell are light; 0: none
   double origin[3] = {0.0, 0.0, 0.0};    ///< if not given: the lower corner of the box
   Policy bad = ERROR;
   Gain gain = GAIN_WARN;          ///< what to do when numerical errors add energy
@@ -60,6 +61,7 @@ struct MPMFieldOptions {
   /** What does the cure for locking average: changes of volume, pressures in the force? */
   bool averages_strain() const { return locking == FBAR || locking == BOTH; }
   bool averages_stress() const { return locking == PRESSURE || locking == BOTH; }
+  bool smooths_volumes() const { return smooth > 0.0; }
   /** Are averages those of volumes, which points keep, and not of their changes in a step? */
   bool averages_volume() const { return locking == FBAR && !total; }
   /** In 2d: does F_zz change? */

@@ -15,6 +15,7 @@
 #include "mpm_fracture_watch.h"
 #include "mpm_locking.h"
 #include "mpm_plan.h"
+#include "mpm_smoothing.h"
 #include "mpm_stages.h"
 
 using namespace LAMMPS_NS;
@@ -159,6 +160,10 @@ void map_back(MPMPlan &plan)
 
 void end(MPMPlan &plan)
 {
+  const auto smooth = [](MPMField &field) {
+    field.smoothing->smooth();
+  };
+  plan.each("smoother volumes", smooth, with<&Options::smooths_volumes>);
   plan.place(MPMPlan::AFTER_MOTION);
   const auto look = [](MPMField &field) {
     field.fracture_watch->step();

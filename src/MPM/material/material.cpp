@@ -64,6 +64,7 @@ class ComposedMaterial : public Material {
   }
   const std::vector<HistoryVariable> &history() const override { return variables; }
   bool uses_F() const override { return shape_matters; }
+  bool is_barotropic() const override { return eos && !base && !damage && variables.empty(); }
   bool is_solid() const override
   {
     return std::any_of(laws.begin(), laws.end(), [](const auto &law) {

@@ -109,6 +109,8 @@ class Material {
   /** Does any law look at more of the deformation gradient than its determinant? */
   virtual bool uses_F() const = 0;
 
+  /** A fluid whose pressure depends on its volume only: what points keep is J, and no history. */
+  virtual bool is_barotropic() const = 0;
   /** Does it resist a shear at rest? Not an equation of state with or without a viscosity. */
   virtual bool is_solid() const = 0;
 

@@ -1,0 +1,92 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "fix_mpm_boundary.h"
+
+#include "mpm_field.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+/** Does the wall stay where it is, and decide nothing by the impulses that it gets? */
+bool FixMPMBoundary::rests() const
+{
+  if (decides() || region_moves() || rotating()) return false;
+  return std::all_of(velocity, velocity + 3, [](const NumberOrVariable &v) {
+    return !v.given || (v.variable.empty() && v.value == 0.0);
+  });
+}
+
+/* ----------------------------------------------------------------------
+   Walls that move, let go, or have friction are left out. A node outside of a mirror has little mass: it
+   moves against its image inside, whatever pushes on it, and counts as held, too.
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::mark_held(const MPMField &field, std::vector<char> &held) const
+{
+  if (!rests()) return;
+  const int dim = field.lattice.dim;
+  for (const auto &list : nodes) {
+    if (list.field != &field) continue;
+    const auto outside = [&](int64_t node) {
+      int index[3];
+      field.grid.node_index(node, index);
+      return std::any_of(list.faces.begin(), list.faces.end(), [&](const Face &face) {
+        return !face.cut && (index[face.axis] - face.plane) * face.inward < 0;
+      });
+    };
+    for (const auto &orbit : list.orbits)
+      for (int k = orbit.first; k < orbit.last; k++) {
+        const int64_t node = list.members[k].node;
+        if (!orbit.fixed && !outside(node)) continue;
+        for (int d = 0; d < dim; d++)
+          if (orbit.prescribed[d]) held[node] |= 1 << d;
+      }
+    for (const auto &single : list.singles)
+      for (int d = 0; d < dim; d++) {
+        const bool along = single.normal[d] == 1.0 || single.normal[d] == -1.0;
+        if (kind == STICK ? velocity[d].given : along) held[single.node] |= 1 << d;
+      }
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMBoundary::foresee(MPMField &field, const std::vector<char> &near,
+                             std::vector<char> &foreseen, std::vector<double> &velocities) const
+{
+  if (!rests()) return;
+  Grid &grid = field.grid;
+  const int dim = grid.lattice.dim;
+  for (const auto &list : nodes) {
+    if (list.field != &field) continue;
+    for (const auto &orbit : list.orbits) {
+      const Member *const first = &list.members[orbit.first],
+                          *const last = first + orbit.last - orbit.first;
+      if (orbit.fixed || std::none_of(first, last, [&](const Member &m) {
+            return near[m.node / NODES_PER_BLOCK];
+          }))
+        continue;
+      double mass = 0.0, momentum[3] = {0.0, 0.0, 0.0};
+      for (const Member *m = first; m < last; m++) {
+        const double *const r = grid.record(m->node);
+        mass += r[3];
+        for (int d = 0; d < dim; d++) momentum[d] += m->sign * r[3] * r[d];
+      }
+      if (!(mass > 0.0)) continue;
+      for (const Member *m = first; m < last; m++)
+        for (int d = 0; d < dim; d++)
+          if (orbit.prescribed[d]) {
+            foreseen[m->node] |= 1 << d;
+            velocities[3 * m->node + d] = m->sign * momentum[d] / mass;
+          }
+    }
+  }
+}

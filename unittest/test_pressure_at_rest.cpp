@@ -1,0 +1,392 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: physics mpi input restart
+// mpi: 1 2
+// timeout: 900
+
+// Water at rest on bodies that deform: pressure of points and cells, in one field with the body and in two
+// fields in contact; what contact and smooth volumes must do for that.
+
+#include "mpm_lammps.h"
+
+#include "mpm_smoothing.h"
+
+using namespace MPM_TEST;
+
+namespace {
+
+constexpr double GRAVITY = 9.81, DENSITY = 1000.0;
+
+/* ----------------------------------------------------------------------
+   A pool on a plate that is clamped at its ends, in plane strain; gravity is switched on slowly, within
+   some four periods of the lowest bending mode, and the same time is left to come to rest.
+------------------------------------------------------------------------- */
+
+struct Pool {
+  static constexpr double L = 0.5, H = 0.5, T = 0.1;    // length; depth; thickness of the plate
+  static constexpr double E = 1.0e7, NU = 0.3, PLATE_DENSITY = 2500.0;
+  static constexpr double SPEED = 40.0;    // of sound in the water
+  static constexpr double BOTTOM = 0.05;
+
+  double h;
+  Scene run;
+
+  Pool(double h, int nfields) : h(h)
+  {
+    const double top = BOTTOM + T, surface = top + H;
+    const std::string water = " transfer apic smooth 0.9",
+                      half = "spacing " + strprintf("%.17g", h / 2);
+    std::string fields, walls;
+    if (nfields == 2) {
+      fields = strprintf("fix W water mpm %.17g origin 0 0%s\nfix P plate mpm %.17g origin 0 0\n"
+                         "fix touch all mpm/contact W P gap yes 0.9\n",
+                         h, water.c_str(), h);
+      walls = "fix sides all mpm/boundary xlo xhi slip field W\n"
+              "fix clamp all mpm/boundary xlo xhi stick field P\n";
+    } else {
+      fields = strprintf("fix W all mpm %.17g origin 0 0%s\n", h, water.c_str());
+      walls = strprintf("fix sides all mpm/boundary xlo xhi slip\n"
+                        "region left block INF %.17g INF %.17g INF INF\n"
+                        "region right block %.17g INF INF %.17g INF INF\n"
+                        "fix clamp1 all mpm/boundary region left stick\n"
+                        "fix clamp2 all mpm/boundary region right stick\n",
+                        1e-3 * h, top, L - 1e-3 * h, top);
+    }
+    run.commands(
+        plane("si", "f f", strprintf("0 %g %.17g %g", L, -2 * h, surface + 0.05), 2, 0.5 * h) +
+        bodies({{"water", strprintf("block 0 %g %g %g INF INF", L, top, surface)},
+                {"plate", strprintf("block 0 %g %g %g INF INF", L, BOTTOM, top)}},
+               half) +
+        fields +
+        strprintf("fix mw water mpm/material density %g eos tait %g 7\n"
+                  "fix mp plate mpm/material density %g neohookean %g %g\n",
+                  DENSITY, DENSITY * SPEED * SPEED, PLATE_DENSITY, E, NU) +
+        walls +
+        strprintf("variable g equal %g*(1-cos(PI*time/0.5))/2*(time<0.5)+%g*(time>=0.5)\n"
+                  "variable now equal time\n"
+                  "fix down all gravity v_g vector 0 -1 0\n"
+                  "fix step all mpm/dt 0.4\n"
+                  "fix end all halt 10 v_now > 1.0 error continue\n"
+                  "thermo 1000000\nrun 1000000\n",
+                  GRAVITY, GRAVITY));
+  }
+
+  /** Pressure in the depth z, from dp = rho(p) g dz with the law of Tait. */
+  static double hydrostatic(double z)
+  {
+    const double K = DENSITY * SPEED * SPEED;
+    return K / 7 * (std::pow(1 + 6 * DENSITY * GRAVITY * z / K, 7.0 / 6) - 1);
+  }
+
+  struct Errors {
+    double points, cells, low_points, low_cells;    // of the worst row; of the lowest one
+    double deflection;                              // of the plate, relative to that of beams
+  };
+
+  /** Root mean squares over rows, relative to the pressure there, from two cells below the surface. */
+  Errors errors()
+  {
+    const auto states = run.gather();
+    const int nrow = (int) std::lround(2 * H / h), ncolumn = (int) std::lround(2 * L / h);
+    double surface = 0.0, mid = 0.0;
+    std::vector<const Scene::State *> water;
+    int nmid = 0;
+    for (const auto &s : states)
+      if (s.type == 1)
+        water.push_back(&s);
+      else if (std::fabs(s.x[0] - L / 2) < 0.5 * h) {
+        mid += s.x[1];
+        nmid++;
+      }
+    EXPECT_EQ((int) water.size(), nrow * ncolumn);
+    // points are created row by row, as their tags tell
+    const auto row_of = [&](const Scene::State *s) {
+      return ((int) s->tag - 1) / ncolumn;
+    };
+    for (const auto *s : water)
+      if (row_of(s) == nrow - 1) surface += (s->x[1] + h / 4) / ncolumn;
+
+    std::vector<double> squares(nrow, 0.0);
+    struct Cell {
+      double volume = 0.0, p = 0.0, y = 0.0;
+    };
+    std::map<std::pair<int, int>, Cell> cells;
+    for (const auto *s : water) {
+      const double exact = hydrostatic(surface - s->x[1]);
+      squares[row_of(s)] += std::pow(s->pressure() / exact - 1, 2) / ncolumn;
+      Cell &cell = cells[{(int) std::floor(s->x[1] / h), (int) std::floor(s->x[0] / h)}];
+      cell.volume += s->vol;
+      cell.p += s->vol * s->pressure();
+      cell.y += s->vol * s->x[1];
+    }
+    Errors e = {0, 0, std::sqrt(squares[0]), 0, 0};
+    for (int row = 0; row < nrow - 4; row++) e.points = std::max(e.points, std::sqrt(squares[row]));
+
+    std::map<int, std::pair<double, int>> rows;    // sum of squares, number
+    for (const auto &[place, cell] : cells) {
+      const double z = surface - cell.y / cell.volume;
+      if (z < 2 * h) continue;
+      rows[place.first].first += std::pow(cell.p / cell.volume / hydrostatic(z) - 1, 2);
+      rows[place.first].second++;
+    }
+    for (const auto &[row, sum] : rows) {
+      const double rms = std::sqrt(sum.first / sum.second);
+      if (row == rows.begin()->first) e.low_cells = rms;
+      e.cells = std::max(e.cells, rms);
+    }
+
+    const double load = GRAVITY * (DENSITY * H + PLATE_DENSITY * T);
+    const double bending = load * std::pow(L, 4) * 12 * (1 - NU * NU) / (384 * E * T * T * T);
+    const double shear = load * L * L / (8 * (5.0 / 6) * E / (2 * (1 + NU)) * T);
+    e.deflection = (BOTTOM + T / 2 - mid / nmid) / (bending + shear) - 1;
+    return e;
+  }
+};
+
+struct Coupling {
+  int nfields;
+  double h;
+};
+
+// The issue is the lowest rows. The pressure was 120 % (two fields) and 34 % off there, whatever the
+// spacing. The bounds are those that are wanted, not what comes out
+
+PARAMETER_TEST(WaterOnPlate, PressureIsThatOfItsDepth, Coupling,
+               Values(Coupling{2, 1.0 / 40}, Coupling{2, 1.0 / 50}, Coupling{1, 1.0 / 40},
+                      Coupling{1, 1.0 / 50}))
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  const auto [nfields, h] = GetParam();
+  Pool pool(h, nfields);
+  const auto e = pool.errors();
+  EXPECT_LT(measured("points, worst row", e.points), 0.05);
+  EXPECT_LT(measured("points, lowest row", e.low_points), 0.05);
+  EXPECT_LT(measured("cells, worst row", e.cells), 0.02);
+  EXPECT_LT(measured("cells, lowest row", e.low_cells), 0.02);
+  // Timoshenko's beam knows nothing of the plane sections at the clamps: one thickness in ten
+  EXPECT_LT(std::fabs(measured("deflection", e.deflection)), 0.1);
+}
+
+// -------------------------------------------------------------------- contact next to walls
+
+/** Two blocks on each other, in a box with these commands for its walls. */
+std::string stack(double h, double interface, const std::string &walls)
+{
+  return plane("si", "f f", "0 0.2 0 0.3", 2, 0.5 * h) +
+      bodies({{"upper", strprintf("block 0 0.2 %.17g %.17g INF INF", interface, interface + 0.1)},
+              {"lower", strprintf("block 0 0.2 0 %.17g INF INF", interface)}},
+             "spacing " + strprintf("%.17g", h / 2)) +
+      strprintf("fix A upper mpm %g\nfix B lower mpm %g\n"
+                "fix m1 upper mpm/material density 1000 neohookean 1.0e6 0.3\n"
+                "fix m2 lower mpm/material density 2000 neohookean 0.5e6 0.3\n"
+                "fix touch all mpm/contact A B gap no\n"
+                "fix down all gravity 9.81 vector 0 -1 0\nfix step all mpm/dt 0.4\n",
+                h, h) +
+      walls + "thermo 1000000\n";
+}
+
+// Blocks that fill the width between slippery walls move up and down only. Normals that were inclined
+// towards the walls, as a body ends there, made them move along the interface
+
+SERIAL_TEST(ContactAtWalls, NormalsAreNotInclined)
+{
+  for (const double interface : {0.1, 0.09}) {
+    Scene run(
+        stack(0.02, interface,
+              "fix sides all mpm/boundary xlo xhi slip\nfix floor all mpm/boundary ylo slip\n"));
+    std::vector<double> x;
+    for (const auto &s : run.gather()) x.push_back(s.x[0]);
+    run.commands("run 1000\n");
+    double most = 0.0;
+    const auto states = run.gather();
+    for (std::size_t i = 0; i < states.size(); i++)
+      most = std::max(most, std::fabs(states[i].x[0] - x[i]));
+    EXPECT_LT(measured("motion along the interface", most), 1e-10 * 0.2);
+  }
+}
+
+// A body that is held does not yield. The block on it sags by its weight, by rho g H^2/2 over the modulus
+// of confined compression; its lowest points, h/4 above the face, by rho g H/M times that. It fell through
+// at a tenth of free fall, as half of what contact took away was given to the body that is held
+
+SERIAL_TEST(ContactAtWalls, BodyThatIsHeldDoesNotYield)
+{
+  const double h = 0.02, H = 0.1, M = 1.0e6 * (1 - 0.3) / ((1 + 0.3) * (1 - 2 * 0.3));
+  Scene run(
+      stack(h, 0.1,
+            "fix sides all mpm/boundary xlo xhi slip\nregion held block INF INF INF 0.2 INF INF\n"
+            "fix hold all mpm/boundary region held stick field B\n"));
+  std::vector<double> y;
+  for (const auto &s : run.gather()) y.push_back(s.x[1]);
+  run.commands("run 3000\n");
+  double lowest = 0.0;
+  const auto states = run.gather();
+  for (std::size_t i = 0; i < states.size(); i++) {
+    if (states[i].type != 1 || y[i] > 0.1 + 0.5 * h) continue;
+    lowest = std::max(lowest, y[i] - states[i].x[1]);
+  }
+  // it vibrates: twice of that at rest; and within the half cell of its lowest points nodes of the held
+  // body keep it from straining
+  const double sag = DENSITY * GRAVITY * H / M * h;
+  EXPECT_LT(measured("lowest points sink", lowest), 2 * sag);
+  // the wall bears both: it takes what contact gives to the body that is held
+  const double weight = GRAVITY * (1000 + 2000) * 0.1 * 0.2;
+  run.commands("fix mean all ave/time 1 1000 1000 f_hold[2]\nrun 2000\n");
+  EXPECT_NEAR(run.evaluate("f_mean") / weight, -1.0, 0.05);
+}
+
+// -------------------------------------------------------------------- smooth volumes
+
+/** A drop of a fluid at rest, with points anywhere. */
+std::string drop(int dim, const std::string &options = "smooth 1.0")
+{
+  return box(dim, "si", "f f f", "0 8 0 8 0 8", 1, 0.5) +
+      strprintf("fix grid all mpm 1.0 dtcheck no %s\n", options.c_str()) +
+      (dim == 3 ? "region ball sphere 4 4.2 3.9 2.3\n" : "region ball sphere 4 4.2 0 2.3\n") +
+      "create_points 1 region ball ppc 2\ndisplace_atoms all random 0.1 0.1 " +
+      (dim == 3 ? "0.1" : "0") +
+      " 4711\n"
+      "fix m all mpm/material density 1.0 eos tait 1.0e2 7\n"
+      "timestep 0.15\nthermo 1000000\nrun 1 post no\n";
+}
+
+/** What smoothing must keep, and what it may only take. */
+struct Sums {
+  double volume = 0.0, moment[3] = {0.0, 0.0, 0.0}, square = 0.0;
+
+  explicit Sums(LAMMPS *lmp)
+  {
+    const auto *points = MPMPoints::get(lmp->atom);
+    std::vector<double> all(5, 0.0);
+    for (int i = 0; i < lmp->atom->nlocal; i++) {
+      const double V = lmp->atom->vfrac[i], q = points->jacobian(i) - 1;
+      all[0] += V * q;
+      for (int d = 0; d < 3; d++) all[1 + d] += V * q * lmp->atom->x[i][d];
+      all[4] += V * q * q;
+    }
+    all = over_ranks(all);
+    volume = all[0];
+    std::copy_n(&all[1], 3, moment);
+    square = all[4];
+  }
+};
+
+double pressure_of_drop(double J)
+{
+  return 1.0e2 / 7 * (std::pow(J, -7) - 1);
+}
+
+void set_volumes(LAMMPS *lmp, int dim, const std::function<double(const double *, tagint)> &q)
+{
+  auto *points = MPMPoints::get(lmp->atom);
+  for (int i = 0; i < lmp->atom->nlocal; i++) {
+    const double J = 1 + q(lmp->atom->x[i], lmp->atom->tag[i]);
+    for (int c = 0; c < (dim == 3 ? 9 : 8); c += 4)
+      points->F[i][c] = dim == 3 ? std::cbrt(J) : std::sqrt(J);
+    for (int c = 0; c < 3; c++) points->tau[i][c] = -J * pressure_of_drop(J);
+  }
+}
+
+PARAMETER_TEST(SmoothVolumes, KeepLinearFieldsVolumeAndItsMoment, int, Values(2, 3))
+{
+  const int dim = GetParam();
+  Scene run(drop(dim));
+  auto &smoothing = *MPMField::find(run.lmp, "grid")->smoothing;
+
+  // linear in space: nothing changes, also at the surface of the drop
+  const auto linear = [](const double *x, tagint) {
+    return 0.02 + 0.01 * x[0] - 0.013 * x[1] + 0.007 * x[2];
+  };
+  set_volumes(run.lmp, dim, linear);
+  smoothing.smooth();
+  auto *points = MPMPoints::get(run.lmp->atom);
+  for (int i = 0; i < run.lmp->atom->nlocal; i++)
+    EXPECT_NEAR(points->jacobian(i) - 1, linear(run.lmp->atom->x[i], 0), 1e-10);
+
+  // noise: what is conserved stays, the rest becomes less
+  const auto noise = [](const double *, tagint tag) {
+    return 0.05 * std::sin(12.9898 * tag);
+  };
+  set_volumes(run.lmp, dim, noise);
+  const Sums before(run.lmp);
+  smoothing.smooth();
+  const Sums after(run.lmp);
+  const double size = std::sqrt(before.square * run.lmp->atom->natoms);
+  EXPECT_NEAR(after.volume, before.volume, 1e-13 * size);
+  for (int d = 0; d < dim; d++) EXPECT_NEAR(after.moment[d], before.moment[d], 1e-12 * size);
+  // a share 1 leaves S q: with 2^dim points in a cell and one fit of dim + 1 numbers for each node,
+  // noise cannot keep as much as a half
+  EXPECT_LT(measured("squares left", after.square / before.square), 0.5);
+
+  // pressure belongs to the new volumes
+  for (const auto &s : run.gather()) {
+    const double J = s.F[0] * s.F[4] * s.F[8];
+    EXPECT_NEAR(s.pressure(), pressure_of_drop(J), 1e-9);
+  }
+}
+
+const char *const sloshing = R"(
+fix down all gravity 9.81 vector 0.3 -1 0
+fix walls all mpm/boundary xlo xhi ylo slip
+)";
+
+std::string tank()
+{
+  return plane("si", "f f", "0 1 0 1", 1, 0.02) +
+      "fix grid all mpm 0.05 smooth 0.4\nregion water block 0 0.4 0 0.5 INF INF\n"
+      "create_points 1 region water ppc 2\n"
+      "fix m all mpm/material density 1000 eos tait 4.0e5 7 viscosity newtonian 1.0e-3\n"
+      "timestep 5.0e-4\nthermo 1000000\n" +
+      sloshing;
+}
+
+TEST(SmoothVolumes, AreThoseOfOneRankAndOfARestart)
+{
+  Twins(tank(), 201,
+        "fix grid all mpm 0.05 smooth 0.4\n"
+        "fix m all mpm/material density 1000 eos tait 4.0e5 7 viscosity newtonian 1.0e-3\n"
+        "neighbor 0.02 bin\ntimestep 5.0e-4\nthermo 1000000\n" +
+            std::string(sloshing),
+        200, 1e-8);
+}
+
+// A standing sound wave of 16 cells: its energy in the volumes falls by less than (k h)^4 in each crossing
+// of a cell
+
+SERIAL_TEST(SmoothVolumes, LeaveSoundAlone)
+{
+  double energy[2];
+  for (const bool smooth : {false, true}) {
+    Scene run(plane("si", "p p", "0 16 0 1", 1, 0.5) + "fix grid all mpm 1.0 transfer flip 1.0" +
+              (smooth ? " smooth 0.4" : "") +
+              "\ncreate_points 1 region box ppc 2\n"
+              "fix m all mpm/material density 1 eos tait 1.0 1\n"
+              "compute e all mpm/energy\nthermo_style custom step c_e\n"
+              "variable v atom 1e-3*sin(2*PI*x/16)\nvelocity all set v_v 0 NULL\n"
+              "compute k all ke\ntimestep 0.1\nthermo_style custom step c_e c_k\nthermo "
+              "1000000\nrun 640\n");
+    energy[smooth] = run.evaluate("c_k");
+  }
+  // four periods: 64 crossings, in which the share (2 pi/16)^4 = 0.024 times 0.4/2 of the energy of the
+  // volumes, which is half of all, may go: less than 0.27 in all
+  EXPECT_LT(measured("energy lost", 1 - energy[1] / energy[0]), 0.27);
+}
+
+SERIAL_TEST(SmoothVolumes, BadInput)
+{
+  const auto refused = [](const std::string &options, const std::string &material) {
+    Scene run;
+    return run.error(plane("si", "f f", "0 4 0 4") + "fix grid all mpm 1.0 " + options +
+                     "\ncreate_points 1 region box ppc 2\nfix m all mpm/material density 1 " +
+                     material + "\ntimestep 0.01\nrun 1\n");
+  };
+  EXPECT_THAT(refused("smooth 0.4", "linear 1.0 0.3"),
+              HasSubstr("smooth is for fluids whose pressure"));
+  EXPECT_THAT(refused("smooth 1.4", "eos tait 1.0 7"), HasSubstr("smooth"));
+  EXPECT_THAT(refused("smooth 0.4 frame total", "eos tait 1.0 7"), HasSubstr("frame total is not"));
+  EXPECT_THAT(refused("smooth 0.4 transfer flip 1.0 edges modified", "eos tait 1.0 7"),
+              HasSubstr("edges plain"));
+}
+
+}    // namespace
