@@ -631,9 +631,9 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
   const Grid &grid = field.grid;
   const int dim = field.lattice.dim;
   const double h = field.lattice.h;
-  const bool moves = region_moves();
+  const bool moves = region_moves(), hands_over = moves && kind != SEPARATE;
   const Surface surface = {region, dim, FAR * h},
-                next = {region, dim, (moves ? HAND_OVER : ON_SURFACE) * h};
+                next = {region, dim, (hands_over ? HAND_OVER : ON_SURFACE) * h};
   const bool box_known = region->bboxflag && !moves;
   const double lo[3] = {region->extent_xlo, region->extent_ylo, region->extent_zlo};
   const double hi[3] = {region->extent_xhi, region->extent_yhi, region->extent_zhi};
