@@ -36,7 +36,10 @@ BETWEEN = [
     "write_dump all mpm/vtk fuzz.vtp", "write_dump all mpm/grid/vtk fuzz.vti", "clear", "clear\n%(again)s",
     "write_restart fuzz.restart\nclear\nread_restart fuzz.restart\n%(next)s",
     "write_restart fuzz.restart\nclear\nread_restart fuzz.restart remap\n%(next)s",
-    "write_data fuzz.data\nclear\nunits si\natom_style mpm\nread_data fuzz.data\n%(next)s",
+    "write_data fuzz.data\nclear\n%(head)s\nread_data fuzz.data\n%(next)s",
+    "write_restart fuzz.restart\nclear\nread_restart fuzz.restart\n%(changed)s",
+    "write_restart fuzz.restart\nclear\nread_restart fuzz.restart\n%(changed)s",
+    "write_restart fuzz.restart\nclear\nread_restart fuzz.restart\n%(changed)s\nwrite_restart b.restart\nclear\nread_restart b.restart\n%(next)s",
     "write_data fuzz.data\nread_data fuzz.data add append", "replicate 2 1 1", "replicate 1 1 2",
     "displace_atoms all move 0.01 0.01 0", "displace_atoms all move 1e6 0 0", "displace_atoms all random 0.1 0.1 0 7",
     "velocity all set 0 0 0", "velocity all create 300 7", "velocity all set 1e6 0 0", "velocity all zero linear",
@@ -62,6 +65,7 @@ BETWEEN = [
     "dump_modify %(dump)s every 1", "dump fuzzd all mpm/vtk 1 fuzz.*.vtp", "dump fuzzd all mpm/grid/vtk 1 fuzz.*.vti",
     "timer full sync", "group %(group)s dynamic all every 1",
     "fix %(fix)s all nve", "%(line)s", "%(line)s", "%(line)s", "unfix %(fix)s\n%(line)s", "unfix %(fix)s\nrun 1\n%(line)s",
+    "%(other)s", "%(other)s", "%(other)s", "%(other)s", "unfix %(fix)s\n%(other)s", "unfix %(fix)s\n%(other)s",
     "variable fuzz equal 1/0", "variable fuzz equal 1e308*10", "variable fuzz delete", "quit",
 ]
 TRAILER = """
@@ -200,7 +204,8 @@ class Mutator:
     def line(self, base, random):
         """Lines of the package are changed more often than others."""
         package = [words for words in base.lines if is_package(words)]
-        return random.choice(package if package and random.random() < 0.75 else base.lines[2:] or base.lines)
+        chosen = package if package and random.random() < 0.75 else base.lines[2:] or base.lines
+        return random.choice(chosen) if chosen else [""]
 
     def replace_number(self, base, random, new):
         """Numbers, now and then expressions and names."""
@@ -281,11 +286,17 @@ class Mutator:
                 found = [words[1] for words in base.lines if words[0] == kind and is_package(words)]
                 names[kind] = random.choice(found or [names[kind]])
         same = [words for words in base.lines if words[0] == "fix" and words[1:2] == [names["fix"]]]
-        names["line"] = " ".join(random.choice(same or base.lines))
+        line = random.choice(same or base.lines)
+        names["line"] = " ".join(line)
+        names["other"] = self.changed([line], random)
         names["refs"] = "c_%(compute)s c_%(compute)s[1] f_%(fix)s f_%(fix)s[1]" % names
         made = ("create_", "read_", "units", "dimension", "boundary", "atom_", "run", "write_", "velocity",
                 "processors", "set", "displace_atoms", "delete_", "newton", "package", "suffix")
-        names["next"] = "\n".join(" ".join(words) for words in base.lines if not words[0].startswith(made))
+        following = [words for words in base.lines if not words[0].startswith(made)]
+        names["next"] = "\n".join(" ".join(words) for words in following)
+        names["changed"] = self.changed(following, random)
+        names["head"] = "\n".join(" ".join(words) for words in base.lines if words[0] in (
+            "units", "dimension", "boundary", "atom_style", "newton", "neighbor", "comm_modify"))
         for _ in range(random.choice((1, 1, 2, 3))):
             possible = [commands for commands in BETWEEN if not any(name in commands for name in missing)]
             commands = (random.choice(possible) % names).splitlines()
@@ -295,6 +306,13 @@ class Mutator:
             if runs and random.random() < 0.2:
                 at = random.randrange(len(base.lines) + 1)
             base.lines[at:at] = new
+
+    def changed(self, lines, random):
+        """Text of these lines with a mistake."""
+        part = Input("", "")
+        part.lines = [list(words) for words in lines]
+        random.choice(self.simple)(part, random)
+        return part.text().rstrip()
 
     def file(self, base, random):
         """A file that is cut or changed, or else another mistake."""

@@ -71,6 +71,9 @@ class Scene:
             kinds = [kind for kind in kinds if kind != "contact"]
         if not self.axisymmetric:
             kinds.append("grains")
+        if not self.axisymmetric and self.frame == "updated" and not self.transfer.startswith("fmpm") \
+                and "edges" not in self.extra:
+            kinds.append("immersed")
         if self.dimension == 3 and self.frame == "updated" and self.scheme in ("usl", "musl"):
             kinds.append("rigid")
         self.kind = pick.choice(kinds)
@@ -118,7 +121,7 @@ class Scene:
     def make_head(self, units):
         faces = " ".join("p" if periodic else "f" for periodic in self.periodic)
         text = "units %s\n%satom_style %s\n" % (units, "dimension 2\n" if self.dimension == 2 else "",
-                                                "hybrid sphere mpm" if self.kind == "grains" else "mpm")
+                                                "hybrid sphere mpm" if self.kind in ("grains", "immersed") else "mpm")
         text = text.replace("atom_style", "boundary %s\natom_style" % faces)
         box = " ".join("0 " + self.length(n) for n in self.size[:2])
         box += " %s %s" % ((self.length(-0.5), self.length(0.5)) if self.dimension == 2 else
@@ -127,7 +130,7 @@ class Scene:
 
     def settings(self):
         """What is not in restart files."""
-        if self.kind == "grains":
+        if self.kind in ("grains", "immersed"):
             return "neighbor %s multi\ncomm_modify vel yes mode multi\n" % self.length(0.5)
         return "neighbor %s bin\n%s" % (self.length(0.5), "comm_modify vel yes\n" if self.kind == "penalty" else "")
 
@@ -167,12 +170,18 @@ class Scene:
             across = "0" if self.dimension == 2 else "%.6g" % self.rate(0.01)
             radial = self.rate(0.04) * (-1) ** (k + 1) if not self.axisymmetric else 0.0
             text += "velocity body%d set %.6g %.6g %s\n" % (k, radial, self.rate(0.03), across)
+        if self.kind == "immersed":
+            for _ in range(pick.choice((1, 3))):    # style random would number them by process
+                text += "create_atoms 4 single %s %s %s units box\n" % (
+                    self.length(pick.uniform(1.5, 3.5)), self.length(pick.uniform(2.5, 4.5)),
+                    self.length(pick.uniform(1.5, 3.5)) if self.dimension == 3 else "0")
+            text += "group grains type 4\n"
+            text += "set group grains diameter %s density %.6g\n" % (self.length(0.2), 2 * self.density)
         if self.kind == "grains":
-            where = [self.length(self.size[0] / 2.0), self.length(8 if self.dimension == 3 else 9)]
-            if self.dimension == 3:
-                where = [self.length(self.size[0] / 2.0), self.length(4), self.length(5.2)]
-            else:
-                where.append("0")
+            # above the first body, which it touches if that ends there
+            where = [self.length(3), self.length(4), self.length(4.7)]
+            if self.dimension == 2:
+                where = [self.length(3), self.length(6.7), "0"]
             text += "create_atoms 4 single %s units box\ngroup grains type 4\n" % " ".join(where)
             text += "set group grains diameter %s density %.6g\n" % (self.length(1.5), 2 * self.density)
             text += "velocity grains set 0 %.6g %s units box\n" % (
@@ -187,9 +196,11 @@ class Scene:
         pick, text = self.pick, ""
         for k in range(1, self.bodies + 1):
             law = pick.choice(SOLIDS if self.frame == "total" or pick.random() < 0.6 else LOOSE)
+            if self.kind == "immersed":
+                law = "eos tait {c1} 7"
             e = self.modulus * pick.choice((1.0, 0.5))
             text += "fix law%d body%d mpm/material density %.6g %s\n" % (
-                k, k, self.density * pick.choice((1.0, 2.0)),
+                k, k, self.density * (1.0 if self.kind == "immersed" else pick.choice((1.0, 2.0))),
                 law.format(E="%.6g" % e, c1="%.6g" % (0.3 * e), c2="%.6g" % (0.05 * e), Y="%.6g" % (0.01 * e),
                            M="%.6g" % (0.02 * e * self.h / self.speed)))
         text += self.walls()
@@ -204,8 +215,19 @@ class Scene:
             self.bitwise = "friction" not in text
         if self.kind == "grains":
             text += "pair_style granular\npair_coeff * * hertz/material %.6g 0.0 0.3 tangential mindlin NULL 0.0 0.0\n" \
-                "neigh_modify exclude group points points\n" % (0.1 * self.modulus)
+                "neigh_modify exclude group points points\n" % (
+                    0.02 * self.density * self.speed ** 2 * self.mvv2e)    # force per area, whatever pressure is
             text += "fix move grains nve/sphere%s\n" % (" disc" if self.dimension == 2 else "")
+            if pick.random() < 0.4:
+                text += "fix skin points mpm/surface\n"
+            self.free = False    # velocities of grains are those of the end of a step, of points of its middle
+        if self.kind == "immersed":
+            text += "pair_style zero %s\npair_coeff * *\nneigh_modify exclude group all all\n" % self.length(0.5)
+            text += "fix move grains nve/sphere%s\n" % (" disc" if self.dimension == 2 else "")
+            text += "fix drag grains mpm/immersed grid %.6g %.6g drag %s\n" % (
+                self.density, 1e-3 * self.modulus * self.h / self.speed,
+                pick.choice(("gidaspow", "difelice", "ergun", "schiller", "stokes", "none")))
+            self.free = self.bitwise = False
         if self.kind == "rigid":
             self.files["cube.stl"] = CUBE.encode()
             # a little above the first body
@@ -220,6 +242,8 @@ class Scene:
                 0.01 * self.speed ** 2 / self.h * self.mvv2e)    # force per mass
             self.free = False
         text += "fix dt all mpm/dt %.3g\n" % pick.uniform(0.15, 0.3)
+        if pick.random() < 0.3:    # only seen with several processes
+            text += "fix even all balance 4 1.0 shift xy 3 1.05\n"
         return text
 
     def walls(self):
