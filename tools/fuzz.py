@@ -20,6 +20,7 @@ of each how it ended:
   --inputs N       inputs with mistakes (default 200)
   --scenes N       scenes (default 20)
   --seed N         of the first input and the first scene, the others follow (default 1)
+  --minutes M      begin nothing new after that time
   --jobs N         runs at a time (default: MPM_JOBS, or all cores)
   --out DIR        folder for failures (default: BUILD/fuzz)
   --lmp FILE       executable (default: MPM_LMP or BUILD/lmp)
@@ -363,22 +364,25 @@ class Report:
 
 def try_all(machine, options):
     report, hangs = Report(machine, options), []
-    numbers = range(options.seed, options.seed + options.inputs)
     mutator = fuzz_inputs.Mutator() if options.inputs else None
-    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        for seed, (verdict, case, done) in zip(numbers, pool.map(
-                lambda seed: try_input(machine, mutator, seed), numbers)):
-            if verdict == "hang":
-                hangs.append(seed)
-            else:
-                report.input(seed, verdict, case, done)
+    end = time.time() + 60 * options.minutes
+
+    def each(count, function):
+        """(seed, what function gives) for each of the seeds there is time for"""
+        def in_time(seed):
+            return (seed, function(seed)) if time.time() < end else None
+        with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+            yield from filter(None, pool.map(in_time, range(options.seed, options.seed + count)))
+
+    for seed, (verdict, case, done) in each(options.inputs, lambda seed: try_input(machine, mutator, seed)):
+        if verdict == "hang":
+            hangs.append(seed)
+        else:
+            report.input(seed, verdict, case, done)
     for seed in hangs:    # alone, and with more time
         report.input(seed, *try_input(machine, mutator, seed, patience=5))
-    numbers = range(options.seed, options.seed + options.scenes)
-    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        for seed, (verdict, scene, done, what) in zip(numbers, pool.map(
-                lambda seed: try_scene(machine, seed), numbers)):
-            report.scene(seed, verdict, scene, done, what)
+    for seed, result in each(options.scenes, lambda seed: try_scene(machine, seed)):
+        report.scene(seed, *result)
     return report.end()
 
 
@@ -406,6 +410,7 @@ def main():
     parser.add_argument("--jobs", type=int, default=int(os.environ.get("MPM_JOBS") or os.cpu_count()))
     parser.add_argument("--out", default=os.path.join(BUILD, "fuzz"))
     parser.add_argument("--lmp", default=os.environ.get("MPM_LMP") or os.path.join(BUILD, "lmp"))
+    parser.add_argument("--minutes", type=float, default=math.inf)
     parser.add_argument("--limit", type=int, default=0)
     parser.add_argument("--memory", type=float, default=4.0)
     parser.add_argument("--bases", action="store_true")
