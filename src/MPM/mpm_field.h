@@ -55,7 +55,7 @@ class MPMField : protected Pointers {
   MPM_NS::Grid grid;    ///< records of momentum: velocity and mass after the momentum equation
   MPM_NS::Lattice &lattice;    ///< that of the grid
   MPMNodes nodes;
-  MPMPoints *const points;
+  MPMPoints *points;    ///< of the present Atom object, which replicate exchanges: set in init()
 
   std::vector<FixMPMMaterial *> materials;    ///< all of them, see find_materials()
   std::vector<FixMPMElements *> elements;     ///< all of them, set in init()
