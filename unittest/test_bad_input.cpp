@@ -325,6 +325,27 @@ TEST(Files, AreExplained)
   }
 }
 
+// A force that is not finite reaches all nodes of a point. Transfers other than that of the motion take from these
+// nodes before anybody has looked at the velocities of points: they must not move points, not even in no time, or the
+// next one looks for nodes that do not exist. A point that is nowhere ends the run also when bad points are kept.
+PARAMETER_TEST(InfiniteForce, EndsTheRun, const char *,
+               Values("shape gimp scheme musl locking both",
+                      "shape cubic transfer pic scheme usavg locking both",
+                      "shape gimp transfer fmpm 2 locking both",
+                      "shape linear transfer pic bad warn",
+                      "shape cubic transfer xpic 3 scheme musl locking both",
+                      "shape cpdi2 transfer xpic 3 scheme usavg locking both"))
+{
+  const std::string rings = plane("lj", "f p", "0 12 0 8", 1, 0.5) +
+      "fix grid all mpm 1.0 axisymmetric yes " + GetParam() +
+      "\nregion body block 0 5 2 6 INF INF\ncreate_points 1 region body ppc 2\n"
+      "fix m all mpm/material density 2.0 neohookean 10.0 0.3\nfix axis all mpm/boundary xlo slip\n"
+      "velocity all ramp vx -0.5 0.5 y 2 6\nvariable q atom (x<3)*1e308*10\nfix kick all addforce "
+      "v_q 0 0\n"
+      "fix dt all mpm/dt 0.3\nrun 6\n";
+  EXPECT_THAT(error_of(rings), ::testing::ContainsRegex("Material point [0-9]+ at "));
+}
+
 // policies for points that go bad
 class Policy : public ::testing::Test {
  protected:

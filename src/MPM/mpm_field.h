@@ -90,6 +90,7 @@ class MPMField : protected Pointers {
     std::vector<double> node_velocities;    ///< [node][3] before XPIC and FMPM add terms
     std::vector<double> vectors;            ///< [n][3] what points give to these, or get of them
     std::vector<double> weights;            ///< [n] with which weights
+    std::vector<double> places;             ///< [n][3] where transfers put points that stay
     std::vector<double> stress;             ///< [n][6]
     std::vector<double> no_volume;          ///< [n] zero
     std::vector<double> xnew;    ///< [n][3] positions of the end of the step, when points move late
@@ -126,7 +127,7 @@ class MPMField : protected Pointers {
   int steps_to_next() const;
   MPM_NS::PointRows rows() const;
   /** Rows for transfers of other values and weights, in which points stay (the time step is zero). */
-  MPM_NS::PointRows rows_at_rest(double *values, const double *weights) const;
+  MPM_NS::PointRows rows_at_rest(double *values, const double *weights);
   /** With the duration of a step of the cycle, or another one. */
   MPM_NS::TransferStep step_data() const { return step_data(step_dt()); }
   MPM_NS::TransferStep step_data(double dt) const;
