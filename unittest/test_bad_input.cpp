@@ -388,6 +388,40 @@ TEST_F(Policy, WarnGoesOnAndCounts)
   EXPECT_GT(kept, 0);
 }
 
+// a point that is inverted does not keep others from their plastic strain: two cells of one block of nodes and one
+// batch, which have no node in common
+TEST(PolicyWarn, OtherPointsGoOn)
+{
+  const auto strain = [](const std::string &fast) {
+    Scene run(
+        space("lj", "f f f", "0 8 0 8 0 8") +
+        "fix grid all mpm 1.0 shape linear transfer flip 1.0 scheme musl dtcheck no bad warn\n"
+        "region left block 4 5 4 5 4 5\nregion right block 7 8 4 5 4 5\n"
+        "create_points 1 region left ppc 2\ncreate_points 1 region right ppc 2\n"
+        "group left region left\ngroup right subtract all left\n"
+        "fix m all mpm/material density 1.0 eos linear 20.0 strength j2 10.0 0.1\n"
+        "velocity left ramp vx -0.5 0.5 y 4 5\n" +
+        fast + "timestep 0.05\nrun 1\n");
+    auto *material = dynamic_cast<FixMPMMaterial *>(run.lmp->modify->get_fix_by_id("m"));
+    const int column = material->find_history("eplastic");
+    std::map<tagint, double> found;
+    for (int i = 0; i < run.n(); i++)
+      if (run.lmp->atom->tag[i] <= 8) found[run.lmp->atom->tag[i]] = material->history[i][column];
+    int kept = 0;    // deformation of points that are inverted
+    for (const auto &p : run.gather())
+      kept += p.tag > 8 && p.F[0] == 1.0 && p.F[4] == 1.0 && p.v[0] != 0.0;
+    return std::make_pair(found, kept);
+  };
+  const auto alone = strain(""), next_to = strain("velocity right ramp vx 100 -100 x 7 8\n");
+  ASSERT_EQ(alone.first.size(), 8u);
+  for (const auto &[tag, value] : alone.first) {
+    EXPECT_GT(value, 1e-3);
+    EXPECT_EQ(next_to.first.at(tag), value);
+  }
+  EXPECT_EQ(alone.second, 0);
+  EXPECT_EQ(next_to.second, 8);
+}
+
 TEST_F(Policy, DeleteReportsMassAndMomentum)
 {
   Scene warned(compressing("warn"));
