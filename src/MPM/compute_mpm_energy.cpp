@@ -8,25 +8,18 @@
 
 #include "compute_mpm_energy.h"
 
-#include "atom.h"
 #include "comm.h"
 #include "error.h"
-#include "fix_mpm_elements.h"
 #include "fix_mpm_material.h"
-#include "force.h"
-#include "material/material.h"
-#include "math/matrix.h"
 #include "modify.h"
 #include "mpm_field.h"
 #include "mpm_physics.h"
-#include "mpm_point_batches.h"
 #include "update.h"
 
 #include <algorithm>
 #include <cstring>
 
 using namespace LAMMPS_NS;
-using namespace MPM_NS;
 
 /* ---------------------------------------------------------------------- */
 
@@ -119,12 +112,8 @@ std::vector<std::string> ComputeMPMEnergy::find_accounts() const
 std::vector<double> ComputeMPMEnergy::evaluate() const
 {
   Sums mine = {};
-
+  static_cast<MPMPointEnergies &>(mine) = point_energies(lmp);
   for (const auto *field : MPMField::all(lmp)) {
-    for (int i = 0; i < atom->nlocal; i++) {
-      if (!field->is_point(i)) continue;
-      mine.kinetic += 0.5 * atom->rmass[i] * dot(atom->v[i], atom->v[i]);
-    }
     mine.external += field->ledger.external;
     mine.boundary += field->ledger.boundary;
     mine.contact += field->ledger.contact;
@@ -133,30 +122,6 @@ std::vector<double> ComputeMPMEnergy::evaluate() const
     mine.deleted_kinetic += field->ledger.deleted_kinetic;
     mine.deleted_stored += field->ledger.deleted_stored;
   }
-
-  for (const auto *material : find_fixes<FixMPMMaterial>(lmp)) {
-    mine.plastic += material->work[Work::PLASTIC];
-    mine.viscous += material->work[Work::VISCOUS];
-    mine.heat += material->work[Work::HEAT];
-    mine.fracture += material->work[Work::FRACTURE];
-  }
-
-  int nodes = 0;    // groups of nodes of elements, which store the energy
-  for (auto *elements : find_fixes<FixMPMElements>(lmp)) {
-    nodes |= elements->groupbit;
-    mine.stored += elements->stored_energy();
-  }
-  visit_point_batches(lmp, groupbit,
-                      [&](const Batch &batch, const int *list, const FixMPMMaterial &material) {
-                        double w[BATCH];
-                        material.material->stored_energy(batch, w);
-                        for (int k = 0; k < batch.n; k++)
-                          if (!(atom->mask[list[k]] & nodes)) mine.stored += batch.vol0[k] * w[k];
-                      });
-
-  mine.kinetic *= force->mvv2e;
-  for (double *energy : {&mine.plastic, &mine.viscous, &mine.heat, &mine.fracture, &mine.stored})
-    *energy /= force->nktv2p;
 
   std::vector<double> local(NSUMS), all(NSUMS + accounts.size());
   memcpy(local.data(), &mine, sizeof(Sums));

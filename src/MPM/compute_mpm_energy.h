@@ -16,6 +16,7 @@ ComputeStyle(mpm/energy,ComputeMPMEnergy);
 #define LMP_COMPUTE_MPM_ENERGY_H
 
 #include "compute.h"
+#include "mpm_point_energies.h"
 
 #include <string>
 #include <vector>
@@ -61,13 +62,9 @@ class ComputeMPMEnergy : public Compute {
   };
 
   /** What the entries are computed from, summed over ranks; the accounts of other physics follow. */
-  struct Sums {
-    double kinetic, stored, plastic, viscous, heat, fracture;
+  struct Sums : MPMPointEnergies {
     double external, boundary, contact, transfer, internal;
     double deleted_kinetic, deleted_stored;
-    /** What the points store, or have spent. */
-    double taken() const { return stored + plastic + viscous + fracture; }
-    double total() const { return kinetic + taken(); }
   };
 
   static constexpr std::size_t NSUMS = sizeof(Sums) / sizeof(double);

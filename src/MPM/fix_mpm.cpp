@@ -151,6 +151,7 @@ void FixMPM::check_fields() const
         {other->steps_to_next() != field->steps_to_next(),
          "be at the same step of every, as all are after a multiple of its steps"},
         {options.scheme != mine.scheme, "have the same scheme"},
+        {options.gain != mine.gain || options.most_gain != mine.most_gain, "have the same gain"},
         {options.axisymmetric != mine.axisymmetric, "be axisymmetric, or none"}};
     for (const auto &[differ, what] : rules)
       if (differ)
@@ -238,6 +239,7 @@ void FixMPM::pre_neighbor()
 
 void FixMPM::post_run()
 {
+  if (plan) plan->watch.finish();
   field->running = false;
   field->guard->wrap_far_points();
   field->ledger.start.clear();

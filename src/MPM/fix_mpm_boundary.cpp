@@ -829,10 +829,8 @@ void FixMPMBoundary::act(double dt, Stage stage)
       if (!faces[line.face].cut) act_on_column(list, line);
     for (const auto &orbit : list.orbits) act_on_orbit(list, orbit);
     for (auto &single : list.singles) act_on_single(list, single);
-    if (count && ledger.on) {
-      ledger.boundary += now.kinetic * force->mvv2e;
-      ledger.transfer += now.collided * force->mvv2e;
-    }
+    if (count) ledger.boundary += now.kinetic * force->mvv2e;
+    if (count && ledger.on) ledger.transfer += now.collided * force->mvv2e;
   }
   wall = in_step;
   if (count) past.acted = 1;

@@ -119,6 +119,13 @@ Options MPMFieldOptions::declare(int dim)
       .standard("lower corner of the simulation box");
   o.add("bad", {word(bad, {{"error", ERROR}, {"warn", WARN}, {"delete", DELETE}})},
         "what to do with a point that is inverted, not finite, or has left the box");
+  const auto gained = number(most_gain, "share", POSITIVE, "", "share of the energy in play");
+  o.add("gain",
+        {word(gain,
+              {{"error", GAIN_ERROR, "", {gained}},
+               {"warn", GAIN_WARN, "", {gained}},
+               {"ignore", GAIN_IGNORE}})},
+        "what to do when numerical errors have added more than a share of the energy in play");
   o.add("failed", {word(delete_failed, {{"keep", false}, {"delete", true}})},
         "what to do with a point whose damage is 1");
   o.add("edges", {word(modified_edges, {{"plain", false}, {"modified", true}})},

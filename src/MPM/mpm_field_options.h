@@ -23,6 +23,7 @@ struct MPMFieldOptions {
   enum Stress { DEFAULT_STRESS, MLS_STRESS, GRADIENT_STRESS };
   enum Locking { NO_CURE, FBAR, PRESSURE, BOTH };    ///< cure for volumetric locking
   enum Policy { ERROR, WARN, DELETE };               ///< what to do with a point that goes bad
+  enum Gain { GAIN_ERROR, GAIN_WARN, GAIN_IGNORE };
 
   MPM_NS::Shape shape = MPM_NS::QUADRATIC;
   double aspect[3] = {1.0, 1.0, 1.0};          ///< edges of an undeformed point; their product is 1
@@ -40,6 +41,8 @@ struct MPMFieldOptions {
   double light = 0.0;    ///< nodes with less than this share of a full cell are light; 0: none
   double origin[3] = {0.0, 0.0, 0.0};    ///< if not given: the lower corner of the box
   Policy bad = ERROR;
+  Gain gain = GAIN_WARN;          ///< what to do when numerical errors add energy
+  double most_gain = 0.02;        ///< from this share of the energy in play on
   bool delete_failed = false;     ///< remove points whose damage is 1
   bool modified_edges = false;    ///< functions next to fixed faces need no nodes outside
   int every = 1;                  ///< steps of LAMMPS in a step of the cycle
@@ -76,6 +79,8 @@ struct MPMFieldOptions {
   {
     return stress == GRADIENT_STRESS && MPM_NS::is_mls(shape, transfer);
   }
+
+  bool watches_gain() const { return gain != GAIN_IGNORE; }
 
   /** The declaration; refers to this object. */
   MPM_NS::Options declare(int dimension);

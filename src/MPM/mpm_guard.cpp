@@ -531,14 +531,12 @@ void MPMGuard::delete_points(std::vector<tagint> &list, bool warn)
     lost[0]++;
     lost[1] += m;
     for (int d = 0; d < 3; d++) lost[2 + d] += m * v[d];
-    if (field.ledger.on) {
-      const double kinetic = 0.5 * force->mvv2e * m * dot(v, v);
-      const FixMPMMaterial *material = field.material_of(i);
-      double w[BATCH];
+    double w[BATCH] = {0.0};
+    if (const FixMPMMaterial *material = field.material_of(i)) {
       load_state(field, *field.batch, &i, 1, material);
       material->material->stored_energy(*field.batch, w);
-      field.ledger.remove(kinetic, atom->vfrac[i] * w[0] / force->nktv2p);
     }
+    field.ledger.remove(0.5 * force->mvv2e * m * dot(v, v), atom->vfrac[i] * w[0] / force->nktv2p);
     atom->avec->copy(atom->nlocal - 1, i, 1);
     atom->nlocal--;
   }

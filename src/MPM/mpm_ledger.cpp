@@ -116,12 +116,10 @@ void MPMLedger::push_node(double *record, bool owned, const double *impulse)
 
 void MPMLedger::count_push(const double *record, const double *change)
 {
-  if (!on) return;
   double moved = 0.0, lost = 0.0;
-  for (int d = 0; d < field.lattice.dim; d++) {
-    moved += change[d] * record[d];
-    lost += 0.5 * change[d] * (record[d] - record[4 + d]);
-  }
+  for (int d = 0; d < field.lattice.dim; d++) moved += change[d] * record[d];
   contact += record[3] * moved * force->mvv2e;
+  if (!on) return;
+  for (int d = 0; d < field.lattice.dim; d++) lost += 0.5 * change[d] * (record[d] - record[4 + d]);
   transfer -= record[3] * lost * force->mvv2e;
 }

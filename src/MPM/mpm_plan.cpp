@@ -139,6 +139,7 @@ void MPMPlan::find_blocks_now()
 
 void MPMPlan::start()
 {
+  watch.start();
   for (auto &stage : stages) std::fill(stage.seconds.begin(), stage.seconds.end(), 0.0);
   wall_start = platform::walltime();
   cpu_start = platform::cputime();

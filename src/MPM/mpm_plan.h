@@ -9,6 +9,7 @@
 #ifndef LMP_MPM_PLAN_H
 #define LMP_MPM_PLAN_H
 
+#include "mpm_energy_watch.h"
 #include "mpm_node_action.h"
 #include "pointers.h"
 
@@ -39,7 +40,9 @@ class MPMPlan : protected Pointers {
   std::vector<MPMNodeAction *> actions;    ///< in the order in which they act
   std::vector<MPMPhysics *> physics;       ///< in the order of definition
 
-  explicit MPMPlan(class LAMMPS *lmp) : Pointers(lmp) {}
+  MPMEnergyWatch watch;
+
+  explicit MPMPlan(class LAMMPS *lmp) : Pointers(lmp), watch(lmp, fields) {}
 
   /** Find all fields, node actions and physics, and make the list. */
   void make();

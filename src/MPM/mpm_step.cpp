@@ -74,6 +74,10 @@ void average_pressure(MPMPlan &plan)
 /** What all schemes begin with. */
 void begin(MPMPlan &plan)
 {
+  const auto watch = [&plan]() {
+    plan.watch.step();
+  };
+  plan.together("energy watch", watch, with<&Options::watches_gain>);
   plan.together("topology", [&plan]() {
     plan.find_blocks();
   });

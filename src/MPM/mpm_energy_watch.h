@@ -1,0 +1,71 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_ENERGY_WATCH_H
+#define LMP_MPM_ENERGY_WATCH_H
+
+#include "pointers.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+class MPMField;
+
+/** Tells when numerics add energy to the points (keyword gain of fix mpm).
+ *
+ *  What all points have and have spent may grow by the work that is done on them. That of walls, of
+ *  contact and of deleted points is always counted; that of forces on points is the integral of their
+ *  power, by the trapezoidal rule over a few steps. What is left is the sum of the errors transfer,
+ *  integration and residual of compute mpm/energy. It counts from its lowest value in a run, so that
+ *  energy that a dissipative transfer took at first does not hide what is added later, and is
+ *  compared with the energy in play: the largest sum so far of kinetic energy, stored energy, and
+ *  energy spent in this run.
+ */
+class MPMEnergyWatch : protected Pointers {
+ public:
+  MPMEnergyWatch(class LAMMPS *lmp, const std::vector<MPMField *> &fields) :
+      Pointers(lmp), fields(fields)
+  {
+  }
+
+  /** Start of a run. */
+  void start() { run = {}; }
+  /** Start of a step of the cycle, where positions, velocities, and forces belong to one time. */
+  void step();
+  /** End of a run. */
+  void finish();
+
+ private:
+  /** Sums over all ranks. */
+  struct Sums {
+    double points, mass;
+    double kinetic, stored, spent;
+    double work;    // done on the points, less what deleted points had
+    /** Energy that work does not explain, from the same start. */
+    double unexplained() const { return kinetic + stored + spent - work; }
+  };
+
+  const std::vector<MPMField *> &fields;
+  struct {
+    bigint steps;
+    double elapsed;
+    double power, power_time, force_work;    // of forces on points, this rank's share
+    Sums start;
+    double lowest;     // energy that work does not explain
+    double in_play;    // largest energy so far
+    bool told;
+  } run = {};
+
+  void add_force_work();
+  Sums sums() const;
+  void begin(const Sums &);
+  void check();
+};
+
+}    // namespace LAMMPS_NS
+#endif

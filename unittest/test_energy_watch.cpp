@@ -1,0 +1,125 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: physics
+// mpi: 1 2
+
+// Keyword gain of fix mpm: energy that no work explains is told, and energy that work explains is not.
+
+#include "bad_input_testing.h"
+
+#include <regex>
+
+using namespace MPM_TEST;
+
+namespace {
+
+/** A block that moves through a periodic box, and gets a part of its kinetic energy out of nothing. */
+std::string drift(const char *gain)
+{
+  return space("lj", "p p p", "0 12 0 4 0 4", 1, 0.5) +
+      body("block 2 6 0 4 0 4", "density 2 neohookean 100 0.3", std::string("1.0 ") + gain) +
+      "velocity all set 1 0 0\ntimestep 0.01\nrun 400\n";
+}
+std::string faster(double energy)
+{
+  return strprintf("velocity all set %.17g 0 0\nrun 400 pre no\n", std::sqrt(energy));
+}
+
+/** The last warning in the log. */
+struct Found {
+  int warnings = 0;
+  double energy = 0.0, percent = 0.0;
+};
+Found told_by(const std::string &scene)
+{
+  const ScratchFile file("log");
+  Scene run("log " + file.name + "\n" + scene + "log none\n");
+  Found found;
+  const std::string text = file_text(file.name);
+  const std::regex message("WARNING: Numerical errors have added the energy ([-+.e0-9]+) to the "
+                           "material points by step [0-9]+ of this run, ([-+.e0-9]+) %");
+  for (std::sregex_iterator at(text.begin(), text.end(), message), end; at != end; ++at) {
+    found.warnings++;
+    found.energy = std::stod((*at)[1]);
+    found.percent = std::stod((*at)[2]);
+  }
+  return found;
+}
+
+// The block has the mass 128, and so at the start the energy 64
+TEST(EnergyWatch, TellsWhatIsGained)
+{
+  const Found found = told_by(drift("") + faster(1.05));
+  EXPECT_EQ(found.warnings, 1);
+  EXPECT_NEAR(found.energy, 0.05 * 64.0, 1e-3 * found.energy);
+  EXPECT_NEAR(found.percent, 100.0 * 0.05 / 1.05, 1e-3 * found.percent);
+
+  EXPECT_EQ(told_by(drift("") + faster(1.015)).warnings, 0);    // the share is 0.02 if not given
+  EXPECT_EQ(told_by(drift("gain warn 0.01") + faster(1.015)).warnings, 1);
+  EXPECT_EQ(told_by(drift("gain warn 0.1") + faster(1.05)).warnings, 0);
+  EXPECT_EQ(told_by(drift("gain ignore") + faster(2.0)).warnings, 0);
+  EXPECT_EQ(told_by(drift("") + faster(0.5)).warnings, 0);
+  // from the lowest, and once in a run
+  EXPECT_EQ(told_by(drift("") + faster(0.5) + faster(0.55)).warnings, 1);
+  EXPECT_EQ(told_by(drift("") + faster(1.1) + faster(1.2)).warnings, 1);
+  // each run anew
+  EXPECT_EQ(told_by(drift("") + "velocity all set 2 0 0\nrun 400\n").warnings, 0);
+}
+
+TEST(EnergyWatch, StopsWhereAskedTo)
+{
+  Scene run(drift("gain error 0.02"));
+  EXPECT_TRUE(
+      std::regex_search(run.error(faster(1.05)),
+                        std::regex("Numerical errors have added .*gain warn.ignore goes on")));
+  Scene goes_on(drift("gain error 0.1"));
+  EXPECT_EQ(goes_on.error(faster(1.05)), "");
+}
+
+// Linear functions with scheme usl amplify round-off at nodes of tiny mass, see Howto_mpm_stability; plasticity
+// keeps the points from being inverted at once
+TEST(EnergyWatch, SeesAnUnstableCombination)
+{
+  const std::string scene = plane("lj", "p p", "0 12 0 12", 1, 0.5) +
+      body("block 3 9 3 9 INF INF", "density 1 eos linear 100 strength j2 40 0.1",
+           "1.0 SHAPE transfer flip 1.0 gain error 0.02") +
+      "velocity all set 0.1 0.05 0\nfix dt all mpm/dt 0.2\nrun 1200\n";
+  Scene run;
+  const std::string text = run.error(replaced(scene, "SHAPE", "shape linear"));
+  EXPECT_TRUE(contains(text, "Numerical errors have added")) << text;
+  Scene stable;
+  EXPECT_EQ(stable.error(replaced(scene, "SHAPE", "shape quadratic")), "");
+}
+
+// Work of each kind, which without its account would be a gain of most of the energy of the body
+struct Work {
+  const char *name, *text;
+};
+const Work works[] = {
+    {"Gravity", "fix g all gravity 1 vector 1 0 0\n"},
+    {"GravityAndReturn", "velocity all set -5 0 0\nfix g all gravity 1 vector 1 0 0\n"},
+    {"AddForce", "fix push all addforce 0.3 0.0 0.1\n"},
+    {"Indenter", "fix push all indent 100 sphere v_centre 2 2 2 side out\n"},
+    {"StickyWall", "GRIPfix wall all mpm/boundary region grip stick\n"},
+    {"SlipWall", "GRIPfix wall all mpm/boundary region grip slip\n"},
+    {"SeparatingWall", "GRIPfix wall all mpm/boundary region grip separate friction 0.3\n"},
+    {"PrescribedWall", "fix wall all mpm/boundary region still stick velocity v_speed NULL NULL\n"},
+};
+
+PARAMETER_TEST(EnergyWatchWork, IsNoGain, Work, ValuesIn(works))
+{
+  const std::string grip = "region grip block INF 8.1 INF INF INF INF move v_way NULL NULL\n";
+  Scene run(space("lj", "f p p", "-60 80 0 4 0 4", 1, 0.5) +
+            body("block 8 12 0 4 0 4", "density 2 neohookean 300 0.3", "1.0 gain error 0.02") +
+            "variable t equal step*dt\nvariable speed equal 0.3*v_t\n"
+            "variable way equal 0.15*v_t*v_t\nvariable centre equal v_way+6\n"
+            "region still block INF 9.1 INF INF INF INF\n");
+  run.commands("timestep 0.01\n");
+  EXPECT_EQ(run.error(replaced(GetParam().text, "GRIP", grip) + "run 1000\n"), "");
+  double moving = 0.0;
+  for (int i = 0; i < run.n(); i++) moving += run.v()[i][0];
+  EXPECT_GT(std::abs(over_ranks(moving)), 0.1 * over_ranks(run.n()));    // there was work
+}
+
+}    // namespace
