@@ -713,6 +713,29 @@ TEST(AtomStyle, Replicate)
   EXPECT_EQ(atoms(scene).size(), after.size() + 16 * 4 * 2);
 }
 
+// The command makes another Atom object, and fix mpm goes on with the points of that one. Periodic copies
+// of a periodic system move as the original does. Without arrays of its own (pic, no history variables), or else
+// LAMMPS refuses the command.
+TEST(AtomStyle, ReplicateBetweenRuns)
+{
+  const std::string scene = space("lj", "p p p", "0 8 0 6 0 5") +
+      "fix grid all mpm 1.0 transfer pic\nregion body block 1 4 1 4 1 3\ncreate_points 1 region "
+      "body ppc 2\n"
+      "fix water all mpm/material density 1.0 eos tait 20.0 7\n"
+      "velocity all ramp vx 0.1 0.5 y 1 4 units box\nvelocity all set NULL 0.1 0.3\ntimestep "
+      "0.02\nrun 20\n";
+  Scene once(scene + "run 20\n"), copies(scene + "replicate 2 1 2\nrun 20\n");
+  const auto one = once.gather(), many = copies.gather();
+  ASSERT_EQ(many.size(), 4 * one.size());
+  for (const auto &p : many) {
+    const auto &q = one[((int) p.tag - 1) % one.size()];
+    for (int d = 0; d < 3; d++) EXPECT_NEAR(p.v[d], q.v[d], 1e-13);
+    for (int c = 0; c < 9; c++) EXPECT_NEAR(p.F[c], q.F[c], 1e-13);
+    for (int c = 0; c < 6; c++) EXPECT_NEAR(p.stress[c], q.stress[c], 1e-12);
+  }
+  EXPECT_GT(std::fabs(one[0].stress[0]), 1e-6);
+}
+
 TEST(AtomStyle, DeleteAtoms)
 {
   Scene scene(moving);

@@ -561,6 +561,27 @@ TEST(Axisymmetric, ElementsOfAMeshAreRings)
 }
 
 // ---------------------------------------------------------------------- mistakes
+// F-bar changes volumes: of the motion of a point it keeps everything else, around the axis, too
+TEST(Axisymmetric, LockingChangesTheVolumeOnly)
+{
+  const auto one_step = [](const std::string &locking) {
+    Scene run(start(8, 8, 1.0, "transfer flip 1.0 scheme musl" + locking) +
+              points("block 1 5 1 6 INF INF", "density 1.0 neohookean 10.0 0.45") +
+              "velocity all ramp vx 0.0 0.5 y 1 6\nvelocity all ramp vy -0.3 0.3 x 1 5\ntimestep "
+              "0.02\nrun 1\n");
+    return run.gather();
+  };
+  const auto own = one_step(""), averaged = one_step(" locking fbar");
+  ASSERT_EQ(own.size(), averaged.size());
+  double largest = 0.0;
+  for (std::size_t k = 0; k < own.size(); k++) {
+    const double stretch = cbrt(MPMPoints::det(averaged[k].F) / MPMPoints::det(own[k].F));
+    for (int c = 0; c < 9; c++) EXPECT_NEAR(averaged[k].F[c], stretch * own[k].F[c], 1e-14);
+    largest = std::max(largest, std::abs(stretch - 1.0));
+  }
+  EXPECT_GT(largest, 1e-4);    // the strain of the motion is not uniform
+}
+
 TEST(Axisymmetric, Refused)
 {
   const std::string head = "units lj\nboundary f f MPM_Z\natom_style mpm\n"

@@ -325,6 +325,27 @@ TEST(Files, AreExplained)
   }
 }
 
+// A force that is not finite reaches all nodes of a point. Transfers other than that of the motion take from these
+// nodes before anybody has looked at the velocities of points: they must not move points, not even in no time, or the
+// next one looks for nodes that do not exist. A point that is nowhere ends the run also when bad points are kept.
+PARAMETER_TEST(InfiniteForce, EndsTheRun, const char *,
+               Values("shape gimp scheme musl locking both",
+                      "shape cubic transfer pic scheme usavg locking both",
+                      "shape gimp transfer fmpm 2 locking both",
+                      "shape linear transfer pic bad warn",
+                      "shape cubic transfer xpic 3 scheme musl locking both",
+                      "shape cpdi2 transfer xpic 3 scheme usavg locking both"))
+{
+  const std::string rings = plane("lj", "f p", "0 12 0 8", 1, 0.5) +
+      "fix grid all mpm 1.0 axisymmetric yes " + GetParam() +
+      "\nregion body block 0 5 2 6 INF INF\ncreate_points 1 region body ppc 2\n"
+      "fix m all mpm/material density 2.0 neohookean 10.0 0.3\nfix axis all mpm/boundary xlo slip\n"
+      "velocity all ramp vx -0.5 0.5 y 2 6\nvariable q atom (x<3)*1e308*10\nfix kick all addforce "
+      "v_q 0 0\n"
+      "fix dt all mpm/dt 0.3\nrun 6\n";
+  EXPECT_THAT(error_of(rings), ::testing::ContainsRegex("Material point [0-9]+ at "));
+}
+
 // policies for points that go bad
 class Policy : public ::testing::Test {
  protected:
@@ -365,6 +386,40 @@ TEST_F(Policy, WarnGoesOnAndCounts)
   }
   EXPECT_EQ(kept, std::stoi(found[1]));
   EXPECT_GT(kept, 0);
+}
+
+// a point that is inverted does not keep others from their plastic strain: two cells of one block of nodes and one
+// batch, which have no node in common
+TEST(PolicyWarn, OtherPointsGoOn)
+{
+  const auto strain = [](const std::string &fast) {
+    Scene run(
+        space("lj", "f f f", "0 8 0 8 0 8") +
+        "fix grid all mpm 1.0 shape linear transfer flip 1.0 scheme musl dtcheck no bad warn\n"
+        "region left block 4 5 4 5 4 5\nregion right block 7 8 4 5 4 5\n"
+        "create_points 1 region left ppc 2\ncreate_points 1 region right ppc 2\n"
+        "group left region left\ngroup right subtract all left\n"
+        "fix m all mpm/material density 1.0 eos linear 20.0 strength j2 10.0 0.1\n"
+        "velocity left ramp vx -0.5 0.5 y 4 5\n" +
+        fast + "timestep 0.05\nrun 1\n");
+    auto *material = dynamic_cast<FixMPMMaterial *>(run.lmp->modify->get_fix_by_id("m"));
+    const int column = material->find_history("eplastic");
+    std::map<tagint, double> found;
+    for (int i = 0; i < run.n(); i++)
+      if (run.lmp->atom->tag[i] <= 8) found[run.lmp->atom->tag[i]] = material->history[i][column];
+    int kept = 0;    // deformation of points that are inverted
+    for (const auto &p : run.gather())
+      kept += p.tag > 8 && p.F[0] == 1.0 && p.F[4] == 1.0 && p.v[0] != 0.0;
+    return std::make_pair(found, kept);
+  };
+  const auto alone = strain(""), next_to = strain("velocity right ramp vx 100 -100 x 7 8\n");
+  ASSERT_EQ(alone.first.size(), 8u);
+  for (const auto &[tag, value] : alone.first) {
+    EXPECT_GT(value, 1e-3);
+    EXPECT_EQ(next_to.first.at(tag), value);
+  }
+  EXPECT_EQ(alone.second, 0);
+  EXPECT_EQ(next_to.second, 8);
 }
 
 TEST_F(Policy, DeleteReportsMassAndMomentum)

@@ -704,6 +704,39 @@ TEST(Motion, FlipTakesAsMuchOfTheOldVelocityAsTheFirstNodeInsideHas)
       }
 }
 
+// The same at a face between planes of nodes: what material brings along beyond the first nodes inside is lost at
+// once, while a uniform strain, which a vibration may well have, stays. (Without forces the velocities of nodes
+// before and after the step are the same, and so would be those of points.)
+TEST(Motion, FlipTakesFromTheOldVelocityAtACutFace)
+{
+  for (const bool arrives : {false, true}) {
+    Scene run(space("lj", "p f p", "0 4 0 8 0 4") +
+              body("block 0 4 0 3 0 4", "density 1.0 neohookean 1e-9 0.3",
+                   "1.0 transfer flip 1.0 origin 0 0.4 0") +
+              "fix w all mpm/boundary ylo stick\ntimestep 1e-4\nrun 0\n");
+    const auto speed = [=](double y) {
+      return arrives ? -0.5 * exp(-2.0 * y) : -0.1 * y;
+    };
+    set_field(run, [&](const double *x, double *v, double[3][3]) {
+      v[0] = v[2] = 0.0;
+      v[1] = speed(x[1]);
+    });
+    const auto before = run.gather();
+    run.commands("run 1\n");
+    const auto after = run.gather();
+    double lost = 0.0, largest = 0.0;
+    for (std::size_t k = 0; k < before.size(); k++) {
+      const double change = after[k].v[1] - before[k].v[1];
+      if (before[k].x[1] < 0.5) lost += change / 64.0;    // 64 points next to the wall
+      largest = std::max(largest, std::abs(change));
+    }
+    if (arrives)
+      EXPECT_GT(over_ranks(lost), 0.05 * 0.5);
+    else
+      EXPECT_LT(over_ranks(largest, MPI_MAX), 1e-12);
+  }
+}
+
 // FLIP: a block that is thrown at a wall returns with its speed (0.59 of it with an update as in PIC
 // at the wall)
 TEST(Rebound, FlipKeepsTheEnergy)
@@ -1217,4 +1250,23 @@ TEST(BadInput, NarrowChannels)
        {"fix w all mpm/boundary xlo xhi separate", "at least 3 cells"}},
       "run 0\n");
   EXPECT_EQ(error_of(scene + "fix w all mpm/boundary xlo xhi slip\nrun 1\n"), "");
+}
+
+// A region that another command has put elsewhere between runs has not moved there: the wall has the velocity of
+// the motion in the step
+TEST(Regions, ThatAreElsewhereInTheNextRunHaveNotMovedThere)
+{
+  Scene run(space("lj", "p p f", "0 4 0 4 0 8") +
+            body("block 0 4 0 4 0 4", "density 1.0 neohookean 100.0 0.3", "1.0 transfer pic") +
+            "variable d equal 0.1*step*dt\nregion plate block INF INF INF INF INF 2.0 move NULL "
+            "NULL v_d\n"
+            "fix w all mpm/boundary region plate stick\ntimestep 0.01\nrun 5\n");
+  run.commands("variable d equal 0.1*step*dt+0.02\nrun 1\n");
+  int held = 0;
+  for (const auto &p : run.gather()) {
+    if (p.x[2] > 0.5) continue;
+    held++;
+    EXPECT_NEAR(p.v[2], 0.1, 1e-12);
+  }
+  EXPECT_GT(held, 32);
 }

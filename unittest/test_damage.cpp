@@ -72,6 +72,19 @@ TEST(Deletion, MassAndMomentumAreTold)
   }
 }
 
+// at once, and not when lists are due: with this skin no point goes far enough
+TEST(Deletion, DoesNotWaitForNewLists)
+{
+  Scene run(replaced(plate("failed delete", brittle), "neighbor 0.3 bin", "neighbor 20 bin") +
+            "run 0\n");
+  const auto all = run.gather().size();
+  run.commands("run 60\n");
+  const auto left = run.gather().size();
+  EXPECT_LT(left, all - 2);
+  EXPECT_GT(left, all / 4);
+  for (const double D : history(run, "damage")) EXPECT_LT(D, 1.0);
+}
+
 TEST(Deletion, IsOff)
 {
   Scene run(plate("", brittle + "after none") + "run 150\nrun 0\n");

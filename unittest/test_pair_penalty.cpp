@@ -202,6 +202,23 @@ compute esum all reduce sum c_e
 thermo_style custom step pe c_esum
 )";
 
+// without Newton's third law a pair of a point and an image of another is there twice, on one rank, too: it is one
+// contact, and its friction one work
+TEST(Parallel, PairsAcrossAPeriodicFaceCountOnce)
+{
+  std::vector<std::array<double, 2>> told;
+  for (const char *newton : {"on", "off"}) {
+    Scene run(std::string("newton ") + newton + "\n" + disks +
+              "compute told all pair mpm/penalty\n"
+              "thermo_style custom step c_told[1] c_told[2]\nrun 120\n");
+    told.push_back({run.evaluate("c_told[1]"), run.evaluate("c_told[2]")});
+  }
+  EXPECT_GT(told[0][0], 0.0);
+  EXPECT_GT(told[0][1], 0.0);
+  EXPECT_EQ(told[0][0], told[1][0]);
+  EXPECT_NEAR(told[0][1], told[1][1], 1e-10 * told[0][1]);
+}
+
 TEST(Parallel, RanksAgreeAcrossAPeriodicFaceAndAfterARestart)
 {
   Twins run(disks, 160,

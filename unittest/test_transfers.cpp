@@ -166,6 +166,34 @@ run 4000
   }
 }
 
+// the velocities that terms of the series add obey walls, too: nodes in the plane of a wall that sticks stay with
+// it (linear functions: there is nothing beyond)
+TEST(Refined, WallsHoldAfterEachTerm)
+{
+  Scene run(plane("lj", "p f", "0 4 0 12") +
+            body("block 0 4 0 8 -0.5 0.5", "density 1 neohookean 100 0.3",
+                 "1.0 shape linear transfer fmpm 3") +
+            "fix w all mpm/boundary ylo stick\nvelocity all ramp vx -0.5 0.5 y 0 8\n"
+            "velocity all ramp vy 0.3 -0.3 y 0 8\ntimestep 0.01\nrun 1\n");
+  auto &grid = MPMField::all(run.lmp)[0]->grid;
+  int on_wall = 0, inside = 0;
+  for (int64_t n = 0; n < grid.nnodes(); n++) {
+    const double *record = grid.nodes() + 8 * n;
+    double x[3];
+    grid.node_position(n, x);
+    if (!(record[3] > 0.0)) continue;
+    if (std::abs(x[1]) > 1e-9) {
+      inside += std::abs(record[0]) > 0.01;
+      continue;
+    }
+    on_wall++;
+    EXPECT_EQ(record[0], 0.0);
+    EXPECT_EQ(record[1], 0.0);
+  }
+  EXPECT_GE(over_ranks(on_wall), 4);
+  EXPECT_GE(over_ranks(inside), 10);
+}
+
 // stress half of a step with either gradient: energy of a spinning disk is kept better than by
 // the others (1.00027 with MUSL, .983 with USL), angular momentum as by them (.988)
 TEST(Usavg, SpinningDisk)

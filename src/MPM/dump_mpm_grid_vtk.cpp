@@ -26,6 +26,7 @@ const std::vector<DumpMPMGridVTK::Quantity> DumpMPMGridVTK::known = {
 
 DumpMPMGridVTK::DumpMPMGridVTK(LAMMPS *lmp, int narg, char **arg) : DumpVTKSeries(lmp, narg, arg)
 {
+  const ErrorWords these(lmp, narg, arg);
   if (narg < 7) utils::missing_cmd_args(FLERR, "dump mpm/grid/vtk", error);
   if (igroup != 0)
     error->all(FLERR, 1, "Dump mpm/grid/vtk requires group all: the fix mpm selects the nodes");

@@ -12,6 +12,7 @@
 #include "compute_mpm_atom.h"
 #include "memory.h"
 #include "modify.h"
+#include "tokenizer.h"
 
 #include <map>
 #include <set>
@@ -53,6 +54,7 @@ static const char PREFIX[] = "quantity:";    // marks a name of compute mpm/atom
 DumpMPMVTK::Request::Request(LAMMPS *lmp_in, int narg, char **arg) : lmp(lmp_in)
 {
   auto *error = lmp->error;
+  shown = std::make_unique<ErrorWords>(lmp, narg, arg);
   if (narg < 5) utils::missing_cmd_args(FLERR, "dump mpm/vtk", error);
 
   const auto wrong = VTKFile::name_error(arg[4], "vtp", strcmp(arg[0], "WRITE_DUMP") != 0);
@@ -96,13 +98,20 @@ DumpMPMVTK::Request::Request(LAMMPS *lmp_in, int narg, char **arg) : lmp(lmp_in)
     int n = 1;
     while (lmp->modify->get_compute_by_id(fmt::format("MPM_VTK_{}", n))) n++;
     compute = fmt::format("MPM_VTK_{}", n);
-    lmp->modify->add_compute(fmt::format("{} {} mpm/atom{}", compute, arg[1], names));
+    const std::string command = fmt::format("{} {} mpm/atom{}", compute, arg[1], names);
+    auto parts = Tokenizer(command).as_vector();
+    std::vector<char *> pointers;
+    for (auto &part : parts) pointers.push_back(part.data());
+    const ErrorWords own(lmp, (int) pointers.size(), pointers.data());
+    lmp->modify->add_compute((int) pointers.size(), pointers.data());
     int k = 0;
     for (auto *word : quantities)
       *word = quantities.size() == 1 ? "c_" + compute : fmt::format("c_{}[{}]", compute, ++k);
   }
 
   for (auto &word : words) args.push_back(const_cast<char *>(word.c_str()));
+  shown.reset();
+  shown = std::make_unique<ErrorWords>(lmp, (int) args.size(), args.data());
 }
 
 DumpMPMVTK::Request::~Request()
@@ -147,6 +156,7 @@ DumpMPMVTK::DumpMPMVTK(LAMMPS *lmp, int narg, char **arg) :
 DumpMPMVTK::DumpMPMVTK(LAMMPS *lmp, std::unique_ptr<Request> custom) :
     DumpVTKSeries(lmp, (int) custom->args.size(), custom->args.data()), request(std::move(custom))
 {
+  request->shown.reset();
   begin_series();
 }
 

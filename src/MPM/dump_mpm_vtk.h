@@ -51,6 +51,7 @@ class DumpMPMVTK : public DumpVTKSeries<DumpCustom> {
     std::vector<Field> fields;
     Field position;
     std::string compute;    // ID of the internal compute mpm/atom, empty: none
+    std::unique_ptr<MPM_NS::ErrorWords> shown;    // until dump custom is made
 
     Request(LAMMPS *, int, char **);
     ~Request();

@@ -103,6 +103,7 @@ void FixMPM::init()
     error->all(FLERR,
                "Fix mpm cannot be used with minimize, which would move material points like "
                "atoms: minimize before the fix is defined");
+  field->points = MPMPoints::get(atom);
   field->check_box();
   if (domain->box_change_size || domain->box_change_shape)
     error->all(FLERR,

@@ -254,12 +254,16 @@ PointRows MPMField::rows() const
   return r;
 }
 
-PointRows MPMField::rows_at_rest(double *values, const double *weights) const
+PointRows MPMField::rows_at_rest(double *values, const double *weights)
 {
+  // a value of a node that is not finite moves points even in no time, and the next transfer would look for
+  // their nodes; they stay where they are until the guard has seen the velocity
+
+  work.places.resize(3 * (std::size_t) atom->nmax);
   PointRows r = rows();
   r.v = values;
   r.mass = weights;
-  r.xnew = r.x;
+  r.xnew = work.places.data();
   r.from = r.x;
   r.F = nullptr;
   return r;
@@ -288,7 +292,7 @@ double MPMField::memory_usage() const
   if (every)
     bytes += (every->mean_force.capacity() + every->mean_torque.capacity()) * sizeof(double);
   for (const auto *list : {&work.nodes, &work.node_velocities, &work.vectors, &work.weights,
-                           &work.stress, &work.no_volume, &work.xnew, &work.history})
+                           &work.places, &work.stress, &work.no_volume, &work.xnew, &work.history})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

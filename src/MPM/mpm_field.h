@@ -57,7 +57,7 @@ class MPMField : protected Pointers {
   MPM_NS::Grid grid;    ///< records of momentum: velocity and mass after the momentum equation
   MPM_NS::Lattice &lattice;    ///< that of the grid
   MPMNodes nodes;
-  MPMPoints *const points;
+  MPMPoints *points;    ///< of the present Atom object, which replicate exchanges: set in init()
 
   std::vector<FixMPMMaterial *> materials;    ///< all of them, see find_materials()
   std::vector<FixMPMElements *> elements;     ///< all of them, set in init()
@@ -94,6 +94,7 @@ class MPMField : protected Pointers {
     std::vector<double> node_velocities;    ///< [node][3] before XPIC and FMPM add terms
     std::vector<double> vectors;            ///< [n][3] what points give to these, or get of them
     std::vector<double> weights;            ///< [n] with which weights
+    std::vector<double> places;             ///< [n][3] where transfers put points that stay
     std::vector<double> stress;             ///< [n][6]
     std::vector<double> no_volume;          ///< [n] zero
     std::vector<double> xnew;    ///< [n][3] positions of the end of the step, when points move late
@@ -130,7 +131,7 @@ class MPMField : protected Pointers {
   int steps_to_next() const;
   MPM_NS::PointRows rows() const;
   /** Rows for transfers of other values and weights, in which points stay (the time step is zero). */
-  MPM_NS::PointRows rows_at_rest(double *values, const double *weights) const;
+  MPM_NS::PointRows rows_at_rest(double *values, const double *weights);
   /** With the duration of a step of the cycle, or another one. */
   MPM_NS::TransferStep step_data() const { return step_data(step_dt()); }
   MPM_NS::TransferStep step_data(double dt) const;

@@ -446,10 +446,15 @@ void MPMGuard::point_is_bad(int i, const std::string &what, const std::string &c
 
 void MPMGuard::check_positions()
 {
+  // nobody can go on with a point that is nowhere: if it is not deleted, it ends the run as one outside of the box
+
   for (const auto &run : field.map->runs)
     for (int i = run.first; i < run.last; i++) {
       const double *x = atom->x[i];
-      if (!std::isfinite(x[0] + x[1] + x[2])) point_is_bad(i, "has lost its position");
+      if (std::isfinite(x[0] + x[1] + x[2])) continue;
+      if (field.options.bad == MPMFieldOptions::WARN)
+        error->one(FLERR, "{} has lost its position at step {}", describe(i), update->ntimestep);
+      point_is_bad(i, "has lost its position");
     }
 }
 

@@ -9,6 +9,8 @@
 #include "mpm_vtk.h"
 
 #include "fmt/format.h"
+#include "input.h"
+#include "lammps.h"
 #include "platform.h"
 
 #include <algorithm>
@@ -199,4 +201,20 @@ std::string VTKCollection::add(const std::string &path, double time, int keep, b
   if (fp) ok = fclose(fp) == 0 && ok;
   ok = ok && rename(aside.c_str(), list.c_str()) == 0;
   return ok ? "" : fmt::format("cannot write the list of files {}: {}", list, strerror(errno));
+}
+
+/* ---------------------------------------------------------------------- */
+
+ErrorWords::ErrorWords(LAMMPS *lmp, int narg, char **arg) :
+    input(lmp->input), narg_before(input->narg), arg_before(input->arg), words(arg, arg + narg)
+{
+  words.push_back(nullptr);    // as in the list of the input
+  input->narg = narg;
+  input->arg = words.data();
+}
+
+ErrorWords::~ErrorWords()
+{
+  input->narg = narg_before;
+  input->arg = arg_before;
 }

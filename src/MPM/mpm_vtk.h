@@ -22,6 +22,10 @@
 #include <string>
 #include <vector>
 
+namespace LAMMPS_NS {
+class Input;
+}
+
 namespace MPM_NS {
 
 /** One VTK XML file whose data are raw bytes in an appended section, at places that are known
@@ -87,6 +91,23 @@ class VTKCollection {
   bool is_read = false;
 
   void read();
+};
+
+/** Errors of LAMMPS that point to a word of the command mean a word of this one, and not of that in
+ *  the input, as long as this exists. LAMMPS takes the word from the input without a look at how
+ *  many there are, and write_dump, an internal compute, and an internal list of columns have more. */
+class ErrorWords {
+ public:
+  ErrorWords(LAMMPS_NS::LAMMPS *, int narg, char **arg);
+  ~ErrorWords();
+  ErrorWords(const ErrorWords &) = delete;
+  ErrorWords &operator=(const ErrorWords &) = delete;
+
+ private:
+  LAMMPS_NS::Input *input;
+  int narg_before;
+  char **arg_before;
+  std::vector<char *> words;
 };
 
 }    // namespace MPM_NS

@@ -194,6 +194,19 @@ TEST(StiffenedGas, IsentropeAndSoundSpeed)
     }
 }
 
+// the pressure is that of the formula down to the limit, and the limit beyond
+TEST(Tait, CavitatesAtTheLimit)
+{
+  const double K = 2e9, gamma = 7, limit = -1e6;
+  const auto material = make("density 1000 eos tait 2e9 7 cutoff -1e6");
+  MaterialPoint p(*material);
+  for (const double share : {0.5, 0.99, 1.01, 1.5, 3.0}) {
+    const double J = std::pow(1 + gamma * share * limit / K, -1 / gamma);
+    move_to(p, isotropic(std::cbrt(J)));
+    EXPECT_NEAR(p.pressure(), std::max(share * limit, limit), 1e-6 * std::fabs(limit)) << share;
+  }
+}
+
 TEST(StiffenedGas, Cavitates)
 {
   const auto material = make("density 1000 eos stiffened/gas 4.4 6e8 pressure 1e5 cutoff -1e6");

@@ -270,6 +270,24 @@ TEST(DruckerPrager, ReturnEndsOnTheYieldSurface)
   EXPECT_GT(corner, 50);
 }
 
+// A trial stress beyond the limit of tension is within it again when it has dilated on its way to the cone: then
+// the cone alone decides, with the multiplier of its own return
+TEST(DruckerPrager, DilationOutOfTensionIsAReturnToTheCone)
+{
+  Point p("density 1600 drucker/prager 1e7 0.3 35 cohesion 2e4 dilatancy 20 tension 1e4");
+  const double a = 5e-3, v = 1.8e-3, K = 1e7 / 1.2, G = 1e7 / 2.6;
+  move_to(p, {std::exp(a + v / 3), 0, 0, 0, std::exp(-a + v / 3), 0, 0, 0, std::exp(v / 3)});
+  const double s = std::sin(35 * DEG), t = std::sin(20 * DEG), M = 6 * s / (3 - s),
+               flow = 6 * t / (3 - t);
+  const double k = 6 * 2e4 * std::cos(35 * DEG) / (3 - s);
+  const double q = 3 * G * 2 * a / std::sqrt(3.0);
+  const double D = (q + M * K * v - k) / (3 * G + K * M * flow);
+  EXPECT_GT(K * v, 1e4);    // beyond, and back
+  EXPECT_LT(K * (v - flow * D), 1e4);
+  EXPECT_NEAR(pressure(p), K * (flow * D - v), 1e-8 * q);
+  EXPECT_NEAR(shear(p), q - 3 * G * D, 1e-8 * q);
+}
+
 // exact on straight paths; of first order where the direction of flow turns
 TEST(DruckerPrager, OrderOfTheReturn)
 {

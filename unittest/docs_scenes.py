@@ -1,0 +1,228 @@
+# This file is part of the MPM package for LAMMPS, distributed under the GNU
+# General Public License, version 2; see the file LICENSE.
+"""Scenes around the examples of the manual: what each line needs and does not show is added."""
+
+import glob
+import os
+import re
+
+ROOT = os.environ.get("MPM_ROOT", os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+PAGES = os.path.join(ROOT, "doc", "src")
+
+HEAD = """
+units           si
+boundary        f f f
+atom_style      {style}
+neighbor        0.001 bin
+region          box block 0 {x:g} 0 {x:g} 0 {z:g}
+create_box      3 box
+comm_modify     vel yes
+"""
+GRID = "fix grid all mpm 0.01\n"
+POINTS = """
+region          base block $(0.2*lx) $(0.5*lx) $(0.2*lx) $(0.5*lx) $(0.2*lx) $(0.5*lx)
+create_points   1 region base spacing $(0.05*lx)
+"""
+MATERIAL = "fix default all mpm/material density 1000 eos linear 1.0e6 strength j2 1.0e6 1.0e9\n"
+
+# names that examples use without showing where they come from
+GROUPS = ["bar", "rod", "solid", "solids"]
+REGIONS = {"bar": "block 0.01 0.04 0.01 0.04 0.01 0.04", "ball": "sphere 0.06 0.06 0.06 0.02",
+           "plate": "block 0.01 0.09 0.01 0.09 0.01 0.02", "soil": "block -0.02 0.12 0 0.1 0 0.03",
+           "shell": "cylinder z 0.05 0.05 0.045 INF INF side out"}
+CORNERS = [(0, 0, 0), (9, 0, 0), (0, 9, 0), (0, 0, 9)]
+TOOL = "solid tool\n%sendsolid\n" % "".join(    # a tetrahedron
+    "facet\nouter loop\n%sendloop\nendfacet\n" % "".join("vertex %d %d %d\n" % CORNERS[k] for k in face)
+    for face in [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])
+VARIABLES = {"down": "equal 1.0e-3", "depth": "equal -0.1*step*dt", "damage": "atom id"}
+COMPUTES = {"mine": "all property/atom vx vy"}
+FIXES = {"fine": "all mpm 0.01"}
+# a tetrahedron, for lines that read a mesh
+MESH_FILE = """$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$Nodes
+4
+1 0 0 0
+2 %g 0 0
+3 0 %g 0
+4 0 0 %g
+$EndNodes
+$Elements
+1
+1 4 2 1 1 1 2 3 4
+$EndElements
+"""
+BODIES = ["left", "right", "plane", "disk", "block", "pad", "disc"]    # each with a fix mpm
+
+
+def blocks(path):
+    """(section, lines) of the LAMMPS code blocks of a page; continued lines are joined."""
+    section, found, lines, indent = "", [], None, 0
+    text = open(path, encoding="ascii").read()
+    rows = text.splitlines()
+    for k, row in enumerate(rows):
+        if k + 1 < len(rows) and re.match(r'^([="\'^~-])\1{3,}$', rows[k + 1]):
+            section = row.strip()
+        if row.strip() == ".. code-block:: LAMMPS":
+            lines = []
+            indent = len(row) - len(row.lstrip())
+            found.append((section, lines))
+        elif lines is not None:
+            if row.strip() and len(row) - len(row.lstrip()) <= indent:
+                lines = None
+            elif row.strip():
+                lines.append(row.strip())
+    joined = []
+    for section, lines in found:
+        text = re.sub(r"&\s*\n", " ", "\n".join(lines))
+        joined.append((section, text.splitlines()))
+    return joined
+
+
+def pages():
+    return sorted(glob.glob(os.path.join(PAGES, "*.rst")))
+
+
+def examples(path):
+    return [line for section, lines in blocks(path) if section == "Examples" for line in lines]
+
+
+def mentions(line, kind, name):
+    """Does a command use this ID?"""
+    pattern = {"compute": r"\bc_%s\b", "fix": r"\bf_%s\b|\bfix %s\b", "variable": r"\bv_%s\b",
+               "region": r"\b(?:region|mpm/rigid) %s\b"}.get(kind, r"(?<!_)\b%s\b")
+    pattern = pattern.replace("%s", re.escape(name))
+    words = line.split()
+    own = words[0] == kind and words[1] == name
+    return not own and re.search(pattern, line) is not None
+
+
+def prerequisites(line, before):
+    """Earlier lines of the same block that define what this line uses."""
+    needed = []
+    for earlier in reversed(before):
+        words = earlier.split()
+        if len(words) < 2 or words[0] not in ("compute", "fix", "region", "variable", "dump"):
+            continue
+        uses = any(mentions(later, words[0], words[1]) for later in [line] + needed)
+        if words[0] == "fix":
+            uses = uses or any(re.search(r"(?<!_)\b%s\b" % re.escape(words[1]),
+                                         " ".join(later.split()[2:])) for later in [line] + needed)
+        if line.startswith("dump_modify"):
+            uses = uses or (words[0] == "dump" and line.split()[1] == words[1])
+        if uses and not any(later.split()[:2] == words[:2] for later in [line] + needed):
+            needed.insert(0, earlier)
+    styles = [earlier for earlier in before if earlier.startswith("pair_style")]
+    return (styles[-1:] if line.startswith("pair_coeff") else []) + needed
+
+
+def scene_for(lines):
+    """A scene around lines of an example, which has what they need and does not show."""
+    if "mpm/handshake" in lines[-1]:
+        return crystal_for(lines)
+    text, before = "\n".join(lines), ""
+    style = "hybrid sphere mpm" if re.search("diameter|mpm/surface|mpm/immersed", text) else "mpm"
+    grid = re.search(r"^fix grid all mpm (\S+)", text, re.M)
+    h = float(grid.group(1)) if grid else 0.0
+    head = HEAD.format(style=style, x=32 * h or 0.1, z=60 * h or 0.1)
+    for names, command in ((REGIONS, "region"), (VARIABLES, "variable"), (COMPUTES, "compute")):
+        for name, rest in names.items():
+            if any(mentions(line, command, name) for line in lines):
+                before += "%s %s %s\n" % (command, name, rest)
+
+    # a line may take the place of a part of the scene
+    own_field = re.search(r"^fix\s+(\S+)\s+(\S+)\s+mpm\s", text, re.M)
+    grid = "" if own_field and own_field.group(1) != "grid" else GRID
+    makes_points = "create_points" in text
+    if makes_points:
+        for name, rest in FIXES.items():
+            if re.search(r"\bfix %s\b" % name, text):
+                grid = "fix %s %s\n" % (name, rest)
+    pairs = "pair_style mpm/penalty" in text
+    if "mpm/contact" in text or pairs:
+        named = BODIES[:2] if pairs else [word for word in text.split() if word in BODIES]
+        grid = "".join("group %s type %d\nfix %s %s mpm 0.01\n" % (name, k + 1, name, name)
+                       for k, name in enumerate(named))
+        for k in range(len(named)):
+            before += ("region body%d block 0.06 0.08 %g %g 0.06 0.08\n"
+                       "create_points %d region body%d ppc 2\ngroup %s type %d\n" %
+                       (k, 0.03 * k + 0.01, 0.03 * k + 0.03, k + 1, k, named[k], k + 1))
+    material = "" if "mpm/material" in text or own_field and grid == "" else MATERIAL
+    points = POINTS.replace("0.05*", "0.025*") if "gimp" in text else POINTS    # below a cell
+    points = "" if makes_points else points + "".join("group %s type 1\n" % g for g in GROUPS)
+    if "mpm/immersed" in text:
+        before += "group grains type 3\n"
+    if "mpm/elements" in text:
+        points = "create_points 2 mesh ring.msh move 0.05 0.05 0.05\ngroup ring type 2\n"
+    scene = head + grid + points + material + before
+    if "write_dump" in text:
+        scene += "timestep 1.0e-7\nrun 0\n"
+    scene += text + "\n"
+    if pairs and "pair_coeff 1 2" not in text:
+        scene += "pair_coeff 1 2 1.0e6\n"
+    if own_field and grid == "":
+        scene += MATERIAL
+    if "mpm/dt" not in text:
+        scene += "timestep 1.0e-7\n"
+    return scene + "run 2\n"
+
+
+def crystal_for(lines):
+    """A crystal of atoms that fills the box, and points where these have not the full weight."""
+    zones = re.findall(r"zone x (\S+) (\S+)", lines[-1])
+    low = high = "INF"
+    for one, zero in zones:
+        if float(zero) < float(one):
+            low = one
+        else:
+            high = one
+    return """
+units           lj
+boundary        f p p
+atom_style      hybrid atomic mpm
+region          box block 0 120 0 6.2 0 6.2
+create_box      2 box
+lattice         fcc 1.07395
+create_atoms    1 box
+group           atoms type 1
+set             type 1 mass 1.0
+mass            * 1.0
+fix             grid all mpm 3.1 transfer flip 1.0
+region          atoms block %s %s INF INF INF INF side out units box
+create_points   2 region atoms ppc 2
+group           points type 2
+fix             solid points mpm/material density 1.07395 linear 57.35 0.363
+%s
+pair_style      lj/cut 2.5
+pair_coeff      * * 1.0 1.0
+neigh_modify    exclude type 2 2 exclude type 1 2
+fix             move atoms nve
+run             2
+""" % (low, high, "\n".join(lines))
+
+
+def write_files(folder, scene):
+    """The files that these scenes read, with the mesh in units of the file or of the scene."""
+    size = 10.0 if "scale" in scene else 0.01
+    os.makedirs(os.path.join(folder, "out"), exist_ok=True)
+    with open(os.path.join(folder, "ring.msh"), "w", encoding="ascii") as file:
+        file.write(MESH_FILE % (size, size, size))
+    with open(os.path.join(folder, "tool.stl"), "w", encoding="ascii") as file:
+        file.write(TOOL)
+
+
+def example_scenes(path):
+    """(line, input) for each line under "Examples" of a page."""
+    lines = examples(path)
+    for k, line in enumerate(lines):
+        if line.startswith("atom_style"):
+            yield line, line + "\nregion b block 0 1 0 1 0 1\ncreate_box 1 b\n"
+        else:
+            yield line, scene_for(prerequisites(line, lines[:k]) + [line])
+
+
+def complete_scenes(path):
+    """The inputs that a page shows as a whole."""
+    return ["\n".join(lines) + "\n" for _, lines in blocks(path)
+            if lines and lines[0].split()[0] == "units"]

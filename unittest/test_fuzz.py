@@ -1,0 +1,76 @@
+# This file is part of the MPM package for LAMMPS, distributed under the GNU
+# General Public License, version 2; see the file LICENSE.
+#
+# labels: input fuzz
+# timeout: 600
+"""A short run of tools/fuzz.py, and inputs that a long one has found to fail."""
+
+import os
+import re
+import sys
+import tempfile
+
+import mpm_testing as mt
+
+FUZZ = os.path.join(mt.ROOT, "tools", "fuzz.py")
+
+SCENE = """
+units lj
+boundary p f f
+atom_style mpm
+neighbor 0.5 bin
+region box block 0 8 0 8 0 8
+create_box 2 box
+fix grid all mpm 1.0
+region body block 2 5 2 5 1 4
+create_points 1 region body ppc 2
+fix soft all mpm/material density 1.0 neohookean 50.0 0.3
+timestep 0.01
+"""
+
+
+def test_inputs_with_mistakes_and_scenes():
+    with tempfile.TemporaryDirectory() as folder:
+        result = mt.run([sys.executable, FUZZ, "--inputs", "150", "--scenes", "12", "--jobs", "1",
+                         "--out", folder], timeout=580)
+    mt.ok(result)
+    assert re.search(r"^150 inputs: ", result.output, re.M), result.output
+    assert re.search(r"^12 scenes: 12 ran", result.output, re.M), result.output
+
+
+def test_mistakes_are_found():
+    # a program that ends without a message, and numbers that are none: the tool must see both
+    with tempfile.TemporaryDirectory() as folder:
+        program = os.path.join(folder, "lmp")
+        for command, verdict in (("kill -SEGV $$", "crash"), ("exit 3", "crash"), ("echo 1 nan 2", "nan"),
+                                 ("while :; do :; done", "hang"), ("echo 'ERROR: no'; exit 1", "error"),
+                                 ("echo 1 nan 2; echo 'WARNING: 1 point is not finite'", "ran")):
+            with open(program, "w", encoding="ascii") as file:
+                file.write("#!/bin/sh\n%s\n" % command)
+            os.chmod(program, 0o755)
+            result = mt.run([sys.executable, FUZZ, "--inputs", "1", "--scenes", "0", "--lmp", program, "--limit", "1",
+                             "--out", os.path.join(folder, "out")], timeout=500)
+            assert re.search(r"^1 inputs: 1 %s$" % verdict, result.output, re.M), command + "\n" + result.output
+            assert (result.code != 0) == (verdict not in ("ran", "error")), result.output
+
+
+def error_of(text):
+    result = mt.lammps_once(SCENE + text)
+    assert result.code == 1 and "ERROR" in result.output, result.tail()
+    return result.output
+
+
+def test_errors_of_dumps_point_to_a_word_of_their_own():
+    # LAMMPS looked for the word beyond the end of the command of the input, which has fewer
+    output = error_of("dump d all mpm/vtk 5 points.*.vtp stress F c_gone[*]\n")
+    assert "Invalid attribute c_gone[*]" in output, output
+    for command, wrong in (("write_dump all mpm/vtk p.vtp velocity stress F element", "element"),
+                           ("write_dump all mpm/grid/vtk n.vtu grid mass velocity foo", "foo")):
+        lines = error_of(command + "\n").splitlines()
+        pointer = next((k for k, line in enumerate(lines) if re.match(r"^ +\^+ *$", line)), None)
+        if pointer:    # of LAMMPS that has one
+            shown = lines[pointer - 1][lines[pointer].index("^"):]
+            assert shown.split()[0] == wrong, "\n".join(lines[-4:])
+
+
+mt.main(globals())
