@@ -185,6 +185,9 @@ Options MPMFieldOptions::declare(int dim)
          "usavg do not follow: use scheme usl, or transfer xpic"},
         {smooth > 0.0 && total, "smooth",
          "is for fluids, which frame total is not: use frame updated"},
+        {smooth > 0.0 && averages_strain(), "smooth",
+         "cannot be used with locking fbar and both, which keep volumes of their own: give fluids, "
+         "which do not lock, a fix mpm without locking"},
         {smooth > 0.0 && modified_edges, "smooth",
          "needs the same functions everywhere: use edges plain"},
         {light > 0.0 && !amplifies(), "light",
