@@ -92,6 +92,17 @@ TEST(EnergyWatch, SeesAnUnstableCombination)
   EXPECT_EQ(stable.error(replaced(scene, "SHAPE", "shape quadratic")), "");
 }
 
+// Friction that holds sand at rest between two walls has work at the nodes next to them that transfers give back
+TEST(EnergyWatch, IsSilentAtRest)
+{
+  const std::string scene = plane("si", "f f", "0 1 0 1", 1, 0.05) +
+      body("block 0 1 0 0.5 INF INF", "density 1000 drucker/prager 1e6 0.3 30 plane", "0.1") +
+      "fix sides all mpm/boundary xlo xhi slip friction 0.5\nfix floor all mpm/boundary ylo stick\n"
+      "fix v all viscous 50\nfix g all gravity 9.81 vector 0 -1 0\nfix dt all mpm/dt 0.4\nrun "
+      "1500\n";
+  EXPECT_EQ(told_by(scene).warnings, 0);
+}
+
 // Work of each kind, which without its account would be a gain of most of the energy of the body
 struct Work {
   const char *name, *text;

@@ -38,7 +38,8 @@ Motion roll(const Incline &incline, double h, const std::string &wall, int dim =
   const double foot[2] = {0.75, turned ? 2.0 : 0.0};
   const double k = dim == 2 ? 0.5 : 0.4;
   const std::string at = strprintf("%.15g %.15g", foot[0] + R * n[0], foot[1] + R * n[1]);
-  const std::string shape = dim == 2 ? "cylinder z " + at + " 0.5 INF INF" : "sphere " + at + " 0.75 0.5";
+  const std::string shape = dim == 2 ? "cylinder z " + at + " 0.5 INF INF"
+                                     : "sphere " + at + " 0.75 0.5";
   std::string scene =
       box(dim, "si", "f f f", strprintf("0 3 0 %g 0 1.5", turned ? 3.2 : 1.5), 1, 0.5 * h) +
       body(shape, "density 1000 neohookean 4.2e6 0.4", std::to_string(h), dim == 2 ? "3" : "2") +
@@ -51,7 +52,8 @@ Motion roll(const Incline &incline, double h, const std::string &wall, int dim =
       strprintf("variable d atom (x-%.15g)*%.15g+(y-%.15g)*%.15g\ncompute d all reduce min v_d\n",
                 foot[0], n[0], foot[1], n[1]) +
       "variable low equal c_d\n"
-      "variable done equal \"time >= 0.6\"\nfix halt all halt 1 v_done == 1 error continue\nrun 0\n";
+      "variable done equal \"time >= 0.6\"\nfix halt all halt 1 v_done == 1 error continue\nrun "
+      "0\n";
   Scene run(scene);
   const double x0 = run.variable("x");
   Motion m = {0.0, 0.0, 1.0, 0.0};
@@ -89,8 +91,9 @@ class RollingDisk : public ::testing::TestWithParam<double> {};
 TEST_P(RollingDisk, OnAFace)
 {
   for (const auto &incline : INCLINES)
-    expect_rigid(incline, roll(incline, GetParam(), "fix w all mpm/boundary ylo separate friction MU"),
-                 0.02, GetParam(), 0.0);
+    expect_rigid(incline,
+                 roll(incline, GetParam(), "fix w all mpm/boundary ylo separate friction MU"), 0.02,
+                 GetParam(), 0.0);
 }
 
 // At an angle to the lattice the benchmark allows 5 %. At 60 degrees, where 96 % of the friction is needed,
@@ -111,7 +114,6 @@ INSTANTIATE_TEST_SUITE_P(Spacings, RollingDisk, ::testing::Values(0.05, 0.025));
 SERIAL_TEST(RollingSphere, OnAFace)
 {
   for (const Incline incline : {Incline{30, 0.3}, {60, 0.6}})
-    expect_rigid(incline,
-                 roll(incline, 0.05, "fix w all mpm/boundary ylo separate friction MU", 3),
+    expect_rigid(incline, roll(incline, 0.05, "fix w all mpm/boundary ylo separate friction MU", 3),
                  0.02, 0.05, 0.0);
 }

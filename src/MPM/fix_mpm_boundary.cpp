@@ -844,8 +844,9 @@ void FixMPMBoundary::act(double dt, Stage stage)
     const auto &faces = list.faces;
     auto &ledger = list.field->ledger;
     if (count && kind == SEPARATE) find_gaps(list, dt);
-    now = {count, stage == MAPPED_BACK || stage == AGAIN, ledger.on ? &ledger : nullptr, 0.0, 0.0,
-           0.0};
+    now = {
+        count, stage == MAPPED_BACK || stage == AGAIN, ledger.on ? &ledger : nullptr, 0.0, 0.0, 0.0,
+        0.0};
     if (count && wall.uniform && !list.field->kernel.affine)
       now.old_share = list.field->options.flip;
 
@@ -861,6 +862,7 @@ void FixMPMBoundary::act(double dt, Stage stage)
     for (const auto &orbit : list.orbits) act_on_orbit(list, orbit);
     for (auto &single : list.singles) act_on_single(list, single);
     if (count) ledger.boundary += now.kinetic * force->mvv2e;
+    if (count) ledger.driven += now.driven * force->mvv2e;
     if (count && ledger.on) ledger.transfer += now.collided * force->mvv2e;
   }
   wall = in_step;
@@ -887,32 +889,35 @@ double FixMPMBoundary::slide_share(Contact &contact, double push, double needed)
 }
 
 /* ----------------------------------------------------------------------
-   velocity of a node, also the old one unless null, and what this does. Work is impulse times the
+   velocity of a node, also the old one unless null, next to a wall with the velocity V, and what this
+   does. Work is impulse times the
    velocity with which points are then moved, so that a wall at rest works only by friction. The
    kinetic energy of the nodes changes by the change of velocity times the mean of old and new one;
    what is not work is lost, most of it energy that forces had given to nodes that cannot move. A node
    that goes part of the way only is worked on with the velocity of all of it (whole): it slips.
 ------------------------------------------------------------------------- */
 
-void FixMPMBoundary::set_velocity(Grid &grid, int64_t node, const double *v, const double *old,
-                                  const double *whole)
+void FixMPMBoundary::set_velocity(Grid &grid, int64_t node, const double *V, const double *v,
+                                  const double *old, const double *whole)
 {
   double *const record = grid.record(node);
   const int dim = grid.lattice.dim;
   if (now.counting && grid.owns(node)) {
-    double moved = 0.0, gained = 0.0, change[3] = {0.0}, change_old[3] = {0.0};
+    double moved = 0.0, driven = 0.0, gained = 0.0, change[3] = {0.0}, change_old[3] = {0.0};
     for (int d = 0; d < dim; d++) {
       change[d] = v[d] - record[d];
       if (old) change_old[d] = old[d] - record[4 + d];
       const double push = change[d] - now.old_share * change_old[d];
       impulse[d] += record[3] * push;
       moved += push * (whole ? whole : v)[d];
+      driven += push * V[d];
       if (now.ledger)
         gained += 0.5 * (change[d] - change_old[d]) * (v[d] + (old ? old[d] : record[4 + d]));
     }
     if (now.ledger) now.ledger->note_push(record, change, change_old);
     past.work += record[3] * moved;
     now.kinetic += record[3] * moved;
+    now.driven += record[3] * driven;
     now.collided += record[3] * (gained - moved);
   }
   std::copy_n(v, dim, record);
@@ -973,7 +978,7 @@ void FixMPMBoundary::project(Grid &grid, const Member *members, int n, bool fixe
       old[d] = r[4 + d];
       if (p.hold[d]) old[d] += sign * w_old[d] - wall.old_relative(r, d, p.limit[d]);
     }
-    set_velocity(grid, members[k].node, v, hold ? old : nullptr);
+    set_velocity(grid, members[k].node, p.V, v, hold ? old : nullptr);
   }
 }
 
@@ -1093,7 +1098,7 @@ void FixMPMBoundary::act_on_single(const FieldNodes &list, Single &single)
     MathExtra::cross3(x, push, moment);
     for (int d = 0; d < 3; d++) impulse[3 + d] += moment[d];
   }
-  set_velocity(grid, single.node, v, nullptr, whole);
+  set_velocity(grid, single.node, V, v, nullptr, whole);
 }
 
 /* ----------------------------------------------------------------------

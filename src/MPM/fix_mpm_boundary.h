@@ -185,6 +185,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
     class MPMLedger *ledger;    // null: none; else old velocities are in reals 4..6
     double old_share;           // FLIP share when old velocities are constrained, too; otherwise 0
     double kinetic;             // gained by the nodes
+    double driven;              // the part of it that is done by the motion of the wall
     double collided;    // ledger: kinetic energy lost where nodes cannot keep their velocity
   } now;
 
@@ -201,8 +202,8 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   double distance_from_region(const MPMField &, const double *x, double dt) const;
   void check_speed(double dt);
   double slide_share(Contact &, double push, double needed) const;
-  void set_velocity(MPM_NS::Grid &, int64_t node, const double *v, const double *old,
-                    const double *whole = nullptr);
+  void set_velocity(MPM_NS::Grid &, int64_t node, const double *V, const double *v,
+                    const double *old, const double *whole = nullptr);
   void project(MPM_NS::Grid &, const Member *, int n, bool fixed, const Prescribed &);
   void act_on_column(const FieldNodes &, Line &);
   void act_on_cut(const FieldNodes &, Line &, bool last);

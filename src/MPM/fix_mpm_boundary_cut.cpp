@@ -155,6 +155,6 @@ void FixMPMBoundary::act_on_cut(const FieldNodes &list, Line &cut, bool last)
       v[d] = r[k][d] + share[d] * (lambda[d] * A[k] + mu[d] * B[k]) / r[k][3];
       if (hold) old[d] = r[k][4 + d] + (lambda_old[d] * A[k] + mu_old[d] * B[k]) / r[k][3];
     }
-    set_velocity(grid, node[k], v, hold ? old : nullptr);
+    set_velocity(grid, node[k], V[k], v, hold ? old : nullptr);
   }
 }

@@ -55,7 +55,9 @@ void FixMPMBoundary::find_gaps(FieldNodes &list, double dt)
       for (int k = 0; k < n; k++)
         if (line.face == f && line.node[k] >= 0) near[line.node[k] / NODES_PER_BLOCK] = 1;
     const double wall = face.inward > 0 ? domain->boxlo[face.axis] : domain->boxhi[face.axis];
-    gap.map(field, near, [&](const double *x) { return face.inward * (x[face.axis] - wall); });
+    gap.map(field, near, [&](const double *x) {
+      return face.inward * (x[face.axis] - wall);
+    });
     for (auto &line : list.lines) {
       if (line.face != f) continue;
       MPMWallGap::Sums sums;
@@ -77,7 +79,9 @@ void FixMPMBoundary::find_region_gaps(FieldNodes &list, double dt)
   std::vector<char> near(field.grid.blocks.size(), 0);
   for (const auto &single : list.singles) near[single.node / NODES_PER_BLOCK] = 1;
   if (!region_moves()) region->prematch();
-  gap.map(field, near, [&](const double *x) { return distance_from_region(field, x, dt); });
+  gap.map(field, near, [&](const double *x) {
+    return distance_from_region(field, x, dt);
+  });
 
   constexpr int PER_CELL = 32;
   constexpr double DEEPEST = 1.25;
@@ -89,7 +93,8 @@ void FixMPMBoundary::find_region_gaps(FieldNodes &list, double dt)
   for (auto &single : list.singles) {
     const double depth = -single.distance / h;
     single.touched = true;
-    if (depth > DEEPEST || !(depth > -0.01)) continue;    // deep inside, or the distance is not known
+    if (depth > DEEPEST || !(depth > -0.01))
+      continue;    // deep inside, or the distance is not known
     const auto k = (std::size_t) std::lround(std::max(0.0, depth) * PER_CELL);
     single.touched = gap.at(single.node).touches(contacts[k]);
   }

@@ -694,7 +694,14 @@ bool FixMPMContact::make_pair(const Common &c, int n, int a, int b, double volum
   pair.b = b;
   pair.ra = field.grid.record(c.slot[a], n);
   pair.rb = bodies[b].field->grid.record(c.slot[b], n);
-  pair.area = 0.5 * (la + lb);
+
+  // what bodies have at this node; images of it have their own
+
+  const auto own = [&](int body, int slot) {
+    return std::fabs(MathExtra::dot3(
+        &bodies[body].gradient[3 * ((int64_t) slot * NODES_PER_BLOCK + n)], pair.n));
+  };
+  pair.area = 0.5 * (own(a, c.slot[a]) + own(b, c.slot[b]));
   pair.fade = 0.0;
   pair.state = OPEN;
   if (law == ADHESIVE && pair.area > 0.0) {

@@ -735,6 +735,7 @@ void FixMPMHandshake::tie(double dt)
     }
   }
   field->ledger.contact += force->mvv2e * work;
+  field->ledger.driven += force->mvv2e * work;
   energy.lost -= force->mvv2e * work;
   for (int d = 0; d < 3; d++) force_on_points[d] = dtf > 0.0 ? impulse[d] / dtf : 0.0;
 }

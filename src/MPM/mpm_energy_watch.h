@@ -18,10 +18,12 @@ class MPMField;
 
 /** Tells when numerics add energy to the points (keyword gain of fix mpm).
  *
- *  What all points have and have spent may grow by the work that is done on them. That of walls, of
- *  contact and of deleted points is always counted; that of forces on points is the integral of their
- *  power, by the trapezoidal rule over a few steps. What is left is the sum of the errors transfer,
- *  integration and residual of compute mpm/energy. It counts from its lowest value in a run, so that
+ *  What all points have and have spent may grow by the work that is done on them. That of moving
+ *  walls, rigid bodies, atoms, and deleted points is always counted; what friction takes at walls and
+ *  between bodies is not: where it holds material at rest, nodes have velocities that points do not
+ *  have, and its work is mostly spurious. That of forces on points is estimated from a part of the
+ *  points in each step. What is left is the sum of the errors transfer, integration and residual of
+ *  compute mpm/energy. It counts from its lowest value in a run, so that
  *  energy that a dissipative transfer took at first does not hide what is added later, and is
  *  compared with the energy in play: the largest sum so far of kinetic energy, stored energy, and
  *  energy spent in this run.
@@ -53,8 +55,7 @@ class MPMEnergyWatch : protected Pointers {
   const std::vector<MPMField *> &fields;
   struct {
     bigint steps;
-    double elapsed;
-    double power, power_time, force_work;    // of forces on points, this rank's share
+    double force_work;    // of forces on points, this rank's share
     Sums start;
     double lowest;     // energy that work does not explain
     double in_play;    // largest energy so far

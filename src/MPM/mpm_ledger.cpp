@@ -147,7 +147,9 @@ void MPMLedger::push_node(double *record, bool owned, const double *impulse)
     change[d] = impulse[d] / record[3];
     record[d] += change[d];
   }
-  if (owned) count_push(record, change);
+  if (!owned) return;
+  for (int d = 0; d < field.lattice.dim; d++) driven += impulse[d] * record[d] * force->mvv2e;
+  count_push(record, change);
 }
 
 /* ----------------------------------------------------------------------

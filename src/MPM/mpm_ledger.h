@@ -31,7 +31,10 @@ struct MPMEnergies {
  *  their balance is a check, see "The ledger" in the developer guide. */
 class MPMLedger : protected Pointers, public MPMEnergies {
  public:
-  bool on = false;              ///< a compute mpm/energy exists; set in init()
+  bool on = false;    ///< a compute mpm/energy exists; set in init()
+  /** Work that moving walls, rigid bodies, grains, and atoms have done on the nodes, this rank's share [energy];
+   *  counted in any run, without what is lost by friction at walls and between bodies. */
+  double driven = 0.0;
   std::vector<double> start;    ///< of compute mpm/energy, until the end of the next run
 
   MPMLedger(class LAMMPS *lmp, MPMField &field) : Pointers(lmp), MPMEnergies(), field(field) {}
