@@ -23,6 +23,7 @@ POINTS = """
 region          base block $(0.2*lx) $(0.5*lx) $(0.2*lx) $(0.5*lx) $(0.2*lx) $(0.5*lx)
 create_points   1 region base spacing $(0.05*lx)
 """
+FLUID = "fix default all mpm/material density 1000 eos linear 1.0e6\n"
 MATERIAL = "fix default all mpm/material density 1000 eos linear 1.0e6 strength j2 1.0e6 1.0e9\n"
 
 # names that examples use without showing where they come from
@@ -162,7 +163,7 @@ def scene_for(lines):
     if pairs and "pair_coeff 1 2" not in text:
         scene += "pair_coeff 1 2 1.0e6\n"
     if own_field and grid == "":
-        scene += MATERIAL
+        scene += FLUID if " smooth " in text else MATERIAL
     if "mpm/dt" not in text:
         scene += "timestep 1.0e-7\n"
     return scene + "run 2\n"
