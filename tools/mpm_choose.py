@@ -154,7 +154,8 @@ def kinds_of_the_atlas(scene):
     import results as rs
     import scenes as sc
     folder = os.path.join(ROOT, "bench", "atlas")
-    data = rs.Results(rs.read(os.path.join(folder, "runs.csv")), rs.read(os.path.join(folder, "cost.csv")))
+    data = rs.Results(rs.read(os.path.join(folder, "runs.csv")), rs.read(os.path.join(folder, "cost.csv")),
+                      rs.read(os.path.join(folder, "gains.csv")))
     votes = {}
     for name in sc.SCENES:
         for kind in data.candidates(name):

@@ -11,6 +11,8 @@ Runs what is missing in FOLDER (default: the folder of this file) and goes on wh
   cost.csv       one line for each combination but for dtfrac: ns of processor time per point-step
                  without ledger and exact solution, from the median ratio to a reference combination
                  that runs in turn with it; bytes per point
+  gains.csv      one line for each variant of a scene of flows and setting: the energy that the method
+                 has created since its lowest value, over that in play
   campaigns.csv  date, machine, compiler, and versions that the lines refer to
 
 Order: reference runs, full factorial of shape, transfer, scheme and frame at two spacings, other
@@ -32,12 +34,14 @@ import time
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import scenes as sc    # noqa: E402
 import results as rs    # noqa: E402
+import atlas_page    # noqa: E402
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 TIMEOUT = 300              # seconds for one run
 SLOW = 2.5                 # seconds: runs beside the factorial that would take longer are left out
 COST_WORK = 2.0e6          # point-steps of a run that measures cost
 PAIRS = 5                  # of runs of a combination and of the reference in turn
+CHEAPEST = 16              # settings of a scene whose variants are run
 PASSES = 1                 # of refinements around the front
 
 
@@ -84,6 +88,7 @@ class Atlas:
         self.lmp, self.out, self.limit, self.count, self.start = lmp, out, limit, 0, time.time()
         self.runs = rs.read(os.path.join(out, "runs.csv"))
         self.costs = rs.read(os.path.join(out, "cost.csv"))
+        self.gains = rs.read(os.path.join(out, "gains.csv"))
         self.campaign = self.new_campaign()
         self.reference = None    # scene, settings, number of points
 
@@ -150,6 +155,28 @@ class Atlas:
             self.append("runs.csv", rs.RUNS, row)
             self.progress("%-10s %-60s %-8s q %-13s %.2f s" % (scene, " ".join(c), row["status"],
                                                             row.get("q", ""), seconds))
+
+    def gain(self, scene, kinds):
+        """Energy that settings create in the variants of a scene."""
+        known = {(r["scene"], r["variant"], r["h"]) + tuple(r[s] for s in sc.SETTINGS[:4]) for r in self.gains}
+        for kind in kinds:
+            for level, h in enumerate(sc.SCENES[scene]["levels"][:2]):
+                for variant in sc.VARIANTS[scene]:
+                    if level and variant.get("aspect") == "8":    # many points
+                        continue
+                    name = " ".join("%s=%s" % item for item in variant.items())
+                    if (scene, name, h) + kind in known:
+                        continue
+                    values, seconds, output = lammps(self.lmp, scene, kind + sc.MIDDLE + (h,),
+                                                     dict(variant, ledger="yes", every="20"))
+                    row = dict(zip(sc.SETTINGS[:4], kind), scene=scene, variant=name, h=h, campaign=self.campaign)
+                    rise = rs.rise(output)
+                    row.update(dict(status="ok", rise="%.4g" % rise) if values and rise < 1e30 else
+                               dict(status=why(output) if not values else "inverted"))
+                    self.gains.append(row)
+                    self.append("gains.csv", rs.GAINS, row)
+                    self.progress("%-5s %-40s %-50s %-8s %s %.2f s" % (scene, name, " ".join(kind + (h,)), row["status"],
+                                                                     row.get("rise", ""), seconds))
 
     def predicted(self, scene, c):
         """Seconds that a combination will take, from a coarser run of its kind; 0: nothing known."""
@@ -251,6 +278,10 @@ def main():
             front = rs.Results(atlas.runs, atlas.costs).candidates(scene)
             atlas.cost(scene, sc.refinement(scene, front))
             atlas.accuracy(scene, sc.refinement(scene, front), SLOW)
+        if scene in sc.VARIANTS:
+            data = rs.Results(atlas.runs, atlas.costs)
+            cheap = [kind for _, kind in atlas_page.ranking(data, scene) if kind[2] in ("usl", "musl")]    # for friction
+            atlas.gain(scene, cheap[:CHEAPEST] + [rs.DEFAULT] * (rs.DEFAULT not in cheap[:CHEAPEST]))
 
 
 if __name__ == "__main__":

@@ -67,14 +67,14 @@ def options(c):
 def times_to_goal(data, scene):
     """{(shape, transfer, scheme, frame): seconds of processor time to the goal of the scene} of runs that
     reach it, or by interpolation between spacings or extrapolation to at most half of the finest; what does not
-    reach it is not there.  All with the points per cell and time step of the factorial, so that
+    reach it, or creates energy, is not there.  All with the points per cell and time step of the factorial, so that
     what has been tried in more ways has no advantage; where much is stretched, with more points, too."""
     if scene in data.goals:
         return data.goals[scene]
     ladders, best = {}, {}
     ppc = (sc.MIDDLE[0], "3") if sc.SCENES[scene].get("stretch") else sc.MIDDLE[:1]
     for r in data.rows[scene]:
-        if r["time"] and r["ppc"] in ppc and r["dtfrac"] == sc.MIDDLE[1]:
+        if r["time"] and r["ppc"] in ppc and r["dtfrac"] == sc.MIDDLE[1] and not data.creates_energy(scene, rs.key(r)[:4]):
             ladders.setdefault(rs.key(r)[:-1], []).append(r)
     goal = sc.SCENES[scene]["goal"]
     for setting, rungs in ladders.items():
@@ -228,6 +228,37 @@ def energy_table(data):
     return table(["transfer, scheme"] + list(sc.SCENES), rows, [22] + [13] * len(sc.SCENES))
 
 
+def gain_rules(data):
+    """What is never recommended, and the largest gains in the variants of the scenes of flows."""
+    lines = []
+    for scene in sc.SCENES:
+        bad = sorted(((data.most[(scene,) + kind], kind) for kind in rs.kinds(data.rows[scene])
+                      if data.creates_energy(scene, kind)), reverse=True)
+        if bad:
+            lines.append("* %s: %s." % (scene, ", ".join("%s %s" % (
+                options(kind), "fails" if gain == float("inf") else "over 100 %" if gain > 1 else percent(gain))
+                                                         for gain, kind in bad)))
+    return "\n".join(lines) + "\n"
+
+
+def gain_table(data):
+    """The largest gain over all variants for each shape and transfer, scheme usl and musl."""
+    out = []
+    for scene in sc.VARIANTS:
+        rows = []
+        for kind in dict.fromkeys(tuple(r[s] for s in sc.SETTINGS[:4]) for r in data.gains if r["scene"] == scene):
+            runs = [r for r in data.gains if r["scene"] == scene and tuple(r[s] for s in sc.SETTINGS[:4]) == kind]
+            good = [r for r in runs if r["status"] == "ok"]
+            worst = max(good, key=lambda r: float(r["rise"]))
+            rows.append((float(worst["rise"]), [options(kind), percent(float(worst["rise"])), worst["variant"], "%.3g" % float(
+                worst["h"]), "%d of %d" % (len(runs) - len(good), len(runs))]))
+        rows.sort(key=lambda r: r[0])
+        out.append("%s:\n" % sc.SCENES[scene]["title"])
+        out.append(table(["settings", "largest gain", "in the variant", "h", "runs that failed"], [r[1] for r in rows],
+                         [36, 12, 36, 8, 8]))
+    return "\n".join(out)
+
+
 def failures(data):
     """[(share of runs of the factorial that fail, runs, what)] by shape and transfer, updated frame"""
     found = []
@@ -365,6 +396,10 @@ def page(data, campaigns):
         "SCENES": "\n".join(scene_section(data, scene) for scene in sc.SCENES if data.front(scene)),
         "CHANGES": change_table(data),
         "ENERGY": energy_table(data),
+        "MOST": percent(sc.MOST_GAIN, 1),
+        "GAINRUNS": "%d" % len(data.gains),
+        "NEVER": gain_rules(data),
+        "GAINS": gain_table(data),
         "COST": cost_tables(data),
     }
     for name, value in parts.items():
@@ -424,7 +459,8 @@ def main():
     parser.add_argument("--check", action="store_true")
     arguments = parser.parse_args()
     data = rs.Results(rs.read(os.path.join(arguments.data, "runs.csv")),
-                      rs.read(os.path.join(arguments.data, "cost.csv")))
+                      rs.read(os.path.join(arguments.data, "cost.csv")),
+                      rs.read(os.path.join(arguments.data, "gains.csv")))
     text = page(data, rs.read(os.path.join(arguments.data, "campaigns.csv")))
     if arguments.check:
         with open(PAGE) as file:

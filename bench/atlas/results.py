@@ -10,6 +10,7 @@ import scenes as sc
 
 RUNS = ("scene",) + sc.SETTINGS + ("status", "q", "lost", "steps", "points", "campaign")
 COST = ("scene", "shape", "transfer", "scheme", "frame", "ppc", "h", "ns", "reference_ns", "bytes", "pairs", "campaign")    # pairs: of runs, in turn with the reference, that ns is the median of
+GAINS = ("scene", "variant", "shape", "transfer", "scheme", "frame", "h", "status", "rise", "campaign")
 CAMPAIGN = ("campaign", "date", "machine", "compiler", "lammps", "package")
 NEAR = 4.0    # times the goal
 DEFAULT = ("quadratic", "apic", "usl", "updated")
@@ -30,6 +31,16 @@ def loop_seconds(output):
         share = re.search(r"^([\d.]+)% CPU use", loop, re.M)
         total += float(loop.split()[0]) * (float(share.group(1)) / 100 if share else 1.0)
     return total
+
+
+def rise(output):
+    """The largest rise of the last column of output in the first run of an input, which is the energy that the
+    method has gained so far."""
+    lowest, most = 0.0, 0.0
+    for line in re.search(r"^ *Step .*\n((?: *\d.*\n)*)", output, re.M).group(1).splitlines() if "Step" in output else ():
+        value = float(line.split()[-1])
+        lowest, most = min(lowest, value), max(most, value - lowest)
+    return most
 
 
 def key(row):
@@ -67,8 +78,8 @@ def kinds(rows):
 class Results:
     """Rows of runs.csv, those that worked with error, ns (at the median speed of the machine), and time."""
 
-    def __init__(self, runs, costs):
-        self.runs, self.costs = runs, costs
+    def __init__(self, runs, costs, gains=()):
+        self.runs, self.costs, self.gains = runs, costs, gains
         pace = [float(r["reference_ns"]) for r in costs]
         self.pace = statistics.median(pace) if pace else 1.0
         self.cost = {}
@@ -86,7 +97,27 @@ class Results:
             self.credit(rows, (self.reference[scene][1] or 0.0) / sc.SCENES[scene]["scale"])
         self.index = {(scene,) + key(r): r for scene, rows in self.rows.items() for r in rows}
         self.failed = {(r["scene"],) + key(r) for r in runs if r["status"] != "ok"}
+        self.most = self.most_gains()
         self.goals = {}    # times to the goal, by scene, once they are known
+
+    def most_gains(self):
+        """{(scene, shape, transfer, scheme, frame): largest energy that the method has created in a run with the
+        points per cell and time step of the factorial, over that in play}: until the end in the runs of the scene,
+        from the lowest value in its variants"""
+        most = {}
+        for scene, rows in self.rows.items():
+            for r in rows:
+                if (r["ppc"], r["dtfrac"]) == sc.MIDDLE:
+                    kind = (scene,) + key(r)[:4]
+                    most[kind] = max(most.get(kind, 0.0), r["lost"])
+        for r in self.gains:
+            kind = (r["scene"],) + tuple(r[s] for s in sc.SETTINGS[:4])
+            most[kind] = max(most.get(kind, 0.0), float(r["rise"]) if r["status"] == "ok" else float("inf"))
+        return most
+
+    def creates_energy(self, scene, kind):
+        """More than is allowed in one of the runs of the scene or of its variants."""
+        return self.most.get((scene,) + tuple(kind), 0.0) > sc.MOST_GAIN
 
     @staticmethod
     def credit(rows, uncertainty):
@@ -149,9 +180,10 @@ class Results:
         return None, None, False
 
     def front(self, scene, rows=None):
-        """Rows that no other one beats in both time and credited error, from fast to exact; less than a tenth
+        """Rows of settings that create no energy that no other one beats in both time and credited error, from fast to exact; less than a tenth
         of the error is no gain."""
-        rows = [r for r in (self.rows[scene] if rows is None else rows) if r["time"]]
+        rows = [r for r in (self.rows[scene] if rows is None else rows)
+                if r["time"] and not self.creates_energy(scene, key(r)[:4])]
         best, found = float("inf"), []
         for r in sorted(rows, key=lambda r: (r["time"], r["credited"])):
             if r["credited"] < 0.9 * best:

@@ -68,6 +68,18 @@ SCENES = {
 }
 
 
+# Variants of the scenes of flows, on which the energy is looked at that a setting creates: at the two coarsest
+# spacings, with the points per cell and the time step of the factorial
+VARIANTS = {
+    "sand": [dict(phi=phi, floor=floor, aspect=aspect) for phi in ("25", "35.3")
+             for floor in ("stick", "separate friction 0.5") for aspect in ("0.5", "1", "2", "8")] +
+            [dict(phi="25", jitter="0.3", seed=seed) for seed in ("1", "2", "3")],
+    "dam": [dict(floor=floor, aspect=aspect) for floor in ("slip", "stick") for aspect in ("1", "2", "4")] +
+           [dict(jitter="0.3", seed=seed) for seed in ("1", "2", "3")],
+}
+MOST_GAIN = 0.02    # of the energy in play: a setting that creates more in any run is not recommended
+
+
 def allowed(scene, shape, transfer, scheme, frame):
     """Combinations that fix mpm accepts and that are not the same as another one."""
     name = transfer.split()[0]
