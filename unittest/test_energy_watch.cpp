@@ -36,6 +36,7 @@ Found told_by(const std::string &scene)
   const ScratchFile file("log");
   Scene run("log " + file.name + "\n" + scene + "log none\n");
   Found found;
+  MPI_Barrier(MPI_COMM_WORLD);    // the first rank writes the file
   const std::string text = file_text(file.name);
   const std::regex message("WARNING: Numerical errors have added the energy ([-+.e0-9]+) to the "
                            "material points by step [0-9]+ of this run, ([-+.e0-9]+) %");

@@ -31,6 +31,7 @@ Told told_by(double stretch, const std::string &grid = "", const std::string &ma
                       "run %.0f\nlog none\n",
                       direction, (stretch - 1.0) / (0.02 * direction)));
   Told told;
+  MPI_Barrier(MPI_COMM_WORLD);    // the first rank writes the file
   const std::string text = file_text(file.name);
   const std::regex message(
       "WARNING: .* under tension .* ([-+.e0-9]+) node spacings \\(([-+.e0-9]+)\\) apart");
