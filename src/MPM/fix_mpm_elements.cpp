@@ -15,6 +15,7 @@
 #include "fix_mpm_material.h"
 #include "force.h"
 #include "group.h"
+#include "material/batch.h"
 #include "material/material.h"
 #include "math/matrix.h"
 #include "math_extra.h"
@@ -569,7 +570,8 @@ void FixMPMElements::material_update(Work &w, bool starting)
       for (int p = 0; p < w.n; p++) largest = std::max(largest, fabs(b.A[c][p]));
     if (largest < 1.0e-10) return;
   }
-  material->update_batch(b);
+  static const BatchKernels &kernels = *BatchKernels::select(3);    // reads the same in 2d
+  material->update_batch(b, kernels);
   for (int p = 0; p < w.n; p++) {
     double *const s = w.state[p];
     for (int c = 0; c < 9; c++) s[c] = b.F[c][p];

@@ -8,8 +8,8 @@
 
 #include "fix_mpm_material.h"
 
+#include "material/batch.h"
 #include "material/material.h"
-#include "math/matrix.h"
 #include "mpm_input.h"
 
 #include "atom.h"
@@ -182,47 +182,22 @@ std::string FixMPMMaterial::names() const
 }
 
 /* ----------------------------------------------------------------------
-   The work of the stress in a step, for the ledger: the mean of Kirchhoff stress at its start and end
-   with the gradient at mid-step A (I + A/2)^-1, which is skew if A belongs to a rotation. Laws have their
-   own account of the energy; the two agree to third order in the strain of a step
+   The ledger wants to know the work of the stress. Laws have their own account of the energy; the two
+   agree to third order in the strain of a step
 ------------------------------------------------------------------------- */
 
-static void add_kirchhoff_stress(const Batch &b, const double *J, double (*sum)[BATCH])
-{
-  for (int c = 0; c < 6; c++)
-    for (int p = 0; p < b.n; p++) sum[c][p] += J[p] * b.stress[c][p];
-}
-
-static double work_of(const Batch &b, const double (*twice_tau)[BATCH])
-{
-  static const int place[9] = {0, 3, 4, 3, 1, 5, 4, 5, 2};
-  double work = 0.0;
-  for (int p = 0; p < b.n; p++) {
-    double A[9], mid[9], rate = 0.0;
-    for (int k = 0; k < 9; k++) {
-      A[k] = b.A[k][p];
-      mid[k] = 0.5 * A[k] + (k % 4 == 0);
-    }
-    const double cofactors[9] = MPM_COFACTORS(mid);
-    for (int k = 0; k < 9; k++)
-      rate += twice_tau[place[k]][p] * dot(A + k / 3 * 3, cofactors + k % 3 * 3);
-    if (b.J[p] > 0.0) work += 0.5 * b.vol0[p] * rate / determinant(mid);
-  }
-  return work;
-}
-
-void FixMPMMaterial::update_batch(Batch &b)
+void FixMPMMaterial::update_batch(Batch &b, const BatchKernels &kernels)
 {
   double twice_tau[6][BATCH];
   if (counts_stress) {
     memset(twice_tau, 0, sizeof(twice_tau));
-    add_kirchhoff_stress(b, b.Jold, twice_tau);
+    kernels.add_kirchhoff(b, b.Jold, twice_tau);
   }
   material->update(b);
   for (int k = 0; k < NWORK; k++) work[k] += b.work[k];
   if (counts_stress) {
-    add_kirchhoff_stress(b, b.J, twice_tau);
-    stress_work += work_of(b, twice_tau);
+    kernels.add_kirchhoff(b, b.J, twice_tau);
+    stress_work += kernels.stress_work(b, twice_tau);
   }
 }
 

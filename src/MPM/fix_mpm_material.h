@@ -22,6 +22,7 @@ FixStyle(mpm/material,FixMPMMaterial);
 namespace MPM_NS {
 class Material;
 struct Batch;
+struct BatchKernels;
 }    // namespace MPM_NS
 
 namespace LAMMPS_NS {
@@ -46,7 +47,7 @@ class FixMPMMaterial : public FixMPMState {
   double stress_work = 0.0;      ///< work of the stress so far, with a compute mpm/energy only
 
   /** Stress and history of a batch at the end of the step, and what this has spent. */
-  void update_batch(MPM_NS::Batch &);
+  void update_batch(MPM_NS::Batch &, const MPM_NS::BatchKernels &);
 
   /** mass = density * initial volume for the points of the group that have no mass yet. */
   void assign_mass();

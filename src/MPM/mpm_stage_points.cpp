@@ -142,7 +142,7 @@ void MPMStages::update_stress(MPMField &field, const PointRows &r, const MPMPoin
   for (int p = 0; p < n && nhistory; p++)
     for (int k = 0; k < nhistory; k++) b.history[k][p] = h[nhistory * p + k];
 
-  material->update_batch(b);
+  material->update_batch(b, *field.batch_kernels);
   if (material->watching) material->watch_ranges(b, first);
   if (field.time_limit->watch_volume) field.time_limit->note_volume_rate(b, first);
   if (!field.options.total && !material->material->uses_F()) field.batch_kernels->forget_shape(b);

@@ -37,6 +37,14 @@ struct BatchKernels {
   /** P: [n][dim*dim] first Piola-Kirchhoff stress tau F^-T, column-major; F, tau as in load. */
   void (*first_piola)(int n, const double *F, const double *tau, double *P);
 
+  /** Adds J times the stress, the Kirchhoff stress, to sum; J: that of the start or of the end. */
+  void (*add_kirchhoff)(const Batch &, const double *J, double (*sum)[BATCH]);
+
+  /** Work of the stress in the step, all points together, from the sum of the Kirchhoff stress at its
+   *  start and end: half of it with the gradient at mid-step, A (I + A/2)^-1, which is skew if A belongs to
+   *  a rotation. Points whose J is not positive do not count. */
+  double (*stress_work)(const Batch &, const double (*twice_tau)[BATCH]);
+
   /** Write F and tau (2d: only what can change). Returns the number of points whose J is not
    *  positive (NaN included); nothing is written for these. */
   int (*store)(const Batch &, double *F, double *tau);

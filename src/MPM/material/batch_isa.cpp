@@ -317,6 +317,41 @@ template <int DIM> void first_piola(int n, const double *F, const double *tau, d
     for (int k = 0; k < SIZE; k++) P[SIZE * p + k] = c[k][p];
 }
 
+void add_kirchhoff(const Batch &b, const double *J, double (*sum)[BATCH])
+{
+  const int n = b.n;
+  for (int c = 0; c < 6; c++) {
+#pragma omp simd
+    for (int p = 0; p < n; p++) sum[c][p] += J[p] * b.stress[c][p];
+  }
+}
+
+double stress_work(const Batch &b, const double (*twice_tau)[BATCH])
+{
+  const int n = b.n;
+  double work = 0.0;
+#pragma omp simd reduction(+ : work)
+  for (int p = 0; p < n; p++) {
+    const double a[9] = {b.A[0][p], b.A[1][p], b.A[2][p], b.A[3][p], b.A[4][p],
+                         b.A[5][p], b.A[6][p], b.A[7][p], b.A[8][p]};
+    const double mid[9] = {1.0 + 0.5 * a[0], 0.5 * a[1],       0.5 * a[2],
+                           0.5 * a[3],       1.0 + 0.5 * a[4], 0.5 * a[5],
+                           0.5 * a[6],       0.5 * a[7],       1.0 + 0.5 * a[8]};
+    const double cof[9] = MPM_COFACTORS(mid);
+    const double det = mid[0] * cof[0] + mid[1] * cof[1] + mid[2] * cof[2];
+    // A times the transpose of the cofactors, its symmetric part
+    const auto row = [&](int i, int j) {
+      return a[3 * i] * cof[3 * j] + a[3 * i + 1] * cof[3 * j + 1] + a[3 * i + 2] * cof[3 * j + 2];
+    };
+    const double rate = twice_tau[0][p] * row(0, 0) + twice_tau[1][p] * row(1, 1) +
+        twice_tau[2][p] * row(2, 2) + twice_tau[3][p] * (row(0, 1) + row(1, 0)) +
+        twice_tau[4][p] * (row(0, 2) + row(2, 0)) + twice_tau[5][p] * (row(1, 2) + row(2, 1));
+    const double mine = 0.5 * b.vol0[p] * rate / det;
+    work += b.J[p] > 0.0 ? mine : 0.0;
+  }
+  return work;
+}
+
 }    // namespace
 
 namespace MPM_NS {
@@ -326,10 +361,13 @@ const BatchKernels *MPM_OF_ISA(mpm_batch)(int dim, bool hoop);
 const BatchKernels *MPM_NS::MPM_OF_ISA(mpm_batch)(int dim, bool hoop)
 {
   static const BatchKernels solid = {load<3, false, false>, load<3, true, false>, forget_shape<3>,
-                                     first_piola<3>, store<3, false>},
+                                     first_piola<3>,        add_kirchhoff,        stress_work,
+                                     store<3, false>},
                             plane = {load<2, false, false>, load<2, true, false>, forget_shape<2>,
-                                     first_piola<2>, store<2, false>},
+                                     first_piola<2>,        add_kirchhoff,        stress_work,
+                                     store<2, false>},
                             axial = {load<2, false, true>, load<2, true, true>, forget_shape<2>,
-                                     first_piola<2>, store<2, true>};
+                                     first_piola<2>,       add_kirchhoff,       stress_work,
+                                     store<2, true>};
   return dim == 3 ? &solid : hoop ? &axial : &plane;
 }
