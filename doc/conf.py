@@ -7,6 +7,7 @@ there as they are.  Until then, a reference to a page that is not one of ours
 becomes a link to the LAMMPS manual on the web."""
 
 import os
+import sys
 
 from docutils import nodes
 from pygments.lexer import RegexLexer
@@ -15,6 +16,9 @@ from pygments.token import Comment, Keyword, Name, Number, String, Text
 project = "MPM package for LAMMPS"
 author = "the authors of the MPM package"
 copyright = "distributed under the GNU General Public License, version 2"
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "tools"))
+import gallery
 
 extensions = ["sphinx.ext.mathjax"]
 root_doc = "src/index"
@@ -64,6 +68,18 @@ def link_to_lammps_manual(app, env, node, contnode):
     return link
 
 
+def add_scenes(app, page, source):
+    """At the end of the page of a command or law: the scenes of the gallery that use it."""
+    scenes = backlinks.get(os.path.basename(page))
+    if scenes and os.path.basename(page) not in gallery.COMMON:
+        links = ", ".join(":ref:`%s <scene_%s>`" % (scene["title"], scene["name"]) for scene in scenes)
+        source[0] += "\n\nScenes\n\"\"\"\"\"\"\n\n%s\n" % links
+
+
+backlinks = gallery.backlinks(gallery.scenes())
+
+
 def setup(app):
     app.add_lexer("LAMMPS", LammpsLexer)
+    app.connect("source-read", add_scenes)
     app.connect("missing-reference", link_to_lammps_manual)

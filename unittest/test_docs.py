@@ -249,18 +249,20 @@ def test_links_lead_somewhere():
     check(wrong)
 
 
-def test_every_scene_is_in_the_gallery_and_says_what_to_look_at():
-    gallery, wrong = read(os.path.join(ROOT, "README.md")), []
+def test_every_scene_says_what_to_look_at():
+    wrong = []
     for folder in sorted(glob.glob(os.path.join(ROOT, "examples", "*", ""))):
         name = os.path.basename(os.path.dirname(folder))
         text = read(os.path.join(folder, "README.md"))
-        for target in ("examples/%s/%s.png" % (name, name), "examples/%s/README.md" % name):
-            if "(%s)" % target not in gallery:
-                wrong.append("README.md has no link to " + target)
         for part in ("(%s.png)" % name, "in.%s" % name, "\n## What to look at\n"):
             if part not in text:
                 wrong.append("examples/%s/README.md: no %s" % (name, part.strip()))
     check(wrong)
+
+
+def test_gallery_is_that_of_the_scenes():
+    result = mt.run([sys.executable, os.path.join(ROOT, "tools", "gallery.py"), "--check"])
+    assert result.code == 0, result.output
 
 
 def test_page_of_the_atlas_is_what_its_tables_give():
@@ -268,15 +270,20 @@ def test_page_of_the_atlas_is_what_its_tables_give():
     assert result.code == 0, result.output
 
 
-def test_input_in_the_readme_is_that_of_the_example():
-    path = os.path.join(ROOT, "README.md")
-    text = read(path)
+def test_first_input_of_the_readme_runs_as_it_is():
+    """Experiment (examples/taylor-bar/README.md): 16.2 mm are left of the bar; 5 % at this spacing. A point stands
+    for half a millimeter."""
+    text = read(os.path.join(ROOT, "README.md"))
     section = text[text.index("## A first input"):]
-    section = section[:section.index("\n## ", 3)]
-    example = set(read(os.path.join(ROOT, "examples", "taylor-bar", "in.taylor-bar")).splitlines())
-    check(["not in examples/taylor-bar/in.taylor-bar: " + line
-           for block in re.findall(r"^```\n(.*?)^```", section, re.M | re.S)
-           for line in block.splitlines() if line not in example])
+    lines = re.search(r"^```\n(.*?)^```", section, re.M | re.S).group(1)
+    with tempfile.TemporaryDirectory() as folder:
+        result = mt.ok(mt.lammps(folder, lines))
+        assert "WARNING" not in result.output, result.output
+        for name in ("bar.800.png", "bar.pvd"):
+            assert os.path.exists(os.path.join(folder, name)), name + " is missing"
+    last = re.search(r"^ +800 +(.*)$", result.output, re.M).group(1).split()
+    length = float(last[1]) + 0.25e-3
+    assert abs(length - 16.2e-3) < 0.05 * 16.2e-3, length
 
 
 mt.main(globals())
