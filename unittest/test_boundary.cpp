@@ -1156,6 +1156,49 @@ TEST(TimeStep, RestartTakesTheSameSteps)
   }
 }
 
+// also when nothing limits the time step but its largest value, and with points that take every second or third step
+TEST(TimeStep, RunsEndAtATime)
+{
+  for (const double end : {0.9, 1.0, 1.0123, 0.049, 0.1})
+    for (const char *more : {"", "max 0.05", "strain 0.002"}) {
+      SCOPED_TRACE(std::to_string(end) + more);
+      Scene run(dt_scene + "fix step all mpm/dt 0.5 until " + std::to_string(end) + " " + more +
+                "\nthermo_style custom step time press\nthermo 1000\nrun 1000\n");
+      EXPECT_NEAR(run.evaluate("time"), end, 1.0e-9 * end);
+      EXPECT_EQ(run.fix("step")->compute_vector(3), 1.0);
+      EXPECT_EQ(run.fix("step")->compute_vector(4), 0.0);
+      const auto steps = run.lmp->update->ntimestep;
+      EXPECT_LT(steps, 1000);
+      run.commands("run 10\n");    // nothing is left to do
+      EXPECT_EQ(run.lmp->update->ntimestep, steps);
+      run.commands("fix step all mpm/dt 0.5 until 1.5\nrun 1000\n");
+      EXPECT_NEAR(run.evaluate("time"), 1.5, 1.0e-9);
+    }
+
+  for (const char *every : {"2", "3"}) {
+    Scene run(replaced(dt_scene, "mpm 1.0", std::string("mpm 1.0 every ") + every) +
+              "fix step all mpm/dt 0.5 until 1.0\nrun 1000\n");
+    EXPECT_NEAR(run.evaluate("time"), 1.0, 1.0e-9);
+    EXPECT_EQ(run.lmp->update->ntimestep % std::stoi(every), 0);
+  }
+}
+
+// output of the last step, which is not a multiple of the interval, with what needs virials; a warning before the end
+TEST(TimeStep, TellsTheEndOfARun)
+{
+  const ScratchFile log("log");
+  Scene run;
+  run.commands("log " + log.name + "\n" + dt_scene +
+               "fix step all mpm/dt 0.5 until 1.0\nthermo_style custom step time pe press\n"
+               "thermo 1000\nrun 3\n");
+  run.commands("run 1000\nlog none\n");
+  MPI_Barrier(MPI_COMM_WORLD);    // the first rank writes the file
+  const std::string text = file_text(log.name);
+  EXPECT_NE(text.find("before until 1: run more steps"), std::string::npos) << text;
+  const std::string last = " " + std::to_string(run.lmp->update->ntimestep) + "   1   ";
+  EXPECT_NE(text.find(last), std::string::npos) << text;
+}
+
 TEST(TimeStep, ChangedStateIsANewStart)
 {
   Scene run(dt_scene + "fix step all mpm/dt 0.5\nrun 5\n");

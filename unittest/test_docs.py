@@ -279,9 +279,10 @@ def test_first_input_of_the_readme_runs_as_it_is():
     with tempfile.TemporaryDirectory() as folder:
         result = mt.ok(mt.lammps(folder, lines))
         assert "WARNING" not in result.output, result.output
-        for name in ("bar.800.png", "bar.pvd"):
+        for name in ("bar.700.png", "bar.pvd"):
             assert os.path.exists(os.path.join(folder, name)), name + " is missing"
-    last = re.search(r"^ +800 +(.*)$", result.output, re.M).group(1).split()
+    last = re.findall(r"^ +\d+ +(\S+) +(\S+) +\S+ *$", result.output, re.M)[-1]
+    assert float(last[0]) == 8.0e-5, last
     length = float(last[1]) + 0.25e-3
     assert abs(length - 16.2e-3) < 0.05 * 16.2e-3, length
 

@@ -20,6 +20,7 @@
 #include "mpm_time_limit.h"
 #include "output.h"
 #include "pair.h"
+#include "timer.h"
 #include "update.h"
 
 #include <algorithm>
@@ -28,6 +29,8 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+
+static constexpr double ROUND_OFF = 1.0e-10;    // of times
 
 /* ----------------------------------------------------------------------
    fix ID all mpm/dt FRACTION keyword value ...
@@ -50,6 +53,9 @@ Options MPMDtOptions::declare()
         {number(strain, "S", POSITIVE, "",
                 "largest relative change of the volume of a point in a step")})
       .standard("no limit");
+  o.add("until",
+        {number(until, "T", POSITIVE, "time", "end runs when this time has elapsed, exactly")})
+      .standard("none");
   o.refuse([=] {
     return OptionRules{{dt_max > 0.0 && dt_min > dt_max, "min", "{min} is above max {max}"}};
   });
@@ -63,11 +69,11 @@ FixMPMDt::FixMPMDt(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
   Options options = declare();
   read_options(lmp, options, narg, arg, 3);
 
-  nevery = strain > 0.0 ? 1 : look_every;
+  nevery = strain > 0.0 || until > 0.0 ? 1 : look_every;
 
   time_depend = 1;    // as in fix dt/reset: the elapsed time must not lose its step
   scalar_flag = vector_flag = 1;
-  size_vector = 3;
+  size_vector = 5;
   global_freq = 1;
   extscalar = extvector = 0;
   restart_global = 1;
@@ -153,11 +159,62 @@ void FixMPMDt::setup_pre_force(int)
 {
   for (auto *field : MPMField::all(lmp)) field->time_limit->watch_volume = strain > 0.0;
   limit = find_limit();
-  if (continues && update->dt == dt_left && fabs(limit.dt - limit_left) <= 1.0e-9 * limit_left) {
+  wanted = update->dt;
+  ended = false;
+  time_at_start = elapsed_time(*update);
+  wall_at_start = platform::walltime();
+  const bool goes_on =
+      continues && update->dt == dt_left && fabs(limit.dt - limit_left) <= 1.0e-9 * limit_left;
+  if (goes_on)
     update->dt_default = 0;
-    return;
-  }
-  if (limit.dt < NO_POINTS.dt) set_dt(fraction * limit.dt);
+  else if (limit.dt < NO_POINTS.dt)
+    set_dt(fraction * limit.dt);
+  if (until == 0.0) return;
+  if (at_end())
+    stop_run();
+  else
+    change_dt(fit_to_end(wanted, 2));    // output of the last one is asked for at the end of a step
+}
+
+/* ----------------------------------------------------------------------
+   A run ends as with fix halt. Its last steps are equal parts of the time that is left, and no
+   longer than wanted; points that take one step in several of the run have moved at its end
+------------------------------------------------------------------------- */
+
+bool FixMPMDt::at_end() const
+{
+  return until > 0.0 && until - elapsed_time(*update) <= ROUND_OFF * until;
+}
+
+void FixMPMDt::stop_run()
+{
+  ended = true;
+  timer->force_timeout();
+}
+
+double FixMPMDt::fit_to_end(double dt, int least) const
+{
+  const auto fields = MPMField::all(lmp);
+  int cycle = 1;
+  for (const auto *field : fields) cycle = std::max(cycle, field->options.every);
+  const double left = until - elapsed_time(*update), most = 2.0 * cycle;
+  if (left > most * dt) return dt;
+  int n = std::max(least, (int) std::ceil(left / dt * (1.0 - ROUND_OFF)));
+  const auto is_whole = [n](const auto *field) {
+    return n % field->options.every == field->steps_to_next() % field->options.every;
+  };
+  for (int k = 0; k < cycle && !std::all_of(fields.begin(), fields.end(), is_whole); k++) n++;
+  return left / n;
+}
+
+/** Thermodynamic output of the last step, which is to come. */
+void FixMPMDt::announce_end()
+{
+  const bigint last = update->ntimestep + 1;
+  if (until - elapsed_time(*update) > (1.0 + ROUND_OFF) * update->dt) return;
+  output->next_thermo = std::min(output->next_thermo, last);
+  output->next = std::min(output->next, last);
+  modify->addstep_compute_all(last);
 }
 
 /* ----------------------------------------------------------------------
@@ -166,20 +223,30 @@ void FixMPMDt::setup_pre_force(int)
 
 void FixMPMDt::end_of_step()
 {
+  if (at_end()) return stop_run();
+  look();
+  if (until == 0.0) return;
+  change_dt(fit_to_end(wanted, 1));
+  announce_end();
+}
+
+void FixMPMDt::look()
+{
   if (update->ntimestep % look_every) {
+    if (strain == 0.0) return;
     const Limit steps = smallest(strain_limit_local());
-    if (!(fraction * steps.dt < update->dt)) return;
+    if (!(fraction * steps.dt < wanted)) return;
     limit = steps;
     return set_dt(fraction * limit.dt);
   }
   limit = find_limit();
   carried = NO_POINTS;
   for (auto *field : MPMField::all(lmp)) field->time_limit->volume_rate = {0.0, 0};
-  if (limit.dt < NO_POINTS.dt) set_dt(std::min(fraction * limit.dt, grow * update->dt));
+  if (limit.dt < NO_POINTS.dt) set_dt(std::min(fraction * limit.dt, grow * wanted));
 }
 
 /* ----------------------------------------------------------------------
-   change the time step and tell everybody, as fix dt/reset does
+   set the time step, and tell everybody when it changes, as fix dt/reset does
 ------------------------------------------------------------------------- */
 
 void FixMPMDt::set_dt(double dt)
@@ -198,6 +265,12 @@ void FixMPMDt::set_dt(double dt)
                tag ? fmt::format("point {} (wave speed {:.6g})", tag, limit.speed)
                    : "a rigid body of fix mpm/rigid",
                update->ntimestep, dt_min);
+  wanted = dt;
+  if (until == 0.0) change_dt(dt);    // otherwise it has to fit first
+}
+
+void FixMPMDt::change_dt(double dt)
+{
   if (dt == update->dt) return;
 
   update->update_time();
@@ -214,9 +287,17 @@ void FixMPMDt::set_dt(double dt)
 
 void FixMPMDt::post_run()
 {
-  dt_left = update->dt;
+  dt_left = wanted;
   limit_left = find_limit().dt;
   continues = true;
+  if (until == 0.0) return;
+  if (ended)
+    timer->reset_timeout();
+  else if (comm->me == 0)
+    error->warning(FLERR,
+                   "Fix mpm/dt {}: the run has ended at the time {:.6g}, before until {:.6g}: run "
+                   "more steps",
+                   id, elapsed_time(*update), until);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -228,8 +309,12 @@ double FixMPMDt::compute_scalar()
 
 double FixMPMDt::compute_vector(int i)
 {
-  if (i == 0) return limit.tag;
-  return i == 1 ? limit.speed : (double) nchanges;
+  const double values[3] = {limit.tag, limit.speed, (double) nchanges};
+  if (i < 3) return values[i];
+  if (until == 0.0) return 0.0;
+  const double passed = elapsed_time(*update) - time_at_start, left = until - time_at_start;
+  if (i == 3) return left > 0.0 ? passed / left : 1.0;
+  return passed > 0.0 ? (left / passed - 1.0) * (platform::walltime() - wall_at_start) : 0.0;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -246,7 +331,7 @@ void FixMPMDt::write_restart(FILE *fp)
     return field->running;
   });
   const Limit steps = smallest(strain_limit_local());
-  const double state[5] = {running ? update->dt : dt_left, running ? find_limit().dt : limit_left,
+  const double state[5] = {running ? wanted : dt_left, running ? find_limit().dt : limit_left,
                            (double) nchanges, steps.dt, steps.tag};
   if (comm->me) return;
   const int size = sizeof(state);

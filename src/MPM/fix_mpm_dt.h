@@ -25,13 +25,14 @@ namespace LAMMPS_NS {
 struct MPMDtOptions {
   double fraction = 0.0, grow = 1.05, dt_min = 0.0, dt_max = 0.0;    ///< dt_min, dt_max: 0 = none
   double strain = 0.0;    ///< largest change of volume in a step, 0: any
+  double until = 0.0;     ///< elapsed time at which runs end, 0: none
   int look_every = 10;    ///< steps between looks at wave speeds
 
   MPM_NS::Options declare();
 };
 
 /** Time step as a fraction of the smallest h/(c + |v|) over all material points, and with a limit of
- *  their change of volume in a step. */
+ *  their change of volume in a step. Ends runs at a given time. */
 class FixMPMDt : public Fix, private MPMDtOptions {
  public:
   FixMPMDt(class LAMMPS *, int, char **);
@@ -57,7 +58,12 @@ class FixMPMDt : public Fix, private MPMDtOptions {
   };
   static constexpr Limit NO_POINTS = {std::numeric_limits<double>::max(), 0.0, 0.0};
   Limit limit = {0.0, 0.0, 0.0};
+  double wanted = 0.0;    // time step, before the last steps are made to fit
   bigint nchanges = 0;
+
+  // runs that end at a time
+  bool ended = false;
+  double time_at_start = 0.0, wall_at_start = 0.0;
 
   // what the last run left, to see whether anything was changed since
   bool continues = false;
@@ -68,6 +74,12 @@ class FixMPMDt : public Fix, private MPMDtOptions {
   Limit strain_limit_local() const;
   Limit smallest(Limit) const;
   void set_dt(double);
+  void change_dt(double);
+  void look();
+  bool at_end() const;
+  void stop_run();
+  double fit_to_end(double dt, int least) const;
+  void announce_end();
 };
 
 }    // namespace LAMMPS_NS

@@ -26,6 +26,7 @@
 #include "mpm_input.h"
 #include "mpm_options.h"
 #include "mpm_points.h"
+#include "mpm_time_limit.h"
 #include "update.h"
 
 #include <algorithm>
@@ -462,7 +463,7 @@ template <class Visit> void FixMPMElements::for_batches(bool moved, Visit visit)
     w.batch.n = w.n;
     w.batch.dt = update->dt;
     w.batch.h = shortest;
-    w.batch.time = update->atime + (update->ntimestep - update->atimestep) * update->dt;
+    w.batch.time = elapsed_time(*update);
     w.batch.history = reinterpret_cast<double(*)[BATCH]>(w.history.data());
     visit(w);
     w.n = 0;

@@ -118,13 +118,6 @@ void MPMStages::strain_from_nodes(MPMField &field, double share, double shift_sh
 
 /* ---------------------------------------------------------------------- */
 
-/** Time at the end of the present step. */
-static double end_of_step(const MPMField &field)
-{
-  const Update &update = *field.lmp->update;
-  return update.atime + (update.ntimestep - update.atimestep) * update.dt;
-}
-
 void MPMStages::update_stress(MPMField &field, const PointRows &r, const MPMPointMap::Run &run,
                               int first, int n, const double *L, double dt)
 {
@@ -135,7 +128,7 @@ void MPMStages::update_stress(MPMField &field, const PointRows &r, const MPMPoin
   double *F = r.F + 9 * (bigint) first, *tau = r.tau + 6 * (bigint) first;
   field.frame->load(b, first, n, dt, L, F, tau, r.vol0 + first);
   b.history = reinterpret_cast<double(*)[BATCH]>(field.work.history.data());
-  b.time = end_of_step(field);
+  b.time = elapsed_time(*field.lmp->update);
 
   const int nhistory = material->nhistory;
   double *const h = nhistory ? &material->history[0][0] + nhistory * (bigint) first : nullptr;
@@ -178,7 +171,7 @@ void MPMStages::give_initial_stress(MPMField &field)
   const auto flush = [&]() {
     if (list.empty()) return;
     load_state(field, batch, list.data(), (int) list.size(), material);
-    batch.time = end_of_step(field);
+    batch.time = elapsed_time(*field.lmp->update);
     material->material->initial_stress(batch);
     for (std::size_t k = 0; k < list.size(); k++)
       for (int c = 0; c < 6; c++) tau[list[k]][c] = batch.J[k] * batch.stress[c][k];

@@ -260,3 +260,10 @@ void MPMTimeLimit::warn_of_default() const
         "read_restart, which does not keep it)",
         dt, update->unit_style, limit);
 }
+
+/* ---------------------------------------------------------------------- */
+
+double LAMMPS_NS::elapsed_time(const Update &update)
+{
+  return update.atime + (double) (update.ntimestep - update.atimestep) * update.dt;
+}

@@ -49,5 +49,8 @@ class MPMTimeLimit : protected Pointers {
   void warn_of_default() const;
 };
 
+/** Elapsed time at the end of the present step, as thermo keyword time has it. */
+double elapsed_time(const class Update &);
+
 }    // namespace LAMMPS_NS
 #endif
