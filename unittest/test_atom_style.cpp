@@ -461,6 +461,27 @@ TEST(CreatePoints, OverlapAcrossPeriodicFaceAndRanks)
   EXPECT_EQ(atoms(mixed)[0].volume0, 0.0);
 }
 
+// a group that is there, and one that is not; fixes and points that follow know it
+TEST(CreatePoints, Group)
+{
+  Scene run(space("lj", "p p p", "0 8 0 8 0 8") +
+            "group one empty\nfix a one mpm 1.0\nfix b all property/atom d_mark\n"
+            "region one block 0 4 0 8 0 8\nregion two block 4 8 0 8 0 8\n"
+            "create_points 1 region one ppc 2 group one\n"
+            "create_points 1 region two ppc 1 fix a group two\n"
+            "variable one equal count(one)\nvariable two equal count(two)\n"
+            "variable all equal count(all)\n");
+  EXPECT_EQ(run.evaluate("v_one"), 2048.0);
+  EXPECT_EQ(run.evaluate("v_two"), 256.0);
+  EXPECT_EQ(run.evaluate("v_all"), 2304.0);
+  run.commands(
+      "group now region one\ngroup rest subtract now one\nvariable rest equal count(rest)\n");
+  EXPECT_EQ(run.evaluate("v_rest"), 0.0);
+  expect_error(space("lj", "p p p", "0 8 0 8 0 8") +
+                   "group d dynamic all every 5\ncreate_points 1 box spacing 1 group d\n",
+               "Create_points group d is dynamic");
+}
+
 TEST(CreatePoints, OutsideTheBox)
 {
   Scene scene(box3d +

@@ -14,6 +14,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fix.h"
+#include "group.h"
 #include "irregular.h"
 #include "math/random.h"
 #include "math_extra.h"
@@ -169,6 +170,8 @@ Options CreatePointsOptions::declare(int dim, bool has_radius)
         {number(diameter, "D", POSITIVE, "distance",
                 "diameter of the points in contact with grains")})
       .standard("edge of a cube (2d: square) of the volume");
+  o.add("group", {text(group_id, "group-ID", "group that the points join; made if there is none")})
+      .standard("all");
   o.refuse([=] {
     return OptionRules{
         {ppc[0] > 0, "spacing", "and ppc cannot be given together: use either of them"},
@@ -195,6 +198,7 @@ void CreatePoints::parse(int narg, char **arg)
 
   Options options = declare(dim, atom->radius_flag);
   read_options(lmp, options, narg, arg, iarg);
+  find_group(options, group_id);
   if (!fix_id.empty()) {
     auto *ifix = modify->get_fix_by_id(fix_id);
     const int where = options.where("fix") + 1;
@@ -240,6 +244,18 @@ void CreatePoints::parse(int narg, char **arg)
                      "{} ({:.8g}): there will be cells without points inside the body",
                      spacing[d], axis_name[d], fix->id(), fix->lattice.h);
   }
+}
+
+void CreatePoints::find_group(const Options &options, const std::string &name)
+{
+  if (name.empty()) return;
+  const int igroup = group->find_or_create(name.c_str());
+  if (group->dynamic[igroup])
+    error->all(
+        FLERR, options.where("group") + 1,
+        "Create_points group {} is dynamic: its rule decides what is in it; use another group",
+        name);
+  group_bits = group->bitmask[igroup];
 }
 
 /* ----------------------------------------------------------------------
@@ -558,6 +574,7 @@ void CreatePoints::make_point(Site site)
 
   const int i = atom->nlocal - 1;
   atom->tag[i] = site.tag;
+  atom->mask[i] |= group_bits;
   atom->vfrac[i] = site.volume * (fix ? fix->frame->circle(site.x[0]) : 1.0);
   atom->rmass[i] = 0.0;    // not known yet, see fix mpm/material
   const double edge = domain->dimension == 3 ? cbrt(site.volume) : sqrt(site.volume);
@@ -583,6 +600,8 @@ Options CreatePointsMeshOptions::declare(const std::string &command, int dim, bo
         {number(diameter, "D", POSITIVE, "distance",
                 "diameter of the points in contact with grains")})
       .standard("edge of a cube (2d: square) of the volume");
+  o.add("group", {text(group_id, "group-ID", "group that the points join; made if there is none")})
+      .standard("all");
   o.refuse([=] {
     return OptionRules{{!has_radius, "diameter", "needs atom_style hybrid sphere mpm"}};
   });
@@ -607,6 +626,7 @@ void CreatePoints::parse_mesh(int narg, char **arg)
   Options options = given.declare(what, dim, atom->radius_flag);
   read_options(lmp, options, narg, arg, 3);
   diameter = given.diameter;
+  find_group(options, given.group_id);
 
   Mesh mesh = read_body(lmp, arg[2], given.part, "Create_points", 2);
   for (auto &x : mesh.nodes)

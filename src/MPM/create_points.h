@@ -39,6 +39,7 @@ struct CreatePointsOptions {
   int seed = 0;
   bool allow_overlap = false, ignore_outside = false;
   double diameter = 0.0;    ///< 0: that of the volume
+  std::string group_id;     ///< that the points join, empty: none
 
   MPM_NS::Options declare(int dimension, bool has_radius);
 };
@@ -48,6 +49,7 @@ struct CreatePointsMeshOptions {
   double scale = 1.0, move[3] = {0.0, 0.0, 0.0};
   std::string part;    ///< a physical group of the mesh, empty: all of it
   double diameter = 0.0;
+  std::string group_id;
 
   MPM_NS::Options declare(const std::string &command, int dimension, bool has_radius);
 };
@@ -87,15 +89,17 @@ class CreatePoints : public Command, private CreatePointsOptions {
 
   // derived
 
-  double volume;      // of a point, or the mean of all
-  Range box[3];       // sites in the simulation box
-  Range search[3];    // sites that can be in the region, also outside the box
+  int group_bits = 0;    // that of keyword group
+  double volume;         // of a point, or the mean of all
+  Range box[3];          // sites in the simulation box
+  Range search[3];       // sites that can be in the region, also outside the box
 
   std::vector<Site> mesh_sites;    // nodes of a mesh, or its elements,
   std::vector<Corners> corners;    // and the domains of these; at last those of the points here
 
   void parse(int, char **);
   void parse_mesh(int, char **);
+  void find_group(const MPM_NS::Options &, const std::string &name);
   void find_nodes(const MPM_NS::Mesh &, const char *file);
   void find_elements(const MPM_NS::Mesh &, const char *file);
   void check_periodic(const MPM_NS::Mesh &, const char *file) const;

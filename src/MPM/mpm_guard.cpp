@@ -78,11 +78,12 @@ void MPMGuard::check_other_points() const
   if (all == 0) return;
   MPI_Allreduce(&example, &example_all, 1, MPI_LMP_TAGINT, MPI_MAX, world);
   if (comm->me == 0)
-    error->warning(FLERR,
-                   "{} material points belong to no fix mpm, for instance point {}: they do not "
-                   "move and have no stress; if they shall, give the group command of a fix mpm "
-                   "again after create_points",
-                   all, example_all);
+    error->warning(
+        FLERR,
+        "{} material points belong to no fix mpm, for instance point {}: they do not "
+        "move and have no stress; if they shall, put them into the group of a fix mpm with "
+        "keyword group of create_points, or with the group command after it",
+        all, example_all);
 }
 
 /* ----------------------------------------------------------------------
