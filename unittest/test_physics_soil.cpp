@@ -135,8 +135,9 @@ double slide(double h, double angle, const std::string &options, const std::stri
   scene = replaced(scene, "ylo stick", "ylo " + floor);
   scene = replaced(scene, strprintf("fix grid all mpm %.17g", h),
                    strprintf("fix grid all mpm %.17g transfer %s", h, options.c_str()));
-  Scene run(scene + "variable v equal vcm(all,x)\n"
-                    "fix end all halt 1 v_t > 0.4 error continue\nrun 100000\nunfix end\n");
+  Scene run(scene +
+            "variable v equal vcm(all,x)\n"
+            "fix end all halt 1 v_t > 0.4 error continue\nrun 100000\nunfix end\n");
   const double v = run.variable("v"), t = run.time();
   run.commands("fix end all halt 1 v_t > 0.8 error continue\nrun 100000\n");
   return (run.variable("v") - v) / (run.time() - t);
