@@ -123,7 +123,7 @@ TEST(InfiniteSlope, SlidesWhenTooSteep)
    The acceleration of such a layer. On a floor with friction mu: g (sin - mu cos), whatever the transfer. On a rough floor the
    layer slides in the material: mu = sin(phi). The strength is reached at all depths at once, so that only the mean velocity
    is determined, by the force at the floor, and it is a small difference: 1 % of the force is 4 % of the acceleration.
-   Shape functions cannot follow the jump of velocity at the floor: half a cell stays behind with it, h/(2 depth) of the mean. What
+   Shape functions cannot follow the jump of velocity at the floor: up to half a cell stays behind with it, h/(2 depth) of the mean. What
    transfers take at the jump comes on top: apic is 20 % too slow with 10 cells in the depth and 12 % with 20 (and more with smaller
    time steps), which is why it is not here: its error, of first order in h as well, is that of a viscosity.
 ------------------------------------------------------------------------- */
@@ -158,9 +158,10 @@ TEST(InfiniteSlope, Acceleration)
   for (const char *options : {"aflip 1.0", "flip 1.0"})
     for (const double h : {0.05, 0.025}) {
       const double a = slide(h, angle, options, "stick");
-      EXPECT_NEAR(measured(strprintf("G3 %s, rough floor, h %g: acceleration/exact", options, h),
-                           a / exact),
-                  1.0 - 0.5 * h / depth, 0.02);
+      const double ratio = measured(
+          strprintf("G3 %s, rough floor, h %g: acceleration/exact", options, h), a / exact);
+      EXPECT_GT(ratio, 1.0 - 0.5 * h / depth - 0.01);
+      EXPECT_LT(ratio, 1.0);
     }
 }
 
