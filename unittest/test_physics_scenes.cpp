@@ -53,10 +53,13 @@ TEST(TaylorBar, OfhcCopper)
 /* ----------------------------------------------------------------------
    H1: dam break (J.C. Martin, W.J. Moyce, Phil. Trans. A 244 (1952) 312), a = 57.15 mm, height 2 a;
    front Z = x/a over T = t sqrt(2 g/a) (table 2), height H over tau = t sqrt(g/a) (table 6).
-   Numerical fronts are earlier than the gate of the experiment: a shift up to 0.2 is allowed.
+   Numerical fronts are earlier than the gate of the experiment: a shift up to 0.2 is allowed. (With 10, 20, 40 cells in a,
+   apic: slope 1.455, 1.401, 1.416; the front at T = 1, 2, 3 is at 1.43, 2.63, 4.10, at 1.51, 2.67, 4.08, and at 1.55, 2.66,
+   4.09: it is late at the start, while it is within one cell of the floor, and right from T = 2 on.)
 ------------------------------------------------------------------------- */
 
-TEST(DamBreak, MartinMoyce)
+PARAMETER_TEST(DamBreak, MartinMoyce, const char *,
+               Values("apic", "aflip 1.0", "flip 0.99 scheme musl"))
 {
   static const double front[][2] = {{.41, 1.11},  {.84, 1.22},  {1.19, 1.44}, {1.43, 1.67},
                                     {1.63, 1.89}, {1.83, 2.11}, {1.98, 2.33}, {2.20, 2.56},
@@ -69,13 +72,14 @@ TEST(DamBreak, MartinMoyce)
   Scene run(
       plane("si", "f f", strprintf("0 %.17g 0 %.17g", 6.0 * a, 3.0 * a), 1, 0.5 * h) +
       strprintf(
-          "fix grid all mpm %.17g\nregion column block 0 %.17g 0 %.17g INF INF\n"
+          "fix grid all mpm %.17g transfer %s\n"
+          "region column block 0 %.17g 0 %.17g INF INF\n"
           "create_points 1 region column ppc 2\n"
           "fix water all mpm/material density 1000 eos tait 225000 7 viscosity newtonian 0.001\n"
           "fix walls all mpm/boundary xlo xhi ylo slip\n"
           "fix g all gravity %.17g vector 0 -1 0\nfix step all mpm/dt 0.4\n"
           "variable t equal time\nfix end all halt 10 v_t > 0.19 error continue\n",
-          h, a, 2.0 * a, g));
+          h, GetParam(), a, 2.0 * a, g));
   const auto start = run.sums();
   std::vector<double> time, Z, H;
   double volume0 = 0.0, volume_error = 0.0, speed = 0.0;
