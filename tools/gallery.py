@@ -24,7 +24,7 @@ PAGE = os.path.join(PAGES, "Howto_mpm_gallery.rst")
 # in this order; a scene that is in none of them is an error
 TOPICS = {
     "Impact and metals": "taylor-bar taylor-bar-axisymmetric taylor-bar-total necking spall hypervelocity "
-                         "ring-on-block",
+                         "ring-on-block scratch",
     "Elastic bodies": "rubber-band beam cook-membrane two-disks ring-collision spinning-disk incline vortex",
     "Fluids and gases": "dam-break elastic-gate elastic-plate poiseuille shock-tube settling",
     "Soil and grains": "sand-column ball-in-sand hopper boulders-in-debris tyre-on-gravel grains-on-block",
