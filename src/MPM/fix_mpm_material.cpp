@@ -217,6 +217,7 @@ void FixMPMMaterial::update_batch(Batch &b)
   if (counts_stress) {
     memset(twice_tau, 0, sizeof(twice_tau));
     add_kirchhoff_stress(b, b.Jold, twice_tau);
+    for (int p = 0; p < b.n; p++) stress_work += b.vol0[p] * b.heat[p];    // from outside
   }
   material->update(b);
   for (int k = 0; k < NWORK; k++) work[k] += b.work[k];

@@ -22,8 +22,10 @@
 #include "mpm_points.h"
 #include "mpm_stages.h"
 #include "mpm_time_limit.h"
+#include "mpm_transfer_heat.h"
 #include "update.h"
 
+#include <algorithm>
 #include <cstring>
 
 using namespace LAMMPS_NS;
@@ -142,6 +144,10 @@ void MPMStages::update_stress(MPMField &field, const PointRows &r, const MPMPoin
   for (int p = 0; p < n && nhistory; p++)
     for (int k = 0; k < nhistory; k++) b.history[k][p] = h[nhistory * p + k];
 
+  if (field.heating)
+    field.heating->give(first, n, b.heat);
+  else
+    std::fill_n(b.heat, n, 0.0);
   material->update_batch(b);
   if (material->watching) material->watch_ranges(b, first);
   if (field.time_limit->watch_volume) field.time_limit->note_volume_rate(b, first);
