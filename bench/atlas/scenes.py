@@ -9,7 +9,7 @@ SETTINGS = ("shape", "transfer", "scheme", "frame", "ppc", "dtfrac", "h")
 
 SHAPES = ("linear", "quadratic", "cubic", "gimp", "cpgimp", "cpdi", "cpdi2", "bernstein")
 SPLINES = SHAPES[:3]
-CORNERS = SHAPES[5:7]    # slow, for solids: two transfers, usl and musl
+CORNERS = SHAPES[5:7]    # slow, for solids: two transfers, and usl, musl, usavg
 TRANSFERS = ("pic", "flip 1.0", "apic", "tpic", "aflip 1.0", "polypic", "xpic 5", "fmpm 5")
 SCHEMES = ("usl", "usf", "musl", "usavg")
 TOTAL = (SPLINES + ("bernstein",), ("pic", "flip 1.0", "apic", "xpic 5", "fmpm 5"))
@@ -86,7 +86,8 @@ def allowed(scene, shape, transfer, scheme, frame):
     if name == "fmpm" and scheme != "usl":
         return False
     if (shape in CORNERS + ("bernstein",) and
-            (not SCENES[scene]["total"] or transfer not in MAIN_TRANSFERS or scheme not in ("usl", "musl"))):
+            (not SCENES[scene]["total"] or transfer not in MAIN_TRANSFERS or
+             scheme not in ("usl", "musl", "usavg")[:3 if shape in CORNERS and SCENES[scene]["cheap"] else 2])):
         return False
     if name == "polypic":
         return frame == "updated" and shape in ("quadratic", "cubic") and scheme in ("usl", "musl")

@@ -186,12 +186,14 @@ std::string FixMPMMaterial::names() const
    agree to third order in the strain of a step
 ------------------------------------------------------------------------- */
 
-void FixMPMMaterial::update_batch(Batch &b, const BatchKernels &kernels)
+void FixMPMMaterial::update_batch(Batch &b, const BatchKernels &kernels, const double *heat)
 {
+  for (int p = 0; p < b.n; p++) b.heat[p] = heat ? heat[p] : 0.0;
   double twice_tau[6][BATCH];
   if (counts_stress) {
     memset(twice_tau, 0, sizeof(twice_tau));
     kernels.add_kirchhoff(b, b.Jold, twice_tau);
+    for (int p = 0; p < b.n; p++) stress_work += b.vol0[p] * b.heat[p];
   }
   material->update(b);
   for (int k = 0; k < NWORK; k++) work[k] += b.work[k];

@@ -46,8 +46,9 @@ class FixMPMMaterial : public FixMPMState {
   double work[8] = {};           ///< energy of each MPM_NS::Work kind so far, this rank's share
   double stress_work = 0.0;      ///< work of the stress so far, with a compute mpm/energy only
 
-  /** Stress and history of a batch at the end of the step, and what this has spent. */
-  void update_batch(MPM_NS::Batch &, const MPM_NS::BatchKernels &);
+  /** Stress and history of a batch at the end of the step, and what this has spent. heat: [n] from outside,
+   *  per reference volume, or null. */
+  void update_batch(MPM_NS::Batch &, const MPM_NS::BatchKernels &, const double *heat = nullptr);
 
   /** mass = density * initial volume for the points of the group that have no mass yet. */
   void assign_mass();

@@ -30,6 +30,7 @@
 #include "mpm_points.h"
 #include "mpm_smoothing.h"
 #include "mpm_time_limit.h"
+#include "mpm_transfer_heat.h"
 #include "update.h"
 
 #include <algorithm>
@@ -62,6 +63,7 @@ MPMField::MPMField(LAMMPS *lmp, Fix &fix, double h, const Options &options, MPMP
   if (options.shape == GIMP || options.shape == CPGIMP) boxes.reset(new MPMBoxes(lmp, *this));
   if (has_domain(options.shape)) domains.reset(new MPMCpdi(lmp, *this, state));
   if (options.smooths_volumes()) smoothing.reset(new MPMSmoothing(lmp, *this));
+  if (options.heat) heating.reset(new MPMTransferHeat(lmp, *this));
   if (options.locking != Options::NO_CURE) locking.reset(new MPMLocking(lmp, *this, state));
   if (options.watches_fracture()) fracture_watch.reset(new MPMFractureWatch(lmp, *this));
   guard.reset(new MPMGuard(lmp, *this));
@@ -147,6 +149,7 @@ void MPMField::init(MPMPlan *plan_of_all)
     error->all(FLERR, "Fix mpm found no material: define one with fix mpm/material");
 
   if (smoothing) smoothing->init();
+  if (heating) heating->init();
 
   // the same instruction set for transfers, batches and laws
 
@@ -179,7 +182,7 @@ void MPMField::find_materials()
 
 void MPMField::choose_kernels()
 {
-  const bool split = ledger.on || keep_old || options.stress_before() ||
+  const bool split = ledger.on || keep_old || options.heat || options.stress_before() ||
       (options.axisymmetric && options.scheme != Options::USL);
   kernel = frame->kernels(options.transfer, split);
   if (options.strains_by_gradient()) {
@@ -287,6 +290,7 @@ double MPMField::memory_usage() const
   double bytes = nodes.memory_usage() + map->memory_usage() + frame->memory_usage();
   if (locking) bytes += locking->memory_usage();
   if (smoothing) bytes += smoothing->memory_usage();
+  if (heating) bytes += heating->memory_usage();
   if (domains) bytes += domains->memory_usage();
   if (boxes) bytes += boxes->sizes.capacity() * sizeof(double);
   if (every)

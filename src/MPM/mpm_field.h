@@ -41,6 +41,7 @@ class MPMPointMap;
 class MPMPointState;
 class MPMSmoothing;
 class MPMTimeLimit;
+class MPMTransferHeat;
 struct MPMPoints;
 
 /** One velocity field on one lattice: options, points, nodes, and an object for each thing that only
@@ -87,6 +88,7 @@ class MPMField : protected Pointers {
   std::unique_ptr<MPMEvery> every;
   std::unique_ptr<MPMLocking> locking;
   std::unique_ptr<MPMSmoothing> smoothing;
+  std::unique_ptr<MPMTransferHeat> heating;
 
   /** Memory that stages share; nothing in it outlives a stage. */
   struct {

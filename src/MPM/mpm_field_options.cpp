@@ -114,6 +114,7 @@ Options MPMFieldOptions::declare(int dim)
       {number(smooth, "share", FRACTION, "",
               "share of what is rough in the volumes of points of a fluid that is taken away while "
               "sound crosses a cell")});
+  o.add("heat", {yes_no(heat)}, "kinetic energy that transfers lose becomes heat of the points");
   o.add(
       "light",
       {number(
@@ -153,6 +154,9 @@ Options MPMFieldOptions::declare(int dim)
   const auto amplifies = [this] {
     return changes_cells() && shape == LINEAR && (scheme == USL || is_affine(transfer));
   };
+  const auto fits = [this] {    // affine matrices are least squares with one moment for all points
+    return shape == QUADRATIC || shape == CUBIC;
+  };
   o.refuse([=] {
     return OptionRules{
         {axisymmetric && dim != 2, "axisymmetric", "needs dimension 2"},
@@ -190,6 +194,14 @@ Options MPMFieldOptions::declare(int dim)
          "which do not lock, a fix mpm without locking"},
         {smooth > 0.0 && modified_edges, "smooth",
          "needs the same functions everywhere: use edges plain"},
+        {heat &&
+             (polypic || series != LUMPED || (transfer != PIC && !(transfer == APIC && fits()))),
+         "heat",
+         "needs transfer pic, or apic with shape quadratic or cubic: what other transfers do to "
+         "the "
+         "energy of a point can have either sign"},
+        {heat && stress_before(), "heat",
+         "needs scheme usl or musl, where stress is updated after the velocities"},
         {light > 0.0 && !amplifies(), "light",
          "is of no use with this shape, transfer, scheme and frame: remove light, which is for "
          "shape linear with scheme usl or transfer apic, aflip, tpic, where points change cells"},
@@ -207,6 +219,11 @@ Options MPMFieldOptions::declare(int dim)
         {series == XPIC && order > 1 && scheme != USL, "transfer",
          "xpic with scheme usf, musl and usavg: a body that turns loses its spin: use scheme usl, "
          "or transfer flip or apic"},
+        {has_domain(shape) && transfer == FLIP && flip > 0.0 && series == LUMPED && scheme != USL,
+         "scheme",
+         "usf, musl and usavg with transfer flip and shape cpdi and cpdi2: tension in stretched "
+         "bodies makes noise at time steps above a tenth of the limit: use scheme usl, or transfer "
+         "apic"},
         {light == 0.0 && amplifies(), "shape",
          "linear with scheme usl or transfer apic: linear functions amplify round-off at nodes of "
          "tiny mass: use transfer flip with scheme musl, quadratic functions, or light 0.5"},

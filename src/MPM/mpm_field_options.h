@@ -39,6 +39,7 @@ struct MPMFieldOptions {
   bool axisymmetric = false;      ///< 2d: x is the distance from the axis y, points are rings
   Locking locking = NO_CURE;
   double smooth = 0.0;    ///< share of rough volumes of fluids that goes in the time h/c; 0: none
+  bool heat = false;      ///< kinetic energy that transfers lose becomes heat
   double light = 0.0;     ///< nodes with less than this share of a full cell are light; 0: none
   double origin[3] = {0.0, 0.0, 0.0};    ///< if not given: the lower corner of the box
   Policy bad = ERROR;
@@ -62,6 +63,7 @@ struct MPMFieldOptions {
   bool averages_strain() const { return locking == FBAR || locking == BOTH; }
   bool averages_stress() const { return locking == PRESSURE || locking == BOTH; }
   bool smooths_volumes() const { return smooth > 0.0; }
+  bool heats() const { return heat; }
   /** Are averages those of volumes, which points keep, and not of their changes in a step? */
   bool averages_volume() const { return locking == FBAR && !total; }
   /** In 2d: does F_zz change? */

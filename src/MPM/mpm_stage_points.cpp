@@ -22,6 +22,7 @@
 #include "mpm_points.h"
 #include "mpm_stages.h"
 #include "mpm_time_limit.h"
+#include "mpm_transfer_heat.h"
 #include "update.h"
 
 #include <cstring>
@@ -135,7 +136,9 @@ void MPMStages::update_stress(MPMField &field, const PointRows &r, const MPMPoin
   for (int p = 0; p < n && nhistory; p++)
     for (int k = 0; k < nhistory; k++) b.history[k][p] = h[nhistory * p + k];
 
-  material->update_batch(b, *field.batch_kernels);
+  double heat[BATCH];
+  if (field.heating) field.heating->give(first, n, heat);
+  material->update_batch(b, *field.batch_kernels, field.heating ? heat : nullptr);
   if (material->watching) material->watch_ranges(b, first);
   if (field.time_limit->watch_volume) field.time_limit->note_volume_rate(b, first);
   if (!field.options.total && !material->material->uses_F()) field.batch_kernels->forget_shape(b);

@@ -17,6 +17,7 @@
 #include "mpm_plan.h"
 #include "mpm_smoothing.h"
 #include "mpm_stages.h"
+#include "mpm_transfer_heat.h"
 
 using namespace LAMMPS_NS;
 using namespace MPMStages;
@@ -128,6 +129,10 @@ void solve(MPMPlan &plan)
   plan.each("energy of nodes", account, has_ledger);
   plan.each("XPIC", xpic, with<&Options::has_xpic>);
   plan.place(MPMPlan::AFTER_SOLVE);
+  const auto heat = [](MPMField &field) {
+    field.heating->before_motion();
+  };
+  plan.each("heat of transfers", heat, with<&Options::heats>);
 }
 
 /** The other way to affine matrices, and with stress also to that, where nodes may be light. */

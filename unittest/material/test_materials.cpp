@@ -774,6 +774,7 @@ std::vector<double> trajectory(const Material &material, int n, int points)
       b.Jold[i] = b.J[i];
       b.J[i] = det(F);
     }
+    std::fill_n(b.heat, b.n, 0.0);
     material.update(b);
     double c[BATCH], w[BATCH];
     material.wave_speed(b, c);

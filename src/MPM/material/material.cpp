@@ -113,7 +113,11 @@ class ComposedMaterial : public Material {
 
   void update(Batch &b) const override
   {
-    for (int i = 0; i < b.n; i++) b.heat[i] = b.plastic[i] = 0.0;
+    double outside[BATCH];
+    for (int i = 0; i < b.n; i++) {
+      outside[i] = b.heat[i];
+      b.heat[i] = b.plastic[i] = 0.0;
+    }
     for (double &w : b.work) w = 0.0;
 
     if (damage) call(damage->kernels->prepare, *damage, b);
@@ -122,6 +126,10 @@ class ComposedMaterial : public Material {
     if (!base) clear_stress(b);
     run(base, b);
     if (damage) account_of_strength(b);
+    for (int i = 0; i < b.n; i++) {
+      b.heat[i] += outside[i];
+      b.work[VISCOUS] += b.vol0[i] * outside[i];
+    }
     // what viscosities add: stress after them minus stress before them
     with_viscous_stress(b, [](double stress, double &added) {
       added = -stress;

@@ -53,7 +53,7 @@ struct Batch {
 
   // passed from part to part of a material within a step
 
-  alignas(64) double heat[BATCH];       ///< energy turned into heat, per reference volume
+  alignas(64) double heat[BATCH];       ///< in: heat from outside; out: all, per reference volume
   alignas(64) double plastic[BATCH];    ///< increment of the equivalent plastic strain
   alignas(64) double speed[BATCH];      ///< wave speed without viscosity, for viscosities only
 

@@ -97,6 +97,7 @@ void MaterialPoint::move(const double *A, double dt)
     batch.Jold[p] = batch.J[p];
     batch.J[p] = determinant(F);
   }
+  std::fill_n(batch.heat, batch.n, 0.0);
   material.update(batch);
 
   first_piola(batch, after);
@@ -194,6 +195,7 @@ class Trial {
       for (std::size_t k = 0; k < history.size() / BATCH; k++)
         b.history[k][m] = start.history[k][0];
     }
+    std::fill_n(b.heat, b.n, 0.0);
     p.material.update(b);
     scale = 0.0;
     for (int m = 0; m < count; m++) {
