@@ -496,7 +496,8 @@ timestep 0.01
 }
 
 // A body too heavy to be stopped is sheared: past yield, the shear stress rises with the plastic strain of
-// all steps before, t = (s_y + H e)/sqrt(3) with e = (g - t/G)/sqrt(3).
+// all steps before, t = (s_y + H e)/sqrt(3) with e = (g - t/G)/sqrt(3). The heat of a step is its own plastic work, and
+// nothing of the step before.
 TEST(Elements, HardeningIsRemembered)
 {
   const double G = 10.0, sy = 0.05, H = 3.0, g = 0.1;
@@ -507,13 +508,20 @@ TEST(Elements, HardeningIsRemembered)
     if (nranks() > 1) GTEST_SKIP() << "on one rank only";
     Scene run(replaced(
         replaced(block(kind, file.name), "neohookean 30 0.3",
-                 strprintf("eos linear 30 strength j2 %g %g hardening linear %g", G, sy, H)),
+                 strprintf("eos linear 30 strength j2 %g %g hardening linear %g thermal adiabatic "
+                           "1 300 0.9",
+                           G, sy, H)),
         "density 2 ", "density 2e8 "));
+    run.commands("compute e all mpm/energy\nthermo_style custom step c_e[*]\n");
     run.set_velocity([&](const double *x, double *v) {
       v[0] = g * (x[1] - 3.5);
     });
     run.commands("timestep 0.01\nrun 100\n");
     for (const auto &s : run.gather()) EXPECT_NEAR(s.stress[3], expected, 0.01 * expected);
+    EXPECT_EQ(run.evaluate("c_e[4]"), 0.0);
+    EXPECT_NEAR(run.evaluate("c_e[5]"), 0.9 * run.evaluate("c_e[3]"),
+                1e-12 * run.evaluate("c_e[3]"));
+    EXPECT_GT(run.evaluate("c_e[3]"), 0.0);
   }
 }
 
