@@ -83,6 +83,7 @@ static constexpr const char *PERIODIC =
 static constexpr double ON_SURFACE = 1.0e-6;    // in node spacings
 static constexpr double FAR = 1.0e8;            // in node spacings
 static constexpr double HAND_OVER = 0.5;        // in node spacings, see list_region_nodes()
+static constexpr double SMOOTH = 0.9;           // cosine between normals of a surface that is smooth
 
 namespace {
 /** Center and unit axis of a region's rotation, which are protected members. */
@@ -675,6 +676,98 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
       list.singles.push_back(s);
     }
   }
+  list_crossings(list);
+}
+
+/* ----------------------------------------------------------------------
+   Lines of nodes through the surface of a region that separates, along the axis that is nearest to the
+   normal. Nodes inside that are on such a line do not act on their own. There are none where the surface
+   is not smooth, or the region is too thin for the nodes that a line has in it.
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::list_crossings(FieldNodes &list)
+{
+  list.crossings.clear();
+  if (kind != SEPARATE || region->varshape) return;
+  const MPMField &field = *list.field;
+  const Grid &grid = field.grid;
+  const double h = field.lattice.h;
+  const Surface surface = {region, field.lattice.dim, FAR * h};
+  std::vector<int64_t> on_lines;
+  for (const auto &single : list.singles) {
+    if (!(fabs(single.distance) <= h)) continue;
+    int index[3];
+    double x[3], at[3];
+    grid.node_index(single.node, index);
+    field.lattice.node_position(index, x);
+    const double *const n = single.normal;
+    Crossing c = {};
+    for (int d = 1; d < field.lattice.dim; d++)
+      if (fabs(n[d]) > fabs(n[c.axis])) c.axis = d;
+    const int a = c.axis, outward = n[a] > 0.0 ? 1 : -1;
+    const double slope = fabs(n[a]);
+    if (slope < 0.5) continue;    // the normal is not known
+
+    // where the line goes through the surface, and is this node the last one before?
+
+    double way = -single.distance / slope;
+    MathExtra::copy3(x, at);
+    bool known = true;
+    for (int round = 0; round < 2 && known; round++) {
+      at[a] = x[a] + outward * way;
+      const double distance = surface.distance(at);
+      known = distance < surface.far;
+      way -= distance / slope;
+    }
+    if (!known || way > (1.0 - ON_SURFACE) * h) continue;
+    at[a] = x[a] + outward * std::max(way, 0.0);
+    const auto along = [&](const double *place) {
+      double normal[3];
+      surface.normal(place, 1.0e-4 * h, normal);
+      return MathExtra::dot3(normal, c.normal) > SMOOTH;
+    };
+    surface.normal(at, 1.0e-4 * h, c.normal);
+    bool smooth = MathExtra::dot3(n, c.normal) > SMOOTH;
+
+    int first;
+    double weight[4];
+    c.n = weights_at(field, a, outward, at[a], first, weight);
+    std::array<int64_t, 4> inside = {-1, -1, -1, -1};
+    for (int k = 0; k < c.n && smooth; k++) {
+      const int from = outward > 0 ? k : c.n - 1 - k;
+      int node[3] = {index[0], index[1], index[2]};
+      double place[3] = {x[0], x[1], x[2]};
+      node[a] = first + from;
+      place[a] = field.lattice.origin[a] + h * node[a];
+      const int ahead = outward * (node[a] - index[a]);
+      if (ahead != 0)
+        smooth = ahead > 0 ? !region->match(place[0], place[1], place[2])
+                           : region->match(place[0], place[1], place[2]) && along(place);
+      node[a] = field.lattice.wrap(a, node[a]);
+      c.node[k] = grid.locate(node);
+      c.weight[k] = weight[from];
+      if (ahead <= 0) inside[k] = c.node[k];
+    }
+    if (!smooth) continue;
+    c.full = crossed_contact(list, fabs(c.normal[a]), outward * ((at[a] - field.lattice.origin[a]) / h));
+    on_lines.insert(on_lines.end(), inside.begin(), inside.end());
+    list.crossings.push_back(c);
+  }
+
+  // lines along one axis share no nodes, those along two do: all ranks in the same order
+
+  std::stable_sort(list.crossings.begin(), list.crossings.end(),
+                   [](const Crossing &a, const Crossing &b) {
+                     return a.axis < b.axis;
+                   });
+  std::sort(on_lines.begin(), on_lines.end());
+  auto &singles = list.singles;
+  singles.erase(std::remove_if(singles.begin(), singles.end(),
+                               [&](const Single &single) {
+                                 return std::binary_search(on_lines.begin(), on_lines.end(),
+                                                           single.node);
+                               }),
+                singles.end());
 }
 
 /* ----------------------------------------------------------------------
@@ -860,6 +953,7 @@ void FixMPMBoundary::act(double dt, Stage stage)
     for (auto &line : list.lines)
       if (!faces[line.face].cut) act_on_column(list, line);
     for (const auto &orbit : list.orbits) act_on_orbit(list, orbit);
+    for (auto &crossing : list.crossings) act_on_crossing(list, crossing);
     for (auto &single : list.singles) act_on_single(list, single);
     if (count) ledger.boundary += now.kinetic * force->mvv2e;
     if (count) ledger.driven += now.driven * force->mvv2e;
@@ -1091,14 +1185,23 @@ void FixMPMBoundary::act_on_single(const FieldNodes &list, Single &single)
   }
   const double whole[3] = {v[0], v[1], v[2]};
   for (int d = 0; d < dim && single.share < 1.0; d++) v[d] = r[d] + single.share * (v[d] - r[d]);
-  if (now.counting && grid.owns(single.node)) {
-    double x[3], push[3] = {0.0, 0.0, 0.0}, moment[3];
-    grid.node_position(single.node, x);
-    for (int d = 0; d < dim; d++) push[d] = r[3] * (v[d] - r[d]);
-    MathExtra::cross3(x, push, moment);
-    for (int d = 0; d < 3; d++) impulse[3 + d] += moment[d];
-  }
+  count_moment(grid, single.node, r, v);
   set_velocity(grid, single.node, V, v, nullptr, whole);
+}
+
+/* ----------------------------------------------------------------------
+   moment about the origin of what gives the node of this record the velocity v
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::count_moment(const Grid &grid, int64_t node, const double *record,
+                                  const double *v)
+{
+  if (!now.counting || !grid.owns(node)) return;
+  double x[3], push[3] = {0.0, 0.0, 0.0}, moment[3];
+  grid.node_position(node, x);
+  for (int d = 0; d < grid.lattice.dim; d++) push[d] = record[3] * (v[d] - record[d]);
+  MathExtra::cross3(x, push, moment);
+  for (int d = 0; d < 3; d++) impulse[3 + d] += moment[d];
 }
 
 /* ----------------------------------------------------------------------
@@ -1151,6 +1254,7 @@ double FixMPMBoundary::memory_usage()
   double bytes = 0.0;
   for (const auto &list : nodes)
     bytes += list.lines.capacity() * sizeof(Line) + list.members.capacity() * sizeof(Member) +
-        list.orbits.capacity() * sizeof(Orbit) + list.singles.capacity() * sizeof(Single);
+        list.orbits.capacity() * sizeof(Orbit) + list.singles.capacity() * sizeof(Single) +
+        list.crossings.capacity() * sizeof(Crossing);
   return bytes;
 }

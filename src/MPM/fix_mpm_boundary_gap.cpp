@@ -78,6 +78,9 @@ void FixMPMBoundary::find_region_gaps(FieldNodes &list, double dt)
   const double h = field.lattice.h;
   std::vector<char> near(field.grid.blocks.size(), 0);
   for (const auto &single : list.singles) near[single.node / NODES_PER_BLOCK] = 1;
+  for (const auto &crossing : list.crossings)
+    for (int k = 0; k < crossing.n; k++)
+      if (crossing.node[k] >= 0) near[crossing.node[k] / NODES_PER_BLOCK] = 1;
   if (!region_moves()) region->prematch();
   gap.map(field, near, [&](const double *x) {
     return distance_from_region(field, x, dt);
@@ -98,4 +101,37 @@ void FixMPMBoundary::find_region_gaps(FieldNodes &list, double dt)
     const auto k = (std::size_t) std::lround(std::max(0.0, depth) * PER_CELL);
     single.touched = gap.at(single.node).touches(contacts[k]);
   }
+  for (auto &crossing : list.crossings) {
+    MPMWallGap::Sums sums;
+    for (int k = 0; k < crossing.n; k++)
+      if (crossing.node[k] >= 0) sums.add(crossing.weight[k], gap.at(crossing.node[k]));
+    crossing.touched = sums.touches(list.crossed[crossing.full]);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   index of the contact with a crossing: slope: cosine between line and normal, place: of the surface on
+   the line, in node spacings, growing towards the material. It depends on the place in a cell
+------------------------------------------------------------------------- */
+
+int FixMPMBoundary::crossed_contact(FieldNodes &list, double slope, double place)
+{
+  constexpr int PLACES = 32, SLOPES = 32;
+  if (list.crossed.empty()) {
+    list.crossed.resize(PLACES * (SLOPES + 1));
+    list.crossed_known.assign(list.crossed.size(), 0);
+  }
+  const double in_cell = place - std::floor(place);
+  const int k = std::min((int) (PLACES * in_cell), PLACES - 1), j = (int) std::lround(SLOPES * slope);
+  const int index = j * PLACES + k;
+  if (list.crossed_known[index]) return index;
+  list.crossed_known[index] = 1;
+  int first;
+  double weight[4], at[4];
+  const double x = 16.0 + (k + 0.5) / PLACES;
+  const MPMField &field = *list.field;
+  const int n = weights_at(field, 0, 1, field.lattice.origin[0] + field.lattice.h * x, first, weight);
+  for (int node = 0; node < n; node++) at[node] = (first + node - x) * j / SLOPES;
+  list.crossed[index] = {field, at, weight, n};
+  return index;
 }
