@@ -98,6 +98,8 @@ struct Surface {
   int dim;
   double far;    // stands for a distance that is not known
 
+  static bool along_z(const Region::Contact &c) { return fabs(c.delz) > 0.5 * c.r; }
+
   /** Signed distance of x, negative inside. */
   double distance(const double *x) const
   {
@@ -105,14 +107,16 @@ struct Surface {
     const int interior = region->interior;
     if (!inside) region->interior = !interior;    // Region::surface() answers for one side only
     auto *mesh = dynamic_cast<RegMPMMesh *>(region);
-    if (mesh && dim == 3) mesh->most_touches = 1;    // in 2d the closest one may be along z
-    const int n = region->surface(x[0], x[1], x[2], far);
-    region->interior = interior;
+    if (mesh) mesh->most_touches = 1;
+    int n = region->surface(x[0], x[1], x[2], far);
     if (mesh) mesh->most_touches = mesh->tmax;
+    if (mesh && dim == 2 && n > 0 && along_z(region->contact[0]))
+      n = region->surface(x[0], x[1], x[2], far);    // the section has another closest point
+    region->interior = interior;
     double distance = far;
     for (int i = 0; i < n; i++) {
       const auto &c = region->contact[i];
-      if (dim == 3 || !(fabs(c.delz) > 0.5 * c.r)) distance = std::min(distance, c.r);
+      if (dim == 3 || !along_z(c)) distance = std::min(distance, c.r);
     }
     return inside && distance < far ? -distance : distance;
   }
@@ -708,25 +712,29 @@ void FixMPMBoundary::list_crossings(FieldNodes &list)
     const double slope = fabs(n[a]);
     if (slope < 0.5) continue;    // the normal is not known
 
-    // where the line goes through the surface, and is this node the last one before?
+    // where the line goes through the surface, and is this node the last one before? On the surface
+    // itself rounding decides on the side, of which some regions tell nothing: a little outside
 
-    double way = -single.distance / slope;
+    const double outside = 1.0e-3 * h;
+    double way = -single.distance / slope + outside;
     MathExtra::copy3(x, at);
     bool known = true;
     for (int round = 0; round < 2 && known; round++) {
       at[a] = x[a] + outward * way;
       const double distance = surface.distance(at);
       known = distance < surface.far;
-      way -= distance / slope;
+      way -= distance / slope - outside;
     }
+    at[a] = x[a] + outward * way;
+    way -= outside;
     if (!known || way > (1.0 - ON_SURFACE) * h) continue;
+    surface.normal(at, 1.0e-4 * h, c.normal);
     at[a] = x[a] + outward * std::max(way, 0.0);
     const auto along = [&](const double *place) {
       double normal[3];
       surface.normal(place, 1.0e-4 * h, normal);
       return MathExtra::dot3(normal, c.normal) > SMOOTH;
     };
-    surface.normal(at, 1.0e-4 * h, c.normal);
     bool smooth = MathExtra::dot3(n, c.normal) > SMOOTH;
 
     int first;
@@ -780,7 +788,7 @@ double FixMPMBoundary::distance_from_region(const MPMField &field, const double 
   double y[3], v[3] = {0.0, 0.0, 0.0};
   if (region_moves()) wall.velocity(x, v);
   for (int d = 0; d < 3; d++) y[d] = x[d] + dt * v[d];
-  return Surface{region, field.lattice.dim, FAR * field.lattice.h}.distance(y);
+  return Surface{region, field.lattice.dim, MPMWallGap::farthest(field)}.distance(y);
 }
 
 /* ----------------------------------------------------------------------

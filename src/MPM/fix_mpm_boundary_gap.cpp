@@ -55,7 +55,7 @@ void FixMPMBoundary::find_gaps(FieldNodes &list, double dt)
       for (int k = 0; k < n; k++)
         if (line.face == f && line.node[k] >= 0) near[line.node[k] / NODES_PER_BLOCK] = 1;
     const double wall = face.inward > 0 ? domain->boxlo[face.axis] : domain->boxhi[face.axis];
-    gap.map(field, near, [&](const double *x) {
+    gap.map(field, near, true, [&](const double *x) {
       return face.inward * (x[face.axis] - wall);
     });
     for (auto &line : list.lines) {
@@ -82,7 +82,7 @@ void FixMPMBoundary::find_region_gaps(FieldNodes &list, double dt)
     for (int k = 0; k < crossing.n; k++)
       if (crossing.node[k] >= 0) near[crossing.node[k] / NODES_PER_BLOCK] = 1;
   if (!region_moves()) region->prematch();
-  gap.map(field, near, [&](const double *x) {
+  gap.map(field, near, region->nregion == 1, [&](const double *x) {
     return distance_from_region(field, x, dt);
   });
 
