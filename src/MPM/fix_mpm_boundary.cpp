@@ -83,7 +83,7 @@ static constexpr const char *PERIODIC =
 static constexpr double ON_SURFACE = 1.0e-6;    // in node spacings
 static constexpr double FAR = 1.0e8;            // in node spacings
 static constexpr double HAND_OVER = 0.5;        // in node spacings, see list_region_nodes()
-static constexpr double SMOOTH = 0.9;           // cosine between normals of a surface that is smooth
+static constexpr double SMOOTH = 0.9;    // cosine between normals of a surface that is smooth
 
 namespace {
 /** Center and unit axis of a region's rotation, which are protected members. */
@@ -422,7 +422,8 @@ bool FixMPMBoundary::narrow(const Faces &faces, int axis)
 
 void FixMPMBoundary::extend_topology(MPMField &field)
 {
-  if (!acts_on(field) || face_list.empty()) return;
+  if (!acts_on(field)) return;
+  if (region) return extend_across(field);
   Grid &grid = field.grid;
   const auto faces = faces_on_lattice(field);
 
@@ -443,6 +444,34 @@ void FixMPMBoundary::extend_topology(MPMField &field)
         grid.activate(b);
       }
     }
+}
+
+/* ----------------------------------------------------------------------
+   A line of nodes through the surface of a region can have nodes that only another rank's points reach.
+   Lines along several axes share nodes: blocks all around
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::extend_across(MPMField &field) const
+{
+  if (comm->nprocs == 1 || kind != SEPARATE || region->varshape) return;
+  Grid &grid = field.grid;
+  const int dim = field.lattice.dim;
+  const double h = field.lattice.h, reach = (0.5 * grid.side * sqrt((double) dim) + 4.0) * h;
+  const bool known = !region_moves() && region->nregion == 1;
+  if (!region_moves()) region->prematch();
+  const auto nblocks = (int) grid.blocks.size();
+  for (int ib = 0; ib < nblocks; ib++) {
+    const int b[3] = {grid.blocks[ib].b[0], grid.blocks[ib].b[1], grid.blocks[ib].b[2]};
+    const int first[3] = {b[0] * grid.side, b[1] * grid.side, b[2] * grid.side};
+    double middle[3];
+    field.lattice.node_position(first, middle);
+    for (int d = 0; d < dim; d++) middle[d] += 0.5 * (grid.side - 1) * h;
+    if (known && fabs(Surface{region, dim, FAR * h}.distance(middle)) > reach) continue;
+    for (int k = 0; k < (dim == 3 ? 27 : 9); k++) {
+      const int next[3] = {b[0] + k % 3 - 1, b[1] + k / 3 % 3 - 1, b[2] + k / 9 - (dim == 3)};
+      grid.activate(next);
+    }
+  }
 }
 
 /* ---------------------------------------------------------------------- */
@@ -757,7 +786,8 @@ void FixMPMBoundary::list_crossings(FieldNodes &list)
       if (ahead <= 0) inside[k] = c.node[k];
     }
     if (!smooth) continue;
-    c.full = crossed_contact(list, fabs(c.normal[a]), outward * ((at[a] - field.lattice.origin[a]) / h));
+    c.full =
+        crossed_contact(list, fabs(c.normal[a]), outward * ((at[a] - field.lattice.origin[a]) / h));
     on_lines.insert(on_lines.end(), inside.begin(), inside.end());
     list.crossings.push_back(c);
   }

@@ -219,6 +219,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   static bool narrow(const Faces &, int axis);
   void list_face_nodes(FieldNodes &);
   void list_region_nodes(FieldNodes &);
+  void extend_across(MPMField &) const;
   void list_crossings(FieldNodes &);
   static int crossed_contact(FieldNodes &, double slope, double place);
   void update_motion(double dt);

@@ -39,7 +39,7 @@ static constexpr double MIN_WEIGHT[4] = {0.0, 0.5, 0.02, 0.0045};
 
 /** Of the place x along an axis: the nodes, from the first one on, that make the velocity there. */
 int FixMPMBoundary::weights_at(const MPMField &field, int axis, int inward, double x, int &first,
-                      double *weight)
+                               double *weight)
 {
   const int n =
       MPMStencil(field).weights((x - field.lattice.origin[axis]) / field.lattice.h, first, weight);

@@ -122,7 +122,8 @@ int FixMPMBoundary::crossed_contact(FieldNodes &list, double slope, double place
     list.crossed_known.assign(list.crossed.size(), 0);
   }
   const double in_cell = place - std::floor(place);
-  const int k = std::min((int) (PLACES * in_cell), PLACES - 1), j = (int) std::lround(SLOPES * slope);
+  const int k = std::min((int) (PLACES * in_cell), PLACES - 1),
+            j = (int) std::lround(SLOPES * slope);
   const int index = j * PLACES + k;
   if (list.crossed_known[index]) return index;
   list.crossed_known[index] = 1;
@@ -130,7 +131,8 @@ int FixMPMBoundary::crossed_contact(FieldNodes &list, double slope, double place
   double weight[4], at[4];
   const double x = 16.0 + (k + 0.5) / PLACES;
   const MPMField &field = *list.field;
-  const int n = weights_at(field, 0, 1, field.lattice.origin[0] + field.lattice.h * x, first, weight);
+  const int n =
+      weights_at(field, 0, 1, field.lattice.origin[0] + field.lattice.h * x, first, weight);
   for (int node = 0; node < n; node++) at[node] = (first + node - x) * j / SLOPES;
   list.crossed[index] = {field, at, weight, n};
   return index;
