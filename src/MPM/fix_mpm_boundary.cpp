@@ -97,6 +97,7 @@ struct Surface {
   Region *region;
   int dim;
   double far;    // stands for a distance that is not known
+  RegMPMMesh *mesh = dynamic_cast<RegMPMMesh *>(region);
 
   static bool along_z(const Region::Contact &c) { return fabs(c.delz) > 0.5 * c.r; }
 
@@ -106,7 +107,6 @@ struct Surface {
     const bool inside = region->match(x[0], x[1], x[2]);
     const int interior = region->interior;
     if (!inside) region->interior = !interior;    // Region::surface() answers for one side only
-    auto *mesh = dynamic_cast<RegMPMMesh *>(region);
     if (mesh) mesh->most_touches = 1;
     int n = region->surface(x[0], x[1], x[2], far);
     if (mesh) mesh->most_touches = mesh->tmax;
@@ -809,16 +809,24 @@ void FixMPMBoundary::list_crossings(FieldNodes &list)
 }
 
 /* ----------------------------------------------------------------------
-   distance of a position at the start of the step from the region then. The region is where it will be at
+   gives the distance of a position at the start of the step from the region then. The region is where it will be at
    the end: the position is moved with it
 ------------------------------------------------------------------------- */
 
-double FixMPMBoundary::distance_from_region(const MPMField &field, const double *x, double dt) const
+std::function<double(const double *)> FixMPMBoundary::distance_from_region(const MPMField &field,
+                                                                           double dt) const
 {
-  double y[3], v[3] = {0.0, 0.0, 0.0};
-  if (region_moves()) wall.velocity(x, v);
-  for (int d = 0; d < 3; d++) y[d] = x[d] + dt * v[d];
-  return Surface{region, field.lattice.dim, MPMWallGap::farthest(field)}.distance(y);
+  const Surface surface = {region, field.lattice.dim, MPMWallGap::farthest(field)};
+  if (!region_moves())
+    return [surface](const double *x) {
+      return surface.distance(x);
+    };
+  return [this, surface, dt](const double *x) {
+    double y[3], v[3];
+    wall.velocity(x, v);
+    for (int d = 0; d < 3; d++) y[d] = x[d] + dt * v[d];
+    return surface.distance(y);
+  };
 }
 
 /* ----------------------------------------------------------------------

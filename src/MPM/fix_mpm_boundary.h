@@ -21,6 +21,7 @@ FixStyle(mpm/boundary,FixMPMBoundary);
 #include "mpm_wall_gap.h"
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -225,7 +226,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   void update_motion(double dt);
   void find_gaps(FieldNodes &, double dt);
   void find_region_gaps(FieldNodes &, double dt);
-  double distance_from_region(const MPMField &, const double *x, double dt) const;
+  std::function<double(const double *)> distance_from_region(const MPMField &, double dt) const;
   void check_speed(double dt);
   double slide_share(Contact &, double push, double needed) const;
   void set_velocity(MPM_NS::Grid &, int64_t node, const double *V, const double *v,

@@ -14,6 +14,7 @@
 
 #include "domain.h"
 #include "mpm_field.h"
+#include "mpm_stencil.h"
 #include "region.h"
 
 #include <algorithm>
@@ -46,6 +47,7 @@ void FixMPMBoundary::find_gaps(FieldNodes &list, double dt)
   if (region) return find_region_gaps(list, dt);
   MPMField &field = *list.field;
   const Grid &grid = field.grid;
+  const double seen = 0.5 * (stencil_order(field.options.shape) + 1);    // from a node
   std::vector<char> near;
   for (int f = 0; f < (int) list.faces.size(); f++) {
     const Face &face = list.faces[f];
@@ -55,7 +57,7 @@ void FixMPMBoundary::find_gaps(FieldNodes &list, double dt)
       for (int k = 0; k < n; k++)
         if (line.face == f && line.node[k] >= 0) near[line.node[k] / NODES_PER_BLOCK] = 1;
     const double wall = face.inward > 0 ? domain->boxlo[face.axis] : domain->boxhi[face.axis];
-    gap.map(field, near, true, [&](const double *x) {
+    gap.map(field, near, true, (face.cut ? 2.0 : 1.0) * seen, [&](const double *x) {
       return face.inward * (x[face.axis] - wall);
     });
     for (auto &line : list.lines) {
@@ -76,15 +78,16 @@ void FixMPMBoundary::find_region_gaps(FieldNodes &list, double dt)
 {
   MPMField &field = *list.field;
   const double h = field.lattice.h;
+  // a function's half width: along the axis from the surface to a node, and then along all axes, of which
+  // the distance is at most the square root of 6 times as much
+  const double seen = 0.5 * (stencil_order(field.options.shape) + 1);
   std::vector<char> near(field.grid.blocks.size(), 0);
   for (const auto &single : list.singles) near[single.node / NODES_PER_BLOCK] = 1;
   for (const auto &crossing : list.crossings)
     for (int k = 0; k < crossing.n; k++)
       if (crossing.node[k] >= 0) near[crossing.node[k] / NODES_PER_BLOCK] = 1;
   if (!region_moves()) region->prematch();
-  gap.map(field, near, region->nregion == 1, [&](const double *x) {
-    return distance_from_region(field, x, dt);
-  });
+  gap.map(field, near, region->nregion == 1, 2.45 * seen, distance_from_region(field, dt));
 
   constexpr int PER_CELL = 32;
   constexpr double DEEPEST = 1.25;

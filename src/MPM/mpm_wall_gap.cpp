@@ -120,7 +120,7 @@ double MPMWallGap::farthest(const MPMField &field)
    of points with a size can reach far.
 ------------------------------------------------------------------------- */
 
-void MPMWallGap::map(MPMField &field, const std::vector<char> &near, bool smooth,
+void MPMWallGap::map(MPMField &field, const std::vector<char> &near, bool smooth, double reach,
                      const std::function<double(const double *)> &away)
 {
   constexpr int CHUNK = 8;
@@ -129,7 +129,7 @@ void MPMWallGap::map(MPMField &field, const std::vector<char> &near, bool smooth
   const auto nmax = (std::size_t) field.atom->nmax;
   const double h = lattice.h;
   const bool sized = field.options.has_size(), cubes = lattice.dim == 3;
-  const double far = farthest(field);
+  const double far = farthest(field), seen_from = std::min(reach, FARTHEST) + 0.01;
   if (volumes.size() < nmax) {
     volumes.resize(nmax);
     values.resize(3 * nmax);
@@ -143,9 +143,9 @@ void MPMWallGap::map(MPMField &field, const std::vector<char> &near, bool smooth
   double center[3] = {0.0, 0.0, 0.0}, free = -1.0;
   const auto look = [&](const double *place) {
     const double d = away(place);
-    if (!smooth || d - FARTHEST * h <= free) return d;
+    if (!smooth || d - seen_from * h <= free) return d;
     MathExtra::copy3(place, center);
-    free = d - FARTHEST * h;
+    free = d - seen_from * h;
     return d;
   };
   const auto out_of_sight = [&](const double *place) {
@@ -176,7 +176,7 @@ void MPMWallGap::map(MPMField &field, const std::vector<char> &near, bool smooth
       for (int i = begin; i < end; i++) {
         double &d = distance[i - begin];
         d = !sized && out_of_sight(x[i]) ? FARTHEST : look(x[i]) / h;
-        seen = seen || d < FARTHEST;
+        seen = seen || d < seen_from;
       }
       if (!seen) continue;
       for (int i = begin; i < end; i++) {
