@@ -21,6 +21,9 @@
 // or 0.3 of a cell into the box (MIN_WEIGHT). Where no point reaches a linear function's outer node,
 // the two next ones are extrapolated to it. Friction, separation and the old velocities of FLIP are as
 // at mirror planes.
+//
+// Regions that separate have such lines, too, through their surface (list_crossings()): what acts on nodes
+// one by one acts below the surface, by up to a spacing, and friction has another lever arm there.
 
 #include "fix_mpm_boundary.h"
 
