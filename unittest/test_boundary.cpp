@@ -980,6 +980,7 @@ variable angle equal 0.3*time
 variable speed equal 0.1*sin(3*time)
 region paddle block 5 9 3 8 INF INF move v_shift NULL NULL rotate v_angle 7 5 4 0 0 1
 region knob sphere 3 1 4 1.7
+region ramp plane 2 0.3 4 -0.35 -1 0.2
 )" + GetParam().walls();
   const std::string scene = space("lj", "f f p", "0 12 0 12 0 8") + grid +
       "region body block 0 5.5 0 5 1 7\ncreate_points 1 region body ppc 2\n" + fixes +
@@ -1021,6 +1022,8 @@ static const WallsCase decomposition_cases[] = {
     {"", "xlo ylo slip", "region knob separate friction 0.2"},
     {"", "xlo ylo slip velocity v_speed 0 0", "region paddle stick"},
     {"", "xlo ylo stick", "region paddle slip friction 0.2"},
+    {"", "xlo ylo slip", "region paddle separate friction 0.2"},
+    {"shape cubic transfer flip 0.95", "xlo ylo slip", "region ramp separate friction 0.2"},
     {"origin 0.3 0.4 0.2", "xlo ylo separate friction 0.3"},
     {"transfer flip 1.0 scheme musl origin 0.3 0.4 0.2", "xlo ylo stick"},
     {"transfer flip 1.0 scheme musl",

@@ -83,6 +83,7 @@ static constexpr const char *PERIODIC =
 static constexpr double ON_SURFACE = 1.0e-6;    // in node spacings
 static constexpr double FAR = 1.0e8;            // in node spacings
 static constexpr double HAND_OVER = 0.5;        // in node spacings, see list_region_nodes()
+static constexpr double SMOOTH = 0.9;    // cosine between normals of a surface that is smooth
 
 namespace {
 /** Center and unit axis of a region's rotation, which are protected members. */
@@ -96,6 +97,9 @@ struct Surface {
   Region *region;
   int dim;
   double far;    // stands for a distance that is not known
+  RegMPMMesh *mesh = dynamic_cast<RegMPMMesh *>(region);
+
+  static bool along_z(const Region::Contact &c) { return fabs(c.delz) > 0.5 * c.r; }
 
   /** Signed distance of x, negative inside. */
   double distance(const double *x) const
@@ -103,15 +107,16 @@ struct Surface {
     const bool inside = region->match(x[0], x[1], x[2]);
     const int interior = region->interior;
     if (!inside) region->interior = !interior;    // Region::surface() answers for one side only
-    auto *mesh = dynamic_cast<RegMPMMesh *>(region);
-    if (mesh && dim == 3) mesh->most_touches = 1;    // in 2d the closest one may be along z
-    const int n = region->surface(x[0], x[1], x[2], far);
-    region->interior = interior;
+    if (mesh) mesh->most_touches = 1;
+    int n = region->surface(x[0], x[1], x[2], far);
     if (mesh) mesh->most_touches = mesh->tmax;
+    if (mesh && dim == 2 && n > 0 && along_z(region->contact[0]))
+      n = region->surface(x[0], x[1], x[2], far);    // the section has another closest point
+    region->interior = interior;
     double distance = far;
     for (int i = 0; i < n; i++) {
       const auto &c = region->contact[i];
-      if (dim == 3 || !(fabs(c.delz) > 0.5 * c.r)) distance = std::min(distance, c.r);
+      if (dim == 3 || !along_z(c)) distance = std::min(distance, c.r);
     }
     return inside && distance < far ? -distance : distance;
   }
@@ -417,7 +422,8 @@ bool FixMPMBoundary::narrow(const Faces &faces, int axis)
 
 void FixMPMBoundary::extend_topology(MPMField &field)
 {
-  if (!acts_on(field) || face_list.empty()) return;
+  if (!acts_on(field)) return;
+  if (region) return extend_across(field);
   Grid &grid = field.grid;
   const auto faces = faces_on_lattice(field);
 
@@ -438,6 +444,34 @@ void FixMPMBoundary::extend_topology(MPMField &field)
         grid.activate(b);
       }
     }
+}
+
+/* ----------------------------------------------------------------------
+   A line of nodes through the surface of a region can have nodes that only another rank's points reach.
+   Lines along several axes share nodes: blocks all around
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::extend_across(MPMField &field) const
+{
+  if (comm->nprocs == 1 || kind != SEPARATE || region->varshape) return;
+  Grid &grid = field.grid;
+  const int dim = field.lattice.dim;
+  const double h = field.lattice.h, reach = (0.5 * grid.side * sqrt((double) dim) + 4.0) * h;
+  const bool known = !region_moves() && region->nregion == 1;
+  if (!region_moves()) region->prematch();
+  const auto nblocks = (int) grid.blocks.size();
+  for (int ib = 0; ib < nblocks; ib++) {
+    const int b[3] = {grid.blocks[ib].b[0], grid.blocks[ib].b[1], grid.blocks[ib].b[2]};
+    const int first[3] = {b[0] * grid.side, b[1] * grid.side, b[2] * grid.side};
+    double middle[3];
+    field.lattice.node_position(first, middle);
+    for (int d = 0; d < dim; d++) middle[d] += 0.5 * (grid.side - 1) * h;
+    if (known && fabs(Surface{region, dim, FAR * h}.distance(middle)) > reach) continue;
+    for (int k = 0; k < (dim == 3 ? 27 : 9); k++) {
+      const int next[3] = {b[0] + k % 3 - 1, b[1] + k / 3 % 3 - 1, b[2] + k / 9 - (dim == 3)};
+      grid.activate(next);
+    }
+  }
 }
 
 /* ---------------------------------------------------------------------- */
@@ -675,19 +709,124 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
       list.singles.push_back(s);
     }
   }
+  list_crossings(list);
 }
 
 /* ----------------------------------------------------------------------
-   distance of a position at the start of the step from the region then. The region is where it will be at
+   Lines of nodes through the surface of a region that separates, along the axis that is nearest to the
+   normal. Nodes inside that are on such a line do not act on their own. There are none where the surface
+   is not smooth, or the region is too thin for the nodes that a line has in it.
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::list_crossings(FieldNodes &list)
+{
+  list.crossings.clear();
+  if (kind != SEPARATE || region->varshape) return;
+  const MPMField &field = *list.field;
+  const Grid &grid = field.grid;
+  const double h = field.lattice.h;
+  const Surface surface = {region, field.lattice.dim, FAR * h};
+  std::vector<int64_t> on_lines;
+  for (const auto &single : list.singles) {
+    if (!(fabs(single.distance) <= h)) continue;
+    int index[3];
+    double x[3], at[3];
+    grid.node_index(single.node, index);
+    field.lattice.node_position(index, x);
+    const double *const n = single.normal;
+    Crossing c = {};
+    for (int d = 1; d < field.lattice.dim; d++)
+      if (fabs(n[d]) > fabs(n[c.axis])) c.axis = d;
+    const int a = c.axis, outward = n[a] > 0.0 ? 1 : -1;
+    const double slope = fabs(n[a]);
+    if (slope < 0.5) continue;    // the normal is not known
+
+    // where the line goes through the surface, and is this node the last one before? On the surface
+    // itself rounding decides on the side, of which some regions tell nothing: a little outside
+
+    const double outside = 1.0e-3 * h;
+    double way = -single.distance / slope + outside;
+    MathExtra::copy3(x, at);
+    bool known = true;
+    for (int round = 0; round < 2 && known; round++) {
+      at[a] = x[a] + outward * way;
+      const double distance = surface.distance(at);
+      known = distance < surface.far;
+      way -= distance / slope - outside;
+    }
+    at[a] = x[a] + outward * way;
+    way -= outside;
+    if (!known || way > (1.0 - ON_SURFACE) * h) continue;
+    surface.normal(at, 1.0e-4 * h, c.normal);
+    at[a] = x[a] + outward * std::max(way, 0.0);
+    const auto along = [&](const double *place) {
+      double normal[3];
+      surface.normal(place, 1.0e-4 * h, normal);
+      return MathExtra::dot3(normal, c.normal) > SMOOTH;
+    };
+    bool smooth = MathExtra::dot3(n, c.normal) > SMOOTH;
+
+    int first;
+    double weight[4];
+    c.n = weights_at(field, a, outward, at[a], first, weight);
+    std::array<int64_t, 4> inside = {-1, -1, -1, -1};
+    for (int k = 0; k < c.n && smooth; k++) {
+      const int from = outward > 0 ? k : c.n - 1 - k;
+      int node[3] = {index[0], index[1], index[2]};
+      double place[3] = {x[0], x[1], x[2]};
+      node[a] = first + from;
+      place[a] = field.lattice.origin[a] + h * node[a];
+      const int ahead = outward * (node[a] - index[a]);
+      if (ahead != 0)
+        smooth = ahead > 0 ? !region->match(place[0], place[1], place[2])
+                           : region->match(place[0], place[1], place[2]) && along(place);
+      node[a] = field.lattice.wrap(a, node[a]);
+      c.node[k] = grid.locate(node);
+      c.weight[k] = weight[from];
+      if (ahead <= 0) inside[k] = c.node[k];
+    }
+    if (!smooth) continue;
+    c.full =
+        crossed_contact(list, fabs(c.normal[a]), outward * ((at[a] - field.lattice.origin[a]) / h));
+    on_lines.insert(on_lines.end(), inside.begin(), inside.end());
+    list.crossings.push_back(c);
+  }
+
+  // lines along one axis share no nodes, those along two do: all ranks in the same order
+
+  std::stable_sort(list.crossings.begin(), list.crossings.end(),
+                   [](const Crossing &a, const Crossing &b) {
+                     return a.axis < b.axis;
+                   });
+  std::sort(on_lines.begin(), on_lines.end());
+  auto &singles = list.singles;
+  singles.erase(std::remove_if(singles.begin(), singles.end(),
+                               [&](const Single &single) {
+                                 return std::binary_search(on_lines.begin(), on_lines.end(),
+                                                           single.node);
+                               }),
+                singles.end());
+}
+
+/* ----------------------------------------------------------------------
+   gives the distance of a position at the start of the step from the region then. The region is where it will be at
    the end: the position is moved with it
 ------------------------------------------------------------------------- */
 
-double FixMPMBoundary::distance_from_region(const MPMField &field, const double *x, double dt) const
+std::function<double(const double *)> FixMPMBoundary::distance_from_region(const MPMField &field,
+                                                                           double dt) const
 {
-  double y[3], v[3] = {0.0, 0.0, 0.0};
-  if (region_moves()) wall.velocity(x, v);
-  for (int d = 0; d < 3; d++) y[d] = x[d] + dt * v[d];
-  return Surface{region, field.lattice.dim, FAR * field.lattice.h}.distance(y);
+  const Surface surface = {region, field.lattice.dim, MPMWallGap::farthest(field)};
+  if (!region_moves())
+    return [surface](const double *x) {
+      return surface.distance(x);
+    };
+  return [this, surface, dt](const double *x) {
+    double y[3], v[3];
+    wall.velocity(x, v);
+    for (int d = 0; d < 3; d++) y[d] = x[d] + dt * v[d];
+    return surface.distance(y);
+  };
 }
 
 /* ----------------------------------------------------------------------
@@ -860,6 +999,7 @@ void FixMPMBoundary::act(double dt, Stage stage)
     for (auto &line : list.lines)
       if (!faces[line.face].cut) act_on_column(list, line);
     for (const auto &orbit : list.orbits) act_on_orbit(list, orbit);
+    for (auto &crossing : list.crossings) act_on_crossing(list, crossing);
     for (auto &single : list.singles) act_on_single(list, single);
     if (count) ledger.boundary += now.kinetic * force->mvv2e;
     if (count) ledger.driven += now.driven * force->mvv2e;
@@ -1091,14 +1231,23 @@ void FixMPMBoundary::act_on_single(const FieldNodes &list, Single &single)
   }
   const double whole[3] = {v[0], v[1], v[2]};
   for (int d = 0; d < dim && single.share < 1.0; d++) v[d] = r[d] + single.share * (v[d] - r[d]);
-  if (now.counting && grid.owns(single.node)) {
-    double x[3], push[3] = {0.0, 0.0, 0.0}, moment[3];
-    grid.node_position(single.node, x);
-    for (int d = 0; d < dim; d++) push[d] = r[3] * (v[d] - r[d]);
-    MathExtra::cross3(x, push, moment);
-    for (int d = 0; d < 3; d++) impulse[3 + d] += moment[d];
-  }
+  count_moment(grid, single.node, r, v);
   set_velocity(grid, single.node, V, v, nullptr, whole);
+}
+
+/* ----------------------------------------------------------------------
+   moment about the origin of what gives the node of this record the velocity v
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::count_moment(const Grid &grid, int64_t node, const double *record,
+                                  const double *v)
+{
+  if (!now.counting || !grid.owns(node)) return;
+  double x[3], push[3] = {0.0, 0.0, 0.0}, moment[3];
+  grid.node_position(node, x);
+  for (int d = 0; d < grid.lattice.dim; d++) push[d] = record[3] * (v[d] - record[d]);
+  MathExtra::cross3(x, push, moment);
+  for (int d = 0; d < 3; d++) impulse[3 + d] += moment[d];
 }
 
 /* ----------------------------------------------------------------------
@@ -1151,6 +1300,7 @@ double FixMPMBoundary::memory_usage()
   double bytes = 0.0;
   for (const auto &list : nodes)
     bytes += list.lines.capacity() * sizeof(Line) + list.members.capacity() * sizeof(Member) +
-        list.orbits.capacity() * sizeof(Orbit) + list.singles.capacity() * sizeof(Single);
+        list.orbits.capacity() * sizeof(Orbit) + list.singles.capacity() * sizeof(Single) +
+        list.crossings.capacity() * sizeof(Crossing);
   return bytes;
 }

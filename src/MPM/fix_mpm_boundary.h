@@ -21,6 +21,7 @@ FixStyle(mpm/boundary,FixMPMBoundary);
 #include "mpm_wall_gap.h"
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -128,6 +129,16 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
     Contact contact = FREE;
     bool touched = true;    // separate: by the surface of the material in this step
   };
+  // a line of nodes along an axis that goes through the surface of a region, from inside of it to outside
+  struct Crossing {
+    int axis, n;
+    int64_t node[4];    // -1: out of reach of points
+    double weight[4];
+    double normal[3];    // of the surface, where the line goes through it
+    int full;            // index of its contact
+    Contact contact = FREE;
+    bool touched = true;    // by the surface of the material in this step
+  };
   struct FieldNodes {
     MPMField *field;
     Faces faces;
@@ -135,10 +146,23 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
     std::vector<Member> members;
     std::vector<Orbit> orbits;
     std::vector<Single> singles;
+    std::vector<Crossing> crossings = {};
     std::vector<MPMWallContact> contacts = {};    // with nodes at depths in a region
+    std::vector<MPMWallContact> crossed = {};     // with crossings, as far as they have been needed
+    std::vector<char> crossed_known = {};
 
     void list_line(int face, const int *index);
     void list_orbits(const bool *prescribed, int axis);
+  };
+  // nodes of a line that have points, from outside of the material to inside, see fix_mpm_boundary_cut.cpp
+  struct Chain {
+    int m = 0;
+    int64_t node[4];
+    const double *r[4];    // records
+    double A[4], B[4] = {0.0, 0.0, 0.0, 0.0}, V[4][3], total = 0.0;
+    double AA = 0.0, AB = 0.0, BB = 0.0;
+
+    void solve(const double *relative, double &lambda, double &mu) const;
   };
   struct Wall {    // its motion in a step: velocity shift + gradient (x - origin)
     double shift[3], gradient[3][3], origin[3];
@@ -196,17 +220,26 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   static bool narrow(const Faces &, int axis);
   void list_face_nodes(FieldNodes &);
   void list_region_nodes(FieldNodes &);
+  void extend_across(MPMField &) const;
+  void list_crossings(FieldNodes &);
+  static int crossed_contact(FieldNodes &, double slope, double place);
   void update_motion(double dt);
   void find_gaps(FieldNodes &, double dt);
   void find_region_gaps(FieldNodes &, double dt);
-  double distance_from_region(const MPMField &, const double *x, double dt) const;
+  std::function<double(const double *)> distance_from_region(const MPMField &, double dt) const;
   void check_speed(double dt);
   double slide_share(Contact &, double push, double needed) const;
   void set_velocity(MPM_NS::Grid &, int64_t node, const double *V, const double *v,
                     const double *old, const double *whole = nullptr);
+  void count_moment(const MPM_NS::Grid &, int64_t node, const double *record, const double *v);
   void project(MPM_NS::Grid &, const Member *, int n, bool fixed, const Prescribed &);
   void act_on_column(const FieldNodes &, Line &);
+  static int weights_at(const MPMField &, int axis, int inward, double x, int &first,
+                        double *weight);
+  bool find_chain(const FieldNodes &, const int64_t *node, const double *weight, int n, int inward,
+                  Chain &) const;
   void act_on_cut(const FieldNodes &, Line &, bool last);
+  void act_on_crossing(const FieldNodes &, Crossing &);
   void act_on_orbit(const FieldNodes &, const Orbit &);
   void act_on_single(const FieldNodes &, Single &);
 };

@@ -14,6 +14,7 @@
 
 #include "domain.h"
 #include "mpm_field.h"
+#include "mpm_stencil.h"
 #include "region.h"
 
 #include <algorithm>
@@ -46,6 +47,7 @@ void FixMPMBoundary::find_gaps(FieldNodes &list, double dt)
   if (region) return find_region_gaps(list, dt);
   MPMField &field = *list.field;
   const Grid &grid = field.grid;
+  const double seen = 0.5 * (stencil_order(field.options.shape) + 1);    // from a node
   std::vector<char> near;
   for (int f = 0; f < (int) list.faces.size(); f++) {
     const Face &face = list.faces[f];
@@ -55,7 +57,7 @@ void FixMPMBoundary::find_gaps(FieldNodes &list, double dt)
       for (int k = 0; k < n; k++)
         if (line.face == f && line.node[k] >= 0) near[line.node[k] / NODES_PER_BLOCK] = 1;
     const double wall = face.inward > 0 ? domain->boxlo[face.axis] : domain->boxhi[face.axis];
-    gap.map(field, near, [&](const double *x) {
+    gap.map(field, near, true, (face.cut ? 2.0 : 1.0) * seen, [&](const double *x) {
       return face.inward * (x[face.axis] - wall);
     });
     for (auto &line : list.lines) {
@@ -76,12 +78,16 @@ void FixMPMBoundary::find_region_gaps(FieldNodes &list, double dt)
 {
   MPMField &field = *list.field;
   const double h = field.lattice.h;
+  // a function's half width: along the axis from the surface to a node, and then along all axes, of which
+  // the distance is at most the square root of 6 times as much
+  const double seen = 0.5 * (stencil_order(field.options.shape) + 1);
   std::vector<char> near(field.grid.blocks.size(), 0);
   for (const auto &single : list.singles) near[single.node / NODES_PER_BLOCK] = 1;
+  for (const auto &crossing : list.crossings)
+    for (int k = 0; k < crossing.n; k++)
+      if (crossing.node[k] >= 0) near[crossing.node[k] / NODES_PER_BLOCK] = 1;
   if (!region_moves()) region->prematch();
-  gap.map(field, near, [&](const double *x) {
-    return distance_from_region(field, x, dt);
-  });
+  gap.map(field, near, region->nregion == 1, 2.45 * seen, distance_from_region(field, dt));
 
   constexpr int PER_CELL = 32;
   constexpr double DEEPEST = 1.25;
@@ -98,4 +104,39 @@ void FixMPMBoundary::find_region_gaps(FieldNodes &list, double dt)
     const auto k = (std::size_t) std::lround(std::max(0.0, depth) * PER_CELL);
     single.touched = gap.at(single.node).touches(contacts[k]);
   }
+  for (auto &crossing : list.crossings) {
+    MPMWallGap::Sums sums;
+    for (int k = 0; k < crossing.n; k++)
+      if (crossing.node[k] >= 0) sums.add(crossing.weight[k], gap.at(crossing.node[k]));
+    crossing.touched = sums.touches(list.crossed[crossing.full]);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   index of the contact with a crossing: slope: cosine between line and normal, place: of the surface on
+   the line, in node spacings, growing towards the material. It depends on the place in a cell
+------------------------------------------------------------------------- */
+
+int FixMPMBoundary::crossed_contact(FieldNodes &list, double slope, double place)
+{
+  constexpr int PLACES = 32, SLOPES = 32;
+  if (list.crossed.empty()) {
+    list.crossed.resize(PLACES * (SLOPES + 1));
+    list.crossed_known.assign(list.crossed.size(), 0);
+  }
+  const double in_cell = place - std::floor(place);
+  const int k = std::min((int) (PLACES * in_cell), PLACES - 1),
+            j = (int) std::lround(SLOPES * slope);
+  const int index = j * PLACES + k;
+  if (list.crossed_known[index]) return index;
+  list.crossed_known[index] = 1;
+  int first;
+  double weight[4], at[4];
+  const double x = 16.0 + (k + 0.5) / PLACES;
+  const MPMField &field = *list.field;
+  const int n =
+      weights_at(field, 0, 1, field.lattice.origin[0] + field.lattice.h * x, first, weight);
+  for (int node = 0; node < n; node++) at[node] = (first + node - x) * j / SLOPES;
+  list.crossed[index] = {field, at, weight, n};
+  return index;
 }

@@ -24,8 +24,27 @@ namespace {
 /** To the rendezvous: this rank has this block active. Back: this other rank has the block, too. */
 struct Sharer {
   uint64_t key;
-  int rank, pad;
+  int rank;
+  int added;    // by a node action, out of reach of the rank's points
 };
+
+/** Blocks that points of this rank reach, or of which they reach an image. */
+std::vector<char> reached(const Grid &grid, int nreached)
+{
+  std::vector<char> yes(grid.blocks.size(), 0);
+  for (int s = 0; s < nreached; s++) {
+    yes[s] = 1;
+    const auto &block = grid.blocks[s];
+    for (int n = 0; n < NODES_PER_BLOCK && block.alias; n++) {
+      if (!(block.alias >> n & 1)) continue;
+      int index[3];
+      grid.node_index(block, n, index);
+      for (int d = 0; d < grid.lattice.dim; d++) index[d] = grid.lattice.wrap(d, index[d]);
+      yes[grid.locate(index) / NODES_PER_BLOCK] = 1;
+    }
+  }
+  return yes;
+}
 }    // namespace
 
 /** At the rendezvous rank of a set of keys: tell each sharer of a block about all others. */
@@ -73,13 +92,14 @@ void MPMHalo::setup(Grid &grid)
   // all canonical blocks go to the rank that their key hashes to
 
   const int nblocks = grid.blocks.size();
+  const std::vector<char> mine_reached = reached(grid, nreached);
   std::vector<Sharer> mine;
   std::vector<int> procs;
   for (int s = 0; s < nblocks; s++) {
     const auto &block = grid.blocks[s];
     if (block.alias == ~uint64_t(0)) continue;
     const uint64_t key = Grid::block_key(block);
-    mine.push_back({key, comm->me, 0});
+    mine.push_back({key, comm->me, !mine_reached[s]});
     procs.push_back((int) ((key * UINT64_C(0x9E3779B97F4A7C15) >> 33) % comm->nprocs));
   }
   char *outbuf = nullptr;
@@ -93,12 +113,17 @@ void MPMHalo::setup(Grid &grid)
     return a.rank < b.rank || (a.rank == b.rank && a.key < b.key);
   });
   std::vector<std::vector<Contribution>> of_slot(nblocks);
+  std::vector<char> mine_to_count(nblocks, 1);
   for (int i = 0; i < n; i++) {
     if (ranks.empty() || ranks.back() != sharer[i].rank) {
       ranks.push_back(sharer[i].rank);
       slots.emplace_back();
     }
     const int slot = grid.find(sharer[i].key);
+    // the lowest rank counts its nodes, of those whose points reach the block if there are any
+    const int added = !mine_reached[slot];
+    if (sharer[i].added < added || (sharer[i].added == added && sharer[i].rank < comm->me))
+      mine_to_count[slot] = 0;
     of_slot[slot].push_back({(int) ranks.size() - 1, (int) slots.back().size()});
     slots.back().push_back(slot);
   }
@@ -111,7 +136,7 @@ void MPMHalo::setup(Grid &grid)
     const auto next = std::find_if(list.begin(), list.end(), [&](const Contribution &c) {
       return ranks[c.from] > comm->me;
     });
-    if (next != list.begin()) grid.blocks[s].owned = 0;
+    if (!mine_to_count[s]) grid.blocks[s].owned = 0;
     list.insert(next, {-1, 0});
     contributions.insert(contributions.end(), list.begin(), list.end());
     first.push_back(contributions.size());

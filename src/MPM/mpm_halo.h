@@ -29,8 +29,11 @@ class MPMHalo : protected Pointers {
  public:
   explicit MPMHalo(class LAMMPS *lmp) : Pointers(lmp) {}
 
-  /** Find the sharers of the canonical blocks of the grid, and who owns a block (lowest rank). */
+  /** Find the sharers of the canonical blocks of the grid, and who owns a block: the lowest rank whose
+   *  points reach it, if there is one. */
   void setup(MPM_NS::Grid &);
+
+  int nreached = 0;    ///< set by the caller: that many first blocks are in reach of points
 
   /** Sum reals [lane, lane+nlane) of all node records of shared blocks. */
   void sum(double *nodes, int nreal, int lane, int nlane);

@@ -211,6 +211,7 @@ void MPMPointMap::find_blocks()
           grid.activate(neighbor_block);
         }
   }
+  field.nodes.halo->nreached = (int) grid.blocks.size();
 }
 
 /* ---------------------------------------------------------------------- */

@@ -29,6 +29,7 @@
 #include "mpm_wall_gap.h"
 
 #include "atom.h"
+#include "math_extra.h"
 #include "mpm_frame.h"
 #include "mpm_passes.h"
 #include "mpm_points.h"
@@ -105,12 +106,30 @@ bool MPMWallGap::Sums::touches(const MPMWallContact &full) const
 
 /* ---------------------------------------------------------------------- */
 
-void MPMWallGap::map(MPMField &field, const std::vector<char> &near,
+/** Of the middle of a block whose points are out of reach. */
+double MPMWallGap::farthest(const MPMField &field)
+{
+  const auto &lattice = field.lattice;
+  const double radius = (0.5 * field.grid.side + 1.0) * sqrt((double) lattice.dim);
+  return (FARTHEST + radius) * lattice.h;
+}
+
+/* ----------------------------------------------------------------------
+   Points that no node at the wall sees are left out, most of them by the distance of the middle of their
+   block: the distance of another place is less by no more than their distance from each other. The domains
+   of points with a size can reach far.
+------------------------------------------------------------------------- */
+
+void MPMWallGap::map(MPMField &field, const std::vector<char> &near, bool smooth, double reach,
                      const std::function<double(const double *)> &away)
 {
+  constexpr int CHUNK = 8;
   const auto &pic = field.pic;
+  const auto &lattice = field.lattice;
   const auto nmax = (std::size_t) field.atom->nmax;
-  const double h = field.lattice.h, power = 1.0 / field.lattice.dim;
+  const double h = lattice.h;
+  const bool sized = field.options.has_size(), cubes = lattice.dim == 3;
+  const double far = farthest(field), seen_from = std::min(reach, FARTHEST) + 0.01;
   if (volumes.size() < nmax) {
     volumes.resize(nmax);
     values.resize(3 * nmax);
@@ -119,24 +138,60 @@ void MPMWallGap::map(MPMField &field, const std::vector<char> &near,
   const TransferStep s = field.step_data(0.0);
   const double *const *const x = field.frame->places();
 
+  // no place in this ball is seen
+
+  double center[3] = {0.0, 0.0, 0.0}, free = -1.0;
+  const auto look = [&](const double *place) {
+    const double d = away(place);
+    if (!smooth || d - seen_from * h <= free) return d;
+    MathExtra::copy3(place, center);
+    free = d - seen_from * h;
+    return d;
+  };
+  const auto out_of_sight = [&](const double *place) {
+    double r[3];
+    MathExtra::sub3(place, center, r);
+    return free > 0.0 && MathExtra::lensq3(r) < free * free;
+  };
+
   points_to(nodes, field, pic, [&](const MPMPointMap::Run &run, const int *base, int *box) {
     const auto &block = field.grid.blocks[run.slot];
     if (std::none_of(block.slot, block.slot + 27, [&](int slot) {
           return slot >= 0 && near[slot];
         }))
       return;
-    for (int i = run.first; i < run.last; i++) {
-      const double volume = r.vol0[i] * field.points->jacobian(i) / field.frame->circle(x[i][0]);
-      const double size = std::pow(volume, power) / h;
-      const double d = away(x[i]) / h;
-      double *const value = &values[3 * (std::size_t) i];
-      volumes[i] = volume;
-      const double crossing = std::max(0.0, 1.0 - d / (NEAR * size));
-      value[0] = std::min(d, FARTHEST) - BEHIND * crossing * crossing;
-      value[1] = size * size;
-      value[2] = 0.0;    // in 2d there is no third one
+    free = -1.0;
+    if (smooth && !sized) {
+      double middle[3];
+      const int first[3] = {block.b[0] * field.grid.side, block.b[1] * field.grid.side,
+                            cubes ? block.b[2] * field.grid.side : 0};
+      lattice.node_position(first, middle);
+      for (int d = 0; d < lattice.dim; d++) middle[d] += 0.5 * field.grid.side * h;
+      if (look(middle) >= far) return;
     }
-    pic.p2g_momentum(r, s, run.first, run.last, base, field.map->tile, box);
+    for (int begin = run.first; begin < run.last; begin += CHUNK) {
+      const int end = std::min(begin + CHUNK, run.last);
+      double distance[CHUNK];
+      bool seen = sized;
+      for (int i = begin; i < end; i++) {
+        double &d = distance[i - begin];
+        d = !sized && out_of_sight(x[i]) ? FARTHEST : look(x[i]) / h;
+        seen = seen || d < seen_from;
+      }
+      if (!seen) continue;
+      for (int i = begin; i < end; i++) {
+        const double d = distance[i - begin];
+        const double volume = r.vol0[i] * field.points->jacobian(i) / field.frame->circle(x[i][0]);
+        const double size = (cubes ? std::cbrt(volume) : sqrt(volume)) / h;
+        double *const value = &values[3 * (std::size_t) i];
+        volumes[i] = volume;
+        const double crossing = std::max(0.0, 1.0 - d / (NEAR * size));
+        value[0] = std::min(d, FARTHEST) - BEHIND * crossing * crossing;
+        value[1] = size * size;
+        value[2] = 0.0;    // in 2d there is no third one
+      }
+      pic.p2g_momentum(r, s, begin, end, base, field.map->tile, box);
+    }
   });
   nreal = pic.nreal;
   field.nodes.sum(nodes.data(), nreal, 0, 4);

@@ -50,10 +50,15 @@ class MPMWallGap {
     bool touches(const MPMWallContact &) const;
   };
 
-  /** Collective. Sums at the nodes of the blocks [slot] that are marked in near (and others); away(x)
-   *  is the distance of a position from the wall, positive on the side of the material. */
-  void map(MPMField &, const std::vector<char> &near,
+  /** Collective. Sums at the nodes of the blocks [slot] that are marked in near (and others). away(x) is
+   *  the distance of a position from the wall, positive on the side of the material; smooth: it
+   *  changes by no more than the position does. No node of the wall sees farther than reach (node
+   *  spacings). */
+  void map(MPMField &, const std::vector<char> &near, bool smooth, double reach,
            const std::function<double(const double *)> &away);
+
+  /** Distances beyond this one need not be known. */
+  static double farthest(const MPMField &);
 
   Sums at(int64_t node) const;
 
