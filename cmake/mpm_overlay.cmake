@@ -54,6 +54,7 @@ add_library(lammps_mpm INTERFACE)
 target_sources(lammps_mpm INTERFACE $<TARGET_OBJECTS:lammps_styles> ${MPM_OBJECTS})
 target_link_libraries(lammps_mpm INTERFACE ${LAMMPS_BUILD_DIR}/liblammps.a ${link}
   ${MPM_LIBRARIES})
+target_link_options(lammps_mpm INTERFACE ${MPM_SANITIZERS})
 
 add_executable(lmp ${LAMMPS_DIR}/src/main.cpp)
 target_link_libraries(lmp PRIVATE lammps_mpm)

@@ -4,6 +4,7 @@
 # The package's sources and how they are compiled, used by every way to build:
 # overlay on a cached LAMMPS, LAMMPS's own build (mpm_inject.cmake), plugin.
 
+include(${CMAKE_CURRENT_LIST_DIR}/mpm_sanitize.cmake)
 get_filename_component(MPM_ROOT "${CMAKE_CURRENT_LIST_DIR}/.." ABSOLUTE)
 set(MPM_DIR ${MPM_ROOT}/src/MPM)
 
@@ -144,6 +145,7 @@ endfunction()
 function(mpm_add_objects)
   mpm_object_library(mpm_objects ${MPM_SOURCES})
   target_compile_definitions(mpm_objects PRIVATE ${MPM_FEATURES})
+  mpm_sanitize(mpm_objects)
   set(objects $<TARGET_OBJECTS:mpm_objects>)
   if(MPM_ISA_SOURCES)
     foreach(isa ${MPM_ISA_SETS})

@@ -68,7 +68,7 @@ ENVIRONMENT = {
     "OMPI_MCA_btl": "^ofi", "OMPI_MCA_ess_singleton_isolated": "1"}
 
 # limits of a process; what is written to a file that is full is lost, without a signal
-LIMITS = 'ulimit -c 0; ulimit -f 131072; ulimit -v %d; ulimit -t %d; trap "" XFSZ; exec "$@"'
+LIMITS = 'ulimit -c 0; ulimit -f 131072; ulimit -v %s; ulimit -t %d; trap "" XFSZ; exec "$@"'
 
 
 class Machine:
@@ -77,6 +77,8 @@ class Machine:
     def __init__(self, options):
         self.lmp = os.path.abspath(options.lmp)
         self.memory = int(options.memory * 2 ** 20)
+        if "ASAN_OPTIONS" in os.environ:    # the sanitizer takes address space for all that there is
+            self.memory = "unlimited"
         self.mpiexec = shlex.split(os.environ.get("MPM_MPIEXEC", "mpirun -np"))
         self.environment = dict(os.environ)
         for key, value in ENVIRONMENT.items():

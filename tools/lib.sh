@@ -265,6 +265,14 @@ build_project() {
 
 # ---------------------------------------------------------------- runs
 
+# run_tests [ctest arguments]: results go to $build/results
+run_tests() {
+  say "testing with LAMMPS $(lammps_version)"
+  rm -rf "$build/results"
+  mkdir -p "$build/results"
+  (cd "$build" && ctest -j "$jobs" --output-on-failure --output-junit results/ctest.xml "$@")
+}
+
 # several processes on few cores, also for root (containers)
 mpi_environment() {
   export OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none

@@ -17,14 +17,6 @@ trap '[ -n "${counted:-}" ] || echo "0 passed, 1 failed"' EXIT
 oldest=20250204
 [ $# -gt 0 ] || [ -n "${LAMMPS_SOURCE_DIR:-}${MPM_LAMMPS:-}" ] && oldest=
 
-# run_tests [ctest arguments]: results go to $build/results
-run_tests() {
-  say "testing with LAMMPS $(lammps_version)"
-  rm -rf "$build/results"
-  mkdir -p "$build/results"
-  (cd "$build" && ctest -j "$jobs" --output-on-failure --output-junit results/ctest.xml "$@")
-}
-
 # build the oldest LAMMPS's tests in a tree of their own, and run them
 smoke_tests() (
   build=$build/lammps-$oldest

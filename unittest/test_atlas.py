@@ -2,6 +2,7 @@
 # General Public License, version 2; see the file LICENSE.
 #
 # labels: unit
+# sanitize: no
 # timeout: 300
 """The atlas of bench/atlas: its program goes on where it stopped, all scenes run and give what the tables
 in the repository say, and errors, fronts, and references follow from the tables as they should."""

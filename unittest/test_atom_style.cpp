@@ -144,6 +144,13 @@ TEST(CreatePoints, WhichLattice)
   scene.commands("create_points 1 region r ppc 1 fix fine");
   EXPECT_EQ(atoms(scene).size(), 8u);
 
+  for (const char *origin : {"0.05 0 0", "0 0.05 0", "0 0 0.05"}) {
+    Scene other(box3d + "fix fine all mpm 0.1 origin " + origin +
+                "\nregion r block 0.2 0.3 0.2 0.3 0.2 0.3");
+    expect_error(other, "create_points 1 region r ppc 1",
+                 "Fixes mpm grid and fine have different lattices");
+  }
+
   Scene same(box3d +
              "fix second all mpm 0.1\nregion r block 0.2 0.3 0.2 0.3 0.2 0.3\n"
              "create_points 1 region r ppc 1");

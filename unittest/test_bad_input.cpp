@@ -241,6 +241,10 @@ static const Change companions[] = {
      "both set the time step: remove one"},
     {"DtBelowMinimum", RUN, "fix dt all mpm/dt 0.5 min 0.2\nrun 10\n",
      "time step 0\\.13[0-9]* needed by point [0-9]+ .*below min 0\\.2"},
+    {"DtTooSmall", RUN, "fix dt all mpm/dt 1e-308\nrun 10\n",
+     "time step [0-9.e-]+ is below the smallest one of fix mpm, 1e-150"},
+    {"TimestepTooSmall", RUN, "timestep 1e-200\nrun 10\n",
+     "Time step 1e-200 is below the smallest one of fix mpm, 1e-150"},
     {"ComputeQuantityUnknown", RUN, "compute p all mpm/atom presure\nrun 10\n",
      "Unknown quantity presure in compute p.*known are:.* pressure"},
     {"ComputeEnergyOfGroup", RUN, "group some type 1\ncompute e some mpm/energy\nrun 10\n",
@@ -344,6 +348,19 @@ PARAMETER_TEST(InfiniteForce, EndsTheRun, const char *,
       "v_q 0 0\n"
       "fix dt all mpm/dt 0.3\nrun 6\n";
   EXPECT_THAT(error_of(rings), ::testing::ContainsRegex("Material point [0-9]+ at "));
+}
+
+// A force that is finite, but whose velocities have squares that are not: domains get sizes that are none, and corners
+// without weights, while their points still have places
+PARAMETER_TEST(HugeForce, EndsTheRun, const char *, Values("(x<3)*1e200", "1e170*(id==5)"))
+{
+  const std::string scene = space("lj", "p p p", "0 8 0 8 0 8", 1, 0.5) +
+      "fix grid all mpm 1.0 shape cpdi2 transfer flip 1.0 scheme musl locking both bad warn "
+      "dtcheck no\nregion body block 2 5 2 5 1 4\ncreate_points 1 region body ppc 2\n"
+      "fix m all mpm/material density 2.0 neohookean 10.0 0.3\nvariable q atom " +
+      GetParam() + "\nfix kick all addforce v_q 0 0\ntimestep 0.01\nrun 20\n";
+  EXPECT_THAT(error_of(scene),
+              ::testing::ContainsRegex("Material point [0-9]+ at .* has lost its position"));
 }
 
 // policies for points that go bad

@@ -2,6 +2,7 @@
 # General Public License, version 2; see the file LICENSE.
 #
 # labels: unit
+# sanitize: no
 # timeout: 300
 """tools/mpm_choose.py: what it predicts from coarse trials comes true, and what it cannot do it says.
 

@@ -2,6 +2,7 @@
 # General Public License, version 2; see the file LICENSE.
 #
 # labels: docs
+# sanitize: no
 # timeout: 300
 """The manual builds without warnings, is complete, and its links lead somewhere. (That its examples
 run is tested in test_docs_examples.py.)"""

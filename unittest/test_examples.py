@@ -2,6 +2,7 @@
 # General Public License, version 2; see the file LICENSE.
 #
 # labels: examples
+# sanitize: no
 # parts: 1 1 2
 # timeout: 1200
 """Every example runs to its end without a warning, makes its pictures, and gives the numbers of

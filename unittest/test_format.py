@@ -2,6 +2,7 @@
 # General Public License, version 2; see the file LICENSE.
 #
 # labels: docs
+# sanitize: no
 """All C++ files are as clang-format 14 writes them with .clang-format. Other versions of the program
 break lines differently, so that the test is left out where there is no version 14."""
 

@@ -2,6 +2,7 @@
 # General Public License, version 2; see the file LICENSE.
 #
 # labels: physics
+# sanitize: no
 # timeout: 600
 """tools/mpm_from_md.py: parameters of the Lennard-Jones solid and fluid against known values, and
 material points that take the files it writes."""

@@ -2,6 +2,7 @@
 # General Public License, version 2; see the file LICENSE.
 #
 # labels: physics examples
+# sanitize: no
 # timeout: 300
 """The tension test of examples/necking against Considere's construction and finite elements."""
 

@@ -2,6 +2,7 @@
 # General Public License, version 2; see the file LICENSE.
 #
 # labels: plugin examples
+# sanitize: no
 """A law from outside: examples/own-material is built and used in a LAMMPS with the package, and in a
 stock LAMMPS after mpmplugin.so; plugins that do not fit are refused."""
 

@@ -2,6 +2,7 @@
 # General Public License, version 2; see the file LICENSE.
 #
 # labels: plugin examples physics
+# sanitize: no
 # timeout: 400
 """Physics from outside: examples/own-physics is built as a plugin, and its scalar diffuses as the exact
 solution says, is balanced in the ledger, and is the same on 1 and 4 processes, with load balancing, and

@@ -2,6 +2,7 @@
 # General Public License, version 2; see the file LICENSE.
 #
 # labels: plugin smoke
+# sanitize: no
 # timeout: 300
 """mpmplugin.so in a stock LAMMPS does what the package does when it is compiled in."""
 

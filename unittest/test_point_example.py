@@ -2,6 +2,7 @@
 # General Public License, version 2; see the file LICENSE.
 #
 # labels: examples
+# sanitize: no
 """Flow curves of examples/point against the formula of Johnson and Cook, and tools/plot_point.py."""
 
 import os

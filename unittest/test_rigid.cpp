@@ -164,6 +164,20 @@ TEST(RigidBody, MayBeLight)
   for (int d = 0; d < 3; d++) EXPECT_NEAR(body->compute_vector(3 + d), 0.1 * (d + 1), 1.0e-6);
 }
 
+// What moves away from a block is let go, unless contact holds the direction of the normal both ways.
+TEST(RigidBody, LetsGo)
+{
+  const ScratchFile file("box.stl", text_of(box({0.0, 0.0, 0.0}, {8.0, 8.0, 3.0})));
+  for (const std::string kind : {"separate", "separate friction 0.3", "slip"}) {
+    Scene run(scene(file.name, "2.0 " + kind + " velocity 0 0 0.3", "1 1 4.8") + "run 30\n");
+    const double v = run.fix("tool")->compute_vector(5);
+    if (kind == "slip")
+      EXPECT_LT(v, 0.29);    // it did touch
+    else
+      EXPECT_NEAR(v, 0.3, 1.0e-14) << kind;
+  }
+}
+
 // Weight, forces, and held directions.
 TEST(RigidBody, FallsAndIsHeld)
 {

@@ -2,6 +2,7 @@
 # General Public License, version 2; see the file LICENSE.
 #
 # labels: physics examples
+# sanitize: no
 # timeout: 300
 """The copper Taylor bar of the demonstration against experiment and finite elements."""
 

@@ -340,8 +340,8 @@ void FixMPM::write_restart(FILE *fp)
   const int size = (int) (sizeof(Saved) + start.size() * sizeof(double) + text.size());
   fwrite(&size, sizeof(int), 1, fp);
   fwrite(&saved, sizeof(Saved), 1, fp);
-  fwrite(start.data(), sizeof(double), start.size(), fp);
-  fwrite(text.data(), 1, text.size(), fp);
+  if (!start.empty()) fwrite(start.data(), sizeof(double), start.size(), fp);
+  fwrite(text.c_str(), 1, text.size(), fp);
 }
 
 void FixMPM::restart(char *buf)
@@ -367,5 +367,5 @@ void FixMPM::restart(char *buf)
     field->every->progress.elapsed = saved.elapsed;
   }
   field->ledger.start.resize(saved.nstart);
-  memcpy(field->ledger.start.data(), start, saved.nstart * sizeof(double));
+  if (saved.nstart) memcpy(field->ledger.start.data(), start, saved.nstart * sizeof(double));
 }

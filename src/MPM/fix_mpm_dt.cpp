@@ -257,6 +257,10 @@ void FixMPMDt::set_dt(double dt)
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/dt: point {} has no valid wave speed or velocity at step {}", tag,
                update->ntimestep);
+  if (dt < MPMTimeLimit::SMALLEST)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/dt: time step {:.6g} is below the smallest one of fix mpm, {:.6g}", dt,
+               MPMTimeLimit::SMALLEST);
   if (dt < dt_min)
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/dt: time step {:.6g} needed by {} at step {} is below min {:.6g}; see what "

@@ -146,6 +146,22 @@ void MPMCpdi::box(int i, double *edge) const
                          : half_edges<3>(half, aspect, F, edge);
 }
 
+/** The box that the point was at first; returns how far it reaches, in node spacings. */
+double MPMCpdi::make_undeformed(int i)
+{
+  const int dim = field.lattice.dim;
+  const double half = half_size(field, i);
+  double *const domain = row(i);
+  double far = 0.0;
+  for (int k = 0; k < size(); k++) {
+    const int d = k % dim, c = k / dim;
+    const double sign = follows_F() ? (c == d ? 1.0 : 0.0) : (c >> d & 1 ? 1.0 : -1.0);
+    domain[k] = sign * half * field.options.aspect[d] * field.lattice.h;
+    far = std::max(far, half * field.options.aspect[d]);
+  }
+  return far;
+}
+
 void MPMCpdi::corners_of_box(int i, double *x) const
 {
   double edge[9], gradient[24];
@@ -167,11 +183,14 @@ template <int DIM> static void reach_of_edges(const double *edge, double *low, d
 template <int DIM> static void reach_of_corners(const double *x, double *low, double *high)
 {
   for (int d = 0; d < DIM; d++) {
+    double sum = 0.0;
     low[d] = high[d] = 0.0;
     for (int k = 0; k < 1 << DIM; k++) {
       low[d] = std::min(low[d], x[DIM * k + d]);
       high[d] = std::max(high[d], x[DIM * k + d]);
+      sum += x[DIM * k + d];
     }
+    if (!(sum - sum == 0.0)) low[d] = high[d] = NAN;    // which min and max do not see
   }
 }
 
@@ -207,16 +226,21 @@ void MPMCpdi::reach(int i, double low[3], double high[3]) const
 
 /* ----------------------------------------------------------------------
    a corner may be one block side less one cell away from its point, or else it may be beyond the
-   tile wherever the point is in its block
+   tile wherever the point is in its block; one that is nowhere is at no distance
 ------------------------------------------------------------------------- */
 
 void MPMCpdi::limit(int i)
 {
   const int room = field.grid.side - 1;
   const double limit = room - 2.0 * ROUND_OFF;
-  double low[3], high[3], far = 0.0;
+  double *const domain = row(i);
+  const bool known = std::all_of(domain, domain + size(), [](double x) {
+    return std::isfinite(x);
+  });
+  double low[3], high[3], far = known ? 0.0 : NAN;
   reach(i, low, high);
-  for (int d = 0; d < field.lattice.dim; d++) far = std::max(far, std::max(-low[d], high[d]));
+  for (int d = 0; d < field.lattice.dim && known; d++)
+    far = std::max(far, std::max(-low[d], high[d]));
   if (far <= limit) return;
   field.guard->point_is_bad(
       i, fmt::format("has a domain with a corner {:.4g} node spacings away", far),
@@ -225,9 +249,9 @@ void MPMCpdi::limit(int i)
           ", the limit is {}: use smaller points or a larger node spacing; with fix mpm ... bad "
           "warn the domain is made smaller, with bad delete the point is removed",
           room));
-  const double scale = std::isfinite(far) ? limit / far : 0.0;
-  double *const domain = row(i);
-  for (int k = 0; k < size(); k++) domain[k] = scale > 0.0 ? scale * domain[k] : 0.0;
+  if (!std::isfinite(far)) far = make_undeformed(i);
+  const double scale = std::min(1.0, limit / far);
+  for (int k = 0; k < size(); k++) domain[k] *= scale;
 }
 
 /* ---------------------------------------------------------------------- */

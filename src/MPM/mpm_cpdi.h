@@ -88,6 +88,7 @@ class MPMCpdi : protected Pointers {
   const double *row(int i) const { return const_cast<MPMCpdi *>(this)->row(i); }
   void box(int i, double *edge) const;
   void limit(int i);
+  double make_undeformed(int i);
   void tell_of_boxes(bigint nboxes, bigint ndeformed);
 };
 

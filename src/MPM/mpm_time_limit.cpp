@@ -39,6 +39,10 @@ static constexpr int CHECK_EVERY = 20;    // steps between checks of the time st
 void MPMTimeLimit::setup()
 {
   next_check = update->ntimestep;
+  if (update->nsteps > 0 && !(field.step_dt() >= SMALLEST))
+    error->all(FLERR, Error::NOLASTLINE,
+               "Time step {:.6g} is below the smallest one of fix mpm, {:.6g}", field.step_dt(),
+               SMALLEST);
   if (update->nsteps <= 0 || !field.options.dt_check) return;
   check();
   warn();

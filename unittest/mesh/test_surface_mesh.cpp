@@ -121,6 +121,23 @@ TEST(SurfaceMesh, ShearedBoxHasExactInertia)
   EXPECT_NEAR(mesh.center[2], 6.0 + 0.5 * c, 1.0e-8);
 }
 
+// a body whose center is not that of its box
+TEST(SurfaceMesh, TetrahedronHasExactInertia)
+{
+  const double a = 2.0, b = 1.5, c = 0.75, mass = a * b * c / 6.0;
+  const Point o = {0.0, 0.0, 0.0}, x = {a, 0.0, 0.0}, y = {0.0, b, 0.0}, z = {0.0, 0.0, c};
+  const Soup soup = {{o, y, x}, {o, x, z}, {o, z, y}, {x, y, z}};
+  const SurfaceMesh mesh(text_of(soup), "corner", 1.0, {4.0, 5.0, 6.0});
+  const double u = 3.0 / 80.0, w = 1.0 / 80.0;
+  const double exact[] = {u * (b * b + c * c), u * (a * a + c * c), u * (a * a + b * b),
+                          w * a * b,           w * a * c,           w * b * c};
+  EXPECT_NEAR(mesh.volume, mass, 1.0e-8);
+  for (int k = 0; k < 6; k++) EXPECT_NEAR(mesh.inertia[k], mass * exact[k], 1.0e-8) << k;
+  EXPECT_NEAR(mesh.center[0], 4.0 + 0.25 * a, 1.0e-8);
+  EXPECT_NEAR(mesh.center[1], 5.0 + 0.25 * b, 1.0e-8);
+  EXPECT_NEAR(mesh.center[2], 6.0 + 0.25 * c, 1.0e-8);
+}
+
 // at sharp edges, beyond which a point is behind one of the two triangles though it is outside
 TEST(SurfaceMesh, SharpEdges)
 {

@@ -73,6 +73,12 @@ template <int N> MPM_INLINE void transpose(Vec<N> a, Vec<N> b, Vec<N> c, Vec<N> 
   }
 }
 
+/** a, but 0 where the flag is set. */
+MPM_INLINE Vec<REGISTER> unless(Vec<REGISTER> flag, Vec<REGISTER> a)
+{
+  return {flag.r == 0.0 ? a.r : Vec<REGISTER>{}.r};
+}
+
 /** The domains of up to GROUP points; [.][point]. STENCIL: also what Stencil needs; MOMENT: what the fit of
  *  an affine field needs. */
 template <int DIM, Shape SHAPE, bool STENCIL, bool MOMENT> struct Domains {
@@ -137,6 +143,9 @@ template <int DIM, Shape SHAPE, bool STENCIL, bool MOMENT> struct Domains {
           V shift = w[0] * a[d];
           MPM_UNROLL
           for (int k = 1; k < N; k++) shift += w[k] * a[DIM * k + d];
+          // a domain without size has no weights: its corners stay where they are
+          const V cells = frame.inv_h * shift;
+          shift = unless(flag_outside(V{}, cells * cells, 1.0e10), shift);
           (V::load(center[d] + l) + shift).store(center[d] + l);
           MPM_UNROLL
           for (int k = 0; k < N; k++) (a[DIM * k + d] - shift).store(x[DIM * k + d] + l);

@@ -97,6 +97,8 @@ template <int DIM, Shape SHAPE> struct DomainStencil {
       std::copy(points.domain + N * DIM * p, points.domain + N * DIM * (p + 1), x);
       size = PointDomain<DIM>::free(x, w, g);
       for (int k = 0; k < N * DIM; k++) shift[k % DIM] += w[k / DIM] * x[k];
+      for (double &s : shift)    // a domain without size has no weights
+        if (!(std::fabs(s) < 1.0e5 * step.h)) s = 0.0;
       for (int k = 0; k < N * DIM; k++) x[k] -= shift[k % DIM];
     }
     good = size > 0.0 && *std::min_element(w, w + N) >= 0.0;
