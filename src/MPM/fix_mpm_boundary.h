@@ -74,12 +74,13 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   bool holds_axis(const MPMField &) const;
 
   /** Components of nodes of a field that this wall keeps at zero, at rest and for good: sets bit d of
-   *  held[node], one entry for each node. */
+   *  held[node], one entry for each node; where it mirrors a node outside, bit 3 + d. */
   void mark_held(const MPMField &, std::vector<char> &held) const;
   /** What a mirror at rest will make of the present velocities of the nodes on both sides of it, in blocks
-   *  that are near: sets bit d of foreseen[node] and velocities[3*node+d]. */
+   *  that are near: sets bit d of foreseen[node], mirrored[6*node+d] to the velocity, and
+   *  mirrored[6*node+3+d] to the mass of the node with its images. */
   void foresee(MPMField &, const std::vector<char> &near, std::vector<char> &foreseen,
-               std::vector<double> &velocities) const;
+               std::vector<double> &mirrored) const;
 
  private:
   static constexpr int DEPTH = 3;    // nodes on either side of a mirror plane that are paired

@@ -25,8 +25,8 @@ bool FixMPMBoundary::rests() const
 }
 
 /* ----------------------------------------------------------------------
-   Walls that move, let go, or have friction are left out. A node outside of a mirror has little mass: it
-   moves against its image inside, whatever pushes on it, and counts as held, too.
+   Walls that move, let go, or have friction are left out. A node outside of a mirror does what its image
+   inside does
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::mark_held(const MPMField &field, std::vector<char> &held) const
@@ -47,7 +47,7 @@ void FixMPMBoundary::mark_held(const MPMField &field, std::vector<char> &held) c
         const int64_t node = list.members[k].node;
         if (!orbit.fixed && !outside(node)) continue;
         for (int d = 0; d < dim; d++)
-          if (orbit.prescribed[d]) held[node] |= 1 << d;
+          if (orbit.prescribed[d]) held[node] |= (orbit.fixed ? 1 : 8) << d;
       }
     for (const auto &single : list.singles)
       for (int d = 0; d < dim; d++) {
@@ -60,7 +60,7 @@ void FixMPMBoundary::mark_held(const MPMField &field, std::vector<char> &held) c
 /* ---------------------------------------------------------------------- */
 
 void FixMPMBoundary::foresee(MPMField &field, const std::vector<char> &near,
-                             std::vector<char> &foreseen, std::vector<double> &velocities) const
+                             std::vector<char> &foreseen, std::vector<double> &mirrored) const
 {
   if (!rests()) return;
   Grid &grid = field.grid;
@@ -85,7 +85,8 @@ void FixMPMBoundary::foresee(MPMField &field, const std::vector<char> &near,
         for (int d = 0; d < dim; d++)
           if (orbit.prescribed[d]) {
             foreseen[m->node] |= 1 << d;
-            velocities[3 * m->node + d] = m->sign * momentum[d] / mass;
+            mirrored[6 * m->node + d] = m->sign * momentum[d] / mass;
+            mirrored[6 * m->node + 3 + d] = mass;
           }
     }
   }
