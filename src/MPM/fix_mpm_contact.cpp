@@ -370,7 +370,7 @@ void FixMPMContact::list_common_blocks()
 
   for (auto &body : bodies) {
     body.held.assign(body.field->grid.nnodes(), 0);
-    body.mirrored.resize(6 * body.field->grid.nnodes());
+    body.velocities.resize(6 * body.field->grid.nnodes());
     for (auto *fix : modify->get_fix_by_style("^mpm/boundary$"))
       dynamic_cast<FixMPMBoundary *>(fix)->mark_held(*body.field, body.held);
   }
@@ -654,9 +654,10 @@ void FixMPMContact::gradient_at(const Body &body, int slot, int n, double *g) co
 void FixMPMContact::foresee_walls(Body &body)
 {
   body.foreseen.assign(body.held.size(), 0);
+  std::fill(body.velocities.begin(), body.velocities.end(), 0.0);
   for (auto *fix : modify->get_fix_by_style("^mpm/boundary$"))
     dynamic_cast<FixMPMBoundary *>(fix)->foresee(*body.field, body.near, body.foreseen,
-                                                 body.mirrored);
+                                                 body.velocities);
 }
 
 FixMPMContact::Pair::Walls FixMPMContact::Body::find_walls(const double *record) const
@@ -669,8 +670,8 @@ FixMPMContact::Pair::Walls FixMPMContact::Body::find_walls(const double *record)
   walls.mirrored = (char) (foreseen[node] & ~walls.held);
   walls.outside = (char) (held[node] >> 3 & walls.mirrored);
   for (int d = 0; d < 3; d++) {
-    walls.velocity[d] = mirrored[6 * node + d];
-    walls.mass[d] = mirrored[6 * node + 3 + d];
+    walls.velocity[d] = velocities[6 * node + d];
+    walls.mass[d] = velocities[6 * node + 3 + d];
     walls.start[d] = record[d];
   }
   return walls;
@@ -770,8 +771,12 @@ void FixMPMContact::apply(Pair &pair, int nothers, double &largest, double dt, b
       const Pair::Walls &walls = k ? pair.walls_b : pair.walls_a;
       const double *const r = k ? pair.rb : pair.ra;
       for (int d = 0; d < dim; d++) {
-        if ((pair.left | walls.held) >> d & 1) continue;
+        if (pair.left >> d & 1) continue;
         double v = r[d], mass = r[3];
+        if (walls.held >> d & 1) {
+          u[d] += k ? -walls.velocity[d] : walls.velocity[d];
+          continue;
+        }
         if (walls.mirrored >> d & 1) {
           v = walls.velocity[d] + (r[d] - walls.start[d]) * r[3] / walls.mass[d];
           mass = walls.mass[d];
@@ -1005,7 +1010,7 @@ double FixMPMContact::memory_usage()
   double bytes = pairs.capacity() * sizeof(Pair) + nodes.capacity() * sizeof(Node) +
       common.capacity() * sizeof(Common);
   for (const auto &body : bodies)
-    bytes += (body.gradient.capacity() + body.share.capacity() + body.mirrored.capacity()) *
+    bytes += (body.gradient.capacity() + body.share.capacity() + body.velocities.capacity()) *
         sizeof(double);
   return bytes;
 }

@@ -85,10 +85,10 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
     double area;             // of the interface at the node
     double fade;             // share of the adhesive strength that is left at this gap
     struct Walls {           // what they will do to a body after contact
-      char held;             // components that they keep at zero, bits
+      char held;             // components to which they give their velocity, bits
       char mirrored;         // and that move with those of the images of the node
       char outside;          // of these those of a node outside of the mirror
-      double velocity[3];    // of those mirrored, without contact
+      double velocity[3];    // of these, without contact
       double mass[3];        // of the node and its images
       double start[3];       // velocity of the node before contact
     } walls_a, walls_b;
@@ -128,7 +128,7 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
     std::vector<double> share;                // volume at the nodes / node volume
     std::vector<char> held;                   // bits, FixMPMBoundary::mark_held()
     std::vector<char> foreseen;               // bits, FixMPMBoundary::foresee()
-    std::vector<double> mirrored;             // [6] velocities and masses with their images
+    std::vector<double> velocities;           // [6] that walls give, and masses with images
 
     Pair::Walls find_walls(const double *record) const;
 
