@@ -74,13 +74,14 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   /** Keeps the nodes of a field at the face xlo, an axis of symmetry, from moving along x. */
   bool holds_axis(const MPMField &) const;
 
-  /** Components of nodes of a field that this wall keeps at zero, at rest and for good: sets bit d of
-   *  held[node], one entry for each node. */
+  /** Components of nodes of a field to which this wall gives its velocity, for good: sets bit d of
+   *  held[node], one entry for each node; where it mirrors a node outside, bit 3 + d. */
   void mark_held(const MPMField &, std::vector<char> &held) const;
-  /** What a mirror at rest will make of the present velocities of the nodes on both sides of it, in blocks
-   *  that are near: sets bit d of foreseen[node] and velocities[3*node+d]. */
+  /** What this wall will make of the present velocities of nodes in blocks that are near: sets
+   *  velocities[6*node+d] of those that are held; and of those on both sides of a mirror, for which it sets bit d
+   *  of foreseen[node], also velocities[6*node+3+d] to the mass of the node with its images. */
   void foresee(MPMField &, const std::vector<char> &near, std::vector<char> &foreseen,
-               std::vector<double> &velocities) const;
+               std::vector<double> &velocities);
 
  private:
   static constexpr int DEPTH = 3;    // nodes on either side of a mirror plane that are paired
@@ -214,7 +215,8 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   } now;
 
   bool region_moves() const;
-  bool rests() const;
+  bool is_foreseen() const;
+  bool holds(const Single &, int d) const;
   bool acts_on(const MPMField &) const;
   Faces faces_on_lattice(const MPMField &) const;
   static bool narrow(const Faces &, int axis);

@@ -11,27 +11,30 @@
 #include "mpm_field.h"
 
 #include <algorithm>
+#include <cmath>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-/** Does the wall stay where it is, and decide nothing by the impulses that it gets? */
-bool FixMPMBoundary::rests() const
+/** Is it known before a step what the wall does in it? Not where that depends on the impulses that it gets,
+ *  and regions that move take other nodes. */
+bool FixMPMBoundary::is_foreseen() const
 {
-  if (decides() || region_moves() || rotating()) return false;
-  return std::all_of(velocity, velocity + 3, [](const NumberOrVariable &v) {
-    return !v.given || (v.variable.empty() && v.value == 0.0);
-  });
+  return !decides() && !region_moves();
+}
+
+bool FixMPMBoundary::holds(const Single &single, int d) const
+{
+  return kind == STICK ? velocity[d].given : std::fabs(single.normal[d]) == 1.0;
 }
 
 /* ----------------------------------------------------------------------
-   Walls that move, let go, or have friction are left out. A node outside of a mirror has little mass: it
-   moves against its image inside, whatever pushes on it, and counts as held, too.
+   A node outside of a mirror does what its image inside does
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::mark_held(const MPMField &field, std::vector<char> &held) const
 {
-  if (!rests()) return;
+  if (!is_foreseen()) return;
   const int dim = field.lattice.dim;
   for (const auto &list : nodes) {
     if (list.field != &field) continue;
@@ -47,46 +50,62 @@ void FixMPMBoundary::mark_held(const MPMField &field, std::vector<char> &held) c
         const int64_t node = list.members[k].node;
         if (!orbit.fixed && !outside(node)) continue;
         for (int d = 0; d < dim; d++)
-          if (orbit.prescribed[d]) held[node] |= 1 << d;
+          if (orbit.prescribed[d]) held[node] |= (orbit.fixed ? 1 : 8) << d;
       }
     for (const auto &single : list.singles)
-      for (int d = 0; d < dim; d++) {
-        const bool along = single.normal[d] == 1.0 || single.normal[d] == -1.0;
-        if (kind == STICK ? velocity[d].given : along) held[single.node] |= 1 << d;
-      }
+      for (int d = 0; d < dim; d++)
+        if (holds(single, d)) held[single.node] |= 1 << d;
   }
 }
 
 /* ---------------------------------------------------------------------- */
 
 void FixMPMBoundary::foresee(MPMField &field, const std::vector<char> &near,
-                             std::vector<char> &foreseen, std::vector<double> &velocities) const
+                             std::vector<char> &foreseen, std::vector<double> &velocities)
 {
-  if (!rests()) return;
+  if (!is_foreseen()) return;
+  update_motion(field.step_dt());
   Grid &grid = field.grid;
   const int dim = grid.lattice.dim;
+  double V[3];
+  const auto hold = [&](int64_t node, int d) {
+    if (!near[node / NODES_PER_BLOCK]) return;
+    wall.velocity(field, node, V);
+    velocities[6 * node + d] = V[d];
+  };
   for (const auto &list : nodes) {
     if (list.field != &field) continue;
     for (const auto &orbit : list.orbits) {
       const Member *const first = &list.members[orbit.first],
                           *const last = first + orbit.last - orbit.first;
-      if (orbit.fixed || std::none_of(first, last, [&](const Member &m) {
+      if (orbit.fixed) {
+        for (const Member *m = first; m < last; m++)
+          for (int d = 0; d < dim; d++)
+            if (orbit.prescribed[d]) hold(m->node, d);
+        continue;
+      }
+      if (std::none_of(first, last, [&](const Member &m) {
             return near[m.node / NODES_PER_BLOCK];
           }))
         continue;
       double mass = 0.0, momentum[3] = {0.0, 0.0, 0.0};
+      wall.velocity(field, orbit.wall, V);
       for (const Member *m = first; m < last; m++) {
         const double *const r = grid.record(m->node);
         mass += r[3];
-        for (int d = 0; d < dim; d++) momentum[d] += m->sign * r[3] * r[d];
+        for (int d = 0; d < dim; d++) momentum[d] += m->sign * r[3] * (r[d] - V[d]);
       }
       if (!(mass > 0.0)) continue;
       for (const Member *m = first; m < last; m++)
         for (int d = 0; d < dim; d++)
           if (orbit.prescribed[d]) {
             foreseen[m->node] |= 1 << d;
-            velocities[3 * m->node + d] = m->sign * momentum[d] / mass;
+            velocities[6 * m->node + d] = V[d] + m->sign * momentum[d] / mass;
+            velocities[6 * m->node + 3 + d] = mass;
           }
     }
+    for (const auto &single : list.singles)
+      for (int d = 0; d < dim; d++)
+        if (holds(single, d)) hold(single.node, d);
   }
 }

@@ -370,7 +370,7 @@ void FixMPMContact::list_common_blocks()
 
   for (auto &body : bodies) {
     body.held.assign(body.field->grid.nnodes(), 0);
-    body.velocities.resize(3 * body.field->grid.nnodes());
+    body.velocities.resize(6 * body.field->grid.nnodes());
     for (auto *fix : modify->get_fix_by_style("^mpm/boundary$"))
       dynamic_cast<FixMPMBoundary *>(fix)->mark_held(*body.field, body.held);
   }
@@ -653,21 +653,27 @@ void FixMPMContact::gradient_at(const Body &body, int slot, int n, double *g) co
 /** Of the velocities that the nodes have now, which a stage may have changed since the last call. */
 void FixMPMContact::foresee_walls(Body &body)
 {
-  body.foreseen = body.held;
+  body.foreseen.assign(body.held.size(), 0);
   std::fill(body.velocities.begin(), body.velocities.end(), 0.0);
   for (auto *fix : modify->get_fix_by_style("^mpm/boundary$"))
     dynamic_cast<FixMPMBoundary *>(fix)->foresee(*body.field, body.near, body.foreseen,
                                                  body.velocities);
 }
 
-FixMPMContact::Pair::Held FixMPMContact::Body::find_held(const double *record) const
+FixMPMContact::Pair::Walls FixMPMContact::Body::find_walls(const double *record) const
 {
   Grid &grid = field->grid;
   const int64_t node = (record - grid.nodes()) / grid.nreal;
-  Pair::Held walls = {foreseen[node], held[node], {0.0, 0.0, 0.0}};
-  for (int d = 0; d < 3 && walls.foreseen; d++)
-    if (walls.foreseen >> d & 1)
-      walls.velocity[d] = velocities[3 * node + d] - (walls.held >> d & 1 ? 0.0 : record[d]);
+  constexpr int ALL = 7;
+  Pair::Walls walls = {};
+  walls.held = (char) (held[node] & ALL);
+  walls.mirrored = (char) (foreseen[node] & ~walls.held);
+  walls.outside = (char) (held[node] >> 3 & walls.mirrored);
+  for (int d = 0; d < 3; d++) {
+    walls.velocity[d] = velocities[6 * node + d];
+    walls.mass[d] = velocities[6 * node + 3 + d];
+    walls.start[d] = record[d];
+  }
   return walls;
 }
 
@@ -753,25 +759,38 @@ void FixMPMContact::apply(Pair &pair, int nothers, double &largest, double dt, b
 
   // A body that a wall holds does not yield: what contact gives to it, the wall takes. If it were taken
   // for one that does, then the other body would go on into it, a little in each step.
+  //
+  // At a mirror, a node moves with its image, and both have the mass of both; contact pushes on each. Components
+  // that are mirrored in both bodies are the same at both nodes: contact inside sees to them.
 
-  if (pair.held_a.foreseen != pair.held_b.foreseen) {
-    double yields[2] = {0.0, 0.0}, v[2][3];
+  if (!pair.alike) {
+    double inverse = 0.0, square = 0.0;
+    const int away = pair.walls_a.outside & pair.walls_b.outside;
+    MathExtra::zero3(u);
     for (int k = 0; k < 2; k++) {
-      const Pair::Held &walls = k ? pair.held_b : pair.held_a;
+      const Pair::Walls &walls = k ? pair.walls_b : pair.walls_a;
       const double *const r = k ? pair.rb : pair.ra;
       for (int d = 0; d < dim; d++) {
-        const bool held = walls.held >> d & 1;
-        v[k][d] = (held ? 0.0 : r[d]) + walls.velocity[d];
-        if (!held) yields[k] += pair.n[d] * pair.n[d];
+        if (pair.left >> d & 1) continue;
+        double v = r[d], mass = r[3];
+        if (walls.held >> d & 1) {
+          u[d] += k ? -walls.velocity[d] : walls.velocity[d];
+          continue;
+        }
+        if (walls.mirrored >> d & 1) {
+          v = walls.velocity[d] + (r[d] - walls.start[d]) * r[3] / walls.mass[d];
+          mass = walls.mass[d];
+        }
+        u[d] += k ? -v : v;
+        inverse += pair.n[d] * pair.n[d] / mass;
       }
     }
     un = 0.0;
     for (int d = 0; d < dim; d++) {
-      u[d] = v[0][d] - v[1][d];
       un += u[d] * pair.n[d];
+      if (!(away >> d & 1)) square += pair.n[d] * pair.n[d];
     }
-    const double inverse = yields[0] / pair.ra[3] + yields[1] / pair.rb[3];
-    m = inverse * std::max(pair.ra[3], pair.rb[3]) > 1.0e-6 ? 1.0 / inverse / nothers : 0.0;
+    m = inverse * std::max(pair.ra[3], pair.rb[3]) > 1.0e-6 ? square / inverse / nothers : 0.0;
   }
 
   double normal = pair.normal + m * un, t[3] = {0.0, 0.0, 0.0}, length = 0.0;
@@ -834,10 +853,13 @@ void FixMPMContact::resolve(Node &node, double dt, bool decided)
     }
 
   for (int p = node.first; p < node.last; p++) {
-    pairs[p].held_a = bodies[pairs[p].a].find_held(pairs[p].ra);
-    pairs[p].held_b = bodies[pairs[p].b].find_held(pairs[p].rb);
-    pairs[p].normal = 0.0;
-    MathExtra::zero3(pairs[p].tangential);
+    Pair &pair = pairs[p];
+    const Pair::Walls &a = pair.walls_a = bodies[pair.a].find_walls(pair.ra);
+    const Pair::Walls &b = pair.walls_b = bodies[pair.b].find_walls(pair.rb);
+    pair.alike = a.held == b.held && a.mirrored == b.mirrored;
+    pair.left = pair.alike ? 0 : ((a.outside & b.outside) | (a.held & b.held));
+    pair.normal = 0.0;
+    MathExtra::zero3(pair.tangential);
   }
   for (int it = 0; it < (nbodies == 2 ? 1 : MAX_ITERATIONS); it++) {
     double largest = 0.0;
@@ -851,9 +873,8 @@ void FixMPMContact::resolve(Node &node, double dt, bool decided)
     for (int p = node.first; p < node.last; p++) {
       const Pair &pair = pairs[p];
       for (int d = 0; d < dim; d++) {
-        const double impulse = pair.normal * pair.n[d] + pair.tangential[d];
-        pair.ra[d] -= impulse / pair.ra[3];
-        pair.rb[d] += impulse / pair.rb[3];
+        pair.ra[d] -= pair.impulse(d) / pair.ra[3];
+        pair.rb[d] += pair.impulse(d) / pair.rb[3];
       }
     }
     if (largest < CONVERGED) break;
@@ -874,7 +895,7 @@ void FixMPMContact::account(const Node &node, const double start[][3])
     Account &entry = accounts[pair_index(pair.a, pair.b, (int) bodies.size())];
     entry.count += 1.0;
     for (int d = 0; d < dim; d++) {
-      entry.impulse[d] += pair.normal * pair.n[d] + pair.tangential[d];
+      entry.impulse[d] += pair.impulse(d);
       entry.work += pair.tangential[d] * (pair.rb[d] - pair.ra[d]);
     }
   }
@@ -989,6 +1010,7 @@ double FixMPMContact::memory_usage()
   double bytes = pairs.capacity() * sizeof(Pair) + nodes.capacity() * sizeof(Node) +
       common.capacity() * sizeof(Common);
   for (const auto &body : bodies)
-    bytes += (body.gradient.capacity() + body.share.capacity()) * sizeof(double);
+    bytes += (body.gradient.capacity() + body.share.capacity() + body.velocities.capacity()) *
+        sizeof(double);
   return bytes;
 }

@@ -84,13 +84,20 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
     double n[3];             // unit normal from a to b
     double area;             // of the interface at the node
     double fade;             // share of the adhesive strength that is left at this gap
-    struct Held {            // what walls will do to a body after contact
-      char foreseen;         // components that they change, bits
-      char held;             // those of them that do not yield
-      double velocity[3];    // to which value, of the others by how much
-    } held_a, held_b;
+    struct Walls {           // what they will do to a body after contact
+      char held;             // components to which they give their velocity, bits
+      char mirrored;         // and that move with those of the images of the node
+      char outside;          // of these those of a node outside of the mirror
+      double velocity[3];    // of these, without contact
+      double mass[3];        // of the node and its images
+      double start[3];       // velocity of the node before contact
+    } walls_a, walls_b;
+    bool alike;    // they do the same to both
+    char left;     // components that are left to the walls, or to contact at the image of the node
     State state;
     double normal, tangential[3];    // impulses on b so far, along n and in the plane
+
+    double impulse(int d) const { return left >> d & 1 ? 0.0 : normal * n[d] + tangential[d]; }
   };
   struct Node {         // a node where bodies are in contact
     int first, last;    // range in pairs
@@ -119,11 +126,11 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
     std::vector<char> near;                   // [slot] a block where bodies share nodes
     std::vector<double> gradient;             // of the volume (or mass) at the nodes
     std::vector<double> share;                // volume at the nodes / node volume
-    std::vector<char> held;            // bits: components of the nodes that walls keep at zero
-    std::vector<char> foreseen;        // bits: and those that mirrors change, to ...
-    std::vector<double> velocities;    // these
+    std::vector<char> held;                   // bits, FixMPMBoundary::mark_held()
+    std::vector<char> foreseen;               // bits, FixMPMBoundary::foresee()
+    std::vector<double> velocities;           // [6] that walls give, and masses with images
 
-    Pair::Held find_held(const double *record) const;
+    Pair::Walls find_walls(const double *record) const;
 
     void mark_near(int slot);
   };

@@ -69,16 +69,60 @@ void MPMSmoothing::init() const
         field.id());
 }
 
-/** Functions 1, x, y, (z) of the fit, their products, and what is fitted. */
-static int products(int n)
+/* ----------------------------------------------------------------------
+   Functions 1, x, y, (z) of the fit. A node has sums over its points of their products, and then of them times
+   q; in the end, the coefficients of the functions are in place of the latter
+------------------------------------------------------------------------- */
+
+template <int DIM> struct Fit {
+  static constexpr int N = DIM + 1, PRODUCTS = N * (N + 1) / 2, WIDTH = PRODUCTS + N;
+};
+
+/** To the sums of a node, for a point at x, y, z from it; V: volume times weight. Written out, as it takes
+ *  most of the time. */
+template <int DIM> static void add(double *s, double V, double q, const double *r)
 {
-  return n * (n + 1) / 2;
+  const double x = r[0], y = r[1], z = r[2], Vx = V * x, Vy = V * y, Vz = V * z;
+  s[0] += V;
+  s[1] += Vx;
+  s[2] += Vx * x;
+  s[3] += Vy;
+  s[4] += Vy * x;
+  s[5] += Vy * y;
+  if (DIM == 3) {
+    s[6] += Vz;
+    s[7] += Vz * x;
+    s[8] += Vz * y;
+    s[9] += Vz * z;
+  }
+  s += Fit<DIM>::PRODUCTS;
+  s[0] += q * V;
+  s[1] += q * Vx;
+  s[2] += q * Vy;
+  if (DIM == 3) s[3] += q * Vz;
 }
 
-int MPMSmoothing::width() const
+/** Calls f(node, N, r) for the nodes of a point, with r from the node to it. */
+template <int DIM, class F>
+static void visit(const MPMStencil &stencil, bool domains, const Grid::Block &block, int i,
+                  const F &f)
 {
-  const int n = field.lattice.dim + 1;
-  return products(n) + n;
+  if (domains) {
+    stencil.visit(block, i, [&](const MPMStencil::Node &node) {
+      f(node.number, node.weight, node.r);
+    });
+    return;
+  }
+  MPMStencil::Axes axes;
+  stencil.find_axes(block, i, axes);
+  for (int k0 = 0; k0 < axes.count[0]; k0++)
+    for (int k1 = 0; k1 < axes.count[1]; k1++) {
+      const double plane = axes.w[0][k0] * axes.w[1][k1];
+      for (int k2 = 0; k2 < (DIM == 3 ? axes.count[2] : 1); k2++) {
+        const double r[3] = {axes.r[0][k0], axes.r[1][k1], DIM == 3 ? axes.r[2][k2] : 0.0};
+        f(axes.number(k0, k1, k2), DIM == 3 ? plane * axes.w[2][k2] : plane, r);
+      }
+    }
 }
 
 /* ----------------------------------------------------------------------
@@ -100,7 +144,8 @@ double MPMSmoothing::time_to_cross(const FixMPMMaterial &fluid) const
 }
 
 /* ----------------------------------------------------------------------
-   Times are counted from zero, so that they do not depend on when a run starts
+   As often as sound crosses a cell, where the map of points knows their nodes: before they move. Times are
+   counted from zero, so that they do not depend on when a run starts
 ------------------------------------------------------------------------- */
 
 void MPMSmoothing::smooth()
@@ -111,64 +156,64 @@ void MPMSmoothing::smooth()
     const double cross = time_to_cross(*fluid);
     const double times = std::floor(now / cross) - std::floor((now - field.step_dt()) / cross);
     if (!(times > 0.0)) continue;
-    fit_nodes(fluid);
-    change_volumes(fluid, 1.0 - std::pow(1.0 - field.options.smooth, times));
+    const double share = 1.0 - std::pow(1.0 - field.options.smooth, times);
+    if (field.lattice.dim == 3) {
+      fit_nodes<3>(fluid);
+      change_volumes<3>(fluid, share);
+    } else {
+      fit_nodes<2>(fluid);
+      change_volumes<2>(fluid, share);
+    }
   }
 }
 
 /* ----------------------------------------------------------------------
-   Value and slope of q at each node: the normal equations of the fit, solved by Cholesky's method. A
-   direction in which the points around have no extent gets no slope
+   Value and slope of q at each node: the normal equations of the fit, solved by decomposition into L D L^T.
+   A direction in which the points around have no extent gets no slope
 ------------------------------------------------------------------------- */
 
-void MPMSmoothing::fit_nodes(const FixMPMMaterial *fluid)
+template <int DIM> void MPMSmoothing::fit_nodes(const FixMPMMaterial *fluid)
 {
-  const int n = field.lattice.dim + 1, first = products(n), width = this->width();
+  constexpr int N = Fit<DIM>::N, PRODUCTS = Fit<DIM>::PRODUCTS, WIDTH = Fit<DIM>::WIDTH;
   const MPMStencil stencil(field);
-  sums.assign(field.grid.nnodes() * width, 0.0);
+  sums.assign(field.grid.nnodes() * WIDTH, 0.0);
   for (const auto &run : field.map->runs) {
     if (run.material != fluid) continue;
     for (int i = run.first; i < run.last; i++) {
       const double V = atom->vfrac[i], q = field.points->jacobian(i) - 1.0;
-      stencil.visit(field.grid.blocks[run.slot], i, [&](const MPMStencil::Node &node) {
-        double *s = &sums[node.number * width];
-        const double f[4] = {1.0, node.r[0], node.r[1], node.r[2]};
-        for (int a = 0; a < n; a++) {
-          const double w = node.weight * V * f[a];
-          for (int b = 0; b <= a; b++) *s++ += w * f[b];
-        }
-        for (int a = 0; a < n; a++) *s++ += node.weight * V * f[a] * q;
-      });
+      visit<DIM>(stencil, field.domains != nullptr, field.grid.blocks[run.slot], i,
+                 [&](int64_t node, double weight, const double *r) {
+                   add<DIM>(&sums[node * WIDTH], V * weight, q, r);
+                 });
     }
   }
-  field.nodes.sum(sums.data(), width, 0, width);
+  field.nodes.sum(sums.data(), WIDTH, 0, WIDTH);
 
-  for (double *s = sums.data(); s < sums.data() + sums.size(); s += width) {
+  for (double *s = sums.data(); s < sums.data() + sums.size(); s += WIDTH) {
     if (!(s[0] > 0.0)) continue;
-    double L[4][4] = {{0.0}}, y[4];    // diagonal elements: their inverse, or zero
-    const double *product = s;
-    for (int a = 0; a < n; a++)
-      for (int b = 0; b <= a; b++) {
-        double x = *product++;
-        for (int c = 0; c < b; c++) x -= L[a][c] * L[b][c];
-        if (b < a)
-          L[a][b] = x * L[b][b];
-        else
-          L[a][a] = a == 0 || x > MIN_EXTENT * s[0] ? 1.0 / std::sqrt(x) : 0.0;
+    double L[N][N], inverse[N];    // of D, or zero; row by row first L D, then L
+    double *const y = s + PRODUCTS;
+    const double least = MIN_EXTENT * s[0], *product = s;
+    for (int a = 0; a < N; a++) {
+      for (int b = 0; b < a; b++) {
+        L[a][b] = *product++;
+        for (int c = 0; c < b; c++) L[a][b] -= L[a][c] * L[b][c];
       }
-    double *const value = s + first;
-    for (int a = 0; a < n; a++) {
-      y[a] = value[a];
-      for (int c = 0; c < a; c++) y[a] -= L[a][c] * y[c];
-      y[a] *= L[a][a];
+      double x = *product++;
+      for (int b = 0; b < a; b++) {
+        const double scaled = L[a][b] * inverse[b];
+        x -= L[a][b] * scaled;
+        y[a] -= scaled * y[b];
+        L[a][b] = scaled;
+      }
+      inverse[a] = a == 0 || x > least ? 1.0 / x : 0.0;
     }
-    for (int a = n - 1; a >= 0; a--) {
-      value[a] = y[a];
-      for (int c = a + 1; c < n; c++) value[a] -= L[c][a] * value[c];
-      value[a] *= L[a][a];
+    for (int a = N - 1; a >= 0; a--) {
+      y[a] *= inverse[a];
+      for (int c = a + 1; c < N; c++) y[a] -= L[c][a] * y[c];
     }
   }
-  field.nodes.complete(sums.data(), width, width);
+  field.nodes.complete(sums.data(), WIDTH, WIDTH);
 }
 
 /* ----------------------------------------------------------------------
@@ -176,9 +221,9 @@ void MPMSmoothing::fit_nodes(const FixMPMMaterial *fluid)
    viscous stress stays
 ------------------------------------------------------------------------- */
 
-void MPMSmoothing::change_volumes(const FixMPMMaterial *fluid, double share)
+template <int DIM> void MPMSmoothing::change_volumes(const FixMPMMaterial *fluid, double share)
 {
-  const int dim = field.lattice.dim, first = products(dim + 1), width = this->width();
+  constexpr int PRODUCTS = Fit<DIM>::PRODUCTS, WIDTH = Fit<DIM>::WIDTH;
   const MPMStencil stencil(field);
   const Material &material = *fluid->material;
   Batch &b = *field.batch;
@@ -191,12 +236,13 @@ void MPMSmoothing::change_volumes(const FixMPMMaterial *fluid, double share)
       for (int p = 0; p < n; p++) {
         list[p] = start + p;
         double q = 0.0;
-        stencil.visit(field.grid.blocks[run.slot], start + p, [&](const MPMStencil::Node &node) {
-          const double *const fit = &sums[node.number * width + first];
-          double at = fit[0];
-          for (int d = 0; d < dim; d++) at += fit[1 + d] * node.r[d];
-          q += node.weight * at;
-        });
+        visit<DIM>(stencil, field.domains != nullptr, field.grid.blocks[run.slot], start + p,
+                   [&](int64_t node, double weight, const double *r) {
+                     const double *const fit = &sums[node * WIDTH + PRODUCTS];
+                     double at = fit[0] + fit[1] * r[0] + fit[2] * r[1];
+                     if (DIM == 3) at += fit[DIM] * r[2];
+                     q += weight * at;
+                   });
         change[p] = share * (q + 1.0 - field.points->jacobian(start + p));
       }
       load_state(field, b, list, n, fluid);
@@ -211,8 +257,8 @@ void MPMSmoothing::change_volumes(const FixMPMMaterial *fluid, double share)
         double *const tau = field.points->tau[start + p], *const F = field.points->F[start + p];
         for (int c = 0; c < 3; c++) tau[c] += b.J[p] * b.stress[0][p] - mean[p];
         const double ratio = b.J[p] / (b.J[p] - change[p]);
-        const double scale = dim == 3 ? std::cbrt(ratio) : std::sqrt(ratio);
-        for (int c = 0; c < (dim == 3 ? 9 : 5); c++) F[c] *= scale;
+        const double scale = DIM == 3 ? std::cbrt(ratio) : std::sqrt(ratio);
+        for (int c = 0; c < (DIM == 3 ? 9 : 5); c++) F[c] *= scale;
       }
     }
   }

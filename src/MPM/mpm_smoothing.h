@@ -21,19 +21,19 @@ class MPMSmoothing : protected Pointers {
 
   /** Start of a run: there must be a fluid. */
   void init() const;
-  /** End of a step: of each fluid, as often as sound crosses a cell. */
+  /** Start of a step, where points are what the map of them knows: of each fluid, as often as sound crosses
+   *  a cell. */
   void smooth();
 
   double memory_usage() const { return sums.capacity() * sizeof(double); }
 
  private:
   MPMField &field;
-  std::vector<double> sums;    // [node][width()]
+  std::vector<double> sums;    // [node][Fit::WIDTH]
 
-  int width() const;
   double time_to_cross(const FixMPMMaterial &) const;
-  void fit_nodes(const FixMPMMaterial *);
-  void change_volumes(const FixMPMMaterial *, double share);
+  template <int DIM> void fit_nodes(const FixMPMMaterial *);
+  template <int DIM> void change_volumes(const FixMPMMaterial *, double share);
 };
 
 }    // namespace LAMMPS_NS

@@ -96,6 +96,60 @@ class MPMStencil {
     }
   }
 
+  /** What a point without domain has along the axes: of the node with the places k along them, the number
+   *  is number(k), the weight the product of w[d][k[d]], and r the list of r[d][k[d]]. */
+  struct Axes {
+    int count[3];
+    double w[3][4], r[3][4];
+
+    int64_t number(int k0, int k1, int k2) const
+    {
+      const int slot = slots[neighbor[0][k0] + neighbor[1][k1] + neighbor[2][k2]];
+      return (int64_t) slot * MPM_NS::NODES_PER_BLOCK + inside[0][k0] + inside[1][k1] +
+          inside[2][k2];
+    }
+
+   private:
+    friend class MPMStencil;
+    const int *slots;
+    int neighbor[3][4],
+        inside[3][4];    // parts of the place in slots, and of the number in the block
+  };
+
+  /** The same of point i, which is in the given block, for loops that are written out. */
+  void find_axes(const MPM_NS::Grid::Block &block, int i, Axes &axes) const
+  {
+    const auto &lattice = field.lattice;
+    const auto &grid = field.grid;
+    const double *const place = field.frame->places()[i];
+    const int stride[3] = {9, 3, 1}, last = grid.side - 1;
+    axes.slots = block.slot;
+    for (int d = 0; d < 3; d++) {
+      if (d >= lattice.dim) {
+        axes.count[d] = 1;
+        axes.w[d][0] = 1.0;
+        axes.r[d][0] = 0.0;
+        axes.neighbor[d][0] = stride[d];
+        axes.inside[d][0] = 0;
+        continue;
+      }
+      const int step =
+          d == lattice.dim - 1 ? 1 : (d == lattice.dim - 2 ? grid.side : grid.side * grid.side);
+      const double t = (place[d] - lattice.origin[d]) / lattice.h;
+      int base;
+      axes.count[d] = weights(t, base, axes.w[d]);
+      if (field.boxes)
+        MPM_NS::Gimp::weights(t - MPM_NS::Gimp::shift - base,
+                              field.boxes->sizes[3 * (std::size_t) i + d], axes.w[d]);
+      for (int k = 0; k < axes.count[d]; k++) {
+        const int index = base + k;
+        axes.r[d][k] = t - index;
+        axes.neighbor[d][k] = stride[d] * ((index >> grid.shift_bits) - block.b[d] + 1);
+        axes.inside[d][k] = step * (index & last);
+      }
+    }
+  }
+
   /** Calls f(number, weight, r) for the nodes that a position reaches, such as that of an atom which
    *  is no point, with r from the node to the position, in node spacings. Returns false when not all
    *  nodes are active. The blocks must stay while this object is used: it remembers the last one. */

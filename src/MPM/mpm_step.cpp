@@ -84,6 +84,10 @@ void begin(MPMPlan &plan)
   plan.together("topology", [&plan]() {
     plan.find_blocks();
   });
+  const auto smooth = [](MPMField &field) {
+    field.smoothing->smooth();
+  };
+  plan.each("smoother volumes", smooth, with<&Options::smooths_volumes>);
   plan.place(MPMPlan::BEFORE_POINTS_TO_NODES);
   const auto add_torques = [](MPMField &field) {
     field.affine->add_torques();
@@ -165,10 +169,6 @@ void map_back(MPMPlan &plan)
 
 void end(MPMPlan &plan)
 {
-  const auto smooth = [](MPMField &field) {
-    field.smoothing->smooth();
-  };
-  plan.each("smoother volumes", smooth, with<&Options::smooths_volumes>);
   plan.place(MPMPlan::AFTER_MOTION);
   const auto look = [](MPMField &field) {
     field.fracture_watch->step();
