@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <stdexcept>
 
@@ -234,6 +235,8 @@ double norm(int n, const double *r)
 int MaterialPoint::step(const MixedControl &control, double dt, const double *new_rotation)
 {
   static constexpr int MAX_ITERATIONS = 60, LENGTHS = 12;
+  // points of a batch with the same motion may differ by that, as do tries of it among others
+  static constexpr double ROUNDING = 1e-14;
   double R1[9];
   memcpy(R1, new_rotation ? new_rotation : rotation, sizeof(R1));
   Trial trial(*this, control, dt, R1);
@@ -271,7 +274,7 @@ int MaterialPoint::step(const MixedControl &control, double dt, const double *ne
     for (int j = 0; j < n; j++) scale = std::max(scale, std::fabs(control.stress[trial.free[j]]));
     const double modulus = tangent.cwiseAbs().maxCoeff();
     scale += largest * modulus;
-    if (size <= 1e-15 * scale) break;
+    if (size <= ROUNDING * scale) break;
 
     const Eigen::VectorXd dx = tangent.completeOrthogonalDecomposition().solve(rhs);
     for (int m = 0; m < LENGTHS; m++)
@@ -282,10 +285,15 @@ int MaterialPoint::step(const MixedControl &control, double dt, const double *ne
       if (norm(n, rs[m]) < norm(n, rs[best])) best = m;
     const double next = norm(n, rs[best]);
     if (next < size) std::copy(xs[best], xs[best] + n, x);
-    done = next > 0.5 * size && size <= 1e-10 * scale + 1e-14 * modulus;    // only rounding is left
-    if (!done && (next >= size || iterations == MAX_ITERATIONS))
-      throw std::runtime_error("no motion gives the prescribed stress (off by " +
-                               std::to_string(size / scale) + " of the stress)");
+    const bool last = iterations == MAX_ITERATIONS;
+    // only rounding is left
+    done = (next > 0.5 * size || last) && size <= 1e-10 * scale + ROUNDING * modulus;
+    if (!done && (next >= size || last)) {
+      char text[100];
+      snprintf(text, sizeof(text),
+               "no motion gives the prescribed stress (off by %.3g of the stress)", size / scale);
+      throw std::runtime_error(text);
+    }
   }
 
   for (int j = 0; j < n; j++) guess[trial.free[j]] = x[j] / dt;
