@@ -879,7 +879,7 @@ void FixMPMContact::resolve(Node &node, double dt, bool decided)
     }
     if (largest < CONVERGED) break;
   }
-  if (!decided && node.owned) account(node, start);
+  if (!decided) account(node, start);
 }
 
 /* ----------------------------------------------------------------------
@@ -889,7 +889,7 @@ void FixMPMContact::resolve(Node &node, double dt, bool decided)
 void FixMPMContact::account(const Node &node, const double start[][3])
 {
   const int dim = bodies[0].field->lattice.dim;
-  for (int p = node.first; p < node.last; p++) {
+  for (int p = node.first; p < node.last && node.owned; p++) {
     const Pair &pair = pairs[p];
     if (pair.state == OPEN) continue;
     Account &entry = accounts[pair_index(pair.a, pair.b, (int) bodies.size())];
@@ -901,7 +901,9 @@ void FixMPMContact::account(const Node &node, const double start[][3])
   }
   for (std::size_t k = 0; k < bodies.size(); k++) {
     const double *record = node.record[k];
-    if (!record) continue;
+    Grid &grid = bodies[k].field->grid;
+    // another rank may own the node in this field: what else acts on it is booked there
+    if (!record || !grid.owns((record - grid.nodes()) / grid.nreal)) continue;
     double change[3] = {0.0, 0.0, 0.0};
     for (int d = 0; d < dim; d++) change[d] = record[d] - start[k][d];
     bodies[k].field->ledger.count_push(record, change);
