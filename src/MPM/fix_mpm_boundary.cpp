@@ -313,6 +313,11 @@ void FixMPMBoundary::init()
     if (region->openflag)
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/boundary cannot use region {}: open faces have no inside", region_id);
+    if (kind == SEPARATE && strcmp(region->style, "cone") == 0)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/boundary separate cannot use region {} of style cone: forces on it were "
+                 "found to be far too small; use region mpm/mesh with an STL file of the cone",
+                 region_id);
     if (region->dynamic_check() && region->nregion > 1)
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/boundary cannot use region {}: a union or intersection must not move; "
