@@ -271,6 +271,24 @@ bool FixMPMBoundary::holds_axis(const MPMField &field) const
 
 /* ---------------------------------------------------------------------- */
 
+/** A cone with a radius of zero at one end: from outside, LAMMPS divides zero by zero for that end, and takes the other
+ *  end for the closest place, as far away as the cone is long. */
+static bool has_sharp_end(Region *region, int dim)
+{
+  if (strcmp(region->style, "cone") != 0 || region->varshape) return false;
+  const double lo[3] = {region->extent_xlo, region->extent_ylo, region->extent_zlo},
+               hi[3] = {region->extent_xhi, region->extent_yhi, region->extent_zhi};
+  for (int d = 0; d < dim; d++)
+    for (const double end : {lo[d], hi[d]}) {
+      const double length = hi[d] - lo[d];
+      double x[3];
+      for (int k = 0; k < 3; k++) x[k] = 0.5 * (lo[k] + hi[k]);
+      x[d] = end + (end > lo[d] ? 1.0e-6 : -1.0e-6) * length;
+      if (Surface{region, dim, 2.0 * length}.distance(x) > 0.99 * length) return true;
+    }
+  return false;
+}
+
 void FixMPMBoundary::init()
 {
   // fields, in the order of their definition
@@ -313,11 +331,12 @@ void FixMPMBoundary::init()
     if (region->openflag)
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/boundary cannot use region {}: open faces have no inside", region_id);
-    if (kind == SEPARATE && strcmp(region->style, "cone") == 0)
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/boundary separate cannot use region {} of style cone: forces on it were "
-                 "found to be far too small; use region mpm/mesh with an STL file of the cone",
-                 region_id);
+    if (kind == SEPARATE && has_sharp_end(region, domain->dimension))
+      error->all(
+          FLERR, Error::NOLASTLINE,
+          "Fix mpm/boundary separate cannot use region {}: LAMMPS finds wrong distances from a "
+          "cone with a radius of zero; give a small radius instead",
+          region_id);
     if (region->dynamic_check() && region->nregion > 1)
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/boundary cannot use region {}: a union or intersection must not move; "
