@@ -248,14 +248,15 @@ void MPMGuard::check_neighbors() const
       error->warning(FLERR,
                      "Fix mpm: pairs of material points of type {} are in the neighbor lists, "
                      "at great cost and for nothing but pair forces between them: use neigh_modify "
-                     "exclude type {} {}",
+                     "exclude type {} {}, or keyword lists of fix mpm/surface",
                      t, t, t);
   }
   if (cut_others > RATIO * RATIO * cut_points && neighbor->style != Neighbor::MULTI &&
       comm->me == 0)
     error->warning(FLERR,
                    "Fix mpm: neighbor lists of points and of grains {:.1f} times as large are "
-                   "many times faster with neighbor ... multi and comm_modify mode multi",
+                   "many times faster with neighbor ... multi and comm_modify mode multi, which "
+                   "keyword lists of fix mpm/surface sets",
                    sqrt(cut_others / std::max(cut_points, 1.0e-300)));
 }
 
