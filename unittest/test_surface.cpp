@@ -11,6 +11,8 @@
 #include "neigh_list.h"
 #include "pair.h"
 
+#include <regex>
+
 using namespace LAMMPS_NS;
 using namespace MPM_TEST;
 
@@ -354,6 +356,30 @@ PARAMETER_TEST(Clump, PushesWithConstantMomentum, const char *,
   run.commands("run 400\n");
   EXPECT_LT(measured("momentum", worst / fabs(start[2])), 1.0e-12);
   EXPECT_LT(pushed, 0.5 * start[2]);    // it did hit the block
+}
+
+// LAMMPS tells of lost atoms only with thermodynamic output, and not which; on 2 ranks of either
+TEST(SurfaceContact, TellsWhichGrainIsLost)
+{
+  const ScratchFile log("lost.log");
+  const std::string fast = head +
+      replaced(grains, "velocity grains set 0.3 0.2 -0.5\n",
+               "velocity grains set 0 0 -0.5\ngroup one id 6913\n"
+               "velocity one set 0 0 20\n") +
+      fixes + plain + rest;
+  for (const bool ignores : {false, true}) {
+    Scene run("log " + log.name + "\n" + fast +
+              (ignores ? "thermo_modify lost ignore\n" : "thermo_modify lost warn\n") +
+              "run 40\nlog none\n");
+    EXPECT_EQ(run.lmp->atom->natoms, 6912 + 2);
+    MPI_Barrier(MPI_COMM_WORLD);    // the first rank writes the file
+    const auto text = file_text(log.name);
+    const std::regex message("1 atoms that are no material points have left .*atom 6913 at "
+                             "3\\.[0-9]+ 3\\.[0-9]+ 12\\.[0-9]+ with velocity");
+    const bool told = std::regex_search(text, message);
+    EXPECT_EQ(told, !ignores) << text;
+    MPI_Barrier(MPI_COMM_WORLD);
+  }
 }
 
 TEST(Surface, RefusesMistakes)
