@@ -412,7 +412,7 @@ TEST_F(ByHand, DumpErrors)
   EXPECT_EQ(run.lmp->modify->ncompute, 3);
 
   EXPECT_EQ(run.error("dump d all mpm/vtk 1 " + name("x.*.vtp") + " vonmises eplastik\n"), "");
-  expect_error(run, "run 0\n", "eplastik");
+  expect_error(run, "run 0\n", "Unknown quantity eplastik in dump d of style mpm/vtk; known are:");
 }
 
 TEST(Output, CollectionNames)

@@ -193,9 +193,13 @@ void ComputeMPMAtom::init()
 {
   points = MPMPoints::get(atom);
   if (!points)
-    error->all(FLERR, Error::NOLASTLINE,
-               "Compute {} of style mpm/atom requires material points: use atom_style mpm", id);
+    error->all(FLERR, Error::NOLASTLINE, "No material points for {}: use atom_style mpm", whose());
   check_history();
+}
+
+std::string ComputeMPMAtom::whose() const
+{
+  return owner.empty() ? fmt::format("compute {} of style mpm/atom", id) : owner;
 }
 
 /** A name that is none of the table must be a history variable of a material that there is now. */
@@ -207,10 +211,8 @@ void ComputeMPMAtom::check_history() const
     for (const auto &fix : modify->get_fix_by_style("^mpm/material$"))
       found |= dynamic_cast<FixMPMMaterial *>(fix)->find_history(column.name) >= 0;
     if (!found)
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Unknown quantity {} in compute {} of style mpm/atom; "
-                 "known are:{}",
-                 column.name, id, known_names());
+      error->all(FLERR, Error::NOLASTLINE, "Unknown quantity {} in {}; known are:{}", column.name,
+                 whose(), known_names());
   }
 }
 

@@ -42,6 +42,8 @@ class ComputeMPMAtom : public Compute {
 
   struct Quantity;
 
+  std::string owner;    ///< what errors name in place of this compute, if it is a part of that
+
  private:
   struct Column {
     std::string name;
@@ -56,6 +58,7 @@ class ComputeMPMAtom : public Compute {
   static Column find_column(const std::string &name);
   void check_history() const;
   std::string known_names() const;
+  std::string whose() const;
 };
 
 }    // namespace LAMMPS_NS

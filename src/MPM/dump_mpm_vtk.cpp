@@ -103,7 +103,9 @@ DumpMPMVTK::Request::Request(LAMMPS *lmp_in, int narg, char **arg) : lmp(lmp_in)
     std::vector<char *> pointers;
     for (auto &part : parts) pointers.push_back(part.data());
     const ErrorWords own(lmp, (int) pointers.size(), pointers.data());
-    lmp->modify->add_compute((int) pointers.size(), pointers.data());
+    auto *made = lmp->modify->add_compute((int) pointers.size(), pointers.data());
+    if (auto *quantity = dynamic_cast<ComputeMPMAtom *>(made))
+      quantity->owner = fmt::format("dump {} of style mpm/vtk", arg[0]);
     int k = 0;
     for (auto *word : quantities)
       *word = quantities.size() == 1 ? "c_" + compute : fmt::format("c_{}[{}]", compute, ++k);
