@@ -26,6 +26,14 @@ static std::string name(const std::string &text)
   return "mpm_output_np" + std::to_string(nranks()) + "_" + text;
 }
 
+/** A text as VTK's XML files have it: a number for each character. */
+static std::string codes_of(const std::string &text)
+{
+  std::string codes;
+  for (const char c : text) codes += std::to_string((int) c) + " ";
+  return codes;
+}
+
 /** Reads what VTKFile writes: attributes and appended arrays, as doubles. */
 class VTKReader {
  public:
@@ -323,6 +331,9 @@ TEST_F(ByHand, PointFile)
   EXPECT_THAT(file.header, HasSubstr("header_type=\"UInt64\""));
   EXPECT_EQ(file.number("NumberOfPoints"), 4);
   EXPECT_EQ(file.number("NumberOfVerts"), 4);
+  EXPECT_THAT(file.header,
+              HasSubstr("Name=\"Units\" NumberOfTuples=\"1\" format=\"ascii\">" +
+                        codes_of(run.lmp->update->unit_style) + "0</Array>"));
   EXPECT_EQ(file.array["stress"].ncomponent, 9);
   EXPECT_EQ(file.array["F"].ncomponent, 9);
   EXPECT_EQ(file.array["velocity"].ncomponent, 3);

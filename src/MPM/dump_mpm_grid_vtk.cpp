@@ -166,7 +166,7 @@ void DumpMPMGridVTK::write_footer()
   vtk.add("Cells", "offsets", VTKFile::INT64, 1, ncell);
   vtk.add("Cells", "types", VTKFile::UINT8, 1, ncell);
   vtk.begin(fp, fmt::format("NumberOfPoints=\"{}\" NumberOfCells=\"{}\"", nnode, ncell),
-            compute_time(), update->ntimestep);
+            update->unit_style, compute_time(), update->ntimestep);
 
   std::vector<double> values;
   for (std::size_t k = 0; k < fields.size(); k++) {

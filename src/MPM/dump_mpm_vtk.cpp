@@ -198,7 +198,7 @@ void DumpMPMVTK::write_header(bigint npoint)
             fmt::format("NumberOfPoints=\"{0}\" NumberOfVerts=\"{0}\" NumberOfLines=\"0\" "
                         "NumberOfStrips=\"0\" NumberOfPolys=\"0\"",
                         npoint),
-            compute_time(), update->ntimestep);
+            update->unit_style, compute_time(), update->ntimestep);
   nwritten = 0;
 }
 

@@ -80,9 +80,12 @@ int VTKFile::add(const std::string &section, const std::string &name, Type type,
 
 /* ---------------------------------------------------------------------- */
 
-void VTKFile::begin(FILE *fp_in, const std::string &piece, double time, int64_t step)
+void VTKFile::begin(FILE *fp_in, const std::string &piece, const std::string &units, double time,
+                    int64_t step)
 {
   fp = fp_in;
+  std::string codes;    // of characters, and the zero at the end
+  for (const char c : units) codes += fmt::format("{} ", (int) c);
   std::string text = fmt::format(
       "<?xml version=\"1.0\"?>\n"
       "<VTKFile type=\"{0}\" version=\"1.0\" byte_order=\"{1}\" header_type=\"UInt64\">\n"
@@ -92,9 +95,10 @@ void VTKFile::begin(FILE *fp_in, const std::string &piece, double time, int64_t 
       "{2:.17g}</DataArray>\n"
       "<DataArray type=\"Int64\" Name=\"TimeStep\" NumberOfTuples=\"1\" format=\"ascii\">"
       "{3}</DataArray>\n"
+      "<Array type=\"String\" Name=\"Units\" NumberOfTuples=\"1\" format=\"ascii\">{4}0</Array>\n"
       "</FieldData>\n"
-      "<Piece {4}>\n",
-      kind, byte_order(), time, step, piece);
+      "<Piece {5}>\n",
+      kind, byte_order(), time, step, codes, piece);
 
   std::string section;
   for (const auto &a : arrays) {

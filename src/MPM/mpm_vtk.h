@@ -45,8 +45,10 @@ class VTKFile {
   int add(const std::string &section, const std::string &name, Type type, int ncomponent,
           int64_t ntuple);
 
-  /** Write all but the values. piece: attributes of the piece such as NumberOfPoints="8". */
-  void begin(FILE *fp, const std::string &piece, double time, int64_t step);
+  /** Write all but the values. piece: attributes of the piece such as NumberOfPoints="8"; units: name of the
+   *  units of all values. */
+  void begin(FILE *fp, const std::string &piece, const std::string &units, double time,
+             int64_t step);
 
   /** Write n tuples of an array from the given tuple on, converted to the type of the array. */
   void write(int array, int64_t first, int64_t n, const double *values);
