@@ -124,6 +124,7 @@ void MPMEnergyWatch::check()
   const Sums now = sums();
   if (run.steps == 0 || now.points != run.start.points) begin(now);
   const double spent = now.spent - run.start.spent, unexplained = now.unexplained();
+  run.last = now;
   run.lowest = std::min(run.lowest, unexplained);
   run.in_play = std::max(run.in_play, now.kinetic + fabs(now.stored) + fabs(spent));
   const double gained = run.gained = unexplained - run.lowest;
@@ -149,10 +150,9 @@ void MPMEnergyWatch::check()
 
 std::string MPMEnergyWatch::report() const
 {
-  if (run.steps < SHORTEST || !(run.in_play > 0.0)) return "";
-  const double percent = 100.0 / run.in_play;
+  if (run.steps < SHORTEST) return "";
   return fmt::format(
-      "  energy in play {:.6g}, of which transfers and friction took {:.2g} %; numerical "
-      "errors then added {:.2g} %\n",
-      run.in_play, percent * (run.start.unexplained() - run.lowest), percent * run.gained);
+      "  energy at the end: kinetic {:.6g}, stored {:.6g}; since the start transfers and friction "
+      "took {:.3g}, and numerical errors added {:.3g}\n",
+      run.last.kinetic, run.last.stored, run.start.unexplained() - run.lowest, run.gained);
 }

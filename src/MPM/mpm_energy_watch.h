@@ -63,6 +63,7 @@ class MPMEnergyWatch : protected Pointers {
     double lowest;     // energy that work does not explain
     double in_play;    // largest energy so far
     double gained;     // since it was lowest
+    Sums last;         // at the last look
     bool told;
   } run = {};
 
