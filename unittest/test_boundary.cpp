@@ -1194,10 +1194,12 @@ TEST(TimeStep, TellsTheEndOfARun)
   run.commands("log " + log.name + "\n" + dt_scene +
                "fix step all mpm/dt 0.5 until 1.0\nthermo_style custom step time pe press\n"
                "thermo 1000\nrun 3\n");
-  run.commands("run 1000\nlog none\n");
+  run.commands("run 0\nrun 1000\nlog none\n");
   MPI_Barrier(MPI_COMM_WORLD);    // the first rank writes the file
   const std::string text = file_text(log.name);
-  EXPECT_NE(text.find("before until 1: run more steps"), std::string::npos) << text;
+  const auto told = text.find("before until 1: run more steps");
+  EXPECT_NE(told, std::string::npos) << text;
+  EXPECT_EQ(text.find("before until", told + 1), std::string::npos) << "run 0 is no run to an end";
   const std::string last = " " + std::to_string(run.lmp->update->ntimestep) + "   1   ";
   EXPECT_NE(text.find(last), std::string::npos) << text;
 }

@@ -11,6 +11,8 @@
 #include "neigh_list.h"
 #include "pair.h"
 
+#include <regex>
+
 using namespace LAMMPS_NS;
 using namespace MPM_TEST;
 
@@ -234,6 +236,11 @@ static const std::string plain = "fix surf block mpm/surface\n";
 static const std::string skin = "group skin union grains block\natom_modify first skin\n"
                                 "fix surf block mpm/surface group skin\n"
                                 "neigh_modify include skin\ncomm_modify group skin\n";
+// the same in one keyword, without the lines of head and contact
+static const std::string listed = "fix surf block mpm/surface lists grains\n";
+static const std::string bare_head =
+    replaced(head, "neighbor 0.3 multi\ncomm_modify vel yes mode multi\n", "neighbor 0.3 bin\n");
+static const std::string bare_contact = replaced(contact, "neigh_modify exclude type 1 1\n", "");
 static const std::string rest = contact + "fix g all gravity 1.0 vector 0 0 -1\ntimestep 0.01\n";
 
 // with every, torques and forces of the steps between are those of several neighbor lists
@@ -267,6 +274,19 @@ TEST(SurfaceContact, DoesNotNeedPointsInside)
     EXPECT_GE(inside, some.n() / 2);
     EXPECT_EQ(torque, 0.0);
   }
+}
+
+TEST(SurfaceContact, SetsListsUp)
+{
+  const std::string more = bare_contact + "fix g all gravity 1.0 vector 0 0 -1\ntimestep 0.01\n";
+  for (const auto &start : {grains, every3}) {
+    Scene by_hand(head + start + fixes + skin + rest + "run 150\n"),
+        by_keyword(bare_head + start + fixes + listed + more + "run 150\n");
+    EXPECT_TRUE(identical(by_hand.gather(), by_keyword.gather()));
+  }
+  Continued run(bare_head + grains + fixes + listed + more, 60,
+                "neighbor 0.3 bin\nfix grid all mpm 1.0\n" + fixes + listed + more, 80);
+  EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
 }
 
 TEST(SurfaceContact, GoesOnFromARestartFile)
@@ -338,6 +358,30 @@ PARAMETER_TEST(Clump, PushesWithConstantMomentum, const char *,
   EXPECT_LT(pushed, 0.5 * start[2]);    // it did hit the block
 }
 
+// LAMMPS tells of lost atoms only with thermodynamic output, and not which; on 2 ranks of either
+TEST(SurfaceContact, TellsWhichGrainIsLost)
+{
+  const ScratchFile log("lost.log");
+  const std::string fast = head +
+      replaced(grains, "velocity grains set 0.3 0.2 -0.5\n",
+               "velocity grains set 0 0 -0.5\ngroup one id 6913\n"
+               "velocity one set 0 0 20\n") +
+      fixes + plain + rest;
+  for (const bool ignores : {false, true}) {
+    Scene run("log " + log.name + "\n" + fast +
+              (ignores ? "thermo_modify lost ignore\n" : "thermo_modify lost warn\n") +
+              "run 40\nlog none\n");
+    EXPECT_EQ(run.lmp->atom->natoms, 6912 + 2);
+    MPI_Barrier(MPI_COMM_WORLD);    // the first rank writes the file
+    const auto text = file_text(log.name);
+    const std::regex message("1 atoms that are no material points have left .*atom 6913 at "
+                             "3\\.[0-9]+ 3\\.[0-9]+ 12\\.[0-9]+ with velocity");
+    const bool told = std::regex_search(text, message);
+    EXPECT_EQ(told, !ignores) << text;
+    MPI_Barrier(MPI_COMM_WORLD);
+  }
+}
+
 TEST(Surface, RefusesMistakes)
 {
   expect_refused(head + grains + fixes + contact,
@@ -351,8 +395,18 @@ TEST(Surface, RefusesMistakes)
                    "g, which does not exist"},
                   {"group g empty\natom_modify first g\nneigh_modify include g\n",
                    "use fix mpm/surface with keyword group g"},
+                  {"fix surf block mpm/surface lists none", "group none does not exist"},
+                  {"group low region block\nfix surf block mpm/surface lists grains\n"
+                   "fix more low mpm/surface lists grains",
+                   "fix surf has set the lists; use one fix mpm/surface"},
+                  {"set group grains type 1\nfix surf block mpm/surface lists grains",
+                   "and other atoms have the type 1: give them different ones"},
                   {"fix surf block mpm/surface\nset type 1 diameter 0.1", "define the fix after"}},
                  "timestep 0.01\nrun 0\n");
+  expect_error(head + grains + fixes +
+                   "pair_style mpm/penalty\n"
+                   "fix surf block mpm/surface lists grains\n",
+               "leaves out pairs of points, which pair style mpm/penalty needs");
   expect_error(head + grains + fixes + skin +
                    "pair_style granular\n"
                    "pair_coeff * * hertz/material 50.0 0.5 0.3 tangential mindlin NULL 0.5 0.4\n"

@@ -219,6 +219,7 @@ void FixMPM::initial_integrate(int /*vflag*/)
 void FixMPM::pre_exchange()
 {
   field->guard->check_inside_box();
+  if (plan) field->guard->tell_lost_atoms();
 }
 
 /* ----------------------------------------------------------------------

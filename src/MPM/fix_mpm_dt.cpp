@@ -297,7 +297,7 @@ void FixMPMDt::post_run()
   if (until == 0.0) return;
   if (ended)
     timer->reset_timeout();
-  else if (comm->me == 0)
+  else if (comm->me == 0 && update->nsteps > 0)
     error->warning(FLERR,
                    "Fix mpm/dt {}: the run has ended at the time {:.6g}, before until {:.6g}: run "
                    "more steps",

@@ -56,6 +56,11 @@ Options MPMSurfaceOptions::declare()
         {text(group_id, "group-ID",
               "points are in this group if they have a radius, and only then")})
       .standard("none");
+  o.add("lists",
+        {text(grains_id, "group-ID",
+              "group of the grains that the points meet: sets neighbor lists and communication up "
+              "for these and the surface alone")})
+      .standard("not set up");
   return o;
 }
 
@@ -68,7 +73,8 @@ FixMPMSurface::FixMPMSurface(LAMMPS *lmp, int narg, char **arg) :
                "sphere mpm");
   Options options = declare();
   read_options(lmp, options, narg, arg, 3);
-  if (options.given("group")) find_group(options.where("group") + 1);
+  if (options.given("lists")) set_lists(options.where("lists") + 1);
+  if (!group_id.empty()) find_group(options.where(options.given("group") ? "group" : "lists") + 1);
 
   scalar_flag = peratom_flag = 1;
   size_peratom_cols = 0;

@@ -27,7 +27,7 @@ struct MPMSurfaceOptions {
   double scale = 1.0;    ///< of the radius
   double grow = 1.2;     ///< its largest growth
   double depth = 0.5;    ///< of what counts as surface [h]
-  std::string group_id;
+  std::string group_id, grains_id;
 
   MPM_NS::Options declare();
 };
@@ -67,6 +67,8 @@ class FixMPMSurface : public FixMPMState, private MPMSurfaceOptions {
   double radius_of(double volume, double growth) const;
   double present_radius(int i) const;
   void find_group(int iarg);
+  void set_lists(int iarg);
+  std::vector<int> types_of_points(int iarg) const;
   bool moves_atoms() const;
   void warn_of_diameters() const;
   void give_radius(int i, bool at_surface, double radius);

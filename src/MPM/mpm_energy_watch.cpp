@@ -133,14 +133,12 @@ void MPMEnergyWatch::check()
       !(run.in_play > 0.5 * force->mvv2e * now.mass * speed * speed))
     return;
   run.told = true;
-  const std::string text = fmt::format(
-      "Numerical errors have added the energy {:.4g} to the material points by step {} of this "
-      "run, {:.3g} % "
-      "of the energy in play ({:.4g}): results are not to be trusted. Try a smaller time step (fix "
-      "mpm/dt), "
-      "shape quadratic or cubic, transfer apic, more points per cell; compute mpm/energy tells "
-      "where energy goes",
-      gained, update->ntimestep, 100.0 * gained / run.in_play, run.in_play);
+  const std::string text =
+      fmt::format("Numerical errors have added the energy {:.4g} to the material points by step {} "
+                  "of this run, {:.3g} % of the energy in play ({:.4g}): results are not to be "
+                  "trusted. Try a smaller time step (fix mpm/dt), shape quadratic or cubic, "
+                  "transfer apic, more points per cell; compute mpm/energy tells where energy goes",
+                  gained, update->ntimestep, 100.0 * gained / run.in_play, run.in_play);
   if (options.gain == MPMFieldOptions::GAIN_ERROR)
     error->all(FLERR, Error::NOLASTLINE, "{}; fix mpm ... gain warn|ignore goes on", text);
   if (comm->me == 0)

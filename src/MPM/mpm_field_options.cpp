@@ -198,8 +198,7 @@ Options MPMFieldOptions::declare(int dim)
              (polypic || series != LUMPED || (transfer != PIC && !(transfer == APIC && fits()))),
          "heat",
          "needs transfer pic, or apic with shape quadratic or cubic: what other transfers do to "
-         "the "
-         "energy of a point can have either sign"},
+         "the energy of a point can have either sign"},
         {heat && stress_before(), "heat",
          "needs scheme usl or musl, where stress is updated after the velocities"},
         {light > 0.0 && !amplifies(), "light",

@@ -94,14 +94,11 @@ void MPMFractureWatch::look()
   told = true;
   MPI_Bcast(point, 4, MPI_DOUBLE, widest.rank, world);
   if (comm->me == 0)
-    error->warning(
-        FLERR,
-        "Fix mpm {}: material under tension is stretched so far that its points are up to {:.3g} "
-        "node "
-        "spacings ({:.4g}) apart, near point {:.0f} at {:.6g} {:.6g} {:.6g} at step {}: it comes "
-        "apart "
-        "numerically. Use frame total, shape cpdi, or more points per cell; fix mpm ... "
-        "apart ignore accepts it",
-        field.id(), widest.distance, widest.distance * h, point[0], point[1], point[2], point[3],
-        update->ntimestep);
+    error->warning(FLERR,
+                   "Fix mpm {}: material under tension is stretched so far that its points are up "
+                   "to {:.3g} node spacings ({:.4g}) apart, near point {:.0f} at {:.6g} {:.6g} "
+                   "{:.6g} at step {}: it comes apart numerically. Use frame total, shape cpdi, or "
+                   "more points per cell; fix mpm ... apart ignore accepts it",
+                   field.id(), widest.distance, widest.distance * h, point[0], point[1], point[2],
+                   point[3], update->ntimestep);
 }

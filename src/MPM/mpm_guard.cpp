@@ -24,7 +24,9 @@
 #include "mpm_point_map.h"
 #include "mpm_points.h"
 #include "neighbor.h"
+#include "output.h"
 #include "pair.h"
+#include "thermo.h"
 #include "update.h"
 
 #include <algorithm>
@@ -62,20 +64,23 @@ void MPMGuard::check_integrators() const
    easily forgotten
 ------------------------------------------------------------------------- */
 
-void MPMGuard::check_other_points() const
+void MPMGuard::check_other_points()
 {
   int moved = 0;    // groups that something moves
   for (auto *ifix : modify->get_fix_list())
     if (ifix->time_integrate || utils::strmatch(ifix->style, "^mpm$")) moved |= ifix->groupbit;
-  bigint n = 0, all;
+  bigint mine[2] = {0, 0}, all[2];    // points, those that do not move
   tagint example = 0, example_all;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->vfrac[i] > 0.0) || (atom->mask[i] & moved)) continue;
-    n++;
+    if (!(atom->vfrac[i] > 0.0)) continue;
+    mine[0]++;
+    if (atom->mask[i] & moved) continue;
+    mine[1]++;
     example = std::max(example, atom->tag[i]);
   }
-  MPI_Allreduce(&n, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  if (all == 0) return;
+  MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
+  npoints = all[0];
+  if (all[1] == 0) return;
   MPI_Allreduce(&example, &example_all, 1, MPI_LMP_TAGINT, MPI_MAX, world);
   if (comm->me == 0)
     error->warning(
@@ -83,7 +88,7 @@ void MPMGuard::check_other_points() const
         "{} material points belong to no fix mpm, for instance point {}: they do not "
         "move and have no stress; if they shall, put them into the group of a fix mpm with "
         "keyword group of create_points, or with the group command after it",
-        all, example_all);
+        all[1], example_all);
 }
 
 /* ----------------------------------------------------------------------
@@ -248,14 +253,15 @@ void MPMGuard::check_neighbors() const
       error->warning(FLERR,
                      "Fix mpm: pairs of material points of type {} are in the neighbor lists, "
                      "at great cost and for nothing but pair forces between them: use neigh_modify "
-                     "exclude type {} {}",
+                     "exclude type {} {}, or keyword lists of fix mpm/surface",
                      t, t, t);
   }
   if (cut_others > RATIO * RATIO * cut_points && neighbor->style != Neighbor::MULTI &&
       comm->me == 0)
     error->warning(FLERR,
                    "Fix mpm: neighbor lists of points and of grains {:.1f} times as large are "
-                   "many times faster with neighbor ... multi and comm_modify mode multi",
+                   "many times faster with neighbor ... multi and comm_modify mode multi, which "
+                   "keyword lists of fix mpm/surface sets",
                    sqrt(cut_others / std::max(cut_points, 1.0e-300)));
 }
 
@@ -516,6 +522,47 @@ void MPMGuard::check_inside_box()
   }
   if (deletes) delete_points(bad_points, true);
   if (field.options.delete_failed) delete_points(failed_points, false);
+}
+
+/* ----------------------------------------------------------------------
+   LAMMPS says how many atoms are lost, when it writes thermodynamic output, and not which
+------------------------------------------------------------------------- */
+
+void MPMGuard::tell_lost_atoms() const
+{
+  if (atom->natoms <= npoints || output->thermo->lostflag == Thermo::IGNORE) return;
+  bigint lost = 0, all;
+  int example = -1;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (atom->vfrac[i] > 0.0) continue;
+    const double *const x = atom->x[i];
+    bool inside = true;
+    for (int d = 0; d < 3; d++)
+      inside = inside &&
+          (domain->periodicity[d] || (x[d] >= domain->boxlo[d] && x[d] < domain->boxhi[d]));
+    if (inside) continue;
+    lost++;
+    if (example < 0 || atom->tag[i] < atom->tag[example]) example = i;
+  }
+  MPI_Allreduce(&lost, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (all == 0) return;
+  const tagint first = example < 0 ? MAXTAGINT : atom->tag[example];
+  tagint first_all;
+  MPI_Allreduce(&first, &first_all, 1, MPI_LMP_TAGINT, MPI_MIN, world);
+  double state[6] = {0.0}, state_all[6];
+  if (first == first_all) {
+    std::copy_n(atom->x[example], 3, state);
+    std::copy_n(atom->v[example], 3, state + 3);
+  }
+  MPI_Reduce(state, state_all, 6, MPI_DOUBLE, MPI_SUM, 0, world);
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "{} atoms that are no material points have left the box through a fixed face "
+                   "and are lost at step {}, for instance atom {} at {:.6g} {:.6g} {:.6g} with "
+                   "velocity {:.6g} {:.6g} {:.6g}: enlarge the box, put a wall there (fix "
+                   "wall/gran), or give thermo_modify lost ignore",
+                   all, update->ntimestep, first_all, state_all[0], state_all[1], state_all[2],
+                   state_all[3], state_all[4], state_all[5]);
 }
 
 /* ---------------------------------------------------------------------- */

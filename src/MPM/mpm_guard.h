@@ -31,7 +31,7 @@ class MPMGuard : protected Pointers {
   void check_points() const;
   void check_integrators() const;
   /** Warns of material points that no field moves. */
-  void check_other_points() const;
+  void check_other_points();
   /** Warns where places of points, which must be known, leave it to round-off what stress they get. */
   void check_places() const;
   /** Settings of LAMMPS that make neighbor lists of points and grains slow; all fields. */
@@ -68,6 +68,9 @@ class MPMGuard : protected Pointers {
   /** Before an exchange, which would lose points outside of fixed faces silently: these are bad. Points
    *  that are to be deleted go. */
   void check_inside_box();
+  /** Tells which other atoms (grains) the exchange will lose, unless thermo_modify lost ignores them; all
+   *  ranks together. */
+  void tell_lost_atoms() const;
   /** Points that have gone by more than a period of the box, come back into it: LAMMPS takes one period
    *  from them when neighbor lists are made, which it may do rarely. */
   void wrap_far_points();
@@ -83,6 +86,7 @@ class MPMGuard : protected Pointers {
   std::vector<tagint> bad_points;       // of this step, policies warn and delete
   std::vector<tagint> failed_points;    // of this step, to be deleted
   bigint nbad_total = 0;
+  bigint npoints = 0;    // of all fields and ranks, at the start of the run
 
   void check_fixes() const;
   void check_skin() const;
