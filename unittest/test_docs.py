@@ -277,6 +277,20 @@ def test_every_source_file_is_in_the_table_of_the_developer_guide():
     check(wrong)
 
 
+def test_every_keyword_of_fix_mpm_is_described():
+    """all on its own page, those that have a page of details also there"""
+    table = read(os.path.join(PAGES, "options", "fix_mpm.inc"))
+    words = re.findall(r"\*([^*]+)\*", re.search(r"^\* keyword = (.*(?:\n  or .*)*)", table, re.M).group(1))
+    said = read(os.path.join(PAGES, "fix_mpm.rst")).split("\nDescription\n")[1].split("\nRestart, fix_modify")[0].lower()
+    wrong = ["doc/src/fix_mpm.rst: nothing about " + word for word in words if not re.search(r"\*%s\b" % word, said)]
+    for name in ("shapes", "transfers", "schemes", "frames", "locking"):
+        text = read(os.path.join(PAGES, "Howto_mpm_%s.rst" % name))
+        for word in re.findall(r"^   single: (\w+); fix mpm$", text, re.M):
+            if word not in words or not re.search(r"\*%s\b" % word, text.split("\n====")[1], re.I):
+                wrong.append("doc/src/Howto_mpm_%s.rst: nothing about %s" % (name, word))
+    check(wrong)
+
+
 def test_links_lead_somewhere():
     """to pages of the LAMMPS manual (where its sources are there), and to files in README.md"""
     wrong = []
