@@ -32,8 +32,8 @@ html_copy_source = False
 # the theme of the LAMMPS manual, whose navigation shows the sections of the page; without it the one of Sphinx
 try:
     import sphinx_rtd_theme
+    extensions.append("sphinx_rtd_theme")
     html_theme = "sphinx_rtd_theme"
-    html_theme_path = [sphinx_rtd_theme.get_html_theme_path()]
     html_theme_options = {"navigation_depth": 3}
     html_js_files = ["mpm.js"]
 except ImportError:
@@ -109,10 +109,10 @@ def add_keywords_to_index(app, page, source):
     def with_index(include):
         table = open(os.path.join(app.srcdir, "src", include.group(1)), encoding="ascii").read()
         found = re.search(r"^\* keyword = (.*(?:\n  or .*)*)", table, re.M)
-        words = re.findall(r"\*([^*]+)\*", found.group(1)) if found else re.findall(r"^   \* - \*([^*\s]+)", table, re.M)
+        words = re.findall(r"\*([^*]+)\*", found.group(1)) if found else re.findall(r"^   \* - \*([^*]+)\*", table, re.M)
         if not words or not title:
             return include.group(0)
-        entries = ["   single: %s; %s" % (word, title.group(1)) for word in sorted(set(words))]
+        entries = ["   single: %s; %s" % (word.replace("\\", ""), title.group(1)) for word in sorted(set(words))]
         return "\n".join([".. index::"] + entries) + "\n\n" + include.group(0)
 
     source[0] = re.sub(r"^\.\. include:: ((?:options|laws)/(?!\w+_default)\S+\.inc)$", with_index, source[0], flags=re.M)
