@@ -345,7 +345,7 @@ def test_first_input_of_the_readme_runs_as_it_is():
         assert "WARNING" not in result.output, result.output
         for name in ("bar.700.png", "bar.pvd"):
             assert os.path.exists(os.path.join(folder, name)), name + " is missing"
-    last = re.findall(r"^ +\d+ +(\S+) +(\S+) +\S+ *$", result.output, re.M)[-1]
+    last = re.findall(r"^ +\d+ +([-.\de]+) +([-.\de]+) +[-.\de]+ *$", result.output, re.M)[-1]
     assert float(last[0]) == 8.0e-5, last
     length = float(last[1]) + 0.25e-3
     assert abs(length - 16.2e-3) < 0.05 * 16.2e-3, length

@@ -68,6 +68,51 @@ TEST(EnergyWatch, TellsWhatIsGained)
   EXPECT_EQ(told_by(drift("") + "velocity all set 2 0 0\nrun 400\n").warnings, 0);
 }
 
+// Two blocks with sound speeds of sqrt(G/rho) = 1e-3 and less: their deformation stays what it is
+TEST(Summary, TellsStateEnergyAndTimeStep)
+{
+  const ScratchFile file("log");
+  Scene run("log " + file.name + "\n" + space("lj", "p p p", "0 12 0 4 0 4", 1, 0.5) +
+            body("block 2 6 0 4 0 4", "density 2 linear 1e-6 0", "1.0") +
+            "velocity all set 1 0 0\ngroup one id 17\nvelocity one set 1.5 0 0\n"
+            "timestep 0.1\nrun 0 post no\n");
+  auto *atom = run.lmp->atom;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (atom->tag[i] == 5) run.points().F[i][0] = 0.75;
+    if (atom->tag[i] == 9) run.points().F[i][4] = 1.25;
+  }
+  run.commands("run 1\nlog none\n");
+  MPI_Barrier(MPI_COMM_WORLD);    // the first rank writes the file
+  const std::string text = file_text(file.name);
+  const std::regex limit("1 steps, time step 0\\.1 to 0\\.1, at the end 0\\.([0-9]+) of the limit"),
+      state("volumes 0\\.75[0-9]* \\(point 5\\) to 1\\.2[45][0-9]* \\(point 9\\) times the initial "
+            "ones, "
+            "speeds up to 1\\.[0-9]* \\(point 17\\)");
+  EXPECT_TRUE(std::regex_search(text, limit)) << text;
+  EXPECT_TRUE(std::regex_search(text, state)) << text;
+  EXPECT_EQ(text.find("energy in play"), std::string::npos) << "too short a run";
+}
+
+TEST(Summary, TellsTheShareOfEnergies)
+{
+  const ScratchFile file("log");
+  Scene run("log " + file.name + "\n" + drift("") + faster(1.015) + "log none\n");
+  MPI_Barrier(MPI_COMM_WORLD);
+  const std::string text = file_text(file.name);
+  const std::regex energy(
+      "energy in play ([0-9.]+), of which transfers and friction took ([-.e0-9]+) %; "
+      "numerical errors then added ([-.e0-9]+) %");
+  std::vector<std::smatch> found;
+  for (std::sregex_iterator at(text.begin(), text.end(), energy), end; at != end; ++at)
+    found.push_back(*at);
+  ASSERT_EQ(found.size(), 2);
+  EXPECT_NEAR(std::stod(found[0][1]), 64.0, 1e-6);
+  EXPECT_NEAR(std::stod(found[0][3]), 0.0, 1e-9);
+  EXPECT_NEAR(std::stod(found[1][1]), 64.0 * 1.015, 1e-3);
+  EXPECT_NEAR(std::stod(found[1][2]), 0.0, 1e-9);
+  EXPECT_NEAR(std::stod(found[1][3]), 1.5 / 1.015, 0.051);    // two digits
+}
+
 TEST(EnergyWatch, StopsWhereAskedTo)
 {
   Scene run(drift("gain error 0.02"));

@@ -126,8 +126,8 @@ void MPMEnergyWatch::check()
   const double spent = now.spent - run.start.spent, unexplained = now.unexplained();
   run.lowest = std::min(run.lowest, unexplained);
   run.in_play = std::max(run.in_play, now.kinetic + fabs(now.stored) + fabs(spent));
-  const double gained = unexplained - run.lowest,
-               speed = AT_REST * fields[0]->lattice.h / update->dt;
+  const double gained = run.gained = unexplained - run.lowest;
+  const double speed = AT_REST * fields[0]->lattice.h / update->dt;
   const auto &options = fields[0]->options;
   if (run.told || !(gained > options.most_gain * run.in_play) ||
       !(run.in_play > 0.5 * force->mvv2e * now.mass * speed * speed))
@@ -143,4 +143,16 @@ void MPMEnergyWatch::check()
     error->all(FLERR, Error::NOLASTLINE, "{}; fix mpm ... gain warn|ignore goes on", text);
   if (comm->me == 0)
     error->warning(FLERR, "{}; fix mpm ... gain sets what is done, and from which share on", text);
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::string MPMEnergyWatch::report() const
+{
+  if (run.steps < SHORTEST || !(run.in_play > 0.0)) return "";
+  const double percent = 100.0 / run.in_play;
+  return fmt::format(
+      "  energy in play {:.6g}, of which transfers and friction took {:.2g} %; numerical "
+      "errors then added {:.2g} %\n",
+      run.in_play, percent * (run.start.unexplained() - run.lowest), percent * run.gained);
 }

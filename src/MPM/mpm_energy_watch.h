@@ -11,6 +11,7 @@
 
 #include "pointers.h"
 
+#include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -41,6 +42,8 @@ class MPMEnergyWatch : protected Pointers {
   void step();
   /** End of a run. */
   void finish();
+  /** A line about the energy of the run for its summary; empty where too little is known. */
+  std::string report() const;
 
  private:
   /** Sums over all ranks. */
@@ -59,6 +62,7 @@ class MPMEnergyWatch : protected Pointers {
     Sums start;
     double lowest;     // energy that work does not explain
     double in_play;    // largest energy so far
+    double gained;     // since it was lowest
     bool told;
   } run = {};
 

@@ -18,6 +18,7 @@
 #include "mpm_guard.h"
 #include "mpm_halo.h"
 #include "mpm_physics.h"
+#include "mpm_point_extremes.h"
 #include "mpm_point_map.h"
 #include "platform.h"
 
@@ -172,20 +173,39 @@ void MPMPlan::start()
    before the step. Without keyword plan, stages of the same name are one entry
 ------------------------------------------------------------------------- */
 
-void MPMPlan::report(const MPMField &field, double bytes_per_point) const
+std::vector<MPMPlan::Cost> MPMPlan::costs(const MPMField &field, double scale) const
 {
-  constexpr double IDLE = 0.9;    // of the time is the processor's, or else others have taken it
-  const auto &counts = field.counts;
-  std::vector<std::string> names = {"sort"};
-  std::vector<double> mine = {field.map->sort_time};
+  std::vector<Cost> list = {{"sort", field.map->sort_time}};
   for (const auto &stage : stages)
     for (std::size_t k = 0; k < stage.fields.size(); k++)
-      if (stage.fields[k] == &field) {
-        names.push_back(stage.name);
-        mine.push_back(stage.seconds[k]);
-      }
-  std::vector<double> slowest(mine.size());
-  MPI_Allreduce(mine.data(), slowest.data(), (int) mine.size(), MPI_DOUBLE, MPI_MAX, world);
+      if (stage.fields[k] == &field) list.push_back({stage.name, stage.seconds[k]});
+  for (auto &cost : list) {
+    double slowest;
+    MPI_Allreduce(&cost.time, &slowest, 1, MPI_DOUBLE, MPI_MAX, world);
+    cost.time = scale * slowest;
+  }
+  if (field.options.plan) return list;
+  std::vector<Cost> sums;
+  for (const auto &cost : list) {
+    const auto same = std::find_if(sums.begin(), sums.end(), [&](const Cost &c) {
+      return c.stage == cost.stage;
+    });
+    if (same == sums.end())
+      sums.push_back(cost);
+    else
+      same->time += cost.time;
+  }
+  std::stable_sort(sums.begin(), sums.end(), [](const Cost &a, const Cost &b) {
+    return a.time > b.time;
+  });
+  return sums;
+}
+
+void MPMPlan::report(const MPMField &field, double bytes_per_point) const
+{
+  constexpr double IDLE = 0.9;      // of the time is the processor's, or else others have taken it
+  constexpr double SMALL = 0.05;    // share of a stage that is not worth a word
+  const auto &counts = field.counts;
   const double wall = platform::walltime() - wall_start;
   double use = wall > 0.0 ? (platform::cputime() - cpu_start) / wall : 1.0, least_use;
   MPI_Allreduce(&use, &least_use, 1, MPI_DOUBLE, MPI_MIN, world);
@@ -194,31 +214,38 @@ void MPMPlan::report(const MPMField &field, double bytes_per_point) const
                      (double) field.nodes.halo->bytes_sent / counts.steps},
          sum[4];
   MPI_Allreduce(local, sum, 4, MPI_DOUBLE, MPI_SUM, world);
+  const double npoints = sum[0] / counts.steps;
+  const std::vector<Cost> list = costs(field, 1.0e9 * comm->nprocs / sum[0]);
+  const std::string state = point_extremes(lmp, field);
   if (comm->me) return;
 
-  const double scale = 1.0e9 * comm->nprocs / sum[0], npoints = sum[0] / counts.steps;
-  const bool each = field.options.plan;
   double total = 0.0;
-  std::string stages_text = each ? "  plan of the step:" : "  of these:";
-  for (std::size_t k = 0; k < names.size(); k++) {
-    total += slowest[k] * scale;
-    if (!each && std::find(names.begin(), names.begin() + k, names[k]) != names.begin() + k)
-      continue;
-    double time = 0.0;
-    for (std::size_t l = k; l < (each ? k + 1 : names.size()); l++)
-      if (names[l] == names[k]) time += slowest[l] * scale;
-    stages_text += fmt::format(each ? "\n    {:<40} {:8.2f}" : "{} {:.2f}",
-                               (each || k == 0 ? " " : ", ") + names[k], time);
+  for (const auto &cost : list) total += cost.time;
+  std::string text =
+      fmt::format("MPM {}: {:.0f} points, {} kernels, {:.2f} ns per point-step and core\n",
+                  field.id(), npoints, field.kernels->isa, total);
+  if (field.options.plan) {
+    text += "  plan of the step:\n";
+    for (const auto &cost : list)
+      text += fmt::format("    {:<40} {:8.2f}\n", cost.stage, cost.time);
+  } else {
+    text += "  most of it for";
+    for (const auto &cost : list)
+      if (cost.time > SMALL * total)
+        text += fmt::format("{} {} {:.0f} %", &cost == &list[0] ? "" : ",", cost.stage,
+                            100.0 * cost.time / total);
+    text += "\n";
   }
-  utils::logmesg(lmp,
-                 "MPM {}: {:.0f} points, {} kernels, {:.2f} ns per point-step and core\n{}\n"
-                 "  {:.0f} bytes per point; {:.0f} blocks with points of {:.0f} active, "
-                 "{:.1f} points per block\n"
-                 "  {} updates of the topology, {} sorts, {:.0f} halo bytes per step, "
-                 "time step {:.6g} to {:.6g}\n",
-                 field.id(), npoints, field.kernels->isa, total, stages_text, bytes_per_point,
-                 sum[1], sum[2], npoints / std::max(1.0, sum[1]), field.map->nbuild,
-                 field.map->nsort, sum[3], counts.dt_min, counts.dt_max);
+  text += fmt::format("  {:.0f} bytes per point", bytes_per_point);
+  if (field.options.plan)
+    text += fmt::format("; {:.0f} blocks with points of {:.0f} active, {:.1f} points per block\n"
+                        "  {} updates of the topology, {} sorts, {:.0f} halo bytes per step",
+                        sum[1], sum[2], npoints / std::max(1.0, sum[1]), field.map->nbuild,
+                        field.map->nsort, sum[3]);
+  text += fmt::format("\n  {} steps, time step {:.6g} to {:.6g}{}\n", counts.steps, counts.dt_min,
+                      counts.dt_max, state);
+  if (&field == fields[0]) text += watch.report();
+  utils::logmesg(lmp, text);
   if (least_use < IDLE)
     utils::logmesg(lmp,
                    "  the machine was busy: these times are from a run with {:.0f} % CPU use\n",

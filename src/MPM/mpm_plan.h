@@ -60,7 +60,7 @@ class MPMPlan : protected Pointers {
   void start();
   /** A step of LAMMPS: one of the cycle, if it is time for it. */
   void step();
-  /** What the steps of a run have cost a field, to screen and log file. */
+  /** Summary of a run for a field, to screen and log file: state, energy, and cost. */
   void report(const MPMField &, double bytes_per_point) const;
 
   /** Blocks in reach of points, of all fields whose points have moved in memory or away. */
@@ -77,7 +77,12 @@ class MPMPlan : protected Pointers {
     bool once;
     std::vector<double> seconds;    // of each of these
   };
+  struct Cost {
+    std::string stage;
+    double time;    // [ns] per step and point of one process
+  };
   std::vector<Stage> stages;
+  std::vector<Cost> costs(const MPMField &, double scale) const;
   double wall_start = 0.0, cpu_start = 0.0;    // of the run [s]
 };
 

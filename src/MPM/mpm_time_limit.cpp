@@ -15,6 +15,7 @@
 #include "fix_mpm_material.h"
 #include "force.h"
 #include "material/batch.h"
+#include "modify.h"
 #include "mpm_cpdi.h"
 #include "mpm_field.h"
 #include "mpm_frame.h"
@@ -46,7 +47,7 @@ void MPMTimeLimit::setup()
   if (update->nsteps <= 0 || !field.options.dt_check) return;
   check();
   warn();
-  if (field.plan->fields[0] == &field) warn_of_default();
+  if (field.plan->fields[0] == &field) warn_of_small();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -243,26 +244,38 @@ void MPMTimeLimit::warn() const
 
 /* ----------------------------------------------------------------------
    Nobody has set the time step, and the default of the units is that of atoms: for most bodies so small
-   that nothing moves. Where a pair style tells of atoms or grains, it may be right, unless it is tiny
+   that nothing moves. Where a pair style tells of atoms or grains, it may be right, unless it is tiny.
+   One that was set for other reasons than these points (grains, finite elements), or by fix mpm/dt, may
+   have to be small
 ------------------------------------------------------------------------- */
 
-void MPMTimeLimit::warn_of_default() const
+void MPMTimeLimit::warn_of_small() const
 {
-  if (!update->dt_default) return;
+  constexpr double SMALL = 1.0e-2;    // of the limit
   tagint tag;
   double c, mine = std::numeric_limits<double>::max(), limit;
   for (const auto *other : field.plan->fields)
     mine = std::min(mine, other->time_limit->stable_dt(tag, c));
   MPI_Allreduce(&mine, &limit, 1, MPI_DOUBLE, MPI_MIN, world);
-  if (limit == std::numeric_limits<double>::max()) return;    // there are no waves
+  if (limit == std::numeric_limits<double>::max() || comm->me) return;    // there are no waves
   const double dt = field.step_dt();
-  if (comm->me == 0 && dt < (force->pair ? 1.0e-3 : 1.0e-2) * limit)
-    error->warning(
-        FLERR,
-        "Fix mpm: the time step {:.3g} is the default of units {}, next to nothing for the "
-        "limit {:.3g} of these points: use fix mpm/dt 0.5, or timestep (after "
-        "read_restart, which does not keep it)",
-        dt, update->unit_style, limit);
+  if (update->dt_default) {
+    if (dt < (force->pair ? 0.1 : 1.0) * SMALL * limit)
+      error->warning(
+          FLERR,
+          "Fix mpm: the time step {:.3g} is the default of units {}, next to nothing for "
+          "the limit {:.3g} of these points: use fix mpm/dt 0.5, or timestep (after "
+          "read_restart, which does not keep it)",
+          dt, update->unit_style, limit);
+    return;
+  }
+  const bool free = !force->pair && field.elements.empty() &&
+      modify->get_fix_by_style("^mpm/dt$|^dt/reset").empty();
+  if (free && dt < SMALL * limit)
+    error->warning(FLERR,
+                   "Fix mpm: the time step {:.3g} is far below the limit {:.3g} of these points: "
+                   "fix mpm/dt 0.5 would take {:.0f} times fewer steps",
+                   dt, limit, 0.5 * limit / dt);
 }
 
 /* ---------------------------------------------------------------------- */

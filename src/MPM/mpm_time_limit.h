@@ -48,7 +48,7 @@ class MPMTimeLimit : protected Pointers {
   double stable_share(double size) const;
   double share_of_thin_nodes() const;
   void warn() const;
-  void warn_of_default() const;
+  void warn_of_small() const;
 };
 
 /** Elapsed time at the end of the present step, as thermo keyword time has it. */
