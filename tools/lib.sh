@@ -35,7 +35,7 @@ pictures: libpng-dev
 tests and benchmarks: libgtest-dev libgmock-dev libbenchmark-dev
 unpacking LAMMPS: xz-utils dpkg-dev
 scripts and plots: python3 python3-numpy python3-matplotlib
-manual: python3-sphinx
+manual: python3-sphinx python3-sphinx-rtd-theme libjs-mathjax
 format of the sources: clang-format
 LIST
 }

@@ -54,6 +54,9 @@ $Elements
 1 4 2 1 1 1 2 3 4
 $EndElements
 """
+# pages whose inputs test_docs_tasks.py runs and checks
+TASKS = ["Howto_mpm_" + name for name in
+         "tutorial tensile two_bodies grains points restart loop until pictures scaling".split()]
 BODIES = ["left", "right", "plane", "disk", "block", "pad", "disc"]    # each with a fix mpm
 
 
@@ -225,5 +228,7 @@ def example_scenes(path):
 
 def complete_scenes(path):
     """The inputs that a page shows as a whole."""
+    if os.path.basename(path)[:-4] in TASKS:
+        return []
     return ["\n".join(lines) + "\n" for _, lines in blocks(path)
-            if lines and lines[0].split()[0] == "units"]
+            if any(line.split()[0] == "units" for line in lines)]

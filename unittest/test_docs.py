@@ -89,7 +89,56 @@ def test_builds_without_warnings():
     with tempfile.TemporaryDirectory() as folder:
         result = mt.run([python, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html",
                          os.path.join(ROOT, "doc"), folder])
-    assert result.code == 0, "\n" + result.output
+        assert result.code == 0, "\n" + result.output
+        check(missing_in_index(folder) + scripts_from_the_web(folder))
+
+
+def missing_in_index(folder):
+    """keywords of the tables of options that are not in the index of the built manual"""
+    index = re.sub(r"<[^>]*>", "\n", read(os.path.join(folder, "genindex.html")))
+    entries = {line.strip() for line in index.splitlines()}
+    tables = [path for path in glob.glob(os.path.join(PAGES, "options", "*.inc")) if "_default" not in path]
+    assert len(tables) > 10
+    wrong = []
+    for path in tables:
+        words = re.search(r"^\* keyword = (.*(?:\n  or .*)*)", read(path), re.M)
+        for word in re.findall(r"\*([^*]+)\*", words.group(1)) if words else []:
+            if word not in entries:
+                wrong.append("%s: %s is not in the index" % (relative(path), word))
+    return wrong
+
+
+def scripts_from_the_web(folder):
+    """of pages that shall show formulas without a network"""
+    if not os.path.exists("/usr/share/javascript/mathjax/MathJax.js"):
+        return []
+    wrong = ["%s loads %s" % (os.path.basename(path), script) for path in glob.glob(os.path.join(folder, "src", "*.html"))
+             for script in re.findall(r'<script[^>]*src="(\w+:[^"]*)"', read(path))]
+    used = re.search(r'src="\.\./(_static/mathjax/[^"?]*)\?config=(\w+-\w+)"', read(os.path.join(folder, "src", "fix_mpm.html")))
+    if not used:
+        return wrong + ["fix_mpm.html does not load MathJax"]
+    top = os.path.dirname(used.group(1))
+    for name in (used.group(1), top + "/config/%s.js" % used.group(2), top + "/jax/output/CommonHTML/fonts/TeX/fontdata.js",
+                 top + "/fonts/HTML-CSS/TeX/woff/MathJax_Main-Regular.woff"):
+        if not os.path.exists(os.path.join(folder, name)):
+            wrong.append(name + " is not in the built manual")
+    return wrong
+
+
+def test_numbers_of_the_ledger_agree():
+    """the table of the page with the source, and what other pages say of single entries with the table"""
+    page = read(os.path.join(PAGES, "compute_mpm_energy.rst"))
+    table = dict(re.findall(r"^   \* - (\d+)\n     - (\w+)$", page, re.M))
+    source = read(os.path.join(SOURCES, "compute_mpm_energy.h"))
+    entries = re.findall(r"^ +([A-Z]+)[,\s]", source[source.index("enum Entry"):source.index("};", source.index("enum Entry"))], re.M)
+    assert [name.upper() for name in table.values()] + ["NENTRY"] == entries, "%s\n%s" % (table, entries)
+    assert list(table) == [str(k + 1) for k in range(len(table))], table
+    wrong = []
+    for path in pages() + readmes():
+        for number, name in re.findall(r"\b[Ee]ntry (\d+), \*(\w+)\*", read(path)):
+            if table.get(number) != name:
+                wrong.append("%s: entry %s is not %s" % (relative(path), number, name))
+    check(wrong)
 
 
 def test_text_is_ascii():
@@ -225,6 +274,20 @@ def test_every_source_file_is_in_the_table_of_the_developer_guide():
         base = name.rsplit(".", 1)[0]
         if not any(fnmatch.fnmatch(name, n) or fnmatch.fnmatch(base, n) for n in names):
             wrong.append("src/MPM/%s is not in the table of files in Developer_mpm.rst" % name)
+    check(wrong)
+
+
+def test_every_keyword_of_fix_mpm_is_described():
+    """all on its own page, those that have a page of details also there"""
+    table = read(os.path.join(PAGES, "options", "fix_mpm.inc"))
+    words = re.findall(r"\*([^*]+)\*", re.search(r"^\* keyword = (.*(?:\n  or .*)*)", table, re.M).group(1))
+    said = read(os.path.join(PAGES, "fix_mpm.rst")).split("\nDescription\n")[1].split("\nRestart, fix_modify")[0].lower()
+    wrong = ["doc/src/fix_mpm.rst: nothing about " + word for word in words if not re.search(r"\*%s\b" % word, said)]
+    for name in ("shapes", "transfers", "schemes", "frames", "locking"):
+        text = read(os.path.join(PAGES, "Howto_mpm_%s.rst" % name))
+        for word in re.findall(r"^   single: (\w+); fix mpm$", text, re.M):
+            if word not in words or not re.search(r"\*%s\b" % word, text.split("\n====")[1], re.I):
+                wrong.append("doc/src/Howto_mpm_%s.rst: nothing about %s" % (name, word))
     check(wrong)
 
 

@@ -49,6 +49,7 @@ def test_complete_scenes_run():
         result = run_scene(scene, timeout=100)
         assert result.code == 0 and "Loop time" in result.output, \
             os.path.basename(path) + "\n" + result.tail()
+        assert not mt.warnings(result.output), os.path.basename(path) + "\n" + "\n".join(mt.warnings(result.output))
 
 
 mt.main(globals())
