@@ -1,0 +1,261 @@
+#!/usr/bin/env python3
+# This file is part of the MPM package for LAMMPS, distributed under the GNU
+# General Public License, version 2; see the file LICENSE.
+"""Pictures and movies of points, with title, color bar, times, and one or several views.
+
+usage: picture.py [options] SERIES -o FILE
+
+SERIES: a list of dump mpm/vtk (.pvd), one of its snapshots (.vtp), or a file of dump custom with the columns x y z.
+FILE: a picture (.png, .pdf, .svg), or a movie of all times (.gif, .mp4; the latter needs ffmpeg).
+
+  --color FIELD      a field or formula of fields, such as eplastic, pressure/1e6, sqrt(vx**2+vz**2); of a
+                     vector its components are velocity_x ..., of a tensor stress_xx ...; default: type
+  --label TEXT       of the color bar, with the unit; default: the formula
+  --range MIN MAX    of the colors; default: that of the times that are drawn
+  --times T ...      of the snapshots (the nearest are taken), default: the first, middle, and last one
+  --view xz ...      axes of the views, one row each: two of x y z; default xy in 2d, and xz
+  --cut FORMULA      draws only points for which it is true, such as "y > 0"
+  --diameter D       of points; default: 1.4 times the usual distance of neighbors in the first snapshot
+  --title TEXT, --colors NAME (a color map of matplotlib), --width INCHES, --dpi N, --fps N
+
+As a module: read_series() gives snapshots, draw() puts one into axes of matplotlib."""
+import argparse
+import os
+import re
+
+import numpy as np
+
+TYPES = {"Float64": "f8", "Float32": "f4", "Int64": "i8", "UInt8": "u1"}
+TENSOR = [a + b for a in "xyz" for b in "xyz"]
+
+
+class Snapshot:
+    """Positions x [n][3] and fields by name, [n] each, at a time (None: not known)."""
+
+    def __init__(self, time, x, fields):
+        self.time, self.x, self.fields = time, x, fields
+
+    def values(self, formula):
+        """Of a field, or of a formula of fields and of x, y, z."""
+        if formula in self.fields:
+            return self.fields[formula]
+        names = dict(self.fields)
+        names.update({name: getattr(np, name) for name in ("sqrt", "exp", "log", "log10", "abs", "sin", "cos", "round")})
+        names.update(zip("xyz", self.x.T))
+        try:
+            return eval(formula, {"__builtins__": {}}, names) + np.zeros(len(self.x))
+        except NameError as error:
+            raise SystemExit("%s: %s; there are %s" % (formula, error, " ".join(sorted(self.fields))))
+
+
+def read_vtp(path):
+    """A file of dump mpm/vtk."""
+    with open(path, "rb") as file:
+        data = file.read()
+    mark = b'<AppendedData encoding="raw">\n_'
+    if mark not in data:
+        raise SystemExit("%s: no file of dump mpm/vtk" % path)
+    header = data[:data.index(mark)].decode()
+    start = data.index(mark) + len(mark)
+    order = "<" if 'byte_order="LittleEndian"' in header else ">"
+    arrays = {}
+    for tag in re.findall(r"<DataArray ([^>]*offset=[^>]*)/>", header):
+        word = dict(re.findall(r'(\w+)="([^"]*)"', tag))
+        at = start + int(word["offset"])
+        size = int(np.frombuffer(data, order + "u8", 1, at)[0])
+        kind = np.dtype(order + TYPES[word["type"]])
+        array = np.frombuffer(data, kind, size // kind.itemsize, at + 8)
+        arrays[word["Name"]] = array.reshape(-1, int(word["NumberOfComponents"])).astype(float)
+    x = arrays.pop("Points")
+    fields = {}
+    for name, array in arrays.items():
+        if name in ("connectivity", "offsets"):
+            continue
+        n = array.shape[1]
+        parts = {1: [""], 3: ["_x", "_y", "_z"], 9: ["_" + ab for ab in TENSOR]}.get(n, ["_%d" % k for k in range(1, n + 1)])
+        fields.update({name + part: array[:, k] for k, part in enumerate(parts)})
+    time = re.search(r'Name="TimeValue"[^>]*>([^<]*)<', header)
+    return Snapshot(float(time.group(1)) if time else None, x, fields)
+
+
+def read_dump(path):
+    """All snapshots of a file of dump custom."""
+    snapshots = []
+    with open(path) as file:
+        lines = iter(file.read().splitlines())
+    time, n = None, 0
+    for line in lines:
+        if line == "ITEM: TIME":
+            time = float(next(lines))
+        elif line == "ITEM: NUMBER OF ATOMS":
+            n = int(next(lines))
+        elif line.startswith("ITEM: ATOMS"):
+            names = line.split()[2:]
+            if not {"x", "y", "z"} <= set(names):
+                raise SystemExit("%s: needs columns x y z, and has %s" % (path, " ".join(names)))
+            table = np.array([next(lines).split() for _ in range(n)], float).reshape(n, len(names))
+            column = dict(zip(names, table.T))
+            snapshots.append(Snapshot(time, np.stack([column[a] for a in "xyz"], 1), column))
+            time = None
+    if not snapshots:
+        raise SystemExit("%s: no file of dump custom" % path)
+    return snapshots
+
+
+def read_series(path, times=None):
+    """Snapshots of a list, of a snapshot, or of a dump: all, or those nearest to the times."""
+    if path.endswith(".pvd"):
+        with open(path) as file:
+            found = re.findall(r'<DataSet timestep="([^"]*)" file="([^"]*)"', file.read())
+        if not found:
+            raise SystemExit("%s: no snapshots" % path)
+        known = np.array([float(time) for time, _ in found])
+        chosen = nearest(known, times)
+        return [read_vtp(os.path.join(os.path.dirname(path), found[k][1])) for k in chosen]
+    snapshots = [read_vtp(path)] if path.endswith(".vtp") else read_dump(path)
+    if times is None:
+        return snapshots
+    if any(snapshot.time is None for snapshot in snapshots):
+        raise SystemExit("%s: no times (dump_modify time yes)" % path)
+    return [snapshots[k] for k in nearest(np.array([s.time for s in snapshots]), times)]
+
+
+def nearest(known, times):
+    return range(len(known)) if times is None else [int(np.argmin(abs(known - time))) for time in times]
+
+
+def usual_distance(x, sample=200):
+    """Median distance of a point from its nearest neighbor."""
+    if len(x) < 2:
+        raise SystemExit("%d points: say with --diameter how large they are" % len(x))
+    found = []
+    for k in np.linspace(0, len(x) - 1, min(sample, len(x))).astype(int):
+        squares = np.sum((x - x[k])**2, axis=1)
+        squares[k] = np.inf
+        found.append(np.sqrt(squares.min()))
+    return float(np.median(found))
+
+
+def draw(axes, snapshot, values, diameter, view="xz", cmap="viridis", limits=None):
+    """Disks of this diameter at the points, colored by values, the farther ones behind the nearer; what is to
+    be given to a color bar. view: axes to the right and up; one looks along the third, against it for xz."""
+    from matplotlib.collections import EllipseCollection
+    right, up = ("xyz".index(a) for a in view)
+    depth = 3 - right - up
+    towards = 1.0 if (right, up) in ((0, 1), (1, 2), (2, 0)) else -1.0
+    order = np.argsort(towards * snapshot.x[:, depth], kind="stable")
+    size = np.full(len(order), diameter)
+    disks = EllipseCollection(size, size, np.zeros(len(order)), units="x", offsets=snapshot.x[order][:, [right, up]],
+                              transOffset=axes.transData, cmap=cmap, linewidths=0.0)
+    disks.set_array(np.asarray(values, float)[order])
+    if limits is not None:
+        disks.set_clim(*limits)
+    axes.add_collection(disks)
+    axes.set_aspect("equal")
+    return disks
+
+
+def bounds(snapshots, view, margin):
+    """Limits of the axes of a view that hold all snapshots."""
+    columns = ["xyz".index(a) for a in view]
+    low = np.min([s.x[:, columns].min(axis=0) for s in snapshots], axis=0) - margin
+    high = np.max([s.x[:, columns].max(axis=0) for s in snapshots], axis=0) + margin
+    return low, high
+
+
+def cut(snapshot, formula):
+    if not formula:
+        return snapshot
+    chosen = snapshot.values(formula).astype(bool)
+    return Snapshot(snapshot.time, snapshot.x[chosen], {name: value[chosen] for name, value in snapshot.fields.items()})
+
+
+def panels(plt, snapshots, args):
+    """A figure with a column for each snapshot and a row for each view."""
+    boxes = [bounds(snapshots, view, args.diameter) for view in args.view]
+    heights = [(high[1] - low[1]) / (high[0] - low[0]) for low, high in boxes]
+    width = args.width or 4.0 * len(snapshots) + 1.0
+    figure, grid = plt.subplots(len(args.view), len(snapshots), squeeze=False, layout="constrained",
+                                gridspec_kw={"height_ratios": heights},
+                                figsize=(width, (width - 1.0) / len(snapshots) * sum(heights) + 0.9))
+    disks = None
+    for row, view, (low, high) in zip(grid, args.view, boxes):
+        for axes, snapshot in zip(row, snapshots):
+            disks = draw(axes, snapshot, snapshot.values(args.color), args.diameter, view, args.colors, args.range)
+            axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xlabel=view[0])
+            axes.ticklabel_format(scilimits=(-2, 4))
+        row[0].set_ylabel(view[1])
+    for axes, snapshot in zip(grid[0], snapshots):
+        if snapshot.time is not None:
+            axes.set_title("t = %.4g" % snapshot.time)
+    figure.colorbar(disks, ax=grid, label=args.label or args.color, pad=0.01)
+    if args.title:
+        figure.suptitle(args.title)
+    return figure
+
+
+def movie(plt, snapshots, args):
+    from matplotlib.animation import FFMpegWriter, PillowWriter
+    frame = panels(plt, snapshots[:1], args)
+    grid = frame.axes[:len(args.view)]
+    boxes = [bounds(snapshots, view, args.diameter) for view in args.view]
+    writer = (PillowWriter if args.output.endswith(".gif") else FFMpegWriter)(fps=args.fps)
+    with writer.saving(frame, args.output, args.dpi):
+        for snapshot in snapshots:
+            for axes, view, (low, high) in zip(grid, args.view, boxes):
+                for old in list(axes.collections):
+                    old.remove()
+                draw(axes, snapshot, snapshot.values(args.color), args.diameter, view, args.colors, args.range)
+                axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
+            if snapshot.time is not None:
+                grid[0].set_title("t = %.4g" % snapshot.time)
+            writer.grab_frame()
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("series")
+    parser.add_argument("-o", "--output", required=True)
+    parser.add_argument("--color", default="type")
+    parser.add_argument("--label")
+    parser.add_argument("--range", nargs=2, type=float)
+    parser.add_argument("--times", nargs="+", type=float)
+    parser.add_argument("--view", nargs="+")
+    parser.add_argument("--cut")
+    parser.add_argument("--diameter", type=float)
+    parser.add_argument("--title")
+    parser.add_argument("--colors", default="viridis")
+    parser.add_argument("--width", type=float)
+    parser.add_argument("--dpi", type=int, default=100)
+    parser.add_argument("--fps", type=float, default=15.0)
+    args = parser.parse_args()
+    import matplotlib
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    moves = args.output.endswith((".gif", ".mp4"))
+    snapshots = read_series(args.series, args.times)
+    if not moves and args.times is None and len(snapshots) > 3:
+        snapshots = [snapshots[k] for k in (0, len(snapshots) // 2, -1)]
+    if args.diameter is None:
+        args.diameter = 1.4 * usual_distance(snapshots[0].x)
+    if args.view is None:
+        args.view = ["xy" if np.ptp(snapshots[0].x[:, 2]) == 0.0 else "xz"]
+    for view in args.view:
+        if len(view) != 2 or not set(view) <= set("xyz") or view[0] == view[1]:
+            raise SystemExit("view %s: two of x, y, z are needed, such as xz" % view)
+    snapshots = [cut(snapshot, args.cut) for snapshot in snapshots]
+    if not all(len(snapshot.x) for snapshot in snapshots):
+        raise SystemExit("no points are left to be drawn: see --cut")
+    if args.range is None:
+        values = [snapshot.values(args.color) for snapshot in snapshots]
+        args.range = (min(v.min() for v in values), max(v.max() for v in values))
+    if moves:
+        movie(plt, snapshots, args)
+    else:
+        panels(plt, snapshots, args).savefig(args.output, dpi=args.dpi)
+    print(args.output)
+
+
+if __name__ == "__main__":
+    main()

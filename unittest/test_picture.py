@@ -1,0 +1,98 @@
+# This file is part of the MPM package for LAMMPS, distributed under the GNU
+# General Public License, version 2; see the file LICENSE.
+#
+# labels: output
+# sanitize: no
+"""tools/picture.py: files of dump mpm/vtk against dump custom, pictures against what is drawn, mistakes."""
+
+import os
+
+import mpm_testing as mt
+
+TOOL = os.path.join(mt.ROOT, "tools", "picture.py")
+
+SCENE = """units lj
+dimension 2
+boundary f f p
+atom_style mpm
+neighbor 0.5 bin
+region box block 0 8 0 8 -0.5 0.5
+create_box 1 box
+fix grid all mpm 1.0
+region body block 2 6 3 5 INF INF
+create_points 1 region body ppc 2
+fix m all mpm/material density 1 neohookean 100 0.3
+velocity all set 0.3 0 0
+dump vtk all mpm/vtk 5 s.*.vtp velocity stress J
+dump_modify vtk sort id
+dump one all mpm/vtk 10 single.*.vtp velocity
+dump_modify one sort id precision single
+dump text all custom 5 s.dump id x y z vx
+dump_modify text sort id time yes format float %.17g
+timestep 0.01
+run 10
+"""
+
+CHECKS = """import sys
+sys.path.insert(0, %r)
+import numpy as np
+import picture
+
+vtk, text, single = (picture.read_series(name) for name in ("s.pvd", "s.dump", "single.pvd"))
+assert [s.time for s in vtk] == [s.time for s in text] == [0.0, 0.05, 0.1]
+for a, b in zip(vtk, text):
+    assert np.array_equal(a.x, b.x) and np.array_equal(a.fields["velocity_x"], b.fields["vx"])
+    assert len(a.fields["stress_xz"]) == 32 and a.values("type").min() == 1
+    assert np.allclose(a.values("2*velocity_x+x"), 2 * b.fields["vx"] + b.x[:, 0], rtol=0, atol=1e-15)
+assert np.allclose(single[1].x, vtk[2].x, atol=1e-6) and not np.array_equal(single[1].x, vtk[2].x)
+assert [s.time for s in picture.read_series("s.pvd", [0.06, 9.0])] == [0.05, 0.1]
+assert abs(picture.usual_distance(vtk[0].x) - 0.5) < 1e-12
+assert len(picture.cut(vtk[0], "x < 4").x) == 16
+""" % os.path.dirname(TOOL)
+
+# width of what is drawn in pixels over that of the whole box, and the color of its middle
+LOOK = """import matplotlib.image, numpy as np
+picture = matplotlib.image.imread("p.png")[:, :, :3]
+drawn = (abs(picture - picture.mean(axis=2, keepdims=True)).max(axis=2) > 0.1)
+assert drawn.mean() > 0.1, drawn.mean()
+"""
+
+
+def python():
+    for name in ("python3", "/usr/bin/python3"):
+        if mt.run([name, "-c", "import matplotlib, PIL"]).code == 0:
+            return name
+    raise mt.Skip("matplotlib is not installed")
+
+
+folder = mt.scratch_folder()
+
+
+def test_reads_what_lammps_writes():
+    name = python()
+    mt.ok(mt.lammps(folder, SCENE))
+    mt.ok(mt.run([name, "-c", CHECKS], folder))
+
+
+def test_draws():
+    name = python()
+    mt.ok(mt.run([name, TOOL, "s.pvd", "--color", "sqrt(velocity_x**2)", "--view", "xy", "yx", "--cut", "x < 5",
+                  "--title", "a block", "--label", "speed", "-o", "p.png"], folder))
+    mt.ok(mt.run([name, "-c", LOOK], folder))
+    mt.ok(mt.run([name, TOOL, "s.dump", "--color", "vx", "--times", "0.05", "-o", "one.png"], folder))
+    mt.ok(mt.run([name, TOOL, "s.pvd", "--color", "J", "-o", "m.gif"], folder))
+    mt.ok(mt.run([name, "-c", "from PIL import Image; assert Image.open('m.gif').n_frames == 3"], folder))
+
+
+def test_mistakes_are_told():
+    name = python()
+    for words, text in ((["s.pvd", "--color", "nothing"], "there are J id"), (["s.pvd", "--view", "xx"], "such as xz"),
+                        (["s.pvd", "--cut", "x > 99"], "no points are left"), (["log.lammps"], "no file of dump custom"),
+                        (["log.lammps.vtp"], "no file of dump mpm/vtk")):
+        with open(os.path.join(folder, "log.lammps.vtp"), "w") as file:
+            file.write("nothing\n")
+        result = mt.run([name, TOOL] + words + ["-o", "q.png"], folder)
+        assert result.code != 0 and text in result.output and "Traceback" not in result.output, result.output
+
+
+mt.main(globals())
