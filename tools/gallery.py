@@ -40,6 +40,8 @@ STRIP = {"hypervelocity": (0.0, 0.65, 0.0, 1.0), "rubber-band": (0.0, 1.0, 0.0, 
 STYLES = {"fix": (2, "fix_"), "compute": (2, "compute_"), "dump": (2, "dump_"), "region": (1, "region_"),
           "pair_style": (0, "pair_"), "atom_style": (0, "atom_style_")}
 PARTS = ("eos", "strength", "damage", "viscosity", "thermal")
+# the first sentence of a text: the dots of names and journals in parentheses do not end it
+SENTENCE = r"(?:\((?:[^()]|\([^()]*\))*\)|[^(])*?(?:(?<=[a-z0-9)])|(?<=[A-Z]{2}))[.:](?=\s|$)"
 # what every scene has
 COMMON = {"atom_style_mpm", "fix_mpm", "fix_mpm_material", "create_points", "fix_mpm_dt"}
 
@@ -123,7 +125,7 @@ def scenes():
         found = re.match(r"# (.*)\n+!\[(.*)\]\(%s\.png\)\n+((?:.+\n)+)" % re.escape(name), text)
         if not found:
             sys.exit("examples/%s/README.md does not begin with a title, a picture %s.png, and a text" % (name, name))
-        line = re.match(r".*?(?:[a-z0-9)]|[A-Z]{2})[.:](?=\s|$)", found.group(3).replace("\n", " "))
+        line = re.match(SENTENCE, found.group(3).replace("\n", " "))
         all_scenes.append({"name": name, "title": found.group(1), "alt": found.group(2),
                            "line": to_rst(re.sub(":$", ".", line.group(0) if line else found.group(3).strip())),
                            "cost": cost(folder, name), "uses": uses(folder, known)})

@@ -32,6 +32,7 @@ static std::string metal(double E)
 /* ----------------------------------------------------------------------
    A block of 16 x 16 between walls without friction, and a tool with the given shape of its lower face,
    which goes in by the depth within so many transits of waves. The force is the mean over 1 % of that.
+   The tool is a body, or, if one is given, a region with this face (fix mpm/boundary).
 ------------------------------------------------------------------------- */
 
 struct Indentation {
@@ -40,11 +41,21 @@ struct Indentation {
 };
 
 static Indentation press(const std::function<double(double)> &shape, double E, double h, double end,
-                         double transits)
+                         double transits, const std::string &region = "")
 {
   const double size = 16.0, time = transits * size / wave_speed(E);
   const int steps = (int) std::ceil(0.01 * time / (0.4 * h / wave_speed(E)));
   const double dt = 0.01 * time / steps;
+  const std::string options = "${h} axisymmetric yes scheme musl gain ignore",
+                    block = "block 0 INF INF 0 INF INF";
+  const std::string body =
+      fields({{"one", block}, {"two", "block 0 4 0 $(4*v_h) INF INF"}}, options) +
+      strprintf("fix m2 two mpm/material density 1e9 linear %.17g %g\n", E, NU) +
+      "fix c all mpm/contact F1 F2\nvariable f equal f_c[1][2]\n";
+  const std::string wall = fields({{"one", block}}, options) +
+      strprintf("variable y equal %.17g*time\nregion tool %s move NULL v_y NULL\n", -end / time,
+                region.c_str()) +
+      "fix w all mpm/boundary region tool separate\nvariable f equal f_w[2]\n";
   Scene run(strprintf("variable h equal %.17g\n", h) + R"(
 units lj
 dimension 2
@@ -54,13 +65,9 @@ atom_modify map array
 neighbor $(0.5*v_h) bin
 region box block 0 16 -16 4 -0.5 0.5
 create_box 2 box
-)" +
-            fields({{"one", "block 0 INF INF 0 INF INF"}, {"two", "block 0 4 0 $(4*v_h) INF INF"}},
-                   "${h} axisymmetric yes scheme musl gain ignore") +
+)" + (region.empty() ? body : wall) +
             "fix m1 one mpm/material " + metal(E) + "\n" +
-            strprintf("fix m2 two mpm/material density 1e9 linear %.17g %g\n", E, NU) +
-            "fix sides all mpm/boundary xlo xhi ylo slip\nfix c all mpm/contact F1 F2\n" +
-            strprintf("timestep %.17g\n", dt));
+            "fix sides all mpm/boundary xlo xhi ylo slip\n" + strprintf("timestep %.17g\n", dt));
   std::vector<tagint> top;
   for (int i = 0; i < run.n(); i++) {
     double *const x = run.x()[i];
@@ -72,8 +79,7 @@ create_box 2 box
     }
   }
   Indentation result;
-  run.commands(
-      strprintf("variable f equal f_c[1][2]\nfix mean all ave/time 1 %d %d v_f\n", steps, steps));
+  run.commands(strprintf("fix mean all ave/time 1 %d %d v_f\n", steps, steps));
   for (int n = 0; n < 100; n++) {
     run.commands(strprintf("run %d post no\n", steps));
     result.depth.push_back((run.time() - 0.5 * steps * dt) * end / time);
@@ -94,23 +100,29 @@ create_box 2 box
    cone at the old surface. Bodies touch at 0.1 node spacings too late: sqrt(F) = sqrt(C) (d - 0.1 h)
 ------------------------------------------------------------------------- */
 
+static double cone(double r)
+{
+  return SLOPE * r;
+}
+
+static double cone_of_finite_elements(double E)
+{
+  const double x = std::log(E / (1.0 - NU * NU));
+  return ((-1.131 * x + 13.635) * x - 30.594) * x + 29.267;
+}
+
 TEST(Indentation, ConeLikeFiniteElements)
 {
-  const double E = 250.0, x = std::log(E / (1.0 - NU * NU));
-  const double exact = ((-1.131 * x + 13.635) * x - 30.594) * x + 29.267;
+  const double E = 250.0, exact = cone_of_finite_elements(E);
   EXPECT_NEAR(exact, 87.2, 0.1);
   double error[2];
   for (int k = 0; k < 2; k++) {
     const double h = k ? 0.25 : 0.5;
-    const auto cone = press(
-        [](double r) {
-          return SLOPE * r;
-        },
-        E, h, 0.6, 6.0);
+    const auto tool = press(cone, E, h, 0.6, 6.0);
     double mean = 0.0, s[5] = {};
     for (int n = 40; n < 100; n++) {
-      const double d = cone.depth[n], root = std::sqrt(cone.force[n]);
-      if (n >= 80) mean += cone.force[n] / (d * d) / 20;
+      const double d = tool.depth[n], root = std::sqrt(tool.force[n]);
+      if (n >= 80) mean += tool.force[n] / (d * d) / 20;
       s[0] += 1.0, s[1] += d, s[2] += d * d, s[3] += root, s[4] += d * root;
     }
     const double slope = (s[0] * s[4] - s[1] * s[3]) / (s[0] * s[2] - s[1] * s[1]);
@@ -121,6 +133,20 @@ TEST(Indentation, ConeLikeFiniteElements)
   }
   EXPECT_LT(error[1], 0.10);
   EXPECT_LT(error[1], error[0]);
+}
+
+// A wall that separates acts at its surface: there is no offset, and 5 % hold with few cells, too.
+TEST(Indentation, ConeThatIsAWall)
+{
+  const double E = 250.0, exact = cone_of_finite_elements(E);
+  for (const double h : {0.5, 0.25}) {
+    const auto tool = press(cone, E, h, 0.6, 6.0, strprintf("plane 0 0 0 %g 1 0", -SLOPE));
+    double mean = 0.0;
+    for (int n = 80; n < 100; n++) mean += tool.force[n] / (tool.depth[n] * tool.depth[n]) / 20;
+    EXPECT_NEAR(measured(strprintf("depth of %.1f cells: force/that of finite elements", 0.6 / h),
+                         mean / exact),
+                1.0, 0.05);
+  }
 }
 
 /* ----------------------------------------------------------------------

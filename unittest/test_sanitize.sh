@@ -72,7 +72,7 @@ CODE
   object_of() {
     local folder=$(dirname "$1")
     echo "$(basename "$folder")_$(basename "$1" .cpp).o"
-}
+  }
 
   objects=()
   for source in "$src"/{declare,lattice,law,material,mesh,transfer}/*.cpp; do
