@@ -9,6 +9,9 @@
 
 #include "mpm_lammps.h"
 
+#include "region.h"
+#include "region_mpm_mesh.h"
+
 using namespace MPM_TEST;
 
 namespace {
@@ -969,10 +972,83 @@ TEST(Regions, NoTrailBehindAMovingBody)
 
 /* ---------------------------------------------------------------------- ranks and restart */
 
+/** A ball of radius 1 as triangles: n steps from pole to pole. */
+static std::string ball_stl(int n)
+{
+  const auto corner = [&](int i, int j) {
+    const double theta = M_PI * i / n, phi = M_PI * j / n;
+    return strprintf("vertex %.9g %.9g %.9g\n", std::sin(theta) * std::cos(phi),
+                     std::sin(theta) * std::sin(phi), std::cos(theta));
+  };
+  std::string text = "solid ball\n";
+  const auto triangle = [&](const std::string &a, const std::string &b, const std::string &c) {
+    text += "facet normal 0 0 0\nouter loop\n" + a + b + c + "endloop\nendfacet\n";
+  };
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < 2 * n; j++) {
+      const int next = (j + 1) % (2 * n);
+      if (i > 0) triangle(corner(i, j), corner(i + 1, next), corner(i, next));
+      if (i < n - 1) triangle(corner(i, j), corner(i + 1, j), corner(i + 1, next));
+    }
+  return text + "endsolid ball\n";
+}
+
+// Distances of a mesh: those of regions in general, and what walls take for material in front of them
+SERIAL_TEST(MeshWall, Distances)
+{
+  constexpr int n = 24;
+  constexpr double h = 0.25, cutoff = 1.3;
+  const ScratchFile ball("ball.stl", ball_stl(n));
+  for (const bool out : {false, true}) {
+    Scene run(space("si", "f f f", "-4 4 -4 4 -4 4", 1, 0.1) +
+              "variable x equal 0.4\nvariable a equal 0.7\nregion r mpm/mesh " + ball.name +
+              " 1 0.1 0.2 0.3" + (out ? " side out" : "") +
+              " move v_x NULL NULL rotate v_a 0 0 0 0 0 1\n");
+    auto *region = dynamic_cast<RegMPMMesh *>(run.lmp->domain->get_region_by_id("r"));
+    ASSERT_NE(region, nullptr);
+    region->init();
+    region->prematch();
+    double largest = 0.0;
+    int near = 0, far = 0, inside = 0;
+    for (int k = 0; k < 4000; k++) {
+      double x[3], up, by_cells;
+      for (int d = 0; d < 3; d++)
+        x[d] = 4.0 * std::fmod((k + 1) * std::sqrt(d == 0 ? 2.0 : d == 1 ? 3.0 : 5.0), 1.0) - 1.8;
+      const double exact = region->distance(x, cutoff, up);
+      const int in = region->match(x[0], x[1], x[2]);
+      EXPECT_EQ(exact < 0.0, (bool) in);
+      inside += in;
+      const int interior = region->interior;
+      if (!in) region->interior = !interior;
+      const int touches = region->surface(x[0], x[1], x[2], cutoff);
+      region->interior = interior;
+      if (touches)
+        EXPECT_NEAR(std::abs(exact), region->contact[0].r, 1.0e-12);
+      else
+        EXPECT_EQ(std::abs(exact), cutoff);
+      ASSERT_TRUE(region->distance_by_cells(x, cutoff, h, 0.25 * h, by_cells));
+      if (std::abs(exact) < 0.9 * h) {
+        near++;
+        EXPECT_EQ(by_cells, exact);
+      } else if (std::abs(exact) < 0.9 * cutoff && (exact > 0.0) != out) {
+        far++;
+        largest = std::max(largest, std::abs(by_cells - exact));
+      }
+    }
+    EXPECT_GT(std::min(near, far), 100);
+    EXPECT_GT(std::min(inside, 4000 - inside), 100);
+    // half the diagonal of a cell: its square over the curvature, and the angle between two facets
+    const double half = 0.125 * std::sqrt(3.0) * h;
+    EXPECT_LT(measured("error beyond a node spacing, in node spacings", largest / h),
+              (half * half / 2.0 + half * M_PI / n) / h);
+  }
+}
+
 class Decomposition : public ::testing::TestWithParam<WallsCase> {
  protected:
+  const ScratchFile ball{"ball.stl", ball_stl(10)};
   const std::string grid = strprintf("fix grid all mpm 1.0 %s\n", GetParam().options);
-  const std::string fixes = R"(
+  const std::string fixes = replaced(R"(
 fix m all mpm/material density 1.0 neohookean 10.0 0.3
 fix g all gravity 0.2 vector 1 -2 0.5
 variable shift equal -0.3*time
@@ -981,7 +1057,11 @@ variable speed equal 0.1*sin(3*time)
 region paddle block 5 9 3 8 INF INF move v_shift NULL NULL rotate v_angle 7 5 4 0 0 1
 region knob sphere 3 1 4 1.7
 region ramp plane 2 0.3 4 -0.35 -1 0.2
-)" + GetParam().walls();
+region tool mpm/mesh STL 1.7 3 1 4
+region flying mpm/mesh STL 2.5 7 5 4 move v_shift NULL NULL rotate v_angle 7 5 4 0 0 1
+)",
+                                     "STL", ball.name) +
+      GetParam().walls();
   const std::string scene = space("lj", "f f p", "0 12 0 12 0 8") + grid +
       "region body block 0 5.5 0 5 1 7\ncreate_points 1 region body ppc 2\n" + fixes +
       "velocity all set -0.3 -0.4 0.35\nvelocity all ramp vx -0.4 0.4 y 0 5 sum yes\n"
@@ -1005,15 +1085,16 @@ TEST_P(Decomposition, AnyRanksGiveTheSame)
     }
 }
 
-TEST_P(Decomposition, RestartContinues)
+// to the last bit, as the manual promises for the run after write_restart and the one from the file
+TEST_P(Decomposition, RestartContinuesBitwise)
 {
-  const ScratchFile file("restart");
-  Scene whole(scene + "run 60\n");
-  Scene parts(scene + "run 33\nwrite_restart " + file.name + "\nclear\nread_restart " + file.name +
-              "\n" + grid + fixes + "run 27\n");
-  EXPECT_LT(difference(whole.gather(), parts.gather()), 1.0e-11);
-  for (auto *fix : whole.lmp->modify->get_fix_by_style("^mpm/boundary$"))
-    EXPECT_NEAR(parts.fix(fix->id)->compute_scalar(), fix->compute_scalar(), 1.0e-9);
+  Continued run(scene, 33, grid + fixes + "timestep 0.04\n", 27);
+  EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
+  for (auto *fix : run.whole.lmp->modify->get_fix_by_style("^mpm/boundary$")) {
+    auto *other = run.again.fix(fix->id);
+    EXPECT_NEAR(other->compute_scalar(), fix->compute_scalar(), 1.0e-12);
+    for (int d = 0; d < 3; d++) EXPECT_EQ(other->compute_vector(d), fix->compute_vector(d));
+  }
 }
 
 static const WallsCase decomposition_cases[] = {
@@ -1029,7 +1110,10 @@ static const WallsCase decomposition_cases[] = {
     {"transfer flip 1.0 scheme musl",
      "xlo ylo stick velocity v_speed 0 0 rotate 1 2 0 0 0 1 v_speed"},
     {"", "xlo ylo separate friction 0.3"},
-    {"transfer flip 0.95", "xlo ylo slip friction 0.2 velocity v_speed 0 0"}};
+    {"transfer flip 0.95", "xlo ylo slip friction 0.2 velocity v_speed 0 0"},
+    {"", "xlo ylo slip", "region ramp slip friction 0.2"},
+    {"", "xlo ylo slip", "region tool separate friction 0.2"},
+    {"", "xlo ylo slip", "region flying separate friction 0.2"}};
 INSTANTIATE_TEST_SUITE_P(Walls, Decomposition, ValuesIn(decomposition_cases));
 
 /* ---------------------------------------------------------------------- several fields */

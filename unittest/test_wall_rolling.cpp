@@ -254,6 +254,15 @@ std::string turned_plate(double turned, double height)
   return text + "endsolid plate\n";
 }
 
+/** A cylinder or a sphere that is so large that its surface at the foot is as good as a plane. */
+std::string large(const std::string &style, double turned, double height, double z = 0.0)
+{
+  const double turn = turned * M_PI / 180, r = 200.0;
+  const double x = 0.75 - r * std::sin(turn), y = height - r * std::cos(turn);
+  return style == "sphere" ? strprintf("sphere %.15g %.15g %g %g", x, y, z, r)
+                           : strprintf("cylinder z %.15g %.15g %g INF INF", x, y, r);
+}
+
 std::string turned_plane(double turned, double height, const std::string &motion = "")
 {
   const double turn = turned * M_PI / 180;
@@ -287,9 +296,7 @@ SERIAL_TEST(RoundDisk, OnRegions)
       {"plane of 30 degrees", turned_plane(30, 2.0), 30.0, 2.0},
       {"plane of 45 degrees", turned_plane(45, 2.6), 45.0, 2.6},
       {"mesh of 30 degrees", "mpm/mesh " + plate.name + " 1 0 0 0", 30.0, 2.0},
-      {"cylinder",
-       strprintf("cylinder z %.15g %.15g 200 INF INF", 0.75 - 100.0, 2.0 - 200.0 * std::sqrt(0.75)),
-       30.0, 2.0},
+      {"cylinder", large("cylinder", 30, 2.0), 30.0, 2.0},
       {"moving plane", turned_plane(30, 1.6, " move v_X v_Y NULL"), 30.0, 1.6, {0.1, 0.5}},
   };
   for (const auto &wall : walls)
@@ -317,4 +324,156 @@ SERIAL_TEST(RollingSphere, OnATurnedPlane)
                                      "fix w all mpm/boundary region p separate friction MU",
                                      -std::sin(turn), -std::cos(turn));
   expect_rigid({60, 0.6}, roll({60, 0.6}, 0.05, wall, 3, 30.0), 0.02, 0.05, 0.25 * 0.05);
+}
+
+namespace {
+
+/** The way along the wall in this time from rest, of a body that has settled, damped, without friction. begin: field,
+ *  body, and material. */
+double way_from_rest(const std::string &begin, int dim, const Incline &incline, double h,
+                     const Wall &wall, const std::string &kind, double time)
+{
+  const double theta = incline.theta * M_PI / 180, turn = wall.turned * M_PI / 180;
+  const double t[2] = {std::cos(turn), -std::sin(turn)}, n[2] = {-t[1], t[0]};
+  const auto friction = [&](double mu) {
+    return "fix w all mpm/boundary region wall " + kind + " friction " + std::to_string(mu) + "\n";
+  };
+  constexpr double settled = 0.2;
+  const auto run_until = [](double end) {
+    return strprintf("fix dt all mpm/dt 0.5 until %.15g\nrun 100000\n", end);
+  };
+  Scene run(
+      box(dim, "si", "f f f", strprintf("0 3.2 -0.4 %g 0 1.5", wall.height + 1.2), 1, 0.5 * h) +
+      begin + "region wall " + wall.region + "\n" + friction(0.0) +
+      strprintf("fix g all gravity %.15g vector %.15g %.15g 0\n", g * std::cos(theta), -n[0],
+                -n[1]) +
+      "fix damp all viscous $(100*mass(all)/count(all))\n" + run_until(settled) +
+      "unfix g\nunfix w\nunfix damp\nvelocity all set 0 0 0\n" + friction(incline.mu) +
+      strprintf("fix g all gravity %g vector %.15g %.15g 0\n", g,
+                std::sin(theta) * t[0] - std::cos(theta) * n[0],
+                std::sin(theta) * t[1] - std::cos(theta) * n[1]) +
+      strprintf("variable x equal xcm(all,x)*%.15g+xcm(all,y)*%.15g\nrun 0\n", t[0], t[1]));
+  const double x0 = run.variable("x");
+  run.commands(run_until(settled + time));
+  return run.variable("x") - x0;
+}
+
+/** Of an elastic block of this height and shear wave speed whose foot sticks until the wave that it sends has the
+ *  stress of friction: this grows with the time, density c g sin t, up to mu density g height cos. */
+double way_of_block(const Incline &incline, double height, double c, double time)
+{
+  const double theta = incline.theta * M_PI / 180, gt = g * std::sin(theta),
+               f = incline.mu * g * std::cos(theta), sticks = f * height / (c * gt);
+  return 0.5 * (gt - f) * time * time + 0.5 * f * sticks * time - f * sticks * sticks / 6.0;
+}
+
+/** A block, 0.8 wide and 0.3 high, of a material that damps its vibrations: without, it is the block that is measured,
+ *  which begins to hop or, with slip, to brake by itself. */
+double expect_block(const Incline &incline, double h, const Wall &wall, const std::string &kind)
+{
+  constexpr double height = 0.3, time = 0.4;
+  const std::string begin = strprintf("fix grid all mpm %g origin 0 0\n", h) +
+      strprintf("region body block 0.35 1.15 %.15g %.15g INF INF\n", wall.height,
+                wall.height + height) +
+      "create_points 1 region body ppc 2\n" +
+      strprintf("displace_atoms all rotate 0.75 %.15g 0 0 0 1 %.15g units box\n", wall.height,
+                -wall.turned) +
+      "fix m all mpm/material density 1000 neohookean 4.2e6 0.4 viscosity newtonian " +
+      (kind == "slip" ? "300\n" : "1000\n");
+  const double way = way_from_rest(begin, 2, incline, h, wall, kind, time);
+  const double exact = way_of_block(incline, height, std::sqrt(1.5e6 / 1000), time);
+  EXPECT_NEAR(measured(strprintf("%s %s, %g degrees, mu %g, h %g: way", kind.c_str(),
+                                 wall.name.c_str(), incline.theta, incline.mu, h),
+                       way / exact),
+              1.0, 0.02);
+  return way;
+}
+
+/** A round ball: points in shells, n of them along the diameter, as cubes in a mesh. */
+std::string ball_of_shells(const double *center, int n)
+{
+  std::vector<std::array<double, 3>> points;
+  for (int k = 0; k < n / 2; k++) {
+    const int number = (int) std::lround(4.0 * M_PI / 3.0 * (3 * k * k + 3 * k + 1));
+    const double r = (k + 0.5) * 2 * R / n;
+    for (int j = 0; j < number; j++) {    // a spiral from pole to pole
+      const double z = 1.0 - (2.0 * j + 1.0) / number,
+                   angle = j * M_PI * (3.0 - std::sqrt(5.0)) + k;
+      const double s = r * std::sqrt(1.0 - z * z);
+      points.push_back(
+          {center[0] + s * std::cos(angle), center[1] + s * std::sin(angle), center[2] + r * z});
+    }
+  }
+  const int size = (int) points.size();
+  const double half = 0.5 * std::cbrt(4.0 / 3.0 * M_PI * R * R * R / size);
+  std::string text = strprintf("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n%d\n", 8 * size);
+  for (int k = 0; k < 8 * size; k++) {
+    const auto &p = points[k / 8];
+    const int corner = k % 4;
+    text += strprintf("%d %.15g %.15g %.15g\n", k + 1,
+                      p[0] + (corner == 1 || corner == 2 ? half : -half),
+                      p[1] + (corner / 2 ? half : -half), p[2] + (k % 8 / 4 ? half : -half));
+  }
+  text += strprintf("$EndNodes\n$Elements\n%d\n", size);
+  for (int k = 0; k < size; k++) {
+    text += strprintf("%d 5 2 1 1", k + 1);
+    for (int c = 1; c <= 8; c++) text += strprintf(" %d", 8 * k + c);
+    text += "\n";
+  }
+  return text + "$EndElements\n";
+}
+
+void expect_ball(const Incline &incline, double h, const Wall &wall)
+{
+  constexpr double time = 0.3, k = 0.4;
+  const double theta = incline.theta * M_PI / 180, turn = wall.turned * M_PI / 180;
+  const double center[3] = {0.75 + R * std::sin(turn), wall.height + R * std::cos(turn), 0.75};
+  const ScratchFile mesh("shells.msh", ball_of_shells(center, (int) std::lround(2 * R / h) * 2));
+  const std::string begin = strprintf("fix grid all mpm %.15g origin 0 0 0\n", h) +
+      "create_points 1 elements " + mesh.name +
+      "\nfix m all mpm/material density 1000 neohookean 4.2e6 0.4\n";
+  const double way = way_from_rest(begin, 3, incline, h, wall, "separate", time);
+  const double a = std::tan(theta) <= incline.mu * (1.0 + 1.0 / k)
+      ? g * std::sin(theta) / (1.0 + k)
+      : g * (std::sin(theta) - incline.mu * std::cos(theta));
+  EXPECT_NEAR(measured(strprintf("ball on %s, %g degrees, mu %g, h %g: way", wall.name.c_str(),
+                                 incline.theta, incline.mu, h),
+                       way / (0.5 * a * time * time)),
+              1.0, 0.02);
+}
+}    // namespace
+
+SERIAL_TEST(SlidingBlock, OnRegions)
+{
+  const ScratchFile plate("plate.stl", turned_plate(30, 2.0));
+  const Wall plane15 = {"plane of 15 degrees", turned_plane(15, 1.3), 15.0, 1.3},
+             plane30 = {"plane of 30 degrees", turned_plane(30, 2.0), 30.0, 2.0},
+             block = {"block", "block -5 20 -5 0.42 INF INF", 0.0, 0.42},
+             mesh = {"mesh of 30 degrees", "mpm/mesh " + plate.name + " 1 0 0 0", 30.0, 2.0},
+             cylinder = {"cylinder", large("cylinder", 30, 2.0), 30.0, 2.0},
+             sphere = {"sphere", large("sphere", 30, 2.0), 30.0, 2.0};
+  constexpr double h = 0.05;
+  const double on_mesh = expect_block({30, 0.3}, h, mesh, "separate");
+  // far from the edges of its triangles a mesh is a plane
+  EXPECT_NEAR(on_mesh, expect_block({30, 0.3}, h, plane30, "separate"), 1.0e-8);
+  expect_block({45, 0.6}, h, block, "separate");
+  expect_block({45, 0.3}, h, cylinder, "separate");
+  expect_block({60, 0.6}, h, sphere, "separate");
+  expect_block({60, 0.3}, h, plane15, "separate");
+  expect_block({45, 0.6}, 0.5 * h, plane15, "separate");
+
+  // a body that cannot leave the wall, and is damped enough that it does not brake by itself
+  for (const auto &wall : {plane15, plane30, block, mesh}) expect_block({30, 0.3}, h, wall, "slip");
+  expect_block({30, 0.3}, 0.5 * h, plane15, "slip");
+}
+
+// Balls that are round, as RoundDisk; R/6.
+SERIAL_TEST(RoundBall, OnRegions)
+{
+  constexpr double h = 0.5 / 6;
+  const ScratchFile plate("plate.stl", turned_plate(30, 2.0));
+  expect_ball({30, 0.6}, h, {"mesh of 30 degrees", "mpm/mesh " + plate.name + " 1 0 0 0", 30, 2.0});
+  expect_ball({45, 0.6}, h, {"block", "block -5 20 -5 0.42 INF INF", 0.0, 0.42});
+  expect_ball({60, 0.3}, h, {"cylinder", large("cylinder", 30, 2.0), 30.0, 2.0});
+  expect_ball({30, 0.3}, h, {"sphere", large("sphere", 30, 2.0, 0.75), 30.0, 2.0});
 }

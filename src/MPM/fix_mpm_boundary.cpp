@@ -101,24 +101,34 @@ struct Surface {
 
   static bool along_z(const Region::Contact &c) { return fabs(c.delz) > 0.5 * c.r; }
 
-  /** Signed distance of x, negative inside. */
+  /** Signed distance of x, negative inside; far or -far where it is more, or not known. */
   double distance(const double *x) const
   {
+    if (mesh) {
+      double up;
+      const double d = mesh->distance(x, far, up);
+      // in 2d the section has another closest point
+      if (dim == 3 || up <= 0.5 * fabs(d)) return d;
+    }
     const bool inside = region->match(x[0], x[1], x[2]);
     const int interior = region->interior;
     if (!inside) region->interior = !interior;    // Region::surface() answers for one side only
-    if (mesh) mesh->most_touches = 1;
-    int n = region->surface(x[0], x[1], x[2], far);
-    if (mesh) mesh->most_touches = mesh->tmax;
-    if (mesh && dim == 2 && n > 0 && along_z(region->contact[0]))
-      n = region->surface(x[0], x[1], x[2], far);    // the section has another closest point
+    const int n = region->surface(x[0], x[1], x[2], far);
     region->interior = interior;
     double distance = far;
     for (int i = 0; i < n; i++) {
       const auto &c = region->contact[i];
       if (dim == 3 || !along_z(c)) distance = std::min(distance, c.r);
     }
-    return inside && distance < far ? -distance : distance;
+    return inside ? -distance : distance;
+  }
+
+  /** The same for material in front of the surface, where it need not be known as exactly: with errors of
+   *  less than 0.03 h^2/R of a surface of radius R beyond a node spacing h. A mesh is much faster then. */
+  double gap(const double *x, double h) const
+  {
+    double d;
+    return mesh && mesh->distance_by_cells(x, far, h, 0.25 * h, d) ? d : distance(x);
   }
 
   /** Direction out of the region: gradient of the distance, from differences (one-sided where the
@@ -133,11 +143,12 @@ struct Surface {
       const double up = distance(y);
       y[d] = x[d] - step;
       const double down = distance(y);
-      if (up < far && down < far)
+      const bool knows_up = fabs(up) < far, knows_down = fabs(down) < far;
+      if (knows_up && knows_down)
         normal[d] = up - down;
-      else if (up < far && here < far)
+      else if (knows_up && fabs(here) < far)
         normal[d] = 2.0 * (up - here);
-      else if (down < far && here < far)
+      else if (knows_down && fabs(here) < far)
         normal[d] = 2.0 * (here - down);
     }
     const double length = MathExtra::len3(normal);
@@ -256,6 +267,11 @@ FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, nar
 bool FixMPMBoundary::region_moves() const
 {
   return region && region->dynamic_check();
+}
+
+bool FixMPMBoundary::acts_across() const
+{
+  return !region->varshape && (kind == SEPARATE || (friction > 0.0 && !region_moves()));
 }
 
 bool FixMPMBoundary::acts_on(const MPMField &field) const
@@ -477,7 +493,7 @@ void FixMPMBoundary::extend_topology(MPMField &field)
 
 void FixMPMBoundary::extend_across(MPMField &field) const
 {
-  if (comm->nprocs == 1 || kind != SEPARATE || region->varshape) return;
+  if (comm->nprocs == 1 || !acts_across()) return;
   Grid &grid = field.grid;
   const int dim = field.lattice.dim;
   const double h = field.lattice.h, reach = (0.5 * grid.side * sqrt((double) dim) + 4.0) * h;
@@ -729,7 +745,7 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
         if (gap > ON_SURFACE * h) s.share = cube(1.0 - cube(gap / next.far));
       }
       if (kind != STICK || region->varshape) surface.normal(x, 1.0e-4 * h, s.normal);
-      if (region->varshape || kind == SEPARATE) s.distance = surface.distance(x);
+      if (region->varshape || acts_across()) s.distance = surface.distance(x);
       list.singles.push_back(s);
     }
   }
@@ -745,7 +761,7 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
 void FixMPMBoundary::list_crossings(FieldNodes &list)
 {
   list.crossings.clear();
-  if (kind != SEPARATE || region->varshape) return;
+  if (!acts_across()) return;
   const MPMField &field = *list.field;
   const Grid &grid = field.grid;
   const double h = field.lattice.h;
@@ -775,7 +791,7 @@ void FixMPMBoundary::list_crossings(FieldNodes &list)
     for (int round = 0; round < 2 && known; round++) {
       at[a] = x[a] + outward * way;
       const double distance = surface.distance(at);
-      known = distance < surface.far;
+      known = fabs(distance) < surface.far;
       way -= distance / slope - outside;
     }
     at[a] = x[a] + outward * way;
@@ -841,15 +857,16 @@ std::function<double(const double *)> FixMPMBoundary::distance_from_region(const
                                                                            double dt) const
 {
   const Surface surface = {region, field.lattice.dim, MPMWallGap::farthest(field)};
+  const double h = field.lattice.h;
   if (!region_moves())
-    return [surface](const double *x) {
-      return surface.distance(x);
+    return [surface, h](const double *x) {
+      return surface.gap(x, h);
     };
-  return [this, surface, dt](const double *x) {
+  return [this, surface, h, dt](const double *x) {
     double y[3], v[3];
     wall.velocity(x, v);
     for (int d = 0; d < 3; d++) y[d] = x[d] + dt * v[d];
-    return surface.distance(y);
+    return surface.gap(y, h);
   };
 }
 
@@ -976,7 +993,7 @@ void FixMPMBoundary::update_motion(double dt)
           field.grid.node_position(s.node, x);
           const double distance = surface.distance(x);
           s.growth = 0.0;
-          if (distance >= surface.far || s.distance >= surface.far) continue;
+          if (std::max(fabs(distance), fabs(s.distance)) >= surface.far) continue;
 
           // the normal speed of the surface in place of that of the rigid motion
 

@@ -215,6 +215,8 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   } now;
 
   bool region_moves() const;
+  /** Does a region act on lines of nodes through its surface? Else on nodes inside, one by one. */
+  bool acts_across() const;
   bool is_foreseen() const;
   bool holds(const Single &, int d) const;
   bool acts_on(const MPMField &) const;

@@ -167,7 +167,7 @@ void MPMWallGap::map(MPMField &field, const std::vector<char> &near, bool smooth
                             cubes ? block.b[2] * field.grid.side : 0};
       lattice.node_position(first, middle);
       for (int d = 0; d < lattice.dim; d++) middle[d] += 0.5 * field.grid.side * h;
-      if (look(middle) >= far) return;
+      if (std::fabs(look(middle)) >= far) return;
     }
     for (int begin = run.first; begin < run.last; begin += CHUNK) {
       const int end = std::min(begin + CHUNK, run.last);

@@ -9,6 +9,7 @@
 #include "region_mpm_mesh.h"
 
 #include "comm.h"
+#include "domain.h"
 #include "error.h"
 #include "mesh/surface_mesh.h"
 #include "utils.h"
@@ -74,7 +75,7 @@ RegMPMMesh::RegMPMMesh(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, ar
   } else
     bboxflag = 0;
 
-  most_touches = cmax = tmax = std::min(mesh->nparts, MAX_TOUCHES);
+  cmax = tmax = std::min(mesh->nparts, MAX_TOUCHES);
   contact = new Contact[cmax];
   if (comm->me == 0)
     utils::logmesg(lmp, "Region {}: {} triangles, volume {:.8g}, center {:.8g} {:.8g} {:.8g}\n", id,
@@ -90,7 +91,77 @@ RegMPMMesh::~RegMPMMesh()
 
 int RegMPMMesh::inside(double x, double y, double z)
 {
+  if (placing) {
+    place[0] = x;
+    place[1] = y;
+    place[2] = z;
+    return 0;
+  }
   return mesh->inside({x, y, z});
+}
+
+/* ---------------------------------------------------------------------- */
+
+/** Where x is in the coordinates of the mesh: match() takes it back to where the surface was read. */
+void RegMPMMesh::find_place(const double *x)
+{
+  placing = true;
+  match(x[0], x[1], x[2]);
+  placing = false;
+}
+
+double RegMPMMesh::distance(const double *x, double cutoff, double &along_z)
+{
+  find_place(x);
+  SurfaceMesh::Point closest = {place[0], place[1], place[2]};
+  const double d =
+      mesh->distance_within({place[0], place[1], place[2]}, cutoff, closest, last_closest);
+  along_z = std::fabs(place[2] - closest[2]);
+  return interior ? d : -d;
+}
+
+/* ----------------------------------------------------------------------
+   In 2d cells are columns at the z of the places, which is the same for all
+------------------------------------------------------------------------- */
+
+bool RegMPMMesh::distance_by_cells(const double *x, double cutoff, double exact, double size,
+                                   double &distance)
+{
+  constexpr std::size_t MOST = 1 << 20;    // cells in memory
+  constexpr int BITS = 21;                 // of an index
+  const bool flat = domain->dimension == 2;
+  find_place(x);
+  SurfaceMesh::Point center = {0.0, 0.0, place[2]}, closest = center;
+  uint64_t key = 0;
+  bool in_range = true;
+  for (int d = 0; d < (flat ? 2 : 3); d++) {
+    const double index = std::floor((place[d] - mesh->lo[d]) / size) + (1 << (BITS - 1));
+    in_range = in_range && index >= 0.0 && index < (1 << BITS);
+    if (!in_range) break;
+    key = key << BITS | (uint64_t) index;
+    center[d] = mesh->lo[d] + (index - (1 << (BITS - 1)) + 0.5) * size;
+  }
+  if (in_range) {
+    auto &known = cells[size];
+    auto found = known.find(key);
+    if (found == known.end()) {
+      if (known.size() >= MOST) known.clear();
+      Linear linear = {};
+      linear.value = mesh->distance_within(center, cutoff, closest, last_closest);
+      for (int d = 0; d < 3 && std::fabs(linear.value) < cutoff && linear.value != 0.0; d++)
+        linear.gradient[d] = (center[d] - closest[d]) / linear.value;
+      found = known.emplace(key, linear).first;
+    }
+    const Linear &linear = found->second;
+    distance = linear.value;
+    for (int d = 0; d < 3; d++) distance += linear.gradient[d] * (place[d] - center[d]);
+    if (!interior) distance = -distance;
+    if (flat && std::fabs(linear.gradient[2]) > 0.5) return false;
+    if (std::fabs(distance) > exact) return true;
+  }
+  double along_z;
+  distance = RegMPMMesh::distance(x, cutoff, along_z);
+  return !flat || along_z <= 0.5 * std::fabs(distance);
 }
 
 /* ----------------------------------------------------------------------
@@ -103,7 +174,7 @@ int RegMPMMesh::touch(const double *x, double cutoff, double side)
   const double known = mesh->bound(here);
   if (known * side < 0.0 || std::fabs(known) >= cutoff) return 0;
   SurfaceMesh::Touch touches[MAX_TOUCHES];
-  const int n = mesh->touches(here, cutoff, touches, most_touches);
+  const int n = mesh->touches(here, cutoff, touches, tmax);
   if (n == 0 || side * touches[0].distance < 0.0) return 0;
   // the same order in every step, as other regions have it
   for (int i = 1; i < n; i++)

@@ -17,7 +17,10 @@ RegionStyle(mpm/mesh,RegMPMMesh);
 
 #include "region.h"
 
+#include <cstdint>
+#include <map>
 #include <memory>
+#include <unordered_map>
 
 namespace MPM_NS {
 class SurfaceMesh;
@@ -36,10 +39,29 @@ class RegMPMMesh : public Region {
 
   const MPM_NS::SurfaceMesh &surface_mesh() const { return *mesh; }
 
-  int most_touches;    ///< that surface() looks for: tmax, or 1 for the closest point alone
+  /** Signed distance of x from the surface where the region is now, negative in the region; the cutoff or minus the
+   *  cutoff farther away. along_z: how far the closest point is from x along z. It is what match() and surface() tell,
+   *  for a fraction of their time when places near each other are asked for one after the other. */
+  double distance(const double *x, double cutoff, double &along_z);
+
+  /** As distance() for places nearer to the surface than exact, linear in cells of this size farther away: then a search
+   *  is needed once for each cell, and not for each place. The value does not depend on what was asked before.
+   *  False where the closest point is along z of x (2d: another one of the section is meant). */
+  bool distance_by_cells(const double *x, double cutoff, double exact, double size,
+                         double &distance);
 
  private:
+  struct Linear {    // distance in a cell: value at its center, and gradient
+    double value, gradient[3];
+  };
+  using Cells = std::unordered_map<uint64_t, Linear>;    // keys: see distance_by_cells()
   std::unique_ptr<MPM_NS::SurfaceMesh> mesh;
+  bool placing = false;    // inside() is called only for its place, in the coordinates of the mesh
+  double place[3];
+  int last_closest = -1;            // triangle, see SurfaceMesh::distance_within()
+  std::map<double, Cells> cells;    // by their size
+
+  void find_place(const double *x);
 
   int touch(const double *x, double cutoff, double side);
 };

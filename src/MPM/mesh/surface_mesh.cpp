@@ -539,6 +539,36 @@ double SurfaceMesh::distance(const Point &x, Point &closest) const
 
 /* ---------------------------------------------------------------------- */
 
+double SurfaceMesh::distance_within(const Point &x, double cutoff, Point &closest, int &start) const
+{
+  const double known = bound(x);
+  if (std::fabs(known) >= cutoff) return std::copysign(cutoff, known);
+  double smallest = cutoff * cutoff;
+  if (start >= 0) {
+    int unused;
+    const Point r = x - closest_on(triangles[start].corner, x, unused);
+    // the tree comes to this triangle again, unless another one is closer
+    smallest = std::min(smallest, dot(r, r) * (1.0 + 1.0e-9) + 1.0e-3 * near * near);
+  }
+  bool found = false;
+  double side = known;
+  search(x, smallest, no_part, [&](const Triangle &t, const Point &p, int feature, double square) {
+    found = true;
+    smallest = square;
+    closest = p;
+    start = (int) (&t - triangles.data());
+    side = dot(x - p, mean_normal(t, feature));
+  });
+  if (!found && side == 0.0) {
+    Point unused;
+    side = distance(x, unused);
+  }
+  const double d = found ? std::sqrt(smallest) : cutoff;
+  return side < 0.0 ? -d : d;
+}
+
+/* ---------------------------------------------------------------------- */
+
 double SurfaceMesh::distance_and_normal(const Point &x, Point &normal) const
 {
   Point closest;

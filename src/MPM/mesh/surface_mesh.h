@@ -39,6 +39,11 @@ class SurfaceMesh {
   /** Distance of x from the surface, negative inside; closest: the point there. */
   double distance(const Point &x, Point &closest) const;
 
+  /** As distance(), where the surface is nearer than the cutoff; else the cutoff, negative inside, and
+   *  closest is not set. start: a triangle that may be near, -1: none; becomes the one that is closest. It makes the
+   *  search short, and does not alter the result. */
+  double distance_within(const Point &x, double cutoff, Point &closest, int &start) const;
+
   /** As distance(), with the unit normal outward: along the line through x and the closest point, on the
    *  surface the mean normal. Where several points are equally close (to 1e-6 of the size of the body)
    *  it is the mean of their directions, so that it has the symmetry of the body and does not depend
