@@ -1270,6 +1270,23 @@ TEST(TimeStep, RunsEndAtATime)
   }
 }
 
+// also when the part before the last ends among the steps that are made to fit; not when one step is left, which is
+// divided for the sake of its output
+TEST(TimeStep, PartsOfARunToATimeAreOneRun)
+{
+  for (const char *more : {"", " strain 0.002", " every 7 grow 1.001"}) {
+    const std::string scene = dt_scene + "fix step all mpm/dt 0.5 until 1.0" + more + "\n";
+    Scene whole(scene + "run 1000\n");
+    const auto steps = whole.lmp->update->ntimestep;
+    for (const bigint left : {4, 3, 2}) {
+      Scene parts(scene + "run " + std::to_string(steps - left) + "\nrun 1000\n");
+      EXPECT_EQ(parts.lmp->update->ntimestep, steps) << left << more;
+      EXPECT_LT(measured("difference", difference(whole.gather(), parts.gather())), 1.0e-12)
+          << left << more;
+    }
+  }
+}
+
 // output of the last step, which is not a multiple of the interval, with what needs virials; a warning before the end
 TEST(TimeStep, TellsTheEndOfARun)
 {
@@ -1278,12 +1295,13 @@ TEST(TimeStep, TellsTheEndOfARun)
   run.commands("log " + log.name + "\n" + dt_scene +
                "fix step all mpm/dt 0.5 until 1.0\nthermo_style custom step time pe press\n"
                "thermo 1000\nrun 3\n");
-  run.commands("run 0\nrun 1000\nlog none\n");
+  run.commands("run 0\nrun 2\nrun 1000\nrun 5\nlog none\n");
   MPI_Barrier(MPI_COMM_WORLD);    // the first rank writes the file
   const std::string text = file_text(log.name);
   const auto told = text.find("before until 1: run more steps");
   EXPECT_NE(told, std::string::npos) << text;
   EXPECT_EQ(text.find("before until", told + 1), std::string::npos) << "run 0 is no run to an end";
+  EXPECT_EQ(text.find("has passed"), std::string::npos) << text;
   const std::string last = " " + std::to_string(run.lmp->update->ntimestep) + "   1   ";
   EXPECT_NE(text.find(last), std::string::npos) << text;
 }

@@ -165,11 +165,15 @@ void FixMPMDt::setup_pre_force(int)
   wall_at_start = platform::walltime();
   const bool goes_on =
       continues && update->dt == dt_left && fabs(limit.dt - limit_left) <= 1.0e-9 * limit_left;
-  if (goes_on)
+  if (goes_on) {
     update->dt_default = 0;
-  else if (limit.dt < NO_POINTS.dt)
+    wanted = wanted_left;
+  } else if (limit.dt < NO_POINTS.dt)
     set_dt(fraction * limit.dt);
   if (until == 0.0) return;
+  if (comm->me == 0 && update->nsteps > 0 && time_at_start > (1.0 + ROUND_OFF) * until)
+    error->warning(FLERR, "Fix mpm/dt {}: until {:.6g} has passed: it is the time {:.6g}", id,
+                   until, time_at_start);
   if (at_end())
     stop_run();
   else
@@ -194,16 +198,12 @@ void FixMPMDt::stop_run()
 
 double FixMPMDt::fit_to_end(double dt, int least) const
 {
-  const auto fields = MPMField::all(lmp);
-  int cycle = 1;
-  for (const auto *field : fields) cycle = std::max(cycle, field->options.every);
-  const double left = until - elapsed_time(*update), most = 2.0 * cycle;
-  if (left > most * dt) return dt;
+  const auto fields = MPMField::all(lmp);    // all of the same every
+  const int cycle = fields.empty() ? 1 : fields[0]->options.every;
+  const double left = until - elapsed_time(*update);
+  if (left > 2.0 * cycle * dt) return dt;
   int n = std::max(least, (int) std::ceil(left / dt * (1.0 - ROUND_OFF)));
-  const auto is_whole = [n](const auto *field) {
-    return n % field->options.every == field->steps_to_next() % field->options.every;
-  };
-  for (int k = 0; k < cycle && !std::all_of(fields.begin(), fields.end(), is_whole); k++) n++;
+  while (cycle > 1 && n % cycle != fields[0]->steps_to_next() % cycle) n++;
   return left / n;
 }
 
@@ -291,17 +291,19 @@ void FixMPMDt::change_dt(double dt)
 
 void FixMPMDt::post_run()
 {
-  dt_left = wanted;
+  dt_left = update->dt;
+  wanted_left = wanted;
   limit_left = find_limit().dt;
   continues = true;
   if (until == 0.0) return;
   if (ended)
     timer->reset_timeout();
-  else if (comm->me == 0 && update->nsteps > 0)
+  else if (comm->me == 0 && update->nsteps > 0 && !told_of_rest)
     error->warning(FLERR,
                    "Fix mpm/dt {}: the run has ended at the time {:.6g}, before until {:.6g}: run "
                    "more steps",
                    id, elapsed_time(*update), until);
+  told_of_rest = told_of_rest || update->nsteps > 0;    // once: runs can have many parts
 }
 
 /* ---------------------------------------------------------------------- */
@@ -335,8 +337,12 @@ void FixMPMDt::write_restart(FILE *fp)
     return field->running;
   });
   const Limit steps = smallest(strain_limit_local());
-  const double state[5] = {running ? wanted : dt_left, running ? find_limit().dt : limit_left,
-                           (double) nchanges, steps.dt, steps.tag};
+  const double state[6] = {running ? update->dt : dt_left,
+                           running ? find_limit().dt : limit_left,
+                           (double) nchanges,
+                           steps.dt,
+                           steps.tag,
+                           running ? wanted : wanted_left};
   if (comm->me) return;
   const int size = sizeof(state);
   fwrite(&size, sizeof(int), 1, fp);
@@ -345,11 +351,12 @@ void FixMPMDt::write_restart(FILE *fp)
 
 void FixMPMDt::restart(char *buf)
 {
-  double state[5];
+  double state[6];
   memcpy(state, buf, sizeof(state));
   dt_left = state[0];
   limit_left = state[1];
   nchanges = (bigint) state[2];
   if (strain > 0.0) carried = {state[3], 0.0, state[4]};
+  wanted_left = state[5];
   continues = true;
 }

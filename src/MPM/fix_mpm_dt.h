@@ -62,12 +62,12 @@ class FixMPMDt : public Fix, private MPMDtOptions {
   bigint nchanges = 0;
 
   // runs that end at a time
-  bool ended = false;
+  bool ended = false, told_of_rest = false;
   double time_at_start = 0.0, wall_at_start = 0.0;
 
   // what the last run left, to see whether anything was changed since
   bool continues = false;
-  double dt_left = 0.0, limit_left = 0.0;
+  double dt_left = 0.0, wanted_left = 0.0, limit_left = 0.0;
   Limit carried = NO_POINTS;    // strain since the last look, from the restart file
 
   Limit find_limit() const;
