@@ -5,9 +5,11 @@
 // timeout: 900
 
 // Hard tools in a metal without hardening (fix mpm/contact): a cone and a sphere go in, as bodies of
-// revolution, against published finite elements and the plastic limit; a cone is drawn along (examples/scratch).
+// revolution, against published finite elements and the plastic limit; a cone is drawn along (examples/scratch), as a
+// body and as a region that moves (fix mpm/boundary separate).
 // The elastic limit, Hertz, is in test_hertz.cpp.
 
+#include "mesh/stl_testing.h"
 #include "mpm_lammps.h"
 
 #include <map>
@@ -282,4 +284,128 @@ TEST(Scratch, ConeInPlasticMetal)
     EXPECT_LT(s.ridge, s.groove);
     EXPECT_GT(s.ridge, s.groove - s.compressed);
   }
+}
+
+/* ----------------------------------------------------------------------
+   The same with a region as tool, which goes down by the depth and then along. All forces of the walls together are
+   what the momentum of the block tells. The force on any piece of the front of the cone is inclined by beta + atan(mu)
+   at most, whatever the pressure is. With the same pressure everywhere on the front half, and friction against
+   the way of the cone, there is a mean inclination, for which benchmarks of this kind ask 20 %
+------------------------------------------------------------------------- */
+
+struct Drawn {
+  double normal, tangential;    // means over the last quarter of the time
+  double error;                 // of the balance of momentum, over the impulse of the tool
+};
+
+/** With the cone in an STL file of this name, if there is one. */
+static Drawn draw(double mu, double d, double way, const std::string &file = "")
+{
+  const double E = 250.0, v = 0.025 * wave_speed(E), dt = 0.5 / wave_speed(E);
+  const int steps = (int) std::ceil((1.0 + way) * d / v / dt / 4.0);
+  const double tip = 0.02 * d;
+  Scene run(
+      strprintf("variable d equal %.17g\nvariable w equal %.17g\n", d, way) + R"(
+units lj
+boundary f f f
+atom_style mpm
+neighbor 0.5 bin
+region box block 0 $(round((8+v_w)*v_d)) 0 $(round(5*v_d)) -$(round(4*v_d)) $(round(2*v_d)+3)
+create_box 1 box
+)" + fields({{"one", "block INF INF INF INF INF 0"}}, "1.0 scheme musl apart ignore") +
+      "fix m1 one mpm/material " + metal(E) + "\n" +
+      strprintf("timestep %.17g\nvariable s equal %.17g*step*dt\n", dt, v) + R"(
+variable z equal -(v_s<v_d)*v_s-(v_s>=v_d)*v_d
+variable x equal (v_s>v_d)*(v_s-v_d)
+)" +
+      (file.empty() ? strprintf("region tool cone z $(round(4*v_d)) 0 %.17g %.17g %.17g $(8*v_d)",
+                                tip / SLOPE, 8.0 * d / SLOPE, tip)
+                    : "region tool mpm/mesh " + file + " 1 $(round(4*v_d)) 0 0") +
+      strprintf(
+          " move v_x NULL v_z\nfix tool all mpm/boundary region tool separate friction %.17g\n",
+          mu) +
+      strprintf(R"(
+fix sides all mpm/boundary xlo xhi ylo yhi zlo slip
+variable tx equal f_tool[1]
+variable tz equal f_tool[3]
+variable sx equal f_sides[1]
+variable sz equal f_sides[3]
+fix mean all ave/time 1 %d %d v_tx v_tz v_sx v_sz
+run %d post no
+)",
+                steps, steps, 3 * steps));
+  double p[2] = {};
+  const auto add_momentum = [&](double sign) {
+    for (int i = 0; i < run.n(); i++) {
+      p[0] += sign * run.lmp->atom->rmass[i] * run.v()[i][0];
+      p[1] += sign * run.lmp->atom->rmass[i] * run.v()[i][2];
+    }
+  };
+  add_momentum(-1.0);
+  run.commands(strprintf("run %d post no\n", steps));
+  add_momentum(1.0);
+  double mean[4];
+  for (int k = 0; k < 4; k++) mean[k] = run.evaluate(strprintf("f_mean[%d]", k + 1));
+  Drawn drawn = {mean[1], -mean[0], 0.0};
+  for (int k = 0; k < 2; k++)
+    drawn.error = std::max(drawn.error,
+                           std::fabs((mean[k] + mean[k + 2]) * steps * dt + p[k]) /
+                               (drawn.normal * steps * dt));
+  return drawn;
+}
+
+/** Tangential over normal force, from sums over the front of the cone: n is the part of its normal along the way. */
+static double ploughing(double mu)
+{
+  const double beta = std::atan(SLOPE);
+  double along = 0.0, down = 0.0;
+  for (int k = 0; k < 1000; k++) {
+    const double n = std::sin(beta) * std::cos(PI * ((k + 0.5) / 1000 - 0.5)),
+                 t = std::sqrt(1.0 - n * n);
+    along += n + mu * t;
+    down += std::cos(beta) * (1.0 - mu * n / t);
+  }
+  return along / down;
+}
+
+TEST(Scratch, RegionAsTool)
+{
+  EXPECT_NEAR(ploughing(0.0), 2.0 / PI * SLOPE, 1e-6);
+  double smooth = 0.0;
+  for (const double mu : {0.0, 0.3}) {
+    const auto s = draw(mu, 1.5, 4.0);
+    const std::string name = strprintf("mu = %.1f: ", mu);
+    measured(name + "normal force", s.normal);
+    const double ratio = measured(name + "tangential / normal force", s.tangential / s.normal);
+    EXPECT_LT(measured(name + "error of the balance of momentum", s.error), 1e-9);
+    EXPECT_NEAR(ratio, ploughing(mu), 0.2 * ploughing(mu));
+    EXPECT_LT(ratio, std::tan(std::atan(SLOPE) + std::atan(mu)));
+    if (mu == 0.0) smooth = ratio;
+    EXPECT_NEAR(ratio - smooth, ploughing(mu) - ploughing(0.0), 0.2 * mu);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   A cone as an STL file, and as region of LAMMPS, which finds no distance on the axis of a cone: here a line of nodes.
+   The cone of 64 triangles is inside of the round one, by 0.12 % of its radius at the most
+------------------------------------------------------------------------- */
+
+TEST(Scratch, ToolOfTriangles)
+{
+  const int n = 64;
+  const double top = 12.0;
+  const auto at = [&](int i) {
+    const double angle = 2.0 * PI * (i % n) / n;
+    return Point{top / SLOPE * std::cos(angle), top / SLOPE * std::sin(angle), top};
+  };
+  Soup cone;
+  for (int i = 0; i < n; i++) {
+    cone.push_back({Point{0.0, 0.0, 0.0}, at(i + 1), at(i)});
+    cone.push_back({Point{0.0, 0.0, top}, at(i), at(i + 1)});
+  }
+  const ScratchFile file("cone.stl", binary_of(cone));
+  const auto round = draw(0.3, 1.5, 1.0), triangles = draw(0.3, 1.5, 1.0, file.name);
+  EXPECT_NEAR(measured("normal force on triangles / on cone", triangles.normal / round.normal), 1.0,
+              0.01);
+  EXPECT_NEAR(measured("tangential force", triangles.tangential / round.tangential), 1.0, 0.01);
 }

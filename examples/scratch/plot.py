@@ -14,19 +14,25 @@ import matplotlib.image
 import matplotlib.pyplot as plt
 import numpy as np
 
-DEPTH = 0.15    # of in.scratch (mm)
+DEPTH, H = 0.2, 0.1    # of in.scratch (mm)
 folder = sys.argv[1] if len(sys.argv) > 1 else "."
 picture = matplotlib.image.imread(sorted(glob.glob(os.path.join(folder, "scratch.*.png")))[-1])
 
-# columns at several times: coordinates of the middle, number of points (8 for each cell)
-with open(os.path.join(folder, "heights.txt")) as file:
-    rows = [row.split() for row in file if not row.startswith("#")]
-last = max(k for k, row in enumerate(rows) if len(row) == 3)    # heading of the last of them
-columns = np.array(rows[last + 1:], float)
-x, y = 1e3 * columns[:, 1], 1e3 * columns[:, 2]
-nx, ny = len(np.unique(x)), len(np.unique(y))
-h = x.max() / (nx - 0.5)
-height = (columns[:, 3] * h / 8.0).reshape(nx, ny)
+# heights: volumes of points over columns, of which each gives its parts to the four nearest ones
+with open(os.path.join(folder, "points.txt")) as file:
+    rows = file.read().splitlines()
+start = next(k for k, row in enumerate(rows) if row.startswith("ITEM: ATOMS"))
+_, x, y, mass = np.array([row.split() for row in rows[start + 1:]], float).T
+x, y, volume = 1e3 * x, 1e3 * y, 1e9 * mass / 7830.0
+nx, ny = (int(round(1e3 * end / H)) for end in (float(rows[start - k].split()[1]) for k in (3, 2)))
+height = np.zeros((nx + 2, ny + 2))
+i, j = np.floor(x / H - 0.5).astype(int), np.floor(y / H - 0.5).astype(int)
+u, v = x / H - 0.5 - i, y / H - 0.5 - j
+for a, b, part in ((0, 0, (1 - u) * (1 - v)), (1, 0, u * (1 - v)), (0, 1, (1 - u) * v), (1, 1, u * v)):
+    np.add.at(height, (i + 1 + a, j + 1 + b), part * volume / H**2)
+height[1], height[-2] = height[1] + height[0], height[-2] + height[-1]
+height[:, 1], height[:, -2] = height[:, 1] + height[:, 0], height[:, -2] + height[:, -1]
+height = height[1:-1, 1:-1]
 height -= np.median(height[:, -1])
 
 figure = plt.figure(figsize=(9, 7.2), layout="constrained")
@@ -40,7 +46,7 @@ view.set_title("one half of the block: equivalent plastic strain, 0 (blue) to 2 
 
 above = figure.add_subplot(grid[1, 0])
 both = np.concatenate([height[:, ::-1], height], axis=1) / DEPTH
-image = above.imshow(both.T, extent=(0, nx * h, -ny * h, ny * h), cmap="RdBu_r", vmin=-1, vmax=1, origin="lower",
+image = above.imshow(both.T, extent=(0, nx * H, -ny * H, ny * H), cmap="RdBu_r", vmin=-1, vmax=1, origin="lower",
                      interpolation="bilinear")
 figure.colorbar(image, ax=above, label="height / depth", shrink=0.8)
 above.set(xlabel="x (mm)", ylabel="y (mm)")
@@ -54,6 +60,6 @@ for mu, color in (("0", "tab:blue"), ("0.1", "tab:green"), ("0.3", "tab:red")):
         curve.plot(way, 1e-3 * tangential, "--", color=color)
 curve.plot([], [], "k--", label="tangential")
 curve.plot([], [], "k-", label="normal")
-curve.set(xlabel="way of the cone / depth", ylabel="force (kN)", xlim=(0, None), ylim=(0, 3.2))
+curve.set(xlabel="way of the cone / depth", ylabel="force (kN)", xlim=(0, None), ylim=(0, 4.2))
 curve.legend(loc="upper left", fontsize=8, ncol=2)
 figure.savefig(os.path.join(folder, "scratch.png"), dpi=100)

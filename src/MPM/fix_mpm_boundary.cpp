@@ -98,6 +98,7 @@ struct Surface {
   int dim;
   double far;    // stands for a distance that is not known
   RegMPMMesh *mesh = dynamic_cast<RegMPMMesh *>(region);
+  bool cone = strcmp(region->style, "cone") == 0;
 
   static bool along_z(const Region::Contact &c) { return fabs(c.delz) > 0.5 * c.r; }
 
@@ -113,7 +114,15 @@ struct Surface {
     const bool inside = region->match(x[0], x[1], x[2]);
     const int interior = region->interior;
     if (!inside) region->interior = !interior;    // Region::surface() answers for one side only
-    const int n = region->surface(x[0], x[1], x[2], far);
+
+    // on the axis of a cone LAMMPS does not see the side, and divides zero by zero: look next to it
+
+    int n = 0;
+    if (cone) {
+      const double off = 1.0e-12 * (fabs(x[0]) + fabs(x[1]) + fabs(x[2])) + 1.0e-20 * far;
+      n = region->surface(x[0] + off, x[1] + off, x[2] + off, far);
+    }
+    if (n == 0) n = region->surface(x[0], x[1], x[2], far);
     region->interior = interior;
     double distance = far;
     for (int i = 0; i < n; i++) {
@@ -291,7 +300,7 @@ bool FixMPMBoundary::holds_axis(const MPMField &field) const
  *  end for the closest place, as far away as the cone is long. */
 static bool has_sharp_end(Region *region, int dim)
 {
-  if (strcmp(region->style, "cone") != 0 || region->varshape) return false;
+  if (strcmp(region->style, "cone") != 0 || region->varshape || !region->bboxflag) return false;
   const double lo[3] = {region->extent_xlo, region->extent_ylo, region->extent_zlo},
                hi[3] = {region->extent_xhi, region->extent_yhi, region->extent_zhi};
   for (int d = 0; d < dim; d++)
@@ -300,7 +309,7 @@ static bool has_sharp_end(Region *region, int dim)
       double x[3];
       for (int k = 0; k < 3; k++) x[k] = 0.5 * (lo[k] + hi[k]);
       x[d] = end + (end > lo[d] ? 1.0e-6 : -1.0e-6) * length;
-      if (Surface{region, dim, 2.0 * length}.distance(x) > 0.99 * length) return true;
+      if (Surface{region, dim, FAR * length}.distance(x) > 0.99 * length) return true;
     }
   return false;
 }
