@@ -408,3 +408,57 @@ TEST(Equivalent, SchemesAgreeForSmallSteps)
         1.0, 0.35);
   }
 }
+
+/* ----------------------------------------------------------------------
+   Points fly apart with the velocity G X, nearly without stress, in steps of 1 and 4 in turns, and APIC is given its
+   matrix G M^-1: F is that of their motion, M(t) = I + G t. USF knows that of the steps before the last one, USAVG half of the last; what they
+   strain in the first step, M(-dt)^-1 or half of that, has no motion. Half a step of USAVG is right to third order,
+   (|G| dt)^3 with |G| = 0.5
+------------------------------------------------------------------------- */
+
+TEST(ChangingSteps, StrainIsThatOfTheMotion)
+{
+  const std::array<double, 4> G = {0.2, -0.3, 0.4, -0.1};
+  using Matrix = std::array<double, 4>;
+  const auto product = [](const Matrix &a, const Matrix &b) {
+    return Matrix{a[0] * b[0] + a[1] * b[2], a[0] * b[1] + a[1] * b[3], a[2] * b[0] + a[3] * b[2],
+                  a[2] * b[1] + a[3] * b[3]};
+  };
+  const auto M = [&](double t) {
+    return Matrix{1.0 + G[0] * t, G[1] * t, G[2] * t, 1.0 + G[3] * t};
+  };
+  const auto inverse_M = [&](double t) {
+    const auto m = M(t);
+    const double det = m[0] * m[3] - m[1] * m[2];
+    return Matrix{m[3] / det, -m[1] / det, -m[2] / det, m[0] / det};
+  };
+  const struct {
+    const char *scheme;
+    double late, tolerance;    // in steps
+  } cases[] = {
+      {"usl", 0.0, 1e-11}, {"musl", 0.0, 1e-11}, {"usf", 1.0, 1e-11}, {"usavg", 0.5, 20.0 * 1e-6}};
+  for (const auto &c : cases) {
+    Scene run(plane("si", "f f", "-2 2 -2 2", 1, 0.2) +
+              body("block -0.8 0.7 -0.6 0.5 INF INF", "density 1 neohookean 1e-12 0.3",
+                   strprintf("0.25 transfer apic scheme %s", c.scheme)));
+    run.set_velocity([&](const double *x, double *v) {
+      for (int r = 0; r < 2; r++) v[r] = G[2 * r] * x[0] + G[2 * r + 1] * x[1];
+    });
+    run.commands("run 0 post no\n");    // which fits affine matrices
+    const double first = 0.005;
+    double last = 0.0;
+    for (int step = 0; step < 20; step++) {
+      const auto L = product(G, inverse_M(run.time()));
+      for (int i = 0; i < run.n(); i++)
+        for (int k = 0; k < 4; k++) run.affine()[i][k] = L[2 * (k % 2) + k / 2];
+      last = step % 2 ? 4.0 * first : first;
+      run.commands(strprintf("timestep %.17g\nrun 1 post no\n", last));
+    }
+    double worst = 0.0;
+    const auto F = product(M(run.time() - c.late * last), inverse_M(-c.late * first));
+    for (const auto &s : run.gather())
+      for (int k = 0; k < 4; k++)
+        worst = std::max(worst, std::abs(s.F[3 * (k / 2) + k % 2] - F[k]));
+    EXPECT_LT(measured(std::string(c.scheme) + ": error of F", worst), c.tolerance);
+  }
+}
