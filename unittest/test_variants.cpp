@@ -328,6 +328,42 @@ PARAMETER_TEST(Fracture, Stretch, Variant, ValuesIn(shapes))
   EXPECT_LT(stretch, GetParam().most);
 }
 
+/* ----------------------------------------------------------------------
+   The numbers of the reference, about 2, 3, and 4, are those of evenly stretched points, half a cell apart at first, under a
+   uniform stress: where a gap carries nothing, and the whole stress is a force on the node next to it. 10 %, as gaps
+   of all places in their cells are sampled by 40 of them, and for the word about
+------------------------------------------------------------------------- */
+
+TEST(Fracture, EvenStretch)
+{
+  const struct {
+    const char *shape;
+    double stretch;
+  } cases[] = {{"linear", 2.0}, {"quadratic", 3.0}, {"cubic", 4.0}};
+  for (const auto &c : cases) {
+    double most = 0.0, stretch = 1.4;
+    while (most < 1.0 && stretch < 6.0) {
+      stretch += 0.0501;
+      const double length = 20.0 * stretch, dt = 1e-6;
+      Scene run(plane("si", "f p", strprintf("-8 %g 0 2", std::ceil(length + 8.0)), 1, 0.5) +
+                body("block 0 20 INF INF INF INF", "density 1 neohookean 1 0",
+                     strprintf("1.0 shape %s transfer flip 1.0 apart ignore", c.shape)));
+      for (int i = 0; i < run.n(); i++) {
+        run.x()[i][0] *= stretch;
+        run.points().F[i][0] = run.points().tau[i][0] = stretch;    // stress 1
+      }
+      run.commands(strprintf("timestep %g\nrun 1 post no\n", dt));
+      most = 0.0;
+      run.each_node([&](const Scene::Node &node) {
+        const bool inside = node.x[0] > 5.0 && node.x[0] < length - 5.0 && !node.alias;
+        if (inside) most = std::max(most, std::abs(node.mass * node.v[0]) / dt);
+      });
+    }
+    EXPECT_NEAR(measured(std::string(c.shape) + ": a gap carries nothing at", stretch), c.stretch,
+                0.1 * c.stretch);
+  }
+}
+
 /* ---------------------------------------------------------------------- equivalences */
 
 // flip 0 is pic
