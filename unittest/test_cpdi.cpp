@@ -419,7 +419,7 @@ TEST(Elements, BecomeDomains)
    all, and without Poisson's effect free of traction at its curved surfaces. Force per mass a'' + P/(density R),
    P = mu (F - 1/F). Its points are quadrilaterals that fit these surfaces, n of them across. The velocities of a
    leapfrog scheme at the start are those half a step before; late: those of the start. fits: if not, points are an
-   array of squares. Time steps may change as those of fix mpm/dt do, by a factor of 1 to least and back, four times.
+   array of squares. Time steps may change as those of fix mpm/dt do, which are smallest, by the factor least, when it is widest.
    Returns the largest rms error of the positions over A, 1e30 if points are lost.
 ------------------------------------------------------------------------- */
 
@@ -478,7 +478,7 @@ static double widening_ring(const std::string &options, int n, double A, double 
     }
     worst = std::max(worst, sqrt(sum / run.n()));
     if (least == 1.0) return;
-    const double share = least + (1.0 - least) * pow(cos(2.0 * w * run.time()), 2);
+    const double share = least + (1.0 - least) * pow(cos(0.5 * w * run.time()), 2);
     run.lmp->update->update_time();
     run.lmp->update->dt = share * dt;
   });
