@@ -420,11 +420,12 @@ TEST(Elements, BecomeDomains)
    all, and without Poisson's effect free of traction at its curved surfaces. Force per mass a'' + P/(density R),
    P = mu (F - 1/F). Its points are quadrilaterals that fit these surfaces, n of them across. The velocities of a
    leapfrog scheme at the start are those half a step before; late: those of the start. fits: if not, points are an
-   array of squares. Returns the largest rms error of the positions over A.
+   array of squares. Time steps may change as those of fix mpm/dt do, which are smallest, by the factor least, when it is widest.
+   Returns the largest rms error of the positions over A, 1e30 if points are lost.
 ------------------------------------------------------------------------- */
 
 static double widening_ring(const std::string &options, int n, double A, double dt,
-                            bool late = false, bool fits = true)
+                            bool late = false, bool fits = true, double least = 1.0)
 {
   const int around = (int) std::lround(12.6 * n);
   const double low = 0.75, high = 1.25, h = 1.0 / n, T = 12.0, w = 2.0 * PI / T;
@@ -477,11 +478,19 @@ static double widening_ring(const std::string &options, int n, double A, double 
       }
     }
     worst = std::max(worst, sqrt(sum / run.n()));
+    if (least == 1.0) return;
+    const double share = least + (1.0 - least) * pow(cos(0.5 * w * run.time()), 2);
+    run.lmp->update->update_time();
+    run.lmp->update->dt = share * dt;
   });
-  const std::string error = run.error(strprintf("run %ld\n", std::lround(T / dt)));
+  run.commands(strprintf("variable t equal time\nfix end all halt 1 v_t > %.17g error continue\n",
+                         T - 0.5 * least * dt));
+  const std::string error = run.error(strprintf("run %ld\n", std::lround(T / least / dt)));
   EXPECT_EQ(error, "") << options;
-  return measured(strprintf("ring, %s, %d across, A = %g, dt %g%s", options.c_str(), n, A, dt,
-                            late ? ", velocities of the start" : ""),
+  if (!error.empty()) worst = 1e30;
+  return measured(strprintf("ring, %s, %d across, A = %g, dt %g%s%s", options.c_str(), n, A, dt,
+                            late ? ", velocities of the start" : "",
+                            least < 1.0 ? strprintf(" to %g", least * dt).c_str() : ""),
                   worst / A);
 }
 
@@ -505,6 +514,18 @@ SERIAL_TEST(Ring, SchemesAgree)
   EXPECT_NEAR(widening_ring("transfer apic", 10, 1.0, 0.01, true) - usl, 5e-4, 2e-4);
 }
 
+// What has moved with one step is strained with that step, and not with the next one: then all schemes have the error
+// that the same steps make with usl
+SERIAL_TEST(Ring, SchemesAgreeWhereStepsChange)
+{
+  const auto ring = [](const std::string &options) {
+    return widening_ring(options, 10, 1.0, 0.02, false, true, 0.2);
+  };
+  const double usl = ring("transfer apic");
+  for (const char *scheme : {"musl", "usf", "usavg"})
+    EXPECT_NEAR(ring(strprintf("transfer apic scheme %s", scheme)) / usl, 1.0, 0.1);
+}
+
 // stretched by 5, where points of APIC on an array with a ragged rim fly off
 SERIAL_TEST(Ring, FivefoldStretch)
 {
@@ -520,19 +541,23 @@ SERIAL_TEST(Ring, RaggedRim)
   EXPECT_GT(widening_ring("shape cpdi", 10, 1.0, 0.01, false, false), 0.1);
 }
 
-// as the manual and a warning say: FLIP in schemes with a second mapping makes noise of tension
-SERIAL_TEST(Ring, NoiseOfFlip)
+// Points that move with other velocities than they strain with, are driven by tension to where no stress holds them:
+// with FLIP, whose points keep the least of an acceleration of the nodes, noise grew to forty times this error. With
+// MUSL and USAVG they move with the velocities that strain takes
+SERIAL_TEST(Ring, TensionMakesNoNoise)
 {
   const double usl = widening_ring("transfer flip 1.0", 10, 1.0, 0.02);
-  EXPECT_GT(widening_ring("transfer flip 1.0 scheme musl", 10, 1.0, 0.02) / usl, 10.0);
-  EXPECT_LT(widening_ring("transfer flip 1.0 scheme musl", 10, 1.0, 0.005) / usl, 2.0);
+  for (const char *scheme : {"musl", "usavg"})
+    EXPECT_NEAR(widening_ring(strprintf("transfer flip 1.0 scheme %s", scheme), 10, 1.0, 0.02) /
+                    usl,
+                1.0, 0.1);
   for (const char *scheme : {"usl", "musl", "usf", "usavg"})
     for (const char *transfer : {"flip 1.0", "apic"}) {
       const std::string options = strprintf("shape cpdi2 transfer %s scheme %s", transfer, scheme);
       Scene run(space("lj", "p p p", "0 8 0 8 0 8") +
                 body("block 2 4 2 4 2 4", "density 1 neohookean 10 0.3", "1.0 " + options) +
                 "timestep 0.01\nrun 0\n");
-      EXPECT_EQ(run.lmp->error->get_numwarn(), *transfer == 'f' && strcmp(scheme, "usl") != 0)
+      EXPECT_EQ(run.lmp->error->get_numwarn(), *transfer == 'f' && strcmp(scheme, "usf") == 0)
           << options;
     }
 }

@@ -41,9 +41,10 @@ static const std::string start_level = "velocity one set 0.6 0.35 0\nvelocity tw
 PARAMETER_TEST(Restart, ContinuesBitwise, std::string,
                Values("transfer apic", "shape linear transfer flip 0.99 scheme musl",
                       "shape cubic transfer apic scheme musl", "transfer pic scheme usf",
-                      "frame total transfer apic", "frame total transfer flip 0.99 scheme musl",
-                      "locking fbar", "scheme musl locking pressure",
-                      "transfer aflip 0.99 scheme musl", "shape cpgimp transfer tpic", "every 3"))
+                      "transfer apic scheme usavg", "frame total transfer apic",
+                      "frame total transfer flip 0.99 scheme musl", "locking fbar",
+                      "scheme musl locking pressure", "transfer aflip 0.99 scheme musl",
+                      "shape cpgimp transfer tpic", "every 3"))
 {
   const std::string options = GetParam();
   const ScratchFile half("100.bin"), end("200.bin");

@@ -328,6 +328,42 @@ PARAMETER_TEST(Fracture, Stretch, Variant, ValuesIn(shapes))
   EXPECT_LT(stretch, GetParam().most);
 }
 
+/* ----------------------------------------------------------------------
+   The numbers of the reference, about 2, 3, and 4, are those of evenly stretched points, half a cell apart at first, under a
+   uniform stress: where a gap carries nothing, and the whole stress is a force on the node next to it. 10 %, as gaps
+   of all places in their cells are sampled by 40 of them, and for the word about
+------------------------------------------------------------------------- */
+
+TEST(Fracture, EvenStretch)
+{
+  const struct {
+    const char *shape;
+    double stretch;
+  } cases[] = {{"linear", 2.0}, {"quadratic", 3.0}, {"cubic", 4.0}};
+  for (const auto &c : cases) {
+    double most = 0.0, stretch = 1.4;
+    while (most < 1.0 && stretch < 6.0) {
+      stretch += 0.0501;
+      const double length = 20.0 * stretch, dt = 1e-6;
+      Scene run(plane("si", "f p", strprintf("-8 %g 0 2", std::ceil(length + 8.0)), 1, 0.5) +
+                body("block 0 20 INF INF INF INF", "density 1 neohookean 1 0",
+                     strprintf("1.0 shape %s transfer flip 1.0 apart ignore", c.shape)));
+      for (int i = 0; i < run.n(); i++) {
+        run.x()[i][0] *= stretch;
+        run.points().F[i][0] = run.points().tau[i][0] = stretch;    // stress 1
+      }
+      run.commands(strprintf("timestep %g\nrun 1 post no\n", dt));
+      most = 0.0;
+      run.each_node([&](const Scene::Node &node) {
+        const bool inside = node.x[0] > 5.0 && node.x[0] < length - 5.0 && !node.alias;
+        if (inside) most = std::max(most, std::abs(node.mass * node.v[0]) / dt);
+      });
+    }
+    EXPECT_NEAR(measured(std::string(c.shape) + ": a gap carries nothing at", stretch), c.stretch,
+                0.1 * c.stretch);
+  }
+}
+
 /* ---------------------------------------------------------------------- equivalences */
 
 // flip 0 is pic
@@ -406,5 +442,59 @@ TEST(Equivalent, SchemesAgreeForSmallSteps)
     EXPECT_NEAR(
         measured(std::string(other) + ": order of the difference", log2(distance[0] / distance[1])),
         1.0, 0.35);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   Points fly apart with the velocity G X, nearly without stress, in steps of 1 and 4 in turns, and APIC is given its
+   matrix G M^-1: F is that of their motion, M(t) = I + G t. USF knows that of the steps before the last one, USAVG half of the last; what they
+   strain in the first step, M(-dt)^-1 or half of that, has no motion. Half a step of USAVG is right to third order,
+   (|G| dt)^3 with |G| = 0.5
+------------------------------------------------------------------------- */
+
+TEST(ChangingSteps, StrainIsThatOfTheMotion)
+{
+  const std::array<double, 4> G = {0.2, -0.3, 0.4, -0.1};
+  using Matrix = std::array<double, 4>;
+  const auto product = [](const Matrix &a, const Matrix &b) {
+    return Matrix{a[0] * b[0] + a[1] * b[2], a[0] * b[1] + a[1] * b[3], a[2] * b[0] + a[3] * b[2],
+                  a[2] * b[1] + a[3] * b[3]};
+  };
+  const auto M = [&](double t) {
+    return Matrix{1.0 + G[0] * t, G[1] * t, G[2] * t, 1.0 + G[3] * t};
+  };
+  const auto inverse_M = [&](double t) {
+    const auto m = M(t);
+    const double det = m[0] * m[3] - m[1] * m[2];
+    return Matrix{m[3] / det, -m[1] / det, -m[2] / det, m[0] / det};
+  };
+  const struct {
+    const char *scheme;
+    double late, tolerance;    // in steps
+  } cases[] = {
+      {"usl", 0.0, 1e-11}, {"musl", 0.0, 1e-11}, {"usf", 1.0, 1e-11}, {"usavg", 0.5, 20.0 * 1e-6}};
+  for (const auto &c : cases) {
+    Scene run(plane("si", "f f", "-2 2 -2 2", 1, 0.2) +
+              body("block -0.8 0.7 -0.6 0.5 INF INF", "density 1 neohookean 1e-12 0.3",
+                   strprintf("0.25 transfer apic scheme %s", c.scheme)));
+    run.set_velocity([&](const double *x, double *v) {
+      for (int r = 0; r < 2; r++) v[r] = G[2 * r] * x[0] + G[2 * r + 1] * x[1];
+    });
+    run.commands("run 0 post no\n");    // which fits affine matrices
+    const double first = 0.005;
+    double last = 0.0;
+    for (int step = 0; step < 20; step++) {
+      const auto L = product(G, inverse_M(run.time()));
+      for (int i = 0; i < run.n(); i++)
+        for (int k = 0; k < 4; k++) run.affine()[i][k] = L[2 * (k % 2) + k / 2];
+      last = step % 2 ? 4.0 * first : first;
+      run.commands(strprintf("timestep %.17g\nrun 1 post no\n", last));
+    }
+    double worst = 0.0;
+    const auto F = product(M(run.time() - c.late * last), inverse_M(-c.late * first));
+    for (const auto &s : run.gather())
+      for (int k = 0; k < 4; k++)
+        worst = std::max(worst, std::abs(s.F[3 * (k / 2) + k % 2] - F[k]));
+    EXPECT_LT(measured(std::string(c.scheme) + ": error of F", worst), c.tolerance);
   }
 }

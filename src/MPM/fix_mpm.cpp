@@ -301,7 +301,7 @@ double FixMPM::memory_usage()
 
 /* ----------------------------------------------------------------------
    totals of the ledger, what was deleted, which velocities the affine matrices belong to, when
-   neighbor lists are made, and the options that a run must go on with
+   neighbor lists are made, the options that a run must go on with, and the duration of the last step
 ------------------------------------------------------------------------- */
 
 namespace {
@@ -311,7 +311,8 @@ struct Saved {
   double elapsed;
   MPMAffine::Velocities velocities;
   MPMGuard::Lists lists;
-  int waited, nstart, ntext;    // nstart reals and ntext characters follow
+  int waited, nstart, ntext;    // nstart reals and ntext characters follow,
+  int has_last_dt;              // and then the duration of the last step: 0 in files from before
 };
 }    // namespace
 
@@ -337,12 +338,15 @@ void FixMPM::write_restart(FILE *fp)
   const std::string text = MPMFieldOptions(field->options).declare(3).kept();
   saved.nstart = (int) start.size();
   saved.ntext = (int) text.size();
+  saved.has_last_dt = 1;
   if (comm->me) return;
-  const int size = (int) (sizeof(Saved) + start.size() * sizeof(double) + text.size());
+  const int size =
+      (int) (sizeof(Saved) + start.size() * sizeof(double) + text.size() + sizeof(double));
   fwrite(&size, sizeof(int), 1, fp);
   fwrite(&saved, sizeof(Saved), 1, fp);
   if (!start.empty()) fwrite(start.data(), sizeof(double), start.size(), fp);
   fwrite(text.c_str(), 1, text.size(), fp);
+  fwrite(&field->last_dt, sizeof(double), 1, fp);
 }
 
 void FixMPM::restart(char *buf)
@@ -359,6 +363,8 @@ void FixMPM::restart(char *buf)
         "or another ID to begin anew",
         id, differences);
 
+  // without it, the first step counts for the one before, as in a run from the start
+  if (saved.has_last_dt) memcpy(&field->last_dt, text + saved.ntext, sizeof(double));
   if (comm->me == 0) static_cast<MPMEnergies &>(field->ledger) = saved.ledger;
   field->guard->deleted = saved.deleted;
   field->guard->lists_of_file = saved.lists;

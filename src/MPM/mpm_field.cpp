@@ -176,14 +176,15 @@ void MPMField::find_materials()
 
 /* ----------------------------------------------------------------------
    Long records of nodes keep forces and old velocities apart: the ledger and some node actions need
-   them, USF and USAVG sum forces alone; the kernel that interpolates the hoop rate knows long records
-   only
+   them, USF and USAVG sum forces alone; the kernel that interpolates the hoop rate, and moves points with
+   velocities that were mapped back, knows long records only
 ------------------------------------------------------------------------- */
 
 void MPMField::choose_kernels()
 {
   const bool split = ledger.on || keep_old || options.heat || options.stress_before() ||
-      (options.axisymmetric && options.scheme != Options::USL);
+      (options.axisymmetric && options.scheme != Options::USL) ||
+      (has_domain(options.shape) && options.stress_after());
   kernel = frame->kernels(options.transfer, split);
   if (options.strains_by_gradient()) {
     // to the nodes, TPIC differs in nothing but the stress; back, it has the gradient

@@ -74,6 +74,7 @@ class MPMField : protected Pointers {
   /** A node action reads what nodes had before the momentum equation; set by its init_action(). */
   bool keep_old = false;
   bool running = false;    ///< between the set-up and the end of a run
+  double last_dt = 0.0;    ///< duration of the last step of the cycle; 0: none so far
 
   // what depends on the options; null: not with these
 
@@ -129,6 +130,8 @@ class MPMField : protected Pointers {
 
   /** Duration of a step of the cycle. */
   double step_dt() const;
+  /** Of the one before, which has brought the points to where they are; of this one, if there was none. */
+  double step_dt_before() const { return last_dt > 0.0 ? last_dt : step_dt(); }
   /** Steps of LAMMPS until the next step of the cycle ends, seen from the end of this step. */
   int steps_to_next() const;
   MPM_NS::PointRows rows() const;

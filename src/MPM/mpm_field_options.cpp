@@ -218,11 +218,10 @@ Options MPMFieldOptions::declare(int dim)
         {series == XPIC && order > 1 && scheme != USL, "transfer",
          "xpic with scheme usf, musl and usavg: a body that turns loses its spin: use scheme usl, "
          "or transfer flip or apic"},
-        {has_domain(shape) && transfer == FLIP && flip > 0.0 && series == LUMPED && scheme != USL,
+        {has_domain(shape) && transfer == FLIP && flip > 0.0 && series == LUMPED && scheme == USF,
          "scheme",
-         "usf, musl and usavg with transfer flip and shape cpdi and cpdi2: tension in stretched "
-         "bodies makes noise at time steps above a tenth of the limit: use scheme usl, or transfer "
-         "apic"},
+         "usf with transfer flip and shape cpdi and cpdi2: noise grows in bodies under tension: "
+         "use scheme usl or musl, or transfer apic"},
         {light == 0.0 && amplifies(), "shape",
          "linear with scheme usl or transfer apic: linear functions amplify round-off at nodes of "
          "tiny mass: use transfer flip with scheme musl, quadratic functions, or light 0.5"},

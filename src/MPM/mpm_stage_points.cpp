@@ -87,20 +87,27 @@ void MPMStages::move_points(MPMField &field)
 }
 
 /* ----------------------------------------------------------------------
-   With MUSL, corners move with the velocities that were mapped back: domains that stress does not see
-   are not held by it
+   With MUSL and USAVG, points of finite size and their corners move with the velocities that were mapped back,
+   which strain takes, too. What moves apart from strain is not held by stress, and under tension goes
+   away from where it belongs
 ------------------------------------------------------------------------- */
 
-void MPMStages::strain_from_nodes(MPMField &field, double share, double shift_share,
-                                  bool move_corners)
+void MPMStages::strain_from_nodes(MPMField &field, double motion_dt, double share,
+                                  double shift_share, bool move_domains)
 {
   field.nodes.complete_velocities();
   MPMFrame &frame = *field.frame;
-  const double dt = share * field.step_dt(), shift = shift_share * field.step_dt();
+  const double dt = share * motion_dt, shift = shift_share * motion_dt;
   const TransferStep s = field.step_data();
   PointRows r = field.rows();
-  PointRows with_corners = r;
-  if (field.domains && move_corners) with_corners.corners_new = field.domains->moved(true);
+  const bool moves = field.domains && move_domains;
+  PointRows moving = r;
+  if (moves) {
+    field.work.vectors.resize(3 * (std::size_t) field.atom->nmax);
+    moving.v = field.work.vectors.data();
+    moving.F = nullptr;
+    moving.corners_new = field.domains->moved(true);
+  }
   const bool fbar = field.options.averages_strain();
   double *const kept = fbar ? field.locking->room_for_gradients() : nullptr;
   const int nL = field.lattice.dim * field.lattice.dim;
@@ -108,7 +115,9 @@ void MPMStages::strain_from_nodes(MPMField &field, double share, double shift_sh
   double batch_gradients[9 * BATCH];
   points_from_step(field, [&](const MPMPointMap::Run &run, int i, int n, const int *base) {
     double *const L = fbar ? kept + (bigint) nL * i : batch_gradients;
-    field.kernel.g2p_gradient(with_corners, s, i, i + n, base, field.map->tile_load, L);
+    field.kernel.g2p_gradient(r, s, i, i + n, base, field.map->tile_load, L);
+    if (moves)
+      field.map->drifted |= field.pic.g2p(moving, s, i, i + n, base, field.map->tile_load, nullptr);
     if (shift != 0.0) frame.shift_gradients(n, shift, L);
     frame.refer_gradients(i, n, L);
     frame.strain_of_nodes(r, i, i + n, base, dt, shift);
@@ -213,5 +222,6 @@ void MPMStages::checks(MPMField &field)
   counts.dt_max = std::max(counts.dt_max, dt);
   counts.steps++;
   counts.point_steps += map.npoints();
+  field.last_dt = dt;
   if (field.every) field.every->finish();
 }

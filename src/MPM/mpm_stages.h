@@ -50,10 +50,11 @@ namespace MPMStages {
   /** Positions and corners of the end of the step, where they had to wait. */
   void move_points(MPMField &);
 
-  /** Stress of points from the present velocities of the nodes, for a share of the step; shift: see
-   *  MPMFrame::shift_gradients(), as a share of the step. move_corners: corners of domains move with
-   *  these velocities. */
-  void strain_from_nodes(MPMField &, double share, double shift, bool move_corners = false);
+  /** Stress of points from the present velocities of the nodes, for a share of a motion that takes the
+   *  time dt; shift: see MPMFrame::shift_gradients(), as a share of it. move_domains: points of finite
+   *  size move with these velocities. */
+  void strain_from_nodes(MPMField &, double dt, double share, double shift,
+                         bool move_domains = false);
   /** Strain and stress of n <= BATCH consecutive points of a run; L: their velocity gradients. */
   void update_stress(MPMField &, const MPM_NS::PointRows &, const MPMPointMap::Run &, int first,
                      int n, const double *L, double dt);

@@ -59,10 +59,20 @@ void nodes_to_points(MPMPlan &plan, const char *name, Strain strain, MPMPlan::Wa
   plan.each(name, move, std::move(wanted));
 }
 
-void gradients_with_material(MPMPlan &plan, double share, double shift, bool move_corners = false)
+/** Strain of the motion of this step. */
+void gradients_with_material(MPMPlan &plan, double share, double shift, bool move_domains = false)
 {
   plan.each("gradients with material", [=](MPMField &field) {
-    strain_from_nodes(field, share, shift, move_corners);
+    strain_from_nodes(field, field.step_dt(), share, shift, move_domains);
+  });
+}
+
+/** Strain of the motion of the step before: that has brought the points to where they are. Where the time
+ *  step changes, the deformation gradient would not be that of the motion with another duration. */
+void gradients_of_last_motion(MPMPlan &plan, double share, double shift)
+{
+  plan.each("gradients with material", [=](MPMField &field) {
+    strain_from_nodes(field, field.step_dt_before(), share, shift);
   });
 }
 
@@ -103,7 +113,7 @@ void begin_with_stress(MPMPlan &plan, double share, double shift)
   plan.place(MPMPlan::BEFORE_SOLVE);
   plan.each("momentum equation", velocities);
   plan.node_actions(MPMNodeAction::START);
-  gradients_with_material(plan, share, shift);
+  gradients_of_last_motion(plan, share, shift);
   plan.each("momentum equation", back_to_momentum);
   average_pressure(plan);
   points_to_nodes(plan, "points to nodes", FORCE);
@@ -219,7 +229,7 @@ void LAMMPS_NS::make_usavg(MPMPlan &plan)
   begin_with_stress(plan, 0.5, 0.75);
   solve_and_move(plan);
   map_back(plan);
-  gradients_with_material(plan, 0.5, -0.25);
+  gradients_with_material(plan, 0.5, -0.25, true);
   plan.each("motion of points", move_points);
   end(plan);
 }
