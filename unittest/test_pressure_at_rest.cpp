@@ -416,6 +416,28 @@ PARAMETER_TEST(SmoothVolumes, KeepLinearFieldsVolumeAndItsMoment, int, Values(2,
   }
 }
 
+// Fast sums and plain ones
+
+PARAMETER_TEST(FastSmoothVolumes, AreThoseOfPlainLoops, int, Values(2, 3))
+{
+  const int dim = GetParam();
+  for (const char *const shape : {"linear", "quadratic", "cubic"}) {
+    std::map<tagint, double> J[2];
+    for (const bool plain : {false, true}) {
+      Scene run(
+          drop(dim, strprintf("smooth 1.0 shape %s%s", shape, plain ? " kernels reference" : "")));
+      set_volumes(run.lmp, dim, [](const double *, tagint tag) {
+        return 0.05 * std::sin(12.9898 * tag);
+      });
+      MPMField::find(run.lmp, "grid")->smoothing->smooth();
+      for (const auto &s : run.gather()) J[plain][(tagint) s.tag] = s.F[0] * s.F[4] * s.F[8];
+    }
+    double most = 0.0;
+    for (const auto &[tag, ratio] : J[0]) most = std::max(most, std::fabs(ratio - J[1][tag]));
+    EXPECT_LT(measured(shape, most), 1e-13);
+  }
+}
+
 // Points that have moved in a step by more than the skin are not where the map of nodes knows them
 
 TEST(SmoothVolumes, OfFastPointsHaveAllNodes)
