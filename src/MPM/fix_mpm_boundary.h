@@ -74,14 +74,24 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   /** Keeps the nodes of a field at the face xlo, an axis of symmetry, from moving along x. */
   bool holds_axis(const MPMField &) const;
 
+  /** Velocities that walls will give to nodes. */
+  struct Foreseen {
+    struct Mirror {              // a node and its images
+      double mass;               // of them all
+      double wall[3], odd[3];    // velocity of the wall, and that of the node, relative to it
+    };
+    std::vector<double> held;    // [3*node+d] of nodes that are held
+    std::vector<int>
+        mirrored;    // [3*node+d] place in mirrors from 1 on; negative: of an image; 0: none
+    std::vector<Mirror> mirrors;
+
+    void reset(int64_t nnodes);
+  };
   /** Components of nodes of a field to which this wall gives its velocity, for good: sets bit d of
    *  held[node], one entry for each node; where it mirrors a node outside, bit 3 + d. */
   void mark_held(const MPMField &, std::vector<char> &held) const;
-  /** What this wall will make of the present velocities of nodes in blocks that are near: sets
-   *  velocities[6*node+d] of those that are held; and of those on both sides of a mirror, for which it sets bit d
-   *  of foreseen[node], also velocities[6*node+3+d] to the mass of the node with its images. */
-  void foresee(MPMField &, const std::vector<char> &near, std::vector<char> &foreseen,
-               std::vector<double> &velocities);
+  /** What this wall will make of the present velocities of nodes in blocks that are near. */
+  void foresee(MPMField &, const std::vector<char> &near, Foreseen &);
 
  private:
   static constexpr int DEPTH = 3;    // nodes on either side of a mirror plane that are paired

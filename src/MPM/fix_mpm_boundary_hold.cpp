@@ -60,8 +60,16 @@ void FixMPMBoundary::mark_held(const MPMField &field, std::vector<char> &held) c
 
 /* ---------------------------------------------------------------------- */
 
-void FixMPMBoundary::foresee(MPMField &field, const std::vector<char> &near,
-                             std::vector<char> &foreseen, std::vector<double> &velocities)
+void FixMPMBoundary::Foreseen::reset(int64_t nnodes)
+{
+  held.assign(3 * nnodes, 0.0);
+  mirrored.assign(3 * nnodes, 0);
+  mirrors.clear();
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMBoundary::foresee(MPMField &field, const std::vector<char> &near, Foreseen &foreseen)
 {
   if (!is_foreseen()) return;
   update_motion(field.step_dt());
@@ -71,7 +79,7 @@ void FixMPMBoundary::foresee(MPMField &field, const std::vector<char> &near,
   const auto hold = [&](int64_t node, int d) {
     if (!near[node / NODES_PER_BLOCK]) return;
     wall.velocity(field, node, V);
-    velocities[6 * node + d] = V[d];
+    foreseen.held[3 * node + d] = V[d];
   };
   for (const auto &list : nodes) {
     if (list.field != &field) continue;
@@ -88,21 +96,20 @@ void FixMPMBoundary::foresee(MPMField &field, const std::vector<char> &near,
             return near[m.node / NODES_PER_BLOCK];
           }))
         continue;
-      double mass = 0.0, momentum[3] = {0.0, 0.0, 0.0};
-      wall.velocity(field, orbit.wall, V);
+      Foreseen::Mirror mirror = {};
+      wall.velocity(field, orbit.wall, mirror.wall);
       for (const Member *m = first; m < last; m++) {
         const double *const r = grid.record(m->node);
-        mass += r[3];
-        for (int d = 0; d < dim; d++) momentum[d] += m->sign * r[3] * (r[d] - V[d]);
+        mirror.mass += r[3];
+        for (int d = 0; d < dim; d++) mirror.odd[d] += m->sign * r[3] * (r[d] - mirror.wall[d]);
       }
-      if (!(mass > 0.0)) continue;
+      if (!(mirror.mass > 0.0)) continue;
+      for (int d = 0; d < dim; d++) mirror.odd[d] /= mirror.mass;
+      foreseen.mirrors.push_back(mirror);
+      const int place = (int) foreseen.mirrors.size();
       for (const Member *m = first; m < last; m++)
         for (int d = 0; d < dim; d++)
-          if (orbit.prescribed[d]) {
-            foreseen[m->node] |= 1 << d;
-            velocities[6 * m->node + d] = V[d] + m->sign * momentum[d] / mass;
-            velocities[6 * m->node + 3 + d] = mass;
-          }
+          if (orbit.prescribed[d]) foreseen.mirrored[3 * m->node + d] = m->sign * place;
     }
     for (const auto &single : list.singles)
       for (int d = 0; d < dim; d++)

@@ -61,7 +61,8 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 static constexpr int MAX_ITERATIONS = 200;      // of impulses where three or more bodies meet
-static constexpr double CONVERGED = 1.0e-12;    // relative change of the impulses
+static constexpr double CONVERGED = 1.0e-12;    // change of the impulses, relative to them
+static constexpr double ROUNDED = 1.0e-2;       // or to this part of the momentum, if that is more
 
 // share of volume from which bodies overlap, by half a cell to a cell, depending on where they are in
 // the cell; points at the ends of regions that are no multiple of their spacing reach 1.37. And the
@@ -182,7 +183,7 @@ void FixMPMContact::init()
                  "Fix mpm/contact {}: {} is not the ID of a fix mpm: define one fix mpm for each "
                  "body",
                  id, name);
-    bodies.push_back({field, {}, {}, {}, {}, {}, {}, {}, {}, {}});
+    bodies.push_back({field, {}, {}, {}, {}, {}, {}, {}, {}});
   }
   const MPMField &first = *bodies[0].field;
   for (const auto &body : bodies) {
@@ -370,7 +371,6 @@ void FixMPMContact::list_common_blocks()
 
   for (auto &body : bodies) {
     body.held.assign(body.field->grid.nnodes(), 0);
-    body.velocities.resize(6 * body.field->grid.nnodes());
     for (auto *fix : modify->get_fix_by_style("^mpm/boundary$"))
       dynamic_cast<FixMPMBoundary *>(fix)->mark_held(*body.field, body.held);
   }
@@ -653,11 +653,9 @@ void FixMPMContact::gradient_at(const Body &body, int slot, int n, double *g) co
 /** Of the velocities that the nodes have now, which a stage may have changed since the last call. */
 void FixMPMContact::foresee_walls(Body &body)
 {
-  body.foreseen.assign(body.held.size(), 0);
-  std::fill(body.velocities.begin(), body.velocities.end(), 0.0);
+  body.foreseen.reset((int64_t) body.held.size());
   for (auto *fix : modify->get_fix_by_style("^mpm/boundary$"))
-    dynamic_cast<FixMPMBoundary *>(fix)->foresee(*body.field, body.near, body.foreseen,
-                                                 body.velocities);
+    dynamic_cast<FixMPMBoundary *>(fix)->foresee(*body.field, body.near, body.foreseen);
 }
 
 FixMPMContact::Pair::Walls FixMPMContact::Body::find_walls(const double *record) const
@@ -667,14 +665,32 @@ FixMPMContact::Pair::Walls FixMPMContact::Body::find_walls(const double *record)
   constexpr int ALL = 7;
   Pair::Walls walls = {};
   walls.held = (char) (held[node] & ALL);
-  walls.mirrored = (char) (foreseen[node] & ~walls.held);
-  walls.outside = (char) (held[node] >> 3 & walls.mirrored);
   for (int d = 0; d < 3; d++) {
-    walls.velocity[d] = velocities[6 * node + d];
-    walls.mass[d] = velocities[6 * node + 3 + d];
     walls.start[d] = record[d];
+    walls.velocity[d] = foreseen.held[3 * node + d];
+    const int place = foreseen.mirrored[3 * node + d];
+    if (place == 0 || walls.held >> d & 1) continue;
+    walls.mirrored |= 1 << d;
+    const auto &mirror = foreseen.mirrors[std::abs(place) - 1];
+    walls.velocity[d] = mirror.wall[d] + (place > 0 ? mirror.odd[d] : -mirror.odd[d]);
+    walls.mass[d] = mirror.mass;
   }
+  walls.outside = (char) (held[node] >> 3 & walls.mirrored);
   return walls;
+}
+
+/** The velocity of a node has changed, and with it that which walls will give to its images. */
+void FixMPMContact::Body::move_mirrors(const double *record, const std::array<double, 3> &before)
+{
+  Grid &grid = field->grid;
+  const int64_t node = (record - grid.nodes()) / grid.nreal;
+  for (int d = 0; d < grid.lattice.dim; d++) {
+    const int place = foreseen.mirrored[3 * node + d];
+    if (place == 0) continue;
+    auto &mirror = foreseen.mirrors[std::abs(place) - 1];
+    const double change = (record[d] - before[d]) * record[3] / mirror.mass;
+    mirror.odd[d] += place > 0 ? change : -change;
+  }
 }
 
 /* ----------------------------------------------------------------------
@@ -827,31 +843,35 @@ void FixMPMContact::apply(Pair &pair, int nothers, double &largest, double dt, b
     pair.state = normal == 0.0 && keep == 0.0 ? OPEN : (keep == 1.0 ? STUCK : SLIDING);
   }
 
-  double change = fabs(normal - pair.normal);
+  double change = fabs(normal - pair.normal), rounding = 0.0;
   pair.normal = normal;
   for (int d = 0; d < dim; d++) {
     change += fabs(keep * t[d] - pair.tangential[d]);
     pair.tangential[d] = keep * t[d];
+    rounding += ROUNDED * m * (fabs(pair.ra[d]) + fabs(pair.rb[d]));
   }
-  largest = std::max(largest, change / (fabs(normal) + length + 1.0e-300));
+  largest = std::max(largest, change / (fabs(normal) + length + rounding + 1.0e-300));
+}
+
+/** Does a node move with images that have mass? */
+bool FixMPMContact::Pair::Walls::moves_with_images(const double *record) const
+{
+  bool moves = false;
+  for (int d = 0; d < 3; d++) moves = moves || (mirrored >> d & 1 && mass[d] > record[3]);
+  return moves;
 }
 
 /* ----------------------------------------------------------------------
-   velocities of the bodies at a node. Impulses of all pairs follow from the same velocities, so
-   that their order does not matter; two bodies need one iteration
+   velocities of the bodies at a node before contact, and what walls will do to them; do they move one
+   body with its images and another not?
 ------------------------------------------------------------------------- */
 
-void FixMPMContact::resolve(Node &node, double dt, bool decided)
+bool FixMPMContact::begin(Node &node, Velocities &start)
 {
-  const int nfields = (int) bodies.size(), dim = bodies[0].field->lattice.dim;
-  double start[MAX_FIELDS][3];
-  int nbodies = 0;
+  const int nfields = (int) bodies.size();
   for (int k = 0; k < nfields; k++)
-    if (node.record[k]) {
-      nbodies++;
-      for (int d = 0; d < dim; d++) start[k][d] = node.record[k][d];
-    }
-
+    if (node.record[k]) std::copy_n(node.record[k], 3, start[k].begin());
+  bool mirrors = false;
   for (int p = node.first; p < node.last; p++) {
     Pair &pair = pairs[p];
     const Pair::Walls &a = pair.walls_a = bodies[pair.a].find_walls(pair.ra);
@@ -860,16 +880,33 @@ void FixMPMContact::resolve(Node &node, double dt, bool decided)
     pair.left = pair.alike ? 0 : ((a.outside & b.outside) | (a.held & b.held));
     pair.normal = 0.0;
     MathExtra::zero3(pair.tangential);
+    mirrors = mirrors ||
+        (!pair.alike && (a.moves_with_images(pair.ra) || b.moves_with_images(pair.rb)));
   }
+  return mirrors;
+}
+
+/* ----------------------------------------------------------------------
+   velocities of the bodies at a node. Impulses of all pairs follow from the same velocities, so
+   that their order does not matter; two bodies need one iteration. Returns by how much impulses changed
+------------------------------------------------------------------------- */
+
+double FixMPMContact::resolve(Node &node, const Velocities &start, double dt, bool decided)
+{
+  const int nfields = (int) bodies.size(), dim = bodies[0].field->lattice.dim;
+  const auto nbodies = std::count_if(node.record, node.record + nfields, [](const double *record) {
+    return record != nullptr;
+  });
+  Velocities before;
+  for (int k = 0; k < nfields; k++)
+    for (int d = 0; d < dim && node.record[k]; d++) before[k][d] = node.record[k][d];
+  double largest = 0.0;
   for (int it = 0; it < (nbodies == 2 ? 1 : MAX_ITERATIONS); it++) {
-    double largest = 0.0;
-    for (int p = node.first; p < node.last; p++) {
-      Pair &pair = pairs[p];
-      apply(pair, nbodies - 1, largest, dt, decided);
-    }
+    largest = 0.0;
+    for (int p = node.first; p < node.last; p++)
+      apply(pairs[p], (int) nbodies - 1, largest, dt, decided);
     for (int k = 0; k < nfields; k++)
-      if (node.record[k])
-        for (int d = 0; d < dim; d++) node.record[k][d] = start[k][d];
+      if (node.record[k]) std::copy_n(start[k].begin(), dim, node.record[k]);
     for (int p = node.first; p < node.last; p++) {
       const Pair &pair = pairs[p];
       for (int d = 0; d < dim; d++) {
@@ -879,14 +916,50 @@ void FixMPMContact::resolve(Node &node, double dt, bool decided)
     }
     if (largest < CONVERGED) break;
   }
-  if (!decided) account(node, start);
+  for (int k = 0; k < nfields; k++)
+    if (node.record[k]) bodies[k].move_mirrors(node.record[k], before[k]);
+  return largest;
+}
+
+/* ----------------------------------------------------------------------
+   Where walls mirror one body and not the other, contact at a node changes the velocity of this body at the
+   images of the node, too: these are solved together, by iterations of Gauss and Seidel. One after the other,
+   they would leave an approach in each step: water went into the clamped end of a plate.
+------------------------------------------------------------------------- */
+
+void FixMPMContact::resolve_all(double dt, bool decided)
+{
+  mirrored.clear();
+  for (auto &node : nodes) {
+    Velocities start;
+    if (begin(node, start)) {
+      mirrored.push_back({&node, start});
+      continue;
+    }
+    resolve(node, start, dt, decided);
+    if (!decided) account(node, start);
+  }
+
+  double largest = 1.0;
+  for (int it = 0; it < MAX_ITERATIONS && !mirrored.empty() && !(largest < CONVERGED); it++) {
+    largest = 0.0;
+    for (const auto &[node, start] : mirrored) {
+      for (int p = node->first; p < node->last; p++) {
+        pairs[p].walls_a = bodies[pairs[p].a].find_walls(pairs[p].ra);
+        pairs[p].walls_b = bodies[pairs[p].b].find_walls(pairs[p].rb);
+      }
+      largest = std::max(largest, resolve(*node, start, dt, decided));
+    }
+  }
+  if (!decided)
+    for (const auto &[node, start] : mirrored) account(*node, start);
 }
 
 /* ----------------------------------------------------------------------
    forces between bodies, work of the friction, and the ledgers of the fields
 ------------------------------------------------------------------------- */
 
-void FixMPMContact::account(const Node &node, const double start[][3])
+void FixMPMContact::account(const Node &node, const Velocities &start)
 {
   const int dim = bodies[0].field->lattice.dim;
   for (int p = node.first; p < node.last && node.owned; p++) {
@@ -930,7 +1003,7 @@ void FixMPMContact::act(double dt, Stage stage)
   } else if (!nodes.empty()) {
     for (auto &body : bodies) foresee_walls(body);
   }
-  for (auto &node : nodes) resolve(node, dt, !count);
+  resolve_all(dt, !count);
 }
 
 /* ----------------------------------------------------------------------
@@ -1012,7 +1085,7 @@ double FixMPMContact::memory_usage()
   double bytes = pairs.capacity() * sizeof(Pair) + nodes.capacity() * sizeof(Node) +
       common.capacity() * sizeof(Common);
   for (const auto &body : bodies)
-    bytes += (body.gradient.capacity() + body.share.capacity() + body.velocities.capacity()) *
+    bytes += (body.gradient.capacity() + body.share.capacity() + body.foreseen.held.capacity()) *
         sizeof(double);
   return bytes;
 }

@@ -17,6 +17,7 @@ FixStyle(mpm/contact,FixMPMContact);
 
 #include "declare/option.h"
 #include "fix.h"
+#include "fix_mpm_boundary.h"
 #include "mpm_node_action.h"
 
 #include <array>
@@ -88,9 +89,11 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
       char held;             // components to which they give their velocity, bits
       char mirrored;         // and that move with those of the images of the node
       char outside;          // of these those of a node outside of the mirror
-      double velocity[3];    // of these, without contact
+      double velocity[3];    // of these, now
       double mass[3];        // of the node and its images
-      double start[3];       // velocity of the node before contact
+      double start[3];       // velocity of the node now
+
+      bool moves_with_images(const double *record) const;
     } walls_a, walls_b;
     bool alike;    // they do the same to both
     char left;     // components that are left to the walls, or to contact at the image of the node
@@ -103,6 +106,11 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
     int first, last;    // range in pairs
     bool owned;
     double *record[MAX_FIELDS];    // null: the body has no mass here
+  };
+  using Velocities = std::array<std::array<double, 3>, MAX_FIELDS>;
+  struct Mirrored {    // a node where walls move one body with its images and another not
+    Node *node;
+    Velocities start;    // before contact
   };
   struct Room {    // for nodes near fixed faces: share of their volume inside of the box
     static constexpr int REACH = 2;    // of the function of a node, in nodes
@@ -127,10 +135,10 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
     std::vector<double> gradient;             // of the volume (or mass) at the nodes
     std::vector<double> share;                // volume at the nodes / node volume
     std::vector<char> held;                   // bits, FixMPMBoundary::mark_held()
-    std::vector<char> foreseen;               // bits, FixMPMBoundary::foresee()
-    std::vector<double> velocities;           // [6] that walls give, and masses with images
+    FixMPMBoundary::Foreseen foreseen;
 
     Pair::Walls find_walls(const double *record) const;
+    void move_mirrors(const double *record, const std::array<double, 3> &before);
 
     void mark_near(int slot);
   };
@@ -148,6 +156,7 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
   bool lists_valid = false, may_touch = false;
   bool look = true;    // for bodies that overlap, in the first step of a run
   std::vector<Node> nodes;
+  std::vector<Mirrored> mirrored;
   std::vector<Pair> pairs;
 
   double dt_last = 0.0;
@@ -166,9 +175,11 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
   void find_contacts();
   void separate_points();
   bool make_pair(const Common &, int n, int a, int b, double volume_share, Pair &);
-  void resolve(Node &, double dt, bool decided);
+  bool begin(Node &, Velocities &start);
+  double resolve(Node &, const Velocities &start, double dt, bool decided);
+  void resolve_all(double dt, bool decided);
   void apply(Pair &, int nothers, double &largest, double dt, bool decided);
-  void account(const Node &, const double start[][3]);
+  void account(const Node &, const Velocities &start);
 };
 
 }    // namespace LAMMPS_NS

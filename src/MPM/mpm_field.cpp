@@ -148,7 +148,6 @@ void MPMField::init(MPMPlan *plan_of_all)
   if (materials.empty())
     error->all(FLERR, "Fix mpm found no material: define one with fix mpm/material");
 
-  if (smoothing) smoothing->init();
   if (heating) heating->init();
 
   // the same instruction set for transfers, batches and laws
@@ -164,6 +163,7 @@ void MPMField::init(MPMPlan *plan_of_all)
   if (!can_run)
     error->all(FLERR, "Fix mpm kernels {} cannot run on this CPU or were not compiled",
                wanted ? wanted : "named by the environment variable MPM_ISA");
+  if (smoothing) smoothing->init();
 }
 
 void MPMField::find_materials()

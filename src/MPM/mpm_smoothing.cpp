@@ -37,13 +37,13 @@
 #include "force.h"
 #include "material/batch.h"
 #include "material/material.h"
-#include "mpm_point_batches.h"
 #include "mpm_point_map.h"
 #include "mpm_points.h"
 #include "mpm_stencil.h"
 #include "update.h"
 
 #include <algorithm>
+#include <climits>
 #include <cmath>
 
 using namespace LAMMPS_NS;
@@ -56,8 +56,9 @@ static constexpr double MIN_EXTENT = 1.0e-8;
 
 /* ---------------------------------------------------------------------- */
 
-void MPMSmoothing::init() const
+void MPMSmoothing::init()
 {
+  kernels = SmoothingKernels::select(*field.kernels, field.lattice.dim, field.options.shape);
   if (std::none_of(field.materials.begin(), field.materials.end(), [](auto *material) {
         return material->material->is_barotropic();
       }))
@@ -69,33 +70,23 @@ void MPMSmoothing::init() const
         field.id());
 }
 
-/* ----------------------------------------------------------------------
-   Functions 1, x, y, (z) of the fit. A node has sums over its points of their products, and then of them times
-   q; in the end, the coefficients of the functions are in place of the latter
-------------------------------------------------------------------------- */
-
-template <int DIM> struct Fit {
-  static constexpr int N = DIM + 1, PRODUCTS = N * (N + 1) / 2, WIDTH = PRODUCTS + N;
-};
-
-/** To the sums of a node, for a point at x, y, z from it; V: volume times weight. Written out, as it takes
- *  most of the time. */
+/** To the sums of a node, for a point at r from it; V: volume times weight. */
 template <int DIM> static void add(double *s, double V, double q, const double *r)
 {
   const double x = r[0], y = r[1], z = r[2], Vx = V * x, Vy = V * y, Vz = V * z;
   s[0] += V;
   s[1] += Vx;
-  s[2] += Vx * x;
-  s[3] += Vy;
-  s[4] += Vy * x;
+  s[2] += Vy;
+  s[3] += DIM == 3 ? Vz : Vx * y;
+  s[4] += Vx * x;
   s[5] += Vy * y;
   if (DIM == 3) {
-    s[6] += Vz;
-    s[7] += Vz * x;
-    s[8] += Vz * y;
-    s[9] += Vz * z;
+    s[6] += Vz * z;
+    s[8] += Vx * y;
+    s[9] += Vx * z;
+    s[10] += Vy * z;
   }
-  s += Fit<DIM>::PRODUCTS;
+  s += fit_place(DIM);
   s[0] += q * V;
   s[1] += q * Vx;
   s[2] += q * Vy;
@@ -144,62 +135,105 @@ double MPMSmoothing::time_to_cross(const FixMPMMaterial &fluid) const
 }
 
 /* ----------------------------------------------------------------------
-   As often as sound crosses a cell, where the map of points knows their nodes: before they move. Times are
-   counted from zero, so that they do not depend on when a run starts
+   calls f(place in the tile, number) for the nodes that a block of points with base nodes in the box reaches;
+   number: of a node that may not be active, as nothing in the tile is there: negative
 ------------------------------------------------------------------------- */
 
-void MPMSmoothing::smooth()
+template <int DIM, class F>
+void MPMSmoothing::visit_tile(int slot, const int *box, const F &f) const
 {
-  const double now = update->atime + (update->ntimestep - update->atimestep) * update->dt;
-  for (auto *fluid : field.materials) {
-    if (!fluid->material->is_barotropic()) continue;
-    const double cross = time_to_cross(*fluid);
-    const double times = std::floor(now / cross) - std::floor((now - field.step_dt()) / cross);
-    if (!(times > 0.0)) continue;
-    const double share = 1.0 - std::pow(1.0 - field.options.smooth, times);
-    if (field.lattice.dim == 3) {
-      fit_nodes<3>(fluid);
-      change_volumes<3>(fluid, share);
-    } else {
-      fit_nodes<2>(fluid);
-      change_volumes<2>(fluid, share);
-    }
+  constexpr int side = block_side(DIM);
+  const auto &block = field.grid.blocks[slot];
+  const int order = stencil_order(field.options.shape);
+  const int sx = tile_stride_x(DIM, order), sy = tile_stride_y(DIM, order);
+  int low[3] = {box[0], box[1], 0}, high[3] = {box[3] + order, box[4] + order, 0};
+  if (DIM == 3) {
+    low[2] = box[2];
+    high[2] = box[5] + order;
   }
+  const auto neighbor =
+      [](int node) {    // of a node in the tile, which begins one before the block
+        return (node - 1 + side) / side;
+      };
+  for (int x = low[0]; x <= high[0]; x++)
+    for (int y = low[1]; y <= high[1]; y++)
+      for (int z = low[2]; z <= high[2]; z++) {
+        const int which =
+            block.slot[9 * neighbor(x) + 3 * neighbor(y) + (DIM == 3 ? neighbor(z) : 1)];
+        const int ix = (x - 1 + side) % side, iy = (y - 1 + side) % side,
+                  iz = (z - 1 + side) % side;
+        const int inside = DIM == 3 ? (ix * side + iy) * side + iz : ix * side + iy;
+        f(x * sx + (DIM == 3 ? y * sy + z : y),
+          which < 0 ? -1 : (int64_t) which * NODES_PER_BLOCK + inside);
+      }
+}
+
+/** The sums of nodes over this rank's points. */
+template <int DIM> void MPMSmoothing::add_points(const FixMPMMaterial *fluid)
+{
+  constexpr int WIDTH = fit_width(DIM);
+  const MPMStencil stencil(field);
+  const PointRows rows = field.rows();
+  const TransferStep step = field.step_data();
+  sums.assign(field.grid.nnodes() * WIDTH, 0.0);
+  q.resize(atom->nmax);
+  tile.resize((std::size_t) MAX_TILE_NODES * WIDTH);    // zero again when it has been emptied
+  boxes.clear();
+  double nowhere[WIDTH] = {0.0};
+  for (const auto &run : field.map->runs) {
+    if (run.material != fluid) continue;
+    const auto &block = field.grid.blocks[run.slot];
+    for (int i = run.first; i < run.last; i++) q[i] = field.points->jacobian(i) - 1.0;
+    if (!kernels.fit) {
+      for (int i = run.first; i < run.last; i++)
+        visit<DIM>(stencil, field.domains != nullptr, block, i,
+                   [&](int64_t node, double weight, const double *r) {
+                     add<DIM>(&sums[node * WIDTH], rows.vol0[i] * weight, q[i], r);
+                   });
+      continue;
+    }
+    int base[3];
+    for (int d = 0; d < 3; d++) base[d] = block.b[d] * field.grid.side - 1;
+    boxes.push_back({INT_MAX, INT_MAX, INT_MAX, -1, -1, -1});
+    kernels.fit(rows, q.data(), step, run.first, run.last, base, tile.data(), boxes.back().data());
+    visit_tile<DIM>(run.slot, boxes.back().data(), [&](int place, int64_t node) {
+      double *const from = &tile[(std::size_t) place * WIDTH];
+      double *const to = node < 0 ? nowhere : &sums[node * WIDTH];
+      for (int k = 0; k < WIDTH; k += 4) {    // loads before stores
+        const double a = to[k] + from[k], b = to[k + 1] + from[k + 1], c = to[k + 2] + from[k + 2],
+                     d = to[k + 3] + from[k + 3];
+        to[k] = a;
+        to[k + 1] = b;
+        to[k + 2] = c;
+        to[k + 3] = d;
+      }
+      std::fill_n(from, WIDTH, 0.0);
+    });
+  }
+  field.nodes.sum(sums.data(), WIDTH, 0, WIDTH);
 }
 
 /* ----------------------------------------------------------------------
    Value and slope of q at each node: the normal equations of the fit, solved by decomposition into L D L^T.
-   A direction in which the points around have no extent gets no slope
+   A direction in which the points around have no extent gets no slope. The coefficients are in the end in the
+   place of the sums with q
 ------------------------------------------------------------------------- */
 
-template <int DIM> void MPMSmoothing::fit_nodes(const FixMPMMaterial *fluid)
+template <int DIM> void MPMSmoothing::fit_nodes()
 {
-  constexpr int N = Fit<DIM>::N, PRODUCTS = Fit<DIM>::PRODUCTS, WIDTH = Fit<DIM>::WIDTH;
-  const MPMStencil stencil(field);
-  sums.assign(field.grid.nnodes() * WIDTH, 0.0);
-  for (const auto &run : field.map->runs) {
-    if (run.material != fluid) continue;
-    for (int i = run.first; i < run.last; i++) {
-      const double V = atom->vfrac[i], q = field.points->jacobian(i) - 1.0;
-      visit<DIM>(stencil, field.domains != nullptr, field.grid.blocks[run.slot], i,
-                 [&](int64_t node, double weight, const double *r) {
-                   add<DIM>(&sums[node * WIDTH], V * weight, q, r);
-                 });
-    }
-  }
-  field.nodes.sum(sums.data(), WIDTH, 0, WIDTH);
-
+  constexpr int N = DIM + 1, WIDTH = fit_width(DIM);
+  constexpr int product[4][4] = {{0}, {1, 4}, {2, DIM == 3 ? 8 : 3, 5}, {3, 9, 10, 6}};    // places
   for (double *s = sums.data(); s < sums.data() + sums.size(); s += WIDTH) {
     if (!(s[0] > 0.0)) continue;
     double L[N][N], inverse[N];    // of D, or zero; row by row first L D, then L
-    double *const y = s + PRODUCTS;
-    const double least = MIN_EXTENT * s[0], *product = s;
+    double *const y = s + fit_place(DIM);
+    const double least = MIN_EXTENT * s[0];
     for (int a = 0; a < N; a++) {
       for (int b = 0; b < a; b++) {
-        L[a][b] = *product++;
+        L[a][b] = s[product[a][b]];
         for (int c = 0; c < b; c++) L[a][b] -= L[a][c] * L[b][c];
       }
-      double x = *product++;
+      double x = s[product[a][a]];
       for (int b = 0; b < a; b++) {
         const double scaled = L[a][b] * inverse[b];
         x -= L[a][b] * scaled;
@@ -216,6 +250,43 @@ template <int DIM> void MPMSmoothing::fit_nodes(const FixMPMMaterial *fluid)
   field.nodes.complete(sums.data(), WIDTH, WIDTH);
 }
 
+/** Sum N (fit at the point) in the place of q. */
+template <int DIM> void MPMSmoothing::evaluate_fits(const FixMPMMaterial *fluid)
+{
+  constexpr int WIDTH = fit_width(DIM), FIT = fit_place(DIM);
+  const MPMStencil stencil(field);
+  const PointRows rows = field.rows();
+  const TransferStep step = field.step_data();
+  fits.resize((std::size_t) MAX_TILE_NODES * 4);
+  auto box = boxes.begin();
+  for (const auto &run : field.map->runs) {
+    if (run.material != fluid) continue;
+    const auto &block = field.grid.blocks[run.slot];
+    if (!kernels.evaluate) {
+      for (int i = run.first; i < run.last; i++) {
+        double sum = 0.0;
+        visit<DIM>(stencil, field.domains != nullptr, block, i,
+                   [&](int64_t node, double weight, const double *r) {
+                     const double *const fit = &sums[node * WIDTH + FIT];
+                     double at = fit[0] + fit[1] * r[0] + fit[2] * r[1];
+                     if (DIM == 3) at += fit[3] * r[2];
+                     sum += weight * at;
+                   });
+        q[i] = sum;
+      }
+      continue;
+    }
+    int base[3];
+    for (int d = 0; d < 3; d++) base[d] = block.b[d] * field.grid.side - 1;
+    visit_tile<DIM>(run.slot, box->data(), [&](int place, int64_t node) {
+      for (int k = 0; k < 4; k++)
+        fits[4 * (std::size_t) place + k] = node < 0 ? 0.0 : sums[node * WIDTH + FIT + k];
+    });
+    kernels.evaluate(rows, q.data(), step, run.first, run.last, base, fits.data());
+    ++box;
+  }
+}
+
 /* ----------------------------------------------------------------------
    F is scaled in the directions that are free, and the pressure follows by the equation of state;
    viscous stress stays
@@ -223,32 +294,20 @@ template <int DIM> void MPMSmoothing::fit_nodes(const FixMPMMaterial *fluid)
 
 template <int DIM> void MPMSmoothing::change_volumes(const FixMPMMaterial *fluid, double share)
 {
-  constexpr int PRODUCTS = Fit<DIM>::PRODUCTS, WIDTH = Fit<DIM>::WIDTH;
-  const MPMStencil stencil(field);
   const Material &material = *fluid->material;
   Batch &b = *field.batch;
   for (const auto &run : field.map->runs) {
     if (run.material != fluid) continue;
     for (int start = run.first; start < run.last; start += BATCH) {
       const int n = std::min(BATCH, run.last - start);
-      int list[BATCH];
       double change[BATCH], mean[BATCH];    // of J; of the Kirchhoff stress before
-      for (int p = 0; p < n; p++) {
-        list[p] = start + p;
-        double q = 0.0;
-        visit<DIM>(stencil, field.domains != nullptr, field.grid.blocks[run.slot], start + p,
-                   [&](int64_t node, double weight, const double *r) {
-                     const double *const fit = &sums[node * WIDTH + PRODUCTS];
-                     double at = fit[0] + fit[1] * r[0] + fit[2] * r[1];
-                     if (DIM == 3) at += fit[DIM] * r[2];
-                     q += weight * at;
-                   });
-        change[p] = share * (q + 1.0 - field.points->jacobian(start + p));
-      }
-      load_state(field, b, list, n, fluid);
+      b.n = n;
+      b.history = nullptr;
+      for (int p = 0; p < n; p++) b.J[p] = field.points->jacobian(start + p);
       material.initial_stress(b);
       for (int p = 0; p < n; p++) {
         mean[p] = b.J[p] * b.stress[0][p];
+        change[p] = share * (q[start + p] + 1.0 - b.J[p]);
         if (!(std::fabs(change[p]) < b.J[p])) change[p] = 0.0;
         b.J[p] += change[p];
       }
@@ -261,5 +320,36 @@ template <int DIM> void MPMSmoothing::change_volumes(const FixMPMMaterial *fluid
         for (int c = 0; c < (DIM == 3 ? 9 : 5); c++) F[c] *= scale;
       }
     }
+  }
+}
+
+template <int DIM> void MPMSmoothing::smooth(const FixMPMMaterial *fluid, double share)
+{
+  add_points<DIM>(fluid);
+  fit_nodes<DIM>();
+  evaluate_fits<DIM>(fluid);
+  change_volumes<DIM>(fluid, share);
+}
+
+/* ----------------------------------------------------------------------
+   As often as sound crosses one cell or two, where the map of points knows their nodes: before they move. Times are
+   counted from zero, so that they do not depend on when a run starts
+------------------------------------------------------------------------- */
+
+void MPMSmoothing::smooth()
+{
+  // half as often with twice the share: errors over a few cells go as fast, at half the cost
+  const int crossings = field.options.smooth > 0.5 ? 1 : 2;
+  const double now = update->atime + (update->ntimestep - update->atimestep) * update->dt;
+  for (auto *fluid : field.materials) {
+    if (!fluid->material->is_barotropic()) continue;
+    const double cross = crossings * time_to_cross(*fluid);
+    const double times = std::floor(now / cross) - std::floor((now - field.step_dt()) / cross);
+    if (!(times > 0.0)) continue;
+    const double share = 1.0 - std::pow(1.0 - crossings * field.options.smooth, times);
+    if (field.lattice.dim == 3)
+      smooth<3>(fluid, share);
+    else
+      smooth<2>(fluid, share);
   }
 }

@@ -9,6 +9,7 @@
 #include "transfer/isa.h"
 
 #include "transfer/kernels.h"
+#include "transfer/smoothing.h"
 
 #include <cstdlib>
 #include <cstring>
@@ -17,6 +18,7 @@
 namespace MPM_NS {
 MPM_DECLARE_ISA(const MPMKernels *, mpm_kernels, const char *isa)
 const MPMKernels *mpm_kernels_reference();
+MPM_DECLARE_ISA(SmoothingKernels, mpm_kernels_smoothing, int dim, Shape)
 }    // namespace MPM_NS
 
 using namespace MPM_NS;
@@ -57,11 +59,21 @@ bool MPM_NS::select_isa(const char *name, InstructionSet &set)
   return false;
 }
 
+/** Names of the sets in tables. */
+static const char *const sets[] = {"baseline", "AVX2", "AVX-512"};
+
+SmoothingKernels SmoothingKernels::select(const MPMKernels &kernels, int dim, Shape shape)
+{
+  SmoothingKernels (*const tables[])(int, Shape) = MPM_ALL_ISA(mpm_kernels_smoothing);
+  for (int set = BASE; set <= V4; set++)
+    if (std::strcmp(kernels.isa, sets[set]) == 0) return tables[set](dim, shape);
+  return {};
+}
+
 const MPMKernels *MPMKernels::select(const char *name)
 {
   const MPMKernels *(*const tables[])(const char *) = MPM_ALL_ISA(mpm_kernels);
   InstructionSet set;
   if (!select_isa(name, set)) return nullptr;
-  const char *const names[] = {"baseline", "AVX2", "AVX-512"};
-  return set == REFERENCE ? mpm_kernels_reference() : tables[set](names[set]);
+  return set == REFERENCE ? mpm_kernels_reference() : tables[set](sets[set]);
 }
