@@ -12,7 +12,7 @@ tools/build.sh.  Kernels and laws are compiled and run for the baseline instruct
 
   --list FILE    mutants (default: tools/mutants.txt, which tells its format)
   --jobs N       mutants at a time (default: MPM_JOBS, or all cores)
-  --check        only look whether the list fits the source
+  --check        only look whether the list fits the source and the tests, without a build tree
   --no-build     the test programs are up to date
   --keep         leave what was compiled in BUILD/mutants
 
@@ -84,6 +84,17 @@ def read_list(path):
 def program(test):
     """test_contact.np3 -> test_contact"""
     return test.partition(".")[0]
+
+
+def not_in_test(test, names):
+    """words of a filter that the source of the test does not have, or the name of that source"""
+    path = [os.path.join(folder, program(test) + ".cpp") for folder, _, files in os.walk(os.path.join(ROOT, "unittest"))
+            if program(test) + ".cpp" in files]
+    if not path:
+        return [program(test) + ".cpp"]
+    with open(path[0]) as file:
+        text = file.read()
+    return [word for word in re.findall(r"[A-Za-z]\w{3,}", names) if word not in text]
 
 
 # ---------------------------------------------------------------- how things are compiled and run
@@ -280,8 +291,11 @@ def main():
     for mutant in stale:
         print("%s: the text is not exactly once in %s" % (mutant.name, mutant.file))
     if options.check or not mutants:
-        print("%d mutants, %d stale" % (len(mutants), len(stale)))
-        return 1 if stale or not mutants else 0
+        lost = [(mutant, test) for mutant in mutants for test in mutant.tests if not_in_test(*test)]
+        for mutant, test in lost:
+            print("%s: no %s in the source of %s" % (mutant.name, ", ".join(not_in_test(*test)), test[0]))
+        print("%d mutants, %d stale, %d tests that are not there" % (len(mutants), len(stale), len(lost)))
+        return 1 if stale or lost or not mutants else 0
 
     wanted = sorted({test for mutant in mutants for test in mutant.tests})
     tree = BuildTree(sorted({program(test) for test, _ in wanted}), not options.no_build)
