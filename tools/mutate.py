@@ -204,11 +204,20 @@ def run_test(tree, test, names, executable, folder, limit):
 # ---------------------------------------------------------------- mutants
 
 def check_tests(tree, wanted, folder, pool):
-    """time that each test takes on the source as it is, where it must pass"""
+    """time that each test takes on the source as it is, where it must pass; kept until the program changes"""
+    path = os.path.join(folder, "passed.json")
+    passed = {}
+    if os.path.exists(path):
+        with open(path) as file:
+            passed = json.load(file)
 
     def check(key):
         test, names = key
         executable = os.path.join(BUILD, "unittest", program(test))
+        if os.path.exists(executable):
+            before = passed.get(" ".join(key))
+            if before and before[1] == os.stat(executable).st_mtime_ns:
+                return before[0], ""
         if test not in tree.tests:
             return 0.0, "there is no test " + test
         if "\n  " not in quiet([executable, "--gtest_list_tests", "--gtest_filter=" + names]):
@@ -218,9 +227,12 @@ def check_tests(tree, wanted, folder, pool):
             status, output = run_test(tree, test, names, executable, own, 600)
         if status != 0 or not re.search(r"\[  PASSED  \] [1-9]", output):
             return 0.0, output + "\n%s %s fails or is skipped without any mutant" % key
+        passed[" ".join(key)] = time.time() - start, os.stat(executable).st_mtime_ns
         return time.time() - start, ""
 
     found = list(pool.map(check, wanted))
+    with open(path, "w") as file:
+        json.dump(passed, file, indent=1)
     wrong = [text for _, text in found if text]
     if wrong:
         sys.exit("\n".join(wrong))
