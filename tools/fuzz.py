@@ -11,6 +11,7 @@ of each how it ended:
   ran, error       went on to the end, or stopped with an error message of LAMMPS
   crash            a signal, or an exit without a message of LAMMPS
   hang             more processor time than the limit, and alone again more than five times the limit
+  large            stopped, since a mistake has made more points than --points; no failure
   nan              a number that is not finite in the output or in the state at the end, without a message
   mass, momentum   of a scene that nothing acts on have changed
   ranks            the state on two processes is another than on one, by more than round-off can do
@@ -21,6 +22,9 @@ of each how it ended:
   --scenes N       scenes (default 20)
   --seed N         of the first input and the first scene, the others follow (default 1)
   --minutes M      begin nothing new after that time
+  --go-on          leave out what a run into the same folder has done: the summary is that of all parts
+  --every S        seconds between lines that tell how far it is (default 60)
+  --points N       stop an input that makes more points than this (default 100000)
   --jobs N         runs at a time (default: MPM_JOBS, or all cores)
   --out DIR        folder for failures (default: BUILD/fuzz)
   --lmp FILE       executable (default: MPM_LMP or BUILD/lmp)
@@ -33,11 +37,14 @@ Each failure is a folder with the input, its files, output, and a file COMMAND t
 states that are not finite also have the input with as few lines as fail (small.in).  Failures that are
 those of LAMMPS itself are in fuzz_known.txt with a reason.  Exit status: 0 if there are no others.
 
-Limits are processor time, so that a busy machine makes no difference.
+Limits are processor time, so that a busy machine makes no difference.  Interrupted or terminated, it ends
+what runs, and writes its summary.  What was done is in the file DONE of the folder, with a checksum of the
+executable and of the inputs that mistakes are made in: only a run on the same state can go on.
 """
 
 import argparse
 import concurrent.futures
+import hashlib
 import math
 import os
 import random
@@ -76,7 +83,8 @@ class Machine:
 
     def __init__(self, options):
         self.lmp = os.path.abspath(options.lmp)
-        self.memory = int(options.memory * 2 ** 20)
+        self.memory, self.points = int(options.memory * 2 ** 20), options.points
+        self.stopped, self.running = False, set()
         if "ASAN_OPTIONS" in os.environ:    # the sanitizer takes address space for all that there is
             self.memory = "unlimited"
         self.mpiexec = shlex.split(os.environ.get("MPM_MPIEXEC", "mpirun -np"))
@@ -112,15 +120,30 @@ class Machine:
             own = dict(self.environment, TMPDIR=folder)    # runs do not share folders of MPI
             process = subprocess.Popen(command, cwd=folder, env=own, stdin=subprocess.DEVNULL,
                                        stdout=output, stderr=subprocess.STDOUT, start_new_session=True)
+            self.running.add(process)
+            if self.stopped:    # a signal that came just now has not seen this one
+                self.kill(process)
             try:    # one that sleeps for ever uses no time; the factor is for a machine that is busy
                 process.wait(30 * seconds)
                 code = process.returncode
             except subprocess.TimeoutExpired:
-                os.killpg(process.pid, signal.SIGKILL)
+                self.kill(process)
                 process.wait()
                 code = -signal.SIGXCPU
+            self.running.discard(process)
         with open(os.path.join(folder, "output"), "rb") as output:
             return Done(code, output.read(20000000).decode(errors="replace"))
+
+    @staticmethod
+    def kill(process):
+        if process.poll() is None:
+            os.killpg(process.pid, signal.SIGKILL)
+
+    def stop(self, *_):
+        """Begin nothing new, and end what runs."""
+        self.stopped = True
+        for process in list(self.running):
+            self.kill(process)
 
 
 class Done:
@@ -136,6 +159,8 @@ class Done:
             return "hang"
         if self.code < 0 or self.code > 128 or (self.code and "ERROR" not in self.output):
             return "crash"
+        if re.search(r"^FUZZ: \d+ points are too many", self.output, re.M):
+            return "large"
         notice = re.search(r"^WARNING.*(finite|\bnan\b|\binf\b)|^ERROR", self.output.split("FUZZ: the end")[0],
                            re.M | re.I)
         if not notice and (any(map(not_finite, self.output.splitlines())) or state_not_finite(folder)):
@@ -174,7 +199,7 @@ def state_not_finite(folder):
 # ---------------------------------------------------------------- inputs with mistakes
 
 def run_input(machine, case, folder, patience=1):
-    done = machine.run(folder, case.text() + fuzz_inputs.TRAILER, case.files, patience=patience)
+    done = machine.run(folder, case.text(machine.points) + fuzz_inputs.TRAILER, case.files, patience=patience)
     return done.verdict(folder), done
 
 
@@ -319,14 +344,59 @@ def command_of(seed, kind):
 class Report:
     """Counts verdicts, and writes failures."""
 
-    def __init__(self, machine, options):
+    def __init__(self, machine, options, state):
         self.machine, self.options = machine, options
         self.counts, self.known, self.failures = {}, known_failures(), 0
-        self.start = time.time()
+        self.start = self.told = time.time()
+        self.done, self.new = {"input": set(), "scene": set()}, {"input": 0, "scene": 0}
+        self.open_record("state " + state)
 
-    def count(self, kind, verdict):
+    def open_record(self, state):
+        """What a run before this one has done, if this one goes on."""
+        path = os.path.join(self.options.out, "DONE")
+        os.makedirs(self.options.out, exist_ok=True)
+        lines = []
+        if self.options.go_on and os.path.exists(path):
+            with open(path, encoding="ascii") as file:
+                lines = file.read().splitlines()
+            if lines[0] != state:
+                sys.exit("%s is of another executable or of other inputs" % path)
+        self.record = open(path, "a" if lines else "w", encoding="ascii")
+        if not lines:
+            print(state, file=self.record, flush=True)
+        for kind, seed, verdict in map(str.split, lines[1:]):
+            if self.wanted(kind, int(seed)) and int(seed) not in self.done[kind]:
+                self.count(kind, int(seed), verdict)
+
+    def seeds(self, kind):
+        count = self.options.inputs if kind == "input" else self.options.scenes
+        return range(self.options.seed, self.options.seed + count)
+
+    def wanted(self, kind, seed):
+        return seed in self.seeds(kind)
+
+    def count(self, kind, seed, verdict):
+        self.done[kind].add(seed)
         self.counts.setdefault(kind, {}).setdefault(verdict, 0)
         self.counts[kind][verdict] += 1
+        self.failures += verdict in FAILURES
+
+    def add(self, kind, seed, verdict):
+        """Count one that was done now."""
+        self.new[kind] += 1
+        self.count(kind, seed, verdict)
+        print(kind, seed, verdict, file=self.record, flush=True)
+        if time.time() - self.told >= self.options.every:
+            self.tell(kind)
+
+    def tell(self, kind):
+        """How far it is."""
+        self.told = time.time()
+        counts = self.counts.get(kind, {})
+        done, all_of_them = len(self.done[kind]), len(self.seeds(kind))
+        minutes = (self.told - self.start) / 60 / max(1, sum(self.new.values())) * (all_of_them - done)
+        print("%d of %d %ss done, %d ended in an error, %d failures, some %.0f minutes left" % (
+            done, all_of_them, kind, counts.get("error", 0), self.failures, minutes), flush=True)
 
     def input(self, seed, verdict, case, done):
         trace, small = "", ""
@@ -334,12 +404,11 @@ class Report:
             trace = backtrace(self.machine, case)
         text = case.text() + "\nOUTPUT\n" + done.output[-20000:]
         reason = is_known(self.known, verdict, text, trace) if verdict in FAILURES else None
-        self.count("inputs", "known" if reason else verdict)
+        self.add("input", seed, "known" if reason else verdict)
         if verdict not in FAILURES or reason:
             return
         if verdict in ("crash", "nan"):
             small = smaller(self.machine, case, verdict).text()
-        self.failures += 1
         folder = write_failure(self.options, "input-%d" % seed, dict(
             case.files, **{"in.fuzz": case.text() + fuzz_inputs.TRAILER, "small.in": small,
                            "output": done.output[-100000:], "backtrace": trace}), command_of(seed, "input"))
@@ -347,10 +416,9 @@ class Report:
 
     def scene(self, seed, verdict, scene, done, what):
         reason = is_known(self.known, verdict, scene.first() + "\nOUTPUT\n" + done.output[-20000:], "")
-        self.count("scenes", "known" if reason and verdict in FAILURES else verdict)
+        self.add("scene", seed, "known" if reason and verdict in FAILURES else verdict)
         if verdict == "ran" or reason:
             return
-        self.failures += verdict in FAILURES
         folder = write_failure(self.options, "scene-%d" % seed, dict(
             scene.files, **{"in.first": scene.first(), "in.second": scene.second(),
                             "output": done.output[-100000:]}), command_of(seed, "scene"))
@@ -358,32 +426,51 @@ class Report:
 
     def end(self):
         for kind, counts in self.counts.items():
-            print("%d %s: %s" % (sum(counts.values()), kind, ", ".join(
+            print("%d %ss: %s" % (sum(counts.values()), kind, ", ".join(
                 "%d %s" % (counts[key], key) for key in sorted(counts))))
-        print("%d failures in %.0f s" % (self.failures, time.time() - self.start))
+        left = sum(len(self.seeds(kind)) - len(self.done[kind]) for kind in self.done)
+        if left:
+            print("%d were not run: the same command with --go-on runs these" % left)
+        print("%d failures in %.0f s" % (self.failures, time.time() - self.start), flush=True)
         return 1 if self.failures else 0
 
 
-def try_all(machine, options):
-    report, hangs = Report(machine, options), []
-    mutator = fuzz_inputs.Mutator() if options.inputs else None
-    end = time.time() + 60 * options.minutes
+def state_of(options, bases):
+    """Checksum of the executable and of the inputs that mistakes are made in."""
+    found = hashlib.sha256()
+    with open(options.lmp, "rb") as file:
+        found.update(file.read())
+    for base in bases:
+        found.update(base.text().encode())
+    return found.hexdigest()[:16]
 
-    def each(count, function):
+
+def try_all(machine, options):
+    mutator = fuzz_inputs.Mutator() if options.inputs else None
+    report, hangs = Report(machine, options, state_of(options, mutator.bases if mutator else ())), []
+    end = time.time() + 60 * options.minutes
+    for name in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(name, machine.stop)
+
+    def each(kind, function):
         """(seed, what function gives) for each of the seeds there is time for"""
         def in_time(seed):
-            return (seed, function(seed)) if time.time() < end else None
+            found = None if machine.stopped or time.time() > end else (seed, function(seed))
+            return None if machine.stopped else found    # what a signal has ended tells nothing
         with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-            yield from filter(None, pool.map(in_time, range(options.seed, options.seed + count)))
+            seeds = [seed for seed in report.seeds(kind) if seed not in report.done[kind]]
+            yield from filter(None, pool.map(in_time, seeds))
 
-    for seed, (verdict, case, done) in each(options.inputs, lambda seed: try_input(machine, mutator, seed)):
+    for seed, (verdict, case, done) in each("input", lambda seed: try_input(machine, mutator, seed)):
         if verdict == "hang":
             hangs.append(seed)
         else:
             report.input(seed, verdict, case, done)
     for seed in hangs:    # alone, and with more time
-        report.input(seed, *try_input(machine, mutator, seed, patience=5))
-    for seed, result in each(options.scenes, lambda seed: try_scene(machine, seed)):
+        found = None if machine.stopped else try_input(machine, mutator, seed, patience=5)
+        if not machine.stopped:
+            report.input(seed, *found)
+    for seed, result in each("scene", lambda seed: try_scene(machine, seed)):
         report.scene(seed, *result)
     return report.end()
 
@@ -413,6 +500,9 @@ def main():
     parser.add_argument("--out", default=os.path.join(BUILD, "fuzz"))
     parser.add_argument("--lmp", default=os.environ.get("MPM_LMP") or os.path.join(BUILD, "lmp"))
     parser.add_argument("--minutes", type=float, default=math.inf)
+    parser.add_argument("--go-on", action="store_true")
+    parser.add_argument("--every", type=float, default=60.0)
+    parser.add_argument("--points", type=int, default=100000)
     parser.add_argument("--limit", type=int, default=0)
     parser.add_argument("--memory", type=float, default=4.0)
     parser.add_argument("--bases", action="store_true")

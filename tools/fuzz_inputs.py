@@ -68,6 +68,7 @@ BETWEEN = [
     "%(other)s", "%(other)s", "%(other)s", "%(other)s", "unfix %(fix)s\n%(other)s", "unfix %(fix)s\n%(other)s",
     "variable fuzz equal 1/0", "variable fuzz equal 1e308*10", "variable fuzz delete", "quit",
 ]
+ENOUGH = """if "$(atoms) > %d" then "print 'FUZZ: $(atoms) points are too many'" quit"""
 TRAILER = """
 print "FUZZ: the end of the input"
 write_dump all custom fuzz.state id type x y z vx vy vz fx fy fz modify format float %.17g
@@ -84,8 +85,14 @@ class Input:
         text = re.sub(r"&[ \t]*\n", " ", text)
         self.lines = [words for words in map(split, text.splitlines()) if words]
 
-    def text(self):
-        return "\n".join(" ".join(words) for words in self.lines) + "\n"
+    def text(self, most=None):
+        """The input, which may stop where there are too many points: one that is merely large takes long."""
+        lines = []
+        for words in self.lines:
+            lines.append(" ".join(words))
+            if most and words[0] in ("create_points", "create_atoms", "replicate", "read_data", "read_restart"):
+                lines.append(ENOUGH % most)
+        return "\n".join(lines) + "\n"
 
     def copy(self):
         other = Input(self.name, "", self.files)

@@ -12,7 +12,7 @@ tools/build.sh.  Kernels and laws are compiled and run for the baseline instruct
 
   --list FILE    mutants (default: tools/mutants.txt, which tells its format)
   --jobs N       mutants at a time (default: MPM_JOBS, or all cores)
-  --check        only look whether the list fits the source
+  --check        only look whether the list fits the source and the tests, without a build tree
   --no-build     the test programs are up to date
   --keep         leave what was compiled in BUILD/mutants
 
@@ -84,6 +84,17 @@ def read_list(path):
 def program(test):
     """test_contact.np3 -> test_contact"""
     return test.partition(".")[0]
+
+
+def not_in_test(test, names):
+    """words of a filter that the source of the test does not have, or the name of that source"""
+    path = [os.path.join(folder, program(test) + ".cpp") for folder, _, files in os.walk(os.path.join(ROOT, "unittest"))
+            if program(test) + ".cpp" in files]
+    if not path:
+        return [program(test) + ".cpp"]
+    with open(path[0]) as file:
+        text = file.read()
+    return [word for word in re.findall(r"[A-Za-z]\w{3,}", names) if word not in text]
 
 
 # ---------------------------------------------------------------- how things are compiled and run
@@ -193,11 +204,20 @@ def run_test(tree, test, names, executable, folder, limit):
 # ---------------------------------------------------------------- mutants
 
 def check_tests(tree, wanted, folder, pool):
-    """time that each test takes on the source as it is, where it must pass"""
+    """time that each test takes on the source as it is, where it must pass; kept until the program changes"""
+    path = os.path.join(folder, "passed.json")
+    passed = {}
+    if os.path.exists(path):
+        with open(path) as file:
+            passed = json.load(file)
 
     def check(key):
         test, names = key
         executable = os.path.join(BUILD, "unittest", program(test))
+        if os.path.exists(executable):
+            before = passed.get(" ".join(key))
+            if before and before[1] == os.stat(executable).st_mtime_ns:
+                return before[0], ""
         if test not in tree.tests:
             return 0.0, "there is no test " + test
         if "\n  " not in quiet([executable, "--gtest_list_tests", "--gtest_filter=" + names]):
@@ -207,9 +227,12 @@ def check_tests(tree, wanted, folder, pool):
             status, output = run_test(tree, test, names, executable, own, 600)
         if status != 0 or not re.search(r"\[  PASSED  \] [1-9]", output):
             return 0.0, output + "\n%s %s fails or is skipped without any mutant" % key
+        passed[" ".join(key)] = time.time() - start, os.stat(executable).st_mtime_ns
         return time.time() - start, ""
 
     found = list(pool.map(check, wanted))
+    with open(path, "w") as file:
+        json.dump(passed, file, indent=1)
     wrong = [text for _, text in found if text]
     if wrong:
         sys.exit("\n".join(wrong))
@@ -280,8 +303,11 @@ def main():
     for mutant in stale:
         print("%s: the text is not exactly once in %s" % (mutant.name, mutant.file))
     if options.check or not mutants:
-        print("%d mutants, %d stale" % (len(mutants), len(stale)))
-        return 1 if stale or not mutants else 0
+        lost = [(mutant, test) for mutant in mutants for test in mutant.tests if not_in_test(*test)]
+        for mutant, test in lost:
+            print("%s: no %s in the source of %s" % (mutant.name, ", ".join(not_in_test(*test)), test[0]))
+        print("%d mutants, %d stale, %d tests that are not there" % (len(mutants), len(stale), len(lost)))
+        return 1 if stale or lost or not mutants else 0
 
     wanted = sorted({test for mutant in mutants for test in mutant.tests})
     tree = BuildTree(sorted({program(test) for test, _ in wanted}), not options.no_build)

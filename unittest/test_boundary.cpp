@@ -1254,6 +1254,8 @@ TEST(TimeStep, RunsEndAtATime)
       EXPECT_NEAR(run.evaluate("time"), end, 1.0e-9 * end);
       EXPECT_EQ(run.fix("step")->compute_vector(3), 1.0);
       EXPECT_EQ(run.fix("step")->compute_vector(4), 0.0);
+      if (std::string(more) == "max 0.05")
+        EXPECT_LE(run.lmp->update->dt, 0.05 * (1.0 + 1.0e-9));    // the last one is not longer
       const auto steps = run.lmp->update->ntimestep;
       EXPECT_LT(steps, 1000);
       run.commands("run 10\n");    // nothing is left to do

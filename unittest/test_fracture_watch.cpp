@@ -19,17 +19,26 @@ struct Told {
   double cells = 0.0;    ///< between points
 };
 
-/** A block of points, two per cell and axis, flies apart along x with a linear velocity; it is so soft that nothing slows
+/** A block of points, two per cell and axis, flies apart along an axis with a linear velocity; it is so soft that nothing slows
  *  it down, but the strain in units of which stress counts is that of the stretch. */
 Told told_by(double stretch, const std::string &grid = "", const std::string &material = SOFT,
-             double direction = 0.1)
+             double direction = 0.1, int axis = 0)
 {
+  const char *const extents[] = {"-16 16 0 4", "0 4 -16 16", "0 3 0 3 -16 16"};
+  const char *const regions[] = {"block -4 4 INF INF INF INF", "block INF INF -4 4 INF INF",
+                                 "block INF INF INF INF -4 4"};
   const ScratchFile file("log");
-  Scene run("log " + file.name + "\n" + plane("lj", "p p", "-16 16 0 4", 1, 0.5) +
-            body("block -4 4 INF INF INF INF", "density 1 " + material, "1.0 " + grid) +
-            strprintf("variable pull atom %.17g*x\nvelocity all set v_pull 0 0\ntimestep 0.02\n"
+  Scene run("log " + file.name + "\n" +
+            (axis < 2 ? plane("lj", "p p", extents[axis], 1, 0.5)
+                      : space("lj", "p p p", extents[axis], 1, 0.5)) +
+            body(regions[axis], "density 1 " + material, "1.0 " + grid) +
+            strprintf("variable pull atom %.17g*%c\nvelocity all set %s\ntimestep 0.02\n"
                       "run %.0f\nlog none\n",
-                      direction, (stretch - 1.0) / (0.02 * direction)));
+                      direction, "xyz"[axis],
+                      axis == 0       ? "v_pull 0 0"
+                          : axis == 1 ? "0 v_pull 0"
+                                      : "0 0 v_pull",
+                      (stretch - 1.0) / (0.02 * direction)));
   Told told;
   MPI_Barrier(MPI_COMM_WORLD);    // the first rank writes the file
   const std::string text = file_text(file.name);
@@ -56,14 +65,24 @@ TEST(FractureWatch, TellsHowFarPointsAreApart)
   EXPECT_EQ(told_by(2.4, "shape cubic").warnings, 1);
 }
 
+TEST(FractureWatch, LooksAlongAllAxes)
+{
+  for (const int axis : {1, 2}) {
+    const Told told = told_by(2.5, "", SOFT, 0.1, axis);
+    EXPECT_EQ(told.warnings, 1) << axis;
+    EXPECT_NEAR(told.cells, 1.25, 0.05) << axis;
+  }
+}
+
 TEST(FractureWatch, IsSilentWhereNothingBreaks)
 {
   EXPECT_EQ(told_by(2.5, "apart ignore").warnings, 0);
   for (const char *grid : {"frame total", "shape cpdi", "shape cpdi2"})
     EXPECT_EQ(told_by(2.5, grid).warnings, 0) << grid;
-  // fluids and grains without cohesion part
-  for (const char *material : {"eos linear 1e-4", "eos tait 1e-4 7 viscosity newtonian 1e-4",
-                               "drucker/prager 1e-4 0.3 30"})
+  // fluids and grains without cohesion part, and metal that is nearly molten: all its tension is pressure
+  for (const char *material :
+       {"eos linear 1e-4", "eos tait 1e-4 7 viscosity newtonian 1e-4", "drucker/prager 1e-4 0.3 30",
+        "eos linear 1e-4 strength j2 1e-4 1e-9"})
     EXPECT_EQ(told_by(2.5, "", material).warnings, 0) << material;
   EXPECT_EQ(told_by(0.35, "", SOFT, -0.1).warnings, 0);    // pressed together
 }

@@ -7,6 +7,7 @@
 
 import os
 import re
+import subprocess
 import sys
 import tempfile
 
@@ -38,20 +39,62 @@ def test_inputs_with_mistakes_and_scenes():
     assert re.search(r"^12 scenes: 12 ran", result.output, re.M), result.output
 
 
+def write_program(path, command):
+    with open(path, "w", encoding="ascii") as file:
+        file.write("#!/bin/sh\n%s\n" % command)
+    os.chmod(path, 0o755)
+
+
 def test_mistakes_are_found():
     # a program that ends without a message, and numbers that are none: the tool must see both
     with tempfile.TemporaryDirectory() as folder:
         program = os.path.join(folder, "lmp")
         for command, verdict in (("kill -SEGV $$", "crash"), ("exit 3", "crash"), ("echo 1 nan 2", "nan"),
                                  ("while :; do :; done", "hang"), ("echo 'ERROR: no'; exit 1", "error"),
-                                 ("echo 1 nan 2; echo 'WARNING: 1 point is not finite'", "ran")):
-            with open(program, "w", encoding="ascii") as file:
-                file.write("#!/bin/sh\n%s\n" % command)
-            os.chmod(program, 0o755)
+                                 ("echo 1 nan 2; echo 'WARNING: 1 point is not finite'", "ran"),
+                                 ("echo 'FUZZ: 7 points are too many'", "large"),
+                                 ("echo 'FUZZ: 7 points are too many'; kill -SEGV $$", "crash")):
+            write_program(program, command)
             result = mt.run([sys.executable, FUZZ, "--inputs", "1", "--scenes", "0", "--lmp", program, "--limit", "1",
                              "--out", os.path.join(folder, "out")], timeout=500)
             assert re.search(r"^1 inputs: 1 %s$" % verdict, result.output, re.M), command + "\n" + result.output
-            assert (result.code != 0) == (verdict not in ("ran", "error")), result.output
+            assert (result.code != 0) == (verdict not in ("ran", "error", "large")), result.output
+
+
+def test_a_run_that_is_stopped_goes_on():
+    # the program waits for ever in its fourth run, until it is told not to
+    with tempfile.TemporaryDirectory() as folder:
+        program, calls, out = (os.path.join(folder, name) for name in ("lmp", "calls", "out"))
+        command = [sys.executable, FUZZ, "--inputs", "6", "--scenes", "0", "--jobs", "1", "--lmp", program, "--limit",
+                   "100", "--every", "0", "--seed", "5", "--out", out]
+        ends = "echo 'ERROR: no'; exit 1"
+        write_program(program, 'echo >> "%s"; if [ ! -e "%s.free" ] && [ $(wc -l < "%s") -gt 3 ]; then\n'
+                      "  echo waits; sleep 1000\nfi\n%s" % (calls, calls, calls, ends))
+        with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
+            shown = [process.stdout.readline() for _ in range(3)]
+            process.terminate()
+            rest = process.stdout.read()
+        assert re.match("3 of 6 inputs done, 3 ended in an error, 0 failures", shown[2]), shown + [rest]
+        assert "3 inputs: 3 error\n3 were not run" in rest and process.returncode == 0, rest
+
+        with open(calls + ".free", "w", encoding="ascii"):
+            pass
+        result = mt.run(command + ["--go-on"], timeout=100)
+        assert result.code == 0 and "\n6 inputs: 6 error\n0 failures" in result.output, result.output
+        with open(calls, encoding="ascii") as file:
+            assert 6 <= len(file.readlines()) <= 7    # a fourth run may have begun before the signal
+
+        write_program(program, "echo another; " + ends)
+        result = mt.run(command + ["--go-on"], timeout=100)
+        assert result.code != 0 and "another executable" in result.output, result.output
+
+
+def test_inputs_with_many_points_are_stopped():
+    with tempfile.TemporaryDirectory() as folder:
+        result = mt.run([sys.executable, FUZZ, "--inputs", "12", "--scenes", "0", "--points", "1", "--jobs", "1",
+                         "--limit", "100", "--out", folder], timeout=500)
+    mt.ok(result)
+    assert re.search(r"^12 inputs: .*[1-9]\d* large", result.output, re.M), result.output
 
 
 def error_of(text):
