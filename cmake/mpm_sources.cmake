@@ -95,10 +95,10 @@ find_path(EIGEN3_INCLUDE_DIR Eigen/Core PATH_SUFFIXES eigen3 REQUIRED)
 # FFTW, for random fields of parameters; without it they are refused
 find_path(FFTW3_INCLUDE_DIR fftw3.h)
 find_library(FFTW3_LIBRARY fftw3)
-set(MPM_LIBRARIES)
+set(MPM_LIBRARIES ${CMAKE_DL_LIBS})
 set(MPM_FEATURES)
 if(FFTW3_INCLUDE_DIR AND FFTW3_LIBRARY)
-  set(MPM_LIBRARIES ${FFTW3_LIBRARY})
+  list(APPEND MPM_LIBRARIES ${FFTW3_LIBRARY})
   set(MPM_FEATURES MPM_FFTW)
 endif()
 

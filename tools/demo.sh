@@ -19,7 +19,6 @@ mkdir -p "$run"
 cp -r "$example"/. "$run"
 cd "$run" || exit 1
 
-export LAMMPS_POTENTIALS=$repo/potentials
 lmp=("$build/lmp")
 np=${MPM_NP:-1}
 if [ "$np" -gt 1 ]; then
