@@ -71,6 +71,14 @@ def test_a_name_with_a_folder_is_not_another_file():
     assert found.code and "cannot read file mine/Water_Tait.mpm: it is not here" in found.output, found.tail()
 
 
+def test_one_version():
+    version = re.search(r'MPM_VERSION "(\d+\.\d+\.\d+)"', mt.read(os.path.join(mt.ROOT, "src", "MPM", "mpm_version.h"))).group(1)
+    assert "\nversion: %s\n" % version in mt.read(os.path.join(mt.ROOT, "CITATION.cff"))
+    headings = re.findall(r"^## (.*)", mt.read(os.path.join(mt.ROOT, "CHANGELOG.md")), re.M)
+    assert re.match(r"Unreleased: %s$|%s - \d{4}-\d\d-\d\d$" % ((re.escape(version),) * 2), headings[0]), headings
+    assert "MPM package %s: spacing 1" % version in mt.ok(run("Water_Tait.mpm")).output
+
+
 def test_plugin():
     if not os.path.exists(os.environ.get("MPM_PLUGIN", "")) or not os.path.exists(STOCK):
         raise mt.Skip("no plugin or no LAMMPS without the package")
