@@ -19,7 +19,11 @@
 set -u
 . "$(dirname "${BASH_SOURCE[0]}")/lib.sh"
 
-setup
+# tests and benchmarks need more packages
+case "$* ${MPM_CMAKE:-}" in
+  *test*|*bench*|*BENCH*) setup all ;;
+  *) setup ;;
+esac
 build_project "$@"
 say "built with LAMMPS $(lammps_version) ($sizes) in $build"
 echo "$build/lmp"

@@ -29,7 +29,7 @@ TOPICS = {
     "Fluids and gases": "dam-break elastic-gate elastic-plate poiseuille shock-tube settling",
     "Soil and grains": "sand-column ball-in-sand hopper boulders-in-debris tyre-on-gravel grains-on-block",
     "Atoms and material points": "handshake impact-on-crystal",
-    "Laws and physics of your own": "point own-material own-physics",
+    "Laws and physics of your own, and Python": "point own-material own-physics python",
 }
 # scene -> the part of its picture: left, right, top, bottom
 STRIP = {"hypervelocity": (0.0, 0.65, 0.0, 1.0), "rubber-band": (0.0, 1.0, 0.0, 1.0),

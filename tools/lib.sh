@@ -24,7 +24,8 @@ unlock() { exec 9>&-; }
 
 # ---------------------------------------------------------------- packages
 
-# one line per need: what it is for, then the Debian packages
+# packages_needed [all]: one line per need, what it is for, then the Debian packages; all: for the tests,
+# benchmarks, and the manual, too
 packages_needed() {
   cat <<'LIST'
 compiling: build-essential cmake
@@ -32,18 +33,23 @@ parallel runs: libopenmpi-dev openmpi-bin
 small matrices: libeigen3-dev
 Fourier transforms: libfftw3-dev
 pictures: libpng-dev
-tests and benchmarks: libgtest-dev libgmock-dev libbenchmark-dev
 unpacking LAMMPS: xz-utils dpkg-dev
-scripts and plots: python3 python3-numpy python3-matplotlib
+tables: python3 python3-numpy
+LIST
+  [ "${1:-}" = all ] && cat <<'LIST'
+tests and benchmarks: libgtest-dev libgmock-dev libbenchmark-dev
+plots: python3-matplotlib
 manual: python3-sphinx python3-sphinx-rtd-theme libjs-mathjax
 format of the sources: clang-format
 LIST
+  return 0
 }
 
 is_installed() {
   [ "$(dpkg-query -W -f='${db:Status-Status}\n' "$1" 2>/dev/null | head -1)" = installed ]
 }
 
+# install_packages [all]
 install_packages() {
   command -v dpkg-query >/dev/null || { say "not a Debian system: assuming the tools are installed"; return 0; }
   local line pkg need=() missing=()
@@ -53,7 +59,7 @@ install_packages() {
     [ ${#need[@]} -eq 0 ] && continue
     say "missing for ${line%%:*}: ${need[*]}"
     missing+=("${need[@]}")
-  done < <(packages_needed)
+  done < <(packages_needed "$@")
   [ ${#missing[@]} -eq 0 ] && return 0
 
   local root=() opts=(-y -q --no-install-recommends)
@@ -182,18 +188,17 @@ get_sources() {
 
 # ---------------------------------------------------------------- stock LAMMPS
 
-# build_stock: LAMMPS without our package, sets LAMMPS_BUILD_DIR
-build_stock() {
+# configure_stock: LAMMPS without our package, sets LAMMPS_BUILD_DIR and holds its lock; false when it is built already
+configure_stock() {
   local key name log
   key=$(cat "$repo"/cmake/lammps_stock.cmake "$repo"/cmake/lammps_export.cmake \
             <(c++ -dumpfullversion -dumpmachine; echo "$LAMMPS_SOURCE_DIR") | sha256sum | cut -c1-8)
   name=$(lammps_version | tr -d ' ')
   LAMMPS_BUILD_DIR=$cache/build-$name-$sizes-$key
-  [ -e "$LAMMPS_BUILD_DIR/.complete" ] && return 0
+  [ -e "$LAMMPS_BUILD_DIR/.complete" ] && return 1
 
   lock "$LAMMPS_BUILD_DIR.lock"
-  [ -e "$LAMMPS_BUILD_DIR/.complete" ] && return 0
-  say "building stock LAMMPS $name ($sizes) once for this machine; takes a few minutes"
+  [ -e "$LAMMPS_BUILD_DIR/.complete" ] && return 1
   mkdir -p "$LAMMPS_BUILD_DIR"
   cp "$repo"/cmake/lammps_stock.cmake "$repo"/cmake/lammps_export.cmake "$LAMMPS_BUILD_DIR"
   log=$LAMMPS_BUILD_DIR/build.log
@@ -202,26 +207,72 @@ build_stock() {
          -D LAMMPS_SIZES="${sizes,,}" \
          -D CMAKE_PROJECT_lammps_INCLUDE="$LAMMPS_BUILD_DIR/lammps_export.cmake") >"$log" 2>&1 ||
     { tail -20 "$log"; die "configuring LAMMPS failed, see $log"; }
-  make_progress "$LAMMPS_BUILD_DIR" lmp || die "building LAMMPS failed, see $log"
+}
+
+# build_stock: the whole of it, once per machine
+build_stock() {
+  configure_stock || return 0
+  say "building stock LAMMPS $(lammps_version) ($sizes) once for this machine; takes a few minutes"
+  make_progress "$LAMMPS_BUILD_DIR" lmp || die "building LAMMPS failed, see $LAMMPS_BUILD_DIR/build.log"
   touch "$LAMMPS_BUILD_DIR/.complete"
 }
 
-# make_progress DIR TARGET...: build; all output to DIR/build.log, percentages and errors to the terminal
+# build_stock_objects FILE: the object files of this list
+build_stock_objects() {
+  local log=$LAMMPS_BUILD_DIR/build.log
+  make -C "$LAMMPS_BUILD_DIR" gitversion >>"$log" 2>&1 || die "building LAMMPS failed, see $log"
+  # shellcheck disable=SC2046
+  make -C "$LAMMPS_BUILD_DIR" -j "$jobs" -f CMakeFiles/lammps.dir/build.make $(cat "$1") 2>&1 |
+    tee -a "$log" | show_progress "$(wc -l <"$1")"
+  [ "${PIPESTATUS[0]}" -eq 0 ] || die "building LAMMPS failed, see $log"
+}
+
+# make_progress DIR TARGET...: build; all output to DIR/build.log
 make_progress() {
   local dir=$1 log=$1/build.log
   shift
-  cmake --build "$dir" -j "$jobs" --target "$@" 2>&1 | tee -a "$log" | awk '
-    /CMake Error/ { show = 8 }
-    show-- > 0 || /warning:|error:|\*\*\*|undefined reference|multiple definition/ { print; fflush(); next }
-    match($0, /^\[ *[0-9]+%\]/) {
-      p = substr($0, RSTART + 1, RLENGTH - 3) + 0
-      if (p >= last + 10) { printf "   %3d%%\n", p; fflush(); last = p } }'
+  cmake --build "$dir" -j "$jobs" --target "$@" 2>&1 | tee -a "$log" | show_progress
   return "${PIPESTATUS[0]}"
 }
 
-# set-up common to all scripts: packages, sources, stock LAMMPS
+# show_progress [FILES]: output of make -> its errors, and percentages with the time that is left; with a
+# number of files, of these files
+show_progress() {
+  local line p=0 last=0 shown=0 files=0 start=$SECONDS left
+  while IFS= read -r line; do
+    [[ $line == *"CMake Error"* ]] && shown=8
+    if [ "$shown" -gt 0 ]; then shown=$((shown - 1)); echo "$line"; continue; fi
+    if [[ $line =~ (warning:|error:|\*\*\*|undefined reference|multiple definition) ]]; then
+      echo "$line"
+      continue
+    fi
+    if [ -n "${1:-}" ]; then
+      [[ $line == *"Building CXX"* ]] && files=$((files + 1))
+      p=$((100 * files / ($1 + 1)))
+    elif [[ $line =~ ^\[\ *([0-9]+)%\] ]]; then
+      p=${BASH_REMATCH[1]}
+    fi
+    [ "$p" -ge $((last + 10)) ] || continue
+    last=$p
+    left=
+    if [ $((SECONDS - start)) -ge 5 ] && [ "$p" -lt 100 ]; then
+      left=$(((SECONDS - start) * (100 - p) / p))
+      left=$(printf ', about %d:%02d minutes left' $((left / 60)) $((left % 60)))
+    fi
+    printf '   %3d %%%s\n' "$p" "$left"
+  done
+}
+
+# setup [all]: what all scripts begin with: packages, sources, stock LAMMPS
 setup() {
-  install_packages
+  install_packages "$@"
+  find_sources
+  build_stock
+  unlock
+}
+
+find_sources() {
+  mkdir -p "$cache"
   if [ -n "${LAMMPS_SOURCE_DIR:-}" ]; then
     LAMMPS_SOURCE_DIR=$(cd "$LAMMPS_SOURCE_DIR" && pwd) || exit 1
     [ "${LAMMPS_SOURCE_DIR##*/}" = src ] && [ -e "$LAMMPS_SOURCE_DIR/version.h" ] &&
@@ -233,34 +284,56 @@ setup() {
     say "LAMMPS 4 Jul 2026 cannot be had here, falling back to 4 Feb 2025"
     get_sources 20250204 || die "could not get the LAMMPS sources; set LAMMPS_SOURCE_DIR"
   fi
-  mkdir -p "$cache"
-  build_stock
-  unlock
 }
 
 # ---------------------------------------------------------------- this package
 
 lammps_version() { sed -n 's/.*"\(.*\)".*/\1/p' "$LAMMPS_SOURCE_DIR/src/version.h"; }
 
-# build_project [TARGET...]: configure when needed, compile our package
-build_project() {
-  [ $# -gt 0 ] || set -- all
+# configure_project [OPTION...]: when needed; holds the lock of the build tree
+configure_project() {
+  local tests=off args
+  is_installed libgtest-dev && tests=on
+  command -v dpkg-query >/dev/null || tests=on
   mkdir -p "$build"
   build=$(cd "$build" && pwd)
   lock "$build/.lock"
-  local args="-D LAMMPS_BUILD_DIR=$LAMMPS_BUILD_DIR ${MPM_CMAKE:-}"
+  args="-D LAMMPS_BUILD_DIR=$LAMMPS_BUILD_DIR -D MPM_DEMO=off -D MPM_TEST=$tests $* ${MPM_CMAKE:-}"
   : >"$build/build.log"
-  if [ ! -e "$build/Makefile" ] || [ "$(cat "$build/.args" 2>/dev/null)" != "$args" ]; then
-    say "configuring in $build"
-    # shellcheck disable=SC2086
-    cmake -S "$repo" -B "$build" -G "Unix Makefiles" $args >>"$build/build.log" 2>&1 ||
-      { grep -A8 'CMake Error' "$build/build.log"; die "configuring failed, see $build/build.log"; }
-    echo "$args" >"$build/.args"
-  fi
+  [ -e "$build/Makefile" ] && [ "$(cat "$build/.args" 2>/dev/null)" = "$args" ] && return 0
+  say "configuring in $build"
+  # shellcheck disable=SC2086
+  cmake -S "$repo" -B "$build" -G "Unix Makefiles" $args >>"$build/build.log" 2>&1 ||
+    { grep -A8 'CMake Error' "$build/build.log"; die "configuring failed, see $build/build.log"; }
+  echo "$args" >"$build/.args"
+}
+
+# build_project [TARGET...]: configure when needed, compile our package
+build_project() {
+  [ $# -gt 0 ] || set -- all
+  configure_project
   say "compiling: $*"
   make_progress "$build" cmake_check_build_system || die "configuring failed, see $build/build.log"
   make_progress "$build" "$@" || die "build failed, see $build/build.log"
   unlock
+}
+
+# build_demo: an lmp for the demonstration, in less than half of the time where LAMMPS has not been compiled yet;
+# false when it has only what the demonstration needs
+build_demo() {
+  if ! configure_stock; then
+    build_project lmp
+    return 0
+  fi
+  configure_project -D MPM_DEMO=on
+  lock "$LAMMPS_BUILD_DIR.lock"
+  say "compiling the part of LAMMPS that the demonstration needs: $(wc -l <"$build/demo_objects.txt") files"
+  build_stock_objects "$build/demo_objects.txt"
+  lock "$build/.lock"
+  say "compiling the MPM package"
+  make_progress "$build" lmp || die "build failed, see $build/build.log"
+  unlock
+  return 1
 }
 
 # ---------------------------------------------------------------- runs

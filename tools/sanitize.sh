@@ -14,7 +14,7 @@ set -u
 
 build=$build/sanitize
 MPM_CMAKE="${MPM_CMAKE:-} -D MPM_SANITIZE=on -D MPM_PLUGIN=off"
-setup
+setup all
 build_project all unittests
 run_tests "$@"
 python3 "$repo/tools/count_tests.py" "$build/results"

@@ -23,12 +23,12 @@ smoke_tests() (
   LAMMPS_SOURCE_DIR=
   MPM_LAMMPS=$oldest
   rm -rf "$build/results"
-  setup
+  setup all
   build_project all smoketests
   run_tests -L smoke
 )
 
-setup
+setup all
 build_project all unittests
 run_tests "$@"
 results=("$build/results")

@@ -74,7 +74,7 @@ TEST(MaterialFix, ErrorsNameValueAndRemedy)
       {"density 1000 linear 1e6 0.3 range rate 0 1 range rate 0 2", "'rate' is given twice"},
       {"density 1000 linear 1e6 0.3 file x.mpm", "the 'file' of a material must come first"},
       {"file", "Illegal fix mpm/material file command: missing argument"},
-      {"file nowhere.mpm", "cannot read file nowhere.mpm: it is neither here nor in"},
+      {"file nowhere.mpm", "cannot read file nowhere.mpm: it is not here, nor in"},
       {"file Cu_OFHC_J2.mpm density 8000", "after file Cu_OFHC_J2.mpm: density is given twice"},
   };
   for (const auto &c : cases)

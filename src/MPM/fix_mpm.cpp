@@ -32,6 +32,7 @@
 #include "mpm_points.h"
 #include "mpm_stages.h"
 #include "mpm_time_limit.h"
+#include "mpm_version.h"
 #include "neighbor.h"
 #include "output.h"
 #include "update.h"
@@ -67,7 +68,8 @@ FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
   if (!declared.given("origin")) std::copy_n(domain->boxlo, domain->dimension, options.origin);
   field.reset(new MPMField(lmp, *this, h, options, state));
   if (comm->me == 0)
-    utils::logmesg(lmp, "Fix mpm {}: spacing {} {}\n", id, h, options.declare(3).text());
+    utils::logmesg(lmp, "Fix mpm {}, MPM package {}: spacing {} {}\n", id, MPM_VERSION, h,
+                   options.declare(3).text());
 
   time_integrate = 1;
   dynamic_group_allow = 0;

@@ -14,6 +14,7 @@
 #include "domain.h"
 #include "error.h"
 #include "lammps.h"
+#include "platform.h"
 #include "update.h"
 #include "utils.h"
 
@@ -21,8 +22,13 @@
 
 #include <algorithm>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <stdexcept>
+
+#ifndef _WIN32
+#include <dlfcn.h>
+#endif
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -39,15 +45,51 @@ template <class Data> static void broadcast(Data &data, MPI_Comm world)
     MPI_Bcast(data.data() + k, (int) (std::min(PIECE, n - k) * SIZE), MPI_BYTE, 0, world);
 }
 
+/** Folders of the package's material files: share/lammps-mpm/potentials in a folder above the plugin, library, or
+ *  executable that has this code in it. A build tree has this folder as an installation has. */
+static std::vector<std::filesystem::path> own_potentials()
+{
+  std::vector<std::filesystem::path> folders;
+#ifndef _WIN32
+  std::vector<std::filesystem::path> files;
+  Dl_info info;
+  if (dladdr((const void *) &own_potentials, &info) && info.dli_fname)
+    files.push_back(info.dli_fname);
+  files.push_back(
+      "/proc/self/exe");    // the name above is that of the command line for an executable
+  for (const auto &file : files) {
+    std::error_code none;
+    const auto path = std::filesystem::canonical(file, none);
+    if (none) continue;
+    for (auto above = path.parent_path(); above != above.root_path(); above = above.parent_path())
+      folders.push_back(above / "share" / "lammps-mpm" / "potentials");
+  }
+#endif
+  return folders;
+}
+
+/** LAMMPS's search, and then in the folders of this package, for a name without a folder; empty: nowhere */
+static std::string find_file(const std::string &name)
+{
+  const std::string path = utils::get_potential_file_path(name);
+  if (!path.empty() || name.find('/') != std::string::npos) return path;
+  for (const auto &folder : own_potentials()) {
+    const std::string file = (folder / name).string();
+    if (platform::file_is_readable(file)) return file;
+  }
+  return "";
+}
+
 /** Words of a file after its header, and the line of each; returns what is wrong, or nothing. */
 static std::string read_words(LAMMPS *lmp, const std::string &name, std::string &text,
                               std::vector<int> &lines)
 {
-  const std::string path = utils::get_potential_file_path(name);
+  const std::string path = find_file(name);
   if (path.empty())
-    return fmt::format("cannot read file {}: it is neither here nor in a folder of the environment "
-                       "variable LAMMPS_POTENTIALS",
-                       name);
+    return fmt::format(
+        "cannot read file {}: it is not here, nor in a folder of the environment variable "
+        "LAMMPS_POTENTIALS, nor among the files of this package",
+        name);
   const std::string units = utils::get_potential_units(path, "material");
   const std::string ours = lmp->update->unit_style;
   if (units.empty())

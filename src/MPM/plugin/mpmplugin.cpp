@@ -38,6 +38,7 @@
 #include "mpm_style_fix.h"
 #include "mpm_style_pair.h"
 #include "mpm_style_region.h"
+#include "mpm_version.h"
 
 #include <cmath>
 #include <cstring>
@@ -78,7 +79,7 @@ struct Registrar {
   template <class Base, class... Args>
   void add(const char *style, const char *name, Base *(*creator)(LAMMPS *, Args...)) const
   {
-    lammpsplugin_t plugin = {LAMMPS_VERSION, style, name, "material point method",
+    lammpsplugin_t plugin = {LAMMPS_VERSION, style, name, "material point method " MPM_VERSION,
                              "the authors of the MPM package", {}, handle};
     if constexpr (sizeof...(Args) == 0)
       plugin.creator.v1 = (lammpsplugin_factory1 *) creator;
