@@ -211,7 +211,7 @@ void MPMStages::checks(MPMField &field)
   if (field.ledger.on) field.ledger.account_for_points();
   MPMPointMap &map = *field.map;
   if (map.drifted && field.domains && field.domains->corners) field.domains->check_corners();
-  if (map.drifted) field.guard->check_positions();
+  if (map.drifted || field.domains) field.guard->check_positions();
   map.check_drift();
   field.guard->handle_bad_points();
   field.frame->end_of_step();
