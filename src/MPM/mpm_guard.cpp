@@ -507,13 +507,20 @@ void MPMGuard::check_inside_box()
   double **x = atom->x;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!field.is_point(i)) continue;
-    bool inside = true;
-    for (int d = 0; d < 3; d++)
-      inside = inside &&
-          (domain->periodicity[d] || (x[i][d] >= domain->boxlo[d] && x[i][d] < domain->boxhi[d]));
-    if (inside) continue;
+    bool inside = true, somewhere = true;    // LAMMPS takes or adds one period at the most
+    for (int d = 0; d < 3; d++) {
+      const double from_middle = fabs(x[i][d] - 0.5 * (domain->boxlo[d] + domain->boxhi[d]));
+      if (domain->periodicity[d])
+        somewhere = somewhere && from_middle <= 1.5 * domain->prd[d];
+      else
+        inside = inside && x[i][d] >= domain->boxlo[d] && x[i][d] < domain->boxhi[d];
+    }
+    if (inside && somewhere) continue;
     if (deletes)
       bad_points.push_back(atom->tag[i]);
+    else if (!somewhere)
+      error->one(FLERR, "{} has lost its position at step {}: it is periods of the box away",
+                 describe(i), update->ntimestep);
     else
       error->one(FLERR,
                  "{} has left the box through a fixed face; enlarge the box, put a "

@@ -40,6 +40,7 @@
 #include "mpm_point_map.h"
 #include "mpm_points.h"
 #include "mpm_stencil.h"
+#include "mpm_time_limit.h"
 #include "update.h"
 
 #include <algorithm>
@@ -340,7 +341,7 @@ void MPMSmoothing::smooth()
 {
   // half as often with twice the share: errors over a few cells go as fast, at half the cost
   const int crossings = field.options.smooth > 0.5 ? 1 : 2;
-  const double now = update->atime + (update->ntimestep - update->atimestep) * update->dt;
+  const double now = elapsed_time(*update);
   for (auto *fluid : field.materials) {
     if (!fluid->material->is_barotropic()) continue;
     const double cross = crossings * time_to_cross(*fluid);
