@@ -155,7 +155,7 @@ def scene_for(lines):
     material = "" if "mpm/material" in text or own_field and grid == "" else MATERIAL
     points = POINTS.replace("0.05*", "0.025*") if "gimp" in text else POINTS    # below a cell
     points = "" if makes_points else points + "".join("group %s type 1\n" % g for g in GROUPS)
-    if "mpm/immersed" in text:
+    if re.search("mpm/immersed|lists grains", text):
         before += "group grains type 3\n"
     if "mpm/elements" in text:
         points = "create_points 2 mesh ring.msh move 0.05 0.05 0.05\ngroup ring type 2\n"
