@@ -19,27 +19,18 @@ import numpy as np
 from paraview import servermanager, simple
 from vtk.util.numpy_support import vtk_to_numpy
 
-SAMPLE = 200  # points whose nearest neighbor is looked for
+from picture import usual_distance
 
 
-def usual_distance(reader):
-    """Median distance of a point from its nearest neighbor."""
-    x = vtk_to_numpy(servermanager.Fetch(reader).GetPoints().GetData()).astype(float)
-    if len(x) < 2:
-        raise SystemExit("%d points: say with --diameter how large they are" % len(x))
-    nearest = []
-    for k in np.linspace(0, len(x) - 1, min(SAMPLE, len(x))).astype(int):
-        squares = np.sum((x - x[k])**2, axis=1)
-        squares[k] = np.inf
-        nearest.append(np.sqrt(squares.min()))
-    return float(np.median(nearest))
+def positions(reader):
+    return vtk_to_numpy(servermanager.Fetch(reader).GetPoints().GetData()).astype(float)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("list", help="the .pvd file of the dump")
     parser.add_argument("--color", default="type", help="field, default: type")
-    parser.add_argument("--range", nargs=2, type=float, metavar=("MIN", "MAX"), 
+    parser.add_argument("--range", nargs=2, type=float, metavar=("MIN", "MAX"),
                         help="of colors, default: that of all snapshots")
     parser.add_argument("--diameter", type=float)
     parser.add_argument("--view", nargs=3, type=float, default=(0.5, 1.0, -0.4), metavar=("X", "Y", "Z"))
@@ -63,7 +54,7 @@ def main():
     view.OrientationAxesLabelColor = view.OrientationAxesOutlineColor = [0, 0, 0]
     points = simple.Show(reader, view)
     points.SetRepresentationType("Point Gaussian")
-    points.GaussianRadius = 0.5 * (args.diameter or 1.3 * usual_distance(reader))
+    points.GaussianRadius = 0.5 * (args.diameter or 1.3 * usual_distance(positions(reader)))
     points.ShaderPreset = "Sphere"
     simple.ColorBy(points, ("POINTS", args.color))
     colors = simple.GetColorTransferFunction(args.color)
