@@ -111,7 +111,7 @@ def bases():
     found = []
     for folder in sorted(glob.glob(os.path.join(ROOT, "examples", "*"))):
         name = os.path.basename(folder)
-        if name not in NOT_USED and os.path.exists(os.path.join(folder, "in." + name)):
+        if name not in NOT_USED:
             files = {os.path.basename(path): read(path) for ending in ("stl", "msh")
                      for path in sorted(glob.glob(os.path.join(folder, "*." + ending)))}
             found.append(Input(name, read(os.path.join(folder, "in." + name)).decode(), files))

@@ -318,8 +318,7 @@ def test_every_scene_says_what_to_look_at():
     for folder in sorted(glob.glob(os.path.join(ROOT, "examples", "*", ""))):
         name = os.path.basename(os.path.dirname(folder))
         text = read(os.path.join(folder, "README.md"))
-        main = "in.%s" % name if glob.glob(os.path.join(folder, "in.*")) else "%s.py" % name
-        for part in ("(%s.png)" % name, main, "\n## What to look at\n"):
+        for part in ("(%s.png)" % name, "in.%s" % name, "\n## What to look at\n"):
             if part not in text:
                 wrong.append("examples/%s/README.md: no %s" % (name, part.strip()))
     check(wrong)

