@@ -356,11 +356,11 @@ void FixMPMBoundary::init()
     if (region->openflag)
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/boundary cannot use region {}: open faces have no inside", region_id);
-    if (kind == SEPARATE && has_sharp_end(region, domain->dimension))
+    if (acts_across() && has_sharp_end(region, domain->dimension))
       error->all(
           FLERR, Error::NOLASTLINE,
-          "Fix mpm/boundary separate cannot use region {}: LAMMPS finds wrong distances from a "
-          "cone with a radius of zero; give a small radius instead",
+          "Fix mpm/boundary with separate or friction cannot use region {}: LAMMPS finds wrong "
+          "distances from a cone with a radius of zero; give a small radius instead",
           region_id);
     if (region->dynamic_check() && region->nregion > 1)
       error->all(FLERR, Error::NOLASTLINE,
