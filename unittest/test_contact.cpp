@@ -508,8 +508,7 @@ SERIAL_TEST(ManyBodies, NoneApproaches)
   scene = replaced(scene, "FIELDS law coulomb 0.4", "F1 F2 F3 gap no");
   scene = replaced(scene, "three set 0.1 -0.5 0", "three set 0.1 0.3 0");
   const std::string material = "fix m all mpm/material density 1 neohookean 100 0.3\n";
-  for (const double density :
-       {1.0, 0.001}) {    // of the plate: iterations are slow where it is light
+  for (const double density : {1.0, 0.001}) {    // of the plate
     Scene run(
         replaced(scene, material,
                  "group bars type 1 2\nfix m bars mpm/material density 1 neohookean 100 0.3\n" +
