@@ -506,19 +506,28 @@ SERIAL_TEST(ManyBodies, NoneApproaches)
   scene = replaced(scene, "block 8 14 2 8", "block 8.5 14 0 16");
   scene = replaced(scene, "block 5 11 8 14", "block 8 8.5 0 16");
   scene = replaced(scene, "FIELDS law coulomb 0.4", "F1 F2 F3 gap no");
-  Scene run(replaced(scene, "three set 0.1 -0.5 0", "three set 0.1 0.3 0") + "run 1\n");
-  int all = 0;
-  const auto look = [&](const Scene::Node &node) {
-    if (node.alias) return;
-    std::vector<const double *> row;    // from left to right
-    for (const char *id : {"F1", "F3", "F2"})
-      if (const double *there = run.node(node.index, id)) row.push_back(there);
-    for (std::size_t k = 1; k < row.size(); k++)
-      EXPECT_LT(row[k - 1][0] - row[k][0], 1e-9) << node.index[0];
-    all += row.size() == 3;
-  };
-  run.each_node(look, "F1");
-  EXPECT_GT(all, 0);
+  scene = replaced(scene, "three set 0.1 -0.5 0", "three set 0.1 0.3 0");
+  const std::string material = "fix m all mpm/material density 1 neohookean 100 0.3\n";
+  for (const double density : {1.0, 0.001}) {    // of the plate
+    Scene run(
+        replaced(scene, material,
+                 "group bars type 1 2\nfix m bars mpm/material density 1 neohookean 100 0.3\n" +
+                     strprintf("fix p three mpm/material density %g neohookean %g 0.3\n", density,
+                               100 * density)) +
+        "run 1\n");
+    int all = 0;
+    const auto look = [&](const Scene::Node &node) {
+      if (node.alias) return;
+      std::vector<const double *> row;    // from left to right
+      for (const char *id : {"F1", "F3", "F2"})
+        if (const double *there = run.node(node.index, id)) row.push_back(there);
+      for (std::size_t k = 1; k < row.size(); k++)
+        EXPECT_LT(row[k - 1][0] - row[k][0], 1e-9) << node.index[0];
+      all += row.size() == 3;
+    };
+    run.each_node(look, "F1");
+    EXPECT_GT(all, 0);
+  }
 }
 
 // ---------------------------------------------------------------------- ranks, periodic faces, restart

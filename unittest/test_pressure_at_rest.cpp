@@ -223,13 +223,15 @@ PARAMETER_TEST(ContactAtWalls, BodiesMoveTogetherAfterBoth, int, Values(2, 3))
   };
   double most = 0.0;
   for (const double interface : {4.0, 4.3})
-    for (const double density : {0.5, 10.0}) {
+    for (const double density :
+         {0.001, 0.1, 0.5, 10.0}) {    // iterations are slow where it is light
       Scene run(
           box(dim, "lj", "f f f", dim == 3 ? "0 6 0 4 0 10" : "0 6 0 10 -0.5 0.5", 2, 0.5) +
           bodies({{"upper", block(interface)}, {"lower", block(interface - 3)}}, "spacing 0.5") +
           "fix A upper mpm 1.0\nfix B lower mpm 1.0\n"
           "fix m1 upper mpm/material density 1 eos tait 100 7\n" +
-          strprintf("fix m2 lower mpm/material density %g neohookean 100 0.3\n", density) +
+          strprintf("fix m2 lower mpm/material density %g neohookean %g 0.3\n", density,
+                    100 * std::min(1.0, density)) +
           "fix touch all mpm/contact A B gap no\n"
           "fix sides all mpm/boundary xlo xhi slip field A\n"
           "fix clamp all mpm/boundary xlo xhi stick field B\n" +
@@ -416,6 +418,27 @@ PARAMETER_TEST(SmoothVolumes, KeepLinearFieldsVolumeAndItsMoment, int, Values(2,
   }
 }
 
+// What viscosities add to the stress is not touched
+TEST(SmoothVolumes, KeepViscousStress)
+{
+  for (const int dim : {2, 3}) {
+    Scene run(replaced(drop(dim), "eos tait 1.0e2 7", "eos tait 1.0e2 7 viscosity newtonian 0.1"));
+    set_volumes(run.lmp, dim, [](const double *, tagint tag) {
+      return 0.05 * std::sin(12.9898 * tag);
+    });
+    auto *points = MPMPoints::get(run.lmp->atom);
+    const double viscous[6] = {0.5, -0.2, 0.1, 0.3, 0.0, 0.0};
+    for (int i = 0; i < run.lmp->atom->nlocal; i++)
+      for (int c = 0; c < 6; c++) points->tau[i][c] += viscous[c];
+    MPMField::find(run.lmp, "grid")->smoothing->smooth();
+    for (int i = 0; i < run.lmp->atom->nlocal; i++) {
+      const double J = points->jacobian(i);
+      for (int c = 0; c < 6; c++)
+        EXPECT_NEAR(points->tau[i][c] + (c < 3 ? J * pressure_of_drop(J) : 0.0), viscous[c], 1e-9);
+    }
+  }
+}
+
 // Fast sums and plain ones
 
 PARAMETER_TEST(FastSmoothVolumes, AreThoseOfPlainLoops, int, Values(2, 3))
@@ -529,6 +552,100 @@ SERIAL_TEST(SmoothVolumes, LeaveSoundAlone)
   // four periods: 64 crossings, in which the share (2 pi/16)^4 = 0.024 times 0.4/2 of the energy of the
   // volumes, which is half of all, may go: less than 0.27 in all
   EXPECT_LT(measured("energy lost", 1 - energy[1] / energy[0]), 0.27);
+}
+
+// Sloshing: the first mode of water in a tank, of small amplitude. In a fluid with a constant speed c of sound,
+// velocity is grad phi, with phi = Z(y) cos(k x) exp(i w t):
+//
+//   Z'' - g/c^2 Z' - (k^2 - w^2/c^2) Z = 0,   Z' = 0 at the floor,   g Z' = w^2 Z at the surface
+//
+// which for large c is w^2 = g k tanh(k d)
+
+double frequency_of_sloshing(double L, double depth, double c)
+{
+  const double k = M_PI / L, b = GRAVITY / (2 * c * c);
+  const double d = c * c / GRAVITY * std::log(1 + GRAVITY * depth / (c * c));    // under its weight
+  double square = GRAVITY * k * std::tanh(k * d);
+  for (int it = 0; it < 100; it++) {
+    const double m = std::sqrt(k * k - square / (c * c) + b * b), sh = std::sinh(m * d),
+                 ch = std::cosh(m * d);
+    square = GRAVITY * (b + m * (sh - b / m * ch) / (ch - b / m * sh));
+  }
+  return std::sqrt(square);
+}
+
+struct Sloshed {
+  double period;    // relative to that of the theory
+  double loss;      // of amplitude in a period
+};
+
+/** n: cells along the tank of 1 m with 0.5 m of water. */
+Sloshed slosh(double smooth, int n, double c)
+{
+  const double L = 1.0, depth = 0.5, h = L / n, dt = 0.4 * h / c, k = M_PI / L, amplitude = 0.01;
+  const double w = frequency_of_sloshing(L, depth, c);
+  Scene run(
+      plane("si", "f f", "0 1 0 0.8", 1, 0.5 * h) +
+      strprintf("fix W all mpm %.17g origin 0 0 transfer apic%s\n", h,
+                smooth > 0 ? strprintf(" smooth %g", smooth).c_str() : "") +
+      strprintf("region water block 0 %g 0 %g INF INF\ncreate_points 1 region water spacing "
+                "%.17g\n",
+                L, depth, h / 2) +
+      strprintf("fix m all mpm/material density %g eos linear %g\n", DENSITY, DENSITY * c * c) +
+      strprintf("variable g equal %g*(1-cos(PI*time))/2*(time<1)+%g*(time>=1)\n", GRAVITY,
+                GRAVITY) +
+      "fix down all gravity v_g vector 0 -1 0\n"
+      "fix walls all mpm/boundary xlo xhi ylo slip\n" +
+      strprintf("timestep %.17g\nthermo 1000000\nrun %d\n", dt, (int) std::ceil(1 / dt)));
+  auto *atom = run.lmp->atom;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double x = atom->x[i][0], y = atom->x[i][1], v = amplitude * w / std::sinh(k * depth);
+    atom->v[i][0] += v * std::sin(k * x) * std::cosh(k * y);
+    atom->v[i][1] -= v * std::cos(k * x) * std::sinh(k * y);
+  }
+
+  // mean velocity and displacement along the tank, some forty times in a period
+  const int stride = (int) std::ceil(2 * M_PI / w / 40 / dt);
+  const double tau = stride * dt;
+  std::vector<double> zero;    // times of upward crossings of the velocity
+  double last = 0.0, first_size = 0.0, size = 0.0;
+  for (int s = 0; s * tau < 3.4 * 2 * M_PI / w; s++) {
+    if (s) run.commands("run " + std::to_string(stride) + " post no\n");
+    double v = 0.0, x = 0.0;
+    for (int i = 0; i < atom->nlocal; i++) {
+      v += atom->v[i][0] / atom->nlocal;
+      x += (atom->x[i][0] - L / 2) / atom->nlocal;
+    }
+    if (s && last < 0 && v >= 0) {
+      zero.push_back((s - v / (v - last)) * tau);
+      size = std::hypot(v, w * x);
+      if (zero.size() == 1) first_size = size;
+    }
+    last = v;
+  }
+  const double nperiod = (double) zero.size() - 1;
+  EXPECT_GE(nperiod, 2);
+  return {(zero.back() - zero.front()) / nperiod * w / (2 * M_PI),
+          1 - std::pow(size / first_size, 1 / nperiod)};
+}
+
+struct Tank {
+  int n;
+  double c, smooth;
+};
+
+// The period is that of the theory but for terms of the second order in k h, and what smooth volumes take of the
+// amplitude is less than them. In the first case the period is 4.7 % too short without them
+PARAMETER_TEST(Sloshing, HasThePeriodOfLinearTheory, Tank,
+               Values(Tank{20, 40, 0.4}, Tank{40, 10, 0.9}))
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  const auto [n, c, smooth] = GetParam();
+  const double second = std::pow(M_PI / n, 2);
+  const auto without = slosh(0.0, n, c), with = slosh(smooth, n, c);
+  measured("period without", without.period - 1);
+  EXPECT_LT(std::fabs(measured("period", with.period - 1)), second);
+  EXPECT_LT(measured("loss in a period more than without", with.loss - without.loss), second);
 }
 
 SERIAL_TEST(SmoothVolumes, BadInput)

@@ -56,11 +56,12 @@
 #include <algorithm>
 #include <climits>
 #include <cmath>
+#include <numeric>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr int MAX_ITERATIONS = 200;      // of impulses where three or more bodies meet
+static constexpr int MAX_ITERATIONS = 200;      // of impulses of pairs that depend on each other
 static constexpr double CONVERGED = 1.0e-12;    // change of the impulses, relative to them
 static constexpr double ROUNDED = 1.0e-2;       // or to this part of the momentum, if that is more
 
@@ -886,73 +887,163 @@ bool FixMPMContact::begin(Node &node, Velocities &start)
   return mirrors;
 }
 
-/* ----------------------------------------------------------------------
-   velocities of the bodies at a node. Impulses of all pairs follow from the same velocities, so
-   that their order does not matter; two bodies need one iteration. Returns by how much impulses changed
-------------------------------------------------------------------------- */
-
-double FixMPMContact::resolve(Node &node, const Velocities &start, double dt, bool decided)
+/** Velocities of the bodies at a node with the impulses of its pairs; walls will move its images with it. */
+void FixMPMContact::set_velocities(const Meeting &meeting)
 {
+  const Node &node = *meeting.node;
   const int nfields = (int) bodies.size(), dim = bodies[0].field->lattice.dim;
-  const auto nbodies = std::count_if(node.record, node.record + nfields, [](const double *record) {
-    return record != nullptr;
-  });
   Velocities before;
   for (int k = 0; k < nfields; k++)
-    for (int d = 0; d < dim && node.record[k]; d++) before[k][d] = node.record[k][d];
-  double largest = 0.0;
-  for (int it = 0; it < (nbodies == 2 ? 1 : MAX_ITERATIONS); it++) {
-    largest = 0.0;
-    for (int p = node.first; p < node.last; p++)
-      apply(pairs[p], (int) nbodies - 1, largest, dt, decided);
-    for (int k = 0; k < nfields; k++)
-      if (node.record[k]) std::copy_n(start[k].begin(), dim, node.record[k]);
-    for (int p = node.first; p < node.last; p++) {
-      const Pair &pair = pairs[p];
-      for (int d = 0; d < dim; d++) {
-        pair.ra[d] -= pair.impulse(d) / pair.ra[3];
-        pair.rb[d] += pair.impulse(d) / pair.rb[3];
-      }
+    for (int d = 0; d < dim && node.record[k]; d++) {
+      before[k][d] = node.record[k][d];
+      node.record[k][d] = meeting.start[k][d];
     }
-    if (largest < CONVERGED) break;
+  for (int p = node.first; p < node.last; p++) {
+    const Pair &pair = pairs[p];
+    for (int d = 0; d < dim; d++) {
+      pair.ra[d] -= pair.impulse(d) / pair.ra[3];
+      pair.rb[d] += pair.impulse(d) / pair.rb[3];
+    }
   }
   for (int k = 0; k < nfields; k++)
     if (node.record[k]) bodies[k].move_mirrors(node.record[k], before[k]);
+}
+
+int FixMPMContact::count_bodies(const Node &node) const
+{
+  return (int) (bodies.size() -
+                std::count(node.record, node.record + bodies.size(), (double *) nullptr));
+}
+
+/* ----------------------------------------------------------------------
+   an iteration at a node. Impulses of all pairs follow from the same velocities, so that their order does
+   not matter. Returns by how much impulses changed
+------------------------------------------------------------------------- */
+
+double FixMPMContact::iterate(const Meeting &meeting, double dt, bool decided)
+{
+  const Node &node = *meeting.node;
+  double largest = 0.0;
+  for (int p = node.first; p < node.last; p++)
+    apply(pairs[p], count_bodies(node) - 1, largest, dt, decided);
+  set_velocities(meeting);
   return largest;
 }
 
 /* ----------------------------------------------------------------------
+   Nodes that depend on each other, by iterations of Gauss and Seidel; mirrored: by walls that move a body with
+   its images. Where masses differ much, these converge slowly, and are helped.
+------------------------------------------------------------------------- */
+
+void FixMPMContact::solve(const Meeting *first, const Meeting *last, bool mirrored, double dt,
+                          bool decided)
+{
+  std::vector<double> &x = impulses;
+  const auto each = [&](auto f) {
+    for (const Meeting *m = first; m < last; m++)
+      for (int p = m->node->first; p < m->node->last; p++) f(pairs[p]);
+  };
+  x.clear();
+  states.clear();
+  each([&](const Pair &pair) {
+    x.insert(x.end(), 4, 0.0);
+    states.push_back(pair.state);
+  });
+  series.begin(x);
+  for (int it = 0; it < MAX_ITERATIONS; it++) {
+    double largest = 0.0;
+    for (const Meeting *m = first; m < last; m++) {
+      for (int p = m->node->first; p < m->node->last && mirrored; p++) {
+        pairs[p].walls_a = bodies[pairs[p].a].find_walls(pairs[p].ra);
+        pairs[p].walls_b = bodies[pairs[p].b].find_walls(pairs[p].rb);
+      }
+      largest = std::max(largest, iterate(*m, dt, decided));
+    }
+    if (largest < CONVERGED) break;
+
+    bool same = true;
+    double *to = x.data();
+    char *state = states.data();
+    each([&](const Pair &pair) {
+      same = same && *state == pair.state;
+      *state++ = pair.state;
+      *to++ = pair.normal;
+      to = std::copy_n(pair.tangential, 3, to);
+    });
+    if (!series.advance(x, largest, same)) continue;
+    const double *from = x.data();
+    each([&](Pair &pair) {
+      pair.normal = *from++;
+      std::copy_n(from, 3, pair.tangential);
+      from += 3;
+    });
+    for (const Meeting *m = first; m < last; m++) set_velocities(*m);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   Sorts nodes that depend on each other next to each other: walls move a body at them together
+------------------------------------------------------------------------- */
+
+void FixMPMContact::group_meetings()
+{
+  const int n = (int) meetings.size(), nfields = (int) bodies.size();
+  std::vector<int> parent(n);
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int m) {
+    while (parent[m] != m) m = parent[m] = parent[parent[m]];
+    return m;
+  };
+  for (int k = 0; k < nfields; k++) {
+    const Body &body = bodies[k];
+    const Grid &grid = body.field->grid;
+    std::vector<int> first(body.foreseen.mirrors.size(), -1);    // node with this mirror
+    for (int m = 0; m < n; m++) {
+      const double *const record = meetings[m].node->record[k];
+      for (int d = 0; d < grid.lattice.dim && record; d++) {
+        const int64_t node = (record - body.field->grid.nodes()) / grid.nreal;
+        const int place = std::abs(body.foreseen.mirrored[3 * node + d]) - 1;
+        if (place < 0) continue;
+        if (first[place] < 0) first[place] = m;
+        parent[root(m)] = root(first[place]);
+      }
+    }
+  }
+  for (int m = 0; m < n; m++) meetings[m].group = root(m);
+  std::stable_sort(meetings.begin(), meetings.end(), [](const Meeting &a, const Meeting &b) {
+    return a.group < b.group;
+  });
+}
+
+/* ----------------------------------------------------------------------
    Where walls mirror one body and not the other, contact at a node changes the velocity of this body at the
-   images of the node, too: these are solved together, by iterations of Gauss and Seidel. One after the other,
+   images of the node, too: these are solved together. One after the other,
    they would leave an approach in each step: water went into the clamped end of a plate.
 ------------------------------------------------------------------------- */
 
 void FixMPMContact::resolve_all(double dt, bool decided)
 {
-  mirrored.clear();
+  meetings.clear();
   for (auto &node : nodes) {
-    Velocities start;
-    if (begin(node, start)) {
-      mirrored.push_back({&node, start});
+    Meeting meeting = {&node, {}, 0};
+    if (begin(node, meeting.start)) {
+      meetings.push_back(meeting);
       continue;
     }
-    resolve(node, start, dt, decided);
-    if (!decided) account(node, start);
+    if (count_bodies(node) == 2)    // needs one iteration
+      iterate(meeting, dt, decided);
+    else
+      solve(&meeting, &meeting + 1, false, dt, decided);
+    if (!decided) account(node, meeting.start);
   }
-
-  double largest = 1.0;
-  for (int it = 0; it < MAX_ITERATIONS && !mirrored.empty() && !(largest < CONVERGED); it++) {
-    largest = 0.0;
-    for (const auto &[node, start] : mirrored) {
-      for (int p = node->first; p < node->last; p++) {
-        pairs[p].walls_a = bodies[pairs[p].a].find_walls(pairs[p].ra);
-        pairs[p].walls_b = bodies[pairs[p].b].find_walls(pairs[p].rb);
-      }
-      largest = std::max(largest, resolve(*node, start, dt, decided));
-    }
+  group_meetings();
+  const Meeting *const end = meetings.data() + meetings.size();
+  for (const Meeting *first = meetings.data(), *last; first < end; first = last) {
+    for (last = first + 1; last < end && last->group == first->group;) last++;
+    solve(first, last, true, dt, decided);
   }
   if (!decided)
-    for (const auto &[node, start] : mirrored) account(*node, start);
+    for (const auto &meeting : meetings) account(*meeting.node, meeting.start);
 }
 
 /* ----------------------------------------------------------------------

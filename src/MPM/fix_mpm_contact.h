@@ -18,6 +18,7 @@ FixStyle(mpm/contact,FixMPMContact);
 #include "declare/option.h"
 #include "fix.h"
 #include "fix_mpm_boundary.h"
+#include "math/aitken.h"
 #include "mpm_node_action.h"
 
 #include <array>
@@ -108,9 +109,10 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
     double *record[MAX_FIELDS];    // null: the body has no mass here
   };
   using Velocities = std::array<std::array<double, 3>, MAX_FIELDS>;
-  struct Mirrored {    // a node where walls move one body with its images and another not
+  struct Meeting {
     Node *node;
     Velocities start;    // before contact
+    int group;           // of nodes that depend on each other
   };
   struct Room {    // for nodes near fixed faces: share of their volume inside of the box
     static constexpr int REACH = 2;    // of the function of a node, in nodes
@@ -156,8 +158,14 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
   bool lists_valid = false, may_touch = false;
   bool look = true;    // for bodies that overlap, in the first step of a run
   std::vector<Node> nodes;
-  std::vector<Mirrored> mirrored;
+  std::vector<Meeting> meetings;    // where walls move one body with its images and another not
   std::vector<Pair> pairs;
+
+  // of nodes that are solved together
+
+  std::vector<double> impulses;
+  std::vector<char> states;
+  MPM_NS::Aitken series;
 
   double dt_last = 0.0;
   Account accounts[MAX_PAIRS] = {};
@@ -176,7 +184,11 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
   void separate_points();
   bool make_pair(const Common &, int n, int a, int b, double volume_share, Pair &);
   bool begin(Node &, Velocities &start);
-  double resolve(Node &, const Velocities &start, double dt, bool decided);
+  int count_bodies(const Node &) const;
+  void set_velocities(const Meeting &);
+  double iterate(const Meeting &, double dt, bool decided);
+  void solve(const Meeting *first, const Meeting *last, bool mirrored, double dt, bool decided);
+  void group_meetings();
   void resolve_all(double dt, bool decided);
   void apply(Pair &, int nothers, double &largest, double dt, bool decided);
   void account(const Node &, const Velocities &start);

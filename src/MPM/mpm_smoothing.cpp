@@ -37,6 +37,7 @@
 #include "force.h"
 #include "material/batch.h"
 #include "material/material.h"
+#include "material/viscous.h"
 #include "mpm_point_map.h"
 #include "mpm_points.h"
 #include "mpm_stencil.h"
@@ -75,23 +76,25 @@ void MPMSmoothing::init()
 template <int DIM> static void add(double *s, double V, double q, const double *r)
 {
   const double x = r[0], y = r[1], z = r[2], Vx = V * x, Vy = V * y, Vz = V * z;
-  s[0] += V;
-  s[1] += Vx;
-  s[2] += Vy;
-  s[3] += DIM == 3 ? Vz : Vx * y;
+  s[0] += Vx;
+  s[1] += Vy;
+  s[2] += DIM == 3 ? Vz : 0.0;
+  s[3] += V;
   s[4] += Vx * x;
   s[5] += Vy * y;
-  if (DIM == 3) {
+  if (DIM == 2) {
+    s[6] += Vx * y;
+  } else {
     s[6] += Vz * z;
     s[8] += Vx * y;
-    s[9] += Vx * z;
-    s[10] += Vy * z;
+    s[9] += Vy * z;
+    s[10] += Vz * x;
   }
   s += fit_place(DIM);
-  s[0] += q * V;
-  s[1] += q * Vx;
-  s[2] += q * Vy;
-  if (DIM == 3) s[3] += q * Vz;
+  s[0] += q * Vx;
+  s[1] += q * Vy;
+  if (DIM == 3) s[2] += q * Vz;
+  s[3] += q * V;
 }
 
 /** Calls f(node, N, r) for the nodes of a point, with r from the node to it. */
@@ -135,40 +138,6 @@ double MPMSmoothing::time_to_cross(const FixMPMMaterial &fluid) const
   return field.lattice.h * std::sqrt(fluid.material->density() * scale / bulk);
 }
 
-/* ----------------------------------------------------------------------
-   calls f(place in the tile, number) for the nodes that a block of points with base nodes in the box reaches;
-   number: of a node that may not be active, as nothing in the tile is there: negative
-------------------------------------------------------------------------- */
-
-template <int DIM, class F>
-void MPMSmoothing::visit_tile(int slot, const int *box, const F &f) const
-{
-  constexpr int side = block_side(DIM);
-  const auto &block = field.grid.blocks[slot];
-  const int order = stencil_order(field.options.shape);
-  const int sx = tile_stride_x(DIM, order), sy = tile_stride_y(DIM, order);
-  int low[3] = {box[0], box[1], 0}, high[3] = {box[3] + order, box[4] + order, 0};
-  if (DIM == 3) {
-    low[2] = box[2];
-    high[2] = box[5] + order;
-  }
-  const auto neighbor =
-      [](int node) {    // of a node in the tile, which begins one before the block
-        return (node - 1 + side) / side;
-      };
-  for (int x = low[0]; x <= high[0]; x++)
-    for (int y = low[1]; y <= high[1]; y++)
-      for (int z = low[2]; z <= high[2]; z++) {
-        const int which =
-            block.slot[9 * neighbor(x) + 3 * neighbor(y) + (DIM == 3 ? neighbor(z) : 1)];
-        const int ix = (x - 1 + side) % side, iy = (y - 1 + side) % side,
-                  iz = (z - 1 + side) % side;
-        const int inside = DIM == 3 ? (ix * side + iy) * side + iz : ix * side + iy;
-        f(x * sx + (DIM == 3 ? y * sy + z : y),
-          which < 0 ? -1 : (int64_t) which * NODES_PER_BLOCK + inside);
-      }
-}
-
 /** The sums of nodes over this rank's points. */
 template <int DIM> void MPMSmoothing::add_points(const FixMPMMaterial *fluid)
 {
@@ -180,11 +149,13 @@ template <int DIM> void MPMSmoothing::add_points(const FixMPMMaterial *fluid)
   q.resize(atom->nmax);
   tile.resize((std::size_t) MAX_TILE_NODES * WIDTH);    // zero again when it has been emptied
   boxes.clear();
-  double nowhere[WIDTH] = {0.0};
   for (const auto &run : field.map->runs) {
     if (run.material != fluid) continue;
     const auto &block = field.grid.blocks[run.slot];
-    for (int i = run.first; i < run.last; i++) q[i] = field.points->jacobian(i) - 1.0;
+    for (int i = run.first; i < run.last; i++) {
+      const double *const F = field.points->F[i];    // in a plane, no strain goes out of it
+      q[i] = (DIM == 2 ? (F[0] * F[4] - F[1] * F[3]) * F[8] : field.points->jacobian(i)) - 1.0;
+    }
     if (!kernels.fit) {
       for (int i = run.first; i < run.last; i++)
         visit<DIM>(stencil, field.domains != nullptr, block, i,
@@ -197,19 +168,7 @@ template <int DIM> void MPMSmoothing::add_points(const FixMPMMaterial *fluid)
     for (int d = 0; d < 3; d++) base[d] = block.b[d] * field.grid.side - 1;
     boxes.push_back({INT_MAX, INT_MAX, INT_MAX, -1, -1, -1});
     kernels.fit(rows, q.data(), step, run.first, run.last, base, tile.data(), boxes.back().data());
-    visit_tile<DIM>(run.slot, boxes.back().data(), [&](int place, int64_t node) {
-      double *const from = &tile[(std::size_t) place * WIDTH];
-      double *const to = node < 0 ? nowhere : &sums[node * WIDTH];
-      for (int k = 0; k < WIDTH; k += 4) {    // loads before stores
-        const double a = to[k] + from[k], b = to[k + 1] + from[k + 1], c = to[k + 2] + from[k + 2],
-                     d = to[k + 3] + from[k + 3];
-        to[k] = a;
-        to[k + 1] = b;
-        to[k + 2] = c;
-        to[k + 3] = d;
-      }
-      std::fill_n(from, WIDTH, 0.0);
-    });
+    kernels.flush(tile.data(), sums.data(), block.slot, boxes.back().data());
   }
   field.nodes.sum(sums.data(), WIDTH, 0, WIDTH);
 }
@@ -223,12 +182,13 @@ template <int DIM> void MPMSmoothing::add_points(const FixMPMMaterial *fluid)
 template <int DIM> void MPMSmoothing::fit_nodes()
 {
   constexpr int N = DIM + 1, WIDTH = fit_width(DIM);
-  constexpr int product[4][4] = {{0}, {1, 4}, {2, DIM == 3 ? 8 : 3, 5}, {3, 9, 10, 6}};    // places
+  constexpr int product[4][4] = {{3}, {0, 4}, {1, DIM == 3 ? 8 : 6, 5}, {2, 10, 9, 6}};    // places
+  constexpr int place[4] = {3, 0, 1, 2};    // of the constant, x, y, z
   for (double *s = sums.data(); s < sums.data() + sums.size(); s += WIDTH) {
-    if (!(s[0] > 0.0)) continue;
+    if (!(s[3] > 0.0)) continue;
     double L[N][N], inverse[N];    // of D, or zero; row by row first L D, then L
-    double *const y = s + fit_place(DIM);
-    const double least = MIN_EXTENT * s[0];
+    double *const fit = s + fit_place(DIM), y[4] = {fit[3], fit[0], fit[1], fit[2]};
+    const double least = MIN_EXTENT * s[3];
     for (int a = 0; a < N; a++) {
       for (int b = 0; b < a; b++) {
         L[a][b] = s[product[a][b]];
@@ -246,45 +206,57 @@ template <int DIM> void MPMSmoothing::fit_nodes()
     for (int a = N - 1; a >= 0; a--) {
       y[a] *= inverse[a];
       for (int c = a + 1; c < N; c++) y[a] -= L[c][a] * y[c];
+      fit[place[a]] = y[a];
     }
   }
   field.nodes.complete(sums.data(), WIDTH, WIDTH);
 }
 
-/** Sum N (fit at the point) in the place of q. */
-template <int DIM> void MPMSmoothing::evaluate_fits(const FixMPMMaterial *fluid)
+/** Sum N (fit at the point) of the points of a run. */
+template <int DIM> void MPMSmoothing::evaluate_fits(const MPMPointMap::Run &run, const int *box)
 {
   constexpr int WIDTH = fit_width(DIM), FIT = fit_place(DIM);
-  const MPMStencil stencil(field);
-  const PointRows rows = field.rows();
-  const TransferStep step = field.step_data();
-  fits.resize((std::size_t) MAX_TILE_NODES * 4);
-  auto box = boxes.begin();
-  for (const auto &run : field.map->runs) {
-    if (run.material != fluid) continue;
-    const auto &block = field.grid.blocks[run.slot];
-    if (!kernels.evaluate) {
-      for (int i = run.first; i < run.last; i++) {
-        double sum = 0.0;
-        visit<DIM>(stencil, field.domains != nullptr, block, i,
-                   [&](int64_t node, double weight, const double *r) {
-                     const double *const fit = &sums[node * WIDTH + FIT];
-                     double at = fit[0] + fit[1] * r[0] + fit[2] * r[1];
-                     if (DIM == 3) at += fit[3] * r[2];
-                     sum += weight * at;
-                   });
-        q[i] = sum;
-      }
-      continue;
-    }
+  const auto &block = field.grid.blocks[run.slot];
+  if (kernels.evaluate) {
     int base[3];
     for (int d = 0; d < 3; d++) base[d] = block.b[d] * field.grid.side - 1;
-    visit_tile<DIM>(run.slot, box->data(), [&](int place, int64_t node) {
-      for (int k = 0; k < 4; k++)
-        fits[4 * (std::size_t) place + k] = node < 0 ? 0.0 : sums[node * WIDTH + FIT + k];
-    });
-    kernels.evaluate(rows, q.data(), step, run.first, run.last, base, fits.data());
-    ++box;
+    kernels.load(fits.data(), sums.data(), block.slot, box);
+    kernels.evaluate(field.rows(), mean.data(), field.step_data(), run.first, run.last, base,
+                     fits.data());
+    return;
+  }
+  const MPMStencil stencil(field);
+  for (int i = run.first; i < run.last; i++) {
+    double sum = 0.0;
+    visit<DIM>(stencil, field.domains != nullptr, block, i,
+               [&](int64_t node, double weight, const double *r) {
+                 const double *const fit = &sums[node * WIDTH + FIT];
+                 double at = fit[3] + fit[0] * r[0] + fit[1] * r[1];
+                 if (DIM == 3) at += fit[2] * r[2];
+                 sum += weight * at;
+               });
+    mean[i] = sum;
+  }
+}
+
+/** The roots, of degree DIM, of ratios near one; or of any. */
+template <int DIM> static void find_scales(const double *ratio, int n, double *scale)
+{
+  constexpr double NEAR = 0.05;
+  double most = 0.0;
+  for (int p = 0; p < n; p++) most = std::max(most, std::fabs(ratio[p] - 1.0));
+  if (!(most < NEAR)) {
+    for (int p = 0; p < n; p++) scale[p] = DIM == 3 ? std::cbrt(ratio[p]) : std::sqrt(ratio[p]);
+    return;
+  }
+  // a series within 1e-5, and one step of Halley, which is of third order
+
+  for (int p = 0; p < n; p++) {
+    constexpr double second = DIM == 3 ? 1.0 / 9.0 : 1.0 / 8.0;
+    const double d = ratio[p] - 1.0, s = 1.0 + d * (1.0 / DIM - d * second);
+    const double power = DIM == 3 ? s * s * s : s * s;
+    scale[p] =
+        s * ((DIM - 1) * power + (DIM + 1) * ratio[p]) / ((DIM + 1) * power + (DIM - 1) * ratio[p]);
   }
 }
 
@@ -293,33 +265,34 @@ template <int DIM> void MPMSmoothing::evaluate_fits(const FixMPMMaterial *fluid)
    viscous stress stays
 ------------------------------------------------------------------------- */
 
-template <int DIM> void MPMSmoothing::change_volumes(const FixMPMMaterial *fluid, double share)
+template <int DIM> void MPMSmoothing::change_volumes(const MPMPointMap::Run &run, double share)
 {
-  const Material &material = *fluid->material;
+  const Material &material = *run.material->material;
+  // is all stress the pressure that belongs to the volume of the point?
+  const bool plain = !is_viscous(material) && !field.options.averages_stress();
   Batch &b = *field.batch;
-  for (const auto &run : field.map->runs) {
-    if (run.material != fluid) continue;
-    for (int start = run.first; start < run.last; start += BATCH) {
-      const int n = std::min(BATCH, run.last - start);
-      double change[BATCH], mean[BATCH];    // of J; of the Kirchhoff stress before
-      b.n = n;
-      b.history = nullptr;
-      for (int p = 0; p < n; p++) b.J[p] = field.points->jacobian(start + p);
+  for (int start = run.first; start < run.last; start += BATCH) {
+    const int n = std::min(BATCH, run.last - start);
+    double before[BATCH], ratio[BATCH], scale[BATCH];    // Kirchhoff stress; of J, and of lengths
+    b.n = n;
+    b.history = nullptr;
+    if (!plain) {
+      for (int p = 0; p < n; p++) b.J[p] = 1.0 + q[start + p];
       material.initial_stress(b);
-      for (int p = 0; p < n; p++) {
-        mean[p] = b.J[p] * b.stress[0][p];
-        change[p] = share * (q[start + p] + 1.0 - b.J[p]);
-        if (!(std::fabs(change[p]) < b.J[p])) change[p] = 0.0;
-        b.J[p] += change[p];
-      }
-      material.initial_stress(b);
-      for (int p = 0; p < n; p++) {
-        double *const tau = field.points->tau[start + p], *const F = field.points->F[start + p];
-        for (int c = 0; c < 3; c++) tau[c] += b.J[p] * b.stress[0][p] - mean[p];
-        const double ratio = b.J[p] / (b.J[p] - change[p]);
-        const double scale = DIM == 3 ? std::cbrt(ratio) : std::sqrt(ratio);
-        for (int c = 0; c < (DIM == 3 ? 9 : 5); c++) F[c] *= scale;
-      }
+      for (int p = 0; p < n; p++) before[p] = b.J[p] * b.stress[0][p];
+    }
+    for (int p = 0; p < n; p++) {
+      const double J = 1.0 + q[start + p], change = share * (mean[start + p] - q[start + p]);
+      b.J[p] = std::fabs(change) < J ? J + change : J;
+      ratio[p] = b.J[p] / J;
+    }
+    material.initial_stress(b);
+    find_scales<DIM>(ratio, n, scale);
+    for (int p = 0; p < n; p++) {
+      double *const tau = field.points->tau[start + p], *const F = field.points->F[start + p];
+      const double now = b.J[p] * b.stress[0][p];
+      for (int c = 0; c < 3; c++) tau[c] = plain ? now : tau[c] + (now - before[p]);
+      for (int c = 0; c < (DIM == 3 ? 9 : 5); c++) F[c] *= scale[p];
     }
   }
 }
@@ -328,8 +301,14 @@ template <int DIM> void MPMSmoothing::smooth(const FixMPMMaterial *fluid, double
 {
   add_points<DIM>(fluid);
   fit_nodes<DIM>();
-  evaluate_fits<DIM>(fluid);
-  change_volumes<DIM>(fluid, share);
+  mean.resize(q.size());
+  fits.resize((std::size_t) MAX_TILE_NODES * 4);
+  auto box = boxes.begin();
+  for (const auto &run : field.map->runs) {
+    if (run.material != fluid) continue;
+    evaluate_fits<DIM>(run, kernels.evaluate ? (box++)->data() : nullptr);
+    change_volumes<DIM>(run, share);
+  }
 }
 
 /* ----------------------------------------------------------------------

@@ -10,6 +10,7 @@
 #define LMP_MPM_SMOOTHING_H
 
 #include "mpm_field.h"
+#include "mpm_point_map.h"
 #include "transfer/smoothing.h"
 
 #include <array>
@@ -28,23 +29,22 @@ class MPMSmoothing : protected Pointers {
    *  one cell or two. */
   void smooth();
 
-  double memory_usage() const { return (sums.capacity() + q.capacity()) * sizeof(double); }
+  double memory_usage() const { return (sums.capacity() + 2 * q.capacity()) * sizeof(double); }
 
  private:
   MPMField &field;
   MPM_NS::SmoothingKernels kernels = {};
-  std::vector<double> sums;    // [node][fit_width()]
-  std::vector<double> q;       // of points: J - 1, then its mean by the fits around their nodes
+  std::vector<double> sums;       // [node][fit_width()]
+  std::vector<double> q, mean;    // of points: J - 1, and its mean by the fits around their nodes
   std::vector<double> tile, fits;           // of a run of points: sums, and what is fitted
   std::vector<std::array<int, 6>> boxes;    // of runs of points, in their tiles
 
   double time_to_cross(const FixMPMMaterial &) const;
-  template <int DIM, class F> void visit_tile(int slot, const int *box, const F &) const;
   template <int DIM> void smooth(const FixMPMMaterial *, double share);
   template <int DIM> void add_points(const FixMPMMaterial *);
   template <int DIM> void fit_nodes();
-  template <int DIM> void evaluate_fits(const FixMPMMaterial *);
-  template <int DIM> void change_volumes(const FixMPMMaterial *, double share);
+  template <int DIM> void evaluate_fits(const MPMPointMap::Run &, const int *box);
+  template <int DIM> void change_volumes(const MPMPointMap::Run &, double share);
 };
 
 }    // namespace LAMMPS_NS

@@ -13,6 +13,7 @@
 
 #include "material/parts.h"
 #include "material/random_field.h"
+#include "material/viscous.h"
 
 #include <algorithm>
 #include <cmath>
@@ -65,6 +66,12 @@ class ComposedMaterial : public Material {
   const std::vector<HistoryVariable> &history() const override { return variables; }
   bool uses_F() const override { return shape_matters; }
   bool is_barotropic() const override { return eos && !base && !damage && variables.empty(); }
+  bool is_viscous() const
+  {
+    return std::any_of(laws.begin(), laws.end(), [](const auto &law) {
+      return law.part == VISCOSITY;
+    });
+  }
   bool is_solid() const override
   {
     return std::any_of(laws.begin(), laws.end(), [](const auto &law) {
@@ -105,8 +112,8 @@ class ComposedMaterial : public Material {
     for (int i = 0; i < b.n; i++) {
       b.heat[i] = b.plastic[i] = 0.0;
       b.Jold[i] = b.J[i];
-      for (auto &row : b.A) row[i] = 0.0;
     }
+    for (auto &row : b.A) std::fill(row, row + b.n, 0.0);
     clear_stress(b);
     run(eos, b);
   }
@@ -564,4 +571,9 @@ std::unique_ptr<Material> MPM_NS::compose(const MaterialDefinition &definition,
                                           const LawTable *table)
 {
   return std::make_unique<ComposedMaterial>(definition, table);
+}
+
+bool MPM_NS::is_viscous(const Material &material)
+{
+  return static_cast<const ComposedMaterial &>(material).is_viscous();
 }

@@ -17,14 +17,20 @@ namespace MPM_NS {
  *  over points of the products of the functions 1, x, y, (z), and of them times q, with weights N V. x, y, z: from the
  *  node to the point, in node spacings. Tiles are those of transfers, with other records:
  *
- *    2d: 1 x y xy | x^2 y^2 - - | q (1 x y -)
- *    3d: 1 x y z | x^2 y^2 z^2 - | xy xz yz - | q (1 x y z)
+ *    2d: x y - 1 | x^2 y^2 xy - | q (x y - 1)
+ *    3d: x y z 1 | x^2 y^2 z^2 - | xy yz zx - | q (x y z 1)
+ *
+ *  In a tile, x, y, z are from its middle to the point, so that a point's products are the same for all nodes.
  */
 struct SmoothingKernels {
   /** Adds to the tile, and widens the box. */
   void (*fit)(const PointRows &, const double *q, const TransferStep &, int first, int last,
               const int base[3], double *tile, int box[6]);
-  /** Of the fits, [4] coefficients of the functions, the mean in q at each point with the weights N. */
+  /** Adds the tile to the sums of the nodes of a block (slot: with its neighbors) and empties it. */
+  void (*flush)(double *tile, double *sums, const int slot[27], const int box[6]);
+  /** Brings the fits, [4] coefficients of x, y, z, 1 in the place of the sums with q, to a tile of them. */
+  void (*load)(double *tile, const double *sums, const int slot[27], const int box[6]);
+  /** The mean of the fits at each point with the weights N, to q. */
   void (*evaluate)(const PointRows &, double *q, const TransferStep &, int first, int last,
                    const int base[3], const double *tile);
 
