@@ -204,6 +204,7 @@ void FixMPM::setup_pre_neighbor()
 void FixMPM::setup(int)
 {
   if (update->dt <= 0.0) error->all(FLERR, "Fix mpm requires a positive time step: {}", update->dt);
+  if (plan && force->pair) field->guard->check_lists();
   if (plan) plan->start();
   field->running = true;
   if (field->affine) field->affine->fit();
