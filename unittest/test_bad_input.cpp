@@ -279,6 +279,12 @@ static const Change doubts[] = {
     {"NoSkin", SKIN, "",
      "skin 0\\.001 is small for the node spacing 1, .*: use neighbor 0\\.5 bin"},
     {"NoSkinButRareLists", SKIN, "neigh_modify every 10\n", ""},
+    {"LargeSkin", RUN, "neighbor 3.0 bin\npair_style zero 0.4\npair_coeff * *\nrun 10\n",
+     "skin 3 is large for the cutoff 0\\.4 .* 1[0-9][0-9] pairs per atom .*, 0 of them within the "
+     "cutoff, .*: use neighbor 0\\.2 bin"},
+    {"LargeSkinAndCutoff", RUN, "neighbor 3.0 bin\npair_style zero 1.7\npair_coeff * *\nrun 10\n",
+     ""},
+    {"LargeSkinWithoutPairs", RUN, "neighbor 3.0 bin\nrun 10\n", ""},
     {"SetForce", RUN, "fix hold all setforce 0 0 0\nrun 10\n",
      "Fix hold \\(style setforce\\) has 216 material points in its group .*use fix mpm/boundary"},
     {"LineForce", RUN, "fix hold all lineforce 1 0 0\nrun 10\n", "use fix mpm/boundary"},

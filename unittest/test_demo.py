@@ -52,6 +52,7 @@ def test_what_is_left_out_is_not_needed():
     with tempfile.TemporaryDirectory() as folder:
         demo_tree(folder)
         kept = {os.path.basename(path) for path in mt.read(os.path.join(folder, "demo_objects.txt")).split()}
+        cold = mt.read(os.path.join(folder, "CMakeFiles", "mpm_objects.dir", "flags.make"))
         flags = {path: mt.read(path) for path in glob.glob(os.path.join(folder, "CMakeFiles", "mpm_isa_*", "flags.make"))}
         styles = {path: mt.read(path) for path in glob.glob(os.path.join(folder, "styles", "style_*.h"))}
     members = set(mt.ok(mt.run(["ar", "t", LIBRARY])).output.split())
@@ -77,6 +78,8 @@ def test_what_is_left_out_is_not_needed():
     # one set of kernels is for this machine, all others run nowhere and are compiled quickly, for any processor
     quick = [text for text in flags.values() if re.search(r"-O0(?!.*-O[1-3])", text) and "-march" not in text]
     assert len(quick) == len(flags) - 1 or not os.path.exists("/proc/cpuinfo"), flags
+
+    assert len(flags) <= 2 and re.search(r"-O1(?!.*-O[23])", cold), (flags, cold)
 
     # and the styles of the scene
     text = re.sub(r"&[ \t]*\n", " ", mt.read(SCENE))

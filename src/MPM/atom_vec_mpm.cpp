@@ -10,8 +10,10 @@
 
 #include "atom.h"
 #include "atom_vec_hybrid.h"
+#include "comm.h"
 #include "error.h"
 #include "math_const.h"
+#include "modify.h"
 #include "mpm_points.h"
 
 #include <algorithm>
@@ -72,6 +74,41 @@ void AtomVecMPM::process_args(int narg, char **arg)
     error->all(FLERR, "Atom style mpm takes no arguments, found: {}{}", arg[0],
                " (in atom_style hybrid this can be an unknown style)");
   setup_fields();
+}
+
+/* ----------------------------------------------------------------------
+   The first set-up after read_restart is when LAMMPS drops what no fix has taken from the file. Fixes of this package come
+   later than this in the set-up. It may be that of another command, before the input has come to its fixes
+------------------------------------------------------------------------- */
+
+namespace {
+struct Restart : Modify {
+  static bool is_left(const Modify &m, int i) { return !(m.*&Restart::used_restart_global)[i]; }
+  static const char *id(const Modify &m, int i) { return (m.*&Restart::id_restart_global)[i]; }
+  static const char *style(const Modify &m, int i)
+  {
+    return (m.*&Restart::style_restart_global)[i];
+  }
+};
+}    // namespace
+
+void AtomVecMPM::init()
+{
+  AtomVec::init();
+  std::string left;
+  for (int i = 0; i < modify->nfix_restart_global; i++) {
+    const std::string style = Restart::style(*modify, i);
+    if (Restart::is_left(*modify, i) && (style == "mpm" || utils::strmatch(style, "^mpm/")))
+      left += fmt::format("{}fix {} (style {})", left.empty() ? "" : ", ", Restart::id(*modify, i),
+                          style);
+  }
+  if (!left.empty() && comm->me == 0)
+    error->warning(
+        FLERR,
+        "The run that wrote the restart file had {}, and what is in the file of it is lost now: "
+        "if it shall go on, define it with the same ID and style directly after read_restart, "
+        "before commands that need the whole system, such as delete_atoms, balance, and run",
+        left);
 }
 
 /* ----------------------------------------------------------------------

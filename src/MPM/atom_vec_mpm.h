@@ -30,6 +30,7 @@ class AtomVecMPM : public AtomVec {
  public:
   AtomVecMPM(class LAMMPS *);
   void process_args(int, char **) override;
+  void init() override;
 
   void grow_pointers() override;
   void create_atom_post(int) override;

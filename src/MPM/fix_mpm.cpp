@@ -19,6 +19,7 @@
 #include "group.h"
 #include "modify.h"
 #include "mpm_affine.h"
+#include "mpm_continuation.h"
 #include "mpm_cpdi.h"
 #include "mpm_every.h"
 #include "mpm_field.h"
@@ -67,6 +68,7 @@ FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
   read_options(lmp, declared, narg, arg, 4);
   if (!declared.given("origin")) std::copy_n(domain->boxlo, domain->dimension, options.origin);
   field.reset(new MPMField(lmp, *this, h, options, state));
+  continuation.reset(new MPMContinuation(lmp, *field));
   if (comm->me == 0)
     utils::logmesg(lmp, "Fix mpm {}, MPM package {}: spacing {} {}\n", id, MPM_VERSION, h,
                    options.declare(3).text());
@@ -187,6 +189,7 @@ void FixMPM::setup_pre_neighbor()
     field->guard->check_other_points();
     field->guard->check_commands();
   }
+  continuation->check(plan != nullptr);
   if (force->pair) {
     field->guard->check_radii();
     if (plan) field->guard->check_neighbors();
@@ -201,6 +204,7 @@ void FixMPM::setup_pre_neighbor()
 void FixMPM::setup(int)
 {
   if (update->dt <= 0.0) error->all(FLERR, "Fix mpm requires a positive time step: {}", update->dt);
+  if (plan && force->pair) field->guard->check_lists();
   if (plan) plan->start();
   field->running = true;
   if (field->affine) field->affine->fit();
@@ -303,7 +307,8 @@ double FixMPM::memory_usage()
 
 /* ----------------------------------------------------------------------
    totals of the ledger, what was deleted, which velocities the affine matrices belong to, when
-   neighbor lists are made, the options that a run must go on with, and the duration of the last step
+   neighbor lists are made, the options that a run must go on with, the duration of the last step, and
+   what else the run has
 ------------------------------------------------------------------------- */
 
 namespace {
@@ -314,7 +319,7 @@ struct Saved {
   MPMAffine::Velocities velocities;
   MPMGuard::Lists lists;
   int waited, nstart, ntext;    // nstart reals and ntext characters follow,
-  int has_last_dt;              // and then the duration of the last step: 0 in files from before
+  int more;    // and then, of what files from before lack, 1: duration of the last step, 2: and lines
 };
 }    // namespace
 
@@ -340,15 +345,17 @@ void FixMPM::write_restart(FILE *fp)
   const std::string text = MPMFieldOptions(field->options).declare(3).kept();
   saved.nstart = (int) start.size();
   saved.ntext = (int) text.size();
-  saved.has_last_dt = 1;
+  const std::string lines = continuation->state();
+  saved.more = 2;
   if (comm->me) return;
-  const int size =
-      (int) (sizeof(Saved) + start.size() * sizeof(double) + text.size() + sizeof(double));
+  const int size = (int) (sizeof(Saved) + start.size() * sizeof(double) + text.size() +
+                          sizeof(double) + lines.size() + 1);
   fwrite(&size, sizeof(int), 1, fp);
   fwrite(&saved, sizeof(Saved), 1, fp);
   if (!start.empty()) fwrite(start.data(), sizeof(double), start.size(), fp);
   fwrite(text.c_str(), 1, text.size(), fp);
   fwrite(&field->last_dt, sizeof(double), 1, fp);
+  fwrite(lines.c_str(), 1, lines.size() + 1, fp);
 }
 
 void FixMPM::restart(char *buf)
@@ -356,8 +363,13 @@ void FixMPM::restart(char *buf)
   Saved saved;
   memcpy(&saved, buf, sizeof(Saved));
   const char *const start = buf + sizeof(Saved), *text = start + saved.nstart * sizeof(double);
-  const std::string differences =
-      MPMFieldOptions(field->options).declare(3).differences(std::string(text, text + saved.ntext));
+  const char *const last_dt = text + saved.ntext, *lines = last_dt + sizeof(double);
+  if (saved.more > 1) continuation->expect(lines);
+  std::string differences = continuation->other_lattice();
+  if (differences.empty())
+    differences = MPMFieldOptions(field->options)
+                      .declare(3)
+                      .differences(std::string(text, text + saved.ntext));
   if (!differences.empty())
     error->all(
         FLERR, Error::NOLASTLINE,
@@ -366,7 +378,7 @@ void FixMPM::restart(char *buf)
         id, differences);
 
   // without it, the first step counts for the one before, as in a run from the start
-  if (saved.has_last_dt) memcpy(&field->last_dt, text + saved.ntext, sizeof(double));
+  if (saved.more > 0) memcpy(&field->last_dt, last_dt, sizeof(double));
   if (comm->me == 0) static_cast<MPMEnergies &>(field->ledger) = saved.ledger;
   field->guard->deleted = saved.deleted;
   field->guard->lists_of_file = saved.lists;

@@ -52,6 +52,7 @@ class FixMPM : public FixMPMState {
 
  private:
   std::unique_ptr<MPMPlan> plan;    // in the driving instance
+  std::unique_ptr<class MPMContinuation> continuation;
 
   void check_fields() const;
   double bytes_per_point() const;

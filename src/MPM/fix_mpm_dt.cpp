@@ -16,8 +16,10 @@
 #include "integrate.h"
 #include "modify.h"
 #include "mpm_field.h"
+#include "mpm_grains.h"
 #include "mpm_options.h"
 #include "mpm_time_limit.h"
+#include "neighbor.h"
 #include "output.h"
 #include "pair.h"
 #include "timer.h"
@@ -53,6 +55,10 @@ Options MPMDtOptions::declare()
         {number(strain, "S", POSITIVE, "",
                 "largest relative change of the volume of a point in a step")})
       .standard("no limit");
+  o.add("grains",
+        {number(grains, "S", {0.0, 1.0, false, true}, "",
+                "largest share of the duration of a collision of grains in a step")})
+      .standard("no limit");
   o.add("until",
         {number(until, "T", POSITIVE, "time", "end runs when this time has elapsed, exactly")})
       .standard("none");
@@ -69,7 +75,7 @@ FixMPMDt::FixMPMDt(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
   Options options = declare();
   read_options(lmp, options, narg, arg, 3);
 
-  nevery = strain > 0.0 || until > 0.0 ? 1 : look_every;
+  nevery = strain > 0.0 || grains > 0.0 || until > 0.0 ? 1 : look_every;
 
   time_depend = 1;    // as in fix dt/reset: the elapsed time must not lose its step
   scalar_flag = vector_flag = 1;
@@ -79,6 +85,8 @@ FixMPMDt::FixMPMDt(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
   restart_global = 1;
   dynamic_group_allow = 1;
 }
+
+FixMPMDt::~FixMPMDt() = default;
 
 /* ---------------------------------------------------------------------- */
 
@@ -94,6 +102,8 @@ void FixMPMDt::init()
                  "Fix {} {} and fix {} {} both set the time step: remove one", style, id, other,
                  ifix->id);
   }
+  if (grains > 0.0)
+    collisions = std::make_unique<MPMGrains>(lmp, fmt::format("Fix mpm/dt {} grains", id));
 }
 
 /* ----------------------------------------------------------------------
@@ -109,7 +119,7 @@ FixMPMDt::Limit FixMPMDt::strain_limit_local() const
   for (const auto *field : MPMField::all(lmp)) {
     const auto &rate = field->time_limit->volume_rate;
     const double dt = strain / (rate.most * fraction * field->options.every);
-    if (rate.most > 0.0 && dt < mine.dt) mine = {dt, 0.0, (double) rate.tag};
+    if (rate.most > 0.0 && dt < mine.dt) mine = {dt, 0.0, (double) rate.tag, NO_GRAIN};
   }
   return mine;
 }
@@ -125,7 +135,7 @@ FixMPMDt::Limit FixMPMDt::find_limit() const
   double speed = 0.0;
   const auto compare = [&](double dt) {
     if (!(dt > 0.0)) dt = 0.0;    // also NaN
-    if (dt < mine.dt) mine = {dt, speed, (double) tag};
+    if (dt < mine.dt) mine = {dt, speed, (double) tag, NO_GRAIN};
   };
   for (auto *field : MPMField::all(lmp))
     compare(field->time_limit->stable_dt(tag, speed) / field->options.every);
@@ -135,7 +145,23 @@ FixMPMDt::Limit FixMPMDt::find_limit() const
   speed = 0.0;
   for (auto *ifix : modify->get_fix_by_style("^mpm/rigid$"))
     compare(dynamic_cast<FixMPMRigid *>(ifix)->stable_dt());
-  return smallest(mine);
+  const Limit points = smallest(mine);
+  double longest = points.dt < NO_POINTS.dt ? fraction * points.dt : points.dt;
+  if (dt_max > 0.0) longest = std::min(longest, dt_max);
+  return grain_limit(points, longest);
+}
+
+/* ----------------------------------------------------------------------
+   Grains that will touch before the next look count, too; longest: bound of the time step until then.
+   At looks it is what points alone would allow, and not the time step of now, which a restart may change
+------------------------------------------------------------------------- */
+
+FixMPMDt::Limit FixMPMDt::grain_limit(const Limit &points, double longest) const
+{
+  if (!collisions) return points;
+  const auto first = collisions->shortest(look_every * longest);
+  const double dt = grains * first.duration / fraction;
+  return smallest(dt < points.dt ? Limit{dt, 0.0, (double) first.i, (double) first.j} : points);
 }
 
 FixMPMDt::Limit FixMPMDt::smallest(Limit mine) const
@@ -145,7 +171,7 @@ FixMPMDt::Limit FixMPMDt::smallest(Limit mine) const
     int rank;
   } local = {mine.dt, comm->me}, first;
   MPI_Allreduce(&local, &first, 1, MPI_DOUBLE_INT, MPI_MINLOC, world);
-  MPI_Bcast(&mine, 3, MPI_DOUBLE, first.rank, world);
+  MPI_Bcast(&mine, 4, MPI_DOUBLE, first.rank, world);
   return mine;
 }
 
@@ -163,8 +189,9 @@ void FixMPMDt::setup_pre_force(int)
   ended = false;
   time_at_start = elapsed_time(*update);
   wall_at_start = platform::walltime();
-  const bool goes_on =
-      continues && update->dt == dt_left && fabs(limit.dt - limit_left) <= 1.0e-9 * limit_left;
+  const bool goes_on = continues && update->dt == dt_left &&
+      fabs(fraction * limit.dt - limit_left) <= 1.0e-9 * limit_left &&
+      !(dt_max > 0.0 && wanted_left > dt_max);
   if (goes_on) {
     update->dt_default = 0;
     wanted = wanted_left;
@@ -218,7 +245,8 @@ void FixMPMDt::announce_end()
 }
 
 /* ----------------------------------------------------------------------
-   the limit of strain is kept at once, as in an impact the next look could be too late
+   the limit of strain is kept at once, as in an impact the next look could be too late; that of grains
+   when there are new neighbor lists, as in old ones two that are about to touch may not be a pair
 ------------------------------------------------------------------------- */
 
 void FixMPMDt::end_of_step()
@@ -233,8 +261,10 @@ void FixMPMDt::end_of_step()
 void FixMPMDt::look()
 {
   if (update->ntimestep % look_every) {
-    if (strain == 0.0) return;
-    const Limit steps = smallest(strain_limit_local());
+    const bool new_pairs = collisions && neighbor->ago == 0;
+    if (strain == 0.0 && !new_pairs) return;
+    Limit steps = smallest(strain_limit_local());
+    if (new_pairs) steps = grain_limit(steps, wanted);
     if (!(fraction * steps.dt < wanted)) return;
     limit = steps;
     return set_dt(fraction * limit.dt);
@@ -265,12 +295,18 @@ void FixMPMDt::set_dt(double dt)
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/dt: time step {:.6g} needed by {} at step {} is below min {:.6g}; see what "
                "happened to it, or lower min",
-               dt,
-               tag ? fmt::format("point {} (wave speed {:.6g})", tag, limit.speed)
-                   : "a rigid body of fix mpm/rigid",
-               update->ntimestep, dt_min);
+               dt, what_limits(), update->ntimestep, dt_min);
   wanted = dt;
   if (until == 0.0) change_dt(dt);    // otherwise it has to fit first
+}
+
+std::string FixMPMDt::what_limits() const
+{
+  const auto tag = (tagint) limit.tag, other = (tagint) limit.other;
+  if (limit.other > 0.0) return fmt::format("the collision of grains {} and {}", tag, other);
+  if (limit.other == 0.0) return fmt::format("the collision of grain {} with a wall", tag);
+  if (tag == 0) return "a rigid body of fix mpm/rigid";
+  return fmt::format("point {} (wave speed {:.6g})", tag, limit.speed);
 }
 
 void FixMPMDt::change_dt(double dt)
@@ -293,7 +329,7 @@ void FixMPMDt::post_run()
 {
   dt_left = update->dt;
   wanted_left = wanted;
-  limit_left = find_limit().dt;
+  limit_left = fraction * find_limit().dt;
   continues = true;
   if (until == 0.0) return;
   if (ended)
@@ -338,7 +374,7 @@ void FixMPMDt::write_restart(FILE *fp)
   });
   const Limit steps = smallest(strain_limit_local());
   const double state[6] = {running ? update->dt : dt_left,
-                           running ? find_limit().dt : limit_left,
+                           running ? fraction * find_limit().dt : limit_left,
                            (double) nchanges,
                            steps.dt,
                            steps.tag,
@@ -356,7 +392,7 @@ void FixMPMDt::restart(char *buf)
   dt_left = state[0];
   limit_left = state[1];
   nchanges = (bigint) state[2];
-  if (strain > 0.0) carried = {state[3], 0.0, state[4]};
+  if (strain > 0.0) carried = {state[3], 0.0, state[4], NO_GRAIN};
   wanted_left = state[5];
   continues = true;
 }

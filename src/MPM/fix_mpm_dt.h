@@ -19,12 +19,14 @@ FixStyle(mpm/dt,FixMPMDt);
 #include "fix.h"
 
 #include <limits>
+#include <memory>
 
 namespace LAMMPS_NS {
 
 struct MPMDtOptions {
   double fraction = 0.0, grow = 1.05, dt_min = 0.0, dt_max = 0.0;    ///< dt_min, dt_max: 0 = none
   double strain = 0.0;    ///< largest change of volume in a step, 0: any
+  double grains = 0.0;    ///< largest share of a collision of grains in a step, 0: any
   double until = 0.0;     ///< elapsed time at which runs end, 0: none
   int look_every = 10;    ///< steps between looks at wave speeds
 
@@ -32,10 +34,11 @@ struct MPMDtOptions {
 };
 
 /** Time step as a fraction of the smallest h/(c + |v|) over all material points, and with a limit of
- *  their change of volume in a step. Ends runs at a given time. */
+ *  their change of volume in a step, and of its share of a collision of grains. Ends runs at a given time. */
 class FixMPMDt : public Fix, private MPMDtOptions {
  public:
   FixMPMDt(class LAMMPS *, int, char **);
+  ~FixMPMDt() override;
   int setmask() override    // setup_pre_force() comes before fix mpm checks the time step
   {
     return FixConst::PRE_FORCE | FixConst::END_OF_STEP | FixConst::POST_RUN;
@@ -50,14 +53,17 @@ class FixMPMDt : public Fix, private MPMDtOptions {
   double compute_vector(int) override;
 
  private:
-  /** The point that limits the time step. */
+  /** The point that limits the time step, or the collision of grains. */
   struct Limit {
-    double dt;       // its h/(c + |v|); 0: it has no valid wave speed; strain: dt/fraction
-    double speed;    // its wave speed, 0: limit of strain
+    double dt;       // its h/(c + |v|); 0: it has no valid wave speed; strain, grains: dt/fraction
+    double speed;    // its wave speed, 0: limit of strain or grains
     double tag;
+    double other;    // grains: the other one, 0: a wall; NO_GRAIN: no collision
   };
-  static constexpr Limit NO_POINTS = {std::numeric_limits<double>::max(), 0.0, 0.0};
-  Limit limit = {0.0, 0.0, 0.0};
+  static constexpr double NO_GRAIN = -1.0;
+  static constexpr Limit NO_POINTS = {std::numeric_limits<double>::max(), 0.0, 0.0, NO_GRAIN};
+  Limit limit = {0.0, 0.0, 0.0, NO_GRAIN};
+  std::unique_ptr<class MPMGrains> collisions;    // keyword grains
   double wanted = 0.0;    // time step, before the last steps are made to fit
   bigint nchanges = 0;
 
@@ -72,7 +78,9 @@ class FixMPMDt : public Fix, private MPMDtOptions {
 
   Limit find_limit() const;
   Limit strain_limit_local() const;
+  Limit grain_limit(const Limit &points, double longest) const;
   Limit smallest(Limit) const;
+  std::string what_limits() const;
   void set_dt(double);
   void change_dt(double);
   void look();

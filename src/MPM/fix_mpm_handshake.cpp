@@ -64,10 +64,10 @@
 #include "modify.h"
 #include "mpm_field.h"
 #include "mpm_options.h"
+#include "mpm_pair_styles.h"
 #include "mpm_stencil.h"
 #include "neigh_list.h"
 #include "neighbor.h"
-#include "pair_hybrid.h"
 #include "update.h"
 
 #include <algorithm>
@@ -217,26 +217,14 @@ void FixMPMHandshake::init()
    single f_ij.
 ------------------------------------------------------------------------- */
 
-namespace {
-/** What pair style hybrid has inside. */
-struct SubStyles : PairHybrid {
-  static int number(const PairHybrid &pair) { return pair.*&SubStyles::nstyles; }
-  static Pair *style(const PairHybrid &pair, int k) { return (pair.*&SubStyles::styles)[k]; }
-  static const char *name(const PairHybrid &pair, int k) { return (pair.*&SubStyles::keywords)[k]; }
-};
-}    // namespace
-
 void FixMPMHandshake::check_pair()
 {
   static const char *const embedded[] = {"eam",           "eam/alloy",     "eam/fs",     "eam/he",
                                          "eam/opt",       "eam/alloy/opt", "eam/fs/opt", "eam/omp",
                                          "eam/alloy/omp", "eam/fs/omp"};
   refuse(!force->pair, "needs a pair style between the atoms");
-  auto *const hybrid = dynamic_cast<PairHybrid *>(force->pair);
   eam = {};
-  for (int k = 0; k < (hybrid ? SubStyles::number(*hybrid) : 1); k++) {
-    Pair *const pair = hybrid ? SubStyles::style(*hybrid, k) : force->pair;
-    const std::string style = hybrid ? SubStyles::name(*hybrid, k) : force->pair_style;
+  for (const auto &[pair, style] : MPMPairStyle::all(*force)) {
     if (std::find(std::begin(embedded), std::end(embedded), style) != std::end(embedded)) {
       refuse(eam.pair, "cannot be used with two pair styles eam: use one for all elements");
       eam.pair = pair;

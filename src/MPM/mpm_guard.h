@@ -37,6 +37,8 @@ class MPMGuard : protected Pointers {
   /** Settings of LAMMPS that make neighbor lists of points and grains slow; all fields. */
   void check_neighbors() const;
   void check_radii() const;
+  /** Warns of lists that are mostly skin; when there are lists, and for all fields. */
+  void check_lists() const;
   /** Other commands that do nothing to points, or harm, without a word; all fields. */
   void check_commands();
 

@@ -1,0 +1,234 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "mpm_grains.h"
+
+#include "atom.h"
+#include "error.h"
+#include "fix.h"
+#include "modify.h"
+#include "mpm_pair_styles.h"
+#include "neigh_list.h"
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+// LAMMPS may be built without its package GRANULAR. Only data and virtual functions of its classes are used, so that
+// the plugin can be loaded by such a LAMMPS, too
+
+#if __has_include(<pair_granular.h>)
+#define MPM_HAS_GRANULAR 1
+#include <fix_wall_gran.h>
+#include <gran_sub_mod_damping.h>
+#include <gran_sub_mod_normal.h>
+#include <granular_model.h>
+#include <pair_gran_hooke_history.h>
+#include <pair_granular.h>
+#else
+#define MPM_HAS_GRANULAR 0
+#endif
+
+using namespace LAMMPS_NS;
+
+/* ----------------------------------------------------------------------
+   Springs without damping: half a period, or, with the force k sqrt(R) delta^1.5, the time from the
+   first touch to the last,
+
+     2.94 delta_max / v,   k sqrt(R) delta_max^2.5 2/5 = m v^2 / 2,
+
+   with the velocity v of the first touch, which the energy of now has. What is damped takes longer,
+   but its velocity may decay faster: pi over the fastest rate of the contact holds for both.
+------------------------------------------------------------------------- */
+
+double MPMGrains::duration(const Law &law, double m, double R, double overlap, double v)
+{
+  const double never = std::numeric_limits<double>::max();
+  double rate = std::sqrt(law.k / m), largest = std::max(overlap, 0.0);
+  if (law.hertz) {
+    const double stiffness = 0.4 * law.k * std::sqrt(R);
+    const double energy = 0.5 * m * v * v + stiffness * std::pow(largest, 2.5);
+    if (!(energy > 0.0) || !(stiffness > 0.0)) return never;
+    largest = std::pow(energy / stiffness, 0.4);
+    static const double half = 0.4 * std::tgamma(0.4) * std::tgamma(0.5) / std::tgamma(0.9);
+    rate = M_PI * std::sqrt(2.0 * energy / m) / (2.0 * half * largest);
+  } else if (rate > 0.0)
+    largest = std::hypot(largest, v / rate);
+  if (!(rate > 0.0)) return never;
+
+  double decay = 0.5 * law.damping;
+  if (law.damping_is == Law::PLAIN) decay /= m;
+  if (law.damping_is == Law::BY_MASS_AND_RADIUS) decay *= std::sqrt(R * largest);
+  if (law.damping_is == Law::BY_STIFFNESS) decay = 0.0;    // never above critical damping
+  return M_PI / (decay > rate ? decay + std::sqrt(decay * decay - rate * rate) : rate);
+}
+
+/* ---------------------------------------------------------------------- */
+
+#if MPM_HAS_GRANULAR
+
+namespace {
+struct HookeHistory : PairGranHookeHistory {
+  using PairGranHookeHistory::gamman;
+  using PairGranHookeHistory::kn;
+};
+
+bool is_classic(std::string name)
+{
+  if (utils::strmatch(name, "/omp$")) name.resize(name.size() - 4);
+  return name == "gran/hooke" || name == "gran/hooke/history" || name == "gran/hertz/history";
+}
+
+std::vector<Fix *> walls_of(Modify &modify)
+{
+  std::vector<Fix *> walls;
+  for (auto *fix : modify.get_fix_list())
+    if (strcmp(fix->style, "wall/gran") == 0 || strcmp(fix->style, "wall/gran/region") == 0)
+      walls.push_back(fix);
+  return walls;
+}
+}    // namespace
+
+MPMGrains::MPMGrains(LAMMPS *lmp, const std::string &who) : Pointers(lmp), who(who)
+{
+  if (force->pair && utils::strmatch(force->pair_style, "^hybrid/scaled"))
+    error->all(FLERR, Error::NOLASTLINE,
+               "{} cannot know the forces of pair style {}: use keyword max instead", who,
+               force->pair_style);
+  for (const auto &style : MPMPairStyle::all(*force)) {
+    if (is_classic(style.name)) {
+      auto *const pair = static_cast<PairGranHookeHistory *>(style.pair);
+      const bool hertz = utils::strmatch(style.name, "^gran/hertz");
+      styles.push_back({style.pair,
+                        {pair->*&HookeHistory::kn, hertz, pair->*&HookeHistory::gamman,
+                         hertz ? Law::BY_MASS_AND_RADIUS : Law::BY_MASS},
+                        false});
+    } else if (style.name == "granular") {
+      styles.push_back({style.pair, {}, true});
+      auto *const pair = static_cast<PairGranular *>(style.pair);
+      for (int k = 0; k < pair->nmodels; k++) law_of_model(pair->models_list[k]);
+    } else if (utils::strmatch(style.name, "^gran"))
+      error->all(FLERR, Error::NOLASTLINE,
+                 "{} does not know the stiffness of pair style {}: use keyword max instead", who,
+                 style.name);
+  }
+  for (auto *wall : walls_of(*modify)) law_of_model(static_cast<FixWallGran *>(wall)->model);
+  if (styles.empty())
+    error->all(FLERR, Error::NOLASTLINE,
+               "{} needs a pair style of grains: gran/hooke, gran/hooke/history, "
+               "gran/hertz/history, or granular",
+               who);
+}
+
+/** The numbers of a model are what its force is for overlap and contact radius 1. */
+MPMGrains::Law MPMGrains::law_of_model(void *any) const
+{
+  auto *const model = static_cast<Granular_NS::GranularModel *>(any);
+  auto *const normal = model->normal_model;
+  const std::string &name = normal->name, &damping = model->damping_model->name;
+  Law law;
+  law.hertz = name == "hertz" || name == "hertz/material";
+  if (!law.hertz && name != "hooke")
+    error->all(FLERR, Error::NOLASTLINE,
+               "{} does not know how long collisions with the normal model {} of granular forces "
+               "last, but only with hooke, hertz, and hertz/material: use keyword max instead",
+               who, name);
+  model->delta = model->contact_radius = 1.0;
+  law.k = normal->calculate_forces();
+  law.damping = normal->get_damp();
+  law.damping_is = damping == "velocity" ? Law::PLAIN
+      : damping == "mass_velocity"       ? Law::BY_MASS
+      : damping == "viscoelastic"        ? Law::BY_MASS_AND_RADIUS
+                                         : Law::BY_STIFFNESS;
+  return law;
+}
+
+MPMGrains::Law MPMGrains::law_of(const Style &style, int itype, int jtype) const
+{
+  if (!style.granular) return style.law;
+  auto *const pair = static_cast<PairGranular *>(style.pair);
+  return law_of_model(pair->models_list[pair->types_indices[itype][jtype]]);
+}
+
+/* ----------------------------------------------------------------------
+   where walls are is not told, so that each grain of their group counts, with its whole velocity
+------------------------------------------------------------------------- */
+
+void MPMGrains::walls(Collision &first) const
+{
+  for (auto *fix : walls_of(*modify)) {
+    const Law law = law_of_model(static_cast<FixWallGran *>(fix)->model);
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!(atom->mask[i] & fix->groupbit) || !(atom->radius[i] > 0.0)) continue;
+      const double *const v = atom->v[i];
+      const double speed = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+      const double t = duration(law, atom->rmass[i], atom->radius[i], 0.0, speed);
+      if (t < first.duration) first = {t, atom->tag[i], 0};
+    }
+  }
+}
+
+#else
+
+MPMGrains::MPMGrains(LAMMPS *lmp, const std::string &who) : Pointers(lmp), who(who)
+{
+  error->all(FLERR, Error::NOLASTLINE, "{} needs LAMMPS with its package GRANULAR", who);
+}
+MPMGrains::Law MPMGrains::law_of(const Style &, int, int) const
+{
+  return {};
+}
+MPMGrains::Law MPMGrains::law_of_model(void *) const
+{
+  return {};
+}
+void MPMGrains::walls(Collision &) const {}
+
+#endif
+
+/* ---------------------------------------------------------------------- */
+
+MPMGrains::Collision MPMGrains::shortest(double ahead) const
+{
+  Collision first = {std::numeric_limits<double>::max(), 0, 0};
+  for (const auto &style : styles) pairs_of(style, ahead, first);
+  walls(first);
+  return first;
+}
+
+void MPMGrains::pairs_of(const Style &style, double ahead, Collision &first) const
+{
+  const auto *const list = style.pair->list;
+  if (!list) return;
+  int frozen = 0;
+  for (const auto *fix : modify->get_fix_by_style("^freeze")) frozen |= fix->groupbit;
+  const auto mobility = [&](int i) {
+    return atom->mask[i] & frozen ? 0.0 : 1.0 / atom->rmass[i];
+  };
+  for (int ii = 0; ii < list->inum; ii++) {
+    const int i = list->ilist[ii];
+    for (int jj = 0; jj < list->numneigh[i]; jj++) {
+      const int j = list->firstneigh[i][jj] & NEIGHMASK;
+      double d2 = 0.0, dv = 0.0;
+      for (int a = 0; a < 3; a++) {
+        const double d = atom->x[i][a] - atom->x[j][a];
+        d2 += d * d;
+        dv += d * (atom->v[i][a] - atom->v[j][a]);
+      }
+      const double distance = std::sqrt(d2), sum = atom->radius[i] + atom->radius[j];
+      const double v = distance > 0.0 ? dv / distance : 0.0, overlap = sum - distance;
+      if (overlap < 0.0 && -overlap > -v * ahead) continue;
+      const double moves = mobility(i) + mobility(j);
+      if (moves == 0.0) continue;
+      const double R = atom->radius[i] * atom->radius[j] / sum;
+      const auto law = law_of(style, atom->type[i], atom->type[j]);
+      const double t = duration(law, 1.0 / moves, R, overlap, v);
+      if (t < first.duration) first = {t, atom->tag[i], atom->tag[j]};
+    }
+  }
+}
