@@ -116,7 +116,7 @@ def main():
             write_cone(os.path.join(out, "cone.stl"))
             with open(os.path.join(out, "screen"), "w") as screen:
                 subprocess.run([lmp, "-in", os.path.join(here, "in.scratch"), "-log", os.path.join(out, "log"), "-v", "mu",
-                                str(mu), "-v", "d", str(depth), "-v", "h", str(SPACING), "-v", "outdir", out,
+                                "%g" % mu, "-v", "d", str(depth), "-v", "h", str(SPACING), "-v", "outdir", out,
                                 "-v", "tool", tool, "-v", "file", os.path.join(out, "cone.stl")], stdout=screen, check=True)
             open(os.path.join(out, "done"), "w").close()
         way, fn, ft, growth = measure(out, mu)

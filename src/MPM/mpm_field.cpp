@@ -12,6 +12,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_mpm.h"
+#include "fix_mpm_contact.h"
 #include "fix_mpm_elements.h"
 #include "fix_mpm_material.h"
 #include "force.h"
@@ -175,8 +176,25 @@ void MPMField::find_materials()
 }
 
 /* ----------------------------------------------------------------------
+   Velocities of nodes that were mapped back have contact decided by those of the step, and no impulse of their
+   own. A tool without friction that was drawn through a body felt nearly twice its force when points moved with
+   them
+------------------------------------------------------------------------- */
+
+static bool is_in_contact(const MPMField &field)
+{
+  const auto fields = MPMField::all(field.lmp);
+  const auto contacts = find_fixes<FixMPMContact>(field.lmp);
+  return std::any_of(contacts.begin(), contacts.end(), [&](const auto *fix) {
+    return std::any_of(fields.begin(), fields.end(), [&](const auto *other) {
+      return other != &field && fix->couples(field.id(), other->id());
+    });
+  });
+}
+
+/* ----------------------------------------------------------------------
    Long records of nodes keep forces and old velocities apart: the ledger and some node actions need
-   them, USF and USAVG sum forces alone; the kernel that interpolates the hoop rate, and moves points with
+   them, USF and USAVG sum forces alone; the kernel that interpolates the hoop rate, and moves domains with
    velocities that were mapped back, knows long records only
 ------------------------------------------------------------------------- */
 
@@ -196,6 +214,14 @@ void MPMField::choose_kernels()
   }
   if (options.polypic) affine->modes = kernels->poly(lattice.dim, options.shape, kernel.nreal);
   pic = kernels->transfer(lattice.dim, options.shape, PIC, true);
+  mapped = {};
+  if (options.moves_mapped() && (has_domain(options.shape) || !is_in_contact(*this))) {
+    // what interpolates velocities as they are and has the gradient of the transfer
+    const auto affine = options.strains_by_gradient() || options.transfer == TPIC ? TPIC : APIC;
+    mapped = is_affine(options.transfer) && !has_domain(options.shape)
+        ? kernels->transfer(lattice.dim, options.shape, affine, kernel.nreal == 8)
+        : pic;
+  }
   batch->h = lattice.h;
 }
 

@@ -68,6 +68,7 @@ class MPMField : protected Pointers {
   const MPM_NS::BatchKernels *batch_kernels = nullptr;
   MPM_NS::TransferKernels kernel;    ///< of the step
   MPM_NS::TransferKernels pic;       ///< of other sums over points, with records of 8 reals
+  MPM_NS::TransferKernels mapped;    ///< strain and motion of velocities that were mapped back
   std::unique_ptr<MPM_NS::Batch> batch;
 
   MPMLedger ledger;

@@ -218,10 +218,9 @@ Options MPMFieldOptions::declare(int dim)
         {series == XPIC && order > 1 && scheme != USL, "transfer",
          "xpic with scheme usf, musl and usavg: a body that turns loses its spin: use scheme usl, "
          "or transfer flip or apic"},
-        {has_domain(shape) && transfer == FLIP && flip > 0.0 && series == LUMPED && scheme == USF,
-         "scheme",
-         "usf with transfer flip and shape cpdi and cpdi2: noise grows in bodies under tension: "
-         "use scheme usl or musl, or transfer apic"},
+        {scheme == USF && !total, "scheme",
+         "usf: points move with other velocities than they strain with, and bodies under tension "
+         "deform too much or make noise: use scheme usl or musl, or frame total"},
         {light == 0.0 && amplifies(), "shape",
          "linear with scheme usl or transfer apic: linear functions amplify round-off at nodes of "
          "tiny mass: use transfer flip with scheme musl, quadratic functions, or light 0.5"},

@@ -71,6 +71,8 @@ struct MPMFieldOptions {
   /** With scheme usl: is stress made while points move, or after that? Neither with light nodes. */
   bool strains_while_moving() const { return !has_light_nodes() && !averages_strain(); }
   bool strains_after_motion() const { return !has_light_nodes() && averages_strain(); }
+  /** May points move with the velocities that were mapped back, as they strain? */
+  bool moves_mapped() const { return stress_after() && !total; }
   /** Do positions of the end of the step have to wait until stress is known? */
   bool moves_late() const
   {

@@ -39,7 +39,8 @@ class MPMNodeAction {
   /** Which velocities the nodes have: those after the momentum equation (STEP), which move points
    *  and count for reactions and work; or others, for which nothing is counted: of the start of the
    *  step (START: USF, USAVG) or the new ones of the points mapped back (MAPPED_BACK: MUSL, USAVG),
-   *  which only serve the velocity gradient, or those of STEP that were changed since (AGAIN: FMPM).
+   *  which serve the velocity gradient, and with MAPPED_BACK the motion, or those of STEP that were
+   *  changed since (AGAIN: FMPM).
    */
   enum Stage { START, STEP, AGAIN, MAPPED_BACK };
 

@@ -81,7 +81,9 @@ template <class Gather> void points_from_step(MPMField &field, const Gather &gat
 void run_to_tile(MPMField &field, MPM_NS::P2G p2g, const MPM_NS::PointRows &,
                  const MPM_NS::TransferStep &, const MPMPointMap::Run &, const int base[3],
                  int box[6]);
-/** Rows of n <= BATCH points from first on, as if they were all, with the forces that the frame makes. */
+/** Rows of the points from first on, as if they were all. */
+MPM_NS::PointRows rows_from(const MPMField &, const MPM_NS::PointRows &, int first);
+/** The same of n <= BATCH points, with the forces that the frame makes. */
 MPM_NS::PointRows rows_with_forces(const MPMField &, const MPM_NS::PointRows &, int first, int n,
                                    MPMFrame::ForceRows &);
 

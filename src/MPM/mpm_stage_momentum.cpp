@@ -41,8 +41,7 @@ void LAMMPS_NS::run_to_tile(MPMField &field, P2G p2g, const PointRows &rows,
   }
 }
 
-PointRows LAMMPS_NS::rows_with_forces(const MPMField &field, const PointRows &rows, int first,
-                                      int n, MPMFrame::ForceRows &room)
+PointRows LAMMPS_NS::rows_from(const MPMField &field, const PointRows &rows, int first)
 {
   const int nC = field.lattice.dim * field.lattice.dim;
   const bigint i = first;
@@ -58,6 +57,16 @@ PointRows LAMMPS_NS::rows_with_forces(const MPMField &field, const PointRows &ro
   b.tau += 6 * i;
   if (b.size) b.size += 3 * i;
   if (b.domain) b.domain += field.domains->size() * i;
+  b.xnew += 3 * i;
+  if (b.from) b.from += 3 * i;
+  if (b.corners_new) b.corners_new += field.domains->size() * i;
+  return b;
+}
+
+PointRows LAMMPS_NS::rows_with_forces(const MPMField &field, const PointRows &rows, int first,
+                                      int n, MPMFrame::ForceRows &room)
+{
+  PointRows b = rows_from(field, rows, first);
   field.frame->forces(b, first, n, room);
   return b;
 }

@@ -50,7 +50,7 @@ void MPMStages::nodes_to_points(MPMField &field, Strain strain)
   double *const kept = keeps ? field.locking->room_for_gradients() : nullptr;
 
   PointRows r = field.rows();
-  if (field.domains) r.corners_new = field.domains->moved(late);
+  if (field.domains && !field.mapped.g2p) r.corners_new = field.domains->moved(late);
   const TransferStep s = field.step_data();
   const double dt = field.step_dt();
   const auto &kernel = field.kernel;
@@ -87,37 +87,39 @@ void MPMStages::move_points(MPMField &field)
 }
 
 /* ----------------------------------------------------------------------
-   With MUSL and USAVG, points of finite size and their corners move with the velocities that were mapped back,
-   which strain takes, too. What moves apart from strain is not held by stress, and under tension goes
-   away from where it belongs
+   With MUSL and USAVG, points and the corners of domains move with the velocities that were mapped back, which
+   strain takes, too. What moves apart from strain is not held by stress, and under tension goes away from
+   where it belongs. In the total frame forces do not depend on where points are
 ------------------------------------------------------------------------- */
 
 void MPMStages::strain_from_nodes(MPMField &field, double motion_dt, double share,
-                                  double shift_share, bool move_domains)
+                                  double shift_share, bool moves)
 {
   field.nodes.complete_velocities();
   MPMFrame &frame = *field.frame;
   const double dt = share * motion_dt, shift = shift_share * motion_dt;
   const TransferStep s = field.step_data();
-  PointRows r = field.rows();
-  const bool moves = field.domains && move_domains;
+  const PointRows r = field.rows();
   PointRows moving = r;
-  if (moves) {
-    field.work.vectors.resize(3 * (std::size_t) field.atom->nmax);
-    moving.v = field.work.vectors.data();
-    moving.F = nullptr;
-    moving.corners_new = field.domains->moved(true);
-  }
+  moves = moves && field.mapped.g2p;
+  if (moves && field.domains) moving.corners_new = field.domains->moved(true);
   const bool fbar = field.options.averages_strain();
   double *const kept = fbar ? field.locking->room_for_gradients() : nullptr;
   const int nL = field.lattice.dim * field.lattice.dim;
   frame.begin_strain();
-  double batch_gradients[9 * BATCH];
+  double batch_gradients[9 * BATCH], velocities[3 * BATCH];
+  const double *const tile = field.map->tile_load;
   points_from_step(field, [&](const MPMPointMap::Run &run, int i, int n, const int *base) {
     double *const L = fbar ? kept + (bigint) nL * i : batch_gradients;
-    field.kernel.g2p_gradient(r, s, i, i + n, base, field.map->tile_load, L);
-    if (moves)
-      field.map->drifted |= field.pic.g2p(moving, s, i, i + n, base, field.map->tile_load, nullptr);
+    if (moves) {
+      PointRows batch = rows_from(field, moving, i);
+      batch.v = velocities;
+      batch.C = L;
+      field.map->drifted |=
+          field.mapped.g2p(batch, s, 0, n, base, tile, field.mapped.gradient_in_C ? nullptr : L);
+    } else {
+      field.kernel.g2p_gradient(r, s, i, i + n, base, tile, L);
+    }
     if (shift != 0.0) frame.shift_gradients(n, shift, L);
     frame.refer_gradients(i, n, L);
     frame.strain_of_nodes(r, i, i + n, base, dt, shift);

@@ -51,10 +51,9 @@ namespace MPMStages {
   void move_points(MPMField &);
 
   /** Stress of points from the present velocities of the nodes, for a share of a motion that takes the
-   *  time dt; shift: see MPMFrame::shift_gradients(), as a share of it. move_domains: points of finite
-   *  size move with these velocities. */
-  void strain_from_nodes(MPMField &, double dt, double share, double shift,
-                         bool move_domains = false);
+   *  time dt; shift: see MPMFrame::shift_gradients(), as a share of it. moves: with these velocities
+   *  points move, too, if MPMField::mapped is there. */
+  void strain_from_nodes(MPMField &, double dt, double share, double shift, bool moves = false);
   /** Strain and stress of n <= BATCH consecutive points of a run; L: their velocity gradients. */
   void update_stress(MPMField &, const MPM_NS::PointRows &, const MPMPointMap::Run &, int first,
                      int n, const double *L, double dt);

@@ -59,11 +59,11 @@ void nodes_to_points(MPMPlan &plan, const char *name, Strain strain, MPMPlan::Wa
   plan.each(name, move, std::move(wanted));
 }
 
-/** Strain of the motion of this step. */
-void gradients_with_material(MPMPlan &plan, double share, double shift, bool move_domains = false)
+/** Strain of the motion of this step, and the motion. */
+void gradients_with_material(MPMPlan &plan, double share, double shift)
 {
   plan.each("gradients with material", [=](MPMField &field) {
-    strain_from_nodes(field, field.step_dt(), share, shift, move_domains);
+    strain_from_nodes(field, field.step_dt(), share, shift, true);
   });
 }
 
@@ -218,7 +218,7 @@ void LAMMPS_NS::make_musl(MPMPlan &plan)
   begin_with_forces(plan);
   solve_and_move(plan);
   map_back(plan);
-  gradients_with_material(plan, 1.0, 0.0, true);
+  gradients_with_material(plan, 1.0, 0.0);
   plan.each("motion of points", move_points);
   end(plan);
 }
@@ -229,7 +229,7 @@ void LAMMPS_NS::make_usavg(MPMPlan &plan)
   begin_with_stress(plan, 0.5, 0.75);
   solve_and_move(plan);
   map_back(plan);
-  gradients_with_material(plan, 0.5, -0.25, true);
+  gradients_with_material(plan, 0.5, -0.25);
   plan.each("motion of points", move_points);
   end(plan);
 }

@@ -576,12 +576,12 @@ int g2p(const PointRows &rows, const TransferStep &transfer, int first, int last
         if (DIM == 2) points.xnew[3 * i + 2] = points.x[3 * i + 2];
         store_lanes<DIM>(points.xnew + 3 * i, xnew);
         store_lanes<DIM>(points.v + 3 * i, mean + add);
-      }
-      if (SHAPE == CPDI2 && points.corners_new) {
-        double *corner = points.corners_new + DIM * N * i;
-        for (int c = 0; c < N; c++, corner += DIM)
-          store_lanes<DIM>(corner,
-                           strided<DIM, GROUP>(domains.x[DIM * c] + l) + step.dt * (at[c] - mean));
+        if (SHAPE == CPDI2 && points.corners_new) {
+          double *corner = points.corners_new + DIM * N * i;
+          for (int c = 0; c < N; c++, corner += DIM)
+            store_lanes<DIM>(
+                corner, strided<DIM, GROUP>(domains.x[DIM * c] + l) + step.dt * (at[c] - mean));
+        }
       }
     }
   }

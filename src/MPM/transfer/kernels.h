@@ -168,12 +168,12 @@ struct TransferKernels {
   bool gradient_in_C;    ///< g2p leaves the velocity gradient there
   P2G p2g;               ///< mass, momentum and force (internal and external)
   P2G p2g_momentum;      ///< mass and momentum only, force reals untouched
-  P2G p2g_force;    ///< force only (split: the force reals; merged: dt * force on the momentum)
-  G2P g2p;          ///< velocity, position, C, velocity gradient
-  G2P g2p_gradient;    ///< velocity gradient only, into L, and corners_new; else points stay; returns 0
+  P2G p2g_force;       ///< force only (split: the force reals; merged: dt * force on the momentum)
+  G2P g2p;             ///< velocity, position, C, velocity gradient
+  G2P g2p_gradient;    ///< velocity gradient only, into L; points stay; returns 0
   TileIO flush;        ///< tile -> nodes, all reals
   TileIO load;         ///< nodes -> tile
-  TileIO prefetch;    ///< nodes of the box into the cache, for a flush or load some time later
+  TileIO prefetch;     ///< nodes of the box into the cache, for a flush or load some time later
 };
 
 /** Transfers of the modes of a velocity field around a point that are products of two or three

@@ -240,7 +240,7 @@ void move_corners(const Stencil<C> &stencil, const TransferStep &step, const dou
   for (int k = 0; k < N * DIM; k++) corner[k] = stencil.x[k] + step.dt * (at[k] - v[k % DIM]);
 }
 
-/** Nodes to points: velocity, position and affine matrix if UPDATE; velocity gradient; corners. */
+/** Nodes to points: velocity, position, corners and affine matrix if UPDATE; velocity gradient. */
 template <class C, bool UPDATE>
 int g2p(const PointRows &points, const TransferStep &step, int first, int last, const int base[3],
         const double *tile, double *L)
@@ -253,10 +253,10 @@ int g2p(const PointRows &points, const TransferStep &step, int first, int last, 
     double grad[DIM * DIM];
     velocity_gradient<C>(stencil, step, tile, grad);
     if (L) std::copy(grad, grad + DIM * DIM, L + DIM * DIM * (p - first));
+    if (!UPDATE) continue;
     if constexpr (C::shape == CPDI2)
       if (points.corners_new)
         move_corners<C>(stencil, step, tile, points.corners_new + (DIM << DIM) * p);
-    if (!UPDATE) continue;
 
     if (is_gradient(C::shape, C::transfer))
       std::copy(grad, grad + DIM * DIM, points.C + DIM * DIM * p);
