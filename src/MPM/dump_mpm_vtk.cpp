@@ -186,7 +186,7 @@ void DumpMPMVTK::init_style()
 
 void DumpMPMVTK::write_header(bigint npoint)
 {
-  vtk = VTKFile("PolyData");
+  vtk = VTKFile("PolyData", compress);
   const auto real = single ? VTKFile::FLOAT32 : VTKFile::FLOAT64;
   for (const auto &field : request->fields)
     vtk.add("PointData", field.name, field.integer ? VTKFile::INT64 : real,
@@ -233,4 +233,12 @@ void DumpMPMVTK::write_data(int n, double *rows)
   vtk.write(array, nwritten, n, values.data());
 
   nwritten += n;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DumpMPMVTK::write_footer()
+{
+  vtk.end();
+  DumpVTKSeries::write_footer();
 }

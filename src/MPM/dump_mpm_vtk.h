@@ -34,6 +34,7 @@ class DumpMPMVTK : public DumpVTKSeries<DumpCustom> {
   void init_style() override;
   void write_header(bigint) override;
   void write_data(int, double *) override;
+  void write_footer() override;
 
  private:
   /** An array of the file: columns of dump custom that are its components. */
