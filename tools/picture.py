@@ -236,9 +236,15 @@ def bounds(snapshots, view, margin):
     return snapshots[0].length.factor * low, snapshots[0].length.factor * high
 
 
+def require_points(snapshots):
+    if not all(len(snapshot.x) for snapshot in snapshots):
+        raise SystemExit("no points are left to be drawn: see --cut")
+
+
 def row(line, snapshots, color, diameter, view="xz", cmap="viridis", limits=None, deformed=False, box=None):
     """Snapshots side by side in a line of axes with their times above, all with the same limits: box, (low, high) of
     both axes as shown, by default that of all of them. What is to be given to a color bar."""
+    require_points(snapshots)
     low, high = bounds(snapshots, view, diameter) if box is None else box
     if limits is None:
         values = [snapshot.values(color) for snapshot in snapshots]
@@ -336,8 +342,7 @@ def main():
         if len(view) != 2 or not set(view) <= set("xyz") or view[0] == view[1]:
             raise SystemExit("view %s: two of x, y, z are needed, such as xz" % view)
     snapshots = [cut(snapshot.show_in(args.unit_length, args.unit_time), args.cut) for snapshot in snapshots]
-    if not all(len(snapshot.x) for snapshot in snapshots):
-        raise SystemExit("no points are left to be drawn: see --cut")
+    require_points(snapshots)
     if args.range is None:
         values = [snapshot.values(args.color) for snapshot in snapshots]
         args.range = (min(v.min() for v in values), max(v.max() for v in values))

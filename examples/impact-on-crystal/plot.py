@@ -42,6 +42,6 @@ for name, label, color, shift in (("v_disk", "disk, kinetic and stored", "C1", 0
 for snapshot in series:
     axes.axvline(snapshot.time, color="gray", lw=0.8, ls=":")
 axes.set(xlabel="time", ylabel="energy (units of the Lennard-Jones potential)", xlim=(0, curve["v_t"][-1]), ylim=(0, None))
-axes.legend(loc="upper right", bbox_to_anchor=(1.0, 0.87))
+axes.legend(loc="upper right", bbox_to_anchor=(1.0, 0.84))
 figure.suptitle("A soft disk hits a crystal (Lennard-Jones units)")
 figure.savefig(os.path.join(folder, "impact-on-crystal.png"), dpi=80)

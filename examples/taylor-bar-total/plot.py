@@ -24,7 +24,8 @@ last = read_series(os.path.join(folder, "final.vtp"))[0]
 diameter = 1.5 * usual_distance(first.x)
 
 # the layer next to the plane y = 0, in the first snapshot; points stand for what the cubes around them have become
-near = np.isclose(abs(first.x[:, 1]), abs(first.x[:, 1]).min(), rtol=1e-3) & (first.x[:, 1] > 0)
+y = first.x[:, 1]
+near = abs(y - y[np.argmin(abs(y))]) < 0.1 * usual_distance(first.x)
 series = []
 for snapshot in (first, middle, last):
     snapshot.fields["near"] = near
