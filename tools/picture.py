@@ -267,14 +267,14 @@ def cut(snapshot, formula):
     return part
 
 
-def panels(plt, snapshots, args):
-    """A figure with a column for each snapshot and a row for each view."""
-    boxes = [bounds(snapshots, view, args.diameter) for view in args.view]
+def panels(plt, snapshots, args, seen=None):
+    """A figure with a column for each snapshot and a row for each view, in which all that are seen have place."""
+    boxes = [bounds(seen or snapshots, view, args.diameter) for view in args.view]
     heights = [(high[1] - low[1]) / (high[0] - low[0]) for low, high in boxes]
-    width = args.width or 4.0 * len(snapshots) + 1.0
+    width = args.width or (4.0 * len(snapshots) + 1.0 if len(snapshots) > 1 else 7.0)
+    height = (width - 1.0 - 0.7 * len(snapshots)) / len(snapshots) * sum(heights) + 0.8 * len(heights) + (0.4 if args.title else 0.0)
     figure, grid = plt.subplots(len(args.view), len(snapshots), squeeze=False, layout="constrained",
-                                gridspec_kw={"height_ratios": heights},
-                                figsize=(width, (width - 1.0) / len(snapshots) * sum(heights) + 0.9))
+                                gridspec_kw={"height_ratios": heights}, figsize=(width, height))
     disks = None
     for line, view, box in zip(grid, args.view, boxes):
         disks = row(line, snapshots, args.color, args.diameter, view, args.colors, args.range, args.deformed, box)
@@ -291,7 +291,7 @@ def movie(plt, snapshots, args):
     writer = PillowWriter if args.output.endswith(".gif") else FFMpegWriter
     if not writer.isAvailable():
         raise SystemExit("%s: no ffmpeg here; a movie with the name .gif does without" % args.output)
-    frame = panels(plt, snapshots[:1], args)
+    frame = panels(plt, snapshots[:1], args, snapshots)
     grid = frame.axes[:len(args.view)]
     boxes = [bounds(snapshots, view, args.diameter) for view in args.view]
     writer = writer(fps=args.fps)
