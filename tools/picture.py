@@ -5,7 +5,7 @@
 
 usage: picture.py [options] SERIES -o FILE
 
-SERIES: a list of dump mpm/vtk (.pvd), one of its snapshots (.vtp), or a file of dump custom with the columns x y z.
+SERIES: a list of dump mpm/vtk (.pvd), one of its snapshots (.vtp, .pvtp), or a file of dump custom with the columns x y z.
 FILE: a picture (.png, .pdf, .svg), or a movie of all times (.gif, .mp4; the latter needs ffmpeg).
 
   --color FIELD      a field or formula of fields, such as eplastic, pressure/1e6, sqrt(vx**2+vz**2); of a
@@ -89,7 +89,15 @@ class Snapshot:
 
 
 def read_vtp(path):
-    """A file of dump mpm/vtk."""
+    """A file of dump mpm/vtk, or a list of its pieces."""
+    if path.endswith(".pvtp"):
+        with open(path) as file:
+            found = re.findall(r'<Piece Source="([^"]*)"', file.read())
+        pieces = [read_vtp(os.path.join(os.path.dirname(path), name)) for name in found]
+        first = pieces[0]
+        first.x = np.concatenate([piece.x for piece in pieces])
+        first.fields = {name: np.concatenate([piece.fields[name] for piece in pieces]) for name in first.fields}
+        return first
     with open(path, "rb") as file:
         data = file.read()
     mark = b'<AppendedData encoding="raw">\n_'
@@ -162,7 +170,7 @@ def read_series(path, times=None):
         known = np.array([float(time) for time, _ in found])
         chosen = nearest(known, times)
         return [read_vtp(os.path.join(os.path.dirname(path), found[k][1])) for k in chosen]
-    snapshots = [read_vtp(path)] if path.endswith(".vtp") else read_dump(path)
+    snapshots = [read_vtp(path)] if path.endswith((".vtp", ".pvtp")) else read_dump(path)
     if times is None:
         return snapshots
     if any(snapshot.time is None for snapshot in snapshots):

@@ -39,8 +39,8 @@ run             20
 """
 
 
-def read(reader, path):
-    """data set, its point data, and its time"""
+def arrays_of(reader, path):
+    """point data by their names, and positions with an empty one"""
     from vtkmodules.util.numpy_support import vtk_to_numpy
     reader.SetFileName(path)
     reader.Update()
@@ -48,7 +48,14 @@ def read(reader, path):
     points = data.GetPointData()
     arrays = {points.GetArrayName(k): vtk_to_numpy(points.GetArray(k)) for k in range(points.GetNumberOfArrays())}
     arrays[""] = vtk_to_numpy(data.GetPoints().GetData())
-    assert data.GetFieldData().GetAbstractArray("Units").GetValue(0) == "lj"
+    return arrays
+
+
+def read(reader, path):
+    """data set, its point data, and its time"""
+    arrays = arrays_of(reader, path)
+    data = reader.GetOutput()
+    assert data.GetFieldData().GetAbstractArray("Units").GetValue(0) in ("lj", "micro")
     return data, arrays, data.GetFieldData().GetArray("TimeValue").GetTuple1(0)
 
 
@@ -134,6 +141,45 @@ def check_compressed(processes):
             assert sizes[1] < 0.6 * sizes[0], sizes
         assert len(a["x"]) > 1000 and len(snapshot("double_packed.vtp")["x"]) == 6400
         assert len(snapshot("none.vtp")["x"]) == 0
+
+
+PIECES = """dump %s all mpm/vtk 5 %s F velocity
+dump_modify %s %s
+"""
+
+
+def by_id(arrays):
+    import numpy
+    order = numpy.argsort(arrays["id"])
+    return {name: array[order] for name, array in arrays.items()}
+
+
+def test_pieces_of_three_processes():
+    import picture
+    with tempfile.TemporaryDirectory() as folder:
+        text = PLANE + "write_dump all mpm/vtk end.%.vtp F velocity modify sort id\n" + WRITE % ("all", "end", "double", "no")
+        text += PIECES % ("one", "one.*.vtp", "one", "sort id") + PIECES % ("each", "each.%.*.vtp", "each", "sort id maxfiles 1 compress yes")
+        text += PIECES % ("two", "two.*.%.vtp", "two", "nfile 2 pad 4") + PIECES % ("none", "none.%.*.vtp", "none", "thresh x > 99 sort id")
+        mt.ok(mt.lammps(folder, text + "run 5\n", processes=3))
+        names = set(os.listdir(folder))
+        assert {name for name in names if name.startswith("each")} == {
+            "each.pvd", "each.25.pvtp", "each.0.25.vtp", "each.1.25.vtp", "each.2.25.vtp"}
+        assert {name for name in names if name.startswith("two")} == {
+            "two.pvd", "two.0020.pvtp", "two.0020.0.vtp", "two.0020.1.vtp", "two.0025.pvtp", "two.0025.0.vtp", "two.0025.1.vtp"}
+        one = picture.read_series(os.path.join(folder, "one.pvd"))
+        for a, b in ((one[1], picture.read_series(os.path.join(folder, "each.pvd"))[0]),
+                     (one[1], picture.read_series(os.path.join(folder, "two.pvd"))[1]),
+                     (picture.read_vtp(os.path.join(folder, "end.vtp")), picture.read_vtp(os.path.join(folder, "end.pvtp")))):
+            assert a.time == b.time and a.length.name == b.length.name == "um" and len(a.x) == 6400
+            same(dict(a.fields, x=a.x), by_id(dict(b.fields, x=b.x)))
+        assert len(picture.read_series(os.path.join(folder, "none.pvd"))[0].x) == 0
+        try:
+            from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLPPolyDataReader
+        except ImportError:
+            return
+        for a, b in (("one.25.vtp", "each.25.pvtp"), ("one.25.vtp", "two.0025.pvtp")):
+            a, b = read(vtkXMLPolyDataReader(), os.path.join(folder, a))[1], arrays_of(vtkXMLPPolyDataReader(), os.path.join(folder, b))
+            same(a, by_id(b))
 
 
 def test_compressed_files():

@@ -54,13 +54,32 @@ static const char *byte_order()
 
 /* ---------------------------------------------------------------------- */
 
-std::string VTKFile::name_error(const std::string &name, const std::string &extension, bool series)
+std::string VTKFile::without_percent(const std::string &name)
+{
+  const auto at = name.find('%');
+  if (at == std::string::npos) return name;
+  const auto separates = [&](std::size_t k) {
+    return k < name.size() && strchr("._-", name[k]);
+  };
+  if (at > 0 && separates(at - 1)) return name.substr(0, at - 1) + name.substr(at + 1);
+  return name.substr(0, at) + name.substr(at + (separates(at + 1) ? 2 : 1));
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::string VTKFile::name_error(const std::string &name, const std::string &extension, bool series,
+                                bool pieces)
 {
   const std::string end = "." + extension;
   if (name.size() <= end.size() || name.compare(name.size() - end.size(), end.size(), end) != 0)
     return fmt::format("file name must end in {}: {}", end, name);
-  if (name.find('%') != std::string::npos)
-    return fmt::format("writes one file for all processes: remove % from file name {}", name);
+  const auto percent = name.find('%');
+  if (percent != std::string::npos) {
+    if (!pieces)
+      return fmt::format("writes one file for all processes: remove % from file name {}", name);
+    if (name.find('/', percent) != std::string::npos)
+      return fmt::format("file name must have its % after the last /: {}", name);
+  }
   const auto star = name.find('*');
   if (star == std::string::npos) {
     if (series)
@@ -242,14 +261,35 @@ void VTKFile::end()
     fwrite(a.packed.data(), 1, a.packed.size(), fp);
   }
   fputs("\n</AppendedData>\n</VTKFile>\n", fp);
-  arrays.clear();
+  for (auto &a : arrays) a.packed = {};
 }
 
 /* ---------------------------------------------------------------------- */
 
-std::string VTKCollection::list_name(const std::string &pattern, const std::string &fallback,
-                                     const std::string &suffix)
+std::string VTKFile::list_of_pieces(const std::vector<std::string> &names) const
 {
+  std::string text = fmt::format("<?xml version=\"1.0\"?>\n"
+                                 "<VTKFile type=\"P{0}\" version=\"1.0\" byte_order=\"{1}\" "
+                                 "header_type=\"UInt64\">\n<P{0} GhostLevel=\"0\">\n",
+                                 kind, byte_order());
+  for (const std::string section : {"PointData", "Points"}) {
+    text += fmt::format("<P{}>\n", section);
+    for (const auto &a : arrays)
+      if (a.section == section)
+        text += fmt::format("<PDataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\"/>\n",
+                            types[a.type].name, a.name, a.ncomponent);
+    text += fmt::format("</P{}>\n", section);
+  }
+  for (const auto &name : names) text += fmt::format("<Piece Source=\"{}\"/>\n", name);
+  return text + fmt::format("</P{}>\n</VTKFile>\n", kind);
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::string VTKCollection::list_name(const std::string &pattern_with_percent,
+                                     const std::string &fallback, const std::string &suffix)
+{
+  const auto pattern = VTKFile::without_percent(pattern_with_percent);
   const auto slash = pattern.find_last_of("/\\");
   const std::string dir = slash == std::string::npos ? "" : pattern.substr(0, slash + 1);
   std::string name = pattern.substr(dir.size());

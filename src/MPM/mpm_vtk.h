@@ -45,8 +45,12 @@ class VTKFile {
   static bool can_compress();
 
   /** What is wrong with the name of a dump file and how to mend it; empty: nothing.
-   *  series: one file per snapshot, with a * for the time step. */
-  static std::string name_error(const std::string &name, const std::string &extension, bool series);
+   *  series: one file per snapshot, with a * for the time step; pieces: a % for the number of a piece is allowed. */
+  static std::string name_error(const std::string &name, const std::string &extension, bool series,
+                                bool pieces = false);
+
+  /** The name without the % for the number of a piece and the dot, or another separator, before it. */
+  static std::string without_percent(const std::string &name);
 
   /** An array of a section (PointData, Points, Verts, Cells) for ntuple tuples; its number. */
   int add(const std::string &section, const std::string &name, Type type, int ncomponent,
@@ -62,6 +66,9 @@ class VTKFile {
 
   /** After all values. */
   void end();
+
+  /** Text of the file that lists pieces with these arrays, by their names. */
+  std::string list_of_pieces(const std::vector<std::string> &names) const;
 
  private:
   struct Array {
@@ -163,13 +170,18 @@ template <class Base> class DumpVTKSeries : public Base {
     return n > 0 ? n : Base::modify_param(narg, arg);
   }
 
+  /** The file of this snapshot that is to be opened. */
+  virtual std::string listed_file()
+  {
+    return utils::star_subst(this->filename, this->update->ntimestep, this->padflag);
+  }
+
   void write_footer() override
   {
     fflush(this->fp);
-    if (!collection) return;
-    const auto step = this->update->ntimestep;
-    const auto wrong = collection->add(utils::star_subst(this->filename, step, this->padflag),
-                                       this->compute_time(), this->maxfiles, this->append_flag);
+    if (!collection || this->me != 0) return;
+    const auto wrong =
+        collection->add(listed_file(), this->compute_time(), this->maxfiles, this->append_flag);
     if (!wrong.empty()) this->error->one(FLERR, Error::NOLASTLINE, "Dump {} {}", this->id, wrong);
   }
 };
