@@ -9,7 +9,8 @@ SERIES: a list of dump mpm/vtk (.pvd), one of its snapshots (.vtp, .pvtp), or a 
 FILE: a picture (.png, .pdf, .svg), or a movie of all times (.gif, .mp4; the latter needs ffmpeg).
 
   --color FIELD      a field or formula of fields, such as eplastic, pressure/1e6, sqrt(vx**2+vz**2); of a
-                     vector its components are velocity_x ..., of a tensor stress_xx ...; default: type
+                     vector its components are velocity_x ..., of a tensor stress_xx ...; default: type; gray where
+                     it is nan, as in "where(type == 2, nan, pressure)"
   --label TEXT       of the color bar, with the unit; default: the formula
   --unit-length mm, --unit-time us, for axes and times, where the units of the run are known (always with dump mpm/vtk,
                      with dump_modify units yes for dump custom)
@@ -17,13 +18,15 @@ FILE: a picture (.png, .pdf, .svg), or a movie of all times (.gif, .mp4; the lat
   --times T ...      of the snapshots (the nearest are taken), default: the first, middle, and last one
   --view xz ...      axes of the views, one row each: two of x y z; default xy in 2d, and xz
   --cut FORMULA      draws only points for which it is true, such as "y > 0"
-  --diameter D       of points; default: 1.4 times the usual distance of neighbors in the first snapshot
+  --diameter D       of points, a number or a formula of fields such as "where(type == 2, 0.01, 0.002)"; default: 1.4 times the
+                     usual distance of neighbors in the first snapshot
   --deformed         draws points as the ellipses that the disks have become: needs the field F in the dump
   --title TEXT, --colors NAME (a color map of matplotlib), --width INCHES, --dpi N, --fps N
 
 As a module: read_series() gives snapshots, row() draws some of them side by side, draw() puts one into axes of
 matplotlib; read_table() reads curves that fix ave/time wrote."""
 import argparse
+import copy
 import os
 import re
 import zlib
@@ -80,8 +83,8 @@ class Snapshot:
         if formula in self.fields:
             return self.fields[formula]
         names = dict(self.fields)
-        names.update({name: getattr(np, name) for name in ("sqrt", "exp", "log", "log10", "abs", "sin", "cos", "round")})
-        names.update(zip("xyz", self.x.T))
+        names.update({name: getattr(np, name) for name in ("sqrt", "exp", "log", "log10", "abs", "sin", "cos", "round", "where")})
+        names.update(zip("xyz", self.x.T), nan=np.nan)
         try:
             return eval(formula, {"__builtins__": {}}, names) + np.zeros(len(self.x))
         except NameError as error:
@@ -214,8 +217,9 @@ def ellipses(snapshot, right, up):
 
 
 def draw(axes, snapshot, values, diameter, view="xz", cmap="viridis", limits=None, deformed=False):
-    """Disks of this diameter (units of the run) at the points, colored by values, the farther ones behind the nearer;
+    """Disks of this diameter (units of the run, a number, an array, or a formula) at the points, colored by values, the farther ones behind the nearer;
     what is to be given to a color bar. view: axes to the right and up; one looks along the third, against it for xz."""
+    import matplotlib.pyplot as plt
     from matplotlib.collections import EllipseCollection
     right, up = ("xyz".index(a) for a in view)
     depth = 3 - right - up
@@ -223,12 +227,20 @@ def draw(axes, snapshot, values, diameter, view="xz", cmap="viridis", limits=Non
     order = np.argsort(towards * snapshot.x[:, depth], kind="stable")
     scale = snapshot.length.factor
     one = np.ones(len(order))
+    if isinstance(diameter, str):
+        diameter = snapshot.values(diameter)
     long, short, angle = ellipses(snapshot, right, up) if deformed else (one, one, 0.0 * one)
     size = scale * np.asarray(diameter) * one
     disks = EllipseCollection((size * long)[order], (size * short)[order], angle[order], units="x",
-                              offsets=scale * snapshot.x[order][:, [right, up]], transOffset=axes.transData, cmap=cmap,
-                              linewidths=0.0)
-    disks.set_array(np.asarray(values, float)[order])
+                              offsets=scale * snapshot.x[order][:, [right, up]], transOffset=axes.transData,
+                              cmap=copy.copy(plt.get_cmap(cmap)))
+    values = np.asarray(values, float)[order]
+    if np.isnan(values).any():
+        disks.set(edgecolor="black", linewidths=np.where(np.isnan(values), 0.5, 0.0))
+        disks.cmap.set_bad("silver")
+    else:
+        disks.set_linewidth(0.0)
+    disks.set_array(np.ma.masked_invalid(values))
     if limits is not None:
         disks.set_clim(*limits)
     axes.add_collection(disks)
@@ -238,6 +250,8 @@ def draw(axes, snapshot, values, diameter, view="xz", cmap="viridis", limits=Non
 
 def bounds(snapshots, view, margin):
     """Limits of the axes of a view that hold all snapshots."""
+    if isinstance(margin, str):
+        margin = max(snapshot.values(margin).max() for snapshot in snapshots)
     columns = ["xyz".index(a) for a in view]
     low = np.min([s.x[:, columns].min(axis=0) for s in snapshots], axis=0) - margin
     high = np.max([s.x[:, columns].max(axis=0) for s in snapshots], axis=0) + margin
@@ -256,7 +270,7 @@ def row(line, snapshots, color, diameter, view="xz", cmap="viridis", limits=None
     low, high = bounds(snapshots, view, diameter) if box is None else box
     if limits is None:
         values = [snapshot.values(color) for snapshot in snapshots]
-        limits = min(v.min() for v in values), max(v.max() for v in values)
+        limits = min(np.nanmin(v) for v in values), max(np.nanmax(v) for v in values)
     disks = None
     for axes, snapshot in zip(line, snapshots):
         disks = draw(axes, snapshot, snapshot.values(color), diameter, view, cmap, limits, deformed)
@@ -326,7 +340,7 @@ def main():
     parser.add_argument("--times", nargs="+", type=float)
     parser.add_argument("--view", nargs="+")
     parser.add_argument("--cut")
-    parser.add_argument("--diameter", type=float)
+    parser.add_argument("--diameter")
     parser.add_argument("--deformed", action="store_true")
     parser.add_argument("--title")
     parser.add_argument("--colors", default="viridis")
@@ -353,7 +367,7 @@ def main():
     require_points(snapshots)
     if args.range is None:
         values = [snapshot.values(args.color) for snapshot in snapshots]
-        args.range = (min(v.min() for v in values), max(v.max() for v in values))
+        args.range = (min(np.nanmin(v) for v in values), max(np.nanmax(v) for v in values))
     if moves:
         movie(plt, snapshots, args)
     else:
