@@ -103,7 +103,7 @@ def test_draws():
     mt.ok(mt.run([name, TOOL, "s.dump", "--color", "vx", "--times", "0.05", "-o", "one.png"], folder))
     mt.ok(mt.run([name, TOOL, "s.pvd", "--color", "J", "-o", "m.gif"], folder))
     mt.ok(mt.run([name, "-c", "from PIL import Image; assert Image.open('m.gif').n_frames == 3"], folder))
-    mt.ok(mt.run([name, TOOL, "packed.pvd", "--color", "where(id > 8, nan, J)", "--deformed", "--diameter", "0.5+0.2*(id > 20)", "--unit-length", "nm", "-o", "p.png"], folder))
+    mt.ok(mt.run([name, TOOL, "packed.pvd", "--color", "where(id > 28, nan, J)", "--deformed", "--diameter", "0.5+0.2*(id > 20)", "--unit-length", "nm", "-o", "p.png"], folder))
     mt.ok(mt.run([name, "-c", LOOK], folder))
 
 
