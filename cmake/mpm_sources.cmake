@@ -102,6 +102,13 @@ if(FFTW3_INCLUDE_DIR AND FFTW3_LIBRARY)
   set(MPM_FEATURES MPM_FFTW)
 endif()
 
+# zlib, for compressed files of dump mpm/vtk; without it they are refused
+find_path(ZLIB_INCLUDE_DIR zlib.h)
+find_library(ZLIB_LIBRARY z)
+if(ZLIB_INCLUDE_DIR AND ZLIB_LIBRARY)
+  list(APPEND MPM_LIBRARIES ${ZLIB_LIBRARY})
+endif()
+
 # Instruction sets for the hot kernels *_isa.cpp: compiled once per set with
 # MPM_ISA = base, v3, v4; MPM_HAVE_V3, MPM_HAVE_V4 tell the dispatcher which exist.
 # Functions there must be in namespaces named by MPM_ISA or have internal linkage:
@@ -181,6 +188,10 @@ function(mpm_add_objects)
   target_compile_definitions(mpm_objects PRIVATE ${MPM_FEATURES})
   if(MPM_ISA_HERE)
     target_compile_options(mpm_objects PRIVATE -O1 -g0)
+  endif()
+  if(ZLIB_INCLUDE_DIR AND ZLIB_LIBRARY)
+    set_property(SOURCE ${MPM_DIR}/mpm_vtk.cpp APPEND PROPERTY COMPILE_DEFINITIONS MPM_ZLIB)
+    target_include_directories(mpm_objects SYSTEM PRIVATE "$<FILTER:${ZLIB_INCLUDE_DIR},EXCLUDE,^/usr/include$>")
   endif()
   mpm_sanitize(mpm_objects)
   set(objects $<TARGET_OBJECTS:mpm_objects>)

@@ -32,7 +32,7 @@ compiling: build-essential cmake
 parallel runs: libopenmpi-dev openmpi-bin
 small matrices: libeigen3-dev
 Fourier transforms: libfftw3-dev
-pictures: libpng-dev
+pictures and compressed files: libpng-dev zlib1g-dev
 unpacking LAMMPS: xz-utils dpkg-dev
 tables: python3 python3-numpy
 LIST

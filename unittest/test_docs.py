@@ -318,6 +318,8 @@ def test_every_scene_says_what_to_look_at():
     for folder in sorted(glob.glob(os.path.join(ROOT, "examples", "*", ""))):
         name = os.path.basename(os.path.dirname(folder))
         text = read(os.path.join(folder, "README.md"))
+        if not re.search(r"plot\.py|python\.py|plot_point\.py|picture\.py", text):
+            wrong.append("examples/%s/README.md: does not say what draws its picture" % name)
         for part in ("(%s.png)" % name, "in.%s" % name, "\n## What to look at\n"):
             if part not in text:
                 wrong.append("examples/%s/README.md: no %s" % (name, part.strip()))

@@ -9,6 +9,8 @@ with what these have written, and the numbers that the pages speak of agree with
 import math
 import os
 import re
+import shlex
+import shutil
 
 import docs_scenes
 import mpm_testing as mt
@@ -49,6 +51,25 @@ def run_page(page, folder, processes=0):
     return outputs
 
 
+def run_movies(page, folder, made):
+    """The commands of a page that make pictures and movies of what its inputs wrote, as they are printed, but for movies
+    of points, which have two frames here."""
+    python = "/usr/bin/python3" if os.path.exists("/usr/bin/python3") else "python3"
+    text = mt.read(os.path.join(docs_scenes.PAGES, page + ".rst"))
+    for line in re.findall(r"^   ((?:ffmpeg|python3 tools/picture.py) .*)$", text, re.M):
+        words = shlex.split(line)
+        if not shutil.which("ffmpeg") and (words[0] == "ffmpeg" or line.endswith(".mp4")):
+            continue
+        if words[0] == "ffmpeg":    # the shell leaves the quoted pattern to ffmpeg
+            words[1:1] = ["-y", "-loglevel", "error"]
+        else:
+            words[:2] = [python, os.path.join(mt.ROOT, words[1])]
+        mt.ok(mt.run(words + (["--times", "0", "0.1"] if line.endswith(".mp4") and words[0] == python else []), folder))
+        assert os.path.getsize(os.path.join(folder, words[-1])) > 5000, line
+        made.remove(words[-1])
+    assert not made or not shutil.which("ffmpeg"), made
+
+
 def columns(path):
     """Columns of a file of fix ave/time."""
     rows = [line.split() for line in mt.read(path).splitlines() if line and not line.startswith("#")]
@@ -62,6 +83,7 @@ def near(value, expected, share):
 def test_tutorial():
     folder = mt.scratch_folder()
     run_page("Howto_mpm_tutorial", folder)
+    run_movies("Howto_mpm_tutorial", folder, ["ball.mp4", "stress.mp4"])
     for name in ("force.png", "ball.gif", "ball.0025.png", "ball.pvd"):
         assert os.path.getsize(os.path.join(folder, name)) > 1000, name
     _, t, v, force = columns(os.path.join(folder, "force.txt"))
@@ -185,6 +207,7 @@ def test_pictures():
     for begin, end in (("side", "png"), ("front", "png"), ("dam", "vtp")):
         assert len([name for name in names if name.startswith(begin + ".") and name.endswith("." + end)]) == 31, begin
     assert os.path.getsize(os.path.join(folder, "side.gif")) > 10000
+    run_movies("Howto_mpm_pictures", folder, ["side.mp4", "speed.png", "pressure.mp4"])
     head, rows = mt.thermo(output)[0]
     front = float(rows[-1][head.index("c_front")])
     assert 0.2 + 0.5 * 2.8 * 0.3 < front < 0.2 + 2.8 * 0.3, front

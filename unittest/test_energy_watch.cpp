@@ -84,7 +84,7 @@ TEST(Summary, TellsStateEnergyAndTimeStep)
   run.commands("run 1\nlog none\n");
   MPI_Barrier(MPI_COMM_WORLD);    // the first rank writes the file
   const std::string text = file_text(file.name);
-  const std::regex limit("1 steps, time step 0\\.1 to 0\\.1, at the end 0\\.([0-9]+) of the limit"),
+  const std::regex limit("1 steps, time step 0\\.1, at the end 0\\.([0-9]+) of the limit"),
       state("volumes 0\\.75[0-9]* \\(point 5\\) to 1\\.2[45][0-9]* \\(point 9\\) times the initial "
             "ones, "
             "speeds up to 1\\.[0-9]* \\(point 17\\)");

@@ -410,7 +410,7 @@ TEST_F(ByHand, DumpErrors)
   };
   EXPECT_THAT(dump("file.vtp vonmises"), HasSubstr("put a * into the file name, e.g. file.*.vtp"));
   EXPECT_THAT(dump("file.*.vtk vonmises"), HasSubstr("must end in .vtp"));
-  EXPECT_THAT(dump("file.%.*.vtp vonmises"), HasSubstr("remove %"));
+  EXPECT_THAT(dump("out%/file.*.vtp vonmises"), HasSubstr("% after the last /"));
   EXPECT_THAT(dump("out*/file.vtp vonmises"), HasSubstr("after the last /"));
   EXPECT_THAT(dump("file.*.vtp element"), HasSubstr("use type instead"));
   EXPECT_THAT(dump("file.*.vtp c_nothing"), HasSubstr("nothing"));
@@ -434,6 +434,9 @@ TEST(Output, CollectionNames)
   EXPECT_EQ(VTKCollection::list_name("*_x.vtp", "d"), "x.pvd");
   EXPECT_EQ(VTKCollection::list_name("bar.*.left.vtp", "d"), "bar.left.pvd");
   EXPECT_EQ(VTKCollection::list_name("bar.*.vtu", "d", ".grid"), "bar.grid.pvd");
+  EXPECT_EQ(VTKCollection::list_name("bar.%.*.vtp", "d"), "bar.pvd");
+  EXPECT_EQ(VTKCollection::list_name("out/bar-*-%.vtp", "d"), "out/bar.pvd");
+  EXPECT_EQ(VTKCollection::list_name("%.*.vtp", "d"), "d.pvd");
 }
 
 // ---------------------------------------------------------------- a moving body
@@ -543,6 +546,7 @@ TEST(Output, GridFileErrors)
   EXPECT_THAT(dump("all mpm/grid/vtk 5 g.*.vtu floor mass"), HasSubstr("not mpm"));
   EXPECT_THAT(dump("all mpm/grid/vtk 5 g.*.vtu grid stress"), HasSubstr("momentum"));
   EXPECT_THAT(dump("all mpm/grid/vtk 5 g.*.vti grid mass"), HasSubstr(".vtu"));
+  EXPECT_THAT(dump("all mpm/grid/vtk 5 g.%.*.vtu grid mass"), HasSubstr("remove %"));
   EXPECT_THAT(dump("all mpm/grid/vtk 5 g.vtu grid mass"), HasSubstr("*"));
 }
 

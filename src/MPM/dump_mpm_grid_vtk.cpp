@@ -158,7 +158,7 @@ void DumpMPMGridVTK::write_footer()
   const bigint ncell = (bigint) offsets.size();
 
   const auto real = single ? VTKFile::FLOAT32 : VTKFile::FLOAT64;
-  VTKFile vtk("UnstructuredGrid");
+  VTKFile vtk("UnstructuredGrid", compress);
   for (const auto &f : fields)
     vtk.add("PointData", f.name, f.column == INDEX ? VTKFile::INT64 : real, f.ncomponent, nnode);
   const int points = vtk.add("Points", "Points", real, 3, nnode);
@@ -192,5 +192,6 @@ void DumpMPMGridVTK::write_footer()
   vtk.write(cells + 1, 0, ncell, offsets.data());
   values.assign(ncell, dim == 3 ? VTK_HEXAHEDRON : VTK_QUAD);
   vtk.write(cells + 2, 0, ncell, values.data());
+  vtk.end();
   DumpVTKSeries::write_footer();
 }

@@ -57,7 +57,7 @@ DumpMPMVTK::Request::Request(LAMMPS *lmp_in, int narg, char **arg) : lmp(lmp_in)
   shown = std::make_unique<ErrorWords>(lmp, narg, arg);
   if (narg < 5) utils::missing_cmd_args(FLERR, "dump mpm/vtk", error);
 
-  const auto wrong = VTKFile::name_error(arg[4], "vtp", strcmp(arg[0], "WRITE_DUMP") != 0);
+  const auto wrong = VTKFile::name_error(arg[4], "vtp", strcmp(arg[0], "WRITE_DUMP") != 0, true);
   if (!wrong.empty()) error->all(FLERR, 4, "Dump mpm/vtk {}", wrong);
 
   for (int iarg = 0; iarg < 5; iarg++) words.emplace_back(arg[iarg]);
@@ -176,6 +176,9 @@ void DumpMPMVTK::init_style()
     }
   }
 
+  int one = filewriter;
+  MPI_Allreduce(&one, &npiece, 1, MPI_INT, MPI_SUM, world);
+
   write_header_flag = 1;
   DumpCustom::init_style();
 }
@@ -186,7 +189,7 @@ void DumpMPMVTK::init_style()
 
 void DumpMPMVTK::write_header(bigint npoint)
 {
-  vtk = VTKFile("PolyData");
+  vtk = VTKFile("PolyData", compress);
   const auto real = single ? VTKFile::FLOAT32 : VTKFile::FLOAT64;
   for (const auto &field : request->fields)
     vtk.add("PointData", field.name, field.integer ? VTKFile::INT64 : real,
@@ -233,4 +236,47 @@ void DumpMPMVTK::write_data(int n, double *rows)
   vtk.write(array, nwritten, n, values.data());
 
   nwritten += n;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DumpMPMVTK::write_footer()
+{
+  vtk.end();
+  if (multiproc && me == 0) list_pieces();
+  DumpVTKSeries::write_footer();
+}
+
+/** File with the names of the pieces of this snapshot. */
+void DumpMPMVTK::list_pieces()
+{
+  const std::string name = platform::path_basename(filename);
+  const auto percent = name.find('%');
+  std::vector<std::string> names;
+  for (int k = 0; k < npiece; k++)
+    names.push_back(
+        utils::star_subst(name.substr(0, percent) + std::to_string(k) + name.substr(percent + 1),
+                          update->ntimestep, padflag));
+  const auto text = vtk.list_of_pieces(names);
+  const auto file = listed_file();
+  FILE *out = fopen(file.c_str(), "w");
+  bool ok = out && fwrite(text.data(), 1, text.size(), out) == text.size();
+  if (out) ok = fclose(out) == 0 && ok;
+  if (!ok)
+    error->one(FLERR, Error::NOLASTLINE, "Dump {} cannot write the list of pieces {}: {}", id, file,
+               utils::getsyserror());
+
+  // the pieces of former snapshots are deleted by Dump
+
+  listed.push_back(file);
+  if (maxfiles > 0)
+    for (; (int) listed.size() > maxfiles; listed.pop_front()) remove(listed.front().c_str());
+}
+
+std::string DumpMPMVTK::listed_file()
+{
+  if (!multiproc) return DumpVTKSeries::listed_file();
+  std::string name = VTKFile::without_percent(filename);
+  name.insert(name.size() - 3, "p");
+  return utils::star_subst(name, update->ntimestep, padflag);
 }

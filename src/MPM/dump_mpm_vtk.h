@@ -18,9 +18,12 @@ DumpStyle(mpm/vtk,DumpMPMVTK);
 #include "dump_custom.h"
 #include "mpm_vtk.h"
 
+#include <deque>
+
 namespace LAMMPS_NS {
 
-/** Points as VTK PolyData for ParaView, one file per snapshot and a list with the times.
+/** Points as VTK PolyData for ParaView, one file per snapshot, or several and a list of these, and a list with
+ *  the times.
  *
  *  A dump custom with fields of more than one component. Names of compute mpm/atom become columns
  *  of an internal compute, so that selection of atoms, sorting, and communication are those of
@@ -34,6 +37,8 @@ class DumpMPMVTK : public DumpVTKSeries<DumpCustom> {
   void init_style() override;
   void write_header(bigint) override;
   void write_data(int, double *) override;
+  void write_footer() override;
+  std::string listed_file() override;
 
  private:
   /** An array of the file: columns of dump custom that are its components. */
@@ -65,7 +70,10 @@ class DumpMPMVTK : public DumpVTKSeries<DumpCustom> {
   MPM_NS::VTKFile vtk{"PolyData"};    // arrays: fields, position, connectivity, offsets
   bigint nwritten = 0;                // points of the present file
   std::vector<double> values;
+  int npiece = 1;                    // files of a snapshot, with a % in the name
+  std::deque<std::string> listed;    // lists of pieces that exist
 
+  void list_pieces();
   void write_field(const Field &, int array, int n, const double *rows);
 
   DumpMPMVTK(LAMMPS *, std::unique_ptr<Request>);

@@ -151,8 +151,9 @@ void MPMEnergyWatch::check()
 std::string MPMEnergyWatch::report() const
 {
   if (run.steps < SHORTEST) return "";
-  return fmt::format(
-      "  energy at the end: kinetic {:.6g}, stored {:.6g}; since the start transfers and friction "
-      "took {:.3g}, and numerical errors added {:.3g}\n",
-      run.last.kinetic, run.last.stored, run.start.unexplained() - run.lowest, run.gained);
+  return fmt::format("  energy {}at the end: kinetic {:.6g}, stored {:.6g}; since the start "
+                     "transfers and friction "
+                     "took {:.3g}, and numerical errors added {:.3g}\n",
+                     fields.size() > 1 ? "of all fields " : "", run.last.kinetic, run.last.stored,
+                     run.start.unexplained() - run.lowest, run.gained);
 }

@@ -242,11 +242,13 @@ void MPMPlan::report(const MPMField &field, double bytes_per_point) const
                         "  {} updates of the topology, {} sorts, {:.0f} halo bytes per step",
                         sum[1], sum[2], npoints / std::max(1.0, sum[1]), field.map->nbuild,
                         field.map->nsort, sum[3]);
-  text += fmt::format("\n  {} steps, time step {:.6g} to {:.6g}{}\n", counts.steps, counts.dt_min,
-                      counts.dt_max, state);
+  const auto least = fmt::format("{:.6g}", counts.dt_min),
+             most = fmt::format("{:.6g}", counts.dt_max);
+  text += fmt::format("\n  {} steps, time step {}{}\n", counts.steps,
+                      least == most ? least : least + " to " + most, state);
   if (&field == fields[0]) text += watch.report();
   utils::logmesg(lmp, text);
-  if (least_use < IDLE)
+  if (least_use < IDLE && &field == fields.back())
     utils::logmesg(lmp,
                    "  the machine was busy: these times are from a run with {:.0f} % CPU use\n",
                    100.0 * least_use);

@@ -16,11 +16,17 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <new>
+
+#ifdef MPM_ZLIB
+#include <zlib.h>
+#endif
 
 using namespace MPM_NS;
 using namespace LAMMPS_NS;
 
-static constexpr int64_t CHUNK = 65536;    // values converted at a time
+static constexpr int64_t CHUNK = 65536;             // values converted at a time
+static constexpr std::size_t BLOCK = 256 * 1024;    // bytes compressed at a time
 
 template <typename T> static void convert(const double *from, int64_t n, char *to)
 {
@@ -48,13 +54,32 @@ static const char *byte_order()
 
 /* ---------------------------------------------------------------------- */
 
-std::string VTKFile::name_error(const std::string &name, const std::string &extension, bool series)
+std::string VTKFile::without_percent(const std::string &name)
+{
+  const auto at = name.find('%');
+  if (at == std::string::npos) return name;
+  const auto separates = [&](std::size_t k) {
+    return k < name.size() && strchr("._-", name[k]);
+  };
+  if (at > 0 && separates(at - 1)) return name.substr(0, at - 1) + name.substr(at + 1);
+  return name.substr(0, at) + name.substr(at + (separates(at + 1) ? 2 : 1));
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::string VTKFile::name_error(const std::string &name, const std::string &extension, bool series,
+                                bool pieces)
 {
   const std::string end = "." + extension;
   if (name.size() <= end.size() || name.compare(name.size() - end.size(), end.size(), end) != 0)
     return fmt::format("file name must end in {}: {}", end, name);
-  if (name.find('%') != std::string::npos)
-    return fmt::format("writes one file for all processes: remove % from file name {}", name);
+  const auto percent = name.find('%');
+  if (percent != std::string::npos) {
+    if (!pieces)
+      return fmt::format("writes one file for all processes: remove % from file name {}", name);
+    if (name.find('/', percent) != std::string::npos)
+      return fmt::format("file name must have its % after the last /: {}", name);
+  }
   const auto star = name.find('*');
   if (star == std::string::npos) {
     if (series)
@@ -68,13 +93,24 @@ std::string VTKFile::name_error(const std::string &name, const std::string &exte
 
 /* ---------------------------------------------------------------------- */
 
+int LAMMPS_NS::read_compress(LAMMPS *lmp, int narg, char **arg, bool &compress)
+{
+  Options o("dump_modify");
+  o.add("compress", {option::yes_no(compress)});
+  if (!o.has(arg[0])) return 0;
+  read_options(lmp, o, std::min(narg, 2), arg, 0);
+  if (compress && !VTKFile::can_compress())
+    lmp->error->all(FLERR, Error::NOLASTLINE,
+                    "Files of a dump cannot be compressed: this LAMMPS was compiled without zlib");
+  return 2;
+}
+
+/* ---------------------------------------------------------------------- */
+
 int VTKFile::add(const std::string &section, const std::string &name, Type type, int ncomponent,
                  int64_t ntuple)
 {
-  Array a = {section, name, type, ncomponent, 0, ntuple * ncomponent * types[type].bytes};
-  if (!arrays.empty())
-    a.offset = arrays.back().offset + (int64_t) sizeof(uint64_t) + arrays.back().bytes;
-  arrays.push_back(a);
+  arrays.push_back({section, name, type, ncomponent, 0, ntuple * ncomponent * types[type].bytes});
   return (int) arrays.size() - 1;
 }
 
@@ -86,9 +122,9 @@ void VTKFile::begin(FILE *fp_in, const std::string &piece, const std::string &un
   fp = fp_in;
   std::string codes;    // of characters, and the zero at the end
   for (const char c : units) codes += fmt::format("{} ", (int) c);
-  std::string text = fmt::format(
+  head = fmt::format(
       "<?xml version=\"1.0\"?>\n"
-      "<VTKFile type=\"{0}\" version=\"1.0\" byte_order=\"{1}\" header_type=\"UInt64\">\n"
+      "<VTKFile type=\"{0}\" version=\"1.0\" byte_order=\"{1}\" header_type=\"UInt64\"{6}>\n"
       "<{0}>\n"
       "<FieldData>\n"
       "<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">"
@@ -98,9 +134,32 @@ void VTKFile::begin(FILE *fp_in, const std::string &piece, const std::string &un
       "<Array type=\"String\" Name=\"Units\" NumberOfTuples=\"1\" format=\"ascii\">{4}0</Array>\n"
       "</FieldData>\n"
       "<Piece {5}>\n",
-      kind, byte_order(), time, step, codes, piece);
+      kind, byte_order(), time, step, codes, piece,
+      compressed ? " compressor=\"vtkZLibDataCompressor\"" : "");
+  if (compressed) return;
 
-  std::string section;
+  int64_t offset = 0;
+  for (auto &a : arrays) {
+    a.offset = offset;
+    offset += (int64_t) sizeof(uint64_t) + a.bytes;
+  }
+  write_header();
+
+  // lengths of the arrays, and the end of the file
+
+  for (const auto &a : arrays) {
+    const uint64_t bytes = a.bytes;
+    platform::fseek(fp, start + a.offset);
+    fwrite(&bytes, sizeof(bytes), 1, fp);
+  }
+  platform::fseek(fp, start + offset);
+  fputs("\n</AppendedData>\n</VTKFile>\n", fp);
+}
+
+/** All before the appended data, when the places of the arrays are known. */
+void VTKFile::write_header()
+{
+  std::string text = head, section;
   for (const auto &a : arrays) {
     if (a.section != section) {
       if (!section.empty()) text += fmt::format("</{}>\n", section);
@@ -115,42 +174,122 @@ void VTKFile::begin(FILE *fp_in, const std::string &piece, const std::string &un
   text += fmt::format("</Piece>\n</{}>\n<AppendedData encoding=\"raw\">\n_", kind);
   fwrite(text.data(), 1, text.size(), fp);
   start = (int64_t) text.size();
-
-  // lengths of the arrays, and the end of the file
-
-  int64_t end = 0;
-  for (const auto &a : arrays) {
-    const uint64_t bytes = a.bytes;
-    platform::fseek(fp, start + a.offset);
-    fwrite(&bytes, sizeof(bytes), 1, fp);
-    end = a.offset + (int64_t) sizeof(bytes) + a.bytes;
-  }
-  platform::fseek(fp, start + end);
-  fputs("\n</AppendedData>\n</VTKFile>\n", fp);
 }
 
 /* ---------------------------------------------------------------------- */
 
 void VTKFile::write(int array, int64_t first, int64_t n, const double *values)
 {
-  const Array &a = arrays[array];
+  Array &a = arrays[array];
   const int bytes = types[a.type].bytes;
-  platform::fseek(fp, start + a.offset + (int64_t) sizeof(uint64_t) + first * a.ncomponent * bytes);
+  if (!compressed)
+    platform::fseek(fp,
+                    start + a.offset + (int64_t) sizeof(uint64_t) + first * a.ncomponent * bytes);
 
   const int64_t total = n * a.ncomponent;
   buffer.resize(std::min(total, CHUNK) * bytes);
   for (int64_t done = 0; done < total; done += CHUNK) {
     const int64_t count = std::min(total - done, CHUNK);
     types[a.type].convert(values + done, count, buffer.data());
-    fwrite(buffer.data(), bytes, count, fp);
+    if (!compressed) {
+      fwrite(buffer.data(), bytes, count, fp);
+      continue;
+    }
+    for (std::size_t at = 0, end = count * bytes; at < end;) {
+      const auto part = std::min(end - at, BLOCK - a.pending.size());
+      a.pending.insert(a.pending.end(), &buffer[at], &buffer[at] + part);
+      if (a.pending.size() == BLOCK) pack(a);
+      at += part;
+    }
   }
 }
 
 /* ---------------------------------------------------------------------- */
 
-std::string VTKCollection::list_name(const std::string &pattern, const std::string &fallback,
-                                     const std::string &suffix)
+#ifdef MPM_ZLIB
+
+bool VTKFile::can_compress()
 {
+  return true;
+}
+
+/** Compress a block. Higher levels than the fastest need two to six times its time, and do not make the
+ *  files smaller: what helps is mostly that the upper bytes of numbers are equal. */
+void VTKFile::pack(Array &a)
+{
+  uLongf size = compressBound(a.pending.size());
+  const auto before = a.packed.size();
+  a.packed.resize(before + size);
+  if (compress2((Bytef *) &a.packed[before], &size, (const Bytef *) a.pending.data(),
+                a.pending.size(), Z_BEST_SPEED) != Z_OK)
+    throw std::bad_alloc();
+  a.packed.resize(before + size);
+  a.packed_sizes.push_back(size);
+  a.pending.clear();
+}
+
+#else
+
+bool VTKFile::can_compress()
+{
+  return false;
+}
+
+void VTKFile::pack(Array &) {}
+
+#endif
+
+/* ----------------------------------------------------------------------
+   before the blocks of an array: their number, the size of all but the last and that of the last if it is
+   smaller (or 0), not compressed, and the size of each, compressed
+------------------------------------------------------------------------- */
+
+void VTKFile::end()
+{
+  if (!compressed) return;
+  int64_t offset = 0;
+  for (auto &a : arrays) {
+    if (!a.pending.empty()) pack(a);
+    a.offset = offset;
+    offset += (int64_t) (sizeof(uint64_t) * (3 + a.packed_sizes.size()) + a.packed.size());
+  }
+  write_header();
+  for (auto &a : arrays) {
+    const uint64_t lengths[] = {a.packed_sizes.size(), BLOCK, a.bytes % BLOCK};
+    fwrite(lengths, sizeof(uint64_t), 3, fp);
+    fwrite(a.packed_sizes.data(), sizeof(uint64_t), a.packed_sizes.size(), fp);
+    fwrite(a.packed.data(), 1, a.packed.size(), fp);
+  }
+  fputs("\n</AppendedData>\n</VTKFile>\n", fp);
+  for (auto &a : arrays) a.packed = {};
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::string VTKFile::list_of_pieces(const std::vector<std::string> &names) const
+{
+  std::string text = fmt::format("<?xml version=\"1.0\"?>\n"
+                                 "<VTKFile type=\"P{0}\" version=\"1.0\" byte_order=\"{1}\" "
+                                 "header_type=\"UInt64\">\n<P{0} GhostLevel=\"0\">\n",
+                                 kind, byte_order());
+  for (const std::string section : {"PointData", "Points"}) {
+    text += fmt::format("<P{}>\n", section);
+    for (const auto &a : arrays)
+      if (a.section == section)
+        text += fmt::format("<PDataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\"/>\n",
+                            types[a.type].name, a.name, a.ncomponent);
+    text += fmt::format("</P{}>\n", section);
+  }
+  for (const auto &name : names) text += fmt::format("<Piece Source=\"{}\"/>\n", name);
+  return text + fmt::format("</P{}>\n</VTKFile>\n", kind);
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::string VTKCollection::list_name(const std::string &pattern_with_percent,
+                                     const std::string &fallback, const std::string &suffix)
+{
+  const auto pattern = VTKFile::without_percent(pattern_with_percent);
   const auto slash = pattern.find_last_of("/\\");
   const std::string dir = slash == std::string::npos ? "" : pattern.substr(0, slash + 1);
   std::string name = pattern.substr(dir.size());

@@ -28,18 +28,29 @@ class Input;
 
 namespace MPM_NS {
 
-/** One VTK XML file whose data are raw bytes in an appended section, at places that are known
- *  when the header is written: the values may come in any order and in pieces. */
+/** One VTK XML file whose data are bytes in an appended section. Their places are known when the header is
+ *  written, so that the values may come in any order and in pieces. Of compressed data they are not: blocks
+ *  are compressed as they come, each array in order, and kept in memory until the end. */
 class VTKFile {
  public:
   enum Type { INT64, UINT8, FLOAT64, FLOAT32 };
 
   /** kind: of data set, PolyData or UnstructuredGrid. */
-  explicit VTKFile(const std::string &kind) : kind(kind) {}
+  explicit VTKFile(const std::string &kind, bool compressed = false) :
+      kind(kind), compressed(compressed)
+  {
+  }
+
+  /** Was this compiled with zlib? */
+  static bool can_compress();
 
   /** What is wrong with the name of a dump file and how to mend it; empty: nothing.
-   *  series: one file per snapshot, with a * for the time step. */
-  static std::string name_error(const std::string &name, const std::string &extension, bool series);
+   *  series: one file per snapshot, with a * for the time step; pieces: a % for the number of a piece is allowed. */
+  static std::string name_error(const std::string &name, const std::string &extension, bool series,
+                                bool pieces = false);
+
+  /** The name without the % for the number of a piece and the dot, or another separator, before it. */
+  static std::string without_percent(const std::string &name);
 
   /** An array of a section (PointData, Points, Verts, Cells) for ntuple tuples; its number. */
   int add(const std::string &section, const std::string &name, Type type, int ncomponent,
@@ -53,19 +64,33 @@ class VTKFile {
   /** Write n tuples of an array from the given tuple on, converted to the type of the array. */
   void write(int array, int64_t first, int64_t n, const double *values);
 
+  /** After all values. */
+  void end();
+
+  /** Text of the file that lists pieces with these arrays, by their names. */
+  std::string list_of_pieces(const std::vector<std::string> &names) const;
+
  private:
   struct Array {
     std::string section, name;
     Type type;
     int ncomponent;
-    int64_t offset;    // of the length that precedes the values, in the appended data
+    int64_t offset;    // of the lengths that precede the values, in the appended data
     int64_t bytes;     // of the values
+    std::vector<char> pending = {};             // less than a block, not yet compressed
+    std::vector<char> packed = {};              // compressed blocks
+    std::vector<uint64_t> packed_sizes = {};    // of each
   };
   std::string kind;
+  bool compressed;
   std::vector<Array> arrays;
+  std::string head;    // up to the arrays
   FILE *fp = nullptr;
   int64_t start = 0;    // of the appended data in the file
   std::vector<char> buffer;
+
+  void write_header();
+  void pack(Array &);
 };
 
 /** ParaView's list of the files of a series with their times (.pvd), valid after each step. */
@@ -116,10 +141,14 @@ class ErrorWords {
 
 namespace LAMMPS_NS {
 
+/** Reads compress yes|no of dump_modify and returns 2, or 0 for any other keyword. */
+int read_compress(LAMMPS *, int narg, char **arg, bool &compress);
+
 /** What dump styles that write VTK files share, whichever dump of LAMMPS they derive from. */
 template <class Base> class DumpVTKSeries : public Base {
  protected:
-  bool single = false;    // precision of reals
+  bool single = false;      // precision of reals
+  bool compress = false;    // by zlib
   std::unique_ptr<MPM_NS::VTKCollection> collection;
 
   using Base::Base;
@@ -136,17 +165,23 @@ template <class Base> class DumpVTKSeries : public Base {
 
   int modify_param(int narg, char **arg) override
   {
-    const int n = read_precision(this->lmp, narg, arg, single);
+    int n = read_precision(this->lmp, narg, arg, single);
+    if (n == 0) n = read_compress(this->lmp, narg, arg, compress);
     return n > 0 ? n : Base::modify_param(narg, arg);
+  }
+
+  /** The file of this snapshot that is to be opened. */
+  virtual std::string listed_file()
+  {
+    return utils::star_subst(this->filename, this->update->ntimestep, this->padflag);
   }
 
   void write_footer() override
   {
     fflush(this->fp);
-    if (!collection) return;
-    const auto step = this->update->ntimestep;
-    const auto wrong = collection->add(utils::star_subst(this->filename, step, this->padflag),
-                                       this->compute_time(), this->maxfiles, this->append_flag);
+    if (!collection || this->me != 0) return;
+    const auto wrong =
+        collection->add(listed_file(), this->compute_time(), this->maxfiles, this->append_flag);
     if (!wrong.empty()) this->error->one(FLERR, Error::NOLASTLINE, "Dump {} {}", this->id, wrong);
   }
 };

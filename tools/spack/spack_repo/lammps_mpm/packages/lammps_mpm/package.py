@@ -36,6 +36,7 @@ class LammpsMpm(CMakePackage):
     depends_on("eigen@3.4:")
     depends_on("fftw@3:")
     depends_on("libpng")
+    depends_on("zlib-api")
     depends_on("python@3.8:", type="run")
     depends_on("py-numpy", type="run")
 
