@@ -151,8 +151,10 @@ void MPMEnergyWatch::check()
 std::string MPMEnergyWatch::report() const
 {
   if (run.steps < SHORTEST) return "";
+  const double took = run.start.unexplained() - run.lowest;
   return fmt::format(
       "  energy at the end: kinetic {:.6g}, stored {:.6g}; since the start transfers and friction "
-      "took {:.3g}, and numerical errors added {:.3g}\n",
-      run.last.kinetic, run.last.stored, run.start.unexplained() - run.lowest, run.gained);
+      "took {:.3g} ({:.3g} % of the energy in play), and numerical errors added {:.3g}\n",
+      run.last.kinetic, run.last.stored, took, run.in_play > 0.0 ? 100.0 * took / run.in_play : 0.0,
+      run.gained);
 }
