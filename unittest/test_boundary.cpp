@@ -1466,3 +1466,66 @@ TEST(Regions, ThatAreElsewhereInTheNextRunHaveNotMovedThere)
   }
   EXPECT_GT(held, 32);
 }
+
+// The edge of a wedge is a single point in front of many: by their mean distance the wall is far away. It must
+// not get through; at rest it is half a spacing of the points from the surface, 5 mm.
+
+SERIAL_TEST(SeparatingWall, TheEdgeOfAWedgeDoesNotCross)
+{
+  for (const double slope : {0.5, 1.0}) {
+    Scene run(
+        plane("si", "f f", "-0.6 0.6 0 1.2", 1, 0.01) +
+        strprintf("fix grid all mpm 0.02\nregion left plane 0 0.021 0 -1 %.17g 0\n"
+                  "region right plane 0 0.021 0 1 %.17g 0\n"
+                  "region top block INF INF INF 0.3 INF INF\n"
+                  "region wedge intersect 3 left right top\ncreate_points 1 region wedge ppc 2\n"
+                  "fix m all mpm/material density 1000 neohookean 1e6 0.3\n"
+                  "velocity all set 0 -3 0\nfix floor all mpm/boundary ylo separate\n"
+                  "fix step all mpm/dt 0.4 until 0.02\n",
+                  slope, slope));
+    double lowest = 1.0;
+    run.each_step([&](double **) {
+      for (int i = 0; i < run.n(); i++) lowest = std::min(lowest, run.x()[i][1]);
+    });
+    ASSERT_EQ(run.error("run 100000\n"), "");
+    EXPECT_GT(measured("lowest place of the edge, mm", 1e3 * lowest), 1.0);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   A block falls on a plate that lies on a plane of symmetry, and its image from the other side. With the
+   plane as a wall there is only one half, and contact has to know that the wall holds the nodes next to
+   it together with their images: the plate is half a cell or one cell thick. What is left of the difference
+   is the volume of nodes, of which the half has a part outside of the box.
+------------------------------------------------------------------------- */
+
+static double impulse_on_block(bool half, double thick, const char *transfer)
+{
+  const std::string lattice = strprintf("1.0 transfer %s", transfer);
+  Scene run(plane("lj", "p f", half ? "0 6 0 12" : "0 6 -12 12", 2, 0.5) +
+            "group a empty\ngroup b empty\nfix fa a mpm " + lattice + "\nfix fb b mpm " + lattice +
+            strprintf("\nregion b block 0 6 -%g %g INF INF\nregion u block 1 5 %g 4 INF INF\n"
+                      "region l block 1 5 -4 -%g INF INF\nregion a union 2 u l\n",
+                      thick, thick, thick, thick) +
+            "create_points 2 region b spacing 0.25 fix fb group b outside ignore\n"
+            "create_points 1 region a spacing 0.25 fix fa group a outside ignore\n"
+            "fix ma a mpm/material density 1 neohookean 100 0.3\n"
+            "fix mb b mpm/material density 2 neohookean 300 0.3\n"
+            "variable v atom -0.5*(y>0)+0.5*(y<0)\nvelocity a set 0.1 v_v 0\n"
+            "fix touch all mpm/contact fa fb law coulomb 0.2\n" +
+            (half ? "fix w all mpm/boundary ylo slip\n" : "") + "timestep 0.02\nrun 10\n");
+  double sum = 0.0;
+  for (const auto &s : run.gather())
+    if (s.type == 1 && s.x[1] > 0.0) sum += s.mass * (s.v[1] + 0.5);
+  return sum;
+}
+
+SERIAL_TEST(ContactAtWalls, ThinPlateIsAsHeavyAsWithItsImage)
+{
+  for (const char *transfer : {"apic", "flip 1.0"})
+    for (const double thick : {0.5, 1.0})
+      EXPECT_NEAR(measured("impulse on a block, wall over symmetry",
+                           impulse_on_block(true, thick, transfer) /
+                               impulse_on_block(false, thick, transfer)),
+                  1.0, 0.03);
+}
