@@ -168,6 +168,19 @@ def test_restart():
         near(float(here[2]), float(there[2]), 1e-9)
 
 
+def test_loads():
+    folder = mt.scratch_folder()
+    run_page("Howto_mpm_loads", folder)
+    _, t, load, sag, clamp = columns(os.path.join(folder, "load.txt"))
+    late = [k for k in range(len(t)) if t[k] > 1.08]    # the last period
+    modulus, shear, arm, height = 2.0e7 / (1 - 0.3**2), 2.0e7 / 2.6, 0.9875, 0.1
+    beam = 100 * arm**3 / (3 * modulus * height**3 / 12) + 1.2 * 100 * arm / (shear * height)
+    # four cells across; the theory of beams leaves out terms of the square of 0.1, height by length
+    near(sum(sag[k] for k in late) / len(late), beam, 0.02)
+    near(-sum(clamp[k] for k in late) / len(late), 100, 0.01)
+    assert all(load[k] == 100 for k in late)
+
+
 def test_loop():
     folder = mt.scratch_folder()
     run_page("Howto_mpm_loop", folder)
