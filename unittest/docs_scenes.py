@@ -56,7 +56,7 @@ $EndElements
 """
 # pages whose inputs test_docs_tasks.py runs and checks
 TASKS = ["Howto_mpm_" + name for name in
-         "tutorial tensile two_bodies grains points restart loop until pictures scaling".split()]
+         "tutorial tensile two_bodies grains points restart loads loop until pictures scaling".split()]
 BODIES = ["left", "right", "plane", "disk", "block", "pad", "disc"]    # each with a fix mpm
 
 

@@ -197,6 +197,50 @@ static const CutCase cut_face_cases[] = {
     {"cubic", "slip velocity 0 0.2 0", 0.4}};
 INSTANTIATE_TEST_SUITE_P(Kinds, CutFace, ValuesIn(cut_face_cases));
 
+/* ----------------------------------------------------------------------
+   The lowest points are at the very end of the function of the outermost node at a face between nodes,
+   as those of ppc 1 and 3 can be at the start of a run. Its mass is 1e-30 of that of its neighbors, or
+   nothing, with other digits for other kernels; the material must not feel which.
+------------------------------------------------------------------------- */
+
+struct EndCase {
+  const char *shape, *wall;
+  double end;    // height above the face
+  friend void PrintTo(const EndCase &c, std::ostream *out) { *out << c.shape << ", " << c.wall; }
+};
+
+static const EndCase end_cases[] = {{"quadratic", "ylo slip", 0.1},
+                                    {"quadratic", "region floor separate", 0.1},
+                                    {"cubic", "ylo stick", 0.6},
+                                    {"cubic", "region floor slip friction 0.3", 0.6}};
+
+PARAMETER_TEST(EndOfAFunction, HasNoWeight, EndCase, ValuesIn(end_cases))
+{
+  const EndCase c = GetParam();
+  std::vector<Scene::State> expected;
+  for (double before : {1.0e-5, 1.0e-7, 1.0e-9, 1.0e-11, 1.0e-13, 1.0e-15}) {
+    Scene run(
+        plane("lj", "p f", "0 4 0 8", 1, 0.5) +
+        strprintf("fix grid all mpm 1.0 origin 0 -0.4 shape %s\n"
+                  "region body block 0 4 0 3 INF INF\ncreate_points 1 region body spacing 0.5\n"
+                  "fix m all mpm/material density 1.0 neohookean 10.0 0.3\n"
+                  "region floor block INF INF -4 0 INF INF\nfix w all mpm/boundary %s\n"
+                  "displace_atoms all move 0 %.17g 0\nvelocity all set 0.2 -1 0\n"
+                  "timestep 0.001\nrun 1\n",
+                  c.shape, c.wall, c.end - before - 0.35));
+    const auto found = run.gather();
+    if (expected.empty()) expected = found;
+    double worst = 0.0, change = 0.0;
+    for (std::size_t k = 0; k < found.size(); k++)
+      for (int d = 0; d < 2; d++) {
+        worst = std::max(worst, std::abs(found[k].v[d] - expected[k].v[d]));
+        change = std::max(change, std::abs(found[k].v[d] - (d == 0 ? 0.2 : -1.0)));
+      }
+    EXPECT_GT(change, 0.3);    // the wall acts
+    EXPECT_LT(worst, 1.0e-4) << before;
+  }
+}
+
 // edges and corners: also there both walls have their velocity
 TEST(WallCorners, AreHeld)
 {
@@ -1421,4 +1465,67 @@ TEST(Regions, ThatAreElsewhereInTheNextRunHaveNotMovedThere)
     EXPECT_NEAR(p.v[2], 0.1, 1e-12);
   }
   EXPECT_GT(held, 32);
+}
+
+// The edge of a wedge is a single point in front of many: by their mean distance the wall is far away. It must
+// not get through; at rest it is half a spacing of the points from the surface, 5 mm.
+
+SERIAL_TEST(SeparatingWall, TheEdgeOfAWedgeDoesNotCross)
+{
+  for (const double slope : {0.5, 1.0}) {
+    Scene run(
+        plane("si", "f f", "-0.6 0.6 0 1.2", 1, 0.01) +
+        strprintf("fix grid all mpm 0.02\nregion left plane 0 0.021 0 -1 %.17g 0\n"
+                  "region right plane 0 0.021 0 1 %.17g 0\n"
+                  "region top block INF INF INF 0.3 INF INF\n"
+                  "region wedge intersect 3 left right top\ncreate_points 1 region wedge ppc 2\n"
+                  "fix m all mpm/material density 1000 neohookean 1e6 0.3\n"
+                  "velocity all set 0 -3 0\nfix floor all mpm/boundary ylo separate\n"
+                  "fix step all mpm/dt 0.4 until 0.02\n",
+                  slope, slope));
+    double lowest = 1.0;
+    run.each_step([&](double **) {
+      for (int i = 0; i < run.n(); i++) lowest = std::min(lowest, run.x()[i][1]);
+    });
+    ASSERT_EQ(run.error("run 100000\n"), "");
+    EXPECT_GT(measured("lowest place of the edge, mm", 1e3 * lowest), 1.0);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   A block falls on a plate that lies on a plane of symmetry, and its image from the other side. With the
+   plane as a wall there is only one half, and contact has to know that the wall holds the nodes next to
+   it together with their images: the plate is half a cell or one cell thick. What is left of the difference
+   is the volume of nodes, of which the half has a part outside of the box.
+------------------------------------------------------------------------- */
+
+static double impulse_on_block(bool half, double thick, const char *transfer)
+{
+  const std::string lattice = strprintf("1.0 transfer %s", transfer);
+  Scene run(plane("lj", "p f", half ? "0 6 0 12" : "0 6 -12 12", 2, 0.5) +
+            "group a empty\ngroup b empty\nfix fa a mpm " + lattice + "\nfix fb b mpm " + lattice +
+            strprintf("\nregion b block 0 6 -%g %g INF INF\nregion u block 1 5 %g 4 INF INF\n"
+                      "region l block 1 5 -4 -%g INF INF\nregion a union 2 u l\n",
+                      thick, thick, thick, thick) +
+            "create_points 2 region b spacing 0.25 fix fb group b outside ignore\n"
+            "create_points 1 region a spacing 0.25 fix fa group a outside ignore\n"
+            "fix ma a mpm/material density 1 neohookean 100 0.3\n"
+            "fix mb b mpm/material density 2 neohookean 300 0.3\n"
+            "variable v atom -0.5*(y>0)+0.5*(y<0)\nvelocity a set 0.1 v_v 0\n"
+            "fix touch all mpm/contact fa fb law coulomb 0.2\n" +
+            (half ? "fix w all mpm/boundary ylo slip\n" : "") + "timestep 0.02\nrun 10\n");
+  double sum = 0.0;
+  for (const auto &s : run.gather())
+    if (s.type == 1 && s.x[1] > 0.0) sum += s.mass * (s.v[1] + 0.5);
+  return sum;
+}
+
+SERIAL_TEST(ContactAtWalls, ThinPlateIsAsHeavyAsWithItsImage)
+{
+  for (const char *transfer : {"apic", "flip 1.0"})
+    for (const double thick : {0.5, 1.0})
+      EXPECT_NEAR(measured("impulse on a block, wall over symmetry",
+                           impulse_on_block(true, thick, transfer) /
+                               impulse_on_block(false, thick, transfer)),
+                  1.0, 0.03);
 }

@@ -135,9 +135,12 @@ void FixMPM::init()
   for (auto *other : modify->get_fix_list())
     if (other != this && other->time_integrate) time_integrate = 0;
 
-  // points need no ghosts; a cutoff that is next to nothing spares LAMMPS's warning about none
+  // points need no ghosts; a cutoff that is next to nothing spares LAMMPS's warning about none. It would
+  // warn of this one, too, as soon as there is a pair style
 
-  if (!force->pair && comm->cutghostuser == 0.0) comm->cutghostuser = 1.0e-8 * field->lattice.h;
+  const double nothing = 1.0e-8 * field->lattice.h;
+  if (!force->pair && comm->cutghostuser == 0.0) comm->cutghostuser = nothing;
+  if (force->pair && comm->cutghostuser == nothing) comm->cutghostuser = 0.0;
 
   // points are kept in order of blocks and cells here
 

@@ -171,9 +171,16 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
     int64_t node[4];
     const double *r[4];    // records
     double A[4], B[4] = {0.0, 0.0, 0.0, 0.0}, V[4][3], total = 0.0;
-    double AA = 0.0, AB = 0.0, BB = 0.0;
+    bool straight = false;    // B is used
 
-    void solve(const double *relative, double &lambda, double &mu) const;
+    void prepare(bool all);
+    double solve(const double *relative, double *change) const;
+
+   private:
+    double inverse[4], heaviest = 0.0;    // inverse masses, that of the heaviest node is 1
+    double AA = 0.0, det = 0.0;
+
+    double D(int j, int k) const { return A[j] * B[k] - A[k] * B[j]; }
   };
   struct Wall {    // its motion in a step: velocity shift + gradient (x - origin)
     double shift[3], gradient[3][3], origin[3];

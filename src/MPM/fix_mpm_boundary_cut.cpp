@@ -30,6 +30,7 @@
 #include "mpm_field.h"
 #include "mpm_stencil.h"
 
+#include <algorithm>
 #include <cmath>
 
 using namespace LAMMPS_NS;
@@ -97,29 +98,58 @@ bool FixMPMBoundary::find_chain(const FieldNodes &list, const int64_t *node, con
     c.A[1] -= extrapolated;
     c.total += extrapolated;
   }
-  if (c.m == n) {
-    c.B[0] = c.B[2] = 1.0;
-    c.B[1] = -2.0;
-  }
-  for (int k = 0; k < c.m; k++) {
-    c.AA += c.A[k] * c.A[k] / c.r[k][3];
-    c.AB += c.A[k] * c.B[k] / c.r[k][3];
-    c.BB += c.B[k] * c.B[k] / c.r[k][3];
-  }
+  c.prepare(c.m == n);
   return true;
 }
 
-/** What takes velocities relative to the wall away. */
-void FixMPMBoundary::Chain::solve(const double *relative, double &lambda, double &mu) const
+/* ----------------------------------------------------------------------
+   The change of least kinetic energy that takes velocities r relative to the wall away, and the
+   impulse lambda that belongs to A. With inverse masses w, and AB = sum_k w_k A_k B_k,
+
+     lambda = -(BB sum_j A_j r_j - AB sum_j B_j r_j)/det,  det = AA BB - AB^2
+
+   A node at the very end of the functions of points has a mass of 1e-30 of that of its neighbors, which
+   leaves nothing of theirs in AA, AB, and BB: det would be noise, or zero, and with it the velocities of
+   all nodes. With D_jk = A_j B_k - A_k B_j (Lagrange's identity) terms of pairs of nodes remain:
+
+     det = sum_{j<k} w_j w_k D_jk^2,  lambda = -sum_i w_i B_i sum_j D_ji r_j/det,
+     change of v_k: w_k sum_i w_i D_ik sum_j D_ji r_j/det
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::Chain::prepare(bool all)
 {
-  double a_sum = 0.0, b_sum = 0.0;
-  for (int k = 0; k < m; k++) {
-    a_sum -= A[k] * relative[k];
-    b_sum -= B[k] * relative[k];
+  straight = all;
+  if (straight) {
+    B[0] = B[2] = 1.0;
+    B[1] = -2.0;
   }
-  const double det = AA * BB - AB * AB;
-  lambda = BB > 0.0 ? (BB * a_sum - AB * b_sum) / det : a_sum / AA;
-  mu = BB > 0.0 ? (AA * b_sum - AB * a_sum) / det : 0.0;
+  heaviest = 0.0;
+  for (int k = 0; k < m; k++) heaviest = std::max(heaviest, r[k][3]);
+  AA = det = 0.0;
+  for (int k = 0; k < m; k++) {
+    inverse[k] = heaviest / r[k][3];
+    AA += A[k] * A[k] * inverse[k];
+    for (int j = 0; j < k; j++) det += inverse[j] * inverse[k] * D(j, k) * D(j, k);
+  }
+}
+
+double FixMPMBoundary::Chain::solve(const double *relative, double *change) const
+{
+  double lambda = 0.0;
+  if (!straight) {
+    for (int k = 0; k < m; k++) lambda -= A[k] * relative[k] / AA;
+    for (int k = 0; k < m; k++) change[k] = lambda * A[k] * inverse[k];
+    return lambda * heaviest;
+  }
+  for (int k = 0; k < m; k++) change[k] = 0.0;
+  for (int i = 0; i < m; i++) {
+    double sum = 0.0;
+    for (int j = 0; j < m; j++) sum += D(j, i) * relative[j];
+    sum *= inverse[i] / det;
+    lambda -= B[i] * sum;
+    for (int k = 0; k < m; k++) change[k] += inverse[k] * D(i, k) * sum;
+  }
+  return lambda * heaviest;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -135,7 +165,7 @@ void FixMPMBoundary::act_on_cut(const FieldNodes &list, Line &cut, bool last)
   Chain chain;
   if (!find_chain(list, cut.node, face.weight, face.nweight, face.inward, chain)) return;
   const int m = chain.m;
-  const double *const *const r = chain.r, *const A = chain.A, *const B = chain.B;
+  const double *const *const r = chain.r;
   const auto &V = chain.V;
   const double total = chain.total;
 
@@ -146,16 +176,16 @@ void FixMPMBoundary::act_on_cut(const FieldNodes &list, Line &cut, bool last)
   const auto prescribed = [&](int d) {
     return velocity[d].given && (d == a) == last;
   };
-  double lambda[3] = {0.0, 0.0, 0.0}, mu[3], lambda_old[3] = {0.0, 0.0, 0.0},
-         mu_old[3] = {0.0, 0.0, 0.0};
+  double lambda[3] = {0.0, 0.0, 0.0}, lambda_old[3] = {0.0, 0.0, 0.0};
+  double change[3][4], change_old[3][4] = {};
   double relative[4];    // of the nodes to the wall
   for (int d = 0; d < dim; d++) {
     for (int k = 0; k < m; k++) relative[k] = r[k][d] - V[k][d];
-    chain.solve(relative, lambda[d], mu[d]);
+    lambda[d] = chain.solve(relative, change[d]);
     if (!hold || !(kind == STICK ? prescribed(d) : d == a)) continue;
     const double limit = fabs(r[m - 1][4 + d] - wall.before[d]);
     for (int k = 0; k < m; k++) relative[k] = wall.old_relative(r[k], d, limit);
-    chain.solve(relative, lambda_old[d], mu_old[d]);
+    lambda_old[d] = chain.solve(relative, change_old[d]);
   }
 
   double share[3] = {0.0, 0.0, 0.0};
@@ -177,8 +207,8 @@ void FixMPMBoundary::act_on_cut(const FieldNodes &list, Line &cut, bool last)
   for (int k = 0; k < m; k++) {
     double v[3], old[3];
     for (int d = 0; d < dim; d++) {
-      v[d] = r[k][d] + share[d] * (lambda[d] * A[k] + mu[d] * B[k]) / r[k][3];
-      if (hold) old[d] = r[k][4 + d] + (lambda_old[d] * A[k] + mu_old[d] * B[k]) / r[k][3];
+      v[d] = r[k][d] + share[d] * change[d][k];
+      if (hold) old[d] = r[k][4 + d] + change_old[d][k];
     }
     set_velocity(grid, chain.node[k], V[k], v, hold ? old : nullptr);
   }
@@ -197,30 +227,26 @@ void FixMPMBoundary::act_on_crossing(const FieldNodes &list, Crossing &crossing)
   Chain chain;
   if (!find_chain(list, crossing.node, crossing.weight, crossing.n, 1, chain)) return;
 
-  double lambda[3] = {0.0, 0.0, 0.0}, mu[3] = {0.0, 0.0, 0.0}, normal[2] = {0.0, 0.0};
+  double lambda[3] = {0.0, 0.0, 0.0}, change[3][4], normal = 0.0;
   for (int d = 0; d < dim; d++) {
     double relative[4];
     for (int k = 0; k < chain.m; k++) relative[k] = chain.r[k][d] - chain.V[k][d];
-    chain.solve(relative, lambda[d], mu[d]);
-    normal[0] += lambda[d] * n[d];
-    normal[1] += mu[d] * n[d];
+    lambda[d] = chain.solve(relative, change[d]);
+    normal += lambda[d] * n[d];
   }
   double needed = 0.0;
   for (int d = 0; d < dim; d++) {
-    const double slide = lambda[d] - normal[0] * n[d];
+    const double slide = lambda[d] - normal * n[d];
     needed += slide * slide;
   }
-  const double push = crossing.touched ? chain.total * normal[0] : 0.0;
+  const double push = crossing.touched ? chain.total * normal : 0.0;
   const double share = slide_share(crossing.contact, push, chain.total * sqrt(needed));
   if (crossing.contact == FREE) return;
-  for (int d = 0; d < dim; d++) {
-    lambda[d] = normal[0] * n[d] + share * (lambda[d] - normal[0] * n[d]);
-    mu[d] = normal[1] * n[d] + share * (mu[d] - normal[1] * n[d]);
-  }
   for (int k = 0; k < chain.m; k++) {
-    double v[3];
+    double v[3], along = 0.0;
+    for (int d = 0; d < dim; d++) along += change[d][k] * n[d];
     for (int d = 0; d < dim; d++)
-      v[d] = chain.r[k][d] + (lambda[d] * chain.A[k] + mu[d] * chain.B[k]) / chain.r[k][3];
+      v[d] = chain.r[k][d] + along * n[d] + share * (change[d][k] - along * n[d]);
     count_moment(grid, chain.node[k], chain.r[k], v);
     set_velocity(grid, chain.node[k], chain.V[k], v, nullptr);
   }
