@@ -151,6 +151,13 @@ TEST(ThinRegions, AreReported)
     EXPECT_THAT(text(lower, "block 0 2 0.37 0.4 INF INF", kind), Not(told)) << kind;
     EXPECT_THAT(text(both, "block 0 2 0.5 0.7 INF INF", kind), Not(told)) << kind;
   }
+  // nodes inside act, where there are any
+  for (const char *kind : {"stick", "slip"}) {
+    EXPECT_THAT(text(lower, "block 0 2 0.36 0.39 INF INF", kind), told) << kind;
+    EXPECT_THAT(text(lower, "block 0 2 0.37 0.4 INF INF", kind), Not(told)) << kind;
+    EXPECT_THAT(text(lower, "block 0.9 1.1 0 0.4 INF INF", kind), Not(told)) << kind;
+  }
+  EXPECT_THAT(text(both, "cylinder z 1 0.2 0.3 INF INF side out", "stick"), Not(told));
   // the ends of plates, and wedges, are sound
   EXPECT_THAT(text(lower, "block 0.52 1.48 0.3 0.4 INF INF", "separate"), Not(told));
   EXPECT_THAT(text(lower, "block 0.48 3 0.38 0.4 INF INF", "separate"), Not(told));

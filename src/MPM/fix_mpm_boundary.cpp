@@ -89,6 +89,7 @@ static constexpr double THIN =
     3.0;    // node spacings: material on one side is not felt on the other
 static constexpr double ALONG =
     1.0e-3;                              // sine of the angle of a motion that is along the surface
+static constexpr int LOOK_EVERY = 50;    // steps: is a region that moves too thin?
 static constexpr double NARROW = 1.5;    // node spacings: nodes cannot tell how wide a region is
 
 namespace {
@@ -713,12 +714,14 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
   const double h = field.lattice.h;
   const bool moves = region_moves(), hands_over = moves && kind != SEPARATE, across = acts_across();
   const double taken = (hands_over ? HAND_OVER : ON_SURFACE) * h;
-  const Surface surface = {region, dim, FAR * h}, next = {region, dim, across ? 1.001 * h : taken};
+  const bool looks = across ||
+      (!warned_thin && !region->varshape && (!moves || update->ntimestep % LOOK_EVERY == 0));
+  const Surface surface = {region, dim, FAR * h}, next = {region, dim, looks ? 1.001 * h : taken};
   const bool box_known = region->bboxflag && !moves;
   const double lo[3] = {region->extent_xlo, region->extent_ylo, region->extent_zlo};
   const double hi[3] = {region->extent_xhi, region->extent_yhi, region->extent_zhi};
   const double radius = 0.5 * (grid.side - 1) * h * sqrt((double) dim);
-  const double beyond = across ? h : ON_SURFACE * h;
+  const double beyond = looks ? h : ON_SURFACE * h;
   std::vector<Single> outside;    // next to the surface
 
   list.singles.clear();
@@ -748,7 +751,7 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
       Single s = {first_node + n};
       if (!region->match(x[0], x[1], x[2])) {
         const double gap = next.distance(x);
-        if (across && gap > ON_SURFACE * h && gap < next.far) {
+        if (looks && gap > ON_SURFACE * h && gap < next.far) {
           s.distance = gap;
           outside.push_back(s);
         }
@@ -760,7 +763,10 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
       list.singles.push_back(s);
     }
   }
-  if (!across) return;
+  if (!across) {
+    list_bare_faces(list, outside);
+    return;
+  }
   list_crossings(list, outside);
   if (!hands_over) take_off_lines(list);
 }
@@ -809,6 +815,34 @@ void FixMPMBoundary::list_crossings(FieldNodes &list, const std::vector<Single> 
                      const bool up[2] = {a.normal[a.axis] > 0.0, b.normal[b.axis] > 0.0};
                      return std::tie(up[0], a.place) < std::tie(up[1], b.place);
                    });
+}
+
+/* ----------------------------------------------------------------------
+   Places where no node that acts is behind a face, because the region is too thin
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::list_bare_faces(FieldNodes &list, const std::vector<Single> &outside)
+{
+  list.narrow.clear();
+  const MPMField &field = *list.field;
+  const double h = field.lattice.h;
+  for (Single single : outside) {
+    double x[3];
+    field.grid.node_position(single.node, x);
+    Surface{region, field.lattice.dim, FAR * h}.normal(x, 1.0e-4 * h, single.normal);
+    Crossing c = {};
+    if (!find_crossing(list, single, c)) {
+      c = {};
+      if (!is_narrow(field, single, c)) continue;
+    }
+    bool bare = true;
+    for (const double deep : {1.0, 2.0}) {
+      double y[3] = {x[0], x[1], x[2]};
+      y[c.axis] -= (c.normal[c.axis] > 0.0 ? deep : -deep) * h;
+      bare = bare && !region->match(y[0], y[1], y[2]);
+    }
+    if (bare) list.narrow.push_back(c);
+  }
 }
 
 /* ----------------------------------------------------------------------

@@ -249,6 +249,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   void list_region_nodes(FieldNodes &);
   void extend_across(MPMField &) const;
   void list_crossings(FieldNodes &, const std::vector<Single> &outside);
+  void list_bare_faces(FieldNodes &, const std::vector<Single> &outside);
   void take_off_lines(FieldNodes &);
   bool find_crossing(FieldNodes &, const Single &, Crossing &);
   bool is_narrow(const MPMField &, const Single &, Crossing &) const;
