@@ -228,13 +228,6 @@ static const Change companions[] = {
      "refuses overlapping bodies: .*overlap yes"},
     {"BoundaryWithoutFix", RUN, "fix wall all mpm/boundary zlo slip\nunfix grid\nrun 10\n",
      "mpm/boundary needs a fix mpm"},
-    {"BoundarySeparateCone", RUN,
-     "region tip cone z 2 2 0 1 0 2\nfix wall all mpm/boundary region tip separate\nrun 10\n",
-     "cannot use region tip: LAMMPS finds wrong distances.*give a small radius instead"},
-    {"BoundaryFrictionCone", RUN,
-     "region tip cone z 2 2 0 1 0 2\nfix wall all mpm/boundary region tip slip friction 0.3\nrun "
-     "10\n",
-     "cannot use region tip: LAMMPS finds wrong distances.*give a small radius instead"},
     {"BoundaryKindUnknown", RUN, "fix wall all mpm/boundary zlo rough\nrun 10\n",
      "Unknown fix mpm/boundary kind rough: must be one of stick slip separate"},
     {"BoundaryFaceUnknown", RUN, "fix wall all mpm/boundary top slip\nrun 10\n",

@@ -72,6 +72,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <tuple>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -84,6 +85,12 @@ static constexpr double ON_SURFACE = 1.0e-6;    // in node spacings
 static constexpr double FAR = 1.0e8;            // in node spacings
 static constexpr double HAND_OVER = 0.5;        // in node spacings, see list_region_nodes()
 static constexpr double SMOOTH = 0.9;    // cosine between normals of a surface that is smooth
+static constexpr double THIN =
+    3.0;    // node spacings: material on one side is not felt on the other
+static constexpr double ALONG =
+    1.0e-3;                              // sine of the angle of a motion that is along the surface
+static constexpr int LOOK_EVERY = 50;    // steps: is a region that moves too thin?
+static constexpr double NARROW = 1.5;    // node spacings: nodes cannot tell how wide a region is
 
 namespace {
 /** Center and unit axis of a region's rotation, which are protected members. */
@@ -114,22 +121,37 @@ struct Surface {
     const bool inside = region->match(x[0], x[1], x[2]);
     const int interior = region->interior;
     if (!inside) region->interior = !interior;    // Region::surface() answers for one side only
-
-    // on the axis of a cone LAMMPS does not see the side, and divides zero by zero: look next to it
-
-    int n = 0;
-    if (cone) {
-      const double off = 1.0e-12 * (fabs(x[0]) + fabs(x[1]) + fabs(x[2])) + 1.0e-20 * far;
-      n = region->surface(x[0] + off, x[1] + off, x[2] + off, far);
-    }
-    if (n == 0) n = region->surface(x[0], x[1], x[2], far);
-    region->interior = interior;
     double distance = far;
+    if (cone) {
+      // on its axis LAMMPS does not see the side, and divides zero by zero: look next to it
+
+      const double off = 1.0e-12 * (fabs(x[0]) + fabs(x[1]) + fabs(x[2])) + 1.0e-20 * far;
+      const double next[3] = {x[0] + off, x[1] + off, x[2] + off};
+
+      // and so it does, outside, for an end with a radius of zero: once without each end
+
+      for (const int end : {0, 1}) {
+        int &open = region->open_faces[end];
+        const int is_open = open;
+        open = region->interior ? is_open : 1;
+        if (!nearest(next, distance)) nearest(x, distance);
+        open = is_open;
+      }
+    } else
+      nearest(x, distance);
+    region->interior = interior;
+    return inside ? -distance : distance;
+  }
+
+  /** The least of what LAMMPS finds. */
+  bool nearest(const double *x, double &distance) const
+  {
+    const int n = region->surface(x[0], x[1], x[2], far);
     for (int i = 0; i < n; i++) {
       const auto &c = region->contact[i];
       if (dim == 3 || !along_z(c)) distance = std::min(distance, c.r);
     }
-    return inside ? -distance : distance;
+    return n > 0;
   }
 
   /** The same for material in front of the surface, where it need not be known as exactly: with errors of
@@ -280,7 +302,7 @@ bool FixMPMBoundary::region_moves() const
 
 bool FixMPMBoundary::acts_across() const
 {
-  return !region->varshape && (kind == SEPARATE || (friction > 0.0 && !region_moves()));
+  return !region->varshape && decides();
 }
 
 bool FixMPMBoundary::acts_on(const MPMField &field) const
@@ -295,24 +317,6 @@ bool FixMPMBoundary::holds_axis(const MPMField &field) const
 }
 
 /* ---------------------------------------------------------------------- */
-
-/** A cone with a radius of zero at one end: from outside, LAMMPS divides zero by zero for that end, and takes the other
- *  end for the closest place, as far away as the cone is long. */
-static bool has_sharp_end(Region *region, int dim)
-{
-  if (strcmp(region->style, "cone") != 0 || region->varshape || !region->bboxflag) return false;
-  const double lo[3] = {region->extent_xlo, region->extent_ylo, region->extent_zlo},
-               hi[3] = {region->extent_xhi, region->extent_yhi, region->extent_zhi};
-  for (int d = 0; d < dim; d++)
-    for (const double end : {lo[d], hi[d]}) {
-      const double length = hi[d] - lo[d];
-      double x[3];
-      for (int k = 0; k < 3; k++) x[k] = 0.5 * (lo[k] + hi[k]);
-      x[d] = end + (end > lo[d] ? 1.0e-6 : -1.0e-6) * length;
-      if (Surface{region, dim, FAR * length}.distance(x) > 0.99 * length) return true;
-    }
-  return false;
-}
 
 void FixMPMBoundary::init()
 {
@@ -356,12 +360,6 @@ void FixMPMBoundary::init()
     if (region->openflag)
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/boundary cannot use region {}: open faces have no inside", region_id);
-    if (acts_across() && has_sharp_end(region, domain->dimension))
-      error->all(
-          FLERR, Error::NOLASTLINE,
-          "Fix mpm/boundary with separate or friction cannot use region {}: LAMMPS finds wrong "
-          "distances from a cone with a radius of zero; give a small radius instead",
-          region_id);
     if (region->dynamic_check() && region->nregion > 1)
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/boundary cannot use region {}: a union or intersection must not move; "
@@ -714,13 +712,17 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
   const Grid &grid = field.grid;
   const int dim = field.lattice.dim;
   const double h = field.lattice.h;
-  const bool moves = region_moves(), hands_over = moves && kind != SEPARATE;
-  const Surface surface = {region, dim, FAR * h},
-                next = {region, dim, (hands_over ? HAND_OVER : ON_SURFACE) * h};
+  const bool moves = region_moves(), hands_over = moves && kind != SEPARATE, across = acts_across();
+  const double taken = (hands_over ? HAND_OVER : ON_SURFACE) * h;
+  const bool looks = across ||
+      (!warned_thin && !region->varshape && (!moves || update->ntimestep % LOOK_EVERY == 0));
+  const Surface surface = {region, dim, FAR * h}, next = {region, dim, looks ? 1.001 * h : taken};
   const bool box_known = region->bboxflag && !moves;
   const double lo[3] = {region->extent_xlo, region->extent_ylo, region->extent_zlo};
   const double hi[3] = {region->extent_xhi, region->extent_yhi, region->extent_zhi};
   const double radius = 0.5 * (grid.side - 1) * h * sqrt((double) dim);
+  const double beyond = looks ? h : ON_SURFACE * h;
+  std::vector<Single> outside;    // next to the surface
 
   list.singles.clear();
   if (!moves) region->prematch();
@@ -734,8 +736,7 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
     bool near = true;
     for (int d = 0; d < 3; d++) {
       mid[d] = 0.5 * (first[d] + last[d]);
-      if (box_known && (last[d] < lo[d] - ON_SURFACE * h || first[d] > hi[d] + ON_SURFACE * h))
-        near = false;
+      if (box_known && (last[d] < lo[d] - beyond || first[d] > hi[d] + beyond)) near = false;
     }
     if (near && region->nregion == 1) {
       const double distance = surface.distance(mid);
@@ -750,103 +751,125 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
       Single s = {first_node + n};
       if (!region->match(x[0], x[1], x[2])) {
         const double gap = next.distance(x);
-        if (gap >= next.far) continue;
-        if (gap > ON_SURFACE * h) s.share = cube(1.0 - cube(gap / next.far));
+        if (looks && gap > ON_SURFACE * h && gap < next.far) {
+          s.distance = gap;
+          outside.push_back(s);
+        }
+        if (gap >= taken) continue;
+        if (gap > ON_SURFACE * h) s.share = cube(1.0 - cube(gap / taken));
       }
       if (kind != STICK || region->varshape) surface.normal(x, 1.0e-4 * h, s.normal);
-      if (region->varshape || acts_across()) s.distance = surface.distance(x);
+      if (region->varshape || across) s.distance = surface.distance(x);
       list.singles.push_back(s);
     }
   }
-  list_crossings(list);
+  if (!across) {
+    list_bare_faces(list, outside);
+    return;
+  }
+  list_crossings(list, outside);
+  if (!hands_over) take_off_lines(list);
 }
 
 /* ----------------------------------------------------------------------
    Lines of nodes through the surface of a region that separates, along the axis that is nearest to the
-   normal. Nodes inside that are on such a line do not act on their own. There are none where the surface
-   is not smooth, or the region is too thin for the nodes that a line has in it.
+   normal. Nodes inside that are on such a line do not act on their own.
+
+   Next to edges, and where the region is thin, nodes of a line may be nearer to another face, or beyond it.
+   There it depends on where the material is whether a line acts, see is_in_front(). Such lines are found from the nodes
+   outside, which are nearest to the face that they look at.
 ------------------------------------------------------------------------- */
 
-void FixMPMBoundary::list_crossings(FieldNodes &list)
+void FixMPMBoundary::list_crossings(FieldNodes &list, const std::vector<Single> &outside)
 {
   list.crossings.clear();
-  if (!acts_across()) return;
+  list.narrow.clear();
   const MPMField &field = *list.field;
-  const Grid &grid = field.grid;
   const double h = field.lattice.h;
-  const Surface surface = {region, field.lattice.dim, FAR * h};
-  std::vector<int64_t> on_lines;
+  std::vector<int64_t> ahead;
   for (const auto &single : list.singles) {
-    if (!(fabs(single.distance) <= h)) continue;
-    int index[3];
-    double x[3], at[3];
-    grid.node_index(single.node, index);
-    field.lattice.node_position(index, x);
-    const double *const n = single.normal;
+    if (!(single.distance <= ON_SURFACE * h && single.distance >= -h)) continue;
     Crossing c = {};
-    for (int d = 1; d < field.lattice.dim; d++)
-      if (fabs(n[d]) > fabs(n[c.axis])) c.axis = d;
-    const int a = c.axis, outward = n[a] > 0.0 ? 1 : -1;
-    const double slope = fabs(n[a]);
-    if (slope < 0.5) continue;    // the normal is not known
-
-    // where the line goes through the surface, and is this node the last one before? On the surface
-    // itself rounding decides on the side, of which some regions tell nothing: a little outside
-
-    const double outside = 1.0e-3 * h;
-    double way = -single.distance / slope + outside;
-    MathExtra::copy3(x, at);
-    bool known = true;
-    for (int round = 0; round < 2 && known; round++) {
-      at[a] = x[a] + outward * way;
-      const double distance = surface.distance(at);
-      known = fabs(distance) < surface.far;
-      way -= distance / slope - outside;
-    }
-    at[a] = x[a] + outward * way;
-    way -= outside;
-    if (!known || way > (1.0 - ON_SURFACE) * h) continue;
-    surface.normal(at, 1.0e-4 * h, c.normal);
-    at[a] = x[a] + outward * std::max(way, 0.0);
-    const auto along = [&](const double *place) {
-      double normal[3];
-      surface.normal(place, 1.0e-4 * h, normal);
-      return MathExtra::dot3(normal, c.normal) > SMOOTH;
-    };
-    bool smooth = MathExtra::dot3(n, c.normal) > SMOOTH;
-
-    int first;
-    double weight[4];
-    c.n = weights_at(field, a, outward, at[a], first, weight);
-    std::array<int64_t, 4> inside = {-1, -1, -1, -1};
-    for (int k = 0; k < c.n && smooth; k++) {
-      const int from = outward > 0 ? k : c.n - 1 - k;
-      int node[3] = {index[0], index[1], index[2]};
-      double place[3] = {x[0], x[1], x[2]};
-      node[a] = first + from;
-      place[a] = field.lattice.origin[a] + h * node[a];
-      const int ahead = outward * (node[a] - index[a]);
-      if (ahead != 0)
-        smooth = ahead > 0 ? !region->match(place[0], place[1], place[2])
-                           : region->match(place[0], place[1], place[2]) && along(place);
-      node[a] = field.lattice.wrap(a, node[a]);
-      c.node[k] = grid.locate(node);
-      c.weight[k] = weight[from];
-      if (ahead <= 0) inside[k] = c.node[k];
-    }
-    if (!smooth) continue;
-    c.full =
-        crossed_contact(list, fabs(c.normal[a]), outward * ((at[a] - field.lattice.origin[a]) / h));
-    on_lines.insert(on_lines.end(), inside.begin(), inside.end());
+    if (!find_crossing(list, single, c)) continue;
+    if (c.inside < c.n) ahead.push_back(c.node[c.inside]);
     list.crossings.push_back(c);
   }
+  std::sort(ahead.begin(), ahead.end());
+  for (Single single : outside) {
+    if (std::binary_search(ahead.begin(), ahead.end(), single.node)) continue;
+    double x[3];
+    field.grid.node_position(single.node, x);
+    Surface{region, field.lattice.dim, FAR * h}.normal(x, 1.0e-4 * h, single.normal);
+    Crossing c = {};
+    if (find_crossing(list, single, c)) list.crossings.push_back(c);
+    if (!warned_thin && is_narrow(field, single, c)) list.narrow.push_back(c);
+  }
 
-  // lines along one axis share no nodes, those along two do: all ranks in the same order
+  // lines along one axis share no nodes, those along two do, and those through both faces of a thin plate: all
+  // ranks in the same order
 
   std::stable_sort(list.crossings.begin(), list.crossings.end(),
                    [](const Crossing &a, const Crossing &b) {
-                     return a.axis < b.axis;
+                     if (a.front != b.front || a.axis != b.axis || a.front == Crossing::SOUND)
+                       return std::tie(a.front, a.axis) < std::tie(b.front, b.axis);
+                     const bool up[2] = {a.normal[a.axis] > 0.0, b.normal[b.axis] > 0.0};
+                     return std::tie(up[0], a.place) < std::tie(up[1], b.place);
                    });
+}
+
+/* ----------------------------------------------------------------------
+   Places where no node that acts is behind a face, because the region is too thin
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::list_bare_faces(FieldNodes &list, const std::vector<Single> &outside)
+{
+  list.narrow.clear();
+  const MPMField &field = *list.field;
+  const double h = field.lattice.h;
+  for (Single single : outside) {
+    double x[3];
+    field.grid.node_position(single.node, x);
+    Surface{region, field.lattice.dim, FAR * h}.normal(x, 1.0e-4 * h, single.normal);
+    Crossing c = {};
+    if (!find_crossing(list, single, c)) {
+      c = {};
+      if (!is_narrow(field, single, c)) continue;
+    }
+    bool bare = true;
+    for (const double deep : {1.0, 2.0}) {
+      double y[3] = {x[0], x[1], x[2]};
+      y[c.axis] -= (c.normal[c.axis] > 0.0 ? deep : -deep) * h;
+      bare = bare && !region->match(y[0], y[1], y[2]);
+    }
+    if (bare) list.narrow.push_back(c);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   Nodes that are on lines do not act on their own. With slip, a surface that moves across the lattice hands nodes
+   over, see list_region_nodes(), which lines do not do: there are none where it does
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::take_off_lines(FieldNodes &list)
+{
+  const MPMField &field = *list.field;
+  auto &crossings = list.crossings;
+  const bool hands_over = region_moves() && kind == SLIP;
+  if (hands_over)
+    crossings.erase(std::remove_if(crossings.begin(), crossings.end(),
+                                   [&](const Crossing &c) {
+                                     double x[3], v[3];
+                                     field.grid.node_position(c.base, x);
+                                     x[c.axis] = c.surface;
+                                     wall.velocity(x, v);
+                                     return fabs(MathExtra::dot3(v, c.normal)) >
+                                         ALONG * MathExtra::len3(v);
+                                   }),
+                    crossings.end());
+  std::vector<int64_t> on_lines;
+  for (const auto &c : crossings)
+    if (c.front != Crossing::NEAR_OTHERS)
+      on_lines.insert(on_lines.end(), c.node, c.node + (hands_over ? c.n : c.inside));
   std::sort(on_lines.begin(), on_lines.end());
   auto &singles = list.singles;
   singles.erase(std::remove_if(singles.begin(), singles.end(),
@@ -855,6 +878,167 @@ void FixMPMBoundary::list_crossings(FieldNodes &list)
                                                            single.node);
                                }),
                 singles.end());
+}
+
+/* ----------------------------------------------------------------------
+   The line that has this node as the last one inside or, if it is outside, as the first one there. False if there is
+   none, or it has nodes where the surface is not smooth
+------------------------------------------------------------------------- */
+
+bool FixMPMBoundary::find_crossing(FieldNodes &list, const Single &single, Crossing &c)
+{
+  const MPMField &field = *list.field;
+  const Grid &grid = field.grid;
+  const double h = field.lattice.h;
+  const Surface surface = {region, field.lattice.dim, FAR * h};
+  const bool is_outside = single.distance > ON_SURFACE * h;
+  int index[3];
+  double x[3], at[3];
+  grid.node_index(single.node, index);
+  field.lattice.node_position(index, x);
+  const double *const n = single.normal;
+  for (int d = 1; d < field.lattice.dim; d++)
+    if (fabs(n[d]) > fabs(n[c.axis])) c.axis = d;
+  const int a = c.axis, outward = n[a] > 0.0 ? 1 : -1;
+  const double slope = fabs(n[a]);
+  if (slope < 0.5) return false;    // the normal is not known
+
+  // where the line goes through the surface, and is this node the last one before? On the surface
+  // itself rounding decides on the side, of which some regions tell nothing: a little outside
+
+  const double outside = 1.0e-3 * h;
+  double way = -single.distance / slope + outside, distance = 0.0;
+  MathExtra::copy3(x, at);
+  bool known = true;
+  for (int round = 0; round < 2 && known; round++) {
+    at[a] = x[a] + outward * way;
+    distance = surface.distance(at);
+    known = fabs(distance) < surface.far;
+    way -= distance / slope - outside;
+  }
+  if (!known) return false;
+  if (is_outside) {    // it may go by an edge
+    if (way - outside > -ON_SURFACE * h || way - outside < -(1.0 + ON_SURFACE) * h) return false;
+    at[a] = x[a] + outward * (way + 0.05 * h);    // an edge itself has no normal
+    if (fabs(surface.distance(at) - 0.05 * h * slope) > 0.02 * h) return false;
+  }
+  at[a] = x[a] + outward * way;
+  way -= outside;
+  if (way > (1.0 - ON_SURFACE) * h) return false;
+  if (is_outside) at[a] += outward * 0.05 * h;
+  surface.normal(at, 1.0e-4 * h, c.normal);
+  at[a] = x[a] + outward * (is_outside ? way : std::max(way, 0.0));
+  const auto along = [&](const double *place) {
+    double normal[3];
+    surface.normal(place, 1.0e-4 * h, normal);
+    return MathExtra::dot3(normal, c.normal) > SMOOTH;
+  };
+  if (!(MathExtra::dot3(n, c.normal) > SMOOTH)) return false;
+
+  int first;
+  double weight[4];
+  c.n = weights_at(field, a, outward, at[a], first, weight);
+  const int last_inside = index[a] - (is_outside ? outward : 0);
+  for (int k = 0; k < c.n; k++) {
+    const int from = outward > 0 ? k : c.n - 1 - k;
+    int node[3] = {index[0], index[1], index[2]};
+    double place[3] = {x[0], x[1], x[2]};
+    node[a] = first + from;
+    place[a] = field.lattice.origin[a] + h * node[a];
+    const int ahead = outward * (node[a] - last_inside);
+    if (ahead > 0 && region->match(place[0], place[1], place[2])) return false;
+    if (!is_outside && ahead < 0 && !(region->match(place[0], place[1], place[2]) && along(place)))
+      return false;
+    node[a] = field.lattice.wrap(a, node[a]);
+    c.node[k] = grid.locate(node);
+    c.weight[k] = weight[from];
+    if (ahead <= 0) c.inside = k + 1;
+  }
+  c.base = single.node;
+  c.surface = at[a];
+  const double cosine = fabs(c.normal[a]);
+  const double surface_at = outward * ((at[a] - field.lattice.origin[a]) / h);
+  c.full = crossed_contact(list, cosine, surface_at);
+  c.place = outward > 0 ? first : -first - c.n + 1;
+  c.depth = (surface_at - c.place) * cosine;
+
+  // is there another face within reach of the material in front?
+
+  if (is_outside) c.front = Crossing::NEAR_OTHERS;
+  const double surface_x = x[a] + outward * way;
+  for (const double deep : {NARROW, 2.0, THIN}) {
+    at[a] = surface_x - outward * deep * h;
+    if (region->match(at[0], at[1], at[2])) continue;
+    if (deep == NARROW) {
+      at[a] = surface_x - outward * 0.05 * h;    // a line along the edge of the region is not in it
+      c.thin = region->match(at[0], at[1], at[2]);
+    }
+    if (!is_outside) c.front = Crossing::THIN_PLACE;
+  }
+  return true;
+}
+
+/* ----------------------------------------------------------------------
+   Does this node, outside, look at the edge of a blade, or at a wire? Then c is the line of nodes from it into the
+   region
+------------------------------------------------------------------------- */
+
+bool FixMPMBoundary::is_narrow(const MPMField &field, const Single &single, Crossing &c) const
+{
+  const double h = field.lattice.h, *const n = single.normal;
+  const int dim = field.lattice.dim;
+  if (n[0] == 0.0 && n[1] == 0.0 && n[2] == 0.0) return false;
+  const auto match = [&](const double *x) {
+    return region->match(x[0], x[1], x[2]);
+  };
+  double x[3], middle[3];
+  field.grid.node_position(single.node, x);
+  for (int d = 0; d < 3; d++) middle[d] = x[d] - (single.distance + NARROW * h) * n[d];
+  bool narrow = false;
+  if (match(middle)) {
+    double t[2][3] = {{-n[1], n[0], 0.0}, {0.0, 0.0, 0.0}};
+    if (dim == 3) {
+      const double axis[3] = {fabs(n[0]) < 0.6 ? 1.0 : 0.0, fabs(n[0]) < 0.6 ? 0.0 : 1.0, 0.0};
+      MathExtra::cross3(n, axis, t[0]);
+      MathExtra::norm3(t[0]);
+      MathExtra::cross3(n, t[0], t[1]);
+    }
+    const int ndirections = dim == 3 ? 4 : 1;
+    for (int k = 0; k < ndirections && !narrow; k++) {
+      double side[2][3];
+      for (int d = 0; d < 3; d++) {
+        const double along = h * 0.5 * NARROW *
+            (k < 2 ? t[k][d] : sqrt(0.5) * (t[0][d] + (k == 2 ? t[1][d] : -t[1][d])));
+        side[0][d] = middle[d] + along;
+        side[1][d] = middle[d] - along;
+      }
+      narrow = !match(side[0]) && !match(side[1]);
+    }
+  } else if (region->bboxflag) {
+    const double size[3] = {region->extent_xhi - region->extent_xlo,
+                            region->extent_yhi - region->extent_ylo,
+                            region->extent_zhi - region->extent_zlo};
+    narrow = std::count_if(size, size + dim, [h](double extent) {
+               return extent < NARROW * h;
+             }) > 1;
+  }
+  if (!narrow) return false;
+
+  c = {};
+  for (int d = 1; d < dim; d++)
+    if (fabs(n[d]) > fabs(n[c.axis])) c.axis = d;
+  int index[3];
+  field.grid.node_index(single.node, index);
+  c.n = 3;
+  c.inside = 2;
+  c.front = Crossing::NEAR_OTHERS;
+  MathExtra::copy3(n, c.normal);
+  c.depth = 2.0 * fabs(n[c.axis]) - single.distance / h;
+  for (int k = 2; k >= 0; k--) {
+    c.node[k] = field.grid.locate(index);
+    index[c.axis] = field.lattice.wrap(c.axis, index[c.axis] - (n[c.axis] > 0.0 ? 1 : -1));
+  }
+  return true;
 }
 
 /* ----------------------------------------------------------------------
@@ -1011,6 +1195,8 @@ void FixMPMBoundary::update_motion(double dt)
           s.growth = (s.distance - distance) / dt - MathExtra::dot3(v, s.normal);
         }
     for (int k = 0; k < 4; k++) old[k] = *motion[k];
+    if (kind == SLIP && acts_across())
+      for (auto &list : nodes) take_off_lines(list);
   }
   if (!past.acted) MathExtra::copy3(wall.shift, wall.before);
   MathExtra::copy3(wall.shift, past.shift);
@@ -1049,8 +1235,14 @@ void FixMPMBoundary::act(double dt, Stage stage)
     for (auto &line : list.lines)
       if (!faces[line.face].cut) act_on_column(list, line);
     for (const auto &orbit : list.orbits) act_on_orbit(list, orbit);
+    held_by_lines.clear();
+    if (count && !warned_thin) check_width(list);
     for (auto &crossing : list.crossings) act_on_crossing(list, crossing);
-    for (auto &single : list.singles) act_on_single(list, single);
+    std::sort(held_by_lines.begin(), held_by_lines.end());
+    for (auto &single : list.singles)
+      if (held_by_lines.empty() ||
+          !std::binary_search(held_by_lines.begin(), held_by_lines.end(), single.node))
+        act_on_single(list, single);
     if (count) ledger.boundary += now.kinetic * force->mvv2e;
     if (count) ledger.driven += now.driven * force->mvv2e;
     if (count && ledger.on) ledger.transfer += now.collided * force->mvv2e;

@@ -144,11 +144,20 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   struct Crossing {
     int axis, n;
     int64_t node[4];    // -1: out of reach of points
+    int64_t base;       // of these, from which the line was found
+    double surface;     // place on the line
     double weight[4];
     double normal[3];    // of the surface, where the line goes through it
     int full;            // index of its contact
+    int inside;          // number of nodes behind the surface, the first ones
+    int place;           // of the first node on the line, growing outward
+    double depth;        // of the first node behind the surface, in node spacings
     Contact contact = FREE;
     bool touched = true;    // by the surface of the material in this step
+    // acts without a question; where another face is near: unless the material is behind; where nodes of the line are
+    // nearer to another face, or beyond it: when the material is in front
+    enum Front { SOUND, THIN_PLACE, NEAR_OTHERS } front = SOUND;
+    bool acts = true, thin = false;
   };
   struct FieldNodes {
     MPMField *field;
@@ -158,6 +167,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
     std::vector<Orbit> orbits;
     std::vector<Single> singles;
     std::vector<Crossing> crossings = {};
+    std::vector<Crossing> narrow = {};    // places where nodes cannot tell how wide the region is
     std::vector<MPMWallContact> contacts = {};    // with nodes at depths in a region
     std::vector<MPMWallContact> crossed = {};     // with crossings, as far as they have been needed
     std::vector<char> crossed_known = {};
@@ -217,8 +227,11 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   double impulse[6] = {};     // on the body, with its moment, in the last step: this rank's share
   double dt_last = 0.0;
   bool reaction_known = true;
+  std::vector<int64_t>
+      held_by_lines;    // nodes inside that are not nearest to the face of their line
   MPMWallGap gap;
-  bool warned = false;        // of a region that is too fast
+  bool warned = false;    // of a region that is too fast
+  bool warned_thin = false;
   double reaction[6] = {};    // force and, of regions, torque
 
   struct {                      // what act() does now to the nodes of a field
@@ -242,7 +255,14 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   void list_face_nodes(FieldNodes &);
   void list_region_nodes(FieldNodes &);
   void extend_across(MPMField &) const;
-  void list_crossings(FieldNodes &);
+  void list_crossings(FieldNodes &, const std::vector<Single> &outside);
+  void list_bare_faces(FieldNodes &, const std::vector<Single> &outside);
+  void take_off_lines(FieldNodes &);
+  bool find_crossing(FieldNodes &, const Single &, Crossing &);
+  bool is_narrow(const MPMField &, const Single &, Crossing &) const;
+  static bool is_in_front(MPM_NS::Grid &, const Crossing &);
+  static bool is_behind(MPM_NS::Grid &, const Crossing &, double share);
+  void check_width(const FieldNodes &);
   static int crossed_contact(FieldNodes &, double slope, double place);
   void update_motion(double dt);
   void find_gaps(FieldNodes &, double dt);

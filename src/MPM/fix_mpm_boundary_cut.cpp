@@ -224,6 +224,14 @@ void FixMPMBoundary::act_on_crossing(const FieldNodes &list, Crossing &crossing)
   Grid &grid = list.field->grid;
   const int dim = grid.lattice.dim;
   const double *const n = crossing.normal;
+  if (crossing.front != Crossing::SOUND) {
+    if (!now.decided)
+      crossing.acts = crossing.front == Crossing::THIN_PLACE ? !is_behind(grid, crossing, 1.0)
+                                                             : is_in_front(grid, crossing);
+    if (!crossing.acts) return;
+    if (crossing.front == Crossing::NEAR_OTHERS)
+      held_by_lines.insert(held_by_lines.end(), crossing.node, crossing.node + crossing.inside);
+  }
   Chain chain;
   if (!find_chain(list, crossing.node, crossing.weight, crossing.n, 1, chain)) return;
 

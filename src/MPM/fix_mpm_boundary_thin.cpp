@@ -1,0 +1,92 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// Regions that separate, or have friction, where other faces are near: plates that are thinner than what nodes
+// see, and the edges of tools. There a node can be nearer to another face than to the one that the material touches.
+// The masses of the nodes on a line tell where the material is: on nodes behind the face that it touches
+// they get less. A narrow punch had 10 to 80 % of its force, and a block fell through a plate thinner than a spacing,
+// when nodes inside acted along the normal of their nearest face.
+
+#include "fix_mpm_boundary.h"
+
+#include "error.h"
+#include "mpm_field.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+static double mass(Grid &grid, int64_t node)
+{
+  return node < 0 ? 0.0 : grid.record(node)[3];
+}
+
+/* ----------------------------------------------------------------------
+   In front of a plane, a node at the distance x from the surface has the mass that its function has over x' > -x.
+   More than that of material which is INTO deeper in the wall is that of material at another face.
+------------------------------------------------------------------------- */
+
+bool FixMPMBoundary::is_in_front(Grid &grid, const Crossing &c)
+{
+  constexpr double INTO = 0.3, LITTLE = 1.0e-3;    // node spacings, share
+  const auto share = [](double x) {                // quadratic functions
+    const double s = std::fabs(x), y = 1.5 - std::min(s, 1.5);
+    const double less = s < 0.5 ? 0.5 - 0.75 * s + s * s * s / 3.0 : y * y * y / 6.0;
+    return x < 0.0 ? less : 1.0 - less;
+  };
+  double full = 0.0;
+  const double step = std::fabs(c.normal[c.axis]);
+  for (int k = c.inside; k < c.n; k++)
+    full = std::max(full, mass(grid, c.node[k]) / share(k * step - c.depth + INTO));
+  for (int k = 0; k < c.inside; k++)
+    if (mass(grid, c.node[k]) > full * (share(k * step - c.depth + INTO) + LITTLE)) return false;
+  return full > 0.0;
+}
+
+/** Have nodes in front no more than a share of what those behind have? */
+bool FixMPMBoundary::is_behind(Grid &grid, const Crossing &c, double share)
+{
+  double in_front = 0.0, behind = 0.0;
+  for (int k = 0; k < c.n; k++) {
+    double &most = k < c.inside ? behind : in_front;
+    most = std::max(most, mass(grid, c.node[k]));
+  }
+  return in_front <= share * behind;
+}
+
+/* ----------------------------------------------------------------------
+   A blade or wire whose width is less than the reach of nodes, and has material in front of it; a plate that has
+   material on both sides
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::check_width(const FieldNodes &list)
+{
+  constexpr double BOTH =
+      0.6;    // so much more is behind a plate when material is in front of it alone
+  Grid &grid = list.field->grid;
+  const auto warn = [&](const Crossing &c) {
+    double x[3] = {0.0, 0.0, 0.0};
+    for (int k = 0; k < c.n; k++)
+      if (c.node[k] >= 0) grid.node_position(c.node[k], x);
+    warned_thin = true;
+    error->warning(
+        FLERR,
+        "Fix mpm/boundary {}: its region {} is thinner than 1.5 node spacings of fix mpm {} near "
+        "{:.6g} {:.6g} {:.6g}, where material is at its edge or on both sides (step {}): "
+        "its force can be wrong by tens of percent or zero, and material can pass through it. "
+        "Make it thicker there, or the spacing smaller; this is said only once",
+        id, region_id, list.field->id(), x[0], x[1], x[2], update->ntimestep);
+  };
+  for (const auto &c : list.narrow)
+    if (mass(grid, c.node[c.inside - 1]) > 0.0 && is_in_front(grid, c)) return warn(c);
+  for (const auto &c : list.crossings)
+    if (c.thin && !is_in_front(grid, c) && !is_behind(grid, c, BOTH)) return warn(c);
+}
