@@ -320,10 +320,9 @@ TEST(DruckerPrager, OrderOfTheReturn)
 /** Principal Kirchhoff stresses, largest first. */
 std::array<double, 3> principal(const MaterialPoint &p)
 {
-  const law::Spectral s =
-      law::spectral({p.stress(0), p.stress(1), p.stress(2), p.stress(3), p.stress(4), p.stress(5)});
+  const law::Spectral s(1, p.batch.stress);
   std::array<double, 3> v;
-  for (int k = 0; k < 3; k++) v[k] = p.batch.J[0] * s.value[k];
+  for (int k = 0; k < 3; k++) v[k] = p.batch.J[0] * s.value[k][0];
   std::sort(v.begin(), v.end(), std::greater<>());
   return v;
 }

@@ -4,7 +4,7 @@
 
 // Constitutive laws, point by point and without a grid, against closed forms.
 
-#include "law/spectral.h"
+#include "law/tensor_function.h"
 #include "material/material_testing.h"
 #include "transfer/kernels.h"
 
@@ -50,42 +50,101 @@ TEST(Math, FunctionsMatchLibrary)
   EXPECT_NEAR(law::minus1_minus_log(7.0), 6.0 - std::log(7.0), 1e-14);
 }
 
-// eigenvalues that are far apart, close together, and equal
+/** A rotation about any axis. */
+Matrix any_rotation(std::mt19937 &random)
+{
+  std::normal_distribution<double> normal;
+  double axis[3], length = 0.0;
+  for (double &x : axis) {
+    x = normal(random);
+    length += x * x;
+  }
+  for (double &x : axis) x /= std::sqrt(length);
+  return rotation({axis[0], axis[1], axis[2]}, 3.0 * normal(random));
+}
+
+law::Sym symmetric(const Matrix &a)
+{
+  return {a[0], a[4], a[8], a[1], a[2], a[5]};
+}
+
+void expect_near(const law::Sym &a, const law::Sym &b, double tolerance)
+{
+  for (const auto c :
+       {&law::Sym::xx, &law::Sym::yy, &law::Sym::zz, &law::Sym::xy, &law::Sym::xz, &law::Sym::yz})
+    EXPECT_NEAR(a.*c, b.*c, tolerance);
+}
+
+// eigenvalues that are far apart, close together, and equal; in all directions, and in a plane
 TEST(Math, SpectralDecomposition)
 {
   std::mt19937 random(3);
-  std::normal_distribution<double> normal;
-  std::uniform_real_distribution<double> exponent(-17.0, 2.0);
-  for (int i = 0; i < 20000; i++) {
-    const double value[3] = {1.0, 1.0 + (i % 5 ? std::pow(10.0, exponent(random)) : 0.0),
-                             1.0 + (i % 7 ? std::pow(10.0, exponent(random)) : 0.0)};
-    double axis[3], length = 0.0;
-    for (double &x : axis) {
-      x = normal(random);
-      length += x * x;
+  std::uniform_real_distribution<double> exponent(-17.0, 2.0), angle(-M_PI, M_PI);
+  for (int batch = 0; batch < 400; batch++) {
+    law::Tensors given;
+    double value[BATCH][3];
+    for (int i = 0; i < BATCH; i++) {
+      value[i][0] = 1.0;
+      value[i][1] = 1.0 + (i % 5 ? std::pow(10.0, exponent(random)) : 0.0);
+      value[i][2] = 1.0 + (i % 7 ? std::pow(10.0, exponent(random)) : 0.0);
+      const Matrix R = batch % 4 ? any_rotation(random) : rotation({0.0, 0.0, 1.0}, angle(random));
+      const Matrix a = R * diagonal(value[i][0], value[i][1], value[i][2]) * transpose(R);
+      law::store_rows(given.row, i, symmetric(a));
     }
-    for (double &x : axis) x /= std::sqrt(length);
-    const Matrix R = rotation({axis[0], axis[1], axis[2]}, 3.0 * normal(random));
-    const Matrix a = R * diagonal(value[0], value[1], value[2]) * transpose(R);
-    const law::Sym s = {a[0], a[4], a[8], a[1], a[2], a[5]};
-    const law::Spectral found = law::spectral(s);
-    const law::Sym back = law::recompose(found, found.value);
-    const double scale = 4e-15 * std::max(value[1], value[2]);
-    for (const auto c :
-         {&law::Sym::xx, &law::Sym::yy, &law::Sym::zz, &law::Sym::xy, &law::Sym::xz, &law::Sym::yz})
-      EXPECT_NEAR(back.*c, s.*c, scale);
-    for (int p = 0; p < 3; p++)
-      for (int q = 0; q < 3; q++) {
-        double dot = 0.0;
-        for (int k = 0; k < 3; k++) dot += found.vector[k][p] * found.vector[k][q];
-        EXPECT_NEAR(dot, p == q ? 1.0 : 0.0, 4e-15);
-      }
-    double given[3] = {value[0], value[1], value[2]},
-           got[3] = {found.value[0], found.value[1], found.value[2]};
-    std::sort(given, given + 3);
-    std::sort(got, got + 3);
-    for (int k = 0; k < 3; k++) EXPECT_NEAR(got[k], given[k], scale);
-    if (testing::Test::HasFailure()) FAIL() << "case " << i;
+    const law::Spectral found(BATCH, given.row);
+    for (int i = 0; i < BATCH; i++) {
+      const double scale = 4e-15 * std::max(value[i][1], value[i][2]);
+      expect_near(found.recompose(i, found.value[0][i], found.value[1][i], found.value[2][i]),
+                  law::load_rows(given.row, i), scale);
+      for (int p = 0; p < 3; p++)
+        for (int q = 0; q < 3; q++) {
+          double dot = 0.0;
+          for (int k = 0; k < 3; k++) dot += found.vector[k][p][i] * found.vector[k][q][i];
+          EXPECT_NEAR(dot, p == q ? 1.0 : 0.0, 4e-15);
+        }
+      double got[3] = {found.value[0][i], found.value[1][i], found.value[2][i]};
+      std::sort(value[i], value[i] + 3);
+      std::sort(got, got + 3);
+      for (int k = 0; k < 3; k++) EXPECT_NEAR(got[k], value[i][k], scale);
+      if (testing::Test::HasFailure()) FAIL() << "batch " << batch << ", point " << i;
+    }
+  }
+}
+
+// of tensors on both sides of the norms up to which polynomials serve, in the same batch and alone
+TEST(Math, LogarithmAndExponentialOfTensors)
+{
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> one(-1.0, 1.0), exponent(-8.0, 0.0);
+  for (int batch = 0; batch < 400; batch++) {
+    law::Tensors strain, squared, given, found;
+    double size[BATCH];
+    for (int i = 0; i < BATCH; i++) {
+      const double scale = batch % 2 ? 0.1 * std::pow(10.0, exponent(random)) : 0.3;
+      const double e[3] = {scale * one(random), scale * one(random), scale * one(random)};
+      const Matrix R = any_rotation(random);
+      size[i] = std::max({std::fabs(e[0]), std::fabs(e[1]), std::fabs(e[2])});
+      law::store_rows(strain.row, i, symmetric(R * diagonal(e[0], e[1], e[2]) * transpose(R)));
+      law::store_rows(squared.row, i,
+                      symmetric(R * diagonal(2.0 * e[0], 2.0 * e[1], 2.0 * e[2]) * transpose(R)));
+      law::store_rows(
+          given.row, i,
+          symmetric(
+              R * diagonal(std::expm1(2.0 * e[0]), std::expm1(2.0 * e[1]), std::expm1(2.0 * e[2])) *
+              transpose(R)));
+    }
+    law::log_strains(BATCH, given.row, found.row);
+    for (int i = 0; i < BATCH; i++) {
+      law::Tensors alone;
+      law::store_rows(alone.row, 0, law::load_rows(given.row, i));
+      law::log_strains(1, alone.row, alone.row);
+      expect_near(law::load_rows(found.row, i), law::load_rows(strain.row, i), 3e-15 * size[i]);
+      expect_near(law::load_rows(found.row, i), law::load_rows(alone.row, 0), 1e-15 * size[i]);
+    }
+    law::exp_minus_identity(BATCH, squared.row, found.row);
+    for (int i = 0; i < BATCH; i++)
+      expect_near(law::load_rows(found.row, i), law::load_rows(given.row, i), 6e-15 * size[i]);
+    if (testing::Test::HasFailure()) FAIL() << "batch " << batch;
   }
 }
 

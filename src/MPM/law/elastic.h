@@ -181,26 +181,31 @@ namespace {
 
     using BulkAndShear::BulkAndShear;
 
-    MPM_INLINE Sym kirchhoff(const Batch &b, int i) const
+    static void update(const LawParameters &p, Batch &b, History)
     {
-      const Displacement H = displacement(b, i);
-      Spectral s = spectral(left_strain(H));
-      const double logJ = log_volume(H), mean = (1.0 / 3.0) * logJ;
-      for (int a = 0; a < 3; a++) s.value[a] = 2.0 * G * (log_strain(s.value[a]) - mean) + K * logJ;
-      return recompose(s, s.value);
+      const LawHencky law(p);
+      Tensors strain;
+      left_strains(b, strain);
+      log_strains(b.n, strain.row, strain.row);
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const Sym e = load_rows(strain.row, i);
+        const double logJ = log_volume(displacement(b, i));
+        store_stress(b, i, (1.0 / b.J[i]) * add_diagonal(2.0 * law.G * deviator(e), law.K * logJ));
+      }
     }
 
-    MPM_INLINE double stored(const Batch &b, int i) const
+    static void energy(const LawParameters &p, const Batch &b, History, double *w)
     {
-      const Displacement H = displacement(b, i);
-      const Spectral s = spectral(left_strain(H));
-      const double logJ = log_volume(H), mean = (1.0 / 3.0) * logJ;
-      double square = 0.0;
-      for (int a = 0; a < 3; a++) {
-        const double d = log_strain(s.value[a]) - mean;
-        square += d * d;
+      const LawHencky law(p);
+      Tensors strain;
+      left_strains(b, strain);
+      log_strains(b.n, strain.row, strain.row);
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const double logJ = log_volume(displacement(b, i));
+        w[i] += law.G * norm2(deviator(load_rows(strain.row, i))) + 0.5 * law.K * logJ * logJ;
       }
-      return G * square + 0.5 * K * logJ * logJ;
     }
 
     MPM_INLINE void respond_at(PrincipalResponse &r, int i) const

@@ -12,7 +12,7 @@
 // Finite-strain elastoplasticity with return mapping in principal logarithmic strains: what the
 // laws of soil, rock and snow share.
 
-#include "law/spectral.h"
+#include "law/tensor_function.h"
 
 namespace MPM_NS::law {
 namespace {
@@ -38,14 +38,6 @@ namespace {
   MPM_INLINE double elastic_volume(const Sym &c)
   {
     return trace(c) + minors(c) + determinant(c);
-  }
-
-  /** n . s . n for axis a of a spectral decomposition. */
-  MPM_INLINE double along(const Spectral &axes, int a, const Sym &s)
-  {
-    const double x = axes.vector[0][a], y = axes.vector[1][a], z = axes.vector[2][a];
-    return s.xx * x * x + s.yy * y * y + s.zz * z * z +
-        2.0 * (s.xy * x * y + s.xz * x * z + s.yz * y * z);
   }
 
   /** A batch along the principal axes of the elastic trial state, values as [axis][point]. */
@@ -75,35 +67,50 @@ namespace {
                LEAST_MODULUS * (K + (4.0 / 3.0) * G));
   }
 
-  /** Update of an isotropic law by F = Fe Fp with the history be = Fe Fe^T (J.C. Simo, Comput.
-   *  Methods Appl. Mech. Eng. 99 (1992) 61; E.A. de Souza Neto, D. Peric, D.R.J. Owen,
-   *  Computational Methods for Plasticity, 2008, ch. 14.4): the trial state f be f^T is exact for
-   *  any rotation, its principal logarithmic strains ln(be)/2 are returned as in small strain, and
-   *  the axes stay. Stresses of the law are Kirchhoff stresses, J times Cauchy.
-   *
-   *  Law has, besides its declaration: Law(parameters), map(batch, history, states), which returns
-   *  the strains and makes the rest, with the history rows behind those of be, and
-   *  stored(history, i, strain, strain, strain), the energy per reference volume; and modulus(),
-   *  unless its elasticity is Hencky's with Young's modulus and Poisson's ratio.
+  /** Laws with F = Fe Fp and the history be = Fe Fe^T (J.C. Simo, Comput. Methods Appl. Mech. Eng. 99
+   *  (1992) 61; E.A. de Souza Neto, D. Peric, D.R.J. Owen, Computational Methods for Plasticity,
+   *  2008, ch. 14.4): the trial state f be f^T is exact for any rotation, its logarithmic strain
+   *  ln(be)/2 is returned as in small strain, and the axes stay. Stresses of the law are Kirchhoff
+   *  stresses, J times Cauchy. Law has its own modulus(), unless its elasticity is Hencky's with Young's
+   *  modulus and Poisson's ratio.
    *
    *  Strains at the start of the step are those of the trial state less the strain increment along
    *  its axes; the work of a step is then right to third order. */
-  template <class Law> struct PrincipalReturn : LawDefaults {
+  struct FiniteStrainReturn : LawDefaults {
     static constexpr bool uses_F = false;
 
+    static MPM_INLINE void push_forward_strains(const Batch &b, History history, Tensors &trial)
+    {
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++)
+        store_rows(trial.row, i, push_forward_strain(b, i, load_rows(history, i)));
+    }
+
+    static void modulus(const LawParameters &p, const Batch &b, History, double *k)
+    {
+      const BulkAndShear m(p);
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) k[i] += hencky_modulus(m.K, m.G, b.J[i], load_stress(b, i));
+    }
+  };
+
+  /** Return of any isotropic law. Law has, besides its declaration: Law(parameters), map(batch, history,
+   *  states), which returns the strains and makes the rest, with the history rows behind those of be,
+   *  and stored(history, i, strain, strain, strain), the energy per reference volume. */
+  template <class Law> struct PrincipalReturn : FiniteStrainReturn {
     static void update(const LawParameters &p, Batch &b, History history)
     {
       const Law law(p);
-      alignas(64) double axes[3][3][BATCH];
+      Tensors trial;
       PrincipalStates s;
+      push_forward_strains(b, history, trial);
+      const Spectral axes(b.n, trial.row);
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
-        const Spectral trial = spectral(push_forward_strain(b, i, load_rows(history, i)));
         const Increment total = increment(b, i);
         for (int a = 0; a < 3; a++) {
-          s.strain[a][i] = log_strain(trial.value[a]);
-          s.before[a][i] = s.strain[a][i] - along(trial, a, total.strain);
-          for (int k = 0; k < 3; k++) axes[k][a][i] = trial.vector[k][a];
+          s.strain[a][i] = log_strain(axes.value[a][i]);
+          s.before[a][i] = s.strain[a][i] - axes.along(a, i, total.strain);
         }
       }
       law.map(b, history + ELASTIC_STRAIN_ROWS, s);
@@ -113,10 +120,10 @@ namespace {
         // all axes are written out, as in energy(): loops over small arrays do not vectorize
         const double inv = 1.0 / b.J[i];
         store_rows(history, i,
-                   along_axes(axes, i, expm1(2.0 * s.strain[0][i]), expm1(2.0 * s.strain[1][i]),
-                              expm1(2.0 * s.strain[2][i])));
+                   axes.recompose(i, expm1(2.0 * s.strain[0][i]), expm1(2.0 * s.strain[1][i]),
+                                  expm1(2.0 * s.strain[2][i])));
         store_stress(b, i,
-                     along_axes(axes, i, inv * s.tau[0][i], inv * s.tau[1][i], inv * s.tau[2][i]));
+                     axes.recompose(i, inv * s.tau[0][i], inv * s.tau[1][i], inv * s.tau[2][i]));
         b.heat[i] += p.chi * s.work[i];
         plastic += s.work[i] * b.vol0[i];
       }
@@ -127,19 +134,11 @@ namespace {
     static void energy(const LawParameters &p, const Batch &b, History history, double *w)
     {
       const Law law(p);
+      const Spectral s(b.n, history);
       MPM_SIMD
-      for (int i = 0; i < b.n; i++) {
-        const Spectral s = spectral(load_rows(history, i));
-        w[i] += law.stored(history + ELASTIC_STRAIN_ROWS, i, log_strain(s.value[0]),
-                           log_strain(s.value[1]), log_strain(s.value[2]));
-      }
-    }
-
-    static void modulus(const LawParameters &p, const Batch &b, History, double *k)
-    {
-      const BulkAndShear m(p);
-      MPM_SIMD
-      for (int i = 0; i < b.n; i++) k[i] += hencky_modulus(m.K, m.G, b.J[i], load_stress(b, i));
+      for (int i = 0; i < b.n; i++)
+        w[i] += law.stored(history + ELASTIC_STRAIN_ROWS, i, log_strain(s.value[0][i]),
+                           log_strain(s.value[1][i]), log_strain(s.value[2][i]));
     }
   };
 
@@ -155,52 +154,57 @@ namespace {
    *
    *  Law has: G; pressure(v) and volume_energy(v) of the elastic volume strain v; and
    *  solve(batch, history, states). */
-  template <class Law> struct InvariantReturn : PrincipalReturn<Law> {
-    MPM_INLINE void map(Batch &b, History history, PrincipalStates &s) const
+  template <class Law> struct InvariantReturn : FiniteStrainReturn {
+    static void update(const LawParameters &p, Batch &b, History history)
     {
-      const Law &law = static_cast<const Law &>(*this);
-      InvariantStates t;
-      alignas(64) double shear[BATCH];
-      MPM_SIMD
-      for (int i = 0; i < b.n; i++) {
-        const double v = s.strain[0][i] + s.strain[1][i] + s.strain[2][i];
-        double square = 0.0;
-        for (int a = 0; a < 3; a++) {
-          const double e = s.strain[a][i] - (1.0 / 3.0) * v;
-          square += e * e;
-        }
-        t.volume[i] = v;
-        t.flow[i] = 0.0;
-        t.shear[i] = shear[i] = std::sqrt((2.0 / 3.0) * square);
-      }
-      law.solve(b, history, t);
+      const Law law(p);
       const double G = law.G;
+      Tensors strain;
+      InvariantStates t;
+      alignas(64) double shear[BATCH];    // of the trial state
+      push_forward_strains(b, history, strain);
+      log_strains(b.n, strain.row, strain.row);
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
-        const double v = s.strain[0][i] + s.strain[1][i] + s.strain[2][i];
-        const double v0 = s.before[0][i] + s.before[1][i] + s.before[2][i];
-        const double scale = shear[i] > 0.0 ? t.shear[i] / shear[i] : 1.0;
-        const double p = law.pressure(t.volume[i]);
-        double dev_work = 0.0;
-        for (int a = 0; a < 3; a++) {
-          const double e = s.strain[a][i] - (1.0 / 3.0) * v;
-          dev_work += 2.0 * G * (s.before[a][i] - (1.0 / 3.0) * v0) * (1.0 - scale) * e;
-          s.strain[a][i] = scale * e + (1.0 / 3.0) * t.volume[i];
-          s.tau[a][i] = 2.0 * G * scale * e - p;
-        }
-        const double D = shear[i] - t.shear[i];
-        s.work[i] = plastic_work(dev_work - law.pressure(v0) * t.flow[i],
-                                 3.0 * G * t.shear[i] * D - p * t.flow[i]);
-        b.plastic[i] = D;
+        const Sym trial = load_rows(strain.row, i);
+        t.volume[i] = trace(trial);
+        t.flow[i] = 0.0;
+        t.shear[i] = shear[i] = std::sqrt((2.0 / 3.0) * norm2(deviator(trial)));
       }
+      law.solve(b, history + ELASTIC_STRAIN_ROWS, t);
+      double plastic = 0.0;
+      MPM_SIMD_SUM(plastic)
+      for (int i = 0; i < b.n; i++) {
+        const Sym trial = load_rows(strain.row, i), e = deviator(trial);
+        const Increment total = increment(b, i);
+        const double scale = shear[i] > 0.0 ? t.shear[i] / shear[i] : 1.0;
+        const double pressure = law.pressure(t.volume[i]), inv = 1.0 / b.J[i];
+        const double before = law.pressure(trace(trial) - trace(total.strain));
+        const double by_shear = 2.0 * G * (1.0 - scale) * (norm2(e) - contract(e, total.strain));
+        const double D = shear[i] - t.shear[i];
+        const double work = plastic_work(by_shear - before * t.flow[i],
+                                         3.0 * G * t.shear[i] * D - pressure * t.flow[i]);
+        store_stress(b, i, add_diagonal((2.0 * G * scale * inv) * e, -pressure * inv));
+        store_rows(strain.row, i, add_diagonal((2.0 * scale) * e, (2.0 / 3.0) * t.volume[i]));
+        b.plastic[i] = D;
+        b.heat[i] += p.chi * work;
+        plastic += work * b.vol0[i];
+      }
+      exp_minus_identity(b.n, strain.row, history);
+      b.work[PLASTIC] += plastic;
+      b.work[HEAT] += p.chi * plastic;
     }
 
-    MPM_INLINE double stored(History, int, double e0, double e1, double e2) const
+    static void energy(const LawParameters &p, const Batch &b, History history, double *w)
     {
-      const Law &law = static_cast<const Law &>(*this);
-      const double v = e0 + e1 + e2, m = (1.0 / 3.0) * v;
-      return law.volume_energy(v) +
-          law.G * ((e0 - m) * (e0 - m) + (e1 - m) * (e1 - m) + (e2 - m) * (e2 - m));
+      const Law law(p);
+      Tensors strain;
+      log_strains(b.n, history, strain.row);
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const Sym e = load_rows(strain.row, i);
+        w[i] += law.volume_energy(trace(e)) + law.G * norm2(deviator(e));
+      }
     }
   };
 

@@ -107,9 +107,10 @@ namespace {
     MPM_INLINE Surface surface(double f, double M) const
     {
       const double fs = effective(f), b = 1.5 * q2;
-      const double x = min(max(b * M, -300.0), 300.0);
-      const double less = expm1(x), inv = 1.0 / (1.0 + less);
-      const double sinh = 0.5 * (less + less * inv), cosh1 = 0.5 * less * less * inv;
+      // of the magnitude: 1 + less has lost its digits where the mean stress is far below zero
+      const double x = b * M, less = expm1(min(max(x, -x), 300.0)), inv = 1.0 / (1.0 + less);
+      const double size = 0.5 * (less + less * inv), cosh1 = 0.5 * less * less * inv;
+      const double sinh = x < 0.0 ? -size : size;
       const double rest = (1.0 - q1 * fs) * (1.0 - q1 * fs) - 2.0 * q1 * fs * cosh1;
       return {rest, q1 * fs * b * sinh};
     }
@@ -242,8 +243,9 @@ namespace {
 
           // yield function and its derivatives, as in surface()
           const double fs = fi > fc ? fc + slope * (fi - fc) : fi, ds = fi > fc ? slope : 1.0;
-          const double less = expm1(min(max(bq * M, -300.0), 300.0)), inv_exp = 1.0 / (1.0 + less);
-          const double sinh = 0.5 * (less + less * inv_exp), cosh1 = 0.5 * less * less * inv_exp;
+          const double less = expm1(min(bq * max(M, -M), 300.0)), inv_exp = 1.0 / (1.0 + less);
+          const double half = 0.5 * (less + less * inv_exp), cosh1 = 0.5 * less * less * inv_exp;
+          const double sinh = M < 0.0 ? -half : half;
           const double c = 1.0 - q1 * fs, rest = c * c - 2.0 * q1 * fs * cosh1;
           const double rest_f = -2.0 * q1 * ds * (c + cosh1);
           const double a = q1 * fs * bq * sinh, a_f = q1 * ds * bq * sinh;

@@ -9,10 +9,17 @@
 #ifndef MPM_LAW_HYPERELASTIC_H
 #define MPM_LAW_HYPERELASTIC_H
 
-#include "law/spectral.h"
+#include "law/tensor_function.h"
 
 namespace MPM_NS::law {
 namespace {
+
+  /** b - I of the points of a batch. */
+  MPM_INLINE void left_strains(const Batch &b, Tensors &strain)
+  {
+    MPM_SIMD
+    for (int i = 0; i < b.n; i++) store_rows(strain.row, i, left_strain(displacement(b, i)));
+  }
 
   /** Loops of a law whose stress is a function of F. Law has: Law(parameters);
    *  kirchhoff(batch, i), the Kirchhoff stress J sigma; stored(batch, i), the energy per reference

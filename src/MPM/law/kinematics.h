@@ -54,6 +54,13 @@ namespace {
         2.0 * (a.xy * a.xy + a.xz * a.xz + a.yz * a.yz);
   }
 
+  /** a:b */
+  MPM_INLINE double contract(const Sym &a, const Sym &b)
+  {
+    return a.xx * b.xx + a.yy * b.yy + a.zz * b.zz +
+        2.0 * (a.xy * b.xy + a.xz * b.xz + a.yz * b.yz);
+  }
+
   /** Von Mises equivalent of a deviator. */
   MPM_INLINE double equivalent(const Sym &s)
   {

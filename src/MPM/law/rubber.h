@@ -187,17 +187,17 @@ namespace {
     static void update(const LawParameters &p, Batch &b, History)
     {
       const VolumeEnergy volume{p.value[0]};
-      alignas(64) double e[3][BATCH], tau[3][BATCH], axes[3][3][BATCH];
+      alignas(64) double e[3][BATCH], tau[3][BATCH];
+      Tensors strain;
+      left_strains(b, strain);
+      const Spectral axes(b.n, strain.row);
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
-        const Displacement H = displacement(b, i);
-        const Spectral s = spectral(left_strain(H));
-        const double logJ = log_volume(H), mean = (1.0 / 3.0) * logJ;
+        const double logJ = log_volume(displacement(b, i)), mean = (1.0 / 3.0) * logJ;
         const double pressure = volume.stress(logJ);
         for (int a = 0; a < 3; a++) {
-          e[a][i] = log_strain(s.value[a]) - mean;
+          e[a][i] = log_strain(axes.value[a][i]) - mean;
           tau[a][i] = pressure;
-          for (int k = 0; k < 3; k++) axes[k][a][i] = s.vector[k][a];
         }
       }
       for (int k = 0; k < p.nterms; k++) {
@@ -213,19 +213,20 @@ namespace {
       }
       MPM_SIMD
       for (int i = 0; i < b.n; i++)
-        store_stress(b, i, (1.0 / b.J[i]) * along_axes(axes, i, tau[0][i], tau[1][i], tau[2][i]));
+        store_stress(b, i, (1.0 / b.J[i]) * axes.recompose(i, tau[0][i], tau[1][i], tau[2][i]));
     }
 
     static void energy(const LawParameters &p, const Batch &b, History, double *w)
     {
       const VolumeEnergy volume{p.value[0]};
       alignas(64) double e[3][BATCH];
+      Tensors strain;
+      left_strains(b, strain);
+      const Spectral axes(b.n, strain.row);
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
-        const Displacement H = displacement(b, i);
-        const Spectral s = spectral(left_strain(H));
-        const double logJ = log_volume(H);
-        for (int a = 0; a < 3; a++) e[a][i] = log_strain(s.value[a]) - (1.0 / 3.0) * logJ;
+        const double logJ = log_volume(displacement(b, i));
+        for (int a = 0; a < 3; a++) e[a][i] = log_strain(axes.value[a][i]) - (1.0 / 3.0) * logJ;
         w[i] += volume.stored(logJ);
       }
       for (int k = 0; k < p.nterms; k++) {

@@ -14,11 +14,29 @@
 namespace MPM_NS::law {
 namespace {
 
-  /** Spectral decomposition of a symmetric tensor: s = sum_a value[a] n_a x n_a, with the unit
+  /** Symmetric tensors of the points of a batch, by component. */
+  struct Tensors {
+    alignas(64) double row[6][BATCH];
+  };
+
+  /** Spectral decomposition of the symmetric tensors of a batch: sum_a value[a] n_a x n_a, with the unit
    *  vectors n_a = (vector[0][a], vector[1][a], vector[2][a]); values in no particular order. */
   struct Spectral {
-    double value[3];
-    double vector[3][3];
+    alignas(64) double value[3][BATCH];
+    alignas(64) double vector[3][3][BATCH];    ///< [component][axis][point]
+
+    MPM_INLINE Spectral(int n, const double (*tensors)[BATCH]);
+
+    /** The symmetric tensor of point i with the same axes and other values. */
+    MPM_INLINE Sym recompose(int i, double value0, double value1, double value2) const;
+
+    /** n . s . n for axis a of point i. */
+    MPM_INLINE double along(int a, int i, const Sym &s) const
+    {
+      const double x = vector[0][a][i], y = vector[1][a][i], z = vector[2][a][i];
+      return s.xx * x * x + s.yy * y * y + s.zz * z * z +
+          2.0 * (s.xy * x * y + s.xz * x * z + s.yz * y * z);
+    }
   };
 
   MPM_INLINE void rotate_pair(double &v, double &w, double c, double n)
@@ -28,9 +46,9 @@ namespace {
     w = n * old + c * w;
   }
 
-  /** One Jacobi rotation that makes the entry pq zero; r is the third index. */
+  /** One Jacobi rotation that makes the entry pq zero; r is the third index, i the point. */
   MPM_INLINE void jacobi_rotation(double &pp, double &qq, double &pq, double &pr, double &qr,
-                                  Spectral &s, int p, int q)
+                                  Spectral &s, int p, int q, int i)
   {
     const double d = qq - pp, root = std::sqrt(d * d + 4.0 * pq * pq);
     // tangent of the smaller angle; the tiny number makes 0/0 a zero
@@ -40,29 +58,47 @@ namespace {
     qq += t * pq;
     pq = 0.0;
     rotate_pair(pr, qr, c, n);
-    rotate_pair(s.vector[0][p], s.vector[0][q], c, n);
-    rotate_pair(s.vector[1][p], s.vector[1][q], c, n);
-    rotate_pair(s.vector[2][p], s.vector[2][q], c, n);
+    rotate_pair(s.vector[0][p][i], s.vector[0][q][i], c, n);
+    rotate_pair(s.vector[1][p][i], s.vector[1][q][i], c, n);
+    rotate_pair(s.vector[2][p][i], s.vector[2][q][i], c, n);
   }
 
   /** Decomposition by cyclic Jacobi rotations (G.H. Golub, C.F. Van Loan, Matrix Computations,
-   *  ch. 8.5): no branches, accurate to round-off also when eigenvalues coincide. Four sweeps
-   *  leave off-diagonal entries below 1e-20 of the deviator for any 3x3 matrix. */
-  MPM_INLINE Spectral spectral(const Sym &a)
+   *  ch. 8.5): no branches on points, accurate to round-off also when eigenvalues coincide. Four sweeps
+   *  leave off-diagonal entries below 1e-20 of the deviator for any 3x3 matrix. Where z is a principal
+   *  axis of all points, as in plane strain, one rotation is all that there is to do: others would leave
+   *  every bit as it is. */
+  MPM_INLINE Spectral::Spectral(int n, const double (*tensors)[BATCH])
   {
-    double xx = a.xx, yy = a.yy, zz = a.zz, xy = a.xy, xz = a.xz, yz = a.yz;
-    Spectral s = {{0.0, 0.0, 0.0}, {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
-    // loops over points vectorize only when no inner loop is left
-#pragma GCC unroll 4
-    for (int sweep = 0; sweep < 4; sweep++) {
-      jacobi_rotation(xx, yy, xy, xz, yz, s, 0, 1);
-      jacobi_rotation(xx, zz, xz, xy, yz, s, 0, 2);
-      jacobi_rotation(yy, zz, yz, xy, xz, s, 1, 2);
+    alignas(64) double xy[BATCH], xz[BATCH], yz[BATCH];
+    double out_of_plane = 0.0;
+    MPM_SIMD_SUM(out_of_plane)
+    for (int i = 0; i < n; i++) {
+      value[0][i] = tensors[0][i];
+      value[1][i] = tensors[1][i];
+      value[2][i] = tensors[2][i];
+      xy[i] = tensors[3][i];
+      xz[i] = tensors[4][i];
+      yz[i] = tensors[5][i];
+      vector[0][0][i] = vector[1][1][i] = vector[2][2][i] = 1.0;
+      vector[0][1][i] = vector[0][2][i] = vector[1][0][i] = 0.0;
+      vector[1][2][i] = vector[2][0][i] = vector[2][1][i] = 0.0;
+      out_of_plane += xz[i] == 0.0 && yz[i] == 0.0 ? 0.0 : 1.0;
     }
-    s.value[0] = xx;
-    s.value[1] = yy;
-    s.value[2] = zz;
-    return s;
+    if (out_of_plane == 0.0) {
+      MPM_SIMD
+      for (int i = 0; i < n; i++)
+        jacobi_rotation(value[0][i], value[1][i], xy[i], xz[i], yz[i], *this, 0, 1, i);
+      return;
+    }
+    for (int sweep = 0; sweep < 4; sweep++) {
+      MPM_SIMD
+      for (int i = 0; i < n; i++) {
+        jacobi_rotation(value[0][i], value[1][i], xy[i], xz[i], yz[i], *this, 0, 1, i);
+        jacobi_rotation(value[0][i], value[2][i], xz[i], xy[i], yz[i], *this, 0, 2, i);
+        jacobi_rotation(value[1][i], value[2][i], yz[i], xy[i], xz[i], *this, 1, 2, i);
+      }
+    }
   }
 
   /** r += v n x n, n = (x, y, z) */
@@ -76,13 +112,12 @@ namespace {
     r.yz += v * y * z;
   }
 
-  /** The symmetric tensor with the same eigenvectors and other eigenvalues. */
-  MPM_INLINE Sym recompose(const Spectral &s, const double value[3])
+  MPM_INLINE Sym Spectral::recompose(int i, double value0, double value1, double value2) const
   {
     Sym r = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-    add_dyad(r, s.vector[0][0], s.vector[1][0], s.vector[2][0], value[0]);
-    add_dyad(r, s.vector[0][1], s.vector[1][1], s.vector[2][1], value[1]);
-    add_dyad(r, s.vector[0][2], s.vector[1][2], s.vector[2][2], value[2]);
+    add_dyad(r, vector[0][0][i], vector[1][0][i], vector[2][0][i], value0);
+    add_dyad(r, vector[0][1][i], vector[1][1][i], vector[2][1][i], value1);
+    add_dyad(r, vector[0][2][i], vector[1][2][i], vector[2][2][i], value2);
     return r;
   }
 
@@ -90,17 +125,6 @@ namespace {
   MPM_INLINE double log_strain(double value)
   {
     return 0.5 * log1p(max(value, -1.0 + 1e-15));
-  }
-
-  /** sum_a value_a n_a x n_a, with the axes n_a of point i as [component][axis][point]. */
-  MPM_INLINE Sym along_axes(const double (&axes)[3][3][BATCH], int i, double value0, double value1,
-                            double value2)
-  {
-    Sym r = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-    add_dyad(r, axes[0][0][i], axes[1][0][i], axes[2][0][i], value0);
-    add_dyad(r, axes[0][1][i], axes[1][1][i], axes[2][1][i], value1);
-    add_dyad(r, axes[0][2][i], axes[1][2][i], axes[2][2][i], value2);
-    return r;
   }
 
   /** f b f^T with f = I + A of this step: how a left Cauchy-Green tensor (or its elastic part, as

@@ -176,13 +176,6 @@ namespace {
     }
   };
 
-  /** a:b */
-  MPM_INLINE double contract(const Sym &a, const Sym &b)
-  {
-    return a.xx * b.xx + a.yy * b.yy + a.zz * b.zz +
-        2.0 * (a.xy * b.xy + a.xz * b.xz + a.yz * b.yz);
-  }
-
   /** A flow stress and a back stress X/J that is part of the flow: seen from the elastic trial state
    *  of s - X/J, what resists D is Y, the growth C g/J of the back stress along the flow, and the
    *  fading of the old back stress, which turns s - w X/J. */
