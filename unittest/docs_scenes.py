@@ -121,12 +121,23 @@ def prerequisites(line, before):
     return (styles[-1:] if line.startswith("pair_coeff") else []) + needed
 
 
+GRAINS = """comm_modify vel yes
+create_atoms 3 single 0.05 0.05 0.09
+group grains type 3
+set type 3 diameter 0.004 density 1000
+pair_style gran/hooke 1.0e4 NULL 50.0 NULL 0.5 0
+pair_coeff * *
+neigh_modify exclude type 1 1
+"""
+
+
 def scene_for(lines):
     """A scene around lines of an example, which has what they need and does not show."""
     if "mpm/handshake" in lines[-1]:
         return crystal_for(lines)
     text, before = "\n".join(lines), ""
-    style = "hybrid sphere mpm" if re.search("diameter|mpm/surface|mpm/immersed", text) else "mpm"
+    with_grains = re.search(r"mpm/dt .*\bgrains\b", text)
+    style = "hybrid sphere mpm" if with_grains or re.search("diameter|mpm/surface|mpm/immersed", text) else "mpm"
     grid = re.search(r"^fix grid all mpm (\S+)", text, re.M)
     h = float(grid.group(1)) if grid else 0.0
     head = HEAD.format(style=style, x=32 * h or 0.1, z=60 * h or 0.1)
@@ -160,6 +171,8 @@ def scene_for(lines):
     if "mpm/elements" in text:
         points = "create_points 2 mesh ring.msh move 0.05 0.05 0.05\ngroup ring type 2\n"
     scene = head + grid + points + material + before
+    if with_grains:
+        scene += GRAINS
     if "write_dump" in text:
         scene += "timestep 1.0e-7\nrun 0\n"
     scene += text + "\n"

@@ -483,7 +483,8 @@ TEST_P(Separate, ABodyThatLeavesFeelsNothing)
 {
   const std::string spread = "velocity all ramp vy 0.0 0.2 y 0 0.4 sum yes\nrun 100\n";
   Scene with(scene(0.0, "fix w all mpm/boundary ylo separate friction 0.5", 1.0) + spread);
-  Scene without(scene(0.0, "", 1.0) + spread);
+  // a wall that is out of reach: with musl, points of fields that have a separating wall move otherwise
+  Scene without(scene(0.0, "fix w all mpm/boundary yhi separate", 1.0) + spread);
   EXPECT_LT(difference(with.gather(), without.gather()), 1.0e-13);
   EXPECT_EQ(with.fix("w")->compute_scalar(), 0.0);
 }

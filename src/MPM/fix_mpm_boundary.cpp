@@ -310,6 +310,11 @@ bool FixMPMBoundary::acts_on(const MPMField &field) const
   return field_id.empty() || field_id == field.id();
 }
 
+bool FixMPMBoundary::decides_contact(const MPMField &field) const
+{
+  return kind == SEPARATE && acts_on(field);
+}
+
 bool FixMPMBoundary::holds_axis(const MPMField &field) const
 {
   return acts_on(field) && std::count(face_list.begin(), face_list.end(), 0) && !decides() &&

@@ -69,6 +69,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
 
   void extend_topology(MPMField &) override;
   void topology_changed(MPMField &) override;
+  bool decides_contact(const MPMField &) const override;
   void act(double dt, Stage) override;
 
   /** Keeps the nodes of a field at the face xlo, an axis of symmetry, from moving along x. */

@@ -64,6 +64,7 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
   void couple_topology() override;
   void blocks_found() override;
   void extend_topology(MPMField &) override;
+  bool decides_contact(const MPMField &) const override;
   void act(double dt, Stage) override;
 
   /** Is contact between these two fields (IDs) left to this fix? */

@@ -12,7 +12,6 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_mpm.h"
-#include "fix_mpm_contact.h"
 #include "fix_mpm_elements.h"
 #include "fix_mpm_material.h"
 #include "force.h"
@@ -26,6 +25,7 @@
 #include "mpm_frame.h"
 #include "mpm_guard.h"
 #include "mpm_locking.h"
+#include "mpm_node_action.h"
 #include "mpm_physics.h"
 #include "mpm_point_map.h"
 #include "mpm_points.h"
@@ -177,18 +177,15 @@ void MPMField::find_materials()
 
 /* ----------------------------------------------------------------------
    Velocities of nodes that were mapped back have contact decided by those of the step, and no impulse of their
-   own. A tool without friction that was drawn through a body felt nearly twice its force when points moved with
-   them
+   own. When points moved with them, a tool without friction that was drawn through a body felt nearly twice its
+   force, and a cone that is a separating wall 5 % too little at 1.2 cells of depth
 ------------------------------------------------------------------------- */
 
 static bool is_in_contact(const MPMField &field)
 {
-  const auto fields = MPMField::all(field.lmp);
-  const auto contacts = find_fixes<FixMPMContact>(field.lmp);
-  return std::any_of(contacts.begin(), contacts.end(), [&](const auto *fix) {
-    return std::any_of(fields.begin(), fields.end(), [&](const auto *other) {
-      return other != &field && fix->couples(field.id(), other->id());
-    });
+  const auto actions = find_fixes<MPMNodeAction>(field.lmp);
+  return std::any_of(actions.begin(), actions.end(), [&](const auto *action) {
+    return action->decides_contact(field);
   });
 }
 

@@ -44,6 +44,10 @@ class MPMNodeAction {
    */
   enum Stage { START, STEP, AGAIN, MAPPED_BACK };
 
+  /** Does the action decide in STEP what of this field is in contact? Velocities that are mapped back do not
+   *  know this well enough to move points. */
+  virtual bool decides_contact(const class MPMField &) const { return false; }
+
   /** Change the velocities of the nodes of the fields, and in STEP the old ones of FLIP where
    *  material is held for good (see fix_mpm_boundary.cpp). */
   virtual void act(double dt, Stage) = 0;
