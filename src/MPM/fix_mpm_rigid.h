@@ -69,6 +69,7 @@ class FixMPMRigid : public Fix, public MPMNodeAction, private MPMRigidOptions {
   double compute_scalar() override;
   double compute_vector(int) override;
 
+  bool decides_contact(const MPMField &) const override { return kind == SEPARATE; }
   void act(double dt, Stage) override;
 
   /** Largest time step: no point of the body crosses a cell. */

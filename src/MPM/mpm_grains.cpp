@@ -9,6 +9,7 @@
 #include "mpm_grains.h"
 
 #include "atom.h"
+#include "comm.h"
 #include "error.h"
 #include "fix.h"
 #include "modify.h"
@@ -196,6 +197,7 @@ void MPMGrains::walls(Collision &) const {}
 MPMGrains::Collision MPMGrains::shortest(double ahead) const
 {
   Collision first = {std::numeric_limits<double>::max(), 0, 0};
+  comm->forward_comm();    // velocities of ghosts are of the middle of the step
   for (const auto &style : styles) pairs_of(style, ahead, first);
   walls(first);
   return first;

@@ -36,7 +36,8 @@ class MPMGrains : protected Pointers {
   /** An error if there is no pair style that tells its stiffness; who: the command in it. */
   MPMGrains(class LAMMPS *, const std::string &who);
 
-  /** Of the pairs of this rank that touch, or that would at the speeds of now after this time. */
+  /** Of the pairs of this rank that touch, or that would at the speeds of now after this time. Collective:
+   *  brings ghosts up to date. */
   Collision shortest(double ahead) const;
 
   /** Of two bodies with the reduced mass m, radius R, and the velocity v at an overlap. */

@@ -108,7 +108,8 @@ TEST(Polypic, RoundTrip)
         }
 }
 
-// momentum and angular momentum (with that of the affine fields) in elastic motion
+// momentum and angular momentum (with that of the affine fields) in elastic motion; with musl and usavg, points move
+// with other velocities than they have, and what the manual promises of angular momentum is 1e-4
 
 TEST(Polypic, Conservation)
 {
@@ -128,8 +129,10 @@ TEST(Polypic, Conservation)
       sums(before);
       run.commands("run 200\n");
       sums(after);
+      const bool moves_mapped = std::string(scheme) == "musl" || std::string(scheme) == "usavg";
       for (int k = 0; k < 3; k++)
-        EXPECT_NEAR(after[k], before[k], 1e-11 * (std::fabs(before[2]) + 1.0));
+        EXPECT_NEAR(after[k], before[k],
+                    (k == 2 && moves_mapped ? 1e-4 : 1e-11) * (std::fabs(before[2]) + 1.0));
     }
 }
 
