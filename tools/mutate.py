@@ -26,7 +26,6 @@ import json
 import math
 import os
 import re
-import resource
 import shlex
 import shutil
 import signal
@@ -193,10 +192,9 @@ def run_test(tree, test, names, executable, folder, limit):
             environment.update(word.split("=", 1) for word in entry["value"])
     environment.pop("GTEST_OUTPUT", None)
     seconds = max(1, math.ceil(limit))
-    process = subprocess.Popen(command, cwd=folder, env=environment, stdin=subprocess.DEVNULL,
+    process = subprocess.Popen(["sh", "-c", 'ulimit -t %d; exec "$@"' % seconds, "sh"] + command, cwd=folder, env=environment, stdin=subprocess.DEVNULL,
                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                               start_new_session=True,
-                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 1)))
+                               start_new_session=True)
     try:
         output, _ = process.communicate(timeout=30 * seconds)
         if process.returncode in (-signal.SIGXCPU, 128 + signal.SIGXCPU):

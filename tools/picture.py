@@ -263,14 +263,21 @@ def require_points(snapshots):
         raise SystemExit("no points are left to be drawn: see --cut")
 
 
+def limits_of(snapshots, color):
+    """The least and the largest finite value in all of them."""
+    values = np.concatenate([snapshot.values(color) for snapshot in snapshots])
+    values = values[np.isfinite(values)]
+    if not len(values):
+        raise SystemExit("%s: not a finite number at any point" % color)
+    return values.min(), values.max()
+
+
 def row(line, snapshots, color, diameter, view="xz", cmap="viridis", limits=None, deformed=False, box=None):
     """Snapshots side by side in a line of axes with their times above, all with the same limits: box, (low, high) of
     both axes as shown, by default that of all of them. What is to be given to a color bar."""
     require_points(snapshots)
     low, high = bounds(snapshots, view, diameter) if box is None else box
-    if limits is None:
-        values = [snapshot.values(color) for snapshot in snapshots]
-        limits = min(np.nanmin(v) for v in values), max(np.nanmax(v) for v in values)
+    limits = limits or limits_of(snapshots, color)
     disks = None
     for axes, snapshot in zip(line, snapshots):
         disks = draw(axes, snapshot, snapshot.values(color), diameter, view, cmap, limits, deformed)
@@ -365,9 +372,7 @@ def main():
             raise SystemExit("view %s: two of x, y, z are needed, such as xz" % view)
     snapshots = [cut(snapshot.show_in(args.unit_length, args.unit_time), args.cut) for snapshot in snapshots]
     require_points(snapshots)
-    if args.range is None:
-        values = [snapshot.values(args.color) for snapshot in snapshots]
-        args.range = (min(np.nanmin(v) for v in values), max(np.nanmax(v) for v in values))
+    args.range = args.range or limits_of(snapshots, args.color)
     if moves:
         movie(plt, snapshots, args)
     else:

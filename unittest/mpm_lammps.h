@@ -495,6 +495,21 @@ class Scene {
   }
   const double *reference(int i) const { return references[lmp->atom->tag[i]].data(); }
 
+  /** Adds to L what the last step changed of the angular momentum by moving points along other velocities than those
+   *  that they have, as musl and usavg do: sum of m (x - reference) x v. References are to be of the step before, and
+   *  are of this one then. The sums without it keep what the transfer keeps. */
+  void add_angular_momentum_of_motion(double *L)
+  {
+    for (int i = 0; i < n(); i++) {
+      const double *from = reference(i), *u = v()[i];
+      for (int d = 0; d < 3; d++) {
+        const int e = (d + 1) % 3, f = (d + 2) % 3;
+        L[d] += mass()[i] * ((x()[i][e] - from[e]) * u[f] - (x()[i][f] - from[f]) * u[e]);
+      }
+    }
+    set_reference();
+  }
+
   /** Set the velocity of all atoms to f(position, velocity). */
   void set_velocity(std::function<void(const double *x, double *v)> f)
   {

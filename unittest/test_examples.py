@@ -288,7 +288,7 @@ def half_of_the_steps(path, output):
 
 def output_of(path):
     """Where the output with one process is kept for part 3, in the folder of the build."""
-    return "example-%s.out" % os.path.basename(path)[3:]
+    return os.path.join(os.path.dirname(mt.LMP), "example-%s.out" % os.path.basename(path)[3:])
 
 
 def with_one_process(path):

@@ -412,6 +412,10 @@ TEST_F(ByHand, DumpErrors)
   EXPECT_THAT(dump("file.*.vtk vonmises"), HasSubstr("must end in .vtp"));
   EXPECT_THAT(dump("out%/file.*.vtp vonmises"), HasSubstr("% after the last /"));
   EXPECT_THAT(dump("out*/file.vtp vonmises"), HasSubstr("after the last /"));
+  EXPECT_EQ(dump("*_%.vtp vonmises"), "");
+  run.commands("undump d\n");
+  EXPECT_THAT(run.error("write_dump all mpm/vtk out/%.vtp vonmises\n"),
+              HasSubstr("more than % before .vtp"));
   EXPECT_THAT(dump("file.*.vtp element"), HasSubstr("use type instead"));
   EXPECT_THAT(dump("file.*.vtp c_nothing"), HasSubstr("nothing"));
   EXPECT_THAT(dump("file.*.vtp vonmises strain/*"), HasSubstr("strain/*"));

@@ -128,13 +128,14 @@ struct Row {
   double G, tolerance;
   int first;                     // number of cells of the first entry
   std::vector<double> errors;    // for first, 2 first, 4 first, ... cells
+  double largest = 0.0;          // for the next number of cells
   friend void PrintTo(const Row &c, std::ostream *out) { *out << c.options << ", G = " << c.G; }
 };
 
 // Errors of an independent code, to 3 % or 10 %. Linear functions converge until points cross cells,
 // G = 0.05, and diverge then, but not in the total frame; for motions without crossings, frames agree.
 // Quadratic: it has open knot vectors at the ends, which matters for less than 16 and 8 cells. With MUSL it moves points
-// with the velocities of the nodes, which makes noise under tension: with 64 cells its error is 2.84e-4, here it is 2.38e-4.
+// with the velocities of the nodes, which makes noise under tension: with 64 cells we are better.
 static const Row interval_cases[] = {
     {"shape linear scheme usl", 1e-4, .03, 4, {3.115e-5, 8.917e-6, 2.278e-6, 5.721e-7, 1.432e-7}},
     {"shape linear scheme musl", 1e-4, .03, 4, {3.317e-5, 8.999e-6, 2.282e-6, 5.722e-7, 1.432e-7}},
@@ -148,7 +149,7 @@ static const Row interval_cases[] = {
     {"shape cpgimp aspect 1 2 scheme usl", .05, .1, 8, {6.45e-3, 1.61e-3, 4.01e-4}},
     {"shape cpgimp aspect 1 2 scheme usl", 1e-4, .03, 16, {2.286e-6}},
     {"shape gimp aspect 1 2 scheme usl", 1e-4, .03, 16, {2.286e-6}},
-    {"shape quadratic scheme musl", .05, .1, 8, {8.330e-3, 2.152e-3, 6.080e-4}}};
+    {"shape quadratic scheme musl", .05, .1, 8, {8.330e-3, 2.152e-3, 6.080e-4}, 2.841e-4}};
 
 PARAMETER_TEST(Interval, Error, Row, ValuesIn(interval_cases))
 {
@@ -159,6 +160,7 @@ PARAMETER_TEST(Interval, Error, Row, ValuesIn(interval_cases))
     EXPECT_NEAR(mms_error(1, ne, row.G, options, true) / expected, 1.0, row.tolerance) << ne;
     ne *= 2;
   }
+  if (row.largest > 0.0) EXPECT_LT(mms_error(1, ne, row.G, options, true), row.largest);
 }
 
 // Second order, in one and two dimensions, between walls. The table's cubic splines, with open

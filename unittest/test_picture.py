@@ -69,9 +69,11 @@ assert np.allclose(single[1].x, vtk[2].x, atol=1e-6) and not np.array_equal(sing
 assert [s.time for s in picture.read_series("s.pvd", [0.06, 9.0])] == [0.05, 0.1]
 assert abs(picture.usual_distance(vtk[0].x) - 0.5) < 1e-12
 assert len(picture.cut(vtk[0], "x < 4").x) == 16
+# what has no value at first does not count
+assert picture.limits_of(vtk, "where(x > 5.77, x, nan)") == (vtk[2].x[:, 0].max(),) * 2
 """ % os.path.dirname(TOOL)
 
-# width of what is drawn in pixels over that of the whole box, and the color of its middle
+# the share of the picture that has a color
 LOOK = """import matplotlib.image, numpy as np
 picture = matplotlib.image.imread("p.png")[:, :, :3]
 drawn = (abs(picture - picture.mean(axis=2, keepdims=True)).max(axis=2) > 0.1)
@@ -126,7 +128,7 @@ matplotlib.rcParams["animation.ffmpeg_path"] = "no_such_program"
 with open("log.lammps.vtp", "w") as file:
     file.write("nothing")
 for words, text in ((["s.pvd", "--color", "nothing"], "there are J id"), (["s.pvd", "--view", "xx"], "such as xz"),
-                    (["s.pvd", "--cut", "x > 99"], "no points are left"), (["log.lammps"], "no file of dump custom"),
+                    (["s.pvd", "--cut", "x > 99"], "no points are left"), (["s.pvd", "--color", "nan*x"], "finite"), (["log.lammps"], "no file of dump custom"),
                     (["log.lammps.vtp"], "no file of dump mpm/vtk"), (["s.pvd", "--deformed"], "need the field F"),
                     (["s.pvd", "--unit-time", "mm"], "unit mm: that of the run is us"),
                     (["s.pvd", "-o", "q.mp4"], "a movie with the name .gif does without")):

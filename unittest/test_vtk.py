@@ -159,11 +159,13 @@ def test_pieces_of_three_processes():
     with tempfile.TemporaryDirectory() as folder:
         text = PLANE + "write_dump all mpm/vtk end.%.vtp F velocity modify sort id\n" + WRITE % ("all", "end", "double", "no")
         text += PIECES % ("one", "one.*.vtp", "one", "sort id") + PIECES % ("each", "each.%.*.vtp", "each", "sort id maxfiles 1 compress yes")
+        text += "write_dump all mpm/vtk last%.vtp F velocity modify sort id\n" + PIECES % ("star", "star.*%.vtp", "star", "pad 4")
         text += PIECES % ("two", "two.*.%.vtp", "two", "nfile 2 pad 4") + PIECES % ("none", "none.%.*.vtp", "none", "thresh x > 99 sort id")
         mt.ok(mt.lammps(folder, text + "run 5\n", processes=3))
         names = set(os.listdir(folder))
         assert {name for name in names if name.startswith("each")} == {
             "each.pvd", "each.25.pvtp", "each.0.25.vtp", "each.1.25.vtp", "each.2.25.vtp"}
+        assert {"last.pvtp", "last0.vtp", "star.pvd", "star.0025.pvtp", "star.00252.vtp"} < names, names
         assert {name for name in names if name.startswith("two")} == {
             "two.pvd", "two.0020.pvtp", "two.0020.0.vtp", "two.0020.1.vtp", "two.0025.pvtp", "two.0025.0.vtp", "two.0025.1.vtp"}
         one = picture.read_series(os.path.join(folder, "one.pvd"))
@@ -180,6 +182,16 @@ def test_pieces_of_three_processes():
         for a, b in (("one.25.vtp", "each.25.pvtp"), ("one.25.vtp", "two.0025.pvtp")):
             a, b = read(vtkXMLPolyDataReader(), os.path.join(folder, a))[1], arrays_of(vtkXMLPPolyDataReader(), os.path.join(folder, b))
             same(a, by_id(b))
+
+
+def test_lists_go_with_their_pieces():
+    # a dump that is told anew how many files to keep leaves those that are there
+    with tempfile.TemporaryDirectory() as folder:
+        text = PLANE + PIECES % ("d", "d.%.*.vtp", "d", "maxfiles 2") + "run 15\ndump_modify d maxfiles 1\nrun 15\n"
+        mt.ok(mt.lammps(folder, text, processes=2))
+        assert set(os.listdir(folder)) >= {"d.pvd"}
+        kept = sorted(name for name in os.listdir(folder) if name.startswith("d.") and name != "d.pvd")
+        assert kept == sorted(form % step for step in (30, 35, 50) for form in ("d.%d.pvtp", "d.0.%d.vtp", "d.1.%d.vtp")), kept
 
 
 def test_compressed_files():

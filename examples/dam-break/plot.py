@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # This file is part of the MPM package for LAMMPS, distributed under the GNU
 # General Public License, version 2; see the file LICENSE.
-"""Water at three times, front and height over time, both with the experiment: plot.py [folder], after the run."""
+"""Water at four times, front and height over time, both with the experiment: plot.py [folder], after the run."""
 
 import os
 import sys

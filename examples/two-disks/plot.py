@@ -21,7 +21,7 @@ series = read_series(os.path.join(folder, "disks.pvd"), (1.0, 2.0, 2.5, 3.5))
 curve = read_table(os.path.join(folder, "energy.txt"))
 time = curve["v_t"]
 
-# another code with the same lattice: time, kinetic, stored, and all energy; README.md
+# energies of another code with the same lattice, at times; README.md
 OTHER = {"kinetic": [(1.95, 0.119), (3.5, 2.269)], "stored": [(3.5, 0.328)]}
 TOUCH = (0.6 * np.sqrt(2) - 0.4) / (0.2 * np.sqrt(2))    # gap over closing speed
 

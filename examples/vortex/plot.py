@@ -15,7 +15,7 @@ import numpy as np
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, "..", "..", "tools"))
 
-from picture import draw, read_series, row, usual_distance
+from picture import read_series, row, usual_distance
 
 folder = sys.argv[1] if len(sys.argv) > 1 else "."
 ANGLE = 0.1    # G of the input

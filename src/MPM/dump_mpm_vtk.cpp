@@ -14,6 +14,7 @@
 #include "modify.h"
 #include "tokenizer.h"
 
+#include <algorithm>
 #include <map>
 #include <set>
 
@@ -266,11 +267,16 @@ void DumpMPMVTK::list_pieces()
     error->one(FLERR, Error::NOLASTLINE, "Dump {} cannot write the list of pieces {}: {}", id, file,
                utils::getsyserror());
 
-  // the pieces of former snapshots are deleted by Dump
+  // Dump deletes the pieces of former snapshots: their lists go with the piece of this process
 
-  listed.push_back(file);
+  const auto gone = [](const std::pair<std::string, std::string> &former) {
+    if (platform::file_is_readable(former.second)) return false;
+    remove(former.first.c_str());
+    return true;
+  };
+  listed.erase(std::remove_if(listed.begin(), listed.end(), gone), listed.end());
   if (maxfiles > 0)
-    for (; (int) listed.size() > maxfiles; listed.pop_front()) remove(listed.front().c_str());
+    listed.emplace_back(file, platform::path_join(platform::path_dirname(filename), names[0]));
 }
 
 std::string DumpMPMVTK::listed_file()

@@ -18,7 +18,7 @@ DumpStyle(mpm/vtk,DumpMPMVTK);
 #include "dump_custom.h"
 #include "mpm_vtk.h"
 
-#include <deque>
+#include <utility>
 
 namespace LAMMPS_NS {
 
@@ -70,8 +70,9 @@ class DumpMPMVTK : public DumpVTKSeries<DumpCustom> {
   MPM_NS::VTKFile vtk{"PolyData"};    // arrays: fields, position, connectivity, offsets
   bigint nwritten = 0;                // points of the present file
   std::vector<double> values;
-  int npiece = 1;                    // files of a snapshot, with a % in the name
-  std::deque<std::string> listed;    // lists of pieces that exist
+  int npiece = 1;    // files of a snapshot, with a % in the name
+  /** Lists of pieces that are to be deleted with the pieces, and the first piece of each. */
+  std::vector<std::pair<std::string, std::string>> listed;
 
   void list_pieces();
   void write_field(const Field &, int array, int n, const double *rows);

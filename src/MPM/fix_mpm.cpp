@@ -340,8 +340,9 @@ void FixMPM::write_restart(FILE *fp)
   }
   saved.deleted = field->guard->deleted;
   saved.lists = field->guard->lists();
-  MPI_Reduce(static_cast<MPMEnergies *>(&field->ledger), &saved.ledger,
-             sizeof(MPMEnergies) / sizeof(double), MPI_DOUBLE, MPI_SUM, 0, world);
+  MPMEnergies &energies = field->ledger;
+  keep_totals(world, (double *) &energies, sizeof(MPMEnergies) / sizeof(double));
+  saved.ledger = energies;
   std::vector<double> start = field->ledger.start;
   for (auto *compute : modify->get_compute_by_style("^mpm/energy$"))
     if (start.empty()) start = dynamic_cast<ComputeMPMEnergy *>(compute)->start_sums();

@@ -64,6 +64,7 @@
 #include "modify.h"
 #include "mpm_field.h"
 #include "mpm_options.h"
+#include "mpm_state.h"
 #include "region.h"
 #include "region_mpm_mesh.h"
 #include "update.h"
@@ -1526,8 +1527,10 @@ double FixMPMBoundary::compute_vector(int i)
 
 void FixMPMBoundary::write_restart(FILE *fp)
 {
+  keep_totals(world, &past.work, 1);
   Past all = past;
-  all.work = FixMPMBoundary::compute_scalar();
+  all.work *= force->mvv2e;
+  past.work = all.work / force->mvv2e;    // with the digits of the file
   if (comm->me) return;
   const int size = sizeof(Past);
   fwrite(&size, sizeof(int), 1, fp);

@@ -50,6 +50,7 @@
 #include "mpm_node_sums.h"
 #include "mpm_options.h"
 #include "mpm_point_map.h"
+#include "mpm_state.h"
 #include "mpm_stencil.h"
 #include "update.h"
 
@@ -1143,9 +1144,11 @@ double FixMPMContact::compute_array(int row, int column)
 
 void FixMPMContact::write_restart(FILE *fp)
 {
-  std::vector<double> work, total(1 + size_array_rows, -size_array_rows);
-  for (int p = 0; p < size_array_rows; p++) work.push_back(accounts[p].work);
-  MPI_Reduce(work.data(), &total[1], size_array_rows, MPI_DOUBLE, MPI_SUM, 0, world);
+  std::vector<double> total(1, -size_array_rows);
+  for (int p = 0; p < size_array_rows; p++) {
+    keep_totals(world, &accounts[p].work, 1);
+    total.push_back(accounts[p].work);
+  }
   if (comm->me) return;
   const std::string text = utils::join_words(names, " ");
   const int numbers = (int) (total.size() * sizeof(double)), size = numbers + (int) text.size() + 1;

@@ -806,12 +806,12 @@ void FixMPMHandshake::unpack_forward_comm(int n, int first, double *buf)
 
 void FixMPMHandshake::write_restart(FILE *fp)
 {
-  decltype(energy) all;
-  MPI_Allreduce(&energy, &all, 2, MPI_DOUBLE, MPI_SUM, world);
+  keep_totals(world, &energy.heat, 1);
+  keep_totals(world, &energy.lost, 1);
   if (comm->me) return;
-  const int size = sizeof(all);
+  const int size = sizeof(energy);
   fwrite(&size, sizeof(int), 1, fp);
-  fwrite(&all, size, 1, fp);
+  fwrite(&energy, size, 1, fp);
 }
 
 void FixMPMHandshake::restart(char *buf)

@@ -212,8 +212,10 @@ void FixMPMMaterial::write_restart(FILE *fp)
   double list[3 + NWORK];
   list[0] = RESTART_VERSION;
   list[1] = NWORK;
-  MPI_Reduce(work, list + 2, NWORK, MPI_DOUBLE, MPI_SUM, 0, world);
-  MPI_Reduce(&stress_work, list + 2 + NWORK, 1, MPI_DOUBLE, MPI_SUM, 0, world);
+  keep_totals(world, work, NWORK);
+  keep_totals(world, &stress_work, 1);
+  std::copy(work, work + NWORK, list + 2);
+  list[2 + NWORK] = stress_work;
   if (comm->me) return;
   const std::string text = names();
   const int size = (int) (sizeof(list) + text.size() + 1);

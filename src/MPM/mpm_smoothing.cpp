@@ -37,7 +37,6 @@
 #include "force.h"
 #include "material/batch.h"
 #include "material/material.h"
-#include "material/viscous.h"
 #include "mpm_point_map.h"
 #include "mpm_points.h"
 #include "mpm_stencil.h"
@@ -269,7 +268,7 @@ template <int DIM> void MPMSmoothing::change_volumes(const MPMPointMap::Run &run
 {
   const Material &material = *run.material->material;
   // is all stress the pressure that belongs to the volume of the point?
-  const bool plain = !is_viscous(material) && !field.options.averages_stress();
+  const bool plain = !material.is_viscous() && !field.options.averages_stress();
   Batch &b = *field.batch;
   for (int start = run.first; start < run.last; start += BATCH) {
     const int n = std::min(BATCH, run.last - start);

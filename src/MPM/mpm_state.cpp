@@ -13,6 +13,7 @@
 #include "memory.h"
 
 #include <algorithm>
+#include <vector>
 
 using namespace LAMMPS_NS;
 
@@ -146,4 +147,13 @@ void FixMPMState::unpack_restart(int i, int nth)
         "fix the options with which the file was written",
         n, id, style, state.size(), state.layout());
   state.unpack(i, values);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void LAMMPS_NS::keep_totals(MPI_Comm world, double *values, int n)
+{
+  std::vector<double> total(n, 0.0);
+  MPI_Reduce(values, total.data(), n, MPI_DOUBLE, MPI_SUM, 0, world);
+  std::copy(total.begin(), total.end(), values);
 }

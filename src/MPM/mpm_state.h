@@ -91,5 +91,9 @@ class FixMPMState : public Fix {
   bool restarts = false, callbacks = false;
 };
 
+/** The sums of n values over processes: process 0 goes on with them, the others with zero. This is what a restart file
+ *  gets, and as the run that writes it goes on in the same way, both have the same digits. */
+void keep_totals(MPI_Comm, double *values, int n);
+
 }    // namespace LAMMPS_NS
 #endif

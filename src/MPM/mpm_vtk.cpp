@@ -58,8 +58,9 @@ std::string VTKFile::without_percent(const std::string &name)
 {
   const auto at = name.find('%');
   if (at == std::string::npos) return name;
+  const auto extension = name.rfind('.');    // its dot stays
   const auto separates = [&](std::size_t k) {
-    return k < name.size() && strchr("._-", name[k]);
+    return k < name.size() && k != extension && strchr("._-", name[k]);
   };
   if (at > 0 && separates(at - 1)) return name.substr(0, at - 1) + name.substr(at + 1);
   return name.substr(0, at) + name.substr(at + (separates(at + 1) ? 2 : 1));
@@ -79,6 +80,8 @@ std::string VTKFile::name_error(const std::string &name, const std::string &exte
       return fmt::format("writes one file for all processes: remove % from file name {}", name);
     if (name.find('/', percent) != std::string::npos)
       return fmt::format("file name must have its % after the last /: {}", name);
+    if (platform::path_basename(without_percent(name)) == end)
+      return fmt::format("file name must have more than % before {}: {}", end, name);
   }
   const auto star = name.find('*');
   if (star == std::string::npos) {
@@ -261,7 +264,10 @@ void VTKFile::end()
     fwrite(a.packed.data(), 1, a.packed.size(), fp);
   }
   fputs("\n</AppendedData>\n</VTKFile>\n", fp);
-  for (auto &a : arrays) a.packed = {};
+  for (auto &a : arrays) {    // memory of the size of the file
+    a.packed = std::vector<char>();
+    a.pending = std::vector<char>();
+  }
 }
 
 /* ---------------------------------------------------------------------- */

@@ -622,6 +622,27 @@ TEST(GursonLaw, NoVoids)
   }
 }
 
+// what voids it had are closed by 20 to 200 times the yield stress, in one step or many; the rest is a von Mises solid
+TEST(GursonLaw, ShearOfClosedVoids)
+{
+  for (const double f0 : {1e-4, 0.01, 0.1})
+    for (const double squeeze : {0.05, 0.1, 0.25, 0.5})
+      for (const int n : {1, 20}) {
+        Point p(joined("density 7800 gurson 2e11 0.3 4e8 ", f0, " hardening 0.004 0.1"));
+        for (int i = 1; i <= n; i++)
+          move_to(p, isotropic(std::exp(-(squeeze + 1.5 * f0) * i / n / 3)));
+        const std::string where = joined(f0, " squeezed by ", squeeze, " in ", n);
+        EXPECT_GT(p.pressure(), 20 * 4e8) << where;
+        EXPECT_LT(value(p, "porosity"), 1e-6) << where;
+        for (int i = 0; i < 20; i++) shear(p, 0.003);
+        const double e = value(p, "eplastic");
+        EXPECT_NEAR(p.vonmises() / GTN.y(e), 1.0, 1e-6) << where;
+        for (int i = 0; i < 20; i++) shear(p, 0.003);
+        EXPECT_NEAR(p.vonmises() / GTN.y(value(p, "eplastic")), 1.0, 1e-6) << where;
+        EXPECT_NEAR(value(p, "eplastic") - e, 0.06, 1e-3) << where;
+      }
+}
+
 // voids close under pressure; the work of the matrix is all plastic work
 TEST(GursonLaw, CompactionAndWork)
 {

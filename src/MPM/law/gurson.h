@@ -123,7 +123,8 @@ namespace {
     {
       Guess g;
       const double grown = f0 * expm1(z);
-      g.f = f0 + grown;
+      g.f = f0 *
+          exp(z);    // f0 + grown has no digits where voids vanish, and cosh is as large as f is small
       const double v = log1p(grown / (1.0 - g.f)), vmax = mt / K;
       g.v = mt > 0.0 ? min(max(v, 0.0), vmax) : max(min(v, 0.0), vmax);
       g.m = mt - K * g.v;

@@ -13,7 +13,6 @@
 
 #include "material/parts.h"
 #include "material/random_field.h"
-#include "material/viscous.h"
 
 #include <algorithm>
 #include <cmath>
@@ -66,7 +65,7 @@ class ComposedMaterial : public Material {
   const std::vector<HistoryVariable> &history() const override { return variables; }
   bool uses_F() const override { return shape_matters; }
   bool is_barotropic() const override { return eos && !base && !damage && variables.empty(); }
-  bool is_viscous() const
+  bool is_viscous() const override
   {
     return std::any_of(laws.begin(), laws.end(), [](const auto &law) {
       return law.part == VISCOSITY;
@@ -571,9 +570,4 @@ std::unique_ptr<Material> MPM_NS::compose(const MaterialDefinition &definition,
                                           const LawTable *table)
 {
   return std::make_unique<ComposedMaterial>(definition, table);
-}
-
-bool MPM_NS::is_viscous(const Material &material)
-{
-  return static_cast<const ComposedMaterial &>(material).is_viscous();
 }

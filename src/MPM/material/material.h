@@ -111,6 +111,8 @@ class Material {
 
   /** A fluid whose pressure depends on its volume only: what points keep is J, and no history. */
   virtual bool is_barotropic() const = 0;
+  /** Does it have a viscosity, of any kind? If not, the stress of a barotropic fluid is its pressure alone. */
+  virtual bool is_viscous() const = 0;
   /** Does it resist a shear at rest? Not an equation of state with or without a viscosity. */
   virtual bool is_solid() const = 0;
 
