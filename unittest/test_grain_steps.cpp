@@ -176,6 +176,69 @@ SERIAL_TEST(GrainSteps, OverdampedContact)
   }
 }
 
+struct Contact {
+  double first, last;    // time steps
+  int touching;
+  double rebound;
+};
+static Contact collide(const std::string &units, const std::string &pair)
+{
+  Scene run(replaced(two_grains(SPEED), "units lj", "units " + units) + pair +
+            "fix step all mpm/dt 0.5 grains 0.05\nrun 0\n");
+  Contact result = {run.lmp->update->dt, 0.0, 0, 0.0};
+  for (int n = 0; n < 1000; n++) {
+    run.commands("run 1 post no\n");
+    if (run.evaluate("xcm(b,x)-xcm(a,x)") < RA + RB)
+      result.touching++;
+    else if (result.touching)
+      break;
+    result.last = run.lmp->update->dt;
+  }
+  result.rebound = run.evaluate("vcm(b,x)-vcm(a,x)");
+  return result;
+}
+
+// In units where a force of 1 gives a mass of 1 another acceleration than 1, the collision is the same with forces over this
+// number, and takes the same steps: springs, damping by mass, by its velocity alone, and beyond the critical value
+SERIAL_TEST(GrainSteps, AreTheSameInOtherUnits)
+{
+  const double ftm2v = 1.0 / 1.0364269e-4, nktv2p = 1.6021765e6;    // of metal, as in LAMMPS
+  const std::vector<std::array<std::string, 2>> pairs = {
+      {"gran/hooke %.17g NULL %.17g NULL 0 0\npair_coeff * *", "8"},
+      {"gran/hooke %.17g NULL %.17g NULL 0 0\npair_coeff * *", "60"},
+      {"gran/hertz/history %.17g NULL %.17g NULL 0 0\npair_coeff * *", "400"},
+      {"gran/hertz/history %.17g NULL %.17g NULL 0 0\npair_coeff * *", "1500"},
+      {"granular\npair_coeff * * hooke %.17g %.17g tangential linear_nohistory 0 0 damping "
+       "velocity",
+       "50"},
+      {"granular\npair_coeff * * hertz %.17g %.17g tangential linear_nohistory 0 0", "1500"}};
+  for (const auto &[pair, damping] : pairs) {
+    const auto with = [&](double unit) {
+      // gran/hertz/history alone has its stiffness in units of pressure
+      const double pressure = unit != 1.0 && pair.find("gran/hertz") == 0 ? nktv2p : 1.0;
+      return strprintf(("pair_style " + pair + "\n").c_str(), KN * pressure / unit,
+                       stod(damping) / unit);
+    };
+    const auto lj = collide("lj", with(1.0)), metal = collide("metal", with(ftm2v));
+    EXPECT_NEAR(metal.first / lj.first, 1.0, 1.0e-6) << with(1.0);
+    EXPECT_NEAR(metal.last / lj.last, 1.0, 1.0e-6) << with(1.0);
+    EXPECT_NEAR(metal.rebound / lj.rebound, 1.0, 1.0e-5) << with(1.0);
+    EXPECT_EQ(metal.touching, lj.touching) << with(1.0);
+    EXPECT_GT(lj.touching, 10) << with(1.0);
+  }
+
+  // the damping damp sqrt(m k) v of LAMMPS has no factor of units: in those of metal it is above the critical one
+  const double e = std::log(0.9), damp = -2.0 * e / std::hypot(PI, e), k = KN / ftm2v;
+  Scene run(replaced(two_grains(SPEED), "units lj", "units metal") +
+            strprintf("pair_style granular\npair_coeff * * hooke %.17g 0.9 tangential "
+                      "linear_nohistory 0 0 damping coeff_restitution\n",
+                      k) +
+            "fix step all mpm/dt 0.5 grains 0.1\nrun 0\n");
+  const double m = reduced_mass(), decay = 0.5 * ftm2v / m * damp * std::sqrt(m * k);
+  const double fastest = decay + std::sqrt(decay * decay - ftm2v * k / m);
+  EXPECT_NEAR(run.lmp->update->dt * fastest / (0.1 * PI), 1.0, 1.0e-6);
+}
+
 // a grain that rests on another one: with Hertz's force of the free collision that compresses as much
 SERIAL_TEST(GrainSteps, PairUnderLoad)
 {

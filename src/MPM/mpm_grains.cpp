@@ -12,6 +12,7 @@
 #include "comm.h"
 #include "error.h"
 #include "fix.h"
+#include "force.h"
 #include "modify.h"
 #include "mpm_pair_styles.h"
 #include "neigh_list.h"
@@ -65,8 +66,25 @@ double MPMGrains::duration(const Law &law, double m, double R, double overlap, d
   double decay = 0.5 * law.damping;
   if (law.damping_is == Law::PLAIN) decay /= m;
   if (law.damping_is == Law::BY_MASS_AND_RADIUS) decay *= std::sqrt(R * largest);
-  if (law.damping_is == Law::BY_STIFFNESS) decay = 0.0;    // never above critical damping
+  if (law.damping_is == Law::BY_STIFFNESS) {    // force over overlap at the largest one
+    const double stiffness = law.hertz ? law.k * std::sqrt(R * largest) : law.k;
+    decay *= std::sqrt(stiffness / m);
+  }
   return M_PI / (decay > rate ? decay + std::sqrt(decay * decay - rate * rate) : rate);
+}
+
+/* ----------------------------------------------------------------------
+   Forces in units of mass times acceleration. All of LAMMPS's formulas of damping have the mass in units of mass,
+   so that a force ~ mass gamma v becomes an acceleration ftm2v gamma v; in that of tsuji and coeff_restitution,
+   damp sqrt(m k) v, the factor of k takes one root of it.
+------------------------------------------------------------------------- */
+
+MPMGrains::Law MPMGrains::in_units(Law law) const
+{
+  const double ftm2v = force->ftm2v;
+  law.k *= ftm2v;
+  law.damping *= law.damping_is == Law::BY_STIFFNESS ? std::sqrt(ftm2v) : ftm2v;
+  return law;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -106,8 +124,8 @@ MPMGrains::MPMGrains(LAMMPS *lmp, const std::string &who) : Pointers(lmp), who(w
       auto *const pair = static_cast<PairGranHookeHistory *>(style.pair);
       const bool hertz = utils::strmatch(style.name, "^gran/hertz");
       styles.push_back({style.pair,
-                        {pair->*&HookeHistory::kn, hertz, pair->*&HookeHistory::gamman,
-                         hertz ? Law::BY_MASS_AND_RADIUS : Law::BY_MASS},
+                        in_units({pair->*&HookeHistory::kn, hertz, pair->*&HookeHistory::gamman,
+                                  hertz ? Law::BY_MASS_AND_RADIUS : Law::BY_MASS}),
                         false});
     } else if (style.name == "granular") {
       styles.push_back({style.pair, {}, true});
@@ -126,7 +144,7 @@ MPMGrains::MPMGrains(LAMMPS *lmp, const std::string &who) : Pointers(lmp), who(w
                who);
 }
 
-/** The numbers of a model are what its force is for overlap and contact radius 1. */
+/** The numbers of a model are what its force is for overlap, contact radius, mass, and velocity 1. */
 MPMGrains::Law MPMGrains::law_of_model(void *any) const
 {
   auto *const model = static_cast<Granular_NS::GranularModel *>(any);
@@ -140,13 +158,16 @@ MPMGrains::Law MPMGrains::law_of_model(void *any) const
                "last, but only with hooke, hertz, and hertz/material: use keyword max instead",
                who, name);
   model->delta = model->contact_radius = 1.0;
-  law.k = normal->calculate_forces();
-  law.damping = normal->get_damp();
+  model->meff = 1.0;
+  model->vnnr = -1.0;
+  model->Fnormal = law.k = normal->calculate_forces();
+  law.damping = model->damping_model->calculate_forces();
   law.damping_is = damping == "velocity" ? Law::PLAIN
       : damping == "mass_velocity"       ? Law::BY_MASS
       : damping == "viscoelastic"        ? Law::BY_MASS_AND_RADIUS
                                          : Law::BY_STIFFNESS;
-  return law;
+  if (law.damping_is == Law::BY_STIFFNESS && law.k > 0.0) law.damping /= std::sqrt(law.k);
+  return in_units(law);
 }
 
 MPMGrains::Law MPMGrains::law_of(const Style &style, int itype, int jtype) const

@@ -21,11 +21,12 @@ namespace LAMMPS_NS {
  *  stiffness that pair styles and walls of LAMMPS's package GRANULAR have. */
 class MPMGrains : protected Pointers {
  public:
-  /** The force of a contact as it depends on the overlap: k delta, or k sqrt(R) delta^1.5. */
+  /** The force of a contact as it depends on the overlap: k delta, or k sqrt(R) delta^1.5, in units of mass times
+   *  acceleration. */
   struct Law {
     double k = 0.0;
     bool hertz = false;
-    double damping = 0.0;    ///< over the velocity of approach
+    double damping = 0.0;    ///< force over the velocity of approach, and over what it goes by
     enum { BY_MASS, PLAIN, BY_MASS_AND_RADIUS, BY_STIFFNESS } damping_is = BY_MASS;
   };
   struct Collision {
@@ -52,6 +53,7 @@ class MPMGrains : protected Pointers {
   std::vector<Style> styles;
   std::string who;
 
+  Law in_units(Law) const;
   Law law_of(const Style &, int itype, int jtype) const;
   Law law_of_model(void *model) const;
   void pairs_of(const Style &, double ahead, Collision &) const;
