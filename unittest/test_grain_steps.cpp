@@ -272,6 +272,30 @@ SERIAL_TEST(GrainSteps, OtherPartners)
   EXPECT_NEAR(points.lmp->update->dt, 0.1 * PI * std::sqrt(MB * mp / (MB + mp) / KN), 1.0e-10);
 }
 
+// points that take one step in three of the run: the share is that of a step of theirs
+SERIAL_TEST(GrainSteps, OfPointsWithLongSteps)
+{
+  const std::string at_point = "fix skin far mpm/surface\nneigh_modify exclude type 1 1\n"
+                               "displace_atoms b move 6.57 -0.25 -0.25\n"
+                               "velocity b set 0.5 0 0\n";
+  const std::string step = "fix step all mpm/dt 0.5 grains 0.1\nrun 0\n";
+  const std::string scene = replaced(two_grains(SPEED), "every 1", "every 3");
+  const std::string hooke = "pair_style gran/hooke 300 NULL 0 NULL 0 0\npair_coeff * *\n";
+  Scene points(scene + hooke + at_point + step);
+  const double mp = 1.0 / 8.0;
+  EXPECT_NEAR(points.lmp->update->dt, 0.1 / 3.0 * PI * std::sqrt(MB * mp / (MB + mp) / KN),
+              1.0e-10);
+
+  Scene grains(scene + hooke + step);
+  EXPECT_NEAR(grains.lmp->update->dt, 0.1 * PI * std::sqrt(reduced_mass() / KN), 1.0e-10);
+
+  // walls hold points of their group, too
+  const std::string weak = "pair_style gran/hooke 0.01 NULL 0 NULL 0 0\npair_coeff * *\n";
+  Scene wall(scene + weak + "fix skin far mpm/surface\nneigh_modify exclude type 1 1\n" +
+             "fix w far wall/gran hooke 5000 NULL 0 NULL 0 0 zplane 0 8\n" + step);
+  EXPECT_NEAR(wall.lmp->update->dt, 0.1 / 3.0 * PI * std::sqrt(mp / 5000.0), 1.0e-10);
+}
+
 // a grain that comes from far away, between two looks, with points that take one step in three of the run
 TEST(GrainSteps, ArriveBetweenLooks)
 {

@@ -14,6 +14,7 @@
 #include "fix.h"
 #include "force.h"
 #include "modify.h"
+#include "mpm_field.h"
 #include "mpm_pair_styles.h"
 #include "neigh_list.h"
 
@@ -85,6 +86,17 @@ MPMGrains::Law MPMGrains::in_units(Law law) const
   law.k *= ftm2v;
   law.damping *= law.damping_is == Law::BY_STIFFNESS ? std::sqrt(ftm2v) : ftm2v;
   return law;
+}
+
+/* ----------------------------------------------------------------------
+   points take one step in this many steps of the run, all of the same number
+------------------------------------------------------------------------- */
+
+int MPMGrains::steps_of(int i) const
+{
+  if (!(atom->vfrac[i] > 0.0)) return 1;
+  const auto fields = MPMField::all(lmp);
+  return fields.empty() ? 1 : fields[0]->options.every;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -189,7 +201,8 @@ void MPMGrains::walls(Collision &first) const
       if (!(atom->mask[i] & fix->groupbit) || !(atom->radius[i] > 0.0)) continue;
       const double *const v = atom->v[i];
       const double speed = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-      const double t = duration(law, atom->rmass[i], atom->radius[i], 0.0, speed);
+      const double t =
+          duration(law, atom->rmass[i], atom->radius[i], 0.0, speed) / steps_of(i);
       if (t < first.duration) first = {t, atom->tag[i], 0};
     }
   }
@@ -250,7 +263,8 @@ void MPMGrains::pairs_of(const Style &style, double ahead, Collision &first) con
       if (moves == 0.0) continue;
       const double R = atom->radius[i] * atom->radius[j] / sum;
       const auto law = law_of(style, atom->type[i], atom->type[j]);
-      const double t = duration(law, 1.0 / moves, R, overlap, v);
+      const double t =
+          duration(law, 1.0 / moves, R, overlap, v) / std::max(steps_of(i), steps_of(j));
       if (t < first.duration) first = {t, atom->tag[i], atom->tag[j]};
     }
   }

@@ -30,7 +30,7 @@ class MPMGrains : protected Pointers {
     enum { BY_MASS, PLAIN, BY_MASS_AND_RADIUS, BY_STIFFNESS } damping_is = BY_MASS;
   };
   struct Collision {
-    double duration;
+    double duration;    ///< with a point in steps of all: over the number of these in one of the points
     tagint i, j;    ///< j = 0: with a wall
   };
 
@@ -54,6 +54,7 @@ class MPMGrains : protected Pointers {
   std::string who;
 
   Law in_units(Law) const;
+  int steps_of(int i) const;
   Law law_of(const Style &, int itype, int jtype) const;
   Law law_of_model(void *model) const;
   void pairs_of(const Style &, double ahead, Collision &) const;
