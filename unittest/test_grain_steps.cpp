@@ -57,9 +57,8 @@ static double hooke_time(double k)
 }
 
 /** Force K delta^1.5: 2.94 ((5 m/(4 K))^2/v)^(1/5), as in textbooks. */
-static double hertz_time(double K, double v)
+static double hertz_time(double K, double v, double m = reduced_mass())
 {
-  const double m = reduced_mass();
   return 2.9432749 * std::pow(std::pow(1.25 * m / K, 2) / v, 0.2);
 }
 
@@ -249,6 +248,41 @@ SERIAL_TEST(GrainSteps, PairUnderLoad)
             "fix step all mpm/dt 0.5 grains 0.1\nrun 0\n");
   const double v = std::sqrt(0.8 * K * std::pow(overlap, 2.5) / reduced_mass());
   EXPECT_NEAR(run.lmp->update->dt / (0.1 * hertz_time(K, v)), 1.0, 1.0e-6);
+}
+
+// the same for walls: a plane on either side, one that may wiggle, and that of a region
+SERIAL_TEST(GrainSteps, WallUnderLoad)
+{
+  const double overlap = 0.01, K = KN * std::sqrt(RB),
+               v = std::sqrt(0.8 * K * std::pow(overlap, 2.5) / MB);
+  const std::string pair = "pair_style gran/hertz/history 1.0e-3 NULL 0 NULL 0 0\npair_coeff * *\n";
+  const std::string step =
+      "displace_atoms b move 5 0 0\nfix step all mpm/dt 0.5 max 1 grains 0.1\n";
+  const std::string hertz = " granular hertz 300 0 tangential linear_nohistory 0 0 ";
+  const std::string low = strprintf("%.17g", 4.0 - RB + overlap);
+  for (const std::string &wall :
+       {"wall/gran" + hertz + "zplane " + low + " NULL",
+        "wall/gran" + hertz + "yplane 0 " + strprintf("%.17g", 4.0 + RB - overlap),
+        "wall/gran" + hertz + "zplane " + low + " 8 wiggle z 0.5 7.0",
+        "wall/gran/region" + hertz + "region room"}) {
+    SCOPED_TRACE(wall);
+    Scene run(two_grains(0.0) + pair + "region room block 0 20 0 8 " + low + " 8\n" + "fix w b " +
+              wall + "\n" + step + "run 0\n");
+    EXPECT_NEAR(run.lmp->update->dt / (0.1 * hertz_time(K, v, MB)), 1.0, 1.0e-6);
+    // one that is frozen has no collision
+    run.commands("fix hold b freeze\nrun 0\n");
+    EXPECT_EQ(run.lmp->update->dt, 1.0);
+  }
+  Scene apart(two_grains(0.0) + pair + "fix w a wall/gran" + hertz + "zplane 3 NULL\n" + step +
+              "run 0\n");
+  EXPECT_EQ(apart.lmp->update->dt, 1.0);
+
+  // one that wiggles by 0.01 to both sides has gone 0.01 after a quarter of a period
+  Scene wiggles(two_grains(0.0) + pair + "fix w b wall/gran" + hertz +
+                strprintf("zplane %.17g NULL wiggle z 0.01 4.0e-3\n", 4.0 - RB) +
+                "displace_atoms b move 5 0 0\ntimestep 1.0e-5\nunfix move\nrun 100\n"
+                "fix step all mpm/dt 0.5 max 1 grains 0.1\nrun 0\n");
+  EXPECT_NEAR(wiggles.lmp->update->dt / (0.1 * hertz_time(K, v, MB)), 1.0, 1.0e-6);
 }
 
 // walls, frozen grains, and a grain on points

@@ -17,6 +17,8 @@
 #include "mpm_field.h"
 #include "mpm_pair_styles.h"
 #include "neigh_list.h"
+#include "region.h"
+#include "update.h"
 
 #include <cmath>
 #include <cstring>
@@ -28,6 +30,7 @@
 #if __has_include(<pair_granular.h>)
 #define MPM_HAS_GRANULAR 1
 #include <fix_wall_gran.h>
+#include <fix_wall_gran_region.h>
 #include <gran_sub_mod_damping.h>
 #include <gran_sub_mod_normal.h>
 #include <granular_model.h>
@@ -107,6 +110,18 @@ namespace {
 struct HookeHistory : PairGranHookeHistory {
   using PairGranHookeHistory::gamman;
   using PairGranHookeHistory::kn;
+};
+
+struct Wall : FixWallGran {
+  using FixWallGran::amplitude;
+  using FixWallGran::axis;
+  using FixWallGran::dt;
+  using FixWallGran::hi;
+  using FixWallGran::lo;
+  using FixWallGran::omega;
+  using FixWallGran::time_origin;
+  using FixWallGran::wallstyle;
+  using FixWallGran::wiggle;
 };
 
 bool is_classic(std::string name)
@@ -190,19 +205,47 @@ MPMGrains::Law MPMGrains::law_of(const Style &style, int itype, int jtype) const
 }
 
 /* ----------------------------------------------------------------------
-   where walls are is not told, so that each grain of their group counts, with its whole velocity
+   with planes, which may wiggle, and with regions, whose position is that of the last forces; negative: none
+------------------------------------------------------------------------- */
+
+static double deepest_overlap(const Fix &fix, bigint now, const double *x, double radius)
+{
+  if (strcmp(fix.style, "wall/gran/region") == 0) {
+    auto *const region = static_cast<const FixWallGranRegion &>(fix).region;
+    double overlap = -1.0;
+    if (!region->match(x[0], x[1], x[2])) return overlap;
+    const int ncontact = region->surface(x[0], x[1], x[2], radius);
+    for (int k = 0; k < ncontact; k++) overlap = std::max(overlap, radius - region->contact[k].r);
+    return overlap;
+  }
+  const auto &wall = static_cast<const FixWallGran &>(fix);
+  const int d = wall.*&Wall::wallstyle;
+  if (d < 0 || d > 2) return -1.0;
+  double shift = 0.0;
+  if (wall.*&Wall::wiggle && wall.*&Wall::axis == d) {
+    const double t = (double) (now - wall.*&Wall::time_origin) * (wall.*&Wall::dt);
+    shift = wall.*&Wall::amplitude * (1.0 - std::cos(wall.*&Wall::omega * t));
+  }
+  return radius - std::min(x[d] - (wall.*&Wall::lo + shift), wall.*&Wall::hi + shift - x[d]);
+}
+
+/* ----------------------------------------------------------------------
+   each grain of the group counts wherever it is, as walls may move, with its whole velocity
 ------------------------------------------------------------------------- */
 
 void MPMGrains::walls(Collision &first) const
 {
+  const int frozen = frozen_groups();
   for (auto *fix : walls_of(*modify)) {
     const Law law = law_of_model(static_cast<FixWallGran *>(fix)->model);
     for (int i = 0; i < atom->nlocal; i++) {
       if (!(atom->mask[i] & fix->groupbit) || !(atom->radius[i] > 0.0)) continue;
+      if (atom->mask[i] & frozen) continue;
       const double *const v = atom->v[i];
       const double speed = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-      const double t =
-          duration(law, atom->rmass[i], atom->radius[i], 0.0, speed) / steps_of(i);
+      const double overlap =
+          law.hertz ? deepest_overlap(*fix, update->ntimestep, atom->x[i], atom->radius[i]) : 0.0;
+      const double t = duration(law, atom->rmass[i], atom->radius[i], overlap, speed) / steps_of(i);
       if (t < first.duration) first = {t, atom->tag[i], 0};
     }
   }
@@ -228,6 +271,13 @@ void MPMGrains::walls(Collision &) const {}
 
 /* ---------------------------------------------------------------------- */
 
+int MPMGrains::frozen_groups() const
+{
+  int frozen = 0;
+  for (const auto *fix : modify->get_fix_by_style("^freeze")) frozen |= fix->groupbit;
+  return frozen;
+}
+
 MPMGrains::Collision MPMGrains::shortest(double ahead) const
 {
   Collision first = {std::numeric_limits<double>::max(), 0, 0};
@@ -241,8 +291,7 @@ void MPMGrains::pairs_of(const Style &style, double ahead, Collision &first) con
 {
   const auto *const list = style.pair->list;
   if (!list) return;
-  int frozen = 0;
-  for (const auto *fix : modify->get_fix_by_style("^freeze")) frozen |= fix->groupbit;
+  const int frozen = frozen_groups();
   const auto mobility = [&](int i) {
     return atom->mask[i] & frozen ? 0.0 : 1.0 / atom->rmass[i];
   };

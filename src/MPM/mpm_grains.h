@@ -30,15 +30,17 @@ class MPMGrains : protected Pointers {
     enum { BY_MASS, PLAIN, BY_MASS_AND_RADIUS, BY_STIFFNESS } damping_is = BY_MASS;
   };
   struct Collision {
-    double duration;    ///< with a point in steps of all: over the number of these in one of the points
-    tagint i, j;    ///< j = 0: with a wall
+    double
+        duration;    ///< with a point in steps of all: over the number of these in one of the points
+    tagint i, j;     ///< j = 0: with a wall
   };
 
   /** An error if there is no pair style that tells its stiffness; who: the command in it. */
   MPMGrains(class LAMMPS *, const std::string &who);
 
-  /** Of the pairs of this rank that touch, or that would at the speeds of now after this time. Collective:
-   *  brings ghosts up to date. */
+  /** Of the pairs of this rank that touch, or that would within this time at their present speeds, and of each grain in
+   *  the group of a wall with this wall, wherever it is, at its overlap and with all of its velocity; not of frozen ones.
+   *  Collective: brings ghosts up to date. */
   Collision shortest(double ahead) const;
 
   /** Of two bodies with the reduced mass m, radius R, and the velocity v at an overlap. */
@@ -55,6 +57,7 @@ class MPMGrains : protected Pointers {
 
   Law in_units(Law) const;
   int steps_of(int i) const;
+  int frozen_groups() const;
   Law law_of(const Style &, int itype, int jtype) const;
   Law law_of_model(void *model) const;
   void pairs_of(const Style &, double ahead, Collision &) const;
