@@ -349,6 +349,36 @@ TEST(GrainSteps, ArriveBetweenLooks)
   EXPECT_NEAR(touching, 20, 2);
 }
 
+// grains go on after all points have left: when nothing collides, nothing limits the time step, and it stays as it is; when
+// something does later, it counts
+TEST(GrainSteps, GoOnWithoutPoints)
+{
+  const std::string hooke = "pair_style gran/hooke 300 NULL 0 NULL 0 0\npair_coeff * *\n"
+                            "neigh_modify exclude type 1 1 exclude type 1 2 exclude type 1 3\n";
+  for (int every : {1, 3}) {
+    const auto scene = [&](const std::string &options) {
+      return replaced(two_grains(0.0), "every 1", strprintf("bad delete every %d", every)) + hooke +
+          "velocity far set 5 0 0\nfix step all mpm/dt 0.5 every 2 " + options + "\n";
+    };
+    const double dt = 0.5 / 5.01 / every;    // h/(c + v)
+    for (const char *options : {"", "grains 0.05", "grains 0.05 max 10"})
+      for (const char *wall : {"",
+                               "fix w grains wall/gran granular hertz 5 0 tangential "
+                               "linear_nohistory 0 0 zplane 0 8\n"}) {
+        SCOPED_TRACE(std::string(options) + " every " + std::to_string(every) + " " + wall);
+        Scene run(scene(options) + wall + "run 60\n");
+        EXPECT_EQ(run.lmp->atom->natoms, 2);
+        EXPECT_NEAR(run.lmp->update->dt, dt, 0.002 * dt);
+      }
+    Scene meet(scene("grains 0.05") +
+               "displace_atoms b move 0.3 0 0\nvelocity b set -0.3 0 0\nrun 100\n");
+    EXPECT_EQ(meet.lmp->atom->natoms, 2);
+    EXPECT_NEAR(meet.lmp->update->dt, 0.05 * hooke_time(KN), 1.0e-10);
+    EXPECT_NEAR(meet.evaluate("vcm(b,x)"), 0.3 * (MA - MB) / (MA + MB), 0.01);
+    EXPECT_NEAR(meet.evaluate("vcm(a,x)"), -0.6 * MB / (MA + MB), 0.01);
+  }
+}
+
 // the same on two ranks as on one
 TEST(GrainSteps, OnRanks)
 {

@@ -133,12 +133,14 @@ FixMPMDt::Limit FixMPMDt::find_limit() const
   Limit mine = strain_limit_local();
   tagint tag = 0;
   double speed = 0.0;
-  const auto compare = [&](double dt) {
+  const auto compare = [&](double dt, int every = 1) {
+    if (dt >= NO_POINTS.dt) return;
+    dt /= every;
     if (!(dt > 0.0)) dt = 0.0;    // also NaN
     if (dt < mine.dt) mine = {dt, speed, (double) tag, NO_GRAIN};
   };
   for (auto *field : MPMField::all(lmp))
-    compare(field->time_limit->stable_dt(tag, speed) / field->options.every);
+    compare(field->time_limit->stable_dt(tag, speed), field->options.every);
   for (auto *ifix : modify->get_fix_by_style("^mpm/elements$"))
     compare(dynamic_cast<FixMPMElements *>(ifix)->stable_dt_local(tag, speed));
   tag = 0;
@@ -146,7 +148,7 @@ FixMPMDt::Limit FixMPMDt::find_limit() const
   for (auto *ifix : modify->get_fix_by_style("^mpm/rigid$"))
     compare(dynamic_cast<FixMPMRigid *>(ifix)->stable_dt());
   const Limit points = smallest(mine);
-  double longest = points.dt < NO_POINTS.dt ? fraction * points.dt : points.dt;
+  double longest = points.dt < NO_POINTS.dt ? fraction * points.dt : grow * wanted;
   if (dt_max > 0.0) longest = std::min(longest, dt_max);
   return grain_limit(points, longest);
 }
@@ -160,7 +162,7 @@ FixMPMDt::Limit FixMPMDt::grain_limit(const Limit &points, double longest) const
 {
   if (!collisions) return points;
   const auto first = collisions->shortest(look_every * longest);
-  const double dt = grains * first.duration / fraction;
+  const double dt = grains * first.duration / fraction;    // infinite without one
   return smallest(dt < points.dt ? Limit{dt, 0.0, (double) first.i, (double) first.j} : points);
 }
 
@@ -184,8 +186,8 @@ FixMPMDt::Limit FixMPMDt::smallest(Limit mine) const
 void FixMPMDt::setup_pre_force(int)
 {
   for (auto *field : MPMField::all(lmp)) field->time_limit->watch_volume = strain > 0.0;
-  limit = find_limit();
   wanted = update->dt;
+  limit = find_limit();
   ended = false;
   time_at_start = elapsed_time(*update);
   wall_at_start = platform::walltime();

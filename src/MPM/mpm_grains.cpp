@@ -54,7 +54,7 @@ using namespace LAMMPS_NS;
 
 double MPMGrains::duration(const Law &law, double m, double R, double overlap, double v)
 {
-  const double never = std::numeric_limits<double>::max();
+  const double never = std::numeric_limits<double>::infinity();
   double rate = std::sqrt(law.k / m), largest = std::max(overlap, 0.0);
   if (law.hertz) {
     const double stiffness = 0.4 * law.k * std::sqrt(R);
@@ -280,7 +280,7 @@ int MPMGrains::frozen_groups() const
 
 MPMGrains::Collision MPMGrains::shortest(double ahead) const
 {
-  Collision first = {std::numeric_limits<double>::max(), 0, 0};
+  Collision first = {std::numeric_limits<double>::infinity(), 0, 0};
   comm->forward_comm();    // velocities of ghosts are of the middle of the step
   for (const auto &style : styles) pairs_of(style, ahead, first);
   walls(first);
@@ -307,7 +307,7 @@ void MPMGrains::pairs_of(const Style &style, double ahead, Collision &first) con
       }
       const double distance = std::sqrt(d2), sum = atom->radius[i] + atom->radius[j];
       const double v = distance > 0.0 ? dv / distance : 0.0, overlap = sum - distance;
-      if (overlap < 0.0 && -overlap > -v * ahead) continue;
+      if (overlap < 0.0 && !(v < 0.0 && -overlap <= -v * ahead)) continue;
       const double moves = mobility(i) + mobility(j);
       if (moves == 0.0) continue;
       const double R = atom->radius[i] * atom->radius[j] / sum;

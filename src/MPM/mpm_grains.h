@@ -31,8 +31,8 @@ class MPMGrains : protected Pointers {
   };
   struct Collision {
     double
-        duration;    ///< with a point in steps of all: over the number of these in one of the points
-    tagint i, j;     ///< j = 0: with a wall
+        duration;    ///< infinite: none. With a point: over the number of steps of all in one of the points
+    tagint i, j;    ///< j = 0: with a wall
   };
 
   /** An error if there is no pair style that tells its stiffness; who: the command in it. */
