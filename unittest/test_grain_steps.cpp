@@ -393,19 +393,56 @@ TEST(GrainSteps, OnRanks)
   EXPECT_LT(std::fabs(both[1]), SPEED);
 }
 
+// files that are written in the collision, and after it, when the time step grows by a factor at each look
 SERIAL_TEST(GrainSteps, GoOnFromARestartFile)
 {
-  const ScratchFile file("restart");
   const std::string pair = laws[5].pair, step = "fix step all mpm/dt 0.5 grains 0.05\n";
-  Scene whole(two_grains(SPEED) + pair + step + "run 20\nrun 20\n");
-  Scene parts(
-      two_grains(SPEED) + pair + step + "run 20\nwrite_restart " + file.name +
-      "\nclear\nread_restart " + file.name +
-      "\nneighbor 0.5 bin\ncomm_modify vel yes\nfix grid all mpm 1.0\n"
-      "fix m far mpm/material density 1.0 neohookean 1.0e-4 0.3\nfix move grains nve/sphere\n" +
-      pair + step + "run 20\n");
-  EXPECT_EQ(parts.lmp->update->dt, whole.lmp->update->dt);
-  EXPECT_EQ(parts.evaluate("time"), whole.evaluate("time"));
+  for (const bool parted : {false, true}) {
+    const ScratchFile file("restart");
+    const std::string before = parted ? "run 45\n" : "run 12\n";
+    Scene whole(two_grains(SPEED) + pair + step + before);
+    const double then = whole.lmp->update->dt;
+    EXPECT_EQ(whole.evaluate("vcm(b,x)-vcm(a,x)") > 0.9 * SPEED, parted);
+    whole.commands("run 20\n");
+    if (parted) EXPECT_NEAR(whole.lmp->update->dt / then, 1.05 * 1.05, 1.0e-9);
+    Scene parts(two_grains(SPEED) + pair + step + before + "write_restart " + file.name +
+                "\nclear\nread_restart " + file.name +
+                "\nneighbor 0.5 bin\ncomm_modify vel yes\nfix grid all mpm 1.0\n"
+                "fix m far mpm/material density 1.0 neohookean 1.0e-4 0.3\n"
+                "fix move grains nve/sphere\n" +
+                pair + step + "run 20\n");
+    EXPECT_EQ(parts.lmp->update->dt, whole.lmp->update->dt);
+    EXPECT_EQ(parts.evaluate("time"), whole.evaluate("time"));
+  }
+}
+
+// A run in two parts takes the steps of one without a break, although the lists of its second part have pairs that those of
+// the first do not have yet: grains that come near while the time step grows, as points slow down
+TEST(GrainSteps, PartsOfARunWithOtherLists)
+{
+  const std::string scene = two_grains(SPEED) +
+      "pair_style gran/hooke 300 NULL 0 NULL 0 0\npair_coeff * *\n"
+      "neigh_modify exclude type 1 1\ndisplace_atoms b move 0.68 0 0\n"
+      "velocity far set 10 0 0\nfix drag far viscous 1\n"
+      "fix step all mpm/dt 0.5 grains 1.0\n";
+  Scene whole(scene + "run 35\n");
+  const double dt = whole.lmp->update->dt, time = whole.evaluate("time");
+  EXPECT_LT(dt, 0.5 * hooke_time(KN));    // it still grows
+  for (int first = 3; first < 35; first += 3) {
+    const ScratchFile file("restart");
+    Scene parts(scene + strprintf("run %d\nwrite_restart ", first) + file.name + "\n" +
+                strprintf("run %d\n", 35 - first));
+    EXPECT_EQ(parts.lmp->update->dt, dt) << first;
+    EXPECT_NEAR(parts.evaluate("time"), time, 1.0e-12 * time) << first;
+  }
+  // grains that have other velocities, so that they do not meet, are another state
+  Scene apart(two_grains(SPEED) + "pair_style gran/hooke 300 NULL 0 NULL 0 0\npair_coeff * *\n" +
+              "fix step all mpm/dt 0.5 max 0.1 grains 0.1\nrun 2\n");
+  EXPECT_NEAR(apart.lmp->update->dt, 0.1 * hooke_time(KN), 1.0e-10);
+  apart.commands("velocity b set 0.3 0 0\nrun 0\n");
+  EXPECT_EQ(apart.lmp->update->dt, 0.1);
+  apart.commands("velocity b set -0.3 0 0\nrun 0\n");
+  EXPECT_NEAR(apart.lmp->update->dt, 0.1 * hooke_time(KN), 1.0e-10);
 }
 
 SERIAL_TEST(GrainSteps, AreRefusedWithTheReason)

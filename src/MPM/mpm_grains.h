@@ -30,8 +30,8 @@ class MPMGrains : protected Pointers {
     enum { BY_MASS, PLAIN, BY_MASS_AND_RADIUS, BY_STIFFNESS } damping_is = BY_MASS;
   };
   struct Collision {
-    double
-        duration;    ///< infinite: none. With a point: over the number of steps of all in one of the points
+    /** Infinite: none. With a point it is divided by the number of steps of the run in one of the points. */
+    double duration;
     tagint i, j;    ///< j = 0: with a wall
   };
 
