@@ -249,6 +249,16 @@ TEST(RestartOrders, TimeStepOfAnOlderFileGoesOn)
   }
 }
 
+// squares of velocities that are smaller than the smallest normal number
+TEST(RestartOrders, TinyVelocitiesAreRead)
+{
+  const Continuations run(head + fixes[0] + points + fixes[1] + fixes[2] + fixes[5] +
+                          "velocity all set 1.0e-158 0 0\n");
+  const auto found = run.go_on("", fixes[0] + fixes[1] + fixes[2] + fixes[5]);
+  EXPECT_EQ(found.error + found.warnings, "");
+  EXPECT_TRUE(found.identical);
+}
+
 // exclusions that keep grains and points of a body from pushing on each other; and fixes without a state
 TEST(RestartOrders, GrainsGoOnAsTheyWere)
 {
