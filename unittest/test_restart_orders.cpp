@@ -249,6 +249,19 @@ TEST(RestartOrders, TimeStepOfAnOlderFileGoesOn)
   }
 }
 
+// forces from outside are forces
+TEST(RestartOrders, ForcesOfADriverAreMissed)
+{
+  const std::string start = head + fixes[0] + points + replaced(all_fixes(), fixes[0], ""),
+                    push = "fix push all external pf/array 1\n";
+  const Continuations run(start + push);
+  const auto right = run.go_on("", all_fixes() + push);
+  EXPECT_EQ(right.error + right.warnings, "");
+  EXPECT_TRUE(right.identical);
+  EXPECT_THAT(run.go_on("", all_fixes()).warnings,
+              HasSubstr("had fix push (style external), which this one has not"));
+}
+
 // squares of velocities that are smaller than the smallest normal number
 TEST(RestartOrders, TinyVelocitiesAreRead)
 {

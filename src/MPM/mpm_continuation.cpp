@@ -36,8 +36,9 @@ using namespace LAMMPS_NS;
 static bool acts(const Fix &fix)
 {
   const std::string style = fix.style;
-  for (const char *output : {"^ave/", "^print$", "^vector$", "^store", "^halt$", "^balance$",
-                             "^python", "^property/atom", "^external$", "^mpm/cells$", "^[A-Z]"})
+  for (const char *output :
+       {"^ave/", "^print$", "^vector$", "^store", "^halt$", "^balance$", "^python$",
+        "^python/invoke$", "^property/atom", "^mpm/cells$", "^[A-Z]"})
     if (utils::strmatch(style, output)) return false;
   return !(fix.restart_global && utils::strmatch(style, "^mpm"));
 }
