@@ -251,7 +251,7 @@ SERIAL_TEST(GrainSteps, PairUnderLoad)
 }
 
 // the same for walls: a plane on either side, one that may wiggle, and that of a region
-SERIAL_TEST(GrainSteps, WallUnderLoad)
+TEST(GrainSteps, WallUnderLoad)
 {
   const double overlap = 0.01, K = KN * std::sqrt(RB),
                v = std::sqrt(0.8 * K * std::pow(overlap, 2.5) / MB);
@@ -307,7 +307,7 @@ SERIAL_TEST(GrainSteps, OtherPartners)
 }
 
 // points that take one step in three of the run: the share is that of a step of theirs
-SERIAL_TEST(GrainSteps, OfPointsWithLongSteps)
+TEST(GrainSteps, OfPointsWithLongSteps)
 {
   const std::string at_point = "fix skin far mpm/surface\nneigh_modify exclude type 1 1\n"
                                "displace_atoms b move 6.57 -0.25 -0.25\n"

@@ -8,6 +8,7 @@
 
 #include "fix_mpm_dt.h"
 
+#include "atom.h"
 #include "comm.h"
 #include "error.h"
 #include "fix_mpm_elements.h"
@@ -84,6 +85,7 @@ FixMPMDt::FixMPMDt(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
   global_freq = 1;
   extscalar = extvector = 0;
   restart_global = 1;
+  comm_forward = 1;
   dynamic_group_allow = 1;
 }
 
@@ -177,9 +179,24 @@ FixMPMDt::Limit FixMPMDt::grain_limit(const Limit &points) const
 FixMPMDt::Limit FixMPMDt::grain_limit(const Limit &points, double longest) const
 {
   if (!collisions) return points;
-  const auto first = collisions->shortest(look_every * longest);
+  const auto fields = MPMField::all(lmp);    // all of the same every
+  const int every = fields.empty() ? 1 : fields[0]->options.every;
+  if (every > 1) comm->forward_comm(const_cast<FixMPMDt *>(this));
+  const auto first = collisions->shortest(look_every * longest, every);
   const double dt = grains * first.duration / fraction;    // infinite without one
   return smallest(dt < points.dt ? Limit{dt, 0.0, (double) first.i, (double) first.j} : points);
+}
+
+/** Volumes, which ghosts do not have otherwise: those of points are positive. */
+int FixMPMDt::pack_forward_comm(int n, int *list, double *buf, int, int *)
+{
+  for (int k = 0; k < n; k++) buf[k] = atom->vfrac[list[k]];
+  return n;
+}
+
+void FixMPMDt::unpack_forward_comm(int n, int first, double *buf)
+{
+  std::copy(buf, buf + n, atom->vfrac + first);
 }
 
 FixMPMDt::Limit FixMPMDt::smallest(Limit mine) const

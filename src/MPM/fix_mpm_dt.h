@@ -50,6 +50,8 @@ class FixMPMDt : public Fix, private MPMDtOptions {
   void post_run() override;
   void write_restart(FILE *) override;
   void restart(char *) override;
+  int pack_forward_comm(int, int *, double *, int, int *) override;
+  void unpack_forward_comm(int, int, double *) override;
   double compute_scalar() override;
   double compute_vector(int) override;
 

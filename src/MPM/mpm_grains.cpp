@@ -14,7 +14,6 @@
 #include "fix.h"
 #include "force.h"
 #include "modify.h"
-#include "mpm_field.h"
 #include "mpm_pair_styles.h"
 #include "neigh_list.h"
 #include "region.h"
@@ -41,6 +40,12 @@
 #endif
 
 using namespace LAMMPS_NS;
+
+/** Steps of the run in one of this atom. */
+static int steps_of(const Atom &atom, int i, int every)
+{
+  return atom.vfrac[i] > 0.0 ? every : 1;
+}
 
 /* ----------------------------------------------------------------------
    Springs without damping: half a period, or, with the force k sqrt(R) delta^1.5, the time from the
@@ -89,17 +94,6 @@ MPMGrains::Law MPMGrains::in_units(Law law) const
   law.k *= ftm2v;
   law.damping *= law.damping_is == Law::BY_STIFFNESS ? std::sqrt(ftm2v) : ftm2v;
   return law;
-}
-
-/* ----------------------------------------------------------------------
-   points take one step in this many steps of the run, all of the same number
-------------------------------------------------------------------------- */
-
-int MPMGrains::steps_of(int i) const
-{
-  if (!(atom->vfrac[i] > 0.0)) return 1;
-  const auto fields = MPMField::all(lmp);
-  return fields.empty() ? 1 : fields[0]->options.every;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -233,7 +227,7 @@ static double deepest_overlap(const Fix &fix, bigint now, const double *x, doubl
    each grain of the group counts wherever it is, as walls may move, with its whole velocity
 ------------------------------------------------------------------------- */
 
-void MPMGrains::walls(Collision &first) const
+void MPMGrains::walls(int every, Collision &first) const
 {
   const int frozen = frozen_groups();
   for (auto *fix : walls_of(*modify)) {
@@ -245,7 +239,8 @@ void MPMGrains::walls(Collision &first) const
       const double speed = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
       const double overlap =
           law.hertz ? deepest_overlap(*fix, update->ntimestep, atom->x[i], atom->radius[i]) : 0.0;
-      const double t = duration(law, atom->rmass[i], atom->radius[i], overlap, speed) / steps_of(i);
+      const double t = duration(law, atom->rmass[i], atom->radius[i], overlap, speed) /
+          steps_of(*atom, i, every);
       if (t < first.duration) first = {t, atom->tag[i], 0};
     }
   }
@@ -265,7 +260,7 @@ MPMGrains::Law MPMGrains::law_of_model(void *) const
 {
   return {};
 }
-void MPMGrains::walls(Collision &) const {}
+void MPMGrains::walls(int, Collision &) const {}
 
 #endif
 
@@ -278,16 +273,16 @@ int MPMGrains::frozen_groups() const
   return frozen;
 }
 
-MPMGrains::Collision MPMGrains::shortest(double ahead) const
+MPMGrains::Collision MPMGrains::shortest(double ahead, int every) const
 {
   Collision first = {std::numeric_limits<double>::infinity(), 0, 0};
   comm->forward_comm();    // velocities of ghosts are of the middle of the step
-  for (const auto &style : styles) pairs_of(style, ahead, first);
-  walls(first);
+  for (const auto &style : styles) pairs_of(style, ahead, every, first);
+  walls(every, first);
   return first;
 }
 
-void MPMGrains::pairs_of(const Style &style, double ahead, Collision &first) const
+void MPMGrains::pairs_of(const Style &style, double ahead, int every, Collision &first) const
 {
   const auto *const list = style.pair->list;
   if (!list) return;
@@ -312,8 +307,8 @@ void MPMGrains::pairs_of(const Style &style, double ahead, Collision &first) con
       if (moves == 0.0) continue;
       const double R = atom->radius[i] * atom->radius[j] / sum;
       const auto law = law_of(style, atom->type[i], atom->type[j]);
-      const double t =
-          duration(law, 1.0 / moves, R, overlap, v) / std::max(steps_of(i), steps_of(j));
+      const double t = duration(law, 1.0 / moves, R, overlap, v) /
+          std::max(steps_of(*atom, i, every), steps_of(*atom, j, every));
       if (t < first.duration) first = {t, atom->tag[i], atom->tag[j]};
     }
   }

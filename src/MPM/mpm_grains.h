@@ -40,8 +40,9 @@ class MPMGrains : protected Pointers {
 
   /** Of the pairs of this rank that touch, or that would within this time at their present speeds, and of each grain in
    *  the group of a wall with this wall, wherever it is, at its overlap and with all of its velocity; not of frozen ones.
-   *  Collective: brings ghosts up to date. */
-  Collision shortest(double ahead) const;
+   *  Points take one step in EVERY of the run; above 1, ghosts must have their volume, which tells that they are points.
+   *  Collective: brings other values of ghosts up to date. */
+  Collision shortest(double ahead, int every) const;
 
   /** Of two bodies with the reduced mass m, radius R, and the velocity v at an overlap. */
   static double duration(const Law &, double m, double R, double overlap, double v);
@@ -56,12 +57,11 @@ class MPMGrains : protected Pointers {
   std::string who;
 
   Law in_units(Law) const;
-  int steps_of(int i) const;
   int frozen_groups() const;
   Law law_of(const Style &, int itype, int jtype) const;
   Law law_of_model(void *model) const;
-  void pairs_of(const Style &, double ahead, Collision &) const;
-  void walls(Collision &) const;
+  void pairs_of(const Style &, double ahead, int every, Collision &) const;
+  void walls(int every, Collision &) const;
 };
 
 }    // namespace LAMMPS_NS
