@@ -10,6 +10,7 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "domain.h"
 #include "error.h"
 #include "fix.h"
 #include "force.h"
@@ -29,7 +30,6 @@
 #if __has_include(<pair_granular.h>)
 #define MPM_HAS_GRANULAR 1
 #include <fix_wall_gran.h>
-#include <fix_wall_gran_region.h>
 #include <gran_sub_mod_damping.h>
 #include <gran_sub_mod_normal.h>
 #include <granular_model.h>
@@ -111,6 +111,7 @@ struct Wall : FixWallGran {
   using FixWallGran::axis;
   using FixWallGran::dt;
   using FixWallGran::hi;
+  using FixWallGran::idregion;
   using FixWallGran::lo;
   using FixWallGran::omega;
   using FixWallGran::time_origin;
@@ -202,17 +203,16 @@ MPMGrains::Law MPMGrains::law_of(const Style &style, int itype, int jtype) const
    with planes, which may wiggle, and with regions, whose position is that of the last forces; negative: none
 ------------------------------------------------------------------------- */
 
-static double deepest_overlap(const Fix &fix, bigint now, const double *x, double radius)
+static double deepest_overlap(const FixWallGran &wall, Region *region, bigint now, const double *x,
+                              double radius)
 {
-  if (strcmp(fix.style, "wall/gran/region") == 0) {
-    auto *const region = static_cast<const FixWallGranRegion &>(fix).region;
+  if (region) {
     double overlap = -1.0;
     if (!region->match(x[0], x[1], x[2])) return overlap;
     const int ncontact = region->surface(x[0], x[1], x[2], radius);
     for (int k = 0; k < ncontact; k++) overlap = std::max(overlap, radius - region->contact[k].r);
     return overlap;
   }
-  const auto &wall = static_cast<const FixWallGran &>(fix);
   const int d = wall.*&Wall::wallstyle;
   if (d < 0 || d > 2) return -1.0;
   double shift = 0.0;
@@ -231,14 +231,19 @@ void MPMGrains::walls(int every, Collision &first) const
 {
   const int frozen = frozen_groups();
   for (auto *fix : walls_of(*modify)) {
-    const Law law = law_of_model(static_cast<FixWallGran *>(fix)->model);
+    const auto &wall = static_cast<const FixWallGran &>(*fix);
+    Region *const region = strcmp(fix->style, "wall/gran/region") == 0
+        ? domain->get_region_by_id(wall.*&Wall::idregion)
+        : nullptr;
+    const Law law = law_of_model(wall.model);
     for (int i = 0; i < atom->nlocal; i++) {
       if (!(atom->mask[i] & fix->groupbit) || !(atom->radius[i] > 0.0)) continue;
       if (atom->mask[i] & frozen) continue;
       const double *const v = atom->v[i];
       const double speed = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-      const double overlap =
-          law.hertz ? deepest_overlap(*fix, update->ntimestep, atom->x[i], atom->radius[i]) : 0.0;
+      const double overlap = law.hertz
+          ? deepest_overlap(wall, region, update->ntimestep, atom->x[i], atom->radius[i])
+          : 0.0;
       const double t = duration(law, atom->rmass[i], atom->radius[i], overlap, speed) /
           steps_of(*atom, i, every);
       if (t < first.duration) first = {t, atom->tag[i], 0};
