@@ -1350,7 +1350,9 @@ TEST(TimeStep, TellsTheEndOfARun)
   EXPECT_EQ(text.find("before until", told + 1), std::string::npos) << "run 0 is no run to an end";
   EXPECT_EQ(text.find("has passed"), std::string::npos) << text;
   const std::string last = " " + std::to_string(run.lmp->update->ntimestep) + "   1   ";
+  // as the last line of one run, and as the first of the next
   EXPECT_NE(text.find(last), std::string::npos) << text;
+  EXPECT_NE(text.find(last), text.rfind(last)) << text;
 }
 
 TEST(TimeStep, ChangedStateIsANewStart)

@@ -57,9 +57,8 @@ static double hooke_time(double k)
 }
 
 /** Force K delta^1.5: 2.94 ((5 m/(4 K))^2/v)^(1/5), as in textbooks. */
-static double hertz_time(double K, double v)
+static double hertz_time(double K, double v, double m = reduced_mass())
 {
-  const double m = reduced_mass();
   return 2.9432749 * std::pow(std::pow(1.25 * m / K, 2) / v, 0.2);
 }
 
@@ -176,6 +175,69 @@ SERIAL_TEST(GrainSteps, OverdampedContact)
   }
 }
 
+struct Contact {
+  double first, last;    // time steps
+  int touching;
+  double rebound;
+};
+static Contact collide(const std::string &units, const std::string &pair)
+{
+  Scene run(replaced(two_grains(SPEED), "units lj", "units " + units) + pair +
+            "fix step all mpm/dt 0.5 grains 0.05\nrun 0\n");
+  Contact result = {run.lmp->update->dt, 0.0, 0, 0.0};
+  for (int n = 0; n < 1000; n++) {
+    run.commands("run 1 post no\n");
+    if (run.evaluate("xcm(b,x)-xcm(a,x)") < RA + RB)
+      result.touching++;
+    else if (result.touching)
+      break;
+    result.last = run.lmp->update->dt;
+  }
+  result.rebound = run.evaluate("vcm(b,x)-vcm(a,x)");
+  return result;
+}
+
+// In units where a force of 1 gives a mass of 1 another acceleration than 1, the collision is the same with forces over this
+// number, and takes the same steps: springs, damping by mass, by its velocity alone, and beyond the critical value
+SERIAL_TEST(GrainSteps, AreTheSameInOtherUnits)
+{
+  const double ftm2v = 1.0 / 1.0364269e-4, nktv2p = 1.6021765e6;    // of metal, as in LAMMPS
+  const std::vector<std::array<std::string, 2>> pairs = {
+      {"gran/hooke %.17g NULL %.17g NULL 0 0\npair_coeff * *", "8"},
+      {"gran/hooke %.17g NULL %.17g NULL 0 0\npair_coeff * *", "60"},
+      {"gran/hertz/history %.17g NULL %.17g NULL 0 0\npair_coeff * *", "400"},
+      {"gran/hertz/history %.17g NULL %.17g NULL 0 0\npair_coeff * *", "1500"},
+      {"granular\npair_coeff * * hooke %.17g %.17g tangential linear_nohistory 0 0 damping "
+       "velocity",
+       "50"},
+      {"granular\npair_coeff * * hertz %.17g %.17g tangential linear_nohistory 0 0", "1500"}};
+  for (const auto &[pair, damping] : pairs) {
+    const auto with = [&](double unit) {
+      // gran/hertz/history alone has its stiffness in units of pressure
+      const double pressure = unit != 1.0 && pair.find("gran/hertz") == 0 ? nktv2p : 1.0;
+      return strprintf(("pair_style " + pair + "\n").c_str(), KN * pressure / unit,
+                       stod(damping) / unit);
+    };
+    const auto lj = collide("lj", with(1.0)), metal = collide("metal", with(ftm2v));
+    EXPECT_NEAR(metal.first / lj.first, 1.0, 1.0e-6) << with(1.0);
+    EXPECT_NEAR(metal.last / lj.last, 1.0, 1.0e-6) << with(1.0);
+    EXPECT_NEAR(metal.rebound / lj.rebound, 1.0, 1.0e-5) << with(1.0);
+    EXPECT_EQ(metal.touching, lj.touching) << with(1.0);
+    EXPECT_GT(lj.touching, 10) << with(1.0);
+  }
+
+  // the damping damp sqrt(m k) v of LAMMPS has no factor of units: in those of metal it is above the critical one
+  const double e = std::log(0.9), damp = -2.0 * e / std::hypot(PI, e), k = KN / ftm2v;
+  Scene run(replaced(two_grains(SPEED), "units lj", "units metal") +
+            strprintf("pair_style granular\npair_coeff * * hooke %.17g 0.9 tangential "
+                      "linear_nohistory 0 0 damping coeff_restitution\n",
+                      k) +
+            "fix step all mpm/dt 0.5 grains 0.1\nrun 0\n");
+  const double m = reduced_mass(), decay = 0.5 * ftm2v / m * damp * std::sqrt(m * k);
+  const double fastest = decay + std::sqrt(decay * decay - ftm2v * k / m);
+  EXPECT_NEAR(run.lmp->update->dt * fastest / (0.1 * PI), 1.0, 1.0e-6);
+}
+
 // a grain that rests on another one: with Hertz's force of the free collision that compresses as much
 SERIAL_TEST(GrainSteps, PairUnderLoad)
 {
@@ -186,6 +248,41 @@ SERIAL_TEST(GrainSteps, PairUnderLoad)
             "fix step all mpm/dt 0.5 grains 0.1\nrun 0\n");
   const double v = std::sqrt(0.8 * K * std::pow(overlap, 2.5) / reduced_mass());
   EXPECT_NEAR(run.lmp->update->dt / (0.1 * hertz_time(K, v)), 1.0, 1.0e-6);
+}
+
+// the same for walls: a plane on either side, one that may wiggle, and that of a region
+TEST(GrainSteps, WallUnderLoad)
+{
+  const double overlap = 0.01, K = KN * std::sqrt(RB),
+               v = std::sqrt(0.8 * K * std::pow(overlap, 2.5) / MB);
+  const std::string pair = "pair_style gran/hertz/history 1.0e-3 NULL 0 NULL 0 0\npair_coeff * *\n";
+  const std::string step =
+      "displace_atoms b move 5 0 0\nfix step all mpm/dt 0.5 max 1 grains 0.1\n";
+  const std::string hertz = " granular hertz 300 0 tangential linear_nohistory 0 0 ";
+  const std::string low = strprintf("%.17g", 4.0 - RB + overlap);
+  for (const std::string &wall :
+       {"wall/gran" + hertz + "zplane " + low + " NULL",
+        "wall/gran" + hertz + "yplane 0 " + strprintf("%.17g", 4.0 + RB - overlap),
+        "wall/gran" + hertz + "zplane " + low + " 8 wiggle z 0.5 7.0",
+        "wall/gran/region" + hertz + "region room"}) {
+    SCOPED_TRACE(wall);
+    Scene run(two_grains(0.0) + pair + "region room block 0 20 0 8 " + low + " 8\n" + "fix w b " +
+              wall + "\n" + step + "run 0\n");
+    EXPECT_NEAR(run.lmp->update->dt / (0.1 * hertz_time(K, v, MB)), 1.0, 1.0e-6);
+    // one that is frozen has no collision
+    run.commands("fix hold b freeze\nrun 0\n");
+    EXPECT_EQ(run.lmp->update->dt, 1.0);
+  }
+  Scene apart(two_grains(0.0) + pair + "fix w a wall/gran" + hertz + "zplane 3 NULL\n" + step +
+              "run 0\n");
+  EXPECT_EQ(apart.lmp->update->dt, 1.0);
+
+  // one that wiggles by 0.01 to both sides has gone 0.01 after a quarter of a period
+  Scene wiggles(two_grains(0.0) + pair + "fix w b wall/gran" + hertz +
+                strprintf("zplane %.17g NULL wiggle z 0.01 4.0e-3\n", 4.0 - RB) +
+                "displace_atoms b move 5 0 0\ntimestep 1.0e-5\nunfix move\nrun 100\n"
+                "fix step all mpm/dt 0.5 max 1 grains 0.1\nrun 0\n");
+  EXPECT_NEAR(wiggles.lmp->update->dt / (0.1 * hertz_time(K, v, MB)), 1.0, 1.0e-6);
 }
 
 // walls, frozen grains, and a grain on points
@@ -209,6 +306,30 @@ SERIAL_TEST(GrainSteps, OtherPartners)
   EXPECT_NEAR(points.lmp->update->dt, 0.1 * PI * std::sqrt(MB * mp / (MB + mp) / KN), 1.0e-10);
 }
 
+// points that take one step in three of the run: the share is that of a step of theirs
+TEST(GrainSteps, OfPointsWithLongSteps)
+{
+  const std::string at_point = "fix skin far mpm/surface\nneigh_modify exclude type 1 1\n"
+                               "displace_atoms b move 6.57 -0.25 -0.25\n"
+                               "velocity b set 0.5 0 0\n";
+  const std::string step = "fix step all mpm/dt 0.5 grains 0.1\nrun 0\n";
+  const std::string scene = replaced(two_grains(SPEED), "every 1", "every 3");
+  const std::string hooke = "pair_style gran/hooke 300 NULL 0 NULL 0 0\npair_coeff * *\n";
+  Scene points(scene + hooke + at_point + step);
+  const double mp = 1.0 / 8.0;
+  EXPECT_NEAR(points.lmp->update->dt, 0.1 / 3.0 * PI * std::sqrt(MB * mp / (MB + mp) / KN),
+              1.0e-10);
+
+  Scene grains(scene + hooke + step);
+  EXPECT_NEAR(grains.lmp->update->dt, 0.1 * PI * std::sqrt(reduced_mass() / KN), 1.0e-10);
+
+  // walls hold points of their group, too
+  const std::string weak = "pair_style gran/hooke 0.01 NULL 0 NULL 0 0\npair_coeff * *\n";
+  Scene wall(scene + weak + "fix skin far mpm/surface\nneigh_modify exclude type 1 1\n" +
+             "fix w far wall/gran hooke 5000 NULL 0 NULL 0 0 zplane 0 8\n" + step);
+  EXPECT_NEAR(wall.lmp->update->dt, 0.1 / 3.0 * PI * std::sqrt(mp / 5000.0), 1.0e-10);
+}
+
 // a grain that comes from far away, between two looks, with points that take one step in three of the run
 TEST(GrainSteps, ArriveBetweenLooks)
 {
@@ -228,6 +349,36 @@ TEST(GrainSteps, ArriveBetweenLooks)
   EXPECT_NEAR(touching, 20, 2);
 }
 
+// grains go on after all points have left: when nothing collides, nothing limits the time step, and it stays as it is; when
+// something does later, it counts
+TEST(GrainSteps, GoOnWithoutPoints)
+{
+  const std::string hooke = "pair_style gran/hooke 300 NULL 0 NULL 0 0\npair_coeff * *\n"
+                            "neigh_modify exclude type 1 1 exclude type 1 2 exclude type 1 3\n";
+  for (int every : {1, 3}) {
+    const auto scene = [&](const std::string &options) {
+      return replaced(two_grains(0.0), "every 1", strprintf("bad delete every %d", every)) + hooke +
+          "velocity far set 5 0 0\nfix step all mpm/dt 0.5 every 2 " + options + "\n";
+    };
+    const double dt = 0.5 / 5.01 / every;    // h/(c + v)
+    for (const char *options : {"", "grains 0.05", "grains 0.05 max 10"})
+      for (const char *wall : {"",
+                               "fix w grains wall/gran granular hertz 5 0 tangential "
+                               "linear_nohistory 0 0 zplane 0 8\n"}) {
+        SCOPED_TRACE(std::string(options) + " every " + std::to_string(every) + " " + wall);
+        Scene run(scene(options) + wall + "run 60\n");
+        EXPECT_EQ(run.lmp->atom->natoms, 2);
+        EXPECT_NEAR(run.lmp->update->dt, dt, 0.002 * dt);
+      }
+    Scene meet(scene("grains 0.05") +
+               "displace_atoms b move 0.3 0 0\nvelocity b set -0.3 0 0\nrun 100\n");
+    EXPECT_EQ(meet.lmp->atom->natoms, 2);
+    EXPECT_NEAR(meet.lmp->update->dt, 0.05 * hooke_time(KN), 1.0e-10);
+    EXPECT_NEAR(meet.evaluate("vcm(b,x)"), 0.3 * (MA - MB) / (MA + MB), 0.01);
+    EXPECT_NEAR(meet.evaluate("vcm(a,x)"), -0.6 * MB / (MA + MB), 0.01);
+  }
+}
+
 // the same on two ranks as on one
 TEST(GrainSteps, OnRanks)
 {
@@ -242,19 +393,56 @@ TEST(GrainSteps, OnRanks)
   EXPECT_LT(std::fabs(both[1]), SPEED);
 }
 
+// files that are written in the collision, and after it, when the time step grows by a factor at each look
 SERIAL_TEST(GrainSteps, GoOnFromARestartFile)
 {
-  const ScratchFile file("restart");
   const std::string pair = laws[5].pair, step = "fix step all mpm/dt 0.5 grains 0.05\n";
-  Scene whole(two_grains(SPEED) + pair + step + "run 20\nrun 20\n");
-  Scene parts(
-      two_grains(SPEED) + pair + step + "run 20\nwrite_restart " + file.name +
-      "\nclear\nread_restart " + file.name +
-      "\nneighbor 0.5 bin\ncomm_modify vel yes\nfix grid all mpm 1.0\n"
-      "fix m far mpm/material density 1.0 neohookean 1.0e-4 0.3\nfix move grains nve/sphere\n" +
-      pair + step + "run 20\n");
-  EXPECT_EQ(parts.lmp->update->dt, whole.lmp->update->dt);
-  EXPECT_EQ(parts.evaluate("time"), whole.evaluate("time"));
+  for (const bool parted : {false, true}) {
+    const ScratchFile file("restart");
+    const std::string before = parted ? "run 45\n" : "run 12\n";
+    Scene whole(two_grains(SPEED) + pair + step + before);
+    const double then = whole.lmp->update->dt;
+    EXPECT_EQ(whole.evaluate("vcm(b,x)-vcm(a,x)") > 0.9 * SPEED, parted);
+    whole.commands("run 20\n");
+    if (parted) EXPECT_NEAR(whole.lmp->update->dt / then, 1.05 * 1.05, 1.0e-9);
+    Scene parts(two_grains(SPEED) + pair + step + before + "write_restart " + file.name +
+                "\nclear\nread_restart " + file.name +
+                "\nneighbor 0.5 bin\ncomm_modify vel yes\nfix grid all mpm 1.0\n"
+                "fix m far mpm/material density 1.0 neohookean 1.0e-4 0.3\n"
+                "fix move grains nve/sphere\n" +
+                pair + step + "run 20\n");
+    EXPECT_EQ(parts.lmp->update->dt, whole.lmp->update->dt);
+    EXPECT_EQ(parts.evaluate("time"), whole.evaluate("time"));
+  }
+}
+
+// A run in two parts takes the steps of one without a break, although the lists of its second part have pairs that those of
+// the first do not have yet: grains that come near while the time step grows, as points slow down
+TEST(GrainSteps, PartsOfARunWithOtherLists)
+{
+  const std::string scene = two_grains(SPEED) +
+      "pair_style gran/hooke 300 NULL 0 NULL 0 0\npair_coeff * *\n"
+      "neigh_modify exclude type 1 1\ndisplace_atoms b move 0.68 0 0\n"
+      "velocity far set 10 0 0\nfix drag far viscous 1\n"
+      "fix step all mpm/dt 0.5 grains 1.0\n";
+  Scene whole(scene + "run 35\n");
+  const double dt = whole.lmp->update->dt, time = whole.evaluate("time");
+  EXPECT_LT(dt, 0.5 * hooke_time(KN));    // it still grows
+  for (int first = 3; first < 35; first += 3) {
+    const ScratchFile file("restart");
+    Scene parts(scene + strprintf("run %d\nwrite_restart ", first) + file.name + "\n" +
+                strprintf("run %d\n", 35 - first));
+    EXPECT_EQ(parts.lmp->update->dt, dt) << first;
+    EXPECT_NEAR(parts.evaluate("time"), time, 1.0e-12 * time) << first;
+  }
+  // grains that have other velocities, so that they do not meet, are another state
+  Scene apart(two_grains(SPEED) + "pair_style gran/hooke 300 NULL 0 NULL 0 0\npair_coeff * *\n" +
+              "fix step all mpm/dt 0.5 max 0.1 grains 0.1\nrun 2\n");
+  EXPECT_NEAR(apart.lmp->update->dt, 0.1 * hooke_time(KN), 1.0e-10);
+  apart.commands("velocity b set 0.3 0 0\nrun 0\n");
+  EXPECT_EQ(apart.lmp->update->dt, 0.1);
+  apart.commands("velocity b set -0.3 0 0\nrun 0\n");
+  EXPECT_NEAR(apart.lmp->update->dt, 0.1 * hooke_time(KN), 1.0e-10);
 }
 
 SERIAL_TEST(GrainSteps, AreRefusedWithTheReason)

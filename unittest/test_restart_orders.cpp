@@ -74,9 +74,10 @@ struct Continuations {
   }
 };
 
-static Continuations basic()
+static Continuations basic(const std::string &step = fixes[5])
 {
-  return Continuations(head + fixes[0] + points + replaced(all_fixes(), fixes[0], "") +
+  return Continuations(head + fixes[0] + points +
+                       replaced(replaced(all_fixes(), fixes[0], ""), fixes[5], step) +
                        "velocity one set 0.6 -0.3 0\nvelocity two set -0.5 -0.3 0\n");
 }
 
@@ -211,6 +212,64 @@ TEST(RestartOrders, OtherTimeStepIsSetAtOnce)
   Scene first("read_restart " + run.file.name + "\n" + with(5, "fix step all mpm/dt 0.15\n") +
               "run 1\n");
   EXPECT_NEAR(first.lmp->update->dt / run.dt, 0.5, 0.05);    // from the first step on
+  const double fresh = 2.0 * first.lmp->update->dt;
+
+  // a largest time step that is gone or larger, and a growth by looks that are others
+  const std::string step = "fix step all mpm/dt 0.3 max 0.01\n";
+  const auto bound = basic(step);
+  EXPECT_EQ(bound.go_on("", with(5, step)).dt, 0.01);
+  for (const char *options : {"", " max 0.02", " max 0.01"}) {
+    Scene next("read_restart " + bound.file.name + "\n" +
+               with(5, std::string("fix step all mpm/dt 0.3") + options + "\n") + "run 1\n");
+    const double most = *options ? std::stod(std::string(options).substr(5)) : 1.0;
+    EXPECT_NEAR(next.lmp->update->dt, std::min(most, fresh), 0.1 * fresh) << options;
+  }
+  const auto slow = basic("fix step all mpm/dt 0.3 grow 1.0001 every 5\n");
+  for (const char *options : {"grow 1.0002 every 5", "grow 1.0001 every 7"}) {
+    Scene next("read_restart " + slow.file.name + "\n" +
+               with(5, std::string("fix step all mpm/dt 0.3 ") + options + "\n") + "run 0\n");
+    Scene same("read_restart " + slow.file.name + "\n" +
+               with(5, "fix step all mpm/dt 0.3 grow 1.0001 every 5\n") + "run 0\n");
+    EXPECT_GT(next.lmp->update->dt, 1.001 * same.lmp->update->dt) << options;
+  }
+}
+
+// files of older versions do not have the options
+TEST(RestartOrders, TimeStepOfAnOlderFileGoesOn)
+{
+  for (const bool changed : {false, true}) {
+    Scene run(head + fixes[0] + points + replaced(all_fixes(), fixes[0], "") + "run 0\n");
+    const double limit = run.lmp->update->dt, dt = 0.5 * limit;
+    double state[6] = {dt, changed ? 1.1 * limit : limit, 7.0, 1.0e300, 0.0, dt};
+    run.commands(strprintf("timestep %.17g\n", dt));
+    run.fix("step")->restart((char *) state);
+    run.commands("run 0\n");
+    EXPECT_EQ(run.lmp->update->dt, changed ? limit : dt);
+    EXPECT_EQ(run.fix("step")->compute_vector(2), changed ? 8.0 : 7.0);
+  }
+}
+
+// forces from outside are forces
+TEST(RestartOrders, ForcesOfADriverAreMissed)
+{
+  const std::string start = head + fixes[0] + points + replaced(all_fixes(), fixes[0], ""),
+                    push = "fix push all external pf/array 1\n";
+  const Continuations run(start + push);
+  const auto right = run.go_on("", all_fixes() + push);
+  EXPECT_EQ(right.error + right.warnings, "");
+  EXPECT_TRUE(right.identical);
+  EXPECT_THAT(run.go_on("", all_fixes()).warnings,
+              HasSubstr("had fix push (style external), which this one has not"));
+}
+
+// squares of velocities that are smaller than the smallest normal number
+TEST(RestartOrders, TinyVelocitiesAreRead)
+{
+  const Continuations run(head + fixes[0] + points + fixes[1] + fixes[2] + fixes[5] +
+                          "velocity all set 1.0e-158 0 0\n");
+  const auto found = run.go_on("", fixes[0] + fixes[1] + fixes[2] + fixes[5]);
+  EXPECT_EQ(found.error + found.warnings, "");
+  EXPECT_TRUE(found.identical);
 }
 
 // exclusions that keep grains and points of a body from pushing on each other; and fixes without a state

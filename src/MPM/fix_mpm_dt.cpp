@@ -8,6 +8,7 @@
 
 #include "fix_mpm_dt.h"
 
+#include "atom.h"
 #include "comm.h"
 #include "error.h"
 #include "fix_mpm_elements.h"
@@ -33,6 +34,7 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 static constexpr double ROUND_OFF = 1.0e-10;    // of times
+static constexpr double SAME = 1.0e-9;          // of limits of the time step
 
 /* ----------------------------------------------------------------------
    fix ID all mpm/dt FRACTION keyword value ...
@@ -83,6 +85,7 @@ FixMPMDt::FixMPMDt(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
   global_freq = 1;
   extscalar = extvector = 0;
   restart_global = 1;
+  comm_forward = 1;
   dynamic_group_allow = 1;
 }
 
@@ -128,27 +131,37 @@ FixMPMDt::Limit FixMPMDt::strain_limit_local() const
    the smallest limit of all points of all fields, known to all ranks
 ------------------------------------------------------------------------- */
 
-FixMPMDt::Limit FixMPMDt::find_limit() const
+FixMPMDt::Limit FixMPMDt::point_limit() const
 {
   Limit mine = strain_limit_local();
   tagint tag = 0;
   double speed = 0.0;
-  const auto compare = [&](double dt) {
+  const auto compare = [&](double dt, int every = 1) {
+    if (dt >= NO_POINTS.dt) return;
+    dt /= every;
     if (!(dt > 0.0)) dt = 0.0;    // also NaN
     if (dt < mine.dt) mine = {dt, speed, (double) tag, NO_GRAIN};
   };
   for (auto *field : MPMField::all(lmp))
-    compare(field->time_limit->stable_dt(tag, speed) / field->options.every);
+    compare(field->time_limit->stable_dt(tag, speed), field->options.every);
   for (auto *ifix : modify->get_fix_by_style("^mpm/elements$"))
     compare(dynamic_cast<FixMPMElements *>(ifix)->stable_dt_local(tag, speed));
   tag = 0;
   speed = 0.0;
   for (auto *ifix : modify->get_fix_by_style("^mpm/rigid$"))
     compare(dynamic_cast<FixMPMRigid *>(ifix)->stable_dt());
-  const Limit points = smallest(mine);
-  double longest = points.dt < NO_POINTS.dt ? fraction * points.dt : points.dt;
-  if (dt_max > 0.0) longest = std::min(longest, dt_max);
-  return grain_limit(points, longest);
+  return smallest(mine);
+}
+
+/** The time step that a limit allows; without one, the largest number that there is. */
+double FixMPMDt::allowed(const Limit &limit) const
+{
+  return limit.dt < NO_POINTS.dt ? fraction * limit.dt : NO_POINTS.dt;
+}
+
+double FixMPMDt::of_grains(const Limit &limit) const
+{
+  return limit.other == NO_GRAIN ? NO_POINTS.dt : allowed(limit);
 }
 
 /* ----------------------------------------------------------------------
@@ -156,12 +169,34 @@ FixMPMDt::Limit FixMPMDt::find_limit() const
    At looks it is what points alone would allow, and not the time step of now, which a restart may change
 ------------------------------------------------------------------------- */
 
+FixMPMDt::Limit FixMPMDt::grain_limit(const Limit &points) const
+{
+  double longest = points.dt < NO_POINTS.dt ? fraction * points.dt : grow * wanted;
+  if (dt_max > 0.0) longest = std::min(longest, dt_max);
+  return grain_limit(points, longest);
+}
+
 FixMPMDt::Limit FixMPMDt::grain_limit(const Limit &points, double longest) const
 {
   if (!collisions) return points;
-  const auto first = collisions->shortest(look_every * longest);
-  const double dt = grains * first.duration / fraction;
+  const auto fields = MPMField::all(lmp);    // all of the same every
+  const int every = fields.empty() ? 1 : fields[0]->options.every;
+  if (every > 1) comm->forward_comm(const_cast<FixMPMDt *>(this));
+  const auto first = collisions->shortest(look_every * longest, every);
+  const double dt = grains * first.duration / fraction;    // infinite without one
   return smallest(dt < points.dt ? Limit{dt, 0.0, (double) first.i, (double) first.j} : points);
+}
+
+/** Volumes, which ghosts do not have otherwise: those of points are positive. */
+int FixMPMDt::pack_forward_comm(int n, int *list, double *buf, int, int *)
+{
+  for (int k = 0; k < n; k++) buf[k] = atom->vfrac[list[k]];
+  return n;
+}
+
+void FixMPMDt::unpack_forward_comm(int n, int first, double *buf)
+{
+  std::copy(buf, buf + n, atom->vfrac + first);
 }
 
 FixMPMDt::Limit FixMPMDt::smallest(Limit mine) const
@@ -178,23 +213,28 @@ FixMPMDt::Limit FixMPMDt::smallest(Limit mine) const
 /* ----------------------------------------------------------------------
    start of a run: the time step is set at once, without limit to its growth.
    When the state is the one that the last run or the restart file left, then the time step is kept,
-   so that a run in two parts takes the same steps as one without a break.
+   so that a run in two parts takes the same steps as one without a break. The neighbor lists are new ones: pairs
+   of grains that these have, and those at the end of the last run had not, do not make another state of it, but
+   are looked at as whenever lists are new.
 ------------------------------------------------------------------------- */
 
 void FixMPMDt::setup_pre_force(int)
 {
   for (auto *field : MPMField::all(lmp)) field->time_limit->watch_volume = strain > 0.0;
-  limit = find_limit();
   wanted = update->dt;
+  const Limit points = point_limit();
+  limit = grain_limit(points);
   ended = false;
   time_at_start = elapsed_time(*update);
   wall_at_start = platform::walltime();
+  const double dt_grains = of_grains(limit);
   const bool goes_on = continues && update->dt == dt_left &&
-      fabs(fraction * limit.dt - limit_left) <= 1.0e-9 * limit_left &&
-      !(dt_max > 0.0 && wanted_left > dt_max);
+      fabs(allowed(points) - limit_left) <= SAME * limit_left &&
+      dt_grains <= (1.0 + SAME) * grains_left;
   if (goes_on) {
     update->dt_default = 0;
     wanted = wanted_left;
+    if (dt_grains < (1.0 - SAME) * grains_left && dt_grains < wanted) set_dt(dt_grains);
   } else if (limit.dt < NO_POINTS.dt)
     set_dt(fraction * limit.dt);
   if (until == 0.0) return;
@@ -325,11 +365,18 @@ void FixMPMDt::change_dt(double dt)
 
 /* ---------------------------------------------------------------------- */
 
+void FixMPMDt::note_limits()
+{
+  const Limit points = point_limit();
+  limit_left = allowed(points);
+  grains_left = of_grains(grain_limit(points));
+}
+
 void FixMPMDt::post_run()
 {
   dt_left = update->dt;
   wanted_left = wanted;
-  limit_left = fraction * find_limit().dt;
+  note_limits();
   continues = true;
   if (until == 0.0) return;
   if (ended)
@@ -359,12 +406,17 @@ double FixMPMDt::compute_vector(int i)
   return passed > 0.0 ? (left / passed - 1.0) * (platform::walltime() - wall_at_start) : 0.0;
 }
 
-/* ---------------------------------------------------------------------- */
-
 /* ----------------------------------------------------------------------
    between runs: what the last one has left, as the next run compares with that; the fixes may not be
-   those of the last run
+   those of the last run. Files of older versions begin with the time step and have no options
 ------------------------------------------------------------------------- */
+
+static constexpr double WITH_OPTIONS = -1.0;
+
+std::vector<double> FixMPMDt::saved_options() const
+{
+  return {fraction, dt_max, grow, strain, grains, (double) look_every};
+}
 
 void FixMPMDt::write_restart(FILE *fp)
 {
@@ -373,26 +425,35 @@ void FixMPMDt::write_restart(FILE *fp)
     return field->running;
   });
   const Limit steps = smallest(strain_limit_local());
-  const double state[6] = {running ? update->dt : dt_left,
-                           running ? fraction * find_limit().dt : limit_left,
-                           (double) nchanges,
-                           steps.dt,
-                           steps.tag,
-                           running ? wanted : wanted_left};
+  if (running) {
+    dt_left = update->dt;
+    wanted_left = wanted;
+    note_limits();
+  }
+  std::vector<double> state = {WITH_OPTIONS, dt_left,   limit_left,  (double) nchanges,
+                               steps.dt,     steps.tag, wanted_left, grains_left};
+  const auto options = saved_options();
+  state.insert(state.end(), options.begin(), options.end());
   if (comm->me) return;
-  const int size = sizeof(state);
+  const int size = (int) (state.size() * sizeof(double));
   fwrite(&size, sizeof(int), 1, fp);
-  fwrite(state, size, 1, fp);
+  fwrite(state.data(), size, 1, fp);
 }
 
 void FixMPMDt::restart(char *buf)
 {
-  double state[6];
-  memcpy(state, buf, sizeof(state));
-  dt_left = state[0];
-  limit_left = state[1];
-  nchanges = (bigint) state[2];
-  if (strain > 0.0) carried = {state[3], 0.0, state[4], NO_GRAIN};
-  wanted_left = state[5];
-  continues = true;
+  const auto *const state = (const double *) buf;
+  const bool with_options = state[0] == WITH_OPTIONS;
+  const double *next = state + (with_options ? 1 : 0);
+  dt_left = *next++;
+  limit_left = *next++;
+  nchanges = (bigint) *next++;
+  if (strain > 0.0) carried = {next[0], 0.0, next[1], NO_GRAIN};
+  next += 2;
+  wanted_left = *next++;
+  grains_left = NO_POINTS.dt;
+  continues = !(dt_max > 0.0 && wanted_left > dt_max);
+  if (!with_options) return;
+  grains_left = *next++;
+  for (const double option : saved_options()) continues = continues && option == *next++;
 }

@@ -20,6 +20,7 @@ FixStyle(mpm/dt,FixMPMDt);
 
 #include <limits>
 #include <memory>
+#include <vector>
 
 namespace LAMMPS_NS {
 
@@ -49,6 +50,8 @@ class FixMPMDt : public Fix, private MPMDtOptions {
   void post_run() override;
   void write_restart(FILE *) override;
   void restart(char *) override;
+  int pack_forward_comm(int, int *, double *, int, int *) override;
+  void unpack_forward_comm(int, int, double *) override;
   double compute_scalar() override;
   double compute_vector(int) override;
 
@@ -73,12 +76,19 @@ class FixMPMDt : public Fix, private MPMDtOptions {
 
   // what the last run left, to see whether anything was changed since
   bool continues = false;
-  double dt_left = 0.0, wanted_left = 0.0, limit_left = 0.0;
+  double dt_left = 0.0, wanted_left = 0.0;
+  double limit_left = 0.0, grains_left = 0.0;    // time steps that points and grains allowed
   Limit carried = NO_POINTS;    // strain since the last look, from the restart file
 
-  Limit find_limit() const;
+  Limit find_limit() const { return grain_limit(point_limit()); }
+  Limit point_limit() const;
   Limit strain_limit_local() const;
+  Limit grain_limit(const Limit &points) const;
   Limit grain_limit(const Limit &points, double longest) const;
+  double allowed(const Limit &) const;
+  double of_grains(const Limit &) const;
+  void note_limits();
+  std::vector<double> saved_options() const;
   Limit smallest(Limit) const;
   std::string what_limits() const;
   void set_dt(double);

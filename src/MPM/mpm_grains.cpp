@@ -10,11 +10,15 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "domain.h"
 #include "error.h"
 #include "fix.h"
+#include "force.h"
 #include "modify.h"
 #include "mpm_pair_styles.h"
 #include "neigh_list.h"
+#include "region.h"
+#include "update.h"
 
 #include <cmath>
 #include <cstring>
@@ -37,6 +41,12 @@
 
 using namespace LAMMPS_NS;
 
+/** Steps of the run in one of this atom. */
+static int steps_of(const Atom &atom, int i, int every)
+{
+  return atom.vfrac[i] > 0.0 ? every : 1;
+}
+
 /* ----------------------------------------------------------------------
    Springs without damping: half a period, or, with the force k sqrt(R) delta^1.5, the time from the
    first touch to the last,
@@ -49,7 +59,7 @@ using namespace LAMMPS_NS;
 
 double MPMGrains::duration(const Law &law, double m, double R, double overlap, double v)
 {
-  const double never = std::numeric_limits<double>::max();
+  const double never = std::numeric_limits<double>::infinity();
   double rate = std::sqrt(law.k / m), largest = std::max(overlap, 0.0);
   if (law.hertz) {
     const double stiffness = 0.4 * law.k * std::sqrt(R);
@@ -65,8 +75,25 @@ double MPMGrains::duration(const Law &law, double m, double R, double overlap, d
   double decay = 0.5 * law.damping;
   if (law.damping_is == Law::PLAIN) decay /= m;
   if (law.damping_is == Law::BY_MASS_AND_RADIUS) decay *= std::sqrt(R * largest);
-  if (law.damping_is == Law::BY_STIFFNESS) decay = 0.0;    // never above critical damping
+  if (law.damping_is == Law::BY_STIFFNESS) {    // force over overlap at the largest one
+    const double stiffness = law.hertz ? law.k * std::sqrt(R * largest) : law.k;
+    decay *= std::sqrt(stiffness / m);
+  }
   return M_PI / (decay > rate ? decay + std::sqrt(decay * decay - rate * rate) : rate);
+}
+
+/* ----------------------------------------------------------------------
+   Forces in units of mass times acceleration. All of LAMMPS's formulas of damping have the mass in units of mass,
+   so that a force ~ mass gamma v becomes an acceleration ftm2v gamma v; in that of tsuji and coeff_restitution,
+   damp sqrt(m k) v, the factor of k takes one root of it.
+------------------------------------------------------------------------- */
+
+MPMGrains::Law MPMGrains::in_units(Law law) const
+{
+  const double ftm2v = force->ftm2v;
+  law.k *= ftm2v;
+  law.damping *= law.damping_is == Law::BY_STIFFNESS ? std::sqrt(ftm2v) : ftm2v;
+  return law;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -77,6 +104,19 @@ namespace {
 struct HookeHistory : PairGranHookeHistory {
   using PairGranHookeHistory::gamman;
   using PairGranHookeHistory::kn;
+};
+
+struct Wall : FixWallGran {
+  using FixWallGran::amplitude;
+  using FixWallGran::axis;
+  using FixWallGran::dt;
+  using FixWallGran::hi;
+  using FixWallGran::idregion;
+  using FixWallGran::lo;
+  using FixWallGran::omega;
+  using FixWallGran::time_origin;
+  using FixWallGran::wallstyle;
+  using FixWallGran::wiggle;
 };
 
 bool is_classic(std::string name)
@@ -106,8 +146,8 @@ MPMGrains::MPMGrains(LAMMPS *lmp, const std::string &who) : Pointers(lmp), who(w
       auto *const pair = static_cast<PairGranHookeHistory *>(style.pair);
       const bool hertz = utils::strmatch(style.name, "^gran/hertz");
       styles.push_back({style.pair,
-                        {pair->*&HookeHistory::kn, hertz, pair->*&HookeHistory::gamman,
-                         hertz ? Law::BY_MASS_AND_RADIUS : Law::BY_MASS},
+                        in_units({pair->*&HookeHistory::kn, hertz, pair->*&HookeHistory::gamman,
+                                  hertz ? Law::BY_MASS_AND_RADIUS : Law::BY_MASS}),
                         false});
     } else if (style.name == "granular") {
       styles.push_back({style.pair, {}, true});
@@ -126,7 +166,7 @@ MPMGrains::MPMGrains(LAMMPS *lmp, const std::string &who) : Pointers(lmp), who(w
                who);
 }
 
-/** The numbers of a model are what its force is for overlap and contact radius 1. */
+/** The numbers of a model are what its force is for overlap, contact radius, mass, and velocity 1. */
 MPMGrains::Law MPMGrains::law_of_model(void *any) const
 {
   auto *const model = static_cast<Granular_NS::GranularModel *>(any);
@@ -140,13 +180,16 @@ MPMGrains::Law MPMGrains::law_of_model(void *any) const
                "last, but only with hooke, hertz, and hertz/material: use keyword max instead",
                who, name);
   model->delta = model->contact_radius = 1.0;
-  law.k = normal->calculate_forces();
-  law.damping = normal->get_damp();
+  model->meff = 1.0;
+  model->vnnr = -1.0;
+  model->Fnormal = law.k = normal->calculate_forces();
+  law.damping = model->damping_model->calculate_forces();
   law.damping_is = damping == "velocity" ? Law::PLAIN
       : damping == "mass_velocity"       ? Law::BY_MASS
       : damping == "viscoelastic"        ? Law::BY_MASS_AND_RADIUS
                                          : Law::BY_STIFFNESS;
-  return law;
+  if (law.damping_is == Law::BY_STIFFNESS && law.k > 0.0) law.damping /= std::sqrt(law.k);
+  return in_units(law);
 }
 
 MPMGrains::Law MPMGrains::law_of(const Style &style, int itype, int jtype) const
@@ -157,18 +200,52 @@ MPMGrains::Law MPMGrains::law_of(const Style &style, int itype, int jtype) const
 }
 
 /* ----------------------------------------------------------------------
-   where walls are is not told, so that each grain of their group counts, with its whole velocity
+   with planes, which may wiggle, and with regions, whose position is that of the last forces; negative: none
 ------------------------------------------------------------------------- */
 
-void MPMGrains::walls(Collision &first) const
+static double deepest_overlap(const FixWallGran &wall, Region *region, bigint now, const double *x,
+                              double radius)
 {
+  if (region) {
+    double overlap = -1.0;
+    if (!region->match(x[0], x[1], x[2])) return overlap;
+    const int ncontact = region->surface(x[0], x[1], x[2], radius);
+    for (int k = 0; k < ncontact; k++) overlap = std::max(overlap, radius - region->contact[k].r);
+    return overlap;
+  }
+  const int d = wall.*&Wall::wallstyle;
+  if (d < 0 || d > 2) return -1.0;
+  double shift = 0.0;
+  if (wall.*&Wall::wiggle && wall.*&Wall::axis == d) {
+    const double t = (double) (now - wall.*&Wall::time_origin) * (wall.*&Wall::dt);
+    shift = wall.*&Wall::amplitude * (1.0 - std::cos(wall.*&Wall::omega * t));
+  }
+  return radius - std::min(x[d] - (wall.*&Wall::lo + shift), wall.*&Wall::hi + shift - x[d]);
+}
+
+/* ----------------------------------------------------------------------
+   each grain of the group counts wherever it is, as walls may move, with its whole velocity
+------------------------------------------------------------------------- */
+
+void MPMGrains::walls(int every, Collision &first) const
+{
+  const int frozen = frozen_groups();
   for (auto *fix : walls_of(*modify)) {
-    const Law law = law_of_model(static_cast<FixWallGran *>(fix)->model);
+    const auto &wall = static_cast<const FixWallGran &>(*fix);
+    Region *const region = strcmp(fix->style, "wall/gran/region") == 0
+        ? domain->get_region_by_id(wall.*&Wall::idregion)
+        : nullptr;
+    const Law law = law_of_model(wall.model);
     for (int i = 0; i < atom->nlocal; i++) {
       if (!(atom->mask[i] & fix->groupbit) || !(atom->radius[i] > 0.0)) continue;
+      if (atom->mask[i] & frozen) continue;
       const double *const v = atom->v[i];
       const double speed = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-      const double t = duration(law, atom->rmass[i], atom->radius[i], 0.0, speed);
+      const double overlap = law.hertz
+          ? deepest_overlap(wall, region, update->ntimestep, atom->x[i], atom->radius[i])
+          : 0.0;
+      const double t = duration(law, atom->rmass[i], atom->radius[i], overlap, speed) /
+          steps_of(*atom, i, every);
       if (t < first.duration) first = {t, atom->tag[i], 0};
     }
   }
@@ -188,27 +265,33 @@ MPMGrains::Law MPMGrains::law_of_model(void *) const
 {
   return {};
 }
-void MPMGrains::walls(Collision &) const {}
+void MPMGrains::walls(int, Collision &) const {}
 
 #endif
 
 /* ---------------------------------------------------------------------- */
 
-MPMGrains::Collision MPMGrains::shortest(double ahead) const
+int MPMGrains::frozen_groups() const
 {
-  Collision first = {std::numeric_limits<double>::max(), 0, 0};
+  int frozen = 0;
+  for (const auto *fix : modify->get_fix_by_style("^freeze")) frozen |= fix->groupbit;
+  return frozen;
+}
+
+MPMGrains::Collision MPMGrains::shortest(double ahead, int every) const
+{
+  Collision first = {std::numeric_limits<double>::infinity(), 0, 0};
   comm->forward_comm();    // velocities of ghosts are of the middle of the step
-  for (const auto &style : styles) pairs_of(style, ahead, first);
-  walls(first);
+  for (const auto &style : styles) pairs_of(style, ahead, every, first);
+  walls(every, first);
   return first;
 }
 
-void MPMGrains::pairs_of(const Style &style, double ahead, Collision &first) const
+void MPMGrains::pairs_of(const Style &style, double ahead, int every, Collision &first) const
 {
   const auto *const list = style.pair->list;
   if (!list) return;
-  int frozen = 0;
-  for (const auto *fix : modify->get_fix_by_style("^freeze")) frozen |= fix->groupbit;
+  const int frozen = frozen_groups();
   const auto mobility = [&](int i) {
     return atom->mask[i] & frozen ? 0.0 : 1.0 / atom->rmass[i];
   };
@@ -224,12 +307,13 @@ void MPMGrains::pairs_of(const Style &style, double ahead, Collision &first) con
       }
       const double distance = std::sqrt(d2), sum = atom->radius[i] + atom->radius[j];
       const double v = distance > 0.0 ? dv / distance : 0.0, overlap = sum - distance;
-      if (overlap < 0.0 && -overlap > -v * ahead) continue;
+      if (overlap < 0.0 && !(v < 0.0 && -overlap <= -v * ahead)) continue;
       const double moves = mobility(i) + mobility(j);
       if (moves == 0.0) continue;
       const double R = atom->radius[i] * atom->radius[j] / sum;
       const auto law = law_of(style, atom->type[i], atom->type[j]);
-      const double t = duration(law, 1.0 / moves, R, overlap, v);
+      const double t = duration(law, 1.0 / moves, R, overlap, v) /
+          std::max(steps_of(*atom, i, every), steps_of(*atom, j, every));
       if (t < first.duration) first = {t, atom->tag[i], atom->tag[j]};
     }
   }

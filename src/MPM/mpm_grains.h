@@ -21,14 +21,16 @@ namespace LAMMPS_NS {
  *  stiffness that pair styles and walls of LAMMPS's package GRANULAR have. */
 class MPMGrains : protected Pointers {
  public:
-  /** The force of a contact as it depends on the overlap: k delta, or k sqrt(R) delta^1.5. */
+  /** The force of a contact as it depends on the overlap: k delta, or k sqrt(R) delta^1.5, in units of mass times
+   *  acceleration. */
   struct Law {
     double k = 0.0;
     bool hertz = false;
-    double damping = 0.0;    ///< over the velocity of approach
+    double damping = 0.0;    ///< force over the velocity of approach, and over what it goes by
     enum { BY_MASS, PLAIN, BY_MASS_AND_RADIUS, BY_STIFFNESS } damping_is = BY_MASS;
   };
   struct Collision {
+    /** Infinite: none. With a point it is divided by the number of steps of the run in one of the points. */
     double duration;
     tagint i, j;    ///< j = 0: with a wall
   };
@@ -36,9 +38,11 @@ class MPMGrains : protected Pointers {
   /** An error if there is no pair style that tells its stiffness; who: the command in it. */
   MPMGrains(class LAMMPS *, const std::string &who);
 
-  /** Of the pairs of this rank that touch, or that would at the speeds of now after this time. Collective:
-   *  brings ghosts up to date. */
-  Collision shortest(double ahead) const;
+  /** Of the pairs of this rank that touch, or that would within this time at their present speeds, and of each grain in
+   *  the group of a wall with this wall, wherever it is, at its overlap and with all of its velocity; not of frozen ones.
+   *  Points take one step in EVERY of the run; above 1, ghosts must have their volume, which tells that they are points.
+   *  Collective: brings other values of ghosts up to date. */
+  Collision shortest(double ahead, int every) const;
 
   /** Of two bodies with the reduced mass m, radius R, and the velocity v at an overlap. */
   static double duration(const Law &, double m, double R, double overlap, double v);
@@ -52,10 +56,12 @@ class MPMGrains : protected Pointers {
   std::vector<Style> styles;
   std::string who;
 
+  Law in_units(Law) const;
+  int frozen_groups() const;
   Law law_of(const Style &, int itype, int jtype) const;
   Law law_of_model(void *model) const;
-  void pairs_of(const Style &, double ahead, Collision &) const;
-  void walls(Collision &) const;
+  void pairs_of(const Style &, double ahead, int every, Collision &) const;
+  void walls(int every, Collision &) const;
 };
 
 }    // namespace LAMMPS_NS

@@ -10,7 +10,8 @@
 #define MPM_LAW_TENSOR_FUNCTION_H
 
 // Logarithm and exponential of symmetric tensors, a batch at a time. Near the identity, where elastic
-// strains of solids are, they are polynomials of the tensor, which cost a tenth of principal axes.
+// strains of solids are, they are polynomials of the tensor. Whole laws are four to nine times faster with them than
+// with principal axes by Jacobi rotations.
 
 #include "law/spectral.h"
 
@@ -36,7 +37,7 @@ namespace {
   }
 
   // Chebyshev fits of log(1 + x)/(2 x) and (exp(x) - 1)/x made with mpmath (chebyfit); what they leave out is
-  // below 2e-17 up to these norms
+  // below 5e-17 up to these norms
   constexpr double HALF_LOG_RANGE = 0.2, EXP_RANGE = 0.5;
   constexpr double HALF_LOG[] = {-0.036101456703228674,
                                  0.03846750749568118,
