@@ -66,7 +66,6 @@
 #include "mpm_options.h"
 #include "mpm_state.h"
 #include "region.h"
-#include "region_mpm_mesh.h"
 #include "update.h"
 
 #include <algorithm>
@@ -98,94 +97,6 @@ namespace {
 struct RegionMotion : public Region {
   static const double *point_of(const Region *r) { return r->*(&RegionMotion::point); }
   static const double *axis_of(const Region *r) { return r->*(&RegionMotion::runit); }
-};
-
-/** The surface of a region in its present state. */
-struct Surface {
-  Region *region;
-  int dim;
-  double far;    // stands for a distance that is not known
-  RegMPMMesh *mesh = dynamic_cast<RegMPMMesh *>(region);
-  bool cone = strcmp(region->style, "cone") == 0;
-
-  static bool along_z(const Region::Contact &c) { return fabs(c.delz) > 0.5 * c.r; }
-
-  /** Signed distance of x, negative inside; far or -far where it is more, or not known. */
-  double distance(const double *x) const
-  {
-    if (mesh) {
-      double up;
-      const double d = mesh->distance(x, far, up);
-      // in 2d the section has another closest point
-      if (dim == 3 || up <= 0.5 * fabs(d)) return d;
-    }
-    const bool inside = region->match(x[0], x[1], x[2]);
-    const int interior = region->interior;
-    if (!inside) region->interior = !interior;    // Region::surface() answers for one side only
-    double distance = far;
-    if (cone) {
-      // on its axis LAMMPS does not see the side, and divides zero by zero: look next to it
-
-      const double off = 1.0e-12 * (fabs(x[0]) + fabs(x[1]) + fabs(x[2])) + 1.0e-20 * far;
-      const double next[3] = {x[0] + off, x[1] + off, x[2] + off};
-
-      // and so it does, outside, for an end with a radius of zero: once without each end
-
-      for (const int end : {0, 1}) {
-        int &open = region->open_faces[end];
-        const int is_open = open;
-        open = region->interior ? is_open : 1;
-        if (!nearest(next, distance)) nearest(x, distance);
-        open = is_open;
-      }
-    } else
-      nearest(x, distance);
-    region->interior = interior;
-    return inside ? -distance : distance;
-  }
-
-  /** The least of what LAMMPS finds. */
-  bool nearest(const double *x, double &distance) const
-  {
-    const int n = region->surface(x[0], x[1], x[2], far);
-    for (int i = 0; i < n; i++) {
-      const auto &c = region->contact[i];
-      if (dim == 3 || !along_z(c)) distance = std::min(distance, c.r);
-    }
-    return n > 0;
-  }
-
-  /** The same for material in front of the surface, where it need not be known as exactly: with errors of
-   *  less than 0.03 h^2/R of a surface of radius R beyond a node spacing h. A mesh is much faster then. */
-  double gap(const double *x, double h) const
-  {
-    double d;
-    return mesh && mesh->distance_by_cells(x, far, h, 0.25 * h, d) ? d : distance(x);
-  }
-
-  /** Direction out of the region: gradient of the distance, from differences (one-sided where the
-   *  region does not answer). Zero at centers and where it is not known. */
-  void normal(const double *x, double step, double *normal) const
-  {
-    const double here = distance(x);
-    MathExtra::zero3(normal);
-    for (int d = 0; d < dim; d++) {
-      double y[3] = {x[0], x[1], x[2]};
-      y[d] = x[d] + step;
-      const double up = distance(y);
-      y[d] = x[d] - step;
-      const double down = distance(y);
-      const bool knows_up = fabs(up) < far, knows_down = fabs(down) < far;
-      if (knows_up && knows_down)
-        normal[d] = up - down;
-      else if (knows_up && fabs(here) < far)
-        normal[d] = 2.0 * (up - here);
-      else if (knows_down && fabs(here) < far)
-        normal[d] = 2.0 * (here - down);
-    }
-    const double length = MathExtra::len3(normal);
-    for (int d = 0; d < 3; d++) normal[d] = length > 0.2 * step ? normal[d] / length : 0.0;
-  }
 };
 
 /** Shift and angle of a region, as restart files keep them. */
@@ -363,7 +274,8 @@ void FixMPMBoundary::init()
     if (!region)
       error->all(FLERR, Error::NOLASTLINE, "Region {} for fix mpm/boundary does not exist",
                  region_id);
-    if (region->openflag)
+    surface = std::make_unique<MPMRegionSurface>(region, domain->dimension);
+    if (surface->is_open())
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/boundary cannot use region {}: open faces have no inside", region_id);
     if (region->dynamic_check() && region->nregion > 1)
@@ -519,7 +431,7 @@ void FixMPMBoundary::extend_across(MPMField &field) const
     double middle[3];
     field.lattice.node_position(first, middle);
     for (int d = 0; d < dim; d++) middle[d] += 0.5 * (grid.side - 1) * h;
-    if (known && fabs(Surface{region, dim, FAR * h}.distance(middle)) > reach) continue;
+    if (known && fabs(surface->distance(middle, FAR * h)) > reach) continue;
     for (int k = 0; k < (dim == 3 ? 27 : 9); k++) {
       const int next[3] = {b[0] + k % 3 - 1, b[1] + k / 3 % 3 - 1, b[2] + k / 9 - (dim == 3)};
       grid.activate(next);
@@ -722,7 +634,7 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
   const double taken = (hands_over ? HAND_OVER : ON_SURFACE) * h;
   const bool looks = across ||
       (!warned_thin && !region->varshape && (!moves || update->ntimestep % LOOK_EVERY == 0));
-  const Surface surface = {region, dim, FAR * h}, next = {region, dim, looks ? 1.001 * h : taken};
+  const double far = FAR * h, next = looks ? 1.001 * h : taken;
   const bool box_known = region->bboxflag && !moves;
   const double lo[3] = {region->extent_xlo, region->extent_ylo, region->extent_zlo};
   const double hi[3] = {region->extent_xhi, region->extent_yhi, region->extent_zhi};
@@ -745,8 +657,8 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
       if (box_known && (last[d] < lo[d] - beyond || first[d] > hi[d] + beyond)) near = false;
     }
     if (near && region->nregion == 1) {
-      const double distance = surface.distance(mid);
-      near = distance <= radius + h || distance >= surface.far;
+      const double distance = surface->distance(mid, far);
+      near = distance <= radius + h || distance >= far;
     }
     if (!near) continue;
 
@@ -756,16 +668,16 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
       grid.node_position(first_node + n, x);
       Single s = {first_node + n};
       if (!region->match(x[0], x[1], x[2])) {
-        const double gap = next.distance(x);
-        if (looks && gap > ON_SURFACE * h && gap < next.far) {
+        const double gap = surface->distance(x, next);
+        if (looks && gap > ON_SURFACE * h && gap < next) {
           s.distance = gap;
           outside.push_back(s);
         }
         if (gap >= taken) continue;
         if (gap > ON_SURFACE * h) s.share = cube(1.0 - cube(gap / taken));
       }
-      if (kind != STICK || region->varshape) surface.normal(x, 1.0e-4 * h, s.normal);
-      if (region->varshape || across) s.distance = surface.distance(x);
+      if (kind != STICK || region->varshape) surface->normal(x, far, 1.0e-4 * h, s.normal);
+      if (region->varshape || across) s.distance = surface->distance(x, far);
       list.singles.push_back(s);
     }
   }
@@ -805,7 +717,7 @@ void FixMPMBoundary::list_crossings(FieldNodes &list, const std::vector<Single> 
     if (std::binary_search(ahead.begin(), ahead.end(), single.node)) continue;
     double x[3];
     field.grid.node_position(single.node, x);
-    Surface{region, field.lattice.dim, FAR * h}.normal(x, 1.0e-4 * h, single.normal);
+    surface->normal(x, FAR * h, 1.0e-4 * h, single.normal);
     Crossing c = {};
     if (find_crossing(list, single, c)) list.crossings.push_back(c);
     if (!warned_thin && is_narrow(field, single, c)) list.narrow.push_back(c);
@@ -835,7 +747,7 @@ void FixMPMBoundary::list_bare_faces(FieldNodes &list, const std::vector<Single>
   for (Single single : outside) {
     double x[3];
     field.grid.node_position(single.node, x);
-    Surface{region, field.lattice.dim, FAR * h}.normal(x, 1.0e-4 * h, single.normal);
+    surface->normal(x, FAR * h, 1.0e-4 * h, single.normal);
     Crossing c = {};
     if (!find_crossing(list, single, c)) {
       c = {};
@@ -895,8 +807,7 @@ bool FixMPMBoundary::find_crossing(FieldNodes &list, const Single &single, Cross
 {
   const MPMField &field = *list.field;
   const Grid &grid = field.grid;
-  const double h = field.lattice.h;
-  const Surface surface = {region, field.lattice.dim, FAR * h};
+  const double h = field.lattice.h, far = FAR * h;
   const bool is_outside = single.distance > ON_SURFACE * h;
   int index[3];
   double x[3], at[3];
@@ -918,25 +829,25 @@ bool FixMPMBoundary::find_crossing(FieldNodes &list, const Single &single, Cross
   bool known = true;
   for (int round = 0; round < 2 && known; round++) {
     at[a] = x[a] + outward * way;
-    distance = surface.distance(at);
-    known = fabs(distance) < surface.far;
+    distance = surface->distance(at, far);
+    known = fabs(distance) < far;
     way -= distance / slope - outside;
   }
   if (!known) return false;
   if (is_outside) {    // it may go by an edge
     if (way - outside > -ON_SURFACE * h || way - outside < -(1.0 + ON_SURFACE) * h) return false;
     at[a] = x[a] + outward * (way + 0.05 * h);    // an edge itself has no normal
-    if (fabs(surface.distance(at) - 0.05 * h * slope) > 0.02 * h) return false;
+    if (fabs(surface->distance(at, far) - 0.05 * h * slope) > 0.02 * h) return false;
   }
   at[a] = x[a] + outward * way;
   way -= outside;
   if (way > (1.0 - ON_SURFACE) * h) return false;
   if (is_outside) at[a] += outward * 0.05 * h;
-  surface.normal(at, 1.0e-4 * h, c.normal);
+  surface->normal(at, far, 1.0e-4 * h, c.normal);
   at[a] = x[a] + outward * (is_outside ? way : std::max(way, 0.0));
   const auto along = [&](const double *place) {
     double normal[3];
-    surface.normal(place, 1.0e-4 * h, normal);
+    surface->normal(place, far, 1.0e-4 * h, normal);
     return MathExtra::dot3(normal, c.normal) > SMOOTH;
   };
   if (!(MathExtra::dot3(n, c.normal) > SMOOTH)) return false;
@@ -1020,10 +931,9 @@ bool FixMPMBoundary::is_narrow(const MPMField &field, const Single &single, Cros
       }
       narrow = !match(side[0]) && !match(side[1]);
     }
-  } else if (region->bboxflag) {
-    const double size[3] = {region->extent_xhi - region->extent_xlo,
-                            region->extent_yhi - region->extent_ylo,
-                            region->extent_zhi - region->extent_zlo};
+  } else if (const Region &part = surface->part_near(x, FAR * h); part.bboxflag) {
+    const double size[3] = {part.extent_xhi - part.extent_xlo, part.extent_yhi - part.extent_ylo,
+                            part.extent_zhi - part.extent_zlo};
     narrow = std::count_if(size, size + dim, [h](double extent) {
                return extent < NARROW * h;
              }) > 1;
@@ -1055,17 +965,16 @@ bool FixMPMBoundary::is_narrow(const MPMField &field, const Single &single, Cros
 std::function<double(const double *)> FixMPMBoundary::distance_from_region(const MPMField &field,
                                                                            double dt) const
 {
-  const Surface surface = {region, field.lattice.dim, MPMWallGap::farthest(field)};
-  const double h = field.lattice.h;
+  const double h = field.lattice.h, far = MPMWallGap::farthest(field);
   if (!region_moves())
-    return [surface, h](const double *x) {
-      return surface.gap(x, h);
+    return [this, far, h](const double *x) {
+      return surface->gap(x, far, h);
     };
-  return [this, surface, h, dt](const double *x) {
+  return [this, far, h, dt](const double *x) {
     double y[3], v[3];
     wall.velocity(x, v);
     for (int d = 0; d < 3; d++) y[d] = x[d] + dt * v[d];
-    return surface.gap(y, h);
+    return surface->gap(y, far, h);
   };
 }
 
@@ -1187,12 +1096,12 @@ void FixMPMBoundary::update_motion(double dt)
       for (auto &list : nodes)
         for (auto &s : list.singles) {
           const MPMField &field = *list.field;
-          const Surface surface = {region, field.lattice.dim, FAR * field.lattice.h};
+          const double far = FAR * field.lattice.h;
           double x[3];
           field.grid.node_position(s.node, x);
-          const double distance = surface.distance(x);
+          const double distance = surface->distance(x, far);
           s.growth = 0.0;
-          if (std::max(fabs(distance), fabs(s.distance)) >= surface.far) continue;
+          if (std::max(fabs(distance), fabs(s.distance)) >= far) continue;
 
           // the normal speed of the surface in place of that of the rigid motion
 

@@ -18,10 +18,12 @@ FixStyle(mpm/boundary,FixMPMBoundary);
 #include "declare/option.h"
 #include "fix.h"
 #include "mpm_node_action.h"
+#include "mpm_region_surface.h"
 #include "mpm_wall_gap.h"
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -220,6 +222,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   std::vector<int> face_list;    // 2 * axis + (0: lo, 1: hi)
   std::string region_id;
   Region *region = nullptr;
+  std::unique_ptr<MPMRegionSurface> surface;    // its surface
 
   std::vector<FieldNodes> nodes;    // of the fields to act on
   Wall wall = {};                   // in this step
