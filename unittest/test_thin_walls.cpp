@@ -155,8 +155,8 @@ TEST(ThinRegions, AreReported)
                        const std::string &parts = "") {
     const ScratchFile log("log");
     {
-      Scene run("log " + log.name + "\n" + elastic_block(h, "0 2 0 1.2", body) + parts + "region tool " +
-                tool + "\nfix w all mpm/boundary region tool " + kind +
+      Scene run("log " + log.name + "\n" + elastic_block(h, "0 2 0 1.2", body) + parts +
+                "region tool " + tool + "\nfix w all mpm/boundary region tool " + kind +
                 strprintf("\nfix g all gravity %g vector 0 -1 0\n", g) + run_until(0.03));
     }
     return file_text(log.name);
@@ -192,6 +192,84 @@ TEST(ThinRegions, AreReported)
   EXPECT_THAT(text(lower, "block 0.52 1.48 0.3 0.4 INF INF", "separate"), Not(told));
   EXPECT_THAT(text(lower, "block 0.48 3 0.38 0.4 INF INF", "separate"), Not(told));
   EXPECT_THAT(text(lower, "prism 0.7 1.3 0.1 0.41 -1 1 0.3 0 0", "separate"), Not(told));
+}
+
+namespace {
+struct Warned {
+  std::string run, ranks = "* 1 1", extent = "0 2 0 1.2", body = "0.2 1.8 0.4 0.7", more;
+  int every = 1;
+};
+
+/** Where warnings tell that a region is too thin, for a block at rest. */
+std::vector<std::string> warnings_of(const std::string &region, const std::string &kind,
+                                     const Warned &w)
+{
+  const ScratchFile log("once.log");
+  {
+    const auto block = elastic_block(0.05, w.extent, w.body);
+    Scene scene("log " + log.name + "\nprocessors " + w.ranks + "\n" +
+                replaced(block, "origin 0 0", strprintf("origin 0 0 every %d", w.every)) + w.more +
+                "variable still equal 0.0\nregion tool " + region +
+                "\nfix w all mpm/boundary region tool " + kind +
+                strprintf("\nfix g all gravity %g vector 0 -1 0\ntimestep 2.0e-4\n", g) + w.run);
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  std::vector<std::string> lines;
+  std::ifstream file(log.name);
+  for (std::string line; std::getline(file, line);) {
+    const auto near = line.find("near "), end = line.find("):");
+    if (line.find("is thinner than 1.5 node spacings") < near && end != std::string::npos)
+      lines.push_back(line.substr(near, end + 1 - near));
+  }
+  return lines;
+}
+}    // namespace
+
+// Once for all ranks, and with the same place: a blade below the last of two ranks was reported by this one alone, not in
+// the log file, and a plate on two ranks twice
+TEST(ThinRegions, AreReportedOnce)
+{
+  for (const char *ranks : {"* 1 1", "1 * 1"}) {
+    const auto places = [ranks](const std::string &block, const std::string &kind) {
+      const auto lines =
+          warnings_of("block " + block + " INF INF", kind, {"run 3\nrun 3\n", ranks});
+      EXPECT_LE(lines.size(), 1U) << block << kind << ranks;
+      return lines.empty() ? "none" : lines[0].substr(0, lines[0].find(','));
+    };
+    EXPECT_EQ(places("1.51 1.54 0 0.4", "separate"), "near 1.5 0.35 0") << ranks;
+    EXPECT_EQ(places("1.51 1.54 0 0.62", "slip friction 0.1"), "near 1.5 0.35 0") << ranks;
+    EXPECT_EQ(places("0 2 0.51 0.54", "separate"), "near 0.15 0.5 0") << ranks;
+    EXPECT_EQ(places("0 2 0.56 0.59", "separate"), "near 0.15 0.55 0") << ranks;
+    EXPECT_EQ(places("0 2 0.36 0.39", "stick"), "near 0.15 0.4 0") << ranks;
+    EXPECT_EQ(places("1.5 2 0.36 0.39", "slip"), "near 1.5 0.4 0") << ranks;
+    EXPECT_EQ(places("0 2 0.2 0.4", "separate"), "none") << ranks;
+    EXPECT_EQ(places("0 2 0.2 0.4", "slip"), "none") << ranks;
+  }
+}
+
+// Another body is below the plate, next to it: this rank has the node that tells only because it is looked at
+TEST(ThinRegions, AreReportedWithWhatOtherRanksHave)
+{
+  for (const char *kind : {"stick", "slip"})
+    for (const bool below : {false, true}) {
+      Warned w = {"run 3\n", "1 * 1", "0 2 -0.4 1.4", "0.2 1.8 0.42 0.8"};
+      if (below)
+        w.more = "region low block 0.2 1.8 0.01 0.31 INF INF\ncreate_points 1 region low ppc 2\n";
+      EXPECT_EQ(warnings_of("block 0 2 0.405 0.42 INF INF", kind, w).size(), below ? 0U : 1U)
+          << kind;
+    }
+}
+
+// Regions that move are looked at in the first step, whatever its number
+TEST(ThinRegions, ThatMoveAreReportedInShortRuns)
+{
+  const std::string moves = "block 0 2 0.36 0.39 INF INF move NULL v_still NULL";
+  Warned twice = {"reset_timestep 1\nrun 102\n"};
+  twice.every = 2;
+  for (const char *kind : {"stick", "slip"}) {
+    EXPECT_EQ(warnings_of(moves, kind, {"run 3\n"}).size(), 1U) << kind;
+    EXPECT_EQ(warnings_of(moves, kind, twice).size(), 1U) << kind;
+  }
 }
 
 /* ---------------------------------------------------------------------- unions, intersections, cones */

@@ -89,7 +89,6 @@ static constexpr double THIN =
     3.0;    // node spacings: material on one side is not felt on the other
 static constexpr double ALONG =
     1.0e-3;                              // sine of the angle of a motion that is along the surface
-static constexpr int LOOK_EVERY = 50;    // steps: is a region that moves too thin?
 static constexpr double NARROW = 1.5;    // node spacings: nodes cannot tell how wide a region is
 
 namespace {
@@ -328,6 +327,8 @@ void FixMPMBoundary::init()
     }
   }
   motion_step = -1;
+  steps = 0;
+  thin_place = NOWHERE;
 }
 
 /* ----------------------------------------------------------------------
@@ -413,16 +414,18 @@ void FixMPMBoundary::extend_topology(MPMField &field)
 
 /* ----------------------------------------------------------------------
    A line of nodes through the surface of a region can have nodes that only another rank's points reach.
-   Lines along several axes share nodes: blocks all around
+   Lines along several axes share nodes: blocks all around. Where lines are only looked at, see check_width(), those
+   next to each other are enough
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::extend_across(MPMField &field) const
 {
-  if (comm->nprocs == 1 || !acts_across()) return;
+  const bool known = !region_moves() && region->nregion == 1, across = acts_across();
+  if (comm->nprocs == 1 || !(across || known)) return;
   Grid &grid = field.grid;
   const int dim = field.lattice.dim;
-  const double h = field.lattice.h, reach = (0.5 * grid.side * sqrt((double) dim) + 4.0) * h;
-  const bool known = !region_moves() && region->nregion == 1;
+  const double h = field.lattice.h,
+               reach = (0.5 * grid.side * sqrt((double) dim) + (across ? 4.0 : 2.0)) * h;
   if (!region_moves()) region->prematch();
   const auto nblocks = (int) grid.blocks.size();
   for (int ib = 0; ib < nblocks; ib++) {
@@ -433,8 +436,9 @@ void FixMPMBoundary::extend_across(MPMField &field) const
     for (int d = 0; d < dim; d++) middle[d] += 0.5 * (grid.side - 1) * h;
     if (known && fabs(surface->distance(middle, FAR * h)) > reach) continue;
     for (int k = 0; k < (dim == 3 ? 27 : 9); k++) {
-      const int next[3] = {b[0] + k % 3 - 1, b[1] + k / 3 % 3 - 1, b[2] + k / 9 - (dim == 3)};
-      grid.activate(next);
+      const int away[3] = {k % 3 - 1, k / 3 % 3 - 1, k / 9 - (dim == 3)};
+      const int next[3] = {b[0] + away[0], b[1] + away[1], b[2] + away[2]};
+      if (across || std::count(away, away + 3, 0) == 2) grid.activate(next);
     }
   }
 }
@@ -632,8 +636,7 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
   const double h = field.lattice.h;
   const bool moves = region_moves(), hands_over = moves && kind != SEPARATE, across = acts_across();
   const double taken = (hands_over ? HAND_OVER : ON_SURFACE) * h;
-  const bool looks = across ||
-      (!warned_thin && !region->varshape && (!moves || update->ntimestep % LOOK_EVERY == 0));
+  const bool looks = across || (!warned_thin && !region->varshape && (!moves || looks_at_width()));
   const double far = FAR * h, next = looks ? 1.001 * h : taken;
   const bool box_known = region->bboxflag && !moves;
   const double lo[3] = {region->extent_xlo, region->extent_ylo, region->extent_zlo};
@@ -945,6 +948,7 @@ bool FixMPMBoundary::is_narrow(const MPMField &field, const Single &single, Cros
     if (fabs(n[d]) > fabs(n[c.axis])) c.axis = d;
   int index[3];
   field.grid.node_index(single.node, index);
+  c.base = single.node;
   c.n = 3;
   c.inside = 2;
   c.front = Crossing::NEAR_OTHERS;
@@ -1065,6 +1069,7 @@ void FixMPMBoundary::update_motion(double dt)
 {
   if (motion_step == update->ntimestep) return;
   motion_step = update->ntimestep;
+  steps++;
 
   wall = {};
   wall.uniform = true;
@@ -1151,7 +1156,7 @@ void FixMPMBoundary::act(double dt, Stage stage)
       if (!faces[line.face].cut) act_on_column(list, line);
     for (const auto &orbit : list.orbits) act_on_orbit(list, orbit);
     held_by_lines.clear();
-    if (count && !warned_thin) check_width(list);
+    if (count) check_width(list);
     for (auto &crossing : list.crossings) act_on_crossing(list, crossing);
     std::sort(held_by_lines.begin(), held_by_lines.end());
     for (auto &single : list.singles)
@@ -1164,6 +1169,7 @@ void FixMPMBoundary::act(double dt, Stage stage)
   }
   wall = in_step;
   if (count) past.acted = 1;
+  if (count && looks_at_width()) report_width();
 }
 
 /* ----------------------------------------------------------------------

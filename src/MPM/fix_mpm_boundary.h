@@ -21,6 +21,7 @@ FixStyle(mpm/boundary,FixMPMBoundary);
 #include "mpm_region_surface.h"
 #include "mpm_wall_gap.h"
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -63,6 +64,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   int setmask() override { return 0; }    // called by fix mpm
   void init() override;
   void setup(int) override;
+  void post_run() override { report_width(); }
   void write_restart(FILE *) override;
   void restart(char *) override;
   double compute_scalar() override;
@@ -235,8 +237,13 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
       held_by_lines;    // nodes inside that are not nearest to the face of their line
   MPMWallGap gap;
   bool warned = false;    // of a region that is too fast
-  bool warned_thin = false;
-  double reaction[6] = {};    // force and, of regions, torque
+  bigint steps = 0;       // of this fix in this run
+  // step, index of the field, and place where the region was first seen to be too thin, by this rank
+  using ThinPlace = std::array<double, 5>;
+  static constexpr ThinPlace NOWHERE = {1.0e300, 0.0, 0.0, 0.0, 0.0};
+  ThinPlace thin_place = NOWHERE;
+  bool warned_thin = false;    // the same on all ranks
+  double reaction[6] = {};     // force and, of regions, torque
 
   struct {                      // what act() does now to the nodes of a field
     bool counting;              // reactions and work
@@ -266,7 +273,9 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   bool is_narrow(const MPMField &, const Single &, Crossing &) const;
   static bool is_in_front(MPM_NS::Grid &, const Crossing &);
   static bool is_behind(MPM_NS::Grid &, const Crossing &, double share);
+  bool looks_at_width() const;
   void check_width(const FieldNodes &);
+  void report_width();
   static int crossed_contact(FieldNodes &, double slope, double place);
   void update_motion(double dt);
   void find_gaps(FieldNodes &, double dt);

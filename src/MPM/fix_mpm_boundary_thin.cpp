@@ -14,6 +14,7 @@
 
 #include "fix_mpm_boundary.h"
 
+#include "comm.h"
 #include "error.h"
 #include "mpm_field.h"
 #include "update.h"
@@ -23,6 +24,8 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+
+static constexpr int LOOK_EVERY = 50;    // steps of this fix in a run
 
 static double mass(Grid &grid, int64_t node)
 {
@@ -62,31 +65,62 @@ bool FixMPMBoundary::is_behind(Grid &grid, const Crossing &c, double share)
   return in_front <= share * behind;
 }
 
+/** Is this a step in which lists of regions that move have what check_width() needs, and ranks compare notes? */
+bool FixMPMBoundary::looks_at_width() const
+{
+  return steps % LOOK_EVERY == 1;
+}
+
 /* ----------------------------------------------------------------------
    A blade or wire whose width is less than the reach of nodes, and has material in front of it; a plate that has
-   material on both sides
+   material on both sides. Each rank notes the first place that it sees, of several in a step the first one in space
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::check_width(const FieldNodes &list)
 {
   constexpr double BOTH =
       0.6;    // so much more is behind a plate when material is in front of it alone
+  const auto now = (double) update->ntimestep;
+  if (warned_thin || thin_place[0] < now) return;
   Grid &grid = list.field->grid;
-  const auto warn = [&](const Crossing &c) {
-    double x[3] = {0.0, 0.0, 0.0};
-    for (int k = 0; k < c.n; k++)
-      if (c.node[k] >= 0) grid.node_position(c.node[k], x);
-    warned_thin = true;
+  const auto note = [&](const Crossing &c) {
+    double x[3];
+    grid.node_position(c.base, x);
+    thin_place = std::min(thin_place, {now, (double) (&list - nodes.data()), x[0], x[1], x[2]});
+  };
+  // another rank may know the masses of nodes that this one does not have
+  const auto judges = [&](const Crossing &c) {
+    return comm->nprocs == 1 || std::count(c.node, c.node + c.inside, -1) == 0;
+  };
+  for (const auto &c : list.narrow)
+    if (mass(grid, c.node[c.inside - 1]) > 0.0 && judges(c) && is_in_front(grid, c)) note(c);
+  for (const auto &c : list.crossings)
+    if (c.thin && judges(c) && !is_in_front(grid, c) && !is_behind(grid, c, BOTH)) note(c);
+}
+
+/* ----------------------------------------------------------------------
+   Collective: one warning, of the same place for any number of ranks
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::report_width()
+{
+  if (!region || warned_thin) return;
+  ThinPlace first = NOWHERE;
+  bool mine = true;
+  for (std::size_t k = 0; k < first.size(); k++) {
+    const double least = mine ? thin_place[k] : NOWHERE[0];
+    MPI_Allreduce(&least, &first[k], 1, MPI_DOUBLE, MPI_MIN, world);
+    if (first[0] == NOWHERE[0]) return;
+    mine = mine && thin_place[k] == first[k];
+  }
+  warned_thin = true;
+  if (comm->me == 0)
     error->warning(
         FLERR,
         "Fix mpm/boundary {}: its region {} is thinner than 1.5 node spacings of fix mpm {} near "
-        "{:.6g} {:.6g} {:.6g}, where material is at its edge or on both sides (step {}): "
+        "{:.6g} {:.6g} {:.6g}, where material is at its edge or on both sides (step {:.0f}): "
         "its force can be wrong by tens of percent or zero, and material can pass through it. "
         "Make it thicker there, or the spacing smaller; this is said only once",
-        id, region_id, list.field->id(), x[0], x[1], x[2], update->ntimestep);
-  };
-  for (const auto &c : list.narrow)
-    if (mass(grid, c.node[c.inside - 1]) > 0.0 && is_in_front(grid, c)) return warn(c);
-  for (const auto &c : list.crossings)
-    if (c.thin && !is_in_front(grid, c) && !is_behind(grid, c, BOTH)) return warn(c);
+        id, region_id, nodes[(std::size_t) first[1]].field->id(), first[2], first[3], first[4],
+        first[0]);
 }
