@@ -238,10 +238,7 @@ bool FixMPMContact::couples(const std::string &a, const std::string &b) const
 
 bool FixMPMContact::decides_contact(const MPMField &field) const
 {
-  const auto all = MPMField::all(lmp);
-  return std::any_of(all.begin(), all.end(), [&](const auto *other) {
-    return couples(field.id(), other->id());
-  });
+  return std::count(names.begin(), names.end(), field.id()) > 0;
 }
 
 /** Row of the output for fields a < b of n: (0,1), (0,2), ..., (1,2), ... */
