@@ -929,9 +929,9 @@ int FixMPMContact::count_bodies(const Node &node) const
 double FixMPMContact::iterate(const Meeting &meeting, double dt, bool decided)
 {
   const Node &node = *meeting.node;
+  const int nothers = count_bodies(node) - 1;
   double largest = 0.0;
-  for (int p = node.first; p < node.last; p++)
-    apply(pairs[p], count_bodies(node) - 1, largest, dt, decided);
+  for (int p = node.first; p < node.last; p++) apply(pairs[p], nothers, largest, dt, decided);
   set_velocities(meeting);
   return largest;
 }
@@ -994,7 +994,8 @@ void FixMPMContact::solve(const Meeting *first, const Meeting *last, bool mirror
 void FixMPMContact::group_meetings()
 {
   const int n = (int) meetings.size(), nfields = (int) bodies.size();
-  std::vector<int> parent(n);
+  if (n < 2) return;
+  parent.resize(n);
   std::iota(parent.begin(), parent.end(), 0);
   const auto root = [&](int m) {
     while (parent[m] != m) m = parent[m] = parent[parent[m]];
@@ -1003,7 +1004,8 @@ void FixMPMContact::group_meetings()
   for (int k = 0; k < nfields; k++) {
     const Body &body = bodies[k];
     const Grid &grid = body.field->grid;
-    std::vector<int> first(body.foreseen.mirrors.size(), -1);    // node with this mirror
+    std::vector<int> &first = first_with_mirror;
+    first.assign(body.foreseen.mirrors.size(), -1);
     for (int m = 0; m < n; m++) {
       const double *const record = meetings[m].node->record[k];
       for (int d = 0; d < grid.lattice.dim && record; d++) {

@@ -168,6 +168,10 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
   std::vector<char> states;
   MPM_NS::Aitken series;
 
+  // of group_meetings()
+
+  std::vector<int> parent, first_with_mirror;
+
   double dt_last = 0.0;
   Account accounts[MAX_PAIRS] = {};
   double array[MAX_PAIRS][5] = {};
