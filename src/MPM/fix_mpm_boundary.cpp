@@ -328,7 +328,7 @@ void FixMPMBoundary::init()
   }
   motion_step = -1;
   steps = 0;
-  thin_place = NOWHERE;
+  too_thin.begin();
 }
 
 /* ----------------------------------------------------------------------
@@ -636,7 +636,8 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
   const double h = field.lattice.h;
   const bool moves = region_moves(), hands_over = moves && kind != SEPARATE, across = acts_across();
   const double taken = (hands_over ? HAND_OVER : ON_SURFACE) * h;
-  const bool looks = across || (!warned_thin && !region->varshape && (!moves || looks_at_width()));
+  const bool looks = across ||
+      (!too_thin.told() && !region->varshape && (!moves || looks_at_width()));
   const double far = FAR * h, next = looks ? 1.001 * h : taken;
   const bool box_known = region->bboxflag && !moves;
   const double lo[3] = {region->extent_xlo, region->extent_ylo, region->extent_zlo};
@@ -723,7 +724,7 @@ void FixMPMBoundary::list_crossings(FieldNodes &list, const std::vector<Single> 
     surface->normal(x, FAR * h, 1.0e-4 * h, single.normal);
     Crossing c = {};
     if (find_crossing(list, single, c)) list.crossings.push_back(c);
-    if (!warned_thin && is_narrow(field, single, c)) list.narrow.push_back(c);
+    if (!too_thin.told() && is_narrow(field, single, c)) list.narrow.push_back(c);
   }
 
   // lines along one axis share no nodes, those along two do, and those through both faces of a thin plate: all

@@ -17,11 +17,11 @@ FixStyle(mpm/boundary,FixMPMBoundary);
 
 #include "declare/option.h"
 #include "fix.h"
+#include "mpm_first_note.h"
 #include "mpm_node_action.h"
 #include "mpm_region_surface.h"
 #include "mpm_wall_gap.h"
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -236,13 +236,9 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   std::vector<int64_t>
       held_by_lines;    // nodes inside that are not nearest to the face of their line
   MPMWallGap gap;
-  bool warned = false;    // of a region that is too fast
-  bigint steps = 0;       // of this fix in this run
-  // step, index of the field, and place where the region was first seen to be too thin, by this rank
-  using ThinPlace = std::array<double, 5>;
-  static constexpr ThinPlace NOWHERE = {1.0e300, 0.0, 0.0, 0.0, 0.0};
-  ThinPlace thin_place = NOWHERE;
-  bool warned_thin = false;    // the same on all ranks
+  bool warned = false;         // of a region that is too fast
+  bigint steps = 0;            // of this fix in this run
+  MPMFirstNote<5> too_thin;    // region: step, index of the field, place
   double reaction[6] = {};     // force and, of regions, torque
 
   struct {                      // what act() does now to the nodes of a field

@@ -81,12 +81,12 @@ void FixMPMBoundary::check_width(const FieldNodes &list)
   constexpr double BOTH =
       0.6;    // so much more is behind a plate when material is in front of it alone
   const auto now = (double) update->ntimestep;
-  if (warned_thin || thin_place[0] < now) return;
+  if (too_thin.knows(now)) return;
   Grid &grid = list.field->grid;
   const auto note = [&](const Crossing &c) {
     double x[3];
     grid.node_position(c.base, x);
-    thin_place = std::min(thin_place, {now, (double) (&list - nodes.data()), x[0], x[1], x[2]});
+    too_thin.take({now, (double) (&list - nodes.data()), x[0], x[1], x[2]});
   };
   // another rank may know the masses of nodes that this one does not have
   const auto judges = [&](const Crossing &c) {
@@ -104,16 +104,8 @@ void FixMPMBoundary::check_width(const FieldNodes &list)
 
 void FixMPMBoundary::report_width()
 {
-  if (!region || warned_thin) return;
-  ThinPlace first = NOWHERE;
-  bool mine = true;
-  for (std::size_t k = 0; k < first.size(); k++) {
-    const double least = mine ? thin_place[k] : NOWHERE[0];
-    MPI_Allreduce(&least, &first[k], 1, MPI_DOUBLE, MPI_MIN, world);
-    if (first[0] == NOWHERE[0]) return;
-    mine = mine && thin_place[k] == first[k];
-  }
-  warned_thin = true;
+  std::array<double, 5> first;
+  if (!region || !too_thin.tell(world, first)) return;
   if (comm->me == 0)
     error->warning(
         FLERR,
