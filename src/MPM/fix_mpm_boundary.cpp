@@ -85,11 +85,11 @@ static constexpr double ON_SURFACE = 1.0e-6;    // in node spacings
 static constexpr double FAR = 1.0e8;            // in node spacings
 static constexpr double HAND_OVER = 0.5;        // in node spacings, see list_region_nodes()
 static constexpr double SMOOTH = 0.9;    // cosine between normals of a surface that is smooth
-static constexpr double THIN =
+static constexpr double FELT_THROUGH =
     3.0;    // node spacings: material on one side is not felt on the other
 static constexpr double ALONG =
-    1.0e-3;                              // sine of the angle of a motion that is along the surface
-static constexpr double NARROW = 1.5;    // node spacings: nodes cannot tell how wide a region is
+    1.0e-3;    // sine of the angle of a motion that is along the surface
+static constexpr double RESOLVED = 1.5;    // node spacings: nodes cannot tell widths that are less
 
 namespace {
 /** Center and unit axis of a region's rotation, which are protected members. */
@@ -305,7 +305,7 @@ void FixMPMBoundary::init()
       for (const auto &list : nodes) {
         const auto &field = *list.field;
         if (other->acts_on(field) &&
-            narrow({{field, *domain, face}, {field, *domain, face ^ 1}}, face / 2))
+            faces_are_near({{field, *domain, face}, {field, *domain, face ^ 1}}, face / 2))
           error->all(FLERR, Error::NOLASTLINE,
                      "Faces {} and {} are less than 3 cells apart, or 5 when they are not in "
                      "planes of nodes: they must be in the same fix mpm/boundary",
@@ -313,7 +313,7 @@ void FixMPMBoundary::init()
       }
     }
     for (const auto &list : nodes) {
-      if (!narrow(list.faces, face / 2)) continue;
+      if (!faces_are_near(list.faces, face / 2)) continue;
       if (decides())
         error->all(FLERR, Error::NOLASTLINE,
                    "Fix mpm/boundary separate and friction need at least 3 cells between opposite "
@@ -373,7 +373,7 @@ FixMPMBoundary::Faces FixMPMBoundary::faces_on_lattice(const MPMField &field) co
    true when the planes of both faces of an axis have images inside that are the same nodes
 ------------------------------------------------------------------------- */
 
-bool FixMPMBoundary::narrow(const Faces &faces, int axis)
+bool FixMPMBoundary::faces_are_near(const Faces &faces, int axis)
 {
   const Face *lo = nullptr, *hi = nullptr;
   for (const auto &f : faces)
@@ -705,7 +705,7 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
 void FixMPMBoundary::list_crossings(FieldNodes &list, const std::vector<Single> &outside)
 {
   list.crossings.clear();
-  list.narrow.clear();
+  list.looked_at.clear();
   const MPMField &field = *list.field;
   const double h = field.lattice.h;
   std::vector<int64_t> ahead;
@@ -724,7 +724,7 @@ void FixMPMBoundary::list_crossings(FieldNodes &list, const std::vector<Single> 
     surface->normal(x, FAR * h, 1.0e-4 * h, single.normal);
     Crossing c = {};
     if (find_crossing(list, single, c)) list.crossings.push_back(c);
-    if (!too_thin.told() && is_narrow(field, single, c)) list.narrow.push_back(c);
+    if (!too_thin.told() && looks_at_blade(field, single, c)) list.looked_at.push_back(c);
   }
 
   // lines along one axis share no nodes, those along two do, and those through both faces of a thin plate: all
@@ -745,7 +745,7 @@ void FixMPMBoundary::list_crossings(FieldNodes &list, const std::vector<Single> 
 
 void FixMPMBoundary::list_bare_faces(FieldNodes &list, const std::vector<Single> &outside)
 {
-  list.narrow.clear();
+  list.looked_at.clear();
   const MPMField &field = *list.field;
   const double h = field.lattice.h;
   for (Single single : outside) {
@@ -755,7 +755,7 @@ void FixMPMBoundary::list_bare_faces(FieldNodes &list, const std::vector<Single>
     Crossing c = {};
     if (!find_crossing(list, single, c)) {
       c = {};
-      if (!is_narrow(field, single, c)) continue;
+      if (!looks_at_blade(field, single, c)) continue;
     }
     bool bare = true;
     for (const double deep : {1.0, 2.0}) {
@@ -763,7 +763,7 @@ void FixMPMBoundary::list_bare_faces(FieldNodes &list, const std::vector<Single>
       y[c.axis] -= (c.normal[c.axis] > 0.0 ? deep : -deep) * h;
       bare = bare && !region->match(y[0], y[1], y[2]);
     }
-    if (bare) list.narrow.push_back(c);
+    if (bare) list.looked_at.push_back(c);
   }
 }
 
@@ -887,12 +887,12 @@ bool FixMPMBoundary::find_crossing(FieldNodes &list, const Single &single, Cross
 
   if (is_outside) c.front = Crossing::NEAR_OTHERS;
   const double surface_x = x[a] + outward * way;
-  for (const double deep : {NARROW, 2.0, THIN}) {
+  for (const double deep : {RESOLVED, 2.0, FELT_THROUGH}) {
     at[a] = surface_x - outward * deep * h;
     if (region->match(at[0], at[1], at[2])) continue;
-    if (deep == NARROW) {
+    if (deep == RESOLVED) {
       at[a] = surface_x - outward * 0.05 * h;    // a line along the edge of the region is not in it
-      c.thin = region->match(at[0], at[1], at[2]);
+      c.in_plate = region->match(at[0], at[1], at[2]);
     }
     if (!is_outside) c.front = Crossing::THIN_PLACE;
   }
@@ -904,7 +904,7 @@ bool FixMPMBoundary::find_crossing(FieldNodes &list, const Single &single, Cross
    region
 ------------------------------------------------------------------------- */
 
-bool FixMPMBoundary::is_narrow(const MPMField &field, const Single &single, Crossing &c) const
+bool FixMPMBoundary::looks_at_blade(const MPMField &field, const Single &single, Crossing &c) const
 {
   const double h = field.lattice.h, *const n = single.normal;
   const int dim = field.lattice.dim;
@@ -914,7 +914,7 @@ bool FixMPMBoundary::is_narrow(const MPMField &field, const Single &single, Cros
   };
   double x[3], middle[3];
   field.grid.node_position(single.node, x);
-  for (int d = 0; d < 3; d++) middle[d] = x[d] - (single.distance + NARROW * h) * n[d];
+  for (int d = 0; d < 3; d++) middle[d] = x[d] - (single.distance + RESOLVED * h) * n[d];
   bool narrow = false;
   if (match(middle)) {
     double t[2][3] = {{-n[1], n[0], 0.0}, {0.0, 0.0, 0.0}};
@@ -928,7 +928,7 @@ bool FixMPMBoundary::is_narrow(const MPMField &field, const Single &single, Cros
     for (int k = 0; k < ndirections && !narrow; k++) {
       double side[2][3];
       for (int d = 0; d < 3; d++) {
-        const double along = h * 0.5 * NARROW *
+        const double along = h * 0.5 * RESOLVED *
             (k < 2 ? t[k][d] : sqrt(0.5) * (t[0][d] + (k == 2 ? t[1][d] : -t[1][d])));
         side[0][d] = middle[d] + along;
         side[1][d] = middle[d] - along;
@@ -939,7 +939,7 @@ bool FixMPMBoundary::is_narrow(const MPMField &field, const Single &single, Cros
     const double size[3] = {part.extent_xhi - part.extent_xlo, part.extent_yhi - part.extent_ylo,
                             part.extent_zhi - part.extent_zlo};
     narrow = std::count_if(size, size + dim, [h](double extent) {
-               return extent < NARROW * h;
+               return extent < RESOLVED * h;
              }) > 1;
   }
   if (!narrow) return false;

@@ -162,7 +162,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
     // acts without a question; where another face is near: unless the material is behind; where nodes of the line are
     // nearer to another face, or beyond it: when the material is in front
     enum Front { SOUND, THIN_PLACE, NEAR_OTHERS } front = SOUND;
-    bool acts = true, thin = false;
+    bool acts = true, in_plate = false;    // in_plate: of less than RESOLVED
   };
   struct FieldNodes {
     MPMField *field;
@@ -172,7 +172,9 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
     std::vector<Orbit> orbits;
     std::vector<Single> singles;
     std::vector<Crossing> crossings = {};
-    std::vector<Crossing> narrow = {};    // places where nodes cannot tell how wide the region is
+    // lines that do not act but tell where nodes see too little of a region: at blades, wires, and faces
+    // behind which no node acts
+    std::vector<Crossing> looked_at = {};
     std::vector<MPMWallContact> contacts = {};    // with nodes at depths in a region
     std::vector<MPMWallContact> crossed = {};     // with crossings, as far as they have been needed
     std::vector<char> crossed_known = {};
@@ -258,7 +260,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   bool holds(const Single &, int d) const;
   bool acts_on(const MPMField &) const;
   Faces faces_on_lattice(const MPMField &) const;
-  static bool narrow(const Faces &, int axis);
+  static bool faces_are_near(const Faces &, int axis);
   void list_face_nodes(FieldNodes &);
   void list_region_nodes(FieldNodes &);
   void extend_across(MPMField &) const;
@@ -266,7 +268,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   void list_bare_faces(FieldNodes &, const std::vector<Single> &outside);
   void take_off_lines(FieldNodes &);
   bool find_crossing(FieldNodes &, const Single &, Crossing &);
-  bool is_narrow(const MPMField &, const Single &, Crossing &) const;
+  bool looks_at_blade(const MPMField &, const Single &, Crossing &) const;
   static bool is_in_front(MPM_NS::Grid &, const Crossing &);
   static bool is_behind(MPM_NS::Grid &, const Crossing &, double share);
   bool looks_at_width() const;

@@ -35,12 +35,16 @@ static double mass(Grid &grid, int64_t node)
 /* ----------------------------------------------------------------------
    In front of a plane, a node at the distance x from the surface has the mass that its function has over x' > -x.
    More than that of material which is INTO deeper in the wall is that of material at another face.
+
+   The functions are quadratic ones for all shapes. With linear and cubic ones, too, this holds for all material in front of a
+   plane, wherever it is between nodes, and for none behind a plate of .3 to 3 spacings: the shift by INTO is enough for
+   their differences.
 ------------------------------------------------------------------------- */
 
 bool FixMPMBoundary::is_in_front(Grid &grid, const Crossing &c)
 {
   constexpr double INTO = 0.3, LITTLE = 1.0e-3;    // node spacings, share
-  const auto share = [](double x) {                // quadratic functions
+  const auto share = [](double x) {
     const double s = std::fabs(x), y = 1.5 - std::min(s, 1.5);
     const double less = s < 0.5 ? 0.5 - 0.75 * s + s * s * s / 3.0 : y * y * y / 6.0;
     return x < 0.0 ? less : 1.0 - less;
@@ -92,10 +96,10 @@ void FixMPMBoundary::check_width(const FieldNodes &list)
   const auto judges = [&](const Crossing &c) {
     return comm->nprocs == 1 || std::count(c.node, c.node + c.inside, -1) == 0;
   };
-  for (const auto &c : list.narrow)
+  for (const auto &c : list.looked_at)
     if (mass(grid, c.node[c.inside - 1]) > 0.0 && judges(c) && is_in_front(grid, c)) note(c);
   for (const auto &c : list.crossings)
-    if (c.thin && judges(c) && !is_in_front(grid, c) && !is_behind(grid, c, BOTH)) note(c);
+    if (c.in_plate && judges(c) && !is_in_front(grid, c) && !is_behind(grid, c, BOTH)) note(c);
 }
 
 /* ----------------------------------------------------------------------
