@@ -194,6 +194,33 @@ TEST(ThinRegions, AreReported)
   EXPECT_THAT(text(lower, "prism 0.7 1.3 0.1 0.41 -1 1 0.3 0 0", "separate"), Not(told));
 }
 
+TEST(ThinRegions, AreReportedIn3d)
+{
+  const auto is_told = [](const std::string &tool, const std::string &kind) {
+    const ScratchFile log("log");
+    {
+      Scene run("log " + log.name + "\n" + space("lj", "f f f", "0 10 0 10 0 10") +
+                body("block 2 8 2 8 5 8", "density 1.0 neohookean 10.0 0.3") + "region tool " +
+                tool + "\nfix w all mpm/boundary region tool " + kind + "\ntimestep 0.01\nrun 2\n");
+    }
+    MPI_Barrier(MPI_COMM_WORLD);
+    return file_text(log.name).find("region tool is thinner than 1.5") != std::string::npos;
+  };
+  for (const char *kind : {"separate", "slip friction 0.1"}) {
+    // blades across two axes, with a node and without; wires that lie and stand; a plate
+    EXPECT_TRUE(is_told("block 5.2 5.8 0 10 1 5", kind)) << kind;
+    EXPECT_TRUE(is_told("block 0 10 4.8 5.3 1 5", kind)) << kind;
+    EXPECT_TRUE(is_told("cylinder y 5.3 4.6 0.4 0 10", kind)) << kind;
+    EXPECT_TRUE(is_told("cylinder z 5.3 4.8 0.5 1 5", kind)) << kind;
+    EXPECT_TRUE(is_told("block 0 10 0 10 6.2 6.8", kind)) << kind;
+    // what is wide enough, and a plate with material on one side
+    EXPECT_FALSE(is_told("block 3.7 6.3 0 10 1 5", kind)) << kind;
+    EXPECT_FALSE(is_told("cylinder y 5.3 2 3 0 10", kind)) << kind;
+    EXPECT_FALSE(is_told("cylinder z 5.3 4.8 1.5 1 5", kind)) << kind;
+    EXPECT_FALSE(is_told("block 0 10 0 10 4.4 5", kind)) << kind;
+  }
+}
+
 namespace {
 struct Warned {
   std::string run, ranks = "* 1 1", extent = "0 2 0 1.2", body = "0.2 1.8 0.4 0.7", more;
