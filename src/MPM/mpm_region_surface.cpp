@@ -84,6 +84,38 @@ void MPMRegionSurface::find_sharp_end()
   if (blunt == 2) left_out = {-1};
 }
 
+/* ----------------------------------------------------------------------
+   what LAMMPS tells of a simple region: calls f(distance, vector from the surface to x)
+------------------------------------------------------------------------- */
+
+template <class F>
+void MPMRegionSurface::each_contact(const double *x, double far, bool inside, const F &f) const
+{
+  const auto each = [&](const double *place) {
+    const int n = region->surface(place[0], place[1], place[2], far);
+    for (int i = 0; i < n; i++) {
+      const auto &c = region->contact[i];
+      if (dim == 3 || !(fabs(c.delz) > 0.5 * c.r)) f(c.r, c.delx, c.dely, c.delz);
+    }
+    return n > 0;
+  };
+  const int interior = region->interior;
+  if (!inside) region->interior = !interior;
+  if (is_cone) {
+    const double off = 1.0e-12 * (fabs(x[0]) + fabs(x[1]) + fabs(x[2])) + 1.0e-20 * far;
+    const double next[3] = {x[0] + off, x[1] + off, x[2] + off};
+    for (const int end : left_out) {
+      const bool leave_out = end >= 0 && !region->interior;
+      if (leave_out) region->open_faces[end] = 1;
+      if (!each(next)) each(x);
+      if (leave_out) region->open_faces[end] = 0;
+      if (!leave_out) break;
+    }
+  } else
+    each(x);
+  region->interior = interior;
+}
+
 /* ---------------------------------------------------------------------- */
 
 double MPMRegionSurface::find(const double *x, double far, double h) const
@@ -97,7 +129,11 @@ double MPMRegionSurface::find(const double *x, double far, double h) const
   }
   const bool inside = match(x);
   d = far;
-  if (!parts.empty() && (inside == (region->interior != 0)) != is_union) {
+  if (parts.empty()) {
+    each_contact(x, far, inside, [&](double r, double, double, double) {
+      d = std::min(d, r);
+    });
+  } else if ((inside == (region->interior != 0)) != is_union) {
     for (const auto &part : parts) d = std::min(d, fabs(part.find(x, far, h)));
   } else {
     find_places(x, far);
@@ -114,18 +150,9 @@ void MPMRegionSurface::find_places(const double *x, double far) const
 {
   places.clear();
   if (!parts.empty()) return find_places_of_parts(x, far);
-  const int interior = region->interior;
-  if (!match(x)) region->interior = !interior;
-  const double off = 1.0e-12 * (fabs(x[0]) + fabs(x[1]) + fabs(x[2])) + 1.0e-20 * far;
-  const double next[3] = {x[0] + off, x[1] + off, x[2] + off};
-  for (const int end : left_out) {
-    const bool leave_out = end >= 0 && !region->interior;
-    if (leave_out) region->open_faces[end] = 1;
-    if (!is_cone || !add_places(next, far)) add_places(x, far);
-    if (leave_out) region->open_faces[end] = 0;
-    if (!leave_out) break;
-  }
-  region->interior = interior;
+  each_contact(x, far, match(x), [&](double r, double dx, double dy, double dz) {
+    places.push_back({{x[0] - dx, x[1] - dy, x[2] - dz}, r});
+  });
 }
 
 void MPMRegionSurface::find_places_of_parts(const double *x, double far) const
@@ -142,18 +169,6 @@ void MPMRegionSurface::find_places_of_parts(const double *x, double far) const
       if (!hidden) places.push_back(place);
     }
   }
-}
-
-/** Those that LAMMPS finds; are there any? */
-bool MPMRegionSurface::add_places(const double *x, double far) const
-{
-  const int n = region->surface(x[0], x[1], x[2], far);
-  for (int i = 0; i < n; i++) {
-    const auto &c = region->contact[i];
-    if (dim == 3 || !(fabs(c.delz) > 0.5 * c.r))
-      places.push_back({{x[0] - c.delx, x[1] - c.dely, x[2] - c.delz}, c.r});
-  }
-  return n > 0;
 }
 
 /* ---------------------------------------------------------------------- */

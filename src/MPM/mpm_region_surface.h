@@ -57,7 +57,7 @@ class MPMRegionSurface {
   void find_sharp_end();
   void find_places(const double *x, double far) const;
   void find_places_of_parts(const double *x, double far) const;
-  bool add_places(const double *x, double far) const;
+  template <class F> void each_contact(const double *x, double far, bool inside, const F &f) const;
 };
 
 }    // namespace LAMMPS_NS
