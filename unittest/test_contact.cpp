@@ -498,6 +498,23 @@ TEST(ManyBodies, OrderOfNamesDoesNotMatter)
   }
 }
 
+// Iterations that come to no end are told, once and with the same place for any number of ranks
+TEST(ManyBodies, TellsWhatIsNotSolved)
+{
+  const ScratchFile log("log");
+  {
+    Scene run("log " + log.name + "\n" + replaced(corner, "FIELDS", "F1 F2 F3") +
+              "run 3\nrun 60\nrun 60\n");
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  const std::string text = file_text(log.name), told = "200 iterations were not enough";
+  const auto at = text.find(told), end = text.find(':', at);
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_EQ(text.substr(at, end - at),
+            told + " to find what bodies give to each other at the node at 9 8 0 in step 1");
+  EXPECT_EQ(text.find(told, at + 1), std::string::npos);
+}
+
 // a plate of half a cell between two bars that close in on it: after contact no two of the three approach
 // each other, at any node, and their momentum is what it was
 SERIAL_TEST(ManyBodies, NoneApproaches)

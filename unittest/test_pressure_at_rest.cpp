@@ -625,6 +625,7 @@ Sloshed slosh(double smooth, int n, double c)
   }
   const double nperiod = (double) zero.size() - 1;
   EXPECT_GE(nperiod, 2);
+  if (nperiod < 1) return {NAN, NAN};
   return {(zero.back() - zero.front()) / nperiod * w / (2 * M_PI),
           1 - std::pow(size / first_size, 1 / nperiod)};
 }

@@ -6,9 +6,12 @@
 // timeout: 600
 
 // Regions as walls where their other faces are near: plates that are thinner than what nodes see, narrow and
-// short tools; the warning where nodes cannot tell the shape; cones with a sharp end; walls that move.
+// short tools; the warning where nodes cannot tell the shape; unions, intersections, and cones with a sharp end; walls
+// that move.
 
 #include "mpm_lammps.h"
+
+#include "mpm_region_surface.h"
 
 using namespace MPM_TEST;
 using ::testing::HasSubstr;
@@ -36,14 +39,15 @@ struct Rest {
 };
 
 /** A block, 1 wide and 0.5 high, at rest on a plate of this thickness, whose upper face is at top, and which reaches
- *  this far beyond the block; in node spacings. */
-Rest rest(double h, double thickness, double top, double beyond, const std::string &kind)
+ *  this far beyond the block; in node spacings. The wall: made of the plate by these commands. */
+Rest rest(double h, double thickness, double top, double beyond, const std::string &kind,
+          const std::string &wall = "")
 {
   const double y = 0.4 + top * h;
   Scene run(elastic_block(h, "0 2 0 1.2", strprintf("0.5 1.5 %.15g %.15g", y, y + 0.5)) +
             strprintf("region plate block %.15g %.15g %.15g %.15g INF INF\n", 0.5 - beyond * h,
                       1.5 + beyond * h, y - thickness * h, y) +
-            "fix w all mpm/boundary region plate " + kind +
+            wall + "fix w all mpm/boundary region " + (wall.empty() ? "plate " : "wall ") + kind +
             strprintf("\nfix g all gravity %g vector 0 -1 0\n", g) +
             strprintf("variable settled equal %.15g-xcm(all,y)\n", y + 0.25) +
             strprintf("variable weight equal -f_w[2]/(%g*mass(all))\nrun 0\n", g) + run_until(0.5));
@@ -75,6 +79,26 @@ TEST(ThinPlate, CarriesABlock)
       EXPECT_NEAR(measured(name + "weight", thin.weight), 1.0, 0.005);
       // there the points of create_points begin at the plate
       if (plate.top == 0.0 || plate.top == 0.5) EXPECT_NEAR(thick.settled / exact, 1.0, 0.03);
+    }
+}
+
+// What is added far away changes nothing. LAMMPS does not tell the distance from a union: the block fell through
+// the thinnest plate, and settled 20 times as far on the thickest.
+TEST(ThinPlate, IsTheSameInAUnion)
+{
+  const std::string far = "region far block -9 -8 -9 -8 INF INF\n";
+  for (const char *kind : {"separate", "slip friction 0.3", "separate friction 0.3"})
+    for (const double thickness : {0.8, 4.0}) {
+      const auto alone = rest(0.05, thickness, 0.5, 4, kind);
+      EXPECT_NEAR(alone.weight, 1.0, 0.005);
+      for (const char *wall :
+           {"region wall union 2 plate far\n", "region wall union 2 far plate\n",
+            "region both union 2 plate far\nregion wall union 2 far both\n",
+            "region not block -9 -8 -9 -8 INF INF side out\nregion wall intersect 2 plate not\n"}) {
+        const auto in_union = rest(0.05, thickness, 0.5, 4, kind, far + wall);
+        EXPECT_NEAR(in_union.settled, alone.settled, 1.0e-12) << kind << " " << thickness << wall;
+        EXPECT_NEAR(in_union.weight, alone.weight, 1.0e-12) << kind << " " << thickness << wall;
+      }
     }
 }
 
@@ -127,11 +151,12 @@ TEST(ThinRegions, AreReported)
 {
   if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
   constexpr double h = 0.05;
-  const auto text = [](const std::string &body, const std::string &tool, const std::string &kind) {
+  const auto text = [](const std::string &body, const std::string &tool, const std::string &kind,
+                       const std::string &parts = "") {
     const ScratchFile log("log");
     {
-      Scene run("log " + log.name + "\n" + elastic_block(h, "0 2 0 1.2", body) + "region tool " +
-                tool + "\nfix w all mpm/boundary region tool " + kind +
+      Scene run("log " + log.name + "\n" + elastic_block(h, "0 2 0 1.2", body) + parts +
+                "region tool " + tool + "\nfix w all mpm/boundary region tool " + kind +
                 strprintf("\nfix g all gravity %g vector 0 -1 0\n", g) + run_until(0.03));
     }
     return file_text(log.name);
@@ -146,6 +171,11 @@ TEST(ThinRegions, AreReported)
     EXPECT_THAT(text(lower, "block 0.9 1.1 0 0.4 INF INF", kind), Not(told)) << kind;
     // a wire
     EXPECT_THAT(text(lower, "cylinder z 1.01 0.38 0.02 INF INF", kind), told) << kind;
+    EXPECT_THAT(text(lower, "union 2 far wire", kind,
+                     "region wire cylinder z 1.01 0.38 0.02 INF INF\n"
+                     "region far block -9 -8 -9 -8 INF INF\n"),
+                told)
+        << kind;
     // a plate within the block, one below it, and one that is thick
     EXPECT_THAT(text(both, "block 0 2 0.51 0.54 INF INF", kind), told) << kind;
     EXPECT_THAT(text(lower, "block 0 2 0.37 0.4 INF INF", kind), Not(told)) << kind;
@@ -164,7 +194,231 @@ TEST(ThinRegions, AreReported)
   EXPECT_THAT(text(lower, "prism 0.7 1.3 0.1 0.41 -1 1 0.3 0 0", "separate"), Not(told));
 }
 
-/* ---------------------------------------------------------------------- cones */
+TEST(ThinRegions, AreReportedIn3d)
+{
+  const auto is_told = [](const std::string &tool, const std::string &kind) {
+    const ScratchFile log("log");
+    {
+      Scene run("log " + log.name + "\n" + space("lj", "f f f", "0 10 0 10 0 10") +
+                body("block 2 8 2 8 5 8", "density 1.0 neohookean 10.0 0.3") + "region tool " +
+                tool + "\nfix w all mpm/boundary region tool " + kind + "\ntimestep 0.01\nrun 2\n");
+    }
+    MPI_Barrier(MPI_COMM_WORLD);
+    return file_text(log.name).find("region tool is thinner than 1.5") != std::string::npos;
+  };
+  for (const char *kind : {"separate", "slip friction 0.1"}) {
+    // blades across two axes, with a node and without; wires that lie and stand; a plate
+    EXPECT_TRUE(is_told("block 5.2 5.8 0 10 1 5", kind)) << kind;
+    EXPECT_TRUE(is_told("block 0 10 4.8 5.3 1 5", kind)) << kind;
+    EXPECT_TRUE(is_told("cylinder y 5.3 4.6 0.4 0 10", kind)) << kind;
+    EXPECT_TRUE(is_told("cylinder z 5.3 4.8 0.5 1 5", kind)) << kind;
+    EXPECT_TRUE(is_told("block 0 10 0 10 6.2 6.8", kind)) << kind;
+    // what is wide enough, and a plate with material on one side
+    EXPECT_FALSE(is_told("block 3.7 6.3 0 10 1 5", kind)) << kind;
+    EXPECT_FALSE(is_told("cylinder y 5.3 2 3 0 10", kind)) << kind;
+    EXPECT_FALSE(is_told("cylinder z 5.3 4.8 1.5 1 5", kind)) << kind;
+    EXPECT_FALSE(is_told("block 0 10 0 10 4.4 5", kind)) << kind;
+  }
+}
+
+namespace {
+struct Warned {
+  std::string run, ranks = "* 1 1", extent = "0 2 0 1.2", body = "0.2 1.8 0.4 0.7", more;
+  int every = 1;
+};
+
+/** Where warnings tell that a region is too thin, for a block at rest. */
+std::vector<std::string> warnings_of(const std::string &region, const std::string &kind,
+                                     const Warned &w)
+{
+  const ScratchFile log("once.log");
+  {
+    const auto block = elastic_block(0.05, w.extent, w.body);
+    Scene scene("log " + log.name + "\nprocessors " + w.ranks + "\n" +
+                replaced(block, "origin 0 0", strprintf("origin 0 0 every %d", w.every)) + w.more +
+                "variable still equal 0.0\nregion tool " + region +
+                "\nfix w all mpm/boundary region tool " + kind +
+                strprintf("\nfix g all gravity %g vector 0 -1 0\ntimestep 2.0e-4\n", g) + w.run);
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  std::vector<std::string> lines;
+  std::ifstream file(log.name);
+  for (std::string line; std::getline(file, line);) {
+    const auto near = line.find("near "), end = line.find("):");
+    if (line.find("is thinner than 1.5 node spacings") < near && end != std::string::npos)
+      lines.push_back(line.substr(near, end + 1 - near));
+  }
+  return lines;
+}
+}    // namespace
+
+// Once for all ranks, and with the same place: a blade below the last of two ranks was reported by this one alone, not in
+// the log file, and a plate on two ranks twice
+TEST(ThinRegions, AreReportedOnce)
+{
+  for (const char *ranks : {"* 1 1", "1 * 1"}) {
+    const auto places = [ranks](const std::string &block, const std::string &kind) {
+      const auto lines =
+          warnings_of("block " + block + " INF INF", kind, {"run 3\nrun 3\n", ranks});
+      EXPECT_LE(lines.size(), 1U) << block << kind << ranks;
+      return lines.empty() ? "none" : lines[0].substr(0, lines[0].find(','));
+    };
+    EXPECT_EQ(places("1.51 1.54 0 0.4", "separate"), "near 1.5 0.35 0") << ranks;
+    EXPECT_EQ(places("1.51 1.54 0 0.62", "slip friction 0.1"), "near 1.5 0.35 0") << ranks;
+    EXPECT_EQ(places("0 2 0.51 0.54", "separate"), "near 0.15 0.5 0") << ranks;
+    EXPECT_EQ(places("0 2 0.56 0.59", "separate"), "near 0.15 0.55 0") << ranks;
+    EXPECT_EQ(places("0 2 0.36 0.39", "stick"), "near 0.15 0.4 0") << ranks;
+    EXPECT_EQ(places("1.5 2 0.36 0.39", "slip"), "near 1.5 0.4 0") << ranks;
+    EXPECT_EQ(places("0 2 0.2 0.4", "separate"), "none") << ranks;
+    EXPECT_EQ(places("0 2 0.2 0.4", "slip"), "none") << ranks;
+  }
+}
+
+// Another body is below the plate, next to it: this rank has the node that tells only because it is looked at
+TEST(ThinRegions, AreReportedWithWhatOtherRanksHave)
+{
+  for (const char *kind : {"stick", "slip"})
+    for (const bool below : {false, true}) {
+      Warned w = {"run 3\n", "1 * 1", "0 2 -0.4 1.4", "0.2 1.8 0.42 0.8"};
+      if (below)
+        w.more = "region low block 0.2 1.8 0.01 0.31 INF INF\ncreate_points 1 region low ppc 2\n";
+      EXPECT_EQ(warnings_of("block 0 2 0.405 0.42 INF INF", kind, w).size(), below ? 0U : 1U)
+          << kind;
+    }
+}
+
+// Regions that move are looked at in the first step, whatever its number
+TEST(ThinRegions, ThatMoveAreReportedInShortRuns)
+{
+  const std::string moves = "block 0 2 0.36 0.39 INF INF move NULL v_still NULL";
+  Warned twice = {"reset_timestep 1\nrun 102\n"};
+  twice.every = 2;
+  for (const char *kind : {"stick", "slip"}) {
+    EXPECT_EQ(warnings_of(moves, kind, {"run 3\n"}).size(), 1U) << kind;
+    EXPECT_EQ(warnings_of(moves, kind, twice).size(), 1U) << kind;
+  }
+}
+
+/* ---------------------------------------------------------------------- unions, intersections, cones */
+
+namespace {
+/** Signed distances from the region "it", with far = 100, at places in and around a box from -2 to 2. */
+void each_distance(const std::string &regions,
+                   const std::function<void(const double *x, double distance)> &f)
+{
+  Scene run(space("lj", "f f f", "-2 2 -2 2 -2 2") + regions);
+  Region *const it = run.lmp->domain->get_region_by_id("it");
+  ASSERT_NE(it, nullptr);
+  run.lmp->init();
+  const MPMRegionSurface surface(it, 3);
+  EXPECT_FALSE(surface.is_open());
+  for (int k = 0; k < 2000; k++) {
+    const double x[3] = {std::remainder(0.37 * k, 4.8), std::remainder(0.61803 * k, 4.7),
+                         std::remainder(0.7548 * k, 4.9)};
+    f(x, surface.distance(x, 100.0));
+  }
+}
+
+double ball(const double *x, double at, double radius)
+{
+  return std::hypot(x[0] - at, x[1], x[2]) - radius;
+}
+
+/** Distance from a cone along x, from its tip at -1 to its end at 1 with a radius of 1. */
+double tip(const double *x)
+{
+  const double r = std::hypot(x[1], x[2]), side = (2.0 * r - (x[0] + 1.0)) / std::sqrt(5.0);
+  if (side <= 0.0 && x[0] <= 1.0) return std::max(side, x[0] - 1.0);
+  const auto from = [&](double x0, double r0, double x1, double r1) {
+    const double dx = x1 - x0, dr = r1 - r0;
+    const double t = ((x[0] - x0) * dx + (r - r0) * dr) / (dx * dx + dr * dr);
+    const double s = std::max(0.0, std::min(t, 1.0));
+    return std::hypot(x[0] - x0 - s * dx, r - r0 - s * dr);
+  };
+  return std::min(from(-1.0, 0.0, 1.0, 1.0), from(1.0, 1.0, 1.0, 0.0));
+}
+}    // namespace
+
+// Where the nearest surface is that of one part, and it has nothing to do with others, distances are exact
+TEST(Surfaces, OfUnionsAndIntersections)
+{
+  const std::string balls = "region a sphere -0.5 0 0 1\nregion b sphere 0.5 0 0 1.1\n";
+  const auto a = [](const double *x) {
+    return ball(x, -0.5, 1.0);
+  };
+  const auto b = [](const double *x) {
+    return ball(x, 0.5, 1.1);
+  };
+  for (const int side : {1, -1}) {
+    const char *const out = side < 0 ? " side out\n" : "\n";
+    each_distance(balls + "region it union 2 a b" + out, [&](const double *x, double d) {
+      const double exact = std::min(a(x), b(x));
+      if (exact > 0.0) {
+        EXPECT_NEAR(side * d, exact, 1.0e-13);
+      } else if (a(x) > 0.0 || b(x) > 0.0) {    // a place on the surface, or none
+        EXPECT_LE(side * d, exact + 1.0e-13);
+      } else
+        EXPECT_LT(side * d, 0.0);
+    });
+    each_distance(balls + "region it intersect 2 a b" + out, [&](const double *x, double d) {
+      const double exact = std::max(a(x), b(x));
+      if (exact <= 0.0)
+        EXPECT_NEAR(side * d, exact, 1.0e-13);
+      else
+        EXPECT_GE(side * d, exact - 1.0e-13);
+    });
+    // of the complements, and one in another
+    each_distance("region a sphere -0.5 0 0 1 side out\nregion b sphere 0.5 0 0 1.1 side out\n"
+                  "region it intersect 2 a b" +
+                      std::string(out),
+                  [&](const double *x, double d) {
+                    const double exact = std::min(a(x), b(x));
+                    if (exact > 0.0) EXPECT_NEAR(-side * d, exact, 1.0e-13);
+                  });
+    each_distance(balls +
+                      "region far sphere 3 0 0 0.2\nregion both union 2 a b side out\n"
+                      "region it union 2 both far" +
+                      std::string(out),
+                  [&](const double *x, double d) {
+                    const double exact = std::min(a(x), b(x));
+                    if (exact > 0.0 && ball(x, 3, 0.2) > 0.0 && std::fabs(d) < 100.0)
+                      EXPECT_GE(-side * d, exact - 1.0e-13);
+                    if (exact > 0.0 && ball(x, 3, 0.2) > 2 * exact)
+                      EXPECT_NEAR(-side * d, exact, 1.0e-13);
+                  });
+  }
+}
+
+TEST(Surfaces, OfSharpCones)
+{
+  const std::string cone = "region tip cone x 0 0 0 1 -1 1", far = "\nregion far sphere 9 0 0 1\n";
+  for (const int side : {1, -1}) {
+    const std::string out = side < 0 ? " side out\n" : "\n";
+    const auto exact = [&](const double *x, double d) {
+      EXPECT_NEAR(side * d, tip(x), 1.0e-10) << x[0] << " " << x[1] << " " << x[2];
+    };
+    each_distance(replaced(cone, "tip", "it") + out, exact);
+    each_distance(cone + far + "region it union 2 tip far" + out, exact);
+    each_distance(cone + far + "region u union 2 far tip\nregion it union 2 u far" + out, exact);
+    each_distance(cone + "\nregion all sphere 0 0 0 9\nregion it intersect 2 tip all" + out, exact);
+    each_distance(cone + " side out" + far + "region not sphere 9 0 0 1 side out\n" +
+                      "region it intersect 2 tip not" + out,
+                  [&](const double *x, double d) {
+                    EXPECT_NEAR(-side * d, tip(x), 1.0e-10);
+                  });
+  }
+  // on the axis, and the other way round
+  for (const char *kind : {"it cone z 0 0 0 1 -1 1", "it cone z 0 0 1 0 -1 1"}) {
+    Scene run(space("lj", "f f f", "-2 2 -2 2 -2 2") + "region " + kind + "\n");
+    run.lmp->init();
+    const MPMRegionSurface surface(run.lmp->domain->get_region_by_id("it"), 3);
+    const double end = strstr(kind, "0 1 -1") ? 1.0 : -1.0;
+    for (const double z : {-1.5, -1.0, -0.5, 0.0, 0.5, 1.0, 1.5}) {
+      const double at[3] = {0.0, 0.0, z}, same[3] = {end * z, 0.0, 0.0};
+      EXPECT_NEAR(surface.distance(at, 100.0), tip(same), 1.0e-9) << kind << " " << z;
+    }
+  }
+}
 
 // LAMMPS divides zero by zero for a cone with a radius of zero at an end. A cone with a tiny one is the same wall.
 TEST(Cones, SharpEnds)
@@ -194,6 +448,74 @@ TEST(Cones, SharpEnds)
           most = std::max(most, std::abs(node.second[d] - blunt.at(node.first)[d]));
       EXPECT_LT(measured(std::string(kind) + ", " + cone + ": difference", most), 1.0e-5);
     }
+}
+
+namespace {
+/** Forces on a separating wall "wall" in each second step, when a body of 6 x 6 x 4 cells moves up to it, 0.6 cells in all after
+ *  it touches what begins at z = 5. */
+std::vector<double> forces_of_impact(const std::string &wall)
+{
+  Scene run(space("lj", "f f f", "0 10 0 10 0 10") +
+            body("block 2 8 2 8 0.5 4.5", "density 1.0 neohookean 10.0 0.3") +
+            "velocity all set 0 0 1\ntimestep 0.02\n" + wall +
+            "\nfix w all mpm/boundary region wall separate friction 0.2\n");
+  std::vector<double> forces;
+  for (int k = 0; k < 28; k++) {
+    run.commands("run 2 post no\n");
+    forces.push_back(run.evaluate("f_w[3]"));
+  }
+  return forces;
+}
+
+void expect_same(const std::vector<double> &a, const std::vector<double> &b, double tolerance,
+                 const std::string &name)
+{
+  double most = 0.0;
+  for (std::size_t k = 0; k < b.size(); k++) most = std::max(most, std::fabs(a[k] - b[k]));
+  EXPECT_LE(measured(name + ": difference", most), tolerance);
+}
+
+/** A wall pushes, and does not pull. */
+void expect_push(const std::vector<double> &forces, const std::string &name)
+{
+  EXPECT_EQ(forces.front(), 0.0) << name;
+  EXPECT_GT(measured(name + ": force at the end", forces.back()), 0.0);
+  for (const double f : forces) EXPECT_GE(f, -1.0e-12) << name;
+}
+}    // namespace
+
+// A body moves up to the tip of a cone, and is pressed in
+TEST(Cones, SharpTools)
+{
+  const std::string blunt = "cone z 5.1 4.8 1e-9 3 5 9", sharp = "cone z 5.1 4.8 0 3 5 9",
+                    others = "\nregion far sphere 1 1 9 0.5\nregion all sphere 5 5 5 20\n",
+                    tool = "region tool " + sharp + others;
+  const auto expected = forces_of_impact("region wall " + blunt);
+  expect_push(expected, "blunt");
+  for (const auto &wall : {"region wall " + sharp, tool + "region wall union 2 tool far",
+                           tool + "region wall intersect 2 all tool",
+                           "region tool " + sharp + " side out" + others +
+                               "region wall intersect 2 all tool side out"})
+    expect_same(forces_of_impact(wall), expected, 1.0e-7, wall);
+}
+
+// The same of a plate, and of a tool of two parts that touch
+TEST(Unions, In3d)
+{
+  const std::string far = "\nregion far sphere 1 1 1 0.5\n";
+  for (const char *plate : {"block 0 10 0 10 5 5.8", "block 3 7 3 7 5 9"}) {
+    const auto alone = forces_of_impact(strprintf("region wall %s", plate));
+    expect_push(alone, plate);
+    const auto in_union = forces_of_impact(strprintf("region plate %s", plate) + far +
+                                           "region wall union 2 plate far");
+    expect_push(in_union, plate);
+    expect_same(in_union, alone, 1.0e-12, plate);
+  }
+  const auto whole = forces_of_impact("region wall block 0 10 0 10 5 9"),
+             halves =
+                 forces_of_impact("region a block 0 5.5 0 10 5 9\nregion b block 4.5 10 0 10 5 9\n"
+                                  "region wall union 2 a b");
+  expect_same(halves, whole, 1.0e-10, "two halves that overlap");
 }
 
 /* ---------------------------------------------------------------------- walls that move */

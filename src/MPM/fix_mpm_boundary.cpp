@@ -66,7 +66,6 @@
 #include "mpm_options.h"
 #include "mpm_state.h"
 #include "region.h"
-#include "region_mpm_mesh.h"
 #include "update.h"
 
 #include <algorithm>
@@ -86,106 +85,17 @@ static constexpr double ON_SURFACE = 1.0e-6;    // in node spacings
 static constexpr double FAR = 1.0e8;            // in node spacings
 static constexpr double HAND_OVER = 0.5;        // in node spacings, see list_region_nodes()
 static constexpr double SMOOTH = 0.9;    // cosine between normals of a surface that is smooth
-static constexpr double THIN =
+static constexpr double FELT_THROUGH =
     3.0;    // node spacings: material on one side is not felt on the other
 static constexpr double ALONG =
-    1.0e-3;                              // sine of the angle of a motion that is along the surface
-static constexpr int LOOK_EVERY = 50;    // steps: is a region that moves too thin?
-static constexpr double NARROW = 1.5;    // node spacings: nodes cannot tell how wide a region is
+    1.0e-3;    // sine of the angle of a motion that is along the surface
+static constexpr double RESOLVED = 1.5;    // node spacings: nodes cannot tell widths that are less
 
 namespace {
 /** Center and unit axis of a region's rotation, which are protected members. */
 struct RegionMotion : public Region {
   static const double *point_of(const Region *r) { return r->*(&RegionMotion::point); }
   static const double *axis_of(const Region *r) { return r->*(&RegionMotion::runit); }
-};
-
-/** The surface of a region in its present state. */
-struct Surface {
-  Region *region;
-  int dim;
-  double far;    // stands for a distance that is not known
-  RegMPMMesh *mesh = dynamic_cast<RegMPMMesh *>(region);
-  bool cone = strcmp(region->style, "cone") == 0;
-
-  static bool along_z(const Region::Contact &c) { return fabs(c.delz) > 0.5 * c.r; }
-
-  /** Signed distance of x, negative inside; far or -far where it is more, or not known. */
-  double distance(const double *x) const
-  {
-    if (mesh) {
-      double up;
-      const double d = mesh->distance(x, far, up);
-      // in 2d the section has another closest point
-      if (dim == 3 || up <= 0.5 * fabs(d)) return d;
-    }
-    const bool inside = region->match(x[0], x[1], x[2]);
-    const int interior = region->interior;
-    if (!inside) region->interior = !interior;    // Region::surface() answers for one side only
-    double distance = far;
-    if (cone) {
-      // on its axis LAMMPS does not see the side, and divides zero by zero: look next to it
-
-      const double off = 1.0e-12 * (fabs(x[0]) + fabs(x[1]) + fabs(x[2])) + 1.0e-20 * far;
-      const double next[3] = {x[0] + off, x[1] + off, x[2] + off};
-
-      // and so it does, outside, for an end with a radius of zero: once without each end
-
-      for (const int end : {0, 1}) {
-        int &open = region->open_faces[end];
-        const int is_open = open;
-        open = region->interior ? is_open : 1;
-        if (!nearest(next, distance)) nearest(x, distance);
-        open = is_open;
-      }
-    } else
-      nearest(x, distance);
-    region->interior = interior;
-    return inside ? -distance : distance;
-  }
-
-  /** The least of what LAMMPS finds. */
-  bool nearest(const double *x, double &distance) const
-  {
-    const int n = region->surface(x[0], x[1], x[2], far);
-    for (int i = 0; i < n; i++) {
-      const auto &c = region->contact[i];
-      if (dim == 3 || !along_z(c)) distance = std::min(distance, c.r);
-    }
-    return n > 0;
-  }
-
-  /** The same for material in front of the surface, where it need not be known as exactly: with errors of
-   *  less than 0.03 h^2/R of a surface of radius R beyond a node spacing h. A mesh is much faster then. */
-  double gap(const double *x, double h) const
-  {
-    double d;
-    return mesh && mesh->distance_by_cells(x, far, h, 0.25 * h, d) ? d : distance(x);
-  }
-
-  /** Direction out of the region: gradient of the distance, from differences (one-sided where the
-   *  region does not answer). Zero at centers and where it is not known. */
-  void normal(const double *x, double step, double *normal) const
-  {
-    const double here = distance(x);
-    MathExtra::zero3(normal);
-    for (int d = 0; d < dim; d++) {
-      double y[3] = {x[0], x[1], x[2]};
-      y[d] = x[d] + step;
-      const double up = distance(y);
-      y[d] = x[d] - step;
-      const double down = distance(y);
-      const bool knows_up = fabs(up) < far, knows_down = fabs(down) < far;
-      if (knows_up && knows_down)
-        normal[d] = up - down;
-      else if (knows_up && fabs(here) < far)
-        normal[d] = 2.0 * (up - here);
-      else if (knows_down && fabs(here) < far)
-        normal[d] = 2.0 * (here - down);
-    }
-    const double length = MathExtra::len3(normal);
-    for (int d = 0; d < 3; d++) normal[d] = length > 0.2 * step ? normal[d] / length : 0.0;
-  }
 };
 
 /** Shift and angle of a region, as restart files keep them. */
@@ -363,7 +273,8 @@ void FixMPMBoundary::init()
     if (!region)
       error->all(FLERR, Error::NOLASTLINE, "Region {} for fix mpm/boundary does not exist",
                  region_id);
-    if (region->openflag)
+    surface = std::make_unique<MPMRegionSurface>(region, domain->dimension);
+    if (surface->is_open())
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/boundary cannot use region {}: open faces have no inside", region_id);
     if (region->dynamic_check() && region->nregion > 1)
@@ -394,7 +305,7 @@ void FixMPMBoundary::init()
       for (const auto &list : nodes) {
         const auto &field = *list.field;
         if (other->acts_on(field) &&
-            narrow({{field, *domain, face}, {field, *domain, face ^ 1}}, face / 2))
+            faces_are_near({{field, *domain, face}, {field, *domain, face ^ 1}}, face / 2))
           error->all(FLERR, Error::NOLASTLINE,
                      "Faces {} and {} are less than 3 cells apart, or 5 when they are not in "
                      "planes of nodes: they must be in the same fix mpm/boundary",
@@ -402,7 +313,7 @@ void FixMPMBoundary::init()
       }
     }
     for (const auto &list : nodes) {
-      if (!narrow(list.faces, face / 2)) continue;
+      if (!faces_are_near(list.faces, face / 2)) continue;
       if (decides())
         error->all(FLERR, Error::NOLASTLINE,
                    "Fix mpm/boundary separate and friction need at least 3 cells between opposite "
@@ -416,6 +327,8 @@ void FixMPMBoundary::init()
     }
   }
   motion_step = -1;
+  steps = 0;
+  too_thin.begin();
 }
 
 /* ----------------------------------------------------------------------
@@ -460,7 +373,7 @@ FixMPMBoundary::Faces FixMPMBoundary::faces_on_lattice(const MPMField &field) co
    true when the planes of both faces of an axis have images inside that are the same nodes
 ------------------------------------------------------------------------- */
 
-bool FixMPMBoundary::narrow(const Faces &faces, int axis)
+bool FixMPMBoundary::faces_are_near(const Faces &faces, int axis)
 {
   const Face *lo = nullptr, *hi = nullptr;
   for (const auto &f : faces)
@@ -501,16 +414,18 @@ void FixMPMBoundary::extend_topology(MPMField &field)
 
 /* ----------------------------------------------------------------------
    A line of nodes through the surface of a region can have nodes that only another rank's points reach.
-   Lines along several axes share nodes: blocks all around
+   Lines along several axes share nodes: blocks all around. Where lines are only looked at, see check_width(), those
+   next to each other are enough
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::extend_across(MPMField &field) const
 {
-  if (comm->nprocs == 1 || !acts_across()) return;
+  const bool known = !region_moves() && region->nregion == 1, across = acts_across();
+  if (comm->nprocs == 1 || !(across || known)) return;
   Grid &grid = field.grid;
   const int dim = field.lattice.dim;
-  const double h = field.lattice.h, reach = (0.5 * grid.side * sqrt((double) dim) + 4.0) * h;
-  const bool known = !region_moves() && region->nregion == 1;
+  const double h = field.lattice.h,
+               reach = (0.5 * grid.side * sqrt((double) dim) + (across ? 4.0 : 2.0)) * h;
   if (!region_moves()) region->prematch();
   const auto nblocks = (int) grid.blocks.size();
   for (int ib = 0; ib < nblocks; ib++) {
@@ -519,10 +434,11 @@ void FixMPMBoundary::extend_across(MPMField &field) const
     double middle[3];
     field.lattice.node_position(first, middle);
     for (int d = 0; d < dim; d++) middle[d] += 0.5 * (grid.side - 1) * h;
-    if (known && fabs(Surface{region, dim, FAR * h}.distance(middle)) > reach) continue;
+    if (known && fabs(surface->distance(middle, FAR * h)) > reach) continue;
     for (int k = 0; k < (dim == 3 ? 27 : 9); k++) {
-      const int next[3] = {b[0] + k % 3 - 1, b[1] + k / 3 % 3 - 1, b[2] + k / 9 - (dim == 3)};
-      grid.activate(next);
+      const int away[3] = {k % 3 - 1, k / 3 % 3 - 1, k / 9 - (dim == 3)};
+      const int next[3] = {b[0] + away[0], b[1] + away[1], b[2] + away[2]};
+      if (across || std::count(away, away + 3, 0) == 2) grid.activate(next);
     }
   }
 }
@@ -721,8 +637,8 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
   const bool moves = region_moves(), hands_over = moves && kind != SEPARATE, across = acts_across();
   const double taken = (hands_over ? HAND_OVER : ON_SURFACE) * h;
   const bool looks = across ||
-      (!warned_thin && !region->varshape && (!moves || update->ntimestep % LOOK_EVERY == 0));
-  const Surface surface = {region, dim, FAR * h}, next = {region, dim, looks ? 1.001 * h : taken};
+      (!too_thin.told() && !region->varshape && (!moves || looks_at_width()));
+  const double far = FAR * h, next = looks ? 1.001 * h : taken;
   const bool box_known = region->bboxflag && !moves;
   const double lo[3] = {region->extent_xlo, region->extent_ylo, region->extent_zlo};
   const double hi[3] = {region->extent_xhi, region->extent_yhi, region->extent_zhi};
@@ -745,8 +661,8 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
       if (box_known && (last[d] < lo[d] - beyond || first[d] > hi[d] + beyond)) near = false;
     }
     if (near && region->nregion == 1) {
-      const double distance = surface.distance(mid);
-      near = distance <= radius + h || distance >= surface.far;
+      const double distance = surface->distance(mid, far);
+      near = distance <= radius + h || distance >= far;
     }
     if (!near) continue;
 
@@ -756,16 +672,16 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
       grid.node_position(first_node + n, x);
       Single s = {first_node + n};
       if (!region->match(x[0], x[1], x[2])) {
-        const double gap = next.distance(x);
-        if (looks && gap > ON_SURFACE * h && gap < next.far) {
+        const double gap = surface->distance(x, next);
+        if (looks && gap > ON_SURFACE * h && gap < next) {
           s.distance = gap;
           outside.push_back(s);
         }
         if (gap >= taken) continue;
         if (gap > ON_SURFACE * h) s.share = cube(1.0 - cube(gap / taken));
       }
-      if (kind != STICK || region->varshape) surface.normal(x, 1.0e-4 * h, s.normal);
-      if (region->varshape || across) s.distance = surface.distance(x);
+      if (kind != STICK || region->varshape) surface->normal(x, far, 1.0e-4 * h, s.normal);
+      if (region->varshape || across) s.distance = surface->distance(x, far);
       list.singles.push_back(s);
     }
   }
@@ -789,7 +705,7 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
 void FixMPMBoundary::list_crossings(FieldNodes &list, const std::vector<Single> &outside)
 {
   list.crossings.clear();
-  list.narrow.clear();
+  list.looked_at.clear();
   const MPMField &field = *list.field;
   const double h = field.lattice.h;
   std::vector<int64_t> ahead;
@@ -805,10 +721,10 @@ void FixMPMBoundary::list_crossings(FieldNodes &list, const std::vector<Single> 
     if (std::binary_search(ahead.begin(), ahead.end(), single.node)) continue;
     double x[3];
     field.grid.node_position(single.node, x);
-    Surface{region, field.lattice.dim, FAR * h}.normal(x, 1.0e-4 * h, single.normal);
+    surface->normal(x, FAR * h, 1.0e-4 * h, single.normal);
     Crossing c = {};
     if (find_crossing(list, single, c)) list.crossings.push_back(c);
-    if (!warned_thin && is_narrow(field, single, c)) list.narrow.push_back(c);
+    if (!too_thin.told() && looks_at_blade(field, single, c)) list.looked_at.push_back(c);
   }
 
   // lines along one axis share no nodes, those along two do, and those through both faces of a thin plate: all
@@ -829,17 +745,17 @@ void FixMPMBoundary::list_crossings(FieldNodes &list, const std::vector<Single> 
 
 void FixMPMBoundary::list_bare_faces(FieldNodes &list, const std::vector<Single> &outside)
 {
-  list.narrow.clear();
+  list.looked_at.clear();
   const MPMField &field = *list.field;
   const double h = field.lattice.h;
   for (Single single : outside) {
     double x[3];
     field.grid.node_position(single.node, x);
-    Surface{region, field.lattice.dim, FAR * h}.normal(x, 1.0e-4 * h, single.normal);
+    surface->normal(x, FAR * h, 1.0e-4 * h, single.normal);
     Crossing c = {};
     if (!find_crossing(list, single, c)) {
       c = {};
-      if (!is_narrow(field, single, c)) continue;
+      if (!looks_at_blade(field, single, c)) continue;
     }
     bool bare = true;
     for (const double deep : {1.0, 2.0}) {
@@ -847,7 +763,7 @@ void FixMPMBoundary::list_bare_faces(FieldNodes &list, const std::vector<Single>
       y[c.axis] -= (c.normal[c.axis] > 0.0 ? deep : -deep) * h;
       bare = bare && !region->match(y[0], y[1], y[2]);
     }
-    if (bare) list.narrow.push_back(c);
+    if (bare) list.looked_at.push_back(c);
   }
 }
 
@@ -895,8 +811,7 @@ bool FixMPMBoundary::find_crossing(FieldNodes &list, const Single &single, Cross
 {
   const MPMField &field = *list.field;
   const Grid &grid = field.grid;
-  const double h = field.lattice.h;
-  const Surface surface = {region, field.lattice.dim, FAR * h};
+  const double h = field.lattice.h, far = FAR * h;
   const bool is_outside = single.distance > ON_SURFACE * h;
   int index[3];
   double x[3], at[3];
@@ -918,25 +833,25 @@ bool FixMPMBoundary::find_crossing(FieldNodes &list, const Single &single, Cross
   bool known = true;
   for (int round = 0; round < 2 && known; round++) {
     at[a] = x[a] + outward * way;
-    distance = surface.distance(at);
-    known = fabs(distance) < surface.far;
+    distance = surface->distance(at, far);
+    known = fabs(distance) < far;
     way -= distance / slope - outside;
   }
   if (!known) return false;
   if (is_outside) {    // it may go by an edge
     if (way - outside > -ON_SURFACE * h || way - outside < -(1.0 + ON_SURFACE) * h) return false;
     at[a] = x[a] + outward * (way + 0.05 * h);    // an edge itself has no normal
-    if (fabs(surface.distance(at) - 0.05 * h * slope) > 0.02 * h) return false;
+    if (fabs(surface->distance(at, far) - 0.05 * h * slope) > 0.02 * h) return false;
   }
   at[a] = x[a] + outward * way;
   way -= outside;
   if (way > (1.0 - ON_SURFACE) * h) return false;
   if (is_outside) at[a] += outward * 0.05 * h;
-  surface.normal(at, 1.0e-4 * h, c.normal);
+  surface->normal(at, far, 1.0e-4 * h, c.normal);
   at[a] = x[a] + outward * (is_outside ? way : std::max(way, 0.0));
   const auto along = [&](const double *place) {
     double normal[3];
-    surface.normal(place, 1.0e-4 * h, normal);
+    surface->normal(place, far, 1.0e-4 * h, normal);
     return MathExtra::dot3(normal, c.normal) > SMOOTH;
   };
   if (!(MathExtra::dot3(n, c.normal) > SMOOTH)) return false;
@@ -972,12 +887,12 @@ bool FixMPMBoundary::find_crossing(FieldNodes &list, const Single &single, Cross
 
   if (is_outside) c.front = Crossing::NEAR_OTHERS;
   const double surface_x = x[a] + outward * way;
-  for (const double deep : {NARROW, 2.0, THIN}) {
+  for (const double deep : {RESOLVED, 2.0, FELT_THROUGH}) {
     at[a] = surface_x - outward * deep * h;
     if (region->match(at[0], at[1], at[2])) continue;
-    if (deep == NARROW) {
+    if (deep == RESOLVED) {
       at[a] = surface_x - outward * 0.05 * h;    // a line along the edge of the region is not in it
-      c.thin = region->match(at[0], at[1], at[2]);
+      c.in_plate = region->match(at[0], at[1], at[2]);
     }
     if (!is_outside) c.front = Crossing::THIN_PLACE;
   }
@@ -989,7 +904,7 @@ bool FixMPMBoundary::find_crossing(FieldNodes &list, const Single &single, Cross
    region
 ------------------------------------------------------------------------- */
 
-bool FixMPMBoundary::is_narrow(const MPMField &field, const Single &single, Crossing &c) const
+bool FixMPMBoundary::looks_at_blade(const MPMField &field, const Single &single, Crossing &c) const
 {
   const double h = field.lattice.h, *const n = single.normal;
   const int dim = field.lattice.dim;
@@ -999,7 +914,7 @@ bool FixMPMBoundary::is_narrow(const MPMField &field, const Single &single, Cros
   };
   double x[3], middle[3];
   field.grid.node_position(single.node, x);
-  for (int d = 0; d < 3; d++) middle[d] = x[d] - (single.distance + NARROW * h) * n[d];
+  for (int d = 0; d < 3; d++) middle[d] = x[d] - (single.distance + RESOLVED * h) * n[d];
   bool narrow = false;
   if (match(middle)) {
     double t[2][3] = {{-n[1], n[0], 0.0}, {0.0, 0.0, 0.0}};
@@ -1013,19 +928,18 @@ bool FixMPMBoundary::is_narrow(const MPMField &field, const Single &single, Cros
     for (int k = 0; k < ndirections && !narrow; k++) {
       double side[2][3];
       for (int d = 0; d < 3; d++) {
-        const double along = h * 0.5 * NARROW *
+        const double along = h * 0.5 * RESOLVED *
             (k < 2 ? t[k][d] : sqrt(0.5) * (t[0][d] + (k == 2 ? t[1][d] : -t[1][d])));
         side[0][d] = middle[d] + along;
         side[1][d] = middle[d] - along;
       }
       narrow = !match(side[0]) && !match(side[1]);
     }
-  } else if (region->bboxflag) {
-    const double size[3] = {region->extent_xhi - region->extent_xlo,
-                            region->extent_yhi - region->extent_ylo,
-                            region->extent_zhi - region->extent_zlo};
+  } else if (const Region &part = surface->part_near(x, FAR * h); part.bboxflag) {
+    const double size[3] = {part.extent_xhi - part.extent_xlo, part.extent_yhi - part.extent_ylo,
+                            part.extent_zhi - part.extent_zlo};
     narrow = std::count_if(size, size + dim, [h](double extent) {
-               return extent < NARROW * h;
+               return extent < RESOLVED * h;
              }) > 1;
   }
   if (!narrow) return false;
@@ -1035,6 +949,7 @@ bool FixMPMBoundary::is_narrow(const MPMField &field, const Single &single, Cros
     if (fabs(n[d]) > fabs(n[c.axis])) c.axis = d;
   int index[3];
   field.grid.node_index(single.node, index);
+  c.base = single.node;
   c.n = 3;
   c.inside = 2;
   c.front = Crossing::NEAR_OTHERS;
@@ -1055,17 +970,16 @@ bool FixMPMBoundary::is_narrow(const MPMField &field, const Single &single, Cros
 std::function<double(const double *)> FixMPMBoundary::distance_from_region(const MPMField &field,
                                                                            double dt) const
 {
-  const Surface surface = {region, field.lattice.dim, MPMWallGap::farthest(field)};
-  const double h = field.lattice.h;
+  const double h = field.lattice.h, far = MPMWallGap::farthest(field);
   if (!region_moves())
-    return [surface, h](const double *x) {
-      return surface.gap(x, h);
+    return [this, far, h](const double *x) {
+      return surface->gap(x, far, h);
     };
-  return [this, surface, h, dt](const double *x) {
+  return [this, far, h, dt](const double *x) {
     double y[3], v[3];
     wall.velocity(x, v);
     for (int d = 0; d < 3; d++) y[d] = x[d] + dt * v[d];
-    return surface.gap(y, h);
+    return surface->gap(y, far, h);
   };
 }
 
@@ -1156,6 +1070,7 @@ void FixMPMBoundary::update_motion(double dt)
 {
   if (motion_step == update->ntimestep) return;
   motion_step = update->ntimestep;
+  steps++;
 
   wall = {};
   wall.uniform = true;
@@ -1187,12 +1102,12 @@ void FixMPMBoundary::update_motion(double dt)
       for (auto &list : nodes)
         for (auto &s : list.singles) {
           const MPMField &field = *list.field;
-          const Surface surface = {region, field.lattice.dim, FAR * field.lattice.h};
+          const double far = FAR * field.lattice.h;
           double x[3];
           field.grid.node_position(s.node, x);
-          const double distance = surface.distance(x);
+          const double distance = surface->distance(x, far);
           s.growth = 0.0;
-          if (std::max(fabs(distance), fabs(s.distance)) >= surface.far) continue;
+          if (std::max(fabs(distance), fabs(s.distance)) >= far) continue;
 
           // the normal speed of the surface in place of that of the rigid motion
 
@@ -1242,7 +1157,7 @@ void FixMPMBoundary::act(double dt, Stage stage)
       if (!faces[line.face].cut) act_on_column(list, line);
     for (const auto &orbit : list.orbits) act_on_orbit(list, orbit);
     held_by_lines.clear();
-    if (count && !warned_thin) check_width(list);
+    if (count) check_width(list);
     for (auto &crossing : list.crossings) act_on_crossing(list, crossing);
     std::sort(held_by_lines.begin(), held_by_lines.end());
     for (auto &single : list.singles)
@@ -1255,6 +1170,7 @@ void FixMPMBoundary::act(double dt, Stage stage)
   }
   wall = in_step;
   if (count) past.acted = 1;
+  if (count && looks_at_width()) report_width();
 }
 
 /* ----------------------------------------------------------------------

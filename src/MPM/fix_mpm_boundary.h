@@ -17,11 +17,14 @@ FixStyle(mpm/boundary,FixMPMBoundary);
 
 #include "declare/option.h"
 #include "fix.h"
+#include "mpm_first_note.h"
 #include "mpm_node_action.h"
+#include "mpm_region_surface.h"
 #include "mpm_wall_gap.h"
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -61,6 +64,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   int setmask() override { return 0; }    // called by fix mpm
   void init() override;
   void setup(int) override;
+  void post_run() override { report_width(); }
   void write_restart(FILE *) override;
   void restart(char *) override;
   double compute_scalar() override;
@@ -158,7 +162,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
     // acts without a question; where another face is near: unless the material is behind; where nodes of the line are
     // nearer to another face, or beyond it: when the material is in front
     enum Front { SOUND, THIN_PLACE, NEAR_OTHERS } front = SOUND;
-    bool acts = true, thin = false;
+    bool acts = true, in_plate = false;    // in_plate: of less than RESOLVED
   };
   struct FieldNodes {
     MPMField *field;
@@ -168,7 +172,9 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
     std::vector<Orbit> orbits;
     std::vector<Single> singles;
     std::vector<Crossing> crossings = {};
-    std::vector<Crossing> narrow = {};    // places where nodes cannot tell how wide the region is
+    // lines that do not act but tell where nodes see too little of a region: at blades, wires, and faces
+    // behind which no node acts
+    std::vector<Crossing> looked_at = {};
     std::vector<MPMWallContact> contacts = {};    // with nodes at depths in a region
     std::vector<MPMWallContact> crossed = {};     // with crossings, as far as they have been needed
     std::vector<char> crossed_known = {};
@@ -220,6 +226,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   std::vector<int> face_list;    // 2 * axis + (0: lo, 1: hi)
   std::string region_id;
   Region *region = nullptr;
+  std::unique_ptr<MPMRegionSurface> surface;    // its surface
 
   std::vector<FieldNodes> nodes;    // of the fields to act on
   Wall wall = {};                   // in this step
@@ -231,9 +238,10 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   std::vector<int64_t>
       held_by_lines;    // nodes inside that are not nearest to the face of their line
   MPMWallGap gap;
-  bool warned = false;    // of a region that is too fast
-  bool warned_thin = false;
-  double reaction[6] = {};    // force and, of regions, torque
+  bool warned = false;         // of a region that is too fast
+  bigint steps = 0;            // of this fix in this run
+  MPMFirstNote<5> too_thin;    // region: step, index of the field, place
+  double reaction[6] = {};     // force and, of regions, torque
 
   struct {                      // what act() does now to the nodes of a field
     bool counting;              // reactions and work
@@ -252,7 +260,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   bool holds(const Single &, int d) const;
   bool acts_on(const MPMField &) const;
   Faces faces_on_lattice(const MPMField &) const;
-  static bool narrow(const Faces &, int axis);
+  static bool faces_are_near(const Faces &, int axis);
   void list_face_nodes(FieldNodes &);
   void list_region_nodes(FieldNodes &);
   void extend_across(MPMField &) const;
@@ -260,10 +268,12 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   void list_bare_faces(FieldNodes &, const std::vector<Single> &outside);
   void take_off_lines(FieldNodes &);
   bool find_crossing(FieldNodes &, const Single &, Crossing &);
-  bool is_narrow(const MPMField &, const Single &, Crossing &) const;
+  bool looks_at_blade(const MPMField &, const Single &, Crossing &) const;
   static bool is_in_front(MPM_NS::Grid &, const Crossing &);
   static bool is_behind(MPM_NS::Grid &, const Crossing &, double share);
+  bool looks_at_width() const;
   void check_width(const FieldNodes &);
+  void report_width();
   static int crossed_contact(FieldNodes &, double slope, double place);
   void update_motion(double dt);
   void find_gaps(FieldNodes &, double dt);

@@ -14,6 +14,7 @@
 
 #include "fix_mpm_boundary.h"
 
+#include "comm.h"
 #include "error.h"
 #include "mpm_field.h"
 #include "update.h"
@@ -24,6 +25,8 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
+static constexpr int LOOK_EVERY = 50;    // steps of this fix in a run
+
 static double mass(Grid &grid, int64_t node)
 {
   return node < 0 ? 0.0 : grid.record(node)[3];
@@ -32,12 +35,16 @@ static double mass(Grid &grid, int64_t node)
 /* ----------------------------------------------------------------------
    In front of a plane, a node at the distance x from the surface has the mass that its function has over x' > -x.
    More than that of material which is INTO deeper in the wall is that of material at another face.
+
+   The functions are quadratic ones for all shapes. With linear and cubic ones, too, this holds for all material in front of a
+   plane, wherever it is between nodes, and for none behind a plate of .3 to 3 spacings: the shift by INTO is enough for
+   their differences.
 ------------------------------------------------------------------------- */
 
 bool FixMPMBoundary::is_in_front(Grid &grid, const Crossing &c)
 {
   constexpr double INTO = 0.3, LITTLE = 1.0e-3;    // node spacings, share
-  const auto share = [](double x) {                // quadratic functions
+  const auto share = [](double x) {
     const double s = std::fabs(x), y = 1.5 - std::min(s, 1.5);
     const double less = s < 0.5 ? 0.5 - 0.75 * s + s * s * s / 3.0 : y * y * y / 6.0;
     return x < 0.0 ? less : 1.0 - less;
@@ -62,31 +69,54 @@ bool FixMPMBoundary::is_behind(Grid &grid, const Crossing &c, double share)
   return in_front <= share * behind;
 }
 
+/** Is this a step in which lists of regions that move have what check_width() needs, and ranks compare notes? */
+bool FixMPMBoundary::looks_at_width() const
+{
+  return steps % LOOK_EVERY == 1;
+}
+
 /* ----------------------------------------------------------------------
    A blade or wire whose width is less than the reach of nodes, and has material in front of it; a plate that has
-   material on both sides
+   material on both sides. Each rank notes the first place that it sees, of several in a step the first one in space
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::check_width(const FieldNodes &list)
 {
   constexpr double BOTH =
       0.6;    // so much more is behind a plate when material is in front of it alone
+  const auto now = (double) update->ntimestep;
+  if (too_thin.knows(now)) return;
   Grid &grid = list.field->grid;
-  const auto warn = [&](const Crossing &c) {
-    double x[3] = {0.0, 0.0, 0.0};
-    for (int k = 0; k < c.n; k++)
-      if (c.node[k] >= 0) grid.node_position(c.node[k], x);
-    warned_thin = true;
+  const auto note = [&](const Crossing &c) {
+    double x[3];
+    grid.node_position(c.base, x);
+    too_thin.take({now, (double) (&list - nodes.data()), x[0], x[1], x[2]});
+  };
+  // another rank may know the masses of nodes that this one does not have
+  const auto judges = [&](const Crossing &c) {
+    return comm->nprocs == 1 || std::count(c.node, c.node + c.inside, -1) == 0;
+  };
+  for (const auto &c : list.looked_at)
+    if (mass(grid, c.node[c.inside - 1]) > 0.0 && judges(c) && is_in_front(grid, c)) note(c);
+  for (const auto &c : list.crossings)
+    if (c.in_plate && judges(c) && !is_in_front(grid, c) && !is_behind(grid, c, BOTH)) note(c);
+}
+
+/* ----------------------------------------------------------------------
+   Collective: one warning, of the same place for any number of ranks
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::report_width()
+{
+  std::array<double, 5> first;
+  if (!region || !too_thin.tell(world, first)) return;
+  if (comm->me == 0)
     error->warning(
         FLERR,
         "Fix mpm/boundary {}: its region {} is thinner than 1.5 node spacings of fix mpm {} near "
-        "{:.6g} {:.6g} {:.6g}, where material is at its edge or on both sides (step {}): "
+        "{:.6g} {:.6g} {:.6g}, where material is at its edge or on both sides (step {:.0f}): "
         "its force can be wrong by tens of percent or zero, and material can pass through it. "
         "Make it thicker there, or the spacing smaller; this is said only once",
-        id, region_id, list.field->id(), x[0], x[1], x[2], update->ntimestep);
-  };
-  for (const auto &c : list.narrow)
-    if (mass(grid, c.node[c.inside - 1]) > 0.0 && is_in_front(grid, c)) return warn(c);
-  for (const auto &c : list.crossings)
-    if (c.thin && !is_in_front(grid, c) && !is_behind(grid, c, BOTH)) return warn(c);
+        id, region_id, nodes[(std::size_t) first[1]].field->id(), first[2], first[3], first[4],
+        first[0]);
 }

@@ -65,6 +65,8 @@ using namespace MPM_NS;
 static constexpr int MAX_ITERATIONS = 200;      // of impulses of pairs that depend on each other
 static constexpr double CONVERGED = 1.0e-12;    // change of the impulses, relative to them
 static constexpr double ROUNDED = 1.0e-2;       // or to this part of the momentum, if that is more
+static constexpr double UNSOLVED = 1.0e-6;      // the same at the end: too much to be silent
+static constexpr int LOOK_EVERY = 50;           // steps, in which ranks compare what they have seen
 
 // share of volume from which bodies overlap, by half a cell to a cell, depending on where they are in
 // the cell; points at the ends of regions that are no multiple of their spacing reach 1.37. And the
@@ -226,6 +228,8 @@ void FixMPMContact::init()
   room.find(first, *domain);
   lists_valid = false;
   look = true;
+  steps = 0;
+  unsolved.begin();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -238,10 +242,7 @@ bool FixMPMContact::couples(const std::string &a, const std::string &b) const
 
 bool FixMPMContact::decides_contact(const MPMField &field) const
 {
-  const auto all = MPMField::all(lmp);
-  return std::any_of(all.begin(), all.end(), [&](const auto *other) {
-    return couples(field.id(), other->id());
-  });
+  return std::count(names.begin(), names.end(), field.id()) > 0;
 }
 
 /** Row of the output for fields a < b of n: (0,1), (0,2), ..., (1,2), ... */
@@ -932,9 +933,9 @@ int FixMPMContact::count_bodies(const Node &node) const
 double FixMPMContact::iterate(const Meeting &meeting, double dt, bool decided)
 {
   const Node &node = *meeting.node;
+  const int nothers = count_bodies(node) - 1;
   double largest = 0.0;
-  for (int p = node.first; p < node.last; p++)
-    apply(pairs[p], count_bodies(node) - 1, largest, dt, decided);
+  for (int p = node.first; p < node.last; p++) apply(pairs[p], nothers, largest, dt, decided);
   set_velocities(meeting);
   return largest;
 }
@@ -959,8 +960,9 @@ void FixMPMContact::solve(const Meeting *first, const Meeting *last, bool mirror
     states.push_back(pair.state);
   });
   series.begin(x);
-  for (int it = 0; it < MAX_ITERATIONS; it++) {
-    double largest = 0.0;
+  double largest = 0.0;
+  for (int it = 1; it <= MAX_ITERATIONS; it++) {
+    largest = 0.0;
     for (const Meeting *m = first; m < last; m++) {
       for (int p = m->node->first; p < m->node->last && mirrored; p++) {
         pairs[p].walls_a = bodies[pairs[p].a].find_walls(pairs[p].ra);
@@ -969,6 +971,8 @@ void FixMPMContact::solve(const Meeting *first, const Meeting *last, bool mirror
       largest = std::max(largest, iterate(*m, dt, decided));
     }
     if (largest < CONVERGED) break;
+    // what is extrapolated may pull, or be more than friction allows: another iteration must follow
+    if (it == MAX_ITERATIONS) break;
 
     bool same = true;
     double *to = x.data();
@@ -988,6 +992,38 @@ void FixMPMContact::solve(const Meeting *first, const Meeting *last, bool mirror
     });
     for (const Meeting *m = first; m < last; m++) set_velocities(*m);
   }
+  if (largest > UNSOLVED) note_unsolved(first, last);
+}
+
+/* ----------------------------------------------------------------------
+   Nodes where iterations have come to no end. Each rank notes those that it owns
+------------------------------------------------------------------------- */
+
+void FixMPMContact::note_unsolved(const Meeting *first, const Meeting *last)
+{
+  const auto now = (double) update->ntimestep;
+  for (const Meeting *m = first; m < last && !unsolved.knows(now); m++) {
+    if (!m->node->owned) continue;
+    const Pair &pair = pairs[m->node->first];
+    Grid &grid = bodies[pair.a].field->grid;
+    double x[3];
+    grid.node_position((pair.ra - grid.nodes()) / grid.nreal, x);
+    unsolved.take({now, x[0], x[1], x[2]});
+  }
+}
+
+/** Collective: one warning, the same for any number of ranks. */
+void FixMPMContact::report_unsolved()
+{
+  std::array<double, 4> first;
+  if (unsolved.tell(world, first) && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix mpm/contact {}: {} iterations were not enough to find what bodies give to "
+                   "each other at the node at {:.6g} {:.6g} {:.6g} in step {:.0f}: they approach "
+                   "each other, or slide, a little there. This happens where three or more bodies "
+                   "meet at a node, or masses differ much: use a smaller node spacing, so that "
+                   "fewer of them meet, or densities that differ less; this is said only once",
+                   id, MAX_ITERATIONS, first[1], first[2], first[3], first[0]);
 }
 
 /* ----------------------------------------------------------------------
@@ -997,7 +1033,8 @@ void FixMPMContact::solve(const Meeting *first, const Meeting *last, bool mirror
 void FixMPMContact::group_meetings()
 {
   const int n = (int) meetings.size(), nfields = (int) bodies.size();
-  std::vector<int> parent(n);
+  if (n < 2) return;
+  parent.resize(n);
   std::iota(parent.begin(), parent.end(), 0);
   const auto root = [&](int m) {
     while (parent[m] != m) m = parent[m] = parent[parent[m]];
@@ -1006,7 +1043,8 @@ void FixMPMContact::group_meetings()
   for (int k = 0; k < nfields; k++) {
     const Body &body = bodies[k];
     const Grid &grid = body.field->grid;
-    std::vector<int> first(body.foreseen.mirrors.size(), -1);    // node with this mirror
+    std::vector<int> &first = first_with_mirror;
+    first.assign(body.foreseen.mirrors.size(), -1);
     for (int m = 0; m < n; m++) {
       const double *const record = meetings[m].node->record[k];
       for (int d = 0; d < grid.lattice.dim && record; d++) {
@@ -1104,6 +1142,7 @@ void FixMPMContact::act(double dt, Stage stage)
     for (auto &body : bodies) foresee_walls(body);
   }
   resolve_all(dt, !count);
+  if (count && ++steps % LOOK_EVERY == 1) report_unsolved();
 }
 
 /* ----------------------------------------------------------------------

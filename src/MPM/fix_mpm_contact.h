@@ -19,6 +19,7 @@ FixStyle(mpm/contact,FixMPMContact);
 #include "fix.h"
 #include "fix_mpm_boundary.h"
 #include "math/aitken.h"
+#include "mpm_first_note.h"
 #include "mpm_node_action.h"
 
 #include <array>
@@ -55,6 +56,7 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
   FixMPMContact(class LAMMPS *, int, char **);
   int setmask() override { return 0; }    // called by fix mpm
   void init() override;
+  void post_run() override { report_unsolved(); }
   void write_restart(FILE *) override;
   void restart(char *) override;
   double compute_scalar() override;
@@ -168,6 +170,13 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
   std::vector<char> states;
   MPM_NS::Aitken series;
 
+  bigint steps = 0;            // of this fix in this run
+  MPMFirstNote<4> unsolved;    // step and place
+
+  // of group_meetings()
+
+  std::vector<int> parent, first_with_mirror;
+
   double dt_last = 0.0;
   Account accounts[MAX_PAIRS] = {};
   double array[MAX_PAIRS][5] = {};
@@ -189,6 +198,8 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
   void set_velocities(const Meeting &);
   double iterate(const Meeting &, double dt, bool decided);
   void solve(const Meeting *first, const Meeting *last, bool mirrored, double dt, bool decided);
+  void note_unsolved(const Meeting *first, const Meeting *last);
+  void report_unsolved();
   void group_meetings();
   void resolve_all(double dt, bool decided);
   void apply(Pair &, int nothers, double &largest, double dt, bool decided);

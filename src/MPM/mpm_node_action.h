@@ -39,13 +39,13 @@ class MPMNodeAction {
   /** Which velocities the nodes have: those after the momentum equation (STEP), which move points
    *  and count for reactions and work; or others, for which nothing is counted: of the start of the
    *  step (START: USF, USAVG) or the new ones of the points mapped back (MAPPED_BACK: MUSL, USAVG),
-   *  which serve the velocity gradient, and with MAPPED_BACK the motion, or those of STEP that were
-   *  changed since (AGAIN: FMPM).
+   *  which serve the velocity gradient, and with MAPPED_BACK the motion unless an action decides_contact() or the
+   *  frame is total, or those of STEP that were changed since (AGAIN: FMPM).
    */
   enum Stage { START, STEP, AGAIN, MAPPED_BACK };
 
   /** Does the action decide in STEP what of this field is in contact? Velocities that are mapped back do not
-   *  know this well enough to move points. */
+   *  know this well enough to move points, but for those whose domains deform (CPDI). */
   virtual bool decides_contact(const class MPMField &) const { return false; }
 
   /** Change the velocities of the nodes of the fields, and in STEP the old ones of FLIP where

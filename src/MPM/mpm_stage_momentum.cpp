@@ -57,7 +57,7 @@ PointRows LAMMPS_NS::rows_from(const MPMField &field, const PointRows &rows, int
   b.tau += 6 * i;
   if (b.size) b.size += 3 * i;
   if (b.domain) b.domain += field.domains->size() * i;
-  b.xnew += 3 * i;
+  if (b.xnew) b.xnew += 3 * i;
   if (b.from) b.from += 3 * i;
   if (b.corners_new) b.corners_new += field.domains->size() * i;
   return b;

@@ -1,0 +1,65 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_FIRST_NOTE_H
+#define LMP_MPM_FIRST_NOTE_H
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <mpi.h>
+
+namespace LAMMPS_NS {
+
+/** What a rank has seen first and a warning is to tell, with the same text for any number of ranks, and only once.
+ *  Numbers, by which notes are ordered: the step comes first, then what tells notes of a step apart, as the place. */
+template <std::size_t N> class MPMFirstNote {
+ public:
+  using Numbers = std::array<double, N>;
+
+  /** Forgets what has not been told: at the start of a run. */
+  void begin() { mine = nothing(); }
+
+  /** Has it been told? The same on all ranks. */
+  bool told() const { return is_told; }
+
+  /** Has it been told, or has this rank a note of an earlier step? Then there is no need to look. */
+  bool knows(double step) const { return is_told || mine[0] < step; }
+
+  void take(const Numbers &numbers) { mine = std::min(mine, numbers); }
+
+  /** Collective: true once, when a rank has a note. Then first is the least note of all ranks. */
+  bool tell(MPI_Comm world, Numbers &first)
+  {
+    if (is_told) return false;
+    bool candidate = true;
+    first = nothing();
+    for (std::size_t k = 0; k < N; k++) {
+      const double number = candidate ? mine[k] : NONE;
+      MPI_Allreduce(&number, &first[k], 1, MPI_DOUBLE, MPI_MIN, world);
+      if (first[0] == NONE) return false;
+      candidate = candidate && mine[k] == first[k];
+    }
+    return is_told = true;
+  }
+
+ private:
+  static constexpr double NONE = 1.0e300;
+  static Numbers nothing()
+  {
+    Numbers numbers = {};
+    numbers[0] = NONE;
+    return numbers;
+  }
+
+  Numbers mine = nothing();
+  bool is_told = false;
+};
+
+}    // namespace LAMMPS_NS
+#endif
