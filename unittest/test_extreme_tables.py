@@ -3,6 +3,7 @@
 # General Public License, version 2; see the file LICENSE.
 # labels: unit
 # timeout: 300
+# sanitize: no
 """The tables of the manual page on stability are those of bench/extremes/results, have all combinations
 that fix mpm accepts, and the warnings of fix mpm about the time step agree with them."""
 import csv

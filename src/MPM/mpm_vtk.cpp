@@ -260,6 +260,7 @@ void VTKFile::end()
   for (auto &a : arrays) {
     const uint64_t lengths[] = {a.packed_sizes.size(), BLOCK, a.bytes % BLOCK};
     fwrite(lengths, sizeof(uint64_t), 3, fp);
+    if (a.packed.empty()) continue;
     fwrite(a.packed_sizes.data(), sizeof(uint64_t), a.packed_sizes.size(), fp);
     fwrite(a.packed.data(), 1, a.packed.size(), fp);
   }

@@ -557,7 +557,7 @@ TEST(Anisotropic, OffAxisModulus)
          {"orthotropic " + constants + " angle " + std::to_string(degrees),
           "orthotropic " + constants + " axes " + direction + " 0 0 0 1",
           "transversely/isotropic 126e9 11e9 0.28 0.4 6.6e9 axis " + direction + " 0"}) {
-      const auto S = stiffness(*material_of(text)).inverse();
+      const Eigen::Matrix<double, 6, 6> S = stiffness(*material_of(text)).inverse();
       EXPECT_NEAR(1 / S(0, 0), expected, 2e-5 * expected) << text;
     }
   }
