@@ -35,7 +35,7 @@ BLOCKS = {"block": ("in.block", {"n": "20", "box": "24", "steps": "200"}),
           "block2d": ("in.block2d", {"n": "100", "box": "110", "steps": "400"})}
 PARTS = ("law", "p2g", "nodes", "ledger", "topology", "sort", "halo", "rest", "lammps")
 STAGES = (("nodes to points", "law"), ("gradients", "law"), ("averaged", "law"), ("motion of points", "law"),
-          ("points to nodes", "p2g"), ("velocities back", "p2g"), ("momentum equation", "nodes"), ("FMPM", "nodes"),
+          ("points to nodes", "p2g"), ("velocities back", "p2g"), ("momentum equation", "nodes"), ("node actions", "nodes"), ("FMPM", "nodes"),
           ("XPIC", "nodes"), ("light nodes", "nodes"), ("energy of nodes", "ledger"), ("topology", "topology"),
           ("sort", "sort"), ("sum over ranks", "halo"))
 COLUMNS = ("scene", "dimension", "points", "steps", "total") + PARTS + ("times",)
@@ -84,17 +84,18 @@ def measure(lmp, name, path, steps):
     if done.returncode or not loops:
         sys.exit("%s failed:\n%s" % (name, done.stdout[-2000:]))
     loop = max(loops, key=lambda found: float(found.group(1)))    # the long one
-    before = done.stdout[:loop.start()]
-    before = before[before.rfind("MPM plan of a step"):]
-    use = float(re.search(r"([0-9.]+)% CPU use", done.stdout[loop.end():]).group(1)) / 100.0
-    fields = re.findall(r"^MPM \S+: (\d+) points, .*? kernels, .*\n  plan of the step:\n((?:    .*\n)+)", before, re.M)
+    told = re.match(r"(?:(?!^Loop time)[^%])*?([0-9.]+)% CPU use", done.stdout[loop.end():], re.M)
+    use = float(told.group(1)) / 100.0 if told else 1.0    # not after `post no`
+    report = done.stdout[:loop.start()]
+    report = report[report.rfind("MPM plan of a step"):]
+    fields = re.findall(r"^MPM \S+: (\d+) points, .*? kernels, .*\n  plan of the step:\n((?:    .*\n)+)", report, re.M)
     row = dict.fromkeys(PARTS, 0.0)
     points = sum(int(n) for n, _ in fields)
     for n, stages in fields:
         for line in stages.splitlines():
-            stage, time = line.rsplit(None, 1)
+            stage, ns = line.rsplit(None, 1)
             part = next((part for begin, part in STAGES if stage.strip().startswith(begin)), "rest")
-            row[part] += use * float(time) * int(n) / points    # stages have wall times
+            row[part] += use * float(ns) * int(n) / points    # stages have wall times
     row["total"] = 1.0e9 * float(loop.group(1)) * use / (int(loop.group(2)) * points)
     row["lammps"] = row["total"] - sum(row[part] for part in PARTS)
     row.update(scene=name, dimension=2 if re.search(r"^dimension\s+2", text, re.M) else 3, points=points,
@@ -116,6 +117,7 @@ def main():
         blocks = {}
         for name, path in found.items():
             row, use = measure(os.path.abspath(args.lmp), name, path, args.steps)
+            print("%-22s %7.1f" % (name, row["total"]), file=sys.stderr, flush=True)
             least = min(least, use)
             if name in BLOCKS:
                 blocks[row["dimension"]] = row["total"]
