@@ -625,6 +625,7 @@ TEST(GursonLaw, NoVoids)
 // what voids it had are closed by 20 to 200 times the yield stress, in one step or many; the rest is a von Mises solid
 TEST(GursonLaw, ShearOfClosedVoids)
 {
+  const double G3 = 3 * 2e11 / 2.6;
   for (const double f0 : {1e-4, 0.01, 0.1})
     for (const double squeeze : {0.05, 0.1, 0.25, 0.5})
       for (const int n : {1, 20}) {
@@ -635,11 +636,13 @@ TEST(GursonLaw, ShearOfClosedVoids)
         EXPECT_GT(p.pressure(), 20 * 4e8) << where;
         EXPECT_LT(value(p, "porosity"), 1e-6) << where;
         for (int i = 0; i < 20; i++) shear(p, 0.003);
-        const double e = value(p, "eplastic");
+        const double e = value(p, "eplastic"), elastic = p.batch.J[0] * p.vonmises() / G3;
         EXPECT_NEAR(p.vonmises() / GTN.y(e), 1.0, 1e-6) << where;
         for (int i = 0; i < 20; i++) shear(p, 0.003);
         EXPECT_NEAR(p.vonmises() / GTN.y(value(p, "eplastic")), 1.0, 1e-6) << where;
-        EXPECT_NEAR(value(p, "eplastic") - e, 0.06, 1e-3) << where;
+        // what is not elastic; directions of a simple shear turn a little
+        const double more = p.batch.J[0] * p.vonmises() / G3 - elastic;
+        EXPECT_NEAR(value(p, "eplastic") - e + more, 0.06, 1e-4) << where;
       }
 }
 
