@@ -369,9 +369,9 @@ run_progress() {
     /^run +[0-9]+/ { total = $2; first = ""; last = -5 }
     /^ *Step / { table = 1; next }
     /^Loop time/ { table = 0 }
-    table && $1 ~ /^[0-9]+$/ {
+    table && total > 0 && $1 ~ /^[0-9]+$/ {
       if (first == "") first = $1
-      p = total > 0 ? int(100 * ($1 - first) / total) : 100
+      p = int(100 * ($1 - first) / total)
       if (p >= last + 5 || p == 100) {
         printf "   step %d of %d, %d %%\n", $1 - first, total, p; fflush(); last = p } }'
 }
