@@ -21,41 +21,41 @@ using namespace MPM_NS;
 
 /* ---------------------------------------------------------------------- */
 
-double MPMLedger::nodal_kinetic_energy(int lane) const
+void MPMLedger::nodal_kinetic_energies(double &old, double &now) const
 {
-  Grid &grid = field.grid;
-  double sum = 0.0;
-  for (int64_t n = 0; n < grid.nnodes(); n++) {
-    if (!grid.owns(n)) continue;
-    const double *record = grid.record(n), *v = record + lane;
-    sum += record[3] * dot(v, v);
+  const Grid &grid = field.grid;
+  const double *record = field.grid.nodes();
+  double before = 0.0, after = 0.0;
+  for (const auto &block : grid.blocks) {
+    for (int n = 0; n < NODES_PER_BLOCK; n++, record += 8) {
+      if (!(block.owned >> n & 1)) continue;
+      before += record[3] * dot(record + 4, record + 4);
+      after += record[3] * dot(record, record);
+    }
   }
-  return 0.5 * force->mvv2e * sum;
+  old = 0.5 * force->mvv2e * before;
+  now = 0.5 * force->mvv2e * after;
 }
 
 double MPMLedger::point_kinetic_energy() const
 {
+  const bool deep = field.lattice.dim == 3;
+  const int groupbit = field.fix.groupbit, nlocal = atom->nlocal, *const mask = atom->mask;
+  const double *const *const v = atom->v, *const mass = atom->rmass, *const volume = atom->vfrac;
   double sum = 0.0;
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!field.is_point(i)) continue;
-    const double *v = atom->v[i];
-    sum +=
-        atom->rmass[i] * (v[0] * v[0] + v[1] * v[1] + (field.lattice.dim == 3 ? v[2] * v[2] : 0.0));
-  }
+  for (int i = 0; i < nlocal; i++)
+    if ((mask[i] & groupbit) && volume[i] > 0.0)
+      sum += mass[i] * (v[i][0] * v[i][0] + v[i][1] * v[i][1] + (deep ? v[i][2] * v[i][2] : 0.0));
   return 0.5 * force->mvv2e * sum;
 }
 
 /* ---------------------------------------------------------------------- */
 
-std::size_t MPMLedger::field_nodes() const
-{
-  return field.grid.nnodes();
-}
-
 void MPMLedger::account_for_nodes()
 {
   account_for_forces();
-  const double old = nodal_kinetic_energy(4), kinetic = nodal_kinetic_energy(0);
+  double old, kinetic;
+  nodal_kinetic_energies(old, kinetic);
   transfer += old - kinetic_points;
   kinetic_points = kinetic;
 }
@@ -75,28 +75,20 @@ void MPMLedger::account_for_points()
 
 void MPMLedger::account_for_forces()
 {
-  const int dim = field.lattice.dim, nL = dim * dim, nreal = field.pic.nreal;
-  auto &nodes = field.work.nodes;
-  nodes.assign(nreal * field_nodes(), 0.0);
-  const double *record = field.grid.nodes();    // v m | v old
-  for (double *v = nodes.data(); v < nodes.data() + nodes.size(); v += nreal, record += 8)
-    for (int d = 0; d < dim; d++) v[d] = 0.5 * (record[d] + record[4 + d]);
-  field.nodes.complete(nodes.data(), nreal, 3);
-
-  field.work.vectors.assign(3 * (std::size_t) atom->nmax, 0.0);
-  const double *const velocity = field.work.vectors.data();
+  const int dim = field.lattice.dim, nL = dim * dim;
+  field.nodes.complete_velocities();
   PointRows r = field.rows();
   if (field.options.averages_stress()) r.tau = field.locking->stress();
-  const PointRows at_rest = field.rows_at_rest(field.work.vectors.data(), r.mass);
-  const TransferStep s = field.step_data(), still = field.step_data(0.0);
-  const double *const tile = field.map->tile_load;
+  const TransferStep s = field.step_data();
   double outer = 0.0, inner = 0.0, stress = 0.0;
-  double L[9 * BATCH];
+  double L[9 * BATCH], velocity[3 * BATCH] = {};    // no velocity along z in 2d
   MPMFrame::ForceRows room;
 
-  const auto add_batch = [&](const MPMPointMap::Run &run, int first, int n, const int *base) {
-    field.pic.g2p(at_rest, still, first, first + n, base, tile, nullptr);
-    const double *const v = velocity + 3 * (bigint) first, *const f = r.f + 3 * (bigint) first;
+  const auto account = [&](const MPMPointMap::Run &run, int first, int n, const int *base) {
+    PointRows b = rows_from(field, r, first);
+    b.velocity = velocity;
+    field.kernel.g2p_gradient(b, s, 0, n, base, field.map->tile_load, L);
+    const double *const v = velocity, *const f = b.f;
     for (int p = 0; p < n; p++) outer += dot(f + 3 * p, v + 3 * p);
     for (auto *ifix : field.elements) {
       const double *const mine = ifix->forces() + 3 * (bigint) first;
@@ -104,8 +96,7 @@ void MPMLedger::account_for_forces()
     }
     if (!run.material) return;    // nodes of elements
 
-    field.kernel.g2p_gradient(r, s, first, first + n, base, tile, L);
-    const PointRows b = rows_with_forces(field, r, first, n, room);
+    field.frame->forces(b, first, n, room);
     for (int p = 0; p < n; p++) {
       const double *const G = L + nL * p;
       if (b.f != f)    // hoop stress
@@ -125,12 +116,7 @@ void MPMLedger::account_for_forces()
       stress += b.vol0[p] * rate;
     }
   };
-  // points are where they were
-  for (auto &a : field.map->active) std::copy_n(a.box, 6, a.other_box);
-  points_from(nodes, field, field.pic, [&](const MPMPointMap::Run &run, const int *base) {
-    for (int i = run.first; i < run.last; i += BATCH)
-      add_batch(run, i, std::min(BATCH, run.last - i), base);
-  });
+  points_from_step(field, account, true);
 
   const double unit = force->mvv2e * s.dt;
   external += unit * s.force_scale * (outer - inner);
@@ -176,6 +162,7 @@ void MPMLedger::count_push(const double *record, const double *change)
 
 double *MPMLedger::impulse(const double *record)
 {
+  if (impulses.empty()) impulses.resize(3 * field.grid.nnodes());
   return &impulses[3 * ((record - field.grid.nodes()) / field.grid.nreal)];
 }
 

@@ -45,7 +45,7 @@ class MPMLedger : protected Pointers, public MPMEnergies {
     if (on) kinetic_points = point_kinetic_energy();
   }
   /** After the momentum equation, before node actions. */
-  void nodes_solved() { impulses.assign(3 * field_nodes(), 0.0); }
+  void nodes_solved() { impulses.clear(); }
   /** Work of forces and kinetic energies, before points get what was done to the nodes. */
   void account_for_nodes();
   /** End of a step: what the way from nodes to points has changed. */
@@ -69,16 +69,15 @@ class MPMLedger : protected Pointers, public MPMEnergies {
    *  terms of a series. */
   void count_series(const std::vector<double> &velocities);
 
-  /** Of the nodes that this rank owns; velocity: the reals from lane on. */
-  double nodal_kinetic_energy(int lane) const;
+  /** Of the nodes that this rank owns, with the velocities before the momentum equation and the present ones. */
+  void nodal_kinetic_energies(double &old, double &now) const;
   double point_kinetic_energy() const;
 
  private:
   MPMField &field;
   double kinetic_points = 0.0;     // at the end of the last step
-  std::vector<double> impulses;    // [node][3] of node actions on owned nodes in this step
+  std::vector<double> impulses;    // [node][3] of node actions on owned nodes in this step; empty: none
 
-  std::size_t field_nodes() const;
   double *impulse(const double *record);
   void account_for_forces();
 };

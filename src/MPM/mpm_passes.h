@@ -62,13 +62,14 @@ void points_from(std::vector<double> &nodes, MPMField &field, const MPM_NS::Tran
 }
 
 /** Calls gather(run, first, n, base) for up to BATCH points of a run at a time, with the nodes of the
- *  step in tile_load. */
-template <class Gather> void points_from_step(MPMField &field, const Gather &gather)
+ *  step in tile_load; mean: long records, with the mean of old and new velocities. */
+template <class Gather>
+void points_from_step(MPMField &field, const Gather &gather, bool mean = false)
 {
   MPMPointMap &points = *field.map;
   for (const auto &a : points.active) {
     int base[3];
-    points.load_tile(a, base);
+    points.load_tile(a, base, mean);
     for (int k = a.first_run; k < a.last_run; k++) {
       const auto &run = points.runs[k];
       for (int i = run.first; i < run.last; i += MPM_NS::BATCH)

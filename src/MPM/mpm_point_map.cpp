@@ -105,11 +105,12 @@ void MPMPointMap::tile_base(const ActiveBlock &a, int base[3]) const
    else would hide that
 ------------------------------------------------------------------------- */
 
-void MPMPointMap::load_tile(const ActiveBlock &a, int base[3])
+void MPMPointMap::load_tile(const ActiveBlock &a, int base[3], bool mean)
 {
   Grid &grid = field.grid;
   tile_base(a, base);
-  field.kernel.load(tile_load, grid.nodes(), grid.blocks[a.slot].slot, a.box);
+  const auto load = mean ? field.kernel.load_mean : field.kernel.load;
+  load(tile_load, grid.nodes(), grid.blocks[a.slot].slot, a.box);
   const ActiveBlock *next = &a + 1;
   if (next < active.data() + active.size())
     field.kernel.prefetch(tile_load, grid.nodes(), grid.blocks[next->slot].slot, next->box);

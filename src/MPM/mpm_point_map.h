@@ -60,8 +60,9 @@ class MPMPointMap : protected Pointers {
   bool base_node(const double *x, int base[3], double t[3]) const;
   /** Node index of the first entry of the tile of a block. */
   void tile_base(const ActiveBlock &, int base[3]) const;
-  /** Nodes of a block to the tile, and those of the next block towards the cache. */
-  void load_tile(const ActiveBlock &, int base[3]);
+  /** Nodes of a block to the tile, and those of the next block towards the cache; mean: see
+   *  TransferKernels::load_mean. */
+  void load_tile(const ActiveBlock &, int base[3], bool mean);
 
   bigint npoints() const;
   std::size_t tile_reals() const;

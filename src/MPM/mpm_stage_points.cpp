@@ -144,8 +144,7 @@ void MPMStages::update_stress(MPMField &field, const PointRows &r, const MPMPoin
 
   const int nhistory = material->nhistory;
   double *const h = nhistory ? &material->history[0][0] + nhistory * (bigint) first : nullptr;
-  for (int p = 0; p < n && nhistory; p++)
-    for (int k = 0; k < nhistory; k++) b.history[k][p] = h[nhistory * p + k];
+  if (nhistory) field.batch_kernels->load_history(b, nhistory, h);
 
   double heat[BATCH];
   if (field.heating) field.heating->give(first, n, heat);
@@ -155,10 +154,10 @@ void MPMStages::update_stress(MPMField &field, const PointRows &r, const MPMPoin
   if (!field.options.total && !material->material->uses_F()) field.batch_kernels->forget_shape(b);
 
   const int bad = field.batch_kernels->store(b, F, tau);
-  for (int p = 0; p < n && nhistory; p++) {
-    if (bad && !(b.J[p] > 0.0)) continue;
-    for (int k = 0; k < nhistory; k++) h[nhistory * p + k] = b.history[k][p];
-  }
+  if (nhistory && !bad) field.batch_kernels->store_history(b, nhistory, h);
+  for (int p = 0; p < n && nhistory && bad; p++)
+    if (b.J[p] > 0.0)
+      for (int k = 0; k < nhistory; k++) h[nhistory * p + k] = b.history[k][p];
   if (field.options.delete_failed && material->damage >= 0)
     for (int p = 0; p < n; p++)
       if (b.history[material->damage][p] >= 1.0) field.guard->point_has_failed(first + p);

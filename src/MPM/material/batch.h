@@ -45,6 +45,10 @@ struct BatchKernels {
    *  a rotation. Points whose J is not positive do not count. */
   double (*stress_work)(const Batch &, const double (*twice_tau)[BATCH]);
 
+  /** History variables: rows [n][width] to columns, and back. */
+  void (*load_history)(Batch &, int width, const double *rows);
+  void (*store_history)(const Batch &, int width, double *rows);
+
   /** Write F and tau (2d: only what can change). Returns the number of points whose J is not
    *  positive (NaN included); nothing is written for these. */
   int (*store)(const Batch &, double *F, double *tau);

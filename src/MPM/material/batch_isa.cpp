@@ -317,6 +317,44 @@ template <int DIM> void first_piola(int n, const double *F, const double *tau, d
     for (int k = 0; k < SIZE; k++) P[SIZE * p + k] = c[k][p];
 }
 
+void load_history(Batch &b, int width, const double *rows)
+{
+  const int n = b.n;
+  int c = 0;
+  for (; c + 4 <= width; c += 4) {
+    int p = 0;
+    for (; p + 4 <= n; p += 4) {
+      Vec<4> r[4];
+      for (int k = 0; k < 4; k++) r[k] = Vec<4>::load(rows + width * (p + k) + c);
+      transpose(r);
+      for (int k = 0; k < 4; k++) r[k].store(b.history[c + k] + p);
+    }
+    for (; p < n; p++)
+      for (int k = c; k < c + 4; k++) b.history[k][p] = rows[width * p + k];
+  }
+  for (; c < width; c++)
+    for (int p = 0; p < n; p++) b.history[c][p] = rows[width * p + c];
+}
+
+void store_history(const Batch &b, int width, double *rows)
+{
+  const int n = b.n;
+  int c = 0;
+  for (; c + 4 <= width; c += 4) {
+    int p = 0;
+    for (; p + 4 <= n; p += 4) {
+      Vec<4> r[4];
+      for (int k = 0; k < 4; k++) r[k] = Vec<4>::load(b.history[c + k] + p);
+      transpose(r);
+      for (int k = 0; k < 4; k++) r[k].store(rows + width * (p + k) + c);
+    }
+    for (; p < n; p++)
+      for (int k = c; k < c + 4; k++) rows[width * p + k] = b.history[k][p];
+  }
+  for (; c < width; c++)
+    for (int p = 0; p < n; p++) rows[width * p + c] = b.history[c][p];
+}
+
 void add_kirchhoff(const Batch &b, const double *J, double (*sum)[BATCH])
 {
   const int n = b.n;
@@ -362,12 +400,12 @@ const BatchKernels *MPM_NS::MPM_OF_ISA(mpm_batch)(int dim, bool hoop)
 {
   static const BatchKernels solid = {load<3, false, false>, load<3, true, false>, forget_shape<3>,
                                      first_piola<3>,        add_kirchhoff,        stress_work,
-                                     store<3, false>},
+                                     load_history,          store_history,        store<3, false>},
                             plane = {load<2, false, false>, load<2, true, false>, forget_shape<2>,
                                      first_piola<2>,        add_kirchhoff,        stress_work,
-                                     store<2, false>},
+                                     load_history,          store_history,        store<2, false>},
                             axial = {load<2, false, true>, load<2, true, true>, forget_shape<2>,
                                      first_piola<2>,       add_kirchhoff,       stress_work,
-                                     store<2, true>};
+                                     load_history,         store_history,       store<2, true>};
   return dim == 3 ? &solid : hoop ? &axial : &plane;
 }

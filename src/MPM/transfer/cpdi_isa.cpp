@@ -564,6 +564,7 @@ int g2p(const PointRows &rows, const TransferStep &transfer, int first, int last
           store_lanes<DIM>(L + DIM * (DIM * (i - first) + a), gradient[a]);
 
       const Vec<4> mean = first_four(v);
+      if (!UPDATE && points.velocity) store_lanes<DIM>(points.velocity + 3 * i, mean);
       Vec<4> add{};
       if constexpr (increment) add = step.flip * (strided<DIM, 1>(points.v + 3 * i) - half<1>(v));
       if constexpr (UPDATE) {

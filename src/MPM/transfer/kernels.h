@@ -113,6 +113,7 @@ struct PointRows {
   const double *domain = nullptr;
   /** CPDI2: where G2P puts them, the point at the center; null: not. */
   double *corners_new = nullptr;
+  double *velocity = nullptr;    ///< [n][3] where g2p_gradient puts the velocity; null: nowhere
 };
 
 /** What a transfer needs to know about the lattice and the step. */
@@ -170,9 +171,10 @@ struct TransferKernels {
   P2G p2g_momentum;      ///< mass and momentum only, force reals untouched
   P2G p2g_force;       ///< force only (split: the force reals; merged: dt * force on the momentum)
   G2P g2p;             ///< velocity, position, C, velocity gradient
-  G2P g2p_gradient;    ///< velocity gradient only, into L; points stay; returns 0
+  G2P g2p_gradient;    ///< velocity gradient into L, velocity if asked for; points stay; returns 0
   TileIO flush;        ///< tile -> nodes, all reals
   TileIO load;         ///< nodes -> tile
+  TileIO load_mean;    ///< split: the mean of velocity and old velocity of the nodes -> velocity
   TileIO prefetch;     ///< nodes of the box into the cache, for a flush or load some time later
 };
 

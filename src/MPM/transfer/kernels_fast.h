@@ -849,6 +849,7 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
           for (int a = 0; a < DIM; a++) column[a] = factor * D[a];
           if (UPDATE && affine) store_columns<L>(points.C, p, column);
           if (!affine || gradients) store_columns<L>(gradients, p - first, column);
+          if (!UPDATE && points.velocity) store_rows<DIM, L>(points.velocity, p, v);
         }
 
         if constexpr (UPDATE) {
@@ -893,6 +894,7 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
     if (has_size(SHAPE)) copy.load<3>(copy.size, points.size, rest, last);
     if (UPDATE) copy.load<3>(copy.v, points.v, rest, last);
     if (UPDATE && TOTAL) copy.load<3>(copy.from, points.from, rest, last);
+    if (!UPDATE && points.velocity) copy.rows.velocity = copy.v;
     if (last - rest == POINTS)
       left |= range<POINTS, UPDATE, GRADIENT>(copy.rows, step, 0, POINTS, base, tile, copy.L);
     else
@@ -901,6 +903,10 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
       copy.store<3>(copy.xnew, points.xnew, rest, last);
       copy.store<3>(copy.v, points.v, rest, last);
       if (affine) copy.template store<DIM * DIM>(copy.C, points.C, rest, last);
+    }
+    if (!UPDATE && points.velocity) {
+      for (Index p = rest; p < last; p++)
+        for (int a = 0; a < DIM; a++) points.velocity[3 * p + a] = copy.v[3 * (p - rest) + a];
     }
     if (GRADIENT && gradients)
       copy.template store<DIM * DIM>(copy.L, gradients, rest - first, last - first);
@@ -918,9 +924,10 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
 
 // ---------------------------------------------------------------------- nodes
 
-enum TileMove { FLUSH, LOAD, PREFETCH };
+enum TileMove { FLUSH, LOAD, LOAD_MEAN, PREFETCH };
 
-/** Adds N reals of a tile to nodes and clears them, loads them, or brings the nodes near. */
+/** Adds N reals of a tile to nodes and clears them, loads them or, of each eight, the mean of both fours into
+ *  the first, or brings the nodes near. */
 template <int N, TileMove MOVE> MPM_INLINE void move_reals(double *tile, double *nodes)
 {
   if constexpr (MOVE == PREFETCH) {
@@ -931,8 +938,10 @@ template <int N, TileMove MOVE> MPM_INLINE void move_reals(double *tile, double 
     return;
   }
   MPM_UNROLL
-  for (int i = 0; i < N; i += 4) {
-    if constexpr (MOVE == LOAD) {
+  for (int i = 0; i < N; i += MOVE == LOAD_MEAN ? 8 : 4) {
+    if constexpr (MOVE == LOAD_MEAN) {
+      (0.5 * (Vec<4>::load(nodes + i) + Vec<4>::load(nodes + i + 4))).store(tile + i);
+    } else if constexpr (MOVE == LOAD) {
       Vec<4>::load(nodes + i).store(tile + i);
     } else {
       (Vec<4>::load(nodes + i) + Vec<4>::load(tile + i)).store(nodes + i);
@@ -986,6 +995,7 @@ template <class C> TransferKernels table_with_tiles()
   TransferKernels k = table_of<C>();
   k.flush = tile_io<C::dim, C::shape, C::nreal, FLUSH>;
   k.load = tile_io<C::dim, C::shape, C::nreal, LOAD>;
+  if constexpr (C::nreal == 8) k.load_mean = tile_io<C::dim, C::shape, 8, LOAD_MEAN>;
   k.prefetch = tile_io<C::dim, C::shape, C::nreal, PREFETCH>;
   return k;
 }

@@ -253,7 +253,13 @@ int g2p(const PointRows &points, const TransferStep &step, int first, int last, 
     double grad[DIM * DIM];
     velocity_gradient<C>(stencil, step, tile, grad);
     if (L) std::copy(grad, grad + DIM * DIM, L + DIM * DIM * (p - first));
-    if (!UPDATE) continue;
+    if (!UPDATE) {
+      for (int i = 0; points.velocity && i < DIM; i++) {
+        double &v = points.velocity[3 * p + i] = 0.0;
+        for (const Node &node : stencil.node) v += node.w * tile[C::nreal * node.index + i];
+      }
+      continue;
+    }
     if constexpr (C::shape == CPDI2)
       if (points.corners_new)
         move_corners<C>(stencil, step, tile, points.corners_new + (DIM << DIM) * p);
@@ -289,8 +295,11 @@ int g2p(const PointRows &points, const TransferStep &step, int first, int last, 
   return left;
 }
 
-/** Adds the nodes of the box to the nodes of the blocks and clears them, or loads them from there. */
-template <class C, bool FLUSH>
+enum TileMove { FLUSH, LOAD, LOAD_MEAN };
+
+/** Adds the nodes of the box to the nodes of the blocks and clears them, or loads them from there, or the mean
+ *  of their velocities. */
+template <class C, TileMove MOVE>
 void move_box(double *tile, double *nodes, const int slot[27], const int box[6])
 {
   constexpr int DIM = C::dim, NREAL = C::nreal, side = block_side(DIM);
@@ -310,12 +319,13 @@ void move_box(double *tile, double *nodes, const int slot[27], const int box[6])
         }
         double *mine = tile + NREAL * entry;
         double *node = nodes + (64 * static_cast<std::ptrdiff_t>(slot[block]) + index) * NREAL;
-        for (int r = 0; r < NREAL; r++)
-          if (FLUSH) {
+        for (int r = 0; r < (MOVE == LOAD_MEAN ? 4 : NREAL); r++)
+          if (MOVE == FLUSH) {
             node[r] += mine[r];
             mine[r] = 0.0;
-          } else
-            mine[r] = node[r];
+          } else {
+            mine[r] = MOVE == LOAD ? node[r] : 0.5 * (node[r] + node[4 + r]);
+          }
       }
 }
 
@@ -390,8 +400,9 @@ TransferKernels choose_plain(int dim, Shape shape, Transfer transfer, bool split
       k.p2g_force = p2g<C, FORCE>;
       k.g2p = g2p<C, true>;
       k.g2p_gradient = g2p<C, false>;
-      k.flush = move_box<C, true>;
-      k.load = move_box<C, false>;
+      k.flush = move_box<C, FLUSH>;
+      k.load = move_box<C, LOAD>;
+      if constexpr (C::nreal == 8) k.load_mean = move_box<C, LOAD_MEAN>;
       k.prefetch = [](double *, double *, const int *, const int *) {
       };
       return k;
