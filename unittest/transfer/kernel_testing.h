@@ -159,6 +159,15 @@ inline void expect_box_moves(const MPM_NS::TransferKernels &kernels, const TileS
       loaded = loaded && t.tile[in_tile] == store[in_store];
     });
     ASSERT_TRUE(loaded);
+    ASSERT_EQ(kernels.load_mean != nullptr, nreal == 8);
+    if (nreal == 4) continue;
+    kernels.load_mean(t.tile, store.data(), slot, box);
+    ASSERT_EQ(store, expected);
+    for_box([&](int in_tile, int in_store) {
+      const double *const mine = store.data() + in_store;
+      loaded = loaded && (in_tile % 8 > 2 || t.tile[in_tile] == 0.5 * (mine[0] + mine[4]));
+    });
+    ASSERT_TRUE(loaded);
   }
 }
 

@@ -344,8 +344,28 @@ TEST_P(Kernels, GradientAgreesWithReferenceAndG2P)
     ASSERT_EQ(a.v, before.v);
     ASSERT_EQ(a.C, before.C);
     ASSERT_EQ(a.xnew, before.xnew);
+    // with velocities, of these points and along these axes only
+    Reals va(3 * a.n, 7.0), vb = va;
+    const auto with_velocity = [&](const TransferKernels &k, Reals &v, Reals &L) {
+      PointRows rows = a.rows();
+      rows.velocity = v.data();
+      ASSERT_EQ(k.g2p_gradient(rows, a.step, a.first, a.last, a.base, tile.real, L.data()), 0);
+    };
+    with_velocity(kernels, va, Lc);
+    with_velocity(reference, vb, Lb);
+    ASSERT_EQ(La, Lc);
+    ASSERT_LT(difference(va, vb), SAME);
+    for (int i = 0; i < 3 * a.n; i++) {
+      const bool asked = i / 3 >= a.first && i / 3 < a.last && i % 3 < dim;
+      ASSERT_EQ(va[i] == 7.0, !asked);
+    }
+    ASSERT_EQ(a.v, before.v);
+
     g2p(kernels.g2p, a, tile.real, Lc.data());
     ASSERT_LT(difference(La, Lc), SAME);
+    if (adds_change(GetParam().transfer)) continue;
+    for (int p = a.first; p < a.last; p++)
+      for (int i = 0; i < dim; i++) ASSERT_LT(std::abs(va[3 * p + i] - a.v[3 * p + i]), SAME);
   }
 }
 
