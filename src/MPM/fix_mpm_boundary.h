@@ -73,6 +73,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
 
   void extend_topology(MPMField &) override;
   void topology_changed(MPMField &) override;
+  bool looks_beyond_points() const override { return false; }
   bool decides_contact(const MPMField &) const override;
   void act(double dt, Stage) override;
 

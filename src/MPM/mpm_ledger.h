@@ -75,8 +75,9 @@ class MPMLedger : protected Pointers, public MPMEnergies {
 
  private:
   MPMField &field;
-  double kinetic_points = 0.0;     // at the end of the last step
-  std::vector<double> impulses;    // [node][3] of node actions on owned nodes in this step; empty: none
+  double kinetic_points = 0.0;    // at the end of the last step
+  std::vector<double>
+      impulses;    // [node][3] of node actions on owned nodes in this step; empty: none
 
   double *impulse(const double *record);
   void account_for_forces();

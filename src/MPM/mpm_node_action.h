@@ -33,6 +33,10 @@ class MPMNodeAction {
   /** Activate further blocks that the action needs next to those in reach of points. */
   virtual void extend_topology(class MPMField &) {}
 
+  /** Does it look at nodes that points cannot reach? Only if one does, periodic images of these have the values
+   *  of their nodes. */
+  virtual bool looks_beyond_points() const { return true; }
+
   /** The blocks of the field are new: lists of nodes must be made again. */
   virtual void topology_changed(class MPMField &) {}
 

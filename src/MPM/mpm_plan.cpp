@@ -128,6 +128,13 @@ void MPMPlan::find_blocks()
     if (field->boxes) field->boxes->update();
 }
 
+bool MPMPlan::keeps_all_images() const
+{
+  return std::any_of(actions.begin(), actions.end(), [](const auto *action) {
+    return action->looks_beyond_points();
+  });
+}
+
 void MPMPlan::find_blocks_now()
 {
   // corners of domains may have left what is in reach

@@ -65,6 +65,8 @@ class MPMPlan : protected Pointers {
 
   /** Blocks in reach of points, of all fields whose points have moved in memory or away. */
   void find_blocks();
+  /** Do periodic images count that no point can reach? */
+  bool keeps_all_images() const;
   /** The same apart from the step. */
   void find_blocks_now();
   void act_on_nodes(MPMNodeAction::Stage);

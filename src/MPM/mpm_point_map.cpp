@@ -20,6 +20,7 @@
 #include "mpm_guard.h"
 #include "mpm_halo.h"
 #include "mpm_passes.h"
+#include "mpm_plan.h"
 #include "neighbor.h"
 #include "platform.h"
 
@@ -148,18 +149,24 @@ void MPMPointMap::find_blocks()
   };
   std::vector<Range> ranges;
   std::array<int, 3> last_base = {INT_MAX, INT_MAX, INT_MAX}, last_block = last_base;
-  const int nlocal = atom->nlocal;
+  const int nlocal = atom->nlocal, *const mask = atom->mask;
+  const double *const *const places = field.frame->places();
+  FixMPMMaterial *material = nullptr;
+  int mask_of_material = 0;    // that of no point, which is in the group of the field
   for (int i = 0; i < nlocal; i++) {
     if (!field.is_point(i)) continue;
     std::array<int, 3> base, b;
     double t[3];
-    if (!base_node(field.frame->places()[i], base.data(), t)) {
+    if (!base_node(places[i], base.data(), t)) {
       field.guard->point_is_bad(i, "is far out of reach of the lattice");
       continue;
     }
     for (int d = 0; d < 3; d++) b[d] = base[d] >> grid.shift_bits;
     if (base != last_base) switches++;
-    FixMPMMaterial *material = field.is_element_node(i) ? nullptr : field.material_of(i);
+    if (mask[i] != mask_of_material) {
+      mask_of_material = mask[i];
+      material = field.is_element_node(i) ? nullptr : field.material_of(i);
+    }
     const bool same_block = b == last_block;
     if (same_block && runs.back().last == i && runs.back().material == material) {
       runs.back().last++;
@@ -196,14 +203,18 @@ void MPMPointMap::find_blocks()
       : watch_drift                            ? grid.side
                     : std::max(least, std::min(1.0, 0.5 * neighbor->skin / grid.lattice.h));
   const int nactive = active.size(), order = stencil_order(field.options.shape);
+  int nodes_low[3] = {INT_MAX, INT_MAX, INT_MAX}, nodes_high[3] = {INT_MIN, INT_MIN, INT_MIN};
   for (int k = 0; k < nactive; k++) {
     const Range &r = ranges[k];
     int b[3], *const lo = active[k].low, *const hi = active[k].high;
     std::copy_n(grid.blocks[k].b, 3, b);
     for (int d = 0; d < grid.lattice.dim; d++) {
-      const int first = b[d] * grid.side;
-      if ((int) std::floor(r.lo[d] - drift) < first) lo[d] = -1;
-      if ((int) std::floor(r.hi[d] + drift) + order >= first + grid.side) hi[d] = 1;
+      const int first = b[d] * grid.side, low = (int) std::floor(r.lo[d] - drift),
+                high = (int) std::floor(r.hi[d] + drift) + order;
+      if (low < first) lo[d] = -1;
+      if (high >= first + grid.side) hi[d] = 1;
+      nodes_low[d] = std::min(nodes_low[d], low);
+      nodes_high[d] = std::max(nodes_high[d], high);
     }
     for (int dx = lo[0]; dx <= hi[0]; dx++)
       for (int dy = lo[1]; dy <= hi[1]; dy++)
@@ -213,6 +224,12 @@ void MPMPointMap::find_blocks()
         }
   }
   field.nodes.halo->nreached = (int) grid.blocks.size();
+
+  if (!field.plan->keeps_all_images())
+    for (int d = 0; d < grid.lattice.dim; d++) {
+      grid.reach_low[d] = nodes_low[d] - 1;
+      grid.reach_high[d] = nodes_high[d] + 1;
+    }
 }
 
 /* ---------------------------------------------------------------------- */

@@ -144,7 +144,11 @@ void MPMStages::update_stress(MPMField &field, const PointRows &r, const MPMPoin
 
   const int nhistory = material->nhistory;
   double *const h = nhistory ? &material->history[0][0] + nhistory * (bigint) first : nullptr;
-  if (nhistory) field.batch_kernels->load_history(b, nhistory, h);
+  if (nhistory) {
+    field.batch_kernels->load_history(b, nhistory, h);
+    for (int k = 0; k < nhistory * BATCH; k += 8)    // of the next batch, a transfer ahead
+      __builtin_prefetch(h + nhistory * n + k, 1);
+  }
 
   double heat[BATCH];
   if (field.heating) field.heating->give(first, n, heat);

@@ -8,6 +8,8 @@
 
 #include "lattice/grid.h"
 
+#include <algorithm>
+#include <climits>
 #include <cstring>
 #include <new>
 
@@ -19,6 +21,8 @@ void Grid::clear()
   table.clear();
   alias_node.clear();
   alias_of.clear();
+  std::fill_n(reach_low, 3, INT_MIN);
+  std::fill_n(reach_high, 3, INT_MAX);
 }
 
 int Grid::find(uint64_t key) const
@@ -61,20 +65,27 @@ void Grid::close_periodic()
         inside = inside && lo >= 0 && lo + side <= lattice.ncell[d];
       }
     if (inside) continue;
+    int canonical_block[3], slot = -1;    // of the last node, mostly that of the next one
     for (int n = 0; n < NODES_PER_BLOCK; n++) {
       int index[3], canonical[3];
       node_index(blocks[ib], n, index);
-      bool same = true;
+      bool same = true, reached = true;
       for (int d = 0; d < 3; d++) {
         canonical[d] = d < lattice.dim ? lattice.wrap(d, index[d]) : 0;
         same = same && canonical[d] == index[d];
+        reached = reached && index[d] >= reach_low[d] && index[d] <= reach_high[d];
       }
       if (same) continue;
       const int b[3] = {canonical[0] >> shift_bits, canonical[1] >> shift_bits,
                         lattice.dim == 3 ? canonical[2] >> shift_bits : 0};
-      alias_node.push_back((int64_t) ib * NODES_PER_BLOCK + n);
-      alias_of.push_back((int64_t) activate(b) * NODES_PER_BLOCK + number(canonical));
+      if (slot < 0 || !std::equal(b, b + 3, canonical_block)) {
+        slot = activate(b);
+        std::copy_n(b, 3, canonical_block);
+      }
       blocks[ib].alias |= uint64_t(1) << n;
+      if (!reached) continue;
+      alias_node.push_back((int64_t) ib * NODES_PER_BLOCK + n);
+      alias_of.push_back((int64_t) slot * NODES_PER_BLOCK + number(canonical));
     }
   }
 }
@@ -120,8 +131,11 @@ void Grid::fold_aliases(double *nodes, int nreals, int lane, int nlane) const
 
 void Grid::copy_aliases(double *nodes, int nreals) const
 {
-  for (std::size_t k = 0; k < alias_node.size(); k++)
-    memcpy(nodes + alias_node[k] * nreals, nodes + alias_of[k] * nreals, nreals * sizeof(double));
+  for (std::size_t k = 0; k < alias_node.size(); k++) {
+    const double *from = nodes + alias_of[k] * nreals;
+    double *to = nodes + alias_node[k] * nreals;
+    for (int r = 0; r < nreals; r++) to[r] = from[r];
+  }
 }
 
 int64_t Grid::memory_usage() const

@@ -64,10 +64,14 @@ class Grid {
   int side, shift_bits;    ///< nodes along a block side, log2 of it
   std::vector<Block> blocks;
   int nreal = 0;    ///< reals of a node record
+  /** Periodic images outside of this range of nodes along each axis have no part in sums and copies: nobody
+   *  looks at them. clear() makes it all nodes. */
+  int reach_low[3], reach_high[3];
 
   explicit Grid(const Lattice &lattice) :
       lattice(lattice), side(lattice.dim == 3 ? 4 : 8), shift_bits(lattice.dim == 3 ? 2 : 3)
   {
+    clear();
   }
 
   void clear();                    ///< forget all blocks
