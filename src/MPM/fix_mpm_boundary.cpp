@@ -1243,6 +1243,18 @@ double FixMPMBoundary::Wall::old_relative(const double *record, int d, double li
 }
 
 /* ----------------------------------------------------------------------
+   Have the node and its images mass, and is there more than one of them? One alone is free unless it is in the
+   plane of the wall. Of most nodes near walls this is false
+------------------------------------------------------------------------- */
+
+bool FixMPMBoundary::is_constrained(Grid &grid, const Member *members, int n, bool fixed)
+{
+  int massive = 0;
+  for (int k = 0; k < n; k++) massive += grid.record(members[k].node)[3] > 0.0;
+  return massive > (fixed ? 0 : 1);
+}
+
+/* ----------------------------------------------------------------------
    velocities of a node and its images, as far as they are prescribed: odd about the wall, and in its
    plane (fixed) those of the wall
 ------------------------------------------------------------------------- */
@@ -1253,19 +1265,16 @@ void FixMPMBoundary::project(Grid &grid, const Member *members, int n, bool fixe
   const int dim = grid.lattice.dim;
   const bool hold = p.hold[0] || p.hold[1] || p.hold[2];
   double mass = 0.0, w[3] = {0.0, 0.0, 0.0}, w_old[3] = {0.0, 0.0, 0.0};
-  int massive = 0;
   for (int k = 0; k < n; k++) {
     const int sign = members[k].sign;
     const double *r = grid.record(members[k].node);
     if (r[3] <= 0.0) continue;
-    massive++;
     mass += r[3];
     for (int d = 0; d < dim; d++) {
       w[d] += sign * r[3] * (r[d] - p.V[d]);
       if (hold) w_old[d] += sign * r[3] * wall.old_relative(r, d, p.limit[d]);
     }
   }
-  if (massive == 0 || (massive == 1 && !fixed)) return;
   for (int d = 0; d < dim; d++) {
     w[d] = fixed ? 0.0 : w[d] / mass;
     w_old[d] = fixed ? 0.0 : w_old[d] / mass;
@@ -1314,6 +1323,8 @@ void FixMPMBoundary::act_on_column(const FieldNodes &list, Line &column)
     pairs[npairs++] = {{{inside, 1}, {image, -1}}, in, out, mass};
   }
 
+  if (npairs == 0 && !(r[3] > 0.0)) return;
+
   // impulse that would bring all components to the velocity of the wall
 
   double to_stick[3] = {0.0, 0.0, 0.0};
@@ -1343,7 +1354,7 @@ void FixMPMBoundary::act_on_column(const FieldNodes &list, Line &column)
   const double slide = slide_share(column.contact, push, sqrt(needed));
   if (column.contact == FREE) return;
   for (int d = 0; d < dim; d++) prescribed.share[d] = d == a ? 1.0 : slide;
-  project(grid, &plane, 1, true, prescribed);
+  if (r[3] > 0.0) project(grid, &plane, 1, true, prescribed);
   for (int k = 0; k < npairs; k++) project(grid, pairs[k].members, 2, false, prescribed);
 }
 
@@ -1353,6 +1364,9 @@ void FixMPMBoundary::act_on_orbit(const FieldNodes &list, const Orbit &orbit)
 {
   Grid &grid = list.field->grid;
   const int dim = grid.lattice.dim;
+  const Member *const members = &list.members[orbit.first];
+  const int n = orbit.last - orbit.first;
+  if (!is_constrained(grid, members, n, orbit.fixed)) return;
   Prescribed prescribed = {};
   wall.velocity(*list.field, orbit.wall, prescribed.V);
   const bool hold = now.old_share > 0.0;
@@ -1362,7 +1376,7 @@ void FixMPMBoundary::act_on_orbit(const FieldNodes &list, const Orbit &orbit)
     prescribed.share[d] = orbit.prescribed[d] ? 1.0 : 0.0;
     prescribed.hold[d] = hold && orbit.prescribed[d];
   }
-  project(grid, &list.members[orbit.first], orbit.last - orbit.first, orbit.fixed, prescribed);
+  project(grid, members, n, orbit.fixed, prescribed);
 }
 
 /* ---------------------------------------------------------------------- */

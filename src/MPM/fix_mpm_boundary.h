@@ -285,6 +285,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   void set_velocity(MPM_NS::Grid &, int64_t node, const double *V, const double *v,
                     const double *old, const double *whole = nullptr);
   void count_moment(const MPM_NS::Grid &, int64_t node, const double *record, const double *v);
+  static bool is_constrained(MPM_NS::Grid &, const Member *, int n, bool fixed);
   void project(MPM_NS::Grid &, const Member *, int n, bool fixed, const Prescribed &);
   void act_on_column(const FieldNodes &, Line &);
   static int weights_at(const MPMField &, int axis, int inward, double x, int &first,

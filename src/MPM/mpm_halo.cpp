@@ -13,6 +13,7 @@
 #include "memory.h"
 
 #include <algorithm>
+#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -153,6 +154,7 @@ void MPMHalo::sum(double *nodes, int nreal, int lane, int nlane)
   if (ranks.empty()) return;
 
   const int block_reals = NODES_PER_BLOCK * nlane;
+  const bool whole = nlane == nreal;
   const int nranks = ranks.size();
   for (int r = 0; r < nranks; r++) {
     const int count = slots[r].size() * block_reals;
@@ -164,8 +166,12 @@ void MPMHalo::sum(double *nodes, int nreal, int lane, int nlane)
     double *buf = send[r].data();
     for (int slot : slots[r]) {
       const double *record = nodes + (int64_t) slot * NODES_PER_BLOCK * nreal + lane;
-      for (int k = 0; k < NODES_PER_BLOCK; k++, record += nreal)
-        for (int l = 0; l < nlane; l++) *buf++ = record[l];
+      if (whole)
+        memcpy(buf, record, block_reals * sizeof(double));
+      else
+        for (int k = 0; k < NODES_PER_BLOCK; k++, record += nreal)
+          for (int l = 0; l < nlane; l++) buf[k * nlane + l] = record[l];
+      buf += block_reals;
     }
     MPI_Isend(send[r].data(), (int) send[r].size(), MPI_DOUBLE, ranks[r], HALO_TAG, world,
               &requests[nranks + r]);
@@ -177,6 +183,12 @@ void MPMHalo::sum(double *nodes, int nreal, int lane, int nlane)
     double *record = nodes + (int64_t) shared[is] * NODES_PER_BLOCK * nreal + lane;
     const Contribution *begin = &contributions[first[is]];
     const Contribution *end = begin + (first[is + 1] - first[is]);
+    if (whole && end - begin == 2) {    // most blocks; the order of two does not matter
+      const Contribution &other = begin[begin->from < 0];
+      const double *const theirs = recv[other.from].data() + (int64_t) other.offset * block_reals;
+      for (int k = 0; k < block_reals; k++) record[k] += theirs[k];
+      continue;
+    }
     for (int k = 0; k < NODES_PER_BLOCK; k++, record += nreal)
       for (int l = 0; l < nlane; l++) {
         double sum = 0.0;
