@@ -232,26 +232,24 @@ void ComputeMPMAtom::compute_peratom()
   }
 
   const auto fields = MPMField::all(lmp);
-  bool batches = false;
-  for (int n = 0; n < ncolumn; n++) {
-    const auto *quantity = columns[n].quantity;
-    const bool of_point = quantity && quantity->of_point;
-    for (int i = 0; i < atom->nlocal; i++) {
-      array_atom[i][n] = 0.0;
-      if (!of_point || !(atom->mask[i] & groupbit) || !(atom->vfrac[i] > 0.0)) continue;
-      const MPMField *field = nullptr;
-      for (const auto *each : fields)
-        if (each->is_point(i)) field = each;
-      double sigma[6];
-      points->cauchy(i, sigma);
-      const double V0 = atom->vfrac[i], V = points->jacobian(i) * V0;
-      const Point p = {i, field, points->F[i], sigma, atom->v[i], atom->rmass[i], V, V0};
-      array_atom[i][n] = (p.*quantity->of_point)(columns[n].component);
-    }
-    batches |= !of_point;
+  std::vector<int> of_points;    // columns
+  for (int n = 0; n < ncolumn; n++)
+    if (columns[n].quantity && columns[n].quantity->of_point) of_points.push_back(n);
+  for (int i = 0; i < atom->nlocal; i++) {
+    std::fill_n(array_atom[i], ncolumn, 0.0);
+    if (of_points.empty() || !(atom->mask[i] & groupbit) || !(atom->vfrac[i] > 0.0)) continue;
+    const MPMField *field = nullptr;
+    for (const auto *each : fields)
+      if (each->is_point(i)) field = each;
+    double sigma[6];
+    points->cauchy(i, sigma);
+    const double V0 = atom->vfrac[i], V = points->jacobian(i) * V0;
+    const Point p = {i, field, points->F[i], sigma, atom->v[i], atom->rmass[i], V, V0};
+    for (const int n : of_points)
+      array_atom[i][n] = (p.*columns[n].quantity->of_point)(columns[n].component);
   }
 
-  if (batches)
+  if ((int) of_points.size() < ncolumn)
     visit_point_batches(
         lmp, groupbit, [&](const Batch &batch, const int *list, const FixMPMMaterial &material) {
           double value[BATCH];

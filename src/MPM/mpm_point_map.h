@@ -54,7 +54,7 @@ class MPMPointMap : protected Pointers {
   /** Put points in the order of block, material, cell and tag, the data itself. */
   void sort();
   /** Has the order decayed since the last sort? */
-  bool wants_sort() const { return decayed; }
+  bool wants_sort() const;
 
   /** Base node of a position and its coordinates there in cells; false: not a usable position. */
   bool base_node(const double *x, int base[3], double t[3]) const;
@@ -74,9 +74,9 @@ class MPMPointMap : protected Pointers {
  private:
   MPMField &field;
   bool watch_drift = false;    // rebuilds of neighbor lists do not bound the drift: check each step
-  bool decayed = false;
-  bigint switches = 0;           // neighbors in memory that are in different cells, now
-  bigint switches_sorted = 0;    // and right after the last sort; negative: not counted yet
+  bigint disorder = 0;         // neighbors in memory that are in different cells or blocks, now
+  bigint sorted_disorder = -1;    // and right after the last sort; negative: not counted yet
+  bigint extra_disorder = 0;      // what was more than that since then, summed over steps
 };
 
 }    // namespace LAMMPS_NS
