@@ -12,7 +12,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <limits>
 #include <map>
 #include <numeric>
 #include <sstream>
@@ -63,6 +62,9 @@ static double square_of_distance(const Point &x, const Point &lo, const Point &h
 }
 
 namespace {
+
+/** Farther than anything, and its square is still a number. */
+constexpr double FAR_AWAY = 1.0e150;
 /** Numbers of things that belong together. */
 class Sets {
  public:
@@ -389,7 +391,8 @@ bool SurfaceMesh::is_inside(const Shell &shell, const Shell &other, const std::s
       if (rest_a > 0.0 || rest_b > 0.0) continue;
       for (double t = 0.0;;) {
         const Point x = a + (t / length) * (b - a);
-        const double d = (other.volume > 0.0 ? 1.0 : -1.0) * distance_to(x, closest, skip);
+        const double d =
+            (other.volume > 0.0 ? 1.0 : -1.0) * distance_to(x, FAR_AWAY, closest, skip);
         inside = inside || d < -near;
         outside = outside || d > near;
         if (inside && outside)
@@ -520,10 +523,11 @@ static const auto no_part = [](int) {
 
 /* ---------------------------------------------------------------------- */
 
+/** limit: the square of the distance is known to be less. */
 template <class Skip>
-double SurfaceMesh::distance_to(const Point &x, Point &closest, Skip &&skip) const
+double SurfaceMesh::distance_to(const Point &x, double limit, Point &closest, Skip &&skip) const
 {
-  double smallest = std::numeric_limits<double>::max(), side = 1.0;
+  double smallest = limit, side = 1.0;
   search(x, smallest, skip, [&](const Triangle &t, const Point &p, int feature, double square) {
     smallest = square;
     closest = p;
@@ -534,7 +538,8 @@ double SurfaceMesh::distance_to(const Point &x, Point &closest, Skip &&skip) con
 
 double SurfaceMesh::distance(const Point &x, Point &closest) const
 {
-  return distance_to(x, closest, no_part);
+  const double limit = most(x);
+  return distance_to(x, limit * limit, closest, no_part);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -571,24 +576,45 @@ double SurfaceMesh::distance_within(const Point &x, double cutoff, Point &closes
 
 double SurfaceMesh::distance_and_normal(const Point &x, Point &normal) const
 {
-  Point closest;
-  const double d = distance(x, closest), side = d < 0.0 ? -1.0 : 1.0;
-  double limit = (std::fabs(d) + near) * (std::fabs(d) + near);
+  struct Candidate {
+    const Triangle *triangle;
+    Point point;
+    double square;
+  };
+  static std::vector<Candidate> candidates;    // no memory is asked for at each call
+  candidates.clear();
+  const double farthest = most(x);
+  double smallest = FAR_AWAY * FAR_AWAY, side = 1.0;
+  double limit = (farthest + near) * (farthest + near);
+  search(x, limit, no_part, [&](const Triangle &t, const Point &p, int feature, double square) {
+    if (square < smallest) {
+      smallest = square;
+      side = dot(x - p, mean_normal(t, feature)) < 0.0 ? -1.0 : 1.0;
+      limit = (std::sqrt(square) + near) * (std::sqrt(square) + near);
+    }
+    candidates.push_back({&t, p, square});
+  });
+
+  const double d = std::sqrt(smallest);
   std::vector<Point> found;
   normal = {0.0, 0.0, 0.0};
-  search(x, limit, no_part, [&](const Triangle &t, const Point &p, int, double) {
-    Point out = std::fabs(d) > near ? side * (x - p) : t.normal;
+  for (const auto &c : candidates) {
+    if (!(c.square < limit)) continue;
+    Point out = d > near ? side * (x - c.point) : c.triangle->normal;
     const double size = std::sqrt(dot(out, out));
-    if (!(size > 0.0)) return;    // a sliver
+    if (!(size > 0.0)) continue;    // a sliver
     out = (1.0 / size) * out;
-    for (const auto &other : found)    // triangles of one face, or with a common edge or corner
-      if (dot(out - other, out - other) < 1.0e-12) return;
+    // triangles of one face, or with a common edge or corner
+    if (std::any_of(found.begin(), found.end(), [&](const Point &other) {
+          return dot(out - other, out - other) < 1.0e-12;
+        }))
+      continue;
     found.push_back(out);
     normal = normal + out;
-  });
+  }
   const double length = std::sqrt(dot(normal, normal)), least = 1.0e-3 * (double) found.size();
   normal = (length > least ? 1.0 / length : 0.0) * normal;
-  return d;
+  return side * d;
 }
 
 /** Is no triangle at this edge or corner of t closer to x than that is? */
@@ -658,27 +684,46 @@ void SurfaceMesh::make_coarse()
         Point closest;
         const Point c = {lo[0] + (i + 0.5) * cell, lo[1] + (j + 0.5) * cell,
                          lo[2] + (k + 0.5) * cell};
-        coarse[n++] = (float) distance(c, closest);
+        // the center before is a cell away
+        const double limit = k ? 1.001 * (std::abs((double) coarse[n - 1]) + cell) : FAR_AWAY;
+        coarse[n++] = (float) distance_to(c, limit * limit, closest, no_part);
       }
+}
+
+int SurfaceMesh::coarse_cell(const Point &x, Point &center) const
+{
+  int index = 0;
+  for (int d = 0; d < 3; d++) {
+    const double t = (x[d] - lo[d]) / cell;
+    if (!(t >= 0.0 && t < ncells[d])) return -1;
+    const int i = (int) t;
+    center[d] = lo[d] + (i + 0.5) * cell;
+    index = index * ncells[d] + i;
+  }
+  return index;
 }
 
 double SurfaceMesh::bound(const Point &x) const
 {
-  int index = 0;
-  Point c;    // center of the cell
-  for (int d = 0; d < 3; d++) {
-    const double t = (x[d] - lo[d]) / cell;
-    // outside of the grid: not closer than the box of the body
-    if (!(t >= 0.0 && t < ncells[d])) return std::sqrt(square_of_distance(x, lo, hi));
-    const int i = (int) t;
-    c[d] = lo[d] + (i + 0.5) * cell;
-    index = index * ncells[d] + i;
-  }
+  Point c;
+  const int index = coarse_cell(x, c);
+  // outside of the grid: not closer than the box of the body
+  if (index < 0) return std::sqrt(square_of_distance(x, lo, hi));
   const Point r = x - c;
   // single precision in the grid
   const double known = std::abs((double) coarse[index]) * (1.0 - 1.0e-6) - std::sqrt(dot(r, r));
   if (known <= 0.0) return 0.0;
   return coarse[index] < 0.0f ? -known : known;
+}
+
+/** Upper bound of the distance, without a search; FAR_AWAY: unknown. */
+double SurfaceMesh::most(const Point &x) const
+{
+  Point c;
+  const int index = coarse_cell(x, c);
+  if (index < 0) return FAR_AWAY;
+  const Point r = x - c;
+  return (std::abs((double) coarse[index]) + std::sqrt(dot(r, r))) * (1.0 + 1.0e-6) + near;
 }
 
 bool SurfaceMesh::inside(const Point &x) const

@@ -117,7 +117,10 @@ class SurfaceMesh {
   Point closest_on(const int corner[3], const Point &x, int &feature) const;
   template <class Skip, class Visit>
   void search(const Point &x, double &limit, Skip &&skip, Visit &&visit) const;
-  template <class Skip> double distance_to(const Point &x, Point &closest, Skip &&skip) const;
+  template <class Skip>
+  double distance_to(const Point &x, double limit, Point &closest, Skip &&skip) const;
+  int coarse_cell(const Point &x, Point &center) const;
+  double most(const Point &x) const;
   const Point &mean_normal(const Triangle &t, int feature) const;
   bool is_closest_around(const Point &x, const Triangle &t, int feature, double square) const;
 };
