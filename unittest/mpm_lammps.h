@@ -405,23 +405,23 @@ class Scene {
   double spacing(const std::string &id = "grid") { return field(id)->lattice.h; }
   bool is_point(int i, const std::string &id = "grid") { return field(id)->is_point(i); }
   /** C[dim*j+i] = d v_i / d x_j of APIC, for each point; null without. */
-  double **affine(const std::string &id = "grid")
+  MPMRows affine(const std::string &id = "grid")
   {
-    return field(id)->affine ? field(id)->affine->C : nullptr;
+    return field(id)->affine ? field(id)->affine->C : MPMRows();
   }
   /** Bilinear modes of PolyPIC; null without. */
-  double **modes(const std::string &id = "grid")
+  MPMRows modes(const std::string &id = "grid")
   {
-    return field(id)->affine ? field(id)->affine->Q : nullptr;
+    return field(id)->affine ? field(id)->affine->Q : MPMRows();
   }
   /** Corners of CPDI2 from the point; null without. */
-  double **corners(const std::string &id = "grid")
+  MPMRows corners(const std::string &id = "grid")
   {
-    return field(id)->domains ? field(id)->domains->corners : nullptr;
+    return field(id)->domains ? field(id)->domains->corners : MPMRows();
   }
   /** Reference positions, and F at the last update of the reference (total frame). */
-  double **reference_positions() { return total_frame().X; }
-  double **reference_F() { return total_frame().R; }
+  MPMRows reference_positions() { return total_frame().X; }
+  MPMRows reference_F() { return total_frame().R; }
   /** Displacement since the last step of the cycle. */
   double waiting(int i, int d, const std::string &id = "grid")
   {

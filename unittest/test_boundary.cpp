@@ -21,7 +21,7 @@ void set_field(Scene &run,
                const std::function<void(const double *x, double *v, double g[3][3])> &field)
 {
   auto *atom = run.lmp->atom;
-  double **C = run.affine();
+  const MPMRows C = run.affine();
   const int dim = run.lmp->domain->dimension;
   for (int i = 0; i < atom->nlocal; i++) {
     double v[3] = {0.0, 0.0, 0.0}, g[3][3] = {{0.0}};

@@ -164,6 +164,23 @@ TEST(EnergyWatch, KnowsTheWorkOnManyPoints)
   EXPECT_NEAR(run.v()[0][0], 3.0, 1e-9);    // g t: there was work
 }
 
+// Where the neighbor lists are those of grains and the surface, which are first in memory, most points are not in them. The
+// grain falls like the block and does not meet it
+TEST(EnergyWatch, KnowsTheWorkOnPointsInside)
+{
+  Scene run(replaced(space("lj", "p p p", "0 24 0 12 0 12", 2, 0.5), "atom_style mpm",
+                     "atom_style hybrid sphere mpm") +
+            body("block 2 14 2 10 2 10", "density 2 neohookean 300 0.3", "1.0 gain error 0.02") +
+            "create_atoms 2 single 20 6 6\nset type 2 diameter 2.0 density 2.0\n"
+            "group grains type 2\ngroup block type 1\nfix move grains nve/sphere\n"
+            "pair_style granular\npair_coeff * * hooke 10 0.5 tangential linear_nohistory 0.5 0.4\n"
+            "fix surf block mpm/surface lists grains\n"
+            "fix g all gravity 1 vector 1 0 0\ntimestep 0.01\n");
+  EXPECT_EQ(run.error("run 300\n"), "");
+  EXPECT_LT(run.lmp->atom->nfirst, run.n() / 2);
+  EXPECT_NEAR(run.v()[run.n() - 1][0], 3.0, 1e-6);    // g t
+}
+
 // What elements add to the forces on their nodes is the change of their stored energy, and no work from outside. A bar
 // that is let go with v = x and vibrates along its axis, until most of its energy is stored
 TEST(EnergyWatch, KnowsForcesOfElements)

@@ -90,7 +90,7 @@ static double mms_error(int dim, int ne, double G, const std::string &options, b
   const int n = walls ? 2 * ne : 4 * ne;
   EXPECT_EQ(run.n(), dim == 1 ? n : n * n);
   run.set_reference();
-  auto *C = run.affine();
+  const auto C = run.affine();
   for (int i = 0; i < run.n(); i++) {
     double u[2], F[2], b[2];
     s.at(run.reference(i), 0.0, u, run.v()[i], F, b);

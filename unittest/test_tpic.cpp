@@ -92,7 +92,7 @@ TEST(Tpic, ShearWave)
           for (const int ppc : {2, 3}) {
             SCOPED_TRACE(strprintf("%dd %s tpic %d ppc %d%s", dim, names[n], tpic, ppc, more));
             Scene run(medium(dim, n, tpic, ppc, (n == 1 ? " light 0.5" : "") + std::string(more)));
-            double **C = run.affine();
+            const MPMRows C = run.affine();
             for (int p = 0; p < run.n(); p++) {
               const AtPoint point(n, tpic, run.x()[p][0], wave);
               run.v()[p][1] = point.v;

@@ -37,15 +37,20 @@ static constexpr const char *properties[] = {
 MPMPoints *MPMPoints::get(Atom *atom, bool create)
 {
   for (auto &field : atom->peratom)
-    if (field.name == "mpm_F") return reinterpret_cast<MPMPoints *>(field.address);
+    if (field.name == "mpm_points") return reinterpret_cast<MPMPoints *>(field.address);
   if (!create) return nullptr;
 
   static std::list<MPMPoints> pool;    // addresses stay valid, and stay reachable for leak checkers
   pool.emplace_back();
   auto *points = &pool.back();
-  atom->add_peratom("mpm_F", &points->F, Atom::DOUBLE, 9);
-  atom->add_peratom("mpm_tau", &points->tau, Atom::DOUBLE, 6);
+  atom->add_peratom("mpm_points", points, Atom::DOUBLE, 0);    // in no list of fields
   return points;
+}
+
+void MPMPoints::grow(Memory *memory, int nmax)
+{
+  F = F.grown(memory, nmax, 9, "atom:mpm_F");
+  tau = tau.grown(memory, nmax, 6, "atom:mpm_tau");
 }
 
 /* ---------------------------------------------------------------------- */
@@ -57,13 +62,19 @@ AtomVecMPM::AtomVecMPM(LAMMPS *lmp) : AtomVec(lmp)
   atom->rmass_flag = atom->vfrac_flag = 1;
   points = MPMPoints::get(atom, true);
 
+  // F and stress go with the bonus data of LAMMPS, which a style keeps by itself
   // border: ghost points need nothing of this style (a sphere style sends radius and mass)
   // data_vel: must not have more columns than comm_vel, write_data relies on it
 
-  fields_grow = fields_copy = fields_exchange = fields_restart =
-      fields_create = {"rmass", "vfrac", "mpm_F", "mpm_tau"};
+  fields_grow = fields_copy = fields_exchange = fields_restart = fields_create = {"rmass", "vfrac"};
   fields_data_atom = {"id", "type", "rmass", "vfrac", "x"};
   fields_data_vel = {"id", "v"};
+  bonus_flag = 1;
+}
+
+AtomVecMPM::~AtomVecMPM()
+{
+  points->grow(memory, 0);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -121,6 +132,7 @@ void AtomVecMPM::grow_pointers()
   rmass = atom->rmass;
   vfrac = atom->vfrac;
   radius = atom->radius;
+  points->grow(memory, atom->nmax);
 
   after_sphere = false;
   auto *hybrid = dynamic_cast<AtomVecHybrid *>(atom->avec);
@@ -156,14 +168,47 @@ static double sphere_volume(double r)
 
 /* ----------------------------------------------------------------------
    a new atom is no material point until it is given a volume
-   (all fields are zero here, those of sub-styles before this one are set)
+   (all other fields are zero here, those of sub-styles before this one are set)
 ------------------------------------------------------------------------- */
 
 void AtomVecMPM::create_atom_post(int ilocal)
 {
   if (!after_sphere) rmass[ilocal] = 1.0;
-  double *F = points->F[ilocal];
-  F[0] = F[4] = F[8] = 1.0;
+  points->reset(ilocal);
+}
+
+/* ----------------------------------------------------------------------
+   F and stress, wherever an atom goes
+------------------------------------------------------------------------- */
+
+void AtomVecMPM::copy_bonus(int i, int j, int)
+{
+  std::copy_n(points->F[i], 9, points->F[j]);
+  std::copy_n(points->tau[i], 6, points->tau[j]);
+}
+
+int AtomVecMPM::pack_exchange_bonus(int i, double *buf)
+{
+  buf = std::copy_n(points->F[i], 9, buf);
+  std::copy_n(points->tau[i], 6, buf);
+  return MPMPoints::size;
+}
+
+int AtomVecMPM::unpack_exchange_bonus(int i, double *buf)
+{
+  std::copy_n(buf, 9, points->F[i]);
+  std::copy_n(buf + 9, 6, points->tau[i]);
+  return MPMPoints::size;
+}
+
+int AtomVecMPM::size_restart_bonus()
+{
+  return MPMPoints::size * atom->nlocal;
+}
+
+double AtomVecMPM::memory_usage_bonus()
+{
+  return (double) MPMPoints::size * sizeof(double) * atom->nmax;
 }
 
 /* ----------------------------------------------------------------------
@@ -195,9 +240,7 @@ void AtomVecMPM::data_atom_post(int ilocal)
                rmass[ilocal], atom->tag[ilocal]);
   }
 
-  double *F = points->F[ilocal], *tau = points->tau[ilocal];
-  for (int k = 0; k < 9; k++) F[k] = (k % 4 == 0) ? 1.0 : 0.0;
-  std::fill_n(tau, 6, 0.0);
+  points->reset(ilocal);
 }
 
 /* ----------------------------------------------------------------------

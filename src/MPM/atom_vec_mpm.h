@@ -29,6 +29,7 @@ struct MPMPoints;
 class AtomVecMPM : public AtomVec {
  public:
   AtomVecMPM(class LAMMPS *);
+  ~AtomVecMPM() override;
   void process_args(int, char **) override;
   void init() override;
 
@@ -39,6 +40,14 @@ class AtomVecMPM : public AtomVec {
   void pack_data_post(int) override;
   int property_atom(const std::string &) override;
   void pack_property_atom(int, double *, int, int) override;
+
+  void copy_bonus(int, int, int) override;
+  int pack_exchange_bonus(int, double *) override;
+  int unpack_exchange_bonus(int, double *) override;
+  int size_restart_bonus() override;
+  int pack_restart_bonus(int i, double *buf) override { return pack_exchange_bonus(i, buf); }
+  int unpack_restart_bonus(int i, double *buf) override { return unpack_exchange_bonus(i, buf); }
+  double memory_usage_bonus() override;
 
  private:
   MPMPoints *points;    // never owned: several styles and Atoms may refer to the same arrays

@@ -42,7 +42,9 @@ static constexpr double INFINITE = 1.0e19;        // bounds of regions beyond it
 static constexpr double MAX_INDEX = 1.0e15;       // of a lattice site
 static constexpr double MAX_SITES = 9.0e18;       // to look at
 static constexpr bigint MAX_COUNT = 200000000;    // sites per rank looked at outside the box
-static constexpr bigint SHARE = 1 << 18;          // sites a rank looks at before points are sent
+static constexpr bigint SHARE = 1 << 11;    // sites a rank looks at before points are sent, or ...
+static constexpr bigint PART = 64;          // ... 1/PART of those it has looked at, if that is more
+static constexpr bigint GROWTH = 16;        // room for points grows by 1/GROWTH at least
 
 static const char axis_name[] = "xyz";
 
@@ -490,13 +492,16 @@ bigint CreatePoints::make_points()
   std::vector<Site> made;
   bigint npoints = 0;
 
-  for (bigint base = 0; base < n; base += SHARE * comm->nprocs) {
+  bigint share;
+  for (bigint base = 0; base < n; base += share * comm->nprocs) {
 
-    // my share of the next sites
+    // my share of the next sites. It is small: freed memory of the size of arrays would make the C library
+    // keep those in its heap, where growing arrays leave holes
 
+    share = std::max(SHARE, base / (PART * comm->nprocs));
     made.clear();
-    const bigint first = std::min(base + SHARE * comm->me, n);
-    for_sites(range, first, std::min(first + SHARE, n), [&](const bigint *s) {
+    const bigint first = std::min(base + share * comm->me, n);
+    for_sites(range, first, std::min(first + share, n), [&](const bigint *s) {
       if (!in_region(s)) return;
       made.push_back({{}, volume, 0});
       point_position(s, made.back().x);
@@ -554,7 +559,10 @@ void CreatePoints::send_and_make(std::vector<Site> &made)
   }
 
   const bigint need = (bigint) atom->nlocal + received.size();
-  if (need > atom->nmax) atom->avec->grow(atom->avec->roundup(need));
+  if (need > atom->nmax) {
+    const bigint room = atom->nmax + (bigint) atom->nmax / GROWTH;
+    atom->avec->grow(atom->avec->roundup(room < MAXSMALLINT / 2 ? std::max(need, room) : need));
+  }
   for (const auto &site : received) make_point(site);
 }
 

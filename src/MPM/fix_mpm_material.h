@@ -40,11 +40,11 @@ class FixMPMMaterial : public FixMPMState {
   void restart(char *) override;
 
   std::unique_ptr<MPM_NS::Material> material;
-  int nhistory;                  ///< columns of history
-  double **history = nullptr;    ///< [n][nhistory] or null when the law has none
-  int damage;                    ///< column of the damage, 1 in points that have failed; -1: none
-  double work[8] = {};           ///< energy of each MPM_NS::Work kind so far, this rank's share
-  double stress_work = 0.0;      ///< work of the stress so far, with a compute mpm/energy only
+  int nhistory;                ///< columns of history
+  MPMRows history;             ///< [n][nhistory] or null when the law has none
+  int damage;                  ///< column of the damage, 1 in points that have failed; -1: none
+  double work[8] = {};         ///< energy of each MPM_NS::Work kind so far, this rank's share
+  double stress_work = 0.0;    ///< work of the stress so far, with a compute mpm/energy only
 
   /** Stress and history of a batch at the end of the step, and what this has spent. heat: [n] from outside,
    *  per reference volume, or null. */

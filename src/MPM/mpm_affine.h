@@ -10,6 +10,7 @@
 #define LMP_MPM_AFFINE_H
 
 #include "mpm_field.h"
+#include "mpm_rows.h"
 #include "transfer/kernels.h"
 
 namespace LAMMPS_NS {
@@ -17,9 +18,9 @@ namespace LAMMPS_NS {
 /** Affine matrices of the points (transfers apic, aflip, tpic, polypic). */
 class MPMAffine : protected Pointers {
  public:
-  double **C = nullptr;    ///< [n][dim*dim] column-major: C[dim*j+i] = d v_i / d x_j
+  MPMRows C;    ///< [n][dim*dim] column-major: C[dim*j+i] = d v_i / d x_j
   /** [n][poly_size(dim)] bilinear modes of the velocity; null: transfer without. */
-  double **Q = nullptr;
+  MPMRows Q;
   MPM_NS::PolyKernels modes;    ///< transfers of Q
 
   /** Which velocities the matrices belong to, between runs; as in restart files. */

@@ -10,6 +10,7 @@
 #define LMP_MPM_CPDI_H
 
 #include "mpm_field.h"
+#include "mpm_rows.h"
 
 namespace LAMMPS_NS {
 
@@ -41,7 +42,7 @@ class MPMCpdi : protected Pointers {
  public:
   /** cpdi2: [n][2^dim][dim] from the point, in the order of transfer/cpdi.h, NAN before the first step;
    *  null: cpdi. */
-  double **corners = nullptr;
+  MPMRows corners;
   std::vector<double> corners_late;    ///< the same at the end of the step, when points move late
 
   MPMCpdi(class LAMMPS *, MPMField &, MPMPointState &);

@@ -14,11 +14,13 @@
 #include "fix_mpm_elements.h"
 #include "force.h"
 #include "math/matrix.h"
+#include "mpm_every.h"
 #include "mpm_field.h"
 #include "mpm_guard.h"
 #include "mpm_physics.h"
 #include "mpm_plan.h"
 #include "mpm_point_energies.h"
+#include "neighbor.h"
 #include "update.h"
 
 #include <algorithm>
@@ -57,14 +59,24 @@ void MPMEnergyWatch::finish()
 
 void MPMEnergyWatch::add_force_work()
 {
-  const int most = force->pair ? PAIR_STRIDE : MOST_STRIDE;
-  const int stride = std::max(1, std::min(most, atom->nlocal / ENOUGH));
+  // pair styles act on atoms in neighbor lists, which may be those of a group that is first in memory; with
+  // every, on those of several lists
+  const int end = atom->nlocal;
+  const bool first_met = neighbor->includegroup && !fields[0]->every;
+  const int met = !force->pair ? 0 : first_met ? atom->nfirst : end;
+  add_force_work(0, met, PAIR_STRIDE);
+  add_force_work(met, end, MOST_STRIDE);
+}
+
+void MPMEnergyWatch::add_force_work(int begin, int end, int most)
+{
+  const int stride = std::max(1, std::min(most, (end - begin) / ENOUGH));
   double power = 0.0;
   for (const auto *field : fields) {
     const double *const f = field->rows().f;
-    for (int first = BLOCK * (int) (run.steps % stride); first < atom->nlocal;
+    for (int first = begin + BLOCK * (int) (run.steps % stride); first < end;
          first += BLOCK * stride)
-      for (int i = first; i < std::min(first + BLOCK, atom->nlocal); i++) {
+      for (int i = first; i < std::min(first + BLOCK, end); i++) {
         if (!field->is_point(i)) continue;
         double now[3] = {f[3 * (bigint) i], f[3 * (bigint) i + 1], f[3 * (bigint) i + 2]};
         for (const auto *ifix : field->elements)

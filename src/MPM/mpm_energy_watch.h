@@ -68,6 +68,8 @@ class MPMEnergyWatch : protected Pointers {
   } run = {};
 
   void add_force_work();
+  /** That on points from begin to end, one of so many at most. */
+  void add_force_work(int begin, int end, int most);
   Sums sums() const;
   void begin(const Sums &);
   void check();

@@ -11,6 +11,7 @@
 
 #include "atom.h"
 #include "mpm_field.h"
+#include "mpm_rows.h"
 #include "update.h"
 
 namespace LAMMPS_NS {
@@ -55,7 +56,7 @@ class MPMEvery : protected Pointers {
   MPMField &field;
   // [n][6 or 9] impulse since the last step of the cycle, displacement from the place on the lattice,
   // angular impulse if atoms have torques
-  double **waiting = nullptr;
+  MPMRows waiting;
   int width() const { return atom->torque_flag ? 9 : 6; }
 };
 

@@ -11,6 +11,7 @@
 
 #include "atom.h"
 #include "mpm_field.h"
+#include "mpm_rows.h"
 
 namespace LAMMPS_NS {
 
@@ -38,7 +39,7 @@ class MPMFrame : protected Pointers {
   /** Nodes are places of a reference configuration, which points do not leave. */
   virtual bool is_total() const { return false; }
   /** Where points are on the lattice, [n][3]. */
-  virtual double **places() const { return atom->x; }
+  virtual MPMRows places() const { return {atom->x[0], 3}; }
   MPM_NS::TransferKernels kernels(MPM_NS::Transfer, bool split) const;
 
   // points to nodes: does a batch need rows of its own for its forces, with room for them

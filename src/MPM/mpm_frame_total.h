@@ -16,9 +16,9 @@ namespace LAMMPS_NS {
 /** Total Lagrangian frame: nodes are places of a reference configuration, which may be made anew. */
 class MPMFrameTotal : public MPMFrame {
  public:
-  double **X = nullptr;    ///< [n][3] reference position, NAN before it is known
+  MPMRows X;    ///< [n][3] reference position, NAN before it is known
   /** [n][9] F at the last update of the reference, row-major; null: there is none. */
-  double **R = nullptr;
+  MPMRows R;
 
   MPMFrameTotal(class LAMMPS *, MPMField &, MPMPointState &);
 
@@ -26,11 +26,11 @@ class MPMFrameTotal : public MPMFrame {
   bool renew_places() override;
   void end_of_step() override;
   bool is_total() const override { return true; }
-  double **places() const override { return X; }
+  MPMRows places() const override { return X; }
   bool changes_forces() const override { return true; }
   void forces(MPM_NS::PointRows &, int first, int n, ForceRows &) const override;
   void shift_gradients(int, double, double *) const override {}
-  bool refers() const override { return R != nullptr; }
+  bool refers() const override { return (bool) R; }
   void refer_gradients(int first, int n, double *L) const override;
   double volume_change(int i, const double *L, double dt) const override;
   void lattice_F(int i, double F[3][3]) const override;

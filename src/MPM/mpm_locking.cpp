@@ -169,7 +169,7 @@ void MPMLocking::average_pressure()
   const auto mean = [](const double *t) {
     return (t[0] + t[1] + t[2]) / 3.0;
   };
-  double **const own = field.points->tau;
+  const MPMRows own = field.points->tau;
 
   average_around_points([&](bigint i, double &q, double &V) {
     const double J = field.points->jacobian((int) i);

@@ -10,19 +10,22 @@
 #define LMP_MPM_POINTS_H
 
 #include "math/matrix.h"
+#include "mpm_rows.h"
 
 namespace LAMMPS_NS {
 class Atom;
+class Memory;
 
 /** Per-point state owned by atom style mpm, one instance for each Atom object.
  *
- *  The arrays live in a block that no AtomVec owns, because a hybrid style and a repeated
- *  atom_style command free arrays through the addresses given to Atom::add_peratom().
+ *  The arrays live in a block that no AtomVec owns, because each Atom object finds its own through an
+ *  entry of Atom::add_peratom(). AtomVec would add a table of rows to each; the style makes them grow.
  *  Initial volume is atom->vfrac (0: the atom is not a material point), mass is atom->rmass.
  */
 struct MPMPoints {
-  double **F = nullptr;      ///< [n][9] deformation gradient, row-major (must stay first)
-  double **tau = nullptr;    ///< [n][6] Kirchhoff stress J sigma, tension > 0, xx yy zz xy xz yz
+  static constexpr int size = 9 + 6;    ///< reals of a point
+  MPMRows F;                            ///< [n][9] deformation gradient, row-major
+  MPMRows tau;    ///< [n][6] Kirchhoff stress J sigma, tension > 0, xx yy zz xy xz yz
 
   /** Volume over initial volume, J = det F. */
   double jacobian(int i) const { return det(F[i]); }
@@ -32,6 +35,16 @@ struct MPMPoints {
   {
     const double J = jacobian(i);
     for (int c = 0; c < 6; c++) sigma[c] = tau[i][c] / J;
+  }
+
+  /** Room for so many atoms; none: the memory is given back. */
+  void grow(Memory *, int nmax);
+
+  /** Neither strain nor stress. */
+  void reset(int i)
+  {
+    for (int k = 0; k < 9; k++) F[i][k] = k % 4 == 0 ? 1.0 : 0.0;
+    for (int c = 0; c < 6; c++) tau[i][c] = 0.0;
   }
 
   static double det(const double *F) { return MPM_NS::determinant(F); }

@@ -55,7 +55,7 @@ void MPMStages::blend_light_nodes(MPMField &field)
   auto &nodes = field.work.nodes, &volumes = field.work.weights;
   MPMPointMap &map = *field.map;
   const MPMFrame &frame = *field.frame;
-  const double *const *const places = frame.places();
+  const MPMRows places = frame.places();
   volumes.resize(field.atom->nmax);
   for (const auto &run : map.runs)
     for (int i = run.first; i < run.last; i++)

@@ -182,7 +182,7 @@ void MPMStages::update_stress(MPMField &field, const PointRows &r, const MPMPoin
 void MPMStages::give_initial_stress(MPMField &field)
 {
   Batch &batch = *field.batch;
-  double **const tau = field.points->tau;
+  const MPMRows tau = field.points->tau;
   std::vector<int> list;
   const FixMPMMaterial *material = nullptr;
   const auto flush = [&]() {

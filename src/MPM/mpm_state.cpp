@@ -21,22 +21,19 @@ using namespace LAMMPS_NS;
 
 MPMPointState::~MPMPointState()
 {
-  for (auto &array : arrays) {
-    memory->destroy(array.mine);
-    memory->destroy(array.mine_values);
-  }
+  for (auto &array : arrays) array.mine.grown(memory, 0, array.width, array.name);
 }
 
-void MPMPointState::declare(double **&rows, const char *name, int width, Fresh fresh)
+void MPMPointState::declare(MPMRows &rows, const char *name, int width, Fresh fresh)
 {
-  rows = nullptr;
-  arrays.push_back({&rows, nullptr, nullptr, nullptr, name, width, std::move(fresh)});
+  rows = MPMRows();
+  arrays.push_back({&rows, nullptr, rows, name, width, std::move(fresh)});
 }
 
 void MPMPointState::declare(double *&values, const char *name, Fresh fresh)
 {
   values = nullptr;
-  arrays.push_back({nullptr, &values, nullptr, nullptr, name, 1, std::move(fresh)});
+  arrays.push_back({nullptr, &values, MPMRows(), name, 1, std::move(fresh)});
 }
 
 int MPMPointState::size() const
@@ -57,22 +54,24 @@ std::string MPMPointState::layout() const
 
 void MPMPointState::grow(int nmax)
 {
-  for (auto &array : arrays)
+  for (auto &array : arrays) {
+    array.mine = array.mine.grown(memory, nmax, array.width, array.name);
     if (array.rows)
-      *array.rows = memory->grow(array.mine, nmax, array.width, array.name);
+      *array.rows = array.mine;
     else
-      *array.values = memory->grow(array.mine_values, nmax, array.name);
+      *array.values = array.mine[0];
+  }
 }
 
 void MPMPointState::copy(int from, int to)
 {
-  for (auto &array : arrays) std::copy_n(array.row(from), array.width, array.row(to));
+  for (auto &array : arrays) std::copy_n(array.mine[from], array.width, array.mine[to]);
 }
 
 void MPMPointState::fresh(int i)
 {
   for (auto &array : arrays) {
-    double *const row = array.row(i);
+    double *const row = array.mine[i];
     std::fill_n(row, array.width, 0.0);
     if (array.fresh) array.fresh(i, row);
   }
@@ -80,14 +79,14 @@ void MPMPointState::fresh(int i)
 
 int MPMPointState::pack(int i, double *buf) const
 {
-  for (const auto &array : arrays) buf = std::copy_n(array.row(i), array.width, buf);
+  for (const auto &array : arrays) buf = std::copy_n(array.mine[i], array.width, buf);
   return size();
 }
 
 int MPMPointState::unpack(int i, const double *buf)
 {
   for (auto &array : arrays) {
-    std::copy_n(buf, array.width, array.row(i));
+    std::copy_n(buf, array.width, array.mine[i]);
     buf += array.width;
   }
   return size();

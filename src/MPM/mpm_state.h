@@ -10,6 +10,7 @@
 #define LMP_MPM_STATE_H
 
 #include "fix.h"
+#include "mpm_rows.h"
 
 #include <deque>
 #include <functional>
@@ -31,7 +32,7 @@ class MPMPointState {
   /** Keep rows of the given number of reals for all atoms; rows[i] is valid from the next grow() on.
    *  fresh: fills the row of a new atom, which is zero without. The reference to rows must stay
    *  valid as long as this object. */
-  void declare(double **&rows, const char *name, int width, Fresh fresh = nullptr);
+  void declare(MPMRows &rows, const char *name, int width, Fresh fresh = nullptr);
   /** The same for one real for each atom. */
   void declare(double *&values, const char *name, Fresh fresh = nullptr);
 
@@ -49,9 +50,9 @@ class MPMPointState {
 
  private:
   struct Array {
-    double ***rows, **values;    // of the owner, who may be gone when the arrays are destroyed
-    double **mine, *mine_values;
-    double *row(int i) const { return mine ? mine[i] : mine_values + i; }
+    MPMRows *rows;    // of the owner, who may be gone when the arrays are destroyed
+    double **values;
+    MPMRows mine;
     const char *name;
     int width;
     Fresh fresh;

@@ -136,7 +136,7 @@ void MPMWallGap::map(MPMField &field, const std::vector<char> &near, bool smooth
   }
   const PointRows r = field.rows_at_rest(values.data(), volumes.data());
   const TransferStep s = field.step_data(0.0);
-  const double *const *const x = field.frame->places();
+  const MPMRows x = field.frame->places();
 
   // no place in this ball is seen
 

@@ -77,8 +77,8 @@ TEST(Polypic, RoundTrip)
           const bool poly = transfer != " transfer apic";
           SCOPED_TRACE(strprintf("%dd %s %s %s", dim, shape.c_str(), transfer.c_str(), ledger));
           Scene run(block(dim, shape + transfer) + ledger + "timestep 1e-14\nrun 0\n");
-          double **C = run.affine("g"), **Q = run.modes("g");
-          ASSERT_EQ(Q != nullptr, poly);
+          const MPMRows C = run.affine("g"), Q = run.modes("g");
+          ASSERT_EQ((bool) Q, poly);
           const int nmode = dim == 2 ? 1 : 4;
           for (int i = 0; i < run.n(); i++)
             for (int d = 0; d < dim; d++) {
