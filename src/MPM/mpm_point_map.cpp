@@ -166,7 +166,7 @@ void MPMPointMap::find_blocks()
   std::vector<Range> ranges;
   std::array<int, 3> last_base = {INT_MAX, INT_MAX, INT_MAX}, last_block = last_base;
   const int nlocal = atom->nlocal, *const mask = atom->mask;
-  const double *const *const places = field.frame->places();
+  const MPMRows places = field.frame->places();
   FixMPMMaterial *material = nullptr;
   int mask_of_material = 0;    // that of no point, which is in the group of the field
   for (int i = 0; i < nlocal; i++) {
