@@ -12,7 +12,7 @@ option(MPM_SANITIZE "Compile the package and its tests with sanitizers" OFF)
 
 set(MPM_SANITIZERS)
 if(MPM_SANITIZE)
-  set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "")
+  set(CMAKE_CXX_FLAGS_RELEASE "")
   set(MPM_SANITIZERS -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all)
 endif()
 

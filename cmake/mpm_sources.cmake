@@ -61,24 +61,27 @@ function(mpm_write file text)
   file(WRITE ${file} "${text}")
 endfunction()
 
-# The laws of a family are compiled on their own: a file of two lines for each one of law/list.h.
-file(STRINGS ${MPM_DIR}/law/list.h families REGEX "^  X\\(")
+# The laws of a family are compiled on their own: a file of a few lines for each one of law/list.h.
+file(STRINGS ${MPM_DIR}/law/list.h families REGEX "^ +X\\(")
 string(REGEX MATCHALL "[a-z]+" families "${families}")
 foreach(family ${families})
   set(source ${CMAKE_CURRENT_BINARY_DIR}/mpm_laws/laws_${family}_isa.cpp)
-  mpm_write(${source} "#include \"law/list.h\"\nMPM_LAW_FAMILY(${family})\n")
+  mpm_write(${source} "#define MPM_ONE_FAMILY\n#define MPM_LAWS_${family}\n#include \"law/list.h\"\nMPM_LAW_FAMILY(${family})\n")
   list(APPEND MPM_ISA_SOURCES ${source})
 endforeach()
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${MPM_DIR}/law/list.h)
 
-# So are transfers that are nothing but instances of transfer/kernels_fast.h.
-foreach(name aflip_tpic gimp bernstein)
-  set(source ${CMAKE_CURRENT_BINARY_DIR}/mpm_kernels/${name}_isa.cpp)
-  string(TOUPPER ${name} upper)
+# So are the transfers of each shape.
+foreach(shape linear quadratic cubic gimp bernstein cpdi cpdi2)
+  set(source ${CMAKE_CURRENT_BINARY_DIR}/mpm_kernels/${shape}_isa.cpp)
+  string(TOUPPER ${shape} upper)
   set(text "#include \"transfer/kernels_isa.h\"\n#ifdef MPM_HAVE_VECTORS\n")
-  string(APPEND text "#include \"transfer/kernels_fast.h\"\n")
-  string(APPEND text "MPM_KERNELS_OF_FILE(${name}, ${upper}_FILE)\n#endif\n")
-  mpm_write(${source} "${text}")
+  if(shape MATCHES "cpdi")
+    string(APPEND text "#include \"transfer/kernels_cpdi.h\"\nMPM_DOMAIN_KERNELS_OF_SHAPE")
+  else()
+    string(APPEND text "#include \"transfer/kernels_fast.h\"\nMPM_KERNELS_OF_SHAPE")
+  endif()
+  mpm_write(${source} "${text}(${shape}, ${upper})\n#endif\n")
   list(APPEND MPM_ISA_SOURCES ${source})
 endforeach()
 
@@ -134,7 +137,7 @@ endforeach()
 # the baseline, which is compiled without optimization and for any processor, in a quarter of the time, as are
 # kernels and laws that its scene does not use; and the rest with little optimization and without
 # debugging information, in a third of the time.
-set(MPM_DEMO_ISA_FILES kernels batch smoothing laws laws_eos laws_strength laws_thermal)
+set(MPM_DEMO_ISA_FILES kernels quadratic batch smoothing laws laws_eos laws_strength laws_impact laws_thermal)
 set(MPM_ISA_HERE)
 if(MPM_DEMO AND EXISTS /proc/cpuinfo)
   file(STRINGS /proc/cpuinfo flags LIMIT_COUNT 1 REGEX "^flags")
@@ -161,6 +164,14 @@ if(MPM_ISA_HERE)
     if(NOT name IN_LIST MPM_DEMO_ISA_FILES)
       set_source_files_properties(${source} PROPERTIES COMPILE_OPTIONS "-O0;-Wno-psabi")
     endif()
+  endforeach()
+endif()
+# what -O3 and for the baseline -O2 add to the products of functions along axes is nothing or a few percent (bench_kernels),
+# and a quarter of the time of the compiler; laws and domains need it
+if(NOT MPM_ISA_HERE)
+  foreach(shape linear quadratic cubic gimp bernstein)
+    set_source_files_properties(${CMAKE_CURRENT_BINARY_DIR}/mpm_kernels/${shape}_isa.cpp PROPERTIES COMPILE_OPTIONS
+      "$<IF:$<STREQUAL:$<TARGET_PROPERTY:NAME>,mpm_isa_base>,-O1,-O2>")
   endforeach()
 endif()
 set(MPM_ISA_OPTIONS -O3 -ffp-contract=fast -fno-math-errno -fno-trapping-math -fopenmp-simd)
@@ -194,6 +205,11 @@ function(mpm_add_objects)
     target_include_directories(mpm_objects SYSTEM PRIVATE "$<FILTER:${ZLIB_INCLUDE_DIR},EXCLUDE,^/usr/include$>")
   endif()
   mpm_sanitize(mpm_objects)
+  # headers are half of the work; none of the package itself, so that a change of one is one of those who include it
+  target_precompile_headers(mpm_objects PRIVATE <algorithm> <array> <cmath> <cstring> <functional> <limits> <list>
+    <map> <memory> <string> <unordered_map> <vector> [["atom.h"]] [["comm.h"]] [["compute.h"]]
+    [["error.h"]] [["fix.h"]] [["force.h"]] [["group.h"]] [["math_extra.h"]] [["memory.h"]] [["modify.h"]]
+    [["neighbor.h"]] [["pointers.h"]] [["update.h"]] [["utils.h"]])
   set(objects $<TARGET_OBJECTS:mpm_objects>)
   if(MPM_ISA_SOURCES)
     foreach(isa ${MPM_ISA_SETS})

@@ -37,6 +37,7 @@ import time
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 SOURCES = os.path.join(ROOT, "src", "MPM")
 BUILD = os.path.abspath(os.environ.get("MPM_BUILD_DIR") or os.path.join(ROOT, "build"))
+LIBRARY = os.path.join(BUILD, "python", "lammps", "liblammps.so")    # target mpm_python
 KILLED, SURVIVED, BROKEN, STALE = "killed", "survived", "does not compile", "stale"
 
 
@@ -116,19 +117,26 @@ class BuildTree:
             words = shlex.split(entry["command"])
             name = os.path.normpath(os.path.join(entry["directory"], words[words.index("-o") + 1]))
             self.compile[name] = (words, entry["directory"])
-        self.link = {name: self.read_link(name) for name in programs}
+        self.link = {name: self.read_link("unittest", name) for name in programs}
+        # most programs have the package in a shared library, which is linked again instead of them
+        library = os.path.join(BUILD, "CMakeFiles", "mpm_python.dir", "link.txt")
+        self.library = self.read_link("", "mpm_python") if os.path.exists(library) else []
         shown = quiet(["ctest", "--show-only=json-v1"], cwd=BUILD)
         self.tests = {test["name"]: test for test in json.loads(shown)["tests"]}
 
     @staticmethod
-    def read_link(name):
-        with open(os.path.join(BUILD, "unittest", "CMakeFiles", name + ".dir", "link.txt")) as file:
-            return shlex.split(file.readline())
+    def read_link(folder, name):
+        """command of a link, with the paths of objects and libraries of the build tree in full"""
+        folder = os.path.join(BUILD, folder)
+        with open(os.path.join(folder, "CMakeFiles", name + ".dir", "link.txt")) as file:
+            words = shlex.split(file.readline())
+        return [os.path.normpath(os.path.join(folder, word)) if re.search(r"\.(o|so|a)$", word) and word[0] != "-" else word
+                for word in words]
 
-    @staticmethod
-    def linked(word):
-        """path of an object in the command of a link"""
-        return os.path.normpath(os.path.join(BUILD, "unittest", word))
+    def parts(self, name):
+        """objects that a program is made of"""
+        words = self.link[name] + (self.library if LIBRARY in self.link[name] else [])
+        return [word for word in words if word.endswith(".o")]
 
     def depends(self, name, file):
         """does this object contain the file? Of the instruction sets the baseline is enough"""
@@ -166,15 +174,29 @@ def compile_object(tree, name, sources, out):
                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode == 0
 
 
-def link_program(tree, name, objects, out):
+def link(words, objects, out):
     command, after_o = [], False
-    for word in tree.link[name]:
-        command.append(out if after_o else objects.get(tree.linked(word), word))
+    for word in words:
+        command.append(out if after_o else objects.get(word, word))
         after_o = word == "-o"
     if shutil.which("ld.lld"):
         command.insert(1, "-fuse-ld=lld")
-    return subprocess.run(command, cwd=os.path.join(BUILD, "unittest"), check=False,
+    return subprocess.run(command, cwd=BUILD, check=False,
                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode == 0
+
+
+def link_program(tree, name, objects, folder):
+    """a program, and the library when the program has it and it has changed; what is linked goes to a folder"""
+    changed = dict(objects)
+    words = list(tree.link[name])
+    if LIBRARY in words:
+        mine = os.path.join(folder, os.path.basename(LIBRARY))
+        if not set(tree.library).isdisjoint(objects):
+            if not os.path.exists(mine) and not link(tree.library, objects, mine):
+                return False
+            changed[LIBRARY] = mine
+            words = [word.replace(os.path.dirname(LIBRARY), folder) if "-rpath" in word else word for word in words]
+    return link(words, changed, os.path.join(folder, name))
 
 
 def run_test(tree, test, names, executable, folder, limit):
@@ -267,14 +289,13 @@ def try_mutant(tree, mutant, times, keep):
     for test, names in mutant.tests:
         name = program(test)
         if name not in built:
-            for word in tree.link[name]:
-                path = tree.linked(word)
-                if not word.endswith(".o") or path in objects or not tree.depends(path, mutant.file):
+            for path in tree.parts(name):
+                if path in objects or not tree.depends(path, mutant.file):
                     continue
                 objects[path] = os.path.join(folder, "%d.o" % len(objects))
                 if not compile_object(tree, path, sources, objects[path]):
                     return verdict(BROKEN)
-            if not link_program(tree, name, objects, os.path.join(folder, name)):
+            if not link_program(tree, name, objects, folder):
                 return verdict(BROKEN)
             built.add(name)
         status, _ = run_test(tree, test, names, os.path.join(folder, name), folder,

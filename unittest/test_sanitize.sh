@@ -82,7 +82,7 @@ CODE
   march+=(-DMPM_ISA=base)
   compile "$src/material/batch_isa.cpp" batch_isa.o "${march[@]}"
   compile "$src/law/laws_isa.cpp" laws_isa.o "${march[@]}" -g0
-  for family in $(grep '^  X(' "$src/law/list.h" | grep -o '[a-z]*'); do
+  for family in $(grep '^ *X(' "$src/law/list.h" | grep -o '[a-z]*'); do
     laws=laws_$family.cpp
     [ -e "$laws" ] || printf '#include "law/list.h"\nMPM_LAW_FAMILY(%s)\n' "$family" >"$laws"
     compile "$laws" "laws_$family.o" "${march[@]}" -g0
@@ -95,13 +95,14 @@ CODE
     compile "$kernels" "$name.o" "${march[@]}" -O0 -g0
   done
   # as in cmake/mpm_sources.cmake
-  for name in aflip_tpic gimp; do
+  for name in linear quadratic cubic gimp cpdi cpdi2; do
     kernels=kernels_$name.cpp
+    case $name in cpdi*) header=cpdi macro=MPM_DOMAIN_KERNELS_OF_SHAPE ;; *) header=fast macro=MPM_KERNELS_OF_SHAPE ;; esac
     [ -e "$kernels" ] || cat >"$kernels" <<CODE
 #include "transfer/kernels_isa.h"
 #ifdef MPM_HAVE_VECTORS
-#include "transfer/kernels_fast.h"
-MPM_KERNELS_OF_FILE($name, ${name^^}_FILE)
+#include "transfer/kernels_$header.h"
+$macro($name, ${name^^})
 #endif
 CODE
     compile "$kernels" "${name}_isa.o" "${march[@]}" -O0 -g0

@@ -11,25 +11,25 @@
 
 // All constitutive laws by family. A new law is a struct in a header and one entry here. The kernels
 // of a family are compiled on their own, once for each instruction set (MPM_ISA: base, v3, v4, with
-// the matching -march): the build writes a file with MPM_LAW_FAMILY(family) for each family.
+// the matching -march): the build writes a file with MPM_LAW_FAMILY(family) for each family. It defines
+// MPM_ONE_FAMILY and MPM_LAWS_<family>, so that it does not depend on the laws of the others.
 
-#include "law/critical_state.h"
-#include "law/damage_brittle.h"
-#include "law/damage_ductile.h"
-#include "law/elastic.h"
-#include "law/eos_energy.h"
-#include "law/granular.h"
-#include "law/gurson.h"
-#include "law/mohr_coulomb.h"
-#include "law/orthotropic.h"
-#include "law/rubber.h"
-#include "law/strength_j2.h"
-#include "law/strength_thermal.h"
-#include "law/thermal.h"
-#include "law/viscosity.h"
-#include "law/viscosity_generalized.h"
-#include "law/viscosity_maxwell.h"
+#include "law/law.h"
 #include "transfer/isa.h"
+
+#ifndef MPM_ONE_FAMILY
+#define MPM_LAWS_elastic
+#define MPM_LAWS_viscoelastic
+#define MPM_LAWS_frictional
+#define MPM_LAWS_soil
+#define MPM_LAWS_porous
+#define MPM_LAWS_eos
+#define MPM_LAWS_strength
+#define MPM_LAWS_impact
+#define MPM_LAWS_viscosity
+#define MPM_LAWS_damage
+#define MPM_LAWS_thermal
+#endif
 
 namespace MPM_NS::law {
 namespace {
@@ -42,29 +42,124 @@ namespace {
         kernels<Laws>()...};    // there is no empty array
   };
 
-  using elastic =
-      Family<CLOSED, LawLinear, LawNeoHookean, LawNeoHookeanSplit, LawStVenantKirchhoff, LawHencky,
-             LawMooneyRivlin, LawOgden, LawTransverselyIsotropic, LawOrthotropic>;
-  using viscoelastic = Family<VISCOSITY, ViscosityMaxwell>;
-  using soil =
-      Family<CLOSED, LawDruckerPrager, LawMohrCoulomb, LawCamClay, LawNacc, LawMuI, LawSnow>;
-  using porous = Family<CLOSED, LawGurson>;
-  using eos = Family<EOS, EosLinear, EosShock, EosTait, EosPolynomial, EosIdealGas, EosStiffenedGas,
-                     EosJWL>;
-  using strength = Family<STRENGTH, StrengthElastic, StrengthJ2, StrengthJohnsonCook,
-                          StrengthSteinberg, StrengthZerilliArmstrong>;
-  using viscosity = Family<VISCOSITY, ViscosityNewtonian, ViscosityArtificial, ViscosityBingham,
-                           ViscosityHerschelBulkley, ViscosityPower>;
-  using damage =
-      Family<DAMAGE, DamageJohnsonCook, DamageCockcroftLatham, DamageRankine, DamageGradyKipp>;
-  using thermal = Family<THERMAL, ThermalAdiabatic, ThermalConstant>;
-
 }    // namespace
 }    // namespace MPM_NS::law
 
+#ifdef MPM_LAWS_elastic
+#include "law/elastic.h"
+#include "law/orthotropic.h"
+#include "law/rubber.h"
+namespace MPM_NS::law {
+namespace {
+  using elastic =
+      Family<CLOSED, LawLinear, LawNeoHookean, LawNeoHookeanSplit, LawStVenantKirchhoff, LawHencky,
+             LawMooneyRivlin, LawOgden, LawTransverselyIsotropic, LawOrthotropic>;
+}
+}    // namespace MPM_NS::law
+#endif
+
+#ifdef MPM_LAWS_viscoelastic
+#include "law/viscosity_maxwell.h"
+namespace MPM_NS::law {
+namespace {
+  using viscoelastic = Family<VISCOSITY, ViscosityMaxwell>;
+}
+}    // namespace MPM_NS::law
+#endif
+
+#ifdef MPM_LAWS_frictional
+#include "law/granular.h"
+#include "law/mohr_coulomb.h"
+namespace MPM_NS::law {
+namespace {
+  using frictional = Family<CLOSED, LawDruckerPrager, LawMohrCoulomb>;
+}
+}    // namespace MPM_NS::law
+#endif
+
+#ifdef MPM_LAWS_soil
+#include "law/critical_state.h"
+#include "law/granular.h"
+namespace MPM_NS::law {
+namespace {
+  using soil = Family<CLOSED, LawCamClay, LawNacc, LawMuI, LawSnow>;
+}
+}    // namespace MPM_NS::law
+#endif
+
+#ifdef MPM_LAWS_porous
+#include "law/gurson.h"
+namespace MPM_NS::law {
+namespace {
+  using porous = Family<CLOSED, LawGurson>;
+}
+}    // namespace MPM_NS::law
+#endif
+
+#ifdef MPM_LAWS_eos
+#include "law/eos_energy.h"
+namespace MPM_NS::law {
+namespace {
+  using eos = Family<EOS, EosLinear, EosShock, EosTait, EosPolynomial, EosIdealGas, EosStiffenedGas,
+                     EosJWL>;
+}
+}    // namespace MPM_NS::law
+#endif
+
+#ifdef MPM_LAWS_strength
+#include "law/strength_j2.h"
+namespace MPM_NS::law {
+namespace {
+  using strength = Family<STRENGTH, StrengthElastic, StrengthJ2>;
+}
+}    // namespace MPM_NS::law
+#endif
+
+#ifdef MPM_LAWS_impact
+#include "law/strength_thermal.h"
+namespace MPM_NS::law {
+namespace {
+  using impact = Family<STRENGTH, StrengthJohnsonCook, StrengthSteinberg, StrengthZerilliArmstrong>;
+}
+}    // namespace MPM_NS::law
+#endif
+
+#ifdef MPM_LAWS_viscosity
+#include "law/viscosity.h"
+#include "law/viscosity_generalized.h"
+namespace MPM_NS::law {
+namespace {
+  using viscosity = Family<VISCOSITY, ViscosityNewtonian, ViscosityArtificial, ViscosityBingham,
+                           ViscosityHerschelBulkley, ViscosityPower>;
+}
+}    // namespace MPM_NS::law
+#endif
+
+#ifdef MPM_LAWS_damage
+#include "law/damage_brittle.h"
+#include "law/damage_ductile.h"
+namespace MPM_NS::law {
+namespace {
+  using damage =
+      Family<DAMAGE, DamageJohnsonCook, DamageCockcroftLatham, DamageRankine, DamageGradyKipp>;
+}
+}    // namespace MPM_NS::law
+#endif
+
+#ifdef MPM_LAWS_thermal
+#include "law/thermal.h"
+namespace MPM_NS::law {
+namespace {
+  using thermal = Family<THERMAL, ThermalAdiabatic, ThermalConstant>;
+}
+}    // namespace MPM_NS::law
+#endif
+
 // in the order in which laws are listed in messages
-#define MPM_LAW_FAMILIES(X) \
-  X(elastic) X(viscoelastic) X(soil) X(porous) X(eos) X(strength) X(viscosity) X(damage) X(thermal)
+#define MPM_LAW_FAMILIES(X)                                                                 \
+  X(elastic)                                                                                \
+  X(viscoelastic) X(frictional) X(soil) X(porous) X(eos) X(strength) X(impact) X(viscosity) \
+      X(damage) X(thermal)
 
 /** Defines mpm_laws_<family>_<isa>(), which returns the kernels of the family in the order of its list. */
 #define MPM_LAW_FAMILY(family)                         \

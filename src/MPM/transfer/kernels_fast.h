@@ -9,8 +9,8 @@
 #ifndef MPM_TRANSFER_KERNELS_FAST_H
 #define MPM_TRANSFER_KERNELS_FAST_H
 
-// The fast transfers as templates, for the files transfer/*_isa.cpp, each of which makes those of
-// some shapes and transfers, once for each instruction set with MPM_ISA = base, v3 or v4 (x86-64
+// The fast transfers as templates, for the files that the build writes, each of which makes those of
+// a shape, once for each instruction set with MPM_ISA = base, v3 or v4 (x86-64
 // levels). Nothing but their tables may be visible outside, see transfer/vector.h.
 //
 // What a transfer does is written plainly in transfer/kernels_reference.cpp; this file does the same
@@ -156,29 +156,38 @@ template <int ORDER, int L> struct AxisWeights {
   }
 };
 
+/** Copies reals; not inlined, as it is for a few points only. */
+__attribute__((noinline)) void copy_reals(double *to, const double *from, Index n)
+{
+  for (Index i = 0; i < n; i++) to[i] = from[i];
+}
+
 /** Copies of the last points of a range, with room behind the rows: vectors of four reals read and
- *  write past a row of three or nine. */
+ *  write past a row of three or nine. Points up to a whole vector are like the first one, with whatever is
+ *  set to zero in them. */
 struct LastPoints {
   static constexpr int ROOM = POINTS + 1;
   double x[3 * ROOM], v[3 * ROOM], f[3 * ROOM], C[9 * ROOM], tau[6 * ROOM], vol0[ROOM], mass[ROOM],
       xnew[3 * ROOM], L[9 * ROOM], from[3 * ROOM], P[9 * ROOM], size[3 * ROOM];
   PointRows rows{x, v, f, C, tau, vol0, mass, xnew, nullptr, 0, from, P, size};
+  Index first, n;    ///< the points
 
-  template <int WIDTH>
-  static MPM_INLINE void load(double *to, const double *from, Index first, Index last)
+  LastPoints(Index first, Index last) : first(first), n(last - first) {}
+
+  void load(double *to, const double *all, int width) const
   {
-    for (Index i = 0; i < WIDTH * (last - first); i++) to[i] = from[WIDTH * first + i];
+    copy_reals(to, all + width * first, width * n);
+    if (n < POINTS) copy_reals(to + width, to, width);
   }
-  template <int WIDTH>
-  static MPM_INLINE void store(const double *from, double *to, Index first, Index last)
+  void store(const double *mine, double *all, int width) const
   {
-    for (Index i = 0; i < WIDTH * (last - first); i++) to[WIDTH * first + i] = from[i];
+    copy_reals(all + width * first, mine, width * n);
   }
 };
 
 /** Brings the rows into the cache that P2G of PARTS reads, but for the places of points. */
-template <int DIM, int PARTS, bool AFFINE, bool TOTAL>
-MPM_INLINE void prefetch_momentum_and_force(const PointRows &points, Index ahead)
+template <int DIM, int PARTS, bool AFFINE>
+MPM_INLINE void prefetch_momentum_and_force(const PointRows &points, Index ahead, bool total)
 {
   if (PARTS & MOMENTUM) {
     prefetch<3>(points.v, ahead);
@@ -187,7 +196,7 @@ MPM_INLINE void prefetch_momentum_and_force(const PointRows &points, Index ahead
   }
   if (PARTS & FORCE) {
     prefetch<3>(points.f, ahead);
-    if (!TOTAL) prefetch<6>(points.tau, ahead);    // P has just been made
+    if (!total) prefetch<6>(points.tau, ahead);    // P has just been made
     prefetch<1>(points.vol0, ahead);
   }
 }
@@ -316,10 +325,9 @@ template <int DIM, int ORDER, int WIDTH, int L, bool AFFINE, bool GRADIENT> stru
   }
 };
 
-/** P2G of what PARTS says; AFFINE: uses C; MLS: stress as an affine term; TOTAL: first
- *  Piola-Kirchhoff instead of Kirchhoff stress. */
-template <int DIM, Shape SHAPE, bool AFFINE, bool MLS, int NREAL, int PARTS, bool TOTAL>
-struct PointsToNodes {
+/** P2G of what PARTS says; AFFINE: uses C; MLS: stress as an affine term. Of these two, those that make no
+ *  difference are false, see PointsToNodesOf. */
+template <int DIM, Shape SHAPE, bool AFFINE, bool MLS, int NREAL, int PARTS> struct PointsToNodes {
   static constexpr int ORDER = FunctionOf<SHAPE>::order;
   static constexpr bool momentum = PARTS & MOMENTUM;
   static constexpr bool force = PARTS & FORCE;
@@ -389,16 +397,17 @@ struct PointsToNodes {
     if constexpr (AFFINE) matrix_columns<L>(points.C, p, h * mass, A);
   }
 
-  /** Force times scale: external, and columns of -stress that an affine or gradient term takes. */
+  /** Force times scale: external, and columns of -stress that an affine or gradient term takes; total: of
+   *  the first Piola-Kirchhoff instead of the Kirchhoff stress. */
   template <int L>
   static MPM_INLINE void force_terms(const PointRows &points, Index p, const TransferStep &step,
-                                     double scale, Quads<L> &q, Quads<L> *A)
+                                     bool total, double scale, Quads<L> &q, Quads<L> *A)
   {
     q = (scale * step.force_scale) * blend<DIM>(load_rows<L, 3>(points.f, p), Quads<L>{});
     const double factor =
         -scale * step.stress_scale * step.inv_h * (MLS ? FunctionOf<SHAPE>::inv_moment : 1.0);
     const Quads<L> volume = load_numbers<L>(points.vol0, p, factor);
-    if constexpr (TOTAL)
+    if (total)
       matrix_columns<L>(points.P, p, Quads<L>::all(1.0), A);
     else
       stress_columns<L>(points.tau, p, A);
@@ -425,7 +434,7 @@ struct PointsToNodes {
   /** Loads L points and computes what scatter needs; notes their extent. */
   template <int L>
   static MPM_INLINE void prepare(const PointRows &points, Index p, const TransferStep &step,
-                                 const Frame<DIM, SHAPE, L> &frame, Prepared<L> &out,
+                                 bool total, const Frame<DIM, SHAPE, L> &frame, Prepared<L> &out,
                                  Quads<L> &lowest, Quads<L> &highest)
   {
     const Quads<L> t = frame.position(load_rows<L, 3>(points.x, p));
@@ -437,7 +446,7 @@ struct PointsToNodes {
     // Am is an affine term, Af an affine or a gradient term
     Quads<L> qm, qf, Am[DIM], Af[DIM];
     if constexpr (momentum) momentum_terms<L>(points, p, step.h, qm, Am);
-    if constexpr (force) force_terms<L>(points, p, step, NREAL == 4 ? step.dt : 1.0, qf, Af);
+    if constexpr (force) force_terms<L>(points, p, step, total, NREAL == 4 ? step.dt : 1.0, qf, Af);
 
     if constexpr (both) {
       if constexpr (AFFINE) {
@@ -501,7 +510,7 @@ struct PointsToNodes {
   /** Points [first,last), L at a time. */
   template <int L>
   static __attribute__((noinline)) void range(const PointRows &rows, const TransferStep &transfer,
-                                              Index first, Index last, const int *base,
+                                              bool total, Index first, Index last, const int *base,
                                               double *tile, int *box)
   {
     // copies, so that the compiler knows that no store changes them
@@ -518,9 +527,9 @@ struct PointsToNodes {
       const Index ahead = p + AHEAD;
       prefetch<3>(points.x, ahead);
       if (has_size(SHAPE)) prefetch<3>(points.size, ahead);
-      prefetch_momentum_and_force<DIM, PARTS, AFFINE, TOTAL>(points, ahead);
+      prefetch_momentum_and_force<DIM, PARTS, AFFINE>(points, ahead, total);
       for (Index i = 0; i < n; i++, p += L)
-        prepare<L>(points, p, step, frame, stage[i], lowest, highest);
+        prepare<L>(points, p, step, total, frame, stage[i], lowest, highest);
       for (Index i = 0; i < n; i++) {
         const Prepared<L> &in = stage[i];
         double *node[L];
@@ -545,41 +554,51 @@ struct PointsToNodes {
       }
   }
 
-  /** All points; the last of all through padded copies. */
+  /** The last points, which are no whole vector or have no memory behind them, through padded copies. */
+  static __attribute__((noinline)) void end(const PointRows &points, const TransferStep &step,
+                                            bool total, Index rest, Index last, const int *base,
+                                            double *tile, int *box)
+  {
+    LastPoints copy(rest, last);
+    copy.load(copy.x, points.x, 3);
+    if (has_size(SHAPE)) copy.load(copy.size, points.size, 3);
+    if (momentum) {
+      copy.load(copy.v, points.v, 3);
+      copy.load(copy.mass, points.mass, 1);
+      if (AFFINE) copy.load(copy.C, points.C, DIM * DIM);
+    }
+    if (force) {
+      copy.load(copy.f, points.f, 3);
+      if (total)
+        copy.load(copy.P, points.P, DIM * DIM);
+      else
+        copy.load(copy.tau, points.tau, 6);
+      copy.load(copy.vol0, points.vol0, 1);
+    }
+    for (Index i = copy.n; i < POINTS; i++) {
+      copy.mass[i] = copy.vol0[i] = 0.0;
+      for (int a = 0; a < 3; a++) copy.f[3 * i + a] = 0.0;
+    }
+    range<POINTS>(copy.rows, step, total, 0, POINTS, base, tile, box);
+  }
+
+  /** All points. */
+  template <bool TOTAL>
   static void p2g(const PointRows &points, const TransferStep &step, int first, int last,
                   const int base[3], double *tile, int box[6])
   {
     if (first >= last) return;
-    const bool guarded = last <= points.guarded;
-    const int rest = first + (last - first - !guarded) / POINTS * POINTS;
-    if (rest > first) range<POINTS>(points, step, first, rest, base, tile, box);
-    if (guarded) {
-      if (rest < last) range<1>(points, step, rest, last, base, tile, box);
-      return;
-    }
-
-    LastPoints copy;
-    copy.load<3>(copy.x, points.x, rest, last);
-    if (has_size(SHAPE)) copy.load<3>(copy.size, points.size, rest, last);
-    if (momentum) {
-      copy.load<3>(copy.v, points.v, rest, last);
-      copy.load<1>(copy.mass, points.mass, rest, last);
-      if (AFFINE) copy.template load<DIM * DIM>(copy.C, points.C, rest, last);
-    }
-    if (force) {
-      copy.load<3>(copy.f, points.f, rest, last);
-      if (TOTAL)
-        copy.template load<DIM * DIM>(copy.P, points.P, rest, last);
-      else
-        copy.load<6>(copy.tau, points.tau, rest, last);
-      copy.load<1>(copy.vol0, points.vol0, rest, last);
-    }
-    if (last - rest == POINTS)
-      range<POINTS>(copy.rows, step, 0, POINTS, base, tile, box);
-    else
-      range<1>(copy.rows, step, 0, last - rest, base, tile, box);
+    const int rest = first + (last - first - (last > points.guarded)) / POINTS * POINTS;
+    if (rest > first) range<POINTS>(points, step, TOTAL, first, rest, base, tile, box);
+    if (rest < last) end(points, step, TOTAL, rest, last, base, tile, box);
   }
 };
+
+/** That for what is asked for. */
+template <class C, int PARTS, bool MLS = (PARTS & FORCE) && is_mls(C::shape, C::transfer)>
+using PointsToNodesOf =
+    PointsToNodes<C::dim, C::shape, is_affine(C::transfer) && ((PARTS & MOMENTUM) || MLS), MLS,
+                  C::nreal, PARTS>;
 
 // ---------------------------------------------------------------------- nodes to points
 
@@ -702,8 +721,8 @@ template <int DIM, int ORDER, int NREAL, int L, bool MLS, bool GRADIENT> struct 
   }
 };
 
-/** G2P and velocity gradient; TOTAL: places on the lattice are not the positions that change. */
-template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct NodesToPoints {
+/** G2P and velocity gradient; total: places on the lattice are not the positions that change. */
+template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL> struct NodesToPoints {
   static constexpr int ORDER = FunctionOf<SHAPE>::order;
   static constexpr bool affine = is_affine(TRANSFER);
   static constexpr bool increment = adds_change(TRANSFER);
@@ -717,17 +736,14 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
     int place[L];
   };
 
-  /** Loads L points and computes what gather needs. */
+  /** Loads L points and computes what gather needs; from: the positions that change. */
   template <bool UPDATE, bool GRADIENT, int L>
-  static MPM_INLINE void prepare(const PointRows &points, Index p,
+  static MPM_INLINE void prepare(const PointRows &points, const double *from, Index p,
                                  const Frame<DIM, SHAPE, L> &frame, Prepared<L> &out)
   {
     const Quads<L> x = load_rows<L, 3>(points.x, p);
     const Quads<L> fraction = frame.locate(frame.position(x), out.place);
-    if constexpr (TOTAL && UPDATE)
-      load_rows<L, 3>(points.from, p).store(out.x);
-    else
-      x.store(out.x);
+    if constexpr (UPDATE) load_rows<L, 3>(from, p).store(out.x);
     fraction.store(out.fraction);
     if constexpr (ORDER > 1)
       axis_weights<SHAPE, GRADIENT && !mls, L>(points, p, fraction, out.weights, out.gradients);
@@ -787,13 +803,16 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
    *  gradient, which goes to C and to the rows of gradients, the first of them for point first. */
   template <int L, bool UPDATE, bool GRADIENT>
   static __attribute__((noinline)) int range(const PointRows &rows, const TransferStep &transfer,
-                                             Index first, Index last, const int *base,
+                                             bool total, Index first, Index last, const int *base,
                                              const double *tile, double *gradients)
   {
     // copies, so that the compiler knows that no store changes them
     const PointRows points = rows;
     const TransferStep step = transfer;
     const Frame<DIM, SHAPE, L> frame(step, base);
+    const double *const from = total ? points.from : points.x;
+    Frame<DIM, SHAPE, L> tile_range = frame;
+    if (total) tile_range.inv_h = tile_range.low = Quads<L>{};    // no more than to be finite
     Quads<L> outside = {};
     constexpr double range_of_bases = block_side(DIM) + 2;
     constexpr int ENTRIES = STAGE / L;
@@ -805,7 +824,7 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
       if (has_size(SHAPE)) prefetch<3>(points.size, ahead);
       if (UPDATE) {
         prefetch<3, 1>(points.x, ahead);
-        if (TOTAL) prefetch<3, 1>(points.from, ahead);
+        if (total) prefetch<3, 1>(from, ahead);
         prefetch<3, 1>(points.v, ahead);
         if (affine) prefetch<DIM * DIM, 1>(points.C, ahead);
       } else {
@@ -818,7 +837,7 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
         prefetch<1>(points.vol0, ahead);
       }
       for (Index i = 0; i < n; i++)
-        prepare<UPDATE, GRADIENT, L>(points, p + L * i, frame, stage[i]);
+        prepare<UPDATE, GRADIENT, L>(points, from, p + L * i, frame, stage[i]);
       for (Index i = 0; i < n; i++, p += L) {
         const Prepared<L> &in = stage[i];
         const double *node[L];
@@ -856,7 +875,7 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
           Quads<L> v_new = v;
           if constexpr (DIM == 2) v_new = blend<2>(v_new, Quads<L>{});
           const Quads<L> x = Quads<L>::load(in.x) + step.dt * v_new;
-          outside = flag_outside(outside, TOTAL ? x - x : frame.position(x), range_of_bases);
+          outside = flag_outside(outside, tile_range.position(x), range_of_bases);
           store_rows<3, L>(points.xnew, p, x);
           if constexpr (increment) v_new += step.flip * (load_rows<L, 3>(points.v, p) - v_old);
           store_rows<DIM, L>(points.v, p, v_new);
@@ -870,55 +889,61 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
     return left;
   }
 
-  /** All points; the last of all through padded copies. Without UPDATE none has left its tile. */
+  /** The last points, which are no whole vector or have no memory behind them, through padded copies. */
   template <bool UPDATE, bool GRADIENT>
-  static int run(const PointRows &points, const TransferStep &step, int first, int last,
-                 const int *base, const double *tile, double *gradients)
+  static __attribute__((noinline)) int end(const PointRows &points, const TransferStep &step,
+                                           bool total, Index rest, Index last, const int *base,
+                                           const double *tile, double *gradients)
   {
-    if (first >= last) return 0;
-    const bool guarded = last <= points.guarded;
-    const int rest = first + (last - first - !guarded) / POINTS * POINTS;
-    int left = 0;
-    if (rest > first)
-      left = range<POINTS, UPDATE, GRADIENT>(points, step, first, rest, base, tile, gradients);
-    if (guarded) {
-      if (rest < last)
-        left |= range<1, UPDATE, GRADIENT>(points, step, rest, last, base, tile,
-                                           gradients ? gradients + DIM * DIM * (rest - first)
-                                                     : nullptr);
-      return left;
-    }
-
-    LastPoints copy;
-    copy.load<3>(copy.x, points.x, rest, last);
-    if (has_size(SHAPE)) copy.load<3>(copy.size, points.size, rest, last);
-    if (UPDATE) copy.load<3>(copy.v, points.v, rest, last);
-    if (UPDATE && TOTAL) copy.load<3>(copy.from, points.from, rest, last);
+    LastPoints copy(rest, last);
+    copy.load(copy.x, points.x, 3);
+    if (has_size(SHAPE)) copy.load(copy.size, points.size, 3);
+    if (UPDATE) copy.load(copy.v, points.v, 3);
+    if (UPDATE && total) copy.load(copy.from, points.from, 3);
     if (!UPDATE && points.velocity) copy.rows.velocity = copy.v;
-    if (last - rest == POINTS)
-      left |= range<POINTS, UPDATE, GRADIENT>(copy.rows, step, 0, POINTS, base, tile, copy.L);
-    else
-      left |= range<1, UPDATE, GRADIENT>(copy.rows, step, 0, last - rest, base, tile, copy.L);
+    const int left =
+        range<POINTS, UPDATE, GRADIENT>(copy.rows, step, total, 0, POINTS, base, tile, copy.L);
     if (UPDATE) {
-      copy.store<3>(copy.xnew, points.xnew, rest, last);
-      copy.store<3>(copy.v, points.v, rest, last);
-      if (affine) copy.template store<DIM * DIM>(copy.C, points.C, rest, last);
+      copy.store(copy.xnew, points.xnew, 3);
+      copy.store(copy.v, points.v, 3);
+      if (affine) copy.store(copy.C, points.C, DIM * DIM);
     }
-    if (!UPDATE && points.velocity) {
-      for (Index p = rest; p < last; p++)
-        for (int a = 0; a < DIM; a++) points.velocity[3 * p + a] = copy.v[3 * (p - rest) + a];
-    }
-    if (GRADIENT && gradients)
-      copy.template store<DIM * DIM>(copy.L, gradients, rest - first, last - first);
+    for (Index p = rest; !UPDATE && points.velocity && p < last; p++)
+      for (int a = 0; a < DIM; a++) points.velocity[3 * p + a] = copy.v[3 * (p - rest) + a];
+    if (GRADIENT && gradients) copy_reals(gradients, copy.L, DIM * DIM * copy.n);
     return left;
   }
 
+  /** All points. Without UPDATE none has left its tile. */
+  template <bool UPDATE, bool GRADIENT>
+  static int run(const PointRows &points, const TransferStep &step, bool total, int first, int last,
+                 const int *base, const double *tile, double *gradients)
+  {
+    if (first >= last) return 0;
+    const int rest = first + (last - first - (last > points.guarded)) / POINTS * POINTS;
+    int left = 0;
+    if (rest > first)
+      left =
+          range<POINTS, UPDATE, GRADIENT>(points, step, total, first, rest, base, tile, gradients);
+    if (rest < last)
+      left |= end<UPDATE, GRADIENT>(points, step, total, rest, last, base, tile,
+                                    gradients ? gradients + DIM * DIM * (rest - first) : nullptr);
+    return left;
+  }
+
+  template <bool TOTAL>
   static int g2p(const PointRows &points, const TransferStep &step, int first, int last,
                  const int base[3], const double *tile, double *L)
   {
     if constexpr (!affine)
-      if (!L) return run<true, false>(points, step, first, last, base, tile, L);
-    return run<true, true>(points, step, first, last, base, tile, L);
+      if (!L) return run<true, false>(points, step, TOTAL, first, last, base, tile, L);
+    return run<true, true>(points, step, TOTAL, first, last, base, tile, L);
+  }
+
+  static int gradient(const PointRows &points, const TransferStep &step, int first, int last,
+                      const int base[3], const double *tile, double *L)
+  {
+    return run<false, true>(points, step, false, first, last, base, tile, L);
   }
 };
 
@@ -1003,22 +1028,23 @@ template <class C> TransferKernels table_with_tiles()
 /** The table of the transfers above. */
 template <class C> TransferKernels kernels()
 {
-  constexpr bool affine = is_affine(C::transfer), mls = is_mls(C::shape, C::transfer);
   TransferKernels k = table_with_tiles<C>();
-  k.p2g = PointsToNodes<C::dim, C::shape, affine, mls, C::nreal, ALL, C::total>::p2g;
-  k.p2g_momentum = PointsToNodes<C::dim, C::shape, affine, mls, C::nreal, MOMENTUM, false>::p2g;
-  k.p2g_force = PointsToNodes<C::dim, C::shape, affine, mls, C::nreal, FORCE, C::total>::p2g;
-  k.g2p = NodesToPoints<C::dim, C::shape, C::transfer, C::nreal, C::total>::g2p;
-  k.g2p_gradient =
-      NodesToPoints<C::dim, C::shape, C::transfer, C::nreal, false>::template run<false, true>;
+  k.p2g = PointsToNodesOf<C, ALL>::template p2g<C::total>;
+  k.p2g_momentum = PointsToNodesOf<C, MOMENTUM>::template p2g<false>;
+  k.p2g_force = PointsToNodesOf<C, FORCE>::template p2g<C::total>;
+  // one name for each of those that are the same
+  constexpr bool mls = is_mls(C::shape, C::transfer);
+  constexpr Transfer like = C::transfer == APIC && !mls ? TPIC : C::transfer;
+  k.g2p = NodesToPoints<C::dim, C::shape, like, C::nreal>::template g2p<C::total>;
+  k.g2p_gradient = NodesToPoints < C::dim, C::shape, mls ? APIC : PIC, C::nreal > ::gradient;
   return k;
 }
 
-/** Those of the combinations that belong to a file. */
-template <File FILE> TransferKernels kernels_of_file(const KernelChoice &choice)
+/** Those of a shape. */
+template <Shape SHAPE> TransferKernels kernels_of_shape(const KernelChoice &choice)
 {
   return choose(choice, [](auto c) {
-    if constexpr (c.file() == FILE)
+    if constexpr (c.shape == SHAPE && c.fast())
       return kernels<decltype(c)>();
     else
       return TransferKernels();
@@ -1027,11 +1053,11 @@ template <File FILE> TransferKernels kernels_of_file(const KernelChoice &choice)
 
 }    // namespace
 
-/** Defines mpm_kernels_<name>_<isa>(), which makes the kernels of a file. */
-#define MPM_KERNELS_OF_FILE(name, FILE)                                              \
+/** Defines mpm_kernels_<name>_<isa>(), which makes the kernels of a shape. */
+#define MPM_KERNELS_OF_SHAPE(name, SHAPE)                                            \
   TransferKernels MPM_NS::MPM_OF_ISA(mpm_kernels_##name)(const KernelChoice &choice) \
   {                                                                                  \
-    return kernels_of_file<FILE>(choice);                                            \
+    return kernels_of_shape<SHAPE>(choice);                                          \
   }
 
 #endif

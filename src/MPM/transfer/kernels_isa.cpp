@@ -6,8 +6,8 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Compiled once for each instruction set: table of kernels of the set, solve, and transfers pic, flip, apic
-// with B-splines. The others are made in files of their own, so that they compile side by side.
+// Compiled once for each instruction set: table of kernels of the set, and solve. The transfers of each
+// shape are made in files of their own, so that they compile side by side.
 
 #include "transfer/kernels_isa.h"
 
@@ -22,7 +22,11 @@ const MPM_NS::MPMKernels *MPM_NS::MPM_OF_ISA(mpm_kernels)(const char *)
 
 #else
 
-#include "transfer/kernels_fast.h"
+#include "transfer/vector.h"
+
+#include <cstddef>
+
+using namespace MPM_NS;
 
 namespace {
 
@@ -30,7 +34,7 @@ constexpr double SMALLEST = 2.3e-308;    ///< the inverse of a smaller mass may 
 
 void solve_nodes(double *nodes, int nnodes, int nreal, double dt)
 {
-  double *const end = nodes + static_cast<Index>(nreal) * nnodes;
+  double *const end = nodes + static_cast<std::ptrdiff_t>(nreal) * nnodes;
   for (double *node = nodes; node < end; node += nreal) {
     const Vec<4> p = Vec<4>::load(node);
     const double m = node[3];
@@ -51,11 +55,24 @@ template <bool TOTAL>
 TransferKernels choose_among_files(int dim, Shape shape, Transfer transfer, bool split)
 {
   const KernelChoice choice = {dim, shape, transfer, split, TOTAL};
-  TransferKernels kernels = kernels_of_file<MAIN_FILE>(choice);
-  for (const auto of_file : {MPM_OF_ISA(mpm_kernels_aflip_tpic), MPM_OF_ISA(mpm_kernels_gimp),
-                             MPM_OF_ISA(mpm_kernels_bernstein), MPM_OF_ISA(mpm_kernels_cpdi)})
-    if (!kernels.p2g) kernels = of_file(choice);
-  return kernels;
+  switch (shape) {
+    case LINEAR:
+      return MPM_OF_ISA(mpm_kernels_linear)(choice);
+    case QUADRATIC:
+      return MPM_OF_ISA(mpm_kernels_quadratic)(choice);
+    case CUBIC:
+      return MPM_OF_ISA(mpm_kernels_cubic)(choice);
+    case GIMP:
+    case CPGIMP:
+      return MPM_OF_ISA(mpm_kernels_gimp)(choice);
+    case BERNSTEIN:
+      return MPM_OF_ISA(mpm_kernels_bernstein)(choice);
+    case CPDI:
+      return MPM_OF_ISA(mpm_kernels_cpdi)(choice);
+    case CPDI2:
+      return MPM_OF_ISA(mpm_kernels_cpdi2)(choice);
+  }
+  return {};
 }
 
 }    // namespace

@@ -42,11 +42,14 @@ struct KernelChoice {
 const MPMKernels *mpm_kernels_reference();
 const MPMKernels *MPM_OF_ISA(mpm_kernels)(const char *isa);
 
-// files that are compiled side by side, each with its share of the combinations
-TransferKernels MPM_OF_ISA(mpm_kernels_aflip_tpic)(const KernelChoice &);
+// files that are compiled side by side, one for each shape: transfers of a shape share kernels
+TransferKernels MPM_OF_ISA(mpm_kernels_linear)(const KernelChoice &);
+TransferKernels MPM_OF_ISA(mpm_kernels_quadratic)(const KernelChoice &);
+TransferKernels MPM_OF_ISA(mpm_kernels_cubic)(const KernelChoice &);
 TransferKernels MPM_OF_ISA(mpm_kernels_gimp)(const KernelChoice &);
 TransferKernels MPM_OF_ISA(mpm_kernels_bernstein)(const KernelChoice &);
 TransferKernels MPM_OF_ISA(mpm_kernels_cpdi)(const KernelChoice &);
+TransferKernels MPM_OF_ISA(mpm_kernels_cpdi2)(const KernelChoice &);
 PolyKernels MPM_OF_ISA(mpm_kernels_poly)(int dim, Shape, int nreal);
 
 }    // namespace MPM_NS
@@ -63,9 +66,6 @@ template <class T, T FIRST, T... OTHERS, class Use> auto with(T value, Use use)
   return use(std::integral_constant<T, FIRST>());
 }
 
-/** Files of fast kernels, see above; the first is kernels_isa.cpp itself. */
-enum File { NO_FILE, MAIN_FILE, AFLIP_TPIC_FILE, GIMP_FILE, BERNSTEIN_FILE, CPDI_FILE };
-
 /** A combination of constants that kernels are compiled for. */
 template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct Combination {
   static constexpr int dim = DIM;
@@ -74,14 +74,11 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
   static constexpr int nreal = NREAL;
   static constexpr bool total = TOTAL;
 
-  static constexpr File file()
+  /** Are there fast kernels? */
+  static constexpr bool fast()
   {
-    const bool others = TRANSFER == AFLIP || TRANSFER == TPIC;
-    if (TOTAL && (others || has_size(SHAPE) || has_domain(SHAPE))) return NO_FILE;
-    if (has_domain(SHAPE)) return CPDI_FILE;
-    if (has_size(SHAPE)) return GIMP_FILE;
-    if (SHAPE == BERNSTEIN) return BERNSTEIN_FILE;
-    return others ? AFLIP_TPIC_FILE : MAIN_FILE;
+    return !TOTAL ||
+        !(TRANSFER == AFLIP || TRANSFER == TPIC || has_size(SHAPE) || has_domain(SHAPE));
   }
 };
 

@@ -130,50 +130,64 @@ template <int DIM, Shape SHAPE> struct DomainStencil {
   }
 };
 
-template <class C>
-using Stencil = std::conditional_t<has_domain(C::shape), DomainStencil<C::dim, C::shape>,
-                                   PointStencil<C::dim, C::shape>>;
+template <int DIM, Shape SHAPE>
+using Stencil =
+    std::conditional_t<has_domain(SHAPE), DomainStencil<DIM, SHAPE>, PointStencil<DIM, SHAPE>>;
 
-/** Points to nodes; C: a Combination, PARTS: what is transferred. */
-template <class C, int PARTS>
-void p2g(const PointRows &points, const TransferStep &step, int first, int last, const int base[3],
-         double *tile, int box[6])
+/** What is the same for all points, and no constant: that would be four times as much to compile. */
+struct Way {
+  int parts, nreal;
+  bool affine, mls, gradient, increment, total;
+};
+template <class C> constexpr Way way_of(int parts = 0)
 {
-  constexpr int DIM = C::dim, NREAL = C::nreal;
-  constexpr bool mls = is_mls(C::shape, C::transfer);
-  const double inv_moment = FunctionOf<C::shape>::inv_moment * step.inv_h * step.inv_h;
+  return {parts,
+          C::nreal,
+          is_affine(C::transfer),
+          is_mls(C::shape, C::transfer),
+          is_gradient(C::shape, C::transfer),
+          adds_change(C::transfer),
+          C::total};
+}
+
+/** Points to nodes. */
+template <int DIM, Shape SHAPE>
+void scatter(const Way way, const PointRows &points, const TransferStep &step, int first, int last,
+             const int base[3], double *tile, int box[6])
+{
+  const double inv_moment = FunctionOf<SHAPE>::inv_moment * step.inv_h * step.inv_h;
 
   for (int p = first; p < last; p++) {
-    const Stencil<C> stencil(points, p, step, base);
+    const Stencil<DIM, SHAPE> stencil(points, p, step, base);
     const auto stress = [&](int i, int j) {
       constexpr int place[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
-      return C::total ? points.P[DIM * DIM * p + DIM * j + i] : points.tau[6 * p + place[i][j]];
+      return way.total ? points.P[DIM * DIM * p + DIM * j + i] : points.tau[6 * p + place[i][j]];
     };
     for (int a = 0; a < DIM; a++) {
       box[a] = std::min(box[a], stencil.low[a]);
       box[3 + a] = std::max(box[3 + a], stencil.high[a]);
     }
     for (const Node &node : stencil.node) {
-      double *real = tile + NREAL * node.index;
-      if (PARTS & MOMENTUM) {
+      double *real = tile + way.nreal * node.index;
+      if (way.parts & MOMENTUM) {
         const double wm = node.w * points.mass[p];
         for (int i = 0; i < DIM; i++) {
           double affine = 0.0;
-          for (int j = 0; is_affine(C::transfer) && j < DIM; j++)
+          for (int j = 0; way.affine && j < DIM; j++)
             affine += points.C[DIM * DIM * p + DIM * j + i] * node.d[j];
           real[i] += wm * (points.v[3 * p + i] + affine);
         }
         real[3] += wm;
       }
-      if (PARTS & FORCE) {
-        const double *a = mls ? node.d : node.grad;
+      if (way.parts & FORCE) {
+        const double *a = way.mls ? node.d : node.grad;
         const double scale =
-            -step.stress_scale * points.vol0[p] * (mls ? inv_moment * node.w : 1.0);
+            -step.stress_scale * points.vol0[p] * (way.mls ? inv_moment * node.w : 1.0);
         for (int i = 0; i < DIM; i++) {
           double internal = 0.0;
           for (int j = 0; j < DIM; j++) internal += stress(i, j) * a[j];
           const double f = scale * internal + step.force_scale * node.w * points.f[3 * p + i];
-          if (NREAL == 8)
+          if (way.nreal == 8)
             real[4 + i] += f;
           else
             real[i] += step.dt * f;
@@ -183,18 +197,23 @@ void p2g(const PointRows &points, const TransferStep &step, int first, int last,
   }
 }
 
-template <class C>
-void velocity_gradient(const Stencil<C> &stencil, const TransferStep &step, const double *tile,
-                       double *L)
+template <class C, int PARTS>
+void p2g(const PointRows &points, const TransferStep &step, int first, int last, const int base[3],
+         double *tile, int box[6])
 {
-  constexpr int DIM = C::dim;
-  constexpr bool mls = is_mls(C::shape, C::transfer);
-  const double inv_moment = FunctionOf<C::shape>::inv_moment * step.inv_h * step.inv_h;
+  scatter<C::dim, C::shape>(way_of<C>(PARTS), points, step, first, last, base, tile, box);
+}
+
+template <int DIM, Shape SHAPE>
+void velocity_gradient(const Way &way, const Stencil<DIM, SHAPE> &stencil, const TransferStep &step,
+                       const double *tile, double *L)
+{
+  const double inv_moment = FunctionOf<SHAPE>::inv_moment * step.inv_h * step.inv_h;
   std::fill(L, L + DIM * DIM, 0.0);
   for (const Node &node : stencil.node) {
-    const double *v = tile + C::nreal * node.index;
+    const double *v = tile + way.nreal * node.index;
     for (int j = 0; j < DIM; j++) {
-      const double g = mls ? inv_moment * node.w * node.d[j] : node.grad[j];
+      const double g = way.mls ? inv_moment * node.w * node.d[j] : node.grad[j];
       for (int i = 0; i < DIM; i++) L[DIM * j + i] += v[i] * g;
     }
   }
@@ -204,13 +223,13 @@ void velocity_gradient(const Stencil<C> &stencil, const TransferStep &step, cons
  *  affine fields the one nearest to the nodes' velocities, so that no field gains energy on its way from
  *  the nodes to the points and back, and angular momentum is conserved (C. Jiang et al., ACM Trans.
  *  Graph. 34(4) (2015) 51). */
-template <class C> void affine_fit(const Stencil<C> &stencil, const double *tile, double *A)
+template <int DIM, Shape SHAPE>
+void affine_fit(const Way &way, const Stencil<DIM, SHAPE> &stencil, const double *tile, double *A)
 {
-  constexpr int DIM = C::dim;
   using Domain = PointDomain<DIM>;
   double B[DIM][DIM] = {}, D[Domain::symmetric] = {}, inverse[Domain::symmetric];
   for (const Node &node : stencil.node) {
-    const double *v = tile + C::nreal * node.index;
+    const double *v = tile + way.nreal * node.index;
     for (int j = 0; j < DIM; j++) {
       for (int i = 0; i < DIM; i++) B[i][j] += node.w * v[i] * node.d[j];
       for (int k = 0; k <= j; k++) D[Domain::component(k, j)] += node.w * node.d[j] * node.d[k];
@@ -225,85 +244,92 @@ template <class C> void affine_fit(const Stencil<C> &stencil, const double *tile
 }
 
 /** The corners move with the velocities there, relative to that of the point. */
-template <class C>
-void move_corners(const Stencil<C> &stencil, const TransferStep &step, const double *tile,
-                  double *corner)
+template <int DIM, Shape SHAPE>
+void move_corners(const Way &way, const Stencil<DIM, SHAPE> &stencil, const TransferStep &step,
+                  const double *tile, double *corner)
 {
-  constexpr int DIM = C::dim, N = 1 << DIM;
+  constexpr int N = 1 << DIM;
   double at[N * DIM] = {}, v[DIM] = {};
   for (int n = 0; n < N * N; n++)
     for (int i = 0; i < DIM; i++) {
-      const double real = tile[C::nreal * stencil.node[n].index + i];
+      const double real = tile[way.nreal * stencil.node[n].index + i];
       at[DIM * (n / N) + i] += stencil.part[n] * real;
       v[i] += stencil.node[n].w * real;
     }
   for (int k = 0; k < N * DIM; k++) corner[k] = stencil.x[k] + step.dt * (at[k] - v[k % DIM]);
 }
 
-/** Nodes to points: velocity, position, corners and affine matrix if UPDATE; velocity gradient. */
-template <class C, bool UPDATE>
-int g2p(const PointRows &points, const TransferStep &step, int first, int last, const int base[3],
-        const double *tile, double *L)
+/** Nodes to points: velocity, position, corners and affine matrix if update; velocity gradient. */
+template <int DIM, Shape SHAPE>
+int gather(const Way way, bool update, const PointRows &points, const TransferStep &step, int first,
+           int last, const int base[3], const double *tile, double *L)
 {
-  constexpr int DIM = C::dim;
-  constexpr bool domain = has_domain(C::shape), increment = adds_change(C::transfer);
+  constexpr bool domain = has_domain(SHAPE);
   bool left = false;
   for (int p = first; p < last; p++) {
-    const Stencil<C> stencil(points, p, step, base);
+    const Stencil<DIM, SHAPE> stencil(points, p, step, base);
     double grad[DIM * DIM];
-    velocity_gradient<C>(stencil, step, tile, grad);
+    velocity_gradient<DIM, SHAPE>(way, stencil, step, tile, grad);
     if (L) std::copy(grad, grad + DIM * DIM, L + DIM * DIM * (p - first));
-    if (!UPDATE) {
+    if (!update) {
       for (int i = 0; points.velocity && i < DIM; i++) {
         double &v = points.velocity[3 * p + i] = 0.0;
-        for (const Node &node : stencil.node) v += node.w * tile[C::nreal * node.index + i];
+        for (const Node &node : stencil.node) v += node.w * tile[way.nreal * node.index + i];
       }
       continue;
     }
-    if constexpr (C::shape == CPDI2)
+    if constexpr (SHAPE == CPDI2)
       if (points.corners_new)
-        move_corners<C>(stencil, step, tile, points.corners_new + (DIM << DIM) * p);
+        move_corners<DIM, SHAPE>(way, stencil, step, tile, points.corners_new + (DIM << DIM) * p);
 
-    if (is_gradient(C::shape, C::transfer))
+    if (way.gradient)
       std::copy(grad, grad + DIM * DIM, points.C + DIM * DIM * p);
-    else if constexpr (is_affine(C::transfer))
-      affine_fit<C>(stencil, tile, points.C + DIM * DIM * p);
+    else if constexpr (domain) {
+      if (way.affine) affine_fit<DIM, SHAPE>(way, stencil, tile, points.C + DIM * DIM * p);
+    }
 
     double v[3] = {0.0, 0.0, 0.0}, v_old[3] = {0.0, 0.0, 0.0};
     for (const Node &node : stencil.node) {
-      const double *real = tile + C::nreal * node.index;
+      const double *real = tile + way.nreal * node.index;
       for (int i = 0; i < DIM; i++) {
         v[i] += node.w * real[i];
-        if (increment) v_old[i] += node.w * real[4 + i];
+        if (way.increment) v_old[i] += node.w * real[4 + i];
       }
     }
-    const double *from = (C::total ? points.from : points.x) + 3 * p;
+    const double *from = (way.total ? points.from : points.x) + 3 * p;
     if constexpr (domain)    // the point goes to its center if its corners may move along
-      if (C::shape == CPDI || points.corners_new) from = stencil.center;
+      if (SHAPE == CPDI || points.corners_new) from = stencil.center;
     left = left || !stencil.good;
     points.xnew[3 * p + 2] = from[2];
     for (int i = 0; i < DIM; i++) {
       double &vp = points.v[3 * p + i];
-      vp = increment ? v[i] + step.flip * (vp - v_old[i]) : v[i];
+      vp = way.increment ? v[i] + step.flip * (vp - v_old[i]) : v[i];
       const double xnew = from[i] + step.dt * v[i];
       points.xnew[3 * p + i] = xnew;
-      const double t = C::total || domain ? xnew - xnew
-                                          : tile_position<C::shape>(xnew, step, base, i);
+      const double t = way.total || domain ? xnew - xnew
+                                           : tile_position<SHAPE>(xnew, step, base, i);
       left = left || !(t >= 0.0 && t < block_side(DIM) + 2);    // also when t is not a number
     }
   }
   return left;
 }
 
+template <class C, bool UPDATE>
+int g2p(const PointRows &points, const TransferStep &step, int first, int last, const int base[3],
+        const double *tile, double *L)
+{
+  return gather<C::dim, C::shape>(way_of<C>(), UPDATE, points, step, first, last, base, tile, L);
+}
+
 enum TileMove { FLUSH, LOAD, LOAD_MEAN };
 
 /** Adds the nodes of the box to the nodes of the blocks and clears them, or loads them from there, or the mean
  *  of their velocities. */
-template <class C, TileMove MOVE>
+template <int DIM, Shape SHAPE, int NREAL, TileMove MOVE>
 void move_box(double *tile, double *nodes, const int slot[27], const int box[6])
 {
-  constexpr int DIM = C::dim, NREAL = C::nreal, side = block_side(DIM);
-  constexpr int order = stencil_order(C::shape), before = margin<DIM, C::shape>();
+  constexpr int side = block_side(DIM);
+  constexpr int order = stencil_order(SHAPE), before = margin<DIM, SHAPE>();
   const int zlow = DIM == 3 ? box[2] : 0, zhigh = DIM == 3 ? box[5] + order : 0;
   for (int i = box[0]; i <= box[3] + order; i++)
     for (int j = box[1]; j <= box[4] + order; j++)
@@ -315,7 +341,7 @@ void move_box(double *tile, double *nodes, const int slot[27], const int box[6])
           const int shifted = a < DIM ? n[a] + side - before : side;
           block = 3 * block + shifted / side;
           if (a < DIM) index = side * index + shifted % side;
-          entry += n[a] * stride<DIM, C::shape>(a);
+          entry += n[a] * stride<DIM, SHAPE>(a);
         }
         double *mine = tile + NREAL * entry;
         double *node = nodes + (64 * static_cast<std::ptrdiff_t>(slot[block]) + index) * NREAL;
@@ -345,7 +371,7 @@ void poly_p2g(const PointRows &points, const double *Q, const TransferStep &step
 {
   constexpr int DIM = C::dim;
   for (int p = first; p < last; p++)
-    for (const Node &node : Stencil<C>(points, p, step, base).node)
+    for (const Node &node : Stencil<DIM, C::shape>(points, p, step, base).node)
       for (int k = 0; k < poly_size(DIM); k++)
         tile[C::nreal * node.index + k % DIM] +=
             points.mass[p] * node.w * mode(node, k / DIM) * Q[poly_size(DIM) * p + k];
@@ -358,7 +384,7 @@ void poly_g2p(const PointRows &points, double *Q, const TransferStep &step, int 
   constexpr int DIM = C::dim;
   const double inv_moment = FunctionOf<C::shape>::inv_moment * step.inv_h * step.inv_h;
   for (int p = first; p < last; p++) {
-    const Stencil<C> stencil(points, p, step, base);
+    const Stencil<DIM, C::shape> stencil(points, p, step, base);
     for (int k = 0; k < poly_size(DIM); k++) {
       double &q = Q[poly_size(DIM) * p + k] = 0.0;
       for (const Node &node : stencil.node)
@@ -400,9 +426,9 @@ TransferKernels choose_plain(int dim, Shape shape, Transfer transfer, bool split
       k.p2g_force = p2g<C, FORCE>;
       k.g2p = g2p<C, true>;
       k.g2p_gradient = g2p<C, false>;
-      k.flush = move_box<C, FLUSH>;
-      k.load = move_box<C, LOAD>;
-      if constexpr (C::nreal == 8) k.load_mean = move_box<C, LOAD_MEAN>;
+      k.flush = move_box<C::dim, C::shape, C::nreal, FLUSH>;
+      k.load = move_box<C::dim, C::shape, C::nreal, LOAD>;
+      if constexpr (C::nreal == 8) k.load_mean = move_box<C::dim, C::shape, 8, LOAD_MEAN>;
       k.prefetch = [](double *, double *, const int *, const int *) {
       };
       return k;

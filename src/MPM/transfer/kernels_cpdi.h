@@ -6,19 +6,17 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Fast transfers of points with convected domains (CPDI, CPDI2), see transfer/kernels_isa.cpp and
+#ifndef MPM_TRANSFER_KERNELS_CPDI_H
+#define MPM_TRANSFER_KERNELS_CPDI_H
+
+// Fast transfers of points with convected domains (CPDI, CPDI2), see transfer/kernels_fast.h and
 // transfer/cpdi.h. What they do is written plainly in transfer/kernels_reference.cpp.
 //
 // Corners and their weights are made for a group of points side by side, then each corner is
 // scattered or gathered as a point with a linear function would be.
 
-#include "transfer/kernels_isa.h"
-
-#if defined(MPM_HAVE_VECTORS)
-
-#include "transfer/kernels_fast.h"
-
 #include "transfer/cpdi.h"
+#include "transfer/kernels_fast.h"
 
 namespace {
 
@@ -382,12 +380,12 @@ template <int DIM> struct Stencil {
   }
 };
 
-/** P2G of what PARTS says. */
+/** P2G of what PARTS says; AFFINE: uses C. */
 template <int DIM, Shape SHAPE, bool AFFINE, int NREAL, int PARTS>
 void p2g(const PointRows &rows, const TransferStep &transfer, int first, int last,
          const int base[3], double *tile, int box[6])
 {
-  constexpr bool momentum = PARTS & MOMENTUM, force = PARTS & FORCE, affine = AFFINE && momentum;
+  constexpr bool momentum = PARTS & MOMENTUM, force = PARTS & FORCE;
   constexpr bool both = NREAL == 8 && PARTS == ALL;
   constexpr int WIDTH = both ? 8 : 4;
   using V = Vec<WIDTH>;
@@ -411,7 +409,7 @@ void p2g(const PointRows &rows, const TransferStep &transfer, int first, int las
     const Index ahead = p + AHEAD;
     prefetch<domains.ROW>(points.domain, ahead);
     prefetch<3>(points.x, ahead);
-    prefetch_momentum_and_force<DIM, PARTS, AFFINE, false>(points, ahead);
+    prefetch_momentum_and_force<DIM, PARTS, AFFINE>(points, ahead, false);
     domains.set(points, p, n, frame);
     for (int d = 0; d < DIM; d++) {
       lowest[d] = min(lowest[d], Vec<GROUP>::load(domains.low[d]));
@@ -458,18 +456,18 @@ void p2g(const PointRows &rows, const TransferStep &transfer, int first, int las
       }
 
       if (__builtin_expect(domains.wide[l] == 0.0, 1)) {
-        if constexpr (affine) {
+        if constexpr (AFFINE) {
           MPM_UNROLL
           for (int a = 0; a < DIM; a++) value += (domains.start[a][l] - domains.place[a][l]) * A[a];
         }
-        stencil[l].template scatter<affine, force, NREAL>(entry + NREAL * domains.place_of_start[l],
+        stencil[l].template scatter<AFFINE, force, NREAL>(entry + NREAL * domains.place_of_start[l],
                                                           value, A, S);
         continue;
       }
       for (int c = 0; c < N; c++) {
         const double *const wg = domains.wg[c][l];
         V corner = value, wA[DIM];
-        if constexpr (affine)
+        if constexpr (AFFINE)
           for (int a = 0; a < DIM; a++) {
             const int k = DIM * c + a;
             corner += (frame.inv_h * domains.x[k][l] - domains.f[k][l]) * A[a];
@@ -478,7 +476,7 @@ void p2g(const PointRows &rows, const TransferStep &transfer, int first, int las
         corner = wg[0] * corner;
         if constexpr (force)
           for (int a = 0; a < DIM; a++) corner += wg[1 + a] * S[a];
-        add_to_cell<DIM, affine, NREAL>(entry + NREAL * domains.corner[c][l],
+        add_to_cell<DIM, AFFINE, NREAL>(entry + NREAL * domains.corner[c][l],
                                         domains.f[DIM * c] + l, corner, wA);
       }
     }
@@ -596,22 +594,30 @@ template <class C> TransferKernels domain_kernels()
   TransferKernels k = table_with_tiles<C>();
   k.p2g = p2g<C::dim, C::shape, affine, C::nreal, ALL>;
   k.p2g_momentum = p2g<C::dim, C::shape, affine, C::nreal, MOMENTUM>;
-  k.p2g_force = p2g<C::dim, C::shape, affine, C::nreal, FORCE>;
+  k.p2g_force = p2g<C::dim, C::shape, false, C::nreal, FORCE>;
   k.g2p = g2p<C::dim, C::shape, C::transfer, C::nreal, true>;
-  k.g2p_gradient = g2p<C::dim, C::shape, C::transfer, C::nreal, false>;
+  k.g2p_gradient = g2p<C::dim, C::shape, PIC, C::nreal, false>;
   return k;
 }
 
-}    // namespace
-
-TransferKernels MPM_NS::MPM_OF_ISA(mpm_kernels_cpdi)(const KernelChoice &choice)
+/** Those of a shape. */
+template <Shape SHAPE> TransferKernels domain_kernels_of_shape(const KernelChoice &choice)
 {
   return choose(choice, [](auto c) {
-    if constexpr (c.file() == CPDI_FILE)
+    if constexpr (c.shape == SHAPE && c.fast())
       return domain_kernels<decltype(c)>();
     else
       return TransferKernels();
   });
 }
+
+}    // namespace
+
+/** Defines mpm_kernels_<name>_<isa>(), which makes the kernels of a shape. */
+#define MPM_DOMAIN_KERNELS_OF_SHAPE(name, SHAPE)                                     \
+  TransferKernels MPM_NS::MPM_OF_ISA(mpm_kernels_##name)(const KernelChoice &choice) \
+  {                                                                                  \
+    return domain_kernels_of_shape<SHAPE>(choice);                                   \
+  }
 
 #endif
