@@ -120,7 +120,8 @@ namespace {
         history[DAMAGED][i] = D;
         fracture += (shear + tension + pressed) * b.vol0[i];
 
-        const double work = b.plastic_work[i], share = had_failed > 0.0 ? kept : 0.5 * (kept0 + kept);
+        const double work = b.plastic_work[i],
+                     share = had_failed > 0.0 ? kept : 0.5 * (kept0 + kept);
         less_plastic += (1.0 - share) * work * b.vol0[i];
         less_heat += (1.0 - p.chi * share) * work * b.vol0[i];
         b.heat[i] += p.chi * (share - kept0) * work;
