@@ -42,6 +42,8 @@ TEST(Math, FunctionsMatchLibrary)
     EXPECT_NEAR(law::minus1_minus_log(y), exact, 1e-12 * exact);
     const double w = std::exp(0.03 * x);
     EXPECT_NEAR(law::pow(w, 0.37), std::pow(w, 0.37), 2e-15 * std::pow(w, 0.37));
+    EXPECT_GE(law::rough_exp(x), (1.0 - 1e-6) * std::exp(x));
+    EXPECT_LE(law::rough_exp(x), 1.07 * std::exp(x));
     if (testing::Test::HasFailure()) FAIL() << "x = " << x << ", y = " << y;
   }
   EXPECT_EQ(law::log(1.0), 0.0);
@@ -862,10 +864,13 @@ void expect_same(const std::vector<double> &a, const std::vector<double> &b, int
   }
 }
 
-/** The return mapping of gurson iterates to 1e-12. */
+/** The return mapping of gurson iterates to 1e-12; at the apex of mohr/coulomb, shear strains are what round-off leaves of
+ *  trial strains that are a thousand times larger. */
 double tolerance(const Sample &sample)
 {
-  return std::string(sample.text).find("gurson") == std::string::npos ? 1e-13 : 1e-8;
+  const std::string text = sample.text;
+  if (text.find("gurson") != std::string::npos) return 1e-8;
+  return text.find("mohr/coulomb") != std::string::npos ? 1e-12 : 1e-13;
 }
 
 TEST(InstructionSets, AgreeWithBaseline)

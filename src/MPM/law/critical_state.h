@@ -25,6 +25,12 @@ namespace {
     double p0, dp0;    ///< compressive strength, and derivative
   };
 
+  /** Where the plastic volume strain is looked for; strong: positive
+   *  when some strength is left at the end. */
+  struct CriticalBracket {
+    double start, end, strong;
+  };
+
   /** Laws with an elliptic yield surface in pressure p and equivalent stress q that hardens with
    *  plastic volume strain, and associated flow (K.H. Roscoe, J.B. Burland, in: Engineering
    *  Plasticity, Cambridge, 1968, p. 535; with tensile strength BETA p0 as in J. Gaume et al., Nat.
@@ -39,7 +45,7 @@ namespace {
    *  iteration within a bracket, a batch at a time, finds the root.
    *
    *  Law has: Base; G, M_b, beta; begin(history, i, volume); compress(trial, x);
-   *  bracket(trial, sign of u, p_m, start, end) of x, false when no strength is left at the end;
+   *  bracket(trial, p - p_m, p_m) of x;
    *  finish(history, i, trial, x, increment of shear). */
   template <class Law, class Base> struct CriticalStateReturn : Base {
     using Base::Base;
@@ -51,27 +57,33 @@ namespace {
       const double G = law.G, Mb = law.Mb, beta = law.beta, c = 3.0 * G / Mb;
       const double center = 0.5 * (1.0 - beta), half_axis = 0.5 * (1.0 + beta);
       alignas(64) double x[BATCH], from[BATCH], to[BATCH], sign[BATCH], p[BATCH], hard[BATCH];
-      double yielding = 0.0;
-      MPM_SIMD_SUM(yielding)
+      MPM_SIMD
       for (int i = 0; i < b.n; i++) {
         const CriticalTrial state = law.begin(history, i, t.volume[i]);
         p[i] = state.p;
         hard[i] = state.hard;
+      }
+      double yielding = 0.0;
+      MPM_SIMD_SUM(yielding)
+      for (int i = 0; i < b.n; i++) {
+        const CriticalTrial state = {p[i], hard[i]};
         const Compressed k = law.compress(state, 0.0);
         const double a = half_axis * k.p0, q = 3.0 * G * t.shear[i];
         const double up = k.p + beta * k.p0, down = k.p0 - k.p;    // a (1 + u), a (1 - u)
-        const bool plastic = q * q > Mb * Mb * up * down || up < 0.0 || down < 0.0;
-        sign[i] = k.p > center * k.p0 ? 1.0 : -1.0;
-        double start, end;
-        const bool strong = law.bracket(state, sign[i], center * k.p0, start, end);
+        // conditions are signs of numbers: combinations of comparisons do not vectorize
+        const double out = max(q * q - Mb * Mb * up * down, max(-up, -down));
+        const double plastic = out > 0.0 ? 1.0 : 0.0, above = k.p - center * k.p0;
+        const CriticalBracket at = law.bracket(state, above, center * k.p0);
         // without strength x goes to the end, where there is no stress, unless shear alone made it yield
-        const bool search = plastic && (strong || (sign[i] < 0.0 && up > 0.0));
+        const double search = min(out, max(at.strong, min(-above, up))) > 0.0 ? 1.0 : 0.0;
         // where the surface has no size at the start, the first guess is inside of the bracket
-        const double guess = a > 0.0 ? start : 0.5 * (start + end);
-        x[i] = !plastic ? 0.0 : search ? guess : end;
-        from[i] = start;
-        to[i] = search ? end : start;
-        yielding += search ? 1.0 : 0.0;
+        const double guess = a > 0.0 ? at.start : 0.5 * (at.start + at.end);
+        const double first = search > 0.0 ? guess : at.end;
+        sign[i] = above > 0.0 ? 1.0 : -1.0;
+        x[i] = plastic > 0.0 ? first : 0.0;
+        from[i] = at.start;
+        to[i] = search > 0.0 ? at.end : at.start;
+        yielding += search;
       }
       for (int iteration = 0; yielding > 0.0 && iteration < MAX_ITERATIONS; iteration++) {
         double busy = 0.0;
@@ -91,21 +103,24 @@ namespace {
           const double w = (k.p + beta * k.p0) * inv * ((k.p0 - k.p) * inv);    // 1 - u^2
           const double f = s * s - w, df = 2.0 * (s * ds + u * du);
           const double root = std::sqrt(max(1.0 + f, 1e-300));
-          const bool beyond = u * sign[i] <= 0.0;
-          const double r = beyond ? -1.0 : f / (root * (1.0 + root));
+          const double inside = u * sign[i], here = x[i], first = from[i], last = to[i];
+          const double r = inside > 0.0 ? f / (root * (1.0 + root)) : -1.0;
           const double slope = 0.5 * df / (root * root * root);
-          const bool active = from[i] != to[i];
-          from[i] = active && r > 0.0 ? x[i] : from[i];
-          to[i] = active && !(r > 0.0) ? x[i] : to[i];
-          const double newton = x[i] - r / slope, half = 0.5 * (from[i] + to[i]);
-          const double low = min(from[i], to[i]), high = max(from[i], to[i]);
-          const double next = !beyond && newton > low && newton < high ? newton : half;
+          const double active = first != last ? 1.0 : 0.0;
+          const double side = active * r, new_last = side > 0.0 ? last : here;
+          const double begin = side > 0.0 ? here : first, end = active > 0.0 ? new_last : last;
+          const double newton = here - r / slope, half = 0.5 * (begin + end);
+          const double low = min(begin, end), high = max(begin, end);
+          const double fits = min(inside, min(newton - low, high - newton));
+          const double next = fits > 0.0 ? newton : half;
           const double size = s * s + max(w, -w);
-          const bool done = !beyond && max(f, -f) <= 1e-14 * size;
-          const double step = active && !done ? next - x[i] : 0.0;
-          x[i] += step;
-          to[i] = done ? from[i] : to[i];
-          busy += step * step > 1e-30 * x[i] * x[i] ? 1.0 : 0.0;
+          const double more = max(f, -f) - 1e-14 * size;
+          const double go = inside > 0.0 ? more : 1.0, on = go <= 0.0 ? 0.0 : active;
+          const double step = on > 0.0 ? next - here : 0.0, moved = here + step;
+          x[i] = moved;
+          from[i] = begin;
+          to[i] = go <= 0.0 ? begin : end;
+          busy += step * step > 1e-30 * moved * moved ? 1.0 : 0.0;
         }
         if (busy == 0.0) break;
       }
@@ -186,12 +201,9 @@ namespace {
     }
 
     /** p = pc/2 where x (1/kappa + 1/(lambda - kappa)) = ln(2 p/pc) */
-    MPM_INLINE bool bracket(const CriticalTrial &s, double, double, double &start,
-                            double &end) const
+    MPM_INLINE CriticalBracket bracket(const CriticalTrial &s, double, double) const
     {
-      start = 0.0;
-      end = swell * (s.p - s.hard + 0.69314718055994530942);
-      return true;
+      return {0.0, swell * (s.p - s.hard + 0.69314718055994530942), 1.0};
     }
 
     MPM_INLINE void finish(History history, int i, const CriticalTrial &s, double x, double D) const
@@ -261,13 +273,11 @@ namespace {
     }
 
     /** The pressure vanishes at x = p/K, the strength at x = alpha. */
-    MPM_INLINE bool bracket(const CriticalTrial &s, double sign, double center, double &start,
-                            double &end) const
+    MPM_INLINE CriticalBracket bracket(const CriticalTrial &s, double above, double center) const
     {
-      const bool strong = s.p > K * s.hard;
-      start = sign > 0.0 && strong ? max(s.hard, 0.0) : 0.0;
-      end = sign > 0.0 || !strong ? s.p / K : max((s.p - center) / K, s.hard);
-      return strong;
+      const double strong = s.p - K * s.hard;
+      return {min(above, strong) > 0.0 ? max(s.hard, 0.0) : 0.0,
+              max(above, -strong) > 0.0 ? s.p / K : max((s.p - center) / K, s.hard), strong};
     }
 
     MPM_INLINE void finish(History history, int i, const CriticalTrial &s, double x, double D) const

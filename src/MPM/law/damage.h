@@ -79,7 +79,8 @@ namespace {
     static void update(const LawParameters &p, Batch &b, History history)
     {
       const Law law(p, b);
-      const bool none = p.value[Law::AFTER] > 0.0;
+      // conditions are numbers, 0 or 1: combinations of comparisons do not vectorize
+      const double none = p.value[Law::AFTER] > 0.0 ? 1.0 : 0.0;
       const double friction = p.value[Law::AFTER + 2];
       double less_plastic = 0.0, less_heat = 0.0, fracture = 0.0;
       MPM_SIMD_SUM(less_plastic, less_heat, fracture)
@@ -92,34 +93,35 @@ namespace {
         const double D0 = history[DAMAGED][i];
         const double grown = law.grow(b, history, i, intact);
         const double D = D0 < 1.0 ? min(max(grown, D0), 1.0) : 1.0;
-        const bool had_failed = !(D0 < 1.0), failed = !(D < 1.0);
+        const double had_failed = D0 < 1.0 ? 0.0 : 1.0, failed = D < 1.0 ? 0.0 : 1.0;
 
         // deviator: share kept before and after, and of its energy after
         const double tau = std::sqrt(0.5 * norm2(intact.s)), hold = friction * max(-mean, 0.0);
         const double slip = tau > hold ? hold / tau : 1.0;
-        const double kept0 = b.kept[i], kept = failed ? slip : 1.0 - D;
-        const double stored = failed ? slip * slip : 1.0 - D;
-        double released =
+        const double kept0 = b.kept[i], kept = failed > 0.0 ? slip : 1.0 - D;
+        const double stored = failed > 0.0 ? slip * slip : 1.0 - D;
+        const double shear =
             (kept - stored) * ws + (kept0 - kept) * std::sqrt(ws * history[SHEAR_ENERGY][i]);
-        history[SHEAR_ENERGY][i] = failed ? stored * ws : ws;
+        history[SHEAR_ENERGY][i] = failed > 0.0 ? stored * ws : ws;
 
         // tension: energy at the start follows from that of the end by the work of the step
         const double rest = mean > 0.0 ? min(history[REST_ENERGY][i], we) : we;
         const double wt = we - rest, dJ = b.J[i] - b.Jold[i];
-        released += (D - D0) * max(wt - 0.5 * max(mean, 0.0) * dJ, 0.0);
+        const double tension = (D - D0) * max(wt - 0.5 * max(mean, 0.0) * dJ, 0.0);
         history[REST_ENERGY][i] = rest;
 
         // what is lost on top of that when nothing at all is left
-        const bool gone = none && failed;
-        released += gone && !had_failed ? rest - 0.5 * min(mean, 0.0) * dJ : 0.0;
-        const double press = gone ? 0.0 : min(mean, 0.0);
+        const double gone = none * failed, now = gone * (1.0 - had_failed);
+        const double pressed = now > 0.0 ? rest - 0.5 * min(mean, 0.0) * dJ : 0.0;
+        const double press = gone > 0.0 ? 0.0 : min(mean, 0.0);
         store_stress(
             b, i,
             add_diagonal(kept * intact.s, (1.0 - D) * max(mean, 0.0) + press + b.viscous_mean[i]));
         history[DAMAGED][i] = D;
-        fracture += released * b.vol0[i];
+        fracture += (shear + tension + pressed) * b.vol0[i];
 
-        const double work = b.plastic_work[i], share = had_failed ? kept : 0.5 * (kept0 + kept);
+        const double work = b.plastic_work[i],
+                     share = had_failed > 0.0 ? kept : 0.5 * (kept0 + kept);
         less_plastic += (1.0 - share) * work * b.vol0[i];
         less_heat += (1.0 - p.chi * share) * work * b.vol0[i];
         b.heat[i] += p.chi * (share - kept0) * work;

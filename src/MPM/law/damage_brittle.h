@@ -85,15 +85,17 @@ namespace {
       const double tension = max(b.volume_energy[i] - history[REST_ENERGY][i], 0.0);
       const double w = b.shear_energy[i] + (intact.mean > 0.0 ? tension : 0.0);
       const double ratio = crack * r * r / max(w, 1e-300);    // r_f if the crack began now
-      const bool begins = ratio > 1.0 ? r >= 1.0 : r > 0.0 && w >= crack;
+      const double least = ratio > 1.0 ? r - 1.0 : min(r - 1e-300, w - crack);
+      const double begins = least >= 0.0 ? 1.0 : 0.0;
       const double old = history[DUCTILITY][i];
-      const double rf = old > 0.0 ? old : begins ? max(ratio, 1.0) : 0.0;
+      const double rf = old > 0.0 ? old : begins > 0.0 ? max(ratio, 1.0) : 0.0;
       const double now = r > 0.0 ? std::sqrt(w * rf / crack) : 0.0;
       const double largest = max(history[OPENING][i], now);
       history[DUCTILITY][i] = rf;
       history[OPENING][i] = largest;
       const double softened = 1.0 - (rf - largest) / max(largest * (rf - 1.0), 1e-300);
-      return rf > 0.0 ? (largest >= rf || rf <= 1.0 ? 1.0 : softened) : 0.0;
+      const double lost = max(largest - rf, 1.0 - rf) >= 0.0 ? 1.0 : softened;
+      return rf > 0.0 ? lost : 0.0;
     }
   };
 
@@ -139,7 +141,7 @@ namespace {
       const double strain = max(principal(intact), 0.0) * inv_E, D = history[DAMAGED][i];
       const double more = exp(log_growth + exponent * log(max(strain, 1e-300)));
       const double side = pow(D, 1.0 / 3.0) + (strain > 0.0 ? min(more, 1.0) : 0.0);
-      history[FRAGMENT][i] += strain > 0.0 && D < 1.0 ? size : 0.0;
+      history[FRAGMENT][i] += min(strain, 1.0 - D) > 0.0 ? size : 0.0;
       return side * side * side;
     }
   };

@@ -67,6 +67,19 @@ namespace {
                LEAST_MODULUS * (K + (4.0 / 3.0) * G));
   }
 
+  /** Adds the energy K/2 tr^2(e) + G dev(e):dev(e) of logarithmic strains e, from rows of be - I. */
+  MPM_INLINE void hencky_energy(const Batch &b, double K, double G, History history, double *w)
+  {
+    Tensors strain;
+    log_strains(b.n, history, strain.row);
+    MPM_SIMD
+    for (int i = 0; i < b.n; i++) {
+      const Sym e = load_rows(strain.row, i);
+      const double v = trace(e);
+      w[i] += 0.5 * K * v * v + G * norm2(deviator(e));
+    }
+  }
+
   /** Laws with F = Fe Fp and the history be = Fe Fe^T (J.C. Simo, Comput. Methods Appl. Mech. Eng. 99
    *  (1992) 61; E.A. de Souza Neto, D. Peric, D.R.J. Owen, Computational Methods for Plasticity,
    *  2008, ch. 14.4): the trial state f be f^T is exact for any rotation, its logarithmic strain
@@ -95,8 +108,8 @@ namespace {
   };
 
   /** Return of any isotropic law. Law has, besides its declaration: Law(parameters), map(batch, history,
-   *  states), which returns the strains and makes the rest, with the history rows behind those of be,
-   *  and stored(history, i, strain, strain, strain), the energy per reference volume. */
+   *  states), which returns the strains and makes the rest, with the history rows behind those of be;
+   *  and energy(). */
   template <class Law> struct PrincipalReturn : FiniteStrainReturn {
     static void update(const LawParameters &p, Batch &b, History history)
     {
@@ -129,16 +142,6 @@ namespace {
       }
       b.work[PLASTIC] += plastic;
       b.work[HEAT] += p.chi * plastic;
-    }
-
-    static void energy(const LawParameters &p, const Batch &b, History history, double *w)
-    {
-      const Law law(p);
-      const Spectral s(b.n, history);
-      MPM_SIMD
-      for (int i = 0; i < b.n; i++)
-        w[i] += law.stored(history + ELASTIC_STRAIN_ROWS, i, log_strain(s.value[0][i]),
-                           log_strain(s.value[1][i]), log_strain(s.value[2][i]));
     }
   };
 

@@ -238,10 +238,25 @@ namespace {
       }
     }
 
-    MPM_INLINE double stored(History history, int i, double e0, double e1, double e2) const
+    static void energy(const LawParameters &p, const Batch &b, History history, double *w)
     {
-      return hardening(history[0][i]) *
-          elastic(expm1(e0), expm1(e1), expm1(e2), expm1(e0 + e1 + e2));
+      const LawSnow law(p);
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const Sym c = load_rows(history, i);
+        const double mean = (1.0 / 3.0) * trace(c), dJ2 = elastic_volume(c);
+        const DeviatorRoots root(deviator(c));
+        const double pair = mean - 0.5 * root.first;
+        w[i] += law.hardening(history[ELASTIC_STRAIN_ROWS][i]) *
+            law.elastic(root_minus_1(mean + root.first), root_minus_1(pair + root.half),
+                        root_minus_1(pair - root.half), root_minus_1(dJ2));
+      }
+    }
+
+    /** sqrt(1 + c) - 1 */
+    static MPM_INLINE double root_minus_1(double c)
+    {
+      return c / (1.0 + std::sqrt(max(1.0 + c, 0.0)));
     }
 
     /** J d sigma_nn / d strain_nn = h (2 mu s_n^2 + lambda JE^2) along a principal axis. */

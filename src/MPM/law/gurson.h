@@ -141,6 +141,8 @@ namespace {
     {
       alignas(64) double mt[BATCH], qt[BATCH], m[BATCH], q[BATCH], f[BATCH], more[BATCH];
       alignas(64) double active[BATCH], open[BATCH];    // more: increment of the matrix strain
+      alignas(64) double v[BATCH], D[BATCH];            // plastic volume and shear strain
+      const double inv_K = 1.0 / K, inv_G3 = 1.0 / (3.0 * G);
       double yielding = 0.0;
       MPM_SIMD_SUM(yielding)
       for (int i = 0; i < b.n; i++) {
@@ -172,15 +174,20 @@ namespace {
         const double square = 0.5 * (dx * dx + dy * dy + dz * dz) + 3.0 * shears;
         const double q0 = inv * std::sqrt(square), in = max(surface(old, m0).q2 - q0 * q0, 0.0);
         const double t = in / (in + max(out, 1e-300)), y = b.J[i] * flow;
-        m[i] = y * (m0 + t * (mn - m0));
-        q[i] = y * (q0 + t * (qn - q0));
+        const double most = inv_K * mt[i], all = inv_G3 * qt[i];
+        const double opens = max(most, 0.0), closes = max(most - opens, -0.5 * old);
+        const double vi = max(min(most - inv_K * y * (m0 + t * (mn - m0)), opens), closes);
+        const double Di = min(max(all - inv_G3 * y * (q0 + t * (qn - q0)), 0.0), all);
+        const double work = (mt[i] - K * vi) * vi + (qt[i] - 3.0 * G * Di) * Di;
+        v[i] = vi;
+        D[i] = Di;
+        more[i] = max(work / ((1.0 - old) * y), 0.0);
       }
       if (yielding == 0.0) return;
 
-      const double left = newton(b, history, mt, qt, active, m, q, f, more, open);
+      const double left = newton(b, history, mt, qt, active, v, D, more, m, q, f, open);
       if (left > 0.0) search(b, history, mt, qt, open, m, q, f, more);
 
-      const double inv_K = 1.0 / K, inv_G3 = 1.0 / (3.0 * G);
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
         const double yields = active[i], fs = effective(f[i]), trial = inv_K * mt[i];
@@ -204,24 +211,16 @@ namespace {
      *
      *    Q^2 - surface(f, M) = 0,   D a - v Q = 0,   (1 - f) w - M v - Q D = 0
      *
-     *  In: m, q are a first guess. Out: the solution, and open where there is none that is sure;
+     *  In: v, D, w are a first guess. Out: the solution, and open where there is none that is sure;
      *  returns the number of these points. */
-    MPM_INLINE double newton(const Batch &b, History history, const double *mt, const double *qt,
-                             const double *active, double *m, double *q, double *f, double *w,
-                             double *open) const
+    [[gnu::noinline]] double newton(const Batch &b, History history, const double *mt,
+                                    const double *qt, const double *active, double *v, double *D,
+                                    double *w, double *m, double *q, double *f, double *open) const
     {
-      alignas(64) double v[BATCH], D[BATCH], good[BATCH];
+      alignas(64) double good[BATCH];
       const double inv_K = 1.0 / K, G3 = 3.0 * G, inv_G3 = 1.0 / G3, bq = 1.5 * q2;
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
-        const double old = max(history[POROSITY][i], LEAST);
-        const double most = inv_K * mt[i], y = b.J[i] * flow_stress(history[EPLASTIC][i]);
-        const double vi =
-            max(min(most - inv_K * m[i], max(most, 0.0)), max(min(most, 0.0), -0.5 * old));
-        const double Di = min(max(inv_G3 * (qt[i] - q[i]), 0.0), inv_G3 * qt[i]);
-        v[i] = vi;
-        D[i] = Di;
-        w[i] = max(((mt[i] - K * vi) * vi + (qt[i] - G3 * Di) * Di) / ((1.0 - old) * y), 0.0);
         open[i] = active[i];
         good[i] = 0.0;
       }
@@ -307,8 +306,9 @@ namespace {
     }
 
     /** The slow and sure way for the points that are open, see the description of the law. */
-    MPM_INLINE void search(const Batch &b, History history, const double *mt, const double *qt,
-                           double *open, double *m, double *q, double *f, double *more) const
+    [[gnu::noinline]] void search(const Batch &b, History history, const double *mt,
+                                  const double *qt, double *open, double *m, double *q, double *f,
+                                  double *more) const
     {
       alignas(64) double f0[BATCH], y[BATCH], z[BATCH], chord[BATCH], w[BATCH], active[BATCH];
       alignas(64) double last[BATCH], missed[BATCH], end[BATCH];
@@ -373,9 +373,9 @@ namespace {
 
     /** z at which S vanishes, between no volume flow (S < 0) and no mean stress (S > 0), until
      *  |S| < close y, and the inverse slope there: false position (Illinois method) with bisections. */
-    MPM_INLINE void bracket(const Batch &b, const double *mt, const double *qt, const double *f0,
-                            const double *y, const double *active, double *z, double *chord,
-                            double *end, double close) const
+    [[gnu::noinline]] void bracket(const Batch &b, const double *mt, const double *qt,
+                                   const double *f0, const double *y, const double *active,
+                                   double *z, double *chord, double *end, double close) const
     {
       alignas(64) double za[BATCH], zb[BATCH], Sa[BATCH], Sb[BATCH], side[BATCH], open[BATCH];
       MPM_SIMD

@@ -170,7 +170,11 @@ namespace {
         D[i] = 0.0;
         yielding += yields[i];
       }
-      if (SOFT && yielding > 0.0) soften(b, history, s1, s2, s3, yields, D);
+      if (yielding == 0.0) {    // what follows would change no bit
+        for (int i = 0; i < b.n; i++) s.work[i] = 0.0;
+        return;
+      }
+      if (SOFT) soften(b, history, s1, s2, s3, yields, D);
       // changes of the ordered stresses
       alignas(64) double c1[BATCH], c2[BATCH], c3[BATCH];
       MPM_SIMD
@@ -213,7 +217,7 @@ namespace {
     {
       constexpr int MAX_ITERATIONS = 60;
       alignas(64) double low[BATCH], high[BATCH], r_low[BATCH], r_high[BATCH], side[BATCH];
-      alignas(64) double open[BATCH];
+      alignas(64) double open[BATCH], d0[BATCH], d1[BATCH], r0[BATCH], r1[BATCH];    // the last two
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
         // strain of the return less D: not negative at the low end, and not positive at the high one,
@@ -221,18 +225,22 @@ namespace {
         low[i] = r_low[i] = 0.0;
         high[i] = yields[i] * surface.strain({s1[i], s2[i], s3[i]}, {0.0, 0.0, 0.0});
         r_high[i] = -high[i];
-        side[i] = 0.0;
+        side[i] = d0[i] = d1[i] = r0[i] = r1[i] = 0.0;
         open[i] = high[i] > 0.0 ? 1.0 : 0.0;
       }
       for (int iteration = 0; iteration < MAX_ITERATIONS; iteration++) {
-        // D = 0 comes first, then a step of the fixed-point iteration, which comes close, then secants
-        const double late = iteration > 1 ? 1.0 : 0.0;
+        // D = 0 comes first, then a step of the fixed-point iteration, which comes close, then the secant of
+        // the last two, or now and then, and where that is outside, of the bracket
+        const double late = iteration > 1 ? 1.0 : 0.0, free = iteration % 4 != 1 ? 1.0 : 0.0;
         double busy = 0.0;
         MPM_SIMD_SUM(busy)
         for (int i = 0; i < b.n; i++) {
           const Ordered t = {s1[i], s2[i], s3[i]};
           const double gap = r_low[i] - r_high[i], width = high[i] - low[i];
-          const double secant = low[i] + width * r_low[i] / max(gap, 1e-300);
+          const double chord = low[i] + width * r_low[i] / max(gap, 1e-300);
+          const double quick = d1[i] + r1[i] * (d1[i] - d0[i]) / (r0[i] - r1[i]);
+          const double fits = free * min(quick - low[i], high[i] - quick);
+          const double secant = fits > 0.0 ? quick : chord;
           const double first = min(r_low[i], high[i]), d = first + late * (secant - first);
           double sp, cc, at_apex;
           strength<true>(history[0][i] + d, sp, cc);
@@ -247,6 +255,10 @@ namespace {
           low[i] = up > 0.0 ? d : low[i];
           high[i] = down > 0.0 ? d : high[i];
           side[i] = r > 0.0 ? 1.0 : -1.0;
+          d0[i] = d1[i];
+          r0[i] = r1[i];
+          d1[i] = d;
+          r1[i] = r;
           D[i] = on > 0.0 ? d : D[i];
           const double rest = min(max(r, -r) - 1e-13 * d, high[i] - low[i] - 1e-14 * high[i]);
           open[i] = rest > 0.0 ? on : 0.0;
@@ -256,10 +268,10 @@ namespace {
       }
     }
 
-    MPM_INLINE double stored(History, int, double e0, double e1, double e2) const
+    static void energy(const LawParameters &p, const Batch &b, History history, double *w)
     {
-      const double v = e0 + e1 + e2;
-      return 0.5 * (K - (2.0 / 3.0) * G) * v * v + G * (e0 * e0 + e1 * e1 + e2 * e2);
+      const LawMohrCoulomb law(p);
+      hencky_energy(b, law.K, law.G, history, w);
     }
   };
 

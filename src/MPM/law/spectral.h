@@ -39,65 +39,104 @@ namespace {
     }
   };
 
-  MPM_INLINE void rotate_pair(double &v, double &w, double c, double n)
+  struct Direction {
+    double x, y, z;
+  };
+
+  MPM_INLINE double product(const Direction &a, const Direction &b)
   {
-    const double old = v;
-    v = c * v - n * w;
-    w = n * old + c * w;
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+  }
+  MPM_INLINE Direction cross(const Direction &a, const Direction &b)
+  {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  }
+  MPM_INLINE Direction product(const Sym &s, const Direction &v)
+  {
+    return {s.xx * v.x + s.xy * v.y + s.xz * v.z, s.xy * v.x + s.yy * v.y + s.yz * v.z,
+            s.xz * v.x + s.yz * v.y + s.zz * v.z};
   }
 
-  /** One Jacobi rotation that makes the entry pq zero; r is the third index, i the point. */
-  MPM_INLINE void jacobi_rotation(double &pp, double &qq, double &pq, double &pr, double &qr,
-                                  Spectral &s, int p, int q, int i)
+  /** Unit vector along the principal axis whose value is farthest from the mean: that axis is well
+   *  defined whatever the others are. It is normal to the rows of s less this value; of their three
+   *  vector products the largest is taken. z when it is a principal axis, or when all values are equal. */
+  MPM_INLINE Direction distinct_axis(const Sym &s)
   {
-    const double d = qq - pp, root = std::sqrt(d * d + 4.0 * pq * pq);
-    // tangent of the smaller angle; the tiny number makes 0/0 a zero
-    const double t = 2.0 * pq * (d < 0.0 ? -1.0 : 1.0) / ((d < 0.0 ? -d : d) + root + 1e-300);
-    const double c = 1.0 / std::sqrt(1.0 + t * t), n = t * c;
-    pp -= t * pq;
-    qq += t * pq;
-    pq = 0.0;
-    rotate_pair(pr, qr, c, n);
-    rotate_pair(s.vector[0][p][i], s.vector[0][q][i], c, n);
-    rotate_pair(s.vector[1][p][i], s.vector[1][q][i], c, n);
-    rotate_pair(s.vector[2][p][i], s.vector[2][q][i], c, n);
+    const Sym d = deviator(s);
+    const double size = std::sqrt((1.0 / 6.0) * norm2(d)), inv = size > 0.0 ? 1.0 / size : 0.0;
+    const Sym n = inv * d;
+    const double value = DeviatorRoots(n).first;
+    const Direction x = {n.xx - value, n.xy, n.xz}, y = {n.xy, n.yy - value, n.yz};
+    const Direction z = {n.xz, n.yz, n.zz - value};
+    const Direction u = cross(x, y), v = cross(y, z), w = cross(z, x);
+    const double uu = product(u, u), vv = product(v, v), ww = product(w, w);
+    const double vx = vv > ww ? v.x : w.x, vy = vv > ww ? v.y : w.y, vz = vv > ww ? v.z : w.z;
+    const double rest = vv > ww ? vv : ww, largest = max(uu, rest);
+    const double ux = uu > rest ? u.x : vx, uy = uu > rest ? u.y : vy, uz = uu > rest ? u.z : vz;
+    const double scale = 1.0 / std::sqrt(max(largest, 1e-300));
+    const double tilt = s.xz * s.xz + s.yz * s.yz > 0.0 ? scale : 0.0;
+    return {tilt * ux, tilt * uy, tilt > 0.0 ? tilt * uz : 1.0};
   }
 
-  /** Decomposition by cyclic Jacobi rotations (G.H. Golub, C.F. Van Loan, Matrix Computations,
-   *  ch. 8.5): no branches on points, accurate to round-off also when eigenvalues coincide. Four sweeps
-   *  leave off-diagonal entries below 1e-20 of the deviator for any 3x3 matrix. Where z is a principal
-   *  axis of all points, as in plane strain, one rotation is all that there is to do: others would leave
-   *  every bit as it is. */
+  /** Decomposition by one axis that is well defined and a rotation of the plane normal to it (C.G.J. Jacobi): no
+   *  branches on points, accurate to round-off also when values coincide. Where z is a principal axis of all
+   *  points, as in plane strain, the rotation is all that there is to do. */
   MPM_INLINE Spectral::Spectral(int n, const double (*tensors)[BATCH])
   {
-    alignas(64) double xy[BATCH], xz[BATCH], yz[BATCH];
+    alignas(64) double xx[BATCH], yy[BATCH], xy[BATCH];    // in the plane
     double out_of_plane = 0.0;
     MPM_SIMD_SUM(out_of_plane)
     for (int i = 0; i < n; i++) {
-      value[0][i] = tensors[0][i];
-      value[1][i] = tensors[1][i];
+      xx[i] = tensors[0][i];
+      yy[i] = tensors[1][i];
       value[2][i] = tensors[2][i];
       xy[i] = tensors[3][i];
-      xz[i] = tensors[4][i];
-      yz[i] = tensors[5][i];
       vector[0][0][i] = vector[1][1][i] = vector[2][2][i] = 1.0;
       vector[0][1][i] = vector[0][2][i] = vector[1][0][i] = 0.0;
       vector[1][2][i] = vector[2][0][i] = vector[2][1][i] = 0.0;
-      out_of_plane += xz[i] == 0.0 && yz[i] == 0.0 ? 0.0 : 1.0;
+      const double square = tensors[4][i] * tensors[4][i] + tensors[5][i] * tensors[5][i];
+      out_of_plane += square > 0.0 ? 1.0 : 0.0;
     }
-    if (out_of_plane == 0.0) {
-      MPM_SIMD
-      for (int i = 0; i < n; i++)
-        jacobi_rotation(value[0][i], value[1][i], xy[i], xz[i], yz[i], *this, 0, 1, i);
-      return;
-    }
-    for (int sweep = 0; sweep < 4; sweep++) {
+    if (out_of_plane > 0.0) {
       MPM_SIMD
       for (int i = 0; i < n; i++) {
-        jacobi_rotation(value[0][i], value[1][i], xy[i], xz[i], yz[i], *this, 0, 1, i);
-        jacobi_rotation(value[0][i], value[2][i], xz[i], xy[i], yz[i], *this, 0, 2, i);
-        jacobi_rotation(value[1][i], value[2][i], yz[i], xy[i], xz[i], *this, 1, 2, i);
+        const Sym s = load_rows(tensors, i);
+        const Direction w = distinct_axis(s);
+        // two unit vectors normal to it (T. Duff et al., J. Comput. Graph. Tech. 6 (2017) 1)
+        const double sign = w.z < 0.0 ? -1.0 : 1.0, a = -1.0 / (sign + w.z), c = w.x * w.y * a;
+        const Direction u = {1.0 + sign * w.x * w.x * a, sign * c, -sign * w.x};
+        const Direction v = {c, sign + w.y * w.y * a, -w.y};
+        const Direction su = product(s, u), sv = product(s, v), sw = product(s, w);
+        xx[i] = product(u, su);
+        yy[i] = product(v, sv);
+        xy[i] = product(u, sv);
+        value[2][i] = product(w, sw);
+        vector[0][0][i] = u.x;
+        vector[1][0][i] = u.y;
+        vector[2][0][i] = u.z;
+        vector[0][1][i] = v.x;
+        vector[1][1][i] = v.y;
+        vector[2][1][i] = v.z;
+        vector[0][2][i] = w.x;
+        vector[1][2][i] = w.y;
+        vector[2][2][i] = w.z;
       }
+    }
+    MPM_SIMD
+    for (int i = 0; i < n; i++) {
+      const double d = yy[i] - xx[i], o = xy[i], root = std::sqrt(d * d + 4.0 * o * o);
+      // tangent of the smaller angle; the tiny number makes 0/0 a zero
+      const double t = 2.0 * o * (d < 0.0 ? -1.0 : 1.0) / ((d < 0.0 ? -d : d) + root + 1e-300);
+      const double c = 1.0 / std::sqrt(1.0 + t * t), sine = t * c;
+      value[0][i] = xx[i] - t * o;
+      value[1][i] = yy[i] + t * o;
+      const double x = vector[0][0][i], y = vector[1][0][i], z = vector[2][0][i];
+      vector[0][0][i] = c * x - sine * vector[0][1][i];
+      vector[1][0][i] = c * y - sine * vector[1][1][i];
+      vector[2][0][i] = c * z - sine * vector[2][1][i];
+      vector[0][1][i] = sine * x + c * vector[0][1][i];
+      vector[1][1][i] = sine * y + c * vector[1][1][i];
+      vector[2][1][i] = sine * z + c * vector[2][1][i];
     }
   }
 
@@ -112,12 +151,12 @@ namespace {
     r.yz += v * y * z;
   }
 
+  /** Equal values give a multiple of the identity to the last digit. */
   MPM_INLINE Sym Spectral::recompose(int i, double value0, double value1, double value2) const
   {
-    Sym r = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-    add_dyad(r, vector[0][0][i], vector[1][0][i], vector[2][0][i], value0);
-    add_dyad(r, vector[0][1][i], vector[1][1][i], vector[2][1][i], value1);
-    add_dyad(r, vector[0][2][i], vector[1][2][i], vector[2][2][i], value2);
+    Sym r = {value2, value2, value2, 0.0, 0.0, 0.0};
+    add_dyad(r, vector[0][0][i], vector[1][0][i], vector[2][0][i], value0 - value2);
+    add_dyad(r, vector[0][1][i], vector[1][1][i], vector[2][1][i], value1 - value2);
     return r;
   }
 

@@ -67,21 +67,119 @@ namespace {
     double J;        ///< mean volume ratio of the step
   };
 
+  /** Flow stress at the end of a step as a function of its plastic strain increment D, its first two
+   *  derivatives, and how far D is from the next kink of the function. */
+  struct FlowStress {
+    double y, dy, ddy, room;
+  };
+
+  /** c x^n near an x0 > 0 that is the same for all D: c x0^n (1 + n z + n (n - 1)/2 z^2), z = D slope. Beyond
+   *  the half of x0 it stays what it is there. */
+  struct NearPower {
+    alignas(64) double at[BATCH];         ///< c x0^n
+    alignas(64) double inverse[BATCH];    ///< 1/x0
+
+    MPM_INLINE double keep(int i, double value, double x0)
+    {
+      at[i] = value;
+      inverse[i] = 1.0 / (x0 + 1e-300);
+      return value;
+    }
+    MPM_INLINE FlowStress operator()(int i, double n, double change) const
+    {
+      const double w = change * inverse[i], z = min(max(w, -0.5), 0.5), half = 0.5 * (n - 1.0);
+      const double slope = z == w ? n * at[i] * inverse[i] : 0.0;
+      return {at[i] * (1.0 + n * z * (1.0 + half * z)), slope * (1.0 + 2.0 * half * z),
+              2.0 * half * slope * inverse[i], UNBOUNDED};
+    }
+  };
+
+  /** Change of D by a Newton step of third order (E. Halley, 1694) for r(D) = q - stiff D - Y(D) = 0; from far
+   *  above the root, by one of Newton's in log D. */
+  MPM_INLINE double third_order_step(const TrialState &t, double D, const FlowStress &f)
+  {
+    const double r = t.q - t.stiff * D - f.y, s = t.stiff + f.dy, square = 2.0 * s * s;
+    const double bent = min(max(square + r * f.ddy, 0.5 * square), 8.0 * square);
+    const double far = D * (rough_exp(r / (s * D)) - 1.0), near = 2.0 * r * s / bent;
+    return r < -0.5 * s * D ? far : near;
+  }
+
+  /** A guess that is good to some digits, from what Flow says that the flow stress is nearly. */
+  template <class Flow>
+  MPM_INLINE void improve_guess(const Batch &b, const Flow &flow, const double *trial,
+                                const double *stiff, const double *start, double *D)
+  {
+    constexpr int MAX_ITERATIONS = 6;
+    double busy = 1.0;
+    for (int iteration = 0; iteration < MAX_ITERATIONS && busy > 0.0; iteration++) {
+      busy = 0.0;
+      MPM_SIMD_SUM(busy)
+      for (int i = 0; i < b.n; i++) {
+        const double d = D[i], safe = max(d, 1e-300);
+        const TrialState t{trial[i], stiff[i], 0.5 * (b.J[i] + b.Jold[i])};
+        const double step = third_order_step(t, safe, flow.estimate(i, start[i], t, safe));
+        D[i] = d > 0.0 ? d + step : d;
+        busy += d > 0.0 && step * step > 1e-4 * d * d ? 1.0 : 0.0;
+      }
+    }
+  }
+
+  /** Solves r(D) = 0 without any safeguard: one to three steps are enough for nearly all points. open: 1 for
+   *  points to solve; what is left of it has no solution yet, and what these points have in D is no more
+   *  than a guess. Returns their number. */
+  template <class Flow>
+  MPM_INLINE double solve_quickly(const Batch &b, const Flow &flow, History history,
+                                  const double *trial, const double *stiff, const double *start,
+                                  double *yield, double *D, double *open)
+  {
+    constexpr int MAX_ITERATIONS = 4;
+    double busy = 1.0;
+    for (int iteration = 0; iteration < MAX_ITERATIONS && busy > 0.0; iteration++) {
+      busy = 0.0;
+      MPM_SIMD_SUM(busy)
+      for (int i = 0; i < b.n; i++) {
+        const double d = D[i], safe = max(d, 1e-300);
+        const TrialState t{trial[i], stiff[i], 0.5 * (b.J[i] + b.Jold[i])};
+        const FlowStress f = flow.stress(history, i, start[i], t, safe);
+        const double step = third_order_step(t, safe, f), size = max(step, -step);
+        // an upper bound of what is left, as |ddy/D| is one of the third derivative
+        const double rest = max(f.ddy, -f.ddy) * size * size * size, on = open[i];
+        const double off = max(rest - 1e-14 * f.y * safe, size - min(f.room, 0.1 * safe));
+        const double here = off <= 0.0 ? 0.0 : on;    // not a number: stays open
+        yield[i] = on > 0.0 ? min(f.y + step * (f.dy + 0.5 * step * f.ddy), t.q) : yield[i];
+        D[i] = on > 0.0 ? d + step : d;
+        open[i] = here;
+        busy += here;
+      }
+    }
+    return busy;
+  }
+
   /** Solves r(D) = q - stiff D - Y(D) = 0 for the points with D > 0, which is the first guess; most:
-   *  upper bound of D. All points of the batch iterate together. r is convex in D for power hardening
-   *  (n < 1), logarithmic or power rate dependence, and both together, and concave in log D. So
-   *  Newton in D from the left and Newton in log D from the right approach the root from their side
-   *  only, also with infinite slope at D = 0 and when D is smaller than any strain that is ever
-   *  seen (small exponents). A bracket catches all else (thermal softening). */
+   *  upper bound of D. What solve_quickly() does not find is found with a bracket, all points
+   *  together. r is convex in D for power hardening (n < 1), logarithmic or power rate dependence, and
+   *  both together, and concave in log D. So Newton in D from the left and Newton in log D from the right
+   *  approach the root from their side only, also with infinite slope at D = 0 and when D is smaller
+   *  than any strain that is ever seen (small exponents). The bracket catches all else (thermal
+   *  softening). */
   template <class Flow>
   MPM_INLINE void solve_return(const Batch &b, const Flow &flow, History history,
                                const double *trial, const double *stiff, const double *start,
                                const double *most, double *yield, double *D)
   {
     constexpr int MAX_ITERATIONS = 100;
-    alignas(64) double low[BATCH], high[BATCH];
+    alignas(64) double low[BATCH], high[BATCH], open[BATCH], guess[BATCH];
     MPM_SIMD
     for (int i = 0; i < b.n; i++) {
+      guess[i] = D[i];
+      open[i] = D[i] > 0.0 ? 1.0 : 0.0;
+    }
+    if constexpr (Flow::estimates) improve_guess(b, flow, trial, stiff, start, D);
+    if (solve_quickly(b, flow, history, trial, stiff, start, yield, D, open) == 0.0) return;
+    MPM_SIMD
+    for (int i = 0; i < b.n; i++) {
+      const double quick = D[i] < most[i] ? D[i] : guess[i];
+      D[i] = open[i] > 0.0 ? quick : D[i];
       low[i] = 0.0;
       high[i] = most[i];
     }
@@ -89,25 +187,25 @@ namespace {
       double busy = 0.0;
       MPM_SIMD_SUM(busy)
       for (int i = 0; i < b.n; i++) {
-        const double d = D[i];
+        const double d = D[i], on = open[i];
         const TrialState t{trial[i], stiff[i], 0.5 * (b.J[i] + b.Jold[i])};
-        double y, dy;
-        flow.stress(history, i, start[i], t, d, y, dy);
-        const double r = t.q - t.stiff * d - y;
-        const double s = t.stiff + dy;    // -dr/dD
+        const FlowStress f = flow.stress(history, i, start[i], t, d);
+        const double r = t.q - t.stiff * d - f.y;
+        const double s = t.stiff + f.dy;    // -dr/dD
         const double lo = r > 0.0 ? d : low[i], hi = r > 0.0 ? high[i] : d;
         const double newton = r > 0.0 ? d + r / s : d * exp(r / (d * s));
         const double half = 0.5 * (lo + hi);
         const double next = s > 0.0 && newton > lo && newton < hi ? newton : half;
-        const bool active = d > 0.0;
-        const bool done = d <= 1e-300 || max(r, -r) <= 1e-13 * y + 1e-15 * t.q;
-        const double step = active && !done ? next - d : 0.0;
+        const bool done = d <= 1e-300 || max(r, -r) <= 1e-13 * f.y + 1e-15 * t.q;
+        const double step = done ? 0.0 : next - d;
         low[i] = lo;
         high[i] = hi;
-        yield[i] = min(y + dy * step, t.q);
-        D[i] = d + step;
+        yield[i] = on > 0.0 ? min(f.y + f.dy * step, t.q) : yield[i];
+        D[i] = on > 0.0 ? d + step : d;
         // the error left by a small Newton step is its square: no need to look again
-        busy += step * step > (Flow::smooth ? 1e-14 * d * d : 0.0) ? 1.0 : 0.0;
+        const double size = max(step, -step) < f.room ? 1e-14 * d * d : 0.0;
+        open[i] = step * step > size ? on : 0.0;
+        busy += open[i];
       }
       if (busy == 0.0) return;
     }
@@ -119,17 +217,18 @@ namespace {
    *
    *    r(D) = q - 3 G/J D - Y(D) = 0,   q = trial equivalent stress
    *
-   *  Flow has: Flow(parameters, batch); smooth, false when Y(D) has kinks; shear(i), the shear
-   *  modulus of the step; start(history, i), the flow stress for D -> 0; stress(history, i, start,
-   *  trial state, D, Y, dY/dD); begin(start, D), the flow stress at the beginning of the step, which
-   *  makes the plastic work with Y. start is the stress at which plastic flow begins in this step:
+   *  Flow has: Flow(parameters, batch); shear(i), the shear modulus of the step; start(history, i),
+   *  the flow stress for D -> 0; stress(history, i, start, trial state, D), which returns Y(D); with
+   *  estimates = true also estimate(i, start, trial state, D), which is about the same with fewer
+   *  elementary functions, from what start() has kept; begin(start, D), the flow stress at the beginning
+   *  of the step, which makes the plastic work with Y. start is the stress at which plastic flow begins in this step:
    *  that of start(), or with goes_on = true that of the last step, unless it was far below. First
    *  row of the history: the equivalent plastic strain.
    */
   template <class Flow> struct RadialReturn : ShearElasticity {
     static void update(const LawParameters &p, Batch &b, History history)
     {
-      const Flow flow(p, b);
+      Flow flow(p, b);
       alignas(64) double trial[BATCH], stiff[BATCH], start[BATCH], yield[BATCH], D[BATCH];
       alignas(64) double most[BATCH];
 
@@ -180,7 +279,7 @@ namespace {
    *  of s - X/J, what resists D is Y, the growth C g/J of the back stress along the flow, and the
    *  fading of the old back stress, which turns s - w X/J. */
   template <class Flow> struct KinematicFlow {
-    static constexpr bool smooth = Flow::smooth;
+    static constexpr bool estimates = Flow::estimates;
     const Flow &flow;
     double C, gamma;
     alignas(64) double trial[BATCH];     ///< equivalent value of xi = s - X/J
@@ -202,14 +301,23 @@ namespace {
       const double q2 = trial[i] * trial[i] + faded * (2.0 * mixed[i] + faded * square[i]);
       return std::sqrt(max(q2, 1e-30 * trial[i] * trial[i]));
     }
-    MPM_INLINE void stress(History history, int i, double start, const TrialState t, double D,
-                           double &y, double &dy) const
+    MPM_INLINE FlowStress stress(History history, int i, double start, const TrialState t,
+                                 double D) const
     {
-      flow.stress(history, i, start, t, D, y, dy);
+      return with_back_stress(flow.stress(history, i, start, t, D), i, D);
+    }
+    MPM_INLINE FlowStress estimate(int i, double start, const TrialState t, double D) const
+    {
+      return with_back_stress(flow.estimate(i, start, t, D), i, D);
+    }
+    MPM_INLINE FlowStress with_back_stress(const FlowStress &f, int i, double D) const
+    {
       double faded;
       const double g = growth(D, faded), q = equivalent(i, faded), w = 1.0 - faded;
-      y += slope[i] * g + (trial[i] - q);
-      dy += slope[i] * w - gamma * w * (mixed[i] + faded * square[i]) / q;
+      const double inv = 1.0 / q, fade = mixed[i] + faded * square[i], dq = gamma * w * fade * inv;
+      const double ddq = inv * (gamma * gamma * w * (w * square[i] - fade) - dq * dq);
+      return {f.y + slope[i] * g + (trial[i] - q), f.dy + slope[i] * w - dq,
+              f.ddy - gamma * slope[i] * w - ddq, f.room};
     }
   };
 
@@ -228,7 +336,7 @@ namespace {
     static void update(const LawParameters &p, double C, double gamma, Batch &b, History history,
                        History back)
     {
-      const Flow flow(p, b);
+      Flow flow(p, b);
       KinematicFlow<Flow> kinematic(flow, C, gamma);
       alignas(64) double stiff[BATCH], start[BATCH], yield[BATCH], D[BATCH], most[BATCH];
 
@@ -271,10 +379,11 @@ namespace {
         const Sym X = load_rows(back, i), kept = (1.0 - faded) * X;
         const Sym xi = load_stress(b, i) + (-inv_J) * kept;
         const double y = yield[i] - kinematic.slope[i] * g - (kinematic.trial[i] - q);
-        const bool flows = d > 0.0;
-        const Sym Xnew = flows ? kept + (C * g / q) * xi : X;
+        // without flow: 0 and 1. A choice of tensors would not vectorize
+        const double grown = d > 0.0 ? C * g / q : 0.0, scale = d > 0.0 ? y / q : 1.0;
+        const Sym Xnew = kept + grown * xi;
         store_rows(back, i, Xnew);
-        store_stress(b, i, inv_J * Xnew + (flows ? y / q : 1.0) * xi);
+        store_stress(b, i, inv_J * Xnew + scale * xi);
         const double recovery = 0.75 * gamma / C * (norm2(X) + norm2(Xnew)) * d;
         const double begin = flow.begin(start[i], d);
         const double work = J * (0.5 * (begin + y) * d) + recovery;

@@ -22,7 +22,8 @@ namespace {
   enum { J2_BACK_C = J2_PERZYNA_M + 1, J2_BACK_GAMMA };
 
   /** Flow stress at rest over the plastic strain e: kinds, or the size of a table. */
-  enum { HARDENING_POWER, HARDENING_VOCE, SHORT_TABLE = 8, LONG_TABLE = LawParameters::MAX_TERMS };
+  enum { HARDENING_LINEAR, HARDENING_POWER, HARDENING_VOCE, SHORT_TABLE = 8 };
+  constexpr int LONG_TABLE = LawParameters::MAX_TERMS;
 
   /** Straight lines between the points, from SIGMAY at e = 0; constant behind the last one. SIZE:
    *  room for points, as only loops of fixed length vectorize inside of others. */
@@ -43,24 +44,36 @@ namespace {
         y = p.term[k][1];
       }
     }
-    MPM_INLINE double operator()(double e, double &slope) const
+    MPM_INLINE double start(int, double e) { return (*this)(e).y; }
+    MPM_INLINE FlowStress operator()(double e) const
     {
-      double y = sigmay, dy = 0.0;
+      double y = sigmay, dy = 0.0, room = UNBOUNDED;
 #pragma GCC unroll 32
       for (int k = 0; k < SIZE; k++) {
-        const double x = e - from[k];
+        const double x = e - from[k], left = length[k] - x;
         y += slopes[k] * min(max(x, 0.0), length[k]);
-        dy = x >= 0.0 && x < length[k] ? slopes[k] : dy;
+        dy = x >= 0.0 && left > 0.0 ? slopes[k] : dy;
+        room = min(room, min(max(x, -x), max(left, -left)));
       }
-      slope = dy;
-      return y;
+      return {y, dy, 0.0, room};
     }
+  };
+
+  /** SIGMAY + H e */
+  template <> struct J2Hardening<HARDENING_LINEAR> {
+    double sigmay, H;
+
+    explicit J2Hardening(const LawParameters &p) : sigmay(p.value[J2_SIGMAY]), H(p.value[J2_H]) {}
+    MPM_INLINE double start(int, double e) { return (*this)(e).y; }
+    MPM_INLINE FlowStress operator()(double e) const { return {sigmay + H * e, H, 0.0, UNBOUNDED}; }
   };
 
   /** SIGMAY + H e + B e^N (P. Ludwik, Elemente der technologischen Mechanik, 1909), or
    *  SIGMAY (1 + e/E0)^N (H.W. Swift, J. Mech. Phys. Solids 1 (1952) 1). */
   template <> struct J2Hardening<HARDENING_POWER> {
     double base, H, B, N, inv, offset;
+    alignas(64) double y[BATCH], slope[BATCH], bend[BATCH],
+        most[BATCH];    ///< at the start of the step
 
     explicit J2Hardening(const LawParameters &p)
     {
@@ -72,11 +85,26 @@ namespace {
       inv = swift ? 1.0 / p.value[J2_SWIFT_E0] : 1.0;
       offset = swift ? 1.0 : 0.0;
     }
-    MPM_INLINE double operator()(double e, double &slope) const
+    MPM_INLINE double start(int i, double e)
     {
-      const double x = offset + inv * e, power = B * pow(x, N);
-      slope = H + N * inv * power / max(x, 1e-300);
-      return base + H * e + power;
+      const FlowStress f = (*this)(e);
+      y[i] = f.y;
+      slope[i] = f.dy;
+      bend[i] = f.ddy;
+      most[i] = 0.5 * (e + offset / inv);
+      return f.y;
+    }
+    /** As if D were small against x. */
+    MPM_INLINE FlowStress estimate(int i, double D) const
+    {
+      const double z = min(D, most[i]), dy = slope[i] + z * bend[i], go = z < D ? 0.0 : 1.0;
+      return {y[i] + z * (slope[i] + 0.5 * z * bend[i]), go * dy, go * bend[i], UNBOUNDED};
+    }
+    MPM_INLINE FlowStress operator()(double e) const
+    {
+      const double x = offset + inv * e, power = B * pow(x, N), inv_x = inv / max(x, 1e-300);
+      const double grow = N * power * inv_x;
+      return {base + H * e + power, H + grow, (N - 1.0) * grow * inv_x, UNBOUNDED};
     }
   };
 
@@ -89,11 +117,11 @@ namespace {
         H(p.value[J2_VOCE_H])
     {
     }
-    MPM_INLINE double operator()(double e, double &slope) const
+    MPM_INLINE double start(int, double e) { return (*this)(e).y; }
+    MPM_INLINE FlowStress operator()(double e) const
     {
-      const double left = expm1(-beta * e);
-      slope = H + Q * beta * (1.0 + left);
-      return sigmay + H * e - Q * left;
+      const double left = expm1(-beta * e), slope = Q * beta * (1.0 + left);
+      return {sigmay + H * e - Q * left, H + slope, -beta * slope, UNBOUNDED};
     }
   };
 
@@ -103,7 +131,7 @@ namespace {
    *    Y + S (r/RATE)^(1/M)        P. Perzyna, Adv. Appl. Mech. 9 (1966) 243
    */
   template <int KIND, bool RATE> struct J2Flow {
-    static constexpr bool smooth = KIND < SHORT_TABLE, goes_on = RATE;
+    static constexpr bool goes_on = RATE, estimates = KIND == HARDENING_POWER;
     J2Hardening<KIND> hardening;
     double G;
     double inv_rate, exponent, factor, drag;    ///< factor and drag times (r/RATE)^exponent
@@ -118,20 +146,23 @@ namespace {
       drag = p.value[J2_PERZYNA_S];
     }
     MPM_INLINE double shear(int) const { return G; }
-    MPM_INLINE double start(History history, int i) const
+    MPM_INLINE double start(History history, int i) { return hardening.start(i, history[0][i]); }
+    MPM_INLINE FlowStress stress(History history, int i, double, const TrialState, double D) const
     {
-      double slope;
-      return hardening(history[0][i], slope);
+      return with_rate(hardening(history[0][i] + D), D);
     }
-    MPM_INLINE void stress(History history, int i, double, const TrialState, double D, double &y,
-                           double &dy) const
+    MPM_INLINE FlowStress estimate(int i, double, const TrialState, double D) const
     {
-      y = hardening(history[0][i] + D, dy);
-      if (RATE) {
-        const double x = pow(D * inv_rate, exponent), fast = 1.0 + factor * x;
-        dy = dy * fast + (y * factor + drag) * exponent * x / max(D, 1e-300);
-        y = y * fast + drag * x;
-      }
+      return with_rate(hardening.estimate(i, D), D);
+    }
+    MPM_INLINE FlowStress with_rate(const FlowStress &f, double D) const
+    {
+      if (!RATE) return f;
+      const double x = pow(D * inv_rate, exponent), fast = 1.0 + factor * x;
+      const double inv = 1.0 / max(D, 1e-300), dx = exponent * inv * x,
+                   resist = f.y * factor + drag;
+      return {f.y * fast + drag * x, f.dy * fast + resist * dx,
+              f.ddy * fast + (2.0 * f.dy * factor + resist * (exponent - 1.0) * inv) * dx, f.room};
     }
     MPM_INLINE double begin(double start, double) const { return start; }
   };
@@ -209,8 +240,10 @@ namespace {
         choose<SHORT_TABLE>(p, b, history);
       else if (voce(p) || p.value[J2_VOCE_H] > 0.0)
         choose<HARDENING_VOCE>(p, b, history);
-      else if (power(p) || rate(p) || kinematic(p))
+      else if (power(p))
         choose<HARDENING_POWER>(p, b, history);
+      else if (rate(p) || kinematic(p))
+        choose<HARDENING_LINEAR>(p, b, history);
       else
         linear(p, b, history);
     }

@@ -23,12 +23,12 @@ namespace {
    *  work of the step, (Y_start + Y)/2 D with Y_start at the old e and T and the present rate; other
    *  heat of the step counts in the next one. */
   template <bool THERMAL> struct JohnsonCookFlow {
-    static constexpr bool smooth = true;    // kinks are too small to matter
-    static constexpr bool goes_on = false;
+    static constexpr bool goes_on = false, estimates = true;
     double G, A, B, N, C, inv_rate;
     double M, soft, Tref, inv_range;    ///< soft: 1, or 0 without thermal softening
     double warm;                        ///< temperature rise per plastic work
     const double *temperature;
+    NearPower hardening, softening;
 
     JohnsonCookFlow(const LawParameters &p, const Batch &b) :
         G(p.value[JC_G]), A(p.value[JC_A]), B(p.value[JC_B]), N(p.value[JC_N]), C(p.value[JC_C]),
@@ -44,10 +44,12 @@ namespace {
     {
       return min(max((T - Tref) * inv_range, 0.0), 1.0);
     }
-    MPM_INLINE double start(History history, int i) const
+    MPM_INLINE double start(History history, int i)
     {
-      const double hard = A + B * pow(history[0][i], N);
-      return THERMAL ? hard * (1.0 - soft * pow(homologous(temperature[i]), M)) : hard;
+      const double e = history[0][i], hard = A + hardening.keep(i, B * pow(e, N), e);
+      if (!THERMAL) return hard;
+      const double t = homologous(temperature[i]);
+      return hard * (1.0 - softening.keep(i, soft * pow(t, M), t));
     }
 
     /** Factor of the rate, and its derivative with respect to D. */
@@ -58,25 +60,52 @@ namespace {
       return 1.0 + C * log(max(x, 1.0));
     }
 
-    MPM_INLINE void stress(History history, int i, double start, const TrialState trial, double D,
-                           double &y, double &dy) const
+    MPM_INLINE FlowStress stress(History history, int i, double start, const TrialState trial,
+                                 double D) const
     {
-      const double e = history[0][i] + D, power = B * pow(e, N);
-      const double hard = A + power, dhard = N * power / max(e, 1e-300);
+      const double e = history[0][i] + D, inv_e = 1.0 / max(e, 1e-300), power = B * pow(e, N);
+      const double hard = A + power, dhard = N * power * inv_e;
       double dfast;
-      const double fast = rate(D, dfast);
-      y = hard * fast;
-      dy = dhard * fast + hard * dfast;
-      if (THERMAL) {
+      const double fast = rate(D, dfast), over = D - 1.0 / inv_rate;
+      const double y = hard * fast, dy = dhard * fast + hard * dfast;
+      // d2 fast/dD2 = -dfast/D
+      const double ddy = (N - 1.0) * dhard * inv_e * fast + dfast * (2.0 * dhard - hard / D);
+      const double room = max(over, -over);
+      if constexpr (!THERMAL) {
+        return {y, dy, ddy, room};
+      } else {
         const double sigma = trial.q - trial.stiff * D;    // is Y at the solution
         const double half = 0.5 * trial.J * warm;
         const double T = temperature[i] + half * (start * fast + sigma) * D;
         const double dT = half * (start * (fast + dfast * D) + sigma - trial.stiff * D);
-        const double t = homologous(T);
+        const double ddT = half * (start * dfast - 2.0 * trial.stiff);
+        const double t = homologous(T), inv_t = 1.0 / max(t, 1e-300), dt = inv_t * inv_range * dT;
         const double tm = soft * pow(t, M);
-        const double dcold = t > 0.0 && t < 1.0 ? -M * tm / t * inv_range * dT : 0.0;
-        dy = dy * (1.0 - tm) + y * dcold;
-        y = y * (1.0 - tm);
+        const double changes = t > 0.0 && t < 1.0 ? -M * tm : 0.0;    // in dt
+        const double cold = 1.0 - tm, dcold = changes * dt;
+        const double ddcold = (M - 1.0) * dcold * dt + changes * inv_t * inv_range * ddT;
+        const double u = (T - Tref) * inv_range, v = 1.0 - u, speed = inv_range * max(dT, -dT);
+        return {y * cold, dy * cold + y * dcold, ddy * cold + 2.0 * dy * dcold + y * ddcold,
+                min(room, min(max(u, -u), max(v, -v)) / max(soft * speed, 1e-300))};
+      }
+    }
+
+    MPM_INLINE FlowStress estimate(int i, double start, const TrialState trial, double D) const
+    {
+      const FlowStress h = hardening(i, N, D);
+      const double inv = 1.0 / D, hard = A + h.y, x = D * inv_rate;
+      const double fast = 1.0 + C * log(max(x, 1.0)), dfast = x > 1.0 ? C * inv : 0.0;
+      const double y = hard * fast, dy = h.dy * fast + hard * dfast;
+      const double ddy = h.ddy * fast + dfast * (2.0 * h.dy - hard * inv);
+      if constexpr (!THERMAL) {
+        return {y, dy, ddy, UNBOUNDED};
+      } else {
+        const double half = 0.5 * inv_range * trial.J * warm;
+        const double work = start * fast + trial.q - trial.stiff * D;
+        const double dt = half * (work + start * dfast * D - trial.stiff * D);
+        const FlowStress m = softening(i, M, half * work * D);
+        const double cold = 1.0 - m.y, dcold = -m.dy * dt;
+        return {y * cold, dy * cold + y * dcold, ddy * cold + 2.0 * dy * dcold, UNBOUNDED};
       }
     }
 
@@ -152,10 +181,11 @@ namespace {
   };
 
   struct SteinbergFlow {
-    static constexpr bool smooth = false;    // kink at YMAX
     static constexpr bool goes_on = true;    // when f falls
+    static constexpr bool estimates = true;
     double G0, Y0, beta, n, ymax, pre;
     alignas(64) double G[BATCH], strong[BATCH];    ///< strong: f, or 0 when molten
+    NearPower hardening;
 
     SteinbergFlow(const LawParameters &p, const Batch &b) :
         G0(p.value[SCG_G0]), Y0(p.value[SCG_Y0]), beta(p.value[SCG_BETA]), n(p.value[SCG_N]),
@@ -171,16 +201,24 @@ namespace {
       }
     }
     MPM_INLINE double shear(int i) const { return G[i]; }
-    MPM_INLINE double start(History history, int i) const
+    MPM_INLINE double start(History history, int i)
     {
-      return strong[i] * min(Y0 * pow(1.0 + beta * (history[0][i] + pre), n), ymax);
+      const double x = 1.0 + beta * (history[0][i] + pre);
+      return strong[i] * min(hardening.keep(i, Y0 * pow(x, n), x), ymax);
     }
-    MPM_INLINE void stress(History history, int i, double, const TrialState, double D, double &y,
-                           double &dy) const
+    MPM_INLINE FlowStress estimate(int i, double, const TrialState, double D) const
+    {
+      const FlowStress h = hardening(i, n, beta * D);
+      const double grows = h.y < ymax ? strong[i] * beta : 0.0;
+      return {strong[i] * min(h.y, ymax), grows * h.dy, grows * beta * h.ddy, UNBOUNDED};
+    }
+    MPM_INLINE FlowStress stress(History history, int i, double, const TrialState, double D) const
     {
       const double x = 1.0 + beta * (history[0][i] + D + pre), hard = Y0 * pow(x, n);
-      y = strong[i] * min(hard, ymax);
-      dy = hard < ymax ? strong[i] * n * beta * hard / x : 0.0;
+      const double inv = beta / x, slope = n * hard * inv, left = ymax - hard;
+      const double grows = left > 0.0 ? strong[i] : 0.0;
+      return {strong[i] * min(hard, ymax), grows * slope, grows * (n - 1.0) * slope * inv,
+              0.5 * max(left, -left) / max(slope, 1e-300)};
     }
     MPM_INLINE double begin(double start, double) const { return start; }
   };
@@ -260,10 +298,11 @@ namespace {
    *  exponent is at most 0. T rises by the heat of the plastic work of the step,
    *  (Y_begin + Y)/2 D; other heat of the step counts in the next one. */
   struct ZerilliArmstrongFlow {
-    static constexpr bool smooth = false, goes_on = true;    // kink of the exponent
+    static constexpr bool goes_on = true, estimates = true;
     double G, C0, C1, C2, C3, C4, C5, N;
     double inv_rate, melt, warm;    ///< warm: temperature rise per plastic work
     const double *temperature;
+    NearPower hardening, root;    ///< C5 e^N, e^(1/2)
 
     ZerilliArmstrongFlow(const LawParameters &p, const Batch &b) :
         G(p.value[ZA_G]), C0(p.value[ZA_C0]), C1(p.value[ZA_BCC_C1]), C2(p.value[ZA_FCC_C2]),
@@ -275,30 +314,51 @@ namespace {
     {
     }
     MPM_INLINE double shear(int) const { return G; }
-    MPM_INLINE double start(History history, int i) const
+    MPM_INLINE double start(History history, int i)
     {
       // rate 0: no thermal stress, except at absolute zero
-      const double e = history[0][i], T = temperature[i];
-      const double thermal = T * C4 > 0.0 ? 0.0 : (C1 + C2 * std::sqrt(e)) * exp(-C3 * T);
-      const double y = C0 + thermal + C5 * pow(e, N);
+      const double e = history[0][i], T = temperature[i],
+                   square_root = root.keep(i, std::sqrt(e), e);
+      const double thermal = T * C4 > 0.0 ? 0.0 : (C1 + C2 * square_root) * exp(-C3 * T);
+      const double y = C0 + thermal + hardening.keep(i, C5 * pow(e, N), e);
       return T < melt ? y : 0.0;
     }
-    MPM_INLINE void stress(History history, int i, double begin, const TrialState t, double D,
-                           double &y, double &dy) const
+    MPM_INLINE FlowStress estimate(int i, double begin, const TrialState t, double D) const
     {
-      const double e = history[0][i] + D, root = std::sqrt(e), power = C5 * pow(e, N);
+      const FlowStress h = hardening(i, N, D), r = root(i, 0.5, D);
+      const double half = 0.5 * t.J * warm, work = begin + t.q - t.stiff * D, inv_D = 1.0 / D;
+      const double T = temperature[i] + half * work * D, dT = half * (work - t.stiff * D);
+      const double slope = C4 * log(max(D * inv_rate, 1e-300)) - C3, x = slope * T;
+      const double height = exp(min(x, 0.0)), thermal = (C1 + C2 * r.y) * height;
+      const double below = x < 0.0 ? 1.0 : 0.0, dx = below * (slope * dT + C4 * T * inv_D);
+      const double ddx = below * C4 * inv_D * (2.0 * dT - T * inv_D);
+      const double rise = C2 * height, solid = temperature[i] < melt ? 1.0 : 0.0;
+      return {solid * (C0 + thermal + h.y), solid * (thermal * dx + rise * r.dy + h.dy),
+              solid * (thermal * (ddx + dx * dx) + rise * (r.ddy + 2.0 * dx * r.dy) + h.ddy),
+              UNBOUNDED};
+    }
+    MPM_INLINE FlowStress stress(History history, int i, double begin, const TrialState t,
+                                 double D) const
+    {
+      const double e = history[0][i] + D, inv_e = 1.0 / max(e, 1e-300), root = std::sqrt(e);
+      const double power = C5 * pow(e, N), dpower = N * power * inv_e;
       const double sigma = t.q - t.stiff * D;    // is Y at the solution
       const double half = 0.5 * t.J * warm;
       const double T = max(temperature[i] + half * (begin + sigma) * D, 0.0);
-      const double dT = half * (begin + sigma - t.stiff * D);
+      const double dT = half * (begin + sigma - t.stiff * D), inv_D = 1.0 / max(D, 1e-300);
       const double slope = C4 * log(max(D * inv_rate, 1e-300)) - C3, x = slope * T;
-      const double thermal = (C1 + C2 * root) * exp(min(x, 0.0));
-      const double dx = x < 0.0 ? slope * dT + C4 * T / max(D, 1e-300) : 0.0;
+      const double height = exp(min(x, 0.0)), thermal = (C1 + C2 * root) * height;
+      const double below = x < 0.0 ? 1.0 : 0.0, all = slope * dT + C4 * T * inv_D;
+      const double dx = below * all;
+      const double ddx =
+          below * (C4 * inv_D * (2.0 * dT - T * inv_D) - 2.0 * slope * half * t.stiff);
+      const double rise = 0.5 * C2 * root * inv_e * height;    // of C2 sqrt(e)
       const double solid = temperature[i] < melt ? 1.0 : 0.0;
-      y = solid * (C0 + thermal + power);
-      dy = solid *
-          (thermal * dx + thermal * C2 / max(2.0 * root * (C1 + C2 * root), 1e-300) +
-           N * power / max(e, 1e-300));
+      return {solid * (C0 + thermal + power), solid * (thermal * dx + rise + dpower),
+              solid *
+                  (thermal * (ddx + dx * dx) + rise * (2.0 * dx - 0.5 * inv_e) +
+                   (N - 1.0) * dpower * inv_e),
+              0.5 * max(x, -x) / max(max(all, -all), 1e-300)};
     }
     MPM_INLINE double begin(double start, double) const { return start; }
   };

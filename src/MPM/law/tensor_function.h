@@ -10,8 +10,8 @@
 #define MPM_LAW_TENSOR_FUNCTION_H
 
 // Logarithm and exponential of symmetric tensors, a batch at a time. Near the identity, where elastic
-// strains of solids are, they are polynomials of the tensor. Whole laws are four to nine times faster with them than
-// with principal axes by Jacobi rotations.
+// strains of solids are, they are polynomials of the tensor. Whole laws are several times faster with them than
+// with principal axes.
 
 #include "law/spectral.h"
 
