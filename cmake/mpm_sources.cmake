@@ -166,12 +166,15 @@ if(MPM_ISA_HERE)
     endif()
   endforeach()
 endif()
-# what -O3 and for the baseline -O2 add to the products of functions along axes is nothing or a few percent (bench_kernels),
-# and a quarter of the time of the compiler; laws and domains need it
+# Products of functions along axes gain nothing by -O3.  With -O1 a step is a tenth slower: for the baseline, where there is a
+# better set for all processors but old ones.  Laws and domains need -O3.  (bench_kernels, bench_materials)
 if(NOT MPM_ISA_HERE)
+  set(level -O2)
+  if("v3" IN_LIST MPM_ISA_SETS)
+    set(level "$<IF:$<STREQUAL:$<TARGET_PROPERTY:NAME>,mpm_isa_base>,-O1,-O2>")
+  endif()
   foreach(shape linear quadratic cubic gimp bernstein)
-    set_source_files_properties(${CMAKE_CURRENT_BINARY_DIR}/mpm_kernels/${shape}_isa.cpp PROPERTIES COMPILE_OPTIONS
-      "$<IF:$<STREQUAL:$<TARGET_PROPERTY:NAME>,mpm_isa_base>,-O1,-O2>")
+    set_source_files_properties(${CMAKE_CURRENT_BINARY_DIR}/mpm_kernels/${shape}_isa.cpp PROPERTIES COMPILE_OPTIONS ${level})
   endforeach()
 endif()
 set(MPM_ISA_OPTIONS -O3 -ffp-contract=fast -fno-math-errno -fno-trapping-math -fopenmp-simd)
