@@ -156,10 +156,10 @@ namespace {
 #endif
 
 // in the order in which laws are listed in messages
-#define MPM_LAW_FAMILIES(X)                                                                 \
-  X(elastic)                                                                                \
-  X(viscoelastic) X(frictional) X(soil) X(porous) X(eos) X(strength) X(impact) X(viscosity) \
-      X(damage) X(thermal)
+#define MPM_LAW_FAMILIES(X) \
+  X(elastic)                \
+  X(viscoelastic)           \
+  X(frictional) X(soil) X(porous) X(eos) X(strength) X(impact) X(viscosity) X(damage) X(thermal)
 
 /** Defines mpm_laws_<family>_<isa>(), which returns the kernels of the family in the order of its list. */
 #define MPM_LAW_FAMILY(family)                         \
