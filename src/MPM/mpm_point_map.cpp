@@ -37,7 +37,7 @@ using namespace MPM_NS;
 // what a step takes longer for a point whose neighbor in memory is in another block, relative to one in another cell
 static constexpr int SWITCH_OF_BLOCK = 20;
 // what a sort takes for each point, in the same unit: from 5 to 60 scenes take the same time within 3 %
-static constexpr double COST_OF_SORT = 20.0;
+static constexpr double COST_OF_SORT = 40.0;
 
 /* ---------------------------------------------------------------------- */
 
