@@ -245,6 +245,38 @@ SERIAL_TEST(Tension, MakesNoNoise)
   }
 }
 
+// what does not change along y is the same in a strip of a few cells as in a wide box, wherever points go: nodes that
+// they reach across the faces are images of few nodes
+SERIAL_TEST(Strip, IsAsGoodAsAWideBox)
+{
+  const auto wave = [](const std::string &options, int cells) {
+    const std::string drifts =
+        options.find("total") == std::string::npos ? "neigh_modify every 7 check no\n" : "";
+    Scene run(
+        plane("si", "p p", strprintf("0 12 0 %d", cells), 1, 0.5) + drifts +
+        body("block 1 7.3 INF INF INF INF", "density 1000 neohookean 1e6 0.3", "1.0 " + options) +
+        R"(
+velocity all set 21 13.3 0
+variable v atom 3*sin(2*PI*x/6)
+velocity all set v_v v_v NULL sum yes
+timestep 0.004
+run 200
+)");
+    return std::array<double, 2>{run.sums().kinetic / cells, run.stored_energy() / cells};
+  };
+  for (const std::string options :
+       {"shape linear transfer flip 1.0", "shape quadratic", "shape quadratic scheme musl",
+        "shape cubic", "shape gimp transfer flip 1.0", "shape cpdi", "frame total"}) {
+    const auto wide = wave(options, 16);
+    EXPECT_GT(wide[1], 10.0);
+    for (int cells : {1, 2, 3, 5}) {
+      const auto strip = wave(options, cells);
+      EXPECT_NEAR(strip[0] / wide[0], 1.0, 1e-11) << options << ", cells " << cells;
+      EXPECT_NEAR(strip[1] / wide[1], 1.0, 1e-9) << options << ", cells " << cells;
+    }
+  }
+}
+
 TEST(Parallel, RanksAgree)
 {
   for (const char *options :

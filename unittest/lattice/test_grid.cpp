@@ -128,6 +128,56 @@ TEST(Grid, PeriodicImagesFoldOntoOneCanonicalNode)
     }
 }
 
+// images beyond the reach of points are still no nodes of their own, but have no part in sums and copies
+TEST(Grid, ImagesOutOfReachHaveNoPart)
+{
+  for (int dim : {2, 3}) {
+    Grid grid(make_lattice(dim, 1, true));
+    for (int x = -1; x <= 0; x++)
+      for (int y = -1; y <= 0; y++)
+        for (int z = -1; z <= 0; z++) activate(grid, x, y, dim == 3 ? z : 0);
+    for (int d = 0; d < dim; d++) {
+      grid.reach_low[d] = -2;
+      grid.reach_high[d] = 1 + d;
+    }
+    grid.close_periodic();
+    grid.finish();
+    grid.allocate(4);
+    const auto is_reached = [&](const auto &block, int k) {
+      int index[3];
+      grid.node_index(block, k, index);
+      for (int d = 0; d < dim; d++)
+        if (index[d] < -2 || index[d] > 1 + d) return false;
+      return true;
+    };
+    const auto for_nodes = [&](const auto &act) {
+      for (std::size_t s = 0; s < grid.blocks.size(); s++)
+        for (int k = 0; k < NODES_PER_BLOCK; k++)
+          act(grid.record(s, k), is_reached(grid.blocks[s], k), grid.blocks[s].owned >> k & 1);
+    };
+
+    int owned_nodes = 0;
+    for_nodes([](double *record, bool, bool) {
+      record[2] = 1.0;
+    });
+    grid.fold_aliases(grid.nodes(), 4, 2, 1);
+    for_nodes([&](const double *record, bool, bool owned) {
+      EXPECT_EQ(record[2], owned ? (dim == 3 ? 4 * 5 * 6 : 4 * 5) : 1.0);
+      owned_nodes += owned;
+    });
+    EXPECT_EQ(owned_nodes, 1);
+    for_nodes([](double *record, bool, bool owned) {
+      record[0] = owned ? 7.0 : 0.0;
+    });
+    grid.copy_aliases();
+    for_nodes([](const double *record, bool reached, bool) {
+      EXPECT_EQ(record[0], reached ? 7.0 : 0.0);
+    });
+    grid.clear();
+    EXPECT_LT(grid.reach_low[0], -1000000);
+  }
+}
+
 TEST(Grid, MemoryFollowsBlocksNotTheBox)
 {
   Grid small(make_lattice(3, 16, false)), large(make_lattice(3, 100000, false));
