@@ -21,19 +21,28 @@ using namespace LAMMPS_NS;
 
 MPMPointState::~MPMPointState()
 {
-  for (auto &array : arrays) array.mine.grown(memory, 0, array.width, array.name);
+  for (auto &array : arrays) {
+    array.mine.grown(memory, 0, array.width, array.name);
+    memory->sfree(array.pointers);
+  }
 }
 
 void MPMPointState::declare(MPMRows &rows, const char *name, int width, Fresh fresh)
 {
   rows = MPMRows();
-  arrays.push_back({&rows, nullptr, rows, name, width, std::move(fresh)});
+  arrays.push_back({&rows, nullptr, nullptr, rows, nullptr, name, width, std::move(fresh)});
+}
+
+void MPMPointState::declare(double **&table, const char *name, int width, Fresh fresh)
+{
+  table = nullptr;
+  arrays.push_back({nullptr, &table, nullptr, MPMRows(), nullptr, name, width, std::move(fresh)});
 }
 
 void MPMPointState::declare(double *&values, const char *name, Fresh fresh)
 {
   values = nullptr;
-  arrays.push_back({nullptr, &values, MPMRows(), name, 1, std::move(fresh)});
+  arrays.push_back({nullptr, nullptr, &values, MPMRows(), nullptr, name, 1, std::move(fresh)});
 }
 
 int MPMPointState::size() const
@@ -56,10 +65,13 @@ void MPMPointState::grow(int nmax)
 {
   for (auto &array : arrays) {
     array.mine = array.mine.grown(memory, nmax, array.width, array.name);
-    if (array.rows)
-      *array.rows = array.mine;
-    else
-      *array.values = array.mine[0];
+    if (array.rows) *array.rows = array.mine;
+    if (array.values) *array.values = array.mine[0];
+    if (!array.table) continue;
+    array.pointers =
+        (double **) memory->srealloc(array.pointers, (bigint) sizeof(double *) * nmax, array.name);
+    for (int i = 0; i < nmax; i++) array.pointers[i] = array.mine[i];
+    *array.table = array.pointers;
   }
 }
 

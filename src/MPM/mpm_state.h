@@ -33,6 +33,8 @@ class MPMPointState {
    *  fresh: fills the row of a new atom, which is zero without. The reference to rows must stay
    *  valid as long as this object. */
   void declare(MPMRows &rows, const char *name, int width, Fresh fresh = nullptr);
+  /** The same with a pointer to each row, which is what LAMMPS takes for output (array_atom). */
+  void declare(double **&table, const char *name, int width, Fresh fresh = nullptr);
   /** The same for one real for each atom. */
   void declare(double *&values, const char *name, Fresh fresh = nullptr);
 
@@ -50,9 +52,12 @@ class MPMPointState {
 
  private:
   struct Array {
-    MPMRows *rows;    // of the owner, who may be gone when the arrays are destroyed
+    // of the owner, who may be gone when the arrays are destroyed; one of the three
+    MPMRows *rows;
+    double ***table;
     double **values;
     MPMRows mine;
+    double **pointers;    // to its rows, with a table
     const char *name;
     int width;
     Fresh fresh;
