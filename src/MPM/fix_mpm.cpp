@@ -227,7 +227,6 @@ void FixMPM::initial_integrate(int /*vflag*/)
 
 void FixMPM::pre_exchange()
 {
-  if (plan) plan->watch.order_changes();
   field->guard->check_inside_box();
   if (plan) field->guard->tell_lost_atoms();
 }

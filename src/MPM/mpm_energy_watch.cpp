@@ -64,28 +64,19 @@ void MPMEnergyWatch::add_force_work()
   const int end = atom->nlocal;
   const bool first_met = neighbor->includegroup && !fields[0]->every;
   const int met = !force->pair ? 0 : first_met ? atom->nfirst : end;
-  add_force_work(run.parts[0], 0, met, PAIR_STRIDE);
-  add_force_work(run.parts[1], met, end, MOST_STRIDE);
+  add_force_work(0, met, PAIR_STRIDE);
+  add_force_work(met, end, MOST_STRIDE);
 }
 
-void MPMEnergyWatch::add_force_work(Part &part, int begin, int end, int most)
+void MPMEnergyWatch::add_force_work(int begin, int end, int most)
 {
-  if (part.steps == 0) {
-    const int stride = std::max(1, std::min(most, (end - begin) / ENOUGH));
-    part = {begin, end, stride, 0, 0.0};
-  }
-  part.work += force_work(part, part.steps++);
-  if (part.steps == part.stride) finish(part);
-}
-
-double MPMEnergyWatch::force_work(const Part &part, int which) const
-{
-  const int last = std::min(part.end, atom->nlocal);    // points may have been deleted
+  const int stride = std::max(1, std::min(most, (end - begin) / ENOUGH));
   double power = 0.0;
   for (const auto *field : fields) {
     const double *const f = field->rows().f;
-    for (int first = part.begin + BLOCK * which; first < last; first += BLOCK * part.stride)
-      for (int i = first; i < std::min(first + BLOCK, last); i++) {
+    for (int first = begin + BLOCK * (int) (run.steps % stride); first < end;
+         first += BLOCK * stride)
+      for (int i = first; i < std::min(first + BLOCK, end); i++) {
         if (!field->is_point(i)) continue;
         double now[3] = {f[3 * (bigint) i], f[3 * (bigint) i + 1], f[3 * (bigint) i + 2]};
         for (const auto *ifix : field->elements)
@@ -93,30 +84,7 @@ double MPMEnergyWatch::force_work(const Part &part, int which) const
         power += dot(now, atom->v[i]);
       }
   }
-  return power * fields[0]->step_dt();
-}
-
-/* ----------------------------------------------------------------------
-   What has been looked at stands for as many steps as it took. Where that ends early, the rest of the points are
-   looked at now: when their order changes, some would be seen twice and others not at all, which is as much as the
-   energy in play where forces are large and do next to no work, as in water at rest. Means of several steps
-   (every) are not known at any time
-------------------------------------------------------------------------- */
-
-void MPMEnergyWatch::finish(Part &part)
-{
-  const int seen = part.steps;
-  const bool whole = seen == part.stride || fields[0]->every;
-  for (int which = seen; which < part.stride && !whole; which++)
-    part.work += force_work(part, which);
-  run.force_work += (whole ? part.stride : seen) * part.work;
-  part = {};
-}
-
-void MPMEnergyWatch::order_changes()
-{
-  for (auto &part : run.parts)
-    if (part.steps) finish(part);
+  run.force_work += stride * power * fields[0]->step_dt();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -165,7 +133,6 @@ void MPMEnergyWatch::begin(const Sums &now)
 
 void MPMEnergyWatch::check()
 {
-  order_changes();    // what is not complete
   const Sums now = sums();
   if (run.steps == 0 || now.points != run.start.points) begin(now);
   const double spent = now.spent - run.start.spent, unexplained = now.unexplained();

@@ -40,8 +40,6 @@ class MPMEnergyWatch : protected Pointers {
   void start() { run = {}; }
   /** Start of a step of the cycle, where positions, velocities, and forces belong to one time. */
   void step();
-  /** The order of points is about to change. */
-  void order_changes();
   /** End of a run. */
   void finish();
   /** A line about the energy of the run for its summary; empty where too little is known. */
@@ -57,17 +55,9 @@ class MPMEnergyWatch : protected Pointers {
     double unexplained() const { return kinetic + stored + spent - work; }
   };
 
-  /** Points begin to end in memory, of which each step looks at one block in stride, each time at others. */
-  struct Part {
-    int begin, end, stride;
-    int steps;      // so far; 0: it begins anew
-    double work;    // of forces on the points that these have looked at
-  };
-
   const std::vector<MPMField *> &fields;
   struct {
     bigint steps;
-    Part parts[2];
     double force_work;    // of forces on points, this rank's share
     Sums start;
     double lowest;     // energy that work does not explain
@@ -79,9 +69,7 @@ class MPMEnergyWatch : protected Pointers {
 
   void add_force_work();
   /** That on points from begin to end, one of so many at most. */
-  void add_force_work(Part &, int begin, int end, int most);
-  double force_work(const Part &, int which) const;
-  void finish(Part &);
+  void add_force_work(int begin, int end, int most);
   Sums sums() const;
   void begin(const Sums &);
   void check();

@@ -36,6 +36,8 @@ using namespace MPM_NS;
 
 // what a step takes longer for a point whose neighbor in memory is in another block, relative to one in another cell
 static constexpr int SWITCH_OF_BLOCK = 20;
+// with fewer changes of cell than that times those of sorted points, nothing is to be gained
+static constexpr double DECAYED = 1.6;
 // what a sort takes for each point, in the same unit: from 5 to 60 scenes take the same time within 3 %
 static constexpr double COST_OF_SORT = 40.0;
 
@@ -84,13 +86,13 @@ void MPMPointMap::check_drift()
 }
 
 /* ----------------------------------------------------------------------
-   a sort is worth it when the disorder since the last one has cost as much: whatever comes next, this takes at
-   most twice the time of the best choice
+   a sort is worth it when the disorder since the last one is more than what little there always is, and has cost as
+   much: whatever comes next, this takes at most twice the time of the best choice
 ------------------------------------------------------------------------- */
 
 bool MPMPointMap::wants_sort() const
 {
-  return extra_disorder > COST_OF_SORT * npoints();
+  return switches > DECAYED * sorted_switches + 100 && extra_disorder > COST_OF_SORT * npoints();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -156,7 +158,7 @@ void MPMPointMap::find_blocks()
   grid.clear();
   runs.clear();
   active.clear();
-  disorder = 0;
+  switches = 0;
 
   // runs, and the range of base coordinates of each block
 
@@ -178,7 +180,7 @@ void MPMPointMap::find_blocks()
       continue;
     }
     for (int d = 0; d < 3; d++) b[d] = base[d] >> grid.shift_bits;
-    if (base != last_base) disorder++;
+    if (base != last_base) switches++;
     if (mask[i] != mask_of_material) {
       mask_of_material = mask[i];
       material = field.is_element_node(i) ? nullptr : field.material_of(i);
@@ -260,8 +262,11 @@ void MPMPointMap::finish_blocks()
   valid = true;
   drifted = 0;
   nbuild++;
-  disorder += SWITCH_OF_BLOCK * (bigint) runs.size();
-  if (sorted_disorder < 0) sorted_disorder = disorder;
+  disorder = switches + SWITCH_OF_BLOCK * (bigint) runs.size();
+  if (sorted_disorder < 0) {
+    sorted_switches = switches;
+    sorted_disorder = disorder;
+  }
 }
 
 /* ----------------------------------------------------------------------

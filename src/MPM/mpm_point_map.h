@@ -74,7 +74,9 @@ class MPMPointMap : protected Pointers {
  private:
   MPMField &field;
   bool watch_drift = false;    // rebuilds of neighbor lists do not bound the drift: check each step
-  bigint disorder = 0;         // neighbors in memory that are in different cells or blocks, now
+  bigint switches = 0;         // neighbors in memory that are in different cells, now
+  bigint sorted_switches = 0;     // and right after the last sort
+  bigint disorder = 0;            // neighbors in memory that are in different cells or blocks, now
   bigint sorted_disorder = -1;    // and right after the last sort; negative: not counted yet
   bigint extra_disorder = 0;      // what was more than that since then, summed over steps
 };
