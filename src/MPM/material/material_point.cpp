@@ -8,11 +8,10 @@
 
 #include "material/material_point.h"
 
-#include "math/least_squares.h"
 #include "math/matrix.h"
 
-#include <Eigen/Core>
 #include <Eigen/LU>
+#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -265,22 +264,20 @@ int MaterialPoint::step(const MixedControl &control, double dt, const double *ne
     std::copy(rs[0], rs[0] + n, r);
     const double size = norm(n, r);
     if (!(size < INFINITY)) throw std::runtime_error("the stress is not finite");
-    double tangent[6][6], rhs[6], modulus = 0.0;    // tangent: by columns
+    Eigen::MatrixXd tangent(n, n);
+    Eigen::VectorXd rhs(n);
     for (int j = 0; j < n; j++) {
       rhs[j] = -r[j];
-      for (int m = 0; m < n; m++) {
-        tangent[m][j] = (rs[m + 1][j] - r[j]) / delta;
-        modulus = std::max(modulus, std::fabs(tangent[m][j]));
-      }
+      for (int m = 0; m < n; m++) tangent(j, m) = (rs[m + 1][j] - r[j]) / delta;
     }
     // what rounding leaves: of the stress, of the motion, and of F, which is about 1
     double scale = trial.scale;
     for (int j = 0; j < n; j++) scale = std::max(scale, std::fabs(control.stress[trial.free[j]]));
+    const double modulus = tangent.cwiseAbs().maxCoeff();
     scale += largest * modulus;
     if (size <= ROUNDING * scale) break;
 
-    double dx[6];
-    least_squares<6>(n, tangent, rhs, dx);
+    const Eigen::VectorXd dx = tangent.completeOrthogonalDecomposition().solve(rhs);
     for (int m = 0; m < LENGTHS; m++)
       for (int j = 0; j < n; j++) xs[m][j] = x[j] + std::ldexp(dx[j], -m);
     trial.evaluate(LENGTHS, xs, rs);
