@@ -302,9 +302,9 @@ TEST(ThinRegions, ThatMoveAreReportedInShortRuns)
 /* ---------------------------------------------------------------------- unions, intersections, cones */
 
 namespace {
-/** Signed distances from the region "it", with far = 100, at places in and around a box from -2 to 2. */
-void each_distance(const std::string &regions,
-                   const std::function<void(const double *x, double distance)> &f)
+/** The surface of the region "it" at places in and around a box from -2 to 2. */
+void each_place(const std::string &regions,
+                const std::function<void(const MPMRegionSurface &surface, const double *x)> &f)
 {
   Scene run(space("lj", "f f f", "-2 2 -2 2 -2 2") + regions);
   Region *const it = run.lmp->domain->get_region_by_id("it");
@@ -315,8 +315,17 @@ void each_distance(const std::string &regions,
   for (int k = 0; k < 2000; k++) {
     const double x[3] = {std::remainder(0.37 * k, 4.8), std::remainder(0.61803 * k, 4.7),
                          std::remainder(0.7548 * k, 4.9)};
-    f(x, surface.distance(x, 100.0));
+    f(surface, x);
   }
+}
+
+/** Its signed distances there, with far = 100. */
+void each_distance(const std::string &regions,
+                   const std::function<void(const double *x, double distance)> &f)
+{
+  each_place(regions, [&](const MPMRegionSurface &surface, const double *x) {
+    f(x, surface.distance(x, 100.0));
+  });
 }
 
 double ball(const double *x, double at, double radius)
@@ -420,6 +429,53 @@ TEST(Surfaces, OfSharpCones)
   }
 }
 
+// In front of a smooth surface, the normal is the gradient of the distance. Where places on several faces are as near, it
+// points to none of them: on the axis of a cylinder, and at the same distance from two faces inside.
+TEST(Surfaces, Normals)
+{
+  constexpr double STEP = 1.0e-5;
+  for (const std::string kind :
+       {"block -1 1.1 -0.9 0.8 -1.2 0.7", "sphere 0.1 0.2 -0.1 1", "cylinder y 0.1 -0.2 0.9 -1 1.2",
+        "cone z 0.1 0.2 1.1 0.4 -1 1.3", "cone x 0 0 0 1 -1 1", "plane 0.1 0 0.2 1 -2 0.5",
+        "prism -1 1 -1 0.9 -1 1.1 0.2 0.1 -0.1", "ellipsoid 0 0.1 0 1.4 0.8 1.1"})
+    for (const std::string side : {" side in", " side out"}) {
+      int known = 0;
+      each_place("region it " + kind + side + "\n",
+                 [&](const MPMRegionSurface &surface, const double *x) {
+                   double n[3], gradient[3], square = 0.0;
+                   surface.normal(x, 100.0, STEP, n);
+                   for (int d = 0; d < 3; d++) {
+                     double up[3] = {x[0], x[1], x[2]}, down[3] = {x[0], x[1], x[2]};
+                     up[d] += STEP;
+                     down[d] -= STEP;
+                     gradient[d] =
+                         (surface.distance(up, 100.0) - surface.distance(down, 100.0)) / (2 * STEP);
+                     square += gradient[d] * gradient[d];
+                   }
+                   if (std::fabs(square - 1.0) > 1.0e-6) return;    // next to an edge inside
+                   known++;
+                   for (int d = 0; d < 3; d++)
+                     EXPECT_NEAR(n[d], gradient[d], STEP)
+                         << kind << side << " " << x[0] << " " << x[1] << " " << x[2];
+                 });
+      EXPECT_GT(known, 1850) << kind << side;
+    }
+  const auto normal_at = [](const std::string &kind, const std::array<double, 3> &x) {
+    std::array<double, 3> n;
+    Scene run(space("lj", "f f f", "-2 2 -2 2 -2 2") + "region it " + kind + "\n");
+    run.lmp->init();
+    MPMRegionSurface(run.lmp->domain->get_region_by_id("it"), 3)
+        .normal(x.data(), 100.0, STEP, n.data());
+    return n;
+  };
+  using Vector = std::array<double, 3>;
+  for (const double off : {0.0, 1.0e-16, 0.05 * STEP})
+    EXPECT_EQ(normal_at("cylinder z 0.1 0.3 0.5 -2 2", {0.1 + off, 0.3, 0.0}), (Vector{0, 0, 0}));
+  const Vector corner = normal_at("block -1 1 -1 1 -2 2", {0.5, 0.5, 0.0});
+  EXPECT_NEAR(corner[0], std::sqrt(0.5), 1.0e-9);
+  EXPECT_NEAR(corner[1], std::sqrt(0.5), 1.0e-9);
+}
+
 // LAMMPS divides zero by zero for a cone with a radius of zero at an end. A cone with a tiny one is the same wall.
 TEST(Cones, SharpEnds)
 {
@@ -509,7 +565,8 @@ TEST(Unions, In3d)
     const auto in_union = forces_of_impact(strprintf("region plate %s", plate) + far +
                                            "region wall union 2 plate far");
     expect_push(in_union, plate);
-    expect_same(in_union, alone, 1.0e-12, plate);
+    expect_same(in_union, alone, 1.0e-10,
+                plate);    // normals of unions are differences of distances
   }
   const auto whole = forces_of_impact("region wall block 0 10 0 10 5 9"),
              halves =

@@ -97,19 +97,37 @@ bool MPMPointMap::wants_sort() const
 
 /* ---------------------------------------------------------------------- */
 
+namespace {
+/** Base node of a position and its coordinates there, in cells; relative to the lattice. */
+struct BaseNode {
+  double origin[3], h, shift;
+  double cell, per_cell;    // cells between base nodes: 1 or 2, so that this is exact
+  int dim;
+
+  explicit BaseNode(const MPMField &field) :
+      h(field.lattice.h), shift(shape_constants[field.options.shape].shift),
+      cell(shape_constants[field.options.shape].cell), per_cell(1.0 / cell), dim(field.lattice.dim)
+  {
+    std::copy_n(field.lattice.origin, 3, origin);
+  }
+
+  bool operator()(const double *x, int base[3], double t[3]) const
+  {
+    base[2] = 0;
+    t[2] = 0.0;
+    for (int d = 0; d < dim; d++) {
+      t[d] = (x[d] - origin[d]) / h - shift;
+      if (!(fabs(t[d]) < 4.0e6)) return false;
+      base[d] = (int) (cell * std::floor(per_cell * t[d]));
+    }
+    return true;
+  }
+};
+}    // namespace
+
 bool MPMPointMap::base_node(const double *x, int base[3], double t[3]) const
 {
-  // base node of a point relative to its cell, in cells
-  const ShapeConstants &shape = shape_constants[field.options.shape];
-  const Lattice &lattice = field.lattice;
-  base[2] = 0;
-  t[2] = 0.0;
-  for (int d = 0; d < lattice.dim; d++) {
-    t[d] = (x[d] - lattice.origin[d]) / lattice.h - shape.shift;
-    if (!(fabs(t[d]) < 4.0e6)) return false;
-    base[d] = shape.cell * (int) std::floor(t[d] / shape.cell);
-  }
-  return true;
+  return BaseNode(field)(x, base, t);
 }
 
 void MPMPointMap::tile_base(const ActiveBlock &a, int base[3]) const
@@ -167,24 +185,27 @@ void MPMPointMap::find_blocks()
   };
   std::vector<Range> ranges;
   std::array<int, 3> last_base = {INT_MAX, INT_MAX, INT_MAX}, last_block = last_base;
-  const int nlocal = atom->nlocal, *const mask = atom->mask;
+  const int nlocal = atom->nlocal, groupbit = field.fix.groupbit, *const mask = atom->mask;
+  const double *const volume = atom->vfrac;
   const MPMRows places = field.frame->places();
+  const BaseNode base_node(field);
   FixMPMMaterial *material = nullptr;
   int mask_of_material = 0;    // that of no point, which is in the group of the field
   for (int i = 0; i < nlocal; i++) {
-    if (!field.is_point(i)) continue;
-    std::array<int, 3> base, b;
-    double t[3];
+    if (!(mask[i] & groupbit) || !(volume[i] > 0.0)) continue;
+    std::array<int, 3> base;
+    double t[3], reach_lo[3] = {0.0, 0.0, 0.0}, reach_hi[3] = {0.0, 0.0, 0.0};
     if (!base_node(places[i], base.data(), t)) {
       field.guard->point_is_bad(i, "is far out of reach of the lattice");
       continue;
     }
-    for (int d = 0; d < 3; d++) b[d] = base[d] >> grid.shift_bits;
     if (base != last_base) switches++;
     if (mask[i] != mask_of_material) {
       mask_of_material = mask[i];
       material = field.is_element_node(i) ? nullptr : field.material_of(i);
     }
+    const std::array<int, 3> b = {base[0] >> grid.shift_bits, base[1] >> grid.shift_bits,
+                                  base[2] >> grid.shift_bits};
     const bool same_block = b == last_block;
     if (same_block && runs.back().last == i && runs.back().material == material) {
       runs.back().last++;
@@ -193,9 +214,8 @@ void MPMPointMap::find_blocks()
       if (slot == (int) ranges.size()) ranges.push_back({{t[0], t[1], t[2]}, {t[0], t[1], t[2]}});
       runs.push_back({i, i + 1, slot, material});
     }
-    Range &r = ranges[runs.back().slot];
-    double reach_lo[3] = {0.0, 0.0, 0.0}, reach_hi[3] = {0.0, 0.0, 0.0};
     if (field.domains) field.domains->reach(i, reach_lo, reach_hi);
+    Range &r = ranges[runs.back().slot];
     for (int d = 0; d < 3; d++) {
       r.lo[d] = std::min(r.lo[d], t[d] + reach_lo[d]);
       r.hi[d] = std::max(r.hi[d], t[d] + reach_hi[d]);

@@ -171,10 +171,42 @@ void MPMRegionSurface::find_places_of_parts(const double *x, double far) const
   }
 }
 
+/* ----------------------------------------------------------------------
+   The direction to the nearest place of a simple region is the gradient, unless x is on the surface, or about as far from
+   another place, as at an edge inside. At centers and axes LAMMPS tells one place of many: further in there the distance
+   does not grow
+------------------------------------------------------------------------- */
+
+bool MPMRegionSurface::find_normal_at_once(const double *x, double far, double step,
+                                           double *normal) const
+{
+  if (!parts.empty() || mesh) return false;
+  const bool inside = match(x), in_body = inside == (region->interior != 0);
+  double nearest = far, next = far;
+  each_contact(x, far, inside, [&](double r, double dx, double dy, double dz) {
+    next = std::min(next, std::max(r, nearest));
+    if (r >= nearest) return;
+    nearest = r;
+    normal[0] = dx;
+    normal[1] = dy;
+    normal[2] = dz;
+  });
+  if (nearest >= far || nearest < 100.0 * step || next - nearest < 4.0 * step) return false;
+  if (dim == 2) normal[2] = 0.0;
+  const double length = MathExtra::len3(normal);
+  if (!(fabs(length - nearest) < 1.0e-6 * nearest)) return false;
+  MathExtra::scale3((inside ? -1.0 : 1.0) / length, normal);
+  if (!in_body) return true;
+  double further[3];
+  for (int d = 0; d < 3; d++) further[d] = x[d] - (inside ? 1.0 : -1.0) * step * normal[d];
+  return fabs(distance(further, far)) - nearest > 0.99 * step;
+}
+
 /* ---------------------------------------------------------------------- */
 
 void MPMRegionSurface::normal(const double *x, double far, double step, double *normal) const
 {
+  if (find_normal_at_once(x, far, step, normal)) return;
   const double here = distance(x, far);
   MathExtra::zero3(normal);
   for (int d = 0; d < dim; d++) {

@@ -32,8 +32,8 @@ class MPMRegionSurface {
    *  less than 0.03 h^2/R of a surface of radius R beyond a node spacing h. A mesh is much faster then. */
   double gap(const double *x, double far, double h) const { return find(x, far, h); }
 
-  /** Direction out of the region: gradient of the distance, from differences with this step (one-sided where the
-   *  distance is not known). Zero at centers and where it is not known. */
+  /** Direction out of the region: gradient of the distance, where need be from differences with this step (one-sided
+   *  where the distance is not known). Zero at centers and where it is not known. */
   void normal(const double *x, double far, double step, double *normal) const;
 
   /** The simple region, or intersection, that is nearest to a place outside of unions. */
@@ -54,6 +54,7 @@ class MPMRegionSurface {
 
   bool match(const double *x) const;
   double find(const double *x, double far, double h) const;
+  bool find_normal_at_once(const double *x, double far, double step, double *normal) const;
   void find_sharp_end();
   void find_places(const double *x, double far) const;
   void find_places_of_parts(const double *x, double far) const;
