@@ -108,7 +108,7 @@ double MPMFrame::lattice_jacobian(int i) const
   return field.points->jacobian(i);
 }
 
-double MPMFrame::speed(int i, double &c) const
+double MPMFrame::speed(int i, double &c, double /*known*/) const
 {
   return c + sqrt(dot(atom->v[i], atom->v[i]));
 }

@@ -86,8 +86,9 @@ class MPMFrame : protected Pointers {
   /** Ratio of the volume at the places of the lattice to the initial volume. */
   virtual double lattice_jacobian(int i) const;
 
-  /** Speed that must not cross a cell in a step, of a point with the wave speed c, which may rise. */
-  virtual double speed(int i, double &c) const;
+  /** Speed that must not cross a cell in a step, of a point with the wave speed c, which may rise. Where it is not above
+   *  a known one, it may be too high, but not above that. */
+  virtual double speed(int i, double &c, double known) const;
 
   /** Length of the circle with radius r around the axis of symmetry; 1 without one. */
   virtual double circle(double /*r*/) const { return 1.0; }

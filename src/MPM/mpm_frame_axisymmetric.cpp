@@ -123,14 +123,14 @@ template <class Plane> class MPMFrameAxisymmetric : public Plane {
 
   /** Hoop stress can raise the greatest frequency where no wall makes v_r odd: that of a ring alone is
    *  c/r, that of the lattice in the plane 2c/h, and squares add up. */
-  double speed(int i, double &c) const override
+  double speed(int i, double &c, double known) const override
   {
     const double h = field.lattice.h;
     if (domain->boxlo[0] > AT_AXIS * h) {
       const double ratio = 0.5 * h / field.frame->places()[i][0];
       c *= sqrt(1.0 + ratio * ratio);
     }
-    return Plane::speed(i, c);
+    return Plane::speed(i, c, known);
   }
 
   double circle(double r) const override { return 6.28318530717958647693 * r; }

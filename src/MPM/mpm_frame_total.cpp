@@ -160,16 +160,23 @@ double MPMFrameTotal::volume_change(int i, const double *L, double dt) const
   return MPMFrame::volume_change(i, A, 1.0);
 }
 
-/** Largest eigenvalue of a symmetric matrix, by the trigonometric form of the cubic equation. */
-static double largest_eigenvalue(double B[3][3])
+/** Takes the mean of its eigenvalues from a symmetric matrix. Returns p; the largest one is at most mean + 2 p. */
+static double to_deviator(double B[3][3], double &mean)
 {
-  const double mean = (B[0][0] + B[1][1] + B[2][2]) / 3.0;
+  mean = (B[0][0] + B[1][1] + B[2][2]) / 3.0;
   double p = 0.0;
   for (int i = 0; i < 3; i++) {
     B[i][i] -= mean;
     for (int j = 0; j < 3; j++) p += B[i][j] * B[i][j];
   }
-  p = sqrt(p / 6.0);
+  return sqrt(p / 6.0);
+}
+
+/** Largest eigenvalue of a symmetric matrix, by the trigonometric form of the cubic equation. */
+static double largest_eigenvalue(double B[3][3])
+{
+  double mean;
+  const double p = to_deviator(B, mean);
   const double r = p > 0.0 ? 0.5 * MathExtra::det3(B) / (p * p * p) : 1.0;
   return mean + 2.0 * p * cos(acos(std::max(-1.0, std::min(1.0, r))) / 3.0);
 }
@@ -200,9 +207,18 @@ void MPMFrameTotal::stretches(int i, double &smallest, double &largest) const
 /** Points stay where they are on the lattice, but waves cross it faster where it is compressed: a plane
  *  wave with wave vector K there has k = F^-T K in space, |k| <= |K|/s with the smallest singular
  *  value s of F. */
-double MPMFrameTotal::speed(int i, double &c) const
+double MPMFrameTotal::speed(int i, double &c, double known) const
 {
   double least, most;
+  if (field.lattice.dim ==
+      3) {    // most points do not limit the time step, as a bound tells at less cost
+    double f[3][3], g[3][3], inverse[3][3], mean;
+    lattice_F(i, f);
+    MathExtra::invert3(f, g);
+    MathExtra::transpose_times3(g, g, inverse);
+    const double p = to_deviator(inverse, mean), bound = c * sqrt(mean + 2.0 * p);
+    if (bound <= known) return bound;
+  }
   stretches(i, least, most);
   return c / least;
 }

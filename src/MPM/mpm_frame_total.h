@@ -35,7 +35,7 @@ class MPMFrameTotal : public MPMFrame {
   double volume_change(int i, const double *L, double dt) const override;
   void lattice_F(int i, double F[3][3]) const override;
   double lattice_jacobian(int i) const override;
-  double speed(int i, double &c) const override;
+  double speed(int i, double &c, double known) const override;
   void start_counting() override { nupdate = 0; }
   std::string report() const override;
 

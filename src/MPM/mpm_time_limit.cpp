@@ -98,7 +98,8 @@ double MPMTimeLimit::stable_dt(tagint &id_min, double &wave_speed) const
     material->material->wave_speed(b, c);
 
     for (int p = 0; p < n && !std::isnan(smallest); p++)
-      if (limits(i + p, field.frame->speed(i + p, c[p]))) wave_speed = c[p];
+      if (limits(i + p, field.frame->speed(i + p, c[p], field.lattice.h / smallest)))
+        wave_speed = c[p];
   }
   return smallest;
 }
