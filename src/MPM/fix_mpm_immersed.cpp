@@ -276,10 +276,10 @@ double FixMPMImmersed::end_of_bed(double solid, const double *moment, double own
   if (!(solid > 0.0)) return solid;
   const double p1 = stencil_order(field->options.shape) + 1.0, width = sqrt(p1 / 6.0),
                n = field->lattice.dim;
-  const double slope = width * 12.0 / p1 / solid;     // sum N r^2 = (p+1)/12, of moment
-  const double ball = 4.0 * MY_PI * width * width;    // to the power n/2
+  const double slope = width * 12.0 / p1 / solid;    // sum N r^2 = (p+1)/12, of moment
+  const double spread = 4.0 * MY_PI * width * width;
   const double chance =
-      0.5 * n / ((n == 3.0 ? ball : 1.0) * sqrt(ball)) * own / field->lattice.cell_volume();
+      0.5 * n / (n == 3.0 ? spread * sqrt(spread) : spread) * own / field->lattice.cell_volume();
   const double q2 = slope * slope * MathExtra::lensq3(moment) - chance / solid;
   if (!(q2 > 0.0)) return solid;
   return solid / (1.0 - 0.64 * pow(std::min(q2, 2.0 / MY_PI), 0.56));
