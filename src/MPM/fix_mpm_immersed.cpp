@@ -422,7 +422,11 @@ void FixMPMImmersed::find_grains(double dt)
   grains.clear();
   nodes.clear();
   inner.assign(field->grid.nnodes(), 0);
-  sums.assign(NREAL * field->grid.nnodes(), 0.0);
+  sums.resize(NREAL * field->grid.nnodes());
+  used.assign(field->grid.blocks.size(), 0);
+  slots.clear();
+  if (comm->nprocs > 1)    // whole blocks are summed over ranks
+    for (int slot = 0; slot < (int) used.size(); slot++) use(slot);
   MPMStencil stencil(*field);
   MPMStencil::Axes axes;
   for (const int i : immersed) {
@@ -435,7 +439,10 @@ void FixMPMImmersed::find_grains(double dt)
       for (int k1 = 0; k1 < axes.count[1]; k1++)
         for (int k2 = 0; k2 < axes.count[2]; k2++) {
           const int64_t n = canonical[axes.number(k0, k1, k2)];
-          if (!inner[n]) inner[n] = has_fluid_around(n) ? INNER : OUTER;
+          if (!inner[n]) {
+            inner[n] = has_fluid_around(n) ? INNER : OUTER;
+            use((int) (n / NODES_PER_BLOCK));
+          }
           *node++ = n;
         }
     grains.emplace_back();
@@ -456,6 +463,21 @@ void FixMPMImmersed::find_grains(double dt)
       sum[NREAL * n] += w * share;
     });
   }
+}
+
+/** Sums of a block begin with zero. */
+void FixMPMImmersed::use(int slot)
+{
+  if (used[slot]) return;
+  used[slot] = 1;
+  slots.push_back(slot);
+  std::fill_n(&sums[(std::size_t) NREAL * NODES_PER_BLOCK * slot], NREAL * NODES_PER_BLOCK, 0.0);
+}
+
+template <class F> void FixMPMImmersed::each_used_node(const F &f) const
+{
+  for (const int slot : slots)
+    for (int n = 0; n < NODES_PER_BLOCK; n++) f((int64_t) slot * NODES_PER_BLOCK + n);
 }
 
 /** The velocity of the fluid is that after the momentum equation at inner nodes, elsewhere the old one with the mean gain. */
@@ -599,22 +621,22 @@ void FixMPMImmersed::act(double dt, Stage stage)
   sum_nodes(SOLID, 1);
   for (Grain &g : grains) buoyancy_and_coefficient(g, dt);
   sum_nodes(BUOYANCY, 4);
-  const int64_t nnodes = grid.nnodes();
   const double *const records = grid.nodes();
-  for (int64_t node = 0; node < nnodes; node++)
+  each_used_node([&](int64_t node) {
     for (int k = 0; k < 4; k++) sums[NREAL * node + k] *= records[SPLIT * node + 3];
+  });
   std::fill(force_now, force_now + 6, 0.0);
   for (Grain &g : grains) drag(g, dt);
   sum_nodes(DRAG, 3);
 
-  for (int64_t node = 0; node < nnodes; node++) {
+  each_used_node([&](int64_t node) {
     const double *sum = &sums[NREAL * node];
     double *record = grid.record(node);
     double push[3];
     for (int d = 0; d < 3; d++) push[d] = sum[BUOYANCY + d] + record[3] * sum[DRAG + d];
     if (push[0] != 0.0 || push[1] != 0.0 || push[2] != 0.0)
       field->ledger.push_node(record, grid.owns(node), push);
-  }
+  });
   count = (int) grains.size();
   dt_last = dt;
 }
@@ -640,6 +662,7 @@ double FixMPMImmersed::compute_vector(int i)
 double FixMPMImmersed::memory_usage()
 {
   return (double) (inner.capacity() + sums.capacity() * sizeof(double) +
-                   grains.capacity() * sizeof(Grain) + immersed.capacity() * sizeof(int) +
+                   grains.capacity() * sizeof(Grain) + used.capacity() +
+                   (immersed.capacity() + slots.capacity()) * sizeof(int) +
                    (nodes.capacity() + canonical.capacity()) * sizeof(int64_t));
 }

@@ -84,6 +84,8 @@ class FixMPMImmersed : public Fix, public MPMNodeAction, private MPMImmersedOpti
   std::vector<int64_t> canonical;    // [node] the node that it is an image of, or itself
   int count_along[3] = {1, 1, 1};    // nodes of a grain along the axes
   std::vector<char> inner;           // [node] has_fluid_around(): 0 as long as it was not asked
+  std::vector<char> used;            // [block] are there sums?
+  std::vector<int> slots;            // of these blocks
   // [node][8] share of the impulses of buoyancy and coefficients of grains around it; impulses of drag over its
   // mass; volume of grains
   std::vector<double> sums;
@@ -95,6 +97,8 @@ class FixMPMImmersed : public Fix, public MPMNodeAction, private MPMImmersedOpti
   double volume(int i) const;
   bool has_fluid_around(int64_t node) const;
   void find_grains(double dt);
+  void use(int slot);
+  template <class F> void each_used_node(const F &) const;
   bool find_fluid(Grain &);
   void move_by_forces(Grain &, double dt) const;
   void buoyancy_and_coefficient(Grain &, double dt);
