@@ -62,6 +62,7 @@ void MPMEnergyWatch::step()
 void MPMEnergyWatch::finish()
 {
   if (run.steps >= SHORTEST) check();
+  for (auto &part : parts) part.list = -1;    // commands may move atoms before the run goes on
 }
 
 /* ----------------------------------------------------------------------
@@ -86,15 +87,12 @@ int MPMEnergyWatch::number_met() const
 double MPMEnergyWatch::force_work(Part &part, int begin, int end)
 {
   const int turns = 1 << part.bits, turn = (int) (run.steps % turns);
-  const auto found = [&]() -> const std::vector<int> & {
-    return part.places[(turn - part.first) & (turns - 1)];
+  const auto ahead = [&]() {
+    return (turn - part.first) & (turns - 1);
   };
-  const bool same = part.begin == begin && part.end == end && part.list == neighbor->lastcall &&
-      ((turn - part.first) & (turns - 1)) < AHEAD;
-  // atoms that only change places are all there if no other is where one of them was
-  if (!same || std::any_of(found().begin(), found().end(), [&](int i) {
-        return turn_of(atom->tag[i], part.bits) != turn;
-      })) {
+  // atoms change their places when lists are made
+  if (part.begin != begin || part.end != end || part.list != neighbor->lastcall ||
+      ahead() >= AHEAD) {
     part.begin = begin;
     part.end = end;
     part.list = neighbor->lastcall;
@@ -102,16 +100,15 @@ double MPMEnergyWatch::force_work(Part &part, int begin, int end)
     find_places(part);
   }
 
+  forces.clear();
+  for (const auto *field : fields) forces.push_back(field->rows().f);
   double power = 0.0;
-  for (const auto *field : fields) {
-    const double *const f = field->rows().f;
-    for (const int i : found()) {
-      if (!field->is_point(i)) continue;
-      double now[3] = {f[3 * (bigint) i], f[3 * (bigint) i + 1], f[3 * (bigint) i + 2]};
-      for (const auto *ifix : field->elements)
-        for (int d = 0; d < 3; d++) now[d] -= ifix->forces()[3 * (bigint) i + d];
-      power += dot(now, atom->v[i]);
-    }
+  for (const auto &[field, i] : part.places[ahead()]) {
+    const double *const f = forces[field] + 3 * (bigint) i;
+    double now[3] = {f[0], f[1], f[2]};
+    for (const auto *ifix : fields[field]->elements)
+      for (int d = 0; d < 3; d++) now[d] -= ifix->forces()[3 * (bigint) i + d];
+    power += dot(now, atom->v[i]);
   }
   return turns * power * fields[0]->step_dt();
 }
@@ -122,7 +119,9 @@ void MPMEnergyWatch::find_places(Part &part) const
   for (auto &places : part.places) places.clear();
   for (int i = part.begin; i < part.end; i++) {
     const int ahead = (turn_of(atom->tag[i], part.bits) - part.first) & (turns - 1);
-    if (ahead < AHEAD) part.places[ahead].push_back(i);
+    if (ahead >= AHEAD) continue;
+    for (std::size_t k = 0; k < fields.size(); k++)
+      if (fields[k]->is_point(i)) part.places[ahead].push_back({(int) k, i});
   }
 }
 

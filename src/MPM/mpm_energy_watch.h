@@ -62,11 +62,15 @@ class MPMEnergyWatch : protected Pointers {
     int bits = 0;
     int begin = -1, end = -1, first = 0;    // first: turn of places[0]
     bigint list = -1;                       // step of the neighbor list
-    std::vector<int> places[AHEAD];
+    struct Place {
+      int field, i;
+    };
+    std::vector<Place> places[AHEAD];
   };
 
   const std::vector<MPMField *> &fields;
   Part parts[2];
+  std::vector<const double *> forces;    // [field] on points in this step
   struct {
     bigint steps;
     double force_work;    // of forces on points, this rank's share
