@@ -102,13 +102,14 @@ double MPMEnergyWatch::force_work(Part &part, int begin, int end)
 
   forces.clear();
   for (const auto *field : fields) forces.push_back(field->rows().f);
+  const double *const v = end > begin ? atom->v[0] : nullptr;    // without pointers to rows
   double power = 0.0;
   for (const auto &[field, i] : part.places[ahead()]) {
     const double *const f = forces[field] + 3 * (bigint) i;
     double now[3] = {f[0], f[1], f[2]};
     for (const auto *ifix : fields[field]->elements)
       for (int d = 0; d < 3; d++) now[d] -= ifix->forces()[3 * (bigint) i + d];
-    power += dot(now, atom->v[i]);
+    power += dot(now, v + 3 * (bigint) i);
   }
   return turns * power * fields[0]->step_dt();
 }
