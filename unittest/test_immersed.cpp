@@ -452,6 +452,28 @@ TEST(Immersed, IsTheSameOnAnyNumberOfRanksAndAfterARestart)
   expect_the_same(cloud_with(law), rest(law) + "fix move grains nve/sphere\ntimestep 0.01\n");
 }
 
+// By whole cells: fluid and grains are on both sides of all faces then
+TEST(Immersed, IsTheSameAcrossPeriodicFaces)
+{
+  const std::string scene = cloud_with("0.1 drag gidaspow gravity 0 0 -0.2");
+  Scene inside(scene + "run 30\n"), across(scene + "displace_atoms all move 5 6 7\nrun 30\n");
+  EXPECT_GT(fabs(inside.fix_vector("drag", 6)[0]), 1.0e-3);
+  for (int k = 0; k < 6; k++)
+    EXPECT_NEAR(inside.fix_vector("drag", 6)[k], across.fix_vector("drag", 6)[k], 1.0e-10);
+}
+
+// Neighbor lists and messages of the grains alone; LAMMPS then sets to zero the forces of these alone
+TEST(Immersed, NeedsNoPointsInNeighborLists)
+{
+  const std::string
+      law = "0.1 drag gidaspow gravity 0 0 -0.2",
+      lists = "atom_modify first grains\nneigh_modify include grains\ncomm_modify group grains\n",
+      last = "pair_style gran/hooke 20.0 NULL 0.5 NULL 0.5 1\npair_coeff * *\n"
+             "fix g all gravity 0.2 vector 0 0 -1\nrun 60\n";
+  Scene all(cloud_with(law) + last), grains(cloud_with(law) + lists + last);
+  EXPECT_LT(difference(all.gather(), grains.gather()), 1.0e-10);
+}
+
 SERIAL_TEST(Immersed, ClosesTheLedger)
 {
   Scene run(cloud_with("0.1 drag gidaspow gravity 0 0 -0.2") +

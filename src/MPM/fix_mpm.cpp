@@ -94,7 +94,7 @@ FixMPM::~FixMPM() = default;
 
 int FixMPM::setmask()
 {
-  return INITIAL_INTEGRATE | PRE_EXCHANGE | PRE_NEIGHBOR;
+  return INITIAL_INTEGRATE | PRE_EXCHANGE | PRE_NEIGHBOR | PRE_FORCE;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -165,13 +165,27 @@ void FixMPM::check_fields() const
       if (differ)
         error->all(FLERR, "All fix mpm instances must {}: {} and {} differ", what, id, other->id());
   }
-  if (!neighbor->includegroup) return;
-  for (auto *ifix : modify->get_fix_by_style("^mpm/surface$"))
-    if (dynamic_cast<FixMPMSurface *>(ifix)->keeps_group(neighbor->includegroup)) return;
+  check_include();
+}
+
+/* ----------------------------------------------------------------------
+   Points that touch something must be in the neighbor lists; none does where the only others are grains in a fluid
+------------------------------------------------------------------------- */
+
+void FixMPM::check_include() const
+{
+  const int listed = neighbor->includegroup;
+  if (!listed) return;
+  const auto surfaces = modify->get_fix_by_style("^mpm/surface$");
+  for (auto *ifix : surfaces)
+    if (dynamic_cast<FixMPMSurface *>(ifix)->keeps_group(listed)) return;
+  if (surfaces.empty())
+    for (const auto *ifix : modify->get_fix_by_style("^mpm/immersed$"))
+      if (ifix->igroup == listed) return;
   error->all(FLERR,
-             "Neigh_modify include {} leaves the forces of other material points as they "
-             "are: use fix mpm/surface with keyword group {}",
-             group->names[neighbor->includegroup], group->names[neighbor->includegroup]);
+             "Neigh_modify include {} leaves out material points that can touch others: use fix "
+             "mpm/surface with keyword group {}, or the group of a fix mpm/immersed",
+             group->names[listed], group->names[listed]);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -227,6 +241,7 @@ void FixMPM::initial_integrate(int /*vflag*/)
 
 void FixMPM::pre_exchange()
 {
+  no_torques = false;
   field->guard->check_inside_box();
   if (plan) field->guard->tell_lost_atoms();
 }
@@ -244,6 +259,21 @@ void FixMPM::pre_neighbor()
   const bool restarts = output->restart_flag && output->next_restart == update->ntimestep;
   if (field->frame->renew_places() || flag_all || restarts) field->map->sort();
   field->map->valid = false;
+}
+
+/* ----------------------------------------------------------------------
+   LAMMPS has set to zero the forces of the atoms in the neighbor lists only (neigh_modify include). Nothing exerts
+   torques on the others, so that these stay zero until atoms change their places in memory
+------------------------------------------------------------------------- */
+
+void FixMPM::pre_force(int)
+{
+  if (!plan || !neighbor->includegroup) return;
+  const std::size_t n = 3 * (std::size_t)(atom->nlocal - atom->nfirst) * sizeof(double);
+  if (n == 0) return;
+  memset(&atom->f[atom->nfirst][0], 0, n);
+  if (atom->torque_flag && !no_torques) memset(&atom->torque[atom->nfirst][0], 0, n);
+  no_torques = true;
 }
 
 /* ---------------------------------------------------------------------- */

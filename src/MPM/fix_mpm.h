@@ -39,10 +39,12 @@ class FixMPM : public FixMPMState {
   void init() override;
   void setup_pre_exchange() override;
   void setup_pre_neighbor() override;
+  void setup_pre_force(int flag) override { pre_force(flag); }
   void setup(int) override;
   void initial_integrate(int) override;
   void pre_exchange() override;
   void pre_neighbor() override;
+  void pre_force(int) override;
   void post_run() override;
   double compute_scalar() override;
   double compute_vector(int) override;
@@ -54,7 +56,10 @@ class FixMPM : public FixMPMState {
   std::unique_ptr<MPMPlan> plan;    // in the driving instance
   std::unique_ptr<class MPMContinuation> continuation;
 
+  bool no_torques = false;    // on atoms that are not in the neighbor lists
+
   void check_fields() const;
+  void check_include() const;
   double bytes_per_point() const;
 };
 

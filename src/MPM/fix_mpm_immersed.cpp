@@ -49,6 +49,7 @@
 #include "math_extra.h"
 #include "modify.h"
 #include "mpm_field.h"
+#include "mpm_halo.h"
 #include "mpm_options.h"
 #include "mpm_point_map.h"
 #include "mpm_stencil.h"
@@ -56,12 +57,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 using MathConst::MY_PI;
 
-static constexpr int NREAL = 8;
+static constexpr int SPLIT = 8;    // reals of a node: with the old velocity
+enum { INNER = 1, OUTER };         // nodes, see has_fluid_around()
 
 /* ----------------------------------------------------------------------
    fix ID group mpm/immersed FIELD DENSITY VISCOSITY keyword values ...
@@ -217,13 +220,15 @@ double FixMPMImmersed::volume(int i) const
 
 void FixMPMImmersed::couple_topology()
 {
+  immersed.clear();
+  for (int i = 0; i < atom->nlocal; i++)
+    if (is_grain(i)) immersed.push_back(i);
   int missing = 0, any;
   MPMStencil stencil(*field);
-  const auto nothing = [](int64_t, double, const double *) {
-  };
   if (field->map->valid)
-    for (int i = 0; i < atom->nlocal && !missing; i++)
-      missing = is_grain(i) && !stencil.visit_around(atom->x[i], nothing);
+    missing = std::any_of(immersed.begin(), immersed.end(), [&](int i) {
+      return !stencil.reaches_blocks(atom->x[i]);
+    });
   MPI_Allreduce(&missing, &any, 1, MPI_INT, MPI_MAX, world);
   if (any) field->map->valid = false;
 }
@@ -232,8 +237,7 @@ void FixMPMImmersed::extend_topology(MPMField &extended)
 {
   if (&extended != field) return;
   auto &grid = field->grid;
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!is_grain(i)) continue;
+  for (const int i : immersed) {
     int lo[3] = {0, 0, 0}, hi[3] = {0, 0, 0}, b[3];
     for (int d = 0; d < field->lattice.dim; d++) {
       double w[4];
@@ -252,6 +256,11 @@ void FixMPMImmersed::extend_topology(MPMField &extended)
   }
 }
 
+void FixMPMImmersed::topology_changed(MPMField &changed)
+{
+  if (&changed == field) canonical = field->grid.canonical();
+}
+
 /* ----------------------------------------------------------------------
    Share of space that grains take up around one of them, of the volume V = own, from the mapped share and its
    first moment sum N r. Both mappings smooth it over a width s, s^2 = (p+1)/6 h^2 for splines of degree p,
@@ -268,8 +277,9 @@ double FixMPMImmersed::end_of_bed(double solid, const double *moment, double own
   const double p1 = stencil_order(field->options.shape) + 1.0, width = sqrt(p1 / 6.0),
                n = field->lattice.dim;
   const double slope = width * 12.0 / p1 / solid;    // sum N r^2 = (p+1)/12, of moment
+  const double spread = 4.0 * MY_PI * width * width;
   const double chance =
-      0.5 * n * pow(4.0 * MY_PI * width * width, -0.5 * n) * own / field->lattice.cell_volume();
+      0.5 * n / (n == 3.0 ? spread * sqrt(spread) : spread) * own / field->lattice.cell_volume();
   const double q2 = slope * slope * MathExtra::lensq3(moment) - chance / solid;
   if (!(q2 > 0.0)) return solid;
   return solid / (1.0 - 0.64 * pow(std::min(q2, 2.0 / MY_PI), 0.56));
@@ -284,11 +294,22 @@ double FixMPMImmersed::end_of_bed(double solid, const double *moment, double own
    along the bed are divided by the porosity.
 ------------------------------------------------------------------------- */
 
-double FixMPMImmersed::drag_on_sphere(double diameter, double slip, double solid) const
+double FixMPMImmersed::porosity(double solid) const
 {
   // densest packing of equal spheres, of equal discs
-  const double least_porosity = field->lattice.dim == 3 ? 0.26 : 1.0 - MY_PI / sqrt(12.0);
-  const double eps = std::max(least_porosity, 1.0 - solid);
+  const double least = field->lattice.dim == 3 ? 0.26 : 1.0 - MY_PI / sqrt(12.0);
+  return std::max(least, 1.0 - solid);
+}
+
+/** Factor of the drag on a single sphere in a bed, where it does not depend on the slip. */
+double FixMPMImmersed::hindrance(double eps) const
+{
+  return law == GIDASPOW && eps >= 0.8 ? pow(eps, -4.65) : 1.0;
+}
+
+double FixMPMImmersed::drag_on_sphere(double diameter, double slip, double eps,
+                                      double hindrance) const
+{
   const double stokes = 3.0 * MY_PI * viscosity * diameter;
   const double Re = density * slip * diameter / viscosity;
   const auto schiller = [&](double number) {
@@ -307,7 +328,7 @@ double FixMPMImmersed::drag_on_sphere(double diameter, double slip, double solid
     case ERGUN:
       return ergun();
     case GIDASPOW:
-      return eps < 0.8 ? ergun() : stokes * schiller(Re) * pow(eps, -4.65);
+      return eps < 0.8 ? ergun() : stokes * schiller(Re) * hindrance;
     case DIFELICE: {
       const double logarithm = 1.5 - log10(std::max(Re, 1.0e-10));
       const double power = 3.7 - 0.65 * exp(-0.5 * logarithm * logarithm);
@@ -329,10 +350,11 @@ double FixMPMImmersed::drag_after_step(double diameter, double slip, double soli
 {
   // a disc of unit depth has the drag of a sphere times its volume over that of the sphere
   const double share = field->lattice.dim == 2 ? 1.5 / diameter : 1.0;
-  const double most = share * drag_on_sphere(diameter, slip, solid);
+  const double eps = porosity(solid), hindered = hindrance(eps);
+  const double most = share * drag_on_sphere(diameter, slip, eps, hindered);
   if (!(slowing * most > 0.0)) return most;
   const double low = slip / (1.0 + slowing * most),
-               least = share * drag_on_sphere(diameter, low, solid);
+               least = share * drag_on_sphere(diameter, low, eps, hindered);
   const double rise = slip > low ? (most - least) / (slip - low) : 0.0;
   const double linear = 1.0 + slowing * (least - rise * low);
   const double w = 2.0 * slip / (linear + sqrt(linear * linear + 4.0 * slowing * rise * slip));
@@ -345,15 +367,13 @@ double FixMPMImmersed::drag_after_step(double diameter, double slip, double soli
    unbalanced pressure on the wall.
 ------------------------------------------------------------------------- */
 
-bool FixMPMImmersed::is_inner(int64_t node)
+bool FixMPMImmersed::has_fluid_around(int64_t node) const
 {
-  enum { INNER = 1, OUTER };
-  char &known = inner[node];
-  if (known) return known == INNER;
-  auto &grid = field->grid;
+  const auto &grid = field->grid;
+  const double *const records = field->grid.nodes();
   const double least = 0.6 * density * field->lattice.cell_volume();
   const auto full = [&](int64_t n) {
-    return grid.nodes()[n * grid.nreal + 3] > least;
+    return records[SPLIT * n + 3] > least;
   };
   const auto &block = grid.blocks[node / NODES_PER_BLOCK];
   int index[3];
@@ -361,69 +381,226 @@ bool FixMPMImmersed::is_inner(int64_t node)
   bool all = full(node);
   for (int k = 0; k < 2 * field->lattice.dim && all; k++) {
     int next[3] = {index[0], index[1], index[2]};
-    next[k / 2] += 2 * (k % 2) - 1;
-    const int64_t neighbor = grid.locate_near(block, next);
+    int &moved = next[k / 2];
+    moved += 2 * (k % 2) - 1;
+    const int beyond = moved;
+    moved = field->lattice.wrap(k / 2, beyond);
+    const int64_t neighbor = moved == beyond ? grid.locate_near(block, next) : grid.locate(next);
     all = neighbor >= 0 && full(neighbor);
   }
-  known = all ? INNER : OUTER;
   return all;
 }
 
 /* ----------------------------------------------------------------------
-   grains with fluid around them. In half a cell above the surface, buoyancy and drag fall to zero
+   f(node, weight, numbers along the axes) for the nodes around a grain
+------------------------------------------------------------------------- */
+
+template <class F> void FixMPMImmersed::around(const Grain &g, const F &f) const
+{
+  const auto loop = [&](const int *count) {
+    const int64_t *node = &nodes[g.first];
+    for (int k0 = 0; k0 < count[0]; k0++)
+      for (int k1 = 0; k1 < count[1]; k1++) {
+        const double w01 = g.w[0][k0] * g.w[1][k1];
+        for (int k2 = 0; k2 < count[2]; k2++) f(*node++, w01 * g.w[2][k2], k0, k1, k2);
+      }
+  };
+  static constexpr int QUADRATIC[3] = {3, 3, 3};
+  if (std::equal(count_along, count_along + 3, QUADRATIC))
+    loop(QUADRATIC);    // the compiler knows these
+  else
+    loop(count_along);
+}
+
+/* ----------------------------------------------------------------------
+   grains with fluid around them, and the volume of these at the nodes. In half a cell above the surface, buoyancy
+   and drag fall to zero
 ------------------------------------------------------------------------- */
 
 void FixMPMImmersed::find_grains(double dt)
 {
   grains.clear();
-  entries.clear();
+  nodes.clear();
   inner.assign(field->grid.nnodes(), 0);
-  const double full = density * field->lattice.cell_volume();
-  const double *records = field->grid.nodes();    // vx vy vz m, old velocity
-  const int nreal = field->grid.nreal;
+  sums.resize(NREAL * field->grid.nnodes());
+  used.assign(field->grid.blocks.size(), 0);
+  slots.clear();
+  if (comm->nprocs > 1)    // whole blocks are summed over ranks
+    for (int slot = 0; slot < (int) used.size(); slot++) use(slot);
   MPMStencil stencil(*field);
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!is_grain(i)) continue;
-    Grain g = {};
+  MPMStencil::Axes axes;
+  for (const int i : immersed) {
+    stencil.find_axes(atom->x[i], axes);
+    std::copy_n(axes.count, 3, count_along);
+    const std::size_t first = nodes.size();
+    nodes.resize(first + axes.count[0] * axes.count[1] * axes.count[2]);
+    int64_t *node = &nodes[first];
+    for (int k0 = 0; k0 < axes.count[0]; k0++)
+      for (int k1 = 0; k1 < axes.count[1]; k1++)
+        for (int k2 = 0; k2 < axes.count[2]; k2++) {
+          const int64_t n = canonical[axes.number(k0, k1, k2)];
+          if (!inner[n]) {
+            inner[n] = has_fluid_around(n) ? INNER : OUTER;
+            use((int) (n / NODES_PER_BLOCK));
+          }
+          *node++ = n;
+        }
+    grains.emplace_back();
+    Grain &g = grains.back();
     g.i = i;
-    g.first = (int) entries.size();
-    double mass = 0.0, inside = 0.0;
-    stencil.visit_around(atom->x[i], [&](int64_t node, double w, const double *r) {
-      const double *const record = records + node * nreal;
-      const double m = w * record[3];
-      mass += m;
-      const bool deep = is_inner(node);
-      entries.push_back({node, w, m, {r[0], r[1], r[2]}, deep});
-      if (!deep) return;
-      inside += m;
-      for (int d = 0; d < 3; d++) g.gain[d] += m * (record[d] - record[4 + d]);
-    });
-    if (!(mass > 1.0e-10 * full)) {
-      entries.resize(g.first);
+    g.first = first;
+    memcpy(g.w, axes.w, sizeof(g.w));
+    for (int d = 0; d < 3; d++) g.r[d] = axes.r[d][0];
+    if (!find_fluid(g)) {
+      nodes.resize(first);
+      grains.pop_back();
       continue;
     }
-    g.last = (int) entries.size();
-    for (int e = g.first; e < g.last; e++) entries[e].share /= mass;
-    g.part = inside > 0.0 ? 0.0 : 1.0;    // without an acceleration its term is left out
-    if (inside > 0.0)
-      for (int d = 0; d < 3; d++) g.gain[d] /= inside;
-    g.immersed = std::min(1.0, 2.0 * mass / full);
-    g.mass = HUGE_VAL;
-    double ahead = 0.0;
-    for (const auto &mover : movers)
-      if (atom->mask[i] & mover.groupbit) {
-        g.mass = atom->rmass[i];
-        ahead =
-            mover.ahead + 0.5 * (field->options.every - 1);    // in the mean over the steps to come
-      }
-    for (int d = 0; d < 3; d++) {
-      g.buoyancy[d] = g.immersed * density * volume(i) * (g.gain[d] - dt * gravity[d]);
-      g.velocity[d] = atom->v[i][d];
-      if (std::isfinite(g.mass))
-        g.velocity[d] += ahead * update->dt * force->ftm2v * atom->f[i][d] / g.mass;
-    }
-    grains.push_back(g);
+    move_by_forces(g, dt);
+    const double share = volume(i) / field->lattice.cell_volume();
+    double *const sum = sums.data() + SOLID;
+    around(g, [&](int64_t n, double w, int, int, int) {
+      sum[NREAL * n] += w * share;
+    });
   }
+}
+
+/** Sums of a block begin with zero. */
+void FixMPMImmersed::use(int slot)
+{
+  if (used[slot]) return;
+  used[slot] = 1;
+  slots.push_back(slot);
+  std::fill_n(&sums[(std::size_t) NREAL * NODES_PER_BLOCK * slot], NREAL * NODES_PER_BLOCK, 0.0);
+}
+
+template <class F> void FixMPMImmersed::each_used_node(const F &f) const
+{
+  for (const int slot : slots)
+    for (int n = 0; n < NODES_PER_BLOCK; n++) f((int64_t) slot * NODES_PER_BLOCK + n);
+}
+
+/** The velocity of the fluid is that after the momentum equation at inner nodes, elsewhere the old one with the mean gain. */
+bool FixMPMImmersed::find_fluid(Grain &g)
+{
+  const double full = density * field->lattice.cell_volume();
+  const double *const records = field->grid.nodes();
+  const char *const is_inner = inner.data();
+  double inside = 0.0, outside = 0.0, gain[4] = {}, fluid[4] = {};    // a fourth entry is faster
+  around(g, [&](int64_t node, double w, int, int, int) {
+    const double *const record = records + SPLIT * node;    // vx vy vz m, old velocity
+    const double m = w * record[3];
+    const bool in = is_inner[node] == INNER;
+    const double m_in = in ? m : 0.0;
+    const double *const v = in ? record : record + 4;
+    inside += m_in;
+    outside += m - m_in;
+    for (int k = 0; k < 4; k++) gain[k] += m_in * (record[k] - record[4 + k]);
+    for (int k = 0; k < 4; k++) fluid[k] += m * v[k];
+  });
+  g.around = inside + outside;
+  if (!(g.around > 1.0e-10 * full)) return false;
+  g.part = inside > 0.0 ? 0.0 : 1.0;    // without an acceleration its term is left out
+  for (int d = 0; d < 3; d++) {
+    g.gain[d] = inside > 0.0 ? gain[d] / inside : 0.0;
+    g.fluid[d] = (fluid[d] + outside * g.gain[d]) / g.around;
+  }
+  g.immersed = std::min(1.0, 2.0 * g.around / full);
+  return true;
+}
+
+void FixMPMImmersed::move_by_forces(Grain &g, double dt) const
+{
+  const int i = g.i;
+  g.mass = HUGE_VAL;
+  double ahead = 0.0;
+  for (const auto &mover : movers)
+    if (atom->mask[i] & mover.groupbit) {
+      g.mass = atom->rmass[i];
+      ahead =
+          mover.ahead + 0.5 * (field->options.every - 1);    // in the mean over the steps to come
+    }
+  for (int d = 0; d < 3; d++) {
+    g.buoyancy[d] = g.immersed * density * volume(i) * (g.gain[d] - dt * gravity[d]);
+    g.velocity[d] = atom->v[i][d];
+    if (std::isfinite(g.mass))
+      g.velocity[d] += ahead * update->dt * force->ftm2v * atom->f[i][d] / g.mass;
+  }
+}
+
+/* ----------------------------------------------------------------------
+   the coefficient is that of the slip which is left at the end of the step
+------------------------------------------------------------------------- */
+
+void FixMPMImmersed::buoyancy_and_coefficient(Grain &g, double dt)
+{
+  const double *const sum = sums.data();
+  double solid = 0.0, moment[3] = {0.0, 0.0, 0.0}, slip[3];
+  around(g, [&](int64_t node, double w, int k0, int k1, int k2) {
+    const double share = w * sum[NREAL * node + SOLID];
+    solid += share;
+    moment[0] += share * k0;
+    moment[1] += share * k1;
+    moment[2] += share * k2;
+  });
+  for (int d = 0; d < 3; d++) moment[d] = solid * g.r[d] - moment[d];
+  if (g.part != 1.0) g.part = 1.0 / (1.0 + solid);
+  const double of_fluid =
+      solid / (density * volume(g.i));    // all grains around are taken for equal
+  for (int d = 0; d < 3; d++) {
+    g.buoyancy[d] *= g.part;
+    g.velocity[d] += g.buoyancy[d] / g.mass;
+    slip[d] = g.fluid[d] - (g.velocity[d] + of_fluid * g.buoyancy[d]);
+  }
+  const double part = g.part * g.immersed;
+  g.coefficient = part *
+      drag_after_step(2.0 * atom->radius[g.i], MathExtra::len3(slip),
+                      end_of_bed(solid, moment, volume(g.i)),
+                      dt * part * (1.0 / g.mass + of_fluid));
+
+  const double push[4] = {-g.buoyancy[0] / g.around, -g.buoyancy[1] / g.around,
+                          -g.buoyancy[2] / g.around, g.coefficient / g.around};
+  add_to_nodes(g, BUOYANCY, push);
+}
+
+/** Weights times four values. */
+void FixMPMImmersed::add_to_nodes(const Grain &g, int lane, const double *values)
+{
+  double *const sum = sums.data() + lane;
+  const double add[4] = {values[0], values[1], values[2], values[3]};
+  around(g, [&](int64_t node, double w, int, int, int) {
+    for (int k = 0; k < 4; k++) sum[NREAL * node + k] += w * add[k];
+  });
+}
+
+/* ----------------------------------------------------------------------
+   the drag itself, with what the coefficients of all grains at the same nodes are now known to be
+------------------------------------------------------------------------- */
+
+void FixMPMImmersed::drag(Grain &g, double dt)
+{
+  double near[4] = {0.0, 0.0, 0.0, 0.0};    // of the velocity of the fluid, and rate of its slip
+  const double *const sum = sums.data();
+  around(g, [&](int64_t node, double w, int, int, int) {
+    for (int k = 0; k < 4; k++) near[k] += w * sum[NREAL * node + k];
+  });
+  const double slowing = g.coefficient / g.mass + near[3] / g.around;    // rate of the slip
+  const double factor = dt * g.coefficient / (1.0 + dt * slowing);
+  double push[4] = {};
+  for (int d = 0; d < 3; d++) {
+    const double drag = factor * (g.fluid[d] - g.velocity[d] + near[d] / g.around);
+    atom->v[g.i][d] += (drag + g.buoyancy[d]) / g.mass;
+    force_now[d] += drag / g.part;
+    force_now[3 + d] += drag + g.buoyancy[d] - drag / g.part;
+    push[d] = -drag / g.around;
+  }
+  add_to_nodes(g, DRAG, push);
+}
+
+/** No sum is at an image. */
+void FixMPMImmersed::sum_nodes(int lane, int nlane)
+{
+  field->nodes.halo->sum(sums.data(), NREAL, lane, nlane);
 }
 
 /* ----------------------------------------------------------------------
@@ -440,89 +617,26 @@ void FixMPMImmersed::act(double dt, Stage stage)
 {
   if (stage != STEP) return;
   auto &grid = field->grid;
-  const int nreal = grid.nreal;
-  grid.copy_aliases();
   find_grains(dt);
-  sums.assign(NREAL * grid.nnodes(), 0.0);
-  const auto sum_nodes = [&](int lane, int nlane) {    // images get the sums, too
-    field->nodes.sum(sums.data(), NREAL, lane, nlane);
-    grid.copy_aliases(sums.data(), NREAL);
-  };
-  const auto around = [&](const Grain &g, const auto &f) {
-    for (int e = g.first; e < g.last; e++) f(entries[e], &sums[NREAL * entries[e].node]);
-  };
-
-  for (const Grain &g : grains) {
-    const double share = volume(g.i) / field->lattice.cell_volume();
-    around(g, [&](const Entry &e, double *sum) {
-      sum[0] += e.w * share;
-    });
-  }
-  sum_nodes(0, 1);
-
-  for (Grain &g : grains) {
-    double solid = 0.0, moment[3] = {0.0, 0.0, 0.0}, slip[3] = {0.0, 0.0, 0.0};
-    around(g, [&](const Entry &e, const double *sum) {
-      const double *record = grid.nodes() + e.node * nreal;
-      solid += e.w * sum[0];
-      for (int d = 0; d < 3; d++) {
-        moment[d] += e.w * sum[0] * e.r[d];
-        slip[d] += e.share * (e.inner ? record[d] : record[4 + d] + g.gain[d]);
-      }
-    });
-    if (g.part != 1.0) g.part = 1.0 / (1.0 + solid);
-    const double of_fluid =
-        solid / (density * volume(g.i));    // all grains around are taken for equal
-    for (int d = 0; d < 3; d++) {
-      g.buoyancy[d] *= g.part;
-      g.velocity[d] += g.buoyancy[d] / g.mass;
-      slip[d] -= g.velocity[d] + of_fluid * g.buoyancy[d];
-    }
-    const double part = g.part * g.immersed;
-    g.coefficient = part *
-        drag_after_step(2.0 * atom->radius[g.i], MathExtra::len3(slip),
-                        end_of_bed(solid, moment, volume(g.i)),
-                        dt * part * (1.0 / g.mass + of_fluid));
-  }
-  for (const Grain &g : grains)
-    around(g, [&](const Entry &e, double *sum) {
-      for (int d = 0; d < 3; d++) sum[1 + d] -= e.share * g.buoyancy[d];
-      sum[4] += e.share * g.coefficient;
-    });
-  sum_nodes(1, 4);
-
+  sum_nodes(SOLID, 1);
+  for (Grain &g : grains) buoyancy_and_coefficient(g, dt);
+  sum_nodes(BUOYANCY, 4);
+  const double *const records = grid.nodes();
+  each_used_node([&](int64_t node) {
+    for (int k = 0; k < 4; k++) sums[NREAL * node + k] *= records[SPLIT * node + 3];
+  });
   std::fill(force_now, force_now + 6, 0.0);
-  for (const Grain &g : grains) {
-    double slip[3] = {-g.velocity[0], -g.velocity[1], -g.velocity[2]};
-    double slowing = g.coefficient / g.mass;    // rate of the slip
-    around(g, [&](const Entry &e, const double *sum) {
-      const double *record = grid.nodes() + e.node * nreal;
-      if (!(record[3] > 0.0)) return;
-      for (int d = 0; d < 3; d++)
-        slip[d] +=
-            e.share * ((e.inner ? record[d] : record[4 + d] + g.gain[d]) + sum[1 + d] / record[3]);
-      slowing += e.share * sum[4] / record[3];
-    });
-    const double factor = dt * g.coefficient / (1.0 + dt * slowing);
-    double drag[3];
-    for (int d = 0; d < 3; d++) {
-      drag[d] = factor * slip[d];
-      atom->v[g.i][d] += (drag[d] + g.buoyancy[d]) / g.mass;
-      force_now[d] += drag[d] / g.part;
-      force_now[3 + d] += drag[d] + g.buoyancy[d] - drag[d] / g.part;
-    }
-    around(g, [&](const Entry &e, double *sum) {
-      for (int d = 0; d < 3; d++) sum[5 + d] -= e.share * drag[d];
-    });
-  }
-  sum_nodes(5, 3);
+  for (Grain &g : grains) drag(g, dt);
+  sum_nodes(DRAG, 3);
 
-  for (int64_t node = 0; node < grid.nnodes(); node++) {
+  each_used_node([&](int64_t node) {
     const double *sum = &sums[NREAL * node];
-    const double push[3] = {sum[1] + sum[5], sum[2] + sum[6], sum[3] + sum[7]};
+    double *record = grid.record(node);
+    double push[3];
+    for (int d = 0; d < 3; d++) push[d] = sum[BUOYANCY + d] + record[3] * sum[DRAG + d];
     if (push[0] != 0.0 || push[1] != 0.0 || push[2] != 0.0)
-      field->ledger.push_node(grid.record(node), grid.owns(node), push);
-  }
+      field->ledger.push_node(record, grid.owns(node), push);
+  });
   count = (int) grains.size();
   dt_last = dt;
 }
@@ -548,5 +662,7 @@ double FixMPMImmersed::compute_vector(int i)
 double FixMPMImmersed::memory_usage()
 {
   return (double) (inner.capacity() + sums.capacity() * sizeof(double) +
-                   grains.capacity() * sizeof(Grain) + entries.capacity() * sizeof(Entry));
+                   grains.capacity() * sizeof(Grain) + used.capacity() +
+                   (immersed.capacity() + slots.capacity()) * sizeof(int) +
+                   (nodes.capacity() + canonical.capacity()) * sizeof(int64_t));
 }

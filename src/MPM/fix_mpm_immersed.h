@@ -51,6 +51,7 @@ class FixMPMImmersed : public Fix, public MPMNodeAction, private MPMImmersedOpti
   void init_action() override;
   void couple_topology() override;
   void extend_topology(MPMField &) override;
+  void topology_changed(MPMField &) override;
   void act(double dt, Stage) override;
 
  private:
@@ -59,39 +60,57 @@ class FixMPMImmersed : public Fix, public MPMNodeAction, private MPMImmersedOpti
     double ahead;    // steps that forces still act before the grain moves
   };
   struct Grain {
-    int i, first, last;    // atom, and its stencil entries
+    int i;                 // atom
+    std::size_t first;     // of its nodes in the list
+    double w[3][4];        // weights of its nodes along the axes
+    double r[3];           // from the first node to the grain, in node spacings
+    double around;         // mass of fluid around it
     double mass;           // infinite: held
     double immersed;       // share of it that is in the fluid
     double gain[3];        // of the velocity of the fluid in this step
+    double fluid[3];       // velocity of the fluid before buoyancy and drag
     double velocity[3];    // with forces, before drag
     double part;           // 1/(1 + share of volume of the grains)
     double coefficient;    // part of the force of drag / velocity [mass/time]
     double buoyancy[3];    // impulse, part of it
   };
-  struct Entry {    // a node next to a grain
-    int64_t node;
-    double w, share;    // shape function; share of the impulse
-    double r[3];        // to the grain, in node spacings
-    bool inner;         // there is fluid around the node
-  };
+  enum { BUOYANCY = 0, COEFFICIENT = 3, DRAG = 4, SOLID = 7, NREAL = 8 };    // in sums
 
   MPMField *field = nullptr;
   std::vector<Mover> movers;
-  std::vector<Grain> grains;
-  std::vector<Entry> entries;
-  std::vector<char> inner;     // [node] of is_inner(): 0 as long as it was not asked
-  std::vector<double> sums;    // [node][8] volume of grains; buoyancy; coefficients; drag
+  std::vector<int> immersed;         // grains of this rank, by atom
+  std::vector<Grain> grains;         // those with fluid around them
+  std::vector<int64_t> nodes;        // of all of these, none a periodic image
+  std::vector<int64_t> canonical;    // [node] the node that it is an image of, or itself
+  int count_along[3] = {1, 1, 1};    // nodes of a grain along the axes
+  std::vector<char> inner;           // [node] has_fluid_around(): 0 as long as it was not asked
+  std::vector<char> used;            // [block] are there sums?
+  std::vector<int> slots;            // of these blocks
+  // [node][8] share of the impulses of buoyancy and coefficients of grains around it; impulses of drag over its
+  // mass; volume of grains
+  std::vector<double> sums;
   double force_now[6] = {};    // drag and buoyancy on the grains of this rank, impulses
   int count = 0;
   double dt_last = 0.0;
 
   bool is_grain(int i) const;
   double volume(int i) const;
-  bool is_inner(int64_t node);
+  bool has_fluid_around(int64_t node) const;
   void find_grains(double dt);
+  void use(int slot);
+  template <class F> void each_used_node(const F &) const;
+  bool find_fluid(Grain &);
+  void move_by_forces(Grain &, double dt) const;
+  void buoyancy_and_coefficient(Grain &, double dt);
+  void drag(Grain &, double dt);
+  void add_to_nodes(const Grain &, int lane, const double *values);
+  void sum_nodes(int lane, int nlane);
+  template <class F> void around(const Grain &, const F &) const;
   double end_of_bed(double solid, const double *moment, double own) const;
   double drag_after_step(double diameter, double slip, double solid, double slowing) const;
-  double drag_on_sphere(double diameter, double slip, double solid) const;
+  double porosity(double solid) const;
+  double hindrance(double eps) const;
+  double drag_on_sphere(double diameter, double slip, double eps, double hindrance) const;
 };
 
 }    // namespace LAMMPS_NS

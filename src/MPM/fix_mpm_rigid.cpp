@@ -286,18 +286,10 @@ void FixMPMRigid::find_contacts()
         MathExtra::transpose_matvec(Q, c.r, local);
         const SurfaceMesh::Point p = {mesh->center[0] + local[0], mesh->center[1] + local[1],
                                       mesh->center[2] + local[2]};
-        if (mesh->bound(p) > 0.0) continue;
-        SurfaceMesh::Point out;
-        if (mesh->distance_and_normal(p, out) > 0.0) continue;
+        // a node that sticks needs no normal: far from the surface there is nothing to search for
+        if (kind == STICK ? !mesh->inside(p) : mesh->bound(p) > 0.0) continue;
         MathExtra::copy3(c.record, c.v);
-        MathExtra::matvec(Q, out.data(), c.n);
-        if (!(MathExtra::lensq3(c.n) > 0.0)) {
-          // no way out is shorter: along the motion of the body
-          const double u[6] = {v[0], v[1], v[2], omega[0], omega[1], omega[2]};
-          c.relative_velocity(u, c.n);
-          if (!(MathExtra::lensq3(c.n) > 0.0)) continue;
-          MathExtra::norm3(c.n);
-        }
+        if (kind != STICK && !find_normal(p, c)) continue;
         c.field = field;
         c.owned = block.owned >> n & 1;
         c.state = kind == STICK ? Contact::STICKS : Contact::SLIDES;
@@ -305,6 +297,21 @@ void FixMPMRigid::find_contacts()
       }
     }
   }
+}
+
+/** False: the point is outside, or has no normal. */
+bool FixMPMRigid::find_normal(const std::array<double, 3> &p, Contact &c) const
+{
+  SurfaceMesh::Point out;
+  if (mesh->distance_and_normal(p, out) > 0.0) return false;
+  MathExtra::matvec(Q, out.data(), c.n);
+  if (MathExtra::lensq3(c.n) > 0.0) return true;
+  // no way out is shorter: along the motion of the body
+  const double u[6] = {v[0], v[1], v[2], omega[0], omega[1], omega[2]};
+  c.relative_velocity(u, c.n);
+  if (!(MathExtra::lensq3(c.n) > 0.0)) return false;
+  MathExtra::norm3(c.n);
+  return true;
 }
 
 /* ---------------------------------------------------------------------- */

@@ -19,6 +19,7 @@ FixStyle(mpm/rigid,FixMPMRigid);
 #include "fix.h"
 #include "mpm_node_action.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -83,7 +84,7 @@ class FixMPMRigid : public Fix, public MPMNodeAction, private MPMRigidOptions {
     bool owned;
     State state;
     double r[3];            // from the center of the body
-    double n[3];            // out of the body
+    double n[3] = {};       // out of the body, where nodes do not just stick
     double v[3];            // before the contact
     double pull[3] = {};    // impulse of friction on the node, for an impulse of 1 along n
 
@@ -98,6 +99,7 @@ class FixMPMRigid : public Fix, public MPMNodeAction, private MPMRigidOptions {
 
   void load_impulse(double dt);
   void find_contacts();
+  bool find_normal(const std::array<double, 3> &, Contact &) const;
   void solve();
   void move(double dt);
   double radius() const;

@@ -24,12 +24,10 @@
 #include "mpm_options.h"
 #include "mpm_point_map.h"
 #include "mpm_points.h"
-#include "neighbor.h"
 #include "update.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -222,16 +220,6 @@ void FixMPMSurface::pre_force(int)
     comm->forward_comm(this);
     next_reneighbor = update->ntimestep + 1;
   }
-  if (!neighbor->includegroup) return;
-
-  // LAMMPS has set to zero the forces of the atoms in the neighbor lists only. Nothing exerts torques
-  // on the others, so that these stay zero until atoms change their places in memory
-
-  const std::size_t n = 3 * (std::size_t)(atom->nlocal - atom->nfirst) * sizeof(double);
-  if (n == 0) return;
-  memset(&atom->f[atom->nfirst][0], 0, n);
-  if (atom->torque_flag && !no_torques) memset(&atom->torque[atom->nfirst][0], 0, n);
-  no_torques = true;
 }
 
 /* ----------------------------------------------------------------------
@@ -240,7 +228,6 @@ void FixMPMSurface::pre_force(int)
 
 void FixMPMSurface::pre_exchange()
 {
-  no_torques = false;
   find_surface();
   if (moves_atoms()) keep_first();
 }

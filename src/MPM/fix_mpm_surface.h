@@ -58,7 +58,6 @@ class FixMPMSurface : public FixMPMState, private MPMSurfaceOptions {
  private:
   int surface_group = -1;       // that points with a radius are in, -1: none; of this run
   bool known = false;           // radii are those of the surface, not the largest ones
-  bool no_torques = false;      // of atoms that are not in neighbor lists, since these were made
   double *at_surface;           // [n] 1: has a radius, 0: has not
   std::vector<double> share;    // of the volume, at the points of a field
   struct MPMPoints *points;

@@ -29,14 +29,26 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// each step looks at the forces on one in so many blocks of consecutive points, others in the next step
-static constexpr int BLOCK = 16;
-static constexpr int MOST_STRIDE = 128, PAIR_STRIDE = 16;    // contacts with grains are few points
-static constexpr int ENOUGH = 512;                           // points of a rank in a step
-static constexpr int CHECK_EVERY = 800;                      // steps between looks at all energies
+// Each step looks at the forces on a part of the points, others in the next step. Whose turn it is follows from the ID
+// alone: with parts by the place in memory, points would be looked at twice or not at all when their order changes, and
+// in water at rest forces are so large that this is as much as the energy in play
+static constexpr int SAME_TURN = 16;    // consecutive IDs, which are mostly neighbors
+static constexpr int MOST_BITS = 7,
+                     PAIR_BITS = 4;    // one in 128, of those with contacts one in 16
+static constexpr int ENOUGH = 512;     // points in a step
+// steps between looks at all energies: then all had their turn
+static constexpr int CHECK_EVERY = 7 << MOST_BITS;
 static constexpr int SHORTEST = 200;    // run in which the work is known well enough
 static constexpr double AT_REST =
     1.0e-9;    // cells per step: with less than that nothing is in play
+
+/** The step of 2^bits in which a point is looked at. Multiples of the golden ratio are spread evenly for any range of
+ *  IDs, and are no wave through a lattice of points. */
+static int turn_of(tagint tag, int bits)
+{
+  const auto number = (uint32_t) (tag / SAME_TURN);
+  return (int) ((uint64_t) (uint32_t) (number * UINT32_C(2654435769)) >> (32 - bits));
+}
 
 /* ---------------------------------------------------------------------- */
 
@@ -50,6 +62,7 @@ void MPMEnergyWatch::step()
 void MPMEnergyWatch::finish()
 {
   if (run.steps >= SHORTEST) check();
+  for (auto &part : parts) part.list = -1;    // commands may move atoms before the run goes on
 }
 
 /* ----------------------------------------------------------------------
@@ -59,32 +72,70 @@ void MPMEnergyWatch::finish()
 
 void MPMEnergyWatch::add_force_work()
 {
-  // pair styles act on atoms in neighbor lists, which may be those of a group that is first in memory; with
-  // every, on those of several lists
-  const int end = atom->nlocal;
-  const bool first_met = neighbor->includegroup && !fields[0]->every;
-  const int met = !force->pair ? 0 : first_met ? atom->nfirst : end;
-  add_force_work(0, met, PAIR_STRIDE);
-  add_force_work(met, end, MOST_STRIDE);
+  const int met = number_met();
+  run.force_work += force_work(parts[0], 0, met) + force_work(parts[1], met, atom->nlocal);
 }
 
-void MPMEnergyWatch::add_force_work(int begin, int end, int most)
+/** Pair styles act on atoms in neighbor lists, which may be those of a group that is first in memory; with every, on
+ *  those of several lists. */
+int MPMEnergyWatch::number_met() const
 {
-  const int stride = std::max(1, std::min(most, (end - begin) / ENOUGH));
-  double power = 0.0;
-  for (const auto *field : fields) {
-    const double *const f = field->rows().f;
-    for (int first = begin + BLOCK * (int) (run.steps % stride); first < end;
-         first += BLOCK * stride)
-      for (int i = first; i < std::min(first + BLOCK, end); i++) {
-        if (!field->is_point(i)) continue;
-        double now[3] = {f[3 * (bigint) i], f[3 * (bigint) i + 1], f[3 * (bigint) i + 2]};
-        for (const auto *ifix : field->elements)
-          for (int d = 0; d < 3; d++) now[d] -= ifix->forces()[3 * (bigint) i + d];
-        power += dot(now, atom->v[i]);
-      }
+  const bool first_met = neighbor->includegroup && !fields[0]->every;
+  return !force->pair ? 0 : first_met ? atom->nfirst : atom->nlocal;
+}
+
+double MPMEnergyWatch::force_work(Part &part, int begin, int end)
+{
+  const int turns = 1 << part.bits, turn = (int) (run.steps % turns);
+  const auto ahead = [&]() {
+    return (turn - part.first) & (turns - 1);
+  };
+  // atoms change their places when lists are made
+  if (part.begin != begin || part.end != end || part.list != neighbor->lastcall ||
+      ahead() >= AHEAD) {
+    part.begin = begin;
+    part.end = end;
+    part.list = neighbor->lastcall;
+    part.first = turn;
+    find_places(part);
   }
-  run.force_work += stride * power * fields[0]->step_dt();
+
+  forces.clear();
+  for (const auto *field : fields) forces.push_back(field->rows().f);
+  const double *const v = end > begin ? atom->v[0] : nullptr;    // without pointers to rows
+  double power = 0.0;
+  for (const auto &[field, i] : part.places[ahead()]) {
+    const double *const f = forces[field] + 3 * (bigint) i;
+    double now[3] = {f[0], f[1], f[2]};
+    for (const auto *ifix : fields[field]->elements)
+      for (int d = 0; d < 3; d++) now[d] -= ifix->forces()[3 * (bigint) i + d];
+    power += dot(now, v + 3 * (bigint) i);
+  }
+  return turns * power * fields[0]->step_dt();
+}
+
+void MPMEnergyWatch::find_places(Part &part) const
+{
+  const int turns = 1 << part.bits;
+  for (auto &places : part.places) places.clear();
+  for (int i = part.begin; i < part.end; i++) {
+    const int ahead = (turn_of(atom->tag[i], part.bits) - part.first) & (turns - 1);
+    if (ahead >= AHEAD) continue;
+    for (std::size_t k = 0; k < fields.size(); k++)
+      if (fields[k]->is_point(i)) part.places[ahead].push_back({(int) k, i});
+  }
+}
+
+/** Enough points in each step, of all ranks. */
+void MPMEnergyWatch::choose_turns(const Sums &now)
+{
+  const double npoints[2] = {now.met, now.points - now.met};
+  const int most[2] = {PAIR_BITS, MOST_BITS};
+  for (int k = 0; k < 2; k++) {
+    parts[k] = Part();
+    while (parts[k].bits < most[k] && npoints[k] >= 2.0 * ENOUGH * (1 << parts[k].bits))
+      parts[k].bits++;
+  }
 }
 
 /* ---------------------------------------------------------------------- */
@@ -92,12 +143,17 @@ void MPMEnergyWatch::add_force_work(int begin, int end, int most)
 MPMEnergyWatch::Sums MPMEnergyWatch::sums() const
 {
   const MPMPointEnergies points = point_energies(lmp);
-  Sums mine = {0.0,           0.0, points.kinetic, points.stored, points.taken() - points.stored,
-               run.force_work};
+  Sums mine = {};
+  mine.kinetic = points.kinetic;
+  mine.stored = points.stored;
+  mine.spent = points.taken() - points.stored;
+  mine.work = run.force_work;
+  const int met = number_met();
   for (const auto *field : fields) {
     for (int i = 0; i < atom->nlocal; i++) {
       if (!field->is_point(i)) continue;
       mine.points++;
+      mine.met += i < met;
       mine.mass += atom->rmass[i];
     }
     const auto &ledger = field->ledger;
@@ -135,6 +191,7 @@ void MPMEnergyWatch::check()
 {
   const Sums now = sums();
   if (run.steps == 0 || now.points != run.start.points) begin(now);
+  if (run.steps % CHECK_EVERY == 0) choose_turns(now);
   const double spent = now.spent - run.start.spent, unexplained = now.unexplained();
   run.last = now;
   run.lowest = std::min(run.lowest, unexplained);

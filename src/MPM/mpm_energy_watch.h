@@ -23,7 +23,7 @@ class MPMField;
  *  walls, rigid bodies, atoms, and deleted points is always counted; what friction takes at walls and
  *  between bodies is not: where it holds material at rest, nodes have velocities that points do not
  *  have, and its work is mostly spurious. That of forces on points is estimated from a part of the
- *  points in each step. What is left is the sum of the errors transfer, integration and residual of
+ *  points in each step, chosen by their IDs, so that it does not depend on their order and on which rank has them. What is left is the sum of the errors transfer, integration and residual of
  *  compute mpm/energy. It counts from its lowest value in a run, so that
  *  energy that a dissipative transfer took at first does not hide what is added later, and is
  *  compared with the energy in play: the largest sum so far of kinetic energy, stored energy, and
@@ -48,14 +48,29 @@ class MPMEnergyWatch : protected Pointers {
  private:
   /** Sums over all ranks. */
   struct Sums {
-    double points, mass;
+    double points, met, mass;    // met: points that pair styles may act on
     double kinetic, stored, spent;
     double work;    // done on the points, less what deleted points had
     /** Energy that work does not explain, from the same start. */
     double unexplained() const { return kinetic + stored + spent - work; }
   };
 
+  static constexpr int AHEAD = 16;
+  /** Points begin to end in memory, each with its turn in one of 2^bits steps, and where those are whose turn comes in
+   *  this one or one of the next. */
+  struct Part {
+    int bits = 0;
+    int begin = -1, end = -1, first = 0;    // first: turn of places[0]
+    bigint list = -1;                       // step of the neighbor list
+    struct Place {
+      int field, i;
+    };
+    std::vector<Place> places[AHEAD];
+  };
+
   const std::vector<MPMField *> &fields;
+  Part parts[2];
+  std::vector<const double *> forces;    // [field] on points in this step
   struct {
     bigint steps;
     double force_work;    // of forces on points, this rank's share
@@ -68,8 +83,10 @@ class MPMEnergyWatch : protected Pointers {
   } run = {};
 
   void add_force_work();
-  /** That on points from begin to end, one of so many at most. */
-  void add_force_work(int begin, int end, int most);
+  int number_met() const;
+  double force_work(Part &, int begin, int end);
+  void find_places(Part &) const;
+  void choose_turns(const Sums &);
   Sums sums() const;
   void begin(const Sums &);
   void check();

@@ -224,7 +224,9 @@ void MPMGuard::check_neighbors() const
   const int ntypes = atom->ntypes;
   std::vector<int> mine(2 * (ntypes + 1), 0), all(2 * (ntypes + 1));    // points, other atoms
   bigint npoints = 0, npoints_all;
+  const int listed = group->bitmask[neighbor->includegroup];    // 0: all
   for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & listed)) continue;
     const bool point = atom->vfrac[i] > 0.0;
     mine[2 * atom->type[i] + !point] = 1;
     npoints += point;

@@ -119,35 +119,53 @@ class MPMStencil {
   /** The same of point i, which is in the given block, for loops that are written out. */
   void find_axes(const MPM_NS::Grid::Block &block, int i, Axes &axes) const
   {
-    const auto &lattice = field.lattice;
-    const auto &grid = field.grid;
     const double *const place = field.frame->places()[i];
-    const int stride[3] = {9, 3, 1}, last = grid.side - 1;
     axes.slots = block.slot;
     for (int d = 0; d < 3; d++) {
-      if (d >= lattice.dim) {
-        axes.count[d] = 1;
-        axes.w[d][0] = 1.0;
-        axes.r[d][0] = 0.0;
-        axes.neighbor[d][0] = stride[d];
-        axes.inside[d][0] = 0;
-        continue;
-      }
-      const int step =
-          d == lattice.dim - 1 ? 1 : (d == lattice.dim - 2 ? grid.side : grid.side * grid.side);
-      const double t = (place[d] - lattice.origin[d]) / lattice.h;
-      int base;
-      axes.count[d] = weights(t, base, axes.w[d]);
-      if (field.boxes)
+      const double t = (place[d] - field.lattice.origin[d]) / field.lattice.h;
+      int base = 0;
+      if (d < field.lattice.dim) axes.count[d] = weights(t, base, axes.w[d]);
+      if (d < field.lattice.dim && field.boxes)
         MPM_NS::Gimp::weights(t - MPM_NS::Gimp::shift - base,
                               field.boxes->sizes[3 * (std::size_t) i + d], axes.w[d]);
-      for (int k = 0; k < axes.count[d]; k++) {
-        const int index = base + k;
-        axes.r[d][k] = t - index;
-        axes.neighbor[d][k] = stride[d] * ((index >> grid.shift_bits) - block.b[d] + 1);
-        axes.inside[d][k] = step * (index & last);
-      }
+      number_axis(block, d, t, base, axes);
     }
+  }
+
+  /** The same of a position, such as that of an atom which is no point, where reaches_blocks(). */
+  void find_axes(const double *x, Axes &axes)
+  {
+    const auto &grid = field.grid;
+    int base[3] = {0, 0, 0};
+    double t[3] = {0.0, 0.0, 0.0};
+    for (int d = 0; d < field.lattice.dim; d++) {
+      t[d] = (x[d] - field.lattice.origin[d]) / field.lattice.h;
+      axes.count[d] = weights(t[d], base[d], axes.w[d]);
+    }
+    find_slot(base);
+    const auto &block = grid.blocks[slot];
+    axes.slots = block.slot;
+    for (int d = 0; d < 3; d++) number_axis(block, d, t[d], base[d], axes);
+  }
+
+  /** Are all nodes that a position reaches active? The blocks must stay while this object is used: it remembers the
+   *  last one. */
+  bool reaches_blocks(const double *x)
+  {
+    const auto &grid = field.grid;
+    int base[3] = {0, 0, 0}, more[3] = {0, 0, 0};
+    for (int d = 0; d < field.lattice.dim; d++) {
+      double w[4];
+      const int n = weights((x[d] - field.lattice.origin[d]) / field.lattice.h, base[d], w);
+      more[d] = ((base[d] + n - 1) >> grid.shift_bits) - (base[d] >> grid.shift_bits);
+    }
+    if (!find_slot(base)) return false;
+    const int *const neighbors = grid.blocks[slot].slot + 13;
+    for (int a = 0; a <= more[0]; a++)
+      for (int b = 0; b <= more[1]; b++)
+        for (int c = 0; c <= more[2]; c++)
+          if (neighbors[9 * a + 3 * b + c] < 0) return false;
+    return true;
   }
 
   /** Calls f(number, weight, r) for the nodes that a position reaches, such as that of an atom which
@@ -156,15 +174,13 @@ class MPMStencil {
   template <class F> bool visit_around(const double *x, const F &f)
   {
     const auto &grid = field.grid;
-    int base[3] = {0, 0, 0}, count[3] = {1, 1, 1}, b[3], k[3];
+    int base[3] = {0, 0, 0}, count[3] = {1, 1, 1}, k[3];
     double t[3] = {0.0, 0.0, 0.0}, w[3][4] = {{0.0}, {0.0}, {1.0}};
     for (int d = 0; d < field.lattice.dim; d++) {
       t[d] = (x[d] - field.lattice.origin[d]) / field.lattice.h;
       count[d] = weights(t[d], base[d], w[d]);
     }
-    for (int d = 0; d < 3; d++) b[d] = base[d] >> grid.shift_bits;
-    if (slot < 0 || !std::equal(b, b + 3, grid.blocks[slot].b)) slot = grid.find(b);
-    if (slot < 0) return false;
+    if (!find_slot(base)) return false;
     for (k[0] = 0; k[0] < count[0]; k[0]++)
       for (k[1] = 0; k[1] < count[1]; k[1]++)
         for (k[2] = 0; k[2] < count[2]; k[2]++) {
@@ -180,6 +196,38 @@ class MPMStencil {
  private:
   const MPMField &field;
   int slot = -1;    // of the last block
+
+  /** The block of a node. */
+  bool find_slot(const int base[3])
+  {
+    const auto &grid = field.grid;
+    int b[3];
+    for (int d = 0; d < 3; d++) b[d] = base[d] >> grid.shift_bits;
+    if (slot < 0 || !std::equal(b, b + 3, grid.blocks[slot].b)) slot = grid.find(b);
+    return slot >= 0;
+  }
+
+  /** What Axes has along one of them, besides weights. */
+  void number_axis(const MPM_NS::Grid::Block &block, int d, double t, int base, Axes &axes) const
+  {
+    const auto &grid = field.grid;
+    const int dim = field.lattice.dim, stride = d == 0 ? 9 : (d == 1 ? 3 : 1);
+    if (d >= dim) {
+      axes.count[d] = 1;
+      axes.w[d][0] = 1.0;
+      axes.r[d][0] = 0.0;
+      axes.neighbor[d][0] = stride;
+      axes.inside[d][0] = 0;
+      return;
+    }
+    const int step = d == dim - 1 ? 1 : (d == dim - 2 ? grid.side : grid.side * grid.side);
+    for (int k = 0; k < axes.count[d]; k++) {
+      const int index = base + k;
+      axes.r[d][k] = t - index;
+      axes.neighbor[d][k] = stride * ((index >> grid.shift_bits) - block.b[d] + 1);
+      axes.inside[d][k] = step * (index & (grid.side - 1));
+    }
+  }
 
   template <class Functions> static int evaluate(double t, int &first, double w[4], double *slopes)
   {

@@ -125,6 +125,12 @@ TEST(Grid, PeriodicImagesFoldOntoOneCanonicalNode)
       for_nodes([&](std::size_t s, int k, bool) {
         EXPECT_EQ(grid.record(s, k)[0], canonical(grid.blocks[s], k));
       });
+      const std::vector<int64_t> itself = grid.canonical();
+      for_nodes([&](std::size_t s, int k, bool) {
+        const int64_t node = itself[s * NODES_PER_BLOCK + k];
+        EXPECT_TRUE(grid.owns(node));
+        EXPECT_EQ(grid.record(node)[0], canonical(grid.blocks[s], k));
+      });
     }
 }
 

@@ -12,6 +12,7 @@
 #include <climits>
 #include <cstring>
 #include <new>
+#include <numeric>
 
 using namespace MPM_NS;
 
@@ -136,6 +137,14 @@ void Grid::copy_aliases(double *nodes, int nreals) const
     double *to = nodes + alias_node[k] * nreals;
     for (int r = 0; r < nreals; r++) to[r] = from[r];
   }
+}
+
+std::vector<int64_t> Grid::canonical() const
+{
+  std::vector<int64_t> nodes(nnodes());
+  std::iota(nodes.begin(), nodes.end(), 0);
+  for (std::size_t k = 0; k < alias_node.size(); k++) nodes[alias_node[k]] = alias_of[k];
+  return nodes;
 }
 
 int64_t Grid::memory_usage() const

@@ -142,6 +142,9 @@ class Grid {
     return slot < 0 ? -1 : (int64_t) slot * NODES_PER_BLOCK + number(index);
   }
 
+  /** [node] the node that it is a periodic image of, or itself. */
+  std::vector<int64_t> canonical() const;
+
   int64_t memory_usage() const;
 
   static uint64_t block_key(const Block &block) { return key(block.b); }
