@@ -125,8 +125,9 @@ namespace {
     }
 
     // a function of its own: one with all that is above does not vectorize
-    [[gnu::noinline]] static void return_along_axes(const LawParameters &p, const Law &law, Batch &b,
-                                                    History history, const Tensors &strain)
+    [[gnu::noinline]] static void return_along_axes(const LawParameters &p, const Law &law,
+                                                    Batch &b, History history,
+                                                    const Tensors &strain)
     {
       PrincipalStates s;
       const Spectral axes(b.n, strain.row);

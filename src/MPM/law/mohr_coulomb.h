@@ -93,10 +93,8 @@ namespace {
       const double e3 = t.s3 + d3 * ma + b3 * mb;
       const double pair = 0.5 * (e2 + (right > 0.0 ? e3 : e1));    // equal but for round-off
       const double k1 = right > 0.0 ? e1 : pair, k3 = right > 0.0 ? pair : e3;
-      // the difference of k1 and k3 by the surface: that of the stresses may be round-off. Without any
-      // strength pressure stays, and tension is lost
-      const double least = max(f.sp, 1e-12), tip = f.cc / least;
-      const double edge = 2.0 * f.cc - (k1 + k3) * least;
+      // the difference of k1 and k3 by the surface: that of the stresses may be round-off
+      const double edge = 2.0 * f.cc - (k1 + k3) * f.sp, tip = f.cc / f.sp;
       const double c1 = edge >= 0.0 ? k1 : tip, c2 = edge >= 0.0 ? pair : tip;
       const double c3 = edge >= 0.0 ? k3 : tip;
       MohrCoulombReturn r;
@@ -114,10 +112,9 @@ namespace {
         const double ra = dmain - da * ma - db * mb, rb = dother - db * ma - da * mb;
         const double dma = (a * ra - b * rb) * (a * inv), dmb = (a * rb - b * ra) * (a * inv);
         const double de1 = d1 * dma + b1 * dmb, de2 = d2 * dma + b2 * dmb;
-        const double de3 = d3 * dma + b3 * dmb, dleast = f.sp > 1e-12 ? f.dsp : 0.0;
-        const double dtip = (f.dcc - tip * dleast) / least;
+        const double de3 = d3 * dma + b3 * dmb, dtip = (f.dcc - tip * f.dsp) / f.sp;
         const double dk = right > 0.0 ? de1 + de2 : de2 + de3;
-        const double dedge = 2.0 * f.dcc - (k1 + k3) * dleast - dk * least;
+        const double dedge = 2.0 * f.dcc - (k1 + k3) * f.dsp - dk * f.sp;
         const double dplane = max(d2 - d1, d3 - d2) * max(dm, -dm);
         const double x1 = edge >= 0.0 ? de1 : dtip, x2 = edge >= 0.0 ? de2 : dtip;
         const double x3 = edge >= 0.0 ? de3 : dtip;
@@ -188,12 +185,14 @@ namespace {
       return nullptr;
     }
 
+    static constexpr double LEAST = 1e-15;    ///< of sin(phi): without any strength tension is lost
     double phi, c, cr, phir, rate, sin_phi, c_cos_phi;
     MohrCoulombSurface surface;
 
     explicit LawMohrCoulomb(const LawParameters &p) :
         BulkAndShear(p), phi(p.value[PHI] * DEGREES), c(p.value[COHESION]), cr(p.value[RESIDUAL_C]),
-        phir(p.value[RESIDUAL_PHI] * DEGREES), rate(p.value[RATE]), sin_phi(std::sin(phi)),
+        phir(p.value[RESIDUAL_PHI] * DEGREES), rate(p.value[RATE]),
+        sin_phi(max(std::sin(phi), LEAST)),
         c_cos_phi(c * std::cos(phi)), surface{K, G, std::sin(p.value[PSI] * DEGREES)}
     {
     }
@@ -203,9 +202,9 @@ namespace {
     {
       if (!SOFT) return {sin_phi, c_cos_phi, 0.0, 0.0};
       const double left = exp(-rate * e), angle = (phi - phir) * left, more = (c - cr) * left;
-      const double sp = sin(phir + angle), cos_phi = std::sqrt((1.0 - sp) * (1.0 + sp));
-      const double cohesion = cr + more;
-      return {sp, cohesion * cos_phi, -rate * angle * cos_phi,
+      const double sine = sin(phir + angle), sp = max(sine, LEAST);
+      const double cos_phi = std::sqrt((1.0 - sp) * (1.0 + sp)), cohesion = cr + more;
+      return {sp, cohesion * cos_phi, sine > LEAST ? -rate * angle * cos_phi : 0.0,
               rate * (cohesion * sp * angle - cos_phi * more)};
     }
 
