@@ -495,6 +495,23 @@ TEST(MohrCoulomb, Softening)
   EXPECT_GT(peak, 1.2 * residual);
 }
 
+// parts that separated carry no pressure before they meet, also where nothing yields
+TEST(MohrCoulomb, SeparatedPartsCloseWithoutPressure)
+{
+  const double K = 1e6 / (3 * 0.4), tip = 1e4 / std::tan(30 * DEG);
+  Point p("density 1900 mohr/coulomb 1e6 0.3 30 1e4");
+  move_to(p, isotropic(1.05));
+  EXPECT_NEAR(pressure(p), -tip, 1e-9 * tip);
+  const double gap = 3 * std::log(1.05) - tip / K;
+  EXPECT_NEAR(value(p, "gap"), gap, 1e-12);
+  move_to(p, isotropic(1.02));
+  EXPECT_NEAR(pressure(p), 0.0, 1e-9 * tip);
+  EXPECT_NEAR(value(p, "gap"), 3 * std::log(1.02), 1e-12);
+  move_to(p, isotropic(0.99));
+  EXPECT_NEAR(pressure(p), -3 * K * std::log(0.99), 1e-9 * tip);
+  EXPECT_NEAR(value(p, "gap"), 0.0, 1e-12);
+}
+
 // in one step or many: pressure stays, as there is no plastic volume, and tension is lost
 TEST(MohrCoulomb, SofteningToNothing)
 {
