@@ -26,12 +26,13 @@ namespace {
    *  with associated flow, v: plastic volume strain. Elasticity: Hencky, in Kirchhoff stress.
    *
    *  Return mapping (N. Aravas, Int. J. Numer. Meth. Eng. 24 (1987) 1395), implicit in all
-   *  variables: Newton's method from a point between the old stress and the trial stress. Where
-   *  that fails (large steps, points close to failure, voids that vanish), a search: for given y
-   *  and nucleation the unknown is z = log(f/f0), from which follow v (1 - f = (1 - f0) exp(-v)),
-   *  m, and two values of q, by the yield surface and by the direction of flow. Their difference S
-   *  changes sign between no volume flow and no mean stress: bracketed first, then followed by
-   *  chords while y and nucleation are found by secants of the strain of the matrix.
+   *  variables: Newton's method from a guess, the flow of where the way from the old stress to the
+   *  trial stress meets the surface; in large steps, the stress of there. Where that fails (large
+   *  steps, points close to failure, voids that vanish), a search: for given y and nucleation the
+   *  unknown is z = log(f/f0), from which follow v (1 - f = (1 - f0) exp(-v)), m, and two values of
+   *  q, by the yield surface and by the direction of flow. Their difference S changes sign between
+   *  no volume flow and no mean stress: bracketed first, then followed by chords while y and
+   *  nucleation are found by secants of the strain of the matrix.
    *
    *  A point that has failed bears pressure only, after the volume that opened ("gap") closed. */
   struct LawGurson : HenckyInvariantReturn<LawGurson> {
