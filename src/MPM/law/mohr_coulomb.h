@@ -36,7 +36,6 @@ namespace {
   struct MohrCoulombReturn {
     double s1, s2, s3, d1, d2, d3;
     double at_apex;    ///< 1 or 0
-    double room;       ///< how far the plastic strain may change before plane, edge or apex do
   };
 
   /** Mohr-Coulomb surface s1 - s3 + (s1 + s3) sin(phi) = 2 c cos(phi), with non-associated flow, and
@@ -102,7 +101,7 @@ namespace {
       r.s1 = plane >= 0.0 ? p1 : c1;
       r.s2 = plane >= 0.0 ? p2 : c2;
       r.s3 = plane >= 0.0 ? p3 : c3;
-      r.d1 = r.d2 = r.d3 = r.room = 0.0;
+      r.d1 = r.d2 = r.d3 = 0.0;
       if (SLOPES) {
         const double da = ((4.0 / 3.0) * G + 4.0 * K) * st * f.dsp;
         const double db0 = (-(2.0 / 3.0) * G + 4.0 * K) * st;
@@ -113,17 +112,11 @@ namespace {
         const double dma = (a * ra - b * rb) * (a * inv), dmb = (a * rb - b * ra) * (a * inv);
         const double de1 = d1 * dma + b1 * dmb, de2 = d2 * dma + b2 * dmb;
         const double de3 = d3 * dma + b3 * dmb, dtip = (f.dcc - tip * f.dsp) / f.sp;
-        const double dk = right > 0.0 ? de1 + de2 : de2 + de3;
-        const double dedge = 2.0 * f.dcc - (k1 + k3) * f.dsp - dk * f.sp;
-        const double dplane = max(d2 - d1, d3 - d2) * max(dm, -dm);
         const double x1 = edge >= 0.0 ? de1 : dtip, x2 = edge >= 0.0 ? de2 : dtip;
         const double x3 = edge >= 0.0 ? de3 : dtip;
         r.d1 = plane >= 0.0 ? d1 * dm : x1;
         r.d2 = plane >= 0.0 ? d2 * dm : x2;
         r.d3 = plane >= 0.0 ? d3 * dm : x3;
-        const double room = max(plane, -plane) / (dplane + 1e-300);
-        const double corner = max(edge, -edge) / (max(dedge, -dedge) + 1e-300);
-        r.room = plane >= 0.0 ? room : min(room, corner);
       }
       return r;
     }
@@ -341,8 +334,7 @@ namespace {
           const double bend = 4.0 * rate * size;
           const double rest = bend * size * max(max(r.d1, -r.d1), max(r.d3, -r.d3));
           const double off = max(rest - 1e-14 * G * (1.0 - steep) * made, bend - 0.1);
-          const double left = max(off, size - r.room) <= 0.0 ? 0.0
-                                                             : here;    // not a number: stays open
+          const double left = off <= 0.0 ? 0.0 : here;    // not a number: stays open
           o.c1[i] = here > 0.0 ? c1 + step * r.d1 : o.c1[i];
           o.c2[i] = here > 0.0 ? c2 + step * r.d2 : o.c2[i];
           o.c3[i] = here > 0.0 ? c3 + step * r.d3 : o.c3[i];
