@@ -6,7 +6,7 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Cost of the constitutive laws: time per point of Material::update (yielding points), wave_speed
+// Cost of the constitutive laws: time per point of Material::update (yielding points, or *_elastic), wave_speed
 // and stored_energy on full batches, for each instruction set that this CPU has.
 
 #include "material/material_point.h"
@@ -82,6 +82,9 @@ struct Sample {
     {"gurson",
      "density 7800 gurson 200e9 0.3 400e6 0.02 hardening 0.01 0.1 nucleation 0.04 0.1 0.05 "
      "coalescence 0.15 0.25"},
+    {"gurson_elastic",
+     "density 7800 gurson 200e9 0.3 400e12 0.02 hardening 1e6 0.1 nucleation 0.04 0.1 0.05 "
+     "coalescence 0.15 0.25"},
     {"johnson_cook_damage",
      "density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 0.168 0.0089 1 1.1 "
      "1540 20 thermal adiabatic 460 20 0.9 damage johnson/cook 0.05 3.44 -2.12 rate 0.002 1 "
@@ -100,10 +103,13 @@ struct Sample {
     {"drucker_prager", "density 1600 drucker/prager 1e8 0.3 30 dilatancy 5"},
     {"mohr_coulomb", "density 1900 mohr/coulomb 1e8 0.3 30 1e4 dilatancy 10"},
     {"mohr_coulomb_soft", "density 1900 mohr/coulomb 1e8 0.3 30 3e4 residual 1e4 20 5"},
+    {"mohr_coulomb_elastic", "density 1900 mohr/coulomb 1e8 0.3 30 1e12 dilatancy 10"},
+    {"mohr_coulomb_soft_elastic", "density 1900 mohr/coulomb 1e8 0.3 30 1e12 residual 1e4 20 5"},
     {"mui", "density 1500 mui 1e8 0.3 0.38 0.64 0.3 1e-3"},
     {"camclay", "density 1900 camclay 5e6 0.9 0.2 0.04 0 1e5 1.5e5"},
     {"nacc", "density 250 nacc 1e6 0.3 1.85 0.3 3 -0.05"},
     {"snow", "density 400 snow 1.4e5 0.2 0.025 0.0075 5"},
+    {"snow_elastic", "density 400 snow 1.4e5 0.2 0.9 0.9 5"},
     {"artificial", "density 1000 eos linear 1e9 viscosity artificial 1.5 0.06"},
     {"eos_linear", "density 1000 eos linear 1e9"},
     {"eos_shock", "density 8930 eos shock 3940 1.49 1.96"},

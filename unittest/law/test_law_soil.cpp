@@ -114,6 +114,21 @@ TEST(SoilLaws, RotationOnTopOfShear)
   }
 }
 
+/** Moves a point of a batch by I + A. */
+void displace(Batch &b, int i, Matrix A)
+{
+  Matrix F;
+  for (int k = 0; k < 9; k++) {
+    b.A[k][i] = A[k];
+    A[k] += IDENTITY[k];
+    F[k] = b.F[k][i];
+  }
+  F = A * F;
+  for (int k = 0; k < 9; k++) b.F[k][i] = F[k];
+  b.Jold[i] = b.J[i];
+  b.J[i] = det(F);
+}
+
 // steps of any size and direction: finite, and dissipation is never negative
 TEST(SoilLaws, LargeSteps)
 {
@@ -142,6 +157,44 @@ TEST(SoilLaws, LargeSteps)
             if (!strstr(text, "snow")) ASSERT_GE(p.batch.work[PLASTIC], 0.0);
           }
         }
+  }
+}
+
+// batches that stay elastic as a whole go a short way: the same result as beside a point that yields
+TEST(SoilLaws, ElasticBatches)
+{
+  for (const char *text : all) {
+    SCOPED_TRACE(text);
+    const auto material = make(text);
+    RandomMatrix random(3);
+    MaterialPoint alone(*material, 8), beside(*material, 9);
+    for (int step = 0; step < 4; step++) {
+      for (int i = 0; i < 9; i++) {
+        // under pressure, as some have no strength without
+        Matrix A = random(1e-5);
+        for (int k = 0; k < 9; k += 4) A[k] -= step == 0 ? 1e-3 : 0.0;
+        if (i == 8) A = {0, 0.3, 0, 0, 0, 0, 0, 0, 0};
+        for (MaterialPoint *p : {&alone, &beside})
+          if (i < p->batch.n) displace(p->batch, i, A);
+      }
+      for (MaterialPoint *p : {&alone, &beside}) {
+        std::fill_n(p->batch.plastic, p->batch.n, 0.0);
+        material->update(p->batch);
+      }
+      EXPECT_GT(beside.batch.plastic[8], 0.0);
+      const double scale = alone.batch.stress[0][0];
+      for (int i = 0; i < 8; i++) {
+        EXPECT_EQ(alone.batch.plastic[i], 0.0);
+        EXPECT_EQ(beside.batch.plastic[i], 0.0);
+        for (int k = 0; k < 6; k++)
+          EXPECT_NEAR(alone.batch.stress[k][i], beside.batch.stress[k][i],
+                      1e-12 * std::fabs(scale));
+        for (size_t k = 0; k < material->history().size(); k++)
+          EXPECT_NEAR(alone.batch.history[k][i], beside.batch.history[k][i],
+                      1e-14 * std::max(1.0, std::fabs(beside.batch.history[k][i])));
+      }
+      EXPECT_EQ(alone.batch.work[PLASTIC], 0.0);
+    }
   }
 }
 
@@ -408,7 +461,7 @@ TEST(MohrCoulomb, ReturnMaximizesDissipation)
 TEST(MohrCoulomb, Softening)
 {
   std::mt19937 random(9);
-  for (const double rate : {2.0, 50.0}) {
+  for (const double rate : {2.0, 50.0, 1e3, 1e5}) {
     const auto material =
         make("density 1900 mohr/coulomb 1e7 0.3 30 3e4 residual 5e3 18 " + std::to_string(rate));
     const auto excess = [&](const MaterialPoint &p) {
@@ -416,7 +469,7 @@ TEST(MohrCoulomb, Softening)
       return mohr_coulomb(principal(p), (18 + 12 * left) * DEG, 5e3 + 2.5e4 * left);
     };
     int plastic = 0;
-    random_steps(*material, random, {1e-3, 1e-2, 0.1}, {1.0}, 50, 4,
+    random_steps(*material, random, {1e-5, 1e-3, 1e-2, 0.1, 1.0}, {1.0}, 50, 4,
                  [&](const MaterialPoint &p, double, double) {
                    const auto s = principal(p);
                    const double size = 1e4 + std::fabs(s[0]) + std::fabs(s[2]);
@@ -440,6 +493,44 @@ TEST(MohrCoulomb, Softening)
   const double residual = N * 1e5 + 2 * 5e3 / p.batch.J[0] * std::sqrt(N);
   EXPECT_NEAR(-p.stress(0), residual, 1e-3 * residual);
   EXPECT_GT(peak, 1.2 * residual);
+}
+
+// parts that separated carry no pressure before they meet, also where nothing yields
+TEST(MohrCoulomb, SeparatedPartsCloseWithoutPressure)
+{
+  const double K = 1e6 / (3 * 0.4), tip = 1e4 / std::tan(30 * DEG);
+  Point p("density 1900 mohr/coulomb 1e6 0.3 30 1e4");
+  move_to(p, isotropic(1.05));
+  EXPECT_NEAR(pressure(p), -tip, 1e-9 * tip);
+  const double gap = 3 * std::log(1.05) - tip / K;
+  EXPECT_NEAR(value(p, "gap"), gap, 1e-12);
+  move_to(p, isotropic(1.02));
+  EXPECT_NEAR(pressure(p), 0.0, 1e-9 * tip);
+  EXPECT_NEAR(value(p, "gap"), 3 * std::log(1.02), 1e-12);
+  move_to(p, isotropic(0.99));
+  EXPECT_NEAR(pressure(p), -3 * K * std::log(0.99), 1e-9 * tip);
+  EXPECT_NEAR(value(p, "gap"), 0.0, 1e-12);
+}
+
+// in one step or many: pressure stays, as there is no plastic volume, and tension is lost
+TEST(MohrCoulomb, SofteningToNothing)
+{
+  const double K = 1e9 / (3 * 0.4), G = 1e9 / 2.6;
+  for (const double rate : {1e2, 1e4, 1e6})
+    for (const double strain : {1e-5, 1e-3, 0.1, 1.0}) {
+      Point p(joined("density 1900 mohr/coulomb 1e9 0.3 40 1e6 residual 0 0 ", rate));
+      SCOPED_TRACE(joined("rate ", rate, ", strain ", strain));
+      move_to(p, isotropic(0.999));
+      for (int i = 0; i < 40; i++)    // until nothing is left, then on
+        for (const double size : {80.0 / rate + 0.02, strain}) {
+          moves(p, {0, i % 2 ? size : -size, 0, 0, 0, 0, 0, 0, 0}, 1.0);
+          EXPECT_NEAR(pressure(p), -3 * K * std::log(0.999), 1e-9 * K);
+        }
+      EXPECT_LT(p.vonmises(), 1e-9 * G);
+      moves(p, isotropic(0.002), 1.0);
+      EXPECT_NEAR(pressure(p), 0.0, 1e-9 * K);
+      EXPECT_NEAR(value(p, "gap"), 3 * std::log(0.999 * 1.002), 1e-9);
+    }
 }
 
 /* ---------------------------------------------------------------------- Cam-Clay */

@@ -63,8 +63,8 @@ namespace {
         p[i] = state.p;
         hard[i] = state.hard;
       }
-      double yielding = 0.0;
-      MPM_SIMD_SUM(yielding)
+      double yielding = 0.0, searched = 0.0;
+      MPM_SIMD_SUM(yielding, searched)
       for (int i = 0; i < b.n; i++) {
         const CriticalTrial state = {p[i], hard[i]};
         const Compressed k = law.compress(state, 0.0);
@@ -83,9 +83,11 @@ namespace {
         x[i] = plastic > 0.0 ? first : 0.0;
         from[i] = at.start;
         to[i] = search > 0.0 ? at.end : at.start;
-        yielding += search;
+        yielding += plastic;
+        searched += search;
       }
-      for (int iteration = 0; yielding > 0.0 && iteration < MAX_ITERATIONS; iteration++) {
+      if (yielding == 0.0) return;
+      for (int iteration = 0; searched > 0.0 && iteration < MAX_ITERATIONS; iteration++) {
         double busy = 0.0;
         MPM_SIMD_SUM(busy)
         for (int i = 0; i < b.n; i++) {

@@ -92,11 +92,14 @@ namespace {
   struct FiniteStrainReturn : LawDefaults {
     static constexpr bool uses_F = false;
 
-    static MPM_INLINE void push_forward_strains(const Batch &b, History history, Tensors &trial)
+    /** Makes the trial state in the history, where it stays when all points stay elastic, and its logarithmic
+     *  strain. */
+    static MPM_INLINE void trial_strains(const Batch &b, History history, Tensors &strain)
     {
       MPM_SIMD
       for (int i = 0; i < b.n; i++)
-        store_rows(trial.row, i, push_forward_strain(b, i, load_rows(history, i)));
+        store_rows(history, i, push_forward_strain(b, i, load_rows(history, i)));
+      log_strains(b.n, history, strain.row);
     }
 
     static void modulus(const LawParameters &p, const Batch &b, History, double *k)
@@ -107,22 +110,32 @@ namespace {
     }
   };
 
-  /** Return of any isotropic law. Law has, besides its declaration: Law(parameters), map(batch, history,
-   *  states), which returns the strains and makes the rest, with the history rows behind those of be;
-   *  and energy(). */
+  /** Return of any isotropic law. Law has, besides its declaration: Law(parameters); stay_elastic(batch,
+   *  history, strains), which makes the stresses and returns true if all points are sure to stay
+   *  elastic; map(batch, history, states), which returns the strains and makes the rest, with the history
+   *  rows behind those of be; and energy(). Most bodies yield in a few places, and what the other batches
+   *  need not know are the principal axes. */
   template <class Law> struct PrincipalReturn : FiniteStrainReturn {
     static void update(const LawParameters &p, Batch &b, History history)
     {
       const Law law(p);
-      Tensors trial;
+      Tensors strain;
+      trial_strains(b, history, strain);
+      if (!law.stay_elastic(b, history, strain)) return_along_axes(p, law, b, history, strain);
+    }
+
+    // a function of its own: one with all that is above does not vectorize
+    [[gnu::noinline]] static void return_along_axes(const LawParameters &p, const Law &law,
+                                                    Batch &b, History history,
+                                                    const Tensors &strain)
+    {
       PrincipalStates s;
-      push_forward_strains(b, history, trial);
-      const Spectral axes(b.n, trial.row);
+      const Spectral axes(b.n, strain.row);
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
         const Increment total = increment(b, i);
         for (int a = 0; a < 3; a++) {
-          s.strain[a][i] = log_strain(axes.value[a][i]);
+          s.strain[a][i] = axes.value[a][i];
           s.before[a][i] = s.strain[a][i] - axes.along(a, i, total.strain);
         }
       }
@@ -165,8 +178,7 @@ namespace {
       Tensors strain;
       InvariantStates t;
       alignas(64) double shear[BATCH];    // of the trial state
-      push_forward_strains(b, history, strain);
-      log_strains(b.n, strain.row, strain.row);
+      trial_strains(b, history, strain);
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
         const Sym trial = load_rows(strain.row, i);
@@ -175,8 +187,8 @@ namespace {
         t.shear[i] = shear[i] = std::sqrt((2.0 / 3.0) * norm2(deviator(trial)));
       }
       law.solve(b, history + ELASTIC_STRAIN_ROWS, t);
-      double plastic = 0.0;
-      MPM_SIMD_SUM(plastic)
+      double plastic = 0.0, moved = 0.0;
+      MPM_SIMD_SUM(plastic, moved)
       for (int i = 0; i < b.n; i++) {
         const Sym trial = load_rows(strain.row, i), e = deviator(trial);
         const Increment total = increment(b, i);
@@ -192,8 +204,10 @@ namespace {
         b.plastic[i] = D;
         b.heat[i] += p.chi * work;
         plastic += work * b.vol0[i];
+        const double off = t.volume[i] - trace(trial);
+        moved += off * off + D * D > 0.0 ? 1.0 : 0.0;
       }
-      exp_minus_identity(b.n, strain.row, history);
+      if (moved > 0.0) exp_minus_identity(b.n, strain.row, history);
       b.work[PLASTIC] += plastic;
       b.work[HEAT] += p.chi * plastic;
     }

@@ -204,6 +204,29 @@ namespace {
 
     MPM_INLINE double shear_part(double ds) const { return 2.0 * mu * (1.0 + ds) * ds; }
 
+    MPM_INLINE bool stay_elastic(Batch &b, History history, const Tensors &strain) const
+    {
+      double outside = 0.0;
+      MPM_SIMD_SUM(outside)
+      for (int i = 0; i < b.n; i++) {
+        const Sym e = load_rows(strain.row, i);
+        const double mean = (1.0 / 3.0) * trace(e), bound = eigenvalue_bound(deviator(e));
+        outside += max(mean + bound - high, low - (mean - bound)) < 0.0 ? 0.0 : 1.0;
+      }
+      if (outside > 0.0) return false;
+      Tensors stretch;    // less identity
+      exp_minus_identity(b.n, strain.row, stretch.row);
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const Sym c = load_rows(history, i), y = load_rows(stretch.row, i);
+        const double dJ = expm1(trace(load_rows(strain.row, i)));
+        const double h = hardening(history[ELASTIC_STRAIN_ROWS][i]) / b.J[i];
+        store_stress(b, i,
+                     add_diagonal((2.0 * mu * h) * (c + (-1.0) * y), h * lambda * (1.0 + dJ) * dJ));
+      }
+      return true;
+    }
+
     MPM_INLINE void map(Batch &b, History history, PrincipalStates &s) const
     {
       MPM_SIMD

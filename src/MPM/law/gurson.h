@@ -26,12 +26,13 @@ namespace {
    *  with associated flow, v: plastic volume strain. Elasticity: Hencky, in Kirchhoff stress.
    *
    *  Return mapping (N. Aravas, Int. J. Numer. Meth. Eng. 24 (1987) 1395), implicit in all
-   *  variables: Newton's method from a point between the old stress and the trial stress. Where
-   *  that fails (large steps, points close to failure, voids that vanish), a search: for given y
-   *  and nucleation the unknown is z = log(f/f0), from which follow v (1 - f = (1 - f0) exp(-v)),
-   *  m, and two values of q, by the yield surface and by the direction of flow. Their difference S
-   *  changes sign between no volume flow and no mean stress: bracketed first, then followed by
-   *  chords while y and nucleation are found by secants of the strain of the matrix.
+   *  variables: Newton's method from a guess, the flow of where the way from the old stress to the
+   *  trial stress meets the surface; in large steps, the stress of there. Where that fails (large
+   *  steps, points close to failure, voids that vanish), a search: for given y and nucleation the
+   *  unknown is z = log(f/f0), from which follow v (1 - f = (1 - f0) exp(-v)), m, and two values of
+   *  q, by the yield surface and by the direction of flow. Their difference S changes sign between
+   *  no volume flow and no mean stress: bracketed first, then followed by chords while y and
+   *  nucleation are found by secants of the strain of the matrix.
    *
    *  A point that has failed bears pressure only, after the volume that opened ("gap") closed. */
   struct LawGurson : HenckyInvariantReturn<LawGurson> {
@@ -103,6 +104,7 @@ namespace {
     struct Surface {
       double q2;        ///< square of q/y; negative where the mean stress is too large
       double a_sinh;    ///< half the derivative of the yield function by m/y
+      double by_f;      ///< its derivative by the porosity
     };
     MPM_INLINE Surface surface(double f, double M) const
     {
@@ -112,7 +114,8 @@ namespace {
       const double size = 0.5 * (less + less * inv), cosh1 = 0.5 * less * less * inv;
       const double sinh = x < 0.0 ? -size : size;
       const double rest = (1.0 - q1 * fs) * (1.0 - q1 * fs) - 2.0 * q1 * fs * cosh1;
-      return {rest, q1 * fs * b * sinh};
+      return {rest, q1 * fs * b * sinh,
+              2.0 * q1 * (f > fc ? slope : 1.0) * (1.0 - q1 * fs + cosh1)};
     }
 
     /** A point on its way: known are trial stresses mt, qt, the porosity f0 with nucleation, y. */
@@ -154,7 +157,8 @@ namespace {
         const double flow = flow_stress(history[EPLASTIC][i]);
         const double inv = 1.0 / flow, invJ = inv / b.J[i];
         const double qn = 3.0 * G * s.shear[i] * invJ, mn = K * volume * invJ;
-        const double out = qn * qn - surface(old, mn).q2;
+        const Surface end = surface(old, mn);
+        const double out = qn * qn - end.q2;
         const double yields = out > 0.0 ? 1.0 - failed : 0.0;
         mt[i] = K * volume;
         qt[i] = 3.0 * G * s.shear[i];
@@ -163,27 +167,51 @@ namespace {
         s.shear[i] = failed > 0.0 ? 0.0 : s.shear[i];
         s.flow[i] = opened;
         active[i] = yields;
+        more[i] = flow;
+        v[i] = end.a_sinh;
+        D[i] = out;
         yielding += yields;
+      }
+      if (yielding == 0.0) return;
 
-        // first guess: between the old stress and the trial stress, at the yield surface
+      // first guess
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const double old = max(history[POROSITY][i], LEAST), e = history[EPLASTIC][i];
+        const double flow = more[i], inv = 1.0 / flow, y = b.J[i] * flow, stiff = 1.0 / y;
+        const double out = max(D[i], 0.0), mn = stiff * mt[i], qn = stiff * qt[i], an = v[i];
         const double xx = b.stress[0][i], yy = b.stress[1][i], zz = b.stress[2][i];
         const double xy = b.stress[3][i], xz = b.stress[4][i], yz = b.stress[5][i];
         const double m0 = (1.0 / 3.0) * inv * (xx + yy + zz);
         const double dx = xx - yy, dy = yy - zz, dz = zz - xx;
         const double shears = xy * xy + xz * xz + yz * yz;
         const double square = 0.5 * (dx * dx + dy * dy + dz * dz) + 3.0 * shears;
-        const double q0 = inv * std::sqrt(square), in = max(surface(old, m0).q2 - q0 * q0, 0.0);
-        const double t = in / (in + max(out, 1e-300)), y = b.J[i] * flow;
-        const double most = inv_K * mt[i], all = inv_G3 * qt[i];
+        const double q0 = inv * std::sqrt(square);
+        const Surface start = surface(old, m0);
+
+        // where the surface is met on the way from the old stress to the trial stress
+        const double in = max(start.q2 - q0 * q0, 0.0), t = in / (in + max(out, 1e-300));
+        const double Q = q0 + t * (qn - q0), M = m0 + t * (mn - m0);
+        const double a = start.a_sinh + t * (an - start.a_sinh);
+
+        // a small step: flow as there, with derivatives of the start
+        const double strain = (M * a + Q * Q) / (1.0 - old), h = n * inv_e0 / (1.0 + e * inv_e0);
+        const double born = mt[i] > 0.0 ? nucleation((e - en) * inv_sn) * strain : 0.0;
+        const double falls = stiff * (3.0 * G * Q * (Q + qn) + K * a * (a + an));
+        const double hardens = 2.0 * h * (Q * Q + a * M) * strain;
+        const double weakens = start.by_f * ((1.0 - old) * a + born);
+        const double flows = out / max(falls + hardens - weakens, 0.5 * falls);
+        // a large one: the stress of there
+        const double most = inv_K * mt[i], all = inv_G3 * qt[i], large = out < 4.0 ? 0.0 : 1.0;
+        const double v1 = large > 0.0 ? most - inv_K * y * M : flows * a;
+        const double D1 = large > 0.0 ? all - inv_G3 * y * Q : flows * Q;
         const double opens = max(most, 0.0), closes = max(most - opens, -0.5 * old);
-        const double vi = max(min(most - inv_K * y * (m0 + t * (mn - m0)), opens), closes);
-        const double Di = min(max(all - inv_G3 * y * (q0 + t * (qn - q0)), 0.0), all);
+        const double vi = max(min(v1, opens), closes), Di = min(max(D1, 0.0), all);
         const double work = (mt[i] - K * vi) * vi + (qt[i] - 3.0 * G * Di) * Di;
         v[i] = vi;
         D[i] = Di;
         more[i] = max(work / ((1.0 - old) * y), 0.0);
       }
-      if (yielding == 0.0) return;
 
       const double left = newton(b, history, mt, qt, active, v, D, more, m, q, f, open);
       if (left > 0.0) search(b, history, mt, qt, open, m, q, f, more);
@@ -219,6 +247,7 @@ namespace {
     {
       alignas(64) double good[BATCH];
       const double inv_K = 1.0 / K, G3 = 3.0 * G, inv_G3 = 1.0 / G3, bq = 1.5 * q2;
+      const double range = 2.0 / (bq * K);
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
         open[i] = active[i];
@@ -270,14 +299,14 @@ namespace {
           // what the step leaves is of the order of the square of these
           const double size2 = g * g * Di * Di + k * k * vi * vi;
           const double miss = R1 * R1, flow2 = Di * Di * a * a + vi * vi * Q * Q;
-          const double off1 = max(miss * 1e12, miss * miss / max(1e-18 * size2, 1e-300));
+          const double off1 = max(miss - 1e-12, miss * miss - max(1e-18 * size2, 1e-300));
           const double off2 = R2 * R2 - (1e-12 * flow2 + 1e-30 * Di * Di * Q * Q);
           const double off3 = R3 * R3 - 1e-12 * solid * solid * wi * wi;
-          const double near = flag(off1 < 1.0) * flag(off2 <= 0.0) * flag(off3 <= 0.0);
+          const double near = flag(off1 < 0.0) * flag(off2 <= 0.0) * flag(off3 <= 0.0);
           const double sure = flag(fi > 1e-3 * begin) * flag(fs < limit) * flag(Q >= 0.0);
 
           // the argument of cosh changes by no more than 2, and some porosity stays
-          const double most = 2.0 / (bq * k), least = max(-most, -0.8 * fi / solid);
+          const double most = range * y, least = max(-most, -0.8 * fi / solid);
           const double v1 = vi + min(max(dv, least), most), all = inv_K * mt[i];
           const double v2 = max(min(v1, max(all, 0.0)), min(all, 0.0));
           const double D1 = min(max(Di + dD, 0.0), inv_G3 * qt[i]), w1 = max(wi + dw, 0.0);

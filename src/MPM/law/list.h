@@ -17,20 +17,6 @@
 #include "law/law.h"
 #include "transfer/isa.h"
 
-#ifndef MPM_ONE_FAMILY
-#define MPM_LAWS_elastic
-#define MPM_LAWS_viscoelastic
-#define MPM_LAWS_frictional
-#define MPM_LAWS_soil
-#define MPM_LAWS_porous
-#define MPM_LAWS_eos
-#define MPM_LAWS_strength
-#define MPM_LAWS_impact
-#define MPM_LAWS_viscosity
-#define MPM_LAWS_damage
-#define MPM_LAWS_thermal
-#endif
-
 namespace MPM_NS::law {
 namespace {
 
@@ -45,114 +31,76 @@ namespace {
 }    // namespace
 }    // namespace MPM_NS::law
 
-#ifdef MPM_LAWS_elastic
+/** The laws of a family: its part of a material, and their structs. */
+#define MPM_FAMILY(name, ...)           \
+  namespace MPM_NS::law {               \
+    namespace {                         \
+      using name = Family<__VA_ARGS__>; \
+    }                                   \
+  }
+
+#if !defined(MPM_ONE_FAMILY) || defined(MPM_LAWS_elastic)
 #include "law/elastic.h"
 #include "law/orthotropic.h"
 #include "law/rubber.h"
-namespace MPM_NS::law {
-namespace {
-  using elastic =
-      Family<CLOSED, LawLinear, LawNeoHookean, LawNeoHookeanSplit, LawStVenantKirchhoff, LawHencky,
-             LawMooneyRivlin, LawOgden, LawTransverselyIsotropic, LawOrthotropic>;
-}
-}    // namespace MPM_NS::law
+MPM_FAMILY(elastic, CLOSED, LawLinear, LawNeoHookean, LawNeoHookeanSplit, LawStVenantKirchhoff,
+           LawHencky, LawMooneyRivlin, LawOgden, LawTransverselyIsotropic, LawOrthotropic)
 #endif
 
-#ifdef MPM_LAWS_viscoelastic
+#if !defined(MPM_ONE_FAMILY) || defined(MPM_LAWS_viscoelastic)
 #include "law/viscosity_maxwell.h"
-namespace MPM_NS::law {
-namespace {
-  using viscoelastic = Family<VISCOSITY, ViscosityMaxwell>;
-}
-}    // namespace MPM_NS::law
+MPM_FAMILY(viscoelastic, VISCOSITY, ViscosityMaxwell)
 #endif
 
-#ifdef MPM_LAWS_frictional
+#if !defined(MPM_ONE_FAMILY) || defined(MPM_LAWS_frictional)
 #include "law/granular.h"
 #include "law/mohr_coulomb.h"
-namespace MPM_NS::law {
-namespace {
-  using frictional = Family<CLOSED, LawDruckerPrager, LawMohrCoulomb>;
-}
-}    // namespace MPM_NS::law
+MPM_FAMILY(frictional, CLOSED, LawDruckerPrager, LawMohrCoulomb)
 #endif
 
-#ifdef MPM_LAWS_soil
+#if !defined(MPM_ONE_FAMILY) || defined(MPM_LAWS_soil)
 #include "law/critical_state.h"
 #include "law/granular.h"
-namespace MPM_NS::law {
-namespace {
-  using soil = Family<CLOSED, LawCamClay, LawNacc, LawMuI, LawSnow>;
-}
-}    // namespace MPM_NS::law
+MPM_FAMILY(soil, CLOSED, LawCamClay, LawNacc, LawMuI, LawSnow)
 #endif
 
-#ifdef MPM_LAWS_porous
+#if !defined(MPM_ONE_FAMILY) || defined(MPM_LAWS_porous)
 #include "law/gurson.h"
-namespace MPM_NS::law {
-namespace {
-  using porous = Family<CLOSED, LawGurson>;
-}
-}    // namespace MPM_NS::law
+MPM_FAMILY(porous, CLOSED, LawGurson)
 #endif
 
-#ifdef MPM_LAWS_eos
+#if !defined(MPM_ONE_FAMILY) || defined(MPM_LAWS_eos)
 #include "law/eos_energy.h"
-namespace MPM_NS::law {
-namespace {
-  using eos = Family<EOS, EosLinear, EosShock, EosTait, EosPolynomial, EosIdealGas, EosStiffenedGas,
-                     EosJWL>;
-}
-}    // namespace MPM_NS::law
+MPM_FAMILY(eos, EOS, EosLinear, EosShock, EosTait, EosPolynomial, EosIdealGas, EosStiffenedGas,
+           EosJWL)
 #endif
 
-#ifdef MPM_LAWS_strength
+#if !defined(MPM_ONE_FAMILY) || defined(MPM_LAWS_strength)
 #include "law/strength_j2.h"
-namespace MPM_NS::law {
-namespace {
-  using strength = Family<STRENGTH, StrengthElastic, StrengthJ2>;
-}
-}    // namespace MPM_NS::law
+MPM_FAMILY(strength, STRENGTH, StrengthElastic, StrengthJ2)
 #endif
 
-#ifdef MPM_LAWS_impact
+#if !defined(MPM_ONE_FAMILY) || defined(MPM_LAWS_impact)
 #include "law/strength_thermal.h"
-namespace MPM_NS::law {
-namespace {
-  using impact = Family<STRENGTH, StrengthJohnsonCook, StrengthSteinberg, StrengthZerilliArmstrong>;
-}
-}    // namespace MPM_NS::law
+MPM_FAMILY(impact, STRENGTH, StrengthJohnsonCook, StrengthSteinberg, StrengthZerilliArmstrong)
 #endif
 
-#ifdef MPM_LAWS_viscosity
+#if !defined(MPM_ONE_FAMILY) || defined(MPM_LAWS_viscosity)
 #include "law/viscosity.h"
 #include "law/viscosity_generalized.h"
-namespace MPM_NS::law {
-namespace {
-  using viscosity = Family<VISCOSITY, ViscosityNewtonian, ViscosityArtificial, ViscosityBingham,
-                           ViscosityHerschelBulkley, ViscosityPower>;
-}
-}    // namespace MPM_NS::law
+MPM_FAMILY(viscosity, VISCOSITY, ViscosityNewtonian, ViscosityArtificial, ViscosityBingham,
+           ViscosityHerschelBulkley, ViscosityPower)
 #endif
 
-#ifdef MPM_LAWS_damage
+#if !defined(MPM_ONE_FAMILY) || defined(MPM_LAWS_damage)
 #include "law/damage_brittle.h"
 #include "law/damage_ductile.h"
-namespace MPM_NS::law {
-namespace {
-  using damage =
-      Family<DAMAGE, DamageJohnsonCook, DamageCockcroftLatham, DamageRankine, DamageGradyKipp>;
-}
-}    // namespace MPM_NS::law
+MPM_FAMILY(damage, DAMAGE, DamageJohnsonCook, DamageCockcroftLatham, DamageRankine, DamageGradyKipp)
 #endif
 
-#ifdef MPM_LAWS_thermal
+#if !defined(MPM_ONE_FAMILY) || defined(MPM_LAWS_thermal)
 #include "law/thermal.h"
-namespace MPM_NS::law {
-namespace {
-  using thermal = Family<THERMAL, ThermalAdiabatic, ThermalConstant>;
-}
-}    // namespace MPM_NS::law
+MPM_FAMILY(thermal, THERMAL, ThermalAdiabatic, ThermalConstant)
 #endif
 
 // in the order in which laws are listed in messages

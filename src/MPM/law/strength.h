@@ -104,52 +104,39 @@ namespace {
     return r < -0.5 * s * D ? far : near;
   }
 
-  /** A guess that is good to some digits, from what Flow says that the flow stress is nearly. */
-  template <class Flow>
-  MPM_INLINE void improve_guess(const Batch &b, const Flow &flow, const double *trial,
-                                const double *stiff, const double *start, double *D)
-  {
-    constexpr int MAX_ITERATIONS = 6;
-    double busy = 1.0;
-    for (int iteration = 0; iteration < MAX_ITERATIONS && busy > 0.0; iteration++) {
-      busy = 0.0;
-      MPM_SIMD_SUM(busy)
-      for (int i = 0; i < b.n; i++) {
-        const double d = D[i], safe = max(d, 1e-300);
-        const TrialState t{trial[i], stiff[i], 0.5 * (b.J[i] + b.Jold[i])};
-        const double step = third_order_step(t, safe, flow.estimate(i, start[i], t, safe));
-        D[i] = d > 0.0 ? d + step : d;
-        busy += d > 0.0 && step * step > 1e-4 * d * d ? 1.0 : 0.0;
-      }
-    }
-  }
-
   /** Solves r(D) = 0 without any safeguard: one to three steps are enough for nearly all points. open: 1 for
    *  points to solve; what is left of it has no solution yet, and what these points have in D is no more
-   *  than a guess. Returns their number. */
-  template <class Flow>
+   *  than a guess. Returns their number. With ROUGH, by what Flow says that the flow stress is nearly,
+   *  until D has some digits: all points stay open, and yield is left alone. */
+  template <bool ROUGH, class Flow>
   MPM_INLINE double solve_quickly(const Batch &b, const Flow &flow, History history,
                                   const double *trial, const double *stiff, const double *start,
                                   double *yield, double *D, double *open)
   {
-    constexpr int MAX_ITERATIONS = 4;
+    constexpr int MAX_ITERATIONS = ROUGH ? 6 : 4;
     double busy = 1.0;
     for (int iteration = 0; iteration < MAX_ITERATIONS && busy > 0.0; iteration++) {
       busy = 0.0;
       MPM_SIMD_SUM(busy)
       for (int i = 0; i < b.n; i++) {
-        const double d = D[i], safe = max(d, 1e-300);
+        const double d = D[i], safe = max(d, 1e-300), on = open[i];
         const TrialState t{trial[i], stiff[i], 0.5 * (b.J[i] + b.Jold[i])};
-        const FlowStress f = flow.stress(history, i, start[i], t, safe);
-        const double step = third_order_step(t, safe, f), size = max(step, -step);
-        // an upper bound of what is left, as |ddy/D| is one of the third derivative
-        const double rest = max(f.ddy, -f.ddy) * size * size * size, on = open[i];
-        const double off = max(rest - 1e-14 * f.y * safe, size - min(f.room, 0.1 * safe));
-        const double here = off <= 0.0 ? 0.0 : on;    // not a number: stays open
-        yield[i] = on > 0.0 ? min(f.y + step * (f.dy + 0.5 * step * f.ddy), t.q) : yield[i];
-        D[i] = on > 0.0 ? d + step : d;
-        open[i] = here;
-        busy += here;
+        if constexpr (ROUGH) {
+          const double step = third_order_step(t, safe, flow.estimate(i, start[i], t, safe));
+          D[i] = d > 0.0 ? d + step : d;
+          busy += d > 0.0 && step * step > 1e-4 * d * d ? on : 0.0;
+        } else {
+          const FlowStress f = flow.stress(history, i, start[i], t, safe);
+          const double step = third_order_step(t, safe, f), size = max(step, -step);
+          // an upper bound of what is left, as |ddy/D| is one of the third derivative
+          const double rest = max(f.ddy, -f.ddy) * size * size * size;
+          const double off = max(rest - 1e-14 * f.y * safe, size - min(f.room, 0.1 * safe));
+          const double here = off <= 0.0 ? 0.0 : on;    // not a number: stays open
+          yield[i] = on > 0.0 ? min(f.y + step * (f.dy + 0.5 * step * f.ddy), t.q) : yield[i];
+          D[i] = on > 0.0 ? d + step : d;
+          open[i] = here;
+          busy += here;
+        }
       }
     }
     return busy;
@@ -174,8 +161,9 @@ namespace {
       guess[i] = D[i];
       open[i] = D[i] > 0.0 ? 1.0 : 0.0;
     }
-    if constexpr (Flow::estimates) improve_guess(b, flow, trial, stiff, start, D);
-    if (solve_quickly(b, flow, history, trial, stiff, start, yield, D, open) == 0.0) return;
+    if constexpr (Flow::estimates)
+      solve_quickly<true>(b, flow, history, trial, stiff, start, yield, D, open);
+    if (solve_quickly<false>(b, flow, history, trial, stiff, start, yield, D, open) == 0.0) return;
     MPM_SIMD
     for (int i = 0; i < b.n; i++) {
       const double quick = D[i] < most[i] ? D[i] : guess[i];

@@ -317,42 +317,45 @@ template <int DIM> void first_piola(int n, const double *F, const double *tau, d
     for (int k = 0; k < SIZE; k++) P[SIZE * p + k] = c[k][p];
 }
 
-void load_history(Batch &b, int width, const double *rows)
+/** From the rows of points to the columns of a batch, or the way back; a row has any width. */
+template <bool BACK, class Rows> MPM_INLINE void move_history(const Batch &b, int width, Rows *rows)
 {
+  const auto move = [&](int p, int c) {
+    if constexpr (BACK)
+      rows[width * p + c] = b.history[c][p];
+    else
+      b.history[c][p] = rows[width * p + c];
+  };
   const int n = b.n;
   int c = 0;
   for (; c + 4 <= width; c += 4) {
     int p = 0;
     for (; p + 4 <= n; p += 4) {
       Vec<4> r[4];
-      for (int k = 0; k < 4; k++) r[k] = Vec<4>::load(rows + width * (p + k) + c);
+      for (int k = 0; k < 4; k++)
+        r[k] = Vec<4>::load(BACK ? b.history[c + k] + p : rows + width * (p + k) + c);
       transpose(r);
-      for (int k = 0; k < 4; k++) r[k].store(b.history[c + k] + p);
+      for (int k = 0; k < 4; k++)
+        if constexpr (BACK)
+          r[k].store(rows + width * (p + k) + c);
+        else
+          r[k].store(b.history[c + k] + p);
     }
     for (; p < n; p++)
-      for (int k = c; k < c + 4; k++) b.history[k][p] = rows[width * p + k];
+      for (int k = c; k < c + 4; k++) move(p, k);
   }
   for (; c < width; c++)
-    for (int p = 0; p < n; p++) b.history[c][p] = rows[width * p + c];
+    for (int p = 0; p < n; p++) move(p, c);
+}
+
+void load_history(Batch &b, int width, const double *rows)
+{
+  move_history<false>(b, width, rows);
 }
 
 void store_history(const Batch &b, int width, double *rows)
 {
-  const int n = b.n;
-  int c = 0;
-  for (; c + 4 <= width; c += 4) {
-    int p = 0;
-    for (; p + 4 <= n; p += 4) {
-      Vec<4> r[4];
-      for (int k = 0; k < 4; k++) r[k] = Vec<4>::load(b.history[c + k] + p);
-      transpose(r);
-      for (int k = 0; k < 4; k++) r[k].store(rows + width * (p + k) + c);
-    }
-    for (; p < n; p++)
-      for (int k = c; k < c + 4; k++) rows[width * p + k] = b.history[k][p];
-  }
-  for (; c < width; c++)
-    for (int p = 0; p < n; p++) rows[width * p + c] = b.history[c][p];
+  move_history<true>(b, width, rows);
 }
 
 void add_kirchhoff(const Batch &b, const double *J, double (*sum)[BATCH])
