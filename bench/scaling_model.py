@@ -21,7 +21,7 @@ MEASURED = {
     "ppc": 8,              # points per cell
     "record": 32,          # bytes of a node in a message
     "layers": 3.5,         # nodes that two ranks share across a face: 3, and what points may drift
-    "node": 6.7e-9,        # s to put a node into a message, and to add it (bench_messages)
+    "node": 7e-9,          # s to put a node into a message, and to add it: 5.2 to 7.7 ns
     "p2g": 0.42,           # share of a step of points to nodes
     "collectives": 1,      # sums over all ranks in a step: LAMMPS's check of distances
 }
@@ -31,7 +31,7 @@ ASSUMED = {
     "memory": 200e9,       # bytes/s of a node; what stays in it is written and read once
     "message": 2e-6,       # s for each message, and for each stage of a sum over ranks
     "topology": 100,       # steps between new lists of blocks
-    "exchange": 0.5e-6,    # s per rank for each of the 4 exchanges of all with all of new lists
+    "exchange": 0.5e-6,    # s per rank for each of the 2 exchanges of all with all of new lists
 }
 SIZES = (4000, 50000, 200000, 400000)
 RANKS = (1, 2, 4, 8, 12, 16, 22)    # along each axis
@@ -67,7 +67,7 @@ def step(points, p, m=MEASURED, a=ASSUMED):
         "memory": (nodes - out) * m["record"] * 2 * used / a["memory"],
         "latency": messages * a["message"],
         "sums": m["collectives"] * stages * a["message"],
-        "lists": 4 * a["exchange"] * (ranks - 1) / a["topology"],
+        "lists": 2 * a["exchange"] * (ranks - 1) / a["topology"],
     }
     return parts, nodes * m["record"]
 
@@ -125,7 +125,8 @@ def figure(path):
     axes[0].set(xlabel="ranks", ylabel="efficiency [%]", ylim=(0, 102), title="weak scaling")
     for total in (1e6, 1e8, 1e9):
         rate = [1 / sum(step(total / q**3, q)[0].values()) for q in counts]
-        axes[1].loglog([q**3 for q in counts], rate, label="$10^%d$ points" % (len("%d" % total) - 1))
+        axes[1].loglog([q**3 for q in counts], rate,
+                       label="$10^%d$ points" % (len("%d" % total) - 1))
         axes[1].loglog([q**3 for q in counts],
                        [q**3 / total / MEASURED["point"] for q in counts], "k:", linewidth=0.7)
     axes[1].set(xlabel="ranks", ylabel="steps per second",
