@@ -214,6 +214,26 @@ TEST(Halo, SendsNodesThatPointsOfBothRanksReach)
   }
 }
 
+// A wall pairs nodes on its two sides, and a cut cell those of several planes: with a border of ranks two cells above it a
+// rank needs nodes that only the other's points reach
+PARAMETER_TEST(HaloWalls, BelowABorder, std::string,
+               Values("slip", "stick", "slip friction 0.3", "separate"))
+{
+  for (const char *origin : {"0.0", "0.4"}) {
+    SCOPED_TRACE(origin);
+    const std::string n = std::to_string(nranks()), top = std::to_string(2 * std::max(2, nranks()));
+    OnRanks run(space("lj", "p p f", "0 8 0 8 0 " + top, 1, 0.2) +
+                    body("block INF INF INF INF 0 4", "density 1.0 neohookean 20.0 0.3",
+                         std::string("1.0 origin 0 0 ") + origin) +
+                    "fix w all mpm/boundary zlo " + GetParam() +
+                    "\nfix g all gravity 0.1 vector 0.3 0 -1\n"
+                    "velocity all ramp vx -0.4 0.4 z 0 4\nvelocity all ramp vz 0 -0.4 x 0 8\n"
+                    "timestep 0.03\n",
+                "run 100\n", "processors 1 1 " + n + "\n");
+    EXPECT_LT(measured("other ranks", run.difference()), 1.0e-12);
+  }
+}
+
 // ranks that share a node add in the same order, so that they take the same decisions on it
 TEST(Halo, SharersHaveTheSameBits)
 {
