@@ -12,6 +12,7 @@
 #include "memory.h"
 
 #include <algorithm>
+#include <type_traits>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -168,6 +169,19 @@ void MPMHalo::setup(Grid &grid, const std::function<bool(const Grid::Block &)> &
 
 /* ---------------------------------------------------------------------- */
 
+/** Calls f(width), width() being nlane, which the compiler knows for the records of the step. */
+template <class F> static void with_width(int nlane, const F &f)
+{
+  if (nlane == 4)
+    f(std::integral_constant<int, 4>());
+  else if (nlane == 8)
+    f(std::integral_constant<int, 8>());
+  else
+    f([nlane]() {
+      return nlane;
+    });
+}
+
 void MPMHalo::sum(double *nodes, int nreal, int lane, int nlane)
 {
   const int npeers = peers.size();
@@ -180,11 +194,13 @@ void MPMHalo::sum(double *nodes, int nreal, int lane, int nlane)
   for (int p = 0; p < npeers; p++) {
     auto &peer = peers[p];
     peer.send.resize(peer.recv.size());
-    double *buf = peer.send.data();
-    for (const int node : peer.nodes) {
-      const double *record = nodes + (int64_t) node * nreal + lane;
-      for (int l = 0; l < nlane; l++) *buf++ = record[l];
-    }
+    with_width(nlane, [&](auto width) {
+      double *buf = peer.send.data();
+      for (const int node : peer.nodes) {
+        const double *record = nodes + (int64_t) node * nreal + lane;
+        for (int l = 0; l < width(); l++) *buf++ = record[l];
+      }
+    });
     MPI_Isend(peer.send.data(), (int) peer.send.size(), MPI_DOUBLE, peer.rank, HALO_TAG, world,
               &requests[npeers + p]);
     bytes_sent += (bigint) peer.send.size() * sizeof(double);
@@ -192,12 +208,14 @@ void MPMHalo::sum(double *nodes, int nreal, int lane, int nlane)
   }
   MPI_Waitall(npeers, requests.data(), MPI_STATUSES_IGNORE);
 
-  for (const auto &peer : peers)    // the order of two does not matter
-    for (const int place : peer.places) {
-      double *record = nodes + (int64_t) peer.nodes[place] * nreal + lane;
-      const double *const theirs = peer.recv.data() + (int64_t) place * nlane;
-      for (int l = 0; l < nlane; l++) record[l] += theirs[l];
-    }
+  with_width(nlane, [&](auto width) {
+    for (const auto &peer : peers)    // the order of two does not matter
+      for (const int place : peer.places) {
+        double *record = nodes + (int64_t) peer.nodes[place] * nreal + lane;
+        const double *const theirs = peer.recv.data() + (int64_t) place * width();
+        for (int l = 0; l < width(); l++) record[l] += theirs[l];
+      }
+  });
   for (std::size_t k = 0; k < several.size(); k++) {
     double *record = nodes + (int64_t) several[k] * nreal + lane;
     for (int l = 0; l < nlane; l++) {
