@@ -181,6 +181,89 @@ PARAMETER_TEST(Walls, ReactionsAndEnergiesAgree, std::string,
   }
 }
 
+// A bar across all ranks, at rest. Points next to a border at x = 8k reach the nodes 8k-1, 8k, 8k+1 of both ranks, and in the
+// plane of the border 7x7 nodes. Blocks next to a wall are sent as a whole
+TEST(Halo, SendsNodesThatPointsOfBothRanksReach)
+{
+  const std::string n = std::to_string(nranks());
+  const auto scene = [&](const std::string &wall) {
+    return "processors " + n + " 1 1\n" +
+        space("lj", "f f f", "0 " + std::to_string(8 * nranks()) + " 0 8 -8 8", 1, 0.2) +
+        body("block INF INF 2 6 -2 2", "density 1.0 neohookean 10.0 0.3") + wall +
+        "timestep 0.01\nrun 2\n";
+  };
+  const double record = 4 * sizeof(double), borders = 2.0 * (nranks() - 1);
+  Scene plain(scene("")), near(scene("fix w all mpm/boundary xlo stick\n"));
+  EXPECT_EQ(plain.fix_vector("grid", 6)[5], borders * record * 3 * 7 * 7);
+  EXPECT_EQ(near.fix_vector("grid", 6)[5], plain.fix_vector("grid", 6)[5]);
+
+  for (const char *wall : {"", "fix w all mpm/boundary zhi xlo slip\n",
+                           "region r block INF INF INF INF INF -1.5\n"
+                           "fix w all mpm/boundary region r separate\n"}) {
+    SCOPED_TRACE(wall);
+    Scene run(scene(wall));
+    double counted[2] = {0.0, 0.0};
+    run.each_node([&](const Scene::Node &node) {
+      if (!node.owned) return;
+      counted[0] += node.mass;
+      counted[1] += node.mass > 0.0;
+    });
+    MPI_Allreduce(MPI_IN_PLACE, counted, 2, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+    EXPECT_NEAR(counted[0], 8.0 * nranks() * 16.0, 1.0e-9);
+    EXPECT_EQ(counted[1], (8.0 * nranks() + 3) * 7 * 7);
+  }
+}
+
+// A wall pairs nodes on its two sides, and a cut cell those of several planes: with a border of ranks two cells above it a
+// rank needs nodes that only the other's points reach
+PARAMETER_TEST(HaloWalls, BelowABorder, std::string,
+               Values("slip", "stick", "slip friction 0.3", "separate"))
+{
+  for (const char *origin : {"0.0", "0.4"}) {
+    SCOPED_TRACE(origin);
+    const std::string n = std::to_string(nranks()), top = std::to_string(2 * std::max(2, nranks()));
+    OnRanks run(space("lj", "p p f", "0 8 0 8 0 " + top, 1, 0.2) +
+                    body("block INF INF INF INF 0 4", "density 1.0 neohookean 20.0 0.3",
+                         std::string("1.0 origin 0 0 ") + origin) +
+                    "fix w all mpm/boundary zlo " + GetParam() +
+                    "\nfix g all gravity 0.1 vector 0.3 0 -1\n"
+                    "velocity all ramp vx -0.4 0.4 z 0 4\nvelocity all ramp vz 0 -0.4 x 0 8\n"
+                    "timestep 0.03\n",
+                "run 100\n", "processors 1 1 " + n + "\n");
+    EXPECT_LT(measured("other ranks", run.difference()), 1.0e-12);
+  }
+}
+
+// ranks that share a node add in the same order, so that they take the same decisions on it
+TEST(Halo, SharersHaveTheSameBits)
+{
+  Scene run(replaced(two_bodies, "MPM_OPTIONS", "transfer apic") + "run 60\n");
+  struct Value {
+    int tag;    // a number of the node
+    double record[4];
+  };
+  std::vector<Value> mine;
+  auto &grid = run.grid();
+  for (std::size_t s = 0; s < grid.blocks.size(); s++)
+    for (int n = 0; n < MPM_NS::NODES_PER_BLOCK; n++) {
+      const auto &block = grid.blocks[s];
+      if (!((block.reached & ~block.alias) >> n & 1)) continue;
+      int index[3];
+      grid.node_index(block, n, index);
+      Value value = {(index[0] * 64 + index[1]) * 64 + index[2], {}};
+      std::copy_n(grid.record((int) s, n), 4, value.record);
+      mine.push_back(value);
+    }
+  const auto all = all_by_tag(mine, MPI_COMM_WORLD);
+  int several = 0;
+  for (std::size_t k = 1, sharers = 1; k < all.size(); k++) {
+    sharers = all[k].tag == all[k - 1].tag ? sharers + 1 : 1;
+    if (sharers > 2 && all[k].record[3] > 0.0) several++;
+    if (sharers > 1) EXPECT_FALSE(memcmp(all[k].record, all[k - 1].record, sizeof(all[k].record)));
+  }
+  if (nranks() > 2) EXPECT_GT(several, 20);
+}
+
 // two fields with lattices of their own, which know nothing of each other but use the same halo
 TEST(TwoFields, DifferentLattices)
 {

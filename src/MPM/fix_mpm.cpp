@@ -179,7 +179,7 @@ void FixMPM::check_include() const
   const auto surfaces = modify->get_fix_by_style("^mpm/surface$");
   for (auto *ifix : surfaces)
     if (dynamic_cast<FixMPMSurface *>(ifix)->keeps_group(listed)) return;
-  if (surfaces.empty())
+  if (surfaces.empty() && MPMField::all(lmp).size() == 1)
     for (const auto *ifix : modify->get_fix_by_style("^mpm/immersed$"))
       if (ifix->igroup == listed) return;
   error->all(FLERR,

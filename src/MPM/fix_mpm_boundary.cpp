@@ -392,24 +392,38 @@ void FixMPMBoundary::extend_topology(MPMField &field)
   if (region) return extend_across(field);
   Grid &grid = field.grid;
   const auto faces = faces_on_lattice(field);
+  for (auto &list : nodes)
+    if (list.field == &field) list.faces = faces;
 
   // blocks that are added are looked at, too: images of images at edges, and narrow channels
 
   for (std::size_t ib = 0; ib < grid.blocks.size(); ib++)
     for (const auto &face : faces) {
       int b[3] = {grid.blocks[ib].b[0], grid.blocks[ib].b[1], grid.blocks[ib].b[2]};
-      const int begin = face.cut ? face.first : face.plane - DEPTH;
-      const int end = face.cut ? face.first + face.nweight - 1 : face.plane + DEPTH;
-      const int first = std::max(b[face.axis] * grid.side, begin);
-      const int last = std::min(b[face.axis] * grid.side + grid.side - 1, end);
+      const int first = std::max(b[face.axis] * grid.side, face.begin());
+      const int last = std::min(b[face.axis] * grid.side + grid.side - 1, face.end());
       if (first > last) continue;
       std::array<int, 3> needed = {2 * face.plane - last, 2 * face.plane - first, face.plane};
-      if (face.cut) needed = {begin, end, end};
+      if (face.cut) needed = {face.begin(), face.end(), face.end()};
       for (const int k : needed) {
         b[face.axis] = k >> grid.shift_bits;
         grid.activate(b);
       }
     }
+}
+
+/** Mirrors and cut faces are looked at across, and regions along several axes. */
+bool FixMPMBoundary::looks_at_all(const MPMField &field, const Grid::Block &block) const
+{
+  if (!acts_on(field)) return false;
+  if (region) return true;
+  const int side = field.grid.side;
+  for (const auto &list : nodes)
+    for (const auto &face : list.faces) {
+      const int first = block.b[face.axis] * side;
+      if (list.field == &field && first <= face.end() && first + side > face.begin()) return true;
+    }
+  return false;
 }
 
 /* ----------------------------------------------------------------------

@@ -74,6 +74,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   void extend_topology(MPMField &) override;
   void topology_changed(MPMField &) override;
   bool looks_beyond_points() const override { return false; }
+  bool looks_at_all(const MPMField &, const MPM_NS::Grid::Block &) const override;
   bool decides_contact(const MPMField &) const override;
   void act(double dt, Stage) override;
 
@@ -112,6 +113,9 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
     MPMWallContact contact;    // of material that touches it
 
     Face(const MPMField &, const Domain &, int face);
+    // range of nodes along the axis that are looked at together
+    int begin() const { return cut ? first : plane - DEPTH; }
+    int end() const { return cut ? first + nweight - 1 : plane + DEPTH; }
     void cut_weights(const MPMField &, double x);
     MPMWallContact contact_of(const MPMField &, double x) const;
   };

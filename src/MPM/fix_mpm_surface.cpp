@@ -228,6 +228,8 @@ void FixMPMSurface::pre_force(int)
 
 void FixMPMSurface::pre_exchange()
 {
+  // points may have left the nodes that were in their reach, or else there would be no new lists
+  for (auto *field : MPMField::all(lmp)) field->map->valid = false;
   find_surface();
   if (moves_atoms()) keep_first();
 }

@@ -9,11 +9,10 @@
 #include "mpm_halo.h"
 
 #include "comm.h"
-#include "lattice/grid.h"
 #include "memory.h"
 
 #include <algorithm>
-#include <cstring>
+#include <type_traits>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -22,30 +21,12 @@ static constexpr int RVOUS = 1;    // 0 for irregular, 1 for all2all
 static constexpr int HALO_TAG = 4711;
 
 namespace {
-/** To the rendezvous: this rank has this block active. Back: this other rank has the block, too. */
+/** To the rendezvous: this rank has these nodes of this block. Back: this other rank has them, too. */
 struct Sharer {
   uint64_t key;
+  uint64_t nodes, reached;    // bits of those that it has, and that its points can reach
   int rank;
-  int added;    // by a node action, out of reach of the rank's points
 };
-
-/** Blocks that points of this rank reach, or of which they reach an image. */
-std::vector<char> reached(const Grid &grid, int nreached)
-{
-  std::vector<char> yes(grid.blocks.size(), 0);
-  for (int s = 0; s < nreached; s++) {
-    yes[s] = 1;
-    const auto &block = grid.blocks[s];
-    for (int n = 0; n < NODES_PER_BLOCK && block.alias; n++) {
-      if (!(block.alias >> n & 1)) continue;
-      int index[3];
-      grid.node_index(block, n, index);
-      for (int d = 0; d < grid.lattice.dim; d++) index[d] = grid.lattice.wrap(d, index[d]);
-      yes[grid.locate(index) / NODES_PER_BLOCK] = 1;
-    }
-  }
-  return yes;
-}
 }    // namespace
 
 /** At the rendezvous rank of a set of keys: tell each sharer of a block about all others. */
@@ -81,11 +62,10 @@ static int match_keys(int n, char *inbuf, int &flag, int *&proclist, char *&outb
 
 /* ---------------------------------------------------------------------- */
 
-void MPMHalo::setup(Grid &grid)
+void MPMHalo::setup(Grid &grid, const std::function<bool(const Grid::Block &)> &whole)
 {
-  ranks.clear();
-  slots.clear();
-  shared.clear();
+  peers.clear();
+  several.clear();
   first.assign(1, 0);
   contributions.clear();
   if (comm->nprocs == 1) return;
@@ -93,14 +73,15 @@ void MPMHalo::setup(Grid &grid)
   // all canonical blocks go to the rank that their key hashes to
 
   const int nblocks = grid.blocks.size();
-  const std::vector<char> mine_reached = reached(grid, nreached);
+  std::vector<uint64_t> had(nblocks, 0);
   std::vector<Sharer> mine;
   std::vector<int> procs;
   for (int s = 0; s < nblocks; s++) {
     const auto &block = grid.blocks[s];
-    if (block.alias == ~uint64_t(0)) continue;
+    had[s] = (whole(block) ? ~uint64_t(0) : block.reached) & ~block.alias;
+    if (!had[s]) continue;
     const uint64_t key = Grid::block_key(block);
-    mine.push_back({key, comm->me, !mine_reached[s]});
+    mine.push_back({key, had[s], block.reached, comm->me});
     procs.push_back((int) ((key * UINT64_C(0x9E3779B97F4A7C15) >> 33) % comm->nprocs));
   }
   char *outbuf = nullptr;
@@ -108,107 +89,155 @@ void MPMHalo::setup(Grid &grid)
                                  procs.data(), match_keys, 0, outbuf, sizeof(Sharer), memory, 0);
   auto *sharer = (Sharer *) outbuf;
 
-  // blocks in order of (rank, key): both sides of a pair list them alike
+  // nodes in order of (rank, key, number): both sides of a pair list them alike
 
   std::sort(sharer, sharer + n, [](const Sharer &a, const Sharer &b) {
     return a.rank < b.rank || (a.rank == b.rank && a.key < b.key);
   });
-  std::vector<std::vector<Contribution>> of_slot(nblocks);
-  std::vector<char> mine_to_count(nblocks, 1);
+  std::vector<std::vector<int>> of_slot(nblocks);    // the other sharers
+  std::vector<int> first_place(n);
   for (int i = 0; i < n; i++) {
-    if (ranks.empty() || ranks.back() != sharer[i].rank) {
-      ranks.push_back(sharer[i].rank);
-      slots.emplace_back();
-    }
     const int slot = grid.find(sharer[i].key);
-    // the lowest rank counts its nodes, of those whose points reach the block if there are any
-    const int added = !mine_reached[slot];
-    if (sharer[i].added < added || (sharer[i].added == added && sharer[i].rank < comm->me))
-      mine_to_count[slot] = 0;
-    of_slot[slot].push_back({(int) ranks.size() - 1, (int) slots.back().size()});
-    slots.back().push_back(slot);
+    of_slot[slot].push_back(i);
+    sharer[i].nodes &= had[slot];
+    if (!sharer[i].nodes) continue;
+    if (peers.empty() || peers.back().rank != sharer[i].rank)
+      peers.push_back({sharer[i].rank, {}, {}, {}, {}});
+    auto &nodes = peers.back().nodes;
+    first_place[i] = nodes.size();
+    for (uint64_t left = sharer[i].nodes; left; left &= left - 1)
+      nodes.push_back(slot * NODES_PER_BLOCK + __builtin_ctzll(left));
   }
-  memory->sfree(outbuf);
 
   for (int s = 0; s < nblocks; s++) {
+    auto &block = grid.blocks[s];
     if (of_slot[s].empty()) continue;
-    shared.push_back(s);
-    auto &list = of_slot[s];    // ascending by rank
-    const auto next = std::find_if(list.begin(), list.end(), [&](const Contribution &c) {
-      return ranks[c.from] > comm->me;
-    });
-    if (!mine_to_count[s]) grid.blocks[s].owned = 0;
-    list.insert(next, {-1, 0});
-    contributions.insert(contributions.end(), list.begin(), list.end());
-    first.push_back(contributions.size());
+
+    // a node is counted by the lowest rank that reaches it, one that nobody reaches by the lowest sharer
+
+    uint64_t by_lower = 0, by_others = 0;
+    bool lowest = true;
+    for (const int i : of_slot[s]) {
+      by_others |= sharer[i].reached;
+      if (sharer[i].rank > comm->me) continue;
+      by_lower |= sharer[i].reached;
+      lowest = false;
+    }
+    const uint64_t by_nobody = lowest ? ~(by_others | block.reached) : 0;
+    block.owned &= (block.reached & ~by_lower) | by_nobody;
+
+    // who adds to a node, in the order of ranks
+
+    uint64_t once = 0, more = 0;
+    for (const int i : of_slot[s]) {
+      more |= once & sharer[i].nodes;
+      once |= sharer[i].nodes;
+    }
+    const auto place_of = [&](int i, int node) {
+      const uint64_t before = (uint64_t(1) << node) - 1;
+      return first_place[i] + __builtin_popcountll(sharer[i].nodes & before);
+    };
+    const auto peer_of = [&](int i) {
+      return std::lower_bound(peers.begin(), peers.end(), sharer[i].rank,
+                              [](const Peer &peer, int rank) {
+                                return peer.rank < rank;
+                              });
+    };
+    for (const int i : of_slot[s])
+      for (uint64_t left = sharer[i].nodes & ~more; left; left &= left - 1)
+        peer_of(i)->places.push_back(place_of(i, __builtin_ctzll(left)));
+    for (uint64_t left = more; left; left &= left - 1) {
+      const int node = __builtin_ctzll(left);
+      bool mine_is_in = false;
+      const auto add_mine = [&]() {
+        if (!mine_is_in) contributions.push_back({-1, 0});
+        mine_is_in = true;
+      };
+      for (const int i : of_slot[s]) {    // ascending by rank
+        if (!(sharer[i].nodes >> node & 1)) continue;
+        if (sharer[i].rank > comm->me) add_mine();
+        contributions.push_back({(int) (peer_of(i) - peers.begin()), place_of(i, node)});
+      }
+      add_mine();
+      several.push_back(s * NODES_PER_BLOCK + node);
+      first.push_back(contributions.size());
+    }
   }
-  send.resize(ranks.size());
-  recv.resize(ranks.size());
-  requests.resize(2 * ranks.size());
+  memory->sfree(outbuf);
+  requests.resize(2 * peers.size());
 }
 
 /* ---------------------------------------------------------------------- */
 
+/** Calls f(width), width() being nlane, which the compiler knows for the records of the step. */
+template <class F> static void with_width(int nlane, const F &f)
+{
+  if (nlane == 4)
+    f(std::integral_constant<int, 4>());
+  else if (nlane == 8)
+    f(std::integral_constant<int, 8>());
+  else
+    f([nlane]() {
+      return nlane;
+    });
+}
+
 void MPMHalo::sum(double *nodes, int nreal, int lane, int nlane)
 {
-  if (ranks.empty()) return;
-
-  const int block_reals = NODES_PER_BLOCK * nlane;
-  const bool whole = nlane == nreal;
-  const int nranks = ranks.size();
-  for (int r = 0; r < nranks; r++) {
-    const int count = slots[r].size() * block_reals;
-    recv[r].resize(count);
-    send[r].resize(count);
-    MPI_Irecv(recv[r].data(), count, MPI_DOUBLE, ranks[r], HALO_TAG, world, &requests[r]);
+  const int npeers = peers.size();
+  for (int p = 0; p < npeers; p++) {
+    auto &peer = peers[p];
+    peer.recv.resize(peer.nodes.size() * nlane);
+    MPI_Irecv(peer.recv.data(), (int) peer.recv.size(), MPI_DOUBLE, peer.rank, HALO_TAG, world,
+              &requests[p]);
   }
-  for (int r = 0; r < nranks; r++) {
-    double *buf = send[r].data();
-    for (int slot : slots[r]) {
-      const double *record = nodes + (int64_t) slot * NODES_PER_BLOCK * nreal + lane;
-      if (whole)
-        memcpy(buf, record, block_reals * sizeof(double));
-      else
-        for (int k = 0; k < NODES_PER_BLOCK; k++, record += nreal)
-          for (int l = 0; l < nlane; l++) buf[k * nlane + l] = record[l];
-      buf += block_reals;
-    }
-    MPI_Isend(send[r].data(), (int) send[r].size(), MPI_DOUBLE, ranks[r], HALO_TAG, world,
-              &requests[nranks + r]);
-    bytes_sent += (bigint) send[r].size() * sizeof(double);
-  }
-  MPI_Waitall(nranks, requests.data(), MPI_STATUSES_IGNORE);
-
-  for (std::size_t is = 0; is < shared.size(); is++) {
-    double *record = nodes + (int64_t) shared[is] * NODES_PER_BLOCK * nreal + lane;
-    const Contribution *begin = &contributions[first[is]];
-    const Contribution *end = begin + (first[is + 1] - first[is]);
-    if (whole && end - begin == 2) {    // most blocks; the order of two does not matter
-      const Contribution &other = begin[begin->from < 0];
-      const double *const theirs = recv[other.from].data() + (int64_t) other.offset * block_reals;
-      for (int k = 0; k < block_reals; k++) record[k] += theirs[k];
-      continue;
-    }
-    for (int k = 0; k < NODES_PER_BLOCK; k++, record += nreal)
-      for (int l = 0; l < nlane; l++) {
-        double sum = 0.0;
-        for (const Contribution *c = begin; c != end; c++)
-          sum += c->from < 0 ? record[l]
-                             : recv[c->from][(int64_t) c->offset * block_reals + k * nlane + l];
-        record[l] = sum;
+  for (int p = 0; p < npeers; p++) {
+    auto &peer = peers[p];
+    peer.send.resize(peer.recv.size());
+    with_width(nlane, [&](auto width) {
+      double *buf = peer.send.data();
+      for (const int node : peer.nodes) {
+        const double *record = nodes + (int64_t) node * nreal + lane;
+        for (int l = 0; l < width(); l++) *buf++ = record[l];
       }
+    });
+    MPI_Isend(peer.send.data(), (int) peer.send.size(), MPI_DOUBLE, peer.rank, HALO_TAG, world,
+              &requests[npeers + p]);
+    bytes_sent += (bigint) peer.send.size() * sizeof(double);
+    messages_sent++;
   }
-  MPI_Waitall(nranks, requests.data() + nranks, MPI_STATUSES_IGNORE);
+  MPI_Waitall(npeers, requests.data(), MPI_STATUSES_IGNORE);
+
+  with_width(nlane, [&](auto width) {
+    for (const auto &peer : peers)    // the order of two does not matter
+      for (const int place : peer.places) {
+        double *record = nodes + (int64_t) peer.nodes[place] * nreal + lane;
+        const double *const theirs = peer.recv.data() + (int64_t) place * width();
+        for (int l = 0; l < width(); l++) record[l] += theirs[l];
+      }
+  });
+  for (std::size_t k = 0; k < several.size(); k++) {
+    double *record = nodes + (int64_t) several[k] * nreal + lane;
+    for (int l = 0; l < nlane; l++) {
+      double sum = 0.0;
+      for (int c = first[k]; c < first[k + 1]; c++) {
+        const auto [from, place] = contributions[c];
+        sum += from < 0 ? record[l] : peers[from].recv[(int64_t) place * nlane + l];
+      }
+      record[l] = sum;
+    }
+  }
+  MPI_Waitall(npeers, requests.data() + npeers, MPI_STATUSES_IGNORE);
 }
 
 /* ---------------------------------------------------------------------- */
 
 double MPMHalo::memory_usage() const
 {
-  double bytes = (shared.capacity() + first.capacity()) * sizeof(int) +
+  double bytes = (several.capacity() + first.capacity()) * sizeof(int) +
       contributions.capacity() * sizeof(Contribution);
-  for (const auto &list : slots) bytes += list.capacity() * sizeof(int);
-  for (const auto *buffers : {&send, &recv})
-    for (const auto &buffer : *buffers) bytes += buffer.capacity() * sizeof(double);
+  for (const auto &peer : peers)
+    bytes += (peer.nodes.capacity() + peer.places.capacity()) * sizeof(int) +
+        (peer.send.capacity() + peer.recv.capacity()) * sizeof(double);
   return bytes;
 }

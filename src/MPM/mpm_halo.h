@@ -9,49 +9,52 @@
 #ifndef LMP_MPM_HALO_H
 #define LMP_MPM_HALO_H
 
+#include "lattice/grid.h"
 #include "pointers.h"
 
+#include <functional>
 #include <vector>
-
-namespace MPM_NS {
-class Grid;
-}
 
 namespace LAMMPS_NS {
 
-/** Sums the node records of blocks that several ranks have active.
+/** Sums the records of nodes that several ranks have.
  *
- *  Sharers are found by block key through a rendezvous, so that any rank may share with any other.
- *  Each sharer sends its partial sums once to each other sharer, and all add them in the order of
- *  ranks: all sharers hold bitwise the same sums and no second message is needed.
+ *  A rank has the nodes in reach of its points (Grid::Block::reached), or whole blocks. Sharers are found by block
+ *  key through a rendezvous, so that any rank may share with any other. Each sharer sends its partial
+ *  sums once to each other sharer, and all add them in the order of ranks: all sharers hold bitwise
+ *  the same sums and no second message is needed.
  */
 class MPMHalo : protected Pointers {
  public:
   explicit MPMHalo(class LAMMPS *lmp) : Pointers(lmp) {}
 
-  /** Find the sharers of the canonical blocks of the grid, and who owns a block: the lowest rank whose
-   *  points reach it, if there is one. */
-  void setup(MPM_NS::Grid &);
+  /** Find the sharers of the canonical nodes of the grid, and who owns a node: the lowest rank whose
+   *  points reach it, if there is one. Blocks that are wanted whole get what others have at nodes out of reach of
+   *  this rank's points, too. */
+  void setup(MPM_NS::Grid &, const std::function<bool(const MPM_NS::Grid::Block &)> &whole);
 
-  int nreached = 0;    ///< set by the caller: that many first blocks are in reach of points
-
-  /** Sum reals [lane, lane+nlane) of all node records of shared blocks. */
+  /** Sum reals [lane, lane+nlane) of all records of shared nodes. */
   void sum(double *nodes, int nreal, int lane, int nlane);
 
-  bigint bytes_sent = 0;    ///< since the last reset by the caller
+  bigint bytes_sent = 0, messages_sent = 0;    ///< since the last reset by the caller
   double memory_usage() const;
 
  private:
   struct Contribution {
-    int from;      // index into ranks, -1: this rank
-    int offset;    // block position in the buffer of that rank
+    int from;     // index into peers, -1: this rank
+    int place;    // of the node in the buffer of that rank
   };
-  std::vector<int> ranks;                     // other sharers, ascending
-  std::vector<std::vector<int>> slots;        // [rank] blocks shared with it, in order of key
-  std::vector<int> shared;                    // slots that have other sharers
-  std::vector<int> first;                     // [shared+1] range in contributions
-  std::vector<Contribution> contributions;    // ascending by rank within a block
-  std::vector<std::vector<double>> send, recv;
+  struct Peer {    // another sharer
+    int rank;
+    std::vector<int> nodes;     // slot*64+n of the nodes shared with it, in order of key and n
+    std::vector<int> places;    // in nodes, of those that no third rank shares
+    std::vector<double> send, recv;
+  };
+
+  std::vector<Peer> peers;                    // ascending by rank
+  std::vector<int> several;                   // nodes that more than two ranks share
+  std::vector<int> first;                     // [several+1] range in contributions
+  std::vector<Contribution> contributions;    // ascending by rank for each of these nodes
   std::vector<MPI_Request> requests;
 };
 

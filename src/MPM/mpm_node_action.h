@@ -9,6 +9,8 @@
 #ifndef LMP_MPM_NODE_ACTION_H
 #define LMP_MPM_NODE_ACTION_H
 
+#include "lattice/grid.h"
+
 namespace LAMMPS_NS {
 
 /** What acts on the nodes of the fields after the momentum equation: boundaries, contact, ...
@@ -36,6 +38,13 @@ class MPMNodeAction {
   /** Does it look at nodes that points cannot reach? Only if one does, periodic images of these have the values
    *  of their nodes. */
   virtual bool looks_beyond_points() const { return true; }
+
+  /** Does it look at nodes of this block that points of this rank cannot reach, but others'? Only if one does, the rank
+   *  gets what others have there. */
+  virtual bool looks_at_all(const class MPMField &, const MPM_NS::Grid::Block &) const
+  {
+    return true;
+  }
 
   /** The blocks of the field are new: lists of nodes must be made again. */
   virtual void topology_changed(class MPMField &) {}

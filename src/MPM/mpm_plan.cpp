@@ -135,6 +135,14 @@ bool MPMPlan::keeps_all_images() const
   });
 }
 
+/** Other physics may look at any node, as node actions do that do not tell. */
+bool MPMPlan::looks_at_all(const MPMField &field, const MPM_NS::Grid::Block &block) const
+{
+  return !physics.empty() || std::any_of(actions.begin(), actions.end(), [&](const auto *action) {
+    return action->looks_at_all(field, block);
+  });
+}
+
 void MPMPlan::find_blocks_now()
 {
   // corners of domains may have left what is in reach
@@ -154,7 +162,7 @@ void MPMPlan::start()
   cpu_start = platform::cputime();
   for (auto *field : fields) {
     field->counts = {0, 0.0, field->step_dt(), field->step_dt()};
-    field->nodes.halo->bytes_sent = 0;
+    field->nodes.halo->bytes_sent = field->nodes.halo->messages_sent = 0;
     field->map->nbuild = field->map->nsort = 0;
     field->map->sort_time = 0.0;
     field->frame->start_counting();
@@ -216,11 +224,12 @@ void MPMPlan::report(const MPMField &field, double bytes_per_point) const
   const double wall = platform::walltime() - wall_start;
   double use = wall > 0.0 ? (platform::cputime() - cpu_start) / wall : 1.0, least_use;
   MPI_Allreduce(&use, &least_use, 1, MPI_DOUBLE, MPI_MIN, world);
-  double local[4] = {counts.point_steps, (double) field.map->active.size(),
+  double local[5] = {counts.point_steps, (double) field.map->active.size(),
                      (double) field.grid.blocks.size(),
-                     (double) field.nodes.halo->bytes_sent / counts.steps},
-         sum[4];
-  MPI_Allreduce(local, sum, 4, MPI_DOUBLE, MPI_SUM, world);
+                     (double) field.nodes.halo->bytes_sent / counts.steps,
+                     (double) field.nodes.halo->messages_sent / counts.steps},
+         sum[5];
+  MPI_Allreduce(local, sum, 5, MPI_DOUBLE, MPI_SUM, world);
   const double npoints = sum[0] / counts.steps;
   const std::vector<Cost> list = costs(field, 1.0e9 * comm->nprocs / sum[0]);
   const std::string state = point_extremes(lmp, field);
@@ -245,10 +254,11 @@ void MPMPlan::report(const MPMField &field, double bytes_per_point) const
   }
   text += fmt::format("  {:.0f} bytes per point", bytes_per_point);
   if (field.options.plan)
-    text += fmt::format("; {:.0f} blocks with points of {:.0f} active, {:.1f} points per block\n"
-                        "  {} updates of the topology, {} sorts, {:.0f} halo bytes per step",
-                        sum[1], sum[2], npoints / std::max(1.0, sum[1]), field.map->nbuild,
-                        field.map->nsort, sum[3]);
+    text += fmt::format(
+        "; {:.0f} blocks with points of {:.0f} active, {:.1f} points per block\n"
+        "  {} updates of the topology, {} sorts, {:.0f} halo bytes per step in {:.0f} messages",
+        sum[1], sum[2], npoints / std::max(1.0, sum[1]), field.map->nbuild, field.map->nsort,
+        sum[3], sum[4]);
   const auto least = fmt::format("{:.6g}", counts.dt_min),
              most = fmt::format("{:.6g}", counts.dt_max);
   text += fmt::format("\n  {} steps, time step {}{}\n", counts.steps,

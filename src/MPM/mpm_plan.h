@@ -65,10 +65,12 @@ class MPMPlan : protected Pointers {
 
   /** Blocks in reach of points, of all fields whose points have moved in memory or away. */
   void find_blocks();
-  /** Do periodic images count that no point can reach? */
-  bool keeps_all_images() const;
   /** The same apart from the step. */
   void find_blocks_now();
+  /** Do periodic images count that no point can reach? */
+  bool keeps_all_images() const;
+  /** Are nodes of this block looked at that only points of other ranks can reach? */
+  bool looks_at_all(const MPMField &, const MPM_NS::Grid::Block &) const;
   void act_on_nodes(MPMNodeAction::Stage);
 
  private:

@@ -240,12 +240,15 @@ void MPMPointMap::find_blocks()
   const double drift = field.frame->is_total() ? 0.0
       : watch_drift                            ? grid.side
                     : std::max(least, std::min(1.0, 0.5 * neighbor->skin / grid.lattice.h));
-  const int nactive = active.size(), order = stencil_order(field.options.shape);
+  constexpr double ROUNDING = 1.0e-6;    // of places, in cells
+  const int nactive = active.size(), order = stencil_order(field.options.shape),
+            cell = shape_constants[field.options.shape].cell;
   int nodes_low[3] = {INT_MAX, INT_MAX, INT_MAX}, nodes_high[3] = {INT_MIN, INT_MIN, INT_MIN};
   for (int k = 0; k < nactive; k++) {
     const Range &r = ranges[k];
     int b[3], *const lo = active[k].low, *const hi = active[k].high;
     std::copy_n(grid.blocks[k].b, 3, b);
+    int from[3], to[3];    // nodes in reach
     for (int d = 0; d < grid.lattice.dim; d++) {
       const int first = b[d] * grid.side, low = (int) std::floor(r.lo[d] - drift),
                 high = (int) std::floor(r.hi[d] + drift) + order;
@@ -253,15 +256,21 @@ void MPMPointMap::find_blocks()
       if (high >= first + grid.side) hi[d] = 1;
       nodes_low[d] = std::min(nodes_low[d], low);
       nodes_high[d] = std::max(nodes_high[d], high);
+      from[d] = cell * (int) std::floor((r.lo[d] - drift - ROUNDING) / cell);
+      to[d] = (int) std::floor(r.hi[d] + drift + ROUNDING) + order;
+      if (field.domains) {    // corners may go anywhere in these blocks, see MPMCpdi::update()
+        from[d] = first - grid.side;
+        to[d] = first + 2 * grid.side - 1;
+      }
     }
     for (int dx = lo[0]; dx <= hi[0]; dx++)
       for (int dy = lo[1]; dy <= hi[1]; dy++)
         for (int dz = lo[2]; dz <= hi[2]; dz++) {
           const int neighbor_block[3] = {b[0] + dx, b[1] + dy, b[2] + dz};
-          grid.activate(neighbor_block);
+          Grid::Block &block = grid.blocks[grid.activate(neighbor_block)];
+          block.reached |= grid.nodes_between(block, from, to);
         }
   }
-  field.nodes.halo->nreached = (int) grid.blocks.size();
 
   if (!field.plan->keeps_all_images())
     for (int d = 0; d < grid.lattice.dim; d++) {
@@ -277,7 +286,9 @@ void MPMPointMap::finish_blocks()
   field.grid.close_periodic();
   field.grid.finish();
   field.nodes.allocate(field.kernel.nreal);
-  field.nodes.halo->setup(field.grid);
+  field.nodes.halo->setup(field.grid, [this](const Grid::Block &block) {
+    return field.plan->looks_at_all(field, block);
+  });
 
   valid = true;
   drifted = 0;

@@ -134,6 +134,54 @@ TEST(Grid, PeriodicImagesFoldOntoOneCanonicalNode)
     }
 }
 
+TEST(Grid, NodesBetweenIndices)
+{
+  const int ranges[][2][3] = {{{0, 0, 0}, {7, 7, 7}},       {{-2, 1, 5}, {0, 3, 6}},
+                              {{-9, -9, -9}, {20, 20, 20}}, {{2, -3, 1}, {2, 9, 1}},
+                              {{3, 3, 3}, {2, 7, 7}},       {{40, 0, 0}, {50, 9, 9}}};
+  for (int dim : {2, 3}) {
+    Grid grid(make_lattice(dim, 10, false));
+    for (int k = 0; k < 8; k++) activate(grid, k % 2, k / 2 % 2 - 1, dim == 3 ? k / 4 : 0);
+    for (const auto &range : ranges)
+      for (const auto &block : grid.blocks) {
+        const uint64_t bits = grid.nodes_between(block, range[0], range[1]);
+        for (int n = 0; n < NODES_PER_BLOCK; n++) {
+          int index[3];
+          grid.node_index(block, n, index);
+          bool in = true;
+          for (int d = 0; d < dim; d++)
+            in = in && index[d] >= range[0][d] && index[d] <= range[1][d];
+          EXPECT_EQ(bits >> n & 1, in) << dim << " " << n;
+        }
+      }
+  }
+}
+
+// what points reach at an image they reach at the node that it is an image of
+TEST(Grid, NodesAreReachedThroughImages)
+{
+  for (int dim : {2, 3}) {
+    Grid grid(make_lattice(dim, 12, true));
+    const int low[3] = {-1, -2, 3}, high[3] = {1, 0, 5};
+    for (int k = 0; k < 8; k++) {
+      const int slot = activate(grid, k % 2 - 1, k / 2 % 2 - 1, dim == 3 ? k / 4 : 0);
+      grid.blocks[slot].reached = grid.nodes_between(grid.blocks[slot], low, high);
+    }
+    grid.close_periodic();
+    grid.finish();
+    int nodes = 0;
+    for (const auto &block : grid.blocks)
+      nodes += __builtin_popcountll(block.reached & ~block.alias);
+    EXPECT_EQ(nodes, dim == 3 ? 27 : 9);
+    const int image[3] = {-1, -2, dim == 3 ? 4 : 0}, node[3] = {11, 10, image[2]};
+    for (const int *index : {image, node}) {
+      const int64_t at = grid.locate(index);
+      ASSERT_GE(at, 0);
+      EXPECT_TRUE(grid.blocks[at / NODES_PER_BLOCK].reached >> (at % NODES_PER_BLOCK) & 1);
+    }
+  }
+}
+
 // images beyond the reach of points are still no nodes of their own, but have no part in sums and copies
 TEST(Grid, ImagesOutOfReachHaveNoPart)
 {

@@ -84,6 +84,7 @@ void Grid::close_periodic()
         std::copy_n(b, 3, canonical_block);
       }
       blocks[ib].alias |= uint64_t(1) << n;
+      blocks[slot].reached |= (blocks[ib].reached >> n & 1) << number(canonical);
       if (!reached) continue;
       alias_node.push_back((int64_t) ib * NODES_PER_BLOCK + n);
       alias_of.push_back((int64_t) slot * NODES_PER_BLOCK + number(canonical));
@@ -100,6 +101,19 @@ void Grid::finish()
       block.slot[s] = lattice.dim == 3 || s % 3 == 1 ? find(b) : -1;
     }
   }
+}
+
+uint64_t Grid::nodes_between(const Block &block, const int low[3], const int high[3]) const
+{
+  uint64_t bits = 1;
+  for (int d = lattice.dim - 1, stride = 1; d >= 0; d--, stride *= side) {
+    const uint64_t row = bits;
+    bits = 0;
+    const int first = block.b[d] * side;
+    const int begin = std::max(0, low[d] - first), end = std::min(side - 1, high[d] - first);
+    for (int k = begin; k <= end; k++) bits |= row << k * stride;
+  }
+  return bits;
 }
 
 void Grid::allocate(int nreal_in)

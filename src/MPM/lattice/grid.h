@@ -54,10 +54,11 @@ struct Lattice {
 class Grid {
  public:
   struct Block {
-    int b[3];              ///< block coordinates
-    int slot[27];          ///< neighbors at [9*(dx+1)+3*(dy+1)+(dz+1)], -1: not active
-    uint64_t alias = 0;    ///< bit n: node n is a periodic image of a canonical node
-    uint64_t owned = 0;    ///< bit n: canonical, and this rank counts it in sums over nodes
+    int b[3];                ///< block coordinates
+    int slot[27];            ///< neighbors at [9*(dx+1)+3*(dy+1)+(dz+1)], -1: not active
+    uint64_t alias = 0;      ///< bit n: node n is a periodic image of a canonical node
+    uint64_t owned = 0;      ///< bit n: canonical, and this rank counts it in sums over nodes
+    uint64_t reached = 0;    ///< bit n: points of this rank reach it, or an image of it
   };
 
   Lattice lattice;
@@ -93,6 +94,9 @@ class Grid {
   /** Canonical node to its images, all reals. */
   void copy_aliases(double *nodes, int nreal) const;
   void copy_aliases() { copy_aliases(nodes(), nreal); }
+
+  /** Bits of the nodes of a block with indices from low to high. */
+  uint64_t nodes_between(const Block &, const int low[3], const int high[3]) const;
 
   /** Global node index of node n of a block. */
   void node_index(const Block &block, int n, int index[3]) const
