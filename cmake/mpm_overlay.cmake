@@ -70,6 +70,7 @@ endif()
 # everything but main(): for lmp, tests and benchmarks
 add_library(lammps_mpm INTERFACE)
 target_sources(lammps_mpm INTERFACE $<TARGET_OBJECTS:lammps_styles> ${MPM_OBJECTS})
+mpm_depends_on_core(lammps_mpm)
 target_link_libraries(lammps_mpm INTERFACE ${LAMMPS_OBJECTS} ${link}
   ${MPM_LIBRARIES})
 target_link_options(lammps_mpm INTERFACE ${MPM_SANITIZERS})

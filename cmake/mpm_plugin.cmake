@@ -16,6 +16,7 @@ target_include_directories(mpm_plugin_objects PRIVATE ${dir})
 
 get_property(MPM_OBJECTS GLOBAL PROPERTY MPM_OBJECTS)
 add_library(mpmplugin MODULE $<TARGET_OBJECTS:mpm_plugin_objects> ${MPM_OBJECTS})
+mpm_depends_on_core(mpmplugin)
 set_target_properties(mpmplugin PROPERTIES PREFIX "" SUFFIX ".so" LINKER_LANGUAGE CXX
   LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
 target_link_libraries(mpmplugin PRIVATE ${MPM_LIBRARIES})

@@ -19,6 +19,7 @@ add_custom_command(OUTPUT ${rest} DEPENDS ${LAMMPS_BUILD_DIR}/liblammps.a
   COMMENT "LAMMPS without its lists of styles")
 
 add_library(mpm_python SHARED EXCLUDE_FROM_ALL $<TARGET_OBJECTS:lammps_styles> ${MPM_OBJECTS} ${rest})
+mpm_depends_on_core(mpm_python)
 set_target_properties(mpm_python PROPERTIES OUTPUT_NAME lammps PREFIX lib SUFFIX .so LINKER_LANGUAGE CXX
   LIBRARY_OUTPUT_DIRECTORY ${module})
 target_link_libraries(mpm_python PRIVATE -Wl,--whole-archive ${rest} -Wl,--no-whole-archive ${link}

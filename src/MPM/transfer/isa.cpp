@@ -41,7 +41,11 @@ bool runs(InstructionSet set)
 #if defined(MPM_HAVE_V3)
   if (set == V3) return v3;
 #endif
+#if defined(MPM_HAVE_NO_BASE)
+  return false;
+#else
   return set == BASE || set == REFERENCE;
+#endif
 }
 
 }    // namespace

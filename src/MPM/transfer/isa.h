@@ -29,6 +29,11 @@ bool select_isa(const char *name, InstructionSet &set);
 #define MPM_CONCAT(a, b) MPM_CONCAT_(a, b)
 #define MPM_OF_ISA(name) MPM_CONCAT(name, MPM_ISA)
 
+#if defined(MPM_HAVE_NO_BASE)    // the demonstration, see cmake/mpm_sources.cmake
+#define MPM_IF_BASE(function) nullptr
+#else
+#define MPM_IF_BASE(function) function
+#endif
 #if defined(MPM_HAVE_V3)
 #define MPM_IF_V3(function) function
 #else
@@ -48,7 +53,8 @@ bool select_isa(const char *name, InstructionSet &set);
 /** Pointers to them, by InstructionSet; null for a set that was not built, and name_base in the place of
  *  plain loops. */
 // clang-format off
-#define MPM_ALL_ISA(name) {name##_base, MPM_IF_V3(name##_v3), MPM_IF_V4(name##_v4), name##_base}
+#define MPM_ALL_ISA(name) \
+  {MPM_IF_BASE(name##_base), MPM_IF_V3(name##_v3), MPM_IF_V4(name##_v4), MPM_IF_BASE(name##_base)}
 // clang-format on
 
 #endif
