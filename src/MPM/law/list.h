@@ -150,7 +150,7 @@ namespace {
 #include "law/thermal.h"
 namespace MPM_NS::law {
 namespace {
-  using thermal = Family<THERMAL, ThermalAdiabatic, ThermalConstant>;
+  using thermal = Family<THERMAL, ThermalAdiabatic, ThermalConducting, ThermalConstant>;
 }
 }    // namespace MPM_NS::law
 #endif
