@@ -45,46 +45,46 @@ Options MPMHeatOptions::declare(int dim)
       return variables(c.value + first, n, names, unit, meaning + ", can be a variable");
     };
     const OptionValue outside = values(1, "Tout", "temperature", "temperature outside", 1);
-    o.add(FACE_NAME[face],
-          {word(c.kind,
-                {{"insulated", Condition::INSULATED, "no heat goes through this face of the box"},
-                 {"temperature",
-                  Condition::TEMPERATURE,
-                  "",
-                  {values(1, "T", "temperature", "temperature of the material at the face")}},
-                 {"flux",
-                  Condition::FLUX,
-                  "",
-                  {values(1, "q", "power/area", "heat that comes in through the face")}},
-                 {"convection",
-                  Condition::CONVECTION,
-                  "",
-                  {values(1, "H", "power/(area temperature)", "heat transfer coefficient"),
-                   outside}},
-                 {"radiation",
-                  Condition::RADIATION,
-                  "",
-                  {values(1, "EPS", "1", "emissivity"), outside}}})});
+    o.add(
+        FACE_NAME[face],
+        {word(c.kind,
+              {{"insulated", Condition::INSULATED, "no heat goes through this face of the box"},
+               {"temperature",
+                Condition::TEMPERATURE,
+                "",
+                {values(1, "T", "temperature", "temperature of the material at the face")}},
+               {"flux",
+                Condition::FLUX,
+                "",
+                {values(1, "q", "power/area", "heat that comes in through the face")}},
+               {"convection",
+                Condition::CONVECTION,
+                "",
+                {values(1, "H", "power/(area temperature)", "heat transfer coefficient"), outside}},
+               {"radiation",
+                Condition::RADIATION,
+                "",
+                {values(1, "EPS", "1", "emissivity"), outside}}})});
   }
   o.add("source", {text(source, "v_name", "power per volume, an equal- or atom-style variable")})
       .standard("none");
-  o.add("transfer",
-        {word(transfer.kind,
-              {{"relax",
-                MPMHeatTransfer::RELAX,
-                "points get the change of the nodes",
-                {number(transfer.relax, "R", NOT_NEGATIVE, "1",
-                        "rate at which they take the temperature of the nodes, in the rate at which "
-                        "heat crosses a cell")}},
-               {"pic", MPMHeatTransfer::PIC, "points get the temperature of the nodes"},
-               {"affine", MPMHeatTransfer::AFFINE,
-                "points get the temperature of the nodes, and its gradient"}})});
+  o.add(
+      "transfer",
+      {word(transfer.kind,
+            {{"relax",
+              MPMHeatTransfer::RELAX,
+              "points get the change of the nodes",
+              {number(transfer.relax, "R", NOT_NEGATIVE, "1",
+                      "rate at which they take the temperature of the nodes, in the rate at which "
+                      "heat crosses a cell")}},
+             {"pic", MPMHeatTransfer::PIC, "points get the temperature of the nodes"},
+             {"affine", MPMHeatTransfer::AFFINE,
+              "points get the temperature of the nodes, and its gradient"}})});
   o.add("stages",
         {integer(most_stages, "N", POSITIVE, "most stages of the conduction in a time step")});
   o.refuse([=] {
-    OptionRules rules = {
-        {!source.empty() && source.compare(0, 2, "v_") != 0, "source",
-         "must be a variable, v_name: {source}"}};
+    OptionRules rules = {{!source.empty() && source.compare(0, 2, "v_") != 0, "source",
+                          "must be a variable, v_name: {source}"}};
     for (int face = 0; face < MPMHeatFaces::NFACE; face++) {
       const auto &c = conditions[face];
       const auto below = [&](int k, double least) {
@@ -93,9 +93,9 @@ Options MPMHeatOptions::declare(int dim)
       rules.push_back({dim == 2 && face >= 4, FACE_NAME[face], "does not exist in 2d"});
       rules.push_back({c.kind >= Condition::CONVECTION && below(0, 0.0), FACE_NAME[face],
                        "needs a coefficient that is not negative"});
-      rules.push_back({c.kind == Condition::RADIATION && c.value[0].variable.empty() &&
-                           c.value[0].value > 1.0,
-                       FACE_NAME[face], "needs an emissivity that is not above 1"});
+      rules.push_back(
+          {c.kind == Condition::RADIATION && c.value[0].variable.empty() && c.value[0].value > 1.0,
+           FACE_NAME[face], "needs an emissivity that is not above 1"});
       rules.push_back({c.kind == Condition::RADIATION && below(1, 0.0), FACE_NAME[face],
                        "needs an absolute temperature outside, not below 0"});
     }
@@ -189,12 +189,12 @@ void FixMPMHeat::init_physics(MPMPlan &plan)
   fields.clear();
   for (auto *field : plan.fields) {
     const auto &o = field->options;
-    refuse_field(lmp, *this, *field,
-                 {{o.shape != QUADRATIC && o.shape != CUBIC, "this shape",
-                   "use shape quadratic or cubic"},
-                  {o.total, "frame total", "use frame updated"},
-                  {o.axisymmetric, "axisymmetric", "use a plane or 3d"},
-                  {o.modified_edges, "edges modified", "use edges plain"}});
+    refuse_field(
+        lmp, *this, *field,
+        {{o.shape != QUADRATIC && o.shape != CUBIC, "this shape", "use shape quadratic or cubic"},
+         {o.total, "frame total", "use frame updated"},
+         {o.axisymmetric, "axisymmetric", "use a plane or 3d"},
+         {o.modified_edges, "edges modified", "use edges plain"}});
     fields.push_back(
         std::make_unique<MPMConduction>(lmp, *field, transfer, most_stages, conditions));
     fields.back()->init(sigma());
@@ -243,8 +243,7 @@ void FixMPMHeat::conduct()
   in_step.fill(0.0);
   for (auto &field : fields)
     if (field->conducts())
-      past.got +=
-          field->step(gradients, source.empty() ? nullptr : source_values.data(), in_step);
+      past.got += field->step(gradients, source.empty() ? nullptr : source_values.data(), in_step);
   for (std::size_t k = 0; k < in_step.size(); k++) past.came[k] += in_step[k];
   dt_last = fields[0]->field.step_dt();
   power_known = false;

@@ -60,9 +60,9 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions
 
  private:
   using Heats = MPMConduction::Heats;
-  struct Past {        // so far, this rank's share; in restart files that of all ranks
-    Heats came;        // through faces, and of sources
-    double got;        // by points
+  struct Past {    // so far, this rank's share; in restart files that of all ranks
+    Heats came;    // through faces, and of sources
+    double got;    // by points
   };
 
   MPMRows gradients;    // [n][dim] of the temperature at points; not with transfer pic

@@ -26,7 +26,8 @@
    that is heated from one end was 8 % too warm with steps of 1/100 of the explicit limit. What nodes do
    not see of the temperatures of points goes, by conduction, in about the time h^2 rho c/k in which heat crosses a
    cell: with relax a share 1 - e of it, e = exp(-R dt k/(rho c h^2)), goes in a step, so that what this smoothes does
-   not depend on the time step and is of second order.
+   not depend on the time step and is of second order. e is that of the material that conducts least: only if it is the
+   same for all points is heat kept.
 
    Stability. The matrix of conduction is a sum over points of V_p k_p grad N grad N^T, that of capacities of
    C_p diag(N); the greatest eigenvalue of the sum is not above the greatest of the parts,
@@ -35,7 +36,7 @@
 
    as functions are products along the axes, for which the matrix sum_i grad N grad N^T/N is diagonal. The
    sum is at most 6/h^2 for quadratic B-splines and 3.2/h^2 for cubic ones, in any dimension and wherever
-   points are; the explicit limit 2 over this is about 0.33 h^2 k/(density c). Linear functions have no such bound.
+   points are; the explicit limit 2 over this is about 0.33 h^2 density c/k for the former. Linear functions have no such bound.
 
    Longer steps are made of stages: RKL2 (C.D. Meyer, D.S. Balsara, T.D. Aslam, J. Comput. Phys. 257 (2014) 594),
    of second order and stable up to (s^2 + s - 2)/4 explicit limits with s stages. The heat through each face
@@ -54,6 +55,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -74,8 +76,8 @@ struct MPMConduction::Room {
 
 MPMConduction::MPMConduction(LAMMPS *lmp, MPMField &field, const MPMHeatTransfer &transfer,
                              int most_stages, const MPMHeatCondition *conditions) :
-    Pointers(lmp), field(field), faces(lmp, field, conditions), transfer(transfer),
-    most_stages(most_stages)
+    Pointers(lmp),
+    field(field), faces(lmp, field, conditions), transfer(transfer), most_stages(most_stages)
 {
 }
 
@@ -84,14 +86,15 @@ MPMConduction::MPMConduction(LAMMPS *lmp, MPMField &field, const MPMHeatTransfer
 void MPMConduction::init(double sigma)
 {
   thermals.clear();
+  slowest = std::numeric_limits<double>::max();
   for (const auto *fix : field.materials) {
     const auto &material = *fix->material;
     if (!material.conducts()) continue;
     const int T = fix->find_history("temperature"), molten = fix->find_history("molten");
     const bool varies = material.conduction_varies();
     const Conduction all = material.conduction(nullptr);
-    thermals.push_back(
-        {fix, T, molten, varies, all, all.conductivity / (material.density() * all.capacity)});
+    thermals.push_back({fix, T, molten, varies, all});
+    slowest = std::min(slowest, all.conductivity / (material.density() * all.capacity));
   }
   const int dim = field.lattice.dim;
   const Shape shape = field.options.shape;
@@ -160,13 +163,14 @@ double MPMConduction::points_to_nodes(const MPMRows &gradients)
   const int dim = field.lattice.dim;
   const TransferStep still = field.step_data(0.0);
   double most = 0.0;
+  volumes.resize(atom->nmax);
   Room room;
   points_to(records, field, with, [&](const MPMPointMap::Run &run, const int *base, int *box) {
     visit(run, [&](const Thermal &t, int first, int n) {
       for (int p = 0; p < n; p++) {
         const int i = first + p;
         const Conduction c = t.at(i);
-        const double C = atom->rmass[i] * c.capacity, V = volume_of(i);
+        const double C = atom->rmass[i] * c.capacity, V = volumes[i] = volume_of(i);
         room.mass[p] = C;
         room.value[3 * p] = t.fix->history[i][t.temperature];
         room.value[3 * p + 1] = V / C;
@@ -231,7 +235,7 @@ void MPMConduction::find_rates(const double *source, Heats &power)
           flux[0] = K * G[0];
           flux[3] = K * G[dim];
           if (dim == 3) flux[4] = K * G[2 * dim];
-          room.volume[p] = volume_of(first + p);
+          room.volume[p] = volumes[first + p];
           if (!source) continue;
           room.force[3 * p] = room.volume[p] * source[first + p];
           power[SOURCES] += room.force[3 * p];
@@ -307,13 +311,13 @@ double MPMConduction::nodes_to_points(const MPMRows &gradients)
   }
   field.nodes.complete(records.data(), NREAL, NREAL);
   TransferStep still = field.step_data(0.0);
-  const double crossings = field.step_dt() / (field.lattice.h * field.lattice.h);
+  const double crossings = slowest * field.step_dt() / (field.lattice.h * field.lattice.h);
+  still.flip = transfer.kind == MPMHeatTransfer::RELAX ? exp(-transfer.relax * crossings) : 0.0;
   Room room;
   double got = 0.0;
   points_from(records, field, with, [&](const MPMPointMap::Run &run, const int *base) {
     visit(run, [&](const Thermal &t, int first, int n) {
       for (int p = 0; p < n; p++) room.value[3 * p] = t.fix->history[first + p][t.temperature];
-      still.flip = transfer.kind == MPMHeatTransfer::RELAX ? exp(-transfer.relax * crossings * t.diffusivity) : 0.0;
       with.g2p(rows(first, room), still, 0, n, base, field.map->tile_load, nullptr);
       for (int p = 0; p < n; p++) {
         const int i = first + p;
@@ -388,8 +392,8 @@ double MPMConduction::stable_dt(tagint &tag) const
 double MPMConduction::memory_usage() const
 {
   double bytes = faces.memory_usage();
-  for (const auto *list : {&records, &capacity, &volume, &before, &temperature, &rate, &first,
-                           &first_rate, &last})
+  for (const auto *list : {&volumes, &records, &capacity, &volume, &before, &temperature, &rate,
+                           &first, &first_rate, &last})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

@@ -25,7 +25,8 @@ struct MPMHeatTransfer {
   enum Kind { RELAX, PIC, AFFINE };
 
   Kind kind = RELAX;
-  double relax = 1.0;    ///< how fast points take that of the nodes, in units of conduction over a cell
+  double relax =
+      1.0;    ///< how fast points take that of the nodes, in units of conduction over a cell
 };
 
 /** Conduction of heat between the points of one field: temperatures of the nodes, their rates, and time
@@ -61,8 +62,6 @@ class MPMConduction : protected Pointers {
     int temperature, molten;    // columns of history
     bool varies;
     MPM_NS::Conduction all;    // or the mean
-    double diffusivity;        // of it
-
     MPM_NS::Conduction at(int i) const
     {
       return varies ? fix->material->conduction(fix->history[i]) : all;
@@ -74,9 +73,13 @@ class MPMConduction : protected Pointers {
   const int most_stages;
   std::vector<Thermal> thermals;
   MPM_NS::TransferKernels pic, with;    // plain sums; transfer of the temperature
-  double steepest = 0.0;    // of the shape functions: greatest sum of N'^2/N along an axis, in cells
-  double fastest = 0.0;     // rate of exchange through faces in the last step
+  double slowest = 0.0;                 // smallest diffusivity of a material
+  double steepest =
+      0.0;                 // of the shape functions: greatest sum of N'^2/N along an axis, in cells
+  double fastest = 0.0;    // rate of exchange through faces in the last step
   int nstage = 0;
+
+  std::vector<double> volumes;    // [n] of points in this step
 
   // nodes: records of 8 reals for transfers, and one real for each node
 

@@ -38,7 +38,8 @@ struct MPMHeatCondition {
 class MPMHeatFaces : protected Pointers {
  public:
   static constexpr int NFACE = 6;
-  using Heats = std::array<double, NFACE + 1>;    ///< of faces, in the order xlo ... zhi, and of sources
+  using Heats =
+      std::array<double, NFACE + 1>;    ///< of faces, in the order xlo ... zhi, and of sources
 
   MPMHeatFaces(class LAMMPS *lmp, MPMField &field, const MPMHeatCondition *conditions) :
       Pointers(lmp), field(field), conditions(conditions)
@@ -68,11 +69,11 @@ class MPMHeatFaces : protected Pointers {
   static constexpr int MOST = 4;    // nodes of a line
   struct Line {
     int64_t node[MOST];
-    double weight[MOST];     // in this step, of sum one; all zero: no material touches the face here
-    double change[MOST];     // of the temperature of a node by heat: weight over capacity
-    double owned;            // sum of the weights of nodes that this rank owns
-    double response;         // of the temperature at the face to heat: sum of weight * change
-    double area;             // of the material that touches the face
+    double weight[MOST];    // in this step, of sum one; all zero: no material touches the face here
+    double change[MOST];    // of the temperature of a node by heat: weight over capacity
+    double owned;           // sum of the weights of nodes that this rank owns
+    double response;        // of the temperature at the face to heat: sum of weight * change
+    double area;            // of the material that touches the face
   };
   struct Face {
     int face, axis, first, n;    // n nodes from the first one on

@@ -14,18 +14,18 @@
 namespace MPM_NS::law {
 namespace {
 
-  constexpr Parameter SPECIFIC_HEAT = {"", "CP", "energy/(mass temperature)", POSITIVE, REQUIRED,
-                                       "specific heat"};
-  constexpr Parameter FIRST_TEMPERATURE = {"", "T0", "temperature", ANY_NUMBER, REQUIRED,
-                                           "initial temperature"};
-  constexpr Parameter HEAT_SHARE = {"", "CHI", "1", FRACTION, 0.9,
-                                    "share of the plastic work that becomes heat"};
-  constexpr Parameter GRUNEISEN = {"gruneisen", "GAMMA", "1", NOT_NEGATIVE, 0.0,
-                                   "Gruneisen parameter at reference density"};
-  constexpr Parameter MELTING_POINT = {"melt", "TMELT", "temperature", ANY_NUMBER, 0.0,
-                                       "melting temperature"};
-  constexpr Parameter HEAT_OF_FUSION = {"melt", "LATENT", "energy/mass", POSITIVE, 0.0,
-                                        "heat of fusion, 0: none"};
+  constexpr Parameter SPECIFIC_HEAT = {"",       "CP",     "energy/(mass temperature)",
+                                       POSITIVE, REQUIRED, "specific heat"};
+  constexpr Parameter FIRST_TEMPERATURE = {"",         "T0",     "temperature",
+                                           ANY_NUMBER, REQUIRED, "initial temperature"};
+  constexpr Parameter HEAT_SHARE = {"",       "CHI", "1",
+                                    FRACTION, 0.9,   "share of the plastic work that becomes heat"};
+  constexpr Parameter GRUNEISEN = {
+      "gruneisen", "GAMMA", "1", NOT_NEGATIVE, 0.0, "Gruneisen parameter at reference density"};
+  constexpr Parameter MELTING_POINT = {"melt",     "TMELT", "temperature",
+                                       ANY_NUMBER, 0.0,     "melting temperature"};
+  constexpr Parameter HEAT_OF_FUSION = {"melt",   "LATENT", "energy/mass",
+                                        POSITIVE, 0.0,      "heat of fusion, 0: none"};
 
   /** Temperature of a point by the heat that it makes itself:
    *
