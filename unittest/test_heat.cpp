@@ -128,6 +128,29 @@ PARAMETER_TEST(Insulated, CosineDecays, const char *,
   EXPECT_LT(rms[2], transfer == "affine" ? 4.0e-4 : 1.3e-4);
 }
 
+// the same along other axes
+SERIAL_TEST(Insulated, AlongOtherAxes)
+{
+  for (const int axis : {1, 2}) {
+    const double h = 0.1;
+    const std::string extent = axis == 1 ? "0 0.4 0 1" : "0 0.4 0 0.4 0 1";
+    Scene run(
+        (axis == 1 ? plane("lj", "p f", extent, 1, 0.01) : space("lj", "p p f", extent, 1, 0.01)) +
+        body("box", "density 1.0 eos linear 1e-6 thermal conducting 1.0 0.0 1.0", "0.1") +
+        "fix heat all mpm/heat\n");
+    Warm warm(run);
+    warm.set([=](const double *x) {
+      return 1.0 + std::cos(PI * x[axis]);
+    });
+    run_to(run, 0.1, 0.3 * h * h);
+    const double rms = warm.error([=](const double *x) {
+                             return 1.0 + std::cos(PI * x[axis]) * 0.372707839;
+                           })
+                           .rms;
+    EXPECT_LT(measured("rms", rms), 2.0e-3);
+  }
+}
+
 // what transfers smooth does not grow with the number of steps
 SERIAL_TEST(Insulated, ManyShortSteps)
 {
@@ -258,6 +281,34 @@ PARAMETER_TEST(Convection, CoolsASlab, Slab,
   }
 }
 
+// it is the area of what touches a face that counts, wherever its sides are in their cells, and nothing behind a gap
+SERIAL_TEST(Flux, ComesThroughWhatTouches)
+{
+  for (const double shift : {0.0, 0.13, 0.25, 0.41, 0.5})
+    for (const double gap : {0.0, 0.6, 1.5}) {
+      const double low = 2.0 + shift, width = 5.0;
+      Scene run(
+          plane("lj", "f f", "0 12 0 12", 1, 0.1) +
+          strprintf("region body block %g %g %g %g -0.5 0.5\n", gap, gap + 6.0, low, low + width) +
+          "create_points 1 region body spacing 0.5\nfix grid all mpm 1.0\n"
+          "fix m all mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 0.0 1.0\n"
+          "fix heat all mpm/heat xlo flux 2.0 yhi temperature 5.0\ntimestep 0.1\nrun 1\n");
+      // points fill whole cells of their own lattice
+      double least = 100.0, most = 0.0, nearest = 100.0;
+      for (int i = 0; i < run.n(); i++) {
+        least = std::min(least, run.x()[i][1] - 0.25);
+        most = std::max(most, run.x()[i][1] + 0.25);
+        nearest = std::min(nearest, run.x()[i][0] - 0.25);
+      }
+      const double *const power = run.fix_vector("heat", 7);
+      if (nearest < 0.01)
+        EXPECT_NEAR(measured("power", power[0]) / (2.0 * (most - least)), 1.0, 0.03) << shift;
+      else if (nearest > 0.49)
+        EXPECT_EQ(power[0], 0.0) << nearest;
+      EXPECT_EQ(power[3], 0.0);
+    }
+}
+
 // Radiation: NAFEMS T2, 1000 K at one end, emissivity 0.98 to 300 K at the other one, k = 55.6, length 0.1
 SERIAL_TEST(Radiation, SteadyState)
 {
@@ -296,6 +347,22 @@ SERIAL_TEST(Ends, FollowAVariable)
   Warm warm(run);
   run.commands("timestep 0.04\nrun 800\n");
   EXPECT_NEAR(measured("T", warm.at(0.08, 2 * h, 0.9 * h)), 36.603, 0.1);
+}
+
+// NAFEMS T4 on a coarse lattice: heat in two dimensions through three faces; its README has finer ones
+SERIAL_TEST(Plate, IsCooled)
+{
+  const double h = 0.05;
+  Scene run(plane("si", "f f", "0 0.6 0 1", 1, 0.1 * h) +
+            body("box", "density 7850 eos linear 1e-5 thermal conducting 460 0 52", "0.05") +
+            "fix heat all mpm/heat ylo temperature 100 xhi convection 750 0 yhi convection 750 0\n"
+            "timestep 400\nrun 200\n");
+  Warm warm(run);
+  const double face =
+      1.5 * warm.at(0.6 - 0.25 * h, 0.2, 0.26 * h) - 0.5 * warm.at(0.6 - 0.75 * h, 0.2, 0.26 * h);
+  EXPECT_NEAR(measured("T", face), 18.254, 1.0);
+  const double *const power = run.fix_vector("heat", 7);
+  EXPECT_NEAR((power[1] + power[2] + power[3]) / power[2], 0.0, 1e-4);
 }
 
 // sources: a body is heated evenly, or where a variable says so

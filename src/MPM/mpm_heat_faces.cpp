@@ -37,7 +37,7 @@ using namespace MPM_NS;
 
 static constexpr double ENOUGH = 0.5;    // of the volume of a node, for its whole weight
 // from how near on material touches a face, and is all at it
-static constexpr double TOUCHES = 0.5, IS_AT_FACE = 0.75;
+static constexpr double TOUCHES = 0.6, IS_AT_FACE = 0.75;
 // sums over points are not exactly integrals: a line from here on is full, and what is between
 static constexpr double FULL = 0.95, NOT_FULL = 0.8;
 

@@ -85,7 +85,7 @@ namespace {
     static constexpr Parameter parameters[] = {
         SPECIFIC_HEAT,
         FIRST_TEMPERATURE,
-        {"", "K", "power/(length temperature)", POSITIVE, REQUIRED, "thermal conductivity"},
+        {"", "K", "energy/(time length temperature)", POSITIVE, REQUIRED, "thermal conductivity"},
         HEAT_SHARE,
         GRUNEISEN,
         MELTING_POINT,
