@@ -50,6 +50,9 @@ struct Sample {
     {"j2_gruneisen",
      "density 8930 eos linear 1e11 strength j2 43e9 157e6 hardening linear 425e6 "
      "thermal adiabatic 385 300 0.9 gruneisen 2"},
+    {"j2_conducting",
+     "density 8930 eos linear 1e11 strength j2 43e9 157e6 hardening linear 425e6 "
+     "thermal conducting 385 300 400 0.9"},
     {"j2_shock",
      "density 8930 eos shock 3940 1.49 1.96 strength j2 43e9 157e6 hardening linear 425e6"},
     {"j2_power", "density 8940 eos linear 1e11 strength j2 44e9 65e6 hardening power 356e6 0.37"},

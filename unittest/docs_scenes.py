@@ -35,7 +35,7 @@ CORNERS = [(0, 0, 0), (9, 0, 0), (0, 9, 0), (0, 0, 9)]
 TOOL = "solid tool\n%sendsolid\n" % "".join(    # a tetrahedron
     "facet\nouter loop\n%sendloop\nendfacet\n" % "".join("vertex %d %d %d\n" % CORNERS[k] for k in face)
     for face in [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])
-VARIABLES = {"down": "equal 1.0e-3", "depth": "equal -0.1*step*dt", "damage": "atom id"}
+VARIABLES = {"down": "equal 1.0e-3", "T": "equal 300+step", "laser": "atom 1.0e6*x", "depth": "equal -0.1*step*dt", "damage": "atom id"}
 COMPUTES = {"mine": "all property/atom vx vy"}
 FIXES = {"fine": "all mpm 0.01"}
 # a tetrahedron, for lines that read a mesh
@@ -164,6 +164,8 @@ def scene_for(lines):
                        "create_points %d region body%d ppc 2\ngroup %s type %d\n" %
                        (k, 0.03 * k + 0.01, 0.03 * k + 0.03, k + 1, k, named[k], k + 1))
     material = "" if "mpm/material" in text or own_field and grid == "" else MATERIAL
+    if "mpm/heat" in text:
+        material = material.replace("\n", " thermal conducting 460 293 52\n")
     points = POINTS.replace("0.05*", "0.025*") if "gimp" in text else POINTS    # below a cell
     points = "" if makes_points else points + "".join("group %s type 1\n" % g for g in GROUPS)
     if re.search("mpm/immersed|lists grains", text):

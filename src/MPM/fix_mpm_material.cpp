@@ -70,6 +70,11 @@ FixMPMMaterial::~FixMPMMaterial() = default;
 void FixMPMMaterial::init()
 {
   material->initialized();
+  if (material->conducts() && modify->get_fix_by_style("^mpm/heat$").empty() && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix mpm/material {} has thermal conducting, but there is no fix mpm/heat, "
+                   "which conducts: define one, or use thermal adiabatic",
+                   id);
   counts_stress = !modify->get_compute_by_style("^mpm/energy$").empty();
   assign_mass();
 

@@ -32,6 +32,11 @@ class MPMPhysics {
   /** Append the stages for a place in the step to the plan (MPMPlan::each, MPMPlan::together). */
   virtual void add_stages(MPMPlan &, MPMPlan::Place) = 0;
 
+  /** The blocks in reach of the points of a field are known: activate others that are needed, and, when
+   *  all are known, make lists of nodes; slots are valid until the next call. */
+  virtual void extend_topology(MPMField &) {}
+  virtual void topology_changed(MPMField &) {}
+
   /** Largest stable time step of this rank's points of a field; tag: of the point that limits it. */
   virtual double stable_dt(const MPMField &, tagint & /*tag*/) const
   {

@@ -120,9 +120,11 @@ void MPMPlan::find_blocks()
   for (auto *field : fields) {
     if (field->map->valid) continue;
     for (auto *action : actions) action->extend_topology(*field);
+    for (auto *other : physics) other->extend_topology(*field);
     field->map->finish_blocks();
     if (field->nodes.edges) field->nodes.edges->find(false);
     for (auto *action : actions) action->topology_changed(*field);
+    for (auto *other : physics) other->topology_changed(*field);
   }
   for (auto *field : fields)
     if (field->boxes) field->boxes->update();

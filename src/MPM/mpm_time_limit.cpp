@@ -133,8 +133,10 @@ void MPMTimeLimit::check()
                "Time step {:.6g} is above the limit {} = {:.6g} at step {}: {}, wave "
                "speed {:.6g}; use timestep, fix mpm/dt, or fix mpm ... dtcheck no",
                field.step_dt(),
-               field.frame->is_total() ? "s h/c (s: smallest stretch)" : "h/(c+|v|)", limit,
-               update->ntimestep, field.guard->describe(i), c);
+               c == 0.0                      ? "of other physics, such as conduction of heat,"
+                   : field.frame->is_total() ? "s h/c (s: smallest stretch)"
+                                             : "h/(c+|v|)",
+               limit, update->ntimestep, field.guard->describe(i), c);
   }
 }
 

@@ -20,6 +20,7 @@
 #include "fix_mpm_dt.h"
 #include "fix_mpm_elements.h"
 #include "fix_mpm_handshake.h"
+#include "fix_mpm_heat.h"
 #include "fix_mpm_immersed.h"
 #include "fix_mpm_rigid.h"
 #include "fix_mpm_surface.h"
@@ -49,6 +50,7 @@ std::map<std::string, std::string> files()
   add("fix_mpm_dt", MPMDtOptions().declare());
   add("fix_mpm_elements", MPMElementsOptions().declare());
   add("fix_mpm_handshake", MPMHandshakeOptions().declare());
+  add("fix_mpm_heat", MPMHeatOptions().declare(3));
   add("fix_mpm_immersed", MPMImmersedOptions().declare(3));
   add("fix_mpm_rigid", MPMRigidOptions().declare());
   add("fix_mpm_surface", MPMSurfaceOptions().declare());

@@ -268,7 +268,8 @@ struct Scales {
         {"pressure time^N", pressure * std::pow(time(), n)},
         {"pressure*length", pressure * length},
         {"energy/mass", energy / mass()},
-        {"energy/(mass temperature)", energy / mass() / temperature}};
+        {"energy/(mass temperature)", energy / mass() / temperature},
+        {"energy/(time length temperature)", energy / time() / length / temperature}};
     const auto found = known.find(unit);
     if (found == known.end()) {
       ADD_FAILURE() << "unknown unit " << unit;

@@ -409,6 +409,9 @@ inline const Sample samples[] = {
     {"melting",
      "density 8930 eos linear 1e11 strength j2 43e9 157e6 thermal adiabatic 385 300 0.9 "
      "melt 300.5 200 gruneisen 2"},
+    {"conducting",
+     "density 8930 eos linear 1e11 strength j2 43e9 157e6 thermal conducting 385 300 400 0.9 "
+     "melt 300.5 200 gruneisen 2"},
     {"steinberg cold",
      "density 8930 eos linear 137e9 strength steinberg 47.7e9 0.12e9 36 0.45 0.64e9 2.83e-11 0 "
      "prestrain 0.01"},

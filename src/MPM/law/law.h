@@ -128,6 +128,8 @@ struct LawInfo {
    *  of unit reference volume. */
   double (*heat_share)(const LawParameters &);
   double (*warming)(const LawParameters &);
+  /** Of a thermal part with conduction of heat: what that needs. Null: none. */
+  Conduction (*conduction)(const LawParameters &);
   /** History of a new point at x (its values one after the other; in: initial values). Null: keep
    *  the initial values. */
   void (*initialize)(const LawParameters &, const double *x, double *history);
@@ -181,7 +183,7 @@ struct LawDefaults {
   static constexpr std::nullptr_t nhistory = nullptr;
   static constexpr const char *check(const LawParameters &) { return nullptr; }
   static constexpr bool needs_temperature(const LawParameters &) { return false; }
-  static constexpr std::nullptr_t heat_share = nullptr, warming = nullptr;
+  static constexpr std::nullptr_t heat_share = nullptr, warming = nullptr, conduction = nullptr;
   static constexpr std::nullptr_t initialize = nullptr;
   static constexpr std::nullptr_t modulus = nullptr, energy = nullptr;
   static constexpr std::nullptr_t raise_speed = nullptr, prepare = nullptr;
@@ -258,6 +260,7 @@ namespace law {
       info.needs_temperature = Law::needs_temperature;
       info.heat_share = Law::heat_share;
       info.warming = Law::warming;
+      info.conduction = Law::conduction;
       info.initialize = Law::initialize;
       static_assert(count(Law::parameters) <= LawParameters::MAX);
       static_assert(count(Law::term_parameters) <= LawParameters::TERM);

@@ -100,7 +100,7 @@ MPM_FAMILY(damage, DAMAGE, DamageJohnsonCook, DamageCockcroftLatham, DamageRanki
 
 #if !defined(MPM_ONE_FAMILY) || defined(MPM_LAWS_thermal)
 #include "law/thermal.h"
-MPM_FAMILY(thermal, THERMAL, ThermalAdiabatic, ThermalConstant)
+MPM_FAMILY(thermal, THERMAL, ThermalAdiabatic, ThermalConducting, ThermalConstant)
 #endif
 
 // in the order in which laws are listed in messages

@@ -14,7 +14,20 @@
 namespace MPM_NS::law {
 namespace {
 
-  /** Temperature of a point that exchanges no heat with others:
+  constexpr Parameter SPECIFIC_HEAT = {"",       "CP",     "energy/(mass temperature)",
+                                       POSITIVE, REQUIRED, "specific heat"};
+  constexpr Parameter FIRST_TEMPERATURE = {"",         "T0",     "temperature",
+                                           ANY_NUMBER, REQUIRED, "initial temperature"};
+  constexpr Parameter HEAT_SHARE = {"",       "CHI", "1",
+                                    FRACTION, 0.9,   "share of the plastic work that becomes heat"};
+  constexpr Parameter GRUNEISEN = {
+      "gruneisen", "GAMMA", "1", NOT_NEGATIVE, 0.0, "Gruneisen parameter at reference density"};
+  constexpr Parameter MELTING_POINT = {"melt",     "TMELT", "temperature",
+                                       ANY_NUMBER, 0.0,     "melting temperature"};
+  constexpr Parameter HEAT_OF_FUSION = {"melt",   "LATENT", "energy/mass",
+                                        POSITIVE, 0.0,      "heat of fusion, 0: none"};
+
+  /** Temperature of a point by the heat that it makes itself:
    *
    *    density_0 CP dT = dq - density_0 CP GAMMA T dJ
    *
@@ -23,19 +36,10 @@ namespace {
    *  second term is the change along an isentrope when density * Gruneisen parameter is constant,
    *  T ~ exp(GAMMA (1 - J)). Strengths use the temperature of the end of the step. With melting the
    *  temperature stays at TMELT until the molten fraction f, LATENT df = CP dT, has gone from 0 to 1,
-   *  and on cooling back to 0. */
-  struct ThermalAdiabatic : LawDefaults {
+   *  and on cooling back to 0. MORE: parameters between T0 and CHI. */
+  template <int MORE> struct ThermalByWork : LawDefaults {
     static constexpr bool uses_F = false;
-    static constexpr const char *name = "adiabatic";
-    static constexpr const char *meaning = "temperature by dissipation, without conduction";
-    enum { CP, T0, CHI, GAMMA, TMELT, LATENT };
-    static constexpr Parameter parameters[] = {
-        {"", "CP", "energy/(mass temperature)", POSITIVE, REQUIRED, "specific heat"},
-        {"", "T0", "temperature", ANY_NUMBER, REQUIRED, "initial temperature"},
-        {"", "CHI", "1", FRACTION, 0.9, "share of the plastic work that becomes heat"},
-        {"gruneisen", "GAMMA", "1", NOT_NEGATIVE, 0.0, "Gruneisen parameter at reference density"},
-        {"melt", "TMELT", "temperature", ANY_NUMBER, 0.0, "melting temperature"},
-        {"melt", "LATENT", "energy/mass", POSITIVE, 0.0, "heat of fusion, 0: none"}};
+    enum { CP, T0, CHI = 2 + MORE, GAMMA, TMELT, LATENT };
     static constexpr HistoryDeclaration history[] = {
         {"temperature", T0, "temperature", "temperature"},
         {"molten", ZERO, "1", "molten fraction"}};
@@ -59,16 +63,36 @@ namespace {
       MPM_SIMD
       for (int i = 0; i < b.n; i++) T[i] += warm * b.heat[i];
       if (nhistory(p) == 1) return;
-      // range: the latent heat as a difference of temperatures
-      const double melting = p.value[TMELT], range = p.value[LATENT] / p.value[CP];
+      const Melting melting = {p.value[TMELT], p.value[LATENT] / p.value[CP]};
       double *const molten = history[1];
       MPM_SIMD
-      for (int i = 0; i < b.n; i++) {
-        const double all = T[i] + range * molten[i];    // had it not melted
-        const double latent = min(max(all - melting, 0.0), range);
-        molten[i] = latent / range;
-        T[i] = all - latent;
-      }
+      for (int i = 0; i < b.n; i++) melting.settle(T[i], molten[i]);
+    }
+  };
+
+  struct ThermalAdiabatic : ThermalByWork<0> {
+    static constexpr const char *name = "adiabatic";
+    static constexpr const char *meaning = "temperature by dissipation, without conduction";
+    static constexpr Parameter parameters[] = {SPECIFIC_HEAT, FIRST_TEMPERATURE, HEAT_SHARE,
+                                               GRUNEISEN,     MELTING_POINT,     HEAT_OF_FUSION};
+  };
+
+  /** The same for points between which fix mpm/heat conducts heat. */
+  struct ThermalConducting : ThermalByWork<1> {
+    enum { K = 2 };
+    static constexpr const char *name = "conducting";
+    static constexpr const char *meaning = "temperature by dissipation and conduction";
+    static constexpr Parameter parameters[] = {
+        SPECIFIC_HEAT,
+        FIRST_TEMPERATURE,
+        {"", "K", "energy/(time length temperature)", POSITIVE, REQUIRED, "thermal conductivity"},
+        HEAT_SHARE,
+        GRUNEISEN,
+        MELTING_POINT,
+        HEAT_OF_FUSION};
+    static Conduction conduction(const LawParameters &p)
+    {
+      return {p.value[CP], p.value[K], {p.value[TMELT], p.value[LATENT] / p.value[CP]}};
     }
   };
 

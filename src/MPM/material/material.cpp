@@ -98,6 +98,16 @@ class ComposedMaterial : public Material {
       }
   }
 
+  bool conducts() const override { return thermal && thermal->info->conduction; }
+  bool conduction_varies() const override { return conducts() && !thermal->random.empty(); }
+  Conduction conduction(const double *history) const override
+  {
+    const auto &of = thermal->info->conduction;
+    if (!history || !conduction_varies()) return of(thermal->parameters);
+    LocalParameters local(*this, *thermal);
+    return of(local.at(history, 1));
+  }
+
   void initialized() const override
   {
     if (random_density) random_density->field->release();

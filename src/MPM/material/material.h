@@ -78,6 +78,28 @@ struct ValidRange {
   double low, high;
 };
 
+/** Temperature and molten fraction when heat comes or goes: it melts at one temperature. */
+struct Melting {
+  double temperature;
+  double range;    ///< heat of fusion over specific heat; 0: does not melt
+
+  /** T: had no more or less of it melted than before. */
+  inline __attribute__((always_inline)) void settle(double &T, double &molten) const
+  {
+    const double all = T + range * molten, above = all - temperature;    // had it not melted
+    const double latent = above < 0.0 ? 0.0 : (above > range ? range : above);
+    molten = latent / range;
+    T = all - latent;
+  }
+};
+
+/** What the conduction of heat needs to know of a point. */
+struct Conduction {
+  double capacity;        ///< specific heat [energy/(mass temperature)]
+  double conductivity;    ///< [power/(length temperature)]
+  Melting melting;
+};
+
 /** What is wrong with the definition of a material, and which of its words is to blame. */
 struct MaterialError : std::runtime_error {
   int word;    ///< index of the word, or the number of words when something is missing at the end
@@ -115,6 +137,12 @@ class Material {
   virtual bool is_viscous() const = 0;
   /** Does it resist a shear at rest? Not an equation of state with or without a viscosity. */
   virtual bool is_solid() const = 0;
+
+  /** Does it conduct heat? Then its history has the temperature and, if it melts, the molten fraction. */
+  virtual bool conducts() const = 0;
+  /** Of a point with this history (null: the mean of all points); varies: does that matter? */
+  virtual Conduction conduction(const double *history) const = 0;
+  virtual bool conduction_varies() const = 0;
 
   /** All history variables of a new point at x; throws std::runtime_error when it cannot be. */
   virtual void initialize(const double *x, double *history) const = 0;

@@ -1,0 +1,252 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+/* ----------------------------------------------------------------------
+   A face with a prescribed temperature is a constraint of the equations of the nodes, C dT/dt = R, and the
+   heat through it the multiplier: dT_k = lambda w_k/C_k changes sum_k w_k T_k with the least sum of C dT^2.
+   Rates of temperatures are treated in the same way, so that the temperature at the face stays. This is a
+   projection, symmetric in the norm of capacities: it leaves explicit steps as stable as they were. Where
+   lines along several axes meet, they take turns, forward and backward, which is symmetric, too.
+
+   Nodes outside of the box may have next to no points, while the weight of the function at the face does not
+   know of that: finite heat in a node without capacity. Hence the weight of a node counts in full only if
+   half of the volume is there that it has where material fills the box, and in proportion to it below.
+
+   How near is material? Along a line, sum_k w_k V_k over what it is where material fills the box up to the
+   face, is 1 without a gap, 0.7 with one of a quarter of a cell, and 0.46 with half a cell (quadratic). At the
+   sides of a body, lines have points on one side only; the fullest of the nodes of a line tells how many.
+------------------------------------------------------------------------- */
+
+#include "mpm_heat_faces.h"
+
+#include "domain.h"
+#include "math_special.h"
+#include "mpm_field.h"
+#include "mpm_stencil.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+static constexpr double ENOUGH = 0.5;    // of the volume of a node, for its whole weight
+// from how near on material touches a face, and is all at it
+static constexpr double TOUCHES = 0.6, IS_AT_FACE = 0.75;
+// sums over points are not exactly integrals: a line from here on is full, and what is between
+static constexpr double FULL = 0.95, NOT_FULL = 0.8;
+
+/* ---------------------------------------------------------------------- */
+
+void MPMHeatFaces::init(double sigma_of_units)
+{
+  sigma = sigma_of_units;
+  faces.clear();
+  const MPMStencil stencil(field);
+  const auto &lattice = field.lattice;
+  int held = 0;
+  for (int face = 0; face < NFACE; face++) {
+    if (conditions[face].kind == MPMHeatCondition::INSULATED) continue;
+    Face f = {};
+    f.face = face;
+    f.axis = face / 2;
+    const double x = face % 2 ? domain->boxhi[f.axis] : domain->boxlo[f.axis];
+    const double at = (x - lattice.origin[f.axis]) / lattice.h;
+    f.n = stencil.weights(at, f.first, f.weight);
+
+    // integrals of functions over the inside, by the midpoint rule
+
+    constexpr int SAMPLES = 1024, REACH = 4;
+    for (int k = 0; k < REACH * SAMPLES; k++) {
+      const double depth = (k + 0.5) / SAMPLES;
+      int first;
+      double w[MOST];
+      const int n = stencil.weights(face % 2 ? at - depth : at + depth, first, w);
+      for (int j = 0; j < n; j++)
+        if (first + j >= f.first && first + j < f.first + f.n)
+          f.full[first + j - f.first] += w[j] / SAMPLES;
+    }
+    if (conditions[face].kind == MPMHeatCondition::TEMPERATURE) held |= 1 << f.axis;
+    faces.push_back(f);
+  }
+  crossing = (held & (held - 1)) != 0;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMHeatFaces::extend_topology()
+{
+  Grid &grid = field.grid;
+  // blocks that are added are looked at, too: lines along another axis
+  for (std::size_t ib = 0; ib < grid.blocks.size(); ib++)
+    for (const auto &face : faces) {
+      int b[3] = {grid.blocks[ib].b[0], grid.blocks[ib].b[1], grid.blocks[ib].b[2]};
+      const int low = b[face.axis] * grid.side, last = face.first + face.n - 1;
+      if (low > last || low + grid.side <= face.first) continue;
+      for (const int k : {face.first, last}) {
+        b[face.axis] = k >> grid.shift_bits;
+        grid.activate(b);
+      }
+    }
+}
+
+void MPMHeatFaces::topology_changed()
+{
+  const Grid &grid = field.grid;
+  for (auto &face : faces) {
+    face.lines.clear();
+    for (const auto &block : grid.blocks) {
+      const int low = block.b[face.axis] * grid.side;
+      if (face.first < low || face.first >= low + grid.side) continue;
+      for (int n = 0; n < NODES_PER_BLOCK; n++) {
+        if (block.alias >> n & 1) continue;
+        int index[3];
+        grid.node_index(block, n, index);
+        if (index[face.axis] != face.first) continue;
+        Line line = {};
+        bool all = true;
+        for (int k = 0; k < face.n; k++) {
+          line.node[k] = grid.locate(index);
+          all = all && line.node[k] >= 0;
+          index[face.axis]++;
+        }
+        if (all) face.lines.push_back(line);
+      }
+    }
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMHeatFaces::prepare(const Face &face, Line &line, const std::vector<double> &capacity,
+                           const std::vector<double> &volume) const
+{
+  const Grid &grid = field.grid;
+  const double cell = grid.lattice.cell_volume();
+  std::fill_n(line.weight, MOST, 0.0);
+  double part[MOST] = {}, most = 0.0, there = 0.0, full = 0.0;
+  for (int k = 0; k < face.n; k++) {
+    const double V = volume[line.node[k]] / cell;
+    there += face.weight[k] * V;
+    full += face.weight[k] * face.full[k];
+    if (!(face.full[k] > 0.0) || !(capacity[line.node[k]] > 0.0)) continue;
+    part[k] = V / face.full[k];
+    if (face.weight[k] > 0.0) most = std::max(most, part[k]);
+  }
+  if (!(most > 0.0)) return;
+  const double near = there / (full * most);
+  if (!(near > TOUCHES)) return;
+
+  const double aside =
+      most < NOT_FULL ? most : NOT_FULL + (most - NOT_FULL) * (1.0 - NOT_FULL) / (FULL - NOT_FULL);
+  line.area = std::min(1.0, aside) * cell / grid.lattice.h *
+      std::min(1.0, (near - TOUCHES) / (IS_AT_FACE - TOUCHES));
+  double sum = 0.0;
+  for (int k = 0; k < face.n; k++) {
+    line.weight[k] = face.weight[k] * std::min(1.0, part[k] / (ENOUGH * most));
+    sum += line.weight[k];
+  }
+  line.owned = line.response = 0.0;
+  for (int k = 0; k < face.n; k++) {
+    line.weight[k] /= sum;
+    line.change[k] = line.weight[k] > 0.0 ? line.weight[k] / capacity[line.node[k]] : 0.0;
+    line.response += line.weight[k] * line.change[k];
+    if (grid.owns(line.node[k])) line.owned += line.weight[k];
+  }
+}
+
+double MPMHeatFaces::begin_step(const std::vector<double> &capacity,
+                                const std::vector<double> &volume,
+                                const std::vector<double> &temperature)
+{
+  double fastest = 0.0;
+  for (auto &face : faces) {
+    const auto &condition = conditions[face.face];
+    for (auto &line : face.lines) {
+      line.response = line.area = 0.0;
+      prepare(face, line, capacity, volume);
+      if (condition.kind <= MPMHeatCondition::FLUX) continue;
+      double T = 0.0;
+      for (int k = 0; k < face.n; k++) T += line.weight[k] * temperature[line.node[k]];
+      fastest = std::max(fastest, line.area * line.response * slope(condition, T));
+    }
+  }
+  return fastest;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double MPMHeatFaces::flux(const MPMHeatCondition &c, double T) const
+{
+  using MathSpecial::square;
+  if (c.kind == MPMHeatCondition::FLUX) return c.now[0];
+  if (c.kind == MPMHeatCondition::CONVECTION) return c.now[0] * (c.now[1] - T);
+  return c.now[0] * sigma * (square(square(c.now[1])) - square(square(T)));
+}
+
+/** Of the flux with the temperature, the largest between that of the face and the outside. */
+double MPMHeatFaces::slope(const MPMHeatCondition &c, double T) const
+{
+  if (c.kind == MPMHeatCondition::CONVECTION) return c.now[0];
+  return 4.0 * c.now[0] * sigma * MathSpecial::cube(std::max(T, c.now[1]));
+}
+
+/** Calls f(face, line) for lines whose temperature is prescribed. */
+template <class F> void MPMHeatFaces::visit_held(const F &f) const
+{
+  const auto visit = [&](const Face &face) {
+    if (conditions[face.face].kind != MPMHeatCondition::TEMPERATURE) return;
+    for (const auto &line : face.lines)
+      if (line.response > 0.0) f(face, line);
+  };
+  for (const auto &face : faces) visit(face);
+  if (!crossing) return;
+  for (auto face = faces.rbegin() + 1; face < faces.rend(); ++face) visit(*face);
+}
+
+void MPMHeatFaces::hold(std::vector<double> &temperature, Heats &heat) const
+{
+  visit_held([&](const Face &face, const Line &line) {
+    double T = 0.0;
+    for (int k = 0; k < face.n; k++) T += line.weight[k] * temperature[line.node[k]];
+    const double needed = (conditions[face.face].now[0] - T) / line.response;
+    for (int k = 0; k < face.n; k++) temperature[line.node[k]] += needed * line.change[k];
+    heat[face.face] += needed * line.owned;
+  });
+}
+
+void MPMHeatFaces::add_rates(const std::vector<double> &temperature, std::vector<double> &rate,
+                             Heats &power) const
+{
+  for (const auto &face : faces) {
+    const auto &condition = conditions[face.face];
+    if (condition.kind == MPMHeatCondition::TEMPERATURE) continue;
+    for (const auto &line : face.lines) {
+      if (!(line.area > 0.0)) continue;
+      double T = 0.0;
+      for (int k = 0; k < face.n; k++) T += line.weight[k] * temperature[line.node[k]];
+      const double more = line.area * flux(condition, T);
+      for (int k = 0; k < face.n; k++) rate[line.node[k]] += more * line.change[k];
+      power[face.face] += more * line.owned;
+    }
+  }
+  visit_held([&](const Face &face, const Line &line) {
+    double drift = 0.0;
+    for (int k = 0; k < face.n; k++) drift += line.weight[k] * rate[line.node[k]];
+    const double needed = -drift / line.response;
+    for (int k = 0; k < face.n; k++) rate[line.node[k]] += needed * line.change[k];
+    power[face.face] += needed * line.owned;
+  });
+}
+
+double MPMHeatFaces::memory_usage() const
+{
+  double bytes = 0.0;
+  for (const auto &face : faces) bytes += face.lines.capacity() * sizeof(Line);
+  return bytes;
+}

@@ -1,0 +1,98 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_HEAT_FACES_H
+#define LMP_MPM_HEAT_FACES_H
+
+#include "declare/option.h"
+#include "pointers.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace LAMMPS_NS {
+class MPMField;
+
+/** What a face of the box does to the heat of what touches it. */
+struct MPMHeatCondition {
+  enum Kind { INSULATED, TEMPERATURE, FLUX, CONVECTION, RADIATION };
+
+  Kind kind = INSULATED;
+  /** Temperature; flux; heat transfer coefficient or emissivity, and temperature outside. */
+  MPM_NS::NumberOrVariable value[2];
+  double now[2] = {0.0, 0.0};    ///< in this step
+
+  int nvalue() const { return kind == INSULATED ? 0 : (kind <= FLUX ? 1 : 2); }
+};
+
+/** Heat through the faces of the box, anywhere between nodes, at the nodes of one field.
+ *
+ *  The temperature at the face is that of the shape functions, sum_k w_k T_k along each line of nodes
+ *  normal to it, and heat q through the face goes to these nodes with the same weights. */
+class MPMHeatFaces : protected Pointers {
+ public:
+  static constexpr int NFACE = 6;
+  using Heats =
+      std::array<double, NFACE + 1>;    ///< of faces, in the order xlo ... zhi, and of sources
+
+  MPMHeatFaces(class LAMMPS *lmp, MPMField &field, const MPMHeatCondition *conditions) :
+      Pointers(lmp), field(field), conditions(conditions)
+  {
+  }
+
+  /** Start of a run: where the faces are. sigma: the constant of Stefan and Boltzmann. */
+  void init(double sigma);
+  /** A rank that has a node of a line needs all of them. */
+  void extend_topology();
+  void topology_changed();
+
+  /** Lines that touch material in this step, from the capacities and volumes of nodes. Returns the largest
+   *  rate at which temperatures at faces follow those outside, for stability. */
+  double begin_step(const std::vector<double> &capacity, const std::vector<double> &volume,
+                    const std::vector<double> &temperature);
+  /** Give the faces with a temperature theirs, by the smallest change in the norm of capacities; adds the heat
+   *  of nodes that this rank owns. */
+  void hold(std::vector<double> &temperature, Heats &) const;
+  /** Add what comes through faces to the rates of temperatures, after which those that are prescribed stay; adds
+   *  the power. */
+  void add_rates(const std::vector<double> &temperature, std::vector<double> &rate, Heats &) const;
+
+  double memory_usage() const;
+
+ private:
+  static constexpr int MOST = 4;    // nodes of a line
+  struct Line {
+    int64_t node[MOST];
+    double weight[MOST];    // in this step, of sum one; all zero: no material touches the face here
+    double change[MOST];    // of the temperature of a node by heat: weight over capacity
+    double owned;           // sum of the weights of nodes that this rank owns
+    double response;        // of the temperature at the face to heat: sum of weight * change
+    double area;            // of the material that touches the face
+  };
+  struct Face {
+    int face, axis, first, n;    // n nodes from the first one on
+    double weight[MOST];
+    double full[MOST];    // volume of the nodes where material fills the box, in cells
+    std::vector<Line> lines;
+  };
+  MPMField &field;
+  const MPMHeatCondition *conditions;
+  double sigma = 0.0;
+  std::vector<Face> faces;
+  bool crossing = false;    // prescribed temperatures at faces normal to several axes
+
+  void prepare(const Face &, Line &, const std::vector<double> &capacity,
+               const std::vector<double> &volume) const;
+  double flux(const MPMHeatCondition &, double temperature) const;
+  double slope(const MPMHeatCondition &, double temperature) const;
+  template <class F> void visit_held(const F &) const;
+};
+
+}    // namespace LAMMPS_NS
+#endif

@@ -1,0 +1,578 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: physics mpi restart input
+// mpi: 1 4
+// timeout: 300
+
+// Fix mpm/heat: conduction of heat in points, and heat through faces of the box.
+
+#include "mpm_lammps.h"
+
+using namespace MPM_TEST;
+
+namespace {
+
+/** Temperatures, capacities, and places of the points of a material with the ID m, which has no melting. */
+struct Warm {
+  Scene &run;
+  FixMPMMaterial *material;
+  int column;
+
+  explicit Warm(Scene &run, const std::string &id = "m") :
+      run(run), material(run.material(id)), column(material->find_history("temperature"))
+  {
+  }
+  double &T(int i) { return material->history[i][column]; }
+  bool has(int i) { return run.lmp->atom->mask[i] & material->groupbit; }
+  double capacity(int i)
+  {
+    return run.mass()[i] * material->material->conduction(material->history[i]).capacity;
+  }
+  /** T = f(x) of all points. */
+  template <class F> void set(const F &f)
+  {
+    for (int i = 0; i < run.n(); i++)
+      if (has(i)) T(i) = f(run.x()[i]);
+  }
+  double heat()
+  {
+    double sum = 0.0;
+    for (int i = 0; i < run.n(); i++)
+      if (has(i)) sum += capacity(i) * T(i);
+    return over_ranks(sum);
+  }
+  struct Error {
+    double rms, most;
+  };
+  /** Differences from f(x). */
+  template <class F> Error error(const F &f)
+  {
+    double sum = 0.0, n = 0.0, most = 0.0;
+    for (int i = 0; i < run.n(); i++) {
+      const double d = T(i) - f(run.x()[i]);
+      sum += d * d;
+      n++;
+      most = std::max(most, std::fabs(d));
+    }
+    const auto all = over_ranks({sum, n});
+    return {std::sqrt(all[0] / all[1]), over_ranks(most, MPI_MAX)};
+  }
+  /** Mean over the points with their place in a range, at the place that these have in the mean. */
+  double at(double x, double y, double near)
+  {
+    double sum = 0.0, n = 0.0;
+    for (int i = 0; i < run.n(); i++)
+      if (std::fabs(run.x()[i][0] - x) < near && std::fabs(run.x()[i][1] - y) < near) {
+        sum += T(i);
+        n++;
+      }
+    const auto all = over_ranks({sum, n});
+    return all[0] / all[1];
+  }
+};
+
+/** A bar of the length 1 along x with capacity and conductivity 1, whose ends are the faces of the box, with n
+ *  cells; offset: of the faces from nodes, in cells. Four cells wide, periodic. */
+std::string bar(int n, const std::string &heat, double offset = 0.0, const std::string &grid = "",
+                double T0 = 0.0)
+{
+  const double h = 1.0 / n;
+  return plane("lj", "f p", strprintf("0 1 0 %.17g", 4 * h), 1, 0.1 * h) +
+      strprintf("create_points 1 box spacing %.17g\n", 0.5 * h) +
+      strprintf("fix grid all mpm %.17g origin %.17g 0 %s\n", h, -offset * h, grid.c_str()) +
+      strprintf(
+             "fix m all mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 %g 1.0\n",
+             T0) +
+      "fix heat all mpm/heat " + heat + "\n";
+}
+void run_to(Scene &run, double end, double dt)
+{
+  const int steps = (int) std::ceil(end / dt - 1.0e-9);
+  run.commands(strprintf("timestep %.17g\nrun %d\n", end / steps, steps));
+}
+
+double wall_heats(double x, double t)
+{
+  double T = 1.0 - x;
+  for (int k = 1; k < 400; k++)
+    T -= 2.0 / (k * PI) * std::sin(k * PI * x) * std::exp(-k * k * PI * PI * t);
+  return T;
+}
+
+}    // namespace
+
+// A bar that nothing heats: T = 1 + cos(pi x) exp(-pi^2 t)
+PARAMETER_TEST(Insulated, CosineDecays, const char *,
+               Values("relax 1.0", "affine", "relax 1.0 stages 1"))
+{
+  const std::string transfer = GetParam();
+  double rms[3];
+  for (int k = 0; k < 3; k++) {
+    const int n = 10 << k;
+    Scene run(bar(n, "transfer " + transfer));
+    Warm warm(run);
+    warm.set([](const double *x) {
+      return 1.0 + std::cos(PI * x[0]);
+    });
+    const double before = warm.heat();
+    run_to(run, 0.1, 0.3 / (n * n));
+    rms[k] = measured(transfer + strprintf(", %d cells, rms", n),
+                      warm.error([](const double *x) {
+                            return 1.0 + std::cos(PI * x[0]) * 0.372707839;
+                          })
+                          .rms);
+    EXPECT_NEAR(warm.heat() / before, 1.0, 1e-13);
+  }
+  EXPECT_GT(measured("order", std::log2(rms[1] / rms[2])), 1.9);
+  EXPECT_LT(rms[2], transfer == "affine" ? 4.0e-4 : 1.3e-4);
+}
+
+// the same along other axes
+SERIAL_TEST(Insulated, AlongOtherAxes)
+{
+  for (const int axis : {1, 2}) {
+    const double h = 0.1;
+    const std::string extent = axis == 1 ? "0 0.4 0 1" : "0 0.4 0 0.4 0 1";
+    Scene run(
+        (axis == 1 ? plane("lj", "p f", extent, 1, 0.01) : space("lj", "p p f", extent, 1, 0.01)) +
+        body("box", "density 1.0 eos linear 1e-6 thermal conducting 1.0 0.0 1.0", "0.1") +
+        "fix heat all mpm/heat\n");
+    Warm warm(run);
+    warm.set([=](const double *x) {
+      return 1.0 + std::cos(PI * x[axis]);
+    });
+    run_to(run, 0.1, 0.3 * h * h);
+    const double rms = warm.error([=](const double *x) {
+                             return 1.0 + std::cos(PI * x[axis]) * 0.372707839;
+                           })
+                           .rms;
+    EXPECT_LT(measured("rms", rms), 2.0e-3);
+  }
+}
+
+// what transfers smooth does not grow with the number of steps
+SERIAL_TEST(Insulated, ManyShortSteps)
+{
+  for (const char *transfer : {"relax 1.0", "affine"}) {
+    const int n = 20;
+    Scene run(bar(n, std::string("transfer ") + transfer));
+    Warm warm(run);
+    warm.set([](const double *x) {
+      return 1.0 + std::cos(PI * x[0]);
+    });
+    run_to(run, 0.1, 0.003 / (n * n));
+    const double rms = measured(transfer,
+                                warm.error([](const double *x) {
+                                      return 1.0 + std::cos(PI * x[0]) * 0.372707839;
+                                    })
+                                    .rms);
+    if (transfer[0] == 'r')
+      EXPECT_LT(rms, 2.0e-3);
+    else
+      EXPECT_GT(rms, 1.0e-2);
+  }
+}
+
+// the transfer that points forget their temperature by adds a conductivity that no spacing makes less
+SERIAL_TEST(Insulated, PicDoesNotConverge)
+{
+  double rms[2];
+  for (int k = 0; k < 2; k++) {
+    const int n = 10 << k;
+    Scene run(bar(n, "transfer pic"));
+    Warm warm(run);
+    warm.set([](const double *x) {
+      return 1.0 + std::cos(PI * x[0]);
+    });
+    run_to(run, 0.1, 0.3 / (n * n));
+    rms[k] = measured("rms",
+                      warm.error([](const double *x) {
+                            return 1.0 + std::cos(PI * x[0]) * 0.372707839;
+                          })
+                          .rms);
+  }
+  EXPECT_GT(rms[1], 0.8 * rms[0]);
+  EXPECT_GT(rms[1], 0.03);
+}
+
+// One end is heated, the other one held, the faces anywhere in a cell
+PARAMETER_TEST(Ends, HaveTheirTemperature, double, Values(0.0, 0.25, 0.5))
+{
+  const double offset = GetParam();
+  double rms[3];
+  for (int k = 0; k < 3; k++) {
+    const int n = 20 << k;
+    Scene run(bar(n, "xlo temperature 1.0 xhi temperature 0.0", offset));
+    Warm warm(run);
+    const double before = warm.heat();
+    run_to(run, 0.1, 0.3 / (n * n));
+    const auto error = warm.error([](const double *x) {
+      return wall_heats(x[0], 0.1);
+    });
+    rms[k] = measured(strprintf("offset %g, %d cells, rms", offset, n), error.rms);
+    measured("most", error.most);
+    const double in = run.fix("heat")->compute_scalar();
+    EXPECT_NEAR((warm.heat() - before) / in, 1.0, 1e-11);
+  }
+  EXPECT_GT(measured("order", std::log2(rms[1] / rms[2])), 0.9);
+  EXPECT_LT(rms[2], offset == 0.25 ? 1.3e-3 : 6.0e-5);
+}
+
+// Steps of many explicit limits are made of stages, of second order in time
+SERIAL_TEST(Stages, AreOfSecondOrder)
+{
+  const int n = 40;
+  const auto decayed = [](const double *x) {
+    return 1.0 + std::sin(0.5 * PI * x[0]) * std::exp(-0.25 * PI * PI * 0.2);
+  };
+  for (const int steps : {2, 5, 10}) {
+    Scene run(bar(n, "xlo temperature 1.0 stages 64"));
+    Warm warm(run);
+    warm.set([](const double *x) {
+      return 1.0 + std::sin(0.5 * PI * x[0]);
+    });
+    const double before = warm.heat();
+    run_to(run, 0.2, 0.2 / steps);
+    EXPECT_LT(measured(strprintf("%d steps, rms", steps), warm.error(decayed).rms), 3.0e-3);
+    EXPECT_NEAR((warm.heat() - before) / run.fix("heat")->compute_scalar(), 1.0, 1e-11);
+  }
+}
+
+TEST(Stages, AreEnough)
+{
+  Scene run(bar(20, "stages 5"));
+  run.commands("fix mpm all mpm/dt 0.9\nrun 1\n");
+  const double limit = 0.98 * 2.0 / (6.0 * 400.0);    // explicit
+  EXPECT_NEAR(run.lmp->update->dt / (0.9 * limit * 7.0), 1.0, 1e-3);
+  run.commands(strprintf("unfix mpm\ntimestep %g\n", 7.2 * limit));
+  expect_error(run, "run 1\n", "conduction of heat");
+}
+
+// A slab that is cooled by convection: T(0), T(1) for Bi = 1 at t = 0.1, 0.5, 1, and Bi = 0.1, 10
+struct Slab {
+  double Bi, t, centre, face;
+};
+PARAMETER_TEST(Convection, CoolsASlab, Slab,
+               Values(Slab{1.0, 0.1, 0.993108, 0.723577}, Slab{1.0, 0.5, 0.772526, 0.504522},
+                      Slab{0.1, 1.0, 0.922389, 0.878126}, Slab{10.0, 0.1, 0.968424, 0.170574}))
+{
+  const Slab slab = GetParam();
+  for (const double offset : {0.0, 0.25, 0.5}) {
+    Scene run(bar(40, strprintf("xhi convection %g 0.0", slab.Bi), offset, "", 1.0));
+    Warm warm(run);
+    const double before = warm.heat();
+    run_to(run, slab.t, 0.3 / 1600);
+    const double h = 1.0 / 40;
+    // values at the ends by the slope of the two points next to them
+    const double T1 = warm.at(0.25 * h, 2 * h, 3 * h), p[2] = {1.0 - 0.25 * h, 1.0 - 0.75 * h};
+    double sum[2] = {0.0, 0.0}, count[2] = {0.0, 0.0};
+    for (int i = 0; i < run.n(); i++)
+      for (int k = 0; k < 2; k++)
+        if (std::fabs(run.x()[i][0] - p[k]) < 0.1 * h) {
+          sum[k] += warm.T(i);
+          count[k]++;
+        }
+    const auto all = over_ranks({sum[0], count[0], sum[1], count[1]});
+    const double face = 1.5 * all[0] / all[1] - 0.5 * all[2] / all[3];
+    EXPECT_NEAR(measured("face", face) / slab.face, 1.0, 0.01);
+    EXPECT_NEAR(measured("centre", T1) / slab.centre, 1.0, 0.01);
+    EXPECT_NEAR((warm.heat() - before) / run.fix("heat")->compute_scalar(), 1.0, 1e-11);
+  }
+}
+
+// it is the area of what touches a face that counts, wherever its sides are in their cells, and nothing behind a gap
+SERIAL_TEST(Flux, ComesThroughWhatTouches)
+{
+  for (const double shift : {0.0, 0.13, 0.25, 0.41, 0.5})
+    for (const double gap : {0.0, 0.6, 1.5}) {
+      const double low = 2.0 + shift, width = 5.0;
+      Scene run(
+          plane("lj", "f f", "0 12 0 12", 1, 0.1) +
+          strprintf("region body block %g %g %g %g -0.5 0.5\n", gap, gap + 6.0, low, low + width) +
+          "create_points 1 region body spacing 0.5\nfix grid all mpm 1.0\n"
+          "fix m all mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 0.0 1.0\n"
+          "fix heat all mpm/heat xlo flux 2.0 yhi temperature 5.0\ntimestep 0.1\nrun 1\n");
+      // points fill whole cells of their own lattice
+      double least = 100.0, most = 0.0, nearest = 100.0;
+      for (int i = 0; i < run.n(); i++) {
+        least = std::min(least, run.x()[i][1] - 0.25);
+        most = std::max(most, run.x()[i][1] + 0.25);
+        nearest = std::min(nearest, run.x()[i][0] - 0.25);
+      }
+      const double *const power = run.fix_vector("heat", 7);
+      if (nearest < 0.01)
+        EXPECT_NEAR(measured("power", power[0]) / (2.0 * (most - least)), 1.0, 0.03) << shift;
+      else if (nearest > 0.49)
+        EXPECT_EQ(power[0], 0.0) << nearest;
+      EXPECT_EQ(power[3], 0.0);
+    }
+}
+
+// Radiation: NAFEMS T2, 1000 K at one end, emissivity 0.98 to 300 K at the other one, k = 55.6, length 0.1
+SERIAL_TEST(Radiation, SteadyState)
+{
+  const double h = 0.005;
+  Scene run(plane("si", "f p", strprintf("0 0.1 0 %g", 4 * h), 1, 0.1 * h) +
+            body("box", "density 7850 eos linear 1e-3 thermal conducting 460 1000 55.6",
+                 strprintf("%g", h)) +
+            "fix heat all mpm/heat xlo temperature 1000 xhi radiation 0.98 300 stages 64\n");
+  Warm warm(run);
+  warm.set([](const double *x) {
+    return 1000.0 - 730.0 * x[0];
+  });
+  run.commands("timestep 2.0\nrun 1200\n");
+  double sum[2] = {0.0, 0.0}, count[2] = {0.0, 0.0};
+  for (int i = 0; i < run.n(); i++)
+    for (int k = 0; k < 2; k++)
+      if (std::fabs(run.x()[i][0] - (0.1 - (0.25 + 0.5 * k) * h)) < 0.1 * h) {
+        sum[k] += warm.T(i);
+        count[k]++;
+      }
+  const double face = 1.5 * sum[0] / count[0] - 0.5 * sum[1] / count[1];
+  EXPECT_NEAR(measured("face", face), 927.0040, 0.05);
+  const double *power = run.fix_vector("heat", 7);
+  EXPECT_NEAR(power[0] / power[1], -1.0, 1e-4);
+}
+
+// NAFEMS T3: T = 100 sin(pi t/40) at one end, 0 at the other one: 36.603 at 0.02 from the first one, after 32 s
+SERIAL_TEST(Ends, FollowAVariable)
+{
+  const double h = 0.1 / 40;
+  Scene run(
+      plane("si", "f p", strprintf("0 0.1 0 %g", 4 * h), 1, 0.1 * h) +
+      body("box", "density 7200 eos linear 1.0 thermal conducting 440.5 0 35", strprintf("%g", h)) +
+      "variable T equal 100*sin(PI*time/40)\n"
+      "fix heat all mpm/heat xlo temperature 0 xhi temperature v_T\n");
+  Warm warm(run);
+  run.commands("timestep 0.04\nrun 800\n");
+  EXPECT_NEAR(measured("T", warm.at(0.08, 2 * h, 0.9 * h)), 36.603, 0.1);
+}
+
+// NAFEMS T4 on a coarse lattice: heat in two dimensions through three faces; its README has finer ones
+SERIAL_TEST(Plate, IsCooled)
+{
+  const double h = 0.05;
+  Scene run(plane("si", "f f", "0 0.6 0 1", 1, 0.1 * h) +
+            body("box", "density 7850 eos linear 1e-5 thermal conducting 460 0 52", "0.05") +
+            "fix heat all mpm/heat ylo temperature 100 xhi convection 750 0 yhi convection 750 0\n"
+            "timestep 400\nrun 200\n");
+  Warm warm(run);
+  const double face =
+      1.5 * warm.at(0.6 - 0.25 * h, 0.2, 0.26 * h) - 0.5 * warm.at(0.6 - 0.75 * h, 0.2, 0.26 * h);
+  EXPECT_NEAR(measured("T", face), 18.254, 1.0);
+  const double *const power = run.fix_vector("heat", 7);
+  EXPECT_NEAR((power[1] + power[2] + power[3]) / power[2], 0.0, 1e-4);
+}
+
+// sources: a body is heated evenly, or where a variable says so
+TEST(Source, HeatsPoints)
+{
+  for (const char *source : {"equal 2.0", "atom 2.0*(x<0.5)"}) {
+    Scene run(bar(10, "source v_s"));
+    Warm warm(run);
+    const double before = warm.heat();
+    run.commands(std::string("variable s ") + source + "\n");
+    run_to(run, 0.2, 0.001);
+    const double all = source[0] == 'e' ? 0.4 * 0.4 : 0.2 * 0.4;    // power * time * volume
+    EXPECT_NEAR((warm.heat() - before) / all, 1.0, 1e-12);
+    EXPECT_NEAR(run.fix("heat")->compute_scalar() / all, 1.0, 1e-12);
+    EXPECT_NEAR(run.fix_vector("heat", 7)[6] / (all / 0.2), 1.0, 1e-12);
+    if (source[0] == 'e')
+      for (int i = 0; i < run.n(); i++) EXPECT_NEAR(warm.T(i), 0.4, 1e-12);
+  }
+}
+
+// Stefan: ice at its melting point, St = 1: the front is at 2 * 0.62006263 sqrt(t), and enthalpy is kept
+PARAMETER_TEST(Melting, FrontMoves, const char *, Values("scheme usl", "scheme usf"))
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  const int n = 100;
+  Scene run(replaced(bar(n, "xlo temperature 1.0", 0.0, GetParam()), "conducting 1.0 0 1.0",
+                     "conducting 1.0 0 1.0 melt 0.0 1.0"));
+  Warm warm(run);
+  run_to(run, 0.1, 0.3 / (n * n));
+  const int molten = warm.material->find_history("molten");
+  double liquid = 0.0, all = 0.0;
+  for (int i = 0; i < run.n(); i++) {
+    const double f = warm.material->history[i][molten];
+    if (f > 0.0 && f < 1.0) EXPECT_NEAR(warm.T(i), 0.0, 1e-12);
+    liquid += f / run.n();
+    all += run.mass()[i] * (warm.T(i) + f);
+  }
+  EXPECT_NEAR(measured("front", liquid), 0.392162, 0.004);
+  EXPECT_NEAR(all / run.fix("heat")->compute_scalar(), 1.0, 1e-11);
+}
+
+namespace {
+
+/** A disk of two materials with an uneven temperature, and a piece of one that does not conduct; it flies across the
+ *  lattice, all ranks, and periodic faces, and deforms. */
+std::string disk(const std::string &heat, const std::string &velocity = "0.8 0.5 0")
+{
+  return plane("lj", "p p", "0 8 0 8", 3, 0.4) + "fix grid all mpm 0.5\n" +
+      bodies({{"one", "sphere 3 4 0 1.6 side in"},
+              {"two", "block 5 6.6 3 5 -0.5 0.5"},
+              {"cold", "block 3 5 0.8 2 -0.5 0.5"}}) +
+      "fix m one mpm/material density 1.0 eos linear 20.0 strength j2 8.0 0.4 thermal conducting "
+      "1.5 1.0 0.4\n"
+      "fix n two mpm/material density 2.0 eos linear 30.0 thermal conducting 0.7 2.0 0.1\n"
+      "fix o cold mpm/material density 1.0 neohookean 10.0 0.3\n"
+      "velocity all set " +
+      velocity + "\nvelocity two set -0.7 0.5 0\n" + "fix heat all mpm/heat " + heat +
+      "\ntimestep 0.02\n";
+}
+
+struct Named {
+  double tag, T;
+};
+std::vector<Named> temperatures(Scene &run)
+{
+  std::vector<Named> mine;
+  for (const char *id : {"m", "n"}) {
+    Warm warm(run, id);
+    for (int i = 0; i < run.n(); i++)
+      if (warm.has(i)) mine.push_back({(double) run.lmp->atom->tag[i], warm.T(i)});
+  }
+  return all_by_tag(mine, run.lmp->world);
+}
+
+}    // namespace
+
+// heat is kept to round-off while bodies collide, and the ledger closes
+TEST(Closed, KeepsHeat)
+{
+  Scene run(disk("") + "compute e all mpm/energy\nrun 0\n");
+  const double before = Warm(run, "m").heat() + Warm(run, "n").heat();
+  const auto hottest = [&]() {
+    const auto T = temperatures(run);
+    return std::max_element(T.begin(), T.end(),
+                            [](const Named &a, const Named &b) {
+                              return a.T < b.T;
+                            })
+        ->T;
+  };
+  run.commands("run 100\n");
+  const double made = run.compute_vector()[4];
+  const double after = Warm(run, "m").heat() + Warm(run, "n").heat();
+  EXPECT_GT(measured("plastic work that became heat", made), 0.1);
+  EXPECT_NEAR((after - before - made) / before, 0.0, 1e-13);
+  EXPECT_LT(measured("hottest", hottest()), 2.0 + made);
+  const double *const e = run.compute_vector();
+  EXPECT_NEAR(e[14] / before, 0.0, 1e-13);    // conducted heat
+  EXPECT_NEAR(e[10], 0.0, 1e-11);             // residual
+}
+
+TEST(Ranks, Agree)
+{
+  const std::string walls =
+      replaced(disk("xlo temperature 3.0 xhi convection 0.5 0.0 ylo flux 0.3"), "boundary p p p",
+               "boundary f f p") +
+      "fix b all mpm/boundary xlo xhi ylo yhi slip\n";
+  for (const auto &scene : {disk(""), walls}) {
+    OnRanks run(scene, "run 90\n");
+    EXPECT_LT(run.difference(), 1e-12);
+    const auto one = temperatures(run.serial), all = temperatures(run.parallel);
+    ASSERT_EQ(one.size(), all.size());
+    double most = 0.0;
+    for (std::size_t k = 0; k < one.size(); k++)
+      most = std::max(most, std::fabs(one[k].T - all[k].T));
+    EXPECT_LT(measured("difference", most), 1e-12);
+    EXPECT_NEAR(run.serial.fix("heat")->compute_scalar(),
+                run.parallel.fix("heat")->compute_scalar(), 1e-11);
+  }
+}
+
+TEST(Restart, Continues)
+{
+  const std::string scene = disk("transfer affine source v_s");
+  const std::string first = "variable s atom 0.1*x\n";
+  const std::string tail = scene.substr(scene.find("fix m one"));
+  std::string fixes = "neighbor 0.4 bin\nfix grid all mpm 0.5\n" + first;
+  for (std::size_t at = 0, end; at < tail.size(); at = end + 1) {
+    end = tail.find('\n', at);
+    if (tail.compare(at, 4, "fix ") == 0) fixes += tail.substr(at, end - at) + "\n";
+  }
+  Continued run(first + scene, 30, fixes + "timestep 0.02\n", 30);
+  EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
+  const auto one = temperatures(run.whole), two = temperatures(run.again);
+  ASSERT_EQ(one.size(), two.size());
+  EXPECT_EQ(memcmp(one.data(), two.data(), one.size() * sizeof(Named)), 0);
+  EXPECT_EQ(run.whole.fix("heat")->compute_scalar(), run.again.fix("heat")->compute_scalar());
+}
+
+// a body that moves across the lattice has the temperatures of one at rest
+SERIAL_TEST(Moving, HasTheSameTemperatures)
+{
+  const auto wave = [](double x) {
+    return 1.0 + std::cos(2.0 * PI * (x - 3.0) / 2.0);
+  };
+  double rms[2];
+  for (const bool moves : {false, true}) {
+    Scene run(plane("lj", "p p", "0 16 0 1", 1, 0.02) +
+              body("block 3 5 0 1 -0.5 0.5",
+                   "density 1.0 eos linear 1e-3 thermal conducting 1.0 0.0 0.05", "0.1") +
+              "fix heat all mpm/heat\n");
+    Warm warm(run);
+    const double v = moves ? 7.3 : 0.0;
+    warm.set([&](const double *x) {
+      return wave(x[0]);
+    });
+    run.commands(strprintf("velocity all set %g 0 0\ntimestep 0.002\nrun 500\n", v));
+    const double decay = std::exp(-0.05 * PI * PI * 1.0);
+    rms[moves] = measured(moves ? "moving, rms" : "at rest, rms",
+                          warm.error([&](const double *x) {
+                                return 1.0 + decay * (wave(x[0] - v * 1.0) - 1.0);
+                              })
+                              .rms);
+  }
+  EXPECT_LT(rms[0], 6e-3);
+  EXPECT_NEAR(rms[1], rms[0], 1e-3);
+}
+
+// without any heat to conduct, mechanics are the same to the last bit
+TEST(Idle, ChangesNothing)
+{
+  const std::string heated = disk("");
+  std::string plain = replaced(heated, "fix heat all mpm/heat \n", "");
+  plain = replaced(replaced(plain, "conducting 1.5 1.0 0.4", "adiabatic 1.5 1.0"),
+                   "conducting 0.7 2.0 0.1", "adiabatic 0.7 2.0");
+  Scene with(heated + "run 60\n"), without(plain + "run 60\n");
+  EXPECT_TRUE(identical(with.gather(), without.gather()));
+}
+
+SERIAL_TEST(BadInput, IsRefused)
+{
+  const std::string scene = plane("lj", "f p", "0 4 0 4", 1, 0.1) +
+      "fix grid all mpm 1.0 MPM_OPTIONS\n"
+      "create_points 1 box ppc 2\n"
+      "fix m all mpm/material density 1.0 eos linear 1.0 thermal conducting 1 0 1\n"
+      "timestep 0.01\n";
+  const std::string plain = replaced(scene, "MPM_OPTIONS", "");
+  expect_refused(plain,
+                 {{"fix heat all mpm/heat xlo", "xlo"},
+                  {"fix heat all mpm/heat xlo cold", "must be one of insulated temperature flux"},
+                  {"fix heat all mpm/heat zlo flux 1.0", "zlo does not exist in 2d"},
+                  {"fix heat all mpm/heat ylo flux 1.0", "periodic axis: use boundary f"},
+                  {"fix heat all mpm/heat xlo convection -1.0 0.0", "not negative"},
+                  {"fix heat all mpm/heat xlo radiation 1.5 0.0", "not above 1"},
+                  {"fix heat all mpm/heat xlo radiation 0.5 -1.0", "absolute temperature"},
+                  {"fix heat all mpm/heat xlo radiation 0.5 1.0", "use units si"},
+                  {"fix heat all mpm/heat xlo temperature v_none", "does not exist"},
+                  {"fix heat all mpm/heat source 1.0", "must be a variable"},
+                  {"fix heat all mpm/heat source v_none", "does not exist"},
+                  {"fix heat all mpm/heat stages 0", "stages"},
+                  {"fix heat all mpm/heat transfer flip", "must be one of relax pic affine"},
+                  {"group a type 1\nfix heat a mpm/heat", "use group all"},
+                  {"fix heat all mpm/heat\nfix more all mpm/heat", "more than one"}},
+                 "run 1\n");
+  for (const auto &[options, remedy] :
+       {std::pair{"shape linear", "use shape quadratic"}, std::pair{"frame total", "frame updated"},
+        std::pair{"shape cpdi", "use shape quadratic"}})
+    expect_error(replaced(scene, "MPM_OPTIONS", options) + "fix heat all mpm/heat\nrun 1\n",
+                 remedy);
+  expect_error(replaced(plain, "conducting 1 0 1", "adiabatic 1 0") +
+                   "fix heat all mpm/heat\nrun 1\n",
+               "thermal conducting");
+  expect_error(replaced(plain, "conducting 1 0 1", "conducting 1 0") + "run 1\n", "K");
+}
