@@ -11,9 +11,13 @@ import os
 import re
 import shlex
 import shutil
+import sys
 
 import docs_scenes
 import mpm_testing as mt
+
+sys.path.insert(0, os.path.join(mt.ROOT, "bench"))
+import scaling_model
 
 
 def files(page):
@@ -265,23 +269,20 @@ def test_points():
 def test_scaling():
     text = files("Howto_mpm_scaling")[0][1]
     two, four = (mt.ok(mt.lammps_once(text, processes=n)).output for n in (2, 4))
-    # a layer of 5 x 5 blocks of 64 nodes with 4 numbers, in both directions
-    assert float(mt.thermo(two)[0][1][-1][4]) == 2 * 25 * 64 * 32, mt.thermo(two)[0][1]
+    # three layers of 18 x 18 nodes with 4 numbers, in both directions
+    assert float(mt.thermo(two)[0][1][-1][4]) == 2 * 3 * 18**2 * 32, mt.thermo(two)[0][1]
     assert "initial/final imbalance factor  = 4 1" in four
     # the table of the page
     page = mt.read(os.path.join(docs_scenes.PAGES, "Howto_mpm_scaling.rst"))
-    rows = re.findall(r"\* - ([\d,]+)" + 6 * r"\n     - (\S+)(?: %)?", page)
-    assert len(rows) == 3
+    rows = re.findall(r"\* - ([\d,]+)" + 9 * r"\n     - (\S+)(?: %)?", page)
+    assert len(rows) == 4
     for row in rows:
-        points, blocks, sent, compute, network, memory, efficiency = (float(word.replace(",", "")) for word in row)
-        side = (points / 512) ** (1 / 3)
-        messages = 6 * 1.5 * side**2 + 12 * 1.5**2 * side + 8 * 1.5**3
-        expected = [points / 512, messages * 2048e-6, points * 33e-6]
-        expected += [0.3 * 64 * expected[1] / 25, 0.7 * 64 * 2 * expected[1] / 200]
-        expected.append(100 * expected[2] / (sum(expected[2:]) + 26 * 2e-3))
-        for value, theory, digits in zip((blocks, sent, compute, network, memory, efficiency), expected,
-                                         (0.5, 0.005, 0.005, 0.005, 0.005, 0.5)):
-            assert abs(value - theory) <= 1.01 * digits, (row, expected)
+        points, sent, *times, efficiency = (float(word.replace(",", "")) for word in row)
+        parts, sent_by_model = scaling_model.step(points, 22)
+        assert abs(sent - 1e-6 * sent_by_model) < 0.006, row
+        for value, theory in zip(times, parts.values()):
+            assert abs(value - 1e3 * theory) < 0.006, (row, parts)
+        assert abs(efficiency - 100 * scaling_model.efficiency(points, 22)) < 0.6, row
 
 
 mt.main(globals())
