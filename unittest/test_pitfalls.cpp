@@ -309,7 +309,7 @@ SERIAL_TEST(Pitfall, EmptyCellsCostNoMemory)
   EXPECT_LT(blocks[1], 28);
 }
 
-// ghost exchange in six phases: here two ranks that share blocks send them to each other once for
+// ghost exchange in six phases: here two ranks that share nodes send them to each other once for
 // each sum over ranks, and a step of USL has one sum
 TEST(Pitfall, SharedNodesTravelOncePerSum)
 {
@@ -326,14 +326,20 @@ TEST(Pitfall, SharedNodesTravelOncePerSum)
                    strprintf("1.0 %s", c.options)) +
               "timestep 0.05\nrun 10\n");
 
-    // blocks that several ranks have, counted independently of the code under test
+    // nodes that several ranks reach, counted independently of the code under test
     std::vector<uint64_t> mine;
-    for (const auto &block : run.grid().blocks) mine.push_back(MPM_NS::Grid::block_key(block));
-    std::map<uint64_t, double> sharers;
-    for (uint64_t key : all_rows(mine, run.lmp->world)) sharers[key] += 1.0;
-    double messages = 0.0;
-    for (const auto &s : sharers) messages += s.second * (s.second - 1.0);
-    const double bytes = messages * MPM_NS::NODES_PER_BLOCK * c.reals * sizeof(double);
+    for (const auto &block : run.grid().blocks) {
+      mine.push_back(MPM_NS::Grid::block_key(block));
+      mine.push_back(block.reached);
+    }
+    const auto all = all_rows(mine, run.lmp->world);
+    std::map<std::pair<uint64_t, int>, double> sharers;
+    for (std::size_t k = 0; k < all.size(); k += 2)
+      for (int n = 0; n < MPM_NS::NODES_PER_BLOCK; n++)
+        if (all[k + 1] >> n & 1) sharers[{all[k], n}] += 1.0;
+    double shared = 0.0;
+    for (const auto &s : sharers) shared += s.second * (s.second - 1.0);
+    const double bytes = shared * c.reals * sizeof(double);
     EXPECT_EQ(run.fix("grid")->compute_vector(5), bytes) << c.options;
     EXPECT_EQ(bytes > 0.0, nranks() > 1);
   }
