@@ -565,8 +565,7 @@ TEST(Unions, In3d)
     const auto in_union = forces_of_impact(strprintf("region plate %s", plate) + far +
                                            "region wall union 2 plate far");
     expect_push(in_union, plate);
-    expect_same(in_union, alone, 1.0e-10,
-                plate);    // normals of unions are differences of distances
+    expect_same(in_union, alone, 1.0e-12, plate);
   }
   const auto whole = forces_of_impact("region wall block 0 10 0 10 5 9"),
              halves =

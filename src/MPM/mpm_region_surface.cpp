@@ -172,7 +172,7 @@ void MPMRegionSurface::find_places_of_parts(const double *x, double far) const
 }
 
 /* ----------------------------------------------------------------------
-   The direction to the nearest place of a simple region is the gradient, unless x is on the surface, or about as far from
+   The direction to the nearest place on the surface is the gradient, unless x is on the surface, or about as far from
    another place, as at an edge inside. At centers and axes LAMMPS tells one place of many: further in there the distance
    does not grow
 ------------------------------------------------------------------------- */
@@ -180,17 +180,16 @@ void MPMRegionSurface::find_places_of_parts(const double *x, double far) const
 bool MPMRegionSurface::find_normal_at_once(const double *x, double far, double step,
                                            double *normal) const
 {
-  if (!parts.empty() || mesh) return false;
+  if (mesh) return false;
   const bool inside = match(x), in_body = inside == (region->interior != 0);
   double nearest = far, next = far;
-  each_contact(x, far, inside, [&](double r, double dx, double dy, double dz) {
-    next = std::min(next, std::max(r, nearest));
-    if (r >= nearest) return;
-    nearest = r;
-    normal[0] = dx;
-    normal[1] = dy;
-    normal[2] = dz;
-  });
+  find_places(x, far);
+  for (const auto &place : places) {
+    next = std::min(next, std::max(place.distance, nearest));
+    if (place.distance >= nearest) continue;
+    nearest = place.distance;
+    MathExtra::sub3(x, place.x, normal);
+  }
   if (nearest >= far || nearest < 100.0 * step || next - nearest < 4.0 * step) return false;
   if (dim == 2) normal[2] = 0.0;
   const double length = MathExtra::len3(normal);
