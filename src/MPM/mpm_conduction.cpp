@@ -49,7 +49,6 @@
 #include "comm.h"
 #include "error.h"
 #include "mpm_field.h"
-#include "mpm_passes.h"
 #include "mpm_points.h"
 #include "mpm_stencil.h"
 
@@ -60,24 +59,15 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-enum { VALUE = 0, VOLUME = 1, CAPACITY = 3, OLD = 4, RATE = 4, NREAL = 8 };    // reals of a record
-
 static constexpr double BELOW_LIMIT = 0.98;    // of explicit steps and stages
-
-/** Rows of a batch of points that transfers take; kernels may read a little more. */
-struct MPMConduction::Room {
-  static constexpr int more = 8;
-  double value[3 * BATCH + more] = {}, mass[BATCH + more] = {}, C[9 * BATCH + more] = {};
-  double place[3 * BATCH + more], flux[6 * BATCH + more] = {}, force[3 * BATCH + more] = {};
-  double volume[BATCH + more] = {};
-};
 
 /* ---------------------------------------------------------------------- */
 
 MPMConduction::MPMConduction(LAMMPS *lmp, MPMField &field, const MPMHeatTransfer &transfer,
                              int most_stages, const MPMHeatCondition *conditions) :
     Pointers(lmp),
-    field(field), faces(lmp, field, conditions), transfer(transfer), most_stages(most_stages)
+    field(field), faces(lmp, field, conditions), transfer(transfer), most_stages(most_stages),
+    scalar(field)
 {
 }
 
@@ -96,12 +86,6 @@ void MPMConduction::init(double sigma)
     thermals.push_back({fix, T, molten, varies, all});
     slowest = std::min(slowest, all.conductivity / (material.density() * all.capacity));
   }
-  const int dim = field.lattice.dim;
-  const Shape shape = field.options.shape;
-  static constexpr Transfer kinds[] = {Transfer::AFLIP, Transfer::PIC, Transfer::APIC};
-  pic = field.kernels->transfer(dim, shape, Transfer::PIC, true);
-  with = field.kernels->transfer(dim, shape, kinds[transfer.kind], true);
-
   const MPMStencil stencil(field);
   constexpr int SAMPLES = 4096;
   steepest = 0.0;
@@ -115,6 +99,7 @@ void MPMConduction::init(double sigma)
   }
   fastest = 0.0;
   faces.init(sigma);
+  scalar.init(transfer.kind != MPMHeatTransfer::PIC, faces.any());
 }
 
 /* ---------------------------------------------------------------------- */
@@ -131,29 +116,6 @@ double MPMConduction::volume_of(int i) const
   return atom->vfrac[i] * field.points->jacobian(i);
 }
 
-/** Rows of points from the first on, with their values in the room. */
-PointRows MPMConduction::rows(int first, Room &room) const
-{
-  PointRows b = rows_from(field, field.rows(), first);
-  b.v = room.value;
-  b.mass = room.mass;
-  b.C = room.C;
-  b.tau = room.flux;
-  b.f = room.force;
-  b.vol0 = room.volume;
-  b.xnew = room.place;    // a value that is not finite moves points even in no time
-  b.from = b.x;
-  b.F = nullptr;
-  return b;
-}
-
-/** Calls f(thermal, first, n) for batches of the points of a run, if they conduct. */
-template <class F> void MPMConduction::visit(const MPMPointMap::Run &run, const F &f) const
-{
-  const Thermal *const t = thermal(run.material);
-  for (int i = run.first; t && i < run.last; i += BATCH) f(*t, i, std::min(BATCH, run.last - i));
-}
-
 /* ----------------------------------------------------------------------
    temperatures of the nodes; returns the largest V k/C of this rank's points
 ------------------------------------------------------------------------- */
@@ -161,93 +123,44 @@ template <class F> void MPMConduction::visit(const MPMPointMap::Run &run, const 
 double MPMConduction::points_to_nodes(const MPMRows &gradients)
 {
   const int dim = field.lattice.dim;
-  const TransferStep still = field.step_data(0.0);
   double most = 0.0;
   volumes.resize(atom->nmax);
-  Room room;
-  points_to(records, field, with, [&](const MPMPointMap::Run &run, const int *base, int *box) {
-    visit(run, [&](const Thermal &t, int first, int n) {
-      for (int p = 0; p < n; p++) {
-        const int i = first + p;
-        const Conduction c = t.at(i);
-        const double C = atom->rmass[i] * c.capacity, V = volumes[i] = volume_of(i);
-        room.mass[p] = C;
-        room.value[3 * p] = t.fix->history[i][t.temperature];
-        room.value[3 * p + 1] = V / C;
-        for (int d = 0; gradients && d < dim; d++)
-          room.C[dim * dim * p + dim * d] = gradients[i][d];
-        most = std::max(most, c.conductivity * V / C);
-      }
-      with.p2g_momentum(rows(first, room), still, 0, n, base, field.map->tile, box);
-    });
-  });
-  field.nodes.sum(records.data(), NREAL, 0, 4);
-
-  const std::size_t n = field.grid.nnodes();
-  for (auto *list : {&capacity, &volume, &temperature, &rate}) list->resize(n);
-  const double *r = records.data();
-  for (std::size_t k = 0; k < n; k++, r += NREAL) {
-    capacity[k] = r[CAPACITY];
-    volume[k] = r[VOLUME];
-    temperature[k] = r[CAPACITY] > 0.0 ? r[VALUE] / r[CAPACITY] : 0.0;
-  }
-  before = temperature;
+  scalar.points_to_nodes(
+      [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Points &points) {
+        const Thermal *const t = thermal(run.material);
+        if (!t) return false;
+        for (int p = 0; p < n; p++) {
+          const int i = first + p;
+          const Conduction c = t->at(i);
+          const double C = atom->rmass[i] * c.capacity, V = volumes[i] = volume_of(i);
+          points.capacity[p] = C;
+          points.volume[p] = V;
+          points.value[p] = t->fix->history[i][t->temperature];
+          for (int d = 0; gradients && d < dim; d++) points.slope[3 * p + d] = gradients[i][d];
+          most = std::max(most, c.conductivity * V / C);
+        }
+        return true;
+      });
   return most;
 }
 
 /* ----------------------------------------------------------------------
-   rates of the temperatures of the nodes, and the power that comes in. The flux k grad T of a point is the first row
-   of a stress
+   rates of the temperatures of the nodes, and the power that comes in
 ------------------------------------------------------------------------- */
 
 void MPMConduction::find_rates(const double *source, Heats &power)
 {
-  const int dim = field.lattice.dim;
-  double *r = records.data();
-  for (std::size_t k = 0; k < temperature.size(); k++, r += NREAL) {
-    r[VALUE] = temperature[k];
-    r[RATE] = 0.0;
-  }
-  field.nodes.complete(records.data(), NREAL, 1);
-  r = records.data();
-  for (std::size_t k = 0; k < temperature.size(); k++, r += NREAL) r[RATE] = 0.0;    // of images
-
-  TransferStep plain = field.step_data(0.0);
-  plain.force_scale = plain.stress_scale = 1.0;
-  MPMPointMap &map = *field.map;
-  Room room;
-  double L[9 * BATCH];
   power.fill(0.0);
-  for (const auto &a : map.active) {
-    if (a.other_box[0] > a.other_box[3]) continue;
-    const auto &block = field.grid.blocks[a.slot];
-    int base[3], box[6];
-    map.tile_base(a, base);
-    reset_box(box);
-    pic.load(map.tile_load, records.data(), block.slot, a.other_box);
-    for (int k = a.first_run; k < a.last_run; k++)
-      visit(map.runs[k], [&](const Thermal &t, int first, int n) {
-        const PointRows b = rows(first, room);
-        pic.g2p_gradient(b, plain, 0, n, base, map.tile_load, L);
-        for (int p = 0; p < n; p++) {
-          const double *const G = L + dim * dim * p, K = t.at(first + p).conductivity;
-          double *const flux = room.flux + 6 * p;
-          flux[0] = K * G[0];
-          flux[3] = K * G[dim];
-          if (dim == 3) flux[4] = K * G[2 * dim];
-          room.volume[p] = volumes[first + p];
-          if (!source) continue;
-          room.force[3 * p] = room.volume[p] * source[first + p];
-          power[SOURCES] += room.force[3 * p];
-        }
-        pic.p2g_force(b, plain, 0, n, base, map.tile, box);
-      });
-    pic.flush(map.tile, records.data(), block.slot, box);
-  }
-  field.nodes.sum(records.data(), NREAL, RATE, 1);
-  r = records.data();
-  for (std::size_t k = 0; k < rate.size(); k++, r += NREAL)
-    rate[k] = capacity[k] > 0.0 ? r[RATE] / capacity[k] : 0.0;
+  scalar.find_rates([&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
+    const Thermal *const t = thermal(run.material);
+    for (int p = 0; p < n; p++) {
+      const int i = first + p;
+      const double factor = -t->at(i).conductivity * volumes[i];
+      for (int d = 0; d < 3; d++) q[p][d] *= factor;
+      q[p][3] = source ? volumes[i] * source[i] : 0.0;
+      power[SOURCES] += q[p][3];
+    }
+  });
   faces.add_rates(temperature, rate, power);
 }
 
@@ -304,33 +217,26 @@ void MPMConduction::many_stages(int n, double dt, const double *source, Heats &c
 double MPMConduction::nodes_to_points(const MPMRows &gradients)
 {
   const int dim = field.lattice.dim;
-  double *r = records.data();
-  for (std::size_t k = 0; k < temperature.size(); k++, r += NREAL) {
-    r[VALUE] = temperature[k];
-    r[OLD] = before[k];
-  }
-  field.nodes.complete(records.data(), NREAL, NREAL);
-  TransferStep still = field.step_data(0.0);
   const double crossings = slowest * field.step_dt() / (field.lattice.h * field.lattice.h);
-  still.flip = transfer.kind == MPMHeatTransfer::RELAX ? exp(-transfer.relax * crossings) : 0.0;
-  Room room;
+  const bool relaxes = transfer.kind == MPMHeatTransfer::RELAX;
+  const double keep = relaxes ? exp(-transfer.relax * crossings) : 0.0;
   double got = 0.0;
-  points_from(records, field, with, [&](const MPMPointMap::Run &run, const int *base) {
-    visit(run, [&](const Thermal &t, int first, int n) {
-      for (int p = 0; p < n; p++) room.value[3 * p] = t.fix->history[first + p][t.temperature];
-      with.g2p(rows(first, room), still, 0, n, base, field.map->tile_load, nullptr);
-      for (int p = 0; p < n; p++) {
-        const int i = first + p;
-        const Conduction c = t.at(i);
-        double *const history = t.fix->history[i], &T = history[t.temperature];
-        got += atom->rmass[i] * c.capacity * (room.value[3 * p] - T);
-        T = room.value[3 * p];
-        if (t.molten >= 0) c.melting.settle(T, history[t.molten]);
-        for (int d = 0; gradients && d < dim; d++)
-          gradients[i][d] = room.C[dim * dim * p + dim * d];
-      }
-    });
-  });
+  scalar.nodes_to_points(
+      [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q,
+          const double *before) {
+        const Thermal *const t = thermal(run.material);
+        for (int p = 0; p < n; p++) {
+          const int i = first + p;
+          const Conduction c = t->at(i);
+          double *const history = t->fix->history[i], &T = history[t->temperature];
+          const double now = relaxes ? q[p][3] + keep * (T - before[p]) : q[p][3];
+          got += atom->rmass[i] * c.capacity * (now - T);
+          T = now;
+          if (t->molten >= 0) c.melting.settle(T, history[t->molten]);
+          for (int d = 0; gradients && d < dim; d++) gradients[i][d] = q[p][d];
+        }
+      },
+      relaxes);
   return got;
 }
 
@@ -391,9 +297,8 @@ double MPMConduction::stable_dt(tagint &tag) const
 
 double MPMConduction::memory_usage() const
 {
-  double bytes = faces.memory_usage();
-  for (const auto *list : {&volumes, &records, &capacity, &volume, &before, &temperature, &rate,
-                           &first, &first_rate, &last})
+  double bytes = faces.memory_usage() + scalar.memory_usage();
+  for (const auto *list : {&volumes, &first, &first_rate, &last})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

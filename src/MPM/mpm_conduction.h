@@ -12,10 +12,8 @@
 #include "fix_mpm_material.h"
 #include "material/material.h"
 #include "mpm_heat_faces.h"
-#include "mpm_point_map.h"
-#include "transfer/kernels.h"
+#include "mpm_node_scalar.h"
 
-#include <functional>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -67,13 +65,10 @@ class MPMConduction : protected Pointers {
       return varies ? fix->material->conduction(fix->history[i]) : all;
     }
   };
-  struct Room;    // for a batch of points
-
   const MPMHeatTransfer &transfer;
   const int most_stages;
   std::vector<Thermal> thermals;
-  MPM_NS::TransferKernels pic, with;    // plain sums; transfer of the temperature
-  double slowest = 0.0;                 // smallest diffusivity of a material
+  double slowest = 0.0;    // smallest diffusivity of a material
   double steepest =
       0.0;                 // of the shape functions: greatest sum of N'^2/N along an axis, in cells
   double fastest = 0.0;    // rate of exchange through faces in the last step
@@ -81,21 +76,20 @@ class MPMConduction : protected Pointers {
 
   std::vector<double> volumes;    // [n] of points in this step
 
-  // nodes: records of 8 reals for transfers, and one real for each node
-
-  std::vector<double> records, capacity, volume, before, temperature, rate;
+  MPMNodeScalar scalar;
+  std::vector<double> &capacity = scalar.capacity, &volume = scalar.volume,
+                      &temperature = scalar.value,
+                      &rate = scalar.rate;        // of nodes
   std::vector<double> first, first_rate, last;    // of stages
 
   const Thermal *thermal(const FixMPMMaterial *) const;
   double volume_of(int i) const;
-  template <class F> void visit(const MPMPointMap::Run &, const F &) const;
   double points_to_nodes(const MPMRows &gradients);
   void find_rates(const double *source, Heats &power);
   int count_stages(double dt, double limit) const;
   void one_step(double dt, const double *source, Heats &came);
   void many_stages(int n, double dt, const double *source, Heats &came);
   double nodes_to_points(const MPMRows &gradients);
-  MPM_NS::PointRows rows(int first, Room &) const;
 };
 
 }    // namespace LAMMPS_NS

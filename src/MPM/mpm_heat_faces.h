@@ -48,6 +48,8 @@ class MPMHeatFaces : protected Pointers {
 
   /** Start of a run: where the faces are. sigma: the constant of Stefan and Boltzmann. */
   void init(double sigma);
+  /** Is there a face that is not insulated? */
+  bool any() const { return !faces.empty(); }
   /** A rank that has a node of a line needs all of them. */
   void extend_topology();
   void topology_changed();
