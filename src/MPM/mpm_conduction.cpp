@@ -38,16 +38,13 @@
    sum is at most 6/h^2 for quadratic B-splines and 3.2/h^2 for cubic ones, in any dimension and wherever
    points are; the explicit limit 2 over this is about 0.33 h^2 density c/k for the former. Linear functions have no such bound.
 
-   Longer steps are made of stages: RKL2 (C.D. Meyer, D.S. Balsara, T.D. Aslam, J. Comput. Phys. 257 (2014) 594),
-   of second order and stable up to (s^2 + s - 2)/4 explicit limits with s stages. The heat through each face
-   goes through the same stages, so that it is that of the points to round-off.
+   Longer steps are made of stages (MPMSuperStep). The heat through each face goes through the same stages, so that
+   it is that of the points to round-off.
 ------------------------------------------------------------------------- */
 
 #include "mpm_conduction.h"
 
 #include "atom.h"
-#include "comm.h"
-#include "error.h"
 #include "mpm_field.h"
 #include "mpm_points.h"
 #include "mpm_stencil.h"
@@ -59,15 +56,12 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr double BELOW_LIMIT = 0.98;    // of explicit steps and stages
-
 /* ---------------------------------------------------------------------- */
 
 MPMConduction::MPMConduction(LAMMPS *lmp, MPMField &field, const MPMHeatTransfer &transfer,
-                             int most_stages, const MPMHeatCondition *conditions) :
+                             const MPMHeatCondition *conditions) :
     Pointers(lmp),
-    field(field), faces(lmp, field, conditions), transfer(transfer), most_stages(most_stages),
-    scalar(field)
+    field(field), faces(lmp, field, conditions), scalar(field), transfer(transfer)
 {
 }
 
@@ -117,10 +111,10 @@ double MPMConduction::volume_of(int i) const
 }
 
 /* ----------------------------------------------------------------------
-   temperatures of the nodes; returns the largest V k/C of this rank's points
+   temperatures of the nodes; the limit is the largest V k/C of this rank's points
 ------------------------------------------------------------------------- */
 
-double MPMConduction::points_to_nodes(const MPMRows &gradients)
+MPMConduction::Limits MPMConduction::points_to_nodes(const MPMRows &gradients)
 {
   const int dim = field.lattice.dim;
   double most = 0.0;
@@ -141,7 +135,7 @@ double MPMConduction::points_to_nodes(const MPMRows &gradients)
         }
         return true;
       });
-  return most;
+  return {most, faces.begin_step(capacity, volume, temperature)};
 }
 
 /* ----------------------------------------------------------------------
@@ -150,7 +144,6 @@ double MPMConduction::points_to_nodes(const MPMRows &gradients)
 
 void MPMConduction::find_rates(const double *source, Heats &power)
 {
-  power.fill(0.0);
   scalar.find_rates([&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
     const Thermal *const t = thermal(run.material);
     for (int p = 0; p < n; p++) {
@@ -161,57 +154,10 @@ void MPMConduction::find_rates(const double *source, Heats &power)
       power[SOURCES] += q[p][3];
     }
   });
-  faces.add_rates(temperature, rate, power);
-}
-
-/* ---------------------------------------------------------------------- */
-
-void MPMConduction::one_step(double dt, const double *source, Heats &came)
-{
-  Heats power;
-  find_rates(source, power);
-  for (std::size_t k = 0; k < rate.size(); k++) temperature[k] += dt * rate[k];
-  for (std::size_t k = 0; k < came.size(); k++) came[k] += dt * power[k];
-}
-
-/** y = mu y + nu last + (1 - mu - nu) first + dt (more rate + less first_rate), and last = y before. */
-template <class List>
-static void next_stage(List &y, List &last, const List &first, const List &rate,
-                       const List &first_rate, double mu, double nu, double more, double less)
-{
-  for (std::size_t k = 0; k < y.size(); k++) {
-    const double now = y[k];
-    y[k] = mu * now + nu * last[k] + (1.0 - mu - nu) * first[k] + more * rate[k] +
-        less * first_rate[k];
-    last[k] = now;
-  }
-}
-
-void MPMConduction::many_stages(int n, double dt, const double *source, Heats &came)
-{
-  const auto b = [](int j) {
-    return j < 2 ? 1.0 / 3.0 : (j * j + j - 2.0) / (2.0 * j * (j + 1.0));
-  };
-  const double w = 4.0 / (n * n + n - 2.0);
-  const Heats none = {};
-  Heats power, first_power, heat = none, last_heat = none;
-  find_rates(source, first_power);
-  first = last = temperature;
-  first_rate = rate;
-  for (std::size_t k = 0; k < rate.size(); k++) temperature[k] += b(1) * w * dt * rate[k];
-  for (std::size_t k = 0; k < heat.size(); k++) heat[k] = b(1) * w * dt * first_power[k];
-  for (int j = 2; j <= n; j++) {
-    find_rates(source, power);
-    const double mu = (2.0 * j - 1.0) / j * b(j) / b(j - 1), nu = -(j - 1.0) / j * b(j) / b(j - 2);
-    const double more = mu * w * dt, less = -(1.0 - b(j - 1)) * more;
-    next_stage(temperature, last, first, rate, first_rate, mu, nu, more, less);
-    next_stage(heat, last_heat, none, power, first_power, mu, nu, more, less);
-  }
-  for (std::size_t k = 0; k < came.size(); k++) came[k] += heat[k];
 }
 
 /* ----------------------------------------------------------------------
-   temperatures of points; returns the heat that they have got
+   temperatures of points
 ------------------------------------------------------------------------- */
 
 double MPMConduction::nodes_to_points(const MPMRows &gradients)
@@ -242,41 +188,13 @@ double MPMConduction::nodes_to_points(const MPMRows &gradients)
 
 /* ---------------------------------------------------------------------- */
 
-int MPMConduction::count_stages(double dt, double limit) const
+double MPMConduction::greatest_rate(const Limits &all)
 {
-  if (dt <= limit) return 1;
-  for (int s = 3; s <= most_stages; s += 2)
-    if (4.0 * dt <= limit * (s * s + s - 2.0)) return s;
-  return most_stages + 1;
+  fastest = all.exchange;
+  return all.diffusivity * steepest / (field.lattice.h * field.lattice.h) + fastest;
 }
 
-double MPMConduction::step(const MPMRows &gradients, const double *source, Heats &came)
-{
-  const double dt = field.step_dt(), h = field.lattice.h;
-  double mine[2], most[2];
-  mine[0] = points_to_nodes(gradients);
-  mine[1] = faces.begin_step(capacity, volume, temperature);
-  MPI_Allreduce(mine, most, 2, MPI_DOUBLE, MPI_MAX, world);
-  fastest = most[1];
-  const double limit = BELOW_LIMIT * 2.0 / (most[0] * steepest / (h * h) + fastest);
-  nstage = count_stages(dt, limit);
-  if (nstage > most_stages)
-    error->all(FLERR, Error::NOLASTLINE,
-               "The time step {:.6g} is {:.4g} times the explicit limit {:.4g} of the conduction "
-               "of heat, which needs more than {} stages: use fix mpm/dt, a smaller timestep, or "
-               "fix mpm/heat ... stages",
-               dt, dt / limit, limit, most_stages);
-  faces.hold(temperature, came);
-  if (nstage == 1)
-    one_step(dt, source, came);
-  else
-    many_stages(nstage, dt, source, came);
-  return nodes_to_points(gradients);
-}
-
-/* ---------------------------------------------------------------------- */
-
-double MPMConduction::stable_dt(tagint &tag) const
+double MPMConduction::greatest_rate_of_points(tagint &tag) const
 {
   double most = 0.0;
   for (int i = 0; i < atom->nlocal; i++) {
@@ -289,16 +207,10 @@ double MPMConduction::stable_dt(tagint &tag) const
     most = here;
     tag = atom->tag[i];
   }
-  const double h = field.lattice.h, top = most * steepest / (h * h) + fastest;
-  const int s = most_stages < 3 ? 1 : most_stages - (most_stages + 1) % 2;
-  const double longer = s == 1 ? 1.0 : (s * s + s - 2.0) / 4.0;
-  return top > 0.0 ? BELOW_LIMIT * longer * 2.0 / top : std::numeric_limits<double>::max();
+  return most * steepest / (field.lattice.h * field.lattice.h) + fastest;
 }
 
 double MPMConduction::memory_usage() const
 {
-  double bytes = faces.memory_usage() + scalar.memory_usage();
-  for (const auto *list : {&volumes, &first, &first_rate, &last})
-    bytes += list->capacity() * sizeof(double);
-  return bytes;
+  return faces.memory_usage() + scalar.memory_usage() + volumes.capacity() * sizeof(double);
 }

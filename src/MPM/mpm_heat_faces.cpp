@@ -235,6 +235,10 @@ void MPMHeatFaces::add_rates(const std::vector<double> &temperature, std::vector
       power[face.face] += more * line.owned;
     }
   }
+}
+
+void MPMHeatFaces::hold_rates(std::vector<double> &rate, Heats &power) const
+{
   visit_held([&](const Face &face, const Line &line) {
     double drift = 0.0;
     for (int k = 0; k < face.n; k++) drift += line.weight[k] * rate[line.node[k]];
