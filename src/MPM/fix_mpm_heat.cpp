@@ -240,11 +240,15 @@ void FixMPMHeat::evaluate_variables()
 void FixMPMHeat::conduct()
 {
   evaluate_variables();
-  in_step.fill(0.0);
-  for (auto &field : fields)
+  Heats came = {};
+  for (auto &field : fields) {
     if (field->conducts())
-      past.got += field->step(gradients, source.empty() ? nullptr : source_values.data(), in_step);
-  for (std::size_t k = 0; k < in_step.size(); k++) past.came[k] += in_step[k];
+      past.got += field->step(gradients, source.empty() ? nullptr : source_values.data(), came);
+    field->given.clear();
+  }
+  for (int k = 0; k < NCAME; k++) past.came[k] += in_step[k] = came[k];
+  for (int k = 0; k < NGIVER; k++) past.given[k] += in_step[NCAME + k] = booked[k];
+  std::fill_n(booked, NGIVER, 0.0);
   dt_last = fields[0]->field.step_dt();
   power_known = false;
 }
@@ -257,6 +261,7 @@ double FixMPMHeat::compute_scalar()
 {
   double mine = 0.0, all;
   for (const double heat : past.came) mine += heat;
+  for (const double heat : past.given) mine += heat;
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all;
 }
@@ -277,7 +282,10 @@ double FixMPMHeat::compute_vector(int i)
 
 std::vector<MPMPhysics::Account> FixMPMHeat::accounts() const
 {
-  return {{"conducted heat", true}, {"heat through faces", false}, {"heat of sources", false}};
+  return {{"conducted heat", true},
+          {"heat through faces", false},
+          {"heat of sources", false},
+          {"heat of friction", false}};
 }
 
 void FixMPMHeat::account(double *values) const
@@ -285,14 +293,16 @@ void FixMPMHeat::account(double *values) const
   values[0] += past.got;
   for (int face = 0; face < MPMHeatFaces::NFACE; face++) values[1] += past.came[face];
   values[2] += past.came[MPMConduction::SOURCES];
+  for (int k = 0; k < NGIVER; k++) values[3 + k] += past.given[k];
 }
 
 /* ---------------------------------------------------------------------- */
 
 void FixMPMHeat::write_restart(FILE *fp)
 {
-  keep_totals(world, past.came.data(), size_vector);
+  keep_totals(world, past.came.data(), NCAME);
   keep_totals(world, &past.got, 1);
+  keep_totals(world, past.given, NGIVER);
   if (comm->me) return;
   const int size = sizeof(Past);
   fwrite(&size, sizeof(int), 1, fp);

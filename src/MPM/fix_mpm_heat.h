@@ -19,6 +19,7 @@ FixStyle(mpm/heat,FixMPMHeat);
 #include "mpm_physics.h"
 #include "mpm_state.h"
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -58,24 +59,33 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions
   std::vector<Account> accounts() const override;
   void account(double *values) const override;
 
+  MPMConduction &of(const MPMField &) const;
+
+  /** Who else gives heat to nodes and points. */
+  enum Giver { FRICTION, NGIVER };
+  /** Heat that nodes or points of this rank were given in this step [energy], before they conduct. */
+  void book(Giver giver, double heat) { booked[giver] += heat; }
+
  private:
   using Heats = MPMConduction::Heats;
   struct Past {    // so far, this rank's share; in restart files that of all ranks
     Heats came;    // through faces, and of sources
     double got;    // by points
+    double given[NGIVER];
   };
 
   MPMRows gradients;    // [n][dim] of the temperature at points; not with transfer pic
   std::vector<std::unique_ptr<MPMConduction>> fields;
   Past past = {};
-  Heats in_step = {};    // heat of the last step, this rank's share
-  Heats power = {};
+  static constexpr int NCAME = MPMHeatFaces::NFACE + 1, NPOWER = NCAME + NGIVER;
+  std::array<double, NPOWER> in_step = {};    // heat of the last step, this rank's share
+  std::array<double, NPOWER> power = {};
+  double booked[NGIVER] = {};    // since then
   double dt_last = 0.0;
   bool power_known = true;
   int source_index = -1;
   std::vector<double> source_values;    // [n] of an atom-style variable
 
-  MPMConduction &of(const MPMField &) const;
   double sigma() const;
   void evaluate_variables();
   void conduct();

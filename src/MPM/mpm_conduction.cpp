@@ -245,6 +245,8 @@ void MPMConduction::find_rates(const double *source, Heats &power)
     pic.flush(map.tile, records.data(), block.slot, box);
   }
   field.nodes.sum(records.data(), NREAL, RATE, 1);
+  for (std::size_t k = 0; k < given.size(); k++)
+    records[NREAL * k + RATE] += given[k] / field.step_dt();
   r = records.data();
   for (std::size_t k = 0; k < rate.size(); k++, r += NREAL)
     rate[k] = capacity[k] > 0.0 ? r[RATE] / capacity[k] : 0.0;
@@ -392,8 +394,8 @@ double MPMConduction::stable_dt(tagint &tag) const
 double MPMConduction::memory_usage() const
 {
   double bytes = faces.memory_usage();
-  for (const auto *list : {&volumes, &records, &capacity, &volume, &before, &temperature, &rate,
-                           &first, &first_rate, &last})
+  for (const auto *list : {&given, &volumes, &records, &capacity, &volume, &before, &temperature,
+                           &rate, &first, &first_rate, &last})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

@@ -38,6 +38,9 @@ class MPMConduction : protected Pointers {
 
   MPMField &field;
   MPMHeatFaces faces;
+  /** [nnodes] heat that nodes get from elsewhere in this step [energy], the same on all ranks that have the
+   *  node; empty: none. */
+  std::vector<double> given;
 
   MPMConduction(class LAMMPS *, MPMField &, const MPMHeatTransfer &, int most_stages,
                 const MPMHeatCondition *);
