@@ -113,7 +113,7 @@ FixMPMHeat::FixMPMHeat(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, nar
   Options options = declare(domain->dimension);
   read_options(lmp, options, narg, arg, 3);
   scalar_flag = vector_flag = 1;
-  size_vector = MPMHeatFaces::NFACE + 1;
+  size_vector = NCAME + NGIVER;
   for (auto *heats : {&came, &in_step, &present, &power}) heats->assign(size_vector, 0.0);
   global_freq = 1;
   extscalar = extvector = 1;
@@ -292,8 +292,12 @@ void FixMPMHeat::conduct()
   steps.advance(stages, dt_last, [this]() {
     find_rates();
   });
-  for (auto &field : fields)
+  for (auto &field : fields) {
     if (field->conducts()) got += field->nodes_to_points(gradients);
+    field->given.clear();
+  }
+  std::copy_n(booked, NGIVER, in_step.begin() + NCAME);
+  std::fill_n(booked, NGIVER, 0.0);
   for (std::size_t k = 0; k < came.size(); k++) came[k] += in_step[k];
   power_known = false;
 }
@@ -332,7 +336,10 @@ double FixMPMHeat::compute_vector(int i)
 
 std::vector<MPMPhysics::Account> FixMPMHeat::accounts() const
 {
-  return {{"conducted heat", true}, {"heat through faces", false}, {"heat of sources", false}};
+  return {{"conducted heat", true},
+          {"heat through faces", false},
+          {"heat of sources", false},
+          {"heat of friction", false}};
 }
 
 void FixMPMHeat::account(double *values) const
@@ -340,6 +347,7 @@ void FixMPMHeat::account(double *values) const
   values[0] += got;
   for (int face = 0; face < MPMHeatFaces::NFACE; face++) values[1] += came[face];
   values[2] += came[MPMConduction::SOURCES];
+  for (int k = 0; k < NGIVER; k++) values[3 + k] += came[NCAME + k];
 }
 
 /* ---------------------------------------------------------------------- */

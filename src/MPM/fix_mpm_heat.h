@@ -20,6 +20,7 @@ FixStyle(mpm/heat,FixMPMHeat);
 #include "mpm_state.h"
 #include "mpm_super_step.h"
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -56,6 +57,13 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions
   std::vector<Account> accounts() const override;
   void account(double *values) const override;
 
+  MPMConduction &of(const MPMField &) const;
+
+  /** Who else gives heat to nodes and points. */
+  enum Giver { FRICTION, NGIVER };
+  /** Heat that nodes or points of this rank were given in this step [energy], before they conduct. */
+  void book(Giver giver, double heat) { booked[giver] += heat; }
+
  private:
   using Heats = MPMConduction::Heats;
 
@@ -67,12 +75,13 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions
   double got = 0.0;
   Heats in_step, present;    // heat of the last step, and power in a stage of it, this rank's share
   Heats power;
+  static constexpr int NCAME = MPMHeatFaces::NFACE + 1;    // then those of givers
+  double booked[NGIVER] = {};                              // by givers since the last step
   double dt_last = 0.0;
   bool power_known = true;
   int source_index = -1;
   std::vector<double> source_values;    // [n] of an atom-style variable
 
-  MPMConduction &of(const MPMField &) const;
   double sigma() const;
   void evaluate_variables();
   int count_stages();

@@ -154,6 +154,8 @@ void MPMConduction::find_rates(const double *source, Heats &power)
       power[SOURCES] += q[p][3];
     }
   });
+  for (std::size_t k = 0; k < given.size(); k++)
+    if (capacity[k] > 0.0) rate[k] += given[k] / (field.step_dt() * capacity[k]);
 }
 
 /* ----------------------------------------------------------------------
@@ -212,5 +214,6 @@ double MPMConduction::greatest_rate_of_points(tagint &tag) const
 
 double MPMConduction::memory_usage() const
 {
-  return faces.memory_usage() + scalar.memory_usage() + volumes.capacity() * sizeof(double);
+  return faces.memory_usage() + scalar.memory_usage() +
+      (volumes.capacity() + given.capacity()) * sizeof(double);
 }

@@ -37,6 +37,9 @@ class MPMConduction : protected Pointers {
   MPMField &field;
   MPMHeatFaces faces;
   MPMNodeScalar scalar;
+  /** [nnodes] heat that nodes get from elsewhere in this step [energy], the same on all ranks that have the
+   *  node; empty: none. */
+  std::vector<double> given;
 
   MPMConduction(class LAMMPS *, MPMField &, const MPMHeatTransfer &, const MPMHeatCondition *);
 
