@@ -192,12 +192,12 @@ void FixMPMHeat::init_physics(MPMPlan &plan)
   steps.add(in_step, present);
   for (auto *field : plan.fields) {
     const auto &o = field->options;
-    refuse_field(
-        lmp, *this, *field,
-        {{o.shape != QUADRATIC && o.shape != CUBIC, "this shape", "use shape quadratic or cubic"},
-         {o.total, "frame total", "use frame updated"},
-         {o.axisymmetric, "axisymmetric", "use a plane or 3d"},
-         {o.modified_edges, "edges modified", "use edges plain"}});
+    refuse_field(lmp, *this, *field,
+                 {{o.modified_edges, "edges modified", "use edges plain"},
+                  {o.axisymmetric && domain->boxlo[0] <= 1.0e-6 * field->lattice.h &&
+                       conditions[0].kind != MPMHeatCondition::INSULATED,
+                   "a condition at xlo, which is the axis of symmetry", "leave xlo insulated"}});
+    if (gradients) field->slopes.push_back(&gradients);
     fields.push_back(std::make_unique<MPMConduction>(lmp, *field, transfer, conditions));
     fields.back()->init(sigma());
     if (fields.back()->conducts()) steps.add(fields.back()->temperature, fields.back()->rate);
@@ -250,7 +250,7 @@ int FixMPMHeat::count_stages()
   for (auto &field : fields) {
     const auto limits = field->conducts() ? field->points_to_nodes(gradients)
                                           : MPMConduction::Limits{0.0, 0.0};
-    mine.push_back(limits.diffusivity);
+    mine.push_back(limits.conduction);
     mine.push_back(limits.exchange);
   }
   all.resize(mine.size());

@@ -14,6 +14,7 @@
 #include "mpm_heat_faces.h"
 #include "mpm_node_scalar.h"
 
+#include <functional>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -36,7 +37,7 @@ class MPMConduction : protected Pointers {
 
   MPMField &field;
   MPMHeatFaces faces;
-  MPMNodeScalar scalar;
+  MPMNodeScalar scalar;    ///< the temperature
   /** [nnodes] heat that nodes get from elsewhere in this step [energy], the same on all ranks that have the
    *  node; empty: none. */
   std::vector<double> given;
@@ -46,9 +47,9 @@ class MPMConduction : protected Pointers {
   /** Start of a run. */
   void init(double sigma);
 
-  /** What limits an explicit step: the largest diffusivity of points, and rate of exchange through faces. */
+  /** What limits an explicit step: bounds of the rates of conduction, and of exchange through faces [1/time]. */
   struct Limits {
-    double diffusivity, exchange;
+    double conduction, exchange;
   };
   /** A step, first part: temperatures of nodes. gradients: [n][dim] temperature gradients of points, null with
    *  the transfer pic. Returns the limits of this rank. */
@@ -87,15 +88,20 @@ class MPMConduction : protected Pointers {
   std::vector<Thermal> thermals;
   double slowest = 0.0;    // smallest diffusivity of a material
   double steepest =
-      0.0;                 // of the shape functions: greatest sum of N'^2/N along an axis, in cells
-  double fastest = 0.0;    // rate of exchange through faces in the last step
+      0.0;    // of B-splines, see the top of mpm_conduction.cpp [1/area]; 0: not bounded by points alone
+  double conducted = 0.0, exchanged = 0.0;    // limits of the last step
+  bool total = false;
 
   std::vector<double> volumes;    // [n] of points in this step
-
-  std::vector<double> &capacity = scalar.capacity, &volume = scalar.volume;
+  std::vector<double>
+      shares;    // [n] of their conductivity that is left, see row_bound(); empty: all
 
   const Thermal *thermal(const FixMPMMaterial *) const;
   double volume_of(int i) const;
+  void tensor(const Thermal &, int i, double k[3][3]) const;
+  double bound(const Thermal &, int i, double volume) const;
+  double steepness(int i) const;
+  double row_bound(double usual);
 };
 
 }    // namespace LAMMPS_NS

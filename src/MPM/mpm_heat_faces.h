@@ -78,6 +78,7 @@ class MPMHeatFaces : protected Pointers {
   };
   struct Face {
     int face, axis, first, n;    // n nodes from the first one on
+    double x;                    // where it is
     double weight[MOST];
     double full[MOST];    // volume of the nodes where material fills the box, in cells
     std::vector<Line> lines;

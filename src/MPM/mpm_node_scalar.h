@@ -62,6 +62,9 @@ class MPMNodeScalar {
   void points_to_nodes(const Fill &);
   /** Rates of the values of nodes. */
   void find_rates(const Conduct &);
+  /** A bound of the eigenvalues of minus the rates, by the rows of their matrix [1/time], of this rank; not with domains.
+   *  bound: out: V_p sum_e |k_de| for each axis d, with the tensor k of a linear flux. */
+  double greatest_rate(const Conduct &bound);    // the rows stay in the place of rates
   /** changes: give the values of before, too. */
   void nodes_to_points(const Take &, bool changes);
 
