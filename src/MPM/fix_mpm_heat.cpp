@@ -25,6 +25,7 @@
 #include <cstring>
 
 using namespace LAMMPS_NS;
+using namespace FixConst;
 using namespace MPM_NS;
 
 static const char *const FACE_NAME[] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
@@ -82,6 +83,8 @@ Options MPMHeatOptions::declare(int dim)
               "points get the temperature of the nodes, and its gradient"}})});
   o.add("stages",
         {integer(most_stages, "N", POSITIVE, "most stages of the conduction in a time step")});
+  o.add("grains", {yes_no(grains)},
+        "points exchange heat with grains, by the temperatures and heat flows of atoms");
   o.refuse([=] {
     OptionRules rules = {{!source.empty() && source.compare(0, 2, "v_") != 0, "source",
                           "must be a variable, v_name: {source}"}};
@@ -119,7 +122,18 @@ FixMPMHeat::FixMPMHeat(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, nar
   restart_global = 1;
   if (transfer.kind != MPMHeatTransfer::PIC)
     state.declare(gradients, "mpm/heat:gradient", domain->dimension);
+  grains_said = options.given("grains");
+  if (grains) {
+    state.declare(waiting, "mpm/heat:waiting", 1);
+    grain_heat = std::make_unique<MPMGrainHeat>(lmp, waiting);
+    nevery = 1;
+  }
   keep_arrays();
+}
+
+int FixMPMHeat::setmask()
+{
+  return grains ? POST_INTEGRATE | POST_FORCE | END_OF_STEP : 0;
 }
 
 /* ----------------------------------------------------------------------
@@ -152,6 +166,13 @@ void FixMPMHeat::init()
   if (modify->get_fix_by_style("^mpm/heat$").size() > 1)
     error->all(FLERR, Error::NOLASTLINE,
                "There is more than one fix mpm/heat: one acts on all points and faces");
+  if (grains)
+    grain_heat->init();
+  else if (atom->heatflow_flag && !grains_said)
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/heat: atoms have heat flows, of which material points would know nothing: say "
+        "grains yes, or grains no if they exchange none with points");
   const auto materials = find_fixes<FixMPMMaterial>(lmp);
   if (std::none_of(materials.begin(), materials.end(), [](auto *fix) {
         return fix->material->conducts();
@@ -242,13 +263,14 @@ void FixMPMHeat::conduct()
   evaluate_variables();
   Heats came = {};
   for (auto &field : fields) {
+    if (grains && field->conducts()) grain_heat->give(*field);
     if (field->conducts())
       past.got += field->step(gradients, source.empty() ? nullptr : source_values.data(), came);
     field->given.clear();
   }
   for (int k = 0; k < NCAME; k++) past.came[k] += in_step[k] = came[k];
-  for (int k = 0; k < NGIVER; k++) past.given[k] += in_step[NCAME + k] = booked[k];
-  std::fill_n(booked, NGIVER, 0.0);
+  for (int k = 0; k < NGIVER; k++) past.given[k] += in_step[NCAME + k] = past.booked[k];
+  std::fill_n(past.booked, NGIVER, 0.0);
   dt_last = fields[0]->field.step_dt();
   power_known = false;
 }
@@ -261,7 +283,7 @@ double FixMPMHeat::compute_scalar()
 {
   double mine = 0.0, all;
   for (const double heat : past.came) mine += heat;
-  for (const double heat : past.given) mine += heat;
+  for (int k = 0; k < NGIVER; k++) mine += past.given[k] + past.booked[k];
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all;
 }
@@ -285,15 +307,17 @@ std::vector<MPMPhysics::Account> FixMPMHeat::accounts() const
   return {{"conducted heat", true},
           {"heat through faces", false},
           {"heat of sources", false},
-          {"heat of friction", false}};
+          {"heat of friction", false},
+          {"heat of grains", false}};
 }
 
 void FixMPMHeat::account(double *values) const
 {
   values[0] += past.got;
+  if (grains) values[0] += grain_heat->sum_waiting();
   for (int face = 0; face < MPMHeatFaces::NFACE; face++) values[1] += past.came[face];
   values[2] += past.came[MPMConduction::SOURCES];
-  for (int k = 0; k < NGIVER; k++) values[3 + k] += past.given[k];
+  for (int k = 0; k < NGIVER; k++) values[3 + k] += past.given[k] + past.booked[k];
 }
 
 /* ---------------------------------------------------------------------- */
@@ -303,6 +327,7 @@ void FixMPMHeat::write_restart(FILE *fp)
   keep_totals(world, past.came.data(), NCAME);
   keep_totals(world, &past.got, 1);
   keep_totals(world, past.given, NGIVER);
+  keep_totals(world, past.booked, NGIVER);
   if (comm->me) return;
   const int size = sizeof(Past);
   fwrite(&size, sizeof(int), 1, fp);
@@ -317,6 +342,7 @@ void FixMPMHeat::restart(char *buf)
 double FixMPMHeat::memory_usage()
 {
   double bytes = FixMPMState::memory_usage() + source_values.capacity() * sizeof(double);
+  if (grains) bytes += grain_heat->memory_usage();
   for (const auto &field : fields) bytes += field->memory_usage();
   return bytes;
 }

@@ -16,6 +16,7 @@ FixStyle(mpm/heat,FixMPMHeat);
 #define LMP_FIX_MPM_HEAT_H
 
 #include "mpm_conduction.h"
+#include "mpm_grain_heat.h"
 #include "mpm_physics.h"
 #include "mpm_state.h"
 
@@ -31,6 +32,7 @@ struct MPMHeatOptions {
   std::string source;    ///< variable, without v_; empty: none
   MPMHeatTransfer transfer;
   int most_stages = 32;
+  bool grains = false;
 
   MPM_NS::Options declare(int dimension);
 };
@@ -40,8 +42,11 @@ struct MPMHeatOptions {
 class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions {
  public:
   FixMPMHeat(class LAMMPS *, int, char **);
-  int setmask() override { return 0; }    // called by fix mpm
+  int setmask() override;    // conduction is called by fix mpm
   void init() override;
+  void post_integrate() override { grain_heat->show(); }
+  void post_force(int) override { grain_heat->note_step(); }
+  void end_of_step() override { book(GRAINS, grain_heat->take()); }
   double compute_scalar() override;
   double compute_vector(int) override;
   void write_restart(FILE *) override;
@@ -62,25 +67,27 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions
   MPMConduction &of(const MPMField &) const;
 
   /** Who else gives heat to nodes and points. */
-  enum Giver { FRICTION, NGIVER };
+  enum Giver { FRICTION, GRAINS, NGIVER };
   /** Heat that nodes or points of this rank were given in this step [energy], before they conduct. */
-  void book(Giver giver, double heat) { booked[giver] += heat; }
+  void book(Giver giver, double heat) { past.booked[giver] += heat; }
 
  private:
   using Heats = MPMConduction::Heats;
   struct Past {    // so far, this rank's share; in restart files that of all ranks
     Heats came;    // through faces, and of sources
     double got;    // by points
-    double given[NGIVER];
+    double given[NGIVER], booked[NGIVER];    // before the last conduction, and since
   };
 
   MPMRows gradients;    // [n][dim] of the temperature at points; not with transfer pic
+  MPMRows waiting;      // [n][1] heat that grains have given to points, see MPMGrainHeat
+  std::unique_ptr<MPMGrainHeat> grain_heat;    // null: not asked for
+  bool grains_said = false;                    // is the keyword there?
   std::vector<std::unique_ptr<MPMConduction>> fields;
   Past past = {};
   static constexpr int NCAME = MPMHeatFaces::NFACE + 1, NPOWER = NCAME + NGIVER;
   std::array<double, NPOWER> in_step = {};    // heat of the last step, this rank's share
   std::array<double, NPOWER> power = {};
-  double booked[NGIVER] = {};    // since then
   double dt_last = 0.0;
   bool power_known = true;
   int source_index = -1;
