@@ -25,6 +25,7 @@
 #include <cstring>
 
 using namespace LAMMPS_NS;
+using namespace FixConst;
 using namespace MPM_NS;
 
 static const char *const FACE_NAME[] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
@@ -82,6 +83,8 @@ Options MPMHeatOptions::declare(int dim)
               "points get the temperature of the nodes, and its gradient"}})});
   o.add("stages",
         {integer(most_stages, "N", POSITIVE, "most stages of the conduction in a time step")});
+  o.add("grains", {yes_no(grains)},
+        "points exchange heat with grains, by the temperatures and heat flows of atoms");
   o.refuse([=] {
     OptionRules rules = {{!source.empty() && source.compare(0, 2, "v_") != 0, "source",
                           "must be a variable, v_name: {source}"}};
@@ -120,7 +123,18 @@ FixMPMHeat::FixMPMHeat(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, nar
   restart_global = 1;
   if (transfer.kind != MPMHeatTransfer::PIC)
     state.declare(gradients, "mpm/heat:gradient", domain->dimension);
+  grains_said = options.given("grains");
+  if (grains) {
+    state.declare(waiting, "mpm/heat:waiting", 1);
+    grain_heat = std::make_unique<MPMGrainHeat>(lmp, waiting);
+    nevery = 1;
+  }
   keep_arrays();
+}
+
+int FixMPMHeat::setmask()
+{
+  return grains ? POST_INTEGRATE | POST_FORCE | END_OF_STEP : 0;
 }
 
 /* ----------------------------------------------------------------------
@@ -153,6 +167,13 @@ void FixMPMHeat::init()
   if (modify->get_fix_by_style("^mpm/heat$").size() > 1)
     error->all(FLERR, Error::NOLASTLINE,
                "There is more than one fix mpm/heat: one acts on all points and faces");
+  if (grains)
+    grain_heat->init();
+  else if (atom->heatflow_flag && !grains_said)
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/heat: atoms have heat flows, of which material points would know nothing: say "
+        "grains yes, or grains no if they exchange none with points");
   const auto materials = find_fixes<FixMPMMaterial>(lmp);
   if (std::none_of(materials.begin(), materials.end(), [](auto *fix) {
         return fix->material->conducts();
@@ -286,8 +307,11 @@ void FixMPMHeat::conduct()
   evaluate_variables();
   std::fill(in_step.begin(), in_step.end(), 0.0);
   const int stages = count_stages();
-  for (auto &field : fields)
-    if (field->conducts()) field->faces.hold(field->temperature, in_step);
+  for (auto &field : fields) {
+    if (!field->conducts()) continue;
+    if (grains) grain_heat->give(*field);
+    field->faces.hold(field->temperature, in_step);
+  }
   dt_last = fields[0]->field.step_dt();
   steps.advance(stages, dt_last, [this]() {
     find_rates();
@@ -316,6 +340,7 @@ double FixMPMHeat::compute_scalar()
 {
   double mine = 0.0, all;
   for (const double heat : came) mine += heat;
+  for (const double heat : booked) mine += heat;
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all;
 }
@@ -339,15 +364,17 @@ std::vector<MPMPhysics::Account> FixMPMHeat::accounts() const
   return {{"conducted heat", true},
           {"heat through faces", false},
           {"heat of sources", false},
-          {"heat of friction", false}};
+          {"heat of friction", false},
+          {"heat of grains", false}};
 }
 
 void FixMPMHeat::account(double *values) const
 {
   values[0] += got;
+  if (grains) values[0] += grain_heat->sum_waiting();
   for (int face = 0; face < MPMHeatFaces::NFACE; face++) values[1] += came[face];
   values[2] += came[MPMConduction::SOURCES];
-  for (int k = 0; k < NGIVER; k++) values[3 + k] += came[NCAME + k];
+  for (int k = 0; k < NGIVER; k++) values[3 + k] += came[NCAME + k] + booked[k];
 }
 
 /* ---------------------------------------------------------------------- */
@@ -356,11 +383,13 @@ void FixMPMHeat::write_restart(FILE *fp)
 {
   keep_totals(world, came.data(), size_vector);
   keep_totals(world, &got, 1);
+  keep_totals(world, booked, NGIVER);
   if (comm->me) return;
-  const int size = (size_vector + 1) * (int) sizeof(double);
+  const int size = (size_vector + 1 + NGIVER) * (int) sizeof(double);
   fwrite(&size, sizeof(int), 1, fp);
   fwrite(came.data(), sizeof(double), came.size(), fp);
   fwrite(&got, sizeof(double), 1, fp);
+  fwrite(booked, sizeof(double), NGIVER, fp);
 }
 
 void FixMPMHeat::restart(char *buf)
@@ -369,12 +398,14 @@ void FixMPMHeat::restart(char *buf)
   const double *const values = (double *) buf;
   std::copy_n(values, came.size(), came.begin());
   got = values[came.size()];
+  std::copy_n(values + came.size() + 1, NGIVER, booked);
 }
 
 double FixMPMHeat::memory_usage()
 {
   double bytes = FixMPMState::memory_usage() + steps.memory_usage() +
       source_values.capacity() * sizeof(double);
+  if (grains) bytes += grain_heat->memory_usage();
   for (const auto &field : fields) bytes += field->memory_usage();
   return bytes;
 }

@@ -16,6 +16,7 @@ FixStyle(mpm/heat,FixMPMHeat);
 #define LMP_FIX_MPM_HEAT_H
 
 #include "mpm_conduction.h"
+#include "mpm_grain_heat.h"
 #include "mpm_physics.h"
 #include "mpm_state.h"
 #include "mpm_super_step.h"
@@ -32,6 +33,7 @@ struct MPMHeatOptions {
   std::string source;    ///< variable, without v_; empty: none
   MPMHeatTransfer transfer;
   int most_stages = 32;
+  bool grains = false;
 
   MPM_NS::Options declare(int dimension);
 };
@@ -41,8 +43,11 @@ struct MPMHeatOptions {
 class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions {
  public:
   FixMPMHeat(class LAMMPS *, int, char **);
-  int setmask() override { return 0; }    // called by fix mpm
+  int setmask() override;    // conduction is called by fix mpm
   void init() override;
+  void post_integrate() override { grain_heat->show(); }
+  void post_force(int) override { grain_heat->note_step(); }
+  void end_of_step() override { book(GRAINS, grain_heat->take()); }
   double compute_scalar() override;
   double compute_vector(int) override;
   void write_restart(FILE *) override;
@@ -60,7 +65,7 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions
   MPMConduction &of(const MPMField &) const;
 
   /** Who else gives heat to nodes and points. */
-  enum Giver { FRICTION, NGIVER };
+  enum Giver { FRICTION, GRAINS, NGIVER };
   /** Heat that nodes or points of this rank were given in this step [energy], before they conduct. */
   void book(Giver giver, double heat) { booked[giver] += heat; }
 
@@ -68,6 +73,9 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions
   using Heats = MPMConduction::Heats;
 
   MPMRows gradients;    // [n][dim] of the temperature at points; not with transfer pic
+  MPMRows waiting;      // [n][1] heat that grains have given to points, see MPMGrainHeat
+  std::unique_ptr<MPMGrainHeat> grain_heat;    // null: not asked for
+  bool grains_said = false;                    // is the keyword there?
   std::vector<std::unique_ptr<MPMConduction>> fields;
   MPMSuperStep steps;    // of the temperatures of all fields together
   // so far, this rank's share, in restart files that of all ranks: heat through faces and of sources; of points
