@@ -16,6 +16,7 @@ FixStyle(mpm/heat,FixMPMHeat);
 #define LMP_FIX_MPM_HEAT_H
 
 #include "mpm_conduction.h"
+#include "mpm_heat_contact.h"
 #include "mpm_physics.h"
 #include "mpm_state.h"
 #include "mpm_super_step.h"
@@ -28,6 +29,8 @@ namespace LAMMPS_NS {
 
 struct MPMHeatOptions {
   MPMHeatCondition conditions[MPMHeatFaces::NFACE];
+  std::vector<MPMHeatPair> pairs;
+  MPMHeatPair pair;      ///< the last one
   std::string source;    ///< variable, without v_; empty: none
   MPMHeatTransfer transfer;
   int most_stages = 32;
@@ -35,8 +38,8 @@ struct MPMHeatOptions {
   MPM_NS::Options declare(int dimension);
 };
 
-/** Conduction of heat in the points of materials with a part thermal conducting, and heat through the faces
- *  of the box. Points of different fields (fix mpm) exchange no heat. */
+/** Conduction of heat in the points of materials with a part thermal conducting, heat through the faces of the
+ *  box, and heat that bodies (fix mpm) exchange where they touch. */
 class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions {
  public:
   FixMPMHeat(class LAMMPS *, int, char **);
@@ -50,8 +53,8 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions
 
   void init_physics(MPMPlan &) override;
   void add_stages(MPMPlan &, MPMPlan::Place) override;
-  void extend_topology(MPMField &field) override { of(field).faces.extend_topology(); }
-  void topology_changed(MPMField &field) override { of(field).faces.topology_changed(); }
+  void extend_topology(MPMField &) override;
+  void topology_changed(MPMField &) override;
   double stable_dt(const MPMField &field, tagint &tag) const override;
   std::vector<Account> accounts() const override;
   void account(double *values) const override;
@@ -61,11 +64,17 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions
 
   MPMRows gradients;    // [n][dim] of the temperature at points; not with transfer pic
   std::vector<std::unique_ptr<MPMConduction>> fields;
+  struct Past {    // so far, this rank's share; in restart files that of all ranks
+    double through_faces, of_sources;
+    double got;    // by points
+  };
+
+  std::vector<std::unique_ptr<MPMHeatBody>> bodies;    // fields that have surfaces with heat
+  std::vector<std::unique_ptr<MPMHeatContact>> contacts;
   MPMSuperStep steps;    // of the temperatures of all fields together
-  // so far, this rank's share, in restart files that of all ranks: heat through faces and of sources; of points
-  Heats came;
-  double got = 0.0;
-  Heats in_step, present;    // heat of the last step, and power in a stage of it, this rank's share
+  Past past = {};
+  // heat of the last step, and power in a stage of it, this rank's share: through faces, of sources, through contacts
+  Heats in_step, present;
   Heats power;
   double dt_last = 0.0;
   bool power_known = true;
@@ -74,6 +83,8 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions
 
   MPMConduction &of(const MPMField &) const;
   double sigma() const;
+  MPMHeatBody &body_of(const MPMField &);
+  void init_contacts();
   void evaluate_variables();
   int count_stages();
   void find_rates();

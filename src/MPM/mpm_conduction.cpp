@@ -153,7 +153,7 @@ template <class F> void MPMConduction::visit(const MPMPointMap::Run &run, const 
    temperatures of the nodes; the limit is the largest V k/C of this rank's points
 ------------------------------------------------------------------------- */
 
-MPMConduction::Limits MPMConduction::points_to_nodes(const MPMRows &gradients)
+double MPMConduction::points_to_nodes(const MPMRows &gradients)
 {
   const int dim = field.lattice.dim;
   const TransferStep still = field.step_data(0.0);
@@ -187,7 +187,7 @@ MPMConduction::Limits MPMConduction::points_to_nodes(const MPMRows &gradients)
     temperature[k] = r[CAPACITY] > 0.0 ? r[VALUE] / r[CAPACITY] : 0.0;
   }
   before = temperature;
-  return {most, faces.begin_step(capacity, volume, temperature)};
+  return most;
 }
 
 /* ----------------------------------------------------------------------
@@ -282,10 +282,10 @@ double MPMConduction::nodes_to_points(const MPMRows &gradients)
 
 /* ---------------------------------------------------------------------- */
 
-double MPMConduction::greatest_rate(const Limits &all)
+double MPMConduction::greatest_rate(double diffusivity, double exchange)
 {
-  fastest = all.exchange;
-  return all.diffusivity * steepest / (field.lattice.h * field.lattice.h) + fastest;
+  fastest = exchange;
+  return diffusivity * steepest / (field.lattice.h * field.lattice.h) + fastest;
 }
 
 double MPMConduction::greatest_rate_of_points(tagint &tag) const

@@ -44,21 +44,20 @@ class MPMConduction : protected Pointers {
   /** Start of a run. */
   void init(double sigma);
 
-  /** What limits an explicit step: the largest diffusivity of points, and rate of exchange through faces. */
-  struct Limits {
-    double diffusivity, exchange;
-  };
   /** A step, first part: temperatures of nodes. gradients: [n][dim] temperature gradients of points, null with
-   *  the transfer pic. Returns the limits of this rank. */
-  Limits points_to_nodes(const MPMRows &gradients);
-  /** Those of all ranks: a bound of the eigenvalues of minus the rates [1/time]. */
-  double greatest_rate(const Limits &);
+   *  the transfer pic. Returns the largest diffusivity of this rank's points. */
+  double points_to_nodes(const MPMRows &gradients);
+  /** A bound of the eigenvalues of minus the rates [1/time], from that of all ranks, and the rate of exchange through
+   *  faces. */
+  double greatest_rate(double diffusivity, double exchange);
   /** Rates of the temperatures of the nodes by conduction and sources. source: [n] power per volume, or null.
    *  Adds the power of sources. */
   void find_rates(const double *source, Heats &power);
   /** Last part: temperatures of points; returns the heat that they have got. */
   double nodes_to_points(const MPMRows &gradients);
 
+  const std::vector<double> &node_capacity() const { return capacity; }
+  const std::vector<double> &node_volume() const { return volume; }
   /** Of nodes, see MPMSuperStep. */
   std::vector<double> temperature, rate;
 
