@@ -232,7 +232,7 @@ double MPMConduction::row_bound(double usual)
    temperatures of the nodes
 ------------------------------------------------------------------------- */
 
-MPMConduction::Limits MPMConduction::points_to_nodes(const MPMRows &gradients)
+double MPMConduction::points_to_nodes(const MPMRows &gradients)
 {
   const int dim = field.lattice.dim;
   const bool simple = !total && steepest > 0.0, wants_volumes = faces.any();
@@ -259,7 +259,7 @@ MPMConduction::Limits MPMConduction::points_to_nodes(const MPMRows &gradients)
     most *= steepest;
   else if (!field.boxes && !field.domains && steepest == 0.0)
     most = row_bound(4.0 * dim / (field.lattice.h * field.lattice.h) * most);
-  return {most, faces.begin_step(scalar.capacity, scalar.volume, temperature)};
+  return most;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -320,10 +320,10 @@ double MPMConduction::nodes_to_points(const MPMRows &gradients)
 
 /* ---------------------------------------------------------------------- */
 
-double MPMConduction::greatest_rate(const Limits &all)
+double MPMConduction::greatest_rate(double conduction, double exchange)
 {
-  conducted = all.conduction;
-  exchanged = all.exchange;
+  conducted = conduction;
+  exchanged = exchange;
   return conducted + exchanged;
 }
 
