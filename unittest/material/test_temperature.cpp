@@ -525,6 +525,23 @@ TEST(Melting, EnergyBalance)
       << error[0] / scale << " " << error[2] / scale;
 }
 
+// what solid and liquid dissipate melts more of the solid
+TEST(Melting, TakesUpItsOwnHeat)
+{
+  Point p("density 1000 eos linear 1e6 strength j2 5e5 1e3 viscosity newtonian 1e3 liquid "
+          "thermal adiabatic 1000 400 0.9 melt 400 10");
+  p.batch.history[row(p.material, "molten")][0] = 0.3;
+  for (int i = 0; i < 30; i++) {
+    steps(p, {0, 0.05, 0, 0.01, 0, 0, 0, 0, 0.01}, 1.0);
+    const double taken = 10 * (value(p, "molten") - 0.3) + 1000 * (value(p, "temperature") - 400);
+    const double heat = p.work[HEAT] + p.work[VISCOUS];
+    ASSERT_NEAR(1000 * taken, heat, 1e-9 * heat + 1e-8);
+  }
+  EXPECT_GT(value(p, "molten"), 0.35);
+  EXPECT_LT(value(p, "molten"), 1.0);
+  EXPECT_GT(p.work[VISCOUS], 10.0);
+}
+
 TEST(Melting, BadInputIsRefused)
 {
   expect_refused(
