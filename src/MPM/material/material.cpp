@@ -105,6 +105,7 @@ class ComposedMaterial : public Material {
       } else if (law.info->initialize) {
         law.info->initialize(law.parameters, x, history + law.history);
       }
+    if (solid >= 0) history[solid] = 1.0 - history[molten];
   }
 
   bool is_thermoelastic() const override { return seen >= 0; }
@@ -227,8 +228,8 @@ class ComposedMaterial : public Material {
   int seen = -1;
   bool expands = false;    ///< does it have thermal expansion?
   /** History variable with the solid share to which the stress belongs, when what melts becomes a liquid with
-   *  a viscosity of its own; else -1. */
-  int solid = -1;
+   *  a viscosity of its own; else -1. molten: the one with the molten fraction. */
+  int solid = -1, molten = -1;
   std::vector<HistoryVariable> variables;
   std::vector<ValidRange> valid;
   std::vector<int> source;    ///< of the quantities of these, as in UsedRange
@@ -491,14 +492,12 @@ class ComposedMaterial : public Material {
         }))
       return;
     solid = variables.size();
+    molten = std::find_if(variables.begin(), variables.end(),
+                          [](const auto &variable) {
+                            return variable.name == "molten";
+                          }) -
+        variables.begin();
     variables.push_back({"solid", 1.0});
-  }
-
-  const double *molten(const Batch &b) const
-  {
-    for (std::size_t k = 0; k < variables.size(); k++)
-      if (variables[k].name == "molten") return b.history[k];
-    return nullptr;    // not with the checks of the parser
   }
 
   /** The strength of the solid part of the points. The elastic energy of shear that melts or is diluted is
@@ -506,7 +505,7 @@ class ComposedMaterial : public Material {
   void run_solid(Batch &b) const
   {
     double *const was = b.history[solid];
-    const MeltingSolid part(b, was, molten(b));
+    const MeltingSolid part(b, was, b.history[molten]);
     if (part.complete) {
       run(base, b);
       return;
