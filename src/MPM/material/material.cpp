@@ -12,6 +12,7 @@
 #include "material/material.h"
 
 #include "material/elastic_motion.h"
+#include "material/melting_solid.h"
 #include "material/parts.h"
 #include "material/random_field.h"
 
@@ -42,6 +43,7 @@ class ComposedMaterial : public Material {
     for (const auto &r : definition.random) add(r);
     for (const auto &v : definition.vary) add(v);
     depend_on_temperature();
+    melt_and_solidify();
     for (const auto &range : definition.ranges) add(range);
     if (definition.shares_stress()) {
       viscous = variables.size();
@@ -103,6 +105,7 @@ class ComposedMaterial : public Material {
       } else if (law.info->initialize) {
         law.info->initialize(law.parameters, x, history + law.history);
       }
+    if (solid >= 0) history[solid] = 1.0 - history[molten];
   }
 
   bool is_thermoelastic() const override { return seen >= 0; }
@@ -183,8 +186,14 @@ class ComposedMaterial : public Material {
       expanded_speed(b, c);
     else
       plain_speed(b, c);
-    for (const auto &law : laws)
-      if (law.kernels->raise_speed) call(law.kernels->raise_speed, law, b, c);
+    for (const auto &law : laws) {
+      if (!law.kernels->raise_speed) continue;
+      double solid_speed[BATCH];
+      if (law.liquid) std::copy(c, c + b.n, solid_speed);
+      call(law.kernels->raise_speed, law, b, c);
+      for (int i = 0; law.liquid && i < b.n; i++)
+        if (b.history[solid][i] >= 1.0) c[i] = solid_speed[i];
+    }
   }
 
   void stored_energy(const Batch &state, double *w) const override
@@ -218,6 +227,9 @@ class ComposedMaterial : public Material {
    *  expansion or by parameters: conduction and heat may have changed the temperature since. Else -1. */
   int seen = -1;
   bool expands = false;    ///< does it have thermal expansion?
+  /** History variable with the solid share to which the stress belongs, when what melts becomes a liquid with
+   *  a viscosity of its own; else -1. molten: the one with the molten fraction. */
+  int solid = -1, molten = -1;
   std::vector<HistoryVariable> variables;
   std::vector<ValidRange> valid;
   std::vector<int> source;    ///< of the quantities of these, as in UsedRange
@@ -238,7 +250,10 @@ class ComposedMaterial : public Material {
     take_viscous_stress(b);
     if (speed_matters) plain_speed(b, b.speed);
     if (!base) clear_stress(b);
-    run(base, b);
+    if (solid < 0)
+      run(base, b);
+    else
+      run_solid(b);
     if (damage) account_of_strength(b);
     for (int i = 0; i < b.n; i++) {
       b.heat[i] += outside[i];
@@ -249,7 +264,10 @@ class ComposedMaterial : public Material {
       added = -stress;
     });
     for (const auto &law : laws)
-      if (law.part == VISCOSITY) run(&law, b);
+      if (law.liquid)
+        run_liquid(law, b);
+      else if (law.part == VISCOSITY)
+        run(&law, b);
     with_viscous_stress(b, [](double stress, double &added) {
       added += stress;
     });
@@ -266,7 +284,10 @@ class ComposedMaterial : public Material {
     const Batch &b = without_viscous_stress(state, copy);
     for (int i = 0; i < b.n; i++) w[i] = 0.0;
     for (const auto &law : laws)
-      if (!(damage && law.part == STRENGTH)) add_energy(&law, b, w);
+      if (law.part == STRENGTH && solid >= 0)
+        add_energy_of_solid(b, w);
+      else if (!(damage && law.part == STRENGTH))
+        add_energy(&law, b, w);
   }
 
   /* ------------------------------------------------------------------ stress by temperature */
@@ -460,6 +481,103 @@ class ComposedMaterial : public Material {
           "gruneisen consistent: this material has no bulk modulus at rest, or is not "
           "isotropic: give 'gruneisen GAMMA' instead");
     return K;
+  }
+
+  /* ------------------------------------------------------------------ solids that melt */
+
+  void melt_and_solidify()
+  {
+    if (std::none_of(laws.begin(), laws.end(), [](const auto &law) {
+          return law.liquid;
+        }))
+      return;
+    solid = variables.size();
+    molten = std::find_if(variables.begin(), variables.end(),
+                          [](const auto &variable) {
+                            return variable.name == "molten";
+                          }) -
+        variables.begin();
+    variables.push_back({"solid", 1.0});
+  }
+
+  /** The strength of the solid part of the points. The elastic energy of shear that melts or is diluted is
+   *  heat, and counts as plastic work. */
+  void run_solid(Batch &b) const
+  {
+    double *const was = b.history[solid];
+    const MeltingSolid part(b, was, b.history[molten]);
+    if (part.complete) {
+      run(base, b);
+      return;
+    }
+    double lost[BATCH] = {}, rest[BATCH] = {};
+    if (part.changes) add_energy_of_solid(b, lost);
+    for (int i = 0; i < b.n; i++) was[i] = part.share[i];
+    for (auto &row : b.stress)
+      for (int i = 0; i < b.n; i++) row[i] *= part.to_solid(i);
+    // what is left of the history when a share of it is kept
+    const LawInfo &info = *base->info;
+    const int first = base->history,
+              last = first + info.count_history(base->parameters) +
+        info.nterm_history * base->parameters.nterms;
+    const auto keep = [&](int i, double share) {
+      for (int k = first; k < last; k++) {
+        double &h = b.history[k][i];
+        h = variables[k].initial + share * (h - variables[k].initial);
+      }
+    };
+    if (part.changes) {
+      for (int i = 0; i < b.n; i++) keep(i, part.kept(i));
+      add_energy(base, b, rest);
+      for (int i = 0; i < b.n; i++) {
+        lost[i] -= part.share[i] * rest[i];
+        b.work[PLASTIC] += b.vol0[i] * lost[i];
+        b.work[HEAT] += b.vol0[i] * lost[i];
+      }
+    }
+    {
+      const ShareOfVolume volume(b, part.share);
+      run(base, b);
+    }
+    for (int i = 0; i < b.n; i++)
+      if (part.share[i] == 0.0) keep(i, 0.0);
+    for (auto &row : b.stress)
+      for (int i = 0; i < b.n; i++) row[i] *= part.share[i];
+    for (int i = 0; i < b.n; i++) b.heat[i] = part.share[i] * b.heat[i] + lost[i];
+  }
+
+  /** Energy of the strength, which only the solid part stores. */
+  void add_energy_of_solid(const Batch &state, double *w) const
+  {
+    const double *const share = state.history[solid];
+    Batch b = state;
+    double whole[BATCH] = {};
+    for (auto &row : b.stress)
+      for (int i = 0; i < b.n; i++) row[i] = share[i] > 0.0 ? row[i] / share[i] : 0.0;
+    add_energy(base, b, whole);
+    for (int i = 0; i < b.n; i++) w[i] += share[i] * whole[i];
+  }
+
+  /** A viscosity of the molten part of the points. */
+  void run_liquid(const UsedLaw &law, Batch &b) const
+  {
+    double share[BATCH], heat[BATCH], stress[6][BATCH];
+    bool any = false;
+    for (int i = 0; i < b.n; i++) {
+      share[i] = 1.0 - b.history[solid][i];
+      any = any || share[i] > 0.0;
+    }
+    if (!any) return;
+    std::copy(b.heat, b.heat + b.n, heat);
+    memcpy(stress, b.stress, sizeof(stress));
+    {
+      const ShareOfVolume volume(b, share);
+      run(&law, b);
+    }
+    for (int i = 0; i < b.n; i++) b.heat[i] = heat[i] + share[i] * (b.heat[i] - heat[i]);
+    for (int k = 0; k < 6; k++)
+      for (int i = 0; i < b.n; i++)
+        b.stress[k][i] = stress[k][i] + share[i] * (b.stress[k][i] - stress[k][i]);
   }
 
   /* ------------------------------------------------------------------ parts */
@@ -749,6 +867,7 @@ class ComposedMaterial : public Material {
       text += std::string(" ") + info.term;
       for (int k = 0; k < info.nterm_parameters; k++) text += " " + number(p.term[term][k]);
     }
+    if (law.liquid) text += " liquid";
   }
 
   /** A parameter by its name, NAME or LAW.NAME, where LAW is the name of the part or of the closed law or, of
@@ -872,8 +991,16 @@ class ComposedMaterial : public Material {
   void plain_speed(const Batch &b, double *c) const
   {
     double k[BATCH] = {};
-    for (const auto &law : laws)
-      if (law.kernels->modulus) call(law.kernels->modulus, law, b, k);
+    for (const auto &law : laws) {
+      if (!law.kernels->modulus) continue;
+      if (law.part != STRENGTH || solid < 0) {
+        call(law.kernels->modulus, law, b, k);
+        continue;
+      }
+      double strong[BATCH] = {};
+      call(law.kernels->modulus, law, b, strong);
+      for (int i = 0; i < b.n; i++) k[i] += b.history[solid][i] * strong[i];
+    }
     table->speed(b.n, rho_pressure, k, c);
     if (random_density)
       for (int i = 0; i < b.n; i++) c[i] /= std::sqrt(b.history[random_density->row][i]);
