@@ -234,7 +234,60 @@ PARAMETER_TEST(Front, Moves, const char *, Values("melt 0.0 1.0", "melt 0.0 1.0 
     EXPECT_NEAR(all / run.fix("heat")->compute_scalar(), 1.0, 1e-11);
   }
   EXPECT_LT(std::fabs(error[2]), 0.01 * exact);
-  EXPECT_GT(measured("order", std::log2(std::fabs(error[0] / error[2])) / 2.0), 0.9);
+  EXPECT_GT(measured("order", 0.5 * std::log2(std::fabs(error[0] / error[2]))), 0.9);
+}
+
+// in steps of 30 explicit limits, too
+PARAMETER_TEST(FrontInStages, Moves, const char *, Values("melt 0.0 1.0", "melt 0.0 1.0 over 0.02"))
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  const int n = 50;
+  Scene run(bar_of(std::string("conducting 1.0 0 1.0 ") + GetParam(), n,
+                   "xlo temperature 1.0 stages 20"));
+  Warm warm(run);
+  run_to(run, 0.1, 30 * 0.3267 / (n * n));
+  const int molten = warm.material->find_history("molten");
+  double liquid = 0.0, all = 0.0;
+  for (int i = 0; i < run.n(); i++) {
+    const double f = warm.material->history[i][molten];
+    liquid += f / run.n();
+    all += run.mass()[i] * (warm.T(i) + f);
+  }
+  EXPECT_NEAR(measured("molten", liquid), 0.392, 0.01 * 0.392);
+  EXPECT_NEAR(all / run.fix("heat")->compute_scalar(), 1.0, 1e-11);
+}
+
+// A line sink in liquid at its melting point: the radius of the front is 2 * 0.5 sqrt(t) for Q = 4.033885, and it is round
+SERIAL_TEST(FrontIn2d, IsRound)
+{
+  const int n = 40;
+  const double h = 1.0 / n, reach = 2.0 * h;
+  Scene run(
+      plane("lj", "f f", "0 1 0 1", 1, 0.1 * h) +
+      strprintf("create_points 1 box spacing %.17g\nfix grid all mpm %.17g\n", 0.5 * h, h) +
+      "fix m all mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 1e-9 1.0 melt 0.0 "
+      "1.0\n" +
+      strprintf("variable s atom -4.033885/4*(sqrt(x*x+y*y)<%.17g)/v_area\n", reach) +
+      strprintf(
+          "variable inside atom (sqrt(x*x+y*y)<%.17g)*%.17g\ncompute area all reduce sum v_inside\n"
+          "variable area equal c_area\nfix heat all mpm/heat source v_s stages 1\n",
+          reach, 0.25 * h * h));
+  Warm warm(run);
+  const double end = 0.36;
+  run_to(run, end, 0.3 * h * h);
+  const int molten = warm.material->find_history("molten");
+  double ice = 0.0, low = 10.0, high = 0.0, all = 0.0;
+  for (int i = 0; i < run.n(); i++) {
+    const double f = warm.material->history[i][molten], *const x = run.x()[i];
+    const double r = std::hypot(x[0], x[1]);
+    ice += (1.0 - f) * 0.25 * h * h;
+    all += run.mass()[i] * (warm.T(i) - (1.0 - f));
+    if (f < 0.5) high = std::max(high, r);
+    if (f >= 0.5) low = std::min(low, r);
+  }
+  EXPECT_NEAR(measured("radius", std::sqrt(4.0 * ice / PI)), std::sqrt(end), 0.01 * std::sqrt(end));
+  EXPECT_LT(measured("roundness in cells", (high - low) / h), 1.5);
+  EXPECT_NEAR(all / run.fix("heat")->compute_scalar(), 1.0, 1e-7);
 }
 
 // Neumann: water of 10 degrees freezes below a wall of -20: 27.765 mm of ice after an hour

@@ -189,7 +189,6 @@ void FixMPMHeat::init_physics(MPMPlan &plan)
 {
   fields.clear();
   steps.clear();
-  told_of_melting = false;
   steps.add(in_step, present);
   for (auto *field : plan.fields) {
     const auto &o = field->options;
@@ -287,18 +286,6 @@ void FixMPMHeat::conduct()
   evaluate_variables();
   std::fill(in_step.begin(), in_step.end(), 0.0);
   const int stages = count_stages();
-  if (stages > 1 && !told_of_melting &&
-      std::any_of(fields.begin(), fields.end(), [](const auto &field) {
-        return field->melts();
-      })) {
-    told_of_melting = true;
-    if (comm->me == 0)
-      error->warning(
-          FLERR,
-          "Fix mpm/heat: the time step is longer than the explicit limit of conduction, "
-          "and the heat of fusion is taken up at its end: use stages 1 with fix mpm/dt for "
-          "fronts of melting");
-  }
   for (auto &field : fields)
     if (field->conducts()) field->faces.hold(field->temperature, in_step);
   dt_last = fields[0]->field.step_dt();

@@ -69,7 +69,6 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions
   Heats power;
   double dt_last = 0.0;
   bool power_known = true;
-  bool told_of_melting = false;
   int source_index = -1;
   std::vector<double> source_values;    // [n] of an atom-style variable
 

@@ -137,13 +137,6 @@ double MPMConduction::volume_of(int i) const
   return atom->vfrac[i] * field.points->jacobian(i);
 }
 
-bool MPMConduction::melts() const
-{
-  return std::any_of(thermals.begin(), thermals.end(), [](const Thermal &t) {
-    return t.molten >= 0;
-  });
-}
-
 /** The rotation R of F = R U, by R <- (R + R^-T)/2 (N.J. Higham, SIAM J. Sci. Stat. Comput. 7 (1986) 1160). */
 static void rotation(const double *F, double R[3][3])
 {

@@ -66,8 +66,6 @@ class MPMConduction : protected Pointers {
   double greatest_rate_of_points(tagint &tag) const;
   /** A material of the field conducts. */
   bool conducts() const { return !thermals.empty(); }
-  /** A material of the field melts. */
-  bool melts() const;
   double memory_usage() const;
 
  private:

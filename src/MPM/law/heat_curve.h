@@ -105,11 +105,13 @@ namespace {
       const double slope = d < 0.0 ? 0.0 : k[SLOPE];
       return k[ENTHALPY] + d * (k[CAPACITY] + 0.5 * slope * d) + latent * (molten - molten_at(T));
     }
-    /** Heat per mass and temperature, that of melting over a range included. */
+    /** Specific heat, without that of melting. With it, points that begin to melt in a step would take
+     *  what the nodes have got of it too late, and the error of a front be eight times as large. */
     MPM_INLINE double capacity(double T) const
     {
       const double *const k = below(T), d = T - k[TEMPERATURE];
-      return k[CAPACITY] + (d < 0.0 ? 0.0 : k[SLOPE] * d);
+      const bool melting = over > 0.0 && T >= melt && T < melt + over;
+      return k[CAPACITY] + (d < 0.0 ? 0.0 : k[SLOPE] * d) - (melting ? latent / over : 0.0);
     }
     /** Heat comes to a point. */
     MPM_INLINE void warm(double heat, double &T, double *molten) const
