@@ -77,6 +77,8 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
+static constexpr int AHEAD = 16;    // distance of prefetches, in points
+
 /* ---------------------------------------------------------------------- */
 
 MPMConduction::MPMConduction(LAMMPS *lmp, MPMField &field, const MPMHeatTransfer &transfer,
@@ -162,7 +164,8 @@ static void rotation(const double *F, double R[3][3])
 
 void MPMConduction::tensor(const Thermal &t, int i, double k[3][3]) const
 {
-  const Conduction c = t.at(i);
+  Conduction room;
+  const Conduction &c = t.at(i, room);
   for (int a = 0; a < 3; a++)
     for (int b = 0; b < 3; b++) k[a][b] = a == b ? c.conductivity : 0.0;
   if (c.orthotropic) {
@@ -217,7 +220,8 @@ double MPMConduction::steepness(int i) const
 /** Bound of the rate of a point with this volume; largest diffusivity for functions that points do not bound. */
 double MPMConduction::bound(const Thermal &t, int i, double volume) const
 {
-  const Conduction c = t.at(i);
+  Conduction room;
+  const Conduction &c = t.at(i, room);
   double most = c.most();
   if (total) {
     double k[3][3];
@@ -275,9 +279,11 @@ MPMConduction::Limits MPMConduction::points_to_nodes(const MPMRows &gradients)
       [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Points &points) {
         const Thermal *const t = thermal(run.material);
         if (!t) return false;
+        Conduction room;
         for (int p = 0; p < n; p++) {
           const int i = first + p;
-          const Conduction c = t->at(i);
+          __builtin_prefetch(field.points->F[std::min(first + p + AHEAD, run.last - 1)]);
+          const Conduction &c = t->at(i, room);
           const double C = atom->rmass[i] * c.capacity, V = volumes[i] = volume_of(i);
           points.capacity[p] = C;
           points.value[p] = t->fix->history[i][t->temperature];
@@ -301,6 +307,7 @@ void MPMConduction::find_rates(const double *source, Heats &power)
 {
   scalar.find_rates([&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
     const Thermal *const t = thermal(run.material);
+    Conduction room;
     for (int p = 0; p < n; p++) {
       const int i = first + p;
       const double V = volumes[i], conducting = shares.empty() ? V : V * shares[i];
@@ -310,7 +317,7 @@ void MPMConduction::find_rates(const double *source, Heats &power)
         MathExtra::matvec(k, q[p], flux);
         for (int d = 0; d < 3; d++) q[p][d] = -conducting * flux[d];
       } else {
-        const double factor = -conducting * t->at(i).conductivity;
+        const double factor = -conducting * t->at(i, room).conductivity;
         for (int d = 0; d < 3; d++) q[p][d] *= factor;
       }
       q[p][3] = source ? V * source[i] : 0.0;
@@ -334,9 +341,10 @@ double MPMConduction::nodes_to_points(const MPMRows &gradients)
       [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q,
           const double *before) {
         const Thermal *const t = thermal(run.material);
+        Conduction room;
         for (int p = 0; p < n; p++) {
           const int i = first + p;
-          const Conduction c = t->at(i);
+          const Conduction &c = t->at(i, room);
           double *const history = t->fix->history[i], &T = history[t->temperature];
           const double now = relaxes ? q[p][3] + keep * (T - before[p]) : q[p][3];
           got += atom->rmass[i] * c.capacity * (now - T);
@@ -370,6 +378,7 @@ double MPMConduction::greatest_rate_of_points(tagint &tag) const
   const int dim = field.lattice.dim;
   const bool bounded = steepest > 0.0 || field.boxes;
   double most = 0.0;
+  Conduction room;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!field.is_point(i)) continue;
     const Thermal *const t = thermal(field.material_of(i));
@@ -385,7 +394,7 @@ double MPMConduction::greatest_rate_of_points(tagint &tag) const
         for (int c = 0; c < 1 << dim; c++) least = std::min(least, fabs(x[dim * c + d]) / h);
       const double steep = field.domains ? 1.0 / (least * least) : 4.0 * dim;
       here = steep / (h * h) * greatest_row(dim, k) * volume_of(i) /
-          (atom->rmass[i] * t->at(i).capacity);
+          (atom->rmass[i] * t->at(i, room).capacity);
     }
     if (here <= most) continue;
     most = here;
