@@ -77,9 +77,11 @@ class MPMConduction : protected Pointers {
     int temperature, molten;    // columns of history
     bool varies;
     MPM_NS::Conduction all;    // or the mean
-    MPM_NS::Conduction at(int i) const
+    /** Of a point, which may be in the room. */
+    const MPM_NS::Conduction &at(int i, MPM_NS::Conduction &room) const
     {
-      return varies ? fix->material->conduction(fix->history[i]) : all;
+      if (!varies) return all;
+      return room = fix->material->conduction(fix->history[i]);
     }
   };
 

@@ -11,6 +11,7 @@
 
 #include "material/material.h"
 
+#include "law/heat_curve.h"
 #include "material/elastic_motion.h"
 #include "material/melting_solid.h"
 #include "material/parts.h"
@@ -110,13 +111,33 @@ class ComposedMaterial : public Material {
 
   bool is_thermoelastic() const override { return seen >= 0; }
   bool conducts() const override { return thermal && thermal->info->conduction; }
-  bool conduction_varies() const override { return conducts() && !thermal->random.empty(); }
+  bool conduction_varies() const override
+  {
+    return conducts() && (!thermal->random.empty() || !conducting.empty() || is_curved());
+  }
   Conduction conduction(const double *history) const override
   {
     const auto &of = thermal->info->conduction;
     if (!history || !conduction_varies()) return of(thermal->parameters);
+    const double T = history[thermal->history];
     LocalParameters local(*this, *thermal);
-    return of(local.at(history, 1));
+    LawParameters p = local.at(history, 1);
+    for (const auto &w : conducting) w.of(p) *= w.factor.at(T);
+    Conduction c = of(p);
+    if (is_curved()) c.capacity = heat_curve().capacity(T);
+    return c;
+  }
+  void warm(double *history, double heat) const override
+  {
+    double *const T = history + thermal->history;
+    const bool melts = thermal->info->count_history(thermal->parameters) > 1;
+    if (is_curved()) {
+      heat_curve().warm(heat, *T, melts ? T + 1 : nullptr);
+      return;
+    }
+    const Conduction c = conduction(history);
+    *T += heat / c.capacity;
+    if (melts) c.melting.settle(*T, T[1]);
   }
 
   void initialized() const override
@@ -226,7 +247,10 @@ class ComposedMaterial : public Material {
   /** History variable with the temperature to which the stress belongs, when stress depends on it by
    *  expansion or by parameters: conduction and heat may have changed the temperature since. Else -1. */
   int seen = -1;
-  bool expands = false;    ///< does it have thermal expansion?
+  bool expands = false;                     ///< does it have thermal expansion?
+  std::vector<WarmParameter> conducting;    ///< conductivities that depend on the temperature
+  std::unique_ptr<const TemperatureFactor>
+      capacity_factor;    ///< of the specific heat, a table; or null
   /** History variable with the solid share to which the stress belongs, when what melts becomes a liquid with
    *  a viscosity of its own; else -1. molten: the one with the molten fraction. */
   int solid = -1, molten = -1;
@@ -768,6 +792,37 @@ class ComposedMaterial : public Material {
     if (law.info->initialize) law.info->initialize(p, x, history + law.history);
   }
 
+  // of a thermal part
+
+  double thermal_value(const char *name) const
+  {
+    for (int k = 0; k < thermal->info->nparameters; k++)
+      if (!strcmp(thermal->info->parameters[k].name, name)) return thermal->parameters.value[k];
+    return 0.0;
+  }
+  /** Does heat give the temperature by the enthalpy? */
+  bool is_curved() const { return thermal && law::HeatCurve::is_curved(thermal->parameters); }
+  void make_heat_curve(UsedLaw &of) const
+  {
+    if (!capacity_factor && !(thermal_value("DT") > 0.0)) return;
+    for (const auto &r : of.random)
+      for (const char *name : {"CP", "TMELT", "LATENT", "DT"})
+        if (!strcmp(r.declaration(*of.info).name, name))
+          throw MaterialError(r.word,
+                              std::string("random ") + name +
+                                  ": not with melting over a range or a specific heat that varies");
+    const auto T = capacity_factor ? capacity_factor->knots() : std::vector<double>();
+    std::vector<double> factors;
+    for (const double t : T) factors.push_back(capacity_factor->at(t));
+    law::HeatCurve::make(of.parameters, T, factors, thermal_value("CP"), thermal_value("TMELT"),
+                         thermal_value("LATENT"), thermal_value("DT"));
+  }
+  law::HeatCurve heat_curve() const
+  {
+    return {thermal->parameters, thermal_value("TMELT"), thermal_value("LATENT"),
+            thermal_value("DT")};
+  }
+
   /** What a thermal part with parameters t tells another law. With a damage all plastic work goes to
    *  batch.heat, for account_of_strength(). */
   static void share_heat(const LawInfo &info, const LawParameters &t, bool heats_alone,
@@ -789,6 +844,8 @@ class ComposedMaterial : public Material {
       if (place[law.part]) *place[law.part] = &law;
       law.parameters.heat_density = rho * energy_scale;
     }
+    for (auto &law : laws)
+      if (&law == thermal) make_heat_curve(law);
     random_heat = thermal && random_heats();
     for (auto &law : laws) {
       LawParameters &p = law.parameters;
@@ -943,15 +1000,37 @@ class ComposedMaterial : public Material {
     if (!owner) refuse("no such parameter: choose one of " + choice);
     const LawInfo &info = *owner->info;
     const Parameter &declared = w.declaration(info);
-    if (owner->part == THERMAL && strcmp(declared.option, "expansion") != 0)
-      refuse("of a thermal part, only the coefficient of expansion can vary");
+    const bool of_capacity = owner->part == THERMAL && !strcmp(declared.name, "CP");
+    const bool of_conduction = owner->part == THERMAL && declared.name[0] == 'K';
+    if (owner->part == THERMAL && !of_capacity && !of_conduction &&
+        strcmp(declared.option, "expansion") != 0)
+      refuse("of a thermal part, only CP, the conductivities, and the coefficient of expansion can "
+             "vary");
     const double given = w.of(owner->parameters);
     if (given == 0.0 || !std::isfinite(given) || !strcmp(declared.unit, FLAG))
       refuse("its value is " + number(given) +
              ", which a factor does not change: give it another one");
-    for (const auto &other : owner->warm)
+    for (const auto &other : of_conduction ? conducting : owner->warm)
       if (other == w) refuse("is given twice");
-    owner->warm.push_back(w);
+    if (of_capacity) {
+      if (capacity_factor) refuse("is given twice");
+      if (!vary.factor.is_table()) refuse("the specific heat needs a table");
+      if (static_cast<int>(vary.factor.knots().size()) + law::HeatCurve::MORE >
+          LawParameters::MAX_TERMS)
+        refuse("a table of the specific heat can have " +
+               std::to_string(LawParameters::MAX_TERMS - law::HeatCurve::MORE) + " entries");
+      capacity_factor = std::make_unique<const TemperatureFactor>(vary.factor);
+    } else if (of_conduction) {
+      conducting.push_back(w);
+    } else {
+      owner->warm.push_back(w);
+    }
+    for (const double T : vary.factor.knots()) {
+      const double value = given * vary.factor.at(T);
+      if ((of_capacity || of_conduction) && !declared.range.contains(value))
+        refuse("it is " + number(value) + " at the temperature " + number(T) +
+               ", which is out of range");
+    }
     for (const auto &of_knots : owner->warm)
       for (const double T : of_knots.factor.knots()) {
         LawParameters p = owner->parameters;
