@@ -60,8 +60,9 @@ class MPMNodeScalar {
   void init(bool slopes, bool volumes);
   /** Capacities, volumes, and values of nodes; before = value. */
   void points_to_nodes(const Fill &);
-  /** Rates of the values of nodes. */
-  void find_rates(const Conduct &);
+  /** Rates of the values of nodes. more: adds to their rates times capacity what this rank knows of, before ranks
+   *  are summed. */
+  void find_rates(const Conduct &, const std::function<void()> &more = nullptr);
   /** changes: give the values of before, too. */
   void nodes_to_points(const Take &, bool changes);
 
