@@ -117,6 +117,8 @@ Options MPMBoundaryOptions::declare(int dim)
   o.add("friction",
         {number(friction, "mu", NOT_NEGATIVE, "1",
                 "Coulomb coefficient, for *slip* and *separate*")});
+  heat.declare(o, "it becomes heat of the material",
+               "share of it that becomes heat of the material");
   o.add("velocity",
         {variables(velocity, 3, "vx vy vz", "velocity",
                    "velocity of the wall, can be variables (see below); with *stick*, NULL leaves "
@@ -133,6 +135,7 @@ Options MPMBoundaryOptions::declare(int dim)
   o.refuse([=] {
     return OptionRules{
         {kind == STICK, "friction", "needs kind slip or separate"},
+        {heat.heats() && friction == 0.0, "heat", "is that of friction, which needs a coefficient"},
         {kind != STICK && !all_given(), "velocity", "allows NULL only with kind stick"},
         {!velocity[0].given && !velocity[1].given && (dim == 2 || !velocity[2].given), "velocity",
          "leaves all components free"},
@@ -196,6 +199,8 @@ FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, nar
                  "drop velocity and rotate, or the motion of the region",
                  region_id);
   }
+
+  if (heat.heats()) heating = std::make_unique<MPMFrictionHeat>(lmp, heat);
 
   scalar_flag = vector_flag = 1;
   size_vector = region_id.empty() ? 3 : 6;
@@ -1148,15 +1153,22 @@ void FixMPMBoundary::act(double dt, Stage stage)
     dt_last = dt;
     reaction_known = false;
   }
+  if (heating && count) heating->begin_step();
   const Wall in_step = wall;
   if (stage == START && !wall.uniform) wall = wall.at_end_of_step(dt);
   for (auto &list : nodes) {
     const auto &faces = list.faces;
     auto &ledger = list.field->ledger;
     if (count && kind == SEPARATE) find_gaps(list, dt);
-    now = {
-        count, stage == MAPPED_BACK || stage == AGAIN, ledger.on ? &ledger : nullptr, 0.0, 0.0, 0.0,
-        0.0};
+    now = {count,
+           stage == MAPPED_BACK || stage == AGAIN,
+           ledger.on ? &ledger : nullptr,
+           0.0,
+           0.0,
+           0.0,
+           0.0,
+           (int) (&list - nodes.data()),
+           nullptr};
     if (count && wall.uniform && !list.field->kernel.affine)
       now.old_share = list.field->options.flip;
 
@@ -1220,10 +1232,12 @@ void FixMPMBoundary::set_velocity(Grid &grid, int64_t node, const double *V, con
 {
   double *const record = grid.record(node);
   const int dim = grid.lattice.dim;
+  double change[3] = {0.0}, more = 0.0;
+  for (int d = 0; d < dim; d++) change[d] = v[d] - record[d];
+  if (now.normal) more = slip_work(grid, node, V, change, v, whole ? whole : v);
   if (now.counting && grid.owns(node)) {
-    double moved = 0.0, driven = 0.0, gained = 0.0, change[3] = {0.0}, change_old[3] = {0.0};
+    double moved = more, driven = 0.0, gained = 0.0, change_old[3] = {0.0};
     for (int d = 0; d < dim; d++) {
-      change[d] = v[d] - record[d];
       if (old) change_old[d] = old[d] - record[4 + d];
       const double push = change[d] - now.old_share * change_old[d];
       impulse[d] += record[3] * push;
@@ -1368,8 +1382,11 @@ void FixMPMBoundary::act_on_column(const FieldNodes &list, Line &column)
   const double slide = slide_share(column.contact, push, sqrt(needed));
   if (column.contact == FREE) return;
   for (int d = 0; d < dim; d++) prescribed.share[d] = d == a ? 1.0 : slide;
+  const double normal[3] = {(double) (a == 0), (double) (a == 1), (double) (a == 2)};
+  heat_if_sliding(column.contact, normal);
   if (r[3] > 0.0) project(grid, &plane, 1, true, prescribed);
   for (int k = 0; k < npairs; k++) project(grid, pairs[k].members, 2, false, prescribed);
+  now.normal = nullptr;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -1420,11 +1437,13 @@ void FixMPMBoundary::act_on_single(const FieldNodes &list, Single &single)
     const double keep = 1.0 - slide_share(single.contact, push, sqrt(length));
     if (single.contact == FREE) return;
     for (int d = 0; d < dim; d++) v[d] = V[d] + keep * slide[d];
+    heat_if_sliding(single.contact, n);
   }
   const double whole[3] = {v[0], v[1], v[2]};
   for (int d = 0; d < dim && single.share < 1.0; d++) v[d] = r[d] + single.share * (v[d] - r[d]);
   count_moment(grid, single.node, r, v);
   set_velocity(grid, single.node, V, v, nullptr, whole);
+  now.normal = nullptr;
 }
 
 /* ----------------------------------------------------------------------
@@ -1491,7 +1510,7 @@ void FixMPMBoundary::restart(char *buf)
 
 double FixMPMBoundary::memory_usage()
 {
-  double bytes = 0.0;
+  double bytes = heating ? heating->memory_usage() : 0.0;
   for (const auto &list : nodes)
     bytes += list.lines.capacity() * sizeof(Line) + list.members.capacity() * sizeof(Member) +
         list.orbits.capacity() * sizeof(Orbit) + list.singles.capacity() * sizeof(Single) +

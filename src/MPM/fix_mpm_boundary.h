@@ -18,6 +18,7 @@ FixStyle(mpm/boundary,FixMPMBoundary);
 #include "declare/option.h"
 #include "fix.h"
 #include "mpm_first_note.h"
+#include "mpm_friction_heat.h"
 #include "mpm_node_action.h"
 #include "mpm_region_surface.h"
 #include "mpm_wall_gap.h"
@@ -44,6 +45,7 @@ struct MPMBoundaryOptions {
   MPM_NS::NumberOrVariable velocity[3], rate;    ///< of those not given, material is free
   double center[3] = {0.0, 0.0, 0.0}, axis[3] = {0.0, 0.0, 0.0};    ///< of the rotation
   std::string field_id;                                             ///< empty: all fields
+  MPMFrictionHeatOptions heat;
 
   bool all_given() const { return velocity[0].given && velocity[1].given && velocity[2].given; }
   /** Does contact depend on the impulse? */
@@ -63,6 +65,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   FixMPMBoundary(class LAMMPS *, int, char **);
   int setmask() override { return 0; }    // called by fix mpm
   void init() override;
+  void init_action() override;
   void setup(int) override;
   void post_run() override { report_width(); }
   void write_restart(FILE *) override;
@@ -255,8 +258,11 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
     double old_share;           // FLIP share when old velocities are constrained, too; otherwise 0
     double kinetic;             // gained by the nodes
     double driven;              // the part of it that is done by the motion of the wall
-    double collided;    // ledger: kinetic energy lost where nodes cannot keep their velocity
+    double collided;         // ledger: kinetic energy lost where nodes cannot keep their velocity
+    int place;               // of the field in the list
+    const double *normal;    // of the wall on which nodes slide and become warm; null: they do not
   } now;
+  std::unique_ptr<MPMFrictionHeat> heating;    // null: not asked for
 
   bool region_moves() const;
   /** Does a region act on lines of nodes through its surface? Else on nodes inside, one by one. */
@@ -288,6 +294,9 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   double slide_share(Contact &, double push, double needed) const;
   void set_velocity(MPM_NS::Grid &, int64_t node, const double *V, const double *v,
                     const double *old, const double *whole = nullptr);
+  void heat_if_sliding(Contact, const double *normal);
+  double slip_work(MPM_NS::Grid &, int64_t node, const double *V, const double *change,
+                   const double *v, const double *counted);
   void count_moment(const MPM_NS::Grid &, int64_t node, const double *record, const double *v);
   static bool is_constrained(MPM_NS::Grid &, const Member *, int n, bool fixed);
   void project(MPM_NS::Grid &, const Member *, int n, bool fixed, const Prescribed &);

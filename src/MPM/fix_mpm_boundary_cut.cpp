@@ -176,6 +176,7 @@ void FixMPMBoundary::act_on_cut(const FieldNodes &list, Line &cut, bool last)
   const auto prescribed = [&](int d) {
     return velocity[d].given && (d == a) == last;
   };
+  const double normal[3] = {(double) (a == 0), (double) (a == 1), (double) (a == 2)};
   double lambda[3] = {0.0, 0.0, 0.0}, lambda_old[3] = {0.0, 0.0, 0.0};
   double change[3][4], change_old[3][4] = {};
   double relative[4];    // of the nodes to the wall
@@ -202,6 +203,7 @@ void FixMPMBoundary::act_on_cut(const FieldNodes &list, Line &cut, bool last)
     const double slide = slide_share(cut.contact, push, total * sqrt(needed));
     if (cut.contact == FREE) return;
     for (int d = 0; d < dim; d++) share[d] = d == a ? 1.0 : slide;
+    heat_if_sliding(cut.contact, normal);
   }
 
   for (int k = 0; k < m; k++) {
@@ -212,6 +214,7 @@ void FixMPMBoundary::act_on_cut(const FieldNodes &list, Line &cut, bool last)
     }
     set_velocity(grid, chain.node[k], V[k], v, hold ? old : nullptr);
   }
+  now.normal = nullptr;
 }
 
 /* ----------------------------------------------------------------------
@@ -250,6 +253,7 @@ void FixMPMBoundary::act_on_crossing(const FieldNodes &list, Crossing &crossing)
   const double push = crossing.touched ? chain.total * normal : 0.0;
   const double share = slide_share(crossing.contact, push, chain.total * sqrt(needed));
   if (crossing.contact == FREE) return;
+  heat_if_sliding(crossing.contact, n);
   for (int k = 0; k < chain.m; k++) {
     double v[3], along = 0.0;
     for (int d = 0; d < dim; d++) along += change[d][k] * n[d];
@@ -258,4 +262,5 @@ void FixMPMBoundary::act_on_crossing(const FieldNodes &list, Crossing &crossing)
     count_moment(grid, chain.node[k], chain.r[k], v);
     set_velocity(grid, chain.node[k], chain.V[k], v, nullptr);
   }
+  now.normal = nullptr;
 }

@@ -128,8 +128,15 @@ Options MPMContactOptions::declare()
             {optional(number(
                 full, "share", {0.5, 1.0, true}, "",
                 "share of the volume of a node that they fill when they touch; default: 1"))}}})});
+  heat.declare(o,
+               "it becomes heat, which two bodies share like their effusivities "
+               ":math:`\\sqrt{k \\rho c}`",
+               "share of it for the body that is named first, the other one has the rest");
   o.refuse([=] {
+    const bool slides = law == ADHESIVE || (law == COULOMB && kinetic_friction > 0.0);
     return OptionRules{
+        {heat.heats() && !slides, "heat",
+         "is that of friction: use law coulomb or adhesive, or drop the keyword"},
         {law == COULOMB && static_friction >= 0.0 && static_friction < kinetic_friction, "law",
          "coulomb: the coefficient of static friction must not be below that of friction: {law}"},
         {law == ADHESIVE && (normal_strength == 0.0 || release_work == 0.0), "law",
@@ -166,6 +173,8 @@ FixMPMContact::FixMPMContact(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg,
 
   read_options(lmp, options, narg, arg, iarg);
   if (static_friction < 0.0 || law == ADHESIVE) static_friction = kinetic_friction;
+
+  if (heat.heats()) heating = std::make_unique<MPMFrictionHeat>(lmp, heat);
 
   scalar_flag = array_flag = 1;
   size_array_rows = (int) (names.size() * (names.size() - 1) / 2);
@@ -230,6 +239,16 @@ void FixMPMContact::init()
   look = true;
   steps = 0;
   unsolved.begin();
+}
+
+/** Called by fix mpm, whose init() may come before this one; a missing field is found here. */
+void FixMPMContact::init_action()
+{
+  if (!heating) return;
+  FixMPMContact::init();
+  std::vector<MPMField *> fields;
+  for (const auto &body : bodies) fields.push_back(body.field);
+  heating->begin_run(*this, fields);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -1093,6 +1112,33 @@ void FixMPMContact::resolve_all(double dt, bool decided)
     for (const auto &meeting : meetings) account(*meeting.node, meeting.start);
 }
 
+double FixMPMContact::Pair::Walls::velocity_of(const double *record, int d) const
+{
+  if (held >> d & 1) return velocity[d];
+  if (mirrored >> d & 1) return velocity[d] + (record[d] - start[d]) * record[3] / mass[d];
+  return record[d];
+}
+
+/** Heat of two bodies that slide, which goes to their nodes. */
+double FixMPMContact::heat_of(const Pair &pair, bool owned)
+{
+  const int dim = bodies[0].field->lattice.dim;
+  double J[3], old[3], now[3];
+  for (int d = 0; d < dim; d++) {
+    J[d] = pair.left >> d & 1 ? 0.0 : pair.tangential[d];
+    old[d] = pair.rb[4 + d] - pair.ra[4 + d];
+    now[d] = pair.rb[d] - pair.ra[d];
+    if (pair.alike) continue;
+    const auto &a = pair.walls_a, &b = pair.walls_b;
+    now[d] = b.velocity_of(pair.rb, d) - a.velocity_of(pair.ra, d);
+    old[d] = (b.held >> d & 1 ? b.velocity[d] : pair.rb[4 + d]) -
+        (a.held >> d & 1 ? a.velocity[d] : pair.ra[4 + d]);
+  }
+  const double heat = heating->made(J, old, now, dim);
+  heating->between(pair.a, pair.ra, pair.b, pair.rb, heat, owned);
+  return heat;
+}
+
 /* ----------------------------------------------------------------------
    forces between bodies, work of the friction, and the ledgers of the fields
 ------------------------------------------------------------------------- */
@@ -1100,15 +1146,26 @@ void FixMPMContact::resolve_all(double dt, bool decided)
 void FixMPMContact::account(const Node &node, const Velocities &start)
 {
   const int dim = bodies[0].field->lattice.dim;
-  for (int p = node.first; p < node.last && node.owned; p++) {
+  for (int p = node.first; p < node.last; p++) {
     const Pair &pair = pairs[p];
     if (pair.state == OPEN) continue;
+    const double heat = heating && pair.state == SLIDING ? heat_of(pair, node.owned) : 0.0;
+    if (!node.owned) continue;
     Account &entry = accounts[pair_index(pair.a, pair.b, (int) bodies.size())];
     entry.count += 1.0;
+    double work = 0.0;
     for (int d = 0; d < dim; d++) {
       entry.impulse[d] += pair.impulse(d);
-      entry.work += pair.tangential[d] * (pair.rb[d] - pair.ra[d]);
+      work += pair.tangential[d] * (pair.rb[d] - pair.ra[d]);
     }
+    if (heating) {    // the mean of old and new velocities, also for the ledger
+      auto &ledger = bodies[pair.a].field->ledger;
+      const double more = -heat - work * force->mvv2e;
+      ledger.contact += more;
+      ledger.transfer -= more;
+      work = -heat / force->mvv2e;
+    }
+    entry.work += work;
   }
   for (std::size_t k = 0; k < bodies.size(); k++) {
     const double *record = node.record[k];
@@ -1136,6 +1193,7 @@ void FixMPMContact::act(double dt, Stage stage)
       if (look) warn_overlap();
       find_contacts();
       if (normal_by == LOGISTIC) separate_points();
+      if (heating) heating->begin_step();
     }
     look = false;
   } else if (!nodes.empty()) {
@@ -1223,8 +1281,8 @@ void FixMPMContact::restart(char *buf)
 
 double FixMPMContact::memory_usage()
 {
-  double bytes = pairs.capacity() * sizeof(Pair) + nodes.capacity() * sizeof(Node) +
-      common.capacity() * sizeof(Common);
+  double bytes = (heating ? heating->memory_usage() : 0.0) + pairs.capacity() * sizeof(Pair) +
+      nodes.capacity() * sizeof(Node) + common.capacity() * sizeof(Common);
   for (const auto &body : bodies)
     bytes += (body.gradient.capacity() + body.share.capacity() + body.foreseen.held.capacity()) *
         sizeof(double);

@@ -20,10 +20,12 @@ FixStyle(mpm/contact,FixMPMContact);
 #include "fix_mpm_boundary.h"
 #include "math/aitken.h"
 #include "mpm_first_note.h"
+#include "mpm_friction_heat.h"
 #include "mpm_node_action.h"
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -45,6 +47,7 @@ struct MPMContactOptions {
   double normal_strength = 0.0, shear_strength = 0.0, release_work = 0.0;
   bool gap = true;
   double full = 1.0;    ///< with gap: volume share of a node at which bodies touch
+  MPMFrictionHeatOptions heat;
 
   MPM_NS::Options declare();
 };
@@ -56,6 +59,7 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
   FixMPMContact(class LAMMPS *, int, char **);
   int setmask() override { return 0; }    // called by fix mpm
   void init() override;
+  void init_action() override;
   void post_run() override { report_unsolved(); }
   void write_restart(FILE *) override;
   void restart(char *) override;
@@ -98,6 +102,8 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
       double start[3];       // velocity of the node now
 
       bool moves_with_images(const double *record) const;
+      /** Component of the velocity of this record, or what walls make of it. */
+      double velocity_of(const double *record, int d) const;
     } walls_a, walls_b;
     bool alike;    // they do the same to both
     char left;     // components that are left to the walls, or to contact at the image of the node
@@ -179,6 +185,7 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
 
   double dt_last = 0.0;
   Account accounts[MAX_PAIRS] = {};
+  std::unique_ptr<MPMFrictionHeat> heating;    // null: not asked for
   double array[MAX_PAIRS][5] = {};
   bigint array_step = -1;
 
@@ -204,6 +211,7 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
   void resolve_all(double dt, bool decided);
   void apply(Pair &, int nothers, double &largest, double dt, bool decided);
   void account(const Node &, const Velocities &start);
+  double heat_of(const Pair &, bool owned);
 };
 
 }    // namespace LAMMPS_NS

@@ -113,7 +113,8 @@ FixMPMHeat::FixMPMHeat(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, nar
   Options options = declare(domain->dimension);
   read_options(lmp, options, narg, arg, 3);
   scalar_flag = vector_flag = 1;
-  size_vector = (int) power.size();
+  size_vector = NCAME + NGIVER;
+  for (auto *heats : {&came, &in_step, &present, &power}) heats->assign(size_vector, 0.0);
   global_freq = 1;
   extscalar = extvector = 1;
   restart_global = 1;
@@ -187,17 +188,19 @@ void FixMPMHeat::init()
 void FixMPMHeat::init_physics(MPMPlan &plan)
 {
   fields.clear();
+  steps.clear();
+  steps.add(in_step, present);
   for (auto *field : plan.fields) {
     const auto &o = field->options;
-    refuse_field(
-        lmp, *this, *field,
-        {{o.shape != QUADRATIC && o.shape != CUBIC, "this shape", "use shape quadratic or cubic"},
-         {o.total, "frame total", "use frame updated"},
-         {o.axisymmetric, "axisymmetric", "use a plane or 3d"},
-         {o.modified_edges, "edges modified", "use edges plain"}});
-    fields.push_back(
-        std::make_unique<MPMConduction>(lmp, *field, transfer, most_stages, conditions));
+    refuse_field(lmp, *this, *field,
+                 {{o.modified_edges, "edges modified", "use edges plain"},
+                  {o.axisymmetric && domain->boxlo[0] <= 1.0e-6 * field->lattice.h &&
+                       conditions[0].kind != MPMHeatCondition::INSULATED,
+                   "a condition at xlo, which is the axis of symmetry", "leave xlo insulated"}});
+    if (gradients) field->slopes.push_back(&gradients);
+    fields.push_back(std::make_unique<MPMConduction>(lmp, *field, transfer, conditions));
     fields.back()->init(sigma());
+    if (fields.back()->conducts()) steps.add(fields.back()->temperature, fields.back()->rate);
   }
 }
 
@@ -237,16 +240,72 @@ void FixMPMHeat::evaluate_variables()
   });
 }
 
+/* ----------------------------------------------------------------------
+   temperatures of nodes, and the stages that all fields need for their step
+------------------------------------------------------------------------- */
+
+int FixMPMHeat::count_stages()
+{
+  std::vector<double> mine, all;
+  for (auto &field : fields) {
+    const auto limits = field->conducts() ? field->points_to_nodes(gradients)
+                                          : MPMConduction::Limits{0.0, 0.0};
+    mine.push_back(limits.conduction);
+    mine.push_back(limits.exchange);
+  }
+  all.resize(mine.size());
+  MPI_Allreduce(mine.data(), all.data(), (int) all.size(), MPI_DOUBLE, MPI_MAX, world);
+  double greatest = 0.0;
+  for (std::size_t k = 0; k < fields.size(); k++)
+    greatest = std::max(greatest, fields[k]->greatest_rate({all[2 * k], all[2 * k + 1]}));
+
+  const double dt = fields[0]->field.step_dt(), limit = MPMSuperStep::explicit_limit(greatest);
+  const int stages = MPMSuperStep::count(dt, limit, most_stages);
+  if (stages > most_stages)
+    error->all(FLERR, Error::NOLASTLINE,
+               "The time step {:.6g} is {:.4g} times the explicit limit {:.4g} of the conduction "
+               "of heat, which needs more than {} stages: use fix mpm/dt, a smaller timestep, or "
+               "fix mpm/heat ... stages",
+               dt, dt / limit, limit, most_stages);
+  return stages;
+}
+
+void FixMPMHeat::find_rates()
+{
+  std::fill(present.begin(), present.end(), 0.0);
+  for (auto &field : fields) {
+    if (!field->conducts()) continue;
+    field->find_rates(source.empty() ? nullptr : source_values.data(), present);
+    field->faces.add_rates(field->temperature, field->rate, present);
+    field->faces.hold_rates(field->rate, present);
+  }
+}
+
 void FixMPMHeat::conduct()
 {
   evaluate_variables();
-  in_step.fill(0.0);
+  std::fill(in_step.begin(), in_step.end(), 0.0);
+  const int stages = count_stages();
   for (auto &field : fields)
-    if (field->conducts())
-      past.got += field->step(gradients, source.empty() ? nullptr : source_values.data(), in_step);
-  for (std::size_t k = 0; k < in_step.size(); k++) past.came[k] += in_step[k];
+    if (field->conducts()) field->faces.hold(field->temperature, in_step);
   dt_last = fields[0]->field.step_dt();
+  steps.advance(stages, dt_last, [this]() {
+    find_rates();
+  });
+  for (auto &field : fields) {
+    if (field->conducts()) got += field->nodes_to_points(gradients);
+    field->given.clear();
+  }
+  std::copy_n(booked, NGIVER, in_step.begin() + NCAME);
+  std::fill_n(booked, NGIVER, 0.0);
+  for (std::size_t k = 0; k < came.size(); k++) came[k] += in_step[k];
   power_known = false;
+}
+
+double FixMPMHeat::stable_dt(const MPMField &field, tagint &tag) const
+{
+  return MPMSuperStep::reach(most_stages) *
+      MPMSuperStep::explicit_limit(of(field).greatest_rate_of_points(tag));
 }
 
 /* ----------------------------------------------------------------------
@@ -256,7 +315,7 @@ void FixMPMHeat::conduct()
 double FixMPMHeat::compute_scalar()
 {
   double mine = 0.0, all;
-  for (const double heat : past.came) mine += heat;
+  for (const double heat : came) mine += heat;
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all;
 }
@@ -277,36 +336,45 @@ double FixMPMHeat::compute_vector(int i)
 
 std::vector<MPMPhysics::Account> FixMPMHeat::accounts() const
 {
-  return {{"conducted heat", true}, {"heat through faces", false}, {"heat of sources", false}};
+  return {{"conducted heat", true},
+          {"heat through faces", false},
+          {"heat of sources", false},
+          {"heat of friction", false}};
 }
 
 void FixMPMHeat::account(double *values) const
 {
-  values[0] += past.got;
-  for (int face = 0; face < MPMHeatFaces::NFACE; face++) values[1] += past.came[face];
-  values[2] += past.came[MPMConduction::SOURCES];
+  values[0] += got;
+  for (int face = 0; face < MPMHeatFaces::NFACE; face++) values[1] += came[face];
+  values[2] += came[MPMConduction::SOURCES];
+  for (int k = 0; k < NGIVER; k++) values[3 + k] += came[NCAME + k];
 }
 
 /* ---------------------------------------------------------------------- */
 
 void FixMPMHeat::write_restart(FILE *fp)
 {
-  keep_totals(world, past.came.data(), size_vector);
-  keep_totals(world, &past.got, 1);
+  keep_totals(world, came.data(), size_vector);
+  keep_totals(world, &got, 1);
   if (comm->me) return;
-  const int size = sizeof(Past);
+  const int size = (size_vector + 1) * (int) sizeof(double);
   fwrite(&size, sizeof(int), 1, fp);
-  fwrite(&past, size, 1, fp);
+  fwrite(came.data(), sizeof(double), came.size(), fp);
+  fwrite(&got, sizeof(double), 1, fp);
 }
 
 void FixMPMHeat::restart(char *buf)
 {
-  if (comm->me == 0) memcpy(&past, buf, sizeof(Past));
+  if (comm->me) return;
+  const double *const values = (double *) buf;
+  std::copy_n(values, came.size(), came.begin());
+  got = values[came.size()];
 }
 
 double FixMPMHeat::memory_usage()
 {
-  double bytes = FixMPMState::memory_usage() + source_values.capacity() * sizeof(double);
+  double bytes = FixMPMState::memory_usage() + steps.memory_usage() +
+      source_values.capacity() * sizeof(double);
   for (const auto &field : fields) bytes += field->memory_usage();
   return bytes;
 }

@@ -18,7 +18,9 @@ FixStyle(mpm/heat,FixMPMHeat);
 #include "mpm_conduction.h"
 #include "mpm_physics.h"
 #include "mpm_state.h"
+#include "mpm_super_step.h"
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -51,33 +53,39 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions
   void add_stages(MPMPlan &, MPMPlan::Place) override;
   void extend_topology(MPMField &field) override { of(field).faces.extend_topology(); }
   void topology_changed(MPMField &field) override { of(field).faces.topology_changed(); }
-  double stable_dt(const MPMField &field, tagint &tag) const override
-  {
-    return of(field).stable_dt(tag);
-  }
+  double stable_dt(const MPMField &field, tagint &tag) const override;
   std::vector<Account> accounts() const override;
   void account(double *values) const override;
 
+  MPMConduction &of(const MPMField &) const;
+
+  /** Who else gives heat to nodes and points. */
+  enum Giver { FRICTION, NGIVER };
+  /** Heat that nodes or points of this rank were given in this step [energy], before they conduct. */
+  void book(Giver giver, double heat) { booked[giver] += heat; }
+
  private:
   using Heats = MPMConduction::Heats;
-  struct Past {    // so far, this rank's share; in restart files that of all ranks
-    Heats came;    // through faces, and of sources
-    double got;    // by points
-  };
 
   MPMRows gradients;    // [n][dim] of the temperature at points; not with transfer pic
   std::vector<std::unique_ptr<MPMConduction>> fields;
-  Past past = {};
-  Heats in_step = {};    // heat of the last step, this rank's share
-  Heats power = {};
+  MPMSuperStep steps;    // of the temperatures of all fields together
+  // so far, this rank's share, in restart files that of all ranks: heat through faces and of sources; of points
+  Heats came;
+  double got = 0.0;
+  Heats in_step, present;    // heat of the last step, and power in a stage of it, this rank's share
+  Heats power;
+  static constexpr int NCAME = MPMHeatFaces::NFACE + 1;    // then those of givers
+  double booked[NGIVER] = {};                              // by givers since the last step
   double dt_last = 0.0;
   bool power_known = true;
   int source_index = -1;
   std::vector<double> source_values;    // [n] of an atom-style variable
 
-  MPMConduction &of(const MPMField &) const;
   double sigma() const;
   void evaluate_variables();
+  int count_stages();
+  void find_rates();
   void conduct();
 };
 

@@ -61,6 +61,8 @@ Options MPMRigidOptions::declare()
   o.add("friction",
         {number(friction, "mu", NOT_NEGATIVE, "1",
                 "coefficient of friction, for *slip* and *separate*")});
+  heat.declare(o, "it becomes heat of the material, not of the body",
+               "share of it that becomes heat of the material");
   o.add("velocity",
         {numbers(v, 3, "vx vy vz", ANY_NUMBER, "velocity", "velocity of the center at the start")});
   o.add("omega",
@@ -77,7 +79,9 @@ Options MPMRigidOptions::declare()
                 "components of the velocity and of the angular velocity that stay zero")})
       .standard("nothing");
   o.refuse([=] {
-    OptionRules rules = {{kind == STICK, "friction", "is for slip and separate"}};
+    OptionRules rules = {{kind == STICK, "friction", "is for slip and separate"},
+                         {heat.heats() && friction == 0.0, "heat",
+                          "is that of friction, which needs a coefficient"}};
     for (int a = 0; a < 3; a++) {
       const std::string axis(1, "xyz"[a]);
       rules.push_back(
@@ -96,6 +100,7 @@ FixMPMRigid::FixMPMRigid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
     error->all(FLERR, 1, "Fix mpm/rigid acts on nodes, which have no group: use group all");
   Options options = declare();
   read_options(lmp, options, narg, arg, 3);
+  if (heat.heats()) heating = std::make_unique<MPMFrictionHeat>(lmp, heat);
   auto *region = dynamic_cast<RegMPMMesh *>(domain->get_region_by_id(region_id));
   if (!region)
     error->all(FLERR, 3, "Fix mpm/rigid needs a region of style mpm/mesh: {}", region_id);
@@ -157,6 +162,11 @@ void FixMPMRigid::init()
     find_variable(lmp, load[d], "fix mpm/rigid force");
     find_variable(lmp, moment[d], "fix mpm/rigid torque");
   }
+}
+
+void FixMPMRigid::init_action()
+{
+  if (heating) heating->begin_run(*this, MPMField::all(lmp));
 }
 
 /* ----------------------------------------------------------------------
@@ -263,7 +273,9 @@ void FixMPMRigid::find_contacts()
 {
   contacts.clear();
   const double radius = FixMPMRigid::radius();
+  int place = -1;
   for (auto *field : MPMField::all(lmp)) {
+    place++;
     auto &grid = field->grid;
     const double half = 0.5 * (grid.side - 1) * field->lattice.h;
     for (std::size_t slot = 0; slot < grid.blocks.size(); slot++) {
@@ -291,6 +303,7 @@ void FixMPMRigid::find_contacts()
         MathExtra::copy3(c.record, c.v);
         if (kind != STICK && !find_normal(p, c)) continue;
         c.field = field;
+        c.place = place;
         c.owned = block.owned >> n & 1;
         c.state = kind == STICK ? Contact::STICKS : Contact::SLIDES;
         contacts.push_back(c);
@@ -421,6 +434,7 @@ void FixMPMRigid::solve()
           sum[3 + d] -= moment[d];
         }
       c.field->ledger.push_node(c.record, c.owned, push);
+      if (heating && c.state == Contact::SLIDES) heat_node(c, m * normal, u.data());
     }
     MPI_Allreduce(sum, impulse, 6, MPI_DOUBLE, MPI_SUM, world);
     for (int d = 0; d < 3; d++) {
@@ -429,6 +443,30 @@ void FixMPMRigid::solve()
     }
     return;
   }
+}
+
+/* ----------------------------------------------------------------------
+   heat of friction at a node that slides, and the work that goes with it, which the ledger has with the new
+   velocity; u: velocity and angular velocity of the body after the contact
+------------------------------------------------------------------------- */
+
+void FixMPMRigid::heat_node(const Contact &c, double normal_impulse, const double *u)
+{
+  double J[3], old[3], now[3], work = 0.0;
+  MathExtra::cross3(omega, c.r, old);
+  MathExtra::cross3(u + 3, c.r, now);
+  for (int d = 0; d < 3; d++) {
+    J[d] = normal_impulse * c.pull[d];
+    old[d] = c.record[4 + d] - old[d] - v[d];
+    now[d] = c.record[d] - now[d] - u[d];
+    work += J[d] * now[d];
+  }
+  const double made = heating->made(J, old, now, 3);
+  heating->at_wall(c.place, c.record, made, c.owned);
+  if (!c.owned) return;
+  const double more = -made - work * force->mvv2e;
+  c.field->ledger.contact += more;
+  c.field->ledger.transfer -= more;
 }
 
 /* ----------------------------------------------------------------------
@@ -476,6 +514,7 @@ void FixMPMRigid::act(double dt, Stage stage)
       if (fixed[3 + d]) L[d] = 0.0;
     }
     find_contacts();
+    if (heating) heating->begin_step();
     solve();
     move(dt);
     check_motion(dt);

@@ -17,9 +17,11 @@ FixStyle(mpm/rigid,FixMPMRigid);
 
 #include "declare/option.h"
 #include "fix.h"
+#include "mpm_friction_heat.h"
 #include "mpm_node_action.h"
 
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -52,6 +54,7 @@ struct MPMRigidOptions : MPMRigidMotion {
   double gravity[3] = {0.0, 0.0, 0.0};
   MPM_NS::NumberOrVariable load[3], moment[3];                   ///< force and torque
   bool fixed[6] = {false, false, false, false, false, false};    ///< velocities that stay zero
+  MPMFrictionHeatOptions heat;
 
   MPM_NS::Options declare();
 };
@@ -65,6 +68,7 @@ class FixMPMRigid : public Fix, public MPMNodeAction, private MPMRigidOptions {
   FixMPMRigid(class LAMMPS *, int, char **);
   int setmask() override { return 0; }    // called by fix mpm
   void init() override;
+  void init_action() override;
   void write_restart(FILE *) override;
   void restart(char *) override;
   double compute_scalar() override;
@@ -80,6 +84,7 @@ class FixMPMRigid : public Fix, public MPMNodeAction, private MPMRigidOptions {
   struct Contact {    // a node inside of the body
     enum State { APART, SLIDES, STICKS };
     MPMField *field;
+    int place;         // of the field in the list of all
     double *record;    // of the node: its velocity and mass
     bool owned;
     State state;
@@ -96,11 +101,13 @@ class FixMPMRigid : public Fix, public MPMNodeAction, private MPMRigidOptions {
   double mass;
   double body_inertia[3][3];    // about the center, in the frame of the mesh
   std::vector<Contact> contacts;
+  std::unique_ptr<MPMFrictionHeat> heating;    // null: not asked for
 
   void load_impulse(double dt);
   void find_contacts();
   bool find_normal(const std::array<double, 3> &, Contact &) const;
   void solve();
+  void heat_node(const Contact &, double normal_impulse, const double *u);
   void move(double dt);
   double radius() const;
   double speed() const;

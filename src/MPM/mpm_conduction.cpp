@@ -36,19 +36,36 @@
 
    as functions are products along the axes, for which the matrix sum_i grad N grad N^T/N is diagonal. The
    sum is at most 6/h^2 for quadratic B-splines and 3.2/h^2 for cubic ones, in any dimension and wherever
-   points are; the explicit limit 2 over this is about 0.33 h^2 density c/k for the former. Linear functions have no such bound.
+   points are; the explicit limit 2 over this is about 0.33 h^2 density c/k for the former. With a tensor k it is the greatest
+   eigenvalue that counts. A function of GIMP of a point with the half size s (in cells, at most 1/2) has at most 2/s + 1/(1 - s), and with
+   domains, N_ip = sum_c w_c N_i(x_c) over corners c, grad N_ip = sum_c g_c N_i(x_c), and by Cauchy and Schwarz sum_i grad N
+   grad N^T/N <= sum_c g_c g_c^T/w_c.
 
-   Longer steps are made of stages: RKL2 (C.D. Meyer, D.S. Balsara, T.D. Aslam, J. Comput. Phys. 257 (2014) 594),
-   of second order and stable up to (s^2 + s - 2)/4 explicit limits with s stages. The heat through each face
-   goes through the same stages, so that it is that of the points to round-off.
+   Linear functions and Bernstein polynomials have no such bound: a node that a point hardly reaches has next to no capacity, while the
+   gradient there is not small. For them the greatest rate is at most the greatest sum of absolute values of a row of C^-1 K, which is not
+   above
+
+     sum_p V_p sum_d |dN_ip/dx_d| sum_e |k_de| (2/h)/C_i,
+
+   as sum_j |dN_jp/dx_d| is at most 2/h. Inside of a body this is 4 d k/(rho c h^2) in d dimensions. At its surface nodes with next to no
+   capacity have any rate, up to 1e16 times that. So that there is a limit, points that reach such a node conduct less, by the
+   factor that makes its sum four times the usual one: the matrix stays symmetric, and heat is kept.
+
+   Total frame. Nodes are places X of the reference configuration, where the conductivity is J F^-1 k F^-T and the volume
+   V_p/J: the same sums with V_p F^-1 k F^-T. Around an axis of symmetry points are rings with their whole volume and capacity; nothing flows
+   around the axis, so that there is no other term.
+
+   Longer steps are made of stages (MPMSuperStep). The heat through each face goes through the same stages, so that
+   it is that of the points to round-off.
 ------------------------------------------------------------------------- */
 
 #include "mpm_conduction.h"
 
 #include "atom.h"
-#include "comm.h"
-#include "error.h"
+#include "math_extra.h"
+#include "mpm_cpdi.h"
 #include "mpm_field.h"
+#include "mpm_frame.h"
 #include "mpm_points.h"
 #include "mpm_stencil.h"
 
@@ -59,15 +76,12 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr double BELOW_LIMIT = 0.98;    // of explicit steps and stages
-
 /* ---------------------------------------------------------------------- */
 
 MPMConduction::MPMConduction(LAMMPS *lmp, MPMField &field, const MPMHeatTransfer &transfer,
-                             int most_stages, const MPMHeatCondition *conditions) :
+                             const MPMHeatCondition *conditions) :
     Pointers(lmp),
-    field(field), faces(lmp, field, conditions), transfer(transfer), most_stages(most_stages),
-    scalar(field)
+    field(field), faces(lmp, field, conditions), scalar(field), transfer(transfer)
 {
 }
 
@@ -86,18 +100,21 @@ void MPMConduction::init(double sigma)
     thermals.push_back({fix, T, molten, varies, all});
     slowest = std::min(slowest, all.conductivity / (material.density() * all.capacity));
   }
-  const MPMStencil stencil(field);
-  constexpr int SAMPLES = 4096;
+  total = field.frame->is_total();
   steepest = 0.0;
-  for (int k = 0; k < SAMPLES; k++) {
-    int node;
-    double w[4], slope[4], sum = 0.0;
-    const int n = stencil.weights((k + 1.0e-3) / SAMPLES, node, w, slope);
-    for (int j = 0; j < n; j++)
-      if (w[j] > 0.0) sum += slope[j] * slope[j] / w[j];
-    steepest = std::max(steepest, sum);
+  if (field.options.shape == QUADRATIC || field.options.shape == CUBIC) {
+    const MPMStencil stencil(field);
+    constexpr int SAMPLES = 4096;
+    for (int k = 0; k < SAMPLES; k++) {
+      int node;
+      double w[4], slope[4], sum = 0.0;
+      const int n = stencil.weights((k + 1.0e-3) / SAMPLES, node, w, slope);
+      for (int j = 0; j < n; j++)
+        if (w[j] > 0.0) sum += slope[j] * slope[j] / w[j];
+      steepest = std::max(steepest, sum / (field.lattice.h * field.lattice.h));
+    }
   }
-  fastest = 0.0;
+  conducted = exchanged = 0.0;
   faces.init(sigma);
   scalar.init(transfer.kind != MPMHeatTransfer::PIC, faces.any());
 }
@@ -117,12 +134,108 @@ double MPMConduction::volume_of(int i) const
 }
 
 /* ----------------------------------------------------------------------
-   temperatures of the nodes; returns the largest V k/C of this rank's points
+   conductivity of a point for gradients on the lattice. Total frame: V k becomes V F^-1 k F^-T
 ------------------------------------------------------------------------- */
 
-double MPMConduction::points_to_nodes(const MPMRows &gradients)
+void MPMConduction::tensor(const Thermal &t, int i, double k[3][3]) const
+{
+  const double K = t.at(i).conductivity;
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++) k[a][b] = a == b ? K : 0.0;
+  if (!total) return;
+  double F[3][3], inverse[3][3], half[3][3];
+  field.frame->lattice_F(i, F);
+  MathExtra::invert3(F, inverse);
+  MathExtra::times3(inverse, k, half);
+  MathExtra::times3_transpose(half, inverse, k);
+}
+
+/** Not below the greatest eigenvalue of a symmetric matrix whose rows have these sums of absolute values. */
+static double greatest_row(int dim, const double k[3][3])
+{
+  double most = 0.0;
+  for (int a = 0; a < dim; a++) {
+    double row = 0.0;
+    for (int b = 0; b < dim; b++) row += fabs(k[a][b]);
+    most = std::max(most, row);
+  }
+  return most;
+}
+
+/** Bound of sum_i grad N grad N^T/N of a point [1/area]; 0: there is none. */
+double MPMConduction::steepness(int i) const
+{
+  const double h = field.lattice.h;
+  const int dim = field.lattice.dim;
+  if (field.boxes) {
+    double size[3], least = 0.5;
+    field.boxes->size_of(i, size);
+    for (int d = 0; d < dim; d++) least = std::min(least, size[d]);
+    return (2.0 / least + 1.0 / (1.0 - least)) / (h * h);
+  }
+  if (!field.domains) return steepest;
+  double x[24], w[8], g[24], sum[3][3] = {};
+  field.domains->corners_of(i, x, w, g);
+  for (int c = 0; c < 1 << dim; c++)
+    for (int a = 0; a < dim; a++)
+      for (int b = 0; b < dim; b++) sum[a][b] += g[dim * c + a] * g[dim * c + b] / w[c];
+  return greatest_row(dim, sum);
+}
+
+/** Bound of the rate of a point with this volume; largest diffusivity for functions that points do not bound. */
+double MPMConduction::bound(const Thermal &t, int i, double volume) const
+{
+  double most = t.at(i).conductivity;
+  if (total) {
+    double k[3][3];
+    tensor(t, i, k);
+    most = greatest_row(field.lattice.dim, k);
+  }
+  const double steep = steepness(i);
+  return most * volume / (atom->rmass[i] * t.at(i).capacity) * (steep > 0.0 ? steep : 1.0);
+}
+
+/** A bound of the rates of the nodes, for functions that points alone do not bound. usual: that of nodes inside of a body.
+ *  Nodes with a much greater one have next to no capacity: points conduct less there. */
+double MPMConduction::row_bound(double usual)
+{
+  static constexpr double MOST = 4.0;    // in units of the usual one
+  double mine[2] = {usual, 0.0}, all[2];
+  mine[1] = scalar.greatest_rate(
+      [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
+        const Thermal *const t = thermal(run.material);
+        for (int p = 0; p < n; p++) {
+          double k[3][3];
+          tensor(*t, first + p, k);
+          for (int a = 0; a < 3; a++)
+            q[p][a] = volumes[first + p] * (fabs(k[a][0]) + fabs(k[a][1]) + fabs(k[a][2]));
+        }
+      });
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MAX, world);
+  shares.clear();
+  const double limit = MOST * all[0];
+  if (all[1] <= limit) return mine[1];
+
+  field.nodes.complete(rate.data(), 1, 1);
+  shares.assign(atom->nmax, 1.0);
+  const MPMStencil stencil(field);
+  for (const auto &run : field.map->runs)
+    for (int i = run.first; thermal(run.material) && i < run.last; i++)
+      stencil.visit(field.grid.blocks[run.slot], i, [&](const MPMStencil::Node &node) {
+        const double greatest = rate[node.number];
+        if (shares[i] * greatest > limit) shares[i] = limit / greatest;
+      });
+  return limit;
+}
+
+/* ----------------------------------------------------------------------
+   temperatures of the nodes
+------------------------------------------------------------------------- */
+
+MPMConduction::Limits MPMConduction::points_to_nodes(const MPMRows &gradients)
 {
   const int dim = field.lattice.dim;
+  const bool simple = !total && steepest > 0.0, wants_volumes = faces.any();
   double most = 0.0;
   volumes.resize(atom->nmax);
   scalar.points_to_nodes(
@@ -134,84 +247,49 @@ double MPMConduction::points_to_nodes(const MPMRows &gradients)
           const Conduction c = t->at(i);
           const double C = atom->rmass[i] * c.capacity, V = volumes[i] = volume_of(i);
           points.capacity[p] = C;
-          points.volume[p] = V;
           points.value[p] = t->fix->history[i][t->temperature];
           for (int d = 0; gradients && d < dim; d++) points.slope[3 * p + d] = gradients[i][d];
-          most = std::max(most, c.conductivity * V / C);
+          most = std::max(most, simple ? c.conductivity * V / C : bound(*t, i, V));
+          if (wants_volumes)
+            points.volume[p] = total ? atom->vfrac[i] * field.frame->lattice_jacobian(i) : V;
         }
         return true;
       });
-  return most;
-}
-
-/* ----------------------------------------------------------------------
-   rates of the temperatures of the nodes, and the power that comes in
-------------------------------------------------------------------------- */
-
-void MPMConduction::find_rates(const double *source, Heats &power)
-{
-  power.fill(0.0);
-  scalar.find_rates([&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
-    const Thermal *const t = thermal(run.material);
-    for (int p = 0; p < n; p++) {
-      const int i = first + p;
-      const double factor = -t->at(i).conductivity * volumes[i];
-      for (int d = 0; d < 3; d++) q[p][d] *= factor;
-      q[p][3] = source ? volumes[i] * source[i] : 0.0;
-      power[SOURCES] += q[p][3];
-    }
-  });
-  faces.add_rates(temperature, rate, power);
+  if (simple)
+    most *= steepest;
+  else if (!field.boxes && !field.domains && steepest == 0.0)
+    most = row_bound(4.0 * dim / (field.lattice.h * field.lattice.h) * most);
+  return {most, faces.begin_step(scalar.capacity, scalar.volume, temperature)};
 }
 
 /* ---------------------------------------------------------------------- */
 
-void MPMConduction::one_step(double dt, const double *source, Heats &came)
+void MPMConduction::find_rates(const double *source, Heats &power)
 {
-  Heats power;
-  find_rates(source, power);
-  for (std::size_t k = 0; k < rate.size(); k++) temperature[k] += dt * rate[k];
-  for (std::size_t k = 0; k < came.size(); k++) came[k] += dt * power[k];
-}
-
-/** y = mu y + nu last + (1 - mu - nu) first + dt (more rate + less first_rate), and last = y before. */
-template <class List>
-static void next_stage(List &y, List &last, const List &first, const List &rate,
-                       const List &first_rate, double mu, double nu, double more, double less)
-{
-  for (std::size_t k = 0; k < y.size(); k++) {
-    const double now = y[k];
-    y[k] = mu * now + nu * last[k] + (1.0 - mu - nu) * first[k] + more * rate[k] +
-        less * first_rate[k];
-    last[k] = now;
-  }
-}
-
-void MPMConduction::many_stages(int n, double dt, const double *source, Heats &came)
-{
-  const auto b = [](int j) {
-    return j < 2 ? 1.0 / 3.0 : (j * j + j - 2.0) / (2.0 * j * (j + 1.0));
-  };
-  const double w = 4.0 / (n * n + n - 2.0);
-  const Heats none = {};
-  Heats power, first_power, heat = none, last_heat = none;
-  find_rates(source, first_power);
-  first = last = temperature;
-  first_rate = rate;
-  for (std::size_t k = 0; k < rate.size(); k++) temperature[k] += b(1) * w * dt * rate[k];
-  for (std::size_t k = 0; k < heat.size(); k++) heat[k] = b(1) * w * dt * first_power[k];
-  for (int j = 2; j <= n; j++) {
-    find_rates(source, power);
-    const double mu = (2.0 * j - 1.0) / j * b(j) / b(j - 1), nu = -(j - 1.0) / j * b(j) / b(j - 2);
-    const double more = mu * w * dt, less = -(1.0 - b(j - 1)) * more;
-    next_stage(temperature, last, first, rate, first_rate, mu, nu, more, less);
-    next_stage(heat, last_heat, none, power, first_power, mu, nu, more, less);
-  }
-  for (std::size_t k = 0; k < came.size(); k++) came[k] += heat[k];
+  scalar.find_rates([&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
+    const Thermal *const t = thermal(run.material);
+    for (int p = 0; p < n; p++) {
+      const int i = first + p;
+      const double V = volumes[i], conducting = shares.empty() ? V : V * shares[i];
+      if (total) {
+        double k[3][3], flux[3];
+        tensor(*t, i, k);
+        MathExtra::matvec(k, q[p], flux);
+        for (int d = 0; d < 3; d++) q[p][d] = -conducting * flux[d];
+      } else {
+        const double factor = -conducting * t->at(i).conductivity;
+        for (int d = 0; d < 3; d++) q[p][d] *= factor;
+      }
+      q[p][3] = source ? V * source[i] : 0.0;
+      power[SOURCES] += q[p][3];
+    }
+  });
+  for (std::size_t k = 0; k < given.size(); k++)
+    if (scalar.capacity[k] > 0.0) rate[k] += given[k] / (field.step_dt() * scalar.capacity[k]);
 }
 
 /* ----------------------------------------------------------------------
-   temperatures of points; returns the heat that they have got
+   temperatures of points
 ------------------------------------------------------------------------- */
 
 double MPMConduction::nodes_to_points(const MPMRows &gradients)
@@ -242,63 +320,47 @@ double MPMConduction::nodes_to_points(const MPMRows &gradients)
 
 /* ---------------------------------------------------------------------- */
 
-int MPMConduction::count_stages(double dt, double limit) const
+double MPMConduction::greatest_rate(const Limits &all)
 {
-  if (dt <= limit) return 1;
-  for (int s = 3; s <= most_stages; s += 2)
-    if (4.0 * dt <= limit * (s * s + s - 2.0)) return s;
-  return most_stages + 1;
+  conducted = all.conduction;
+  exchanged = all.exchange;
+  return conducted + exchanged;
 }
 
-double MPMConduction::step(const MPMRows &gradients, const double *source, Heats &came)
+/** Functions that points alone do not bound, and domains, have the bound of the last step, and before the first one
+ *  what they have inside of a body that is not deformed. */
+double MPMConduction::greatest_rate_of_points(tagint &tag) const
 {
-  const double dt = field.step_dt(), h = field.lattice.h;
-  double mine[2], most[2];
-  mine[0] = points_to_nodes(gradients);
-  mine[1] = faces.begin_step(capacity, volume, temperature);
-  MPI_Allreduce(mine, most, 2, MPI_DOUBLE, MPI_MAX, world);
-  fastest = most[1];
-  const double limit = BELOW_LIMIT * 2.0 / (most[0] * steepest / (h * h) + fastest);
-  nstage = count_stages(dt, limit);
-  if (nstage > most_stages)
-    error->all(FLERR, Error::NOLASTLINE,
-               "The time step {:.6g} is {:.4g} times the explicit limit {:.4g} of the conduction "
-               "of heat, which needs more than {} stages: use fix mpm/dt, a smaller timestep, or "
-               "fix mpm/heat ... stages",
-               dt, dt / limit, limit, most_stages);
-  faces.hold(temperature, came);
-  if (nstage == 1)
-    one_step(dt, source, came);
-  else
-    many_stages(nstage, dt, source, came);
-  return nodes_to_points(gradients);
-}
-
-/* ---------------------------------------------------------------------- */
-
-double MPMConduction::stable_dt(tagint &tag) const
-{
+  const double h = field.lattice.h;
+  const int dim = field.lattice.dim;
+  const bool bounded = steepest > 0.0 || field.boxes;
   double most = 0.0;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!field.is_point(i)) continue;
     const Thermal *const t = thermal(field.material_of(i));
     if (!t) continue;
-    const Conduction c = t->at(i);
-    const double here = c.conductivity * volume_of(i) / (atom->rmass[i] * c.capacity);
+    double here = 0.0;
+    if (bounded) {
+      here = bound(*t, i, volume_of(i));
+    } else if (conducted == 0.0) {
+      double k[3][3], x[24], least = 1.0;
+      tensor(*t, i, k);
+      if (field.domains) field.domains->corners_of_box(i, x);
+      for (int d = 0; field.domains && d < dim; d++)
+        for (int c = 0; c < 1 << dim; c++) least = std::min(least, fabs(x[dim * c + d]) / h);
+      const double steep = field.domains ? 1.0 / (least * least) : 4.0 * dim;
+      here = steep / (h * h) * greatest_row(dim, k) * volume_of(i) /
+          (atom->rmass[i] * t->at(i).capacity);
+    }
     if (here <= most) continue;
     most = here;
     tag = atom->tag[i];
   }
-  const double h = field.lattice.h, top = most * steepest / (h * h) + fastest;
-  const int s = most_stages < 3 ? 1 : most_stages - (most_stages + 1) % 2;
-  const double longer = s == 1 ? 1.0 : (s * s + s - 2.0) / 4.0;
-  return top > 0.0 ? BELOW_LIMIT * longer * 2.0 / top : std::numeric_limits<double>::max();
+  return (bounded || conducted == 0.0 ? most : conducted) + exchanged;
 }
 
 double MPMConduction::memory_usage() const
 {
-  double bytes = faces.memory_usage() + scalar.memory_usage();
-  for (const auto *list : {&volumes, &first, &first_rate, &last})
-    bytes += list->capacity() * sizeof(double);
-  return bytes;
+  return faces.memory_usage() + scalar.memory_usage() +
+      (volumes.capacity() + shares.capacity() + given.capacity()) * sizeof(double);
 }

@@ -14,6 +14,7 @@
 #include "mpm_heat_faces.h"
 #include "mpm_node_scalar.h"
 
+#include <functional>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -27,8 +28,8 @@ struct MPMHeatTransfer {
       1.0;    ///< how fast points take that of the nodes, in units of conduction over a cell
 };
 
-/** Conduction of heat between the points of one field: temperatures of the nodes, their rates, and time
- *  steps. */
+/** Conduction of heat between the points of one field: temperatures of the nodes, and their rates. The temperatures
+ *  of all fields advance together (MPMSuperStep), as bodies may exchange heat. */
 class MPMConduction : protected Pointers {
  public:
   using Heats = MPMHeatFaces::Heats;
@@ -36,21 +37,38 @@ class MPMConduction : protected Pointers {
 
   MPMField &field;
   MPMHeatFaces faces;
+  MPMNodeScalar scalar;    ///< the temperature
+  /** [nnodes] heat that nodes get from elsewhere in this step [energy], the same on all ranks that have the
+   *  node; empty: none. */
+  std::vector<double> given;
 
-  MPMConduction(class LAMMPS *, MPMField &, const MPMHeatTransfer &, int most_stages,
-                const MPMHeatCondition *);
+  MPMConduction(class LAMMPS *, MPMField &, const MPMHeatTransfer &, const MPMHeatCondition *);
 
   /** Start of a run. */
   void init(double sigma);
-  /** A step. gradients: [n][dim] temperature gradients of points, null with the transfer pic.
-   *  source: [n] power per volume, or null. came: adds the heat of this step; returns what points have got. */
-  double step(const MPMRows &gradients, const double *source, Heats &came);
-  /** Largest time step of this rank's points with all stages. */
-  double stable_dt(tagint &tag) const;
+
+  /** What limits an explicit step: bounds of the rates of conduction, and of exchange through faces [1/time]. */
+  struct Limits {
+    double conduction, exchange;
+  };
+  /** A step, first part: temperatures of nodes. gradients: [n][dim] temperature gradients of points, null with
+   *  the transfer pic. Returns the limits of this rank. */
+  Limits points_to_nodes(const MPMRows &gradients);
+  /** Those of all ranks: a bound of the eigenvalues of minus the rates [1/time]. */
+  double greatest_rate(const Limits &);
+  /** Rates of the temperatures of the nodes by conduction and sources. source: [n] power per volume, or null.
+   *  Adds the power of sources. */
+  void find_rates(const double *source, Heats &power);
+  /** Last part: temperatures of points; returns the heat that they have got. */
+  double nodes_to_points(const MPMRows &gradients);
+
+  /** Of nodes, see MPMSuperStep. */
+  std::vector<double> &temperature = scalar.value, &rate = scalar.rate;
+
+  /** Bound of the eigenvalues for this rank's points [1/time]; tag: the point that limits it. */
+  double greatest_rate_of_points(tagint &tag) const;
   /** A material of the field conducts. */
   bool conducts() const { return !thermals.empty(); }
-  /** In the last step. */
-  int stages() const { return nstage; }
   double memory_usage() const;
 
  private:
@@ -65,31 +83,25 @@ class MPMConduction : protected Pointers {
       return varies ? fix->material->conduction(fix->history[i]) : all;
     }
   };
+
   const MPMHeatTransfer &transfer;
-  const int most_stages;
   std::vector<Thermal> thermals;
   double slowest = 0.0;    // smallest diffusivity of a material
   double steepest =
-      0.0;                 // of the shape functions: greatest sum of N'^2/N along an axis, in cells
-  double fastest = 0.0;    // rate of exchange through faces in the last step
-  int nstage = 0;
+      0.0;    // of B-splines, see the top of mpm_conduction.cpp [1/area]; 0: not bounded by points alone
+  double conducted = 0.0, exchanged = 0.0;    // limits of the last step
+  bool total = false;
 
   std::vector<double> volumes;    // [n] of points in this step
-
-  MPMNodeScalar scalar;
-  std::vector<double> &capacity = scalar.capacity, &volume = scalar.volume,
-                      &temperature = scalar.value,
-                      &rate = scalar.rate;        // of nodes
-  std::vector<double> first, first_rate, last;    // of stages
+  std::vector<double>
+      shares;    // [n] of their conductivity that is left, see row_bound(); empty: all
 
   const Thermal *thermal(const FixMPMMaterial *) const;
   double volume_of(int i) const;
-  double points_to_nodes(const MPMRows &gradients);
-  void find_rates(const double *source, Heats &power);
-  int count_stages(double dt, double limit) const;
-  void one_step(double dt, const double *source, Heats &came);
-  void many_stages(int n, double dt, const double *source, Heats &came);
-  double nodes_to_points(const MPMRows &gradients);
+  void tensor(const Thermal &, int i, double k[3][3]) const;
+  double bound(const Thermal &, int i, double volume) const;
+  double steepness(int i) const;
+  double row_bound(double usual);
 };
 
 }    // namespace LAMMPS_NS

@@ -12,7 +12,6 @@
 #include "declare/option.h"
 #include "pointers.h"
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -38,8 +37,7 @@ struct MPMHeatCondition {
 class MPMHeatFaces : protected Pointers {
  public:
   static constexpr int NFACE = 6;
-  using Heats =
-      std::array<double, NFACE + 1>;    ///< of faces, in the order xlo ... zhi, and of sources
+  using Heats = std::vector<double>;    ///< of faces, in the order xlo ... zhi, and of sources
 
   MPMHeatFaces(class LAMMPS *lmp, MPMField &field, const MPMHeatCondition *conditions) :
       Pointers(lmp), field(field), conditions(conditions)
@@ -61,9 +59,10 @@ class MPMHeatFaces : protected Pointers {
   /** Give the faces with a temperature theirs, by the smallest change in the norm of capacities; adds the heat
    *  of nodes that this rank owns. */
   void hold(std::vector<double> &temperature, Heats &) const;
-  /** Add what comes through faces to the rates of temperatures, after which those that are prescribed stay; adds
-   *  the power. */
+  /** Add what comes through faces to the rates of temperatures; adds the power. */
   void add_rates(const std::vector<double> &temperature, std::vector<double> &rate, Heats &) const;
+  /** Change the rates so that temperatures that are prescribed stay; adds the power. */
+  void hold_rates(std::vector<double> &rate, Heats &) const;
 
   double memory_usage() const;
 
@@ -79,6 +78,7 @@ class MPMHeatFaces : protected Pointers {
   };
   struct Face {
     int face, axis, first, n;    // n nodes from the first one on
+    double x;                    // where it is
     double weight[MOST];
     double full[MOST];    // volume of the nodes where material fills the box, in cells
     std::vector<Line> lines;

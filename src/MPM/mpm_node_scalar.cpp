@@ -137,6 +137,37 @@ void MPMNodeScalar::find_rates(const Conduct &conduct, const std::function<void(
 
 /* ---------------------------------------------------------------------- */
 
+double MPMNodeScalar::greatest_rate(const Conduct &bound)
+{
+  std::fill(rate.begin(), rate.end(), 0.0);
+  double q[BATCH][4];
+  double *const tile = tiles[0].data();
+  for (const auto &block : field.map->active) {
+    if (block.other_box[0] > block.other_box[3]) continue;
+    visit(block, ABSOLUTE_SLOPES, nullptr,
+          [&](const auto &run, int first, int n, const auto &prepare) {
+            prepare();
+            bound(run, first, n, q);
+            for (int p = 0; p < n; p++) {
+              for (int d = 0; d < 3; d++) q[p][d] *= 2.0 / field.lattice.h;
+              q[p][3] = 0.0;
+            }
+            kernels.add(stencil, q[0], tile);
+            return true;
+          });
+    kernels.flush(tile, rate.data(), field.grid.blocks[block.slot].slot, block.other_box);
+  }
+  sum(rate);
+  double most = 0.0;
+  for (std::size_t k = 0; k < rate.size(); k++) {
+    rate[k] = capacity[k] > 0.0 ? rate[k] / capacity[k] : 0.0;
+    most = std::max(most, rate[k]);
+  }
+  return most;
+}
+
+/* ---------------------------------------------------------------------- */
+
 void MPMNodeScalar::nodes_to_points(const Take &take, bool changes)
 {
   field.nodes.complete(value.data(), 1, 1);

@@ -63,6 +63,9 @@ class MPMNodeScalar {
   /** Rates of the values of nodes. more: adds to their rates times capacity what this rank knows of, before ranks
    *  are summed. */
   void find_rates(const Conduct &, const std::function<void()> &more = nullptr);
+  /** A bound of the eigenvalues of minus the rates, by the rows of their matrix [1/time], of this rank; not with domains.
+   *  bound: out: V_p sum_e |k_de| for each axis d, with the tensor k of a linear flux. */
+  double greatest_rate(const Conduct &bound);    // the rows stay in the place of rates
   /** changes: give the values of before, too. */
   void nodes_to_points(const Take &, bool changes);
 

@@ -49,9 +49,9 @@ enum { VOLUME = 3, GRADIENT = 4 };    // reals of a record
 static constexpr double INSET = 0.5;    // of places below the surface, in node spacings
 // gaps between material and a face of the box up to which it touches, and from which on not
 static constexpr double TOUCHES = 0.25, IS_APART = 0.5;
-static constexpr double FULL = 0.97;     // of a cell: sums over points are not exactly integrals
-static constexpr double ENOUGH = 0.1;    // of a cell at a node, for its whole weight
-static constexpr double MOSTLY = 0.5;    // part of a place that has water, for its whole area
+static constexpr double FULL = 0.97;      // of a cell: sums over points are not exactly integrals
+static constexpr double ENOUGH = 0.01;    // of a cell at a node, for its whole weight
+static constexpr double MOSTLY = 0.5;     // part of a place that has water, for its whole area
 static constexpr double NOISE =
     0.1;    // of the area of a cell: no surface, but sums that are not integrals
 

@@ -26,6 +26,17 @@ namespace {
                                        ANY_NUMBER, 0.0,     "melting temperature"};
   constexpr Parameter HEAT_OF_FUSION = {"melt",   "LATENT", "energy/mass",
                                         POSITIVE, 0.0,      "heat of fusion, 0: none"};
+  constexpr Parameter EXPANSION = {"expansion", "ALPHA", "1/temperature",
+                                   ANY_NUMBER,  0.0,     "coefficient of linear expansion from T0"};
+  constexpr Parameter CONSISTENT_GRUNEISEN = {
+      "gruneisen consistent",
+      "CONSISTENT",
+      FLAG,
+      FRACTION,
+      0.0,
+      "GAMMA = 3 K ALPHA/(density CP), with the bulk modulus K of the material at T0"};
+  constexpr Parameter FRACTURE_SHARE = {
+      "fracture", "SHARE", "1", FRACTION, 0.0, "share of the work of damage that becomes heat"};
 
   /** Temperature of a point by the heat that it makes itself:
    *
@@ -36,30 +47,48 @@ namespace {
    *  second term is the change along an isentrope when density * Gruneisen parameter is constant,
    *  T ~ exp(GAMMA (1 - J)). Strengths use the temperature of the end of the step. With melting the
    *  temperature stays at TMELT until the molten fraction f, LATENT df = CP dT, has gone from 0 to 1,
-   *  and on cooling back to 0. MORE: parameters between T0 and CHI. */
+   *  and on cooling back to 0. With expansion the second term comes before the stress of the step, which
+   *  depends on it. MORE: parameters between T0 and CHI. */
   template <int MORE> struct ThermalByWork : LawDefaults {
     static constexpr bool uses_F = false;
-    enum { CP, T0, CHI = 2 + MORE, GAMMA, TMELT, LATENT };
+    enum { CP, T0, CHI = 2 + MORE, GAMMA, TMELT, LATENT, ALPHA, CONSISTENT, BREAKS };
     static constexpr HistoryDeclaration history[] = {
         {"temperature", T0, "temperature", "temperature"},
         {"molten", ZERO, "1", "molten fraction"}};
     static constexpr int nhistory(const LawParameters &p) { return p.value[LATENT] > 0.0 ? 2 : 1; }
     static constexpr const char *check(const LawParameters &p)
     {
+      if (p.value[CONSISTENT] > 0.0 && p.value[ALPHA] == 0.0)
+        return "'gruneisen consistent' follows from the expansion: add 'expansion ALPHA'";
       return p.value[LATENT] > 0.0 && p.value[T0] > p.value[TMELT] ? "T0 must not be above TMELT"
                                                                    : nullptr;
     }
     static double heat_share(const LawParameters &p) { return p.value[CHI]; }
     static double warming(const LawParameters &p) { return 1.0 / (p.heat_density * p.value[CP]); }
+    static double fracture_share(const LawParameters &p) { return p.value[BREAKS]; }
+    static double expansion(const LawParameters &p) { return p.value[ALPHA]; }
+    static int consistent(const LawParameters &p) { return p.value[CONSISTENT] > 0.0 ? GAMMA : -1; }
+
+    /** Change of temperature by compression. */
+    static MPM_INLINE void compress(const LawParameters &p, Batch &b, History history)
+    {
+      const double gamma = p.value[GAMMA];
+      double *const T = history[0];
+      if (gamma == 0.0) return;
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) T[i] += T[i] * expm1(-gamma * (b.J[i] - b.Jold[i]));
+    }
+
+    static void prepare(const LawParameters &p, Batch &b, History history)
+    {
+      if (p.value[ALPHA] != 0.0) compress(p, b, history);
+    }
 
     static void update(const LawParameters &p, Batch &b, History history)
     {
-      const double warm = p.warm, gamma = p.value[GAMMA];
+      const double warm = p.warm;
       double *const T = history[0];
-      if (gamma > 0.0) {
-        MPM_SIMD
-        for (int i = 0; i < b.n; i++) T[i] += T[i] * expm1(-gamma * (b.J[i] - b.Jold[i]));
-      }
+      if (p.value[ALPHA] == 0.0) compress(p, b, history);
       MPM_SIMD
       for (int i = 0; i < b.n; i++) T[i] += warm * b.heat[i];
       if (nhistory(p) == 1) return;
@@ -73,8 +102,9 @@ namespace {
   struct ThermalAdiabatic : ThermalByWork<0> {
     static constexpr const char *name = "adiabatic";
     static constexpr const char *meaning = "temperature by dissipation, without conduction";
-    static constexpr Parameter parameters[] = {SPECIFIC_HEAT, FIRST_TEMPERATURE, HEAT_SHARE,
-                                               GRUNEISEN,     MELTING_POINT,     HEAT_OF_FUSION};
+    static constexpr Parameter parameters[] = {SPECIFIC_HEAT, FIRST_TEMPERATURE,    HEAT_SHARE,
+                                               GRUNEISEN,     MELTING_POINT,        HEAT_OF_FUSION,
+                                               EXPANSION,     CONSISTENT_GRUNEISEN, FRACTURE_SHARE};
   };
 
   /** The same for points between which fix mpm/heat conducts heat. */
@@ -89,7 +119,10 @@ namespace {
         HEAT_SHARE,
         GRUNEISEN,
         MELTING_POINT,
-        HEAT_OF_FUSION};
+        HEAT_OF_FUSION,
+        EXPANSION,
+        CONSISTENT_GRUNEISEN,
+        FRACTURE_SHARE};
     static Conduction conduction(const LawParameters &p)
     {
       return {p.value[CP], p.value[K], {p.value[TMELT], p.value[LATENT] / p.value[CP]}};

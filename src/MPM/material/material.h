@@ -23,10 +23,11 @@ namespace MPM_NS {
 
 /** Kinds of work that a law reports, in energy summed over the points of a batch. */
 enum Work {
-  PLASTIC,     ///< plastic work
-  VISCOUS,     ///< work of viscous stress
-  HEAT,        ///< part of these two that became heat
-  FRACTURE,    ///< work spent on damage, and on friction between fragments
+  PLASTIC,          ///< plastic work
+  VISCOUS,          ///< work of viscous stress
+  HEAT,             ///< part of these two that became heat
+  FRACTURE,         ///< work spent on damage, and on friction between fragments
+  THERMOELASTIC,    ///< of stress on thermal strain, and of moduli that change with temperature
   NWORK
 };
 
@@ -137,6 +138,10 @@ class Material {
   virtual bool is_viscous() const = 0;
   /** Does it resist a shear at rest? Not an equation of state with or without a viscosity. */
   virtual bool is_solid() const = 0;
+
+  /** Does its stress change with the temperature, by expansion or by parameters? Then it has the work
+   *  THERMOELASTIC. */
+  virtual bool is_thermoelastic() const = 0;
 
   /** Does it conduct heat? Then its history has the temperature and, if it melts, the molten fraction. */
   virtual bool conducts() const = 0;

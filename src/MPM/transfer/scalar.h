@@ -16,7 +16,8 @@ namespace MPM_NS {
 /** What is meant by the slopes of the weights w of a point. */
 enum SlopeKind {
   GRADIENT_SLOPES,    ///< grad N, with respect to the place of the point
-  DISTANCE_SLOPES     ///< N (x_i - x_p), the first moment about the point
+  DISTANCE_SLOPES,    ///< N (x_i - x_p), the first moment about the point
+  ABSOLUTE_SLOPES     ///< |dN/dx| along each axis, for bounds; not with domains
 };
 
 /** The nodes that a batch of points reaches, made once for any number of transfers. */

@@ -89,6 +89,10 @@ void prepare(const PointRows &rows, const TransferStep &transfer, int n, const i
       MPM_UNROLL
       for (int k = 0; k < N; k++) d[k] = step.inv_h * d[k];
     }
+    if (kind == ABSOLUTE_SLOPES) {
+      MPM_UNROLL
+      for (int k = 0; k < N; k++) d[k] = max(d[k], -d[k]);
+    }
     store_axes<N>(d, out.slope[p]);
   }
   for (int a = 0; box && n > 0 && a < DIM; a++) {

@@ -45,7 +45,9 @@ template <int DIM, Shape SHAPE, class F> void visit(const ScalarStencil &in, con
     for (const Node &node : stencil.node) {
       double slope[3] = {};
       for (int a = 0; a < DIM; a++)
-        slope[a] = in.kind == GRADIENT_SLOPES ? node.grad[a] : node.w * node.d[a];
+        slope[a] = in.kind == DISTANCE_SLOPES ? node.w * node.d[a]
+            : in.kind == ABSOLUTE_SLOPES      ? std::fabs(node.grad[a])
+                                              : node.grad[a];
       f(p, node, slope);
     }
   }

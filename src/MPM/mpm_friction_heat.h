@@ -1,0 +1,83 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_FRICTION_HEAT_H
+#define LMP_MPM_FRICTION_HEAT_H
+
+#include "declare/option.h"
+#include "pointers.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+class Fix;
+class FixMPMHeat;
+class MPMConduction;
+class MPMField;
+
+/** What becomes of the energy that friction takes: keyword heat of contact, walls, and rigid bodies. */
+struct MPMFrictionHeatOptions {
+  enum Kind { NO, YES, SHARE };
+
+  Kind kind = NO;
+  double share = 1.0;    ///< with SHARE: of the first body, or of the material at a wall
+
+  bool heats() const { return kind != NO; }
+  /** Declares the keyword; yes, first: what these words do, for the manual. */
+  void declare(MPM_NS::Options &, const char *yes, const char *first);
+};
+
+/** Heat of friction at nodes, which fix mpm/heat conducts into the material.
+ *
+ *  Fields are told apart by their place in the list of begin_run(). Energies are those of all bodies at a
+ *  node. Every rank that has a node gives it the same; only owned nodes are counted. */
+class MPMFrictionHeat : protected Pointers {
+ public:
+  MPMFrictionHeat(class LAMMPS *, const MPMFrictionHeatOptions &);
+
+  /** Start of a run, in init_action(): stops with an error when nothing can take up the heat. Fields keep
+   *  the old velocities of their nodes from now on. */
+  void begin_run(const Fix &user, const std::vector<MPMField *> &);
+  /** Collective, in each step before heat is given, with the nodes of this step. */
+  void begin_step();
+
+  /** Heat [energy] at a node of two bodies, with its record in the field of each. By default bodies whose
+   *  surfaces have the same temperature share it as q_a : q_b = e_a : e_b with the effusivities
+   *  e = sqrt(k rho c) (H.S. Carslaw, J.C. Jaeger, Conduction of Heat in Solids (1959), 2.15). */
+  void between(int a, const double *ra, int b, const double *rb, double heat, bool owned);
+  /** Heat [energy] at a node of a wall, which takes what the share leaves. What comes to material that does
+   *  not conduct is lost. */
+  void at_wall(int field, const double *record, double heat, bool owned);
+
+  /** Heat [energy] of a sliding impulse J [mass velocity] on a body of velocity v relative to the other,
+   *  old before the step and now after it: what the kinetic energy of nodes loses in this step by it.
+   *  Negative in a step in which sliding reverses. */
+  double made(const double *J, const double *old, const double *now, int dim) const;
+
+  double memory_usage() const;
+
+ private:
+  struct Body {
+    MPMField *field;
+    MPMConduction *conduction;    // null: its materials do not conduct
+    bool mixed;                   // effusivities differ from point to point
+    double effusivity;            // unless mixed
+    std::vector<double> at_node;
+  };
+  const MPMFrictionHeatOptions &options;
+  FixMPMHeat *heat = nullptr;
+  std::vector<Body> bodies;
+  std::vector<double> values, weights;    // of points
+
+  void map_effusivity(Body &);
+  double effusivity(const Body &, const double *record) const;
+  void give(Body &, const double *record, double heat, bool owned);
+};
+
+}    // namespace LAMMPS_NS
+#endif

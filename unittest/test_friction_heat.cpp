@@ -1,0 +1,404 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: physics mpi restart input
+// mpi: 1 4
+// timeout: 300
+
+// Heat of friction: keyword heat of fix mpm/contact, fix mpm/boundary, and fix mpm/rigid.
+
+#include "mpm_lammps.h"
+
+#include "mesh/stl_testing.h"
+
+using namespace MPM_TEST;
+
+namespace {
+
+// A block of 3000 kg/m^2 and 10 m/s is pressed on a base with 1 MPa and braked by friction of 0.3 within 0.1 s.
+// Density times specific heat is that of steel, density is higher, so that the block is no higher than heat gets
+
+constexpr double STEEL = 7800.0 * 500.0, K = 50.0, PRESSURE = 1.0e6, MU = 0.3, SPEED = 10.0,
+                 END = 0.1;
+
+struct Braked {
+  double n;    // nodes in the depth sqrt(k t/rho c) that heat gets to
+  double modulus = 2e8;
+  std::string base = "fix m2 base mpm/material density RHO neohookean MODULUS 0.3 thermal "
+                     "conducting CP 0.0 50.0\n";
+  std::string heat = "yes";
+  std::string more;      // lines before the run
+  double ramp = 1e-9;    // the pressure comes within this time
+  std::string wall;      // in place of the base
+
+  double h() const { return std::sqrt(K / STEEL * END) / n; }
+  double height() const { return 4.0 * n * h(); }
+  double rho() const { return 3000.0 / height(); }
+  double c() const { return STEEL / rho(); }
+  double width() const { return 4.0 * h(); }
+  double dt() const { return 0.8 * h() / (1.05 * SPEED + std::sqrt(1.35 * modulus / rho())); }
+
+  std::string scene() const
+  {
+    const std::string extent =
+        strprintf("0 %.17g %.17g %.17g", width(),
+                  wall.empty() ? -height() : (wall.find("ylo") == 0 ? 0.0 : -2.0 * h()),
+                  height() + 2.0 * h());
+    std::string text = plane("si", "p f", extent, 2, 0.1 * h());
+    std::vector<Body> all = {{"block", strprintf("block INF INF 0 %.17g INF INF", height())}};
+    if (wall.empty())
+      all.push_back({"base", strprintf("block INF INF %.17g 0 INF INF", -height())});
+    text += fields(all, strprintf("%.17g origin 0 0", h()));
+    const auto numbers = [&](std::string line) {
+      line = replaced(line, "RHO", strprintf("%.17g", rho()));
+      line = replaced(line, "MODULUS", strprintf("%.17g", modulus));
+      return replaced(line, "CP", strprintf("%.17g", c()));
+    };
+    text += numbers("fix m1 block mpm/material density RHO neohookean MODULUS 0.3 thermal "
+                    "conducting CP 0.0 50.0\n");
+    if (wall.empty())
+      text += numbers(base) +
+          "fix floor all mpm/boundary ylo stick\nfix touch all mpm/contact F1 F2 law coulomb 0.3 "
+          "heat " +
+          heat + "\n";
+    else
+      text += strprintf("region below block INF INF INF 0 INF INF\nfix touch all mpm/boundary %s "
+                        "friction 0.3 heat %s\n",
+                        wall.c_str(), heat.c_str());
+    text +=
+        strprintf("variable g equal %.17g*(0.5-0.5*cos(PI*time/%g))*(time<%g)+%.17g*(time>=%g)\n",
+                  PRESSURE / 3000.0, ramp, ramp, PRESSURE / 3000.0, ramp);
+    return text + "fix push block gravity v_g vector 0 -1 0\nfix heat all mpm/heat\n" +
+        strprintf("velocity block set %g 0 0\ncompute e all mpm/energy\n", SPEED) + more;
+  }
+};
+
+/** At rest until the pressure is there, then with its speed. */
+void press(Scene &run, const Braked &b)
+{
+  run.commands(strprintf("velocity block set 0 0 0\ntimestep %.17g\nrun %d\nreset_timestep 0\n",
+                         b.dt(), (int) (1.2 * b.ramp / b.dt())) +
+               "variable g delete\nuncompute e\ncompute e all mpm/energy\n" +
+               strprintf("variable g equal %.17g\nvelocity block set %g NULL NULL\n",
+                         PRESSURE / 3000.0, SPEED));
+}
+
+/** Up to this time, as nearly as steps allow. */
+void run_until(Scene &run, const Braked &b, double time)
+{
+  const auto done = (double) run.lmp->update->ntimestep;
+  run.commands(
+      strprintf("timestep %.17g\nrun %d\n", b.dt(), (int) std::lround(time / b.dt() - done)));
+}
+
+/** Temperature at the face y = 0 of a body of this type, from the two rows of points next to it. */
+double at_face(Scene &run, const std::string &material, int type, double h)
+{
+  auto *fix = run.material(material);
+  const int column = fix->find_history("temperature");
+  double rows[2] = {0.0, 0.0}, n[2] = {0.0, 0.0};
+  for (int i = 0; i < run.n(); i++) {
+    const double y = std::fabs(run.x()[i][1]);
+    if (run.lmp->atom->type[i] != type || y > h) continue;
+    rows[y > 0.5 * h] += fix->history[i][column];
+    n[y > 0.5 * h]++;
+  }
+  return 1.5 * rows[0] / n[0] - 0.5 * rows[1] / n[1];
+}
+
+double mean(Scene &run, const std::string &material)
+{
+  auto *fix = run.material(material);
+  const int column = fix->find_history("temperature");
+  double sum = 0.0, n = 0.0;
+  for (int i = 0; i < run.n(); i++)
+    if (run.lmp->atom->mask[i] & fix->groupbit) {
+      sum += fix->history[i][column];
+      n++;
+    }
+  return sum / n;
+}
+
+/** Rise at the face, for this sum of the effusivities of the bodies that heat flows to. */
+double rise(double t, double effusivities)
+{
+  return 2.0 * MU * PRESSURE * SPEED / (effusivities * std::sqrt(PI)) * std::sqrt(t) *
+      (1.0 - 2.0 * t / (3.0 * END));
+}
+const double EFFUSIVITY = std::sqrt(K * STEEL);
+
+}    // namespace
+
+// benchmark M5: both bodies of steel. Highest temperature at half of the time: 18.06853 K
+SERIAL_TEST(Brake, HeatsBothFaces)
+{
+  EXPECT_NEAR(rise(0.5 * END, 2.0 * EFFUSIVITY), 18.06853, 1e-5);
+  double error[3];
+  for (int k = 0; k < 3; k++) {
+    Braked b = {2.0 * (1 << k)};
+    b.ramp = 0.02;
+    Scene run(b.scene());
+    press(run, b);
+    EXPECT_EQ(run.fix("heat")->compute_scalar(), 0.0);
+    run_until(run, b, 0.5 * END);
+    const double T = at_face(run, "m1", 1, b.h()), U = at_face(run, "m2", 2, b.h());
+    error[k] = measured(strprintf("h = %.3g mm, error at half of the time", 1e3 * b.h()),
+                        0.5 * (T + U) / 18.06853 - 1.0);
+    EXPECT_NEAR(T / U, 1.0, 0.01);
+    run_until(run, b, END);
+    const double end = measured("error at the end", at_face(run, "m1", 1, b.h()) / 12.77638 - 1.0);
+    if (k == 2) EXPECT_NEAR(end, 0.0, 0.03);
+    EXPECT_NEAR(measured("heat per area", run.fix("heat")->compute_scalar() / b.width()), 150000.0,
+                300.0);
+    EXPECT_NEAR(measured("share", mean(run, "m1") / (mean(run, "m1") + mean(run, "m2"))), 0.5,
+                0.01);
+    const double *const e = run.compute_vector();
+    EXPECT_NEAR(e[10] / e[17], 0.0, 1e-11);    // residual
+    EXPECT_NEAR(e[17] / -e[7], 1.0, 1e-12);    // heat of friction, work of contact
+    EXPECT_NEAR(run.evaluate("f_touch") / e[7], 1.0, 1e-12);
+    EXPECT_NEAR(e[14] / e[17], 1.0, 1e-11);    // what points have got
+  }
+  EXPECT_NEAR(error[2], 0.0, 0.03);
+  EXPECT_LT(std::fabs(error[1]), 0.3 * std::fabs(error[0]));
+}
+
+// what the kinetic energy loses is heat, when the pressure comes slowly, so that nothing vibrates
+PARAMETER_TEST(Energy, LostIsHeat, const char *, Values("", "separate", "slip"))
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  Braked b = {2.0, 1e9};
+  b.ramp = 0.03;
+  const std::string kind = GetParam();
+  if (!kind.empty()) b.wall = "ylo " + kind;
+  Scene run(b.scene() + "run 0\n");
+  const double kinetic = run.compute_vector()[0];
+  run_until(run, b, END);
+  const double *const e = run.compute_vector();
+  const double heat = e[17], lost = kinetic - e[0] + e[5] - e[1];    // external work, stored energy
+  EXPECT_GT(heat, 0.9 * kinetic);
+  EXPECT_NEAR(measured("lost/heat - 1", lost / heat - 1.0), 0.0, 1e-6);
+  EXPECT_NEAR(e[17] / -e[kind.empty() ? 7 : 6], 1.0, 1e-12);
+  EXPECT_NEAR(run.fix("heat")->compute_vector(7) * run.lmp->update->dt, 0.0, 0.001 * heat);
+}
+
+// bodies share heat like their effusivities, 1 to 4; or as they are told; or one of them gets all
+SERIAL_TEST(Share, IsThatOfEffusivities)
+{
+  Braked b = {4.0};
+  b.base = replaced(b.base, "50.0", "800.0");
+  Scene run(b.scene());
+  run_until(run, b, 0.5 * END);
+  const double share = mean(run, "m1") / (mean(run, "m1") + mean(run, "m2"));
+  EXPECT_NEAR(measured("share", share) / 0.2, 1.0, 0.02);
+  const double exact = rise(0.5 * END, 5.0 * EFFUSIVITY);
+  EXPECT_NEAR(measured("upper face", at_face(run, "m1", 1, b.h()) / exact), 1.0, 0.03);
+
+  b = {2.0};
+  b.heat = "share 0.3";
+  Scene told(b.scene());
+  run_until(told, b, 0.02);
+  EXPECT_NEAR(mean(told, "m1") / (mean(told, "m1") + mean(told, "m2")), 0.3, 1e-3);
+
+  b = {4.0};
+  b.base = replaced(b.base, " thermal conducting CP 0.0 50.0", "");
+  Scene insulating(b.scene());
+  run_until(insulating, b, 0.5 * END);
+  EXPECT_NEAR(measured("insulating base", at_face(insulating, "m1", 1, b.h()) / 36.13705), 1.0,
+              0.03);
+}
+
+// a base of two materials in layers of points has their effusivities by volume
+SERIAL_TEST(Share, OfMixedBodies)
+{
+  Braked b = {2.0};
+  const std::string scene = b.scene();
+  // every second point of the base conducts 16 times as well
+  const std::string line =
+      scene.substr(scene.find("fix m2 base"),
+                   scene.find('\n', scene.find("fix m2 base")) - scene.find("fix m2 base"));
+  const std::string half =
+      "variable odd atom id%2==1\ngroup odd variable odd\ngroup right intersect base odd\n"
+      "group left subtract base odd\n";
+  const std::string left = replaced(line, "fix m2 base", "fix m2 left");
+  const std::string right =
+      replaced(replaced(line, "fix m2 base", "fix m3 right"), "50.0", "800.0");
+  Scene run(replaced(scene, line, half + left + "\n" + right));
+  run_until(run, b, 0.01);
+  const double up = mean(run, "m1"), l = mean(run, "m2"), r = mean(run, "m3");
+  EXPECT_NEAR(measured("share", up / (up + 0.5 * (l + r))), 1.0 / (1.0 + 2.5), 1e-3);
+  EXPECT_NEAR(run.compute_vector()[14] / run.compute_vector()[17], 1.0, 1e-11);
+}
+
+// a wall is an insulator: all heat goes to the block, also from the surface of a region, at nodes and between them
+PARAMETER_TEST(Wall, IsInsulator, const char *,
+               Values("ylo separate", "ylo slip", "region below separate"))
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  Braked b = {4.0};
+  b.wall = GetParam();
+  Scene run(b.scene());
+  run_until(run, b, 0.5 * END);
+  EXPECT_NEAR(measured("face", at_face(run, "m1", 1, b.h()) / 36.13705), 1.0, 0.03);
+  const double *const e = run.compute_vector();
+  EXPECT_NEAR(e[17] / -e[6], 1.0, 1e-12);
+  EXPECT_NEAR(e[14] / e[17], 1.0, 1e-11);
+  EXPECT_NEAR(e[10] / e[17], 0.0, 1e-11);
+  b.heat = "share 0.25";
+  Scene part(b.scene());
+  run_until(part, b, 0.01);
+  const double *const some = part.compute_vector();
+  EXPECT_NEAR(some[17] / -some[6], 0.25, 1e-12);
+}
+
+// nothing slides: not a bit of heat
+PARAMETER_TEST(Sticks, MakesNoHeat, const char *,
+               Values("", "ylo separate", "region below separate"))
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  Braked b = {2.0};
+  b.wall = GetParam();
+  b.ramp = 0.01;
+  b.more = "velocity block set 0 0 0\nvariable gx equal 0.5*0.3*v_g\nfix tilt block gravity v_gx "
+           "vector 1 0 0\n";
+  Scene run(b.scene());
+  run_until(run, b, 0.02);
+  EXPECT_EQ(run.fix("heat")->compute_scalar(), 0.0);
+  EXPECT_GT(run.fix("touch")->compute_scalar() + run.compute_vector()[5], 0.0);
+  EXPECT_EQ(mean(run, "m1"), 0.0);
+}
+
+namespace {
+
+/** Two disks, one of two materials, that slide along each other and the floor, across ranks and a periodic face. */
+const std::string disks = plane("lj", "p f", "0 16 0 8", 3, 0.4) +
+    fields({{"one", "cylinder z 3.1 2.5 2.5 INF INF"}, {"two", "cylinder z 12.9 3.3 2.5 INF INF"}},
+           "0.5") +
+    R"(
+region part block 0 3 0 8 -0.5 0.5
+group part region part
+group other subtract one part
+fix m1 other mpm/material density 1 neohookean 50 0.3 thermal conducting 1.0 0.5 0.3
+fix m2 part mpm/material density 2 neohookean 50 0.3 thermal conducting 0.7 1.0 0.1
+fix m3 two mpm/material density 1 neohookean 80 0.3 thermal conducting 2.0 0.0 0.2
+fix c all mpm/contact F1 F2 law coulomb 0.3 heat yes
+fix w all mpm/boundary ylo separate friction 0.4 heat share 0.6
+fix heat all mpm/heat
+fix g all gravity 0.5 vector 0 -1 0
+velocity one set -1.5 -0.2 0
+velocity two set 1.0 -0.4 0
+timestep 0.01
+)";
+
+double heat(Scene &run)
+{
+  double sum = 0.0;
+  for (const char *id : {"m1", "m2", "m3"}) {
+    auto *fix = run.material(id);
+    const int column = fix->find_history("temperature");
+    for (int i = 0; i < run.n(); i++)
+      if (run.lmp->atom->mask[i] & fix->groupbit)
+        sum += run.mass()[i] * fix->material->conduction(fix->history[i]).capacity *
+            fix->history[i][column];
+  }
+  return over_ranks(sum);
+}
+
+}    // namespace
+
+PARAMETER_TEST(Disks, AgreeOnRanksAndCloseTheLedger, const char *,
+               Values("", "scheme musl", "transfer flip 0.99"))
+{
+  std::string scene = replaced(disks, "mpm 0.5\n", strprintf("mpm 0.5 %s\n", GetParam()));
+  scene = replaced(scene, "mpm 0.5\n", strprintf("mpm 0.5 %s\n", GetParam()));
+  Scene start(disks + "run 0\n");
+  const double before = heat(start);
+  OnRanks run(scene + "compute e all mpm/energy\n", "run 300\n");
+  EXPECT_LT(run.difference(), 1e-11);
+  const double made = run.parallel.compute_vector()[17];
+  EXPECT_GT(measured("heat", made), 0.01);
+  EXPECT_LT(run.parallel.evaluate("f_c"), -0.01);    // of both kinds
+  EXPECT_LT(run.parallel.evaluate("f_w"), -0.01);
+  EXPECT_NEAR(made, -run.parallel.evaluate("f_c") - 0.6 * run.parallel.evaluate("f_w"),
+              0.4 * std::fabs(run.parallel.evaluate("f_w")) + 1e-11);
+  EXPECT_NEAR(heat(run.parallel) - before, made, 1e-11 * before);
+  EXPECT_NEAR(made / run.serial.compute_vector()[17], 1.0, 1e-10);
+  EXPECT_NEAR(run.parallel.compute_vector()[10], 0.0, 1e-10);
+}
+
+TEST(Disks, ContinueFromARestartFile)
+{
+  std::string fixes = "neighbor 0.4 bin\n";
+  for (std::size_t at = 0, end; at < disks.size(); at = end + 1) {
+    end = disks.find('\n', at);
+    if (disks.compare(at, 4, "fix ") == 0) fixes += disks.substr(at, end - at) + "\n";
+  }
+  Continued run(disks, 200, fixes + "timestep 0.01\n", 60);
+  EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
+  EXPECT_EQ(run.whole.fix("heat")->compute_scalar(), run.again.fix("heat")->compute_scalar());
+  EXPECT_GT(run.whole.fix("heat")->compute_scalar(), 0.01);
+  EXPECT_EQ(heat(run.whole), heat(run.again));
+}
+
+// heat in other units: an energy of mvv2e
+SERIAL_TEST(Units, Metal)
+{
+  const std::string scene = plane("metal", "p f", "0 40 0 80", 1, 2.0) +
+      "fix F1 all mpm 10\nregion low block INF INF 0 60 INF INF\ncreate_points 1 region low ppc 2\n"
+      "fix m all mpm/material density 0.5 neohookean 1e5 0.3 thermal conducting 1e-3 300 1e-4\n"
+      "fix w all mpm/boundary ylo slip friction 0.4 heat yes\nfix heat all mpm/heat\ncompute e all "
+      "mpm/energy\n"
+      "fix push all gravity 5e-3 vector 0 -1 0\nvelocity all set 5 0 0\ntimestep 0.005\n";
+  Scene run(scene + "run 0\n");
+  const double kinetic = run.compute_vector()[0];
+  run.commands("run 600\n");
+  const double *const e = run.compute_vector();
+  EXPECT_GT(measured("heat/kinetic energy", e[17] / kinetic), 0.05);
+  EXPECT_NEAR(e[17] / -e[6], 1.0, 1e-11);
+  EXPECT_NEAR(e[14] / e[17], 1.0, 1e-9);
+  EXPECT_NEAR(e[10] / e[17], 0.0, 1e-9);
+}
+
+// a rigid body that slides on a block: what both lose is heat of the block
+SERIAL_TEST(RigidBody, HeatsTheMaterial)
+{
+  const ScratchFile file("box.stl", binary_of(torus(1.0, 0.5, 24)));
+  Scene run(space("lj", "p p f", "0 8 0 4 -3 4", 1, 0.2) +
+            "fix grid all mpm 0.5\nregion low block INF INF INF INF -3 0\ncreate_points 1 region "
+            "low ppc 2\n"
+            "fix m all mpm/material density 1 neohookean 300 0.3 thermal conducting 1.0 0.0 0.1\n"
+            "fix floor all mpm/boundary zlo stick\n"
+            "region ring mpm/mesh " +
+            file.name +
+            " 1.0 2 2 0.45\n"
+            "fix tool all mpm/rigid ring density 4 separate friction 0.3 heat yes velocity 2 0 0 "
+            "gravity 0 0 -1\n"
+            "fix heat all mpm/heat\ncompute e all mpm/energy\ntimestep 0.005\nrun 0\n");
+  run.commands("run 300\n");
+  const double *const e = run.compute_vector();
+  EXPECT_GT(measured("heat", e[17]), 0.05);
+  EXPECT_NEAR(e[14] / e[17], 1.0, 1e-11);
+  EXPECT_NEAR(e[10], 0.0, 1e-10);
+}
+
+SERIAL_TEST(BadInput, IsRefused)
+{
+  const std::string bare = plane("lj", "p f", "0 4 0 8", 2, 0.1) +
+      fields({{"up", "block 0 4 4 8 -0.5 0.5"}, {"low", "block 0 4 0 4 -0.5 0.5"}});
+  const std::string scene = bare +
+      "fix m all mpm/material density 1 eos linear 1 thermal conducting 1 0 1\ntimestep 0.01\n";
+  expect_refused(
+      scene,
+      {{"fix c all mpm/contact F1 F2 heat yes\nfix h all mpm/heat", "use law coulomb or adhesive"},
+       {"fix c all mpm/contact F1 F2 law stick heat yes\nfix h all mpm/heat",
+        "use law coulomb or adhesive"},
+       {"fix c all mpm/contact F1 F2 law coulomb 0.3 heat share 1.2\nfix h all mpm/heat", "heat"},
+       {"fix c all mpm/contact F1 F2 law coulomb 0.3 heat yes", "define a fix mpm/heat"},
+       {"fix b all mpm/boundary ylo slip heat yes\nfix h all mpm/heat", "needs a coefficient"},
+       {"fix b all mpm/boundary ylo slip friction 0.3 heat yes", "define a fix mpm/heat"}},
+      "run 1\n");
+  expect_error(
+      bare +
+          "group none type 3\nfix m all mpm/material density 1 eos linear 1\n"
+          "fix b all mpm/boundary ylo slip friction 0.3 heat yes\nfix h all mpm/heat\nrun 1\n",
+      "conduct");
+}
