@@ -247,6 +247,25 @@ SERIAL_TEST(Modes, FrequencyAndDamping)
   }
 }
 
+// a wave of undrained soil gains no energy, and the ledger closes
+SERIAL_TEST(Energy, Wave)
+{
+  Scene run(replaced(column(20, "2.2e8 1000 9810 soil m 0.4 constant 1e-9",
+                            "density 1990 linear 1e7 0.3", 1.0, 0.0, "ylo yhi"),
+                     "origin", "gain error 0.01 origin"));
+  run.set_velocity([](const double *x, double *v) {
+    v[1] = 1e-2 * std::sin(PI * x[1]);
+  });
+  const double h = 0.05;
+  run.commands("compute e all mpm/energy\nfix dt all mpm/dt 0.2\nrun 0\n");
+  const double before = run.compute_scalar();
+  run.commands("run 2000\n");
+  EXPECT_NEAR(before / (0.5 * 1990 * 1e-4 * 0.5 * 4 * h), 1.0, 1e-2);
+  EXPECT_LT(measured("energy", run.compute_scalar() / before), 1.001);
+  EXPECT_GT(run.compute_scalar() / before, 0.8);
+  EXPECT_NEAR(measured("residual", run.compute_vector()[10] / before), 0.0, 1e-12);
+}
+
 // flow by a difference of pressures, and water at rest under its weight
 SERIAL_TEST(Flow, Darcy)
 {

@@ -13,6 +13,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_mpm_material.h"
+#include "force.h"
 #include "input.h"
 #include "modify.h"
 #include "mpm_field.h"
@@ -370,6 +371,24 @@ double FixMPMPore::compute_vector(int i)
     flows_known = true;
   }
   return flows[i];
+}
+
+/* ----------------------------------------------------------------------
+   what the water stores, for compute mpm/energy and the energy watch
+------------------------------------------------------------------------- */
+
+void FixMPMPore::account(double *values) const
+{
+  double sum = 0.0;
+  const auto *const points = MPMPoints::get(atom);
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->vfrac[i] > 0.0)) continue;
+    const MPMPoreSoil *const soil = soil_of(i);
+    if (!soil) continue;
+    const double J = points->jacobian(i), p = pressure[i][0];
+    sum += 0.5 * J * atom->vfrac[i] * soil->storage_at(J, water) * p * p;
+  }
+  values[0] += sum / force->nktv2p;
 }
 
 void FixMPMPore::write_restart(FILE *fp)

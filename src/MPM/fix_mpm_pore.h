@@ -70,6 +70,8 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   {
     return of(field).pressure_in_forces();
   }
+  std::vector<Account> accounts() const override { return {{"energy of pore water", true, true}}; }
+  void account(double *values) const override;
   std::vector<std::string> quantities() const override;
   double quantity(int k, int i) const override;
 

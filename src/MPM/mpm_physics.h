@@ -60,6 +60,8 @@ class MPMPhysics {
   struct Account {
     std::string name;
     bool stored;    ///< energy that bodies have now; else energy that has come to them so far
+    /** What the motion gives to it and gets of it is in the entry of time integration: not in the residual. */
+    bool in_integration = false;
   };
   virtual std::vector<Account> accounts() const { return {}; }
   virtual void account(double * /*values*/) const {}
