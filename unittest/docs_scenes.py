@@ -164,6 +164,11 @@ def scene_for(lines):
                        "create_points %d region body%d ppc 2\ngroup %s type %d\n" %
                        (k, 0.03 * k + 0.01, 0.03 * k + 0.03, k + 1, k, named[k], k + 1))
     material = "" if "mpm/material" in text or own_field and grid == "" else MATERIAL
+    soils = re.findall(r"\bsoil (\w+) ", text) if "mpm/pore" in text else []
+    if soils:
+        material = MATERIAL.replace("default", soils[0]) + "".join(
+            "group %s empty\n" % name + MATERIAL.replace("default all", "%s %s" % (name, name))
+            for name in soils[1:])
     if "mpm/heat" in text:
         material = material.replace("\n", " thermal conducting 460 293 52\n")
     points = POINTS.replace("0.05*", "0.025*") if "gimp" in text else POINTS    # below a cell

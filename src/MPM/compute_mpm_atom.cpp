@@ -18,6 +18,7 @@
 #include "modify.h"
 #include "mpm_affine.h"
 #include "mpm_field.h"
+#include "mpm_physics.h"
 #include "mpm_point_batches.h"
 #include "mpm_points.h"
 #include "update.h"
@@ -177,6 +178,9 @@ std::string ComputeMPMAtom::known_names() const
   for (const auto &quantity : quantities)
     for (const auto &component : quantity.components) text += " " + quantity.name + component;
 
+  for (const auto *physics : find_fixes<MPMPhysics>(lmp))
+    for (const auto &name : physics->quantities()) text += " " + name;
+
   std::set<std::string> history;
   for (const auto &fix : modify->get_fix_by_style("^mpm/material$"))
     for (const auto &variable : dynamic_cast<FixMPMMaterial *>(fix)->material->history())
@@ -194,7 +198,7 @@ void ComputeMPMAtom::init()
   points = MPMPoints::get(atom);
   if (!points)
     error->all(FLERR, Error::NOLASTLINE, "No material points for {}: use atom_style mpm", whose());
-  check_history();
+  find_owners();
 }
 
 std::string ComputeMPMAtom::whose() const
@@ -202,12 +206,21 @@ std::string ComputeMPMAtom::whose() const
   return owner.empty() ? fmt::format("compute {} of style mpm/atom", id) : owner;
 }
 
-/** A name that is none of the table must be a history variable of a material that there is now. */
-void ComputeMPMAtom::check_history() const
+/** A name that is none of the table must be one of other physics or a history variable of a material that there
+ *  are now. */
+void ComputeMPMAtom::find_owners()
 {
-  for (const auto &column : columns) {
+  for (auto &column : columns) {
     if (column.quantity) continue;
-    bool found = false;
+    column.physics = nullptr;
+    for (const auto *physics : find_fixes<MPMPhysics>(lmp)) {
+      const auto names = physics->quantities();
+      const auto at = std::find(names.begin(), names.end(), column.name);
+      if (at == names.end()) continue;
+      column.physics = physics;
+      column.component = (int) (at - names.begin());
+    }
+    bool found = column.physics != nullptr;
     for (const auto &fix : modify->get_fix_by_style("^mpm/material$"))
       found |= dynamic_cast<FixMPMMaterial *>(fix)->find_history(column.name) >= 0;
     if (!found)
@@ -221,7 +234,7 @@ void ComputeMPMAtom::check_history() const
 void ComputeMPMAtom::compute_peratom()
 {
   invoked_peratom = update->ntimestep;
-  check_history();    // between runs there can be other materials than in init()
+  find_owners();    // between runs there can be other materials than in init()
 
   const int ncolumn = (int) columns.size();
   if (atom->nmax > nmax) {
@@ -232,12 +245,17 @@ void ComputeMPMAtom::compute_peratom()
   }
 
   const auto fields = MPMField::all(lmp);
-  std::vector<int> of_points;    // columns
-  for (int n = 0; n < ncolumn; n++)
+  std::vector<int> of_points, of_physics;    // columns
+  for (int n = 0; n < ncolumn; n++) {
     if (columns[n].quantity && columns[n].quantity->of_point) of_points.push_back(n);
+    if (columns[n].physics) of_physics.push_back(n);
+  }
   for (int i = 0; i < atom->nlocal; i++) {
     std::fill_n(array_atom[i], ncolumn, 0.0);
-    if (of_points.empty() || !(atom->mask[i] & groupbit) || !(atom->vfrac[i] > 0.0)) continue;
+    if (!(atom->mask[i] & groupbit) || !(atom->vfrac[i] > 0.0)) continue;
+    for (const int n : of_physics)
+      array_atom[i][n] = columns[n].physics->quantity(columns[n].component, i);
+    if (of_points.empty()) continue;
     const MPMField *field = nullptr;
     for (const auto *each : fields)
       if (each->is_point(i)) field = each;
@@ -249,13 +267,14 @@ void ComputeMPMAtom::compute_peratom()
       array_atom[i][n] = (p.*columns[n].quantity->of_point)(columns[n].component);
   }
 
-  if ((int) of_points.size() < ncolumn)
+  if ((int) (of_points.size() + of_physics.size()) < ncolumn)
     visit_point_batches(
         lmp, groupbit, [&](const Batch &batch, const int *list, const FixMPMMaterial &material) {
           double value[BATCH];
           for (int n = 0; n < ncolumn; n++) {
             const auto *quantity = columns[n].quantity;
-            const int index = quantity ? -1 : material.find_history(columns[n].name);
+            const int index =
+                quantity || columns[n].physics ? -1 : material.find_history(columns[n].name);
             if (quantity && quantity->of_batch)
               quantity->of_batch(*material.material, batch, 1.0 / force->nktv2p, value);
             else if (index >= 0)

@@ -21,12 +21,13 @@ ComputeStyle(mpm/atom,ComputeMPMAtom);
 #include <vector>
 
 namespace LAMMPS_NS {
+class MPMPhysics;
 struct MPMPoints;
 
 /** Quantities of material points by name: one column for each name, 0 for other atoms.
  *
- *  The names are those of the table in compute_mpm_atom.cpp and the history variables of the
- *  materials. A name that is not in the table is taken for a history variable until init(),
+ *  The names are those of the table in compute_mpm_atom.cpp, those of other physics, and the history variables of
+ *  the materials. A name that is not in the table is taken for a history variable until init(),
  *  because materials may be defined later than this compute.
  */
 class ComputeMPMAtom : public Compute {
@@ -47,8 +48,9 @@ class ComputeMPMAtom : public Compute {
  private:
   struct Column {
     std::string name;
-    const Quantity *quantity;    // null: history variable
-    int component;               // of the quantity
+    const Quantity *quantity;               // null: history variable, or one of other physics
+    int component;                          // of the quantity
+    const MPMPhysics *physics = nullptr;    // which has it
   };
 
   MPMPoints *points;
@@ -56,7 +58,7 @@ class ComputeMPMAtom : public Compute {
   int nmax = 0;
 
   static Column find_column(const std::string &name);
-  void check_history() const;
+  void find_owners();
   std::string known_names() const;
   std::string whose() const;
 };

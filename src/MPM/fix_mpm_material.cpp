@@ -80,6 +80,7 @@ void FixMPMMaterial::init()
 
   // a mass that create_atoms left, together with a volume that was set, is easily overlooked
 
+  if (mass_varies) return;
   bigint n = 0, all;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit) || !(atom->vfrac[i] > 0.0)) continue;

@@ -56,7 +56,8 @@ class FixMPMMaterial : public FixMPMState {
   /** Index of a history variable, -1 when the law has none of this name. */
   int find_history(const std::string &) const;
 
-  bool watching;    ///< is there a range of validity whose end was not reported yet?
+  bool mass_varies = false;    ///< that of points follows the water in their pores
+  bool watching;               ///< is there a range of validity whose end was not reported yet?
 
   /** Notes whether points of an updated batch, whose first one has this local index, have left a
    *  range of validity. */

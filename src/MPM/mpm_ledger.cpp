@@ -15,6 +15,7 @@
 #include "mpm_field.h"
 #include "mpm_locking.h"
 #include "mpm_passes.h"
+#include "mpm_physics.h"
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -83,6 +84,8 @@ void MPMLedger::account_for_forces()
   double outer = 0.0, inner = 0.0, stress = 0.0;
   double L[9 * BATCH], velocity[3 * BATCH] = {};    // no velocity along z in 2d
   MPMFrame::ForceRows room;
+  const double *const pressure = pressure_of_physics(field);
+  double total_stress[6 * BATCH + 8];
 
   const auto account = [&](const MPMPointMap::Run &run, int first, int n, const int *base) {
     PointRows b = rows_from(field, r, first);
@@ -96,6 +99,7 @@ void MPMLedger::account_for_forces()
     }
     if (!run.material) return;    // nodes of elements
 
+    if (pressure) add_pressure(pressure, b, first, n, total_stress);
     field.frame->forces(b, first, n, room);
     for (int p = 0; p < n; p++) {
       const double *const G = L + nL * p;

@@ -108,7 +108,7 @@ void MPMNodeScalar::points_to_nodes(const Fill &fill)
 
 /* ---------------------------------------------------------------------- */
 
-void MPMNodeScalar::find_rates(const Conduct &conduct)
+void MPMNodeScalar::find_rates(const Conduct &conduct, const std::function<void()> &more)
 {
   std::fill(rate.begin(), rate.end(), 0.0);
   field.nodes.complete(value.data(), 1, 1);
@@ -129,6 +129,7 @@ void MPMNodeScalar::find_rates(const Conduct &conduct)
     kernels.flush(tile, rate.data(), slot, block.other_box);
   }
   std::fill(tiles[1].begin(), tiles[1].end(), 0.0);
+  if (more) more();
   sum(rate);
   for (std::size_t k = 0; k < rate.size(); k++)
     rate[k] = capacity[k] > 0.0 ? rate[k] / capacity[k] : 0.0;

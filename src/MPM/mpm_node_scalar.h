@@ -60,8 +60,9 @@ class MPMNodeScalar {
   void init(bool slopes, bool volumes);
   /** Capacities, volumes, and values of nodes; before = value. */
   void points_to_nodes(const Fill &);
-  /** Rates of the values of nodes. */
-  void find_rates(const Conduct &);
+  /** Rates of the values of nodes. more: adds to their rates times capacity what this rank knows of, before ranks
+   *  are summed. */
+  void find_rates(const Conduct &, const std::function<void()> &more = nullptr);
   /** A bound of the eigenvalues of minus the rates, by the rows of their matrix [1/time], of this rank; not with domains.
    *  bound: out: V_p sum_e |k_de| for each axis d, with the tensor k of a linear flux. */
   double greatest_rate(const Conduct &bound);    // the rows stay in the place of rates

@@ -84,9 +84,6 @@ void run_to_tile(MPMField &field, MPM_NS::P2G p2g, const MPM_NS::PointRows &,
                  int box[6]);
 /** Rows of the points from first on, as if they were all. */
 MPM_NS::PointRows rows_from(const MPMField &, const MPM_NS::PointRows &, int first);
-/** The same of n <= BATCH points, with the forces that the frame makes. */
-MPM_NS::PointRows rows_with_forces(const MPMField &, const MPM_NS::PointRows &, int first, int n,
-                                   MPMFrame::ForceRows &);
 
 }    // namespace LAMMPS_NS
 #endif

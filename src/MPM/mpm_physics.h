@@ -14,6 +14,7 @@
 #include "fix.h"
 #include "lammps.h"
 #include "modify.h"
+#include "transfer/kernels.h"
 
 #include <limits>
 #include <string>
@@ -43,11 +44,24 @@ class MPMPhysics {
     return std::numeric_limits<double>::max();
   }
 
+  /** Speed of the fastest wave of a point whose material alone has the wave speed c. */
+  virtual double wave_speed(const MPMField &, int /*i*/, double c) const { return c; }
+
+  /** [n] J times a pressure that internal forces have besides the stress of points, or null: what points
+   *  keep as their stress is the effective one. */
+  virtual const double *pressure_in_forces(const MPMField &) const { return nullptr; }
+
+  /** Quantities of points for compute mpm/atom: names, fixed when the fix is defined, and their values. */
+  virtual std::vector<std::string> quantities() const { return {}; }
+  virtual double quantity(int /*k*/, int /*i*/) const { return 0.0; }
+
   /** Entries of compute mpm/energy: names, fixed when the fix is defined, and the present values of
    *  this rank [energy]. */
   struct Account {
     std::string name;
     bool stored;    ///< energy that bodies have now; else energy that has come to them so far
+    /** What the motion gives to it and gets of it is in the entry of time integration: not in the residual. */
+    bool in_integration = false;
   };
   virtual std::vector<Account> accounts() const { return {}; }
   virtual void account(double * /*values*/) const {}
@@ -55,6 +69,11 @@ class MPMPhysics {
  protected:
   ~MPMPhysics() = default;    // owned and deleted as a Fix
 };
+
+/** What the physics of a field add to internal forces: J times a pressure for each point, or null. */
+const double *pressure_of_physics(const MPMField &);
+/** Take it from the stress of n <= BATCH rows from point first on, for which there is room [6*n]. */
+void add_pressure(const double *pressure, MPM_NS::PointRows &, int first, int n, double *room);
 
 /** All fixes that derive from a class, in the order of their definition. */
 template <class T> std::vector<T *> find_fixes(LAMMPS *lmp)

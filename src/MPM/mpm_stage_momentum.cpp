@@ -14,14 +14,35 @@
 #include "mpm_field.h"
 #include "mpm_locking.h"
 #include "mpm_passes.h"
+#include "mpm_physics.h"
 #include "mpm_stages.h"
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 /* ----------------------------------------------------------------------
+   no two of them have one: each refuses what it does not go with
+------------------------------------------------------------------------- */
+
+const double *LAMMPS_NS::pressure_of_physics(const MPMField &field)
+{
+  for (const auto *physics : field.plan->physics)
+    if (const double *const pressure = physics->pressure_in_forces(field)) return pressure;
+  return nullptr;
+}
+
+void LAMMPS_NS::add_pressure(const double *pressure, PointRows &rows, int first, int n,
+                             double *room)
+{
+  for (int k = 0; k < 6 * n; k++) room[k] = rows.tau[k];
+  for (int p = 0; p < n; p++)
+    for (int c = 0; c < 3; c++) room[6 * p + c] -= pressure[first + p];
+  rows.tau = room;
+}
+
+/* ----------------------------------------------------------------------
    Where the frame has forces of its own (Piola-Kirchhoff stress, hoop stress), it makes them a batch at
-   a time
+   a time, and so are those of other physics
 ------------------------------------------------------------------------- */
 
 void LAMMPS_NS::run_to_tile(MPMField &field, P2G p2g, const PointRows &rows,
@@ -29,15 +50,19 @@ void LAMMPS_NS::run_to_tile(MPMField &field, P2G p2g, const PointRows &rows,
                             const int base[3], int box[6])
 {
   double *const tile = field.map->tile;
-  const MPMFrame &frame = *field.frame;
-  if (!frame.changes_forces() || p2g == field.kernel.p2g_momentum) {
+  const double *const pressure = pressure_of_physics(field);
+  if ((!field.frame->changes_forces() && !pressure) || p2g == field.kernel.p2g_momentum) {
     p2g(rows, step, run.first, run.last, base, tile, box);
     return;
   }
   MPMFrame::ForceRows room;
+  double stress[6 * BATCH + 8];
   for (int i = run.first; i < run.last; i += BATCH) {
     const int n = std::min(BATCH, run.last - i);
-    p2g(rows_with_forces(field, rows, i, n, room), step, 0, n, base, tile, box);
+    PointRows b = rows_from(field, rows, i);
+    if (pressure) add_pressure(pressure, b, i, n, stress);
+    field.frame->forces(b, i, n, room);
+    p2g(b, step, 0, n, base, tile, box);
   }
 }
 
@@ -60,14 +85,6 @@ PointRows LAMMPS_NS::rows_from(const MPMField &field, const PointRows &rows, int
   if (b.xnew) b.xnew += 3 * i;
   if (b.from) b.from += 3 * i;
   if (b.corners_new) b.corners_new += field.domains->size() * i;
-  return b;
-}
-
-PointRows LAMMPS_NS::rows_with_forces(const MPMField &field, const PointRows &rows, int first,
-                                      int n, MPMFrame::ForceRows &room)
-{
-  PointRows b = rows_from(field, rows, first);
-  field.frame->forces(b, first, n, room);
   return b;
 }
 

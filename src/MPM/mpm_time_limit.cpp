@@ -96,6 +96,8 @@ double MPMTimeLimit::stable_dt(tagint &id_min, double &wave_speed) const
     for (int p = 0; p < n; p++)
       for (int k = 0; k < nhistory; k++) b.history[k][p] = material->history[i + p][k];
     material->material->wave_speed(b, c);
+    for (const auto *physics : field.plan->physics)
+      for (int p = 0; p < n; p++) c[p] = physics->wave_speed(field, i + p, c[p]);
 
     for (int p = 0; p < n && !std::isnan(smallest); p++)
       if (limits(i + p, field.frame->speed(i + p, c[p], field.lattice.h / smallest)))

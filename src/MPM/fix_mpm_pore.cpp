@@ -1,0 +1,440 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "fix_mpm_pore.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix_mpm_material.h"
+#include "force.h"
+#include "input.h"
+#include "modify.h"
+#include "mpm_field.h"
+#include "mpm_options.h"
+#include "mpm_points.h"
+#include "update.h"
+#include "variable.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+/* ----------------------------------------------------------------------
+   fix ID all mpm/pore K RHO G keyword values ...
+------------------------------------------------------------------------- */
+
+static const char *const PART_NAME[] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi", "free"};
+
+Options MPMPoreOptions::declare(int dim)
+{
+  using namespace option;
+  Options o("fix mpm/pore");
+  o.argument(number(water.bulk, "K", POSITIVE, "pressure", "bulk modulus of the water"));
+  o.argument(number(water.density, "RHO", POSITIVE, "mass/volume", "density of the water"));
+  o.argument(number(water.resistance, "G", POSITIVE, "",
+                    "what permeabilities are divided by: unit weight of the water "
+                    "(pressure/length), or its viscosity (pressure time)"));
+  const auto value = [this](const std::string &meaning) {
+    return std::vector<OptionValue>{number(next.permeability, "k", NOT_NEGATIVE, "", meaning)};
+  };
+  o.add("soil",
+        {text(next.material, "ID", "fix mpm/material of the soil"),
+         number(next.porosity, "n0", {0.0, 1.0, false}, "1", "initial porosity"),
+         word(next.law,
+              {{"constant", MPMPoreSoil::CONSTANT, "permeability k",
+                value("permeability (velocity, or area with a viscosity)")},
+               {"kozeny", MPMPoreSoil::KOZENY,
+                "k times n^3/(1-n)^2 over its initial value (Kozeny, Carman)",
+                value("initial permeability")},
+               {"squared", MPMPoreSoil::SQUARED, "k times the square of the ratio of volumes",
+                value("initial permeability")},
+               {"formula",
+                MPMPoreSoil::FORMULA,
+                "",
+                {text(next.formula, "v_name",
+                      "permeability of each point, an atom-style variable")}}})},
+        "pores of a material; once for each soil")
+      .then([this] {
+        soils.push_back(next);
+        next = {};
+      })
+      .standard("none");
+  o.add("biot",
+        {number(biot.first, "alpha", {0.0, 1.0, false, true}, "1", "coefficient of Biot"),
+         number(biot.second, "Ks", POSITIVE, "pressure", "bulk modulus of the grains")},
+        "grains of the soil before this keyword that are not rigid")
+      .then([this] {
+        biot_alone = soils.empty();
+        if (biot_alone) return;
+        soils.back().biot = biot.first;
+        soils.back().grains = biot.second;
+      })
+      .standard("1, rigid grains");
+  for (int part = 0; part < MPMPoreSurface::NPART; part++) {
+    MPMPoreCondition &c = conditions[part];
+    const bool free = part == MPMPoreSurface::FREE;
+    const auto of = [&c](const std::string &name, const std::string &unit,
+                         const std::string &meaning) {
+      return std::vector<OptionValue>{
+          variables(&c.value, 1, name, unit, meaning + ", can be a variable")};
+    };
+    o.add(PART_NAME[part],
+          {word(c.kind,
+                {{"closed", MPMPoreCondition::CLOSED,
+                  std::string("no water goes through ") +
+                      (free ? "free surfaces of the soil" : "this face of the box")},
+                 {"pressure", MPMPoreCondition::PRESSURE, "",
+                  of("p", "pressure", "pressure of the water outside")},
+                 {"head", MPMPoreCondition::HEAD, "",
+                  of("z", "distance", "height of the water table outside, against fix gravity")},
+                 {"flux", MPMPoreCondition::FLUX, "",
+                  of("q", "velocity", "volume of water that comes in for each area and time")}})});
+  }
+  o.add(
+      "initial",
+      {text(initial, "p",
+            "pressure of points at first; v_name: an atom-style variable, for those that there are "
+            "when the fix is defined")});
+  o.add("relax",
+        {number(relax, "R", NOT_NEGATIVE, "1",
+                "rate at which points take the pressure of the nodes, in the rate at which waves "
+                "cross a cell")});
+  o.add("stages", {integer(most_stages, "N", POSITIVE, "most stages of the flow in a time step")});
+  o.refuse([=] {
+    OptionRules rules = {{biot_alone, "biot", "needs a soil before it"}};
+    for (int face = 4; face < 6; face++)
+      rules.push_back({dim == 2 && conditions[face].kind != MPMPoreCondition::CLOSED,
+                       PART_NAME[face], "does not exist in 2d"});
+    for (const auto &soil : soils) {
+      rules.push_back({soil.biot < soil.porosity, "biot",
+                       "must not be below the porosity of the soil: {biot}"});
+      rules.push_back({soil.law == MPMPoreSoil::FORMULA && soil.formula.compare(0, 2, "v_") != 0,
+                       "soil", "needs a variable, v_name, for its formula"});
+    }
+    return rules;
+  });
+  return o;
+}
+
+FixMPMPore::FixMPMPore(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
+{
+  if (igroup != 0)
+    error->all(FLERR, 1, "Fix mpm/pore acts on all points of its soils: use group all");
+  Options options = declare(domain->dimension);
+  read_options(lmp, options, narg, arg, 3);
+  if (soils.empty())
+    error->all(FLERR, narg - 1,
+               "Fix mpm/pore needs a soil: use soil with the ID of a fix mpm/material, its "
+               "porosity, and permeability");
+  initial_index = -1;
+  if (initial.compare(0, 2, "v_") == 0) {
+    initial_index = input->variable->find(initial.c_str() + 2);
+    if (initial_index < 0 || !input->variable->atomstyle(initial_index))
+      error->all(FLERR, Error::NOLASTLINE, "Variable {} for fix mpm/pore initial {}",
+                 initial.substr(2), initial_index < 0 ? "does not exist" : "is not atom-style");
+  } else {
+    initial_value = utils::numeric(FLERR, initial, false, lmp);
+  }
+  state.declare(pressure, "mpm/pore:pressure", 1 + domain->dimension, [this](int, double *row) {
+    row[0] = initial_value;
+  });
+  keep_arrays();
+  scalar_flag = vector_flag = 1;
+  size_vector = MPMPoreSurface::NPART;
+  for (auto *list : {&came, &in_step, &present, &flows}) list->assign(size_vector, 0.0);
+  global_freq = 1;
+  extscalar = extvector = 1;
+  restart_global = 1;
+  set_initial_pressure();
+  for (const auto &soil : soils)
+    if (auto *fix = dynamic_cast<FixMPMMaterial *>(modify->get_fix_by_id(soil.material)))
+      fix->mass_varies = true;
+}
+
+/* ----------------------------------------------------------------------
+   of the points that there are now; a restart file has others
+------------------------------------------------------------------------- */
+
+void FixMPMPore::set_initial_pressure()
+{
+  if (initial_index < 0) return;
+  std::vector<double> values(atom->nmax);
+  input->variable->compute_atom(initial_index, igroup, values.data(), 1, 0);
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!std::isfinite(values[i]))
+      error->one(FLERR, "Variable {} for fix mpm/pore initial is {} at point {}", initial.substr(2),
+                 values[i], atom->tag[i]);
+    pressure[i][0] = values[i];
+  }
+  gradients_known = false;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMPore::init()
+{
+  if (modify->get_fix_by_style("^mpm$").empty())
+    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/pore needs a fix mpm with the points");
+  if (modify->get_fix_by_style("^mpm/pore$").size() > 1)
+    error->all(FLERR, Error::NOLASTLINE,
+               "There is more than one fix mpm/pore: one has all soils, each with a keyword soil");
+  std::set<std::string> known;
+  for (const auto &soil : soils) {
+    auto *const fix = dynamic_cast<FixMPMMaterial *>(modify->get_fix_by_id(soil.material));
+    if (!fix)
+      error->all(FLERR, Error::NOLASTLINE, "Fix mpm/pore soil: there is no fix mpm/material {}",
+                 soil.material);
+    if (!known.insert(soil.material).second)
+      error->all(FLERR, Error::NOLASTLINE, "Fix mpm/pore has soil {} twice", soil.material);
+    fix->mass_varies = true;
+    if (soil.law != MPMPoreSoil::FORMULA) continue;
+    const int index = input->variable->find(soil.formula.c_str() + 2);
+    if (index < 0 || !input->variable->atomstyle(index))
+      error->all(FLERR, Error::NOLASTLINE, "Variable {} for fix mpm/pore soil {} {}",
+                 soil.formula.substr(2), soil.material,
+                 index < 0 ? "does not exist" : "is not atom-style");
+  }
+  weights.clear();
+  for (auto *fix : modify->get_fix_by_style("^gravity")) {
+    if (fix->igroup != 0)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/pore takes the weight of the water from fix gravity {}, which must be of "
+                 "group all",
+                 fix->id);
+    weights.push_back(fix);
+  }
+  for (int part = 0; part < MPMPoreSurface::NPART; part++) {
+    auto &c = conditions[part];
+    if (c.kind == MPMPoreCondition::CLOSED) continue;
+    if (part < MPMPoreSurface::NFACE && domain->periodicity[part / 2])
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/pore face {} belongs to a periodic axis: use boundary f there",
+                 PART_NAME[part]);
+    if (c.kind == MPMPoreCondition::HEAD && weights.empty())
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/pore {} head needs a fix gravity of group all, which tells where up is",
+                 PART_NAME[part]);
+    find_variable(lmp, c.value, std::string("fix mpm/pore ") + PART_NAME[part]);
+  }
+}
+
+void FixMPMPore::init_physics(MPMPlan &plan)
+{
+  fields.clear();
+  steps.clear();
+  steps.add(in_step, present);
+  for (auto *field : plan.fields) {
+    fields.push_back(std::make_unique<MPMPore>(lmp, *field, water, conditions, gravity, relax));
+    auto &mine = *fields.back();
+    mine.init(soils);
+    const auto &o = field->options;
+    refuse_field(
+        lmp, *this, *field,
+        {{o.shape != QUADRATIC && o.shape != CUBIC, "this shape", "use shape quadratic or cubic"},
+         {o.scheme != MPMFieldOptions::USL, "this scheme", "use scheme usl"},
+         {o.total, "frame total", "use frame updated"},
+         {o.axisymmetric, "axisymmetric", "use a plane or 3d"},
+         {o.modified_edges, "edges modified", "use edges plain"},
+         {o.averages_stress() || o.averages_volume() || o.averages_strain(), "locking",
+          "the pressure of the water is an average already: use locking none"}});
+    steps.add(mine.nodes.value, mine.nodes.rate);
+  }
+}
+
+MPMPore &FixMPMPore::of(const MPMField &field) const
+{
+  for (const auto &mine : fields)
+    if (&mine->field == &field) return *mine;
+  error->all(FLERR, Error::NOLASTLINE, "Fix mpm/pore does not know fix mpm {}", field.id());
+  return *fields[0];
+}
+
+void FixMPMPore::add_stages(MPMPlan &plan, MPMPlan::Place place)
+{
+  if (place == MPMPlan::BEFORE_POINTS_TO_NODES)
+    plan.together("pore pressure", [this]() {
+      begin_step();
+    });
+  if (place == MPMPlan::AFTER_SOLVE)
+    plan.together("flow of pore water", [this]() {
+      flow();
+    });
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMPore::evaluate_variables()
+{
+  std::fill_n(gravity, 3, 0.0);
+  for (auto *fix : weights) {
+    int dim;
+    const auto *const g = (const double *) const_cast<Fix *>(fix)->extract("gvec", dim);
+    for (int d = 0; d < 3; d++) gravity[d] += g[d];
+  }
+  const bool formulas = std::any_of(soils.begin(), soils.end(), [](const auto &soil) {
+    return soil.law == MPMPoreSoil::FORMULA;
+  });
+  bool any = formulas;
+  for (const auto &c : conditions) any = any || !c.value.variable.empty();
+  evaluate_in_step(lmp, any, [&] {
+    for (auto &c : conditions) c.now = evaluate(lmp, c.value);
+    if (!formulas) return;
+    formula_values.assign(atom->nmax, 0.0);
+    std::vector<double> values(atom->nmax);
+    for (const auto &soil : soils) {
+      if (soil.law != MPMPoreSoil::FORMULA) continue;
+      const int index = input->variable->find(soil.formula.c_str() + 2);
+      input->variable->compute_atom(index, igroup, values.data(), 1, 0);
+      for (int i = 0; i < atom->nlocal; i++) {
+        if (soil_of(i) == nullptr || soil_of(i)->material != soil.material) continue;
+        if (!(values[i] >= 0.0) || !std::isfinite(values[i]))
+          error->one(FLERR, "Variable {} for fix mpm/pore soil {} is {} at point {}",
+                     soil.formula.substr(2), soil.material, values[i], atom->tag[i]);
+        formula_values[i] = values[i];
+      }
+    }
+  });
+}
+
+void FixMPMPore::begin_step()
+{
+  evaluate_variables();
+  const double *const formula = formula_values.empty() ? nullptr : formula_values.data();
+  for (auto &field : fields) {
+    if (!gradients_known) field->find_gradients(pressure, formula);
+    field->begin_step(pressure, formula);
+  }
+  gradients_known = true;
+}
+
+void FixMPMPore::flow()
+{
+  double mine = 0.0, greatest;
+  for (auto &field : fields) {
+    field->take_motion();
+    mine = std::max(mine, field->greatest_rate());
+  }
+  MPI_Allreduce(&mine, &greatest, 1, MPI_DOUBLE, MPI_MAX, world);
+  const double dt = fields[0]->field.step_dt(), limit = MPMSuperStep::explicit_limit(greatest);
+  const int stages = dt <= 0.5 * limit ? 1
+                                       : std::max(3, MPMSuperStep::count(dt, limit, most_stages));
+  if (stages > most_stages)
+    error->all(FLERR, Error::NOLASTLINE,
+               "The time step {:.6g} is {:.4g} times the explicit limit {:.4g} of the flow of pore "
+               "water, which needs more than {} stages: use fix mpm/dt, a smaller timestep, or fix "
+               "mpm/pore ... stages",
+               dt, dt / limit, limit, most_stages);
+  std::fill(in_step.begin(), in_step.end(), 0.0);
+  steps.advance(stages, dt, [this]() {
+    std::fill(present.begin(), present.end(), 0.0);
+    for (auto &field : fields) field->find_rates(present);
+  });
+  for (auto &field : fields) field->end_step(pressure);
+  for (std::size_t k = 0; k < came.size(); k++) came[k] += in_step[k];
+  dt_last = dt;
+  flows_known = false;
+}
+
+double FixMPMPore::stable_dt(const MPMField &field, tagint &tag) const
+{
+  const double limit = MPMSuperStep::explicit_limit(of(field).greatest_rate(tag));
+  return most_stages < 3 ? 0.5 * limit : MPMSuperStep::reach(most_stages) * limit;
+}
+
+/* ----------------------------------------------------------------------
+   volume of water that has come in so far, and the volume in a time in the last step
+------------------------------------------------------------------------- */
+
+double FixMPMPore::compute_scalar()
+{
+  double mine = 0.0, all;
+  for (const double volume : came) mine += volume;
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+double FixMPMPore::compute_vector(int i)
+{
+  if (!flows_known) {
+    MPI_Allreduce(in_step.data(), flows.data(), size_vector, MPI_DOUBLE, MPI_SUM, world);
+    for (double &flow : flows) flow /= dt_last;
+    flows_known = true;
+  }
+  return flows[i];
+}
+
+/* ----------------------------------------------------------------------
+   what the water stores, for compute mpm/energy and the energy watch
+------------------------------------------------------------------------- */
+
+void FixMPMPore::account(double *values) const
+{
+  double sum = 0.0;
+  const auto *const points = MPMPoints::get(atom);
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->vfrac[i] > 0.0)) continue;
+    const MPMPoreSoil *const soil = soil_of(i);
+    if (!soil) continue;
+    const double J = points->jacobian(i), p = pressure[i][0];
+    sum += 0.5 * J * atom->vfrac[i] * soil->storage_at(J, water) * p * p;
+  }
+  values[0] += sum / force->nktv2p;
+}
+
+void FixMPMPore::write_restart(FILE *fp)
+{
+  keep_totals(world, came.data(), size_vector);
+  if (comm->me) return;
+  const int size = size_vector * (int) sizeof(double);
+  fwrite(&size, sizeof(int), 1, fp);
+  fwrite(came.data(), sizeof(double), came.size(), fp);
+}
+
+void FixMPMPore::restart(char *buf)
+{
+  gradients_known = true;
+  if (comm->me == 0) std::copy_n((const double *) buf, came.size(), came.begin());
+}
+
+/* ---------------------------------------------------------------------- */
+
+const MPMPoreSoil *FixMPMPore::soil_of(int i) const
+{
+  for (const auto *field : MPMField::all(lmp)) {
+    if (!field->is_point(i)) continue;
+    const auto *const material = field->material_of(i);
+    for (const auto &soil : soils)
+      if (material && soil.material == material->id) return &soil;
+  }
+  return nullptr;
+}
+
+std::vector<std::string> FixMPMPore::quantities() const
+{
+  return {"pore", "porosity"};
+}
+
+double FixMPMPore::quantity(int k, int i) const
+{
+  const MPMPoreSoil *const soil = soil_of(i);
+  if (!soil) return 0.0;
+  return k == 0 ? pressure[i][0] : soil->porosity_at(MPMPoints::get(atom)->jacobian(i));
+}
+
+double FixMPMPore::memory_usage()
+{
+  double bytes = FixMPMState::memory_usage() + steps.memory_usage() +
+      formula_values.capacity() * sizeof(double);
+  for (const auto &field : fields) bytes += field->memory_usage();
+  return bytes;
+}

@@ -1,0 +1,105 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(mpm/pore,FixMPMPore);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_MPM_PORE_H
+#define LMP_FIX_MPM_PORE_H
+
+#include "declare/option.h"
+#include "mpm_physics.h"
+#include "mpm_pore.h"
+#include "mpm_state.h"
+#include "mpm_super_step.h"
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+struct MPMPoreOptions {
+  MPMPoreWater water;
+  std::vector<MPMPoreSoil> soils;
+  MPMPoreSurface::Conditions conditions;
+  std::string initial = "0.0";    ///< pressure of points, a number or v_name
+  double relax = 0.2;
+  int most_stages = 64;
+
+  MPM_NS::Options declare(int dimension);
+
+ private:
+  // while they are read
+  MPMPoreSoil next;
+  std::pair<double, double> biot = {0.0, 0.0};
+  bool biot_alone = false;
+};
+
+/** Pore water in the points of soils, which move with one velocity for both (u-p): flow by Darcy's law, and the
+ *  pressure of the water in the forces. */
+class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions {
+ public:
+  FixMPMPore(class LAMMPS *, int, char **);
+  int setmask() override { return 0; }    // called by fix mpm
+  void init() override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+  double memory_usage() override;
+
+  void init_physics(MPMPlan &) override;
+  void add_stages(MPMPlan &, MPMPlan::Place) override;
+  void extend_topology(MPMField &field) override { of(field).surface.extend_topology(); }
+  double stable_dt(const MPMField &, tagint &tag) const override;
+  double wave_speed(const MPMField &field, int i, double c) const override
+  {
+    return of(field).wave_speed(i, c);
+  }
+  const double *pressure_in_forces(const MPMField &field) const override
+  {
+    return of(field).pressure_in_forces();
+  }
+  std::vector<Account> accounts() const override { return {{"energy of pore water", true, true}}; }
+  void account(double *values) const override;
+  std::vector<std::string> quantities() const override;
+  double quantity(int k, int i) const override;
+
+ private:
+  MPMRows pressure;          // [n][1+dim] with its gradient
+  int initial_index = -1;    // of a variable
+  double initial_value = 0.0;
+  bool gradients_known = true;    // not yet where pressures were given
+  std::vector<std::unique_ptr<MPMPore>> fields;
+  MPMSuperStep steps;                        // of the pressures of all fields together
+  double gravity[3];                         // force per mass
+  std::vector<const class Fix *> weights;    // fixes gravity
+  std::vector<double> formula_values;        // [n] permeability by variables
+
+  // volumes of water, this rank's share: that has come in so far; that came in the last step, and comes in a stage of
+  // it for each time; the last step of all ranks for each time
+  std::vector<double> came, in_step, present, flows;
+  double dt_last = 0.0;
+  bool flows_known = true;
+
+  MPMPore &of(const MPMField &) const;
+  const MPMPoreSoil *soil_of(int i) const;
+  void set_initial_pressure();
+  void evaluate_variables();
+  void begin_step();
+  void flow();
+};
+
+}    // namespace LAMMPS_NS
+#endif
+#endif

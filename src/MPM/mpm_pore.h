@@ -1,0 +1,96 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_PORE_H
+#define LMP_MPM_PORE_H
+
+#include "mpm_node_scalar.h"
+#include "mpm_pore_soil.h"
+#include "mpm_pore_surface.h"
+#include "mpm_rows.h"
+#include "pointers.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+class FixMPMMaterial;
+
+/** Pore water in the points of one field: the pressures of nodes, their rates by the motion of the soil and by
+ *  flow, and the pressure in internal forces.
+ *
+ *  Points keep rows of 1 + dim reals: the pressure (above that of the air, compression is positive) and its gradient. */
+class MPMPore : protected Pointers {
+ public:
+  MPMField &field;
+  MPMNodeScalar nodes;
+  MPMPoreSurface surface;
+
+  /** gravity: force per mass that the water has, too. */
+  MPMPore(class LAMMPS *, MPMField &, const MPMPoreWater &, const MPMPoreSurface::Conditions &,
+          const double *gravity, double relax);
+
+  /** Start of a run: the soils of this field. */
+  void init(const std::vector<MPMPoreSoil> &);
+  bool has_water() const { return !soils.empty(); }
+
+  /** Gradients of points whose pressures alone were given; those of a linear pressure are exact. Collective. */
+  void find_gradients(const MPMRows &state, const double *formula);
+  /** Before points go to nodes: pressures of nodes, and what forces have of them. formula: [n] permeabilities of
+   *  points, or null. */
+  void begin_step(const MPMRows &state, const double *formula);
+  /** [n] J times the pressure in internal forces. */
+  const double *pressure_in_forces() const { return in_forces.data(); }
+  /** The velocities of the step are known. */
+  void take_motion();
+  /** Rates of the pressures of nodes; adds the volumes of water that come in for each time. */
+  void find_rates(std::vector<double> &inflow);
+  /** Pressures of points at the end of the step, and the mass of the water that they got. */
+  void end_step(const MPMRows &state);
+
+  /** Bound of the eigenvalues of minus the rates [1/time] for this rank's points, in this step and at present;
+   *  tag: of the point that limits it. */
+  double greatest_rate() const;
+  double greatest_rate(tagint &tag) const;
+  /** Wave speed of a point where water cannot flow, c: of the soil alone. */
+  double wave_speed(int i, double c) const;
+  const MPMPoreSoil *soil_of(int i) const;
+
+  double memory_usage() const;
+
+ private:
+  struct Soil {
+    const FixMPMMaterial *fix;
+    MPMPoreSoil of;
+  };
+  const MPMPoreWater &water;
+  const double *const gravity;
+  const double relax;    // of points, in the rate at which waves cross a cell
+  std::vector<Soil> soils;
+  double steepest =
+      0.0;                 // of the shape functions: greatest sum of N'^2/N along an axis, in cells
+  double slowest = 0.0;    // smallest mobility over storage of a soil
+  double least_storage = 0.0;
+  double waves = 0.0;       // smallest wave speed by the stiffness of the water in a soil
+  double fastest = 0.0;     // largest of the points in the last step
+  double exchange = 0.0;    // rate of exchange through the surface in the last step
+
+  // of points in this step
+
+  std::vector<double> in_forces;      // [n]
+  std::vector<double> capacity;       // [n] storage times volume
+  std::vector<double> conductance;    // [n] mobility times volume
+  std::vector<double> mean;           // [n] pressure by the nodes, at the start
+  std::vector<double> squeezed;       // [n] rate of the volume of water that the motion drives out
+
+  void points_to_nodes(const MPMRows &state, const double *formula);
+  const Soil *soil(const FixMPMMaterial *) const;
+  double mobility(const Soil &, int i, double J, const double *formula) const;
+};
+
+}    // namespace LAMMPS_NS
+#endif

@@ -1,0 +1,59 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_PORE_SOIL_H
+#define LMP_MPM_PORE_SOIL_H
+
+#include <algorithm>
+#include <string>
+
+namespace LAMMPS_NS {
+
+/** Pore water: its bulk modulus [pressure] and density, and what permeabilities are divided by to make them
+ *  mobilities: its unit weight [pressure/length] for hydraulic conductivities, or its viscosity [pressure time] for
+ *  permeabilities in units of area. */
+struct MPMPoreWater {
+  double bulk = 0.0, density = 0.0, resistance = 0.0;
+};
+
+/** What the pores of a material are like. Volumes are those of the present state, J its ratio to the initial one. */
+struct MPMPoreSoil {
+  enum Law { CONSTANT, KOZENY, SQUARED, FORMULA };
+
+  std::string material;    ///< ID of its fix mpm/material
+  double porosity = 0.0;
+  Law law = CONSTANT;
+  double permeability = 0.0;
+  std::string formula;    ///< variable, with v_
+  double biot = 1.0;      ///< coefficient of Biot
+  double grains = 0.0;    ///< bulk modulus of the grains [pressure]; 0: rigid
+
+  /** Grains keep their volume. */
+  double porosity_at(double J) const { return 1.0 - (1.0 - porosity) / J; }
+
+  /** Kozeny and Carman: n^3/(1 - n)^2, from its initial value; without pores nothing flows. */
+  double permeability_at(double J) const
+  {
+    if (law == KOZENY) {
+      const double n = std::max(0.0, porosity_at(J)) / porosity;
+      return permeability * n * n * n * J * J;
+    }
+    return law == SQUARED ? permeability * J * J : permeability;
+  }
+
+  /** Volume of water that a unit of volume takes up for a unit of pressure. Where there are next to no pores left, it
+   *  stays that of a hundredth of the initial porosity. */
+  double storage_at(double J, const MPMPoreWater &water) const
+  {
+    const double n = std::max(porosity_at(J), 0.01 * porosity);
+    return n / water.bulk + (grains > 0.0 ? std::max(0.0, biot - n) / grains : 0.0);
+  }
+};
+
+}    // namespace LAMMPS_NS
+#endif

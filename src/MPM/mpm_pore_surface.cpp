@@ -1,0 +1,325 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+/* ----------------------------------------------------------------------
+   The sum g_i = sum_p V_p grad N_ip of a node is the integral of its function over the surface of the soil, times the
+   normal: nothing inside, and the area of surface that belongs to the node. The volume at the node over this area tells how
+   deep below the surface the node is (MPMNodeProfile). Of the nodes on a line through the surface, those within a node spacing
+   stand for it, with shares 1 - |depth| that have the sum one, and on a surface that is inclined the sum one in the mean; what is
+   missing of the area at a node, at the sides of a body, is missing in its share.
+
+   The place of a node is s = half a node spacing below the surface, where
+
+     q = k (p(s) - p_s - rho_f g . (x(s) - x_s))/s
+
+   is the flow by the pressure p_s at the surface, where it leaves the nodes: with it, a pressure that is linear up to the
+   surface is a solution on nodes, too. Were the water taken where the pressure is, a column of 10 cells between two drained faces would
+   let through 3.8 % too much.
+   To hold p = p_s at the surface itself, as heat does, lets the water of a whole cell out at once: where water has not yet
+   had the time to flow through a cell, pressures then oscillate from the surface into the soil, the more, the less permeable it is (a column
+   of 20 cells, K_f = 2.2e9, M = 1.35e7, loaded in 10 ms, k = 1e-8: by 30 % of the load three cells below the surface; with
+   this 0.8 %, which are waves). What can flow is bounded by the permeability here.
+
+   Each place is one of the rank that owns its node, so that sums over ranks follow.
+------------------------------------------------------------------------- */
+
+#include "mpm_pore_surface.h"
+
+#include "atom.h"
+#include "domain.h"
+#include "force.h"
+#include "mpm_field.h"
+#include "mpm_passes.h"
+#include "mpm_points.h"
+#include "mpm_stencil.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+enum { VOLUME = 3, GRADIENT = 4 };    // reals of a record
+
+static constexpr double INSET = 0.5;    // of places below the surface, in node spacings
+// gaps between material and a face of the box up to which it touches, and from which on not
+static constexpr double TOUCHES = 0.25, IS_APART = 0.5;
+static constexpr double FULL = 0.97;      // of a cell: sums over points are not exactly integrals
+static constexpr double ENOUGH = 0.01;    // of a cell at a node, for its whole weight
+static constexpr double MOSTLY = 0.5;     // part of a place that has water, for its whole area
+static constexpr double NOISE =
+    0.1;    // of the area of a cell: no surface, but sums that are not integrals
+
+/* ---------------------------------------------------------------------- */
+
+MPMPoreSurface::MPMPoreSurface(LAMMPS *lmp, MPMField &field, const Conditions &conditions,
+                               const MPMPoreWater &water, const double *gravity) :
+    Pointers(lmp),
+    field(field), conditions(conditions), water(water), gravity(gravity)
+{
+}
+
+bool MPMPoreSurface::any() const
+{
+  return std::any_of(conditions.begin(), conditions.end(), [](const auto &c) {
+    return c.kind != MPMPoreCondition::CLOSED;
+  });
+}
+
+void MPMPoreSurface::init()
+{
+  profile = std::make_unique<MPMNodeProfile>(field);
+}
+
+void MPMPoreSurface::extend_topology()
+{
+  if (!any()) return;
+  Grid &grid = field.grid;
+  const int dim = field.lattice.dim;
+  const std::size_t n = grid.blocks.size();
+  for (std::size_t ib = 0; ib < n; ib++)
+    for (int k = 0; k < (dim == 3 ? 27 : 9); k++) {
+      const int shift[3] = {k % 3 - 1, k / 3 % 3 - 1, dim == 3 ? k / 9 - 1 : 0};
+      int b[3];
+      for (int d = 0; d < 3; d++) b[d] = grid.blocks[ib].b[d] + shift[d];
+      grid.activate(b);
+    }
+}
+
+/** Blocks that are not full of material, and those next to them. */
+void MPMPoreSurface::find_blocks_near()
+{
+  const auto &blocks = field.grid.blocks;
+  std::vector<double> filled(blocks.size(), 0.0);
+  for (const auto &run : field.map->runs)
+    for (int i = run.first; i < run.last; i++)
+      filled[run.slot] += field.atom->vfrac[i] * field.points->jacobian(i);
+  const double full = NODES_PER_BLOCK * field.lattice.cell_volume();
+  near.assign(blocks.size(), 0);
+  for (std::size_t ib = 0; ib < blocks.size(); ib++)
+    near[ib] = std::any_of(blocks[ib].slot, blocks[ib].slot + 27, [&](int slot) {
+      return slot >= 0 && filled[slot] < FULL * full;
+    });
+}
+
+/** Volumes of nodes, and what is minus the force of the stress -I, with the gradients of the functions: those that moving
+ *  least squares take in their place see a surface elsewhere. */
+void MPMPoreSurface::map_volume()
+{
+  const auto &pic = field.pic;
+  auto &work = field.work;
+  const std::size_t nmax = field.atom->nmax;
+  work.vectors.assign(3 * nmax, 0.0);
+  work.weights.resize(std::max(work.weights.size(), nmax));
+  work.stress.resize(6 * nmax);
+  PointRows rows = field.rows_at_rest(work.vectors.data(), work.weights.data());
+  rows.tau = work.stress.data();
+  TransferStep step = field.step_data(1.0);
+  step.force_scale = 0.0;
+  step.stress_scale = 1.0;
+  const auto &blocks = field.grid.blocks;
+  points_to(nodes, field, pic, [&](const MPMPointMap::Run &run, const int *base, int *box) {
+    if (std::none_of(blocks[run.slot].slot, blocks[run.slot].slot + 27, [&](int slot) {
+          return slot >= 0 && near[slot];
+        }))
+      return;
+    for (int i = run.first; i < run.last; i++) {
+      const double J = field.points->jacobian(i);
+      work.weights[i] = J * field.atom->vfrac[i];
+      for (int c = 0; c < 6; c++) rows.tau[6 * (std::size_t) i + c] = c < 3 ? -J : 0.0;
+    }
+    pic.p2g(rows, step, run.first, run.last, base, field.map->tile, box);
+  });
+  field.nodes.sum(nodes.data(), pic.nreal, VOLUME, GRADIENT - VOLUME + field.lattice.dim);
+}
+
+/** Value of the function of a node at the surface, along the normal. */
+double MPMPoreSurface::function(double depth) const
+{
+  constexpr double STEP = 1.0 / 128;
+  return (profile->volume(depth + STEP) - profile->volume(depth - STEP)) / (2.0 * STEP);
+}
+
+double MPMPoreSurface::pressure_outside(const MPMPoreCondition &c, const double *x) const
+{
+  if (c.kind != MPMPoreCondition::HEAD) return c.now;
+  double size = 0.0, along = 0.0;
+  for (int d = 0; d < 3; d++) {
+    size += gravity[d] * gravity[d];
+    along += gravity[d] * x[d];
+  }
+  const double p = water.density * force->nktv2p * (sqrt(size) * c.now + along);
+  return std::max(0.0, p);    // above the table there is air
+}
+
+/** at: on the surface; normal: out of the soil. */
+void MPMPoreSurface::add_place(MPMStencil &stencil, int part, double area, const double *at,
+                               const double *normal)
+{
+  const auto &condition = conditions[part];
+  Place place = {part, area, pressure_outside(condition, at), 0.0, 0, 0, 0, 0};
+  double x[3] = {0.0, 0.0, 0.0};
+  for (int d = 0; d < field.lattice.dim; d++) {
+    const double step = -INSET * field.lattice.h * normal[d];
+    x[d] = at[d] + step;
+    place.outside += water.density * force->nktv2p * gravity[d] * step;
+  }
+  place.first = (int) node.size();
+  place.n = add_nodes(stencil, x);
+  place.first_at = (int) node.size();
+  place.n_at = add_nodes(stencil, at);
+  if (place.n && place.n_at) places.push_back(place);
+}
+
+/** The nodes that a place reaches; returns their number, 0: not all of them are there. */
+int MPMPoreSurface::add_nodes(MPMStencil &stencil, const double *x)
+{
+  const std::size_t first = node.size();
+  const bool there = stencil.visit_around(x, [&](int64_t number, double w, const double *) {
+    node.push_back(number);
+    weight.push_back(w);
+  });
+  return there ? (int) (node.size() - first) : 0;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMPoreSurface::find_places()
+{
+  places.clear();
+  node.clear();
+  weight.clear();
+  find_blocks_near();
+  map_volume();
+  const auto &grid = field.grid;
+  const auto &lattice = field.lattice;
+  const int dim = lattice.dim;
+  const double h = lattice.h, cell = lattice.cell_volume(), side = cell / h;
+  MPMStencil stencil(field);
+  for (std::size_t ib = 0; ib < grid.blocks.size(); ib++) {
+    const auto &block = grid.blocks[ib];
+    for (int n = 0; near[ib] && n < NODES_PER_BLOCK; n++) {
+      if ((block.alias >> n & 1) || !(block.owned >> n & 1)) continue;
+      const int64_t number = (int64_t) ib * NODES_PER_BLOCK + n;
+      const double V = nodes[number * field.pic.nreal + VOLUME] / cell;
+      if (!(V > 0.0)) continue;
+      int index[3] = {0, 0, 0};
+      grid.node_index(block, n, index);
+      double x[3] = {0.0, 0.0, 0.0}, g[3] = {0.0, 0.0, 0.0};
+      for (int d = 0; d < dim; d++) {
+        x[d] = lattice.origin[d] + index[d] * h;
+        g[d] = nodes[number * field.pic.nreal + GRADIENT + d] / side;
+      }
+
+      // what a face of the box takes is not free
+
+      for (int face = 0; face < 2 * dim; face++) {
+        const int axis = face / 2;
+        if (domain->periodicity[axis]) continue;
+        const double sign = face % 2 ? 1.0 : -1.0;
+        const double wall = face % 2 ? domain->boxhi[axis] : domain->boxlo[axis];
+        const double depth = sign * (wall - x[axis]) / h, out = sign * g[axis];
+        if (fabs(depth) >= profile->reach() || !(out > 0.0)) continue;
+        const double gap = depth - profile->depth(V / out);
+        const double touch = std::min(1.0, (IS_APART - fabs(gap)) / (IS_APART - TOUCHES));
+        if (!(touch > 0.0)) continue;
+        g[axis] *= 1.0 - touch;
+        if (conditions[face].kind == MPMPoreCondition::CLOSED || fabs(depth) >= 1.0) continue;
+        double at[3] = {x[0], x[1], x[2]}, normal[3] = {0.0, 0.0, 0.0};
+        at[axis] = wall;
+        normal[axis] = sign;
+        const double part = std::min(1.0, out / function(depth));
+        add_place(stencil, face, touch * part * (1.0 - fabs(depth)) * side, at, normal);
+      }
+      if (conditions[FREE].kind == MPMPoreCondition::CLOSED) continue;
+      const double length = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+      if (length < NOISE) continue;
+      const double depth = profile->depth(V / length);
+      if (fabs(depth) >= 1.0) continue;
+      double at[3] = {0.0, 0.0, 0.0}, normal[3] = {0.0, 0.0, 0.0};
+      for (int d = 0; d < dim; d++) {
+        normal[d] = g[d] / length;
+        at[d] = x[d] + depth * h * normal[d];
+      }
+      const double part = std::min(1.0, length / function(depth));
+      add_place(stencil, FREE, part * (1.0 - fabs(depth)) * side, at, normal);
+    }
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+/** Makes the sum of weights one; enough: capacity of a node for its whole weight. Returns the sum before. */
+double MPMPoreSurface::normalize(int first, int n, double enough,
+                                 const std::vector<double> &capacity)
+{
+  double sum = 0.0;
+  for (int k = first; k < first + n; k++) {
+    const double C = capacity[node[k]];
+    weight[k] *= C > 0.0 ? std::min(1.0, C / enough) : 0.0;
+    sum += weight[k];
+  }
+  for (int k = first; k < first + n && sum > 0.0; k++) weight[k] /= sum;
+  return sum;
+}
+
+double MPMPoreSurface::prepare(const MPMNodeScalar &scalar, double least_storage)
+{
+  const double cell = field.lattice.cell_volume();
+  double fastest = 0.0;
+  for (auto &place : places) {
+    double storage = 0.0;
+    for (int k = place.first; k < place.first + place.n; k++) {
+      const double V = nodes[node[k] * field.pic.nreal + VOLUME];
+      if (V > ENOUGH * cell) storage = std::max(storage, scalar.capacity[node[k]] / V);
+    }
+    // the surface may be that of another material, without water
+    const double inside = normalize(place.first, place.n, 1.0e-300, scalar.capacity);
+    const double at =
+        normalize(place.first_at, place.n_at, ENOUGH * least_storage * cell, scalar.capacity);
+    const bool has_water = storage > 0.0 && inside > 0.0 && at > 0.0;
+    place.area *= has_water ? std::min(1.0, at / MOSTLY) : 0.0;
+    double K = 0.0, C = 0.0, response = 0.0;
+    for (int k = place.first; k < place.first + place.n && has_water; k++) {
+      K += weight[k] * scalar.volume[node[k]];
+      C += weight[k] * scalar.capacity[node[k]];
+      for (int j = place.first_at; j < place.first_at + place.n_at; j++)
+        if (node[j] == node[k] && weight[j] > 0.0)
+          response += weight[j] * weight[k] / scalar.capacity[node[k]];
+    }
+    place.conductance = C > 0.0 ? place.area * storage * K / (C * INSET * field.lattice.h) : 0.0;
+    if (conditions[place.part].kind != MPMPoreCondition::FLUX)
+      fastest = std::max(fastest, response * place.conductance);
+  }
+  // places of nodes next to each other share nodes
+  constexpr double TOGETHER = 3.0;
+  return TOGETHER * fastest;
+}
+
+void MPMPoreSurface::add_rates(MPMNodeScalar &scalar, std::vector<double> &inflow) const
+{
+  for (const auto &place : places) {
+    const auto &condition = conditions[place.part];
+    double Q = place.area * condition.now;
+    if (condition.kind != MPMPoreCondition::FLUX) {
+      double p = 0.0;
+      for (int k = place.first; k < place.first + place.n; k++)
+        p += weight[k] * scalar.value[node[k]];
+      Q = place.conductance * (place.outside - p);
+    }
+    for (int k = place.first_at; k < place.first_at + place.n_at; k++)
+      scalar.rate[node[k]] += weight[k] * Q;
+    inflow[place.part] += Q;
+  }
+}
+
+double MPMPoreSurface::memory_usage() const
+{
+  return places.capacity() * sizeof(Place) + node.capacity() * sizeof(int64_t) +
+      (weight.capacity() + nodes.capacity()) * sizeof(double) + near.capacity();
+}

@@ -1,0 +1,93 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_PORE_SURFACE_H
+#define LMP_MPM_PORE_SURFACE_H
+
+#include "declare/option.h"
+#include "mpm_node_profile.h"
+#include "mpm_node_scalar.h"
+#include "mpm_pore_soil.h"
+#include "pointers.h"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace LAMMPS_NS {
+class MPMField;
+
+/** What pore water has outside of a face of the box, or of the free surface of the soil. */
+struct MPMPoreCondition {
+  enum Kind { CLOSED, PRESSURE, HEAD, FLUX };
+
+  Kind kind = CLOSED;
+  MPM_NS::NumberOrVariable
+      value;    ///< pressure; height of a water table; volume of water that comes in per area
+  double now = 0.0;    ///< in this step
+};
+
+/** Water through the surface of the soil in one field: at faces of the box, and where it is free.
+ *
+ *  Each node next to the surface stands for a share of its area. Water flows out there as it is driven by the difference
+ *  of the pressure half a node spacing below the surface from that at the surface. */
+class MPMPoreSurface : protected Pointers {
+ public:
+  static constexpr int NFACE = 6, FREE = 6, NPART = 7;    ///< parts: xlo ... zhi, free surface
+  using Conditions = std::array<MPMPoreCondition, NPART>;
+
+  MPMPoreSurface(class LAMMPS *, MPMField &, const Conditions &, const MPMPoreWater &,
+                 const double *gravity);
+
+  /** Does water go through any part? If not, nothing else needs to be called. */
+  bool any() const;
+  /** Start of a run. */
+  void init();
+  /** Places are in reach of the points, and may have nodes beyond these. */
+  void extend_topology();
+  /** Where the surface is. Before MPMNodeScalar::points_to_nodes(). Collective. */
+  void find_places();
+  /** What flows there, from the nodes' capacities and (as volume) conductances. least_storage: the smallest of a soil.
+   *  Returns the greatest rate of exchange of this rank's places [1/time]. */
+  double prepare(const MPMNodeScalar &, double least_storage);
+  /** Adds this rank's share to the rates times capacity of nodes, and of the volumes of water that come in for each time. */
+  void add_rates(MPMNodeScalar &, std::vector<double> &inflow) const;
+
+  double memory_usage() const;
+
+ private:
+  struct Place {
+    int part;
+    double area, outside;    // pressure at which nothing flows
+    double conductance;      // volume of water for a difference in pressure, and time
+    int first, n;            // nodes of the place where the pressure is taken
+    int first_at, n_at;      // nodes of the surface next to it, where water comes in
+  };
+  MPMField &field;
+  const Conditions &conditions;
+  const MPMPoreWater &water;
+  const double *const gravity;
+  std::unique_ptr<MPMNodeProfile> profile;
+  std::vector<Place> places;
+  std::vector<int64_t> node;    // of all places
+  std::vector<double> weight;
+  std::vector<double> nodes;    // records with volume and its gradient
+  std::vector<char> near;       // [block]
+
+  void find_blocks_near();
+  void map_volume();
+  double function(double depth) const;
+  double pressure_outside(const MPMPoreCondition &, const double *x) const;
+  int add_nodes(class MPMStencil &, const double *x);
+  void add_place(class MPMStencil &, int part, double area, const double *at, const double *normal);
+  double normalize(int first, int n, double enough, const std::vector<double> &capacity);
+};
+
+}    // namespace LAMMPS_NS
+#endif

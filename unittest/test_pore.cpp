@@ -1,0 +1,423 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: physics mpi restart input
+// mpi: 1 4
+// timeout: 400
+
+// Fix mpm/pore: pore water in soils, with one velocity for both.
+
+#include "mpm_lammps.h"
+
+#include "compute_mpm_atom.h"
+
+using namespace MPM_TEST;
+
+namespace {
+
+/** Pressures of points, by a compute mpm/atom. */
+struct Water {
+  Scene &run;
+  explicit Water(Scene &run) : run(run) { run.commands("compute pore all mpm/atom pore\n"); }
+
+  const double *pressures()
+  {
+    auto *compute = run.lmp->modify->get_compute_by_id("pore");
+    compute->compute_peratom();
+    return compute->vector_atom;
+  }
+  /** Mean over the points in a range of y. */
+  double mean(double low, double high)
+  {
+    const double *const p = pressures();
+    double sum = 0.0, n = 0.0;
+    for (int i = 0; i < run.n(); i++)
+      if (run.x()[i][1] > low && run.x()[i][1] < high) {
+        sum += p[i];
+        n++;
+      }
+    return sum / n;
+  }
+  double mass()
+  {
+    double sum = 0.0;
+    for (int i = 0; i < run.n(); i++) sum += run.mass()[i];
+    return over_ranks(sum);
+  }
+};
+
+constexpr double LOAD = 1.0e4, PI2 = 0.5 * PI, MODULUS = 1e7 * 0.7 / (1.3 * 0.4);
+
+/** A column of 1 m with the top at y = 1, four cells wide, on a smooth floor, with n cells. offset: of the floor from
+ *  nodes, in cells. */
+std::string column(int n, const std::string &water, const std::string &material, double top = 1.2,
+                   double offset = 0.0, const std::string &floor = "ylo")
+{
+  const double h = 1.0 / n;
+  return plane("si", "p f", strprintf("0 %.17g 0 %.17g", 4 * h, top), 1, 0.3 * h) +
+      strprintf("region soil block 0 %.17g 0 1 INF INF\n", 4 * h) +
+      strprintf("create_points 1 region soil spacing %.17g\n", 0.5 * h) +
+      strprintf("fix grid all mpm %.17g origin 0 %.17g\n", h, offset * h) +
+      "fix m all mpm/material " + material + "\nfix floor all mpm/boundary " + floor + " slip\n" +
+      "fix water all mpm/pore " + water + "\n";
+}
+const char *const SOIL = "density 2002 linear 1e7 0.3";
+
+/** The row of points at the top carries q, which grows over a time. */
+std::string load(int n, double q, double ramp)
+{
+  const double h = 1.0 / n;
+  return strprintf("region top block INF INF %.17g INF INF INF\ngroup top region top\n",
+                   1.0 - 0.5 * h) +
+      strprintf("variable q equal %.17g*0.5*(1-cos(PI*((time<%g)*time/%g+(time>=%g))))\n", q, ramp,
+                ramp, ramp) +
+      "variable fy equal -v_q*lx/count(top)\nfix load top addforce 0 v_fy 0\n";
+}
+void run_to(Scene &run, double end)
+{
+  run.commands(strprintf("fix dt all mpm/dt 0.5 until %.17g\nrun 1000000\n", end));
+}
+
+/** Terzaghi: pressure over the initial one at a depth z below the drained top of a column of 1. */
+double terzaghi(double z, double T)
+{
+  double sum = 0.0;
+  for (int m = 0; m < 2000; m++) {
+    const double M = (2 * m + 1) * PI2;
+    sum += 2.0 / M * std::sin(M * z) * std::exp(-M * M * T);
+  }
+  return sum;
+}
+
+/** Consolidation by the load: rms error of the pressures in parts of the load at a time factor, and the degree of
+ *  consolidation. */
+struct Consolidation {
+  double rms, U;
+};
+Consolidation consolidate(int n, const std::string &drained, double top, double offset, double Kf)
+{
+  const double storage = 0.4 / Kf, c = 1e-3 / 9810.0 / (1.0 / MODULUS + storage), ramp = 0.01;
+  Scene run(column(n, strprintf("%g 1000 9810 soil m 0.4 constant 1e-3 %s", Kf, drained.c_str()),
+                   SOIL, top, offset) +
+            load(n, LOAD, ramp));
+  Water water(run);
+  const double T = 0.2, p0 = LOAD / (1.0 + MODULUS * storage);
+  run_to(run, T / c + 0.5 * ramp);
+  const double *const p = water.pressures();
+  double sum = 0.0, all = 0.0;
+  for (int i = 0; i < run.n(); i++) {
+    const double d = p[i] - p0 * terzaghi(1.0 - run.x()[i][1], T);
+    sum += d * d / run.n();
+    all += p[i] / run.n();
+  }
+  return {std::sqrt(sum) / LOAD, 1.0 - all / p0};
+}
+
+}    // namespace
+
+// Terzaghi's column at T = 0.2, drained at a face of the box or at a free surface
+SERIAL_TEST(Consolidation, Terzaghi)
+{
+  for (const double Kf : {2.2e8, 2.2e9}) {
+    double rms[2];
+    for (const int n : {10, 20}) {
+      const auto result = consolidate(n, "yhi pressure 0", 1.0, 0.0, Kf);
+      rms[n == 20] = measured(strprintf("Kf %g, %d cells, rms", Kf, n), result.rms);
+      if (n == 20) EXPECT_NEAR(measured("U", result.U) / 0.504088, 1.0, 0.01);
+    }
+    EXPECT_LT(rms[1], 0.002);
+  }
+  for (const double offset : {0.0, 0.3, 0.5}) {
+    const auto result = consolidate(20, "free pressure 0", 1.2, offset, 2.2e9);
+    EXPECT_LT(measured(strprintf("free, offset %g, rms", offset), result.rms), 0.01);
+    EXPECT_NEAR(measured("U", result.U) / 0.504088, 1.0, 0.01);
+  }
+}
+
+// Where water has no time to flow through a cell, the pressure below the drained top is even
+SERIAL_TEST(Undrained, PressureIsEven)
+{
+  for (const double Kf : {2.2e8, 2.2e9})
+    for (const double k : {1e-4, 1e-5, 1e-6, 1e-7, 1e-8}) {
+      const int n = 20;
+      Scene run(
+          column(n, strprintf("%g 1000 9810 soil m 0.4 constant %g free pressure 0", Kf, k), SOIL) +
+          load(n, LOAD, 0.03));
+      Water water(run);
+      run_to(run, 0.06);
+      const double c = k / 9810.0 / (1.0 / MODULUS + 0.4 / Kf),
+                   p0 = LOAD / (1 + MODULUS * 0.4 / Kf);
+      const double *const p = water.pressures();
+      double sum = 0.0, square = 0.0, count = 0.0;
+      for (int i = 0; i < run.n(); i++) {
+        const double z = 1.0 - run.x()[i][1];
+        if (z < 3.0 / n) continue;
+        const double d = p[i] - p0 * terzaghi(z, 0.045 * c);
+        sum += d;
+        square += d * d;
+        count++;
+      }
+      const double mean = sum / count;
+      EXPECT_LT(measured(strprintf("Kf %g, k %g, scatter", Kf, k),
+                         std::sqrt(square / count - mean * mean) / LOAD),
+                0.01);
+    }
+}
+
+// what comes to points is what comes through the surface, as volume of water and as mass
+TEST(Water, IsKept)
+{
+  for (const char *drained : {"", "free pressure 0", "yhi pressure 100 free flux 1e-3"}) {
+    const bool face = drained[0] == 'y';
+    Scene run(column(10, std::string("2.2e9 1000 9810 soil m 0.4 kozeny 1e-3 ") + drained, SOIL,
+                     face ? 1.0 : 1.2, 0.2) +
+              load(10, LOAD, 0.01));
+    Water water(run);
+    const double before = water.mass();
+    run.commands("timestep 1e-5\nrun 2000\n");
+    const double came = run.fix("water")->compute_scalar();
+    if (drained[0]) EXPECT_GT(std::fabs(came), 1e-7);
+    EXPECT_NEAR((water.mass() - before - 1000.0 * came) / before, 0.0, 1e-13);
+  }
+}
+
+// Consolidation by half of the modulus, Kirchhoff stress logarithmic in the stretch, permeability with its square,
+// T = 0.2: table of the benchmark (hencky, J2); the points cross up to 4 cells
+SERIAL_TEST(LargeStrain, Consolidation)
+{
+  const int n = 20;
+  Scene run(column(n, "200 1e-9 1.0 soil m 0.5 squared 1.0 free pressure 0",
+                   "density 1e-3 linear 1.0 0.0") +
+            load(n, 0.5, 0.004));
+  Water water(run);
+  run.commands("compute n all mpm/atom porosity\n");
+  run_to(run, 0.202);
+  double volume = 0.0;
+  auto *compute = run.lmp->modify->get_compute_by_id("n");
+  compute->compute_peratom();
+  for (int i = 0; i < run.n(); i++) {
+    const double J = run.points().jacobian(i);
+    volume += J * run.lmp->atom->vfrac[i];
+    EXPECT_NEAR(compute->vector_atom[i], 1.0 - 0.5 / J, 1e-14);
+  }
+  EXPECT_NEAR(measured("settlement", 1.0 - volume * n / 4.0) / 0.183627, 1.0, 0.02);
+  EXPECT_NEAR(measured("pressure at the base", 2.0 * water.mean(0.0, 0.5 / n)) / 0.742959, 1.0,
+              0.02);
+}
+
+// A column that vibrates between closed ends: frequency and damping of the equations without the inertia of the
+// water's own motion, s^3 + d s^2 + (a + b) s + d a = 0
+SERIAL_TEST(Modes, FrequencyAndDamping)
+{
+  for (const double Kf : {2.2e8, 2.2e9}) {
+    const double density = 0.6 * 2650.0 + 400.0, k = 1e-3;
+    const double a = MODULUS * PI * PI / density, b = Kf / 0.4 * PI * PI / density,
+                 d = Kf / 0.4 * PI * PI * k / 9810.0;
+    const double period = 2.0 * PI / std::sqrt(a + b);
+    const int n = 40;
+    Scene run(column(n, strprintf("%g 1000 9810 soil m 0.4 constant 1e-3", Kf),
+                     "density 1990 linear 1e7 0.3", 1.0, 0.0, "ylo yhi"));
+    run.set_velocity([](const double *x, double *v) {
+      v[1] = 1e-4 * std::sin(PI * x[1]);
+    });
+    const int steps = 400;
+    const double dt = period / steps;
+    // v' = pi (p - s)/rho, s' = M pi v, p' = -K/n pi v - d p in units where these are a and b
+    double v = 1.0, s = 0.0, p = 0.0;
+    double sum = 0.0, square = 0.0;
+    run.commands(strprintf("timestep %.17g\nrun 0\n", dt));
+    for (int k = 0; k < 30; k++) {
+      run.commands("run 20\n");
+      for (int j = 0; j < 20 * 20; j++) {
+        const double e = dt / 20;
+        v += e * (p - s);
+        s += e * a * v;
+        p = (p - e * b * v) / (1.0 + e * d);
+      }
+      double mine = 0.0, norm = 0.0;
+      for (int i = 0; i < run.n(); i++) {
+        const double w = std::sin(PI * run.x()[i][1]);
+        mine += 1e4 * w * run.v()[i][1];
+        norm += w * w;
+      }
+      sum += (mine / norm - v) * (mine / norm - v);
+      square += v * v;
+    }
+    EXPECT_LT(measured(strprintf("Kf %g, difference", Kf), std::sqrt(sum / square)), 0.03);
+  }
+}
+
+// a wave of undrained soil gains no energy, and the ledger closes
+SERIAL_TEST(Energy, Wave)
+{
+  Scene run(replaced(column(20, "2.2e8 1000 9810 soil m 0.4 constant 1e-9",
+                            "density 1990 linear 1e7 0.3", 1.0, 0.0, "ylo yhi"),
+                     "origin", "gain error 0.01 origin"));
+  run.set_velocity([](const double *x, double *v) {
+    v[1] = 1e-2 * std::sin(PI * x[1]);
+  });
+  const double h = 0.05;
+  run.commands("compute e all mpm/energy\nfix dt all mpm/dt 0.2\nrun 0\n");
+  const double before = run.compute_scalar();
+  run.commands("run 2000\n");
+  EXPECT_NEAR(before / (0.5 * 1990 * 1e-4 * 0.5 * 4 * h), 1.0, 1e-2);
+  EXPECT_LT(measured("energy", run.compute_scalar() / before), 1.001);
+  EXPECT_GT(run.compute_scalar() / before, 0.8);
+  EXPECT_NEAR(measured("residual", run.compute_vector()[10] / before), 0.0, 1e-12);
+}
+
+// flow by a difference of pressures, and water at rest under its weight
+SERIAL_TEST(Flow, Darcy)
+{
+  for (const double offset : {0.0, 0.25, 0.4}) {
+    const auto scene = [&](const char *modulus, const char *bottom) {
+      const auto water =
+          strprintf("2.2e7 1000 1e4 soil m 0.4 constant 1e-3 initial v_p yhi pressure "
+                    "0 ylo pressure %s",
+                    bottom);
+      return replaced(column(10, water, strprintf("density 2000 linear %s 0.0", modulus), 1.0,
+                             offset, "ylo yhi"),
+                      "fix water",
+                      "fix g all gravity 10.0 vector 0 -1 0\n"
+                      "variable p atom 1e4*(1-y)\nvariable bottom equal 15000\n"
+                      "fix water");
+    };
+    Scene still(scene("1e12", "10000") + "timestep 1e-9\nrun 1\n");
+    const double *flows = still.fix_vector("water", 7);
+    EXPECT_LT(measured("still", std::max(std::fabs(flows[2]), std::fabs(flows[3])) / (0.4 * 1e-3)),
+              1e-6);
+    Scene flow(scene("1e8", "v_bottom") + "timestep 1.5e-4\nrun 5000\n");
+    flows = flow.fix_vector("water", 7);
+    EXPECT_NEAR(measured("in", flows[2] / (0.4 * 0.5e-3)), 1.0, 0.01);
+    EXPECT_NEAR(measured("out", flows[3] / (0.4 * 0.5e-3)), -1.0, 0.01);
+  }
+}
+
+// the time step is that of the wave in soil and water
+SERIAL_TEST(TimeStep, IsUndrained)
+{
+  Scene run(column(10, "2.2e9 1000 9810 soil m 0.4 constant 1e-9", SOIL) + "run 0\n");
+  EXPECT_NEAR(run.stable_dt() / (0.1 / std::sqrt((MODULUS + 2.2e9 / 0.4) / 2002.0)), 1.0, 1e-6);
+  Scene biot(column(10, "2.2e9 1000 9810 soil m 0.4 constant 1e-9 biot 0.8 3e10", SOIL) +
+             "run 0\n");
+  const double storage = 0.4 / 2.2e9 + 0.4 / 3e10;
+  EXPECT_NEAR(biot.stable_dt() / (0.1 / std::sqrt((MODULUS + 0.64 / storage) / 2002.0)), 1.0, 1e-6);
+}
+
+namespace {
+
+/** A block of two soils and one that is dry, which collide across ranks and periodic faces. */
+std::string blocks(const std::string &more)
+{
+  return plane("lj", "p p", "0 8 0 8", 3, 0.4) + "fix grid all mpm 0.5\n" +
+      bodies({{"one", "sphere 3 4 0 1.6 side in"},
+              {"two", "block 5 6.6 3 5 -0.5 0.5"},
+              {"dry", "block 3 5 0.8 2 -0.5 0.5"}}) +
+      "fix m one mpm/material density 1.0 eos linear 20.0 strength j2 8.0 0.4\n"
+      "fix n two mpm/material density 2.0 eos linear 30.0 strength j2 8.0 0.4\n"
+      "fix o dry mpm/material density 1.0 neohookean 10.0 0.3\n"
+      "velocity all set 0.8 0.5 0\nvelocity two set -0.7 0.5 0\n"
+      "variable p atom 0.1*x\nvariable k atom 0.01*(1+y)\n"
+      "fix water all mpm/pore 20.0 0.5 2.0 soil m 0.4 kozeny 0.1 soil n 0.3 formula v_k biot 0.9 "
+      "200 " +
+      more + "\ntimestep 0.005\n";
+}
+struct Named {
+  double tag, p;
+};
+std::vector<Named> pressures(Scene &run)
+{
+  const double *const p = [&]() {
+    auto *compute = run.lmp->modify->get_compute_by_id("pore");
+    compute->compute_peratom();
+    return compute->vector_atom;
+  }();
+  std::vector<Named> mine;
+  for (int i = 0; i < run.n(); i++) mine.push_back({(double) run.lmp->atom->tag[i], p[i]});
+  return all_by_tag(mine, run.lmp->world);
+}
+const char *const PORE = "compute pore all mpm/atom pore\n";
+
+}    // namespace
+
+TEST(Ranks, Agree)
+{
+  const std::string walls =
+      replaced(blocks("initial v_p xlo pressure 1.0 free pressure 0 ylo flux 0.01"),
+               "boundary p p p", "boundary f f p") +
+      "fix b all mpm/boundary xlo xhi ylo yhi slip\n";
+  for (const auto &scene : {blocks("initial v_p"), walls}) {
+    OnRanks run(scene + PORE, "run 300\n");
+    EXPECT_LT(run.difference(), 1e-11);
+    const auto one = pressures(run.serial), all = pressures(run.parallel);
+    ASSERT_EQ(one.size(), all.size());
+    double most = 0.0;
+    for (std::size_t k = 0; k < one.size(); k++)
+      most = std::max(most, std::fabs(one[k].p - all[k].p));
+    EXPECT_LT(measured("difference", most), 1e-10);
+    EXPECT_NEAR(run.serial.fix("water")->compute_scalar(),
+                run.parallel.fix("water")->compute_scalar(), 1e-12);
+  }
+}
+
+TEST(Restart, Continues)
+{
+  const std::string scene = blocks("free pressure 0 initial v_p");
+  const std::string tail = scene.substr(scene.find("fix m one"));
+  std::string fixes = "neighbor 0.4 bin\nfix grid all mpm 0.5\n"
+                      "variable p atom 0.1*x\nvariable k atom 0.01*(1+y)\n";
+  for (std::size_t at = 0, end; at < tail.size(); at = end + 1) {
+    end = tail.find('\n', at);
+    if (tail.compare(at, 4, "fix ") == 0) fixes += tail.substr(at, end - at) + "\n";
+  }
+  Continued run(scene + PORE, 60, fixes + PORE + "timestep 0.005\n", 60);
+  EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
+  const auto one = pressures(run.whole), two = pressures(run.again);
+  ASSERT_EQ(one.size(), two.size());
+  EXPECT_EQ(memcmp(one.data(), two.data(), one.size() * sizeof(Named)), 0);
+  EXPECT_EQ(run.whole.fix("water")->compute_scalar(), run.again.fix("water")->compute_scalar());
+}
+
+SERIAL_TEST(BadInput, IsRefused)
+{
+  const std::string scene = plane("si", "f p", "0 4 0 4", 1, 0.1) +
+      "fix grid all mpm 1.0 MPM_OPTIONS\n"
+      "create_points 1 box ppc 2\n"
+      "fix m all mpm/material density 2000.0 linear 1e7 0.3\n"
+      "timestep 1e-4\n";
+  const std::string plain = replaced(scene, "MPM_OPTIONS", "");
+  const std::string water = "fix water all mpm/pore 2e7 1000 9810 ",
+                    soil = "soil m 0.4 constant 1e-5 ";
+  expect_refused(
+      plain,
+      {{"fix water all mpm/pore", "mpm/pore"},
+       {"fix water all mpm/pore 2e7 1000", "mpm/pore"},
+       {"fix water all mpm/pore -2e7 1000 9810 " + soil, "K"},
+       {"fix water all mpm/pore 2e7 1000 0 " + soil, "G"},
+       {water, "needs a soil"},
+       {water + "soil m 1.4 constant 1e-5", "n0"},
+       {water + "soil m 0.4 clay 1e-5", "must be one of constant kozeny squared formula"},
+       {water + "soil m 0.4 constant -1e-5", "k"},
+       {water + "soil m 0.4 formula k", "needs a variable"},
+       {water + "soil m 0.4 formula v_none", "does not exist"},
+       {water + "soil sand 0.4 constant 1e-5", "there is no fix mpm/material sand"},
+       {water + soil + soil, "soil m twice"},
+       {water + "biot 0.9 1e10 " + soil, "biot"},
+       {water + soil + "biot 0.3 1e10", "below the porosity"},
+       {water + soil + "xlo wet", "must be one of closed pressure head flux"},
+       {water + soil + "zlo pressure 0", "zlo does not exist in 2d"},
+       {water + soil + "ylo pressure 0", "periodic axis: use boundary f"},
+       {water + soil + "xlo head 1.0", "needs a fix gravity"},
+       {water + soil + "xlo pressure v_none", "does not exist"},
+       {water + soil + "initial v_none", "does not exist"},
+       {water + soil + "stages 0", "stages"},
+       {"group a type 1\nfix water a mpm/pore 2e7 1000 9810 " + soil, "use group all"},
+       {water + soil + "\nfix more all mpm/pore 2e7 1000 9810 " + soil, "more than one"},
+       {"group a type 1\nfix g a gravity 9.81 vector 0 -1 0\n" + water + soil, "of group all"}},
+      "run 1\n");
+  for (const auto &[options, remedy] :
+       {std::pair{"shape linear", "use shape quadratic"}, std::pair{"frame total", "frame updated"},
+        std::pair{"scheme musl", "use scheme usl"}, std::pair{"locking pressure", "locking none"}})
+    expect_error(replaced(scene, "MPM_OPTIONS", options) + water + soil + "\nrun 1\n", remedy);
+  expect_error(plain + water + "soil m 0.4 constant 10 stages 3\nrun 1\n", "other physics");
+}
