@@ -496,6 +496,32 @@ SERIAL_TEST(Drag, OfSpheresIsThatOfTheLaw)
     }
 }
 
+// Soil with another porosity than that of the permeability; and the limit of the time step, by the formula of the page
+SERIAL_TEST(Drag, OfDarcyDependsOnPorosity)
+{
+  Column c;
+  c.h = 0.1;
+  c.height = 0.4;
+  c.soil[1] = c.water[1] = 0.4;
+  c.K = 1.0e6;
+  c.E = 1.0e5;
+  c.drag = "darcy 1.0e-9 0.5";
+  Scene run(replaced(replaced(c.text(), "boundary p f", "boundary p p"), "0.2 -0.5", "0.4 -0.5") +
+            "timestep 1.0e-4\nvelocity water set 1.0 0 0\nrun 5\n");
+  const auto kozeny = [](double n) {
+    return n * n * n / ((1.0 - n) * (1.0 - n));
+  };
+  const double kappa = 1.0e-9 * kozeny(POROSITY) / kozeny(0.5);
+  const double rate = POROSITY * POROSITY * 1.0e-3 / kappa * (1.0 / DRY + 1.0 / (POROSITY * WATER));
+  double v[2] = {0.0, 0.0};
+  for (int i = 0; i < run.n(); i++) v[run.lmp->atom->type[i] - 1] = run.v()[i][0];
+  EXPECT_NEAR((v[1] - v[0]) / exp(-rate * 5.0e-4), 1.0, 1e-10);
+
+  run.commands("fix step all mpm/dt 1.0\nvelocity all set 0 0 0\nrun 1\n");
+  const double c2 = c.K / WATER + c.K * (1.0 - POROSITY) / (POROSITY * GRAINS) + c.modulus() / DRY;
+  EXPECT_NEAR(run.lmp->update->dt * sqrt(c2) / c.h, 1.0, 1e-3);
+}
+
 /** Soil falls into a pool, some of which is in its pores; along y there is gravity. */
 static std::string slump(int dim, const std::string &options = "transfer apic")
 {

@@ -44,7 +44,8 @@
 
    Volumes at a node: that of grains, V_s, of the soil with its pores, V_m, of water, V_w. In soil,
    saturated or not, phi = V_s/V_m whatever the points are like; where there is more water than the pores of
-   this soil have, as next to its surface, phi = V_s/(V_s + V_w): the larger one counts. No volume of the lattice is
+   this soil have, as next to its surface, phi = V_s/(V_s + V_w): the larger one counts. Where pores are not
+   full, n_i is less by c_i, as next to no water must not bear a force. No volume of the lattice is
    needed, and walls may cut cells.
 
    Drag: w = u - v follows dw/dt = a - r w with the rate r = D (1/m_s + 1/m_w) and the acceleration a by all
@@ -470,9 +471,12 @@ bool FixMPMMixture::find_shares()
       const double mass = water.field->grid.record(node.water)[3];
       if (!(solid > 0.0 && wet > 0.0 && mass > 0.0 && soil.field->grid.record(node.soil)[3] > 0.0))
         continue;
-      node.share = std::min(1.0 - LEAST, solid / (with_pores * excess((solid + wet) / with_pores)));
+      const double share =
+          std::min(1.0 - LEAST, solid / (with_pores * excess((solid + wet) / with_pores)));
+      node.here = 1.0 - share;
       node.porosity = std::max(LEAST, 1.0 - solid / with_pores);
       node.filled = std::min(1.0, wet / (HALF * node.porosity * with_pores));
+      node.share = 1.0 - node.here * node.filled;
       node.volume = node.filled * with_pores;
       node.wet = wet;
       node.density = mass / wet;
@@ -606,7 +610,7 @@ void FixMPMMixture::act(double dt, Stage stage)
     double fade = 1.0, share = 1.0;
     const auto leave = [&](double difference) {
       node.rate =
-          node.volume * drag_coefficient(node.porosity, 1.0 - node.share, node.density, difference);
+          node.volume * drag_coefficient(node.porosity, node.here, node.density, difference);
       const double x = dt * node.rate / reduced;
       fade = exp(-x);
       share = mean_of_fading(x);

@@ -101,7 +101,8 @@ class FixMPMMixture :
   };
   struct Node {              // with soil near water
     int64_t soil, water;     // water: -1 where there is none
-    double share;            // of the volume that grains have, 1 - porosity
+    double share;            // of the pressure that the soil bears
+    double here;             // porosity
     double porosity;         // of the soil there, which may be more or less at the end of the soil
     double filled;           // share of its pores
     double volume;           // of this share of the soil
