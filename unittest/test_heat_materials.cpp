@@ -290,6 +290,34 @@ SERIAL_TEST(FrontIn2d, IsRound)
   EXPECT_NEAR(all / run.fix("heat")->compute_scalar(), 1.0, 1e-7);
 }
 
+// a hot half of a bar melts the cold one: just as much when the bar moves across the lattice
+SERIAL_TEST(FrontInABar, DoesNotSeeItsMotion)
+{
+  const int n = 50;
+  const double h = 1.0 / n;
+  double liquid[2];
+  for (const bool moves : {false, true}) {
+    Scene run(plane("lj", "p p", strprintf("0 4 0 %.17g", 4 * h), 1, 0.1 * h) +
+              "region body block 0 1 INF INF INF INF\n" +
+              strprintf("create_points 1 region body spacing %.17g\nfix grid all mpm %.17g\n",
+                        0.5 * h, h) +
+              "fix m all mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 0 1.0 "
+              "melt 0.0 0.5\n"
+              "fix heat all mpm/heat stages 1\n");
+    Warm warm(run);
+    const int molten = warm.material->find_history("molten");
+    for (int i = 0; i < run.n(); i++)
+      if (run.x()[i][0] < 0.5) warm.T(i) = warm.material->history[i][molten] = 1.0;
+    run.commands(strprintf("velocity all set %g 0 0\n", moves ? 7.3 : 0.0));
+    run_to(run, 0.05, 0.3 * h * h);
+    liquid[moves] = 0.0;
+    for (int i = 0; i < run.n(); i++) liquid[moves] += warm.material->history[i][molten] / run.n();
+    measured(moves ? "moving, molten" : "at rest, molten", liquid[moves]);
+  }
+  EXPECT_NEAR(liquid[1] / liquid[0], 1.0, 1.0e-3);
+  EXPECT_GT(liquid[0], 0.6);
+}
+
 // Neumann: water of 10 degrees freezes below a wall of -20: 27.765 mm of ice after an hour
 SERIAL_TEST(Neumann, WaterFreezes)
 {

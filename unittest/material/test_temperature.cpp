@@ -389,7 +389,7 @@ TEST(Vary, BadInputIsRefused)
                   {bad + "E power 1 0 200 400", "absolute temperatures"},
                   {bad + "E arrhenius 1 300 -1 400", "absolute temperatures"},
                   {bad + "E table 1 1 2 1 vary E table 1 1 2 1", "given twice"},
-                  {bad + "CP table 1 1 2 1", "only the coefficient of expansion"},
+                  {bad + "CHI table 1 1 2 1", "the coefficient of expansion can vary"},
                   {bad + "ALPHA table 1 1 2 1", "its value is 0"},
                   {"eos tait 1 7 cutoff -0.1 thermal adiabatic 1 300 vary K table 1 1 2 0.5",
                    "at the temperature 2, tait: PMIN is never reached"}},

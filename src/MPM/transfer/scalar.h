@@ -23,9 +23,13 @@ enum SlopeKind {
 /** The nodes that a batch of points reaches, made once for any number of transfers. */
 struct ScalarStencil {
   int n = 0;
-  int place[BATCH];                         ///< first node in the tile
-  alignas(64) double w[BATCH][3][4];        ///< weights along each axis
-  alignas(64) double slope[BATCH][3][4];    ///< what takes their place in slopes
+  int place[BATCH];    ///< first node in the tile
+  // along the axes: weights, and what takes their place in slopes; of the last axis a row for each point
+
+  alignas(64) double w[2][4][BATCH];
+  alignas(64) double slope[2][4][BATCH];
+  alignas(64) double last_w[BATCH][4];
+  alignas(64) double last_slope[BATCH][4];
 
   // of the plain loops, which look at the points again
 

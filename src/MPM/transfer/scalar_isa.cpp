@@ -33,24 +33,46 @@ namespace {
 
 using V = Vec<4>;
 
-/** Transposes vectors with a lane for each axis to one for each axis with a lane for each node. */
-template <int N> MPM_INLINE void store_axes(const V *node, double (*axis)[4])
+/** Transposes four vectors. */
+MPM_INLINE void transpose(V *a)
 {
-  const V third = N > 2 ? node[N > 2 ? 2 : 0] : V{}, last = N > 3 ? node[N > 3 ? 3 : 0] : V{};
-  const V a = shuffle<0, 4, 2, 6>(node[0], node[1]);    // x0 x1 z0 z1
-  const V b = shuffle<1, 5, 3, 7>(node[0], node[1]);    // y0 y1
-  const V c = shuffle<0, 4, 2, 6>(third, last);
-  const V d = shuffle<1, 5, 3, 7>(third, last);
-  join(half<0>(a), half<0>(c)).store(axis[0]);
-  join(half<0>(b), half<0>(d)).store(axis[1]);
-  join(half<1>(a), half<1>(c)).store(axis[2]);
+  const V low = shuffle<0, 4, 2, 6>(a[0], a[1]);     // 00 10 02 12
+  const V high = shuffle<1, 5, 3, 7>(a[0], a[1]);    // 01 11 03 13
+  const V low2 = shuffle<0, 4, 2, 6>(a[2], a[3]), high2 = shuffle<1, 5, 3, 7>(a[2], a[3]);
+  a[0] = join(half<0>(low), half<0>(low2));
+  a[1] = join(half<0>(high), half<0>(high2));
+  a[2] = join(half<1>(low), half<1>(low2));
+  a[3] = join(half<1>(high), half<1>(high2));
 }
 
-/** Three reals of a row; there may be no memory behind the last row. */
-MPM_INLINE V load_three(const double *rows, Index p, Index guarded)
+/** Three reals of rows of four points from the given one on, axis by axis. Behind the last point there are others like it,
+ *  and there may be no memory behind the last row. */
+MPM_INLINE void load_points(const double *rows, Index p, Index n, Index guarded, V *axis)
 {
-  const double *const at = rows + 3 * p;
-  return p < guarded ? V::load(at) : quad(at[0], at[1], at[2], 0.0);
+  MPM_UNROLL
+  for (int k = 0; k < 4; k++) {
+    const Index q = p + k < n ? p + k : n - 1;
+    const double *const at = rows + 3 * q;
+    axis[k] = q < guarded ? V::load(at) : quad(at[0], at[1], at[2], 0.0);
+  }
+  transpose(axis);
+}
+
+/** Stores the weights of four points along an axis. */
+template <int N, bool LAST>
+MPM_INLINE void store_weights(const V *weight, Index p, double (*rows)[4], double (*columns)[BATCH])
+{
+  if constexpr (LAST) {
+    V w[4] = {};
+    MPM_UNROLL
+    for (int k = 0; k < N; k++) w[k] = weight[k];
+    transpose(w);
+    MPM_UNROLL
+    for (int k = 0; k < 4; k++) w[k].store(rows[p + k]);
+  } else {
+    MPM_UNROLL
+    for (int k = 0; k < N; k++) weight[k].store(columns[k] + p);
+  }
 }
 
 template <int DIM, Shape SHAPE>
@@ -58,48 +80,76 @@ void prepare(const PointRows &rows, const TransferStep &transfer, int n, const i
              SlopeKind kind, ScalarStencil &out, int *box)
 {
   using Function = FunctionOf<SHAPE>;
-  constexpr int N = Function::nodes;
+  constexpr int N = Function::nodes, CELL = Function::cell;
+  constexpr int strides[3] = {stride<DIM, SHAPE>(0), stride<DIM, SHAPE>(1), 1};
   const PointRows points = rows;
   const TransferStep step = transfer;
-  const ::Frame<DIM, SHAPE, 1> frame(step, base);
-  V lowest = V::all(1.0e6), highest = V::all(-1.0e6);
+  double lowest[3] = {1.0e6, 1.0e6, 1.0e6}, highest[3] = {-1.0e6, -1.0e6, -1.0e6};
+  V low[DIM], high[DIM];
+  int before[3] = {0, 0, 0};
+  double shift[3];
+  for (int a = 0; a < DIM; a++) {
+    low[a] = V::all(1.0e6);
+    high[a] = V::all(-1.0e6);
+    before[a] = base[a] & (CELL - 1);
+    shift[a] = Function::shift + (base[a] - before[a]) / CELL;
+  }
   out.n = n;
-  for (Index p = 0; p < n; p++) {
-    const V t = frame.position(load_three(points.x, p, points.guarded));
-    lowest = min(lowest, t);
-    highest = max(highest, t);
-    const V fraction = frame.locate(t, &out.place[p]);
-    V w[N], d[N], size = {};
-    if constexpr (Function::has_size) {
-      size = load_three(points.size, p, points.guarded);
-      Function::weights(fraction, size, w);
-    } else {
-      Function::weights(fraction, w);
-    }
-    store_axes<N>(w, out.w[p]);
-    if (kind == DISTANCE_SLOPES) {
-      const V distance = frame.distance(fraction);
+  for (Index p = 0; p < n; p += 4) {
+    V x[4], size[4];
+    load_points(points.x, p, n, points.guarded, x);
+    if constexpr (Function::has_size) load_points(points.size, p, n, points.guarded, size);
+    int place[4] = {0, 0, 0, 0};
+    const auto along = [&](auto which) {
+      constexpr int a = decltype(which)::value;
+      constexpr bool is_last = a == DIM - 1;
+      const V t = (x[a] - V::all(step.origin[a])) * (step.inv_h / CELL) - shift[a];
+      low[a] = min(low[a], t);
+      high[a] = max(high[a], t);
+      int cell[4];
+      V fraction = t - truncate(t, cell);
+      if constexpr (Function::order == 1) fraction = max(fraction, V::all(SMALLEST_FRACTION));
       MPM_UNROLL
-      for (int k = 0; k < N; k++) d[k] = step.h * (w[k] * (V::all(k) - distance));
-    } else {
+      for (int k = 0; k < 4; k++) place[k] += (CELL * cell[k] - before[a]) * strides[a];
+      V w[N], d[N];
       if constexpr (Function::has_size)
-        Function::gradients(fraction, size, d);
+        Function::weights(fraction, size[a], w);
       else
-        Function::gradients(fraction, d);
-      MPM_UNROLL
-      for (int k = 0; k < N; k++) d[k] = step.inv_h * d[k];
-    }
-    if (kind == ABSOLUTE_SLOPES) {
-      MPM_UNROLL
-      for (int k = 0; k < N; k++) d[k] = max(d[k], -d[k]);
-    }
-    store_axes<N>(d, out.slope[p]);
+        Function::weights(fraction, w);
+      store_weights<N, is_last>(w, p, out.last_w, out.w[is_last ? 0 : a]);
+      if (kind == DISTANCE_SLOPES) {
+        const V distance = CELL == 1 ? fraction + Function::shift
+                                     : static_cast<double>(CELL) * fraction;
+        MPM_UNROLL
+        for (int k = 0; k < N; k++) d[k] = step.h * (w[k] * (V::all(k) - distance));
+      } else {
+        if constexpr (Function::has_size)
+          Function::gradients(fraction, size[a], d);
+        else
+          Function::gradients(fraction, d);
+        MPM_UNROLL
+        for (int k = 0; k < N; k++) {
+          d[k] = step.inv_h * d[k];
+          if (kind == ABSOLUTE_SLOPES) d[k] = max(d[k], -d[k]);
+        }
+      }
+      store_weights<N, is_last>(d, p, out.last_slope, out.slope[is_last ? 0 : a]);
+    };
+    along(std::integral_constant<int, 0>());
+    along(std::integral_constant<int, 1>());
+    if constexpr (DIM == 3) along(std::integral_constant<int, 2>());
+    MPM_UNROLL
+    for (int k = 0; k < 4; k++) out.place[p + k] = place[k];
   }
   for (int a = 0; box && n > 0 && a < DIM; a++) {
-    const int low = frame.node(a, static_cast<int>(lowest.lane(a)));
-    const int high = frame.node(a, static_cast<int>(highest.lane(a)));
-    if (low < box[a]) box[a] = low;
-    if (high > box[3 + a]) box[3 + a] = high;
+    for (int k = 0; k < 4; k++) {
+      lowest[a] = low[a].lane(k) < lowest[a] ? low[a].lane(k) : lowest[a];
+      highest[a] = high[a].lane(k) > highest[a] ? high[a].lane(k) : highest[a];
+    }
+    const int first = CELL * static_cast<int>(lowest[a]) - before[a];
+    const int last = CELL * static_cast<int>(highest[a]) - before[a];
+    if (first < box[a]) box[a] = first;
+    if (last > box[3 + a]) box[3 + a] = last;
   }
 }
 
@@ -157,11 +207,11 @@ template <int DIM, Shape SHAPE> void add(const ScalarStencil &in, const double *
     nodes.clear();
     for (int p = first; p < last; p++) {
       const double *const mine = q + 4 * p;
-      const V w = V::load(in.w[p][Rows::LAST]), s = V::load(in.slope[p][Rows::LAST]);
+      const V w = V::load(in.last_w[p]), s = V::load(in.last_slope[p]);
       const V across = mine[Rows::LAST] * s;
       MPM_UNROLL
       for (int i = 0; i < N; i++) {
-        const double wx = in.w[p][0][i], sx = in.slope[p][0][i];
+        const double wx = in.w[0][i][p], sx = in.slope[0][i][p];
         const V plane = (mine[3] * wx + mine[0] * sx) * w + wx * across;
         if constexpr (DIM == 2) {
           nodes.row[i][0] += plane;
@@ -169,7 +219,7 @@ template <int DIM, Shape SHAPE> void add(const ScalarStencil &in, const double *
           const V aside = (mine[1] * wx) * w;
           MPM_UNROLL
           for (int j = 0; j < M; j++)
-            nodes.row[i][j] += in.w[p][1][j] * plane + in.slope[p][1][j] * aside;
+            nodes.row[i][j] += in.w[1][j][p] * plane + in.slope[1][j][p] * aside;
         }
       }
     }
@@ -186,16 +236,16 @@ void add_values(const ScalarStencil &in, const double *q, double *tile)
     Rows nodes;
     nodes.clear();
     for (int p = first; p < last; p++) {
-      const V w = q[p] * V::load(in.w[p][Rows::LAST]);
+      const V w = q[p] * V::load(in.last_w[p]);
       MPM_UNROLL
       for (int i = 0; i < N; i++) {
-        const V plane = in.w[p][0][i] * w;
+        const V plane = in.w[0][i][p] * w;
         MPM_UNROLL
         for (int j = 0; j < M; j++) {
           if constexpr (DIM == 2)
             nodes.row[i][j] += plane;
           else
-            nodes.row[i][j] += in.w[p][1][j] * plane;
+            nodes.row[i][j] += in.w[1][j][p] * plane;
         }
       }
     }
@@ -228,15 +278,15 @@ template <int DIM, Shape SHAPE> void get(const ScalarStencil &in, const double *
         } else {
           MPM_UNROLL
           for (int j = 0; j < M; j++) {
-            plane += in.w[p][1][j] * nodes.row[i][j];
-            aside += in.slope[p][1][j] * nodes.row[i][j];
+            plane += in.w[1][j][p] * nodes.row[i][j];
+            aside += in.slope[1][j][p] * nodes.row[i][j];
           }
-          along_y += in.w[p][0][i] * aside;
+          along_y += in.w[0][i][p] * aside;
         }
-        value += in.w[p][0][i] * plane;
-        along_x += in.slope[p][0][i] * plane;
+        value += in.w[0][i][p] * plane;
+        along_x += in.slope[0][i][p] * plane;
       }
-      const V w = V::load(in.w[p][Rows::LAST]), s = V::load(in.slope[p][Rows::LAST]);
+      const V w = V::load(in.last_w[p]), s = V::load(in.last_slope[p]);
       if constexpr (DIM == 2)
         sums(along_x * w, value * s, V{}, value * w).store(q + 4 * p);
       else
@@ -263,13 +313,15 @@ void get_values(const ScalarStencil &in, const double *tile, double *q)
           if constexpr (DIM == 2)
             plane = nodes.row[i][j];
           else
-            plane += in.w[p][1][j] * nodes.row[i][j];
+            plane += in.w[1][j][p] * nodes.row[i][j];
         }
-        value += in.w[p][0][i] * plane;
+        value += in.w[0][i][p] * plane;
       }
-      const V sum = value * V::load(in.w[p][Rows::LAST]);
+      const V sum = value * V::load(in.last_w[p]);
       const Vec<2> two = half<0>(sum) + half<1>(sum);
       q[p] = two.lane(0) + two.lane(1);
+      // barrier: GCC 12 puts points together into vectors, wrongly (AVX2, cubic, 3d)
+      asm volatile("" ::: "memory");
     }
   });
 }
