@@ -404,9 +404,37 @@ namespace {
           b * (r2 - w - w / (r2 * J)) * exp(-r2 * J);
     }
 
+    /** Energy of the products at the temperature zero: the integral of A exp(-R1 J) + B exp(-R2 J) from J on. */
+    MPM_INLINE double cold_energy(double J) const
+    {
+      return a / r1 * exp(-r1 * J) + b / r2 * exp(-r2 * J);
+    }
+
+    /** Temperature with a thermal part: the products have (E - cold energy)/(density_0 CP), which falls along an
+     *  isentrope as J^-OMEGA, and what has not burnt keeps its own. before, E: at the start of the step. The
+     *  heat of the step, which E has, is that which the thermal part adds. */
+    static void find_temperature(const LawParameters &p, const EosJWL &eos, const double *before,
+                                 const double *E, Batch &batch, History history)
+    {
+      double *const T = temperature(p, batch);
+      for (int i = 0; i < batch.n; i++) {
+        const double old = p.warm * (E[i] - eos.cold_energy(batch.Jold[i]));
+        const double now = p.warm * (history[ENERGY][i] - eos.cold_energy(batch.J[i]));
+        const double burn = history[BURN][i];
+        const double fresh = before[i] < 1.0 ? (T[i] - before[i] * old) / (1.0 - before[i]) : 0.0;
+        if (burn > 0.0) T[i] = burn * now + (1.0 - burn) * fresh - p.warm * batch.heat[i];
+      }
+    }
+
     static void update(const LawParameters &p, Batch &batch, History history)
     {
       const EosJWL eos(p);
+      double was[BATCH], energy[BATCH];
+      const bool warms = p.warm > 0.0 && p.temperature >= 0;
+      for (int i = 0; warms && i < batch.n; i++) {
+        was[i] = history[BURN][i];
+        energy[i] = history[ENERGY][i];
+      }
       const double time = batch.time, rate = p.value[D] / (p.value[WIDTH] * batch.h);
       MPM_SIMD
       for (int i = 0; i < batch.n; i++) {
@@ -424,6 +452,7 @@ namespace {
         history[HEATED][i] += batch.heat[i];
         history[BURN][i] = burn;
       }
+      if (warms) find_temperature(p, eos, was, energy, batch, history);
     }
 
     /** Isentropic -J^2 dp/dJ. While the explosive burns at least density_0 D^2: the front is no

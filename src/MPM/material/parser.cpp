@@ -435,6 +435,11 @@ class Parser {
         refuse(DAMAGE,
                ": 'weibull' does not go with 'expansion', which would change the volume to which a "
                "strength belongs: use 'random SIGMA'");
+      const bool explosive = !strcmp(eos.info->name, "jwl");
+      if (explosive && (thermal.info->conduction || has_option(thermal, "gruneisen")))
+        refuse(THERMAL,
+               ": the temperature of detonation products follows from the internal energy of '" +
+                   title(eos) + "': use 'thermal adiabatic' without 'gruneisen'");
       if (expands && eos.info->expands)
         refuse(THERMAL,
                ": 'expansion' does not go with '" + title(eos) +
