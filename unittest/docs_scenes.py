@@ -164,7 +164,13 @@ def scene_for(lines):
                        "create_points %d region body%d ppc 2\ngroup %s type %d\n" %
                        (k, 0.03 * k + 0.01, 0.03 * k + 0.03, k + 1, k, named[k], k + 1))
     material = "" if "mpm/material" in text or own_field and grid == "" else MATERIAL
-    if "mpm/heat" in text:
+    heats = re.search(r"mpm/(contact|boundary|rigid) .*\bheat\b", text)    # by friction
+    if heats:
+        before += "fix warm all mpm/heat\n"
+    if "mpm/heat grains" in text:
+        before += ("fix prop all property/atom temperature heatflow ghost yes\ngroup grains type 3\n"
+                   "fix warm grains heat/flow constant 500\n")
+    if heats or "mpm/heat" in text:
         material = material.replace("\n", " thermal conducting 460 293 52\n")
     points = POINTS.replace("0.05*", "0.025*") if "gimp" in text else POINTS    # below a cell
     points = "" if makes_points else points + "".join("group %s type 1\n" % g for g in GROUPS)
