@@ -173,7 +173,13 @@ def scene_for(lines):
         material = MATERIAL.replace("default", soils[0]) + "".join(
             "group %s empty\n" % name + MATERIAL.replace("default all", "%s %s" % (name, name))
             for name in soils[1:])
-    if "mpm/heat" in text:
+    heats = re.search(r"mpm/(contact|boundary|rigid) .*\bheat\b", text)    # by friction
+    if heats:
+        before += "fix warm all mpm/heat\n"
+    if "mpm/heat grains" in text:
+        before += ("fix prop all property/atom temperature heatflow ghost yes\ngroup grains type 3\n"
+                   "fix warm grains heat/flow constant 500\n")
+    if heats or "mpm/heat" in text:
         material = material.replace("\n", " thermal conducting 460 293 52\n")
     if mixture:
         before += ("create_points 2 region base spacing $(0.05*lx) share 0.4\n"
