@@ -551,11 +551,13 @@ TEST(Slump, IsTheSameOnAnyNumberOfRanksAndAfterARestart)
          {"transfer apic smooth 0.5", "transfer flip 0.99 scheme musl"}) {
       const std::string fields =
           "fix s soil mpm 1.0 " + options + "\nfix w water mpm 1.0 " + options + "\n";
-      Twins run(slump(dim, options) + stuff, 60, fields + stuff, 60, 1.0e-9);
+      const std::string rest =
+          replaced(stuff, "timestep 0.02", dim == 2 ? "fix step all mpm/dt 0.3" : "timestep 0.02");
+      Twins run(slump(dim, options) + rest, 60, fields + rest, 60, 1.0e-9);
       for (int k = 0; k < 6; k++)
         EXPECT_NEAR(run.serial.fix_vector("mix", 6)[k], run.whole.fix_vector("mix", 6)[k], 1.0e-8);
       const double heat = run.serial.fix("mix")->compute_scalar();
-      EXPECT_GT(heat, 0.01);
+      EXPECT_GT(heat, 1.0e-3);    // there is something to compare
       EXPECT_NEAR(run.whole.fix("mix")->compute_scalar(), heat, 1.0e-9 * heat);
       EXPECT_NEAR(run.again.fix("mix")->compute_scalar(), heat, 1.0e-9 * heat);
       EXPECT_LT(fabs(measured("residual", run.serial.compute_vector()[10])), 1.0e-11);

@@ -797,14 +797,14 @@ void FixMPMMixture::share_strain()
 
 double FixMPMMixture::fastest_wave(const Phase &phase, double &speed) const
 {
-  Batch &b = *phase.field->batch;
+  MPMField &field = *phase.field;
   double c[BATCH], most = 0.0;
   int list[BATCH], n = 0;
   const FixMPMMaterial *material = nullptr;
   const auto flush = [&]() {
-    if (!n) return;
-    load_state(*phase.field, b, list, n, material);
-    material->material->wave_speed(b, c);
+    if (n == 0) return;
+    load_state(field, *field.batch, list, n, material);
+    material->material->wave_speed(*field.batch, c);
     for (int p = 0; p < n; p++) {
       const double *const v = atom->v[list[p]];
       most = std::max(most, c[p]);
@@ -812,45 +812,37 @@ double FixMPMMixture::fastest_wave(const Phase &phase, double &speed) const
     }
     n = 0;
   };
-  for (const auto &run : phase.field->map->runs) {
-    if (lists_valid && !phase.reaches[run.slot]) continue;
-    material = run.material;
-    for (int i = run.first; i < run.last; i++) {
-      list[n++] = i;
-      if (n == BATCH) flush();
-    }
-    flush();
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!field.is_point(i)) continue;
+    const FixMPMMaterial *const mine = field.material_of(i);
+    if (mine != material || n == BATCH) flush();
+    material = mine;
+    if (material) list[n++] = i;
   }
+  flush();
   return most;
 }
 
+/** Of all points of both, once they have met: the same on any number of ranks. Also before a step, where it is not
+ *  known which blocks points are in. */
 double FixMPMMixture::stable_dt(const MPMField &field, tagint &tag) const
 {
   const double none = std::numeric_limits<double>::max();
-  if (&field != water.field || (lists_valid && common.empty())) return none;
-  double share = 0.0;
-  for (const auto &run : soil.field->map->runs)
-    if (!lists_valid || soil.reaches[run.slot])
-      for (int i = run.first; i < run.last; i++)
-        share = std::max(share,
-                         atom->rmass[i] /
-                             (grain_density * atom->vfrac[i] * soil.field->points->jacobian(i)));
-  if (share == 0.0) return none;
-  share = std::min(share, 1.0 - LEAST);
-  double speed = 0.0, density = 0.0;
-  const double of_soil = fastest_wave(soil, speed), of_water = fastest_wave(water, speed);
-  for (const auto &run : water.field->map->runs)
-    if (!lists_valid || water.reaches[run.slot])
-      for (int i = run.first; i < run.last; i++) {
-        const double mine = atom->rmass[i] / volume(water, i);
-        if (mine <= density) continue;
-        density = mine;
-        tag = atom->tag[i];
-      }
-  if (density == 0.0) return none;
-  const double square = of_soil * of_soil +
-      of_water * of_water * (1.0 + share * density / ((1.0 - share) * grain_density));
-  return field.lattice.h / (sqrt(square) + speed);
+  if (&field != water.field || !meets) return none;
+  double mine[5] = {}, most[5];
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (soil.field->is_point(i)) mine[0] = std::max(mine[0], grains(i) / volume(soil, i));
+    if (!field.is_point(i)) continue;
+    mine[1] = std::max(mine[1], atom->rmass[i] / volume(water, i));
+    tag = atom->tag[i];
+  }
+  mine[2] = fastest_wave(soil, mine[4]);
+  mine[3] = fastest_wave(water, mine[4]);
+  MPI_Allreduce(mine, most, 5, MPI_DOUBLE, MPI_MAX, world);
+  const double share = std::min(most[0], 1.0 - LEAST);
+  const double square = most[2] * most[2] +
+      most[3] * most[3] * (1.0 + share * most[1] / ((1.0 - share) * grain_density));
+  return field.lattice.h / (sqrt(square) + most[4]);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -905,14 +897,18 @@ void FixMPMMixture::write_restart(FILE *fp)
 {
   keep_totals(world, &dissipated, 1);
   if (comm->me) return;
-  const int size = sizeof(double);
+  const double list[2] = {dissipated, meets ? 1.0 : 0.0};
+  const int size = sizeof(list);
   fwrite(&size, sizeof(int), 1, fp);
-  fwrite(&dissipated, size, 1, fp);
+  fwrite(list, size, 1, fp);
 }
 
 void FixMPMMixture::restart(char *buf)
 {
-  if (comm->me == 0) memcpy(&dissipated, buf, sizeof(double));
+  double list[2];
+  memcpy(list, buf, sizeof(list));
+  if (comm->me == 0) dissipated = list[0];
+  meets = list[1] != 0.0;
 }
 
 double FixMPMMixture::memory_usage()
