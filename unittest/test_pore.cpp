@@ -266,6 +266,38 @@ SERIAL_TEST(Energy, Wave)
   EXPECT_NEAR(measured("residual", run.compute_vector()[10] / before), 0.0, 1e-12);
 }
 
+// flow through a column under its weight, up and down: flux, effective stress, and no gain of energy
+SERIAL_TEST(Flow, SeepageChangesTheEffectiveStress)
+{
+  for (const double i : {0.5, 0.9, -0.5}) {
+    const auto water = strprintf("2.2e8 1000 9810 soil m 0.4 constant 1e-3 ylo pressure v_bottom "
+                                 "free pressure 0 initial v_p");
+    Scene run(replaced(
+        replaced(
+            column(10, water, "density 1990 linear 1e7 0.3"), "fix water",
+            "fix g all gravity 9.81 vector 0 -1 0\nvariable p atom 9810*(1-y)\n" +
+                strprintf("variable bottom equal 9810*(1+%g*((time<0.1)*time/0.1+(time>=0.1)))\n",
+                          i) +
+                "fix water"),
+        "origin", "gain error 0.02 origin"));
+    run_to(run, 1.0);
+    const double *const flows = run.fix_vector("water", 7);
+    EXPECT_NEAR(measured(strprintf("gradient %g, flux", i), flows[2] / (0.4 * 1e-3 * i)), 1.0,
+                0.01);
+    EXPECT_NEAR(flows[6] / flows[2], -1.0, 1e-3);
+    double sum = 0.0, n = 0.0;
+    for (int k = 0; k < run.n(); k++) {
+      const double y = run.x()[k][1];
+      if (y < 0.2 || y > 0.8) continue;
+      double sigma[6];
+      run.points().cauchy(k, sigma);
+      sum -= sigma[1] / ((990.0 - 1000.0 * i) * 9.81 * (1.0 - y));
+      n++;
+    }
+    EXPECT_NEAR(measured("effective stress", sum / n), 1.0, 0.02);
+  }
+}
+
 // flow by a difference of pressures, and water at rest under its weight
 SERIAL_TEST(Flow, Darcy)
 {
