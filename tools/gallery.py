@@ -26,7 +26,7 @@ TOPICS = {
     "Impact and metals": "taylor-bar taylor-bar-axisymmetric taylor-bar-total necking spall hypervelocity "
                          "ring-on-block scratch",
     "Elastic bodies": "rubber-band beam cook-membrane two-disks ring-collision spinning-disk incline vortex",
-    "Heat": "cooling-plate",
+    "Heat": "cooling-plate quench",
     "Fluids and gases": "dam-break elastic-gate elastic-plate poiseuille shock-tube settling",
     "Soil and grains": "sand-column consolidation ball-in-sand hopper boulders-in-debris tyre-on-gravel grains-on-block",
     "Atoms and material points": "handshake impact-on-crystal",

@@ -163,6 +163,10 @@ def scene_for(lines):
             before += ("region body%d block 0.06 0.08 %g %g 0.06 0.08\n"
                        "create_points %d region body%d ppc 2\ngroup %s type %d\n" %
                        (k, 0.03 * k + 0.01, 0.03 * k + 0.03, k + 1, k, named[k], k + 1))
+    mixture = "mpm/mixture" in text and not makes_points
+    if mixture:
+        grid = "".join("group %s type %d\nfix %s %s mpm 0.01\n" % (name, k + 1, name, name)
+                       for k, name in enumerate(("soil", "water")))
     material = "" if "mpm/material" in text or own_field and grid == "" else MATERIAL
     soils = re.findall(r"\bsoil (\w+) ", text) if "mpm/pore" in text else []
     if soils:
@@ -171,6 +175,11 @@ def scene_for(lines):
             for name in soils[1:])
     if "mpm/heat" in text:
         material = material.replace("\n", " thermal conducting 460 293 52\n")
+    if mixture:
+        before += ("create_points 2 region base spacing $(0.05*lx) share 0.4\n"
+                   "group soil type 1\ngroup water type 2\n")
+        material = ("fix ms soil mpm/material density 1590 linear 1.0e6 0.3\n"
+                    "fix mw water mpm/material density 1000 eos linear 1.0e6\n")
     points = POINTS.replace("0.05*", "0.025*") if "gimp" in text else POINTS    # below a cell
     points = "" if makes_points else points + "".join("group %s type 1\n" % g for g in GROUPS)
     if re.search("mpm/immersed|lists grains", text):

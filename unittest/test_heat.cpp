@@ -136,8 +136,8 @@ PARAMETER_TEST(Ends, HaveTheirTemperature, double, Values(0.0, 0.25, 0.5))
     const double in = run.fix("heat")->compute_scalar();
     EXPECT_NEAR((warm.heat() - before) / in, 1.0, 1e-11);
   }
-  EXPECT_GT(measured("order", std::log2(rms[1] / rms[2])), 0.9);
-  EXPECT_LT(rms[2], offset == 0.25 ? 1.3e-3 : 6.0e-5);
+  EXPECT_GT(measured("order", std::log2(rms[1] / rms[2])), 1.9);
+  EXPECT_LT(rms[2], 6.0e-5);
 }
 
 // Steps of many explicit limits are made of stages, of second order in time

@@ -81,7 +81,7 @@ void CreatePoints::command(int narg, char **arg)
     parse(narg, arg);
     find_ranges();
     check_outside();
-    check_overlap();
+    if (share == 1.0) check_overlap();    // else others are to be in the same place
   }
 
   MPI_Barrier(world);
@@ -172,10 +172,14 @@ Options CreatePointsOptions::declare(int dim, bool has_radius)
         {number(diameter, "D", POSITIVE, "distance",
                 "diameter of the points in contact with grains")})
       .standard("edge of a cube (2d: square) of the volume");
+  o.add("share",
+        {number(share, "share", {0.0, 1.0, true}, "",
+                "share of the volume of their places that the points have")});
   o.add("group", {text(group_id, "group-ID", "group that the points join; made if there is none")})
       .standard("all");
   o.refuse([=] {
     return OptionRules{
+        {share == 0.0, "share", "must be positive: {share}"},
         {ppc[0] > 0, "spacing", "and ppc cannot be given together: use either of them"},
         {!has_radius, "diameter", "needs atom_style hybrid sphere mpm"}};
   });
@@ -235,7 +239,7 @@ void CreatePoints::parse(int narg, char **arg)
     spacing[2] = 1.0;
     origin[2] = -0.5;
   }
-  volume = spacing[0] * spacing[1] * spacing[2];
+  volume = share * spacing[0] * spacing[1] * spacing[2];
   if (!std::isnormal(volume))
     error->all(FLERR, Error::NOPOINTER, "Create_points spacing gives points of volume {}", volume);
 

@@ -39,6 +39,7 @@ struct CreatePointsOptions {
   int seed = 0;
   bool allow_overlap = false, ignore_outside = false;
   double diameter = 0.0;    ///< 0: that of the volume
+  double share = 1.0;       ///< of the volume of its site that a point has
   std::string group_id;     ///< that the points join, empty: none
 
   MPM_NS::Options declare(int dimension, bool has_radius);

@@ -55,7 +55,6 @@
 #include "update.h"
 
 #include <algorithm>
-#include <climits>
 #include <cmath>
 #include <numeric>
 
@@ -196,7 +195,7 @@ void FixMPMContact::init()
                  "Fix mpm/contact {}: {} is not the ID of a fix mpm: define one fix mpm for each "
                  "body",
                  id, name);
-    bodies.push_back({field, {}, {}, {}, {}, {}, {}, {}, {}});
+    bodies.push_back({field, {}, {}, {}, {}, {}, {}, {}});
   }
   const MPMField &first = *bodies[0].field;
   for (const auto &body : bodies) {
@@ -306,17 +305,6 @@ void FixMPMContact::couple_topology()
     for (const auto &body : bodies) body.field->map->valid = false;
 }
 
-/** The canonical block that has a corner of this block, which periodic axes repeat. */
-static std::array<int, 3> canonical_block(const Grid &grid, const Grid::Block &block, int corner)
-{
-  std::array<int, 3> b = {block.b[0], block.b[1], block.b[2]};
-  for (int d = 0; d < grid.lattice.dim; d++) {
-    const int node = b[d] * grid.side + (corner >> d & 1 ? grid.side - 1 : 0);
-    b[d] = grid.lattice.wrap(d, node) >> grid.shift_bits;
-  }
-  return b;
-}
-
 /* ----------------------------------------------------------------------
    blocks in reach of each body, and the range that they take up over all ranks
 ------------------------------------------------------------------------- */
@@ -326,24 +314,7 @@ void FixMPMContact::blocks_found()
   if (!stale()) return;
   lists_valid = false;
 
-  for (auto &body : bodies) {
-    const Grid &grid = body.field->grid;
-    auto &reach = body.reach;
-    reach.clear();
-    int range[6];    // low, and minus high
-    std::fill_n(range, 6, INT_MAX);
-    for (const auto &block : grid.blocks)    // an image belongs to one or two on each axis
-      for (int corner = 0; corner < 8; corner++)
-        reach.push_back(canonical_block(grid, block, corner));
-    std::sort(reach.begin(), reach.end());
-    reach.erase(std::unique(reach.begin(), reach.end()), reach.end());
-    for (const auto &b : reach)
-      for (int d = 0; d < 3; d++) {
-        range[d] = std::min(range[d], b[d]);
-        range[3 + d] = std::min(range[3 + d], -b[d]);
-      }
-    MPI_Allreduce(range, body.extent, 6, MPI_INT, MPI_MIN, world);
-  }
+  for (auto &body : bodies) body.reach.find(body.field->grid, world);
 }
 
 /* ----------------------------------------------------------------------
@@ -354,13 +325,8 @@ void FixMPMContact::extend_topology(MPMField &field)
 {
   for (const auto &body : bodies) {
     if (body.field != &field) continue;
-    const int *const extent = body.extent;
     for (const auto &other : bodies)
-      for (const auto &b : other.reach) {
-        bool inside = &other != &body;
-        for (int d = 0; d < 3; d++) inside = inside && b[d] >= extent[d] && b[d] <= -extent[3 + d];
-        if (inside) field.grid.activate(b.data());
-      }
+      if (&other != &body) body.reach.activate_those_of(other.reach, field.grid);
 
     // and at fixed faces their mirror images; also images of images, as blocks that are added are
     // looked at, too

@@ -22,6 +22,7 @@ FixStyle(mpm/contact,FixMPMContact);
 #include "mpm_first_note.h"
 #include "mpm_friction_heat.h"
 #include "mpm_node_action.h"
+#include "mpm_reach.h"
 
 #include <array>
 #include <cstdint>
@@ -139,13 +140,12 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
   };
   struct Body {
     MPMField *field;
-    std::vector<std::array<int, 3>> reach;    // blocks in reach of its points, canonical
-    int extent[6];                            // low, and minus high, of these over all ranks
-    std::vector<int> images;                  // blocks with periodic images
-    std::vector<char> near;                   // [slot] a block where bodies share nodes
-    std::vector<double> gradient;             // of the volume (or mass) at the nodes
-    std::vector<double> share;                // volume at the nodes / node volume
-    std::vector<char> held;                   // bits, FixMPMBoundary::mark_held()
+    MPMReach reach;
+    std::vector<int> images;         // blocks with periodic images
+    std::vector<char> near;          // [slot] a block where bodies share nodes
+    std::vector<double> gradient;    // of the volume (or mass) at the nodes
+    std::vector<double> share;       // volume at the nodes / node volume
+    std::vector<char> held;          // bits, FixMPMBoundary::mark_held()
     FixMPMBoundary::Foreseen foreseen;
 
     Pair::Walls find_walls(const double *record) const;

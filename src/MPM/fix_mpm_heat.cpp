@@ -12,6 +12,7 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "fix_mpm_contact.h"
 #include "force.h"
 #include "input.h"
 #include "modify.h"
@@ -25,6 +26,7 @@
 #include <cstring>
 
 using namespace LAMMPS_NS;
+using namespace FixConst;
 using namespace MPM_NS;
 
 static const char *const FACE_NAME[] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
@@ -66,6 +68,27 @@ Options MPMHeatOptions::declare(int dim)
                 "",
                 {values(1, "EPS", "1", "emissivity"), outside}}})});
   }
+  enum { CONDUCTANCE };
+  o.add("contact",
+        {text(pair.field[0], "F1",
+              "IDs of the fix mpm of two bodies that exchange heat where they touch"),
+         text(pair.field[1], "F2"),
+         word(
+             [] {
+               return (int) CONDUCTANCE;
+             },
+             [](int) {
+             },
+             {{"conductance",
+               CONDUCTANCE,
+               "",
+               {variables(&pair.conductance, 1, "H", "power/(area temperature)",
+                          "heat per area, time, and difference of their temperatures, can be a "
+                          "variable")}}})})
+      .standard("none")
+      .then([this] {
+        pairs.push_back(pair);
+      });
   o.add("source", {text(source, "v_name", "power per volume, an equal- or atom-style variable")})
       .standard("none");
   o.add(
@@ -82,9 +105,23 @@ Options MPMHeatOptions::declare(int dim)
               "points get the temperature of the nodes, and its gradient"}})});
   o.add("stages",
         {integer(most_stages, "N", POSITIVE, "most stages of the conduction in a time step")});
+  o.add("grains", {yes_no(grains)},
+        "points exchange heat with grains, by the temperatures and heat flows of atoms");
   o.refuse([=] {
     OptionRules rules = {{!source.empty() && source.compare(0, 2, "v_") != 0, "source",
                           "must be a variable, v_name: {source}"}};
+    for (std::size_t k = 0; k < pairs.size(); k++) {
+      const auto &[F, H, now] = pairs[k];
+      rules.push_back({F[0] == F[1], "contact", "needs two different bodies: {contact}"});
+      rules.push_back({H.variable.empty() && !(H.value >= 0.0), "contact",
+                       "needs a conductance that is not negative: {contact}"});
+      for (std::size_t j = 0; j < k; j++) {
+        const auto &other = pairs[j].field;
+        const bool same = F[0] == other[0] && F[1] == other[1];
+        rules.push_back({same || (F[0] == other[1] && F[1] == other[0]), "contact",
+                         "is given twice for the same bodies: {contact}"});
+      }
+    }
     for (int face = 0; face < MPMHeatFaces::NFACE; face++) {
       const auto &c = conditions[face];
       const auto below = [&](int k, double least) {
@@ -113,14 +150,25 @@ FixMPMHeat::FixMPMHeat(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, nar
   Options options = declare(domain->dimension);
   read_options(lmp, options, narg, arg, 3);
   scalar_flag = vector_flag = 1;
-  size_vector = NCAME + NGIVER;
-  for (auto *heats : {&came, &in_step, &present, &power}) heats->assign(size_vector, 0.0);
+  size_vector = CONTACTS + (int) pairs.size();
+  for (auto *heats : {&in_step, &present, &power}) heats->assign(size_vector, 0.0);
   global_freq = 1;
   extscalar = extvector = 1;
   restart_global = 1;
   if (transfer.kind != MPMHeatTransfer::PIC)
     state.declare(gradients, "mpm/heat:gradient", domain->dimension);
+  grains_said = options.given("grains");
+  if (grains) {
+    state.declare(waiting, "mpm/heat:waiting", 1);
+    grain_heat = std::make_unique<MPMGrainHeat>(lmp, waiting);
+    nevery = 1;
+  }
   keep_arrays();
+}
+
+int FixMPMHeat::setmask()
+{
+  return grains ? POST_INTEGRATE | POST_FORCE | END_OF_STEP : 0;
 }
 
 /* ----------------------------------------------------------------------
@@ -153,6 +201,13 @@ void FixMPMHeat::init()
   if (modify->get_fix_by_style("^mpm/heat$").size() > 1)
     error->all(FLERR, Error::NOLASTLINE,
                "There is more than one fix mpm/heat: one acts on all points and faces");
+  if (grains)
+    grain_heat->init();
+  else if (atom->heatflow_flag && !grains_said)
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/heat: atoms have heat flows, of which material points would know nothing: say "
+        "grains yes, or grains no if they exchange none with points");
   const auto materials = find_fixes<FixMPMMaterial>(lmp);
   if (std::none_of(materials.begin(), materials.end(), [](auto *fix) {
         return fix->material->conducts();
@@ -202,6 +257,68 @@ void FixMPMHeat::init_physics(MPMPlan &plan)
     fields.back()->init(sigma());
     if (fields.back()->conducts()) steps.add(fields.back()->temperature, fields.back()->rate);
   }
+  init_contacts();
+}
+
+MPMHeatBody &FixMPMHeat::body_of(const MPMField &field)
+{
+  for (auto &body : bodies)
+    if (&body->field == &field) return *body;
+  auto &conduction = of(field);
+  bodies.push_back(std::make_unique<MPMHeatBody>(lmp, conduction.field,
+                                                 conduction.conducts() ? &conduction : nullptr));
+  return *bodies.back();
+}
+
+void FixMPMHeat::init_contacts()
+{
+  bodies.clear();
+  contacts.clear();
+  for (auto &field : fields)
+    if (field->conducts() && field->faces.any()) body_of(field->field);
+  for (auto &p : pairs) {
+    const auto laws = find_fixes<FixMPMContact>(lmp);
+    if (std::none_of(laws.begin(), laws.end(), [&](auto *fix) {
+          return fix->couples(p.field[0], p.field[1]);
+        }))
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/heat contact {} {}: there is no contact between two fix mpm with these "
+                 "IDs: define a fix mpm/contact {} {}",
+                 p.field[0], p.field[1], p.field[0], p.field[1]);
+    find_variable(lmp, p.conductance, "fix mpm/heat contact");
+
+    MPMHeatBody *body[2];
+    for (int k = 0; k < 2; k++) {
+      auto &field = *MPMField::find(lmp, p.field[k]);
+      const auto &o = field.options;
+      refuse_field(
+          lmp, *this, field,
+          {{o.shape != QUADRATIC && o.shape != CUBIC, "contact and this shape",
+            "use shape quadratic or cubic"},
+           {o.total, "contact and frame total", "use frame updated"},
+           {o.axisymmetric, "contact and axisymmetric", "use a sector in 3d, or a plane"}});
+      body[k] = &body_of(field);
+      if (!body[k]->conduction)
+        error->all(FLERR, Error::NOLASTLINE,
+                   "Fix mpm/heat contact {} {}: no material of fix mpm {} conducts heat: give it "
+                   "the part 'thermal conducting', or remove the contact",
+                   p.field[0], p.field[1], p.field[k]);
+    }
+    contacts.push_back(std::make_unique<MPMHeatContact>(lmp, *body[0], *body[1], p));
+  }
+}
+
+void FixMPMHeat::extend_topology(MPMField &field)
+{
+  of(field).faces.extend_topology();
+  for (auto &contact : contacts) contact->extend_topology(field);
+}
+
+void FixMPMHeat::topology_changed(MPMField &field)
+{
+  of(field).faces.topology_changed();
+  for (auto &body : bodies) body->topology_changed();
+  for (auto &contact : contacts) contact->topology_changed();
 }
 
 MPMConduction &FixMPMHeat::of(const MPMField &field) const
@@ -227,9 +344,11 @@ void FixMPMHeat::evaluate_variables()
   bool any = !source.empty();
   for (const auto &c : conditions)
     for (int k = 0; k < c.nvalue(); k++) any = any || !c.value[k].variable.empty();
+  for (const auto &p : pairs) any = any || !p.conductance.variable.empty();
   evaluate_in_step(lmp, any, [&] {
     for (auto &c : conditions)
       for (int k = 0; k < c.nvalue(); k++) c.now[k] = evaluate(lmp, c.value[k]);
+    for (auto &p : pairs) p.now = evaluate(lmp, p.conductance);
     if (source.empty()) return;
     source_values.resize(atom->nmax);
     if (input->variable->atomstyle(source_index))
@@ -247,19 +366,36 @@ void FixMPMHeat::evaluate_variables()
 int FixMPMHeat::count_stages()
 {
   std::vector<double> mine, all;
+  // before temperatures go to nodes, as surfaces are sums over points of their own
+  for (auto &body : bodies) body->begin_step();
+  for (auto &body : bodies)
+    if (body->conduction) body->conduction->faces.mark_near(body->near);
+  for (auto &contact : contacts) contact->mark_near();
+  for (auto &body : bodies) body->find_surface();
+  for (auto &contact : contacts) contact->find_contacts();
   for (auto &field : fields) {
-    const auto limits = field->conducts() ? field->points_to_nodes(gradients)
-                                          : MPMConduction::Limits{0.0, 0.0};
-    mine.push_back(limits.conduction);
-    mine.push_back(limits.exchange);
+    const bool conducts = field->conducts();
+    mine.push_back(conducts ? field->points_to_nodes(gradients) : 0.0);
+    mine.push_back(conducts && field->faces.any()
+                       ? field->faces.begin_step(field->node_capacity(), field->node_volume(),
+                                                 body_of(field->field).gradient, field->temperature)
+                       : 0.0);
   }
+  for (auto &contact : contacts) mine.push_back(contact->begin_step());
   all.resize(mine.size());
   MPI_Allreduce(mine.data(), all.data(), (int) all.size(), MPI_DOUBLE, MPI_MAX, world);
   double greatest = 0.0;
   for (std::size_t k = 0; k < fields.size(); k++)
-    greatest = std::max(greatest, fields[k]->greatest_rate({all[2 * k], all[2 * k + 1]}));
+    greatest = std::max(greatest, fields[k]->greatest_rate(all[2 * k], all[2 * k + 1]));
 
-  const double dt = fields[0]->field.step_dt(), limit = MPMSuperStep::explicit_limit(greatest);
+  // a node can be in contacts with several bodies
+  const double dt = fields[0]->field.step_dt(), cap = std::max(greatest, 1.0 / dt);
+  for (std::size_t k = 0; k < contacts.size(); k++) {
+    contacts[k]->limit(cap);
+    greatest += std::min(cap, all[2 * fields.size() + k]);
+  }
+
+  const double limit = MPMSuperStep::explicit_limit(greatest);
   const int stages = MPMSuperStep::count(dt, limit, most_stages);
   if (stages > most_stages)
     error->all(FLERR, Error::NOLASTLINE,
@@ -279,12 +415,21 @@ void FixMPMHeat::find_rates()
     field->faces.add_rates(field->temperature, field->rate, present);
     field->faces.hold_rates(field->rate, present);
   }
+  if (contacts.empty()) return;
+  for (auto &body : bodies) body->begin_stage();
+  for (std::size_t k = 0; k < contacts.size(); k++) contacts[k]->exchange(present[CONTACTS + k]);
+  for (auto &body : bodies) {
+    body->end_stage();
+    body->conduction->faces.hold_rates(body->conduction->rate, present);
+  }
 }
 
 void FixMPMHeat::conduct()
 {
   evaluate_variables();
   std::fill(in_step.begin(), in_step.end(), 0.0);
+  for (auto &field : fields)
+    if (grains && field->conducts()) grain_heat->give(*field);
   const int stages = count_stages();
   for (auto &field : fields)
     if (field->conducts()) field->faces.hold(field->temperature, in_step);
@@ -293,12 +438,13 @@ void FixMPMHeat::conduct()
     find_rates();
   });
   for (auto &field : fields) {
-    if (field->conducts()) got += field->nodes_to_points(gradients);
+    if (field->conducts()) past.got += field->nodes_to_points(gradients);
     field->given.clear();
   }
-  std::copy_n(booked, NGIVER, in_step.begin() + NCAME);
-  std::fill_n(booked, NGIVER, 0.0);
-  for (std::size_t k = 0; k < came.size(); k++) came[k] += in_step[k];
+  for (int face = 0; face < MPMHeatFaces::NFACE; face++) past.through_faces += in_step[face];
+  past.of_sources += in_step[MPMConduction::SOURCES];
+  for (int k = 0; k < NGIVER; k++) past.given[k] += in_step[GIVERS + k] = past.booked[k];
+  std::fill_n(past.booked, NGIVER, 0.0);
   power_known = false;
 }
 
@@ -314,8 +460,8 @@ double FixMPMHeat::stable_dt(const MPMField &field, tagint &tag) const
 
 double FixMPMHeat::compute_scalar()
 {
-  double mine = 0.0, all;
-  for (const double heat : came) mine += heat;
+  double mine = past.through_faces + past.of_sources, all;
+  for (int k = 0; k < NGIVER; k++) mine += past.given[k] + past.booked[k];
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all;
 }
@@ -339,42 +485,42 @@ std::vector<MPMPhysics::Account> FixMPMHeat::accounts() const
   return {{"conducted heat", true},
           {"heat through faces", false},
           {"heat of sources", false},
-          {"heat of friction", false}};
+          {"heat of friction", false},
+          {"heat of grains", false}};
 }
 
 void FixMPMHeat::account(double *values) const
 {
-  values[0] += got;
-  for (int face = 0; face < MPMHeatFaces::NFACE; face++) values[1] += came[face];
-  values[2] += came[MPMConduction::SOURCES];
-  for (int k = 0; k < NGIVER; k++) values[3 + k] += came[NCAME + k];
+  values[0] += past.got;
+  if (grains) values[0] += grain_heat->sum_waiting();
+  values[1] += past.through_faces;
+  values[2] += past.of_sources;
+  for (int k = 0; k < NGIVER; k++) values[3 + k] += past.given[k] + past.booked[k];
 }
 
 /* ---------------------------------------------------------------------- */
 
 void FixMPMHeat::write_restart(FILE *fp)
 {
-  keep_totals(world, came.data(), size_vector);
-  keep_totals(world, &got, 1);
+  keep_totals(world, &past.through_faces, sizeof(Past) / sizeof(double));
   if (comm->me) return;
-  const int size = (size_vector + 1) * (int) sizeof(double);
+  const int size = sizeof(Past);
   fwrite(&size, sizeof(int), 1, fp);
-  fwrite(came.data(), sizeof(double), came.size(), fp);
-  fwrite(&got, sizeof(double), 1, fp);
+  fwrite(&past, size, 1, fp);
 }
 
 void FixMPMHeat::restart(char *buf)
 {
-  if (comm->me) return;
-  const double *const values = (double *) buf;
-  std::copy_n(values, came.size(), came.begin());
-  got = values[came.size()];
+  if (comm->me == 0) memcpy(&past, buf, sizeof(Past));
 }
 
 double FixMPMHeat::memory_usage()
 {
   double bytes = FixMPMState::memory_usage() + steps.memory_usage() +
       source_values.capacity() * sizeof(double);
+  if (grains) bytes += grain_heat->memory_usage();
   for (const auto &field : fields) bytes += field->memory_usage();
+  for (const auto &body : bodies) bytes += body->memory_usage();
+  for (const auto &contact : contacts) bytes += contact->memory_usage();
   return bytes;
 }

@@ -16,6 +16,8 @@ FixStyle(mpm/heat,FixMPMHeat);
 #define LMP_FIX_MPM_HEAT_H
 
 #include "mpm_conduction.h"
+#include "mpm_grain_heat.h"
+#include "mpm_heat_contact.h"
 #include "mpm_physics.h"
 #include "mpm_state.h"
 #include "mpm_super_step.h"
@@ -29,20 +31,26 @@ namespace LAMMPS_NS {
 
 struct MPMHeatOptions {
   MPMHeatCondition conditions[MPMHeatFaces::NFACE];
+  std::vector<MPMHeatPair> pairs;
+  MPMHeatPair pair;      ///< the last one
   std::string source;    ///< variable, without v_; empty: none
   MPMHeatTransfer transfer;
   int most_stages = 32;
+  bool grains = false;
 
   MPM_NS::Options declare(int dimension);
 };
 
-/** Conduction of heat in the points of materials with a part thermal conducting, and heat through the faces
- *  of the box. Points of different fields (fix mpm) exchange no heat. */
+/** Conduction of heat in the points of materials with a part thermal conducting, heat through the faces of the
+ *  box, and heat that bodies (fix mpm) exchange where they touch. */
 class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions {
  public:
   FixMPMHeat(class LAMMPS *, int, char **);
-  int setmask() override { return 0; }    // called by fix mpm
+  int setmask() override;    // conduction is called by fix mpm
   void init() override;
+  void post_integrate() override { grain_heat->show(); }
+  void post_force(int) override { grain_heat->note_step(); }
+  void end_of_step() override { book(GRAINS, grain_heat->take()); }
   double compute_scalar() override;
   double compute_vector(int) override;
   void write_restart(FILE *) override;
@@ -51,8 +59,8 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions
 
   void init_physics(MPMPlan &) override;
   void add_stages(MPMPlan &, MPMPlan::Place) override;
-  void extend_topology(MPMField &field) override { of(field).faces.extend_topology(); }
-  void topology_changed(MPMField &field) override { of(field).faces.topology_changed(); }
+  void extend_topology(MPMField &) override;
+  void topology_changed(MPMField &) override;
   double stable_dt(const MPMField &field, tagint &tag) const override;
   std::vector<Account> accounts() const override;
   void account(double *values) const override;
@@ -60,29 +68,41 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions
   MPMConduction &of(const MPMField &) const;
 
   /** Who else gives heat to nodes and points. */
-  enum Giver { FRICTION, NGIVER };
+  enum Giver { FRICTION, GRAINS, NGIVER };
   /** Heat that nodes or points of this rank were given in this step [energy], before they conduct. */
-  void book(Giver giver, double heat) { booked[giver] += heat; }
+  void book(Giver giver, double heat) { past.booked[giver] += heat; }
 
  private:
   using Heats = MPMConduction::Heats;
 
   MPMRows gradients;    // [n][dim] of the temperature at points; not with transfer pic
+  MPMRows waiting;      // [n][1] heat that grains have given to points, see MPMGrainHeat
+  std::unique_ptr<MPMGrainHeat> grain_heat;    // null: not asked for
+  bool grains_said = false;                    // is the keyword there?
   std::vector<std::unique_ptr<MPMConduction>> fields;
+  struct Past {    // so far, this rank's share; in restart files that of all ranks
+    double through_faces, of_sources;
+    double got;                              // by points
+    double given[NGIVER], booked[NGIVER];    // before the last conduction, and since
+  };
+  static constexpr int GIVERS = MPMHeatFaces::NFACE + 1,
+                       CONTACTS = GIVERS + NGIVER;    // places in lists of heat
+
+  std::vector<std::unique_ptr<MPMHeatBody>> bodies;    // fields that have surfaces with heat
+  std::vector<std::unique_ptr<MPMHeatContact>> contacts;
   MPMSuperStep steps;    // of the temperatures of all fields together
-  // so far, this rank's share, in restart files that of all ranks: heat through faces and of sources; of points
-  Heats came;
-  double got = 0.0;
-  Heats in_step, present;    // heat of the last step, and power in a stage of it, this rank's share
+  Past past = {};
+  // heat of the last step, and power in a stage of it, this rank's share: through faces, of sources, through contacts
+  Heats in_step, present;
   Heats power;
-  static constexpr int NCAME = MPMHeatFaces::NFACE + 1;    // then those of givers
-  double booked[NGIVER] = {};                              // by givers since the last step
   double dt_last = 0.0;
   bool power_known = true;
   int source_index = -1;
   std::vector<double> source_values;    // [n] of an atom-style variable
 
   double sigma() const;
+  MPMHeatBody &body_of(const MPMField &);
+  void init_contacts();
   void evaluate_variables();
   int count_stages();
   void find_rates();

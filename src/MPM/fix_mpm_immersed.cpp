@@ -79,12 +79,12 @@ Options MPMImmersedOptions::declare(int dim)
   o.argument(number(viscosity, "viscosity", NOT_NEGATIVE));
   o.add("drag",
         {word(law,
-              {{"gidaspow", GIDASPOW},
-               {"difelice", DIFELICE},
-               {"ergun", ERGUN},
-               {"schiller", SCHILLER},
-               {"stokes", STOKES},
-               {"none", NONE}})},
+              {{"gidaspow", SphereDrag::GIDASPOW},
+               {"difelice", SphereDrag::DIFELICE},
+               {"ergun", SphereDrag::ERGUN},
+               {"schiller", SphereDrag::SCHILLER},
+               {"stokes", SphereDrag::STOKES},
+               {"none", SphereDrag::NONE}})},
         "law of the drag");
   o.add(
       "gravity",
@@ -92,7 +92,7 @@ Options MPMImmersedOptions::declare(int dim)
                "acceleration of gravity that fluid and grains have from elsewhere, for buoyancy")});
   o.refuse([=] {
     return OptionRules{
-        {law != NONE && viscosity == 0.0, "",
+        {law != SphereDrag::NONE && viscosity == 0.0, "",
          "needs a positive viscosity for its drag: use drag none without"},
         {dim == 2 && gravity[2] != 0.0, "gravity", "must be along x and y in 2d: {gravity}"}};
   });
@@ -301,45 +301,6 @@ double FixMPMImmersed::porosity(double solid) const
   return std::max(least, 1.0 - solid);
 }
 
-/** Factor of the drag on a single sphere in a bed, where it does not depend on the slip. */
-double FixMPMImmersed::hindrance(double eps) const
-{
-  return law == GIDASPOW && eps >= 0.8 ? pow(eps, -4.65) : 1.0;
-}
-
-double FixMPMImmersed::drag_on_sphere(double diameter, double slip, double eps,
-                                      double hindrance) const
-{
-  const double stokes = 3.0 * MY_PI * viscosity * diameter;
-  const double Re = density * slip * diameter / viscosity;
-  const auto schiller = [&](double number) {
-    return number < 1000.0 ? 1.0 + 0.15 * pow(number, 0.687) : 0.44 / 24.0 * number;
-  };
-  const auto ergun = [&]() {
-    const double eps3 = eps * eps * eps;
-    return MY_PI / 6.0 * diameter *
-        (150.0 * viscosity * (1.0 - eps) + 1.75 * density * diameter * slip) / eps3;
-  };
-  switch (law) {
-    case STOKES:
-      return stokes;
-    case SCHILLER:
-      return stokes * schiller(Re);
-    case ERGUN:
-      return ergun();
-    case GIDASPOW:
-      return eps < 0.8 ? ergun() : stokes * schiller(Re) * hindrance;
-    case DIFELICE: {
-      const double logarithm = 1.5 - log10(std::max(Re, 1.0e-10));
-      const double power = 3.7 - 0.65 * exp(-0.5 * logarithm * logarithm);
-      const double root = 0.63 * sqrt(Re) + 4.8;
-      return stokes / 24.0 * root * root * pow(eps, -power - 1.0);
-    }
-    default:
-      return 0.0;
-  }
-}
-
 /* ----------------------------------------------------------------------
    drag / slip at the slip which is left at the end of the step: w = slip/(1 + slowing K(w)). Laws are
    between K = a and K = b w: a line through two of their values, exact for that of Ergun
@@ -350,11 +311,12 @@ double FixMPMImmersed::drag_after_step(double diameter, double slip, double soli
 {
   // a disc of unit depth has the drag of a sphere times its volume over that of the sphere
   const double share = field->lattice.dim == 2 ? 1.5 / diameter : 1.0;
-  const double eps = porosity(solid), hindered = hindrance(eps);
-  const double most = share * drag_on_sphere(diameter, slip, eps, hindered);
+  const SphereDrag drag = {law, density, viscosity};
+  const double eps = porosity(solid), hindered = drag.hindrance(eps);
+  const double most = share * drag.on_sphere(diameter, slip, eps, hindered);
   if (!(slowing * most > 0.0)) return most;
   const double low = slip / (1.0 + slowing * most),
-               least = share * drag_on_sphere(diameter, low, eps, hindered);
+               least = share * drag.on_sphere(diameter, low, eps, hindered);
   const double rise = slip > low ? (most - least) / (slip - low) : 0.0;
   const double linear = 1.0 + slowing * (least - rise * low);
   const double w = 2.0 * slip / (linear + sqrt(linear * linear + 4.0 * slowing * rise * slip));

@@ -17,6 +17,7 @@ FixStyle(mpm/immersed,FixMPMImmersed);
 
 #include "declare/option.h"
 #include "fix.h"
+#include "mpm_drag.h"
 #include "mpm_node_action.h"
 
 #include <cstdint>
@@ -27,11 +28,9 @@ namespace LAMMPS_NS {
 class MPMField;
 
 struct MPMImmersedOptions {
-  enum Law { NONE, STOKES, SCHILLER, ERGUN, GIDASPOW, DIFELICE };
-
   std::string field_id;
   double density = 0.0, viscosity = 0.0;    ///< viscosity: in units of pressure, then of mass
-  Law law = GIDASPOW;
+  MPM_NS::SphereDrag::Law law = MPM_NS::SphereDrag::GIDASPOW;
   double gravity[3] = {0.0, 0.0, 0.0};
 
   MPM_NS::Options declare(int dimension);
@@ -109,8 +108,6 @@ class FixMPMImmersed : public Fix, public MPMNodeAction, private MPMImmersedOpti
   double end_of_bed(double solid, const double *moment, double own) const;
   double drag_after_step(double diameter, double slip, double solid, double slowing) const;
   double porosity(double solid) const;
-  double hindrance(double eps) const;
-  double drag_on_sphere(double diameter, double slip, double eps, double hindrance) const;
 };
 
 }    // namespace LAMMPS_NS

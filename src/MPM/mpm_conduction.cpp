@@ -71,10 +71,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+
+static constexpr int AHEAD = 16;    // distance of prefetches, in points
 
 /* ---------------------------------------------------------------------- */
 
@@ -98,7 +101,10 @@ void MPMConduction::init(double sigma)
     const bool varies = material.conduction_varies();
     const Conduction all = material.conduction(nullptr);
     thermals.push_back({fix, T, molten, varies, all});
-    slowest = std::min(slowest, all.conductivity / (material.density() * all.capacity));
+    const double least = all.orthotropic
+        ? std::min(all.conductivity, std::min(all.across[0], all.across[1]))
+        : all.conductivity;
+    slowest = std::min(slowest, least / (material.density() * all.capacity));
   }
   total = field.frame->is_total();
   steepest = 0.0;
@@ -133,15 +139,44 @@ double MPMConduction::volume_of(int i) const
   return atom->vfrac[i] * field.points->jacobian(i);
 }
 
+/** The rotation R of F = R U, by R <- (R + R^-T)/2 (N.J. Higham, SIAM J. Sci. Stat. Comput. 7 (1986) 1160). */
+static void rotation(const double *F, double R[3][3])
+{
+  static constexpr int MOST = 30;
+  memcpy(R, F, 9 * sizeof(double));
+  for (int k = 0; k < MOST; k++) {
+    double inverse[3][3], change = 0.0;
+    MathExtra::invert3(R, inverse);
+    for (int a = 0; a < 3; a++)
+      for (int b = 0; b < 3; b++) {
+        const double next = 0.5 * (R[a][b] + inverse[b][a]);
+        change = std::max(change, fabs(next - R[a][b]));
+        inverse[b][a] = next;
+      }
+    MathExtra::transpose3(inverse, R);
+    if (change < 1.0e-14) return;
+  }
+}
+
 /* ----------------------------------------------------------------------
    conductivity of a point for gradients on the lattice. Total frame: V k becomes V F^-1 k F^-T
 ------------------------------------------------------------------------- */
 
 void MPMConduction::tensor(const Thermal &t, int i, double k[3][3]) const
 {
-  const double K = t.at(i).conductivity;
+  Conduction room;
+  const Conduction &c = t.at(i, room);
   for (int a = 0; a < 3; a++)
-    for (int b = 0; b < 3; b++) k[a][b] = a == b ? K : 0.0;
+    for (int b = 0; b < 3; b++) k[a][b] = a == b ? c.conductivity : 0.0;
+  if (c.orthotropic) {
+    double R[3][3], n[3][3];
+    rotation(field.points->F[i], R);
+    MathExtra::times3_transpose(c.axis, R, n);    // axes in rows
+    for (int a = 0; a < 3; a++)
+      for (int b = 0; b < 3; b++)
+        k[a][b] = c.conductivity * n[0][a] * n[0][b] + c.across[0] * n[1][a] * n[1][b] +
+            c.across[1] * n[2][a] * n[2][b];
+  }
   if (!total) return;
   double F[3][3], inverse[3][3], half[3][3];
   field.frame->lattice_F(i, F);
@@ -185,14 +220,16 @@ double MPMConduction::steepness(int i) const
 /** Bound of the rate of a point with this volume; largest diffusivity for functions that points do not bound. */
 double MPMConduction::bound(const Thermal &t, int i, double volume) const
 {
-  double most = t.at(i).conductivity;
+  Conduction room;
+  const Conduction &c = t.at(i, room);
+  double most = c.most();
   if (total) {
     double k[3][3];
     tensor(t, i, k);
     most = greatest_row(field.lattice.dim, k);
   }
   const double steep = steepness(i);
-  return most * volume / (atom->rmass[i] * t.at(i).capacity) * (steep > 0.0 ? steep : 1.0);
+  return most * volume / (atom->rmass[i] * c.capacity) * (steep > 0.0 ? steep : 1.0);
 }
 
 /** A bound of the rates of the nodes, for functions that points alone do not bound. usual: that of nodes inside of a body.
@@ -232,7 +269,7 @@ double MPMConduction::row_bound(double usual)
    temperatures of the nodes
 ------------------------------------------------------------------------- */
 
-MPMConduction::Limits MPMConduction::points_to_nodes(const MPMRows &gradients)
+double MPMConduction::points_to_nodes(const MPMRows &gradients)
 {
   const int dim = field.lattice.dim;
   const bool simple = !total && steepest > 0.0, wants_volumes = faces.any();
@@ -242,14 +279,16 @@ MPMConduction::Limits MPMConduction::points_to_nodes(const MPMRows &gradients)
       [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Points &points) {
         const Thermal *const t = thermal(run.material);
         if (!t) return false;
+        Conduction room;
         for (int p = 0; p < n; p++) {
           const int i = first + p;
-          const Conduction c = t->at(i);
+          __builtin_prefetch(field.points->F[std::min(first + p + AHEAD, run.last - 1)]);
+          const Conduction &c = t->at(i, room);
           const double C = atom->rmass[i] * c.capacity, V = volumes[i] = volume_of(i);
           points.capacity[p] = C;
           points.value[p] = t->fix->history[i][t->temperature];
           for (int d = 0; gradients && d < dim; d++) points.slope[3 * p + d] = gradients[i][d];
-          most = std::max(most, simple ? c.conductivity * V / C : bound(*t, i, V));
+          most = std::max(most, simple ? c.most() * V / C : bound(*t, i, V));
           if (wants_volumes)
             points.volume[p] = total ? atom->vfrac[i] * field.frame->lattice_jacobian(i) : V;
         }
@@ -259,7 +298,7 @@ MPMConduction::Limits MPMConduction::points_to_nodes(const MPMRows &gradients)
     most *= steepest;
   else if (!field.boxes && !field.domains && steepest == 0.0)
     most = row_bound(4.0 * dim / (field.lattice.h * field.lattice.h) * most);
-  return {most, faces.begin_step(scalar.capacity, scalar.volume, temperature)};
+  return most;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -268,16 +307,17 @@ void MPMConduction::find_rates(const double *source, Heats &power)
 {
   scalar.find_rates([&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
     const Thermal *const t = thermal(run.material);
+    Conduction room;
     for (int p = 0; p < n; p++) {
       const int i = first + p;
       const double V = volumes[i], conducting = shares.empty() ? V : V * shares[i];
-      if (total) {
+      if (total || t->all.orthotropic) {
         double k[3][3], flux[3];
         tensor(*t, i, k);
         MathExtra::matvec(k, q[p], flux);
         for (int d = 0; d < 3; d++) q[p][d] = -conducting * flux[d];
       } else {
-        const double factor = -conducting * t->at(i).conductivity;
+        const double factor = -conducting * t->at(i, room).conductivity;
         for (int d = 0; d < 3; d++) q[p][d] *= factor;
       }
       q[p][3] = source ? V * source[i] : 0.0;
@@ -303,14 +343,19 @@ double MPMConduction::nodes_to_points(const MPMRows &gradients)
       [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q,
           const double *before) {
         const Thermal *const t = thermal(run.material);
+        Conduction room;
         for (int p = 0; p < n; p++) {
           const int i = first + p;
-          const Conduction c = t->at(i);
+          const Conduction &c = t->at(i, room);
           double *const history = t->fix->history[i], &T = history[t->temperature];
           const double now = relaxes ? q[p][3] + keep * (T - before[p]) : q[p][3];
           got += atom->rmass[i] * c.capacity * (now - T);
-          T = now;
-          if (t->molten >= 0) c.melting.settle(T, history[t->molten]);
+          if (c.by_enthalpy) {
+            t->fix->material->warm(history, c.capacity * (now - T));
+          } else {
+            T = now;
+            if (t->molten >= 0) c.melting.settle(T, history[t->molten]);
+          }
           for (int d = 0; gradients && d < dim; d++) gradients[i][d] = q[p][d];
         }
       },
@@ -320,10 +365,10 @@ double MPMConduction::nodes_to_points(const MPMRows &gradients)
 
 /* ---------------------------------------------------------------------- */
 
-double MPMConduction::greatest_rate(const Limits &all)
+double MPMConduction::greatest_rate(double conduction, double exchange)
 {
-  conducted = all.conduction;
-  exchanged = all.exchange;
+  conducted = conduction;
+  exchanged = exchange;
   return conducted + exchanged;
 }
 
@@ -335,6 +380,7 @@ double MPMConduction::greatest_rate_of_points(tagint &tag) const
   const int dim = field.lattice.dim;
   const bool bounded = steepest > 0.0 || field.boxes;
   double most = 0.0;
+  Conduction room;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!field.is_point(i)) continue;
     const Thermal *const t = thermal(field.material_of(i));
@@ -350,7 +396,7 @@ double MPMConduction::greatest_rate_of_points(tagint &tag) const
         for (int c = 0; c < 1 << dim; c++) least = std::min(least, fabs(x[dim * c + d]) / h);
       const double steep = field.domains ? 1.0 / (least * least) : 4.0 * dim;
       here = steep / (h * h) * greatest_row(dim, k) * volume_of(i) /
-          (atom->rmass[i] * t->at(i).capacity);
+          (atom->rmass[i] * t->at(i, room).capacity);
     }
     if (here <= most) continue;
     most = here;

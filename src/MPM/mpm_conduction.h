@@ -47,21 +47,20 @@ class MPMConduction : protected Pointers {
   /** Start of a run. */
   void init(double sigma);
 
-  /** What limits an explicit step: bounds of the rates of conduction, and of exchange through faces [1/time]. */
-  struct Limits {
-    double conduction, exchange;
-  };
   /** A step, first part: temperatures of nodes. gradients: [n][dim] temperature gradients of points, null with
-   *  the transfer pic. Returns the limits of this rank. */
-  Limits points_to_nodes(const MPMRows &gradients);
-  /** Those of all ranks: a bound of the eigenvalues of minus the rates [1/time]. */
-  double greatest_rate(const Limits &);
+   *  the transfer pic. Returns a bound of the rates of this rank's points [1/time]. */
+  double points_to_nodes(const MPMRows &gradients);
+  /** A bound of the eigenvalues of minus the rates [1/time], from the bound of all ranks, and the rate of exchange through
+   *  faces. */
+  double greatest_rate(double conduction, double exchange);
   /** Rates of the temperatures of the nodes by conduction and sources. source: [n] power per volume, or null.
    *  Adds the power of sources. */
   void find_rates(const double *source, Heats &power);
   /** Last part: temperatures of points; returns the heat that they have got. */
   double nodes_to_points(const MPMRows &gradients);
 
+  const std::vector<double> &node_capacity() const { return scalar.capacity; }
+  const std::vector<double> &node_volume() const { return scalar.volume; }
   /** Of nodes, see MPMSuperStep. */
   std::vector<double> &temperature = scalar.value, &rate = scalar.rate;
 
@@ -78,9 +77,11 @@ class MPMConduction : protected Pointers {
     int temperature, molten;    // columns of history
     bool varies;
     MPM_NS::Conduction all;    // or the mean
-    MPM_NS::Conduction at(int i) const
+    /** Of a point, which may be in the room. */
+    const MPM_NS::Conduction &at(int i, MPM_NS::Conduction &room) const
     {
-      return varies ? fix->material->conduction(fix->history[i]) : all;
+      if (!varies) return all;
+      return room = fix->material->conduction(fix->history[i]);
     }
   };
 

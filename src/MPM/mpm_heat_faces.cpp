@@ -13,9 +13,11 @@
    projection, symmetric in the norm of capacities: it leaves explicit steps as stable as they were. Where
    lines along several axes meet, they take turns, forward and backward, which is symmetric, too.
 
-   Nodes outside of the box may have next to no points, while the weight of the function at the face does not
-   know of that: finite heat in a node without capacity. Hence the weight of a node counts in full only if
-   half of the volume is there that it has where material fills the box, and in proportion to it below.
+   Weights are those of the sums over points (mpm_heat_body.cpp), with which temperatures that vary linearly are exact
+   wherever the face is in a cell, and in material that is too thin for these those of the functions at the face. Nodes outside
+   of the box may have next to no points, and the latter do not know of that: finite heat in a node without
+   capacity. Hence the weight of a node counts in full only if half of the volume is there that it has where
+   material fills the box, and in proportion to it below.
 
    How near is material? Along a line, sum_k w_k V_k over what it is where material fills the box up to the
    face, is 1 without a gap, 0.7 with one of a quarter of a cell, and 0.46 with half a cell (quadratic). At the
@@ -36,6 +38,8 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
+// sum of weights by the surface, of the area
+static constexpr double THICK = 0.9;
 static constexpr double ENOUGH = 0.5;    // of the volume of a node, for its whole weight
 // from how near on material touches a face, and is all at it
 static constexpr double TOUCHES = 0.6, IS_AT_FACE = 0.75;
@@ -134,17 +138,19 @@ void MPMHeatFaces::topology_changed()
   }
 }
 
+/** Length of the circle of a node around an axis of symmetry; 1 without one. */
+double MPMHeatFaces::circle(int64_t node) const
+{
+  return field.frame->node_circle((int) (node / NODES_PER_BLOCK), (int) (node % NODES_PER_BLOCK));
+}
+
 /* ---------------------------------------------------------------------- */
 
 void MPMHeatFaces::prepare(const Face &face, Line &line, const std::vector<double> &capacity,
-                           const std::vector<double> &volume) const
+                           const std::vector<double> &volume,
+                           const std::vector<double> &surface) const
 {
   const Grid &grid = field.grid;
-  // around an axis of symmetry, and 1 else
-  const auto circle = [&](int64_t node) {
-    return field.frame->node_circle(static_cast<int>(node / NODES_PER_BLOCK),
-                                    static_cast<int>(node % NODES_PER_BLOCK));
-  };
   const double cell = grid.lattice.cell_volume();
   std::fill_n(line.weight, MOST, 0.0);
   double part[MOST] = {}, most = 0.0, there = 0.0, full = 0.0;
@@ -165,22 +171,52 @@ void MPMHeatFaces::prepare(const Face &face, Line &line, const std::vector<doubl
   line.area = std::min(1.0, aside) * cell / grid.lattice.h *
       (face.axis ? circle(line.node[0]) : field.frame->circle(face.x)) *
       std::min(1.0, (near - TOUCHES) / (IS_AT_FACE - TOUCHES));
-  double sum = 0.0;
-  for (int k = 0; k < face.n; k++) {
-    line.weight[k] = face.weight[k] * std::min(1.0, part[k] / (ENOUGH * most));
-    sum += line.weight[k];
+  if (!weigh_by_surface(face, line, surface)) {
+    double sum = 0.0;
+    for (int k = 0; k < face.n; k++) {
+      line.weight[k] = face.weight[k] * std::min(1.0, part[k] / (ENOUGH * most));
+      sum += line.weight[k];
+    }
+    for (int k = 0; k < face.n; k++) line.weight[k] /= sum;
   }
   line.owned = line.response = 0.0;
   for (int k = 0; k < face.n; k++) {
-    line.weight[k] /= sum;
     line.change[k] = line.weight[k] > 0.0 ? line.weight[k] / capacity[line.node[k]] : 0.0;
     line.response += line.weight[k] * line.change[k];
     if (grid.owns(line.node[k])) line.owned += line.weight[k];
   }
 }
 
+/* ----------------------------------------------------------------------
+   Weights of the sums over points, see mpm_heat_body.cpp. Around an axis of symmetry it is a flux in proportion to 1/r
+   that is in equilibrium. Where material is too thin, that of the other side of it reduces these sums.
+------------------------------------------------------------------------- */
+
+bool MPMHeatFaces::weigh_by_surface(const Face &face, Line &line,
+                                    const std::vector<double> &surface) const
+{
+  double weight[MOST], sum = 0.0;
+  for (int k = 0; k < face.n; k++) {
+    const double G = surface[3 * line.node[k] + face.axis] / circle(line.node[k]);
+    weight[k] = std::max(0.0, face.face % 2 ? G : -G);
+    sum += weight[k];
+  }
+  const double length = face.axis ? circle(line.node[0]) : field.frame->circle(face.x);
+  if (!(length * sum > THICK * line.area)) return false;
+  for (int k = 0; k < face.n; k++) line.weight[k] = weight[k] / sum;
+  return true;
+}
+
+void MPMHeatFaces::mark_near(std::vector<char> &near) const
+{
+  for (const auto &face : faces)
+    for (const auto &line : face.lines)
+      for (int k = 0; k < face.n; k++) near[line.node[k] / NODES_PER_BLOCK] = 1;
+}
+
 double MPMHeatFaces::begin_step(const std::vector<double> &capacity,
                                 const std::vector<double> &volume,
+                                const std::vector<double> &surface,
                                 const std::vector<double> &temperature)
 {
   double fastest = 0.0;
@@ -188,11 +224,11 @@ double MPMHeatFaces::begin_step(const std::vector<double> &capacity,
     const auto &condition = conditions[face.face];
     for (auto &line : face.lines) {
       line.response = line.area = 0.0;
-      prepare(face, line, capacity, volume);
+      prepare(face, line, capacity, volume, surface);
       if (condition.kind <= MPMHeatCondition::FLUX) continue;
       double T = 0.0;
       for (int k = 0; k < face.n; k++) T += line.weight[k] * temperature[line.node[k]];
-      fastest = std::max(fastest, line.area * line.response * slope(condition, T));
+      fastest = std::max(fastest, line.area * line.response * condition.slope(T, sigma));
     }
   }
   return fastest;
@@ -200,19 +236,20 @@ double MPMHeatFaces::begin_step(const std::vector<double> &capacity,
 
 /* ---------------------------------------------------------------------- */
 
-double MPMHeatFaces::flux(const MPMHeatCondition &c, double T) const
+double MPMHeatCondition::flux(double T, double sigma) const
 {
   using MathSpecial::square;
-  if (c.kind == MPMHeatCondition::FLUX) return c.now[0];
-  if (c.kind == MPMHeatCondition::CONVECTION) return c.now[0] * (c.now[1] - T);
-  return c.now[0] * sigma * (square(square(c.now[1])) - square(square(T)));
+  if (kind == INSULATED) return 0.0;
+  if (kind == FLUX) return now[0];
+  if (kind == CONVECTION) return now[0] * (now[1] - T);
+  return now[0] * sigma * (square(square(now[1])) - square(square(T)));
 }
 
-/** Of the flux with the temperature, the largest between that of the face and the outside. */
-double MPMHeatFaces::slope(const MPMHeatCondition &c, double T) const
+double MPMHeatCondition::slope(double T, double sigma) const
 {
-  if (c.kind == MPMHeatCondition::CONVECTION) return c.now[0];
-  return 4.0 * c.now[0] * sigma * MathSpecial::cube(std::max(T, c.now[1]));
+  if (kind <= FLUX) return 0.0;
+  if (kind == CONVECTION) return now[0];
+  return 4.0 * now[0] * sigma * MathSpecial::cube(std::max(T, now[1]));
 }
 
 /** Calls f(face, line) for lines whose temperature is prescribed. */
@@ -249,7 +286,7 @@ void MPMHeatFaces::add_rates(const std::vector<double> &temperature, std::vector
       if (!(line.area > 0.0)) continue;
       double T = 0.0;
       for (int k = 0; k < face.n; k++) T += line.weight[k] * temperature[line.node[k]];
-      const double more = line.area * flux(condition, T);
+      const double more = line.area * condition.flux(T, sigma);
       for (int k = 0; k < face.n; k++) rate[line.node[k]] += more * line.change[k];
       power[face.face] += more * line.owned;
     }

@@ -28,6 +28,11 @@ struct MPMHeatCondition {
   double now[2] = {0.0, 0.0};    ///< in this step
 
   int nvalue() const { return kind == INSULATED ? 0 : (kind <= FLUX ? 1 : 2); }
+  /** Heat that comes in per area at a temperature of the surface, if that is not prescribed. sigma: the constant of
+   *  Stefan and Boltzmann. */
+  double flux(double temperature, double sigma) const;
+  /** How much this falls with the temperature, at the most between it and that outside. */
+  double slope(double temperature, double sigma) const;
 };
 
 /** Heat through the faces of the box, anywhere between nodes, at the nodes of one field.
@@ -52,10 +57,12 @@ class MPMHeatFaces : protected Pointers {
   void extend_topology();
   void topology_changed();
 
-  /** Lines that touch material in this step, from the capacities and volumes of nodes. Returns the largest
-   *  rate at which temperatures at faces follow those outside, for stability. */
+  /** Marks blocks [slot] with nodes of lines. */
+  void mark_near(std::vector<char> &near) const;
+  /** Lines that touch material in this step, from the capacities, volumes, and surfaces (MPMHeatBody) of nodes. Returns
+   *  the largest rate at which temperatures at faces follow those outside, for stability. */
   double begin_step(const std::vector<double> &capacity, const std::vector<double> &volume,
-                    const std::vector<double> &temperature);
+                    const std::vector<double> &surface, const std::vector<double> &temperature);
   /** Give the faces with a temperature theirs, by the smallest change in the norm of capacities; adds the heat
    *  of nodes that this rank owns. */
   void hold(std::vector<double> &temperature, Heats &) const;
@@ -90,9 +97,9 @@ class MPMHeatFaces : protected Pointers {
   bool crossing = false;    // prescribed temperatures at faces normal to several axes
 
   void prepare(const Face &, Line &, const std::vector<double> &capacity,
-               const std::vector<double> &volume) const;
-  double flux(const MPMHeatCondition &, double temperature) const;
-  double slope(const MPMHeatCondition &, double temperature) const;
+               const std::vector<double> &volume, const std::vector<double> &surface) const;
+  double circle(int64_t node) const;
+  bool weigh_by_surface(const Face &, Line &, const std::vector<double> &surface) const;
   template <class F> void visit_held(const F &) const;
 };
 

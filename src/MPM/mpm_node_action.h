@@ -17,9 +17,9 @@ namespace LAMMPS_NS {
  *  Fixes that derive from this are called by fix mpm in turns, in each in the order of definition. */
 class MPMNodeAction {
  public:
-  /** What exchanges momentum between materials comes first, and walls, which hold nodes for good, have
-   *  the last word: else contact would push points through them. */
-  enum Turn { EXCHANGE, BETWEEN_BODIES, RIGID_BODIES, WALLS };
+  /** Phases that are in the same place share their momentum first, then what else exchanges it between materials, and
+   *  walls, which hold nodes for good, have the last word: else contact would push points through them. */
+  enum Turn { PHASES, EXCHANGE, BETWEEN_BODIES, RIGID_BODIES, WALLS };
   virtual Turn turn() const { return EXCHANGE; }
 
   /** Collective, at the start of a run: check and prepare; called by fix mpm in its init(). */

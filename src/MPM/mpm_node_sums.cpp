@@ -34,16 +34,17 @@ static bool reaches(const Grid::Block &block, const std::vector<char> &near)
 ------------------------------------------------------------------------- */
 
 template <class Weigh>
-static void map_some(MPMField &field, const PointRows &r, const TransferStep &s, P2G p2g,
-                     const std::vector<char> &near, int lane, int nlane, const Weigh &weigh)
+static void map_some(MPMField &field, const TransferKernels &with, const PointRows &r,
+                     const TransferStep &s, P2G p2g, const std::vector<char> &near, int lane,
+                     int nlane, const Weigh &weigh)
 {
-  points_to(field.work.nodes, field, field.kernel,
+  points_to(field.work.nodes, field, with,
             [&](const MPMPointMap::Run &run, const int *base, int *box) {
               if (!reaches(field.grid.blocks[run.slot], near)) return;
               for (int i = run.first; i < run.last; i++) weigh(i);
               p2g(r, s, run.first, run.last, base, field.map->tile, box);
             });
-  field.nodes.sum(field.work.nodes.data(), field.kernel.nreal, lane, nlane);
+  field.nodes.sum(field.work.nodes.data(), with.nreal, lane, nlane);
 }
 
 /* ----------------------------------------------------------------------
@@ -51,8 +52,8 @@ static void map_some(MPMField &field, const PointRows &r, const TransferStep &s,
    symmetry, that of the area in the plane, times the length of the circle through the node
 ------------------------------------------------------------------------- */
 
-void LAMMPS_NS::map_gradient(MPMField &field, Weight content, const std::vector<char> &near,
-                             std::vector<double> &gradient)
+static void map_gradient_with(const TransferKernels &with, MPMField &field, Weight content,
+                              const std::vector<char> &near, std::vector<double> &gradient)
 {
   const MPMFrame &frame = *field.frame;
   field.work.stress.resize(6 * (std::size_t) field.atom->nmax);
@@ -62,11 +63,11 @@ void LAMMPS_NS::map_gradient(MPMField &field, Weight content, const std::vector<
   s.force_scale = 0.0;
   s.stress_scale = 1.0;
 
-  const int nreal = field.kernel.nreal, lane = nreal == 8 ? 4 : 0;
-  map_some(field, r, s, field.kernel.p2g_force, near, lane, 3, [&](int i) {
+  const int nreal = with.nreal, lane = nreal == 8 ? 4 : 0;
+  map_some(field, with, r, s, with.p2g_force, near, lane, 3, [&](int i) {
     double *const tau = r.tau + 6 * (std::size_t) i;
     const double weight =
-        (content == Weight::MASS ? r.mass[i] / r.vol0[i] : field.points->jacobian(i)) /
+        (content == Weight::MASS ? r.mass[i] / r.vol0[i] : frame.lattice_jacobian(i)) /
         frame.circle(field.atom->x[i][0]);
     for (int k = 0; k < 6; k++) tau[k] = k < 3 ? -weight : 0.0;
   });
@@ -79,6 +80,18 @@ void LAMMPS_NS::map_gradient(MPMField &field, Weight content, const std::vector<
   }
 }
 
+void LAMMPS_NS::map_gradient(MPMField &field, Weight content, const std::vector<char> &near,
+                             std::vector<double> &gradient)
+{
+  map_gradient_with(field.kernel, field, content, near, gradient);
+}
+
+void LAMMPS_NS::map_surface(MPMField &field, const std::vector<char> &near,
+                            std::vector<double> &gradient)
+{
+  map_gradient_with(field.pic, field, Weight::VOLUME, near, gradient);
+}
+
 /* ---------------------------------------------------------------------- */
 
 void LAMMPS_NS::map_volume(MPMField &field, const std::vector<char> &near,
@@ -88,10 +101,11 @@ void LAMMPS_NS::map_volume(MPMField &field, const std::vector<char> &near,
   volumes.resize(std::max(volumes.size(), (std::size_t) field.atom->nmax));
   PointRows r = field.rows();
   r.mass = volumes.data();
-  map_some(field, r, field.step_data(), field.kernel.p2g_momentum, near, 3, 1, [&](int i) {
-    volumes[i] =
-        field.atom->vfrac[i] * field.points->jacobian(i) / field.frame->circle(field.atom->x[i][0]);
-  });
+  map_some(field, field.kernel, r, field.step_data(), field.kernel.p2g_momentum, near, 3, 1,
+           [&](int i) {
+             volumes[i] = field.atom->vfrac[i] * field.points->jacobian(i) /
+                 field.frame->circle(field.atom->x[i][0]);
+           });
   const double inverse = 1.0 / field.lattice.cell_volume();
   share.resize(field.grid.nnodes());
   for (int64_t n = 0; n < field.grid.nnodes(); n++)

@@ -21,6 +21,9 @@ enum class Weight { MASS, VOLUME };
 /** At the nodes of blocks that are marked in near (and others): sum_p w_p grad N(x_p) with the mass or
  *  volume w of the points, [node][3]. */
 void map_gradient(MPMField &, Weight, const std::vector<char> &near, std::vector<double> &gradient);
+/** The same of volumes with the gradients of the functions, also where stress is an affine term of the transfer
+ *  and so takes other ones. */
+void map_surface(MPMField &, const std::vector<char> &near, std::vector<double> &gradient);
 /** At the same nodes: sum_p V_p N(x_p) as share of the volume of a cell, [node]. */
 void map_volume(MPMField &, const std::vector<char> &near, std::vector<double> &share);
 /** At the points, [n]: that share, which is 1 inside of a body and falls to 0 across its surface. Points

@@ -194,6 +194,7 @@ void LAMMPS_NS::make_usl(MPMPlan &plan)
 {
   begin_with_forces(plan);
   solve(plan);
+  plan.place(MPMPlan::BEFORE_STRAIN);
   nodes_to_points(plan, "nodes to points with material", STRESS,
                   with<&Options::strains_while_moving>);
   nodes_to_points(plan, "nodes to points with averaged strain", GRADIENTS,
@@ -218,6 +219,7 @@ void LAMMPS_NS::make_musl(MPMPlan &plan)
   begin_with_forces(plan);
   solve_and_move(plan);
   map_back(plan);
+  plan.place(MPMPlan::BEFORE_STRAIN);
   gradients_with_material(plan, 1.0, 0.0);
   plan.each("motion of points", move_points);
   end(plan);

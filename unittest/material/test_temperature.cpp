@@ -420,3 +420,141 @@ TEST(Sources, WorkOfDamage)
       EXPECT_NEAR(2700 * 900 * (value(p, "temperature") - 293), heat, 1e-6 * (heat + 1));
     }
 }
+
+// all that any law dissipates warms its point: the share CHI of plastic work, and all viscous work
+TEST(Sources, AllDissipation)
+{
+  int n = 0;
+  for (const auto &sample : samples) {
+    SCOPED_TRACE(sample.name);
+    if (has(sample.text, "constant") || has(sample.text, "snow")) continue;
+    Point p(with_thermal(sample.text, "adiabatic 1e6 20 0.7"), 1, 0.01);
+    const double rho = std::strtod(sample.text + strlen("density "), nullptr);
+    RandomMatrix random(5);
+    for (int i = 0; i < 100; i++) steps(p, random(0.02), 1.0);
+    const double heat = 0.7 * p.work[PLASTIC] + p.work[VISCOUS];
+    EXPECT_NEAR(rho * 1e6 * (value(p, "temperature") - 20), heat, 1e-6 * heat + 1e-7 * rho);
+    n += heat > 0.0;
+  }
+  EXPECT_GT(n, 30);
+}
+
+/* ---------------------------------------------------------------------- melting */
+
+namespace {
+
+const std::string METAL =
+    "density 1000 eos linear 1e6 strength j2 5e5 1e3 hardening linear 1e4 "
+    "viscosity newtonian 10 liquid thermal adiabatic 1e30 300 0 melt 400 1e30";
+
+/** Sets the molten fraction at the melting point. */
+void melt(MaterialPoint &p, double f)
+{
+  warm_to(p, 400);
+  p.batch.history[row(p.material, "molten")][0] = f;
+}
+
+}    // namespace
+
+// a melt is Newtonian, whatever the solid was; what solidifies is a new solid without shear stress
+TEST(Melting, IsALiquidThenANewSolid)
+{
+  const Matrix shear = {0, 0.01, 0, 0.01, 0, 0, 0, 0, 0};
+  Point p(METAL), fluid("density 1000 eos linear 1e6 viscosity newtonian 10"),
+      metal("density 1000 eos linear 1e6 strength j2 5e5 1e3 hardening linear 1e4");
+  steps(p, shear, 1.0, 20);
+  EXPECT_GT(value(p, "eplastic"), 0.1);
+  EXPECT_GT(p.vonmises(), 1e3);
+  melt(p, 1.0);
+  steps(p, shear, 1.0);
+  steps(fluid, shear, 1.0, 21);
+  EXPECT_LT(distance(stress_of(p), stress_of(fluid)), 1e-12);
+  EXPECT_EQ(value(p, "eplastic"), 0.0);
+  EXPECT_NEAR(p.wave_speed(), fluid.wave_speed(), 1e-9 * fluid.wave_speed());
+  melt(p, 0.0);
+  steps(p, {}, 1.0);
+  EXPECT_NEAR(p.vonmises(), 0.0, 1e-12);
+  steps(p, shear, 1.0, 20);
+  steps(metal, shear, 1.0, 20);
+  EXPECT_NEAR(p.vonmises(), metal.vonmises(), 1e-9 * metal.vonmises());
+  EXPECT_NEAR(value(p, "eplastic"), value(metal, "eplastic"), 1e-12);
+}
+
+// half of it is solid: half of the strength, and half of the viscosity
+TEST(Melting, PartsShareTheStress)
+{
+  Point p(METAL);
+  melt(p, 0.5);
+  steps(p, {0, 1e-4, 0, 1e-4, 0, 0, 0, 0, 0}, 1.0);
+  EXPECT_NEAR(p.stress(3), 0.5 * 2 * 5e5 * 1e-4 + 0.5 * 2 * 10 * 1e-4, 1e-9);
+  const double stored = p.stored_energy(), elastic = 0.5 * 100.0;    // of the points
+  EXPECT_NEAR(stored, 0.5 * 2 * 100.0 * 100.0 / (4 * 5e5), 1e-9);
+  // melting takes its share away, and its energy becomes heat
+  melt(p, 0.75);
+  steps(p, {}, 1.0);
+  EXPECT_NEAR(p.stress(3), 0.5 * elastic, 1e-9);
+  EXPECT_NEAR(p.stored_energy(), 0.5 * stored, 1e-9 * stored);
+  EXPECT_NEAR(p.work[PLASTIC], 0.5 * stored, 1e-9 * stored);
+  EXPECT_NEAR(p.work[HEAT], 0.5 * stored, 1e-9 * stored);
+  // solidification does not change the stress
+  melt(p, 0.5);
+  steps(p, {}, 1.0);
+  EXPECT_NEAR(p.stress(3), 0.5 * elastic, 1e-9);
+  EXPECT_NEAR(p.stored_energy() + p.work[PLASTIC], stored, 1e-9 * stored);
+}
+
+TEST(Melting, EnergyBalance)
+{
+  const auto material = make(METAL);
+  double scale = 0.0;
+  const auto error = refined(500, [&](int n) {
+    MaterialPoint p(*material, 1, 0.01);
+    double worst = 0.0;
+    for (int i = 0; i < n; i++) {
+      const double t = (i + 0.5) / n;
+      melt(p, std::min(std::max(0.5 - 0.8 * std::cos(9 * t), 0.0), 1.0));
+      steps(p, Matrix{0.1, 0.1 * std::cos(7 * t), 0, 0, -0.2 * t, 0.05, 0.1, 0, 0.08}, 1.0 / n);
+      worst = std::max(worst,
+                       std::fabs(p.stored_energy() + p.work[PLASTIC] + p.work[VISCOUS] - p.power));
+      scale = std::max(scale, std::fabs(p.power));
+    }
+    return worst;
+  });
+  EXPECT_LT(error[2], 2e-3 * scale);
+  EXPECT_GT(std::log2(error[0] / error[2]), 2 * 0.85)
+      << error[0] / scale << " " << error[2] / scale;
+}
+
+// what solid and liquid dissipate melts more of the solid
+TEST(Melting, TakesUpItsOwnHeat)
+{
+  Point p("density 1000 eos linear 1e6 strength j2 5e5 1e3 viscosity newtonian 1e3 liquid "
+          "thermal adiabatic 1000 400 0.9 melt 400 10");
+  p.batch.history[row(p.material, "molten")][0] = 0.3;
+  for (int i = 0; i < 30; i++) {
+    steps(p, {0, 0.05, 0, 0.01, 0, 0, 0, 0, 0.01}, 1.0);
+    const double taken = 10 * (value(p, "molten") - 0.3) + 1000 * (value(p, "temperature") - 400);
+    const double heat = p.work[HEAT] + p.work[VISCOUS];
+    ASSERT_NEAR(1000 * taken, heat, 1e-9 * heat + 1e-8);
+  }
+  EXPECT_GT(value(p, "molten"), 0.35);
+  EXPECT_LT(value(p, "molten"), 1.0);
+  EXPECT_GT(p.work[VISCOUS], 10.0);
+}
+
+TEST(Melting, BadInputIsRefused)
+{
+  expect_refused(
+      {{"eos linear 1 strength j2 1 1 viscosity newtonian 1 liquid", "add 'melt TMELT LATENT'", 10},
+       {"eos linear 1 viscosity newtonian 1 liquid thermal adiabatic 1 1 melt 2 1",
+        "with a strength"},
+       {"linear 1 0 viscosity newtonian 1 liquid thermal adiabatic 1 1 melt 2 1",
+        "with a strength"},
+       {"eos linear 1 strength j2 1 1 viscosity maxwell term 1 1 liquid thermal adiabatic 1 1 melt "
+        "2 1",
+        "a melt forgets"},
+       {"eos linear 1 strength j2 1 1 viscosity newtonian 1 liquid damage cockcroft/latham 1 "
+        "thermal adiabatic 1 1 melt 2 1",
+        "cannot have a damage"}},
+      "density 1 ");
+}

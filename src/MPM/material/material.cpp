@@ -11,7 +11,9 @@
 
 #include "material/material.h"
 
+#include "law/heat_curve.h"
 #include "material/elastic_motion.h"
+#include "material/melting_solid.h"
 #include "material/parts.h"
 #include "material/random_field.h"
 
@@ -42,6 +44,7 @@ class ComposedMaterial : public Material {
     for (const auto &r : definition.random) add(r);
     for (const auto &v : definition.vary) add(v);
     depend_on_temperature();
+    melt_and_solidify();
     for (const auto &range : definition.ranges) add(range);
     if (definition.shares_stress()) {
       viscous = variables.size();
@@ -103,17 +106,38 @@ class ComposedMaterial : public Material {
       } else if (law.info->initialize) {
         law.info->initialize(law.parameters, x, history + law.history);
       }
+    if (solid >= 0) history[solid] = 1.0 - history[molten];
   }
 
   bool is_thermoelastic() const override { return seen >= 0; }
   bool conducts() const override { return thermal && thermal->info->conduction; }
-  bool conduction_varies() const override { return conducts() && !thermal->random.empty(); }
+  bool conduction_varies() const override
+  {
+    return conducts() && (!thermal->random.empty() || !conducting.empty() || is_curved());
+  }
   Conduction conduction(const double *history) const override
   {
     const auto &of = thermal->info->conduction;
     if (!history || !conduction_varies()) return of(thermal->parameters);
+    const double T = history[thermal->history];
     LocalParameters local(*this, *thermal);
-    return of(local.at(history, 1));
+    LawParameters p = local.at(history, 1);
+    for (const auto &w : conducting) w.of(p) *= w.factor.at(T);
+    Conduction c = of(p);
+    if (is_curved()) c.capacity = heat_curve().capacity(T);
+    return c;
+  }
+  void warm(double *history, double heat) const override
+  {
+    double *const T = history + thermal->history;
+    const bool melts = thermal->info->count_history(thermal->parameters) > 1;
+    if (is_curved()) {
+      heat_curve().warm(heat, *T, melts ? T + 1 : nullptr);
+      return;
+    }
+    const Conduction c = conduction(history);
+    *T += heat / c.capacity;
+    if (melts) c.melting.settle(*T, T[1]);
   }
 
   void initialized() const override
@@ -183,8 +207,14 @@ class ComposedMaterial : public Material {
       expanded_speed(b, c);
     else
       plain_speed(b, c);
-    for (const auto &law : laws)
-      if (law.kernels->raise_speed) call(law.kernels->raise_speed, law, b, c);
+    for (const auto &law : laws) {
+      if (!law.kernels->raise_speed) continue;
+      double solid_speed[BATCH];
+      if (law.liquid) std::copy(c, c + b.n, solid_speed);
+      call(law.kernels->raise_speed, law, b, c);
+      for (int i = 0; law.liquid && i < b.n; i++)
+        if (b.history[solid][i] >= 1.0) c[i] = solid_speed[i];
+    }
   }
 
   void stored_energy(const Batch &state, double *w) const override
@@ -217,7 +247,13 @@ class ComposedMaterial : public Material {
   /** History variable with the temperature to which the stress belongs, when stress depends on it by
    *  expansion or by parameters: conduction and heat may have changed the temperature since. Else -1. */
   int seen = -1;
-  bool expands = false;    ///< does it have thermal expansion?
+  bool expands = false;                     ///< does it have thermal expansion?
+  std::vector<WarmParameter> conducting;    ///< conductivities that depend on the temperature
+  std::unique_ptr<const TemperatureFactor>
+      capacity_factor;    ///< of the specific heat, a table; or null
+  /** History variable with the solid share to which the stress belongs, when what melts becomes a liquid with
+   *  a viscosity of its own; else -1. molten: the one with the molten fraction. */
+  int solid = -1, molten = -1;
   std::vector<HistoryVariable> variables;
   std::vector<ValidRange> valid;
   std::vector<int> source;    ///< of the quantities of these, as in UsedRange
@@ -238,7 +274,10 @@ class ComposedMaterial : public Material {
     take_viscous_stress(b);
     if (speed_matters) plain_speed(b, b.speed);
     if (!base) clear_stress(b);
-    run(base, b);
+    if (solid < 0)
+      run(base, b);
+    else
+      run_solid(b);
     if (damage) account_of_strength(b);
     for (int i = 0; i < b.n; i++) {
       b.heat[i] += outside[i];
@@ -249,7 +288,10 @@ class ComposedMaterial : public Material {
       added = -stress;
     });
     for (const auto &law : laws)
-      if (law.part == VISCOSITY) run(&law, b);
+      if (law.liquid)
+        run_liquid(law, b);
+      else if (law.part == VISCOSITY)
+        run(&law, b);
     with_viscous_stress(b, [](double stress, double &added) {
       added += stress;
     });
@@ -266,7 +308,10 @@ class ComposedMaterial : public Material {
     const Batch &b = without_viscous_stress(state, copy);
     for (int i = 0; i < b.n; i++) w[i] = 0.0;
     for (const auto &law : laws)
-      if (!(damage && law.part == STRENGTH)) add_energy(&law, b, w);
+      if (law.part == STRENGTH && solid >= 0)
+        add_energy_of_solid(b, w);
+      else if (!(damage && law.part == STRENGTH))
+        add_energy(&law, b, w);
   }
 
   /* ------------------------------------------------------------------ stress by temperature */
@@ -462,6 +507,103 @@ class ComposedMaterial : public Material {
     return K;
   }
 
+  /* ------------------------------------------------------------------ solids that melt */
+
+  void melt_and_solidify()
+  {
+    if (std::none_of(laws.begin(), laws.end(), [](const auto &law) {
+          return law.liquid;
+        }))
+      return;
+    solid = variables.size();
+    molten = std::find_if(variables.begin(), variables.end(),
+                          [](const auto &variable) {
+                            return variable.name == "molten";
+                          }) -
+        variables.begin();
+    variables.push_back({"solid", 1.0});
+  }
+
+  /** The strength of the solid part of the points. The elastic energy of shear that melts or is diluted is
+   *  heat, and counts as plastic work. */
+  void run_solid(Batch &b) const
+  {
+    double *const was = b.history[solid];
+    const MeltingSolid part(b, was, b.history[molten]);
+    if (part.complete) {
+      run(base, b);
+      return;
+    }
+    double lost[BATCH] = {}, rest[BATCH] = {};
+    if (part.changes) add_energy_of_solid(b, lost);
+    for (int i = 0; i < b.n; i++) was[i] = part.share[i];
+    for (auto &row : b.stress)
+      for (int i = 0; i < b.n; i++) row[i] *= part.to_solid(i);
+    // what is left of the history when a share of it is kept
+    const LawInfo &info = *base->info;
+    const int first = base->history,
+              last = first + info.count_history(base->parameters) +
+        info.nterm_history * base->parameters.nterms;
+    const auto keep = [&](int i, double share) {
+      for (int k = first; k < last; k++) {
+        double &h = b.history[k][i];
+        h = variables[k].initial + share * (h - variables[k].initial);
+      }
+    };
+    if (part.changes) {
+      for (int i = 0; i < b.n; i++) keep(i, part.kept(i));
+      add_energy(base, b, rest);
+      for (int i = 0; i < b.n; i++) {
+        lost[i] -= part.share[i] * rest[i];
+        b.work[PLASTIC] += b.vol0[i] * lost[i];
+        b.work[HEAT] += b.vol0[i] * lost[i];
+      }
+    }
+    {
+      const ShareOfVolume volume(b, part.share);
+      run(base, b);
+    }
+    for (int i = 0; i < b.n; i++)
+      if (part.share[i] == 0.0) keep(i, 0.0);
+    for (auto &row : b.stress)
+      for (int i = 0; i < b.n; i++) row[i] *= part.share[i];
+    for (int i = 0; i < b.n; i++) b.heat[i] = part.share[i] * b.heat[i] + lost[i];
+  }
+
+  /** Energy of the strength, which only the solid part stores. */
+  void add_energy_of_solid(const Batch &state, double *w) const
+  {
+    const double *const share = state.history[solid];
+    Batch b = state;
+    double whole[BATCH] = {};
+    for (auto &row : b.stress)
+      for (int i = 0; i < b.n; i++) row[i] = share[i] > 0.0 ? row[i] / share[i] : 0.0;
+    add_energy(base, b, whole);
+    for (int i = 0; i < b.n; i++) w[i] += share[i] * whole[i];
+  }
+
+  /** A viscosity of the molten part of the points. */
+  void run_liquid(const UsedLaw &law, Batch &b) const
+  {
+    double share[BATCH], heat[BATCH], stress[6][BATCH];
+    bool any = false;
+    for (int i = 0; i < b.n; i++) {
+      share[i] = 1.0 - b.history[solid][i];
+      any = any || share[i] > 0.0;
+    }
+    if (!any) return;
+    std::copy(b.heat, b.heat + b.n, heat);
+    memcpy(stress, b.stress, sizeof(stress));
+    {
+      const ShareOfVolume volume(b, share);
+      run(&law, b);
+    }
+    for (int i = 0; i < b.n; i++) b.heat[i] = heat[i] + share[i] * (b.heat[i] - heat[i]);
+    for (int k = 0; k < 6; k++)
+      for (int i = 0; i < b.n; i++)
+        b.stress[k][i] = stress[k][i] + share[i] * (b.stress[k][i] - stress[k][i]);
+  }
+
   /* ------------------------------------------------------------------ parts */
 
   static int parameter_of_option(const LawInfo &info, const char *option)
@@ -650,6 +792,37 @@ class ComposedMaterial : public Material {
     if (law.info->initialize) law.info->initialize(p, x, history + law.history);
   }
 
+  // of a thermal part
+
+  double thermal_value(const char *name) const
+  {
+    for (int k = 0; k < thermal->info->nparameters; k++)
+      if (!strcmp(thermal->info->parameters[k].name, name)) return thermal->parameters.value[k];
+    return 0.0;
+  }
+  /** Does heat give the temperature by the enthalpy? */
+  bool is_curved() const { return thermal && law::HeatCurve::is_curved(thermal->parameters); }
+  void make_heat_curve(UsedLaw &of) const
+  {
+    if (!capacity_factor && !(thermal_value("DT") > 0.0)) return;
+    for (const auto &r : of.random)
+      for (const char *name : {"CP", "TMELT", "LATENT", "DT"})
+        if (!strcmp(r.declaration(*of.info).name, name))
+          throw MaterialError(r.word,
+                              std::string("random ") + name +
+                                  ": not with melting over a range or a specific heat that varies");
+    const auto T = capacity_factor ? capacity_factor->knots() : std::vector<double>();
+    std::vector<double> factors;
+    for (const double t : T) factors.push_back(capacity_factor->at(t));
+    law::HeatCurve::make(of.parameters, T, factors, thermal_value("CP"), thermal_value("TMELT"),
+                         thermal_value("LATENT"), thermal_value("DT"));
+  }
+  law::HeatCurve heat_curve() const
+  {
+    return {thermal->parameters, thermal_value("TMELT"), thermal_value("LATENT"),
+            thermal_value("DT")};
+  }
+
   /** What a thermal part with parameters t tells another law. With a damage all plastic work goes to
    *  batch.heat, for account_of_strength(). */
   static void share_heat(const LawInfo &info, const LawParameters &t, bool heats_alone,
@@ -671,6 +844,8 @@ class ComposedMaterial : public Material {
       if (place[law.part]) *place[law.part] = &law;
       law.parameters.heat_density = rho * energy_scale;
     }
+    for (auto &law : laws)
+      if (&law == thermal) make_heat_curve(law);
     random_heat = thermal && random_heats();
     for (auto &law : laws) {
       LawParameters &p = law.parameters;
@@ -749,6 +924,7 @@ class ComposedMaterial : public Material {
       text += std::string(" ") + info.term;
       for (int k = 0; k < info.nterm_parameters; k++) text += " " + number(p.term[term][k]);
     }
+    if (law.liquid) text += " liquid";
   }
 
   /** A parameter by its name, NAME or LAW.NAME, where LAW is the name of the part or of the closed law or, of
@@ -824,15 +1000,37 @@ class ComposedMaterial : public Material {
     if (!owner) refuse("no such parameter: choose one of " + choice);
     const LawInfo &info = *owner->info;
     const Parameter &declared = w.declaration(info);
-    if (owner->part == THERMAL && strcmp(declared.option, "expansion") != 0)
-      refuse("of a thermal part, only the coefficient of expansion can vary");
+    const bool of_capacity = owner->part == THERMAL && !strcmp(declared.name, "CP");
+    const bool of_conduction = owner->part == THERMAL && declared.name[0] == 'K';
+    if (owner->part == THERMAL && !of_capacity && !of_conduction &&
+        strcmp(declared.option, "expansion") != 0)
+      refuse("of a thermal part, only CP, the conductivities, and the coefficient of expansion can "
+             "vary");
     const double given = w.of(owner->parameters);
     if (given == 0.0 || !std::isfinite(given) || !strcmp(declared.unit, FLAG))
       refuse("its value is " + number(given) +
              ", which a factor does not change: give it another one");
-    for (const auto &other : owner->warm)
+    for (const auto &other : of_conduction ? conducting : owner->warm)
       if (other == w) refuse("is given twice");
-    owner->warm.push_back(w);
+    if (of_capacity) {
+      if (capacity_factor) refuse("is given twice");
+      if (!vary.factor.is_table()) refuse("the specific heat needs a table");
+      if (static_cast<int>(vary.factor.knots().size()) + law::HeatCurve::MORE >
+          LawParameters::MAX_TERMS)
+        refuse("a table of the specific heat can have " +
+               std::to_string(LawParameters::MAX_TERMS - law::HeatCurve::MORE) + " entries");
+      capacity_factor = std::make_unique<const TemperatureFactor>(vary.factor);
+    } else if (of_conduction) {
+      conducting.push_back(w);
+    } else {
+      owner->warm.push_back(w);
+    }
+    for (const double T : vary.factor.knots()) {
+      const double value = given * vary.factor.at(T);
+      if ((of_capacity || of_conduction) && !declared.range.contains(value))
+        refuse("it is " + number(value) + " at the temperature " + number(T) +
+               ", which is out of range");
+    }
     for (const auto &of_knots : owner->warm)
       for (const double T : of_knots.factor.knots()) {
         LawParameters p = owner->parameters;
@@ -872,8 +1070,16 @@ class ComposedMaterial : public Material {
   void plain_speed(const Batch &b, double *c) const
   {
     double k[BATCH] = {};
-    for (const auto &law : laws)
-      if (law.kernels->modulus) call(law.kernels->modulus, law, b, k);
+    for (const auto &law : laws) {
+      if (!law.kernels->modulus) continue;
+      if (law.part != STRENGTH || solid < 0) {
+        call(law.kernels->modulus, law, b, k);
+        continue;
+      }
+      double strong[BATCH] = {};
+      call(law.kernels->modulus, law, b, strong);
+      for (int i = 0; i < b.n; i++) k[i] += b.history[solid][i] * strong[i];
+    }
     table->speed(b.n, rho_pressure, k, c);
     if (random_density)
       for (int i = 0; i < b.n; i++) c[i] /= std::sqrt(b.history[random_density->row][i]);

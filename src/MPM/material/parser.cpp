@@ -12,7 +12,7 @@
 //   one closed law:      linear ... | neohookean ... | ogden ...
 //   or an eos:           eos linear | shock | tait ...
 //     with at most one   strength elastic | j2 | johnson/cook ...
-//   any number of        viscosity newtonian | artificial | maxwell ...
+//   any number of        viscosity newtonian | artificial | maxwell ... [liquid]
 //   at most one          damage ...
 //   at most one          thermal adiabatic | conducting | constant ...
 //   any number of        range QUANTITY LOW HIGH
@@ -270,6 +270,12 @@ class Parser {
     for (const auto &other : material.laws[part])
       if (other.index == law.index) fail(here, "'" + title(law) + "' is given twice");
     parse_parameters(title(law), *law.info, law.parameters);
+    if (part == VISCOSITY && !at_end() && words[next] == "liquid") {
+      law.liquid = true;
+      if (law.info->nterm_history > 0)
+        fail(next, title(law) + ": a melt forgets: use another viscosity for the liquid");
+      next++;
+    }
     const char *wrong = law.info->check(law.parameters);
     if (wrong) fail(here, title(law) + ": " + wrong);
     material.laws[part].push_back(law);
@@ -403,6 +409,19 @@ class Parser {
                std::string("'") + law.info->name +
                    "' with these parameters depends on the temperature: add 'thermal adiabatic' "
                    "with the specific heat, or 'thermal constant'");
+    for (const auto &law : material.laws[VISCOSITY]) {
+      if (!law.liquid) continue;
+      const std::string what = "'" + title(law) + " liquid'";
+      if (!has(THERMAL) || !has_option(material.laws[THERMAL][0], "melt"))
+        fail(law.word, what + " is for what has molten: add 'melt TMELT LATENT' to a thermal part");
+      if (!has(STRENGTH))
+        fail(law.word,
+             what +
+                 " is for a solid that melts and forgets its shear: use an eos with a strength, or "
+                 "leave 'liquid' out");
+      if (has(DAMAGE))
+        refuse(DAMAGE, ": a solid that melts cannot have a damage: leave out one of the two");
+    }
     if (!material.vary.empty() && !has(THERMAL))
       fail(material.vary[0].word,
            "vary " + material.vary[0].name +

@@ -86,6 +86,7 @@ struct UsedLaw {
   std::vector<RandomParameter> random;    ///< its own parameters that differ from point to point
   std::vector<WarmParameter> warm;        ///< those that depend on the temperature
   bool varies = false;                    ///< do its LawParameters differ from point to point?
+  bool liquid = false;                    ///< is it a viscosity of the molten part only?
   /** Is it a strength whose plastic work is all turned into heat by the damage? */
   bool heats_alone = false;
 };

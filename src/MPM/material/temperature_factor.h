@@ -36,6 +36,7 @@ class TemperatureFactor {
   TemperatureFactor(Formula formula, double c, double reference, double low, double high);
 
   double at(double temperature) const;
+  bool is_table() const { return !factor.empty(); }
 
   /** Temperatures between which it has no extremes. */
   const std::vector<double> &knots() const { return T; }

@@ -1,0 +1,155 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(mpm/mixture,FixMPMMixture);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_MPM_MIXTURE_H
+#define LMP_FIX_MPM_MIXTURE_H
+
+#include "declare/option.h"
+#include "mpm_drag.h"
+#include "mpm_node_action.h"
+#include "mpm_physics.h"
+#include "mpm_reach.h"
+#include "mpm_state.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+class MPMField;
+
+struct MPMMixtureOptions {
+  enum Drag { NO_DRAG, DARCY, SPHERES };
+
+  std::string soil_id, water_id;
+  double grain_density = 0.0, viscosity = 0.0;    ///< viscosity: in units of pressure, then of mass
+  Drag drag = NO_DRAG;
+  double permeability = 0.0;          ///< intrinsic [area]
+  double reference_porosity = 0.0;    ///< at which it is that; 0: at any
+  double diameter = 0.0;              ///< of the grains
+  MPM_NS::SphereDrag::Law spheres = MPM_NS::SphereDrag::NONE;
+
+  MPM_NS::Options declare();
+
+  /** Drag per volume of the soil and difference of the velocities [mass/(volume time)], which belongs to a
+   *  porosity here, not that of the soil at its end. */
+  double drag_coefficient(double porosity, double here, double water_density,
+                          double difference) const;
+  /** Does it depend on the difference of the velocities? */
+  bool drag_is_linear() const;
+};
+
+/** Soil and water, each a field (fix mpm) with points and a velocity of its own, at the same place: they share the
+ *  volume, the gradient of the pressure of the water, and, by drag, their momentum. */
+class FixMPMMixture :
+    public FixMPMState,
+    public MPMPhysics,
+    public MPMNodeAction,
+    private MPMMixtureOptions {
+ public:
+  FixMPMMixture(class LAMMPS *, int, char **);
+  int setmask() override { return 0; }    // called by fix mpm
+  void init() override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+  double memory_usage() override;
+
+  // both interfaces have these two
+
+  void extend_topology(MPMField &) override;
+  void topology_changed(MPMField &) override;
+
+  Turn turn() const override { return PHASES; }
+  void init_action() override;
+  void couple_topology() override;
+  void blocks_found() override;
+  void act(double dt, Stage) override;
+
+  void init_physics(MPMPlan &) override;
+  void add_stages(MPMPlan &, MPMPlan::Place) override;
+  double stable_dt(const MPMField &, tagint &tag) const override;
+  std::vector<Account> accounts() const override;
+  void account(double *values) const override { values[0] += dissipated; }
+
+  /** Has one of these fields (IDs) the role that it has here, or the other one? */
+  bool has(const std::string &field) const { return field == soil_id || field == water_id; }
+
+ private:
+  struct Phase {
+    MPMField *field = nullptr;
+    MPMReach reach;
+    std::vector<char>
+        reaches;    // [block] do its points reach nodes that the other phase may have, too?
+    std::vector<double> volumes;    // [node][8] sums over points: see find_shares()
+  };
+  struct Common {    // a block of nodes that both may have
+    int slot_soil, slot_water;
+    uint64_t canonical;
+  };
+  struct Node {              // with soil near water
+    int64_t soil, water;     // water: -1 where there is none
+    double share;            // of the pressure that the soil bears
+    double here;             // porosity
+    double porosity;         // of the soil there, which may be more or less at the end of the soil
+    double filled;           // share of its pores
+    double volume;           // of this share of the soil
+    double wet;              // volume of water
+    double density;          // of the water
+    double force[3];         // on the soil, by the pressure of the water [mass*acceleration]
+    double on_water[3];      // more than by its own volume
+    double impulse[3];       // of drag on the soil
+    double rate;             // coefficient of drag [mass/time]
+    double free_water[3];    // velocity before drag
+    double after_soil[3], after_water[3];    // and after it, before walls and others act
+    bool owned;
+  };
+
+  Phase soil, water;
+  std::vector<Common> common;
+  std::vector<Node> nodes;
+  std::vector<double> stress;    // [soil node][8] mean stress of the water in filled pores
+  std::vector<double> by_grains, by_water;    // [node][8] forces of the pressure in these volumes
+  std::vector<double> flux, lead;    // [node][8] U at those of soil, U - u at those of water
+  std::vector<double> rates;         // [n] div U at points of soil
+  std::vector<char>
+      held;    // [soil node] bits of components, by walls; with other actions than these
+  bool only_walls = true;    // act on the nodes after this fix
+  bool lists_valid = false;
+  bool may_meet = false;    // on any rank
+  bool meets = false;       // in this step
+  double dt_last = 0.0;
+  double dissipated = 0.0;    // by drag so far, this rank's share
+
+  bool stale() const;
+  void list_blocks();
+  void find_near(Phase &, const std::vector<std::array<int, 3>> &keys) const;
+  double grains(int i) const;
+  double volume(const Phase &, int i) const;
+  const double *water_stress() const;
+  template <class Volumes> void sum_volumes(Phase &, std::vector<double> &to, const Volumes &);
+  template <class Stress> void sum_forces(Phase &, std::vector<double> &to, const Stress &);
+  template <class Gather> void from_nodes(const Phase &, double *nodes, const Gather &);
+  bool find_shares();
+  void share_pressure();
+  void correct_drag_at_walls();
+  void share_strain();
+  void account_for_work();
+  double fastest_wave(const Phase &, double &speed) const;
+};
+
+}    // namespace LAMMPS_NS
+#endif
+#endif

@@ -1,0 +1,145 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+/* ----------------------------------------------------------------------
+   The step of LAMMPS with grains and points:
+
+     initial_integrate   fix mpm moves points and conducts; nodes get what waits
+     post_integrate      temperatures of points to atom->temperature
+     pre_force           fix heat/flow sends temperatures to ghosts, and clears atom->heatflow
+     force               the pair style adds the power between two that touch to atom->heatflow
+     final_integrate     fix heat/flow brings home what ghosts got; new temperatures of grains
+     end_of_step         heat dt * heatflow of points: it waits
+
+   so that what leaves grains and what comes to points is the same number, also when the time step changes.
+------------------------------------------------------------------------- */
+
+#include "mpm_grain_heat.h"
+
+#include "atom.h"
+#include "error.h"
+#include "fix.h"
+#include "fix_mpm_material.h"
+#include "modify.h"
+#include "mpm_conduction.h"
+#include "mpm_field.h"
+#include "mpm_passes.h"
+#include "update.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+/* ---------------------------------------------------------------------- */
+
+void MPMGrainHeat::init()
+{
+  if (!atom->temperature_flag || !atom->heatflow_flag)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/heat grains: atoms have no temperature and heat flow: define fix ID all "
+               "property/atom temperature heatflow ghost yes");
+  const auto movers = modify->get_fix_by_style("^heat/flow$");
+  if (movers.empty())
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/heat grains: nothing moves the temperatures of grains: define a fix heat/flow "
+        "for their group");
+  fields = MPMField::all(lmp);
+  for (const auto *mover : movers) {
+    int mine = 0, any;
+    for (int i = 0; i < atom->nlocal; i++)
+      if (atom->vfrac[i] > 0.0 && (atom->mask[i] & mover->groupbit)) mine = 1;
+    MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+    if (any)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/heat grains: fix heat/flow {} has material points in its group, whose "
+                 "temperatures belong to fix mpm/heat: give it the group of the grains",
+                 mover->id);
+  }
+  show();
+}
+
+/** Of a point; null: none, or the atom is no point. */
+const FixMPMMaterial *MPMGrainHeat::material_of(int i) const
+{
+  if (!(atom->vfrac[i] > 0.0)) return nullptr;
+  for (const auto *field : fields)
+    if (field->is_point(i)) return field->material_of(i);
+  return nullptr;
+}
+
+void MPMGrainHeat::show()
+{
+  for (int i = 0; i < atom->nlocal; i++) {
+    const auto *const material = material_of(i);
+    const int column = material ? material->find_history("temperature") : -1;
+    if (column >= 0) atom->temperature[i] = material->history[i][column];
+  }
+}
+
+void MPMGrainHeat::note_step()
+{
+  dt = update->dt;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double MPMGrainHeat::take()
+{
+  double sum = 0.0;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->vfrac[i] > 0.0) || atom->heatflow[i] == 0.0) continue;
+    const auto *const material = material_of(i);
+    if (!material || !material->material->conducts())
+      error->one(
+          FLERR, Error::NOLASTLINE,
+          "Fix mpm/heat grains: heat flows to point {}, whose material does not conduct: give "
+          "it a part thermal conducting, or pairs of its type no conductance",
+          atom->tag[i]);
+    const double heat = dt * atom->heatflow[i];
+    waiting[i][0] += heat;
+    sum += heat;
+  }
+  return sum;
+}
+
+double MPMGrainHeat::sum_waiting() const
+{
+  double sum = 0.0;
+  for (int i = 0; i < atom->nlocal; i++) sum += waiting[i][0];
+  return sum;
+}
+
+/* ----------------------------------------------------------------------
+   by the weights of the shape functions
+------------------------------------------------------------------------- */
+
+void MPMGrainHeat::give(MPMConduction &conduction)
+{
+  MPMField &field = conduction.field;
+  const auto &pic = field.pic;
+  energy.resize(atom->nmax);
+  values.assign(3 * (std::size_t) atom->nmax, 0.0);
+  const PointRows r = field.rows_at_rest(values.data(), energy.data());
+  const TransferStep still = field.step_data(0.0);
+  auto &nodes = field.work.nodes;
+  points_to(nodes, field, pic, [&](const MPMPointMap::Run &run, const int *base, int *box) {
+    bool any = false;
+    for (int i = run.first; i < run.last; i++) {
+      energy[i] = waiting[i][0];
+      any = any || energy[i] != 0.0;
+      waiting[i][0] = 0.0;
+    }
+    if (any) pic.p2g_momentum(r, still, run.first, run.last, base, field.map->tile, box);
+  });
+  field.nodes.sum(nodes.data(), pic.nreal, 3, 1);
+  auto &given = conduction.given;
+  given.resize(field.grid.nnodes(), 0.0);
+  for (std::size_t n = 0; n < given.size(); n++) given[n] += nodes[n * pic.nreal + 3];
+}

@@ -1,0 +1,234 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+/* ----------------------------------------------------------------------
+   Heat q through a flat surface with the normal n, per area, is in equilibrium with a constant flux in the material if
+   each node i gets q |G_i|, G_i = sum_p V_p grad N_ip, the sum over the points as it is: with these weights a temperature
+   that varies linearly stays as it is wherever points and nodes are, also at nodes that points hardly reach, and
+
+     sum_i G_i x_i/sum_i G_i
+
+   along a line of nodes is the place at which the volume of the points ends. With weights from the functions at the surface
+   instead, nodes next to it got up to a tenth of the heat too much or too little. As |G|^2 <= C_i sum_p V_p^2 |grad N|^2/(N C_p), the
+   response of the temperature of the surface, sum_i w_i T_i with w_i = |G_i|/sum |G|, to heat is bounded, too.
+
+   The area of a line is that of the whole line where the body fills all that is behind its surface, and less at the sides of
+   the body and of the box: the sum of |G| does not tell, as at edges it has parts of the other surface.
+
+   A surface that is inclined crosses lines of nodes along several axes. The lines along the axis a count with the share
+   s_a = n_a^4/sum_b n_b^4 of the area, each h^(d-1)/|n_a|.
+------------------------------------------------------------------------- */
+
+#include "mpm_heat_body.h"
+
+#include "comm.h"
+#include "domain.h"
+#include "math_special.h"
+#include "mpm_conduction.h"
+#include "mpm_field.h"
+#include "mpm_node_sums.h"
+#include "mpm_stencil.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+using MathSpecial::square;
+
+static constexpr double LEAST =
+    0.01;    // weights of a line that has a surface, as a share of a full one
+// sums over points are not exactly integrals: a line from here on is full, and what is between
+static constexpr double FULL = 0.95, NOT_FULL = 0.8;
+
+MPMHeatBody::MPMHeatBody(LAMMPS *lmp, MPMField &field, MPMConduction *conduction) :
+    Pointers(lmp), field(field), conduction(conduction), profile(field)
+{
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMHeatBody::list_images()
+{
+  const Grid &grid = field.grid;
+  images.clear();
+  listed = true;
+  if (std::none_of(grid.blocks.begin(), grid.blocks.end(), [](const Grid::Block &block) {
+        return block.alias;
+      }))
+    return;
+  const auto canonical = grid.canonical();
+  for (std::size_t slot = 0; slot < grid.blocks.size(); slot++)
+    for (int n = 0; n < NODES_PER_BLOCK; n++) {
+      if (!(grid.blocks[slot].alias >> n & 1)) continue;
+      const int of = (int) (canonical[slot * NODES_PER_BLOCK + n] / NODES_PER_BLOCK);
+      const std::array<int, 2> image = {(int) slot, of};
+      if (images.empty() || images.back() != image) images.push_back(image);
+    }
+}
+
+void MPMHeatBody::activate_around(const int *b)
+{
+  for (int k = 0; k < (field.lattice.dim == 3 ? 27 : 9); k++) {
+    const int next[3] = {b[0] + k % 3 - 1, b[1] + k / 3 % 3 - 1,
+                         b[2] + k / 9 - (field.lattice.dim == 3)};
+    field.grid.activate(next);
+  }
+}
+
+void MPMHeatBody::begin_step()
+{
+  if (!listed) list_images();
+  near.assign(field.grid.blocks.size(), 0);
+}
+
+void MPMHeatBody::find_surface()
+{
+  int any = std::count(near.begin(), near.end(), 1) > 0, all;
+  MPI_Allreduce(&any, &all, 1, MPI_INT, MPI_MAX, world);
+  if (!all) {
+    share.assign(field.grid.nnodes(), 0.0);
+    gradient.assign(3 * field.grid.nnodes(), 0.0);
+    return;
+  }
+  for (const auto &[image, of] : images)
+    if (near[of]) near[image] = 1;
+  map_surface(field, near, gradient);
+  map_volume(field, near, share);
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool MPMHeatBody::make_line(int axis, const int *base, double at, double into, Line &line) const
+{
+  const Grid &grid = field.grid;
+  const auto &lattice = field.lattice;
+  const double full_area = lattice.cell_volume() / lattice.h;
+  int first, index[3] = {base[0], base[1], base[2]};
+  double w[MOST], sum = 0.0, moment = 0.0;
+  line.axis = axis;
+  line.n = MPMStencil(field).weights(at, first, w);
+  for (int k = 0; k < line.n; k++) {
+    index[axis] = lattice.wrap(axis, first + k);
+    const int64_t node = line.node[k] = grid.locate(index);
+    if (node < 0 && comm->nprocs > 1) return false;
+    const double G = node < 0 ? 0.0 : gradient[3 * node + axis];
+    line.weight[k] = std::max(0.0, into > 0.0 ? -G : G);
+    sum += line.weight[k];
+    moment += line.weight[k] * (first + k);
+  }
+  if (!(sum > LEAST * full_area)) return false;
+  line.place = moment / sum;
+  double there = 0.0, full = 0.0;
+  for (int k = 0; k < line.n; k++) {
+    line.weight[k] /= sum;
+    if (line.node[k] >= 0) there += w[k] * share[line.node[k]];
+    full += w[k] * profile.volume((first + k - line.place) * into);
+  }
+  const double part = there / full;
+  line.area = full_area *
+      std::min(1.0,
+               part < NOT_FULL
+                   ? part
+                   : NOT_FULL + (part - NOT_FULL) * (1.0 - NOT_FULL) / (FULL - NOT_FULL));
+  return true;
+}
+
+bool MPMHeatBody::find_response(Line &line) const
+{
+  line.response = 0.0;
+  for (int k = 0; k < line.n; k++) {
+    if (!(line.weight[k] > 0.0)) continue;
+    const double C = conduction->node_capacity()[line.node[k]];
+    if (!(C > 0.0)) return false;
+    line.response += square(line.weight[k]) / C;
+  }
+  return true;
+}
+
+double MPMHeatBody::temperature(const Line &line) const
+{
+  double T = 0.0;
+  for (int k = 0; k < line.n; k++)
+    if (line.weight[k] > 0.0) T += line.weight[k] * conduction->temperature[line.node[k]];
+  return T;
+}
+
+double MPMHeatBody::drift(const Line &line) const
+{
+  double sum = 0.0;
+  for (int k = 0; k < line.n; k++)
+    if (line.weight[k] > 0.0) sum += line.weight[k] * conduction->rate[line.node[k]];
+  return sum;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMHeatBody::begin_stage()
+{
+  heat.assign(field.grid.nnodes(), 0.0);
+}
+
+void MPMHeatBody::give(const Line &line, double power)
+{
+  for (int k = 0; k < line.n; k++)
+    if (line.weight[k] > 0.0) heat[line.node[k]] += power * line.weight[k];
+}
+
+void MPMHeatBody::end_stage()
+{
+  field.nodes.sum(heat.data(), 1, 0, 1);
+  const auto &C = conduction->node_capacity();
+  auto &rate = conduction->rate;
+  for (std::size_t k = 0; k < rate.size(); k++)
+    if (C[k] > 0.0) rate[k] += heat[k] / C[k];
+}
+
+/* ---------------------------------------------------------------------- */
+
+double MPMHeatBody::room(int axis, int index) const
+{
+  constexpr int FIXED = 1;
+  const auto &lattice = field.lattice;
+  double part = 1.0;
+  for (int side = 0; side < 2; side++) {
+    if (domain->boundary[axis][side] != FIXED) continue;
+    const double x = side ? domain->boxhi[axis] : domain->boxlo[axis];
+    const double depth = index - (x - lattice.origin[axis]) / lattice.h;
+    part -= 1.0 - profile.volume(side ? -depth : depth);
+  }
+  return std::max(part, 0.0);
+}
+
+double MPMHeatBody::memory_usage() const
+{
+  return (share.capacity() + gradient.capacity() + heat.capacity()) * sizeof(double);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMHeatShares::begin(const MPMHeatBody &body)
+{
+  counts.assign(body.field.grid.nnodes() * body.field.lattice.dim, 0.0);
+}
+
+void MPMHeatShares::sum(const MPMHeatBody &body)
+{
+  const int dim = body.field.lattice.dim;
+  body.field.nodes.sum(counts.data(), dim, 0, dim);
+}
+
+double LAMMPS_NS::heat_share_of_axis(const double *normal, int dim, int axis)
+{
+  constexpr double GRAZES = 0.1;
+  if (std::fabs(normal[axis]) < GRAZES) return 0.0;
+  double all = 0.0;
+  for (int d = 0; d < dim; d++)
+    if (std::fabs(normal[d]) >= GRAZES) all += square(square(normal[d]));
+  return square(square(normal[axis])) / all;
+}

@@ -1,0 +1,105 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_HEAT_BODY_H
+#define LMP_MPM_HEAT_BODY_H
+
+#include "mpm_node_profile.h"
+#include "pointers.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace LAMMPS_NS {
+class MPMConduction;
+class MPMField;
+
+/** Where the surface of a field is at its nodes, and heat that comes in through it there. */
+class MPMHeatBody : protected Pointers {
+ public:
+  static constexpr int MOST = 4;
+
+  /** Nodes along an axis around a place where the surface is. */
+  struct Line {
+    int axis, n;
+    int64_t node[MOST];
+    double weight[MOST];    ///< of sum one
+    double area;            ///< of the surface that belongs to the line, as seen along the axis
+    double place;           ///< of that surface on the line, in node spacings
+    double response;        ///< of the temperature there to heat: sum of weight^2/capacity
+  };
+
+  MPMField &field;
+  MPMConduction *const conduction;    ///< null: no material of the field conducts
+  const MPMNodeProfile profile;
+
+  MPMHeatBody(class LAMMPS *, MPMField &, MPMConduction *);
+
+  /** Ranks need the nodes around those that their points reach: activates the blocks around this one. */
+  void activate_around(const int *block);
+  void topology_changed() { listed = false; }
+
+  /** Blocks in which the surface is wanted: [slot], and all of them. */
+  std::vector<char> near;
+  void begin_step();
+  void want_all() { near.assign(near.size(), 1); }
+  /** Sums over points in these blocks. Collective. */
+  void find_surface();
+  /** Of nodes: volume in cells, and sum of V grad N, which points out of the body. */
+  std::vector<double> share, gradient;
+
+  /** The line along an axis through a place on it (in node spacings), base: a node of it; into: component along the axis of
+   *  the unit normal into the body. False if there is no surface, or this rank does not have all nodes. */
+  bool make_line(int axis, const int *base, double at, double into, Line &) const;
+  /** Its response, when capacities are known. False if a node has none. */
+  bool find_response(Line &) const;
+  double temperature(const Line &) const;
+  /** Rate of this temperature by all other heat. */
+  double drift(const Line &) const;
+
+  /** A stage: heat that was given to lines goes to the rates of nodes. */
+  void begin_stage();
+  void give(const Line &, double power);
+  void end_stage();
+
+  /** Share of the function of a node along an axis that is inside of fixed faces of the box. */
+  double room(int axis, int index) const;
+
+  double memory_usage() const;
+
+ private:
+  bool listed = false;
+  std::vector<std::array<int, 2>>
+      images;    // a block with images, and one with nodes of which they are
+  std::vector<double> heat;
+
+  void list_images();
+};
+
+/* ---------------------------------------------------------------------- */
+
+/** Lines that several ranks know: each does an equal part of the work, so that together they do it once. Keys are
+ *  node * dim + axis of the body. Collective. */
+class MPMHeatShares {
+ public:
+  void begin(const MPMHeatBody &body);
+  void count(int64_t key) { counts[key] = 1.0; }
+  void sum(const MPMHeatBody &body);
+  double of(int64_t key) const { return 1.0 / counts[key]; }
+
+ private:
+  std::vector<double> counts;
+};
+
+/** Of what goes through a surface with this normal, the part of the lines along an axis: these parts have the sum one, and
+ *  lines that graze the surface have none. */
+double heat_share_of_axis(const double *normal, int dim, int axis);
+
+}    // namespace LAMMPS_NS
+#endif

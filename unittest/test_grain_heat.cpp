@@ -1,0 +1,214 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: physics mpi restart input
+// mpi: 1 4
+// timeout: 200
+
+// Heat between grains and material points: fix mpm/heat grains yes.
+
+#include "mpm_lammps.h"
+
+using namespace MPM_TEST;
+
+namespace {
+
+constexpr double GRAIN_CAPACITY = 500.0;
+
+const std::string head = R"(
+units si
+newton NEWTON
+atom_modify map array
+boundary p p f
+atom_style hybrid sphere mpm
+neighbor 0.004 bin
+comm_modify vel yes
+region box block 0 0.08 0 0.08 0 0.12
+create_box 2 box
+fix prop all property/atom temperature heatflow ghost yes
+)";
+
+/** What a run needs, also after a restart. */
+std::string fixes(const std::string &contact, const std::string &material, const std::string &hot)
+{
+  return "fix grid all mpm 0.008\nfix m block mpm/material density 1000 neohookean 1.0e5 0.3 " +
+      material + "\npair_style granular\npair_coeff * * " + contact +
+      "\nfix skin block mpm/surface lists grains\nfix hf grains heat/flow constant 500\n" +
+      "fix heat all mpm/heat " + hot + "\n";
+}
+
+/** Heat of the grains, above the temperature 0. */
+double heat_of_grains(Scene &run)
+{
+  auto *const atom = run.lmp->atom;
+  double sum = 0.0;
+  for (int i = 0; i < run.n(); i++)
+    if (atom->vfrac[i] == 0.0) sum += run.mass()[i] * GRAIN_CAPACITY * atom->temperature[i];
+  return over_ranks(sum);
+}
+
+double heat_of_points(Scene &run, double &capacity)
+{
+  auto *fix = run.material("m");
+  const int column = fix->find_history("temperature");
+  const double c = fix->material->conduction(nullptr).capacity;
+  double sum = 0.0, all = 0.0;
+  for (int i = 0; i < run.n(); i++)
+    if (run.lmp->atom->vfrac[i] > 0.0) {
+      sum += run.mass()[i] * c * fix->history[i][column];
+      all += run.mass()[i] * c;
+    }
+  capacity = over_ranks(all);
+  return over_ranks(sum);
+}
+
+/** Four hot grains fall on a block, across all ranks. */
+std::string falling(const std::string &newton = "on", const std::string &step = "timestep 1e-4\n")
+{
+  return replaced(head, "NEWTON", newton) + R"(
+fix grid all mpm 0.008
+region block block INF INF INF INF 0 0.032
+create_points 1 region block ppc 2
+group block type 1
+create_atoms 2 single 0.02 0.02 0.0425
+create_atoms 2 single 0.06 0.02 0.043
+create_atoms 2 single 0.02 0.06 0.044
+create_atoms 2 single 0.06 0.058 0.046
+group grains type 2
+set type 2 diameter 0.02 density 2500
+set group grains temperature 800
+velocity grains set 0.05 0.1 -0.5
+)" +
+      replaced(fixes("hertz/material 1e5 0.5 0.3 tangential linear_nohistory 0 0.4 heat radius 50",
+                     "thermal conducting 400 300 20", "grains yes zlo convection 100 300"),
+               "fix grid all mpm 0.008\n", "") +
+      R"(
+fix floor all mpm/boundary zlo stick
+fix move grains nve/sphere
+fix g all gravity 9.81 vector 0 0 -1
+compute e all mpm/energy
+)" + step;
+}
+
+}    // namespace
+
+// A grain and a block that conducts well are two lumps: their difference decays like exp(-hA (1/C1 + 1/C2) t), and
+// the sum of heat stays
+PARAMETER_TEST(TwoLumps, Exponential, const char *, Values("on", "off"))
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  {
+    Scene run(replaced(head, "NEWTON", GetParam()) + R"(
+fix grid all mpm 0.008
+region block block 0.024 0.056 0.024 0.056 0.016 0.032
+create_points 1 region block ppc 2
+group block type 1
+create_atoms 2 single 0.04 0.04 0.0415
+group grains type 2
+set type 2 diameter 0.02 density 2500
+set group grains temperature 800
+)" +
+              replaced(fixes("hertz 1e-9 0 tangential linear_nohistory 0 0 heat area 4e6",
+                             "thermal conducting 400 300 4e6", "grains yes stages 99"),
+                       "fix grid all mpm 0.008\n", "") +
+              strprintf("timestep %g\nrun 0\n", 2e-4));
+    double mine = 0.0;    // power at the start
+    for (int i = 0; i < run.n(); i++)
+      if (run.lmp->atom->vfrac[i] == 0.0) mine = -run.lmp->atom->heatflow[i];
+    double block;
+    const double start = heat_of_grains(run) + heat_of_points(run, block);
+    const double grain = 2500.0 * PI / 6.0 * 8e-6 * GRAIN_CAPACITY;
+    const double rate = mine / 500.0 * (1.0 / grain + 1.0 / block);
+    run.commands("run 1000\n");
+    const double T = heat_of_grains(run) / grain, U = heat_of_points(run, block) / block;
+    EXPECT_GT(rate * 0.2, 0.5);
+    const double error = measured("difference, over the exact one - 1",
+                                  (T - U) / 500.0 / std::exp(-0.2 * rate) - 1.0);
+    EXPECT_NEAR(error, 0.0, 5e-4);
+    // of the last step, points have not got theirs yet
+    run.commands("compute e all mpm/energy\n");
+    const double waiting = run.compute_vector()[14];
+    EXPECT_GT(waiting, 0.0);
+    EXPECT_NEAR((heat_of_grains(run) + heat_of_points(run, block)) / start, 1.0, 1e-4);
+    EXPECT_NEAR(
+        measured("heat that came, over what grains lost - 1",
+                 run.fix("heat")->compute_scalar() / (800.0 * grain - heat_of_grains(run)) - 1.0),
+        0.0, 1e-12);
+  }
+}
+
+// what grains lose, points get, in steps of changing length, with Newton's law between ranks and without
+PARAMETER_TEST(Falling, KeepsHeat, const char *, Values("on", "off"))
+{
+  for (const char *step : {"timestep 1e-4\n", "fix dt all mpm/dt 0.3 max 2e-4\ntimestep 1e-5\n"}) {
+    Scene run(falling(GetParam(), step) + "run 0\n");
+    double capacity;
+    const double grains = heat_of_grains(run), points = heat_of_points(run, capacity);
+    run.commands("run 400\n");
+    const double *const e = run.compute_vector();
+    const double lost = grains - heat_of_grains(run);
+    EXPECT_GT(measured("heat that grains have lost", lost), 1.0);
+    EXPECT_NEAR((e[18] - lost) / grains, 0.0, 1e-13);
+    EXPECT_NEAR((e[14] - e[15] - e[18]) / lost, 0.0, 1e-10);
+    EXPECT_NEAR(e[10] / lost, 0.0, 1e-10);
+    EXPECT_NEAR((heat_of_points(run, capacity) - points - e[15] - lost) / lost, 0.0,
+                0.02);    // but for what waits
+    EXPECT_LT(e[15], 0.0);
+  }
+}
+
+TEST(Ranks, Agree)
+{
+  OnRanks run(falling(), "run 200\n");
+  EXPECT_LT(run.difference(), 1e-12);
+  for (const int k : {14, 15, 18})
+    EXPECT_NEAR(run.serial.compute_vector()[k], run.parallel.compute_vector()[k], 1e-10);
+  EXPECT_NEAR(run.parallel.fix("heat")->compute_vector(8) /
+                  run.serial.fix("heat")->compute_vector(8),
+              1.0, 1e-9);
+}
+
+TEST(Restart, Continues)
+{
+  const std::string scene = falling();
+  const std::string again = "comm_modify vel yes\nneighbor 0.004 bin\n" +
+      fixes("hertz/material 1e5 0.5 0.3 tangential linear_nohistory 0 0.4 heat radius 50",
+            "thermal conducting 400 300 20", "grains yes zlo convection 100 300") +
+      scene.substr(scene.find("fix floor"));
+  const std::string first = replaced(
+      again, "fix skin", "fix prop all property/atom temperature heatflow ghost yes\nfix skin");
+  Continued run(scene, 200, first, 100);
+  EXPECT_LT(difference(run.whole.gather(), run.again.gather()), 1e-13);
+  EXPECT_NEAR(run.whole.compute_vector()[18], run.again.compute_vector()[18], 1e-12);
+  EXPECT_GT(run.whole.compute_vector()[18], 0.5);
+  EXPECT_NEAR(heat_of_grains(run.whole), heat_of_grains(run.again), 1e-11);
+}
+
+SERIAL_TEST(BadInput, IsRefused)
+{
+  const std::string scene = falling();
+  expect_error(replaced(scene, "grains yes", "") + "run 1\n", "say grains yes");
+  expect_error(replaced(scene, "fix hf grains", "fix hf all") + "run 1\n", "group of the grains");
+  expect_error(replaced(scene, "fix hf grains heat/flow constant 500\n", "") + "run 1\n",
+               "define a fix heat/flow");
+  const std::string without =
+      replaced(replaced(scene, "heat radius 50", ""),
+               "fix prop all property/atom temperature heatflow ghost yes\n", "");
+  expect_error(replaced(replaced(without, "set group grains temperature 800\n", ""),
+                        "fix hf grains heat/flow constant 500\n", "") +
+                   "run 1\n",
+               "fix ID all property/atom");
+  // a material that does not conduct, next to one that does
+  const std::string two = replaced(scene, "fix skin",
+                                   "group low id 1\nfix n low mpm/material density 1000 neohookean "
+                                   "1e5 0.3 thermal conducting 400 300 20\nfix skin");
+  expect_error(replaced(replaced(two,
+                                 "fix m block mpm/material density 1000 neohookean 1.0e5 0.3 "
+                                 "thermal conducting 400 300 20\n",
+                                 ""),
+                        "fix skin",
+                        "group rest subtract block low\nfix m rest mpm/material density 1000 "
+                        "neohookean 1e5 0.3\nfix skin") +
+                   "run 300\n",
+               "does not conduct");
+}

@@ -1,0 +1,275 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: physics mpi restart input
+// mpi: 1 4
+// timeout: 300
+
+// Fix mpm/heat contact: heat between bodies that touch.
+
+#include "heat_testing.h"
+
+using namespace MPM_TEST;
+
+namespace {
+
+constexpr int CONTACT = 9;    // place in the vector of fix mpm/heat
+
+/** Two bars of length 1 along x, periodic along y, of the conductivities ka and kb, with capacity 1, with n cells each;
+ *  their interface is at x = 1 + gap/2, and shift node spacings from a node. */
+struct Bars {
+  int n = 20;
+  double shift = 0.0;
+  double ka = 1.0, kb = 4.0;
+  std::string heat;
+  double Ta = 0.0, Tb = 0.0;
+  std::string velocity = "";
+  double gap = 0.0;         // in cells
+  double length_a = 1.0;    // both bars end at faces of the box
+  std::string grid = "";
+
+  std::string text() const
+  {
+    const double h = 1.0 / n;
+    const auto material = [](const char *id, double k, double T) {
+      return strprintf("fix m%s %s mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 "
+                       "%.17g %.17g\n",
+                       id, id, T, k);
+    };
+    const bool flies = !velocity.empty();
+    return plane("lj", flies ? "p p" : "f p",
+                 strprintf("%.17g %.17g 0 %.17g", flies ? -2.0 : 0.0, (flies ? 4.0 : 2.0) + gap * h,
+                           4 * h),
+                 2, 0.1 * h) +
+        strprintf("region a block 0 %.17g INF INF INF INF\n", length_a) +
+        strprintf("region b block %.17g %.17g INF INF INF INF\n", length_a + gap * h,
+                  2.0 + gap * h) +
+        strprintf("create_points 1 region a spacing %.17g\n", 0.5 * h) +
+        strprintf("create_points 2 region b spacing %.17g\n", 0.5 * h) +
+        "group a type 1\ngroup b type 2\n" +
+        strprintf("fix ga a mpm %.17g origin %.17g 0 %s\n", h, length_a - shift * h, grid.c_str()) +
+        strprintf("fix gb b mpm %.17g origin %.17g 0 %s\n", h, length_a - shift * h, grid.c_str()) +
+        material("a", ka, Ta) + material("b", kb, Tb) + "fix touch all mpm/contact ga gb\n" +
+        "fix heat all mpm/heat contact ga gb conductance " + heat + "\n" + velocity;
+  }
+};
+
+/** Temperature at the interface, of the points of one body, from the two points next to it; side: of the body. */
+double face(Scene &run, const std::string &id, double x, int side, double h)
+{
+  Warm warm(run, id);
+  double sum[2] = {0.0, 0.0}, count[2] = {0.0, 0.0};
+  for (int i = 0; i < run.n(); i++)
+    for (int k = 0; k < 2; k++)
+      if (warm.has(i) && std::fabs(run.x()[i][0] - x - side * (0.25 + 0.5 * k) * h) < 0.1 * h) {
+        sum[k] += warm.T(i);
+        count[k]++;
+      }
+  const auto all = over_ranks({sum[0], count[0], sum[1], count[1]});
+  return 1.5 * all[0] / all[1] - 0.5 * all[2] / all[3];
+}
+
+double total_heat(Scene &run)
+{
+  return Warm(run, "ma").heat() + Warm(run, "mb").heat();
+}
+
+}    // namespace
+
+// bars of conductivity 1 and 4 between 1 and 0, conductance 2: q = 4/7, faces 3/7 and 1/7
+SERIAL_TEST(Steady, FluxAndFaces)
+{
+  for (const double shift : {0.0, 0.25, 0.5})
+    for (const int n : {20, 40}) {
+      Bars bars;
+      bars.n = n;
+      bars.shift = shift;
+      bars.heat = "2.0 xlo temperature 1.0 xhi temperature 0.0 stages 64";
+      Scene run(bars.text());
+      run.commands("timestep 0.05\nrun 80\n");
+      const double *const power = run.fix_vector("heat", 10);
+      const double area = 4.0 / n;
+      EXPECT_NEAR(measured(strprintf("%g %d q", shift, n), power[CONTACT] / area), 4.0 / 7.0, 1e-5);
+      EXPECT_NEAR(power[0] / power[CONTACT], 1.0, 1e-6);
+      EXPECT_NEAR(power[1] / power[CONTACT], -1.0, 1e-6);
+      EXPECT_NEAR(measured("face", face(run, "ma", 1.0, -1, 1.0 / n)), 3.0 / 7.0, 1e-5);
+      EXPECT_NEAR(measured("face", face(run, "mb", 1.0, 1, 1.0 / n)), 1.0 / 7.0, 1e-5);
+    }
+}
+
+// half-spaces of effusivity 1 and 2, at 1 and 0, conductance 2, at t = 0.1: 0.628014, 0.185993, flux 0.884043. Lengths
+// here are in a unit in which that is t = 0.01, and h_c = 2 sqrt(10)
+SERIAL_TEST(HalfSpaces, Faces)
+{
+  for (const double shift : {0.0, 0.25, 0.5})
+    for (const int n : {40, 80}) {
+      Bars bars;
+      bars.n = n;
+      bars.shift = shift;
+      bars.Ta = 1.0;
+      bars.heat = strprintf("%.17g", 2.0 * std::sqrt(10.0));
+      Scene run(bars.text());
+      const double before = total_heat(run);
+      run_to(run, 0.01, 0.02 / (n * n));
+      EXPECT_NEAR(measured(strprintf("%g %d face", shift, n), face(run, "ma", 1.0, -1, 1.0 / n)),
+                  0.628014, 0.00628);
+      EXPECT_NEAR(measured("face", face(run, "mb", 1.0, 1, 1.0 / n)), 0.185993, 0.00186);
+      const double *const power = run.fix_vector("heat", 10);
+      EXPECT_NEAR(measured("flux", power[CONTACT] * n / 4.0 / std::sqrt(10.0)), 0.884043, 0.00884);
+      EXPECT_NEAR(total_heat(run) / before, 1.0, 1e-13);
+    }
+}
+
+// perfect contact: 1/3 at once, and errors that go away with the spacing
+SERIAL_TEST(Perfect, IsTheLimit)
+{
+  for (const double shift : {0.0, 0.25, 0.5}) {
+    double error[2];
+    for (const int n : {20, 40}) {
+      Bars bars;
+      bars.n = n;
+      bars.shift = shift;
+      bars.Ta = 1.0;
+      bars.heat = "1e12";
+      Scene run(bars.text());
+      const double before = total_heat(run);
+      run_to(run, 0.02, 0.04 / (n * n));
+      const double A =
+          measured(strprintf("%g %d face", shift, n), face(run, "ma", 1.0, -1, 1.0 / n));
+      const double B = measured("face", face(run, "mb", 1.0, 1, 1.0 / n));
+      error[n == 40] = std::max(std::fabs(A - 1.0 / 3.0), std::fabs(B - 1.0 / 3.0));
+      EXPECT_NEAR(total_heat(run) / before, 1.0, 1e-13);
+    }
+    EXPECT_LT(error[1], 0.001);
+    EXPECT_GT(measured("order", std::log2(error[0] / error[1])), 0.9);
+  }
+}
+
+// two bodies of capacities 1 and 3, whose temperatures are even, h A = 0.5: the difference at t = 1 is 0.513417
+SERIAL_TEST(Lumped, Decays)
+{
+  // 4 cells wide, 1 and 3 long with capacity 1 per volume, conductivity 1e4; area 0.4
+  for (const double H : {0.5, 0.0}) {
+    Scene run(plane("lj", "f p", "0 4 0 1", 2, 0.01) +
+              "region a block 0 1 INF INF INF INF\nregion b block 1 4 INF INF INF INF\n"
+              "create_points 1 region a spacing 0.1\ncreate_points 2 region b spacing 0.1\n"
+              "group a type 1\ngroup b type 2\nfix ga a mpm 0.2\nfix gb b mpm 0.2\n"
+              "fix ma a mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 1.0 1e3\n"
+              "fix mb b mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 0.0 1e3\n"
+              "fix touch all mpm/contact ga gb\nvariable H equal " +
+              strprintf("%g", H) +
+              "\nfix heat all mpm/heat contact ga gb conductance v_H stages 201\n"
+              "timestep 0.005\nrun 200\n");
+    const double difference = Warm(run, "ma").heat() / 1.0 - Warm(run, "mb").heat() / 3.0;
+    EXPECT_NEAR(measured("difference", difference), H > 0.0 ? 0.513417 : 1.0, 0.00513);
+    EXPECT_NEAR(total_heat(run), 1.0, 1e-13);
+  }
+}
+
+// what one body loses, the other one gets, in each step, and it is the sum of the powers; a gap
+SERIAL_TEST(Gap, Insulates)
+{
+  for (const double gap : {0.0, 0.5, 1.5}) {
+    Bars bars;
+    bars.gap = gap;
+    bars.Ta = 1.0;
+    bars.heat = "5.0";
+    Scene run(bars.text() + "timestep 1e-4\n");
+    double A = Warm(run, "ma").heat(), B = Warm(run, "mb").heat();
+    const double all = A + B;
+    for (int k = 0; k < 5; k++) {
+      run.commands("run 1\n");
+      const double a = Warm(run, "ma").heat(), b = Warm(run, "mb").heat();
+      const double power = run.fix_vector("heat", 10)[CONTACT];
+      if (gap == 0.0)
+        EXPECT_GT(power, 0.1);
+      else
+        EXPECT_EQ(power, 0.0);
+      EXPECT_NEAR((A - a) / all, 1e-4 * power / all, 1e-13);
+      EXPECT_NEAR((b - B) / all, 1e-4 * power / all, 1e-13);
+      A = a;
+      B = b;
+    }
+    EXPECT_EQ(run.fix("heat")->compute_scalar(), 0.0);
+  }
+}
+
+// bodies that move together across the lattice exchange what they do at rest
+SERIAL_TEST(Moving, ExchangesTheSame)
+{
+  double T[2];
+  for (const bool moves : {false, true}) {
+    Bars bars;
+    bars.n = 40;
+    bars.Ta = 1.0;
+    bars.heat = "6.0";
+    bars.velocity = strprintf("velocity all set %g 0 0\n", moves ? 37.3 : 0.0);
+    Scene run(bars.text() + "timestep 2e-5\nrun 500\n");
+    T[moves] = measured("heat of the first bar", Warm(run, "ma").heat() / (4.0 / 40));
+  }
+  EXPECT_NEAR((1.0 - T[1]) / (1.0 - T[0]), 1.0, 0.01);
+}
+
+// two halves of a square that is turned, with any offset: each is a slab with Bi = 1 at t = 0.125
+SERIAL_TEST(Turned, SlabsCool)
+{
+  for (const int n : {20, 40}) {
+    const double h = 1.0 / n;
+    for (const double offset : {0.0, 0.3}) {
+      Scene run(plane("lj", "f f", "-1 1 -1 1", 2, 0.1 * h) +
+                "region a block -0.5 0 -0.5 0.5 INF INF\nregion b block 0 0.5 -0.5 0.5 INF INF\n" +
+                strprintf("create_points 1 region a spacing %.17g\n", 0.5 * h) +
+                strprintf("create_points 2 region b spacing %.17g\n", 0.5 * h) +
+                "group a type 1\ngroup b type 2\ndisplace_atoms all rotate 0 0 0 0 0 1 30\n" +
+                strprintf("fix ga a mpm %.17g origin %.17g 0\nfix gb b mpm %.17g origin %.17g 0\n",
+                          h, offset * h, h, offset * h) +
+                "fix ma a mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 1.0 1.0\n"
+                "fix mb b mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 0.0 1.0\n"
+                "fix touch all mpm/contact ga gb\n"
+                "fix heat all mpm/heat contact ga gb conductance 1.0\n");
+      run_to(run, 0.125, 0.2 * h * h);
+      EXPECT_NEAR(measured(strprintf("%d %g heat", n, offset), Warm(run, "ma").heat()),
+                  0.5 * (0.5 + 0.5 * slab_mean(1.0, 0.5)), 0.0035);
+      EXPECT_NEAR(total_heat(run), 0.5, 1e-13);
+    }
+  }
+}
+
+TEST(Ranks, Agree)
+{
+  Bars bars;
+  bars.n = 10;
+  bars.Ta = 1.0;
+  bars.heat = "50.0 xlo convection 3.0 2.0";
+  const std::string scene = replaced(bars.text(), "fix heat", "velocity a set 0.3 0.2 0\nfix heat");
+  OnRanks run(scene + "timestep 0.002\n", "run 60\n");
+  EXPECT_LT(run.difference(), 1e-12);
+  const double one = Warm(run.serial, "mb").heat(), all = Warm(run.parallel, "mb").heat();
+  EXPECT_GT(one, 0.05);
+  EXPECT_NEAR(nranks() * all / one, 1.0, 1e-12);    // one: of each rank
+}
+
+SERIAL_TEST(BadInput, IsRefused)
+{
+  Bars bars;
+  bars.n = 4;
+  bars.heat = "1.0";
+  const std::string scene = replaced(bars.text() + "timestep 0.001\n",
+                                     "fix heat all mpm/heat contact ga gb conductance 1.0 \n", "");
+  expect_refused(
+      scene,
+      {{"fix heat all mpm/heat contact ga", "contact"},
+       {"fix heat all mpm/heat contact ga gb resistance 1.0", "conductance"},
+       {"fix heat all mpm/heat contact ga gb conductance -1.0", "not negative"},
+       {"fix heat all mpm/heat contact ga ga conductance 1.0", "two different bodies"},
+       {"fix heat all mpm/heat contact ga gb conductance 1.0 contact gb ga conductance 1.0",
+        "given twice"},
+       {"fix heat all mpm/heat contact ga gx conductance 1.0", "define a fix mpm/contact ga gx"},
+       {"fix heat all mpm/heat contact ga gb conductance v_none", "does not exist"},
+       {"unfix touch\nfix heat all mpm/heat contact ga gb conductance 1.0",
+        "define a fix mpm/contact ga gb"},
+       {"unfix ma\nfix ma a mpm/material density 1.0 eos linear 1.0\n"
+        "fix heat all mpm/heat contact ga gb conductance 1.0",
+        "no material of fix mpm ga conducts heat"}},
+      "run 1\n");
+}

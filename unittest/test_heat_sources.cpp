@@ -1,0 +1,220 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: physics mpi restart
+// mpi: 1 4
+// timeout: 300
+
+// Heat that materials make of their own work, and solids that become liquids, in bodies of many points.
+
+#include "mpm_lammps.h"
+
+using namespace MPM_TEST;
+
+namespace {
+
+/** A history variable of the points of a material. */
+struct History {
+  Scene &run;
+  FixMPMMaterial *material;
+  int column;
+
+  History(Scene &run, const std::string &name) :
+      run(run), material(run.material()), column(material->find_history(name))
+  {
+  }
+  double &at(int i) { return material->history[i][column]; }
+  /** Mean over points with y in a range. */
+  double mean(double low, double high)
+  {
+    double sum = 0.0, n = 0.0;
+    for (int i = 0; i < run.n(); i++)
+      if (run.x()[i][1] > low && run.x()[i][1] < high) {
+        sum += at(i);
+        n++;
+      }
+    const auto all = over_ranks({sum, n});
+    return all[0] / all[1];
+  }
+};
+
+/** Couette flow of width 1 with n cells between walls with the velocities 0 and 1; what flows has a unit density,
+ *  specific heat, and conductivity. */
+std::string couette(int n, const std::string &material, const std::string &heat)
+{
+  const double h = 1.0 / n;
+  return plane("lj", "p f", strprintf("0 %.17g 0 1", 4 * h), 1, 0.2 * h) +
+      strprintf("fix grid all mpm %.17g\ncreate_points 1 box ppc 2\n", h) +
+      "fix m all mpm/material density 1.0 " + material + "\n" +
+      "fix low all mpm/boundary ylo stick\nfix high all mpm/boundary yhi stick velocity 1 0 0\n" +
+      "variable v atom y\nvelocity all set v_v 0 0\n" + "fix heat all mpm/heat " + heat +
+      "\nfix dt all mpm/dt 0.6\n";
+}
+const std::string FLUID = "eos linear 100.0 viscosity newtonian 1.0 thermal conducting 1.0 0.0 1.0";
+
+void run_to(Scene &run, double t)
+{
+  run.commands(strprintf("variable time equal time\nfix until all halt 1 v_time >= %.17g error "
+                         "continue message no\nrun 100000\nunfix until\n",
+                         t - 1e-9));
+}
+
+}    // namespace
+
+// Viscous heat between two cold walls: (T - T0) k/(mu U^2) in the middle from a uniform source, and in the end y (1 - y)/2
+TEST(Couette, IsWarmInTheMiddle)
+{
+  const int n = 20;
+  Scene run(couette(n, FLUID, "ylo temperature 0 yhi temperature 0") +
+            "compute e all mpm/energy\n");
+  History T(run, "temperature");
+  const double h = 1.0 / n;
+  // the mean of the two cells in the middle is less by h^2/6 * T''/2
+  const double bend = h * h / 6.0;
+  for (const auto &[t, exact] : {std::pair{0.05, 0.0462983}, std::pair{0.1, 0.0769191},
+                                 std::pair{0.2, 0.1070796}, std::pair{1.5, 0.125}}) {
+    run_to(run, t);
+    // to first order in what is left of the time
+    const double rate = t < 1.0 ? std::exp(-PI * PI * t) * 4.0 / PI : 0.0;
+    const double now = exact + rate * (run.time() - t);
+    EXPECT_NEAR(measured(strprintf("t %g, middle", t), T.mean(0.5 - h, 0.5 + h) + 0.5 * bend) / now,
+                1.0, 0.01);
+  }
+  // all viscous work has become heat: that of the points and what has gone through the walls
+  const double *const e = run.compute_vector();
+  double mine = 0.0;
+  for (int i = 0; i < run.n(); i++) mine += run.mass()[i] * T.at(i);
+  EXPECT_NEAR((over_ranks(mine) - run.fix("heat")->compute_scalar()) / e[3], 1.0, 1e-10);
+}
+
+TEST(Couette, IsWarmestAtAnInsulatedWall)
+{
+  const int n = 20;
+  const double h = 1.0 / n;
+  Scene run(couette(n, FLUID, "ylo temperature 0"));
+  History T(run, "temperature");
+  run_to(run, 4.0);
+  // T = y - y^2/2, mean of the last cell
+  EXPECT_NEAR(measured("at the wall", T.mean(1.0 - h, 1.0)) / (0.5 - h * h / 6.0), 1.0, 0.01);
+}
+
+// a solid that has molten flows as its melt does
+TEST(Couette, OfAMelt)
+{
+  const int n = 12;
+  const std::string heat = "ylo temperature 3 yhi temperature 3";
+  Scene fluid(couette(n, replaced(FLUID, "1.0 0.0 1.0", "1.0 3.0 1.0"), heat)),
+      melt(couette(n,
+                   "eos linear 100.0 strength j2 50.0 1.0 viscosity newtonian 1.0 liquid "
+                   "thermal conducting 1.0 0.0 1.0 0.9 melt 2.0 5.0",
+                   heat));
+  History T(melt, "temperature"), f(melt, "molten");
+  for (int i = 0; i < melt.n(); i++) {
+    T.at(i) = 3.0;
+    f.at(i) = 1.0;
+  }
+  for (Scene *run : {&fluid, &melt}) {
+    run->commands("unfix dt\ntimestep 2e-4\nrun 300\n");
+    run->commands("unfix high\nfix high all mpm/boundary yhi stick velocity 3 0 0\nrun 300\n");
+  }
+  EXPECT_LT(measured("difference", difference(fluid.gather(), melt.gather())), 1e-12);
+}
+
+// Metal that is sheared evenly softens by its own heat: 67.97364 K and 275.5936 MPa at a plastic strain of 1
+SERIAL_TEST(AdiabaticShear, OfABlock)
+{
+  const double h = 1e-4, rate = 2e5;
+  Scene run(
+      plane("si", "p f", strprintf("0 %g 0 %g", 4 * h, 8 * h), 1, 0.2 * h) +
+      strprintf("fix grid all mpm %g\ncreate_points 1 box ppc 2\n", h) +
+      "fix m all mpm/material density 7830 eos linear 162.7e9 strength j2 79.46e9 500e6 "
+      "thermal adiabatic 477 293 0.9 vary SIGMAY linear -0.000666666666666667 293 293 1792\n" +
+      strprintf("fix low all mpm/boundary ylo stick\n"
+                "fix high all mpm/boundary yhi stick velocity %g 0 0\n"
+                "variable v atom %g*y\nvelocity all set v_v 0 0\ncompute e all mpm/energy\n",
+                rate * 8 * h, rate) +
+      "fix dt all mpm/dt 0.3\n");
+  History T(run, "temperature"), e(run, "eplastic");
+  run_to(run, 1.0 / rate);
+  double worst = 0.0, strain = 0.0;
+  for (int i = 0; i < run.n(); i++) {
+    const double gamma = std::sqrt(3.0) * e.at(i), tau0 = 500e6 / std::sqrt(3.0);
+    const double dT = 1500.0 * (1.0 - std::exp(-0.9 * tau0 * gamma / (7830.0 * 477.0 * 1500.0)));
+    worst = std::max(worst, std::fabs((T.at(i) - 293.0) / dT - 1.0));
+    strain += gamma / run.n();
+  }
+  EXPECT_NEAR(measured("strain", strain), 1.0, 0.02);
+  EXPECT_LT(measured("temperature", worst), 0.01);
+  const double *const energy = run.compute_vector();
+  EXPECT_NEAR(energy[4] / energy[2], 0.9, 1e-10);
+}
+
+namespace {
+
+/** A bar that is heated at one end until that has molten, and pulled. */
+std::string bar(const std::string &more)
+{
+  return plane("lj", "f f", "0 6 0 2", 1, 0.1) + "fix grid all mpm 0.25\n" +
+      "region bar block 0 4 0.5 1.5 -0.5 0.5\ncreate_points 1 region bar ppc 2\n"
+      "fix m all mpm/material density 1.0 eos linear 100.0 strength j2 50.0 1.0 "
+      "viscosity newtonian 0.05 liquid thermal conducting 1.0 0.0 1.0 0.9 melt 1.0 0.5 " +
+      more +
+      "\nfix heat all mpm/heat xlo temperature 2.0\nfix b all mpm/boundary xlo slip\n"
+      "variable v atom 0.4*x\nvelocity all set v_v 0 0\ncompute e all mpm/energy\n";
+}
+
+}    // namespace
+
+// the molten end has no strength; no energy is lost on the way
+TEST(Bar, LosesItsStrengthWhereItMelts)
+{
+  Scene run(bar("") + "timestep 0.003\nrun 700\n");
+  History f(run, "molten"), e(run, "eplastic");
+  double liquid = 0.0, solid = 0.0, strongest = 0.0, hard = 0.0, strain = 0.0;
+  for (int i = 0; i < run.n(); i++) {
+    double s[6];
+    run.points().cauchy(i, s);
+    const double p = -(s[0] + s[1] + s[2]) / 3.0;
+    const double q = std::sqrt(1.5 *
+                               ((s[0] + p) * (s[0] + p) + (s[1] + p) * (s[1] + p) +
+                                (s[2] + p) * (s[2] + p) + 2 * s[3] * s[3]));
+    if (f.at(i) >= 1.0) {
+      liquid++;
+      strongest = std::max(strongest, q);
+      strain = std::max(strain, e.at(i));
+    } else if (f.at(i) <= 0.0) {
+      solid++;
+      hard = std::max(hard, e.at(i));
+    }
+  }
+  const auto n = over_ranks({liquid, solid});
+  EXPECT_GT(n[0], 20);
+  EXPECT_GT(n[1], 100);
+  EXPECT_LT(measured("strongest liquid", over_ranks(strongest, MPI_MAX)), 0.3);
+  EXPECT_EQ(over_ranks(strain, MPI_MAX), 0.0);
+  EXPECT_GT(measured("plastic strain of the solid", over_ranks(hard, MPI_MAX)), 0.05);
+  const double *const energy = run.compute_vector();
+  EXPECT_NEAR(energy[10], 0.0, 1e-12);
+  EXPECT_LT(std::fabs(measured("laws", energy[13])),
+            0.02 * measured("dissipated", energy[2] + energy[3]));
+}
+
+TEST(Bar, OnAnyNumberOfRanks)
+{
+  OnRanks run(bar("expansion 0.01"), "timestep 0.003\nrun 300\n");
+  EXPECT_LT(run.difference(), 1e-11);
+}
+
+TEST(Bar, Restart)
+{
+  const std::string scene = bar("expansion 0.01") + "timestep 0.003\n";
+  std::string fixes = "neighbor 0.1 bin\nfix grid all mpm 0.25\n";
+  const std::string tail = scene.substr(scene.find("fix m all"));
+  for (std::size_t at = 0, end; at < tail.size(); at = end + 1) {
+    end = tail.find('\n', at);
+    if (tail.compare(at, 4, "fix ") == 0 || tail.compare(at, 7, "compute") == 0)
+      fixes += tail.substr(at, end - at) + "\n";
+  }
+  Continued run(scene, 150, fixes + "timestep 0.003\n", 150);
+  EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
+}

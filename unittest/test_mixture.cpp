@@ -1,0 +1,653 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: physics mpi restart input
+// mpi: 1 4
+// timeout: 300
+
+// Fix mpm/mixture: soil and water as two fields.
+
+#include "mpm_lammps.h"
+
+#include <complex>
+
+using namespace MPM_TEST;
+
+namespace {
+
+constexpr double G = 9.81, POROSITY = 0.4;
+constexpr double GRAINS = 2650.0, WATER = 1000.0, DRY = (1.0 - POROSITY) * GRAINS;
+
+/** A column along y of the width of two cells, periodic along x. */
+struct Column {
+  double h, height;                                      ///< cells; of the box
+  double soil[2] = {0.0, 0.0}, water[2] = {0.0, 0.0};    ///< from, to
+  double E = 1.0e7, nu = 0.3, K = 2.2e8;
+  std::string drag = "darcy 1.0e-10", options = "transfer apic";
+  int dim = 2;
+
+  double modulus() const { return E * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)); }
+
+  /** Box, points, and materials; type 1: soil, type 2: water. */
+  std::string text() const
+  {
+    const std::string wide = strprintf("0 %.17g", 2.0 * h);
+    std::string s = dim == 2
+        ? plane("si", "p f", wide + strprintf(" 0 %.17g -0.5 0.5", height), 2, 0.3 * h)
+        : space("si", "p f p", wide + strprintf(" 0 %.17g ", height) + wide, 2, 0.3 * h);
+    s += "group soil type 1\ngroup water type 2\n";
+    s += strprintf("fix s soil mpm %.17g %s\nfix w water mpm %.17g %s\n", h, options.c_str(), h,
+                   options.c_str());
+    const auto part = [&](const char *name, double low, double high) {
+      return high > low
+          ? strprintf("region %s block INF INF %.17g %.17g INF INF\n", name, low, high)
+          : "";
+    };
+    s += part("ground", soil[0], soil[1]) +
+        (soil[1] > soil[0] ? "create_points 1 region ground ppc 2 fix s group soil\n" : "");
+    const auto fill = [&](const char *name, double low, double high, const char *share) {
+      if (high > low)
+        s += part(name, low, high) + "create_points 2 region " + name + " ppc 2 fix w group water" +
+            share + "\n";
+    };
+    fill("below", water[0], std::min(water[1], soil[0]), "");
+    fill("pores", std::max(water[0], soil[0]), std::min(water[1], soil[1]),
+         strprintf(" share %.17g", POROSITY).c_str());
+    fill("above", std::max(water[0], soil[1]), water[1], "");
+    s += strprintf("fix ms soil mpm/material density %.17g linear %.17g %.17g\n", DRY, E, nu);
+    s += strprintf("fix mw water mpm/material density %.17g eos linear %.17g\n", WATER, K);
+    s += strprintf("fix mix all mpm/mixture s w %.17g 1.0e-3 drag %s\n", GRAINS, drag.c_str());
+    return s;
+  }
+};
+
+/** Volume ratio of water with a pressure, by eos linear. */
+void set_pressure(Scene &run, int i, double p, double K)
+{
+  double *const F = run.points().F[i];
+  const double J = 1.0 / (1.0 + p / K);
+  for (int k = 0; k < 9; k++) F[k] = k % 4 == 0 ? 1.0 : 0.0;
+  F[4] = J;
+}
+
+/** Stress of soil under uniaxial strain, from the vertical one. */
+void set_stress(Scene &run, int i, double vertical, double nu)
+{
+  double *const tau = run.points().tau[i];
+  const double side = vertical * nu / (1.0 - nu);
+  tau[0] = side;
+  tau[1] = vertical;
+  tau[2] = side;
+}
+
+struct Fit {
+  double value = 0.0, slope = 0.0, rms = 0.0;    ///< at 0; rms of what is left
+};
+
+/** Of f(state) of the points of a type between two heights over the height. */
+template <class F> Fit fit(Scene &run, int type, double low, double high, const F &f)
+{
+  double n = 0.0, x = 0.0, xx = 0.0, y = 0.0, xy = 0.0, yy = 0.0;
+  for (const auto &s : run.gather()) {
+    if (s.type != type || s.x[1] < low || s.x[1] > high) continue;
+    const double v = f(s);
+    n++;
+    x += s.x[1];
+    xx += s.x[1] * s.x[1];
+    y += v;
+    xy += s.x[1] * v;
+    yy += v * v;
+  }
+  Fit fit;
+  fit.slope = (xy / n - x / n * y / n) / (xx / n - x / n * x / n);
+  fit.value = y / n - fit.slope * x / n;
+  const double left = yy / n - fit.value * y / n - fit.slope * xy / n;
+  fit.rms = std::sqrt(std::max(0.0, left));
+  return fit;
+}
+
+double pressure(const Scene::State &s)
+{
+  return s.pressure();
+}
+double vertical(const Scene::State &s)
+{
+  return s.stress[1];
+}
+
+}    // namespace
+
+// Velocities of soil and water that fill a periodic box fade towards each other with the rate of drag, exactly, and
+// their momentum stays.
+PARAMETER_TEST(Relaxation, IsExact, std::string,
+               Values("transfer apic", "transfer flip 1.0", "transfer flip 1.0 scheme musl",
+                      "transfer apic scheme musl", "transfer aflip 1.0", "shape cubic",
+                      "transfer pic"))
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  for (const int dim : {2, 3}) {
+    Column c;
+    c.h = 0.1;
+    c.height = 0.4;
+    c.soil[1] = c.water[1] = 0.4;
+    c.K = 1.0e3;
+    c.E = 1.0e3;
+    c.drag = "darcy 1.0e-9";
+    c.options = GetParam();
+    c.dim = dim;
+    Scene run(replaced(replaced(c.text(), "boundary p f", "boundary p p"), "0.2 -0.5", "0.4 -0.5") +
+              "timestep 1.0e-4\n");
+    for (int i = 0; i < run.n(); i++)
+      for (int d = 0; d < dim; d++)
+        run.v()[i][d] = run.lmp->atom->type[i] == 1 ? 0.3 * (d + 1) : -1.0 + d;
+    const auto before = run.sums();
+    run.commands("run 5\n");
+    const auto after = run.sums();
+    const double rate =
+        POROSITY * POROSITY * 1.0e-3 / 1.0e-9 * (1.0 / DRY + 1.0 / (POROSITY * WATER));
+    for (int d = 0; d < dim; d++) {
+      const double w0 = -1.0 + d - 0.3 * (d + 1);
+      double least = HUGE_VAL, most = -HUGE_VAL;
+      for (int i = 0; i < run.n(); i++)
+        if (run.lmp->atom->type[i] == 2) {
+          double soil = 0.0;
+          for (int j = 0; j < run.n(); j++)
+            if (run.lmp->atom->type[j] == 1) soil = run.v()[j][d];
+          least = std::min(least, (run.v()[i][d] - soil) / w0);
+          most = std::max(most, (run.v()[i][d] - soil) / w0);
+        }
+      EXPECT_NEAR(least, exp(-rate * 5.0e-4), 1e-12) << dim << d;
+      EXPECT_NEAR(most, exp(-rate * 5.0e-4), 1e-12) << dim << d;
+      EXPECT_NEAR(after.p[d], before.p[d], 1e-14 * after.mass);
+    }
+    const double lost = before.kinetic - after.kinetic;
+    EXPECT_NEAR(run.fix("mix")->compute_scalar(), lost, 1e-12 * lost);
+  }
+}
+
+// A bed of soil in a tank, with water above it, stays at rest: pressure of the water, weight of the soil less buoyancy.
+PARAMETER_TEST(Still, StaysAtRest, std::string,
+               Values("transfer apic", "transfer flip 1.0 scheme musl", "transfer aflip 1.0",
+                      "transfer apic smooth 0.5", "shape cubic"))
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  Column c;
+  c.h = 0.05;
+  c.height = 1.5;
+  c.soil[1] = 0.5;
+  c.water[1] = 1.0;
+  c.K = 2.0e6;
+  c.E = 1.0e6;
+  c.options = GetParam();
+  Scene run(c.text() +
+            "fix walls all mpm/boundary ylo slip\nfix g all gravity 9.81 vector 0 -1 0\n"
+            "compute e all mpm/energy\nfix step all mpm/dt 0.4\n");
+  const double buoyant = (1.0 - POROSITY) * (GRAINS - WATER) * G;
+  for (int i = 0; i < run.n(); i++) {
+    const double y = run.x()[i][1];
+    if (run.lmp->atom->type[i] == 1)
+      set_stress(run, i, -buoyant * (0.5 - y), c.nu);
+    else
+      set_pressure(run, i, WATER * G * (1.0 - y), c.K);
+  }
+  run.commands("run 2000\n");
+  const auto p = fit(run, 2, 0.02, 0.95, pressure);
+  const auto s = fit(run, 1, 0.02, 0.45, vertical);
+  double fastest = 0.0;
+  for (const auto &q : run.gather()) fastest = std::max(fastest, fabs(q.v[1]));
+  const double weight = 2.0 * c.h * G * (WATER * (0.5 + 0.5 * POROSITY) + DRY * 0.5),
+               displaced = 2.0 * c.h * G * WATER * (1.0 - POROSITY) * 0.5;
+  EXPECT_NEAR(measured("gradient of the pressure", p.slope / (-WATER * G)), 1.0, 0.01);
+  EXPECT_LT(measured("rms of what is left", p.rms / (WATER * G)), 0.005);
+  EXPECT_NEAR(measured("gradient of the effective stress", s.slope / buoyant), 1.0, 0.01);
+  EXPECT_LT(measured("rms of what is left", s.rms / (0.5 * buoyant)), 0.005);
+  EXPECT_NEAR(measured("force on the floor", run.fix_vector("walls", 6)[1] / weight), -1.0, 0.005);
+  // buoyancy, less what presses the soil on the floor, where there is no water below it
+  EXPECT_NEAR(measured("pressure on the soil",
+                       run.fix_vector("mix", 6)[4] / (displaced * (1.0 - 1.0 / 0.5))),
+              1.0, 0.01);
+  EXPECT_LT(measured("fastest", fastest), 1.0e-3 * sqrt(c.K / WATER));
+  EXPECT_LT(fabs(run.compute_vector()[10]), 1.0e-12);
+}
+
+// The standing wave of a sealed column: frequency and decay of equations for both velocities (u-v-p), whose roots are
+// those of data on saturated_modes: 4 ordinary differential equations, which are solved here.
+struct Mode {
+  double K, k;    ///< bulk modulus of water, hydraulic conductivity
+  std::string options;
+};
+
+/** Angular frequency and decay of a signal, from its first and last zeros and peaks. */
+static std::array<double, 2> frequency_and_decay(const std::vector<double> &t,
+                                                 const std::vector<double> &y)
+{
+  std::vector<double> zeros, when, peaks;
+  for (std::size_t k = 1; k + 1 < y.size(); k++) {
+    if (y[k] * y[k + 1] < 0.0) zeros.push_back(t[k] + (t[k + 1] - t[k]) * y[k] / (y[k] - y[k + 1]));
+    const double a = fabs(y[k - 1]), b = fabs(y[k]), c = fabs(y[k + 1]);
+    if (b > a && b >= c && k > 3) {
+      const double u = 0.5 * (a - c) / (a - 2.0 * b + c);
+      peaks.push_back(b - 0.25 * (a - c) * u);
+      when.push_back(t[k] + u * (t[k + 1] - t[k]));
+    }
+  }
+  return {PI * (zeros.size() - 1.0) / (zeros.back() - zeros.front()),
+          log(peaks.front() / peaks.back()) / (when.back() - when.front())};
+}
+
+PARAMETER_TEST(StandingWave, HasTheRootsOfBothVelocities, Mode,
+               Values(Mode{2.2e8, 1.0e-3, "transfer aflip 1.0"},
+                      Mode{2.2e8, 1.0e-3, "transfer flip 1.0 scheme musl"},
+                      Mode{2.2e9, 1.0e-3, "transfer aflip 1.0"},
+                      Mode{2.2e8, 1.0e-2, "transfer aflip 1.0"},
+                      Mode{2.2e8, 1.0e-5, "transfer aflip 1.0"},
+                      Mode{2.2e8, 1.0e-3, "transfer apic"}))
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  const auto &mode = GetParam();
+  Column c;
+  c.h = 1.0 / 40.0;
+  c.height = c.soil[1] = c.water[1] = 1.0;
+  c.K = mode.K;
+  c.options = mode.options;
+  c.drag = strprintf("darcy %.17g", mode.k * 1.0e-3 / (WATER * G));
+  Scene run(c.text() + "fix walls all mpm/boundary ylo yhi slip\nfix step all mpm/dt 0.1\n");
+  const double speed = 1.0e-3, wave = PI;
+  run.set_velocity([&](const double *x, double *v) {
+    v[1] = speed * sin(wave * x[1]);
+  });
+  std::vector<double> t, y;
+  run.each_step([&](double **) {
+    double sum = 0.0, weight = 0.0;
+    for (int i = 0; i < run.n(); i++) {
+      const double s = sin(wave * run.x()[i][1]);
+      sum += run.mass()[i] * s * run.v()[i][1];
+      weight += run.mass()[i] * s * s;
+    }
+    t.push_back(run.time());
+    y.push_back(sum / weight / speed);
+  });
+  const double omega = 1690.0 * sqrt(mode.K / 2.2e8), end = 3.2 * 2.0 * PI / omega;
+  run.commands(strprintf("variable t equal time\nfix end all halt 1 v_t > %.17g error continue\n"
+                         "run 100000\n",
+                         end));
+
+  // sigma', v, u, p of the mode
+  const double M = c.modulus(), n = POROSITY, d = n * WATER * G / mode.k;
+  const auto rate = [&](const std::array<double, 4> &s) {
+    const double drag = d * (s[2] - s[1]);
+    return std::array<double, 4>{
+        M * wave * s[1], (-wave * s[0] + (1.0 - n) * wave * s[3] + n * drag) / DRY,
+        (wave * s[3] - drag) / WATER, -c.K / n * wave * ((1.0 - n) * s[1] + n * s[2])};
+  };
+  std::vector<double> exact;
+  std::array<double, 4> state = {0.0, 1.0, 1.0, 0.0};
+  double now = 0.0;
+  for (const double at : t) {
+    const int steps = 20;
+    const double dt = (at - now) / steps;
+    for (int k = 0; k < steps && dt > 0.0; k++) {
+      const auto add = [&](const std::array<double, 4> &r, double by) {
+        auto sum = state;
+        for (int j = 0; j < 4; j++) sum[j] += by * r[j];
+        return sum;
+      };
+      const auto a = rate(state), b = rate(add(a, 0.5 * dt)), e = rate(add(b, 0.5 * dt)),
+                 f = rate(add(e, dt));
+      for (int j = 0; j < 4; j++) state[j] += dt / 6.0 * (a[j] + 2.0 * b[j] + 2.0 * e[j] + f[j]);
+    }
+    now = at;
+    exact.push_back((DRY * state[1] + n * WATER * state[2]) / (DRY + n * WATER));
+  }
+  const auto mine = frequency_and_decay(t, y), theory = frequency_and_decay(t, exact);
+  measured("frequency / theory", mine[0] / theory[0]);
+  measured("decay", mine[1]);
+  measured("theory", theory[1]);
+  EXPECT_NEAR(mine[0] / theory[0], 1.0, 0.005);
+  EXPECT_NEAR(mine[1] / theory[1], 1.0, 0.05);
+}
+
+// Consolidation of a layer under a load (K. Terzaghi), with the compressibility of the water.
+SERIAL_TEST(Consolidation, FollowsTerzaghi)
+{
+  double errors[2][2];
+  for (const int fine : {0, 1}) {
+    const double h = fine ? 0.05 : 0.1;
+    Column c;
+    c.h = h;
+    c.height = 1.2;
+    c.soil[1] = c.water[1] = 1.0;
+    c.drag = strprintf("darcy %.17g", 1.0e-3 * 1.0e-3 / (WATER * G));
+    Scene run(replaced(c.text(), "density 1590", strprintf("density %g", (1.0 - POROSITY) * 2670)) +
+              "fix walls all mpm/boundary ylo slip\nfix step all mpm/dt 0.4\n");
+    const double q = 1.0e4, M = c.modulus(), cv = 1.0e-3 / (WATER * G) / (1.0 / M + POROSITY / c.K);
+    const double top = 1.0 - 0.25 * h, p0 = q / (1.0 + POROSITY * M / c.K);
+    for (int i = 0; i < run.n(); i++)
+      if (run.lmp->atom->type[i] == 1)
+        set_stress(run, i, p0 - q, c.nu);
+      else
+        set_pressure(run, i, p0, c.K);
+    std::vector<int> loaded;
+    for (int i = 0; i < run.n(); i++)
+      if (run.lmp->atom->type[i] == 1 && run.x()[i][1] > top - 0.01 * h)
+        loaded.push_back(run.lmp->atom->tag[i]);
+    run.each_step([&](double **f) {
+      for (int i = 0; i < run.n(); i++)
+        if (std::count(loaded.begin(), loaded.end(), run.lmp->atom->tag[i]))
+          f[i][1] = -q * 2.0 * h / loaded.size();
+    });
+    run.commands(strprintf("variable t equal time\nfix end all halt 1 v_t > %.17g error continue\n"
+                           "run 100000\n",
+                           0.2 / cv));
+    // what is above the points in the top row does not count
+    double U = 1.0;
+    for (int m = 0; m < 400; m++) {
+      const double a = (m + 0.5) * PI;
+      U -= 2.0 / (a * a) * exp(-0.2 * a * a);
+    }
+    for (int j = 0; j < 50; j++) {
+      const double depth = 0.25 * h * (j + 0.5) / 50;
+      double p = 0.0;
+      for (int m = 0; m < 400; m++) {
+        const double a = (m + 0.5) * PI;
+        p += 2.0 / a * sin(a * depth) * exp(-0.2 * a * a);
+      }
+      U -= (1.0 - p) * 0.25 * h / 50;
+    }
+    double settled = 0.0, deep = 0.0, n = 0.0;
+    for (const auto &s : run.gather()) {
+      if (s.type == 1 && s.x[1] > top - 0.1 * h) settled += (top - s.x[1]) / loaded.size();
+      if (s.type == 2 && s.x[1] < 0.5 * h) {
+        deep += s.pressure();
+        n++;
+      }
+    }
+    errors[0][fine] = fabs(measured("settlement", settled / (p0 / M) / U) - 1.0);
+    errors[1][fine] = fabs(measured("pressure", deep / n / p0 / 0.772312) - 1.0);
+  }
+  for (const auto &e : errors) {
+    EXPECT_LT(e[1], 0.01);
+    EXPECT_GT(measured("order", log2(e[0] / e[1])), 0.9);
+  }
+}
+
+// Water flows up through a bed of soil that lies on a sieve, driven by a force in a loop (a periodic column): Darcy's
+// flow, gradient of the pressure, effective stress, and the gradient at which the bed is lifted. The force is uniform
+// in the water, and the soil weighs so much less that the difference is that of its weight under water.
+struct Flow {
+  double gradient;
+  std::string options;
+};
+
+PARAMETER_TEST(Seepage, LiftsTheBedAtTheCriticalGradient, Flow,
+               Values(Flow{0.5, "transfer apic smooth 0.9"}, Flow{0.9, "transfer apic smooth 0.9"},
+                      Flow{0.9, "transfer apic"}, Flow{0.9, "transfer aflip 1.0 smooth 0.9"},
+                      Flow{0.96, "transfer apic smooth 0.9"},
+                      Flow{1.02, "transfer apic smooth 0.9"}))
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  const double i = GetParam().gradient, L = 1.6, H = 0.5;
+  Column c;
+  c.h = 0.05;
+  c.height = L;
+  c.soil[0] = 0.3;
+  c.soil[1] = 0.3 + H;
+  c.water[1] = L;
+  c.K = 2.0e6;
+  c.E = 1.0e6;
+  c.options = GetParam().options;
+  const double k = 0.005, gravity = WATER * G;
+  c.drag = strprintf("darcy %.17g", k * 1.0e-3 / gravity);
+  Scene run(replaced(c.text(), "boundary p f", "boundary p p") +
+            "fix step all mpm/dt 0.4\nregion sieve block INF INF 0 0.3 INF INF\n"
+            "fix sieve all mpm/boundary region sieve separate field s\n");
+  const double buoyant = (1.0 - POROSITY) * (GRAINS - WATER) * G;
+  for (int j = 0; j < run.n(); j++)
+    if (run.lmp->atom->type[j] == 1) set_stress(run, j, -buoyant * (0.3 + H - run.x()[j][1]), c.nu);
+  const double drive = i * G * H / L;
+  run.each_step([&](double **f) {
+    const double t = run.time(), now = drive * (t < 0.5 ? 0.5 - 0.5 * cos(2.0 * PI * t) : 1.0);
+    for (int j = 0; j < run.n(); j++)
+      f[j][1] = run.lmp->atom->type[j] == 2
+          ? run.mass()[j] * now
+          : -run.mass()[j] / DRY * (buoyant - (1.0 - POROSITY) * WATER * now);
+  });
+  const auto bed = [&] {
+    double sum = 0.0, number = 0.0;
+    for (const auto &s : run.gather())
+      if (s.type == 1) {
+        sum += s.x[1];
+        number++;
+      }
+    return sum / number;
+  };
+  const double before = bed();
+  run.commands("variable t equal time\nfix end all halt 1 v_t > 1.0 error continue\nrun 100000\n"
+               "unfix end\n");
+
+  // means over time: of the flux in all of the column, as what flows through it is the same everywhere; of the gradient
+  // of the pressure and of the vertical stress of the soil inside of the bed
+
+  double flux = 0.0, slope = 0.0, stress = 0.0;
+  const int times = 25;
+  for (int step = 0; step < times; step++) {
+    run.commands("run 50\n");
+    double n = 0.0, x = 0.0, xx = 0.0, p = 0.0, xp = 0.0;
+    for (const auto &s : run.gather()) {
+      if (s.type != 2) continue;
+      flux += s.vol * s.v[1] / (2.0 * c.h * L) / times;
+      const double at = s.x[1] - L * floor(s.x[1] / L);
+      if (at < 0.4 || at > 0.7) continue;
+      n++;
+      x += at;
+      xx += at * at;
+      p += s.pressure();
+      xp += at * s.pressure();
+    }
+    slope += (xp / n - x / n * p / n) / (xx / n - x / n * x / n) / times;
+    stress += fit(run, 1, 0.4, 0.7, vertical).slope / times;
+  }
+  const double moved = measured("moved", bed() - before);
+  if (i > 0.99) {
+    EXPECT_GT(moved, 0.02);
+    return;
+  }
+  EXPECT_LT(moved, 1.0e-3);
+  EXPECT_NEAR(measured("flux / Darcy", flux / (i * k)), 1.0, 0.01);
+  EXPECT_NEAR(measured("gradient of the pressure", (drive * WATER - slope) / gravity / i), 1.0,
+              0.01);
+  EXPECT_NEAR(measured("effective stress, error", (stress - (buoyant - i * gravity)) / buoyant),
+              0.0, 0.02);
+}
+
+// Forces of drag by laws for spheres: what is left of a difference of velocities after a long time, in a periodic box
+// where a force drives the water through soil that is held, is what has just this drag.
+SERIAL_TEST(Drag, OfSpheresIsThatOfTheLaw)
+{
+  const double d = 0.01, mu = 1.0e-3, n = POROSITY;
+  for (const std::string law : {"ergun", "gidaspow", "difelice"})
+    for (const double q : {1.0e-4, 0.05}) {
+      // gradient of pressure of the superficial velocity q
+      const double Re = WATER * q * d / mu;
+      double needed = 150.0 * mu * (1.0 - n) * (1.0 - n) * q / (n * n * n * d * d) +
+          1.75 * WATER * (1.0 - n) * q * q / (n * n * n * d);
+      if (law == "difelice")
+        needed = 0.75 * (1.0 - n) * WATER * q * q / d * pow(0.63 + 4.8 / sqrt(Re), 2.0) *
+            pow(n, -(3.7 - 0.65 * exp(-0.5 * pow(1.5 - log10(Re), 2.0))) - 1.0);
+      Column c;
+      c.h = 0.1;
+      c.height = 0.4;
+      c.soil[1] = c.water[1] = 0.4;
+      c.K = 1.0e4;
+      c.E = 1.0e4;
+      c.drag = law + " 0.01";
+      Scene run(
+          replaced(replaced(c.text(), "boundary p f", "boundary p p"), "0.2 -0.5", "0.4 -0.5") +
+          "timestep 5.0e-3\n");
+      run.each_step([&](double **f) {
+        for (int i = 0; i < run.n(); i++)
+          f[i][0] = run.lmp->atom->type[i] == 2 ? needed / WATER * run.mass()[i]
+                                                : -needed * n / DRY * run.mass()[i];
+      });
+      run.commands("run 2500\n");
+      double u[2] = {0.0, 0.0};
+      for (int i = 0; i < run.n(); i++) u[run.lmp->atom->type[i] - 1] = run.v()[i][0];
+      EXPECT_NEAR(measured(law, n * (u[1] - u[0]) / q), 1.0, 1e-6);
+    }
+}
+
+// Soil with another porosity than that of the permeability; and the limit of the time step, by the formula of the page
+SERIAL_TEST(Drag, OfDarcyDependsOnPorosity)
+{
+  Column c;
+  c.h = 0.1;
+  c.height = 0.4;
+  c.soil[1] = c.water[1] = 0.4;
+  c.K = 1.0e6;
+  c.E = 1.0e5;
+  c.drag = "darcy 1.0e-9 0.5";
+  Scene run(replaced(replaced(c.text(), "boundary p f", "boundary p p"), "0.2 -0.5", "0.4 -0.5") +
+            "timestep 1.0e-4\nvelocity water set 1.0 0 0\nrun 5\n");
+  const auto kozeny = [](double n) {
+    return n * n * n / ((1.0 - n) * (1.0 - n));
+  };
+  const double kappa = 1.0e-9 * kozeny(POROSITY) / kozeny(0.5);
+  const double rate = POROSITY * POROSITY * 1.0e-3 / kappa * (1.0 / DRY + 1.0 / (POROSITY * WATER));
+  double v[2] = {0.0, 0.0};
+  for (int i = 0; i < run.n(); i++) v[run.lmp->atom->type[i] - 1] = run.v()[i][0];
+  EXPECT_NEAR((v[1] - v[0]) / exp(-rate * 5.0e-4), 1.0, 1e-10);
+
+  run.commands("fix step all mpm/dt 1.0\nvelocity all set 0 0 0\nrun 1\n");
+  const double c2 = c.K / WATER + c.K * (1.0 - POROSITY) / (POROSITY * GRAINS) + c.modulus() / DRY;
+  EXPECT_NEAR(run.lmp->update->dt * sqrt(c2) / c.h, 1.0, 1e-3);
+}
+
+/** Soil falls into a pool, some of which is in its pores; along y there is gravity. */
+static std::string slump(int dim, const std::string &options = "transfer apic")
+{
+  const std::string deep = dim == 3 ? "0 4" : "INF INF";
+  return box(dim, "lj", dim == 3 ? "p f p" : "p f p", dim == 3 ? "0 10 0 8 0 4" : "0 10 0 8", 2,
+             0.3) +
+      "group soil empty\ngroup water empty\nfix s soil mpm 1.0 " + options +
+      "\nfix w water mpm 1.0 " + options + "\nregion heap block 2 5 0 5 " + deep +
+      "\nregion wet block 2 5 0 2 " + deep + "\nregion left block 0 2 0 2 " + deep +
+      "\nregion right block 5 10 0 2 " + deep +
+      "\nregion pool union 2 left right\n"
+      "create_points 1 region heap ppc 2 fix s group soil jitter 0.2 4711\n"
+      "create_points 2 region wet ppc 2 fix w group water share 0.5 jitter 0.2 471\n"
+      "create_points 2 region pool ppc 2 fix w group water jitter 0.2 47\n";
+}
+static const std::string stuff =
+    "fix ms soil mpm/material density 1.25 drucker/prager 200.0 0.3 30\n"
+    "fix mw water mpm/material density 1.0 eos tait 200.0 7\n"
+    "fix mix all mpm/mixture s w 2.5 0.01 drag gidaspow 0.1\n"
+    "fix floor all mpm/boundary ylo slip\nfix g all gravity 0.2 vector 0 -1 0\n"
+    "compute e all mpm/energy\ntimestep 0.02\n";
+
+TEST(Slump, IsTheSameOnAnyNumberOfRanksAndAfterARestart)
+{
+  for (const int dim : {2, 3})
+    for (const std::string options :
+         {"transfer apic smooth 0.5", "transfer flip 0.99 scheme musl"}) {
+      const std::string fields =
+          "fix s soil mpm 1.0 " + options + "\nfix w water mpm 1.0 " + options + "\n";
+      Twins run(slump(dim, options) + stuff, 60, fields + stuff, 60, 1.0e-9);
+      for (int k = 0; k < 6; k++)
+        EXPECT_NEAR(run.serial.fix_vector("mix", 6)[k], run.whole.fix_vector("mix", 6)[k], 1.0e-8);
+      const double heat = run.serial.fix("mix")->compute_scalar();
+      EXPECT_GT(heat, 0.01);
+      EXPECT_NEAR(run.whole.fix("mix")->compute_scalar(), heat, 1.0e-9 * heat);
+      EXPECT_NEAR(run.again.fix("mix")->compute_scalar(), heat, 1.0e-9 * heat);
+      EXPECT_LT(fabs(measured("residual", run.serial.compute_vector()[10])), 1.0e-11);
+    }
+}
+
+TEST(Slump, IsTheSameWithBalance)
+{
+  OnRanks run(slump(2) + stuff, "run 80\n", "comm_style tiled\nfix lb all balance 20 1.0 rcb\n");
+  EXPECT_LT(measured("difference", run.difference()), 1.0e-9);
+}
+
+// By whole cells: soil and water are on both sides of the periodic faces then
+TEST(Slump, IsTheSameAcrossPeriodicFaces)
+{
+  Scene inside(slump(2) + stuff + "run 60\n"),
+      across(slump(2) + stuff + "displace_atoms all move 6 0 0\nrun 60\n");
+  for (int k = 0; k < 6; k++)
+    EXPECT_NEAR(inside.fix_vector("mix", 6)[k], across.fix_vector("mix", 6)[k], 1.0e-9);
+  EXPECT_NEAR(inside.fix("mix")->compute_scalar(), across.fix("mix")->compute_scalar(), 1.0e-9);
+}
+
+// Without a floor, momentum is that of gravity alone
+SERIAL_TEST(Slump, KeepsMomentum)
+{
+  for (const std::string options :
+       {"transfer apic", "transfer flip 1.0 scheme musl", "transfer aflip 1.0 shape cubic"}) {
+    const std::string free = replaced(replaced(stuff, "fix floor all mpm/boundary ylo slip\n", ""),
+                                      "fix g all gravity 0.2 vector 0 -1 0\n", "");
+    Scene run(slump(2, options) + free + "displace_atoms all move 0 1 0\n");
+    run.set_velocity([&](const double *x, double *v) {
+      v[0] = 0.2 * sin(x[1]);
+      v[1] = 0.1 * cos(x[0]);
+    });
+    for (int i = 0; i < run.n(); i++)
+      if (run.lmp->atom->type[i] == 1) run.v()[i][0] += 0.5;
+    const auto before = run.sums();
+    run.commands("run 50\n");
+    const auto after = run.sums();
+    EXPECT_GT(fabs(run.fix_vector("mix", 6)[0]), 1.0e-3);
+    for (int d = 0; d < 2; d++)
+      EXPECT_NEAR(after.p[d], before.p[d], 2e-14 * before.mass) << options;
+    EXPECT_LT(fabs(run.compute_vector()[10]), 1.0e-12 * before.kinetic) << options;
+  }
+}
+
+// Rate of the drag in units where that of pressure is not that of mass, length and time
+SERIAL_TEST(Units, OfTheViscosityAreThoseOfPressure)
+{
+  Scene run(plane("metal", "p p", "0 4 0 4", 2, 0.3) +
+            "group soil type 1\ngroup water type 2\nfix s soil mpm 1.0\nfix w water mpm 1.0\n"
+            "create_points 1 box ppc 2 fix s group soil\n"
+            "create_points 2 box ppc 2 fix w group water share 0.4\n"
+            "fix ms soil mpm/material density 1.2 linear 1.0e4 0.3\n"
+            "fix mw water mpm/material density 0.6 eos linear 1.0e4\n"
+            "fix mix all mpm/mixture s w 2.0 10.0 drag darcy 2.0\ntimestep 0.01\n"
+            "velocity water set 1.0 0 0\nrun 10\n");
+  // 1 bar is 1e5 Pa, and 1 g/mol/(A ps^2) is 1e-3/6.02214076e23 kg / (1e-10 m 1e-24 s^2)
+  const double bar = 1.0e5 / (1.0e-3 / 6.02214076e23 / 1.0e-34);
+  const double rate = 0.4 * 0.4 * 10.0 * bar / 2.0 * (1.0 / 1.2 + 1.0 / 0.24);
+  double v[2];
+  for (int i = 0; i < run.n(); i++) v[run.lmp->atom->type[i] - 1] = run.v()[i][0];
+  EXPECT_NEAR((v[1] - v[0]) / exp(-rate * 0.1), 1.0, 1e-6);
+}
+
+SERIAL_TEST(Mixture, RefusesBadInput)
+{
+  const std::string good =
+      slump(2) + replaced(replaced(stuff, "fix mix all", "#"), "compute e", "#");
+  const std::string fix = "fix mix all mpm/mixture ";
+  expect_refused(good,
+                 {{"fix mix soil mpm/mixture s w 2.5 0.01", "use group all"},
+                  {fix + "s s 2.5 0.01", "needs two fields"},
+                  {fix + "s x 2.5 0.01", "x is not the ID of a fix mpm"},
+                  {fix + "s w 0 0.01", "density of the grains must be positive"},
+                  {fix + "s w 2.5", "missing argument"},
+                  {fix + "s w 2.5 0 drag ergun 0.1", "positive viscosity"},
+                  {fix + "s w 2.5 0.01 drag darcy 1.0 1.0", "above 0 and below 1"},
+                  {fix + "s w 2.5 0.01 drag stokes 1.0", "drag"},
+                  {fix + "w s 2.5 0.01", "are no fluid"},
+                  {fix + "s w 2.5 0.01\nfix two all mpm/mixture s w 2.5 0.01", "in common"},
+                  {fix + "s w 2.5 0.01\nfix c all mpm/contact s w", "keeps the water out"},
+                  {fix + "s w 1.0 0.01", "that of dry soil"}},
+                 "run 1\n");
+  for (const Mistake &mistake : {Mistake{"shape linear", "shape quadratic or cubic"},
+                                 {"scheme usf", "usl or musl"},
+                                 {"transfer xpic 2", "apic, aflip, or flip"},
+                                 {"locking fbar", "use smooth"},
+                                 {"frame total", "frame updated"},
+                                 {"edges modified", "edges plain"}})
+    expect_error(slump(2, mistake.lines) + stuff + "run 1\n", mistake.message);
+  expect_error(replaced(slump(2), "fix w water mpm 1.0", "fix w water mpm 0.5") + stuff + "run 1\n",
+               "same lattice");
+  expect_error(replaced(slump(2), "share 0.5", "share 0") + stuff, "must be positive");
+}
