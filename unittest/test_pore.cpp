@@ -298,6 +298,17 @@ SERIAL_TEST(Flow, SeepageChangesTheEffectiveStress)
   }
 }
 
+// walls that let go make sums over points of their own between the stages of the flow
+SERIAL_TEST(Walls, ThatSeparate)
+{
+  Scene run(replaced(column(10, "2.2e8 1000 9810 soil m 0.4 constant 1e-3 free pressure 0", SOIL),
+                     "ylo slip", "ylo separate") +
+            "fix g all gravity 9.81 vector 0 -1 0\nfix dt all mpm/dt 0.5\nrun 400\n");
+  double fastest = 0.0;
+  for (int i = 0; i < run.n(); i++) fastest = std::max(fastest, std::fabs(run.v()[i][1]));
+  EXPECT_LT(measured("fastest", fastest), 0.02);
+}
+
 // flow by a difference of pressures, and water at rest under its weight
 SERIAL_TEST(Flow, Darcy)
 {
