@@ -266,6 +266,49 @@ SERIAL_TEST(Energy, Wave)
   EXPECT_NEAR(measured("residual", run.compute_vector()[10] / before), 0.0, 1e-12);
 }
 
+// flow through a column under its weight, up and down: flux, effective stress, and no gain of energy
+SERIAL_TEST(Flow, SeepageChangesTheEffectiveStress)
+{
+  for (const double i : {0.5, 0.9, -0.5}) {
+    const auto water = strprintf("2.2e8 1000 9810 soil m 0.4 constant 1e-3 ylo pressure v_bottom "
+                                 "free pressure 0 initial v_p");
+    Scene run(replaced(
+        replaced(
+            column(10, water, "density 1990 linear 1e7 0.3"), "fix water",
+            "fix g all gravity 9.81 vector 0 -1 0\nvariable p atom 9810*(1-y)\n" +
+                strprintf("variable bottom equal 9810*(1+%g*((time<0.1)*time/0.1+(time>=0.1)))\n",
+                          i) +
+                "fix water"),
+        "origin", "gain error 0.02 origin"));
+    run_to(run, 1.0);
+    const double *const flows = run.fix_vector("water", 7);
+    EXPECT_NEAR(measured(strprintf("gradient %g, flux", i), flows[2] / (0.4 * 1e-3 * i)), 1.0,
+                0.01);
+    EXPECT_NEAR(flows[6] / flows[2], -1.0, 1e-3);
+    double sum = 0.0, n = 0.0;
+    for (int k = 0; k < run.n(); k++) {
+      const double y = run.x()[k][1];
+      if (y < 0.2 || y > 0.8) continue;
+      double sigma[6];
+      run.points().cauchy(k, sigma);
+      sum -= sigma[1] / ((990.0 - 1000.0 * i) * 9.81 * (1.0 - y));
+      n++;
+    }
+    EXPECT_NEAR(measured("effective stress", sum / n), 1.0, 0.02);
+  }
+}
+
+// walls that let go make sums over points of their own between the stages of the flow
+SERIAL_TEST(Walls, ThatSeparate)
+{
+  Scene run(replaced(column(10, "2.2e8 1000 9810 soil m 0.4 constant 1e-3 free pressure 0", SOIL),
+                     "ylo slip", "ylo separate") +
+            "fix g all gravity 9.81 vector 0 -1 0\nfix dt all mpm/dt 0.5\nrun 400\n");
+  double fastest = 0.0;
+  for (int i = 0; i < run.n(); i++) fastest = std::max(fastest, std::fabs(run.v()[i][1]));
+  EXPECT_LT(measured("fastest", fastest), 0.02);
+}
+
 // flow by a difference of pressures, and water at rest under its weight
 SERIAL_TEST(Flow, Darcy)
 {
@@ -302,6 +345,66 @@ SERIAL_TEST(TimeStep, IsUndrained)
              "run 0\n");
   const double storage = 0.4 / 2.2e9 + 0.4 / 3e10;
   EXPECT_NEAR(biot.stable_dt() / (0.1 / std::sqrt((MODULUS + 0.64 / storage) / 2002.0)), 1.0, 1e-6);
+}
+
+// units in which mass, energy, and pressure do not fit together: the period of a wave, and water at rest
+SERIAL_TEST(Units, Metal)
+{
+  const double mvv2e = 1.0364269e-4, nktv2p = 1.6021765e6, h = 5.0;
+  const auto scene = [&](const std::string &more, const char *top) {
+    return plane("metal", "p f", "0 20 0 100 -2.5 2.5", 1, 1.5) +
+        "region soil block 0 20 0 100 INF INF\ncreate_points 1 region soil spacing 2.5\n"
+        "fix grid all mpm 5.0\nfix m all mpm/material density 1.0 linear 1e5 0.0\n"
+        "fix floor all mpm/boundary ylo yhi slip\n" +
+        more + "fix water all mpm/pore 2e5 0.5 1.0 soil m 0.4 constant 1e-9 " + top;
+  };
+  const double c = std::sqrt((1e5 + 5e5) / (mvv2e * nktv2p));
+  Scene run(scene("", "") + "\n");
+  run.set_velocity([](const double *x, double *v) {
+    v[1] = 1e-3 * std::sin(PI * x[1] / 100.0);
+  });
+  run.commands(strprintf("timestep %.17g\nrun 100\n", 100.0 / c / 100));
+  EXPECT_NEAR(run.stable_dt() / (h / c), 1.0, 1e-3);
+  double mine = 0.0, norm = 0.0;
+  for (int i = 0; i < run.n(); i++) {
+    const double w = std::sin(PI * run.x()[i][1] / 100.0);
+    mine += w * run.v()[i][1];
+    norm += w * w;
+  }
+  EXPECT_NEAR(measured("half a period later", 1e3 * mine / norm), -1.0, 0.03);
+  const double gradient = 0.5 * 2.0 * nktv2p;
+  Scene still(scene(
+      strprintf("fix g all gravity 2.0 vector 0 -1 0\nvariable p atom %.17g*(100-y)\n", gradient),
+      "initial v_p yhi pressure 0\ntimestep 1e-9\nrun 1\n"));
+  EXPECT_NEAR(measured("still", still.fix_vector("water", 7)[3] / (20.0 * 5.0 * 1e-9 * gradient)),
+              0.0, 1e-9);
+}
+
+// the same in three dimensions, where the surface is anywhere in a cell, with either shape
+SERIAL_TEST(Consolidation, InThreeDimensions)
+{
+  for (const char *shape : {"quadratic", "cubic"}) {
+    const double c = 1e-3 / 9810.0 / (1.0 / MODULUS + 0.4 / 2.2e8);
+    Scene run(space("si", "p p f", "0 0.4 0 0.4 0 1.25", 1, 0.03) +
+              "region soil block 0 0.4 0 0.4 0 1\ncreate_points 1 region soil spacing 0.05\n" +
+              strprintf("fix grid all mpm 0.1 shape %s origin 0 0 0.03\n", shape) +
+              "fix m all mpm/material density 2002 linear 1e7 0.3\n"
+              "fix floor all mpm/boundary zlo slip\n"
+              "fix water all mpm/pore 2.2e8 1000 9810 soil m 0.4 constant 1e-3 free pressure 0\n"
+              "region top block INF INF INF INF 0.95 INF\ngroup top region top\n"
+              "variable ramp equal (time<0.01)*time/0.01+(time>=0.01)\n"
+              "variable load equal -1e4*0.5*(1-cos(PI*v_ramp))*lx*ly/count(top)\n"
+              "fix load top addforce 0 0 v_load\n");
+    Water water(run);
+    run_to(run, 0.2 / c + 0.005);
+    const double p0 = LOAD / (1.0 + MODULUS * 0.4 / 2.2e8), *const p = water.pressures();
+    double sum = 0.0;
+    for (int i = 0; i < run.n(); i++) {
+      const double d = p[i] - p0 * terzaghi(1.0 - run.x()[i][2], 0.2);
+      sum += d * d / run.n();
+    }
+    EXPECT_LT(measured(strprintf("%s, rms", shape), std::sqrt(sum) / LOAD), 0.01);
+  }
 }
 
 namespace {

@@ -97,8 +97,8 @@ void ComputeMPMEnergy::begin()
 }
 
 /* ----------------------------------------------------------------------
-   other physics: a letter for each account tells stored energy from energy that came to the bodies, from stored
-   energy whose changes are in the entry of time integration, and from thermoelastic work, which is one of the sums
+   other physics: a letter for each account tells stored energy from energy that came to the bodies, both from those
+   that are in the entry of time integration, and from thermoelastic work, which is one of the sums
 ------------------------------------------------------------------------- */
 
 std::vector<std::string> ComputeMPMEnergy::find_accounts() const
@@ -106,10 +106,8 @@ std::vector<std::string> ComputeMPMEnergy::find_accounts() const
   std::vector<std::string> names;
   for (const auto *other : find_fixes<MPMPhysics>(lmp))
     for (const auto &account : other->accounts())
-      names.push_back((account.in_integration ? "I "
-                           : account.stored   ? "S "
-                                              : "C ") +
-                      account.name);
+      names.push_back((account.stored ? "S" : "C") +
+                      std::string(account.in_integration ? "I " : " ") + account.name);
   for (const auto *material : find_fixes<FixMPMMaterial>(lmp))
     if (material->material->is_thermoelastic()) {
       names.push_back("T thermoelastic");
@@ -198,9 +196,9 @@ void ComputeMPMEnergy::compute_vector()
       vector[NENTRY + k] = now.thermoelastic;
       continue;
     }
-    const bool stored = accounts[k][0] != 'C';
+    const bool stored = accounts[k][0] == 'S';
     const double value = present[NSUMS + k], change = value - start[NSUMS + k];
     vector[NENTRY + k] = stored ? value : change;
-    if (accounts[k][0] != 'I') vector[RESIDUAL] += stored ? change : -change;
+    if (accounts[k][1] != 'I') vector[RESIDUAL] += stored ? change : -change;
   }
 }

@@ -151,7 +151,8 @@ FixMPMPore::FixMPMPore(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, nar
   keep_arrays();
   scalar_flag = vector_flag = 1;
   size_vector = MPMPoreSurface::NPART;
-  for (auto *list : {&came, &in_step, &present, &flows}) list->assign(size_vector, 0.0);
+  for (auto *list : {&came, &in_step, &present, &flows})
+    list->assign(MPMPoreSurface::NPART + 1, 0.0);
   global_freq = 1;
   extscalar = extvector = 1;
   restart_global = 1;
@@ -358,7 +359,7 @@ double FixMPMPore::stable_dt(const MPMField &field, tagint &tag) const
 double FixMPMPore::compute_scalar()
 {
   double mine = 0.0, all;
-  for (const double volume : came) mine += volume;
+  for (int part = 0; part < size_vector; part++) mine += came[part];
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all;
 }
@@ -389,13 +390,14 @@ void FixMPMPore::account(double *values) const
     sum += 0.5 * J * atom->vfrac[i] * soil->storage_at(J, water) * p * p;
   }
   values[0] += sum / force->nktv2p;
+  values[1] += came[MPMPoreSurface::ENERGY] / force->nktv2p;
 }
 
 void FixMPMPore::write_restart(FILE *fp)
 {
-  keep_totals(world, came.data(), size_vector);
+  keep_totals(world, came.data(), (int) came.size());
   if (comm->me) return;
-  const int size = size_vector * (int) sizeof(double);
+  const int size = (int) (came.size() * sizeof(double));
   fwrite(&size, sizeof(int), 1, fp);
   fwrite(came.data(), sizeof(double), came.size(), fp);
 }

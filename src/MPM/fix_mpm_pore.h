@@ -70,7 +70,11 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   {
     return of(field).pressure_in_forces();
   }
-  std::vector<Account> accounts() const override { return {{"energy of pore water", true, true}}; }
+  std::vector<Account> accounts() const override
+  {
+    return {{"energy of pore water", true, true},
+            {"energy of water that came in and down", false, true}};
+  }
   void account(double *values) const override;
   std::vector<std::string> quantities() const override;
   double quantity(int k, int i) const override;
@@ -86,7 +90,7 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   std::vector<const class Fix *> weights;    // fixes gravity
   std::vector<double> formula_values;        // [n] permeability by variables
 
-  // volumes of water, this rank's share: that has come in so far; that came in the last step, and comes in a stage of
+  // of each part of the surface volumes of water, and behind these its energy (pressure times volume), this rank's share: that has come in so far; that came in the last step, and comes in a stage of
   // it for each time; the last step of all ranks for each time
   std::vector<double> came, in_step, present, flows;
   double dt_last = 0.0;

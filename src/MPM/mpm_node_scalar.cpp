@@ -52,6 +52,11 @@ void MPMNodeScalar::visit(const MPMPointMap::ActiveBlock &block, SlopeKind kind,
   }
 }
 
+int *MPMNodeScalar::box_of(const MPMPointMap::ActiveBlock &block)
+{
+  return boxes[&block - field.map->active.data()].data();
+}
+
 void MPMNodeScalar::sum(std::vector<double> &nodes) const
 {
   field.nodes.sum(nodes.data(), 1, 0, 1);
@@ -71,8 +76,9 @@ void MPMNodeScalar::points_to_nodes(const Fill &fill)
   double q[4 * BATCH];
   double *const of_value = tiles[0].data(), *const of_capacity = tiles[1].data(),
                 *const of_volume = tiles[2].data();
+  boxes.resize(field.map->active.size());
   for (auto &block : field.map->active) {
-    int *const box = block.other_box;
+    int *const box = box_of(block);
     reset_box(box);
     visit(block, DISTANCE_SLOPES, box, [&](const auto &run, int first, int n, const auto &prepare) {
       if (!fill(run, first, n, points)) return false;
@@ -115,9 +121,9 @@ void MPMNodeScalar::find_rates(const Conduct &conduct, const std::function<void(
   double q[BATCH][4];
   double *const tile = tiles[0].data(), *const from = tiles[1].data();
   for (const auto &block : field.map->active) {
-    if (block.other_box[0] > block.other_box[3]) continue;
+    if (box_of(block)[0] > box_of(block)[3]) continue;
     const int *const slot = field.grid.blocks[block.slot].slot;
-    kernels.load(from, value.data(), slot, block.other_box);
+    kernels.load(from, value.data(), slot, box_of(block));
     visit(block, GRADIENT_SLOPES, nullptr,
           [&](const auto &run, int first, int n, const auto &prepare) {
             prepare();
@@ -126,7 +132,7 @@ void MPMNodeScalar::find_rates(const Conduct &conduct, const std::function<void(
             kernels.add(stencil, q[0], tile);
             return true;
           });
-    kernels.flush(tile, rate.data(), slot, block.other_box);
+    kernels.flush(tile, rate.data(), slot, box_of(block));
   }
   std::fill(tiles[1].begin(), tiles[1].end(), 0.0);
   if (more) more();
@@ -143,7 +149,7 @@ double MPMNodeScalar::greatest_rate(const Conduct &bound)
   double q[BATCH][4];
   double *const tile = tiles[0].data();
   for (const auto &block : field.map->active) {
-    if (block.other_box[0] > block.other_box[3]) continue;
+    if (box_of(block)[0] > box_of(block)[3]) continue;
     visit(block, ABSOLUTE_SLOPES, nullptr,
           [&](const auto &run, int first, int n, const auto &prepare) {
             prepare();
@@ -155,7 +161,7 @@ double MPMNodeScalar::greatest_rate(const Conduct &bound)
             kernels.add(stencil, q[0], tile);
             return true;
           });
-    kernels.flush(tile, rate.data(), field.grid.blocks[block.slot].slot, block.other_box);
+    kernels.flush(tile, rate.data(), field.grid.blocks[block.slot].slot, box_of(block));
   }
   sum(rate);
   double most = 0.0;
@@ -177,10 +183,10 @@ void MPMNodeScalar::nodes_to_points(const Take &take, bool changes)
   double q[BATCH][4], old[BATCH];
   double *const now = tiles[1].data(), *const then = tiles[2].data();
   for (const auto &block : field.map->active) {
-    if (block.other_box[0] > block.other_box[3]) continue;
+    if (box_of(block)[0] > box_of(block)[3]) continue;
     const int *const slot = field.grid.blocks[block.slot].slot;
-    kernels.load(now, value.data(), slot, block.other_box);
-    if (changes) kernels.load(then, before.data(), slot, block.other_box);
+    kernels.load(now, value.data(), slot, box_of(block));
+    if (changes) kernels.load(then, before.data(), slot, box_of(block));
     visit(block, moments ? DISTANCE_SLOPES : GRADIENT_SLOPES, nullptr,
           [&](const auto &run, int first, int n, const auto &prepare) {
             prepare();

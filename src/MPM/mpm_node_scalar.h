@@ -13,6 +13,7 @@
 #include "mpm_point_map.h"
 #include "transfer/scalar.h"
 
+#include <array>
 #include <functional>
 #include <vector>
 
@@ -79,10 +80,14 @@ class MPMNodeScalar {
   std::vector<double> tiles[3];
   std::vector<char> has_part;    // [runs]
   MPM_NS::ScalarStencil stencil;
+  /** Of base nodes in the tile of each active block: other sums over points, of walls and contact, may come between the
+   *  calls of a step. */
+  std::vector<std::array<int, 6>> boxes;
 
   template <class F>
   void visit(const MPMPointMap::ActiveBlock &, MPM_NS::SlopeKind, int *box, const F &);
   void sum(std::vector<double> &nodes) const;
+  int *box_of(const MPMPointMap::ActiveBlock &);
 };
 
 }    // namespace LAMMPS_NS

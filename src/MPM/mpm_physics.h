@@ -60,7 +60,8 @@ class MPMPhysics {
   struct Account {
     std::string name;
     bool stored;    ///< energy that bodies have now; else energy that has come to them so far
-    /** What the motion gives to it and gets of it is in the entry of time integration: not in the residual. */
+    /** What the motion gives to and gets of this physics is in the entry of time integration: the residual closes without
+     *  this entry. */
     bool in_integration = false;
   };
   virtual std::vector<Account> accounts() const { return {}; }

@@ -218,7 +218,10 @@ void MPMPore::find_rates(std::vector<double> &inflow)
   for (int d = 0; d < 3; d++) weight[d] = water.density * gravity[d] * force->nktv2p;
   const auto flow = [&](const MPMPointMap::Run &, int first, int n, MPMNodeScalar::Rows q) {
     for (int p = 0; p < n; p++) {
-      for (int d = 0; d < 3; d++) q[p][d] = -conductance[first + p] * (q[p][d] - weight[d]);
+      for (int d = 0; d < 3; d++) {
+        q[p][d] = -conductance[first + p] * (q[p][d] - weight[d]);
+        inflow[MPMPoreSurface::ENERGY] += q[p][d] * weight[d];
+      }
       q[p][3] = squeezed[first + p];
     }
   };

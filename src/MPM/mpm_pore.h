@@ -47,7 +47,8 @@ class MPMPore : protected Pointers {
   const double *pressure_in_forces() const { return in_forces.data(); }
   /** The velocities of the step are known. */
   void take_motion();
-  /** Rates of the pressures of nodes; adds the volumes of water that come in for each time. */
+  /** Rates of the pressures of nodes; adds the volumes of water that come in for each time, and the power of what
+   *  comes in and of the weight of water that flows. */
   void find_rates(std::vector<double> &inflow);
   /** Pressures of points at the end of the step, and the mass of the water that they got. */
   void end_step(const MPMRows &state);

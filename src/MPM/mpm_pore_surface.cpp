@@ -307,14 +307,18 @@ void MPMPoreSurface::add_rates(MPMNodeScalar &scalar, std::vector<double> &inflo
     const auto &condition = conditions[place.part];
     double Q = place.area * condition.now;
     if (condition.kind != MPMPoreCondition::FLUX) {
-      double p = 0.0;
+      double inside = 0.0;
       for (int k = place.first; k < place.first + place.n; k++)
-        p += weight[k] * scalar.value[node[k]];
-      Q = place.conductance * (place.outside - p);
+        inside += weight[k] * scalar.value[node[k]];
+      Q = place.conductance * (place.outside - inside);
     }
-    for (int k = place.first_at; k < place.first_at + place.n_at; k++)
+    double p = 0.0;
+    for (int k = place.first_at; k < place.first_at + place.n_at; k++) {
       scalar.rate[node[k]] += weight[k] * Q;
+      p += weight[k] * scalar.value[node[k]];
+    }
     inflow[place.part] += Q;
+    inflow[ENERGY] += Q * p;
   }
 }
 

@@ -40,6 +40,7 @@ struct MPMPoreCondition {
 class MPMPoreSurface : protected Pointers {
  public:
   static constexpr int NFACE = 6, FREE = 6, NPART = 7;    ///< parts: xlo ... zhi, free surface
+  static constexpr int ENERGY = NPART;    ///< place of the energy of water behind them
   using Conditions = std::array<MPMPoreCondition, NPART>;
 
   MPMPoreSurface(class LAMMPS *, MPMField &, const Conditions &, const MPMPoreWater &,
@@ -56,7 +57,8 @@ class MPMPoreSurface : protected Pointers {
   /** What flows there, from the nodes' capacities and (as volume) conductances. least_storage: the smallest of a soil.
    *  Returns the greatest rate of exchange of this rank's places [1/time]. */
   double prepare(const MPMNodeScalar &, double least_storage);
-  /** Adds this rank's share to the rates times capacity of nodes, and of the volumes of water that come in for each time. */
+  /** Adds this rank's share to the rates times capacity of nodes, and of the volumes of water that come in for each
+   *  time, with the energy that this brings. */
   void add_rates(MPMNodeScalar &, std::vector<double> &inflow) const;
 
   double memory_usage() const;
