@@ -155,7 +155,8 @@ def scene_for(lines):
             if re.search(r"\bfix %s\b" % name, text):
                 grid = "fix %s %s\n" % (name, rest)
     pairs = "pair_style mpm/penalty" in text
-    if "mpm/contact" in text or pairs:
+    heat_contact = re.search(r"mpm/heat .*\bcontact ", text)
+    if "mpm/contact" in text or pairs or heat_contact:
         named = BODIES[:2] if pairs else [word for word in text.split() if word in BODIES]
         grid = "".join("group %s type %d\nfix %s %s mpm 0.01\n" % (name, k + 1, name, name)
                        for k, name in enumerate(named))
@@ -163,6 +164,8 @@ def scene_for(lines):
             before += ("region body%d block 0.06 0.08 %g %g 0.06 0.08\n"
                        "create_points %d region body%d ppc 2\ngroup %s type %d\n" %
                        (k, 0.03 * k + 0.01, 0.03 * k + 0.03, k + 1, k, named[k], k + 1))
+    if heat_contact:
+        before += "fix touch all mpm/contact %s\n" % " ".join(named)
     material = "" if "mpm/material" in text or own_field and grid == "" else MATERIAL
     if "mpm/heat" in text:
         material = material.replace("\n", " thermal conducting 460 293 52\n")

@@ -84,7 +84,7 @@ SERIAL_TEST(Steady, FluxAndFaces)
       bars.shift = shift;
       bars.heat = "2.0 xlo temperature 1.0 xhi temperature 0.0 stages 64";
       Scene run(bars.text());
-      run.commands("timestep 0.05\nrun 80\n");
+      run.commands("timestep 0.02\nrun 200\n");
       const double *const power = run.fix_vector("heat", 8);
       const double area = 4.0 / n;
       EXPECT_NEAR(measured(strprintf("%g %d q", shift, n), power[7] / area), 4.0 / 7.0, 1e-5);
