@@ -7,26 +7,12 @@
 
 // Fix mpm/heat: conduction of heat in points, and heat through faces of the box.
 
-#include "mpm_heat_test.h"
+#include "heat_testing.h"
 
 using namespace MPM_TEST;
 
 namespace {
 
-/** A bar of the length 1 along x with capacity and conductivity 1, whose ends are the faces of the box, with n
- *  cells; offset: of the faces from nodes, in cells. Four cells wide, periodic. */
-std::string bar(int n, const std::string &heat, double offset = 0.0, const std::string &grid = "",
-                double T0 = 0.0)
-{
-  const double h = 1.0 / n;
-  return plane("lj", "f p", strprintf("0 1 0 %.17g", 4 * h), 1, 0.1 * h) +
-      strprintf("create_points 1 box spacing %.17g\n", 0.5 * h) +
-      strprintf("fix grid all mpm %.17g origin %.17g 0 %s\n", h, -offset * h, grid.c_str()) +
-      strprintf(
-             "fix m all mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 %g 1.0\n",
-             T0) +
-      "fix heat all mpm/heat " + heat + "\n";
-}
 double wall_heats(double x, double t)
 {
   double T = 1.0 - x;
@@ -339,41 +325,6 @@ PARAMETER_TEST(Melting, FrontMoves, const char *, Values("scheme usl", "scheme u
   EXPECT_NEAR(all / run.fix("heat")->compute_scalar(), 1.0, 1e-11);
 }
 
-namespace {
-
-/** A disk of two materials with an uneven temperature, and a piece of one that does not conduct; it flies across the
- *  lattice, all ranks, and periodic faces, and deforms. */
-std::string disk(const std::string &heat, const std::string &velocity = "0.8 0.5 0")
-{
-  return plane("lj", "p p", "0 8 0 8", 3, 0.4) + "fix grid all mpm 0.5\n" +
-      bodies({{"one", "sphere 3 4 0 1.6 side in"},
-              {"two", "block 5 6.6 3 5 -0.5 0.5"},
-              {"cold", "block 3 5 0.8 2 -0.5 0.5"}}) +
-      "fix m one mpm/material density 1.0 eos linear 20.0 strength j2 8.0 0.4 thermal conducting "
-      "1.5 1.0 0.4\n"
-      "fix n two mpm/material density 2.0 eos linear 30.0 thermal conducting 0.7 2.0 0.1\n"
-      "fix o cold mpm/material density 1.0 neohookean 10.0 0.3\n"
-      "velocity all set " +
-      velocity + "\nvelocity two set -0.7 0.5 0\n" + "fix heat all mpm/heat " + heat +
-      "\ntimestep 0.02\n";
-}
-
-struct Named {
-  double tag, T;
-};
-std::vector<Named> temperatures(Scene &run)
-{
-  std::vector<Named> mine;
-  for (const char *id : {"m", "n"}) {
-    Warm warm(run, id);
-    for (int i = 0; i < run.n(); i++)
-      if (warm.has(i)) mine.push_back({(double) run.lmp->atom->tag[i], warm.T(i)});
-  }
-  return all_by_tag(mine, run.lmp->world);
-}
-
-}    // namespace
-
 // heat is kept to round-off while bodies collide, and the ledger closes
 TEST(Closed, KeepsHeat)
 {
@@ -501,11 +452,6 @@ SERIAL_TEST(BadInput, IsRefused)
                   {"group a type 1\nfix heat a mpm/heat", "use group all"},
                   {"fix heat all mpm/heat\nfix more all mpm/heat", "more than one"}},
                  "run 1\n");
-  for (const auto &[options, remedy] :
-       {std::pair{"shape linear", "use shape quadratic"}, std::pair{"frame total", "frame updated"},
-        std::pair{"shape cpdi", "use shape quadratic"}})
-    expect_error(replaced(scene, "MPM_OPTIONS", options) + "fix heat all mpm/heat\nrun 1\n",
-                 remedy);
   expect_error(replaced(plain, "conducting 1 0 1", "adiabatic 1 0") +
                    "fix heat all mpm/heat\nrun 1\n",
                "thermal conducting");

@@ -7,7 +7,7 @@
 
 // Fix mpm/heat contact: heat between bodies that touch.
 
-#include "mpm_heat_test.h"
+#include "heat_exact.h"
 
 using namespace MPM_TEST;
 

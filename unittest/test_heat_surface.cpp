@@ -7,15 +7,15 @@
 
 // Fix mpm/heat region and surface: heat through surfaces of regions, and free surfaces.
 
-#include "mpm_heat_test.h"
+#include "heat_exact.h"
 
 using namespace MPM_TEST;
 
 namespace {
 
 /** A bar of length 1 along x from 0 on, whose end at 1 is in the box, shift node spacings from a node. */
-std::string bar(int n, double shift, const std::string &heat, double T0,
-                const std::string &region = "")
+std::string bar_in_box(int n, double shift, const std::string &heat, double T0,
+                       const std::string &region = "")
 {
   const double h = 1.0 / n;
   return plane("lj", "f p", strprintf("0 1.5 0 %.17g", 4 * h), 1, 0.1 * h) +
@@ -59,9 +59,9 @@ PARAMETER_TEST(Convection, CoolsASlab, Slab,
     for (const double shift : {0.0, 0.25, 0.5}) {
       double error[2];
       for (const int n : {20, 40}) {
-        Scene run(bar(n, shift,
-                      strprintf("%s convection %g 0.0", free ? "surface" : "region wall", slab.Bi),
-                      1.0, WALL));
+        Scene run(bar_in_box(
+            n, shift, strprintf("%s convection %g 0.0", free ? "surface" : "region wall", slab.Bi),
+            1.0, WALL));
         const double before = Warm(run).heat();
         run_to(run, slab.t, 0.3 / (n * n));
         const double face = measured(strprintf("%s, %g, %d", free ? "free" : "region", shift, n),
@@ -80,7 +80,7 @@ SERIAL_TEST(Temperature, OfARegion)
   for (const double shift : {0.0, 0.25, 0.5}) {
     double rms[2];
     for (const int n : {20, 40}) {
-      Scene run(bar(n, shift, "region wall temperature 1.0 xlo temperature 0.0", 0.0, WALL));
+      Scene run(bar_in_box(n, shift, "region wall temperature 1.0 xlo temperature 0.0", 0.0, WALL));
       run_to(run, 0.1, 0.1 / (n * n));
       rms[n == 40] = measured(strprintf("%g, %d", shift, n),
                               Warm(run)
@@ -184,7 +184,7 @@ SERIAL_TEST(Plate, Radiates)
 SERIAL_TEST(Surface, IsNotWhereARegionTouches)
 {
   for (const char *heat : {"surface flux 1.0", "surface flux 1.0 region wall insulated"}) {
-    Scene run(bar(10, 0.2, heat, 0.0, WALL) + "timestep 1e-3\nrun 1\n");
+    Scene run(bar_in_box(10, 0.2, heat, 0.0, WALL) + "timestep 1e-3\nrun 1\n");
     const bool covered = std::strstr(heat, "insulated") != nullptr;
     EXPECT_NEAR(run.fix_vector("heat", 8)[7], covered ? 0.0 : 0.4, 1e-9);
     if (covered) EXPECT_EQ(run.fix_vector("heat", 9)[8], 0.0);
@@ -207,7 +207,8 @@ TEST(Ranks, Agree)
 SERIAL_TEST(BadInput, IsRefused)
 {
   const std::string scene =
-      replaced(bar(4, 0.0, "", 0.0, WALL), "fix heat all mpm/heat \n", "") + "timestep 0.001\n";
+      replaced(bar_in_box(4, 0.0, "", 0.0, WALL), "fix heat all mpm/heat \n", "") +
+      "timestep 0.001\n";
   expect_refused(scene,
                  {{"fix heat all mpm/heat region none flux 1.0", "region none does not exist"},
                   {"fix heat all mpm/heat region wall", "region"},

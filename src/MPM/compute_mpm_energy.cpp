@@ -12,6 +12,7 @@
 #include "error.h"
 #include "fix_mpm_material.h"
 #include "force.h"
+#include "material/material.h"
 #include "modify.h"
 #include "mpm_field.h"
 #include "mpm_physics.h"
@@ -96,7 +97,8 @@ void ComputeMPMEnergy::begin()
 }
 
 /* ----------------------------------------------------------------------
-   other physics: a letter for each account tells stored energy from energy that came to the bodies
+   other physics: a letter for each account tells stored energy from energy that came to the bodies, and from
+   thermoelastic work, which is one of the sums
 ------------------------------------------------------------------------- */
 
 std::vector<std::string> ComputeMPMEnergy::find_accounts() const
@@ -105,6 +107,11 @@ std::vector<std::string> ComputeMPMEnergy::find_accounts() const
   for (const auto *other : find_fixes<MPMPhysics>(lmp))
     for (const auto &account : other->accounts())
       names.push_back((account.stored ? "S " : "C ") + account.name);
+  for (const auto *material : find_fixes<FixMPMMaterial>(lmp))
+    if (material->material->is_thermoelastic()) {
+      names.push_back("T thermoelastic");
+      break;
+    }
   return names;
 }
 
@@ -148,7 +155,7 @@ double ComputeMPMEnergy::compute_scalar()
   invoked_scalar = update->ntimestep;
   scalar = vector[KINETIC] + vector[STORED] + vector[PLASTIC] + vector[VISCOUS] + vector[FRACTURE];
   for (std::size_t k = 0; k < accounts.size(); k++)
-    if (accounts[k][0] == 'S') scalar += vector[NENTRY + k];
+    if (accounts[k][0] != 'C') scalar += vector[NENTRY + k];
   return scalar;
 }
 
@@ -184,6 +191,10 @@ void ComputeMPMEnergy::compute_vector()
   for (int k = EXTERNAL; k < RESIDUAL; k++) vector[RESIDUAL] -= vector[k];
 
   for (std::size_t k = 0; k < accounts.size(); k++) {
+    if (accounts[k][0] == 'T') {
+      vector[NENTRY + k] = now.thermoelastic;
+      continue;
+    }
     const bool stored = accounts[k][0] == 'S';
     const double value = present[NSUMS + k], change = value - start[NSUMS + k];
     vector[NENTRY + k] = stored ? value : change;

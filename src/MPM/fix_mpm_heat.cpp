@@ -233,6 +233,13 @@ void FixMPMHeat::init()
   }
 }
 
+/** Is the surface of a field known by what nodes have (MPMHeatBody)? */
+static bool finds_surfaces(const MPMField &field)
+{
+  const auto &o = field.options;
+  return (o.shape == QUADRATIC || o.shape == CUBIC) && !o.total && !o.axisymmetric;
+}
+
 /** Temperatures in kelvins for radiation, and variables. */
 void FixMPMHeat::check(MPMHeatCondition &c, const std::string &name)
 {
@@ -251,12 +258,22 @@ void FixMPMHeat::init_physics(MPMPlan &plan)
   steps.add(in_step, present);
   for (auto *field : plan.fields) {
     const auto &o = field->options;
-    refuse_field(
-        lmp, *this, *field,
-        {{o.shape != QUADRATIC && o.shape != CUBIC, "this shape", "use shape quadratic or cubic"},
-         {o.total, "frame total", "use frame updated"},
-         {o.axisymmetric, "axisymmetric", "use a plane or 3d"},
-         {o.modified_edges, "edges modified", "use edges plain"}});
+    refuse_field(lmp, *this, *field,
+                 {{o.modified_edges, "edges modified", "use edges plain"},
+                  {o.axisymmetric && domain->boxlo[0] <= 1.0e-6 * field->lattice.h &&
+                       conditions[0].kind != MPMHeatCondition::INSULATED,
+                   "a condition at xlo, which is the axis of symmetry", "leave xlo insulated"}});
+    if (!surfaces.empty() || std::any_of(pairs.begin(), pairs.end(), [&](const auto &p) {
+          return p.field[0] == field->id() || p.field[1] == field->id();
+        })) {
+      const std::string what = "with regions, free surfaces, or contact";
+      refuse_field(lmp, *this, *field,
+                   {{o.shape != QUADRATIC && o.shape != CUBIC, "this shape " + what,
+                     "use shape quadratic or cubic"},
+                    {o.total, "frame total " + what, "use frame updated"},
+                    {o.axisymmetric, "axisymmetric " + what, "use a plane or 3d"}});
+    }
+    if (gradients) field->slopes.push_back(&gradients);
     fields.push_back(std::make_unique<MPMConduction>(lmp, *field, transfer, conditions));
     fields.back()->init(sigma());
     if (fields.back()->conducts()) steps.add(fields.back()->temperature, fields.back()->rate);
@@ -325,7 +342,8 @@ void FixMPMHeat::init_contacts()
       skins.push_back(std::make_unique<MPMHeatSurfaces>(lmp, body, surfaces, sigma()));
   }
   for (auto &field : fields)
-    if (field->conducts() && field->faces.any()) body_of(field->field);
+    if (field->conducts() && field->faces.any() && finds_surfaces(field->field))
+      body_of(field->field);
   for (const auto &p : pairs) {
     MPMHeatBody *body[2];
     for (int k = 0; k < 2; k++) {
@@ -429,10 +447,14 @@ int FixMPMHeat::count_stages()
   find_surfaces();
   for (auto &field : fields) {
     const bool conducts = field->conducts();
+    static const std::vector<double> unknown;
     mine.push_back(conducts ? field->points_to_nodes(gradients) : 0.0);
     mine.push_back(conducts && field->faces.any()
                        ? field->faces.begin_step(field->node_capacity(), field->node_volume(),
-                                                 body_of(field->field).gradient, field->temperature)
+                                                 finds_surfaces(field->field)
+                                                     ? body_of(field->field).gradient
+                                                     : unknown,
+                                                 field->temperature)
                        : 0.0);
   }
   for (auto &contact : contacts) mine.push_back(contact->begin_step());

@@ -36,7 +36,24 @@
 
    as functions are products along the axes, for which the matrix sum_i grad N grad N^T/N is diagonal. The
    sum is at most 6/h^2 for quadratic B-splines and 3.2/h^2 for cubic ones, in any dimension and wherever
-   points are; the explicit limit 2 over this is about 0.33 h^2 density c/k for the former. Linear functions have no such bound.
+   points are; the explicit limit 2 over this is about 0.33 h^2 density c/k for the former. With a tensor k it is the greatest
+   eigenvalue that counts. A function of GIMP of a point with the half size s (in cells, at most 1/2) has at most 2/s + 1/(1 - s), and with
+   domains, N_ip = sum_c w_c N_i(x_c) over corners c, grad N_ip = sum_c g_c N_i(x_c), and by Cauchy and Schwarz sum_i grad N
+   grad N^T/N <= sum_c g_c g_c^T/w_c.
+
+   Linear functions and Bernstein polynomials have no such bound: a node that a point hardly reaches has next to no capacity, while the
+   gradient there is not small. For them the greatest rate is at most the greatest sum of absolute values of a row of C^-1 K, which is not
+   above
+
+     sum_p V_p sum_d |dN_ip/dx_d| sum_e |k_de| (2/h)/C_i,
+
+   as sum_j |dN_jp/dx_d| is at most 2/h. Inside of a body this is 4 d k/(rho c h^2) in d dimensions. At its surface nodes with next to no
+   capacity have any rate, up to 1e16 times that. So that there is a limit, points that reach such a node conduct less, by the
+   factor that makes its sum four times the usual one: the matrix stays symmetric, and heat is kept.
+
+   Total frame. Nodes are places X of the reference configuration, where the conductivity is J F^-1 k F^-T and the volume
+   V_p/J: the same sums with V_p F^-1 k F^-T. Around an axis of symmetry points are rings with their whole volume and capacity; nothing flows
+   around the axis, so that there is no other term.
 
    Longer steps are made of stages (MPMSuperStep). The heat through each face goes through the same stages, so that
    it is that of the points to round-off.
@@ -45,34 +62,29 @@
 #include "mpm_conduction.h"
 
 #include "atom.h"
+#include "math_extra.h"
+#include "mpm_cpdi.h"
 #include "mpm_field.h"
-#include "mpm_passes.h"
+#include "mpm_frame.h"
 #include "mpm_points.h"
 #include "mpm_stencil.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-enum { VALUE = 0, VOLUME = 1, CAPACITY = 3, OLD = 4, RATE = 4, NREAL = 8 };    // reals of a record
-
-/** Rows of a batch of points that transfers take; kernels may read a little more. */
-struct MPMConduction::Room {
-  static constexpr int more = 8;
-  double value[3 * BATCH + more] = {}, mass[BATCH + more] = {}, C[9 * BATCH + more] = {};
-  double place[3 * BATCH + more], flux[6 * BATCH + more] = {}, force[3 * BATCH + more] = {};
-  double volume[BATCH + more] = {};
-};
+static constexpr int AHEAD = 16;    // distance of prefetches, in points
 
 /* ---------------------------------------------------------------------- */
 
 MPMConduction::MPMConduction(LAMMPS *lmp, MPMField &field, const MPMHeatTransfer &transfer,
                              const MPMHeatCondition *conditions) :
     Pointers(lmp),
-    field(field), faces(lmp, field, conditions), transfer(transfer)
+    field(field), faces(lmp, field, conditions), scalar(field), transfer(transfer)
 {
 }
 
@@ -89,27 +101,28 @@ void MPMConduction::init(double sigma)
     const bool varies = material.conduction_varies();
     const Conduction all = material.conduction(nullptr);
     thermals.push_back({fix, T, molten, varies, all});
-    slowest = std::min(slowest, all.conductivity / (material.density() * all.capacity));
+    const double least = all.orthotropic
+        ? std::min(all.conductivity, std::min(all.across[0], all.across[1]))
+        : all.conductivity;
+    slowest = std::min(slowest, least / (material.density() * all.capacity));
   }
-  const int dim = field.lattice.dim;
-  const Shape shape = field.options.shape;
-  static constexpr Transfer kinds[] = {Transfer::AFLIP, Transfer::PIC, Transfer::APIC};
-  pic = field.kernels->transfer(dim, shape, Transfer::PIC, true);
-  with = field.kernels->transfer(dim, shape, kinds[transfer.kind], true);
-
-  const MPMStencil stencil(field);
-  constexpr int SAMPLES = 4096;
+  total = field.frame->is_total();
   steepest = 0.0;
-  for (int k = 0; k < SAMPLES; k++) {
-    int node;
-    double w[4], slope[4], sum = 0.0;
-    const int n = stencil.weights((k + 1.0e-3) / SAMPLES, node, w, slope);
-    for (int j = 0; j < n; j++)
-      if (w[j] > 0.0) sum += slope[j] * slope[j] / w[j];
-    steepest = std::max(steepest, sum);
+  if (field.options.shape == QUADRATIC || field.options.shape == CUBIC) {
+    const MPMStencil stencil(field);
+    constexpr int SAMPLES = 4096;
+    for (int k = 0; k < SAMPLES; k++) {
+      int node;
+      double w[4], slope[4], sum = 0.0;
+      const int n = stencil.weights((k + 1.0e-3) / SAMPLES, node, w, slope);
+      for (int j = 0; j < n; j++)
+        if (w[j] > 0.0) sum += slope[j] * slope[j] / w[j];
+      steepest = std::max(steepest, sum / (field.lattice.h * field.lattice.h));
+    }
   }
-  fastest = 0.0;
+  conducted = exchanged = 0.0;
   faces.init(sigma);
+  scalar.init(transfer.kind != MPMHeatTransfer::PIC, faces.any());
 }
 
 /* ---------------------------------------------------------------------- */
@@ -126,121 +139,191 @@ double MPMConduction::volume_of(int i) const
   return atom->vfrac[i] * field.points->jacobian(i);
 }
 
-/** Rows of points from the first on, with their values in the room. */
-PointRows MPMConduction::rows(int first, Room &room) const
+/** The rotation R of F = R U, by R <- (R + R^-T)/2 (N.J. Higham, SIAM J. Sci. Stat. Comput. 7 (1986) 1160). */
+static void rotation(const double *F, double R[3][3])
 {
-  PointRows b = rows_from(field, field.rows(), first);
-  b.v = room.value;
-  b.mass = room.mass;
-  b.C = room.C;
-  b.tau = room.flux;
-  b.f = room.force;
-  b.vol0 = room.volume;
-  b.xnew = room.place;    // a value that is not finite moves points even in no time
-  b.from = b.x;
-  b.F = nullptr;
-  return b;
-}
-
-/** Calls f(thermal, first, n) for batches of the points of a run, if they conduct. */
-template <class F> void MPMConduction::visit(const MPMPointMap::Run &run, const F &f) const
-{
-  const Thermal *const t = thermal(run.material);
-  for (int i = run.first; t && i < run.last; i += BATCH) f(*t, i, std::min(BATCH, run.last - i));
+  static constexpr int MOST = 30;
+  memcpy(R, F, 9 * sizeof(double));
+  for (int k = 0; k < MOST; k++) {
+    double inverse[3][3], change = 0.0;
+    MathExtra::invert3(R, inverse);
+    for (int a = 0; a < 3; a++)
+      for (int b = 0; b < 3; b++) {
+        const double next = 0.5 * (R[a][b] + inverse[b][a]);
+        change = std::max(change, fabs(next - R[a][b]));
+        inverse[b][a] = next;
+      }
+    MathExtra::transpose3(inverse, R);
+    if (change < 1.0e-14) return;
+  }
 }
 
 /* ----------------------------------------------------------------------
-   temperatures of the nodes; the limit is the largest V k/C of this rank's points
+   conductivity of a point for gradients on the lattice. Total frame: V k becomes V F^-1 k F^-T
+------------------------------------------------------------------------- */
+
+void MPMConduction::tensor(const Thermal &t, int i, double k[3][3]) const
+{
+  Conduction room;
+  const Conduction &c = t.at(i, room);
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++) k[a][b] = a == b ? c.conductivity : 0.0;
+  if (c.orthotropic) {
+    double R[3][3], n[3][3];
+    rotation(field.points->F[i], R);
+    MathExtra::times3_transpose(c.axis, R, n);    // axes in rows
+    for (int a = 0; a < 3; a++)
+      for (int b = 0; b < 3; b++)
+        k[a][b] = c.conductivity * n[0][a] * n[0][b] + c.across[0] * n[1][a] * n[1][b] +
+            c.across[1] * n[2][a] * n[2][b];
+  }
+  if (!total) return;
+  double F[3][3], inverse[3][3], half[3][3];
+  field.frame->lattice_F(i, F);
+  MathExtra::invert3(F, inverse);
+  MathExtra::times3(inverse, k, half);
+  MathExtra::times3_transpose(half, inverse, k);
+}
+
+/** Not below the greatest eigenvalue of a symmetric matrix whose rows have these sums of absolute values. */
+static double greatest_row(int dim, const double k[3][3])
+{
+  double most = 0.0;
+  for (int a = 0; a < dim; a++) {
+    double row = 0.0;
+    for (int b = 0; b < dim; b++) row += fabs(k[a][b]);
+    most = std::max(most, row);
+  }
+  return most;
+}
+
+/** Bound of sum_i grad N grad N^T/N of a point [1/area]; 0: there is none. */
+double MPMConduction::steepness(int i) const
+{
+  const double h = field.lattice.h;
+  const int dim = field.lattice.dim;
+  if (field.boxes) {
+    double size[3], least = 0.5;
+    field.boxes->size_of(i, size);
+    for (int d = 0; d < dim; d++) least = std::min(least, size[d]);
+    return (2.0 / least + 1.0 / (1.0 - least)) / (h * h);
+  }
+  if (!field.domains) return steepest;
+  double x[24], w[8], g[24], sum[3][3] = {};
+  field.domains->corners_of(i, x, w, g);
+  for (int c = 0; c < 1 << dim; c++)
+    for (int a = 0; a < dim; a++)
+      for (int b = 0; b < dim; b++) sum[a][b] += g[dim * c + a] * g[dim * c + b] / w[c];
+  return greatest_row(dim, sum);
+}
+
+/** Bound of the rate of a point with this volume; largest diffusivity for functions that points do not bound. */
+double MPMConduction::bound(const Thermal &t, int i, double volume) const
+{
+  Conduction room;
+  const Conduction &c = t.at(i, room);
+  double most = c.most();
+  if (total) {
+    double k[3][3];
+    tensor(t, i, k);
+    most = greatest_row(field.lattice.dim, k);
+  }
+  const double steep = steepness(i);
+  return most * volume / (atom->rmass[i] * c.capacity) * (steep > 0.0 ? steep : 1.0);
+}
+
+/** A bound of the rates of the nodes, for functions that points alone do not bound. usual: that of nodes inside of a body.
+ *  Nodes with a much greater one have next to no capacity: points conduct less there. */
+double MPMConduction::row_bound(double usual)
+{
+  static constexpr double MOST = 4.0;    // in units of the usual one
+  double mine[2] = {usual, 0.0}, all[2];
+  mine[1] = scalar.greatest_rate(
+      [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
+        const Thermal *const t = thermal(run.material);
+        for (int p = 0; p < n; p++) {
+          double k[3][3];
+          tensor(*t, first + p, k);
+          for (int a = 0; a < 3; a++)
+            q[p][a] = volumes[first + p] * (fabs(k[a][0]) + fabs(k[a][1]) + fabs(k[a][2]));
+        }
+      });
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MAX, world);
+  shares.clear();
+  const double limit = MOST * all[0];
+  if (all[1] <= limit) return mine[1];
+
+  field.nodes.complete(rate.data(), 1, 1);
+  shares.assign(atom->nmax, 1.0);
+  const MPMStencil stencil(field);
+  for (const auto &run : field.map->runs)
+    for (int i = run.first; thermal(run.material) && i < run.last; i++)
+      stencil.visit(field.grid.blocks[run.slot], i, [&](const MPMStencil::Node &node) {
+        const double greatest = rate[node.number];
+        if (shares[i] * greatest > limit) shares[i] = limit / greatest;
+      });
+  return limit;
+}
+
+/* ----------------------------------------------------------------------
+   temperatures of the nodes
 ------------------------------------------------------------------------- */
 
 double MPMConduction::points_to_nodes(const MPMRows &gradients)
 {
   const int dim = field.lattice.dim;
-  const TransferStep still = field.step_data(0.0);
+  const bool simple = !total && steepest > 0.0, wants_volumes = faces.any();
   double most = 0.0;
   volumes.resize(atom->nmax);
-  Room room;
-  points_to(records, field, with, [&](const MPMPointMap::Run &run, const int *base, int *box) {
-    visit(run, [&](const Thermal &t, int first, int n) {
-      for (int p = 0; p < n; p++) {
-        const int i = first + p;
-        const Conduction c = t.at(i);
-        const double C = atom->rmass[i] * c.capacity, V = volumes[i] = volume_of(i);
-        room.mass[p] = C;
-        room.value[3 * p] = t.fix->history[i][t.temperature];
-        room.value[3 * p + 1] = V / C;
-        for (int d = 0; gradients && d < dim; d++)
-          room.C[dim * dim * p + dim * d] = gradients[i][d];
-        most = std::max(most, c.conductivity * V / C);
-      }
-      with.p2g_momentum(rows(first, room), still, 0, n, base, field.map->tile, box);
-    });
-  });
-  field.nodes.sum(records.data(), NREAL, 0, 4);
-
-  const std::size_t n = field.grid.nnodes();
-  for (auto *list : {&capacity, &volume, &temperature, &rate}) list->resize(n);
-  const double *r = records.data();
-  for (std::size_t k = 0; k < n; k++, r += NREAL) {
-    capacity[k] = r[CAPACITY];
-    volume[k] = r[VOLUME];
-    temperature[k] = r[CAPACITY] > 0.0 ? r[VALUE] / r[CAPACITY] : 0.0;
-  }
-  before = temperature;
+  scalar.points_to_nodes(
+      [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Points &points) {
+        const Thermal *const t = thermal(run.material);
+        if (!t) return false;
+        Conduction room;
+        for (int p = 0; p < n; p++) {
+          const int i = first + p;
+          __builtin_prefetch(field.points->F[std::min(first + p + AHEAD, run.last - 1)]);
+          const Conduction &c = t->at(i, room);
+          const double C = atom->rmass[i] * c.capacity, V = volumes[i] = volume_of(i);
+          points.capacity[p] = C;
+          points.value[p] = t->fix->history[i][t->temperature];
+          for (int d = 0; gradients && d < dim; d++) points.slope[3 * p + d] = gradients[i][d];
+          most = std::max(most, simple ? c.most() * V / C : bound(*t, i, V));
+          if (wants_volumes)
+            points.volume[p] = total ? atom->vfrac[i] * field.frame->lattice_jacobian(i) : V;
+        }
+        return true;
+      });
+  if (simple)
+    most *= steepest;
+  else if (!field.boxes && !field.domains && steepest == 0.0)
+    most = row_bound(4.0 * dim / (field.lattice.h * field.lattice.h) * most);
   return most;
 }
 
-/* ----------------------------------------------------------------------
-   the flux k grad T of a point is the first row of a stress
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
 void MPMConduction::find_rates(const double *source, Heats &power)
 {
-  const int dim = field.lattice.dim;
-  double *r = records.data();
-  for (std::size_t k = 0; k < temperature.size(); k++, r += NREAL) {
-    r[VALUE] = temperature[k];
-    r[RATE] = 0.0;
-  }
-  field.nodes.complete(records.data(), NREAL, 1);
-  r = records.data();
-  for (std::size_t k = 0; k < temperature.size(); k++, r += NREAL) r[RATE] = 0.0;    // of images
-
-  TransferStep plain = field.step_data(0.0);
-  plain.force_scale = plain.stress_scale = 1.0;
-  MPMPointMap &map = *field.map;
-  Room room;
-  double L[9 * BATCH];
-  for (const auto &a : map.active) {
-    if (a.other_box[0] > a.other_box[3]) continue;
-    const auto &block = field.grid.blocks[a.slot];
-    int base[3], box[6];
-    map.tile_base(a, base);
-    reset_box(box);
-    pic.load(map.tile_load, records.data(), block.slot, a.other_box);
-    for (int k = a.first_run; k < a.last_run; k++)
-      visit(map.runs[k], [&](const Thermal &t, int first, int n) {
-        const PointRows b = rows(first, room);
-        pic.g2p_gradient(b, plain, 0, n, base, map.tile_load, L);
-        for (int p = 0; p < n; p++) {
-          const double *const G = L + dim * dim * p, K = t.at(first + p).conductivity;
-          double *const flux = room.flux + 6 * p;
-          flux[0] = K * G[0];
-          flux[3] = K * G[dim];
-          if (dim == 3) flux[4] = K * G[2 * dim];
-          room.volume[p] = volumes[first + p];
-          if (!source) continue;
-          room.force[3 * p] = room.volume[p] * source[first + p];
-          power[SOURCES] += room.force[3 * p];
-        }
-        pic.p2g_force(b, plain, 0, n, base, map.tile, box);
-      });
-    pic.flush(map.tile, records.data(), block.slot, box);
-  }
-  field.nodes.sum(records.data(), NREAL, RATE, 1);
-  r = records.data();
-  for (std::size_t k = 0; k < rate.size(); k++, r += NREAL)
-    rate[k] = capacity[k] > 0.0 ? r[RATE] / capacity[k] : 0.0;
+  scalar.find_rates([&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
+    const Thermal *const t = thermal(run.material);
+    Conduction room;
+    for (int p = 0; p < n; p++) {
+      const int i = first + p;
+      const double V = volumes[i], conducting = shares.empty() ? V : V * shares[i];
+      if (total || t->all.orthotropic) {
+        double k[3][3], flux[3];
+        tensor(*t, i, k);
+        MathExtra::matvec(k, q[p], flux);
+        for (int d = 0; d < 3; d++) q[p][d] = -conducting * flux[d];
+      } else {
+        const double factor = -conducting * t->at(i, room).conductivity;
+        for (int d = 0; d < 3; d++) q[p][d] *= factor;
+      }
+      q[p][3] = source ? V * source[i] : 0.0;
+      power[SOURCES] += q[p][3];
+    }
+  });
 }
 
 /* ----------------------------------------------------------------------
@@ -250,64 +333,78 @@ void MPMConduction::find_rates(const double *source, Heats &power)
 double MPMConduction::nodes_to_points(const MPMRows &gradients)
 {
   const int dim = field.lattice.dim;
-  double *r = records.data();
-  for (std::size_t k = 0; k < temperature.size(); k++, r += NREAL) {
-    r[VALUE] = temperature[k];
-    r[OLD] = before[k];
-  }
-  field.nodes.complete(records.data(), NREAL, NREAL);
-  TransferStep still = field.step_data(0.0);
   const double crossings = slowest * field.step_dt() / (field.lattice.h * field.lattice.h);
-  still.flip = transfer.kind == MPMHeatTransfer::RELAX ? exp(-transfer.relax * crossings) : 0.0;
-  Room room;
+  const bool relaxes = transfer.kind == MPMHeatTransfer::RELAX;
+  const double keep = relaxes ? exp(-transfer.relax * crossings) : 0.0;
   double got = 0.0;
-  points_from(records, field, with, [&](const MPMPointMap::Run &run, const int *base) {
-    visit(run, [&](const Thermal &t, int first, int n) {
-      for (int p = 0; p < n; p++) room.value[3 * p] = t.fix->history[first + p][t.temperature];
-      with.g2p(rows(first, room), still, 0, n, base, field.map->tile_load, nullptr);
-      for (int p = 0; p < n; p++) {
-        const int i = first + p;
-        const Conduction c = t.at(i);
-        double *const history = t.fix->history[i], &T = history[t.temperature];
-        got += atom->rmass[i] * c.capacity * (room.value[3 * p] - T);
-        T = room.value[3 * p];
-        if (t.molten >= 0) c.melting.settle(T, history[t.molten]);
-        for (int d = 0; gradients && d < dim; d++)
-          gradients[i][d] = room.C[dim * dim * p + dim * d];
-      }
-    });
-  });
+  scalar.nodes_to_points(
+      [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q,
+          const double *before) {
+        const Thermal *const t = thermal(run.material);
+        Conduction room;
+        for (int p = 0; p < n; p++) {
+          const int i = first + p;
+          const Conduction &c = t->at(i, room);
+          double *const history = t->fix->history[i], &T = history[t->temperature];
+          const double now = relaxes ? q[p][3] + keep * (T - before[p]) : q[p][3];
+          got += atom->rmass[i] * c.capacity * (now - T);
+          if (c.by_enthalpy) {
+            t->fix->material->warm(history, c.capacity * (now - T));
+          } else {
+            T = now;
+            if (t->molten >= 0) c.melting.settle(T, history[t->molten]);
+          }
+          for (int d = 0; gradients && d < dim; d++) gradients[i][d] = q[p][d];
+        }
+      },
+      relaxes);
   return got;
 }
 
 /* ---------------------------------------------------------------------- */
 
-double MPMConduction::greatest_rate(double diffusivity, double exchange)
+double MPMConduction::greatest_rate(double conduction, double exchange)
 {
-  fastest = exchange;
-  return diffusivity * steepest / (field.lattice.h * field.lattice.h) + fastest;
+  conducted = conduction;
+  exchanged = exchange;
+  return conducted + exchanged;
 }
 
+/** Functions that points alone do not bound, and domains, have the bound of the last step, and before the first one
+ *  what they have inside of a body that is not deformed. */
 double MPMConduction::greatest_rate_of_points(tagint &tag) const
 {
+  const double h = field.lattice.h;
+  const int dim = field.lattice.dim;
+  const bool bounded = steepest > 0.0 || field.boxes;
   double most = 0.0;
+  Conduction room;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!field.is_point(i)) continue;
     const Thermal *const t = thermal(field.material_of(i));
     if (!t) continue;
-    const Conduction c = t->at(i);
-    const double here = c.conductivity * volume_of(i) / (atom->rmass[i] * c.capacity);
+    double here = 0.0;
+    if (bounded) {
+      here = bound(*t, i, volume_of(i));
+    } else if (conducted == 0.0) {
+      double k[3][3], x[24], least = 1.0;
+      tensor(*t, i, k);
+      if (field.domains) field.domains->corners_of_box(i, x);
+      for (int d = 0; field.domains && d < dim; d++)
+        for (int c = 0; c < 1 << dim; c++) least = std::min(least, fabs(x[dim * c + d]) / h);
+      const double steep = field.domains ? 1.0 / (least * least) : 4.0 * dim;
+      here = steep / (h * h) * greatest_row(dim, k) * volume_of(i) /
+          (atom->rmass[i] * t->at(i, room).capacity);
+    }
     if (here <= most) continue;
     most = here;
     tag = atom->tag[i];
   }
-  return most * steepest / (field.lattice.h * field.lattice.h) + fastest;
+  return (bounded || conducted == 0.0 ? most : conducted) + exchanged;
 }
 
 double MPMConduction::memory_usage() const
 {
-  double bytes = faces.memory_usage();
-  for (const auto *list : {&volumes, &records, &capacity, &volume, &before, &temperature, &rate})
-    bytes += list->capacity() * sizeof(double);
-  return bytes;
+  return faces.memory_usage() + scalar.memory_usage() +
+      (volumes.capacity() + shares.capacity()) * sizeof(double);
 }

@@ -12,8 +12,7 @@
 #include "fix_mpm_material.h"
 #include "material/material.h"
 #include "mpm_heat_faces.h"
-#include "mpm_point_map.h"
-#include "transfer/kernels.h"
+#include "mpm_node_scalar.h"
 
 #include <functional>
 #include <vector>
@@ -38,6 +37,7 @@ class MPMConduction : protected Pointers {
 
   MPMField &field;
   MPMHeatFaces faces;
+  MPMNodeScalar scalar;    ///< the temperature
 
   MPMConduction(class LAMMPS *, MPMField &, const MPMHeatTransfer &, const MPMHeatCondition *);
 
@@ -45,21 +45,21 @@ class MPMConduction : protected Pointers {
   void init(double sigma);
 
   /** A step, first part: temperatures of nodes. gradients: [n][dim] temperature gradients of points, null with
-   *  the transfer pic. Returns the largest diffusivity of this rank's points. */
+   *  the transfer pic. Returns the bound of the rates of conduction of this rank [1/time]. */
   double points_to_nodes(const MPMRows &gradients);
-  /** A bound of the eigenvalues of minus the rates [1/time], from that of all ranks, and the rate of exchange through
-   *  faces. */
-  double greatest_rate(double diffusivity, double exchange);
+  /** A bound of the eigenvalues of minus the rates [1/time], from those of conduction and of exchange through faces on
+   *  all ranks. */
+  double greatest_rate(double conduction, double exchange);
   /** Rates of the temperatures of the nodes by conduction and sources. source: [n] power per volume, or null.
    *  Adds the power of sources. */
   void find_rates(const double *source, Heats &power);
   /** Last part: temperatures of points; returns the heat that they have got. */
   double nodes_to_points(const MPMRows &gradients);
 
-  const std::vector<double> &node_capacity() const { return capacity; }
-  const std::vector<double> &node_volume() const { return volume; }
+  const std::vector<double> &node_capacity() const { return scalar.capacity; }
+  const std::vector<double> &node_volume() const { return scalar.volume; }
   /** Of nodes, see MPMSuperStep. */
-  std::vector<double> temperature, rate;
+  std::vector<double> &temperature = scalar.value, &rate = scalar.rate;
 
   /** Bound of the eigenvalues for this rank's points [1/time]; tag: the point that limits it. */
   double greatest_rate_of_points(tagint &tag) const;
@@ -74,31 +74,32 @@ class MPMConduction : protected Pointers {
     int temperature, molten;    // columns of history
     bool varies;
     MPM_NS::Conduction all;    // or the mean
-    MPM_NS::Conduction at(int i) const
+    /** Of a point, which may be in the room. */
+    const MPM_NS::Conduction &at(int i, MPM_NS::Conduction &room) const
     {
-      return varies ? fix->material->conduction(fix->history[i]) : all;
+      if (!varies) return all;
+      return room = fix->material->conduction(fix->history[i]);
     }
   };
-  struct Room;    // for a batch of points
 
   const MPMHeatTransfer &transfer;
   std::vector<Thermal> thermals;
-  MPM_NS::TransferKernels pic, with;    // plain sums; transfer of the temperature
-  double slowest = 0.0;                 // smallest diffusivity of a material
+  double slowest = 0.0;    // smallest diffusivity of a material
   double steepest =
-      0.0;                 // of the shape functions: greatest sum of N'^2/N along an axis, in cells
-  double fastest = 0.0;    // rate of exchange through faces in the last step
+      0.0;    // of B-splines, see the top of mpm_conduction.cpp [1/area]; 0: not bounded by points alone
+  double conducted = 0.0, exchanged = 0.0;    // limits of the last step
+  bool total = false;
 
   std::vector<double> volumes;    // [n] of points in this step
-
-  // nodes: records of 8 reals for transfers, and one real for each node
-
-  std::vector<double> records, capacity, volume, before;
+  std::vector<double>
+      shares;    // [n] of their conductivity that is left, see row_bound(); empty: all
 
   const Thermal *thermal(const FixMPMMaterial *) const;
   double volume_of(int i) const;
-  template <class F> void visit(const MPMPointMap::Run &, const F &) const;
-  MPM_NS::PointRows rows(int first, Room &) const;
+  void tensor(const Thermal &, int i, double k[3][3]) const;
+  double bound(const Thermal &, int i, double volume) const;
+  double steepness(int i) const;
+  double row_bound(double usual);
 };
 
 }    // namespace LAMMPS_NS

@@ -143,6 +143,7 @@ void MPMField::init(MPMPlan *plan_of_all)
   frame->check();
   ledger.on = !modify->get_compute_by_style("^mpm/energy$").empty();
   nodes.clear_fields();
+  slopes.clear();
 
   find_materials();
   elements = find_fixes<FixMPMElements>(lmp);

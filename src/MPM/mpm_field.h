@@ -42,6 +42,7 @@ class MPMPointState;
 class MPMSmoothing;
 class MPMTimeLimit;
 class MPMTransferHeat;
+class MPMRows;
 struct MPMPoints;
 
 /** One velocity field on one lattice: options, points, nodes, and an object for each thing that only
@@ -76,6 +77,9 @@ class MPMField : protected Pointers {
   bool keep_old = false;
   bool running = false;    ///< between the set-up and the end of a run
   double last_dt = 0.0;    ///< duration of the last step of the cycle; 0: none so far
+
+  /** [n][dim] gradients on the lattice that other physics keeps for points; set by its init_physics(). */
+  std::vector<const MPMRows *> slopes;
 
   // what depends on the options; null: not with these
 

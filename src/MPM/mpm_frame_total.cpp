@@ -17,7 +17,7 @@
      f_i = -sum V0 tau F_R^-T grad N,   F <- F + dt (grad v) R
 
    are the equations of a body with the initial volume V0 det R and the deformation gradient F_R. The
-   affine matrix C, the gradient with respect to X, becomes C F_R^-1. Stress, velocities, and energies
+   affine matrix C, the gradient with respect to X, becomes C F_R^-1, and so do the gradients of other physics. Stress, velocities, and energies
    of points do not change.
 ------------------------------------------------------------------------- */
 
@@ -250,11 +250,17 @@ bool MPMFrameTotal::renew_places()
   if (!refer_anew) return false;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!field.is_point(i)) continue;
-    if (field.affine) {
+    if (field.affine || !field.slopes.empty()) {
+      const int dim = field.lattice.dim;
       double F[3][3], inverse[3][3];
       lattice_F(i, F);
       MathExtra::invert3(F, inverse);
-      multiply(field.lattice.dim, field.affine->C[i], inverse[0]);
+      if (field.affine) multiply(dim, field.affine->C[i], inverse[0]);
+      for (const auto *rows : field.slopes) {
+        double *const g = (*rows)[i], old[3] = {g[0], g[1], dim == 3 ? g[2] : 0.0};
+        for (int d = 0; d < dim; d++)
+          g[d] = old[0] * inverse[0][d] + old[1] * inverse[1][d] + old[2] * inverse[2][d];
+      }
     }
     memcpy(X[i], atom->x[i], 3 * sizeof(double));
     memcpy(R[i], field.points->F[i], 9 * sizeof(double));

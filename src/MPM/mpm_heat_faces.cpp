@@ -29,6 +29,7 @@
 #include "domain.h"
 #include "math_special.h"
 #include "mpm_field.h"
+#include "mpm_frame.h"
 #include "mpm_stencil.h"
 
 #include <algorithm>
@@ -47,6 +48,18 @@ static constexpr double FULL = 0.95, NOT_FULL = 0.8;
 
 /* ---------------------------------------------------------------------- */
 
+/** Weights of nodes at a place along an axis. Functions of points of finite size depend on the point: a face has the linear
+ *  ones, which they are made of. */
+static int weights_at(const MPMField &field, const MPMStencil &stencil, double t, int &first,
+                      double *w)
+{
+  if (!field.boxes) return stencil.weights(t, first, w);
+  first = static_cast<int>(std::floor(t));
+  w[1] = t - first;
+  w[0] = 1.0 - w[1];
+  return 2;
+}
+
 void MPMHeatFaces::init(double sigma_of_units)
 {
   sigma = sigma_of_units;
@@ -59,9 +72,9 @@ void MPMHeatFaces::init(double sigma_of_units)
     Face f = {};
     f.face = face;
     f.axis = face / 2;
-    const double x = face % 2 ? domain->boxhi[f.axis] : domain->boxlo[f.axis];
+    const double x = f.x = face % 2 ? domain->boxhi[f.axis] : domain->boxlo[f.axis];
     const double at = (x - lattice.origin[f.axis]) / lattice.h;
-    f.n = stencil.weights(at, f.first, f.weight);
+    f.n = weights_at(field, stencil, at, f.first, f.weight);
 
     // integrals of functions over the inside, by the midpoint rule
 
@@ -70,7 +83,7 @@ void MPMHeatFaces::init(double sigma_of_units)
       const double depth = (k + 0.5) / SAMPLES;
       int first;
       double w[MOST];
-      const int n = stencil.weights(face % 2 ? at - depth : at + depth, first, w);
+      const int n = weights_at(field, stencil, face % 2 ? at - depth : at + depth, first, w);
       for (int j = 0; j < n; j++)
         if (first + j >= f.first && first + j < f.first + f.n)
           f.full[first + j - f.first] += w[j] / SAMPLES;
@@ -132,11 +145,16 @@ void MPMHeatFaces::prepare(const Face &face, Line &line, const std::vector<doubl
                            const std::vector<double> &surface) const
 {
   const Grid &grid = field.grid;
+  // around an axis of symmetry, and 1 else
+  const auto circle = [&](int64_t node) {
+    return field.frame->node_circle(static_cast<int>(node / NODES_PER_BLOCK),
+                                    static_cast<int>(node % NODES_PER_BLOCK));
+  };
   const double cell = grid.lattice.cell_volume();
   std::fill_n(line.weight, MOST, 0.0);
   double part[MOST] = {}, most = 0.0, there = 0.0, full = 0.0;
   for (int k = 0; k < face.n; k++) {
-    const double V = volume[line.node[k]] / cell;
+    const double V = volume[line.node[k]] / (cell * circle(line.node[k]));
     there += face.weight[k] * V;
     full += face.weight[k] * face.full[k];
     if (!(face.full[k] > 0.0) || !(capacity[line.node[k]] > 0.0)) continue;
@@ -150,6 +168,7 @@ void MPMHeatFaces::prepare(const Face &face, Line &line, const std::vector<doubl
   const double aside =
       most < NOT_FULL ? most : NOT_FULL + (most - NOT_FULL) * (1.0 - NOT_FULL) / (FULL - NOT_FULL);
   line.area = std::min(1.0, aside) * cell / grid.lattice.h *
+      (face.axis ? circle(line.node[0]) : field.frame->circle(face.x)) *
       std::min(1.0, (near - TOUCHES) / (IS_AT_FACE - TOUCHES));
   if (!weigh_by_surface(face, line, surface)) {
     double sum = 0.0;
@@ -175,6 +194,7 @@ void MPMHeatFaces::prepare(const Face &face, Line &line, const std::vector<doubl
 bool MPMHeatFaces::weigh_by_surface(const Face &face, Line &line,
                                     const std::vector<double> &surface) const
 {
+  if (surface.empty()) return false;
   double weight[MOST], sum = 0.0;
   for (int k = 0; k < face.n; k++) {
     const double G = surface[3 * line.node[k] + face.axis];

@@ -59,7 +59,7 @@ class MPMHeatFaces : protected Pointers {
   bool any() const { return !faces.empty(); }
   /** Marks blocks [slot] with nodes of lines. */
   void mark_near(std::vector<char> &near) const;
-  /** Lines that touch material in this step, from the capacities, volumes, and surfaces (MPMHeatBody) of nodes. Returns
+  /** Lines that touch material in this step, from the capacities, volumes, and surfaces (MPMHeatBody, or empty) of nodes. Returns
    *  the largest rate at which temperatures at faces follow those outside, for stability. */
   double begin_step(const std::vector<double> &capacity, const std::vector<double> &volume,
                     const std::vector<double> &surface, const std::vector<double> &temperature);
@@ -85,6 +85,7 @@ class MPMHeatFaces : protected Pointers {
   };
   struct Face {
     int face, axis, first, n;    // n nodes from the first one on
+    double x;                    // where it is
     double weight[MOST];
     double full[MOST];    // volume of the nodes where material fills the box, in cells
     std::vector<Line> lines;

@@ -200,7 +200,10 @@ double MPMHeatSurfaces::hidden(const int *index,
   double sum = 0.0, room = 1.0;
   for (int d = 0; d < body.field.lattice.dim; d++) room *= body.room(d, index[d]);
   for (const auto *other : others) {
-    if (other == &body || !(room > 0.0)) continue;
+    const auto &theirs = other->field.lattice;
+    if (other == &body || !(room > 0.0) || theirs.h != body.field.lattice.h ||
+        !std::equal(theirs.origin, theirs.origin + 3, body.field.lattice.origin))
+      continue;
     const int64_t node = other->field.grid.locate(index);
     if (node >= 0) sum += other->share[node] / room;
   }

@@ -33,6 +33,7 @@ MPMPointEnergies LAMMPS_NS::point_energies(LAMMPS *lmp)
     mine.viscous += material->work[Work::VISCOUS];
     mine.heat += material->work[Work::HEAT];
     mine.fracture += material->work[Work::FRACTURE];
+    mine.thermoelastic += material->work[Work::THERMOELASTIC];
   }
 
   int nodes = 0;    // groups of nodes of elements, which store the energy
@@ -47,7 +48,8 @@ MPMPointEnergies LAMMPS_NS::point_energies(LAMMPS *lmp)
                         for (int k = 0; k < batch.n; k++)
                           if (!(atom->mask[list[k]] & nodes)) mine.stored += batch.vol0[k] * w[k];
                       });
-  for (double *energy : {&mine.plastic, &mine.viscous, &mine.heat, &mine.fracture, &mine.stored})
+  for (double *energy : {&mine.plastic, &mine.viscous, &mine.heat, &mine.fracture,
+                         &mine.thermoelastic, &mine.stored})
     *energy /= force->nktv2p;
   return mine;
 }

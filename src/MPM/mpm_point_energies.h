@@ -18,9 +18,10 @@ struct MPMPointEnergies {
   double plastic, viscous;    ///< work so far
   double heat;                ///< the part of the plastic work that has become heat
   double fracture;            ///< work spent on damage so far
+  double thermoelastic;       ///< energy that went from stress into heat by expansion so far
 
   /** What the points have taken up, in whatever form. */
-  double taken() const { return stored + plastic + viscous + fracture; }
+  double taken() const { return stored + plastic + viscous + fracture + thermoelastic; }
   double total() const { return kinetic + taken(); }
 };
 

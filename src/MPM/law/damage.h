@@ -119,6 +119,7 @@ namespace {
             add_diagonal(kept * intact.s, (1.0 - D) * max(mean, 0.0) + press + b.viscous_mean[i]));
         history[DAMAGED][i] = D;
         fracture += (shear + tension + pressed) * b.vol0[i];
+        b.heat[i] += p.broken * (shear + tension + pressed);
 
         const double work = b.plastic_work[i],
                      share = had_failed > 0.0 ? kept : 0.5 * (kept0 + kept);
@@ -127,7 +128,7 @@ namespace {
         b.heat[i] += p.chi * (share - kept0) * work;
       }
       b.work[PLASTIC] -= less_plastic;
-      b.work[HEAT] -= less_heat;
+      b.work[HEAT] += p.broken * fracture - less_heat;
       b.work[FRACTURE] += fracture;
     }
 

@@ -25,7 +25,7 @@ namespace {
   constexpr HistoryDeclaration dissipated = {"heat", ZERO, "pressure",
                                              "part of it that was dissipated"};
   struct InternalEnergy : LawDefaults {
-    static constexpr bool uses_F = false;
+    static constexpr bool uses_F = false, expands = true;
     enum { ENERGY, HEATED };
 
     /** Internal energy less the dissipated part, which counts as plastic and viscous work. */

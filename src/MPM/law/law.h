@@ -89,6 +89,7 @@ struct LawParameters {
 
   double heat_density;    ///< reference density, in pressure / (unit of CP * temperature)
   double chi;             ///< share of the plastic work that becomes heat
+  double broken;          ///< share of the work of damage that becomes heat
   double warm;        ///< temperature rise per heat of unit reference volume; 0: no thermal part
   int temperature;    ///< row of the temperature in batch.history, -1: no thermal part
 };
@@ -120,6 +121,7 @@ struct LawInfo {
   int (*nhistory)(const LawParameters &);
   bool uses_speed;    ///< of a viscosity: does update() read batch.speed?
   bool uses_F;        ///< does any kernel read batch.F? Else J and A are all that it knows
+  bool expands;       ///< of an equation of state: does heat expand it by its internal energy?
   /** What is wrong with parameters that are each in their range; null when all is well. */
   const char *(*check)(const LawParameters &);
   /** Does a law with these parameters need the temperature, and so a thermal part? */
@@ -128,8 +130,15 @@ struct LawInfo {
    *  of unit reference volume. */
   double (*heat_share)(const LawParameters &);
   double (*warming)(const LawParameters &);
+  /** Of a thermal part: share of the work of damage that becomes heat. Null: none. */
+  double (*fracture_share)(const LawParameters &);
   /** Of a thermal part with conduction of heat: what that needs. Null: none. */
   Conduction (*conduction)(const LawParameters &);
+  /** Of a thermal part: coefficient of the linear thermal expansion [1/temperature]. Null: none. */
+  double (*expansion)(const LawParameters &);
+  /** Of a thermal part with expansion: which of the parameters is the Gruneisen parameter that the
+   *  material finds by its bulk modulus, -1 when that is given. */
+  int (*consistent)(const LawParameters &);
   /** History of a new point at x (its values one after the other; in: initial values). Null: keep
    *  the initial values. */
   void (*initialize)(const LawParameters &, const double *x, double *history);
@@ -168,14 +177,16 @@ struct LawKernels {
   void (*raise_speed)(const LawParameters &, const Batch &, History, double *c);
 
   /** Of a damage: before the other parts, gives back the stress of the undamaged material, and
-   *  tells in batch.kept what share of its deviator there was. */
+   *  tells in batch.kept what share of its deviator there was. Of a thermal part: the change of
+   *  temperature by compression, when stress depends on it: stress and heat are then those of the
+   *  same time, and no energy comes of the coupling of the two. */
   void (*prepare)(const LawParameters &, Batch &, History);
 };
 
 /** What a law need not declare or provide; all laws derive from this. */
 struct LawDefaults {
   static constexpr StressShare share = NO_SHARE;
-  static constexpr bool uses_speed = true, uses_F = true;
+  static constexpr bool uses_speed = true, uses_F = true, expands = false;
   static constexpr const char *term = nullptr;
   static constexpr std::nullptr_t term_parameters = nullptr;
   static constexpr std::nullptr_t history = nullptr;
@@ -184,6 +195,8 @@ struct LawDefaults {
   static constexpr const char *check(const LawParameters &) { return nullptr; }
   static constexpr bool needs_temperature(const LawParameters &) { return false; }
   static constexpr std::nullptr_t heat_share = nullptr, warming = nullptr, conduction = nullptr;
+  static constexpr std::nullptr_t fracture_share = nullptr, expansion = nullptr;
+  static constexpr std::nullptr_t consistent = nullptr;
   static constexpr std::nullptr_t initialize = nullptr;
   static constexpr std::nullptr_t modulus = nullptr, energy = nullptr;
   static constexpr std::nullptr_t raise_speed = nullptr, prepare = nullptr;
@@ -211,7 +224,7 @@ struct LawVersion {
   int interface;    ///< raised with each change of what laws and package expect of each other
   int batch, info, kernels, parameters;
 };
-constexpr LawVersion law_version{3, sizeof(Batch), sizeof(LawInfo), sizeof(LawKernels),
+constexpr LawVersion law_version{4, sizeof(Batch), sizeof(LawInfo), sizeof(LawKernels),
                                  sizeof(LawParameters)};
 
 /** A law of a plugin. */
@@ -256,11 +269,15 @@ namespace law {
       info.nhistory = Law::nhistory;
       info.uses_speed = Law::uses_speed;
       info.uses_F = Law::uses_F;
+      info.expands = Law::expands;
       info.check = Law::check;
       info.needs_temperature = Law::needs_temperature;
       info.heat_share = Law::heat_share;
       info.warming = Law::warming;
+      info.fracture_share = Law::fracture_share;
       info.conduction = Law::conduction;
+      info.expansion = Law::expansion;
+      info.consistent = Law::consistent;
       info.initialize = Law::initialize;
       static_assert(count(Law::parameters) <= LawParameters::MAX);
       static_assert(count(Law::term_parameters) <= LawParameters::TERM);

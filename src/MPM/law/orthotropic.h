@@ -9,6 +9,7 @@
 #ifndef MPM_LAW_ORTHOTROPIC_H
 #define MPM_LAW_ORTHOTROPIC_H
 
+#include "law/axes.h"
 #include "law/hyperelastic.h"
 
 namespace MPM_NS::law {
@@ -134,25 +135,7 @@ namespace {
 
       explicit Axes(const LawParameters &p)
       {
-        const double *const a = p.value + 9, *const b = p.value + 12;
-        const double length = std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
-        double one[3], two[3], along = 0.0, rest = 0.0;
-        for (int k = 0; k < 3; k++) one[k] = a[k] / length;
-        for (int k = 0; k < 3; k++) along += b[k] * one[k];
-        for (int k = 0; k < 3; k++) two[k] = b[k] - along * one[k];
-        for (int k = 0; k < 3; k++) rest += two[k] * two[k];
-        rest = std::sqrt(rest);
-        const double angle = p.value[15] * (3.14159265358979323846 / 180.0);
-        const double c = std::cos(angle), s = std::sin(angle);
-        for (int k = 0; k < 3; k++) {
-          two[k] /= rest;
-          axis[0][k] = c * one[k] + s * two[k];
-          axis[1][k] = c * two[k] - s * one[k];
-        }
-        for (int k = 0; k < 3; k++) {
-          const int m = (k + 1) % 3, n = (k + 2) % 3;
-          axis[2][k] = one[m] * two[n] - one[n] * two[m];
-        }
+        orthonormal_axes(p.value + 9, p.value + 12, p.value[15], axis);
       }
     };
 
@@ -164,16 +147,7 @@ namespace {
 
     static const char *check(const LawParameters &p)
     {
-      const double *const a = p.value + 9, *const b = p.value + 12;
-      double cross2 = 0.0, aa = 0.0, bb = 0.0;
-      for (int k = 0; k < 3; k++) {
-        const int m = (k + 1) % 3, n = (k + 2) % 3;
-        const double c = a[m] * b[n] - a[n] * b[m];
-        cross2 += c * c;
-        aa += a[k] * a[k];
-        bb += b[k] * b[k];
-      }
-      if (!(cross2 > 1e-12 * aa * bb)) return "axes must be two vectors that are not parallel";
+      if (const char *wrong = check_axes(p.value + 9, p.value + 12)) return wrong;
       if (!constants(p).admissible())
         return "the energy is not positive for all strains: check E1, E2, E3 and NU12, NU13, NU23";
       return nullptr;

@@ -9,6 +9,8 @@
 #ifndef MPM_LAW_THERMAL_H
 #define MPM_LAW_THERMAL_H
 
+#include "law/axes.h"
+#include "law/heat_curve.h"
 #include "law/kinematics.h"
 
 namespace MPM_NS::law {
@@ -26,6 +28,21 @@ namespace {
                                        ANY_NUMBER, 0.0,     "melting temperature"};
   constexpr Parameter HEAT_OF_FUSION = {"melt",   "LATENT", "energy/mass",
                                         POSITIVE, 0.0,      "heat of fusion, 0: none"};
+  constexpr Parameter EXPANSION = {"expansion", "ALPHA", "1/temperature",
+                                   ANY_NUMBER,  0.0,     "coefficient of linear expansion from T0"};
+  constexpr Parameter CONSISTENT_GRUNEISEN = {
+      "gruneisen consistent",
+      "CONSISTENT",
+      FLAG,
+      FRACTION,
+      0.0,
+      "GAMMA = 3 K ALPHA/(density CP), with the bulk modulus K of the material at T0"};
+  constexpr Parameter FRACTURE_SHARE = {
+      "fracture", "SHARE", "1", FRACTION, 0.0, "share of the work of damage that becomes heat"};
+
+  constexpr Parameter MELTING_RANGE = {
+      "over",       "DT", "temperature",
+      NOT_NEGATIVE, 0.0,  "range of temperatures in which it melts, from TMELT on"};
 
   /** Temperature of a point by the heat that it makes itself:
    *
@@ -36,29 +53,62 @@ namespace {
    *  second term is the change along an isentrope when density * Gruneisen parameter is constant,
    *  T ~ exp(GAMMA (1 - J)). Strengths use the temperature of the end of the step. With melting the
    *  temperature stays at TMELT until the molten fraction f, LATENT df = CP dT, has gone from 0 to 1,
-   *  and on cooling back to 0. MORE: parameters between T0 and CHI. */
+   *  and on cooling back to 0, or rises from TMELT to TMELT + DT meanwhile; with this, and with a CP that depends on the
+   *  temperature, it follows from the enthalpy (HeatCurve). With expansion the second term comes before the stress of the step, which
+   *  depends on it. MORE: parameters between T0 and CHI. */
   template <int MORE> struct ThermalByWork : LawDefaults {
     static constexpr bool uses_F = false;
-    enum { CP, T0, CHI = 2 + MORE, GAMMA, TMELT, LATENT };
+    enum { CP, T0, CHI = 2 + MORE, GAMMA, TMELT, LATENT, ALPHA, CONSISTENT, BREAKS, OVER };
     static constexpr HistoryDeclaration history[] = {
         {"temperature", T0, "temperature", "temperature"},
         {"molten", ZERO, "1", "molten fraction"}};
     static constexpr int nhistory(const LawParameters &p) { return p.value[LATENT] > 0.0 ? 2 : 1; }
     static constexpr const char *check(const LawParameters &p)
     {
-      return p.value[LATENT] > 0.0 && p.value[T0] > p.value[TMELT] ? "T0 must not be above TMELT"
-                                                                   : nullptr;
+      if (p.value[CONSISTENT] > 0.0 && p.value[ALPHA] == 0.0)
+        return "'gruneisen consistent' follows from the expansion: add 'expansion ALPHA'";
+      if (p.value[OVER] > 0.0 && !(p.value[LATENT] > 0.0))
+        return "'over DT' is a range of melting: add 'melt TMELT LATENT'";
+      return nullptr;
+    }
+    /** A material above its melting temperature is a melt. */
+    static void initialize(const LawParameters &p, const double *, double *history)
+    {
+      const HeatCurve curve = {p, p.value[TMELT], p.value[LATENT], p.value[OVER]};
+      if (nhistory(p) == 2 && history[0] > p.value[TMELT]) history[1] = curve.molten_at(history[0]);
     }
     static double heat_share(const LawParameters &p) { return p.value[CHI]; }
     static double warming(const LawParameters &p) { return 1.0 / (p.heat_density * p.value[CP]); }
+    static double fracture_share(const LawParameters &p) { return p.value[BREAKS]; }
+    static double expansion(const LawParameters &p) { return p.value[ALPHA]; }
+    static int consistent(const LawParameters &p) { return p.value[CONSISTENT] > 0.0 ? GAMMA : -1; }
+
+    /** Change of temperature by compression. */
+    static MPM_INLINE void compress(const LawParameters &p, Batch &b, History history)
+    {
+      const double gamma = p.value[GAMMA];
+      double *const T = history[0];
+      if (gamma == 0.0) return;
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) T[i] += T[i] * expm1(-gamma * (b.J[i] - b.Jold[i]));
+    }
+
+    static void prepare(const LawParameters &p, Batch &b, History history)
+    {
+      if (p.value[ALPHA] != 0.0) compress(p, b, history);
+    }
 
     static void update(const LawParameters &p, Batch &b, History history)
     {
-      const double warm = p.warm, gamma = p.value[GAMMA];
+      const double warm = p.warm;
       double *const T = history[0];
-      if (gamma > 0.0) {
-        MPM_SIMD
-        for (int i = 0; i < b.n; i++) T[i] += T[i] * expm1(-gamma * (b.J[i] - b.Jold[i]));
+      if (p.value[ALPHA] == 0.0) compress(p, b, history);
+      if (HeatCurve::is_curved(p)) {
+        const HeatCurve curve = {p, p.value[TMELT], p.value[LATENT], p.value[OVER]};
+        double *const molten = nhistory(p) == 2 ? history[1] : nullptr;
+        for (int i = 0; i < b.n; i++)
+          curve.warm(warm * p.value[CP] * b.heat[i], T[i], molten ? molten + i : nullptr);
+        return;
       }
       MPM_SIMD
       for (int i = 0; i < b.n; i++) T[i] += warm * b.heat[i];
@@ -73,13 +123,14 @@ namespace {
   struct ThermalAdiabatic : ThermalByWork<0> {
     static constexpr const char *name = "adiabatic";
     static constexpr const char *meaning = "temperature by dissipation, without conduction";
-    static constexpr Parameter parameters[] = {SPECIFIC_HEAT, FIRST_TEMPERATURE, HEAT_SHARE,
-                                               GRUNEISEN,     MELTING_POINT,     HEAT_OF_FUSION};
+    static constexpr Parameter parameters[] = {
+        SPECIFIC_HEAT,  FIRST_TEMPERATURE, HEAT_SHARE,           GRUNEISEN,      MELTING_POINT,
+        HEAT_OF_FUSION, EXPANSION,         CONSISTENT_GRUNEISEN, FRACTURE_SHARE, MELTING_RANGE};
   };
 
   /** The same for points between which fix mpm/heat conducts heat. */
   struct ThermalConducting : ThermalByWork<1> {
-    enum { K = 2 };
+    enum { K = 2, K2 = OVER + 1, K3, A1, THETA = A1 + 6 };
     static constexpr const char *name = "conducting";
     static constexpr const char *meaning = "temperature by dissipation and conduction";
     static constexpr Parameter parameters[] = {
@@ -89,10 +140,46 @@ namespace {
         HEAT_SHARE,
         GRUNEISEN,
         MELTING_POINT,
-        HEAT_OF_FUSION};
+        HEAT_OF_FUSION,
+        EXPANSION,
+        CONSISTENT_GRUNEISEN,
+        FRACTURE_SHARE,
+        MELTING_RANGE,
+        {"orthotropic", "K2", "energy/(time length temperature)", POSITIVE, 0.0,
+         "conductivity along axis 2, with K along axis 1"},
+        {"orthotropic", "K3", "energy/(time length temperature)", POSITIVE, 0.0,
+         "conductivity along axis 3"},
+        {"axes", "A1X", "1", ANY_NUMBER, 1.0, "axis 1, of any length"},
+        {"axes", "A1Y", "1", ANY_NUMBER, 0.0, "axis 1"},
+        {"axes", "A1Z", "1", ANY_NUMBER, 0.0, "axis 1"},
+        {"axes", "A2X", "1", ANY_NUMBER, 0.0, "vector in the plane 12"},
+        {"axes", "A2Y", "1", ANY_NUMBER, 1.0, "vector in the plane 12"},
+        {"axes", "A2Z", "1", ANY_NUMBER, 0.0, "vector in the plane 12"},
+        {"angle", "THETA", "degrees", ANY_NUMBER, 0.0, "then turns axes 1 and 2 about axis 3"}};
+    static const char *check(const LawParameters &p)
+    {
+      const double *const v = p.value, *const a = v + A1, *const b = a + 3;
+      if (const char *wrong = ThermalByWork<1>::check(p)) return wrong;
+      if (const char *wrong = check_axes(a, b)) return wrong;
+      const bool plain = a[0] == 1.0 && a[1] == 0.0 && a[2] == 0.0 && b[0] == 0.0 && b[1] == 1.0 &&
+          b[2] == 0.0 && v[THETA] == 0.0;
+      return v[K2] == 0.0 && !plain ? "axes and angle are those of 'orthotropic K2 K3': add it"
+                                    : nullptr;
+    }
     static Conduction conduction(const LawParameters &p)
     {
-      return {p.value[CP], p.value[K], {p.value[TMELT], p.value[LATENT] / p.value[CP]}};
+      Conduction c = {};
+      c.capacity = p.value[CP];
+      c.conductivity = p.value[K];
+      c.melting = {p.value[TMELT], p.value[LATENT] / p.value[CP]};
+      c.by_enthalpy = HeatCurve::is_curved(p);
+      c.orthotropic = p.value[K2] > 0.0;
+      if (c.orthotropic) {
+        c.across[0] = p.value[K2];
+        c.across[1] = p.value[K3];
+        orthonormal_axes(p.value + A1, p.value + A1 + 3, p.value[THETA], c.axis);
+      }
+      return c;
     }
   };
 

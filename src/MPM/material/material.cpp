@@ -11,6 +11,8 @@
 
 #include "material/material.h"
 
+#include "law/heat_curve.h"
+#include "material/elastic_motion.h"
 #include "material/parts.h"
 #include "material/random_field.h"
 
@@ -39,6 +41,8 @@ class ComposedMaterial : public Material {
       speed_matters = speed_matters || (law.part == VISCOSITY && law.info->uses_speed);
     }
     for (const auto &r : definition.random) add(r);
+    for (const auto &v : definition.vary) add(v);
+    depend_on_temperature();
     for (const auto &range : definition.ranges) add(range);
     if (definition.shares_stress()) {
       viscous = variables.size();
@@ -85,10 +89,14 @@ class ComposedMaterial : public Material {
     if (random_density) set_factor(*random_density, DENSITY, rho, x, history);
     for (const auto &law : laws)
       for (const auto &r : law.random) {
-        const LawInfo &info = *law.info;
-        set_factor(r, (r.term < 0 ? info.parameters : info.term_parameters)[r.parameter],
-                   r.of(law.parameters), x, history);
+        const Parameter &declared = r.declaration(*law.info);
+        const double mean = r.of(law.parameters);
+        set_factor(r, declared, mean, x, history);
+        for (const auto &w : law.warm)
+          for (const double T : w.factor.knots())
+            if (w == r) check_range(declared, mean * history[r.row] * w.factor.at(T));
       }
+    if (seen >= 0) history[seen] = first_temperature(history, 1);
     for (const auto &law : laws)
       if (law.varies) {
         LocalParameters local(*this, law);
@@ -98,14 +106,35 @@ class ComposedMaterial : public Material {
       }
   }
 
+  bool is_thermoelastic() const override { return seen >= 0; }
   bool conducts() const override { return thermal && thermal->info->conduction; }
-  bool conduction_varies() const override { return conducts() && !thermal->random.empty(); }
+  bool conduction_varies() const override
+  {
+    return conducts() && (!thermal->random.empty() || !conducting.empty() || is_curved());
+  }
   Conduction conduction(const double *history) const override
   {
     const auto &of = thermal->info->conduction;
     if (!history || !conduction_varies()) return of(thermal->parameters);
+    const double T = history[thermal->history];
     LocalParameters local(*this, *thermal);
-    return of(local.at(history, 1));
+    LawParameters p = local.at(history, 1);
+    for (const auto &w : conducting) w.of(p) *= w.factor.at(T);
+    Conduction c = of(p);
+    if (is_curved()) c.capacity = heat_curve().capacity(T);
+    return c;
+  }
+  void warm(double *history, double heat) const override
+  {
+    double *const T = history + thermal->history;
+    const bool melts = thermal->info->count_history(thermal->parameters) > 1;
+    if (is_curved()) {
+      heat_curve().warm(heat, *T, melts ? T + 1 : nullptr);
+      return;
+    }
+    const Conduction c = conduction(history);
+    *T += heat / c.capacity;
+    if (melts) c.melting.settle(*T, T[1]);
   }
 
   void initialized() const override
@@ -124,41 +153,21 @@ class ComposedMaterial : public Material {
     }
     for (auto &row : b.A) std::fill(row, row + b.n, 0.0);
     clear_stress(b);
+    if (!expands) {
+      run(eos, b);
+      return;
+    }
+    const ElasticMotion motion(b, stretch_of(b), shape_matters);
     run(eos, b);
   }
 
   void update(Batch &b) const override
   {
-    double outside[BATCH];
-    for (int i = 0; i < b.n; i++) {
-      outside[i] = b.heat[i];
-      b.heat[i] = b.plastic[i] = 0.0;
+    if (seen >= 0) {
+      update_by_temperature(b);
+      return;
     }
-    for (double &w : b.work) w = 0.0;
-
-    if (damage) call(damage->kernels->prepare, *damage, b);
-    take_viscous_stress(b);
-    if (speed_matters) plain_speed(b, b.speed);
-    if (!base) clear_stress(b);
-    run(base, b);
-    if (damage) account_of_strength(b);
-    for (int i = 0; i < b.n; i++) {
-      b.heat[i] += outside[i];
-      b.work[VISCOUS] += b.vol0[i] * outside[i];
-    }
-    // what viscosities add: stress after them minus stress before them
-    with_viscous_stress(b, [](double stress, double &added) {
-      added = -stress;
-    });
-    for (const auto &law : laws)
-      if (law.part == VISCOSITY) run(&law, b);
-    with_viscous_stress(b, [](double stress, double &added) {
-      added += stress;
-    });
-    if (damage) table->mean_stress(b, b.viscous_mean);
-    run(eos, b);
-    if (damage) add_energy(eos, b, b.volume_energy);
-    run(damage, b);
+    make_stress(b);
     run(thermal, b);
   }
 
@@ -191,18 +200,25 @@ class ComposedMaterial : public Material {
   {
     Batch copy;
     const Batch &b = without_viscous_stress(state, copy);
-    plain_speed(b, c);
+    if (expands)
+      expanded_speed(b, c);
+    else
+      plain_speed(b, c);
     for (const auto &law : laws)
       if (law.kernels->raise_speed) call(law.kernels->raise_speed, law, b, c);
   }
 
   void stored_energy(const Batch &state, double *w) const override
   {
-    Batch copy;
-    const Batch &b = without_viscous_stress(state, copy);
-    for (int i = 0; i < b.n; i++) w[i] = 0.0;
-    for (const auto &law : laws)
-      if (!(damage && law.part == STRENGTH)) add_energy(&law, b, w);
+    if (!expands) {
+      energy_of_laws(state, w);
+      return;
+    }
+    Batch b = state;
+    const ThermalStretch s = stretch_of(b);
+    const ElasticMotion motion(b, s, shape_matters);
+    energy_of_laws(b, w);
+    for (int i = 0; i < b.n; i++) w[i] *= s.volume(i);
   }
 
  private:
@@ -219,10 +235,265 @@ class ComposedMaterial : public Material {
   /** First of six history variables with what viscosities added to the stress in the last step, for
    *  a closed law or strength that builds on that stress and must not see it; -1 when not needed. */
   int viscous = -1;
+  /** History variable with the temperature to which the stress belongs, when stress depends on it by
+   *  expansion or by parameters: conduction and heat may have changed the temperature since. Else -1. */
+  int seen = -1;
+  bool expands = false;                     ///< does it have thermal expansion?
+  std::vector<WarmParameter> conducting;    ///< conductivities that depend on the temperature
+  std::unique_ptr<const TemperatureFactor>
+      capacity_factor;    ///< of the specific heat, a table; or null
   std::vector<HistoryVariable> variables;
   std::vector<ValidRange> valid;
   std::vector<int> source;    ///< of the quantities of these, as in UsedRange
   std::string text;
+
+  /** Stress and history at the end of the step, and heat per reference volume, but not what heat
+   *  does to the temperature. */
+  void make_stress(Batch &b) const
+  {
+    double outside[BATCH];
+    for (int i = 0; i < b.n; i++) {
+      outside[i] = b.heat[i];
+      b.heat[i] = b.plastic[i] = 0.0;
+    }
+    for (double &w : b.work) w = 0.0;
+
+    if (damage) call(damage->kernels->prepare, *damage, b);
+    take_viscous_stress(b);
+    if (speed_matters) plain_speed(b, b.speed);
+    if (!base) clear_stress(b);
+    run(base, b);
+    if (damage) account_of_strength(b);
+    for (int i = 0; i < b.n; i++) {
+      b.heat[i] += outside[i];
+      b.work[VISCOUS] += b.vol0[i] * outside[i];
+    }
+    // what viscosities add: stress after them minus stress before them
+    with_viscous_stress(b, [](double stress, double &added) {
+      added = -stress;
+    });
+    for (const auto &law : laws)
+      if (law.part == VISCOSITY) run(&law, b);
+    with_viscous_stress(b, [](double stress, double &added) {
+      added += stress;
+    });
+    if (damage) table->mean_stress(b, b.viscous_mean);
+    run(eos, b);
+    if (damage) add_energy(eos, b, b.volume_energy);
+    run(damage, b);
+  }
+
+  /** Energy per reference volume that the laws have stored, those of a batch without thermal stretch. */
+  void energy_of_laws(const Batch &state, double *w) const
+  {
+    Batch copy;
+    const Batch &b = without_viscous_stress(state, copy);
+    for (int i = 0; i < b.n; i++) w[i] = 0.0;
+    for (const auto &law : laws)
+      if (!(damage && law.part == STRENGTH)) add_energy(&law, b, w);
+  }
+
+  /* ------------------------------------------------------------------ stress by temperature */
+
+  /** A material whose stress depends on the temperature, by expansion or by parameters. */
+  void depend_on_temperature()
+  {
+    const auto part = std::find_if(laws.begin(), laws.end(), [](const auto &law) {
+      return law.part == THERMAL;
+    });
+    const bool varies = std::any_of(laws.begin(), laws.end(), [](const auto &law) {
+      return !law.warm.empty();
+    });
+    if (part == laws.end()) return;    // the parser has seen to it that nothing varies
+    expands = part->info->expansion && part->info->expansion(part->parameters) != 0.0;
+    if (!expands && !varies) return;
+    seen = variables.size();
+    variables.push_back(
+        {"stress_temperature", part->parameters.value[part->info->history[0].initial]});
+  }
+
+  /** Initial temperature of a point, at which it has no thermal strain. */
+  double first_temperature(const double *history, int stride) const
+  {
+    const ParameterPlace T0 = {-1, thermal->info->history[0].initial};
+    double T = T0.of(thermal->parameters);
+    for (const auto &r : thermal->random)
+      if (r == T0) T *= history[r.row * stride];
+    return T;
+  }
+
+  /** Thermal stretch at the temperatures now and before, of the points of a batch. */
+  ThermalStretch stretch_of(const Batch &b, const double *before, const double *now) const
+  {
+    ThermalStretch s;
+    const bool varies = !thermal->random.empty() || !thermal->warm.empty();
+    const double alpha = thermal->info->expansion(thermal->parameters);
+    const double T0 = varies ? 0.0 : first_temperature(nullptr, 0);
+    for (int i = 0; i < b.n; i++) {
+      s.now[i] = std::exp(alpha * (T0 - now[i]));
+      s.before[i] = before == now ? s.now[i] : std::exp(alpha * (T0 - before[i]));
+      s.change[i] = alpha * (now[i] - before[i]);
+    }
+    if (!varies) return s;
+    LocalParameters local(*this, *thermal);
+    for (int i = 0; i < b.n; i++) {
+      const double *const history = &b.history[0][i];
+      const double start = first_temperature(history, BATCH);
+      const double old =
+          (before[i] - start) * thermal->info->expansion(local.at(history, BATCH, before[i]));
+      const double here =
+          (now[i] - start) * thermal->info->expansion(local.at(history, BATCH, now[i]));
+      s.before[i] = std::exp(-old);
+      s.now[i] = std::exp(-here);
+      s.change[i] = here - old;
+    }
+    return s;
+  }
+
+  /** The one to which the stress belongs. */
+  ThermalStretch stretch_of(const Batch &b) const
+  {
+    return stretch_of(b, b.history[seen], b.history[seen]);
+  }
+
+  /** A step of a material whose stress depends on the temperature. The temperature is that of the end of the
+   *  step but for the heat that the step makes. What stress loses or gains by the change of temperature
+   *  is the work THERMOELASTIC: that of the stress on the thermal strain, and, at the same stress or
+   *  deformation gradient, whatever a law keeps, the change of the stored energy. */
+  void update_by_temperature(Batch &b) const
+  {
+    double *const T = b.history[thermal->history], *const at = b.history[seen];
+    if (thermal->kernels->prepare) call(thermal->kernels->prepare, *thermal, b);
+    double before[BATCH], mean[BATCH], work[BATCH] = {};
+    bool changes = false;
+    for (int i = 0; i < b.n; i++) {
+      before[i] = at[i];
+      at[i] = T[i];
+      changes = changes || at[i] != before[i];
+    }
+    if (!expands) {
+      make_stress(b);
+      if (changes) add_energy_of_warming(b, before, nullptr, work);
+    } else {
+      const ThermalStretch s = stretch_of(b, before, at);
+      table->mean_stress(b, mean);
+      for (int i = 0; i < b.n; i++) work[i] = 1.5 * s.change[i] * b.Jold[i] * mean[i];
+      for (int i = 0; i < b.n; i++) b.heat[i] /= s.volume(i);
+      {
+        const ElasticMotion motion(b, s, shape_matters);
+        make_stress(b);
+        if (changes) add_energy_of_warming(b, before, &s, work);
+      }
+      table->mean_stress(b, mean);
+      for (int i = 0; i < b.n; i++) {
+        work[i] += 1.5 * s.change[i] * b.J[i] * mean[i];
+        b.heat[i] *= s.volume(i);
+      }
+    }
+    for (int i = 0; i < b.n; i++) b.work[THERMOELASTIC] += b.vol0[i] * work[i];
+    run(thermal, b);
+  }
+
+  /** Adds the stored energy with the temperatures before minus that with those of now, in the elastic state
+   *  of now. */
+  void add_energy_of_warming(Batch &b, const double *before, const ThermalStretch *s,
+                             double *work) const
+  {
+    double now[BATCH], old[BATCH], T[BATCH], *const at = b.history[seen];
+    energy_of_laws(b, now);
+    std::copy(now, now + b.n, old);
+    if (std::any_of(laws.begin(), laws.end(), [](const auto &law) {
+          return law.part != THERMAL && !law.warm.empty();
+        })) {
+      std::copy(at, at + b.n, T);
+      std::copy(before, before + b.n, at);
+      energy_of_laws(b, old);
+      std::copy(T, T + b.n, at);
+    }
+    for (int i = 0; i < b.n; i++)
+      work[i] += s ? old[i] / std::pow(s->before[i], 3) - s->volume(i) * now[i] : old[i] - now[i];
+  }
+
+  /** Wave speed with thermal expansion, which a compression that warms makes faster. */
+  void expanded_speed(const Batch &state, double *c) const
+  {
+    Batch b = state;
+    const ThermalStretch s = stretch_of(b);
+    {
+      const ElasticMotion motion(b, s, shape_matters);
+      plain_speed(b, c);
+    }
+    const int gruneisen = parameter_of_option(*thermal->info, "gruneisen");
+    LocalParameters local(*this, *thermal);
+    for (int i = 0; i < b.n; i++) {
+      const LawParameters &p = local.at(&b.history[0][i], BATCH);
+      // d ln J_e = (1 + 3 ALPHA GAMMA T J) d ln J
+      const double stiffer = 1.0 +
+          std::max(3.0 * thermal->info->expansion(p) * p.value[gruneisen] * b.history[seen][i] *
+                       b.J[i],
+                   0.0);
+      c[i] *= std::sqrt(stiffer) * std::sqrt(s.volume(i));
+    }
+  }
+
+  /** Gruneisen parameter 3 K ALPHA/(density CP) of a thermal part that asks for it: an elastic body that
+   *  expands when it is warmed is warmed when it is compressed (M.A. Biot, J. Appl. Phys. 27 (1956) 240). */
+  void find_consistent_coupling()
+  {
+    const LawInfo &info = *thermal->info;
+    const int gamma = info.consistent(thermal->parameters);
+    if (gamma < 0) return;
+    LawParameters &p = laws[thermal - laws.data()].parameters;
+    p.value[gamma] = 3.0 * bulk_modulus() * info.expansion(p) * info.warming(p);
+  }
+
+  /** Bulk modulus at the first temperature without stress, from two small compressions. */
+  double bulk_modulus() const
+  {
+    constexpr double STRAIN = 1e-5;
+    std::vector<double> initial, storage(variables.size() * BATCH);
+    for (const auto &v : variables) initial.push_back(v.initial);
+    const double x[3] = {0.0, 0.0, 0.0};
+    for (const auto &law : laws)
+      if (law.info->initialize)
+        law.info->initialize(law.parameters, x, initial.data() + law.history);
+    Batch b = {};
+    b.n = 3;
+    b.dt = b.h = 1.0;
+    b.history = reinterpret_cast<History>(storage.data());
+    for (int i = 0; i < b.n; i++) {
+      for (std::size_t k = 0; k < initial.size(); k++) b.history[k][i] = initial[k];
+      const double stretch = 1.0 - i * STRAIN;
+      for (int k = 0; k < 9; k += 4) {
+        b.F[k][i] = stretch;
+        b.A[k][i] = stretch - 1.0;
+      }
+      b.J[i] = stretch * stretch * stretch;
+      b.Jold[i] = b.vol0[i] = 1.0;
+    }
+    run(base, b);
+    run(eos, b);
+    double mean[BATCH], shear = 0.0;
+    table->mean_stress(b, mean);
+    for (int k = 0; k < 6; k++)
+      shear = std::max(shear, std::fabs(b.stress[k][2] - (k < 3 ? mean[2] : 0.0)));
+    const double K = -(4.0 * (mean[1] - mean[0]) - (mean[2] - mean[0])) / (6.0 * STRAIN);
+    if (!(K > 0.0) || shear > 1e-3 * std::fabs(mean[2] - mean[0]))
+      throw MaterialError(
+          thermal->word,
+          "gruneisen consistent: this material has no bulk modulus at rest, or is not "
+          "isotropic: give 'gruneisen GAMMA' instead");
+    return K;
+  }
+
+  /* ------------------------------------------------------------------ parts */
+
+  static int parameter_of_option(const LawInfo &info, const char *option)
+  {
+    int k = 0;
+    while (k < info.nparameters && strcmp(info.parameters[k].option, option) != 0) k++;
+    return k;
+  }
 
   /** Stress of a material without strength. */
   static void clear_stress(Batch &b)
@@ -280,17 +551,23 @@ class ComposedMaterial : public Material {
     {
       if (material.random_heat) heat = material.thermal->parameters;
     }
+    LocalParameters(const LocalParameters &) = delete;
 
-    /** At the point with the values history[0], history[stride], ... of its history variables. */
+    /** At the point with the values history[0], history[stride], ... of its history variables, and the
+     *  temperature to which its stress belongs. */
     const LawParameters &at(const double *history, int stride)
     {
-      replace(law, p, history, stride);
+      return at(history, stride, material.seen < 0 ? 0.0 : history[material.seen * stride]);
+    }
+    const LawParameters &at(const double *history, int stride, double temperature)
+    {
+      replace(law, p, history, stride, temperature);
       if (const auto &r = material.random_density) {
         p.density = law.parameters.density * history[r->row * stride];
         p.heat_density = law.parameters.heat_density * history[r->row * stride];
       }
       if (material.random_heat) {
-        replace(*material.thermal, heat, history, stride);
+        replace(*material.thermal, heat, history, stride, temperature);
         heat.heat_density = p.heat_density;
         share_heat(*material.thermal->info, heat, law.heats_alone, p);
       }
@@ -302,9 +579,12 @@ class ComposedMaterial : public Material {
     const UsedLaw &law;
     LawParameters p, heat;
 
-    static void replace(const UsedLaw &law, LawParameters &p, const double *history, int stride)
+    static void replace(const UsedLaw &law, LawParameters &p, const double *history, int stride,
+                        double temperature)
     {
+      for (const auto &w : law.warm) w.of(p) = w.of(law.parameters);
       for (const auto &r : law.random) r.of(p) = r.of(law.parameters) * history[r.row * stride];
+      for (const auto &w : law.warm) w.of(p) *= w.factor.at(temperature);
     }
   };
 
@@ -370,7 +650,11 @@ class ComposedMaterial : public Material {
     const double g = r.field->value(x);    // standard normal deviate
     const double s2 = std::log1p(r.variation * r.variation);
     history[r.row] = r.lognormal ? std::exp(std::sqrt(s2) * g - 0.5 * s2) : 1.0 + r.variation * g;
-    const double value = mean * history[r.row];
+    check_range(declared, mean * history[r.row]);
+  }
+
+  static void check_range(const Parameter &declared, double value)
+  {
     if (!declared.range.contains(value))
       throw std::runtime_error(std::string("random ") + declared.name + " is " + number(value) +
                                " at a point, which is out of range: use lognormal, or a smaller "
@@ -390,6 +674,37 @@ class ComposedMaterial : public Material {
     if (law.info->initialize) law.info->initialize(p, x, history + law.history);
   }
 
+  // of a thermal part
+
+  double thermal_value(const char *name) const
+  {
+    for (int k = 0; k < thermal->info->nparameters; k++)
+      if (!strcmp(thermal->info->parameters[k].name, name)) return thermal->parameters.value[k];
+    return 0.0;
+  }
+  /** Does heat give the temperature by the enthalpy? */
+  bool is_curved() const { return thermal && law::HeatCurve::is_curved(thermal->parameters); }
+  void make_heat_curve(UsedLaw &of) const
+  {
+    if (!capacity_factor && !(thermal_value("DT") > 0.0)) return;
+    for (const auto &r : of.random)
+      for (const char *name : {"CP", "TMELT", "LATENT", "DT"})
+        if (!strcmp(r.declaration(*of.info).name, name))
+          throw MaterialError(r.word,
+                              std::string("random ") + name +
+                                  ": not with melting over a range or a specific heat that varies");
+    const auto T = capacity_factor ? capacity_factor->knots() : std::vector<double>();
+    std::vector<double> factors;
+    for (const double t : T) factors.push_back(capacity_factor->at(t));
+    law::HeatCurve::make(of.parameters, T, factors, thermal_value("CP"), thermal_value("TMELT"),
+                         thermal_value("LATENT"), thermal_value("DT"));
+  }
+  law::HeatCurve heat_curve() const
+  {
+    return {thermal->parameters, thermal_value("TMELT"), thermal_value("LATENT"),
+            thermal_value("DT")};
+  }
+
   /** What a thermal part with parameters t tells another law. With a damage all plastic work goes to
    *  batch.heat, for account_of_strength(). */
   static void share_heat(const LawInfo &info, const LawParameters &t, bool heats_alone,
@@ -397,6 +712,7 @@ class ComposedMaterial : public Material {
   {
     const double chi = info.heat_share(t), warm = info.warming(t);
     p.chi = heats_alone ? 1.0 : chi;
+    p.broken = info.fracture_share ? info.fracture_share(t) : 0.0;
     p.warm = heats_alone ? warm * chi : warm;
   }
 
@@ -410,18 +726,21 @@ class ComposedMaterial : public Material {
       if (place[law.part]) *place[law.part] = &law;
       law.parameters.heat_density = rho * energy_scale;
     }
+    for (auto &law : laws)
+      if (&law == thermal) make_heat_curve(law);
     random_heat = thermal && random_heats();
     for (auto &law : laws) {
       LawParameters &p = law.parameters;
       law.kernels = &table->kernels(law.part, law.index);
       law.heats_alone = damage && law.part == STRENGTH;
-      law.varies = !law.random.empty() || random_density || random_heat;
+      law.varies = !law.random.empty() || !law.warm.empty() || random_density || random_heat;
       p.density = rho_pressure;
       p.chi = 1.0;
-      p.warm = 0.0;
+      p.broken = p.warm = 0.0;
       p.temperature = thermal ? thermal->history : -1;
       if (thermal) share_heat(*thermal->info, thermal->parameters, law.heats_alone, p);
     }
+    if (expands) find_consistent_coupling();
   }
 
   /** Does what share_heat() tells differ from point to point? */
@@ -433,7 +752,9 @@ class ComposedMaterial : public Material {
       LawParameters p = thermal->parameters;
       r.of(p) *= 0.5;
       if (info.heat_share(p) != info.heat_share(thermal->parameters) ||
-          info.warming(p) != info.warming(thermal->parameters))
+          info.warming(p) != info.warming(thermal->parameters) ||
+          (info.fracture_share &&
+           info.fracture_share(p) != info.fracture_share(thermal->parameters)))
         return true;
     }
     return false;
@@ -487,17 +808,13 @@ class ComposedMaterial : public Material {
     }
   }
 
-  /** density, NAME, or LAW.NAME, where LAW is the name of the part or of the closed law or, of
-   *  viscosities, as there may be several, that of the law. Parameters of terms are NAME1, NAME2, ... */
-  void add(const UsedRandom &random)
+  /** A parameter by its name, NAME or LAW.NAME, where LAW is the name of the part or of the closed law or, of
+   *  viscosities, as there may be several, that of the law. Parameters of terms are NAME1, NAME2, ...
+   *  Null: there is none with this name. choice: adds all names; what, word: for the error message. */
+  UsedLaw *find_parameter(const std::string &wanted, ParameterPlace &place, std::string &choice,
+                          const std::string &what, int word)
   {
-    const std::string what = "random " + random.name;
-    const auto refuse = [&](const std::string &why) {
-      throw MaterialError(random.word, what + ": " + why);
-    };
     UsedLaw *owner = nullptr;
-    RandomParameter r = {random, -1, -1, static_cast<int>(variables.size()), nullptr};
-    std::string choice = "density";
     const auto consider = [&](UsedLaw &law, int term, int k) {
       const LawInfo &info = *law.info;
       const std::string name = term < 0 ? std::string(info.parameters[k].name)
@@ -505,19 +822,32 @@ class ComposedMaterial : public Material {
       const std::string of_part = std::string(part_name[law.part]) + "." + name;
       const std::string of_law = std::string(info.name) + "." + name;
       const bool by_law = law.part == CLOSED || law.part == VISCOSITY;
-      choice += ", " + (by_law ? of_law : of_part);
-      if (random.name != name && random.name != of_part && !(by_law && random.name == of_law))
-        return;
-      if (owner) refuse("several laws of this material have it: choose " + choice);
+      choice += (choice.empty() ? "" : ", ") + (by_law ? of_law : of_part);
+      if (wanted != name && wanted != of_part && !(by_law && wanted == of_law)) return;
+      if (owner)
+        throw MaterialError(word,
+                            what + ": several laws of this material have it: choose " + choice);
       owner = &law;
-      r.term = term;
-      r.parameter = k;
+      place = {term, k};
     };
     for (auto &law : laws) {
       for (int k = 0; k < law.info->nparameters; k++) consider(law, -1, k);
       for (int term = 0; term < law.parameters.nterms; term++)
         for (int k = 0; k < law.info->nterm_parameters; k++) consider(law, term, k);
     }
+    return owner;
+  }
+
+  /** density or a parameter */
+  void add(const UsedRandom &random)
+  {
+    const std::string what = "random " + random.name;
+    const auto refuse = [&](const std::string &why) {
+      throw MaterialError(random.word, what + ": " + why);
+    };
+    RandomParameter r = {random, {-1, -1}, static_cast<int>(variables.size()), nullptr};
+    std::string choice = "density";
+    UsedLaw *const owner = find_parameter(random.name, r, choice, what, random.word);
     const bool of_density = random.name == "density";
     if (!owner && !of_density) refuse("no such parameter: choose one of " + choice);
     const double mean = of_density ? rho : r.of(owner->parameters);
@@ -526,8 +856,7 @@ class ComposedMaterial : public Material {
              ", which a factor does not change: give it another one");
     bool twice = of_density && random_density;
     if (owner)
-      for (const auto &other : owner->random)
-        twice = twice || (other.term == r.term && other.parameter == r.parameter);
+      for (const auto &other : owner->random) twice = twice || other == r;
     if (twice) refuse("is given twice");
     r.field = std::make_shared<const RandomField>(random.length, random.seed);
     if (of_density)
@@ -537,6 +866,64 @@ class ComposedMaterial : public Material {
     variables.push_back({"random/" + random.name, 1.0});
     text += ", " + what + (random.lognormal ? " lognormal " : " normal ") +
         number(random.variation) + " " + number(random.length) + " " + std::to_string(random.seed);
+  }
+
+  /** A parameter that depends on the temperature: in range and fit for its law at all temperatures. */
+  void add(const UsedVary &vary)
+  {
+    const std::string what = "vary " + vary.name;
+    const auto refuse = [&](const std::string &why) {
+      throw MaterialError(vary.word, what + ": " + why);
+    };
+    WarmParameter w = {{-1, -1}, vary.factor};
+    std::string choice;
+    UsedLaw *const owner = find_parameter(vary.name, w, choice, what, vary.word);
+    if (!owner) refuse("no such parameter: choose one of " + choice);
+    const LawInfo &info = *owner->info;
+    const Parameter &declared = w.declaration(info);
+    const bool of_capacity = owner->part == THERMAL && !strcmp(declared.name, "CP");
+    const bool of_conduction = owner->part == THERMAL && declared.name[0] == 'K';
+    if (owner->part == THERMAL && !of_capacity && !of_conduction &&
+        strcmp(declared.option, "expansion") != 0)
+      refuse("of a thermal part, only CP, the conductivities, and the coefficient of expansion can "
+             "vary");
+    const double given = w.of(owner->parameters);
+    if (given == 0.0 || !std::isfinite(given) || !strcmp(declared.unit, FLAG))
+      refuse("its value is " + number(given) +
+             ", which a factor does not change: give it another one");
+    for (const auto &other : of_conduction ? conducting : owner->warm)
+      if (other == w) refuse("is given twice");
+    if (of_capacity) {
+      if (capacity_factor) refuse("is given twice");
+      if (!vary.factor.is_table()) refuse("the specific heat needs a table");
+      if (static_cast<int>(vary.factor.knots().size()) + law::HeatCurve::MORE >
+          LawParameters::MAX_TERMS)
+        refuse("a table of the specific heat can have " +
+               std::to_string(LawParameters::MAX_TERMS - law::HeatCurve::MORE) + " entries");
+      capacity_factor = std::make_unique<const TemperatureFactor>(vary.factor);
+    } else if (of_conduction) {
+      conducting.push_back(w);
+    } else {
+      owner->warm.push_back(w);
+    }
+    for (const double T : vary.factor.knots()) {
+      const double value = given * vary.factor.at(T);
+      if ((of_capacity || of_conduction) && !declared.range.contains(value))
+        refuse("it is " + number(value) + " at the temperature " + number(T) +
+               ", which is out of range");
+    }
+    for (const auto &of_knots : owner->warm)
+      for (const double T : of_knots.factor.knots()) {
+        LawParameters p = owner->parameters;
+        for (const auto &other : owner->warm) other.of(p) *= other.factor.at(T);
+        const double value = w.of(p);
+        const char *const wrong = info.check(p);
+        if (!std::isfinite(value) || !declared.range.contains(value))
+          refuse("it is " + number(value) + " at the temperature " + number(T) +
+                 ", which is out of range");
+        if (wrong) refuse("at the temperature " + number(T) + ", " + info.name + ": " + wrong);
+      }
+    text += ", " + what + vary.text;
   }
 
   void add(const UsedRange &range)

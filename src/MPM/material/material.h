@@ -14,6 +14,7 @@
 
 #include "transfer/kernels.h"
 
+#include <algorithm>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -23,10 +24,11 @@ namespace MPM_NS {
 
 /** Kinds of work that a law reports, in energy summed over the points of a batch. */
 enum Work {
-  PLASTIC,     ///< plastic work
-  VISCOUS,     ///< work of viscous stress
-  HEAT,        ///< part of these two that became heat
-  FRACTURE,    ///< work spent on damage, and on friction between fragments
+  PLASTIC,          ///< plastic work
+  VISCOUS,          ///< work of viscous stress
+  HEAT,             ///< part of these two that became heat
+  FRACTURE,         ///< work spent on damage, and on friction between fragments
+  THERMOELASTIC,    ///< of stress on thermal strain, and of moduli that change with temperature
   NWORK
 };
 
@@ -96,8 +98,19 @@ struct Melting {
 /** What the conduction of heat needs to know of a point. */
 struct Conduction {
   double capacity;        ///< specific heat [energy/(mass temperature)]
-  double conductivity;    ///< [power/(length temperature)]
+  double conductivity;    ///< [power/(length temperature)], along axis 1 if orthotropic
   Melting melting;
+  bool by_enthalpy;    ///< the temperature follows from heat by Material::warm() only
+  bool
+      orthotropic;    ///< along the axes in the reference configuration, which turn with the material
+  double across[2];     ///< conductivity along axes 2 and 3
+  double axis[3][3];    ///< unit vectors
+
+  /** The greatest. */
+  double most() const
+  {
+    return orthotropic ? std::max(conductivity, std::max(across[0], across[1])) : conductivity;
+  }
 };
 
 /** What is wrong with the definition of a material, and which of its words is to blame. */
@@ -138,11 +151,17 @@ class Material {
   /** Does it resist a shear at rest? Not an equation of state with or without a viscosity. */
   virtual bool is_solid() const = 0;
 
+  /** Does its stress change with the temperature, by expansion or by parameters? Then it has the work
+   *  THERMOELASTIC. */
+  virtual bool is_thermoelastic() const = 0;
+
   /** Does it conduct heat? Then its history has the temperature and, if it melts, the molten fraction. */
   virtual bool conducts() const = 0;
   /** Of a point with this history (null: the mean of all points); varies: does that matter? */
   virtual Conduction conduction(const double *history) const = 0;
   virtual bool conduction_varies() const = 0;
+  /** Heat per mass comes to a point with this history: temperature and molten fraction. */
+  virtual void warm(double *history, double heat) const = 0;
 
   /** All history variables of a new point at x; throws std::runtime_error when it cannot be. */
   virtual void initialize(const double *x, double *history) const = 0;

@@ -17,6 +17,7 @@
 //   at most one          thermal adiabatic | conducting | constant ...
 //   any number of        range QUANTITY LOW HIGH
 //   any number of        random PARAMETER lognormal | normal COV LENGTH SEED
+//   any number of        vary PARAMETER table T F ... | linear | power | exponential | arrhenius ...
 //
 // in any order. What follows the name of a law is in the declaration of its parameters.
 
@@ -96,6 +97,8 @@ class Parser {
         parse_range();
       else if (keyword == "random")
         parse_random(here);
+      else if (keyword == "vary")
+        parse_vary();
       else if (find(declared_laws(CLOSED), keyword) >= 0)
         parse_law(CLOSED, here);
       else if (part < NPARTS)
@@ -104,7 +107,7 @@ class Parser {
         fail(here,
              "unknown keyword '" + keyword + "': expected density, " +
                  join(names(declared_laws(CLOSED)), ", ") +
-                 ", eos, strength, viscosity, damage, thermal, range or random");
+                 ", eos, strength, viscosity, damage, thermal, range, random or vary");
     }
     check();
     const LawTable *table = LawTable::select(isa);
@@ -198,6 +201,54 @@ class Parser {
     material.random.push_back(r);
   }
 
+  /** vary PARAMETER table T1 F1 T2 F2 ... | FORMULA C TREF LOW HIGH */
+  void parse_vary()
+  {
+    static const char *const formulas[] = {"linear", "power", "exponential", "arrhenius"};
+    const int word = next;
+    if (at_end()) fail(next, "vary: name of the parameter is missing");
+    const std::string name = words[next++], what = "vary " + name;
+    const int from = next;
+    const std::string kind = at_end() ? "" : words[next++];
+    const auto number_of = [&](const char *symbol, const char *unit, const char *meaning) {
+      return parse_number(what + " " + kind, symbol, unit, meaning, {-UNBOUNDED, UNBOUNDED, false});
+    };
+    const auto text = [&]() {
+      std::string text;
+      for (int k = from; k < next; k++) text += " " + words[k];
+      return text;
+    };
+    if (kind == "table") {
+      std::vector<double> T, factor;
+      while (T.size() < 2 || (!at_end() && looks_numeric(words[next]))) {
+        T.push_back(number_of("T", "temperature", "temperature of an entry of the table"));
+        if (T.size() > 1 && !(T.back() > T[T.size() - 2]))
+          fail(next - 1, what + ": the temperatures of a table must increase");
+        factor.push_back(number_of("F", "1", "factor of the parameter at this temperature"));
+      }
+      const TemperatureFactor table(T, factor);
+      material.vary.push_back({word, name, text(), table});
+      return;
+    }
+    const auto *const formula = std::find(std::begin(formulas), std::end(formulas), kind);
+    if (formula == std::end(formulas))
+      fail(from, what + ": expected table, linear, power, exponential or arrhenius");
+    const auto index = static_cast<TemperatureFactor::Formula>(formula - formulas);
+    const bool absolute = index == TemperatureFactor::POWER ||
+        index == TemperatureFactor::ARRHENIUS;
+    static const char *const units[] = {"1/temperature", "1", "1/temperature", "temperature"};
+    const double c = number_of("C", units[index], "coefficient of the formula");
+    const int behind = next;
+    const double reference = number_of("TREF", "temperature", "temperature at which it is one");
+    const double low = number_of("TLOW", "temperature", "lower limit of the formula");
+    const double high = number_of("THIGH", "temperature", "upper limit of the formula");
+    if (!(low < high)) fail(next - 1, what + ": TLOW must be less than THIGH");
+    if (absolute && !(reference > 0.0 && low > 0.0))
+      fail(behind, what + ": " + kind + " needs absolute temperatures: TREF and TLOW above zero");
+    material.vary.push_back(
+        {word, name, text(), TemperatureFactor(index, c, reference, low, high)});
+  }
+
   /** here: word of the law's name; next is behind it. */
   void parse_law(Part part, int here)
   {
@@ -273,14 +324,17 @@ class Parser {
   {
     const int here = next;
     std::vector<std::string> choices;
-    int match = -1;
+    int match = -1, length = 0;
     for (int k = 0; k < info.nparameters; k++) {
       if (!*info.parameters[k].option) continue;
       const auto option = split(info.parameters[k].option);
       if (option[0] != words[here]) continue;
       const bool fits = option.size() == 1 ||
           (here + 1 < static_cast<int>(words.size()) && option[1] == words[here + 1]);
-      if (match < 0 && fits) match = k;
+      if (fits && static_cast<int>(option.size()) > length) {
+        match = k;
+        length = option.size();
+      }
       if (option.size() > 1 && (choices.empty() || choices.back() != option[1]))
         choices.push_back(option[1]);
     }
@@ -299,6 +353,16 @@ class Parser {
       value[k] = flag ? 1.0 : parse_number(what + " " + option, p.name, p.unit, p.meaning, p.range);
     }
     return true;
+  }
+
+  /** Was an option of the law given a value of its own? */
+  static bool has_option(const UsedLaw &law, const char *option)
+  {
+    for (int k = 0; k < law.info->nparameters; k++) {
+      const Parameter &p = law.info->parameters[k];
+      if (!strcmp(p.option, option) && law.parameters.value[k] != p.standard) return true;
+    }
+    return false;
   }
 
   /** Parts that do not go together. */
@@ -339,6 +403,31 @@ class Parser {
                std::string("'") + law.info->name +
                    "' with these parameters depends on the temperature: add 'thermal adiabatic' "
                    "with the specific heat, or 'thermal constant'");
+    if (!material.vary.empty() && !has(THERMAL))
+      fail(material.vary[0].word,
+           "vary " + material.vary[0].name +
+               ": without a thermal part there is no temperature: add 'thermal adiabatic' with the "
+               "specific heat, or 'thermal constant'");
+    if (has(EOS) && has(THERMAL)) {
+      const UsedLaw &thermal = material.laws[THERMAL][0], &eos = material.laws[EOS][0];
+      const bool expands =
+          thermal.info->expansion && thermal.info->expansion(thermal.parameters) != 0.0;
+      if (expands && has(DAMAGE) && has_option(material.laws[DAMAGE][0], "weibull"))
+        refuse(DAMAGE,
+               ": 'weibull' does not go with 'expansion', which would change the volume to which a "
+               "strength belongs: use 'random SIGMA'");
+      if (expands && eos.info->expands)
+        refuse(THERMAL,
+               ": 'expansion' does not go with '" + title(eos) +
+                   "', whose internal energy makes it expand already: leave it out, or use eos "
+                   "linear or tait");
+      if (thermal.info->fracture_share && thermal.info->fracture_share(thermal.parameters) > 0.0 &&
+          eos.info->expands)
+        refuse(THERMAL,
+               ": 'fracture' does not go with '" + title(eos) +
+                   "', whose internal energy would not get this heat: leave it out, or use eos "
+                   "linear or tait");
+    }
     if (has(DAMAGE) && material.shares_stress())
       refuse(DAMAGE,
              " does not go with a viscosity that adds to the stress on which a strength or law "

@@ -12,6 +12,7 @@
 // The definition of a material as the parser hands it over to the composition.
 
 #include "law/law.h"
+#include "material/temperature_factor.h"
 
 #include <cstdio>
 
@@ -31,19 +32,43 @@ struct UsedRandom {
   long seed;
 };
 
-/** A parameter that differs from point to point: its value is the mean times a factor, which is a
- *  history variable. */
-struct RandomParameter : UsedRandom {
+/** A parameter that depends on the temperature, in a definition. */
+struct UsedVary {
+  int word;    ///< of the name in the definition
+  std::string name, text;
+  TemperatureFactor factor;
+};
+
+/** A parameter among those of its law. */
+struct ParameterPlace {
   int term;         ///< of the option that is given several times, -1: not of a term
   int parameter;    ///< in the declaration of its law
-  int row;          ///< of the factor in the history of the material
-  std::shared_ptr<const RandomField> field;
 
-  /** The parameter among those of its law, constant or not. */
+  /** Its value, constant or not. */
   template <class Parameters> auto &of(Parameters &p) const
   {
     return term < 0 ? p.value[parameter] : p.term[term][parameter];
   }
+  const Parameter &declaration(const LawInfo &info) const
+  {
+    return (term < 0 ? info.parameters : info.term_parameters)[parameter];
+  }
+  bool operator==(const ParameterPlace &other) const
+  {
+    return term == other.term && parameter == other.parameter;
+  }
+};
+
+/** A parameter that differs from point to point: its value is the mean times a factor, which is a
+ *  history variable. */
+struct RandomParameter : UsedRandom, ParameterPlace {
+  int row;    ///< of the factor in the history of the material
+  std::shared_ptr<const RandomField> field;
+};
+
+/** A parameter that depends on the temperature: its value is the given one times a factor. */
+struct WarmParameter : ParameterPlace {
+  TemperatureFactor factor;
 };
 
 /** A law with its parameters in a material. */
@@ -59,6 +84,7 @@ struct UsedLaw {
   int history = 0;                        ///< first row of its history
   const LawKernels *kernels = nullptr;    ///< for the instruction set that runs
   std::vector<RandomParameter> random;    ///< its own parameters that differ from point to point
+  std::vector<WarmParameter> warm;        ///< those that depend on the temperature
   bool varies = false;                    ///< do its LawParameters differ from point to point?
   /** Is it a strength whose plastic work is all turned into heat by the damage? */
   bool heats_alone = false;
@@ -77,6 +103,7 @@ struct MaterialDefinition {
   std::vector<UsedLaw> laws[NPARTS];
   std::vector<UsedRange> ranges;
   std::vector<UsedRandom> random;
+  std::vector<UsedVary> vary;
 
   /** Does a viscosity add to that share of the stress on which a law builds in the next step? */
   bool shares_stress() const

@@ -9,6 +9,7 @@
 #include "transfer/isa.h"
 
 #include "transfer/kernels.h"
+#include "transfer/scalar.h"
 #include "transfer/smoothing.h"
 
 #include <cstdlib>
@@ -19,6 +20,8 @@ namespace MPM_NS {
 MPM_DECLARE_ISA(const MPMKernels *, mpm_kernels, const char *isa)
 const MPMKernels *mpm_kernels_reference();
 MPM_DECLARE_ISA(SmoothingKernels, mpm_kernels_smoothing, int dim, Shape)
+MPM_DECLARE_ISA(ScalarKernels, mpm_kernels_scalar, int dim, Shape)
+ScalarKernels mpm_kernels_scalar_reference(int dim, Shape);
 }    // namespace MPM_NS
 
 using namespace MPM_NS;
@@ -72,6 +75,17 @@ SmoothingKernels SmoothingKernels::select(const MPMKernels &kernels, int dim, Sh
   for (int set = BASE; set <= V4; set++)
     if (std::strcmp(kernels.isa, sets[set]) == 0) return tables[set](dim, shape);
   return {};
+}
+
+ScalarKernels ScalarKernels::select(const MPMKernels &kernels, int dim, Shape shape)
+{
+  ScalarKernels (*const tables[])(int, Shape) = MPM_ALL_ISA(mpm_kernels_scalar);
+  for (int set = BASE; set <= V4 && !has_domain(shape); set++)
+    if (std::strcmp(kernels.isa, sets[set]) == 0) {
+      const ScalarKernels fast = tables[set](dim, shape);
+      if (fast.prepare) return fast;
+    }
+  return mpm_kernels_scalar_reference(dim, shape);
 }
 
 const MPMKernels *MPMKernels::select(const char *name)

@@ -1,0 +1,138 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MPM_LAW_HEAT_CURVE_H
+#define MPM_LAW_HEAT_CURVE_H
+
+// Heat that a material has at a temperature, when its specific heat depends on that or it melts over a range.
+
+#include "law/law.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace MPM_NS::law {
+namespace {
+
+  /** Enthalpy per mass as a function H(T) of the temperature: between knots the specific heat is linear in T, before the
+   *  first and behind the last one constant. The knots are the terms {T, specific heat, its slope, H} of the
+   *  parameters of a thermal part. Where melting takes no range, a knot without specific heat is the end of the solid, and
+   *  the next one, at the same temperature, the beginning of the melt.
+   *
+   *  A point has its temperature and its molten fraction f. Heat changes H, from which both follow: none is lost,
+   *  however long the step. */
+  struct HeatCurve {
+    enum { TEMPERATURE, CAPACITY, SLOPE, ENTHALPY };
+
+    const LawParameters &p;
+    double melt, latent, over;
+
+    static bool is_curved(const LawParameters &p) { return p.nterms > 0; }
+
+    /** Makes the knots, from a specific heat cp times factors at temperatures that increase (none: constant). */
+    static void make(LawParameters &p, const std::vector<double> &table,
+                     const std::vector<double> &factor, double cp, double melt, double latent,
+                     double over)
+    {
+      std::vector<double> T = table;
+      if (latent > 0.0) {
+        T.push_back(melt);
+        if (over > 0.0) T.push_back(melt + over);
+      }
+      std::sort(T.begin(), T.end());
+      T.erase(std::unique(T.begin(), T.end()), T.end());
+      const auto c = [&](double t) {
+        if (table.empty()) return cp;
+        if (t <= table.front()) return cp * factor.front();
+        if (t >= table.back()) return cp * factor.back();
+        const std::size_t k = std::upper_bound(table.begin(), table.end(), t) - table.begin();
+        const double share = (t - table[k - 1]) / (table[k] - table[k - 1]);
+        return cp * (factor[k - 1] + share * (factor[k] - factor[k - 1]));
+      };
+      p.nterms = 0;
+      double H = 0.0;
+      const auto add = [&](double t, double capacity, double slope) {
+        double *const knot = p.term[p.nterms++];
+        knot[TEMPERATURE] = t;
+        knot[CAPACITY] = capacity;
+        knot[SLOPE] = slope;
+        knot[ENTHALPY] = H;
+      };
+      const double before = T.front() - 1.0;
+      add(before, c(before), 0.0);
+      H += c(before);
+      for (std::size_t k = 0; k < T.size(); k++) {
+        if (latent > 0.0 && over == 0.0 && T[k] == melt) {
+          add(melt, 0.0, 0.0);
+          H += latent;
+        }
+        const bool last = k + 1 == T.size();
+        const double width = last ? 1.0 : T[k + 1] - T[k];
+        const double slope = last ? 0.0 : (c(T[k + 1]) - c(T[k])) / width;
+        const bool melting = over > 0.0 && T[k] >= melt && T[k] < melt + over;
+        const double capacity = c(T[k]) + (latent > 0.0 && melting ? latent / over : 0.0);
+        add(T[k], capacity, slope);
+        H += width * (capacity + 0.5 * slope * width);
+      }
+    }
+    /** Knots that make() needs at the most, besides those of a table. */
+    static constexpr int MORE = 4;
+
+    /** The last knot at or below a temperature, or the first one. */
+    MPM_INLINE const double *below(double T) const
+    {
+      int k = 0;
+      while (k + 1 < p.nterms && T >= p.term[k + 1][TEMPERATURE]) k++;
+      return p.term[k];
+    }
+    /** In equilibrium; at the temperature of melting that of a melt. */
+    MPM_INLINE double molten_at(double T) const
+    {
+      if (!(latent > 0.0)) return 0.0;
+      if (over == 0.0) return T < melt ? 0.0 : 1.0;
+      const double f = (T - melt) / over;
+      return f < 0.0 ? 0.0 : (f > 1.0 ? 1.0 : f);
+    }
+    MPM_INLINE double enthalpy(double T, double molten) const
+    {
+      const double *const k = below(T), d = T - k[TEMPERATURE];
+      const double slope = d < 0.0 ? 0.0 : k[SLOPE];
+      return k[ENTHALPY] + d * (k[CAPACITY] + 0.5 * slope * d) + latent * (molten - molten_at(T));
+    }
+    /** Specific heat, without that of melting. With it, points that begin to melt in a step would take
+     *  what the nodes have got of it too late, and the error of a front be eight times as large. */
+    MPM_INLINE double capacity(double T) const
+    {
+      const double *const k = below(T), d = T - k[TEMPERATURE];
+      const bool melting = over > 0.0 && T >= melt && T < melt + over;
+      return k[CAPACITY] + (d < 0.0 ? 0.0 : k[SLOPE] * d) - (melting ? latent / over : 0.0);
+    }
+    /** Heat comes to a point. */
+    MPM_INLINE void warm(double heat, double &T, double *molten) const
+    {
+      const double H = enthalpy(T, molten ? *molten : 0.0) + heat;
+      int n = 0;
+      while (n + 1 < p.nterms && H >= p.term[n + 1][ENTHALPY]) n++;
+      const double *const k = p.term[n], rest = H - k[ENTHALPY];
+      if (k[CAPACITY] == 0.0) {
+        T = k[TEMPERATURE];
+        *molten = rest / latent;
+        return;
+      }
+      const double slope = rest < 0.0 ? 0.0 : k[SLOPE];
+      T = k[TEMPERATURE] +
+          2.0 * rest / (k[CAPACITY] + std::sqrt(k[CAPACITY] * k[CAPACITY] + 2.0 * slope * rest));
+      // round-off may bring a solid to the temperature of melting
+      if (molten) *molten = over > 0.0 ? molten_at(T) : (melt <= k[TEMPERATURE] ? 1.0 : 0.0);
+    }
+  };
+
+}    // namespace
+}    // namespace MPM_NS::law
+#endif

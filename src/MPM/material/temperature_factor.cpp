@@ -1,0 +1,39 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "material/temperature_factor.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace MPM_NS;
+
+TemperatureFactor::TemperatureFactor(Formula formula, double c, double reference, double low,
+                                     double high) :
+    T({low, high}),
+    formula(formula), c(c), reference(reference)
+{
+}
+
+double TemperatureFactor::at(double temperature) const
+{
+  const double t = std::min(std::max(temperature, T.front()), T.back());
+  if (factor.empty()) switch (formula) {
+      case LINEAR:
+        return 1.0 + c * (t - reference);
+      case POWER:
+        return std::pow(t / reference, c);
+      case EXPONENTIAL:
+        return std::exp(c * (t - reference));
+      case ARRHENIUS:
+        return std::exp(c * (1.0 / t - 1.0 / reference));
+    }
+  if (!(t < T.back())) return factor.back();
+  const std::size_t k = std::upper_bound(T.begin(), T.end(), t) - T.begin() - 1;
+  return factor[k] + (factor[k + 1] - factor[k]) * ((t - T[k]) / (T[k + 1] - T[k]));
+}

@@ -1,0 +1,205 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "mpm_node_scalar.h"
+
+#include "mpm_field.h"
+#include "mpm_passes.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+/* ---------------------------------------------------------------------- */
+
+void MPMNodeScalar::init(bool with_slopes, bool with_volumes)
+{
+  slopes = with_slopes;
+  volumes = with_volumes;
+  const int dim = field.lattice.dim;
+  const Shape shape = field.options.shape;
+  kernels = ScalarKernels::select(*field.kernels, dim, shape);
+  moments = shape_constants[shape].inv_moment > 0.0;
+  const int nodes = has_domain(shape) ? domain_tile_nodes(dim)
+                                      : tile_nodes(dim, stencil_order(shape));
+  for (auto &tile : tiles) tile.assign(nodes + MORE, 0.0);
+}
+
+/** Calls f(run, first, n, prepare) for batches of the points of a block that have a part; prepare() makes their
+ *  stencil. f returns false for a run that has none. */
+template <class F>
+void MPMNodeScalar::visit(const MPMPointMap::ActiveBlock &block, SlopeKind kind, int *box,
+                          const F &f)
+{
+  int base[3];
+  field.map->tile_base(block, base);
+  const PointRows rows = field.rows();
+  const TransferStep step = field.step_data(0.0);
+  for (int k = block.first_run; k < block.last_run; k++) {
+    const auto &run = field.map->runs[k];
+    for (int i = run.first; has_part[k] && i < run.last; i += BATCH) {
+      const int n = std::min(BATCH, run.last - i);
+      has_part[k] = f(run, i, n, [&] {
+        kernels.prepare(rows_from(field, rows, i), step, n, base, kind, stencil, box);
+      });
+    }
+  }
+}
+
+void MPMNodeScalar::sum(std::vector<double> &nodes) const
+{
+  field.nodes.sum(nodes.data(), 1, 0, 1);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMNodeScalar::points_to_nodes(const Fill &fill)
+{
+  const std::size_t nnodes = field.grid.nnodes();
+  capacity.assign(nnodes, 0.0);
+  value.assign(nnodes, 0.0);
+  rate.resize(nnodes);
+  if (volumes) volume.assign(nnodes, 0.0);
+  has_part.assign(field.map->runs.size(), 1);
+  Points points;
+  double q[4 * BATCH];
+  double *const of_value = tiles[0].data(), *const of_capacity = tiles[1].data(),
+                *const of_volume = tiles[2].data();
+  for (auto &block : field.map->active) {
+    int *const box = block.other_box;
+    reset_box(box);
+    visit(block, DISTANCE_SLOPES, box, [&](const auto &run, int first, int n, const auto &prepare) {
+      if (!fill(run, first, n, points)) return false;
+      prepare();
+      if (slopes) {
+        for (int p = 0; p < n; p++) {
+          const double C = points.capacity[p];
+          for (int d = 0; d < 3; d++) q[4 * p + d] = C * points.slope[3 * p + d];
+          q[4 * p + 3] = C * points.value[p];
+        }
+        kernels.add(stencil, q, of_value);
+      } else {
+        for (int p = 0; p < n; p++) q[p] = points.capacity[p] * points.value[p];
+        kernels.add_values(stencil, q, of_value);
+      }
+      kernels.add_values(stencil, points.capacity, of_capacity);
+      if (volumes) kernels.add_values(stencil, points.volume, of_volume);
+      return true;
+    });
+    if (box[0] > box[3]) continue;
+    const int *const slot = field.grid.blocks[block.slot].slot;
+    kernels.flush(of_value, value.data(), slot, box);
+    kernels.flush(of_capacity, capacity.data(), slot, box);
+    if (volumes) kernels.flush(of_volume, volume.data(), slot, box);
+  }
+  sum(value);
+  sum(capacity);
+  if (volumes) sum(volume);
+  for (std::size_t k = 0; k < nnodes; k++)
+    value[k] = capacity[k] > 0.0 ? value[k] / capacity[k] : 0.0;
+  before = value;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMNodeScalar::find_rates(const Conduct &conduct)
+{
+  std::fill(rate.begin(), rate.end(), 0.0);
+  field.nodes.complete(value.data(), 1, 1);
+  double q[BATCH][4];
+  double *const tile = tiles[0].data(), *const from = tiles[1].data();
+  for (const auto &block : field.map->active) {
+    if (block.other_box[0] > block.other_box[3]) continue;
+    const int *const slot = field.grid.blocks[block.slot].slot;
+    kernels.load(from, value.data(), slot, block.other_box);
+    visit(block, GRADIENT_SLOPES, nullptr,
+          [&](const auto &run, int first, int n, const auto &prepare) {
+            prepare();
+            kernels.get(stencil, from, q[0]);
+            conduct(run, first, n, q);
+            kernels.add(stencil, q[0], tile);
+            return true;
+          });
+    kernels.flush(tile, rate.data(), slot, block.other_box);
+  }
+  std::fill(tiles[1].begin(), tiles[1].end(), 0.0);
+  sum(rate);
+  for (std::size_t k = 0; k < rate.size(); k++)
+    rate[k] = capacity[k] > 0.0 ? rate[k] / capacity[k] : 0.0;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double MPMNodeScalar::greatest_rate(const Conduct &bound)
+{
+  std::fill(rate.begin(), rate.end(), 0.0);
+  double q[BATCH][4];
+  double *const tile = tiles[0].data();
+  for (const auto &block : field.map->active) {
+    if (block.other_box[0] > block.other_box[3]) continue;
+    visit(block, ABSOLUTE_SLOPES, nullptr,
+          [&](const auto &run, int first, int n, const auto &prepare) {
+            prepare();
+            bound(run, first, n, q);
+            for (int p = 0; p < n; p++) {
+              for (int d = 0; d < 3; d++) q[p][d] *= 2.0 / field.lattice.h;
+              q[p][3] = 0.0;
+            }
+            kernels.add(stencil, q[0], tile);
+            return true;
+          });
+    kernels.flush(tile, rate.data(), field.grid.blocks[block.slot].slot, block.other_box);
+  }
+  sum(rate);
+  double most = 0.0;
+  for (std::size_t k = 0; k < rate.size(); k++) {
+    rate[k] = capacity[k] > 0.0 ? rate[k] / capacity[k] : 0.0;
+    most = std::max(most, rate[k]);
+  }
+  return most;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMNodeScalar::nodes_to_points(const Take &take, bool changes)
+{
+  field.nodes.complete(value.data(), 1, 1);
+  if (changes) field.nodes.complete(before.data(), 1, 1);
+  const double h = field.lattice.h;
+  const double factor = moments ? shape_constants[field.options.shape].inv_moment / (h * h) : 1.0;
+  double q[BATCH][4], old[BATCH];
+  double *const now = tiles[1].data(), *const then = tiles[2].data();
+  for (const auto &block : field.map->active) {
+    if (block.other_box[0] > block.other_box[3]) continue;
+    const int *const slot = field.grid.blocks[block.slot].slot;
+    kernels.load(now, value.data(), slot, block.other_box);
+    if (changes) kernels.load(then, before.data(), slot, block.other_box);
+    visit(block, moments ? DISTANCE_SLOPES : GRADIENT_SLOPES, nullptr,
+          [&](const auto &run, int first, int n, const auto &prepare) {
+            prepare();
+            kernels.get(stencil, now, q[0]);
+            for (int p = 0; p < n && moments; p++)
+              for (int d = 0; d < 3; d++) q[p][d] *= factor;
+            if (changes) kernels.get_values(stencil, then, old);
+            take(run, first, n, q, changes ? old : nullptr);
+            return true;
+          });
+  }
+  std::fill(tiles[1].begin(), tiles[1].end(), 0.0);
+  std::fill(tiles[2].begin(), tiles[2].end(), 0.0);
+}
+
+double MPMNodeScalar::memory_usage() const
+{
+  double bytes = 0.0;
+  for (const auto *list :
+       {&capacity, &volume, &value, &before, &rate, &tiles[0], &tiles[1], &tiles[2]})
+    bytes += list->capacity() * sizeof(double);
+  return bytes;
+}

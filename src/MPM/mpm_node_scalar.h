@@ -1,0 +1,88 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_NODE_SCALAR_H
+#define LMP_MPM_NODE_SCALAR_H
+
+#include "material/batch.h"
+#include "mpm_point_map.h"
+#include "transfer/scalar.h"
+
+#include <functional>
+#include <vector>
+
+namespace LAMMPS_NS {
+class MPMField;
+
+/** A scalar that spreads between the points of a field by way of the nodes: temperature, or the pressure of pore
+ *  water. With the capacities C_p of points, what a unit of the scalar in a point takes,
+ *
+ *    C_i = sum_p C_p N_ip,  u_i = sum_p C_p N_ip [u_p + g_p . (x_i - x_p)]/C_i,
+ *    C_i du_i/dt = sum_p q_p . grad N_ip + sum_p s_p N_ip,
+ *
+ *  with the flux times the volume, q_p = -V_p (flow per area), and the rate s_p of sources in points, both of which may
+ *  depend on the scalar and its gradient there. As sums of weights are one and N_ip (x_i - x_p) have none, sum_i C_i
+ *  u_i is what the points have, and fluxes do not change it.
+ *
+ *  Functions of the user are called with batches of points of a run. */
+class MPMNodeScalar {
+ public:
+  static constexpr int MORE = 8;    ///< kernels may read a little more
+
+  /** What the points [first,first+n) of a run have. */
+  struct Points {
+    double value[MPM_NS::BATCH], capacity[MPM_NS::BATCH];
+    double slope[3 * MPM_NS::BATCH];    ///< [n][3] gradients g_p, if there are any
+    double volume[MPM_NS::BATCH];       ///< if volumes of nodes are wanted
+  };
+  /** What points get: [n][4] gradient x y z, or g_p in nodes_to_points(), and value. */
+  using Rows = double (*)[4];
+  /** false: this run has no part, until the next call of points_to_nodes(). */
+  using Fill = std::function<bool(const MPMPointMap::Run &, int first, int n, Points &)>;
+  /** In: gradient and value at points; out: q_p and s_p. */
+  using Conduct = std::function<void(const MPMPointMap::Run &, int first, int n, Rows)>;
+  /** New slopes g_p and values; before: values at points by the nodes before, or null. */
+  using Take =
+      std::function<void(const MPMPointMap::Run &, int first, int n, Rows, const double *before)>;
+
+  /** Of each node. Those of this rank's points and sums over ranks are the same on all ranks that share a node;
+   *  copies at periodic faces are not up to date. */
+  std::vector<double> capacity, volume, value, before, rate;
+
+  explicit MPMNodeScalar(MPMField &field) : field(field) {}
+
+  /** Start of a run. slopes: points have gradients g_p; volumes: those of nodes are wanted. */
+  void init(bool slopes, bool volumes);
+  /** Capacities, volumes, and values of nodes; before = value. */
+  void points_to_nodes(const Fill &);
+  /** Rates of the values of nodes. */
+  void find_rates(const Conduct &);
+  /** A bound of the eigenvalues of minus the rates, by the rows of their matrix [1/time], of this rank; not with domains.
+   *  bound: out: V_p sum_e |k_de| for each axis d, with the tensor k of a linear flux. */
+  double greatest_rate(const Conduct &bound);    // the rows stay in the place of rates
+  /** changes: give the values of before, too. */
+  void nodes_to_points(const Take &, bool changes);
+
+  double memory_usage() const;
+
+ private:
+  MPMField &field;
+  MPM_NS::ScalarKernels kernels;
+  bool slopes = false, volumes = false;
+  bool moments = false;    // g_p is the fit of moving least squares
+  std::vector<double> tiles[3];
+  std::vector<char> has_part;    // [runs]
+  MPM_NS::ScalarStencil stencil;
+
+  template <class F>
+  void visit(const MPMPointMap::ActiveBlock &, MPM_NS::SlopeKind, int *box, const F &);
+  void sum(std::vector<double> &nodes) const;
+};
+
+}    // namespace LAMMPS_NS
+#endif

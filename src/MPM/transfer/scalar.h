@@ -1,0 +1,62 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MPM_TRANSFER_SCALAR_H
+#define MPM_TRANSFER_SCALAR_H
+
+#include "transfer/kernels.h"
+
+namespace MPM_NS {
+
+/** What is meant by the slopes of the weights w of a point. */
+enum SlopeKind {
+  GRADIENT_SLOPES,    ///< grad N, with respect to the place of the point
+  DISTANCE_SLOPES,    ///< N (x_i - x_p), the first moment about the point
+  ABSOLUTE_SLOPES     ///< |dN/dx| along each axis, for bounds; not with domains
+};
+
+/** The nodes that a batch of points reaches, made once for any number of transfers. */
+struct ScalarStencil {
+  int n = 0;
+  int place[BATCH];                         ///< first node in the tile
+  alignas(64) double w[BATCH][3][4];        ///< weights along each axis
+  alignas(64) double slope[BATCH][3][4];    ///< what takes their place in slopes
+
+  // of the plain loops, which look at the points again
+
+  PointRows points;
+  TransferStep step;
+  int base[3];
+  SlopeKind kind;
+};
+
+/** Transfers of one number between the points of a batch and the tile of their block, an entry of which is one real.
+ *  Tiles are those of the other transfers but for that, see kernels.h. Each entry of a tile must be a number,
+ *  whether or not a point reaches it.
+ *
+ *  Points have rows of four reals: one for the slopes along each axis (z is not used in 2d), and one for the weights. */
+struct ScalarKernels {
+  /** The stencils of the points [0,n), n <= BATCH. box: as for P2G, or null. */
+  void (*prepare)(const PointRows &, const TransferStep &, int n, const int base[3], SlopeKind,
+                  ScalarStencil &, int *box);
+  /** tile += sum over points of N_ip q[4p+3] + slope_ip . q[4p ... 4p+2]. */
+  void (*add)(const ScalarStencil &, const double *q, double *tile);
+  /** tile += sum over points of N_ip q[p]. */
+  void (*add_values)(const ScalarStencil &, const double *q, double *tile);
+  /** The other way: q[4p+3] = sum over nodes of N_ip tile_i, q[4p ... 4p+2] = that of slope_ip tile_i. */
+  void (*get)(const ScalarStencil &, const double *tile, double *q);
+  void (*get_values)(const ScalarStencil &, const double *tile, double *q);
+  /** As TileIO, with one real for each node. */
+  TileIO flush, load;
+
+  /** Those that go with a table of transfers. Shapes with domains (CPDI) have the plain loops in all of them. */
+  static ScalarKernels select(const MPMKernels &, int dim, Shape);
+};
+
+}    // namespace MPM_NS
+#endif

@@ -1,0 +1,422 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// labels: unit
+
+// Stress that depends on the temperature, point by point: thermal expansion of all laws, parameters that
+// vary with the temperature, and the heat that comes of compression.
+
+#include "material/material_testing.h"
+#include "material/random_field.h"
+#include "material/temperature_factor.h"
+
+using namespace MPM_NS;
+using namespace material_testing;
+
+namespace {
+
+/** Sets the temperature of a point, as conduction does. */
+void warm_to(MaterialPoint &p, double T)
+{
+  const int k = row(p.material, "temperature");
+  for (int i = 0; i < p.batch.n; i++) p.batch.history[k][i] = T;
+}
+
+bool has(const std::string &text, const std::string &word)
+{
+  return text.find(word) != std::string::npos;
+}
+
+/** A definition with another thermal part. */
+std::string with_thermal(const std::string &text, const std::string &thermal)
+{
+  return std::regex_replace(text,
+                            std::regex(" thermal [a-z]+( -?[0-9][0-9.e]*)*"
+                                       "( gruneisen [0-9.]+| melt [0-9.]+ [0-9.]+)*"),
+                            "") +
+      " thermal " + thermal;
+}
+
+/** Samples that can have an expansion: all but those whose energy expands them. */
+std::vector<Sample> expandable()
+{
+  std::vector<Sample> list;
+  for (const auto &sample : samples)
+    if (!std::regex_search(sample.text,
+                           std::regex("eos (shock|polynomial|ideal|stiffened|jwl)|weibull")))
+      list.push_back(sample);
+  return list;
+}
+
+constexpr const char *NO_HEAT = "adiabatic 1e30 300 0";    // a point whose own heat is nothing
+
+}    // namespace
+
+// with an expansion, a law has the stress, speed, and energy that it has without it at F/theta
+TEST(Expansion, IsTakenOutOfTheMotionOfAnyLaw)
+{
+  constexpr double ALPHA = 1e-3;
+  RandomMatrix random(3);
+  int n = 0;
+  for (const auto &sample : expandable()) {
+    SCOPED_TRACE(sample.name);
+    const double T0 = has(sample.text, " 20 ") ? 20 : 300;
+    const std::string none = joined("adiabatic 1e30 ", T0, " 0");
+    Point p(joined(with_thermal(sample.text, none), " expansion ", ALPHA), 1, 0.01);
+    Point q(with_thermal(sample.text, none), 1, 0.01);
+    Matrix F = IDENTITY;
+    // laws that depend on the temperature get the same one
+    const bool depends = has(sample.text, "thermal") || has(sample.text, "temperature");
+    for (int i = 1; i <= 40; i++, n++) {
+      Matrix A = random(0.002);
+      for (int k = 0; k < 9; k++) A[k] += IDENTITY[k];
+      F = A * F;
+      const double T = T0 + 200 * std::sin(0.1 * i), theta = std::exp(ALPHA * (T - T0));
+      warm_to(p, T);
+      if (depends) warm_to(q, T);
+      move_to(p, isotropic(theta) * F);
+      move_to(q, F);
+      const double size_of = size(stress_of(q)) + 1e-6 * q.wave_speed() * q.wave_speed() * 1000;
+      ASSERT_LT(distance(stress_of(p), stress_of(q)), 1e-9 * size_of);
+      ASSERT_NEAR(p.stored_energy(), q.stored_energy() * theta * theta * theta,
+                  1e-9 * std::fabs(q.stored_energy()) + 1e-12 * size_of);
+    }
+    if (!has(sample.text, "viscosity"))
+      EXPECT_NEAR(p.wave_speed(), q.wave_speed() * std::exp(1.5 * ALPHA * 200 * std::sin(4.0)),
+                  1e-8 * q.wave_speed());
+  }
+  EXPECT_GT(n, 30 * 40);
+}
+
+// no stress when nothing hinders the expansion, at small and at 30 % strain, in one step and in many
+TEST(Expansion, FreeBodyHasNoStress)
+{
+  for (const char *law :
+       {"neohookean 1e6 0.3", "hencky 1e6 0.3", "linear 1e6 0.3",
+        "orthotropic 11e6 0.9e6 0.5e6 0.4 0.45 0.5 0.7e6 0.65e6 0.05e6 axes 1 2 0 0 1 1 angle 20",
+        "eos linear 1e6 strength j2 5e5 1e3 hardening linear 1e4",
+        "eos linear 1e6 strength johnson/cook 5e5 1e3 1e3 0.3 0.01 1 1 1e4 0", "eos linear 1e6",
+        "eos tait 1e6 7", "drucker/prager 1e6 0.3 30 cohesion 1e3", "gurson 1e6 0.3 1e3 0.01"})
+    for (const double strain : {1e-6, 0.3})
+      for (const int n : {1, 50}) {
+        SCOPED_TRACE(joined(law, " ", strain, " ", n));
+        Point p(joined("density 1000 ", law, " thermal adiabatic 1e30 300 0 expansion ",
+                       std::log1p(strain) / 100));
+        for (int i = 1; i <= n; i++) {
+          warm_to(p, 300 + 100.0 * i / n);
+          move_to(p, isotropic(std::pow(1 + strain, double(i) / n)));
+        }
+        for (int k = 0; k < 6; k++) EXPECT_NEAR(p.stress(k), 0.0, 1e-8 * strain * 1e6 + 1e-9);
+        EXPECT_NEAR(p.stored_energy(), 0.0, 1e-8);
+      }
+}
+
+// a bar between walls, with free sides: -E ALPHA dT, and for 30 % the stress of a compression to 1/1.3
+TEST(Expansion, ClampedBar)
+{
+  MixedControl clamped;
+  clamped.stress_given[1] = clamped.stress_given[2] = true;
+  for (const char *law : {"neohookean 1e6 0.3", "hencky 1e6 0.3", "linear 1e6 0.3",
+                          "eos linear 833333.333333333 strength elastic 384615.384615385",
+                          "orthotropic 1e6 1e6 1e6 0.3 0.3 0.3 384615.384615385 384615.384615385 "
+                          "384615.384615385"}) {
+    SCOPED_TRACE(law);
+    const std::string text = joined("density 1000 ", law, " thermal ", NO_HEAT, " expansion ");
+    Point p(text + "1e-6");
+    warm_to(p, 301);
+    p.step(clamped, 1.0);
+    EXPECT_NEAR(p.stress(0), -1.0, 1e-5);
+    Point q(joined(text, std::log(1.3) / 100)), r(joined("density 1000 ", law));
+    for (int i = 1; i <= 100; i++) {
+      warm_to(q, 300 + i);
+      q.step(clamped, 1.0);
+      r.step_uniaxial_stress(-std::log(1.3) / 100, 1.0);
+    }
+    EXPECT_NEAR(q.stress(0), r.stress(0), 1e-9 * std::fabs(r.stress(0)));
+    EXPECT_NEAR(q.stress(1), 0.0, 1e-6);
+  }
+}
+
+// the power of the stress is what laws store and dissipate and what the thermal strain has taken
+TEST(Expansion, EnergyBalance)
+{
+  for (const char *law :
+       {"neohookean 1e6 0.3", "linear 1e6 0.3", "eos linear 1e6 strength j2 5e5 1e3",
+        "eos tait 1e6 7 viscosity newtonian 10", "hencky 1e6 0.3 viscosity maxwell term 2e5 0.1",
+        "drucker/prager 1e6 0.3 35 cohesion 2e4",
+        "eos linear 1e6 strength j2 5e5 1e4 damage cockcroft/latham 2e3 soften from 0.1"}) {
+    SCOPED_TRACE(law);
+    const auto material =
+        make(joined("density 1000 ", law, " thermal ", NO_HEAT, " expansion 1e-3"));
+    double scale = 0.0, taken = 0.0;
+    const auto error = refined(250, [&](int n) {
+      MaterialPoint p(*material, 1, 0.01);
+      double worst = 0.0;
+      for (int i = 0; i < n; i++) {
+        const double t = (i + 0.5) / n;
+        warm_to(p, 300 + 100 * std::sin(5 * t));
+        steps(p, Matrix{0.1, 0.1 * std::cos(7 * t), 0, 0, -0.2 * t, 0.05, 0.1, 0, 0.08}, 1.0 / n);
+        const double energy = p.stored_energy() + p.work[PLASTIC] + p.work[VISCOUS] +
+            p.work[FRACTURE] + p.work[THERMOELASTIC];
+        worst = std::max(worst, std::fabs(energy - p.power));
+        scale = std::max(scale, std::fabs(p.power));
+        taken = std::max(taken, std::fabs(p.work[THERMOELASTIC]));
+      }
+      return worst;
+    });
+    EXPECT_LT(error[2], 1e-2 * scale);
+    EXPECT_GT(taken, 0.05 * scale);
+    EXPECT_GT(std::log2(error[0] / error[2]), 2 * 0.85)
+        << error[0] / scale << " " << error[2] / scale;
+  }
+}
+
+// GAMMA = 3 K ALPHA/(density CP): compression warms, and is stiffer by 1 + (3 ALPHA)^2 K T/(density CP)
+TEST(Expansion, ConsistentCoupling)
+{
+  const double K = 70e9 / (3 * (1 - 2 * 0.33)), alpha = 23e-6, capacity = 2700.0 * 900;
+  const double gamma = 3 * K * alpha / capacity;
+  for (const std::string law :
+       {std::string("linear 70e9 0.33"), std::string("hencky 70e9 0.33"),
+        joined("eos linear ", K, " strength j2 26e9 1e8"), joined("eos tait ", K, " 4")}) {
+    SCOPED_TRACE(law);
+    const std::string text =
+        joined("density 2700 ", law, " thermal adiabatic 900 293 0.9 expansion ", alpha);
+    Point p(text + " gruneisen consistent"), q(text);
+    const double J = 1 - 1e-5;
+    for (MaterialPoint *point : {(MaterialPoint *) &p, (MaterialPoint *) &q})
+      move_to(*point, isotropic(std::cbrt(J)));
+    const double dT = value(p, "temperature") - 293;
+    EXPECT_NEAR(dT / (293 * gamma * 1e-5), 1.0, 2e-4);
+    EXPECT_EQ(value(q, "temperature"), 293);
+    const double stiffer = 1 + 9 * alpha * alpha * K * 293 / capacity;
+    EXPECT_NEAR(p.pressure() / q.pressure(), stiffer, 1e-4 * (stiffer - 1) + 1e-7);
+    EXPECT_GT(p.wave_speed(), q.wave_speed() * (1 + 1e-3));
+    EXPECT_LE(p.wave_speed(), q.wave_speed() * std::sqrt(stiffer) * (1 + 1e-6));
+    // back again
+    move_to(p, IDENTITY);
+    EXPECT_NEAR(value(p, "temperature"), 293, 1e-10);
+    EXPECT_NEAR(p.pressure(), 0.0, 1e-9 * K);
+  }
+}
+
+TEST(Expansion, EachPointStartsFromItsOwnTemperature)
+{
+  if (!RandomField::available()) GTEST_SKIP() << "no FFTW";
+  Point p("density 1000 linear 1e6 0.3 thermal adiabatic 1e30 300 0 expansion 1e-3 "
+          "random T0 lognormal 0.1 0.1 5 random ALPHA lognormal 0.3 0.1 6");
+  const double T0 = value(p, "temperature"), alpha = 1e-3 * value(p, "random/ALPHA");
+  EXPECT_GT(std::fabs(T0 - 300), 0.1);
+  move_to(p, IDENTITY);
+  EXPECT_EQ(p.pressure(), 0.0);
+  warm_to(p, T0 + 100);
+  move_to(p, isotropic(std::exp(100 * alpha)));
+  EXPECT_NEAR(p.pressure(), 0.0, 1e-8);
+}
+
+TEST(Expansion, BadInputIsRefused)
+{
+  expect_refused(
+      {{"eos shock 1 1 1 thermal adiabatic 1 1 expansion 1", "makes it expand already", 8},
+       {"eos jwl 1 1 1 1 1 1 1 thermal adiabatic 1 1 expansion 1", "makes it expand already"},
+       {"eos ideal/gas 1.4 pressure 1 thermal conducting 1 1 1 expansion 1", "leave it out"},
+       {"linear 1 0 thermal adiabatic 1 1 gruneisen consistent", "add 'expansion ALPHA'"},
+       {"linear 1 0 thermal adiabatic 1 1 gruneisen 1 gruneisen consistent", "given twice"},
+       {"linear 1 0 thermal constant 1 expansion 1", "unknown keyword 'expansion'"},
+       {"linear 1 0 thermal adiabatic 1 1 expansion", "ALPHA is missing"},
+       {"orthotropic 11 0.9 0.5 0.4 0.45 0.5 0.7 0.65 0.05 thermal adiabatic 1 1 expansion 1 "
+        "gruneisen consistent",
+        "not isotropic"},
+       {"eos linear 1 strength elastic 1 damage rankine 1 weibull 5 1 7 thermal adiabatic 1 1 "
+        "expansion 1",
+        "random SIGMA"},
+       {"eos shock 1 1 1 strength elastic 1 thermal adiabatic 1 1 fracture 1", "would not get"}},
+      "density 1 ");
+}
+
+/* ---------------------------------------------------------------------- parameters */
+
+// with a parameter that varies, a law is at each temperature the one with that value
+TEST(Vary, IsTheLawWithThatValue)
+{
+  struct {
+    std::string law, other, vary;
+  } cases[] = {
+      {"neohookean 1e6 0.3", "neohookean 0.5e6 0.3", "vary E table 300 1 500 0"},
+      {"neohookean 1e6 0.3", "neohookean 1e6 0.15", "vary NU linear -0.005 300 250 500"},
+      {"eos tait 1e6 7", "eos tait 2e6 7",
+       "vary eos.K exponential 0.00693147180559945 300 200 700"},
+      {"ogden 2e6 term 0.63e6 2", "ogden 2e6 term 0.315e6 2", "vary MU1 table 0 1 400 0.5 500 0.4"},
+      {"hencky 1e6 0.3", "hencky 1777777.77777778 0.3", "vary E power 2 300 200 700"},
+      {"eos linear 1e6 viscosity newtonian 10",
+       "eos linear 1e6 viscosity newtonian 4.345982085070782",
+       "vary newtonian.MU arrhenius 1000 300 200 700"}};
+  for (const auto &c : cases) {
+    SCOPED_TRACE(c.vary);
+    Point p(joined("density 1000 ", c.law, " thermal ", NO_HEAT, " ",
+                   has(c.vary, "table 300") ? "vary E table 300 1 500 0.0000000001" : c.vary));
+    Point q("density 1000 " + c.other);
+    warm_to(p, 400);
+    const Matrix F = {1.1, 0.2, 0, 0, 0.95, 0.1, 0, 0, 1};
+    move_to(p, F);
+    move_to(q, F);
+    EXPECT_LT(distance(stress_of(p), stress_of(q)), 1e-9 * size(stress_of(q)));
+    EXPECT_NEAR(p.stored_energy(), q.stored_energy(), 1e-9 * q.stored_energy() + 1e-12);
+    EXPECT_NEAR(p.wave_speed(), q.wave_speed(), 1e-9 * q.wave_speed());
+  }
+}
+
+TEST(Vary, TableIsConstantOutside)
+{
+  const TemperatureFactor table({100, 200, 400}, {1, 0.5, 2});
+  EXPECT_EQ(table.at(-1e9), 1);
+  EXPECT_EQ(table.at(100), 1);
+  EXPECT_DOUBLE_EQ(table.at(150), 0.75);
+  EXPECT_EQ(table.at(200), 0.5);
+  EXPECT_DOUBLE_EQ(table.at(300), 1.25);
+  EXPECT_EQ(table.at(400), 2);
+  EXPECT_EQ(table.at(1e9), 2);
+  const TemperatureFactor line(TemperatureFactor::LINEAR, -0.001, 300, 200, 900);
+  EXPECT_DOUBLE_EQ(line.at(0), 1.1);
+  EXPECT_DOUBLE_EQ(line.at(400), 0.9);
+  EXPECT_DOUBLE_EQ(line.at(2000), 0.4);
+}
+
+// a rate-form law keeps its stress when its moduli change, an elastic potential its strain: what that
+// adds to the stored energy or takes from it is accounted for
+TEST(Vary, EnergyBalance)
+{
+  for (const char *law :
+       {"neohookean 1e6 0.3", "linear 1e6 0.3", "eos tait 1e6 7 strength j2 1e6 1e3"}) {
+    SCOPED_TRACE(law);
+    const bool fluid = has(law, "eos");
+    const auto material = make(joined("density 1000 ", law, " thermal ", NO_HEAT, " vary ",
+                                      fluid ? "strength.G" : "E", " table 300 1 400 0.5",
+                                      fluid ? " vary SIGMAY linear -0.004 300 300 400" : ""));
+    double scale = 0.0;
+    const auto error = refined(250, [&](int n) {
+      MaterialPoint p(*material, 1, 0.01);
+      double worst = 0.0;
+      for (int i = 0; i < n; i++) {
+        const double t = (i + 0.5) / n;
+        warm_to(p, 350 - 50 * std::cos(5 * t));
+        steps(p, Matrix{0.1, 0.1 * std::cos(7 * t), 0, 0, -0.2 * t, 0.05, 0.1, 0, 0.08}, 1.0 / n);
+        const double energy = p.stored_energy() + p.work[PLASTIC] + p.work[THERMOELASTIC];
+        worst = std::max(worst, std::fabs(energy - p.power));
+        scale = std::max(scale, std::fabs(p.power));
+      }
+      return worst;
+    });
+    EXPECT_LT(error[2], 1e-2 * scale);
+    if (error[2] > 1e-5 * scale)
+      EXPECT_GT(std::log2(error[0] / error[2]), 2 * 0.85)
+          << error[0] / scale << " " << error[2] / scale;
+  }
+  Point p(joined("density 1000 linear 1e6 0.3 thermal ", NO_HEAT, " vary E table 300 1 400 0.5"));
+  move_to(p, uniaxial_stretch(1.01));
+  const double stress = p.stress(0), stored = p.stored_energy();
+  warm_to(p, 400);
+  move_to(p, uniaxial_stretch(1.01));
+  EXPECT_DOUBLE_EQ(p.stress(0), stress);
+  EXPECT_NEAR(p.stored_energy(), 2 * stored, 1e-10 * stored);
+  EXPECT_NEAR(p.work[THERMOELASTIC], -stored, 1e-10 * stored);
+}
+
+// the coefficient of expansion, too: it is the mean one from T0 on
+TEST(Vary, CoefficientOfExpansion)
+{
+  Point p(joined("density 1000 linear 1e6 0.3 thermal ", NO_HEAT,
+                 " expansion 1e-4 vary ALPHA table 300 1 500 2"));
+  for (const double T : {350, 450, 600}) {
+    const double factor = T < 500 ? 1 + (T - 300) / 200 : 2;
+    warm_to(p, T);
+    move_to(p, isotropic(std::exp(1e-4 * factor * (T - 300))));
+    EXPECT_NEAR(p.pressure(), 0.0, 1e-8);
+  }
+}
+
+// adiabatic shear of a metal that softens by what its own work heats it (G.I. Taylor, H. Quinney 1934):
+// dT = DTM [1 - exp(-CHI tau0 gamma/(density CP DTM))], tau0 = sigma0/sqrt(3)
+TEST(Vary, AdiabaticShear)
+{
+  const double rho = 7830, cp = 477, chi = 0.9, DTM = 1500, sigma0 = 500e6;
+  const std::string start = "density 7830 eos linear 162.7e9 strength ",
+                    thermal = " thermal adiabatic 477 293 0.9";
+  for (const std::string law :
+       {"j2 79.46e9 500e6" + thermal + " vary SIGMAY linear -0.000666666666666667 293 293 1792",
+        "johnson/cook 79.46e9 500e6 0 1 0 1 1 1793 293" + thermal}) {
+    SCOPED_TRACE(law);
+    Point p(start + law);
+    for (const double gamma : {1.0, 5.0}) {
+      while (std::sqrt(3.0) * value(p, "eplastic") < gamma - 1e-9)
+        steps(p, {0, gamma == 1.0 ? 1e-3 : 5e-3, 0, 0, 0, 0, 0, 0, 0}, 1.0);
+      const double strain = std::sqrt(3.0) * value(p, "eplastic");
+      const double dT =
+          DTM * (1 - std::exp(-chi * sigma0 / std::sqrt(3.0) * strain / (rho * cp * DTM)));
+      EXPECT_NEAR((value(p, "temperature") - 293) / dT, 1.0, gamma == 1.0 ? 1e-4 : 3e-4);
+      if (gamma == 1.0) {
+        EXPECT_NEAR(strain, 1.0, 2e-3);
+        EXPECT_NEAR(dT, 67.97364, 0.15);
+        EXPECT_NEAR(p.vonmises() / std::sqrt(3.0) / 275.5936e6, 1.0, 2e-4);
+      }
+    }
+    // what is not heat is stored in the metal
+    EXPECT_NEAR(p.work[HEAT], chi * p.work[PLASTIC], 1e-10 * p.work[PLASTIC]);
+    EXPECT_NEAR(rho * cp * (value(p, "temperature") - 293), p.work[HEAT], 1e-9 * p.work[HEAT]);
+  }
+  Point cold(start + "j2 79.46e9 500e6 thermal adiabatic 477 293 0");
+  steps(cold, {0, 1e-3, 0, 0, 0, 0, 0, 0, 0}, 1.0, 1000);
+  EXPECT_EQ(value(cold, "temperature"), 293);
+}
+
+TEST(Vary, BadInputIsRefused)
+{
+  const std::string bad = "linear 1 0.3 thermal adiabatic 1 300 vary ";
+  expect_refused({{"linear 1 0.3 vary E table 1 1 2 1", "add 'thermal adiabatic'", 6},
+                  {bad + "G table 1 1 2 1", "no such parameter: choose one of linear.E"},
+                  {bad + "E cubic 1 1 2 1", "expected table, linear, power"},
+                  {bad + "E table 1 1", "T is missing"},
+                  {bad + "E table 1 1 1 1", "must increase"},
+                  {bad + "E table 1 1 2 0", "vary E: it is 0 at the temperature 2, which is out"},
+                  {bad + "E linear -0.01 300 200 400", "it is 0 at the temperature 400"},
+                  {bad + "NU table 1 1 2 2", "vary NU: it is 0.6 at the temperature 2"},
+                  {bad + "E linear 1 300 400 200", "TLOW must be less"},
+                  {bad + "E power 1 0 200 400", "absolute temperatures"},
+                  {bad + "E arrhenius 1 300 -1 400", "absolute temperatures"},
+                  {bad + "E table 1 1 2 1 vary E table 1 1 2 1", "given twice"},
+                  {bad + "CP table 1 1 2 1", "only the coefficient of expansion"},
+                  {bad + "ALPHA table 1 1 2 1", "its value is 0"},
+                  {"eos tait 1 7 cutoff -0.1 thermal adiabatic 1 300 vary K table 1 1 2 0.5",
+                   "at the temperature 2, tait: PMIN is never reached"}},
+                 "density 1 ");
+}
+
+/* ---------------------------------------------------------------------- sources */
+
+// the work of damage becomes heat as far as one says so
+TEST(Sources, WorkOfDamage)
+{
+  for (const double share : {0.0, 0.4, 1.0})
+    for (const char *damage : {"strength j2 26e9 1e8 damage cockcroft/latham 2e6 soften from 0.1",
+                               "strength elastic 26e9 damage rankine 1e7 soften energy 1e2"}) {
+      SCOPED_TRACE(joined(damage, " ", share));
+      Point p(joined("density 2700 eos linear 70e9 ", damage,
+                     " thermal adiabatic 900 293 0.8 fracture ", share),
+              1, 0.01);
+      double energy = 0.0;
+      for (int i = 0; i < 2000; i++) {
+        steps(p, diagonal(2e-5, -4e-6, -4e-6), 1.0);
+        energy = std::max(energy, p.stored_energy());
+      }
+      EXPECT_EQ(value(p, "damage"), 1.0);
+      EXPECT_GT(p.work[FRACTURE], 0.1 * energy);
+      const double heat = 0.8 * p.work[PLASTIC] + share * p.work[FRACTURE];
+      EXPECT_NEAR(p.work[HEAT], heat, 1e-9 * (heat + 1));
+      EXPECT_NEAR(2700 * 900 * (value(p, "temperature") - 293), heat, 1e-6 * (heat + 1));
+    }
+}

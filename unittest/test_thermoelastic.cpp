@@ -1,0 +1,393 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: physics mpi restart
+// mpi: 1 4
+// timeout: 300
+
+// Bodies whose stress depends on their temperature, with and without fix mpm/heat.
+
+#include "mpm_lammps.h"
+
+#include <complex>
+#include <set>
+
+using namespace MPM_TEST;
+
+namespace {
+
+/** Sets T = f(x) of all points with a temperature. */
+template <class F> void set_temperature(Scene &run, const F &f)
+{
+  for (auto *fix : run.lmp->modify->get_fix_by_style("^mpm/material$")) {
+    auto *const material = dynamic_cast<FixMPMMaterial *>(fix);
+    const int column = material->find_history("temperature");
+    for (int i = 0; i < run.n(); i++)
+      if (run.lmp->atom->mask[i] & material->groupbit) material->history[i][column] = f(run.x()[i]);
+  }
+}
+
+/** Mean of f(i) over the points of all ranks where it is finite. */
+template <class F> double mean_of(Scene &run, const F &f)
+{
+  double sum = 0.0, n = 0.0;
+  for (int i = 0; i < run.n(); i++)
+    if (std::isfinite(f(i))) {
+      sum += f(i);
+      n++;
+    }
+  const auto all = over_ranks({sum, n});
+  return all[0] / all[1];
+}
+
+double stress_xx(Scene &run, int i)
+{
+  double s[6];
+  run.points().cauchy(i, s);
+  return s[0];
+}
+
+/** Mean temperature of a bar that is heated from one end, the other one held. */
+double mean_temperature(double t)
+{
+  double T = 0.5;
+  for (int k = 1; k < 400; k += 2) T -= 4.0 / (k * k * PI * PI) * std::exp(-k * k * PI * PI * t);
+  return T;
+}
+
+}    // namespace
+
+// A bar between walls whose ends are held at 1 and 0: -E ALPHA times the mean temperature; with a free end, the
+// displacement of that. Waves are fast and damped.
+PARAMETER_TEST(HeatedBar, IsQuasiStatic, bool, Values(true, false))
+{
+  const bool clamped = GetParam();
+  const int n = 20;
+  const double h = 1.0 / n, E = 1.0e4, alpha = 1.0e-4;
+  const double length = clamped ? 1.0 : 1.0 + 4 * h;
+  // Poisson's ratio is zero: the sides do not matter. The free end is held by no face of the box
+  Scene run(
+      plane("lj", "f p", strprintf("0 %.17g 0 %.17g", length, 4 * h), 1, 0.1 * h) +
+      "region bar block 0 1 INF INF INF INF\n" +
+      strprintf("create_points 1 region bar spacing %.17g\nfix grid all mpm %.17g\n", 0.5 * h, h) +
+      strprintf("fix m all mpm/material density 1.0 linear %g 0.0 viscosity newtonian 30 "
+                "thermal conducting 1.0 0.0 1.0 expansion %g\n",
+                E, alpha) +
+      "fix heat all mpm/heat xlo temperature 1.0 " + (clamped ? "xhi temperature 0.0" : "") +
+      "\nfix b all mpm/boundary xlo " + (clamped ? "xhi slip" : "slip") +
+      "\ncompute e all mpm/energy\nfix dt all mpm/dt 0.5\n");
+  std::vector<double> X(run.lmp->atom->natoms + 1);
+  for (int i = 0; i < run.n(); i++) X[run.lmp->atom->tag[i]] = run.x()[i][0];
+  std::vector<double> all(X.size());
+  MPI_Allreduce(X.data(), all.data(), (int) X.size(), MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+  for (const double t : {0.05, 0.1, 0.3}) {
+    if (!clamped && t == 0.05) continue;    // it still swings
+    run.commands(strprintf("fix until all halt 1 v_time >= %g error continue\n", t)
+                     .insert(0, "variable time equal time\n"));
+    run.commands("run 20000\nunfix until\n");
+    const double now = run.time();
+    if (clamped) {
+      const double stress = mean_of(run, [&](int i) {
+        return stress_xx(run, i);
+      });
+      EXPECT_NEAR(measured(strprintf("stress, t %g", t), stress / (E * alpha)) /
+                      -mean_temperature(now),
+                  1.0, 0.01);
+    } else {
+      // insulated end: integral of T = 1 - sum 4/(k pi) sin(k pi x/2) exp(-(k pi/2)^2 t) up to the mean place of
+      // the last cell
+      double T = 1.0 - 0.5 * h;
+      for (int k = 1; k < 400; k += 2)
+        T -= 8.0 / (k * k * PI * PI) * std::exp(-0.25 * k * k * PI * PI * now) *
+            (1.0 - std::cos(0.5 * k * PI * (1.0 - 0.5 * h)));
+      const double u = mean_of(run, [&](int i) {
+        const double x = all[run.lmp->atom->tag[i]];
+        return x > 1.0 - h ? run.x()[i][0] - x : NAN;
+      });
+      EXPECT_NEAR(measured(strprintf("end, t %g", t), u / alpha) / T, 1.0, 0.02);
+    }
+  }
+  const double *const e = run.compute_vector();
+  EXPECT_NEAR(e[10], 0.0, 1e-12 * std::fabs(e[4]) + 1e-14);
+}
+
+namespace {
+
+/** Amplitude of the thermoelastic mode at t by the roots of (s^2 + k^2)(s + K k^2) + delta k^2 s = 0, k = pi:
+ *  u = U sin(pi x), from rest. */
+double mode(double delta, double K, double t)
+{
+  using C = std::complex<double>;
+  const double k2 = PI * PI;
+  // roots of s^3 + a s^2 + b s + c by iteration of all three (E. Durand, I. Kerner)
+  const double a = K * k2, b = k2 * (1 + delta), c = k2 * K * k2;
+  C r[3] = {C(0.4, 3.0), C(0.4, -3.0), C(-a, 0.1)};
+  for (int it = 0; it < 200; it++)
+    for (int j = 0; j < 3; j++) {
+      const C s = r[j];
+      r[j] -= (((s + a) * s + b) * s + c) / ((s - r[(j + 1) % 3]) * (s - r[(j + 2) % 3]));
+    }
+  // sum c_j = 1, sum c_j r_j = 0, sum c_j (r_j^2 + k2) = 0
+  C U = 0.0;
+  for (int j = 0; j < 3; j++) {
+    const C p = r[(j + 1) % 3], q = r[(j + 2) % 3];
+    U += (p * q - k2) / ((r[j] - p) * (r[j] - q)) * std::exp(r[j] * t);
+  }
+  return U.real();
+}
+
+struct Mode {
+  double delta, K;
+  int cells;
+};
+
+}    // namespace
+
+// One standing wave between rollers whose compressions are warm, and lose heat to the expansions: in the same
+// law the frequency is between the isothermal and the adiabatic one, and the wave decays
+PARAMETER_TEST(ThermoelasticMode, HasItsFrequencyAndDecay, Mode,
+               Values(Mode{0.1, 1 / PI, 40}, Mode{0.5, 1 / PI, 40}, Mode{0.1, 0.01, 80},
+                      Mode{0.1, 10.0, 40}))
+{
+  const Mode m = GetParam();
+  EXPECT_NEAR(mode(0.1, 1 / PI, 2.0), 0.8273139, 1e-7);
+  EXPECT_NEAR(mode(0.1, 1 / PI, 6.0), 0.5521195, 1e-7);
+  const int n = m.cells;
+  const double h = 1.0 / n, amplitude = 1e-4;
+  Scene run(
+      plane("lj", "f p", strprintf("0 1 0 %.17g", 4 * h), 1, 0.1 * h) +
+      strprintf("create_points 1 box spacing %.17g\nfix grid all mpm %.17g transfer flip 1.0\n",
+                0.5 * h, h) +
+      strprintf(
+          "fix m all mpm/material density 1.0 eos linear 1.0 thermal conducting 1.0 1.0 %.17g "
+          "expansion %.17g gruneisen consistent\n",
+          m.K, std::sqrt(m.delta) / 3.0) +
+      "fix b all mpm/boundary xlo xhi slip\nfix heat all mpm/heat stages 64\n"
+      "compute e all mpm/energy\n");
+  auto *const material = run.material();
+  const int T = material->find_history("temperature");
+  std::vector<double> X(run.lmp->atom->natoms + 1), all(X.size());
+  for (int i = 0; i < run.n(); i++) {
+    double &x = run.x()[i][0];
+    X[run.lmp->atom->tag[i]] = x;
+    run.points().F[i][0] += amplitude * PI * std::cos(PI * x);
+    x += amplitude * std::sin(PI * x);
+  }
+  MPI_Allreduce(X.data(), all.data(), (int) X.size(), MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+  const auto U = [&]() {
+    return mean_of(run,
+                   [&](int i) {
+                     const double x = all[run.lmp->atom->tag[i]];
+                     return 2.0 * (run.x()[i][0] - x) * std::sin(PI * x);
+                   }) /
+        amplitude;
+  };
+  // kinetic, elastic (at the first temperature), and thermal energy of the linear theory; no energy of the
+  // ledger goes astray
+  const auto energy = [&]() {
+    const double *const e = run.compute_vector();
+    EXPECT_NEAR(e[10], 0.0, 1e-14);
+    double sum = 0.0;
+    for (int i = 0; i < run.n(); i++)
+      sum += 0.5 * run.mass()[i] *
+          (std::pow(material->history[i][T] - 1.0, 2) + std::pow(run.points().F[i][0] - 1.0, 2));
+    return e[0] + over_ranks(sum);
+  };
+  const double dt = 0.2 * h;
+  run.commands(strprintf("timestep %.17g\nrun 0\n", dt));
+  const double start = energy();
+  double last = start, most = 0.0;
+  for (int k = 1; k <= 6; k++) {
+    run.commands(strprintf("run %d\n", (int) std::lround(1.0 / dt)));
+    const double now = energy();
+    most = std::max(most, (now - last) / start);
+    last = now;
+    if (k % 2 == 0)
+      EXPECT_NEAR(measured(strprintf("delta %g, K %.3g, U(%d)", m.delta, m.K, k), U()),
+                  mode(m.delta, m.K, k),
+                  0.01 * std::max(std::fabs(mode(m.delta, m.K, k)), 0.5521195));
+  }
+  EXPECT_LT(measured("largest growth of the energy", most), 1e-3);
+}
+
+namespace {
+
+/** A free strip of two layers. */
+struct Strip {
+  double E1, E2, h1, alpha1, alpha2, length;
+};
+std::string strip(const Strip &s, int cells, const std::string &grid)
+{
+  const double H = 0.1, h = H / cells;
+  const auto material = [&](const char *group, double E, double alpha) {
+    return strprintf("fix %s %s mpm/material density 1.0 linear %g %g "
+                     "thermal adiabatic 1e20 0.0 0 expansion %g\n",
+                     group, group, E, 0.0, alpha);
+  };
+  return plane("lj", "f f", "-0.2 1.2 -0.5 0.5", 2, 0.1 * h) +
+      strprintf("fix grid all mpm %.17g origin 0 0 %s\n", h, grid.c_str()) +
+      strprintf(
+             "region low block 0 %g 0 %.17g -0.5 0.5\nregion high block 0 %g %.17g 0.1 -0.5 0.5\n",
+             s.length, s.h1, s.length, s.h1) +
+      "create_points 1 region low ppc 2\ncreate_points 2 region high ppc 2\n"
+      "group one type 1\ngroup two type 2\n" +
+      material("one", s.E1, s.alpha1) + material("two", s.E2, s.alpha2);
+}
+
+/** Tags of the row of points that is the first one above y. */
+std::set<int> row_above(Scene &run, double y, double h)
+{
+  std::set<int> tags;
+  for (int i = 0; i < run.n(); i++)
+    if (run.x()[i][1] > y && run.x()[i][1] < y + 0.5 * h) tags.insert(run.lmp->atom->tag[i]);
+  return tags;
+}
+
+/** Curvature of a row of points: fit of a circle by y = a + b x + c (x^2 + y^2). */
+double curvature(Scene &run, const std::set<int> &tags)
+{
+  double M[9] = {}, r[3] = {};
+  for (int i = 0; i < run.n(); i++) {
+    if (!tags.count(run.lmp->atom->tag[i])) continue;
+    const double x = run.x()[i][0], y = run.x()[i][1];
+    const double row[3] = {1.0, x, x * x + y * y};
+    for (int a = 0; a < 3; a++) {
+      r[a] += row[a] * y;
+      for (int b = 0; b < 3; b++) M[3 * a + b] += row[a] * row[b];
+    }
+  }
+  const double det = MPM_NS::determinant(M);
+  double c[3];
+  for (int k = 0; k < 3; k++) {
+    double N[9];
+    std::copy(M, M + 9, N);
+    for (int a = 0; a < 3; a++) N[3 * a + k] = r[a];
+    c[k] = MPM_NS::determinant(N) / det;
+  }
+  // y = a + b x + c (x^2 + y^2) is a circle with this curvature
+  return 2.0 * c[2] / std::sqrt(1.0 + c[1] * c[1] - 4.0 * c[0] * c[2]);
+}
+
+}    // namespace
+
+// A strip of two metals bends when it is warmed (S. Timoshenko, J. Opt. Soc. Am. 11 (1925) 233), in the updated
+// and in the total frame
+PARAMETER_TEST(Bimetal, Bends, const char *, Values("", "frame total"))
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  for (const double E2 : {100.0, 50.0}) {
+    const Strip s = {100.0, E2, 0.05, 0.0, 1e-3, 1.0};
+    Scene run(strip(s, 8, GetParam()) + "fix damp all viscous 2.5e-4\ntimestep 5e-4\n");
+    const double dT = 5.0;    // for small strains; the benchmark has ten times as much
+    set_temperature(run, [&](const double *) {
+      return dT;
+    });
+    const auto middle = row_above(run, 0.05, 0.0125);
+    run.commands("run 6000\n");
+    const double m = 1.0, n = s.E1 / s.E2;
+    const double kappa = 6 * s.alpha2 * dT * (1 + m) * (1 + m) /
+        (0.1 * (3 * (1 + m) * (1 + m) + (1 + m * n) * (m * m + 1 / (m * n))));
+    EXPECT_NEAR(10.0 * kappa, E2 == 100.0 ? 0.75 : 0.727273, 1e-6);
+    EXPECT_NEAR(measured("curvature", -curvature(run, middle)) / kappa, 1.0, 0.02);
+  }
+}
+
+// A strip with a temperature that is linear through its depth bends without any stress
+SERIAL_TEST(Strip, BendsWithoutStress)
+{
+  const Strip s = {100.0, 100.0, 0.05, 1e-3, 1e-3, 0.5};
+  const int cells = 16;
+  Scene run(strip(s, cells, "") + "fix damp all viscous 2.5e-4\ntimestep 2.5e-4\n");
+  set_temperature(run, [&](const double *x) {
+    return 5.0 * x[1] / 0.1;
+  });
+  const auto middle = row_above(run, 0.05, 0.1 / cells);
+  run.commands("run 5000\n");
+  EXPECT_NEAR(measured("curvature", -curvature(run, middle)) / (1e-3 * 5.0 / 0.1), 1.0, 0.02);
+  double most = 0.0;
+  for (int i = 0; i < run.n(); i++)
+    if (run.x()[i][0] > 0.2 && run.x()[i][0] < 0.3)
+      most = std::max(most, std::fabs(stress_xx(run, i)));
+  EXPECT_LT(measured("stress", most / (100.0 * 1e-3 * 5.0)), 1e-3);
+}
+
+namespace {
+
+/** A disk that spins and flies across the lattice and a block that melts it, with uneven temperatures: stress by
+ *  expansion and by parameters that vary. */
+std::string collision(const std::string &heat)
+{
+  return plane("lj", "p p", "0 8 0 8", 3, 0.4) + "fix grid all mpm 0.5\n" +
+      bodies({{"one", "sphere 3 4 0 1.6 side in"}, {"two", "block 5 6.6 3 5 -0.5 0.5"}}) +
+      "fix m one mpm/material density 1.0 eos linear 20.0 strength j2 8.0 0.4 thermal conducting "
+      "1.5 1.0 0.4 expansion 0.02 gruneisen consistent vary SIGMAY linear -0.5 1.0 1.0 2.0\n"
+      "fix n two mpm/material density 2.0 hencky 30.0 0.2 thermal conducting 0.7 2.0 0.1 "
+      "expansion -0.01 vary E table 1.0 1.2 2.0 1.0 3.0 0.5\n"
+      "velocity one set 0.8 0.5 0\nvelocity two set -0.7 0.5 0\n" +
+      heat + "compute e all mpm/energy\ntimestep 0.02\n";
+}
+
+}    // namespace
+
+TEST(Ranks, Agree)
+{
+  OnRanks run(collision("fix heat all mpm/heat\n"), "run 90\n");
+  EXPECT_LT(run.difference(), 1e-12);
+}
+
+TEST(Restart, Continues)
+{
+  const std::string scene = collision("fix heat all mpm/heat\n");
+  const std::string tail = scene.substr(scene.find("fix m one"));
+  std::string fixes = "neighbor 0.4 bin\nfix grid all mpm 0.5\n";
+  for (std::size_t at = 0, end; at < tail.size(); at = end + 1) {
+    end = tail.find('\n', at);
+    if (tail.compare(at, 4, "fix ") == 0 || tail.compare(at, 7, "compute") == 0)
+      fixes += tail.substr(at, end - at) + "\n";
+  }
+  Continued run(scene, 30, fixes + "timestep 0.02\n", 30);
+  EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
+  const double *const one = run.whole.compute_vector(), *const two = run.again.compute_vector();
+  EXPECT_NE(one[17], 0.0);
+  EXPECT_EQ(one[17], two[17]);
+}
+
+// the ledger closes, and what expansion does is not among the errors of the laws
+TEST(Ledger, Closes)
+{
+  for (const int more : {1, 4}) {
+    Scene run(collision("fix heat all mpm/heat\n") +
+              strprintf("timestep %g\nrun %d\n", 0.02 / more, 100 * more));
+    const double *const e = run.compute_vector();
+    EXPECT_NEAR(e[10], 0.0, 1e-11);
+    EXPECT_LT(measured("thermoelastic", e[17]), -0.01);
+    EXPECT_LT(std::fabs(measured("laws", e[13])), -0.01 * e[17]);
+  }
+}
+
+// units change nothing, nor do they change the coupling of heat and stress: a block that is compressed
+SERIAL_TEST(Units, ChangeNothing)
+{
+  const auto temperature = [](const char *units, double length, double time, double density,
+                              double pressure, double heat) {
+    Scene run(plane(units, "p p", strprintf("0 %g 0 %g", 4 * length, 4 * length), 1, 0.1 * length) +
+              body("box",
+                   strprintf("density %.17g linear %.17g 0.3 thermal adiabatic %.17g 300 0.9 "
+                             "expansion 1e-5 gruneisen consistent",
+                             2700 * density, 70e9 * pressure, 900 * heat),
+                   strprintf("%g", length)) +
+              strprintf("variable v atom %.17g*sin(0.5*PI*x/%.17g)\nvelocity all set v_v 0 0\n"
+                        "timestep %.17g\nrun 20\n",
+                        10.0 * length / time, length, 2e-5 * time));
+    double most = 0.0;
+    const int T = run.material()->find_history("temperature");
+    for (int i = 0; i < run.n(); i++) most = std::max(most, run.material()->history[i][T]);
+    return most;
+  };
+  const double si = temperature("si", 1.0, 1.0, 1.0, 1.0, 1.0);
+  EXPECT_GT(measured("temperature", si), 300.02);
+  EXPECT_NEAR(temperature("cgs", 1e2, 1.0, 1e-3, 10.0, 1e4), si, 1e-9);
+  EXPECT_NEAR(temperature("micro", 1e6, 1e6, 1e-3, 1e-3, 1.0), si, 1e-9);
+  // metal: angstrom, ps, (g/mole)/angstrom^3, bar, eV/(g/mole K)
+  EXPECT_NEAR(temperature("metal", 1e10, 1e12, 0.602214076e-3, 1e-5, 1e-3 / 96485.33212), si, 1e-6);
+}
