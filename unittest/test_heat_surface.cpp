@@ -204,6 +204,22 @@ TEST(Ranks, Agree)
   EXPECT_NEAR(run.parallel.fix("heat")->compute_scalar() / one, 1.0, 1e-11);
 }
 
+// a region that moves through a periodic block in 3d, with lines beyond the last nodes that points reach
+TEST(Ranks, AgreeOnMovingRegions)
+{
+  const std::string scene = space("si", "f p f", "0 0.2 0 0.08 0 0.2", 1, 0.001) +
+      "region body block 0.05 0.15 INF INF 0 0.1\nvariable dx equal 0.5*time\n"
+      "region ball sphere 0.1 0.04 0.125 0.03 move v_dx NULL NULL\n"
+      "create_points 1 region body spacing 0.005\nfix grid all mpm 0.01 origin 0.002 0 0\n"
+      "fix m all mpm/material density 2700 eos linear 1e3 thermal conducting 900 300 200\n"
+      "fix heat all mpm/heat surface convection 500 273 region ball temperature 800 "
+      "zlo temperature 300\ntimestep 0.002\n";
+  OnRanks run(scene, "run 10\n");
+  const double one = run.serial.fix("heat")->compute_scalar();
+  EXPECT_GT(one, 100.0);
+  EXPECT_NEAR(run.parallel.fix("heat")->compute_scalar() / one, 1.0, 1e-11);
+}
+
 SERIAL_TEST(BadInput, IsRefused)
 {
   const std::string scene =

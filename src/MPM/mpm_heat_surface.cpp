@@ -85,7 +85,9 @@ bool MPMHeatSurfaces::near_wall(Wall &wall, const int *b) const
 
 void MPMHeatSurfaces::extend_topology()
 {
-  if (comm->nprocs == 1) return;
+  // with one rank, too, for lines through the surface of a region next to the last nodes that points reach
+  const bool all = has_free && comm->nprocs > 1;
+  if (!all && walls.empty()) return;
   const auto &blocks = body.field.grid.blocks;
   const auto nblocks = (int) blocks.size();
   for (auto &wall : walls)
@@ -93,7 +95,7 @@ void MPMHeatSurfaces::extend_topology()
   for (int ib = 0; ib < nblocks; ib++) {
     const int b[3] = {blocks[ib].b[0], blocks[ib].b[1], blocks[ib].b[2]};
     // a region that moves may come here until blocks are found again
-    if (has_free || std::any_of(walls.begin(), walls.end(), [&](Wall &wall) {
+    if (all || std::any_of(walls.begin(), walls.end(), [&](Wall &wall) {
           return wall.moves() || near_wall(wall, b);
         }))
       body.activate_around(b);
