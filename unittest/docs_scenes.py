@@ -155,7 +155,8 @@ def scene_for(lines):
             if re.search(r"\bfix %s\b" % name, text):
                 grid = "fix %s %s\n" % (name, rest)
     pairs = "pair_style mpm/penalty" in text
-    if "mpm/contact" in text or pairs:
+    heat_contact = re.search(r"mpm/heat .*\bcontact ", text)
+    if "mpm/contact" in text or pairs or heat_contact:
         named = BODIES[:2] if pairs else [word for word in text.split() if word in BODIES]
         grid = "".join("group %s type %d\nfix %s %s mpm 0.01\n" % (name, k + 1, name, name)
                        for k, name in enumerate(named))
@@ -167,6 +168,8 @@ def scene_for(lines):
     if mixture:
         grid = "".join("group %s type %d\nfix %s %s mpm 0.01\n" % (name, k + 1, name, name)
                        for k, name in enumerate(("soil", "water")))
+    if heat_contact:
+        before += "fix touch all mpm/contact %s\n" % " ".join(named)
     material = "" if "mpm/material" in text or own_field and grid == "" else MATERIAL
     soils = re.findall(r"\bsoil (\w+) ", text) if "mpm/pore" in text else []
     if soils:

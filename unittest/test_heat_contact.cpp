@@ -7,7 +7,7 @@
 
 // Fix mpm/heat contact: heat between bodies that touch.
 
-#include "heat_testing.h"
+#include "heat_exact.h"
 
 using namespace MPM_TEST;
 
@@ -86,7 +86,7 @@ SERIAL_TEST(Steady, FluxAndFaces)
       bars.shift = shift;
       bars.heat = "2.0 xlo temperature 1.0 xhi temperature 0.0 stages 64";
       Scene run(bars.text());
-      run.commands("timestep 0.05\nrun 80\n");
+      run.commands("timestep 0.02\nrun 200\n");
       const double *const power = run.fix_vector("heat", 10);
       const double area = 4.0 / n;
       EXPECT_NEAR(measured(strprintf("%g %d q", shift, n), power[CONTACT] / area), 4.0 / 7.0, 1e-5);

@@ -18,6 +18,7 @@
 #include "modify.h"
 #include "mpm_field.h"
 #include "mpm_options.h"
+#include "region.h"
 #include "update.h"
 #include "variable.h"
 
@@ -40,34 +41,45 @@ Options MPMHeatOptions::declare(int dim)
   using namespace option;
   using Condition = MPMHeatCondition;
   Options o("fix mpm/heat");
-  for (int face = 0; face < MPMHeatFaces::NFACE; face++) {
-    Condition &c = conditions[face];
+  const auto words = [](Condition &c, const std::string &where) {
     const auto values = [&c](int n, const std::string &names, const std::string &unit,
                              const std::string &meaning, int first = 0) {
       return variables(c.value + first, n, names, unit, meaning + ", can be a variable");
     };
     const OptionValue outside = values(1, "Tout", "temperature", "temperature outside", 1);
-    o.add(
-        FACE_NAME[face],
-        {word(c.kind,
-              {{"insulated", Condition::INSULATED, "no heat goes through this face of the box"},
-               {"temperature",
-                Condition::TEMPERATURE,
-                "",
-                {values(1, "T", "temperature", "temperature of the material at the face")}},
-               {"flux",
-                Condition::FLUX,
-                "",
-                {values(1, "q", "power/area", "heat that comes in through the face")}},
-               {"convection",
-                Condition::CONVECTION,
-                "",
-                {values(1, "H", "power/(area temperature)", "heat transfer coefficient"), outside}},
-               {"radiation",
-                Condition::RADIATION,
-                "",
-                {values(1, "EPS", "1", "emissivity"), outside}}})});
-  }
+    return word(
+        c.kind,
+        {{"insulated", Condition::INSULATED, "no heat goes through " + where},
+         {"temperature",
+          Condition::TEMPERATURE,
+          "",
+          {values(1, "T", "temperature", "temperature of the material there")}},
+         {"flux", Condition::FLUX, "", {values(1, "q", "power/area", "heat that comes in there")}},
+         {"convection",
+          Condition::CONVECTION,
+          "",
+          {values(1, "H", "power/(area temperature)", "heat transfer coefficient"), outside}},
+         {"radiation", Condition::RADIATION, "", {values(1, "EPS", "1", "emissivity"), outside}}});
+  };
+  for (int face = 0; face < MPMHeatFaces::NFACE; face++)
+    o.add(FACE_NAME[face], {words(conditions[face], "this face of the box")});
+  o.add("region",
+        {text(surface.region, "REG",
+              "ID of a region: heat goes through its surface to what touches it from outside"),
+         words(surface.condition, "this surface")})
+      .standard("none")
+      .then([this] {
+        surfaces.push_back(surface);
+        surface = {};
+      });
+  o.add("surface", {words(surface.condition, "free surfaces")})
+      .standard("insulated")
+      .once()
+      .then([this] {
+        surface.region.clear();
+        surfaces.push_back(surface);
+        surface = {};
+      });
   enum { CONDUCTANCE };
   o.add("contact",
         {text(pair.field[0], "F1",
@@ -122,19 +134,28 @@ Options MPMHeatOptions::declare(int dim)
                          "is given twice for the same bodies: {contact}"});
       }
     }
-    for (int face = 0; face < MPMHeatFaces::NFACE; face++) {
-      const auto &c = conditions[face];
+    const auto refuse = [&](const Condition &c, const std::string &keyword) {
       const auto below = [&](int k, double least) {
         return k < c.nvalue() && c.value[k].variable.empty() && !(c.value[k].value >= least);
       };
-      rules.push_back({dim == 2 && face >= 4, FACE_NAME[face], "does not exist in 2d"});
-      rules.push_back({c.kind >= Condition::CONVECTION && below(0, 0.0), FACE_NAME[face],
+      rules.push_back({c.kind >= Condition::CONVECTION && below(0, 0.0), keyword,
                        "needs a coefficient that is not negative"});
       rules.push_back(
           {c.kind == Condition::RADIATION && c.value[0].variable.empty() && c.value[0].value > 1.0,
-           FACE_NAME[face], "needs an emissivity that is not above 1"});
-      rules.push_back({c.kind == Condition::RADIATION && below(1, 0.0), FACE_NAME[face],
+           keyword, "needs an emissivity that is not above 1"});
+      rules.push_back({c.kind == Condition::RADIATION && below(1, 0.0), keyword,
                        "needs an absolute temperature outside, not below 0"});
+    };
+    for (int face = 0; face < MPMHeatFaces::NFACE; face++) {
+      rules.push_back({dim == 2 && face >= 4, FACE_NAME[face], "does not exist in 2d"});
+      refuse(conditions[face], FACE_NAME[face]);
+    }
+    for (std::size_t k = 0; k < surfaces.size(); k++) {
+      const auto &[region, condition] = surfaces[k];
+      refuse(condition, region.empty() ? "surface" : "region");
+      for (std::size_t j = 0; j < k; j++)
+        rules.push_back({!region.empty() && surfaces[j].region == region, "region",
+                         "is given twice for the same region: {region}"});
     }
     return rules;
   });
@@ -150,7 +171,7 @@ FixMPMHeat::FixMPMHeat(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, nar
   Options options = declare(domain->dimension);
   read_options(lmp, options, narg, arg, 3);
   scalar_flag = vector_flag = 1;
-  size_vector = CONTACTS + (int) pairs.size();
+  size_vector = places_of_contacts() + (int) pairs.size();
   for (auto *heats : {&in_step, &present, &power}) heats->assign(size_vector, 0.0);
   global_freq = 1;
   extscalar = extvector = 1;
@@ -216,19 +237,12 @@ void FixMPMHeat::init()
                "Fix mpm/heat: no material conducts heat: give a fix mpm/material the part "
                "'thermal conducting' with specific heat, temperature, and conductivity");
   for (int face = 0; face < MPMHeatFaces::NFACE; face++) {
-    auto &c = conditions[face];
-    if (c.kind == MPMHeatCondition::INSULATED) continue;
-    const std::string name = std::string("fix mpm/heat ") + FACE_NAME[face];
+    if (conditions[face].kind == MPMHeatCondition::INSULATED) continue;
     if (domain->periodicity[face / 2])
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/heat face {} belongs to a periodic axis: use boundary f there",
                  FACE_NAME[face]);
-    if (c.kind == MPMHeatCondition::RADIATION && sigma() == 0.0)
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/heat {} radiation needs temperatures in kelvins, which units {} do not "
-                 "have: use units si, cgs, micro, nano, metal, or real",
-                 FACE_NAME[face], update->unit_style);
-    for (int k = 0; k < c.nvalue(); k++) find_variable(lmp, c.value[k], name);
+    check(conditions[face], FACE_NAME[face]);
   }
   if (!source.empty()) {
     source_index = input->variable->find(source.c_str() + 2);
@@ -238,6 +252,30 @@ void FixMPMHeat::init()
                  source.substr(2),
                  source_index < 0 ? "does not exist" : "is not equal-style or atom-style");
   }
+}
+
+/** Is the surface of a field known by what nodes have (MPMHeatBody)? */
+static bool finds_surfaces(const MPMField &field)
+{
+  const auto &o = field.options;
+  return (o.shape == QUADRATIC || o.shape == CUBIC) && !o.total && !o.axisymmetric;
+}
+
+/** Do faces of the box take their weights from it, too? */
+static bool weighs_faces(const MPMField &field)
+{
+  return field.options.shape == QUADRATIC || field.options.shape == CUBIC;
+}
+
+/** Temperatures in kelvins for radiation, and variables. */
+void FixMPMHeat::check(MPMHeatCondition &c, const std::string &name)
+{
+  if (c.kind == MPMHeatCondition::RADIATION && sigma() == 0.0)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/heat {} radiation needs temperatures in kelvins, which units {} do not "
+               "have: use units si, cgs, micro, nano, metal, or real",
+               name, update->unit_style);
+  for (int k = 0; k < c.nvalue(); k++) find_variable(lmp, c.value[k], "fix mpm/heat " + name);
 }
 
 void FixMPMHeat::init_physics(MPMPlan &plan)
@@ -252,6 +290,16 @@ void FixMPMHeat::init_physics(MPMPlan &plan)
                   {o.axisymmetric && domain->boxlo[0] <= 1.0e-6 * field->lattice.h &&
                        conditions[0].kind != MPMHeatCondition::INSULATED,
                    "a condition at xlo, which is the axis of symmetry", "leave xlo insulated"}});
+    if (!surfaces.empty() || std::any_of(pairs.begin(), pairs.end(), [&](const auto &p) {
+          return p.field[0] == field->id() || p.field[1] == field->id();
+        })) {
+      const std::string what = "with regions, free surfaces, or contact";
+      refuse_field(lmp, *this, *field,
+                   {{o.shape != QUADRATIC && o.shape != CUBIC, "this shape " + what,
+                     "use shape quadratic or cubic"},
+                    {o.total, "frame total " + what, "use frame updated"},
+                    {o.axisymmetric, "axisymmetric " + what, "use a plane or 3d"}});
+    }
     if (gradients) field->slopes.push_back(&gradients);
     fields.push_back(std::make_unique<MPMConduction>(lmp, *field, transfer, conditions));
     fields.back()->init(sigma());
@@ -270,15 +318,39 @@ MPMHeatBody &FixMPMHeat::body_of(const MPMField &field)
   return *bodies.back();
 }
 
+/** Has a field points that conduct, on any rank? */
+static bool conducts(const MPMField &field, MPI_Comm world)
+{
+  const Atom &atom = *field.atom;
+  int any = 0, all;
+  for (int i = 0; i < atom.nlocal && !any; i++) {
+    const auto *const fix = field.is_point(i) ? field.material_of(i) : nullptr;
+    any = fix && fix->material->conducts();
+  }
+  MPI_Allreduce(&any, &all, 1, MPI_INT, MPI_MAX, world);
+  return all;
+}
+
 void FixMPMHeat::init_contacts()
 {
-  bodies.clear();
-  contacts.clear();
-  for (auto &field : fields)
-    if (field->conducts() && field->faces.any()) body_of(field->field);
+  for (auto &one : surfaces) {
+    check(one.condition, one.region.empty() ? "surface" : "region " + one.region);
+    if (one.region.empty()) continue;
+    auto *region = domain->get_region_by_id(one.region);
+    if (!region)
+      error->all(FLERR, Error::NOLASTLINE, "Fix mpm/heat region {} does not exist", one.region);
+    if (MPMRegionSurface(region, domain->dimension).is_open())
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/heat cannot use region {}: open faces have no inside", one.region);
+    if (region->dynamic_check() && region->nregion > 1)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/heat cannot use region {}: a union or intersection must not move; use "
+                 "its parts one by one",
+                 one.region);
+  }
   for (auto &p : pairs) {
-    const auto laws = find_fixes<FixMPMContact>(lmp);
-    if (std::none_of(laws.begin(), laws.end(), [&](auto *fix) {
+    const auto contacts = find_fixes<FixMPMContact>(lmp);
+    if (std::none_of(contacts.begin(), contacts.end(), [&](auto *fix) {
           return fix->couples(p.field[0], p.field[1]);
         }))
       error->all(FLERR, Error::NOLASTLINE,
@@ -286,19 +358,24 @@ void FixMPMHeat::init_contacts()
                  "IDs: define a fix mpm/contact {} {}",
                  p.field[0], p.field[1], p.field[0], p.field[1]);
     find_variable(lmp, p.conductance, "fix mpm/heat contact");
-
+  }
+  bodies.clear();
+  contacts.clear();
+  skins.clear();
+  for (auto &field : fields) {
+    if (surfaces.empty()) break;
+    auto &body = body_of(field->field);    // those that do not conduct hide free surfaces
+    if (body.conduction)
+      skins.push_back(std::make_unique<MPMHeatSurfaces>(lmp, body, surfaces, sigma()));
+  }
+  for (auto &field : fields)
+    if (field->conducts() && field->faces.any() && weighs_faces(field->field))
+      body_of(field->field);
+  for (const auto &p : pairs) {
     MPMHeatBody *body[2];
     for (int k = 0; k < 2; k++) {
-      auto &field = *MPMField::find(lmp, p.field[k]);
-      const auto &o = field.options;
-      refuse_field(
-          lmp, *this, field,
-          {{o.shape != QUADRATIC && o.shape != CUBIC, "contact and this shape",
-            "use shape quadratic or cubic"},
-           {o.total, "contact and frame total", "use frame updated"},
-           {o.axisymmetric, "contact and axisymmetric", "use a sector in 3d, or a plane"}});
-      body[k] = &body_of(field);
-      if (!body[k]->conduction)
+      body[k] = &body_of(*MPMField::find(lmp, p.field[k]));
+      if (!conducts(body[k]->field, world))
         error->all(FLERR, Error::NOLASTLINE,
                    "Fix mpm/heat contact {} {}: no material of fix mpm {} conducts heat: give it "
                    "the part 'thermal conducting', or remove the contact",
@@ -311,6 +388,8 @@ void FixMPMHeat::init_contacts()
 void FixMPMHeat::extend_topology(MPMField &field)
 {
   of(field).faces.extend_topology();
+  for (auto &skin : skins)
+    if (&skin->body.field == &field) skin->extend_topology();
   for (auto &contact : contacts) contact->extend_topology(field);
 }
 
@@ -318,6 +397,7 @@ void FixMPMHeat::topology_changed(MPMField &field)
 {
   of(field).faces.topology_changed();
   for (auto &body : bodies) body->topology_changed();
+  for (auto &skin : skins) skin->topology_changed();
   for (auto &contact : contacts) contact->topology_changed();
 }
 
@@ -344,9 +424,13 @@ void FixMPMHeat::evaluate_variables()
   bool any = !source.empty();
   for (const auto &c : conditions)
     for (int k = 0; k < c.nvalue(); k++) any = any || !c.value[k].variable.empty();
+  for (const auto &[region, c] : surfaces)
+    for (int k = 0; k < c.nvalue(); k++) any = any || !c.value[k].variable.empty();
   for (const auto &p : pairs) any = any || !p.conductance.variable.empty();
   evaluate_in_step(lmp, any, [&] {
     for (auto &c : conditions)
+      for (int k = 0; k < c.nvalue(); k++) c.now[k] = evaluate(lmp, c.value[k]);
+    for (auto &[region, c] : surfaces)
       for (int k = 0; k < c.nvalue(); k++) c.now[k] = evaluate(lmp, c.value[k]);
     for (auto &p : pairs) p.now = evaluate(lmp, p.conductance);
     if (source.empty()) return;
@@ -360,40 +444,66 @@ void FixMPMHeat::evaluate_variables()
 }
 
 /* ----------------------------------------------------------------------
+   before temperatures go to nodes, as surfaces are sums over points of their own
+------------------------------------------------------------------------- */
+
+void FixMPMHeat::find_surfaces()
+{
+  for (auto &body : bodies) body->begin_step();
+  for (auto &body : bodies)
+    if (body->conduction) body->conduction->faces.mark_near(body->near);
+  for (auto &contact : contacts) contact->mark_near();
+  for (auto &skin : skins) skin->mark_near();
+  if (!skins.empty())
+    for (auto &body : bodies)
+      if (!body->conduction) body->want_all();
+  for (auto &body : bodies) body->find_surface();
+  for (auto &contact : contacts) contact->find_contacts();
+  std::vector<const MPMHeatBody *> all;
+  for (auto &body : bodies) all.push_back(body.get());
+  for (auto &skin : skins) skin->find_lines(all);
+}
+
+/* ----------------------------------------------------------------------
    temperatures of nodes, and the stages that all fields need for their step
 ------------------------------------------------------------------------- */
 
 int FixMPMHeat::count_stages()
 {
   std::vector<double> mine, all;
-  // before temperatures go to nodes, as surfaces are sums over points of their own
-  for (auto &body : bodies) body->begin_step();
-  for (auto &body : bodies)
-    if (body->conduction) body->conduction->faces.mark_near(body->near);
-  for (auto &contact : contacts) contact->mark_near();
-  for (auto &body : bodies) body->find_surface();
-  for (auto &contact : contacts) contact->find_contacts();
+  find_surfaces();
   for (auto &field : fields) {
     const bool conducts = field->conducts();
+    static const std::vector<double> unknown;
     mine.push_back(conducts ? field->points_to_nodes(gradients) : 0.0);
     mine.push_back(conducts && field->faces.any()
-                       ? field->faces.begin_step(field->node_capacity(), field->node_volume(),
-                                                 body_of(field->field).gradient, field->temperature)
+                       ? field->faces.begin_step(
+                             field->node_capacity(), field->node_volume(),
+                             weighs_faces(field->field) ? body_of(field->field).gradient : unknown,
+                             field->temperature)
                        : 0.0);
   }
   for (auto &contact : contacts) mine.push_back(contact->begin_step());
+  for (auto &skin : skins) mine.push_back(skin->begin_step());
   all.resize(mine.size());
   MPI_Allreduce(mine.data(), all.data(), (int) all.size(), MPI_DOUBLE, MPI_MAX, world);
   double greatest = 0.0;
   for (std::size_t k = 0; k < fields.size(); k++)
     greatest = std::max(greatest, fields[k]->greatest_rate(all[2 * k], all[2 * k + 1]));
 
-  // a node can be in contacts with several bodies
+  // a node can be in contacts with several bodies, and at a surface; that of one field is not another's
   const double dt = fields[0]->field.step_dt(), cap = std::max(greatest, 1.0 / dt);
-  for (std::size_t k = 0; k < contacts.size(); k++) {
-    contacts[k]->limit(cap);
-    greatest += std::min(cap, all[2 * fields.size() + k]);
+  const double *rates = all.data() + 2 * fields.size();
+  for (auto &contact : contacts) {
+    contact->limit(cap);
+    greatest += std::min(cap, *rates++);
   }
+  double most = 0.0;
+  for (auto &skin : skins) {
+    skin->limit(cap);
+    most = std::max(most, std::min(cap, *rates++));
+  }
+  greatest += most;
 
   const double limit = MPMSuperStep::explicit_limit(greatest);
   const int stages = MPMSuperStep::count(dt, limit, most_stages);
@@ -415,10 +525,14 @@ void FixMPMHeat::find_rates()
     field->faces.add_rates(field->temperature, field->rate, present);
     field->faces.hold_rates(field->rate, present);
   }
-  if (contacts.empty()) return;
-  for (auto &body : bodies) body->begin_stage();
-  for (std::size_t k = 0; k < contacts.size(); k++) contacts[k]->exchange(present[CONTACTS + k]);
+  if (contacts.empty() && skins.empty()) return;
+  for (auto &body : bodies)
+    if (body->conduction) body->begin_stage();
+  for (std::size_t k = 0; k < contacts.size(); k++)
+    contacts[k]->exchange(present[places_of_contacts() + k]);
+  for (const auto &skin : skins) skin->exchange(present.data() + places_of_surfaces());
   for (auto &body : bodies) {
+    if (!body->conduction) continue;
     body->end_stage();
     body->conduction->faces.hold_rates(body->conduction->rate, present);
   }
@@ -442,6 +556,8 @@ void FixMPMHeat::conduct()
     field->given.clear();
   }
   for (int face = 0; face < MPMHeatFaces::NFACE; face++) past.through_faces += in_step[face];
+  for (int k = places_of_surfaces(); k < places_of_contacts(); k++)
+    past.through_faces += in_step[k];
   past.of_sources += in_step[MPMConduction::SOURCES];
   for (int k = 0; k < NGIVER; k++) past.given[k] += in_step[GIVERS + k] = past.booked[k];
   std::fill_n(past.booked, NGIVER, 0.0);
@@ -450,8 +566,10 @@ void FixMPMHeat::conduct()
 
 double FixMPMHeat::stable_dt(const MPMField &field, tagint &tag) const
 {
+  // exchange is as fast as conduction at the most
+  const double stiff = (double) contacts.size() + (skins.empty() ? 0.0 : 1.0);
   return MPMSuperStep::reach(most_stages) *
-      MPMSuperStep::explicit_limit(of(field).greatest_rate_of_points(tag));
+      MPMSuperStep::explicit_limit((1.0 + stiff) * of(field).greatest_rate_of_points(tag));
 }
 
 /* ----------------------------------------------------------------------
@@ -522,5 +640,6 @@ double FixMPMHeat::memory_usage()
   for (const auto &field : fields) bytes += field->memory_usage();
   for (const auto &body : bodies) bytes += body->memory_usage();
   for (const auto &contact : contacts) bytes += contact->memory_usage();
+  for (const auto &skin : skins) bytes += skin->memory_usage();
   return bytes;
 }

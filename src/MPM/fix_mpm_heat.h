@@ -18,6 +18,7 @@ FixStyle(mpm/heat,FixMPMHeat);
 #include "mpm_conduction.h"
 #include "mpm_grain_heat.h"
 #include "mpm_heat_contact.h"
+#include "mpm_heat_surface.h"
 #include "mpm_physics.h"
 #include "mpm_state.h"
 #include "mpm_super_step.h"
@@ -31,6 +32,8 @@ namespace LAMMPS_NS {
 
 struct MPMHeatOptions {
   MPMHeatCondition conditions[MPMHeatFaces::NFACE];
+  MPMHeatSurfaces::Conditions surfaces;
+  MPMHeatSurfaceCondition surface;    ///< the last one
   std::vector<MPMHeatPair> pairs;
   MPMHeatPair pair;      ///< the last one
   std::string source;    ///< variable, without v_; empty: none
@@ -42,7 +45,7 @@ struct MPMHeatOptions {
 };
 
 /** Conduction of heat in the points of materials with a part thermal conducting, heat through the faces of the
- *  box, and heat that bodies (fix mpm) exchange where they touch. */
+ *  box, surfaces of regions and free surfaces, and heat that bodies (fix mpm) exchange where they touch. */
 class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions {
  public:
   FixMPMHeat(class LAMMPS *, int, char **);
@@ -85,14 +88,16 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions
     double got;                              // by points
     double given[NGIVER], booked[NGIVER];    // before the last conduction, and since
   };
-  static constexpr int GIVERS = MPMHeatFaces::NFACE + 1,
-                       CONTACTS = GIVERS + NGIVER;    // places in lists of heat
+  static constexpr int GIVERS = MPMHeatFaces::NFACE + 1;    // place in lists of heat
 
   std::vector<std::unique_ptr<MPMHeatBody>> bodies;    // fields that have surfaces with heat
   std::vector<std::unique_ptr<MPMHeatContact>> contacts;
+  std::vector<std::unique_ptr<MPMHeatSurfaces>>
+      skins;             // surfaces of fields, if there are conditions
   MPMSuperStep steps;    // of the temperatures of all fields together
   Past past = {};
-  // heat of the last step, and power in a stage of it, this rank's share: through faces, of sources, through contacts
+  // heat of the last step, and power in a stage of it, this rank's share: through faces, of sources, of givers, through
+  // surfaces, through contacts
   Heats in_step, present;
   Heats power;
   double dt_last = 0.0;
@@ -103,6 +108,10 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions
   double sigma() const;
   MPMHeatBody &body_of(const MPMField &);
   void init_contacts();
+  int places_of_surfaces() const { return GIVERS + NGIVER; }
+  int places_of_contacts() const { return places_of_surfaces() + (int) surfaces.size(); }
+  void find_surfaces();
+  void check(MPMHeatCondition &, const std::string &name);
   void evaluate_variables();
   int count_stages();
   void find_rates();

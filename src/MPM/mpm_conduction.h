@@ -48,10 +48,10 @@ class MPMConduction : protected Pointers {
   void init(double sigma);
 
   /** A step, first part: temperatures of nodes. gradients: [n][dim] temperature gradients of points, null with
-   *  the transfer pic. Returns a bound of the rates of this rank's points [1/time]. */
+   *  the transfer pic. Returns the bound of the rates of conduction of this rank [1/time]. */
   double points_to_nodes(const MPMRows &gradients);
-  /** A bound of the eigenvalues of minus the rates [1/time], from the bound of all ranks, and the rate of exchange through
-   *  faces. */
+  /** A bound of the eigenvalues of minus the rates [1/time], from those of conduction and of exchange through faces on
+   *  all ranks. */
   double greatest_rate(double conduction, double exchange);
   /** Rates of the temperatures of the nodes by conduction and sources. source: [n] power per volume, or null.
    *  Adds the power of sources. */

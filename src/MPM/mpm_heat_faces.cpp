@@ -195,6 +195,7 @@ void MPMHeatFaces::prepare(const Face &face, Line &line, const std::vector<doubl
 bool MPMHeatFaces::weigh_by_surface(const Face &face, Line &line,
                                     const std::vector<double> &surface) const
 {
+  if (surface.empty()) return false;
   double weight[MOST], sum = 0.0;
   for (int k = 0; k < face.n; k++) {
     const double G = surface[3 * line.node[k] + face.axis] / circle(line.node[k]);

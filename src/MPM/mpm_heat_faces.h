@@ -59,7 +59,7 @@ class MPMHeatFaces : protected Pointers {
 
   /** Marks blocks [slot] with nodes of lines. */
   void mark_near(std::vector<char> &near) const;
-  /** Lines that touch material in this step, from the capacities, volumes, and surfaces (MPMHeatBody) of nodes. Returns
+  /** Lines that touch material in this step, from the capacities, volumes, and surfaces (MPMHeatBody, or empty) of nodes. Returns
    *  the largest rate at which temperatures at faces follow those outside, for stability. */
   double begin_step(const std::vector<double> &capacity, const std::vector<double> &volume,
                     const std::vector<double> &surface, const std::vector<double> &temperature);

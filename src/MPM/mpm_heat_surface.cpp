@@ -1,0 +1,375 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+/* ----------------------------------------------------------------------
+   Surfaces are where a number at the nodes changes its sign between two nodes along an axis: the distance from a region,
+   or the depth in the body by the share of the volume of the node that it fills (of what is inside of the box), for free
+   surfaces. Lines of nodes through these places have the temperature T = sum_k w_k T_k of the surface, and get the heat
+   (mpm_heat_body.cpp).
+
+   With the power P = f (T_out - T) of a line, f = area * coefficient, T would follow the temperature outside with the rate r =
+   f R/s, where R is its response to heat and s the share of the area that the line has. As in mpm_heat_contact.cpp,
+   this rate is limited to l: where r is larger,
+
+     P = (l/r) f (T_out - T) - (1 - l/r) s D/R,   D: rate of T by all other heat,
+
+   which is f (T_out - T) when nothing changes, and with r -> infinity prescribes the temperature.
+------------------------------------------------------------------------- */
+
+#include "mpm_heat_surface.h"
+
+#include "comm.h"
+#include "domain.h"
+#include "math_extra.h"
+#include "mpm_field.h"
+#include "region.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+static constexpr double FAR =
+    4.0;    // distances from regions beyond are not needed, in node spacings
+// gaps to a region up to which all heat goes through, and from which on none
+static constexpr double TOUCHES = 0.2, IS_APART = 0.4;
+static constexpr double COVERED = 0.5;    // free surfaces that are as near to a region are not free
+static constexpr double ALL_ROOM = 0.999;
+static constexpr int INSIDE = 3;                      // nodes from which on a body is whole
+static constexpr double LEAST_FILLED = 0.02;          // of a line, for a surface
+static constexpr double LEAST_ROOM = 0.02;            // of a line of nodes at a face of the box
+static constexpr double OPEN = 0.15, HIDDEN = 0.4;    // share of other bodies at a free surface
+
+/* ---------------------------------------------------------------------- */
+
+MPMHeatSurfaces::MPMHeatSurfaces(LAMMPS *lmp, MPMHeatBody &body, const Conditions &conditions,
+                                 double sigma) :
+    Pointers(lmp),
+    body(body), conditions(conditions), sigma(sigma)
+{
+  for (const auto &c : conditions) {
+    wall_of.push_back(c.region.empty() ? -1 : (int) walls.size());
+    if (c.region.empty()) {
+      has_free = true;
+      continue;
+    }
+    Region *const region = domain->get_region_by_id(c.region);
+    walls.push_back({region, MPMRegionSurface(region, domain->dimension), {}});
+  }
+}
+
+bool MPMHeatSurfaces::Wall::moves() const
+{
+  return region->dynamic_check() || region->varshape;
+}
+
+/** Can points of this block reach the surface of a region? */
+bool MPMHeatSurfaces::near_wall(Wall &wall, const int *b) const
+{
+  const auto &lattice = body.field.lattice;
+  const int side = body.field.grid.side;
+  const int first[3] = {b[0] * side, b[1] * side, b[2] * side};
+  const double reach = (0.5 * side * std::sqrt((double) lattice.dim) + FAR) * lattice.h;
+  double middle[3];
+  lattice.node_position(first, middle);
+  for (int d = 0; d < lattice.dim; d++) middle[d] += 0.5 * (side - 1) * lattice.h;
+  return std::fabs(wall.surface.distance(middle, 2.0 * reach)) <= reach;
+}
+
+void MPMHeatSurfaces::extend_topology()
+{
+  // with one rank, too, for lines through the surface of a region next to the last nodes that points reach
+  const bool all = has_free && comm->nprocs > 1;
+  if (!all && walls.empty()) return;
+  const auto &blocks = body.field.grid.blocks;
+  const auto nblocks = (int) blocks.size();
+  for (auto &wall : walls)
+    if (!wall.moves()) wall.region->prematch();
+  for (int ib = 0; ib < nblocks; ib++) {
+    const int b[3] = {blocks[ib].b[0], blocks[ib].b[1], blocks[ib].b[2]};
+    // a region that moves may come here until blocks are found again
+    if (all || std::any_of(walls.begin(), walls.end(), [&](Wall &wall) {
+          return wall.moves() || near_wall(wall, b);
+        }))
+      body.activate_around(b);
+  }
+}
+
+void MPMHeatSurfaces::topology_changed()
+{
+  for (auto &wall : walls) wall.distance.clear();
+}
+
+/* ----------------------------------------------------------------------
+   also the distances of nodes from regions
+------------------------------------------------------------------------- */
+
+void MPMHeatSurfaces::mark_near()
+{
+  const Grid &grid = body.field.grid;
+  const double h = grid.lattice.h;
+  for (auto &wall : walls) {
+    const bool fresh = wall.moves() || wall.distance.empty();
+    if (fresh) {
+      wall.region->prematch();
+      wall.distance.assign(grid.nnodes(), FAR);
+    }
+    for (std::size_t slot = 0; slot < grid.blocks.size(); slot++) {
+      if (!fresh) {
+        for (int n = 0; !body.near[slot] && n < NODES_PER_BLOCK; n++)
+          body.near[slot] = std::fabs(wall.distance[slot * NODES_PER_BLOCK + n]) < FAR;
+        continue;
+      }
+      if (!near_wall(wall, grid.blocks[slot].b)) continue;
+      for (int n = 0; n < NODES_PER_BLOCK; n++) {
+        const std::size_t node = slot * NODES_PER_BLOCK + n;
+        double x[3];
+        grid.node_position((int64_t) node, x);
+        wall.distance[node] = wall.surface.distance(x, FAR * h) / h;
+        if (std::fabs(wall.distance[node]) < FAR) body.near[slot] = 1;
+      }
+    }
+  }
+  if (has_free) body.want_all();
+}
+
+/* ----------------------------------------------------------------------
+   calls f(axis, index, node, next) for pairs of neighbors; next: -1 if it has no block
+------------------------------------------------------------------------- */
+
+template <class F> void MPMHeatSurfaces::each_pair(const F &f) const
+{
+  const Grid &grid = body.field.grid;
+  for (std::size_t slot = 0; slot < grid.blocks.size(); slot++) {
+    const auto &block = grid.blocks[slot];
+    if (!body.near[slot]) continue;
+    for (int n = 0; n < NODES_PER_BLOCK; n++) {
+      if (block.alias >> n & 1) continue;
+      int index[3];
+      grid.node_index(block, n, index);
+      for (int a = 0; a < grid.lattice.dim; a++) {
+        index[a]++;
+        const int64_t next = grid.locate_near(block, index);
+        index[a]--;
+        f(a, index, (int64_t) (slot * NODES_PER_BLOCK + n), next);
+      }
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   surface of a region: material is where the distance is not negative
+------------------------------------------------------------------------- */
+
+void MPMHeatSurfaces::find_wall(int condition, Wall &wall)
+{
+  const auto &lattice = body.field.lattice;
+  const double h = lattice.h;
+  const auto &distance = wall.distance;
+  each_pair([&](int a, const int *index, int64_t node, int64_t next) {
+    if (next < 0 || (distance[node] < 0.0) == (distance[next] < 0.0)) return;
+    const double part = distance[node] / (distance[node] - distance[next]);
+    double x[3], into[3];
+    lattice.node_position(index, x);
+    // on the surface itself rounding decides on the side
+    x[a] += (part + (distance[next] < 0.0 ? -0.05 : 0.05)) * h;
+    wall.surface.normal(x, FAR * h, 1.0e-4 * h, into);
+    Place place;
+    place.share = heat_share_of_axis(into, lattice.dim, a);
+    const double at = index[a] + part;
+    if (place.share == 0.0 || !body.make_line(a, index, at, into[a], place.line)) return;
+    const double gap = (place.line.place - at) * into[a];
+    const double touches = std::min(1.0, (IS_APART - gap) / (IS_APART - TOUCHES));
+    if (!(touches > 0.0)) return;
+    place.area = place.share * touches * place.line.area / std::fabs(into[a]);
+    place.condition = condition;
+    place.key = node * lattice.dim + a;
+    places.push_back(place);
+  });
+}
+
+/** Share of the room of a node that others fill. */
+double MPMHeatSurfaces::hidden(const int *index,
+                               const std::vector<const MPMHeatBody *> &others) const
+{
+  double sum = 0.0, room = 1.0;
+  for (int d = 0; d < body.field.lattice.dim; d++) room *= body.room(d, index[d]);
+  for (const auto *other : others) {
+    const auto &theirs = other->field.lattice;
+    if (other == &body || !(room > 0.0) || theirs.h != body.field.lattice.h ||
+        !std::equal(theirs.origin, theirs.origin + 3, body.field.lattice.origin))
+      continue;
+    const int64_t node = other->field.grid.locate(index);
+    if (node >= 0) sum += other->share[node] / room;
+  }
+  return sum;
+}
+
+/* ----------------------------------------------------------------------
+   free surfaces: where half of the volume of a node that is inside of the box is filled
+------------------------------------------------------------------------- */
+
+void MPMHeatSurfaces::find_free(int condition, const std::vector<const MPMHeatBody *> &others)
+{
+  const Grid &grid = body.field.grid;
+  const auto &lattice = grid.lattice;
+  const int dim = lattice.dim;
+  const double h = lattice.h;
+  const int64_t nnodes = grid.nnodes();
+  filled.assign(nnodes, 0.0);
+  for (int64_t node = 0; node < nnodes; node++) {
+    if (!(body.share[node] > 0.0)) continue;
+    int index[3];
+    grid.node_index(node, index);
+    double room = 1.0;
+    for (int d = 0; d < dim; d++) room *= body.room(d, index[d]);
+    filled[node] = room > 0.0 ? body.share[node] / room : 0.0;
+  }
+  body.field.nodes.complete(filled.data(), 1, 1);
+  const auto at = [&](const int *index) {
+    const int64_t node = grid.locate(index);
+    return node < 0 ? 0.0 : filled[node];
+  };
+  each_pair([&](int a, const int *index, int64_t node, int64_t next) {
+    const double here = filled[node], there = next < 0 ? 0.0 : filled[next];
+    // lines at the side of a body have only a part of the volume, also inside of it: each node is compared with the
+    // fullest of those further inside
+    const int inward = here < there ? 1 : -1;
+    double full[2], part_full[2];
+    for (int k = 0; k < 2; k++) {
+      int inside[3] = {index[0], index[1], index[2]};
+      inside[a] += k;
+      full[k] = k ? there : here;
+      for (int j = 0; j < INSIDE; j++) {
+        inside[a] += inward;
+        full[k] = std::max(full[k], at(inside));
+      }
+      full[k] = std::min(full[k], 1.0);
+      part_full[k] = full[k] > LEAST_FILLED ? (k ? there : here) / full[k] : 0.0;
+    }
+    if ((part_full[0] < 0.5) == (part_full[1] < 0.5)) return;
+    const double most = here < there ? full[1] : full[0];
+    const double depth = body.profile.depth_of_volume(part_full[0]),
+                 depth_next = body.profile.depth_of_volume(part_full[1]);
+    const double part = depth / (depth - depth_next);
+    double x[3], into[3] = {0.0, 0.0, 0.0}, side = 1.0;
+    lattice.node_position(index, x);
+    x[a] += part * h;
+    if (!lattice.periodic[a] && (x[a] < domain->boxlo[a] || x[a] > domain->boxhi[a])) return;
+    for (int d = 0; d < dim; d++)
+      if (d != a) side *= body.room(d, index[d]);
+    if (side < LEAST_ROOM) return;
+    for (int k = 0; k < 2; k++) {
+      int here_k[3] = {index[0], index[1], index[2]};
+      here_k[a] += k;
+      const int64_t which = k ? next : node;
+      const double weight = k ? part : 1.0 - part, cell = lattice.cell_volume();
+      for (int d = 0; d < dim; d++) {
+        int up[3] = {here_k[0], here_k[1], here_k[2]}, down[3] = {here_k[0], here_k[1], here_k[2]};
+        up[d]++;
+        down[d]--;
+        // a body that touches a face of the box has no free surface there
+        if (body.room(d, here_k[d]) < ALL_ROOM)
+          into[d] += weight * 0.5 * (at(up) - at(down));
+        else if (which >= 0)
+          into[d] -= weight * body.gradient[3 * which + d] * h / cell;
+      }
+    }
+    const double length = MathExtra::len3(into);
+    if (!(length > 0.0)) return;
+    for (double &component : into) component /= length;
+    Place place;
+    place.share = heat_share_of_axis(into, dim, a);
+    if (place.share == 0.0) return;
+
+    for (const auto &wall : walls)
+      if (std::fabs(wall.surface.distance(x, FAR * h)) < COVERED * h) return;
+    int after[3] = {index[0], index[1], index[2]};
+    after[a] = lattice.wrap(a, after[a] + 1);
+    const double others_share = (1.0 - part) * hidden(index, others) + part * hidden(after, others);
+    const double open = std::min(1.0, (HIDDEN - others_share) / (HIDDEN - OPEN));
+    if (!(open > 0.0) || !body.make_line(a, index, index[a] + part, into[a], place.line)) return;
+    place.share *= open;
+    place.area = place.share * most * side * lattice.cell_volume() / (h * std::fabs(into[a]));
+    place.condition = condition;
+    place.key = node * dim + a;
+    places.push_back(place);
+  });
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMHeatSurfaces::find_lines(const std::vector<const MPMHeatBody *> &others)
+{
+  places.clear();
+  for (auto &wall : walls)
+    if (wall.moves()) wall.region->prematch();
+  for (int k = 0; k < (int) conditions.size(); k++) {
+    if (conditions[k].condition.kind == MPMHeatCondition::INSULATED) continue;
+    const std::size_t begin = places.size();
+    if (wall_of[k] < 0)
+      find_free(k, others);
+    else
+      find_wall(k, walls[wall_of[k]]);
+    if (comm->nprocs == 1) continue;
+    shares.begin(body);
+    for (std::size_t l = begin; l < places.size(); l++) shares.count(places[l].key);
+    shares.sum(body);
+    for (std::size_t l = begin; l < places.size(); l++) {
+      places[l].share *= shares.of(places[l].key);
+      places[l].area *= shares.of(places[l].key);
+    }
+  }
+}
+
+double MPMHeatSurfaces::begin_step()
+{
+  double most = 0.0;
+  for (auto &place : places) {
+    const auto &condition = conditions[place.condition].condition;
+    if (!body.find_response(place.line)) {    // material that does not conduct
+      place.share = place.area = 0.0;
+      continue;
+    }
+    place.rate = condition.kind == MPMHeatCondition::TEMPERATURE
+        ? std::numeric_limits<double>::max()
+        : condition.slope(body.temperature(place.line), sigma) * place.area / place.share *
+            place.line.response;
+    most = std::max(most, place.rate);
+  }
+  return most;
+}
+
+void MPMHeatSurfaces::exchange(double *power) const
+{
+  for (const auto &place : places) {
+    if (!(place.share > 0.0)) continue;
+    const auto &condition = conditions[place.condition].condition;
+    const auto &line = place.line;
+    const double T = body.temperature(line);
+    double P;
+    if (condition.kind == MPMHeatCondition::TEMPERATURE)
+      P = place.share * (fastest * (condition.now[0] - T) - body.drift(line)) / line.response;
+    else {
+      const double slower = place.rate > fastest ? fastest / place.rate : 1.0;
+      P = slower * place.area * condition.flux(T, sigma);
+      if (slower < 1.0) P -= (1.0 - slower) * place.share * body.drift(line) / line.response;
+    }
+    body.give(line, P);
+    power[place.condition] += P;
+  }
+}
+
+double MPMHeatSurfaces::memory_usage() const
+{
+  double bytes = places.capacity() * sizeof(Place) + filled.capacity() * sizeof(double);
+  for (const auto &wall : walls) bytes += wall.distance.capacity() * sizeof(double);
+  return bytes;
+}

@@ -1,0 +1,92 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_HEAT_SURFACE_H
+#define LMP_MPM_HEAT_SURFACE_H
+
+#include "mpm_heat_body.h"
+#include "mpm_heat_faces.h"
+#include "mpm_region_surface.h"
+#include "pointers.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+class Region;
+
+/** What the surface of a region does to the heat of what touches it, or, without a region, the
+ *  surface of bodies that touches nothing. */
+struct MPMHeatSurfaceCondition {
+  std::string region;    ///< ID, empty: free surfaces
+  MPMHeatCondition condition;
+};
+
+/** Heat through surfaces of regions and free surfaces, at the nodes of one field. */
+class MPMHeatSurfaces : protected Pointers {
+ public:
+  MPMHeatBody &body;
+
+  using Conditions = std::vector<MPMHeatSurfaceCondition>;
+  /** sigma: the constant of Stefan and Boltzmann. */
+  MPMHeatSurfaces(class LAMMPS *, MPMHeatBody &, const Conditions &, double sigma);
+
+  /** Ranks need the nodes around those that their points reach. */
+  void extend_topology();
+  void topology_changed();
+  /** Marks blocks with surfaces. */
+  void mark_near();
+  /** Where surfaces are in this step, when that of the body is known. others: bodies that hide free surfaces. Collective. */
+  void find_lines(const std::vector<const MPMHeatBody *> &others);
+  /** What the capacities and temperatures of nodes make of them. Returns the largest rate of this rank at which temperatures
+   *  follow those outside [1/time]. */
+  double begin_step();
+  /** They follow with this rate at the most. */
+  void limit(double cap) { fastest = cap; }
+  /** Gives heat to the body, whose rates have all other heat already; adds the power of this rank, one value for each
+   *  condition. */
+  void exchange(double *power) const;
+
+  double memory_usage() const;
+
+ private:
+  struct Place {
+    int condition;
+    int64_t key;
+    MPMHeatBody::Line line;
+    double share, area;    // of this axis, and of this rank
+    double rate;           // at which the temperature follows that outside
+  };
+  struct Wall {
+    Region *region;    // null: free surface
+    MPMRegionSurface surface;
+    std::vector<double> distance;    // of nodes, in node spacings
+
+    bool moves() const;
+  };
+
+  const Conditions &conditions;
+  const double sigma;
+  double fastest = 0.0;
+  std::vector<Wall> walls;
+  std::vector<int> wall_of;    // of each condition, -1: free surface
+  bool has_free = false;
+  std::vector<double> filled;    // share of the room of a node that the body fills
+  std::vector<Place> places;
+  MPMHeatShares shares;
+
+  bool near_wall(Wall &, const int *block) const;
+  template <class F> void each_pair(const F &f) const;
+  void find_wall(int condition, Wall &);
+  void find_free(int condition, const std::vector<const MPMHeatBody *> &others);
+  double hidden(const int *index, const std::vector<const MPMHeatBody *> &others) const;
+};
+
+}    // namespace LAMMPS_NS
+#endif

@@ -1,0 +1,241 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: physics mpi restart input
+// mpi: 1 4
+// timeout: 300
+
+// Fix mpm/heat region and surface: heat through surfaces of regions, and free surfaces.
+
+#include "heat_exact.h"
+
+using namespace MPM_TEST;
+
+namespace {
+
+/** A bar of length 1 along x from 0 on, whose end at 1 is in the box, shift node spacings from a node. */
+std::string bar_in_box(int n, double shift, const std::string &heat, double T0,
+                       const std::string &region = "")
+{
+  const double h = 1.0 / n;
+  return plane("lj", "f p", strprintf("0 1.5 0 %.17g", 4 * h), 1, 0.1 * h) +
+      "region bar block 0 1 INF INF INF INF\n" + region +
+      strprintf("create_points 1 region bar spacing %.17g\n", 0.5 * h) +
+      strprintf("fix grid all mpm %.17g origin %.17g 0\n", h, 1.0 - shift * h) +
+      strprintf(
+             "fix m all mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 %g 1.0\n",
+             T0) +
+      "fix heat all mpm/heat " + heat + "\n";
+}
+
+/** Temperature at x, by the slope of the two points next to it inside. */
+double end_temperature(Scene &run, double x, double h)
+{
+  Warm warm(run);
+  double sum[2] = {0.0, 0.0}, count[2] = {0.0, 0.0};
+  for (int i = 0; i < run.n(); i++)
+    for (int k = 0; k < 2; k++)
+      if (std::fabs(run.x()[i][0] - x + (0.25 + 0.5 * k) * h) < 0.1 * h) {
+        sum[k] += warm.T(i);
+        count[k]++;
+      }
+  return 1.5 * sum[0] / count[0] - 0.5 * sum[1] / count[1];
+}
+
+const char *const WALL = "region wall block 1 2 INF INF INF INF\n";
+
+}    // namespace
+
+// a slab that is cooled by convection at its end, which is free, or touches a region: M2 a
+struct Slab {
+  double Bi, t, face;
+};
+PARAMETER_TEST(Convection, CoolsASlab, Slab,
+               Values(Slab{1.0, 0.5, 0.504522}, Slab{10.0, 0.1, 0.170574}))
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  const Slab slab = GetParam();
+  for (const bool free : {true, false})
+    for (const double shift : {0.0, 0.25, 0.5}) {
+      double error[2];
+      for (const int n : {20, 40}) {
+        Scene run(bar_in_box(
+            n, shift, strprintf("%s convection %g 0.0", free ? "surface" : "region wall", slab.Bi),
+            1.0, WALL));
+        const double before = Warm(run).heat();
+        run_to(run, slab.t, 0.3 / (n * n));
+        const double face = measured(strprintf("%s, %g, %d", free ? "free" : "region", shift, n),
+                                     end_temperature(run, 1.0, 1.0 / n));
+        error[n == 40] = std::fabs(face / slab.face - 1.0);
+        EXPECT_NEAR((Warm(run).heat() - before) / run.fix("heat")->compute_scalar(), 1.0, 1e-10);
+      }
+      EXPECT_LT(error[1], 0.01);
+      EXPECT_LT(error[1], error[0] + 1e-4);
+    }
+}
+
+// one end is heated by a region with a temperature, the other one held at a face of the box: A6 a
+SERIAL_TEST(Temperature, OfARegion)
+{
+  for (const double shift : {0.0, 0.25, 0.5}) {
+    double rms[2];
+    for (const int n : {20, 40}) {
+      Scene run(bar_in_box(n, shift, "region wall temperature 1.0 xlo temperature 0.0", 0.0, WALL));
+      run_to(run, 0.1, 0.1 / (n * n));
+      rms[n == 40] = measured(strprintf("%g, %d", shift, n),
+                              Warm(run)
+                                  .error([](const double *x) {
+                                    double T = x[0];
+                                    for (int k = 1; k < 100; k++)
+                                      T -= 2.0 / (k * PI) * std::sin(k * PI * (1.0 - x[0])) *
+                                          std::exp(-k * k * PI * PI * 0.1);
+                                    return T;
+                                  })
+                                  .rms);
+    }
+    EXPECT_GT(measured("order", std::log2(rms[0] / rms[1])), 0.9);
+    EXPECT_LT(rms[1], 1e-3);
+  }
+}
+
+namespace {
+
+/** A disk or sphere of radius 1, with n cells in it. */
+std::string round(int n, double offset, int dim, const std::string &heat, double T0,
+                  const std::string &units = "lj", double density = 1.0)
+{
+  const double h = 1.0 / n;
+  const std::string box = "-1.5 1.5 -1.5 1.5";
+  return (dim == 2 ? plane(units, "f f", box, 1, 0.1 * h)
+                   : space(units, "f f f", box + " -1.5 1.5", 1, 0.1 * h)) +
+      "region body sphere 0 0 0 1\nregion around sphere 0 0 0 1 side out\n" +
+      strprintf("create_points 1 region body spacing %.17g\n", 0.5 * h) +
+      strprintf("fix grid all mpm %.17g origin %.17g %.17g", h, offset * h, 0.7 * offset * h) +
+      (dim == 3 ? strprintf(" %.17g\n", 0.4 * offset * h) : "\n") +
+      strprintf("fix m all mpm/material density %g eos linear 1e-6 thermal conducting 1.0 %g 1.0\n",
+                density, T0) +
+      "fix heat all mpm/heat " + heat + strprintf("\ntimestep %.17g\n", 0.05 * h * h);
+}
+
+}    // namespace
+
+// surfaces have their area
+SERIAL_TEST(Area, OfDisksAndSpheres)
+{
+  for (const int dim : {2, 3})
+    for (const int n : {10, 20}) {
+      if (dim == 3 && n == 20) continue;
+      for (const double offset : {0.0, 0.25, 0.5}) {
+        const double area = dim == 2 ? 2.0 * PI : 4.0 * PI;
+        for (const char *kind : {"surface", "region around"}) {
+          Scene run(round(n, offset, dim, std::string(kind) + " flux 1.0", 0.0) + "run 1\n");
+          const double power = run.fix_vector("heat", 10)[9];
+          EXPECT_NEAR(measured(strprintf("%dd %s %d %g", dim, kind, n, offset), power / area), 1.0,
+                      n == 20 ? 0.01 : 0.02);
+          EXPECT_NEAR(Warm(run).heat() / run.fix("heat")->compute_scalar(), 1.0, 1e-10);
+        }
+      }
+    }
+}
+
+// a cylinder that cools by convection, Bi = 1, at t = 0.5: mean temperature by the series of Bessel functions
+SERIAL_TEST(Cylinder, Cools)
+{
+  // roots of b J1(b) = Bi J0(b) for Bi = 1
+  double mean = 0.0;
+  for (int k = 0; k < 6; k++) {
+    const auto f = [](double b) {
+      return b * std::cyl_bessel_j(1, b) - std::cyl_bessel_j(0, b);
+    };
+    double low = k * PI + 0.1, high = low;
+    while (f(low) * f(high) > 0.0) high += 0.01;
+    for (int i = 0; i < 60; i++) {
+      const double middle = 0.5 * (low + high);
+      (f(low) * f(middle) > 0.0 ? low : high) = middle;
+    }
+    mean += 4.0 / (low * low * (low * low + 1.0)) * std::exp(-low * low * 0.5);
+  }
+  for (const char *kind : {"surface", "region around"}) {
+    double error[2];
+    for (const int n : {8, 16}) {
+      Scene run(round(n, 0.3, 2, std::string(kind) + " convection 1.0 0.0", 1.0));
+      const double before = Warm(run).heat();
+      run_to(run, 0.5, 0.2 / (n * n));
+      const double T = Warm(run).heat() / before;
+      error[n == 16] = std::fabs(measured(strprintf("%s %d", kind, n), T) / mean - 1.0);
+    }
+    EXPECT_LT(error[1], 0.01);
+  }
+}
+
+// a thin plate of aluminum that radiates from both of its surfaces, from 1000 K to 300 K: 484.5102 K after 600 s (M2 b)
+SERIAL_TEST(Plate, Radiates)
+{
+  Scene run(plane("si", "f p", "-0.01 0.02 0 0.004", 1, 0.0001) +
+            "region plate block 0 0.01 INF INF INF INF\n"
+            "create_points 1 region plate spacing 0.0005\nfix grid all mpm 0.001 origin 0.0003 0\n"
+            "fix m all mpm/material density 2700 eos linear 1e-5 thermal conducting 900 1000 200\n"
+            "fix heat all mpm/heat surface radiation 1.0 300 stages 64\ntimestep 1.0\nrun 600\n");
+  const double T = Warm(run).heat() / over_ranks(run.n() * run.mass()[0] * 900.0);
+  EXPECT_NEAR(measured("T", T), 484.5102, 2.0);
+}
+
+// a region hides free surfaces, also if it is insulated
+SERIAL_TEST(Surface, IsNotWhereARegionTouches)
+{
+  for (const char *heat : {"surface flux 1.0", "surface flux 1.0 region wall insulated"}) {
+    Scene run(bar_in_box(10, 0.2, heat, 0.0, WALL) + "timestep 1e-3\nrun 1\n");
+    const bool covered = std::strstr(heat, "insulated") != nullptr;
+    EXPECT_NEAR(run.fix_vector("heat", 10)[9], covered ? 0.0 : 0.4, 1e-9);
+    if (covered) EXPECT_EQ(run.fix_vector("heat", 11)[10], 0.0);
+  }
+}
+
+TEST(Ranks, Agree)
+{
+  const std::string scene =
+      round(6, 0.2, 2, "surface convection 2.0 0.3 region hot temperature 3.0", 1.0);
+  OnRanks run(replaced(scene, "region around", "region hot sphere 0 1.6 0 0.63\nregion around") +
+                  "velocity all set 0.2 0.3 0\n",
+              "run 40\n");
+  EXPECT_LT(run.difference(), 1e-12);
+  const double one = run.serial.fix("heat")->compute_scalar();
+  EXPECT_GT(std::fabs(one), 1e-3);
+  EXPECT_NEAR(run.parallel.fix("heat")->compute_scalar() / one, 1.0, 1e-11);
+}
+
+// a region that moves through a periodic block in 3d, with lines beyond the last nodes that points reach
+TEST(Ranks, AgreeOnMovingRegions)
+{
+  const std::string scene = space("si", "f p f", "0 0.2 0 0.08 0 0.2", 1, 0.001) +
+      "region body block 0.05 0.15 INF INF 0 0.1\nvariable dx equal 0.5*time\n"
+      "region ball sphere 0.1 0.04 0.125 0.03 move v_dx NULL NULL\n"
+      "create_points 1 region body spacing 0.005\nfix grid all mpm 0.01 origin 0.002 0 0\n"
+      "fix m all mpm/material density 2700 eos linear 1e3 thermal conducting 900 300 200\n"
+      "fix heat all mpm/heat surface convection 500 273 region ball temperature 800 "
+      "zlo temperature 300\ntimestep 0.002\n";
+  OnRanks run(scene, "run 10\n");
+  const double one = run.serial.fix("heat")->compute_scalar();
+  EXPECT_GT(one, 100.0);
+  EXPECT_NEAR(run.parallel.fix("heat")->compute_scalar() / one, 1.0, 1e-11);
+}
+
+SERIAL_TEST(BadInput, IsRefused)
+{
+  const std::string scene =
+      replaced(bar_in_box(4, 0.0, "", 0.0, WALL), "fix heat all mpm/heat \n", "") +
+      "timestep 0.001\n";
+  expect_refused(scene,
+                 {{"fix heat all mpm/heat region none flux 1.0", "region none does not exist"},
+                  {"fix heat all mpm/heat region wall", "region"},
+                  {"fix heat all mpm/heat region wall hot 1.0", "must be one of insulated"},
+                  {"fix heat all mpm/heat region wall convection -1.0 0.0", "not negative"},
+                  {"fix heat all mpm/heat surface radiation 0.5 300", "use units si"},
+                  {"fix heat all mpm/heat surface flux v_none", "does not exist"},
+                  {"fix heat all mpm/heat surface flux 1.0 surface flux 2.0", "surface"},
+                  {"fix heat all mpm/heat region wall flux 1 region wall flux 2", "given twice"},
+                  {"region open block 1 2 INF INF INF INF open 1\n"
+                   "fix heat all mpm/heat region open flux 1.0",
+                   "open faces"}},
+                 "run 1\n");
+}
