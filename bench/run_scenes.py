@@ -13,7 +13,7 @@ any run) is named at the end.
 
 The parts: law: nodes to points with the laws of materials; p2g: points to nodes; nodes: momentum equation with
 walls and contact; ledger: energies of nodes for compute mpm/energy; topology, sort, halo: of blocks, points, messages;
-rest: other stages; lammps: all else in the loop: forces, neighbor lists, other fixes, computes, output.
+physics: heat, pore water; rest: other stages; lammps: all else in the loop: forces, neighbor lists, other fixes, computes, output.
 """
 
 import argparse
@@ -33,11 +33,13 @@ TABLE = os.path.join(HERE, "scenes.csv")
 SKIPPED = ("own-material", "own-physics", "python", "point")    # need a build of their own, or have no lattice
 BLOCKS = {"block": ("in.block", {"n": "20", "box": "24", "steps": "200"}),
           "block2d": ("in.block2d", {"n": "100", "box": "110", "steps": "400"})}
-PARTS = ("law", "p2g", "nodes", "ledger", "topology", "sort", "halo", "rest", "lammps")
+PARTS = ("law", "p2g", "nodes", "ledger", "topology", "sort", "halo", "physics", "rest", "lammps")
 STAGES = (("nodes to points", "law"), ("gradients", "law"), ("averaged", "law"), ("motion of points", "law"),
           ("points to nodes", "p2g"), ("velocities back", "p2g"), ("momentum equation", "nodes"), ("node actions", "nodes"), ("FMPM", "nodes"),
           ("XPIC", "nodes"), ("light nodes", "nodes"), ("energy of nodes", "ledger"), ("topology", "topology"),
-          ("sort", "sort"), ("sum over ranks", "halo"))
+          ("sort", "sort"), ("sum over ranks", "halo"), ("conduction of heat", "physics"), ("pore pressure", "physics"),
+          ("flow of pore water", "physics"), ("pressure of the mixture", "physics"),
+          ("volume of the mixture", "physics"), ("work in the mixture", "physics"))
 COLUMNS = ("scene", "dimension", "points", "steps", "total") + PARTS + ("times",)
 
 
@@ -123,7 +125,7 @@ def main():
                 blocks[row["dimension"]] = row["total"]
             row["times"] = row["total"] / blocks[row["dimension"]]
             rounds[name].append(row)
-    last = {}
+    last = {}    # a table from before has no column for a part that is new
     if os.path.exists(TABLE):
         with open(TABLE) as file:
             last = {row["scene"]: row for row in csv.DictReader(file)}
