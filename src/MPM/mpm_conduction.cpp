@@ -77,7 +77,7 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr int AHEAD = 16;    // distance of prefetches, in points
+static constexpr int AHEAD = BATCH;    // distance of prefetches, in points
 
 /* ---------------------------------------------------------------------- */
 
@@ -265,6 +265,16 @@ double MPMConduction::row_bound(double usual)
   return limit;
 }
 
+/** The first dim reals of n rows of these widths. */
+static void copy_rows(int dim, int n, const double *from, int width, double *to, int to_width)
+{
+  for (int p = 0; p < n; p++, from += width, to += to_width) {
+    to[0] = from[0];
+    to[1] = from[1];
+    if (dim == 3) to[2] = from[2];
+  }
+}
+
 /* ----------------------------------------------------------------------
    temperatures of the nodes
 ------------------------------------------------------------------------- */
@@ -279,21 +289,34 @@ double MPMConduction::points_to_nodes(const MPMRows &gradients)
       [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Points &points) {
         const Thermal *const t = thermal(run.material);
         if (!t) return false;
-        Conduction room;
+        const double *const rmass = atom->rmass + first, *const vfrac = atom->vfrac + first;
+        double *const V = volumes.data() + first;
+        for (int p = 0; p < n; p++) {
+          __builtin_prefetch(field.points->F[std::min(first + p + AHEAD, atom->nlocal - 1)]);
+          V[p] = vfrac[p] * MPMPoints::det(field.points->F[first + p]);
+        }
+        Conduction c = t->all;
+        double greatest = c.most();
         for (int p = 0; p < n; p++) {
           const int i = first + p;
-          __builtin_prefetch(field.points->F[std::min(first + p + AHEAD, run.last - 1)]);
-          const Conduction &c = t->at(i, room);
-          const double C = atom->rmass[i] * c.capacity, V = volumes[i] = volume_of(i);
-          points.capacity[p] = C;
-          points.value[p] = t->fix->history[i][t->temperature];
-          for (int d = 0; gradients && d < dim; d++) points.slope[3 * p + d] = gradients[i][d];
-          most = std::max(most, simple ? c.most() * V / C : bound(*t, i, V));
-          if (wants_volumes)
-            points.volume[p] = total ? atom->vfrac[i] * field.frame->lattice_jacobian(i) : V;
+          const double *const history = t->fix->history[i];
+          if (t->varies) {
+            c = t->fix->material->conduction(history);
+            greatest = c.most();
+          }
+          const double C = points.capacity[p] = rmass[p] * c.capacity;
+          points.row[p][3] = history[t->temperature];
+          if (!simple)
+            most = std::max(most, bound(*t, i, V[p]));
+          else if (greatest * V[p] > most * C)    // hardly ever: no division
+            most = greatest * V[p] / C;
         }
+        if (gradients) copy_rows(dim, n, gradients[first], dim, points.row[0], 4);
+        for (int p = 0; wants_volumes && p < n; p++)
+          points.volume[p] = total ? vfrac[p] * field.frame->lattice_jacobian(first + p) : V[p];
         return true;
-      });
+      },
+      transfer.kind == MPMHeatTransfer::RELAX);
   if (simple)
     most *= steepest;
   else if (!field.boxes && !field.domains && steepest == 0.0)
@@ -307,22 +330,26 @@ void MPMConduction::find_rates(const double *source, Heats &power)
 {
   scalar.find_rates([&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
     const Thermal *const t = thermal(run.material);
+    const double *const V = volumes.data() + first;
+    const double *const share = shares.empty() ? nullptr : shares.data() + first;
     Conduction room;
     for (int p = 0; p < n; p++) {
-      const int i = first + p;
-      const double V = volumes[i], conducting = shares.empty() ? V : V * shares[i];
+      const double conducting = share ? V[p] * share[p] : V[p];
       if (total || t->all.orthotropic) {
         double k[3][3], flux[3];
-        tensor(*t, i, k);
+        tensor(*t, first + p, k);
         MathExtra::matvec(k, q[p], flux);
         for (int d = 0; d < 3; d++) q[p][d] = -conducting * flux[d];
       } else {
-        const double factor = -conducting * t->at(i, room).conductivity;
-        for (int d = 0; d < 3; d++) q[p][d] *= factor;
+        const double factor = -conducting * t->at(first + p, room).conductivity;
+        for (int d = 0; d < 4; d++) q[p][d] *= factor;
       }
-      q[p][3] = source ? V * source[i] : 0.0;
-      power[SOURCES] += q[p][3];
+      q[p][3] = 0.0;
     }
+    if (!source) return;
+    double sum = 0.0;
+    for (int p = 0; p < n; p++) sum += q[p][3] = V[p] * source[first + p];
+    power[SOURCES] += sum;
   });
   for (std::size_t k = 0; k < given.size(); k++)
     if (scalar.capacity[k] > 0.0) rate[k] += given[k] / (field.step_dt() * scalar.capacity[k]);
@@ -343,21 +370,22 @@ double MPMConduction::nodes_to_points(const MPMRows &gradients)
       [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q,
           const double *before) {
         const Thermal *const t = thermal(run.material);
-        Conduction room;
+        Conduction c = t->all;
+        double sum = 0.0;
         for (int p = 0; p < n; p++) {
-          const int i = first + p;
-          const Conduction &c = t->at(i, room);
-          double *const history = t->fix->history[i], &T = history[t->temperature];
+          double *const history = t->fix->history[first + p], &T = history[t->temperature];
+          if (t->varies) c = t->fix->material->conduction(history);
           const double now = relaxes ? q[p][3] + keep * (T - before[p]) : q[p][3];
-          got += atom->rmass[i] * c.capacity * (now - T);
+          sum += atom->rmass[first + p] * c.capacity * (now - T);
           if (c.by_enthalpy) {
             t->fix->material->warm(history, c.capacity * (now - T));
           } else {
             T = now;
             if (t->molten >= 0) c.melting.settle(T, history[t->molten]);
           }
-          for (int d = 0; gradients && d < dim; d++) gradients[i][d] = q[p][d];
         }
+        if (gradients) copy_rows(dim, n, q[0], 4, gradients[first], dim);
+        got += sum;
       },
       relaxes);
   return got;

@@ -64,7 +64,7 @@ void MPMNodeScalar::sum(std::vector<double> &nodes) const
 
 /* ---------------------------------------------------------------------- */
 
-void MPMNodeScalar::points_to_nodes(const Fill &fill)
+void MPMNodeScalar::points_to_nodes(const Fill &fill, bool keeps)
 {
   const std::size_t nnodes = field.grid.nnodes();
   capacity.assign(nnodes, 0.0);
@@ -72,8 +72,8 @@ void MPMNodeScalar::points_to_nodes(const Fill &fill)
   rate.resize(nnodes);
   if (volumes) volume.assign(nnodes, 0.0);
   has_part.assign(field.map->runs.size(), 1);
-  Points points;
-  double q[4 * BATCH];
+  Points points = {};    // numbers in z in 2d, too
+  double q[BATCH];
   double *const of_value = tiles[0].data(), *const of_capacity = tiles[1].data(),
                 *const of_volume = tiles[2].data();
   boxes.resize(field.map->active.size());
@@ -84,14 +84,11 @@ void MPMNodeScalar::points_to_nodes(const Fill &fill)
       if (!fill(run, first, n, points)) return false;
       prepare();
       if (slopes) {
-        for (int p = 0; p < n; p++) {
-          const double C = points.capacity[p];
-          for (int d = 0; d < 3; d++) q[4 * p + d] = C * points.slope[3 * p + d];
-          q[4 * p + 3] = C * points.value[p];
-        }
-        kernels.add(stencil, q, of_value);
+        for (int p = 0; p < n; p++)
+          for (int d = 0; d < 4; d++) points.row[p][d] *= points.capacity[p];
+        kernels.add(stencil, points.row[0], of_value);
       } else {
-        for (int p = 0; p < n; p++) q[p] = points.capacity[p] * points.value[p];
+        for (int p = 0; p < n; p++) q[p] = points.capacity[p] * points.row[p][3];
         kernels.add_values(stencil, q, of_value);
       }
       kernels.add_values(stencil, points.capacity, of_capacity);
@@ -109,7 +106,7 @@ void MPMNodeScalar::points_to_nodes(const Fill &fill)
   if (volumes) sum(volume);
   for (std::size_t k = 0; k < nnodes; k++)
     value[k] = capacity[k] > 0.0 ? value[k] / capacity[k] : 0.0;
-  before = value;
+  if (keeps) before = value;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -200,6 +197,25 @@ void MPMNodeScalar::nodes_to_points(const Take &take, bool changes)
   }
   std::fill(tiles[1].begin(), tiles[1].end(), 0.0);
   std::fill(tiles[2].begin(), tiles[2].end(), 0.0);
+}
+
+void MPMNodeScalar::values_to_points(const TakeValues &take)
+{
+  field.nodes.complete(value.data(), 1, 1);
+  double values[BATCH];
+  double *const tile = tiles[1].data();
+  for (const auto &block : field.map->active) {
+    if (box_of(block)[0] > box_of(block)[3]) continue;
+    kernels.load(tile, value.data(), field.grid.blocks[block.slot].slot, box_of(block));
+    visit(block, GRADIENT_SLOPES, nullptr,
+          [&](const auto &run, int first, int n, const auto &prepare) {
+            prepare();
+            kernels.get_values(stencil, tile, values);
+            take(run, first, n, values);
+            return true;
+          });
+  }
+  std::fill(tiles[1].begin(), tiles[1].end(), 0.0);
 }
 
 double MPMNodeScalar::memory_usage() const

@@ -37,9 +37,9 @@ class MPMNodeScalar {
 
   /** What the points [first,first+n) of a run have. */
   struct Points {
-    double value[MPM_NS::BATCH], capacity[MPM_NS::BATCH];
-    double slope[3 * MPM_NS::BATCH];    ///< [n][3] gradients g_p, if there are any
-    double volume[MPM_NS::BATCH];       ///< if volumes of nodes are wanted
+    double row[MPM_NS::BATCH][4];    ///< [n][4] gradients g_p x y z, if there are any, and values
+    double capacity[MPM_NS::BATCH];
+    double volume[MPM_NS::BATCH];    ///< if volumes of nodes are wanted
   };
   /** What points get: [n][4] gradient x y z, or g_p in nodes_to_points(), and value. */
   using Rows = double (*)[4];
@@ -50,6 +50,9 @@ class MPMNodeScalar {
   /** New slopes g_p and values; before: values at points by the nodes before, or null. */
   using Take =
       std::function<void(const MPMPointMap::Run &, int first, int n, Rows, const double *before)>;
+  /** Values alone, [n]. */
+  using TakeValues =
+      std::function<void(const MPMPointMap::Run &, int first, int n, const double *values)>;
 
   /** Of each node. Those of this rank's points and sums over ranks are the same on all ranks that share a node;
    *  copies at periodic faces are not up to date. */
@@ -59,8 +62,8 @@ class MPMNodeScalar {
 
   /** Start of a run. slopes: points have gradients g_p; volumes: those of nodes are wanted. */
   void init(bool slopes, bool volumes);
-  /** Capacities, volumes, and values of nodes; before = value. */
-  void points_to_nodes(const Fill &);
+  /** Capacities, volumes, and values of nodes; keeps: before = value. */
+  void points_to_nodes(const Fill &, bool keeps);
   /** Rates of the values of nodes. more: adds to their rates times capacity what this rank knows of, before ranks
    *  are summed. */
   void find_rates(const Conduct &, const std::function<void()> &more = nullptr);
@@ -69,6 +72,7 @@ class MPMNodeScalar {
   double greatest_rate(const Conduct &bound);    // the rows stay in the place of rates
   /** changes: give the values of before, too. */
   void nodes_to_points(const Take &, bool changes);
+  void values_to_points(const TakeValues &);
 
   double memory_usage() const;
 

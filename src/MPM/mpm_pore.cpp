@@ -135,11 +135,12 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
           fastest = std::max(fastest, conductance[i] / capacity[i]);
           points.volume[p] = conductance[i];
           points.capacity[p] = capacity[i];
-          points.value[p] = state[i][0];
-          for (int d = 0; d < dim; d++) points.slope[3 * p + d] = state[i][1 + d];
+          points.row[p][3] = state[i][0];
+          for (int d = 0; d < dim; d++) points.row[p][d] = state[i][1 + d];
         }
         return true;
-      });
+      },
+      false);
 }
 
 /* ----------------------------------------------------------------------
@@ -179,14 +180,12 @@ void MPMPore::begin_step(const MPMRows &state, const double *formula)
 {
   if (surface.any()) surface.find_places();
   points_to_nodes(state, formula);
-  nodes.nodes_to_points(
-      [&](const MPMPointMap::Run &, int first, int n, MPMNodeScalar::Rows q, const double *) {
-        for (int p = 0; p < n; p++) {
-          mean[first + p] = q[p][3];
-          in_forces[first + p] *= q[p][3];
-        }
-      },
-      false);
+  nodes.values_to_points([&](const MPMPointMap::Run &, int first, int n, const double *values) {
+    for (int p = 0; p < n; p++) {
+      mean[first + p] = values[p];
+      in_forces[first + p] *= values[p];
+    }
+  });
   if (surface.any()) exchange = surface.prepare(nodes, least_storage);
 }
 
@@ -217,13 +216,15 @@ void MPMPore::find_rates(std::vector<double> &inflow)
   double weight[3];    // of the water, in pressure per length
   for (int d = 0; d < 3; d++) weight[d] = water.density * gravity[d] * force->nktv2p;
   const auto flow = [&](const MPMPointMap::Run &, int first, int n, MPMNodeScalar::Rows q) {
+    double power[3] = {0.0, 0.0, 0.0};
     for (int p = 0; p < n; p++) {
       for (int d = 0; d < 3; d++) {
         q[p][d] = -conductance[first + p] * (q[p][d] - weight[d]);
-        inflow[MPMPoreSurface::ENERGY] += q[p][d] * weight[d];
+        power[d] += q[p][d] * weight[d];
       }
       q[p][3] = squeezed[first + p];
     }
+    inflow[MPMPoreSurface::ENERGY] += power[0] + power[1] + power[2];
   };
   if (surface.any())
     nodes.find_rates(flow, [&] {

@@ -39,21 +39,26 @@ MPM_INLINE void transpose(V *a)
   const V low = shuffle<0, 4, 2, 6>(a[0], a[1]);     // 00 10 02 12
   const V high = shuffle<1, 5, 3, 7>(a[0], a[1]);    // 01 11 03 13
   const V low2 = shuffle<0, 4, 2, 6>(a[2], a[3]), high2 = shuffle<1, 5, 3, 7>(a[2], a[3]);
-  a[0] = join(half<0>(low), half<0>(low2));
-  a[1] = join(half<0>(high), half<0>(high2));
-  a[2] = join(half<1>(low), half<1>(low2));
-  a[3] = join(half<1>(high), half<1>(high2));
+  a[0] = shuffle<0, 1, 4, 5>(low, low2);
+  a[1] = shuffle<0, 1, 4, 5>(high, high2);
+  a[2] = shuffle<2, 3, 6, 7>(low, low2);
+  a[3] = shuffle<2, 3, 6, 7>(high, high2);
 }
 
 /** Three reals of rows of four points from the given one on, axis by axis. Behind the last point there are others like it,
  *  and there may be no memory behind the last row. */
 MPM_INLINE void load_points(const double *rows, Index p, Index n, Index guarded, V *axis)
 {
-  MPM_UNROLL
-  for (int k = 0; k < 4; k++) {
-    const Index q = p + k < n ? p + k : n - 1;
-    const double *const at = rows + 3 * q;
-    axis[k] = q < guarded ? V::load(at) : quad(at[0], at[1], at[2], 0.0);
+  if (p + 4 <= n && p + 4 <= guarded) {
+    MPM_UNROLL
+    for (int k = 0; k < 4; k++) axis[k] = V::load(rows + 3 * (p + k));
+  } else {
+    MPM_UNROLL
+    for (int k = 0; k < 4; k++) {
+      const Index q = p + k < n ? p + k : n - 1;
+      const double *const at = rows + 3 * q;
+      axis[k] = q < guarded ? V::load(at) : quad(at[0], at[1], at[2], 0.0);
+    }
   }
   transpose(axis);
 }
@@ -208,18 +213,21 @@ template <int DIM, Shape SHAPE> void add(const ScalarStencil &in, const double *
     for (int p = first; p < last; p++) {
       const double *const mine = q + 4 * p;
       const V w = V::load(in.last_w[p]), s = V::load(in.last_slope[p]);
-      const V across = mine[Rows::LAST] * s;
+      const V straight = mine[3] * w + mine[Rows::LAST] * s, along_x = mine[0] * w,
+              along_y = mine[1] * w;
       MPM_UNROLL
       for (int i = 0; i < N; i++) {
         const double wx = in.w[0][i][p], sx = in.slope[0][i][p];
-        const V plane = (mine[3] * wx + mine[0] * sx) * w + wx * across;
+        const V plane = wx * straight + sx * along_x;
         if constexpr (DIM == 2) {
           nodes.row[i][0] += plane;
         } else {
-          const V aside = (mine[1] * wx) * w;
+          const V aside = wx * along_y;
           MPM_UNROLL
-          for (int j = 0; j < M; j++)
-            nodes.row[i][j] += in.w[1][j][p] * plane + in.slope[1][j][p] * aside;
+          for (int j = 0; j < M; j++) {
+            nodes.row[i][j] += in.w[1][j][p] * plane;
+            nodes.row[i][j] += in.slope[1][j][p] * aside;
+          }
         }
       }
     }
@@ -258,7 +266,7 @@ MPM_INLINE V sums(V a, V b, V c, V d)
 {
   const V ab = shuffle<0, 4, 2, 6>(a, b) + shuffle<1, 5, 3, 7>(a, b);
   const V cd = shuffle<0, 4, 2, 6>(c, d) + shuffle<1, 5, 3, 7>(c, d);
-  return join(half<0>(ab) + half<1>(ab), half<0>(cd) + half<1>(cd));
+  return shuffle<0, 1, 4, 5>(ab, cd) + shuffle<2, 3, 6, 7>(ab, cd);
 }
 
 template <int DIM, Shape SHAPE> void get(const ScalarStencil &in, const double *tile, double *q)
