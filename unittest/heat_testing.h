@@ -69,6 +69,20 @@ struct Warm {
   }
 };
 
+/** Lines of the log of a scene that say that a body is too thin for heat through its surface. */
+inline int said_thin(const std::string &scene)
+{
+  Scene run;
+  const ScratchFile log("thin.log");
+  run.commands("log " + log.name + "\n" + scene + "log none\n");
+  MPI_Barrier(MPI_COMM_WORLD);
+  int lines = 0;
+  std::ifstream file(log.name);
+  for (std::string line; std::getline(file, line);)
+    lines += line.find("is thinner than 3") != std::string::npos;
+  return lines;
+}
+
 /** A bar of the length 1 along x with capacity and conductivity 1, whose ends are the faces of the box, with n
  *  cells; offset: of the faces from nodes, in cells. Four cells wide, periodic. */
 inline std::string bar(int n, const std::string &heat, double offset = 0.0,

@@ -235,6 +235,26 @@ SERIAL_TEST(Turned, SlabsCool)
   }
 }
 
+// a sheet between two blocks: said if it is thin
+TEST(Thin, IsSaid)
+{
+  for (const double offset : {0.0, 0.25, 0.6})
+    for (const double cells : {1.0, 2.0, 3.0, 4.0}) {
+      const std::string scene = plane("lj", "f p", "-12 12 0 8", 2, 0.4) +
+          "region a block -12 0 INF INF INF INF\n" +
+          strprintf("region b block 0 %g INF INF INF INF\n", cells) +
+          "create_points 1 region a spacing 0.5\ncreate_points 2 region b spacing 0.5\n"
+          "group a type 1\ngroup b type 2\n" +
+          strprintf("fix ga a mpm 1.0 origin %g 0\nfix gb b mpm 1.0 origin %g 0\n", offset,
+                    offset) +
+          "fix ma a mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 1.0 1.0\n"
+          "fix mb b mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 0.0 1.0\n"
+          "fix touch all mpm/contact ga gb\n"
+          "fix heat all mpm/heat contact ga gb conductance 1.0\ntimestep 0.01\nrun 60\nrun 60\n";
+      EXPECT_EQ(said_thin(scene), cells < 2.5) << offset << " " << cells;
+    }
+}
+
 TEST(Ranks, Agree)
 {
   Bars bars;

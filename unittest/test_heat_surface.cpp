@@ -191,6 +191,63 @@ SERIAL_TEST(Surface, IsNotWhereARegionTouches)
   }
 }
 
+// a plate of so many cells across, which is turned: heat is missing if it is thin, and that is said once, and what is
+// missing otherwise is little
+PARAMETER_TEST(Thin, IsSaid, const char *,
+               Values("surface", "region wall", "surface cubic", "region wall cubic"))
+{
+  std::string kind = GetParam();
+  const bool cubic = kind.find("cubic") != std::string::npos;
+  if (cubic) kind = replaced(kind, " cubic", "");
+  for (const double angle : {0.0, 30.0})
+    for (const double offset : {0.0, 0.25, 0.6})
+      for (const double cells : {1.0, 2.0, 3.0, 4.0, 6.0}) {
+        if (cubic && cells == 3.0) continue;
+        const std::string scene = plane("lj", "f f", "-20 20 -20 20", 1, 0.4) +
+            strprintf("region plate block 0 %g -12 12 INF INF\n", cells) +
+            strprintf("variable a equal %.17g\n", angle * PI / 180.0) +
+            "region wall block -6 0 -12 12 INF INF rotate v_a 0 0 0 0 0 1\n" +
+            "create_points 1 region plate spacing 0.5\n" +
+            strprintf("displace_atoms all rotate 0 0 0 0 0 1 %g\n", angle) +
+            strprintf("fix grid all mpm 1.0 origin %g 0%s\n", offset, cubic ? " shape cubic" : "") +
+            "fix m all mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 0.0 1.0\n"
+            "fix heat all mpm/heat " +
+            kind + " flux 1.0\ntimestep 0.01\nrun 60\nrun 60\n";
+        const bool thin = cells < (cubic ? 3.5 : 2.5);
+        EXPECT_EQ(said_thin(scene), thin) << angle << " " << offset << " " << cells;
+      }
+}
+
+// corners, edges, faces of the box behind a layer, and small bodies as round as nodes can tell are not thin
+TEST(Thin, IsNotSaidOfCorners)
+{
+  for (const int dim : {2, 3})
+    for (const double offset : {0.0, 0.3})
+      for (const char *kind : {"surface flux 1.0", "region around flux 1.0"})
+        EXPECT_EQ(said_thin(round(3, offset, dim, kind, 0.0) + "run 2\n"), 0) << dim << kind;
+  for (const int dim : {2, 3})
+    for (const double angle : {0.0, 20.0, 45.0}) {
+      const char *const extent = "-5 5 -5 5 -5 5";
+      const std::string scene = (dim == 2 ? plane("lj", "f f", "-5 5 -5 5", 1, 0.4)
+                                          : space("lj", "f f f", extent, 1, 0.4)) +
+          "region cube block -2 2 -2 2 -2 2\ncreate_points 1 region cube spacing 0.5\n" +
+          strprintf("displace_atoms all rotate 0 0 0 %s %g\n", dim == 2 ? "0 0 1" : "1 1 0.3",
+                    angle) +
+          "fix grid all mpm 1.0 origin 0.2 0.1" + (dim == 2 ? "" : " 0") +
+          "\nfix m all mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 0.0 1.0\n"
+          "fix heat all mpm/heat surface flux 1.0\ntimestep 0.01\nrun 2\n";
+      EXPECT_EQ(said_thin(scene), 0) << dim << " " << angle;
+    }
+  const std::string layer = plane("lj", "f p", "0 12 0 8", 1, 0.4) +
+      "region low block 0 2 INF INF INF INF\ncreate_points 1 region low spacing 0.5\n"
+      "fix grid all mpm 1.0\n"
+      "fix m all mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 0.0 1.0\n"
+      "fix heat all mpm/heat surface flux 1.0\ntimestep 0.01\nrun 2\n";
+  EXPECT_EQ(said_thin(layer), 0);
+  Scene run(layer);
+  EXPECT_NEAR(run.fix_vector("heat", 10)[9], 8.0, 1e-9);    // nothing is missing
+}
+
 TEST(Ranks, Agree)
 {
   const std::string scene =

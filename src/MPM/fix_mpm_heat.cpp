@@ -254,14 +254,7 @@ void FixMPMHeat::init()
   }
 }
 
-/** Is the surface of a field known by what nodes have (MPMHeatBody)? */
-static bool finds_surfaces(const MPMField &field)
-{
-  const auto &o = field.options;
-  return (o.shape == QUADRATIC || o.shape == CUBIC) && !o.total && !o.axisymmetric;
-}
-
-/** Do faces of the box take their weights from it, too? */
+/** Do faces of the box take their weights from the surface that nodes know (MPMHeatBody)? */
 static bool weighs_faces(const MPMField &field)
 {
   return field.options.shape == QUADRATIC || field.options.shape == CUBIC;
@@ -458,10 +451,34 @@ void FixMPMHeat::find_surfaces()
     for (auto &body : bodies)
       if (!body->conduction) body->want_all();
   for (auto &body : bodies) body->find_surface();
-  for (auto &contact : contacts) contact->find_contacts();
+  const bool looks = (!skins.empty() || !contacts.empty()) &&
+      thin.looks((int) (surfaces.size() + contacts.size()));
+  for (std::size_t k = 0; k < contacts.size(); k++)
+    contacts[k]->find_contacts(looks ? &thin : nullptr, (int) (surfaces.size() + k));
   std::vector<const MPMHeatBody *> all;
   for (auto &body : bodies) all.push_back(body.get());
-  for (auto &skin : skins) skin->find_lines(all);
+  for (auto &skin : skins) skin->find_lines(all, looks ? &thin : nullptr);
+  if (looks) report_thin();
+}
+
+/** Collective: one warning, of the same place for any number of ranks. */
+void FixMPMHeat::report_thin()
+{
+  MPMHeatThin::Found found;
+  if (!thin.tell(world, found) || comm->me) return;
+  const int nsurface = (int) surfaces.size();
+  std::string what = "surface";
+  if (found.entry >= nsurface)
+    what = fmt::format("contact {} {}", pairs[found.entry - nsurface].field[0],
+                       pairs[found.entry - nsurface].field[1]);
+  else if (!surfaces[found.entry].region.empty())
+    what = "region " + surfaces[found.entry].region;
+  error->warning(FLERR,
+                 "Fix mpm/heat {}: more than 5 % of the area of {} belongs to material that is "
+                 "thinner than 3 node spacings (4 with shape cubic), first at {:.6g} {:.6g} "
+                 "{:.6g} in step {}: heat is missing there, up to 16 % with 2 spacings and half of "
+                 "it with 1. Make the spacing of fix mpm smaller; this is said only once",
+                 id, what, found.x[0], found.x[1], found.x[2], update->ntimestep);
 }
 
 /* ----------------------------------------------------------------------

@@ -19,6 +19,7 @@ FixStyle(mpm/heat,FixMPMHeat);
 #include "mpm_grain_heat.h"
 #include "mpm_heat_contact.h"
 #include "mpm_heat_surface.h"
+#include "mpm_heat_thin.h"
 #include "mpm_physics.h"
 #include "mpm_state.h"
 #include "mpm_super_step.h"
@@ -94,6 +95,7 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions
   std::vector<std::unique_ptr<MPMHeatContact>> contacts;
   std::vector<std::unique_ptr<MPMHeatSurfaces>>
       skins;             // surfaces of fields, if there are conditions
+  MPMHeatThin thin;      // bodies; entries: surfaces, then contacts
   MPMSuperStep steps;    // of the temperatures of all fields together
   Past past = {};
   // heat of the last step, and power in a stage of it, this rank's share: through faces, of sources, of givers, through
@@ -111,6 +113,7 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions
   int places_of_surfaces() const { return GIVERS + NGIVER; }
   int places_of_contacts() const { return places_of_surfaces() + (int) surfaces.size(); }
   void find_surfaces();
+  void report_thin();
   void check(MPMHeatCondition &, const std::string &name);
   void evaluate_variables();
   int count_stages();

@@ -116,7 +116,7 @@ bool MPMHeatBody::make_line(int axis, const int *base, double at, double into, L
   for (int k = 0; k < line.n; k++) {
     index[axis] = lattice.wrap(axis, first + k);
     const int64_t node = line.node[k] = grid.locate(index);
-    if (node < 0 && comm->nprocs > 1) return false;
+    if (node < 0 && !knows_all()) return false;
     const double G = node < 0 ? 0.0 : gradient[3 * node + axis];
     line.weight[k] = std::max(0.0, into > 0.0 ? -G : G);
     sum += line.weight[k];
@@ -203,6 +203,11 @@ double MPMHeatBody::room(int axis, int index) const
     part -= 1.0 - profile.volume(side ? -depth : depth);
   }
   return std::max(part, 0.0);
+}
+
+bool MPMHeatBody::knows_all() const
+{
+  return comm->nprocs == 1;
 }
 
 double MPMHeatBody::memory_usage() const

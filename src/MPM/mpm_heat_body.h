@@ -71,6 +71,9 @@ class MPMHeatBody : protected Pointers {
   /** Share of the function of a node along an axis that is inside of fixed faces of the box. */
   double room(int axis, int index) const;
 
+  /** Has a node without a block no points on any rank? */
+  bool knows_all() const;
+
   double memory_usage() const;
 
  private:

@@ -33,6 +33,7 @@
 #include "comm.h"
 #include "math_extra.h"
 #include "mpm_field.h"
+#include "mpm_heat_thin.h"
 
 #include <algorithm>
 #include <cmath>
@@ -103,8 +104,8 @@ void MPMHeatContact::mark_near()
    between the nodes a (of the first body) and b, next to it along an axis
 ------------------------------------------------------------------------- */
 
-bool MPMHeatContact::make_place(int axis, const int *index, int64_t a, int64_t b,
-                                Place &place) const
+bool MPMHeatContact::make_place(int axis, const int *index, int64_t a, int64_t b, Place &place,
+                                MPMHeatThin *thin, int entry) const
 {
   const auto &lattice = body[0]->field.lattice;
   int next[3] = {index[0], index[1], index[2]};
@@ -143,10 +144,16 @@ bool MPMHeatContact::make_place(int axis, const int *index, int64_t a, int64_t b
   place.area = place.share * near * std::min(place.line[0].area, place.line[1].area) /
       std::fabs(normal[axis]);
   place.key = a * lattice.dim + axis;
+  if (thin) {
+    double at[3] = {(double) index[0], (double) index[1], (double) index[2]};
+    at[axis] += part;
+    const double back[3] = {-normal[0], -normal[1], -normal[2]};
+    for (int k = 0; k < 2; k++) thin->take(entry, *body[k], at, k ? normal : back, place.area);
+  }
   return true;
 }
 
-void MPMHeatContact::find_contacts()
+void MPMHeatContact::find_contacts(MPMHeatThin *thin, int entry)
 {
   places.clear();
   const Grid &grid = body[0]->field.grid;
@@ -161,7 +168,7 @@ void MPMHeatContact::find_contacts()
         next[a] = grid.lattice.wrap(a, next[a] + 1);
         Place place;
         if (make_place(a, index, (int64_t) c.slot[0] * NODES_PER_BLOCK + n, grid.locate(next),
-                       place))
+                       place, thin, entry))
           places.push_back(place);
       }
     }

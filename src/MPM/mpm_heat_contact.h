@@ -19,6 +19,7 @@
 #include <vector>
 
 namespace LAMMPS_NS {
+class MPMHeatThin;
 
 /** Two bodies that exchange heat where they touch. */
 struct MPMHeatPair {
@@ -37,8 +38,8 @@ class MPMHeatContact : protected Pointers {
   void topology_changed() { listed = false; }
   /** Marks blocks in which the bodies may meet. */
   void mark_near();
-  /** Where the bodies touch, when their surfaces are known. Collective. */
-  void find_contacts();
+  /** Where the bodies touch, when their surfaces are known. thin: null, or gets all places of this entry. Collective. */
+  void find_contacts(MPMHeatThin *thin, int entry);
   /** What the capacities of nodes make of it. Returns the largest rate of exchange of this rank [1/time]. */
   double begin_step();
   /** The difference of temperatures decays with this rate at the most: that of the fastest change otherwise. */
@@ -70,7 +71,8 @@ class MPMHeatContact : protected Pointers {
   MPMHeatShares shares;
 
   void list_common_blocks();
-  bool make_place(int axis, const int *index, int64_t a, int64_t b, Place &) const;
+  bool make_place(int axis, const int *index, int64_t a, int64_t b, Place &, MPMHeatThin *,
+                  int entry) const;
 };
 
 }    // namespace LAMMPS_NS

@@ -27,6 +27,7 @@
 #include "domain.h"
 #include "math_extra.h"
 #include "mpm_field.h"
+#include "mpm_heat_thin.h"
 #include "region.h"
 
 #include <algorithm>
@@ -168,7 +169,7 @@ template <class F> void MPMHeatSurfaces::each_pair(const F &f) const
    surface of a region: material is where the distance is not negative
 ------------------------------------------------------------------------- */
 
-void MPMHeatSurfaces::find_wall(int condition, Wall &wall)
+void MPMHeatSurfaces::find_wall(int condition, Wall &wall, MPMHeatThin *thin)
 {
   const auto &lattice = body.field.lattice;
   const double h = lattice.h;
@@ -191,8 +192,17 @@ void MPMHeatSurfaces::find_wall(int condition, Wall &wall)
     place.area = place.share * touches * place.line.area / std::fabs(into[a]);
     place.condition = condition;
     place.key = node * lattice.dim + a;
+    if (thin) look_behind(*thin, place, index, part, into);
     places.push_back(place);
   });
+}
+
+void MPMHeatSurfaces::look_behind(MPMHeatThin &thin, const Place &place, const int *index,
+                                  double part, const double *into) const
+{
+  double at[3] = {(double) index[0], (double) index[1], (double) index[2]};
+  at[place.line.axis] += part;
+  thin.take(place.condition, body, at, into, place.area);
 }
 
 /** Share of the room of a node that others fill. */
@@ -216,7 +226,8 @@ double MPMHeatSurfaces::hidden(const int *index,
    free surfaces: where half of the volume of a node that is inside of the box is filled
 ------------------------------------------------------------------------- */
 
-void MPMHeatSurfaces::find_free(int condition, const std::vector<const MPMHeatBody *> &others)
+void MPMHeatSurfaces::find_free(int condition, const std::vector<const MPMHeatBody *> &others,
+                                MPMHeatThin *thin)
 {
   const Grid &grid = body.field.grid;
   const auto &lattice = grid.lattice;
@@ -300,13 +311,14 @@ void MPMHeatSurfaces::find_free(int condition, const std::vector<const MPMHeatBo
     place.area = place.share * most * side * lattice.cell_volume() / (h * std::fabs(into[a]));
     place.condition = condition;
     place.key = node * dim + a;
+    if (thin) look_behind(*thin, place, index, part, into);
     places.push_back(place);
   });
 }
 
 /* ---------------------------------------------------------------------- */
 
-void MPMHeatSurfaces::find_lines(const std::vector<const MPMHeatBody *> &others)
+void MPMHeatSurfaces::find_lines(const std::vector<const MPMHeatBody *> &others, MPMHeatThin *thin)
 {
   places.clear();
   for (auto &wall : walls)
@@ -315,9 +327,9 @@ void MPMHeatSurfaces::find_lines(const std::vector<const MPMHeatBody *> &others)
     if (conditions[k].condition.kind == MPMHeatCondition::INSULATED) continue;
     const std::size_t begin = places.size();
     if (wall_of[k] < 0)
-      find_free(k, others);
+      find_free(k, others, thin);
     else
-      find_wall(k, walls[wall_of[k]]);
+      find_wall(k, walls[wall_of[k]], thin);
     if (comm->nprocs == 1) continue;
     shares.begin(body);
     for (std::size_t l = begin; l < places.size(); l++) shares.count(places[l].key);

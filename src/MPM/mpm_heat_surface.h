@@ -19,6 +19,7 @@
 #include <vector>
 
 namespace LAMMPS_NS {
+class MPMHeatThin;
 class Region;
 
 /** What the surface of a region does to the heat of what touches it, or, without a region, the
@@ -42,8 +43,9 @@ class MPMHeatSurfaces : protected Pointers {
   void topology_changed();
   /** Marks blocks with surfaces. */
   void mark_near();
-  /** Where surfaces are in this step, when that of the body is known. others: bodies that hide free surfaces. Collective. */
-  void find_lines(const std::vector<const MPMHeatBody *> &others);
+  /** Where surfaces are in this step, when that of the body is known. others: bodies that hide free surfaces; thin: null, or
+   *  gets all places, with the condition as entry. Collective. */
+  void find_lines(const std::vector<const MPMHeatBody *> &others, MPMHeatThin *thin);
   /** What the capacities and temperatures of nodes make of them. Returns the largest rate of this rank at which temperatures
    *  follow those outside [1/time]. */
   double begin_step();
@@ -83,8 +85,10 @@ class MPMHeatSurfaces : protected Pointers {
 
   bool near_wall(Wall &, const int *block) const;
   template <class F> void each_pair(const F &f) const;
-  void find_wall(int condition, Wall &);
-  void find_free(int condition, const std::vector<const MPMHeatBody *> &others);
+  void find_wall(int condition, Wall &, MPMHeatThin *);
+  void find_free(int condition, const std::vector<const MPMHeatBody *> &others, MPMHeatThin *);
+  void look_behind(MPMHeatThin &, const Place &, const int *index, double part,
+                   const double *into) const;
   double hidden(const int *index, const std::vector<const MPMHeatBody *> &others) const;
 };
 
