@@ -48,11 +48,14 @@
 #include "mpm_points.h"
 #include "mpm_stencil.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+
+static constexpr int AHEAD = BATCH;    // distance of prefetches, in points
 
 /* ---------------------------------------------------------------------- */
 
@@ -126,18 +129,25 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
       [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Points &points) {
         const Soil *const s = soil(run.material);
         if (!s) return false;
+        double *const C = capacity.data() + first, *const K = conductance.data() + first;
+        double most = fastest;
         for (int p = 0; p < n; p++) {
           const int i = first + p;
+          __builtin_prefetch(field.points->F[std::min(i + AHEAD, atom->nlocal - 1)]);
           const double J = field.points->jacobian(i), V = J * atom->vfrac[i];
-          capacity[i] = V * s->of.storage_at(J, water);
-          conductance[i] = V * mobility(*s, i, J, formula);
+          C[p] = V * s->of.storage_at(J, water);
+          K[p] = V * mobility(*s, i, J, formula);
           in_forces[i] = s->of.biot * J;
-          fastest = std::max(fastest, conductance[i] / capacity[i]);
-          points.volume[p] = conductance[i];
-          points.capacity[p] = capacity[i];
-          points.row[p][3] = state[i][0];
-          for (int d = 0; d < dim; d++) points.row[p][d] = state[i][1 + d];
+          if (K[p] > most * C[p]) most = K[p] / C[p];    // hardly ever: no division
+          points.volume[p] = K[p];
+          points.capacity[p] = C[p];
+          const double *const mine = state[i];
+          points.row[p][3] = mine[0];
+          points.row[p][0] = mine[1];
+          points.row[p][1] = mine[2];
+          if (dim == 3) points.row[p][2] = mine[3];
         }
+        fastest = most;
         return true;
       },
       false);
