@@ -181,6 +181,25 @@ PARAMETER_TEST(Energy, LostIsHeat, const char *, Values("", "separate", "slip"))
   EXPECT_NEAR(run.fix("heat")->compute_vector(7) * run.lmp->update->dt, 0.0, 0.001 * heat);
 }
 
+// contact with musl loses energy that is no heat
+TEST(Musl, IsWarnedOf)
+{
+  for (const bool musl : {false, true}) {
+    std::string scene = Braked{2.0}.scene();
+    for (int body = 0; musl && body < 2; body++)
+      scene = replaced(scene, "origin 0 0\n", "origin 0 0 scheme musl\n");
+    Scene run;
+    const ScratchFile log("musl.log");
+    run.commands("log " + log.name + "\n" + scene + "run 0\nlog none\n");
+    MPI_Barrier(MPI_COMM_WORLD);
+    int lines = 0;
+    std::ifstream file(log.name);
+    for (std::string line; std::getline(file, line);)
+      lines += line.find("with scheme musl") != std::string::npos;
+    EXPECT_EQ(lines, musl);
+  }
+}
+
 // bodies share heat like their effusivities, 1 to 4; or as they are told; or one of them gets all
 SERIAL_TEST(Share, IsThatOfEffusivities)
 {

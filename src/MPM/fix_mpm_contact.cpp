@@ -248,6 +248,15 @@ void FixMPMContact::init_action()
   std::vector<MPMField *> fields;
   for (const auto &body : bodies) fields.push_back(body.field);
   heating->begin_run(*this, fields);
+  const auto musl = std::find_if(fields.begin(), fields.end(), [](const MPMField *field) {
+    return field->options.scheme == MPMFieldOptions::MUSL;
+  });
+  if (musl != fields.end() && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix mpm/contact {} heat: with scheme musl of fix mpm {}, contact takes energy "
+                   "from the motion that does not become heat, up to 38 % in one case: use scheme "
+                   "usl, or look at the entries contact and transfer of compute mpm/energy",
+                   id, (*musl)->id());
 }
 
 /* ---------------------------------------------------------------------- */
