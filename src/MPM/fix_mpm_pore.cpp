@@ -113,7 +113,8 @@ Options MPMPoreOptions::declare(int dim)
         "level ground and its water are at rest under their weight at first")
       .then([this] {
         geostatic = true;
-      });
+      })
+      .standard("none");
   o.add("relax",
         {number(relax, "R", NOT_NEGATIVE, "1",
                 "rate at which points take the pressure of the nodes, in the rate at which waves "
